@@ -1,0 +1,28 @@
+//! From a graph to programs, and the programs' evaluators.
+//!
+//! A [`Solid`](crate::Solid) compiles to two [`Program`]s over one `Scene` of placed leaves:
+//! the *field program* gives true values; the *surface program* has min and max in place of
+//! R-functions, which is the same solid with the same surface and normals, and which can be
+//! narrowed to a region.
+
+mod compile;
+mod flatten;
+mod hierarchy;
+mod lower;
+mod narrow;
+mod nearest;
+mod point;
+mod program;
+mod query;
+mod ray;
+mod register;
+mod scene;
+mod tape;
+
+pub use program::{Program, Region};
+pub use query::Owner;
+pub use ray::Hit;
+pub use tape::{Evaluator, Gradients, Tape};
+
+pub(crate) use compile::{Compiled, compiled};
+pub(crate) use ray::first_hit;

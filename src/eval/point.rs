@@ -1,0 +1,162 @@
+//! Programs at points, on any number that a leaf can be called with.
+
+use glam::DVec3;
+
+use super::program::{Node, Op, Program};
+use crate::field::{AnyField, AnyWarp, COORDINATE_LIMIT, Placement, Rule, saturate};
+use crate::num::symbol::Symbol;
+use crate::{Dual, Interval, Real};
+
+/// A number that erased leaves and deformations take.
+pub(crate) trait Number: Real {
+    fn leaf(field: &dyn AnyField, p: [Self; 3]) -> Self;
+    fn warp(warp: &dyn AnyWarp, p: [Self; 3]) -> [Self; 3];
+}
+
+impl Number for f64 {
+    fn leaf(field: &dyn AnyField, p: [f64; 3]) -> f64 {
+        field.value(p)
+    }
+    fn warp(warp: &dyn AnyWarp, p: [f64; 3]) -> [f64; 3] {
+        warp.point(p)
+    }
+}
+
+impl Number for Dual<f64> {
+    fn leaf(field: &dyn AnyField, p: [Self; 3]) -> Self {
+        field.dual(p)
+    }
+    fn warp(warp: &dyn AnyWarp, p: [Self; 3]) -> [Self; 3] {
+        warp.duals(p)
+    }
+}
+
+impl Number for Dual<Interval> {
+    fn leaf(field: &dyn AnyField, p: [Self; 3]) -> Self {
+        field.dual_range(p)
+    }
+    fn warp(warp: &dyn AnyWarp, p: [Self; 3]) -> [Self; 3] {
+        warp.dual_ranges(p)
+    }
+}
+
+impl Number for Symbol<'_> {
+    fn leaf(field: &dyn AnyField, p: [Self; 3]) -> Self {
+        field.symbol(p)
+    }
+    fn warp(warp: &dyn AnyWarp, p: [Self; 3]) -> [Self; 3] {
+        warp.symbols(p)
+    }
+}
+
+impl Rule {
+    /// One step of a join.
+    #[inline(always)]
+    pub(crate) fn join<R: Real>(self, op: Op, x: R, y: R) -> R {
+        match op {
+            Op::And => self.and(x, y),
+            Op::Or => self.or(x, y),
+        }
+    }
+}
+
+impl Program {
+    /// The value at a point given in any number; `frames` and `values` are scratch.
+    pub(crate) fn evaluate<N: Number>(&self, p: [N; 3], values: &mut Vec<N>) -> N {
+        // A single leaf in the world, what most regions narrow to, needs no tables.
+        if let ([Node::Leaf(leaf)], []) = (&self.nodes[..], &self.frames[..]) {
+            let value = self.leaf(*leaf, p);
+            return if self.root.negated() { -value } else { value };
+        }
+        let mut frames: Vec<[N; 3]> = Vec::with_capacity(self.frames.len());
+        for &number in &self.frames[..] {
+            let Some(frame) = self.scene.frame(number) else { continue };
+            let above = self.in_frame(&frames, frame.parent, p);
+            let local = Placement::new(&frame.to_local, 1.0).apply(above);
+            frames.push(N::warp(&*frame.warp, local));
+        }
+        values.clear();
+        for node in &self.nodes[..] {
+            let value = match node {
+                Node::Leaf(leaf) => {
+                    let frame = self.scene.leaves[*leaf as usize].frame;
+                    self.leaf(*leaf, self.in_frame(&frames, frame, p))
+                }
+                Node::Join { op, rule, first, len, .. } => {
+                    let mut operands = self.list(*first, *len).iter().map(|edge| {
+                        let value = values[edge.node()];
+                        if edge.negated() { -value } else { value }
+                    });
+                    let Some(start) = operands.next() else { continue };
+                    operands.fold(start, |all, next| rule.join(*op, all, next))
+                }
+            };
+            values.push(value);
+        }
+        let value = values[self.root.node()];
+        if self.root.negated() { -value } else { value }
+    }
+
+    fn leaf<N: Number>(&self, leaf: u32, p: [N; 3]) -> N {
+        let instance = &self.scene.leaves[leaf as usize];
+        saturate(N::leaf(&*instance.field, instance.placement.apply(p)) * instance.scale)
+    }
+
+    /// The point in a frame, given those of the live frames before it.
+    pub(crate) fn in_frame<T: Copy>(&self, frames: &[T], frame: u32, world: T) -> T {
+        match self.frames.binary_search(&frame) {
+            Ok(slot) => frames[slot],
+            Err(_) => world,
+        }
+    }
+
+    /// The value at a point: positive inside. Coordinates beyond
+    /// [`COORDINATE_LIMIT`](crate::COORDINATE_LIMIT) are evaluated as if they lay there; NaN
+    /// counts as outside.
+    #[must_use]
+    pub fn value(&self, p: DVec3) -> f64 {
+        saturate(self.evaluate(limited(p), &mut Vec::new()))
+    }
+
+    /// Value and gradient at a point. At kinks, the gradient of one side.
+    #[must_use]
+    pub fn gradient(&self, p: DVec3) -> (f64, DVec3) {
+        let dual = self.evaluate(Dual::point(limited(p)), &mut Vec::new());
+        (saturate(dual.v), DVec3::from_array(dual.d))
+    }
+
+    /// The number of the leaf whose value decides at a point.
+    pub(crate) fn deciding_leaf(&self, p: DVec3) -> u32 {
+        let mut values = Vec::new();
+        self.evaluate(limited(p), &mut values);
+        let mut at = self.root.node();
+        loop {
+            match &self.nodes[at] {
+                Node::Leaf(leaf) => return *leaf,
+                Node::Join { op, first, len, .. } => {
+                    let signed = |edge: &super::program::Edge| {
+                        let value = values[edge.node()];
+                        if edge.negated() { -value } else { value }
+                    };
+                    let operands = self.list(*first, *len);
+                    let mut chosen = operands[0];
+                    for edge in &operands[1..] {
+                        let better = match op {
+                            Op::Or => signed(edge) > signed(&chosen),
+                            Op::And => signed(edge) < signed(&chosen),
+                        };
+                        if better {
+                            chosen = *edge;
+                        }
+                    }
+                    at = chosen.node();
+                }
+            }
+        }
+    }
+}
+
+/// A point held within the coordinate limit.
+pub(crate) fn limited(p: DVec3) -> [f64; 3] {
+    p.to_array().map(|c| c.clamp(-COORDINATE_LIMIT, COORDINATE_LIMIT))
+}

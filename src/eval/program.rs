@@ -1,0 +1,193 @@
+//! Programs: a solid as a list of leaves and joins, operands before operators.
+
+use std::sync::Arc;
+
+use super::hierarchy::Hierarchy;
+use super::scene::Scene;
+use crate::Bounds;
+use crate::field::Rule;
+
+/// A reference to a node's value, or to its negative.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct Edge(u32);
+
+impl Edge {
+    pub(crate) fn new(node: usize) -> Edge {
+        Edge((node as u32) << 1)
+    }
+
+    pub(crate) fn node(self) -> usize {
+        (self.0 >> 1) as usize
+    }
+
+    pub(crate) fn negated(self) -> bool {
+        self.0 & 1 == 1
+    }
+
+    /// The complement, if `negate`.
+    pub(crate) fn flip_if(self, negate: bool) -> Edge {
+        Edge(self.0 ^ u32::from(negate))
+    }
+
+    /// The same sign, another node.
+    pub(crate) fn to(self, node: usize) -> Edge {
+        Edge((node as u32) << 1 | self.0 & 1)
+    }
+}
+
+/// Conjunction or disjunction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Op {
+    And,
+    Or,
+}
+
+impl Op {
+    /// What this is to operands and result that are all negated (De Morgan).
+    pub(crate) fn flip_if(self, negate: bool) -> Op {
+        match (self, negate) {
+            (Op::And, false) | (Op::Or, true) => Op::And,
+            (Op::Or, false) | (Op::And, true) => Op::Or,
+        }
+    }
+}
+
+#[derive(Clone)]
+pub(crate) enum Node {
+    /// A leaf of the scene.
+    Leaf(u32),
+    /// Operands `first .. first + len` of the program's list, joined from the left.
+    Join {
+        op: Op,
+        rule: Rule,
+        first: u32,
+        len: u32,
+        /// The frame that the join's operands are joined in.
+        frame: u32,
+        /// Where its operands are, if they are many.
+        hierarchy: Option<Arc<Hierarchy>>,
+    },
+}
+
+/// A box that holds what is inside, and one that holds what is outside.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sides {
+    pub(crate) inside: Bounds,
+    pub(crate) outside: Bounds,
+}
+
+impl Default for Sides {
+    fn default() -> Sides {
+        Sides { inside: Bounds::ALL, outside: Bounds::ALL }
+    }
+}
+
+impl Sides {
+    /// Those of the complement, if `negate`.
+    pub(crate) fn flip_if(self, negate: bool) -> Sides {
+        if negate { Sides { inside: self.outside, outside: self.inside } } else { self }
+    }
+
+    /// Those of a join of two.
+    pub(crate) fn join(self, op: Op, other: Sides) -> Sides {
+        match op {
+            Op::Or => Sides {
+                inside: self.inside.union(&other.inside),
+                outside: self.outside.intersection(&other.outside),
+            },
+            Op::And => Sides {
+                inside: self.inside.intersection(&other.inside),
+                outside: self.outside.union(&other.outside),
+            },
+        }
+    }
+
+    /// Where an operand of `op` decides anything: outside of it the operand is the neutral
+    /// element of the operation.
+    pub(crate) fn decisive(self, op: Op) -> Bounds {
+        match op {
+            Op::Or => self.inside,
+            Op::And => self.outside,
+        }
+    }
+}
+
+/// A compiled solid: immutable, cheap to clone, shared between threads.
+///
+/// [`Solid::surface_program`](crate::Solid::surface_program) makes one whose joins are min
+/// and max, for work that asks about the surface;
+/// [`Solid::field_program`](crate::Solid::field_program) one of true values. Points go
+/// through [`value`](Program::value) and [`gradient`](Program::gradient), many points
+/// through a [`Tape`](crate::Tape).
+///
+/// ```
+/// use rvachev::{Bounds, Region, Solid};
+/// use glam::DVec3;
+///
+/// let pair = Solid::sphere(1.0) | Solid::sphere(1.0).translate(DVec3::X * 5.0);
+/// let program = pair.surface_program()?;
+/// assert_eq!(program.leaf_count(), 2);
+/// let near = Bounds::new(DVec3::new(0.5, -0.5, -0.5), DVec3::new(1.5, 0.5, 0.5));
+/// match program.narrow(&near) {
+///     Region::Surface(narrowed) => assert_eq!(narrowed.leaf_count(), 1),
+///     _ => unreachable!("the first sphere's surface crosses the box"),
+/// }
+/// # Ok::<(), rvachev::SolidError>(())
+/// ```
+#[derive(Clone)]
+pub struct Program {
+    pub(crate) scene: Arc<Scene>,
+    pub(crate) nodes: Arc<[Node]>,
+    pub(crate) operands: Arc<[Edge]>,
+    pub(crate) root: Edge,
+    /// Frames that its leaves stand in and their ancestors, parents first, without the world.
+    pub(crate) frames: Arc<[u32]>,
+}
+
+/// What a region holds of a solid.
+#[derive(Clone, Debug)]
+pub enum Region {
+    /// Every point is inside.
+    Inside,
+    /// Every point is outside.
+    Outside,
+    /// The surface may cross the region; the program is equivalent to the full one there: of
+    /// the same sign, the same zero set, and on it the same normal.
+    Surface(Program),
+}
+
+impl Program {
+    /// Assembles a program; `nodes` are sorted operands first, the root is among them.
+    pub(crate) fn assemble(scene: Arc<Scene>, nodes: Vec<Node>, operands: Vec<Edge>, root: Edge) -> Program {
+        let mut live = vec![false; scene.frames.len() + 1];
+        for node in &nodes {
+            let Node::Leaf(leaf) = node else { continue };
+            let mut frame = scene.leaves[*leaf as usize].frame;
+            while let Some(up) = scene.frame(frame) {
+                if std::mem::replace(&mut live[frame as usize], true) {
+                    break;
+                }
+                frame = up.parent;
+            }
+        }
+        let frames = (1..live.len()).filter(|&f| live[f]).map(|f| f as u32).collect();
+        Program { scene, nodes: nodes.into(), operands: operands.into(), root, frames }
+    }
+
+    /// How many leaves it evaluates; a leaf that is used in several places counts once.
+    #[must_use]
+    pub fn leaf_count(&self) -> usize {
+        self.nodes.iter().filter(|node| matches!(node, Node::Leaf(_))).count()
+    }
+
+    /// The operands of a join.
+    pub(crate) fn list(&self, first: u32, len: u32) -> &[Edge] {
+        &self.operands[first as usize..(first + len) as usize]
+    }
+}
+
+impl std::fmt::Debug for Program {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Program({} leaves, {} nodes)", self.leaf_count(), self.nodes.len())
+    }
+}

@@ -1,0 +1,226 @@
+//! Questions to a solid, answered in double precision.
+
+use glam::DVec3;
+
+use super::nearest::nearest;
+use super::point::limited;
+use super::tape::{Evaluator, Tape};
+use super::{Hit, Program, Region, compiled, first_hit};
+use crate::{Bounds, Interval, Solid, SolidError};
+
+/// A leaf of a solid, as an answer: which leaf decides here?
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Owner {
+    /// The leaf's number, in the order of compiling; stable for one solid.
+    pub index: u32,
+    /// The path from the root: `difference[1] / twist / superellipsoid`.
+    pub path: String,
+}
+
+impl Solid {
+    /// The program of true values.
+    ///
+    /// # Errors
+    /// What is wrong with the solid: see [`SolidError`].
+    pub fn field_program(&self) -> Result<Program, SolidError> {
+        Ok(compiled(self)?.field.clone())
+    }
+
+    /// The program for work on the surface: the same solid, surface and normals, with min and
+    /// max in place of R-functions.
+    ///
+    /// # Errors
+    /// What is wrong with the solid: see [`SolidError`].
+    pub fn surface_program(&self) -> Result<Program, SolidError> {
+        Ok(compiled(self)?.surface.clone())
+    }
+
+    /// The field at a point, in length units, positive inside.
+    ///
+    /// # Errors
+    /// What is wrong with the solid: see [`SolidError`].
+    ///
+    /// ```
+    /// use rvachev::Solid;
+    /// use glam::DVec3;
+    ///
+    /// assert_eq!(Solid::sphere(2.0).value(DVec3::X)?, 1.0);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
+    pub fn value(&self, p: DVec3) -> Result<f64, SolidError> {
+        Ok(compiled(self)?.field.value(p))
+    }
+
+    /// The field at many points, on lanes of `f64`.
+    ///
+    /// # Errors
+    /// What is wrong with the solid: see [`SolidError`].
+    pub fn values(&self, points: &[DVec3]) -> Result<Vec<f64>, SolidError> {
+        let programs = compiled(self)?;
+        let tape = Tape::new(&programs.field, &Bounds::new(DVec3::ZERO, DVec3::ZERO));
+        let axis = |axis: usize| -> Vec<f64> { points.iter().map(|p| limited(*p)[axis]).collect() };
+        let (x, y, z) = (axis(0), axis(1), axis(2));
+        let mut values = vec![0.0; points.len()];
+        Evaluator::new().values_f64(&tape, &x, &y, &z, &mut values);
+        Ok(values)
+    }
+
+    /// Whether a point is inside: the value is positive.
+    ///
+    /// # Errors
+    /// What is wrong with the solid: see [`SolidError`].
+    pub fn contains(&self, p: DVec3) -> Result<bool, SolidError> {
+        Ok(compiled(self)?.surface.value(p) > 0.0)
+    }
+
+    /// [`contains`](Solid::contains) at many points.
+    ///
+    /// # Errors
+    /// What is wrong with the solid: see [`SolidError`].
+    pub fn contains_all(&self, points: &[DVec3]) -> Result<Vec<bool>, SolidError> {
+        let programs = compiled(self)?;
+        Ok(points.iter().map(|p| programs.surface.value(*p) > 0.0).collect())
+    }
+
+    /// The field's gradient at a point; it points inward. At kinks, that of one side.
+    ///
+    /// # Errors
+    /// What is wrong with the solid: see [`SolidError`].
+    pub fn gradient(&self, p: DVec3) -> Result<DVec3, SolidError> {
+        Ok(compiled(self)?.field.gradient(p).1)
+    }
+
+    /// [`gradient`](Solid::gradient) at many points.
+    ///
+    /// # Errors
+    /// What is wrong with the solid: see [`SolidError`].
+    pub fn gradients(&self, points: &[DVec3]) -> Result<Vec<DVec3>, SolidError> {
+        let programs = compiled(self)?;
+        Ok(points.iter().map(|p| programs.field.gradient(*p).1).collect())
+    }
+
+    /// A sound range of the field over a box: every value in it lies in the interval. The
+    /// whole line for a box that is infinite.
+    ///
+    /// # Errors
+    /// What is wrong with the solid: see [`SolidError`].
+    pub fn range(&self, region: &Bounds) -> Result<Interval, SolidError> {
+        Ok(compiled(self)?.field.range(region))
+    }
+
+    /// What a box holds of the solid, soundly.
+    ///
+    /// # Errors
+    /// What is wrong with the solid: see [`SolidError`].
+    pub fn region(&self, region: &Bounds) -> Result<Region, SolidError> {
+        Ok(compiled(self)?.surface.narrow(region))
+    }
+
+    /// A box that holds the solid; infinite where the solid is unbounded, empty
+    /// ([`Bounds::EMPTY`]) if it holds nothing.
+    ///
+    /// Leaves under affine maps have their tightest box; joins combine those of their
+    /// operands.
+    ///
+    /// # Errors
+    /// What is wrong with the solid: see [`SolidError`].
+    pub fn bounds(&self) -> Result<Bounds, SolidError> {
+        Ok(compiled(self)?.bounds)
+    }
+
+    /// The box of the solid, for work that needs one.
+    ///
+    /// # Errors
+    /// [`SolidError::Unbounded`], naming the node, if it is infinite.
+    pub fn finite_bounds(&self) -> Result<Bounds, SolidError> {
+        let programs = compiled(self)?;
+        if programs.bounds.is_empty() || programs.bounds.is_finite() {
+            return Ok(programs.bounds);
+        }
+        Err(SolidError::Unbounded { path: programs.unbounded.clone() })
+    }
+
+    /// The first point of the surface on a ray, from outside or inside; `None` if the ray
+    /// misses. `direction` need not be of unit length; distances are in length units.
+    ///
+    /// The first crossing is found with certainty: parts of the ray are discarded only where
+    /// an interval shows that there is none. A ray that touches the surface without crossing
+    /// may miss it.
+    ///
+    /// # Errors
+    /// What is wrong with the solid: see [`SolidError`].
+    ///
+    /// ```
+    /// use rvachev::Solid;
+    /// use glam::DVec3;
+    ///
+    /// let ball = Solid::superellipsoid(DVec3::ONE, 1.0, 1.0);
+    /// let hit = ball.raycast(DVec3::X * 5.0, -DVec3::X)?.expect("aimed at the centre");
+    /// assert!((hit.distance - 4.0).abs() < 1e-12);
+    /// assert!((hit.normal - DVec3::X).length() < 1e-12);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
+    pub fn raycast(&self, origin: DVec3, direction: DVec3) -> Result<Option<Hit>, SolidError> {
+        let programs = compiled(self)?;
+        let direction = direction.normalize_or_zero();
+        if direction == DVec3::ZERO || !origin.is_finite() {
+            return Ok(None);
+        }
+        Ok(first_hit(&programs.surface, &programs.bounds, origin, direction, 0.0, f64::INFINITY))
+    }
+
+    /// The point of the surface nearest to `p`, to about 10⁻⁹ of the solid's size where the
+    /// surface is smooth there; `None` if the solid is empty or fills its bounds.
+    ///
+    /// # Errors
+    /// What is wrong with the solid; [`SolidError::Unbounded`] if it has no finite box.
+    ///
+    /// ```
+    /// use rvachev::Solid;
+    /// use glam::DVec3;
+    ///
+    /// let brick = Solid::cuboid(DVec3::new(2.0, 2.0, 2.0));
+    /// let q = brick.closest_surface_point(DVec3::new(3.0, 0.5, 0.25))?.expect("it has a surface");
+    /// assert!((q - DVec3::new(1.0, 0.5, 0.25)).length() < 1e-8);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
+    pub fn closest_surface_point(&self, p: DVec3) -> Result<Option<DVec3>, SolidError> {
+        let bounds = self.finite_bounds()?;
+        let programs = compiled(self)?;
+        if bounds.is_empty() || !p.is_finite() {
+            return Ok(None);
+        }
+        Ok(nearest(&programs.surface, &bounds, p))
+    }
+
+    /// The leaf that decides at a point: the one whose value the point has after min and max.
+    ///
+    /// # Errors
+    /// What is wrong with the solid: see [`SolidError`].
+    ///
+    /// ```
+    /// use rvachev::Solid;
+    /// use glam::DVec3;
+    ///
+    /// let part = Solid::cuboid(DVec3::ONE * 2.0) - Solid::cylinder(0.5, 3.0);
+    /// assert_eq!(part.owner(DVec3::new(0.5, 0.0, 0.0))?.path, "difference[1] / cylinder");
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
+    pub fn owner(&self, p: DVec3) -> Result<Owner, SolidError> {
+        let programs = compiled(self)?;
+        Ok(programs.surface.owner_of(programs.surface.deciding_leaf(p)))
+    }
+}
+
+impl Program {
+    /// The leaf that decides at a point.
+    #[must_use]
+    pub fn owner(&self, p: DVec3) -> Owner {
+        self.owner_of(self.deciding_leaf(p))
+    }
+
+    pub(crate) fn owner_of(&self, leaf: u32) -> Owner {
+        let step = self.scene.leaves[leaf as usize].step;
+        Owner { index: leaf, path: self.scene.trail.path(step) }
+    }
+}

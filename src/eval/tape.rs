@@ -1,0 +1,452 @@
+//! Bulk evaluation: a program made ready for a region, run over chunks of points.
+//!
+//! Points are given relative to the region's centre, in single precision. The maps of leaves
+//! are rebased to that origin in double precision, so a small solid far from the origin of
+//! coordinates is evaluated as accurately as one at it.
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3};
+
+use super::program::{Op, Program};
+use super::register::{Step, schedule};
+use crate::Bounds;
+use crate::field::{AnyField, AnyWarp, COORDINATE_LIMIT, Chunk, GradientChunk, Placement, Rule, Zone};
+use crate::num::kernel::{CHUNK, Element, Fold, fold};
+use crate::{Dual, Real};
+
+/// A program ready for bulk evaluation over a region: immutable, shared between threads;
+/// each thread brings its own [`Evaluator`].
+///
+/// ```
+/// use rvachev::{Bounds, Evaluator, Solid, Tape};
+/// use glam::DVec3;
+///
+/// let program = Solid::sphere(2.0).field_program()?;
+/// let region = Bounds::new(DVec3::new(0.0, -1.0, -1.0), DVec3::new(2.0, 1.0, 1.0));
+/// let tape = Tape::new(&program, &region);
+/// // Points are relative to the region's centre, here (1, 0, 0).
+/// let (x, zero) = ([0.0, 0.5, 2.0], [0.0; 3]);
+/// let mut values = [0.0; 3];
+/// Evaluator::new().values(&tape, &x, &zero, &zero, &mut values);
+/// assert_eq!(values, [1.0, 0.5, -1.0]);
+/// # Ok::<(), rvachev::SolidError>(())
+/// ```
+#[derive(Clone)]
+pub struct Tape {
+    frames: Vec<FrameStep>,
+    leaves: Vec<LeafStep>,
+    steps: Vec<Step>,
+    registers: usize,
+    result: u32,
+    origin: DVec3,
+    roundoff: f64,
+}
+
+/// A deformation to run: from the points in slot `from` to those in the next slot.
+#[derive(Clone)]
+struct FrameStep {
+    from: usize,
+    placement: Placement,
+    warp: Arc<dyn AnyWarp>,
+}
+
+#[derive(Clone)]
+struct LeafStep {
+    slot: usize,
+    placement: Placement,
+    field: Arc<dyn AnyField>,
+}
+
+impl Tape {
+    /// `program` for points in `region`; for an infinite region the origin is that of
+    /// coordinates.
+    #[must_use]
+    pub fn new(program: &Program, region: &Bounds) -> Tape {
+        let origin = if region.is_finite() && !region.is_empty() { region.center() } else { DVec3::ZERO };
+        let extent = if region.is_finite() && !region.is_empty() { region.half_extents() } else { DVec3::INFINITY };
+        let world = Zone::of_bounds(&Bounds::new(origin - extent, origin + extent));
+        let rebase = DAffine3::from_translation(origin);
+        // Slot 0 is the world; slot i + 1 the frame number i of the live ones.
+        let slot_of = |frame: u32| program.frames.binary_search(&frame).map_or(0, |slot| slot + 1);
+        let placed = |frame: u32, to_local: &DAffine3, scale: f64| {
+            let map = if slot_of(frame) == 0 { *to_local * rebase } else { *to_local };
+            Placement::new(&map, scale)
+        };
+        let mut seen = vec![Seen { zone: world, error: 0.0 }];
+        let mut frames = Vec::new();
+        for frame in program.frames.iter().filter_map(|&number| program.scene.frame(number)) {
+            let from = slot_of(frame.parent);
+            frames.push(FrameStep {
+                from,
+                placement: placed(frame.parent, &frame.to_local, 1.0),
+                warp: frame.warp.clone(),
+            });
+            seen.push(seen[from].through(&frame.to_local, &*frame.warp));
+        }
+        let plan = schedule(program);
+        let mut leaves = Vec::new();
+        let mut roundoff = 0.0f64;
+        let mut steps = plan.steps;
+        for step in &mut steps {
+            let Step::Leaf { leaf, .. } = step else { continue };
+            let instance = &program.scene.leaves[*leaf as usize];
+            let slot = slot_of(instance.frame);
+            roundoff = roundoff.max(seen[slot].leaf_error(&instance.to_local, &*instance.field) * instance.scale);
+            *leaf = leaves.len() as u32;
+            leaves.push(LeafStep {
+                slot,
+                placement: placed(instance.frame, &instance.to_local, instance.scale),
+                field: instance.field.clone(),
+            });
+        }
+        Tape { frames, leaves, steps, registers: plan.registers, result: plan.result, origin, roundoff }
+    }
+
+    /// What points are relative to.
+    #[must_use]
+    pub fn origin(&self) -> DVec3 {
+        self.origin
+    }
+
+    /// Where a single-precision value of a surface program is larger than this in absolute
+    /// value, its sign is that of the true value, for points of the region.
+    #[must_use]
+    pub fn roundoff(&self) -> f64 {
+        self.roundoff
+    }
+}
+
+/// How a region looks in a frame, and how far its points may be off in single precision.
+struct Seen {
+    zone: Zone,
+    error: f64,
+}
+
+impl Seen {
+    fn through(&self, to_local: &DAffine3, warp: &dyn AnyWarp) -> Seen {
+        let local = self.zone.mapped(to_local);
+        let slopes = warp.dual_ranges(Dual::point(local.hull()));
+        let stretch = slopes
+            .iter()
+            .map(|row| row.gradient().iter().map(|slope| slope.magnitude()).sum::<f64>())
+            .fold(0.0, f64::max);
+        let error = self.coordinate_error(to_local, &local) * stretch + warp.roundoff(local.reach());
+        Seen { zone: local.warped(warp), error }
+    }
+
+    /// By how much coordinates after an affine map may be off.
+    fn coordinate_error(&self, to_local: &DAffine3, local: &Zone) -> f64 {
+        let m = to_local.matrix3;
+        self.error * m.abs().row(0).element_sum().max(m.abs().row(1).element_sum()).max(m.abs().row(2).element_sum())
+            + 3e-7 * local.reach()
+    }
+
+    fn leaf_error(&self, to_local: &DAffine3, field: &dyn AnyField) -> f64 {
+        let local = self.zone.mapped(to_local);
+        let reach = local.reach();
+        let own = field.roundoff(reach);
+        // A leaf's bound allows for coordinates that are off by some rounding errors of
+        // their own; more than that counts in proportion.
+        let error = self.coordinate_error(to_local, &local);
+        let factor = if reach > 0.0 { (error / (1e-6 * reach)).max(1.0) } else { 1.0 };
+        let error = own * factor;
+        if error.is_nan() { f64::INFINITY } else { error }
+    }
+}
+
+/// Scratch memory for bulk evaluation, one per thread; it grows to what the largest tape
+/// needs and is reused.
+#[derive(Default)]
+pub struct Evaluator {
+    single: Memory<f32>,
+    double: Memory<f64>,
+}
+
+#[derive(Default)]
+struct Memory<E> {
+    registers: Vec<E>,
+    slots: Vec<E>,
+    padded: Vec<E>,
+}
+
+/// Value and gradient at many points, as slices of one length.
+pub struct Gradients<'a> {
+    /// Values.
+    pub value: &'a mut [f32],
+    /// Derivatives along x.
+    pub dx: &'a mut [f32],
+    /// Derivatives along y.
+    pub dy: &'a mut [f32],
+    /// Derivatives along z.
+    pub dz: &'a mut [f32],
+}
+
+impl Evaluator {
+    /// An evaluator without memory yet.
+    #[must_use]
+    pub fn new() -> Evaluator {
+        Evaluator::default()
+    }
+
+    /// Values at points relative to the tape's origin. As many points are evaluated as the
+    /// shortest of the slices holds. Finite coordinates give finite values.
+    pub fn values(&mut self, tape: &Tape, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]) {
+        execute::<Values<f32>, 1>(tape, &mut self.single, [x, y, z], [out]);
+    }
+
+    /// [`values`](Evaluator::values) on lanes of `f64`: as accurate as
+    /// [`Program::value`], to some 10⁻¹⁴ of the solid's size.
+    pub fn values_f64(&mut self, tape: &Tape, x: &[f64], y: &[f64], z: &[f64], out: &mut [f64]) {
+        execute::<Values<f64>, 1>(tape, &mut self.double, [x, y, z], [out]);
+    }
+
+    /// Values and gradients at points relative to the tape's origin.
+    pub fn gradients(&mut self, tape: &Tape, x: &[f32], y: &[f32], z: &[f32], out: Gradients<'_>) {
+        let Gradients { value, dx, dy, dz } = out;
+        execute::<Slopes, 4>(tape, &mut self.single, [x, y, z], [value, dx, dy, dz]);
+    }
+}
+
+/// What a chunk is evaluated to: `N` numbers a point in a register, and, behind a
+/// deformation, `COORDINATES` numbers a point in a slot.
+trait Mode<const N: usize> {
+    type E: Element;
+    const COORDINATES: usize;
+    fn leaf(leaf: &LeafStep, points: Points<'_, Self::E>, out: [&mut [Self::E]; N]);
+    fn frame(frame: &FrameStep, points: Points<'_, Self::E>, out: &mut [Self::E]);
+}
+
+/// Points of a chunk: three slices, or a slot behind a deformation.
+enum Points<'a, E> {
+    World([&'a [E]; 3]),
+    Slot(&'a [E]),
+}
+
+/// Slices of a chunk each.
+fn split<E, const K: usize>(slot: &[E]) -> [&[E]; K] {
+    std::array::from_fn(|i| &slot[i * CHUNK..(i + 1) * CHUNK])
+}
+
+fn split_mut<E, const K: usize>(slot: &mut [E]) -> [&mut [E]; K] {
+    let mut rest = slot;
+    std::array::from_fn(|_| {
+        let (head, tail) = std::mem::take(&mut rest).split_at_mut(CHUNK);
+        rest = tail;
+        head
+    })
+}
+
+impl<'a, E> Points<'a, E> {
+    fn coordinates(&self) -> [&'a [E]; 3] {
+        match self {
+            Points::World(points) => *points,
+            Points::Slot(slot) => split(slot),
+        }
+    }
+}
+
+struct Values<E>(std::marker::PhantomData<E>);
+
+impl Mode<1> for Values<f32> {
+    type E = f32;
+    const COORDINATES: usize = 3;
+
+    fn leaf(leaf: &LeafStep, points: Points<'_, f32>, out: [&mut [f32]; 1]) {
+        leaf.field.lanes32(Chunk { points: points.coordinates(), placement: &leaf.placement, out });
+    }
+
+    fn frame(frame: &FrameStep, points: Points<'_, f32>, out: &mut [f32]) {
+        let out = split_mut(out);
+        frame.warp.lanes32(Chunk { points: points.coordinates(), placement: &frame.placement, out });
+    }
+}
+
+impl Mode<1> for Values<f64> {
+    type E = f64;
+    const COORDINATES: usize = 3;
+
+    fn leaf(leaf: &LeafStep, points: Points<'_, f64>, out: [&mut [f64]; 1]) {
+        leaf.field.lanes64(Chunk { points: points.coordinates(), placement: &leaf.placement, out });
+    }
+
+    fn frame(frame: &FrameStep, points: Points<'_, f64>, out: &mut [f64]) {
+        let out = split_mut(out);
+        frame.warp.lanes64(Chunk { points: points.coordinates(), placement: &frame.placement, out });
+    }
+}
+
+struct Slopes;
+
+impl Slopes {
+    fn jacobian<'a>(points: &Points<'a, f32>) -> Option<[&'a [f32]; 9]> {
+        match points {
+            Points::World(_) => None,
+            Points::Slot(slot) => Some(split(&slot[3 * CHUNK..])),
+        }
+    }
+}
+
+impl Mode<4> for Slopes {
+    type E = f32;
+    const COORDINATES: usize = 12;
+
+    fn leaf(leaf: &LeafStep, points: Points<'_, f32>, out: [&mut [f32]; 4]) {
+        leaf.field.gradients(GradientChunk {
+            points: points.coordinates(),
+            jacobian: Slopes::jacobian(&points),
+            placement: &leaf.placement,
+            out,
+        });
+    }
+
+    fn frame(frame: &FrameStep, points: Points<'_, f32>, out: &mut [f32]) {
+        frame.warp.jacobians(GradientChunk {
+            points: points.coordinates(),
+            jacobian: Slopes::jacobian(&points),
+            placement: &frame.placement,
+            out: split_mut(out),
+        });
+    }
+}
+
+/// One step of a join: on numbers, or on values with their derivatives.
+struct Join {
+    op: Op,
+    rule: Rule,
+    negate: bool,
+}
+
+impl Fold<1> for Join {
+    #[inline(always)]
+    fn fold<R: Real>(&self, [all]: [R; 1], [next]: [R; 1]) -> [R; 1] {
+        [self.rule.join(self.op, all, if self.negate { -next } else { next })]
+    }
+}
+
+impl Fold<4> for Join {
+    #[inline(always)]
+    fn fold<R: Real>(&self, all: [R; 4], next: [R; 4]) -> [R; 4] {
+        let all = Dual::new(all[0], [all[1], all[2], all[3]]);
+        let next = Dual::new(next[0], [next[1], next[2], next[3]]);
+        let joined = self.rule.join(self.op, all, if self.negate { -next } else { next });
+        [joined.v, joined.d[0], joined.d[1], joined.d[2]]
+    }
+}
+
+fn execute<M: Mode<N>, const N: usize>(
+    tape: &Tape,
+    memory: &mut Memory<M::E>,
+    points: [&[M::E]; 3],
+    mut out: [&mut [M::E]; N],
+) where
+    Join: Fold<N>,
+{
+    let count = points.iter().map(|p| p.len()).chain(out.iter().map(|o| o.len())).min().unwrap_or(0);
+    let zero = M::E::default();
+    memory.registers.resize(memory.registers.len().max(tape.registers * N * CHUNK), zero);
+    memory.slots.resize(memory.slots.len().max(tape.frames.len() * M::COORDINATES * CHUNK), zero);
+    memory.padded.resize(3 * CHUNK, zero);
+    let Memory { registers, slots, padded } = memory;
+    let mut at = 0;
+    while at < count {
+        let len = CHUNK.min(count - at);
+        let mut world = points.map(|p| &p[at..at + len]);
+        if len < CHUNK || !world.iter().all(|axis| within_limit(axis)) {
+            // The tail is padded with copies of its last point; coordinates are held.
+            for (to, from) in split_mut::<_, 3>(padded).into_iter().zip(world) {
+                for (i, to) in to.iter_mut().enumerate() {
+                    *to = held(from[i.min(len - 1)]);
+                }
+            }
+            world = split::<_, 3>(padded);
+        }
+        chunk::<M, N>(tape, world, registers, slots);
+        let result = &registers[tape.result as usize * N * CHUNK..][..N * CHUNK];
+        for (to, from) in out.iter_mut().zip(split::<_, N>(result)) {
+            to[at..at + len].copy_from_slice(&from[..len]);
+        }
+        at += len;
+    }
+}
+
+fn chunk<M: Mode<N>, const N: usize>(tape: &Tape, world: [&[M::E]; 3], registers: &mut [M::E], slots: &mut [M::E])
+where
+    Join: Fold<N>,
+{
+    let coordinates = M::COORDINATES * CHUNK;
+    for (number, frame) in tape.frames.iter().enumerate() {
+        let (before, after) = slots.split_at_mut(number * coordinates);
+        let points = match frame.from {
+            0 => Points::World(world),
+            slot => Points::Slot(&before[(slot - 1) * coordinates..slot * coordinates]),
+        };
+        M::frame(frame, points, &mut after[..coordinates]);
+    }
+    let width = N * CHUNK;
+    for step in &tape.steps {
+        match *step {
+            Step::Leaf { leaf, to } => {
+                let leaf = &tape.leaves[leaf as usize];
+                let points = match leaf.slot {
+                    0 => Points::World(world),
+                    slot => Points::Slot(&slots[(slot - 1) * coordinates..slot * coordinates]),
+                };
+                M::leaf(leaf, points, split_mut(&mut registers[to as usize * width..][..width]));
+            }
+            Step::Fold { op, rule, negate, from, to } => {
+                let (all, next) = two(registers, to as usize * width, from as usize * width, width);
+                fold(&Join { op, rule, negate }, split_mut::<_, N>(all), split::<_, N>(next));
+            }
+            Step::Copy { from, to } => {
+                registers.copy_within(from as usize * width..(from as usize + 1) * width, to as usize * width);
+            }
+            Step::Negate { register } => {
+                for v in &mut registers[register as usize * width..][..width] {
+                    *v = M::E::negated(*v);
+                }
+            }
+        }
+    }
+}
+
+/// Two different ranges of one slice.
+fn two<E>(all: &mut [E], a: usize, b: usize, len: usize) -> (&mut [E], &[E]) {
+    if a < b {
+        let (head, tail) = all.split_at_mut(b);
+        (&mut head[a..a + len], &tail[..len])
+    } else {
+        let (head, tail) = all.split_at_mut(a);
+        (&mut tail[..len], &head[b..b + len])
+    }
+}
+
+/// Whether all coordinates are within the limit (NaN is not).
+fn within_limit<E: Element>(axis: &[E]) -> bool {
+    let (low, high) = (E::from_f64(-COORDINATE_LIMIT), E::from_f64(COORDINATE_LIMIT));
+    axis.iter().fold(true, |all, &c| all & (c >= low) & (c <= high))
+}
+
+/// A coordinate held within the limit; NaN becomes the limit.
+fn held<E: Element>(c: E) -> E {
+    let (low, high) = (E::from_f64(-COORDINATE_LIMIT), E::from_f64(COORDINATE_LIMIT));
+    if c < low {
+        low
+    } else if c <= high {
+        c
+    } else {
+        high
+    }
+}
+
+impl std::fmt::Debug for Tape {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Tape({} leaves, {} registers)", self.leaves.len(), self.registers)
+    }
+}
+
+impl std::fmt::Debug for Evaluator {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Evaluator")
+    }
+}

@@ -1,0 +1,328 @@
+//! Leaves and deformations behind one pointer, each with its own kernels.
+//!
+//! A formula is generic over the number and so cannot be called through a pointer; what is
+//! called is the list of evaluations that the engine runs, instantiated once per leaf. A
+//! kernel runs over a chunk of points, so the call through the pointer costs nothing.
+
+use std::fmt::Debug;
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::deform::Warp;
+use super::zone::concave_range;
+use super::{AnyWarp, Field, ParamError, Zone, saturate};
+use crate::num::kernel::{Element, Formula, run};
+use crate::num::symbol::Symbol;
+use crate::{Bounds, Dual, Interval, Real};
+
+/// Where a leaf stands: the map from the points that it is given to its own frame, and the
+/// factor of its value.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placement {
+    /// Rows of the map: `[m_x, m_y, m_z, t]` each.
+    rows: [[f64; 4]; 3],
+    pub(crate) scale: f64,
+}
+
+impl Placement {
+    pub(crate) fn new(map: &DAffine3, scale: f64) -> Placement {
+        let m = map.matrix3.transpose();
+        let row = |axis: usize| {
+            let r = m.col(axis);
+            [r.x, r.y, r.z, map.translation[axis]]
+        };
+        Placement { rows: [row(0), row(1), row(2)], scale }
+    }
+
+    /// The point in the leaf's frame.
+    #[inline(always)]
+    pub(crate) fn apply<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
+        let r = &self.rows;
+        [
+            x.scale_add(r[0][0], y.scale_add(r[0][1], z.scale_add(r[0][2], z.lift(r[0][3])))),
+            x.scale_add(r[1][0], y.scale_add(r[1][1], z.scale_add(r[1][2], z.lift(r[1][3])))),
+            x.scale_add(r[2][0], y.scale_add(r[2][1], z.scale_add(r[2][2], z.lift(r[2][3])))),
+        ]
+    }
+
+    /// A gradient of the leaf's frame, in that of the points.
+    #[inline(always)]
+    fn pull<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
+        let r = &self.rows;
+        [
+            x.scale_add(r[0][0], y.scale_add(r[1][0], z * r[2][0])),
+            x.scale_add(r[0][1], y.scale_add(r[1][1], z * r[2][1])),
+            x.scale_add(r[0][2], y.scale_add(r[1][2], z * r[2][2])),
+        ]
+    }
+}
+
+/// A chunk of points to run a kernel over; all slices are of one length, a multiple of
+/// [`CHUNK`](crate::num::kernel::CHUNK).
+pub(crate) struct Chunk<'a, E, const OUT: usize> {
+    pub(crate) points: [&'a [E]; 3],
+    pub(crate) placement: &'a Placement,
+    pub(crate) out: [&'a mut [E]; OUT],
+}
+
+/// A chunk of points with, behind a deformation, the Jacobian of each (row by row).
+pub(crate) struct GradientChunk<'a, const OUT: usize> {
+    pub(crate) points: [&'a [f32]; 3],
+    pub(crate) jacobian: Option<[&'a [f32]; 9]>,
+    pub(crate) placement: &'a Placement,
+    pub(crate) out: [&'a mut [f32]; OUT],
+}
+
+/// A [`Field`], erased to the evaluations that the engine runs.
+pub(crate) trait AnyField: Debug + Send + Sync {
+    fn name(&self) -> &'static str;
+    fn bounds(&self) -> Bounds;
+    fn bounds_under(&self, map: &DAffine3) -> Bounds;
+    fn check(&self) -> Result<(), ParamError>;
+    fn roundoff(&self, reach: f64) -> f64;
+    fn value(&self, p: [f64; 3]) -> f64;
+    fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64>;
+    fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval>;
+    /// A sound range over a zone of the leaf's frame.
+    fn range(&self, zone: &Zone) -> Interval;
+    fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a>;
+    fn lanes32(&self, chunk: Chunk<'_, f32, 1>);
+    fn lanes64(&self, chunk: Chunk<'_, f64, 1>);
+    /// Value and the three derivatives.
+    fn gradients(&self, chunk: GradientChunk<'_, 4>);
+}
+
+struct Value<'a, F>(&'a F, &'a Placement);
+
+impl<F: Field> Formula<3, 1> for Value<'_, F> {
+    #[inline(always)]
+    fn run<R: Real>(&self, p: [R; 3]) -> [R; 1] {
+        [saturate(self.0.eval(self.1.apply(p)) * self.1.scale)]
+    }
+}
+
+struct Gradient<'a, F>(&'a F, &'a Placement);
+
+impl<F: Field> Gradient<'_, F> {
+    #[inline(always)]
+    fn gradient<R: Real>(&self, p: [R; 3]) -> (R, [R; 3]) {
+        let value = self.0.eval(Dual::point(self.1.apply(p))) * self.1.scale;
+        (saturate(value.v), self.1.pull(value.d))
+    }
+}
+
+impl<F: Field> Formula<3, 4> for Gradient<'_, F> {
+    #[inline(always)]
+    fn run<R: Real>(&self, p: [R; 3]) -> [R; 4] {
+        let (v, g) = self.gradient(p);
+        [v, g[0], g[1], g[2]]
+    }
+}
+
+impl<F: Field> Formula<12, 4> for Gradient<'_, F> {
+    #[inline(always)]
+    fn run<R: Real>(&self, p: [R; 12]) -> [R; 4] {
+        let (v, g) = self.gradient([p[0], p[1], p[2]]);
+        // Jᵀ g, J row by row behind the point.
+        [
+            v,
+            p[3].mul_add(g[0], p[6].mul_add(g[1], p[9] * g[2])),
+            p[4].mul_add(g[0], p[7].mul_add(g[1], p[10] * g[2])),
+            p[5].mul_add(g[0], p[8].mul_add(g[1], p[11] * g[2])),
+        ]
+    }
+}
+
+/// Point and Jacobian as one list of inputs.
+fn with_jacobian<'a>(p: [&'a [f32]; 3], j: [&'a [f32]; 9]) -> [&'a [f32]; 12] {
+    [p[0], p[1], p[2], j[0], j[1], j[2], j[3], j[4], j[5], j[6], j[7], j[8]]
+}
+
+impl<F: Field> AnyField for F {
+    fn name(&self) -> &'static str {
+        Field::name(self)
+    }
+
+    fn bounds(&self) -> Bounds {
+        Field::bounds(self)
+    }
+
+    fn bounds_under(&self, map: &DAffine3) -> Bounds {
+        Field::bounds_under(self, map)
+    }
+
+    fn check(&self) -> Result<(), ParamError> {
+        Field::check(self)
+    }
+
+    fn roundoff(&self, reach: f64) -> f64 {
+        Field::roundoff(self, reach)
+    }
+
+    fn value(&self, p: [f64; 3]) -> f64 {
+        self.eval(p)
+    }
+
+    fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64> {
+        self.eval(p)
+    }
+
+    fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
+        self.eval(p)
+    }
+
+    fn range(&self, zone: &Zone) -> Interval {
+        let coarse = Field::range(self, zone.hull());
+        if !self.convex() || coarse.lo() > 0.0 || coarse.hi() < 0.0 || !zone.is_finite() {
+            return coarse;
+        }
+        let tangent = self.eval(Dual::point(zone.centre.to_array()));
+        concave_range(zone, tangent.v, DVec3::from_array(tangent.d), coarse, |p| self.eval(p.to_array()))
+    }
+
+    fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
+        self.eval(p)
+    }
+
+    fn lanes32(&self, chunk: Chunk<'_, f32, 1>) {
+        lanes(self, chunk);
+    }
+
+    fn lanes64(&self, chunk: Chunk<'_, f64, 1>) {
+        lanes(self, chunk);
+    }
+
+    fn gradients(&self, chunk: GradientChunk<'_, 4>) {
+        let formula = Gradient(self, chunk.placement);
+        match chunk.jacobian {
+            None => run(&formula, chunk.points, chunk.out),
+            Some(jacobian) => run(&formula, with_jacobian(chunk.points, jacobian), chunk.out),
+        }
+    }
+}
+
+fn lanes<E: Element, F: Field>(field: &F, chunk: Chunk<'_, E, 1>) {
+    run(&Value(field, chunk.placement), chunk.points, chunk.out);
+}
+
+struct PreImage<'a, W>(&'a W, &'a Placement);
+
+impl<W: Warp> Formula<3, 3> for PreImage<'_, W> {
+    #[inline(always)]
+    fn run<R: Real>(&self, p: [R; 3]) -> [R; 3] {
+        self.0.inverse(self.1.apply(p))
+    }
+}
+
+struct Jacobian<'a, W>(&'a W, &'a Placement);
+
+impl<W: Warp> Jacobian<'_, W> {
+    #[inline(always)]
+    fn of<R: Real>(&self, p: [Dual<R>; 3]) -> [R; 12] {
+        let [x, y, z] = self.0.inverse(self.1.apply(p));
+        [
+            x.v, y.v, z.v, x.d[0], x.d[1], x.d[2], y.d[0], y.d[1], y.d[2], z.d[0], z.d[1], z.d[2],
+        ]
+    }
+}
+
+impl<W: Warp> Formula<3, 12> for Jacobian<'_, W> {
+    #[inline(always)]
+    fn run<R: Real>(&self, p: [R; 3]) -> [R; 12] {
+        self.of(Dual::point(p))
+    }
+}
+
+impl<W: Warp> Formula<12, 12> for Jacobian<'_, W> {
+    #[inline(always)]
+    fn run<R: Real>(&self, p: [R; 12]) -> [R; 12] {
+        self.of([
+            Dual::new(p[0], [p[3], p[4], p[5]]),
+            Dual::new(p[1], [p[6], p[7], p[8]]),
+            Dual::new(p[2], [p[9], p[10], p[11]]),
+        ])
+    }
+}
+
+impl<W: Warp> AnyWarp for W {
+    fn name(&self) -> &'static str {
+        W::NAME
+    }
+
+    fn point(&self, p: [f64; 3]) -> [f64; 3] {
+        self.inverse(p)
+    }
+
+    fn duals(&self, p: [Dual<f64>; 3]) -> [Dual<f64>; 3] {
+        self.inverse(p)
+    }
+
+    fn dual_ranges(&self, p: [Dual<Interval>; 3]) -> [Dual<Interval>; 3] {
+        self.inverse(p)
+    }
+
+    fn symbols<'a>(&self, p: [Symbol<'a>; 3]) -> [Symbol<'a>; 3] {
+        self.inverse(p)
+    }
+
+    fn lanes32(&self, chunk: Chunk<'_, f32, 3>) {
+        run(&PreImage(self, chunk.placement), chunk.points, chunk.out);
+    }
+
+    fn lanes64(&self, chunk: Chunk<'_, f64, 3>) {
+        run(&PreImage(self, chunk.placement), chunk.points, chunk.out);
+    }
+
+    fn jacobians(&self, chunk: GradientChunk<'_, 12>) {
+        let formula = Jacobian(self, chunk.placement);
+        match chunk.jacobian {
+            None => run(&formula, chunk.points, chunk.out),
+            Some(jacobian) => run(&formula, with_jacobian(chunk.points, jacobian), chunk.out),
+        }
+    }
+
+    fn forward(&self, p: DVec3) -> DVec3 {
+        Warp::forward(self, p)
+    }
+
+    fn bounds(&self, bounds: &Bounds) -> Bounds {
+        Warp::bounds(self, bounds)
+    }
+
+    fn check(&self, bounds: &Bounds) -> Result<(), ParamError> {
+        Warp::check(self, bounds)
+    }
+
+    fn roundoff(&self, reach: f64) -> f64 {
+        Warp::roundoff(self, reach)
+    }
+}
+
+/// The smallest stretch of an affine map: its least singular value.
+pub(crate) fn smallest_stretch(m: &DMat3) -> f64 {
+    // Largest eigenvalue of A⁻¹A⁻ᵀ by Jacobi rotations: relative accuracy where it counts.
+    let inverse = m.inverse();
+    let mut s = (inverse * inverse.transpose()).to_cols_array_2d();
+    for _ in 0..12 {
+        for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+            if s[i][j].abs() <= 1e-300 {
+                continue;
+            }
+            let theta = 0.5 * (s[j][j] - s[i][i]) / s[i][j];
+            let t = theta.signum() / (theta.abs() + (1.0 + theta * theta).sqrt());
+            let c = 1.0 / (1.0 + t * t).sqrt();
+            let sn = t * c;
+            for k in 0..3 {
+                let (a, b) = (s[k][i], s[k][j]);
+                s[k][i] = c * a - sn * b;
+                s[k][j] = sn * a + c * b;
+            }
+            for k in 0..3 {
+                let (a, b) = (s[i][k], s[j][k]);
+                s[i][k] = c * a - sn * b;
+                s[j][k] = sn * a + c * b;
+            }
+        }
+    }
+    1.0 / s[0][0].max(s[1][1]).max(s[2][2]).sqrt()
+}

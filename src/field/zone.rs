@@ -1,0 +1,160 @@
+//! The region over which a leaf's range is asked for.
+//!
+//! A box of the world is, in the frame of a rotated or deformed leaf, no box. A [`Zone`]
+//! keeps its shape: centre, three half-axes and a remainder,
+//!
+//! ```text
+//!     { c + A·u + s∘v :  |u|∞ ≤ 1, |v|∞ ≤ 1 }  ∩  hull
+//! ```
+//!
+//! Affine maps carry it exactly; a deformation carries it by the mean-value form, the
+//! remainder `s` being the spread of the Jacobian over the zone times the zone's extent, so
+//! it shrinks with the square of the zone's size. A segment of a ray is a zone with one
+//! half-axis.
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::AnyWarp;
+use crate::{Bounds, Dual, Interval, Real};
+
+/// Relative rounding error of a handful of operations in `f64`.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// A parallelepiped with a remainder, cut by an axis-aligned hull.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Zone {
+    pub(crate) centre: DVec3,
+    /// The half-axes, as columns.
+    pub(crate) axes: DMat3,
+    pub(crate) slack: DVec3,
+    hull: [Interval; 3],
+}
+
+impl Zone {
+    /// The box `bounds`, which must be finite.
+    pub(crate) fn of_bounds(bounds: &Bounds) -> Zone {
+        Zone::new(bounds.center(), DMat3::from_diagonal(bounds.half_extents()), DVec3::ZERO)
+    }
+
+    /// The segment from `a` to `b`.
+    pub(crate) fn of_segment(a: DVec3, b: DVec3) -> Zone {
+        Zone::new(0.5 * (a + b), DMat3::from_cols(0.5 * (b - a), DVec3::ZERO, DVec3::ZERO), DVec3::ZERO)
+    }
+
+    fn new(centre: DVec3, axes: DMat3, slack: DVec3) -> Zone {
+        let radius = Zone::extent_of(&axes, slack) + ROUNDING * centre.abs();
+        let hull = [0, 1, 2].map(|i| Interval::around(centre[i], radius[i]));
+        Zone { centre, axes, slack, hull }
+    }
+
+    fn extent_of(axes: &DMat3, slack: DVec3) -> DVec3 {
+        axes.x_axis.abs() + axes.y_axis.abs() + axes.z_axis.abs() + slack
+    }
+
+    /// Half the size along each axis.
+    pub(crate) fn extent(&self) -> DVec3 {
+        Zone::extent_of(&self.axes, self.slack)
+    }
+
+    /// An axis-aligned box that holds the zone.
+    pub(crate) fn hull(&self) -> [Interval; 3] {
+        self.hull
+    }
+
+    /// The largest coordinate in absolute value.
+    pub(crate) fn reach(&self) -> f64 {
+        self.hull.iter().fold(0.0, |reach, side| reach.max(side.magnitude()))
+    }
+
+    /// Whether every number in it is finite.
+    pub(crate) fn is_finite(&self) -> bool {
+        self.centre.is_finite() && self.axes.is_finite() && self.slack.is_finite()
+    }
+
+    /// The zone after an affine map.
+    pub(crate) fn mapped(&self, map: &DAffine3) -> Zone {
+        if *map == DAffine3::IDENTITY {
+            return *self;
+        }
+        let m = &map.matrix3;
+        let abs = m.abs();
+        let rounding = ROUNDING * (abs * (self.centre.abs() + self.extent()) + map.translation.abs());
+        Zone::new(map.transform_point3(self.centre), *m * self.axes, abs * self.slack + rounding)
+    }
+
+    /// The zone after a deformation.
+    pub(crate) fn warped(&self, warp: &dyn AnyWarp) -> Zone {
+        let image = warp.dual_ranges(Dual::point(self.hull));
+        let direct = image.map(Dual::value);
+        let centre = DVec3::from_array(warp.point(self.centre.to_array()));
+        let mut mid = [[0.0; 3]; 3];
+        let mut spread = [[0.0; 3]; 3];
+        let mut bounded = centre.is_finite();
+        for (row, side) in image.iter().enumerate() {
+            for (column, slope) in side.gradient().into_iter().enumerate() {
+                mid[row][column] = slope.mid();
+                spread[row][column] = 0.5 * slope.width();
+                bounded &= slope.magnitude() < 1e6;
+            }
+        }
+        if !bounded {
+            // The Jacobian says nothing here (the zone meets a pole of the map): only the
+            // direct image is left.
+            let box_centre = DVec3::from_array(direct.map(Interval::mid));
+            let slack = DVec3::from_array(direct.map(|s| 0.5 * s.width()));
+            let mut zone = Zone::new(box_centre, DMat3::ZERO, slack);
+            zone.hull = direct;
+            return zone;
+        }
+        let mid = DMat3::from_cols_array_2d(&mid).transpose();
+        let spread = DMat3::from_cols_array_2d(&spread).transpose();
+        let rounding = ROUNDING * (mid.abs() * (self.centre.abs() + self.extent()) + centre.abs());
+        let slack = mid.abs() * self.slack + spread * self.extent() + rounding;
+        let mut zone = Zone::new(centre, mid * self.axes, slack);
+        for axis in 0..3 {
+            zone.hull[axis] = zone.hull[axis].narrowed_by(direct[axis]);
+        }
+        zone
+    }
+}
+
+/// Range of a concave function with slope at most 1 over a zone: tangent above, corners below.
+///
+/// `value` and `gradient` are those at the centre. The least value of a concave function
+/// over a parallelepiped is at one of its corners; they are looked at only while the answer
+/// is open.
+pub(super) fn concave_range(
+    zone: &Zone,
+    value: f64,
+    gradient: DVec3,
+    known: Interval,
+    mut at: impl FnMut(DVec3) -> f64,
+) -> Interval {
+    let along = zone.axes.transpose() * gradient;
+    let rise = along.abs().element_sum() + gradient.abs().dot(zone.slack);
+    let rounding = 1e-14 * (zone.centre.abs() + zone.extent()).element_sum() + 1e-14 * value.abs();
+    let hi = value + rise + rounding;
+    if !hi.is_finite() {
+        return known;
+    }
+    let mut range = known.narrowed_by(Interval::new(f64::NEG_INFINITY, hi));
+    if range.hi() < 0.0 || value <= 0.0 || range.lo() > 0.0 {
+        return range;
+    }
+    let slip = zone.slack.length() + rounding;
+    // First the corner down the slope: where it is outside, nothing more can be learnt.
+    let down = DVec3::from_array(along.to_array().map(|a| if a > 0.0 { -1.0 } else { 1.0 }));
+    let mut lowest = at(zone.centre + zone.axes * down);
+    if lowest - slip <= 0.0 {
+        return range;
+    }
+    for corner in 0..8u32 {
+        let sign = |bit: u32| if corner >> bit & 1 == 0 { -1.0 } else { 1.0 };
+        let u = DVec3::new(sign(0), sign(1), sign(2));
+        if u != down {
+            lowest = lowest.min(at(zone.centre + zone.axes * u));
+        }
+    }
+    range = range.narrowed_by(Interval::new(lowest - slip, f64::INFINITY));
+    range
+}

@@ -1,0 +1,427 @@
+//! Where a picture is taken from.
+//!
+//! ```text
+//!        up                       perspective: rays leave the eye, and the height of the
+//!         |    target             view is an angle, the field of view
+//!   eye   |   .*
+//!     *---+--'                    orthographic: rays are parallel, and the height of the
+//!      `-- right                  view is a length
+//! ```
+//!
+//! The world has +z up. The default view of [`Camera::framing`] is a three-quarter view: the
+//! eye is in front of the box (towards −y), to its right (+x) and above it (+z).
+
+use glam::DVec3;
+
+use crate::bounds::Bounds;
+
+/// A camera: an eye, what it looks at, and how it projects.
+///
+/// Plain data: any values can be written, and [`Camera::check`] says what is wrong with them.
+///
+/// ```
+/// use glam::DVec3;
+/// use rvachev::{Bounds, Camera};
+///
+/// let camera = Camera::framing(&Bounds::from_center(DVec3::ZERO, DVec3::ONE));
+/// camera.check()?;
+/// // The middle of the picture looks at the middle of the box.
+/// let (origin, direction) = camera.ray(320.0, 240.0, 640, 480);
+/// assert!(origin.cross(direction).length() < 1e-12);
+/// # Ok::<(), rvachev::CameraError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// The position of the eye, in length units.
+    pub eye: DVec3,
+    /// The point that appears in the middle of the picture; must not be the eye.
+    pub target: DVec3,
+    /// The direction that points up in the picture. Of any length but 0, and not along the
+    /// view; it need not be at a right angle to it.
+    pub up: DVec3,
+    /// How points are projected.
+    pub projection: Projection,
+}
+
+/// How a camera projects, and how much it takes in from bottom to top.
+///
+/// How much it takes in from left to right follows from the picture's aspect ratio: pixels
+/// are square.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projection {
+    /// Rays meet in the eye.
+    Perspective {
+        /// Angle from the bottom to the top of the picture, in degrees, above 0 and below 180.
+        fov: f64,
+    },
+    /// Rays are parallel to the view, and start in the plane through the eye.
+    Orthographic {
+        /// Length from the bottom to the top of the picture, in length units, above 0.
+        height: f64,
+    },
+}
+
+/// What is wrong with a camera.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("camera: {parameter} is {value}; {allowed}")]
+#[non_exhaustive]
+pub struct CameraError {
+    /// The parameter.
+    pub parameter: &'static str,
+    /// Its value.
+    pub value: String,
+    /// What is allowed.
+    pub allowed: &'static str,
+}
+
+/// The vertical field of view of [`Camera::framing`], in degrees: about that of a portrait
+/// lens, which keeps parallel edges nearly parallel.
+const FRAMING_FOV: f64 = 30.0;
+
+/// The direction from the box to the eye of the default view: 34° to the right of the front
+/// and 29° above it, so that no face of a box is seen edge-on or hides another.
+const FRAMING_DIRECTION: DVec3 = DVec3::new(2.0, -3.0, 2.0);
+
+/// How much larger than the box the view is when it is fitted.
+const FRAMING_MARGIN: f64 = 1.06;
+
+impl Camera {
+    /// A perspective camera; `fov` is the vertical field of view in degrees, in (0, 180).
+    #[must_use]
+    pub fn perspective(eye: DVec3, target: DVec3, up: DVec3, fov: f64) -> Camera {
+        Camera {
+            eye,
+            target,
+            up,
+            projection: Projection::Perspective { fov },
+        }
+    }
+
+    /// An orthographic camera; `height` is what the picture spans from bottom to top, in
+    /// length units.
+    #[must_use]
+    pub fn orthographic(eye: DVec3, target: DVec3, up: DVec3, height: f64) -> Camera {
+        Camera {
+            eye,
+            target,
+            up,
+            projection: Projection::Orthographic { height },
+        }
+    }
+
+    /// The default view: a perspective three-quarter view from front, right and above that
+    /// holds the whole box with a small margin, in any picture that is at least as wide as it
+    /// is high. Follow with [`Camera::fitted`] for a narrower one.
+    ///
+    /// A box that is empty or unbounded is replaced by the cube of half-size 1.
+    #[must_use]
+    pub fn framing(bounds: &Bounds) -> Camera {
+        let eye = FRAMING_DIRECTION;
+        Camera::perspective(eye, DVec3::ZERO, DVec3::Z, FRAMING_FOV).fitted(bounds, 1.0)
+    }
+
+    /// The default view without perspective.
+    #[must_use]
+    pub fn framing_orthographic(bounds: &Bounds) -> Camera {
+        let eye = FRAMING_DIRECTION;
+        Camera::orthographic(eye, DVec3::ZERO, DVec3::Z, 1.0).fitted(bounds, 1.0)
+    }
+
+    /// The camera moved, not turned, so that it looks at the middle of the box and just holds
+    /// all of it, with a small margin, in a picture whose width is `aspect` times its height:
+    /// a perspective camera by its distance, an orthographic one by its height.
+    ///
+    /// A box that is empty or unbounded is replaced by the cube of half-size 1. A camera that
+    /// does not pass [`Camera::check`] is returned as it is.
+    #[must_use]
+    pub fn fitted(mut self, bounds: &Bounds, aspect: f64) -> Camera {
+        if self.check().is_err() || !(aspect > 0.0 && aspect.is_finite()) {
+            return self;
+        }
+        let mut bounds = *bounds;
+        if bounds.is_empty() || !bounds.is_finite() {
+            bounds = Bounds::from_center(DVec3::ZERO, DVec3::ONE);
+        }
+        let center = bounds.center();
+        let radius = bounds.half_extents().length();
+        // A point still needs a view of some size: one in proportion to its coordinates.
+        let radius = if radius > 0.0 {
+            radius
+        } else {
+            center.abs().max_element().max(1.0)
+        };
+        let [right, up, forward] = self.axes();
+        let seen = bounds.corners().map(|p| {
+            let p = p - center;
+            DVec3::new(p.dot(right).abs() / aspect, p.dot(up).abs(), p.dot(forward))
+        });
+        let distance = match &mut self.projection {
+            Projection::Perspective { fov } => {
+                // A corner at depth z is in view if |y| ≤ (distance + z)·slope.
+                let slope = (fov.to_radians() / 2.0).tan() / FRAMING_MARGIN;
+                let needed = seen.map(|p| p.x.max(p.y) / slope - p.z);
+                needed.into_iter().fold(0.01 * radius, f64::max)
+            }
+            Projection::Orthographic { height } => {
+                let half = seen.map(|p| p.x.max(p.y));
+                *height = 2.0 * FRAMING_MARGIN * half.into_iter().fold(0.01 * radius, f64::max);
+                2.0 * radius
+            }
+        };
+        self.target = center;
+        self.eye = center - forward * distance;
+        self
+    }
+
+    /// The ray through a point of a picture of `width` × `height` pixels: its origin, and its
+    /// direction of length 1. `x` grows to the right and `y` down from the top left corner of
+    /// the picture, in pixels, so that the middle of the first pixel is (0.5, 0.5).
+    ///
+    /// NaN for a camera that does not pass [`Camera::check`]. For many rays of one picture,
+    /// take [`Camera::rays`].
+    #[must_use]
+    pub fn ray(&self, x: f64, y: f64, width: u32, height: u32) -> (DVec3, DVec3) {
+        self.rays(width, height).ray(x, y)
+    }
+
+    /// The rays of a picture of `width` × `height` pixels.
+    #[must_use]
+    pub fn rays(&self, width: u32, height: u32) -> Rays {
+        let (width, height) = (f64::from(width), f64::from(height));
+        let [right, up, forward] = self.axes();
+        let (half_height, parallel) = match self.projection {
+            Projection::Perspective { fov } => ((fov.to_radians() / 2.0).tan(), false),
+            Projection::Orthographic { height } => (height / 2.0, true),
+        };
+        let pixel = 2.0 * half_height / height;
+        let across = right * pixel;
+        let down = -up * pixel;
+        Rays {
+            eye: self.eye,
+            forward,
+            corner: -0.5 * (across * width + down * height),
+            across,
+            down,
+            parallel,
+        }
+    }
+
+    /// Right, up and forward: unit vectors at right angles; NaN where they are not defined.
+    fn axes(&self) -> [DVec3; 3] {
+        let forward = unit(self.target - self.eye);
+        let right = unit(forward.cross(unit(self.up)));
+        [right, right.cross(forward), forward]
+    }
+
+    /// Whether the camera can take a picture.
+    ///
+    /// # Errors
+    ///
+    /// [`CameraError`] names the parameter, its value and what is allowed: points and vectors
+    /// must be finite, the eye must not be the target, `up` must be neither 0 nor along the
+    /// view, the field of view must be in (0, 180) degrees, the height of the view finite and
+    /// above 0.
+    pub fn check(&self) -> Result<(), CameraError> {
+        let error = |parameter, value: &dyn std::fmt::Display, allowed| {
+            Err(CameraError {
+                parameter,
+                value: value.to_string(),
+                allowed,
+            })
+        };
+        for (name, v) in [("eye", self.eye), ("target", self.target), ("up", self.up)] {
+            if !v.is_finite() {
+                return error(name, &v, "every component must be finite");
+            }
+        }
+        let [right, _, forward] = self.axes();
+        if !forward.is_finite() {
+            return error("target", &self.target, "it must differ from the eye");
+        }
+        if !unit(self.up).is_finite() {
+            return error("up", &self.up, "it must not be zero");
+        }
+        // Nearer to the view than this, rounding decides where up is.
+        let sine = forward.cross(unit(self.up)).length();
+        if !right.is_finite() || sine < 1e-9 {
+            return error("up", &self.up, "it must not be parallel to the view");
+        }
+        match self.projection {
+            Projection::Perspective { fov } if !(fov > 0.0 && fov < 180.0) => error(
+                "field of view",
+                &fov,
+                "it must be above 0 and below 180 degrees",
+            ),
+            Projection::Orthographic { height } if !(height > 0.0 && height.is_finite()) => error(
+                "height of the view",
+                &height,
+                "it must be finite and above 0",
+            ),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// `v` at length 1, without overflow or underflow on the way; NaN for 0.
+fn unit(v: DVec3) -> DVec3 {
+    let v = v / v.abs().max_element();
+    v / v.length()
+}
+
+/// The rays of one picture, with all that they share computed once.
+#[derive(Clone, Copy, Debug)]
+pub struct Rays {
+    eye: DVec3,
+    forward: DVec3,
+    /// From the middle of the picture to its top left corner.
+    corner: DVec3,
+    /// One pixel to the right.
+    across: DVec3,
+    /// One pixel down.
+    down: DVec3,
+    parallel: bool,
+}
+
+impl Rays {
+    /// The ray at pixel coordinates (x, y): its origin, and its direction of length 1. See
+    /// [`Camera::ray`].
+    #[must_use]
+    pub fn ray(&self, x: f64, y: f64) -> (DVec3, DVec3) {
+        let offset = self.corner + self.across * x + self.down * y;
+        if self.parallel {
+            (self.eye + offset, self.forward)
+        } else {
+            (self.eye, (self.forward + offset).normalize())
+        }
+    }
+
+    /// What a pixel spans at distance `t` along a ray near the middle, in length units.
+    #[must_use]
+    pub fn pixel_size(&self, t: f64) -> f64 {
+        let pixel = self.across.length();
+        if self.parallel { pixel } else { pixel * t }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where a point appears in a picture, by the inverse of the ray's construction.
+    fn project(camera: &Camera, p: DVec3, width: f64, height: f64) -> (f64, f64) {
+        let [right, up, forward] = camera.axes();
+        let q = p - camera.eye;
+        let half = match camera.projection {
+            Projection::Perspective { fov } => (fov.to_radians() / 2.0).tan() * q.dot(forward),
+            Projection::Orthographic { height } => height / 2.0,
+        };
+        let scale = height / (2.0 * half);
+        (
+            width / 2.0 + q.dot(right) * scale,
+            height / 2.0 - q.dot(up) * scale,
+        )
+    }
+
+    #[test]
+    fn rays_pass_through_what_they_show() {
+        let eye = DVec3::new(3.0, -4.0, 5.0);
+        for camera in [
+            Camera::perspective(eye, DVec3::ONE, DVec3::Z, 50.0),
+            Camera::orthographic(eye, DVec3::ONE, DVec3::Z, 7.0),
+        ] {
+            for p in [DVec3::ZERO, DVec3::new(0.5, 1.0, -2.0)] {
+                let (x, y) = project(&camera, p, 640.0, 480.0);
+                let (o, d) = camera.ray(x, y, 640, 480);
+                assert!((d.length() - 1.0).abs() < 1e-14);
+                assert!((p - o).cross(d).length() < 1e-12);
+                assert!((p - o).dot(d) > 0.0);
+            }
+        }
+    }
+
+    #[test]
+    fn picture_axes() {
+        let camera = Camera::framing(&Bounds::from_center(DVec3::ZERO, DVec3::ONE));
+        let at = |p: DVec3| project(&camera, p, 100.0, 100.0);
+        assert!(at(DVec3::Z).1 < at(DVec3::ZERO).1, "z is up");
+        assert!(at(DVec3::X).0 > at(DVec3::ZERO).0, "x is to the right");
+        assert!(camera.eye.x > 0.0 && camera.eye.y < 0.0 && camera.eye.z > 0.0);
+        let (_, left) = camera.ray(0.5, 50.0, 100, 100);
+        let (_, right) = camera.ray(99.5, 50.0, 100, 100);
+        assert!(left.x < right.x);
+        // The angle between the middles of the top and bottom edges is the field of view.
+        let (_, top) = camera.ray(50.0, 0.0, 100, 100);
+        let (_, bottom) = camera.ray(50.0, 100.0, 100, 100);
+        assert!((top.angle_between(bottom).to_degrees() - FRAMING_FOV).abs() < 1e-9);
+    }
+
+    #[test]
+    fn framing_holds_the_box_tightly() {
+        let flat = Bounds::new(DVec3::new(-5.0, 2.0, 100.0), DVec3::new(25.0, 2.5, 101.0));
+        let cube = Bounds::from_center(DVec3::splat(1e-3), DVec3::splat(1e-4));
+        for bounds in [flat, cube] {
+            for base in [
+                Camera::framing(&bounds),
+                Camera::framing_orthographic(&bounds),
+            ] {
+                for aspect in [0.25, 1.0, 3.0] {
+                    let camera = base.fitted(&bounds, aspect);
+                    camera.check().unwrap();
+                    let mut fill: f64 = 0.0;
+                    for p in bounds.corners() {
+                        let (x, y) = project(&camera, p, aspect, 1.0);
+                        fill = fill.max((x / aspect - 0.5).abs()).max((y - 0.5).abs());
+                    }
+                    assert!(fill < 0.48 && fill > 0.46, "{aspect}: {fill}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn framing_of_odd_boxes() {
+        let point = Bounds::new(DVec3::splat(7.0), DVec3::splat(7.0));
+        for bounds in [Bounds::EMPTY, Bounds::ALL, point] {
+            Camera::framing(&bounds).check().unwrap();
+            Camera::framing_orthographic(&bounds).check().unwrap();
+        }
+    }
+
+    #[test]
+    fn errors_name_the_parameter() {
+        let good = Camera::perspective(DVec3::ONE, DVec3::ZERO, DVec3::Z, 40.0);
+        good.check().unwrap();
+        let parameter = |camera: Camera| camera.check().unwrap_err().parameter;
+        let nan = DVec3::new(0.0, f64::NAN, 0.0);
+        assert_eq!(parameter(Camera { eye: nan, ..good }), "eye");
+        let same = DVec3::ONE;
+        assert_eq!(
+            parameter(Camera {
+                target: same,
+                ..good
+            }),
+            "target"
+        );
+        let up = DVec3::ZERO;
+        assert_eq!(parameter(Camera { up, ..good }), "up");
+        let up = DVec3::splat(-3.0);
+        assert_eq!(parameter(Camera { up, ..good }), "up");
+        for fov in [0.0, 180.0, -1.0, f64::NAN, f64::INFINITY] {
+            let projection = Projection::Perspective { fov };
+            assert_eq!(parameter(Camera { projection, ..good }), "field of view");
+        }
+        for height in [0.0, f64::NAN, f64::INFINITY] {
+            let projection = Projection::Orthographic { height };
+            let camera = Camera { projection, ..good };
+            assert_eq!(parameter(camera), "height of the view");
+        }
+        let bad = Camera {
+            projection: Projection::Perspective { fov: 200.0 },
+            ..good
+        };
+        assert_eq!(
+            bad.check().unwrap_err().to_string(),
+            "camera: field of view is 200; it must be above 0 and below 180 degrees"
+        );
+    }
+}

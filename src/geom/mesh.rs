@@ -1,0 +1,252 @@
+//! A triangle mesh with shared vertices.
+//!
+//! Positions are f32, as every file format and graphics interface has them; whatever is
+//! computed from them here is computed in f64.
+//!
+//! ```text
+//!           c
+//!           *        A triangle [a, b, c] is seen anticlockwise from outside:
+//!          / \       its normal (b − a) × (c − a) points out of the solid.
+//!         /   \
+//!      a *-----* b
+//! ```
+
+use glam::{DVec3, Vec3};
+
+use crate::bounds::Bounds;
+
+/// A triangle mesh: positions, triangles that index them, and perhaps a normal per vertex.
+///
+/// Every index is in range and every position finite; nothing else is promised.
+///
+/// ```
+/// use glam::Vec3;
+/// use rvachev::Mesh;
+///
+/// let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+/// let triangles = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+/// let tetrahedron = Mesh::new(positions, triangles)?;
+/// assert!((tetrahedron.volume() - 1.0 / 6.0).abs() < 1e-15);
+/// # Ok::<(), rvachev::MeshError>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    positions: Vec<Vec3>,
+    triangles: Vec<[u32; 3]>,
+    normals: Option<Vec<Vec3>>,
+}
+
+/// Why a mesh cannot be built from the given parts.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// A triangle refers to a vertex that does not exist.
+    #[error("triangle {triangle} refers to vertex {index}, but there are {vertices} vertices")]
+    Index {
+        /// The triangle, counted from 0.
+        triangle: usize,
+        /// The index that is out of range.
+        index: u32,
+        /// Number of vertices; the allowed indices are those below it.
+        vertices: usize,
+    },
+    /// A position has a component that is NaN or infinite.
+    #[error("vertex {vertex} is at {position}, which is not finite")]
+    Position {
+        /// The vertex, counted from 0.
+        vertex: usize,
+        /// Where it is.
+        position: Vec3,
+    },
+    /// There are not as many normals as vertices.
+    #[error("{normals} normals for {vertices} vertices; one a vertex is needed")]
+    Normals {
+        /// Number of normals given.
+        normals: usize,
+        /// Number of vertices.
+        vertices: usize,
+    },
+}
+
+impl Mesh {
+    /// A mesh from positions (length units) and triangles, anticlockwise seen from outside.
+    ///
+    /// # Errors
+    ///
+    /// [`MeshError::Index`] or [`MeshError::Position`], naming the first offender.
+    pub fn new(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Mesh, MeshError> {
+        if let Some(vertex) = positions.iter().position(|p| !p.is_finite()) {
+            return Err(MeshError::Position {
+                vertex,
+                position: positions[vertex],
+            });
+        }
+        let vertices = positions.len();
+        for (triangle, corners) in triangles.iter().enumerate() {
+            if let Some(&index) = corners.iter().find(|&&i| i as usize >= vertices) {
+                return Err(MeshError::Index {
+                    triangle,
+                    index,
+                    vertices,
+                });
+            }
+        }
+        Ok(Mesh {
+            positions,
+            triangles,
+            normals: None,
+        })
+    }
+
+    /// The same mesh with a unit normal per vertex, pointing out of the solid, in place of
+    /// any that it had.
+    ///
+    /// # Errors
+    ///
+    /// [`MeshError::Normals`] if their number is not that of the vertices.
+    pub fn with_normals(mut self, normals: Vec<Vec3>) -> Result<Mesh, MeshError> {
+        if normals.len() != self.positions.len() {
+            return Err(MeshError::Normals {
+                normals: normals.len(),
+                vertices: self.positions.len(),
+            });
+        }
+        self.normals = Some(normals);
+        Ok(self)
+    }
+
+    /// The positions of the vertices, in length units.
+    #[must_use]
+    pub fn positions(&self) -> &[Vec3] {
+        &self.positions
+    }
+
+    /// The triangles: three vertex indices each, anticlockwise seen from outside.
+    #[must_use]
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// The unit normals of the vertices, if the mesh has them.
+    #[must_use]
+    pub fn normals(&self) -> Option<&[Vec3]> {
+        self.normals.as_deref()
+    }
+
+    /// The corners of a triangle of this mesh, in f64.
+    #[must_use]
+    pub(crate) fn corners(&self, triangle: [u32; 3]) -> [DVec3; 3] {
+        triangle.map(|i| self.positions[i as usize].as_dvec3())
+    }
+
+    /// The enclosed volume by the divergence theorem, in cubic length units: Σ a·(b × c) / 6
+    /// over the triangles. Positive if they face outward. Without meaning for an open mesh.
+    #[must_use]
+    pub fn volume(&self) -> f64 {
+        self.volume_and_moment().0
+    }
+
+    /// The centroid of the enclosed volume; `None` if that volume is 0.
+    #[must_use]
+    pub fn centroid(&self) -> Option<DVec3> {
+        let (volume, moment) = self.volume_and_moment();
+        (volume != 0.0).then(|| self.bounds().center() + moment / volume)
+    }
+
+    /// Volume, and first moment about the centre of the bounds. The tetrahedra are spanned
+    /// from that centre: from a far origin their large volumes would cancel.
+    fn volume_and_moment(&self) -> (f64, DVec3) {
+        let origin = self.bounds().center();
+        let mut volume = 0.0;
+        let mut moment = DVec3::ZERO;
+        for &t in &self.triangles {
+            let [a, b, c] = self.corners(t).map(|p| p - origin);
+            let six = a.dot(b.cross(c));
+            volume += six;
+            moment += (a + b + c) * six;
+        }
+        (volume / 6.0, moment / 24.0)
+    }
+
+    /// The total area of the triangles, in square length units.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        let twice = |&t: &[u32; 3]| {
+            let [a, b, c] = self.corners(t);
+            (b - a).cross(c - a).length()
+        };
+        self.triangles.iter().map(twice).sum::<f64>() / 2.0
+    }
+
+    /// The smallest box that holds all vertices; [`Bounds::EMPTY`] without any.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        for &p in &self.positions {
+            min = min.min(p);
+            max = max.max(p);
+        }
+        Bounds::new(min.as_dvec3(), max.as_dvec3())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A box from `min`, with sides `size`, faces outward.
+    fn cuboid(min: Vec3, size: Vec3) -> Mesh {
+        let at = |c: u32| Vec3::new((c & 1) as f32, (c >> 1 & 1) as f32, (c >> 2) as f32);
+        let positions = (0..8).map(|c| min + at(c) * size).collect();
+        let quads: [[u32; 4]; 6] = [
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+        ];
+        let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
+        Mesh::new(positions, quads.into_iter().flat_map(halves).collect()).unwrap()
+    }
+
+    #[test]
+    fn measures_of_a_box_far_away() {
+        let mesh = cuboid(Vec3::splat(4096.0), Vec3::new(2.0, 3.0, 4.0));
+        assert_eq!(mesh.volume(), 24.0);
+        assert_eq!(mesh.area(), 52.0);
+        let middle = DVec3::splat(4096.0) + DVec3::new(1.0, 1.5, 2.0);
+        assert!((mesh.centroid().unwrap() - middle).length() < 1e-12);
+        assert_eq!(mesh.bounds().size(), DVec3::new(2.0, 3.0, 4.0));
+    }
+
+    #[test]
+    fn empty() {
+        let mesh = Mesh::default();
+        assert_eq!(mesh.volume(), 0.0);
+        assert_eq!(mesh.centroid(), None);
+        assert_eq!(mesh.bounds(), Bounds::EMPTY);
+    }
+
+    #[test]
+    fn bad_parts_are_named() {
+        let bad = Mesh::new(vec![Vec3::ZERO; 3], vec![[0, 1, 2], [0, 3, 1]]);
+        assert_eq!(
+            bad.unwrap_err().to_string(),
+            "triangle 1 refers to vertex 3, but there are 3 vertices"
+        );
+        let bad = Mesh::new(vec![Vec3::ZERO, Vec3::NAN], vec![]);
+        assert!(matches!(
+            bad.unwrap_err(),
+            MeshError::Position { vertex: 1, .. }
+        ));
+        let bad = cuboid(Vec3::ZERO, Vec3::ONE).with_normals(vec![Vec3::Z]);
+        assert!(matches!(
+            bad.unwrap_err(),
+            MeshError::Normals {
+                normals: 1,
+                vertices: 8
+            }
+        ));
+    }
+}

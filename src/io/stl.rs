@@ -1,0 +1,133 @@
+//! Binary STL.
+//!
+//! ```text
+//!   80 bytes   header, any text that does not begin with "solid"
+//!    4         number of facets n, u32
+//!   50 × n     normal, corner, corner, corner: 12 × f32; then 2 bytes, 0
+//! ```
+//!
+//! All numbers are little-endian. Facets are anticlockwise seen from outside, their normals
+//! of length 1. The format has no units, no shared vertices and no room for more than
+//! 2³² − 1 facets.
+//!
+//! Source: 3D Systems, StereoLithography Interface Specification (1988).
+
+use std::io::{self, Write};
+
+use crate::geom::Mesh;
+
+/// Facets that are put together before they are handed to the writer.
+const CHUNK: usize = 1024;
+
+/// Writes a mesh as binary STL, in large pieces: the writer need not be buffered.
+///
+/// The normals of the facets are computed from the positions as they are written; that of a
+/// facet without area is 0, as the format asks.
+///
+/// ```
+/// use glam::Vec3;
+/// use rvachev::{Mesh, write_stl};
+///
+/// let mesh = Mesh::new(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2]])?;
+/// let mut bytes = Vec::new();
+/// write_stl(&mesh, &mut bytes)?;
+/// assert_eq!(bytes.len(), 84 + 50);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+///
+/// Those of the writer, and [`io::ErrorKind::InvalidInput`] for a mesh of more than 2³² − 1
+/// triangles.
+pub fn write_stl(mesh: &Mesh, mut out: impl Write) -> io::Result<()> {
+    let Ok(count) = u32::try_from(mesh.triangles().len()) else {
+        return Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "STL holds at most 4294967295 triangles",
+        ));
+    };
+    let mut header = [b' '; 80];
+    let title = b"binary STL, written by rvachev";
+    header[..title.len()].copy_from_slice(title);
+    out.write_all(&header)?;
+    out.write_all(&count.to_le_bytes())?;
+
+    let mut bytes = Vec::with_capacity(50 * CHUNK);
+    for chunk in mesh.triangles().chunks(CHUNK) {
+        bytes.clear();
+        for &triangle in chunk {
+            let [a, b, c] = mesh.corners(triangle);
+            let normal = (b - a).cross(c - a).normalize_or_zero();
+            for v in [normal, a, b, c] {
+                // Exact for the corners: they were f32.
+                for x in v.as_vec3().to_array() {
+                    bytes.extend_from_slice(&x.to_le_bytes());
+                }
+            }
+            bytes.extend_from_slice(&[0, 0]);
+        }
+        out.write_all(&bytes)?;
+    }
+    out.flush()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    fn read_f32(bytes: &[u8]) -> f32 {
+        f32::from_le_bytes(bytes.try_into().unwrap())
+    }
+
+    #[test]
+    fn round_trip() {
+        // Enough facets for several chunks, with coordinates that do not end in zeros.
+        let positions: Vec<Vec3> = (0..3000u32)
+            .map(|i| {
+                let x = i as f32 * 0.1;
+                Vec3::new(x.sin(), x.cos() * 1e-3, x / 7.0)
+            })
+            .collect();
+        let triangles: Vec<[u32; 3]> = (0..2998).map(|i| [i, i + 1, i + 2]).collect();
+        let mesh = Mesh::new(positions, triangles).unwrap();
+        let mut bytes = Vec::new();
+        write_stl(&mesh, &mut bytes).unwrap();
+
+        assert_eq!(bytes.len(), 84 + 50 * mesh.triangles().len());
+        assert!(!bytes.starts_with(b"solid"));
+        assert_eq!(bytes[80..84], 2998u32.to_le_bytes());
+        for (facet, &t) in bytes[84..].chunks(50).zip(mesh.triangles()) {
+            let v: Vec<f32> = facet[..48].chunks(4).map(read_f32).collect();
+            let corners: Vec<Vec3> = v.chunks(3).map(Vec3::from_slice).collect();
+            assert_eq!(&corners[1..], t.map(|i| mesh.positions()[i as usize]));
+            let normal = (corners[2] - corners[1]).cross(corners[3] - corners[1]);
+            assert!((corners[0].length() - 1.0).abs() < 1e-6);
+            assert!(normal.dot(corners[0]) > 0.0);
+            assert_eq!(facet[48..], [0, 0]);
+        }
+    }
+
+    #[test]
+    fn degenerate_facets_have_no_normal() {
+        let mesh = Mesh::new(vec![Vec3::ONE; 3], vec![[0, 1, 2]]).unwrap();
+        let mut bytes = Vec::new();
+        write_stl(&mesh, &mut bytes).unwrap();
+        assert_eq!(bytes[84..96], [0; 12]);
+    }
+
+    #[test]
+    fn errors_of_the_writer_arrive() {
+        struct Full;
+        impl Write for Full {
+            fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+                Err(io::ErrorKind::StorageFull.into())
+            }
+            fn flush(&mut self) -> io::Result<()> {
+                Ok(())
+            }
+        }
+        let error = write_stl(&Mesh::default(), Full).unwrap_err();
+        assert_eq!(error.kind(), io::ErrorKind::StorageFull);
+    }
+}

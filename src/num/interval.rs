@@ -1,0 +1,421 @@
+//! Interval arithmetic: ranges that are sound, rounded outward.
+//!
+//! An [`Interval`] `[lo, hi]` holds every value that an expression takes while its arguments
+//! run over theirs. `+ − × ÷ √` are rounded correctly by the hardware, so one step outward to
+//! the next float on each side covers them. The transcendental functions of the platform's
+//! mathematics library stay within one unit in the last place; their results are inflated by
+//! [`Interval::LIBRARY_ULPS`] such units on each side.
+//!
+//! Where a value is undefined (∞ − ∞, 0 · ∞, division by an interval that holds 0) the result
+//! is the whole line, never NaN.
+//!
+//! Source: R. E. Moore, *Interval Analysis* (1966).
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::{Monotone, Norm, Real};
+
+/// A closed interval of real numbers, `lo ≤ hi`; either end may be infinite.
+///
+/// ```
+/// use rvachev::{Interval, Real};
+///
+/// let x = Interval::new(-1.0, 2.0);
+/// assert_eq!(x.square().lo(), 0.0);
+/// assert!(x.square().contains(4.0));
+/// assert_eq!(x.select(Interval::point(1.0), Interval::point(5.0)), Interval::new(1.0, 5.0));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Interval {
+    lo: f64,
+    hi: f64,
+}
+
+impl Interval {
+    /// The whole line.
+    pub const ALL: Interval = Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
+
+    /// By how many units in the last place the transcendental functions are inflated.
+    pub const LIBRARY_ULPS: f64 = 4.0;
+
+    /// The interval from `a` to `b`, in either order; the whole line if one is NaN.
+    #[must_use]
+    #[inline(always)]
+    pub fn new(a: f64, b: f64) -> Interval {
+        if a <= b {
+            Interval { lo: a, hi: b }
+        } else if b < a {
+            Interval { lo: b, hi: a }
+        } else {
+            Interval::ALL
+        }
+    }
+
+    /// The single point `x`.
+    #[must_use]
+    #[inline(always)]
+    pub fn point(x: f64) -> Interval {
+        Interval::new(x, x)
+    }
+
+    /// The interval `centre ± radius`, rounded outward.
+    #[must_use]
+    #[inline(always)]
+    pub fn around(centre: f64, radius: f64) -> Interval {
+        Interval::outward(centre - radius, centre + radius)
+    }
+
+    /// The lower end.
+    #[must_use]
+    #[inline(always)]
+    pub fn lo(self) -> f64 {
+        self.lo
+    }
+
+    /// The upper end.
+    #[must_use]
+    #[inline(always)]
+    pub fn hi(self) -> f64 {
+        self.hi
+    }
+
+    /// The middle; 0 if both ends are infinite.
+    #[must_use]
+    #[inline(always)]
+    pub fn mid(self) -> f64 {
+        if self.lo == f64::NEG_INFINITY && self.hi == f64::INFINITY {
+            0.0
+        } else {
+            (0.5 * self.lo + 0.5 * self.hi).clamp(-f64::MAX, f64::MAX)
+        }
+    }
+
+    /// `hi − lo`.
+    #[must_use]
+    #[inline(always)]
+    pub fn width(self) -> f64 {
+        self.hi - self.lo
+    }
+
+    /// The largest absolute value in the interval.
+    #[must_use]
+    #[inline(always)]
+    pub fn magnitude(self) -> f64 {
+        self.lo.abs().max(self.hi.abs())
+    }
+
+    /// Whether `x` lies in the interval.
+    #[must_use]
+    #[inline(always)]
+    pub fn contains(self, x: f64) -> bool {
+        self.lo <= x && x <= self.hi
+    }
+
+    /// The smallest interval that holds both.
+    #[must_use]
+    #[inline(always)]
+    pub fn hull(self, other: Interval) -> Interval {
+        Interval { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
+    }
+
+    /// What both hold. Both must be sound ranges of one value; should rounding leave
+    /// nothing in common, `self` is returned.
+    #[must_use]
+    #[inline(always)]
+    pub fn narrowed_by(self, other: Interval) -> Interval {
+        let (lo, hi) = (self.lo.max(other.lo), self.hi.min(other.hi));
+        if lo <= hi { Interval { lo, hi } } else { self }
+    }
+
+    /// The interval widened by `margin` on each side.
+    #[must_use]
+    #[inline(always)]
+    pub fn inflate(self, margin: f64) -> Interval {
+        Interval::outward(self.lo - margin, self.hi + margin)
+    }
+
+    /// `[lo, hi]`, each end moved to the next float outward.
+    #[inline(always)]
+    fn outward(lo: f64, hi: f64) -> Interval {
+        if lo <= hi {
+            Interval { lo: lo.next_down(), hi: hi.next_up() }
+        } else {
+            Interval::ALL
+        }
+    }
+
+    /// `[lo, hi]` as a library function returned them, with its error on each side.
+    #[inline(always)]
+    fn library(lo: f64, hi: f64) -> Interval {
+        const RELATIVE: f64 = Interval::LIBRARY_ULPS * f64::EPSILON;
+        Interval::outward(lo - lo.abs().min(f64::MAX) * RELATIVE, hi + hi.abs().min(f64::MAX) * RELATIVE)
+    }
+
+    /// Like `library`, for a function with values in `[min, max]`.
+    #[inline(always)]
+    fn library_within(lo: f64, hi: f64, min: f64, max: f64) -> Interval {
+        let wide = Interval::library(lo, hi);
+        Interval { lo: wide.lo.max(min), hi: wide.hi.min(max) }
+    }
+}
+
+impl Neg for Interval {
+    type Output = Interval;
+    #[inline(always)]
+    fn neg(self) -> Interval {
+        Interval { lo: -self.hi, hi: -self.lo }
+    }
+}
+
+impl Add for Interval {
+    type Output = Interval;
+    #[inline(always)]
+    fn add(self, o: Interval) -> Interval {
+        Interval::outward(self.lo + o.lo, self.hi + o.hi)
+    }
+}
+
+impl Sub for Interval {
+    type Output = Interval;
+    #[inline(always)]
+    fn sub(self, o: Interval) -> Interval {
+        Interval::outward(self.lo - o.hi, self.hi - o.lo)
+    }
+}
+
+impl Mul for Interval {
+    type Output = Interval;
+    #[inline(always)]
+    fn mul(self, o: Interval) -> Interval {
+        let (a, b, c, d) = (self.lo * o.lo, self.lo * o.hi, self.hi * o.lo, self.hi * o.hi);
+        if a.is_nan() || b.is_nan() || c.is_nan() || d.is_nan() {
+            return Interval::ALL;
+        }
+        Interval::outward(a.min(b).min(c.min(d)), a.max(b).max(c.max(d)))
+    }
+}
+
+impl Div for Interval {
+    type Output = Interval;
+    #[inline(always)]
+    fn div(self, o: Interval) -> Interval {
+        if o.lo <= 0.0 && o.hi >= 0.0 {
+            // One-sided divisors keep what they can say: [0, b] of a positive divisor.
+            if self.lo >= 0.0 && o.lo == 0.0 && o.hi > 0.0 {
+                return Interval { lo: (self.lo / o.hi).next_down().max(0.0), hi: f64::INFINITY };
+            }
+            return Interval::ALL;
+        }
+        let (a, b, c, d) = (self.lo / o.lo, self.lo / o.hi, self.hi / o.lo, self.hi / o.hi);
+        if a.is_nan() || b.is_nan() || c.is_nan() || d.is_nan() {
+            return Interval::ALL;
+        }
+        Interval::outward(a.min(b).min(c.min(d)), a.max(b).max(c.max(d)))
+    }
+}
+
+impl Add<f64> for Interval {
+    type Output = Interval;
+    #[inline(always)]
+    fn add(self, k: f64) -> Interval {
+        Interval::outward(self.lo + k, self.hi + k)
+    }
+}
+
+impl Sub<f64> for Interval {
+    type Output = Interval;
+    #[inline(always)]
+    fn sub(self, k: f64) -> Interval {
+        Interval::outward(self.lo - k, self.hi - k)
+    }
+}
+
+impl Mul<f64> for Interval {
+    type Output = Interval;
+    #[inline(always)]
+    fn mul(self, k: f64) -> Interval {
+        let (a, b) = (self.lo * k, self.hi * k);
+        if a.is_nan() || b.is_nan() {
+            return Interval::ALL;
+        }
+        Interval::outward(a.min(b), a.max(b))
+    }
+}
+
+/// How far beyond ±π the range of `atan2` may reach.
+const PI_UP: f64 = std::f64::consts::PI + 1e-15;
+
+impl Real for Interval {
+    #[inline(always)]
+    fn lift(self, c: f64) -> Interval {
+        Interval::point(c)
+    }
+
+    #[inline(always)]
+    fn square(self) -> Interval {
+        let a = self.abs();
+        let squared = Interval::outward(a.lo * a.lo, a.hi * a.hi);
+        Interval { lo: squared.lo.max(0.0), hi: squared.hi }
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Interval {
+        if self.lo >= 0.0 {
+            self
+        } else if self.hi <= 0.0 {
+            -self
+        } else {
+            Interval { lo: 0.0, hi: self.hi.max(-self.lo) }
+        }
+    }
+
+    #[inline(always)]
+    fn min(self, o: Interval) -> Interval {
+        Interval { lo: self.lo.min(o.lo), hi: self.hi.min(o.hi) }
+    }
+
+    #[inline(always)]
+    fn max(self, o: Interval) -> Interval {
+        Interval { lo: self.lo.max(o.lo), hi: self.hi.max(o.hi) }
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Interval {
+        let root = Interval::outward(self.lo.max(0.0).sqrt(), self.hi.max(0.0).sqrt());
+        Interval { lo: root.lo.max(0.0), hi: root.hi }
+    }
+
+    #[inline(always)]
+    fn exp2(self) -> Interval {
+        Interval::library_within(self.lo.exp2(), self.hi.exp2(), 0.0, f64::INFINITY)
+    }
+
+    #[inline(always)]
+    fn log2(self) -> Interval {
+        Interval::library(Real::log2(self.lo.max(0.0)), Real::log2(self.hi.max(0.0)))
+    }
+
+    #[inline(always)]
+    fn pow(self, p: f64) -> Interval {
+        let a = self.abs();
+        Interval::library_within(a.lo.powf(p), a.hi.powf(p), 0.0, f64::INFINITY)
+    }
+
+    fn sin_cos(self) -> (Interval, Interval) {
+        (cosine(self - std::f64::consts::FRAC_PI_2), cosine(self))
+    }
+
+    fn atan2(self, x: Interval) -> Interval {
+        let y = self;
+        if x.contains(0.0) && y.contains(0.0) || (x.lo < 0.0 && y.contains(0.0)) {
+            return Interval { lo: -PI_UP, hi: PI_UP };
+        }
+        // Away from the cut and the origin the extremes are at corners of the box.
+        let corners = [y.lo.atan2(x.lo), y.lo.atan2(x.hi), y.hi.atan2(x.lo), y.hi.atan2(x.hi)];
+        let lo = corners.iter().copied().fold(f64::INFINITY, f64::min);
+        let hi = corners.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        Interval::library_within(lo, hi, -PI_UP, PI_UP)
+    }
+
+    #[inline(always)]
+    fn select(self, nonneg: Interval, neg: Interval) -> Interval {
+        if self.lo >= 0.0 {
+            nonneg
+        } else if self.hi < 0.0 {
+            neg
+        } else {
+            nonneg.hull(neg)
+        }
+    }
+
+    #[inline(always)]
+    fn log2_sum_exp2(self, o: Interval) -> Interval {
+        // It rises with both arguments.
+        Interval::library(Real::log2_sum_exp2(self.lo, o.lo), Real::log2_sum_exp2(self.hi, o.hi)).inflate(1e-15)
+    }
+
+    #[inline(always)]
+    fn norm(self, other: Interval, norm: Norm) -> Interval {
+        // It rises with |a| and |b|: two evaluations are the exact range. A norm by powers
+        // and logarithms takes three library calls.
+        let (a, b) = (self.abs(), other.abs());
+        let wide = Interval::library(a.lo.norm(b.lo, norm), a.hi.norm(b.hi, norm));
+        let wide = if let Norm::P { .. } = norm { Interval::library(wide.lo, wide.hi) } else { wide };
+        Interval { lo: wide.lo.max(0.0), hi: wide.hi }
+    }
+
+    #[inline(always)]
+    fn norm_parts(self, other: Interval, norm: Norm) -> (Interval, Interval, Interval) {
+        let value = self.norm(other, norm);
+        (value, slope(self, other, norm), slope(other, self, norm))
+    }
+
+    #[inline(always)]
+    fn monotone<M: Monotone>(self, other: Interval, function: &M) -> Interval {
+        let (lo, hi) = (function.value(self.lo, other.lo), function.value(self.hi, other.hi));
+        if lo.is_nan() || hi.is_nan() {
+            return Interval::ALL;
+        }
+        // The formula's own rounding is relative to its operands.
+        let rounding = 16.0 * f64::EPSILON;
+        let (lo_size, hi_size) = (self.lo.abs().max(other.lo.abs()), self.hi.abs().max(other.hi.abs()));
+        Interval::outward(lo - rounding * (lo_size + lo.abs()), hi + rounding * (hi_size + hi.abs()))
+    }
+}
+
+/// Range of the derivative of `‖(a, b)‖` with respect to `a`: `sign(a)·(|a|/‖(a, b)‖)^(p−1)`,
+/// which rises with a and, on either side of a = 0, moves towards 0 (p > 1) as |b| grows.
+#[inline(always)]
+fn slope(a: Interval, b: Interval, norm: Norm) -> Interval {
+    let p = norm.p();
+    if p < 1.0 {
+        // Unbounded near a = 0 (a cusp).
+        return match a.contains(0.0) {
+            true => Interval::ALL,
+            false => {
+                let bound = corner_slope(a.abs().lo, b.abs().hi, norm);
+                let wide = Interval::library(1.0, bound);
+                if a.lo > 0.0 { wide } else { -wide }
+            }
+        };
+    }
+    let b = b.abs();
+    // Upper end: largest a with the b that helps it, and alike below.
+    let hi = if a.hi > 0.0 { corner_slope(a.hi, b.lo, norm) } else { -corner_slope(-a.hi, b.hi, norm) };
+    let lo = if a.lo < 0.0 { -corner_slope(-a.lo, b.lo, norm) } else { corner_slope(a.lo, b.hi, norm) };
+    // At kinks (p = 1 or ∞) every slope between the two sides counts.
+    let (lo, hi) = match norm {
+        Norm::Sum if a.contains(0.0) => (-1.0, 1.0),
+        Norm::Max if a.abs().hi >= b.lo && a.abs().lo <= b.hi => (lo.min(0.0), hi.max(0.0)),
+        _ => (lo.min(hi), lo.max(hi)),
+    };
+    Interval::library_within(lo - 1e-15, hi + 1e-15, -1.0, 1.0)
+}
+
+/// The slope at one corner, a ≥ 0 and b ≥ 0.
+#[inline(always)]
+fn corner_slope(a: f64, b: f64, norm: Norm) -> f64 {
+    match norm {
+        Norm::Sum => 1.0,
+        Norm::Max if a == b => 1.0,
+        Norm::Max => f64::from(a > b),
+        _ if a == 0.0 => 0.0,
+        _ if b == 0.0 => 1.0,
+        Norm::Euclid => a / a.norm(b, norm),
+        Norm::P { p, .. } => (a / a.norm(b, norm)).powf(p - 1.0),
+    }
+}
+
+/// Range of the cosine: a maximum at every multiple of 2π, a minimum half-way between.
+fn cosine(x: Interval) -> Interval {
+    use std::f64::consts::{PI, TAU};
+    if !x.lo.is_finite() || !x.hi.is_finite() || x.width() >= TAU || x.magnitude() > 1e9 {
+        return Interval { lo: -1.0, hi: 1.0 };
+    }
+    // Turns are counted with a margin, so that an extreme at the very end is not missed.
+    let margin = 1e-15 * (1.0 + x.magnitude());
+    let holds = |phase: f64| ((x.hi + margin - phase) / TAU).floor() >= ((x.lo - margin - phase) / TAU).ceil();
+    let (a, b) = (x.lo.cos(), x.hi.cos());
+    let wide = Interval::library_within(a.min(b), a.max(b), -1.0, 1.0);
+    Interval { lo: if holds(PI) { -1.0 } else { wide.lo }, hi: if holds(0.0) { 1.0 } else { wide.hi } }
+}

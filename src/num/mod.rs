@@ -1,0 +1,27 @@
+//! Numbers: the trait [`Real`] that every formula is written over, and its implementations.
+//!
+//! A leaf, an R-function or a deformation is written once, generic over [`Real`], and run on
+//!
+//! | number | gives |
+//! |---|---|
+//! | `f64` | the reference value |
+//! | [`Interval`] | a sound range over a box |
+//! | [`Dual`] over any of them | value and gradient |
+//! | SIMD lanes of `f32` and `f64` | values and gradients in bulk |
+//! | `Symbol` | an expression tree for fidget |
+
+mod dual;
+mod float;
+mod interval;
+pub(crate) mod kernel;
+pub(crate) mod lanes;
+mod monotone;
+mod norm;
+mod real;
+pub(crate) mod symbol;
+
+pub use dual::Dual;
+pub use interval::Interval;
+pub use monotone::Monotone;
+pub use norm::Norm;
+pub use real::Real;

@@ -1,0 +1,131 @@
+//! The trait of real arithmetic that formulas are generic over.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::{Monotone, Norm};
+
+/// A number that a formula can be evaluated on.
+///
+/// Parameters of a formula are `f64`; coordinates and values are `Self`. There is no
+/// comparison and no conversion to `bool`: a formula branches on its parameters as it likes,
+/// and on values only by [`select`](Real::select), [`min`](Real::min) and [`max`](Real::max),
+/// so that one text serves points, ranges, gradients, vectors of points and expression trees.
+///
+/// For SIMD lanes inlining is all or nothing: one helper in a formula that is not
+/// `#[inline(always)]`, or a closure bound by `let`, costs a factor of about 18.
+///
+/// ```
+/// use rvachev::{Dual, Interval, Real};
+///
+/// #[inline(always)]
+/// fn circle<R: Real>(x: R, y: R) -> R {
+///     -(x.square() + y.square()).sqrt() + 1.0
+/// }
+///
+/// assert_eq!(circle(0.6, 0.8), 0.0);
+/// let range = circle(Interval::new(0.0, 0.5), Interval::new(0.0, 0.5));
+/// assert!(range.lo() > 0.29 && range.hi() >= 1.0);
+/// let slope = circle(Dual::variable(2.0, 0), Dual::constant(0.0));
+/// assert_eq!(slope.gradient(), [-1.0, 0.0, 0.0]);
+/// ```
+pub trait Real:
+    Copy
+    + Neg<Output = Self>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
+{
+    /// The constant `c` as a number of this value's kind. (What a kind needs to make a
+    /// constant, a SIMD token or an arena, travels in the value.)
+    fn lift(self, c: f64) -> Self;
+
+    /// `self · a + b`, fused where the hardware fuses.
+    #[inline(always)]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        self * a + b
+    }
+
+    /// `self · k + b` with a parameter `k`.
+    #[inline(always)]
+    fn scale_add(self, k: f64, b: Self) -> Self {
+        self * k + b
+    }
+
+    /// `self²`; an interval knows that it is not negative.
+    #[inline(always)]
+    fn square(self) -> Self {
+        self * self
+    }
+
+    /// Absolute value.
+    fn abs(self) -> Self;
+
+    /// The smaller of the two.
+    fn min(self, other: Self) -> Self;
+
+    /// The larger of the two.
+    fn max(self, other: Self) -> Self;
+
+    /// Square root; of a negative number 0.
+    fn sqrt(self) -> Self;
+
+    /// `2^self`: 0 where it underflows, the largest finite number where it overflows.
+    fn exp2(self) -> Self;
+
+    /// Binary logarithm of a number ≥ 0. At 0 it is a finite number so far below every
+    /// other logarithm (−10⁵ or less for `f64`, −10⁴ for `f32` lanes) that `exp2` of any
+    /// sensible multiple of it is 0.
+    fn log2(self) -> Self;
+
+    /// `|self|^p` for p > 0, with `0^p = 0`.
+    fn pow(self, p: f64) -> Self;
+
+    /// Sine and cosine of an angle in radians.
+    fn sin_cos(self) -> (Self, Self);
+
+    /// The angle of the vector `(x, self)` in radians, in [−π, π]; 0 at the origin.
+    fn atan2(self, x: Self) -> Self;
+
+    /// `nonneg` where `self ≥ 0`, else `neg`; on an undecided interval the hull of both.
+    fn select(self, nonneg: Self, neg: Self) -> Self;
+
+    /// `log2(2^self + 2^other)` without overflow.
+    #[inline(always)]
+    fn log2_sum_exp2(self, other: Self) -> Self {
+        let hi = self.max(other);
+        let lo = self.min(other);
+        hi + ((lo - hi).exp2() + 1.0).log2()
+    }
+
+    /// The norm of the pair `(self, other)`.
+    fn norm(self, other: Self, norm: Norm) -> Self;
+
+    /// [`norm`](Real::norm) and its derivatives with respect to `self` and `other`
+    /// (0 where the norm is 0).
+    fn norm_parts(self, other: Self, norm: Norm) -> (Self, Self, Self);
+
+    /// The norm of a superellipsoid: `‖(‖(self, y)‖_inner, z)‖_outer`.
+    #[inline(always)]
+    fn nested(self, y: Self, z: Self, inner: Norm, outer: Norm) -> Self {
+        self.norm(y, inner).norm(z, outer)
+    }
+
+    /// [`nested`](Real::nested) and its derivatives with respect to `self`, `y` and `z`.
+    #[inline(always)]
+    fn nested_parts(self, y: Self, z: Self, inner: Norm, outer: Norm) -> (Self, [Self; 3]) {
+        let (rho, rho_x, rho_y) = self.norm_parts(y, inner);
+        let (value, value_rho, value_z) = rho.norm_parts(z, outer);
+        (value, [value_rho * rho_x, value_rho * rho_y, value_z])
+    }
+
+    /// A function that rises with both of its arguments: an interval needs its endpoints
+    /// only, a dual number its two slopes.
+    #[inline(always)]
+    fn monotone<M: Monotone>(self, other: Self, function: &M) -> Self {
+        function.value(self, other)
+    }
+}

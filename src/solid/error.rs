@@ -1,0 +1,94 @@
+//! What can be wrong with a solid, and where.
+
+use super::{Node, Solid};
+use crate::ParamError;
+
+/// Why a solid cannot be evaluated. `path` leads from the root to the node:
+/// `difference[1] / twist / superellipsoid` is a superellipsoid, twisted, the second operand
+/// (they count from 0) of a difference.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SolidError {
+    /// A parameter is out of its range.
+    #[error("{path}: {source}")]
+    Parameter {
+        /// Where the node is.
+        path: String,
+        /// Which parameter, its value and what is allowed.
+        source: ParamError,
+    },
+    /// A join without operands.
+    #[error("{path}: has 0 operands, allowed: 1 or more")]
+    EmptyJoin {
+        /// Where the node is.
+        path: String,
+    },
+    /// The solid does not end, and no bounds were given to cut it.
+    #[error("{path}: unbounded; give explicit bounds, or intersect it with something bounded")]
+    Unbounded {
+        /// The node that makes it so.
+        path: String,
+    },
+    /// Bounds that are empty, infinite or NaN.
+    #[error("bounds are {bounds}, allowed: finite, with min below max along every axis")]
+    Bounds {
+        /// What was given.
+        bounds: String,
+    },
+    /// The graph, written out as a tree where parts under different maps differ, is too
+    /// large to compile.
+    #[error("{nodes} nodes after writing out shared parts, allowed: at most {limit}")]
+    TooLarge {
+        /// How many nodes were met before giving up.
+        nodes: usize,
+        /// The largest number allowed.
+        limit: usize,
+    },
+}
+
+/// Where a walk through the graph has been: nodes by their parents, so that a path is
+/// written out only for an error.
+#[derive(Default)]
+pub(crate) struct Trail(Vec<Step>);
+
+struct Step {
+    parent: Option<u32>,
+    name: &'static str,
+    /// Position among the parent's operands, where it has several.
+    position: Option<usize>,
+}
+
+impl Trail {
+    /// Notes `solid`, operand number `position` of the node noted as `parent`.
+    pub(crate) fn push(&mut self, solid: &Solid, parent: Option<(u32, &Solid, usize)>) -> u32 {
+        let position = parent.and_then(|(_, up, at)| match up.node() {
+            Node::Join { .. } => Some(at),
+            _ => None,
+        });
+        self.0.push(Step { parent: parent.map(|(step, ..)| step), name: solid.node().name(), position });
+        (self.0.len() - 1) as u32
+    }
+
+    /// The path to a node: at most eight steps, the middle of a longer one left out.
+    pub(crate) fn path(&self, step: u32) -> String {
+        const SHOWN: usize = 8;
+        let mut names: Vec<String> = Vec::new();
+        let mut position: Option<usize> = None;
+        let mut next = Some(step);
+        while let Some(step) = next {
+            let Step { parent, name, position: own } = &self.0[step as usize];
+            names.push(match position {
+                Some(operand) => format!("{name}[{operand}]"),
+                None => (*name).to_string(),
+            });
+            position = *own;
+            next = *parent;
+        }
+        names.reverse();
+        if names.len() > SHOWN {
+            let left_out = names.len() - SHOWN;
+            names.splice(SHOWN / 2..SHOWN / 2 + left_out, [format!("({left_out} more)")]);
+        }
+        names.join(" / ")
+    }
+}

@@ -1,0 +1,136 @@
+//! The nodes of the graph.
+
+use std::any::Any;
+use std::sync::{Arc, OnceLock};
+
+use glam::DAffine3;
+
+use crate::RFunction;
+use crate::field::{AnyField, AnyWarp};
+
+/// A solid: an immutable expression graph of leaves, maps and joins.
+///
+/// Cloning is cheap (a reference count) and a part that is used in several places is stored
+/// and compiled once. Building never fails and never panics; parameters are checked when the
+/// solid is first evaluated, meshed or rendered.
+///
+/// The value is positive inside, 0 on the surface, negative outside, in length units.
+///
+/// ```
+/// use rvachev::Solid;
+/// use glam::DVec3;
+///
+/// let plate = Solid::cuboid(DVec3::new(4.0, 4.0, 1.0)) - Solid::cylinder(1.0, 2.0);
+/// assert!(!plate.contains(DVec3::ZERO)?);
+/// assert!(plate.contains(DVec3::new(1.5, 0.0, 0.0))?);
+/// # Ok::<(), rvachev::SolidError>(())
+/// ```
+#[derive(Clone)]
+pub struct Solid(pub(super) Arc<Inner>);
+
+pub(super) struct Inner {
+    pub(super) node: Node,
+    /// What the evaluator keeps between queries; it knows its type.
+    pub(super) compiled: OnceLock<Arc<dyn Any + Send + Sync>>,
+}
+
+/// A node of the graph.
+#[derive(Clone)]
+pub(crate) enum Node {
+    Leaf(Arc<dyn AnyField>),
+    /// The operand moved by `forward`; `label` is the verb that the user wrote.
+    Affine { operand: Solid, forward: DAffine3, label: &'static str },
+    /// The operand deformed.
+    Warp { operand: Solid, warp: Arc<dyn AnyWarp> },
+    Join { operation: Operation, rule: RFunction, operands: Vec<Solid> },
+    Complement(Solid),
+}
+
+/// A set operation on one or more operands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Operation {
+    Union,
+    Intersection,
+    /// The first operand without the others.
+    Difference,
+    SymmetricDifference,
+}
+
+impl Operation {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Operation::Union => "union",
+            Operation::Intersection => "intersection",
+            Operation::Difference => "difference",
+            Operation::SymmetricDifference => "symmetric difference",
+        }
+    }
+}
+
+impl Node {
+    pub(crate) fn name(&self) -> &'static str {
+        match self {
+            Node::Leaf(field) => field.name(),
+            Node::Affine { label, .. } => label,
+            Node::Warp { warp, .. } => warp.name(),
+            Node::Join { operation, .. } => operation.name(),
+            Node::Complement(_) => "complement",
+        }
+    }
+
+    /// The operands, in order.
+    pub(crate) fn operands(&self) -> &[Solid] {
+        match self {
+            Node::Leaf(_) => &[],
+            Node::Affine { operand, .. } | Node::Warp { operand, .. } | Node::Complement(operand) => {
+                std::slice::from_ref(operand)
+            }
+            Node::Join { operands, .. } => operands,
+        }
+    }
+}
+
+impl Solid {
+    pub(super) fn from_node(node: Node) -> Solid {
+        Solid(Arc::new(Inner { node, compiled: OnceLock::new() }))
+    }
+
+    pub(crate) fn node(&self) -> &Node {
+        &self.0.node
+    }
+
+    /// The evaluator's cache of this node.
+    pub(crate) fn compiled(&self) -> &OnceLock<Arc<dyn Any + Send + Sync>> {
+        &self.0.compiled
+    }
+
+    /// What tells this node from others.
+    pub(crate) fn address(&self) -> usize {
+        Arc::as_ptr(&self.0).addr()
+    }
+}
+
+impl Drop for Inner {
+    fn drop(&mut self) {
+        // A chain may be a hundred thousand operations deep: take it down without recursion.
+        let mut pending = Vec::new();
+        take_operands(&mut self.node, &mut pending);
+        while let Some(solid) = pending.pop() {
+            if let Some(mut inner) = Arc::into_inner(solid.0) {
+                take_operands(&mut inner.node, &mut pending);
+            }
+        }
+    }
+}
+
+fn take_operands(node: &mut Node, pending: &mut Vec<Solid>) {
+    if node.operands().is_empty() {
+        return;
+    }
+    let nothing = Node::Join { operation: Operation::Union, rule: RFunction::MIN_MAX, operands: Vec::new() };
+    match std::mem::replace(node, nothing) {
+        Node::Leaf(_) => {}
+        Node::Affine { operand, .. } | Node::Warp { operand, .. } | Node::Complement(operand) => pending.push(operand),
+        Node::Join { operands, .. } => pending.extend(operands),
+    }
+}

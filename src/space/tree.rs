@@ -1,0 +1,126 @@
+//! Dividing a grid of blocks until every block is inside, outside, or small.
+//!
+//! The grid's blocks are cubes of one size. A range of blocks is narrowed as one box; if the
+//! surface may cross it, it is halved along its longest side, and the halves start from the
+//! program that is narrowed already. Work is proportional to the surface, and to the leaves
+//! that matter locally.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::eval::{Program, Region};
+use crate::{Bounds, Cancelled, Run};
+
+/// A regular grid of cubic blocks.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Grid {
+    /// The low corner of block (0, 0, 0).
+    pub(crate) origin: DVec3,
+    /// Edge length of a block.
+    pub(crate) side: f64,
+    /// Blocks along each axis.
+    pub(crate) blocks: [u32; 3],
+}
+
+impl Grid {
+    /// A grid over `bounds` with `across` blocks along its longest side.
+    pub(crate) fn over(bounds: &Bounds, across: u32) -> Grid {
+        let side = bounds.longest_side() / f64::from(across.max(1));
+        let blocks = bounds.size().to_array().map(|size| ((size / side).ceil() as u32).max(1));
+        Grid { origin: bounds.min, side, blocks }
+    }
+
+    /// The box of the blocks from `from` up to `to`, exclusive.
+    pub(crate) fn bounds(&self, from: [u32; 3], to: [u32; 3]) -> Bounds {
+        let corner = |at: [u32; 3]| self.origin + self.side * DVec3::from_array(at.map(f64::from));
+        Bounds::new(corner(from), corner(to))
+    }
+}
+
+/// A block that the surface may cross.
+#[derive(Clone, Debug)]
+pub(crate) struct Block {
+    /// Its place in the grid.
+    pub(crate) index: [u32; 3],
+    pub(crate) program: Program,
+}
+
+/// A range of blocks, with the program narrowed to a box that holds it.
+struct Part {
+    from: [u32; 3],
+    to: [u32; 3],
+    program: Program,
+}
+
+impl Part {
+    fn size(&self) -> [u32; 3] {
+        [self.to[0] - self.from[0], self.to[1] - self.from[1], self.to[2] - self.from[2]]
+    }
+
+    /// The two halves along the longest side; the upper one has the odd block.
+    fn halves(self) -> [Part; 2] {
+        let size = self.size();
+        let axis = (0..3).rev().max_by_key(|&axis| size[axis]).unwrap_or(0);
+        let middle = self.from[axis] + size[axis] / 2;
+        let (mut below, mut above) = (self.to, self.from);
+        below[axis] = middle;
+        above[axis] = middle;
+        [
+            Part { from: self.from, to: below, program: self.program.clone() },
+            Part { from: above, to: self.to, program: self.program },
+        ]
+    }
+}
+
+/// The blocks of `grid` that the surface may cross, in an order that does not depend on the
+/// number of threads. Every block grown by `margin` length units on each side is narrowed as
+/// a whole.
+pub(crate) fn surface_blocks(program: &Program, grid: &Grid, margin: f64, run: &Run) -> Result<Vec<Block>, Cancelled> {
+    let root = Part { from: [0; 3], to: grid.blocks, program: program.clone() };
+    // Breadth first until there is work for every thread, then depth first in each part.
+    let mut parts = vec![root];
+    let wanted = 64 * rayon::current_num_threads().max(1);
+    let mut divided = true;
+    while divided && parts.len() < wanted {
+        run.check()?;
+        divided = false;
+        let mut next = Vec::new();
+        for part in parts {
+            if part.size() == [1; 3] {
+                next.push(part);
+                continue;
+            }
+            divided = true;
+            next.extend(narrowed(part, grid, margin).into_iter().flat_map(Part::halves));
+        }
+        parts = next;
+    }
+    let found: Result<Vec<Vec<Block>>, Cancelled> =
+        parts.into_par_iter().map(|part| descend(part, grid, margin, run)).collect();
+    let mut blocks: Vec<Block> = found?.into_iter().flatten().collect();
+    blocks.sort_by_key(|block| (block.index[2], block.index[1], block.index[0]));
+    Ok(blocks)
+}
+
+fn descend(part: Part, grid: &Grid, margin: f64, run: &Run) -> Result<Vec<Block>, Cancelled> {
+    let mut blocks = Vec::new();
+    let mut pending = vec![part];
+    while let Some(part) = pending.pop() {
+        run.check()?;
+        let Some(part) = narrowed(part, grid, margin) else { continue };
+        if part.size() == [1; 3] {
+            blocks.push(Block { index: part.from, program: part.program });
+        } else {
+            pending.extend(part.halves());
+        }
+    }
+    Ok(blocks)
+}
+
+/// The part with the program narrowed to it, if the surface may cross it.
+fn narrowed(part: Part, grid: &Grid, margin: f64) -> Option<Part> {
+    match part.program.narrow(&grid.bounds(part.from, part.to).inflate(margin)) {
+        Region::Surface(program) => Some(Part { program, ..part }),
+        Region::Inside | Region::Outside => None,
+    }
+}
