@@ -289,7 +289,6 @@ impl Compiler {
             compiler.scene.frames.push(Frame {
                 parent: above.frame,
                 to_local: above.to_local,
-                forward: above.forward,
                 warp: warp.clone(),
             });
             Context {

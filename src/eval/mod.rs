@@ -24,5 +24,5 @@ pub use query::Owner;
 pub use ray::Hit;
 pub use tape::{Evaluator, Gradients, Tape};
 
-pub(crate) use compile::{Compiled, compiled};
+pub(crate) use compile::compiled;
 pub(crate) use ray::first_hit;

@@ -25,7 +25,6 @@ pub(crate) struct Frame {
     pub(crate) parent: u32,
     /// From the parent frame to where the deformation acts.
     pub(crate) to_local: DAffine3,
-    pub(crate) forward: DAffine3,
     pub(crate) warp: Arc<dyn AnyWarp>,
 }
 

@@ -11,9 +11,9 @@ use glam::{DAffine3, DVec3};
 use super::program::{Op, Program};
 use super::register::{Step, schedule};
 use crate::Bounds;
-use crate::field::{AnyField, AnyWarp, COORDINATE_LIMIT, Chunk, GradientChunk, Placement, Rule, Zone};
-use crate::num::kernel::{CHUNK, Element, Fold, fold};
-use crate::{Dual, Real};
+use crate::field::{AnyField, AnyWarp, COORDINATE_LIMIT, Chunk, Placement, Rule, Zone};
+use crate::num::kernel::{CHUNK, Element, Fold, Formula, fold, run};
+use crate::{Dual, Norm, Real};
 
 /// A program ready for bulk evaluation over a region: immutable, shared between threads;
 /// each thread brings its own [`Evaluator`].
@@ -215,6 +215,7 @@ trait Mode<const N: usize> {
     const COORDINATES: usize;
     fn leaf(leaf: &LeafStep, points: Points<'_, Self::E>, out: [&mut [Self::E]; N]);
     fn frame(frame: &FrameStep, points: Points<'_, Self::E>, out: &mut [Self::E]);
+    fn join(op: Op, rule: Rule, negate: bool, all: [&mut [Self::E]; N], next: [&[Self::E]; N]);
 }
 
 /// Points of a chunk: three slices, or a slot behind a deformation.
@@ -256,6 +257,10 @@ impl Mode<1> for Values<f32> {
         leaf.field.lanes32(Chunk { points: points.coordinates(), placement: &leaf.placement, out });
     }
 
+    fn join(op: Op, rule: Rule, negate: bool, all: [&mut [f32]; 1], next: [&[f32]; 1]) {
+        join(op, rule, negate, all, next);
+    }
+
     fn frame(frame: &FrameStep, points: Points<'_, f32>, out: &mut [f32]) {
         let out = split_mut(out);
         frame.warp.lanes32(Chunk { points: points.coordinates(), placement: &frame.placement, out });
@@ -270,6 +275,10 @@ impl Mode<1> for Values<f64> {
         leaf.field.lanes64(Chunk { points: points.coordinates(), placement: &leaf.placement, out });
     }
 
+    fn join(op: Op, rule: Rule, negate: bool, all: [&mut [f64]; 1], next: [&[f64]; 1]) {
+        join(op, rule, negate, all, next);
+    }
+
     fn frame(frame: &FrameStep, points: Points<'_, f64>, out: &mut [f64]) {
         let out = split_mut(out);
         frame.warp.lanes64(Chunk { points: points.coordinates(), placement: &frame.placement, out });
@@ -278,59 +287,152 @@ impl Mode<1> for Values<f64> {
 
 struct Slopes;
 
-impl Slopes {
-    fn jacobian<'a>(points: &Points<'a, f32>) -> Option<[&'a [f32]; 9]> {
-        match points {
-            Points::World(_) => None,
-            Points::Slot(slot) => Some(split(&slot[3 * CHUNK..])),
-        }
-    }
-}
-
 impl Mode<4> for Slopes {
     type E = f32;
     const COORDINATES: usize = 12;
 
     fn leaf(leaf: &LeafStep, points: Points<'_, f32>, out: [&mut [f32]; 4]) {
-        leaf.field.gradients(GradientChunk {
-            points: points.coordinates(),
-            jacobian: Slopes::jacobian(&points),
-            placement: &leaf.placement,
-            out,
-        });
+        let chunk = Chunk { points: points.coordinates(), placement: &leaf.placement, out };
+        let Points::Slot(slot) = points else { return leaf.field.gradients(chunk) };
+        let mut own = [0.0; 4 * CHUNK];
+        let [value, dx, dy, dz] = chunk.out;
+        leaf.field.gradients(Chunk { out: split_mut(&mut own), ..chunk });
+        let [v, x, y, z] = split(&own);
+        value.copy_from_slice(v);
+        let [a, b, c, d, e, f, g, h, i] = split::<_, 9>(&slot[3 * CHUNK..]);
+        run(&Pull, [a, b, c, d, e, f, g, h, i, x, y, z], [dx, dy, dz]);
+    }
+
+    fn join(op: Op, rule: Rule, negate: bool, all: [&mut [f32]; 4], next: [&[f32]; 4]) {
+        join(op, rule, negate, all, next);
     }
 
     fn frame(frame: &FrameStep, points: Points<'_, f32>, out: &mut [f32]) {
-        frame.warp.jacobians(GradientChunk {
-            points: points.coordinates(),
-            jacobian: Slopes::jacobian(&points),
-            placement: &frame.placement,
-            out: split_mut(out),
-        });
+        let chunk = Chunk { points: points.coordinates(), placement: &frame.placement, out: split_mut(out) };
+        let Points::Slot(slot) = points else { return frame.warp.jacobians(chunk) };
+        let mut own = [0.0; 12 * CHUNK];
+        let [x, y, z, jacobian @ ..] = chunk.out;
+        frame.warp.jacobians(Chunk { out: split_mut(&mut own), ..chunk });
+        let local = split::<_, 12>(&own);
+        for (to, from) in [x, y, z].into_iter().zip(local) {
+            to.copy_from_slice(from);
+        }
+        let above = split::<_, 9>(&slot[3 * CHUNK..]);
+        let both = std::array::from_fn(|i| if i < 9 { local[i + 3] } else { above[i - 9] });
+        run(&Product, both, jacobian);
     }
 }
 
-/// One step of a join: on numbers, or on values with their derivatives.
-struct Join {
-    op: Op,
-    rule: Rule,
-    negate: bool,
+/// `Jᵀ g`, J row by row before g.
+struct Pull;
+
+impl Formula<12, 3> for Pull {
+    #[inline(always)]
+    fn run<R: Real>(&self, x: [R; 12]) -> [R; 3] {
+        [
+            x[0].mul_add(x[9], x[3].mul_add(x[10], x[6] * x[11])),
+            x[1].mul_add(x[9], x[4].mul_add(x[10], x[7] * x[11])),
+            x[2].mul_add(x[9], x[5].mul_add(x[10], x[8] * x[11])),
+        ]
+    }
 }
 
-impl Fold<1> for Join {
+/// The product of two matrices, row by row.
+struct Product;
+
+impl Formula<18, 9> for Product {
+    #[inline(always)]
+    fn run<R: Real>(&self, x: [R; 18]) -> [R; 9] {
+        let mut product = [x[0]; 9];
+        let mut at = 0;
+        while at < 9 {
+            let (row, column) = (at / 3 * 3, at % 3);
+            product[at] = x[row].mul_add(x[9 + column], x[row + 1].mul_add(x[12 + column], x[row + 2] * x[15 + column]));
+            at += 1;
+        }
+        product
+    }
+}
+
+/// One step of a join, on numbers or on values with their derivatives: a conjunction, with
+/// signs before and after that make it any of union, intersection and difference.
+struct Join<C> {
+    conjunction: C,
+    /// −1 for a disjunction.
+    sign: f64,
+    /// The same for the operand that is joined; turned once more if it is negated.
+    sign_next: f64,
+}
+
+/// A conjunction whose rule is known when the kernel is compiled.
+trait Conjunction {
+    fn rule(&self) -> Rule;
+}
+
+struct MinMax;
+struct Alpha(f64);
+struct Zero(u32);
+struct Euclid;
+struct P(Norm);
+struct Associative(Norm);
+
+/// Says which rule a conjunction is.
+macro_rules! conjunction {
+    ($($name:ty: $self:ident => $rule:expr;)*) => {$(
+        impl Conjunction for $name {
+            #[inline(always)]
+            fn rule(&$self) -> Rule {
+                $rule
+            }
+        }
+    )*};
+}
+
+conjunction! {
+    MinMax: self => Rule::MinMax;
+    Alpha: self => Rule::Alpha(self.0);
+    Zero: self => Rule::Zero(self.0);
+    Euclid: self => Rule::P(Norm::Euclid);
+    P: self => Rule::P(self.0);
+    Associative: self => Rule::Associative(self.0);
+}
+
+impl<C: Conjunction> Fold<1> for Join<C> {
     #[inline(always)]
     fn fold<R: Real>(&self, [all]: [R; 1], [next]: [R; 1]) -> [R; 1] {
-        [self.rule.join(self.op, all, if self.negate { -next } else { next })]
+        [self.conjunction.rule().and(all * self.sign, next * self.sign_next) * self.sign]
     }
 }
 
-impl Fold<4> for Join {
+impl<C: Conjunction> Fold<4> for Join<C> {
     #[inline(always)]
     fn fold<R: Real>(&self, all: [R; 4], next: [R; 4]) -> [R; 4] {
-        let all = Dual::new(all[0], [all[1], all[2], all[3]]);
-        let next = Dual::new(next[0], [next[1], next[2], next[3]]);
-        let joined = self.rule.join(self.op, all, if self.negate { -next } else { next });
+        let all = Dual::new(all[0], [all[1], all[2], all[3]]) * self.sign;
+        let next = Dual::new(next[0], [next[1], next[2], next[3]]) * self.sign_next;
+        let joined = self.conjunction.rule().and(all, next) * self.sign;
         [joined.v, joined.d[0], joined.d[1], joined.d[2]]
+    }
+}
+
+/// Joins `next`, or its negative, to `all`.
+fn join<E: Element, const N: usize>(op: Op, rule: Rule, negate: bool, all: [&mut [E]; N], next: [&[E]; N])
+where
+    Join<MinMax>: Fold<N>,
+    Join<Alpha>: Fold<N>,
+    Join<Zero>: Fold<N>,
+    Join<Euclid>: Fold<N>,
+    Join<P>: Fold<N>,
+    Join<Associative>: Fold<N>,
+{
+    let sign = if op == Op::And { 1.0 } else { -1.0 };
+    let sign_next = if negate { -sign } else { sign };
+    match rule {
+        Rule::MinMax => fold(&Join { conjunction: MinMax, sign, sign_next }, all, next),
+        Rule::Alpha(alpha) => fold(&Join { conjunction: Alpha(alpha), sign, sign_next }, all, next),
+        Rule::Zero(m) => fold(&Join { conjunction: Zero(m), sign, sign_next }, all, next),
+        Rule::P(Norm::Euclid) => fold(&Join { conjunction: Euclid, sign, sign_next }, all, next),
+        Rule::P(norm) => fold(&Join { conjunction: P(norm), sign, sign_next }, all, next),
+        Rule::Associative(norm) => fold(&Join { conjunction: Associative(norm), sign, sign_next }, all, next),
     }
 }
 
@@ -339,9 +441,7 @@ fn execute<M: Mode<N>, const N: usize>(
     memory: &mut Memory<M::E>,
     points: [&[M::E]; 3],
     mut out: [&mut [M::E]; N],
-) where
-    Join: Fold<N>,
-{
+) {
     let count = points.iter().map(|p| p.len()).chain(out.iter().map(|o| o.len())).min().unwrap_or(0);
     let zero = M::E::default();
     memory.registers.resize(memory.registers.len().max(tape.registers * N * CHUNK), zero);
@@ -370,10 +470,7 @@ fn execute<M: Mode<N>, const N: usize>(
     }
 }
 
-fn chunk<M: Mode<N>, const N: usize>(tape: &Tape, world: [&[M::E]; 3], registers: &mut [M::E], slots: &mut [M::E])
-where
-    Join: Fold<N>,
-{
+fn chunk<M: Mode<N>, const N: usize>(tape: &Tape, world: [&[M::E]; 3], registers: &mut [M::E], slots: &mut [M::E]) {
     let coordinates = M::COORDINATES * CHUNK;
     for (number, frame) in tape.frames.iter().enumerate() {
         let (before, after) = slots.split_at_mut(number * coordinates);
@@ -396,7 +493,7 @@ where
             }
             Step::Fold { op, rule, negate, from, to } => {
                 let (all, next) = two(registers, to as usize * width, from as usize * width, width);
-                fold(&Join { op, rule, negate }, split_mut::<_, N>(all), split::<_, N>(next));
+                M::join(op, rule, negate, split_mut(all), split(next));
             }
             Step::Copy { from, to } => {
                 registers.copy_within(from as usize * width..(from as usize + 1) * width, to as usize * width);

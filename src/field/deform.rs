@@ -19,7 +19,7 @@ use std::fmt::Debug;
 
 use glam::DVec3;
 
-use super::{Chunk, GradientChunk, ParamError, check};
+use super::{Chunk, ParamError, check};
 use crate::num::symbol::Symbol;
 use crate::{Bounds, Dual, Interval, Real};
 
@@ -30,7 +30,8 @@ pub(crate) trait Warp: Debug + Clone + Send + Sync + 'static {
     /// The pre-image of a point.
     fn inverse<R: Real>(&self, p: [R; 3]) -> [R; 3];
 
-    /// The image of a point.
+    /// The image of a point: what [`inverse`](Warp::inverse) is tested against.
+    #[cfg(test)]
     fn forward(&self, p: DVec3) -> DVec3;
 
     /// A box that holds the image of a box.
@@ -52,8 +53,7 @@ pub(crate) trait AnyWarp: Debug + Send + Sync {
     fn symbols<'a>(&self, p: [Symbol<'a>; 3]) -> [Symbol<'a>; 3];
     fn lanes32(&self, chunk: Chunk<'_, f32, 3>);
     fn lanes64(&self, chunk: Chunk<'_, f64, 3>);
-    fn jacobians(&self, chunk: GradientChunk<'_, 12>);
-    fn forward(&self, p: DVec3) -> DVec3;
+    fn jacobians(&self, chunk: Chunk<'_, f32, 12>);
     fn bounds(&self, bounds: &Bounds) -> Bounds;
     fn check(&self, bounds: &Bounds) -> Result<(), ParamError>;
     fn roundoff(&self, reach: f64) -> f64;
@@ -77,6 +77,7 @@ impl Warp for Taper {
         [x / t.scale_add(self.kx, one), y / t.scale_add(self.ky, one), z]
     }
 
+    #[cfg(test)]
     fn forward(&self, p: DVec3) -> DVec3 {
         let t = (p.z / self.half_height).clamp(-1.0, 1.0);
         DVec3::new(p.x * (1.0 + self.kx * t), p.y * (1.0 + self.ky * t), p.z)
@@ -129,6 +130,7 @@ impl Warp for Twist {
         [x.mul_add(cos, y * sin), y.mul_add(cos, -(x * sin)), z]
     }
 
+    #[cfg(test)]
     fn forward(&self, p: DVec3) -> DVec3 {
         let (sin, cos) = (p.z * self.rate).sin_cos();
         DVec3::new(p.x * cos - p.y * sin, p.x * sin + p.y * cos, p.z)
@@ -189,6 +191,7 @@ impl Warp for Bend {
         [shift.scale_add(cos, x), shift.scale_add(sin, y), opposite.atan2(adjacent) * (1.0 / k)]
     }
 
+    #[cfg(test)]
     fn forward(&self, p: DVec3) -> DVec3 {
         let k = self.curvature;
         let (sin, cos) = self.angle.sin_cos();

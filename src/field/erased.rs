@@ -10,8 +10,8 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use super::deform::Warp;
 use super::zone::concave_range;
-use super::{AnyWarp, Field, ParamError, Zone, saturate};
-use crate::num::kernel::{Element, Formula, run};
+use super::{AnyWarp, Field, Kernel, ParamError, Zone, saturate};
+use crate::num::kernel::{Element, Formula, Visit, run, run_wide};
 use crate::num::symbol::Symbol;
 use crate::{Bounds, Dual, Interval, Real};
 
@@ -65,18 +65,9 @@ pub(crate) struct Chunk<'a, E, const OUT: usize> {
     pub(crate) out: [&'a mut [E]; OUT],
 }
 
-/// A chunk of points with, behind a deformation, the Jacobian of each (row by row).
-pub(crate) struct GradientChunk<'a, const OUT: usize> {
-    pub(crate) points: [&'a [f32]; 3],
-    pub(crate) jacobian: Option<[&'a [f32]; 9]>,
-    pub(crate) placement: &'a Placement,
-    pub(crate) out: [&'a mut [f32]; OUT],
-}
-
 /// A [`Field`], erased to the evaluations that the engine runs.
 pub(crate) trait AnyField: Debug + Send + Sync {
     fn name(&self) -> &'static str;
-    fn bounds(&self) -> Bounds;
     fn bounds_under(&self, map: &DAffine3) -> Bounds;
     fn check(&self) -> Result<(), ParamError>;
     fn roundoff(&self, reach: f64) -> f64;
@@ -89,7 +80,7 @@ pub(crate) trait AnyField: Debug + Send + Sync {
     fn lanes32(&self, chunk: Chunk<'_, f32, 1>);
     fn lanes64(&self, chunk: Chunk<'_, f64, 1>);
     /// Value and the three derivatives.
-    fn gradients(&self, chunk: GradientChunk<'_, 4>);
+    fn gradients(&self, chunk: Chunk<'_, f32, 4>);
 }
 
 struct Value<'a, F>(&'a F, &'a Placement);
@@ -99,52 +90,58 @@ impl<F: Field> Formula<3, 1> for Value<'_, F> {
     fn run<R: Real>(&self, p: [R; 3]) -> [R; 1] {
         [saturate(self.0.eval(self.1.apply(p)) * self.1.scale)]
     }
+
+    #[inline(always)]
+    fn specialised<V: Visit<3, 1>>(&self, visit: V) {
+        self.0.specialised(Each { placement: self.1, visit });
+    }
+}
+
+/// Passes a leaf, its cases told apart, on as a formula.
+struct Each<'a, V> {
+    placement: &'a Placement,
+    visit: V,
+}
+
+impl<F: Field, V: Visit<3, 1>> Kernel<F> for Each<'_, V> {
+    #[inline(always)]
+    fn run(self, leaf: &F) {
+        self.visit.visit(&Value(leaf, self.placement));
+    }
 }
 
 struct Gradient<'a, F>(&'a F, &'a Placement);
 
-impl<F: Field> Gradient<'_, F> {
-    #[inline(always)]
-    fn gradient<R: Real>(&self, p: [R; 3]) -> (R, [R; 3]) {
-        let value = self.0.eval(Dual::point(self.1.apply(p))) * self.1.scale;
-        (saturate(value.v), self.1.pull(value.d))
-    }
-}
-
 impl<F: Field> Formula<3, 4> for Gradient<'_, F> {
     #[inline(always)]
     fn run<R: Real>(&self, p: [R; 3]) -> [R; 4] {
-        let (v, g) = self.gradient(p);
-        [v, g[0], g[1], g[2]]
+        let value = self.0.eval(Dual::point(self.1.apply(p))) * self.1.scale;
+        let [x, y, z] = self.1.pull(value.d);
+        [saturate(value.v), x, y, z]
     }
-}
 
-impl<F: Field> Formula<12, 4> for Gradient<'_, F> {
     #[inline(always)]
-    fn run<R: Real>(&self, p: [R; 12]) -> [R; 4] {
-        let (v, g) = self.gradient([p[0], p[1], p[2]]);
-        // Jᵀ g, J row by row behind the point.
-        [
-            v,
-            p[3].mul_add(g[0], p[6].mul_add(g[1], p[9] * g[2])),
-            p[4].mul_add(g[0], p[7].mul_add(g[1], p[10] * g[2])),
-            p[5].mul_add(g[0], p[8].mul_add(g[1], p[11] * g[2])),
-        ]
+    fn specialised<V: Visit<3, 4>>(&self, visit: V) {
+        self.0.specialised(EachGradient { placement: self.1, visit });
     }
 }
 
-/// Point and Jacobian as one list of inputs.
-fn with_jacobian<'a>(p: [&'a [f32]; 3], j: [&'a [f32]; 9]) -> [&'a [f32]; 12] {
-    [p[0], p[1], p[2], j[0], j[1], j[2], j[3], j[4], j[5], j[6], j[7], j[8]]
+/// The same for gradients.
+struct EachGradient<'a, V> {
+    placement: &'a Placement,
+    visit: V,
+}
+
+impl<F: Field, V: Visit<3, 4>> Kernel<F> for EachGradient<'_, V> {
+    #[inline(always)]
+    fn run(self, leaf: &F) {
+        self.visit.visit(&Gradient(leaf, self.placement));
+    }
 }
 
 impl<F: Field> AnyField for F {
     fn name(&self) -> &'static str {
         Field::name(self)
-    }
-
-    fn bounds(&self) -> Bounds {
-        Field::bounds(self)
     }
 
     fn bounds_under(&self, map: &DAffine3) -> Bounds {
@@ -192,17 +189,13 @@ impl<F: Field> AnyField for F {
         lanes(self, chunk);
     }
 
-    fn gradients(&self, chunk: GradientChunk<'_, 4>) {
-        let formula = Gradient(self, chunk.placement);
-        match chunk.jacobian {
-            None => run(&formula, chunk.points, chunk.out),
-            Some(jacobian) => run(&formula, with_jacobian(chunk.points, jacobian), chunk.out),
-        }
+    fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
+        run_wide(&Gradient(self, chunk.placement), chunk.points, chunk.out);
     }
 }
 
 fn lanes<E: Element, F: Field>(field: &F, chunk: Chunk<'_, E, 1>) {
-    run(&Value(field, chunk.placement), chunk.points, chunk.out);
+    run_wide(&Value(field, chunk.placement), chunk.points, chunk.out);
 }
 
 struct PreImage<'a, W>(&'a W, &'a Placement);
@@ -216,31 +209,13 @@ impl<W: Warp> Formula<3, 3> for PreImage<'_, W> {
 
 struct Jacobian<'a, W>(&'a W, &'a Placement);
 
-impl<W: Warp> Jacobian<'_, W> {
-    #[inline(always)]
-    fn of<R: Real>(&self, p: [Dual<R>; 3]) -> [R; 12] {
-        let [x, y, z] = self.0.inverse(self.1.apply(p));
-        [
-            x.v, y.v, z.v, x.d[0], x.d[1], x.d[2], y.d[0], y.d[1], y.d[2], z.d[0], z.d[1], z.d[2],
-        ]
-    }
-}
-
 impl<W: Warp> Formula<3, 12> for Jacobian<'_, W> {
     #[inline(always)]
     fn run<R: Real>(&self, p: [R; 3]) -> [R; 12] {
-        self.of(Dual::point(p))
-    }
-}
-
-impl<W: Warp> Formula<12, 12> for Jacobian<'_, W> {
-    #[inline(always)]
-    fn run<R: Real>(&self, p: [R; 12]) -> [R; 12] {
-        self.of([
-            Dual::new(p[0], [p[3], p[4], p[5]]),
-            Dual::new(p[1], [p[6], p[7], p[8]]),
-            Dual::new(p[2], [p[9], p[10], p[11]]),
-        ])
+        let [x, y, z] = self.0.inverse(self.1.apply(Dual::point(p)));
+        [
+            x.v, y.v, z.v, x.d[0], x.d[1], x.d[2], y.d[0], y.d[1], y.d[2], z.d[0], z.d[1], z.d[2],
+        ]
     }
 }
 
@@ -273,16 +248,8 @@ impl<W: Warp> AnyWarp for W {
         run(&PreImage(self, chunk.placement), chunk.points, chunk.out);
     }
 
-    fn jacobians(&self, chunk: GradientChunk<'_, 12>) {
-        let formula = Jacobian(self, chunk.placement);
-        match chunk.jacobian {
-            None => run(&formula, chunk.points, chunk.out),
-            Some(jacobian) => run(&formula, with_jacobian(chunk.points, jacobian), chunk.out),
-        }
-    }
-
-    fn forward(&self, p: DVec3) -> DVec3 {
-        Warp::forward(self, p)
+    fn jacobians(&self, chunk: Chunk<'_, f32, 12>) {
+        run(&Jacobian(self, chunk.placement), chunk.points, chunk.out);
     }
 
     fn bounds(&self, bounds: &Bounds) -> Bounds {

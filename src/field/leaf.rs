@@ -106,12 +106,29 @@ pub trait Field: Debug + Send + Sync + 'static {
         bounds
     }
 
+    /// Calls `kernel` with this leaf, its parameters' special cases told apart: an override
+    /// matches on the parameters and calls with a copy whose cases are literal, so that each
+    /// gets a loop of its own without branches. The default calls with the leaf as it is.
+    #[inline(always)]
+    fn specialised<K: Kernel<Self>>(&self, kernel: K)
+    where
+        Self: Sized,
+    {
+        kernel.run(self);
+    }
+
     /// How far the single-precision value may be from the true one at points within
     /// `reach` of the leaf's origin and near the surface, in length units. The default,
     /// `4·10⁻⁶ · reach`, holds for formulas of a dozen operations whose slope is about 1.
     fn roundoff(&self, reach: f64) -> f64 {
         4e-6 * reach
     }
+}
+
+/// Work to do with a leaf (see [`Field::specialised`]).
+pub trait Kernel<F> {
+    /// Does the work.
+    fn run(self, leaf: &F);
 }
 
 /// Range of a formula that falls as any of `|x|`, `|y|`, `|z|` rises: two evaluations, exact

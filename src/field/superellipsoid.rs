@@ -13,7 +13,7 @@
 
 use glam::DVec3;
 
-use super::{Field, ParamError, check, leaf::falling_range};
+use super::{Field, Kernel, ParamError, check, leaf::falling_range};
 use crate::{Bounds, Interval, Norm, Real};
 
 /// A superellipsoid about the origin, valued `f = r_in·(1 − G)` in length units, where
@@ -186,6 +186,17 @@ impl Field for Superellipsoid {
     fn support(&self, direction: DVec3) -> f64 {
         let d = (direction * self.semi_axes).abs();
         d.x.norm(d.y, support_norm(self.e2)).norm(d.z, support_norm(self.e1)) * (1.0 + 1e-14)
+    }
+
+    #[inline(always)]
+    fn specialised<K: Kernel<Self>>(&self, kernel: K) {
+        match (self.inner, self.outer) {
+            (Norm::P { p, inv }, Norm::P { p: q, inv: q_inv }) if p >= 1.0 && q >= 1.0 => {
+                let (inner, outer) = (Norm::P { p: p.max(1.0), inv }, Norm::P { p: q.max(1.0), inv: q_inv });
+                kernel.run(&Superellipsoid { inner, outer, ..*self });
+            }
+            _ => kernel.run(self),
+        }
     }
 
     fn roundoff(&self, reach: f64) -> f64 {

@@ -18,7 +18,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use super::{Field, Gielis, ParamError, Radius, check};
+use super::{Field, Gielis, Kernel, ParamError, Radius, check};
 use crate::{Bounds, Dual, Interval, Norm, Real};
 
 /// A supershape about the origin, valued `f = r_in·(1 − G)` in length units, where `r_in` is
@@ -180,6 +180,14 @@ impl Field for Supershape {
             mean = mean + slope * Interval::around(0.0, 0.5 * side.width());
         }
         self.eval(region).narrowed_by(mean)
+    }
+
+    #[inline(always)]
+    fn specialised<K: Kernel<Self>>(&self, kernel: K) {
+        match self.radius {
+            Radius::Standard => kernel.run(&Supershape { radius: Radius::Standard, ..*self }),
+            Radius::Rational => kernel.run(&Supershape { radius: Radius::Rational, ..*self }),
+        }
     }
 
     fn roundoff(&self, reach: f64) -> f64 {

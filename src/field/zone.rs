@@ -15,7 +15,7 @@
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::AnyWarp;
-use crate::{Bounds, Dual, Interval, Real};
+use crate::{Bounds, Dual, Interval};
 
 /// Relative rounding error of a handful of operations in `f64`.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
@@ -132,7 +132,7 @@ pub(super) fn concave_range(
 ) -> Interval {
     let along = zone.axes.transpose() * gradient;
     let rise = along.abs().element_sum() + gradient.abs().dot(zone.slack);
-    let rounding = 1e-14 * (zone.centre.abs() + zone.extent()).element_sum() + 1e-14 * value.abs();
+    let rounding = 1e-14 * ((zone.centre.abs() + zone.extent()).element_sum() + value.abs()) + 1e-12 * rise;
     let hi = value + rise + rounding;
     if !hi.is_finite() {
         return known;

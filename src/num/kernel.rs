@@ -4,18 +4,49 @@
 //! costs nothing. Each formula is a kernel of its own, with its own loop: fusing several
 //! into one spills registers and is slower.
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::{Level, Simd};
 use fearless_simd_macros::simd;
 
 use super::Real;
 use super::lanes::{F32, F64, Lanes, Twice};
 
+/// Calls a function with the token of the machine's SIMD level. On x86 the levels are SSE2, AVX2
+/// and AVX-512: every further one costs a compilation of every kernel.
+macro_rules! on_level {
+    ($simd:ident => $call:expr) => {{
+        let level = Level::new();
+        #[cfg(target_arch = "x86_64")]
+        {
+            if let Some($simd) = level.as_avx512() {
+                $call
+            } else if let Some($simd) = level.as_avx2() {
+                $call
+            } else if let Some($simd) = level.as_sse2() {
+                $call
+            }
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        fearless_simd::dispatch!(level, $simd => $call)
+    }};
+}
+
 /// Slices are multiples of this many elements.
 pub(crate) const CHUNK: usize = 256;
 
 /// A formula from `I` numbers to `O`.
-pub(crate) trait Formula<const I: usize, const O: usize> {
+pub(crate) trait Formula<const I: usize, const O: usize>: Sized {
     fn run<R: Real>(&self, x: [R; I]) -> [R; O];
+
+    /// Calls `visit` with this formula, special cases of its parameters told apart.
+    #[inline(always)]
+    fn specialised<V: Visit<I, O>>(&self, visit: V) {
+        visit.visit(self);
+    }
+}
+
+/// What is done with a formula once its cases are told apart.
+pub(crate) trait Visit<const I: usize, const O: usize> {
+    fn visit<F: Formula<I, O>>(self, formula: &F);
 }
 
 /// A formula that joins `N` numbers to `N` others.
@@ -67,12 +98,16 @@ pub(crate) fn run<E: Element, const I: usize, const O: usize>(
     inputs: [&[E]; I],
     outputs: [&mut [E]; O],
 ) {
-    let level = Level::new();
-    if O > 1 {
-        dispatch!(level, simd => lean(simd, formula, inputs, outputs));
-    } else {
-        dispatch!(level, simd => wide(simd, formula, inputs, outputs));
-    }
+    on_level!(simd => lean(simd, formula, inputs, outputs));
+}
+
+/// [`run`] for formulas of few numbers.
+pub(crate) fn run_wide<E: Element, const I: usize, const O: usize>(
+    formula: &impl Formula<I, O>,
+    inputs: [&[E]; I],
+    outputs: [&mut [E]; O],
+) {
+    on_level!(simd => wide(simd, formula, inputs, outputs));
 }
 
 #[simd]
@@ -82,7 +117,7 @@ fn wide<S: Simd, E: Element, const I: usize, const O: usize, F: Formula<I, O>>(
     inputs: [&[E]; I],
     outputs: [&mut [E]; O],
 ) {
-    sweep::<E::Wide<S>, I, O, F>(simd, formula, inputs, outputs);
+    formula.specialised(Sweep::<E::Wide<S>, I, O> { simd, inputs, outputs });
 }
 
 #[simd]
@@ -92,46 +127,50 @@ fn lean<S: Simd, E: Element, const I: usize, const O: usize, F: Formula<I, O>>(
     inputs: [&[E]; I],
     outputs: [&mut [E]; O],
 ) {
-    sweep::<E::Lean<S>, I, O, F>(simd, formula, inputs, outputs);
+    formula.specialised(Sweep::<E::Lean<S>, I, O> { simd, inputs, outputs });
 }
 
-#[inline(always)]
-fn sweep<L: Lanes, const I: usize, const O: usize, F: Formula<I, O>>(
+/// The loop over a formula's slices.
+struct Sweep<'a, L: Lanes, const I: usize, const O: usize> {
     simd: L::Token,
-    formula: &F,
-    inputs: [&[L::Element]; I],
-    mut outputs: [&mut [L::Element]; O],
-) {
-    let len = outputs[0].len();
-    let mut at = 0;
-    while at + L::WIDTH <= len {
-        let mut x = [L::splat(simd, 0.0); I];
-        let mut i = 0;
-        while i < I {
-            x[i] = L::load(simd, &inputs[i][at..at + L::WIDTH]);
-            i += 1;
+    inputs: [&'a [L::Element]; I],
+    outputs: [&'a mut [L::Element]; O],
+}
+
+impl<L: Lanes, const I: usize, const O: usize> Visit<I, O> for Sweep<'_, L, I, O> {
+    #[inline(always)]
+    fn visit<F: Formula<I, O>>(self, formula: &F) {
+        let Sweep { simd, inputs, outputs } = self;
+        let len = outputs[0].len();
+        let mut at = 0;
+        while at + L::WIDTH <= len {
+            let mut x = [L::splat(simd, 0.0); I];
+            let mut i = 0;
+            while i < I {
+                x[i] = L::load(simd, &inputs[i][at..at + L::WIDTH]);
+                i += 1;
+            }
+            let y = formula.run(x);
+            let mut o = 0;
+            while o < O {
+                y[o].store(&mut outputs[o][at..at + L::WIDTH]);
+                o += 1;
+            }
+            at += L::WIDTH;
         }
-        let y = formula.run(x);
-        let mut o = 0;
-        while o < O {
-            y[o].store(&mut outputs[o][at..at + L::WIDTH]);
-            o += 1;
-        }
-        at += L::WIDTH;
     }
 }
 
 /// Folds `next` into `all`, slices of one length, a multiple of [`CHUNK`].
 pub(crate) fn fold<E: Element, const N: usize>(formula: &impl Fold<N>, all: [&mut [E]; N], next: [&[E]; N]) {
-    let level = Level::new();
-    dispatch!(level, simd => fold_on(simd, formula, all, next));
+    on_level!(simd => fold_on(simd, formula, all, next));
 }
 
 #[simd]
 fn fold_on<S: Simd, E: Element, const N: usize, F: Fold<N>>(
     simd: S,
     formula: &F,
-    mut all: [&mut [E]; N],
+    all: [&mut [E]; N],
     next: [&[E]; N],
 ) {
     let width = E::Lean::<S>::WIDTH;

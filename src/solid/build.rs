@@ -5,10 +5,10 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::{Node, Solid};
-use crate::{Cuboid, Cylinder, Field, HalfSpace, Sphere, Superellipsoid};
+use crate::{Cuboid, Cylinder, Field, HalfSpace, Sphere, Superellipsoid, Supershape};
 
 impl Solid {
-    /// A leaf as a solid: a built-in one or a user's own [`Field`].
+    /// A user's own leaf as a solid. (The built-in ones are converted: `Solid::from(leaf)`.)
     #[must_use]
     pub fn new(leaf: impl Field) -> Solid {
         Solid::from_node(Node::Leaf(Arc::new(leaf)))
@@ -17,36 +17,45 @@ impl Solid {
     /// A [`Sphere`] about the origin.
     #[must_use]
     pub fn sphere(radius: f64) -> Solid {
-        Solid::new(Sphere { radius })
+        Sphere { radius }.into()
     }
 
     /// A box about the origin ([`Cuboid`]), `size` being its edge lengths.
     #[must_use]
     pub fn cuboid(size: impl Into<DVec3>) -> Solid {
-        Solid::new(Cuboid { size: size.into() })
+        Cuboid { size: size.into() }.into()
     }
 
     /// A [`Cylinder`] about the z axis, centred at the origin.
     #[must_use]
     pub fn cylinder(radius: f64, height: f64) -> Solid {
-        Solid::new(Cylinder { radius, height })
+        Cylinder { radius, height }.into()
     }
 
     /// A [`HalfSpace`]: all points p with `normal·p ≤ offset`, for a unit normal.
     #[must_use]
     pub fn half_space(normal: impl Into<DVec3>, offset: f64) -> Solid {
-        Solid::new(HalfSpace { normal: normal.into(), offset })
+        HalfSpace { normal: normal.into(), offset }.into()
     }
 
     /// A [`Superellipsoid`] about the origin.
     #[must_use]
     pub fn superellipsoid(semi_axes: impl Into<DVec3>, e1: f64, e2: f64) -> Solid {
-        Solid::new(Superellipsoid::new(semi_axes, e1, e2))
+        Superellipsoid::new(semi_axes, e1, e2).into()
     }
 }
 
-impl<F: Field> From<F> for Solid {
-    fn from(leaf: F) -> Solid {
-        Solid::new(leaf)
-    }
+/// The built-in leaves as solids. Their kernels are compiled here once and not, as those of
+/// users' own leaves, where the solid is made.
+macro_rules! leaves {
+    ($($leaf:ty),* $(,)?) => {$(
+        impl From<$leaf> for Solid {
+            #[inline(never)]
+            fn from(leaf: $leaf) -> Solid {
+                Solid::new(leaf)
+            }
+        }
+    )*};
 }
+
+leaves!(Cuboid, Cylinder, HalfSpace, Sphere, Superellipsoid, Supershape);

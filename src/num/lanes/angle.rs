@@ -30,21 +30,9 @@ pub(super) fn sin_cos_f32<S: Simd>(x: S::f32s) -> (S::f32s, S::f32s) {
     let r = k.mul_add(-7.549_79e-8, r);
     let r = r.max(-REMAINDER as f32).min(REMAINDER as f32);
     let z = r * r;
-    let sin = polynomial!(
-        z,
-        -0.166_666_51,
-        0.008_331_981_5,
-        -0.000_194_957_6
-    );
+    let sin = polynomial!(z, -0.166_666_51, 0.008_331_981_5, -0.000_194_957_6);
     let sin = (r * z).mul_add(sin, r);
-    let cos = polynomial!(
-        z,
-        1.0,
-        -0.5,
-        0.041_666_646,
-        -0.001_388_730_1,
-        2.443_067e-5
-    );
+    let cos = polynomial!(z, 1.0, -0.5, 0.041_666_646, -0.001_388_730_1, 2.443_067e-5);
     let quadrant: S::u32s = shifted.bitcast();
     let odd = (quadrant & 1).simd_eq(1);
     let sin_bits: S::u32s = odd.select(cos, sin).bitcast();
@@ -115,7 +103,7 @@ pub(super) fn atan2_f32<S: Simd>(y: S::f32s, x: S::f32s) -> S::f32s {
         -0.333_331_67,
         0.199_941_47,
         -0.142_142_85,
-        0.106_792_226,
+        0.106_792_23,
         -0.075_811_54,
         0.043_560_09,
         -0.016_585_084,
@@ -139,10 +127,7 @@ pub(super) fn atan2_f64<S: Simd>(y: S::f64s, x: S::f64s) -> S::f64s {
     // Above π/8 the angle is π/4 and that of the vector turned back by π/4.
     let steep = lo.simd_gt(hi * TAN_EIGHTH);
     let t = steep.select(lo - hi, lo) / steep.select(lo + hi, hi);
-    let base = steep.select(
-        S::f64s::splat(simd, FRAC_PI_4),
-        S::f64s::splat(simd, 0.0),
-    );
+    let base = steep.select(S::f64s::splat(simd, FRAC_PI_4), S::f64s::splat(simd, 0.0));
     let z = t * t;
     let series = polynomial!(
         z,

@@ -4,7 +4,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use fearless_simd::prelude::*;
 
-use super::ops::{native_methods, norm_methods, operators, polynomial};
+use super::ops::{native_methods, norm_methods, operators, polynomial, polynomial_of};
 use super::{Lanes, LogSpace, angle, norms};
 use crate::num::{Norm, Real};
 
@@ -31,6 +31,9 @@ const INTEGER: f64 = 4_503_599_627_370_496.0;
 /// 1.5 · 2⁵²: adding it rounds to an integer, which the low bits of the sum then hold.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
+/// Where a weight stops falling, a little above the smallest normal number's logarithm.
+const LOWEST: f64 = -1000.0;
+
 operators!(F64, f64);
 
 impl<S: Simd> Real for F64<S> {
@@ -49,10 +52,16 @@ impl<S: Simd> Real for F64<S> {
     #[inline(always)]
     fn exp2(self) -> Self {
         let simd = self.0.token();
-        let x = self.0.max(-1022.0).min(1023.999_999_999);
+        let x = self.0.max(-1022.0).min(1_023.999_999_999);
         let value = F64::<S>(x).exp2_within().0;
-        let value = self.0.simd_lt(-1022.0).select(S::f64s::splat(simd, 0.0), value);
-        F64(self.0.simd_ge(1024.0).select(S::f64s::splat(simd, f64::MAX), value))
+        let value = self
+            .0
+            .simd_lt(-1022.0)
+            .select(S::f64s::splat(simd, 0.0), value);
+        F64(self
+            .0
+            .simd_ge(1024.0)
+            .select(S::f64s::splat(simd, f64::MAX), value))
     }
 
     #[inline(always)]
@@ -114,12 +123,12 @@ impl<S: Simd> LogSpace for F64<S> {
     /// Relative error 3·10⁻¹⁶; exact at integers.
     #[inline(always)]
     fn exp2_within(self) -> Self {
-        let shifted = self.0 + ROUND;
-        let r = self.0 - (shifted - ROUND);
+        let rounded = self + ROUND;
+        let r = (self - (rounded - ROUND)).0;
         let mantissa = polynomial!(
             r,
             1.0,
-            0.693_147_180_559_945_3,
+            std::f64::consts::LN_2,
             0.240_226_506_959_100_97,
             0.055_504_108_664_821_66,
             0.009_618_129_107_606_887,
@@ -131,24 +140,29 @@ impl<S: Simd> LogSpace for F64<S> {
             7.072_586_223_078_746e-9,
             4.456_674_751_252_341_6e-10
         );
-        let mantissa: S::u64s = mantissa.bitcast();
-        let n: S::u64s = shifted.bitcast();
-        F64((mantissa + (n << 52)).bitcast())
+        F64::<S>(mantissa).times_power(rounded)
     }
 
     #[inline(always)]
     fn exp2_weight(self) -> Self {
-        F64::<S>(self.0.max(-1000.0)).exp2_within()
+        self.max(self.lift(LOWEST)).exp2_within()
     }
 
-    /// Absolute error 3·10⁻¹⁶/p and one rounding: the series of the logarithm in `s = t/(2 + t)`.
     #[inline(always)]
-    fn join(self, other: Self, p: f64, inv: f64) -> Self {
-        let exponent = (self.0 - other.0).abs() * -p;
-        let t = F64::<S>(exponent).exp2_weight().0;
+    fn times_power(self, rounded: Self) -> Self {
+        let bits: S::u64s = self.0.bitcast();
+        let n: S::u64s = rounded.0.bitcast();
+        F64((bits + (n << 52)).bitcast())
+    }
+
+    /// Absolute error 3·10⁻¹⁶/p and one rounding: the series of the logarithm in
+    /// `s = t/(2 + t)`.
+    #[inline(always)]
+    fn join<T: LogSpace>(a: T, b: T, p: f64, inv: f64) -> T {
+        let t = ((a - b).abs() * -p).exp2_weight();
         let s = t / (t + 2.0);
         let z = s * s;
-        let series = polynomial!(
+        let series = polynomial_of!(
             z,
             2.885_390_081_777_926_8,
             0.961_796_693_925_970_3,
@@ -162,7 +176,7 @@ impl<S: Simd> LogSpace for F64<S> {
             0.120_322_232_147_556_58,
             0.245_526_147_435_741_7
         );
-        F64((s * inv).mul_add(series, self.0.max(other.0)))
+        (s * inv).mul_add(series, a.max(b))
     }
 
     #[inline(always)]
@@ -186,8 +200,14 @@ impl<S: Simd> LogSpace for F64<S> {
     fn above(self, other: Self) -> Self {
         let simd = self.0.token();
         let tie = S::f64s::splat(simd, 0.5);
-        let not_below = self.0.simd_gt(other.0).select(S::f64s::splat(simd, 1.0), tie);
-        F64(self.0.simd_lt(other.0).select(S::f64s::splat(simd, 0.0), not_below))
+        let not_below = self
+            .0
+            .simd_gt(other.0)
+            .select(S::f64s::splat(simd, 1.0), tie);
+        F64(self
+            .0
+            .simd_lt(other.0)
+            .select(S::f64s::splat(simd, 0.0), not_below))
     }
 
     #[inline(always)]

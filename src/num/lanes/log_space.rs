@@ -28,9 +28,16 @@ pub trait LogSpace: Real {
     /// below: it stops falling near the smallest normal number.
     fn exp2_weight(self) -> Self;
 
+    /// `self · 2^n`, n being in the low bits of `rounded`.
+    fn times_power(self, rounded: Self) -> Self;
+
     /// The logarithm of the p-norm of two numbers that are given by their logarithms:
-    /// `max(self, other) + log2(1 + 2^(−p·|self − other|)) / p`, `inv` being `1/p`.
-    fn join(self, other: Self, p: f64, inv: f64) -> Self;
+    /// `max(a, b) + log2(1 + 2^(−p·|a − b|)) / p`, `inv` being `1/p`.
+    ///
+    /// This is the long chain of dependent operations in a norm. It is written over `T`, this
+    /// vector or several of its kind, so that the chains of several vectors are interleaved
+    /// operation by operation (to 1.7 ns a point from 1.9 where whole calls alternate).
+    fn join<T: LogSpace>(a: T, b: T, p: f64, inv: f64) -> T;
 
     /// `self` with the sign of `sign`.
     fn copysign(self, sign: Self) -> Self;

@@ -80,13 +80,7 @@ pub(super) fn nested<T: LogSpace>(x: T, y: T, z: T, inner: Norm, outer: Norm) ->
 
 /// [`nested`] and its derivatives.
 #[inline(always)]
-pub(super) fn nested_parts<T: LogSpace>(
-    x: T,
-    y: T,
-    z: T,
-    inner: Norm,
-    outer: Norm,
-) -> (T, [T; 3]) {
+pub(super) fn nested_parts<T: LogSpace>(x: T, y: T, z: T, inner: Norm, outer: Norm) -> (T, [T; 3]) {
     match (inner, outer) {
         (Norm::P { p, inv }, Norm::P { p: q, inv: q_inv }) => {
             if p.min(q) < 1.0 {
@@ -113,7 +107,7 @@ fn pair<T: LogSpace, const STEEP: bool>(a: T, b: T, p: f64, inv: f64) -> T {
     let power = a.max(b).power_below();
     let la = log2::<T, STEEP>(a, power);
     let lb = log2::<T, STEEP>(b, power);
-    raise::<T, STEEP>(la.join(lb, p, inv), power)
+    raise::<T, STEEP>(T::join(la, lb, p, inv), power)
 }
 
 /// The p-norm of two numbers and its derivatives.
@@ -123,14 +117,10 @@ fn pair_parts<T: LogSpace, const STEEP: bool>(x: T, y: T, p: f64, inv: f64) -> (
     let power = a.max(b).power_below();
     let la = log2::<T, STEEP>(a, power);
     let lb = log2::<T, STEEP>(b, power);
-    let l = la.join(lb, p, inv);
+    let l = T::join(la, lb, p, inv);
     let da = slope::<T, STEEP>((la - l) * (p - 1.0), a);
     let db = slope::<T, STEEP>((lb - l) * (p - 1.0), b);
-    (
-        raise::<T, STEEP>(l, power),
-        da.copysign(x),
-        db.copysign(y),
-    )
+    (raise::<T, STEEP>(l, power), da.copysign(x), db.copysign(y))
 }
 
 /// The nested norm with exponents p and q, given as `[p, 1/p, q, 1/q]`.
@@ -141,7 +131,7 @@ fn triple<T: LogSpace, const STEEP: bool>([x, y, z]: [T; 3], [p, p_inv, q, q_inv
     let la = log2::<T, STEEP>(a, power);
     let lb = log2::<T, STEEP>(b, power);
     let lc = log2::<T, STEEP>(c, power);
-    raise::<T, STEEP>(la.join(lb, p, p_inv).join(lc, q, q_inv), power)
+    raise::<T, STEEP>(T::join(T::join(la, lb, p, p_inv), lc, q, q_inv), power)
 }
 
 /// [`triple`] and its derivatives.
@@ -155,8 +145,8 @@ fn triple_parts<T: LogSpace, const STEEP: bool>(
     let la = log2::<T, STEEP>(a, power);
     let lb = log2::<T, STEEP>(b, power);
     let lc = log2::<T, STEEP>(c, power);
-    let lr = la.join(lb, p, p_inv);
-    let lg = lr.join(lc, q, q_inv);
+    let lr = T::join(la, lb, p, p_inv);
+    let lg = T::join(lr, lc, q, q_inv);
     let base = (lr - lg) * (q - 1.0);
     let da = slope::<T, STEEP>((la - lr).scale_add(p - 1.0, base), a);
     let db = slope::<T, STEEP>((lb - lr).scale_add(p - 1.0, base), b);
@@ -178,14 +168,22 @@ fn log2<T: LogSpace, const STEEP: bool>(a: T, power: T) -> T {
 /// `2^log · power`, finite.
 #[inline(always)]
 fn raise<T: LogSpace, const STEEP: bool>(log: T, power: T) -> T {
-    let log = if STEEP { log.min(log.lift(STEEPEST)) } else { log };
+    let log = if STEEP {
+        log.min(log.lift(STEEPEST))
+    } else {
+        log
+    };
     (log.exp2_within() * power).finite()
 }
 
 /// `2^exponent`, finite, and 0 where the coordinate is.
 #[inline(always)]
 fn slope<T: LogSpace, const STEEP: bool>(exponent: T, coordinate: T) -> T {
-    let exponent = if STEEP { exponent.min(exponent.lift(STEEPEST)) } else { exponent };
+    let exponent = if STEEP {
+        exponent.min(exponent.lift(STEEPEST))
+    } else {
+        exponent
+    };
     exponent.exp2_weight().vanish_with(coordinate)
 }
 

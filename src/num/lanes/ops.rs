@@ -60,6 +60,13 @@ macro_rules! polynomial {
     };
 }
 
+/// [`polynomial!`] on a number that takes no bare coefficients.
+macro_rules! polynomial_of {
+    ($x:ident, $($coefficient:expr),+) => {
+        polynomial!($x, $($x.lift($coefficient)),+)
+    };
+}
+
 /// The methods of [`Real`](crate::num::Real) that are the same text for both element types.
 macro_rules! native_methods {
     ($name:ident, $element:ty) => {
@@ -136,4 +143,4 @@ macro_rules! norm_methods {
     };
 }
 
-pub(super) use {native_methods, norm_methods, operators, polynomial};
+pub(super) use {native_methods, norm_methods, operators, polynomial, polynomial_of};

@@ -6,14 +6,65 @@ use fearless_simd::{Level, Simd, dispatch};
 use super::{F32, F64, Lanes, Twice};
 use crate::num::Norm;
 
+/// Arguments that break formulas.
+pub(super) const SPICY: [f64; 15] = [
+    0.0, -0.0, 1.0, -1.0, 0.5, 2.0, 1e-20, -1e-20, 1e20, -1e20, 1e-30, 1e30, 1e-37, 3e38, -3e38,
+];
+
 /// A function of three numbers, with up to four results.
 pub(super) trait Function {
     /// The results; one that has fewer leaves the rest as it likes.
     fn run<T: Lanes>(&self, arguments: [T; 3]) -> [T; 4];
 }
 
+/// Sweeps `f32` lanes on all levels: the worst of `error(arguments, results)`.
+pub(super) fn sweep32(
+    function: &impl Function,
+    at: &[[f64; 3]],
+    error: impl Fn([f64; 3], [f64; 4]) -> f64,
+) -> Worst {
+    let at: Vec<[f32; 3]> = at.iter().map(|p| p.map(|c| c as f32)).collect();
+    let mut worst = Worst::new();
+    for level in levels() {
+        let mut here = Worst::new();
+        for (p, r) in at.iter().zip(run_f32(level, function, &at)) {
+            let (p, r) = (p.map(f64::from), r.map(f64::from));
+            let finite = r.iter().all(|v| v.is_finite());
+            here.add(if finite { error(p, r) } else { f64::NAN }, p);
+        }
+        worst.add(here.error, here.at);
+    }
+    worst
+}
+
+/// The same for `f64` lanes.
+pub(super) fn sweep64(
+    function: &impl Function,
+    at: &[[f64; 3]],
+    error: impl Fn([f64; 3], [f64; 4]) -> f64,
+) -> Worst {
+    let mut worst = Worst::new();
+    for level in levels() {
+        let mut here = Worst::new();
+        for (p, r) in at.iter().zip(run_f64(level, function, at)) {
+            let finite = r.iter().all(|v| v.is_finite());
+            here.add(if finite { error(*p, r) } else { f64::NAN }, *p);
+        }
+        worst.add(here.error, here.at);
+    }
+    worst
+}
+
+/// `n` single arguments between lo and hi, made by `map`.
+pub(super) fn line(n: usize, lo: f64, hi: f64, map: impl Fn(f64) -> f64) -> Vec<[f64; 3]> {
+    let step = (hi - lo) / n as f64;
+    (0..=n)
+        .map(|i| [map(lo + step * i as f64), 0.0, 0.0])
+        .collect()
+}
+
 /// The SIMD levels of this machine.
-pub(super) fn levels() -> Vec<Level> {
+fn levels() -> Vec<Level> {
     let best = Level::new();
     let mut levels = vec![best, Level::baseline()];
     #[cfg(target_arch = "x86_64")]
@@ -25,12 +76,12 @@ pub(super) fn levels() -> Vec<Level> {
 }
 
 /// Runs `function` on lanes of `f32`, two vectors at a time.
-pub(super) fn run_f32(level: Level, function: &impl Function, at: &[[f32; 3]]) -> Vec<[f32; 4]> {
+fn run_f32(level: Level, function: &impl Function, at: &[[f32; 3]]) -> Vec<[f32; 4]> {
     dispatch!(level, simd => run::<_, Twice<F32<_>>>(simd, function, at))
 }
 
 /// Runs `function` on lanes of `f64`.
-pub(super) fn run_f64(level: Level, function: &impl Function, at: &[[f64; 3]]) -> Vec<[f64; 4]> {
+fn run_f64(level: Level, function: &impl Function, at: &[[f64; 3]]) -> Vec<[f64; 4]> {
     dispatch!(level, simd => run::<_, F64<_>>(simd, function, at))
 }
 
@@ -64,7 +115,10 @@ pub(super) struct Random(pub(super) u64);
 impl Random {
     /// In [0, 1).
     pub(super) fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
@@ -103,11 +157,18 @@ pub(super) struct Worst {
 
 impl Worst {
     pub(super) fn new() -> Worst {
-        Worst { error: 0.0, at: [0.0; 3] }
+        Worst {
+            error: 0.0,
+            at: [0.0; 3],
+        }
     }
 
     pub(super) fn add(&mut self, error: f64, at: [f64; 3]) {
-        let error = if error.is_nan() { f64::INFINITY } else { error.abs() };
+        let error = if error.is_nan() {
+            f64::INFINITY
+        } else {
+            error.abs()
+        };
         if error > self.error {
             *self = Worst { error, at };
         }

@@ -38,10 +38,7 @@ macro_rules! operator {
             type Output = Self;
             #[inline(always)]
             fn $method(self, k: f64) -> Self {
-                Twice(
-                    $operator::$method(self.0, k),
-                    $operator::$method(self.1, k),
-                )
+                Twice($operator::$method(self.0, k), $operator::$method(self.1, k))
             }
         }
     };
@@ -133,10 +130,7 @@ impl<T: LogSpace> Real for Twice<T> {
 
     #[inline(always)]
     fn log2_sum_exp2(self, other: Self) -> Self {
-        Twice(
-            self.0.log2_sum_exp2(other.0),
-            self.1.log2_sum_exp2(other.1),
-        )
+        Twice(self.0.log2_sum_exp2(other.0), self.1.log2_sum_exp2(other.1))
     }
 
     norm_methods!();
@@ -173,8 +167,13 @@ impl<T: LogSpace> LogSpace for Twice<T> {
     }
 
     #[inline(always)]
-    fn join(self, other: Self, p: f64, inv: f64) -> Self {
-        Twice(self.0.join(other.0, p, inv), self.1.join(other.1, p, inv))
+    fn times_power(self, rounded: Self) -> Self {
+        Twice(self.0.times_power(rounded.0), self.1.times_power(rounded.1))
+    }
+
+    #[inline(always)]
+    fn join<U: LogSpace>(a: U, b: U, p: f64, inv: f64) -> U {
+        T::join(a, b, p, inv)
     }
 
     #[inline(always)]
