@@ -49,16 +49,10 @@ pub struct Bounds {
 
 impl Bounds {
     /// The box that holds no point: `min = +∞`, `max = −∞`.
-    pub const EMPTY: Bounds = Bounds {
-        min: DVec3::INFINITY,
-        max: DVec3::NEG_INFINITY,
-    };
+    pub const EMPTY: Bounds = Bounds { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
 
     /// The box that holds every point: `min = −∞`, `max = +∞`.
-    pub const ALL: Bounds = Bounds {
-        min: DVec3::NEG_INFINITY,
-        max: DVec3::INFINITY,
-    };
+    pub const ALL: Bounds = Bounds { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
 
     /// The box from `min` to `max`, taken as they are: if `min` exceeds `max` along some axis,
     /// the box is empty. [`Bounds::from_corners`] puts the corners in order instead.
@@ -194,11 +188,7 @@ impl Bounds {
     pub fn corners(&self) -> [DVec3; 8] {
         std::array::from_fn(|c| {
             let pick = |axis: usize| {
-                let side = if (c >> axis) & 1 == 1 {
-                    self.max
-                } else {
-                    self.min
-                };
+                let side = if (c >> axis) & 1 == 1 { self.max } else { self.min };
                 side[axis]
             };
             DVec3::new(pick(0), pick(1), pick(2))
@@ -232,10 +222,7 @@ impl Bounds {
         if self.is_empty() {
             return f64::INFINITY;
         }
-        (self.min - point)
-            .max(point - self.max)
-            .max(DVec3::ZERO)
-            .length_squared()
+        (self.min - point).max(point - self.max).max(DVec3::ZERO).length_squared()
     }
 
     /// This box, or the canonical empty one if it is empty.
@@ -264,10 +251,7 @@ mod tests {
         assert!(Bounds::new(DVec3::ONE, DVec3::ZERO).is_empty());
         assert!(Bounds::new(DVec3::NAN, DVec3::ONE).is_empty());
         assert!(!unit().is_empty());
-        assert_eq!(
-            Bounds::from_corners(DVec3::ONE, DVec3::ZERO),
-            Bounds::new(DVec3::ZERO, DVec3::ONE)
-        );
+        assert_eq!(Bounds::from_corners(DVec3::ONE, DVec3::ZERO), Bounds::new(DVec3::ZERO, DVec3::ONE));
         assert_eq!(Bounds::EMPTY.size(), DVec3::ZERO);
         assert_eq!(Bounds::ALL.center(), DVec3::ZERO);
         assert_eq!(Bounds::EMPTY.center(), DVec3::ZERO);
@@ -281,14 +265,8 @@ mod tests {
     #[test]
     fn set_operations() {
         let b = Bounds::new(DVec3::splat(0.5), DVec3::splat(2.0));
-        assert_eq!(
-            unit().intersection(&b),
-            Bounds::new(DVec3::splat(0.5), DVec3::ONE)
-        );
-        assert_eq!(
-            unit().union(&b),
-            Bounds::new(DVec3::ZERO, DVec3::splat(2.0))
-        );
+        assert_eq!(unit().intersection(&b), Bounds::new(DVec3::splat(0.5), DVec3::ONE));
+        assert_eq!(unit().union(&b), Bounds::new(DVec3::ZERO, DVec3::splat(2.0)));
         // Not canonical, and still neutral.
         let odd = Bounds::new(DVec3::splat(3.0), DVec3::splat(-3.0));
         assert_eq!(unit().union(&odd), unit());

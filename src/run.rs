@@ -44,11 +44,7 @@ impl Run {
     ///
     /// [`Cancelled`] once the token has been cancelled.
     pub fn check(&self) -> Result<(), Cancelled> {
-        if self.cancel.is_cancelled() {
-            Err(Cancelled)
-        } else {
-            Ok(())
-        }
+        if self.cancel.is_cancelled() { Err(Cancelled) } else { Ok(()) }
     }
 
     /// Tells the sink that the given fraction of the work (0 to 1) is done. A fraction below
@@ -65,10 +61,7 @@ impl Run {
         if self.threads == 0 || self.threads == rayon::current_num_threads() {
             return job();
         }
-        match rayon::ThreadPoolBuilder::new()
-            .num_threads(self.threads)
-            .build()
-        {
+        match rayon::ThreadPoolBuilder::new().num_threads(self.threads).build() {
             Ok(pool) => pool.install(job),
             Err(_) => job(),
         }
@@ -118,10 +111,7 @@ impl Progress {
 
     fn of(sink: Arc<dyn Fn(f64) + Send + Sync>) -> Progress {
         let none = f64::NEG_INFINITY;
-        let meter = Arc::new(Meter {
-            seen: AtomicU64::new(none.to_bits()),
-            passed: Mutex::new(none),
-        });
+        let meter = Arc::new(Meter { seen: AtomicU64::new(none.to_bits()), passed: Mutex::new(none) });
         Progress { sink, meter }
     }
 
@@ -137,8 +127,7 @@ impl Progress {
     fn report(&self, fraction: f64) {
         // NaN stays NaN, which is never news.
         let fraction = fraction.clamp(0.0, 1.0);
-        let is_news =
-            |highest: f64| fraction >= highest + FINEST || (fraction > highest && fraction == 1.0);
+        let is_news = |highest: f64| fraction >= highest + FINEST || (fraction > highest && fraction == 1.0);
         if !is_news(f64::from_bits(self.meter.seen.load(Ordering::Relaxed))) {
             return;
         }
@@ -197,11 +186,8 @@ mod tests {
     fn recorder() -> (Arc<Mutex<Vec<f64>>>, Run) {
         let seen = Arc::new(Mutex::new(Vec::new()));
         let sink = seen.clone();
-        let run = Run {
-            threads: 2,
-            progress: Some(Progress::new(move |f| sink.lock().unwrap().push(f))),
-            ..Run::default()
-        };
+        let run =
+            Run { threads: 2, progress: Some(Progress::new(move |f| sink.lock().unwrap().push(f))), ..Run::default() };
         (seen, run)
     }
 
@@ -237,16 +223,10 @@ mod tests {
 
     #[test]
     fn threads_and_cancel() {
-        let run = Run {
-            threads: 3,
-            ..Run::default()
-        };
+        let run = Run { threads: 3, ..Run::default() };
         assert_eq!(run.install(rayon::current_num_threads), 3);
         let all = Run::default();
-        assert_eq!(
-            all.install(rayon::current_num_threads),
-            rayon::current_num_threads()
-        );
+        assert_eq!(all.install(rayon::current_num_threads), rayon::current_num_threads());
         assert_eq!(run.check(), Ok(()));
         let stage = run.stage(0.2, 0.4);
         run.cancel.cancel();

@@ -152,12 +152,7 @@ impl Code {
 
 impl Compiler {
     fn compile(mut self, root: &Solid) -> Result<Compiled, SolidError> {
-        self.contexts.push(Context {
-            frame: 0,
-            to_local: DAffine3::IDENTITY,
-            forward: DAffine3::IDENTITY,
-            scale: 1.0,
-        });
+        self.contexts.push(Context { frame: 0, to_local: DAffine3::IDENTITY, forward: DAffine3::IDENTITY, scale: 1.0 });
         let step = self.scene.trail.push(root, None);
         let site = Site { solid: root, context: 0, step };
         let mut tasks = vec![Task::Visit(site)];
@@ -197,7 +192,8 @@ impl Compiler {
             let (position, inner) = match solid.node() {
                 solid::Node::Affine { .. } | solid::Node::Warp { .. } => (0, self.context_of[&key]),
                 solid::Node::Join { operation: Operation::Union, operands, .. } => {
-                    let open = |o: &Solid| !inside(self, o, context).is_finite() && !inside(self, o, context).is_empty();
+                    let open =
+                        |o: &Solid| !inside(self, o, context).is_finite() && !inside(self, o, context).is_empty();
                     match operands.iter().position(open) {
                         Some(position) => (position, context),
                         None => return self.scene.trail.path(step),
@@ -286,11 +282,7 @@ impl Compiler {
 
     fn warp_context(&mut self, site: Site<'_>, warp: &Arc<dyn AnyWarp>) -> u32 {
         self.context(site, |compiler, above| {
-            compiler.scene.frames.push(Frame {
-                parent: above.frame,
-                to_local: above.to_local,
-                warp: warp.clone(),
-            });
+            compiler.scene.frames.push(Frame { parent: above.frame, to_local: above.to_local, warp: warp.clone() });
             Context {
                 frame: compiler.scene.frames.len() as u32,
                 to_local: DAffine3::IDENTITY,
@@ -360,16 +352,10 @@ impl Compiler {
         };
         let (field, surface) = (pick(|b| b.field), pick(|b| b.surface));
         let (field, surface) = if operation == Operation::SymmetricDifference {
-            (
-                self.field.either_all(rule, frame, &field),
-                self.surface.either_all(Rule::MinMax, frame, &surface),
-            )
+            (self.field.either_all(rule, frame, &field), self.surface.either_all(Rule::MinMax, frame, &surface))
         } else {
             let op = if operation == Operation::Union { Op::Or } else { Op::And };
-            (
-                self.field.join_all(op, rule, frame, &field),
-                self.surface.join(op, Rule::MinMax, frame, &surface),
-            )
+            (self.field.join_all(op, rule, frame, &field), self.surface.join(op, Rule::MinMax, frame, &surface))
         };
         Built { field: field.edge, surface: surface.edge, sides: surface.sides }
     }

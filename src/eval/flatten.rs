@@ -29,10 +29,8 @@ pub(super) fn flatten(code: Code, root: Edge) -> (Code, Edge) {
         let Node::Join { op, first, len, frame, .. } = &code.nodes[at] else { continue };
         for edge in &code.operands[*first as usize..(first + len) as usize] {
             if let Node::Join { op: below, frame: inner, .. } = &code.nodes[edge.node()] {
-                merged[edge.node()] = uses[at] > 0
-                    && uses[edge.node()] == 1
-                    && inner == frame
-                    && below.flip_if(edge.negated()) == *op;
+                merged[edge.node()] =
+                    uses[at] > 0 && uses[edge.node()] == 1 && inner == frame && below.flip_if(edge.negated()) == *op;
             }
         }
     }

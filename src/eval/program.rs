@@ -91,14 +91,12 @@ impl Sides {
     /// Those of a join of two.
     pub(crate) fn join(self, op: Op, other: Sides) -> Sides {
         match op {
-            Op::Or => Sides {
-                inside: self.inside.union(&other.inside),
-                outside: self.outside.intersection(&other.outside),
-            },
-            Op::And => Sides {
-                inside: self.inside.intersection(&other.inside),
-                outside: self.outside.union(&other.outside),
-            },
+            Op::Or => {
+                Sides { inside: self.inside.union(&other.inside), outside: self.outside.intersection(&other.outside) }
+            }
+            Op::And => {
+                Sides { inside: self.inside.intersection(&other.inside), outside: self.outside.union(&other.outside) }
+            }
         }
     }
 

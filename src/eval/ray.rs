@@ -52,7 +52,8 @@ pub(crate) fn first_hit(
     while let Some((program, t0, t1)) = pieces.pop() {
         let Region::Surface(program) = program.narrow_zone(&Zone::of_segment(at(t0), at(t1))) else { continue };
         let (inside0, inside1) = (program.value(at(t0)) > 0.0, program.value(at(t1)) > 0.0);
-        let certain = t1 - t0 <= shortest || (program.leaf_count() <= FEW && one_way(&program, origin, direction, t0, t1));
+        let certain =
+            t1 - t0 <= shortest || (program.leaf_count() <= FEW && one_way(&program, origin, direction, t0, t1));
         if certain {
             if inside0 == inside1 {
                 continue;
@@ -73,11 +74,7 @@ pub(crate) fn first_hit(
 fn one_way(program: &Program, origin: DVec3, direction: DVec3, t0: f64, t1: f64) -> bool {
     let t = Dual::variable(Interval::new(t0, t1), 0);
     let along = |o: f64, d: f64| t * Dual::constant(Interval::point(d)) + Dual::constant(Interval::point(o));
-    let p = [
-        along(origin.x, direction.x),
-        along(origin.y, direction.y),
-        along(origin.z, direction.z),
-    ];
+    let p = [along(origin.x, direction.x), along(origin.y, direction.y), along(origin.z, direction.z)];
     let slope = program.evaluate(p, &mut Vec::new()).gradient()[0];
     slope.lo() > 0.0 || slope.hi() < 0.0
 }

@@ -73,8 +73,10 @@ pub(super) fn schedule(program: &Program) -> Schedule {
     // Where a node's value is kept while uses remain.
     let mut kept: Vec<Option<u32>> = vec![None; count];
     let mut open: Vec<Open> = Vec::new();
-    let start = |node: usize, steps: &mut Vec<Step>, registers: &mut Registers, kept: &mut Vec<Option<u32>>| {
-        match &program.nodes[node] {
+    let start =
+        |node: usize, steps: &mut Vec<Step>, registers: &mut Registers, kept: &mut Vec<Option<u32>>| match &program
+            .nodes[node]
+        {
             Node::Leaf(leaf) => {
                 let to = registers.take();
                 steps.push(Step::Leaf { leaf: *leaf, to });
@@ -86,8 +88,7 @@ pub(super) fn schedule(program: &Program) -> Schedule {
                 operands.sort_by_key(|edge| std::cmp::Reverse(needs[edge.node()]));
                 Some(Open { node, operands, next: 0, all: None })
             }
-        }
-    };
+        };
     open.extend(start(program.root.node(), &mut steps, &mut registers, &mut kept));
     while let Some(top) = open.last_mut() {
         let Some(&edge) = top.operands.get(top.next) else {

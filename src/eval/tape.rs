@@ -12,7 +12,7 @@ use super::program::{Op, Program};
 use super::register::{Step, schedule};
 use crate::Bounds;
 use crate::field::{AnyField, AnyWarp, COORDINATE_LIMIT, Chunk, Placement, Rule, Zone};
-use crate::num::kernel::{CHUNK, Element, Fold, Formula, fold, run};
+use crate::num::kernel::{CHUNK, Element, Fold, Formula, fold, run, within};
 use crate::{Dual, Norm, Real};
 
 /// A program ready for bulk evaluation over a region: immutable, shared between threads;
@@ -347,7 +347,8 @@ impl Formula<18, 9> for Product {
         let mut at = 0;
         while at < 9 {
             let (row, column) = (at / 3 * 3, at % 3);
-            product[at] = x[row].mul_add(x[9 + column], x[row + 1].mul_add(x[12 + column], x[row + 2] * x[15 + column]));
+            product[at] =
+                x[row].mul_add(x[9 + column], x[row + 1].mul_add(x[12 + column], x[row + 2] * x[15 + column]));
             at += 1;
         }
         product
@@ -373,8 +374,14 @@ struct MinMax;
 struct Alpha(f64);
 struct Zero(u32);
 struct Euclid;
-struct P(Norm);
-struct Associative(Norm);
+struct P {
+    p: f64,
+    inv: f64,
+}
+struct Associative {
+    p: f64,
+    inv: f64,
+}
 
 /// Says which rule a conjunction is.
 macro_rules! conjunction {
@@ -393,8 +400,8 @@ conjunction! {
     Alpha: self => Rule::Alpha(self.0);
     Zero: self => Rule::Zero(self.0);
     Euclid: self => Rule::P(Norm::Euclid);
-    P: self => Rule::P(self.0);
-    Associative: self => Rule::Associative(self.0);
+    P: self => Rule::P(Norm::P { p: self.p, inv: self.inv });
+    Associative: self => Rule::Associative(Norm::P { p: self.p, inv: self.inv });
 }
 
 impl<C: Conjunction> Fold<1> for Join<C> {
@@ -431,8 +438,12 @@ where
         Rule::Alpha(alpha) => fold(&Join { conjunction: Alpha(alpha), sign, sign_next }, all, next),
         Rule::Zero(m) => fold(&Join { conjunction: Zero(m), sign, sign_next }, all, next),
         Rule::P(Norm::Euclid) => fold(&Join { conjunction: Euclid, sign, sign_next }, all, next),
-        Rule::P(norm) => fold(&Join { conjunction: P(norm), sign, sign_next }, all, next),
-        Rule::Associative(norm) => fold(&Join { conjunction: Associative(norm), sign, sign_next }, all, next),
+        Rule::P(norm) => {
+            fold(&Join { conjunction: P { p: norm.p(), inv: 1.0 / norm.p() }, sign, sign_next }, all, next)
+        }
+        Rule::Associative(norm) => {
+            fold(&Join { conjunction: Associative { p: norm.p(), inv: 1.0 / norm.p() }, sign, sign_next }, all, next)
+        }
     }
 }
 
@@ -448,11 +459,12 @@ fn execute<M: Mode<N>, const N: usize>(
     memory.slots.resize(memory.slots.len().max(tape.frames.len() * M::COORDINATES * CHUNK), zero);
     memory.padded.resize(3 * CHUNK, zero);
     let Memory { registers, slots, padded } = memory;
+    let limit = M::E::from_f64(COORDINATE_LIMIT);
     let mut at = 0;
     while at < count {
         let len = CHUNK.min(count - at);
         let mut world = points.map(|p| &p[at..at + len]);
-        if len < CHUNK || !world.iter().all(|axis| within_limit(axis)) {
+        if len < CHUNK || !world.iter().all(|axis| within(axis, limit)) {
             // The tail is padded with copies of its last point; coordinates are held.
             for (to, from) in split_mut::<_, 3>(padded).into_iter().zip(world) {
                 for (i, to) in to.iter_mut().enumerate() {
@@ -516,12 +528,6 @@ fn two<E>(all: &mut [E], a: usize, b: usize, len: usize) -> (&mut [E], &[E]) {
         let (head, tail) = all.split_at_mut(a);
         (&mut tail[..len], &head[b..b + len])
     }
-}
-
-/// Whether all coordinates are within the limit (NaN is not).
-fn within_limit<E: Element>(axis: &[E]) -> bool {
-    let (low, high) = (E::from_f64(-COORDINATE_LIMIT), E::from_f64(COORDINATE_LIMIT));
-    axis.iter().fold(true, |all, &c| all & (c >= low) & (c <= high))
 }
 
 /// A coordinate held within the limit; NaN becomes the limit.

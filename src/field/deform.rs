@@ -222,10 +222,8 @@ impl Warp for Bend {
             let big_z = left * z * sinc_range(z * k);
             let x = big_r * cos - across * sin;
             let y = big_r * sin + across * cos;
-            bounds = bounds.union(&Bounds::new(
-                DVec3::new(x.lo(), y.lo(), big_z.lo()),
-                DVec3::new(x.hi(), y.hi(), big_z.hi()),
-            ));
+            bounds = bounds
+                .union(&Bounds::new(DVec3::new(x.lo(), y.lo(), big_z.lo()), DVec3::new(x.hi(), y.hi(), big_z.hi())));
         }
         bounds
     }

@@ -213,9 +213,7 @@ impl<W: Warp> Formula<3, 12> for Jacobian<'_, W> {
     #[inline(always)]
     fn run<R: Real>(&self, p: [R; 3]) -> [R; 12] {
         let [x, y, z] = self.0.inverse(self.1.apply(Dual::point(p)));
-        [
-            x.v, y.v, z.v, x.d[0], x.d[1], x.d[2], y.d[0], y.d[1], y.d[2], z.d[0], z.d[1], z.d[2],
-        ]
+        [x.v, y.v, z.v, x.d[0], x.d[1], x.d[2], y.d[0], y.d[1], y.d[2], z.d[0], z.d[1], z.d[2]]
     }
 }
 

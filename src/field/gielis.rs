@@ -149,7 +149,12 @@ impl Gielis {
 
     /// A bound from above on `weight(θ)·r(θ)` over the curve and one from below on r, close
     /// to 10⁻⁴ of the true ones. `weight` is a function of the angle, at most 1.
-    pub(super) fn extremes(&self, radius: Radius, domain: Interval, weight: fn(Dual<Interval>) -> Dual<Interval>) -> (f64, f64) {
+    pub(super) fn extremes(
+        &self,
+        radius: Radius,
+        domain: Interval,
+        weight: fn(Dual<Interval>) -> Dual<Interval>,
+    ) -> (f64, f64) {
         const PIECES: usize = 4096;
         let width = domain.width() / PIECES as f64;
         let (mut most, mut least) = (0.0f64, f64::INFINITY);

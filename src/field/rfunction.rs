@@ -235,7 +235,7 @@ fn norm_excess<R: Real>(x: R, y: R, norm: Norm) -> R {
             let length = hi.mul_add(hi, lo.square()).sqrt();
             lo * (lo / (hi + length).max(x.lift(TINY)))
         }
-        Norm::P { p, inv } => {
+        Norm::P { p, inv } | Norm::Steep { p, inv } => {
             let u = (lo / hi.max(x.lift(TINY))).pow(p);
             // (1 + u)^(1/p) − 1: the binomial series where u is small.
             const TERMS: u32 = 8;

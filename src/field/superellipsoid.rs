@@ -190,12 +190,19 @@ impl Field for Superellipsoid {
 
     #[inline(always)]
     fn specialised<K: Kernel<Self>>(&self, kernel: K) {
-        match (self.inner, self.outer) {
-            (Norm::P { p, inv }, Norm::P { p: q, inv: q_inv }) if p >= 1.0 && q >= 1.0 => {
-                let (inner, outer) = (Norm::P { p: p.max(1.0), inv }, Norm::P { p: q.max(1.0), inv: q_inv });
-                kernel.run(&Superellipsoid { inner, outer, ..*self });
+        // Two loops cover all exponents, and a third that of ellipsoids, a single root.
+        let with = |inner: Norm, outer: Norm| Superellipsoid { inner, outer, ..*self };
+        match (self.inner.by_powers(), self.outer.by_powers()) {
+            _ if self.inner == Norm::Euclid && self.outer == Norm::Euclid => {
+                kernel.run(&with(Norm::Euclid, Norm::Euclid));
             }
-            _ => kernel.run(self),
+            (Norm::P { p, inv }, Norm::P { p: q, inv: q_inv }) => {
+                kernel.run(&with(Norm::P { p, inv }, Norm::P { p: q, inv: q_inv }));
+            }
+            (inner, outer) => {
+                let (p, q) = (inner.p(), outer.p());
+                kernel.run(&with(Norm::Steep { p, inv: 1.0 / p }, Norm::Steep { p: q, inv: 1.0 / q }));
+            }
         }
     }
 

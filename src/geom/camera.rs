@@ -89,24 +89,14 @@ impl Camera {
     /// A perspective camera; `fov` is the vertical field of view in degrees, in (0, 180).
     #[must_use]
     pub fn perspective(eye: DVec3, target: DVec3, up: DVec3, fov: f64) -> Camera {
-        Camera {
-            eye,
-            target,
-            up,
-            projection: Projection::Perspective { fov },
-        }
+        Camera { eye, target, up, projection: Projection::Perspective { fov } }
     }
 
     /// An orthographic camera; `height` is what the picture spans from bottom to top, in
     /// length units.
     #[must_use]
     pub fn orthographic(eye: DVec3, target: DVec3, up: DVec3, height: f64) -> Camera {
-        Camera {
-            eye,
-            target,
-            up,
-            projection: Projection::Orthographic { height },
-        }
+        Camera { eye, target, up, projection: Projection::Orthographic { height } }
     }
 
     /// The default view: a perspective three-quarter view from front, right and above that
@@ -145,11 +135,7 @@ impl Camera {
         let center = bounds.center();
         let radius = bounds.half_extents().length();
         // A point still needs a view of some size: one in proportion to its coordinates.
-        let radius = if radius > 0.0 {
-            radius
-        } else {
-            center.abs().max_element().max(1.0)
-        };
+        let radius = if radius > 0.0 { radius } else { center.abs().max_element().max(1.0) };
         let [right, up, forward] = self.axes();
         let seen = bounds.corners().map(|p| {
             let p = p - center;
@@ -196,14 +182,7 @@ impl Camera {
         let pixel = 2.0 * half_height / height;
         let across = right * pixel;
         let down = -up * pixel;
-        Rays {
-            eye: self.eye,
-            forward,
-            corner: -0.5 * (across * width + down * height),
-            across,
-            down,
-            parallel,
-        }
+        Rays { eye: self.eye, forward, corner: -0.5 * (across * width + down * height), across, down, parallel }
     }
 
     /// Right, up and forward: unit vectors at right angles; NaN where they are not defined.
@@ -223,11 +202,7 @@ impl Camera {
     /// above 0.
     pub fn check(&self) -> Result<(), CameraError> {
         let error = |parameter, value: &dyn std::fmt::Display, allowed| {
-            Err(CameraError {
-                parameter,
-                value: value.to_string(),
-                allowed,
-            })
+            Err(CameraError { parameter, value: value.to_string(), allowed })
         };
         for (name, v) in [("eye", self.eye), ("target", self.target), ("up", self.up)] {
             if !v.is_finite() {
@@ -247,16 +222,12 @@ impl Camera {
             return error("up", &self.up, "it must not be parallel to the view");
         }
         match self.projection {
-            Projection::Perspective { fov } if !(fov > 0.0 && fov < 180.0) => error(
-                "field of view",
-                &fov,
-                "it must be above 0 and below 180 degrees",
-            ),
-            Projection::Orthographic { height } if !(height > 0.0 && height.is_finite()) => error(
-                "height of the view",
-                &height,
-                "it must be finite and above 0",
-            ),
+            Projection::Perspective { fov } if !(fov > 0.0 && fov < 180.0) => {
+                error("field of view", &fov, "it must be above 0 and below 180 degrees")
+            }
+            Projection::Orthographic { height } if !(height > 0.0 && height.is_finite()) => {
+                error("height of the view", &height, "it must be finite and above 0")
+            }
             _ => Ok(()),
         }
     }
@@ -288,11 +259,7 @@ impl Rays {
     #[must_use]
     pub fn ray(&self, x: f64, y: f64) -> (DVec3, DVec3) {
         let offset = self.corner + self.across * x + self.down * y;
-        if self.parallel {
-            (self.eye + offset, self.forward)
-        } else {
-            (self.eye, (self.forward + offset).normalize())
-        }
+        if self.parallel { (self.eye + offset, self.forward) } else { (self.eye, (self.forward + offset).normalize()) }
     }
 
     /// What a pixel spans at distance `t` along a ray near the middle, in length units.
@@ -316,19 +283,15 @@ mod tests {
             Projection::Orthographic { height } => height / 2.0,
         };
         let scale = height / (2.0 * half);
-        (
-            width / 2.0 + q.dot(right) * scale,
-            height / 2.0 - q.dot(up) * scale,
-        )
+        (width / 2.0 + q.dot(right) * scale, height / 2.0 - q.dot(up) * scale)
     }
 
     #[test]
     fn rays_pass_through_what_they_show() {
         let eye = DVec3::new(3.0, -4.0, 5.0);
-        for camera in [
-            Camera::perspective(eye, DVec3::ONE, DVec3::Z, 50.0),
-            Camera::orthographic(eye, DVec3::ONE, DVec3::Z, 7.0),
-        ] {
+        for camera in
+            [Camera::perspective(eye, DVec3::ONE, DVec3::Z, 50.0), Camera::orthographic(eye, DVec3::ONE, DVec3::Z, 7.0)]
+        {
             for p in [DVec3::ZERO, DVec3::new(0.5, 1.0, -2.0)] {
                 let (x, y) = project(&camera, p, 640.0, 480.0);
                 let (o, d) = camera.ray(x, y, 640, 480);
@@ -360,10 +323,7 @@ mod tests {
         let flat = Bounds::new(DVec3::new(-5.0, 2.0, 100.0), DVec3::new(25.0, 2.5, 101.0));
         let cube = Bounds::from_center(DVec3::splat(1e-3), DVec3::splat(1e-4));
         for bounds in [flat, cube] {
-            for base in [
-                Camera::framing(&bounds),
-                Camera::framing_orthographic(&bounds),
-            ] {
+            for base in [Camera::framing(&bounds), Camera::framing_orthographic(&bounds)] {
                 for aspect in [0.25, 1.0, 3.0] {
                     let camera = base.fitted(&bounds, aspect);
                     camera.check().unwrap();
@@ -395,13 +355,7 @@ mod tests {
         let nan = DVec3::new(0.0, f64::NAN, 0.0);
         assert_eq!(parameter(Camera { eye: nan, ..good }), "eye");
         let same = DVec3::ONE;
-        assert_eq!(
-            parameter(Camera {
-                target: same,
-                ..good
-            }),
-            "target"
-        );
+        assert_eq!(parameter(Camera { target: same, ..good }), "target");
         let up = DVec3::ZERO;
         assert_eq!(parameter(Camera { up, ..good }), "up");
         let up = DVec3::splat(-3.0);
@@ -415,10 +369,7 @@ mod tests {
             let camera = Camera { projection, ..good };
             assert_eq!(parameter(camera), "height of the view");
         }
-        let bad = Camera {
-            projection: Projection::Perspective { fov: 200.0 },
-            ..good
-        };
+        let bad = Camera { projection: Projection::Perspective { fov: 200.0 }, ..good };
         assert_eq!(
             bad.check().unwrap_err().to_string(),
             "camera: field of view is 200; it must be above 0 and below 180 degrees"

@@ -60,17 +60,9 @@ impl Image {
             return Err(ImageError::NoPixels { width, height });
         }
         if pixels.len() as u64 != u64::from(width) * u64::from(height) {
-            return Err(ImageError::Count {
-                pixels: pixels.len(),
-                width,
-                height,
-            });
+            return Err(ImageError::Count { pixels: pixels.len(), width, height });
         }
-        Ok(Image {
-            width,
-            height,
-            pixels,
-        })
+        Ok(Image { width, height, pixels })
     }
 
     /// Pixels in a row.
@@ -129,9 +121,6 @@ mod tests {
             Image::new(0, 2, vec![]).unwrap_err().to_string(),
             "an image of 0 × 2 pixels; each side must be at least 1"
         );
-        assert!(matches!(
-            Image::new(u32::MAX, u32::MAX, vec![]),
-            Err(ImageError::Count { pixels: 0, .. })
-        ));
+        assert!(matches!(Image::new(u32::MAX, u32::MAX, vec![]), Err(ImageError::Count { pixels: 0, .. })));
     }
 }

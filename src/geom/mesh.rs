@@ -76,26 +76,15 @@ impl Mesh {
     /// [`MeshError::Index`] or [`MeshError::Position`], naming the first offender.
     pub fn new(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Mesh, MeshError> {
         if let Some(vertex) = positions.iter().position(|p| !p.is_finite()) {
-            return Err(MeshError::Position {
-                vertex,
-                position: positions[vertex],
-            });
+            return Err(MeshError::Position { vertex, position: positions[vertex] });
         }
         let vertices = positions.len();
         for (triangle, corners) in triangles.iter().enumerate() {
             if let Some(&index) = corners.iter().find(|&&i| i as usize >= vertices) {
-                return Err(MeshError::Index {
-                    triangle,
-                    index,
-                    vertices,
-                });
+                return Err(MeshError::Index { triangle, index, vertices });
             }
         }
-        Ok(Mesh {
-            positions,
-            triangles,
-            normals: None,
-        })
+        Ok(Mesh { positions, triangles, normals: None })
     }
 
     /// The same mesh with a unit normal per vertex, pointing out of the solid, in place of
@@ -106,10 +95,7 @@ impl Mesh {
     /// [`MeshError::Normals`] if their number is not that of the vertices.
     pub fn with_normals(mut self, normals: Vec<Vec3>) -> Result<Mesh, MeshError> {
         if normals.len() != self.positions.len() {
-            return Err(MeshError::Normals {
-                normals: normals.len(),
-                vertices: self.positions.len(),
-            });
+            return Err(MeshError::Normals { normals: normals.len(), vertices: self.positions.len() });
         }
         self.normals = Some(normals);
         Ok(self)
@@ -198,14 +184,7 @@ mod tests {
     fn cuboid(min: Vec3, size: Vec3) -> Mesh {
         let at = |c: u32| Vec3::new((c & 1) as f32, (c >> 1 & 1) as f32, (c >> 2) as f32);
         let positions = (0..8).map(|c| min + at(c) * size).collect();
-        let quads: [[u32; 4]; 6] = [
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-        ];
+        let quads: [[u32; 4]; 6] = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
         let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
         Mesh::new(positions, quads.into_iter().flat_map(halves).collect()).unwrap()
     }
@@ -231,22 +210,10 @@ mod tests {
     #[test]
     fn bad_parts_are_named() {
         let bad = Mesh::new(vec![Vec3::ZERO; 3], vec![[0, 1, 2], [0, 3, 1]]);
-        assert_eq!(
-            bad.unwrap_err().to_string(),
-            "triangle 1 refers to vertex 3, but there are 3 vertices"
-        );
+        assert_eq!(bad.unwrap_err().to_string(), "triangle 1 refers to vertex 3, but there are 3 vertices");
         let bad = Mesh::new(vec![Vec3::ZERO, Vec3::NAN], vec![]);
-        assert!(matches!(
-            bad.unwrap_err(),
-            MeshError::Position { vertex: 1, .. }
-        ));
+        assert!(matches!(bad.unwrap_err(), MeshError::Position { vertex: 1, .. }));
         let bad = cuboid(Vec3::ZERO, Vec3::ONE).with_normals(vec![Vec3::Z]);
-        assert!(matches!(
-            bad.unwrap_err(),
-            MeshError::Normals {
-                normals: 1,
-                vertices: 8
-            }
-        ));
+        assert!(matches!(bad.unwrap_err(), MeshError::Normals { normals: 1, vertices: 8 }));
     }
 }

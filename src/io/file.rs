@@ -12,10 +12,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Writes a file through `content`; a symbolic link is followed, and an existing file keeps
 /// its permissions.
-pub(super) fn write_whole(
-    path: &Path,
-    content: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
-) -> io::Result<()> {
+pub(super) fn write_whole(path: &Path, content: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<()> {
     // A link stays a link: what it points to is replaced.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
     let existing = fs::metadata(&target).ok();
@@ -25,10 +22,7 @@ pub(super) fn write_whole(
         }
         // The rename would replace it all the same.
         if existing.permissions().readonly() {
-            return Err(io::Error::new(
-                io::ErrorKind::PermissionDenied,
-                "the file is read-only",
-            ));
+            return Err(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only"));
         }
     }
 

@@ -16,21 +16,15 @@ use crate::geom::Image;
 pub fn write_png(image: &Image, out: impl Write) -> io::Result<()> {
     let opaque: Vec<u8>;
     let (bytes, color): (&[u8], _) = if image.is_opaque() {
-        opaque = image
-            .pixels()
-            .iter()
-            .flat_map(|p| [p[0], p[1], p[2]])
-            .collect();
+        opaque = image.pixels().iter().flat_map(|p| [p[0], p[1], p[2]]).collect();
         (&opaque, ExtendedColorType::Rgb8)
     } else {
         (image.pixels().as_flattened(), ExtendedColorType::Rgba8)
     };
-    PngEncoder::new(out)
-        .write_image(bytes, image.width(), image.height(), color)
-        .map_err(|error| match error {
-            image::ImageError::IoError(error) => error,
-            other => io::Error::other(other),
-        })
+    PngEncoder::new(out).write_image(bytes, image.width(), image.height(), color).map_err(|error| match error {
+        image::ImageError::IoError(error) => error,
+        other => io::Error::other(other),
+    })
 }
 
 #[cfg(test)]

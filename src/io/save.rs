@@ -110,26 +110,16 @@ fn save<T>(
 ) -> Result<(), SaveError> {
     let extension = path.extension().unwrap_or_default().to_string_lossy();
     let Some(write) = writer(&extension.to_ascii_lowercase()) else {
-        return Err(SaveError::Extension {
-            path: path.into(),
-            extension: extension.into_owned(),
-            known,
-        });
+        return Err(SaveError::Extension { path: path.into(), extension: extension.into_owned(), known });
     };
     // The parent of a bare file name is the empty path, which stands for here.
     if let Some(directory) = path.parent()
         && !directory.as_os_str().is_empty()
         && !directory.exists()
     {
-        return Err(SaveError::Directory {
-            path: path.into(),
-            directory: directory.into(),
-        });
+        return Err(SaveError::Directory { path: path.into(), directory: directory.into() });
     }
-    write_whole(path, |out| write(data, out)).map_err(|source| SaveError::Write {
-        path: path.into(),
-        source,
-    })
+    write_whole(path, |out| write(data, out)).map_err(|source| SaveError::Write { path: path.into(), source })
 }
 
 #[cfg(test)]
@@ -168,11 +158,7 @@ mod tests {
     fn saves_and_replaces() {
         let folder = Folder::new("replace");
         let path = folder.0.join("part.STL");
-        fs::write(
-            &path,
-            "something else, and longer than what follows".repeat(9),
-        )
-        .unwrap();
+        fs::write(&path, "something else, and longer than what follows".repeat(9)).unwrap();
         triangle().save(&path).unwrap();
         assert_eq!(fs::read(&path).unwrap().len(), 134);
         let image = Image::new(1, 1, vec![[1, 2, 3, 255]]).unwrap();
@@ -185,10 +171,7 @@ mod tests {
     #[test]
     fn unknown_extensions_are_listed() {
         let error = triangle().save("a/part.step").unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "cannot save a/part.step: the extension .step is not known; known: .stl"
-        );
+        assert_eq!(error.to_string(), "cannot save a/part.step: the extension .step is not known; known: .stl");
         let image = Image::new(1, 1, vec![[0; 4]]).unwrap();
         assert_eq!(
             image.save("view").unwrap_err().to_string(),

@@ -41,10 +41,7 @@ const CHUNK: usize = 1024;
 /// triangles.
 pub fn write_stl(mesh: &Mesh, mut out: impl Write) -> io::Result<()> {
     let Ok(count) = u32::try_from(mesh.triangles().len()) else {
-        return Err(io::Error::new(
-            io::ErrorKind::InvalidInput,
-            "STL holds at most 4294967295 triangles",
-        ));
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "STL holds at most 4294967295 triangles"));
     };
     let mut header = [b' '; 80];
     let title = b"binary STL, written by rvachev";

@@ -69,9 +69,7 @@ impl MeshReport {
     /// degenerate. A mesh with a boundary can be.
     #[must_use]
     pub fn is_manifold(&self) -> bool {
-        self.non_manifold_edges == 0
-            && self.non_manifold_vertices == 0
-            && self.degenerate_triangles == 0
+        self.non_manifold_edges == 0 && self.non_manifold_vertices == 0 && self.degenerate_triangles == 0
     }
 }
 
@@ -93,8 +91,7 @@ impl Mesh {
     pub fn check(&self) -> MeshReport {
         let edges = Edges::new(self.triangles());
         let fans = Fans::new(self.positions().len(), self.triangles());
-        let euler_characteristic =
-            fans.used as i64 - edges.count as i64 + self.triangles().len() as i64;
+        let euler_characteristic = fans.used as i64 - edges.count as i64 + self.triangles().len() as i64;
         let mut report = MeshReport {
             triangles: self.triangles().len(),
             vertices: self.positions().len(),
@@ -142,12 +139,7 @@ impl Edges {
             .collect();
         uses.par_sort_unstable();
 
-        let mut edges = Edges {
-            count: 0,
-            boundary: 0,
-            non_manifold: 0,
-            shells: triangles.len(),
-        };
+        let mut edges = Edges { count: 0, boundary: 0, non_manifold: 0, shells: triangles.len() };
         let mut groups = Groups::new(triangles.len());
         for edge in uses.chunk_by(|a, b| a.0 == b.0) {
             edges.count += 1;
@@ -219,10 +211,7 @@ impl Fans {
             }
         }
 
-        let mut fans = Fans {
-            used: 0,
-            non_manifold: 0,
-        };
+        let mut fans = Fans { used: 0, non_manifold: 0 };
         for range in starts.windows(2) {
             let steps = &mut steps[range[0]..range[1]];
             if !steps.is_empty() {
@@ -266,19 +255,13 @@ fn degenerate_triangles(mesh: &Mesh) -> usize {
         let [a, b, c] = mesh.corners(t);
         (b - a).cross(c - a) == DVec3::ZERO
     };
-    mesh.triangles()
-        .par_iter()
-        .filter(|t| is_degenerate(t))
-        .count()
+    mesh.triangles().par_iter().filter(|t| is_degenerate(t)).count()
 }
 
 fn duplicate_vertices(mesh: &Mesh) -> usize {
     // Adding 0 makes −0 and 0 the same.
-    let mut keys: Vec<[u32; 3]> = mesh
-        .positions()
-        .par_iter()
-        .map(|p| p.to_array().map(|x| (x + 0.0).to_bits()))
-        .collect();
+    let mut keys: Vec<[u32; 3]> =
+        mesh.positions().par_iter().map(|p| p.to_array().map(|x| (x + 0.0).to_bits())).collect();
     keys.par_sort_unstable();
     keys.windows(2).filter(|w| w[0] == w[1]).count()
 }
@@ -385,13 +368,7 @@ mod tests {
 
     #[test]
     fn degenerates_and_duplicates() {
-        let positions = vec![
-            Vec3::ZERO,
-            Vec3::X,
-            2.0 * Vec3::X,
-            Vec3::Y,
-            Vec3::new(-0.0, 0.0, -0.0),
-        ];
+        let positions = vec![Vec3::ZERO, Vec3::X, 2.0 * Vec3::X, Vec3::Y, Vec3::new(-0.0, 0.0, -0.0)];
         let triangles = vec![[0, 1, 2], [0, 1, 1], [0, 1, 3]];
         let report = Mesh::new(positions, triangles).unwrap().check();
         assert_eq!(report.degenerate_triangles, 2);

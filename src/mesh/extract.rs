@@ -33,9 +33,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::lattice::Lattice;
-use super::signs::{
-    BLOCK, EdgeRef, NODES, OWNED, Signs, edge_number, for_each_cell, is_mixed, list_edges,
-};
+use super::signs::{BLOCK, EdgeRef, NODES, OWNED, Signs, edge_number, for_each_cell, is_mixed, list_edges};
 use super::table::{CaseTable, EDGE_CORNERS, edge_axis};
 use crate::geom::{Mesh, MeshError};
 use crate::run::{Cancelled, Run};
@@ -58,13 +56,7 @@ pub(crate) trait Sampler: Sync {
 
     /// Where the surface crosses edges of the block that [`Sampler::nodes`] was called for
     /// last, with the same scratch. `out` is as long as `edges`.
-    fn roots(
-        &self,
-        scratch: &mut Self::Scratch,
-        block: [u32; 3],
-        edges: &[EdgeRef],
-        out: &mut [Root],
-    );
+    fn roots(&self, scratch: &mut Self::Scratch, block: [u32; 3], edges: &[EdgeRef], out: &mut [Root]);
 }
 
 /// Where the surface crosses an edge.
@@ -119,11 +111,7 @@ pub(crate) fn extract<S: Sampler>(
     run.install(|| {
         let neighbours = Neighbours::new(blocks)?;
         let sampled = sample_all(sampler, lattice, blocks, &run.stage(0.0, 0.9))?;
-        let parts = Parts {
-            blocks,
-            neighbours,
-            sampled,
-        };
+        let parts = Parts { blocks, neighbours, sampled };
         parts.check_faces()?;
         let mesh = parts.join(&run.stage(0.9, 1.0))?;
         run.report(1.0);
@@ -188,37 +176,26 @@ impl<'a, S: Sampler> Worker<'a, S> {
     }
 
     fn sample(&mut self, block: [u32; 3]) -> Sampled {
-        self.sampler
-            .nodes(&mut self.scratch, block, &mut self.values);
+        self.sampler.nodes(&mut self.scratch, block, &mut self.values);
         let signs = Signs::new(&self.values);
         list_edges(&signs, &mut self.edges, &mut self.numbers);
         self.roots.clear();
         self.roots.resize(self.edges.len(), Root::default());
         if !self.edges.is_empty() {
-            self.sampler
-                .roots(&mut self.scratch, block, &self.edges, &mut self.roots);
+            self.sampler.roots(&mut self.scratch, block, &self.edges, &mut self.roots);
         }
         let vertex = |(edge, root): (&EdgeRef, &Root)| {
             let node = std::array::from_fn(|axis| block[axis] + u32::from(edge.node[axis]));
             let position = self.lattice.vertex(node, usize::from(edge.axis), root.t);
             let normal = Vec3::from_array(root.normal);
-            let normal = if normal.is_finite() {
-                normal
-            } else {
-                Vec3::ZERO
-            };
+            let normal = if normal.is_finite() { normal } else { Vec3::ZERO };
             (position, normal)
         };
         let vertices = self.edges.iter().zip(&self.roots).map(vertex).collect();
         let table = CaseTable::get();
         let mut triangles = 0;
         for_each_cell(&signs, |_, case| triangles += table.triangles(case).len());
-        Sampled {
-            signs,
-            edges: self.numbers.clone(),
-            vertices,
-            triangles,
-        }
+        Sampled { signs, edges: self.numbers.clone(), vertices, triangles }
     }
 }
 
@@ -231,11 +208,7 @@ struct Meter<'a> {
 
 impl<'a> Meter<'a> {
     fn new(run: &'a Run, total: usize) -> Meter<'a> {
-        Meter {
-            run,
-            done: AtomicUsize::new(0),
-            total,
-        }
+        Meter { run, done: AtomicUsize::new(0), total }
     }
 
     /// Called before each block.
@@ -306,9 +279,7 @@ impl Parts<'_> {
                     _ => {}
                 }
                 by[axis] = -1;
-                if is_mixed(&self.sampled[n].signs.face(axis, false))
-                    && self.neighbours.find(block, by).is_none()
-                {
+                if is_mixed(&self.sampled[n].signs.face(axis, false)) && self.neighbours.find(block, by).is_none() {
                     return error("the surface goes on in a lower neighbour not listed");
                 }
             }
@@ -333,40 +304,31 @@ impl Parts<'_> {
 
         let mut indices = vec![[0; 3]; triangles];
         let pieces = split(&mut indices, self.sampled.iter().map(|part| part.triangles));
-        pieces
-            .into_par_iter()
-            .enumerate()
-            .try_for_each(|(n, piece)| {
-                meter.step()?;
-                self.list_triangles(n, &starts, piece)
-            })?;
+        pieces.into_par_iter().enumerate().try_for_each(|(n, piece)| {
+            meter.step()?;
+            self.list_triangles(n, &starts, piece)
+        })?;
 
         let mut positions = vec![Vec3::ZERO; vertices as usize];
         let mut normals = vec![Vec3::ZERO; vertices as usize];
         let sizes = || self.sampled.iter().map(|part| part.vertices.len());
         let places = split(&mut positions, sizes());
         let directions = split(&mut normals, sizes());
-        self.sampled
-            .par_iter_mut()
-            .zip(places.into_par_iter().zip(directions))
-            .for_each(|(part, (places, directions))| {
+        self.sampled.par_iter_mut().zip(places.into_par_iter().zip(directions)).for_each(
+            |(part, (places, directions))| {
                 // Taken, so that the memory is given back on the way.
                 let vertices = std::mem::take(&mut part.vertices);
                 let slots = places.iter_mut().zip(directions);
                 for ((place, direction), vertex) in slots.zip(vertices) {
                     (*place, *direction) = vertex;
                 }
-            });
+            },
+        );
         Ok(Mesh::new(positions, indices)?.with_normals(normals)?)
     }
 
     /// The triangles of block `n`, in the order of its cells.
-    fn list_triangles(
-        &self,
-        n: usize,
-        starts: &[u32],
-        out: &mut [[u32; 3]],
-    ) -> Result<(), ExtractError> {
+    fn list_triangles(&self, n: usize, starts: &[u32], out: &mut [[u32; 3]]) -> Result<(), ExtractError> {
         let part = &self.sampled[n];
         let block = self.blocks[n];
         // The vertices on owned edges, by the number of the edge.
@@ -377,11 +339,7 @@ impl Parts<'_> {
         // The upper neighbours, by the axes along which they are further: bits 0 to 2.
         let upper: [Option<usize>; 8] = std::array::from_fn(|bits| {
             let by = [0, 1, 2].map(|axis| (bits >> axis & 1) as i32);
-            if bits == 0 {
-                Some(n)
-            } else {
-                self.neighbours.find(block, by)
-            }
+            if bits == 0 { Some(n) } else { self.neighbours.find(block, by) }
         });
         let vertex = |cell: [usize; 3], edge: u8| -> Option<u32> {
             let corner = usize::from(EDGE_CORNERS[usize::from(edge)][0]);

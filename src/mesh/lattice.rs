@@ -175,11 +175,7 @@ impl Lattice {
         let spacing = f64::from((farthest as f32).next_up() - farthest as f32);
         let clearance = CLEARANCE.max(2.0 * spacing / step);
         if clearance > 0.25 {
-            return Err(LatticeError::Far {
-                step,
-                farthest,
-                smallest: 8.0 * spacing,
-            });
+            return Err(LatticeError::Far { step, farthest, smallest: 8.0 * spacing });
         }
         Ok(Lattice {
             origin: (first + SHIFT) * step,
@@ -289,20 +285,13 @@ mod tests {
         for (bounds, cell) in [
             (cube(1.25), CellSize::LongestSide(128)),
             (cube(1.25), CellSize::Length(0.3)),
-            (
-                Bounds::new(DVec3::new(1e3, -2.0, 0.0), DVec3::new(1001.0, 0.5, 1e-3)),
-                CellSize::default(),
-            ),
+            (Bounds::new(DVec3::new(1e3, -2.0, 0.0), DVec3::new(1001.0, 0.5, 1e-3)), CellSize::default()),
             (Bounds::new(DVec3::ONE, DVec3::ONE), CellSize::Length(0.01)),
         ] {
             let lattice = Lattice::new(&bounds, cell).unwrap();
             let inner = lattice.bounds().inflate(-lattice.step());
             assert!(inner.contains_bounds(&bounds));
-            assert!(
-                !inner
-                    .inflate(-2.0 * lattice.step())
-                    .contains_bounds(&bounds)
-            );
+            assert!(!inner.inflate(-2.0 * lattice.step()).contains_bounds(&bounds));
         }
         let lattice = Lattice::new(&cube(1.25), CellSize::LongestSide(128)).unwrap();
         assert_eq!(lattice.step(), 2.5 / 128.0);
@@ -339,10 +328,7 @@ mod tests {
             assert!(error.to_string().starts_with("cell size is"));
         }
         let none = Lattice::new(&cube(1.0), CellSize::LongestSide(0)).unwrap_err();
-        assert_eq!(
-            none.to_string(),
-            "cells along the longest side is 0; it must be at least 1"
-        );
+        assert_eq!(none.to_string(), "cells along the longest side is 0; it must be at least 1");
         let nan = Bounds::new(DVec3::ZERO, DVec3::NAN);
         for bounds in [Bounds::EMPTY, Bounds::ALL, cube(0.0), cube(1e38), nan] {
             let error = Lattice::new(&bounds, CellSize::default()).unwrap_err();

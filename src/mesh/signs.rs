@@ -84,11 +84,7 @@ pub(super) fn list_edges(signs: &Signs, edges: &mut Vec<EdgeRef>, numbers: &mut 
     for k in 0..BLOCK {
         for j in 0..BLOCK {
             let row = signs.row(j, k);
-            let crossed = [
-                row ^ row >> 1,
-                row ^ signs.row(j + 1, k),
-                row ^ signs.row(j, k + 1),
-            ];
+            let crossed = [row ^ row >> 1, row ^ signs.row(j + 1, k), row ^ signs.row(j, k + 1)];
             let mut any = (crossed[0] | crossed[1] | crossed[2]) & OWNED_BITS;
             while any != 0 {
                 let i = any.trailing_zeros() as usize;
@@ -113,12 +109,7 @@ pub(super) fn list_edges(signs: &Signs, edges: &mut Vec<EdgeRef>, numbers: &mut 
 pub(super) fn for_each_cell(signs: &Signs, mut visit: impl FnMut([usize; 3], u8)) {
     for k in 0..BLOCK {
         for j in 0..BLOCK {
-            let rows = [
-                signs.row(j, k),
-                signs.row(j + 1, k),
-                signs.row(j, k + 1),
-                signs.row(j + 1, k + 1),
-            ];
+            let rows = [signs.row(j, k), signs.row(j + 1, k), signs.row(j, k + 1), signs.row(j + 1, k + 1)];
             let any = rows.iter().fold(0, |bits, row| bits | row);
             let all = rows.iter().fold(u16::MAX, |bits, row| bits & row);
             // A cell is crossed if one of its nodes is inside and not all are.
@@ -126,10 +117,7 @@ pub(super) fn for_each_cell(signs: &Signs, mut visit: impl FnMut([usize; 3], u8)
             while crossed != 0 {
                 let i = crossed.trailing_zeros() as usize;
                 crossed &= crossed - 1;
-                let case = rows
-                    .iter()
-                    .enumerate()
-                    .fold(0, |case, (n, row)| case | (row >> i & 3) << (2 * n));
+                let case = rows.iter().enumerate().fold(0, |case, (n, row)| case | (row >> i & 3) << (2 * n));
                 visit([i, j, k], case as u8);
             }
         }

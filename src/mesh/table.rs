@@ -149,10 +149,7 @@ fn connectivity(case: u8) -> Vec<[u8; 3]> {
     let (corners, _) = output.indices.as_chunks::<3>();
     // A vertex above z = 1 is on no edge of the cell, which drops the second layer.
     let edge = |i: usize| output.vertices.get(i).copied().and_then(edge_with_middle);
-    corners
-        .iter()
-        .filter_map(|&[a, b, c]| Some([edge(a)?, edge(b)?, edge(c)?]))
-        .collect()
+    corners.iter().filter_map(|&[a, b, c]| Some([edge(a)?, edge(b)?, edge(c)?])).collect()
 }
 
 /// The edge that has its middle at a point, if there is one.
@@ -177,9 +174,7 @@ fn doubled_middle(edge: u8) -> [i32; 3] {
 /// diagonally opposite have none.
 fn common_face(a: u8, b: u8) -> Option<(usize, bool)> {
     let (a, b) = (doubled_middle(a), doubled_middle(b));
-    (0..3)
-        .find(|&axis| a[axis] == b[axis] && a[axis] != 1)
-        .map(|axis| (axis, a[axis] == 2))
+    (0..3).find(|&axis| a[axis] == b[axis] && a[axis] != 1).map(|axis| (axis, a[axis] == 2))
 }
 
 /// Turns the triangles of a case such that their normals point from inside to outside.
@@ -203,9 +198,8 @@ fn orient(case: u8, triangles: &mut [[u8; 3]]) {
             if done[i] {
                 continue;
             }
-            let neighbour = (0..triangles.len())
-                .filter(|&j| done[j])
-                .find_map(|j| runs_along(triangles[j], triangles[i]));
+            let neighbour =
+                (0..triangles.len()).filter(|&j| done[j]).find_map(|j| runs_along(triangles[j], triangles[i]));
             if let Some(same_direction) = neighbour {
                 if same_direction {
                     triangles[i].swap(1, 2);
@@ -318,32 +312,14 @@ mod tests {
     fn edges_are_numbered_as_drawn() {
         assert_eq!(
             EDGE_CORNERS,
-            [
-                [0, 1],
-                [2, 3],
-                [4, 5],
-                [6, 7],
-                [0, 2],
-                [1, 3],
-                [4, 6],
-                [5, 7],
-                [0, 4],
-                [1, 5],
-                [2, 6],
-                [3, 7]
-            ]
+            [[0, 1], [2, 3], [4, 5], [6, 7], [0, 2], [1, 3], [4, 6], [5, 7], [0, 4], [1, 5], [2, 6], [3, 7]]
         );
     }
 
     #[test]
     fn every_crossed_edge_is_used_and_no_other() {
         for case in 0..=255 {
-            let used: BTreeSet<u8> = CaseTable::get()
-                .triangles(case)
-                .iter()
-                .flatten()
-                .copied()
-                .collect();
+            let used: BTreeSet<u8> = CaseTable::get().triangles(case).iter().flatten().copied().collect();
             assert_eq!(used, crossed_edges(case), "case {case}");
         }
         assert!(CaseTable::get().triangles(0).is_empty());
@@ -426,11 +402,7 @@ mod tests {
             let [a, b, c] = t.map(doubled_middle);
             let u: [i32; 3] = std::array::from_fn(|i| b[i] - a[i]);
             let v: [i32; 3] = std::array::from_fn(|i| c[i] - a[i]);
-            [
-                u[1] * v[2] - u[2] * v[1],
-                u[2] * v[0] - u[0] * v[2],
-                u[0] * v[1] - u[1] * v[0],
-            ]
+            [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
         };
         let table = CaseTable::get();
         assert_eq!(normal(table.triangles(1)[0]), [1, 1, 1]);

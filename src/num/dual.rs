@@ -86,11 +86,7 @@ impl<T: Real> Dual<T> {
     fn chain2(self, o: Self, v: T, a: T, b: T) -> Self {
         Dual {
             v,
-            d: [
-                self.d[0].mul_add(a, o.d[0] * b),
-                self.d[1].mul_add(a, o.d[1] * b),
-                self.d[2].mul_add(a, o.d[2] * b),
-            ],
+            d: [self.d[0].mul_add(a, o.d[0] * b), self.d[1].mul_add(a, o.d[1] * b), self.d[2].mul_add(a, o.d[2] * b)],
         }
     }
 
@@ -99,11 +95,7 @@ impl<T: Real> Dual<T> {
     fn choose(by: T, nonneg: Self, neg: Self) -> Self {
         Dual {
             v: by.select(nonneg.v, neg.v),
-            d: [
-                by.select(nonneg.d[0], neg.d[0]),
-                by.select(nonneg.d[1], neg.d[1]),
-                by.select(nonneg.d[2], neg.d[2]),
-            ],
+            d: [by.select(nonneg.d[0], neg.d[0]), by.select(nonneg.d[1], neg.d[1]), by.select(nonneg.d[2], neg.d[2])],
         }
     }
 }

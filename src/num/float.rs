@@ -69,7 +69,7 @@ impl Real for f64 {
             Norm::Sum => a + b,
             Norm::Euclid => (a * a + b * b).sqrt(),
             Norm::Max => a.max(b),
-            Norm::P { p, inv } => {
+            Norm::P { p, inv } | Norm::Steep { p, inv } => {
                 let (hi, lo) = (a.max(b), a.min(b));
                 if hi == 0.0 {
                     return 0.0;
@@ -91,7 +91,7 @@ impl Real for f64 {
             Norm::Euclid => (a / value, b / value),
             Norm::Max if a == b => (0.5, 0.5),
             Norm::Max => (f64::from(a > b), f64::from(b > a)),
-            Norm::P { p, .. } => (slope(a / value, p), slope(b / value, p)),
+            Norm::P { p, .. } | Norm::Steep { p, .. } => (slope(a / value, p), slope(b / value, p)),
         };
         (value, da.copysign(self), db.copysign(other))
     }

@@ -137,11 +137,7 @@ impl Interval {
     /// `[lo, hi]`, each end moved to the next float outward.
     #[inline(always)]
     fn outward(lo: f64, hi: f64) -> Interval {
-        if lo <= hi {
-            Interval { lo: lo.next_down(), hi: hi.next_up() }
-        } else {
-            Interval::ALL
-        }
+        if lo <= hi { Interval { lo: lo.next_down(), hi: hi.next_up() } } else { Interval::ALL }
     }
 
     /// `[lo, hi]` as a library function returned them, with its error on each side.
@@ -340,7 +336,8 @@ impl Real for Interval {
         // and logarithms takes three library calls.
         let (a, b) = (self.abs(), other.abs());
         let wide = Interval::library(a.lo.norm(b.lo, norm), a.hi.norm(b.hi, norm));
-        let wide = if let Norm::P { .. } = norm { Interval::library(wide.lo, wide.hi) } else { wide };
+        let wide =
+            if let Norm::P { .. } | Norm::Steep { .. } = norm { Interval::library(wide.lo, wide.hi) } else { wide };
         Interval { lo: wide.lo.max(0.0), hi: wide.hi }
     }
 
@@ -402,7 +399,7 @@ fn corner_slope(a: f64, b: f64, norm: Norm) -> f64 {
         _ if a == 0.0 => 0.0,
         _ if b == 0.0 => 1.0,
         Norm::Euclid => a / a.norm(b, norm),
-        Norm::P { p, .. } => (a / a.norm(b, norm)).powf(p - 1.0),
+        Norm::P { p, .. } | Norm::Steep { p, .. } => (a / a.norm(b, norm)).powf(p - 1.0),
     }
 }
 

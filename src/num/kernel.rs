@@ -10,23 +10,26 @@ use fearless_simd_macros::simd;
 use super::Real;
 use super::lanes::{F32, F64, Lanes, Twice};
 
-/// Calls a function with the token of the machine's SIMD level. On x86 the levels are SSE2, AVX2
-/// and AVX-512: every further one costs a compilation of every kernel.
+/// Calls a function with the token of the machine's SIMD level. On x86-64 the levels are SSE2,
+/// AVX2 and AVX-512: every further one costs a compilation of every kernel. The switches of
+/// `fearless_simd` that leave levels out of a build are honoured.
 macro_rules! on_level {
     ($simd:ident => $call:expr) => {{
         let level = Level::new();
-        #[cfg(target_arch = "x86_64")]
-        {
-            if let Some($simd) = level.as_avx512() {
-                $call
-            } else if let Some($simd) = level.as_avx2() {
-                $call
-            } else if let Some($simd) = level.as_sse2() {
-                $call
-            }
-        }
         #[cfg(not(target_arch = "x86_64"))]
-        fearless_simd::dispatch!(level, $simd => $call)
+        fearless_simd::dispatch!(level, $simd => $call);
+        #[cfg(all(target_arch = "x86_64", not(disable_dispatch_avx512)))]
+        if let Some($simd) = level.as_avx512() {
+            return $call;
+        }
+        #[cfg(all(target_arch = "x86_64", not(disable_dispatch_avx2)))]
+        if let Some($simd) = level.as_avx2() {
+            return $call;
+        }
+        #[cfg(target_arch = "x86_64")]
+        if let Some($simd) = level.as_sse2() {
+            return $call;
+        }
     }};
 }
 
@@ -56,7 +59,7 @@ pub(crate) trait Fold<const N: usize> {
 
 /// An element of a slice, and the lanes that suit it.
 pub(crate) trait Element: Copy + Default + Send + Sync + PartialOrd + 'static {
-    /// Lanes for formulas of few numbers: two vectors keep the pipeline full.
+    /// Lanes for formulas of few numbers: several vectors keep the pipeline full.
     type Wide<S: Simd>: Lanes<Element = Self, Token = S>;
     /// Lanes for formulas of many numbers: one vector leaves registers free.
     type Lean<S: Simd>: Lanes<Element = Self, Token = S>;
@@ -67,7 +70,7 @@ pub(crate) trait Element: Copy + Default + Send + Sync + PartialOrd + 'static {
 }
 
 impl Element for f32 {
-    type Wide<S: Simd> = Twice<F32<S>>;
+    type Wide<S: Simd> = Twice<Twice<F32<S>>>;
     type Lean<S: Simd> = F32<S>;
 
     fn from_f64(v: f64) -> f32 {
@@ -98,7 +101,7 @@ pub(crate) fn run<E: Element, const I: usize, const O: usize>(
     inputs: [&[E]; I],
     outputs: [&mut [E]; O],
 ) {
-    on_level!(simd => lean(simd, formula, inputs, outputs));
+    on_level!(simd => lean(simd, formula, inputs, outputs))
 }
 
 /// [`run`] for formulas of few numbers.
@@ -107,7 +110,7 @@ pub(crate) fn run_wide<E: Element, const I: usize, const O: usize>(
     inputs: [&[E]; I],
     outputs: [&mut [E]; O],
 ) {
-    on_level!(simd => wide(simd, formula, inputs, outputs));
+    on_level!(simd => wide(simd, formula, inputs, outputs))
 }
 
 #[simd]
@@ -163,16 +166,11 @@ impl<L: Lanes, const I: usize, const O: usize> Visit<I, O> for Sweep<'_, L, I, O
 
 /// Folds `next` into `all`, slices of one length, a multiple of [`CHUNK`].
 pub(crate) fn fold<E: Element, const N: usize>(formula: &impl Fold<N>, all: [&mut [E]; N], next: [&[E]; N]) {
-    on_level!(simd => fold_on(simd, formula, all, next));
+    on_level!(simd => fold_on(simd, formula, all, next))
 }
 
 #[simd]
-fn fold_on<S: Simd, E: Element, const N: usize, F: Fold<N>>(
-    simd: S,
-    formula: &F,
-    all: [&mut [E]; N],
-    next: [&[E]; N],
-) {
+fn fold_on<S: Simd, E: Element, const N: usize, F: Fold<N>>(simd: S, formula: &F, all: [&mut [E]; N], next: [&[E]; N]) {
     let width = E::Lean::<S>::WIDTH;
     let len = all[0].len();
     let mut at = 0;
@@ -193,4 +191,25 @@ fn fold_on<S: Simd, E: Element, const N: usize, F: Fold<N>>(
         }
         at += width;
     }
+}
+
+/// Whether all numbers of a slice are within ±`limit`; NaN is not.
+pub(crate) fn within<E: Element>(numbers: &[E], limit: E) -> bool {
+    let mut all = true;
+    check_within(numbers, limit, &mut all);
+    all
+}
+
+fn check_within<E: Element>(numbers: &[E], limit: E, all: &mut bool) {
+    on_level!(simd => within_on(simd, numbers, limit, all))
+}
+
+#[simd]
+fn within_on<S: Simd, E: Element>(_simd: S, numbers: &[E], limit: E, all: &mut bool) {
+    let low = limit.negated();
+    let mut inside = true;
+    for &number in numbers {
+        inside &= (number >= low) & (number <= limit);
+    }
+    *all = inside;
 }

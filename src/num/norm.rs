@@ -13,8 +13,15 @@ pub enum Norm {
     Euclid,
     /// p = ∞: `max(|a|, |b|)`.
     Max,
-    /// Any other p > 0.
+    /// Any other p > 1.
     P {
+        /// The exponent.
+        p: f64,
+        /// `1 / p`.
+        inv: f64,
+    },
+    /// 0 < p < 1: slopes are unbounded where a coordinate is 0.
+    Steep {
         /// The exponent.
         p: f64,
         /// `1 / p`.
@@ -32,8 +39,21 @@ impl Norm {
             Norm::Euclid
         } else if p == f64::INFINITY {
             Norm::Max
+        } else if p < 1.0 {
+            Norm::Steep { p, inv: 1.0 / p }
         } else {
             Norm::P { p, inv: 1.0 / p }
+        }
+    }
+
+    /// The same norm by powers, without the special cases of 1 and 2: fewer kinds to compile
+    /// a loop for.
+    #[must_use]
+    pub(crate) fn by_powers(self) -> Norm {
+        match self {
+            Norm::Sum => Norm::P { p: 1.0, inv: 1.0 },
+            Norm::Euclid => Norm::P { p: 2.0, inv: 0.5 },
+            other => other,
         }
     }
 
@@ -50,7 +70,7 @@ impl Norm {
             Norm::Sum => 1.0,
             Norm::Euclid => 2.0,
             Norm::Max => f64::INFINITY,
-            Norm::P { p, .. } => p,
+            Norm::P { p, .. } | Norm::Steep { p, .. } => p,
         }
     }
 }

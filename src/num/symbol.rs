@@ -179,7 +179,7 @@ impl Real for Symbol<'_> {
             Norm::Sum => a + b,
             Norm::Max => a.max(b),
             Norm::Euclid => (self.square() + o.square()).sqrt(),
-            Norm::P { p, inv } => {
+            Norm::P { p, inv } | Norm::Steep { p, inv } => {
                 // hi·(1 + (lo/hi)^p)^(1/p): no overflow for any exponent.
                 let hi = a.max(b);
                 let ratio = a.min(b) / hi.max(hi.lift(GUARD));

@@ -9,5 +9,5 @@ mod transform;
 
 pub use error::SolidError;
 pub(crate) use error::Trail;
-pub(crate) use node::{Node, Operation};
 pub use node::Solid;
+pub(crate) use node::{Node, Operation};

@@ -39,10 +39,21 @@ pub(super) struct Inner {
 pub(crate) enum Node {
     Leaf(Arc<dyn AnyField>),
     /// The operand moved by `forward`; `label` is the verb that the user wrote.
-    Affine { operand: Solid, forward: DAffine3, label: &'static str },
+    Affine {
+        operand: Solid,
+        forward: DAffine3,
+        label: &'static str,
+    },
     /// The operand deformed.
-    Warp { operand: Solid, warp: Arc<dyn AnyWarp> },
-    Join { operation: Operation, rule: RFunction, operands: Vec<Solid> },
+    Warp {
+        operand: Solid,
+        warp: Arc<dyn AnyWarp>,
+    },
+    Join {
+        operation: Operation,
+        rule: RFunction,
+        operands: Vec<Solid>,
+    },
     Complement(Solid),
 }
 

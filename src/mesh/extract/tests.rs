@@ -207,11 +207,7 @@ fn noise_is_closed_and_manifold() {
     let bounds = Bounds::new(DVec3::ZERO, DVec3::splat(14.0));
     let lattice = Lattice::new(&bounds, CellSize::Length(1.0)).unwrap();
     for seed in 0..60 {
-        let noise = Noise {
-            lattice: &lattice,
-            seed,
-            density: [20, 80, 128, 170, 235][seed as usize % 5],
-        };
+        let noise = Noise { lattice: &lattice, seed, density: [20, 80, 128, 170, 235][seed as usize % 5] };
         let blocks = surface_blocks(&noise, &lattice);
         let mesh = extract(&noise, &lattice, &blocks, &Run::default()).unwrap();
         let report = mesh.check();
@@ -225,19 +221,13 @@ fn noise_is_closed_and_manifold() {
 #[test]
 fn the_same_bytes_for_any_number_of_threads() {
     let lattice = Lattice::new(&cube(1.0), CellSize::LongestSide(60)).unwrap();
-    let sampler = Analytic {
-        f: sphere,
-        lattice: &lattice,
-    };
+    let sampler = Analytic { f: sphere, lattice: &lattice };
     let blocks = surface_blocks(&sampler, &lattice);
     let with = |threads| {
         let seen = Arc::new(Mutex::new(Vec::new()));
         let sink = seen.clone();
-        let run = Run {
-            threads,
-            progress: Some(Progress::new(move |f| sink.lock().unwrap().push(f))),
-            ..Run::default()
-        };
+        let run =
+            Run { threads, progress: Some(Progress::new(move |f| sink.lock().unwrap().push(f))), ..Run::default() };
         let mesh = extract(&sampler, &lattice, &blocks, &run).unwrap();
         let seen = seen.lock().unwrap();
         assert!(seen.windows(2).all(|w| w[0] < w[1]));
@@ -252,10 +242,7 @@ fn the_same_bytes_for_any_number_of_threads() {
 #[test]
 fn cancelling_stops_the_work() {
     let lattice = Lattice::new(&cube(1.25), CellSize::LongestSide(64)).unwrap();
-    let run = Run {
-        threads: 2,
-        ..Run::default()
-    };
+    let run = Run { threads: 2, ..Run::default() };
     let count = AtomicUsize::new(0);
     let f = |p: DVec3| {
         if count.fetch_add(1, Ordering::Relaxed) == 3 * NODES {
@@ -263,15 +250,9 @@ fn cancelling_stops_the_work() {
         }
         sphere(p)
     };
-    let quiet = Analytic {
-        f: sphere,
-        lattice: &lattice,
-    };
+    let quiet = Analytic { f: sphere, lattice: &lattice };
     let blocks = surface_blocks(&quiet, &lattice);
-    let sampler = Analytic {
-        f,
-        lattice: &lattice,
-    };
+    let sampler = Analytic { f, lattice: &lattice };
     let result = extract(&sampler, &lattice, &blocks, &run);
     assert_eq!(result.unwrap_err(), ExtractError::Cancelled(Cancelled));
     assert!(count.load(Ordering::Relaxed) < 40 * NODES);
@@ -280,10 +261,7 @@ fn cancelling_stops_the_work() {
 #[test]
 fn bad_lists_of_blocks_are_reported() {
     let lattice = Lattice::new(&cube(1.25), CellSize::LongestSide(40)).unwrap();
-    let sampler = Analytic {
-        f: sphere,
-        lattice: &lattice,
-    };
+    let sampler = Analytic { f: sphere, lattice: &lattice };
     let blocks = surface_blocks(&sampler, &lattice);
     let what = |blocks: &[[u32; 3]]| {
         let error = extract(&sampler, &lattice, blocks, &Run::default()).unwrap_err();
@@ -305,10 +283,7 @@ fn bad_lists_of_blocks_are_reported() {
     let mut more = blocks.clone();
     more.push([800, 800, 800]);
     let run = Run::default();
-    assert_eq!(
-        extract(&sampler, &lattice, &more, &run),
-        extract(&sampler, &lattice, &blocks, &run)
-    );
+    assert_eq!(extract(&sampler, &lattice, &more, &run), extract(&sampler, &lattice, &blocks, &run));
     let none = extract(&sampler, &lattice, &[], &run).unwrap();
     assert!(none.triangles().is_empty());
 }
@@ -331,10 +306,7 @@ fn neighbours_that_disagree_are_reported() {
         }
     }
     let lattice = Lattice::new(&cube(1.25), CellSize::LongestSide(40)).unwrap();
-    let sampler = Analytic {
-        f: sphere,
-        lattice: &lattice,
-    };
+    let sampler = Analytic { f: sphere, lattice: &lattice };
     let blocks = surface_blocks(&sampler, &lattice);
     let flipped = Flipped(sampler, blocks[0]);
     let error = extract(&flipped, &lattice, &blocks, &Run::default()).unwrap_err();
@@ -345,22 +317,13 @@ fn neighbours_that_disagree_are_reported() {
 #[ignore = "a timing, for release builds"]
 fn extraction_time() {
     let lattice = Lattice::new(&cube(1.25), CellSize::LongestSide(512)).unwrap();
-    let noise = Analytic {
-        f: |p: DVec3| 1.0 - p.length_squared(),
-        lattice: &lattice,
-    };
+    let noise = Analytic { f: |p: DVec3| 1.0 - p.length_squared(), lattice: &lattice };
     let blocks = surface_blocks(&noise, &lattice);
     for threads in [1, 2] {
-        let run = Run {
-            threads,
-            ..Run::default()
-        };
+        let run = Run { threads, ..Run::default() };
         let start = std::time::Instant::now();
         let mesh = extract(&noise, &lattice, &blocks, &run).unwrap();
         let (blocks, triangles) = (blocks.len(), mesh.triangles().len());
-        println!(
-            "{threads} threads: {blocks} blocks, {triangles} triangles, {:?}",
-            start.elapsed()
-        );
+        println!("{threads} threads: {blocks} blocks, {triangles} triangles, {:?}", start.elapsed());
     }
 }

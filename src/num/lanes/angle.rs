@@ -39,10 +39,7 @@ pub(super) fn sin_cos_f32<S: Simd>(x: S::f32s) -> (S::f32s, S::f32s) {
     let cos_bits: S::u32s = odd.select(sin, cos).bitcast();
     let sin_sign = (quadrant & 2) << 30;
     let cos_sign = ((quadrant + 1) & 2) << 30;
-    (
-        (sin_bits ^ sin_sign).bitcast(),
-        (cos_bits ^ cos_sign).bitcast(),
-    )
+    ((sin_bits ^ sin_sign).bitcast(), (cos_bits ^ cos_sign).bitcast())
 }
 
 /// Sine and cosine, absolute error 2·10⁻¹⁶ for |x| ≤ 10⁶ (pieces of 33 bits times 2²⁰).
@@ -82,10 +79,7 @@ pub(super) fn sin_cos_f64<S: Simd>(x: S::f64s) -> (S::f64s, S::f64s) {
     let cos_bits: S::u64s = odd.select(sin, cos).bitcast();
     let sin_sign = (quadrant & 2) << 62;
     let cos_sign = ((quadrant + 1) & 2) << 62;
-    (
-        (sin_bits ^ sin_sign).bitcast(),
-        (cos_bits ^ cos_sign).bitcast(),
-    )
+    ((sin_bits ^ sin_sign).bitcast(), (cos_bits ^ cos_sign).bitcast())
 }
 
 /// The angle of (x, y): relative error 3·10⁻⁷, also of small angles.

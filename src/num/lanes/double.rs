@@ -54,14 +54,8 @@ impl<S: Simd> Real for F64<S> {
         let simd = self.0.token();
         let x = self.0.max(-1022.0).min(1_023.999_999_999);
         let value = F64::<S>(x).exp2_within().0;
-        let value = self
-            .0
-            .simd_lt(-1022.0)
-            .select(S::f64s::splat(simd, 0.0), value);
-        F64(self
-            .0
-            .simd_ge(1024.0)
-            .select(S::f64s::splat(simd, f64::MAX), value))
+        let value = self.0.simd_lt(-1022.0).select(S::f64s::splat(simd, 0.0), value);
+        F64(self.0.simd_ge(1024.0).select(S::f64s::splat(simd, f64::MAX), value))
     }
 
     #[inline(always)]
@@ -200,14 +194,8 @@ impl<S: Simd> LogSpace for F64<S> {
     fn above(self, other: Self) -> Self {
         let simd = self.0.token();
         let tie = S::f64s::splat(simd, 0.5);
-        let not_below = self
-            .0
-            .simd_gt(other.0)
-            .select(S::f64s::splat(simd, 1.0), tie);
-        F64(self
-            .0
-            .simd_lt(other.0)
-            .select(S::f64s::splat(simd, 0.0), not_below))
+        let not_below = self.0.simd_gt(other.0).select(S::f64s::splat(simd, 1.0), tie);
+        F64(self.0.simd_lt(other.0).select(S::f64s::splat(simd, 0.0), not_below))
     }
 
     #[inline(always)]

@@ -24,12 +24,7 @@ function!(SinCos, |x, _y, _z| {
     [sin, cos, sin, cos]
 });
 function!(Atan2, |x, y, _z| [x.atan2(y); 4]);
-function!(Basics, |x, y, z| [
-    x.sqrt(),
-    x.select(y, z),
-    x.min(y),
-    x.max(y)
-]);
+function!(Basics, |x, y, z| [x.sqrt(), x.select(y, z), x.min(y), x.max(y)]);
 
 struct Pow(f64);
 impl Function for Pow {
@@ -54,12 +49,7 @@ fn log2_is_within_its_bounds() {
     assert_eq!(sweep64(&Log2, &powers, error).error, 0.0);
     let zeros = [[0.0; 3], [-0.0; 3], [1e-40; 3]];
     assert!(sweep32(&Log2, &zeros, |_, r| r[0] + 16384.0).error == 0.0);
-    assert!(
-        sweep64(&Log2, &[[0.0; 3], [-0.0; 3], [1e-310; 3]], |_, r| r[0]
-            + 1e5)
-        .error
-            == 0.0
-    );
+    assert!(sweep64(&Log2, &[[0.0; 3], [-0.0; 3], [1e-310; 3]], |_, r| r[0] + 1e5).error == 0.0);
 }
 
 #[test]
@@ -77,14 +67,8 @@ fn exp2_is_within_its_bounds() {
         assert_eq!(sweep64(&Exp2, &[[x * 9.0; 3]], |_, r| r[0]).error, 0.0);
     }
     for x in [128.0, 1e3, 1e9, 3e38] {
-        assert_eq!(
-            sweep32(&Exp2, &[[x; 3]], |_, r| r[0] - f64::from(f32::MAX)).error,
-            0.0
-        );
-        assert_eq!(
-            sweep64(&Exp2, &[[x * 8.0; 3]], |_, r| r[0] - f64::MAX).error,
-            0.0
-        );
+        assert_eq!(sweep32(&Exp2, &[[x; 3]], |_, r| r[0] - f64::from(f32::MAX)).error, 0.0);
+        assert_eq!(sweep64(&Exp2, &[[x * 8.0; 3]], |_, r| r[0] - f64::MAX).error, 0.0);
     }
 }
 
@@ -97,14 +81,8 @@ fn pow_is_within_its_bounds() {
         let parts = |x: f64| p * (1.0 + x.log2().abs());
         assert!(sweep32(&Pow(p), &at, |q, r| error(q, r) / (1.5 + parts(q[0]))).error < 1e-7);
         assert!(sweep64(&Pow(p), &at, |q, r| error(q, r) / (1.5 + parts(q[0]))).error < 3e-16);
-        assert_eq!(
-            sweep32(&Pow(p), &[[0.0; 3], [-0.0; 3]], |_, r| r[0]).error,
-            0.0
-        );
-        assert_eq!(
-            sweep64(&Pow(p), &[[0.0; 3], [-0.0; 3]], |_, r| r[0]).error,
-            0.0
-        );
+        assert_eq!(sweep32(&Pow(p), &[[0.0; 3], [-0.0; 3]], |_, r| r[0]).error, 0.0);
+        assert_eq!(sweep64(&Pow(p), &[[0.0; 3], [-0.0; 3]], |_, r| r[0]).error, 0.0);
     }
     let spicy = SPICY.map(|x| [x; 3]);
     for p in [1e-3, 0.5, 3.0, 2000.0] {
@@ -115,8 +93,7 @@ fn pow_is_within_its_bounds() {
 
 #[test]
 fn sine_and_cosine_are_within_their_bounds() {
-    let error =
-        |[x, _, _]: [f64; 3], r: [f64; 4]| (r[0] - x.sin()).abs().max((r[1] - x.cos()).abs());
+    let error = |[x, _, _]: [f64; 3], r: [f64; 4]| (r[0] - x.sin()).abs().max((r[1] - x.cos()).abs());
     assert!(sweep32(&SinCos, &line(2_000_000, -12e3, 12e3, |x| x), error).error < 1.2e-7);
     assert!(sweep32(&SinCos, &line(1_000_000, -4.0, 4.0, |x| x), error).error < 1.2e-7);
     assert!(sweep64(&SinCos, &line(1_000_000, -1e6, 1e6, |x| x), error).error < 2.5e-16);
@@ -130,26 +107,17 @@ fn sine_and_cosine_are_within_their_bounds() {
 #[test]
 fn angles_are_within_their_bounds() {
     let mut random = Random(1);
-    let mut at: Vec<[f64; 3]> = (0..1_000_000)
-        .map(|_| [random.decades(-6.0, 6.0), random.decades(-6.0, 6.0), 0.0])
-        .collect();
+    let mut at: Vec<[f64; 3]> =
+        (0..1_000_000).map(|_| [random.decades(-6.0, 6.0), random.decades(-6.0, 6.0), 0.0]).collect();
     at.extend(SPICY.iter().flat_map(|&y| SPICY.map(|x| [y, x, 0.0])));
     let error = |[y, x, _]: [f64; 3], r: [f64; 4]| {
         let angle = Real::atan2(y, x);
         // An angle below the smallest normal number is flushed.
-        if angle.abs() < 1e-37 {
-            r[0]
-        } else {
-            r[0] / angle - 1.0
-        }
+        if angle.abs() < 1e-37 { r[0] } else { r[0] / angle - 1.0 }
     };
     assert!(sweep32(&Atan2, &at, error).error < 3.0e-7);
     assert!(sweep64(&Atan2, &at, error).error < 5.0e-16);
-    for (y, x, angle) in [
-        (0.0, 0.0, 0.0),
-        (-0.0, -0.0, 0.0),
-        (-0.0, -1.0, std::f64::consts::PI),
-    ] {
+    for (y, x, angle) in [(0.0, 0.0, 0.0), (-0.0, -0.0, 0.0), (-0.0, -1.0, std::f64::consts::PI)] {
         assert!(sweep32(&Atan2, &[[y, x, 0.0]], |_, r| r[0] - angle).error < 1e-7);
         assert!(sweep64(&Atan2, &[[y, x, 0.0]], |_, r| r[0] - angle).error == 0.0);
     }
@@ -157,10 +125,7 @@ fn angles_are_within_their_bounds() {
 
 #[test]
 fn basics_are_those_of_f64() {
-    let at: Vec<[f64; 3]> = SPICY
-        .iter()
-        .flat_map(|&x| SPICY.map(|y| [x, y, 7.0]))
-        .collect();
+    let at: Vec<[f64; 3]> = SPICY.iter().flat_map(|&x| SPICY.map(|y| [x, y, 7.0])).collect();
     let error = |[x, y, z]: [f64; 3], r: [f64; 4]| {
         let root = Real::sqrt(x);
         ((r[0] - root) / root.max(1e-300))

@@ -32,9 +32,7 @@ impl Function for PairParts {
 
 /// Points over six decades up to 10⁷, and awkward ones.
 fn points(random: &mut Random, n: usize) -> Vec<[f64; 3]> {
-    let mut at: Vec<[f64; 3]> = (0..n)
-        .map(|_| [0; 3].map(|_| random.decades(-3.0, 3.0)))
-        .collect();
+    let mut at: Vec<[f64; 3]> = (0..n).map(|_| [0; 3].map(|_| random.decades(-3.0, 3.0))).collect();
     at.extend((0..n / 4).map(|_| [0; 3].map(|_| random.decades(1.0, 7.0))));
     at.extend((0..n / 2).map(|_| [0; 3].map(|_| random.within(-1.5, 1.5))));
     let awkward = [0.0, -0.0, 1e-20, -1e-20, 1e20, 1.0];
@@ -81,25 +79,16 @@ fn nested_derivatives_are_those_of_f64() {
         let error = |[x, y, z]: [f64; 3], r: [f64; 4]| {
             let (g, d) = x.nested_parts(y, z, inner, outer);
             let value = if g == 0.0 { r[0] } else { (r[0] - g) / g };
-            let slopes = (0..3)
-                .map(|k| slope_error(d[k], r[k + 1]))
-                .fold(0.0, f64::max);
+            let slopes = (0..3).map(|k| slope_error(d[k], r[k + 1])).fold(0.0, f64::max);
             // Derivatives of Max jump where the reference and the lanes round differently.
             // Far below the largest coordinate a logarithm is large, and so is its rounding.
             let size = [x, y, z].map(f64::abs);
             let largest = size.into_iter().fold(0.0, f64::max);
-            let smallest = size
-                .into_iter()
-                .filter(|c| *c > 0.0)
-                .fold(largest, f64::min);
+            let smallest = size.into_iter().filter(|c| *c > 0.0).fold(largest, f64::min);
             let spread = 1.0 + (largest.max(1e-300) / smallest.max(1e-300)).log2() / 16.0;
             let jump = [inner, outer].contains(&Norm::Max) && slopes > 0.4;
             let steep = d.iter().any(|d| d.abs() > 2f64.powi(50));
-            if jump || steep {
-                0.0
-            } else {
-                value.abs().max(slopes / (1.0 + p.max(q)) / spread)
-            }
+            if jump || steep { 0.0 } else { value.abs().max(slopes / (1.0 + p.max(q)) / spread) }
         };
         let worst = sweep32(&NestedParts(inner, outer), &at, error);
         assert!(worst.error < 5.0e-7, "{inner:?} {outer:?} {worst:?}");
@@ -110,19 +99,7 @@ fn nested_derivatives_are_those_of_f64() {
 
 #[test]
 fn extreme_exponents_and_coordinates_stay_finite() {
-    let exponents = [
-        0.01,
-        0.1,
-        0.5,
-        0.99,
-        1.0,
-        1.001,
-        2.0,
-        3.0,
-        200.0,
-        2000.0,
-        f64::INFINITY,
-    ];
+    let exponents = [0.01, 0.1, 0.5, 0.99, 1.0, 1.001, 2.0, 3.0, 200.0, 2000.0, f64::INFINITY];
     let mut at = Vec::new();
     for x in SPICY {
         for y in SPICY {
@@ -141,11 +118,7 @@ fn extreme_exponents_and_coordinates_stay_finite() {
                         wrong = 1.0;
                     }
                 }
-                if x == 0.0 && y == 0.0 && z == 0.0 && r != [0.0; 4] {
-                    2.0
-                } else {
-                    wrong
-                }
+                if x == 0.0 && y == 0.0 && z == 0.0 && r != [0.0; 4] { 2.0 } else { wrong }
             };
             assert_eq!(sweep32(&norms, &at, error).error, 0.0, "{p} {q}");
             assert_eq!(sweep64(&norms, &at, error).error, 0.0, "{p} {q}");
@@ -156,14 +129,7 @@ fn extreme_exponents_and_coordinates_stay_finite() {
 #[test]
 fn pair_derivatives_are_those_of_f64() {
     let mut random = Random(4);
-    for norm in [
-        Norm::Sum,
-        Norm::Euclid,
-        Norm::Max,
-        Norm::new(0.8),
-        Norm::new(1.5),
-        Norm::new(9.0),
-    ] {
+    for norm in [Norm::Sum, Norm::Euclid, Norm::Max, Norm::new(0.8), Norm::new(1.5), Norm::new(9.0)] {
         let at = points(&mut random, 20_000);
         let p = norm.p().min(40.0);
         let error = |[x, y, _]: [f64; 3], r: [f64; 4]| {
@@ -172,14 +138,8 @@ fn pair_derivatives_are_those_of_f64() {
             let slopes = slope_error(dx, r[1]).max(slope_error(dy, r[2]));
             value.max(slopes / (1.0 + p))
         };
-        assert!(
-            sweep32(&PairParts(norm), &at, error).error < 5.0e-7,
-            "{norm:?}"
-        );
-        assert!(
-            sweep64(&PairParts(norm), &at, error).error < 1.5e-15,
-            "{norm:?}"
-        );
+        assert!(sweep32(&PairParts(norm), &at, error).error < 5.0e-7, "{norm:?}");
+        assert!(sweep64(&PairParts(norm), &at, error).error < 1.5e-15, "{norm:?}");
     }
 }
 
@@ -194,9 +154,7 @@ fn powers_are_exact() {
         }
     }
     let at = line(1000, -125.5, 126.5, f64::exp2);
-    let error = |[x, _, _]: [f64; 3], r: [f64; 4]| {
-        (r[0] - x.log2().floor().exp2()).abs() + (r[0] * r[1] - 1.0).abs()
-    };
+    let error = |[x, _, _]: [f64; 3], r: [f64; 4]| (r[0] - x.log2().floor().exp2()).abs() + (r[0] * r[1] - 1.0).abs();
     assert_eq!(sweep32(&Power, &at, error).error, 0.0);
     assert_eq!(sweep64(&Power, &at, error).error, 0.0);
 }

@@ -31,7 +31,7 @@ pub(super) fn norm<T: LogSpace>(a: T, b: T, norm: Norm) -> T {
         Norm::Sum => (a + b).finite(),
         Norm::Max => a.max(b),
         Norm::Euclid => euclid(a, b),
-        Norm::P { p, inv } if p < 1.0 => pair::<T, true>(a, b, p, inv),
+        Norm::Steep { p, inv } => pair::<T, true>(a, b, p, inv),
         Norm::P { p, inv } => pair::<T, false>(a, b, p, inv),
     }
 }
@@ -57,7 +57,7 @@ pub(super) fn norm_parts<T: LogSpace>(a: T, b: T, norm: Norm) -> (T, T, T) {
             let (value, [da, db, _]) = euclid_parts([a, b, a.lift(0.0)]);
             (value, da.copysign(x), db.copysign(y))
         }
-        Norm::P { p, inv } if p < 1.0 => pair_parts::<T, true>(x, y, p, inv),
+        Norm::Steep { p, inv } => pair_parts::<T, true>(x, y, p, inv),
         Norm::P { p, inv } => pair_parts::<T, false>(x, y, p, inv),
     }
 }
@@ -66,13 +66,8 @@ pub(super) fn norm_parts<T: LogSpace>(a: T, b: T, norm: Norm) -> (T, T, T) {
 #[inline(always)]
 pub(super) fn nested<T: LogSpace>(x: T, y: T, z: T, inner: Norm, outer: Norm) -> T {
     match (inner, outer) {
-        (Norm::P { p, inv }, Norm::P { p: q, inv: q_inv }) => {
-            if p.min(q) < 1.0 {
-                triple::<T, true>([x, y, z], [p, inv, q, q_inv])
-            } else {
-                triple::<T, false>([x, y, z], [p, inv, q, q_inv])
-            }
-        }
+        (Norm::P { p, inv }, Norm::P { p: q, inv: q_inv }) => triple::<T, false>([x, y, z], [p, inv, q, q_inv]),
+        (Norm::Steep { p, inv }, Norm::Steep { p: q, inv: q_inv }) => triple::<T, true>([x, y, z], [p, inv, q, q_inv]),
         (Norm::Euclid, Norm::Euclid) => euclid3([x.abs(), y.abs(), z.abs()]),
         _ => norm(norm(x, y, inner), z, outer),
     }
@@ -82,12 +77,9 @@ pub(super) fn nested<T: LogSpace>(x: T, y: T, z: T, inner: Norm, outer: Norm) ->
 #[inline(always)]
 pub(super) fn nested_parts<T: LogSpace>(x: T, y: T, z: T, inner: Norm, outer: Norm) -> (T, [T; 3]) {
     match (inner, outer) {
-        (Norm::P { p, inv }, Norm::P { p: q, inv: q_inv }) => {
-            if p.min(q) < 1.0 {
-                triple_parts::<T, true>([x, y, z], [p, inv, q, q_inv])
-            } else {
-                triple_parts::<T, false>([x, y, z], [p, inv, q, q_inv])
-            }
+        (Norm::P { p, inv }, Norm::P { p: q, inv: q_inv }) => triple_parts::<T, false>([x, y, z], [p, inv, q, q_inv]),
+        (Norm::Steep { p, inv }, Norm::Steep { p: q, inv: q_inv }) => {
+            triple_parts::<T, true>([x, y, z], [p, inv, q, q_inv])
         }
         (Norm::Euclid, Norm::Euclid) => {
             let (value, [da, db, dc]) = euclid_parts([x.abs(), y.abs(), z.abs()]);
@@ -136,10 +128,7 @@ fn triple<T: LogSpace, const STEEP: bool>([x, y, z]: [T; 3], [p, p_inv, q, q_inv
 
 /// [`triple`] and its derivatives.
 #[inline(always)]
-fn triple_parts<T: LogSpace, const STEEP: bool>(
-    [x, y, z]: [T; 3],
-    [p, p_inv, q, q_inv]: [f64; 4],
-) -> (T, [T; 3]) {
+fn triple_parts<T: LogSpace, const STEEP: bool>([x, y, z]: [T; 3], [p, p_inv, q, q_inv]: [f64; 4]) -> (T, [T; 3]) {
     let (a, b, c) = (x.abs(), y.abs(), z.abs());
     let power = a.max(b).max(c).power_below();
     let la = log2::<T, STEEP>(a, power);
@@ -151,10 +140,7 @@ fn triple_parts<T: LogSpace, const STEEP: bool>(
     let da = slope::<T, STEEP>((la - lr).scale_add(p - 1.0, base), a);
     let db = slope::<T, STEEP>((lb - lr).scale_add(p - 1.0, base), b);
     let dc = slope::<T, STEEP>((lc - lg) * (q - 1.0), c);
-    (
-        raise::<T, STEEP>(lg, power),
-        [da.copysign(x), db.copysign(y), dc.copysign(z)],
-    )
+    (raise::<T, STEEP>(lg, power), [da.copysign(x), db.copysign(y), dc.copysign(z)])
 }
 
 /// The logarithm of a coordinate ≥ 0 relative to `power`. That of 0 is −127 at most, which
@@ -168,22 +154,14 @@ fn log2<T: LogSpace, const STEEP: bool>(a: T, power: T) -> T {
 /// `2^log · power`, finite.
 #[inline(always)]
 fn raise<T: LogSpace, const STEEP: bool>(log: T, power: T) -> T {
-    let log = if STEEP {
-        log.min(log.lift(STEEPEST))
-    } else {
-        log
-    };
+    let log = if STEEP { log.min(log.lift(STEEPEST)) } else { log };
     (log.exp2_within() * power).finite()
 }
 
 /// `2^exponent`, finite, and 0 where the coordinate is.
 #[inline(always)]
 fn slope<T: LogSpace, const STEEP: bool>(exponent: T, coordinate: T) -> T {
-    let exponent = if STEEP {
-        exponent.min(exponent.lift(STEEPEST))
-    } else {
-        exponent
-    };
+    let exponent = if STEEP { exponent.min(exponent.lift(STEEPEST)) } else { exponent };
     exponent.exp2_weight().vanish_with(coordinate)
 }
 
@@ -221,10 +199,6 @@ fn euclid_parts<T: LogSpace>(c: [T; 3]) -> (T, [T; 3]) {
     let root = x.mul_add(x, y.mul_add(y, z * z)).sqrt();
     // At the origin this is 0/0; `vanish_with` covers it.
     let recip = root.lift(1.0) / root;
-    let gradient = [
-        (x * recip).vanish_with(c[0]),
-        (y * recip).vanish_with(c[1]),
-        (z * recip).vanish_with(c[2]),
-    ];
+    let gradient = [(x * recip).vanish_with(c[0]), (y * recip).vanish_with(c[1]), (z * recip).vanish_with(c[2])];
     ((root * power).finite(), gradient)
 }

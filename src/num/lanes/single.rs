@@ -47,14 +47,8 @@ impl<S: Simd> Real for F32<S> {
         let simd = self.0.token();
         let x = self.0.max(-126.0).min(127.999_99);
         let value = F32::<S>(x).exp2_within().0;
-        let value = self
-            .0
-            .simd_lt(-126.0)
-            .select(S::f32s::splat(simd, 0.0), value);
-        F32(self
-            .0
-            .simd_ge(128.0)
-            .select(S::f32s::splat(simd, f32::MAX), value))
+        let value = self.0.simd_lt(-126.0).select(S::f32s::splat(simd, 0.0), value);
+        F32(self.0.simd_ge(128.0).select(S::f32s::splat(simd, f32::MAX), value))
     }
 
     #[inline(always)]
@@ -183,14 +177,8 @@ impl<S: Simd> LogSpace for F32<S> {
     fn above(self, other: Self) -> Self {
         let simd = self.0.token();
         let tie = S::f32s::splat(simd, 0.5);
-        let not_below = self
-            .0
-            .simd_gt(other.0)
-            .select(S::f32s::splat(simd, 1.0), tie);
-        F32(self
-            .0
-            .simd_lt(other.0)
-            .select(S::f32s::splat(simd, 0.0), not_below))
+        let not_below = self.0.simd_gt(other.0).select(S::f32s::splat(simd, 1.0), tie);
+        F32(self.0.simd_lt(other.0).select(S::f32s::splat(simd, 0.0), not_below))
     }
 
     #[inline(always)]
@@ -202,15 +190,7 @@ impl<S: Simd> LogSpace for F32<S> {
 /// `2^(r + n)` for |r| ≤ ½, n being in the low bits of `rounded`.
 #[inline(always)]
 fn weight<T: LogSpace>(r: T, rounded: T) -> T {
-    let mantissa = polynomial_of!(
-        r,
-        1.0,
-        0.693_147_003_65,
-        0.240_222_47,
-        0.055_507_11,
-        0.009_671_292,
-        0.001_326_953_5
-    );
+    let mantissa = polynomial_of!(r, 1.0, 0.693_147_003_65, 0.240_222_47, 0.055_507_11, 0.009_671_292, 0.001_326_953_5);
     mantissa.times_power(rounded)
 }
 

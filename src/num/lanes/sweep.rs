@@ -7,9 +7,8 @@ use super::{F32, F64, Lanes, Twice};
 use crate::num::Norm;
 
 /// Arguments that break formulas.
-pub(super) const SPICY: [f64; 15] = [
-    0.0, -0.0, 1.0, -1.0, 0.5, 2.0, 1e-20, -1e-20, 1e20, -1e20, 1e-30, 1e30, 1e-37, 3e38, -3e38,
-];
+pub(super) const SPICY: [f64; 15] =
+    [0.0, -0.0, 1.0, -1.0, 0.5, 2.0, 1e-20, -1e-20, 1e20, -1e20, 1e-30, 1e30, 1e-37, 3e38, -3e38];
 
 /// A function of three numbers, with up to four results.
 pub(super) trait Function {
@@ -18,11 +17,7 @@ pub(super) trait Function {
 }
 
 /// Sweeps `f32` lanes on all levels: the worst of `error(arguments, results)`.
-pub(super) fn sweep32(
-    function: &impl Function,
-    at: &[[f64; 3]],
-    error: impl Fn([f64; 3], [f64; 4]) -> f64,
-) -> Worst {
+pub(super) fn sweep32(function: &impl Function, at: &[[f64; 3]], error: impl Fn([f64; 3], [f64; 4]) -> f64) -> Worst {
     let at: Vec<[f32; 3]> = at.iter().map(|p| p.map(|c| c as f32)).collect();
     let mut worst = Worst::new();
     for level in levels() {
@@ -38,11 +33,7 @@ pub(super) fn sweep32(
 }
 
 /// The same for `f64` lanes.
-pub(super) fn sweep64(
-    function: &impl Function,
-    at: &[[f64; 3]],
-    error: impl Fn([f64; 3], [f64; 4]) -> f64,
-) -> Worst {
+pub(super) fn sweep64(function: &impl Function, at: &[[f64; 3]], error: impl Fn([f64; 3], [f64; 4]) -> f64) -> Worst {
     let mut worst = Worst::new();
     for level in levels() {
         let mut here = Worst::new();
@@ -58,9 +49,7 @@ pub(super) fn sweep64(
 /// `n` single arguments between lo and hi, made by `map`.
 pub(super) fn line(n: usize, lo: f64, hi: f64, map: impl Fn(f64) -> f64) -> Vec<[f64; 3]> {
     let step = (hi - lo) / n as f64;
-    (0..=n)
-        .map(|i| [map(lo + step * i as f64), 0.0, 0.0])
-        .collect()
+    (0..=n).map(|i| [map(lo + step * i as f64), 0.0, 0.0]).collect()
 }
 
 /// The SIMD levels of this machine.
@@ -115,10 +104,7 @@ pub(super) struct Random(pub(super) u64);
 impl Random {
     /// In [0, 1).
     pub(super) fn unit(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
@@ -157,18 +143,11 @@ pub(super) struct Worst {
 
 impl Worst {
     pub(super) fn new() -> Worst {
-        Worst {
-            error: 0.0,
-            at: [0.0; 3],
-        }
+        Worst { error: 0.0, at: [0.0; 3] }
     }
 
     pub(super) fn add(&mut self, error: f64, at: [f64; 3]) {
-        let error = if error.is_nan() {
-            f64::INFINITY
-        } else {
-            error.abs()
-        };
+        let error = if error.is_nan() { f64::INFINITY } else { error.abs() };
         if error > self.error {
             *self = Worst { error, at };
         }

@@ -26,10 +26,7 @@ macro_rules! operator {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                Twice(
-                    $operator::$method(self.0, other.0),
-                    $operator::$method(self.1, other.1),
-                )
+                Twice($operator::$method(self.0, other.0), $operator::$method(self.1, other.1))
             }
         }
     };
@@ -122,10 +119,7 @@ impl<T: LogSpace> Real for Twice<T> {
 
     #[inline(always)]
     fn select(self, nonneg: Self, neg: Self) -> Self {
-        Twice(
-            self.0.select(nonneg.0, neg.0),
-            self.1.select(nonneg.1, neg.1),
-        )
+        Twice(self.0.select(nonneg.0, neg.0), self.1.select(nonneg.1, neg.1))
     }
 
     #[inline(always)]

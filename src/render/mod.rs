@@ -1,0 +1,14 @@
+//! From a solid to a picture.
+//!
+//! A grid of blocks is laid over the solid; each ray walks through it and asks, in the blocks
+//! that the surface may cross, for the first crossing. What it meets is shaded by three
+//! lights that move with the camera. Pixels at outlines and creases are sampled more often.
+
+mod blocks;
+mod picture;
+mod settings;
+mod shade;
+mod solid;
+mod walk;
+
+pub use settings::{Background, RenderError, RenderSettings};
