@@ -127,6 +127,8 @@ pub struct Lattice {
     origin: DVec3,
     step: f64,
     cells: [u32; 3],
+    /// How far a vertex on a lattice edge stays from its ends, as a part of the edge: 2⁻¹⁰, or
+    /// more where the coordinates are so large that f32 does not resolve that.
     clearance: f64,
 }
 
@@ -218,12 +220,6 @@ impl Lattice {
         Bounds::new(self.origin, self.node(i, j, k))
     }
 
-    /// How far a vertex on a lattice edge stays from its ends, as a part of the edge: 2⁻¹⁰, or
-    /// more where the coordinates are so large that f32 does not resolve that.
-    pub(crate) fn clearance(&self) -> f64 {
-        self.clearance
-    }
-
     /// The vertex on the edge that leaves a node along an axis, at `t` from 0 to 1 of its
     /// length. `t` is moved to be clear of the ends; that of NaN is the middle.
     pub(crate) fn vertex(&self, node: [u32; 3], axis: usize, t: f64) -> Vec3 {
@@ -300,7 +296,7 @@ mod tests {
     #[test]
     fn vertices_stay_clear_of_nodes() {
         let lattice = Lattice::new(&cube(1.0), CellSize::Length(1.0 / 64.0)).unwrap();
-        assert_eq!(lattice.clearance(), CLEARANCE);
+        assert_eq!(lattice.clearance, CLEARANCE);
         let base = lattice.node(3, 4, 5).as_vec3();
         for (t, want) in [(-1.0, CLEARANCE), (0.5, 0.5), (2.0, 1.0 - CLEARANCE)] {
             let p = lattice.vertex([3, 4, 5], 1, t);
@@ -313,7 +309,7 @@ mod tests {
         // Far from the origin the clearance is two f32.
         let far = Bounds::from_center(DVec3::splat(1000.0), DVec3::splat(0.05));
         let lattice = Lattice::new(&far, CellSize::Length(1e-3)).unwrap();
-        assert!(lattice.clearance() > 0.1);
+        assert!(lattice.clearance > 0.1);
         let low = lattice.vertex([7, 7, 7], 0, 0.0);
         let high = lattice.vertex([7, 7, 7], 0, 1.0);
         let ends = [7, 8].map(|i| lattice.node(i, 7, 7).as_vec3());

@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use super::walk::Walk;
 use crate::eval::{Hit, Program, first_hit};
-use crate::space::{Block, Grid, surface_blocks};
+use crate::space::{Grid, surface_blocks};
 use crate::{Bounds, Cancelled, Run};
 
 /// Marks a block of the grid that the surface does not cross.
@@ -22,8 +22,8 @@ pub(super) const MOST: u32 = 64;
 /// The surface of a solid, by blocks.
 pub(super) struct Blocks {
     grid: Grid,
-    blocks: Vec<Block>,
-    /// The number of each block of the grid, x first, or [`EMPTY`].
+    programs: Vec<Program>,
+    /// The number of each block's program, x first, or [`EMPTY`].
     numbers: Vec<u32>,
     /// Holds every segment with room to spare.
     reach: Bounds,
@@ -54,14 +54,15 @@ impl Blocks {
             numbers[place(&grid, block.index)] = number as u32;
         }
         let reach = grid.bounds([0; 3], grid.blocks).inflate(longest);
-        Ok(Blocks { grid, blocks, numbers, reach })
+        let programs = blocks.into_iter().map(|block| block.program).collect();
+        Ok(Blocks { grid, programs, numbers, reach })
     }
 
     /// The first crossing on the ray from `origin` along `direction`, a unit vector.
     pub(super) fn first_hit(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
         Walk::new(&self.grid, origin, direction).find_map(|segment| {
-            let block = self.blocks.get(self.numbers[place(&self.grid, segment.block)] as usize)?;
-            first_hit(&block.program, &self.reach, origin, direction, segment.near, segment.far)
+            let program = self.programs.get(self.numbers[place(&self.grid, segment.block)] as usize)?;
+            first_hit(program, &self.reach, origin, direction, segment.near, segment.far)
         })
     }
 

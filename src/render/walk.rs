@@ -112,11 +112,8 @@ impl Iterator for Walk<'_> {
         } else {
             2
         };
-        let segment = Segment {
-            block: self.at.map(|i| i as u32),
-            near: self.near,
-            far: self.next[axis].max(self.near),
-        };
+        let segment =
+            Segment { block: self.at.map(|i| i as u32), near: self.near, far: self.next[axis].max(self.near) };
         self.near = segment.far;
         self.at[axis] += self.steps[axis];
         // A ray of NaN steps nowhere.
@@ -143,8 +140,11 @@ mod tests {
             let at = |k: f64| DVec3::new(0.754_877, 0.569_840, 0.438_579).map(|a| (a * k).fract() * 2.0 - 1.0);
             let origin = 4.0 * at(f64::from(i));
             let target = at(f64::from(i) + 0.37) * DVec3::new(1.0, 2.0, 0.6) + DVec3::Z;
-            let direction =
-                if i % 8 == 0 { -origin.signum() * DVec3::AXES[i as usize / 8 % 3] } else { (target - origin).normalize() };
+            let direction = if i % 8 == 0 {
+                -origin.signum() * DVec3::AXES[i as usize / 8 % 3]
+            } else {
+                (target - origin).normalize()
+            };
             let segments: Vec<Segment> = Walk::new(&grid, origin, direction).collect();
             crossed += usize::from(!segments.is_empty());
             for pair in segments.windows(2) {

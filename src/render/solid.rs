@@ -1,0 +1,214 @@
+//! Rendering a solid: `solid.render(..)`.
+
+use super::blocks::{Blocks, MOST};
+use super::picture::Scene;
+use super::settings::{RenderError, RenderSettings};
+use super::shade::Studio;
+use crate::eval::compiled;
+use crate::{Bounds, Camera, Image, Rays, Run, Solid};
+
+/// The side of a block in pixels: about as long as a ray through one block costs as much as
+/// the blocks that it walks past.
+const BLOCK_PIXELS: f64 = 8.0;
+
+/// The least number of blocks along the longest side.
+const FEWEST: u32 = 8;
+
+impl Solid {
+    /// A picture of the solid.
+    ///
+    /// The surface is found with certainty: along each ray, pieces are discarded only where
+    /// an interval shows that no surface crosses them, and the first crossing is bracketed to
+    /// double precision. Shading, lights and colours are described at [`RenderSettings`]; the
+    /// lights move with the camera. A camera inside the solid sees its walls from behind.
+    ///
+    /// ```no_run
+    /// use rvachev::{Camera, RenderSettings, Solid};
+    /// use glam::DVec3;
+    ///
+    /// let part = Solid::superellipsoid(DVec3::new(3.0, 2.0, 1.0), 0.3, 0.3) - Solid::cylinder(0.8, 3.0);
+    /// let camera = Camera::framing(&part.bounds()?);
+    /// part.render(&camera, &RenderSettings::default())?.save("part.png")?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// What is wrong with the solid, the camera or the settings: see [`RenderError`]. An
+    /// unbounded solid is one of them; intersect it with something bounded.
+    pub fn render(&self, camera: &Camera, settings: &RenderSettings) -> Result<Image, RenderError> {
+        self.render_with(camera, settings, &Run::default())
+    }
+
+    /// [`render`](Solid::render) with a choice of threads, a cancel token and a progress sink.
+    ///
+    /// The result is the same to the byte for any number of threads.
+    ///
+    /// # Errors
+    /// What is wrong with the solid, the camera or the settings, or that the work was
+    /// cancelled: see [`RenderError`].
+    pub fn render_with(&self, camera: &Camera, settings: &RenderSettings, run: &Run) -> Result<Image, RenderError> {
+        settings.check()?;
+        camera.check()?;
+        let bounds = self.finite_bounds()?;
+        let programs = compiled(self)?;
+        let RenderSettings { width, height, .. } = *settings;
+        let rays = camera.rays(width, height);
+        let run = run.stage(0.0, 1.0);
+        run.install(|| {
+            run.check()?;
+            // A box without extent holds nothing that could be seen.
+            let visible = !bounds.is_empty() && bounds.longest_side() > 0.0;
+            let blocks = if visible {
+                let across = blocks_across(&bounds, camera, &rays);
+                Some(Blocks::new(&programs.surface, &bounds, across, camera.eye, &run)?)
+            } else {
+                None
+            };
+            run.report(0.1);
+            let scene = Scene { blocks, studio: Studio::new(camera, settings), rays, settings };
+            let pixels = scene.pixels(&run.stage(0.1, 1.0))?;
+            Ok(Image::new(width, height, pixels)?)
+        })
+    }
+}
+
+/// How many blocks there are along the longest side of `bounds`.
+fn blocks_across(bounds: &Bounds, camera: &Camera, rays: &Rays) -> u32 {
+    let pixel = rays.pixel_size(camera.eye.distance(bounds.center()));
+    let blocks = (bounds.longest_side() / (BLOCK_PIXELS * pixel)).ceil();
+    // The conversion saturates; NaN, which a checked camera does not give, becomes 0.
+    (blocks as u32).clamp(FEWEST, MOST)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::{Background, CameraError, Cancelled, Projection, RFunction, SolidError};
+
+    /// A camera on the −y side that sees `height` length units.
+    fn front(height: f64) -> Camera {
+        Camera::orthographic(DVec3::new(0.0, -10.0, 0.0), DVec3::ZERO, DVec3::Z, height)
+    }
+
+    fn transparent(width: u32, height: u32) -> RenderSettings {
+        RenderSettings { width, height, background: Background::Transparent, ..RenderSettings::default() }
+    }
+
+    /// The picture's alpha: `#` from ¾ on, `+` from ¼ on.
+    fn silhouette(image: &Image) -> String {
+        let rows = image.pixels().chunks(image.width() as usize).map(|row| {
+            let marks = row.iter().map(|p| [' ', '+', '+', '#'][usize::from(p[3]) / 64]);
+            marks.collect::<String>().trim_end().to_string() + "\n"
+        });
+        rows.collect()
+    }
+
+    #[test]
+    fn silhouette_of_a_sphere() {
+        let image = Solid::sphere(1.0).render(&front(2.4), &transparent(24, 12)).unwrap();
+        same(&image, SPHERE);
+        let camera = Camera::perspective(DVec3::new(0.0, -100.0, 0.0), DVec3::ZERO, DVec3::Z, 1.375);
+        let image = Solid::sphere(1.0).render(&camera, &transparent(24, 12)).unwrap();
+        same(&image, SPHERE);
+    }
+
+    fn same(image: &Image, expected: &str) {
+        let found = silhouette(image);
+        assert!(found.trim_matches('\n') == expected.trim_matches('\n'), "found:\n{found}");
+    }
+
+    const SPHERE: &str = "
+         +###+
+        +######+
+       +########
+       #########+
+       ##########
+       ##########
+       +#########
+        ########+
+        +######+
+          +###+
+";
+
+    #[test]
+    fn every_ray_hits_what_a_single_raycast_hits() {
+        let part = (Solid::cuboid(DVec3::ONE) | Solid::sphere(0.4).translate(DVec3::X * 0.6)).rotate_x(0.7)
+            - Solid::cylinder(0.2, 4.0).twist(1.0);
+        let bounds = part.bounds().unwrap();
+        let settings = RenderSettings { samples: 1, ..transparent(40, 30) };
+        for camera in [Camera::framing(&bounds), Camera::framing_orthographic(&bounds)] {
+            let image = part.render(&camera, &settings).unwrap();
+            let mut hits = 0;
+            for y in 0..30 {
+                for x in 0..40 {
+                    let (origin, direction) = camera.ray(f64::from(x) + 0.5, f64::from(y) + 0.5, 40, 30);
+                    let hit = part.raycast(origin, direction).unwrap().is_some();
+                    assert_eq!(image.pixel(x, y).unwrap()[3] == 255, hit, "({x}, {y})");
+                    hits += usize::from(hit);
+                }
+            }
+            assert!(hits > 200, "{hits}");
+        }
+    }
+
+    #[test]
+    fn faces_on_round_coordinates_have_no_holes() {
+        // Borders of blocks, faces and edges of the cubes all fall together.
+        let cubes = (0..8).map(|i| {
+            Solid::cuboid(DVec3::ONE).translate(DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)))
+        });
+        let wall = Solid::union_all(cubes, RFunction::MIN_MAX);
+        let camera = Camera::orthographic(DVec3::new(0.5, -8.0, 0.5), DVec3::splat(0.5), DVec3::Z, 2.0);
+        let image = wall.render(&camera, &transparent(64, 64)).unwrap();
+        assert!(image.pixels().iter().all(|p| *p == image.pixels()[0] && p[3] == 255));
+    }
+
+    #[test]
+    fn same_bytes_for_any_number_of_threads() {
+        let part = Solid::superellipsoid(DVec3::new(1.0, 0.8, 0.6), 0.3, 0.7) - Solid::cylinder(0.3, 3.0);
+        let camera = Camera::framing(&part.bounds().unwrap());
+        let settings = RenderSettings { width: 90, height: 70, ..RenderSettings::default() };
+        let with = |threads| part.render_with(&camera, &settings, &Run { threads, ..Run::default() }).unwrap();
+        let one = with(1);
+        assert!(one == with(2) && one == with(3));
+    }
+
+    #[test]
+    fn from_inside_the_walls_are_seen() {
+        let camera = Camera::perspective(DVec3::ZERO, DVec3::X, DVec3::Z, 90.0);
+        let image = Solid::cuboid(DVec3::splat(2.0)).render(&camera, &transparent(20, 20)).unwrap();
+        assert!(image.pixels().iter().all(|p| p[3] == 255 && p[0] > 30));
+    }
+
+    #[test]
+    fn solids_of_any_size_and_place() {
+        for size in [1e-3, 1.0, 1e5] {
+            let ball = Solid::sphere(size).translate(DVec3::new(1e3 * size, 0.0, 0.0));
+            let camera = Camera::framing_orthographic(&ball.bounds().unwrap());
+            let image = ball.render(&camera, &transparent(32, 32)).unwrap();
+            let area: f64 = image.pixels().iter().map(|p| f64::from(p[3]) / 255.0).sum();
+            let Projection::Orthographic { height } = camera.projection else { unreachable!() };
+            let radius = size / height * 32.0;
+            assert!((area / (std::f64::consts::PI * radius * radius) - 1.0).abs() < 0.01, "{size}: {area}");
+        }
+        let nothing = Solid::sphere(1.0) & Solid::sphere(1.0).translate(DVec3::X * 5.0);
+        let image = nothing.render(&front(4.0), &transparent(8, 8)).unwrap();
+        assert!(image.pixels().iter().all(|p| *p == [0; 4]));
+    }
+
+    #[test]
+    fn errors() {
+        let ball = Solid::sphere(1.0);
+        let settings = transparent(8, 8);
+        let at_itself = Camera { target: front(1.0).eye, ..front(1.0) };
+        let error = ball.render(&at_itself, &settings).unwrap_err();
+        assert!(matches!(error, RenderError::Camera(CameraError { parameter: "target", .. })), "{error}");
+        let error = ball.complement().render(&front(1.0), &settings).unwrap_err();
+        assert!(matches!(error, RenderError::Solid(SolidError::Unbounded { .. })), "{error}");
+        let run = Run::default();
+        run.cancel.cancel();
+        assert_eq!(ball.render_with(&front(1.0), &settings, &run), Err(RenderError::Cancelled(Cancelled)));
+    }
+}
