@@ -109,6 +109,10 @@
 //! ([`Program::narrow`]), run in bulk ([`Tape`], [`Evaluator`]). Your own leaf is a type that
 //! implements [`Field`]; a solid can be handed to fidget with [`Solid::to_fidget`].
 
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 mod bounds;
 mod eval;
 mod field;

@@ -11,7 +11,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::deform::Warp;
 use super::zone::concave_range;
 use super::{AnyWarp, Field, Kernel, ParamError, Zone, saturate};
-use crate::num::kernel::{Element, Formula, Visit, run, run_wide};
+use crate::num::kernel::{Element, Formula, Visit, run};
 use crate::num::symbol::Symbol;
 use crate::{Bounds, Dual, Interval, Real};
 
@@ -108,6 +108,11 @@ impl<F: Field, V: Visit<3, 1>> Kernel<F> for Each<'_, V> {
     fn run(self, leaf: &F) {
         self.visit.visit(&Value(leaf, self.placement));
     }
+
+    #[inline(always)]
+    fn run_wide(self, leaf: &F) {
+        self.visit.visit_wide(&Value(leaf, self.placement));
+    }
 }
 
 struct Gradient<'a, F>(&'a F, &'a Placement);
@@ -136,6 +141,11 @@ impl<F: Field, V: Visit<3, 4>> Kernel<F> for EachGradient<'_, V> {
     #[inline(always)]
     fn run(self, leaf: &F) {
         self.visit.visit(&Gradient(leaf, self.placement));
+    }
+
+    #[inline(always)]
+    fn run_wide(self, leaf: &F) {
+        self.visit.visit_wide(&Gradient(leaf, self.placement));
     }
 }
 
@@ -190,12 +200,12 @@ impl<F: Field> AnyField for F {
     }
 
     fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
-        run_wide(&Gradient(self, chunk.placement), chunk.points, chunk.out);
+        run(&Gradient(self, chunk.placement), chunk.points, chunk.out);
     }
 }
 
 fn lanes<E: Element, F: Field>(field: &F, chunk: Chunk<'_, E, 1>) {
-    run_wide(&Value(field, chunk.placement), chunk.points, chunk.out);
+    run(&Value(field, chunk.placement), chunk.points, chunk.out);
 }
 
 struct PreImage<'a, W>(&'a W, &'a Placement);

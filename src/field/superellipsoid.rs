@@ -197,7 +197,7 @@ impl Field for Superellipsoid {
                 kernel.run(&with(Norm::Euclid, Norm::Euclid));
             }
             (Norm::P { p, inv }, Norm::P { p: q, inv: q_inv }) => {
-                kernel.run(&with(Norm::P { p, inv }, Norm::P { p: q, inv: q_inv }));
+                kernel.run_wide(&with(Norm::P { p, inv }, Norm::P { p: q, inv: q_inv }));
             }
             (inner, outer) => {
                 let (p, q) = (inner.p(), outer.p());

@@ -50,6 +50,9 @@ pub(crate) trait Formula<const I: usize, const O: usize>: Sized {
 /// What is done with a formula once its cases are told apart.
 pub(crate) trait Visit<const I: usize, const O: usize> {
     fn visit<F: Formula<I, O>>(self, formula: &F);
+
+    /// The same, on several vectors at a time.
+    fn visit_wide<F: Formula<I, O>>(self, formula: &F);
 }
 
 /// A formula that joins `N` numbers to `N` others.
@@ -59,9 +62,9 @@ pub(crate) trait Fold<const N: usize> {
 
 /// An element of a slice, and the lanes that suit it.
 pub(crate) trait Element: Copy + Default + Send + Sync + PartialOrd + 'static {
-    /// Lanes for formulas of few numbers: several vectors keep the pipeline full.
+    /// Several vectors: they keep the pipeline full where a formula is one long chain.
     type Wide<S: Simd>: Lanes<Element = Self, Token = S>;
-    /// Lanes for formulas of many numbers: one vector leaves registers free.
+    /// One vector: quick to compile, and it leaves registers free.
     type Lean<S: Simd>: Lanes<Element = Self, Token = S>;
 
     fn from_f64(v: f64) -> Self;
@@ -101,66 +104,61 @@ pub(crate) fn run<E: Element, const I: usize, const O: usize>(
     inputs: [&[E]; I],
     outputs: [&mut [E]; O],
 ) {
-    on_level!(simd => lean(simd, formula, inputs, outputs))
-}
-
-/// [`run`] for formulas of few numbers.
-pub(crate) fn run_wide<E: Element, const I: usize, const O: usize>(
-    formula: &impl Formula<I, O>,
-    inputs: [&[E]; I],
-    outputs: [&mut [E]; O],
-) {
-    on_level!(simd => wide(simd, formula, inputs, outputs))
+    on_level!(simd => run_on(simd, formula, inputs, outputs))
 }
 
 #[simd]
-fn wide<S: Simd, E: Element, const I: usize, const O: usize, F: Formula<I, O>>(
+fn run_on<S: Simd, E: Element, const I: usize, const O: usize, F: Formula<I, O>>(
     simd: S,
     formula: &F,
     inputs: [&[E]; I],
     outputs: [&mut [E]; O],
 ) {
-    formula.specialised(Sweep::<E::Wide<S>, I, O> { simd, inputs, outputs });
+    formula.specialised(Sweep { simd, inputs, outputs });
 }
 
-#[simd]
-fn lean<S: Simd, E: Element, const I: usize, const O: usize, F: Formula<I, O>>(
+/// The loop over a formula's slices, its width still open.
+struct Sweep<'a, S, E, const I: usize, const O: usize> {
     simd: S,
-    formula: &F,
-    inputs: [&[E]; I],
-    outputs: [&mut [E]; O],
-) {
-    formula.specialised(Sweep::<E::Lean<S>, I, O> { simd, inputs, outputs });
+    inputs: [&'a [E]; I],
+    outputs: [&'a mut [E]; O],
 }
 
-/// The loop over a formula's slices.
-struct Sweep<'a, L: Lanes, const I: usize, const O: usize> {
-    simd: L::Token,
-    inputs: [&'a [L::Element]; I],
-    outputs: [&'a mut [L::Element]; O],
-}
-
-impl<L: Lanes, const I: usize, const O: usize> Visit<I, O> for Sweep<'_, L, I, O> {
+impl<S: Simd, E: Element, const I: usize, const O: usize> Visit<I, O> for Sweep<'_, S, E, I, O> {
     #[inline(always)]
     fn visit<F: Formula<I, O>>(self, formula: &F) {
-        let Sweep { simd, inputs, outputs } = self;
-        let len = outputs[0].len();
-        let mut at = 0;
-        while at + L::WIDTH <= len {
-            let mut x = [L::splat(simd, 0.0); I];
-            let mut i = 0;
-            while i < I {
-                x[i] = L::load(simd, &inputs[i][at..at + L::WIDTH]);
-                i += 1;
-            }
-            let y = formula.run(x);
-            let mut o = 0;
-            while o < O {
-                y[o].store(&mut outputs[o][at..at + L::WIDTH]);
-                o += 1;
-            }
-            at += L::WIDTH;
+        sweep::<E::Lean<S>, I, O, F>(self.simd, formula, self.inputs, self.outputs);
+    }
+
+    #[inline(always)]
+    fn visit_wide<F: Formula<I, O>>(self, formula: &F) {
+        sweep::<E::Wide<S>, I, O, F>(self.simd, formula, self.inputs, self.outputs);
+    }
+}
+
+#[inline(always)]
+fn sweep<L: Lanes, const I: usize, const O: usize, F: Formula<I, O>>(
+    simd: L::Token,
+    formula: &F,
+    inputs: [&[L::Element]; I],
+    outputs: [&mut [L::Element]; O],
+) {
+    let len = outputs[0].len();
+    let mut at = 0;
+    while at + L::WIDTH <= len {
+        let mut x = [L::splat(simd, 0.0); I];
+        let mut i = 0;
+        while i < I {
+            x[i] = L::load(simd, &inputs[i][at..at + L::WIDTH]);
+            i += 1;
         }
+        let y = formula.run(x);
+        let mut o = 0;
+        while o < O {
+            y[o].store(&mut outputs[o][at..at + L::WIDTH]);
+            o += 1;
+        }
+        at += L::WIDTH;
     }
 }
 
