@@ -29,7 +29,8 @@ const FLATS: f64 = 16.0;
 const SHANK: f64 = 7.0;
 const SHAFT: f64 = 27.0;
 
-/// Radii of the thread's crests and grooves, and its pitch.
+/// Radius of the shank, radii of the thread's crests and grooves, and the thread's pitch.
+const RADIUS: f64 = 5.0;
 const CREST: f64 = 4.95;
 const CORE: f64 = 4.12;
 const PITCH: f64 = 1.5;
@@ -60,12 +61,12 @@ fn bolt() -> Solid {
 
     // The surface of a rod that stands off the axis and is twisted winds round the axis once
     // in a pitch, and rises and falls by the offset.
-    let (low, high) = (-SHAFT - 1.0, -SHANK);
+    let (low, high) = (-SHAFT - 1.0, -SHANK + 0.8);
     let offset = 0.52;
     let helix = rod(0.5 * (CREST + CORE), low, high).translate(DVec3::X * offset).twist(TAU / PITCH);
     let thread = helix & rod(CREST, low, high) | rod(CORE, low, high);
-    let shank = rod(CREST, -SHANK, 0.0) & cone(0.0, 1.0, CORE, -SHANK);
-    let shaft = (thread | shank) & cone(0.0, 1.0, CORE - 0.3, -SHAFT) & rod(2.0 * CREST, -SHAFT, 0.1);
+    let shank = rod(RADIUS, -SHANK, 0.1) & cone(0.1, 1.0, CORE, -SHANK);
+    let shaft = (thread | shank) & cone(0.1, 1.0, CORE - 0.3, -SHAFT) & rod(2.0 * RADIUS, -SHAFT, 0.1);
 
     (head | collar | shaft) - socket
 }

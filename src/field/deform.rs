@@ -273,3 +273,72 @@ fn sinc_range(x: Interval) -> Interval {
 fn sinc(x: f64) -> f64 {
     if x.abs() < 1e-8 { 1.0 } else { x.sin() / x }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn round_trip(warp: &impl Warp, p: DVec3) -> f64 {
+        let back = warp.inverse(warp.forward(p).to_array());
+        (DVec3::from_array(back) - p).length()
+    }
+
+    #[test]
+    fn bends_agree_with_the_reference_and_invert() {
+        let p = DVec3::new(0.3, -0.2, 1.5);
+        for (curvature, image) in [
+            (0.6, DVec3::new(0.696758009844, 0.270287132591, 1.273755738266)),
+            (-0.6, DVec3::new(-0.116561782390, -0.693761036518, 1.337333960492)),
+        ] {
+            let bend = Bend { curvature, angle: 0.87 };
+            assert!((bend.forward(p) - image).length() < 1e-11);
+            assert!(round_trip(&bend, p) < 1e-14);
+        }
+        let far = Bend { curvature: 0.6, angle: 0.87 };
+        let image = far.forward(DVec3::new(0.3, -0.2, 4.0));
+        assert!((image - DVec3::new(2.121731058144, 1.959343112000, 1.098360201393)).length() < 1e-11);
+        assert!(round_trip(&far, DVec3::new(0.3, -0.2, 4.0)) < 1e-13);
+    }
+
+    #[test]
+    fn bends_of_any_curvature_invert() {
+        for curvature in [0.6, -0.6, 1e-3, 1e-9, -1e-12, 0.0] {
+            let bend = Bend { curvature, angle: 0.3 };
+            for i in 0..1000 {
+                let t = |k: f64| ((f64::from(i) * k).fract() - 0.5) * 2.0;
+                let p = DVec3::new(0.5 * t(0.618), 0.7 * t(0.414), 2.0 * t(0.732));
+                assert!(round_trip(&bend, p) < 1e-14, "{curvature} {p}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_chain_agrees_with_the_reference() {
+        let p = DVec3::new(0.4, 0.5, 1.2);
+        let taper = Taper { kx: 0.5, ky: -0.4, half_height: 2.0 };
+        let (twist, bend) = (Twist { rate: 0.6 }, Bend { curvature: 0.3, angle: 0.5 });
+        let image = bend.forward(twist.forward(taper.forward(p)));
+        assert!((image - DVec3::new(0.304009419006, 0.717961296813, 1.024693146673)).length() < 1e-11);
+        assert!(round_trip(&taper, p) < 1e-15 && round_trip(&twist, p) < 1e-15);
+    }
+
+    #[test]
+    fn boxes_hold_images() {
+        let bounds = Bounds::new(DVec3::new(-0.5, -0.7, -2.0), DVec3::new(0.6, 0.4, 1.5));
+        let warps: [(&str, &dyn AnyWarp); 3] = [
+            ("taper", &Taper { kx: 0.5, ky: -0.4, half_height: 2.0 }),
+            ("twist", &Twist { rate: 1.3 }),
+            ("bend", &Bend { curvature: -0.6, angle: 0.4 }),
+        ];
+        for (name, warp) in warps {
+            let image = warp.bounds(&bounds);
+            for i in 0..4000 {
+                let t = |k: f64| (f64::from(i) * k).fract();
+                // Outside of the image box no point may have its pre-image in the box.
+                let p = image.center() + image.size() * (DVec3::new(t(0.618), t(0.414), t(0.732)) - 0.5) * 1.5;
+                let back = DVec3::from_array(warp.point(p.to_array()));
+                assert!(image.contains(p) || !bounds.contains(back), "{name} {p}");
+            }
+        }
+    }
+}

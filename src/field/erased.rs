@@ -275,29 +275,42 @@ impl<W: Warp> AnyWarp for W {
 
 /// The smallest stretch of an affine map: its least singular value.
 pub(crate) fn smallest_stretch(m: &DMat3) -> f64 {
-    // Largest eigenvalue of A⁻¹A⁻ᵀ by Jacobi rotations: relative accuracy where it counts.
+    // The largest eigenvalue of A⁻¹A⁻ᵀ by Jacobi rotations: relative accuracy where it counts.
     let inverse = m.inverse();
-    let mut s = (inverse * inverse.transpose()).to_cols_array_2d();
+    let mut s = inverse * inverse.transpose();
     for _ in 0..12 {
         for (i, j) in [(0, 1), (0, 2), (1, 2)] {
-            if s[i][j].abs() <= 1e-300 {
+            let off = s.col(j)[i];
+            if off.abs() <= 1e-300 {
                 continue;
             }
-            let theta = 0.5 * (s[j][j] - s[i][i]) / s[i][j];
-            let t = theta.signum() / (theta.abs() + (1.0 + theta * theta).sqrt());
-            let c = 1.0 / (1.0 + t * t).sqrt();
-            let sn = t * c;
-            for k in 0..3 {
-                let (a, b) = (s[k][i], s[k][j]);
-                s[k][i] = c * a - sn * b;
-                s[k][j] = sn * a + c * b;
-            }
-            for k in 0..3 {
-                let (a, b) = (s[i][k], s[j][k]);
-                s[i][k] = c * a - sn * b;
-                s[j][k] = sn * a + c * b;
-            }
+            let theta = 0.5 * (s.col(j)[j] - s.col(i)[i]) / off;
+            let tangent = theta.signum() / (theta.abs() + (1.0 + theta * theta).sqrt());
+            let cos = 1.0 / (1.0 + tangent * tangent).sqrt();
+            let sin = tangent * cos;
+            let mut turn = DMat3::IDENTITY;
+            turn.col_mut(i)[i] = cos;
+            turn.col_mut(j)[j] = cos;
+            turn.col_mut(j)[i] = sin;
+            turn.col_mut(i)[j] = -sin;
+            s = turn.transpose() * s * turn;
         }
     }
-    1.0 / s[0][0].max(s[1][1]).max(s[2][2]).sqrt()
+    1.0 / s.x_axis.x.max(s.y_axis.y).max(s.z_axis.z).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DQuat;
+
+    #[test]
+    fn the_smallest_stretch_is_the_least_singular_value() {
+        let turn = |angle: f64| DMat3::from_quat(DQuat::from_rotation_z(angle) * DQuat::from_rotation_x(0.7 * angle));
+        for scale in [DVec3::new(2.0, 3.0, 5.0), DVec3::new(1e-3, 1.0, 1e3), DVec3::ONE] {
+            let m = turn(0.4) * DMat3::from_diagonal(scale) * turn(1.9);
+            let found = smallest_stretch(&m);
+            assert!((found / scale.min_element() - 1.0).abs() < 1e-9, "{found} for {scale}");
+        }
+    }
 }

@@ -111,8 +111,8 @@ impl Zone {
         let rounding = ROUNDING * (mid.abs() * (self.centre.abs() + self.extent()) + centre.abs());
         let slack = mid.abs() * self.slack + spread * self.extent() + rounding;
         let mut zone = Zone::new(centre, mid * self.axes, slack);
-        for axis in 0..3 {
-            zone.hull[axis] = zone.hull[axis].narrowed_by(direct[axis]);
+        for (side, direct) in zone.hull.iter_mut().zip(direct) {
+            *side = side.narrowed_by(direct);
         }
         zone
     }

@@ -230,7 +230,7 @@ impl Sampler for SolidSampler<'_> {
         for (root, bracket) in out.iter_mut().zip(&brackets) {
             root.t = bracket.root();
         }
-        self.normals(scratch, &tape, out, |edge, t| point(edge, t));
+        self.normals(scratch, &tape, out, point);
     }
 }
 

@@ -158,7 +158,7 @@ mod tests {
                 }
             }
             let whole = grid.bounds([0; 3], grid.blocks);
-            let inside = (0..400).filter(|k| whole.contains(origin + f64::from(*k) * 0.02 * direction)).count();
+            let inside = (0..800).filter(|k| whole.contains(origin + f64::from(*k) * 0.02 * direction)).count();
             let length = segments.last().map_or(0.0, |s| s.far) - segments.first().map_or(0.0, |s| s.near);
             assert!((length - 0.02 * inside as f64).abs() < 0.03, "ray {i}: {length}");
         }

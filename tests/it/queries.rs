@@ -1,0 +1,321 @@
+//! Questions to a solid, against closed forms.
+
+use std::f64::consts::{FRAC_PI_4, PI};
+
+use glam::DVec3;
+use rvachev::{Bounds, RFunction, Solid, Superellipsoid};
+
+use crate::support::{Random, near, near_point, random_solid, value};
+
+/// The distances at which a ray enters and leaves a sphere about the origin.
+fn sphere_hits(origin: DVec3, direction: DVec3, radius: f64) -> Option<(f64, f64)> {
+    let along = -origin.dot(direction);
+    let squared = radius * radius - (origin.length_squared() - along * along);
+    (squared >= 0.0).then(|| (along - squared.sqrt(), along + squared.sqrt()))
+}
+
+/// The same for a box about the origin.
+fn box_hits(origin: DVec3, direction: DVec3, half: DVec3) -> Option<(f64, f64)> {
+    let (a, b) = ((-half - origin) / direction, (half - origin) / direction);
+    let (enter, leave) = (a.min(b).max_element(), a.max(b).min_element());
+    (enter <= leave).then_some((enter, leave))
+}
+
+#[test]
+fn rays_meet_a_sphere_where_the_formula_says() {
+    let ball = Solid::sphere(1.5);
+    let mut random = Random::new(1);
+    let mut hits = 0;
+    for _ in 0..600 {
+        let (origin, direction) = (random.vector(-4.0, 4.0), random.direction());
+        let want = sphere_hits(origin, direction, 1.5).and_then(|(enter, leave)| {
+            if enter > 0.0 {
+                Some(enter)
+            } else if leave > 0.0 {
+                Some(leave)
+            } else {
+                None
+            }
+        });
+        // The direction need not be of unit length.
+        let hit = ball.raycast(origin, direction * random.log_range(1e-3, 1e3)).unwrap();
+        assert_eq!(hit.is_some(), want.is_some(), "{origin} {direction}");
+        if let (Some(hit), Some(want)) = (hit, want) {
+            hits += 1;
+            near(hit.distance, want, 1e-11);
+            near_point(hit.point, origin + want * direction, 1e-11);
+            near_point(hit.normal, hit.point / 1.5, 1e-10);
+        }
+    }
+    assert!(hits > 60, "{hits}");
+}
+
+#[test]
+fn rays_meet_a_box_where_the_formula_says() {
+    let half = DVec3::new(1.0, 0.5, 2.0);
+    let block = Solid::cuboid(2.0 * half);
+    let mut random = Random::new(2);
+    for _ in 0..600 {
+        let (origin, direction) = (random.vector(-4.0, 4.0), random.direction());
+        let want = box_hits(origin, direction, half).and_then(|(enter, leave)| match () {
+            () if enter > 0.0 => Some(enter),
+            () if leave > 0.0 => Some(leave),
+            () => None,
+        });
+        let hit = block.raycast(origin, direction).unwrap();
+        assert_eq!(hit.is_some(), want.is_some(), "{origin} {direction}");
+        if let (Some(hit), Some(want)) = (hit, want) {
+            near(hit.distance, want, 1e-10);
+            // Along one axis, out of the box.
+            near(hit.normal.abs().max_element(), 1.0, 1e-9);
+            assert!(hit.normal.dot(hit.point) > 0.0);
+        }
+    }
+}
+
+#[test]
+fn rays_along_axes_and_planes() {
+    let block = Solid::cuboid(DVec3::splat(2.0));
+    let hit = block.raycast(DVec3::new(-5.0, 0.25, 0.5), DVec3::X).unwrap().expect("aimed at a face");
+    near(hit.distance, 4.0, 1e-11);
+    near_point(hit.normal, -DVec3::X, 1e-12);
+    // From inside, the way out.
+    let hit = block.raycast(DVec3::ZERO, DVec3::Z).unwrap().expect("a way out");
+    near(hit.distance, 1.0, 1e-11);
+    near_point(hit.normal, DVec3::Z, 1e-12);
+    // Past it, away from it, and nowhere.
+    assert_eq!(block.raycast(DVec3::new(-5.0, 1.5, 0.0), DVec3::X), Ok(None));
+    assert_eq!(block.raycast(DVec3::new(-5.0, 0.0, 0.0), -DVec3::X), Ok(None));
+    assert_eq!(block.raycast(DVec3::new(-5.0, 0.0, 0.0), DVec3::ZERO), Ok(None));
+    assert_eq!(block.raycast(DVec3::NAN, DVec3::X), Ok(None));
+}
+
+#[test]
+fn rays_find_the_first_of_many_crossings() {
+    // A stack of thin plates, and a hole through some of them.
+    let plates = (0..20).map(|i| Solid::cuboid(DVec3::new(2.0, 2.0, 1e-3)).translate(DVec3::Z * 0.1 * f64::from(i)));
+    let stack = Solid::union_all(plates, RFunction::P(2.0)) - Solid::cylinder(0.3, 2.1).translate(DVec3::Z * 1.9);
+    let from = DVec3::new(0.7, 0.1, 9.0);
+    let hit = stack.raycast(from, -DVec3::Z).unwrap().expect("a plate");
+    near(hit.point.z, 1.9005, 1e-10);
+    // Down the hole, whose bottom is at 0.85.
+    let hit = stack.raycast(DVec3::new(0.1, 0.1, 9.0), -DVec3::Z).unwrap().expect("a plate below the hole");
+    near(hit.point.z, 0.8005, 1e-10);
+    near_point(hit.normal, DVec3::Z, 1e-9);
+}
+
+#[test]
+fn hits_are_on_the_surface_and_nothing_is_before_them() {
+    let mut random = Random::new(3);
+    for _ in 0..60 {
+        let depth = random.below(3);
+        let solid = random_solid(&mut random, depth);
+        let program = solid.surface_program().unwrap();
+        for _ in 0..6 {
+            let (origin, direction) = (random.vector(-3.0, 3.0), random.direction());
+            let inside = solid.contains(origin).unwrap();
+            let hit = solid.raycast(origin, direction).unwrap();
+            let end = hit.map_or(6.0, |hit| hit.distance);
+            for i in 1..100 {
+                let t = end * f64::from(i) / 100.0 * 0.999_999;
+                let v = program.value(origin + t * direction);
+                // What only touches the surface is allowed for.
+                assert!(
+                    (v > 0.0) == inside || v.abs() < 1e-9,
+                    "{solid:?}: {v:e} at {t} from {origin} along {direction}, hit {hit:?}"
+                );
+            }
+            if let Some(hit) = hit {
+                near_point(hit.point, origin + hit.distance * direction, 1e-9);
+                near(hit.normal.length(), 1.0, 1e-9);
+                let (before, after) = [-1e-7, 1e-7].map(|d| program.value(hit.point + d * direction) > 0.0).into();
+                assert!(before == inside || after != inside, "{solid:?}: no crossing at {hit:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_nearest_point_of_a_sphere() {
+    let centre = DVec3::new(0.3, -0.2, 0.5);
+    let ball = Solid::sphere(1.25).translate(centre);
+    let mut random = Random::new(4);
+    for _ in 0..40 {
+        let p = random.vector(-3.0, 3.0);
+        let q = ball.closest_surface_point(p).unwrap().expect("it has a surface");
+        near_point(q, centre + 1.25 * (p - centre).normalize(), 1e-8);
+    }
+    // Of the centre, any point of it.
+    let q = ball.closest_surface_point(centre).unwrap().expect("it has a surface");
+    near(q.distance(centre), 1.25, 1e-8);
+}
+
+#[test]
+fn the_nearest_point_of_a_box() {
+    let half = DVec3::new(1.0, 0.5, 2.0);
+    let block = Solid::cuboid(2.0 * half);
+    let mut random = Random::new(5);
+    for _ in 0..40 {
+        let p = random.vector(-3.0, 3.0);
+        let q = block.closest_surface_point(p).unwrap().expect("it has a surface");
+        // The value of a box is the distance.
+        near(q.distance(p), value(&block, p).abs(), 1e-6);
+        near(value(&block, q), 0.0, 1e-8);
+    }
+}
+
+#[test]
+fn the_nearest_point_of_a_superellipsoid() {
+    let leaf = Superellipsoid::new(DVec3::new(1.0, 0.8, 0.6), 0.3, 0.7);
+    let solid = Solid::from(leaf);
+    let mut surface = Vec::new();
+    for i in 0..=300u32 {
+        for j in 0..=600u32 {
+            let (h, w) = (PI * (f64::from(i) / 300.0 - 0.5), PI * (f64::from(j) / 300.0 - 1.0));
+            let d = leaf.semi_axes() * DVec3::new(h.cos() * w.cos(), h.cos() * w.sin(), h.sin());
+            surface.push(d / leaf.gauge(d));
+        }
+    }
+    let mut random = Random::new(6);
+    for _ in 0..25 {
+        let p = random.vector(-2.0, 2.0);
+        let q = solid.closest_surface_point(p).unwrap().expect("it has a surface");
+        near(leaf.gauge(q), 1.0, 1e-9);
+        let sampled = surface.iter().map(|s| s.distance(p)).fold(f64::INFINITY, f64::min);
+        let found = q.distance(p);
+        assert!(found <= sampled + 1e-9, "{p}: {found}, but {sampled} was found by sampling");
+        assert!(found >= sampled - 0.02, "{p}: {found}, but {sampled} was found by sampling");
+    }
+}
+
+#[test]
+fn the_nearest_point_of_joins() {
+    let part = Solid::cuboid(DVec3::new(4.0, 4.0, 1.0)) - Solid::cylinder(1.0, 2.0);
+    // In the hole, the wall is nearest.
+    let q = part.closest_surface_point(DVec3::new(0.4, 0.0, 0.1)).unwrap().expect("it has a surface");
+    near_point(q, DVec3::new(1.0, 0.0, 0.1), 1e-7);
+    let q = part.closest_surface_point(DVec3::new(1.5, 0.0, 3.0)).unwrap().expect("it has a surface");
+    near_point(q, DVec3::new(1.5, 0.0, 0.5), 1e-7);
+    // Nothing has no surface; what does not end has no box to look in.
+    let nothing = Solid::sphere(1.0) & Solid::sphere(1.0).translate(DVec3::X * 5.0);
+    assert_eq!(nothing.closest_surface_point(DVec3::ZERO), Ok(None));
+    assert!(Solid::half_space(DVec3::Z, 0.0).closest_surface_point(DVec3::ZERO).is_err());
+}
+
+#[test]
+fn owners_are_the_leaves_that_decide() {
+    let part = Solid::cuboid(DVec3::splat(2.0)) - Solid::cylinder(0.5, 3.0);
+    let hole = part.owner(DVec3::new(0.5, 0.0, 0.0)).unwrap();
+    assert_eq!(hole.path, "difference[1] / cylinder");
+    let side = part.owner(DVec3::new(1.0, 0.2, 0.0)).unwrap();
+    assert_eq!(side.path, "difference[0] / box");
+    assert_ne!(hole.index, side.index);
+    let hit = part.raycast(DVec3::X * 5.0, -DVec3::X).unwrap().expect("a face");
+    assert_eq!(hit.owner, side.index);
+
+    let nested =
+        Solid::sphere(0.5).twist(1.0) | (Solid::cuboid(DVec3::ONE) & Solid::sphere(0.6)).translate(DVec3::X * 3.0);
+    assert_eq!(nested.owner(DVec3::X * 0.5).unwrap().path, "union[0] / twist / sphere");
+    let far = nested.owner(DVec3::new(3.45, 0.0, 0.0)).unwrap();
+    assert_eq!(far.path, "union[1] / translate / intersection[0] / box");
+    // The owner's value is that of the whole, after min and max.
+    let mut random = Random::new(7);
+    let (a, b) = (Solid::sphere(1.0), Solid::cuboid(DVec3::new(3.0, 0.5, 0.5)));
+    let both = &a | &b;
+    for _ in 0..200 {
+        let p = random.vector(-2.0, 2.0);
+        let want = if value(&a, p) >= value(&b, p) { "union[0] / sphere" } else { "union[1] / box" };
+        assert_eq!(both.owner(p).unwrap().path, want, "at {p}");
+    }
+}
+
+#[test]
+fn bounds_of_moved_leaves_are_tight() {
+    let cases = [
+        (Solid::sphere(1.0).translate(DVec3::X * 2.0), DVec3::X * 2.0, DVec3::ONE),
+        (Solid::cuboid(DVec3::new(2.0, 1.0, 1.0)).rotate_z(FRAC_PI_4), DVec3::ZERO, {
+            let side = 1.5 / 2f64.sqrt();
+            DVec3::new(side, side, 0.5)
+        }),
+        (Solid::cylinder(1.0, 4.0).rotate_x(0.5 * PI), DVec3::ZERO, DVec3::new(1.0, 2.0, 1.0)),
+        (Solid::cylinder(1.0, 2.0).rotate_x(0.3), DVec3::ZERO, {
+            let (sin, cos) = 0.3f64.sin_cos();
+            DVec3::new(1.0, cos + sin, cos + sin)
+        }),
+        (Solid::sphere(1.0).scale_axes(DVec3::new(1.0, 2.0, 3.0)).rotate_z(FRAC_PI_4), DVec3::ZERO, {
+            let side = 2.5f64.sqrt();
+            DVec3::new(side, side, 3.0)
+        }),
+    ];
+    for (solid, centre, half) in cases {
+        let bounds = solid.bounds().unwrap();
+        near_point(bounds.min, centre - half, 1e-11);
+        near_point(bounds.max, centre + half, 1e-11);
+    }
+}
+
+#[test]
+fn bounds_of_joins_combine_their_operands() {
+    let (a, b) = (Solid::sphere(1.0), Solid::cuboid(DVec3::splat(2.0)).translate(DVec3::X * 1.5));
+    let is = |solid: &Solid, min: DVec3, max: DVec3| {
+        let bounds = solid.bounds().unwrap();
+        near_point(bounds.min, min, 1e-12);
+        near_point(bounds.max, max, 1e-12);
+    };
+    is(&(&a | &b), DVec3::splat(-1.0), DVec3::new(2.5, 1.0, 1.0));
+    is(&(&a & &b), DVec3::new(0.5, -1.0, -1.0), DVec3::ONE);
+    is(&(&a - &b), DVec3::splat(-1.0), DVec3::ONE);
+    is(&(&a ^ &b), DVec3::splat(-1.0), DVec3::new(2.5, 1.0, 1.0));
+    is(&!!&a, DVec3::splat(-1.0), DVec3::ONE);
+    is(&!(!&a & !&b), DVec3::splat(-1.0), DVec3::new(2.5, 1.0, 1.0));
+    // A half-space across an axis cuts the box.
+    let cut = &a & Solid::half_space(DVec3::Z, 0.25);
+    is(&cut, DVec3::splat(-1.0), DVec3::new(1.0, 1.0, 0.25));
+    let nothing = &a & &a.translate(DVec3::X * 5.0);
+    assert_eq!(nothing.bounds(), Ok(Bounds::EMPTY));
+}
+
+#[test]
+fn bounds_of_unbounded_solids_are_infinite() {
+    let bounds = Solid::half_space(DVec3::Z, 0.5).bounds().unwrap();
+    assert_eq!((bounds.min.z, bounds.max.x), (f64::NEG_INFINITY, f64::INFINITY));
+    near(bounds.max.z, 0.5, 1e-13);
+    assert_eq!(Solid::half_space(DVec3::ONE, 0.0).bounds(), Ok(Bounds::ALL));
+    assert_eq!((!Solid::sphere(1.0)).bounds(), Ok(Bounds::ALL));
+    assert!(!(Solid::sphere(1.0) | !Solid::cuboid(DVec3::ONE)).bounds().unwrap().is_finite());
+    assert!((Solid::sphere(1.0) - Solid::half_space(DVec3::Z, 0.0)).bounds().unwrap().is_finite());
+    assert!(Solid::half_space(DVec3::Z, 0.0).finite_bounds().is_err());
+    // A ray into what does not end.
+    let ground = Solid::half_space(DVec3::Z, 0.0);
+    let hit = ground.raycast(DVec3::new(7.0, -3.0, 4.0), DVec3::new(0.0, 0.6, -0.8)).unwrap().expect("the ground");
+    near(hit.distance, 5.0, 1e-10);
+    near_point(hit.normal, DVec3::Z, 1e-12);
+}
+
+#[test]
+fn slices_are_the_single_points() {
+    let mut random = Random::new(8);
+    for depth in [0, 1, 2] {
+        let solid = random_solid(&mut random, depth);
+        let points: Vec<DVec3> = (0..300).map(|_| random.vector(-2.0, 2.0)).collect();
+        let values = solid.values(&points).unwrap();
+        let inside = solid.contains_all(&points).unwrap();
+        let gradients = solid.gradients(&points).unwrap();
+        for (i, &p) in points.iter().enumerate() {
+            let single = value(&solid, p);
+            near(values[i], single, 1e-10 * (1.0 + single.abs()));
+            assert_eq!(inside[i], solid.contains(p).unwrap());
+            assert_eq!(gradients[i], solid.gradient(p).unwrap());
+        }
+    }
+    assert_eq!(Solid::sphere(1.0).values(&[]), Ok(Vec::new()));
+}
+
+#[test]
+fn points_that_are_not_numbers_are_outside() {
+    let solid = Solid::sphere(1.0) | Solid::superellipsoid(DVec3::ONE, 0.5, 0.5);
+    for p in [DVec3::NAN, DVec3::new(0.0, f64::NAN, 0.0), DVec3::INFINITY, DVec3::NEG_INFINITY] {
+        assert_eq!(solid.contains(p), Ok(false), "{p}");
+        assert!(!value(&solid, p).is_nan(), "{p}");
+    }
+}

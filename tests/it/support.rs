@@ -1,0 +1,237 @@
+//! What the modules share: a random source, random solids, lanes by the list of points.
+
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+use rvachev::{Bounds, Cuboid, Cylinder, Evaluator, Gielis, Program, RFunction, Solid, Sphere, Supershape, Tape};
+
+/// A random source (splitmix64) whose numbers depend on the seed alone.
+pub struct Random(u64);
+
+impl Random {
+    pub fn new(seed: u64) -> Random {
+        Random(seed)
+    }
+
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// From 0 up to 1.
+    pub fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    pub fn range(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    /// Evenly spread in the logarithm.
+    pub fn log_range(&mut self, low: f64, high: f64) -> f64 {
+        self.range(low.ln(), high.ln()).exp()
+    }
+
+    pub fn below(&mut self, count: usize) -> usize {
+        (self.bits() % count as u64) as usize
+    }
+
+    pub fn pick<T: Copy>(&mut self, choice: &[T]) -> T {
+        choice[self.below(choice.len())]
+    }
+
+    pub fn chance(&mut self, probability: f64) -> bool {
+        self.unit() < probability
+    }
+
+    pub fn vector(&mut self, low: f64, high: f64) -> DVec3 {
+        DVec3::new(self.range(low, high), self.range(low, high), self.range(low, high))
+    }
+
+    pub fn point_in(&mut self, bounds: &Bounds) -> DVec3 {
+        bounds.min + self.vector(0.0, 1.0) * bounds.size()
+    }
+
+    pub fn direction(&mut self) -> DVec3 {
+        loop {
+            let v = self.vector(-1.0, 1.0);
+            if (0.01..=1.0).contains(&v.length()) {
+                return v.normalize();
+            }
+        }
+    }
+
+    pub fn rotation(&mut self) -> DQuat {
+        let axis = self.direction();
+        DQuat::from_axis_angle(axis, self.range(-3.0, 3.0))
+    }
+
+    pub fn affine(&mut self) -> DAffine3 {
+        let turn = DMat3::from_quat(self.rotation());
+        let stretch = DMat3::from_diagonal(self.vector(0.5, 1.6));
+        let shear = DMat3::from_cols(DVec3::X, DVec3::new(self.range(-0.4, 0.4), 1.0, 0.0), DVec3::Z);
+        DAffine3::from_mat3_translation(turn * shear * stretch, self.vector(-0.5, 0.5))
+    }
+
+    pub fn rule(&mut self) -> RFunction {
+        self.pick(&RULES)
+    }
+}
+
+/// A rule of each kind, and the extremes.
+pub const RULES: [RFunction; 9] = [
+    RFunction::MIN_MAX,
+    RFunction::Alpha(0.0),
+    RFunction::Alpha(0.5),
+    RFunction::Alpha(-0.9),
+    RFunction::Zero { m: 2 },
+    RFunction::P(2.0),
+    RFunction::P(3.5),
+    RFunction::P(1.2),
+    RFunction::Associative(2.0),
+];
+
+/// A leaf of any kind, of a size between 0.2 and 1.6, about the origin.
+pub fn random_leaf(random: &mut Random) -> Solid {
+    let size = |random: &mut Random| random.range(0.2, 0.8);
+    match random.below(8) {
+        0 => Sphere { radius: size(random) }.into(),
+        1 => Cuboid { size: random.vector(0.4, 1.6) }.into(),
+        2 => Cylinder { radius: size(random), height: 2.0 * size(random) }.into(),
+        3 => Solid::half_space(random.direction(), random.range(-0.5, 0.5)),
+        4 => Supershape::new(random_curve(random), random_curve(random)).scaled(random.vector(0.3, 0.7)).into(),
+        5 => Solid::superellipsoid(random.vector(0.2, 0.8), random.pick(&EXPONENTS), random.pick(&EXPONENTS)),
+        _ => Solid::superellipsoid(random.vector(0.2, 0.8), random.range(0.05, 2.5), random.range(0.05, 2.5)),
+    }
+}
+
+/// Exponents at which the formulas change their form, and their neighbours.
+const EXPONENTS: [f64; 7] = [0.05, 0.1, 0.999_999, 1.0, 1.000_001, 2.0, 2.5];
+
+fn random_curve(random: &mut Random) -> Gielis {
+    match random.below(3) {
+        0 => Gielis::circle(),
+        1 => Gielis::polygon(3 + random.below(6) as u32, random.pick(&[5.0, 20.0, 60.0])),
+        _ => {
+            let n1 = random.range(0.8, 6.0);
+            let m = random.below(9) as f64;
+            Gielis::new(m, n1, n1 * random.range(0.4, 3.0), n1 * random.range(0.4, 3.0))
+        }
+    }
+}
+
+/// A small tree: leaves under maps, joined.
+pub fn random_solid(random: &mut Random, depth: usize) -> Solid {
+    if depth == 0 {
+        let leaf = random_leaf(random);
+        return mapped(random, leaf);
+    }
+    let first = random_solid(random, depth - 1);
+    let below = random.below(depth);
+    let second = random_solid(random, below);
+    let rule = random.rule();
+    let joined = match random.below(6) {
+        0 | 1 => first.union(&second, rule),
+        2 => first.intersection(&second, rule),
+        3 => first.difference(&second, rule),
+        4 => first.symmetric_difference(&second, rule),
+        _ => Solid::union_all([first, second, random_leaf(random)], rule),
+    };
+    let whole = mapped(random, joined);
+    if random.chance(0.1) { !whole } else { whole }
+}
+
+/// The solid under one or two maps, or none; a bend that would fold it is left out.
+fn mapped(random: &mut Random, solid: Solid) -> Solid {
+    let mut solid = solid;
+    for _ in 0..random.below(3) {
+        let moved = match random.below(7) {
+            0 | 1 => solid.translate(random.vector(-0.6, 0.6)),
+            2 => solid.rotate(random.rotation()),
+            3 => solid.affine(random.affine()),
+            4 => solid.taper(random.range(-0.6, 0.6), random.range(-0.6, 0.6), random.range(0.3, 1.0)),
+            5 => solid.twist(random.range(-2.0, 2.0)),
+            _ => solid.bend(random.range(-0.5, 0.5), random.range(-3.0, 3.0)),
+        };
+        if moved.bounds().is_ok() {
+            solid = moved;
+        }
+    }
+    solid
+}
+
+/// The solid's box, or the part of it within ±3 if it is unbounded; a unit box if it is empty.
+pub fn frame_of(solid: &Solid) -> Bounds {
+    let bounds = solid.bounds().expect("the solid is valid");
+    let cut = bounds.intersection(&Bounds::from_center(DVec3::ZERO, DVec3::splat(3.0)));
+    if cut.is_empty() || cut.longest_side() == 0.0 { Bounds::from_center(DVec3::ZERO, DVec3::ONE) } else { cut }
+}
+
+/// A box of any size between a hundredth of `frame` and all of it, around a point in it.
+pub fn random_box(random: &mut Random, frame: &Bounds) -> Bounds {
+    let center = random.point_in(frame);
+    let size = frame.longest_side();
+    let half = DVec3::new(random.log_range(0.005, 0.5), random.log_range(0.005, 0.5), random.log_range(0.005, 0.5));
+    // Cubes are what the engine itself asks about.
+    let half = if random.chance(0.5) { DVec3::splat(half.x) } else { half };
+    Bounds::from_center(center, size * half)
+}
+
+/// Points in a box, its corners among them.
+pub fn samples(random: &mut Random, bounds: &Bounds, count: usize) -> Vec<DVec3> {
+    let mut points = bounds.corners().to_vec();
+    points.extend((points.len()..count).map(|_| random.point_in(bounds)));
+    points
+}
+
+/// Coordinates, axis by axis.
+pub fn columns(points: &[DVec3]) -> [Vec<f64>; 3] {
+    [0, 1, 2].map(|axis| points.iter().map(|p| p[axis]).collect())
+}
+
+/// The points rounded to single precision relative to `origin`, which is where lanes of `f32`
+/// look, and the coordinates to call the lanes with.
+pub fn rounded(points: &[DVec3], origin: DVec3) -> (Vec<DVec3>, [Vec<f32>; 3]) {
+    let local: [Vec<f32>; 3] = [0, 1, 2].map(|axis| points.iter().map(|p| (p[axis] - origin[axis]) as f32).collect());
+    let seen = (0..points.len()).map(|i| origin + DVec3::from_array([0, 1, 2].map(|axis| f64::from(local[axis][i]))));
+    (seen.collect(), local)
+}
+
+/// Values on lanes of `f32` for points in `region`: the points that the lanes saw, and values.
+pub fn lanes32(program: &Program, region: &Bounds, points: &[DVec3]) -> (Vec<DVec3>, Vec<f64>) {
+    let tape = Tape::new(program, region);
+    let (seen, [x, y, z]) = rounded(points, tape.origin());
+    let mut values = vec![0.0; points.len()];
+    Evaluator::new().values(&tape, &x, &y, &z, &mut values);
+    (seen, values.into_iter().map(f64::from).collect())
+}
+
+/// Values on lanes of `f64`.
+pub fn lanes64(program: &Program, region: &Bounds, points: &[DVec3]) -> Vec<f64> {
+    let tape = Tape::new(program, region);
+    let local: Vec<DVec3> = points.iter().map(|p| *p - tape.origin()).collect();
+    let [x, y, z] = columns(&local);
+    let mut values = vec![0.0; points.len()];
+    Evaluator::new().values_f64(&tape, &x, &y, &z, &mut values);
+    values
+}
+
+/// Fails unless the two numbers are within `tolerance` of each other.
+#[track_caller]
+pub fn near(got: f64, want: f64, tolerance: f64) {
+    assert!((got - want).abs() <= tolerance, "got {got}, want {want} within {tolerance:e}");
+}
+
+/// Fails unless the two points are within `tolerance` of each other along every axis.
+#[track_caller]
+pub fn near_point(got: DVec3, want: DVec3, tolerance: f64) {
+    let off = (got - want).abs().max_element();
+    assert!(off <= tolerance, "got {got}, want {want} within {tolerance:e}");
+}
+
+/// A solid's value at a point.
+#[track_caller]
+pub fn value(solid: &Solid, p: DVec3) -> f64 {
+    solid.value(p).expect("the solid is valid")
+}
