@@ -7,6 +7,7 @@
 
 mod compile;
 mod flatten;
+mod fold;
 mod hierarchy;
 mod lower;
 mod narrow;

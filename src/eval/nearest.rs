@@ -88,25 +88,41 @@ fn octants(bounds: &Bounds) -> impl Iterator<Item = Bounds> {
 
 /// A locally nearest point, from `start`.
 fn refine(program: &Program, start: DVec3, p: DVec3, size: f64) -> Option<DVec3> {
-    let mut x = onto_surface(program, start, size)?;
-    for _ in 0..60 {
+    // What is left of the way to `p` in the tangent plane.
+    let slide_at = |x: DVec3| {
         let normal = program.gradient(x).1.normalize_or_zero();
         let towards = p - x;
-        let slide = towards - towards.dot(normal) * normal;
+        towards - towards.dot(normal) * normal
+    };
+    let mut x = onto_surface(program, start, size)?;
+    let mut slide = slide_at(x);
+    let mut step = 1.0;
+    for _ in 0..60 {
         if slide.length() < 1e-12 * size {
             break;
         }
-        // On a curved surface a full slide overshoots: halve it until it gains.
-        let mut step = 1.0;
+        // On a curved surface a slide may overshoot: halve it until it gains.
         let mut moved = None;
-        while step > 1e-6 && moved.is_none() {
-            moved = onto_surface(program, x + step * slide, size).filter(|next| next.distance(p) < x.distance(p));
+        while step > 1e-6 {
+            moved = onto_surface(program, x + (step * slide).clamp_length_max(size), size)
+                .map(|next| (next, slide_at(next)))
+                .filter(|(next, rest)| {
+                    // Close to the foot the distance is flat to its last digit, and a shorter
+                    // slide tells.
+                    let (old, new) = (x.distance(p), next.distance(p));
+                    new < old || (new <= old * (1.0 + 1e-12) && rest.length() < 0.5 * slide.length())
+                });
+            if moved.is_some() {
+                break;
+            }
             step *= 0.5;
         }
-        match moved {
-            Some(next) => x = next,
-            None => break,
-        }
+        let Some((next, rest)) = moved else { break };
+        // The step that would have left no slide, were the curvature the same all the way: it
+        // is short far outside of a convex surface and long near its centre of curvature.
+        let shrunk = slide.dot(slide - rest);
+        step = if shrunk > 0.0 { (step * slide.length_squared() / shrunk).clamp(1e-3, 1e3) } else { 1.0 };
+        (x, slide) = (next, rest);
     }
     Some(x)
 }

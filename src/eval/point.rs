@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::program::{Node, Op, Program};
-use crate::field::{AnyField, AnyWarp, COORDINATE_LIMIT, Placement, Rule, saturate};
+use crate::field::{AnyField, AnyWarp, COORDINATE_LIMIT, Placement, Rule, VALUE_LIMIT, saturate};
 use crate::num::symbol::Symbol;
 use crate::{Dual, Interval, Real};
 
@@ -115,6 +115,9 @@ impl Program {
     /// counts as outside.
     #[must_use]
     pub fn value(&self, p: DVec3) -> f64 {
+        if p.is_nan() {
+            return -VALUE_LIMIT;
+        }
         saturate(self.evaluate(limited(p), &mut Vec::new()))
     }
 

@@ -118,6 +118,10 @@ fn bracket(program: &Program, at: &impl Fn(f64) -> DVec3, mut t0: f64, mut t1: f
     0.5 * (t0 + t1)
 }
 
+/// Rays end here along every axis: beyond the coordinate limit points are held at it, and a
+/// ray through held points is no straight line.
+const FARTHEST: f64 = 0.5 * crate::COORDINATE_LIMIT;
+
 /// The part of a ray in a box, a hair beyond its faces.
 pub(crate) fn clip(bounds: &Bounds, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
     if bounds.is_empty() {
@@ -126,7 +130,7 @@ pub(crate) fn clip(bounds: &Bounds, origin: DVec3, direction: DVec3) -> Option<(
     let (mut near, mut far) = (0.0f64, 2.0 * crate::COORDINATE_LIMIT);
     for axis in 0..3 {
         let (o, d) = (origin[axis], direction[axis]);
-        let (lo, hi) = (bounds.min[axis], bounds.max[axis]);
+        let (lo, hi) = (bounds.min[axis].max(-FARTHEST), bounds.max[axis].min(FARTHEST));
         if d == 0.0 {
             if o < lo || o > hi {
                 return None;

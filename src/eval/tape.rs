@@ -8,12 +8,13 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
+use super::fold::join;
 use super::program::{Op, Program};
 use super::register::{Step, schedule};
 use crate::Bounds;
 use crate::field::{AnyField, AnyWarp, COORDINATE_LIMIT, Chunk, Placement, Rule, Zone};
-use crate::num::kernel::{CHUNK, Element, Fold, Formula, fold, run, within};
-use crate::{Dual, Norm, Real};
+use crate::num::kernel::{CHUNK, Element, Formula, run, within};
+use crate::{Dual, Real};
 
 /// A program ready for bulk evaluation over a region: immutable, shared between threads;
 /// each thread brings its own [`Evaluator`].
@@ -352,98 +353,6 @@ impl Formula<18, 9> for Product {
             at += 1;
         }
         product
-    }
-}
-
-/// One step of a join, on numbers or on values with their derivatives: a conjunction, with
-/// signs before and after that make it any of union, intersection and difference.
-struct Join<C> {
-    conjunction: C,
-    /// −1 for a disjunction.
-    sign: f64,
-    /// The same for the operand that is joined; turned once more if it is negated.
-    sign_next: f64,
-}
-
-/// A conjunction whose rule is known when the kernel is compiled.
-trait Conjunction {
-    fn rule(&self) -> Rule;
-}
-
-struct MinMax;
-struct Alpha(f64);
-struct Zero(u32);
-struct Euclid;
-struct P {
-    p: f64,
-    inv: f64,
-}
-struct Associative {
-    p: f64,
-    inv: f64,
-}
-
-/// Says which rule a conjunction is.
-macro_rules! conjunction {
-    ($($name:ty: $self:ident => $rule:expr;)*) => {$(
-        impl Conjunction for $name {
-            #[inline(always)]
-            fn rule(&$self) -> Rule {
-                $rule
-            }
-        }
-    )*};
-}
-
-conjunction! {
-    MinMax: self => Rule::MinMax;
-    Alpha: self => Rule::Alpha(self.0);
-    Zero: self => Rule::Zero(self.0);
-    Euclid: self => Rule::P(Norm::Euclid);
-    P: self => Rule::P(Norm::P { p: self.p, inv: self.inv });
-    Associative: self => Rule::Associative(Norm::P { p: self.p, inv: self.inv });
-}
-
-impl<C: Conjunction> Fold<1> for Join<C> {
-    #[inline(always)]
-    fn fold<R: Real>(&self, [all]: [R; 1], [next]: [R; 1]) -> [R; 1] {
-        [self.conjunction.rule().and(all * self.sign, next * self.sign_next) * self.sign]
-    }
-}
-
-impl<C: Conjunction> Fold<4> for Join<C> {
-    #[inline(always)]
-    fn fold<R: Real>(&self, all: [R; 4], next: [R; 4]) -> [R; 4] {
-        let all = Dual::new(all[0], [all[1], all[2], all[3]]) * self.sign;
-        let next = Dual::new(next[0], [next[1], next[2], next[3]]) * self.sign_next;
-        let joined = self.conjunction.rule().and(all, next) * self.sign;
-        [joined.v, joined.d[0], joined.d[1], joined.d[2]]
-    }
-}
-
-/// Joins `next`, or its negative, to `all`.
-fn join<E: Element, const N: usize>(op: Op, rule: Rule, negate: bool, all: [&mut [E]; N], next: [&[E]; N])
-where
-    Join<MinMax>: Fold<N>,
-    Join<Alpha>: Fold<N>,
-    Join<Zero>: Fold<N>,
-    Join<Euclid>: Fold<N>,
-    Join<P>: Fold<N>,
-    Join<Associative>: Fold<N>,
-{
-    let sign = if op == Op::And { 1.0 } else { -1.0 };
-    let sign_next = if negate { -sign } else { sign };
-    match rule {
-        Rule::MinMax => fold(&Join { conjunction: MinMax, sign, sign_next }, all, next),
-        Rule::Alpha(alpha) => fold(&Join { conjunction: Alpha(alpha), sign, sign_next }, all, next),
-        Rule::Zero(m) => fold(&Join { conjunction: Zero(m), sign, sign_next }, all, next),
-        Rule::P(Norm::Euclid) => fold(&Join { conjunction: Euclid, sign, sign_next }, all, next),
-        Rule::P(norm) => {
-            fold(&Join { conjunction: P { p: norm.p(), inv: 1.0 / norm.p() }, sign, sign_next }, all, next)
-        }
-        Rule::Associative(norm) => {
-            fold(&Join { conjunction: Associative { p: norm.p(), inv: 1.0 / norm.p() }, sign, sign_next }, all, next)
-        }
     }
 }
 

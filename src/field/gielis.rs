@@ -73,10 +73,10 @@ impl Gielis {
         Gielis::new(0.0, 1.0, 1.0, 1.0)
     }
 
-    /// Nearly a regular polygon with `sides` sides and corners at radius 1: sides are
-    /// straight to about 0.3 % of the radius for five sides and more (2.3 % for three), and
-    /// exactly for four. Corners are rounded off at a radius of about `1/sharpness`;
-    /// `sharpness` is n1, 20 to 1000.
+    /// Nearly a regular polygon with `sides` sides, their middles at radius 1 (one at the
+    /// angle 0) and the corners at `1/cos(π/sides)`. Sides are straight to about 0.3 % of the
+    /// radius for five sides and more (2.3 % for three), and exactly for four. Corners are
+    /// rounded off at a radius of about `1/sharpness`; `sharpness` is n1, 20 to 1000.
     #[must_use]
     pub fn polygon(sides: u32, sharpness: f64) -> Gielis {
         let sides = f64::from(sides.max(3));
@@ -125,6 +125,16 @@ impl Gielis {
     /// How much the radius magnifies relative errors: `max(n2, n3)/n1`.
     pub(super) fn condition(&self) -> f64 {
         self.n2.max(self.n3) / self.n1
+    }
+
+    /// By how much, relative to itself, the radius may be off on lanes of `f32`. Powers below
+    /// 1 have unbounded slopes at the zeros of the sine and cosine, which lanes know to some
+    /// 10⁻⁷ per quarter turn.
+    pub(super) fn roundoff(&self) -> f64 {
+        let smallest = self.n2.min(self.n3);
+        let angle = 3e-7 * (1.0 + 0.25 * self.m) / self.a.min(self.b).min(1.0);
+        let steep = if smallest < 1.0 { 2.0 * angle.powf(smallest) / self.n1 } else { 0.0 };
+        (4e-6 * self.condition().max(1.0) * (1.0 + self.m / 12.0)).max(steep)
     }
 
     /// The radius of an angle in [−π, π].

@@ -215,7 +215,9 @@ impl<T: Real> Real for Dual<T> {
 
     #[inline(always)]
     fn log2(self) -> Self {
-        let tiny = self.v.lift(SMALLEST);
+        // Held higher than other denominators: the slope is multiplied by that of an angle,
+        // which is large near its axis, and must not overflow single precision.
+        let tiny = self.v.lift(1e-18);
         self.chain(self.v.log2(), self.v.lift(std::f64::consts::LOG2_E) / self.v.max(tiny))
     }
 

@@ -170,7 +170,12 @@ fn huge() -> Vec<DVec3> {
 
 /// Collects what went wrong, so that a failure lists all of it.
 #[derive(Default)]
-struct Worst(Vec<String>);
+struct Worst {
+    failures: Vec<String>,
+    /// The largest ratio of all, and its case.
+    ratio: f64,
+    name: String,
+}
 
 impl Worst {
     /// Notes the largest ratio of error to tolerance of a case if it is above 1.
@@ -179,14 +184,18 @@ impl Worst {
             // NaN counts as the worst.
             if next.0 <= worst.0 { worst } else { next }
         });
+        if worst.0 > self.ratio {
+            (self.ratio, self.name) = (worst.0, name.to_string());
+        }
         if worst.0.is_nan() || worst.0 > 1.0 {
-            self.0.push(format!("{name}: {:.3} times the tolerance, {}", worst.0, worst.1));
+            self.failures.push(format!("{name}: {:.3} times the tolerance, {}", worst.0, worst.1));
         }
         worst.0
     }
 
     fn finish(self) {
-        assert!(self.0.is_empty(), "{}", self.0.join("\n"));
+        println!("worst: {:.3} of the tolerance, {}", self.ratio, self.name);
+        assert!(self.failures.is_empty(), "{}", self.failures.join("\n"));
     }
 }
 

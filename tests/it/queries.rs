@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_4, PI};
 use glam::DVec3;
 use rvachev::{Bounds, RFunction, Solid, Superellipsoid};
 
-use crate::support::{Random, near, near_point, random_solid, value};
+use crate::support::{Random, corpus, near, near_point, random_solid, value};
 
 /// The distances at which a ray enters and leaves a sphere about the origin.
 fn sphere_hits(origin: DVec3, direction: DVec3, radius: f64) -> Option<(f64, f64)> {
@@ -27,7 +27,8 @@ fn rays_meet_a_sphere_where_the_formula_says() {
     let mut random = Random::new(1);
     let mut hits = 0;
     for _ in 0..600 {
-        let (origin, direction) = (random.vector(-4.0, 4.0), random.direction());
+        let origin = random.vector(-4.0, 4.0);
+        let direction = (random.vector(-2.0, 2.0) - origin).normalize();
         let want = sphere_hits(origin, direction, 1.5).and_then(|(enter, leave)| {
             if enter > 0.0 {
                 Some(enter)
@@ -47,7 +48,7 @@ fn rays_meet_a_sphere_where_the_formula_says() {
             near_point(hit.normal, hit.point / 1.5, 1e-10);
         }
     }
-    assert!(hits > 60, "{hits}");
+    assert!(hits > 150, "{hits}");
 }
 
 #[test]
@@ -56,7 +57,8 @@ fn rays_meet_a_box_where_the_formula_says() {
     let block = Solid::cuboid(2.0 * half);
     let mut random = Random::new(2);
     for _ in 0..600 {
-        let (origin, direction) = (random.vector(-4.0, 4.0), random.direction());
+        let origin = random.vector(-4.0, 4.0);
+        let direction = (random.vector(-2.0, 2.0) - origin).normalize();
         let want = box_hits(origin, direction, half).and_then(|(enter, leave)| match () {
             () if enter > 0.0 => Some(enter),
             () if leave > 0.0 => Some(leave),
@@ -130,6 +132,46 @@ fn hits_are_on_the_surface_and_nothing_is_before_them() {
                 near(hit.normal.length(), 1.0, 1e-9);
                 let (before, after) = [-1e-7, 1e-7].map(|d| program.value(hit.point + d * direction) > 0.0).into();
                 assert!(before == inside || after != inside, "{solid:?}: no crossing at {hit:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn rays_that_were_once_answered_wrongly() {
+    for n in corpus(include_str!("../corpus/rays.txt")) {
+        let vector = |at: usize| DVec3::new(n[at], n[at + 1], n[at + 2]);
+        let hit = Solid::half_space(vector(0), n[3]).raycast(vector(4), vector(7)).unwrap();
+        near(hit.expect("the ray meets the plane").distance, n[10], 1e-10);
+    }
+}
+
+#[test]
+fn nearest_points_that_were_once_inexact() {
+    for n in corpus(include_str!("../corpus/nearest.txt")) {
+        let vector = |at: usize| DVec3::new(n[at], n[at + 1], n[at + 2]);
+        let (centre, p) = (vector(1), vector(4));
+        let q = Solid::sphere(n[0]).translate(centre).closest_surface_point(p).unwrap();
+        near_point(q.expect("it has a surface"), centre + n[0] * (p - centre).normalize(), 1e-8);
+    }
+}
+
+#[test]
+fn rays_meet_half_spaces_from_either_side() {
+    let mut random = Random::new(11);
+    for _ in 0..300 {
+        let (normal, offset) = (random.direction(), random.range(-2.0, 2.0));
+        let (origin, direction) = (random.vector(-4.0, 4.0), random.direction());
+        let want = (offset - normal.dot(origin)) / normal.dot(direction);
+        let ground = Solid::half_space(normal, offset);
+        for solid in [ground.clone(), !&ground] {
+            let hit = solid.raycast(origin, direction).unwrap();
+            // A ray nearly along the plane meets it too far away to say where.
+            if want.abs() < 1e3 {
+                assert_eq!(hit.is_some(), want > 0.0, "{solid:?} from {origin} along {direction}");
+            }
+            if let (Some(hit), true) = (hit, want.abs() < 1e3) {
+                near(hit.distance, want, 1e-9 * (1.0 + want));
             }
         }
     }

@@ -8,7 +8,7 @@ pub struct Random(u64);
 
 impl Random {
     pub fn new(seed: u64) -> Random {
-        Random(seed)
+        Random(seed ^ extra_seed().wrapping_mul(0x2545_f491_4f6c_dd1d))
     }
 
     pub fn bits(&mut self) -> u64 {
@@ -77,6 +77,11 @@ impl Random {
     pub fn rule(&mut self) -> RFunction {
         self.pick(&RULES)
     }
+}
+
+/// `RANDOM_SEED` in the environment, for a search with other numbers than those of every run.
+pub fn extra_seed() -> u64 {
+    std::env::var("RANDOM_SEED").ok().and_then(|seed| seed.parse().ok()).unwrap_or(0)
 }
 
 /// A rule of each kind, and the extremes.
@@ -234,4 +239,10 @@ pub fn near_point(got: DVec3, want: DVec3, tolerance: f64) {
 #[track_caller]
 pub fn value(solid: &Solid, p: DVec3) -> f64 {
     solid.value(p).expect("the solid is valid")
+}
+
+/// The cases of a file of the corpus: failures found by random search, a line of numbers each.
+pub fn corpus(file: &str) -> Vec<Vec<f64>> {
+    let numbers = |line: &str| line.split(' ').map(|word| word.parse().expect("a number")).collect();
+    file.lines().filter(|line| !line.starts_with('#')).map(numbers).collect()
 }
