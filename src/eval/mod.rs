@@ -26,4 +26,4 @@ pub use ray::Hit;
 pub use tape::{Evaluator, Gradients, Tape};
 
 pub(crate) use compile::compiled;
-pub(crate) use ray::first_hit;
+pub(crate) use ray::{Course, first_hit};

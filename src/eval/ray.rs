@@ -58,16 +58,88 @@ pub(crate) fn first_hit(
             if inside0 == inside1 {
                 continue;
             }
-            let t = bracket(&program, &at, t0, t1);
-            let point = at(t);
-            let normal = -program.gradient(point).1.normalize_or_zero();
-            return Some(Hit { distance: t, point, normal, owner: program.deciding_leaf(point) });
+            return Some(hit_between(&program, &at, t0, t1));
         }
         let middle = 0.5 * (t0 + t1);
         pieces.push((program.clone(), middle, t1));
         pieces.push((program, t0, middle));
     }
     None
+}
+
+/// What is known of a program's slope over a block: enough to march rays through it without
+/// asking for a range at every step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Course {
+    gradient: [Interval; 3],
+    /// Steps are at least this long; what crosses within one and back touches rather than
+    /// crosses.
+    least: f64,
+}
+
+/// Slopes beyond this make steps so short that intervals are quicker.
+const STEEPEST: f64 = 1e4;
+
+/// As many steps are marched before intervals take over.
+const PATIENCE: usize = 64;
+
+impl Course {
+    /// The slopes of `program` over `block`.
+    pub(crate) fn new(program: &Program, block: &Bounds) -> Course {
+        let side = |axis: usize| Interval::new(block.min[axis], block.max[axis]);
+        let dual = program.evaluate(Dual::point([side(0), side(1), side(2)]), &mut Vec::new());
+        Course { gradient: dual.gradient(), least: 1e-7 * block.longest_side() }
+    }
+
+    /// Like [`first_hit`], for a piece of the ray within the block.
+    pub(crate) fn first_hit(
+        &self,
+        program: &Program,
+        bounds: &Bounds,
+        origin: DVec3,
+        direction: DVec3,
+        near: f64,
+        far: f64,
+    ) -> Option<Hit> {
+        let at = |t: f64| origin + t * direction;
+        let slope = (0..3)
+            .map(|axis| self.gradient[axis] * Interval::point(direction[axis]))
+            .reduce(|sum, part| sum + part)
+            .unwrap_or(Interval::ALL);
+        let steepest = slope.magnitude();
+        if steepest.is_nan() || steepest > STEEPEST {
+            return first_hit(program, bounds, origin, direction, near, far);
+        }
+        let mut t = near;
+        let mut value = program.value(at(t));
+        if slope.lo() > 0.0 || slope.hi() < 0.0 {
+            // One crossing at most: the ends tell.
+            let crosses = (program.value(at(far)) > 0.0) != (value > 0.0);
+            return crosses.then(|| hit_between(program, &at, near, far));
+        }
+        for _ in 0..PATIENCE {
+            // No crossing is nearer than the value allows.
+            let next = t + (value.abs() / steepest).max(self.least);
+            if next >= far {
+                let crosses = (program.value(at(far)) > 0.0) != (value > 0.0);
+                return crosses.then(|| hit_between(program, &at, t, far));
+            }
+            let next_value = program.value(at(next));
+            if (next_value > 0.0) != (value > 0.0) {
+                return Some(hit_between(program, &at, t, next));
+            }
+            (t, value) = (next, next_value);
+        }
+        first_hit(program, bounds, origin, direction, t, far)
+    }
+}
+
+/// The hit between two distances whose values differ in sign.
+fn hit_between(program: &Program, at: &impl Fn(f64) -> DVec3, t0: f64, t1: f64) -> Hit {
+    let t = bracket(program, at, t0, t1);
+    let point = at(t);
+    let normal = -program.gradient(point).1.normalize_or_zero();
+    Hit { distance: t, point, normal, owner: program.deciding_leaf(point) }
 }
 
 /// Whether the value only rises or only falls from `t0` to `t1`.

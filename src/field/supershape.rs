@@ -33,8 +33,8 @@ use crate::{Bounds, Dual, Interval, Norm, Real};
 /// | `radius` | none | [`Radius::Standard`] or [`Radius::Rational`] |
 ///
 /// Single-precision lanes keep within `4·10⁻⁶·(size + |f|)·max(n2, n3)/n1` (at least
-/// `4·10⁻⁶·(size + |f|)`) of the true value for m up to 12 and n2, n3 of at least 1; below 1 slopes are unbounded at the zeros of
-/// the sine and cosine, and errors grow to some `(10⁻⁷ m)^n`.
+/// `4·10⁻⁶·(size + |f|)`) of the true value for m up to 12 and n2, n3 of at least 1; below 1
+/// slopes are unbounded at the zeros of the sine and cosine, and errors grow to some `(10⁻⁷ m)^n`.
 ///
 /// ```
 /// use rvachev::{Gielis, Solid, Supershape};

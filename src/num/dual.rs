@@ -254,8 +254,10 @@ impl<T: Real> Real for Dual<T> {
 
     #[inline(always)]
     fn log2_sum_exp2(self, o: Self) -> Self {
+        // The weights are shares of a whole; intervals do not know it of themselves.
         let v = self.v.log2_sum_exp2(o.v);
-        self.chain2(o, v, (self.v - v).exp2(), (o.v - v).exp2())
+        let one = v.lift(1.0);
+        self.chain2(o, v, (self.v - v).exp2().min(one), (o.v - v).exp2().min(one))
     }
 
     #[inline(always)]

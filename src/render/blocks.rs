@@ -6,9 +6,10 @@
 //! belongs to one of them and is never lost.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::walk::Walk;
-use crate::eval::{Hit, Program, first_hit};
+use crate::eval::{Course, Hit, Program};
 use crate::space::{Grid, surface_blocks};
 use crate::{Bounds, Cancelled, Run};
 
@@ -22,7 +23,7 @@ pub(super) const MOST: u32 = 64;
 /// The surface of a solid, by blocks.
 pub(super) struct Blocks {
     grid: Grid,
-    programs: Vec<Program>,
+    programs: Vec<(Program, Course)>,
     /// The number of each block's program, x first, or [`EMPTY`].
     numbers: Vec<u32>,
     /// Holds every segment with room to spare.
@@ -54,15 +55,22 @@ impl Blocks {
             numbers[place(&grid, block.index)] = number as u32;
         }
         let reach = grid.bounds([0; 3], grid.blocks).inflate(longest);
-        let programs = blocks.into_iter().map(|block| block.program).collect();
+        let programs = blocks
+            .into_par_iter()
+            .map(|block| {
+                let region = grid.bounds(block.index, block.index.map(|i| i + 1)).inflate(margin);
+                let course = Course::new(&block.program, &region);
+                (block.program, course)
+            })
+            .collect();
         Ok(Blocks { grid, programs, numbers, reach })
     }
 
     /// The first crossing on the ray from `origin` along `direction`, a unit vector.
     pub(super) fn first_hit(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
         Walk::new(&self.grid, origin, direction).find_map(|segment| {
-            let program = self.programs.get(self.numbers[place(&self.grid, segment.block)] as usize)?;
-            first_hit(program, &self.reach, origin, direction, segment.near, segment.far)
+            let (program, course) = self.programs.get(self.numbers[place(&self.grid, segment.block)] as usize)?;
+            course.first_hit(program, &self.reach, origin, direction, segment.near, segment.far)
         })
     }
 
