@@ -112,7 +112,7 @@ impl Course {
         }
         let mut t = near;
         let mut value = program.value(at(t));
-        if slope.lo() > 0.0 || slope.hi() < 0.0 {
+        if one_signed(slope) {
             // One crossing at most: the ends tell.
             let crosses = (program.value(at(far)) > 0.0) != (value > 0.0);
             return crosses.then(|| hit_between(program, &at, near, far));
@@ -148,7 +148,14 @@ fn one_way(program: &Program, origin: DVec3, direction: DVec3, t0: f64, t1: f64)
     let along = |o: f64, d: f64| t * Dual::constant(Interval::point(d)) + Dual::constant(Interval::point(o));
     let p = [along(origin.x, direction.x), along(origin.y, direction.y), along(origin.z, direction.z)];
     let slope = program.evaluate(p, &mut Vec::new()).gradient()[0];
-    slope.lo() > 0.0 || slope.hi() < 0.0
+    one_signed(slope)
+}
+
+/// Whether a value with this slope only rises or only falls, but for rounding: a flat piece
+/// may be on the way, a crossing and back may not.
+fn one_signed(slope: Interval) -> bool {
+    const ROUNDING: f64 = 1e-13;
+    slope.lo() > -ROUNDING || slope.hi() < ROUNDING
 }
 
 /// The crossing between `t0` and `t1`, whose values differ in sign: the false position

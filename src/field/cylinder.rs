@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Field, ParamError, check, leaf::falling_range};
-use crate::{Bounds, Interval, Real};
+use crate::{Bounds, Interval, Norm, Real};
 
 /// A cylinder about the z axis, centred at the origin, by true distance (1-Lipschitz).
 ///
@@ -37,11 +37,11 @@ impl Field for Cylinder {
 
     #[inline(always)]
     fn eval<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
-        let side = x.mul_add(x, y.square()).sqrt() - self.radius;
+        let side = x.norm(y, Norm::Euclid) - self.radius;
         let cap = z.abs() - 0.5 * self.height;
         let zero = x.lift(0.0);
         let (os, oc) = (side.max(zero), cap.max(zero));
-        -(os.mul_add(os, oc.square()).sqrt() + side.max(cap).min(zero))
+        -(os.norm(oc, Norm::Euclid) + side.max(cap).min(zero))
     }
 
     fn bounds(&self) -> Bounds {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Field, ParamError, check, leaf::falling_range};
-use crate::{Bounds, Interval, Real};
+use crate::{Bounds, Interval, Norm, Real};
 
 /// A sphere about the origin: `f = r − |p|`, the true distance (1-Lipschitz).
 ///
@@ -32,7 +32,7 @@ impl Field for Sphere {
 
     #[inline(always)]
     fn eval<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
-        -x.mul_add(x, y.mul_add(y, z.square())).sqrt() + self.radius
+        -x.nested(y, z, Norm::Euclid, Norm::Euclid) + self.radius
     }
 
     fn bounds(&self) -> Bounds {
