@@ -81,7 +81,7 @@ pub(crate) struct Course {
 const STEEPEST: f64 = 1e4;
 
 /// As many steps are marched before intervals take over.
-const PATIENCE: usize = 64;
+const PATIENCE: usize = 200;
 
 impl Course {
     /// The slopes of `program` over `block`.

@@ -16,9 +16,9 @@ use crate::{Bounds, Cancelled, Run};
 /// Marks a block of the grid that the surface does not cross.
 const EMPTY: u32 = u32::MAX;
 
-/// At most this many blocks along the longest side: the list of all blocks stays below four
-/// megabytes, and a ray passes fewer than two hundred.
-pub(super) const MOST: u32 = 64;
+/// At most this many blocks along the longest side: the list of all blocks stays below nine
+/// megabytes, and a ray passes fewer than four hundred.
+pub(super) const MOST: u32 = 128;
 
 /// The surface of a solid, by blocks.
 pub(super) struct Blocks {

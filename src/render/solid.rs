@@ -9,7 +9,7 @@ use crate::{Bounds, Camera, Image, Rays, Run, Solid};
 
 /// The side of a block in pixels: about as long as a ray through one block costs as much as
 /// the blocks that it walks past.
-const BLOCK_PIXELS: f64 = 8.0;
+const BLOCK_PIXELS: f64 = 5.0;
 
 /// The least number of blocks along the longest side.
 const FEWEST: u32 = 8;
