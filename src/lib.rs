@@ -105,6 +105,20 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! # Accuracy in single precision
+//!
+//! Lanes of `f32` against double precision, relative to the size of the leaf plus `|f|`, from
+//! the centre to ten sizes away, axis planes and exact zeros included; sizes 10⁻³ to 10³. The
+//! bounds hold in the tests, which print what they find.
+//!
+//! | leaf | bound | found |
+//! |---|---|---|
+//! | superellipsoid, exponents 0.05 to 2.5 | 4·10⁻⁶ | 3.2·10⁻⁷ |
+//! | sphere, box, cylinder, half-space | 4·10⁻⁶ | 5.0·10⁻⁷ |
+//! | supershape, m up to 12, n2 and n3 at least 1 | 4·10⁻⁶ times max(n2, n3)/n1, at least 4·10⁻⁶ | within |
+//!
+//! # Below the verbs
+//!
 //! Under the verbs are the compiled [`Program`]s: narrowed to a region
 //! ([`Program::narrow`]), run in bulk ([`Tape`], [`Evaluator`]). Your own leaf is a type that
 //! implements [`Field`]; a solid can be handed to fidget with [`Solid::to_fidget`].
