@@ -79,7 +79,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all("out")?;
 
     let start = Instant::now();
-    let settings = RenderSettings { width: 800, height: 600, ..RenderSettings::default() };
+    let settings = RenderSettings { width: 800, height: 600, samples: 2, ..RenderSettings::default() };
     let camera = Camera::framing(&bounds).fitted(&bounds, f64::from(settings.width) / f64::from(settings.height));
     bolt.render(&camera, &settings)?.save("out/bolt.png")?;
     println!("out/bolt.png: {} x {} pixels, {:.1} s", settings.width, settings.height, start.elapsed().as_secs_f64());

@@ -273,9 +273,9 @@ fn fidget_agrees() {
     worst.finish();
 }
 
-/// Fidget has no power: it takes exponentials of logarithms in single precision, whose error
-/// grows with the exponent.
-const FIDGET: f64 = 2e-4;
+/// Fidget has no power: it takes exponentials of logarithms, in single precision, and still
+/// comes as close as the lanes.
+const FIDGET: f64 = 4e-6;
 
 #[test]
 fn gradients_are_those_of_differences_where_smooth() {

@@ -209,13 +209,6 @@ fn tightness(across: u32, allowed: [f64; 6]) {
 
 #[test]
 fn tight_on_the_models() {
-    // Within the bounds of 128³ although coarser cells curve more.
-    tightness(64, TIGHT);
-}
-
-#[test]
-#[ignore = "takes too long for every run; `cargo test -- --ignored --nocapture tight`"]
-fn tight_on_the_models_at_full_resolution() {
     tightness(128, TIGHT);
 }
 

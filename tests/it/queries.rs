@@ -111,7 +111,11 @@ fn hits_are_on_the_surface_and_nothing_is_before_them() {
     let mut random = Random::new(3);
     for _ in 0..60 {
         let depth = random.below(3);
-        let solid = random_solid(&mut random, depth);
+        let mut solid = random_solid(&mut random, depth);
+        // Along a deformed half-space that never ends there is no end of pieces to look at.
+        if !solid.bounds().unwrap().is_finite() {
+            solid = solid & Solid::sphere(4.0);
+        }
         let program = solid.surface_program().unwrap();
         for _ in 0..6 {
             let (origin, direction) = (random.vector(-3.0, 3.0), random.direction());
