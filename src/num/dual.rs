@@ -18,7 +18,8 @@ use super::{Monotone, Norm, Real};
 /// let (x, y) = (Dual::variable(3.0, 0), Dual::variable(4.0, 1));
 /// let length = (x.square() + y.square()).sqrt();
 /// assert_eq!(length.value(), 5.0);
-/// assert_eq!(length.gradient(), [0.6, 0.8, 0.0]);
+/// let [dx, dy, dz] = length.gradient();
+/// assert!((dx - 0.6).abs() < 1e-15 && (dy - 0.8).abs() < 1e-15 && dz == 0.0);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<T> {
