@@ -145,7 +145,7 @@ impl Solid {
     ///
     /// The first crossing is found with certainty: parts of the ray are discarded only where
     /// an interval shows that there is none. A ray that touches the surface without crossing
-    /// may miss it.
+    /// may miss it; so may one along which an unbounded deformed solid winds without end.
     ///
     /// # Errors
     /// What is wrong with the solid: see [`SolidError`].

@@ -28,6 +28,10 @@ pub struct Hit {
 /// within them and back touches rather than crosses.
 const SHORTEST: f64 = 1e-11;
 
+/// After as many pieces a ray is given up as a miss. A solid of finite size never comes near;
+/// an unbounded deformed one may wind about the ray without end.
+const PIECES: usize = 1 << 18;
+
 /// The slope is asked for only of programs with at most this many leaves.
 const FEW: usize = 6;
 
@@ -49,7 +53,8 @@ pub(crate) fn first_hit(
     let shortest = SHORTEST * (size + origin.abs().max_element().min(1e6) + near);
     let at = |t: f64| origin + t * direction;
     let mut pieces = vec![(program.clone(), near, far)];
-    while let Some((program, t0, t1)) = pieces.pop() {
+    for _ in 0..PIECES {
+        let Some((program, t0, t1)) = pieces.pop() else { break };
         let Region::Surface(program) = program.narrow_zone(&Zone::of_segment(at(t0), at(t1))) else { continue };
         let (inside0, inside1) = (program.value(at(t0)) > 0.0, program.value(at(t1)) > 0.0);
         let certain =
