@@ -212,6 +212,41 @@ impl Solid {
     }
 }
 
+/// The same questions about many boxes, rays or points: the answers in their order.
+impl Solid {
+    /// [`range`](Solid::range) over many boxes.
+    ///
+    /// # Errors
+    /// What is wrong with the solid: see [`SolidError`].
+    pub fn ranges(&self, regions: &[Bounds]) -> Result<Vec<Interval>, SolidError> {
+        regions.iter().map(|region| self.range(region)).collect()
+    }
+
+    /// [`raycast`](Solid::raycast) along many rays, each an origin and a direction.
+    ///
+    /// # Errors
+    /// What is wrong with the solid: see [`SolidError`].
+    pub fn raycast_all(&self, rays: &[(DVec3, DVec3)]) -> Result<Vec<Option<Hit>>, SolidError> {
+        rays.iter().map(|(origin, direction)| self.raycast(*origin, *direction)).collect()
+    }
+
+    /// [`closest_surface_point`](Solid::closest_surface_point) to many points.
+    ///
+    /// # Errors
+    /// What is wrong with the solid; [`SolidError::Unbounded`] if it has no finite box.
+    pub fn closest_surface_points(&self, points: &[DVec3]) -> Result<Vec<Option<DVec3>>, SolidError> {
+        points.iter().map(|p| self.closest_surface_point(*p)).collect()
+    }
+
+    /// [`owner`](Solid::owner) at many points.
+    ///
+    /// # Errors
+    /// What is wrong with the solid: see [`SolidError`].
+    pub fn owners(&self, points: &[DVec3]) -> Result<Vec<Owner>, SolidError> {
+        points.iter().map(|p| self.owner(*p)).collect()
+    }
+}
+
 impl Program {
     /// The leaf that decides at a point.
     #[must_use]

@@ -18,8 +18,9 @@ impl Solid {
     /// A picture of the solid.
     ///
     /// The surface is found with certainty: along each ray, pieces are discarded only where
-    /// an interval shows that no surface crosses them, and the first crossing is bracketed to
-    /// double precision. Shading, lights and colours are described at [`RenderSettings`]; the
+    /// an interval, of the value or of its slope in the block, shows that no surface crosses
+    /// them (a crossing and back within 10⁻⁷ of a block counts as a touch), and the first
+    /// crossing is bracketed to double precision. Shading, lights and colours are described at [`RenderSettings`]; the
     /// lights move with the camera. A camera inside the solid sees its walls from behind.
     ///
     /// ```no_run
