@@ -85,7 +85,7 @@ fn cube(half: f64) -> Bounds {
 fn superellipsoids() {
     let mut random = Random::new(13);
     let mut worst = Worst::new();
-    for _ in 0..150 {
+    for _ in 0..350 {
         let size = random.log_range(1e-3, 1e3);
         let axes = DVec3::from_array([0; 3].map(|_| size * random.log_range(0.05, 1.0)));
         let mut exponent =
