@@ -55,6 +55,10 @@ impl Field for Cuboid {
         true
     }
 
+    fn exact(&self) -> bool {
+        true
+    }
+
     fn range(&self, region: [Interval; 3]) -> Interval {
         falling_range(self, region)
     }

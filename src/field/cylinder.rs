@@ -58,6 +58,10 @@ impl Field for Cylinder {
         true
     }
 
+    fn exact(&self) -> bool {
+        true
+    }
+
     fn range(&self, region: [Interval; 3]) -> Interval {
         falling_range(self, region)
     }

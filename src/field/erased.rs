@@ -5,6 +5,7 @@
 //! kernel runs over a chunk of points, so the call through the pointer costs nothing.
 
 use std::fmt::Debug;
+use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -74,8 +75,14 @@ pub(crate) trait AnyField: Debug + Send + Sync {
     fn value(&self, p: [f64; 3]) -> f64;
     fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64>;
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval>;
+    /// Whether the value is the true distance.
+    fn exact(&self) -> bool;
     /// A sound range over a zone of the leaf's frame.
     fn range(&self, zone: &Zone) -> Interval;
+    /// A leaf that is cheaper and has the same values over the zone, where there is one.
+    fn narrowed(&self, _zone: &Zone) -> Option<Arc<dyn AnyField>> {
+        None
+    }
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a>;
     fn lanes32(&self, chunk: Chunk<'_, f32, 1>);
     fn lanes64(&self, chunk: Chunk<'_, f64, 1>);
@@ -164,6 +171,10 @@ impl<F: Field> AnyField for F {
 
     fn roundoff(&self, reach: f64) -> f64 {
         Field::roundoff(self, reach)
+    }
+
+    fn exact(&self) -> bool {
+        Field::exact(self)
     }
 
     fn value(&self, p: [f64; 3]) -> f64 {

@@ -75,6 +75,10 @@ impl Field for HalfSpace {
         true
     }
 
+    fn exact(&self) -> bool {
+        true
+    }
+
     fn range(&self, region: [Interval; 3]) -> Interval {
         self.eval(region)
     }

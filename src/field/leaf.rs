@@ -73,6 +73,13 @@ pub trait Field: Debug + Send + Sync + 'static {
         false
     }
 
+    /// Whether the value is the true signed distance to the surface, everywhere. Offsets and
+    /// shells take it as it is; from other leaves they find their way to the surface along
+    /// the gradient. Default: `false`.
+    fn exact(&self) -> bool {
+        false
+    }
+
     /// The range of the formula over a box of the leaf's own frame. The default runs the
     /// formula on intervals; a leaf whose structure gives a tighter one overrides it.
     fn range(&self, region: [Interval; 3]) -> Interval {

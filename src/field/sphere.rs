@@ -47,6 +47,10 @@ impl Field for Sphere {
         true
     }
 
+    fn exact(&self) -> bool {
+        true
+    }
+
     fn range(&self, region: [Interval; 3]) -> Interval {
         falling_range(self, region)
     }
