@@ -142,7 +142,7 @@ mod space;
 pub use bounds::Bounds;
 pub use eval::{Evaluator, Gradients, Hit, Owner, Program, Region, Tape};
 pub use field::{
-    COORDINATE_LIMIT, Cuboid, Cylinder, Field, Gielis, HalfSpace, Kernel, ParamError, RFunction, Radius, Sphere,
+    Blend, COORDINATE_LIMIT, Cuboid, Cylinder, Field, Gielis, HalfSpace, Kernel, ParamError, RFunction, Radius, Sphere,
     Superellipsoid, Supershape, VALUE_LIMIT,
 };
 pub use geom::{Camera, CameraError, Image, ImageError, Mesh, MeshError, Projection, Rays};

@@ -7,26 +7,36 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use glam::{DAffine3, DMat3};
+use glam::{DAffine3, DVec3};
 
+use super::code::{Built, Code, bounded, disjoined, grow, snug};
+use super::composite::Composite;
+use super::context::{Contexts, Place};
+use super::edge::EdgeBlend;
+use super::extent::extent;
 use super::flatten::flatten;
-use super::program::{Edge, Node, Op, Program, Sides};
-use super::scene::{Frame, Instance, Scene};
+use super::program::{Edge, Kind, Op, Program, Sides};
+use super::scene::{Instance, Scene};
 use crate::field::{AnyField, AnyWarp, Placement, Rule, smallest_stretch};
-use crate::solid::{self, Operation};
-use crate::{Bounds, ParamError, Solid, SolidError};
+use crate::solid::{self, Length, Operation};
+use crate::{Blend, Bounds, Norm, ParamError, Solid, SolidError};
 
 /// A solid's programs.
 pub(crate) struct Compiled {
     pub(crate) field: Program,
     pub(crate) surface: Program,
     pub(crate) bounds: Bounds,
+    /// How deep operands that are compiled by themselves are nested.
+    nesting: u32,
     /// The path to the node that makes the bounds infinite, if they are.
     pub(crate) unbounded: String,
 }
 
 /// More nodes than this are not compiled.
 const LIMIT: usize = 1 << 23;
+
+/// Operands that are compiled by themselves are nested no deeper than this.
+const DEPTH: u32 = 40;
 
 /// The programs of `solid`, compiled on first use and kept with it.
 pub(crate) fn compiled(solid: &Solid) -> Result<Arc<Compiled>, SolidError> {
@@ -37,26 +47,6 @@ pub(crate) fn compiled(solid: &Solid) -> Result<Arc<Compiled>, SolidError> {
     let fresh = Arc::new(Compiler::default().compile(solid)?);
     let _ = kept.set(fresh.clone());
     Ok(fresh)
-}
-
-/// The maps above a node.
-#[derive(Clone, Copy)]
-struct Context {
-    frame: u32,
-    /// From the frame to the node's coordinates, and back.
-    to_local: DAffine3,
-    forward: DAffine3,
-    /// Product of the smallest stretches.
-    scale: f64,
-}
-
-/// What a node compiled to.
-#[derive(Clone, Copy)]
-struct Built {
-    field: Edge,
-    surface: Edge,
-    /// In the frame of the node's context.
-    sides: Sides,
 }
 
 enum Task<'a> {
@@ -73,86 +63,15 @@ struct Site<'a> {
 
 #[derive(Default)]
 struct Compiler {
+    nesting: u32,
     scene: Scene,
-    contexts: Vec<Context>,
-    context_of: HashMap<(u32, usize), u32>,
+    contexts: Contexts,
     built: HashMap<(u32, usize), Option<Built>>,
-    field: Code,
-    surface: Code,
-}
-
-/// A program under construction.
-#[derive(Default)]
-pub(super) struct Code {
-    pub(super) nodes: Vec<Node>,
-    pub(super) operands: Vec<Edge>,
-    /// Where each operand decides anything, in the frame of its join.
-    pub(super) decisive: Vec<Bounds>,
-}
-
-/// An operand of a join, and where it is.
-#[derive(Clone, Copy)]
-struct Operand {
-    edge: Edge,
-    sides: Sides,
-}
-
-impl Operand {
-    fn flip_if(self, negate: bool) -> Operand {
-        Operand { edge: self.edge.flip_if(negate), sides: self.sides.flip_if(negate) }
-    }
-}
-
-impl Code {
-    fn push(&mut self, node: Node) -> Edge {
-        self.nodes.push(node);
-        Edge::new(self.nodes.len() - 1)
-    }
-
-    fn join(&mut self, op: Op, rule: Rule, frame: u32, operands: &[Operand]) -> Operand {
-        if let [only] = operands {
-            return *only;
-        }
-        let first = self.operands.len() as u32;
-        self.operands.extend(operands.iter().map(|o| o.edge));
-        self.decisive.extend(operands.iter().map(|o| o.sides.decisive(op)));
-        let sides = operands.iter().map(|o| o.sides).reduce(|a, b| a.join(op, b)).unwrap_or_default();
-        let len = operands.len() as u32;
-        Operand { edge: self.push(Node::Join { op, rule, first, len, frame, hierarchy: None }), sides }
-    }
-
-    /// Joins many operands: at once if the order does not matter, else as a balanced tree.
-    fn join_all(&mut self, op: Op, rule: Rule, frame: u32, operands: &[Operand]) -> Operand {
-        if matches!(rule, Rule::MinMax | Rule::Associative(_)) {
-            return self.join(op, rule, frame, operands);
-        }
-        self.balanced(operands, |code, pair| code.join(op, rule, frame, pair))
-    }
-
-    /// Exactly one of two; folded over more, an odd number of them.
-    fn either_all(&mut self, rule: Rule, frame: u32, operands: &[Operand]) -> Operand {
-        self.balanced(operands, |code, pair| match *pair {
-            [a, b] => {
-                let first = code.join(Op::And, rule, frame, &[a, b.flip_if(true)]);
-                let second = code.join(Op::And, rule, frame, &[a.flip_if(true), b]);
-                code.join(Op::Or, rule, frame, &[first, second])
-            }
-            _ => pair[0],
-        })
-    }
-
-    fn balanced(&mut self, operands: &[Operand], mut join: impl FnMut(&mut Code, &[Operand]) -> Operand) -> Operand {
-        let mut level = operands.to_vec();
-        while level.len() > 1 {
-            level = level.chunks(2).map(|pair| join(self, pair)).collect();
-        }
-        level[0]
-    }
+    code: Code,
 }
 
 impl Compiler {
     fn compile(mut self, root: &Solid) -> Result<Compiled, SolidError> {
-        self.contexts.push(Context { frame: 0, to_local: DAffine3::IDENTITY, forward: DAffine3::IDENTITY, scale: 1.0 });
         let step = self.scene.trail.push(root, None);
         let site = Site { solid: root, context: 0, step };
         let mut tasks = vec![Task::Visit(site)];
@@ -167,16 +86,19 @@ impl Compiler {
         }
         let built = self.of(root, 0);
         let unbounded = self.unbounded(root, step);
-        let Compiler { scene, field, surface, .. } = self;
-        let surface = flatten(surface, built.surface);
+        let Compiler { scene, code, nesting, .. } = self;
         let scene = Arc::new(scene);
-        let (code, surface_root) = surface;
-        Ok(Compiled {
-            field: Program::assemble(scene.clone(), field.nodes, field.operands, built.field),
-            surface: Program::assemble(scene, code.nodes, code.operands, surface_root),
-            bounds: if built.sides.inside.is_empty() { Bounds::EMPTY } else { built.sides.inside },
-            unbounded,
-        })
+        let program = |root: Edge| {
+            let (nodes, operands, root) = flatten(&code, root);
+            Program::assemble(scene.clone(), nodes, operands, root, Vec::new())
+        };
+        let (field, surface) = (program(built.field), program(built.surface));
+        let mut bounds = if built.sides.inside.is_empty() { Bounds::EMPTY } else { built.sides.inside };
+        if !bounds.is_finite() {
+            bounds = extent(&surface, &bounds);
+        }
+        let unbounded = if bounds.is_finite() { String::new() } else { unbounded };
+        Ok(Compiled { field, surface, bounds, nesting, unbounded })
     }
 
     /// The path to the node that makes the solid unbounded: down through unions to the
@@ -184,25 +106,24 @@ impl Compiler {
     fn unbounded(&mut self, root: &Solid, step: u32) -> String {
         let (mut solid, mut context, mut step) = (root.clone(), 0, step);
         loop {
-            let inside = |c: &Compiler, s: &Solid, context| c.of(s, context).sides.inside;
-            if inside(self, &solid, context).is_finite() || inside(self, &solid, context).is_empty() {
+            let open = |c: &Compiler, s: &Solid, context| {
+                let inside = c.of(s, context).sides.inside;
+                !inside.is_finite() && !inside.is_empty()
+            };
+            if !open(self, &solid, context) {
                 return String::new();
             }
-            let key = (context, solid.address());
-            let (position, inner) = match solid.node() {
-                solid::Node::Affine { .. } | solid::Node::Warp { .. } => (0, self.context_of[&key]),
+            let below = self.contexts.below(&solid, context).iter().copied();
+            let down = match solid.node() {
+                solid::Node::Affine { .. } | solid::Node::Warp { .. } => below.collect(),
                 solid::Node::Join { operation: Operation::Union, operands, .. } => {
-                    let open =
-                        |o: &Solid| !inside(self, o, context).is_finite() && !inside(self, o, context).is_empty();
-                    match operands.iter().position(open) {
-                        Some(position) => (position, context),
-                        None => return self.scene.trail.path(step),
-                    }
+                    below.filter(|&(operand, inner)| open(self, &operands[operand], inner)).collect()
                 }
-                _ => return self.scene.trail.path(step),
+                _ => Vec::new(),
             };
-            let next = solid.node().operands()[position].clone();
-            step = self.scene.trail.push(&next, Some((step, &solid, position)));
+            let Some(&(operand, inner)) = down.first() else { return self.scene.trail.path(step) };
+            let next = solid.node().operands()[operand].clone();
+            step = self.scene.trail.push(&next, Some((step, &solid, operand)));
             (solid, context) = (next, inner);
         }
     }
@@ -224,27 +145,15 @@ impl Compiler {
             return Err(SolidError::TooLarge { nodes: self.built.len(), limit: LIMIT });
         }
         self.built.insert(key, None);
-        let inner = match site.solid.node() {
-            solid::Node::Leaf(field) => {
-                field.check().map_err(|e| self.parameter(site, e))?;
-                site.context
-            }
-            solid::Node::Affine { forward, label, .. } => {
-                check_affine(forward, label).map_err(|e| self.parameter(site, e))?;
-                self.affine_context(site, forward)
-            }
-            solid::Node::Warp { warp, .. } => self.warp_context(site, warp),
-            solid::Node::Join { rule, operands, .. } => {
-                rule.check().map_err(|e| self.parameter(site, e))?;
-                if operands.is_empty() {
-                    return Err(SolidError::EmptyJoin { path: self.scene.trail.path(site.step) });
-                }
-                site.context
-            }
-            solid::Node::Complement(_) => site.context,
-        };
+        check(site.solid.node()).map_err(|e| self.parameter(site, e))?;
+        let operands = site.solid.node().operands();
+        if let (solid::Node::Join { .. }, []) = (site.solid.node(), operands) {
+            return Err(SolidError::EmptyJoin { path: self.scene.trail.path(site.step) });
+        }
+        self.contexts.open(site.solid, site.context, &mut self.scene);
         tasks.push(Task::Finish(site));
-        for (position, operand) in site.solid.node().operands().iter().enumerate().rev() {
+        for &(position, inner) in self.contexts.below(site.solid, site.context).iter().rev() {
+            let operand = &operands[position];
             if self.built.contains_key(&(inner, operand.address())) {
                 continue;
             }
@@ -258,133 +167,233 @@ impl Compiler {
         SolidError::Parameter { path: self.scene.trail.path(site.step), source }
     }
 
-    /// The context below a map, made once.
-    fn context(&mut self, site: Site<'_>, make: impl FnOnce(&mut Compiler, Context) -> Context) -> u32 {
-        let key = (site.context, site.solid.address());
-        if let Some(&context) = self.context_of.get(&key) {
-            return context;
+    /// An operand's programs by themselves, in its own coordinates.
+    fn alone(&mut self, site: Site<'_>, operand: &Solid) -> Result<Arc<Compiled>, SolidError> {
+        let alone = compiled(operand)?;
+        self.nesting = self.nesting.max(alone.nesting + 1);
+        if self.nesting > DEPTH {
+            return Err(SolidError::TooDeep { path: self.scene.trail.path(site.step), limit: DEPTH });
         }
-        let context = make(self, self.contexts[site.context as usize]);
-        self.contexts.push(context);
-        let number = (self.contexts.len() - 1) as u32;
-        self.context_of.insert(key, number);
-        number
+        Ok(alone)
     }
 
-    fn affine_context(&mut self, site: Site<'_>, forward: &DAffine3) -> u32 {
-        self.context(site, |_, above| Context {
-            frame: above.frame,
-            to_local: inverse(forward) * above.to_local,
-            forward: above.forward * *forward,
-            scale: above.scale * stretch(&forward.matrix3),
-        })
-    }
-
-    fn warp_context(&mut self, site: Site<'_>, warp: &Arc<dyn AnyWarp>) -> u32 {
-        self.context(site, |compiler, above| {
-            compiler.scene.frames.push(Frame { parent: above.frame, to_local: above.to_local, warp: warp.clone() });
-            Context {
-                frame: compiler.scene.frames.len() as u32,
-                to_local: DAffine3::IDENTITY,
-                forward: DAffine3::IDENTITY,
-                scale: above.scale,
+    /// A box, in the frame of `context`, of where a solid's true value is above −c.
+    fn above(&self, solid: &Solid, context: u32, c: f64, depth: u32) -> Bounds {
+        let built = self.of(solid, context);
+        let by = bounded(built) * c;
+        if by.is_finite() {
+            return grow(&built.sides.inside, by);
+        }
+        if depth == 0 {
+            return Bounds::ALL;
+        }
+        let node = solid.node();
+        let below = self.contexts.below(solid, context);
+        let mut inner = below.iter().map(|&(at, inner)| (&node.operands()[at], inner));
+        let mut first = |c: f64| inner.next().map_or(Bounds::ALL, |(s, inner)| self.above(s, inner, c, depth - 1));
+        match node {
+            solid::Node::Affine { .. } => first(c),
+            solid::Node::Warp { warp, .. } if self.contexts.get(context).anchor.is_none() => {
+                let inside = first(c);
+                if inside.is_empty() {
+                    inside
+                } else {
+                    snug(warp.bounds(&inside).transformed(&self.contexts.get(context).forward))
+                }
             }
-        })
+            solid::Node::Join { operation: Operation::Difference, .. } => first(c),
+            solid::Node::Blend { operation: Operation::Difference, blend: Blend::Smooth { .. }, .. } => first(c),
+            solid::Node::Length { length: Length::Level(by), .. } => {
+                first((c + by * self.contexts.get(context).scale).max(0.0))
+            }
+            solid::Node::Join { operation: Operation::Union, rule, operands } => {
+                let c = c * disjoined(Rule::from(*rule), operands.len());
+                if !c.is_finite() {
+                    return Bounds::ALL;
+                }
+                inner.fold(Bounds::EMPTY, |all, (s, inner)| all.union(&self.above(s, inner, c, depth - 1)))
+            }
+            _ => Bounds::ALL,
+        }
     }
 
     fn finish(&mut self, site: Site<'_>) -> Result<Built, SolidError> {
-        let key = (site.context, site.solid.address());
-        match site.solid.node() {
+        let context = *self.contexts.get(site.context);
+        let node = site.solid.node();
+        let below: Vec<Built> = self
+            .contexts
+            .below(site.solid, site.context)
+            .iter()
+            .map(|&(position, inner)| self.of(&node.operands()[position], inner))
+            .collect();
+        match node {
             solid::Node::Leaf(field) => Ok(self.leaf(field, site)),
-            solid::Node::Affine { operand, .. } => Ok(self.of(operand, self.context_of[&key])),
-            solid::Node::Warp { operand, warp } => {
-                let inner = self.of(operand, self.context_of[&key]);
-                warp.check(&inner.sides.inside).map_err(|e| self.parameter(site, e))?;
-                let forward = self.contexts[site.context as usize].forward;
-                let outward = |b: &Bounds| {
-                    if b.is_empty() { *b } else { snug(warp.bounds(b).transformed(&forward)) }
-                };
-                // A deformation of an infinite region is not followed.
-                let outside = if inner.sides.outside.is_finite() { outward(&inner.sides.outside) } else { Bounds::ALL };
-                Ok(Built { sides: Sides { inside: outward(&inner.sides.inside), outside }, ..inner })
+            solid::Node::Affine { .. } => Ok(below[0]),
+            solid::Node::Warp { operand, warp } => self.warped(site, operand, warp, below[0]),
+            solid::Node::Complement(_) => Ok(below[0].complement()),
+            solid::Node::Join { operation, rule, .. } => {
+                let rule = if context.anchor.is_some() { Rule::MinMax } else { Rule::from(*rule) };
+                if *operation != Operation::SymmetricDifference {
+                    return Ok(self.code.operation(*operation, rule, context.frame, &below));
+                }
+                // Below a length the complements have been compiled after the operands.
+                let count = node.operands().len();
+                let complements = &below[below.len() - count..];
+                let pairs: Vec<[Built; 2]> = below.iter().zip(complements).map(|(a, b)| [*a, b.complement()]).collect();
+                Ok(self.code.either(rule, context.frame, &pairs))
             }
-            solid::Node::Complement(operand) => {
-                let inner = self.of(operand, site.context);
-                Ok(Built {
-                    field: inner.field.flip_if(true),
-                    surface: inner.surface.flip_if(true),
-                    sides: inner.sides.flip_if(true),
-                })
+            // Below a length, what reads values counts as one leaf.
+            solid::Node::Length { .. } | solid::Node::Blend { .. } if below.is_empty() => {
+                let alone = self.alone(site, site.solid)?;
+                let leaf: Arc<dyn AnyField> =
+                    Arc::new(Composite { program: alone.surface.clone(), bounds: alone.bounds });
+                Ok(self.leaf(&leaf, site))
             }
-            solid::Node::Join { operation, rule, operands } => {
-                let built: Vec<Built> = operands.iter().map(|o| self.of(o, site.context)).collect();
-                Ok(self.join(*operation, Rule::from(*rule), &built, self.contexts[site.context as usize].frame))
+            solid::Node::Length { length, .. } => Ok(match *length {
+                Length::Level(c) => self.code.level(c * context.scale, below[0]),
+                Length::Offset(_) => below[0],
+                Length::Shell(_) => {
+                    let wall = [below[0], below[1].complement()];
+                    self.code.operation(Operation::Intersection, Rule::MinMax, context.frame, &wall)
+                }
+            }),
+            solid::Node::Blend { operation, blend, lengths, .. } => {
+                self.blended(site, *operation, *blend, lengths, [below[0], below[1]])
             }
         }
+    }
+
+    fn warped(
+        &mut self,
+        site: Site<'_>,
+        operand: &Solid,
+        warp: &Arc<dyn AnyWarp>,
+        inner: Built,
+    ) -> Result<Built, SolidError> {
+        let context = *self.contexts.get(site.context);
+        if context.anchor.is_some() {
+            // Leaves below have told their boxes in the frame in which lengths are asked for.
+            let alone = self.alone(site, operand)?;
+            warp.check(&alone.bounds).map_err(|e| self.parameter(site, e))?;
+            return Ok(inner);
+        }
+        warp.check(&inner.sides.inside).map_err(|e| self.parameter(site, e))?;
+        let outward = |b: &Bounds| {
+            if b.is_empty() { *b } else { snug(warp.bounds(b).transformed(&context.forward)) }
+        };
+        // A deformation of an infinite region is not followed.
+        let outside = if inner.sides.outside.is_finite() { outward(&inner.sides.outside) } else { Bounds::ALL };
+        let sides = Sides { inside: outward(&inner.sides.inside), outside };
+        Ok(Built { sides, growth: DVec3::INFINITY, ..inner })
+    }
+
+    fn blended(
+        &mut self,
+        site: Site<'_>,
+        operation: Operation,
+        blend: Blend,
+        lengths: &[Solid],
+        pair: [Built; 2],
+    ) -> Result<Built, SolidError> {
+        let context = *self.contexts.get(site.context);
+        let (scale, frame) = (context.scale, context.frame);
+        let op = operation.op();
+        match blend {
+            Blend::Smooth { radius } => {
+                let width = radius * scale;
+                // Equal values rise by a quarter of the width.
+                let risen = self.risen(site, [0.25 * width; 2]);
+                Ok(self.code.smooth(operation, width, frame, pair, risen))
+            }
+            Blend::Displacement { height, falloff } => {
+                let inverse = falloff.map(|f| 1.0 / (f * scale));
+                let height = height * scale;
+                let rise = if op == Op::Or { height * disjoined(Rule::P(Norm::Euclid), 2) } else { height };
+                let risen = self.risen(site, [rise; 2]);
+                Ok(self.code.displacement(operation, height, inverse, frame, pair, risen))
+            }
+            Blend::Ricci { p } => {
+                let [Some(first), Some(second)] = pair.map(|b| b.gauge) else {
+                    let position = usize::from(pair[0].gauge.is_some());
+                    return Err(SolidError::NoGauge { path: self.scene.trail.path(site.step), operand: position });
+                };
+                // Two gauges of 2^(1/p) make one of 1.
+                let beyond = (1.0 / p).exp2() - 1.0;
+                let risen = self.risen(site, [first * beyond, second * beyond]);
+                Ok(self.code.ricci(operation, p, [first, second], frame, pair, risen))
+            }
+            Blend::Fillet { .. } | Blend::Chamfer { .. } => {
+                let [a, b] = [self.alone(site, &lengths[0])?, self.alone(site, &lengths[1])?];
+                let edge = Arc::new(EdgeBlend::new(operation, blend, [a.surface.clone(), b.surface.clone()]));
+                let field: Arc<dyn AnyField> = edge.clone();
+                let (leaf, _) = self.place(&field, site);
+                let kind = Kind::Edge { op, leaf, edge };
+                let built = self.code.edge(operation, kind, pair);
+                // The material of a fillet is in the hull of its operands, hence in their box.
+                self.scene.leaves[leaf as usize].bounds = built.sides.decisive(op);
+                Ok(built)
+            }
+        }
+    }
+
+    /// The boxes of a blend's operands where they are above −c, each with its own c.
+    fn risen(&self, site: Site<'_>, c: [f64; 2]) -> [Bounds; 2] {
+        const DEEPEST: u32 = 64;
+        let below = self.contexts.below(site.solid, site.context);
+        let mut risen = [Bounds::ALL; 2];
+        for (i, &(at, inner)) in below.iter().take(2).enumerate() {
+            risen[i] = self.above(&site.solid.node().operands()[at], inner, c[i].max(0.0), DEEPEST);
+        }
+        risen
     }
 
     fn leaf(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>) -> Built {
-        let context = self.contexts[site.context as usize];
-        let bounds = snug(field.bounds_under(&context.forward));
-        let leaf = self.scene.leaves.len() as u32;
-        self.scene.leaves.push(Instance {
-            field: field.clone(),
-            frame: context.frame,
-            to_local: context.to_local,
-            scale: context.scale,
-            placement: Placement::new(&context.to_local, context.scale),
-            bounds,
-            step: site.step,
-        });
+        let (leaf, growth) = self.place(field, site);
+        let context = self.contexts.get(site.context);
+        let edge = self.code.push(Kind::Leaf(leaf), &[]);
         Built {
-            field: self.field.push(Node::Leaf(leaf)),
-            surface: self.surface.push(Node::Leaf(leaf)),
-            sides: Sides { inside: bounds, outside: Bounds::ALL },
+            field: edge,
+            surface: edge,
+            sides: Sides { inside: self.scene.leaves[leaf as usize].bounds, outside: Bounds::ALL },
+            growth,
+            gauge: field.gauge_radius().filter(|_| context.anchor.is_none()).map(|radius| radius * context.scale),
         }
     }
 
-    fn join(&mut self, operation: Operation, rule: Rule, built: &[Built], frame: u32) -> Built {
-        // A difference is the conjunction of the first with the complements of the others.
-        let negated = |i: usize| operation == Operation::Difference && i > 0;
-        let pick = |edge: fn(&Built) -> Edge| -> Vec<Operand> {
-            let operand = |(i, b): (usize, &Built)| Operand { edge: edge(b), sides: b.sides }.flip_if(negated(i));
-            built.iter().enumerate().map(operand).collect()
-        };
-        let (field, surface) = (pick(|b| b.field), pick(|b| b.surface));
-        let (field, surface) = if operation == Operation::SymmetricDifference {
-            (self.field.either_all(rule, frame, &field), self.surface.either_all(Rule::MinMax, frame, &surface))
-        } else {
-            let op = if operation == Operation::Union { Op::Or } else { Op::And };
-            (self.field.join_all(op, rule, frame, &field), self.surface.join(op, Rule::MinMax, frame, &surface))
-        };
-        Built { field: field.edge, surface: surface.edge, sides: surface.sides }
+    /// Adds a leaf to the scene: its number, and how much its box grows per unit of value.
+    fn place(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>) -> (u32, DVec3) {
+        let Place { field, context, shift } = self.contexts.place(field, site.context);
+        let grown = |unit: DVec3| context.forward.matrix3.abs() * unit / context.scale;
+        let growth = grown(field.growth());
+        let mut bounds = snug(field.bounds_under(&context.forward));
+        if shift > 0.0 {
+            bounds = grow(&bounds, growth * shift);
+        }
+        let number = self.scene.leaves.len() as u32;
+        self.scene.leaves.push(Instance {
+            number,
+            field,
+            frame: context.frame,
+            to_local: context.to_local,
+            placement: Placement::new(&context.to_local, context.scale, shift),
+            bounds,
+            step: site.step,
+        });
+        (number, growth)
     }
 }
 
-/// A box grown by what rounding may have taken from it.
-fn snug(bounds: Bounds) -> Bounds {
-    if bounds.is_empty() {
-        return Bounds::EMPTY;
+/// What can be said about a node by itself.
+fn check(node: &solid::Node) -> Result<(), ParamError> {
+    match node {
+        solid::Node::Leaf(field) => field.check(),
+        solid::Node::Affine { forward, label, .. } => check_affine(forward, label),
+        solid::Node::Join { rule, .. } => rule.check(),
+        solid::Node::Blend { blend, .. } => blend.check(),
+        solid::Node::Length { length, .. } => length.check(),
+        // A deformation is checked against what it deforms.
+        solid::Node::Warp { .. } | solid::Node::Complement(_) => Ok(()),
     }
-    let grow = |v: f64| if v.is_finite() { 1e-14 * v.abs() } else { 0.0 };
-    let mut grown = bounds;
-    for axis in 0..3 {
-        let margin = grow(bounds.min[axis]).max(grow(bounds.max[axis]));
-        grown.min[axis] -= margin;
-        grown.max[axis] += margin;
-    }
-    grown
-}
-
-/// The smallest stretch, exactly 1 where nothing is stretched.
-fn stretch(m: &DMat3) -> f64 {
-    let stretch = smallest_stretch(m);
-    if (stretch - 1.0).abs() < 1e-14 { 1.0 } else { stretch }
-}
-
-/// The inverse; a translation's is exact.
-fn inverse(map: &DAffine3) -> DAffine3 {
-    if map.matrix3 == DMat3::IDENTITY { DAffine3::from_translation(-map.translation) } else { map.inverse() }
 }
 
 fn check_affine(map: &DAffine3, label: &str) -> Result<(), ParamError> {

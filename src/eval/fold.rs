@@ -1,7 +1,7 @@
 //! Joins in bulk: registers folded into registers, one loop per rule.
 
 use super::program::Op;
-use crate::field::Rule;
+use crate::field::{RicciSide, Rule};
 use crate::num::kernel::{Element, Fold, fold};
 use crate::{Dual, Norm, Real};
 
@@ -33,6 +33,18 @@ pub(super) struct Associative {
     inv: f64,
 }
 
+pub(super) struct Smooth(f64);
+pub(super) struct Displacement {
+    height: f64,
+    inverse: [f64; 2],
+}
+pub(super) struct Ricci {
+    p: f64,
+    side: RicciSide,
+    radii: [f64; 2],
+    radius: f64,
+}
+
 /// Says which rule a conjunction is.
 macro_rules! conjunction {
     ($($name:ty: $self:ident => $rule:expr;)*) => {$(
@@ -52,6 +64,9 @@ conjunction! {
     Euclid: self => Rule::P(Norm::Euclid);
     P: self => Rule::P(Norm::P { p: self.p, inv: self.inv });
     Associative: self => Rule::Associative(Norm::P { p: self.p, inv: self.inv });
+    Smooth: self => Rule::Smooth(self.0);
+    Displacement: self => Rule::Displacement { height: self.height, inverse: self.inverse };
+    Ricci: self => Rule::Ricci { p: self.p, side: self.side, radii: self.radii, radius: self.radius };
 }
 
 impl<C: Conjunction> Fold<1> for Join<C> {
@@ -80,6 +95,9 @@ where
     Join<Euclid>: Fold<N>,
     Join<P>: Fold<N>,
     Join<Associative>: Fold<N>,
+    Join<Smooth>: Fold<N>,
+    Join<Displacement>: Fold<N>,
+    Join<Ricci>: Fold<N>,
 {
     let sign = if op == Op::And { 1.0 } else { -1.0 };
     let sign_next = if negate { -sign } else { sign };
@@ -93,6 +111,13 @@ where
         }
         Rule::Associative(norm) => {
             fold(&Join { conjunction: Associative { p: norm.p(), inv: 1.0 / norm.p() }, sign, sign_next }, all, next)
+        }
+        Rule::Smooth(width) => fold(&Join { conjunction: Smooth(width), sign, sign_next }, all, next),
+        Rule::Displacement { height, inverse } => {
+            fold(&Join { conjunction: Displacement { height, inverse }, sign, sign_next }, all, next)
+        }
+        Rule::Ricci { p, side, radii, radius } => {
+            fold(&Join { conjunction: Ricci { p, side, radii, radius }, sign, sign_next }, all, next)
         }
     }
 }

@@ -3,6 +3,7 @@
 use fidget::context::Tree;
 
 use super::compiled;
+use super::program::Kind;
 use crate::num::symbol::Arena;
 use crate::{Solid, SolidError};
 
@@ -24,6 +25,12 @@ impl Solid {
     /// ```
     pub fn to_fidget(&self) -> Result<Tree, SolidError> {
         let programs = compiled(self)?;
+        let field = &programs.field;
+        if let Some(Kind::Edge { leaf, .. }) =
+            field.nodes.iter().map(|node| &node.kind).find(|kind| matches!(kind, Kind::Edge { .. }))
+        {
+            return Err(SolidError::NotLowered { path: field.scene.trail.path(field.instance(*leaf).step) });
+        }
         let arena = Arena::default();
         let (x, y, z) = Tree::axes();
         let p = [arena.symbol(x), arena.symbol(y), arena.symbol(z)];

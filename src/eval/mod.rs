@@ -5,7 +5,12 @@
 //! R-functions, which is the same solid with the same surface and normals, and which can be
 //! narrowed to a region.
 
+mod code;
 mod compile;
+mod composite;
+mod context;
+mod edge;
+mod extent;
 mod flatten;
 mod fold;
 mod hierarchy;

@@ -2,13 +2,15 @@
 //!
 //! Where an operand of an R-function has one sign throughout a region, the operation has the
 //! sign and the zero set of the other operand there, or no surface at all (MATHEMATICS E,
-//! sign-pruning lemma). Ranges are taken leaf by leaf over the region as it looks in the
+//! sign-pruning lemma). Below a blend, which reads values, an operand goes only where its
+//! value cannot be the one that counts. Ranges are taken leaf by leaf over the region as it looks in the
 //! leaf's frame.
 
 use std::sync::Arc;
 
-use super::program::{Edge, Node, Op, Program, Region};
-use crate::field::Zone;
+use super::program::{Edge, Kind, Node, Op, Program, Region};
+use super::scene::Instance;
+use crate::field::{Rule, Zone};
 use crate::{Bounds, Interval};
 
 /// What is known of a node over a region.
@@ -80,24 +82,23 @@ impl Program {
     }
 
     fn leaf_range(&self, leaf: u32, zones: &[Zone], world: &Zone) -> Interval {
-        let instance = &self.scene.leaves[leaf as usize];
+        let instance = self.instance(leaf);
         let zone = self.in_frame(zones, instance.frame, *world).mapped(&instance.to_local);
-        instance.field.range(&zone) * Interval::point(instance.scale)
+        instance.placed_range(&zone)
     }
 
     pub(crate) fn range_zone(&self, world: &Zone) -> Interval {
         let zones = self.zones(world);
         let mut ranges: Vec<Interval> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes[..] {
-            let range = match node {
-                Node::Leaf(leaf) => self.leaf_range(*leaf, &zones, world),
-                Node::Join { op, rule, first, len, .. } => {
+            let range = match &node.kind {
+                Kind::Leaf(leaf) | Kind::Edge { leaf, .. } => self.leaf_range(*leaf, &zones, world),
+                kind => {
                     let operand = |edge: &Edge| {
                         let range = ranges[edge.node()];
                         if edge.negated() { -range } else { range }
                     };
-                    let operands = self.list(*first, *len).iter().map(operand);
-                    operands.reduce(|all, next| rule.join(*op, all, next)).unwrap_or(Interval::ALL)
+                    joined(kind, self.list(node).iter().map(operand))
                 }
             };
             ranges.push(range);
@@ -108,142 +109,40 @@ impl Program {
 
     pub(crate) fn narrow_zone(&self, world: &Zone) -> Region {
         let zones = self.zones(world);
-        let count = self.nodes.len();
-        // Down: which nodes are asked for, and which operands of long joins are near.
-        let mut asked = vec![false; count];
-        let mut near: Vec<Option<Vec<u32>>> = Vec::new();
-        asked[self.root.node()] = true;
-        for at in (0..count).rev() {
-            let mut close = None;
-            if let (true, Node::Join { first, len, frame, hierarchy, .. }) = (asked[at], &self.nodes[at]) {
-                let operands = self.list(*first, *len);
-                if let Some(hierarchy) = hierarchy {
-                    let region = hull_of(&self.in_frame(&zones, *frame, *world));
-                    let mut list = Vec::new();
-                    hierarchy.visit(&region, |operand| list.push(operand as u32));
-                    for &operand in &list {
-                        asked[operands[operand as usize].node()] = true;
-                    }
-                    close = Some(list);
-                } else {
-                    for edge in operands {
-                        asked[edge.node()] = true;
-                    }
-                }
-            }
-            near.push(close);
-        }
-        near.reverse();
-        // Up: signs, and the program of what stays open.
-        let mut signs = vec![Sign::Unknown; count];
-        let mut nodes: Vec<Node> = Vec::new();
-        let mut list: Vec<Edge> = Vec::new();
-        for at in 0..count {
-            if !asked[at] {
-                continue;
-            }
-            signs[at] = match &self.nodes[at] {
-                Node::Leaf(leaf) => {
-                    let instance = &self.scene.leaves[*leaf as usize];
-                    let zone = self.in_frame(&zones, instance.frame, *world);
-                    if !instance.bounds.intersects(&hull_of(&zone)) {
-                        Sign::Negative
-                    } else {
-                        Sign::of(self.leaf_range(*leaf, &zones, world), || {
-                            nodes.push(Node::Leaf(*leaf));
-                            Edge::new(nodes.len() - 1)
-                        })
-                    }
-                }
-                Node::Join { .. } => self.narrow_join(at, near[at].as_deref(), &signs, &mut nodes, &mut list),
-            };
-        }
+        let mut pass = Pass::new(self, &zones, world);
+        pass.run(Asked { sign: true, value: false });
+        let Pass { signs, nodes, list, simpler, .. } = pass;
         match signs[self.root.node()].flip_if(self.root.negated()) {
             Sign::Positive => Region::Inside,
             Sign::Negative => Region::Outside,
             Sign::Unknown => Region::Surface(self.clone()),
-            Sign::Open(root) => Region::Surface(self.trimmed(nodes, list, root)),
+            Sign::Open(root) => Region::Surface(self.trimmed(nodes, list, simpler, root)),
         }
     }
 
-    fn narrow_join(
-        &self,
-        at: usize,
-        near: Option<&[u32]>,
-        signs: &[Sign],
-        nodes: &mut Vec<Node>,
-        list: &mut Vec<Edge>,
-    ) -> Sign {
-        let Node::Join { op, rule, first, len, frame, hierarchy } = &self.nodes[at] else {
-            return Sign::Unknown;
-        };
-        let operands = self.list(*first, *len);
-        let start = list.len();
-        let mut kept: Vec<u32> = Vec::new();
-        let everything: Vec<u32>;
-        let candidates = match near {
-            Some(near) => near,
-            None => {
-                everything = (0..*len).collect();
-                &everything
-            }
-        };
-        for &operand in candidates {
-            let edge = operands[operand as usize];
-            match (signs[edge.node()].flip_if(edge.negated()), op) {
-                (Sign::Positive, Op::Or) => {
-                    list.truncate(start);
-                    return Sign::Positive;
-                }
-                (Sign::Negative, Op::And) => {
-                    list.truncate(start);
-                    return Sign::Negative;
-                }
-                (Sign::Open(edge), _) => {
-                    list.push(edge);
-                    kept.push(operand);
-                }
-                // The neutral element.
-                _ => {}
-            }
-        }
-        match list.len() - start {
-            0 if *op == Op::Or => Sign::Negative,
-            0 => Sign::Positive,
-            1 => {
-                let only = list[start];
-                list.truncate(start);
-                Sign::Open(only)
-            }
-            open => {
-                let hierarchy = match hierarchy {
-                    Some(all) if open == operands.len() => Some(all.clone()),
-                    Some(all) => all.subset(&kept).map(Arc::new),
-                    None => None,
-                };
-                nodes.push(Node::Join {
-                    op: *op,
-                    rule: *rule,
-                    first: start as u32,
-                    len: open as u32,
-                    frame: *frame,
-                    hierarchy,
-                });
-                Sign::Open(Edge::new(nodes.len() - 1))
-            }
+    /// A program of the same values over a zone, from what may decide them there.
+    pub(crate) fn reduced(&self, world: &Zone) -> Program {
+        let zones = self.zones(world);
+        let mut pass = Pass::new(self, &zones, world);
+        pass.run(Asked { sign: false, value: true });
+        let root = pass.value(self.root);
+        let Pass { nodes, list, simpler, .. } = pass;
+        match root {
+            Some((_, root)) => self.trimmed(nodes, list, simpler, root),
+            None => self.clone(),
         }
     }
 
     /// A program of the nodes that `root` reaches.
-    fn trimmed(&self, nodes: Vec<Node>, operands: Vec<Edge>, root: Edge) -> Program {
+    fn trimmed(&self, nodes: Vec<Node>, operands: Vec<Edge>, simpler: Vec<Instance>, root: Edge) -> Program {
         if nodes.len() == 1 {
-            return Program::assemble(self.scene.clone(), nodes, Vec::new(), root);
+            return Program::assemble(self.scene.clone(), nodes, Vec::new(), root, simpler);
         }
         let mut reached = vec![false; nodes.len()];
         reached[root.node()] = true;
         for at in (0..nodes.len()).rev() {
-            if let (true, Node::Join { first, len, .. }) = (reached[at], &nodes[at]) {
-                for edge in &operands[*first as usize..(first + len) as usize] {
+            if reached[at] {
+                for edge in &operands[nodes[at].range()] {
                     reached[edge.node()] = true;
                 }
             }
@@ -255,16 +154,341 @@ impl Program {
             if !reached[at] {
                 continue;
             }
-            if let Node::Join { first, len, .. } = &mut node {
-                let old = *first as usize..(*first + *len) as usize;
-                *first = list.len() as u32;
-                list.extend(operands[old].iter().map(|edge| edge.to(moved[edge.node()])));
-            }
+            let old = node.range();
+            node.first = list.len() as u32;
+            list.extend(operands[old].iter().map(|edge| edge.to(moved[edge.node()])));
             moved[at] = kept.len();
             kept.push(node);
         }
-        Program::assemble(self.scene.clone(), kept, list, root.to(moved[root.node()]))
+        Program::assemble(self.scene.clone(), kept, list, root.to(moved[root.node()]), simpler)
     }
+}
+
+/// The range of a node from those of its operands.
+fn joined(kind: &Kind, mut operands: impl Iterator<Item = Interval>) -> Interval {
+    let Some(first) = operands.next() else { return Interval::ALL };
+    match kind {
+        Kind::Shift(by) => first + *by,
+        Kind::Join { op, rule, .. } => operands.fold(first, |all, next| rule.join(*op, all, next)),
+        Kind::Leaf(_) | Kind::Edge { .. } => Interval::ALL,
+    }
+}
+
+/// What is asked about a node: its sign, or, below what reads values, its value.
+#[derive(Clone, Copy, Default)]
+struct Asked {
+    sign: bool,
+    value: bool,
+}
+
+/// One narrowing under way.
+struct Pass<'a> {
+    program: &'a Program,
+    zones: &'a [Zone],
+    world: &'a Zone,
+    asked: Vec<Asked>,
+    /// The operands of long joins that are near.
+    near: Vec<Option<Vec<u32>>>,
+    signs: Vec<Sign>,
+    /// The range of a node whose value is asked for, and the narrowed program's node of the
+    /// same value.
+    values: Vec<Option<(Interval, Edge)>>,
+    nodes: Vec<Node>,
+    list: Vec<Edge>,
+    simpler: Vec<Instance>,
+}
+
+impl<'a> Pass<'a> {
+    fn new(program: &'a Program, zones: &'a [Zone], world: &'a Zone) -> Pass<'a> {
+        let count = program.nodes.len();
+        Pass {
+            program,
+            zones,
+            world,
+            asked: vec![Asked::default(); count],
+            near: vec![None; count],
+            signs: vec![Sign::Unknown; count],
+            values: vec![None; count],
+            nodes: Vec::new(),
+            list: Vec::new(),
+            simpler: Vec::new(),
+        }
+    }
+
+    fn run(&mut self, asked: Asked) {
+        self.ask(asked);
+        for at in 0..self.program.nodes.len() {
+            self.answer(at);
+        }
+    }
+
+    /// Down: what is asked about each node.
+    fn ask(&mut self, root: Asked) {
+        let program = self.program;
+        self.asked[program.root.node()] = root;
+        for (at, node) in program.nodes.iter().enumerate().rev() {
+            let Asked { sign, value } = self.asked[at];
+            if !sign && !value {
+                continue;
+            }
+            let operands = program.list(node);
+            let values = match &node.kind {
+                Kind::Leaf(_) => continue,
+                Kind::Edge { .. } => value,
+                Kind::Shift(_) => true,
+                Kind::Join { rule, .. } => value || rule.reads_values(),
+            };
+            if values {
+                for edge in operands {
+                    self.asked[edge.node()].value = true;
+                }
+                continue;
+            }
+            if let Kind::Join { frame, hierarchy: Some(hierarchy), .. } = &node.kind {
+                let region = hull_of(&program.in_frame(self.zones, *frame, *self.world));
+                let mut near = Vec::new();
+                hierarchy.visit(&region, |operand| near.push(operand as u32));
+                for &operand in &near {
+                    self.asked[operands[operand as usize].node()].sign = true;
+                }
+                self.near[at] = Some(near);
+            } else {
+                for edge in operands {
+                    self.asked[edge.node()].sign = true;
+                }
+            }
+        }
+    }
+
+    /// Up: what is known of a node, and the narrowed program of what stays open.
+    fn answer(&mut self, at: usize) {
+        let program = self.program;
+        let node = &program.nodes[at];
+        let Asked { sign, value } = self.asked[at];
+        if !sign && !value {
+            return;
+        }
+        match &node.kind {
+            Kind::Leaf(leaf) => self.leaf(at, *leaf),
+            Kind::Edge { .. } => self.edge(at),
+            Kind::Join { rule, .. } if !value && !rule.reads_values() => {
+                let near = self.near[at].take();
+                self.signs[at] = self.sign_of_join(node, near.as_deref());
+            }
+            kind => {
+                let operands: Vec<(Interval, Edge)> =
+                    program.list(node).iter().filter_map(|e| self.value(*e)).collect();
+                let range = joined(kind, operands.iter().map(|(range, _)| *range));
+                let edge = match (kind, deciding(kind, &operands)) {
+                    (_, Some(only)) => only,
+                    (Kind::Join { op, rule: Rule::MinMax, .. }, None) => {
+                        let contenders = contenders(*op, &operands);
+                        self.push(kind, contenders)
+                    }
+                    _ => self.push(kind, operands.iter().map(|(_, edge)| *edge).collect()),
+                };
+                self.know(at, range, edge);
+            }
+        }
+    }
+
+    /// The range of an operand, and its node.
+    fn value(&self, edge: Edge) -> Option<(Interval, Edge)> {
+        let (range, node) = self.values[edge.node()]?;
+        Some((if edge.negated() { -range } else { range }, node.flip_if(edge.negated())))
+    }
+
+    /// A node of the narrowed program that joins all of its operands.
+    fn push(&mut self, kind: &Kind, operands: Vec<Edge>) -> Edge {
+        if let ([only], Kind::Join { .. }) = (&operands[..], kind) {
+            return *only;
+        }
+        let mut kind = kind.clone();
+        if let Kind::Join { hierarchy, .. } = &mut kind {
+            // Its boxes tell signs, and their order is that of all the operands.
+            *hierarchy = None;
+        }
+        let first = self.list.len() as u32;
+        let len = operands.len() as u32;
+        self.list.extend(operands);
+        self.nodes.push(Node { kind, first, len });
+        Edge::new(self.nodes.len() - 1)
+    }
+
+    fn know(&mut self, at: usize, range: Interval, edge: Edge) {
+        self.values[at] = Some((range, edge));
+        self.signs[at] = Sign::of(range, || edge);
+    }
+
+    fn leaf(&mut self, at: usize, leaf: u32) {
+        let program = self.program;
+        let instance = program.instance(leaf);
+        let zone = program.in_frame(self.zones, instance.frame, *self.world);
+        let value = self.asked[at].value;
+        if !value && !instance.bounds.intersects(&hull_of(&zone)) {
+            self.signs[at] = Sign::Negative;
+            return;
+        }
+        let zone = zone.mapped(&instance.to_local);
+        let range = instance.placed_range(&zone);
+        if !value && (range.lo() > 0.0 || range.hi() < 0.0) {
+            self.signs[at] = Sign::of(range, || Edge::new(0));
+            return;
+        }
+        let leaf = self.simplest(leaf, &zone);
+        self.nodes.push(Node::leaf(leaf));
+        self.know(at, range, Edge::new(self.nodes.len() - 1));
+    }
+
+    /// The number, in the narrowed program, of a leaf made as simple as it is over `zone`.
+    fn simplest(&mut self, leaf: u32, zone: &Zone) -> u32 {
+        let instance = self.program.instance(leaf);
+        let field = instance.field.narrowed(zone);
+        if field.is_none() && (leaf as usize) < self.program.scene.leaves.len() {
+            return leaf;
+        }
+        let mut simpler = instance.clone();
+        if let Some(field) = field {
+            simpler.field = field;
+        }
+        self.keep(simpler)
+    }
+
+    /// A fillet or chamfer is its operands' join where it does not reach.
+    fn edge(&mut self, at: usize) {
+        let program = self.program;
+        let node = &program.nodes[at];
+        let Kind::Edge { op, leaf, edge } = &node.kind else { return };
+        let instance = program.instance(*leaf);
+        let zone = program.in_frame(self.zones, instance.frame, *self.world).mapped(&instance.to_local);
+        let range = instance.placed_range(&zone);
+        // Seen through a deformation, the blend is part of a leaf of its own kind.
+        let plain = std::ptr::addr_eq(Arc::as_ptr(&instance.field), Arc::as_ptr(edge));
+        let mut operands = Vec::new();
+        if self.asked[at].value {
+            operands.extend(program.list(node).iter().filter_map(|e| self.value(*e)).map(|(_, edge)| edge));
+        } else {
+            if range.lo() > 0.0 || range.hi() < 0.0 {
+                self.signs[at] = Sign::of(range, || Edge::new(0));
+                return;
+            }
+            if plain && !edge.reaches(&zone, instance.placement.shift / instance.placement.scale) {
+                let join = Kind::Join { op: *op, rule: Rule::MinMax, frame: instance.frame, hierarchy: None };
+                let node = Node { kind: join, first: node.first, len: node.len };
+                self.signs[at] = self.sign_of_join(&node, None);
+                return;
+            }
+            // What is decided over the region is left out, the neutral element of the join; a
+            // decision that counts has decided the blend.
+            for edge in program.list(node) {
+                if let Sign::Open(edge) = self.signs[edge.node()].flip_if(edge.negated()) {
+                    operands.push(edge);
+                }
+            }
+        }
+        let mut simpler = instance.clone();
+        let mut blend = edge.clone();
+        if let (true, Some(reduced)) = (plain, edge.reduced(&zone)) {
+            blend = Arc::new(reduced);
+            simpler.field = blend.clone();
+        }
+        let kind = Kind::Edge { op: *op, leaf: self.keep(simpler), edge: blend };
+        let edge = self.push(&kind, operands);
+        self.know(at, range, edge);
+    }
+
+    /// The number, in the narrowed program, of a leaf made simpler.
+    fn keep(&mut self, simpler: Instance) -> u32 {
+        self.simpler.push(simpler);
+        (self.program.scene.leaves.len() + self.simpler.len() - 1) as u32
+    }
+
+    fn sign_of_join(&mut self, node: &Node, near: Option<&[u32]>) -> Sign {
+        let Kind::Join { op, rule, frame, hierarchy } = &node.kind else { return Sign::Unknown };
+        let operands = self.program.list(node);
+        let start = self.list.len();
+        let mut kept: Vec<u32> = Vec::new();
+        let everything: Vec<u32>;
+        let candidates = match near {
+            Some(near) => near,
+            None => {
+                everything = (0..node.len).collect();
+                &everything
+            }
+        };
+        for &operand in candidates {
+            let edge = operands[operand as usize];
+            match (self.signs[edge.node()].flip_if(edge.negated()), op) {
+                (Sign::Positive, Op::Or) => {
+                    self.list.truncate(start);
+                    return Sign::Positive;
+                }
+                (Sign::Negative, Op::And) => {
+                    self.list.truncate(start);
+                    return Sign::Negative;
+                }
+                (Sign::Open(edge), _) => {
+                    self.list.push(edge);
+                    kept.push(operand);
+                }
+                // The neutral element.
+                _ => {}
+            }
+        }
+        match self.list.len() - start {
+            0 if *op == Op::Or => Sign::Negative,
+            0 => Sign::Positive,
+            1 => {
+                let only = self.list[start];
+                self.list.truncate(start);
+                Sign::Open(only)
+            }
+            open => {
+                let hierarchy = match hierarchy {
+                    Some(all) if open == operands.len() => Some(all.clone()),
+                    Some(all) => all.subset(&kept).map(Arc::new),
+                    None => None,
+                };
+                self.nodes.push(Node {
+                    kind: Kind::Join { op: *op, rule: *rule, frame: *frame, hierarchy },
+                    first: start as u32,
+                    len: open as u32,
+                });
+                Sign::Open(Edge::new(self.nodes.len() - 1))
+            }
+        }
+    }
+}
+
+/// The operand that a value-reading node is equal to over the region, if it is to one.
+fn deciding(kind: &Kind, operands: &[(Interval, Edge)]) -> Option<Edge> {
+    let (Kind::Join { op, rule: Rule::Smooth(width), .. }, [(x, first), (y, second)]) = (kind, operands) else {
+        return None;
+    };
+    let (x, y) = match op {
+        Op::Or => (*x, *y),
+        Op::And => (-*x, -*y),
+    };
+    if x.lo() - y.hi() >= *width {
+        Some(*first)
+    } else if y.lo() - x.hi() >= *width {
+        Some(*second)
+    } else {
+        None
+    }
+}
+
+/// The operands of a min or max that may decide its value over the region.
+fn contenders(op: Op, operands: &[(Interval, Edge)]) -> Vec<Edge> {
+    let best = match op {
+        Op::Or => operands.iter().map(|(range, _)| range.lo()).fold(f64::NEG_INFINITY, f64::max),
+        Op::And => operands.iter().map(|(range, _)| range.hi()).fold(f64::INFINITY, f64::min),
+    };
+    let contends = |range: &Interval| match op {
+        Op::Or => range.hi() >= best,
+        Op::And => range.lo() <= best,
+    };
+    operands.iter().filter(|(range, _)| contends(range)).map(|(_, edge)| *edge).collect()
 }
 
 /// The zone's hull as a box, a hair larger, so that what only touches it counts as met.

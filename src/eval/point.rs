@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::program::{Node, Op, Program};
+use super::program::{Edge, Kind, Node, Op, Program};
 use crate::field::{AnyField, AnyWarp, COORDINATE_LIMIT, Placement, Rule, VALUE_LIMIT, saturate};
 use crate::num::symbol::Symbol;
 use crate::{Dual, Interval, Real};
@@ -63,8 +63,13 @@ impl Rule {
 impl Program {
     /// The value at a point given in any number; `frames` and `values` are scratch.
     pub(crate) fn evaluate<N: Number>(&self, p: [N; 3], values: &mut Vec<N>) -> N {
+        self.evaluate_nodes(p, values, self.idle.as_deref())
+    }
+
+    /// The same, leaving out the nodes in `idle`.
+    fn evaluate_nodes<N: Number>(&self, p: [N; 3], values: &mut Vec<N>, idle: Option<&[bool]>) -> N {
         // A single leaf in the world, what most regions narrow to, needs no tables.
-        if let ([Node::Leaf(leaf)], []) = (&self.nodes[..], &self.frames[..]) {
+        if let ([Node { kind: Kind::Leaf(leaf), .. }], []) = (&self.nodes[..], &self.frames[..]) {
             let value = self.leaf(*leaf, p);
             return if self.root.negated() { -value } else { value };
         }
@@ -72,23 +77,31 @@ impl Program {
         for &number in &self.frames[..] {
             let Some(frame) = self.scene.frame(number) else { continue };
             let above = self.in_frame(&frames, frame.parent, p);
-            let local = Placement::new(&frame.to_local, 1.0).apply(above);
+            let local = Placement::new(&frame.to_local, 1.0, 0.0).apply(above);
             frames.push(N::warp(&*frame.warp, local));
         }
         values.clear();
-        for node in &self.nodes[..] {
-            let value = match node {
-                Node::Leaf(leaf) => {
-                    let frame = self.scene.leaves[*leaf as usize].frame;
-                    self.leaf(*leaf, self.in_frame(&frames, frame, p))
+        for (at, node) in self.nodes.iter().enumerate() {
+            if idle.is_some_and(|idle| idle[at]) {
+                values.push(p[0]);
+                continue;
+            }
+            let signed = |edge: &Edge| {
+                let value = values[edge.node()];
+                if edge.negated() { -value } else { value }
+            };
+            let mut operands = self.list(node).iter().map(signed);
+            let value = match &node.kind {
+                Kind::Leaf(leaf) | Kind::Edge { leaf, .. } => {
+                    self.leaf(*leaf, self.in_frame(&frames, self.instance(*leaf).frame, p))
                 }
-                Node::Join { op, rule, first, len, .. } => {
-                    let mut operands = self.list(*first, *len).iter().map(|edge| {
-                        let value = values[edge.node()];
-                        if edge.negated() { -value } else { value }
-                    });
+                Kind::Join { op, rule, .. } => {
                     let Some(start) = operands.next() else { continue };
                     operands.fold(start, |all, next| rule.join(*op, all, next))
+                }
+                Kind::Shift(by) => {
+                    let Some(operand) = operands.next() else { continue };
+                    saturate(operand + *by)
                 }
             };
             values.push(value);
@@ -98,8 +111,8 @@ impl Program {
     }
 
     fn leaf<N: Number>(&self, leaf: u32, p: [N; 3]) -> N {
-        let instance = &self.scene.leaves[leaf as usize];
-        saturate(N::leaf(&*instance.field, instance.placement.apply(p)) * instance.scale)
+        let instance = self.instance(leaf);
+        instance.placement.finish(N::leaf(&*instance.field, instance.placement.apply(p)))
     }
 
     /// The point in a frame, given those of the live frames before it.
@@ -131,30 +144,40 @@ impl Program {
     /// The number of the leaf whose value decides at a point.
     pub(crate) fn deciding_leaf(&self, p: DVec3) -> u32 {
         let mut values = Vec::new();
-        self.evaluate(limited(p), &mut values);
+        self.evaluate_nodes(limited(p), &mut values, None);
         let mut at = self.root.node();
         loop {
-            match &self.nodes[at] {
-                Node::Leaf(leaf) => return *leaf,
-                Node::Join { op, first, len, .. } => {
-                    let signed = |edge: &super::program::Edge| {
-                        let value = values[edge.node()];
-                        if edge.negated() { -value } else { value }
-                    };
-                    let operands = self.list(*first, *len);
-                    let mut chosen = operands[0];
-                    for edge in &operands[1..] {
-                        let better = match op {
-                            Op::Or => signed(edge) > signed(&chosen),
-                            Op::And => signed(edge) < signed(&chosen),
-                        };
-                        if better {
-                            chosen = *edge;
-                        }
-                    }
-                    at = chosen.node();
+            let node = &self.nodes[at];
+            let op = match &node.kind {
+                Kind::Leaf(leaf) => return self.instance(*leaf).number,
+                Kind::Join { op, .. } | Kind::Edge { op, .. } => *op,
+                Kind::Shift(_) => Op::Or,
+            };
+            let signed = |edge: &Edge| {
+                let value = values[edge.node()];
+                if edge.negated() { -value } else { value }
+            };
+            let operands = self.list(node);
+            if let Kind::Edge { leaf, edge, .. } = &node.kind {
+                let leaf = *leaf;
+                // What is neither operand's is the fillet's own.
+                let margin = 1e-6 * edge.size() * self.instance(leaf).placement.scale;
+                let own = operands.iter().all(|operand| (values[at] - signed(operand)).abs() > margin);
+                if own {
+                    return self.instance(leaf).number;
                 }
             }
+            let mut chosen = operands[0];
+            for edge in &operands[1..] {
+                let better = match op {
+                    Op::Or => signed(edge) > signed(&chosen),
+                    Op::And => signed(edge) < signed(&chosen),
+                };
+                if better {
+                    chosen = *edge;
+                }
+            }
+            at = chosen.node();
         }
     }
 }

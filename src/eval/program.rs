@@ -2,10 +2,12 @@
 
 use std::sync::Arc;
 
+use super::edge::EdgeBlend;
 use super::hierarchy::Hierarchy;
-use super::scene::Scene;
+use super::scene::{Instance, Scene};
 use crate::Bounds;
 use crate::field::Rule;
+use crate::solid::Operation;
 
 /// A reference to a node's value, or to its negative.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
@@ -42,6 +44,13 @@ pub(crate) enum Op {
     Or,
 }
 
+impl Operation {
+    /// How its operands are joined; those of a difference after the first are complemented.
+    pub(crate) fn op(self) -> Op {
+        if self == Operation::Union { Op::Or } else { Op::And }
+    }
+}
+
 impl Op {
     /// What this is to operands and result that are all negated (De Morgan).
     pub(crate) fn flip_if(self, negate: bool) -> Op {
@@ -52,21 +61,52 @@ impl Op {
     }
 }
 
+/// A node: what it computes, and its operands `first .. first + len` in the program's list.
 #[derive(Clone)]
-pub(crate) enum Node {
-    /// A leaf of the scene.
+pub(crate) struct Node {
+    pub(crate) kind: Kind,
+    pub(crate) first: u32,
+    pub(crate) len: u32,
+}
+
+#[derive(Clone)]
+pub(crate) enum Kind {
+    /// A leaf.
     Leaf(u32),
-    /// Operands `first .. first + len` of the program's list, joined from the left.
+    /// Its operands, joined from the left.
     Join {
         op: Op,
         rule: Rule,
-        first: u32,
-        len: u32,
-        /// The frame that the join's operands are joined in.
+        /// The frame that the operands are joined in.
         frame: u32,
-        /// Where its operands are, if they are many.
+        /// Where the operands are, if they are many.
         hierarchy: Option<Arc<Hierarchy>>,
     },
+    /// Its operand plus a number.
+    Shift(f64),
+    /// A fillet or chamfer: a leaf of its own near the edge where the two operands meet, and
+    /// their join elsewhere.
+    Edge { op: Op, leaf: u32, edge: Arc<EdgeBlend> },
+}
+
+impl Node {
+    /// A node without operands.
+    pub(crate) fn leaf(leaf: u32) -> Node {
+        Node { kind: Kind::Leaf(leaf), first: 0, len: 0 }
+    }
+
+    /// The node's operands among those of its program.
+    pub(crate) fn range(&self) -> std::ops::Range<usize> {
+        self.first as usize..(self.first + self.len) as usize
+    }
+
+    /// The leaf that gives its value, if one does.
+    pub(crate) fn valued_by(&self) -> Option<u32> {
+        match self.kind {
+            Kind::Leaf(leaf) | Kind::Edge { leaf, .. } => Some(leaf),
+            Kind::Join { .. } | Kind::Shift(_) => None,
+        }
+    }
 }
 
 /// A box that holds what is inside, and one that holds what is outside.
@@ -138,6 +178,11 @@ pub struct Program {
     pub(crate) nodes: Arc<[Node]>,
     pub(crate) operands: Arc<[Edge]>,
     pub(crate) root: Edge,
+    /// Leaves that narrowing has made simpler; their numbers go on from the scene's.
+    pub(crate) simpler: Arc<[Instance]>,
+    /// Which nodes only tell where a fillet or chamfer ends, if any does: its value needs none of
+    /// its operands.
+    pub(crate) idle: Option<Arc<[bool]>>,
     /// Frames that its leaves stand in and their ancestors, parents first, without the world.
     pub(crate) frames: Arc<[u32]>,
 }
@@ -156,11 +201,16 @@ pub enum Region {
 
 impl Program {
     /// Assembles a program; `nodes` are sorted operands first, the root is among them.
-    pub(crate) fn assemble(scene: Arc<Scene>, nodes: Vec<Node>, operands: Vec<Edge>, root: Edge) -> Program {
+    pub(crate) fn assemble(
+        scene: Arc<Scene>,
+        nodes: Vec<Node>,
+        operands: Vec<Edge>,
+        root: Edge,
+        simpler: Vec<Instance>,
+    ) -> Program {
         let mut live = vec![false; scene.frames.len() + 1];
-        for node in &nodes {
-            let Node::Leaf(leaf) = node else { continue };
-            let mut frame = scene.leaves[*leaf as usize].frame;
+        for leaf in nodes.iter().filter_map(Node::valued_by) {
+            let mut frame = instance(&scene, &simpler, leaf).frame;
             while let Some(up) = scene.frame(frame) {
                 if std::mem::replace(&mut live[frame as usize], true) {
                     break;
@@ -169,19 +219,47 @@ impl Program {
             }
         }
         let frames = (1..live.len()).filter(|&f| live[f]).map(|f| f as u32).collect();
-        Program { scene, nodes: nodes.into(), operands: operands.into(), root, frames }
+        let idle = idle(&nodes, &operands, root);
+        let (nodes, operands, simpler) = (nodes.into(), operands.into(), simpler.into());
+        Program { scene, nodes, operands, root, simpler, idle, frames }
     }
 
     /// How many leaves it evaluates; a leaf that is used in several places counts once.
     #[must_use]
     pub fn leaf_count(&self) -> usize {
-        self.nodes.iter().filter(|node| matches!(node, Node::Leaf(_))).count()
+        self.nodes.iter().filter(|node| matches!(node.kind, Kind::Leaf(_))).count()
     }
 
-    /// The operands of a join.
-    pub(crate) fn list(&self, first: u32, len: u32) -> &[Edge] {
-        &self.operands[first as usize..(first + len) as usize]
+    /// The operands of a node.
+    pub(crate) fn list(&self, node: &Node) -> &[Edge] {
+        &self.operands[node.range()]
     }
+
+    /// The leaf with this number.
+    pub(crate) fn instance(&self, leaf: u32) -> &Instance {
+        instance(&self.scene, &self.simpler, leaf)
+    }
+}
+
+fn idle(nodes: &[Node], operands: &[Edge], root: Edge) -> Option<Arc<[bool]>> {
+    if !nodes.iter().any(|node| matches!(node.kind, Kind::Edge { .. })) {
+        return None;
+    }
+    let mut idle = vec![true; nodes.len()];
+    idle[root.node()] = false;
+    for (at, node) in nodes.iter().enumerate().rev() {
+        if !idle[at] && node.valued_by().is_none() {
+            for edge in &operands[node.range()] {
+                idle[edge.node()] = false;
+            }
+        }
+    }
+    Some(idle.into())
+}
+
+fn instance<'a>(scene: &'a Scene, simpler: &'a [Instance], leaf: u32) -> &'a Instance {
+    let leaf = leaf as usize;
+    scene.leaves.get(leaf).unwrap_or_else(|| &simpler[leaf - scene.leaves.len()])
 }
 
 impl std::fmt::Debug for Program {

@@ -6,7 +6,7 @@
 //! every other is folded in as soon as it is known: a chain needs two registers whatever its
 //! length, a balanced tree as many as it is deep.
 
-use super::program::{Edge, Node, Op, Program};
+use super::program::{Edge, Kind, Op, Program};
 use crate::field::Rule;
 
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +19,8 @@ pub(super) enum Step {
     Copy { from: u32, to: u32 },
     /// Negates a register.
     Negate { register: u32 },
+    /// Adds a number to the values of a register.
+    Shift { register: u32, by: f64 },
 }
 
 /// The steps of a program, how many registers they use, and the one with the result.
@@ -58,9 +60,11 @@ pub(super) fn schedule(program: &Program) -> Schedule {
     let mut needs = vec![1u32; count];
     uses[program.root.node()] += 1;
     for (at, node) in program.nodes.iter().enumerate() {
-        let Node::Join { first, len, .. } = node else { continue };
-        let mut own: Vec<u32> = Vec::with_capacity(*len as usize);
-        for edge in program.list(*first, *len) {
+        if node.valued_by().is_some() {
+            continue;
+        }
+        let mut own: Vec<u32> = Vec::with_capacity(node.len as usize);
+        for edge in program.list(node) {
             uses[edge.node()] += 1;
             own.push(needs[edge.node()]);
         }
@@ -73,22 +77,20 @@ pub(super) fn schedule(program: &Program) -> Schedule {
     // Where a node's value is kept while uses remain.
     let mut kept: Vec<Option<u32>> = vec![None; count];
     let mut open: Vec<Open> = Vec::new();
-    let start =
-        |node: usize, steps: &mut Vec<Step>, registers: &mut Registers, kept: &mut Vec<Option<u32>>| match &program
-            .nodes[node]
-        {
-            Node::Leaf(leaf) => {
-                let to = registers.take();
-                steps.push(Step::Leaf { leaf: *leaf, to });
-                kept[node] = Some(to);
-                None
-            }
-            Node::Join { first, len, .. } => {
-                let mut operands = program.list(*first, *len).to_vec();
-                operands.sort_by_key(|edge| std::cmp::Reverse(needs[edge.node()]));
-                Some(Open { node, operands, next: 0, all: None })
-            }
-        };
+    let start = |node: usize, steps: &mut Vec<Step>, registers: &mut Registers, kept: &mut Vec<Option<u32>>| {
+        if let Some(leaf) = program.nodes[node].valued_by() {
+            let to = registers.take();
+            steps.push(Step::Leaf { leaf, to });
+            kept[node] = Some(to);
+            return None;
+        }
+        let mut operands = program.list(&program.nodes[node]).to_vec();
+        // Blends tell their operands apart.
+        if !matches!(program.nodes[node].kind, Kind::Join { rule, .. } if rule.reads_values()) {
+            operands.sort_by_key(|edge| std::cmp::Reverse(needs[edge.node()]));
+        }
+        Some(Open { node, operands, next: 0, all: None })
+    };
     open.extend(start(program.root.node(), &mut steps, &mut registers, &mut kept));
     while let Some(top) = open.last_mut() {
         let Some(&edge) = top.operands.get(top.next) else {
@@ -104,8 +106,8 @@ pub(super) fn schedule(program: &Program) -> Schedule {
         top.next += 1;
         uses[edge.node()] -= 1;
         let last_use = uses[edge.node()] == 0;
-        match (top.all, &program.nodes[top.node]) {
-            (Some(to), Node::Join { op, rule, .. }) => {
+        match (top.all, &program.nodes[top.node].kind) {
+            (Some(to), Kind::Join { op, rule, .. }) => {
                 steps.push(Step::Fold { op: *op, rule: *rule, negate: edge.negated(), from, to });
                 if last_use {
                     registers.free.push(from);
@@ -121,6 +123,9 @@ pub(super) fn schedule(program: &Program) -> Schedule {
                 };
                 if edge.negated() {
                     steps.push(Step::Negate { register: all });
+                }
+                if let Kind::Shift(by) = program.nodes[top.node].kind {
+                    steps.push(Step::Shift { register: all, by });
                 }
                 top.all = Some(all);
             }

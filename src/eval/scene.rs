@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use glam::DAffine3;
 
-use crate::Bounds;
-use crate::field::{AnyField, AnyWarp, Placement};
+use crate::field::{AnyField, AnyWarp, Placement, Zone};
 use crate::solid::Trail;
+use crate::{Bounds, Interval};
 
 /// Leaves and frames of a compiled solid.
 ///
@@ -29,17 +29,27 @@ pub(crate) struct Frame {
 }
 
 /// A leaf in its place.
+#[derive(Clone)]
 pub(crate) struct Instance {
+    /// Its number in the scene.
+    pub(crate) number: u32,
     pub(crate) field: Arc<dyn AnyField>,
     pub(crate) frame: u32,
     /// From the frame to the leaf's own coordinates.
     pub(crate) to_local: DAffine3,
-    pub(crate) scale: f64,
+    /// With the factor and the shift of its value.
     pub(crate) placement: Placement,
     /// The leaf's box in its frame.
     pub(crate) bounds: Bounds,
     /// The step of the trail that leads to it.
     pub(crate) step: u32,
+}
+
+impl Instance {
+    /// A sound range over a zone of the leaf's own coordinates, as it counts outside of them.
+    pub(crate) fn placed_range(&self, zone: &Zone) -> Interval {
+        self.field.range(zone) * Interval::point(self.placement.scale) + self.placement.shift
+    }
 }
 
 impl Scene {

@@ -70,9 +70,9 @@ impl Tape {
         let rebase = DAffine3::from_translation(origin);
         // Slot 0 is the world; slot i + 1 the frame number i of the live ones.
         let slot_of = |frame: u32| program.frames.binary_search(&frame).map_or(0, |slot| slot + 1);
-        let placed = |frame: u32, to_local: &DAffine3, scale: f64| {
+        let placed = |frame: u32, to_local: &DAffine3, of: &Placement| {
             let map = if slot_of(frame) == 0 { *to_local * rebase } else { *to_local };
-            Placement::new(&map, scale)
+            Placement::new(&map, of.scale, of.shift)
         };
         let mut seen = vec![Seen { zone: world, error: 0.0 }];
         let mut frames = Vec::new();
@@ -80,7 +80,7 @@ impl Tape {
             let from = slot_of(frame.parent);
             frames.push(FrameStep {
                 from,
-                placement: placed(frame.parent, &frame.to_local, 1.0),
+                placement: placed(frame.parent, &frame.to_local, &Placement::IDENTITY),
                 warp: frame.warp.clone(),
             });
             seen.push(seen[from].through(&frame.to_local, &*frame.warp));
@@ -91,13 +91,15 @@ impl Tape {
         let mut steps = plan.steps;
         for step in &mut steps {
             let Step::Leaf { leaf, .. } = step else { continue };
-            let instance = &program.scene.leaves[*leaf as usize];
+            let instance = program.instance(*leaf);
             let slot = slot_of(instance.frame);
-            roundoff = roundoff.max(seen[slot].leaf_error(&instance.to_local, &*instance.field) * instance.scale);
+            let Placement { scale, shift, .. } = instance.placement;
+            let error = seen[slot].leaf_error(&instance.to_local, &*instance.field) * scale + 1e-7 * shift.abs();
+            roundoff = roundoff.max(error);
             *leaf = leaves.len() as u32;
             leaves.push(LeafStep {
                 slot,
-                placement: placed(instance.frame, &instance.to_local, instance.scale),
+                placement: placed(instance.frame, &instance.to_local, &instance.placement),
                 field: instance.field.clone(),
             });
         }
@@ -422,6 +424,12 @@ fn chunk<M: Mode<N>, const N: usize>(tape: &Tape, world: [&[M::E]; 3], registers
             Step::Negate { register } => {
                 for v in &mut registers[register as usize * width..][..width] {
                     *v = M::E::negated(*v);
+                }
+            }
+            Step::Shift { register, by } => {
+                // Of a value with its slopes, the value alone.
+                for v in &mut registers[register as usize * width..][..CHUNK] {
+                    *v = v.plus(M::E::from_f64(by));
                 }
             }
         }

@@ -28,12 +28,12 @@ const SMALLEST_LENGTH: f64 = 1e-9;
 const LARGEST_LENGTH: f64 = 1e9;
 
 /// A length: positive, neither NaN nor extreme.
-pub(super) fn length(parameter: &str, value: f64) -> Result<(), ParamError> {
+pub(crate) fn length(parameter: &str, value: f64) -> Result<(), ParamError> {
     within(parameter, value, SMALLEST_LENGTH, LARGEST_LENGTH)
 }
 
 /// Three lengths, named `parameter.x` and so on.
-pub(super) fn lengths(parameter: &str, value: glam::DVec3) -> Result<(), ParamError> {
+pub(crate) fn lengths(parameter: &str, value: glam::DVec3) -> Result<(), ParamError> {
     for (axis, v) in ["x", "y", "z"].into_iter().zip(value.to_array()) {
         length(&format!("{parameter}.{axis}"), v)?;
     }
@@ -41,7 +41,7 @@ pub(super) fn lengths(parameter: &str, value: glam::DVec3) -> Result<(), ParamEr
 }
 
 /// A number in `[lo, hi]`.
-pub(super) fn within(parameter: &str, value: f64, lo: f64, hi: f64) -> Result<(), ParamError> {
+pub(crate) fn within(parameter: &str, value: f64, lo: f64, hi: f64) -> Result<(), ParamError> {
     if value >= lo && value <= hi {
         Ok(())
     } else {
@@ -50,7 +50,7 @@ pub(super) fn within(parameter: &str, value: f64, lo: f64, hi: f64) -> Result<()
 }
 
 /// A finite number.
-pub(super) fn finite(parameter: &str, value: f64) -> Result<(), ParamError> {
+pub(crate) fn finite(parameter: &str, value: f64) -> Result<(), ParamError> {
     if value.abs() <= LARGEST_LENGTH {
         Ok(())
     } else {

@@ -16,23 +16,35 @@ use crate::num::kernel::{Element, Formula, Visit, run};
 use crate::num::symbol::Symbol;
 use crate::{Bounds, Dual, Interval, Real};
 
-/// Where a leaf stands: the map from the points that it is given to its own frame, and the
-/// factor of its value.
+/// Where a leaf stands: the map from the points that it is given to its own frame, the factor
+/// of its value, and what is added after it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placement {
     /// Rows of the map: `[m_x, m_y, m_z, t]` each.
     rows: [[f64; 4]; 3],
     pub(crate) scale: f64,
+    /// The level or offset that the leaf is seen at.
+    pub(crate) shift: f64,
 }
 
 impl Placement {
-    pub(crate) fn new(map: &DAffine3, scale: f64) -> Placement {
+    /// Where nothing is moved.
+    pub(crate) const IDENTITY: Placement =
+        Placement { rows: [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]], scale: 1.0, shift: 0.0 };
+
+    pub(crate) fn new(map: &DAffine3, scale: f64, shift: f64) -> Placement {
         let m = map.matrix3.transpose();
         let row = |axis: usize| {
             let r = m.col(axis);
             [r.x, r.y, r.z, map.translation[axis]]
         };
-        Placement { rows: [row(0), row(1), row(2)], scale }
+        Placement { rows: [row(0), row(1), row(2)], scale, shift }
+    }
+
+    /// The leaf's value, as it counts outside of its frame.
+    #[inline(always)]
+    pub(crate) fn finish<R: Real>(&self, value: R) -> R {
+        saturate(value.scale_add(self.scale, value.lift(self.shift)))
     }
 
     /// The point in the leaf's frame.
@@ -48,7 +60,7 @@ impl Placement {
 
     /// A gradient of the leaf's frame, in that of the points.
     #[inline(always)]
-    fn pull<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
+    pub(crate) fn pull<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
         let r = &self.rows;
         [
             x.scale_add(r[0][0], y.scale_add(r[1][0], z * r[2][0])),
@@ -77,6 +89,15 @@ pub(crate) trait AnyField: Debug + Send + Sync {
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval>;
     /// Whether the value is the true distance.
     fn exact(&self) -> bool;
+    /// The radius of a leaf valued `radius·(1 − G)`.
+    fn gauge_radius(&self) -> Option<f64> {
+        None
+    }
+    /// How much the box of the points with a value above −c grows along each axis of the
+    /// leaf's frame, per unit of c; infinite where nothing is known.
+    fn growth(&self) -> DVec3 {
+        DVec3::INFINITY
+    }
     /// A sound range over a zone of the leaf's frame.
     fn range(&self, zone: &Zone) -> Interval;
     /// A leaf that is cheaper and has the same values over the zone, where there is one.
@@ -95,7 +116,7 @@ struct Value<'a, F>(&'a F, &'a Placement);
 impl<F: Field> Formula<3, 1> for Value<'_, F> {
     #[inline(always)]
     fn run<R: Real>(&self, p: [R; 3]) -> [R; 1] {
-        [saturate(self.0.eval(self.1.apply(p)) * self.1.scale)]
+        [self.1.finish(self.0.eval(self.1.apply(p)))]
     }
 
     #[inline(always)]
@@ -127,9 +148,10 @@ struct Gradient<'a, F>(&'a F, &'a Placement);
 impl<F: Field> Formula<3, 4> for Gradient<'_, F> {
     #[inline(always)]
     fn run<R: Real>(&self, p: [R; 3]) -> [R; 4] {
-        let value = self.0.eval(Dual::point(self.1.apply(p))) * self.1.scale;
-        let [x, y, z] = self.1.pull(value.d);
-        [saturate(value.v), x, y, z]
+        let Dual { v, d } = self.0.eval(Dual::point(self.1.apply(p)));
+        let k = self.1.scale;
+        let [x, y, z] = self.1.pull([d[0] * k, d[1] * k, d[2] * k]);
+        [self.1.finish(v), x, y, z]
     }
 
     #[inline(always)]
@@ -175,6 +197,27 @@ impl<F: Field> AnyField for F {
 
     fn exact(&self) -> bool {
         Field::exact(self)
+    }
+
+    fn gauge_radius(&self) -> Option<f64> {
+        Field::gauge_radius(self)
+    }
+
+    fn growth(&self) -> DVec3 {
+        if Field::exact(self) {
+            return DVec3::ONE;
+        }
+        let bounds = Field::bounds(self);
+        if !bounds.is_finite() {
+            return DVec3::INFINITY;
+        }
+        if let Some(radius) = Field::gauge_radius(self) {
+            return bounds.min.abs().max(bounds.max.abs()) / radius;
+        }
+        // A concave function falls from its value at a point at least as fast beyond the
+        // surface as before it.
+        let top = self.eval(bounds.center().to_array());
+        if self.convex() && top > 0.0 { bounds.half_extents() / top } else { DVec3::INFINITY }
     }
 
     fn value(&self, p: [f64; 3]) -> f64 {

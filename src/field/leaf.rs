@@ -80,6 +80,13 @@ pub trait Field: Debug + Send + Sync + 'static {
         false
     }
 
+    /// The radius r of a leaf whose value is `r·(1 − G)` with a gauge G, homogeneous of degree 1
+    /// about the leaf's origin: what [`Blend::Ricci`](crate::Blend::Ricci) asks of its
+    /// operands. Default: `None`.
+    fn gauge_radius(&self) -> Option<f64> {
+        None
+    }
+
     /// The range of the formula over a box of the leaf's own frame. The default runs the
     /// formula on intervals; a leaf whose structure gives a tighter one overrides it.
     fn range(&self, region: [Interval; 3]) -> Interval {

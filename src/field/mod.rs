@@ -5,7 +5,8 @@
 //! deformation implements `Warp`. Both are erased (`AnyField`, `AnyWarp`) to the evaluations
 //! that the engine runs: point, gradient, range, lanes, expression tree.
 
-mod check;
+mod blend;
+pub(crate) mod check;
 mod cuboid;
 mod cylinder;
 mod deform;
@@ -19,6 +20,8 @@ mod superellipsoid;
 mod supershape;
 mod zone;
 
+pub use blend::Blend;
+pub(crate) use blend::RicciSide;
 pub use check::ParamError;
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;

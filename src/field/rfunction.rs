@@ -18,6 +18,7 @@
 //! Sources: V. L. Rvachev (1982); V. Shapiro, *Semi-analytic geometry with R-functions*
 //! (2007); Y. D. Fougerolle et al.
 
+use super::blend::{self, RicciSide};
 use super::{ParamError, VALUE_LIMIT};
 use crate::{Monotone, Norm, Real};
 
@@ -96,7 +97,7 @@ impl RFunction {
     }
 }
 
-/// An R-function with its special cases told apart.
+/// An R-function with its special cases told apart, or a blend.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Rule {
     MinMax,
@@ -104,6 +105,22 @@ pub(crate) enum Rule {
     Zero(u32),
     P(Norm),
     Associative(Norm),
+    /// Smooth minimum over this width of values.
+    Smooth(f64),
+    /// R_p with p = 2 and a term that moves the surface.
+    Displacement {
+        height: f64,
+        /// `1/a₁` and `1/a₂`.
+        inverse: [f64; 2],
+    },
+    /// A norm of gauges.
+    Ricci {
+        p: f64,
+        side: RicciSide,
+        /// Values are `radius·(1 − G)`: those of the operands and of the result.
+        radii: [f64; 2],
+        radius: f64,
+    },
 }
 
 impl From<RFunction> for Rule {
@@ -120,12 +137,19 @@ impl From<RFunction> for Rule {
 }
 
 impl Rule {
+    /// Whether the surface depends on the operands' values and not on their signs alone.
+    pub(crate) fn reads_values(self) -> bool {
+        matches!(self, Rule::Smooth(_) | Rule::Displacement { .. } | Rule::Ricci { .. })
+    }
+
     /// `x ∧ y`.
     #[inline(always)]
     pub(crate) fn and<R: Real>(self, x: R, y: R) -> R {
         match self {
             Rule::MinMax => x.min(y),
             Rule::Zero(m) => saturate(zero_and(x, y, m)),
+            Rule::Displacement { height, inverse } => saturate(blend::displacement(x, y, height, inverse)),
+            Rule::Ricci { p, side, radii, radius } => saturate(blend::ricci(x, y, p, side, radii, radius)),
             rule => saturate(x.monotone(y, &And(rule))),
         }
     }
@@ -157,8 +181,8 @@ impl Monotone for And {
     #[inline(always)]
     fn value<R: Real>(&self, x: R, y: R) -> R {
         match self.0 {
-            Rule::MinMax | Rule::Zero(_) => x.min(y),
             Rule::Alpha(alpha) => alpha_and(x, y, alpha).0,
+            Rule::Smooth(width) => blend::smooth(x, y, width),
             Rule::P(norm) => {
                 let zero = x.lift(0.0);
                 x.min(y) + (x + y).min(zero) - norm_excess(x, y, norm)
@@ -169,6 +193,7 @@ impl Monotone for And {
                 let both = px * (py / px.norm(py, norm).max(x.lift(TINY)));
                 both - x.min(zero).norm(y.min(zero), norm)
             }
+            _ => x.min(y),
         }
     }
 
@@ -177,10 +202,7 @@ impl Monotone for And {
         let zero = x.lift(0.0);
         let one = x.lift(1.0);
         match self.0 {
-            Rule::MinMax | Rule::Zero(_) => {
-                let first = (y - x).select(one, zero);
-                (x.min(y), first, one - first)
-            }
+            Rule::Smooth(width) => blend::smooth_parts(x, y, width),
             Rule::Alpha(alpha) => {
                 let (value, d) = alpha_and(x, y, alpha);
                 let floor = d.max(x.lift(TINY));
@@ -205,6 +227,10 @@ impl Monotone for And {
                 let dx = both.select(ny * ry * ry, -mx);
                 let dy = both.select(nx * rx * rx, -my);
                 (self.value(x, y), dx, dy)
+            }
+            _ => {
+                let first = (y - x).select(one, zero);
+                (x.min(y), first, one - first)
             }
         }
     }

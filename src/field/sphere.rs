@@ -51,6 +51,10 @@ impl Field for Sphere {
         true
     }
 
+    fn gauge_radius(&self) -> Option<f64> {
+        Some(self.radius)
+    }
+
     fn range(&self, region: [Interval; 3]) -> Interval {
         falling_range(self, region)
     }

@@ -179,6 +179,10 @@ impl Field for Superellipsoid {
         self.e1 <= 2.0 && self.e2 <= 2.0
     }
 
+    fn gauge_radius(&self) -> Option<f64> {
+        Some(self.inscribed)
+    }
+
     fn range(&self, region: [Interval; 3]) -> Interval {
         falling_range(self, region)
     }

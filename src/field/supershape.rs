@@ -171,6 +171,10 @@ impl Field for Supershape {
         check::lengths("scale", self.scale)
     }
 
+    fn gauge_radius(&self) -> Option<f64> {
+        Some(self.inscribed)
+    }
+
     fn range(&self, region: [Interval; 3]) -> Interval {
         // Direct intervals lose the angle's tie to the radius; the mean-value form keeps it
         // over small regions.

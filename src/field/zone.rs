@@ -36,6 +36,24 @@ impl Zone {
         Zone::new(bounds.center(), DMat3::from_diagonal(bounds.half_extents()), DVec3::ZERO)
     }
 
+    /// The box with these sides.
+    pub(crate) fn of_sides(sides: [Interval; 3]) -> Zone {
+        let centre = DVec3::from_array(sides.map(Interval::mid));
+        let half = DVec3::from_array(sides.map(|side| 0.5 * side.width()));
+        let mut zone = Zone::new(centre, DMat3::from_diagonal(half), DVec3::ZERO);
+        zone.hull = sides;
+        zone
+    }
+
+    /// The zone grown by `by` along every axis.
+    pub(crate) fn inflated(&self, by: f64) -> Zone {
+        let mut grown = Zone::new(self.centre, self.axes, self.slack + by);
+        for (side, own) in grown.hull.iter_mut().zip(self.hull) {
+            *side = side.narrowed_by(own.inflate(by));
+        }
+        grown
+    }
+
     /// The segment from `a` to `b`.
     pub(crate) fn of_segment(a: DVec3, b: DVec3) -> Zone {
         Zone::new(0.5 * (a + b), DMat3::from_cols(0.5 * (b - a), DVec3::ZERO, DVec3::ZERO), DVec3::ZERO)

@@ -70,6 +70,8 @@ pub(crate) trait Element: Copy + Default + Send + Sync + PartialOrd + 'static {
     fn from_f64(v: f64) -> Self;
 
     fn negated(self) -> Self;
+
+    fn plus(self, other: Self) -> Self;
 }
 
 impl Element for f32 {
@@ -83,6 +85,10 @@ impl Element for f32 {
     fn negated(self) -> f32 {
         -self
     }
+
+    fn plus(self, other: f32) -> f32 {
+        self + other
+    }
 }
 
 impl Element for f64 {
@@ -95,6 +101,10 @@ impl Element for f64 {
 
     fn negated(self) -> f64 {
         -self
+    }
+
+    fn plus(self, other: f64) -> f64 {
+        self + other
     }
 }
 

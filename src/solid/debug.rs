@@ -33,8 +33,11 @@ impl fmt::Debug for Solid {
                 continue;
             }
             write!(f, "{}", solid.node().name())?;
-            if let Node::Join { rule, .. } = solid.node() {
-                write!(f, " by {rule:?}")?;
+            match solid.node() {
+                Node::Join { rule, .. } => write!(f, " by {rule:?}")?,
+                Node::Blend { blend, .. } => write!(f, " by {blend:?}")?,
+                Node::Length { length, .. } => write!(f, " {length:?}")?,
+                _ => {}
             }
             f.write_str("(")?;
             stack.push(Item::Text(")"));

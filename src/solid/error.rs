@@ -23,6 +23,31 @@ pub enum SolidError {
         /// Where the node is.
         path: String,
     },
+    /// An operand of Ricci's blend whose value is no gauge.
+    #[error(
+        "{path}: operand {operand} is no gauge, allowed: spheres, ellipsoids, superquadrics, supershapes and Ricci \
+         blends of them, moved and deformed"
+    )]
+    NoGauge {
+        /// Where the node is.
+        path: String,
+        /// Which operand, from 0.
+        operand: usize,
+    },
+    /// Fillets, chamfers and offsets of each other, too deep to be evaluated.
+    #[error("{path}: fillets, chamfers and offsets nested more than {limit} deep, allowed: at most {limit}")]
+    TooDeep {
+        /// Where the node is.
+        path: String,
+        /// The largest number allowed.
+        limit: u32,
+    },
+    /// A node that the other system has no counterpart for.
+    #[error("{path}: cannot be lowered, allowed: solids without fillets, chamfers, offsets and shells")]
+    NotLowered {
+        /// Where the node is.
+        path: String,
+    },
     /// The solid does not end, and no bounds were given to cut it.
     #[error("{path}: unbounded; give explicit bounds, or intersect it with something bounded")]
     Unbounded {
@@ -62,7 +87,7 @@ impl Trail {
     /// Notes `solid`, operand number `position` of the node noted as `parent`.
     pub(crate) fn push(&mut self, solid: &Solid, parent: Option<(u32, &Solid, usize)>) -> u32 {
         let position = parent.and_then(|(_, up, at)| match up.node() {
-            Node::Join { .. } => Some(at),
+            Node::Join { .. } | Node::Blend { .. } => Some(at),
             _ => None,
         });
         self.0.push(Step { parent: parent.map(|(step, ..)| step), name: solid.node().name(), position });

@@ -1,13 +1,15 @@
 //! Solids: the expression graph that a user builds.
 
+mod blend;
 mod build;
 mod debug;
 mod error;
 mod join;
+mod length;
 mod node;
 mod transform;
 
 pub use error::SolidError;
 pub(crate) use error::Trail;
 pub use node::Solid;
-pub(crate) use node::{Node, Operation};
+pub(crate) use node::{Length, Node, Operation};

@@ -5,8 +5,8 @@ use std::sync::{Arc, OnceLock};
 
 use glam::DAffine3;
 
-use crate::RFunction;
-use crate::field::{AnyField, AnyWarp};
+use crate::field::{AnyField, AnyWarp, check};
+use crate::{Blend, ParamError, RFunction};
 
 /// A solid: an immutable expression graph of leaves, maps and joins.
 ///
@@ -55,6 +55,47 @@ pub(crate) enum Node {
         operands: Vec<Solid>,
     },
     Complement(Solid),
+    /// Two operands joined with the transition between them shaped.
+    Blend {
+        operation: Operation,
+        blend: Blend,
+        operands: [Solid; 2],
+        /// The operands valued by true distance, where the blend reads that.
+        lengths: Vec<Solid>,
+    },
+    Length {
+        operand: Solid,
+        length: Length,
+    },
+}
+
+/// How a solid is moved in or out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Length {
+    /// Values are moved by this much.
+    Level(f64),
+    /// The surface is moved outwards by this much.
+    Offset(f64),
+    /// A wall of this thickness inside the surface.
+    Shell(f64),
+}
+
+impl Length {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Length::Level(_) => "level",
+            Length::Offset(_) => "offset",
+            Length::Shell(_) => "shell",
+        }
+    }
+
+    pub(crate) fn check(self) -> Result<(), ParamError> {
+        match self {
+            Length::Level(c) => check::finite("value", c),
+            Length::Offset(d) => check::finite("distance", d),
+            Length::Shell(t) => check::length("thickness", t),
+        }
+    }
 }
 
 /// A set operation on one or more operands.
@@ -86,6 +127,8 @@ impl Node {
             Node::Warp { warp, .. } => warp.name(),
             Node::Join { operation, .. } => operation.name(),
             Node::Complement(_) => "complement",
+            Node::Blend { operation, blend, .. } => super::blend::name(blend, *operation),
+            Node::Length { length, .. } => length.name(),
         }
     }
 
@@ -93,9 +136,11 @@ impl Node {
     pub(crate) fn operands(&self) -> &[Solid] {
         match self {
             Node::Leaf(_) => &[],
-            Node::Affine { operand, .. } | Node::Warp { operand, .. } | Node::Complement(operand) => {
-                std::slice::from_ref(operand)
-            }
+            Node::Affine { operand, .. }
+            | Node::Warp { operand, .. }
+            | Node::Length { operand, .. }
+            | Node::Complement(operand) => std::slice::from_ref(operand),
+            Node::Blend { operands, .. } => operands,
             Node::Join { operands, .. } => operands,
         }
     }
@@ -141,7 +186,14 @@ fn take_operands(node: &mut Node, pending: &mut Vec<Solid>) {
     let nothing = Node::Join { operation: Operation::Union, rule: RFunction::MIN_MAX, operands: Vec::new() };
     match std::mem::replace(node, nothing) {
         Node::Leaf(_) => {}
-        Node::Affine { operand, .. } | Node::Warp { operand, .. } | Node::Complement(operand) => pending.push(operand),
+        Node::Affine { operand, .. }
+        | Node::Warp { operand, .. }
+        | Node::Length { operand, .. }
+        | Node::Complement(operand) => pending.push(operand),
+        Node::Blend { operands, lengths, .. } => {
+            pending.extend(operands);
+            pending.extend(lengths);
+        }
         Node::Join { operands, .. } => pending.extend(operands),
     }
 }

@@ -1,0 +1,305 @@
+//! Programs under construction: one list of nodes that the field and the surface program
+//! share, with boxes put together from the leaves up.
+
+use glam::DVec3;
+
+use super::program::{Edge, Kind, Node, Op, Sides};
+use crate::Bounds;
+use crate::field::{RicciSide, Rule};
+use crate::solid::Operation;
+
+/// What a node compiled to.
+#[derive(Clone, Copy)]
+pub(super) struct Built {
+    /// The node of true values.
+    pub(super) field: Edge,
+    /// The node of the surface program: R-functions are min and max.
+    pub(super) surface: Edge,
+    /// In the frame of the node's context.
+    pub(super) sides: Sides,
+    /// How much the box of the points with a true value above −c grows along each axis, per
+    /// unit of c; infinite where nothing is known.
+    pub(super) growth: DVec3,
+    /// The radius of a value `radius·(1 − G)`, where it is one.
+    pub(super) gauge: Option<f64>,
+}
+
+impl Built {
+    pub(super) fn complement(self) -> Built {
+        Built {
+            field: self.field.flip_if(true),
+            surface: self.surface.flip_if(true),
+            sides: self.sides.flip_if(true),
+            growth: DVec3::INFINITY,
+            gauge: None,
+        }
+    }
+
+    fn flip_if(self, flip: bool) -> Built {
+        if flip { self.complement() } else { self }
+    }
+}
+
+#[derive(Default)]
+pub(super) struct Code {
+    pub(super) nodes: Vec<Node>,
+    pub(super) operands: Vec<Edge>,
+    /// Where each operand decides anything, in the frame of its join.
+    pub(super) decisive: Vec<Bounds>,
+}
+
+/// An operand of a join, and where it is.
+#[derive(Clone, Copy)]
+struct Operand {
+    edge: Edge,
+    sides: Sides,
+}
+
+impl Operand {
+    fn flip_if(self, negate: bool) -> Operand {
+        Operand { edge: self.edge.flip_if(negate), sides: self.sides.flip_if(negate) }
+    }
+}
+
+impl Code {
+    pub(super) fn push(&mut self, kind: Kind, operands: &[(Edge, Bounds)]) -> Edge {
+        let first = self.operands.len() as u32;
+        self.operands.extend(operands.iter().map(|(edge, _)| *edge));
+        self.decisive.extend(operands.iter().map(|(_, bounds)| *bounds));
+        self.nodes.push(Node { kind, first, len: operands.len() as u32 });
+        Edge::new(self.nodes.len() - 1)
+    }
+
+    fn join(&mut self, op: Op, rule: Rule, frame: u32, operands: &[Operand]) -> Operand {
+        if let [only] = operands {
+            return *only;
+        }
+        let list: Vec<(Edge, Bounds)> = operands.iter().map(|o| (o.edge, o.sides.decisive(op))).collect();
+        let sides = operands.iter().map(|o| o.sides).reduce(|a, b| a.join(op, b)).unwrap_or_default();
+        Operand { edge: self.push(Kind::Join { op, rule, frame, hierarchy: None }, &list), sides }
+    }
+
+    /// Joins many operands: at once if the order does not matter, else as a balanced tree.
+    fn join_all(&mut self, op: Op, rule: Rule, frame: u32, operands: &[Operand]) -> Operand {
+        if matches!(rule, Rule::MinMax | Rule::Associative(_)) {
+            return self.join(op, rule, frame, operands);
+        }
+        self.balanced(operands.to_vec(), |code, a, b| code.join(op, rule, frame, &[a, b]))
+    }
+
+    /// Exactly one of two; folded over more, an odd number of them. Each operand is given as
+    /// it is and as its complement.
+    fn either_all(&mut self, rule: Rule, frame: u32, operands: Vec<[Operand; 2]>) -> Operand {
+        let both = self.balanced(operands, |code, [a, not_a], [b, not_b]| {
+            let first = code.join(Op::And, rule, frame, &[a, not_b]);
+            let second = code.join(Op::And, rule, frame, &[not_a, b]);
+            let either = code.join(Op::Or, rule, frame, &[first, second]);
+            if a.edge.node() == not_a.edge.node() && b.edge.node() == not_b.edge.node() {
+                return [either, either.flip_if(true)];
+            }
+            // What is not in exactly one is in both or in none.
+            let first = code.join(Op::And, rule, frame, &[a, b]);
+            let second = code.join(Op::And, rule, frame, &[not_a, not_b]);
+            [either, code.join(Op::Or, rule, frame, &[first, second])]
+        });
+        both[0]
+    }
+
+    fn balanced<T: Copy>(&mut self, operands: Vec<T>, mut join: impl FnMut(&mut Code, T, T) -> T) -> T {
+        let mut level = operands;
+        while level.len() > 1 {
+            let pairs = level.chunks(2);
+            level = pairs.map(|pair| if let [a, b] = *pair { join(self, a, b) } else { pair[0] }).collect();
+        }
+        level[0]
+    }
+
+    /// What is in exactly one of the operands, each given as it is and as its complement.
+    pub(super) fn either(&mut self, rule: Rule, frame: u32, pairs: &[[Built; 2]]) -> Built {
+        let pick = |edge: fn(&Built) -> Edge| -> Vec<[Operand; 2]> {
+            pairs.iter().map(|pair| pair.map(|b| Operand { edge: edge(&b), sides: b.sides })).collect()
+        };
+        let (field, surface) = (pick(|b| b.field), pick(|b| b.surface));
+        let (field, surface) = (self.either_all(rule, frame, field), self.either_all(Rule::MinMax, frame, surface));
+        let (sides, growth) = (surface.sides, DVec3::INFINITY);
+        Built { field: field.edge, surface: surface.edge, sides, growth, gauge: None }
+    }
+
+    /// A union, an intersection or a difference by an R-function.
+    pub(super) fn operation(&mut self, operation: Operation, rule: Rule, frame: u32, built: &[Built]) -> Built {
+        // A difference is the conjunction of the first with the complements of the others.
+        let negated = |i: usize| operation == Operation::Difference && i > 0;
+        let pick = |edge: fn(&Built) -> Edge| -> Vec<Operand> {
+            let operand = |(i, b): (usize, &Built)| Operand { edge: edge(b), sides: b.sides }.flip_if(negated(i));
+            built.iter().enumerate().map(operand).collect()
+        };
+        let (field, surface) = (pick(|b| b.field), pick(|b| b.surface));
+        let op = operation.op();
+        let (field, surface) = (self.join_all(op, rule, frame, &field), self.join(op, Rule::MinMax, frame, &surface));
+        let factor = if op == Op::Or { disjoined(rule, built.len()) } else { 1.0 };
+        let inside = surface.sides.inside;
+        let mut growth = DVec3::ZERO;
+        for (i, b) in built.iter().enumerate() {
+            growth = growth.max(bounded(b.flip_if(negated(i))) * factor);
+        }
+        if inside.is_empty() {
+            growth = DVec3::INFINITY;
+        }
+        Built { field: field.edge, surface: surface.edge, sides: surface.sides, growth, gauge: None }
+    }
+
+    /// Values moved by `by`.
+    pub(super) fn level(&mut self, by: f64, operand: Built) -> Built {
+        let edge = self.push(Kind::Shift(by), &[(operand.field, Bounds::ALL)]);
+        let mut sides = operand.sides;
+        if by > 0.0 {
+            sides.inside = grow(&sides.inside, operand.growth * by);
+        } else {
+            sides.outside = Bounds::ALL;
+        }
+        Built { field: edge, surface: edge, sides, growth: operand.growth, gauge: None }
+    }
+
+    /// A node that joins two values, the second complemented for a difference.
+    fn pair(&mut self, operation: Operation, rule: Rule, frame: u32, pair: [Built; 2]) -> Edge {
+        let negate = operation == Operation::Difference && !matches!(rule, Rule::Ricci { .. });
+        let op = if matches!(rule, Rule::Ricci { .. }) { Op::And } else { operation.op() };
+        let operands = [(pair[0].field, Bounds::ALL), (pair[1].field.flip_if(negate), Bounds::ALL)];
+        self.push(Kind::Join { op, rule, frame, hierarchy: None }, &operands)
+    }
+
+    /// A smooth join; `risen` are the operands' boxes where they are above what it adds.
+    pub(super) fn smooth(
+        &mut self,
+        operation: Operation,
+        width: f64,
+        frame: u32,
+        pair: [Built; 2],
+        risen: [Bounds; 2],
+    ) -> Built {
+        let edge = self.pair(operation, Rule::Smooth(width), frame, pair);
+        let [a, b] = [pair[0], pair[1].flip_if(operation == Operation::Difference)];
+        let mut sides = a.sides.join(operation.op(), b.sides);
+        let mut growth = bounded(a).max(bounded(b));
+        match operation.op() {
+            Op::Or => sides.inside = risen[0].union(&risen[1]),
+            Op::And => sides.outside = Bounds::ALL,
+        }
+        if sides.inside.is_empty() {
+            growth = DVec3::INFINITY;
+        }
+        Built { field: edge, surface: edge, sides, growth, gauge: None }
+    }
+
+    pub(super) fn displacement(
+        &mut self,
+        operation: Operation,
+        height: f64,
+        inverse: [f64; 2],
+        frame: u32,
+        pair: [Built; 2],
+        risen: [Bounds; 2],
+    ) -> Built {
+        // The rule is told as a conjunction; a disjunction turns its result round.
+        let turned = if operation.op() == Op::Or { -height } else { height };
+        let edge = self.pair(operation, Rule::Displacement { height: turned, inverse }, frame, pair);
+        let [a, b] = [pair[0], pair[1].flip_if(operation == Operation::Difference)];
+        let inside = match operation {
+            _ if height <= 0.0 => a.sides.join(operation.op(), b.sides).inside,
+            Operation::Union => risen[0].union(&risen[1]),
+            Operation::Difference => risen[0],
+            _ => risen[0].intersection(&risen[1]),
+        };
+        let sides = Sides { inside, outside: Bounds::ALL };
+        Built { field: edge, surface: edge, sides, growth: DVec3::INFINITY, gauge: None }
+    }
+
+    pub(super) fn ricci(
+        &mut self,
+        operation: Operation,
+        p: f64,
+        radii: [f64; 2],
+        frame: u32,
+        pair: [Built; 2],
+        risen: [Bounds; 2],
+    ) -> Built {
+        let radius = radii[0].min(radii[1]);
+        let side = match operation {
+            Operation::Union => RicciSide::Union,
+            Operation::Difference => RicciSide::Difference,
+            _ => RicciSide::Intersection,
+        };
+        let edge = self.pair(operation, Rule::Ricci { p, side, radii, radius }, frame, pair);
+        let inside = match side {
+            RicciSide::Union => risen[0].union(&risen[1]),
+            RicciSide::Intersection => pair[0].sides.inside.intersection(&pair[1].sides.inside),
+            RicciSide::Difference => pair[0].sides.inside,
+        };
+        let sides = Sides { inside, outside: Bounds::ALL };
+        Built { field: edge, surface: edge, sides, growth: DVec3::INFINITY, gauge: Some(radius) }
+    }
+
+    /// A fillet or chamfer, which is a leaf with two operands.
+    pub(super) fn edge(&mut self, operation: Operation, kind: Kind, pair: [Built; 2]) -> Built {
+        let negate = operation == Operation::Difference;
+        let [a, b] = [pair[0], pair[1].flip_if(negate)];
+        let sides = a.sides.join(operation.op(), b.sides);
+        let list = |a: Edge, b: Edge| [(a, Bounds::ALL), (b, Bounds::ALL)];
+        let surface = self.push(kind.clone(), &list(a.surface, b.surface));
+        let mut growth = bounded(a).max(bounded(b));
+        if sides.inside.is_empty() {
+            growth = DVec3::INFINITY;
+        }
+        Built { field: surface, surface, sides, growth, gauge: None }
+    }
+}
+
+/// Where a disjunction of `count` is above −c, one of them is above −c times this.
+pub(super) fn disjoined(rule: Rule, count: usize) -> f64 {
+    spread(rule).powi(count.next_power_of_two().trailing_zeros() as i32)
+}
+
+/// The growth of an operand along the axes where it is bounded.
+pub(super) fn bounded(b: Built) -> DVec3 {
+    let mut growth = b.growth;
+    for axis in 0..3 {
+        if b.sides.inside.min[axis] == f64::NEG_INFINITY && b.sides.inside.max[axis] == f64::INFINITY {
+            growth[axis] = 0.0;
+        }
+    }
+    growth
+}
+
+/// Where a disjunction of two is above −c, one of them is above −c times this.
+fn spread(rule: Rule) -> f64 {
+    match rule {
+        Rule::Alpha(alpha) => (1.0 + alpha) / (2.0 - (2.0 - 2.0 * alpha).sqrt()),
+        Rule::P(norm) => 1.0 / (2.0 - (1.0 / norm.p()).exp2()),
+        Rule::Associative(norm) => (1.0 / norm.p()).exp2(),
+        Rule::MinMax => 1.0,
+        _ => f64::INFINITY,
+    }
+}
+
+/// A box grown by a length along each axis; where that is infinite the box ends nowhere.
+pub(super) fn grow(bounds: &Bounds, by: DVec3) -> Bounds {
+    if bounds.is_empty() {
+        return if by.is_finite() { *bounds } else { Bounds::ALL };
+    }
+    Bounds::new(bounds.min - by, bounds.max + by)
+}
+
+/// A box grown by what rounding may have taken from it.
+pub(super) fn snug(bounds: Bounds) -> Bounds {
+    if bounds.is_empty() {
+        return Bounds::EMPTY;
+    }
+    let grow = |v: f64| if v.is_finite() { 1e-14 * v.abs() } else { 0.0 };
+    let mut grown = bounds;
+    for axis in 0..3 {
+        let margin = grow(bounds.min[axis]).max(grow(bounds.max[axis]));
+        grown.min[axis] -= margin;
+        grown.max[axis] += margin;
+    }
+    grown
+}

@@ -1,0 +1,185 @@
+//! A program as a leaf: what a length is read from when it cannot be read leaf by leaf.
+
+use std::cell::RefCell;
+
+use glam::{DAffine3, DVec3};
+
+use super::{Evaluator, Gradients, Program, Tape};
+use crate::field::{AnyField, Chunk, Placement, Zone};
+use crate::num::kernel::CHUNK;
+use crate::num::symbol::Symbol;
+use crate::{Bounds, Dual, Interval, ParamError};
+
+#[derive(Debug)]
+pub(super) struct Composite {
+    pub(super) program: Program,
+    pub(super) bounds: Bounds,
+}
+
+impl AnyField for Composite {
+    fn name(&self) -> &'static str {
+        "blend"
+    }
+
+    fn bounds_under(&self, map: &DAffine3) -> Bounds {
+        self.bounds.transformed(map)
+    }
+
+    fn check(&self) -> Result<(), ParamError> {
+        Ok(())
+    }
+
+    fn roundoff(&self, reach: f64) -> f64 {
+        roundoff(&self.program, reach)
+    }
+
+    fn value(&self, p: [f64; 3]) -> f64 {
+        self.program.value(DVec3::from_array(p))
+    }
+
+    fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64> {
+        self.program.evaluate(p, &mut Vec::new())
+    }
+
+    fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
+        self.program.evaluate(p, &mut Vec::new())
+    }
+
+    fn exact(&self) -> bool {
+        false
+    }
+
+    fn range(&self, zone: &Zone) -> Interval {
+        self.program.range_zone(zone)
+    }
+
+    fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
+        self.program.evaluate(p, &mut Vec::new())
+    }
+
+    fn lanes32(&self, chunk: Chunk<'_, f32, 1>) {
+        let local = Locals::of(&chunk.points, chunk.placement);
+        let [out] = chunk.out;
+        with_evaluator(|evaluator| local.values(evaluator, &tape(&self.program), out));
+        finish(chunk.placement, out);
+    }
+
+    fn lanes64(&self, chunk: Chunk<'_, f64, 1>) {
+        points64(self, chunk);
+    }
+
+    fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
+        let local = Locals::of(&chunk.points, chunk.placement);
+        let slopes = with_evaluator(|evaluator| local.gradients(evaluator, &tape(&self.program)));
+        write_gradients(chunk.placement, &slopes, chunk.out);
+    }
+}
+
+/// A program over all of space.
+pub(super) fn tape(program: &Program) -> Tape {
+    Tape::new(program, &Bounds::ALL)
+}
+
+/// How far lanes of a program may be off within `reach` of the origin.
+pub(super) fn roundoff(program: &Program, reach: f64) -> f64 {
+    let reach = DVec3::splat(reach);
+    Tape::new(program, &Bounds::new(-reach, reach)).roundoff()
+}
+
+/// Runs `work` with scratch memory that nobody else on this thread is using.
+pub(super) fn with_evaluator<T>(work: impl FnOnce(&mut Evaluator) -> T) -> T {
+    thread_local! {
+        static SPARE: RefCell<Vec<Evaluator>> = const { RefCell::new(Vec::new()) };
+    }
+    let mut evaluator = SPARE.with_borrow_mut(Vec::pop).unwrap_or_default();
+    let result = work(&mut evaluator);
+    SPARE.with_borrow_mut(|spare| spare.push(evaluator));
+    result
+}
+
+/// A chunk's points in a leaf's own coordinates.
+pub(super) struct Locals {
+    pub(super) at: [[f32; CHUNK]; 3],
+}
+
+/// Values and gradients of a chunk.
+pub(super) struct Slopes {
+    pub(super) value: [f32; CHUNK],
+    pub(super) gradient: [[f32; CHUNK]; 3],
+}
+
+impl Slopes {
+    pub(super) fn at(&self, i: usize) -> (f64, DVec3) {
+        let [x, y, z] = &self.gradient;
+        (f64::from(self.value[i]), DVec3::new(f64::from(x[i]), f64::from(y[i]), f64::from(z[i])))
+    }
+
+    pub(super) fn set(&mut self, i: usize, (value, gradient): (f64, DVec3)) {
+        self.value[i] = value as f32;
+        for (axis, slopes) in self.gradient.iter_mut().enumerate() {
+            slopes[i] = gradient[axis] as f32;
+        }
+    }
+}
+
+impl Locals {
+    pub(super) fn of(points: &[&[f32]; 3], placement: &Placement) -> Locals {
+        let mut locals = Locals { at: [[0.0; CHUNK]; 3] };
+        let [xs, ys, zs] = points;
+        for (i, ((x, y), z)) in xs.iter().zip(*ys).zip(*zs).enumerate() {
+            let p = placement.apply([f64::from(*x), f64::from(*y), f64::from(*z)]);
+            locals.set(i, DVec3::from_array(p));
+        }
+        locals
+    }
+
+    pub(super) fn get(&self, i: usize) -> DVec3 {
+        DVec3::from_array([0, 1, 2].map(|axis| f64::from(self.at[axis][i])))
+    }
+
+    pub(super) fn set(&mut self, i: usize, p: DVec3) {
+        for axis in 0..3 {
+            self.at[axis][i] = p[axis] as f32;
+        }
+    }
+
+    pub(super) fn values(&self, evaluator: &mut Evaluator, tape: &Tape, out: &mut [f32]) {
+        let [x, y, z] = &self.at;
+        evaluator.values(tape, x, y, z, out);
+    }
+
+    pub(super) fn gradients(&self, evaluator: &mut Evaluator, tape: &Tape) -> Slopes {
+        let mut slopes = Slopes { value: [0.0; CHUNK], gradient: [[0.0; CHUNK]; 3] };
+        let Slopes { value, gradient: [dx, dy, dz] } = &mut slopes;
+        let [x, y, z] = &self.at;
+        evaluator.gradients(tape, x, y, z, Gradients { value, dx, dy, dz });
+        slopes
+    }
+}
+
+/// Values as they count outside of the leaf's frame.
+pub(super) fn finish(placement: &Placement, values: &mut [f32]) {
+    for value in values {
+        *value = placement.finish(f64::from(*value)) as f32;
+    }
+}
+
+/// Values and gradients as they count outside of the leaf's frame.
+pub(super) fn write_gradients(placement: &Placement, slopes: &Slopes, out: [&mut [f32]; 4]) {
+    let [value, dx, dy, dz] = out;
+    for i in 0..CHUNK {
+        let (v, g) = slopes.at(i);
+        let [x, y, z] = placement.pull((g * placement.scale).to_array());
+        value[i] = placement.finish(v) as f32;
+        (dx[i], dy[i], dz[i]) = (x as f32, y as f32, z as f32);
+    }
+}
+
+/// Lanes of `f64`, point by point: they settle a doubtful sign here and there.
+pub(super) fn points64(field: &dyn AnyField, chunk: Chunk<'_, f64, 1>) {
+    let [out] = chunk.out;
+    for (i, out) in out.iter_mut().enumerate() {
+        let p = chunk.placement.apply([0, 1, 2].map(|axis| chunk.points[axis][i]));
+        *out = chunk.placement.finish(field.value(p));
+    }
+}

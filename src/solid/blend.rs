@@ -1,0 +1,81 @@
+//! Blended joins.
+
+use super::{Node, Operation, Solid};
+use crate::Blend;
+
+impl Solid {
+    fn blended(&self, operation: Operation, other: &Solid, blend: Blend) -> Solid {
+        let operands = [self.clone(), other.clone()];
+        let lengths = match blend {
+            Blend::Fillet { .. } | Blend::Chamfer { .. } => operands.iter().map(|solid| solid.offset(0.0)).collect(),
+            _ => Vec::new(),
+        };
+        Solid::from_node(Node::Blend { operation, blend, operands, lengths })
+    }
+
+    /// What is in either solid, and what `blend` adds between them.
+    #[must_use]
+    pub fn union_with(&self, other: &Solid, blend: Blend) -> Solid {
+        self.blended(Operation::Union, other, blend)
+    }
+
+    /// What is in both solids, less what `blend` takes off.
+    #[must_use]
+    pub fn intersection_with(&self, other: &Solid, blend: Blend) -> Solid {
+        self.blended(Operation::Intersection, other, blend)
+    }
+
+    /// What is in this solid and not in `other`, less what `blend` takes off.
+    #[must_use]
+    pub fn difference_with(&self, other: &Solid, blend: Blend) -> Solid {
+        self.blended(Operation::Difference, other, blend)
+    }
+
+    /// Union with a smooth transition where the operands' values differ by less than
+    /// `radius`: [`Blend::Smooth`].
+    ///
+    /// ```
+    /// use rvachev::Solid;
+    /// use glam::DVec3;
+    ///
+    /// let (a, b) = (Solid::sphere(1.0), Solid::sphere(1.0).translate(DVec3::X * 2.2));
+    /// let pair = a.smooth_union(&b, 0.5);
+    /// // A bridge of material between the two.
+    /// assert!(pair.contains(DVec3::X * 1.1)?);
+    /// // Far from the other one each is what it was.
+    /// assert_eq!(pair.value(DVec3::X * -1.0)?, 0.0);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
+    #[must_use]
+    pub fn smooth_union(&self, other: &Solid, radius: f64) -> Solid {
+        self.union_with(other, Blend::Smooth { radius })
+    }
+
+    /// Intersection with a smooth transition: [`Blend::Smooth`].
+    #[must_use]
+    pub fn smooth_intersection(&self, other: &Solid, radius: f64) -> Solid {
+        self.intersection_with(other, Blend::Smooth { radius })
+    }
+
+    /// Difference with a smooth transition: [`Blend::Smooth`].
+    #[must_use]
+    pub fn smooth_difference(&self, other: &Solid, radius: f64) -> Solid {
+        self.difference_with(other, Blend::Smooth { radius })
+    }
+}
+
+/// What errors call a blended operation.
+pub(super) fn name(blend: &Blend, operation: Operation) -> &'static str {
+    let names = match blend {
+        Blend::Smooth { .. } => ["smooth union", "smooth intersection", "smooth difference"],
+        Blend::Fillet { .. } => ["filleted union", "filleted intersection", "filleted difference"],
+        Blend::Chamfer { .. } => ["chamfered union", "chamfered intersection", "chamfered difference"],
+        Blend::Displacement { .. } => ["displaced union", "displaced intersection", "displaced difference"],
+        Blend::Ricci { .. } => ["Ricci union", "Ricci intersection", "Ricci difference"],
+    };
+    match operation {
+        Operation::Union => names[0],
+        Operation::Intersection | Operation::SymmetricDifference => names[1],
+        Operation::Difference => names[2],
+    }
+}

@@ -1,0 +1,366 @@
+//! Blends: joins that read values.
+
+use glam::{DVec2, DVec3};
+use rvachev::{Blend, Bounds, Program, RFunction, Region, Solid, SolidError};
+
+use crate::support::{Random, lanes32, lanes64, near};
+
+/// The half-space of the points below a plane through the origin that is tilted about the y
+/// axis: inside is where x sin(angle) is more than z cos(angle).
+fn below(angle: f64) -> Solid {
+    Solid::half_space(DVec3::new(-angle.sin(), 0.0, angle.cos()), 0.0)
+}
+
+/// Values as two half-spaces have them: x and y as asked for, at the point (x, y, 0).
+fn pair() -> (Solid, Solid) {
+    (Solid::half_space(-DVec3::X, 0.0), Solid::half_space(-DVec3::Y, 0.0))
+}
+
+#[test]
+fn a_smooth_union_is_the_parabola_between() -> Result<(), SolidError> {
+    let (a, b) = pair();
+    let union = a.smooth_union(&b, 0.4);
+    let difference = a.smooth_difference(&b, 0.4);
+    let mut random = Random::new(71);
+    for _ in 0..200 {
+        let (x, y) = (random.range(-1.0, 1.0), random.range(-1.0, 1.0));
+        let p = DVec3::new(x, y, random.range(-1.0, 1.0));
+        let overlap = (0.4 - (x - y).abs()).max(0.0);
+        near(union.value(p)?, x.max(y) + overlap * overlap / 1.6, 1e-15);
+        let overlap = (0.4 - (x + y).abs()).max(0.0);
+        near(difference.value(p)?, x.min(-y) - overlap * overlap / 1.6, 1e-15);
+    }
+    Ok(())
+}
+
+#[test]
+fn displacement_and_ricci_agree_with_the_reference() -> Result<(), SolidError> {
+    let (a, b) = pair();
+    let blend = Blend::Displacement { height: 0.3, falloff: [0.5, 1.0] };
+    let value = a.union_with(&b, blend).value(DVec3::new(0.1, -0.2, 0.0))?;
+    near(value, 0.401384575527757, 1e-14);
+    // Two spheres about the origin of radius 2 and 3: gauges 1.2 and 0.9 at distances 2.4 and
+    // 2.7 — so the second one is moved.
+    let (one, two) = (Solid::sphere(2.0), Solid::sphere(3.0).translate(DVec3::X * (2.4 - 2.7)));
+    let p = DVec3::X * 2.4;
+    let ricci = Blend::Ricci { p: 4.0 };
+    // The value is the smaller radius times 1 − G.
+    near(1.0 - one.union_with(&two, ricci).value(p)? / 2.0, 0.840223889848, 1e-12);
+    near(1.0 - one.intersection_with(&two, ricci).value(p)? / 2.0, 1.285371688486, 1e-12);
+    let difference = (1.2f64.powi(4) + 0.9f64.powi(-4)).powf(0.25);
+    near(1.0 - one.difference_with(&two, ricci).value(p)? / 2.0, difference, 1e-12);
+    // Blends of blends are gauges; boxes are not.
+    let three = Solid::superellipsoid(DVec3::ONE, 0.5, 0.5).twist(0.3);
+    assert!(one.union_with(&two, ricci).union_with(&three, ricci).contains(p)?);
+    let error = one.union_with(&Solid::cuboid(DVec3::ONE), ricci).value(p);
+    let Err(SolidError::NoGauge { path, operand: 1 }) = error else { panic!("{error:?}") };
+    assert_eq!(path, "Ricci union");
+    Ok(())
+}
+
+/// The point of the surface on the way from `outside` to `inside`.
+fn crossing(solid: &Solid, outside: DVec3, inside: DVec3) -> Result<DVec3, SolidError> {
+    assert!(solid.contains(inside)? && !solid.contains(outside)?, "{outside} {inside}");
+    let (mut a, mut b) = (outside, inside);
+    for _ in 0..60 {
+        let middle = 0.5 * (a + b);
+        if solid.contains(middle)? { b = middle } else { a = middle }
+    }
+    Ok(0.5 * (a + b))
+}
+
+#[test]
+fn fillets_of_planes_have_their_radius_at_any_angle() -> Result<(), SolidError> {
+    let radius = 0.3;
+    for degrees in [35.0, 60.0, 90.0, 120.0, 160.0] {
+        // Material below the plane z = 0 and behind one that rises at the origin; between them
+        // an empty wedge of this angle about the bisector.
+        let angle = f64::to_radians(degrees);
+        let floor = Solid::half_space(DVec3::Z, 0.0);
+        let wall = Solid::half_space(DVec3::new(angle.sin(), 0.0, -angle.cos()), 0.0);
+        let part = floor.union_with(&wall, Blend::Fillet { radius });
+        // The empty wedge is where x cos t, z sin t has 0 < t < angle.
+        let bisector = DVec3::new((0.5 * angle).cos(), 0.0, (0.5 * angle).sin());
+        let centre = bisector * (radius / (0.5 * angle).sin());
+        assert!((part.value(centre)? + radius).abs() < 1e-9, "{degrees}");
+        let half = 0.5 * (std::f64::consts::PI - angle);
+        for i in -9..=9 {
+            let turn = 0.5 * angle + half * f64::from(i) / 9.2;
+            let out = -DVec3::new(turn.cos(), 0.0, turn.sin());
+            let found = crossing(&part, centre, centre + 1.2 * radius / (0.5 * angle).sin() * out)?;
+            near(found.distance(centre), radius, 1e-9);
+            let gradient = part.gradient(found)?;
+            assert!((gradient - out).length() < 1e-6, "{degrees} {i} {gradient} {out}");
+        }
+        // Beyond the tangent lines nothing is changed.
+        let far = DVec3::new(3.0 * radius / (0.5 * angle).tan(), 0.4, 0.05);
+        assert_eq!(part.value(far)?, floor.union(&wall, RFunction::MIN_MAX).value(far)?);
+    }
+    Ok(())
+}
+
+#[test]
+fn fillets_between_curved_operands_have_their_radius() -> Result<(), SolidError> {
+    // A ball that stands 0.3 deep in a floor: the fillet's centre runs on a circle.
+    let radius = 0.25;
+    let ball = Solid::sphere(1.0).translate(DVec3::Z * 0.7);
+    let floor = Solid::half_space(DVec3::Z, 0.0);
+    let part = floor.union_with(&ball, Blend::Fillet { radius });
+    let reach = ((1.0 + radius) * (1.0 + radius) - (radius - 0.7) * (radius - 0.7)).sqrt();
+    let centre = DVec3::new(reach, 0.0, radius);
+    for i in 1..20 {
+        // From the floor's tangent point to the ball's.
+        let (from, to) = (-DVec3::Z, (DVec3::Z * 0.7 - centre).normalize());
+        let out = from.lerp(to, f64::from(i) / 20.0).normalize();
+        let found = crossing(&part, centre, centre + 1.4 * radius * out)?;
+        assert!((found.distance(centre) / radius - 1.0).abs() < 0.01, "{i} {}", found.distance(centre));
+    }
+    // Two pipes that cross: the largest empty ball that touches both, anywhere along the
+    // edge, has the radius.
+    let pipe = Solid::cylinder(1.0, 20.0);
+    let cross = pipe.union_with(&pipe.rotate_x(std::f64::consts::FRAC_PI_2), Blend::Fillet { radius });
+    let plain = pipe.union(&pipe.rotate_x(std::f64::consts::FRAC_PI_2), RFunction::MIN_MAX);
+    let mut random = Random::new(72);
+    let mut added = 0;
+    for _ in 0..20_000 {
+        let p = random.point_in(&Bounds::new(DVec3::new(0.0, 0.6, 0.6), DVec3::new(1.0, 1.6, 1.6)));
+        if !cross.contains(p)? || plain.contains(p)? {
+            continue;
+        }
+        added += 1;
+        // No ball of 0.95 of the radius that keeps clear of both pipes reaches a point that
+        // the fillet has filled: its centre q has both distances at least 0.95 r. The centre
+        // line of such balls is known: both pipes' axes are at a distance of 1 + r.
+        let clear = |x: f64| ((1.0 + radius) * (1.0 + radius) - x * x).sqrt();
+        let nearest = (-100..=100).map(|i| {
+            let x = p.x + 0.005 * f64::from(i);
+            DVec3::new(x, clear(x), clear(x)).distance(p)
+        });
+        let nearest = nearest.fold(f64::INFINITY, f64::min);
+        assert!(nearest > 0.95 * radius, "{p} {nearest}");
+    }
+    assert!(added > 50, "{added}");
+    Ok(())
+}
+
+#[test]
+fn chamfers_have_their_width_at_any_angle() -> Result<(), SolidError> {
+    let width = 0.4;
+    for degrees in [60.0, 90.0, 120.0, 150.0] {
+        let angle = f64::to_radians(degrees);
+        let floor = Solid::half_space(DVec3::Z, 0.0);
+        let wall = Solid::half_space(DVec3::new(angle.sin(), 0.0, -angle.cos()), 0.0);
+        let part = floor.union_with(&wall, Blend::Chamfer { width });
+        // The face meets both planes at the same distance from the edge.
+        let leg = 0.5 * width / (0.5 * angle).sin();
+        let (on_floor, on_wall) = (DVec3::X * leg, DVec3::new(angle.cos(), 0.0, angle.sin()) * leg);
+        near(on_floor.distance(on_wall), width, 1e-12);
+        for i in 0..=10 {
+            let on = on_floor.lerp(on_wall, f64::from(i) / 10.0);
+            near(part.value(on)?, 0.0, 1e-9);
+        }
+    }
+    // An inner edge: a box less a slot, its rim broken.
+    let block = Solid::cuboid(DVec3::new(4.0, 4.0, 2.0));
+    let part = block.difference_with(&Solid::cylinder(1.0, 3.0), Blend::Chamfer { width: 0.2 });
+    let leg = 0.2 / 2f64.sqrt();
+    let face = DVec3::new(1.0 + 0.5 * leg, 0.0, 1.0 - 0.5 * leg);
+    assert!(part.value(face)?.abs() < 1e-3, "{}", part.value(face)?);
+    Ok(())
+}
+
+/// Solids with every blend, of every kind of operand.
+fn blended() -> Vec<(&'static str, Solid)> {
+    let ball = Solid::sphere(0.8).translate(DVec3::new(0.5, 0.1, 0.3));
+    let plate = Solid::cuboid(DVec3::new(2.0, 1.6, 0.5));
+    let rod = Solid::cylinder(0.3, 2.4).rotate_y(0.5);
+    let star = Solid::superellipsoid(DVec3::new(0.9, 0.7, 0.6), 0.4, 1.4).twist(0.6);
+    let both = &plate | &rod;
+    vec![
+        ("smooth union", ball.smooth_union(&plate, 0.3)),
+        ("smooth difference", both.smooth_difference(&ball, 0.2)),
+        ("smooth of a twisted one", star.smooth_union(&ball, 0.25)),
+        ("fillet", plate.union_with(&rod, Blend::Fillet { radius: 0.2 })),
+        ("fillet of a union", both.union_with(&ball, Blend::Fillet { radius: 0.1 })),
+        ("fillet of a hole", plate.difference_with(&rod, Blend::Fillet { radius: 0.1 })),
+        ("fillet moved", plate.intersection_with(&ball, Blend::Fillet { radius: 0.1 }).scale(1.3).rotate_x(0.4)),
+        ("fillet of a fillet", {
+            let inner = plate.union_with(&rod, Blend::Fillet { radius: 0.15 });
+            inner.union_with(&ball, Blend::Fillet { radius: 0.1 })
+        }),
+        ("chamfer", plate.union_with(&rod, Blend::Chamfer { width: 0.2 })),
+        ("displacement", plate.union_with(&ball, Blend::Displacement { height: 0.1, falloff: [0.2, 0.3] })),
+        (
+            "displaced difference",
+            plate.difference_with(&rod, Blend::Displacement { height: -0.05, falloff: [0.2, 0.2] }),
+        ),
+        ("Ricci", star.union_with(&ball, Blend::Ricci { p: 3.0 })),
+        ("level", both.level(0.1)),
+        ("level below a union", &both.level(-0.05) | &ball),
+        ("smooth in a difference", &plate - &ball.smooth_union(&rod, 0.2)),
+        ("complement of a blend", &plate & &!ball.smooth_union(&rod, 0.2)),
+    ]
+}
+
+/// A program's value at a point, by narrowing to boxes about it.
+fn narrowed(program: &Program, p: DVec3) -> Option<f64> {
+    let mut program = program.clone();
+    for half in [0.5, 0.1, 0.02] {
+        match program.narrow(&Bounds::new(p - half, p + half)) {
+            Region::Inside => return Some(1.0),
+            Region::Outside => return Some(-1.0),
+            Region::Surface(inner) => program = inner,
+        }
+    }
+    Some(program.value(p))
+}
+
+#[test]
+fn blends_have_one_value_in_all_forms() -> Result<(), SolidError> {
+    for (name, solid) in blended() {
+        let bounds = solid.bounds()?;
+        assert!(bounds.is_finite() && !bounds.is_empty(), "{name} {bounds:?}");
+        let around = bounds.inflate(0.3);
+        let mut random = Random::new(73);
+        let points: Vec<DVec3> = (0..150).map(|_| random.point_in(&around)).collect();
+        let (surface, field) = (solid.surface_program()?, solid.field_program()?);
+        let (points, single) = lanes32(&field, &around, &points);
+        let double = lanes64(&field, &around, &points);
+        for (i, &p) in points.iter().enumerate() {
+            let value = field.value(p);
+            near(single[i], value, 1e-4);
+            near(double[i], value, 1e-9);
+            assert!(bounds.contains(p) || value <= 0.0, "{name}: inside at {p}, beyond {bounds:?}");
+            if value.abs() > 1e-9 {
+                assert_eq!(surface.value(p) > 0.0, value > 0.0, "{name} {p}");
+                if let Some(value_near) = narrowed(&surface, p) {
+                    assert_eq!(value_near > 0.0, value > 0.0, "{name} narrowed at {p}: {value_near} {value}");
+                }
+                if let Some(value_near) = narrowed(&field, p) {
+                    assert_eq!(value_near > 0.0, value > 0.0, "{name} field narrowed at {p}");
+                }
+            }
+        }
+        // Ranges hold.
+        for _ in 0..60 {
+            let (a, b) = (random.point_in(&around), random.log_range(1e-3, 0.5));
+            let region = Bounds::new(a - b * random.vector(0.0, 1.0), a + b * random.vector(0.0, 1.0));
+            let (range, of_surface) = (solid.range(&region)?, surface.range(&region));
+            for _ in 0..12 {
+                let p = random.point_in(&region);
+                let value = field.value(p);
+                assert!(range.lo() <= value && value <= range.hi(), "{name} {range:?} {value} at {p} of {region:?}");
+                let value = surface.value(p);
+                assert!(of_surface.lo() <= value && value <= of_surface.hi(), "{name} {of_surface:?} {value}");
+            }
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn gradients_of_blends_are_differences() -> Result<(), SolidError> {
+    for (name, solid) in blended() {
+        let bounds = solid.bounds()?;
+        let field = solid.field_program()?;
+        let mut random = Random::new(74);
+        let (mut off, mut count) = (0, 0);
+        for _ in 0..120 {
+            let p = random.point_in(&bounds);
+            let (_, gradient) = field.gradient(p);
+            let h = 1e-6;
+            let slope = |d: DVec3| (field.value(p + h * d) - field.value(p - h * d)) / (2.0 * h);
+            let difference = DVec3::new(slope(DVec3::X), slope(DVec3::Y), slope(DVec3::Z));
+            count += 1;
+            // A chamfer leaves out how the edge turns.
+            let tolerance = if name == "chamfer" { 0.2 } else { 0.02 };
+            off += usize::from((gradient - difference).length() > tolerance * (1.0 + gradient.length()));
+        }
+        // At creases the two may differ.
+        assert!(off * 50 <= count, "{name}: {off} of {count}");
+    }
+    Ok(())
+}
+
+#[test]
+fn beside_a_blend_the_solid_prunes() -> Result<(), SolidError> {
+    // A long bar of a hundred balls, two of them blended: far from those, one leaf is left.
+    let ball = |i: i32| Solid::sphere(0.6).translate(DVec3::X * f64::from(i));
+    for blend in [Blend::Smooth { radius: 0.2 }, Blend::Fillet { radius: 0.1 }, Blend::Chamfer { width: 0.1 }] {
+        let pair = ball(0).union_with(&ball(1), blend);
+        let bar = Solid::union_all((2..100).map(ball).chain([pair]), RFunction::MIN_MAX);
+        let program = bar.surface_program()?;
+        let small = |p: DVec3| Bounds::new(p - 0.05, p + 0.05);
+        let leaves = |p: DVec3| match program.narrow(&small(p)) {
+            Region::Surface(narrowed) => narrowed.leaf_count(),
+            _ => 0,
+        };
+        assert_eq!(leaves(DVec3::new(50.0, 0.6, 0.0)), 1, "{blend:?}");
+        assert_eq!(leaves(DVec3::new(0.0, 0.6, 0.0)), 1, "{blend:?}");
+        assert!(leaves(DVec3::new(0.5, 0.34, 0.0)) >= 1, "{blend:?}");
+    }
+    Ok(())
+}
+
+#[test]
+fn offsets_move_the_surface_by_a_length() -> Result<(), SolidError> {
+    let brick = Solid::cuboid(DVec3::new(2.0, 1.0, 1.0));
+    let hole = Solid::cylinder(0.2, 3.0);
+    let part = (&brick - &hole).offset(0.05);
+    // The outside grows, the hole shrinks.
+    near(part.value(DVec3::new(1.05, 0.0, 0.0))?, 0.0, 1e-12);
+    near(part.value(DVec3::new(0.15, 0.0, 0.0))?, 0.0, 1e-12);
+    // Lengths through similarities, twice, and through complements.
+    let turned = (!brick.scale(2.0).rotate_z(0.3).offset(-0.1)).offset(0.3);
+    near((!turned).value(DVec3::Z * (1.0 - 0.4))?, 0.0, 1e-12);
+    let scaled = brick.offset(0.1).scale(2.0).offset(0.1);
+    near(scaled.value(DVec3::new(2.3, 0.0, 0.0))?, 0.0, 1e-12);
+    let stretched = Solid::sphere(1.0).offset(0.1).scale_axes(DVec3::new(1.0, 1.0, 2.0));
+    near(stretched.value(DVec3::Z * 2.2)?, 0.0, 1e-9);
+    // A shell, and what is in exactly one of two.
+    let shell = brick.shell(0.1);
+    let bounds = shell.bounds()?;
+    near(bounds.max.x, 1.0, 1e-9);
+    near(shell.value(DVec3::new(0.95, 0.0, 0.0))?, 0.05, 1e-12);
+    near(shell.value(DVec3::new(0.85, 0.0, 0.0))?, -0.05, 1e-12);
+    let either = (&brick ^ &hole).offset(-0.05);
+    near(either.value(DVec3::new(0.25, 0.0, 0.0))?, 0.0, 1e-12);
+    near(either.value(DVec3::new(0.0, 0.15, 1.0))?, 0.0, 1e-12);
+    // Rules other than min and max do not change lengths.
+    let rule = RFunction::Zero { m: 2 };
+    let far = brick.union(&brick.translate(DVec3::X * 3.0), rule).offset(0.2);
+    near(far.value(DVec3::Z * 1.0)?, -0.3, 1e-12);
+    let error = brick.shell(-0.1).value(DVec3::ZERO);
+    let Err(SolidError::Parameter { path, source }) = error else { panic!("{error:?}") };
+    assert_eq!((path.as_str(), source.parameter.as_str()), ("shell", "thickness"));
+    Ok(())
+}
+
+#[test]
+fn fillets_nest_to_a_limit() -> Result<(), SolidError> {
+    let chain = |count: u32| {
+        (1..count).fold(Solid::sphere(0.6), |all, i| {
+            all.union_with(&Solid::sphere(0.6).translate(DVec3::X * f64::from(i)), Blend::Fillet { radius: 0.1 })
+        })
+    };
+    let ten = chain(10);
+    let middle = DVec2::new(4.5, 0.36);
+    assert!(ten.contains(DVec3::new(middle.x, middle.y, 0.0))?);
+    let Err(SolidError::TooDeep { limit: 40, .. }) = chain(100).value(DVec3::ZERO) else { panic!("not too deep") };
+    Ok(())
+}
+
+#[test]
+fn bounds_that_no_part_tells_are_found() -> Result<(), SolidError> {
+    let mut sides = Vec::new();
+    for axis in DVec3::AXES {
+        sides.push(Solid::half_space(axis, 1.0));
+        sides.push(Solid::half_space(-axis, 2.0));
+    }
+    let brick = Solid::intersection_all(sides, RFunction::MIN_MAX);
+    let bounds = brick.bounds()?;
+    assert!(bounds.min.cmple(DVec3::splat(-2.0)).all() && bounds.max.cmpge(DVec3::ONE).all());
+    assert!(bounds.size().max_element() < 3.2, "{bounds:?}");
+    assert!(!below(0.3).bounds()?.is_finite());
+    Ok(())
+}
