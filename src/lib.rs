@@ -142,13 +142,13 @@ mod space;
 pub use bounds::Bounds;
 pub use eval::{Evaluator, Gradients, Hit, Owner, Program, Region, Tape};
 pub use field::{
-    COORDINATE_LIMIT, Cuboid, Cylinder, Field, Gielis, HalfSpace, Kernel, ParamError, RFunction, Radius, Sphere,
-    Superellipsoid, Supershape, VALUE_LIMIT,
+    COORDINATE_LIMIT, Cuboid, Cylinder, Field, GeneralisedSuperquadric, Gielis, HalfSpace, Kernel, ParamError,
+    RFunction, Radius, Sphere, Superellipsoid, Superhyperboloid, Supershape, Supertoroid, VALUE_LIMIT,
 };
 pub use geom::{Camera, CameraError, Image, ImageError, Mesh, MeshError, Projection, Rays};
 pub use io::{SaveError, write_png, write_stl};
 pub use mesh::{CellSize, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError};
-pub use num::{Dual, Interval, Monotone, Norm, Real};
+pub use num::{Dual, Interval, Monotone, Monotone3, Norm, Real};
 pub use render::{Background, RenderError, RenderSettings};
 pub use run::{CancelToken, Cancelled, Progress, Run};
 pub use solid::{Solid, SolidError};

@@ -12,5 +12,6 @@ mod queries;
 mod rfunction;
 mod scale;
 mod superellipsoid;
+mod superquadric;
 mod supershape;
 mod support;
