@@ -115,6 +115,7 @@
 //! |---|---|---|
 //! | superellipsoid, exponents 0.05 to 2.5 | 4·10⁻⁶ | 3.2·10⁻⁷ |
 //! | sphere, box, cylinder, half-space | 4·10⁻⁶ | 5.0·10⁻⁷ |
+//! | supertoroid, exponents 0.05 to 2; superhyperboloid, 0.05 to 2.5; generalised superquadric, 0.5 to 60 | 4·10⁻⁶ | 3.5·10⁻⁷ |
 //! | supershape, m up to 12, n2 and n3 at least 1 | 4·10⁻⁶ times max(n2, n3)/n1, at least 4·10⁻⁶ | within |
 //!
 //! # Below the verbs

@@ -49,7 +49,7 @@ enum Sheets {
 /// | parameter | unit | range |
 /// |---|---|---|
 /// | `semi_axes` | length | 10⁻⁹ to 10⁹ each |
-/// | `e1` | none | 0.01 to 10: shapes the profile along the axis (0 cone-like corners, 1 hyperbola, 2 straight) |
+/// | `e1` | none | 0.01 to 10: shapes the profile along the axis (0 straight, then a cone; 1 hyperbola; 2 two cones) |
 /// | `e2` | none | 0.01 to 10: shapes the sections across it (0 square, 1 round, 2 bevelled) |
 /// | `half_length` | length | 10⁻⁹ to 10⁹, at most 1000 times the semi-axis along the axis; for two sheets above that semi-axis |
 ///

@@ -83,7 +83,7 @@ fn superquadrics(axes: DVec3) -> Vec<Case> {
         let leaf = Supertoroid::new(axes, ring, e1, e2);
         cases.push(case(format!("supertoroid {ring} {e1} {e2}"), leaf, ring + 1.0));
     }
-    for [e1, e2] in [[1.0, 1.0], [0.3, 0.7], [2.0, 0.5], [0.05, 1.6], [2.5, 0.8], [0.8, 2.5]] {
+    for [e1, e2] in [[1.0, 1.0], [0.05, 1.6], [2.5, 0.8], [0.8, 2.5]] {
         for (name, leaf) in [
             ("one sheet", Superhyperboloid::one_sheet(axes, e1, e2, 0.9)),
             ("one sheet along x", Superhyperboloid::one_sheet_x(axes, e1, e2, 0.9)),
