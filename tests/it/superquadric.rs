@@ -443,9 +443,9 @@ fn random_parameters_give_finite_numbers_and_sound_ranges() {
         let program = solid.field_program().unwrap();
         let mut points: Vec<DVec3> = (0..20).map(|_| random.point_in(&bounds)).collect();
         points.extend((0..10).map(|_| random.log_range(1e-12, 1e12) * random.direction()));
-        for i in 0..points.len() {
+        for p in &mut points {
             if random.chance(0.3) {
-                points[i][random.below(3)] = 0.0;
+                p[random.below(3)] = 0.0;
             }
         }
         points.push(DVec3::ZERO);
