@@ -115,6 +115,7 @@
 //! |---|---|---|
 //! | superellipsoid, exponents 0.05 to 2.5 | 4·10⁻⁶ | 3.2·10⁻⁷ |
 //! | sphere, box, cylinder, half-space | 4·10⁻⁶ | 5.0·10⁻⁷ |
+//! | supertoroid, exponents 0.05 to 2; superhyperboloid, 0.05 to 2.5; generalised superquadric, 0.5 to 60 | 4·10⁻⁶ | 3.5·10⁻⁷ |
 //! | supershape, m up to 12, n2 and n3 at least 1 | 4·10⁻⁶ times max(n2, n3)/n1, at least 4·10⁻⁶ | within |
 //!
 //! # Below the verbs
@@ -142,13 +143,13 @@ mod space;
 pub use bounds::Bounds;
 pub use eval::{Evaluator, Gradients, Hit, Owner, Program, Region, Tape};
 pub use field::{
-    Blend, COORDINATE_LIMIT, Cuboid, Cylinder, Field, Gielis, HalfSpace, Kernel, ParamError, RFunction, Radius, Sphere,
-    Superellipsoid, Supershape, VALUE_LIMIT,
+    Blend, COORDINATE_LIMIT, Cuboid, Cylinder, Field, GeneralisedSuperquadric, Gielis, HalfSpace, Kernel, ParamError,
+    RFunction, Radius, Sphere, Superellipsoid, Superhyperboloid, Supershape, Supertoroid, VALUE_LIMIT,
 };
 pub use geom::{Camera, CameraError, Image, ImageError, Mesh, MeshError, Projection, Rays};
 pub use io::{SaveError, write_png, write_stl};
 pub use mesh::{CellSize, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError};
-pub use num::{Dual, Interval, Monotone, Norm, Real};
+pub use num::{Dual, Interval, Monotone, Monotone3, Norm, Real};
 pub use render::{Background, RenderError, RenderSettings};
 pub use run::{CancelToken, Cancelled, Progress, Run};
 pub use solid::{Solid, SolidError};

@@ -11,13 +11,16 @@ mod cuboid;
 mod cylinder;
 mod deform;
 mod erased;
+mod generalised;
 mod gielis;
 mod half_space;
 mod leaf;
 mod rfunction;
 mod sphere;
 mod superellipsoid;
+mod superhyperboloid;
 mod supershape;
+mod supertoroid;
 mod zone;
 
 pub use blend::Blend;
@@ -27,6 +30,7 @@ pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
 pub(crate) use deform::{AnyWarp, Bend, Taper, Twist};
 pub(crate) use erased::{AnyField, Chunk, Placement, smallest_stretch};
+pub use generalised::GeneralisedSuperquadric;
 pub use gielis::{Gielis, Radius};
 pub use half_space::HalfSpace;
 pub use leaf::{Field, Kernel};
@@ -34,7 +38,9 @@ pub use rfunction::RFunction;
 pub(crate) use rfunction::{Rule, saturate};
 pub use sphere::Sphere;
 pub use superellipsoid::Superellipsoid;
+pub use superhyperboloid::Superhyperboloid;
 pub use supershape::Supershape;
+pub use supertoroid::Supertoroid;
 pub(crate) use zone::Zone;
 
 /// Coordinates beyond this many length units are evaluated as if they lay there, so that no

@@ -141,7 +141,7 @@ impl Superellipsoid {
 }
 
 /// The norm whose dual bounds the slope of G: p = 2/(e − 1), ∞ for e ≤ 1.
-fn slope_norm(e: f64) -> Norm {
+pub(super) fn slope_norm(e: f64) -> Norm {
     Norm::new(if e <= 1.0 { f64::INFINITY } else { 2.0 / (e - 1.0) })
 }
 
@@ -151,7 +151,7 @@ fn radius_norm(e: f64) -> Norm {
 }
 
 /// The norm of the support function: p = 2/(2 − e), ∞ for e ≥ 2.
-fn support_norm(e: f64) -> Norm {
+pub(super) fn support_norm(e: f64) -> Norm {
     Norm::new(if e >= 2.0 { f64::INFINITY } else { 2.0 / (2.0 - e) })
 }
 

@@ -8,7 +8,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::{Monotone, Norm, Real};
+use super::{Monotone, Monotone3, Norm, Real};
 
 /// A value and its derivatives with respect to three variables.
 ///
@@ -89,6 +89,17 @@ impl<T: Real> Dual<T> {
             v,
             d: [self.d[0].mul_add(a, o.d[0] * b), self.d[1].mul_add(a, o.d[1] * b), self.d[2].mul_add(a, o.d[2] * b)],
         }
+    }
+
+    /// Value `v`, derivatives `a` times those of `self` plus `b` and `c` times those of `y`
+    /// and `z`.
+    #[inline(always)]
+    fn chain3(self, y: Self, z: Self, v: T, [a, b, c]: [T; 3]) -> Self {
+        let mut sum = self.chain2(y, v, a, b);
+        for axis in 0..3 {
+            sum.d[axis] = z.d[axis].mul_add(c, sum.d[axis]);
+        }
+        sum
     }
 
     /// Component-wise choice by the sign of `by`.
@@ -277,17 +288,19 @@ impl<T: Real> Real for Dual<T> {
 
     #[inline(always)]
     fn nested(self, y: Self, z: Self, inner: Norm, outer: Norm) -> Self {
-        let (v, [a, b, c]) = self.v.nested_parts(y.v, z.v, inner, outer);
-        let mut sum = self.chain2(y, v, a, b);
-        for axis in 0..3 {
-            sum.d[axis] = z.d[axis].mul_add(c, sum.d[axis]);
-        }
-        sum
+        let (v, slopes) = self.v.nested_parts(y.v, z.v, inner, outer);
+        self.chain3(y, z, v, slopes)
     }
 
     #[inline(always)]
     fn monotone<M: Monotone>(self, o: Self, function: &M) -> Self {
         let (v, a, b) = function.parts(self.v, o.v);
         self.chain2(o, v, a, b)
+    }
+
+    #[inline(always)]
+    fn monotone3<M: Monotone3>(self, y: Self, z: Self, function: &M) -> Self {
+        let (v, slopes) = function.parts(self.v, y.v, z.v);
+        self.chain3(y, z, v, slopes)
     }
 }

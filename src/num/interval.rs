@@ -13,7 +13,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::{Monotone, Norm, Real};
+use super::{Monotone, Monotone3, Norm, Real};
 
 /// A closed interval of real numbers, `lo ≤ hi`; either end may be infinite.
 ///
@@ -357,6 +357,19 @@ impl Real for Interval {
         let rounding = 16.0 * f64::EPSILON;
         let (lo_size, hi_size) = (self.lo.abs().max(other.lo.abs()), self.hi.abs().max(other.hi.abs()));
         Interval::outward(lo - rounding * (lo_size + lo.abs()), hi + rounding * (hi_size + hi.abs()))
+    }
+
+    #[inline(always)]
+    fn monotone3<M: Monotone3>(self, y: Interval, z: Interval, function: &M) -> Interval {
+        let (lo, hi) = (function.value(self.lo, y.lo, z.lo), function.value(self.hi, y.hi, z.hi));
+        if lo.is_nan() || hi.is_nan() {
+            return Interval::ALL;
+        }
+        // What the trait allows the formula to be off by.
+        const INEXACT: f64 = 1e-13;
+        let lo_size = self.lo.abs().max(y.lo.abs()).max(z.lo.abs());
+        let hi_size = self.hi.abs().max(y.hi.abs()).max(z.hi.abs());
+        Interval::outward(lo - INEXACT * (lo_size + lo.abs()), hi + INEXACT * (hi_size + hi.abs()))
     }
 }
 

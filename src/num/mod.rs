@@ -22,6 +22,6 @@ pub(crate) mod symbol;
 
 pub use dual::Dual;
 pub use interval::Interval;
-pub use monotone::Monotone;
+pub use monotone::{Monotone, Monotone3};
 pub use norm::Norm;
 pub use real::Real;

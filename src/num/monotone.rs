@@ -1,4 +1,4 @@
-//! Functions of two arguments that rise with each of them.
+//! Functions of two and of three arguments that rise with each of them.
 
 use super::Real;
 
@@ -13,4 +13,18 @@ pub trait Monotone {
 
     /// The value and the slopes with respect to `x` and `y`.
     fn parts<R: Real>(&self, x: R, y: R) -> (R, R, R);
+}
+
+/// A function of three numbers that does not fall when any of them rises, such as a gauge that
+/// has no closed form and is found by iteration.
+///
+/// [`Real::monotone3`] evaluates it in the way that suits the number: a range is two endpoint
+/// evaluations, however often the formula names its arguments, and a gradient is three slopes.
+pub trait Monotone3 {
+    /// The function's value. In `f64` it must be within 10⁻¹³ of the true one, relative to the
+    /// value and the largest argument.
+    fn value<R: Real>(&self, x: R, y: R, z: R) -> R;
+
+    /// The value and the slopes with respect to `x`, `y` and `z`.
+    fn parts<R: Real>(&self, x: R, y: R, z: R) -> (R, [R; 3]);
 }

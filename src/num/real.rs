@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::{Monotone, Norm};
+use super::{Monotone, Monotone3, Norm};
 
 /// A number that a formula can be evaluated on.
 ///
@@ -127,5 +127,11 @@ pub trait Real:
     #[inline(always)]
     fn monotone<M: Monotone>(self, other: Self, function: &M) -> Self {
         function.value(self, other)
+    }
+
+    /// A function that rises with all three of its arguments.
+    #[inline(always)]
+    fn monotone3<M: Monotone3>(self, y: Self, z: Self, function: &M) -> Self {
+        function.value(self, y, z)
     }
 }

@@ -5,7 +5,10 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::{Node, Solid};
-use crate::{Cuboid, Cylinder, Field, HalfSpace, Sphere, Superellipsoid, Supershape};
+use crate::{
+    Cuboid, Cylinder, Field, GeneralisedSuperquadric, HalfSpace, Sphere, Superellipsoid, Superhyperboloid, Supershape,
+    Supertoroid,
+};
 
 impl Solid {
     /// A user's own leaf as a solid. (The built-in ones are converted: `Solid::from(leaf)`.)
@@ -43,6 +46,12 @@ impl Solid {
     pub fn superellipsoid(semi_axes: impl Into<DVec3>, e1: f64, e2: f64) -> Solid {
         Superellipsoid::new(semi_axes, e1, e2).into()
     }
+
+    /// A [`Supertoroid`] about the z axis.
+    #[must_use]
+    pub fn supertoroid(semi_axes: impl Into<DVec3>, ring: f64, e1: f64, e2: f64) -> Solid {
+        Supertoroid::new(semi_axes, ring, e1, e2).into()
+    }
 }
 
 /// The built-in leaves as solids. Their kernels are compiled here once and not, as those of
@@ -58,4 +67,14 @@ macro_rules! leaves {
     )*};
 }
 
-leaves!(Cuboid, Cylinder, HalfSpace, Sphere, Superellipsoid, Supershape);
+leaves!(
+    Cuboid,
+    Cylinder,
+    GeneralisedSuperquadric,
+    HalfSpace,
+    Sphere,
+    Superellipsoid,
+    Superhyperboloid,
+    Supershape,
+    Supertoroid
+);

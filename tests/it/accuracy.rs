@@ -4,7 +4,10 @@
 //! accuracy` shows them.
 
 use glam::DVec3;
-use rvachev::{Bounds, Cuboid, Cylinder, Evaluator, Gielis, Solid, Sphere, Superellipsoid, Supershape, Tape};
+use rvachev::{
+    Bounds, Cuboid, Cylinder, Evaluator, GeneralisedSuperquadric, Gielis, Solid, Sphere, Superellipsoid,
+    Superhyperboloid, Supershape, Supertoroid, Tape,
+};
 
 use crate::support::{Random, rounded};
 
@@ -111,6 +114,46 @@ fn superellipsoids_of_any_proportions() {
         worst.learn(&solid, &points, &cube(10.0 * axes.max_element()), axes.max_element(), 1.0);
     }
     worst.finish("superellipsoids of any proportions");
+}
+
+/// A superquadric with semi-axes of any proportions, its solid and half-extents.
+fn superquadric(random: &mut Random, kind: usize) -> (Solid, DVec3) {
+    let size = random.log_range(1e-3, 1e3);
+    let axes = DVec3::from_array([0; 3].map(|_| size * random.log_range(0.05, 1.0)));
+    let [e1, e2] = [0; 2].map(|_| {
+        let most = if kind == 0 { 2.0 } else { 2.5 };
+        if random.chance(0.2) { random.pick(&[0.05, 1.0, most]) } else { random.range(0.05, most) }
+    });
+    let longer = random.log_range(1.01, 5.0);
+    let solid: Solid = match kind {
+        0 => Supertoroid::new(axes, random.log_range(1.0, 10.0), e1, e2).into(),
+        1 => Superhyperboloid::one_sheet(axes, e1, e2, axes.z * random.log_range(0.1, 5.0)).into(),
+        2 => Superhyperboloid::two_sheets(axes, e1, e2, axes.z * longer).into(),
+        3 => Superhyperboloid::two_sheets_x(axes, e1, e2, axes.x * longer).into(),
+        _ => {
+            let n = [0; 3].map(|_| {
+                if random.chance(0.2) { random.pick(&[0.5, 1.0, 2.0, 60.0]) } else { random.log_range(0.5, 60.0) }
+            });
+            GeneralisedSuperquadric::new(axes, n).into()
+        }
+    };
+    let half = solid.bounds().unwrap().half_extents();
+    (solid, half)
+}
+
+#[test]
+fn superquadrics() {
+    let names = ["supertoroids", "one sheet", "two sheets", "two sheets along x", "generalised superquadrics"];
+    let mut random = Random::new(19);
+    for (kind, name) in names.into_iter().enumerate() {
+        let mut worst = Worst::new();
+        for _ in 0..60 {
+            let (solid, half) = superquadric(&mut random, kind);
+            let points = points(&mut random, &solid, half, 1000);
+            worst.learn(&solid, &points, &cube(10.0 * half.max_element()), half.max_element(), 1.0);
+        }
+        worst.finish(name);
+    }
 }
 
 #[test]

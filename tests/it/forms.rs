@@ -5,8 +5,8 @@ use fidget::shape::EzShape;
 use fidget::vm::VmShape;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rvachev::{
-    Bounds, Cuboid, Cylinder, Evaluator, Field, Gielis, Gradients, HalfSpace, ParamError, RFunction, Real, Solid,
-    Sphere, Superellipsoid, Supershape, Tape,
+    Bounds, Cuboid, Cylinder, Evaluator, Field, GeneralisedSuperquadric, Gielis, Gradients, HalfSpace, ParamError,
+    RFunction, Real, Solid, Sphere, Superellipsoid, Superhyperboloid, Supershape, Supertoroid, Tape,
 };
 
 use crate::support::{RULES, Random, columns, lanes32, lanes64, random_box, rounded, samples};
@@ -52,6 +52,7 @@ fn leaves() -> Vec<Case> {
     ] {
         cases.push(case(format!("superellipsoid {e1} {e2}"), Superellipsoid::new(axes, e1, e2), 1.0));
     }
+    cases.extend(superquadrics(axes));
     let circle = Gielis::circle();
     let bounded = Gielis::new(4.0, 10.0, 10.0, 10.0);
     for (name, equator, meridian) in [
@@ -70,6 +71,34 @@ fn leaves() -> Vec<Case> {
             let shape = shape.rational();
             cases.push(Case { condition, ..case(format!("rational supershape {name}"), shape, size) });
         }
+    }
+    cases
+}
+
+fn superquadrics(axes: DVec3) -> Vec<Case> {
+    let mut cases = Vec::new();
+    for [ring, e1, e2] in
+        [[1.0, 1.0, 1.0], [1.5, 0.3, 0.7], [2.0, 2.0, 0.5], [4.0, 0.2, 2.0], [1.2, 0.05, 0.05], [1.5, 1.5, 2.5]]
+    {
+        let leaf = Supertoroid::new(axes, ring, e1, e2);
+        cases.push(case(format!("supertoroid {ring} {e1} {e2}"), leaf, ring + 1.0));
+    }
+    for [e1, e2] in [[1.0, 1.0], [0.05, 1.6], [2.5, 0.8], [0.8, 2.5]] {
+        for (name, leaf) in [
+            ("one sheet", Superhyperboloid::one_sheet(axes, e1, e2, 0.9)),
+            ("one sheet along x", Superhyperboloid::one_sheet_x(axes, e1, e2, 0.9)),
+            ("two sheets", Superhyperboloid::two_sheets(axes, e1, e2, 1.1)),
+            ("two sheets along x", Superhyperboloid::two_sheets_x(axes, e1, e2, 1.6)),
+        ] {
+            let size = Solid::from(leaf).bounds().unwrap().half_extents().max_element();
+            cases.push(case(format!("{name} {e1} {e2}"), leaf, size));
+        }
+    }
+    for exponents in
+        [[2.0, 2.0, 2.0], [5.0, 3.0, 1.5], [1.0, 1.0, 1.0], [60.0, 1.0, 2.0], [1.2, 20.0, 40.0], [0.8, 3.0, 1.0]]
+    {
+        let leaf = GeneralisedSuperquadric::new(axes, exponents);
+        cases.push(case(format!("generalised superquadric {exponents:?}"), leaf, 1.0));
     }
     cases
 }

@@ -13,5 +13,6 @@ mod queries;
 mod rfunction;
 mod scale;
 mod superellipsoid;
+mod superquadric;
 mod supershape;
 mod support;
