@@ -214,11 +214,11 @@ fn tight_on_the_models() {
 
 #[test]
 fn tight_on_lattices() {
-    // Two periods at 64³: the cells are those of four periods at 128³.
+    // One period at 32³: the cells are those of four periods at 128³.
     let mut failures = Vec::new();
     for (name, solid, size) in crate::lattices::lattices() {
-        let model = Model { name: "lattice", half: size, solid };
-        let found = walk(&model, 64);
+        let model = Model { name: "lattice", half: 0.5 * size, solid };
+        let found = walk(&model, 32);
         let ratio = found.kept.len() as f64 / found.crossed as f64;
         println!("{name}: {} kept, {} crossed, ratio {ratio:.4}", found.kept.len(), found.crossed);
         if ratio > 1.2 {
@@ -233,7 +233,7 @@ fn tight_on_primitives() {
     let mut failures = Vec::new();
     for (name, solid, size) in crate::primitives::primitives() {
         let model = Model { name: "primitive", half: 1.1 * size, solid };
-        let found = walk(&model, 64);
+        let found = walk(&model, 32);
         let ratio = found.kept.len() as f64 / found.crossed as f64;
         println!("{name}: {} kept, {} crossed, ratio {ratio:.4}", found.kept.len(), found.crossed);
         if ratio > 1.1 {
