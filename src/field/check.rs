@@ -24,8 +24,8 @@ impl ParamError {
 }
 
 /// Lengths are between these bounds, far inside what the arithmetic can hold.
-const SMALLEST_LENGTH: f64 = 1e-9;
-const LARGEST_LENGTH: f64 = 1e9;
+pub(super) const SMALLEST_LENGTH: f64 = 1e-9;
+pub(super) const LARGEST_LENGTH: f64 = 1e9;
 
 /// A length: positive, neither NaN nor extreme.
 pub(crate) fn length(parameter: &str, value: f64) -> Result<(), ParamError> {
@@ -55,5 +55,15 @@ pub(crate) fn finite(parameter: &str, value: f64) -> Result<(), ParamError> {
         Ok(())
     } else {
         Err(ParamError::new(parameter, value, format_args!("{} to {LARGEST_LENGTH}", -LARGEST_LENGTH)))
+    }
+}
+
+/// A direction: a finite vector other than zero.
+pub(super) fn direction(parameter: &str, value: glam::DVec3) -> Result<(), ParamError> {
+    let length = value.length();
+    if length.is_finite() && length > 0.0 {
+        Ok(())
+    } else {
+        Err(ParamError::new(parameter, length, "a finite vector other than zero"))
     }
 }

@@ -64,10 +64,7 @@ impl Field for HalfSpace {
     }
 
     fn check(&self) -> Result<(), ParamError> {
-        let length = self.normal.length();
-        if !(length.is_finite() && length > 0.0) {
-            return Err(ParamError::new("normal", length, "a finite vector other than zero"));
-        }
+        check::direction("normal", self.normal)?;
         check::finite("offset", self.offset)
     }
 

@@ -6,16 +6,28 @@
 //! that the engine runs: point, gradient, range, lanes, expression tree.
 
 mod blend;
+mod capsule;
 pub(crate) mod check;
+mod cone;
 mod cuboid;
 mod cylinder;
 mod deform;
+mod ellipsoid;
 mod erased;
 mod generalised;
 mod gielis;
 mod half_space;
+mod kaleidoscope;
 mod leaf;
+mod minimal_surface;
+mod network_lattice;
+mod prism;
+mod pyramid;
 mod rfunction;
+mod rounded_cuboid;
+mod sheet_lattice;
+mod slab;
+mod slope;
 mod sphere;
 mod superellipsoid;
 mod superhyperboloid;
@@ -25,22 +37,36 @@ mod zone;
 
 pub use blend::Blend;
 pub(crate) use blend::RicciSide;
+mod torus;
+mod wedge;
+pub use capsule::Capsule;
 pub use check::ParamError;
+pub use cone::Cone;
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
 pub(crate) use deform::{AnyWarp, Bend, Taper, Twist};
+pub use ellipsoid::Ellipsoid;
 pub(crate) use erased::{AnyField, Chunk, Placement, smallest_stretch};
 pub use generalised::GeneralisedSuperquadric;
 pub use gielis::{Gielis, Radius};
 pub use half_space::HalfSpace;
 pub use leaf::{Field, Kernel};
+pub use minimal_surface::{Grading, MinimalSurface};
+pub use network_lattice::NetworkLattice;
+pub use prism::Prism;
+pub use pyramid::Pyramid;
 pub use rfunction::RFunction;
 pub(crate) use rfunction::{Rule, saturate};
+pub use rounded_cuboid::RoundedCuboid;
+pub use sheet_lattice::SheetLattice;
+pub use slab::Slab;
 pub use sphere::Sphere;
 pub use superellipsoid::Superellipsoid;
 pub use superhyperboloid::Superhyperboloid;
 pub use supershape::Supershape;
 pub use supertoroid::Supertoroid;
+pub use torus::Torus;
+pub use wedge::Wedge;
 pub(crate) use zone::Zone;
 
 /// Coordinates beyond this many length units are evaluated as if they lay there, so that no

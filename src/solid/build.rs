@@ -6,8 +6,9 @@ use glam::DVec3;
 
 use super::{Node, Solid};
 use crate::{
-    Cuboid, Cylinder, Field, GeneralisedSuperquadric, HalfSpace, Sphere, Superellipsoid, Superhyperboloid, Supershape,
-    Supertoroid,
+    Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Field, GeneralisedSuperquadric, HalfSpace, NetworkLattice, Prism,
+    Pyramid, RoundedCuboid, SheetLattice, Slab, Sphere, Superellipsoid, Superhyperboloid, Supershape, Supertoroid,
+    Torus, Wedge,
 };
 
 impl Solid {
@@ -39,6 +40,63 @@ impl Solid {
     #[must_use]
     pub fn half_space(normal: impl Into<DVec3>, offset: f64) -> Solid {
         HalfSpace { normal: normal.into(), offset }.into()
+    }
+
+    /// A box about the origin with rounded edges ([`RoundedCuboid`]); `size` is from face to
+    /// face.
+    #[must_use]
+    pub fn rounded_cuboid(size: impl Into<DVec3>, radius: f64) -> Solid {
+        RoundedCuboid { size: size.into(), radius }.into()
+    }
+
+    /// A [`Cone`] about the z axis, centred at the origin; pointed if one radius is 0.
+    #[must_use]
+    pub fn cone(bottom_radius: f64, top_radius: f64, height: f64) -> Solid {
+        Cone { bottom_radius, top_radius, height }.into()
+    }
+
+    /// A [`Capsule`] about the z axis, centred at the origin; `height` is from end to end.
+    #[must_use]
+    pub fn capsule(radius: f64, height: f64) -> Solid {
+        Capsule { radius, height }.into()
+    }
+
+    /// A [`Torus`] about the z axis, centred at the origin.
+    #[must_use]
+    pub fn torus(radius: f64, tube: f64) -> Solid {
+        Torus { radius, tube }.into()
+    }
+
+    /// An [`Ellipsoid`] about the origin.
+    #[must_use]
+    pub fn ellipsoid(semi_axes: impl Into<DVec3>) -> Solid {
+        Ellipsoid { semi_axes: semi_axes.into() }.into()
+    }
+
+    /// A regular [`Prism`] along the z axis, centred at the origin; `radius` is that of the
+    /// corners.
+    #[must_use]
+    pub fn prism(sides: u32, radius: f64, height: f64) -> Solid {
+        Prism::new(sides, radius, height).into()
+    }
+
+    /// A regular [`Pyramid`] along the z axis, centred at the origin; `radius` is that of the
+    /// corners of its base.
+    #[must_use]
+    pub fn pyramid(sides: u32, radius: f64, height: f64) -> Solid {
+        Pyramid::new(sides, radius, height).into()
+    }
+
+    /// A [`Wedge`] about the origin: the lower half of a box of this size.
+    #[must_use]
+    pub fn wedge(size: impl Into<DVec3>) -> Solid {
+        Wedge { size: size.into() }.into()
+    }
+
+    /// A [`Slab`] between two parallel planes about the origin.
+    #[must_use]
+    pub fn slab(normal: impl Into<DVec3>, thickness: f64) -> Solid {
+        Slab { normal: normal.into(), thickness }.into()
     }
 
     /// A [`Superellipsoid`] about the origin.
@@ -78,3 +136,5 @@ leaves!(
     Supershape,
     Supertoroid
 );
+leaves!(Capsule, Cone, Ellipsoid, Prism, Pyramid, RoundedCuboid, Slab, Torus, Wedge);
+leaves!(NetworkLattice, SheetLattice);

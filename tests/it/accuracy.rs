@@ -176,6 +176,36 @@ fn primitives() {
 }
 
 #[test]
+fn exact_primitives() {
+    let mut random = Random::new(19);
+    let mut worst = Worst::new();
+    for _ in 0..150 {
+        let scale = random.log_range(1e-3, 1e3);
+        let (solid, size) = crate::primitives::random_primitive(&mut random);
+        let bounds = solid.bounds().unwrap();
+        let half = if bounds.is_finite() { scale * bounds.max.max(-bounds.min) } else { DVec3::splat(scale * size) };
+        let solid = solid.scale(scale);
+        let size = half.max_element();
+        let points = points(&mut random, &solid, half, 1000);
+        worst.learn(&solid, &points, &cube(10.0 * size), size, 1.0);
+    }
+    worst.finish("exact primitives");
+}
+
+#[test]
+fn lattices() {
+    let mut random = Random::new(20);
+    let mut worst = Worst::new();
+    for _ in 0..40 {
+        let cell = random.log_range(1e-3, 1e3);
+        let solid = crate::lattices::random_lattice(&mut random).scale(cell);
+        let points = points(&mut random, &solid, DVec3::splat(cell), 1000);
+        worst.learn(&solid, &points, &cube(10.0 * cell), cell, 1.0);
+    }
+    worst.finish("lattices");
+}
+
+#[test]
 fn supershapes() {
     let mut random = Random::new(16);
     for rational in [false, true] {

@@ -9,6 +9,8 @@ use rvachev::{
     RFunction, Real, Solid, Sphere, Superellipsoid, Superhyperboloid, Supershape, Supertoroid, Tape,
 };
 
+use crate::lattices::lattices;
+use crate::primitives::primitives;
 use crate::support::{RULES, Random, columns, lanes32, lanes64, random_box, rounded, samples};
 
 /// A solid to put to the test.
@@ -35,6 +37,9 @@ fn leaves() -> Vec<Case> {
         case("half-space", HalfSpace { normal: DVec3::new(0.3, -0.5, 0.8), offset: 0.25 }, 1.0),
         case("half-space along an axis", HalfSpace { normal: DVec3::Y, offset: -0.25 }, 1.0),
     ];
+    cases.extend(primitives().into_iter().map(|(name, solid, size)| case(name, solid, size)));
+    // Far away single precision knows nothing of a pattern.
+    cases.extend(lattices().into_iter().map(|(name, solid, size)| Case { deformed: true, ..case(name, solid, size) }));
     let axes = DVec3::new(1.0, 0.8, 0.6);
     for [e1, e2] in [
         [1.0, 1.0],

@@ -213,6 +213,37 @@ fn tight_on_the_models() {
 }
 
 #[test]
+fn tight_on_lattices() {
+    // Half a period at 16³: the cells are those of four periods at 128³.
+    let mut failures = Vec::new();
+    for (name, solid, size) in crate::lattices::lattices() {
+        let model = Model { name: "lattice", half: 0.25 * size, solid };
+        let found = walk(&model, 16);
+        let ratio = found.kept.len() as f64 / found.crossed as f64;
+        println!("{name}: {} kept, {} crossed, ratio {ratio:.4}", found.kept.len(), found.crossed);
+        if ratio > 1.6 {
+            failures.push(format!("{name}: {ratio}"));
+        }
+    }
+    assert!(failures.is_empty(), "{failures:?}");
+}
+
+#[test]
+fn tight_on_primitives() {
+    let mut failures = Vec::new();
+    for (name, solid, size) in crate::primitives::primitives() {
+        let model = Model { name: "primitive", half: 1.1 * size, solid };
+        let found = walk(&model, 32);
+        let ratio = found.kept.len() as f64 / found.crossed as f64;
+        println!("{name}: {} kept, {} crossed, ratio {ratio:.4}", found.kept.len(), found.crossed);
+        if ratio > 1.1 {
+            failures.push(format!("{name}: {ratio}"));
+        }
+    }
+    assert!(failures.is_empty(), "{failures:?}");
+}
+
+#[test]
 fn regions_that_are_infinite_or_empty_are_not_narrowed() {
     let program = (Solid::sphere(1.0) | Solid::cuboid(DVec3::ONE)).surface_program().unwrap();
     for bounds in [Bounds::ALL, Bounds::EMPTY, Bounds::new(DVec3::ZERO, DVec3::INFINITY)] {

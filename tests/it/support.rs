@@ -100,7 +100,9 @@ pub const RULES: [RFunction; 9] = [
 /// A leaf of any kind, of a size between 0.2 and 1.6, about the origin.
 pub fn random_leaf(random: &mut Random) -> Solid {
     let size = |random: &mut Random| random.range(0.2, 0.8);
-    match random.below(8) {
+    match random.below(11) {
+        8 | 9 => crate::primitives::random_primitive(random).0,
+        10 => crate::lattices::random_lattice(random),
         0 => Sphere { radius: size(random) }.into(),
         1 => Cuboid { size: random.vector(0.4, 1.6) }.into(),
         2 => Cylinder { radius: size(random), height: 2.0 * size(random) }.into(),
