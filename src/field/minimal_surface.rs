@@ -83,8 +83,8 @@ impl MinimalSurface {
         }
     }
 
-    /// g, and 1/N in units of length: `cell/2π` over N. The two numbers of the weight are w and
-    /// a bound below N².
+    /// g, and N per length unit: `2π/cell` times N. The two numbers of the weight are w and a
+    /// bound below N².
     #[inline(always)]
     pub(super) fn parts<R: Real>(self, [weight, least]: [f64; 2], cell: f64, p: [R; 3]) -> [R; 2] {
         let turn = TAU / cell;
@@ -111,7 +111,7 @@ impl MinimalSurface {
             }
         };
         let squared = g.square().scale_add(weight, slope).max(g.lift(least));
-        [g, g.lift(cell / TAU) / squared.sqrt()]
+        [g, squared.sqrt() * turn]
     }
 }
 

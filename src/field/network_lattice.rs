@@ -52,6 +52,16 @@ pub struct NetworkLattice<G = f64> {
 }
 
 impl<G: Grading> NetworkLattice<G> {
+    /// g less the level, and N.
+    #[inline(always)]
+    fn parts<R: Real>(&self, p: [R; 3]) -> [R; 2] {
+        let [g, slope] = self.surface.parts(self.surface.network_weight(), self.cell, p);
+        let [a, b] = self.surface.level();
+        // Minus d, so that the level is added.
+        let more = graded(&self.fraction, p) - 0.5;
+        [g + more.square().scale_add(b, more.lift(a)) * more, slope]
+    }
+
     /// The share of the volume for which the level is fitted and the network connected.
     fn allowed(&self) -> [f64; 2] {
         if self.surface == MinimalSurface::SchwarzP { [0.25, 0.75] } else { [0.1, 0.9] }
@@ -74,12 +84,8 @@ impl<G: Grading> Field for NetworkLattice<G> {
 
     #[inline(always)]
     fn eval<R: Real>(&self, p: [R; 3]) -> R {
-        let [g, scale] = self.surface.parts(self.surface.network_weight(), self.cell, p);
-        let [a, b] = self.surface.level();
-        // Minus d, so that the level is added.
-        let more = graded(&self.fraction, p) - 0.5;
-        let shift = more.square().scale_add(b, more.lift(a)) * more;
-        (g + shift) * scale
+        let [above, slope] = self.parts(p);
+        above / slope
     }
 
     fn bounds(&self) -> Bounds {
@@ -101,14 +107,17 @@ impl<G: Grading> Field for NetworkLattice<G> {
         if !diagonal.is_finite() {
             return self.eval(region);
         }
-        let centre = self.eval(region.map(|side| Interval::point(side.mid())));
+        let [here, slope_here] = self.parts(region.map(|side| Interval::point(side.mid())));
+        let mut coarse = Interval::ALL;
         if self.fraction.limits().width() == 0.0 {
-            let coarse = centre.inflate(self.steepest() * diagonal);
+            coarse = (here / slope_here).inflate(self.steepest() * diagonal);
             if coarse.lo() > 0.0 || coarse.hi() < 0.0 {
                 return coarse;
             }
         }
-        mean_value_range(self.eval(Dual::point(region)), centre, region)
+        // Without the division, which does not change the sign, slopes are tighter.
+        let [above, slope] = self.parts(Dual::point(region));
+        coarse.narrowed_by(mean_value_range(above, here, region) / slope.value())
     }
 
     fn roundoff(&self, reach: f64) -> f64 {

@@ -51,11 +51,9 @@ pub struct SheetLattice<G = f64> {
 }
 
 impl<G: Grading> SheetLattice<G> {
-    /// The signed distance to the surface, nearly.
     #[inline(always)]
-    fn off<R: Real>(&self, p: [R; 3]) -> R {
-        let [g, scale] = self.surface.parts(self.surface.wall_weight(), self.cell, p);
-        g * scale
+    fn parts<R: Real>(&self, p: [R; 3]) -> [R; 2] {
+        self.surface.parts(self.surface.wall_weight(), self.cell, p)
     }
 }
 
@@ -66,7 +64,8 @@ impl<G: Grading> Field for SheetLattice<G> {
 
     #[inline(always)]
     fn eval<R: Real>(&self, p: [R; 3]) -> R {
-        graded(&self.thickness, p).scale_add(0.5, -self.off(p).abs())
+        let [g, slope] = self.parts(p);
+        graded(&self.thickness, p).scale_add(0.5, -(g / slope).abs())
     }
 
     fn bounds(&self) -> Bounds {
@@ -84,21 +83,22 @@ impl<G: Grading> Field for SheetLattice<G> {
 
     fn range(&self, region: [Interval; 3]) -> Interval {
         let middle = region.map(|side| Interval::point(side.mid()));
-        let centre = self.off(middle);
+        let [g_here, slope_here] = self.parts(middle);
         let steepest = self.surface.steepest() * half_diagonal(region);
-        let limits = self.thickness.limits() * 0.5;
-        let coarse = limits - centre.inflate(steepest).abs();
+        let half = graded(&self.thickness, region) * 0.5;
+        let coarse = half - (g_here / slope_here).inflate(steepest).abs();
         if !steepest.is_finite() || coarse.lo() > 0.0 || coarse.hi() < 0.0 {
-            return coarse.narrowed_by(limits - Interval::new(0.0, self.cell));
+            return coarse.narrowed_by(half - Interval::new(0.0, self.cell));
         }
-        // On either side of the surface the value is smooth.
+        // Without the division, and on either side of the surface, slopes are tighter:
+        // thickness/2·N − g and thickness/2·N + g have the signs of the value.
         let point = Dual::point(region);
-        let half = graded(&self.thickness, point) * 0.5;
-        let half_here = graded(&self.thickness, middle) * 0.5;
-        let off = self.off(point);
-        let above = mean_value_range(half - off, half_here - centre, region);
-        let below = mean_value_range(half + off, half_here + centre, region);
-        coarse.narrowed_by(above.min(below))
+        let [g, slope] = self.parts(point);
+        let wall = graded(&self.thickness, point) * 0.5 * slope;
+        let wall_here = graded(&self.thickness, middle) * 0.5 * slope_here;
+        let above = mean_value_range(wall - g, wall_here - g_here, region);
+        let below = mean_value_range(wall + g, wall_here + g_here, region);
+        coarse.narrowed_by(above.min(below) / slope.value())
     }
 
     fn roundoff(&self, reach: f64) -> f64 {
