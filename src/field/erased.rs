@@ -35,6 +35,13 @@ impl Placement {
         Placement { rows: [row(0), row(1), row(2)], scale }
     }
 
+    /// The map.
+    pub(crate) fn map(&self) -> DAffine3 {
+        let [x, y, z] = self.rows.map(|[x, y, z, _]| DVec3::new(x, y, z));
+        let translation = DVec3::from_array(self.rows.map(|row| row[3]));
+        DAffine3::from_mat3_translation(DMat3::from_cols(x, y, z).transpose(), translation)
+    }
+
     /// The point in the leaf's frame.
     #[inline(always)]
     pub(crate) fn apply<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
@@ -77,6 +84,8 @@ pub(crate) trait AnyField: Debug + Send + Sync {
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval>;
     /// Whether the value is the true distance.
     fn exact(&self) -> bool;
+    /// Whether the value is concave, with slope at most 1.
+    fn convex(&self) -> bool;
     /// A sound range over a zone of the leaf's frame.
     fn range(&self, zone: &Zone) -> Interval;
     /// A leaf that is cheaper and has the same values over the zone, where there is one.
@@ -177,6 +186,10 @@ impl<F: Field> AnyField for F {
         Field::exact(self)
     }
 
+    fn convex(&self) -> bool {
+        Field::convex(self)
+    }
+
     fn value(&self, p: [f64; 3]) -> f64 {
         self.eval(p)
     }
@@ -191,7 +204,7 @@ impl<F: Field> AnyField for F {
 
     fn range(&self, zone: &Zone) -> Interval {
         let coarse = Field::range(self, zone.hull());
-        if !self.convex() || coarse.lo() > 0.0 || coarse.hi() < 0.0 || !zone.is_finite() {
+        if !Field::convex(self) || coarse.lo() > 0.0 || coarse.hi() < 0.0 || !zone.is_finite() {
             return coarse;
         }
         let tangent = self.eval(Dual::point(zone.centre.to_array()));
