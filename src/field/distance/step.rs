@@ -18,6 +18,9 @@ const SAME_SIDE: f64 = 0.8;
 /// What puts a plane behind all others.
 const BEHIND: f64 = 1e15;
 
+/// The diagonal of the equations of two planes: above 1, so that parallel ones share evenly.
+const RIDGE: f64 = 1.0 + 1e-5;
+
 /// Keeps denominators off 0.
 const TINY: f64 = 1e-30;
 
@@ -195,9 +198,9 @@ impl Formula<19, 15> for Cut {
             let rest = along(along(sum, a, -weight), b, -weights[k]);
             let (r, s) = (depth - dot(a, rest), depths[k] - dot(b, rest));
             let cosine = dot(a, b);
-            let inverse = zero.lift(1.0) / (-(cosine * cosine) + (1.0 + 1e-5)).max(zero.lift(1e-6));
-            let one = (r - cosine * s) * inverse;
-            let two = (s - cosine * r) * inverse;
+            let inverse = zero.lift(1.0) / (-(cosine * cosine) + RIDGE * RIDGE);
+            let one = (r * RIDGE - cosine * s) * inverse;
+            let two = (s * RIDGE - cosine * r) * inverse;
             let only_r = r.max(zero);
             let only_s = s.max(zero);
             weight = two.select(one.select(one, zero), only_r);
