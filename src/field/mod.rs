@@ -9,6 +9,7 @@ mod check;
 mod cuboid;
 mod cylinder;
 mod deform;
+#[cfg_attr(not(test), expect(dead_code, reason = "offsets and shells are compiled to it"))]
 mod distance;
 mod erased;
 mod gielis;

@@ -180,11 +180,10 @@ fn bent_errors<W: Warp>(warp: W, shape: Superellipsoid, share: f64) -> [f64; 2] 
     for (p, n) in &cloud[..150] {
         for (side, errors) in [t, -t].into_iter().zip(&mut worst) {
             let x = *p + *n * side;
-            // Where another part of the surface is nearer, thickness is not measured here.
-            let nearest = cloud.iter().map(|(q, _)| q.distance(x)).fold(f64::INFINITY, f64::min);
-            if nearest > 0.999 * t {
-                errors.push((distance.value(x.to_array()) + side).abs() / t);
-            }
+            // Inside, the tangent planes about may be nearer than where x came from.
+            let near = cloud.iter().filter(|(q, _)| q.distance(x) < 1.3 * t).map(|(q, m)| m.dot(*q - x));
+            let truth = if side > 0.0 { -t } else { near.fold(t, f64::min) };
+            errors.push((distance.value(x.to_array()) - truth).abs() / t);
         }
     }
     worst.map(|mut errors| {
@@ -195,16 +194,16 @@ fn bent_errors<W: Warp>(warp: W, shape: Superellipsoid, share: f64) -> [f64; 2] 
 
 #[test]
 fn walls_behind_deformations_are_as_thick_as_asked_for() {
+    let mut worst = 0.0f64;
     for e in [0.1, 0.5, 1.0, 1.5] {
         let shape = Superellipsoid::new(DVec3::new(1.0, 1.5, 3.0), e, e);
         let taper = bent_errors(Taper { kx: 0.4, ky: -0.3, half_height: 3.0 }, shape, 0.1);
         let twist = bent_errors(Twist { rate: 0.3 }, shape, 0.1);
         let bend = bent_errors(Bend { curvature: 0.2, angle: 0.4 }, shape, 0.1);
         println!("{e}: taper {taper:.4?} twist {twist:.4?} bend {bend:.4?}");
-        for [out, inward] in [taper, twist, bend] {
-            assert!(out < 0.02 && inward < 0.02);
-        }
+        worst = [taper, twist, bend].into_iter().flatten().fold(worst, f64::max);
     }
+    assert!(worst < 0.02, "{worst}");
 }
 
 #[test]
