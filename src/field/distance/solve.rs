@@ -19,7 +19,12 @@ const IDENTITY: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.
 impl Distance {
     /// How many starts there are inside.
     fn starts(&self) -> usize {
-        if self.planes.is_empty() { 1 } else { STARTS }
+        match self.shape {
+            _ if self.planes.is_empty() => 1,
+            Shape::Convex => STARTS,
+            // The steps count in full where only the last one is a measure.
+            _ => 2,
+        }
     }
 
     /// Height and normal of the plane of the nearest point found.
@@ -72,6 +77,7 @@ impl Distance {
         }
         let slide = Slide { least: self.shape == Shape::Convex };
         let mut best = (f64::INFINITY, DVec3::ZERO);
+        let mut least = f64::INFINITY;
         for turn in 0..starts {
             let [n0, n1, n2, h] = start(taken);
             if let Some(taken) = taken.get_mut(turn) {
@@ -85,7 +91,10 @@ impl Distance {
                 u = [a, b, c];
             }
             let [.., n0, n1, n2, h] = rest;
-            if h.abs() < best.0.abs() {
+            // Only where every plane bounds the distance is a plane met on the way a measure.
+            let score = if slide.least { h } else { DVec3::from_array(u).length() };
+            if score < least {
+                least = score;
                 best = (h, DVec3::new(n0, n1, n2));
             }
         }
@@ -246,6 +255,7 @@ impl Prepared<'_> {
         let slide = Slide { least: self.distance.shape == Shape::Convex };
         let mut taken = [NONE; 6];
         found[0] = [f32::INFINITY; CHUNK];
+        let mut least = found[0];
         let mut start = *first;
         for turn in 0..starts {
             if turn > 0 {
@@ -275,9 +285,12 @@ impl Prepared<'_> {
                 let [x, y, z, ..] = before;
                 state = [a, b, c, x, y, z, n0, n1, n2, b0, b1, b2, h];
             }
-            let [.., n0, n1, n2, h] = &state;
+            let [x, y, z, .., n0, n1, n2, h] = &state;
             for i in 0..CHUNK {
-                if h[i].abs() < found[0][i].abs() {
+                let way = glam::Vec3::new(x[i], y[i], z[i]).length();
+                let score = if slide.least { h[i] } else { way };
+                if score < least[i] {
+                    least[i] = score;
                     (found[0][i], found[1][i], found[2][i], found[3][i]) = (h[i], n0[i], n1[i], n2[i]);
                 }
             }
