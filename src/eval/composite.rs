@@ -49,6 +49,10 @@ impl AnyField for Composite {
         false
     }
 
+    fn convex(&self) -> bool {
+        false
+    }
+
     fn range(&self, zone: &Zone) -> Interval {
         self.program.range_zone(zone)
     }

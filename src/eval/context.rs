@@ -12,7 +12,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DMat3};
 
 use super::scene::{Frame, Scene};
-use crate::field::{AnyField, AnyWarp, smallest_stretch};
+use crate::field::{AnyField, AnyWarp, Distance, smallest_stretch};
 use crate::solid::{Length, Node, Operation};
 use crate::{Blend, Solid};
 
@@ -201,7 +201,8 @@ impl Contexts {
                 Step::World | Step::Length(_) | Step::Flip => {}
             }
         }
-        Place { field: distance(chain, to_local, field), context: *self.get(anchor), shift }
+        let distance = Distance::new(chain, to_local, field.clone());
+        Place { field: Arc::new(distance), context: *self.get(anchor), shift }
     }
 
     /// The sum of the lengths above a leaf, in the units of its value.
@@ -218,15 +219,6 @@ impl Contexts {
         }
         shift
     }
-}
-
-fn distance(
-    chain: Vec<(DAffine3, Arc<dyn AnyWarp>)>,
-    to_local: DAffine3,
-    field: &Arc<dyn AnyField>,
-) -> Arc<dyn AnyField> {
-    let _ = (chain, to_local);
-    field.clone()
 }
 
 /// Whether a map stretches all directions alike.

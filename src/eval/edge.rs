@@ -265,6 +265,10 @@ impl AnyField for EdgeBlend {
         Dual::new(value, [along(0), along(1), along(2)])
     }
 
+    fn convex(&self) -> bool {
+        false
+    }
+
     fn range(&self, zone: &Zone) -> Interval {
         let [x, y] = self.ranges(zone);
         let join = x.max(y);

@@ -12,9 +12,9 @@ use super::fold::join;
 use super::program::{Op, Program};
 use super::register::{Step, schedule};
 use crate::Bounds;
-use crate::field::{AnyField, AnyWarp, COORDINATE_LIMIT, Chunk, Placement, Rule, Zone};
-use crate::num::kernel::{CHUNK, Element, Formula, run, within};
-use crate::{Dual, Real};
+use crate::Dual;
+use crate::field::{AnyField, AnyWarp, COORDINATE_LIMIT, Chunk, Placement, Product, Pull, Rule, Zone};
+use crate::num::kernel::{CHUNK, Element, run, within};
 
 /// A program ready for bulk evaluation over a region: immutable, shared between threads;
 /// each thread brings its own [`Evaluator`].
@@ -323,38 +323,6 @@ impl Mode<4> for Slopes {
         let above = split::<_, 9>(&slot[3 * CHUNK..]);
         let both = std::array::from_fn(|i| if i < 9 { local[i + 3] } else { above[i - 9] });
         run(&Product, both, jacobian);
-    }
-}
-
-/// `Jᵀ g`, J row by row before g.
-struct Pull;
-
-impl Formula<12, 3> for Pull {
-    #[inline(always)]
-    fn run<R: Real>(&self, x: [R; 12]) -> [R; 3] {
-        [
-            x[0].mul_add(x[9], x[3].mul_add(x[10], x[6] * x[11])),
-            x[1].mul_add(x[9], x[4].mul_add(x[10], x[7] * x[11])),
-            x[2].mul_add(x[9], x[5].mul_add(x[10], x[8] * x[11])),
-        ]
-    }
-}
-
-/// The product of two matrices, row by row.
-struct Product;
-
-impl Formula<18, 9> for Product {
-    #[inline(always)]
-    fn run<R: Real>(&self, x: [R; 18]) -> [R; 9] {
-        let mut product = [x[0]; 9];
-        let mut at = 0;
-        while at < 9 {
-            let (row, column) = (at / 3 * 3, at % 3);
-            product[at] =
-                x[row].mul_add(x[9 + column], x[row + 1].mul_add(x[12 + column], x[row + 2] * x[15 + column]));
-            at += 1;
-        }
-        product
     }
 }
 

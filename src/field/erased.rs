@@ -47,6 +47,13 @@ impl Placement {
         saturate(value.scale_add(self.scale, value.lift(self.shift)))
     }
 
+    /// The map.
+    pub(crate) fn map(&self) -> DAffine3 {
+        let [x, y, z] = self.rows.map(|[x, y, z, _]| DVec3::new(x, y, z));
+        let translation = DVec3::from_array(self.rows.map(|row| row[3]));
+        DAffine3::from_mat3_translation(DMat3::from_cols(x, y, z).transpose(), translation)
+    }
+
     /// The point in the leaf's frame.
     #[inline(always)]
     pub(crate) fn apply<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
@@ -98,6 +105,8 @@ pub(crate) trait AnyField: Debug + Send + Sync {
     fn growth(&self) -> DVec3 {
         DVec3::INFINITY
     }
+    /// Whether the value is concave, with slope at most 1.
+    fn convex(&self) -> bool;
     /// A sound range over a zone of the leaf's frame.
     fn range(&self, zone: &Zone) -> Interval;
     /// A leaf that is cheaper and has the same values over the zone, where there is one.
@@ -199,6 +208,10 @@ impl<F: Field> AnyField for F {
         Field::exact(self)
     }
 
+    fn convex(&self) -> bool {
+        Field::convex(self)
+    }
+
     fn gauge_radius(&self) -> Option<f64> {
         Field::gauge_radius(self)
     }
@@ -217,7 +230,7 @@ impl<F: Field> AnyField for F {
         // A concave function falls from its value at a point at least as fast beyond the
         // surface as before it.
         let top = self.eval(bounds.center().to_array());
-        if self.convex() && top > 0.0 { bounds.half_extents() / top } else { DVec3::INFINITY }
+        if Field::convex(self) && top > 0.0 { bounds.half_extents() / top } else { DVec3::INFINITY }
     }
 
     fn value(&self, p: [f64; 3]) -> f64 {
@@ -234,7 +247,7 @@ impl<F: Field> AnyField for F {
 
     fn range(&self, zone: &Zone) -> Interval {
         let coarse = Field::range(self, zone.hull());
-        if !self.convex() || coarse.lo() > 0.0 || coarse.hi() < 0.0 || !zone.is_finite() {
+        if !Field::convex(self) || coarse.lo() > 0.0 || coarse.hi() < 0.0 || !zone.is_finite() {
             return coarse;
         }
         let tangent = self.eval(Dual::point(zone.centre.to_array()));

@@ -74,6 +74,14 @@ impl Zone {
         Zone::extent_of(&self.axes, self.slack)
     }
 
+    /// No point is farther from the centre than this.
+    pub(crate) fn radius(&self) -> f64 {
+        let [a, b, c] = [self.axes.x_axis, self.axes.y_axis, self.axes.z_axis];
+        // The longest of the four diagonals.
+        let longest = [a + b + c, a + b - c, a - b + c, b + c - a].map(DVec3::length).into_iter().fold(0.0, f64::max);
+        longest + self.slack.length()
+    }
+
     /// An axis-aligned box that holds the zone.
     pub(crate) fn hull(&self) -> [Interval; 3] {
         self.hull

@@ -8,6 +8,7 @@ use std::f64::consts::{LN_2, LOG2_E};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use fidget::context::Tree;
+use fidget::var::Var;
 
 use super::{Norm, Real};
 
@@ -46,8 +47,20 @@ impl Symbol<'_> {
         self.arena.0.borrow()[self.index].clone()
     }
 
+    /// A symbol for `tree` beside this one.
     fn make(self, tree: Tree) -> Self {
         self.arena.symbol(tree)
+    }
+
+    /// `field` divided by the length of its gradient, at `p`: the distance to first order.
+    pub(crate) fn over_slope(p: [Self; 3], field: impl FnOnce([Self; 3]) -> Self) -> Self {
+        let [x, y, z] = p;
+        let axes: [Tree; 3] = Tree::axes().into();
+        let value = field(axes.map(|axis| x.make(axis)));
+        let slope = [Var::X, Var::Y, Var::Z].map(|axis| x.make(value.tree().deriv(axis)));
+        let length = (slope[0].square() + slope[1].square() + slope[2].square()).sqrt();
+        let ratio = value / length.max(x.lift(1e-6));
+        x.make(ratio.tree().remap_xyz(x.tree(), y.tree(), z.tree()))
     }
 
     fn ln(self) -> Self {

@@ -1,0 +1,274 @@
+//! The distance to a leaf's surface, for leaves whose value is not the distance.
+//!
+//! ```text
+//!     d(x) = sign f(x) · |x − y|,   y the surface point nearest to x,  f(y) = 0,  x − y ∥ ∇f(y)
+//! ```
+//!
+//! y is searched by a fixed number of steps, each of which evaluates the leaf's value and
+//! gradient once.
+//!
+//! * Inside, from up to three tangent planes known beforehand, each of another side of the
+//!   body: y slides along its tangent plane to below x, by the secant curvature. For a
+//!   concave field every tangent plane holds the body, so the least height of x below those
+//!   met is the distance, from above.
+//! * Outside, y is the point nearest to x of the half-spaces below the last three tangent
+//!   planes and one that stands for those before: a bundle method, which converges at
+//!   rounded and sharp edges alike. Its distance is one from below.
+//! * Of a leaf that is not convex nothing is known beforehand: y slides down the gradient
+//!   from x and may end at another surface point than the nearest.
+//!
+//! The sign is the leaf's own. Convex leaves behind affine maps are measured to some tenths
+//! of a per cent of the distance for lengths up to a tenth of the smallest half-size (to 4 %
+//! where knife edges of exponents above 1 meet, and below edges rounded more sharply than
+//! the length); behind deformations to some per cent more where the deformation curves the
+//! surface within the length.
+//!
+//! Sources: Y. Haugazeau, *Sur les inéquations variationnelles et la minimisation de
+//! fonctionnelles convexes* (1968), for the cuts; J. Barzilai and J. M. Borwein, *Two-point
+//! step size gradient methods* (1988).
+
+mod chain;
+mod sample;
+mod solve;
+mod step;
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use self::chain::Chain;
+use self::step::Plane;
+use super::{AnyField, AnyWarp, Chunk, ParamError, VALUE_LIMIT, Zone, smallest_stretch};
+use crate::num::kernel::CHUNK;
+use crate::num::symbol::Symbol;
+use crate::{Bounds, Dual, Interval};
+
+/// What is known of the shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Shape {
+    /// Convex, in the frame of the points.
+    Convex,
+    /// Convex, but for deformations.
+    Bent,
+    /// Anything.
+    Free,
+}
+
+/// A leaf's distance, in the lengths of the frame before a chain of maps.
+#[derive(Debug)]
+pub(crate) struct Distance {
+    chain: Chain,
+    shape: Shape,
+    /// Tangent planes to start from: of the points' frame (convex), or of that behind the
+    /// last deformation (bent).
+    planes: Vec<(Plane, [f64; 3])>,
+    /// `|d| ≥ |f|` times this.
+    least: f64,
+}
+
+impl Distance {
+    /// The distance to `leaf` as it looks through `chain` (for each deformation the affine
+    /// map before it) and `to_leaf`.
+    pub(crate) fn new(
+        chain: Vec<(DAffine3, Arc<dyn AnyWarp>)>,
+        to_leaf: DAffine3,
+        leaf: Arc<dyn AnyField>,
+    ) -> Distance {
+        let shape = match (leaf.convex(), chain.is_empty()) {
+            (true, true) => Shape::Convex,
+            (true, false) => Shape::Bent,
+            _ => Shape::Free,
+        };
+        let planes = if shape == Shape::Free { Vec::new() } else { sample::planes(&*leaf, &to_leaf) };
+        let stretch = 1.0 / smallest_stretch(&to_leaf.matrix3.inverse());
+        let least = if shape == Shape::Convex && stretch.is_normal() { 1.0 / stretch } else { 0.0 };
+        let planes = planes.into_iter().map(|plane: Plane| (plane, [plane[0], plane[1], plane[2]])).collect();
+        Distance { chain: Chain { maps: chain, to_leaf, leaf }, shape, planes, least }
+    }
+
+    /// Distance at a point, and its gradient.
+    fn at(&self, p: DVec3) -> (f64, DVec3) {
+        let value = self.chain.value(p.to_array());
+        let (height, normal) = self.search(p, value);
+        (self.settled(value, height), -normal)
+    }
+
+    /// The distance, from a value of the leaf and what the search for the surface found:
+    /// never of another sign than the value, never below the bound that the slope gives.
+    fn settled(&self, value: f64, height: f64) -> f64 {
+        let least = value.abs() * self.least;
+        let signed = if value < 0.0 { -height } else { height };
+        let found = if signed.is_nan() || signed.is_infinite() { value.abs() } else { signed.max(0.0).max(least) };
+        let size = found.min(VALUE_LIMIT);
+        if value > 0.0 {
+            size.max(f64::MIN_POSITIVE)
+        } else if value < 0.0 {
+            -size.max(f64::MIN_POSITIVE)
+        } else {
+            0.0
+        }
+    }
+}
+
+impl AnyField for Distance {
+    fn name(&self) -> &'static str {
+        self.chain.leaf.name()
+    }
+
+    fn bounds_under(&self, map: &DAffine3) -> Bounds {
+        // Backwards: the leaf's box in the frame of the last deformation, and its images.
+        let inverse = self.chain.to_leaf.inverse();
+        let mut maps = self.chain.maps.iter().rev();
+        let Some((first, warp)) = maps.next() else {
+            return self.chain.leaf.bounds_under(&(*map * inverse));
+        };
+        let mut bounds = warp.bounds(&self.chain.leaf.bounds_under(&inverse));
+        let mut before = first.inverse();
+        for (map, warp) in maps {
+            bounds = warp.bounds(&bounds.transformed(&before));
+            before = map.inverse();
+        }
+        bounds.transformed(&(*map * before))
+    }
+
+    fn check(&self) -> Result<(), ParamError> {
+        self.chain.leaf.check()
+    }
+
+    fn roundoff(&self, reach: f64) -> f64 {
+        // Errors of the leaf, and of its coordinates, in lengths before the chain.
+        let mut zone = Zone::of_bounds(&Bounds::new(DVec3::splat(-reach), DVec3::splat(reach)));
+        let mut error = 3e-7 * reach;
+        for (map, warp) in &self.chain.maps {
+            zone = zone.mapped(map);
+            error += warp.roundoff(zone.reach()) / self.stretch_of(map);
+            zone = zone.warped(&**warp);
+        }
+        let own = self.chain.leaf.roundoff(zone.mapped(&self.chain.to_leaf).reach());
+        // The slope of a leaf is about 1 in its own frame, so errors of its value are lengths
+        // there; gauges of slender shapes are flatter.
+        let total = error + 4.0 * own / smallest_stretch(&self.chain.to_leaf.matrix3);
+        if total.is_nan() { f64::INFINITY } else { total }
+    }
+
+    fn value(&self, p: [f64; 3]) -> f64 {
+        self.at(DVec3::from_array(p)).0
+    }
+
+    fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64> {
+        let (value, gradient) = self.at(DVec3::from_array(p.map(Dual::value)));
+        let along = |axis: usize| (0..3).map(|i| gradient[i] * p[i].d[axis]).sum();
+        Dual::new(value, [along(0), along(1), along(2)])
+    }
+
+    fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
+        let sides = p.map(Dual::value);
+        let (low, high) = (sides.map(Interval::lo), sides.map(Interval::hi));
+        let zone = Zone::of_bounds(&Bounds::new(DVec3::from_array(low), DVec3::from_array(high)));
+        let unit = Interval::new(-1.0, 1.0);
+        let along = |axis: usize| unit * p[0].d[axis] + unit * p[1].d[axis] + unit * p[2].d[axis];
+        Dual::new(self.range(&zone), [along(0), along(1), along(2)])
+    }
+
+    fn exact(&self) -> bool {
+        true
+    }
+
+    fn growth(&self) -> DVec3 {
+        // By a length as much, and by what the search may miss of it.
+        DVec3::splat(1.05)
+    }
+
+    fn convex(&self) -> bool {
+        // Its true value is; what is found of it is only nearly so.
+        false
+    }
+
+    fn range(&self, zone: &Zone) -> Interval {
+        self.range_over(zone)
+    }
+
+    /// To first order: the leaf's value by the length of its gradient. The search does not
+    /// fit an expression tree.
+    fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
+        Symbol::over_slope(p, |p| self.chain.symbol(p))
+    }
+
+    fn lanes32(&self, chunk: Chunk<'_, f32, 1>) {
+        let Chunk { points, placement, out: [out] } = chunk;
+        let prepared = self.prepared(placement);
+        for at in (0..out.len()).step_by(CHUNK) {
+            let found = prepared.search(points.map(|axis| &axis[at..at + CHUNK]));
+            out[at..at + CHUNK].copy_from_slice(&found[0]);
+        }
+    }
+
+    fn lanes64(&self, chunk: Chunk<'_, f64, 1>) {
+        // It settles the few doubtful signs; there are no kernels of gradients in `f64`.
+        let Chunk { points: [x, y, z], placement, out: [out] } = chunk;
+        for (i, to) in out.iter_mut().enumerate() {
+            *to = placement.finish(self.value(placement.apply([x[i], y[i], z[i]])));
+        }
+    }
+
+    fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
+        let Chunk { points, placement, mut out } = chunk;
+        let prepared = self.prepared(placement);
+        for at in (0..out[0].len()).step_by(CHUNK) {
+            let found = prepared.search(points.map(|axis| &axis[at..at + CHUNK]));
+            for (to, from) in out.iter_mut().zip(&found) {
+                to[at..at + CHUNK].copy_from_slice(from);
+            }
+        }
+    }
+}
+
+impl Distance {
+    fn stretch_of(&self, map: &DAffine3) -> f64 {
+        smallest_stretch(&map.matrix3)
+    }
+
+    /// By how much of itself a value may exceed the true distance, and two values at one
+    /// distance may differ.
+    fn looseness(&self) -> f64 {
+        match self.shape {
+            Shape::Convex => 0.05,
+            Shape::Bent => 0.1,
+            Shape::Free => 0.2,
+        }
+    }
+
+    /// The distance changes by at most 1 per length unit, and a convex one is concave; what
+    /// is found of it exceeds it by at most the looseness. The sign is the leaf's.
+    fn range_over(&self, zone: &Zone) -> Interval {
+        let leaf = self.chain.range(zone);
+        let sign = Interval::new(
+            if leaf.lo() > 0.0 { leaf.lo() * self.least } else { f64::NEG_INFINITY },
+            if leaf.hi() < 0.0 { leaf.hi() * self.least } else { f64::INFINITY },
+        );
+        if !zone.is_finite() {
+            return sign;
+        }
+        let radius = zone.radius();
+        let (value, gradient) = self.centre(zone.centre);
+        let mut rise = radius;
+        if self.shape == Shape::Convex {
+            let along = zone.axes.transpose() * gradient;
+            rise = rise.min(along.abs().element_sum() + gradient.abs().dot(zone.slack));
+        }
+        let rounding = 1e-9 * (value.abs() + radius) + 1e-13 * zone.reach();
+        let loose = self.looseness();
+        let hi = value + rise;
+        let hi = hi + loose * hi.abs() + rounding;
+        let lo = value - radius;
+        let lo = if self.shape == Shape::Convex { lo } else { lo - loose * lo.abs() } - rounding;
+        if hi.is_finite() && lo.is_finite() { Interval::new(lo, hi).narrowed_by(sign) } else { sign }
+    }
+}
+
+/// Rows of a matrix.
+fn rows(m: &DMat3) -> [[f64; 3]; 3] {
+    m.transpose().to_cols_array_2d()
+}
