@@ -191,6 +191,7 @@ impl Compiler {
             let key = (context, solid.address());
             let (position, inner) = match solid.node() {
                 solid::Node::Affine { .. } | solid::Node::Warp { .. } => (0, self.context_of[&key]),
+                solid::Node::Named { .. } => (0, context),
                 solid::Node::Join { operation: Operation::Union, operands, .. } => {
                     let open =
                         |o: &Solid| !inside(self, o, context).is_finite() && !inside(self, o, context).is_empty();
@@ -241,7 +242,7 @@ impl Compiler {
                 }
                 site.context
             }
-            solid::Node::Complement(_) => site.context,
+            solid::Node::Complement(_) | solid::Node::Named { .. } => site.context,
         };
         tasks.push(Task::Finish(site));
         for (position, operand) in site.solid.node().operands().iter().enumerate().rev() {
@@ -297,6 +298,7 @@ impl Compiler {
         match site.solid.node() {
             solid::Node::Leaf(field) => Ok(self.leaf(field, site)),
             solid::Node::Affine { operand, .. } => Ok(self.of(operand, self.context_of[&key])),
+            solid::Node::Named { operand, .. } => Ok(self.of(operand, site.context)),
             solid::Node::Warp { operand, warp } => {
                 let inner = self.of(operand, self.context_of[&key]);
                 warp.check(&inner.sides.inside).map_err(|e| self.parameter(site, e))?;
@@ -398,7 +400,8 @@ fn check_affine(map: &DAffine3, label: &str) -> Result<(), ParamError> {
         "scale" => "factor",
         "scale_axes" => "factors",
         "rotate" => "rotation",
-        "rotate_x" | "rotate_y" | "rotate_z" => "angle",
+        "rotate_about" | "rotate_about_degrees" => "axis or angle",
+        label if label.starts_with("rotate_") => "angle",
         _ => "matrix",
     };
     if let Some(bad) = map.matrix3.to_cols_array().into_iter().find(|v| v.is_nan() || v.abs() > LARGEST) {

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::display::label;
 use super::{Node, Solid};
 
 /// How many nodes are written out.
@@ -32,9 +33,10 @@ impl fmt::Debug for Solid {
                 write!(f, "{field:?}")?;
                 continue;
             }
-            write!(f, "{}", solid.node().name())?;
-            if let Node::Join { rule, .. } = solid.node() {
-                write!(f, " by {rule:?}")?;
+            match solid.node() {
+                Node::Named { name, .. } => write!(f, "named {name:?} ")?,
+                Node::Affine { label, .. } => f.write_str(label)?,
+                node => f.write_str(&label(node))?,
             }
             f.write_str("(")?;
             stack.push(Item::Text(")"));

@@ -2,9 +2,15 @@
 
 mod build;
 mod debug;
+mod display;
+mod equality;
 mod error;
 mod join;
+mod name;
 mod node;
+mod rotate;
+mod signature;
+mod simplify;
 mod transform;
 
 pub use error::SolidError;

@@ -55,6 +55,11 @@ pub(crate) enum Node {
         operands: Vec<Solid>,
     },
     Complement(Solid),
+    /// The operand, called `name` by the user.
+    Named {
+        operand: Solid,
+        name: Arc<str>,
+    },
 }
 
 /// A set operation on one or more operands.
@@ -86,6 +91,7 @@ impl Node {
             Node::Warp { warp, .. } => warp.name(),
             Node::Join { operation, .. } => operation.name(),
             Node::Complement(_) => "complement",
+            Node::Named { .. } => "named",
         }
     }
 
@@ -93,9 +99,10 @@ impl Node {
     pub(crate) fn operands(&self) -> &[Solid] {
         match self {
             Node::Leaf(_) => &[],
-            Node::Affine { operand, .. } | Node::Warp { operand, .. } | Node::Complement(operand) => {
-                std::slice::from_ref(operand)
-            }
+            Node::Affine { operand, .. }
+            | Node::Warp { operand, .. }
+            | Node::Complement(operand)
+            | Node::Named { operand, .. } => std::slice::from_ref(operand),
             Node::Join { operands, .. } => operands,
         }
     }
@@ -141,7 +148,10 @@ fn take_operands(node: &mut Node, pending: &mut Vec<Solid>) {
     let nothing = Node::Join { operation: Operation::Union, rule: RFunction::MIN_MAX, operands: Vec::new() };
     match std::mem::replace(node, nothing) {
         Node::Leaf(_) => {}
-        Node::Affine { operand, .. } | Node::Warp { operand, .. } | Node::Complement(operand) => pending.push(operand),
+        Node::Affine { operand, .. }
+        | Node::Warp { operand, .. }
+        | Node::Complement(operand)
+        | Node::Named { operand, .. } => pending.push(operand),
         Node::Join { operands, .. } => pending.extend(operands),
     }
 }
