@@ -45,7 +45,9 @@ impl PartialEq for Solid {
 impl Eq for Solid {}
 
 impl Hash for Solid {
-    /// Hashes the structure: equal solids have equal hashes.
+    /// Hashes the structure: equal solids have equal hashes. Solids may be keys of a map; what
+    /// changes inside one is the evaluator's cache, which is no part of the hash (clippy's
+    /// `mutable_key_type` cannot know).
     fn hash<H: Hasher>(&self, state: &mut H) {
         let mut hashes: HashMap<usize, u64> = HashMap::new();
         let mut last = 0;

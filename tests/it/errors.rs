@@ -31,7 +31,7 @@ fn refused(solid: &Solid, parts: &[&str]) -> ParamError {
         other => panic!("meshing says {other:?}"),
     }
     // And it is found below other nodes too.
-    let part = Solid::cuboid(DVec3::ONE).difference(&solid.twist(0.1), RFunction::default());
+    let part = Solid::cuboid(DVec3::ONE).difference(solid.twist(0.1), RFunction::default());
     let below = part.value(DVec3::ZERO).expect_err("an operand is not valid").to_string();
     assert!(below.starts_with("difference[1] / twist / "), "{below}");
     match error {
@@ -287,7 +287,7 @@ fn building_never_panics() {
                 for rule in [RFunction::Alpha(a), RFunction::P(b), RFunction::Associative(a), RFunction::Zero { m: 99 }]
                 {
                     all.push(leaves[0].union(&leaves[1], rule) ^ !leaves[2].clone());
-                    all.push(Solid::sphere(1.0).difference(&Solid::cuboid(DVec3::ONE), rule));
+                    all.push(Solid::sphere(1.0).difference(Solid::cuboid(DVec3::ONE), rule));
                 }
                 for solid in &all {
                     let _ = format!("{solid:?}");
