@@ -57,21 +57,23 @@ impl Bounds {
     /// The box from `min` to `max`, taken as they are: if `min` exceeds `max` along some axis,
     /// the box is empty. [`Bounds::from_corners`] puts the corners in order instead.
     #[must_use]
-    pub const fn new(min: DVec3, max: DVec3) -> Bounds {
-        Bounds { min, max }
+    pub fn new(min: impl Into<DVec3>, max: impl Into<DVec3>) -> Bounds {
+        Bounds { min: min.into(), max: max.into() }
     }
 
     /// The box spanned by two opposite corners, in any order.
     #[must_use]
-    pub fn from_corners(a: DVec3, b: DVec3) -> Bounds {
+    pub fn from_corners(a: impl Into<DVec3>, b: impl Into<DVec3>) -> Bounds {
+        let (a, b) = (a.into(), b.into());
         Bounds::new(a.min(b), a.max(b))
     }
 
     /// The smallest box that holds all `points`; empty if there are none.
     #[must_use]
-    pub fn from_points(points: impl IntoIterator<Item = DVec3>) -> Bounds {
+    pub fn from_points<T: Into<DVec3>>(points: impl IntoIterator<Item = T>) -> Bounds {
         let mut b = Bounds::EMPTY;
         for p in points {
+            let p = p.into();
             b.min = b.min.min(p);
             b.max = b.max.max(p);
         }
@@ -80,7 +82,8 @@ impl Bounds {
 
     /// The box with the given centre and half side lengths (length units, ≥ 0).
     #[must_use]
-    pub fn from_center(center: DVec3, half_extents: DVec3) -> Bounds {
+    pub fn from_center(center: impl Into<DVec3>, half_extents: impl Into<DVec3>) -> Bounds {
+        let (center, half_extents) = (center.into(), half_extents.into());
         Bounds::new(center - half_extents, center + half_extents)
     }
 
@@ -134,7 +137,8 @@ impl Bounds {
 
     /// Whether `point` is in the box or on its boundary.
     #[must_use]
-    pub fn contains(&self, point: DVec3) -> bool {
+    pub fn contains(&self, point: impl Into<DVec3>) -> bool {
+        let point = point.into();
         self.min.cmple(point).all() && point.cmple(self.max).all()
     }
 
@@ -218,7 +222,8 @@ impl Bounds {
 
     /// The squared distance from `point` to the box: 0 inside, +∞ for the empty box.
     #[must_use]
-    pub fn distance_squared(&self, point: DVec3) -> f64 {
+    pub fn distance_squared(&self, point: impl Into<DVec3>) -> f64 {
+        let point = point.into();
         if self.is_empty() {
             return f64::INFINITY;
         }
@@ -259,7 +264,7 @@ mod tests {
         assert_eq!(Bounds::EMPTY.inflate(1.0), Bounds::EMPTY);
         assert_eq!(unit().inflate(-0.6), Bounds::EMPTY);
         assert_eq!(Bounds::ALL.inflate(f64::NEG_INFINITY), Bounds::EMPTY);
-        assert_eq!(Bounds::from_points([]), Bounds::EMPTY);
+        assert_eq!(Bounds::from_points([DVec3::ZERO; 0]), Bounds::EMPTY);
     }
 
     #[test]

@@ -105,6 +105,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! [Twelve idioms](idioms) show how things are commonly built: plates with holes, named parts,
+//! rings of parts, leaves of one's own.
+//!
 //! # Accuracy in single precision
 //!
 //! Lanes of `f32` against double precision, relative to the size of the leaf plus `|f|`, from
@@ -133,6 +136,7 @@ mod bounds;
 mod eval;
 mod field;
 mod geom;
+pub mod idioms;
 mod io;
 mod mesh;
 mod num;

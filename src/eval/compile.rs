@@ -115,7 +115,7 @@ impl Compiler {
             }
             let below = self.contexts.below(&solid, context).iter().copied();
             let down = match solid.node() {
-                solid::Node::Affine { .. } | solid::Node::Warp { .. } => below.collect(),
+                solid::Node::Affine { .. } | solid::Node::Warp { .. } | solid::Node::Named { .. } => below.collect(),
                 solid::Node::Join { operation: Operation::Union, operands, .. } => {
                     below.filter(|&(operand, inner)| open(self, &operands[operand], inner)).collect()
                 }
@@ -192,7 +192,7 @@ impl Compiler {
         let mut inner = below.iter().map(|&(at, inner)| (&node.operands()[at], inner));
         let mut first = |c: f64| inner.next().map_or(Bounds::ALL, |(s, inner)| self.above(s, inner, c, depth - 1));
         match node {
-            solid::Node::Affine { .. } => first(c),
+            solid::Node::Affine { .. } | solid::Node::Named { .. } => first(c),
             solid::Node::Warp { warp, .. } if self.contexts.get(context).anchor.is_none() => {
                 let inside = first(c);
                 if inside.is_empty() {
@@ -228,7 +228,7 @@ impl Compiler {
             .collect();
         match node {
             solid::Node::Leaf(field) => Ok(self.leaf(field, site)),
-            solid::Node::Affine { .. } => Ok(below[0]),
+            solid::Node::Affine { .. } | solid::Node::Named { .. } => Ok(below[0]),
             solid::Node::Warp { operand, warp } => self.warped(site, operand, warp, below[0]),
             solid::Node::Complement(_) => Ok(below[0].complement()),
             solid::Node::Join { operation, rule, .. } => {
@@ -392,7 +392,7 @@ fn check(node: &solid::Node) -> Result<(), ParamError> {
         solid::Node::Blend { blend, .. } => blend.check(),
         solid::Node::Length { length, .. } => length.check(),
         // A deformation is checked against what it deforms.
-        solid::Node::Warp { .. } | solid::Node::Complement(_) => Ok(()),
+        solid::Node::Warp { .. } | solid::Node::Complement(_) | solid::Node::Named { .. } => Ok(()),
     }
 }
 
@@ -407,7 +407,8 @@ fn check_affine(map: &DAffine3, label: &str) -> Result<(), ParamError> {
         "scale" => "factor",
         "scale_axes" => "factors",
         "rotate" => "rotation",
-        "rotate_x" | "rotate_y" | "rotate_z" => "angle",
+        "rotate_about" | "rotate_about_degrees" => "axis or angle",
+        label if label.starts_with("rotate_") => "angle",
         _ => "matrix",
     };
     if let Some(bad) = map.matrix3.to_cols_array().into_iter().find(|v| v.is_nan() || v.abs() > LARGEST) {

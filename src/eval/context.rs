@@ -85,6 +85,7 @@ impl Contexts {
         let above = *self.get(context);
         let list = match solid.node() {
             Node::Leaf(_) => Vec::new(),
+            Node::Named { .. } => vec![(0, context)],
             Node::Affine { forward, .. } => {
                 let inner = Context {
                     to_local: inverse(forward) * above.to_local,

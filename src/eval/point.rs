@@ -127,7 +127,11 @@ impl Program {
     /// [`COORDINATE_LIMIT`](crate::COORDINATE_LIMIT) are evaluated as if they lay there; NaN
     /// counts as outside.
     #[must_use]
-    pub fn value(&self, p: DVec3) -> f64 {
+    pub fn value(&self, p: impl Into<DVec3>) -> f64 {
+        self.value_at(p.into())
+    }
+
+    fn value_at(&self, p: DVec3) -> f64 {
         if p.is_nan() {
             return -VALUE_LIMIT;
         }
@@ -136,7 +140,11 @@ impl Program {
 
     /// Value and gradient at a point. At kinks, the gradient of one side.
     #[must_use]
-    pub fn gradient(&self, p: DVec3) -> (f64, DVec3) {
+    pub fn gradient(&self, p: impl Into<DVec3>) -> (f64, DVec3) {
+        self.gradient_at(p.into())
+    }
+
+    fn gradient_at(&self, p: DVec3) -> (f64, DVec3) {
         let dual = self.evaluate(Dual::point(limited(p)), &mut Vec::new());
         (saturate(dual.v), DVec3::from_array(dual.d))
     }

@@ -13,7 +13,8 @@ use crate::{Bounds, Interval, Solid, SolidError};
 pub struct Owner {
     /// The leaf's number, in the order of compiling; stable for one solid.
     pub index: u32,
-    /// The path from the root: `difference[1] / twist / superellipsoid`.
+    /// The path from the root: `difference[1] / twist / superellipsoid`, with the names that
+    /// parts [have](Solid::named): `difference[1] / socket: twist / superellipsoid`.
     pub path: String,
 }
 
@@ -47,7 +48,7 @@ impl Solid {
     /// assert_eq!(Solid::sphere(2.0).value(DVec3::X)?, 1.0);
     /// # Ok::<(), rvachev::SolidError>(())
     /// ```
-    pub fn value(&self, p: DVec3) -> Result<f64, SolidError> {
+    pub fn value(&self, p: impl Into<DVec3>) -> Result<f64, SolidError> {
         Ok(compiled(self)?.field.value(p))
     }
 
@@ -69,7 +70,7 @@ impl Solid {
     ///
     /// # Errors
     /// What is wrong with the solid: see [`SolidError`].
-    pub fn contains(&self, p: DVec3) -> Result<bool, SolidError> {
+    pub fn contains(&self, p: impl Into<DVec3>) -> Result<bool, SolidError> {
         Ok(compiled(self)?.surface.value(p) > 0.0)
     }
 
@@ -86,7 +87,7 @@ impl Solid {
     ///
     /// # Errors
     /// What is wrong with the solid: see [`SolidError`].
-    pub fn gradient(&self, p: DVec3) -> Result<DVec3, SolidError> {
+    pub fn gradient(&self, p: impl Into<DVec3>) -> Result<DVec3, SolidError> {
         Ok(compiled(self)?.field.gradient(p).1)
     }
 
@@ -160,9 +161,9 @@ impl Solid {
     /// assert!((hit.normal - DVec3::X).length() < 1e-12);
     /// # Ok::<(), rvachev::SolidError>(())
     /// ```
-    pub fn raycast(&self, origin: DVec3, direction: DVec3) -> Result<Option<Hit>, SolidError> {
+    pub fn raycast(&self, origin: impl Into<DVec3>, direction: impl Into<DVec3>) -> Result<Option<Hit>, SolidError> {
         let programs = compiled(self)?;
-        let direction = direction.normalize_or_zero();
+        let (origin, direction) = (origin.into(), direction.into().normalize_or_zero());
         if direction == DVec3::ZERO || !origin.is_finite() {
             return Ok(None);
         }
@@ -184,7 +185,8 @@ impl Solid {
     /// assert!((q - DVec3::new(1.0, 0.5, 0.25)).length() < 1e-8);
     /// # Ok::<(), rvachev::SolidError>(())
     /// ```
-    pub fn closest_surface_point(&self, p: DVec3) -> Result<Option<DVec3>, SolidError> {
+    pub fn closest_surface_point(&self, p: impl Into<DVec3>) -> Result<Option<DVec3>, SolidError> {
+        let p = p.into();
         let bounds = self.finite_bounds()?;
         let programs = compiled(self)?;
         if bounds.is_empty() || !p.is_finite() {
@@ -206,9 +208,8 @@ impl Solid {
     /// assert_eq!(part.owner(DVec3::new(0.5, 0.0, 0.0))?.path, "difference[1] / cylinder");
     /// # Ok::<(), rvachev::SolidError>(())
     /// ```
-    pub fn owner(&self, p: DVec3) -> Result<Owner, SolidError> {
-        let programs = compiled(self)?;
-        Ok(programs.surface.owner_of(programs.surface.deciding_leaf(p)))
+    pub fn owner(&self, p: impl Into<DVec3>) -> Result<Owner, SolidError> {
+        Ok(compiled(self)?.surface.owner(p))
     }
 }
 
@@ -250,8 +251,8 @@ impl Solid {
 impl Program {
     /// The leaf that decides at a point.
     #[must_use]
-    pub fn owner(&self, p: DVec3) -> Owner {
-        self.owner_of(self.deciding_leaf(p))
+    pub fn owner(&self, p: impl Into<DVec3>) -> Owner {
+        self.owner_of(self.deciding_leaf(p.into()))
     }
 
     pub(crate) fn owner_of(&self, leaf: u32) -> Owner {

@@ -15,6 +15,7 @@
 //! Sources: A. H. Barr, *Global and local deformations of solid primitives* (1984);
 //! F. Solina and R. Bajcsy (1990), with their bend put right for κ < 0, |γ| > π/2 and κ → 0.
 
+use std::any::Any;
 use std::fmt::Debug;
 
 use glam::DVec3;
@@ -45,7 +46,7 @@ pub(crate) trait Warp: Debug + Clone + Send + Sync + 'static {
 }
 
 /// A [`Warp`], erased to the evaluations that the engine runs.
-pub(crate) trait AnyWarp: Debug + Send + Sync {
+pub(crate) trait AnyWarp: Any + Debug + Send + Sync {
     fn name(&self) -> &'static str;
     fn point(&self, p: [f64; 3]) -> [f64; 3];
     fn duals(&self, p: [Dual<f64>; 3]) -> [Dual<f64>; 3];

@@ -4,6 +4,7 @@
 //! called is the list of evaluations that the engine runs, instantiated once per leaf. A
 //! kernel runs over a chunk of points, so the call through the pointer costs nothing.
 
+use std::any::Any;
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -86,7 +87,7 @@ pub(crate) struct Chunk<'a, E, const OUT: usize> {
 }
 
 /// A [`Field`], erased to the evaluations that the engine runs.
-pub(crate) trait AnyField: Debug + Send + Sync {
+pub(crate) trait AnyField: Any + Debug + Send + Sync {
     fn name(&self) -> &'static str;
     fn bounds_under(&self, map: &DAffine3) -> Bounds;
     fn check(&self) -> Result<(), ParamError>;

@@ -18,7 +18,12 @@ use crate::{Bounds, Interval, Real};
 ///   [`COORDINATE_LIMIT`](crate::COORDINATE_LIMIT);
 /// * it is not positive outside [`bounds`](Field::bounds);
 /// * if it is [`convex`](Field::convex), the value is a concave function that changes by at
-///   most 1 per length unit.
+///   most 1 per length unit;
+/// * its `Debug` text says everything that its value depends on, numbers to the last digit, as
+///   a derived `Debug` does: leaves of one type with the same text are taken to be the same
+///   leaf when solids are compared, hashed and [simplified](crate::Solid::simplified). A leaf
+///   that holds what has no such text (a function, a table that is cut short) writes something
+///   into it that no other leaf of its type has, such as a serial number.
 ///
 /// Mark `eval` and every helper in it `#[inline(always)]`, or lanes run 18 times slower.
 ///

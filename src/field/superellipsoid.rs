@@ -11,6 +11,8 @@
 //!
 //! Source: A. H. Barr, *Superquadrics and angle-preserving transformations* (1981).
 
+use std::fmt;
+
 use glam::DVec3;
 
 use super::{Field, Kernel, ParamError, check, leaf::falling_range};
@@ -40,7 +42,7 @@ use crate::{Bounds, Interval, Norm, Real};
 /// assert!(Solid::from(pill).contains(DVec3::new(0.3, -0.4, 1.1))?);
 /// # Ok::<(), rvachev::SolidError>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 pub struct Superellipsoid {
     semi_axes: DVec3,
     e1: f64,
@@ -84,38 +86,39 @@ impl Superellipsoid {
 
     /// The gauge G: below 1 inside, 1 on the surface; `p / G(p)` lies on the surface.
     #[must_use]
-    pub fn gauge(&self, p: DVec3) -> f64 {
-        self.gauge_of(p.to_array())
+    pub fn gauge(&self, p: impl Into<DVec3>) -> f64 {
+        self.gauge_of(p.into().to_array())
     }
 
     /// Barr's inside–outside function `F = G^(2/e1)`: below 1 inside.
     #[must_use]
-    pub fn barr(&self, p: DVec3) -> f64 {
+    pub fn barr(&self, p: impl Into<DVec3>) -> f64 {
         self.gauge(p).powf(2.0 / self.e1)
     }
 
     /// Solina's `F^e1 = G²`: below 1 inside.
     #[must_use]
-    pub fn solina(&self, p: DVec3) -> f64 {
+    pub fn solina(&self, p: impl Into<DVec3>) -> f64 {
         self.gauge(p).powi(2)
     }
 
     /// Fougerolle's first field `F1 = 1 − G²`: positive inside.
     #[must_use]
-    pub fn f1(&self, p: DVec3) -> f64 {
+    pub fn f1(&self, p: impl Into<DVec3>) -> f64 {
         1.0 - self.solina(p)
     }
 
     /// Fougerolle's second field `F2 = 1 − G`: positive inside.
     #[must_use]
-    pub fn f2(&self, p: DVec3) -> f64 {
+    pub fn f2(&self, p: impl Into<DVec3>) -> f64 {
         1.0 - self.gauge(p)
     }
 
     /// The radial distance `|p|·(1 − 1/G)` (Gross and Boult): negative inside, an upper bound
     /// of the distance in absolute value. At the origin, minus the inscribed radius.
     #[must_use]
-    pub fn radial_distance(&self, p: DVec3) -> f64 {
+    pub fn radial_distance(&self, p: impl Into<DVec3>) -> f64 {
+        let p = p.into();
         let gauge = self.gauge(p);
         if gauge == 0.0 { -self.inscribed } else { p.length() * (1.0 - 1.0 / gauge) }
     }
@@ -153,6 +156,14 @@ fn radius_norm(e: f64) -> Norm {
 /// The norm of the support function: p = 2/(2 − e), ∞ for e ≥ 2.
 pub(super) fn support_norm(e: f64) -> Norm {
     Norm::new(if e >= 2.0 { f64::INFINITY } else { 2.0 / (2.0 - e) })
+}
+
+/// The parameters, without what is computed from them.
+impl fmt::Debug for Superellipsoid {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Superellipsoid { semi_axes, e1, e2, .. } = self;
+        f.debug_struct("Superellipsoid").field("semi_axes", semi_axes).field("e1", e1).field("e2", e2).finish()
+    }
 }
 
 impl Field for Superellipsoid {

@@ -15,6 +15,7 @@
 //! with rational and irrational symmetry* (2003).
 
 use std::f64::consts::PI;
+use std::fmt;
 
 use glam::DVec3;
 
@@ -45,7 +46,7 @@ use crate::{Bounds, Dual, Interval, Norm, Real};
 /// assert!(Solid::from(star).contains(DVec3::new(0.5, -0.3, 0.8))?);
 /// # Ok::<(), rvachev::SolidError>(())
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, PartialEq)]
 pub struct Supershape {
     equator: Gielis,
     meridian: Gielis,
@@ -116,26 +117,27 @@ impl Supershape {
 
     /// The gauge G: below 1 inside, 1 on the surface; `p / G(p)` lies on the surface.
     #[must_use]
-    pub fn gauge(&self, p: DVec3) -> f64 {
-        self.gauge_of(p.to_array())
+    pub fn gauge(&self, p: impl Into<DVec3>) -> f64 {
+        self.gauge_of(p.into().to_array())
     }
 
     /// Fougerolle's first field `F1 = 1 − G²`: positive inside.
     #[must_use]
-    pub fn f1(&self, p: DVec3) -> f64 {
+    pub fn f1(&self, p: impl Into<DVec3>) -> f64 {
         1.0 - self.gauge(p).powi(2)
     }
 
     /// Fougerolle's second field `F2 = 1 − G`: positive inside.
     #[must_use]
-    pub fn f2(&self, p: DVec3) -> f64 {
+    pub fn f2(&self, p: impl Into<DVec3>) -> f64 {
         1.0 - self.gauge(p)
     }
 
     /// The radial distance `|p|·(1 − 1/G)`: negative inside, an upper bound of the distance
     /// in absolute value. At the origin, minus the inscribed radius.
     #[must_use]
-    pub fn radial_distance(&self, p: DVec3) -> f64 {
+    pub fn radial_distance(&self, p: impl Into<DVec3>) -> f64 {
+        let p = p.into();
         let gauge = self.gauge(p);
         if gauge == 0.0 { -self.inscribed } else { p.length() * (1.0 - 1.0 / gauge) }
     }
@@ -148,6 +150,16 @@ impl Supershape {
         let phi = (z * r1).atan2(rho);
         let lambda = (rho / r1).norm(z, Norm::Euclid);
         lambda / self.meridian.radius_at(phi, self.radius)
+    }
+}
+
+/// The parameters, without what is computed from them.
+impl fmt::Debug for Supershape {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Supershape { equator, meridian, scale, radius, .. } = self;
+        let mut text = f.debug_struct("Supershape");
+        text.field("equator", equator).field("meridian", meridian).field("scale", scale);
+        text.field("radius", radius).finish()
     }
 }
 

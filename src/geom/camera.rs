@@ -88,15 +88,20 @@ const FRAMING_MARGIN: f64 = 1.06;
 impl Camera {
     /// A perspective camera; `fov` is the vertical field of view in degrees, in (0, 180).
     #[must_use]
-    pub fn perspective(eye: DVec3, target: DVec3, up: DVec3, fov: f64) -> Camera {
-        Camera { eye, target, up, projection: Projection::Perspective { fov } }
+    pub fn perspective(eye: impl Into<DVec3>, target: impl Into<DVec3>, up: impl Into<DVec3>, fov: f64) -> Camera {
+        Camera { eye: eye.into(), target: target.into(), up: up.into(), projection: Projection::Perspective { fov } }
     }
 
     /// An orthographic camera; `height` is what the picture spans from bottom to top, in
     /// length units.
     #[must_use]
-    pub fn orthographic(eye: DVec3, target: DVec3, up: DVec3, height: f64) -> Camera {
-        Camera { eye, target, up, projection: Projection::Orthographic { height } }
+    pub fn orthographic(eye: impl Into<DVec3>, target: impl Into<DVec3>, up: impl Into<DVec3>, height: f64) -> Camera {
+        Camera {
+            eye: eye.into(),
+            target: target.into(),
+            up: up.into(),
+            projection: Projection::Orthographic { height },
+        }
     }
 
     /// The default view: a perspective three-quarter view from front, right and above that

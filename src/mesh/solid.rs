@@ -120,7 +120,7 @@ impl Solid {
         if own.is_empty() || given.contains_bounds(&own) {
             return Ok((self.clone(), own));
         }
-        let cut = self.intersection(&Solid::cuboid(size).translate(given.center()), RFunction::MIN_MAX);
+        let cut = self.intersection(Solid::cuboid(size).translate(given.center()), RFunction::MIN_MAX);
         Ok((cut, own.intersection(given)))
     }
 }

@@ -4,30 +4,25 @@ use super::{Node, Operation, Solid};
 use crate::Blend;
 
 impl Solid {
-    fn blended(&self, operation: Operation, other: &Solid, blend: Blend) -> Solid {
-        let operands = [self.clone(), other.clone()];
-        let lengths = match blend {
-            Blend::Fillet { .. } | Blend::Chamfer { .. } => operands.iter().map(|solid| solid.offset(0.0)).collect(),
-            _ => Vec::new(),
-        };
-        Solid::from_node(Node::Blend { operation, blend, operands, lengths })
+    fn blended(&self, operation: Operation, other: impl Into<Solid>, blend: Blend) -> Solid {
+        Solid::from_node(node(operation, [self.clone(), other.into()], blend))
     }
 
     /// What is in either solid, and what `blend` adds between them.
     #[must_use]
-    pub fn union_with(&self, other: &Solid, blend: Blend) -> Solid {
+    pub fn union_with(&self, other: impl Into<Solid>, blend: Blend) -> Solid {
         self.blended(Operation::Union, other, blend)
     }
 
     /// What is in both solids, less what `blend` takes off.
     #[must_use]
-    pub fn intersection_with(&self, other: &Solid, blend: Blend) -> Solid {
+    pub fn intersection_with(&self, other: impl Into<Solid>, blend: Blend) -> Solid {
         self.blended(Operation::Intersection, other, blend)
     }
 
     /// What is in this solid and not in `other`, less what `blend` takes off.
     #[must_use]
-    pub fn difference_with(&self, other: &Solid, blend: Blend) -> Solid {
+    pub fn difference_with(&self, other: impl Into<Solid>, blend: Blend) -> Solid {
         self.blended(Operation::Difference, other, blend)
     }
 
@@ -47,21 +42,30 @@ impl Solid {
     /// # Ok::<(), rvachev::SolidError>(())
     /// ```
     #[must_use]
-    pub fn smooth_union(&self, other: &Solid, radius: f64) -> Solid {
+    pub fn smooth_union(&self, other: impl Into<Solid>, radius: f64) -> Solid {
         self.union_with(other, Blend::Smooth { radius })
     }
 
     /// Intersection with a smooth transition: [`Blend::Smooth`].
     #[must_use]
-    pub fn smooth_intersection(&self, other: &Solid, radius: f64) -> Solid {
+    pub fn smooth_intersection(&self, other: impl Into<Solid>, radius: f64) -> Solid {
         self.intersection_with(other, Blend::Smooth { radius })
     }
 
     /// Difference with a smooth transition: [`Blend::Smooth`].
     #[must_use]
-    pub fn smooth_difference(&self, other: &Solid, radius: f64) -> Solid {
+    pub fn smooth_difference(&self, other: impl Into<Solid>, radius: f64) -> Solid {
         self.difference_with(other, Blend::Smooth { radius })
     }
+}
+
+/// A blend of two operands.
+pub(super) fn node(operation: Operation, operands: [Solid; 2], blend: Blend) -> Node {
+    let lengths = match blend {
+        Blend::Fillet { .. } | Blend::Chamfer { .. } => operands.iter().map(|solid| solid.offset(0.0)).collect(),
+        _ => Vec::new(),
+    };
+    Node::Blend { operation, blend, operands, lengths }
 }
 
 /// What errors call a blended operation.

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::display::label;
 use super::{Node, Solid};
 
 /// How many nodes are written out.
@@ -32,12 +33,10 @@ impl fmt::Debug for Solid {
                 write!(f, "{field:?}")?;
                 continue;
             }
-            write!(f, "{}", solid.node().name())?;
             match solid.node() {
-                Node::Join { rule, .. } => write!(f, " by {rule:?}")?,
-                Node::Blend { blend, .. } => write!(f, " by {blend:?}")?,
-                Node::Length { length, .. } => write!(f, " {length:?}")?,
-                _ => {}
+                Node::Named { name, .. } => write!(f, "named {name:?} ")?,
+                Node::Affine { label, .. } => f.write_str(label)?,
+                node => f.write_str(&label(node))?,
             }
             f.write_str("(")?;
             stack.push(Item::Text(")"));

@@ -1,11 +1,14 @@
 //! What can be wrong with a solid, and where.
 
+use std::sync::Arc;
+
 use super::{Node, Solid};
 use crate::ParamError;
 
 /// Why a solid cannot be evaluated. `path` leads from the root to the node:
 /// `difference[1] / twist / superellipsoid` is a superellipsoid, twisted, the second operand
-/// (they count from 0) of a difference.
+/// (they count from 0) of a difference. A part that has a [name](Solid::named) has it in front:
+/// `difference[1] / socket: twist / superellipsoid`.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SolidError {
@@ -78,9 +81,17 @@ pub(crate) struct Trail(Vec<Step>);
 
 struct Step {
     parent: Option<u32>,
-    name: &'static str,
+    label: Label,
     /// Position among the parent's operands, where it has several.
     position: Option<usize>,
+}
+
+/// What a step is called.
+enum Label {
+    /// By its kind.
+    Kind(&'static str),
+    /// By the user.
+    Name(Arc<str>),
 }
 
 impl Trail {
@@ -90,7 +101,11 @@ impl Trail {
             Node::Join { .. } | Node::Blend { .. } => Some(at),
             _ => None,
         });
-        self.0.push(Step { parent: parent.map(|(step, ..)| step), name: solid.node().name(), position });
+        let label = match solid.node() {
+            Node::Named { name, .. } => Label::Name(name.clone()),
+            node => Label::Kind(node.name()),
+        };
+        self.0.push(Step { parent: parent.map(|(step, ..)| step), label, position });
         (self.0.len() - 1) as u32
     }
 
@@ -101,11 +116,16 @@ impl Trail {
         let mut position: Option<usize> = None;
         let mut next = Some(step);
         while let Some(step) = next {
-            let Step { parent, name, position: own } = &self.0[step as usize];
-            names.push(match position {
-                Some(operand) => format!("{name}[{operand}]"),
-                None => (*name).to_string(),
-            });
+            let Step { parent, label, position: own } = &self.0[step as usize];
+            match (label, position) {
+                (Label::Kind(kind), Some(operand)) => names.push(format!("{kind}[{operand}]")),
+                (Label::Kind(kind), None) => names.push((*kind).to_string()),
+                // A name stands in front of what it names.
+                (Label::Name(name), _) => match names.last_mut() {
+                    Some(named) => *named = format!("{name}: {named}"),
+                    None => names.push(name.to_string()),
+                },
+            }
             position = *own;
             next = *parent;
         }

@@ -1,6 +1,9 @@
 //! Joins: set operations by R-functions, as operators and as named methods.
+//!
+//! Whatever becomes a solid may stand where a solid is taken: a solid, a reference to one, a
+//! leaf.
 
-use std::ops::{BitAnd, BitOr, BitXor, Not, Sub};
+use std::ops::{BitAnd, BitAndAssign, BitOr, BitOrAssign, BitXor, BitXorAssign, Not, Sub, SubAssign};
 
 use super::{Node, Operation, Solid};
 use crate::RFunction;
@@ -10,28 +13,47 @@ impl Solid {
         Solid::from_node(Node::Join { operation, rule, operands })
     }
 
+    fn join_all<T: Into<Solid>>(
+        operation: Operation,
+        rule: RFunction,
+        first: Option<&Solid>,
+        others: impl IntoIterator<Item = T>,
+    ) -> Solid {
+        let operands = first.cloned().into_iter().chain(others.into_iter().map(Into::into)).collect();
+        Solid::join(operation, rule, operands)
+    }
+
     /// What is in either solid, joined by `rule`.
+    ///
+    /// ```
+    /// use rvachev::{Cylinder, RFunction, Solid};
+    ///
+    /// let ball = Solid::sphere(1.0);
+    /// let pin = ball.union(Cylinder { radius: 0.2, height: 6.0 }, RFunction::MIN_MAX);
+    /// let same = ball.union(&Solid::cylinder(0.2, 6.0), RFunction::MIN_MAX);
+    /// assert_eq!(pin, same);
+    /// ```
     #[must_use]
-    pub fn union(&self, other: &Solid, rule: RFunction) -> Solid {
-        Solid::join(Operation::Union, rule, vec![self.clone(), other.clone()])
+    pub fn union(&self, other: impl Into<Solid>, rule: RFunction) -> Solid {
+        Solid::join(Operation::Union, rule, vec![self.clone(), other.into()])
     }
 
     /// What is in both solids, joined by `rule`.
     #[must_use]
-    pub fn intersection(&self, other: &Solid, rule: RFunction) -> Solid {
-        Solid::join(Operation::Intersection, rule, vec![self.clone(), other.clone()])
+    pub fn intersection(&self, other: impl Into<Solid>, rule: RFunction) -> Solid {
+        Solid::join(Operation::Intersection, rule, vec![self.clone(), other.into()])
     }
 
     /// What is in this solid and not in `other`, joined by `rule`.
     #[must_use]
-    pub fn difference(&self, other: &Solid, rule: RFunction) -> Solid {
-        Solid::join(Operation::Difference, rule, vec![self.clone(), other.clone()])
+    pub fn difference(&self, other: impl Into<Solid>, rule: RFunction) -> Solid {
+        Solid::join(Operation::Difference, rule, vec![self.clone(), other.into()])
     }
 
     /// What is in exactly one of the solids, joined by `rule`.
     #[must_use]
-    pub fn symmetric_difference(&self, other: &Solid, rule: RFunction) -> Solid {
-        Solid::join(Operation::SymmetricDifference, rule, vec![self.clone(), other.clone()])
+    pub fn symmetric_difference(&self, other: impl Into<Solid>, rule: RFunction) -> Solid {
+        Solid::join(Operation::SymmetricDifference, rule, vec![self.clone(), other.into()])
     }
 
     /// Everything outside this solid.
@@ -40,61 +62,78 @@ impl Solid {
         Solid::from_node(Node::Complement(self.clone()))
     }
 
-    /// The union of many solids: a flat node for rules that associate, a balanced tree for
-    /// the others. No operand at all is an error when the solid is compiled.
+    /// The union of many solids (or references to them, or leaves of one type): a flat node
+    /// for rules that associate, a balanced tree for the others. No operand at all is an
+    /// error when the solid is compiled.
     ///
     /// ```
     /// use rvachev::{RFunction, Solid};
-    /// use glam::DVec3;
     ///
-    /// let row = (0..10).map(|i| Solid::sphere(0.4).translate(DVec3::X * f64::from(i)));
+    /// let row = (0..10).map(|i| Solid::sphere(0.4).translate([f64::from(i), 0.0, 0.0]));
     /// let row = Solid::union_all(row, RFunction::MIN_MAX);
-    /// assert!(row.contains(DVec3::new(7.2, 0.0, 0.0))?);
+    /// assert!(row.contains([7.2, 0.0, 0.0])?);
     /// # Ok::<(), rvachev::SolidError>(())
     /// ```
     #[must_use]
-    pub fn union_all(solids: impl IntoIterator<Item = Solid>, rule: RFunction) -> Solid {
-        Solid::join(Operation::Union, rule, solids.into_iter().collect())
+    pub fn union_all<T: Into<Solid>>(solids: impl IntoIterator<Item = T>, rule: RFunction) -> Solid {
+        Solid::join_all(Operation::Union, rule, None, solids)
     }
 
     /// The intersection of many solids, as [`union_all`](Solid::union_all).
     #[must_use]
-    pub fn intersection_all(solids: impl IntoIterator<Item = Solid>, rule: RFunction) -> Solid {
-        Solid::join(Operation::Intersection, rule, solids.into_iter().collect())
+    pub fn intersection_all<T: Into<Solid>>(solids: impl IntoIterator<Item = T>, rule: RFunction) -> Solid {
+        Solid::join_all(Operation::Intersection, rule, None, solids)
     }
 
     /// This solid without all of `solids`.
     #[must_use]
-    pub fn difference_all(&self, solids: impl IntoIterator<Item = Solid>, rule: RFunction) -> Solid {
-        let operands = std::iter::once(self.clone()).chain(solids).collect();
-        Solid::join(Operation::Difference, rule, operands)
+    pub fn difference_all<T: Into<Solid>>(&self, solids: impl IntoIterator<Item = T>, rule: RFunction) -> Solid {
+        Solid::join_all(Operation::Difference, rule, Some(self), solids)
     }
 }
 
-/// Implements an operator for all four combinations of values and references.
+impl From<&Solid> for Solid {
+    /// The same solid; a reference count.
+    fn from(solid: &Solid) -> Solid {
+        solid.clone()
+    }
+}
+
+/// Implements an operator for a solid or a reference to one on the left and anything that
+/// becomes a solid on the right, and its assigning form.
 macro_rules! operator {
-    ($trait:ident, $method:ident, $named:ident, $doc:literal) => {
-        operator!(@ $trait, $method, $named, $doc, Solid, Solid);
-        operator!(@ $trait, $method, $named, $doc, Solid, &Solid);
-        operator!(@ $trait, $method, $named, $doc, &Solid, Solid);
-        operator!(@ $trait, $method, $named, $doc, &Solid, &Solid);
-    };
-    (@ $trait:ident, $method:ident, $named:ident, $doc:literal, $left:ty, $right:ty) => {
-        impl $trait<$right> for $left {
+    ($trait:ident, $method:ident, $assign:ident, $assign_method:ident, $named:ident, $doc:literal) => {
+        impl<T: Into<Solid>> $trait<T> for Solid {
             type Output = Solid;
 
             #[doc = $doc]
-            fn $method(self, other: $right) -> Solid {
-                self.$named(&other.clone(), RFunction::default())
+            fn $method(self, other: T) -> Solid {
+                self.$named(other, RFunction::default())
+            }
+        }
+
+        impl<T: Into<Solid>> $trait<T> for &Solid {
+            type Output = Solid;
+
+            #[doc = $doc]
+            fn $method(self, other: T) -> Solid {
+                self.$named(other, RFunction::default())
+            }
+        }
+
+        impl<T: Into<Solid>> $assign<T> for Solid {
+            #[doc = $doc]
+            fn $assign_method(&mut self, other: T) {
+                *self = self.$named(other, RFunction::default());
             }
         }
     };
 }
 
-operator!(BitOr, bitor, union, "Union by R_p, p = 2.");
-operator!(BitAnd, bitand, intersection, "Intersection by R_p, p = 2.");
-operator!(Sub, sub, difference, "Difference by R_p, p = 2.");
-operator!(BitXor, bitxor, symmetric_difference, "Symmetric difference by R_p, p = 2.");
+operator!(BitOr, bitor, BitOrAssign, bitor_assign, union, "Union by R_p, p = 2.");
+operator!(BitAnd, bitand, BitAndAssign, bitand_assign, intersection, "Intersection by R_p, p = 2.");
+operator!(Sub, sub, SubAssign, sub_assign, difference, "Difference by R_p, p = 2.");
+operator!(BitXor, bitxor, BitXorAssign, bitxor_assign, symmetric_difference, "Symmetric difference by R_p, p = 2.");
 
 impl Not for Solid {
     type Output = Solid;

@@ -3,10 +3,16 @@
 mod blend;
 mod build;
 mod debug;
+mod display;
+mod equality;
 mod error;
 mod join;
 mod length;
+mod name;
 mod node;
+mod rotate;
+mod signature;
+mod simplify;
 mod transform;
 
 pub use error::SolidError;

@@ -55,6 +55,11 @@ pub(crate) enum Node {
         operands: Vec<Solid>,
     },
     Complement(Solid),
+    /// The operand, called `name` by the user.
+    Named {
+        operand: Solid,
+        name: Arc<str>,
+    },
     /// Two operands joined with the transition between them shaped.
     Blend {
         operation: Operation,
@@ -81,6 +86,13 @@ pub(crate) enum Length {
 }
 
 impl Length {
+    /// By how much, in length units.
+    pub(crate) fn amount(self) -> f64 {
+        match self {
+            Length::Level(by) | Length::Offset(by) | Length::Shell(by) => by,
+        }
+    }
+
     pub(crate) fn name(self) -> &'static str {
         match self {
             Length::Level(_) => "level",
@@ -129,6 +141,7 @@ impl Node {
             Node::Complement(_) => "complement",
             Node::Blend { operation, blend, .. } => super::blend::name(blend, *operation),
             Node::Length { length, .. } => length.name(),
+            Node::Named { .. } => "named",
         }
     }
 
@@ -139,6 +152,7 @@ impl Node {
             Node::Affine { operand, .. }
             | Node::Warp { operand, .. }
             | Node::Length { operand, .. }
+            | Node::Named { operand, .. }
             | Node::Complement(operand) => std::slice::from_ref(operand),
             Node::Blend { operands, .. } => operands,
             Node::Join { operands, .. } => operands,
@@ -189,6 +203,7 @@ fn take_operands(node: &mut Node, pending: &mut Vec<Solid>) {
         Node::Affine { operand, .. }
         | Node::Warp { operand, .. }
         | Node::Length { operand, .. }
+        | Node::Named { operand, .. }
         | Node::Complement(operand) => pending.push(operand),
         Node::Blend { operands, lengths, .. } => {
             pending.extend(operands);

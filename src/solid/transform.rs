@@ -8,7 +8,7 @@ use super::{Node, Solid};
 use crate::field::{Bend, Taper, Twist};
 
 impl Solid {
-    fn affine_as(&self, label: &'static str, forward: DAffine3) -> Solid {
+    pub(super) fn affine_as(&self, label: &'static str, forward: DAffine3) -> Solid {
         Solid::from_node(Node::Affine { operand: self.clone(), forward, label })
     }
 

@@ -31,7 +31,7 @@ fn refused(solid: &Solid, parts: &[&str]) -> ParamError {
         other => panic!("meshing says {other:?}"),
     }
     // And it is found below other nodes too.
-    let part = Solid::cuboid(DVec3::ONE).difference(&solid.twist(0.1), RFunction::default());
+    let part = Solid::cuboid(DVec3::ONE).difference(solid.twist(0.1), RFunction::default());
     let below = part.value(DVec3::ZERO).expect_err("an operand is not valid").to_string();
     assert!(below.starts_with("difference[1] / twist / "), "{below}");
     match error {
@@ -136,8 +136,9 @@ fn curves_out_of_range() {
 
 #[test]
 fn joins_of_nothing() {
+    let nothing: &[Solid] = &[];
     for rule in [RFunction::MIN_MAX, RFunction::P(2.0)] {
-        for solid in [Solid::union_all([], rule), Solid::intersection_all([], rule)] {
+        for solid in [Solid::union_all(nothing, rule), Solid::intersection_all(nothing, rule)] {
             let error = solid.value(DVec3::ZERO).unwrap_err();
             assert!(matches!(error, SolidError::EmptyJoin { .. }), "{error}");
             let text = (Solid::sphere(1.0) - solid.rotate_x(1.0)).value(DVec3::ZERO).unwrap_err().to_string();
@@ -147,7 +148,7 @@ fn joins_of_nothing() {
     }
     // Without the others it is the first.
     let ball = Solid::sphere(1.0);
-    assert_eq!(ball.difference_all([], RFunction::P(2.0)).value(DVec3::ZERO), Ok(1.0));
+    assert_eq!(ball.difference_all(nothing, RFunction::P(2.0)).value(DVec3::ZERO), Ok(1.0));
     assert_eq!(Solid::union_all([ball], RFunction::P(2.0)).value(DVec3::ZERO), Ok(1.0));
 }
 
@@ -286,7 +287,7 @@ fn building_never_panics() {
                 for rule in [RFunction::Alpha(a), RFunction::P(b), RFunction::Associative(a), RFunction::Zero { m: 99 }]
                 {
                     all.push(leaves[0].union(&leaves[1], rule) ^ !leaves[2].clone());
-                    all.push(Solid::sphere(1.0).difference(&Solid::cuboid(DVec3::ONE), rule));
+                    all.push(Solid::sphere(1.0).difference(Solid::cuboid(DVec3::ONE), rule));
                 }
                 for solid in &all {
                     let _ = format!("{solid:?}");

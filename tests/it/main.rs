@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod blends;
+mod building;
 mod deformation;
 mod errors;
 mod forms;

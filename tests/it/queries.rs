@@ -114,7 +114,7 @@ fn hits_are_on_the_surface_and_nothing_is_before_them() {
         let mut solid = random_solid(&mut random, depth);
         // Along a deformed half-space that never ends there is no end of pieces to look at.
         if !solid.bounds().unwrap().is_finite() {
-            solid = solid & Solid::sphere(4.0);
+            solid &= Solid::sphere(4.0);
         }
         let program = solid.surface_program().unwrap();
         for _ in 0..6 {

@@ -78,7 +78,7 @@ fn the_range_of_the_rule_that_does_not_rise_is_sound() {
     near(rule.and(0.2276, -1.0), -1.8911, 1e-4);
     near(rule.and(5.0, -1.0), -28.574507, 1e-6);
     let bounds = Bounds::new(DVec3::new(0.0, -1.0, 0.0), DVec3::new(5.0, -1.0, 0.0));
-    let both = coordinate(DVec3::X).intersection(&coordinate(DVec3::Y), rule);
+    let both = coordinate(DVec3::X).intersection(coordinate(DVec3::Y), rule);
     let range = both.range(&bounds).unwrap();
     assert!(range.lo() <= -28.574507 && range.hi() >= -1.8911, "{range:?}");
     // Its largest value is between the ends.
@@ -89,7 +89,7 @@ fn the_range_of_the_rule_that_does_not_rise_is_sound() {
 
 #[test]
 fn single_precision_loses_no_digits_to_cancelling() {
-    let both = coordinate(DVec3::X).intersection(&coordinate(DVec3::Y), RFunction::Alpha(0.0));
+    let both = coordinate(DVec3::X).intersection(coordinate(DVec3::Y), RFunction::Alpha(0.0));
     let program = both.field_program().unwrap();
     let region = Bounds::from_center(DVec3::ZERO, DVec3::ONE);
     let (_, values) = lanes32(&program, &region, &[DVec3::new(1e-6, 1.0, 0.0)]);
@@ -154,8 +154,8 @@ fn all_but_one_rise_with_both_arguments() {
 #[test]
 fn on_the_surface_of_one_operand_the_gradient_is_its_own() {
     for rule in RULES {
-        let both = coordinate(DVec3::X).intersection(&coordinate(DVec3::Y), rule);
-        let either = coordinate(DVec3::X).union(&coordinate(DVec3::Y), rule);
+        let both = coordinate(DVec3::X).intersection(coordinate(DVec3::Y), rule);
+        let either = coordinate(DVec3::X).union(coordinate(DVec3::Y), rule);
         // The rule of order m scales it by the other operand to the power m.
         let m = if let RFunction::Zero { m } = rule { m } else { 0 };
         let scale = 0.7f64.powi(m as i32);

@@ -45,7 +45,7 @@ const OUTSIDE: DVec3 = DVec3::new(777.5, 0.0, 0.0);
 #[test]
 fn a_left_chain_of_unions() {
     on_a_small_stack(|| {
-        let chain = (1..DEEP).fold(ball(0), |chain, i| chain.union(&ball(i), RFunction::MIN_MAX));
+        let chain = (1..DEEP).fold(ball(0), |chain, i| chain.union(ball(i), RFunction::MIN_MAX));
         walks(chain, INSIDE, OUTSIDE, DEEP);
     });
 }
@@ -72,7 +72,7 @@ fn a_chain_of_unions_and_intersections_by_turns() {
         on_a_small_stack(move || {
             // The intersections cut nothing off: the balls that matter are united.
             let around = Solid::half_space(DVec3::Z, 1.0);
-            let chain = (1..DEEP / 2).fold(ball(0), |chain, i| chain.intersection(&around, rule).union(&ball(i), rule));
+            let chain = (1..DEEP / 2).fold(ball(0), |chain, i| chain.intersection(&around, rule).union(ball(i), rule));
             walks(chain, INSIDE, OUTSIDE, DEEP / 2 + 1);
         });
     }
