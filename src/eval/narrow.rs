@@ -8,7 +8,7 @@
 use std::sync::Arc;
 
 use super::program::{Edge, Node, Op, Program, Region};
-use crate::field::Zone;
+use crate::field::{Pieces, Zone};
 use crate::{Bounds, Interval};
 
 /// What is known of a node over a region.
@@ -68,24 +68,30 @@ impl Program {
     }
 
     /// The world's zone seen from every live frame.
-    fn zones(&self, world: &Zone) -> Vec<Zone> {
+    fn zones(&self, world: &Pieces) -> Vec<Pieces> {
         let mut zones = Vec::with_capacity(self.frames.len());
         for &number in &self.frames[..] {
             if let Some(frame) = self.scene.frame(number) {
-                let above = self.in_frame(&zones, frame.parent, *world);
-                zones.push(above.mapped(&frame.to_local).warped(&*frame.warp));
+                let above = self.zone_in(&zones, frame.parent, world);
+                zones.push(above.through(&frame.to_local, &*frame.warp));
             }
         }
         zones
     }
 
-    fn leaf_range(&self, leaf: u32, zones: &[Zone], world: &Zone) -> Interval {
+    /// The zone in a frame, given those of the live frames before it.
+    fn zone_in<'a>(&self, zones: &'a [Pieces], frame: u32, world: &'a Pieces) -> &'a Pieces {
+        self.frames.binary_search(&frame).map_or(world, |slot| &zones[slot])
+    }
+
+    fn leaf_range(&self, leaf: u32, zones: &[Pieces], world: &Pieces) -> Interval {
         let instance = &self.scene.leaves[leaf as usize];
-        let zone = self.in_frame(zones, instance.frame, *world).mapped(&instance.to_local);
-        instance.field.range(&zone) * Interval::point(instance.scale)
+        let zone = self.zone_in(zones, instance.frame, world);
+        zone.range(&instance.to_local, |zone| instance.field.range(zone)) * Interval::point(instance.scale)
     }
 
     pub(crate) fn range_zone(&self, world: &Zone) -> Interval {
+        let world = &Pieces::one(*world);
         let zones = self.zones(world);
         let mut ranges: Vec<Interval> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes[..] {
@@ -107,6 +113,7 @@ impl Program {
     }
 
     pub(crate) fn narrow_zone(&self, world: &Zone) -> Region {
+        let world = &Pieces::one(*world);
         let zones = self.zones(world);
         let count = self.nodes.len();
         // Down: which nodes are asked for, and which operands of long joins are near.
@@ -118,7 +125,8 @@ impl Program {
             if let (true, Node::Join { first, len, frame, hierarchy, .. }) = (asked[at], &self.nodes[at]) {
                 let operands = self.list(*first, *len);
                 if let Some(hierarchy) = hierarchy {
-                    let region = hull_of(&self.in_frame(&zones, *frame, *world));
+                    let mut region = Bounds::EMPTY;
+                    self.zone_in(&zones, *frame, world).each(|zone| region = region.union(&hull_of(zone)));
                     let mut list = Vec::new();
                     hierarchy.visit(&region, |operand| list.push(operand as u32));
                     for &operand in &list {
@@ -145,8 +153,8 @@ impl Program {
             signs[at] = match &self.nodes[at] {
                 Node::Leaf(leaf) => {
                     let instance = &self.scene.leaves[*leaf as usize];
-                    let zone = self.in_frame(&zones, instance.frame, *world);
-                    if !instance.bounds.intersects(&hull_of(&zone)) {
+                    let zone = self.zone_in(&zones, instance.frame, world);
+                    if !zone.any(|zone| instance.bounds.intersects(&hull_of(zone))) {
                         Sign::Negative
                     } else {
                         Sign::of(self.leaf_range(*leaf, &zones, world), || {

@@ -12,9 +12,9 @@ use super::fold::join;
 use super::program::{Op, Program};
 use super::register::{Step, schedule};
 use crate::Bounds;
+use crate::Real;
 use crate::field::{AnyField, AnyWarp, COORDINATE_LIMIT, Chunk, Placement, Rule, Zone};
 use crate::num::kernel::{CHUNK, Element, Formula, run, within};
-use crate::{Dual, Real};
 
 /// A program ready for bulk evaluation over a region: immutable, shared between threads;
 /// each thread brings its own [`Evaluator`].
@@ -127,11 +127,7 @@ struct Seen {
 impl Seen {
     fn through(&self, to_local: &DAffine3, warp: &dyn AnyWarp) -> Seen {
         let local = self.zone.mapped(to_local);
-        let slopes = warp.dual_ranges(Dual::point(local.hull()));
-        let stretch = slopes
-            .iter()
-            .map(|row| row.gradient().iter().map(|slope| slope.magnitude()).sum::<f64>())
-            .fold(0.0, f64::max);
+        let stretch = warp.stretch(local.hull());
         let error = self.coordinate_error(to_local, &local) * stretch + warp.roundoff(local.reach());
         Seen { zone: local.warped(warp), error }
     }

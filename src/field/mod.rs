@@ -22,7 +22,8 @@ mod zone;
 pub use check::ParamError;
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
-pub(crate) use deform::{AnyWarp, Bend, Taper, Twist};
+pub(crate) use deform::{AnyWarp, Bend, Cells, Comb, Elongate, Sectors, Taper, TaperBy, Twist, TwistBy};
+pub use deform::{Law, LawTable, LinearLaw, SineWave, SmoothStep};
 pub(crate) use erased::{AnyField, Chunk, Placement, smallest_stretch};
 pub use gielis::{Gielis, Radius};
 pub use half_space::HalfSpace;
@@ -32,7 +33,7 @@ pub(crate) use rfunction::{Rule, saturate};
 pub use sphere::Sphere;
 pub use superellipsoid::Superellipsoid;
 pub use supershape::Supershape;
-pub(crate) use zone::Zone;
+pub(crate) use zone::{Pieces, Zone};
 
 /// Coordinates beyond this many length units are evaluated as if they lay there, so that no
 /// intermediate result overflows single precision.

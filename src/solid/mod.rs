@@ -2,8 +2,10 @@
 
 mod build;
 mod debug;
+mod deform;
 mod error;
 mod join;
+mod mirror;
 mod node;
 mod transform;
 

@@ -5,6 +5,7 @@ mod deformation;
 mod errors;
 mod forms;
 mod laws;
+mod maps;
 mod mesh;
 mod models;
 mod narrow;
