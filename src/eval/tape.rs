@@ -128,7 +128,7 @@ impl Seen {
     fn through(&self, to_local: &DAffine3, warp: &dyn AnyWarp) -> Seen {
         let local = self.zone.mapped(to_local);
         let stretch = warp.stretch(local.hull());
-        let error = self.coordinate_error(to_local, &local) * stretch + warp.roundoff(local.reach());
+        let error = self.coordinate_error(to_local, &local) * stretch + warp.roundoff_over(local.hull());
         Seen { zone: local.warped(warp), error }
     }
 

@@ -279,8 +279,8 @@ impl<W: Warp> AnyWarp for W {
         Warp::check(self, bounds)
     }
 
-    fn roundoff(&self, reach: f64) -> f64 {
-        Warp::roundoff(self, reach)
+    fn roundoff_over(&self, hull: [Interval; 3]) -> f64 {
+        Warp::roundoff_over(self, hull)
     }
 
     fn stretch(&self, hull: [Interval; 3]) -> f64 {

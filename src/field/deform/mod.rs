@@ -60,6 +60,11 @@ pub(crate) trait Warp: Debug + Clone + Send + Sync + 'static {
         self.inverse(p)
     }
 
+    /// The same for points of a box.
+    fn roundoff_over(&self, hull: [Interval; 3]) -> f64 {
+        self.roundoff(hull.iter().fold(0.0, |reach, side| reach.max(side.magnitude())))
+    }
+
     /// By how much an error of a coordinate may grow over a box, however small it is.
     fn stretch(&self, hull: [Interval; 3]) -> f64 {
         let row = |side: &Dual<Interval>| side.gradient().iter().map(|slope| slope.magnitude()).sum::<f64>();
@@ -89,7 +94,7 @@ pub(crate) trait AnyWarp: Debug + Send + Sync {
     fn jacobians(&self, chunk: Chunk<'_, f32, 12>);
     fn bounds(&self, bounds: &Bounds) -> Bounds;
     fn check(&self, bounds: &Bounds) -> Result<(), ParamError>;
-    fn roundoff(&self, reach: f64) -> f64;
+    fn roundoff_over(&self, hull: [Interval; 3]) -> f64;
     fn stretch(&self, hull: [Interval; 3]) -> f64;
     fn branches(&self, hull: [Interval; 3]) -> Option<Branches>;
 }

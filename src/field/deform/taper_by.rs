@@ -60,14 +60,19 @@ impl<X: Law, Y: Law> Warp for TaperBy<X, Y> {
     }
 
     fn roundoff(&self, reach: f64) -> f64 {
-        let z = Dual::variable(Interval::new(-reach, reach), 2);
-        let error = |factor: Dual<Interval>| {
+        self.roundoff_over([Interval::new(-reach, reach); 3])
+    }
+
+    fn roundoff_over(&self, [x, y, z]: [Interval; 3]) -> f64 {
+        let reach = z.magnitude();
+        let z = Dual::variable(z, 2);
+        let error = |across: Interval, factor: Dual<Interval>| {
             // The law is off by some rounding errors of itself and of what its slope makes of
             // those of z; a quotient is as wrong as its divisor.
             let off = factor.value().magnitude() + factor.gradient()[2].magnitude() * reach;
             let least = factor.value().lo().max(SMALLEST);
-            5e-7 * reach / least * (1.0 + off / least)
+            5e-7 * across.magnitude() / least * (1.0 + off / least)
         };
-        error(held(self.x.at(z))).max(error(held(self.y.at(z))))
+        error(x, held(self.x.at(z))).max(error(y, held(self.y.at(z))))
     }
 }

@@ -58,11 +58,15 @@ impl<A: Law> Warp for TwistBy<A> {
     }
 
     fn roundoff(&self, reach: f64) -> f64 {
-        let z = Dual::variable(Interval::new(-reach, reach), 2);
-        let angle = self.turn(z);
+        self.roundoff_over([Interval::new(-reach, reach); 3])
+    }
+
+    fn roundoff_over(&self, [x, y, z]: [Interval; 3]) -> f64 {
+        let (across, reach) = (x.magnitude() + y.magnitude(), z.magnitude());
+        let angle = self.turn(Dual::variable(z, 2));
         // The law is off by some rounding errors of itself and of what its slope makes of
         // those of z.
         let off = angle.value().magnitude() + angle.gradient()[2].magnitude() * reach;
-        5e-7 * reach * (1.0 + off)
+        5e-7 * across * (1.0 + off)
     }
 }
