@@ -194,7 +194,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("out/custom_field.png: {} x {} pixels, {seconds:.1} s", settings.width, settings.height);
 
     let start = Instant::now();
-    let cells = 120;
+    let cells = 100;
     let mesh = ornament.mesh(&MeshSettings { cell: CellSize::LongestSide(cells), ..MeshSettings::default() })?;
     mesh.save("out/custom_field.stl")?;
     let seconds = start.elapsed().as_secs_f64();

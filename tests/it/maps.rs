@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use glam::{DAffine3, DQuat, DVec3};
 use rvachev::{
-    Bounds, CellSize, Evaluator, Field, Gradients, Law, LawTable, LinearLaw, MeshSettings, Norm, ParamError, Program,
-    RFunction, Real, Region, SineWave, SmoothStep, Solid, SolidError, Superellipsoid, Tape,
+    Bounds, CellSize, Dual, Evaluator, Field, Gradients, Interval, Law, LawTable, LinearLaw, MeshSettings, Norm,
+    ParamError, Program, RFunction, Real, Region, SineWave, SmoothStep, Solid, SolidError, Superellipsoid, Tape,
 };
 
 use crate::narrow::check_narrowing;
@@ -24,6 +24,18 @@ fn block() -> Solid {
 
 fn union(copies: impl IntoIterator<Item = Solid>) -> Solid {
     Solid::union_all(copies, RFunction::MIN_MAX)
+}
+
+#[test]
+fn the_floor_on_all_numbers() {
+    assert_eq!([Real::floor(-0.5f64), Real::floor(2.0f64)], [-1.0, 2.0]);
+    let range = Interval::new(-0.5, 1.0);
+    assert_eq!(range.floor(), Interval::new(-1.0, 1.0));
+    // Level between the jumps, of any slope across one.
+    let level = Dual::variable(Interval::new(1.25, 1.75), 0).floor();
+    assert_eq!((level.value(), level.gradient()[0].magnitude() < 1e-300), (Interval::point(1.0), true));
+    assert_eq!(Dual::variable(range, 0).floor().gradient()[0], Interval::ALL);
+    assert_eq!(Dual::variable(-3.25, 1).floor(), Dual::constant(-4.0));
 }
 
 #[test]
@@ -211,7 +223,7 @@ fn check_repetition(random: &mut Random, folded: &Solid, copies: &Solid, exact: 
 #[test]
 fn grids_are_their_copies() {
     let mut random = Random::new(403);
-    for round in 0..60 {
+    for round in 0..36 {
         let exact = round % 3 == 0;
         let solid = if exact {
             Solid::sphere(random.range(0.2, 0.9)).translate(random.vector(-1.0, 1.0))
@@ -259,7 +271,7 @@ fn rows_are_their_copies() {
 #[test]
 fn rings_are_their_copies() {
     let mut random = Random::new(405);
-    for (round, count) in [1, 2, 3, 4, 5, 6, 7, 9, 10, 11, 12, 13, 24, 35, 37, 60].repeat(3).into_iter().enumerate() {
+    for (round, count) in [1, 2, 3, 4, 5, 6, 7, 9, 10, 11, 12, 13, 24, 35, 37, 60].repeat(2).into_iter().enumerate() {
         let exact = round % 2 == 0;
         let solid = if exact { Solid::sphere(0.3) } else { block().scale(random.range(0.2, 0.7)) };
         // Some stand clear of one another, some overlap, some meet the axis.
@@ -315,7 +327,7 @@ fn values_do_not_jump_at_the_edges_of_cells() {
     ] {
         let program = solid.field_program().unwrap();
         let frame = solid.bounds().unwrap();
-        for _ in 0..20 {
+        for _ in 0..10 {
             let from = random.point_in(&frame.inflate(0.5 * frame.longest_side()));
             let to = random.point_in(&frame.inflate(0.5 * frame.longest_side()));
             const STEPS: u32 = 300;

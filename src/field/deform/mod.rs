@@ -159,9 +159,56 @@ mod tests {
     }
 
     #[test]
+    fn folds_are_the_affine_maps_that_they_say() {
+        let comb = Comb { offset: 0.7, pitch: 1.4, last: 3.0, centre: 0.05 };
+        let cells =
+            Cells { axes: [comb, Comb::ONE, comb], counts: [8, 1, 8], spacing: DVec3::splat(0.7), crowded: None };
+        let folds: [&dyn AnyWarp; 3] = [
+            &cells,
+            &Sectors { count: 8, blocks: 4, class: 1, middle: 0.3 },
+            &Sectors { count: 11, blocks: 3, class: 2, middle: -2.0 },
+        ];
+        let mut told = [0; 3];
+        for (number, fold) in folds.into_iter().enumerate() {
+            for i in 0..3000 {
+                let t = |k: f64| (f64::from(i) * k).fract();
+                let centre = 12.0 * DVec3::new(t(0.618), t(0.414), t(0.732)) - 4.0;
+                let half = 0.3 * t(0.2718).powi(2) * DVec3::new(1.0, t(0.1414), t(0.577));
+                let hull = [0, 1, 2].map(|axis| Interval::around(centre[axis], half[axis]));
+                let branches = fold.branches(hull);
+                let image = fold.dual_ranges(Dual::point(hull));
+                for j in 0..20 {
+                    let u = |k: f64| 2.0 * (f64::from(j + 1) * k).fract() - 1.0;
+                    let p = centre + half * DVec3::new(u(0.618), u(0.414), u(0.732));
+                    let q = DVec3::from_array(fold.point(p.to_array()));
+                    for axis in 0..3 {
+                        let side = image[axis].value();
+                        assert!(side.contains(q[axis]), "{fold:?} at {p}: {q}, {side:?}");
+                    }
+                    let Some((first, second)) = branches else { continue };
+                    told[number] += usize::from(second.is_some());
+                    let by = |map: DAffine3| (map.transform_point3(p) - q).length() < 1e-13;
+                    assert!(by(first) || second.is_some_and(by), "{fold:?} at {p}: {q}");
+                }
+            }
+        }
+        assert!(told.into_iter().all(|count| count > 100), "{told:?}");
+    }
+
+    #[test]
     fn boxes_hold_images() {
         let bounds = Bounds::new(DVec3::new(-0.5, -0.7, -2.0), DVec3::new(0.6, 0.4, 1.5));
-        let warps: [(&str, &dyn AnyWarp); 3] = [
+        let comb = Comb { offset: 0.7, pitch: 1.4, last: 3.0, centre: 0.05 };
+        let cells =
+            Cells { axes: [comb, Comb::ONE, comb], counts: [8, 1, 8], spacing: DVec3::splat(0.7), crowded: None };
+        let wave = SineWave { mean: 1.0, amplitude: 0.6, wavelength: 2.0, phase: 0.3 };
+        let warps: [(&str, &dyn AnyWarp); 9] = [
+            ("elongate", &Elongate { half: DVec3::new(0.3, 0.0, 1.0) }),
+            ("repeat", &cells),
+            ("repeat_polar", &Sectors { count: 8, blocks: 4, class: 1, middle: 0.3 }),
+            ("repeat_polar, uneven", &Sectors { count: 11, blocks: 3, class: 2, middle: -2.0 }),
+            ("taper_by", &TaperBy { x: wave, y: 0.5 }),
+            ("twist_by", &TwistBy { angle: wave }),
             ("taper", &Taper { kx: 0.5, ky: -0.4, half_height: 2.0 }),
             ("twist", &Twist { rate: 1.3 }),
             ("bend", &Bend { curvature: -0.6, angle: 0.4 }),
