@@ -1,4 +1,5 @@
-//! Repetition: rows, grids and rings of copies.
+//! Repetition: rows, grids and rings of copies. (It lies here, above `solid`, because it asks
+//! the operand for its box.)
 //!
 //! Copies are not made one by one: space is folded onto the operand, a few times where copies
 //! are near one another, so that the cost does not depend on how many there are.

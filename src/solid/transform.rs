@@ -1,4 +1,5 @@
-//! Maps: affine ones, taper, twist and bend.
+//! Maps: affine ones, taper, twist and bend. (Those by laws are in `deform`, reflections in `mirror`,
+//! repetition, which asks for boxes, in `eval`.)
 
 use std::sync::Arc;
 
