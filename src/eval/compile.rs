@@ -271,7 +271,8 @@ impl Compiler {
         inner: Built,
     ) -> Result<Built, SolidError> {
         let context = *self.contexts.get(site.context);
-        if context.anchor.is_some() {
+        let (_, below) = self.contexts.below(site.solid, site.context)[0];
+        if self.contexts.get(below).frame == context.frame {
             // Leaves below have told their boxes in the frame in which lengths are asked for.
             let alone = self.alone(site, operand)?;
             warp.check(&alone.bounds).map_err(|e| self.parameter(site, e))?;

@@ -25,7 +25,7 @@ pub(super) struct Context {
     pub(super) forward: DAffine3,
     /// Product of the smallest stretches.
     pub(super) scale: f64,
-    /// The nearest context above in which a length is asked for.
+    /// The nearest context, upwards, in which a length can be asked for.
     pub(super) anchor: Option<u32>,
 }
 
@@ -128,9 +128,12 @@ impl Contexts {
         let above = *self.get(context);
         let identity = DAffine3::IDENTITY;
         let mut inner = Context { to_local: identity, forward: identity, ..above };
-        if above.anchor.is_none() {
+        let keeps_lengths = warp.keeps_lengths() && self.similar(context);
+        if above.anchor.is_none() || keeps_lengths {
             scene.frames.push(Frame { parent: above.frame, to_local: above.to_local, warp: warp.clone() });
             inner.frame = scene.frames.len() as u32;
+            // Lengths can as well be asked for here.
+            inner.anchor = above.anchor.map(|_| self.contexts.len() as u32);
         }
         self.push(context, Step::Warp(warp.clone()), inner)
     }

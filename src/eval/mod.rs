@@ -22,6 +22,7 @@ mod program;
 mod query;
 mod ray;
 mod register;
+mod repeat;
 mod scene;
 mod tape;
 

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use super::program::{Edge, Kind, Node, Op, Program, Region};
 use super::scene::Instance;
-use crate::field::{Rule, Zone};
+use crate::field::{Pieces, Rule, Zone};
 use crate::{Bounds, Interval};
 
 /// What is known of a node over a region.
@@ -70,24 +70,30 @@ impl Program {
     }
 
     /// The world's zone seen from every live frame.
-    fn zones(&self, world: &Zone) -> Vec<Zone> {
+    fn zones(&self, world: &Pieces) -> Vec<Pieces> {
         let mut zones = Vec::with_capacity(self.frames.len());
         for &number in &self.frames[..] {
             if let Some(frame) = self.scene.frame(number) {
-                let above = self.in_frame(&zones, frame.parent, *world);
-                zones.push(above.mapped(&frame.to_local).warped(&*frame.warp));
+                let above = self.zone_in(&zones, frame.parent, world);
+                zones.push(above.through(&frame.to_local, &*frame.warp));
             }
         }
         zones
     }
 
-    fn leaf_range(&self, leaf: u32, zones: &[Zone], world: &Zone) -> Interval {
+    /// The zone in a frame, given those of the live frames before it.
+    fn zone_in<'a>(&self, zones: &'a [Pieces], frame: u32, world: &'a Pieces) -> &'a Pieces {
+        self.frames.binary_search(&frame).map_or(world, |slot| &zones[slot])
+    }
+
+    fn leaf_range(&self, leaf: u32, zones: &[Pieces], world: &Pieces) -> Interval {
         let instance = self.instance(leaf);
-        let zone = self.in_frame(zones, instance.frame, *world).mapped(&instance.to_local);
-        instance.placed_range(&zone)
+        let zone = self.zone_in(zones, instance.frame, world);
+        zone.range(&instance.to_local, |zone| instance.placed_range(zone))
     }
 
     pub(crate) fn range_zone(&self, world: &Zone) -> Interval {
+        let world = &Pieces::one(*world);
         let zones = self.zones(world);
         let mut ranges: Vec<Interval> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes[..] {
@@ -108,6 +114,7 @@ impl Program {
     }
 
     pub(crate) fn narrow_zone(&self, world: &Zone) -> Region {
+        let world = &Pieces::one(*world);
         let zones = self.zones(world);
         let mut pass = Pass::new(self, &zones, world);
         pass.run(Asked { sign: true, value: false });
@@ -122,6 +129,7 @@ impl Program {
 
     /// A program of the same values over a zone, from what may decide them there.
     pub(crate) fn reduced(&self, world: &Zone) -> Program {
+        let world = &Pieces::one(*world);
         let zones = self.zones(world);
         let mut pass = Pass::new(self, &zones, world);
         pass.run(Asked { sign: false, value: true });
@@ -184,8 +192,8 @@ struct Asked {
 /// One narrowing under way.
 struct Pass<'a> {
     program: &'a Program,
-    zones: &'a [Zone],
-    world: &'a Zone,
+    zones: &'a [Pieces],
+    world: &'a Pieces,
     asked: Vec<Asked>,
     /// The operands of long joins that are near.
     near: Vec<Option<Vec<u32>>>,
@@ -199,7 +207,7 @@ struct Pass<'a> {
 }
 
 impl<'a> Pass<'a> {
-    fn new(program: &'a Program, zones: &'a [Zone], world: &'a Zone) -> Pass<'a> {
+    fn new(program: &'a Program, zones: &'a [Pieces], world: &'a Pieces) -> Pass<'a> {
         let count = program.nodes.len();
         Pass {
             program,
@@ -245,7 +253,8 @@ impl<'a> Pass<'a> {
                 continue;
             }
             if let Kind::Join { frame, hierarchy: Some(hierarchy), .. } = &node.kind {
-                let region = hull_of(&program.in_frame(self.zones, *frame, *self.world));
+                let mut region = Bounds::EMPTY;
+                program.zone_in(self.zones, *frame, self.world).each(|zone| region = region.union(&hull_of(zone)));
                 let mut near = Vec::new();
                 hierarchy.visit(&region, |operand| near.push(operand as u32));
                 for &operand in &near {
@@ -323,27 +332,26 @@ impl<'a> Pass<'a> {
     fn leaf(&mut self, at: usize, leaf: u32) {
         let program = self.program;
         let instance = program.instance(leaf);
-        let zone = program.in_frame(self.zones, instance.frame, *self.world);
+        let zone = program.zone_in(self.zones, instance.frame, self.world);
         let value = self.asked[at].value;
-        if !value && !instance.bounds.intersects(&hull_of(&zone)) {
+        if !value && !zone.any(|zone| instance.bounds.intersects(&hull_of(zone))) {
             self.signs[at] = Sign::Negative;
             return;
         }
-        let zone = zone.mapped(&instance.to_local);
-        let range = instance.placed_range(&zone);
+        let range = zone.range(&instance.to_local, |zone| instance.placed_range(zone));
         if !value && (range.lo() > 0.0 || range.hi() < 0.0) {
             self.signs[at] = Sign::of(range, || Edge::new(0));
             return;
         }
-        let leaf = self.simplest(leaf, &zone);
+        let leaf = self.simplest(leaf, zone.only().map(|zone| zone.mapped(&instance.to_local)));
         self.nodes.push(Node::leaf(leaf));
         self.know(at, range, Edge::new(self.nodes.len() - 1));
     }
 
     /// The number, in the narrowed program, of a leaf made as simple as it is over `zone`.
-    fn simplest(&mut self, leaf: u32, zone: &Zone) -> u32 {
+    fn simplest(&mut self, leaf: u32, zone: Option<Zone>) -> u32 {
         let instance = self.program.instance(leaf);
-        let field = instance.field.narrowed(zone);
+        let field = zone.and_then(|zone| instance.field.narrowed(&zone));
         if field.is_none() && (leaf as usize) < self.program.scene.leaves.len() {
             return leaf;
         }
@@ -360,8 +368,9 @@ impl<'a> Pass<'a> {
         let node = &program.nodes[at];
         let Kind::Edge { op, leaf, edge } = &node.kind else { return };
         let instance = program.instance(*leaf);
-        let zone = program.in_frame(self.zones, instance.frame, *self.world).mapped(&instance.to_local);
-        let range = instance.placed_range(&zone);
+        let pieces = program.zone_in(self.zones, instance.frame, self.world);
+        let range = pieces.range(&instance.to_local, |zone| instance.placed_range(zone));
+        let whole = pieces.only().map(|zone| zone.mapped(&instance.to_local));
         // Seen through a deformation, the blend is part of a leaf of its own kind.
         let plain = std::ptr::addr_eq(Arc::as_ptr(&instance.field), Arc::as_ptr(edge));
         let mut operands = Vec::new();
@@ -372,7 +381,8 @@ impl<'a> Pass<'a> {
                 self.signs[at] = Sign::of(range, || Edge::new(0));
                 return;
             }
-            if plain && !edge.reaches(&zone, instance.placement.shift / instance.placement.scale) {
+            let shift = instance.placement.shift / instance.placement.scale;
+            if plain && !pieces.any(|zone| edge.reaches(&zone.mapped(&instance.to_local), shift)) {
                 let join = Kind::Join { op: *op, rule: Rule::MinMax, frame: instance.frame, hierarchy: None };
                 let node = Node { kind: join, first: node.first, len: node.len };
                 self.signs[at] = self.sign_of_join(&node, None);
@@ -388,7 +398,7 @@ impl<'a> Pass<'a> {
         }
         let mut simpler = instance.clone();
         let mut blend = edge.clone();
-        if let (true, Some(reduced)) = (plain, edge.reduced(&zone)) {
+        if let (true, Some(reduced)) = (plain, whole.and_then(|zone| edge.reduced(&zone))) {
             blend = Arc::new(reduced);
             simpler.field = blend.clone();
         }

@@ -12,7 +12,6 @@ use super::fold::join;
 use super::program::{Op, Program};
 use super::register::{Step, schedule};
 use crate::Bounds;
-use crate::Dual;
 use crate::field::{AnyField, AnyWarp, COORDINATE_LIMIT, Chunk, Placement, Product, Pull, Rule, Zone};
 use crate::num::kernel::{CHUNK, Element, run, within};
 
@@ -129,12 +128,8 @@ struct Seen {
 impl Seen {
     fn through(&self, to_local: &DAffine3, warp: &dyn AnyWarp) -> Seen {
         let local = self.zone.mapped(to_local);
-        let slopes = warp.dual_ranges(Dual::point(local.hull()));
-        let stretch = slopes
-            .iter()
-            .map(|row| row.gradient().iter().map(|slope| slope.magnitude()).sum::<f64>())
-            .fold(0.0, f64::max);
-        let error = self.coordinate_error(to_local, &local) * stretch + warp.roundoff(local.reach());
+        let stretch = warp.stretch(local.hull());
+        let error = self.coordinate_error(to_local, &local) * stretch + warp.roundoff_over(local.hull());
         Seen { zone: local.warped(warp), error }
     }
 

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::deform::Warp;
+use super::deform::{Branches, Warp};
 use super::zone::concave_range;
 use super::{AnyWarp, Field, Kernel, ParamError, Zone, saturate};
 use crate::num::kernel::{Element, Formula, Visit, run};
@@ -309,7 +309,7 @@ impl<W: Warp> AnyWarp for W {
     }
 
     fn dual_ranges(&self, p: [Dual<Interval>; 3]) -> [Dual<Interval>; 3] {
-        self.inverse(p)
+        self.slopes(p)
     }
 
     fn symbols<'a>(&self, p: [Symbol<'a>; 3]) -> [Symbol<'a>; 3] {
@@ -336,8 +336,20 @@ impl<W: Warp> AnyWarp for W {
         Warp::check(self, bounds)
     }
 
-    fn roundoff(&self, reach: f64) -> f64 {
-        Warp::roundoff(self, reach)
+    fn roundoff_over(&self, hull: [Interval; 3]) -> f64 {
+        Warp::roundoff_over(self, hull)
+    }
+
+    fn stretch(&self, hull: [Interval; 3]) -> f64 {
+        Warp::stretch(self, hull)
+    }
+
+    fn branches(&self, hull: [Interval; 3]) -> Option<Branches> {
+        Warp::branches(self, hull)
+    }
+
+    fn keeps_lengths(&self) -> bool {
+        Warp::keeps_lengths(self)
     }
 }
 

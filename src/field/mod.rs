@@ -46,7 +46,8 @@ pub use check::ParamError;
 pub use cone::Cone;
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
-pub(crate) use deform::{AnyWarp, Bend, Taper, Twist};
+pub(crate) use deform::{AnyWarp, Bend, Cells, Comb, Elongate, Sectors, Taper, TaperBy, Twist, TwistBy};
+pub use deform::{Law, LawTable, LinearLaw, SineWave, SmoothStep};
 pub(crate) use distance::Distance;
 pub use ellipsoid::Ellipsoid;
 pub(crate) use erased::{AnyField, Chunk, Placement, smallest_stretch};
@@ -71,7 +72,7 @@ pub use supershape::Supershape;
 pub use supertoroid::Supertoroid;
 pub use torus::Torus;
 pub use wedge::Wedge;
-pub(crate) use zone::Zone;
+pub(crate) use zone::{Pieces, Zone};
 
 /// Coordinates beyond this many length units are evaluated as if they lay there, so that no
 /// intermediate result overflows single precision.

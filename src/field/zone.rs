@@ -144,6 +144,66 @@ impl Zone {
     }
 }
 
+/// A zone, or two of which a point is in one: what a fold makes of a zone that lies across
+/// one of its edges.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pieces {
+    first: Zone,
+    second: Option<Zone>,
+}
+
+impl Pieces {
+    /// One piece.
+    pub(crate) fn one(zone: Zone) -> Pieces {
+        Pieces { first: zone, second: None }
+    }
+
+    /// The pieces after an affine map and a deformation.
+    pub(crate) fn through(&self, to_local: &DAffine3, warp: &dyn AnyWarp) -> Pieces {
+        let first = self.first.mapped(to_local);
+        match (self.second, warp.branches(first.hull())) {
+            (None, Some((map, other))) => {
+                Pieces { first: first.mapped(&map), second: other.map(|other| first.mapped(&other)) }
+            }
+            (None, None) => Pieces::one(first.warped(warp)),
+            (Some(second), _) => {
+                let whole = |zone: Zone| match warp.branches(zone.hull()) {
+                    Some((map, None)) => zone.mapped(&map),
+                    _ => zone.warped(warp),
+                };
+                Pieces { first: whole(first), second: Some(whole(second.mapped(to_local))) }
+            }
+        }
+    }
+
+    /// The hull of what `range` says of each piece after an affine map.
+    pub(crate) fn range(&self, to_local: &DAffine3, range: impl Fn(&Zone) -> Interval) -> Interval {
+        let first = range(&self.first.mapped(to_local));
+        match self.second {
+            Some(second) => first.hull(range(&second.mapped(to_local))),
+            None => first,
+        }
+    }
+
+    /// The piece, if it is one.
+    pub(crate) fn only(&self) -> Option<&Zone> {
+        if self.second.is_none() { Some(&self.first) } else { None }
+    }
+
+    /// Whether `holds` is true of any piece.
+    pub(crate) fn any(&self, holds: impl Fn(&Zone) -> bool) -> bool {
+        holds(&self.first) || self.second.is_some_and(|second| holds(&second))
+    }
+
+    /// Calls `visit` with each piece.
+    pub(crate) fn each(&self, mut visit: impl FnMut(&Zone)) {
+        visit(&self.first);
+        if let Some(second) = &self.second {
+            visit(second);
+        }
+    }
+}
+
 /// Range of a concave function with slope at most 1 over a zone: tangent above, corners below.
 ///
 /// `value` and `gradient` are those at the centre. The least value of a concave function

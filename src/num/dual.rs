@@ -260,6 +260,12 @@ impl<T: Real> Real for Dual<T> {
     }
 
     #[inline(always)]
+    fn floor(self) -> Self {
+        let (v, slope) = self.v.floor_parts();
+        self.chain(v, slope)
+    }
+
+    #[inline(always)]
     fn select(self, nonneg: Self, neg: Self) -> Self {
         Dual::choose(self.v, nonneg, neg)
     }

@@ -58,6 +58,11 @@ impl Real for f64 {
     }
 
     #[inline(always)]
+    fn floor(self) -> f64 {
+        f64::floor(self)
+    }
+
+    #[inline(always)]
     fn select(self, nonneg: f64, neg: f64) -> f64 {
         if self >= 0.0 { nonneg } else { neg }
     }

@@ -314,6 +314,19 @@ impl Real for Interval {
     }
 
     #[inline(always)]
+    fn floor(self) -> Interval {
+        Interval { lo: self.lo.floor(), hi: self.hi.floor() }
+    }
+
+    #[inline(always)]
+    fn floor_parts(self) -> (Interval, Interval) {
+        let floor = Real::floor(self);
+        // A point at an integer is on the right side of the jump; what is rounded may be on
+        // either, and its interval is no point.
+        (floor, if floor.lo == floor.hi { Interval::point(0.0) } else { Interval::ALL })
+    }
+
+    #[inline(always)]
     fn select(self, nonneg: Interval, neg: Interval) -> Interval {
         if self.lo >= 0.0 {
             nonneg

@@ -90,6 +90,16 @@ pub trait Real:
     /// The angle of the vector `(x, self)` in radians, in [−π, π]; 0 at the origin.
     fn atan2(self, x: Self) -> Self;
 
+    /// The largest integer that is not above `self`. Its slope is 0; an interval that holds an
+    /// integer, where the value jumps, has all slopes.
+    fn floor(self) -> Self;
+
+    /// [`floor`](Real::floor) and its derivative.
+    #[inline(always)]
+    fn floor_parts(self) -> (Self, Self) {
+        (self.floor(), self.lift(0.0))
+    }
+
     /// `nonneg` where `self ≥ 0`, else `neg`; on an undecided interval the hull of both.
     fn select(self, nonneg: Self, neg: Self) -> Self;
 

@@ -179,6 +179,10 @@ impl Real for Symbol<'_> {
         self.make(self.tree().atan2(x.tree()))
     }
 
+    fn floor(self) -> Self {
+        self.make(self.tree().floor())
+    }
+
     fn select(self, nonneg: Self, neg: Self) -> Self {
         // compare gives −1, 0 or 1; `and` and `or` choose by whether their left side is 0.
         let holds = self.tree().compare(0.0) + 1.0;

@@ -3,11 +3,13 @@
 mod blend;
 mod build;
 mod debug;
+mod deform;
 mod display;
 mod equality;
 mod error;
 mod join;
 mod length;
+mod mirror;
 mod name;
 mod node;
 mod rotate;

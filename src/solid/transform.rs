@@ -1,4 +1,5 @@
-//! Maps: affine ones, taper, twist and bend.
+//! Maps: affine ones, taper, twist and bend. (Those by laws are in `deform`, reflections in `mirror`,
+//! repetition, which asks for boxes, in `eval`.)
 
 use std::sync::Arc;
 
@@ -8,7 +9,7 @@ use super::{Node, Solid};
 use crate::field::{Bend, Taper, Twist};
 
 impl Solid {
-    pub(super) fn affine_as(&self, label: &'static str, forward: DAffine3) -> Solid {
+    pub(crate) fn affine_as(&self, label: &'static str, forward: DAffine3) -> Solid {
         Solid::from_node(Node::Affine { operand: self.clone(), forward, label })
     }
 
@@ -102,7 +103,7 @@ impl Solid {
         self.warp(Bend { curvature, angle })
     }
 
-    fn warp(&self, warp: impl crate::field::AnyWarp + 'static) -> Solid {
+    pub(crate) fn warp(&self, warp: impl crate::field::AnyWarp + 'static) -> Solid {
         Solid::from_node(Node::Warp { operand: self.clone(), warp: Arc::new(warp) })
     }
 }

@@ -6,7 +6,8 @@ use fidget::vm::VmShape;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rvachev::{
     Bounds, Cuboid, Cylinder, Evaluator, Field, GeneralisedSuperquadric, Gielis, Gradients, HalfSpace, ParamError,
-    RFunction, Real, Solid, Sphere, Superellipsoid, Superhyperboloid, Supershape, Supertoroid, Tape,
+    RFunction, Real, SineWave, SmoothStep, Solid, Sphere, Superellipsoid, Superhyperboloid, Supershape, Supertoroid,
+    Tape,
 };
 
 use crate::lattices::lattices;
@@ -126,6 +127,9 @@ fn maps() -> Vec<Case> {
     for (name, solid) in [
         ("taper", base().taper(0.5, -0.4, 0.6)),
         ("twist", base().twist(1.3)),
+        ("taper by laws", base().taper_by(SineWave { mean: 1.0, amplitude: 0.3, wavelength: 2.0, phase: 0.4 }, 0.8)),
+        ("twist by a law", base().twist_by(SmoothStep { from: (-0.5, 0.0), to: (0.5, 1.2) })),
+        ("elongate", base().elongate(DVec3::new(0.2, 0.0, 0.5))),
         ("bend", base().bend(0.5, 0.7)),
         ("bend the other way", base().bend(-0.6, 0.0)),
         ("a hair of a bend", base().bend(1e-9, 0.3)),

@@ -8,6 +8,7 @@ mod errors;
 mod forms;
 mod lattices;
 mod laws;
+mod maps;
 mod mesh;
 mod models;
 mod narrow;

@@ -23,7 +23,7 @@ fn contradiction(full: &Program, bounds: &Bounds, region: &Region, points: &[DVe
     None
 }
 
-fn check_narrowing(random: &mut Random, solid: &Solid, boxes: usize) {
+pub fn check_narrowing(random: &mut Random, solid: &Solid, boxes: usize) {
     let full = solid.surface_program().unwrap();
     let field = solid.field_program().unwrap();
     let frame = frame_of(solid);

@@ -143,7 +143,7 @@ impl AnyField for Distance {
         let mut error = 3e-7 * reach;
         for (map, warp) in &self.chain.maps {
             zone = zone.mapped(map);
-            error += warp.roundoff(zone.reach()) / self.stretch_of(map);
+            error += warp.roundoff_over(zone.hull()) / self.stretch_of(map);
             zone = zone.warped(&**warp);
         }
         let own = self.chain.leaf.roundoff(zone.mapped(&self.chain.to_leaf).reach());

@@ -106,6 +106,11 @@ macro_rules! native_methods {
         }
 
         #[inline(always)]
+        fn floor(self) -> Self {
+            $name(self.0.floor())
+        }
+
+        #[inline(always)]
         fn select(self, nonneg: Self, neg: Self) -> Self {
             $name(self.0.simd_ge(0.0).select(nonneg.0, neg.0))
         }

@@ -118,6 +118,11 @@ impl<T: LogSpace> Real for Twice<T> {
     }
 
     #[inline(always)]
+    fn floor(self) -> Self {
+        Twice(self.0.floor(), self.1.floor())
+    }
+
+    #[inline(always)]
     fn select(self, nonneg: Self, neg: Self) -> Self {
         Twice(self.0.select(nonneg.0, neg.0), self.1.select(nonneg.1, neg.1))
     }

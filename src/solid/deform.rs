@@ -1,0 +1,72 @@
+//! Deformations that follow a user's law, and elongation.
+
+use glam::DVec3;
+
+use super::Solid;
+use crate::Law;
+use crate::field::{Elongate, TaperBy, TwistBy};
+
+impl Solid {
+    /// Tapered along z by any laws of z: sections are scaled by `x_law` along x and by `y_law`
+    /// along y. Both are 0.001 to 1000 over the heights of the solid's box, which is checked;
+    /// beyond these heights they are held in that range.
+    ///
+    /// The field is the operand's at the pre-image, not rescaled: not Lipschitz in general.
+    ///
+    /// ```
+    /// use rvachev::{SmoothStep, Solid};
+    /// use glam::DVec3;
+    ///
+    /// // Half as wide along x at the top, as deep along y as ever.
+    /// let narrower = SmoothStep { from: (-1.0, 1.0), to: (1.0, 0.5) };
+    /// let chisel = Solid::cuboid(DVec3::new(2.0, 2.0, 4.0)).taper_by(narrower, 1.0);
+    /// assert!(chisel.contains(DVec3::new(0.4, 0.9, 1.9))?);
+    /// assert!(!chisel.contains(DVec3::new(0.6, 0.0, 1.9))?);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
+    #[must_use]
+    pub fn taper_by(&self, x_law: impl Law, y_law: impl Law) -> Solid {
+        self.warp(TaperBy { x: x_law, y: y_law })
+    }
+
+    /// Twisted about the z axis by any law of z: the section at z is turned by `angle` radians,
+    /// which is within ±10⁴ over the heights of the solid's box.
+    ///
+    /// The field is the operand's at the pre-image, not rescaled: its slope grows with that of
+    /// the law times the distance from the axis.
+    ///
+    /// ```
+    /// use rvachev::{Solid, SineWave};
+    /// use glam::DVec3;
+    ///
+    /// let swing = SineWave { mean: 0.0, amplitude: 0.5, wavelength: 4.0, phase: 0.0 };
+    /// let bar = Solid::cuboid(DVec3::new(2.0, 0.5, 8.0)).twist_by(swing);
+    /// let (sin, cos) = 0.5f64.sin_cos();
+    /// assert!(bar.contains(DVec3::new(0.9 * cos, 0.9 * sin, 1.0))?);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
+    #[must_use]
+    pub fn twist_by(&self, angle: impl Law) -> Solid {
+        self.warp(TwistBy { angle })
+    }
+
+    /// Elongated by straight pieces: the parts on either side of each coordinate plane move
+    /// outward by `half`, and the section in the plane is drawn out between them. Each of
+    /// `half` is 0 to 10⁹ length units; the solid grows by twice that.
+    ///
+    /// 1-Lipschitz if the operand is, and outside the true distance if the operand has it.
+    ///
+    /// ```
+    /// use rvachev::Solid;
+    /// use glam::DVec3;
+    ///
+    /// let capsule = Solid::sphere(1.0).elongate(DVec3::new(0.0, 0.0, 2.0));
+    /// assert!((capsule.bounds()?.size() - DVec3::new(2.0, 2.0, 6.0)).length() < 1e-12);
+    /// assert_eq!(capsule.value(DVec3::new(3.0, 0.0, 1.5))?, -2.0);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
+    #[must_use]
+    pub fn elongate(&self, half: impl Into<DVec3>) -> Solid {
+        self.warp(Elongate { half: half.into() })
+    }
+}
