@@ -143,7 +143,7 @@ pub use bounds::Bounds;
 pub use eval::{Evaluator, Gradients, Hit, Owner, Program, Region, Tape};
 pub use field::{
     COORDINATE_LIMIT, Cuboid, Cylinder, Field, Gielis, HalfSpace, Kernel, ParamError, RFunction, Radius, Sphere,
-    Superellipsoid, Supershape, VALUE_LIMIT,
+    Superellipsoid, Supershape, Turns, VALUE_LIMIT,
 };
 pub use geom::{Camera, CameraError, Image, ImageError, Mesh, MeshError, Projection, Rays};
 pub use io::{SaveError, write_png, write_stl};
