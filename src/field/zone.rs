@@ -66,14 +66,11 @@ impl Zone {
         self.hull.iter().fold(0.0, |reach, side| reach.max(side.magnitude()))
     }
 
-    /// Whether it is a box of its frame and nothing else.
+    /// Whether it fills its hull, as a box (or a rectangle, or a segment) along the axes does.
     pub(crate) fn is_aligned(&self) -> bool {
-        let [x, y, z] = [self.axes.x_axis, self.axes.y_axis, self.axes.z_axis];
-        DVec3::new(y.x, z.y, x.z) == DVec3::ZERO
-            && DVec3::new(z.x, x.y, y.z) == DVec3::ZERO
-            && x.x != 0.0
-            && y.y != 0.0
-            && z.z != 0.0
+        let size = self.axes.x_axis.abs().max(self.axes.y_axis.abs()).max(self.axes.z_axis.abs()).max_element();
+        let along_one = |axis: DVec3| axis.abs().element_sum() - axis.abs().max_element() <= 1e-9 * size;
+        along_one(self.axes.x_axis) && along_one(self.axes.y_axis) && along_one(self.axes.z_axis)
     }
 
     /// Whether every number in it is finite.

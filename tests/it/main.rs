@@ -13,4 +13,5 @@ mod rfunction;
 mod scale;
 mod superellipsoid;
 mod supershape;
+mod supershape_ranges;
 mod support;
