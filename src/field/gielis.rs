@@ -227,7 +227,8 @@ impl Gielis {
         self.n2.max(self.n3) / self.n1
     }
 
-    /// By how much, relative to itself, the radius may be off on lanes of `f32`. Powers below
+    /// By how much, relative to itself, the radius may be off on lanes of `f32`, whichever of
+    /// its turns count. Powers below
     /// 1 have unbounded slopes at the zeros of the sine and cosine, which lanes know to some
     /// 10⁻⁷ per quarter turn.
     pub(super) fn roundoff(&self) -> f64 {

@@ -11,10 +11,10 @@
 //! u = ρ/r₁ is the gauge of the equator at `(x, y)`; over a box u and z are independent, so the
 //! ranges of two gauges in the plane, one after the other, give that of G exactly.
 //!
-//! Creases: where the equator's m is not even, but for odd m with n2 = n3 and a = b, the
-//! surface has one at θ = π; an envelope has them where turns of the equator cross. Where the
-//! meridian's radius is not stationary at the pole there is a tip, and where it is not at
-//! φ = 0 it is not creased, the curve being even in φ there.
+//! Creases: at θ = π where the equator's m is not even (but not for odd m with n2 = n3 and
+//! a = b); along meridians where turns of an envelope cross; and wherever a curve has a corner
+//! itself (see [`Gielis`]). Where the meridian's radius is not stationary at the pole there is
+//! a tip.
 //!
 //! The radius of the sections may be an envelope of the equator's turns. The solid is then the
 //! product of the envelope with the meridian; it is the union (or intersection) of the products
@@ -42,7 +42,8 @@ use crate::{Bounds, Interval, Norm, Real};
 ///
 /// | parameter | unit | range |
 /// |---|---|---|
-/// | `equator`, `meridian` | none | see [`Gielis`] |
+/// | `equator` | none | see [`Gielis`]; any m, and envelopes of several turns |
+/// | `meridian` | none | see [`Gielis`]; any m, angles in [−π/2, π/2] of the first turn |
 /// | `scale` | length | 10⁻⁹ to 10⁹ each |
 /// | `radius` | none | [`Radius::Standard`] or [`Radius::Rational`] |
 ///
@@ -51,12 +52,19 @@ use crate::{Bounds, Interval, Norm, Real};
 /// slopes are unbounded at the zeros of the sine and cosine, and errors grow to some `(10⁻⁷ m)^n`.
 ///
 /// ```
-/// use rvachev::{Gielis, Solid, Supershape};
+/// use rvachev::{Gielis, Solid, Supershape, Turns};
 /// use glam::DVec3;
 ///
 /// let star = Supershape::new(Gielis::new(6.0, 2.0, 7.0, 7.0), Gielis::new(4.0, 10.0, 10.0, 10.0));
 /// assert!((star.gauge(DVec3::new(0.5, -0.3, 0.8)) - 0.800000617660).abs() < 1e-12);
 /// assert!(Solid::from(star).contains(DVec3::new(0.5, -0.3, 0.8))?);
+///
+/// // m = 5/2: the sections are stars of crossing arms, or the pentagons in their middles.
+/// let arms = Gielis::rational(5, 2, 3.0, 7.0, 7.0);
+/// let star = Supershape::new(arms, Gielis::circle());
+/// let core = Supershape::new(arms.with_turns(Turns::Inner), Gielis::circle());
+/// let p = DVec3::new(1.2 * 0.4f64.cos(), 1.2 * 0.4f64.sin(), 0.0);
+/// assert!(star.gauge(p) < 1.0 && core.gauge(p) > 1.0);
 /// # Ok::<(), rvachev::SolidError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]

@@ -2,9 +2,9 @@
 //! enough elsewhere that few cells without surface are kept.
 
 use glam::{DQuat, DVec3};
-use rvachev::{Bounds, Gielis, Program, Region, Solid, Supershape, Turns};
+use rvachev::{Bounds, Field, Gielis, Program, Region, Solid, Supershape, Turns};
 
-use crate::support::{Random, random_box, samples, value};
+use crate::support::{Random, lanes32, random_box, samples, value};
 
 fn star() -> Supershape {
     Supershape::new(Gielis::new(6.0, 2.0, 7.0, 7.0), Gielis::new(4.0, 10.0, 10.0, 10.0))
@@ -109,6 +109,43 @@ fn ranges_over_boxes_of_the_own_frame_are_exact() {
             assert!(slack <= 0.12 * (seen.1 - seen.0) + 1e-6, "{shape:?} over {region:?}: {range:?}, seen {seen:?}");
         }
     }
+}
+
+#[test]
+fn lanes_keep_within_the_stated_error_near_the_surface() {
+    let mut random = Random::new(77);
+    let mut worst = 0.0f64;
+    for i in 0..60 {
+        let mut curve = |equator: bool| {
+            let n1 = random.log_range(0.5, 20.0);
+            let mut exponent = || (n1 * random.log_range(0.2, 5.0)).max(if i % 2 == 0 { 0.3 } else { 1.0 });
+            let (n2, n3) = (exponent(), exponent());
+            let m = random.range(0.0, 12.0);
+            if equator && random.chance(0.5) {
+                let turns = random.pick(&[Turns::Outer, Turns::Inner]);
+                return Gielis::new(m.round() / random.pick(&[1.0, 2.0, 3.0, 5.0]), n1, n2, n3).with_turns(turns);
+            }
+            Gielis::new(m, n1, n2, n3)
+        };
+        let shape = Supershape::new(curve(true), curve(false));
+        let solid = Solid::from(shape.clone());
+        let program = solid.field_program().unwrap();
+        let points: Vec<DVec3> = (0..256)
+            .map(|_| {
+                let direction = random.direction();
+                direction * random.range(0.98, 1.02) / shape.gauge(direction)
+            })
+            .collect();
+        let reach = points.iter().map(|p| p.length()).fold(0.0, f64::max);
+        let stated = shape.roundoff(reach);
+        let (seen, values) = lanes32(&program, &Bounds::from_center(DVec3::ZERO, DVec3::splat(reach)), &points);
+        for (p, got) in seen.iter().zip(values) {
+            let error = (got - program.value(*p)).abs();
+            worst = worst.max(error / stated);
+            assert!(error <= stated, "{shape:?} at {p}: {error:e}, stated {stated:e}");
+        }
+    }
+    println!("worst: {worst:.3} of what is stated");
 }
 
 /// Counts the cells of a cube that are kept, and those of them that the surface crosses.
