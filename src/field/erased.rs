@@ -11,7 +11,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::deform::{Branches, Warp};
-use super::zone::concave_range;
+use super::zone::{concave_range, mean_value_range};
 use super::{AnyWarp, Field, Kernel, ParamError, Zone, saturate};
 use crate::num::kernel::{Element, Formula, Visit, run};
 use crate::num::symbol::Symbol;
@@ -248,8 +248,17 @@ impl<F: Field> AnyField for F {
 
     fn range(&self, zone: &Zone) -> Interval {
         let coarse = Field::range(self, zone.hull());
-        if !Field::convex(self) || coarse.lo() > 0.0 || coarse.hi() < 0.0 || !zone.is_finite() {
+        if coarse.lo() > 0.0 || coarse.hi() < 0.0 || !zone.is_finite() {
             return coarse;
+        }
+        if !Field::convex(self) {
+            // The leaf has said all about a box of its own frame; the hull of a zone at an
+            // angle to it holds much else.
+            if zone.is_aligned() {
+                return coarse;
+            }
+            let centre = self.eval(zone.centre.to_array().map(Interval::point));
+            return mean_value_range(zone, centre, self.slopes(zone.hull()), coarse);
         }
         let tangent = self.eval(Dual::point(zone.centre.to_array()));
         concave_range(zone, tangent.v, DVec3::from_array(tangent.d), coarse, |p| self.eval(p.to_array()))

@@ -6,16 +6,39 @@
 //!     U = |cos(mθ/4)|, V = |sin(mθ/4)|,  g_p(t) = t / (p + (1 − p)t)
 //! ```
 //!
+//! For m = P/Q that is not whole the curve runs several times about the origin before it closes
+//! (after Q turns if P is even or the curve is symmetric, n₂ = n₃ and a = b; else after 2Q) and
+//! crosses itself. Its turns make a region in two ways, both by R-functions of what the turns
+//! bound one by one:
+//!
+//! ```text
+//!     outer envelope   r(θ) = max over k of r(θ + 2πk)      disjunction
+//!     inner core       r(θ) = min over k of r(θ + 2πk)      conjunction
+//! ```
+//!
+//! The third way, and the only one where m is irrational, is the first turn alone, θ in [−π, π].
+//!
+//! Creases: r is even in θ, so the first turn always meets itself at θ = π, but with a corner
+//! unless m is even, or odd with n₂ = n₃ and a = b. Envelopes have corners where turns cross.
+//! At the zeros of the cosine an exponent n₂ of 1 makes a corner and one below 1 a cusp; alike
+//! for n₃ and the sine.
+//!
 //! The rational radius (Blanc–Schlick replacement of the powers) is within some ten per cent
 //! of the standard one, and creased at every zero of U and V whatever the exponents: it is
 //! for previews and for the first stage of fitting.
 //!
 //! Sources: J. Gielis, *A generic geometric transformation* (2003); Y. D. Fougerolle et al.,
 //! *Rational supershapes for surface reconstruction*; the constants of the rational radius
-//! are corrected, see the crate's tests.
+//! are corrected, see the crate's tests. Envelopes: Y. D. Fougerolle, F. Truchetet, J. Gielis,
+//! *Potential fields of self-intersecting Gielis curves* (2009).
+
+use std::f64::consts::FRAC_PI_2;
 
 use super::{ParamError, check};
-use crate::{Dual, Interval, Real};
+use crate::{Dual, Real};
+
+/// Envelopes are taken of curves that close within this many turns.
+const MOST_TURNS: u32 = 16;
 
 /// Which formula gives the radius.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -27,26 +50,48 @@ pub enum Radius {
     Rational,
 }
 
+/// Which turns of a curve about the origin count. Curves whose m is whole and even, or whole
+/// with n2 = n3 and a = b, have one turn only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Turns {
+    /// The first one, angles in [−π, π]: for any m.
+    #[default]
+    Principal,
+    /// All of them, and what any of them encloses is inside (the outer envelope): m must be a
+    /// fraction whose curve closes within 16 turns.
+    Outer,
+    /// All of them, and what all of them enclose is inside (the inner core): m as for `Outer`.
+    Inner,
+}
+
 /// A Gielis curve, in polar form about the origin.
 ///
 /// | parameter | range | meaning |
 /// |---|---|---|
-/// | `m` | whole number, 0 to 64 | rotational symmetry: number of corners |
+/// | `m` | any number, 0 to 64 | rotational symmetry: number of corners |
 /// | `n1` | 0.05 to 1000 | sharpness: large n1 with n2 = n3 nearby gives polygons |
 /// | `n2`, `n3` | 0.1 to 1000 | shape of the lobes |
 /// | `a`, `b` | 0.01 to 100 | scale of the cosine and the sine; 1 for the rational radius |
+/// | `turns` | [`Turns`] | what counts of a curve that runs about the origin several times |
 ///
 /// The ratio max(n2, n3)/n1 is at most 100 (beyond, radii run over astronomic ranges).
 ///
 /// ```
-/// use rvachev::{Gielis, Radius};
+/// use rvachev::{Gielis, Radius, Turns};
 ///
 /// let curve = Gielis::new(5.0, 3.0, 2.0, 8.0);
 /// assert!((curve.radius(0.3, Radius::Standard) - 1.0490573465444).abs() < 1e-12);
+///
+/// // m = 5/2 closes after two turns: a star whose arms cross, and the pentagon in its middle.
+/// let star = Gielis::rational(5, 2, 3.0, 7.0, 7.0);
+/// assert_eq!(star.closing_turns(), Some(2));
+/// assert!((star.radius(0.4, Radius::Standard) - 1.4095026).abs() < 1e-7);
+/// let core = star.with_turns(Turns::Inner);
+/// assert!((core.radius(0.4, Radius::Standard) - 1.0764467).abs() < 1e-7);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gielis {
-    /// Rotational symmetry, a whole number.
+    /// Rotational symmetry.
     pub m: f64,
     /// Outer exponent.
     pub n1: f64,
@@ -58,13 +103,66 @@ pub struct Gielis {
     pub a: f64,
     /// Scale of the sine.
     pub b: f64,
+    /// The turns that count.
+    pub turns: Turns,
 }
 
 impl Gielis {
-    /// The curve with `a = b = 1`.
+    /// The first turn of the curve with `a = b = 1`.
     #[must_use]
     pub fn new(m: f64, n1: f64, n2: f64, n3: f64) -> Gielis {
-        Gielis { m, n1, n2, n3, a: 1.0, b: 1.0 }
+        Gielis { m, n1, n2, n3, a: 1.0, b: 1.0, turns: Turns::Principal }
+    }
+
+    /// The outer envelope of the curve with m = `p`/`q` and `a = b = 1`.
+    #[must_use]
+    pub fn rational(p: u32, q: u32, n1: f64, n2: f64, n3: f64) -> Gielis {
+        Gielis::new(f64::from(p) / f64::from(q), n1, n2, n3).with_turns(Turns::Outer)
+    }
+
+    /// The curve with other turns.
+    #[must_use]
+    pub fn with_turns(self, turns: Turns) -> Gielis {
+        Gielis { turns, ..self }
+    }
+
+    /// After how many turns the curve closes; `None` if it takes more than 16, as it does for
+    /// an irrational m.
+    #[must_use]
+    pub fn closing_turns(&self) -> Option<u32> {
+        self.fraction().map(|(_, _, turns)| turns)
+    }
+
+    /// `m = P/Q` in lowest terms, and the turns to close.
+    fn fraction(&self) -> Option<(f64, f64, u32)> {
+        let symmetric = self.n2 == self.n3 && self.a == self.b;
+        for q in 1..=MOST_TURNS {
+            let multiple = self.m * f64::from(q);
+            let p = multiple.round();
+            // Fractions with such denominators are much farther apart.
+            if (multiple - p).abs() <= 1e-9 {
+                let turns = if symmetric || p % 2.0 == 0.0 { q } else { 2 * q };
+                return (turns <= MOST_TURNS).then_some((p, f64::from(q), turns));
+            }
+        }
+        None
+    }
+
+    /// The turns that count, resolved.
+    pub(super) fn winding(&self) -> Winding {
+        let sign = match self.turns {
+            Turns::Principal => return Winding::Once,
+            Turns::Outer => -1.0,
+            Turns::Inner => 1.0,
+        };
+        match self.fraction() {
+            Some((p, q, turns)) if turns > 1 => {
+                // A turn moves mθ/4 by this angle, but for half-turns, which do not count.
+                let (sin, cos) = (FRAC_PI_2 * (p % (2.0 * q)) / q).sin_cos();
+                Winding::Many { turns, cos, sin, sign }
+            }
+            _ => Winding::Once,
+        }
     }
 
     /// The unit circle.
@@ -84,16 +182,17 @@ impl Gielis {
         Gielis::new(sides, sharpness, kappa * sharpness, kappa * sharpness)
     }
 
-    /// The radius at the angle `theta` (radians).
+    /// The radius at the angle `theta` (radians). Of a curve whose first turn counts, angles
+    /// beyond ±π are its further turns.
     #[must_use]
     pub fn radius(&self, theta: f64, radius: Radius) -> f64 {
-        self.radius_at(theta, radius)
+        self.radius_at(theta, radius, self.winding())
     }
 
     /// The radius and its derivative with respect to the angle.
     #[must_use]
     pub fn radius_slope(&self, theta: f64, radius: Radius) -> (f64, f64) {
-        let r = self.radius_at(Dual::variable(theta, 0), radius);
+        let r = self.radius_at(Dual::variable(theta, 0), radius, self.winding());
         (r.value(), r.gradient()[0])
     }
 
@@ -101,8 +200,9 @@ impl Gielis {
     pub(super) fn check(&self, curve: &str, radius: Radius) -> Result<(), ParamError> {
         let name = |field: &str| format!("{curve}.{field}");
         check::within(&name("m"), self.m, 0.0, 64.0)?;
-        if self.m.fract() != 0.0 {
-            return Err(ParamError::new(name("m"), self.m, "whole numbers from 0 to 64"));
+        if self.turns != Turns::Principal && self.fraction().is_none() {
+            let allowed = format!("for an envelope, fractions that close within {MOST_TURNS} turns");
+            return Err(ParamError::new(name("m"), self.m, allowed));
         }
         check::within(&name("n1"), self.n1, 0.05, 1000.0)?;
         check::within(&name("n2"), self.n2, 0.1, 1000.0)?;
@@ -127,7 +227,8 @@ impl Gielis {
         self.n2.max(self.n3) / self.n1
     }
 
-    /// By how much, relative to itself, the radius may be off on lanes of `f32`. Powers below
+    /// By how much, relative to itself, the radius may be off on lanes of `f32`, whichever of
+    /// its turns count. Powers below
     /// 1 have unbounded slopes at the zeros of the sine and cosine, which lanes know to some
     /// 10⁻⁷ per quarter turn.
     pub(super) fn roundoff(&self) -> f64 {
@@ -139,48 +240,71 @@ impl Gielis {
 
     /// The radius of an angle in [−π, π].
     #[inline(always)]
-    pub(super) fn radius_at<R: Real>(&self, theta: R, radius: Radius) -> R {
+    pub(super) fn radius_at<R: Real>(&self, theta: R, radius: Radius, winding: Winding) -> R {
         let (sin, cos) = (theta * (0.25 * self.m)).sin_cos();
-        match radius {
-            Radius::Standard => {
-                // In logarithms: no exponent overflows, and |cos| = 0 is no special case.
-                let c = (cos.abs() * (1.0 / self.a)).log2() * self.n2;
-                let s = (sin.abs() * (1.0 / self.b)).log2() * self.n3;
-                (c.log2_sum_exp2(s) * (-1.0 / self.n1)).exp2()
+        let mut sum = self.sum(sin, cos, radius);
+        if let Winding::Many { turns, cos: step_cos, sin: step_sin, sign } = winding {
+            // The radius falls as the sum rises.
+            sum = sum * sign;
+            let (mut c, mut s) = (step_cos, step_sin);
+            for _ in 1..turns {
+                let turned = self.sum(sin.scale_add(c, cos * s), cos.scale_add(c, sin * -s), radius);
+                sum = sum.max(turned * sign);
+                (c, s) = (c * step_cos - s * step_sin, s * step_cos + c * step_sin);
             }
+            sum = sum * sign;
+        }
+        match radius {
+            Radius::Standard => (sum * (-1.0 / self.n1)).exp2(),
             Radius::Rational => {
-                let w = rational_power(cos.abs(), self.n2) + rational_power(sin.abs(), self.n3);
                 let scale = (-1.0 / self.n1).exp2();
-                let ratio = w.lift(scale * 2.0 / self.n1) / w;
+                let ratio = sum.lift(scale * 2.0 / self.n1) / sum;
                 ratio + scale * (1.0 - 1.0 / self.n1)
             }
         }
     }
 
-    /// A bound from above on `weight(θ)·r(θ)` over the curve and one from below on r, close
-    /// to 10⁻⁴ of the true ones. `weight` is a function of the angle, at most 1.
-    pub(super) fn extremes(
-        &self,
-        radius: Radius,
-        domain: Interval,
-        weight: fn(Dual<Interval>) -> Dual<Interval>,
-    ) -> (f64, f64) {
-        const PIECES: usize = 4096;
-        let width = domain.width() / PIECES as f64;
-        let (mut most, mut least) = (0.0f64, f64::INFINITY);
-        for piece in 0..PIECES {
-            let lo = domain.lo() + piece as f64 * width;
-            let angle = Dual::variable(Interval::new(lo, lo + width).inflate(1e-12), 0);
-            let r = self.radius_at(angle, radius);
-            let weighted = weight(angle) * r;
-            // The mean-value form is closer than the direct one where the curve is smooth.
-            let middle = Dual::constant(Interval::point(lo + 0.5 * width));
-            let mean = (weight(middle) * self.radius_at(middle, radius)).value();
-            let reach = weighted.gradient()[0].magnitude() * 0.5 * (width + 2e-12);
-            most = most.max(weighted.value().hi().min(mean.hi() + reach));
-            least = least.min(r.value().lo());
+    /// What the radius is a falling function of: the logarithm of the sum of powers, or W.
+    #[inline(always)]
+    fn sum<R: Real>(&self, sin: R, cos: R, radius: Radius) -> R {
+        match radius {
+            Radius::Standard => {
+                // In logarithms: no exponent overflows, and |cos| = 0 is no special case.
+                let c = (cos.abs() * (1.0 / self.a)).log2() * self.n2;
+                let s = (sin.abs() * (1.0 / self.b)).log2() * self.n3;
+                c.log2_sum_exp2(s)
+            }
+            Radius::Rational => rational_power(cos.abs(), self.n2) + rational_power(sin.abs(), self.n3),
         }
-        (most, least)
+    }
+}
+
+/// The turns that count of a curve, resolved when a shape is built.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Winding {
+    /// One.
+    Once,
+    /// Several.
+    Many {
+        /// How many.
+        turns: u32,
+        /// Cosine and sine of the angle by which a turn moves mθ/4.
+        cos: f64,
+        /// See `cos`.
+        sin: f64,
+        /// 1 if the largest sum of powers counts (the inner core), −1 if the least.
+        sign: f64,
+    },
+}
+
+impl Winding {
+    /// The same as a number of turns, perhaps one.
+    #[inline(always)]
+    pub(super) fn by_turns(self) -> Winding {
+        match self {
+            Winding::Once => Winding::Many { turns: 1, cos: 1.0, sin: 0.0, sign: 1.0 },
+            many => many,
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use glam::{DAffine3, DVec3};
 
 use super::ParamError;
-use crate::{Bounds, Interval, Real};
+use crate::{Bounds, Dual, Interval, Real};
 
 /// A leaf: a formula that is positive inside a shape, zero on its surface and negative
 /// outside.
@@ -96,6 +96,13 @@ pub trait Field: Debug + Send + Sync + 'static {
     /// formula on intervals; a leaf whose structure gives a tighter one overrides it.
     fn range(&self, region: [Interval; 3]) -> Interval {
         self.eval(region)
+    }
+
+    /// Ranges of the formula's three derivatives over a box of the leaf's own frame. They make
+    /// the value's range over boxes that stand at an angle to that frame, and over segments.
+    /// The default runs the formula on dual numbers of intervals.
+    fn slopes(&self, region: [Interval; 3]) -> [Interval; 3] {
+        self.eval(Dual::point(region)).gradient()
     }
 
     /// Support function of the shape's convex hull: the largest `direction · p` over its

@@ -7,20 +7,34 @@
 //! ```
 //!
 //! after scaling by the semi-axes. G is the gauge, homogeneous of degree 1, and equals
-//! 1 − F2 for Fougerolle's second field. Where the equator's m is odd with n2 ≠ n3 or a ≠ b
-//! the surface has a crease at θ = π; where the meridian's radius is not stationary at the
-//! pole it has a tip there.
+//! 1 − F2 for Fougerolle's second field. It is the gauge of the meridian at `(u, z)`, where
+//! u = ρ/r₁ is the gauge of the equator at `(x, y)`; over a box u and z are independent, so the
+//! ranges of two gauges in the plane, one after the other, give that of G exactly.
+//!
+//! Creases: at θ = π where the equator's m is not even (but not for odd m with n2 = n3 and
+//! a = b); along meridians where turns of an envelope cross; and wherever a curve has a corner
+//! itself (see [`Gielis`]). Where the meridian's radius is not stationary at the pole there is
+//! a tip.
+//!
+//! The radius of the sections may be an envelope of the equator's turns. The solid is then the
+//! product of the envelope with the meridian; it is the union (or intersection) of the products
+//! of the single turns where the meridian has no undercut, that is, where with each point it
+//! holds the whole way from there straight to the z axis. With an undercut (a meridian with
+//! dented poles or a star) the product of the outer envelope has hollows that the union fills.
 //!
 //! Source: Y. D. Fougerolle et al.; J. Gielis, B. Beirinckx, E. Bastiaens, *Superquadrics
 //! with rational and irrational symmetry* (2003).
 
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
+use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::{Field, Gielis, Kernel, ParamError, Radius, check};
-use crate::{Bounds, Dual, Interval, Norm, Real};
+use super::gielis::Winding;
+use super::outline::Outline;
+use super::{Field, Gielis, Kernel, ParamError, Radius, Turns, check};
+use crate::{Bounds, Interval, Norm, Real};
 
 /// A supershape about the origin, valued `f = r_in·(1 − G)` in length units, where `r_in` is
 /// the radius of a sphere about the origin inside it.
@@ -29,7 +43,8 @@ use crate::{Bounds, Dual, Interval, Norm, Real};
 ///
 /// | parameter | unit | range |
 /// |---|---|---|
-/// | `equator`, `meridian` | none | see [`Gielis`] |
+/// | `equator` | none | see [`Gielis`]; any m, and envelopes of several turns |
+/// | `meridian` | none | see [`Gielis`]; any m, angles in [−π/2, π/2] of the first turn |
 /// | `scale` | length | 10⁻⁹ to 10⁹ each |
 /// | `radius` | none | [`Radius::Standard`] or [`Radius::Rational`] |
 ///
@@ -38,23 +53,33 @@ use crate::{Bounds, Dual, Interval, Norm, Real};
 /// slopes are unbounded at the zeros of the sine and cosine, and errors grow to some `(10⁻⁷ m)^n`.
 ///
 /// ```
-/// use rvachev::{Gielis, Solid, Supershape};
+/// use rvachev::{Gielis, Solid, Supershape, Turns};
 /// use glam::DVec3;
 ///
 /// let star = Supershape::new(Gielis::new(6.0, 2.0, 7.0, 7.0), Gielis::new(4.0, 10.0, 10.0, 10.0));
 /// assert!((star.gauge(DVec3::new(0.5, -0.3, 0.8)) - 0.800000617660).abs() < 1e-12);
 /// assert!(Solid::from(star).contains(DVec3::new(0.5, -0.3, 0.8))?);
+///
+/// // m = 5/2: the sections are stars of crossing arms, or the pentagons in their middles.
+/// let arms = Gielis::rational(5, 2, 3.0, 7.0, 7.0);
+/// let star = Supershape::new(arms, Gielis::circle());
+/// let core = Supershape::new(arms.with_turns(Turns::Inner), Gielis::circle());
+/// let p = DVec3::new(1.2 * 0.4f64.cos(), 1.2 * 0.4f64.sin(), 0.0);
+/// assert!(star.gauge(p) < 1.0 && core.gauge(p) > 1.0);
 /// # Ok::<(), rvachev::SolidError>(())
 /// ```
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct Supershape {
     equator: Gielis,
     meridian: Gielis,
     scale: DVec3,
     radius: Radius,
+    winding: Winding,
     inverse: DVec3,
     inscribed: f64,
-    half_extents: DVec3,
+    bounds: Bounds,
+    /// Those of the equator and of the meridian; none if a parameter is out of its range.
+    outlines: Option<Arc<[Outline; 2]>>,
 }
 
 impl Supershape {
@@ -68,38 +93,45 @@ impl Supershape {
     /// The same with semi-axes `scale` and a choice of radius.
     #[must_use]
     pub fn with(equator: Gielis, meridian: Gielis, scale: impl Into<DVec3>, radius: Radius) -> Supershape {
-        let scale = scale.into();
         let mut shape = Supershape {
             equator,
             meridian,
-            scale,
+            scale: DVec3::ONE,
             radius,
-            inverse: scale.recip(),
+            winding: equator.winding(),
+            inverse: DVec3::ONE,
             inscribed: f64::NAN,
-            half_extents: DVec3::NAN,
+            bounds: Bounds::ALL,
+            outlines: None,
         };
         if shape.check().is_ok() {
-            let turn = Interval::new(-PI, PI);
-            let half = Interval::new(-0.5 * PI, 0.5 * PI);
-            let (x, least_equator) = equator.extremes(radius, turn, |t| t.sin_cos().1.abs());
-            let (y, _) = equator.extremes(radius, turn, |t| t.sin_cos().0.abs());
-            let (across, least_meridian) = meridian.extremes(radius, half, |t| t.sin_cos().1.abs());
-            let (along, _) = meridian.extremes(radius, half, |t| t.sin_cos().0.abs());
-            shape.half_extents = scale * DVec3::new(x * across, y * across, along);
-            shape.inscribed = scale.min_element() * least_meridian * least_equator.min(1.0);
+            let outlines = [Outline::new(equator, radius, PI), Outline::new(meridian, radius, FRAC_PI_2)];
+            shape.outlines = Some(Arc::new(outlines));
         }
-        shape
+        shape.scaled(scale)
     }
 
     /// The supershape with semi-axes `scale` in place of 1.
     #[must_use]
-    pub fn scaled(self, scale: impl Into<DVec3>) -> Supershape {
-        Supershape::with(self.equator, self.meridian, scale, self.radius)
+    pub fn scaled(&self, scale: impl Into<DVec3>) -> Supershape {
+        let scale = scale.into();
+        let mut shape = Supershape { scale, inverse: scale.recip(), ..self.clone() };
+        if let Some([equator, meridian]) = self.outlines.as_deref() {
+            // The meridian reaches farthest from the axis and along it at different angles.
+            let (across, along) = (meridian.x().hi(), meridian.y().hi());
+            let high = DVec3::new(equator.x().hi() * across, equator.y().hi() * across, along);
+            let low = DVec3::new(equator.x().lo() * across, -high.y, -high.z);
+            let ends = (scale * low, scale * high);
+            let rounding = 1e-14 * (ends.1 - ends.0);
+            shape.bounds = Bounds::new(ends.0 - rounding, ends.1 + rounding);
+            shape.inscribed = scale.min_element() * meridian.radius().lo() * equator.radius().lo().min(1.0);
+        }
+        shape
     }
 
     /// The supershape with the rational radius.
     #[must_use]
-    pub fn rational(self) -> Supershape {
+    pub fn rational(&self) -> Supershape {
         Supershape::with(self.equator, self.meridian, self.scale, Radius::Rational)
     }
 
@@ -146,10 +178,16 @@ impl Supershape {
     fn gauge_of<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
         let (x, y, z) = (x * self.inverse.x, y * self.inverse.y, z * self.inverse.z);
         let rho = x.norm(y, Norm::Euclid);
-        let r1 = self.equator.radius_at(y.atan2(x), self.radius);
+        let r1 = self.equator.radius_at(y.atan2(x), self.radius, self.winding);
         let phi = (z * r1).atan2(rho);
         let lambda = (rho / r1).norm(z, Norm::Euclid);
-        lambda / self.meridian.radius_at(phi, self.radius)
+        lambda / self.meridian.radius_at(phi, self.radius, Winding::Once)
+    }
+
+    /// The region in units of the semi-axes.
+    fn scaled_down(&self, region: [Interval; 3]) -> [Interval; 3] {
+        let [x, y, z] = region;
+        [x * self.inverse.x, y * self.inverse.y, z * self.inverse.z]
     }
 }
 
@@ -174,12 +212,16 @@ impl Field for Supershape {
     }
 
     fn bounds(&self) -> Bounds {
-        Bounds::new(-self.half_extents, self.half_extents)
+        self.bounds
     }
 
     fn check(&self) -> Result<(), ParamError> {
         self.equator.check("equator", self.radius)?;
         self.meridian.check("meridian", self.radius)?;
+        if self.meridian.turns != Turns::Principal {
+            let turns = f64::from(self.meridian.closing_turns().unwrap_or(1));
+            return Err(ParamError::new("meridian.turns", turns, "1: a meridian is a part of the first turn"));
+        }
         check::lengths("scale", self.scale)
     }
 
@@ -188,27 +230,45 @@ impl Field for Supershape {
     }
 
     fn range(&self, region: [Interval; 3]) -> Interval {
-        // Direct intervals lose the angle's tie to the radius; the mean-value form keeps it
-        // over small regions.
-        let image = self.eval(Dual::point(region));
-        let middle = region.map(|side| Interval::point(side.mid()));
-        let mut mean = self.eval(middle);
-        for (slope, side) in image.gradient().into_iter().zip(region) {
-            mean = mean + slope * Interval::around(0.0, 0.5 * side.width());
+        let [x, y, z] = self.scaled_down(region);
+        let Some([equator, meridian]) = self.outlines.as_deref() else { return Interval::ALL };
+        if !(x.magnitude() + y.magnitude() + z.magnitude()).is_finite() {
+            return Interval::ALL;
         }
-        self.eval(region).narrowed_by(mean)
+        let u = equator.gauge(x, y.abs());
+        let gauge = meridian.gauge(u, z.abs());
+        -gauge * self.inscribed + self.inscribed
+    }
+
+    fn slopes(&self, region: [Interval; 3]) -> [Interval; 3] {
+        let [x, y, z] = self.scaled_down(region);
+        let Some([equator, meridian]) = self.outlines.as_deref() else { return [Interval::ALL; 3] };
+        if !(x.magnitude() + y.magnitude() + z.magnitude()).is_finite() {
+            return [Interval::ALL; 3];
+        }
+        let [by_x, by_y] = equator.gradient(x, y.abs());
+        let [by_u, by_z] = meridian.gradient(equator.gauge(x, y.abs()), z.abs());
+        // Outlines know one half of the plane, the other is its mirror image.
+        let mirrored = |slope: Interval, of: Interval| {
+            if of.contains(0.0) { slope.hull(-slope) } else { of.select(slope, -slope) }
+        };
+        let scale = self.inverse * -self.inscribed;
+        [by_u * by_x * scale.x, by_u * mirrored(by_y, y) * scale.y, mirrored(by_z, z) * scale.z]
     }
 
     #[inline(always)]
     fn specialised<K: Kernel<Self>>(&self, kernel: K) {
-        match self.radius {
-            Radius::Standard => kernel.run(&Supershape { radius: Radius::Standard, ..*self }),
-            Radius::Rational => kernel.run(&Supershape { radius: Radius::Rational, ..*self }),
+        // Lanes need no outlines; one loop for a single turn, one for several.
+        let with = |radius: Radius, winding: Winding| Supershape { radius, winding, outlines: None, ..*self };
+        match (self.radius, self.winding) {
+            (Radius::Standard, Winding::Once) => kernel.run(&with(Radius::Standard, Winding::Once)),
+            (Radius::Standard, many) => kernel.run(&with(Radius::Standard, many.by_turns())),
+            (Radius::Rational, any) => kernel.run(&with(Radius::Rational, any.by_turns())),
         }
     }
 
     fn roundoff(&self, reach: f64) -> f64 {
         let relative = self.equator.roundoff() + self.meridian.roundoff();
-        relative * self.half_extents.length().min(reach)
+        relative * self.bounds.min.abs().max(self.bounds.max).length().min(reach)
     }
 }

@@ -92,6 +92,13 @@ impl Zone {
         self.hull.iter().fold(0.0, |reach, side| reach.max(side.magnitude()))
     }
 
+    /// Whether it fills its hull, as a box (or a rectangle, or a segment) along the axes does.
+    pub(crate) fn is_aligned(&self) -> bool {
+        let size = self.axes.x_axis.abs().max(self.axes.y_axis.abs()).max(self.axes.z_axis.abs()).max_element();
+        let along_one = |axis: DVec3| axis.abs().element_sum() - axis.abs().max_element() <= 1e-9 * size;
+        along_one(self.axes.x_axis) && along_one(self.axes.y_axis) && along_one(self.axes.z_axis)
+    }
+
     /// Whether every number in it is finite.
     pub(crate) fn is_finite(&self) -> bool {
         self.centre.is_finite() && self.axes.is_finite() && self.slack.is_finite()
@@ -202,6 +209,20 @@ impl Pieces {
             visit(second);
         }
     }
+}
+
+/// Range of a function over a zone by the mean-value form: the value at the centre and ranges
+/// of the derivatives over the hull, along the zone's own axes.
+pub(super) fn mean_value_range(zone: &Zone, centre: Interval, slopes: [Interval; 3], known: Interval) -> Interval {
+    let along = |axis: DVec3| {
+        let terms = [0, 1, 2].map(|i| slopes[i] * axis[i]);
+        (terms[0] + terms[1] + terms[2]).magnitude()
+    };
+    let axes = along(zone.axes.x_axis) + along(zone.axes.y_axis) + along(zone.axes.z_axis);
+    let remainder: f64 = [0, 1, 2].iter().map(|i| slopes[*i].magnitude() * zone.slack[*i]).sum();
+    let spread = (axes + remainder) * (1.0 + 1e-14);
+    // NaN where a slope is unbounded and its extent 0.
+    if spread.is_finite() { known.narrowed_by(centre.inflate(spread)) } else { known }
 }
 
 /// Range of a concave function with slope at most 1 over a zone: tangent above, corners below.

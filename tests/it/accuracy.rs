@@ -6,7 +6,7 @@
 use glam::DVec3;
 use rvachev::{
     Bounds, Cuboid, Cylinder, Evaluator, GeneralisedSuperquadric, Gielis, Solid, Sphere, Superellipsoid,
-    Superhyperboloid, Supershape, Supertoroid, Tape,
+    Superhyperboloid, Supershape, Supertoroid, Tape, Turns,
 };
 
 use crate::support::{Random, rounded};
@@ -210,7 +210,7 @@ fn supershapes() {
     let mut random = Random::new(16);
     for rational in [false, true] {
         let mut worst = Worst::new();
-        for _ in 0..60 {
+        for i in 0..60 {
             let mut curve = || {
                 let n1 = random.log_range(0.5, 40.0);
                 // Below 1 the radius has infinite slope at the corners: no digits are left there.
@@ -218,7 +218,11 @@ fn supershapes() {
                 let (n2, n3) = (n(), n());
                 Gielis::new(random.below(13) as f64, n1, n2, n3)
             };
-            let (equator, meridian) = (curve(), curve());
+            let (mut equator, meridian) = (curve(), curve());
+            if i % 3 == 2 {
+                equator =
+                    Gielis { m: equator.m / 3.0, ..equator }.with_turns(random.pick(&[Turns::Outer, Turns::Inner]));
+            }
             let scale = random.log_range(1e-3, 1e3);
             let scale = DVec3::from_array([0; 3].map(|_| scale * random.range(0.3, 1.0)));
             let shape = Supershape::new(equator, meridian).scaled(scale);

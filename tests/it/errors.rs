@@ -5,6 +5,7 @@ use std::panic::catch_unwind;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rvachev::{
     Bounds, CellSize, Gielis, MeshSettings, MeshingError, ParamError, RFunction, Radius, Solid, SolidError, Supershape,
+    Turns,
 };
 
 /// Checks that the solid is refused everywhere, with a text that has all of `parts`, and
@@ -110,7 +111,13 @@ fn curves_out_of_range() {
     let circle = Gielis::circle();
     let good = Gielis::new(5.0, 3.0, 3.0, 3.0);
     let shape = |equator: Gielis| Solid::from(Supershape::new(equator, circle));
-    refused(&shape(Gielis { m: 2.5, ..good }), &["supershape: equator.m is 2.5", "whole"]);
+    let envelope = good.with_turns(Turns::Outer);
+    refused(&shape(Gielis { m: 2.0_f64.sqrt(), ..envelope }), &["supershape: equator.m is 1.41421", "16 turns"]);
+    refused(&shape(Gielis { m: 31.0 / 17.0, ..envelope }), &["supershape: equator.m is 1.82", "16 turns"]);
+    refused(&shape(Gielis { m: 7.0 / 9.0, n3: 4.0, ..envelope }), &["supershape: equator.m is 0.77", "16 turns"]);
+    refused(&shape(Gielis::rational(1, 0, 3.0, 3.0, 3.0)), &["supershape: equator.m is inf"]);
+    refused(&shape(Gielis::rational(0, 0, 3.0, 3.0, 3.0)), &["supershape: equator.m is NaN"]);
+    refused(&Supershape::new(circle, envelope).into(), &["supershape: meridian.turns is 1, allowed: 1"]);
     refused(&shape(Gielis { m: -1.0, ..good }), &["equator.m is -1"]);
     refused(&shape(Gielis { m: 65.0, ..good }), &["equator.m is 65"]);
     refused(&shape(Gielis { n1: 0.0, ..good }), &["equator.n1 is 0"]);

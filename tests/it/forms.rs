@@ -7,7 +7,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rvachev::{
     Bounds, Cuboid, Cylinder, Evaluator, Field, GeneralisedSuperquadric, Gielis, Gradients, HalfSpace, ParamError,
     RFunction, Real, SineWave, SmoothStep, Solid, Sphere, Superellipsoid, Superhyperboloid, Supershape, Supertoroid,
-    Tape,
+    Tape, Turns,
 };
 
 use crate::lattices::lattices;
@@ -68,11 +68,14 @@ fn leaves() -> Vec<Case> {
         ("polygon", Gielis::polygon(6, 30.0), Gielis::new(4.0, 30.0, 30.0, 30.0)),
         ("uneven", Gielis { a: 1.5, b: 0.7, ..Gielis::new(4.0, 2.0, 3.0, 5.0) }, circle),
         ("twelve-fold", Gielis::new(12.0, 4.0, 6.0, 3.0), circle),
+        ("first turn", Gielis::new(2.3, 3.0, 7.0, 4.0), Gielis::new(4.7, 4.0, 4.0, 4.0)),
+        ("envelope", Gielis::rational(7, 3, 3.0, 7.0, 4.0), circle),
+        ("core", Gielis::rational(5, 2, 3.0, 5.0, 5.0).with_turns(Turns::Inner), bounded),
     ] {
         let shape = Supershape::new(equator, meridian).scaled(DVec3::new(0.9, 1.0, 0.7));
         let condition = [equator, meridian].iter().map(|c| c.n2.max(c.n3) / c.n1).fold(1.0, f64::max);
-        let size = Solid::from(shape).bounds().unwrap().longest_side();
-        cases.push(Case { condition, ..case(format!("supershape {name}"), shape, size) });
+        let size = Solid::from(shape.clone()).bounds().unwrap().longest_side();
+        cases.push(Case { condition, ..case(format!("supershape {name}"), shape.clone(), size) });
         if equator.a == 1.0 {
             let shape = shape.rational();
             cases.push(Case { condition, ..case(format!("rational supershape {name}"), shape, size) });

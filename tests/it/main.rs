@@ -19,4 +19,5 @@ mod scale;
 mod superellipsoid;
 mod superquadric;
 mod supershape;
+mod supershape_ranges;
 mod support;

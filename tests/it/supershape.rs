@@ -1,9 +1,9 @@
-//! Supershapes with whole m, against figures computed with 50 digits.
+//! Supershapes, against figures computed with 50 digits.
 
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use rvachev::{Gielis, Radius, Solid, Supershape};
+use rvachev::{Gielis, Radius, Solid, Supershape, Turns};
 
 use crate::support::{Random, near, near_point, value};
 
@@ -155,7 +155,7 @@ fn the_rational_shape_is_a_gauge_too() {
 fn the_gauge_is_homogeneous_and_its_gradient_says_so() {
     let mut random = Random::new(72);
     for shape in [first(), second(), second().rational(), first().scaled(DVec3::new(0.5, 2.0, 1.0))] {
-        let solid = Solid::from(shape);
+        let solid = Solid::from(shape.clone());
         let scale = value(&solid, DVec3::ZERO);
         for _ in 0..300 {
             let p = random.vector(-1.5, 1.5);
@@ -182,17 +182,18 @@ fn the_pole_and_the_centre_have_values() {
 fn the_box_holds_the_surface_and_touches_it() {
     for shape in [first(), second(), second().rational()] {
         let radius = if shape == second().rational() { Radius::Rational } else { Radius::Standard };
-        let bounds = Solid::from(shape).bounds().unwrap();
-        let mut most = DVec3::ZERO;
+        let bounds = Solid::from(shape.clone()).bounds().unwrap();
+        let (mut most, mut least) = (DVec3::ZERO, DVec3::ZERO);
         for i in 0..=720u32 {
             for j in 0..=360u32 {
                 let (theta, phi) = (PI * (f64::from(i) / 360.0 - 1.0), PI * (f64::from(j) / 360.0 - 0.5));
                 let p = surface_point(&shape, DVec3::ONE, radius, theta, phi);
                 assert!(bounds.contains(p), "{shape:?} at {p}");
-                most = most.max(p.abs());
+                (most, least) = (most.max(p), least.min(p));
             }
         }
         near_point(most, bounds.max, 2e-3 * bounds.longest_side());
+        near_point(least, bounds.min, 2e-3 * bounds.longest_side());
     }
 }
 
@@ -205,4 +206,75 @@ fn four_fold_curves_with_equal_exponents_are_superellipses() {
         near(curve.radius(theta, Radius::Standard), want, 1e-14);
     }
     near(Gielis::circle().radius(1.234, Radius::Standard), 1.0, 1e-15);
+}
+
+#[test]
+fn curves_close_after_the_stated_turns() {
+    for (p, q, symmetric, uneven) in
+        [(5, 1, 1, 2), (5, 2, 2, 4), (7, 3, 3, 6), (8, 3, 3, 3), (9, 2, 2, 4), (6, 5, 5, 5)]
+    {
+        for (n3, want) in [(7.0, symmetric), (4.0, uneven)] {
+            let curve = Gielis::rational(p, q, 3.0, 7.0, n3);
+            assert_eq!(curve.closing_turns(), Some(want), "{p}/{q}, n3 = {n3}");
+            let turn = |k: u32, theta: f64| {
+                let first = curve.with_turns(Turns::Principal);
+                first.radius(theta + 2.0 * PI * f64::from(k), Radius::Standard)
+            };
+            for theta in [-3.0, -1.234, 0.4, 2.0] {
+                // It closes then, and not before.
+                near(turn(want, theta), turn(0, theta), 1e-12);
+                assert!((1..want).all(|k| {
+                    [0.4, 0.9].iter().any(|more| (turn(k, theta + more) - turn(0, theta + more)).abs() > 1e-3)
+                }));
+                // The envelopes are the extremes of the turns.
+                let (least, most) = (0..want)
+                    .map(|k| turn(k, theta))
+                    .fold((f64::INFINITY, 0.0f64), |(least, most), r| (least.min(r), most.max(r)));
+                near(curve.radius(theta, Radius::Standard), most, 1e-12);
+                near(curve.with_turns(Turns::Inner).radius(theta, Radius::Standard), least, 1e-12);
+            }
+        }
+    }
+    assert_eq!(Gielis::new(PI, 3.0, 7.0, 7.0).closing_turns(), None);
+    assert_eq!(Gielis::rational(10, 4, 3.0, 7.0, 7.0).closing_turns(), Some(2));
+    assert_eq!(Gielis::circle().closing_turns(), Some(1));
+}
+
+#[test]
+fn turns_have_known_radii() {
+    for (p, q, want) in [(5, 2, &[1.0764467, 1.4095026][..]), (7, 3, &[1.0661874, 1.7734612, 1.1047707])] {
+        let curve = Gielis::rational(p, q, 3.0, 7.0, 7.0);
+        let first = curve.with_turns(Turns::Principal);
+        for (k, want) in (0u32..).zip(want) {
+            near(first.radius(0.4 + 2.0 * PI * f64::from(k), Radius::Standard), *want, 5e-8);
+        }
+        let most = want.iter().copied().fold(0.0, f64::max);
+        near(curve.radius(0.4, Radius::Standard), most, 5e-8);
+        let least = want.iter().copied().fold(f64::INFINITY, f64::min);
+        near(curve.with_turns(Turns::Inner).radius(0.4, Radius::Standard), least, 5e-8);
+    }
+}
+
+#[test]
+fn envelopes_of_solids_hold_what_their_turns_hold() {
+    // Without undercut of the meridian the product of the envelope is the union of the products.
+    let mut random = Random::new(73);
+    let meridian = Gielis::new(4.0, 10.0, 10.0, 10.0);
+    for (p, q, n3) in [(5, 2, 5.0), (7, 3, 4.0)] {
+        let outer = Gielis::rational(p, q, 3.0, 5.0, n3);
+        let first = outer.with_turns(Turns::Principal);
+        let shapes = [outer, outer.with_turns(Turns::Inner)].map(|curve| Supershape::new(curve, meridian));
+        for _ in 0..500 {
+            let point = random.vector(-1.6, 1.6);
+            let theta = point.y.atan2(point.x);
+            let turns = (0..outer.closing_turns().unwrap()).map(|k| {
+                let r1 = first.radius(theta + 2.0 * PI * f64::from(k), Radius::Standard);
+                let (u, z) = (point.truncate().length() / r1, point.z);
+                1.0 - u.hypot(z) / meridian.radius(z.atan2(u), Radius::Standard)
+            });
+            let turns: Vec<f64> = turns.collect();
+            near(shapes[0].f2(point), turns.iter().copied().fold(f64::NEG_INFINITY, f64::max), 1e-12);
+            near(shapes[1].f2(point), turns.iter().copied().fold(f64::INFINITY, f64::min), 1e-12);
+        }
+    }
 }

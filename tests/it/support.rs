@@ -1,7 +1,9 @@
 //! What the modules share: a random source, random solids, lanes by the list of points.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
-use rvachev::{Bounds, Cuboid, Cylinder, Evaluator, Gielis, Program, RFunction, Solid, Sphere, Supershape, Tape};
+use rvachev::{
+    Bounds, Cuboid, Cylinder, Evaluator, Gielis, Program, RFunction, Solid, Sphere, Supershape, Tape, Turns,
+};
 
 /// A random source (splitmix64) whose numbers depend on the seed alone.
 pub struct Random(u64);
@@ -107,7 +109,10 @@ pub fn random_leaf(random: &mut Random) -> Solid {
         1 => Cuboid { size: random.vector(0.4, 1.6) }.into(),
         2 => Cylinder { radius: size(random), height: 2.0 * size(random) }.into(),
         3 => Solid::half_space(random.direction(), random.range(-0.5, 0.5)),
-        4 => Supershape::new(random_curve(random), random_curve(random)).scaled(random.vector(0.3, 0.7)).into(),
+        4 => {
+            let shape = Supershape::new(random_curve(random, true), random_curve(random, false));
+            shape.scaled(random.vector(0.3, 0.7)).into()
+        }
         5 => Solid::superellipsoid(random.vector(0.2, 0.8), random.pick(&EXPONENTS), random.pick(&EXPONENTS)),
         _ => Solid::superellipsoid(random.vector(0.2, 0.8), random.range(0.05, 2.5), random.range(0.05, 2.5)),
     }
@@ -116,14 +121,19 @@ pub fn random_leaf(random: &mut Random) -> Solid {
 /// Exponents at which the formulas change their form, and their neighbours.
 const EXPONENTS: [f64; 7] = [0.05, 0.1, 0.999_999, 1.0, 1.000_001, 2.0, 2.5];
 
-fn random_curve(random: &mut Random) -> Gielis {
+fn random_curve(random: &mut Random, equator: bool) -> Gielis {
     match random.below(3) {
         0 => Gielis::circle(),
         1 => Gielis::polygon(3 + random.below(6) as u32, random.pick(&[5.0, 20.0, 60.0])),
         _ => {
             let n1 = random.range(0.8, 6.0);
-            let m = random.below(9) as f64;
-            Gielis::new(m, n1, n1 * random.range(0.4, 3.0), n1 * random.range(0.4, 3.0))
+            let (m, turns) = match random.below(9) {
+                7 => (7.0 / 3.0, Turns::Outer),
+                8 => (2.5, Turns::Inner),
+                m => (m as f64, Turns::Principal),
+            };
+            let curve = Gielis::new(m, n1, n1 * random.range(0.4, 3.0), n1 * random.range(0.4, 3.0));
+            if equator { curve.with_turns(turns) } else { curve }
         }
     }
 }

@@ -1,0 +1,294 @@
+//! Exact ranges of the gauge of a Gielis curve over boxes.
+//!
+//! ```text
+//!          far
+//!       +--------+        g(x, y) = √(x² + y²) / r(θ) grows along every ray from the origin:
+//!       |  box   | far    its least value over a box is on an edge that faces the origin, its
+//!       +--------+        largest on one that looks away. On an edge x = c it is c / X(θ), on
+//!     .   near            an edge y = c it is c / Y(θ), with the curve's own coordinates
+//!    o                    X = r cos θ and Y = r sin θ.
+//! ```
+//!
+//! So four corners and the extremes of X and Y between them give the range. The extremes are
+//! sought once, when the shape is built: intervals of the angle are halved until the derivative
+//! of X (or Y) has one sign there or X varies by less than a millionth. What is left of the
+//! second kind, a few dozen short intervals with the range of X in each, is the table. r is
+//! even in θ, so angles from 0 to π do.
+//!
+//! In terms of t = mθ/4, with C = |cos t|/a, D = |sin t|/b and S = C^n₂ + D^n₃, the slope is
+//!
+//! ```text
+//!     (ln r)′ = (m / 4n₁)·( n₂ C^(n₂−1) sin t sgn(cos t)/a − n₃ D^(n₃−1) cos t sgn(sin t)/b ) / S
+//! ```
+//!
+//! with powers taken in logarithms; it is unbounded at the zeros of the cosine where n₂ < 1.
+
+use std::fmt;
+
+use super::{Gielis, Radius, gielis::Winding};
+use crate::{Dual, Interval, Real};
+
+/// Rounding of an angle, in radians.
+const ANGLE: f64 = 4e-15;
+
+/// A coordinate that varies by less than this, relative to itself, is taken as it is.
+const SMALL: f64 = 1e-6;
+
+/// Intervals of the angle are not halved below this width.
+const NARROW: f64 = 1e-9;
+
+/// Nor beyond this number in all.
+const BUDGET: u32 = 40_000;
+
+/// A short interval of the angle where a coordinate may turn, and its range there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Turn {
+    from: f64,
+    to: f64,
+    value: Interval,
+}
+
+/// What is known of a curve over an interval of the angle.
+struct Piece {
+    radius: Interval,
+    /// Derivatives of the logarithm of the radius and, over r, of X and Y.
+    slopes: [Interval; 3],
+    direction: [Interval; 2],
+}
+
+impl Piece {
+    /// Range of r (0), X (1) or Y (2).
+    fn value(&self, which: usize) -> Interval {
+        if which == 0 { self.radius } else { self.radius * self.direction[which - 1] }
+    }
+}
+
+/// A Gielis curve over the angles from 0 to `span`, with the extremes of its coordinates.
+#[derive(Clone, PartialEq)]
+pub(super) struct Outline {
+    curve: Gielis,
+    radius: Radius,
+    winding: Winding,
+    span: f64,
+    /// Where X turns, by angle.
+    x_turns: Vec<Turn>,
+    /// Where Y turns.
+    y_turns: Vec<Turn>,
+    /// Relative error of the radius in plain `f64`; infinite where slopes are.
+    error: f64,
+    extent: [Interval; 3],
+}
+
+impl fmt::Debug for Outline {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Outline({} and {} turns)", self.x_turns.len(), self.y_turns.len())
+    }
+}
+
+impl Outline {
+    /// The outline of `curve` over the angles from 0 to `span`, which is π or π/2.
+    pub(super) fn new(curve: Gielis, radius: Radius, span: f64) -> Outline {
+        let winding = curve.winding();
+        let (x_turns, y_turns) = (Vec::new(), Vec::new());
+        let extent = [Interval::ALL; 3];
+        let mut outline = Outline { curve, radius, winding, span, x_turns, y_turns, error: 0.0, extent };
+        outline.seek();
+        outline
+    }
+
+    /// Range of the radius.
+    pub(super) fn radius(&self) -> Interval {
+        self.extent[0]
+    }
+
+    /// Range of X.
+    pub(super) fn x(&self) -> Interval {
+        self.extent[1]
+    }
+
+    /// Range of Y, which is not negative.
+    pub(super) fn y(&self) -> Interval {
+        self.extent[2]
+    }
+
+    /// Range of `(ln r)′` and of r over an interval of the angle.
+    fn slope(&self, angle: Interval) -> (Interval, Interval) {
+        let curve = &self.curve;
+        let r = curve.radius_at(angle, self.radius, self.winding);
+        if curve.m == 0.0 {
+            return (r, Interval::point(0.0));
+        }
+        if self.radius == Radius::Rational {
+            let dual = curve.radius_at(Dual::variable(angle, 0), self.radius, self.winding);
+            return (r, dual.gradient()[0] / r);
+        }
+        let (sin, cos) = (angle * (0.25 * curve.m)).sin_cos();
+        let (first, mut slope) = power_slope(curve, sin, cos);
+        if let Winding::Many { turns, cos: step_cos, sin: step_sin, sign } = self.winding {
+            // The hull of the turns that may be the one that counts.
+            let mut most = first * sign;
+            let (mut c, mut s) = (step_cos, step_sin);
+            for _ in 1..turns {
+                let (sum, next) = power_slope(curve, sin * c + cos * s, cos * c - sin * s);
+                let sum = sum * sign;
+                if sum.lo() > most.hi() {
+                    slope = next;
+                } else if sum.hi() >= most.lo() {
+                    slope = slope.hull(next);
+                }
+                most = most.max(sum);
+                (c, s) = (c * step_cos - s * step_sin, s * step_cos + c * step_sin);
+            }
+        }
+        (r, slope * (0.25 * curve.m / curve.n1))
+    }
+
+    fn piece(&self, angle: Interval) -> Piece {
+        let (radius, slope) = self.slope(angle);
+        let (sin, cos) = angle.sin_cos();
+        Piece { radius, slopes: [slope, slope * cos - sin, slope * sin + cos], direction: [cos, sin] }
+    }
+
+    /// Fills the table.
+    fn seek(&mut self) {
+        let mut found: [Vec<Turn>; 3] = Default::default();
+        let mut last = [0.0f64; 3];
+        let mut steepest = 0.0f64;
+        let mut evaluated = 0;
+        let mut stack = self.first_pieces();
+        while let Some((lo, hi)) = stack.pop() {
+            let half = 0.5 * (hi - lo);
+            let middle = lo + half;
+            let reach = Interval::around(0.0, half + ANGLE);
+            let whole = self.piece(Interval::new(lo, hi).inflate(ANGLE));
+            let mut values = [0, 1, 2].map(|i| whole.value(i));
+            if whole.slopes.iter().any(|slope| slope.contains(0.0)) {
+                let centre = self.piece(Interval::point(middle));
+                for (i, value) in values.iter_mut().enumerate() {
+                    *value = value.narrowed_by(centre.value(i) + whole.radius * whole.slopes[i] * reach);
+                }
+            }
+            evaluated += 1;
+            let last_resort = 2.0 * half <= NARROW || evaluated > BUDGET;
+            let settled = |i: usize| {
+                let turns = whole.slopes[i].contains(0.0);
+                !turns || values[i].width() <= SMALL * values[i].magnitude().min(f64::MAX)
+            };
+            if !last_resort && !(0..3).all(settled) {
+                stack.push((middle, hi));
+                stack.push((lo, middle));
+                continue;
+            }
+            steepest = steepest.max(whole.slopes[0].magnitude());
+            for i in 0..3 {
+                let way = if whole.slopes[i].contains(0.0) { 0.0 } else { whole.slopes[i].lo().signum() };
+                if way == 0.0 {
+                    found[i].push(Turn { from: lo - ANGLE, to: hi + ANGLE, value: values[i] });
+                } else if last[i] == -way {
+                    // A corner exactly between two pieces.
+                    found[i].push(self.turn_at(i, lo));
+                }
+                last[i] = way;
+            }
+        }
+        for (i, turns) in found.iter().enumerate() {
+            let ends = self.turn_at(i, 0.0).value.hull(self.turn_at(i, self.span).value);
+            self.extent[i] = turns.iter().fold(ends, |all, turn| all.hull(turn.value));
+        }
+        let [_, x_turns, y_turns] = found;
+        (self.x_turns, self.y_turns) = (x_turns, y_turns);
+        let scales = self.curve.a.log2().abs() + self.curve.b.log2().abs();
+        self.error = steepest * ANGLE + 1e-15 * (4.0 + self.curve.condition() * (2.0 + scales));
+    }
+
+    fn turn_at(&self, i: usize, angle: f64) -> Turn {
+        let value = self.piece(Interval::around(angle, 2.0 * ANGLE)).value(i);
+        Turn { from: angle - ANGLE, to: angle + ANGLE, value }
+    }
+
+    /// Pieces to begin with, the last one first: between zeros of the sine and the cosine.
+    fn first_pieces(&self) -> Vec<(f64, f64)> {
+        let quarter = std::f64::consts::TAU / self.curve.m;
+        let mut cuts: Vec<f64> = (0..=8).map(|i| self.span * f64::from(i) / 8.0).collect();
+        let zeros = (1..=64).map(|k| f64::from(k) * quarter).take_while(|zero| *zero < self.span);
+        cuts.extend(zeros);
+        cuts.sort_by(f64::total_cmp);
+        cuts.windows(2).rev().map(|ends| (ends[0], ends[1])).filter(|(lo, hi)| lo < hi).collect()
+    }
+
+    /// Range of the gauge over the box `x × y`, y not negative.
+    pub(super) fn gauge(&self, x: Interval, y: Interval) -> Interval {
+        let (x0, x1, y0, y1) = (x.lo(), x.hi(), y.lo().max(0.0), y.hi());
+        let corners = [[(x0, y0), (x0, y1)], [(x1, y0), (x1, y1)]].map(|pair| pair.map(|(x, y)| self.at(x, y)));
+        let [[a, b], [c, d]] = corners;
+        let all = a.1.hull(b.1).hull(c.1.hull(d.1));
+        let (mut lo, mut hi) = (all.lo(), all.hi());
+        if x0 <= 0.0 && x1 >= 0.0 && y0 == 0.0 {
+            lo = 0.0;
+        }
+        // The angle falls along edges y = c from x0 to x1, and along an edge x = c it rises
+        // or falls with the sign of c.
+        let edges = [
+            (&self.x_turns, x0, x0 > 0.0, a.0.min(b.0), a.0.max(b.0)),
+            (&self.x_turns, x1, x1 < 0.0, c.0.min(d.0), c.0.max(d.0)),
+            (&self.y_turns, y0, y0 > 0.0, c.0, a.0),
+            (&self.y_turns, y1, false, d.0, b.0),
+        ];
+        for (turns, at, near, from, to) in edges {
+            // Edges along a ray have their extremes at the corners.
+            if at == 0.0 {
+                continue;
+            }
+            let first = turns.partition_point(|turn| turn.to < from - ANGLE);
+            for turn in turns[first..].iter().take_while(|turn| turn.from <= to + ANGLE) {
+                let there = turn.value.abs();
+                if near {
+                    lo = lo.min((at.abs() / there.hi()).next_down());
+                } else {
+                    hi = hi.max((at.abs() / there.lo()).next_up());
+                }
+            }
+        }
+        if lo <= hi { Interval::new(lo.max(0.0), hi) } else { Interval::new(0.0, f64::INFINITY) }
+    }
+
+    /// The angle of a point and what the gauge may be there.
+    #[inline]
+    fn at(&self, x: f64, y: f64) -> (f64, Interval) {
+        let angle = Real::atan2(y, x);
+        let length = x.hypot(y);
+        if length == 0.0 {
+            return (angle, Interval::point(0.0));
+        }
+        if self.error < 1e-9 {
+            let gauge = length / self.curve.radius_at(angle, self.radius, self.winding);
+            return (angle, Interval::around(gauge, gauge * self.error));
+        }
+        let r = self.curve.radius_at(Interval::around(angle, ANGLE), self.radius, self.winding);
+        (angle, Interval::around(length, 1e-15 * length) / r)
+    }
+
+    /// Range of the gauge's derivatives over the box `x × y`, y not negative.
+    pub(super) fn gradient(&self, x: Interval, y: Interval) -> [Interval; 2] {
+        let (x0, x1, y0, y1) = (x.lo(), x.hi(), y.lo().max(0.0), y.hi());
+        // A gauge's gradient is the same all along a ray.
+        let least = Real::atan2(if x1 > 0.0 { y0 } else { y1 }, x1);
+        let most = Real::atan2(if x0 >= 0.0 { y1 } else { y0 }, x0);
+        let piece = self.piece(Interval::new(least, most).inflate(ANGLE));
+        let [_, along_x, along_y] = piece.slopes;
+        [along_y / piece.radius, -along_x / piece.radius]
+    }
+}
+
+/// The logarithm of the sum of powers S, and n₁ times the derivative of `ln r` by t.
+fn power_slope(curve: &Gielis, sin: Interval, cos: Interval) -> (Interval, Interval) {
+    let c = (cos.abs() * (1.0 / curve.a)).log2();
+    let s = (sin.abs() * (1.0 / curve.b)).log2();
+    let sum = (c * curve.n2).log2_sum_exp2(s * curve.n3);
+    let sign = |x: Interval| x.select(Interval::point(1.0), Interval::point(-1.0));
+    // C^(n−1)/S is at most 1/C.
+    let weight = |log: Interval, n: f64| (log * (n - 1.0) - sum).min(-log).exp2() * n;
+    let from_cos = weight(c, curve.n2) * (sin * (1.0 / curve.a)) * sign(cos);
+    let from_sin = weight(s, curve.n3) * (cos * (1.0 / curve.b)) * sign(sin);
+    (sum, from_cos - from_sin)
+}
