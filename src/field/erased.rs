@@ -48,7 +48,7 @@ impl Placement {
 
     /// A gradient of the leaf's frame, in that of the points.
     #[inline(always)]
-    fn pull<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
+    pub(crate) fn pull<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
         let r = &self.rows;
         [
             x.scale_add(r[0][0], y.scale_add(r[1][0], z * r[2][0])),

@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
+use fidget::context::Tree;
 use glam::DVec3;
 
 use super::{Node, Solid};
-use crate::{Cuboid, Cylinder, Field, HalfSpace, Sphere, Superellipsoid, Supershape};
+use crate::{Bounds, Cuboid, Cylinder, Field, Formula, HalfSpace, Sphere, Superellipsoid, Supershape};
 
 impl Solid {
     /// A user's own leaf as a solid. (The built-in ones are converted: `Solid::from(leaf)`.)
@@ -42,6 +43,20 @@ impl Solid {
     #[must_use]
     pub fn superellipsoid(semi_axes: impl Into<DVec3>, e1: f64, e2: f64) -> Solid {
         Superellipsoid::new(semi_axes, e1, e2).into()
+    }
+}
+
+impl Solid {
+    /// The solid where `tree` is negative (fidget's sign); `bounds` must hold it. See [`Formula`].
+    #[must_use]
+    pub fn formula(tree: &Tree, bounds: Bounds) -> Solid {
+        Formula::new(tree, bounds).into()
+    }
+}
+
+impl From<Formula> for Solid {
+    fn from(formula: Formula) -> Solid {
+        Solid::from_node(Node::Leaf(Arc::new(formula)))
     }
 }
 

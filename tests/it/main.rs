@@ -4,6 +4,7 @@ mod accuracy;
 mod deformation;
 mod errors;
 mod forms;
+mod formula;
 mod laws;
 mod mesh;
 mod models;
