@@ -93,8 +93,9 @@ impl Formula {
                 + slope[2].magnitude() * zone.slack.z,
         );
         let axes = way(zone.axes.x_axis) * either + way(zone.axes.y_axis) * either + way(zone.axes.z_axis) * either;
-        // The slack is rounded up, and so is the way, whose products are exact to a few units.
-        let rounding = 1e-14 * axes.magnitude() + 1e-14 * slack.magnitude();
+        // Points of the zone are rounded to it from wherever they come.
+        let coordinates = zone.centre.abs() + zone.extent();
+        let rounding = 1e-14 * (0..3).map(|axis| slope[axis].magnitude() * coordinates[axis]).sum::<f64>();
         let centred = value.range + axes + slack * either;
         Some(turned(Sure::new(centred.inflate(rounding), true)))
     }

@@ -110,9 +110,11 @@ impl<S: Scalar> Arithmetic for Slope<S> {
                 a.either(b, v, |x, y| by.select(x, y))
             }
             B::Mod => {
-                let turns = S::unary(UnaryOpcode::Floor, S::binary(B::Div, a.v, b.v));
-                let jump = turns.flat();
-                let slope = a.chain2(b, v, one, negative(turns));
+                // The remainder is a − |b|·steps.
+                let size = S::unary(UnaryOpcode::Abs, b.v);
+                let steps = S::unary(UnaryOpcode::Floor, S::binary(B::Div, a.v, size));
+                let jump = steps.flat();
+                let slope = a.chain2(b, v, one, b.v.select(negative(steps), steps));
                 // `flat` is 0 where nothing jumps.
                 slope.either(a, v, |d, _| sum(d, jump))
             }

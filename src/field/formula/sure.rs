@@ -56,6 +56,41 @@ fn tangent(a: Interval) -> Option<Interval> {
     (turn(a.lo() - margin) == turn(a.hi() + margin)).then(|| library(a.lo().tan(), a.hi().tan()))
 }
 
+/// A range of what is known not to be negative, or not to be positive: rounding outward does
+/// not step over 0, where roots and choices change.
+fn signed(range: Interval, nonneg: bool, nonpos: bool) -> Interval {
+    let lo = if nonneg { range.lo().max(0.0) } else { range.lo() };
+    let hi = if nonpos { range.hi().min(0.0) } else { range.hi() };
+    if lo <= hi { Interval::new(lo, hi) } else { range }
+}
+
+/// The range of a product or quotient of `a` and `b`.
+fn of_sign_of_product(range: Interval, a: Interval, b: Interval) -> Interval {
+    let same = a.lo() >= 0.0 && b.lo() >= 0.0 || a.hi() <= 0.0 && b.hi() <= 0.0;
+    let opposite = a.lo() >= 0.0 && b.hi() <= 0.0 || a.hi() <= 0.0 && b.lo() >= 0.0;
+    signed(range, same, opposite)
+}
+
+fn quotient(a: Interval, b: Interval) -> Interval {
+    // 0 has either sign as a divisor.
+    if b.contains(0.0) { Interval::ALL } else { of_sign_of_product(a / b, a, b) }
+}
+
+/// The remainder, from 0 up to `|b|`: within one step of the quotient it is `a − |b|·steps`.
+fn remainder(a: Sure, b: Sure) -> Interval {
+    let (r, size) = (a.range, b.range.abs());
+    let whole = Interval::new(0.0, size.hi());
+    let quotient = r / size;
+    // A quotient near a whole number may round to it.
+    let margin = 1e-15 * (1.0 + quotient.magnitude());
+    let steps = (quotient.lo() - margin).floor();
+    if !(a.sure && b.sure && steps.is_finite() && steps == (quotient.hi() + margin).floor()) {
+        return whole;
+    }
+    let exact = r - size * steps;
+    exact.inflate(1e-15 * (r.magnitude() + size.hi())).narrowed_by(whole)
+}
+
 impl Arithmetic for Sure {
     fn constant(c: f64) -> Sure {
         Sure { range: Interval::point(c), sure: !c.is_nan() }
@@ -67,7 +102,7 @@ impl Arithmetic for Sure {
         let (range, sure) = match op {
             U::Neg => (-r, sure),
             U::Abs => (r.abs(), sure),
-            U::Recip => (Interval::point(1.0) / r, sure),
+            U::Recip => (quotient(Interval::point(1.0), r), sure),
             U::Sqrt => (r.sqrt(), sure && r.lo() >= 0.0),
             U::Square => (r.square(), sure),
             U::Floor => (Interval::new(r.lo().floor(), r.hi().floor()), sure),
@@ -102,10 +137,10 @@ impl Arithmetic for Sure {
         let (r, s) = (a.range, b.range);
         let sure = a.sure && b.sure;
         let (range, sure) = match op {
-            B::Add => (r + s, sure),
-            B::Sub => (r - s, sure),
-            B::Mul => (r * s, sure),
-            B::Div => (r / s, sure),
+            B::Add => (signed(r + s, r.lo() >= 0.0 && s.lo() >= 0.0, r.hi() <= 0.0 && s.hi() <= 0.0), sure),
+            B::Sub => (signed(r - s, r.lo() >= s.hi(), r.hi() <= s.lo()), sure),
+            B::Mul => (of_sign_of_product(r * s, r, s), sure),
+            B::Div => (quotient(r, s), sure),
             B::Atan => (r.atan2(s), sure),
             B::Min => (r.min(s), sure),
             B::Max => (r.max(s), sure),
@@ -113,25 +148,7 @@ impl Arithmetic for Sure {
             B::Compare if r.hi() < s.lo() => (Interval::point(-1.0), sure),
             B::Compare if sure && r.width() == 0.0 && r == s => (Interval::point(0.0), sure),
             B::Compare => (Interval::new(-1.0, 1.0), sure),
-            B::Mod => {
-                let turns = Sure::unary(UnaryOpcode::Floor, Sure::new(r / s, sure));
-                let size = s.magnitude();
-                let whole = Interval::new(0.0, size);
-                let range = if turns.sure && turns.range.width() == 0.0 {
-                    // What rounding may put on the other side of a step is still in the whole.
-                    let exact = (r - s * turns.range).inflate(1e-15 * (r.magnitude() + size));
-                    exact.narrowed_by(whole)
-                } else {
-                    whole
-                };
-                // A quotient near a whole number may round to it.
-                let near_step = turns.range.width() == 0.0 && {
-                    let quotient = r / s;
-                    let margin = 1e-15 * (1.0 + quotient.magnitude());
-                    (quotient.lo() - margin).floor() != (quotient.hi() + margin).floor()
-                };
-                (if near_step { whole } else { range }, sure && b.excludes_zero())
-            }
+            B::Mod => (remainder(a, b), sure && b.excludes_zero()),
             B::And if a.excludes_zero() => (s, sure),
             B::And if a.is(0.0) => (r, true),
             B::And => (s.hull(Interval::point(0.0)), sure),

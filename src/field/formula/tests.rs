@@ -100,7 +100,8 @@ fn random_zone(random: &mut Random) -> Zone {
 
 fn point_in(random: &mut Random, zone: &Zone) -> [f64; 3] {
     zone.hull().map(|side| {
-        let t = random.pick(&[0.0, 1.0, 0.5, random.range(0.0, 1.0)]);
+        let any = random.range(0.0, 1.0);
+        let t = random.pick(&[0.0, 1.0, 0.5, any]);
         (side.lo() + t * side.width()).clamp(side.lo(), side.hi())
     })
 }
