@@ -336,3 +336,28 @@ fn no_input_leaks_nan() {
         }
     }
 }
+
+#[test]
+fn prospero_is_short_over_a_tile() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/prospero.vm");
+    let Ok(text) = std::fs::read_to_string(path) else {
+        println!("skipped: {path} is not there");
+        return;
+    };
+    let whole = Formula::from_vm(&text, Bounds::ALL).unwrap();
+    let mut random = Random(10);
+    let mut sums = [0; 4];
+    for _ in 0..40 {
+        let centre = DVec3::new(random.range(-0.9, 0.9), random.range(-0.9, 0.9), 0.0);
+        let mut part = whole.clone();
+        for (sum, half) in sums.iter_mut().zip([0.25, 0.0625, 0.015_625, 0.003_906_25]) {
+            let zone = Zone::of_bounds(&Bounds::from_center(centre, DVec3::new(half, half, 0.0)));
+            part = part.narrowed_to(&zone).unwrap_or(part);
+            *sum += part.len();
+            let p = point_in(&mut random, &zone);
+            assert_eq!(part.value(p), whole.value(p));
+        }
+    }
+    println!("operations left of {} over tiles of 1/4, 1/16 …: {:?}", whole.len(), sums.map(|sum| sum / 40));
+    assert!(sums[3] / 40 < 100);
+}
