@@ -57,6 +57,7 @@ mod jit {
 
     impl Native {
         pub(in super::super) fn new(worthwhile: bool) -> Native {
+            let worthwhile = worthwhile && runs_here();
             Native { worthwhile, chunks: AtomicU32::new(0), compiled: OnceLock::new() }
         }
 
@@ -85,6 +86,17 @@ mod jit {
                 }
             })
         }
+    }
+
+    /// Whether this processor has the instructions that fidget writes; fidget does not ask.
+    #[cfg(target_arch = "x86_64")]
+    fn runs_here() -> bool {
+        std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
+    }
+
+    #[cfg(not(target_arch = "x86_64"))]
+    fn runs_here() -> bool {
+        true
     }
 
     fn compile(code: &Code) -> Option<Compiled> {
