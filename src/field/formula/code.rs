@@ -226,7 +226,7 @@ impl Code {
         })
     }
 
-    /// Calls `put` with the value of every operation in turn; `get` gives those before.
+    /// The values of all operations, in order.
     pub(super) fn values<N: Arithmetic>(&self, p: [N; 3], all: &mut Vec<N>) {
         all.clear();
         all.reserve(self.ops.len());

@@ -8,16 +8,19 @@
 //!                       └── narrowed to a zone: the list without what min and max do not choose there
 //! ```
 //!
-//! The values of fidget are those of single precision; double precision here is a walk over the
-//! same operations, so doubtful signs are settled as for every other leaf. Ranges are
-//! interval arithmetic rounded outward, in double precision, and sound by construction: no
-//! inflation is needed. fidget's own intervals, in single precision rounded to nearest, are not used.
+//! fidget knows single precision only; double precision is a walk over the same operations,
+//! so that doubtful signs are settled as for every other leaf. Ranges are interval
+//! arithmetic in double precision, rounded outward: sound by construction, without an
+//! inflation. fidget's own intervals are of single precision, rounded to nearest, and are
+//! not used; nor is its virtual machine, which would need a tape of its own for every
+//! narrowed formula, while the list is run as it is.
 //!
-//! Limits: a formula is neither convex nor a distance, whatever it looks like, and its slope may
-//! be anything. What is undefined (the root of −1, 0/0) is outside.
+//! Limits: a formula is neither convex nor a distance, whatever it looks like, and its slope
+//! may be anything. What is undefined (the root of −1, 0/0) is outside.
 //!
-//! Source of the format and of narrowing by choices: M. J. Keeter, *Massively parallel rendering of complex
-//! closed-form implicit surfaces*, ACM Transactions on Graphics 39 (2020).
+//! Source of the format and of narrowing by choices: M. J. Keeter, *Massively parallel
+//! rendering of complex closed-form implicit surfaces*, ACM Transactions on Graphics 39
+//! (2020).
 
 mod arithmetic;
 mod bulk;
@@ -46,9 +49,9 @@ use crate::{Bounds, Interval};
 
 /// A solid given by a formula of x, y and z: a fidget [`Tree`], or the text of a `.vm` file.
 ///
-/// The sign is fidget's, **negative inside**; it is turned at the door, so the value of
-/// the solid is `−formula(x, y, z)`. The value is whatever the formula gives, not a distance; where it
-/// is undefined it is outside.
+/// The sign is fidget's, **negative inside**; it is turned at the door, so the value of the
+/// solid is `−formula(x, y, z)`. The value is whatever the formula gives, not a distance;
+/// where it is undefined is outside.
 ///
 /// | parameter | unit | range |
 /// |---|---|---|
@@ -59,11 +62,11 @@ use crate::{Bounds, Interval};
 /// that goes on, intersect it with a cuboid. A formula without z is a prism without ends:
 /// bounds infinite along z say so, and an intersection gives it ends.
 ///
-/// Cloning is cheap. Evaluation in bulk runs the operations over chunks of points, and as native code (by
-/// fidget, feature `jit`) once some thousands of points were asked for, unless the formula
-/// calls for library functions (sine, exponential …), which native code only slows down.
-/// Over a small region `min` and `max` choose one operand for good, and only what is chosen is run:
-/// formulas of thousands of operations are meshed and rendered by some dozens at a time.
+/// Cloning is cheap. In bulk the operations are run over chunks of points; after some
+/// thousands of points as native code (by fidget, feature `jit`), unless the formula calls
+/// for library functions (sine, exponential …), where native code is slower. Over a small
+/// region `min` and `max` choose one operand for good, and only what is chosen is run: of
+/// formulas of thousands of operations some dozens are left.
 ///
 /// ```
 /// use fidget::context::Tree;
@@ -100,10 +103,14 @@ impl Formula {
 
     /// The solid where the formula of a `.vm` text is negative. `bounds` must hold it.
     ///
-    /// A line is `name operation operands…`, the last line is the value, and lines that begin with
-    /// `#` are comments. Operations are `var-x`, `var-y`, `var-z`, `const`; `abs`, `acos`, `asin`, `atan`,
-    /// `ceil`, `cos`, `exp`, `floor`, `ln`, `neg`, `not`, `rand`, `recip`, `round`, `sin`, `sqrt`, `square`, `tan` of
-    /// one operand; `add`, `and`, `atan2`, `compare`, `div`, `max`, `min`, `mix`, `mod`, `mul`, `or`, `sub` of two.
+    /// A line is `name operation operands…`, the last line is the value, and lines that begin
+    /// with `#` are comments. Operations are
+    ///
+    /// * `var-x`, `var-y`, `var-z`, and `const` with a number;
+    /// * of one operand `abs`, `acos`, `asin`, `atan`, `ceil`, `cos`, `exp`, `floor`, `ln`,
+    ///   `neg`, `not`, `rand`, `recip`, `round`, `sin`, `sqrt`, `square`, `tan`;
+    /// * of two `add`, `and`, `atan2`, `compare`, `div`, `max`, `min`, `mix`, `mod`, `mul`,
+    ///   `or`, `sub`.
     ///
     /// # Errors
     /// The first line that is not understood: its number, its text, what is expected and what was

@@ -2,7 +2,8 @@
 //!
 //! One walk in interval arithmetic gives the range and, at every `min` and `max`, whether one
 //! operand is the result throughout. Narrowing takes the other out, with all that only it
-//! needs. An operand that may be undefined is not taken out: it would make the result undefined.
+//! needs. An operand that may be undefined is not taken out, as it makes the result
+//! undefined.
 
 use std::cell::RefCell;
 

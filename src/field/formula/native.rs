@@ -2,8 +2,8 @@
 //!
 //! To compile costs about as much as to interpret some thousands of points, so a formula is
 //! interpreted until it was asked for that many. Most of the formulas that narrowing makes
-//! never are. Every piece of native code is a mapping of memory, of which a process has some ten thousands:
-//! only so many are alive at a time.
+//! never are. Every piece of native code is a mapping of memory, of which a process has some
+//! ten thousands: only so many are alive at a time.
 
 #[cfg(feature = "jit")]
 pub(super) use jit::Native;
