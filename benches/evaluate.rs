@@ -9,6 +9,8 @@
 //! fidget is given each model in two forms: lowered by `Solid::to_fidget`, with its guards, and,
 //! for M1 to M5, written out with as few operations as its instruction set allows. The faster
 //! counts.
+//!
+//! Formulas as leaves follow; `cargo bench --bench evaluate -- formulas` runs them alone.
 
 #[path = "../tests/it/models.rs"]
 mod models;
@@ -22,7 +24,7 @@ use fidget::shape::{EzShape, Shape};
 use fidget::types::Grad;
 use fidget::vm::VmFunction;
 use glam::DVec3;
-use rvachev::{Bounds, Evaluator, Gradients, Program, Tape};
+use rvachev::{Bounds, Evaluator, Formula, Gradients, Program, Solid, Tape};
 
 use models::Model;
 
@@ -65,6 +67,7 @@ fn program<'a>(name: &'static str, program: &Program, cube: &Bounds, points: &'a
 fn fidget_values<'a, F: MathFunction + Function + 'a>(
     name: &'static str,
     tree: &Tree,
+    slice: usize,
     points: &'a Points,
 ) -> Contestant<'a>
 where
@@ -76,7 +79,7 @@ where
     let mut eval = Shape::<F>::new_float_slice_eval();
     let [x, y, z] = &points.single;
     let run = move || {
-        for ((x, y), z) in x.chunks(SLICE).zip(y.chunks(SLICE)).zip(z.chunks(SLICE)) {
+        for ((x, y), z) in x.chunks(slice).zip(y.chunks(slice)).zip(z.chunks(slice)) {
             black_box(eval.eval(&tape, x, y, z).expect("the model has no variables"));
         }
     };
@@ -182,6 +185,9 @@ fn superellipsoid(a: DVec3, [e1, e2]: [f64; 2], to_local: &glam::DAffine3, size:
 }
 
 fn main() {
+    if std::env::args().any(|argument| argument == "formulas") {
+        return formulas();
+    }
     println!("Mpoint/s, one thread, medians of {ROUNDS} rounds; the ratios are to the faster of fidget's two\n");
     println!("model    field  surface  fidget VM  fidget JIT   field ratio  surface ratio");
     for model in models::all() {
@@ -195,9 +201,9 @@ fn main() {
             program("surface", &surface, &model.cube(), &points),
         ];
         for tree in [Some(lowered), lean(&model)].into_iter().flatten() {
-            contestants.push(fidget_values::<VmFunction>("VM", &tree, &points));
+            contestants.push(fidget_values::<VmFunction>("VM", &tree, SLICE, &points));
             #[cfg(feature = "jit")]
-            contestants.push(fidget_values::<fidget::jit::JitFunction>("JIT", &tree, &points));
+            contestants.push(fidget_values::<fidget::jit::JitFunction>("JIT", &tree, SLICE, &points));
         }
         let speeds = race(points.len(), &mut contestants);
         let (vm, jit) = (best(&contestants, &speeds, "VM"), best(&contestants, &speeds, "JIT"));
@@ -214,6 +220,7 @@ fn main() {
         );
     }
     gradients();
+    formulas();
 }
 
 fn best(contestants: &[Contestant<'_>], speeds: &[f64], name: &str) -> f64 {
@@ -244,5 +251,92 @@ fn gradients() {
         "\nvalue and gradient on M1: ours {:.1}, fidget VM {vm:.2}, JIT {jit:.2}; ratio {:.1}",
         speeds[0],
         speeds[0] / vm.max(jit)
+    );
+}
+
+/// A text that calls for library functions at every point: the gyroid.
+const GYROID: &str = "x var-x\ny var-y\nz var-z\nsx sin x\nsy sin y\nsz sin z\ncx cos x\ncy cos y\ncz cos z\n\
+                      a mul sx cy\nb mul sy cz\nc mul sz cx\nab add a b\nout add ab c\n";
+
+/// Slices that fidget is given formulas in: as long as our chunks, and longer.
+const SLICES: [usize; 3] = [256, 512, 4096];
+
+/// Formulas as leaves beside fidget alone, whole (not narrowed).
+fn formulas() {
+    println!("\nformula         ours  interpreted   VM 256  best VM  JIT 256  best JIT   ratio at 256  ratio to best");
+    let read = |name: &str| {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(name);
+        let text = std::fs::read_to_string(&path).ok();
+        if text.is_none() {
+            println!("skipped: {} is not there", path.display());
+        }
+        text
+    };
+    for (name, text, half) in [
+        ("colonnade.vm", read("colonnade.vm"), 1.0),
+        ("prospero.vm", read("prospero.vm"), 1.0),
+        ("gyroid", Some(GYROID.to_string()), 4.0),
+    ] {
+        let Some(text) = text else { continue };
+        let points = Points::random(if name == "prospero.vm" { 4096 } else { 16384 }, half);
+        let formula = Formula::from_vm(&text, Bounds::ALL).expect("a sound file");
+        let tree = formula.tree();
+        let ours = Solid::from(formula).field_program().expect("the formula is valid");
+        let cube = Bounds::new(DVec3::splat(-half), DVec3::splat(half));
+        let mut contestants = vec![program("ours", &ours, &cube, &points)];
+        let slow = Solid::from(interpreted(&text)).field_program().expect("the formula is valid");
+        contestants.push(program("interpreted", &slow, &cube, &points));
+        for (i, slice) in SLICES.into_iter().enumerate() {
+            contestants.push(fidget_values::<VmFunction>(["VM 256", "VM", "VM"][i], &tree, slice, &points));
+            #[cfg(feature = "jit")]
+            contestants.push(fidget_values::<fidget::jit::JitFunction>(
+                ["JIT 256", "JIT", "JIT"][i],
+                &tree,
+                slice,
+                &points,
+            ));
+        }
+        let speeds = race(points.len(), &mut contestants);
+        let best = |name: &str| best(&contestants, &speeds, name);
+        let (vm, jit) = (best("VM 256"), best("JIT 256"));
+        let (best_vm, best_jit) = (best("VM").max(vm), best("JIT").max(jit));
+        println!(
+            "{name:12} {:7.2} {:12.2} {vm:8.2} {best_vm:8.2} {jit:8.2} {best_jit:9.2} {:14.2} {:14.2}",
+            speeds[0],
+            speeds[1],
+            speeds[0] / vm.max(jit),
+            speeds[0] / best_vm.max(best_jit)
+        );
+    }
+    for name in ["colonnade.vm", "prospero.vm"] {
+        if let Some(text) = read(name) {
+            walks(name, &text);
+        }
+    }
+}
+
+/// The formula with a sine that never decides: it is not compiled to native code.
+fn interpreted(text: &str) -> Formula {
+    let root = text.lines().rev().find_map(|line| line.split_whitespace().next()).expect("a sound file");
+    let tail = format!("\n.x var-x\n.sin sin .x\n.far const 1e6\n.low sub .sin .far\n.out max {root} .low\n");
+    Formula::from_vm(&(text.to_string() + &tail), Bounds::ALL).expect("a sound file")
+}
+
+/// What a range over a small box costs: a walk over all operations in interval arithmetic.
+fn walks(name: &str, text: &str) {
+    let formula = Formula::from_vm(text, Bounds::ALL).expect("a sound file");
+    let operations = formula.len();
+    let program = Solid::from(formula).field_program().expect("the formula is valid");
+    let corners = Points::random(256, 1.0);
+    let start = Instant::now();
+    for i in 0..256 {
+        let corner = DVec3::from_array([0, 1, 2].map(|axis| f64::from(corners.single[axis][i])));
+        black_box(program.range(&Bounds::new(corner, corner + DVec3::splat(0.05))));
+    }
+    let time = start.elapsed().as_secs_f64() / 256.0;
+    println!(
+        "range of {name} over a small box: {:.1} us, {:.2} ns an operation",
+        1e6 * time,
+        1e9 * time / operations as f64
     );
 }

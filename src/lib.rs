@@ -148,10 +148,10 @@ mod space;
 pub use bounds::Bounds;
 pub use eval::{Evaluator, Gradients, Hit, Owner, Program, Region, Tape};
 pub use field::{
-    Blend, COORDINATE_LIMIT, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Field, GeneralisedSuperquadric, Gielis,
-    Grading, HalfSpace, Kernel, Law, LawTable, LinearLaw, MinimalSurface, NetworkLattice, ParamError, Prism, Pyramid,
-    RFunction, Radius, RoundedCuboid, SheetLattice, SineWave, Slab, SmoothStep, Sphere, Superellipsoid,
-    Superhyperboloid, Supershape, Supertoroid, Torus, Turns, VALUE_LIMIT, Wedge,
+    Blend, COORDINATE_LIMIT, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Field, Formula, FormulaError,
+    GeneralisedSuperquadric, Gielis, Grading, HalfSpace, Kernel, Law, LawTable, LinearLaw, MinimalSurface,
+    NetworkLattice, ParamError, Prism, Pyramid, RFunction, Radius, RoundedCuboid, SheetLattice, SineWave, Slab,
+    SmoothStep, Sphere, Superellipsoid, Superhyperboloid, Supershape, Supertoroid, Torus, Turns, VALUE_LIMIT, Wedge,
 };
 pub use geom::{Camera, CameraError, Image, ImageError, Mesh, MeshError, Projection, Rays};
 pub use io::{SaveError, write_png, write_stl};

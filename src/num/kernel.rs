@@ -172,6 +172,21 @@ fn sweep<L: Lanes, const I: usize, const O: usize, F: Formula<I, O>>(
     }
 }
 
+/// Work on slices by loops that the compiler turns into vectors; `run` must be inlined.
+pub(crate) trait Task {
+    fn run(self);
+}
+
+/// Runs a task compiled for the machine's SIMD level.
+pub(crate) fn dispatched(task: impl Task) {
+    on_level!(simd => dispatched_on(simd, task))
+}
+
+#[simd]
+fn dispatched_on<S: Simd, T: Task>(_simd: S, task: T) {
+    task.run();
+}
+
 /// Folds `next` into `all`, slices of one length, a multiple of [`CHUNK`].
 pub(crate) fn fold<E: Element, const N: usize>(formula: &impl Fold<N>, all: [&mut [E]; N], next: [&[E]; N]) {
     on_level!(simd => fold_on(simd, formula, all, next))

@@ -47,6 +47,11 @@ impl Symbol<'_> {
         self.arena.0.borrow()[self.index].clone()
     }
 
+    /// A symbol for `tree`, in the same arena.
+    pub(crate) fn of_tree(self, tree: Tree) -> Self {
+        self.make(tree)
+    }
+
     /// A symbol for `tree` beside this one.
     fn make(self, tree: Tree) -> Self {
         self.arena.symbol(tree)

@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
+use fidget::context::Tree;
 use glam::DVec3;
 
 use super::{Node, Solid};
 use crate::{
-    Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Field, GeneralisedSuperquadric, HalfSpace, NetworkLattice, Prism,
-    Pyramid, RoundedCuboid, SheetLattice, Slab, Sphere, Superellipsoid, Superhyperboloid, Supershape, Supertoroid,
-    Torus, Wedge,
+    Bounds, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Field, Formula, GeneralisedSuperquadric, HalfSpace,
+    NetworkLattice, Prism, Pyramid, RoundedCuboid, SheetLattice, Slab, Sphere, Superellipsoid, Superhyperboloid,
+    Supershape, Supertoroid, Torus, Wedge,
 };
 
 impl Solid {
@@ -109,6 +110,20 @@ impl Solid {
     #[must_use]
     pub fn supertoroid(semi_axes: impl Into<DVec3>, ring: f64, e1: f64, e2: f64) -> Solid {
         Supertoroid::new(semi_axes, ring, e1, e2).into()
+    }
+}
+
+impl Solid {
+    /// The solid where `tree` is negative (fidget's sign); `bounds` must hold it. See [`Formula`].
+    #[must_use]
+    pub fn formula(tree: &Tree, bounds: Bounds) -> Solid {
+        Formula::new(tree, bounds).into()
+    }
+}
+
+impl From<Formula> for Solid {
+    fn from(formula: Formula) -> Solid {
+        Solid::from_node(Node::Leaf(Arc::new(formula)))
     }
 }
 

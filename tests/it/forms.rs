@@ -1,6 +1,7 @@
 //! One formula, all its forms: every leaf, map and join gives the same value as f64, lanes of
 //! f32 and f64, fidget tree, and the gradients and ranges that belong to it.
 
+use fidget::context::Tree;
 use fidget::shape::EzShape;
 use fidget::vm::VmShape;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
@@ -30,12 +31,21 @@ fn case(name: impl Into<String>, solid: impl Into<Solid>, size: f64) -> Case {
     Case { name: name.into(), solid: solid.into(), size, condition: 1.0, deformed: false }
 }
 
+/// A torus as a formula for fidget.
+fn ring() -> Solid {
+    let (x, y, z) = Tree::axes();
+    let across = (x.square() + y.square()).sqrt() - 0.6;
+    let tree = (across.square() + z.square()).sqrt() - 0.25;
+    Solid::formula(&tree, Bounds::from_center(DVec3::ZERO, DVec3::new(0.85, 0.85, 0.25)))
+}
+
 fn leaves() -> Vec<Case> {
     let mut cases = vec![
         case("sphere", Sphere { radius: 0.7 }, 0.7),
         case("box", Cuboid { size: DVec3::new(1.0, 0.5, 2.0) }, 1.2),
         case("cylinder", Cylinder { radius: 0.4, height: 2.0 }, 1.1),
         case("half-space", HalfSpace { normal: DVec3::new(0.3, -0.5, 0.8), offset: 0.25 }, 1.0),
+        case("formula", ring(), 0.9),
         case("half-space along an axis", HalfSpace { normal: DVec3::Y, offset: -0.25 }, 1.0),
     ];
     cases.extend(primitives().into_iter().map(|(name, solid, size)| case(name, solid, size)));

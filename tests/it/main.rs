@@ -6,6 +6,7 @@ mod building;
 mod deformation;
 mod errors;
 mod forms;
+mod formula;
 mod lattices;
 mod laws;
 mod maps;

@@ -1,0 +1,173 @@
+//! Ranges over zones, and the formula that is left of one there.
+//!
+//! One walk in interval arithmetic gives the range and, at every `min` and `max`, whether one
+//! operand is the result throughout. Narrowing takes the other out, with all that only it
+//! needs. An operand that may be undefined is not taken out, as it makes the result
+//! undefined.
+
+use std::cell::RefCell;
+
+use fidget::context::{BinaryOpcode, UnaryOpcode};
+use glam::DVec3;
+
+use super::Formula;
+use super::arithmetic::Arithmetic;
+use super::code::{Code, Op, live};
+use super::slope::Slope;
+use super::sure::Sure;
+use crate::field::{VALUE_LIMIT, Zone};
+use crate::{Dual, Interval};
+
+/// The last walk of a thread. The range over a zone is asked for before the narrowed formula
+/// is, and the walk serves both.
+struct Walk {
+    number: u64,
+    hull: [Interval; 3],
+    ranges: Vec<Sure>,
+}
+
+thread_local! {
+    static WALK: RefCell<Walk> =
+        const { RefCell::new(Walk { number: u64::MAX, hull: [Interval::ALL; 3], ranges: Vec::new() }) };
+}
+
+/// Calls `then` with the ranges of all operations over a box.
+fn walked<T>(code: &Code, hull: [Interval; 3], then: impl FnOnce(&[Sure]) -> T) -> T {
+    WALK.with_borrow_mut(|walk| {
+        if walk.number != code.number || walk.hull != hull {
+            // A coordinate is a number wherever it is.
+            code.values(hull.map(|range| Sure { range, sure: true }), &mut walk.ranges);
+            walk.number = code.number;
+            walk.hull = hull;
+        }
+        then(&walk.ranges)
+    })
+}
+
+/// Formulas up to this length are worth the price of gradients for a tighter range.
+const SHORT: usize = 256;
+
+/// A narrowed formula must leave at most this part of the operations, in eighths.
+const EIGHTHS_LEFT: usize = 6;
+
+/// The value of the solid from that of the formula.
+pub(super) fn turned(value: Sure) -> Interval {
+    let range = -value.range;
+    let held = Interval::new(range.lo().clamp(-VALUE_LIMIT, VALUE_LIMIT), range.hi().clamp(-VALUE_LIMIT, VALUE_LIMIT));
+    if value.sure { held } else { held.hull(Interval::point(-VALUE_LIMIT)) }
+}
+
+impl Formula {
+    pub(super) fn range_over(&self, zone: &Zone) -> Interval {
+        let code = &self.0.code;
+        let whole = walked(code, zone.hull(), |ranges| ranges.last().copied());
+        let Some(whole) = whole else { return Interval::ALL };
+        let range = turned(whole);
+        let decided = range.lo() > 0.0 || range.hi() < 0.0;
+        if decided || !whole.sure || code.ops.len() > SHORT || !zone.is_finite() {
+            return range;
+        }
+        match self.centred(zone) {
+            Some(centred) => range.narrowed_by(centred),
+            None => range,
+        }
+    }
+
+    /// The mean-value form: the value at the centre, and the slopes times the way from there.
+    fn centred(&self, zone: &Zone) -> Option<Interval> {
+        let plan = self.0.code.plan();
+        let at = zone.centre.to_array().map(|c| Sure { range: Interval::point(c), sure: true });
+        let value = plan.value(at, &mut Vec::new());
+        let slopes = plan.value(variables(zone.hull()), &mut Vec::new());
+        if !(value.sure && slopes.v.sure && slopes.d.iter().all(|d| d.sure)) {
+            return None;
+        }
+        let slope = slopes.d.map(|d| d.range);
+        let way = |direction: DVec3| {
+            let [x, y, z] = direction.to_array();
+            slope[0] * x + slope[1] * y + slope[2] * z
+        };
+        let either = Interval::new(-1.0, 1.0);
+        let slack = Interval::point(
+            slope[0].magnitude() * zone.slack.x
+                + slope[1].magnitude() * zone.slack.y
+                + slope[2].magnitude() * zone.slack.z,
+        );
+        let axes = way(zone.axes.x_axis) * either + way(zone.axes.y_axis) * either + way(zone.axes.z_axis) * either;
+        // Points of the zone are rounded to it from wherever they come.
+        let coordinates = zone.centre.abs() + zone.extent();
+        let rounding = 1e-14 * (0..3).map(|axis| slope[axis].magnitude() * coordinates[axis]).sum::<f64>();
+        let centred = value.range + axes + slack * either;
+        Some(turned(Sure::new(centred.inflate(rounding), true)))
+    }
+
+    pub(super) fn narrowed_to(&self, zone: &Zone) -> Option<Formula> {
+        if !zone.is_finite() {
+            return None;
+        }
+        let code = &self.0.code;
+        let hull = zone.hull();
+        let ops = walked(code, hull, |ranges| narrowed(&code.ops, ranges))?;
+        let region = [0, 1, 2].map(|axis| self.0.region[axis].narrowed_by(hull[axis]));
+        Some(Formula::of_code(Code::new(ops, code.flaw), self.0.bounds, region))
+    }
+
+    pub(super) fn dual_range_of(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
+        let point = p.map(|c| {
+            let sure = |range| Sure { range, sure: true };
+            Slope { v: sure(c.value()), d: c.gradient().map(sure) }
+        });
+        let value = self.0.code.plan().value(point, &mut Vec::new());
+        let range = turned(value.v);
+        let slopes = value.d.map(|d| if value.v.sure && d.sure { -d.range } else { Interval::ALL });
+        Dual::new(range, slopes)
+    }
+}
+
+/// The point of a box, as variables to differentiate by.
+fn variables(hull: [Interval; 3]) -> [Slope<Sure>; 3] {
+    std::array::from_fn(|axis| Slope {
+        v: Sure { range: hull[axis], sure: true },
+        d: std::array::from_fn(|i| Sure::constant(f64::from(u8::from(i == axis)))),
+    })
+}
+
+/// The operations without what is not chosen, if that saves enough.
+fn narrowed(ops: &[Op], ranges: &[Sure]) -> Option<Vec<Op>> {
+    let mut alias: Vec<u32> = Vec::with_capacity(ops.len());
+    let mut chosen = 0;
+    for (at, op) in ops.iter().enumerate() {
+        let kept = choice(op, ranges);
+        chosen += usize::from(kept.is_some());
+        alias.push(match kept {
+            Some(operand) => alias[operand as usize],
+            None => at as u32,
+        });
+    }
+    if chosen == 0 {
+        return None;
+    }
+    let left = live(ops, (ops.len() - 1) as u32, |at| alias[at as usize]);
+    (8 * left.len() <= EIGHTHS_LEFT * ops.len()).then_some(left)
+}
+
+/// The operand that the operation is equal to throughout.
+fn choice(op: &Op, ranges: &[Sure]) -> Option<u32> {
+    match *op {
+        Op::Binary(op, a, b) => {
+            let (x, y) = (ranges[a as usize], ranges[b as usize]);
+            match op {
+                BinaryOpcode::Min if y.sure && x.range.hi() <= y.range.lo() => Some(a),
+                BinaryOpcode::Min if x.sure && y.range.hi() <= x.range.lo() => Some(b),
+                BinaryOpcode::Max if y.sure && x.range.lo() >= y.range.hi() => Some(a),
+                BinaryOpcode::Max if x.sure && y.range.lo() >= x.range.hi() => Some(b),
+                BinaryOpcode::And | BinaryOpcode::Or if x.excludes_zero() => {
+                    Some(if op == BinaryOpcode::And { b } else { a })
+                }
+                _ => None,
+            }
+        }
+        Op::Unary(UnaryOpcode::Abs, a) if ranges[a as usize].range.lo() >= 0.0 => Some(a),
+        _ => None,
+    }
+}
