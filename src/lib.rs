@@ -142,8 +142,8 @@ mod space;
 pub use bounds::Bounds;
 pub use eval::{Evaluator, Gradients, Hit, Owner, Program, Region, Tape};
 pub use field::{
-    COORDINATE_LIMIT, Cuboid, Cylinder, Field, Gielis, HalfSpace, Kernel, ParamError, RFunction, Radius, Sphere,
-    Superellipsoid, Supershape, VALUE_LIMIT,
+    COORDINATE_LIMIT, Circle, Cuboid, Cylinder, Field, Gielis, HalfSpace, Kernel, ParamError, Polygon, RFunction, Radius,
+    Rectangle, RegularPolygon, Sphere, Superellipse, Superellipsoid, Superpolygon, Supershape, VALUE_LIMIT,
 };
 pub use geom::{Camera, CameraError, Image, ImageError, Mesh, MeshError, Projection, Rays};
 pub use io::{SaveError, write_png, write_stl};
@@ -151,4 +151,5 @@ pub use mesh::{CellSize, Lattice, LatticeError, MeshReport, MeshSettings, Meshin
 pub use num::{Dual, Interval, Monotone, Norm, Real};
 pub use render::{Background, RenderError, RenderSettings};
 pub use run::{CancelToken, Cancelled, Progress, Run};
-pub use solid::{Solid, SolidError};
+pub(crate) use solid::Blend;
+pub use solid::{Caps, Extrusion, Helix, PlaneBounds, Profile, Solid, SolidError};

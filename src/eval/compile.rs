@@ -123,7 +123,7 @@ impl Code {
 
     /// Joins many operands: at once if the order does not matter, else as a balanced tree.
     fn join_all(&mut self, op: Op, rule: Rule, frame: u32, operands: &[Operand]) -> Operand {
-        if matches!(rule, Rule::MinMax | Rule::Associative(_)) {
+        if matches!(rule, Rule::MinMax | Rule::Associative(_) | Rule::Distance) {
             return self.join(op, rule, frame, operands);
         }
         self.balanced(operands, |code, pair| code.join(op, rule, frame, pair))

@@ -28,7 +28,7 @@ const SMALLEST_LENGTH: f64 = 1e-9;
 const LARGEST_LENGTH: f64 = 1e9;
 
 /// A length: positive, neither NaN nor extreme.
-pub(super) fn length(parameter: &str, value: f64) -> Result<(), ParamError> {
+pub(crate) fn length(parameter: &str, value: f64) -> Result<(), ParamError> {
     within(parameter, value, SMALLEST_LENGTH, LARGEST_LENGTH)
 }
 
@@ -41,7 +41,7 @@ pub(super) fn lengths(parameter: &str, value: glam::DVec3) -> Result<(), ParamEr
 }
 
 /// A number in `[lo, hi]`.
-pub(super) fn within(parameter: &str, value: f64, lo: f64, hi: f64) -> Result<(), ParamError> {
+pub(crate) fn within(parameter: &str, value: f64, lo: f64, hi: f64) -> Result<(), ParamError> {
     if value >= lo && value <= hi {
         Ok(())
     } else {

@@ -5,7 +5,7 @@
 //! deformation implements `Warp`. Both are erased (`AnyField`, `AnyWarp`) to the evaluations
 //! that the engine runs: point, gradient, range, lanes, expression tree.
 
-mod check;
+pub(crate) mod check;
 mod cuboid;
 mod cylinder;
 mod deform;
@@ -13,10 +13,12 @@ mod erased;
 mod gielis;
 mod half_space;
 mod leaf;
+mod profile;
 mod rfunction;
 mod sphere;
 mod superellipsoid;
 mod supershape;
+mod sweep;
 mod zone;
 
 pub use check::ParamError;
@@ -27,11 +29,13 @@ pub(crate) use erased::{AnyField, Chunk, Placement, smallest_stretch};
 pub use gielis::{Gielis, Radius};
 pub use half_space::HalfSpace;
 pub use leaf::{Field, Kernel};
+pub use profile::{Circle, Polygon, Rectangle, RegularPolygon, Superellipse, Superpolygon};
 pub use rfunction::RFunction;
 pub(crate) use rfunction::{Rule, saturate};
 pub use sphere::Sphere;
 pub use superellipsoid::Superellipsoid;
 pub use supershape::Supershape;
+pub(crate) use sweep::{HelixWarp, Revolution, Slab, Turn, Wedge};
 pub(crate) use zone::Zone;
 
 /// Coordinates beyond this many length units are evaluated as if they lay there, so that no

@@ -111,6 +111,7 @@ fn condition_of(rule: RFunction) -> f64 {
         RFunction::Zero { m } => 3.41 * f64::from(m + 1),
         RFunction::P(p) => 2.0 + 2f64.powf(1.0 / p),
         RFunction::Associative(p) => 2f64.powf(1.0 / p),
+        RFunction::Distance => 1.5,
     }
 }
 
