@@ -8,6 +8,7 @@ mod laws;
 mod mesh;
 mod models;
 mod narrow;
+mod profile;
 mod queries;
 mod rfunction;
 mod scale;

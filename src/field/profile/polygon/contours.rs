@@ -190,9 +190,5 @@ fn anticlockwise(points: &[DVec2]) -> bool {
 fn chain(points: &[DVec2], reversed: bool, edges: &mut Vec<Edge>) {
     let n = points.len();
     let at = |i: usize| if reversed { points[(2 * n - 1 - i % n) % n] } else { points[i % n] };
-    let convex: Vec<bool> = (0..n).map(|i| turn(at(i + n - 1), at(i), at(i + 1)) > 0.0).collect();
-    edges.extend((0..n).map(|i| {
-        let corners = [at(i + n - 1), at(i), at(i + 1), at(i + 2)];
-        Edge::new(corners, [convex[i], convex[(i + 1) % n]])
-    }));
+    edges.extend((0..n).map(|i| Edge::new(at(i), at(i + 1))));
 }

@@ -4,8 +4,8 @@
 //!     f = ± distance to the nearest edge, + inside
 //! ```
 //!
-//! The nearest edge is found through a hierarchy of boxes, and by it the sign (see `edge`).
-//! In a small region few edges can be nearest: there the polygon is narrowed to a leaf of
+//! The nearest edge is found through a hierarchy of boxes, and so are the edges that a ray
+//! crosses, whose number gives the sign. In a small region few edges can be nearest: there the polygon is narrowed to a leaf of
 //! these alone, which runs on lanes.
 
 mod contours;
@@ -24,7 +24,7 @@ use crate::num::kernel::Element;
 use crate::num::symbol::Symbol;
 use crate::{Bounds, Dual, Interval, Real};
 use edge::Edge;
-use near::NearEdges;
+use near::{NearEdges, Reference};
 use patch::Patch;
 use tree::Tree;
 
@@ -61,6 +61,8 @@ struct Shape {
     tree: Tree,
     min: DVec2,
     max: DVec2,
+    /// All edges as a list, which lanes run, if they are few.
+    list: Option<NearEdges>,
     error: Option<ParamError>,
 }
 
@@ -99,7 +101,11 @@ impl Polygon {
             min = min.min(edge.start);
             max = max.max(edge.start);
         }
-        Polygon(Arc::new(Shape { contours: contours.len(), edges, tree, min, max, error }))
+        let mut shape = Shape { contours: contours.len(), edges, tree, min, max, list: None, error };
+        if (1..=FEW_EDGES).contains(&shape.edges.len()) {
+            shape.list = Some(NearEdges::new(&shape.edges, Reference::Infinity, shape.reach()));
+        }
+        Polygon(Arc::new(shape))
     }
 
     /// The number of edges; 0 if there is something wrong with the contours.
@@ -145,7 +151,17 @@ impl Shape {
 
     /// The nearest edge and the signed distance to it.
     fn nearest(&self, p: DVec2, guess: usize) -> (usize, f64) {
-        self.tree.nearest(&self.edges, p, guess).unwrap_or((0, -VALUE_LIMIT))
+        let (edge, distance) = self.tree.nearest(&self.edges, p, guess).unwrap_or((0, VALUE_LIMIT));
+        let mut inside = false;
+        self.tree.meeting(p, DVec2::new(f64::INFINITY, p.y), |i| {
+            inside ^= self.edges[i].is_crossed_from(p);
+            true
+        });
+        (edge, if inside { distance } else { -distance })
+    }
+
+    fn value(&self, p: DVec2) -> f64 {
+        self.nearest(p, 0).1
     }
 
     /// The edges that can be nearest in the patch or within `margin` of it; `None` if they are
@@ -164,8 +180,8 @@ impl Shape {
     }
 
     fn over(&self, patch: Option<Patch>) -> Interval {
-        let Some(patch) = patch else { return Interval::ALL };
-        let (_, value) = self.nearest(patch.centre, 0);
+        let Some(patch) = patch.filter(|_| !self.edges.is_empty()) else { return Interval::ALL };
+        let value = self.value(patch.centre);
         let rounding = 1e-14 * (self.reach() + patch.centre.abs().max_element() + patch.radius);
         let by_slope = Interval::around(value, patch.radius + rounding);
         if by_slope.lo() > 0.0 || by_slope.hi() < 0.0 {
@@ -205,8 +221,15 @@ impl Shape {
         });
     }
 
-    fn slope<R: Real>(&self, edge: usize, [x, y, _]: [R; 3]) -> R {
-        self.edges.get(edge).map_or_else(|| x.lift(-VALUE_LIMIT), |edge| edge.signed(x, y))
+    /// The signed distance by the nearest edge and its slopes; the edge found is the next guess.
+    fn dual(&self, [x, y, _]: [Dual<f64>; 3], guess: &mut usize) -> Dual<f64> {
+        let (number, value) = self.nearest(DVec2::new(x.value(), y.value()), *guess);
+        *guess = number;
+        match self.edges.get(number) {
+            Some(edge) if value >= 0.0 => edge.distances(x, y).0,
+            Some(edge) => -edge.distances(x, y).0,
+            None => x.lift(-VALUE_LIMIT),
+        }
     }
 }
 
@@ -240,12 +263,11 @@ impl AnyField for Polygon {
     }
 
     fn value(&self, [x, y, _]: [f64; 3]) -> f64 {
-        self.0.nearest(DVec2::new(x, y), 0).1
+        self.0.value(DVec2::new(x, y))
     }
 
     fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64> {
-        let (edge, _) = self.0.nearest(DVec2::new(p[0].value(), p[1].value()), 0);
-        self.0.slope(edge, p)
+        self.0.dual(p, &mut 0)
     }
 
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
@@ -263,41 +285,40 @@ impl AnyField for Polygon {
     fn narrowed(&self, zone: &Zone) -> Option<Arc<dyn AnyField>> {
         let patch = Patch::of_zone(zone)?;
         let margin = near::margin(&patch, self.0.reach());
-        let (_, value) = self.0.nearest(patch.centre, 0);
-        let candidates = self.0.candidates(&patch, value, margin)?;
+        let candidates = self.0.candidates(&patch, self.0.value(patch.centre), margin)?;
         let edges = near::nearest_over(&patch, candidates.into_iter(), margin);
-        (!edges.is_empty() && edges.len() <= FEW_EDGES)
-            .then(|| Arc::new(NearEdges::new(edges, self.0.reach())) as Arc<dyn AnyField>)
+        if edges.is_empty() || edges.len() > FEW_EDGES || edges.len() == self.0.edges.len() {
+            return None;
+        }
+        let leaf = NearEdges::over_patch(&patch, &edges, self.0.reach(), |p| self.0.value(p))?;
+        Some(Arc::new(leaf))
     }
 
-    fn symbol<'a>(&self, [x, y, _]: [Symbol<'a>; 3]) -> Symbol<'a> {
-        // A balanced tree: fidget's own walks go as deep as it is.
-        let mut level: Vec<Symbol<'a>> = self.0.edges.iter().map(|edge| edge.signed(x, y)).collect();
-        while level.len() > 1 {
-            let nearer = |pair: &[Symbol<'a>]| match *pair {
-                [a, b] => (b.abs() - a.abs()).select(a, b),
-                _ => pair[0],
-            };
-            level = level.chunks(2).map(nearer).collect();
-        }
-        level.pop().unwrap_or_else(|| x.lift(-VALUE_LIMIT))
+    fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
+        NearEdges::symbol_of(&self.0.edges, p)
     }
 
     fn lanes32(&self, chunk: Chunk<'_, f32, 1>) {
-        self.0.values(chunk);
+        match &self.0.list {
+            Some(list) => list.lanes32(chunk),
+            None => self.0.values(chunk),
+        }
     }
 
     fn lanes64(&self, chunk: Chunk<'_, f64, 1>) {
-        self.0.values(chunk);
+        match &self.0.list {
+            Some(list) => list.lanes64(chunk),
+            None => self.0.values(chunk),
+        }
     }
 
     fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
+        if let Some(list) = &self.0.list {
+            return list.gradients(chunk);
+        }
         let placement = *chunk.placement;
         self.0.each(chunk, |p, guess| {
-            let local = placement.apply(Dual::point(p));
-            let (edge, _) = self.0.nearest(DVec2::new(local[0].value(), local[1].value()), *guess);
-            *guess = edge;
-            let value = self.0.slope(edge, local) * placement.scale;
+            let value = self.0.dual(placement.apply(Dual::point(p)), guess) * placement.scale;
             let [x, y, z] = value.gradient();
             [saturate(value.value()), x, y, z]
         });

@@ -1,10 +1,15 @@
 //! The few edges of a polygon that can be nearest in some region.
+//!
+//! The sign is that of a reference point, turned by every edge between it and the point: all
+//! edges that meet the region are among those that can be nearest in it. Unlike the side of
+//! the nearest edge it is certain in single precision but for points next to an edge, however
+//! thin the polygon is.
 
 use std::sync::Arc;
 
-use glam::DAffine3;
+use glam::{DAffine3, DVec2};
 
-use super::super::super::{AnyField, Chunk, Field, ParamError, Zone};
+use super::super::super::{AnyField, Chunk, Field, ParamError, VALUE_LIMIT, Zone};
 use super::{Edge, Patch};
 use crate::num::symbol::Symbol;
 use crate::{Bounds, Dual, Interval, Real};
@@ -12,8 +17,53 @@ use crate::{Bounds, Dual, Interval, Real};
 /// The nearest of a list of edges, as a formula: what lanes run.
 #[derive(Clone, Debug)]
 struct Nearest {
-    edges: Box<[Edge]>,
+    items: Box<[Item]>,
+    /// The sign at the reference point.
+    sign: f64,
     reach: f64,
+}
+
+/// An edge as it is seen from the reference point.
+#[derive(Clone, Copy, Debug)]
+struct Item {
+    edge: Edge,
+    /// Across the lines from the reference point through the start and the end.
+    across: [DVec2; 2],
+    /// On which side of the edge the reference point is: 1 on its left, else −1.
+    side: f64,
+}
+
+/// What the sign is counted from: crossings of edges on the straight way from here.
+#[derive(Clone, Copy)]
+pub(super) enum Reference {
+    /// A point where the sign is known.
+    Point(DVec2, f64),
+    /// The far end of the x axis, which is outside.
+    Infinity,
+}
+
+impl Item {
+    fn new(edge: Edge, reference: Reference) -> Item {
+        let (across, away) = match reference {
+            Reference::Point(c, _) => ([edge.start, edge.end].map(|v| (c - v).perp()), c - edge.start),
+            Reference::Infinity => ([DVec2::Y; 2], DVec2::X),
+        };
+        Item { edge, across, side: if edge.along.perp().dot(away) >= 0.0 { 1.0 } else { -1.0 } }
+    }
+
+    /// The distance, and −1 if the edge is between the point and the reference point, else 1.
+    /// Both edges at a corner count the way past it alike, to the last bit.
+    #[inline(always)]
+    fn look<R: Real>(&self, x: R, y: R) -> (R, R) {
+        let (one, other) = (x.lift(1.0), x.lift(-1.0));
+        let (distance, s) = self.edge.distances(x, y);
+        let [first, last] = self.across;
+        let at_start = (x - self.edge.start.x).scale_add(first.x, (y - self.edge.start.y) * first.y);
+        let at_end = (x - self.edge.end.x).scale_add(last.x, (y - self.edge.end.y) * last.y);
+        let between = at_start.select(at_end.select(one, other), at_end.select(other, one));
+        let sides = s.select(one, other) * self.side;
+        (distance, between.max(sides))
+    }
 }
 
 impl Field for Nearest {
@@ -23,14 +73,16 @@ impl Field for Nearest {
 
     #[inline(always)]
     fn eval<R: Real>(&self, [x, y, _]: [R; 3]) -> R {
-        let mut best = x.lift(-super::super::super::VALUE_LIMIT);
+        let mut nearest = x.lift(VALUE_LIMIT);
+        let mut sign = x.lift(self.sign);
         let mut i = 0;
-        while i < self.edges.len() {
-            let next = self.edges[i].signed(x, y);
-            best = if i == 0 { next } else { (best.abs() - next.abs()).select(next, best) };
+        while i < self.items.len() {
+            let (distance, crossing) = self.items[i].look(x, y);
+            nearest = nearest.min(distance);
+            sign = sign * crossing;
             i += 1;
         }
-        best
+        sign.select(nearest, -nearest)
     }
 
     fn bounds(&self) -> Bounds {
@@ -55,20 +107,62 @@ impl Field for Nearest {
 pub(super) struct NearEdges(Nearest);
 
 impl NearEdges {
-    /// The leaf of `edges` if they are few; `reach` is the largest coordinate of the polygon.
-    pub(super) fn new(edges: Vec<Edge>, reach: f64) -> NearEdges {
-        NearEdges(Nearest { edges: edges.into(), reach })
+    /// The leaf of `edges`; `reach` is the largest coordinate of the polygon.
+    pub(super) fn new(edges: &[Edge], reference: Reference, reach: f64) -> NearEdges {
+        let items = edges.iter().map(|edge| Item::new(*edge, reference)).collect();
+        let sign = if let Reference::Point(_, sign) = reference { sign } else { -1.0 };
+        NearEdges(Nearest { items, sign, reach })
     }
 
-    fn value_at(&self, patch: &Patch) -> f64 {
-        self.0.eval([patch.centre.x, patch.centre.y, 0.0])
+    /// The leaf of what is nearest over a patch, its signs counted from a point of the patch
+    /// that is clear of all lines of edges. `None` if there is no such point.
+    pub(super) fn over_patch(
+        patch: &Patch,
+        edges: &[Edge],
+        reach: f64,
+        value: impl Fn(DVec2) -> f64,
+    ) -> Option<NearEdges> {
+        let clear = |p: DVec2| {
+            let from_lines = edges.iter().map(|edge| edge.along.perp_dot(p - edge.start).abs());
+            from_lines.fold(f64::INFINITY, f64::min)
+        };
+        let points = patch.inner_points().map(|p| (p, clear(p)));
+        let (point, room) = points.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let reference = Reference::Point(point, value(point).signum());
+        (room > 4.0 * margin(patch, reach)).then(|| NearEdges::new(edges, reference, reach))
+    }
+
+    /// The formula on symbols, for as many edges as there are.
+    pub(super) fn symbol_of<'a>(edges: &[Edge], [x, y, _]: [Symbol<'a>; 3]) -> Symbol<'a> {
+        // A balanced tree: fidget's own walks go as deep as it is.
+        let look = |edge: &Edge| Item::new(*edge, Reference::Infinity).look(x, y);
+        let mut level: Vec<(Symbol<'a>, Symbol<'a>)> = edges.iter().map(look).collect();
+        while level.len() > 1 {
+            let both = |pair: &[(Symbol<'a>, Symbol<'a>)]| match *pair {
+                [a, b] => (a.0.min(b.0), a.1 * b.1),
+                _ => pair[0],
+            };
+            level = level.chunks(2).map(both).collect();
+        }
+        match level.pop() {
+            Some((nearest, crossings)) => crossings.select(-nearest, nearest),
+            None => x.lift(-VALUE_LIMIT),
+        }
+    }
+
+    fn value_at(&self, p: DVec2) -> f64 {
+        self.0.eval([p.x, p.y, 0.0])
+    }
+
+    fn edges(&self) -> impl Iterator<Item = &Edge> {
+        self.0.items.iter().map(|item| &item.edge)
     }
 
     fn over(&self, patch: Option<Patch>) -> Interval {
         match patch {
             Some(patch) => {
                 let rounding = 1e-14 * (self.0.reach + patch.centre.abs().max_element() + patch.radius);
-                patch.range(self.value_at(&patch), self.0.edges.iter(), rounding)
+                patch.range(self.value_at(patch.centre), self.edges(), rounding)
             }
             None => Interval::ALL,
         }
@@ -140,8 +234,12 @@ impl AnyField for NearEdges {
     fn narrowed(&self, zone: &Zone) -> Option<Arc<dyn AnyField>> {
         let patch = Patch::of_zone(zone)?;
         let margin = margin(&patch, self.0.reach);
-        let near = nearest_over(&patch, self.0.edges.iter().copied(), margin);
-        (near.len() < self.0.edges.len()).then(|| Arc::new(NearEdges::new(near, self.0.reach)) as Arc<dyn AnyField>)
+        let near = nearest_over(&patch, self.edges().copied(), margin);
+        if near.len() >= self.0.items.len() {
+            return None;
+        }
+        let leaf = NearEdges::over_patch(&patch, &near, self.0.reach, |p| self.value_at(p))?;
+        Some(Arc::new(leaf))
     }
 
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {

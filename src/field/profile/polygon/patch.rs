@@ -57,6 +57,17 @@ impl Patch {
         })
     }
 
+    /// Some points of it, in general position.
+    pub(super) fn inner_points(&self) -> [DVec2; 9] {
+        let [a, b, c] = self.axes;
+        std::array::from_fn(|i| {
+            // Steps of three irrational numbers, within ±0.8.
+            let part = |step: f64| 1.6 * ((i as f64 * step).fract() - 0.5);
+            let inside = part(0.754_877_666) * a + part(0.569_840_291) * b + part(0.381_966_011) * c;
+            if i == 0 { self.centre } else { self.centre + inside }
+        })
+    }
+
     /// Bounds from below and above on the distance of `edge`, which is a convex function: its
     /// tangent at the centre, and the largest of its values at the corners.
     pub(super) fn distances(&self, edge: &Edge) -> (f64, f64) {

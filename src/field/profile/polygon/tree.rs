@@ -68,10 +68,10 @@ impl Tree {
         Tree { nodes }
     }
 
-    /// The edge nearest to `p` and the signed distance to it. `guess` is the number of an edge
-    /// that is thought to be near.
+    /// The edge nearest to `p` and the distance to it. `guess` is the number of an edge that is
+    /// thought to be near.
     pub(super) fn nearest(&self, edges: &[Edge], p: DVec2, guess: usize) -> Option<(usize, f64)> {
-        let mut best = (guess, edges.get(guess)?.signed(p.x, p.y));
+        let mut best = (guess, edges.get(guess)?.distances(p.x, p.y).0);
         let mut stack = [(0, 0.0); WAITING];
         let mut height = 1;
         while height > 0 {
@@ -83,9 +83,9 @@ impl Tree {
             let node = self.nodes[at as usize];
             if node.count > 0 {
                 for i in node.first..node.first + node.count {
-                    let value = edges[i as usize].signed(p.x, p.y);
-                    if value.abs() < best.1.abs() {
-                        best = (i as usize, value);
+                    let (distance, _) = edges[i as usize].distances(p.x, p.y);
+                    if distance < best.1 {
+                        best = (i as usize, distance);
                     }
                 }
                 continue;
