@@ -142,8 +142,8 @@ mod space;
 pub use bounds::Bounds;
 pub use eval::{Evaluator, Gradients, Hit, Owner, Program, Region, Tape};
 pub use field::{
-    COORDINATE_LIMIT, Circle, Cuboid, Cylinder, Field, Gielis, HalfSpace, Kernel, ParamError, Polygon, RFunction, Radius,
-    Rectangle, RegularPolygon, Sphere, Superellipse, Superellipsoid, Superpolygon, Supershape, VALUE_LIMIT,
+    COORDINATE_LIMIT, Circle, Cuboid, Cylinder, Field, Gielis, HalfSpace, Kernel, ParamError, Polygon, RFunction,
+    Radius, Rectangle, RegularPolygon, Sphere, Superellipse, Superellipsoid, Superpolygon, Supershape, VALUE_LIMIT,
 };
 pub use geom::{Camera, CameraError, Image, ImageError, Mesh, MeshError, Projection, Rays};
 pub use io::{SaveError, write_png, write_stl};

@@ -84,8 +84,6 @@ fn straight_extrusions_and_rings_are_true_distances() {
         near(value(&block, p), value(&cuboid, p), 1e-14);
         near(value(&rod, p), value(&cylinder, p), 1e-14);
     }
-    let fidget = rvachev::Tape::new(&block.field_program().unwrap(), &block.bounds().unwrap());
-    assert_eq!(fidget.origin(), DVec3::ZERO);
 }
 
 #[test]
@@ -100,11 +98,7 @@ fn unbounded_profiles_make_bounded_solids() {
     let ring = strip.translate(DVec2::new(4.0, 1.0));
     near_box(&ring.revolve(), DVec3::new(-5.0, -5.0, 0.5), DVec3::new(5.0, 5.0, 1.5));
     near_box(&ring.revolve_by(1.0), DVec3::new(0.0, 0.0, 0.5), DVec3::new(5.0, 5.0, 1.5));
-    near_box(
-        &strip.sweep_helix(&Helix::new(4.0, 3.0, 2.0)),
-        DVec3::new(-5.0, -5.0, -3.5),
-        DVec3::new(5.0, 5.0, 3.5),
-    );
+    near_box(&strip.sweep_helix(&Helix::new(4.0, 3.0, 2.0)), DVec3::new(-5.0, -5.0, -3.5), DVec3::new(5.0, 5.0, 3.5));
     assert!(strip.translate(DVec2::new(-4.0, 0.0)).revolve().bounds().unwrap().is_empty());
     assert!(strip.column().mesh(&MeshSettings::default()).is_err());
 }
@@ -113,18 +107,18 @@ fn unbounded_profiles_make_bounded_solids() {
 fn extrusions_have_their_volume() {
     let hexagon = Profile::regular_polygon(6, 1.0);
     let area = 1.5 * 3f64.sqrt();
-    has_volume(&hexagon.extrude(2.0), 64, 2.0 * area, 2e-3);
+    has_volume(&hexagon.extrude(2.0), 40, 2.0 * area, 6e-3);
     let twisted = Extrusion { twist: 1.2, ..Extrusion::new(2.0) };
-    has_volume(&hexagon.extrude_with(&twisted), 64, 2.0 * area, 2e-3);
+    has_volume(&hexagon.extrude_with(&twisted), 40, 2.0 * area, 8e-3);
     // A frustum.
     let tapered = Extrusion { scale: 0.4, ..Extrusion::new(2.0) };
     let frustum = 2.0 * area * (1.0 + 0.4 + 0.16) / 3.0;
-    has_volume(&hexagon.extrude_with(&tapered), 64, frustum, 2e-3);
-    has_volume(&hexagon.extrude_with(&Extrusion { twist: -0.8, ..tapered }), 64, frustum, 2e-3);
+    has_volume(&hexagon.extrude_with(&tapered), 40, frustum, 8e-3);
+    has_volume(&hexagon.extrude_with(&Extrusion { twist: -0.8, ..tapered }), 40, frustum, 1e-2);
     let polygon = Polygon::new([comb(8)]);
     let area = polygon.area();
     near(area, 8.0 + 8.0 * 0.55, 1e-12);
-    has_volume(&Profile::from(polygon).extrude(1.0), 128, area, 3e-3);
+    has_volume(&Profile::from(polygon).extrude(1.0), 64, area, 2e-2);
 }
 
 #[test]
@@ -149,17 +143,17 @@ fn twisted_and_scaled_sections_are_where_they_ought_to_be() {
 fn revolved_solids_have_their_volume() {
     // Pappus: area times the way of the centroid.
     let section = Profile::superellipse(DVec2::new(0.6, 0.4), 0.5).translate(DVec2::new(2.0, 0.3));
-    let quarter = section.extrude(1.0);
-    let area = mesh(&quarter, 96).volume();
-    has_volume(&section.revolve(), 96, area * TAU * 2.0, 3e-3);
-    for angle in [0.5, PI, 4.0, 6.0] {
-        has_volume(&section.revolve_by(angle), 96, area * angle * 2.0, 4e-3);
+    let slice = section.extrude(1.0);
+    let area = mesh(&slice, 48).volume();
+    has_volume(&section.revolve(), 64, area * TAU * 2.0, 1.5e-2);
+    for angle in [0.5, PI, 5.5] {
+        has_volume(&section.revolve_by(angle), 48, area * angle * 2.0, 2e-2);
     }
     // The part beyond the axis is left out.
     let disc = Profile::circle(1.0);
-    has_volume(&disc.revolve(), 64, 4.0 / 3.0 * PI, 4e-3);
+    has_volume(&disc.revolve(), 40, 4.0 / 3.0 * PI, 6e-3);
     let sector = disc.revolve_by(TAU / 3.0);
-    has_volume(&sector, 64, 4.0 / 9.0 * PI, 4e-3);
+    has_volume(&sector, 40, 4.0 / 9.0 * PI, 8e-3);
     assert!(sector.contains(DVec3::new(0.5, 0.1, 0.0)).unwrap());
     assert!(!sector.contains(DVec3::new(0.5, -0.1, 0.0)).unwrap());
 }
@@ -232,15 +226,15 @@ fn meshes_of_polygons_with_holes_are_closed() {
     let polygon = Polygon::new([square(3.0), square(2.0), square(1.0)]);
     near(polygon.area(), 36.0 - 16.0 + 4.0, 1e-12);
     let solid = Profile::from(polygon).extrude(1.0);
-    let report = mesh(&solid, 64).check();
+    let report = mesh(&solid, 48).check();
     assert_eq!(report.shells, 2);
-    near(report.volume, 24.0, 0.2);
+    near(report.volume, 24.0, 0.3);
     // Many edges: more than a list holds.
     let gear: Vec<DVec2> = (0..400)
         .map(|i| (if i / 2 % 2 == 0 { 2.0 } else { 1.7 }) * DVec2::from_angle(TAU * f64::from(i) / 400.0))
         .collect();
     let gear = Polygon::new([gear]);
-    has_volume(&Profile::from(gear.clone()).extrude(0.5), 96, 0.5 * gear.area(), 5e-3);
+    has_volume(&Profile::from(gear.clone()).extrude(0.5), 64, 0.5 * gear.area(), 2e-2);
 }
 
 #[test]
@@ -283,7 +277,10 @@ fn regions_of_profiles_are_told_apart() {
 fn what_is_wrong_is_said() {
     let text = |solid: Solid| solid.value(DVec3::X).unwrap_err().to_string();
     let disc = Profile::circle(1.0);
-    assert_eq!(text(Profile::circle(-1.0).extrude(1.0)), "intersection[1] / circle: radius is -1, allowed: 0.000000001 to 1000000000");
+    assert_eq!(
+        text(Profile::circle(-1.0).extrude(1.0)),
+        "intersection[1] / circle: radius is -1, allowed: 0.000000001 to 1000000000"
+    );
     assert!(text(disc.extrude(0.0)).starts_with("intersection[0] / extrude: height is 0, allowed"));
     assert!(text(disc.extrude_with(&Extrusion { scale: 0.0, ..Extrusion::new(1.0) })).contains("extrude: scale is 0"));
     assert!(text(disc.extrude_with(&Extrusion { twist: f64::NAN, ..Extrusion::new(1.0) })).contains("twist is NaN"));
@@ -295,7 +292,9 @@ fn what_is_wrong_is_said() {
     assert!(text(disc.sweep_helix(&Helix { pitch: 0.8, ..helix })).contains("pitch is 0.8, allowed: at least 1"));
     assert!(text((!disc).sweep_helix(&helix)).contains("sweep_helix"));
     assert!(text(Profile::regular_polygon(2, 1.0).extrude(1.0)).contains("sides is 2, allowed: 3 to 1024"));
-    assert!(text(Profile::rounded_rectangle(DVec2::ONE, 0.6).extrude(1.0)).contains("radius is 0.6, allowed: 0 to 0.5"));
+    assert!(
+        text(Profile::rounded_rectangle(DVec2::ONE, 0.6).extrude(1.0)).contains("radius is 0.6, allowed: 0 to 0.5")
+    );
     let bow = Profile::polygon([[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]]);
     assert!(text(bow.revolve()).contains("polygon: where edge 0 of contour 0 meets edge 2 of contour 0, at (1, 1)"));
 }

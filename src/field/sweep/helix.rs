@@ -10,6 +10,7 @@
 //! The whole number k is that of the turn whose section has its middle nearest along z. It
 //! needs no rounding: turned back by 2πZ/P about the axis, the point has the angle −2πy/P.
 //! The map jumps half way between two turns, and next to them lie the turns above and below.
+//! On the axis the angle, and so y, is anything; profiles stay clear of it.
 
 use std::f64::consts::{PI, TAU};
 

@@ -8,8 +8,8 @@
 
 use glam::DVec3;
 
-use super::super::deform::Warp;
 use super::super::ParamError;
+use super::super::deform::Warp;
 use crate::{Bounds, Norm, Real};
 
 /// The map from space to the half-plane of a profile.

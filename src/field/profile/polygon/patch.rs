@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::Edge;
 use super::super::super::Zone;
+use super::Edge;
 use crate::Interval;
 
 /// What of a zone lies in the plane: `{ c + Σ uᵢ aᵢ + s∘v }`, each of u and v within ±1.
