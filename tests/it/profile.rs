@@ -206,18 +206,18 @@ fn helices_hold_the_points_of_their_turns() {
 fn helices_have_their_volume() {
     let area = PI * 0.09;
     let spring = Profile::circle(0.3).sweep_helix(&Helix::new(2.0, 1.0, 2.25));
-    has_volume(&spring, 96, area * TAU * 2.0 * 2.25, 1e-2);
+    has_volume(&spring, 64, area * TAU * 2.0 * 2.25, 2.5e-2);
     // The centroid counts, not the helix's radius; turns of this thread nearly touch.
     let thread = Profile::polygon([[0.0, -0.45], [0.5, -0.05], [0.5, 0.05], [0.0, 0.45]]);
-    let (area, centroid) = (0.25, (0.4 * 0.5 / 2.0 * 0.5 / 1.5 * 2.0 + 0.1 * 0.5 * 0.25) / 0.25);
+    let (area, centroid) = (0.25, 0.55 / 3.0);
     let solid = thread.sweep_helix(&Helix { left_handed: true, ..Helix::new(2.0, 1.0, 1.5) });
-    let report = mesh(&solid, 96).check();
+    let report = mesh(&solid, 64).check();
     assert_eq!(report.shells, 1);
     let want = area * TAU * (2.0 + centroid) * 1.5;
-    near(report.volume, want, 2e-2 * want);
+    near(report.volume, want, 3e-2 * want);
     // On a core it is a screw.
     let screw = solid.union(&Solid::cylinder(2.05, 4.0), RFunction::MIN_MAX);
-    assert_eq!(mesh(&screw, 64).check().shells, 1);
+    assert_eq!(mesh(&screw, 48).check().shells, 1);
 }
 
 #[test]
@@ -231,10 +231,10 @@ fn meshes_of_polygons_with_holes_are_closed() {
     near(report.volume, 24.0, 0.3);
     // Many edges: more than a list holds.
     let gear: Vec<DVec2> = (0..400)
-        .map(|i| (if i / 2 % 2 == 0 { 2.0 } else { 1.7 }) * DVec2::from_angle(TAU * f64::from(i) / 400.0))
+        .map(|i| (if i / 2 % 2 == 0 { 2.0 } else { 1.95 }) * DVec2::from_angle(TAU * f64::from(i) / 400.0))
         .collect();
     let gear = Polygon::new([gear]);
-    has_volume(&Profile::from(gear.clone()).extrude(0.5), 64, 0.5 * gear.area(), 2e-2);
+    has_volume(&Profile::from(gear.clone()).extrude(0.5), 64, 0.5 * gear.area(), 1.5e-2);
 }
 
 #[test]
