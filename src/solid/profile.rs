@@ -25,7 +25,7 @@ use crate::{
 /// assert!(plate.contains(DVec2::new(-12.0, 0.0))?);
 /// assert!(!plate.contains(DVec2::new(12.0, 1.0))?);
 /// let part = plate.extrude(5.0);
-/// assert_eq!(part.bounds()?.size(), glam::DVec3::new(40.0, 20.0, 5.0));
+/// assert!((part.bounds()?.size() - glam::DVec3::new(40.0, 20.0, 5.0)).length() < 1e-9);
 /// # Ok::<(), rvachev::SolidError>(())
 /// ```
 #[derive(Clone)]
