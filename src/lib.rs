@@ -148,10 +148,11 @@ mod space;
 pub use bounds::Bounds;
 pub use eval::{Evaluator, Gradients, Hit, Owner, Program, Region, Tape};
 pub use field::{
-    Blend, COORDINATE_LIMIT, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Field, Formula, FormulaError,
+    Blend, COORDINATE_LIMIT, Capsule, Circle, Cone, Cuboid, Cylinder, Ellipsoid, Field, Formula, FormulaError,
     GeneralisedSuperquadric, Gielis, Grading, HalfSpace, Kernel, Law, LawTable, LinearLaw, MinimalSurface,
-    NetworkLattice, ParamError, Prism, Pyramid, RFunction, Radius, RoundedCuboid, SheetLattice, SineWave, Slab,
-    SmoothStep, Sphere, Superellipsoid, Superhyperboloid, Supershape, Supertoroid, Torus, Turns, VALUE_LIMIT, Wedge,
+    NetworkLattice, ParamError, Polygon, Prism, Pyramid, RFunction, Radius, Rectangle, RegularPolygon, RoundedCuboid,
+    SheetLattice, SineWave, Slab, SmoothStep, Sphere, Superellipse, Superellipsoid, Superhyperboloid, Superpolygon,
+    Supershape, Supertoroid, Torus, Turns, VALUE_LIMIT, Wedge,
 };
 pub use geom::{Camera, CameraError, Image, ImageError, Mesh, MeshError, Projection, Rays};
 pub use io::{SaveError, write_png, write_stl};
@@ -159,4 +160,4 @@ pub use mesh::{CellSize, Lattice, LatticeError, MeshReport, MeshSettings, Meshin
 pub use num::{Dual, Interval, Monotone, Monotone3, Norm, Real};
 pub use render::{Background, RenderError, RenderSettings};
 pub use run::{CancelToken, Cancelled, Progress, Run};
-pub use solid::{Solid, SolidError};
+pub use solid::{Caps, Extrusion, Helix, PlaneBounds, Profile, Solid, SolidError};

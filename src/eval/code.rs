@@ -81,7 +81,7 @@ impl Code {
 
     /// Joins many operands: at once if the order does not matter, else as a balanced tree.
     fn join_all(&mut self, op: Op, rule: Rule, frame: u32, operands: &[Operand]) -> Operand {
-        if matches!(rule, Rule::MinMax | Rule::Associative(_)) {
+        if matches!(rule, Rule::MinMax | Rule::Associative(_) | Rule::Distance) {
             return self.join(op, rule, frame, operands);
         }
         self.balanced(operands.to_vec(), |code, a, b| code.join(op, rule, frame, &[a, b]))
@@ -276,7 +276,7 @@ fn spread(rule: Rule) -> f64 {
         Rule::Alpha(alpha) => (1.0 + alpha) / (2.0 - (2.0 - 2.0 * alpha).sqrt()),
         Rule::P(norm) => 1.0 / (2.0 - (1.0 / norm.p()).exp2()),
         Rule::Associative(norm) => (1.0 / norm.p()).exp2(),
-        Rule::MinMax => 1.0,
+        Rule::MinMax | Rule::Distance => 1.0,
         _ => f64::INFINITY,
     }
 }

@@ -23,6 +23,7 @@ pub(super) trait Conjunction {
 pub(super) struct MinMax;
 pub(super) struct Alpha(f64);
 pub(super) struct Zero(u32);
+pub(super) struct Distance;
 pub(super) struct Euclid;
 pub(super) struct P {
     p: f64,
@@ -61,6 +62,7 @@ conjunction! {
     MinMax: self => Rule::MinMax;
     Alpha: self => Rule::Alpha(self.0);
     Zero: self => Rule::Zero(self.0);
+    Distance: self => Rule::Distance;
     Euclid: self => Rule::P(Norm::Euclid);
     P: self => Rule::P(Norm::P { p: self.p, inv: self.inv });
     Associative: self => Rule::Associative(Norm::P { p: self.p, inv: self.inv });
@@ -92,6 +94,7 @@ where
     Join<MinMax>: Fold<N>,
     Join<Alpha>: Fold<N>,
     Join<Zero>: Fold<N>,
+    Join<Distance>: Fold<N>,
     Join<Euclid>: Fold<N>,
     Join<P>: Fold<N>,
     Join<Associative>: Fold<N>,
@@ -105,6 +108,7 @@ where
         Rule::MinMax => fold(&Join { conjunction: MinMax, sign, sign_next }, all, next),
         Rule::Alpha(alpha) => fold(&Join { conjunction: Alpha(alpha), sign, sign_next }, all, next),
         Rule::Zero(m) => fold(&Join { conjunction: Zero(m), sign, sign_next }, all, next),
+        Rule::Distance => fold(&Join { conjunction: Distance, sign, sign_next }, all, next),
         Rule::P(Norm::Euclid) => fold(&Join { conjunction: Euclid, sign, sign_next }, all, next),
         Rule::P(norm) => {
             fold(&Join { conjunction: P { p: norm.p(), inv: 1.0 / norm.p() }, sign, sign_next }, all, next)

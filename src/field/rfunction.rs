@@ -6,6 +6,7 @@
 //!     R_p    x∧y = x + y − (|x|^p + |y|^p)^(1/p)
 //!     N_p    x∧y = (x^−p + y^−p)^(−1/p) where both > 0,
 //!                  else −(max(−x,0)^p + max(−y,0)^p)^(1/p)
+//!     D      x∧y = min(x, y) where both > 0, else −√(max(−x,0)² + max(−y,0)²)
 //! ```
 //!
 //! and `x∨y = −(−x ∧ −y)` for each. They are evaluated in forms that keep the sign exact and
@@ -32,6 +33,7 @@ use crate::{Monotone, Norm, Real};
 /// | `Zero { m }` | C^m even at corners; not of unit slope at the surface | no |
 /// | `P(p)`, p ≥ 1.001 | unit slope at the surface to order p − 1 | no |
 /// | `Associative(p)`, p ≥ 1.001 | unit slope to order p, the order of operands does not matter | yes |
+/// | `Distance` | the true distance if operands have it and meet at right angles throughout | yes |
 ///
 /// The operators `|`, `&`, `-`, `^`, `!` use `P(2.0)`. Meshing and rendering see the solid
 /// only and cost the same for every rule.
@@ -48,6 +50,8 @@ pub enum RFunction {
     P(f64),
     /// N_p with 1.001 ≤ p ≤ 1000.
     Associative(f64),
+    /// Min where both are inside, the Euclidean norm where they are outside.
+    Distance,
 }
 
 impl Default for RFunction {
@@ -82,13 +86,14 @@ impl RFunction {
     /// Whether the order in which many operands are joined does not matter.
     #[must_use]
     pub fn associates(self) -> bool {
-        matches!(Rule::from(self), Rule::MinMax | Rule::Associative(_))
+        matches!(Rule::from(self), Rule::MinMax | Rule::Associative(_) | Rule::Distance)
     }
 
     pub(crate) fn check(self) -> Result<(), ParamError> {
         let (parameter, value, lo) = match self {
             RFunction::Alpha(alpha) if alpha > -1.0 && alpha <= 1.0 => return Ok(()),
             RFunction::Alpha(alpha) => return Err(ParamError::new("alpha", alpha, "above -1, up to 1")),
+            RFunction::Distance => return Ok(()),
             RFunction::Zero { m } if m <= 8 => return Ok(()),
             RFunction::Zero { m } => return Err(ParamError::new("m", f64::from(m), "0 to 8")),
             RFunction::P(p) | RFunction::Associative(p) => ("p", p, 1.001),
@@ -121,6 +126,7 @@ pub(crate) enum Rule {
         radii: [f64; 2],
         radius: f64,
     },
+    Distance,
 }
 
 impl From<RFunction> for Rule {
@@ -132,6 +138,7 @@ impl From<RFunction> for Rule {
             RFunction::Zero { m } => Rule::Zero(m),
             RFunction::P(p) => Rule::P(Norm::new(p)),
             RFunction::Associative(p) => Rule::Associative(Norm::new(p)),
+            RFunction::Distance => Rule::Distance,
         }
     }
 }
@@ -193,6 +200,10 @@ impl Monotone for And {
                 let both = px * (py / px.norm(py, norm).max(x.lift(TINY)));
                 both - x.min(zero).norm(y.min(zero), norm)
             }
+            Rule::Distance => {
+                let zero = x.lift(0.0);
+                x.min(y).max(zero) - x.min(zero).norm(y.min(zero), Norm::Euclid)
+            }
             _ => x.min(y),
         }
     }
@@ -227,6 +238,14 @@ impl Monotone for And {
                 let dx = both.select(ny * ry * ry, -mx);
                 let dy = both.select(nx * rx * rx, -my);
                 (self.value(x, y), dx, dy)
+            }
+            Rule::Distance => {
+                let first = (y - x).select(one, zero);
+                let (_, nx, ny) = x.min(zero).norm_parts(y.min(zero), Norm::Euclid);
+                // The slopes of a norm are those of the negative parts, which are negative; at
+                // the corner itself the norm has none.
+                let least = x.min(y);
+                (self.value(x, y), least.select(first, -nx), least.select(one - first, -ny))
             }
             _ => {
                 let first = (y - x).select(one, zero);

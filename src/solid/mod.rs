@@ -12,12 +12,16 @@ mod length;
 mod mirror;
 mod name;
 mod node;
+mod profile;
 mod rotate;
 mod signature;
 mod simplify;
+mod sweep;
 mod transform;
 
 pub use error::SolidError;
 pub(crate) use error::Trail;
 pub use node::Solid;
 pub(crate) use node::{Length, Node, Operation};
+pub use profile::{PlaneBounds, Profile};
+pub use sweep::{Caps, Extrusion, Helix};

@@ -4,11 +4,11 @@
 use fidget::context::Tree;
 use fidget::shape::EzShape;
 use fidget::vm::VmShape;
-use glam::{DAffine3, DMat3, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3};
 use rvachev::{
-    Bounds, Cuboid, Cylinder, Evaluator, Field, GeneralisedSuperquadric, Gielis, Gradients, HalfSpace, ParamError,
-    RFunction, Real, SineWave, SmoothStep, Solid, Sphere, Superellipsoid, Superhyperboloid, Supershape, Supertoroid,
-    Tape, Turns,
+    Bounds, Cuboid, Cylinder, Evaluator, Extrusion, Field, GeneralisedSuperquadric, Gielis, Gradients, HalfSpace,
+    Helix, ParamError, Polygon, Profile, RFunction, Real, SineWave, SmoothStep, Solid, Sphere, Superellipsoid,
+    Superhyperboloid, Supershape, Supertoroid, Tape, Turns,
 };
 
 use crate::lattices::lattices;
@@ -91,6 +91,43 @@ fn leaves() -> Vec<Case> {
             cases.push(Case { condition, ..case(format!("rational supershape {name}"), shape, size) });
         }
     }
+    cases.extend(profiles());
+    cases
+}
+
+/// Plane shapes as columns, and the solids made of them.
+fn profiles() -> Vec<Case> {
+    let frame = [[-1.0, -0.8], [1.0, -0.9], [0.9, 0.7], [0.1, 0.2], [-0.8, 0.8]];
+    let hole = [[-0.5, -0.5], [-0.4, 0.1], [0.3, -0.3]];
+    let gear = (0..48).map(|i| (if i / 2 % 2 == 0 { 1.0 } else { 0.8 }) * DVec2::from_angle(f64::from(i) * 0.1309));
+    let mut cases = Vec::new();
+    for (name, profile, condition) in [
+        ("circle", Profile::circle(0.8), 1.0),
+        ("superellipse", Profile::superellipse(DVec2::new(1.0, 0.6), 0.3), 1.0),
+        ("ellipse", Profile::superellipse(DVec2::new(1.0, 0.6), 1.0), 1.0),
+        ("pinched superellipse", Profile::superellipse(DVec2::new(1.0, 0.6), 2.4), 1.0),
+        ("superpolygon", Profile::superpolygon(Gielis::new(5.0, 3.0, 4.0, 8.0), 0.9), 2.7),
+        ("rectangle", Profile::rectangle(DVec2::new(1.6, 0.9)), 1.0),
+        ("rounded rectangle", Profile::rounded_rectangle(DVec2::new(1.6, 0.9), 0.2), 1.0),
+        ("regular polygon", Profile::regular_polygon(7, 0.9), 1.0),
+        ("polygon", Polygon::new([frame.to_vec(), hole.to_vec()]).into(), 1.0),
+        ("polygon of many edges", Profile::polygon(gear), 1.0),
+    ] {
+        cases.push(Case { condition, ..case(name, profile.column(), 1.0) });
+        if name.starts_with("regular") || name.starts_with("polygon") {
+            cases.push(Case { condition, ..case(format!("{name}, extruded"), profile.extrude(1.0), 1.0) });
+            let ring = profile.scale(0.4).translate(DVec2::new(0.6, 0.0)).revolve();
+            cases.push(Case { deformed: true, condition: 2.0, ..case(format!("{name}, revolved"), ring, 1.0) });
+        }
+    }
+    let twisted = Extrusion { twist: 0.8, scale: 0.7, ..Extrusion::new(1.0) };
+    let bar = Profile::rectangle(DVec2::new(1.0, 0.5)).extrude_with(&twisted);
+    let part = Profile::circle(0.3).translate(DVec2::new(0.6, 0.0)).revolve_by(4.0);
+    // On the axis itself the angle about it is anything: no sample is to lie there.
+    let spring = Profile::circle(0.2).sweep_helix(&Helix::new(0.7, 0.9, 1.4)).translate(DVec3::new(0.03, 0.02, 0.0));
+    for (name, solid) in [("twisted bar", bar), ("part of a ring", part), ("spring", spring)] {
+        cases.push(Case { deformed: true, condition: 6.0, ..case(name, solid, 1.0) });
+    }
     cases
 }
 
@@ -162,6 +199,7 @@ fn condition_of(rule: RFunction) -> f64 {
         RFunction::Zero { m } => 3.41 * f64::from(m + 1),
         RFunction::P(p) => 2.0 + 2f64.powf(1.0 / p),
         RFunction::Associative(p) => 2f64.powf(1.0 / p),
+        RFunction::Distance => 1.5,
     }
 }
 

@@ -14,6 +14,7 @@ mod mesh;
 mod models;
 mod narrow;
 mod primitives;
+mod profile;
 mod queries;
 mod rfunction;
 mod scale;

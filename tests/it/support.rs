@@ -87,7 +87,7 @@ pub fn extra_seed() -> u64 {
 }
 
 /// A rule of each kind, and the extremes.
-pub const RULES: [RFunction; 9] = [
+pub const RULES: [RFunction; 10] = [
     RFunction::MIN_MAX,
     RFunction::Alpha(0.0),
     RFunction::Alpha(0.5),
@@ -97,6 +97,7 @@ pub const RULES: [RFunction; 9] = [
     RFunction::P(3.5),
     RFunction::P(1.2),
     RFunction::Associative(2.0),
+    RFunction::Distance,
 ];
 
 /// A leaf of any kind, of a size between 0.2 and 1.6, about the origin.

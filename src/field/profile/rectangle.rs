@@ -1,0 +1,83 @@
+//! Rectangle, its corners sharp or rounded.
+
+use glam::{DVec2, DVec3};
+
+use super::super::{Field, ParamError, check, leaf::falling_range};
+use super::{column, flattened};
+use crate::{Bounds, Interval, Norm, Real};
+
+/// A rectangle about the origin of the plane, by true distance; `radius` rounds its corners.
+///
+/// With `q = (|x| − size.x/2, |y| − size.y/2) + radius`:
+/// `f = radius − |max(q, 0)| − min(max(q_1, q_2), 0)`.
+///
+/// | parameter | unit | range |
+/// |---|---|---|
+/// | `size` | length | 10⁻⁹ to 10⁹ each: the lengths of the sides |
+/// | `radius` | length | 0 (sharp corners) to half the shorter side |
+///
+/// ```
+/// use rvachev::{Profile, Rectangle};
+/// use glam::DVec2;
+///
+/// let plate = Profile::from(Rectangle { size: DVec2::new(4.0, 2.0), radius: 0.5 });
+/// assert_eq!(plate.value(DVec2::new(1.8, 0.0))?, 0.19999999999999996);
+/// assert!(!plate.contains(DVec2::new(1.95, 0.95))?);
+/// # Ok::<(), rvachev::SolidError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rectangle {
+    /// Lengths of the sides along x and y.
+    pub size: DVec2,
+    /// Radius of the corners.
+    pub radius: f64,
+}
+
+impl Field for Rectangle {
+    fn name(&self) -> &'static str {
+        "rectangle"
+    }
+
+    #[inline(always)]
+    fn eval<R: Real>(&self, [x, y, _]: [R; 3]) -> R {
+        let zero = x.lift(0.0);
+        let a = x.abs() - (0.5 * self.size.x - self.radius);
+        let b = y.abs() - (0.5 * self.size.y - self.radius);
+        let outside = a.max(zero).norm(b.max(zero), Norm::Euclid);
+        -(outside + a.max(b).min(zero)) + self.radius
+    }
+
+    fn bounds(&self) -> Bounds {
+        column(0.5 * self.size)
+    }
+
+    fn check(&self) -> Result<(), ParamError> {
+        check::length("size.x", self.size.x)?;
+        check::length("size.y", self.size.y)?;
+        check::within("radius", self.radius, 0.0, 0.5 * self.size.min_element())
+    }
+
+    fn convex(&self) -> bool {
+        true
+    }
+
+    fn exact(&self) -> bool {
+        true
+    }
+
+    fn range(&self, region: [Interval; 3]) -> Interval {
+        falling_range(self, flattened(region))
+    }
+
+    fn support(&self, d: DVec3) -> f64 {
+        if d.z != 0.0 {
+            return f64::INFINITY;
+        }
+        let d = d.truncate();
+        (0.5 * self.size - self.radius).dot(d.abs()) + self.radius * d.length() * (1.0 + 1e-15)
+    }
+
+    fn roundoff(&self, reach: f64) -> f64 {
+        4e-6 * self.size.length().min(reach)
+    }
+}

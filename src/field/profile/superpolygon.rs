@@ -1,0 +1,169 @@
+//! Superpolygon: the plane shape within a Gielis curve.
+//!
+//! ```text
+//!     G = √(x² + y²) / r(θ),  θ = atan2(y, x)        f = r_in·(1 − G)
+//! ```
+//!
+//! after scaling by `size`; r is the radius of the [`Gielis`] curve.
+//!
+//! Source: J. Gielis, *A generic geometric transformation* (2003).
+
+use std::f64::consts::PI;
+use std::fmt;
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+
+use super::super::gielis::Winding;
+use super::super::outline::Outline;
+use super::super::{Field, Gielis, Kernel, ParamError, Radius, check};
+use crate::{Bounds, Interval, Norm, Real};
+
+/// What is within a [`Gielis`] curve, valued `f = r_in·(1 − G)` in length units: G is the
+/// gauge and `r_in` the radius of a circle about the origin inside the curve.
+///
+/// In general not convex: no Lipschitz constant is promised.
+///
+/// | parameter | unit | range |
+/// |---|---|---|
+/// | `curve` | none | see [`Gielis`]; its standard radius |
+/// | `size` | length | 10⁻⁹ to 10⁹: what the curve's radius of 1 becomes |
+///
+/// ```
+/// use rvachev::{Gielis, Profile, Superpolygon};
+/// use glam::DVec2;
+///
+/// let star = Profile::from(Superpolygon::new(Gielis::new(5.0, 0.6, 1.7, 1.7), 3.0));
+/// assert!(star.contains(DVec2::new(2.9, 0.0))?);
+/// assert!(!star.contains(DVec2::new(-2.9, 0.0))?);
+/// # Ok::<(), rvachev::SolidError>(())
+/// ```
+#[derive(Clone, PartialEq)]
+pub struct Superpolygon {
+    curve: Gielis,
+    size: f64,
+    winding: Winding,
+    inverse: f64,
+    inscribed: f64,
+    bounds: Bounds,
+    outline: Option<Arc<Outline>>,
+}
+
+impl fmt::Debug for Superpolygon {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Superpolygon").field("curve", &self.curve).field("size", &self.size).finish()
+    }
+}
+
+impl Superpolygon {
+    /// The shape within `curve`, scaled by `size`; both are checked when the profile is
+    /// compiled.
+    #[must_use]
+    pub fn new(curve: Gielis, size: f64) -> Superpolygon {
+        let mut shape = Superpolygon {
+            curve,
+            size,
+            winding: curve.winding(),
+            inverse: 1.0 / size,
+            inscribed: f64::NAN,
+            bounds: Bounds::ALL,
+            outline: None,
+        };
+        if shape.check().is_ok() {
+            let outline = Outline::new(curve, Radius::Standard, PI);
+            shape.inscribed = size * outline.radius().lo();
+            let (x, y) = (outline.x() * size, outline.y() * size);
+            let side = y.hi() * (1.0 + 1e-14);
+            shape.bounds =
+                Bounds::new(DVec3::new(x.lo(), -side, f64::NEG_INFINITY), DVec3::new(x.hi(), side, f64::INFINITY));
+            shape.outline = Some(Arc::new(outline));
+        }
+        shape
+    }
+
+    /// The curve.
+    #[must_use]
+    pub fn curve(&self) -> Gielis {
+        self.curve
+    }
+
+    /// What the curve's radius of 1 becomes.
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// The gauge G: below 1 inside, 1 on the curve; `p / G(p)` lies on the curve.
+    #[must_use]
+    pub fn gauge(&self, p: DVec2) -> f64 {
+        self.gauge_of(p.x, p.y)
+    }
+
+    #[inline(always)]
+    fn gauge_of<R: Real>(&self, x: R, y: R) -> R {
+        let radius = self.curve.radius_at(y.atan2(x), Radius::Standard, self.winding);
+        x.norm(y, Norm::Euclid) * self.inverse / radius
+    }
+}
+
+impl Field for Superpolygon {
+    fn name(&self) -> &'static str {
+        "superpolygon"
+    }
+
+    #[inline(always)]
+    fn eval<R: Real>(&self, [x, y, _]: [R; 3]) -> R {
+        self.gauge_of(x, y).scale_add(-self.inscribed, x.lift(self.inscribed))
+    }
+
+    fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    fn check(&self) -> Result<(), ParamError> {
+        self.curve.check("curve", Radius::Standard)?;
+        check::length("size", self.size)
+    }
+
+    fn gauge_radius(&self) -> Option<f64> {
+        Some(self.inscribed)
+    }
+
+    fn range(&self, [x, y, _]: [Interval; 3]) -> Interval {
+        let (x, y) = (x * self.inverse, y * self.inverse);
+        match self.outline.as_deref() {
+            Some(outline) if (x.magnitude() + y.magnitude()).is_finite() => {
+                -outline.gauge(x, y.abs()) * self.inscribed + self.inscribed
+            }
+            _ => Interval::ALL,
+        }
+    }
+
+    fn slopes(&self, [x, y, _]: [Interval; 3]) -> [Interval; 3] {
+        let (x, y) = (x * self.inverse, y * self.inverse);
+        match self.outline.as_deref() {
+            Some(outline) if (x.magnitude() + y.magnitude()).is_finite() => {
+                let [by_x, by_y] = outline.gradient(x, y.abs());
+                // The outline knows one half of the plane, the other is its mirror image.
+                let by_y = if y.contains(0.0) { by_y.hull(-by_y) } else { y.select(by_y, -by_y) };
+                let scale = -self.inverse * self.inscribed;
+                [by_x * scale, by_y * scale, Interval::point(0.0)]
+            }
+            _ => [Interval::ALL; 3],
+        }
+    }
+
+    #[inline(always)]
+    fn specialised<K: Kernel<Self>>(&self, kernel: K) {
+        // One turn needs no loop over turns.
+        match self.winding {
+            Winding::Once => kernel.run(&Superpolygon { winding: Winding::Once, outline: None, ..*self }),
+            many => kernel.run(&Superpolygon { winding: many, outline: None, ..*self }),
+        }
+    }
+
+    fn roundoff(&self, reach: f64) -> f64 {
+        let half = self.bounds.half_extents();
+        self.curve.roundoff() * half.truncate().length().min(reach)
+    }
+}

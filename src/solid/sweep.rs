@@ -1,0 +1,240 @@
+//! Solids of profiles: extruded, revolved, swept along a helix.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use super::{Node, Profile, Solid};
+use crate::field::{AnyWarp, HelixWarp, Opening, Revolution, Span, Turn, check};
+use crate::{Blend, ParamError, RFunction};
+
+/// How the edges of an end face are.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Caps {
+    /// Sharp.
+    #[default]
+    Flat,
+    /// Bevelled at 45°; the number is the width that is taken off each face, a length.
+    Chamfered(f64),
+    /// Rounded; the number is the radius, a length.
+    Rounded(f64),
+}
+
+impl Caps {
+    fn check(self, name: &str) -> Result<(), ParamError> {
+        match self {
+            Caps::Flat => Ok(()),
+            Caps::Chamfered(width) => check::length(&format!("{name} (width)"), width),
+            Caps::Rounded(radius) => check::length(&format!("{name} (radius)"), radius),
+        }
+    }
+
+    /// A column cut off by a slab.
+    fn cut(self, column: &Solid, slab: &Solid) -> Solid {
+        match self {
+            // The slab first: it says what is wrong with the parameters.
+            Caps::Flat => slab.intersection(column, RFunction::Distance),
+            Caps::Chamfered(width) => slab.intersection_with(column, Blend::Chamfer { width }),
+            Caps::Rounded(radius) => slab.intersection_with(column, Blend::Fillet { radius }),
+        }
+    }
+}
+
+/// What a profile is extruded to.
+///
+/// The section at the lower end is the profile as it is; towards the upper end it is turned
+/// and scaled about the z axis, both in proportion to the height.
+///
+/// | parameter | unit | range |
+/// |---|---|---|
+/// | `height` | length | 10⁻⁹ to 10⁹: from z = −height/2 to height/2 |
+/// | `twist` | radian | −10⁶ to 10⁶: by how much the upper end is turned, from x towards y |
+/// | `scale` | none | 0.001 to 1000: the upper end's size relative to the lower |
+/// | `caps` | | how the edges of both end faces are; lengths are below half the height |
+///
+/// ```
+/// use rvachev::{Extrusion, Profile};
+///
+/// let bit = Profile::regular_polygon(6, 3.0).extrude_with(&Extrusion { scale: 0.5, ..Extrusion::new(20.0) });
+/// assert!(bit.contains(glam::DVec3::new(2.5, 0.0, -9.9))?);
+/// assert!(!bit.contains(glam::DVec3::new(2.5, 0.0, 9.9))?);
+/// # Ok::<(), rvachev::SolidError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extrusion {
+    /// Length along z.
+    pub height: f64,
+    /// By how much the upper end is turned, in radians.
+    pub twist: f64,
+    /// The size of the upper end relative to the lower.
+    pub scale: f64,
+    /// How the edges of the end faces are.
+    pub caps: Caps,
+}
+
+impl Extrusion {
+    /// Straight up, the edges sharp.
+    #[must_use]
+    pub fn new(height: f64) -> Extrusion {
+        Extrusion { height, twist: 0.0, scale: 1.0, caps: Caps::Flat }
+    }
+
+    fn check(&self) -> Result<(), ParamError> {
+        check::length("height", self.height)?;
+        check::within("twist", self.twist, -1e6, 1e6)?;
+        check::within("scale", self.scale, 1e-3, 1e3)?;
+        self.caps.check("caps")
+    }
+}
+
+/// A helix about the z axis, its middle on the x axis at z = 0.
+///
+/// | parameter | unit | range |
+/// |---|---|---|
+/// | `radius` | length | 10⁻⁹ to 10⁹, and more than the profile reaches towards the axis |
+/// | `pitch` | length | 10⁻⁹ to 10⁹: rise in a turn; at least half the profile's height |
+/// | `turns` | none | 10⁻⁶ to 10⁶: from z = −pitch·turns/2 to pitch·turns/2 |
+/// | `ends` | | how the edges of the two end faces are |
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Helix {
+    /// Distance of the profile's origin from the axis.
+    pub radius: f64,
+    /// Rise in a turn.
+    pub pitch: f64,
+    /// The number of turns.
+    pub turns: f64,
+    /// Whether it winds to the left; a common screw's thread winds to the right.
+    pub left_handed: bool,
+    /// How the edges of the two end faces are.
+    pub ends: Caps,
+}
+
+impl Helix {
+    /// Right-handed, the ends cut flat.
+    #[must_use]
+    pub fn new(radius: f64, pitch: f64, turns: f64) -> Helix {
+        Helix { radius, pitch, turns, left_handed: false, ends: Caps::Flat }
+    }
+
+    fn check(&self) -> Result<(), ParamError> {
+        check::length("radius", self.radius)?;
+        check::length("pitch", self.pitch)?;
+        check::within("turns", self.turns, 1e-6, 1e6)?;
+        self.ends.check("ends")
+    }
+}
+
+impl Profile {
+    /// Extruded straight along z, from z = −height/2 to height/2, the edges sharp. The value is
+    /// the true distance where the profile's is.
+    ///
+    /// ```
+    /// use rvachev::Profile;
+    /// use glam::{DVec2, DVec3};
+    ///
+    /// let beam = Profile::rectangle(DVec2::new(4.0, 2.0)).extrude(10.0);
+    /// assert_eq!(beam.value(DVec3::new(5.0, 0.0, 9.0))?, -5.0);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
+    #[must_use]
+    pub fn extrude(&self, height: f64) -> Solid {
+        self.extrude_with(&Extrusion::new(height))
+    }
+
+    /// Extruded along z, twisted, scaled, the edges of the end faces chamfered or rounded.
+    ///
+    /// Twisted and scaled ones have the profile's value at the pre-image, not rescaled: no
+    /// Lipschitz constant is promised, and chamfers and roundings are of the size asked for
+    /// where sides are upright.
+    #[must_use]
+    pub fn extrude_with(&self, extrusion: &Extrusion) -> Solid {
+        let Extrusion { height, twist, scale, caps } = *extrusion;
+        let half_height = 0.5 * height;
+        let slab = Solid::new(Span { verb: "extrude", half_height, error: extrusion.check().err() });
+        let mut column = self.0.clone();
+        if scale != 1.0 {
+            // A taper is 1 in the middle; the lower end is to be the profile.
+            let (middle, k) = (0.5 * (1.0 + scale), (scale - 1.0) / (scale + 1.0));
+            column = self.scale(middle).0.taper(k, k, half_height);
+        }
+        if twist != 0.0 {
+            column = column.rotate_z(0.5 * twist).twist(twist / height);
+        }
+        caps.cut(&column, &slab)
+    }
+
+    /// Revolved about the z axis: the profile's x is the distance from the axis and its y
+    /// becomes z. The part with x below 0 is left out. Distances stay what they are.
+    ///
+    /// ```
+    /// use rvachev::Profile;
+    /// use glam::{DVec2, DVec3};
+    ///
+    /// let ring = Profile::circle(1.0).translate(DVec2::new(3.0, 0.0)).revolve();
+    /// assert_eq!(ring.value(DVec3::new(0.0, 3.0, 0.25))?, 0.75);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
+    #[must_use]
+    pub fn revolve(&self) -> Solid {
+        warped(&self.0, Revolution)
+    }
+
+    /// Revolved about the z axis by `angle` radians (up to a full turn), from the x axis
+    /// towards y.
+    #[must_use]
+    pub fn revolve_by(&self, angle: f64) -> Solid {
+        if angle == TAU {
+            return self.revolve();
+        }
+        Solid::new(Opening { angle }).intersection(&self.revolve(), RFunction::MIN_MAX)
+    }
+
+    /// Swept along a helix about the z axis: a thread, a spring.
+    ///
+    /// The profile stands in the plane of the axis, as threads are drawn: its x points away
+    /// from the axis and is 0 at the helix's radius, its y is along z. The ends are in planes
+    /// through the axis. The volume is exactly that of the profile revolved, times the number
+    /// of turns, as long as turns do not meet.
+    ///
+    /// The profile may be higher than the pitch, so that turns run into one another, up to
+    /// twice the pitch. Up to half the pitch only the nearest turn is evaluated; beyond, the
+    /// turns above and below it as well.
+    ///
+    /// The value is the profile's at the pre-image, not rescaled: it over-estimates distances
+    /// by up to `√(1 + (pitch/2πr)²)` at the distance r from the axis.
+    ///
+    /// ```
+    /// use rvachev::{Helix, Profile};
+    /// use glam::DVec3;
+    ///
+    /// let spring = Profile::circle(0.5).sweep_helix(&Helix::new(5.0, 2.0, 4.0));
+    /// assert!(spring.contains(DVec3::new(5.0, 0.0, 0.0))?);
+    /// assert!(spring.contains(DVec3::new(0.0, 5.0, 0.5))?);
+    /// assert!(!spring.contains(DVec3::new(5.0, 0.0, 1.0))?);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
+    #[must_use]
+    pub fn sweep_helix(&self, helix: &Helix) -> Solid {
+        let Helix { radius, pitch, turns, left_handed, ends } = *helix;
+        // Sizes of rounded and chamfered ends are measured along the helix.
+        let stretch = if ends == Caps::Flat { 1.0 } else { (TAU * radius / pitch).hypot(1.0) };
+        let half_height = 0.5 * pitch * turns * stretch;
+        let slab = Solid::new(Span { verb: "sweep_helix", half_height, error: helix.check().err() });
+        let straight = ends.cut(&self.0, &slab);
+        // What is wrong with the profile is said when the solid is used.
+        let (middle, height) = match self.bounds() {
+            Ok(bounds) if bounds.min.is_finite() && bounds.max.is_finite() => {
+                (0.5 * (bounds.min.y + bounds.max.y), bounds.max.y - bounds.min.y)
+            }
+            _ => (0.0, 0.0),
+        };
+        let seen_from = |turn| warped(&straight, HelixWarp::new(radius, pitch, left_handed, middle, stretch, turn));
+        if height <= 0.5 * pitch {
+            return seen_from(Turn::Nearest);
+        }
+        Solid::union_all([Turn::Nearest, Turn::Above, Turn::Below].map(seen_from), RFunction::MIN_MAX)
+    }
+}
+
+fn warped(operand: &Solid, warp: impl AnyWarp + 'static) -> Solid {
+    Solid::from_node(Node::Warp { operand: operand.clone(), warp: Arc::new(warp) })
+}
