@@ -60,7 +60,7 @@ impl Solid {
     /// ```
     #[must_use]
     pub fn mirrored(&self, normal: impl Into<DVec3>, offset: f64) -> Solid {
-        self.union(&self.reflect(normal, offset), RFunction::MIN_MAX)
+        self.union(self.reflect(normal, offset), RFunction::MIN_MAX)
     }
 
     /// The solid together with its mirror image in the plane x = 0.

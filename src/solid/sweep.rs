@@ -185,7 +185,7 @@ impl Profile {
         if angle == TAU {
             return self.revolve();
         }
-        Solid::new(Opening { angle }).intersection(&self.revolve(), RFunction::MIN_MAX)
+        Solid::new(Opening { angle }).intersection(self.revolve(), RFunction::MIN_MAX)
     }
 
     /// Swept along a helix about the z axis: a thread, a spring.

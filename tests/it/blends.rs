@@ -52,7 +52,7 @@ fn displacement_and_ricci_agree_with_the_reference() -> Result<(), SolidError> {
     // Blends of blends are gauges; boxes are not.
     let three = Solid::superellipsoid(DVec3::ONE, 0.5, 0.5).twist(0.3);
     assert!(one.union_with(&two, ricci).union_with(&three, ricci).contains(p)?);
-    let error = one.union_with(&Solid::cuboid(DVec3::ONE), ricci).value(p);
+    let error = one.union_with(Solid::cuboid(DVec3::ONE), ricci).value(p);
     let Err(SolidError::NoGauge { path, operand: 1 }) = error else { panic!("{error:?}") };
     assert_eq!(path, "Ricci union");
     Ok(())
@@ -118,8 +118,8 @@ fn fillets_between_curved_operands_have_their_radius() -> Result<(), SolidError>
     // Two pipes that cross: the largest empty ball that touches both, anywhere along the
     // edge, has the radius.
     let pipe = Solid::cylinder(1.0, 20.0);
-    let cross = pipe.union_with(&pipe.rotate_x(std::f64::consts::FRAC_PI_2), Blend::Fillet { radius });
-    let plain = pipe.union(&pipe.rotate_x(std::f64::consts::FRAC_PI_2), RFunction::MIN_MAX);
+    let cross = pipe.union_with(pipe.rotate_x(std::f64::consts::FRAC_PI_2), Blend::Fillet { radius });
+    let plain = pipe.union(pipe.rotate_x(std::f64::consts::FRAC_PI_2), RFunction::MIN_MAX);
     let mut random = Random::new(72);
     let mut added = 0;
     for _ in 0..20_000 {
@@ -162,7 +162,7 @@ fn chamfers_have_their_width_at_any_angle() -> Result<(), SolidError> {
     }
     // An inner edge: a box less a slot, its rim broken.
     let block = Solid::cuboid(DVec3::new(4.0, 4.0, 2.0));
-    let part = block.difference_with(&Solid::cylinder(1.0, 3.0), Blend::Chamfer { width: 0.2 });
+    let part = block.difference_with(Solid::cylinder(1.0, 3.0), Blend::Chamfer { width: 0.2 });
     let leg = 0.2 / 2f64.sqrt();
     let face = DVec3::new(1.0 + 0.5 * leg, 0.0, 1.0 - 0.5 * leg);
     assert!(part.value(face)?.abs() < 1e-3, "{}", part.value(face)?);
@@ -287,7 +287,7 @@ fn beside_a_blend_the_solid_prunes() -> Result<(), SolidError> {
     // A long bar of a hundred balls, two of them blended: far from those, one leaf is left.
     let ball = |i: i32| Solid::sphere(0.6).translate(DVec3::X * f64::from(i));
     for blend in [Blend::Smooth { radius: 0.2 }, Blend::Fillet { radius: 0.1 }, Blend::Chamfer { width: 0.1 }] {
-        let pair = ball(0).union_with(&ball(1), blend);
+        let pair = ball(0).union_with(ball(1), blend);
         let bar = Solid::union_all((2..100).map(ball).chain([pair]), RFunction::MIN_MAX);
         let program = bar.surface_program()?;
         let small = |p: DVec3| Bounds::new(p - 0.05, p + 0.05);
@@ -328,7 +328,7 @@ fn offsets_move_the_surface_by_a_length() -> Result<(), SolidError> {
     near(either.value(DVec3::new(0.0, 0.15, 1.0))?, 0.0, 1e-12);
     // Rules other than min and max do not change lengths.
     let rule = RFunction::Zero { m: 2 };
-    let far = brick.union(&brick.translate(DVec3::X * 3.0), rule).offset(0.2);
+    let far = brick.union(brick.translate(DVec3::X * 3.0), rule).offset(0.2);
     near(far.value(DVec3::Z * 1.0)?, -0.3, 1e-12);
     let error = brick.shell(-0.1).value(DVec3::ZERO);
     let Err(SolidError::Parameter { path, source }) = error else { panic!("{error:?}") };
@@ -340,7 +340,7 @@ fn offsets_move_the_surface_by_a_length() -> Result<(), SolidError> {
 fn fillets_nest_to_a_limit() -> Result<(), SolidError> {
     let chain = |count: u32| {
         (1..count).fold(Solid::sphere(0.6), |all, i| {
-            all.union_with(&Solid::sphere(0.6).translate(DVec3::X * f64::from(i)), Blend::Fillet { radius: 0.1 })
+            all.union_with(Solid::sphere(0.6).translate(DVec3::X * f64::from(i)), Blend::Fillet { radius: 0.1 })
         })
     };
     let ten = chain(10);

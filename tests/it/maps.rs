@@ -379,7 +379,7 @@ fn repetition_says_what_is_wrong() {
     for solid in [wrong.repeat([9, 1, 1], DVec3::X), wrong.repeat_polar(8), wrong.repeat_linear(9, DVec3::ONE)] {
         assert!(text(solid).ends_with("sphere: radius is -1, allowed: 0.000000001 to 1000000000"));
     }
-    let nothing = ball.intersection(&ball.translate(DVec3::X * 9.0), RFunction::MIN_MAX);
+    let nothing = ball.intersection(ball.translate(DVec3::X * 9.0), RFunction::MIN_MAX);
     assert!(value(&nothing.repeat([3, 3, 3], DVec3::ONE), DVec3::ZERO) < 0.0);
     assert!(matches!(ball.repeat_polar(0).bounds(), Err(SolidError::Parameter { .. })));
 }

@@ -216,7 +216,7 @@ fn helices_have_their_volume() {
     let want = area * TAU * (2.0 + centroid) * 1.5;
     near(report.volume, want, 3e-2 * want);
     // On a core it is a screw.
-    let screw = solid.union(&Solid::cylinder(2.05, 4.0), RFunction::MIN_MAX);
+    let screw = solid.union(Solid::cylinder(2.05, 4.0), RFunction::MIN_MAX);
     assert_eq!(mesh(&screw, 48).check().shells, 1);
 }
 
