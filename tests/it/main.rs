@@ -9,6 +9,7 @@ mod forms;
 mod formula;
 mod lattices;
 mod laws;
+mod lengths;
 mod maps;
 mod mesh;
 mod models;

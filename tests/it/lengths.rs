@@ -1,0 +1,119 @@
+//! Offsets and shells: walls of the thickness that was asked for.
+
+use glam::DVec3;
+use rvachev::{
+    Capsule, Cone, Cuboid, Cylinder, Ellipsoid, GeneralisedSuperquadric, Prism, Pyramid, Region, RoundedCuboid, Solid,
+    SolidError, Sphere, Superellipsoid, Wedge,
+};
+
+use crate::support::Random;
+
+fn convex_leaves() -> Vec<(String, Solid)> {
+    let mut leaves: Vec<(String, Solid)> = vec![
+        ("sphere".into(), Sphere { radius: 0.8 }.into()),
+        ("box".into(), Cuboid { size: DVec3::new(1.0, 2.0, 1.5) }.into()),
+        ("cylinder".into(), Cylinder { radius: 0.6, height: 2.0 }.into()),
+        ("rounded box".into(), RoundedCuboid { size: DVec3::new(1.0, 2.0, 1.5), radius: 0.2 }.into()),
+        ("cone".into(), Cone { bottom_radius: 0.8, top_radius: 0.3, height: 1.4 }.into()),
+        ("capsule".into(), Capsule { radius: 0.4, height: 2.0 }.into()),
+        ("prism".into(), Prism::new(5, 0.8, 1.2).into()),
+        ("pyramid".into(), Pyramid::new(4, 1.0, 1.4).into()),
+        ("wedge".into(), Wedge { size: DVec3::new(1.0, 1.5, 1.2) }.into()),
+        ("ellipsoid".into(), Ellipsoid { semi_axes: DVec3::new(1.0, 0.6, 1.4) }.into()),
+        ("generalised".into(), GeneralisedSuperquadric::new(DVec3::new(1.0, 0.7, 0.9), [5.0, 3.0, 1.5]).into()),
+    ];
+    for [e1, e2] in [[0.1, 0.1], [0.3, 0.7], [0.1, 1.0], [1.0, 1.0], [1.0, 0.2], [1.5, 0.5], [1.2, 1.8], [2.0, 2.0]] {
+        let leaf = Superellipsoid::new(DVec3::new(1.0, 0.7, 0.5), e1, e2);
+        leaves.push((format!("superellipsoid {e1} {e2}"), leaf.into()));
+    }
+    leaves
+}
+
+/// The point where the way from `inside` along `direction` leaves the solid.
+fn way_out(solid: &Solid, inside: DVec3, direction: DVec3) -> Result<Option<DVec3>, SolidError> {
+    if !solid.contains(inside)? {
+        return Ok(None);
+    }
+    let (mut near, mut far) = (0.0, 10.0);
+    for _ in 0..50 {
+        let middle = 0.5 * (near + far);
+        if solid.contains(inside + middle * direction)? { near = middle } else { far = middle }
+    }
+    Ok(Some(inside + near * direction))
+}
+
+/// How far, relative to `by`, the offset of a solid is from its surface: least and most.
+fn measured(solid: &Solid, by: f64, count: usize) -> Result<(f64, f64), SolidError> {
+    let moved = solid.offset(by);
+    // Well inside, the wedge's slanted face being half way.
+    let bounds = solid.bounds()?;
+    let centre = bounds.center() - 0.2 * bounds.half_extents();
+    let mut random = Random::new(91);
+    let (mut least, mut most) = (f64::INFINITY, 0.0f64);
+    for _ in 0..count {
+        let Some(p) = way_out(&moved, centre, random.direction())? else { continue };
+        let Some(foot) = solid.closest_surface_point(p)? else { continue };
+        let thickness = p.distance(foot) / by.abs();
+        (least, most) = (least.min(thickness), most.max(thickness));
+    }
+    Ok((least, most))
+}
+
+#[test]
+fn walls_of_convex_leaves_have_their_thickness() -> Result<(), SolidError> {
+    for (name, solid) in convex_leaves() {
+        let half = solid.bounds()?.half_extents().min_element();
+        for part in [0.02, 0.1] {
+            for sign in [-1.0, 1.0] {
+                let (least, most) = measured(&solid, sign * part * half, 12)?;
+                println!("{name:24} {:+.0} % of the half-size: {least:.4} to {most:.4}", 100.0 * sign * part);
+                assert!(least > 0.98 && (0.98..1.02).contains(&most), "{name} {part} {sign}: {least} to {most}");
+            }
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn walls_keep_their_thickness_under_maps() -> Result<(), SolidError> {
+    let pill = Solid::superellipsoid(DVec3::new(1.0, 0.7, 0.5), 0.3, 0.7);
+    for (name, solid) in [
+        ("turned and scaled", pill.scale(1.5).rotate_x(0.4)),
+        ("stretched", pill.scale_axes(DVec3::new(1.0, 1.4, 0.8))),
+        ("twisted", pill.twist(0.5)),
+        ("tapered", pill.taper(0.3, -0.2, 0.5)),
+        ("bent", pill.bend(0.4, 0.3)),
+        ("box, stretched", Solid::cuboid(DVec3::ONE).scale_axes(DVec3::new(1.0, 2.0, 1.5))),
+    ] {
+        let half = solid.bounds()?.half_extents().min_element();
+        for sign in [-1.0, 1.0] {
+            let (least, most) = measured(&solid, sign * 0.1 * half, 12)?;
+            println!("{name:24} {sign:+}: {least:.4} to {most:.4}");
+            assert!(least > 0.97 && most < 1.03, "{name} {sign}: {least} to {most}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn shells_prune_and_their_boxes_hold() -> Result<(), SolidError> {
+    for (name, solid) in convex_leaves() {
+        let half = solid.bounds()?.half_extents().min_element();
+        let (shell, grown) = (solid.shell(0.1 * half), solid.offset(0.1 * half));
+        let (program, bounds) = (shell.surface_program()?, grown.bounds()?);
+        let mut random = Random::new(92);
+        for _ in 0..60 {
+            let p = random.point_in(&bounds.inflate(0.2));
+            assert!(bounds.contains(p) || !grown.contains(p)?, "{name} {p}");
+            let size = random.log_range(0.005, 0.3);
+            let region = rvachev::Bounds::new(p - size, p + size);
+            let inside = program.value(p) > 0.0;
+            match program.narrow(&region) {
+                Region::Inside => assert!(inside, "{name} {p}"),
+                Region::Outside => assert!(!inside, "{name} {p}"),
+                Region::Surface(narrowed) => assert_eq!(narrowed.value(p) > 0.0, inside, "{name} {p}"),
+            }
+        }
+    }
+    Ok(())
+}
