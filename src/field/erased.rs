@@ -89,6 +89,11 @@ pub(crate) struct Chunk<'a, E, const OUT: usize> {
 /// A [`Field`], erased to the evaluations that the engine runs.
 pub(crate) trait AnyField: Any + Debug + Send + Sync {
     fn name(&self) -> &'static str;
+    /// All that the value depends on, as text: leaves of one type with the same text are the
+    /// same.
+    fn signature(&self) -> String {
+        format!("{self:?}")
+    }
     fn bounds_under(&self, map: &DAffine3) -> Bounds;
     fn check(&self) -> Result<(), ParamError>;
     fn roundoff(&self, reach: f64) -> f64;

@@ -75,7 +75,12 @@ pub(super) struct Signature {
 impl Signature {
     pub(super) fn new(node: &Node, operands: Vec<u64>) -> Signature {
         let name = if matches!(node, Node::Affine { .. }) { "" } else { node.name() };
-        Signature { variant: discriminant(node), kind: node.kind(), name, parameters: node.parameters(), operands }
+        let parameters = match node {
+            // What is written out may leave out what is long.
+            Node::Leaf(field) => field.signature(),
+            _ => node.parameters(),
+        };
+        Signature { variant: discriminant(node), kind: node.kind(), name, parameters, operands }
     }
 }
 

@@ -1,11 +1,12 @@
 //! Solids of profiles: extruded, revolved, swept along a helix.
 
+use std::any::Any;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use super::{Node, Profile, Solid};
 use crate::field::{AnyWarp, HelixWarp, Opening, Revolution, Span, Turn, check};
-use crate::{Blend, ParamError, RFunction};
+use crate::{Blend, ParamError, Polygon, RFunction};
 
 /// How the edges of an end face are.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -33,7 +34,9 @@ impl Caps {
         match self {
             // The slab first: it says what is wrong with the parameters.
             Caps::Flat => slab.intersection(column, RFunction::Distance),
-            Caps::Chamfered(width) => slab.intersection_with(column, Blend::Chamfer { width }),
+            Caps::Chamfered(width) => {
+                slab.intersection_with(column, Blend::Chamfer { width: width * std::f64::consts::SQRT_2 })
+            }
             Caps::Rounded(radius) => slab.intersection_with(column, Blend::Fillet { radius }),
         }
     }
@@ -165,6 +168,9 @@ impl Profile {
     /// Revolved about the z axis: the profile's x is the distance from the axis and its y
     /// becomes z. The part with x below 0 is left out. Distances stay what they are.
     ///
+    /// Edges of a [`Polygon`] on the axis are no border of the solid; a border of any other
+    /// profile on the axis is one, so let those reach across it.
+    ///
     /// ```
     /// use rvachev::Profile;
     /// use glam::{DVec2, DVec3};
@@ -175,7 +181,17 @@ impl Profile {
     /// ```
     #[must_use]
     pub fn revolve(&self) -> Solid {
-        warped(&self.0, Revolution)
+        let across = match self.0.node() {
+            Node::Leaf(field) => {
+                let any: &dyn Any = &**field;
+                any.downcast_ref::<Polygon>().and_then(Polygon::across_axis)
+            }
+            _ => None,
+        };
+        match across {
+            Some(polygon) => warped(&Profile::from(polygon).0, Revolution),
+            None => warped(&self.0, Revolution),
+        }
     }
 
     /// Revolved about the z axis by `angle` radians (up to a full turn), from the x axis

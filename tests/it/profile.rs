@@ -317,3 +317,26 @@ fn caps_have_their_size() {
         near(hit.distance * (angle.cos() + angle.sin()), 0.3, 0.015);
     }
 }
+
+#[test]
+fn a_half_section_has_no_border_on_the_axis() -> Result<(), rvachev::SolidError> {
+    let section = [[0.0, 0.0], [4.0, 0.0], [9.0, 6.0], [8.0, 6.0], [3.5, 1.0], [0.0, 1.0], [0.0, 0.5]];
+    let bowl = Profile::polygon(section).revolve();
+    near(bowl.value(DVec3::new(0.0, 0.0, 0.5))?, 0.5, 1e-12);
+    near(bowl.value(DVec3::new(1.0, 0.0, 0.25))?, 0.25, 1e-12);
+    near(bowl.value(DVec3::new(0.0, 0.1, 1.5))?, -0.5, 1e-12);
+    let cone = Profile::polygon([[0.0, 0.0], [1.0, 0.0], [0.0, 2.0]]).revolve();
+    near(cone.value(DVec3::new(0.0, 0.0, 2.5))?, -0.5, 1e-12);
+    assert!(bowl.shell(0.1).value(DVec3::new(0.0, 0.0, 0.5))? < -0.3);
+    Ok(())
+}
+
+#[test]
+fn polygons_are_equal_by_their_points() -> Result<(), rvachev::SolidError> {
+    let a = Profile::polygon([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]).extrude(1.0);
+    let b = Profile::polygon([[5.0, 5.0], [6.0, 5.0], [5.0, 6.0]]).extrude(1.0);
+    assert_ne!(a, b);
+    let both = Solid::union_all([&a, &b], RFunction::MIN_MAX);
+    assert!(both.simplified().contains(DVec3::new(5.2, 5.2, 0.0))?);
+    Ok(())
+}

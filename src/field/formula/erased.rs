@@ -28,6 +28,10 @@ pub(super) fn turned_slope(slope: f64) -> f64 {
 }
 
 impl AnyField for Formula {
+    fn signature(&self) -> String {
+        self.text()
+    }
+
     fn name(&self) -> &'static str {
         "formula"
     }

@@ -184,6 +184,13 @@ impl Formula {
     }
 }
 
+impl Formula {
+    /// Bounds and operations, written out.
+    fn text(&self) -> String {
+        format!("{:?} {:?} {:?}", self.0.bounds, self.0.region, self.0.code.ops)
+    }
+}
+
 impl fmt::Debug for Formula {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Formula({} operations)", self.len())

@@ -55,7 +55,7 @@ use tree::Tree;
 pub struct Polygon(Arc<Shape>);
 
 struct Shape {
-    contours: usize,
+    contours: Vec<Vec<DVec2>>,
     /// In the order of the tree.
     edges: Vec<Edge>,
     tree: Tree,
@@ -101,7 +101,7 @@ impl Polygon {
             min = min.min(edge.start);
             max = max.max(edge.start);
         }
-        let mut shape = Shape { contours: contours.len(), edges, tree, min, max, list: None, error };
+        let mut shape = Shape { contours: contours.to_vec(), edges, tree, min, max, list: None, error };
         if (1..=FEW_EDGES).contains(&shape.edges.len()) {
             shape.list = Some(NearEdges::new(&shape.edges, Reference::Infinity, shape.reach()));
         }
@@ -131,6 +131,36 @@ impl Polygon {
         self.0.error.clone().map_or(Ok(()), Err)
     }
 
+    /// Of a polygon with x ≥ 0 and edges on x = 0, one that goes on beyond those edges: the
+    /// same to its right, with no border on the axis. (From there no distance is shorter than
+    /// before: what is added begins at ends of other edges and leads away.)
+    pub(crate) fn across_axis(&self) -> Option<Polygon> {
+        let beyond = -self.0.max.x;
+        if self.0.min.x != 0.0 || self.0.error.is_some() {
+            return None;
+        }
+        let mut found = false;
+        let extended = self.0.contours.iter().map(|contour| {
+            let count = contour.len();
+            let on_axis = |i: usize| contour[i % count].x == 0.0;
+            let mut points = Vec::with_capacity(count + 4);
+            for (i, point) in contour.iter().enumerate() {
+                let (before, after) = (on_axis(i + count - 1), on_axis(i + 1));
+                let out = DVec2::new(beyond, point.y);
+                match (on_axis(i), before, after) {
+                    (true, false, true) => points.extend([*point, out]),
+                    (true, true, false) => points.extend([out, *point]),
+                    (true, true, true) => {}
+                    _ => points.push(*point),
+                }
+                found |= on_axis(i) && after;
+            }
+            points
+        });
+        let extended: Vec<Vec<DVec2>> = extended.collect();
+        found.then(|| Polygon::of_points(&extended))
+    }
+
     /// The leaf for a solid.
     pub(crate) fn leaf(&self) -> Arc<dyn AnyField> {
         Arc::new(self.clone())
@@ -139,7 +169,7 @@ impl Polygon {
 
 impl fmt::Debug for Polygon {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Polygon({} contours, {} edges)", self.0.contours, self.0.edges.len())
+        write!(f, "Polygon({} contours, {} edges)", self.0.contours.len(), self.0.edges.len())
     }
 }
 
@@ -234,6 +264,10 @@ impl Shape {
 }
 
 impl AnyField for Polygon {
+    fn signature(&self) -> String {
+        format!("{:?}", self.0.contours)
+    }
+
     fn name(&self) -> &'static str {
         "polygon"
     }
