@@ -122,10 +122,11 @@ fn lanes_and_points(distance: &Distance, reach: DVec3) {
     );
     let placement = Placement::new(&map, 0.7, 0.0);
     let mut columns = [[0.0f32; CHUNK]; 3];
-    for i in 0..CHUNK {
+    let [xs, ys, zs] = &mut columns;
+    for ((x, y), z) in xs.iter_mut().zip(ys).zip(zs) {
         let p = reach * (DVec3::new(random.next(), random.next(), random.next()) * 3.0 - 1.5);
         let p = map.inverse().transform_point3(p).as_vec3();
-        (columns[0][i], columns[1][i], columns[2][i]) = (p.x, p.y, p.z);
+        (*x, *y, *z) = (p.x, p.y, p.z);
     }
     let points = columns.each_ref().map(|c| &c[..]);
     let mut out = [[0.0f32; CHUNK]; 4];
