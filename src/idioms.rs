@@ -190,10 +190,10 @@
 //! assert!(frame.contains([17.0, 0.0, 2.9])? && !frame.contains([0.0, 0.0, 0.0])?);
 //! assert!(!frame.contains([19.8, 0.0, 2.9])?);
 //!
-//! // A vase: x is the distance from the axis, y becomes z.
-//! let section = Profile::polygon([[0.0, -10.0], [6.0, -10.0], [4.0, 0.0], [7.0, 10.0], [0.0, 10.0]]);
+//! // A vase: x is the distance from the axis, y becomes z. The section reaches across the axis.
+//! let section = Profile::polygon([[-6.0, -10.0], [6.0, -10.0], [4.0, 0.0], [7.0, 10.0], [-7.0, 10.0], [-4.0, 0.0]]);
 //! let vase = section.revolve().shell(0.8) - Solid::cylinder(6.0, 4.0).translate([0.0, 0.0, 10.0]);
-//! assert!(vase.contains([0.0, 3.7, 0.0])? && !vase.contains([0.0, 3.0, 0.0])?);
+//! assert!(vase.contains([0.0, 3.7, 0.0])? && !vase.contains([0.0, 0.0, 0.0])?);
 //!
 //! // A thread: the section of its ridge, wound round a rod.
 //! let ridge = Profile::polygon([[-0.5, -1.0], [0.8, -0.2], [0.8, 0.2], [-0.5, 1.0]]);

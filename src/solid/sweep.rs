@@ -194,6 +194,9 @@ impl Profile {
     /// becomes z. The part with x below 0 is left out. Distances stay what they are:
     /// `f(x, y, z) = profile(√(x² + y²), z)`.
     ///
+    /// A section that is to be solid on the axis is drawn across it, best with its mirror image:
+    /// a border on the axis is a border, and leaves a hole without width there.
+    ///
     /// ```
     /// use rvachev::Profile;
     /// use glam::{DVec2, DVec3};
