@@ -47,37 +47,54 @@
 //!
 //! # 3. Mirrored pairs
 //!
-//! A mirror is a scaling by −1 along one axis. The part is stored once.
+//! [`mirrored_x`](crate::Solid::mirrored_x) is the part with its image beside it,
+//! [`reflect_x`](crate::Solid::reflect_x) the image alone; [`mirrored`](crate::Solid::mirrored)
+//! and [`reflect`](crate::Solid::reflect) take any plane. The part is stored once.
 //!
 //! ```
 //! use rvachev::Solid;
 //!
-//! let ear = Solid::cylinder(6.0, 4.0).translate([20.0, 0.0, 0.0]) - Solid::cylinder(3.0, 5.0).translate([20.0, 0.0, 0.0]);
-//! let bracket = Solid::cuboid([40.0, 8.0, 4.0]) | &ear | ear.scale_axes([-1.0, 1.0, 1.0]);
-//! assert_eq!(bracket.contains([25.0, 0.0, 0.0])?, bracket.contains([-25.0, 0.0, 0.0])?);
+//! let ear = Solid::cylinder(6.0, 4.0) - Solid::cylinder(3.0, 5.0);
+//! let bracket = Solid::cuboid([32.0, 8.0, 4.0]) | ear.translate([20.0, 0.0, 0.0]).mirrored_x();
+//! assert!(bracket.contains([25.0, 0.0, 0.0])? && bracket.contains([-25.0, 0.0, 0.0])?);
+//! assert!(!bracket.contains([-20.0, 0.0, 0.0])?);
+//!
+//! let right_hand = Solid::torus(8.0, 2.0) & Solid::half_space([0.6, 0.8, 0.0], 0.0);
+//! let left_hand = right_hand.reflect_x();
+//! assert_eq!(right_hand.value([-8.0, 0.0, 0.0])?, left_hand.value([8.0, 0.0, 0.0])?);
 //! # Ok::<(), rvachev::SolidError>(())
 //! ```
 //!
 //! # 4. Rows and rings of parts
 //!
-//! A loop or an iterator makes the parts, [`union_all`](crate::Solid::union_all) and
-//! [`difference_all`](crate::Solid::difference_all) join them at once; thousands are no
-//! burden. What a loop leaves behind, [`simplified`](crate::Solid::simplified) tidies.
+//! Equal parts at equal distances are repeated: [`repeat_linear`](crate::Solid::repeat_linear)
+//! makes a row, [`repeat`](crate::Solid::repeat) a grid,
+//! [`repeat_polar`](crate::Solid::repeat_polar) a ring. Space is folded onto one part, so that a
+//! thousand cost what two do. Parts that differ, or stand unevenly, come from a loop or an
+//! iterator: [`union_all`](crate::Solid::union_all) and
+//! [`difference_all`](crate::Solid::difference_all) join them at once, regions far from a part
+//! never see it, and what the loop leaves behind, [`simplified`](crate::Solid::simplified)
+//! tidies.
 //!
 //! ```
 //! use rvachev::{RFunction, Solid};
 //!
 //! let hole = Solid::cylinder(3.0, 20.0).translate([25.0, 0.0, 0.0]);
-//! let ring = (0..8).map(|i| hole.rotate_z_degrees(45.0 * f64::from(i)));
-//! let flange = Solid::cylinder(35.0, 10.0).difference_all(ring, RFunction::MIN_MAX);
+//! let flange = Solid::cylinder(35.0, 10.0) - hole.repeat_polar(8);
 //! assert!(!flange.contains([0.0, -25.0, 0.0])?);
-//! assert!(flange.simplified().node_count() < flange.node_count());
+//! // Eight holes for the price of two.
+//! assert_eq!(flange.surface_program()?.leaf_count(), 3);
+//!
+//! // Holes that grow from one to the next.
+//! let holes = (0..8).map(|i| {
+//!     let hole = Solid::cylinder(1.0 + 0.3 * f64::from(i), 20.0).translate([25.0, 0.0, 0.0]);
+//!     hole.rotate_z_degrees(45.0 * f64::from(i))
+//! });
+//! let dial = Solid::cylinder(35.0, 10.0).difference_all(holes, RFunction::MIN_MAX);
+//! assert!(dial.contains([25.0, 2.0, 0.0])? && !flange.contains([25.0, 2.0, 0.0])?);
+//! assert!(dial.simplified().node_count() < dial.node_count());
 //! # Ok::<(), rvachev::SolidError>(())
 //! ```
-//!
-//! <!-- TODO after the merge: the mirror of idiom 3 by the mirror method of solid/transform.rs;
-//! rows and rings here by linear and polar repetition, with a word on when to repeat (one
-//! operand, evaluated once or twice a point) and when to loop (parts that differ). -->
 //!
 //! # 5. Parts as functions of their parameters
 //!
@@ -105,20 +122,85 @@
 //!
 //! # 6. Fillets, chamfers and smooth blends
 //!
-//! <!-- TODO after the merge: a post on a plate with a fillet of radius 3, the same with a
-//! chamfer, and a smooth union of two limbs; assert a point in the fillet that the sharp union
-//! does not contain. One sentence on which joins take a radius in length units. -->
+//! A [`Blend`](crate::Blend) shapes the transition between two operands. `Fillet`, `Chamfer`
+//! and `Smooth` take a length; a fillet and a chamfer are of that size whatever the operands
+//! are, for they read true distances, and a smooth blend reads the operands' own values.
+//!
+//! ```
+//! use rvachev::{Blend, Solid};
+//!
+//! let plate = Solid::cuboid([60.0, 40.0, 6.0]);
+//! let post = Solid::cylinder(8.0, 20.0).translate([0.0, 0.0, 10.0]);
+//! let filleted = plate.union_with(&post, Blend::Fillet { radius: 3.0 });
+//! let chamfered = plate.union_with(&post, Blend::Chamfer { width: 3.0 });
+//! // In the corner between post and plate:
+//! let corner = [8.5, 0.0, 3.5];
+//! assert!(filleted.contains(corner)? && chamfered.contains(corner)?);
+//! assert!(!(&plate | &post).contains(corner)?);
+//!
+//! // A hole with rounded rims.
+//! let hole = Solid::cylinder(4.0, 50.0);
+//! let bored = filleted.difference_with(hole, Blend::Fillet { radius: 1.0 });
+//! assert!(!bored.contains([4.2, 0.0, 19.9])? && bored.contains([4.2, 0.0, 15.0])?);
+//!
+//! // Two limbs that flow into one another.
+//! let limb = Solid::capsule(5.0, 40.0);
+//! let branch = limb.rotate_y_degrees(50.0).translate([15.3, 0.0, 12.9]);
+//! let coral = limb.smooth_union(&branch, 4.0);
+//! assert!(coral.contains([5.2, 0.0, 11.2])? && !(limb | branch).contains([5.2, 0.0, 11.2])?);
+//! # Ok::<(), rvachev::SolidError>(())
+//! ```
 //!
 //! # 7. Shells and offsets
 //!
-//! <!-- TODO after the merge: a superellipsoid box with walls of 2 by `shell`, opened by
-//! cutting off its top; a clearance by `offset`; assert a point in the wall and one in the
-//! hollow. One sentence on joins below an offset acting as min and max. -->
+//! [`shell`](crate::Solid::shell) leaves a wall, [`offset`](crate::Solid::offset) moves the
+//! surface; both are lengths along the normal, whatever the field is below. Joins below them
+//! act as min and max: values near the surface are distances, which those of R-functions are
+//! not.
+//!
+//! ```
+//! use rvachev::Solid;
+//!
+//! // A tray: a hollow superellipsoid without its top.
+//! let body = Solid::superellipsoid([30.0, 20.0, 12.0], 0.3, 0.3);
+//! let tray = body.shell(2.0) - Solid::cuboid([70.0, 50.0, 10.0]).translate([0.0, 0.0, 12.0]);
+//! assert!(tray.contains([29.0, 0.0, 0.0])?);
+//! assert!(!tray.contains([27.0, 0.0, 0.0])? && !tray.contains([29.0, 0.0, 8.0])?);
+//!
+//! // A block with a pocket for it, 0.2 larger on every side.
+//! let block = Solid::cuboid([80.0, 60.0, 24.0]) - body.offset(0.2);
+//! assert!(!block.contains([30.1, 0.0, 0.0])? && block.contains([30.3, 0.0, 0.0])?);
+//! # Ok::<(), rvachev::SolidError>(())
+//! ```
 //!
 //! # 8. Profiles
 //!
-//! <!-- TODO after the merge: a polygon with a hole, extruded with chamfered caps; a section
-//! revolved to a vase; a section swept along a helix. Assert one point of each. -->
+//! What is drawn in the plane is a [`Profile`](crate::Profile): joined and moved like a solid,
+//! then [extruded](crate::Profile::extrude_with), [revolved](crate::Profile::revolve) or
+//! [swept along a helix](crate::Profile::sweep_helix).
+//!
+//! ```
+//! use rvachev::{Caps, Extrusion, Helix, Polygon, Profile, Solid};
+//!
+//! // A frame, its edges broken.
+//! let outline = [[-20.0, -15.0], [20.0, -15.0], [20.0, 10.0], [-20.0, 15.0]];
+//! let window = [[-14.0, -9.0], [14.0, -9.0], [14.0, 5.0], [-14.0, 8.0]];
+//! let frame = Profile::from(Polygon::new([outline, window]));
+//! let frame = frame.extrude_with(&Extrusion { caps: Caps::Chamfered(1.0), ..Extrusion::new(6.0) });
+//! assert!(frame.contains([17.0, 0.0, 2.9])? && !frame.contains([0.0, 0.0, 0.0])?);
+//! assert!(!frame.contains([19.8, 0.0, 2.9])?);
+//!
+//! // A vase: x is the distance from the axis, y becomes z. The section reaches across the axis.
+//! let section = Profile::polygon([[-6.0, -10.0], [6.0, -10.0], [4.0, 0.0], [7.0, 10.0], [-7.0, 10.0], [-4.0, 0.0]]);
+//! let vase = section.revolve().shell(0.8) - Solid::cylinder(6.0, 4.0).translate([0.0, 0.0, 10.0]);
+//! assert!(vase.contains([0.0, 3.7, 0.0])? && !vase.contains([0.0, 0.0, 0.0])?);
+//!
+//! // A thread: the section of its ridge, wound round a rod.
+//! let ridge = Profile::polygon([[-0.5, -1.0], [0.8, -0.2], [0.8, 0.2], [-0.5, 1.0]]);
+//! let screw = Solid::cylinder(5.0, 24.0) | ridge.sweep_helix(&Helix::new(5.0, 2.0, 10.0));
+//! assert!(screw.contains([5.7, 0.0, 0.0])? && !screw.contains([-5.7, 0.0, 0.0])?);
+//! # Ok::<(), rvachev::SolidError>(())
+//! ```
 //!
 //! # 9. A leaf of one's own
 //!

@@ -1,5 +1,6 @@
-//! Implicit-function (F-rep) solid modelling: superquadrics, supershapes and exact primitives,
-//! joined by R-functions, deformed, meshed and ray-marched.
+//! Implicit-function (F-rep) solid modelling: superquadrics, supershapes, exact primitives,
+//! lattices, profiles and formulas, joined by R-functions and blends, deformed, meshed and
+//! ray-marched.
 //!
 //! A solid is a function of space that is **positive inside**, zero on the surface and
 //! negative outside, in length units. You write it as an expression; it is compiled to a
@@ -22,7 +23,7 @@
 //! # Ok::<(), rvachev::SolidError>(())
 //! ```
 //!
-//! Building never fails. What is wrong is said when the solid is first used, with the path to
+//! A vector is a glam one, a tuple or an array: `[20.0, 12.0, 8.0]`. Building never fails. What is wrong is said when the solid is first used, with the path to
 //! the node, the parameter, its value and what is allowed.
 //!
 //! ```
@@ -48,15 +49,47 @@
 //! # Ok::<(), rvachev::SolidError>(())
 //! ```
 //!
-//! Maps deform: any affine one, [taper](Solid::taper), [twist](Solid::twist),
-//! [bend](Solid::bend).
+//! A [`Blend`] shapes the transition: a fillet or a chamfer of a given size, a smooth one.
+//! [`offset`](Solid::offset) and [`shell`](Solid::shell) are lengths too, whatever the field is
+//! like.
 //!
 //! ```
-//! use glam::DVec3;
+//! use rvachev::{Blend, Solid};
+//!
+//! let foot = Solid::cuboid([30.0, 20.0, 4.0]);
+//! let post = Solid::cylinder(5.0, 20.0).translate([0.0, 0.0, 10.0]);
+//! let stand = foot.union_with(post, Blend::Fillet { radius: 2.0 });
+//! assert!(stand.contains([5.4, 0.0, 2.4])?);
+//!
+//! let hollow = Solid::superellipsoid([20.0, 12.0, 8.0], 0.3, 0.5).shell(1.5);
+//! assert!(hollow.contains([19.0, 0.0, 0.0])? && !hollow.contains([18.0, 0.0, 0.0])?);
+//! # Ok::<(), rvachev::SolidError>(())
+//! ```
+//!
+//! What is drawn in the plane is a [`Profile`]: extruded, revolved, swept along a helix.
+//!
+//! ```
+//! use rvachev::Profile;
+//!
+//! let plate = Profile::rounded_rectangle([40.0, 20.0], 4.0) - Profile::circle(6.0);
+//! assert!(!plate.extrude(3.0).contains([0.0, 5.0, 0.0])?);
+//! // The right half of the section counts; it is drawn across the axis.
+//! let bowl = Profile::polygon([[-4.0, 0.0], [4.0, 0.0], [9.0, 6.0], [8.0, 6.0], [3.5, 1.0], [-3.5, 1.0]]).revolve();
+//! assert!(bowl.contains([0.0, 0.0, 0.5])? && !bowl.contains([0.0, 0.0, 3.0])?);
+//! # Ok::<(), rvachev::SolidError>(())
+//! ```
+//!
+//! Maps deform: any affine one, [taper](Solid::taper), [twist](Solid::twist),
+//! [bend](Solid::bend); [`repeat_polar`](Solid::repeat_polar) and its like make a thousand
+//! copies at the price of two.
+//!
+//! ```
 //! use rvachev::Solid;
 //!
-//! let drill = Solid::cuboid(DVec3::new(2.0, 1.0, 10.0)).twist(0.5);
+//! let drill = Solid::cuboid([2.0, 1.0, 10.0]).twist(0.5);
 //! assert!(drill.bounds()?.max.x < 1.2);
+//! let holes = Solid::cylinder(1.0, 9.0).translate([12.0, 0.0, 0.0]).repeat_polar(12);
+//! assert!(holes.contains([0.0, 12.0, 0.0])?);
 //! # Ok::<(), rvachev::SolidError>(())
 //! ```
 //!
@@ -108,6 +141,140 @@
 //! [Twelve idioms](idioms) show how things are commonly built: plates with holes, named parts,
 //! rings of parts, leaves of one's own.
 //!
+//! # The catalogue
+//!
+//! Formula, parameters with their ranges, source and an example are with each item; formulas
+//! without a source are elementary geometry, derived here. Most leaves have a constructor on
+//! [`Solid`] ([`Solid::torus`]), all become solids by `Solid::from(leaf)`, and stand as they are
+//! where a solid is taken.
+//!
+//! ## Leaves
+//!
+//! | superquadrics | | value |
+//! |---|---|---|
+//! | [`Superellipsoid`] | boxes, cylinders, ellipsoids, octahedra, and everything between | gauge |
+//! | [`GeneralisedSuperquadric`] | three exponents, one along each axis | gauge |
+//! | [`Supertoroid`] | rings with round, square and bevelled sections | gauge of the tube |
+//! | [`Superhyperboloid`] | one sheet or two, along z or x, clipped | scaled difference of norms |
+//!
+//! | supershapes | | value |
+//! |---|---|---|
+//! | [`Supershape`] | the product of two [`Gielis`] curves, of any real symmetry | gauge |
+//! | [`Turns`] | the first turn, outer envelope or inner core of a curve of symmetry P/Q | |
+//! | [`Radius`] | the standard radius, or the rational one for previews | |
+//!
+//! | primitives | | value |
+//! |---|---|---|
+//! | [`Sphere`], [`Cuboid`], [`Cylinder`] | | distance |
+//! | [`RoundedCuboid`], [`Capsule`] | a box with rounded edges, a rod with round ends | distance |
+//! | [`Cone`], [`Pyramid`], [`Prism`], [`Wedge`] | pointed or truncated; on regular polygons; a ramp | distance |
+//! | [`Torus`] | a ring of circular section | distance |
+//! | [`Ellipsoid`] | three semi-axes | bound |
+//! | [`HalfSpace`], [`Slab`] | unbounded: below a plane, between two | distance |
+//!
+//! | lattices | | value |
+//! |---|---|---|
+//! | [`SheetLattice`] | a wall along a gyroid, Schwarz P or D ([`MinimalSurface`]), unbounded | near the wall nearly the distance |
+//! | [`NetworkLattice`] | one side of such a surface, by its share of the volume, unbounded | as long as it is steep |
+//! | [`Grading`] | a thickness or share that varies in space: a number or your formula | |
+//!
+//! | formulas | | value |
+//! |---|---|---|
+//! | [`Formula`] | a fidget tree, or the text of a `.vm` file ([`Formula::from_vm`]) | what it gives |
+//! | [`Field`] | a leaf of your own, in Rust; made a solid by [`Solid::new`] | what it gives |
+//!
+//! ## Profiles
+//!
+//! Shapes of the plane, joined, moved and offset by the verbs of [`Profile`], which are those of
+//! solids.
+//!
+//! | profile | | value |
+//! |---|---|---|
+//! | [`Circle`], [`Rectangle`], [`RegularPolygon`] | rectangles with sharp or round corners | distance |
+//! | [`Polygon`] | any contours, with holes and islands, of thousands of edges | distance |
+//! | [`Superellipse`] | the plane section of a superellipsoid | gauge |
+//! | [`Superpolygon`] | what is within a [`Gielis`] curve | gauge |
+//! | [`Profile::formula`] | a fidget tree of x and y | what it gives |
+//!
+//! | becomes a solid by | |
+//! |---|---|
+//! | [`extrude`](Profile::extrude), [`extrude_with`](Profile::extrude_with) | along z; with an [`Extrusion`] twisted, scaled, its edges sharp, chamfered or rounded ([`Caps`]) |
+//! | [`revolve`](Profile::revolve), [`revolve_by`](Profile::revolve_by) | about z, all the way or by an angle |
+//! | [`sweep_helix`](Profile::sweep_helix) | along a [`Helix`]: threads and springs |
+//! | [`column`](Profile::column) | the unbounded column over it |
+//!
+//! ## Joins and blends
+//!
+//! | join | operator | many at once |
+//! |---|---|---|
+//! | [`union`](Solid::union) | `a \| b` | [`union_all`](Solid::union_all) |
+//! | [`intersection`](Solid::intersection) | `a & b` | [`intersection_all`](Solid::intersection_all) |
+//! | [`difference`](Solid::difference) | `a - b` | [`difference_all`](Solid::difference_all) |
+//! | [`symmetric_difference`](Solid::symmetric_difference) | `a ^ b` | |
+//! | [`complement`](Solid::complement) | `!a` | |
+//!
+//! The methods take an [`RFunction`]: `MIN_MAX`, `Alpha`, `Zero`, `P`, `Associative`, `Distance`.
+//! [`union_with`](Solid::union_with), [`intersection_with`](Solid::intersection_with) and
+//! [`difference_with`](Solid::difference_with) take a [`Blend`]:
+//!
+//! | blend | |
+//! |---|---|
+//! | [`Blend::Fillet`] | a rounding of constant radius, a length |
+//! | [`Blend::Chamfer`] | a flat face of constant width, a length |
+//! | [`Blend::Smooth`] | a smooth transition of compact support; also [`smooth_union`](Solid::smooth_union) and its like |
+//! | [`Blend::Displacement`] | Pasko and Savchenko's blend, which reaches everywhere |
+//! | [`Blend::Ricci`] | Ricci's blend of gauges |
+//!
+//! ## Levels, offsets and shells
+//!
+//! | length | |
+//! |---|---|
+//! | [`level`](Solid::level) | values moved by a number |
+//! | [`offset`](Solid::offset) | the surface moved outwards or inwards by a distance |
+//! | [`shell`](Solid::shell) | a wall of even thickness inside the surface |
+//!
+//! ## Maps
+//!
+//! | map | |
+//! |---|---|
+//! | [`translate`](Solid::translate), [`rotate_z_degrees`](Solid::rotate_z_degrees) and its like, [`scale`](Solid::scale), [`affine`](Solid::affine) | affine ones |
+//! | [`reflect`](Solid::reflect), [`mirrored`](Solid::mirrored) | the mirror image alone, and beside the solid |
+//! | [`repeat`](Solid::repeat), [`repeat_linear`](Solid::repeat_linear), [`repeat_polar`](Solid::repeat_polar) | grids, rows and rings of copies |
+//! | [`elongate`](Solid::elongate) | straight pieces inserted |
+//! | [`taper`](Solid::taper), [`twist`](Solid::twist), [`bend`](Solid::bend) | Barr's deformations |
+//! | [`taper_by`](Solid::taper_by), [`twist_by`](Solid::twist_by) | by any [`Law`] of z: [`LinearLaw`], [`SmoothStep`], [`SineWave`], [`LawTable`], a number, your own |
+//!
+//! ## Solids as values
+//!
+//! | | |
+//! |---|---|
+//! | [`named`](Solid::named) | the name that errors, [`owner`](Solid::owner) and the tree speak of |
+//! | [`Display`](Solid#impl-Display-for-Solid) | the solid as an indented tree |
+//! | [`==`](Solid#impl-PartialEq-for-Solid), `Hash` | by structure: solids may be keys of a map |
+//! | [`simplified`](Solid::simplified) | the same values from fewer nodes |
+//!
+//! # What values mean
+//!
+//! A value is a length, positive inside, and its sign is that of the solid. How far it is from the
+//! distance to the surface depends on what the solid is made of:
+//!
+//! | made of | value | slope |
+//! |---|---|---|
+//! | leaves by **distance** | the true distance, everywhere | 1 |
+//! | ellipsoid: a **bound** | never larger than the distance in absolute value | at most 1 |
+//! | superquadrics: **gauges** `r·(1 − G)`, superhyperboloids | a bound for exponents `e` of at most 2 (`n` of at least 1); right to the first order where the surface is nearest to the middle, less steep elsewhere | at most 1; unbounded on the planes where it is pinched |
+//! | supershapes and superpolygons: gauges | `r·(1 − G)` | not promised |
+//! | sheet lattices | the distance to a few per cent near the wall | at most 1.08 to 1.63 |
+//! | network lattices | 0.6 to 1 of the distance near the surface | at most 1.32 to 1.54 |
+//! | formulas | whatever they give | not promised |
+//! | joins by `MIN_MAX`, smooth blends | a bound if the operands have one | that of the operands |
+//! | other R-functions | of unit slope at the surface (but `Zero`), smooth beyond | see [`RFunction`] |
+//! | fillets, chamfers, offsets, shells | distances near the surface | about 1 |
+//! | rigid motions, uniform scaling, reflections | what they are of the operand, to scale | that of the operand |
+//! | other affine maps | a bound if the operand has one | at most that of the operand |
+//! | repetition, elongation, revolution | distance and bound stay what they are outside | that of the operand |
+//! | taper, twist, bend, sweep | the operand's at the pre-image | grows with the deformation |
+//!
 //! # Accuracy in single precision
 //!
 //! Lanes of `f32` against double precision, relative to the size of the leaf plus `|f|`, from
@@ -116,11 +283,16 @@
 //!
 //! | leaf | bound | found |
 //! |---|---|---|
-//! | superellipsoid, exponents 0.05 to 2.5 | 4·10⁻⁶ | 3.2·10⁻⁷ |
-//! | sphere, box, cylinder, half-space | 4·10⁻⁶ | 5.0·10⁻⁷ |
+//! | superellipsoid, exponents 0.05 to 2.5 | 4·10⁻⁶ | 3.5·10⁻⁷ |
+//! | sphere, box, cylinder, half-space | 4·10⁻⁶ | 5.3·10⁻⁷ |
 //! | supertoroid, exponents 0.05 to 2; superhyperboloid, 0.05 to 2.5; generalised superquadric, 0.5 to 60 | 4·10⁻⁶ | 3.5·10⁻⁷ |
-//! | rounded box, capsule, cone, torus, ellipsoid, prism, pyramid, wedge, slab | 4·10⁻⁶ | within |
-//! | supershape, m up to 12, n2 and n3 at least 1 | 4·10⁻⁶ times max(n2, n3)/n1, at least 4·10⁻⁶ | within |
+//! | rounded box, capsule, cone, torus, ellipsoid, prism, pyramid, wedge, slab | 4·10⁻⁶ | 4.7·10⁻⁷ |
+//! | sheet and network lattices, relative to the cell, within ten cells | 4·10⁻⁶ | 1.1·10⁻⁶ |
+//! | supershape, m up to 12, n2 and n3 at least 1 | 4·10⁻⁶ times max(n2, n3)/n1, at least 4·10⁻⁶ | 7·10⁻⁷ |
+//! | polygon | 4·10⁻⁶ | within |
+//! | formula | a bound carried along its operations, for each region anew | within |
+//!
+//! Wherever a sign could be wrong by these, it is settled in double precision.
 //!
 //! # Below the verbs
 //!

@@ -22,6 +22,17 @@ use crate::{Norm, Real};
 
 /// How two operands are joined with the transition between them shaped.
 ///
+/// ```text
+/// Smooth         x∧y = min(x, y) − max(radius − |x − y|, 0)²/(4·radius)
+/// Fillet         |p − q| − radius, q the centre of the ball that rolls along the edge
+/// Chamfer        a plane across the edge that cuts a face of the width
+/// Displacement   x∧y = x + y − √(x² + y²) + height/(1 + (x/falloff₀)² + (y/falloff₁)²)
+/// Ricci          G = (G₁^p + G₂^p)^(1/p) for the intersection, (G₁^−p + G₂^−p)^(−1/p) for
+///                the union; the value is r·(1 − G)
+///
+/// x∨y = −(−x ∧ −y), but for the displacement, which is added to either
+/// ```
+///
 /// Operands are read as they are: where a leaf's value is a true distance, lengths hold;
 /// where it is a gauge they hold near its surface. A fillet and a chamfer read distances from
 /// every leaf.
@@ -33,6 +44,14 @@ use crate::{Norm, Real};
 /// | `Chamfer` | `width`, length, 10⁻⁹ to 10⁹ | a flat face of that width along the edge |
 /// | `Displacement` | `height`, length (adds material if positive); `falloff`, lengths, 10⁻⁹ to 10⁹ | everywhere, falling with the square of the values |
 /// | `Ricci` | `p`, 1.001 to 1000: larger is sharper | everywhere; operands must be gauges |
+///
+/// The first three keep the Lipschitz constant of their operands (those of a fillet and a
+/// chamfer are distances, with 1); a displacement and Ricci's blend promise none.
+///
+/// Sources: A. A. Pasko and V. V. Savchenko, *Blending operations for the functionally based
+/// constructive geometry* (1994); A. Ricci, *A constructive geometry for computer graphics*
+/// (1973); J. R. Rossignac and A. A. G. Requicha, *Constant-radius blending in solid modelling*
+/// (1984).
 ///
 /// ```
 /// use rvachev::{Blend, Solid};

@@ -40,8 +40,14 @@ const TINY: f64 = 1e-30;
 /// A generalised superquadric about the origin, valued `f = r_in·(1 − G)` in length units,
 /// where `r_in` is the radius of the largest inscribed sphere (to 10⁻⁶).
 ///
-/// Convex and 1-Lipschitz where all exponents are at least 1; below, it is pinched along the
-/// axis planes, the slope is unbounded there and no Lipschitz constant exists.
+/// ```text
+/// surface   |x/a₁|^n₁ + |y/a₂|^n₂ + |z/a₃|^n₃ = 1
+/// gauge     G with |x/(a₁G)|^n₁ + |y/(a₂G)|^n₂ + |z/(a₃G)|^n₃ = 1, by Newton's method
+/// ```
+///
+/// Convex and 1-Lipschitz where all exponents are at least 1, and so never more than the
+/// distance; below, it is pinched along the axis planes, the slope is unbounded there and no
+/// Lipschitz constant exists.
 ///
 /// | parameter | unit | range |
 /// |---|---|---|

@@ -30,7 +30,33 @@ use std::fmt::Debug;
 
 use crate::{Interval, Real};
 
-/// A surface that repeats in three directions and divides space into two networks.
+/// A surface that repeats in three directions and divides space into two networks, by its
+/// trigonometric approximation g = 0.
+///
+/// With (X, Y, Z) = 2π·p/cell, s and c their sines and cosines:
+///
+/// ```text
+/// gyroid     g = s_x·c_y + s_y·c_z + s_z·c_x
+/// Schwarz P  g = c_x + c_y + c_z
+/// Schwarz D  g = s_x·s_y·s_z + s_x·c_y·c_z + c_x·s_y·c_z + c_x·c_y·s_z
+/// N = √(|∇g|² + w·(2π/cell)²·g²)
+/// ```
+///
+/// The lattices made of them divide by N: g/N is nearly the distance to the surface. For walls w
+/// is 0.7, 0.3 and 1, for networks 0.7, 1 and 1.
+///
+/// Source: A. H. Schoen, *Infinite Periodic Minimal Surfaces without Self-Intersections*, NASA
+/// TN D-5541 (1970); N and w are derived here.
+///
+/// ```
+/// use rvachev::{MinimalSurface, SheetLattice, Solid};
+///
+/// // The gyroid passes through the origin, Schwarz P does not.
+/// let wall = |surface| Solid::from(SheetLattice { surface, cell: 8.0, thickness: 0.5 });
+/// assert!(wall(MinimalSurface::Gyroid).contains([0.0, 0.0, 0.0])?);
+/// assert!(!wall(MinimalSurface::SchwarzP).contains([0.0, 0.0, 0.0])?);
+/// # Ok::<(), rvachev::SolidError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum MinimalSurface {

@@ -26,6 +26,18 @@ use crate::{Monotone, Norm, Real};
 /// How set operations combine values. All rules give the same solid; they differ in the
 /// field around and inside it.
 ///
+/// ```text
+/// Alpha(α)         x∧y = (x + y − √(x² + y² − 2αxy))/(1 + α)
+/// Zero { m }       x∧y = (x + y − √(x² + y²))·(x² + y²)^(m/2)
+/// P(p)             x∧y = x + y − (|x|^p + |y|^p)^(1/p)
+/// Associative(p)   x∧y = (x^−p + y^−p)^(−1/p) where both are positive,
+///                        else −(max(−x, 0)^p + max(−y, 0)^p)^(1/p)
+/// Distance         x∧y = min(x, y) where both are positive,
+///                        else −√(max(−x, 0)² + max(−y, 0)²)
+///
+/// x∨y = −(−x ∧ −y)
+/// ```
+///
 /// | rule | field away from the surface | associative |
 /// |---|---|---|
 /// | `Alpha(1.0)` | min and max: 1-Lipschitz, creased where operands are equal | yes |
@@ -37,6 +49,21 @@ use crate::{Monotone, Norm, Real};
 ///
 /// The operators `|`, `&`, `-`, `^`, `!` use `P(2.0)`. Meshing and rendering see the solid
 /// only and cost the same for every rule.
+///
+/// Sources: V. L. Rvachev, *Theory of R-functions and some of its applications* (1982);
+/// V. Shapiro, *Semi-analytic geometry with R-functions* (2007); Y. D. Fougerolle et al.
+///
+/// ```
+/// use rvachev::{RFunction, Solid};
+///
+/// let (block, hole) = (Solid::cuboid([4.0, 4.0, 2.0]), Solid::cylinder(1.0, 3.0));
+/// let rules = [RFunction::MIN_MAX, RFunction::Alpha(0.0), RFunction::P(4.0), RFunction::Associative(2.0)];
+/// for rule in rules {
+///     let plate = block.difference(&hole, rule);
+///     assert!(plate.contains([1.5, 0.0, 0.5])? && !plate.contains([0.5, 0.0, 0.5])?);
+/// }
+/// # Ok::<(), rvachev::SolidError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RFunction {
     /// R_α with −1 < α ≤ 1.

@@ -40,11 +40,20 @@ enum Sheets {
 }
 
 /// A superhyperboloid about an axis through the origin, clipped at `±half_length` along it,
-/// valued `min(s·h, half_length − |z|)` in length units (see the formulas of the constructors),
-/// where `1/s` is the largest slope of h.
+/// valued `f = min(s·h, half_length − |z|)` in length units (|x| in the forms along x), where
+/// `1/s` is the largest slope of h.
 ///
-/// 1-Lipschitz where both exponents are at most 2; beyond, no Lipschitz constant exists.
-/// It is not convex.
+/// ```text
+/// one sheet, z      h = ‖(1, z/a₃)‖₁ − ‖(x/a₁, y/a₂)‖₂
+/// one sheet, x      h = ‖(1, x/a₁)‖₁ − ‖(y/a₂, z/a₃)‖₂
+/// two sheets, z     h = |z/a₃| − ‖(1, ‖(x/a₁, y/a₂)‖₂)‖₁
+/// two sheets, x     h = |x/a₁| − ‖(y/a₂, ‖(1, z/a₃)‖₁)‖₂
+///
+/// ‖(u, v)‖ᵢ = (|u|^(2/eᵢ) + |v|^(2/eᵢ))^(eᵢ/2)
+/// ```
+///
+/// 1-Lipschitz where both exponents are at most 2, and so never more than the distance;
+/// beyond, no Lipschitz constant exists. It is not convex.
 ///
 /// | parameter | unit | range |
 /// |---|---|---|
@@ -55,6 +64,9 @@ enum Sheets {
 ///
 /// Single-precision lanes keep within `4·10⁻⁶·(size + |f|)` of the true value for exponents
 /// of 0.05 to 2.5, `size` being the largest half-extent of the solid.
+///
+/// Source: A. H. Barr, *Superquadrics and angle-preserving transformations* (1981), whose form
+/// of two sheets is the one along x.
 ///
 /// ```
 /// use rvachev::{Solid, Superhyperboloid};

@@ -39,7 +39,21 @@ use crate::{Bounds, Interval, Norm, Real};
 /// A supershape about the origin, valued `f = r_in·(1 − G)` in length units, where `r_in` is
 /// the radius of a sphere about the origin inside it.
 ///
-/// In general not convex: no Lipschitz constant is promised.
+/// With r₁ the radius of the equator, r₂ that of the meridian, and (x, y, z) in units of the
+/// semi-axes:
+///
+/// ```text
+/// surface   (r₁(θ)r₂(φ) cos θ cos φ, r₁r₂ sin θ cos φ, r₂ sin φ)
+/// gauge     θ = atan2(y, x),  ρ = √(x² + y²),  φ = atan2(z·r₁, ρ)
+///           G = √((ρ/r₁)² + z²) / r₂(φ)
+/// ```
+///
+/// A gauge, not a distance; in general not convex: no Lipschitz constant is promised.
+///
+/// Creases: at θ = π where the equator's m is not even (but not for odd m with n2 = n3 and
+/// a = b); along meridians where turns of an envelope cross; wherever a curve has a corner
+/// itself (see [`Gielis`]). Where the meridian's radius is not stationary at the pole there is
+/// a tip.
 ///
 /// | parameter | unit | range |
 /// |---|---|---|
@@ -51,6 +65,9 @@ use crate::{Bounds, Interval, Norm, Real};
 /// Single-precision lanes keep within `4·10⁻⁶·(size + |f|)·max(n2, n3)/n1` (at least
 /// `4·10⁻⁶·(size + |f|)`) of the true value for m up to 12 and n2, n3 of at least 1; below 1
 /// slopes are unbounded at the zeros of the sine and cosine, and errors grow to some `(10⁻⁷ m)^n`.
+///
+/// Sources: Y. D. Fougerolle et al.; J. Gielis, B. Beirinckx, E. Bastiaens, *Superquadrics
+/// with rational and irrational symmetry* (2003).
 ///
 /// ```
 /// use rvachev::{Gielis, Solid, Supershape, Turns};

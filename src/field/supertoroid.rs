@@ -34,8 +34,13 @@ const LARGEST_RING: f64 = 1000.0;
 /// A supertoroid about the z axis, centred at the origin, valued `f = r·(1 − G)` in length
 /// units, where `1/r` is the largest slope of the gauge G.
 ///
-/// 1-Lipschitz where both exponents are at most 2; beyond, it is pinched and no Lipschitz
-/// constant exists. It is not convex.
+/// ```text
+/// ρ = (|x/a₁|^(2/e₂) + |y/a₂|^(2/e₂))^(e₂/2)
+/// G = (|ρ − ring|^(2/e₁) + |z/a₃|^(2/e₁))^(e₁/2)
+/// ```
+///
+/// 1-Lipschitz where both exponents are at most 2, and so never more than the distance;
+/// beyond, it is pinched and no Lipschitz constant exists. It is not convex.
 ///
 /// | parameter | unit | range |
 /// |---|---|---|
@@ -46,6 +51,9 @@ const LARGEST_RING: f64 = 1000.0;
 ///
 /// Single-precision lanes keep within `4·10⁻⁶·(size + |f|)` of the true value for exponents
 /// of 0.05 to 2, `size` being the larger of x and y half-extent of the solid.
+///
+/// Source: A. H. Barr, *Superquadrics and angle-preserving transformations* (1981), who writes
+/// `R/√(a₁² + a₂²)` for the ring.
 ///
 /// ```
 /// use rvachev::{Solid, Supertoroid};

@@ -8,7 +8,17 @@ impl Solid {
         Solid::from_node(node(operation, [self.clone(), other.into()], blend))
     }
 
-    /// What is in either solid, and what `blend` adds between them.
+    /// What is in either solid, and what `blend` adds between them. The parameters and their
+    /// ranges: [`Blend`].
+    ///
+    /// ```
+    /// use rvachev::{Blend, Solid};
+    ///
+    /// let plate = Solid::cuboid([20.0, 20.0, 2.0]);
+    /// let post = plate.union_with(Solid::cylinder(3.0, 12.0), Blend::Chamfer { width: 1.0 });
+    /// assert!(post.contains([3.2, 0.0, 1.2])? && !post.contains([3.6, 0.0, 1.6])?);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
     #[must_use]
     pub fn union_with(&self, other: impl Into<Solid>, blend: Blend) -> Solid {
         self.blended(Operation::Union, other, blend)

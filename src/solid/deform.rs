@@ -7,9 +7,12 @@ use crate::Law;
 use crate::field::{Elongate, TaperBy, TwistBy};
 
 impl Solid {
-    /// Tapered along z by any laws of z: sections are scaled by `x_law` along x and by `y_law`
-    /// along y. Both are 0.001 to 1000 over the heights of the solid's box, which is checked;
-    /// beyond these heights they are held in that range.
+    /// Tapered along z by any [laws](crate::Law) of z: sections are scaled by `x_law` along x
+    /// and by `y_law` along y.
+    ///
+    /// | parameter | unit | range |
+    /// |---|---|---|
+    /// | `x_law`, `y_law` | none | 0.001 to 1000 over the heights of the solid's box, which is checked; beyond these heights they are held in that range |
     ///
     /// The field is the operand's at the pre-image, not rescaled: not Lipschitz in general.
     ///
@@ -29,8 +32,12 @@ impl Solid {
         self.warp(TaperBy { x: x_law, y: y_law })
     }
 
-    /// Twisted about the z axis by any law of z: the section at z is turned by `angle` radians,
-    /// which is within ±10⁴ over the heights of the solid's box.
+    /// Twisted about the z axis by any [law](crate::Law) of z: the section at z is turned by
+    /// `angle`, from x towards y.
+    ///
+    /// | parameter | unit | range |
+    /// |---|---|---|
+    /// | `angle` | radians | ±10⁴ over the heights of the solid's box, which is checked; beyond these heights it is held in that range |
     ///
     /// The field is the operand's at the pre-image, not rescaled: its slope grows with that of
     /// the law times the distance from the axis.
@@ -51,8 +58,12 @@ impl Solid {
     }
 
     /// Elongated by straight pieces: the parts on either side of each coordinate plane move
-    /// outward by `half`, and the section in the plane is drawn out between them. Each of
-    /// `half` is 0 to 10⁹ length units; the solid grows by twice that.
+    /// outward by `half`, and the section in the plane is drawn out between them:
+    /// `f(p) = solid(p − clamp(p, −half, half))`.
+    ///
+    /// | parameter | unit | range |
+    /// |---|---|---|
+    /// | `half` | length | 0 to 10⁹ along each axis; the solid grows by twice that |
     ///
     /// 1-Lipschitz if the operand is, and outside the true distance if the operand has it.
     ///

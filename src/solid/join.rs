@@ -39,24 +39,56 @@ impl Solid {
     }
 
     /// What is in both solids, joined by `rule`.
+    ///
+    /// ```
+    /// use rvachev::{RFunction, Solid};
+    ///
+    /// let die = Solid::cuboid([2.0, 2.0, 2.0]).intersection(Solid::sphere(1.35), RFunction::MIN_MAX);
+    /// assert!(die.contains([0.9, 0.9, 0.0])? && !die.contains([0.9, 0.9, 0.9])?);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
     #[must_use]
     pub fn intersection(&self, other: impl Into<Solid>, rule: RFunction) -> Solid {
         Solid::join(Operation::Intersection, rule, vec![self.clone(), other.into()])
     }
 
     /// What is in this solid and not in `other`, joined by `rule`.
+    ///
+    /// ```
+    /// use rvachev::{RFunction, Solid};
+    ///
+    /// let tube = Solid::cylinder(3.0, 8.0).difference(Solid::cylinder(2.0, 9.0), RFunction::P(4.0));
+    /// assert!(tube.contains([2.5, 0.0, 0.0])? && !tube.contains([0.0, 0.0, 0.0])?);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
     #[must_use]
     pub fn difference(&self, other: impl Into<Solid>, rule: RFunction) -> Solid {
         Solid::join(Operation::Difference, rule, vec![self.clone(), other.into()])
     }
 
     /// What is in exactly one of the solids, joined by `rule`.
+    ///
+    /// ```
+    /// use rvachev::{RFunction, Solid};
+    ///
+    /// let (left, right) = (Solid::sphere(2.0), Solid::sphere(2.0).translate([2.0, 0.0, 0.0]));
+    /// let moons = left.symmetric_difference(right, RFunction::MIN_MAX);
+    /// assert!(moons.contains([-1.0, 0.0, 0.0])? && !moons.contains([1.0, 0.0, 0.0])?);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
     #[must_use]
     pub fn symmetric_difference(&self, other: impl Into<Solid>, rule: RFunction) -> Solid {
         Solid::join(Operation::SymmetricDifference, rule, vec![self.clone(), other.into()])
     }
 
-    /// Everything outside this solid.
+    /// Everything outside this solid: the value with the other sign.
+    ///
+    /// ```
+    /// use rvachev::Solid;
+    ///
+    /// assert_eq!(Solid::sphere(1.0).complement().value([3.0, 0.0, 0.0])?, 2.0);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
     #[must_use]
     pub fn complement(&self) -> Solid {
         Solid::from_node(Node::Complement(self.clone()))

@@ -11,6 +11,13 @@ impl Solid {
     /// solid's level −`value`. A gauge's levels are scaled copies; for a wall of even
     /// thickness see [`offset`](Solid::offset) and [`shell`](Solid::shell).
     ///
+    /// | parameter | unit | range |
+    /// |---|---|---|
+    /// | `value` | length | ±10⁹ |
+    ///
+    /// The Lipschitz constant stays; a distance becomes a bound of the distance where corners
+    /// are moved.
+    ///
     /// ```
     /// use rvachev::Solid;
     /// use glam::DVec3;
@@ -31,6 +38,10 @@ impl Solid {
     /// below act as min and max, so an offset edge stays sharp inside and is round outside
     /// of each leaf, and values are distances near the surface.
     ///
+    /// | parameter | unit | range |
+    /// |---|---|---|
+    /// | `distance` | length | ±10⁹; positive grows the solid |
+    ///
     /// ```
     /// use rvachev::Solid;
     /// use glam::DVec3;
@@ -46,8 +57,15 @@ impl Solid {
         self.moved(Length::Offset(distance))
     }
 
-    /// The wall of this solid, `thickness` deep (10⁻⁹ to 10⁹), measured inwards from the
-    /// surface; distances are those of [`offset`](Solid::offset).
+    /// The wall of this solid, `thickness` deep, measured inwards from the surface:
+    /// `f = min(d, thickness − d)`, d being the distances of [`offset`](Solid::offset).
+    ///
+    /// | parameter | unit | range |
+    /// |---|---|---|
+    /// | `thickness` | length | 10⁻⁹ to 10⁹ |
+    ///
+    /// The thickness is within 2 % of what is asked for on convex leaves, for walls up to a
+    /// tenth of the smallest half-size.
     ///
     /// ```
     /// use rvachev::Solid;

@@ -9,6 +9,19 @@ use crate::field::{AnyWarp, HelixWarp, Opening, Revolution, Span, Turn, check};
 use crate::{Blend, ParamError, Polygon, RFunction};
 
 /// How the edges of an end face are.
+///
+/// Lengths are 10⁻⁹ to 10⁹, and meant to be below half the height and half the section's width.
+///
+/// ```
+/// use rvachev::{Caps, Extrusion, Profile};
+///
+/// let bar = |caps| Profile::rectangle([10.0, 6.0]).extrude_with(&Extrusion { caps, ..Extrusion::new(4.0) });
+/// let near_the_edge = [4.9, 0.0, 1.9];
+/// assert!(bar(Caps::Flat).contains(near_the_edge)?);
+/// assert!(!bar(Caps::Rounded(1.0)).contains(near_the_edge)?);
+/// assert!(!bar(Caps::Chamfered(1.0)).contains(near_the_edge)?);
+/// # Ok::<(), rvachev::SolidError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Caps {
     /// Sharp.
@@ -52,7 +65,7 @@ impl Caps {
 /// | `height` | length | 10⁻⁹ to 10⁹: from z = −height/2 to height/2 |
 /// | `twist` | radian | −10⁶ to 10⁶: by how much the upper end is turned, from x towards y |
 /// | `scale` | none | 0.001 to 1000: the upper end's size relative to the lower |
-/// | `caps` | | how the edges of both end faces are; lengths are below half the height |
+/// | `caps` | length | how the edges of both end faces are: see [`Caps`] |
 ///
 /// ```
 /// use rvachev::{Extrusion, Profile};
@@ -96,7 +109,9 @@ impl Extrusion {
 /// | `radius` | length | 10⁻⁹ to 10⁹, and more than the profile reaches towards the axis |
 /// | `pitch` | length | 10⁻⁹ to 10⁹: rise in a turn; at least half the profile's height |
 /// | `turns` | none | 10⁻⁶ to 10⁶: from z = −pitch·turns/2 to pitch·turns/2 |
-/// | `ends` | | how the edges of the two end faces are |
+/// | `ends` | length | how the edges of the two end faces are: see [`Caps`] |
+///
+/// See [`Profile::sweep_helix`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Helix {
     /// Distance of the profile's origin from the axis.
@@ -143,11 +158,24 @@ impl Profile {
         self.extrude_with(&Extrusion::new(height))
     }
 
-    /// Extruded along z, twisted, scaled, the edges of the end faces chamfered or rounded.
+    /// Extruded along z, twisted, scaled, the edges of the end faces chamfered or rounded. The
+    /// parameters and their ranges: [`Extrusion`].
     ///
     /// Twisted and scaled ones have the profile's value at the pre-image, not rescaled: no
     /// Lipschitz constant is promised, and chamfers and roundings are of the size asked for
     /// where sides are upright.
+    ///
+    /// ```
+    /// use rvachev::{Caps, Extrusion, Profile};
+    ///
+    /// let column = Profile::regular_polygon(6, 3.0).extrude_with(&Extrusion {
+    ///     twist: 1.0,
+    ///     caps: Caps::Rounded(0.3),
+    ///     ..Extrusion::new(20.0)
+    /// });
+    /// assert!(column.contains([2.5, 0.0, 0.0])? && !column.contains([0.0, 0.0, 10.1])?);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
     #[must_use]
     pub fn extrude_with(&self, extrusion: &Extrusion) -> Solid {
         let Extrusion { height, twist, scale, caps } = *extrusion;
@@ -166,7 +194,11 @@ impl Profile {
     }
 
     /// Revolved about the z axis: the profile's x is the distance from the axis and its y
-    /// becomes z. The part with x below 0 is left out. Distances stay what they are.
+    /// becomes z. The part with x below 0 is left out. Distances stay what they are:
+    /// `f(x, y, z) = profile(√(x² + y²), z)`.
+    ///
+    /// A section that is to be solid on the axis is drawn across it, best with its mirror image:
+    /// a border on the axis is a border, and leaves a hole without width there.
     ///
     /// Edges of a [`Polygon`] on the axis are no border of the solid; a border of any other
     /// profile on the axis is one, so let those reach across it.
@@ -194,8 +226,22 @@ impl Profile {
         }
     }
 
-    /// Revolved about the z axis by `angle` radians (up to a full turn), from the x axis
-    /// towards y.
+    /// Revolved about the z axis by a part of a turn, from the x axis towards y: the minimum of
+    /// the [revolved](Profile::revolve) profile's value and the distance to the faces that cut
+    /// it off, 1-Lipschitz if the profile is.
+    ///
+    /// | parameter | unit | range |
+    /// |---|---|---|
+    /// | `angle` | radians | 10⁻⁶ to 2π |
+    ///
+    /// ```
+    /// use rvachev::Profile;
+    ///
+    /// let quarter = Profile::rectangle([2.0, 2.0]).translate([3.0, 0.0]).revolve_by(std::f64::consts::FRAC_PI_2);
+    /// assert!(quarter.contains([2.0, 2.0, 0.0])?);
+    /// assert!(!quarter.contains([-2.0, 2.0, 0.0])?);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
     #[must_use]
     pub fn revolve_by(&self, angle: f64) -> Solid {
         if angle == TAU {
@@ -214,6 +260,8 @@ impl Profile {
     /// The profile may be higher than the pitch, so that turns run into one another, up to
     /// twice the pitch. Up to half the pitch only the nearest turn is evaluated; beyond, the
     /// turns above and below it as well.
+    ///
+    /// The parameters and their ranges: [`Helix`].
     ///
     /// The value is the profile's at the pre-image, not rescaled: it over-estimates distances
     /// by up to `√(1 + (pitch/2πr)²)` at the distance r from the axis.

@@ -13,7 +13,16 @@ impl Solid {
         Solid::from_node(Node::Affine { operand: self.clone(), forward, label })
     }
 
-    /// Moved by `offset`.
+    /// Moved by `offset`, ±10⁹ length units along each axis. Values go along unchanged, as they
+    /// do with rotations.
+    ///
+    /// ```
+    /// use rvachev::Solid;
+    ///
+    /// let ball = Solid::sphere(1.0).translate([5.0, 0.0, 0.0]);
+    /// assert_eq!(ball.value([5.5, 0.0, 0.0])?, 0.5);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
     #[must_use]
     pub fn translate(&self, offset: impl Into<DVec3>) -> Solid {
         self.affine_as("translate", DAffine3::from_translation(offset.into()))
@@ -25,39 +34,61 @@ impl Solid {
         self.affine_as("rotate", DAffine3::from_quat(rotation))
     }
 
-    /// Turned about the x axis by `angle` radians.
+    /// Turned about the x axis by `angle` radians, from y towards z.
+    ///
+    /// ```
+    /// use rvachev::Solid;
+    ///
+    /// let rod = Solid::cylinder(1.0, 10.0).rotate_x(std::f64::consts::FRAC_PI_2);
+    /// assert!(rod.contains([0.0, 4.9, 0.0])?);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
     #[must_use]
     pub fn rotate_x(&self, angle: f64) -> Solid {
         self.affine_as("rotate_x", DAffine3::from_rotation_x(angle))
     }
 
-    /// Turned about the y axis by `angle` radians.
+    /// Turned about the y axis by `angle` radians, from z towards x.
     #[must_use]
     pub fn rotate_y(&self, angle: f64) -> Solid {
         self.affine_as("rotate_y", DAffine3::from_rotation_y(angle))
     }
 
-    /// Turned about the z axis by `angle` radians.
+    /// Turned about the z axis by `angle` radians, from x towards y.
     #[must_use]
     pub fn rotate_z(&self, angle: f64) -> Solid {
         self.affine_as("rotate_z", DAffine3::from_rotation_z(angle))
     }
 
     /// Scaled about the origin by the same `factor` along all axes (not 0; a negative one
-    /// mirrors).
+    /// mirrors). Values are scaled with it: true distances stay true.
+    ///
+    /// ```
+    /// use rvachev::Solid;
+    ///
+    /// assert_eq!(Solid::sphere(1.0).scale(3.0).value([0.0, 0.0, 0.0])?, 3.0);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
     #[must_use]
     pub fn scale(&self, factor: f64) -> Solid {
         self.affine_as("scale", DAffine3::from_scale(DVec3::splat(factor)))
     }
 
-    /// Scaled about the origin by a factor along each axis (none 0).
+    /// Scaled about the origin by a factor along each axis (none 0). Values are multiplied by the
+    /// smallest one: see [`affine`](Solid::affine).
     #[must_use]
     pub fn scale_axes(&self, factors: impl Into<DVec3>) -> Solid {
         self.affine_as("scale_axes", DAffine3::from_scale(factors.into()))
     }
 
     /// Mapped by any invertible affine map. Values are multiplied by the map's smallest
-    /// stretch, so that they stay 1-Lipschitz.
+    /// stretch, so that they stay 1-Lipschitz; true distances stay true if the map stretches
+    /// alike in all directions, and become bounds else.
+    ///
+    /// | parameter | unit | range |
+    /// |---|---|---|
+    /// | entries of the matrix | none | ±10⁹; its smallest stretch at least 10⁻⁹, and at least 10⁻⁹ of the largest |
+    /// | translation | length | ±10⁹ |
     ///
     /// ```
     /// use rvachev::Solid;
@@ -73,18 +104,52 @@ impl Solid {
     }
 
     /// Tapered along z: sections are scaled by `1 + kx·t` along x and `1 + ky·t` along y,
-    /// `t = z/half_height` held to [−1, 1]. `kx` and `ky` are within ±0.999.
+    /// `t = z/half_height` held to [−1, 1]. By any other law of z: [`taper_by`](Solid::taper_by).
+    ///
+    /// | parameter | unit | range |
+    /// |---|---|---|
+    /// | `kx`, `ky` | none | −0.999 to 0.999 |
+    /// | `half_height` | length | 10⁻⁹ to 10⁹ |
     ///
     /// The field is the operand's at the pre-image, not rescaled: not Lipschitz in general.
+    ///
+    /// Source: A. H. Barr, *Global and local deformations of solid primitives* (1984).
+    ///
+    /// ```
+    /// use rvachev::Solid;
+    ///
+    /// // 3 wide at the bottom, 1 at the top.
+    /// let post = Solid::cuboid([2.0, 2.0, 4.0]).taper(-0.5, -0.5, 2.0);
+    /// assert!(post.contains([1.4, 0.0, -1.9])?);
+    /// assert!(!post.contains([0.6, 0.0, 1.9])?);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
     #[must_use]
     pub fn taper(&self, kx: f64, ky: f64, half_height: f64) -> Solid {
         self.warp(Taper { kx, ky, half_height })
     }
 
-    /// Twisted about the z axis by `rate` radians per length unit.
+    /// Twisted about the z axis: the section at z is turned by `rate·z`, from x towards y. By any
+    /// other law of z: [`twist_by`](Solid::twist_by).
+    ///
+    /// | parameter | unit | range |
+    /// |---|---|---|
+    /// | `rate` | radians per length | ±10⁹ |
     ///
     /// The field is the operand's at the pre-image, not rescaled: its slope grows with
     /// `rate` times the distance from the axis.
+    ///
+    /// Source: A. H. Barr, *Global and local deformations of solid primitives* (1984).
+    ///
+    /// ```
+    /// use rvachev::Solid;
+    ///
+    /// // A quarter turn between the middle and the top.
+    /// let bar = Solid::cuboid([2.0, 0.5, 8.0]).twist(std::f64::consts::PI / 8.0);
+    /// assert!(bar.contains([0.9, 0.0, 0.0])? && !bar.contains([0.9, 0.0, 3.9])?);
+    /// assert!(bar.contains([0.0, 0.9, 3.9])?);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
     #[must_use]
     pub fn twist(&self, rate: f64) -> Solid {
         self.warp(Twist { rate })
@@ -93,11 +158,37 @@ impl Solid {
     /// Bent so that the z axis becomes a circle of radius `1/curvature` through the origin,
     /// with its centre in the direction `angle` (radians from the x axis, in the xy plane).
     ///
-    /// The solid must stay on this side of the centre of curvature and within half a turn;
-    /// both are checked on the operand's box, which is conservative.
+    /// With κ the curvature and, for an angle of 0, in the plane of x and z:
+    ///
+    /// ```text
+    /// (x, z) ↦ ((1 − (1 − κx)·cos κz)/κ, (1 − κx)·sin κz/κ)
+    /// ```
+    ///
+    /// | parameter | unit | range |
+    /// |---|---|---|
+    /// | `curvature` | 1 / length | within ±π/h and ±1/r for a solid that reaches h from the plane z = 0 and r towards the centre |
+    /// | `angle` | radians | ±10⁹ |
+    ///
+    /// The solid must stay on this side of the centre of curvature and within half a turn to
+    /// each side; both are checked on the operand's box, which is conservative.
     ///
     /// The field is the operand's at the pre-image, not rescaled; its slope grows towards the
     /// centre of curvature.
+    ///
+    /// Sources: A. H. Barr, *Global and local deformations of solid primitives* (1984); F. Solina
+    /// and R. Bajcsy, *Recovery of parametric models from range images* (1990), their bend put
+    /// right for negative, strong and vanishing curvatures.
+    ///
+    /// ```
+    /// use rvachev::Solid;
+    ///
+    /// // A rod 10 long becomes two radians of a circle of radius 5.
+    /// let hook = Solid::cylinder(0.5, 10.0).bend(0.2, 0.0);
+    /// let (sin, cos) = 0.98f64.sin_cos();
+    /// assert!(hook.contains([5.0 - 5.0 * cos, 0.0, 5.0 * sin])?);
+    /// assert!(!hook.contains([0.0, 0.0, 4.9])?);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
     #[must_use]
     pub fn bend(&self, curvature: f64, angle: f64) -> Solid {
         self.warp(Bend { curvature, angle })

@@ -6,7 +6,8 @@ use super::super::{Field, ParamError, check, leaf::falling_range};
 use super::{column, flattened};
 use crate::{Bounds, Interval, Norm, Real};
 
-/// A disc about the origin of the plane: `f = radius − √(x² + y²)`, the true distance.
+/// A disc about the origin of the plane: `f = radius − √(x² + y²)`, the true distance
+/// (1-Lipschitz).
 ///
 /// | parameter | unit | range |
 /// |---|---|---|

@@ -6,7 +6,8 @@ use super::super::{Field, ParamError, check, leaf::falling_range};
 use super::{column, flattened};
 use crate::{Bounds, Interval, Norm, Real};
 
-/// A rectangle about the origin of the plane, by true distance; `radius` rounds its corners.
+/// A rectangle about the origin of the plane, by true distance (1-Lipschitz);
+/// `radius` rounds its corners.
 ///
 /// With `q = (|x| − size.x/2, |y| − size.y/2) + radius`:
 /// `f = radius − |max(q, 0)| − min(max(q_1, q_2), 0)`.

@@ -21,8 +21,11 @@ use crate::{Bounds, Interval, Norm, Real};
 const MOST_SIDES: u32 = 1024;
 const MOST_FOLDS: usize = 10;
 
-/// A regular polygon about the origin of the plane, by true distance. The middle of a side is
-/// on the positive x axis.
+/// A regular polygon about the origin of the plane, by true distance (1-Lipschitz). The middle
+/// of a side is on the positive x axis.
+///
+/// The point is folded to half a side, (u along its normal, v along it from its middle):
+/// `f = inscribed radius − u` inside, `−|(u − inscribed radius, max(v − side/2, 0))|` outside.
 ///
 /// | parameter | unit | range |
 /// |---|---|---|

@@ -13,9 +13,12 @@ use super::super::{Field, Kernel, ParamError, check, leaf::falling_range};
 use super::{column, flattened};
 use crate::{Bounds, Interval, Norm, Real};
 
-/// A superellipse about the origin of the plane, valued `f = r_in·(1 − G)` in length units,
-/// where `r_in` is the radius of its largest inscribed circle. 1-Lipschitz for an exponent of
-/// at most 2; beyond, the curve is pinched along the axes and slopes are unbounded there.
+/// A superellipse (Lamé curve) about the origin of the plane, valued `f = r_in·(1 − G)` in
+/// length units: `G = (|x/a|^(2/e) + |y/b|^(2/e))^(e/2)` is the gauge and `r_in` the radius of
+/// the largest inscribed circle.
+///
+/// 1-Lipschitz for an exponent of at most 2, and so never more than the distance; beyond, the
+/// curve is pinched along the axes and slopes are unbounded there.
 ///
 /// | parameter | unit | range |
 /// |---|---|---|

@@ -19,15 +19,18 @@ use super::super::outline::Outline;
 use super::super::{Field, Gielis, Kernel, ParamError, Radius, check};
 use crate::{Bounds, Interval, Norm, Real};
 
-/// What is within a [`Gielis`] curve, valued `f = r_in·(1 − G)` in length units: G is the
-/// gauge and `r_in` the radius of a circle about the origin inside the curve.
+/// What is within a [`Gielis`] curve, valued `f = r_in·(1 − G)` in length units: the gauge is
+/// `G = √(x² + y²)/(size·r(θ))` and `r_in` the radius of a circle about the origin inside.
 ///
-/// In general not convex: no Lipschitz constant is promised.
+/// A gauge, not a distance; in general not convex: no Lipschitz constant is promised.
 ///
 /// | parameter | unit | range |
 /// |---|---|---|
 /// | `curve` | none | see [`Gielis`]; its standard radius |
 /// | `size` | length | 10⁻⁹ to 10⁹: what the curve's radius of 1 becomes |
+///
+/// Source: J. Gielis, *A generic geometric transformation that unifies a wide range of natural
+/// and abstract shapes* (2003).
 ///
 /// ```
 /// use rvachev::{Gielis, Profile, Superpolygon};

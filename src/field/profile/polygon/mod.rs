@@ -28,7 +28,10 @@ use near::{NearEdges, Reference};
 use patch::Patch;
 use tree::Tree;
 
-/// A polygon in the plane, with holes and islands, by true distance.
+/// A polygon in the plane, with holes and islands, by true distance (1-Lipschitz).
+///
+/// `f = ± distance to the nearest edge`, positive inside. The edge is found through a hierarchy
+/// of boxes: thousands of edges are no burden.
 ///
 /// It is given by its contours, each a list of points in either sense, closed by itself (a
 /// last point that repeats the first is left out). A point is inside if an odd number of
