@@ -136,11 +136,13 @@ impl Code {
         let (field, surface) = (pick(|b| b.field), pick(|b| b.surface));
         let op = operation.op();
         let (field, surface) = (self.join_all(op, rule, frame, &field), self.join(op, Rule::MinMax, frame, &surface));
-        let factor = if op == Op::Or { disjoined(rule, built.len()) } else { 1.0 };
+        let factor = if op == Op::Or { disjoined(rule, built.len()) } else { conjoined(rule) };
         let inside = surface.sides.inside;
         let mut growth = DVec3::ZERO;
         for (i, b) in built.iter().enumerate() {
-            growth = growth.max(bounded(b.flip_if(negated(i))) * factor);
+            // An operand without an end along an axis needs none there, however flat the rule.
+            let own = bounded(b.flip_if(negated(i))).to_array();
+            growth = growth.max(DVec3::from_array(own.map(|g| if g == 0.0 { 0.0 } else { g * factor })));
         }
         if inside.is_empty() {
             growth = DVec3::INFINITY;
@@ -257,6 +259,12 @@ impl Code {
 /// Where a disjunction of `count` is above −c, one of them is above −c times this.
 pub(super) fn disjoined(rule: Rule, count: usize) -> f64 {
     spread(rule).powi(count.next_power_of_two().trailing_zeros() as i32)
+}
+
+/// Where a conjunction is above −c, each operand is above −c times this. (No conjunction exceeds
+/// its least operand, but those that are flattened near 0.)
+pub(super) fn conjoined(rule: Rule) -> f64 {
+    if matches!(rule, Rule::Zero(_)) { f64::INFINITY } else { 1.0 }
 }
 
 /// The growth of an operand along the axes where it is bounded.

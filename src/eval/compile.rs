@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
-use super::code::{Built, Code, bounded, disjoined, grow, snug};
+use super::code::{Built, Code, bounded, conjoined, disjoined, grow, snug};
 use super::composite::Composite;
 use super::context::{Contexts, Place};
 use super::edge::EdgeBlend;
@@ -201,7 +201,10 @@ impl Compiler {
                     snug(warp.bounds(&inside).transformed(&self.contexts.get(context).forward))
                 }
             }
-            solid::Node::Join { operation: Operation::Difference, .. } => first(c),
+            solid::Node::Join { operation: Operation::Difference, rule, .. } => {
+                let c = c * conjoined(Rule::from(*rule));
+                if c.is_finite() { first(c) } else { Bounds::ALL }
+            }
             solid::Node::Blend { operation: Operation::Difference, blend: Blend::Smooth { .. }, .. } => first(c),
             solid::Node::Length { length: Length::Level(by), .. } => {
                 first((c + by * self.contexts.get(context).scale).max(0.0))

@@ -57,6 +57,9 @@ const STEPS: usize = 4;
 /// Slopes are at most 1, but for the approximation of distances below.
 const STEEPEST: f64 = 1.05;
 
+/// A chamfer ends where the sum of the unit gradients is shorter than this.
+const LEAST_ACROSS: f64 = 1e-3;
+
 /// A value and its gradient.
 type Sample = (f64, DVec3);
 
@@ -122,20 +125,43 @@ impl EdgeBlend {
 
     /// Value and gradient of the blend, as a union.
     fn at(&self, p: DVec3) -> Sample {
+        self.told(p).0
+    }
+
+    /// The same, and whether it tells anything of the points around: not where the search for
+    /// the foot has failed, as it does on an operand's medial axis. Beside such a point the
+    /// blend may be far above the join.
+    fn told(&self, p: DVec3) -> (Sample, bool) {
         let here = [self.sample(0, p), self.sample(1, p)];
         let join = larger(here[0], here[1]);
         if here.iter().any(|(value, _)| *value < -self.reach()) {
-            return join;
+            return (join, true);
         }
         let mut foot = Foot::new(p);
         let mut sides = here;
         for _ in 0..STEPS {
             if !foot.step(p, sides, self.depth(), self.farthest()) {
-                return join;
+                // Faces that are flush are parallel all about.
+                let [a, b] = sides.map(|(_, gradient)| gradient.normalize_or_zero());
+                return (join, a.dot(b) > 0.999);
             }
             sides = [self.sample(0, foot.q), self.sample(1, foot.q)];
         }
-        self.shaped(p, &foot, sides, join)
+        (self.shaped(p, &foot, sides, join), self.arrived(sides))
+    }
+
+    /// Whether a foot with these operands is on the curve.
+    fn arrived(&self, sides: [Sample; 2]) -> bool {
+        let off = sides.iter().map(|(value, _)| (value - self.depth()).abs()).fold(0.0, f64::max);
+        off <= 0.05 * self.size()
+    }
+
+    /// No blend is above this where it is above the join.
+    fn largest(&self) -> f64 {
+        match self.shape {
+            Shape::Fillet(_) => self.farthest(),
+            Shape::Chamfer(width) => 2.0 * width + width / LEAST_ACROSS,
+        }
     }
 
     /// Steps end this far from the point.
@@ -146,9 +172,7 @@ impl EdgeBlend {
     /// The blend at p, given the foot and the operands there.
     fn shaped(&self, p: DVec3, foot: &Foot, sides: [Sample; 2], join: Sample) -> Sample {
         // A foot that has not been reached is of no use.
-        let size = self.size();
-        let off = sides.iter().map(|(value, _)| (value - self.depth()).abs()).fold(0.0, f64::max);
-        if off > 0.05 * size {
+        if !self.arrived(sides) {
             return join;
         }
         let away = p - foot.q;
@@ -166,7 +190,7 @@ impl EdgeBlend {
                 let [a, b] = sides.map(|(_, gradient)| gradient.normalize_or_zero());
                 let c = a.dot(b);
                 let across = (2.0 + 2.0 * c).sqrt();
-                if across < 1e-3 || away.length() > 2.0 * width {
+                if across < LEAST_ACROSS || away.length() > 2.0 * width {
                     return join;
                 }
                 let height = (a + b).dot(away) + width * (0.5 * (1.0 - c)).max(0.0).sqrt();
@@ -279,9 +303,9 @@ impl AnyField for EdgeBlend {
         // The blend is at least the join, whatever became of its steps. Within reach of the
         // ball it is the distance from the centre curve, of slope 1; beyond, no more than the
         // longest way to a foot.
-        let centre = self.at(zone.centre).0;
+        let ((centre, _), told) = self.told(zone.centre);
         let above = centre + STEEPEST * zone.extent().length();
-        let hi = if above < 0.0 { above.max(join.lo()) } else { join.hi().max(self.farthest()) };
+        let hi = if told && above < 0.0 { above.max(join.lo()) } else { join.hi().max(self.largest()) };
         Interval::new(join.lo(), hi) * Interval::point(self.sign)
     }
 

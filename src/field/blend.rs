@@ -91,8 +91,9 @@ pub enum Blend {
         /// a₁ and a₂: the operands' values at which the displacement has fallen to half.
         falloff: [f64; 2],
     },
-    /// Ricci's blend of gauges: spheres, ellipsoids, superquadrics, supershapes and Ricci
-    /// blends of these, moved and deformed.
+    /// Ricci's blend of gauges: spheres, superellipsoids, generalised superquadrics,
+    /// supershapes and Ricci blends of these, moved and deformed. ([`Ellipsoid`](crate::Ellipsoid) is no
+    /// gauge; the superellipsoid of exponents 1 is.)
     Ricci {
         /// The exponent.
         p: f64,

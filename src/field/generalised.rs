@@ -295,6 +295,10 @@ impl Field for GeneralisedSuperquadric {
         Ok(())
     }
 
+    fn gauge_radius(&self) -> Option<f64> {
+        Some(self.inscribed)
+    }
+
     fn convex(&self) -> bool {
         self.exponents.iter().all(|&n| n >= 1.0)
     }

@@ -28,8 +28,8 @@ pub enum SolidError {
     },
     /// An operand of Ricci's blend whose value is no gauge.
     #[error(
-        "{path}: operand {operand} is no gauge, allowed: spheres, ellipsoids, superquadrics, supershapes and Ricci \
-         blends of them, moved and deformed"
+        "{path}: operand {operand} is no gauge, allowed: spheres, superellipsoids, generalised superquadrics, \
+         supershapes and Ricci blends of them, moved and deformed"
     )]
     NoGauge {
         /// Where the node is.

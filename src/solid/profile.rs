@@ -174,7 +174,8 @@ impl Profile {
     /// Mirrored in the line through the origin across `normal` (of any length).
     #[must_use]
     pub fn mirror(&self, normal: impl Into<DVec2>) -> Profile {
-        let normal = normal.into().normalize_or_zero();
+        // A normal of no direction is NaN, which is told when the profile is used.
+        let normal = normal.into().normalize();
         let turn = |axis: DVec2| (axis - 2.0 * axis.dot(normal) * normal).extend(0.0);
         let matrix = DMat3::from_cols(turn(DVec2::X), turn(DVec2::Y), DVec3::Z);
         Profile(self.0.affine(DAffine3::from_mat3(matrix)))

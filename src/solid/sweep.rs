@@ -180,7 +180,9 @@ impl Profile {
     pub fn extrude_with(&self, extrusion: &Extrusion) -> Solid {
         let Extrusion { height, twist, scale, caps } = *extrusion;
         let half_height = 0.5 * height;
-        let slab = Solid::new(Span { verb: "extrude", half_height, error: extrusion.check().err() });
+        let error = extrusion.check().err();
+        let caps = if error.is_some() { Caps::Flat } else { caps };
+        let slab = Solid::new(Span { verb: "extrude", half_height, error });
         let mut column = self.0.clone();
         if scale != 1.0 {
             // A taper is 1 in the middle; the lower end is to be the profile.
@@ -282,7 +284,9 @@ impl Profile {
         // Sizes of rounded and chamfered ends are measured along the helix.
         let stretch = if ends == Caps::Flat { 1.0 } else { (TAU * radius / pitch).hypot(1.0) };
         let half_height = 0.5 * pitch * turns * stretch;
-        let slab = Solid::new(Span { verb: "sweep_helix", half_height, error: helix.check().err() });
+        let error = helix.check().err();
+        let ends = if error.is_some() { Caps::Flat } else { ends };
+        let slab = Solid::new(Span { verb: "sweep_helix", half_height, error });
         let straight = ends.cut(&self.0, &slab);
         // What is wrong with the profile is said when the solid is used.
         let (middle, height) = match self.bounds() {

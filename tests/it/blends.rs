@@ -364,3 +364,40 @@ fn bounds_that_no_part_tells_are_found() -> Result<(), SolidError> {
     assert!(!below(0.3).bounds()?.is_finite());
     Ok(())
 }
+
+#[test]
+fn boxes_hold_levels_of_flat_joins() -> Result<(), SolidError> {
+    // Rules of order m are flat near 0: a small value below it is far outside.
+    let rule = RFunction::Zero { m: 2 };
+    let (ball, block) = (Solid::sphere(1.0), Solid::cuboid(DVec3::splat(1.5)));
+    let mut random = Random::new(78);
+    for solid in [
+        ball.intersection(&block, rule).level(0.1),
+        ball.difference(&block, rule).level(0.1),
+        ball.intersection(&block, rule).smooth_union(Solid::sphere(0.2), 0.4),
+        ball.difference(&block, rule).smooth_union(ball.translate(DVec3::X).difference(&block, rule), 0.4),
+    ] {
+        let bounds = solid.bounds()?;
+        for _ in 0..2000 {
+            let p = random.vector(-2.5, 2.5);
+            let inside = solid.value(p)? > 0.0;
+            assert!(!inside || bounds.contains(p), "{solid:?} is {} at {p}, not in {bounds:?}", solid.value(p)?);
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn ricci_takes_the_gauges_that_it_names() {
+    let ricci = Blend::Ricci { p: 3.0 };
+    let ball = Solid::sphere(1.0);
+    let circle = rvachev::Gielis::circle();
+    for gauge in [
+        Solid::superellipsoid(DVec3::ONE, 0.5, 2.4),
+        rvachev::GeneralisedSuperquadric::new(DVec3::ONE, [2.0, 5.0, 0.8]).into(),
+        rvachev::Supershape::new(rvachev::Gielis::polygon(5, 20.0), circle).into(),
+        ball.union_with(ball.translate(DVec3::X), ricci),
+    ] {
+        assert!(ball.union_with(gauge, ricci).contains(DVec3::ZERO).is_ok());
+    }
+}

@@ -103,7 +103,8 @@ pub const RULES: [RFunction; 10] = [
 /// A leaf of any kind, of a size between 0.2 and 1.6, about the origin.
 pub fn random_leaf(random: &mut Random) -> Solid {
     let size = |random: &mut Random| random.range(0.2, 0.8);
-    match random.below(11) {
+    match random.below(14) {
+        11..14 => crate::zoo::catalogue_leaf(random),
         8 | 9 => crate::primitives::random_primitive(random).0,
         10 => crate::lattices::random_lattice(random),
         0 => Sphere { radius: size(random) }.into(),
@@ -149,7 +150,8 @@ pub fn random_solid(random: &mut Random, depth: usize) -> Solid {
     let below = random.below(depth);
     let second = random_solid(random, below);
     let rule = random.rule();
-    let joined = match random.below(6) {
+    let joined = match random.below(8) {
+        6 | 7 => crate::zoo::blended(random, &first, &second),
         0 | 1 => first.union(&second, rule),
         2 => first.intersection(&second, rule),
         3 => first.difference(&second, rule),
@@ -164,7 +166,9 @@ pub fn random_solid(random: &mut Random, depth: usize) -> Solid {
 fn mapped(random: &mut Random, solid: Solid) -> Solid {
     let mut solid = solid;
     for _ in 0..random.below(3) {
-        let moved = match random.below(7) {
+        let moved = match random.below(10) {
+            7 | 8 => crate::zoo::catalogue_map(random, &solid),
+            9 => crate::zoo::lengthened(random, &solid),
             0 | 1 => solid.translate(random.vector(-0.6, 0.6)),
             2 => solid.rotate(random.rotation()),
             3 => solid.affine(random.affine()),

@@ -84,17 +84,18 @@ impl Distance {
                 *taken = [n0, n1, n2];
             }
             let mut u = [n0 * h, n1 * h, n2 * h];
-            let mut rest = [u[0], u[1], u[2], n0, n1, n2, n0, n1, n2, h];
+            let nothing = if slide.least { h } else { -1.0 };
+            let mut rest = [u[0], u[1], u[2], n0, n1, n2, n0, n1, n2, nothing];
             for _ in 0..steps {
                 let [a, b, c, n0, n1, n2, best @ ..] = slide.run(joined(at(u), rest));
                 rest = [u[0], u[1], u[2], n0, n1, n2, best[0], best[1], best[2], best[3]];
                 u = [a, b, c];
             }
             let [.., n0, n1, n2, h] = rest;
-            // Only where every plane bounds the distance is a plane met on the way a measure.
-            let score = if slide.least { h } else { DVec3::from_array(u).length() };
+            let score = score(h, slide.least);
             if score < least {
                 least = score;
+                let h = if slide.least { h } else { h.abs().copysign(value) };
                 best = (h, DVec3::new(n0, n1, n2));
             }
         }
@@ -263,6 +264,7 @@ impl Prepared<'_> {
         let starts = self.distance.starts();
         let slide = Slide { least: self.distance.shape == Shape::Convex };
         let mut taken = [NONE; 6];
+        let seen_at = &seen[0];
         found[0] = [f32::INFINITY; CHUNK];
         let mut least = found[0];
         let mut start = *first;
@@ -278,7 +280,8 @@ impl Prepared<'_> {
             step_to(&start, &mut u);
             let [u0, u1, u2, ..] = u;
             let [n0, n1, n2, h] = start;
-            let mut state = [u0, u1, u2, u0, u1, u2, n0, n1, n2, n0, n1, n2, h];
+            let nothing = if slide.least { h } else { [-1.0; CHUNK] };
+            let mut state = [u0, u1, u2, u0, u1, u2, n0, n1, n2, n0, n1, n2, nothing];
             let mut seen = [NONE; 4];
             for _ in 0..STEPS / starts {
                 self.displaced(points, [&state[0], &state[1], &state[2]], &mut seen);
@@ -294,17 +297,22 @@ impl Prepared<'_> {
                 let [x, y, z, ..] = before;
                 state = [a, b, c, x, y, z, n0, n1, n2, b0, b1, b2, h];
             }
-            let [x, y, z, .., n0, n1, n2, h] = &state;
+            let [.., n0, n1, n2, h] = &state;
             for i in 0..CHUNK {
-                let way = glam::Vec3::new(x[i], y[i], z[i]).length();
-                let score = if slide.least { h[i] } else { way };
+                let score = score(f64::from(h[i]), slide.least) as f32;
                 if score < least[i] {
                     least[i] = score;
-                    (found[0][i], found[1][i], found[2][i], found[3][i]) = (h[i], n0[i], n1[i], n2[i]);
+                    let h = if slide.least { h[i] } else { h[i].abs().copysign(seen_at[i]) };
+                    (found[0][i], found[1][i], found[2][i], found[3][i]) = (h, n0[i], n1[i], n2[i]);
                 }
             }
         }
     }
+}
+
+/// What a start's result counts as: a way that did not end on the surface is the last resort.
+fn score(height: f64, least: bool) -> f64 {
+    if least || height >= 0.0 { height } else { 1e6 * height.abs() }
 }
 
 /// The displacement to a plane: normal times height.

@@ -145,7 +145,8 @@ fn penalised<R: Real>(n: [R; 3], h: R, first: [R; 3], second: [R; 3]) -> R {
 /// surface. Inputs: u (3), value and gradient at y (4), u and normal before (6), best plane
 /// (4). Outputs: next u (3), normal at y (3), best plane (4).
 pub(super) struct Slide {
-    /// Whether every tangent plane bounds the distance from above; else the latest counts.
+    /// Whether every tangent plane bounds the distance from above; else the way to a point
+    /// of the surface does.
     pub(super) least: bool,
 }
 
@@ -155,11 +156,22 @@ impl Formula<17, 10> for Slide {
         let u = [i[0], i[1], i[2]];
         let (u_old, n_old) = ([i[7], i[8], i[9]], [i[10], i[11], i[12]]);
         let (n, h, lift) = tangent(u, i[3], [i[4], i[5], i[6]]);
-        let (mut best, mut height) = (n, h);
+        let (best, height, measure);
         if self.least {
             let worse = h - i[16];
             best = choose(worse, [i[13], i[14], i[15]], n);
             height = h.min(i[16]);
+            measure = height;
+        } else {
+            height = h;
+            // The way to y, if y is on the surface: it is never too short. The least of these;
+            // until y has been there, the last one, negative to tell it.
+            let way = dot(u, u).sqrt() + lift.abs();
+            let arrived = way * 0.125 - lift.abs();
+            let better = i[16].select(i[16] - way, h.lift(1.0));
+            let taken = arrived.select(better, -i[16] - TINY);
+            best = choose(taken, n, [i[13], i[14], i[15]]);
+            measure = taken.select(arrived.select(way, -way), i[16]);
         }
         let moved = minus(u, u_old);
         let turned = dot(moved, minus(n, n_old)) / dot(moved, moved).max(h.lift(TINY));
@@ -168,7 +180,7 @@ impl Formula<17, 10> for Slide {
         // The tangential part of −u, and the way to the plane.
         let drop = dot(n, u);
         let next = along(times(u, -stretch + 1.0), n, stretch.mul_add(drop, lift));
-        [next[0], next[1], next[2], n[0], n[1], n[2], best[0], best[1], best[2], height]
+        [next[0], next[1], next[2], n[0], n[1], n[2], best[0], best[1], best[2], measure]
     }
 }
 
