@@ -143,6 +143,12 @@
 //!
 //! # The catalogue
 //!
+#![cfg_attr(
+    feature = "doc-images",
+    doc = "![Everything in the catalogue][gallery]\n",
+    doc = ::embed_doc_image::embed_image!("gallery", "docs/gallery.png")
+)]
+//!
 //! Formula, parameters with their ranges, source and an example are with each item; formulas
 //! without a source are elementary geometry, derived here. Most leaves have a constructor on
 //! [`Solid`] ([`Solid::torus`]), all become solids by `Solid::from(leaf)`, and stand as they are
@@ -303,6 +309,9 @@
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+#[macro_use]
+mod picture;
 
 mod bounds;
 mod eval;

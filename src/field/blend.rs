@@ -69,22 +69,46 @@ use crate::{Norm, Real};
 #[non_exhaustive]
 pub enum Blend {
     /// A smooth transition of compact support.
+    ///
+    #[doc = picture!(
+        "smooth_union" = "docs/gallery/smooth_union.png",
+        "smooth_intersection" = "docs/gallery/smooth_intersection.png",
+        "smooth_difference" = "docs/gallery/smooth_difference.png",
+    )]
     Smooth {
         /// Values that differ by less than this are blended; a union of equal values gains a
         /// quarter of it.
         radius: f64,
     },
     /// A rounding of constant radius along the edge where the operands meet.
+    ///
+    #[doc = picture!(
+        "fillet_union" = "docs/gallery/fillet_union.png",
+        "fillet_intersection" = "docs/gallery/fillet_intersection.png",
+        "fillet_difference" = "docs/gallery/fillet_difference.png",
+    )]
     Fillet {
         /// Radius of the ball.
         radius: f64,
     },
     /// A flat face along the edge where the operands meet.
+    ///
+    #[doc = picture!(
+        "chamfer_union" = "docs/gallery/chamfer_union.png",
+        "chamfer_intersection" = "docs/gallery/chamfer_intersection.png",
+        "chamfer_difference" = "docs/gallery/chamfer_difference.png",
+    )]
     Chamfer {
         /// Width of the face.
         width: f64,
     },
     /// Pasko and Savchenko's displacement of the R-function with p = 2.
+    ///
+    #[doc = picture!(
+        "displacement_union" = "docs/gallery/displacement_union.png",
+        "displacement_intersection" = "docs/gallery/displacement_intersection.png",
+        "displacement_difference" = "docs/gallery/displacement_difference.png",
+    )]
     Displacement {
         /// a₀: how far values are moved where both operands are 0.
         height: f64,
@@ -93,6 +117,12 @@ pub enum Blend {
     },
     /// Ricci's blend of gauges: spheres, ellipsoids, superquadrics, supershapes and Ricci
     /// blends of these, moved and deformed.
+    ///
+    #[doc = picture!(
+        "ricci_union" = "docs/gallery/ricci_union.png",
+        "ricci_intersection" = "docs/gallery/ricci_intersection.png",
+        "ricci_difference" = "docs/gallery/ricci_difference.png",
+    )]
     Ricci {
         /// The exponent.
         p: f64,

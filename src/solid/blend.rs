@@ -11,6 +11,11 @@ impl Solid {
     /// What is in either solid, and what `blend` adds between them. The parameters and their
     /// ranges: [`Blend`].
     ///
+    #[doc = picture!(
+        "fillet_union" = "docs/gallery/fillet_union.png",
+        "chamfer_union" = "docs/gallery/chamfer_union.png",
+    )]
+    ///
     /// ```
     /// use rvachev::{Blend, Solid};
     ///
@@ -25,12 +30,22 @@ impl Solid {
     }
 
     /// What is in both solids, less what `blend` takes off.
+    ///
+    #[doc = picture!(
+        "fillet_intersection" = "docs/gallery/fillet_intersection.png",
+        "chamfer_intersection" = "docs/gallery/chamfer_intersection.png",
+    )]
     #[must_use]
     pub fn intersection_with(&self, other: impl Into<Solid>, blend: Blend) -> Solid {
         self.blended(Operation::Intersection, other, blend)
     }
 
     /// What is in this solid and not in `other`, less what `blend` takes off.
+    ///
+    #[doc = picture!(
+        "fillet_difference" = "docs/gallery/fillet_difference.png",
+        "chamfer_difference" = "docs/gallery/chamfer_difference.png",
+    )]
     #[must_use]
     pub fn difference_with(&self, other: impl Into<Solid>, blend: Blend) -> Solid {
         self.blended(Operation::Difference, other, blend)
@@ -38,6 +53,8 @@ impl Solid {
 
     /// Union with a smooth transition where the operands' values differ by less than
     /// `radius`: [`Blend::Smooth`].
+    ///
+    #[doc = picture!("smooth_union" = "docs/gallery/smooth_union.png")]
     ///
     /// ```
     /// use rvachev::Solid;
@@ -57,12 +74,16 @@ impl Solid {
     }
 
     /// Intersection with a smooth transition: [`Blend::Smooth`].
+    ///
+    #[doc = picture!("smooth_intersection" = "docs/gallery/smooth_intersection.png")]
     #[must_use]
     pub fn smooth_intersection(&self, other: impl Into<Solid>, radius: f64) -> Solid {
         self.intersection_with(other, Blend::Smooth { radius })
     }
 
     /// Difference with a smooth transition: [`Blend::Smooth`].
+    ///
+    #[doc = picture!("smooth_difference" = "docs/gallery/smooth_difference.png")]
     #[must_use]
     pub fn smooth_difference(&self, other: impl Into<Solid>, radius: f64) -> Solid {
         self.difference_with(other, Blend::Smooth { radius })

@@ -12,6 +12,13 @@ use crate::{
 
 /// A shape in the plane of x and y: what solids are extruded, revolved and swept from.
 ///
+#[doc = picture!(
+    "profile_joined" = "docs/gallery/profile_joined.png",
+    "extrude_twisted" = "docs/gallery/extrude_twisted.png",
+    "revolve" = "docs/gallery/revolve.png",
+    "sweep_helix" = "docs/gallery/sweep_helix.png",
+)]
+///
 /// Like a [`Solid`] it is an expression of leaves, maps and joins, cheap to clone, whose value
 /// is positive inside, in length units; its field does not depend on z. Building never fails;
 /// parameters are checked when the profile, or a solid made of it, is first used.
@@ -140,6 +147,11 @@ impl Profile {
 
     /// The shape with its border moved outwards by `distance` (inwards if negative): see
     /// [`Solid::offset`].
+    ///
+    #[doc = picture!(
+        "profile_polygon" = "docs/gallery/profile_polygon.png",
+        "profile_offset" = "docs/gallery/profile_offset.png",
+    )]
     #[must_use]
     pub fn offset(&self, distance: f64) -> Profile {
         Profile(self.0.offset(distance))
