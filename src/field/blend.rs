@@ -115,8 +115,9 @@ pub enum Blend {
         /// a₁ and a₂: the operands' values at which the displacement has fallen to half.
         falloff: [f64; 2],
     },
-    /// Ricci's blend of gauges: spheres, ellipsoids, superquadrics, supershapes and Ricci
-    /// blends of these, moved and deformed.
+    /// Ricci's blend of gauges: spheres, superellipsoids, supershapes, superpolygons and Ricci
+    /// blends of these, moved, stretched and deformed. (An [`Ellipsoid`](crate::Ellipsoid) is a
+    /// bound; a stretched sphere is a gauge.)
     ///
     #[doc = picture!(
         "ricci_union" = "docs/gallery/ricci_union.png",
