@@ -74,6 +74,12 @@ pub enum Radius {
     "supershape_outer" = "docs/gallery/supershape_outer.png",
     "supershape_inner" = "docs/gallery/supershape_inner.png",
 )]
+///
+/// ```text
+/// Principal   r(θ) for θ in [−π, π]
+/// Outer       max over k of r(θ + 2πk)
+/// Inner       min over k of r(θ + 2πk)
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Turns {
     /// The first one, angles in [−π, π]: for any m.

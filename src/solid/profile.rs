@@ -152,6 +152,15 @@ impl Profile {
         "profile_polygon" = "docs/gallery/profile_polygon.png",
         "profile_offset" = "docs/gallery/profile_offset.png",
     )]
+    ///
+    /// ```
+    /// use rvachev::Profile;
+    /// use glam::DVec2;
+    ///
+    /// let triangle = Profile::polygon([[0.0, 0.0], [4.0, 0.0], [0.0, 3.0]]);
+    /// assert!((triangle.offset(0.5).value(DVec2::new(2.0, -0.25))? - 0.25).abs() < 1e-12);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
     #[must_use]
     pub fn offset(&self, distance: f64) -> Profile {
         Profile(self.0.offset(distance))
@@ -184,6 +193,15 @@ impl Profile {
     }
 
     /// Mirrored in the line through the origin across `normal` (of any length).
+    ///
+    /// ```
+    /// use rvachev::Profile;
+    /// use glam::DVec2;
+    ///
+    /// let half = Profile::polygon([[0.0, -1.0], [3.0, 0.0], [0.0, 1.0]]).mirror([1.0, 0.0]);
+    /// assert!(half.contains(DVec2::new(-2.0, 0.0))? && !half.contains(DVec2::new(2.0, 0.0))?);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
     #[must_use]
     pub fn mirror(&self, normal: impl Into<DVec2>) -> Profile {
         let normal = normal.into().normalize_or_zero();
