@@ -181,7 +181,7 @@
 //! | lattices | | value |
 //! |---|---|---|
 //! | [`SheetLattice`] | a wall along a gyroid, Schwarz P or D ([`MinimalSurface`]), unbounded | near the wall nearly the distance |
-//! | [`NetworkLattice`] | one side of such a surface, by its share of the volume, unbounded | as long as it is steep |
+//! | [`NetworkLattice`] | one side of such a surface, by its share of the volume, unbounded | near the surface 0.6 to 1 of the distance |
 //! | [`Grading`] | a thickness or share that varies in space: a number or your formula | |
 //!
 //! | formulas | | value |
