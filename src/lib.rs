@@ -152,7 +152,7 @@
 //! Formula, parameters with their ranges, source and an example are with each item; formulas
 //! without a source are elementary geometry, derived here. Most leaves have a constructor on
 //! [`Solid`] ([`Solid::torus`]), all become solids by `Solid::from(leaf)`, and stand as they are
-//! where a solid is taken.
+//! where a solid is taken. The words for values are those of [the table below](#what-values-mean).
 //!
 //! ## Leaves
 //!
@@ -171,12 +171,19 @@
 //!
 //! | primitives | | value |
 //! |---|---|---|
-//! | [`Sphere`], [`Cuboid`], [`Cylinder`] | | distance |
-//! | [`RoundedCuboid`], [`Capsule`] | a box with rounded edges, a rod with round ends | distance |
-//! | [`Cone`], [`Pyramid`], [`Prism`], [`Wedge`] | pointed or truncated; on regular polygons; a ramp | distance |
+//! | [`Sphere`] | by its radius | distance |
+//! | [`Ellipsoid`] | by three semi-axes | bound |
+//! | [`Cuboid`] | a box, by the lengths of its edges | distance |
+//! | [`RoundedCuboid`] | a box with rounded edges and corners | distance |
+//! | [`Cylinder`] | about the z axis | distance |
+//! | [`Capsule`] | a cylinder with hemispherical ends | distance |
+//! | [`Cone`] | pointed or truncated | distance |
 //! | [`Torus`] | a ring of circular section | distance |
-//! | [`Ellipsoid`] | three semi-axes | bound |
-//! | [`HalfSpace`], [`Slab`] | unbounded: below a plane, between two | distance |
+//! | [`Prism`] | on a regular polygon, by its corners or across its flats | distance |
+//! | [`Pyramid`] | on a regular polygon | distance |
+//! | [`Wedge`] | a ramp: half a box | distance |
+//! | [`HalfSpace`] | all that is below a plane, unbounded | distance |
+//! | [`Slab`] | all that is between two planes, unbounded | distance |
 //!
 //! | lattices | | value |
 //! |---|---|---|
@@ -196,7 +203,9 @@
 //!
 //! | profile | | value |
 //! |---|---|---|
-//! | [`Circle`], [`Rectangle`], [`RegularPolygon`] | rectangles with sharp or round corners | distance |
+//! | [`Circle`] | by its radius | distance |
+//! | [`Rectangle`] | its corners sharp or rounded | distance |
+//! | [`RegularPolygon`] | of 3 to 1024 sides | distance |
 //! | [`Polygon`] | any contours, with holes and islands, of thousands of edges | distance |
 //! | [`Superellipse`] | the plane section of a superellipsoid | gauge |
 //! | [`Superpolygon`] | what is within a [`Gielis`] curve | gauge |
