@@ -30,22 +30,12 @@ impl Solid {
     }
 
     /// What is in both solids, less what `blend` takes off.
-    ///
-    #[doc = picture!(
-        "fillet_intersection" = "docs/gallery/fillet_intersection.png",
-        "chamfer_intersection" = "docs/gallery/chamfer_intersection.png",
-    )]
     #[must_use]
     pub fn intersection_with(&self, other: impl Into<Solid>, blend: Blend) -> Solid {
         self.blended(Operation::Intersection, other, blend)
     }
 
     /// What is in this solid and not in `other`, less what `blend` takes off.
-    ///
-    #[doc = picture!(
-        "fillet_difference" = "docs/gallery/fillet_difference.png",
-        "chamfer_difference" = "docs/gallery/chamfer_difference.png",
-    )]
     #[must_use]
     pub fn difference_with(&self, other: impl Into<Solid>, blend: Blend) -> Solid {
         self.blended(Operation::Difference, other, blend)

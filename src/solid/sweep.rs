@@ -9,12 +9,6 @@ use crate::{Blend, ParamError, RFunction};
 
 /// How the edges of an end face are.
 ///
-#[doc = picture!(
-    "extrude" = "docs/gallery/extrude.png",
-    "extrude_chamfered" = "docs/gallery/extrude_chamfered.png",
-    "extrude_rounded" = "docs/gallery/extrude_rounded.png",
-)]
-///
 /// Lengths are 10⁻⁹ to 10⁹, and meant to be below half the height and half the section's width.
 ///
 /// ```
@@ -180,8 +174,6 @@ impl Profile {
     #[doc = picture!(
         "extrude_twisted" = "docs/gallery/extrude_twisted.png",
         "extrude_scaled" = "docs/gallery/extrude_scaled.png",
-        "extrude_chamfered" = "docs/gallery/extrude_chamfered.png",
-        "extrude_rounded" = "docs/gallery/extrude_rounded.png",
     )]
     ///
     /// Twisted and scaled ones have the profile's value at the pre-image, not rescaled: no
