@@ -143,10 +143,16 @@
 //!
 //! # The catalogue
 //!
+#![cfg_attr(
+    feature = "doc-images",
+    doc = "![Everything in the catalogue][gallery]\n",
+    doc = ::embed_doc_image::embed_image!("gallery", "docs/gallery.png")
+)]
+//!
 //! Formula, parameters with their ranges, source and an example are with each item; formulas
 //! without a source are elementary geometry, derived here. Most leaves have a constructor on
 //! [`Solid`] ([`Solid::torus`]), all become solids by `Solid::from(leaf)`, and stand as they are
-//! where a solid is taken.
+//! where a solid is taken. The words for values are those of [the table below](#what-values-mean).
 //!
 //! ## Leaves
 //!
@@ -165,17 +171,24 @@
 //!
 //! | primitives | | value |
 //! |---|---|---|
-//! | [`Sphere`], [`Cuboid`], [`Cylinder`] | | distance |
-//! | [`RoundedCuboid`], [`Capsule`] | a box with rounded edges, a rod with round ends | distance |
-//! | [`Cone`], [`Pyramid`], [`Prism`], [`Wedge`] | pointed or truncated; on regular polygons; a ramp | distance |
+//! | [`Sphere`] | by its radius | distance |
+//! | [`Ellipsoid`] | by three semi-axes | bound |
+//! | [`Cuboid`] | a box, by the lengths of its edges | distance |
+//! | [`RoundedCuboid`] | a box with rounded edges and corners | distance |
+//! | [`Cylinder`] | about the z axis | distance |
+//! | [`Capsule`] | a cylinder with hemispherical ends | distance |
+//! | [`Cone`] | pointed or truncated | distance |
 //! | [`Torus`] | a ring of circular section | distance |
-//! | [`Ellipsoid`] | three semi-axes | bound |
-//! | [`HalfSpace`], [`Slab`] | unbounded: below a plane, between two | distance |
+//! | [`Prism`] | on a regular polygon, by its corners or across its flats | distance |
+//! | [`Pyramid`] | on a regular polygon | distance |
+//! | [`Wedge`] | a ramp: half a box | distance |
+//! | [`HalfSpace`] | all that is below a plane, unbounded | distance |
+//! | [`Slab`] | all that is between two planes, unbounded | distance |
 //!
 //! | lattices | | value |
 //! |---|---|---|
 //! | [`SheetLattice`] | a wall along a gyroid, Schwarz P or D ([`MinimalSurface`]), unbounded | near the wall nearly the distance |
-//! | [`NetworkLattice`] | one side of such a surface, by its share of the volume, unbounded | as long as it is steep |
+//! | [`NetworkLattice`] | one side of such a surface, by its share of the volume, unbounded | near the surface 0.6 to 1 of the distance |
 //! | [`Grading`] | a thickness or share that varies in space: a number or your formula | |
 //!
 //! | formulas | | value |
@@ -190,7 +203,9 @@
 //!
 //! | profile | | value |
 //! |---|---|---|
-//! | [`Circle`], [`Rectangle`], [`RegularPolygon`] | rectangles with sharp or round corners | distance |
+//! | [`Circle`] | by its radius | distance |
+//! | [`Rectangle`] | its corners sharp or rounded | distance |
+//! | [`RegularPolygon`] | of 3 to 1024 sides | distance |
 //! | [`Polygon`] | any contours, with holes and islands, of thousands of edges | distance |
 //! | [`Superellipse`] | the plane section of a superellipsoid | gauge |
 //! | [`Superpolygon`] | what is within a [`Gielis`] curve | gauge |
@@ -303,6 +318,9 @@
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
+
+#[macro_use]
+mod picture;
 
 mod bounds;
 mod eval;

@@ -206,6 +206,14 @@ impl Compiler {
                 if c.is_finite() { first(c) } else { Bounds::ALL }
             }
             solid::Node::Blend { operation: Operation::Difference, blend: Blend::Smooth { .. }, .. } => first(c),
+            solid::Node::Join { operation: Operation::Intersection, .. }
+            | solid::Node::Blend { operation: Operation::Intersection, blend: Blend::Smooth { .. }, .. } => {
+                inner.fold(Bounds::ALL, |all, (s, inner)| all.intersection(&self.above(s, inner, c, depth - 1)))
+            }
+            solid::Node::Blend { operation: Operation::Union, blend: Blend::Smooth { radius }, .. } => {
+                let c = c + 0.25 * radius * self.contexts.get(context).scale;
+                inner.fold(Bounds::EMPTY, |all, (s, inner)| all.union(&self.above(s, inner, c, depth - 1)))
+            }
             solid::Node::Length { length: Length::Level(by), .. } => {
                 first((c + by * self.contexts.get(context).scale).max(0.0))
             }
@@ -260,8 +268,8 @@ impl Compiler {
                     self.code.operation(Operation::Intersection, Rule::MinMax, context.frame, &wall)
                 }
             }),
-            solid::Node::Blend { operation, blend, lengths, .. } => {
-                self.blended(site, *operation, *blend, lengths, [below[0], below[1]])
+            solid::Node::Blend { operation, blend, operands, lengths } => {
+                self.blended(site, *operation, *blend, [operands, lengths], [below[0], below[1]])
             }
         }
     }
@@ -296,7 +304,7 @@ impl Compiler {
         site: Site<'_>,
         operation: Operation,
         blend: Blend,
-        lengths: &[Solid],
+        [operands, lengths]: [&[Solid; 2]; 2],
         pair: [Built; 2],
     ) -> Result<Built, SolidError> {
         let context = *self.contexts.get(site.context);
@@ -327,7 +335,10 @@ impl Compiler {
                 Ok(self.code.ricci(operation, p, [first, second], frame, pair, risen))
             }
             Blend::Fillet { .. } | Blend::Chamfer { .. } => {
-                let [a, b] = [self.alone(site, &lengths[0])?, self.alone(site, &lengths[1])?];
+                // A ball is measured in lengths, a face across the edge by the slopes there.
+                let chamfer = matches!(blend, Blend::Chamfer { .. });
+                let [a, b] = if chamfer { operands } else { lengths };
+                let [a, b] = [self.alone(site, a)?, self.alone(site, b)?];
                 let edge = Arc::new(EdgeBlend::new(operation, blend, [a.surface.clone(), b.surface.clone()]));
                 let field: Arc<dyn AnyField> = edge.clone();
                 let (leaf, _) = self.place(&field, site);

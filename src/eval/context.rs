@@ -118,7 +118,11 @@ impl Contexts {
                 // Lengths add up, but not through a map that stretches unevenly.
                 _ if !self.similar(context) => Vec::new(),
                 Length::Offset(d) => vec![(0, self.length(context, d))],
-                Length::Shell(t) => vec![(0, self.length(context, 0.0)), (0, self.length(context, -t))],
+                // The outer side of a wall is the surface itself, in whatever values.
+                Length::Shell(t) => {
+                    let outer = if above.anchor.is_some() { self.length(context, 0.0) } else { context };
+                    vec![(0, outer), (0, self.length(context, -t))]
+                }
             },
         };
         self.below.insert((context, solid.address()), list);

@@ -1,6 +1,7 @@
 //! Fillets and chamfers: blends along the edge where two operands meet.
 //!
-//! For a union, with the operands' values x and y true distances, positive inside:
+//! For a union, with the operands' values x and y positive inside (true distances for a fillet;
+//! for a chamfer any of slope up to 4 will do):
 //!
 //! ```text
 //!     fillet    a ball of radius r rolls outside along both operands: its centre runs on the
@@ -24,10 +25,12 @@
 //! Source: J. R. Rossignac and A. A. G. Requicha, *Constant-radius blending in solid
 //! modelling* (1984), for the rolling ball.
 
+use std::sync::OnceLock;
+
 use glam::{DAffine3, DVec3};
 
-use super::Program;
 use super::composite::{Locals, Slopes, finish, points64, roundoff, tape, with_evaluator, write_gradients};
+use super::{Program, Tape};
 use crate::field::{AnyField, Chunk, Zone};
 use crate::num::kernel::CHUNK;
 use crate::num::symbol::Symbol;
@@ -43,6 +46,8 @@ pub(crate) struct EdgeBlend {
     /// −1 for the complement of a union of complements.
     sign: f64,
     shape: Shape,
+    /// The operands' tapes, made on first use.
+    tapes: OnceLock<[Tape; 2]>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -75,7 +80,7 @@ impl EdgeBlend {
             Blend::Chamfer { width } => Shape::Chamfer(width),
             _ => Shape::Fillet(0.0),
         };
-        EdgeBlend { operands, signs, sign, shape }
+        EdgeBlend { operands, signs, sign, shape, tapes: OnceLock::new() }
     }
 
     /// The radius or width.
@@ -88,7 +93,11 @@ impl EdgeBlend {
     /// Where an operand is farther away than this, the blend is the join. (Where the operands
     /// meet at an acute angle, the ball touches one of them up to two radii from the other.)
     fn reach(&self) -> f64 {
-        2.0 * self.size()
+        match self.shape {
+            Shape::Fillet(radius) => 2.0 * radius,
+            // The face is within its width of both operands.
+            Shape::Chamfer(width) => 4.0 * width,
+        }
     }
 
     /// What both operands are at the curve that q lies on.
@@ -115,7 +124,15 @@ impl EdgeBlend {
         // From a point of the zone the steps lead at most this far.
         let near = zone.inflated(4.0 * self.reach());
         let operands = [0, 1].map(|i| self.operands[i].reduced(&near));
-        (leaves(&operands) < leaves(&self.operands)).then(|| EdgeBlend { operands, ..self.clone() })
+        (leaves(&operands) < leaves(&self.operands)).then(|| EdgeBlend {
+            operands,
+            tapes: OnceLock::new(),
+            ..self.clone()
+        })
+    }
+
+    fn tapes(&self) -> &[Tape; 2] {
+        self.tapes.get_or_init(|| self.operands.each_ref().map(tape))
     }
 
     fn sample(&self, i: usize, p: DVec3) -> Sample {
@@ -305,7 +322,7 @@ impl AnyField for EdgeBlend {
         // longest way to a foot.
         let ((centre, _), told) = self.told(zone.centre);
         let above = centre + STEEPEST * zone.extent().length();
-        let hi = if told && above < 0.0 { above.max(join.lo()) } else { join.hi().max(self.largest()) };
+        let hi = if told && above < 0.0 { above.max(join.hi()) } else { join.hi().max(self.largest()) };
         Interval::new(join.lo(), hi) * Interval::point(self.sign)
     }
 
@@ -319,7 +336,7 @@ impl AnyField for EdgeBlend {
         let local = Locals::of(&chunk.points, chunk.placement);
         let [out] = chunk.out;
         let mut values = [[0.0f32; CHUNK]; 2];
-        let tapes = [tape(&self.operands[0]), tape(&self.operands[1])];
+        let tapes = self.tapes();
         let mut near = false;
         with_evaluator(|evaluator| {
             for i in 0..2 {
@@ -333,7 +350,7 @@ impl AnyField for EdgeBlend {
             near |= *x >= reach && *y >= reach;
         }
         if near {
-            out.copy_from_slice(&self.chunk(&local, &tapes).value);
+            out.copy_from_slice(&self.chunk(&local, tapes).value);
         } else {
             for (i, out) in out.iter_mut().enumerate() {
                 *out = self.sign as f32 * values[0][i].max(values[1][i]);
@@ -348,14 +365,14 @@ impl AnyField for EdgeBlend {
 
     fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
         let local = Locals::of(&chunk.points, chunk.placement);
-        let tapes = [tape(&self.operands[0]), tape(&self.operands[1])];
-        write_gradients(chunk.placement, &self.chunk(&local, &tapes), chunk.out);
+        let tapes = self.tapes();
+        write_gradients(chunk.placement, &self.chunk(&local, tapes), chunk.out);
     }
 }
 
 impl EdgeBlend {
     /// Values and gradients of a chunk.
-    fn chunk(&self, local: &Locals, tapes: &[super::Tape; 2]) -> Slopes {
+    fn chunk(&self, local: &Locals, tapes: &[Tape; 2]) -> Slopes {
         with_evaluator(|evaluator| {
             let mut sample = |at: &Locals| -> [Slopes; 2] { [0, 1].map(|i| at.gradients(evaluator, &tapes[i])) };
             let signed = |slopes: &[Slopes; 2], i: usize| -> [Sample; 2] {

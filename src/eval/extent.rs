@@ -45,8 +45,12 @@ pub(super) fn extent(program: &Program, known: &Bounds) -> Bounds {
         if ends && largest <= FINEST * hull.longest_side() {
             return hull.intersection(known);
         }
-        if next.len() > PATIENCE || (!ends && largest < 1e-3 * LARGEST) {
+        if !ends && (next.len() > PATIENCE || largest < 1e-3 * LARGEST) {
             return *known;
+        }
+        if next.len() > PATIENCE {
+            // A flat side takes many small boxes: what is known by now is near enough.
+            return hull.intersection(known);
         }
         // Only boxes at the hull matter: what is well inside cannot move it.
         boxes = next

@@ -124,7 +124,7 @@ impl Program {
     }
 
     /// The value at a point: positive inside. Coordinates beyond
-    /// [`COORDINATE_LIMIT`](crate::COORDINATE_LIMIT) are evaluated as if they lay there; NaN
+    /// [`COORDINATE_LIMIT`] are evaluated as if they lay there; NaN
     /// counts as outside.
     #[must_use]
     pub fn value(&self, p: impl Into<DVec3>) -> f64 {

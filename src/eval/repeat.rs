@@ -25,6 +25,8 @@ impl Solid {
     /// A grid of copies along the axes: `counts` of them, `spacing` apart. The first one is the
     /// solid where it is, the others are moved by `(i·spacing.x, j·spacing.y, k·spacing.z)`.
     ///
+    #[doc = picture!("repeat" = "docs/gallery/repeat.png")]
+    ///
     /// The inside is that of the union of all copies, which may overlap as they like, and so is
     /// the value there (by the maximum). Outside, where the solid's value is the true
     /// distance, the value is that of the union too; where it is a bound of the distance, the
@@ -35,7 +37,7 @@ impl Solid {
     /// | parameter | unit | range |
     /// |---|---|---|
     /// | `counts` | copies | 1 to 10⁶ along each axis |
-    /// | `spacing` | length | 10⁻⁹ to 10⁹ along each axis with more than one copy |
+    /// | `spacing` | length | 10⁻⁹ to 10⁹ along each axis with more than one copy, and so `counts` times `spacing` |
     ///
     /// A solid that is unbounded along an axis, or wider than 15 spacings, is copied one by
     /// one, which is an error for more than 4096 copies.
@@ -100,6 +102,8 @@ impl Solid {
     /// A row of `count` copies, each `step` from the one before; the first one is the solid
     /// where it is. Values and limits are those of [`repeat`](Solid::repeat).
     ///
+    #[doc = picture!("repeat_linear" = "docs/gallery/repeat_linear.png")]
+    ///
     /// ```
     /// use rvachev::Solid;
     /// use glam::DVec3;
@@ -137,6 +141,8 @@ impl Solid {
 
     /// A ring of `count` copies about the z axis, at equal angles of a whole turn; the first
     /// one is the solid where it is.
+    ///
+    #[doc = picture!("repeat_polar" = "docs/gallery/repeat_polar.png")]
     ///
     /// Values are those of [`repeat`](Solid::repeat): the cost does not depend on `count` (two
     /// folds where `count` is even, three or four where it is not, more only where the solid

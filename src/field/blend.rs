@@ -69,22 +69,38 @@ use crate::{Norm, Real};
 #[non_exhaustive]
 pub enum Blend {
     /// A smooth transition of compact support.
+    ///
+    #[doc = picture!(
+        "smooth_union" = "docs/gallery/smooth_union.png",
+        "smooth_intersection" = "docs/gallery/smooth_intersection.png",
+        "smooth_difference" = "docs/gallery/smooth_difference.png",
+    )]
     Smooth {
         /// Values that differ by less than this are blended; a union of equal values gains a
         /// quarter of it.
         radius: f64,
     },
     /// A rounding of constant radius along the edge where the operands meet.
+    ///
+    #[doc = picture!("fillet_union" = "docs/gallery/fillet_union.png")]
     Fillet {
         /// Radius of the ball.
         radius: f64,
     },
     /// A flat face along the edge where the operands meet.
+    ///
+    #[doc = picture!("chamfer_union" = "docs/gallery/chamfer_union.png")]
     Chamfer {
         /// Width of the face.
         width: f64,
     },
     /// Pasko and Savchenko's displacement of the R-function with p = 2.
+    ///
+    #[doc = picture!(
+        "displacement_union" = "docs/gallery/displacement_union.png",
+        "displacement_intersection" = "docs/gallery/displacement_intersection.png",
+        "displacement_difference" = "docs/gallery/displacement_difference.png",
+    )]
     Displacement {
         /// a₀: how far values are moved where both operands are 0.
         height: f64,
@@ -92,8 +108,14 @@ pub enum Blend {
         falloff: [f64; 2],
     },
     /// Ricci's blend of gauges: spheres, superellipsoids, generalised superquadrics,
-    /// supershapes and Ricci blends of these, moved and deformed. ([`Ellipsoid`](crate::Ellipsoid) is no
-    /// gauge; the superellipsoid of exponents 1 is.)
+    /// supershapes, superpolygons and Ricci blends of these, moved, stretched and deformed. (An [`Ellipsoid`](crate::Ellipsoid) is a
+    /// bound; a stretched sphere is a gauge.)
+    ///
+    #[doc = picture!(
+        "ricci_union" = "docs/gallery/ricci_union.png",
+        "ricci_intersection" = "docs/gallery/ricci_intersection.png",
+        "ricci_difference" = "docs/gallery/ricci_difference.png",
+    )]
     Ricci {
         /// The exponent.
         p: f64,

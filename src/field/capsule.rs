@@ -8,6 +8,8 @@ use crate::{Bounds, Interval, Norm, Real};
 /// A cylinder with hemispherical ends along the z axis, centred at the origin, by true
 /// distance (1-Lipschitz): all points within `radius` of a segment.
 ///
+#[doc = picture!("capsule" = "docs/gallery/capsule.png")]
+///
 /// `f = radius − |(x, y, max(|z| − height/2 + radius, 0))|`.
 ///
 /// | parameter | unit | range |

@@ -8,6 +8,8 @@ use crate::{Bounds, Interval, Norm, Real};
 /// A circular cone about the z axis, pointed or truncated, centred at the origin (the base is
 /// at z = −height/2), by true distance (1-Lipschitz).
 ///
+#[doc = picture!("cone" = "docs/gallery/cone.png", "cone_truncated" = "docs/gallery/cone_truncated.png")]
+///
 /// In the half-plane of `r = √(x² + y²)` and z it is a trapezoid. Inside, f is the distance
 /// to the nearest of the planes of its edges; outside, minus that to the nearest edge.
 ///

@@ -7,6 +7,8 @@ use crate::{Bounds, Interval, Norm, Real};
 
 /// A box about the origin with edges along the axes, by true distance (1-Lipschitz).
 ///
+#[doc = picture!("cuboid" = "docs/gallery/cuboid.png")]
+///
 /// With `q = |p| − size/2`: `f = −|max(q, 0)| − min(max(q_x, q_y, q_z), 0)`.
 ///
 /// | parameter | unit | range |

@@ -7,6 +7,8 @@ use crate::{Bounds, Interval, Norm, Real};
 
 /// A cylinder about the z axis, centred at the origin, by true distance (1-Lipschitz).
 ///
+#[doc = picture!("cylinder" = "docs/gallery/cylinder.png")]
+///
 /// With `q = (√(x² + y²) − radius, |z| − height/2)`:
 /// `f = −|max(q, 0)| − min(max(q_1, q_2), 0)`.
 ///

@@ -8,6 +8,8 @@ use crate::{Bounds, Interval, Norm, Real};
 /// An ellipsoid about the origin with its axes along x, y and z. The value is a bound: it
 /// has the sign of the distance and is never larger (1-Lipschitz).
 ///
+#[doc = picture!("ellipsoid" = "docs/gallery/ellipsoid.png")]
+///
 /// With the gauge `G = |(x/a, y/b, z/c)|` and the smallest semi-axis s:
 /// `f = min(s·(1 − G), distance inside the box of half-sizes a, b, c)`.
 ///

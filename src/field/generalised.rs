@@ -40,6 +40,8 @@ const TINY: f64 = 1e-30;
 /// A generalised superquadric about the origin, valued `f = r_in·(1 − G)` in length units,
 /// where `r_in` is the radius of the largest inscribed sphere (to 10⁻⁶).
 ///
+#[doc = picture!("generalised_superquadric" = "docs/gallery/generalised_superquadric.png")]
+///
 /// ```text
 /// surface   |x/a₁|^n₁ + |y/a₂|^n₂ + |z/a₃|^n₃ = 1
 /// gauge     G with |x/(a₁G)|^n₁ + |y/(a₂G)|^n₂ + |z/(a₃G)|^n₃ = 1, by Newton's method

@@ -42,6 +42,11 @@ const MOST_TURNS: u32 = 16;
 
 /// Which formula gives the radius of a [`Gielis`] curve.
 ///
+#[doc = picture!(
+    "supershape" = "docs/gallery/supershape.png",
+    "supershape_rational_radius" = "docs/gallery/supershape_rational_radius.png",
+)]
+///
 /// ```text
 /// standard   r = (U^n₂ + V^n₃)^(−1/n₁)                  U = |cos(mθ/4)/a|, V = |sin(mθ/4)/b|
 /// rational   r = 2^(−1/n₁)·(2/(n₁W) + 1 − 1/n₁)         W = g_n₂(U) + g_n₃(V)
@@ -64,6 +69,17 @@ pub enum Radius {
 
 /// Which turns of a curve about the origin count. Curves whose m is whole and even, or whole
 /// with n2 = n3 and a = b, have one turn only.
+///
+#[doc = picture!(
+    "supershape_outer" = "docs/gallery/supershape_outer.png",
+    "supershape_inner" = "docs/gallery/supershape_inner.png",
+)]
+///
+/// ```text
+/// Principal   r(θ) for θ in [−π, π]
+/// Outer       max over k of r(θ + 2πk)
+/// Inner       min over k of r(θ + 2πk)
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Turns {
     /// The first one, angles in [−π, π]: for any m.

@@ -7,6 +7,8 @@ use crate::{Bounds, Interval, Real};
 
 /// Everything on one side of a plane: `f = offset − n·p`, the true distance (1-Lipschitz).
 ///
+#[doc = picture!("half_space" = "docs/gallery/half_space.png")]
+///
 /// | parameter | unit | range |
 /// |---|---|---|
 /// | `normal` | none | not zero; of any length, it points out of the solid |

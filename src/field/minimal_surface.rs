@@ -33,6 +33,12 @@ use crate::{Interval, Real};
 /// A surface that repeats in three directions and divides space into two networks, by its
 /// trigonometric approximation g = 0.
 ///
+#[doc = picture!(
+    "gyroid_sheet" = "docs/gallery/gyroid_sheet.png",
+    "schwarz_p_sheet" = "docs/gallery/schwarz_p_sheet.png",
+    "schwarz_d_sheet" = "docs/gallery/schwarz_d_sheet.png",
+)]
+///
 /// With (X, Y, Z) = 2π·p/cell, s and c their sines and cosines:
 ///
 /// ```text
@@ -143,6 +149,11 @@ impl MinimalSurface {
 
 /// A number that varies in space: the thickness of a [`SheetLattice`](crate::SheetLattice) or
 /// the share of a [`NetworkLattice`](crate::NetworkLattice).
+///
+#[doc = picture!(
+    "graded_sheet" = "docs/gallery/graded_sheet.png",
+    "graded_network" = "docs/gallery/graded_network.png",
+)]
 ///
 /// A plain `f64` is the same everywhere. A grading of your own is compiled into the lattice's
 /// kernels; the solid is then made by [`Solid::new`](crate::Solid::new). Mark `at` and its

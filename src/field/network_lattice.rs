@@ -9,6 +9,12 @@ use crate::{Bounds, Dual, Interval, Real};
 /// where g is positive, grown or thinned to a given share of the volume:
 /// `f = (g − level)/N`, with g and N as in [`MinimalSurface`].
 ///
+#[doc = picture!(
+    "gyroid_network" = "docs/gallery/gyroid_network.png",
+    "schwarz_p_network" = "docs/gallery/schwarz_p_network.png",
+    "schwarz_d_network" = "docs/gallery/schwarz_d_network.png",
+)]
+///
 /// | parameter | unit | range |
 /// |---|---|---|
 /// | `surface` | none | gyroid, Schwarz P or D |

@@ -9,6 +9,8 @@ use crate::{Bounds, Interval, Norm, Real};
 /// A prism on a regular polygon, along the z axis and centred at the origin, with a corner on
 /// the positive x axis, by true distance (1-Lipschitz).
 ///
+#[doc = picture!("prism" = "docs/gallery/prism.png")]
+///
 /// The point is folded to the sector of one edge (u along its normal, v along it from its
 /// middle). With `q = (u − inscribed radius, v − edge/2, |z| − height/2)`:
 /// `f = −|max(q, 0)| − min(max(q_u, q_z), 0)`.

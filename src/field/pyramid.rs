@@ -10,6 +10,8 @@ use crate::{Bounds, Interval, Norm, Real};
 /// z = −height/2, apex at z = height/2), with a corner on the side of positive x, by true
 /// distance (1-Lipschitz).
 ///
+#[doc = picture!("pyramid" = "docs/gallery/pyramid.png")]
+///
 /// The point is folded to the sector of one face. Inside, f is the distance to the nearer of
 /// the planes of face and base; outside, minus that to the nearest of face and base, each cut
 /// at its edges.

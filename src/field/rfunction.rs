@@ -26,6 +26,15 @@ use crate::{Monotone, Norm, Real};
 /// How set operations combine values. All rules give the same solid; they differ in the
 /// field around and inside it.
 ///
+#[doc = picture!(
+    "rule_min_max" = "docs/gallery/rule_min_max.png",
+    "rule_alpha" = "docs/gallery/rule_alpha.png",
+    "rule_zero" = "docs/gallery/rule_zero.png",
+    "rule_p" = "docs/gallery/rule_p.png",
+    "rule_associative" = "docs/gallery/rule_associative.png",
+    "rule_distance" = "docs/gallery/rule_distance.png",
+)]
+///
 /// ```text
 /// Alpha(α)         x∧y = (x + y − √(x² + y² − 2αxy))/(1 + α)
 /// Zero { m }       x∧y = (x + y − √(x² + y²))·(x² + y²)^(m/2)

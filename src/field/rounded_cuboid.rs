@@ -8,6 +8,8 @@ use crate::{Bounds, Interval, Real};
 /// A box about the origin whose edges and corners are rounded, by true distance (1-Lipschitz):
 /// all points within `radius` of the box that is smaller by `radius` on every side.
 ///
+#[doc = picture!("rounded_cuboid" = "docs/gallery/rounded_cuboid.png")]
+///
 /// With `q = |p| − size/2 + radius`: `f = radius − |max(q, 0)| − min(max(q_x, q_y, q_z), 0)`.
 ///
 /// | parameter | unit | range |

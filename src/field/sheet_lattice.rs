@@ -8,6 +8,12 @@ use crate::{Bounds, Dual, Interval, Real};
 /// A wall along a triply periodic minimal surface: `f = thickness/2 − |g|/N`, with g and N
 /// as in [`MinimalSurface`], N being such that g/N is nearly the distance to the surface.
 ///
+#[doc = picture!(
+    "gyroid_sheet" = "docs/gallery/gyroid_sheet.png",
+    "schwarz_p_sheet" = "docs/gallery/schwarz_p_sheet.png",
+    "schwarz_d_sheet" = "docs/gallery/schwarz_d_sheet.png",
+)]
+///
 /// | parameter | unit | range |
 /// |---|---|---|
 /// | `surface` | none | gyroid, Schwarz P or D |

@@ -8,6 +8,8 @@ use crate::{Bounds, Real};
 /// Everything between two parallel planes about the origin: `f = thickness/2 − |n·p|`, the
 /// true distance (1-Lipschitz).
 ///
+#[doc = picture!("slab" = "docs/gallery/slab.png")]
+///
 /// | parameter | unit | range |
 /// |---|---|---|
 /// | `normal` | none | not zero; of any length, across the planes |

@@ -7,6 +7,8 @@ use crate::{Bounds, Interval, Norm, Real};
 
 /// A sphere about the origin: `f = r − |p|`, the true distance (1-Lipschitz).
 ///
+#[doc = picture!("sphere" = "docs/gallery/sphere.png")]
+///
 /// | parameter | unit | range |
 /// |---|---|---|
 /// | `radius` | length | 10⁻⁹ to 10⁹ |

@@ -21,6 +21,16 @@ use crate::{Bounds, Interval, Norm, Real};
 /// A superellipsoid about the origin, valued `f = r_in·(1 − G)` in length units, where
 /// `r_in` is the radius of its largest inscribed sphere and G the gauge.
 ///
+#[doc = picture!(
+    "superellipsoid_cube" = "docs/gallery/superellipsoid_cube.png",
+    "superellipsoid_cylinder" = "docs/gallery/superellipsoid_cylinder.png",
+    "superellipsoid_cushion" = "docs/gallery/superellipsoid_cushion.png",
+    "superellipsoid_ellipsoid" = "docs/gallery/superellipsoid_ellipsoid.png",
+    "superellipsoid_double_cone" = "docs/gallery/superellipsoid_double_cone.png",
+    "superellipsoid_octahedron" = "docs/gallery/superellipsoid_octahedron.png",
+    "superellipsoid_pinched" = "docs/gallery/superellipsoid_pinched.png",
+)]
+///
 /// ```text
 /// ρ = (|x/a₁|^(2/e₂) + |y/a₂|^(2/e₂))^(e₂/2)
 /// G = (ρ^(2/e₁) + |z/a₃|^(2/e₁))^(e₁/2)

@@ -43,6 +43,13 @@ enum Sheets {
 /// valued `f = min(s·h, half_length − |z|)` in length units (|x| in the forms along x), where
 /// `1/s` is the largest slope of h.
 ///
+#[doc = picture!(
+    "superhyperboloid_one_sheet" = "docs/gallery/superhyperboloid_one_sheet.png",
+    "superhyperboloid_one_sheet_x" = "docs/gallery/superhyperboloid_one_sheet_x.png",
+    "superhyperboloid_two_sheets" = "docs/gallery/superhyperboloid_two_sheets.png",
+    "superhyperboloid_two_sheets_x" = "docs/gallery/superhyperboloid_two_sheets_x.png",
+)]
+///
 /// ```text
 /// one sheet, z      h = ‖(1, z/a₃)‖₁ − ‖(x/a₁, y/a₂)‖₂
 /// one sheet, x      h = ‖(1, x/a₁)‖₁ − ‖(y/a₂, z/a₃)‖₂

@@ -39,6 +39,14 @@ use crate::{Bounds, Interval, Norm, Real};
 /// A supershape about the origin, valued `f = r_in·(1 − G)` in length units, where `r_in` is
 /// the radius of a sphere about the origin inside it.
 ///
+#[doc = picture!(
+    "supershape" = "docs/gallery/supershape.png",
+    "supershape_hexagon" = "docs/gallery/supershape_hexagon.png",
+    "supershape_flower" = "docs/gallery/supershape_flower.png",
+    "supershape_shell" = "docs/gallery/supershape_shell.png",
+    "supershape_irrational" = "docs/gallery/supershape_irrational.png",
+)]
+///
 /// With r₁ the radius of the equator, r₂ that of the meridian, and (x, y, z) in units of the
 /// semi-axes:
 ///

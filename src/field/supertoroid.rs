@@ -34,6 +34,12 @@ const LARGEST_RING: f64 = 1000.0;
 /// A supertoroid about the z axis, centred at the origin, valued `f = r·(1 − G)` in length
 /// units, where `1/r` is the largest slope of the gauge G.
 ///
+#[doc = picture!(
+    "supertoroid" = "docs/gallery/supertoroid.png",
+    "supertoroid_frame" = "docs/gallery/supertoroid_frame.png",
+    "supertoroid_bevelled" = "docs/gallery/supertoroid_bevelled.png",
+)]
+///
 /// ```text
 /// ρ = (|x/a₁|^(2/e₂) + |y/a₂|^(2/e₂))^(e₂/2)
 /// G = (|ρ − ring|^(2/e₁) + |z/a₃|^(2/e₁))^(e₁/2)

@@ -8,6 +8,8 @@ use crate::{Bounds, Norm, Real};
 /// A ring about the z axis, centred at the origin, by true distance (1-Lipschitz): all points
 /// within `tube` of a circle in the plane z = 0.
 ///
+#[doc = picture!("torus" = "docs/gallery/torus.png")]
+///
 /// `f = tube − |(√(x² + y²) − radius, z)|`.
 ///
 /// | parameter | unit | range |

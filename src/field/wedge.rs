@@ -8,6 +8,8 @@ use crate::{Bounds, Interval, Norm, Real};
 /// A ramp: the half of a box about the origin that lies below the plane through two of its
 /// edges along y, by true distance (1-Lipschitz).
 ///
+#[doc = picture!("wedge" = "docs/gallery/wedge.png")]
+///
 /// ```text
 ///      z
 ///      |\

@@ -11,6 +11,11 @@ impl Solid {
     /// What is in either solid, and what `blend` adds between them. The parameters and their
     /// ranges: [`Blend`].
     ///
+    #[doc = picture!(
+        "fillet_union" = "docs/gallery/fillet_union.png",
+        "chamfer_union" = "docs/gallery/chamfer_union.png",
+    )]
+    ///
     /// ```
     /// use rvachev::{Blend, Solid};
     ///
@@ -39,6 +44,8 @@ impl Solid {
     /// Union with a smooth transition where the operands' values differ by less than
     /// `radius`: [`Blend::Smooth`].
     ///
+    #[doc = picture!("smooth_union" = "docs/gallery/smooth_union.png")]
+    ///
     /// ```
     /// use rvachev::Solid;
     /// use glam::DVec3;
@@ -57,12 +64,16 @@ impl Solid {
     }
 
     /// Intersection with a smooth transition: [`Blend::Smooth`].
+    ///
+    #[doc = picture!("smooth_intersection" = "docs/gallery/smooth_intersection.png")]
     #[must_use]
     pub fn smooth_intersection(&self, other: impl Into<Solid>, radius: f64) -> Solid {
         self.intersection_with(other, Blend::Smooth { radius })
     }
 
     /// Difference with a smooth transition: [`Blend::Smooth`].
+    ///
+    #[doc = picture!("smooth_difference" = "docs/gallery/smooth_difference.png")]
     #[must_use]
     pub fn smooth_difference(&self, other: impl Into<Solid>, radius: f64) -> Solid {
         self.difference_with(other, Blend::Smooth { radius })
@@ -72,8 +83,8 @@ impl Solid {
 /// A blend of two operands.
 pub(super) fn node(operation: Operation, operands: [Solid; 2], blend: Blend) -> Node {
     let lengths = match blend {
-        Blend::Fillet { .. } | Blend::Chamfer { .. } => operands.iter().map(|solid| solid.offset(0.0)).collect(),
-        _ => Vec::new(),
+        Blend::Fillet { .. } => operands.each_ref().map(|solid| solid.offset(0.0)),
+        _ => operands.clone(),
     };
     Node::Blend { operation, blend, operands, lengths }
 }

@@ -10,6 +10,8 @@ impl Solid {
     /// Tapered along z by any [laws](crate::Law) of z: sections are scaled by `x_law` along x
     /// and by `y_law` along y.
     ///
+    #[doc = picture!("taper_by" = "docs/gallery/taper_by.png", "taper_by_wave" = "docs/gallery/taper_by_wave.png")]
+    ///
     /// | parameter | unit | range |
     /// |---|---|---|
     /// | `x_law`, `y_law` | none | 0.001 to 1000 over the heights of the solid's box, which is checked; beyond these heights they are held in that range |
@@ -34,6 +36,8 @@ impl Solid {
 
     /// Twisted about the z axis by any [law](crate::Law) of z: the section at z is turned by
     /// `angle`, from x towards y.
+    ///
+    #[doc = picture!("twist_by" = "docs/gallery/twist_by.png")]
     ///
     /// | parameter | unit | range |
     /// |---|---|---|
@@ -60,6 +64,8 @@ impl Solid {
     /// Elongated by straight pieces: the parts on either side of each coordinate plane move
     /// outward by `half`, and the section in the plane is drawn out between them:
     /// `f(p) = solid(p − clamp(p, −half, half))`.
+    ///
+    #[doc = picture!("elongate" = "docs/gallery/elongate.png")]
     ///
     /// | parameter | unit | range |
     /// |---|---|---|

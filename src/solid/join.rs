@@ -25,6 +25,8 @@ impl Solid {
 
     /// What is in either solid, joined by `rule`.
     ///
+    #[doc = picture!("union" = "docs/gallery/union.png")]
+    ///
     /// ```
     /// use rvachev::{Cylinder, RFunction, Solid};
     ///
@@ -40,6 +42,8 @@ impl Solid {
 
     /// What is in both solids, joined by `rule`.
     ///
+    #[doc = picture!("intersection" = "docs/gallery/intersection.png")]
+    ///
     /// ```
     /// use rvachev::{RFunction, Solid};
     ///
@@ -54,6 +58,8 @@ impl Solid {
 
     /// What is in this solid and not in `other`, joined by `rule`.
     ///
+    #[doc = picture!("difference" = "docs/gallery/difference.png")]
+    ///
     /// ```
     /// use rvachev::{RFunction, Solid};
     ///
@@ -67,6 +73,8 @@ impl Solid {
     }
 
     /// What is in exactly one of the solids, joined by `rule`.
+    ///
+    #[doc = picture!("symmetric_difference" = "docs/gallery/symmetric_difference.png")]
     ///
     /// ```
     /// use rvachev::{RFunction, Solid};

@@ -11,6 +11,8 @@ impl Solid {
     /// solid's level −`value`. A gauge's levels are scaled copies; for a wall of even
     /// thickness see [`offset`](Solid::offset) and [`shell`](Solid::shell).
     ///
+    #[doc = picture!("level" = "docs/gallery/level.png")]
+    ///
     /// | parameter | unit | range |
     /// |---|---|---|
     /// | `value` | length | ±10⁹ |
@@ -32,6 +34,8 @@ impl Solid {
     }
 
     /// The solid with its surface moved outwards by `distance` (inwards if negative).
+    ///
+    #[doc = picture!("offset" = "docs/gallery/offset.png", "offset_inwards" = "docs/gallery/offset_inwards.png")]
     ///
     /// Leaves below count by true distance: their own where they have it, else the distance
     /// to the foot that is found along the gradient, within 2 % for convex leaves. Joins
@@ -59,6 +63,8 @@ impl Solid {
 
     /// The wall of this solid, `thickness` deep, measured inwards from the surface:
     /// `f = min(d, thickness − d)`, d being the distances of [`offset`](Solid::offset).
+    ///
+    #[doc = picture!("shell" = "docs/gallery/shell.png")]
     ///
     /// | parameter | unit | range |
     /// |---|---|---|

@@ -50,6 +50,8 @@ impl Solid {
     /// `normal·p = offset`, for a unit normal: their union by the maximum. The image alone:
     /// [`reflect`](Solid::reflect).
     ///
+    #[doc = picture!("mirrored" = "docs/gallery/mirrored.png")]
+    ///
     /// ```
     /// use rvachev::Solid;
     /// use glam::DVec3;

@@ -65,8 +65,8 @@ pub(crate) enum Node {
         operation: Operation,
         blend: Blend,
         operands: [Solid; 2],
-        /// The operands valued by true distance, where the blend reads that.
-        lengths: Vec<Solid>,
+        /// The operands valued by true distance.
+        lengths: [Solid; 2],
     },
     Length {
         operand: Solid,

@@ -12,6 +12,13 @@ use crate::{
 
 /// A shape in the plane of x and y: what solids are extruded, revolved and swept from.
 ///
+#[doc = picture!(
+    "profile_joined" = "docs/gallery/profile_joined.png",
+    "extrude_twisted" = "docs/gallery/extrude_twisted.png",
+    "revolve" = "docs/gallery/revolve.png",
+    "sweep_helix" = "docs/gallery/sweep_helix.png",
+)]
+///
 /// Like a [`Solid`] it is an expression of leaves, maps and joins, cheap to clone, whose value
 /// is positive inside, in length units; its field does not depend on z. Building never fails;
 /// parameters are checked when the profile, or a solid made of it, is first used.
@@ -140,6 +147,20 @@ impl Profile {
 
     /// The shape with its border moved outwards by `distance` (inwards if negative): see
     /// [`Solid::offset`].
+    ///
+    #[doc = picture!(
+        "profile_polygon" = "docs/gallery/profile_polygon.png",
+        "profile_offset" = "docs/gallery/profile_offset.png",
+    )]
+    ///
+    /// ```
+    /// use rvachev::Profile;
+    /// use glam::DVec2;
+    ///
+    /// let triangle = Profile::polygon([[0.0, 0.0], [4.0, 0.0], [0.0, 3.0]]);
+    /// assert!((triangle.offset(0.5).value(DVec2::new(2.0, -0.25))? - 0.25).abs() < 1e-12);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
     #[must_use]
     pub fn offset(&self, distance: f64) -> Profile {
         Profile(self.0.offset(distance))
@@ -172,6 +193,15 @@ impl Profile {
     }
 
     /// Mirrored in the line through the origin across `normal` (of any length).
+    ///
+    /// ```
+    /// use rvachev::Profile;
+    /// use glam::DVec2;
+    ///
+    /// let half = Profile::polygon([[0.0, -1.0], [3.0, 0.0], [0.0, 1.0]]).mirror([1.0, 0.0]);
+    /// assert!(half.contains(DVec2::new(-2.0, 0.0))? && !half.contains(DVec2::new(2.0, 0.0))?);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
     #[must_use]
     pub fn mirror(&self, normal: impl Into<DVec2>) -> Profile {
         // A normal of no direction is NaN, which is told when the profile is used.

@@ -57,6 +57,12 @@ impl Caps {
 
 /// What a profile is extruded to.
 ///
+#[doc = picture!(
+    "extrude" = "docs/gallery/extrude.png",
+    "extrude_twisted" = "docs/gallery/extrude_twisted.png",
+    "extrude_scaled" = "docs/gallery/extrude_scaled.png",
+)]
+///
 /// The section at the lower end is the profile as it is; towards the upper end it is turned
 /// and scaled about the z axis, both in proportion to the height.
 ///
@@ -104,6 +110,11 @@ impl Extrusion {
 
 /// A helix about the z axis, its middle on the x axis at z = 0.
 ///
+#[doc = picture!(
+    "sweep_helix" = "docs/gallery/sweep_helix.png",
+    "sweep_helix_left_handed" = "docs/gallery/sweep_helix_left_handed.png",
+)]
+///
 /// | parameter | unit | range |
 /// |---|---|---|
 /// | `radius` | length | 10⁻⁹ to 10⁹, and more than the profile reaches towards the axis |
@@ -145,6 +156,8 @@ impl Profile {
     /// Extruded straight along z, from z = −height/2 to height/2, the edges sharp. The value is
     /// the true distance where the profile's is.
     ///
+    #[doc = picture!("extrude" = "docs/gallery/extrude.png")]
+    ///
     /// ```
     /// use rvachev::Profile;
     /// use glam::{DVec2, DVec3};
@@ -160,6 +173,11 @@ impl Profile {
 
     /// Extruded along z, twisted, scaled, the edges of the end faces chamfered or rounded. The
     /// parameters and their ranges: [`Extrusion`].
+    ///
+    #[doc = picture!(
+        "extrude_twisted" = "docs/gallery/extrude_twisted.png",
+        "extrude_scaled" = "docs/gallery/extrude_scaled.png",
+    )]
     ///
     /// Twisted and scaled ones have the profile's value at the pre-image, not rescaled: no
     /// Lipschitz constant is promised, and chamfers and roundings are of the size asked for
@@ -199,6 +217,8 @@ impl Profile {
     /// becomes z. The part with x below 0 is left out. Distances stay what they are:
     /// `f(x, y, z) = profile(√(x² + y²), z)`.
     ///
+    #[doc = picture!("revolve" = "docs/gallery/revolve.png")]
+    ///
     /// A section that is to be solid on the axis is drawn across it, best with its mirror image:
     /// a border on the axis is a border, and leaves a hole without width there.
     ///
@@ -232,6 +252,8 @@ impl Profile {
     /// the [revolved](Profile::revolve) profile's value and the distance to the faces that cut
     /// it off, 1-Lipschitz if the profile is.
     ///
+    #[doc = picture!("revolve_by" = "docs/gallery/revolve_by.png")]
+    ///
     /// | parameter | unit | range |
     /// |---|---|---|
     /// | `angle` | radians | 10⁻⁶ to 2π |
@@ -253,6 +275,11 @@ impl Profile {
     }
 
     /// Swept along a helix about the z axis: a thread, a spring.
+    ///
+    #[doc = picture!(
+        "sweep_helix" = "docs/gallery/sweep_helix.png",
+        "sweep_helix_left_handed" = "docs/gallery/sweep_helix_left_handed.png",
+    )]
     ///
     /// The profile stands in the plane of the axis, as threads are drawn: its x points away
     /// from the axis and is 0 at the helix's radius, its y is along z. The ends are in planes

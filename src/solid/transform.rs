@@ -85,6 +85,8 @@ impl Solid {
     /// stretch, so that they stay 1-Lipschitz; true distances stay true if the map stretches
     /// alike in all directions, and become bounds else.
     ///
+    #[doc = picture!("affine" = "docs/gallery/affine.png")]
+    ///
     /// | parameter | unit | range |
     /// |---|---|---|
     /// | entries of the matrix | none | ±10⁹; its smallest stretch at least 10⁻⁹, and at least 10⁻⁹ of the largest |
@@ -105,6 +107,8 @@ impl Solid {
 
     /// Tapered along z: sections are scaled by `1 + kx·t` along x and `1 + ky·t` along y,
     /// `t = z/half_height` held to [−1, 1]. By any other law of z: [`taper_by`](Solid::taper_by).
+    ///
+    #[doc = picture!("taper" = "docs/gallery/taper.png")]
     ///
     /// | parameter | unit | range |
     /// |---|---|---|
@@ -132,6 +136,8 @@ impl Solid {
     /// Twisted about the z axis: the section at z is turned by `rate·z`, from x towards y. By any
     /// other law of z: [`twist_by`](Solid::twist_by).
     ///
+    #[doc = picture!("twist" = "docs/gallery/twist.png")]
+    ///
     /// | parameter | unit | range |
     /// |---|---|---|
     /// | `rate` | radians per length | ±10⁹ |
@@ -157,6 +163,8 @@ impl Solid {
 
     /// Bent so that the z axis becomes a circle of radius `1/curvature` through the origin,
     /// with its centre in the direction `angle` (radians from the x axis, in the xy plane).
+    ///
+    #[doc = picture!("bend" = "docs/gallery/bend.png")]
     ///
     /// With κ the curvature and, for an angle of 0, in the plane of x and z:
     ///

@@ -1,7 +1,7 @@
 //! Blends: joins that read values.
 
 use glam::{DVec2, DVec3};
-use rvachev::{Blend, Bounds, Program, RFunction, Region, Solid, SolidError};
+use rvachev::{Blend, Bounds, Profile, Program, RFunction, Region, SmoothStep, Solid, SolidError};
 
 use crate::support::{Random, lanes32, lanes64, near};
 
@@ -400,4 +400,16 @@ fn ricci_takes_the_gauges_that_it_names() {
     ] {
         assert!(ball.union_with(gauge, ricci).contains(DVec3::ZERO).is_ok());
     }
+}
+
+#[test]
+fn boxes_of_blends_above_maps_and_of_turned_columns_end() -> Result<(), SolidError> {
+    let law = SmoothStep { from: (0.0, 1.0), to: (36.0, 0.66) };
+    let lens = Solid::superellipsoid([27.0, 11.0, 90.0], 1.0, 1.0).taper_by(1.0, law);
+    let head = Profile::circle(10.0).column().rotate_x_degrees(90.0).intersection(&lens, RFunction::MIN_MAX);
+    assert!(head.smooth_union(Solid::sphere(3.0), 2.5).bounds()?.size().max_element() < 200.0);
+    let disc = Profile::circle(1.0).extrude(0.5).rotate_x(std::f64::consts::FRAC_PI_2);
+    let size = disc.bounds()?.size();
+    assert!(size.x < 2.2 && size.y < 0.7 && size.z < 2.2, "{size}");
+    Ok(())
 }

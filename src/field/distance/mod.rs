@@ -66,6 +66,8 @@ pub(crate) struct Distance {
     planes: Vec<(Plane, [f64; 3])>,
     /// `|d| ≥ |f|` times this.
     least: f64,
+    /// The leaf's box.
+    bounds: Bounds,
 }
 
 impl Distance {
@@ -85,14 +87,22 @@ impl Distance {
         let stretch = 1.0 / smallest_stretch(&to_leaf.matrix3.inverse());
         let least = if shape == Shape::Convex && stretch.is_normal() { 1.0 / stretch } else { 0.0 };
         let planes = planes.into_iter().map(|plane: Plane| (plane, [plane[0], plane[1], plane[2]])).collect();
-        Distance { chain: Chain { maps: chain, to_leaf, leaf }, shape, planes, least }
+        let chain = Chain { maps: chain, to_leaf, leaf };
+        let mut distance = Distance { chain, shape, planes, least, bounds: Bounds::ALL };
+        distance.bounds = distance.bounds_under(&DAffine3::IDENTITY);
+        distance
     }
 
     /// Distance at a point, and its gradient.
     fn at(&self, p: DVec3) -> (f64, DVec3) {
         let value = self.chain.value(p.to_array());
         let (height, normal) = self.search(p, value);
-        (self.settled(value, height), -normal)
+        (self.settled(value, height.max(self.gap(p, p))), -normal)
+    }
+
+    /// How far a box is from the leaf's, at least.
+    fn gap(&self, low: DVec3, high: DVec3) -> f64 {
+        (self.bounds.min - high).max(low - self.bounds.max).max(DVec3::ZERO).length()
     }
 
     /// The distance, from a value of the leaf and what the search for the surface found:
@@ -250,6 +260,15 @@ impl Distance {
         );
         if !zone.is_finite() {
             return sign;
+        }
+        if self.shape == Shape::Free {
+            // What the search finds from a leaf that is not convex may jump: only its sign, and
+            // how far the leaf's box is, hold over a region.
+            let hull = zone.hull();
+            let (low, high) = (hull.map(Interval::lo), hull.map(Interval::hi));
+            let (low, high) = (DVec3::from_array(low), DVec3::from_array(high));
+            let gap = self.gap(low, high);
+            return if gap > 0.0 { sign.narrowed_by(Interval::new(f64::NEG_INFINITY, -gap)) } else { sign };
         }
         let radius = zone.radius();
         let (value, gradient) = self.centre(zone.centre);

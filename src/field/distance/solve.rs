@@ -36,7 +36,7 @@ impl Distance {
     pub(super) fn centre(&self, x: DVec3) -> (f64, DVec3) {
         let value = self.chain.value(x.to_array());
         let starts = self.starts();
-        let steps = if self.shape == Shape::Free { STEPS } else { 2 * STEPS / starts };
+        let steps = if self.shape == Shape::Bent { 2 * STEPS / starts } else { STEPS / starts };
         let (height, normal) = self.search_by(x, value, starts, steps);
         (self.settled(value, height), -normal)
     }

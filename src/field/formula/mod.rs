@@ -49,6 +49,8 @@ use crate::{Bounds, Interval};
 
 /// A solid given by a formula of x, y and z: a fidget [`Tree`], or the text of a `.vm` file.
 ///
+#[doc = picture!("formula" = "docs/gallery/formula.png", "formula_vm" = "docs/gallery/formula_vm.png")]
+///
 /// The sign is fidget's, **negative inside**; it is turned at the door, so the value of the
 /// solid is `−formula(x, y, z)`. The value is whatever the formula gives, not a distance;
 /// where it is undefined is outside.

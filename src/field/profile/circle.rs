@@ -9,6 +9,8 @@ use crate::{Bounds, Interval, Norm, Real};
 /// A disc about the origin of the plane: `f = radius − √(x² + y²)`, the true distance
 /// (1-Lipschitz).
 ///
+#[doc = picture!("profile_circle" = "docs/gallery/profile_circle.png")]
+///
 /// | parameter | unit | range |
 /// |---|---|---|
 /// | `radius` | length | 10⁻⁹ to 10⁹ |

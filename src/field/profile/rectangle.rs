@@ -9,6 +9,11 @@ use crate::{Bounds, Interval, Norm, Real};
 /// A rectangle about the origin of the plane, by true distance (1-Lipschitz);
 /// `radius` rounds its corners.
 ///
+#[doc = picture!(
+    "profile_rectangle" = "docs/gallery/profile_rectangle.png",
+    "profile_rounded_rectangle" = "docs/gallery/profile_rounded_rectangle.png",
+)]
+///
 /// With `q = (|x| − size.x/2, |y| − size.y/2) + radius`:
 /// `f = radius − |max(q, 0)| − min(max(q_1, q_2), 0)`.
 ///

@@ -24,6 +24,8 @@ const MOST_FOLDS: usize = 10;
 /// A regular polygon about the origin of the plane, by true distance (1-Lipschitz). The middle
 /// of a side is on the positive x axis.
 ///
+#[doc = picture!("profile_regular_polygon" = "docs/gallery/profile_regular_polygon.png")]
+///
 /// The point is folded to half a side, (u along its normal, v along it from its middle):
 /// `f = inscribed radius − u` inside, `−|(u − inscribed radius, max(v − side/2, 0))|` outside.
 ///

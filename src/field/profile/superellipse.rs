@@ -17,6 +17,8 @@ use crate::{Bounds, Interval, Norm, Real};
 /// length units: `G = (|x/a|^(2/e) + |y/b|^(2/e))^(e/2)` is the gauge and `r_in` the radius of
 /// the largest inscribed circle.
 ///
+#[doc = picture!("profile_superellipse" = "docs/gallery/profile_superellipse.png")]
+///
 /// 1-Lipschitz for an exponent of at most 2, and so never more than the distance; beyond, the
 /// curve is pinched along the axes and slopes are unbounded there.
 ///

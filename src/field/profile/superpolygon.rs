@@ -22,6 +22,8 @@ use crate::{Bounds, Interval, Norm, Real};
 /// What is within a [`Gielis`] curve, valued `f = r_in·(1 − G)` in length units: the gauge is
 /// `G = √(x² + y²)/(size·r(θ))` and `r_in` the radius of a circle about the origin inside.
 ///
+#[doc = picture!("profile_superpolygon" = "docs/gallery/profile_superpolygon.png")]
+///
 /// A gauge, not a distance; in general not convex: no Lipschitz constant is promised.
 ///
 /// | parameter | unit | range |

@@ -30,6 +30,11 @@ use tree::Tree;
 
 /// A polygon in the plane, with holes and islands, by true distance (1-Lipschitz).
 ///
+#[doc = picture!(
+    "profile_polygon" = "docs/gallery/profile_polygon.png",
+    "profile_polygon_with_holes" = "docs/gallery/profile_polygon_with_holes.png",
+)]
+///
 /// `f = ± distance to the nearest edge`, positive inside. The edge is found through a hierarchy
 /// of boxes: thousands of edges are no burden.
 ///
