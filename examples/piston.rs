@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use glam::DVec3;
-use rvachev::{Camera, CellSize, Gielis, MeshSettings, RFunction, RenderSettings, Solid, Supershape};
+use rvachev::{Camera, CellSize, Gielis, MeshSettings, RenderSettings, Solid, Supershape};
 
 /// Radius of the piston, and the height of its crown above the skirt's lower edge.
 const RADIUS: f64 = 40.0;
@@ -72,10 +72,10 @@ fn piston() -> Solid {
     let bosses = ((pin(BOSS, 72.0) | rib) - between).named("pin bosses");
 
     // Slippers: below the rings the skirt is flattened where the bosses end.
-    let flat = part(square(14.0), square(14.0), [60.0, 20.0, 30.0], [0.0, 49.0, 6.0]);
+    let flats = |y: f64| part(square(14.0), square(14.0), [60.0, 20.0, 30.0], [0.0, y + 20.0, 6.0]).mirrored_y();
     let window = part(square(6.0), square(6.0), [25.0, 60.0, 13.0], [0.0, 0.0, -6.0]);
-    let skirt = (blank - hollow).difference(flat.mirrored_y() | window, RFunction::default());
-    let body = skirt | (bosses & disc(RADIUS - 1.0, 0.0, HEIGHT - 4.0) - mirrored_flats());
+    let skirt = (blank - hollow) - (flats(29.0) | window);
+    let body = skirt | (bosses & disc(RADIUS - 1.0, 0.0, HEIGHT - 4.0) - flats(28.0));
 
     // Rings.
     let compression = groove(59.5, 2.0, 4.0) | groove(53.5, 2.0, 4.0);
@@ -96,11 +96,6 @@ fn piston() -> Solid {
     body - grooves - bore - pockets - bowl
 }
 
-/// The flats beside the bosses, a little farther out than those of the skirt.
-fn mirrored_flats() -> Solid {
-    part(square(14.0), square(14.0), [60.0, 20.0, 30.0], [0.0, 48.0, 6.0]).mirrored_y()
-}
-
 fn wrote(path: &Path, start: Instant, facts: &str) -> Result<(), Box<dyn Error>> {
     let kilobytes = fs::metadata(path)?.len() / 1000;
     println!("{}: {kilobytes} kB, {:.2} s, {facts}", path.display(), start.elapsed().as_secs_f64());
@@ -112,7 +107,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(&folder)?;
     let piston = piston();
     println!("A piston of {} supershapes joined by R-functions.", piston.surface_program()?.leaf_count());
-    for point in [[0.0, PIN, PIN_HEIGHT], [RADIUS - 4.0, 0.0, 58.5], [0.0, 30.0, PIN_HEIGHT + BOSS]] {
+    for point in [[0.0, PIN, PIN_HEIGHT], [0.0, 30.0, PIN_HEIGHT + BOSS]] {
         println!("  the surface near {point:?} is of: {}", piston.owner(point)?.path);
     }
 
