@@ -12,9 +12,8 @@
 //!
 //! A supershape is the product of two Gielis curves, one for its sections across z and one for
 //! its meridians: a tower is a curve of m = 6 times a square, the rim one of m = 24, the dome a
-//! circle times a rounded square. They are
-//! joined by R-functions, as in the papers on supershapes that draw mechanical parts so
-//! (Y. D. Fougerolle et al.). Lengths are millimetres.
+//! circle times a rounded square. They are joined by R-functions, as in the papers on supershapes
+//! that draw mechanical parts so (Y. D. Fougerolle et al.). Lengths are millimetres.
 
 use std::error::Error;
 use std::fs;
@@ -119,8 +118,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let start = Instant::now();
     let scene = cap.rotate_z_degrees(20.0);
     let settings = RenderSettings {
-        width: 480,
-        height: 360,
+        width: 420,
+        height: 315,
         samples: 1,
         color: [158, 74, 48],
         gloss: 0.5,
