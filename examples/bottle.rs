@@ -1,0 +1,139 @@
+//! A bottle: a supershape deformed by laws of z, hollowed to an even wall, its neck threaded.
+//!
+//! ```text
+//!        |=|      neck      cylinder, with a thread swept along a helix and a ring below it
+//!       .' '.     shoulder  the body runs into the neck by a smooth union
+//!      |  /  |    body      supershape with five lobes, twisted and tapered by laws of z
+//!      | / / |
+//!      '-.^.-'    punt      an ellipsoid presses the bottom in
+//! ```
+//!
+//! The cavity is the same shape, its laws and lengths less by the wall; rays measure how even
+//! the wall is. Lengths are millimetres.
+
+use std::error::Error;
+use std::f64::consts::TAU;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use glam::DVec3;
+use rvachev::{
+    Bounds, Camera, CellSize, Gielis, Helix, MeshSettings, Profile, RenderSettings, SineWave, Solid, Supershape,
+};
+
+const WALL: f64 = 1.8;
+
+/// Radius of the body between two lobes, half its height, and the height of the mouth above its middle.
+const RADIUS: f64 = 31.0;
+const HALF: f64 = 55.0;
+const TOP: f64 = 92.0;
+
+/// Radius of the neck.
+const NECK: f64 = 13.0;
+
+/// What the glass is blown to, less `inset` on every side.
+fn shape(inset: f64) -> Solid {
+    // Five soft lobes; meridians of a rounded box.
+    let lobes = Gielis::new(5.0, 14.0, 6.0, 6.0);
+    let rounded_box = Gielis::new(4.0, 6.0, 6.0, 6.0);
+    let body = Supershape::new(lobes, rounded_box).scaled(DVec3::new(RADIUS, RADIUS, HALF - inset));
+    // A waist where the hand holds it. Sections are scaled by the law: less by inset/RADIUS it
+    // takes the same length off wide and narrow ones.
+    let law = SineWave { mean: 0.9 - inset / RADIUS, amplitude: 0.09, wavelength: 110.0, phase: -1.9 };
+    // A fifth of a turn from bottom to top.
+    let body = Solid::from(body).taper_by(law, law).twist(0.2 * TAU / (2.0 * HALF)).named("body");
+
+    let neck = Solid::cylinder(NECK - inset, TOP).translate([0.0, 0.0, 0.5 * TOP]).named("neck");
+    let punt = Solid::ellipsoid(DVec3::new(20.0, 20.0, 9.0) + inset).translate([0.0, 0.0, -HALF]).named("punt");
+    body.smooth_union(neck, 9.0).smooth_difference(punt, 4.0)
+}
+
+/// The bottle's wall, opened at the top.
+fn wall() -> Solid {
+    let mouth = Solid::cylinder(NECK - WALL, 20.0).translate([0.0, 0.0, TOP]).named("mouth");
+    shape(0.0) - shape(WALL).named("cavity") - mouth
+}
+
+/// Two turns of a thread, and the ring below it.
+fn thread() -> Solid {
+    let ridge = Profile::polygon([[-0.8, -1.3], [1.4, -0.5], [1.4, 0.5], [-0.8, 1.3]]);
+    let helix = ridge.sweep_helix(&Helix::new(NECK, 4.0, 2.0)).translate([0.0, 0.0, TOP - 8.0]).named("thread");
+    let ring = Solid::torus(NECK, 1.6).translate([0.0, 0.0, TOP - 17.0]).named("ring");
+    helix | ring
+}
+
+/// Least and largest thickness: rays from all sides meet the outer surface, and from there
+/// rays along its normals meet the inner one.
+fn measured(bottle: &Solid) -> Result<(f64, f64), Box<dyn Error>> {
+    let (mut least, mut most) = (f64::INFINITY, 0.0f64);
+    for i in 0..12 {
+        let z = -0.8 * HALF + 0.14 * HALF * f64::from(i);
+        for j in 0..24 {
+            let (sin, cos) = (TAU * f64::from(j) / 24.0).sin_cos();
+            let direction = DVec3::new(cos, sin, 0.0);
+            let Some(outer) = bottle.raycast(DVec3::Z * z + 60.0 * direction, -direction)? else { continue };
+            let Some(inner) = bottle.raycast(outer.point - 1e-3 * outer.normal, -outer.normal)? else { continue };
+            least = least.min(inner.distance + 1e-3);
+            most = most.max(inner.distance + 1e-3);
+        }
+    }
+    Ok((least, most))
+}
+
+fn picture(solid: &Solid, frame: &Bounds, path: &Path) -> Result<(), Box<dyn Error>> {
+    let start = Instant::now();
+    let settings = RenderSettings {
+        width: 160,
+        height: 290,
+        samples: 2,
+        color: [112, 150, 124],
+        gloss: 0.7,
+        ..RenderSettings::default()
+    };
+    let camera = Camera::framing(frame).fitted(frame, f64::from(settings.width) / f64::from(settings.height));
+    solid.render(&camera, &settings)?.save(path)?;
+    written(path, start)
+}
+
+fn written(path: &Path, start: Instant) -> Result<(), Box<dyn Error>> {
+    let (bytes, seconds) = (std::fs::metadata(path)?.len(), start.elapsed().as_secs_f64());
+    println!("{}: {} kB, {seconds:.1} s", path.display(), bytes.div_ceil(1000));
+    Ok(())
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let folder = PathBuf::from(std::env::args().nth(1).unwrap_or_else(|| "target/examples".into()));
+    std::fs::create_dir_all(&folder)?;
+
+    println!("A bottle: a twisted supershape, an even wall, a threaded neck.");
+    let bottle = wall() | thread();
+    let start = Instant::now();
+    let (least, most) = measured(&wall())?;
+    let seconds = start.elapsed().as_secs_f64();
+    println!("  wall asked for {WALL} mm, measured {least:.3} to {most:.3} mm, {seconds:.1} s");
+
+    let start = Instant::now();
+    let mesh = bottle.mesh(&MeshSettings { cell: CellSize::LongestSide(160), ..MeshSettings::default() })?;
+    let path = folder.join("bottle.stl");
+    mesh.save(&path)?;
+    written(&path, start)?;
+    let report = mesh.check();
+    let size = report.bounds.size();
+    println!(
+        "  {} triangles, {}, {}, {:.1} x {:.1} x {:.1} mm, {} holes through the wall, volume {:.0} mm3",
+        report.triangles,
+        if report.is_closed() { "closed" } else { "NOT CLOSED" },
+        if report.is_manifold() { "manifold" } else { "NOT MANIFOLD" },
+        size.x,
+        size.y,
+        size.z,
+        report.genus.unwrap_or(-1),
+        report.volume
+    );
+    // The mesh's box is the tightest one to frame.
+    picture(&bottle, &report.bounds, &folder.join("bottle.png"))?;
+    let front = Solid::half_space(DVec3::Y, 0.0).named("front half");
+    picture(&(&bottle - front), &report.bounds, &folder.join("bottle_cut.png"))?;
+
+    Ok(())
+}

@@ -1,0 +1,97 @@
+//! Profiles, and the solids that are made of them.
+
+use std::f64::consts::{PI, TAU};
+
+use glam::{DVec2, DVec3};
+use rvachev::{Extrusion, Gielis, Helix, Polygon, Profile, Solid};
+
+use super::Entry;
+
+/// A plate of this profile, upright.
+fn plate(profile: impl Into<Profile>) -> Solid {
+    let plate = profile.into().extrude(0.5);
+    // Within a box that turns with it: what is turned is bounded.
+    let size = plate.bounds().map_or(DVec3::ONE, |bounds| 2.002 * bounds.max.max(-bounds.min));
+    (plate & Solid::cuboid(size)).rotate_x(0.5 * PI)
+}
+
+fn arrow() -> Profile {
+    Profile::polygon([
+        [-1.0, -0.3],
+        [0.1, -0.3],
+        [0.1, -0.75],
+        [1.1, 0.0],
+        [0.1, 0.75],
+        [0.1, 0.3],
+        [-1.0, 0.3],
+        [-0.7, 0.0],
+    ])
+}
+
+/// A square with a round hole and an island in it: three contours.
+fn polygon_with_holes() -> Polygon {
+    let ring = |corners: u32, radius: f64| -> Vec<DVec2> {
+        (0..corners).map(|i| radius * DVec2::from_angle(TAU * (f64::from(i) + 0.5) / f64::from(corners))).collect()
+    };
+    Polygon::new([ring(4, 1.3), ring(60, 0.75), ring(5, 0.45)])
+}
+
+/// A washer with three notches.
+fn joined() -> Profile {
+    let notch = Profile::rounded_rectangle([0.5, 0.5], 0.15).translate([1.0, 0.0]);
+    let notches = (0..3).map(|i| notch.rotate(TAU * (0.25 + f64::from(i) / 3.0)));
+    (Profile::circle(1.0) - Profile::circle(0.4)) - Profile::union_all(notches, Default::default())
+}
+
+pub const PROFILES: &[Entry] = &[
+    ("profile_circle", || plate(Profile::circle(1.0))),
+    ("profile_superellipse", || plate(Profile::superellipse([1.2, 0.8], 0.5))),
+    ("profile_superpolygon", || plate(Profile::superpolygon(Gielis::new(5.0, 3.0, 6.0, 6.0), 1.0).rotate(0.5 * PI))),
+    ("profile_rectangle", || plate(Profile::rectangle([2.0, 1.4]))),
+    ("profile_rounded_rectangle", || plate(Profile::rounded_rectangle([2.0, 1.4], 0.35))),
+    ("profile_regular_polygon", || plate(Profile::regular_polygon(7, 1.0))),
+    ("profile_polygon", || plate(arrow())),
+    ("profile_polygon_with_holes", || plate(polygon_with_holes())),
+    ("profile_joined", || plate(joined())),
+    ("profile_offset", || plate(arrow().offset(0.2))),
+];
+
+/// A cross with rounded arms.
+fn cross() -> Profile {
+    let arm = Profile::rounded_rectangle([1.8, 0.8], 0.15);
+    arm.rotate(0.5 * PI) | arm
+}
+
+fn extruded(extrusion: Extrusion) -> Solid {
+    cross().extrude_with(&extrusion)
+}
+
+/// The section of a bowl with a foot, drawn across the axis so that it has no border there:
+/// what is left of the axis is cut off.
+fn bowl() -> Profile {
+    Profile::polygon([
+        [-0.45, -0.7],
+        [0.45, -0.7],
+        [0.5, -0.6],
+        [0.3, -0.4],
+        [0.8, -0.1],
+        [1.0, 0.6],
+        [0.9, 0.6],
+        [0.7, 0.0],
+        [-0.7, 0.0],
+    ])
+}
+
+fn wound(helix: Helix) -> Solid {
+    Profile::rounded_rectangle([0.4, 0.36], 0.1).sweep_helix(&helix)
+}
+
+pub const SWEEPS: &[Entry] = &[
+    ("extrude", || extruded(Extrusion::new(1.6))),
+    ("extrude_twisted", || extruded(Extrusion { twist: 0.5 * PI, ..Extrusion::new(1.8) })),
+    ("extrude_scaled", || extruded(Extrusion { scale: 0.4, ..Extrusion::new(1.6) })),
+    ("revolve", || bowl().revolve()),
+    ("revolve_by", || bowl().revolve_by(1.4 * PI)),
+    ("sweep_helix", || wound(Helix::new(0.8, 0.65, 3.0))),
+    ("sweep_helix_left_handed", || wound(Helix { left_handed: true, ..Helix::new(0.8, 0.65, 3.0) })),
+];

@@ -1,0 +1,122 @@
+//! The gallery: everything in the catalogue, one small picture each and all on one sheet.
+//!
+//! ```sh
+//! cargo run --example gallery             # into target/examples/gallery
+//! cargo run --example gallery FOLDER      # into that folder
+//! cargo run --example gallery docs        # docs/gallery and docs/gallery.png, as committed: finer, slower
+//! cargo run --example gallery times       # entry by entry on one thread, and how long each takes
+//! ```
+//!
+//! What is shown, and how each is written, is in `catalogue.rs`.
+
+mod catalogue;
+mod font;
+mod sheet;
+
+use std::error::Error;
+use std::fs::{self, File};
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{Rgb, RgbImage};
+use rayon::prelude::*;
+use rvachev::{Background, Camera, RenderError, RenderSettings, Run, Solid};
+
+use catalogue::{Entry, FAMILIES};
+
+/// Size of a picture, in pixels.
+const WIDTH: u32 = 128;
+const HEIGHT: u32 = 96;
+
+const BACKGROUND: [u8; 3] = [248, 248, 248];
+
+/// Colours are rounded to multiples of this: the files are half as large.
+const COLOR_STEP: u8 = 4;
+
+/// How pictures are made.
+#[derive(Clone, Copy)]
+struct Manner {
+    /// See [`RenderSettings::samples`].
+    samples: u32,
+    /// On one thread, and saying how long each takes.
+    timed: bool,
+}
+
+/// A solid as all are shown: from the same direction, as large as its box allows.
+fn picture(solid: &Solid, color: [u8; 3], manner: Manner) -> Result<RgbImage, RenderError> {
+    let bounds = solid.bounds()?;
+    let camera = Camera::framing(&bounds).fitted(&bounds, f64::from(WIDTH) / f64::from(HEIGHT));
+    let settings = RenderSettings {
+        width: WIDTH,
+        height: HEIGHT,
+        samples: manner.samples,
+        color,
+        background: Background::Plain(BACKGROUND),
+        ..RenderSettings::default()
+    };
+    let run = Run { threads: usize::from(manner.timed), ..Run::default() };
+    let image = solid.render_with(&camera, &settings, &run)?;
+    let round = |channel: u8| channel.min(BACKGROUND[0]).next_multiple_of(COLOR_STEP);
+    Ok(RgbImage::from_fn(WIDTH, HEIGHT, |x, y| {
+        let [red, green, blue, _] = image.pixel(x, y).unwrap_or_default();
+        Rgb([red, green, blue].map(round))
+    }))
+}
+
+/// The picture of an entry.
+fn picture_of((name, make): &Entry, color: [u8; 3], manner: Manner) -> Result<RgbImage, String> {
+    let start = Instant::now();
+    let picture = picture(&make(), color, manner).map_err(|error| format!("{name}: {error}"))?;
+    if manner.timed {
+        println!("{:7.1} ms  {name}", 1e3 * start.elapsed().as_secs_f64());
+    }
+    Ok(picture)
+}
+
+/// Writes a PNG file and returns its length.
+fn save(picture: &RgbImage, path: &Path) -> Result<u64, Box<dyn Error>> {
+    let file = BufWriter::new(File::create(path)?);
+    picture.write_with_encoder(PngEncoder::new_with_quality(file, CompressionType::Best, FilterType::NoFilter))?;
+    Ok(fs::metadata(path)?.len())
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let start = Instant::now();
+    let mut folder = PathBuf::from("target/examples/gallery");
+    let mut sheet_path = folder.join("sheet.png");
+    let mut manner = Manner { samples: 1, timed: false };
+    for argument in std::env::args().skip(1) {
+        match argument.as_str() {
+            "times" => manner.timed = true,
+            "docs" => {
+                manner.samples = 3;
+                (folder, sheet_path) = ("docs/gallery".into(), "docs/gallery.png".into());
+            }
+            other => (folder, sheet_path) = (other.into(), Path::new(other).join("sheet.png")),
+        }
+    }
+    fs::create_dir_all(&folder)?;
+
+    let entries: Vec<(&Entry, [u8; 3])> =
+        FAMILIES.iter().flat_map(|family| family.entries.iter().map(|entry| (entry, family.color))).collect();
+    let made: Result<Vec<RgbImage>, String> = if manner.timed {
+        entries.iter().map(|(entry, color)| picture_of(entry, *color, manner)).collect()
+    } else {
+        entries.par_iter().map(|(entry, color)| picture_of(entry, *color, manner)).collect()
+    };
+    let pictures = made?;
+
+    let mut bytes = 0;
+    for (((name, _), _), picture) in entries.iter().zip(&pictures) {
+        bytes += save(picture, &folder.join(format!("{name}.png")))?;
+    }
+    println!("{}: {} pictures of {WIDTH} x {HEIGHT} pixels, {bytes} bytes", folder.display(), pictures.len());
+
+    let sheet = sheet::sheet(&pictures);
+    let length = save(&sheet, &sheet_path)?;
+    println!("{}: {} x {} pixels, {length} bytes", sheet_path.display(), sheet.width(), sheet.height());
+    println!("{:.1} s in all", start.elapsed().as_secs_f64());
+    Ok(())
+}
