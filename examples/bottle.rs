@@ -1,4 +1,4 @@
-//! A bottle: a supershape deformed by laws of z, hollowed to an even wall, its neck threaded.
+//! A bottle: a supershape deformed by laws of z, hollowed by a smaller one, its neck threaded.
 //!
 //! ```text
 //!        |=|      neck      cylinder, with a thread swept along a helix and a ring below it
@@ -105,7 +105,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = PathBuf::from(std::env::args().nth(1).unwrap_or_else(|| "target/examples".into()));
     std::fs::create_dir_all(&folder)?;
 
-    println!("A bottle: a twisted supershape, an even wall, a threaded neck.");
+    println!("A bottle: a twisted supershape, hollowed by a smaller one, with a threaded neck.");
     let bottle = wall() | thread();
     let start = Instant::now();
     let (least, most) = measured(&wall())?;

@@ -170,7 +170,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("A pair of spur gears, module {MODULE} mm, {} and {} teeth.", pinion.teeth, wheel.teeth);
     let (gap, free) = clearance(&pinion, &wheel)?;
     let proof = if free { "proved by intervals" } else { "NOT PROVED" };
-    println!("  clearance over a whole pitch: {gap:.3} mm; that no teeth interpenetrate is {proof}");
+    println!("  clearance in 12 positions over a pitch: {gap:.3} mm; that no teeth interpenetrate in them is {proof}");
 
     let [first, second] = in_mesh([&pinion, &wheel], [pinion.solid(), wheel.solid()], 0.0);
     let pair = first | second;
