@@ -100,6 +100,12 @@ impl EdgeBlend {
         }
     }
 
+    /// Whether the blend is worth the steps to the edge where the operands have these values:
+    /// not beyond its reach, and not well inside of either, where the join says enough.
+    fn near(&self, [x, y]: [f64; 2]) -> bool {
+        x.min(y) >= -self.reach() && x.max(y) < self.size()
+    }
+
     /// What both operands are at the curve that q lies on.
     fn depth(&self) -> f64 {
         match self.shape {
@@ -151,7 +157,7 @@ impl EdgeBlend {
     fn told(&self, p: DVec3) -> (Sample, bool) {
         let here = [self.sample(0, p), self.sample(1, p)];
         let join = larger(here[0], here[1]);
-        if here.iter().any(|(value, _)| *value < -self.reach()) {
+        if !self.near(here.map(|(value, _)| value)) {
             return (join, true);
         }
         let mut foot = Foot::new(p);
@@ -283,7 +289,7 @@ impl AnyField for EdgeBlend {
     fn value(&self, p: [f64; 3]) -> f64 {
         let p = DVec3::from_array(p);
         let here = [0, 1].map(|i| self.signs[i] * self.operands[i].value(p));
-        if here.iter().any(|value| *value < -self.reach()) {
+        if !self.near(here) {
             return self.sign * here[0].max(here[1]);
         }
         self.sign * self.at(p).0
@@ -321,9 +327,14 @@ impl AnyField for EdgeBlend {
         // ball it is the distance from the centre curve, of slope 1; beyond, no more than the
         // longest way to a foot.
         let ((centre, _), told) = self.told(zone.centre);
-        let above = centre + STEEPEST * zone.extent().length();
+        let extent = zone.extent().length();
+        let above = centre + STEEPEST * extent;
         let hi = if told && above < 0.0 { above.max(join.hi()) } else { join.hi().max(self.largest()) };
-        Interval::new(join.lo(), hi) * Interval::point(self.sign)
+        // Close to where the steps arrive they arrive from all about.
+        let steepest = if matches!(self.shape, Shape::Fillet(_)) { STEEPEST } else { 4.0 };
+        let below = centre - steepest * extent;
+        let lo = if told && extent < 0.25 * self.size() { join.lo().max(below) } else { join.lo() };
+        Interval::new(lo, hi.max(lo)) * Interval::point(self.sign)
     }
 
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
@@ -345,9 +356,8 @@ impl AnyField for EdgeBlend {
                 values[i].iter_mut().for_each(|v| *v *= sign);
             }
         });
-        let reach = -self.reach() as f32;
         for (x, y) in values[0].iter().zip(&values[1]) {
-            near |= *x >= reach && *y >= reach;
+            near |= self.near([f64::from(*x), f64::from(*y)]);
         }
         if near {
             out.copy_from_slice(&self.chunk(&local, tapes).value);
@@ -384,28 +394,31 @@ impl EdgeBlend {
             let here = sample(local);
             let mut feet: Vec<(Foot, bool)> = Vec::with_capacity(CHUNK);
             for i in 0..CHUNK {
-                let sides = signed(&here, i);
-                let near = sides.iter().all(|(value, _)| *value >= -self.reach());
+                let near = self.near(signed(&here, i).map(|(value, _)| value));
                 feet.push((Foot::new(local.get(i)), near));
             }
             let mut at = Locals { at: local.at };
-            let mut sides = sample(local);
+            let mut there: Option<[Slopes; 2]> = None;
             for _ in 0..STEPS {
+                let sides = there.as_ref().unwrap_or(&here);
                 for (i, (foot, near)) in feet.iter_mut().enumerate() {
-                    *near = *near && foot.step(local.get(i), signed(&sides, i), self.depth(), self.farthest());
+                    *near = *near && foot.step(local.get(i), signed(sides, i), self.depth(), self.farthest());
                     at.set(i, foot.q);
                 }
-                sides = sample(&at);
+                if !feet.iter().any(|(_, near)| *near) {
+                    break;
+                }
+                there = Some(sample(&at));
             }
-            let mut out = sample(local);
-            let out = &mut out[0];
+            let sides = there.as_ref().unwrap_or(&here);
+            let mut out = Slopes { value: [0.0; CHUNK], gradient: [[0.0; CHUNK]; 3] };
             for (i, (foot, near)) in feet.iter().enumerate() {
                 let [x, y] = signed(&here, i);
                 let join = larger(x, y);
-                let shaped = if *near { self.shaped(local.get(i), foot, signed(&sides, i), join) } else { join };
+                let shaped = if *near { self.shaped(local.get(i), foot, signed(sides, i), join) } else { join };
                 out.set(i, (self.sign * shaped.0, self.sign * shaped.1));
             }
-            Slopes { value: out.value, gradient: out.gradient }
+            out
         })
     }
 }

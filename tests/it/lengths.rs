@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use rvachev::{
-    Capsule, Cone, Cuboid, Cylinder, Ellipsoid, GeneralisedSuperquadric, Prism, Pyramid, Region, RoundedCuboid, Solid,
-    SolidError, Sphere, Superellipsoid, Wedge,
+    Capsule, Cone, Cuboid, Cylinder, Ellipsoid, GeneralisedSuperquadric, Gielis, Prism, Pyramid, Region, RoundedCuboid,
+    Solid, SolidError, Sphere, Superellipsoid, Superhyperboloid, Supershape, Wedge,
 };
 
 use crate::support::Random;
@@ -112,6 +112,38 @@ fn shells_prune_and_their_boxes_hold() -> Result<(), SolidError> {
                 Region::Inside => assert!(inside, "{name} {p}"),
                 Region::Outside => assert!(!inside, "{name} {p}"),
                 Region::Surface(narrowed) => assert_eq!(narrowed.value(p) > 0.0, inside, "{name} {p}"),
+            }
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn offsets_of_leaves_that_are_not_convex_keep_their_sign_when_narrowed() -> Result<(), SolidError> {
+    let star =
+        Supershape::new(Gielis::new(6.0, 2.0, 7.0, 7.0), Gielis::new(4.0, 10.0, 10.0, 10.0)).scaled(DVec3::splat(0.3));
+    let cases = [
+        ("pinched", Solid::superellipsoid([0.5165, 0.5505, 0.2221], 2.435, 0.164)),
+        ("star", star.into()),
+        ("one sheet", Superhyperboloid::one_sheet([0.4, 0.3, 0.5], 0.7, 1.2, 0.8).into()),
+    ];
+    for (name, solid) in cases {
+        for by in [0.13, -0.05] {
+            let moved = solid.offset(by);
+            let (program, bounds) = (moved.surface_program()?, moved.bounds()?);
+            let mut random = Random::new(93);
+            for _ in 0..150 {
+                let p = random.point_in(&bounds.inflate(0.3));
+                let size = random.log_range(0.01, 0.3);
+                let region = rvachev::Bounds::new(p - size, p + size);
+                let q = random.point_in(&region);
+                let inside = program.value(q) > 0.0;
+                assert!(bounds.contains(q) || !inside, "{name} {by} {q} beyond {bounds:?}");
+                match program.narrow(&region) {
+                    Region::Inside => assert!(inside, "{name} {by} {q}"),
+                    Region::Outside => assert!(!inside, "{name} {by} {q}"),
+                    Region::Surface(narrowed) => assert_eq!(narrowed.value(q) > 0.0, inside, "{name} {by} {q}"),
+                }
             }
         }
     }
