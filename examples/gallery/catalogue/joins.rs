@@ -45,7 +45,7 @@ fn level_of(rule: RFunction, level: f64) -> Solid {
 
 /// A rule of no bounded slope, whose levels lie farther out and are not known to end.
 fn rule_zero() -> Solid {
-    level_of(RFunction::Zero { m: 1 }, 0.1) & Solid::cuboid([2.6, 2.6, 2.6]).translate([0.1, -0.1, 0.3])
+    level_of(RFunction::Zero { m: 1 }, 0.05) & Solid::cuboid([3.2, 3.2, 2.8]).translate([0.1, -0.1, 0.3])
 }
 
 pub const RULES: &[Entry] = &[

@@ -92,6 +92,6 @@ pub const SWEEPS: &[Entry] = &[
     ("extrude_scaled", || extruded(Extrusion { scale: 0.4, ..Extrusion::new(1.6) })),
     ("revolve", || bowl().revolve()),
     ("revolve_by", || bowl().revolve_by(1.4 * PI)),
-    ("sweep_helix", || wound(Helix::new(0.8, 0.65, 3.0))),
-    ("sweep_helix_left_handed", || wound(Helix { left_handed: true, ..Helix::new(0.8, 0.65, 3.0) })),
+    ("sweep_helix", || wound(Helix::new(0.8, 0.75, 2.0))),
+    ("sweep_helix_left_handed", || wound(Helix { left_handed: true, ..Helix::new(0.8, 0.75, 2.0) })),
 ];
