@@ -75,7 +75,7 @@ fn piston() -> Solid {
     let flats = |y: f64| part(square(14.0), square(14.0), [60.0, 20.0, 30.0], [0.0, y + 20.0, 6.0]).mirrored_y();
     let window = part(square(6.0), square(6.0), [25.0, 60.0, 13.0], [0.0, 0.0, -6.0]);
     let skirt = (blank - hollow) - (flats(29.0) | window);
-    let body = skirt | (bosses & disc(RADIUS - 1.0, 0.0, HEIGHT - 4.0) - flats(28.0));
+    let body = skirt | (bosses & (disc(RADIUS - 1.0, 0.0, HEIGHT - 4.0) - flats(28.0)));
 
     // Rings.
     let compression = groove(59.5, 2.0, 4.0) | groove(53.5, 2.0, 4.0);

@@ -2,17 +2,14 @@
 
 use std::f64::consts::{PI, TAU};
 
-use glam::{DVec2, DVec3};
-use rvachev::{Extrusion, Gielis, Helix, Polygon, Profile, Solid};
+use glam::DVec2;
+use rvachev::{Caps, Extrusion, Gielis, Helix, Polygon, Profile, Solid};
 
 use super::Entry;
 
 /// A plate of this profile, upright.
 fn plate(profile: impl Into<Profile>) -> Solid {
-    let plate = profile.into().extrude(0.5);
-    // Within a box that turns with it: what is turned is bounded.
-    let size = plate.bounds().map_or(DVec3::ONE, |bounds| 2.002 * bounds.max.max(-bounds.min));
-    (plate & Solid::cuboid(size)).rotate_x(0.5 * PI)
+    profile.into().extrude(0.5).rotate_x(0.5 * PI)
 }
 
 fn arrow() -> Profile {
@@ -90,6 +87,8 @@ pub const SWEEPS: &[Entry] = &[
     ("extrude", || extruded(Extrusion::new(1.6))),
     ("extrude_twisted", || extruded(Extrusion { twist: 0.5 * PI, ..Extrusion::new(1.8) })),
     ("extrude_scaled", || extruded(Extrusion { scale: 0.4, ..Extrusion::new(1.6) })),
+    ("extrude_chamfered", || extruded(Extrusion { caps: Caps::Chamfered(0.15), ..Extrusion::new(1.6) })),
+    ("extrude_rounded", || extruded(Extrusion { caps: Caps::Rounded(0.2), ..Extrusion::new(1.6) })),
     ("revolve", || bowl().revolve()),
     ("revolve_by", || bowl().revolve_by(1.4 * PI)),
     ("sweep_helix", || wound(Helix::new(0.8, 0.75, 2.0))),
