@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!     surface   ( a₁ r₁(θ)r₂(φ) cos θ cos φ,  a₂ r₁r₂ sin θ cos φ,  a₃ r₂(φ) sin φ )
-//!     θ = atan2(y, x),  ρ = √(x² + y²),  φ = atan2(z·r₁, ρ),  λ = √((ρ/r₁)² + z²)
+//!     θ = atan2(y, x),  ρ = √(x² + y²),  u = ρ/r₁,  φ = atan2(z, u),  λ = √(u² + z²)
 //!     G = λ / r₂(φ)      f = r_in·(1 − G)
 //! ```
 //!
@@ -178,10 +178,8 @@ impl Supershape {
     fn gauge_of<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
         let (x, y, z) = (x * self.inverse.x, y * self.inverse.y, z * self.inverse.z);
         let rho = x.norm(y, Norm::Euclid);
-        let r1 = self.equator.radius_at(y.atan2(x), self.radius, self.winding);
-        let phi = (z * r1).atan2(rho);
-        let lambda = (rho / r1).norm(z, Norm::Euclid);
-        lambda / self.meridian.radius_at(phi, self.radius, Winding::Once)
+        let u = rho * self.equator.inverse_radius_at(y.atan2(x), self.radius, self.winding);
+        u.norm(z, Norm::Euclid) * self.meridian.inverse_radius_at(z.atan2(u), self.radius, Winding::Once)
     }
 
     /// The region in units of the semi-axes.
