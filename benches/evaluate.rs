@@ -3,17 +3,23 @@
 //! `cargo bench --bench evaluate` prints millions of points a second: our field program (true
 //! values), our surface program (min and max), fidget's VM and JIT on the same model and the
 //! same random points, and our ratio to the faster of fidget's two. Every figure is the median
-//! of several rounds; rounds of the contestants alternate, so that drift of the machine meets
-//! all of them alike.
+//! of the runs of several rounds; rounds of the contestants alternate, so that drift of the machine
+//! meets all of them alike.
 //!
 //! fidget is given each model in two forms: lowered by `Solid::to_fidget`, with its guards, and,
 //! for M1 to M5, written out with as few operations as its instruction set allows. The faster
 //! counts.
 //!
-//! Formulas as leaves follow; `cargo bench --bench evaluate -- formulas` runs them alone.
+//! Then come a row for every leaf, profile, join, blend and map, a polygon of 5000 edges, and
+//! formulas as leaves. Words after `--` choose: `models`, `gradients`, `catalogue`, `polygons`,
+//! `formulas`, or parts of the names of the catalogue's rows.
 
+#[path = "evaluate/catalogue.rs"]
+mod catalogue;
 #[path = "../tests/it/models.rs"]
 mod models;
+#[path = "evaluate/polygons.rs"]
+mod polygons;
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -34,18 +40,23 @@ const SLICE: usize = 512;
 /// Rounds of which the median is taken.
 const ROUNDS: usize = 9;
 
+/// Seconds of a contestant's turn, at least; as many runs as fit are timed.
+const TURN: f64 = 2e-3;
+
 struct Points {
     single: [Vec<f32>; 3],
 }
 
 impl Points {
-    fn random(count: usize, half: f64) -> Points {
+    /// Points of the box with these half-extents about the origin.
+    fn random(count: usize, half: DVec3) -> Points {
         let mut state = 0x9e37_79b9_7f4a_7c15u64;
         let mut next = || {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            ((state >> 40) as f64 / f64::from(1 << 24) * 2.0 - 1.0) * half
+            (state >> 40) as f64 / f64::from(1 << 24) * 2.0 - 1.0
         };
-        Points { single: std::array::from_fn(|_| (0..count).map(|_| next() as f32).collect()) }
+        let mut axis = |half: f64| (0..count).map(|_| (next() * half) as f32).collect();
+        Points { single: [axis(half.x), axis(half.y), axis(half.z)] }
     }
 
     fn len(&self) -> usize {
@@ -112,30 +123,31 @@ where
 }
 
 /// Median millions of points a second of each contestant.
+///
+/// Runs are timed one by one: those that another process interrupts are then few, and the
+/// median does not see them.
 fn race(points: usize, contestants: &mut [Contestant<'_>]) -> Vec<f64> {
     let mut times = vec![Vec::new(); contestants.len()];
     for round in 0..=ROUNDS {
         for ((_, run), times) in contestants.iter_mut().zip(&mut times) {
-            // Short runs are repeated to a millisecond or so.
-            let start = Instant::now();
-            let mut repeats = 0u32;
-            while repeats == 0 || (start.elapsed().as_secs_f64() < 2e-3 && repeats < 1000) {
+            let mut spent = 0.0;
+            while spent < TURN {
+                let start = Instant::now();
                 run();
-                repeats += 1;
-            }
-            let time = start.elapsed().as_secs_f64() / f64::from(repeats);
-            if round > 0 {
-                times.push(time);
+                let time = start.elapsed().as_secs_f64();
+                spent += time;
+                if round > 0 {
+                    times.push(time);
+                }
             }
         }
     }
-    times
-        .into_iter()
-        .map(|mut times| {
-            times.sort_by(f64::total_cmp);
-            points as f64 / times[times.len() / 2] * 1e-6
-        })
-        .collect()
+    times.into_iter().map(|mut times| points as f64 / median(&mut times) * 1e-6).collect()
+}
+
+fn median(times: &mut [f64]) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times.get(times.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
 /// The model for fidget, negative inside, with as few operations as it takes.
@@ -184,15 +196,40 @@ fn superellipsoid(a: DVec3, [e1, e2]: [f64; 2], to_local: &glam::DAffine3, size:
     (gauge - 1.0) * size
 }
 
+/// The parts of the bench.
+const PARTS: [&str; 5] = ["models", "gradients", "catalogue", "polygons", "formulas"];
+
 fn main() {
-    if std::env::args().any(|argument| argument == "formulas") {
-        return formulas();
+    // Cargo passes `--bench`.
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with("--")).collect();
+    let (parts, rows): (Vec<String>, Vec<String>) = words.into_iter().partition(|word| PARTS.contains(&&**word));
+    let all = parts.is_empty() && rows.is_empty();
+    let wanted = |part: &str| all || parts.iter().any(|word| word == part);
+    if wanted("models") {
+        compare_models();
     }
+    if wanted("gradients") {
+        gradients();
+    }
+    if wanted("catalogue") {
+        catalogue::print(&[]);
+    } else if !rows.is_empty() {
+        catalogue::print(&rows);
+    }
+    if wanted("polygons") {
+        polygons::print();
+    }
+    if wanted("formulas") {
+        formulas();
+    }
+}
+
+fn compare_models() {
     println!("Mpoint/s, one thread, medians of {ROUNDS} rounds; the ratios are to the faster of fidget's two\n");
     println!("model    field  surface  fidget VM  fidget JIT   field ratio  surface ratio");
     for model in models::all() {
         let large = matches!(model.name, "M4" | "M5");
-        let points = Points::random(if large { 2048 } else { 16384 }, model.half);
+        let points = Points::random(if large { 2048 } else { 16384 }, DVec3::splat(model.half));
         let field = model.solid.field_program().expect("the model is valid");
         let surface = model.solid.surface_program().expect("the model is valid");
         let lowered = model.solid.to_fidget().expect("the model is valid");
@@ -219,8 +256,6 @@ fn main() {
             speeds[1] / peer
         );
     }
-    gradients();
-    formulas();
 }
 
 fn best(contestants: &[Contestant<'_>], speeds: &[f64], name: &str) -> f64 {
@@ -229,7 +264,7 @@ fn best(contestants: &[Contestant<'_>], speeds: &[f64], name: &str) -> f64 {
 
 fn gradients() {
     let model = models::m1();
-    let points = Points::random(16384, model.half);
+    let points = Points::random(16384, DVec3::splat(model.half));
     let tape = Tape::new(&model.solid.field_program().expect("the model is valid"), &model.cube());
     let mut evaluator = Evaluator::new();
     let mut out: [Vec<f32>; 4] = std::array::from_fn(|_| vec![0.0; points.len()]);
@@ -278,7 +313,7 @@ fn formulas() {
         ("gyroid", Some(GYROID.to_string()), 4.0),
     ] {
         let Some(text) = text else { continue };
-        let points = Points::random(if name == "prospero.vm" { 4096 } else { 16384 }, half);
+        let points = Points::random(if name == "prospero.vm" { 4096 } else { 16384 }, DVec3::splat(half));
         let formula = Formula::from_vm(&text, Bounds::ALL).expect("a sound file");
         let tree = formula.tree();
         let ours = Solid::from(formula).field_program().expect("the formula is valid");
@@ -327,7 +362,7 @@ fn walks(name: &str, text: &str) {
     let formula = Formula::from_vm(text, Bounds::ALL).expect("a sound file");
     let operations = formula.len();
     let program = Solid::from(formula).field_program().expect("the formula is valid");
-    let corners = Points::random(256, 1.0);
+    let corners = Points::random(256, DVec3::ONE);
     let start = Instant::now();
     for i in 0..256 {
         let corner = DVec3::from_array([0, 1, 2].map(|axis| f64::from(corners.single[axis][i])));

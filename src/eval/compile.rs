@@ -10,7 +10,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3};
 
 use super::code::{Built, Code, bounded, conjoined, disjoined, grow, snug};
-use super::composite::Composite;
+use super::composite::{Composite, Whole};
 use super::context::{Contexts, Place};
 use super::edge::EdgeBlend;
 use super::extent::extent;
@@ -257,7 +257,7 @@ impl Compiler {
             solid::Node::Length { .. } | solid::Node::Blend { .. } if below.is_empty() => {
                 let alone = self.alone(site, site.solid)?;
                 let leaf: Arc<dyn AnyField> =
-                    Arc::new(Composite { program: alone.surface.clone(), bounds: alone.bounds });
+                    Arc::new(Composite { program: Whole::new(alone.surface.clone()), bounds: alone.bounds });
                 Ok(self.leaf(&leaf, site))
             }
             solid::Node::Length { length, .. } => Ok(match *length {

@@ -1,6 +1,8 @@
 //! A program as a leaf: what a length is read from when it cannot be read leaf by leaf.
 
 use std::cell::RefCell;
+use std::ops::Deref;
+use std::sync::OnceLock;
 
 use glam::{DAffine3, DVec3};
 
@@ -12,8 +14,39 @@ use crate::{Bounds, Dual, Interval, ParamError};
 
 #[derive(Debug)]
 pub(super) struct Composite {
-    pub(super) program: Program,
+    pub(super) program: Whole,
     pub(super) bounds: Bounds,
+}
+
+/// A program with its tape over all of space, which is made when lanes first ask for it.
+#[derive(Clone)]
+pub(super) struct Whole {
+    program: Program,
+    tape: OnceLock<Tape>,
+}
+
+impl Whole {
+    pub(super) fn new(program: Program) -> Whole {
+        Whole { program, tape: OnceLock::new() }
+    }
+
+    pub(super) fn tape(&self) -> &Tape {
+        self.tape.get_or_init(|| Tape::new(&self.program, &Bounds::ALL))
+    }
+}
+
+impl Deref for Whole {
+    type Target = Program;
+
+    fn deref(&self) -> &Program {
+        &self.program
+    }
+}
+
+impl std::fmt::Debug for Whole {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.program.fmt(f)
+    }
 }
 
 impl AnyField for Composite {
@@ -64,7 +97,7 @@ impl AnyField for Composite {
     fn lanes32(&self, chunk: Chunk<'_, f32, 1>) {
         let local = Locals::of(&chunk.points, chunk.placement);
         let [out] = chunk.out;
-        with_evaluator(|evaluator| local.values(evaluator, &tape(&self.program), out));
+        with_evaluator(|evaluator| local.values(evaluator, self.program.tape(), out));
         finish(chunk.placement, out);
     }
 
@@ -74,14 +107,9 @@ impl AnyField for Composite {
 
     fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
         let local = Locals::of(&chunk.points, chunk.placement);
-        let slopes = with_evaluator(|evaluator| local.gradients(evaluator, &tape(&self.program)));
+        let slopes = with_evaluator(|evaluator| local.gradients(evaluator, self.program.tape()));
         write_gradients(chunk.placement, &slopes, chunk.out);
     }
-}
-
-/// A program over all of space.
-pub(super) fn tape(program: &Program) -> Tape {
-    Tape::new(program, &Bounds::ALL)
 }
 
 /// How far lanes of a program may be off within `reach` of the origin.

@@ -25,11 +25,9 @@
 //! Source: J. R. Rossignac and A. A. G. Requicha, *Constant-radius blending in solid
 //! modelling* (1984), for the rolling ball.
 
-use std::sync::OnceLock;
-
 use glam::{DAffine3, DVec3};
 
-use super::composite::{Locals, Slopes, finish, points64, roundoff, tape, with_evaluator, write_gradients};
+use super::composite::{Locals, Slopes, Whole, finish, points64, roundoff, with_evaluator, write_gradients};
 use super::{Program, Tape};
 use crate::field::{AnyField, Chunk, Zone};
 use crate::num::kernel::CHUNK;
@@ -40,14 +38,12 @@ use crate::{Blend, Bounds, Dual, Interval, ParamError, Real};
 /// The blend of two operands that are given as programs of true distance.
 #[derive(Clone, Debug)]
 pub(crate) struct EdgeBlend {
-    operands: [Program; 2],
+    operands: [Whole; 2],
     /// −1 for an operand whose complement is joined.
     signs: [f64; 2],
     /// −1 for the complement of a union of complements.
     sign: f64,
     shape: Shape,
-    /// The operands' tapes, made on first use.
-    tapes: OnceLock<[Tape; 2]>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -80,7 +76,7 @@ impl EdgeBlend {
             Blend::Chamfer { width } => Shape::Chamfer(width),
             _ => Shape::Fillet(0.0),
         };
-        EdgeBlend { operands, signs, sign, shape, tapes: OnceLock::new() }
+        EdgeBlend { operands: operands.map(Whole::new), signs, sign, shape }
     }
 
     /// The radius or width.
@@ -126,19 +122,12 @@ impl EdgeBlend {
 
     /// The same blend over a zone, from simpler operands.
     pub(super) fn reduced(&self, zone: &Zone) -> Option<EdgeBlend> {
-        let leaves = |programs: &[Program; 2]| programs[0].leaf_count() + programs[1].leaf_count();
+        let leaves = |[a, b]: [&Program; 2]| a.leaf_count() + b.leaf_count();
         // From a point of the zone the steps lead at most this far.
         let near = zone.inflated(4.0 * self.reach());
         let operands = [0, 1].map(|i| self.operands[i].reduced(&near));
-        (leaves(&operands) < leaves(&self.operands)).then(|| EdgeBlend {
-            operands,
-            tapes: OnceLock::new(),
-            ..self.clone()
-        })
-    }
-
-    fn tapes(&self) -> &[Tape; 2] {
-        self.tapes.get_or_init(|| self.operands.each_ref().map(tape))
+        let simpler = leaves(operands.each_ref()) < leaves(self.operands.each_ref().map(|operand| &**operand));
+        simpler.then(|| EdgeBlend { operands: operands.map(Whole::new), ..*self })
     }
 
     fn sample(&self, i: usize, p: DVec3) -> Sample {
@@ -347,11 +336,11 @@ impl AnyField for EdgeBlend {
         let local = Locals::of(&chunk.points, chunk.placement);
         let [out] = chunk.out;
         let mut values = [[0.0f32; CHUNK]; 2];
-        let tapes = self.tapes();
+        let tapes = [self.operands[0].tape(), self.operands[1].tape()];
         let mut near = false;
         with_evaluator(|evaluator| {
             for i in 0..2 {
-                local.values(evaluator, &tapes[i], &mut values[i]);
+                local.values(evaluator, tapes[i], &mut values[i]);
                 let sign = self.signs[i] as f32;
                 values[i].iter_mut().for_each(|v| *v *= sign);
             }
@@ -375,16 +364,16 @@ impl AnyField for EdgeBlend {
 
     fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
         let local = Locals::of(&chunk.points, chunk.placement);
-        let tapes = self.tapes();
+        let tapes = [self.operands[0].tape(), self.operands[1].tape()];
         write_gradients(chunk.placement, &self.chunk(&local, tapes), chunk.out);
     }
 }
 
 impl EdgeBlend {
     /// Values and gradients of a chunk.
-    fn chunk(&self, local: &Locals, tapes: &[Tape; 2]) -> Slopes {
+    fn chunk(&self, local: &Locals, tapes: [&Tape; 2]) -> Slopes {
         with_evaluator(|evaluator| {
-            let mut sample = |at: &Locals| -> [Slopes; 2] { [0, 1].map(|i| at.gradients(evaluator, &tapes[i])) };
+            let mut sample = |at: &Locals| -> [Slopes; 2] { [0, 1].map(|i| at.gradients(evaluator, tapes[i])) };
             let signed = |slopes: &[Slopes; 2], i: usize| -> [Sample; 2] {
                 [0, 1].map(|k| {
                     let (value, gradient) = slopes[k].at(i);

@@ -284,6 +284,29 @@ impl Gielis {
     /// The radius of an angle in [−π, π].
     #[inline(always)]
     pub(super) fn radius_at<R: Real>(&self, theta: R, radius: Radius, winding: Winding) -> R {
+        let sum = self.sum_at(theta, radius, winding);
+        match radius {
+            Radius::Standard => (sum * (-1.0 / self.n1)).exp2(),
+            Radius::Rational => {
+                let scale = (-1.0 / self.n1).exp2();
+                let ratio = sum.lift(scale * 2.0 / self.n1) / sum;
+                ratio + scale * (1.0 - 1.0 / self.n1)
+            }
+        }
+    }
+
+    /// One over the radius, without a division where there need be none.
+    #[inline(always)]
+    pub(super) fn inverse_radius_at<R: Real>(&self, theta: R, radius: Radius, winding: Winding) -> R {
+        match radius {
+            Radius::Standard => (self.sum_at(theta, radius, winding) * (1.0 / self.n1)).exp2(),
+            Radius::Rational => theta.lift(1.0) / self.radius_at(theta, radius, winding),
+        }
+    }
+
+    /// What the radius is a falling function of, over the turns that count.
+    #[inline(always)]
+    fn sum_at<R: Real>(&self, theta: R, radius: Radius, winding: Winding) -> R {
         let (sin, cos) = (theta * (0.25 * self.m)).sin_cos();
         let mut sum = self.sum(sin, cos, radius);
         if let Winding::Many { turns, cos: step_cos, sin: step_sin, sign } = winding {
@@ -297,17 +320,10 @@ impl Gielis {
             }
             sum = sum * sign;
         }
-        match radius {
-            Radius::Standard => (sum * (-1.0 / self.n1)).exp2(),
-            Radius::Rational => {
-                let scale = (-1.0 / self.n1).exp2();
-                let ratio = sum.lift(scale * 2.0 / self.n1) / sum;
-                ratio + scale * (1.0 - 1.0 / self.n1)
-            }
-        }
+        sum
     }
 
-    /// What the radius is a falling function of: the logarithm of the sum of powers, or W.
+    /// The same of one turn: the logarithm of the sum of powers, or W.
     #[inline(always)]
     fn sum<R: Real>(&self, sin: R, cos: R, radius: Radius) -> R {
         match radius {

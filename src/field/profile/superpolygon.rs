@@ -106,8 +106,8 @@ impl Superpolygon {
 
     #[inline(always)]
     fn gauge_of<R: Real>(&self, x: R, y: R) -> R {
-        let radius = self.curve.radius_at(y.atan2(x), Radius::Standard, self.winding);
-        x.norm(y, Norm::Euclid) * self.inverse / radius
+        let inverse = self.curve.inverse_radius_at(y.atan2(x), Radius::Standard, self.winding);
+        x.norm(y, Norm::Euclid) * self.inverse * inverse
     }
 }
 

@@ -127,6 +127,11 @@ macro_rules! native_methods {
 macro_rules! norm_methods {
     () => {
         #[inline(always)]
+        fn log2_sum_exp2(self, other: Self) -> Self {
+            Self::join(self, other, 1.0, 1.0)
+        }
+
+        #[inline(always)]
         fn norm(self, other: Self, norm: Norm) -> Self {
             norms::norm(self, other, norm)
         }

@@ -127,11 +127,6 @@ impl<T: LogSpace> Real for Twice<T> {
         Twice(self.0.select(nonneg.0, neg.0), self.1.select(nonneg.1, neg.1))
     }
 
-    #[inline(always)]
-    fn log2_sum_exp2(self, other: Self) -> Self {
-        Twice(self.0.log2_sum_exp2(other.0), self.1.log2_sum_exp2(other.1))
-    }
-
     norm_methods!();
 }
 
