@@ -97,7 +97,10 @@ impl Distance {
     fn at(&self, p: DVec3) -> (f64, DVec3) {
         let value = self.chain.value(p.to_array());
         let (height, normal) = self.search(p, value);
-        (self.settled(value, height.max(self.gap(p, p))), -normal)
+        let settled = self.settled(value, height);
+        // No surface is nearer than the leaf's box.
+        let settled = if settled < 0.0 { settled.min(-self.gap(p, p)) } else { settled };
+        (settled, -normal)
     }
 
     /// How far a box is from the leaf's, at least.
