@@ -316,13 +316,12 @@ impl AnyField for EdgeBlend {
         // ball it is the distance from the centre curve, of slope 1; beyond, no more than the
         // longest way to a foot.
         let ((centre, _), told) = self.told(zone.centre);
-        let extent = zone.extent().length();
-        let above = centre + STEEPEST * extent;
-        let hi = if told && above < 0.0 { above.max(join.hi()) } else { join.hi().max(self.largest()) };
-        // Close to where the steps arrive they arrive from all about.
         let steepest = if matches!(self.shape, Shape::Fillet(_)) { STEEPEST } else { 4.0 };
-        let below = centre - steepest * extent;
-        let lo = if told && extent < 0.25 * self.size() { join.lo().max(below) } else { join.lo() };
+        let radius = steepest * zone.extent().length();
+        let hi = if told && centre + radius < 0.0 { centre + radius } else { join.hi().max(self.largest()) };
+        // Close to where the steps arrive they arrive from all about.
+        let close = zone.extent().length() < 0.25 * self.size();
+        let lo = if told && close { join.lo().max(centre - radius) } else { join.lo() };
         Interval::new(lo, hi.max(lo)) * Interval::point(self.sign)
     }
 
