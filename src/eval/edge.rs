@@ -318,10 +318,13 @@ impl AnyField for EdgeBlend {
         let ((centre, _), told) = self.told(zone.centre);
         let steepest = if matches!(self.shape, Shape::Fillet(_)) { STEEPEST } else { 4.0 };
         let radius = steepest * zone.extent().length();
-        let hi = if told && centre + radius < 0.0 { centre + radius } else { join.hi().max(self.largest()) };
-        // Close to where the steps arrive they arrive from all about.
-        let close = zone.extent().length() < 0.25 * self.size();
-        let lo = if told && close { join.lo().max(centre - radius) } else { join.lo() };
+        // Close to where the steps arrive they arrive from all about, and where they fail they
+        // fail all about.
+        let extent = zone.extent().length();
+        let close = extent < if told { 0.25 } else { 0.05 } * self.size();
+        let below = (told || close) && centre + radius < 0.0;
+        let hi = if below { centre + radius } else { join.hi().max(self.largest()) };
+        let lo = if close { join.lo().max(centre - radius) } else { join.lo() };
         Interval::new(lo, hi.max(lo)) * Interval::point(self.sign)
     }
 
