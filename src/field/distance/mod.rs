@@ -285,7 +285,8 @@ impl Distance {
         let hi = value + rise;
         let hi = hi + loose * hi.abs() + rounding;
         let lo = value - radius;
-        let lo = if self.shape == Shape::Convex { lo } else { lo - loose * lo.abs() } - rounding;
+        let below = if self.shape == Shape::Convex { 0.01 } else { loose };
+        let lo = lo - below * lo.abs() - rounding;
         if hi.is_finite() && lo.is_finite() { Interval::new(lo, hi).narrowed_by(sign) } else { sign }
     }
 }
