@@ -24,22 +24,22 @@ use glam::Vec3;
 
 use super::normal::corner_normal;
 use super::split::Split;
-use super::too_many;
 use super::unit::LengthUnit;
+use super::{SaveSettings, too_many};
 use crate::geom::Mesh;
 
 /// Writes a mesh as GLB, with normals, colours and texture coordinates if it has them; a length
-/// of 1 means one `unit`. The writer need not be buffered.
+/// of 1 means one [`unit`](SaveSettings::unit). The writer need not be buffered.
 ///
-/// Vertices that no triangle uses are left out. A mesh without triangles gives an empty scene.
+/// Vertices that no triangle uses are left out. A mesh without triangles gives a scene with an empty node.
 ///
 /// ```
 /// use glam::Vec3;
-/// use rvachev::{LengthUnit, Mesh, write_glb};
+/// use rvachev::{Mesh, SaveSettings, write_glb};
 ///
 /// let mesh = Mesh::new(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2]])?;
 /// let mut bytes = Vec::new();
-/// write_glb(&mesh, LengthUnit::Millimeter, &mut bytes)?;
+/// write_glb(&mesh, &SaveSettings::default(), &mut bytes)?;
 /// assert!(bytes.starts_with(b"glTF"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -48,7 +48,7 @@ use crate::geom::Mesh;
 ///
 /// Those of the writer, and [`io::ErrorKind::InvalidInput`] for a file of more than 4 GiB, the
 /// most that the format can hold.
-pub fn write_glb(mesh: &Mesh, unit: LengthUnit, out: impl Write) -> io::Result<()> {
+pub fn write_glb(mesh: &Mesh, settings: &SaveSettings, out: impl Write) -> io::Result<()> {
     let carried = |corner: usize, _| {
         let (t, k) = (corner / 3, corner % 3);
         let normal = corner_normal(mesh, corner).map(|n| n.to_array().map(f32::to_bits));
@@ -58,7 +58,7 @@ pub fn write_glb(mesh: &Mesh, unit: LengthUnit, out: impl Write) -> io::Result<(
     };
     let split = Split::new(mesh, carried).ok_or_else(|| too_many("GLB"))?;
     let layout = Layout::new(mesh, &split);
-    let mut json = layout.json(unit);
+    let mut json = layout.json(settings.unit);
     while !json.len().is_multiple_of(4) {
         json.push(' ');
     }
@@ -236,7 +236,7 @@ impl Layout {
     fn json(&self, unit: LengthUnit) -> String {
         let mut json = String::from(r#"{"asset":{"version":"2.0","generator":"rvachev"},"scene":0"#);
         if self.parts.is_empty() {
-            json.push_str(r#","scenes":[{}]}"#);
+            json.push_str(r#","scenes":[{"nodes":[0]}],"nodes":[{}]}"#);
             return json;
         }
         let scale = unit.meters();

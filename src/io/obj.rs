@@ -8,28 +8,33 @@
 //! ```
 //!
 //! Positions, texture coordinates and normals are listed apart, so that the vertices stay
-//! shared whatever their corners carry. Colours and owners have no place in the format.
+//! shared whatever their corners carry. All the same, readers that keep one normal a vertex
+//! (trimesh, most that draw) split the vertices at creases and end with an open mesh. So a mesh
+//! with creases gets its normals on request only; without them, readers find them by the angle
+//! between triangles. Colours and owners have no place in the format.
 //!
 //! Source: Wavefront Technologies, Advanced Visualizer Manual, appendix B1 (1995).
 
 use std::io::{self, BufWriter, Write};
 
+use super::SaveSettings;
 use super::normal::corner_normal;
 use super::split::Split;
 use super::text::{Number, Numbers};
 use super::too_many;
 use crate::geom::Mesh;
 
-/// Writes a mesh as OBJ, with normals and texture coordinates if it has them. The writer need
-/// not be buffered.
+/// Writes a mesh as OBJ, with texture coordinates if it has them, and with normals if it has
+/// one for each vertex, or on request ([`SaveSettings::crease_normals`]) one for each corner.
+/// The writer need not be buffered.
 ///
 /// ```
 /// use glam::Vec3;
-/// use rvachev::{Mesh, write_obj};
+/// use rvachev::{Mesh, SaveSettings, write_obj};
 ///
 /// let mesh = Mesh::new(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2]])?;
 /// let mut text = Vec::new();
-/// write_obj(&mesh, &mut text)?;
+/// write_obj(&mesh, &SaveSettings::default(), &mut text)?;
 /// assert_eq!(String::from_utf8(text)?, "# written by rvachev\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -38,7 +43,7 @@ use crate::geom::Mesh;
 ///
 /// Those of the writer, and [`io::ErrorKind::InvalidInput`] for normals or texture of a mesh
 /// with more than 2³² − 1 corners.
-pub fn write_obj(mesh: &Mesh, out: impl Write) -> io::Result<()> {
+pub fn write_obj(mesh: &Mesh, settings: &SaveSettings, out: impl Write) -> io::Result<()> {
     let mut out = BufWriter::with_capacity(1 << 16, out);
     writeln!(out, "# written by rvachev")?;
     for p in mesh.positions() {
@@ -60,6 +65,7 @@ pub fn write_obj(mesh: &Mesh, out: impl Write) -> io::Result<()> {
     let normal = |corner: usize| corner_normal(mesh, corner).unwrap_or_default().to_array();
     let has_normals = mesh.normals().is_some() || mesh.corner_normals().is_some();
     let normals = split(has_normals, &|corner| normal(corner).map(f32::to_bits))?;
+    let normals = normals.filter(|normals| settings.crease_normals || !normals.splits(mesh));
     for &corner in normals.iter().flat_map(|split| &split.examples) {
         writeln!(out, "vn {}", Numbers(normal(corner)))?;
     }

@@ -69,6 +69,10 @@ pub struct SaveSettings {
     pub unit: LengthUnit,
     /// Whether `.stl` is written as text. Default: binary. The other formats have one form.
     pub ascii: bool,
+    /// Whether `.obj` has normals even where a vertex has several: at creases, one for each
+    /// corner. Default: no, as some readers (trimesh, and most that only draw) split the
+    /// vertices there, and no longer see a closed mesh. `.glb` always has them.
+    pub crease_normals: bool,
 }
 
 /// A writer of one format, for `T` by settings `S`.
@@ -76,9 +80,9 @@ type Writer<T, S> = fn(&T, &S, &mut BufWriter<File>) -> io::Result<()>;
 
 /// The formats of a mesh, by extension.
 const MESH_FORMATS: [(&str, Writer<Mesh, SaveSettings>); 5] = [
-    ("3mf", |mesh, settings, out| write_3mf(mesh, settings.unit, out)),
-    ("glb", |mesh, settings, out| write_glb(mesh, settings.unit, out)),
-    ("obj", |mesh, _, out| write_obj(mesh, out)),
+    ("3mf", |mesh, settings, out| write_3mf(mesh, settings, out)),
+    ("glb", |mesh, settings, out| write_glb(mesh, settings, out)),
+    ("obj", |mesh, settings, out| write_obj(mesh, settings, out)),
     ("ply", |mesh, _, out| write_ply(mesh, out)),
     ("stl", |mesh, settings, out| if settings.ascii { write_stl_ascii(mesh, out) } else { write_stl(mesh, out) }),
 ];
@@ -89,7 +93,7 @@ impl Mesh {
     /// | extension | format | besides the shape |
     /// |---|---|---|
     /// | `.stl` | binary STL | |
-    /// | `.obj` | OBJ | normals and texture coordinates per corner |
+    /// | `.obj` | OBJ | normals (at creases: on request) and texture coordinates per corner |
     /// | `.ply` | binary PLY | normals per vertex, colours, owners |
     /// | `.glb` | binary glTF | normals, colours and texture coordinates per corner; in millimetres |
     /// | `.3mf` | 3MF | colours per corner; in millimetres |
@@ -110,7 +114,7 @@ impl Mesh {
         self.save_with(path, &SaveSettings::default())
     }
 
-    /// [`save`](Mesh::save) with a choice of unit, and of STL as text.
+    /// [`save`](Mesh::save) with a choice of unit, of STL as text, of OBJ with all its normals.
     ///
     /// # Errors
     ///

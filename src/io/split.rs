@@ -63,6 +63,12 @@ impl Split {
         }
         Some(Split { examples, pairs })
     }
+
+    /// Whether some vertex is in several pairs.
+    pub(super) fn splits(&self, mesh: &Mesh) -> bool {
+        let vertex = mesh.triangles().as_flattened();
+        self.examples.windows(2).any(|pair| vertex[pair[0]] == vertex[pair[1]])
+    }
 }
 
 #[cfg(test)]
@@ -75,9 +81,10 @@ mod tests {
         let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z, Vec3::ZERO];
         let mesh = Mesh::new(positions, vec![[0, 1, 2], [0, 2, 3], [4, 1, 3]]).unwrap();
         let split = Split::new(&mesh, |_, _| ()).unwrap();
+        assert!(!split.splits(&mesh));
         assert_eq!(split.pairs, [0, 1, 2, 0, 2, 3, 4, 1, 3], "each vertex once, the fifth apart from the first");
         let split = Split::new(&mesh, |corner, _| corner == 3).unwrap();
-        assert_eq!(split.examples.len(), 6);
+        assert!(split.splits(&mesh) && split.examples.len() == 6);
         assert_eq!(split.pairs, [0, 2, 3, 1, 3, 4, 5, 2, 4]);
     }
 }

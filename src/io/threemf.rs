@@ -18,8 +18,8 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 use super::text::Number;
-use super::too_many;
 use super::unit::LengthUnit;
+use super::{SaveSettings, too_many};
 use crate::geom::Mesh;
 
 const TYPES: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
@@ -36,18 +36,18 @@ const MOST: usize = (1 << 31) - 2;
 /// An archive with more bytes than this of text has 64-bit lengths.
 const LARGE: usize = 1 << 31;
 
-/// Writes a mesh as 3MF, with colours if it has them; a length of 1 means one `unit`. The
+/// Writes a mesh as 3MF, with colours if it has them; a length of 1 means one [`unit`](SaveSettings::unit). The
 /// writer need not be buffered.
 ///
 /// The format wants a closed, manifold mesh that is oriented outward: see
 /// [`Mesh::check`]. A mesh without triangles gives a file without objects.
 ///
 /// ```
-/// use rvachev::{LengthUnit, MeshSettings, Solid, write_3mf};
+/// use rvachev::{MeshSettings, SaveSettings, Solid, write_3mf};
 ///
 /// let mesh = Solid::sphere(10.0).mesh(&MeshSettings::default())?;
 /// let mut bytes = Vec::new();
-/// write_3mf(&mesh, LengthUnit::Millimeter, &mut bytes)?;
+/// write_3mf(&mesh, &SaveSettings::default(), &mut bytes)?;
 /// assert!(bytes.starts_with(b"PK"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -56,7 +56,7 @@ const LARGE: usize = 1 << 31;
 ///
 /// Those of the writer, and [`io::ErrorKind::InvalidInput`] for a triangle with a repeated
 /// index, which the format does not allow, and for more than 2³¹ − 2 vertices or triangles.
-pub fn write_3mf(mesh: &Mesh, unit: LengthUnit, out: impl Write) -> io::Result<()> {
+pub fn write_3mf(mesh: &Mesh, settings: &SaveSettings, out: impl Write) -> io::Result<()> {
     if mesh.positions().len().max(mesh.triangles().len()) > MOST {
         return Err(too_many("3MF"));
     }
@@ -71,17 +71,39 @@ pub fn write_3mf(mesh: &Mesh, unit: LengthUnit, out: impl Write) -> io::Result<(
         .compression_level(Some(4))
         .last_modified_time(DateTime::default());
 
-    let mut archive = ZipWriter::new_stream(out);
+    let mut archive = ZipWriter::new_stream(Once { out, failed: false });
     archive.start_file("[Content_Types].xml", options)?;
     archive.write_all(TYPES.as_bytes())?;
     archive.start_file("_rels/.rels", options)?;
     archive.write_all(RELATIONS.as_bytes())?;
     archive.start_file("3D/3dmodel.model", options.large_file(text > LARGE))?;
     let mut model = BufWriter::with_capacity(1 << 16, &mut archive);
-    write_model(mesh, unit, &mut model)?;
+    write_model(mesh, settings.unit, &mut model)?;
     model.flush()?;
     drop(model);
-    archive.finish()?.into_inner().flush()
+    archive.finish()?.into_inner().out.flush()
+}
+
+/// A writer that fails once, and takes everything thereafter: an archive that is dropped after
+/// an error tries to complete itself, and complains to the terminal if it cannot.
+struct Once<W> {
+    out: W,
+    failed: bool,
+}
+
+impl<W: Write> Write for Once<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.failed {
+            return Ok(bytes.len());
+        }
+        let result = self.out.write(bytes);
+        self.failed = result.as_ref().is_err_and(|error| error.kind() != io::ErrorKind::Interrupted);
+        result
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        if self.failed { Ok(()) } else { self.out.flush() }
+    }
 }
 
 fn write_model(mesh: &Mesh, unit: LengthUnit, out: &mut impl Write) -> io::Result<()> {

@@ -6,6 +6,7 @@ mod building;
 mod check;
 mod deformation;
 mod errors;
+mod export;
 mod forms;
 mod formula;
 mod lattices;
