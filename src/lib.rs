@@ -345,7 +345,10 @@ pub use field::{
     Supershape, Supertoroid, Torus, Turns, VALUE_LIMIT, Wedge,
 };
 pub use geom::{Camera, CameraError, Image, ImageError, Mesh, MeshError, Projection, Rays};
-pub use io::{SaveError, write_png, write_stl};
+pub use io::{
+    LengthUnit, SaveError, SaveSettings, write_3mf, write_glb, write_obj, write_ply, write_png, write_stl,
+    write_stl_ascii,
+};
 pub use mesh::{CellSize, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError};
 pub use num::{Dual, Interval, Monotone, Monotone3, Norm, Real};
 pub use render::{Background, RenderError, RenderSettings};

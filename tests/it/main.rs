@@ -3,8 +3,10 @@
 mod accuracy;
 mod blends;
 mod building;
+mod check;
 mod deformation;
 mod errors;
+mod export;
 mod forms;
 mod formula;
 mod lattices;
