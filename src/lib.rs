@@ -334,6 +334,7 @@ mod render;
 mod run;
 mod solid;
 mod space;
+mod surface;
 
 pub use bounds::Bounds;
 pub use eval::{Evaluator, Gradients, Hit, Owner, Program, Region, Tape};
@@ -344,10 +345,11 @@ pub use field::{
     SheetLattice, SineWave, Slab, SmoothStep, Sphere, Superellipse, Superellipsoid, Superhyperboloid, Superpolygon,
     Supershape, Supertoroid, Torus, Turns, VALUE_LIMIT, Wedge,
 };
-pub use geom::{Camera, CameraError, Image, ImageError, Mesh, MeshError, Projection, Rays};
+pub use geom::{Camera, CameraError, Corner, Image, ImageError, Mesh, MeshError, Projection, QuadMesh, Rays};
 pub use io::{SaveError, write_png, write_stl};
 pub use mesh::{CellSize, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError};
 pub use num::{Dual, Interval, Monotone, Monotone3, Norm, Real};
 pub use render::{Background, RenderError, RenderSettings};
 pub use run::{CancelToken, Cancelled, Progress, Run};
 pub use solid::{Caps, Extrusion, Helix, PlaneBounds, Profile, Solid, SolidError};
+pub use surface::{Frame, ParametricSurface, PatchError, PatchSettings, Spacing};

@@ -15,6 +15,7 @@ mod mesh;
 mod models;
 mod narrow;
 mod parameters;
+mod patches;
 mod primitives;
 mod profile;
 mod queries;
