@@ -352,4 +352,9 @@ pub use num::{Dual, Interval, Monotone, Monotone3, Norm, Real};
 pub use render::{Background, RenderError, RenderSettings};
 pub use run::{CancelToken, Cancelled, Progress, Run};
 pub use solid::{Caps, Extrusion, Helix, PlaneBounds, Profile, Solid, SolidError};
-pub use surface::{Frame, ParametricSurface, PatchError, PatchSettings, Spacing};
+pub use surface::{
+    BinomialSeries, ControlGrid, ControlPoint, ControlPolygon, CurveSpread, ExactExplicit, Frame, LogTable,
+    ParametricSurface, PatchError, PatchSettings, PlaneSymmetry, PointError, PointMethod, PointSettings, PowerTables,
+    ProductTables, ProfileEnd, SeriesExplicit, Spacing, SubdivisionError, SubdivisionRevolution, SurfacePoint, Symmetry,
+    Tension, hyperbola_of_ellipse, raw_parametric, raw_parametric_octant, reflect, reflect_plane,
+};

@@ -4,12 +4,26 @@
 //! |---|---|
 //! | [`ParametricSurface`] | point, tangents and exact normal by two parameters |
 //! | [`PatchSettings`] | its meshes: closed and manifold by construction |
+//! | [`ControlPolygon`], [`SubdivisionRevolution`], [`ControlGrid`] | subdivision |
 
 mod angle;
 mod curve;
 mod parametric;
 mod patch;
+mod points;
+mod sampling;
 mod spacing;
+mod stitch;
+mod subdivision;
 
 pub use parametric::{Frame, ParametricSurface};
 pub use patch::{PatchError, PatchSettings, Spacing};
+pub use points::{
+    BinomialSeries, CurveSpread, ExactExplicit, LogTable, PlaneSymmetry, PointError, PointMethod, PointSettings,
+    PowerTables, ProductTables, SeriesExplicit, Symmetry, raw_parametric, raw_parametric_octant, reflect, reflect_plane,
+};
+pub use sampling::SurfacePoint;
+pub use subdivision::{
+    ControlGrid, ControlPoint, ControlPolygon, ProfileEnd, SubdivisionError, SubdivisionRevolution, Tension,
+    hyperbola_of_ellipse,
+};

@@ -197,11 +197,6 @@ impl ParametricSurface {
         placed + DVec3::ZERO
     }
 
-    /// A vector of space as seen along the axis of the product.
-    pub(super) fn seen_along_axis(&self, p: DVec3) -> DVec2 {
-        if self.along_x || matches!(self.shape, Shape::BarrBowl { .. }) { DVec2::new(p.y, p.z) } else { p.truncate() }
-    }
-
     /// Whether the surface is a mirror image, its triangles the other way round.
     pub(super) fn mirrored(&self) -> bool {
         self.lower

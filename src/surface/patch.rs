@@ -1,15 +1,5 @@
 //! Meshes of parametric surfaces: closed and manifold by construction.
 //!
-//! ```text
-//!    ●───────────────●   pole: one vertex, a ring of triangles about it
-//!    │ ╲ │ ╱ │ ╲ │ ╱ │
-//!    ├───┼───┼───┼───┤   row: as many vertices as columns; after the last column
-//!    │   │   │   │   │   comes the first again, there is no seam
-//!    ├───┼───┼───┼───┤
-//!    │ ╲ │ ╱ │ ╲ │ ╱ │   clipped end: the last row again, as a flat fan about a vertex in its
-//!    ○───────────────○   middle
-//! ```
-//!
 //! Rows run along the meridian, columns along the equator; a ring (torus) closes both ways.
 
 use std::f64::consts::PI;
@@ -20,7 +10,8 @@ use super::angle::sin_cos;
 use super::curve::{By, Curve};
 use super::parametric::{ParametricSurface, Shape};
 use super::spacing::{Arc, Sample};
-use crate::geom::{Corner, Mesh, MeshError, QuadMesh};
+use super::stitch::{End, Knot, Knots, Layout, stitch};
+use crate::geom::{Mesh, MeshError, QuadMesh};
 
 /// How a parametric surface is meshed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +32,13 @@ pub enum Spacing {
     /// gaps on their sides: at e = 0.04, 0.85 of the size with 91 samples a quarter.
     #[default]
     UniformAngle,
+    /// By equal lengths along meridian and equator: the longest gap between neighbours on either
+    /// is at most 1.5 of the shortest. (Barr's two sheets along x keep uniform angles.)
+    EqualArc,
+    /// As few as keep the mesh within this distance (length units) of the surface; `rows` and
+    /// `columns` are not used. Rings have as many vertices as each needs, so that there are
+    /// triangles only.
+    Chord(f64),
 }
 
 impl Default for PatchSettings {
@@ -138,20 +136,10 @@ impl ParametricSurface {
         let mut mesh = QuadMesh::default();
         for sheet in std::iter::once(*self).chain(self.other_sheet()) {
             let grid = Grid::new(&sheet, settings);
-            grid.append_to(&mut mesh);
+            stitch(&grid, grid.layout(), &mut mesh);
         }
         Ok(mesh)
     }
-}
-
-/// A vertex of a grid with the normals of its four sides.
-#[derive(Clone, Copy)]
-struct Knot {
-    point: DVec3,
-    normal: DVec3,
-    /// `[before, after]` along the meridian, of `[before, after]` along the equator.
-    sides: [[DVec3; 2]; 2],
-    texture: DVec2,
 }
 
 /// Rows and columns of a surface.
@@ -179,11 +167,35 @@ impl<'a> Grid<'a> {
                 meridian: surface.meridian_arc(By::Angle).uniform(rows),
                 equator: surface.equator_arc(By::Angle).uniform(columns),
             },
+            (_, _) => Product::Curves {
+                meridian: surface.meridian_arc(By::Even).equal(rows),
+                equator: surface.equator_arc(By::Even).equal(columns),
+            },
         };
         Grid { surface, rows, columns, product }
     }
 
-    /// The vertex where row and column meet.
+    fn layout(&self) -> Layout {
+        let surface = self.surface;
+        let ends = match surface.shape {
+            Shape::Ring => None,
+            Shape::Ball | Shape::Horn => Some([End::Pole; 2]),
+            Shape::Tube => Some([End::Flat; 2]),
+            Shape::Bowl | Shape::BarrBowl { .. } => Some([End::Pole, End::Flat]),
+        };
+        let axis = if matches!(surface.shape, Shape::BarrBowl { .. }) { DVec3::X } else { DVec3::Z };
+        Layout {
+            rows: self.rows,
+            columns: self.columns,
+            ends,
+            columns_join: true,
+            mirrored: surface.mirrored(),
+            axis: surface.placed(axis),
+        }
+    }
+}
+
+impl Knots for Grid<'_> {
     fn knot(&self, row: u32, column: u32) -> Knot {
         match &self.product {
             Product::Curves { meridian, equator } => {
@@ -194,10 +206,6 @@ impl<'a> Grid<'a> {
                 self.surface.polar_knot([end, e1, e2], share(row, self.rows), share(column, self.columns))
             }
         }
-    }
-
-    fn append_to(&self, mesh: &mut QuadMesh) {
-        Stitcher::new(self, mesh).stitch();
     }
 }
 
@@ -216,12 +224,16 @@ impl ParametricSurface {
 
     fn knot(&self, meridian: &Sample, equator: &Sample) -> Knot {
         let normal = |m: DVec2, e: DVec2| self.normal_of(m, e, equator.point);
-        Knot {
-            point: self.point_of(meridian.point, equator.point),
-            normal: normal(meridian.normal, equator.normal),
-            sides: meridian.sides.map(|m| equator.sides.map(|e| normal(m, e))),
-            texture: DVec2::new(equator.texture, meridian.texture),
+        let point = self.point_of(meridian.point, equator.point);
+        let knot = Knot::smooth(
+            point,
+            normal(meridian.normal, equator.normal),
+            DVec2::new(equator.texture, meridian.texture),
+        );
+        if meridian.is_smooth() && equator.is_smooth() {
+            return knot;
         }
+        Knot { sides: meridian.sides.map(|m| equator.sides.map(|e| normal(m, e))), ..knot }
     }
 
     /// Barr's bowl about its apex. At `x/a₁ = ξ` the logarithm of ξ, the sum of those of the two
@@ -238,162 +250,6 @@ impl ParametricSurface {
             point.x = (end * self.semi_axes().x).copysign(point.x);
         }
         let normal = self.normal_of(m.normal, n.normal, n.point);
-        Knot { point, normal, sides: [[normal; 2]; 2], texture: DVec2::new(column, row) }
-    }
-}
-
-/// Appends the grid of one sheet to a mesh.
-struct Stitcher<'a, 'b> {
-    grid: &'a Grid<'a>,
-    mesh: &'b mut QuadMesh,
-    /// The first vertex of the rings.
-    base: u32,
-    /// The row of the first ring: that of a pole is no ring.
-    first: u32,
-    rings: u32,
-}
-
-impl<'a, 'b> Stitcher<'a, 'b> {
-    fn new(grid: &'a Grid<'a>, mesh: &'b mut QuadMesh) -> Stitcher<'a, 'b> {
-        let base = mesh.positions.len() as u32;
-        let rows = grid.rows;
-        let (first, rings) = match grid.surface.shape {
-            Shape::Ball | Shape::Horn => (1, rows - 1),
-            Shape::Ring => (0, rows),
-            Shape::Tube => (0, rows + 1),
-            Shape::Bowl | Shape::BarrBowl { .. } => (1, rows),
-        };
-        Stitcher { grid, mesh, base, first, rings }
-    }
-
-    fn stitch(mut self) {
-        let columns = self.grid.columns;
-        for ring in 0..self.rings {
-            for column in 0..columns {
-                let knot = self.grid.knot(self.first + ring, column);
-                self.vertex(knot.point, knot.normal);
-            }
-        }
-        let ring_shape = self.grid.surface.shape == Shape::Ring;
-        let strips = if ring_shape { self.rings } else { self.rings - 1 };
-        for strip in 0..strips {
-            for column in 0..columns {
-                self.quad(strip, column);
-            }
-        }
-        let last = self.grid.rows;
-        match self.grid.surface.shape {
-            Shape::Ring => {}
-            Shape::Ball | Shape::Horn => {
-                self.pole(0);
-                self.pole(last);
-            }
-            Shape::Tube => {
-                self.cap(0);
-                self.cap(last);
-            }
-            Shape::Bowl | Shape::BarrBowl { .. } => {
-                self.pole(0);
-                self.cap(last);
-            }
-        }
-    }
-
-    fn vertex(&mut self, point: DVec3, normal: DVec3) -> u32 {
-        self.mesh.positions.push(point);
-        self.mesh.normals.push(normal);
-        self.mesh.positions.len() as u32 - 1
-    }
-
-    fn at(&self, ring: u32, column: u32) -> u32 {
-        self.base + (ring % self.rings) * self.grid.columns + column % self.grid.columns
-    }
-
-    /// The corner of a face at a row and column, on the side of it where the face is.
-    fn corner(&self, [row, column]: [u32; 2], [after_row, after_column]: [usize; 2]) -> Corner {
-        let knot = self.grid.knot(row, column);
-        Corner { normal: knot.sides[after_row][after_column], texture: knot.texture }
-    }
-
-    fn quad(&mut self, strip: u32, column: u32) {
-        let corner = |right: u32, up: u32| {
-            let vertex = self.at(strip + up, column + right);
-            let sides = [1 - up as usize, 1 - right as usize];
-            (vertex, self.corner([self.first + strip + up, column + right], sides))
-        };
-        let [a, b, c, d] = self.turned([corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)]);
-        self.mesh.quads.push([a.0, b.0, c.0, d.0]);
-        self.mesh.quad_corners.push([a.1, b.1, c.1, d.1]);
-    }
-
-    fn triangle(&mut self, corners: [(u32, Corner); 3], upwards: bool) {
-        let [a, b, c] = self.turned(corners);
-        let [a, b, c] = if upwards { [a, b, c] } else { [a, c, b] };
-        self.mesh.triangles.push([a.0, b.0, c.0]);
-        self.mesh.triangle_corners.push([a.1, b.1, c.1]);
-    }
-
-    /// The other way round on a mirror image.
-    fn turned<const N: usize>(&self, mut corners: [(u32, Corner); N]) -> [(u32, Corner); N] {
-        if self.grid.surface.mirrored() {
-            corners.reverse();
-        }
-        corners
-    }
-
-    /// A vertex and a fan of triangles in place of the first or last row.
-    fn pole(&mut self, row: u32) {
-        let last = row == self.grid.rows;
-        let columns = self.grid.columns;
-        let (ring, beside) = if last { (self.rings - 1, row - 1) } else { (0, 1) };
-        let side = usize::from(!last);
-        let tips: Vec<Corner> = (0..columns)
-            .map(|column| {
-                let left = self.corner([row, column], [side, 1]);
-                let right = self.corner([row, column + 1], [side, 0]);
-                let texture = 0.5 * (left.texture + right.texture);
-                Corner { normal: (left.normal + right.normal).normalize_or_zero(), texture }
-            })
-            .collect();
-        // Normals about a tip may cancel, as those about the middle of a horn do.
-        let mean = tips.iter().map(|tip| tip.normal).sum::<DVec3>() / f64::from(columns);
-        let up = self.grid.surface.placed(if last { DVec3::Z } else { DVec3::NEG_Z });
-        let normal = if mean.length() > 1e-9 { mean.normalize() } else { up };
-        let pole = self.vertex(self.grid.knot(row, 0).point, normal);
-        for column in 0..columns {
-            let base = [0, 1].map(|right: u32| {
-                let sides = [1 - side, 1 - right as usize];
-                (self.at(ring, column + right), self.corner([beside, column + right], sides))
-            });
-            self.triangle([base[0], base[1], (pole, tips[column as usize])], last);
-        }
-    }
-
-    /// A flat fan across a clipped end.
-    fn cap(&mut self, row: u32) {
-        let last = row == self.grid.rows;
-        let ring = if last { self.rings - 1 } else { 0 };
-        let up = if last { 1.0 } else { -1.0 };
-        let surface = self.grid.surface;
-        let normal = match surface.shape {
-            Shape::BarrBowl { .. } => surface.placed(DVec3::X),
-            _ => surface.placed(DVec3::new(0.0, 0.0, up)),
-        };
-        let rim = self.grid.knot(row, 0).point;
-        let axis = normal.abs();
-        let center = self.vertex(rim * axis, normal);
-        let corner = |point: DVec3, size: f64| {
-            let flat = surface.seen_along_axis(point) / (2.0 * size);
-            Corner { normal, texture: DVec2::splat(0.5) + flat }
-        };
-        let columns = self.grid.columns;
-        let size = (0..columns).map(|c| self.grid.knot(row, c).point - rim * axis).map(DVec3::length).fold(0.0, f64::max);
-        for column in 0..columns {
-            let base = [0, 1].map(|right| {
-                let vertex = self.at(ring, column + right);
-                (vertex, corner(self.mesh.positions[vertex as usize], size))
-            });
-            self.triangle([base[0], base[1], (center, corner(rim * axis, size))], last);
-        }
+        Knot::smooth(point, normal, DVec2::new(column, row))
     }
 }
