@@ -15,7 +15,7 @@
 //! parameter, in which it runs evenly: the polar angle (the point is `d/G(d)` of a direction d),
 //! the height of a hyperbola. Quarter turns are the same in both.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
 use glam::DVec2;
 
@@ -86,9 +86,9 @@ impl Curve {
                 let local = if by == By::Even && e < 1.0 { radial(e, sin, cos) } else { raw(e, sin, cos) };
                 Local { point: local.point + DVec2::new(ring, 0.0), ..local }
             }
-            Curve::Hyperbola { e, .. } => hyperbola(e, t, even_height(e, by)),
-            Curve::Bowl { e, .. } => {
-                let Local { point, normal } = hyperbola(e, t, even_height(e, by));
+            Curve::Hyperbola { e, end } => hyperbola(e, t, end, even_height(e, by)),
+            Curve::Bowl { e, end } => {
+                let Local { point, normal } = hyperbola(e, t, height_of(end, e), even_height(e, by));
                 Local { point: DVec2::new(point.y, point.x), normal: -DVec2::new(normal.y, normal.x) }
             }
             Curve::Parabola { .. } => {
@@ -100,7 +100,7 @@ impl Curve {
 
     /// The point of the hyperbola with exponent `e` whose secant is `u`, on the side of `side`.
     pub(super) fn at_secant(e: f64, u: f64, side: f64) -> Local {
-        hyperbola(e, height_of(u, e).copysign(side), true)
+        hyperbola(e, height_of(u, e).copysign(side), f64::INFINITY, true)
     }
 
     /// The normals just before and just after a parameter: they differ at a corner.
@@ -163,9 +163,11 @@ fn radial(e: f64, sin: f64, cos: f64) -> Local {
     Local { point, normal: DVec2::new(signed_power(point.x, power), signed_power(point.y, power)) }
 }
 
-/// The hyperbola, by its height or by its angle.
-fn hyperbola(e: f64, t: f64, by_height: bool) -> Local {
-    let (point, sin) = if by_height {
+/// The hyperbola, by its height or by its angle, which beyond the `end` is that of the end: squarish
+/// ones reach it within 10⁻⁸ of a right angle.
+fn hyperbola(e: f64, t: f64, end: f64, by_height: bool) -> Local {
+    let (point, sin) = if by_height || t.abs() >= angle_of_tan(end, e) {
+        let t = if by_height { t } else { end.copysign(t) };
         let u = 1.0.norm(t, Norm::of_exponent(e));
         // sin = tan/sec, each to the power e.
         (DVec2::new(u, t), signed_power(t / u, 1.0 / e))
@@ -207,7 +209,3 @@ fn gielis(curve: &Gielis, radius: Radius, turns: u32, theta: f64) -> Local {
     let normal = (radial - bent * radial.perp()) / (1.0 + bent.abs());
     Local { point: r * radial, normal }
 }
-
-/// Quarter turns within a closed curve's range; every curve is sampled at them, for there its
-/// corners and its extremes are.
-pub(super) const QUARTERS: [f64; 5] = [-PI, -FRAC_PI_2, 0.0, FRAC_PI_2, PI];

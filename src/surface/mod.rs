@@ -6,6 +6,7 @@
 //! | [`PatchSettings`] | its meshes: closed and manifold by construction |
 //! | [`ControlPolygon`], [`SubdivisionRevolution`], [`ControlGrid`] | subdivision |
 
+mod adaptive;
 mod angle;
 mod curve;
 mod parametric;

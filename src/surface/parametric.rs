@@ -197,6 +197,26 @@ impl ParametricSurface {
         placed + DVec3::ZERO
     }
 
+    /// A direction of space in the axes of the product.
+    pub(super) fn unplaced(&self, p: DVec3) -> DVec3 {
+        let sign = if self.lower { -1.0 } else { 1.0 };
+        if self.along_x { DVec3::new(p.y, p.z, sign * p.x) } else { DVec3::new(p.x, p.y, sign * p.z) }
+    }
+
+    /// The largest coordinate of a point of the surface.
+    pub(super) fn size(&self) -> f64 {
+        let [e0, e1] = self.equator.range(By::Angle);
+        let [m0, m1] = self.meridian_range(By::Angle);
+        let share = |[a, b]: [f64; 2], i: u32| a + (b - a) * f64::from(i) / 64.0;
+        let mut most = 0.0f64;
+        for i in 0..=64 {
+            for j in 0..=64 {
+                most = most.max(self.point(share([m0, m1], i), share([e0, e1], j)).abs().max_element());
+            }
+        }
+        most
+    }
+
     /// Whether the surface is a mirror image, its triangles the other way round.
     pub(super) fn mirrored(&self) -> bool {
         self.lower

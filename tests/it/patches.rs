@@ -106,7 +106,7 @@ fn normals_are_gradients() {
         let [from, to] = case.surface.omega_range();
         for i in 0..200 {
             // Off the planes where edges and cusps are.
-            let (s, t) = ((0.5 + f64::from(i)) / 200.0, (0.618_034 * f64::from(i)).fract());
+            let (s, t) = ((0.5 + f64::from(i)) / 200.0, (0.37 + 0.618_034 * f64::from(i)).fract());
             let frame = case.surface.frame(first + (last - first) * s, from + (to - from) * t);
             let gradient = (case.gradient)(frame.point * (1.0 - 1e-12)).normalize();
             if (case.residual)(frame.point * (1.0 - 1e-9)).abs() > 1e-6 {
