@@ -3,13 +3,17 @@
 //! | | |
 //! |---|---|
 //! | [`ParametricSurface`] | point, tangents and exact normal by two parameters |
+//! | [`ParametricCurve`] | the same of plane curves |
 //! | [`PatchSettings`] | its meshes: closed and manifold by construction |
+//! | [`ParametricSurface::sample`] | points uniform by area |
+//! | [`PointMethod`] | Franklin and Barr's six methods for points of superquadrics |
 //! | [`ControlPolygon`], [`SubdivisionRevolution`], [`ControlGrid`] | subdivision |
 
 mod adaptive;
 mod angle;
 mod curve;
 mod parametric;
+mod parametric_curve;
 mod patch;
 mod points;
 mod sampling;
@@ -18,6 +22,7 @@ mod stitch;
 mod subdivision;
 
 pub use parametric::{Frame, ParametricSurface};
+pub use parametric_curve::ParametricCurve;
 pub use patch::{PatchError, PatchSettings, Spacing};
 pub use points::{
     BinomialSeries, CurveSpread, ExactExplicit, LogTable, PlaneSymmetry, PointError, PointMethod, PointSettings,

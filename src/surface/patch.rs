@@ -225,8 +225,12 @@ impl Knots for Grid<'_> {
 impl ParametricSurface {
     /// The meridian as it is seen where the equator is widest.
     pub(super) fn meridian_arc(&self, by: By) -> Arc {
-        let [a, b, c] = self.semi_axes().to_array();
-        Arc { curve: self.meridian, by, range: self.meridian_range(by), scale: DVec2::new(a.max(b), c) }
+        let equator = self.equator_arc(By::Even);
+        let [first, last] = equator.range;
+        let at = |i: u32| equator.point(first + (last - first) * f64::from(i) / 256.0).length();
+        let widest = (0..=256).map(at).fold(0.0, f64::max);
+        let scale = DVec2::new(widest, self.semi_axes().z);
+        Arc { curve: self.meridian, by, range: self.meridian_range(by), scale }
     }
 
     /// The equator.

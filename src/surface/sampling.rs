@@ -11,7 +11,7 @@
 //! at the point over that of its cell, so that the result is uniform on the surface itself and
 //! not on the grid.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::curve::By;
 use super::parametric::{ParametricSurface, Shape};
@@ -95,26 +95,26 @@ impl<'a> Cells<'a> {
             let chain = super::spacing::Chain::new(&arc, CELLS as u32);
             (0..=CELLS).map(|i| chain.parameter(chain.length() * i as f64 / CELLS as f64)).collect::<Vec<f64>>()
         });
-        let mut cells = Cells { surface, lines, areas: Vec::with_capacity(CELLS * CELLS) };
+        // Two pieces each way of a cell: the curves at their ends are shared by whole rows.
+        let points = [(&surface.meridian, &lines[0]), (&surface.equator, &lines[1])].map(|(curve, line)| {
+            let at = |i: usize| if i % 2 == 0 { line[i / 2] } else { 0.5 * (line[i / 2] + line[i / 2 + 1]) };
+            (0..=2 * CELLS).map(|i| curve.at(at(i), By::Even).point).collect::<Vec<DVec2>>()
+        });
+        let corner = |i: usize, j: usize| surface.point_of(points[0][i], points[1][j]);
+        let piece = |i: usize, j: usize| {
+            let (a, c) = (corner(i, j), corner(i + 1, j + 1));
+            let (b, d) = (corner(i, j + 1), corner(i + 1, j));
+            0.5 * (c - a).cross(d - b).length()
+        };
+        let mut areas = Vec::with_capacity(CELLS * CELLS);
         let mut sum = 0.0;
-        for i in 0..CELLS {
-            for j in 0..CELLS {
-                sum += cells.area(i, j);
-                cells.areas.push(sum);
+        for i in (0..2 * CELLS).step_by(2) {
+            for j in (0..2 * CELLS).step_by(2) {
+                sum += piece(i, j) + piece(i, j + 1) + piece(i + 1, j) + piece(i + 1, j + 1);
+                areas.push(sum);
             }
         }
-        cells
-    }
-
-    /// The area of a cell, by four pieces each way of it.
-    fn area(&self, i: usize, j: usize) -> f64 {
-        let corner = |s: f64, t: f64| self.point(i, j, s, t).point;
-        let mut sum = 0.0;
-        for (s, t) in [(0.0, 0.0), (0.5, 0.0), (0.0, 0.5), (0.5, 0.5)] {
-            let [a, b, c, d] = [(0.0, 0.0), (0.5, 0.0), (0.5, 0.5), (0.0, 0.5)].map(|(u, v)| corner(s + u, t + v));
-            sum += 0.5 * (c - a).cross(d - b).length();
-        }
-        sum
+        Cells { surface, lines, areas }
     }
 
     /// The point at a place of a cell.

@@ -2,9 +2,9 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use glam::DVec3;
+use glam::{DVec2, DVec3, Vec3Swizzles};
 use rvachev::{
-    Field, Gielis, Mesh, ParametricSurface, PatchSettings, Radius, Spacing, Superellipsoid, Superhyperboloid,
+    Field, Gielis, Mesh, ParametricCurve, ParametricSurface, PatchSettings, Radius, Spacing, Superellipse, Superellipsoid, Superhyperboloid,
     Supershape, Supertoroid,
 };
 
@@ -202,4 +202,126 @@ fn what_is_wrong_is_named() {
     assert_eq!(ball.mesh(&settings).unwrap_err().to_string(), "columns is 2, allowed: 3 to 100000");
     let settings = PatchSettings { rows: 100_000, columns: 100_000, spacing: Spacing::UniformAngle };
     assert!(ball.mesh(&settings).unwrap_err().to_string().starts_with("rows · columns is 10000000000"));
+}
+
+#[test]
+fn areas_converge_at_second_order() {
+    let prolate = Superellipsoid::new([1.0, 1.0, 2.0], 1.0, 1.0).surface().unwrap();
+    let eccentricity = 0.75f64.sqrt();
+    let prolate_area = 2.0 * PI * (1.0 + 2.0 / eccentricity * eccentricity.asin());
+    let ring = Supertoroid::new([1.0, 1.0, 1.0], 3.0, 1.0, 1.0).surface().unwrap();
+    for (surface, exact) in [(prolate, prolate_area), (ring, 12.0 * PI * PI)] {
+        let error = |n: u32| {
+            let settings = PatchSettings { rows: n, columns: 2 * n, ..PatchSettings::default() };
+            (mesh_of(&surface, &settings).area() / exact - 1.0).abs()
+        };
+        let ratio = error(32) / error(64);
+        assert!((3.8..4.2).contains(&ratio), "{exact}: {ratio}");
+        assert!(error(64) < 2e-3);
+    }
+}
+
+/// The largest ratio of neighbouring points' distances along a line of vertices.
+fn gap_ratio(points: &[DVec3]) -> f64 {
+    let gaps = points.windows(2).map(|w| w[0].distance(w[1]));
+    let (least, most) = gaps.fold((f64::INFINITY, 0f64), |(a, b), d| (a.min(d), b.max(d)));
+    most / least
+}
+
+#[test]
+fn equal_arcs_have_equal_gaps() {
+    let (rows, columns) = (46, 60);
+    let settings = PatchSettings { rows, columns, spacing: Spacing::EqualArc };
+    for case in cases() {
+        if case.name.contains("Two, along_x: true") {
+            continue;
+        }
+        let quads = case.surface.quad_mesh(&settings).unwrap();
+        let report = quads.to_mesh().unwrap().check();
+        assert!(report.is_closed() && report.is_manifold(), "{}: {report:?}", case.name);
+        let along_x = case.name.contains("along_x: true");
+        let across = |p: &DVec3| if along_x { p.yz().length() } else { p.xy().length() };
+        // The ring that is farthest out, and the meridian through its farthest vertex.
+        let rings: Vec<&[DVec3]> = quads.positions().chunks_exact(columns as usize).take(rows as usize - 1).collect();
+        let reach = |ring: &[DVec3]| ring.iter().map(across).fold(0.0, f64::max);
+        let widest = rings.iter().copied().max_by(|a, b| reach(a).total_cmp(&reach(b))).unwrap();
+        let mut closed = widest.to_vec();
+        closed.push(widest[0]);
+        assert!(gap_ratio(&closed) <= 1.5, "{}: {}", case.name, gap_ratio(&closed));
+        let column = (0..columns as usize).max_by(|&a, &b| across(&widest[a]).total_cmp(&across(&widest[b]))).unwrap();
+        let meridian: Vec<DVec3> = rings.iter().map(|ring| ring[column]).collect();
+        let ratio = gap_ratio(&meridian);
+        assert!(ratio <= 1.5, "{}: {ratio}", case.name);
+    }
+}
+
+#[test]
+fn within_a_chord_tolerance() {
+    let tolerance = 5e-3;
+    for case in cases() {
+        if case.name.contains("Two, along_x: true") {
+            continue;
+        }
+        let settings = PatchSettings { spacing: Spacing::Chord(tolerance), ..PatchSettings::default() };
+        let mesh = mesh_of(&case.surface, &settings);
+        let report = mesh.check();
+        assert!(report.is_closed() && report.is_manifold(), "{}: {report:?}", case.name);
+        assert_eq!((report.shells, report.genus), (case.shells, Some(case.genus)), "{}", case.name);
+        println!("{:6} triangles: {}", report.triangles, case.name);
+    }
+}
+
+#[test]
+fn near_the_fewest_triangles() {
+    let tolerance = 1e-3;
+    let settings = PatchSettings { spacing: Spacing::Chord(tolerance), ..PatchSettings::default() };
+    let ball = Superellipsoid::new(DVec3::ONE, 1.0, 1.0).surface().unwrap();
+    let mesh = mesh_of(&ball, &settings);
+    // All vertices on the sphere: the farthest point of a triangle is its circumcentre.
+    let sag = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|i| mesh.positions()[i as usize].as_dvec3());
+        1.0 - (b - a).cross(c - a).normalize().dot(a)
+    };
+    let worst = mesh.triangles().iter().map(sag).fold(0.0, f64::max);
+    assert!(worst < tolerance * 1.02, "{worst}");
+    let fewest = 4.0 * PI / (1.5 * 3f64.sqrt() * tolerance);
+    let ratio = mesh.triangles().len() as f64 / fewest;
+    println!("{} triangles, {ratio:.2} of the fewest", mesh.triangles().len());
+    assert!(ratio < 1.6, "{ratio}");
+    // A rounded box: far fewer than even rows and columns need.
+    let shape = Superellipsoid::new([1.0, 1.5, 0.7], 0.2, 0.2);
+    let count = mesh_of(&shape.surface().unwrap(), &settings).triangles().len();
+    println!("{count} triangles of a rounded box");
+    assert!(count < 4000, "{count}");
+    let error = ball.mesh(&PatchSettings { spacing: Spacing::Chord(0.0), ..settings }).unwrap_err();
+    assert!(error.to_string().starts_with("tolerance is 0, allowed: 0.000001 to 0.3"), "{error}");
+    assert!(ball.mesh(&PatchSettings { spacing: Spacing::Chord(f64::NAN), ..settings }).is_err());
+}
+
+#[test]
+fn curves_have_exact_normals() {
+    let five = Gielis::new(5.0, 3.0, 4.0, 8.0);
+    let curves = [
+        Superellipse::new([2.0, 1.0], 0.3).curve().unwrap(),
+        Superellipse::new([2.0, 1.0], 1.7).curve().unwrap(),
+        five.curve(Radius::Standard).unwrap(),
+        five.curve(Radius::Rational).unwrap(),
+        ParametricCurve::ellipse([2.0, 1.0]).unwrap(),
+        ParametricCurve::hyperbola([2.0, 1.0], 3.0).unwrap(),
+        ParametricCurve::parabola(0.5, 3.0).unwrap(),
+    ];
+    for curve in curves {
+        let [first, last] = curve.range();
+        for i in 0..50 {
+            let t = first + (last - first) * (f64::from(i) + 0.37) / 50.0;
+            let h = 1e-6;
+            let along = (curve.point(t + h) - curve.point(t - h)).normalize();
+            assert!((along - curve.tangent(t)).length() < 1e-5, "{curve:?} at {t}");
+        }
+        if curve.is_closed() {
+            assert!((curve.point(first) - curve.point(last)).length() < 1e-14);
+        }
+    }
+    assert_eq!(Superellipse::new([2.0, 1.0], 0.01).curve().unwrap().point(PI), DVec2::new(-2.0, 0.0));
+    assert!(ParametricCurve::parabola(-1.0, 3.0).is_err() && ParametricCurve::hyperbola([1.0, 0.0], 3.0).is_err());
 }
