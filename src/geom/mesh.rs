@@ -11,13 +11,18 @@
 //!      a *-----* b
 //! ```
 
+mod attributes;
+
 use glam::{DVec3, Vec3};
 
+use self::attributes::Attributes;
 use crate::bounds::Bounds;
 
-/// A triangle mesh: positions, triangles that index them, and perhaps a normal per vertex.
+/// A triangle mesh: positions and triangles that index them, and perhaps normals per vertex
+/// and per corner, colours and texture coordinates per corner, owners per triangle.
 ///
 /// Every index is in range and every position finite; nothing else is promised.
+/// [`Mesh::check`] tells the rest.
 ///
 /// ```
 /// use glam::Vec3;
@@ -33,7 +38,7 @@ use crate::bounds::Bounds;
 pub struct Mesh {
     positions: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
-    normals: Option<Vec<Vec3>>,
+    attributes: Attributes,
 }
 
 /// Why a mesh cannot be built from the given parts.
@@ -66,6 +71,26 @@ pub enum MeshError {
         /// Number of vertices.
         vertices: usize,
     },
+    /// Values for corners or triangles are not as many as the triangles.
+    #[error("{what} for {given} triangles, but there are {triangles}; every triangle needs them")]
+    Corners {
+        /// What the values are.
+        what: &'static str,
+        /// Number of triangles that they are given for.
+        given: usize,
+        /// Number of triangles.
+        triangles: usize,
+    },
+    /// A value at a corner is NaN or infinite.
+    #[error("the {what} at corner {corner} of triangle {triangle} is not finite")]
+    NotFinite {
+        /// What the value is.
+        what: &'static str,
+        /// The triangle, counted from 0.
+        triangle: usize,
+        /// Its corner, 0 to 2.
+        corner: usize,
+    },
 }
 
 impl Mesh {
@@ -84,21 +109,7 @@ impl Mesh {
                 return Err(MeshError::Index { triangle, index, vertices });
             }
         }
-        Ok(Mesh { positions, triangles, normals: None })
-    }
-
-    /// The same mesh with a unit normal per vertex, pointing out of the solid, in place of
-    /// any that it had.
-    ///
-    /// # Errors
-    ///
-    /// [`MeshError::Normals`] if their number is not that of the vertices.
-    pub fn with_normals(mut self, normals: Vec<Vec3>) -> Result<Mesh, MeshError> {
-        if normals.len() != self.positions.len() {
-            return Err(MeshError::Normals { normals: normals.len(), vertices: self.positions.len() });
-        }
-        self.normals = Some(normals);
-        Ok(self)
+        Ok(Mesh { positions, triangles, attributes: Attributes::default() })
     }
 
     /// The positions of the vertices, in length units.
@@ -111,12 +122,6 @@ impl Mesh {
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
-    }
-
-    /// The unit normals of the vertices, if the mesh has them.
-    #[must_use]
-    pub fn normals(&self) -> Option<&[Vec3]> {
-        self.normals.as_deref()
     }
 
     /// The corners of a triangle of this mesh, in f64.
