@@ -38,6 +38,9 @@ pub struct QuadMesh {
     pub(crate) triangle_corners: Vec<[Corner; 3]>,
 }
 
+/// Normals whose cosine is above this are one: 10⁻³ apart, in radians.
+const SAME_NORMAL: f64 = 1.0 - 5e-7;
+
 /// What a corner of a face knows that its vertex does not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
@@ -84,23 +87,34 @@ impl QuadMesh {
         &self.triangle_corners
     }
 
-    /// All faces as triangles, quadrilaterals first, two each, with the corners they are made
-    /// of, in single precision.
+    /// All faces as triangles, quadrilaterals first, two each, in single precision, with texture
+    /// coordinates and, where a vertex has several, the normals of the corners.
     ///
     /// # Errors
     ///
     /// If a position is beyond single precision.
     pub fn to_mesh(&self) -> Result<Mesh, MeshError> {
-        let mut triangles = Vec::with_capacity(2 * self.quads.len() + self.triangles.len());
-        for (face, quad) in self.quads.iter().enumerate() {
-            triangles.extend(self.halves(face).map(|half| half.map(|corner| quad[corner])));
+        let halves: Vec<[[usize; 3]; 2]> = (0..self.quads.len()).map(|face| self.halves(face)).collect();
+        let cut = self.quads.iter().zip(&halves).flat_map(|(quad, halves)| halves.map(|half| half.map(|k| quad[k])));
+        let triangles: Vec<[u32; 3]> = cut.chain(self.triangles.iter().copied()).collect();
+        let cut = self.quad_corners.iter().zip(&halves).flat_map(|(quad, halves)| halves.map(|half| half.map(|k| quad[k])));
+        let corners: Vec<[Corner; 3]> = cut.chain(self.triangle_corners.iter().copied()).collect();
+
+        let creased = triangles.iter().flatten().zip(corners.iter().flatten()).any(|(&vertex, corner)| {
+            corner.normal.dot(self.normals[vertex as usize]) < SAME_NORMAL
+        });
+        let mut mesh = Mesh::new(self.positions.iter().map(|p| p.as_vec3()).collect(), triangles)?;
+        if !self.normals.is_empty() {
+            mesh = mesh.with_normals(self.normals.iter().map(|n| n.as_vec3()).collect())?;
         }
-        triangles.extend_from_slice(&self.triangles);
-        let mesh = Mesh::new(self.positions.iter().map(|p| p.as_vec3()).collect(), triangles)?;
-        if self.normals.is_empty() {
-            return Ok(mesh);
+        if creased {
+            mesh = mesh.with_corner_normals(corners.iter().map(|c| c.map(|c| c.normal.as_vec3())).collect())?;
         }
-        mesh.with_normals(self.normals.iter().map(|p| p.as_vec3()).collect())
+        if !corners.is_empty() {
+            let texture = corners.iter().map(|c| c.map(|c| c.texture.as_vec2().to_array())).collect();
+            mesh = mesh.with_corner_texture(texture)?;
+        }
+        Ok(mesh)
     }
 
     /// The two triangles of a quadrilateral, as corners of it.

@@ -160,12 +160,12 @@ fn images_are_emitted_once() {
 fn whole_surfaces_by_every_method() {
     let methods = [
         (PointMethod::RawParametric, 1e-14),
-        (PointMethod::ExactExplicit, 1e-14),
+        (PointMethod::ExactExplicit, 3e-14),
         (PointMethod::BinomialSeries, 1e-5),
         (PointMethod::LogTable, 1e-5),
         (PointMethod::SphericalProduct, 1e-14),
         (PointMethod::PowerTables, 1e-5),
-        (PointMethod::Auto, 1e-6),
+        (PointMethod::Auto, 1e-14),
     ];
     let shape = Superellipsoid::new([1.0, 2.0, 3.0], 0.4, 0.4);
     for (method, bound) in methods {
@@ -224,6 +224,11 @@ fn products_are_those_of_the_tables() {
         assert!((shape.gauge(p) - 1.0).abs() < 1e-6, "{p}");
     }
     assert_eq!([out[0][0], out[1][0], out[2][0]], [1.0, 0.0, 0.0]);
+    let mut out = [(); 3].map(|()| vec![0.0; rows * columns]);
+    tables.octant_double(out.each_mut().map(|v| v.as_mut_slice()));
+    for ((&x, &y), &z) in out[0].iter().zip(&out[1]).zip(&out[2]) {
+        assert!((shape.gauge(DVec3::new(x, y, z)) - 1.0).abs() < 1e-14);
+    }
 }
 
 #[test]

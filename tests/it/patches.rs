@@ -165,6 +165,29 @@ fn meshes_are_closed_and_manifold() {
 }
 
 #[test]
+fn meshes_carry_texture_and_normals_of_creases() {
+    let settings = PatchSettings { rows: 8, columns: 12, ..PatchSettings::default() };
+    let smooth = mesh_of(&Superellipsoid::new([1.0, 2.0, 3.0], 0.5, 0.5).surface().unwrap(), &settings);
+    assert!(smooth.corner_normals().is_none());
+    assert_eq!(smooth.corner_texture().unwrap().len(), smooth.triangles().len());
+    // Both sides of the seam: 0 and 1 along the equator, never across.
+    for corners in smooth.corner_texture().unwrap() {
+        let us = corners.map(|[u, _]| u);
+        assert!(us.iter().copied().fold(0.0, f32::max) - us.iter().copied().fold(1.0, f32::min) < 0.1);
+    }
+    // An octahedron: every corner has its face's normal.
+    for spacing in [Spacing::UniformAngle, Spacing::Chord(0.01)] {
+        let surface = Superellipsoid::new([1.0, 1.0, 1.0], 2.0, 2.0).surface().unwrap();
+        let mesh = mesh_of(&surface, &PatchSettings { spacing, ..settings });
+        for (t, normals) in mesh.triangles().iter().zip(mesh.corner_normals().unwrap()) {
+            let [a, b, c] = t.map(|i| mesh.positions()[i as usize]);
+            let face = (b - a).cross(c - a).normalize();
+            assert!(normals.iter().all(|n| n.distance(face) < 1e-4), "{spacing:?} {face}: {normals:?}");
+        }
+    }
+}
+
+#[test]
 fn a_horn_is_closed_where_it_touches_the_axis() {
     let horn = Supertoroid::new([1.0, 1.0, 1.0], 1.0, 1.0, 1.0).surface().unwrap();
     let report = mesh_of(&horn, &PatchSettings { rows: 64, columns: 128, ..PatchSettings::default() }).check();

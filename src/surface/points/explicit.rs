@@ -144,6 +144,14 @@ impl SeriesExplicit {
         self.series.value(x.powf(self.n) + y.powf(self.n))
     }
 
+    /// Heights over many points on SIMD lanes of `f64`.
+    ///
+    /// # Panics
+    /// If the slices differ in length.
+    pub fn heights(&self, x: &[f64], y: &[f64], z: &mut [f64]) {
+        over_slices(self, [x, y], [z]);
+    }
+
     /// Heights over many points on SIMD lanes of `f32`.
     ///
     /// # Panics

@@ -1,5 +1,7 @@
 //! The spherical product of two tabulated curves: method 5.
 
+use std::ops::Mul;
+
 use glam::DVec2;
 
 use super::{PointError, curve_points};
@@ -27,8 +29,15 @@ use crate::num::kernel::{Task, dispatched};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProductTables {
-    meridian: [Vec<f32>; 2],
-    equator: [Vec<f32>; 2],
+    double: Tables<f64>,
+    single: Tables<f32>,
+}
+
+/// Coordinates of both quarters.
+#[derive(Clone, Debug, PartialEq)]
+struct Tables<T> {
+    meridian: [Vec<T>; 2],
+    equator: [Vec<T>; 2],
 }
 
 impl ProductTables {
@@ -38,47 +47,63 @@ impl ProductTables {
     /// # Errors
     /// A parameter out of its range.
     pub fn new(e1: f64, e2: f64, eighth: u32) -> Result<ProductTables, PointError> {
-        let table = |e: f64| -> Result<[Vec<f32>; 2], PointError> {
+        let table = |e: f64| -> Result<[Vec<f64>; 2], PointError> {
             let quarter: Vec<DVec2> = curve_points::quarter(e, eighth)?;
-            Ok([quarter.iter().map(|p| p.x as f32).collect(), quarter.iter().map(|p| p.y as f32).collect()])
+            Ok([quarter.iter().map(|p| p.x).collect(), quarter.iter().map(|p| p.y).collect()])
         };
-        Ok(ProductTables { meridian: table(e1)?, equator: table(e2)? })
+        let (meridian, equator) = (table(e1)?, table(e2)?);
+        let rounded = |table: &[Vec<f64>; 2]| table.each_ref().map(|v| v.iter().map(|&c| c as f32).collect());
+        let single = Tables { meridian: rounded(&meridian), equator: rounded(&equator) };
+        Ok(ProductTables { double: Tables { meridian, equator }, single })
     }
 
     /// Samples of the meridian and of the equator.
     #[must_use]
     pub fn size(&self) -> [usize; 2] {
-        [self.meridian[0].len(), self.equator[0].len()]
+        [self.double.meridian[0].len(), self.double.equator[0].len()]
     }
 
-    /// All products: x, y and z of one octant, meridian sample by meridian sample.
+    /// All products: x, y and z of one octant, meridian sample by meridian sample, in single
+    /// precision.
     ///
     /// # Panics
     /// If the slices do not hold as many numbers as the product of both [sizes](Self::size).
     pub fn octant(&self, out: [&mut [f32]; 3]) {
-        let [rows, columns] = self.size();
-        assert!(out.iter().all(|o| o.len() == rows * columns), "slices of {rows} × {columns} numbers are needed");
-        dispatched(Products { tables: self, out });
+        products(&self.single, out);
+    }
+
+    /// The same in double precision.
+    ///
+    /// # Panics
+    /// If the slices do not hold as many numbers as the product of both [sizes](Self::size).
+    pub fn octant_double(&self, out: [&mut [f64]; 3]) {
+        products(&self.double, out);
     }
 }
 
-struct Products<'a> {
-    tables: &'a ProductTables,
-    out: [&'a mut [f32]; 3],
+fn products<T: Copy + Mul<Output = T>>(tables: &Tables<T>, out: [&mut [T]; 3]) {
+    let (rows, columns) = (tables.meridian[0].len(), tables.equator[0].len());
+    assert!(out.iter().all(|o| o.len() == rows * columns), "slices of {rows} × {columns} numbers are needed");
+    dispatched(Products { tables, out });
 }
 
-impl Task for Products<'_> {
+struct Products<'a, T> {
+    tables: &'a Tables<T>,
+    out: [&'a mut [T]; 3],
+}
+
+impl<T: Copy + Mul<Output = T>> Task for Products<'_, T> {
     #[inline(always)]
     fn run(self) {
-        let ProductTables { meridian: [mc, ms], equator: [ec, es] } = self.tables;
+        let Tables { meridian: [mc, ms], equator: [ec, es] } = self.tables;
         let columns = ec.len();
         let [xs, ys, zs] = self.out;
         let rows = xs.chunks_exact_mut(columns).zip(ys.chunks_exact_mut(columns)).zip(zs.chunks_exact_mut(columns));
         for (((xs, ys), zs), (&c, &s)) in rows.zip(mc.iter().zip(ms)) {
-            for (x, e) in xs.iter_mut().zip(ec) {
+            for (x, &e) in xs.iter_mut().zip(ec) {
                 *x = c * e;
             }
-            for (y, e) in ys.iter_mut().zip(es) {
+            for (y, &e) in ys.iter_mut().zip(es) {
                 *y = c * e;
             }
             zs.fill(s);

@@ -26,9 +26,9 @@ use crate::{Field, GeneralisedSuperquadric, Superellipsoid};
 /// | `ExactExplicit` | e1 = e2 | rounding |
 /// | `BinomialSeries` | e1 = e2 < 2 | the tolerance |
 /// | `LogTable` | e1 = e2 < 2 | the tolerance, at least 10⁻⁶ |
-/// | `SphericalProduct` | any | single precision |
+/// | `SphericalProduct` | any | rounding |
 /// | `PowerTables` | e1 = e2 | the tolerance, at least 10⁻⁶ |
-/// | `Auto` | any | the tolerance |
+/// | `Auto` | any | rounding |
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum PointMethod {
     /// Method 1: signed powers of sines and cosines at equal angles.
@@ -43,10 +43,10 @@ pub enum PointMethod {
     SphericalProduct,
     /// Method 6: tables of `a^n` and `a^(1/n)`.
     PowerTables,
-    /// The fastest that meets the tolerance and the shape: products from 10⁻⁶ on whatever the
-    /// exponents (tables cost a curve each, points two multiplications), below it the exact
-    /// explicit form for equal exponents and the raw one otherwise. `cargo bench --bench points`
-    /// prints what that is based on.
+    /// The fastest that meets the tolerance: products, whatever the exponents and the tolerance.
+    /// Their tables cost two curves, a point two multiplications, and they are as exact as the
+    /// tables. `cargo bench --bench points` prints what that is based on; it also says which
+    /// method is fastest for heights over points that are given, where products cannot serve.
     #[default]
     Auto,
 }
@@ -85,13 +85,8 @@ impl PointSettings {
 impl PointMethod {
     /// The method that `Auto` stands for.
     #[must_use]
-    pub fn resolved(self, e1: f64, e2: f64, tolerance: f64) -> PointMethod {
-        match self {
-            PointMethod::Auto if tolerance >= 1e-6 => PointMethod::SphericalProduct,
-            PointMethod::Auto if e1 == e2 => PointMethod::ExactExplicit,
-            PointMethod::Auto => PointMethod::RawParametric,
-            method => method,
-        }
+    pub fn resolved(self) -> PointMethod {
+        if self == PointMethod::Auto { PointMethod::SphericalProduct } else { self }
     }
 }
 
@@ -117,20 +112,19 @@ impl Superellipsoid {
         let [e1, e2] = self.exponents();
         let PointSettings { eighth, tolerance, .. } = *settings;
         let n = 2.0 / e1;
-        let method = settings.method.resolved(e1, e2, tolerance);
         // On nodes of a table that is as fine as the tolerance asks.
         let size = ((1.0 / tolerance) as u32).clamp(1000, 1 << 20);
-        let unit = match method {
+        let unit = match settings.method.resolved() {
             PointMethod::RawParametric => raw(e1, e2, eighth),
             PointMethod::SphericalProduct | PointMethod::Auto => products(e1, e2, eighth)?,
             _ if e1 != e2 => return Err(PointError::Exponents { e1, e2 }),
             PointMethod::ExactExplicit => {
                 let explicit = ExactExplicit::new(n)?;
-                wedge(n, eighth, |x, y| explicit.height(x, y))
+                wedge(n, eighth, |x, y, z| explicit.heights(x, y, z))
             }
             PointMethod::BinomialSeries => {
                 let series = SeriesExplicit::new(n, tolerance)?;
-                wedge(n, eighth, |x, y| series.height(x, y))
+                wedge(n, eighth, |x, y, z| series.heights(x, y, z))
             }
             PointMethod::LogTable => {
                 let table = LogTable::new(n, size, tolerance)?;
@@ -146,24 +140,24 @@ impl Superellipsoid {
 }
 
 /// The cube's wedge 0 ≤ x ≤ y ≤ z by heights, reflected.
-fn wedge(n: f64, k: u32, height: impl Fn(f64, f64) -> f64) -> Vec<DVec3> {
+fn wedge(n: f64, k: u32, heights: impl Fn(&[f64], &[f64], &mut [f64])) -> Vec<DVec3> {
     let root = 1.0 / n;
     let corner = (1.0f64 / 3.0).powf(root);
-    let mut points = Vec::with_capacity((k as usize + 1) * (k as usize + 2) / 2);
-    for i in 0..=k {
+    // What lies on the border y = z is known; the rest wants its height.
+    let mut points = vec![DVec3::splat(corner)];
+    let (mut xs, mut ys) = (vec![], vec![]);
+    for i in 0..k {
         let x = corner * f64::from(i) / f64::from(k);
         let widest = ((1.0 - x.powf(n)) / 2.0).powf(root);
-        for j in i..=k {
-            points.push(if i == k {
-                DVec3::splat(corner)
-            } else if j == k {
-                DVec3::new(x, widest, widest)
-            } else {
-                let y = x + (widest - x) * f64::from(j - i) / f64::from(k - i);
-                DVec3::new(x, y, height(x, y))
-            });
+        points.push(DVec3::new(x, widest, widest));
+        for j in i..k {
+            xs.push(x);
+            ys.push(x + (widest - x) * f64::from(j - i) / f64::from(k - i));
         }
     }
+    let mut zs = vec![0.0; xs.len()];
+    heights(&xs, &ys, &mut zs);
+    points.extend(xs.iter().zip(&ys).zip(&zs).map(|((&x, &y), &z)| DVec3::new(x, y, z)));
     reflect(&points, Symmetry::Cube)
 }
 
