@@ -105,7 +105,14 @@ fn contestants(n: f64, tolerance: f64, wedge: &Wedge) -> Vec<Contestant<'_>> {
         }
         black_box(&xyz);
     };
-    add(1, "raw parametric, scalar f64", Some(PointMethod::RawParametric), 1e-15, POINTS, Box::new(run) as Box<dyn FnMut()>);
+    add(
+        1,
+        "raw parametric, scalar f64",
+        Some(PointMethod::RawParametric),
+        1e-15,
+        POINTS,
+        Box::new(run) as Box<dyn FnMut()>,
+    );
     let mut xyz32 = [(); 3].map(|()| vec![0.0f32; POINTS]);
     let run = move || {
         raw_parametric_octant(e, e, &wedge.eta32, &wedge.omega32, xyz32.each_mut().map(|v| v.as_mut_slice()));

@@ -354,7 +354,8 @@ pub use run::{CancelToken, Cancelled, Progress, Run};
 pub use solid::{Caps, Extrusion, Helix, PlaneBounds, Profile, Solid, SolidError};
 pub use surface::{
     BinomialSeries, ControlGrid, ControlPoint, ControlPolygon, CurveSpread, ExactExplicit, Frame, LogTable,
-    ParametricCurve, ParametricSurface, PatchError, PatchSettings, PlaneSymmetry, PointError, PointMethod, PointSettings, PowerTables,
-    ProductTables, ProfileEnd, SeriesExplicit, Spacing, SubdivisionError, SubdivisionRevolution, SurfacePoint, Symmetry,
-    Tension, hyperbola_of_ellipse, raw_parametric, raw_parametric_octant, reflect, reflect_plane,
+    ParametricCurve, ParametricSurface, PatchError, PatchSettings, PlaneSymmetry, PointError, PointMethod,
+    PointSettings, PowerTables, ProductTables, ProfileEnd, SeriesExplicit, Spacing, SubdivisionError,
+    SubdivisionRevolution, SurfacePoint, Symmetry, Tension, hyperbola_of_ellipse, raw_parametric,
+    raw_parametric_octant, reflect, reflect_plane,
 };

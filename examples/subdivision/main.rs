@@ -77,12 +77,7 @@ fn curves() -> Result<Vec<Curve>, Box<dyn Error>> {
             by_map: None,
             equation: |p| p.y - p.x.cos(),
         },
-        Curve {
-            name: "sine",
-            polygon: ControlPolygon::sine_graph(5)?,
-            by_map: None,
-            equation: |p| p.y - p.x.sin(),
-        },
+        Curve { name: "sine", polygon: ControlPolygon::sine_graph(5)?, by_map: None, equation: |p| p.y - p.x.sin() },
         Curve {
             name: "free_polygon",
             polygon: ControlPolygon::closed(&free, Tension::trigonometric(std::f64::consts::FRAC_PI_3)?)?,
@@ -149,8 +144,9 @@ fn revolution(
 }
 
 fn surfaces() -> Result<Vec<Surface>, Box<dyn Error>> {
-    let star: Vec<DVec2> =
-        (0..10).map(|k| DVec2::from_angle(f64::from(k) * 0.2 * std::f64::consts::PI) * [1.25, 0.8][k as usize % 2]).collect();
+    let star: Vec<DVec2> = (0..10)
+        .map(|k| DVec2::from_angle(f64::from(k) * 0.2 * std::f64::consts::PI) * [1.25, 0.8][k as usize % 2])
+        .collect();
     let star = ControlPolygon::closed(&star, Tension::trigonometric(std::f64::consts::PI / 5.0)?)?;
     let vase = [(0.0, -1.2), (0.8, -1.2), (1.1, -0.5), (0.5, 0.5), (0.45, 1.0), (0.75, 1.4)];
     let vase = ControlPolygon::clamped(&vase.map(|(x, y)| DVec2::new(x, y)), Tension::CUBIC)?;

@@ -97,12 +97,15 @@ impl QuadMesh {
         let halves: Vec<[[usize; 3]; 2]> = (0..self.quads.len()).map(|face| self.halves(face)).collect();
         let cut = self.quads.iter().zip(&halves).flat_map(|(quad, halves)| halves.map(|half| half.map(|k| quad[k])));
         let triangles: Vec<[u32; 3]> = cut.chain(self.triangles.iter().copied()).collect();
-        let cut = self.quad_corners.iter().zip(&halves).flat_map(|(quad, halves)| halves.map(|half| half.map(|k| quad[k])));
+        let cut =
+            self.quad_corners.iter().zip(&halves).flat_map(|(quad, halves)| halves.map(|half| half.map(|k| quad[k])));
         let corners: Vec<[Corner; 3]> = cut.chain(self.triangle_corners.iter().copied()).collect();
 
-        let creased = triangles.iter().flatten().zip(corners.iter().flatten()).any(|(&vertex, corner)| {
-            corner.normal.dot(self.normals[vertex as usize]) < SAME_NORMAL
-        });
+        let creased = triangles
+            .iter()
+            .flatten()
+            .zip(corners.iter().flatten())
+            .any(|(&vertex, corner)| corner.normal.dot(self.normals[vertex as usize]) < SAME_NORMAL);
         let mut mesh = Mesh::new(self.positions.iter().map(|p| p.as_vec3()).collect(), triangles)?;
         if !self.normals.is_empty() {
             mesh = mesh.with_normals(self.normals.iter().map(|n| n.as_vec3()).collect())?;

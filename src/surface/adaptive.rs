@@ -140,14 +140,15 @@ impl<'a> Rings<'a> {
             let before = rows[i.saturating_sub(1)];
             let after = rows[(i + 1).min(last)];
             let reach = (0..=8)
-                .map(|k| row + (before - row) * 0.5 * (1.0 - f64::from(k) / 4.0).max(0.0) + (after - row) * 0.5 * (f64::from(k) / 4.0 - 1.0).max(0.0))
+                .map(|k| {
+                    row + (before - row) * 0.5 * (1.0 - f64::from(k) / 4.0).max(0.0)
+                        + (after - row) * 0.5 * (f64::from(k) / 4.0 - 1.0).max(0.0)
+                })
                 .map(|t| self.reach(t))
                 .fold(0.0, f64::max);
             // In steps of a tenth, so that rings alike share their samples.
             let step = (half / reach.max(1e-9)).min(self.size).log(1.1).floor() as i32;
-            let ring = cache.entry(step).or_insert_with(|| {
-                self.equator.chords(&self.around, 1.1f64.powi(step), 4)
-            });
+            let ring = cache.entry(step).or_insert_with(|| self.equator.chords(&self.around, 1.1f64.powi(step), 4));
             around.push(ring.clone());
         }
         if self.joined {

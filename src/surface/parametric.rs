@@ -252,8 +252,7 @@ impl Supertoroid {
     pub fn surface(&self) -> Result<ParametricSurface, ParamError> {
         self.check()?;
         let [e1, e2] = self.exponents();
-        let (tube, ring) =
-            (Curve::Superellipse { e: e1, ring: self.ring() }, Curve::Superellipse { e: e2, ring: 0.0 });
+        let (tube, ring) = (Curve::Superellipse { e: e1, ring: self.ring() }, Curve::Superellipse { e: e2, ring: 0.0 });
         let shape = if self.ring() > 1.0 { Shape::Ring } else { Shape::Horn };
         Ok(ParametricSurface::new(tube, ring, shape, self.semi_axes()))
     }

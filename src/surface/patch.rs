@@ -242,11 +242,8 @@ impl ParametricSurface {
     fn knot(&self, meridian: &Sample, equator: &Sample) -> Knot {
         let normal = |m: DVec2, e: DVec2| self.normal_of(m, e, equator.point);
         let point = self.point_of(meridian.point, equator.point);
-        let knot = Knot::smooth(
-            point,
-            normal(meridian.normal, equator.normal),
-            DVec2::new(equator.texture, meridian.texture),
-        );
+        let knot =
+            Knot::smooth(point, normal(meridian.normal, equator.normal), DVec2::new(equator.texture, meridian.texture));
         if meridian.is_smooth() && equator.is_smooth() {
             return knot;
         }

@@ -148,9 +148,7 @@ impl<'a> Cells<'a> {
     fn element(&self, i: usize, j: usize, s: f64, t: f64) -> f64 {
         const H: f64 = 1.0 / 32.0;
         let (s, t) = (s.clamp(H, 1.0 - H), t.clamp(H, 1.0 - H));
-        let across = |ds: f64, dt: f64| {
-            self.point(i, j, s + ds, t + dt).point - self.point(i, j, s - ds, t - dt).point
-        };
+        let across = |ds: f64, dt: f64| self.point(i, j, s + ds, t + dt).point - self.point(i, j, s - ds, t - dt).point;
         across(H, 0.0).cross(across(0.0, H)).length() / (4.0 * H * H)
     }
 

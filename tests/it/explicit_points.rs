@@ -91,9 +91,8 @@ fn methods_keep_their_bounds_in_the_wedge() {
 #[test]
 fn look_up_fails_outside_the_wedge() {
     let tables = PowerTables::new(5.0, 1000).unwrap();
-    let worst = |points: &[[f64; 3]]| {
-        points.iter().map(|&[x, y, z]| (tables.height(x, y) - z).abs()).fold(0.0, f64::max)
-    };
+    let worst =
+        |points: &[[f64; 3]]| points.iter().map(|&[x, y, z]| (tables.height(x, y) - z).abs()).fold(0.0, f64::max);
     let inside = worst(&wedge_nodes(5.0, 1000));
     assert!((inside / 2.334e-4 - 1.0).abs() < 0.01, "{inside}");
     let mut all = vec![];
@@ -137,11 +136,8 @@ fn distinct(points: &[DVec3]) -> usize {
 #[test]
 fn images_are_emitted_once() {
     let n = 5.0;
-    let inside: Vec<DVec3> = wedge_nodes(n, 30)
-        .into_iter()
-        .filter(|&[x, y, z]| x > 0.0 && x < y && y < z)
-        .map(DVec3::from)
-        .collect();
+    let inside: Vec<DVec3> =
+        wedge_nodes(n, 30).into_iter().filter(|&[x, y, z]| x > 0.0 && x < y && y < z).map(DVec3::from).collect();
     let images = reflect(&inside[..1], Symmetry::Cube);
     assert_eq!((images.len(), distinct(&images)), (48, 48));
     let all = reflect(&inside, Symmetry::Cube);

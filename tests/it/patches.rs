@@ -4,8 +4,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
 use rvachev::{
-    Field, Gielis, Mesh, ParametricCurve, ParametricSurface, PatchSettings, Radius, Spacing, Superellipse, Superellipsoid, Superhyperboloid,
-    Supershape, Supertoroid,
+    Field, Gielis, Mesh, ParametricCurve, ParametricSurface, PatchSettings, Radius, Spacing, Superellipse,
+    Superellipsoid, Superhyperboloid, Supershape, Supertoroid,
 };
 
 /// A surface with the field whose zero set it is, and the number of handles of each shell.

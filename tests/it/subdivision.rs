@@ -19,8 +19,14 @@ fn right_angle() -> Tension {
 #[test]
 fn a_square_becomes_a_circle() {
     let polygon = ControlPolygon::closed(&square(FRAC_PI_2), right_angle()).unwrap();
-    let radii =
-        [1.570_796_326_795, 1.110_720_734_540, 1.026_172_152_977, 1.006_454_542_800, 1.001_608_189_084, 1.000_401_708_155];
+    let radii = [
+        1.570_796_326_795,
+        1.110_720_734_540,
+        1.026_172_152_977,
+        1.006_454_542_800,
+        1.001_608_189_084,
+        1.000_401_708_155,
+    ];
     for (level, radius) in radii.into_iter().enumerate() {
         for p in polygon.subdivided(level as u32).unwrap().points() {
             assert!((p.length() - radius).abs() < 1e-12, "level {level}: {}", p.length());
@@ -275,10 +281,8 @@ fn grids_of_control_points() {
     // The torus as a grid of 4 × 4 points, closed both ways.
     let torus = SubdivisionRevolution::elliptic_torus([0.5, 0.5], 2.0, 1.0).unwrap();
     let (profile, path) = (torus.profile().points(), torus.path().points());
-    let points: Vec<DVec3> = profile
-        .iter()
-        .flat_map(|p| path.iter().map(|q| DVec3::new(p.x * q.x, p.x * q.y, p.y)))
-        .collect();
+    let points: Vec<DVec3> =
+        profile.iter().flat_map(|p| path.iter().map(|q| DVec3::new(p.x * q.x, p.x * q.y, p.y))).collect();
     let grid = ControlGrid::new(&points, [4, 4], [true, true], [right_angle(); 2]).unwrap();
     let mesh = grid.limit_mesh(4).unwrap();
     assert_solid(&mesh, 1, 1);

@@ -11,11 +11,11 @@
 
 use glam::DVec3;
 
+use super::PointError;
 use super::curve_points;
 use super::explicit::{ExactExplicit, SeriesExplicit, raw_parametric};
 use super::tables::{LogTable, PowerTables};
 use super::wedge::{Symmetry, reflect};
-use super::PointError;
 use crate::{Field, GeneralisedSuperquadric, Superellipsoid};
 
 /// How the points of a superellipsoid are computed: Franklin and Barr's six methods.

@@ -97,11 +97,7 @@ impl ControlPolygon<DVec2> {
     ///
     /// # Errors
     /// A length or the number of segments out of its range.
-    pub fn parabola(
-        focal_length: f64,
-        reach: f64,
-        segments: u32,
-    ) -> Result<ControlPolygon<DVec2>, SubdivisionError> {
+    pub fn parabola(focal_length: f64, reach: f64, segments: u32) -> Result<ControlPolygon<DVec2>, SubdivisionError> {
         length("focal_length", focal_length)?;
         length("reach", reach)?;
         check_segments(segments)?;

@@ -101,10 +101,7 @@ impl SubdivisionRevolution {
     ///
     /// # Errors
     /// A semi-axis out of its range, a length of more than 1000 semi-axes.
-    pub fn one_sheet(
-        semi_axes: impl Into<DVec3>,
-        half_length: f64,
-    ) -> Result<SubdivisionRevolution, SubdivisionError> {
+    pub fn one_sheet(semi_axes: impl Into<DVec3>, half_length: f64) -> Result<SubdivisionRevolution, SubdivisionError> {
         let a = semi_axes.into();
         lengths(a)?;
         self::half_length(half_length, 0.0, a.z)?;
