@@ -259,6 +259,19 @@
 //! | [`taper`](Solid::taper), [`twist`](Solid::twist), [`bend`](Solid::bend) | Barr's deformations |
 //! | [`taper_by`](Solid::taper_by), [`twist_by`](Solid::twist_by) | by any [`Law`] of z: [`LinearLaw`], [`SmoothStep`], [`SineWave`], [`LawTable`], a number, your own |
 //!
+//! ## Explicit surfaces
+//!
+//! Without a field or a grid:
+//!
+//! | | |
+//! |---|---|
+//! | [`Superellipsoid::surface`] and its like | a [`ParametricSurface`]: points, tangents, exact normals by two parameters |
+//! | [`ParametricSurface::mesh`], [`quad_mesh`](ParametricSurface::quad_mesh) | closed triangles and quadrilaterals, by angles, by lengths or within a tolerance ([`Spacing`]) |
+//! | [`ParametricSurface::sample`] | points uniform by area |
+//! | [`Superellipse::curve`], [`Gielis::curve`], [`ParametricCurve`] | the same of plane curves |
+//! | [`Superellipsoid::points`], [`Superellipse::points`] | points by Franklin and Barr's methods ([`PointMethod`]) |
+//! | [`ControlPolygon`], [`SubdivisionRevolution`], [`ControlGrid`] | subdivision: conics, quadrics, free forms |
+//!
 //! ## Solids as values
 //!
 //! | | |

@@ -291,6 +291,18 @@ fn within_a_chord_tolerance() {
         assert!(report.is_closed() && report.is_manifold(), "{}: {report:?}", case.name);
         assert_eq!((report.shells, report.genus), (case.shells, Some(case.genus)), "{}", case.name);
         println!("{:6} triangles: {}", report.triangles, case.name);
+        // Where the solid is convex its field is at most the distance.
+        let size = mesh.bounds().half_extents().length();
+        if !case.name.starts_with("Superellipsoid") || case.name.contains("e2: 2.5") || case.name.contains("e1: 3.0") {
+            continue;
+        }
+        for t in mesh.triangles() {
+            let [a, b, c] = t.map(|i| mesh.positions()[i as usize].as_dvec3());
+            for p in [(a + b + c) / 3.0, 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a), 0.1 * a + 0.2 * b + 0.7 * c] {
+                let off = (case.residual)(p).abs() * size;
+                assert!(off < 1.02 * tolerance, "{} at {p}: {off}", case.name);
+            }
+        }
     }
 }
 
@@ -311,6 +323,16 @@ fn near_the_fewest_triangles() {
     let ratio = mesh.triangles().len() as f64 / fewest;
     println!("{} triangles, {ratio:.2} of the fewest", mesh.triangles().len());
     assert!(ratio < 1.6, "{ratio}");
+    // An ellipsoid: √K is h²/(abc), h the distance of the tangent plane from the middle.
+    let a = DVec3::new(1.0, 2.0, 3.0);
+    let ellipsoid = Superellipsoid::new(a, 1.0, 1.0).surface().unwrap();
+    let mesh = mesh_of(&ellipsoid, &settings);
+    let cloud = ellipsoid.sample(20_000, 5).unwrap();
+    let mean = cloud.iter().map(|s| s.point.dot(s.normal).powi(2)).sum::<f64>() / cloud.len() as f64;
+    let fewest = mean * mesh.area() / (a.x * a.y * a.z) / (1.5 * 3f64.sqrt() * tolerance);
+    let ratio = mesh.triangles().len() as f64 / fewest;
+    println!("{} triangles of an ellipsoid, {ratio:.2} of the fewest", mesh.triangles().len());
+    assert!(ratio < 2.0, "{ratio}");
     // A rounded box: far fewer than even rows and columns need.
     let shape = Superellipsoid::new([1.0, 1.5, 0.7], 0.2, 0.2);
     let count = mesh_of(&shape.surface().unwrap(), &settings).triangles().len();
