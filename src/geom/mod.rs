@@ -7,7 +7,9 @@
 mod camera;
 mod image;
 mod mesh;
+mod quad_mesh;
 
 pub use camera::{Camera, CameraError, Projection, Rays};
 pub use image::{Image, ImageError};
 pub use mesh::{Mesh, MeshError};
+pub use quad_mesh::{Corner, QuadMesh};
