@@ -17,6 +17,9 @@
 //! 2. With the number of vertices before each block known: list the triangles of each cell by
 //!    the case table. A corner on an edge of a neighbour is found in the neighbour's list.
 //!
+//! In between, [`sharp`] finds the cells that hold creases and corners, if it is asked to; they
+//! have fans of triangles in the second pass, whose centres follow the vertices on edges.
+//!
 //! Between the two, the signs in the faces of the blocks are compared, which makes the mesh
 //! closed: wherever a sign changes in a face, the block on the other side must be there and
 //! have the same signs.
@@ -29,14 +32,20 @@
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
+use super::feature::Slope;
 use super::lattice::Lattice;
 use super::signs::{BLOCK, EdgeRef, NODES, OWNED, Signs, edge_number, for_each_cell, is_mixed, list_edges};
 use super::table::{CaseTable, EDGE_CORNERS, edge_axis};
+use super::Features;
 use crate::geom::{Mesh, MeshError};
 use crate::run::{Cancelled, Run};
+
+mod sharp;
+
+use sharp::Feature;
 
 /// Blocks that share scratch memory. Small enough for threads to share work evenly.
 const BATCH: usize = 32;
@@ -57,6 +66,18 @@ pub(crate) trait Sampler: Sync {
     /// Where the surface crosses edges of the block that [`Sampler::nodes`] was called for
     /// last, with the same scratch. `out` is as long as `edges`.
     fn roots(&self, scratch: &mut Self::Scratch, block: [u32; 3], edges: &[EdgeRef], out: &mut [Root]);
+
+    /// Adds values and gradients of the field at points in a block, in the order of the points,
+    /// to `out`. The default knows of none: features are placed by the normals of the roots.
+    fn slopes(
+        &self,
+        _scratch: &mut Self::Scratch,
+        _block: [u32; 3],
+        _points: &[DVec3],
+        _out: &mut Vec<Slope>,
+    ) -> bool {
+        false
+    }
 }
 
 /// Where the surface crosses an edge.
@@ -106,13 +127,18 @@ pub(crate) fn extract<S: Sampler>(
     sampler: &S,
     lattice: &Lattice,
     blocks: &[[u32; 3]],
+    features: Features,
     run: &Run,
 ) -> Result<Mesh, ExtractError> {
     run.install(|| {
         let neighbours = Neighbours::new(blocks)?;
-        let sampled = sample_all(sampler, lattice, blocks, &run.stage(0.0, 0.9))?;
-        let parts = Parts { blocks, neighbours, sampled };
+        let sampled = sample_all(sampler, lattice, blocks, &run.stage(0.0, 0.8))?;
+        let mut parts = Parts { blocks, neighbours, sampled, features: Vec::new() };
         parts.check_faces()?;
+        parts.features = match features {
+            Features::Smooth => blocks.iter().map(|_| Vec::new()).collect(),
+            Features::Sharp => sharp::find(&parts, sampler, lattice, &run.stage(0.8, 0.9))?,
+        };
         let mesh = parts.join(&run.stage(0.9, 1.0))?;
         run.report(1.0);
         Ok(mesh)
@@ -127,6 +153,8 @@ struct Sampled {
     /// Position and normal on each of them.
     vertices: Vec<(Vec3, Vec3)>,
     triangles: usize,
+    /// The smallest and the largest component of the normals along each axis.
+    normals: [Vec3; 2],
 }
 
 /// The first pass.
@@ -191,11 +219,13 @@ impl<'a, S: Sampler> Worker<'a, S> {
             let normal = if normal.is_finite() { normal } else { Vec3::ZERO };
             (position, normal)
         };
-        let vertices = self.edges.iter().zip(&self.roots).map(vertex).collect();
+        let vertices: Vec<(Vec3, Vec3)> = self.edges.iter().zip(&self.roots).map(vertex).collect();
+        let hull = |[low, high]: [Vec3; 2], (_, normal): &(Vec3, Vec3)| [low.min(*normal), high.max(*normal)];
+        let normals = vertices.iter().fold([Vec3::INFINITY, Vec3::NEG_INFINITY], hull);
         let table = CaseTable::get();
         let mut triangles = 0;
         for_each_cell(&signs, |_, case| triangles += table.triangles(case).len());
-        Sampled { signs, edges: self.numbers.clone(), vertices, triangles }
+        Sampled { signs, edges: self.numbers.clone(), vertices, triangles, normals }
     }
 }
 
@@ -255,6 +285,8 @@ struct Parts<'a> {
     blocks: &'a [[u32; 3]],
     neighbours: Neighbours,
     sampled: Vec<Sampled>,
+    /// The features of each block, in the order of their cells.
+    features: Vec<Vec<Feature>>,
 }
 
 impl Parts<'_> {
@@ -290,20 +322,27 @@ impl Parts<'_> {
     /// The second pass.
     fn join(mut self, run: &Run) -> Result<Mesh, ExtractError> {
         let meter = Meter::new(run, self.blocks.len());
-        // The number of the first vertex of each block.
-        let mut starts = Vec::with_capacity(self.sampled.len());
+        // The number of the first vertex of each block, and then of its first feature.
+        let mut starts = Starts { vertices: Vec::new(), features: Vec::new() };
         let (mut vertices, mut triangles) = (0u64, 0);
         for part in &self.sampled {
-            starts.push(vertices as u32);
+            starts.vertices.push(vertices as u32);
             vertices += part.vertices.len() as u64;
             triangles += part.triangles;
+        }
+        let on_edges = vertices as usize;
+        for features in &self.features {
+            starts.features.push(vertices as u32);
+            vertices += features.len() as u64;
+            triangles += FAN_EXTRA * features.len();
         }
         if vertices > u64::from(u32::MAX) {
             return Err(ExtractError::TooLarge { count: vertices });
         }
 
         let mut indices = vec![[0; 3]; triangles];
-        let pieces = split(&mut indices, self.sampled.iter().map(|part| part.triangles));
+        let counts = self.sampled.iter().zip(&self.features).map(|(part, f)| part.triangles + FAN_EXTRA * f.len());
+        let pieces = split(&mut indices, counts);
         pieces.into_par_iter().enumerate().try_for_each(|(n, piece)| {
             meter.step()?;
             self.list_triangles(n, &starts, piece)
@@ -311,9 +350,14 @@ impl Parts<'_> {
 
         let mut positions = vec![Vec3::ZERO; vertices as usize];
         let mut normals = vec![Vec3::ZERO; vertices as usize];
+        let centres = positions[on_edges..].iter_mut().zip(&mut normals[on_edges..]);
+        for ((position, normal), feature) in centres.zip(self.features.iter().flatten()) {
+            *position = feature.at;
+            *normal = feature.normal();
+        }
         let sizes = || self.sampled.iter().map(|part| part.vertices.len());
-        let places = split(&mut positions, sizes());
-        let directions = split(&mut normals, sizes());
+        let places = split(&mut positions[..on_edges], sizes());
+        let directions = split(&mut normals[..on_edges], sizes());
         self.sampled.par_iter_mut().zip(places.into_par_iter().zip(directions)).for_each(
             |(part, (places, directions))| {
                 // Taken, so that the memory is given back on the way.
@@ -328,40 +372,25 @@ impl Parts<'_> {
     }
 
     /// The triangles of block `n`, in the order of its cells.
-    fn list_triangles(&self, n: usize, starts: &[u32], out: &mut [[u32; 3]]) -> Result<(), ExtractError> {
-        let part = &self.sampled[n];
-        let block = self.blocks[n];
-        // The vertices on owned edges, by the number of the edge.
-        let mut own = [0; OWNED];
-        for (vertex, &edge) in (starts[n]..).zip(&part.edges) {
-            own[usize::from(edge)] = vertex;
-        }
-        // The upper neighbours, by the axes along which they are further: bits 0 to 2.
-        let upper: [Option<usize>; 8] = std::array::from_fn(|bits| {
-            let by = [0, 1, 2].map(|axis| (bits >> axis & 1) as i32);
-            if bits == 0 { Some(n) } else { self.neighbours.find(block, by) }
-        });
-        let vertex = |cell: [usize; 3], edge: u8| -> Option<u32> {
-            let corner = usize::from(EDGE_CORNERS[usize::from(edge)][0]);
-            let node: [usize; 3] = std::array::from_fn(|axis| cell[axis] + (corner >> axis & 1));
-            let bits = (0..3).fold(0, |bits, axis| bits | (node[axis] / BLOCK) << axis);
-            let number = edge_number(node.map(|x| x % BLOCK), usize::from(edge_axis(edge)));
-            if bits == 0 {
-                return Some(own[usize::from(number)]);
-            }
-            let owner = upper[bits]?;
-            let nth = self.sampled[owner].edges.binary_search(&number).ok()?;
-            Some(starts[owner] + nth as u32)
+    fn list_triangles(&self, n: usize, starts: &Starts, out: &mut [[u32; 3]]) -> Result<(), ExtractError> {
+        let lookup = Lookup::new(self, n);
+        let number = |cell: [usize; 3], edge: u8| {
+            let found = lookup.vertex(cell, edge)?;
+            Some(starts.vertices[found.part] + found.nth as u32)
         };
-
         let table = CaseTable::get();
+        let fans = sharp::Fans::new(self, n, starts);
         let mut slots = out.iter_mut();
         let mut complete = true;
-        for_each_cell(&part.signs, |cell, case| {
-            for (&[a, b, c], slot) in table.triangles(case).iter().zip(&mut slots) {
-                match (vertex(cell, a), vertex(cell, b), vertex(cell, c)) {
-                    (Some(a), Some(b), Some(c)) => *slot = [a, b, c],
-                    _ => complete = false,
+        let mut put = |corners: [Option<u32>; 3]| match (corners, slots.next()) {
+            ([Some(a), Some(b), Some(c)], Some(slot)) => *slot = [a, b, c],
+            _ => complete = false,
+        };
+        for_each_cell(&self.sampled[n].signs, |cell, case| match fans.of(cell) {
+            Some(fan) => fan.triangles(|edge| number(cell, edge), &mut put),
+            None => {
+                for triangle in table.triangles(case) {
+                    put(triangle.map(|edge| number(cell, edge)));
                 }
             }
         });
@@ -369,8 +398,76 @@ impl Parts<'_> {
             Ok(())
         } else {
             let what = "a vertex is missing in the neighbour that owns it";
-            Err(ExtractError::Blocks { block, what })
+            Err(ExtractError::Blocks { block: self.blocks[n], what })
         }
+    }
+}
+
+/// The triangles that a fan has more than the patch of the table.
+const FAN_EXTRA: usize = 2;
+
+/// The numbers of the first vertex on an edge and of the first feature of each block.
+struct Starts {
+    vertices: Vec<u32>,
+    features: Vec<u32>,
+}
+
+/// Finds the vertices of a block's cells, its own and those of its upper neighbours.
+struct Lookup<'a> {
+    parts: &'a Parts<'a>,
+    block: usize,
+    /// By the number of the edge, which of the block's vertices is on it.
+    own: [u16; OWNED],
+    /// The upper neighbours, by the axes along which they are further: bits 0 to 2.
+    upper: [Option<usize>; 8],
+}
+
+/// A vertex: the block, and which of its vertices.
+#[derive(Clone, Copy)]
+struct Found {
+    part: usize,
+    nth: usize,
+}
+
+impl<'a> Lookup<'a> {
+    fn new(parts: &'a Parts<'a>, block: usize) -> Lookup<'a> {
+        let mut own = [0; OWNED];
+        for (nth, &edge) in parts.sampled[block].edges.iter().enumerate() {
+            own[usize::from(edge)] = nth as u16;
+        }
+        let upper = std::array::from_fn(|bits| {
+            let by = [0, 1, 2].map(|axis| (bits >> axis & 1) as i32);
+            if bits == 0 { Some(block) } else { parts.neighbours.find(parts.blocks[block], by) }
+        });
+        Lookup { parts, block, own, upper }
+    }
+
+    /// The vertex on an edge of a cell that crosses the surface.
+    fn vertex(&self, cell: [usize; 3], edge: u8) -> Option<Found> {
+        let corner = usize::from(EDGE_CORNERS[usize::from(edge)][0]);
+        let node: [usize; 3] = std::array::from_fn(|axis| cell[axis] + (corner >> axis & 1));
+        let bits = (0..3).fold(0, |bits, axis| bits | (node[axis] / BLOCK) << axis);
+        let number = edge_number(node.map(|x| x % BLOCK), usize::from(edge_axis(edge)));
+        if bits == 0 {
+            return Some(Found { part: self.block, nth: usize::from(self.own[usize::from(number)]) });
+        }
+        let part = self.upper[bits]?;
+        let nth = self.parts.sampled[part].edges.binary_search(&number).ok()?;
+        Some(Found { part, nth })
+    }
+
+    /// Position and normal of a vertex.
+    fn get(&self, vertex: Found) -> (Vec3, Vec3) {
+        self.parts.sampled[vertex.part].vertices[vertex.nth]
+    }
+
+    /// The smallest box that holds the normals of all vertices that the block's cells have, as
+    /// its diagonal.
+    fn normal_spread(&self) -> Vec3 {
+        let parts = self.upper.iter().flatten().map(|&part| self.parts.sampled[part].normals);
+        let hull = |[a, b]: [Vec3; 2], [c, d]: [Vec3; 2]| [a.min(c), b.max(d)];
+        let [low, high] = parts.fold([Vec3::INFINITY, Vec3::NEG_INFINITY], hull);
+        high - low
     }
 }
 

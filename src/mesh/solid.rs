@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::extract::{ExtractError, Root, Sampler, extract};
+use super::feature::Slope;
 use super::lattice::{CellSize, Lattice, LatticeError};
 use super::signs::{BLOCK, EdgeRef, NODES};
 use crate::eval::{Evaluator, Gradients, Program, Tape, compiled};
@@ -29,6 +30,20 @@ pub struct MeshSettings {
     /// The box to mesh, in length units; where the solid leaves it, the mesh is that of
     /// their intersection. Default (`None`): the box of the solid.
     pub bounds: Option<Bounds>,
+    /// Whether creases and corners are kept. Default: [`Features::Sharp`].
+    pub features: Features,
+}
+
+/// What becomes of creases and corners.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Features {
+    /// They are cut off, by a fraction of a cell: marching cubes.
+    Smooth,
+    /// They are kept: where the normals in a cell spread, the cell has a vertex on the crease or
+    /// in the corner, and the mesh has edges along the crease. Elsewhere the mesh is that of
+    /// [`Smooth`](Features::Smooth).
+    #[default]
+    Sharp,
 }
 
 /// Why there is no mesh.
@@ -104,7 +119,7 @@ impl Solid {
             let blocks: Vec<[u32; 3]> = found.iter().map(|b| b.index.map(|i| i * BLOCK as u32)).collect();
             let programs = blocks.iter().copied().zip(found.into_iter().map(|b| b.program)).collect();
             let sampler = SolidSampler { lattice: &lattice, programs };
-            Ok(extract(&sampler, &lattice, &blocks, &run.stage(0.3, 1.0))?)
+            Ok(extract(&sampler, &lattice, &blocks, settings.features, &run.stage(0.3, 1.0))?)
         })
     }
 
@@ -158,8 +173,7 @@ impl Sampler for SolidSampler<'_> {
 
     fn nodes(&self, scratch: &mut Scratch, block: [u32; 3], out: &mut [f32; NODES]) {
         let Some(program) = self.programs.get(&block) else { return };
-        let at = |i: u32| self.lattice.node(block[0] + i, block[1] + i, block[2] + i);
-        let tape = Tape::new(program, &Bounds::new(at(0), at(BLOCK as u32)));
+        let tape = Tape::new(program, &self.bounds(block));
         let origin = tape.origin();
         for axis in &mut scratch.single {
             axis.clear();
@@ -232,30 +246,56 @@ impl Sampler for SolidSampler<'_> {
         }
         self.normals(scratch, &tape, out, point);
     }
+
+    fn slopes(&self, scratch: &mut Scratch, block: [u32; 3], points: &[DVec3], out: &mut Vec<Slope>) -> bool {
+        let Some(program) = self.programs.get(&block) else { return false };
+        let bounds = self.bounds(block);
+        let tape = Tape::new(program, &bounds);
+        // The program holds in the block and nowhere else.
+        let inside = points.iter().map(|p| p.clamp(bounds.min, bounds.max) - tape.origin());
+        gradients(scratch, &tape, inside);
+        let [value, dx, dy, dz] = &scratch.slopes;
+        out.extend((0..points.len()).map(|n| Slope {
+            value: value[n].into(),
+            gradient: DVec3::new(dx[n].into(), dy[n].into(), dz[n].into()),
+        }));
+        true
+    }
 }
 
 impl SolidSampler<'_> {
+    /// The box of a block.
+    fn bounds(&self, block: [u32; 3]) -> Bounds {
+        let at = |i: u32| self.lattice.node(block[0] + i, block[1] + i, block[2] + i);
+        Bounds::new(at(0), at(BLOCK as u32))
+    }
+
     fn normals(&self, scratch: &mut Scratch, tape: &Tape, out: &mut [Root], point: impl Fn(usize, f64) -> DVec3) {
-        for axis in &mut scratch.single {
-            axis.clear();
-        }
-        for (edge, root) in out.iter().enumerate() {
-            let p = point(edge, root.t);
-            for axis in 0..3 {
-                scratch.single[axis].push(p[axis] as f32);
-            }
-        }
-        for slope in &mut scratch.slopes {
-            slope.resize(out.len(), 0.0);
-        }
-        let [x, y, z] = &scratch.single;
-        let [value, dx, dy, dz] = &mut scratch.slopes;
-        scratch.evaluator.gradients(tape, x, y, z, Gradients { value, dx, dy, dz });
+        gradients(scratch, tape, out.iter().enumerate().map(|(edge, root)| point(edge, root.t)));
+        let [_, dx, dy, dz] = &scratch.slopes;
         for (edge, root) in out.iter_mut().enumerate() {
             let inward = DVec3::new(dx[edge].into(), dy[edge].into(), dz[edge].into());
             root.normal = (-inward.normalize_or_zero()).as_vec3().to_array();
         }
     }
+}
+
+/// Values and gradients at points relative to the tape's origin, into the scratch.
+fn gradients(scratch: &mut Scratch, tape: &Tape, points: impl Iterator<Item = DVec3>) {
+    for axis in &mut scratch.single {
+        axis.clear();
+    }
+    for p in points {
+        for axis in 0..3 {
+            scratch.single[axis].push(p[axis] as f32);
+        }
+    }
+    for slope in &mut scratch.slopes {
+        slope.resize(scratch.single[0].len(), 0.0);
+    }
+    let [x, y, z] = &scratch.single;
+    let [value, dx, dy, dz] = &mut scratch.slopes;
+    scratch.evaluator.gradients(tape, x, y, z, Gradients { value, dx, dy, dz });
 }
 
 /// The values at points relative to the tape's origin, into the scratch.

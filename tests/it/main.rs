@@ -20,6 +20,7 @@ mod profile;
 mod queries;
 mod rfunction;
 mod scale;
+mod sharp;
 mod superellipsoid;
 mod superquadric;
 mod supershape;

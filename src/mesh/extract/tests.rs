@@ -82,7 +82,7 @@ fn mesh_of(bounds: &Bounds, cell: CellSize, f: impl Fn(DVec3) -> f64 + Sync) -> 
     let lattice = &Lattice::new(bounds, cell).unwrap();
     let sampler = Analytic { f, lattice };
     let blocks = surface_blocks(&sampler, lattice);
-    let mesh = extract(&sampler, lattice, &blocks, &Run::default()).unwrap();
+    let mesh = extract(&sampler, lattice, &blocks, Features::Smooth, &Run::default()).unwrap();
     let report = mesh.check();
     assert!(report.is_closed() && report.is_manifold(), "{report:?}");
     assert_eq!(report.duplicate_vertices + report.unused_vertices, 0);
@@ -209,7 +209,7 @@ fn noise_is_closed_and_manifold() {
     for seed in 0..60 {
         let noise = Noise { lattice: &lattice, seed, density: [20, 80, 128, 170, 235][seed as usize % 5] };
         let blocks = surface_blocks(&noise, &lattice);
-        let mesh = extract(&noise, &lattice, &blocks, &Run::default()).unwrap();
+        let mesh = extract(&noise, &lattice, &blocks, Features::Smooth, &Run::default()).unwrap();
         let report = mesh.check();
         assert!(report.is_closed() && report.is_manifold(), "{report:?}");
         assert_eq!(report.duplicate_vertices + report.unused_vertices, 0);
@@ -228,7 +228,7 @@ fn the_same_bytes_for_any_number_of_threads() {
         let sink = seen.clone();
         let run =
             Run { threads, progress: Some(Progress::new(move |f| sink.lock().unwrap().push(f))), ..Run::default() };
-        let mesh = extract(&sampler, &lattice, &blocks, &run).unwrap();
+        let mesh = extract(&sampler, &lattice, &blocks, Features::Smooth, &run).unwrap();
         let seen = seen.lock().unwrap();
         assert!(seen.windows(2).all(|w| w[0] < w[1]));
         assert!(seen.len() > 50 && seen.last() == Some(&1.0));
@@ -253,7 +253,7 @@ fn cancelling_stops_the_work() {
     let quiet = Analytic { f: sphere, lattice: &lattice };
     let blocks = surface_blocks(&quiet, &lattice);
     let sampler = Analytic { f, lattice: &lattice };
-    let result = extract(&sampler, &lattice, &blocks, &run);
+    let result = extract(&sampler, &lattice, &blocks, Features::Smooth, &run);
     assert_eq!(result.unwrap_err(), ExtractError::Cancelled(Cancelled));
     assert!(count.load(Ordering::Relaxed) < 40 * NODES);
 }
@@ -264,7 +264,7 @@ fn bad_lists_of_blocks_are_reported() {
     let sampler = Analytic { f: sphere, lattice: &lattice };
     let blocks = surface_blocks(&sampler, &lattice);
     let what = |blocks: &[[u32; 3]]| {
-        let error = extract(&sampler, &lattice, blocks, &Run::default()).unwrap_err();
+        let error = extract(&sampler, &lattice, blocks, Features::Smooth, &Run::default()).unwrap_err();
         let ExtractError::Blocks { what, .. } = error else {
             panic!("{error}");
         };
@@ -283,8 +283,8 @@ fn bad_lists_of_blocks_are_reported() {
     let mut more = blocks.clone();
     more.push([800, 800, 800]);
     let run = Run::default();
-    assert_eq!(extract(&sampler, &lattice, &more, &run), extract(&sampler, &lattice, &blocks, &run));
-    let none = extract(&sampler, &lattice, &[], &run).unwrap();
+    assert_eq!(extract(&sampler, &lattice, &more, Features::Smooth, &run), extract(&sampler, &lattice, &blocks, Features::Smooth, &run));
+    let none = extract(&sampler, &lattice, &[], Features::Smooth, &run).unwrap();
     assert!(none.triangles().is_empty());
 }
 
@@ -309,7 +309,7 @@ fn neighbours_that_disagree_are_reported() {
     let sampler = Analytic { f: sphere, lattice: &lattice };
     let blocks = surface_blocks(&sampler, &lattice);
     let flipped = Flipped(sampler, blocks[0]);
-    let error = extract(&flipped, &lattice, &blocks, &Run::default()).unwrap_err();
+    let error = extract(&flipped, &lattice, &blocks, Features::Smooth, &Run::default()).unwrap_err();
     assert!(matches!(error, ExtractError::Blocks { .. }));
 }
 
@@ -322,7 +322,7 @@ fn extraction_time() {
     for threads in [1, 2] {
         let run = Run { threads, ..Run::default() };
         let start = std::time::Instant::now();
-        let mesh = extract(&noise, &lattice, &blocks, &run).unwrap();
+        let mesh = extract(&noise, &lattice, &blocks, Features::Smooth, &run).unwrap();
         let (blocks, triangles) = (blocks.len(), mesh.triangles().len());
         println!("{threads} threads: {blocks} blocks, {triangles} triangles, {:?}", start.elapsed());
     }
