@@ -43,9 +43,10 @@ use super::Features;
 use crate::geom::{Mesh, MeshError};
 use crate::run::{Cancelled, Run};
 
+mod region;
 mod sharp;
 
-use sharp::Feature;
+use sharp::{Corner, Fans};
 
 /// Blocks that share scratch memory. Small enough for threads to share work evenly.
 const BATCH: usize = 32;
@@ -133,12 +134,11 @@ pub(crate) fn extract<S: Sampler>(
     run.install(|| {
         let neighbours = Neighbours::new(blocks)?;
         let sampled = sample_all(sampler, lattice, blocks, &run.stage(0.0, 0.8))?;
-        let mut parts = Parts { blocks, neighbours, sampled, features: Vec::new() };
+        let mut parts = Parts { blocks, neighbours, sampled, lattice, fans: Fans::default() };
         parts.check_faces()?;
-        parts.features = match features {
-            Features::Smooth => blocks.iter().map(|_| Vec::new()).collect(),
-            Features::Sharp => sharp::find(&parts, sampler, lattice, &run.stage(0.8, 0.9))?,
-        };
+        if features == Features::Sharp {
+            parts.fans = sharp::find(&parts, sampler, lattice, &run.stage(0.8, 0.9))?;
+        }
         let mesh = parts.join(&run.stage(0.9, 1.0))?;
         run.report(1.0);
         Ok(mesh)
@@ -285,8 +285,8 @@ struct Parts<'a> {
     blocks: &'a [[u32; 3]],
     neighbours: Neighbours,
     sampled: Vec<Sampled>,
-    /// The features of each block, in the order of their cells.
-    features: Vec<Vec<Feature>>,
+    lattice: &'a Lattice,
+    fans: Fans,
 }
 
 impl Parts<'_> {
@@ -322,38 +322,34 @@ impl Parts<'_> {
     /// The second pass.
     fn join(mut self, run: &Run) -> Result<Mesh, ExtractError> {
         let meter = Meter::new(run, self.blocks.len());
-        // The number of the first vertex of each block, and then of its first feature.
-        let mut starts = Starts { vertices: Vec::new(), features: Vec::new() };
-        let (mut vertices, mut triangles) = (0u64, 0);
+        // The number of the first vertex of each block; feature points follow.
+        let mut starts = Vec::with_capacity(self.sampled.len());
+        let mut vertices = 0u64;
         for part in &self.sampled {
-            starts.vertices.push(vertices as u32);
+            starts.push(vertices as u32);
             vertices += part.vertices.len() as u64;
-            triangles += part.triangles;
         }
         let on_edges = vertices as usize;
-        for features in &self.features {
-            starts.features.push(vertices as u32);
-            vertices += features.len() as u64;
-            triangles += FAN_EXTRA * features.len();
-        }
+        vertices += self.fans.fans.len() as u64;
         if vertices > u64::from(u32::MAX) {
             return Err(ExtractError::TooLarge { count: vertices });
         }
 
-        let mut indices = vec![[0; 3]; triangles];
-        let counts = self.sampled.iter().zip(&self.features).map(|(part, f)| part.triangles + FAN_EXTRA * f.len());
-        let pieces = split(&mut indices, counts);
+        let counts: Vec<usize> =
+            self.sampled.iter().enumerate().map(|(n, part)| self.fans.count(n, part.triangles)).collect();
+        let mut indices = vec![[0; 3]; counts.iter().sum()];
+        let pieces = split(&mut indices, counts.into_iter());
         pieces.into_par_iter().enumerate().try_for_each(|(n, piece)| {
             meter.step()?;
-            self.list_triangles(n, &starts, piece)
+            self.list_triangles(n, &starts, on_edges, piece)
         })?;
 
         let mut positions = vec![Vec3::ZERO; vertices as usize];
         let mut normals = vec![Vec3::ZERO; vertices as usize];
         let centres = positions[on_edges..].iter_mut().zip(&mut normals[on_edges..]);
-        for ((position, normal), feature) in centres.zip(self.features.iter().flatten()) {
-            *position = feature.at;
-            *normal = feature.normal();
+        for ((position, normal), fan) in centres.zip(&self.fans.fans) {
+            *position = fan.at;
+            *normal = fan.normal();
         }
         let sizes = || self.sampled.iter().map(|part| part.vertices.len());
         let places = split(&mut positions[..on_edges], sizes());
@@ -371,45 +367,72 @@ impl Parts<'_> {
         Ok(Mesh::new(positions, indices)?.with_normals(normals)?)
     }
 
-    /// The triangles of block `n`, in the order of its cells.
-    fn list_triangles(&self, n: usize, starts: &Starts, out: &mut [[u32; 3]]) -> Result<(), ExtractError> {
+    /// The triangles of block `n`: those of the table, in the order of its cells, and then those of its fans.
+    /// Feature points are numbered from `centres`.
+    fn list_triangles(
+        &self,
+        n: usize,
+        starts: &[u32],
+        centres: usize,
+        out: &mut [[u32; 3]],
+    ) -> Result<(), ExtractError> {
         let lookup = Lookup::new(self, n);
-        let number = |cell: [usize; 3], edge: u8| {
-            let found = lookup.vertex(cell, edge)?;
-            Some(starts.vertices[found.part] + found.nth as u32)
-        };
+        let number = |found: Found| starts[found.part] + found.nth as u32;
         let table = CaseTable::get();
-        let fans = sharp::Fans::new(self, n, starts);
         let mut slots = out.iter_mut();
         let mut complete = true;
-        let mut put = |corners: [Option<u32>; 3]| match (corners, slots.next()) {
-            ([Some(a), Some(b), Some(c)], Some(slot)) => *slot = [a, b, c],
-            _ => complete = false,
-        };
-        for_each_cell(&self.sampled[n].signs, |cell, case| match fans.of(cell) {
-            Some(fan) => fan.triangles(|edge| number(cell, edge), &mut put),
-            None => {
-                for triangle in table.triangles(case) {
-                    put(triangle.map(|edge| number(cell, edge)));
+        let mut with_fan = self.fans.cells(n).iter().peekable();
+        for_each_cell(&self.sampled[n].signs, |cell, case| {
+            let cell_number = sharp::cell_number(cell);
+            while with_fan.next_if(|(other, _)| *other < cell_number).is_some() {}
+            if with_fan.peek().is_some_and(|(other, _)| *other == cell_number) {
+                return;
+            }
+            for (triangle, slot) in table.triangles(case).iter().zip(&mut slots) {
+                match triangle.map(|edge| lookup.vertex(cell, edge)) {
+                    [Some(a), Some(b), Some(c)] => *slot = [a, b, c].map(number),
+                    _ => complete = false,
                 }
             }
         });
-        if complete {
+        self.fans.triangles(self, n, |corners| match slots.next() {
+            Some(slot) => {
+                *slot = corners.map(|corner| match corner {
+                    Corner::Centre(fan) => (centres + fan) as u32,
+                    Corner::Edge(found) => number(found),
+                });
+            }
+            None => complete = false,
+        });
+        if complete && slots.next().is_none() {
             Ok(())
         } else {
             let what = "a vertex is missing in the neighbour that owns it";
             Err(ExtractError::Blocks { block: self.blocks[n], what })
         }
     }
-}
 
-/// The triangles that a fan has more than the patch of the table.
-const FAN_EXTRA: usize = 2;
+    /// The case of a cell of the lattice; 0 where no block is.
+    fn case(&self, cell: [u32; 3]) -> u8 {
+        let (block, within) = sharp::split_cell(cell);
+        self.neighbours.find(block, [0; 3]).map_or(0, |block| self.sampled[block].signs.case(within))
+    }
 
-/// The numbers of the first vertex on an edge and of the first feature of each block.
-struct Starts {
-    vertices: Vec<u32>,
-    features: Vec<u32>,
+    /// The vertex on an edge of a cell of the lattice.
+    fn vertex(&self, cell: [u32; 3], edge: u8) -> Option<Found> {
+        let corner = EDGE_CORNERS[usize::from(edge)][0];
+        let node = std::array::from_fn(|axis| cell[axis] + u32::from(corner >> axis & 1));
+        let (block, within) = sharp::split_cell(node);
+        let part = self.neighbours.find(block, [0; 3])?;
+        let number = edge_number(within, usize::from(edge_axis(edge)));
+        let nth = self.sampled[part].edges.binary_search(&number).ok()?;
+        Some(Found { part, nth })
+    }
+
+    /// Position and normal of a vertex.
+    fn get(&self, vertex: Found) -> (Vec3, Vec3) {
+        self.sampled[vertex.part].vertices[vertex.nth]
+    }
 }
 
 /// Finds the vertices of a block's cells, its own and those of its upper neighbours.
@@ -423,7 +446,7 @@ struct Lookup<'a> {
 }
 
 /// A vertex: the block, and which of its vertices.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 struct Found {
     part: usize,
     nth: usize,
@@ -454,11 +477,6 @@ impl<'a> Lookup<'a> {
         let part = self.upper[bits]?;
         let nth = self.parts.sampled[part].edges.binary_search(&number).ok()?;
         Some(Found { part, nth })
-    }
-
-    /// Position and normal of a vertex.
-    fn get(&self, vertex: Found) -> (Vec3, Vec3) {
-        self.parts.sampled[vertex.part].vertices[vertex.nth]
     }
 
     /// The smallest box that holds the normals of all vertices that the block's cells have, as

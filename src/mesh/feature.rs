@@ -59,9 +59,10 @@ pub(super) fn is_smooth(vertices: &[(Vec3, Vec3)]) -> bool {
     pairs.all(|(a, b)| vertices[a].1.dot(vertices[b].1) > SMOOTH)
 }
 
-/// A cell that may hold a feature. Positions are in cells, from the block's first node.
+/// A cell whose surface is not smooth. Positions are in cells, from the lattice's first node.
+#[derive(Clone)]
 pub(super) struct Candidate {
-    pub(super) cell: [usize; 3],
+    pub(super) cell: [u32; 3],
     pub(super) outline: &'static CellLoop,
     /// The vertices of the loop.
     vertices: [DVec3; LONGEST],
@@ -71,12 +72,14 @@ pub(super) struct Candidate {
     pub(super) split: u8,
     /// The feature point.
     pub(super) at: DVec3,
+    /// The sides' planes close to it.
+    pub(super) planes: Planes,
 }
 
 impl Candidate {
     /// The cell with a first feature point. `given` are the vertices on the edges of the loop, in
-    /// order: positions in cells from the block's first node, normals outward.
-    pub(super) fn new(cell: [usize; 3], outline: &'static CellLoop, given: &[(DVec3, Vec3)]) -> Candidate {
+    /// order, with their outward normals.
+    pub(super) fn new(cell: [u32; 3], outline: &'static CellLoop, given: &[(DVec3, Vec3)]) -> Candidate {
         let mut candidate = Candidate {
             cell,
             outline,
@@ -84,19 +87,19 @@ impl Candidate {
             normals: [DVec3::ZERO; LONGEST],
             split: 0,
             at: DVec3::ZERO,
+            planes: Planes::NONE,
         };
-        let mut planes = Planes::NONE;
         for (n, &(position, normal)) in given.iter().enumerate() {
             candidate.vertices[n] = position;
             candidate.normals[n] = normal.as_dvec3().normalize_or_zero();
             candidate.at += position / given.len() as f64;
             if candidate.normals[n] != DVec3::ZERO {
-                planes.add(candidate.normals[n], candidate.normals[n].dot(position));
+                candidate.planes.add(candidate.normals[n], candidate.normals[n].dot(position));
             }
             let (_, next) = given[(n + 1) % given.len()];
             candidate.split |= u8::from(normal.dot(next) < SMOOTH) << n;
         }
-        candidate.step(&planes);
+        candidate.settle();
         candidate
     }
 
@@ -108,17 +111,28 @@ impl Candidate {
     /// The normal close to the feature point, on the side of vertex n of the loop; 0 if it is not
     /// known.
     pub(super) fn normal(&self, n: usize) -> Vec3 {
-        self.normals[n % self.outline.len()].as_vec3()
+        self.normals[n].as_vec3()
     }
 
-    fn step(&mut self, planes: &Planes) {
-        let low = DVec3::from_array(self.cell.map(|i| i as f64)) + INSET;
-        self.at = planes.nearest(self.at, DAMPING, low, low + (1.0 - 2.0 * INSET));
+    fn settle(&mut self) {
+        let low = self.cell.map(f64::from).into();
+        self.at = settle(&self.planes, self.at, low, low + 1.0, 1);
+    }
+
+    /// Where the planes meet if the point may leave the cell, by one cell at most.
+    pub(super) fn unbound(&self) -> DVec3 {
+        let low = DVec3::from_array(self.cell.map(f64::from));
+        settle(&self.planes, self.at, low - 1.0, low + 2.0, 3)
     }
 }
 
-/// Moves feature points closer to the creases. `slopes` tells values and gradients at points given
-/// in cells from the block's first node, for a cell of size `step`; without any, the points stay.
+/// The point of a box of cells, clear of its faces, that the planes lead to in some steps.
+pub(super) fn settle(planes: &Planes, from: DVec3, low: DVec3, high: DVec3, steps: usize) -> DVec3 {
+    (0..steps).fold(from, |at, _| planes.nearest(at, DAMPING, low + INSET, high - INSET))
+}
+
+/// Moves feature points closer to the creases. `slopes` tells values and gradients at points, for cells of
+/// size `step`; without any, the points stay.
 pub(super) fn refine(
     candidates: &mut [Candidate],
     step: f64,
@@ -148,7 +162,8 @@ pub(super) fn refine(
                 }
             }
             if !planes.is_empty() {
-                candidate.step(&planes);
+                candidate.planes = planes;
+                candidate.settle();
             }
         }
     }

@@ -47,6 +47,14 @@ impl Planes {
         self.count += 1;
     }
 
+    /// Adds the planes of another set.
+    pub(super) fn append(&mut self, other: &Planes) {
+        self.matrix += other.matrix;
+        self.vector += other.vector;
+        self.square += other.square;
+        self.count += other.count;
+    }
+
     pub(super) fn is_empty(&self) -> bool {
         self.count == 0
     }

@@ -34,65 +34,106 @@
 //!
 //! Cells with several loops and ambiguous faces stay as the table has them.
 
+use std::collections::HashSet;
+use std::ops::Range;
+
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-use super::{Lookup, Meter, Parts, Sampler, Starts};
+use super::region::{Region, regions};
+use super::{Found, Lookup, Meter, Parts, Sampler};
 use crate::mesh::feature::{Candidate, SMOOTH, is_smooth, refine};
 use crate::mesh::lattice::Lattice;
 use crate::mesh::loops::{CellLoop, LONGEST};
 use crate::mesh::signs::{BLOCK, for_each_cell};
 use crate::run::{Cancelled, Run};
 
-/// A cell with a fan.
-pub(super) struct Feature {
-    /// The number of the cell in its block: x fastest, then y, then z.
-    pub(super) cell: u16,
-    pub(super) outline: &'static CellLoop,
-    /// The segments that the crease crosses, as bits.
-    split: u8,
-    /// The feature point.
-    pub(super) at: Vec3,
-    /// The normals close to it on the sides of the loop's vertices.
-    normals: [Vec3; LONGEST],
+/// A segment of a loop: from a vertex to that of the next segment.
+#[derive(Clone, Copy)]
+pub(super) struct Segment {
+    pub(super) from: Found,
+    /// The cell that it bounds the surface of, and the face that it is in.
+    pub(super) cell: [u32; 3],
+    pub(super) face: (usize, bool),
+    /// Whether it may be turned: it is the only one in the face, and its ends have different normals.
+    pub(super) turns: bool,
+    /// The normal close to the feature point on the side of the vertex.
+    pub(super) normal: Vec3,
 }
 
-impl Feature {
+/// The fan of a cell, or of a region of several.
+pub(super) struct Fan {
+    pub(super) segments: Vec<Segment>,
+    /// The feature point, strictly inside.
+    pub(super) at: Vec3,
+}
+
+impl Fan {
     /// The normal that stands for all sides.
     pub(super) fn normal(&self) -> Vec3 {
-        self.normals[..self.outline.len()].iter().sum::<Vec3>().normalize_or_zero()
+        self.segments.iter().map(|segment| segment.normal).sum::<Vec3>().normalize_or_zero()
     }
 }
 
-/// The number of a cell in its block.
+/// All fans.
+#[derive(Default)]
+pub(super) struct Fans {
+    pub(super) fans: Vec<Fan>,
+    blocks: Vec<OfBlock>,
+}
+
+/// The fans of a block.
+#[derive(Clone, Default)]
+struct OfBlock {
+    /// Those that are listed with it.
+    listed: Range<usize>,
+    /// The cells that have a fan, by number, and which; ascending.
+    cells: Vec<(u16, u32)>,
+    /// How many triangles of the table they have no more.
+    dropped: usize,
+}
+
+/// The block of a cell, by its first cell, and the number of the cell in it: x fastest, then y, then z.
+pub(super) fn split_cell(cell: [u32; 3]) -> ([u32; 3], [usize; 3]) {
+    let within = cell.map(|n| n as usize % BLOCK);
+    (std::array::from_fn(|axis| cell[axis] - within[axis] as u32), within)
+}
+
 pub(super) fn cell_number([i, j, k]: [usize; 3]) -> u16 {
     (i + BLOCK * (j + BLOCK * k)) as u16
 }
 
-/// The features of each block, in the order of their cells.
+/// Finds the cells that hold creases and corners, and gives them fans.
 pub(super) fn find<S: Sampler>(
     parts: &Parts<'_>,
     sampler: &S,
     lattice: &Lattice,
     run: &Run,
-) -> Result<Vec<Vec<Feature>>, Cancelled> {
+) -> Result<Fans, Cancelled> {
     let meter = Meter::new(run, parts.blocks.len());
+    let place = Place { lattice };
     let of_block = |scratch: &mut S::Scratch, n: usize| {
         meter.step()?;
-        let place = Place { lattice, block: parts.blocks[n] };
         let mut candidates = candidates(parts, &place, n);
         if candidates.is_empty() {
-            return Ok(Vec::new());
+            return Ok(candidates);
         }
         let mut points = Vec::new();
         refine(&mut candidates, lattice.step(), |local, out| {
             points.clear();
             points.extend(local.iter().map(|p| place.world(*p)));
-            sampler.slopes(scratch, place.block, &points, out)
+            sampler.slopes(scratch, parts.blocks[n], &points, out)
         });
-        Ok(candidates.iter().map(|candidate| place.feature(candidate)).collect())
+        Ok(candidates)
     };
-    (0..parts.blocks.len()).into_par_iter().map_init(|| sampler.scratch(), of_block).collect()
+    let candidates: Result<Vec<Vec<Candidate>>, Cancelled> =
+        (0..parts.blocks.len()).into_par_iter().map_init(|| sampler.scratch(), of_block).collect();
+    let candidates = candidates?;
+    if candidates.iter().all(Vec::is_empty) {
+        return Ok(Fans::default());
+    }
+    let regions = regions(parts, &place, &candidates);
+    Ok(Fans::new(parts, &place, &candidates, regions))
 }
 
 /// The cells of block `n` with one loop, around which the normals spread.
@@ -103,131 +144,174 @@ fn candidates(parts: &Parts<'_>, place: &Place<'_>, n: usize) -> Vec<Candidate> 
     if lookup.normal_spread().length_squared() < 2.0 - 2.0 * SMOOTH {
         return found;
     }
+    let block = parts.blocks[n];
     let mut around = Vec::with_capacity(LONGEST);
     for_each_cell(&parts.sampled[n].signs, |cell, case| {
         let Some(outline) = CellLoop::single(case) else { return };
         around.clear();
         for &edge in outline.edges() {
             let Some(vertex) = lookup.vertex(cell, edge) else { return };
-            around.push(lookup.get(vertex));
+            around.push(parts.get(vertex));
         }
         if !is_smooth(&around) {
-            let vertices: Vec<(DVec3, Vec3)> = around.iter().map(|&(p, n)| (place.local(p), n)).collect();
-            found.push(Candidate::new(cell, outline, &vertices));
+            let cell = std::array::from_fn(|axis| block[axis] + cell[axis] as u32);
+            found.push(place.candidate(cell, outline, &around));
         }
     });
     found
 }
 
-/// A block of the lattice.
-struct Place<'a> {
+/// Positions in cells from the lattice's first node, and back.
+pub(super) struct Place<'a> {
     lattice: &'a Lattice,
-    block: [u32; 3],
 }
 
 impl Place<'_> {
-    fn node(&self, [i, j, k]: [u32; 3]) -> DVec3 {
-        let [x, y, z] = self.block;
-        self.lattice.node(x + i, y + j, z + k)
-    }
-
-    /// From a position to cells from the block's first node, and back.
     fn local(&self, p: Vec3) -> DVec3 {
-        (p.as_dvec3() - self.node([0; 3])) / self.lattice.step()
+        (p.as_dvec3() - self.lattice.origin()) / self.lattice.step()
     }
 
     fn world(&self, p: DVec3) -> DVec3 {
-        self.node([0; 3]) + p * self.lattice.step()
+        self.lattice.origin() + p * self.lattice.step()
     }
 
-    fn feature(&self, candidate: &Candidate) -> Feature {
-        let cell = candidate.cell.map(|i| i as u32);
-        let low = self.node(cell).as_vec3().to_array().map(f32::next_up);
-        let high = self.node(cell.map(|i| i + 1)).as_vec3().to_array().map(f32::next_down);
-        let at = self.world(candidate.at).as_vec3();
-        Feature {
-            cell: cell_number(candidate.cell),
-            outline: candidate.outline,
-            split: candidate.split,
-            at: at.clamp(low.into(), high.into()),
-            normals: std::array::from_fn(|n| candidate.normal(n)),
+    pub(super) fn candidate(
+        &self,
+        cell: [u32; 3],
+        outline: &'static CellLoop,
+        vertices: &[(Vec3, Vec3)],
+    ) -> Candidate {
+        let local: Vec<(DVec3, Vec3)> = vertices.iter().map(|&(p, normal)| (self.local(p), normal)).collect();
+        Candidate::new(cell, outline, &local)
+    }
+
+    /// The position of a point as f32, strictly inside of the box of cells from `low` up to `high`,
+    /// exclusive.
+    pub(super) fn inside(&self, at: DVec3, low: [u32; 3], high: [u32; 3]) -> Vec3 {
+        let node = |[i, j, k]: [u32; 3]| self.lattice.node(i, j, k).as_vec3().to_array();
+        let (low, high) = (node(low).map(f32::next_up), node(high).map(f32::next_down));
+        self.world(at).as_vec3().clamp(low.into(), high.into())
+    }
+}
+
+/// The segments of a cell's loop.
+pub(super) fn segments(parts: &Parts<'_>, candidate: &Candidate) -> Option<Vec<Segment>> {
+    let outline = candidate.outline;
+    let segment = |(n, &edge): (usize, &u8)| {
+        Some(Segment {
+            from: parts.vertex(candidate.cell, edge)?,
+            cell: candidate.cell,
+            face: outline.face(n),
+            turns: candidate.split >> n & 1 == 1 && outline.is_alone(n),
+            normal: candidate.normal(n),
+        })
+    };
+    outline.edges().iter().enumerate().map(segment).collect()
+}
+
+impl Fans {
+    fn new(parts: &Parts<'_>, place: &Place<'_>, candidates: &[Vec<Candidate>], regions: Vec<Region>) -> Fans {
+        let mut all = Fans { fans: Vec::new(), blocks: vec![OfBlock::default(); parts.blocks.len()] };
+        // A region is listed with the block of the candidate that asked for it.
+        let in_region: HashSet<[u32; 3]> =
+            regions.iter().flat_map(|region| region.cells.iter().map(|&(cell, _)| cell)).collect();
+        let mut regions = regions.into_iter().peekable();
+        for (block, candidates) in candidates.iter().enumerate() {
+            let start = all.fans.len();
+            for candidate in candidates.iter().filter(|candidate| !in_region.contains(&candidate.cell)) {
+                let Some(segments) = segments(parts, candidate) else { continue };
+                let high = candidate.cell.map(|n| n + 1);
+                let fan = Fan { segments, at: place.inside(candidate.at, candidate.cell, high) };
+                all.add(parts, fan, &[(candidate.cell, candidate.outline.len())]);
+            }
+            while let Some(region) = regions.next_if(|region| region.block == block) {
+                all.add(parts, region.fan, &region.cells);
+            }
+            all.blocks[block].listed = start..all.fans.len();
+        }
+        for block in &mut all.blocks {
+            block.cells.sort_unstable();
+        }
+        all
+    }
+
+    /// Adds a fan that takes the place of the patches of cells, each with the length of its loop.
+    fn add(&mut self, parts: &Parts<'_>, fan: Fan, cells: &[([u32; 3], usize)]) {
+        for &(cell, length) in cells {
+            let (block, within) = split_cell(cell);
+            if let Some(block) = parts.neighbours.find(block, [0; 3]) {
+                self.blocks[block].cells.push((cell_number(within), self.fans.len() as u32));
+                self.blocks[block].dropped += length.saturating_sub(2);
+            }
+        }
+        self.fans.push(fan);
+    }
+
+    /// The cells of a block that have a fan, by number, and which fan.
+    pub(super) fn cells(&self, block: usize) -> &[(u16, u32)] {
+        self.blocks.get(block).map_or(&[], |block| &block.cells)
+    }
+
+    /// How many triangles a block has, which has `count` without fans.
+    pub(super) fn count(&self, block: usize, count: usize) -> usize {
+        let Some(of_block) = self.blocks.get(block) else { return count };
+        let listed = self.fans[of_block.listed.clone()].iter().map(|fan| fan.segments.len());
+        count - of_block.dropped + listed.sum::<usize>()
+    }
+
+    /// Calls `put` with the triangles of the fans that are listed with a block: feature points
+    /// by the number of their fan, vertices on edges as they are.
+    pub(super) fn triangles(&self, parts: &Parts<'_>, block: usize, mut put: impl FnMut([Corner; 3])) {
+        let Some(of_block) = self.blocks.get(block) else { return };
+        for nth in of_block.listed.clone() {
+            let segments = &self.fans[nth].segments;
+            for (n, segment) in segments.iter().enumerate() {
+                let end = match self.across(parts, nth, segment) {
+                    Some(other) => Corner::Centre(other),
+                    None => Corner::Edge(segments[(n + 1) % segments.len()].from),
+                };
+                put([Corner::Centre(nth), Corner::Edge(segment.from), end]);
+            }
         }
     }
-}
 
-/// The fans of a block's cells, and those of the blocks around it.
-pub(super) struct Fans<'a> {
-    parts: &'a Parts<'a>,
-    starts: &'a Starts,
-    block: usize,
-}
-
-impl<'a> Fans<'a> {
-    pub(super) fn new(parts: &'a Parts<'a>, block: usize, starts: &'a Starts) -> Fans<'a> {
-        Fans { parts, starts, block }
-    }
-
-    /// The fan of a cell, if it has one.
-    pub(super) fn of(&self, cell: [usize; 3]) -> Option<Fan<'_>> {
-        let nth = self.index(self.block, cell)?;
-        Some(Fan { fans: self, cell, feature: &self.parts.features[self.block][nth], centre: self.number(self.block, nth) })
-    }
-
-    fn index(&self, block: usize, cell: [usize; 3]) -> Option<usize> {
-        self.parts.features[block].binary_search_by_key(&cell_number(cell), |feature| feature.cell).ok()
-    }
-
-    fn number(&self, block: usize, nth: usize) -> u32 {
-        self.starts.features[block] + nth as u32
-    }
-
-    /// The feature point of the cell on the other side of a face, if it has one.
-    fn across(&self, cell: [usize; 3], axis: usize, upper: bool) -> Option<u32> {
-        let (mut block, mut cell) = (self.block, cell);
-        let last = if upper { BLOCK - 1 } else { 0 };
-        if cell[axis] == last {
-            let mut by = [0; 3];
-            by[axis] = if upper { 1 } else { -1 };
-            block = self.parts.neighbours.find(self.parts.blocks[block], by)?;
-            cell[axis] = BLOCK - 1 - last;
-        } else if upper {
-            cell[axis] += 1;
-        } else {
-            cell[axis] -= 1;
-        }
-        Some(self.number(block, self.index(block, cell)?))
-    }
-}
-
-/// The fan of a cell.
-pub(super) struct Fan<'a> {
-    fans: &'a Fans<'a>,
-    cell: [usize; 3],
-    feature: &'a Feature,
-    centre: u32,
-}
-
-impl Fan<'_> {
-    /// Calls `put` with the triangles, one for each segment of the loop. `vertex` tells the vertex on an
-    /// edge of the cell.
-    pub(super) fn triangles(&self, vertex: impl Fn(u8) -> Option<u32>, mut put: impl FnMut([Option<u32>; 3])) {
-        let outline = self.feature.outline;
-        let edges = outline.edges();
-        for n in 0..edges.len() {
-            let turned = self.turned(n);
-            let end = turned.or_else(|| vertex(edges[(n + 1) % edges.len()]));
-            put([Some(self.centre), vertex(edges[n]), end]);
-        }
-    }
-
-    /// The feature point on the other side of segment `n`, if the edge between the two fans is
-    /// turned there. Both cells find the same.
-    fn turned(&self, n: usize) -> Option<u32> {
-        let outline = self.feature.outline;
-        if self.feature.split >> n & 1 == 0 || !outline.is_alone(n) {
+    /// The fan on the other side of a segment, if the edge between the two is turned there. Both find
+    /// the same.
+    fn across(&self, parts: &Parts<'_>, fan: usize, segment: &Segment) -> Option<usize> {
+        if !segment.turns {
             return None;
         }
-        let (axis, upper) = outline.face(n);
-        self.fans.across(self.cell, axis, upper)
+        let (axis, upper) = segment.face;
+        let mut cell = segment.cell;
+        cell[axis] = if upper { cell[axis] + 1 } else { cell[axis].checked_sub(1)? };
+        let (block, within) = split_cell(cell);
+        let cells = self.cells(parts.neighbours.find(block, [0; 3])?);
+        let other = cells.binary_search_by_key(&cell_number(within), |&(cell, _)| cell).ok()?;
+        let other = cells[other].1 as usize;
+        let (low, high) = if upper { (fan, other) } else { (other, fan) };
+        let mut above = segment.cell;
+        above[axis] += u32::from(upper);
+        self.crosses(parts, low, high, axis, above).then_some(other)
     }
+
+    /// Whether the line between two feature points crosses the face that is the lower one of a cell along
+    /// an axis, in its inside.
+    fn crosses(&self, parts: &Parts<'_>, low: usize, high: usize, axis: usize, cell: [u32; 3]) -> bool {
+        let (a, b) = (self.fans[low].at.as_dvec3(), self.fans[high].at.as_dvec3());
+        let node = |[i, j, k]: [u32; 3]| parts.lattice.node(i, j, k).as_vec3().as_dvec3();
+        let (first, last) = (node(cell), node(cell.map(|n| n + 1)));
+        let x = a + (b - a) * ((first[axis] - a[axis]) / (b[axis] - a[axis]));
+        // More than the rounding of the line above.
+        let margin = 1e-12 * first.abs().max(last.abs()).max_element();
+        (0..3).filter(|&other| other != axis).all(|n| x[n] > first[n] + margin && x[n] < last[n] - margin)
+    }
+}
+
+/// A corner of a triangle of a fan.
+#[derive(Clone, Copy)]
+pub(super) enum Corner {
+    /// The feature point of the fan with this number.
+    Centre(usize),
+    /// A vertex on an edge.
+    Edge(Found),
 }

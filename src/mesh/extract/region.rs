@@ -1,0 +1,166 @@
+//! Regions: cells that share a fan, where a crease passes a cell that has no surface of its own.
+//!
+//! ```text
+//!     +-------+-------+        The crease leaves A, cuts the corner of C, and goes on in D. All nodes
+//!     |  A  . | - . C |        of C are outside, so the mesh has nothing there: the point of E,
+//!     |  .    |     . |        held in E, is too low by the depth of the cut. The four cells
+//!     o-------+-------o        together are convex and have a single loop, as the edge in the
+//!     |   E   |  D   .|        middle is not crossed: they can have one fan, whose point may
+//!     |       |       |        be anywhere in the four, on the crease.
+//!     o-------o-------+
+//! ```
+//!
+//! A cell asks for a region if the planes of its sides meet outside, in another cell: the region is the
+//! smallest box of cells that holds both. It comes about if
+//!
+//! * every cell of it has a single loop or none, and none is in a region yet;
+//! * the loops, with the segments that two of them share removed, make a single loop that all vertices
+//!   are in: the patches that are replaced make a disc, and so is the fan;
+//! * the planes of all its cells meet better in the region than those of the cell did in it.
+//!
+//! The loop then lies in the boundary of a convex box, and what [`sharp`](super::sharp) says of the
+//! fans of cells holds for that of the region; an edge between two fans is turned only where it goes through
+//! the face that the segment is in, which is always so between single cells.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+use super::sharp::{Fan, Place, Segment, segments};
+use super::{Found, Parts};
+use crate::mesh::feature::{Candidate, settle};
+use crate::mesh::loops::CellLoop;
+use crate::mesh::qef::Planes;
+
+/// A cell asks for a region if its point is farther from the planes than this, in cells.
+const MISFIT: f64 = 0.01;
+
+/// Cells that share a fan.
+pub(super) struct Region {
+    /// The block of the cell that asked for it.
+    pub(super) block: usize,
+    pub(super) fan: Fan,
+    /// The cells with the lengths of their loops, 0 for those without.
+    pub(super) cells: Vec<([u32; 3], usize)>,
+}
+
+/// The regions that candidates ask for, those that fit their planes worst first; in the order of the blocks.
+pub(super) fn regions(parts: &Parts<'_>, place: &Place<'_>, candidates: &[Vec<Candidate>]) -> Vec<Region> {
+    let mut asking: Vec<(f64, usize, &Candidate)> = Vec::new();
+    for (block, list) in candidates.iter().enumerate() {
+        for candidate in list {
+            let misfit = candidate.planes.distance(candidate.at);
+            if misfit > MISFIT {
+                asking.push((misfit, block, candidate));
+            }
+        }
+    }
+    asking.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut known = Known { parts, place, candidates, taken: HashMap::new() };
+    let mut regions: Vec<Region> =
+        asking.iter().filter_map(|&(misfit, block, candidate)| known.region(misfit, block, candidate)).collect();
+    regions.sort_by_key(|region| region.block);
+    regions
+}
+
+struct Known<'a> {
+    parts: &'a Parts<'a>,
+    place: &'a Place<'a>,
+    candidates: &'a [Vec<Candidate>],
+    /// The cells that are in a region.
+    taken: HashMap<[u32; 3], ()>,
+}
+
+impl Known<'_> {
+    fn region(&mut self, misfit: f64, block: usize, asking: &Candidate) -> Option<Region> {
+        let unbound = asking.unbound();
+        let target = unbound.floor();
+        let mut other = asking.cell;
+        for axis in 0..3 {
+            let by = (target[axis] - f64::from(asking.cell[axis])).clamp(-1.0, 1.0) as i32;
+            other[axis] = other[axis].checked_add_signed(by)?;
+        }
+        if other == asking.cell {
+            return None;
+        }
+        let low: [u32; 3] = std::array::from_fn(|axis| asking.cell[axis].min(other[axis]));
+        let high: [u32; 3] = std::array::from_fn(|axis| asking.cell[axis].max(other[axis]) + 1);
+
+        let (mut cells, mut all, mut planes, mut patches) = (Vec::new(), Vec::new(), Planes::NONE, 0);
+        for k in low[2]..high[2] {
+            for j in low[1]..high[1] {
+                for i in low[0]..high[0] {
+                    let cell = [i, j, k];
+                    if self.taken.contains_key(&cell) {
+                        return None;
+                    }
+                    let case = self.parts.case(cell);
+                    if case == 0 || case == 255 {
+                        cells.push((cell, 0));
+                        continue;
+                    }
+                    let candidate = self.candidate(cell, case)?;
+                    planes.append(&candidate.planes);
+                    cells.push((cell, candidate.outline.len()));
+                    all.extend(segments(self.parts, &candidate)?);
+                    patches += 1;
+                }
+            }
+        }
+        let segments = glued(all, patches)?;
+        let corner = |cell: [u32; 3]| DVec3::from_array(cell.map(f64::from));
+        let at = settle(&planes, unbound, corner(low), corner(high), 3);
+        if planes.distance(at) > 0.5 * misfit || asking.planes.distance(at) > 0.5 * misfit {
+            return None;
+        }
+        self.taken.extend(cells.iter().map(|&(cell, _)| (cell, ())));
+        Some(Region { block, fan: Fan { segments, at: self.place.inside(at, low, high) }, cells })
+    }
+
+    /// A crossed cell with a single loop.
+    fn candidate(&self, cell: [u32; 3], case: u8) -> Option<Candidate> {
+        let (block, _) = super::sharp::split_cell(cell);
+        let block = self.parts.neighbours.find(block, [0; 3])?;
+        if let Some(candidate) = self.candidates[block].iter().find(|candidate| candidate.cell == cell) {
+            return Some(candidate.clone());
+        }
+        let outline = CellLoop::single(case)?;
+        let vertex = |&edge: &u8| Some(self.parts.get(self.parts.vertex(cell, edge)?));
+        let vertices: Option<Vec<_>> = outline.edges().iter().map(vertex).collect();
+        Some(self.place.candidate(cell, outline, &vertices?))
+    }
+}
+
+/// The loop around several patches, if they hang together such that they make a disc that all their
+/// vertices are on the boundary of.
+fn glued(all: Vec<Segment>, patches: usize) -> Option<Vec<Segment>> {
+    // The segments in the order of the cells, each with its end.
+    let mut ends: Vec<Found> = Vec::with_capacity(all.len());
+    let mut start = 0;
+    for (n, segment) in all.iter().enumerate() {
+        let last = all.get(n + 1).is_none_or(|next| next.cell != segment.cell);
+        ends.push(if last { all[start].from } else { all[n + 1].from });
+        if last {
+            start = n + 1;
+        }
+    }
+    let sides: Vec<(Found, Found)> = all.iter().map(|segment| segment.from).zip(ends).collect();
+    let outer: Vec<usize> = (0..all.len()).filter(|&n| !sides.contains(&(sides[n].1, sides[n].0))).collect();
+    // Shared segments count twice; patches in a tree share one fewer than they are.
+    if all.len() - outer.len() != 2 * (patches - 1) {
+        return None;
+    }
+    let first = *outer.first()?;
+    let mut ring = vec![all[first]];
+    let mut at = sides[first].1;
+    while at != sides[first].0 {
+        let next = *outer.iter().find(|&&n| sides[n].0 == at)?;
+        ring.push(all[next]);
+        at = sides[next].1;
+        if ring.len() > outer.len() {
+            return None;
+        }
+    }
+    let is_in_ring = |vertex: Found| ring.iter().any(|segment| segment.from == vertex);
+    (ring.len() == outer.len() && all.iter().all(|segment| is_in_ring(segment.from))).then_some(ring)
+}
