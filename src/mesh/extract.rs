@@ -43,6 +43,7 @@ use super::Features;
 use crate::geom::{Mesh, MeshError};
 use crate::run::{Cancelled, Run};
 
+mod joined;
 mod region;
 mod sharp;
 
@@ -382,15 +383,20 @@ impl Parts<'_> {
         let mut slots = out.iter_mut();
         let mut complete = true;
         let mut with_fan = self.fans.cells(n).iter().peekable();
+        let mut opposite = self.fans.opposite(n).iter().peekable();
         for_each_cell(&self.sampled[n].signs, |cell, case| {
             let cell_number = sharp::cell_number(cell);
             while with_fan.next_if(|(other, _)| *other < cell_number).is_some() {}
             if with_fan.peek().is_some_and(|(other, _)| *other == cell_number) {
                 return;
             }
-            for (triangle, slot) in table.triangles(case).iter().zip(&mut slots) {
-                match triangle.map(|edge| lookup.vertex(cell, edge)) {
-                    [Some(a), Some(b), Some(c)] => *slot = [a, b, c].map(number),
+            let is_opposite = opposite.next_if(|(other, _)| *other == cell_number).is_some();
+            for triangle in table.triangles(if is_opposite { !case } else { case }) {
+                match (triangle.map(|edge| lookup.vertex(cell, edge)), slots.next()) {
+                    ([Some(a), Some(b), Some(c)], Some(slot)) => {
+                        let [a, b, c] = [a, b, c].map(number);
+                        *slot = if is_opposite { [a, c, b] } else { [a, b, c] };
+                    }
                     _ => complete = false,
                 }
             }

@@ -63,13 +63,13 @@ pub(super) fn is_smooth(vertices: &[(Vec3, Vec3)]) -> bool {
 #[derive(Clone)]
 pub(super) struct Candidate {
     pub(super) cell: [u32; 3],
-    pub(super) outline: &'static CellLoop,
+    pub(super) outline: CellLoop,
     /// The vertices of the loop.
     vertices: [DVec3; LONGEST],
     /// The outward normals there; later those that the sides of the vertices have close to `at`.
     normals: [DVec3; LONGEST],
     /// The segments, from vertex n to the next, whose ends have different normals, as bits.
-    pub(super) split: u8,
+    pub(super) split: u16,
     /// The feature point.
     pub(super) at: DVec3,
     /// The sides' planes close to it.
@@ -79,7 +79,7 @@ pub(super) struct Candidate {
 impl Candidate {
     /// The cell with a first feature point. `given` are the vertices on the edges of the loop, in
     /// order, with their outward normals.
-    pub(super) fn new(cell: [u32; 3], outline: &'static CellLoop, given: &[(DVec3, Vec3)]) -> Candidate {
+    pub(super) fn new(cell: [u32; 3], outline: CellLoop, given: &[(DVec3, Vec3)]) -> Candidate {
         let mut candidate = Candidate {
             cell,
             outline,
@@ -97,7 +97,7 @@ impl Candidate {
                 candidate.planes.add(candidate.normals[n], candidate.normals[n].dot(position));
             }
             let (_, next) = given[(n + 1) % given.len()];
-            candidate.split |= u8::from(normal.dot(next) < SMOOTH) << n;
+            candidate.split |= u16::from(normal.dot(next) < SMOOTH) << n;
         }
         candidate.settle();
         candidate

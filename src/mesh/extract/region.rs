@@ -26,11 +26,13 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use super::sharp::{Fan, Place, Segment, segments};
+use super::joined::Joined;
+use super::sharp::{Fan, Place, Segment, Special, segments};
 use super::{Found, Parts};
 use crate::mesh::feature::{Candidate, settle};
 use crate::mesh::loops::CellLoop;
 use crate::mesh::qef::Planes;
+use crate::mesh::table::CaseTable;
 
 /// A cell asks for a region if its point is farther from the planes than this, in cells.
 const MISFIT: f64 = 0.01;
@@ -40,15 +42,20 @@ pub(super) struct Region {
     /// The block of the cell that asked for it.
     pub(super) block: usize,
     pub(super) fan: Fan,
-    /// The cells with the lengths of their loops, 0 for those without.
+    /// The cells, with the numbers of triangles that they have in the table.
     pub(super) cells: Vec<([u32; 3], usize)>,
 }
 
 /// The regions that candidates ask for, those that fit their planes worst first; in the order of the blocks.
-pub(super) fn regions(parts: &Parts<'_>, place: &Place<'_>, candidates: &[Vec<Candidate>]) -> Vec<Region> {
+pub(super) fn regions(
+    parts: &Parts<'_>,
+    place: &Place<'_>,
+    special: &[Special],
+    joined: &Joined,
+) -> Vec<Region> {
     let mut asking: Vec<(f64, usize, &Candidate)> = Vec::new();
-    for (block, list) in candidates.iter().enumerate() {
-        for candidate in list {
+    for (block, list) in special.iter().enumerate() {
+        for candidate in &list.candidates {
             let misfit = candidate.planes.distance(candidate.at);
             if misfit > MISFIT {
                 asking.push((misfit, block, candidate));
@@ -56,7 +63,7 @@ pub(super) fn regions(parts: &Parts<'_>, place: &Place<'_>, candidates: &[Vec<Ca
         }
     }
     asking.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut known = Known { parts, place, candidates, taken: HashMap::new() };
+    let mut known = Known { parts, place, special, joined, taken: HashMap::new() };
     let mut regions: Vec<Region> =
         asking.iter().filter_map(|&(misfit, block, candidate)| known.region(misfit, block, candidate)).collect();
     regions.sort_by_key(|region| region.block);
@@ -66,7 +73,8 @@ pub(super) fn regions(parts: &Parts<'_>, place: &Place<'_>, candidates: &[Vec<Ca
 struct Known<'a> {
     parts: &'a Parts<'a>,
     place: &'a Place<'a>,
-    candidates: &'a [Vec<Candidate>],
+    special: &'a [Special],
+    joined: &'a Joined,
     /// The cells that are in a region.
     taken: HashMap<[u32; 3], ()>,
 }
@@ -101,7 +109,7 @@ impl Known<'_> {
                     }
                     let candidate = self.candidate(cell, case)?;
                     planes.append(&candidate.planes);
-                    cells.push((cell, candidate.outline.len()));
+                    cells.push((cell, CaseTable::get().triangles(case).len()));
                     all.extend(segments(self.parts, &candidate)?);
                     patches += 1;
                 }
@@ -121,10 +129,10 @@ impl Known<'_> {
     fn candidate(&self, cell: [u32; 3], case: u8) -> Option<Candidate> {
         let (block, _) = super::sharp::split_cell(cell);
         let block = self.parts.neighbours.find(block, [0; 3])?;
-        if let Some(candidate) = self.candidates[block].iter().find(|candidate| candidate.cell == cell) {
+        if let Some(candidate) = self.special[block].candidates.iter().find(|candidate| candidate.cell == cell) {
             return Some(candidate.clone());
         }
-        let outline = CellLoop::single(case)?;
+        let outline = CellLoop::single(case, self.joined.of(self.parts, cell, case))?;
         let vertex = |&edge: &u8| Some(self.parts.get(self.parts.vertex(cell, edge)?));
         let vertices: Option<Vec<_>> = outline.edges().iter().map(vertex).collect();
         Some(self.place.candidate(cell, outline, &vertices?))

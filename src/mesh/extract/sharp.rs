@@ -40,12 +40,14 @@ use std::ops::Range;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
+use super::joined::{Joined, proposals};
 use super::region::{Region, regions};
 use super::{Found, Lookup, Meter, Parts, Sampler};
 use crate::mesh::feature::{Candidate, SMOOTH, is_smooth, refine};
 use crate::mesh::lattice::Lattice;
 use crate::mesh::loops::{CellLoop, LONGEST};
 use crate::mesh::signs::{BLOCK, for_each_cell};
+use crate::mesh::table::CaseTable;
 use crate::run::{Cancelled, Run};
 
 /// A segment of a loop: from a vertex to that of the next segment.
@@ -55,7 +57,7 @@ pub(super) struct Segment {
     /// The cell that it bounds the surface of, and the face that it is in.
     pub(super) cell: [u32; 3],
     pub(super) face: (usize, bool),
-    /// Whether it may be turned: it is the only one in the face, and its ends have different normals.
+    /// Whether it may be turned: its ends have different normals.
     pub(super) turns: bool,
     /// The normal close to the feature point on the side of the vertex.
     pub(super) normal: Vec3,
@@ -91,6 +93,8 @@ struct OfBlock {
     cells: Vec<(u16, u32)>,
     /// How many triangles of the table they have no more.
     dropped: usize,
+    /// The cells that have the patches of the opposite case, by number; ascending.
+    opposite: Vec<(u16, u8)>,
 }
 
 /// The block of a cell, by its first cell, and the number of the cell in it: x fastest, then y, then z.
@@ -110,52 +114,72 @@ pub(super) fn find<S: Sampler>(
     lattice: &Lattice,
     run: &Run,
 ) -> Result<Fans, Cancelled> {
+    let blocks = || (0..parts.blocks.len()).into_par_iter();
     let meter = Meter::new(run, parts.blocks.len());
     let place = Place { lattice };
+    // Most blocks are settled as a whole.
+    let spread: Vec<bool> =
+        blocks().map(|n| Lookup::new(parts, n).normal_spread().length_squared() > 2.0 - 2.0 * SMOOTH).collect();
+    if !spread.contains(&true) {
+        return Ok(Fans::default());
+    }
+    let of_block = |scratch: &mut S::Scratch, n: usize| {
+        if spread[n] { proposals(parts, sampler, scratch, lattice, n) } else { Vec::new() }
+    };
+    let joined = Joined::new(parts, blocks().map_init(|| sampler.scratch(), of_block).collect());
     let of_block = |scratch: &mut S::Scratch, n: usize| {
         meter.step()?;
-        let mut candidates = candidates(parts, &place, n);
-        if candidates.is_empty() {
-            return Ok(candidates);
+        if !spread[n] && !joined.concerns(parts, n) {
+            return Ok(Special::default());
         }
+        let mut special = special(parts, &place, &joined, n);
         let mut points = Vec::new();
-        refine(&mut candidates, lattice.step(), |local, out| {
+        refine(&mut special.candidates, lattice.step(), |local, out| {
             points.clear();
             points.extend(local.iter().map(|p| place.world(*p)));
             sampler.slopes(scratch, parts.blocks[n], &points, out)
         });
-        Ok(candidates)
+        Ok(special)
     };
-    let candidates: Result<Vec<Vec<Candidate>>, Cancelled> =
-        (0..parts.blocks.len()).into_par_iter().map_init(|| sampler.scratch(), of_block).collect();
-    let candidates = candidates?;
-    if candidates.iter().all(Vec::is_empty) {
-        return Ok(Fans::default());
-    }
-    let regions = regions(parts, &place, &candidates);
-    Ok(Fans::new(parts, &place, &candidates, regions))
+    let special: Result<Vec<Special>, Cancelled> =
+        blocks().map_init(|| sampler.scratch(), of_block).collect();
+    let special = special?;
+    let regions = regions(parts, &place, &special, &joined);
+    Ok(Fans::new(parts, &place, special, regions))
 }
 
-/// The cells of block `n` with one loop, around which the normals spread.
-fn candidates(parts: &Parts<'_>, place: &Place<'_>, n: usize) -> Vec<Candidate> {
+/// The cells of a block that do not have the patches of the table.
+#[derive(Default)]
+pub(super) struct Special {
+    /// Those with a single loop, in order.
+    pub(super) candidates: Vec<Candidate>,
+    /// Those with the patches of the opposite case, by number, and their cases.
+    opposite: Vec<(u16, u8)>,
+}
+
+/// The cells of block `n` around which the normals spread, or faces are joined.
+fn special(parts: &Parts<'_>, place: &Place<'_>, joined: &Joined, n: usize) -> Special {
     let lookup = Lookup::new(parts, n);
-    let mut found = Vec::new();
-    // Most blocks are settled as a whole.
-    if lookup.normal_spread().length_squared() < 2.0 - 2.0 * SMOOTH {
-        return found;
-    }
+    let mut found = Special::default();
     let block = parts.blocks[n];
     let mut around = Vec::with_capacity(LONGEST);
     for_each_cell(&parts.sampled[n].signs, |cell, case| {
-        let Some(outline) = CellLoop::single(case) else { return };
+        let lattice_cell = std::array::from_fn(|axis| block[axis] + cell[axis] as u32);
+        let faces = joined.of(parts, lattice_cell, case);
+        let Some(outline) = CellLoop::single(case, faces) else {
+            if faces != 0 {
+                found.opposite.push((cell_number(cell), case));
+            }
+            return;
+        };
         around.clear();
         for &edge in outline.edges() {
             let Some(vertex) = lookup.vertex(cell, edge) else { return };
             around.push(parts.get(vertex));
         }
-        if !is_smooth(&around) {
-            let cell = std::array::from_fn(|axis| block[axis] + cell[axis] as u32);
-            found.push(place.candidate(cell, outline, &around));
+        // The table knows nothing of joined faces.
+        if faces != 0 || !is_smooth(&around) {
+            found.candidates.push(place.candidate(lattice_cell, outline, &around));
         }
     });
     found
@@ -178,7 +202,7 @@ impl Place<'_> {
     pub(super) fn candidate(
         &self,
         cell: [u32; 3],
-        outline: &'static CellLoop,
+        outline: CellLoop,
         vertices: &[(Vec3, Vec3)],
     ) -> Candidate {
         let local: Vec<(DVec3, Vec3)> = vertices.iter().map(|&(p, normal)| (self.local(p), normal)).collect();
@@ -202,7 +226,7 @@ pub(super) fn segments(parts: &Parts<'_>, candidate: &Candidate) -> Option<Vec<S
             from: parts.vertex(candidate.cell, edge)?,
             cell: candidate.cell,
             face: outline.face(n),
-            turns: candidate.split >> n & 1 == 1 && outline.is_alone(n),
+            turns: candidate.split >> n & 1 == 1,
             normal: candidate.normal(n),
         })
     };
@@ -210,19 +234,21 @@ pub(super) fn segments(parts: &Parts<'_>, candidate: &Candidate) -> Option<Vec<S
 }
 
 impl Fans {
-    fn new(parts: &Parts<'_>, place: &Place<'_>, candidates: &[Vec<Candidate>], regions: Vec<Region>) -> Fans {
+    fn new(parts: &Parts<'_>, place: &Place<'_>, special: Vec<Special>, regions: Vec<Region>) -> Fans {
         let mut all = Fans { fans: Vec::new(), blocks: vec![OfBlock::default(); parts.blocks.len()] };
         // A region is listed with the block of the candidate that asked for it.
         let in_region: HashSet<[u32; 3]> =
             regions.iter().flat_map(|region| region.cells.iter().map(|&(cell, _)| cell)).collect();
         let mut regions = regions.into_iter().peekable();
-        for (block, candidates) in candidates.iter().enumerate() {
+        let table = CaseTable::get();
+        for (block, Special { candidates, opposite }) in special.into_iter().enumerate() {
+            all.blocks[block].opposite = opposite;
             let start = all.fans.len();
             for candidate in candidates.iter().filter(|candidate| !in_region.contains(&candidate.cell)) {
                 let Some(segments) = segments(parts, candidate) else { continue };
                 let high = candidate.cell.map(|n| n + 1);
                 let fan = Fan { segments, at: place.inside(candidate.at, candidate.cell, high) };
-                all.add(parts, fan, &[(candidate.cell, candidate.outline.len())]);
+                all.add(parts, fan, &[(candidate.cell, table.triangles(parts.case(candidate.cell)).len())]);
             }
             while let Some(region) = regions.next_if(|region| region.block == block) {
                 all.add(parts, region.fan, &region.cells);
@@ -235,13 +261,13 @@ impl Fans {
         all
     }
 
-    /// Adds a fan that takes the place of the patches of cells, each with the length of its loop.
+    /// Adds a fan that takes the place of the patches of cells, each with the number of its triangles.
     fn add(&mut self, parts: &Parts<'_>, fan: Fan, cells: &[([u32; 3], usize)]) {
-        for &(cell, length) in cells {
+        for &(cell, count) in cells {
             let (block, within) = split_cell(cell);
             if let Some(block) = parts.neighbours.find(block, [0; 3]) {
                 self.blocks[block].cells.push((cell_number(within), self.fans.len() as u32));
-                self.blocks[block].dropped += length.saturating_sub(2);
+                self.blocks[block].dropped += count;
             }
         }
         self.fans.push(fan);
@@ -256,7 +282,16 @@ impl Fans {
     pub(super) fn count(&self, block: usize, count: usize) -> usize {
         let Some(of_block) = self.blocks.get(block) else { return count };
         let listed = self.fans[of_block.listed.clone()].iter().map(|fan| fan.segments.len());
-        count - of_block.dropped + listed.sum::<usize>()
+        let table = CaseTable::get();
+        let triangles = |case: u8| table.triangles(case).len();
+        let gone: usize = of_block.opposite.iter().map(|&(_, case)| triangles(case)).sum();
+        let come: usize = of_block.opposite.iter().map(|&(_, case)| triangles(!case)).sum();
+        count + listed.sum::<usize>() + come - of_block.dropped - gone
+    }
+
+    /// The cells of a block that have the patches of the opposite case, by number.
+    pub(super) fn opposite(&self, block: usize) -> &[(u16, u8)] {
+        self.blocks.get(block).map_or(&[], |block| &block.opposite)
     }
 
     /// Calls `put` with the triangles of the fans that are listed with a block: feature points
@@ -288,22 +323,47 @@ impl Fans {
         let cells = self.cells(parts.neighbours.find(block, [0; 3])?);
         let other = cells.binary_search_by_key(&cell_number(within), |&(cell, _)| cell).ok()?;
         let other = cells[other].1 as usize;
+        self.turns(parts, fan, other, segment).then_some(other)
+    }
+
+    /// Whether the edge between two fans is turned at a segment of the first.
+    fn turns(&self, parts: &Parts<'_>, fan: usize, other: usize, segment: &Segment) -> bool {
+        // Both fans calculate with the same numbers in the same order.
+        let (axis, upper) = segment.face;
         let (low, high) = if upper { (fan, other) } else { (other, fan) };
         let mut above = segment.cell;
         above[axis] += u32::from(upper);
-        self.crosses(parts, low, high, axis, above).then_some(other)
-    }
-
-    /// Whether the line between two feature points crosses the face that is the lower one of a cell along
-    /// an axis, in its inside.
-    fn crosses(&self, parts: &Parts<'_>, low: usize, high: usize, axis: usize, cell: [u32; 3]) -> bool {
         let (a, b) = (self.fans[low].at.as_dvec3(), self.fans[high].at.as_dvec3());
         let node = |[i, j, k]: [u32; 3]| parts.lattice.node(i, j, k).as_vec3().as_dvec3();
-        let (first, last) = (node(cell), node(cell.map(|n| n + 1)));
+        let (first, last) = (node(above), node(above.map(|n| n + 1)));
         let x = a + (b - a) * ((first[axis] - a[axis]) / (b[axis] - a[axis]));
         // More than the rounding of the line above.
         let margin = 1e-12 * first.abs().max(last.abs()).max_element();
-        (0..3).filter(|&other| other != axis).all(|n| x[n] > first[n] + margin && x[n] < last[n] - margin)
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        if ![u, v].into_iter().all(|n| x[n] > first[n] + margin && x[n] < last[n] - margin) {
+            return false;
+        }
+        let segments = &self.fans[fan].segments;
+        let in_face = |n: &usize| segments[*n].cell == segment.cell && segments[*n].face == segment.face;
+        let mut both = (0..segments.len()).filter(in_face);
+        let (Some(p), Some(q)) = (both.next(), both.next()) else { return true };
+        // Of the two segments of an ambiguous face, the one that is closer may be turned, if the other one
+        // is not in the way: twice the area of the triangle of a segment and x, with the sign of the side.
+        let area = |n: usize| {
+            let ends = [n, (n + 1) % segments.len()].map(|n| parts.get(segments[n].from).0.as_dvec3() - x);
+            ends[0][u] * ends[1][v] - ends[0][v] * ends[1][u]
+        };
+        let (own, foreign) = if segments[p].from == segment.from { (p, q) } else { (q, p) };
+        let (size, away) = (area(own), area(foreign));
+        // Both run such that what is between them is on the same hand.
+        let reach = margin * (last - first).max_element() * 4.0;
+        let side = {
+            let ends = [foreign, (foreign + 1) % segments.len()].map(|n| parts.get(segments[n].from).0.as_dvec3());
+            let s = parts.get(segment.from).0.as_dvec3();
+            let (d, e) = (ends[0] - s, ends[1] - s);
+            d[u] * e[v] - d[v] * e[u]
+        };
+        size.abs() < away.abs() && away.abs() > reach && (away > 0.0) == (side > 0.0)
     }
 }
 
