@@ -35,11 +35,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
+use super::Features;
 use super::feature::Slope;
 use super::lattice::Lattice;
 use super::signs::{BLOCK, EdgeRef, NODES, OWNED, Signs, edge_number, for_each_cell, is_mixed, list_edges};
 use super::table::{CaseTable, EDGE_CORNERS, edge_axis};
-use super::Features;
 use crate::geom::{Mesh, MeshError};
 use crate::run::{Cancelled, Run};
 
@@ -71,13 +71,7 @@ pub(crate) trait Sampler: Sync {
 
     /// Adds values and gradients of the field at points in a block, in the order of the points,
     /// to `out`. The default knows of none: features are placed by the normals of the roots.
-    fn slopes(
-        &self,
-        _scratch: &mut Self::Scratch,
-        _block: [u32; 3],
-        _points: &[DVec3],
-        _out: &mut Vec<Slope>,
-    ) -> bool {
+    fn slopes(&self, _scratch: &mut Self::Scratch, _block: [u32; 3], _points: &[DVec3], _out: &mut Vec<Slope>) -> bool {
         false
     }
 }

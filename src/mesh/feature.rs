@@ -119,6 +119,17 @@ impl Candidate {
         self.at = settle(&self.planes, self.at, low, low + 1.0, 1);
     }
 
+    /// The direction of the crease, if there are two sides and no more.
+    pub(super) fn crease(&self) -> Option<DVec3> {
+        let normals = &self.normals[..self.outline.len()];
+        let pairs = (0..normals.len()).flat_map(|a| (0..a).map(move |b| (a, b)));
+        let across = pairs.map(|(a, b)| normals[a].cross(normals[b]));
+        let along = across.max_by(|u, v| u.length_squared().total_cmp(&v.length_squared()))?;
+        let unit = along.try_normalize()?;
+        // A third side would have a normal along the crease of the two.
+        (along.length() > 0.3 && normals.iter().all(|normal| normal.dot(unit).abs() < 0.2)).then_some(unit)
+    }
+
     /// Where the planes meet if the point may leave the cell, by one cell at most.
     pub(super) fn unbound(&self) -> DVec3 {
         let low = DVec3::from_array(self.cell.map(f64::from));

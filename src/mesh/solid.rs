@@ -255,10 +255,12 @@ impl Sampler for SolidSampler<'_> {
         let inside = points.iter().map(|p| p.clamp(bounds.min, bounds.max) - tape.origin());
         gradients(scratch, &tape, inside);
         let [value, dx, dy, dz] = &scratch.slopes;
-        out.extend((0..points.len()).map(|n| Slope {
-            value: value[n].into(),
-            gradient: DVec3::new(dx[n].into(), dy[n].into(), dz[n].into()),
-        }));
+        out.extend(
+            (0..points.len()).map(|n| Slope {
+                value: value[n].into(),
+                gradient: DVec3::new(dx[n].into(), dy[n].into(), dz[n].into()),
+            }),
+        );
         true
     }
 }

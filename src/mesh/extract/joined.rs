@@ -115,7 +115,8 @@ impl Joined {
             ambiguous &= ambiguous - 1;
             let mut below = cell;
             below[face / 2] = below[face / 2].wrapping_sub(1 - face as u32 % 2);
-            let is_joined = self.find(parts, below).is_some_and(|(block, n)| self.upper[block][n].1 >> (face / 2) & 1 == 1);
+            let is_joined =
+                self.find(parts, below).is_some_and(|(block, n)| self.upper[block][n].1 >> (face / 2) & 1 == 1);
             bits |= u8::from(is_joined) << face;
         }
         bits

@@ -47,27 +47,87 @@ pub(super) struct Region {
 }
 
 /// The regions that candidates ask for, those that fit their planes worst first; in the order of the blocks.
-pub(super) fn regions(
-    parts: &Parts<'_>,
-    place: &Place<'_>,
-    special: &[Special],
-    joined: &Joined,
-) -> Vec<Region> {
-    let mut asking: Vec<(f64, usize, &Candidate)> = Vec::new();
+pub(super) fn regions(parts: &Parts<'_>, place: &Place<'_>, special: &[Special], joined: &Joined) -> Vec<Region> {
+    let mut asking: Vec<Wish> = Vec::new();
     for (block, list) in special.iter().enumerate() {
         for candidate in &list.candidates {
             let misfit = candidate.planes.distance(candidate.at);
             if misfit > MISFIT {
-                asking.push((misfit, block, candidate));
+                let at = candidate.unbound();
+                let target = at.floor();
+                if let Some(other) = towards(candidate.cell, target) {
+                    asking.push(Wish { size: misfit, block, candidate, other, at, allowed: 0.5 * misfit });
+                }
+            } else {
+                for along in candidate.crease().into_iter().flat_map(|d| [d, -d]) {
+                    if let Some((size, other, at)) = beyond(parts, candidate, along) {
+                        asking.push(Wish { size, block, candidate, other, at, allowed: 2.0 * MISFIT });
+                    }
+                }
             }
         }
     }
-    asking.sort_by(|a, b| b.0.total_cmp(&a.0));
+    asking.sort_by(|a, b| b.size.total_cmp(&a.size));
     let mut known = Known { parts, place, special, joined, taken: HashMap::new() };
-    let mut regions: Vec<Region> =
-        asking.iter().filter_map(|&(misfit, block, candidate)| known.region(misfit, block, candidate)).collect();
+    let mut regions: Vec<Region> = asking.iter().filter_map(|wish| known.region(wish)).collect();
     regions.sort_by_key(|region| region.block);
     regions
+}
+
+/// A region that a cell asks for.
+struct Wish<'a> {
+    /// How far off the mesh may be without it, in cells.
+    size: f64,
+    /// The block of the cell.
+    block: usize,
+    candidate: &'a Candidate,
+    /// The cell in the opposite corner of the region.
+    other: [u32; 3],
+    /// About where the point goes.
+    at: DVec3,
+    /// How far it may be from the planes.
+    allowed: f64,
+}
+
+/// The cell that is a step towards another, along every axis where they differ.
+fn towards(cell: [u32; 3], target: DVec3) -> Option<[u32; 3]> {
+    let mut other = cell;
+    for axis in 0..3 {
+        let by = (target[axis] - f64::from(cell[axis])).clamp(-1.0, 1.0) as i32;
+        other[axis] = other[axis].checked_add_signed(by)?;
+    }
+    (other != cell).then_some(other)
+}
+
+/// Follows a crease from the point of a cell. If it goes through empty cells and then comes to
+/// one that is a neighbour of the first by an edge or a corner: how long it is in them, the cell, and
+/// the middle of that part.
+fn beyond(parts: &Parts<'_>, candidate: &Candidate, along: DVec3) -> Option<(f64, [u32; 3], DVec3)> {
+    let (mut cell, mut at) = (candidate.cell, candidate.at);
+    let mut entry: Option<DVec3> = None;
+    for _ in 0..4 {
+        // Where the line leaves the cell.
+        let (mut axis, mut least) = (0, f64::INFINITY);
+        for n in 0..3 {
+            let side = f64::from(cell[n]) + f64::from(u8::from(along[n] > 0.0));
+            let part = (side - at[n]) / along[n];
+            if part < least {
+                (axis, least) = (n, part);
+            }
+        }
+        at += along * least;
+        cell[axis] = cell[axis].checked_add_signed(if along[axis] > 0.0 { 1 } else { -1 })?;
+        if (0..3).any(|n| cell[n].abs_diff(candidate.cell[n]) > 1) {
+            return None;
+        }
+        match (entry, matches!(parts.case(cell), 0 | 255)) {
+            (None, false) => return None,
+            (None, true) => entry = Some(at),
+            (Some(start), false) => return Some((0.5 * (at - start).length(), cell, 0.5 * (start + at))),
+            (Some(_), true) => {}
+        }
+    }
+    None
 }
 
 struct Known<'a> {
@@ -80,17 +140,8 @@ struct Known<'a> {
 }
 
 impl Known<'_> {
-    fn region(&mut self, misfit: f64, block: usize, asking: &Candidate) -> Option<Region> {
-        let unbound = asking.unbound();
-        let target = unbound.floor();
-        let mut other = asking.cell;
-        for axis in 0..3 {
-            let by = (target[axis] - f64::from(asking.cell[axis])).clamp(-1.0, 1.0) as i32;
-            other[axis] = other[axis].checked_add_signed(by)?;
-        }
-        if other == asking.cell {
-            return None;
-        }
+    fn region(&mut self, wish: &Wish<'_>) -> Option<Region> {
+        let &Wish { block, candidate: asking, other, .. } = wish;
         let low: [u32; 3] = std::array::from_fn(|axis| asking.cell[axis].min(other[axis]));
         let high: [u32; 3] = std::array::from_fn(|axis| asking.cell[axis].max(other[axis]) + 1);
 
@@ -117,8 +168,8 @@ impl Known<'_> {
         }
         let segments = glued(all, patches)?;
         let corner = |cell: [u32; 3]| DVec3::from_array(cell.map(f64::from));
-        let at = settle(&planes, unbound, corner(low), corner(high), 3);
-        if planes.distance(at) > 0.5 * misfit || asking.planes.distance(at) > 0.5 * misfit {
+        let at = settle(&planes, wish.at, corner(low), corner(high), 3);
+        if planes.distance(at) > wish.allowed || asking.planes.distance(at) > wish.allowed {
             return None;
         }
         self.taken.extend(cells.iter().map(|&(cell, _)| (cell, ())));

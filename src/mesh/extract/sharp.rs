@@ -141,8 +141,7 @@ pub(super) fn find<S: Sampler>(
         });
         Ok(special)
     };
-    let special: Result<Vec<Special>, Cancelled> =
-        blocks().map_init(|| sampler.scratch(), of_block).collect();
+    let special: Result<Vec<Special>, Cancelled> = blocks().map_init(|| sampler.scratch(), of_block).collect();
     let special = special?;
     let regions = regions(parts, &place, &special, &joined);
     Ok(Fans::new(parts, &place, special, regions))
@@ -199,12 +198,7 @@ impl Place<'_> {
         self.lattice.origin() + p * self.lattice.step()
     }
 
-    pub(super) fn candidate(
-        &self,
-        cell: [u32; 3],
-        outline: CellLoop,
-        vertices: &[(Vec3, Vec3)],
-    ) -> Candidate {
+    pub(super) fn candidate(&self, cell: [u32; 3], outline: CellLoop, vertices: &[(Vec3, Vec3)]) -> Candidate {
         let local: Vec<(DVec3, Vec3)> = vertices.iter().map(|&(p, normal)| (self.local(p), normal)).collect();
         Candidate::new(cell, outline, &local)
     }

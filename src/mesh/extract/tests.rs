@@ -283,7 +283,10 @@ fn bad_lists_of_blocks_are_reported() {
     let mut more = blocks.clone();
     more.push([800, 800, 800]);
     let run = Run::default();
-    assert_eq!(extract(&sampler, &lattice, &more, Features::Smooth, &run), extract(&sampler, &lattice, &blocks, Features::Smooth, &run));
+    assert_eq!(
+        extract(&sampler, &lattice, &more, Features::Smooth, &run),
+        extract(&sampler, &lattice, &blocks, Features::Smooth, &run)
+    );
     let none = extract(&sampler, &lattice, &[], Features::Smooth, &run).unwrap();
     assert!(none.triangles().is_empty());
 }
