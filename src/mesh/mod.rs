@@ -3,6 +3,7 @@
 mod check;
 mod extract;
 mod lattice;
+mod roots;
 mod signs;
 mod solid;
 mod table;
