@@ -6,6 +6,7 @@ mod feature;
 mod lattice;
 mod loops;
 mod qef;
+mod roots;
 mod signs;
 mod solid;
 mod table;

@@ -11,9 +11,8 @@
 
 use glam::DVec3;
 
-use super::sharp::{cell_number, split_cell};
-use super::{Parts, Sampler};
-use crate::mesh::lattice::Lattice;
+use super::Sampler;
+use super::samples::{Samples, cell_number, split_cell};
 use crate::mesh::loops::{CellLoop, ambiguous_faces};
 use crate::mesh::signs::for_each_cell;
 
@@ -26,25 +25,24 @@ pub(super) struct Joined {
 
 /// The upper ambiguous faces of a block's cells that would rather be joined.
 pub(super) fn proposals<S: Sampler>(
-    parts: &Parts<'_>,
+    samples: &Samples<'_>,
     sampler: &S,
     scratch: &mut S::Scratch,
-    lattice: &Lattice,
     n: usize,
 ) -> Vec<(u16, u8)> {
-    let block = parts.blocks[n];
+    let block = samples.blocks()[n];
     let (mut faces, mut middles, mut found) = (Vec::new(), Vec::new(), Vec::new());
-    for_each_cell(&parts.sampled[n].signs, |cell, case| {
+    for_each_cell(&samples.parts.part(n).signs, |cell, case| {
         let ambiguous = ambiguous_faces(case);
         for axis in (0..3).filter(|axis| ambiguous >> (2 * axis + 1) & 1 == 1) {
             let mut middle = DVec3::splat(0.5);
             middle[axis] = 1.0;
             let node: [u32; 3] = std::array::from_fn(|axis| block[axis] + cell[axis] as u32);
             faces.push((cell_number(cell), 1 << axis));
-            middles.push(lattice.node(node[0], node[1], node[2]) + middle * lattice.step());
+            middles.push(samples.world(DVec3::from_array(node.map(f64::from)) + middle));
         }
     });
-    if middles.is_empty() || !sampler.slopes(scratch, block, &middles, &mut found) {
+    if middles.is_empty() || !sampler.slopes(scratch, n, block, &middles, &mut found) {
         return Vec::new();
     }
     let mut upper: Vec<(u16, u8)> = Vec::new();
@@ -61,14 +59,14 @@ pub(super) fn proposals<S: Sampler>(
 
 impl Joined {
     /// The faces that are joined of those that would rather be.
-    pub(super) fn new(parts: &Parts<'_>, upper: Vec<Vec<(u16, u8)>>) -> Joined {
+    pub(super) fn new(samples: &Samples<'_>, upper: Vec<Vec<(u16, u8)>>) -> Joined {
         let mut joined = Joined { upper };
         let mut cells: Vec<[u32; 3]> = Vec::new();
         for (n, list) in joined.upper.iter().enumerate() {
             for &(number, faces) in list {
                 let number = u32::from(number);
                 let within = [number % 8, number / 8 % 8, number / 64];
-                let cell: [u32; 3] = std::array::from_fn(|axis| parts.blocks[n][axis] + within[axis]);
+                let cell: [u32; 3] = std::array::from_fn(|axis| samples.blocks()[n][axis] + within[axis]);
                 cells.push(cell);
                 for axis in (0..3).filter(|axis| faces >> axis & 1 == 1) {
                     cells.push(stepped(cell, axis));
@@ -76,8 +74,8 @@ impl Joined {
             }
         }
         while let Some(cell) = cells.pop() {
-            let case = parts.case(cell);
-            let faces = joined.of(parts, cell, case);
+            let case = samples.case(cell);
+            let faces = joined.of(samples, cell, case);
             if faces == 0 || faces == ambiguous_faces(case) || CellLoop::single(case, faces).is_some() {
                 continue;
             }
@@ -90,21 +88,20 @@ impl Joined {
                     below[axis] -= 1;
                     cells.push(below);
                 }
-                joined.separate(parts, below, axis);
+                joined.separate(samples, below, axis);
             }
         }
         joined
     }
 
     /// Whether a block or one below it has joined faces.
-    pub(super) fn concerns(&self, parts: &Parts<'_>, n: usize) -> bool {
+    pub(super) fn concerns(&self, samples: &Samples<'_>, n: usize) -> bool {
         let has = |block: usize| !self.upper[block].is_empty();
-        let below = [[-1, 0, 0], [0, -1, 0], [0, 0, -1]];
-        has(n) || below.into_iter().any(|by| parts.neighbours.find(parts.blocks[n], by).is_some_and(has))
+        has(n) || (0..3).any(|axis| samples.parts.neighbours.lower(n, axis).is_some_and(has))
     }
 
     /// The joined faces of a cell of the given case, as bits.
-    pub(super) fn of(&self, parts: &Parts<'_>, cell: [u32; 3], case: u8) -> u8 {
+    pub(super) fn of(&self, samples: &Samples<'_>, cell: [u32; 3], case: u8) -> u8 {
         let mut ambiguous = ambiguous_faces(case);
         if self.upper.is_empty() {
             return 0;
@@ -116,21 +113,21 @@ impl Joined {
             let mut below = cell;
             below[face / 2] = below[face / 2].wrapping_sub(1 - face as u32 % 2);
             let is_joined =
-                self.find(parts, below).is_some_and(|(block, n)| self.upper[block][n].1 >> (face / 2) & 1 == 1);
+                self.find(samples, below).is_some_and(|(block, n)| self.upper[block][n].1 >> (face / 2) & 1 == 1);
             bits |= u8::from(is_joined) << face;
         }
         bits
     }
 
-    fn find(&self, parts: &Parts<'_>, cell: [u32; 3]) -> Option<(usize, usize)> {
+    fn find(&self, samples: &Samples<'_>, cell: [u32; 3]) -> Option<(usize, usize)> {
         let (block, within) = split_cell(cell);
-        let block = parts.neighbours.find(block, [0; 3])?;
+        let block = samples.find(block)?;
         let number = cell_number(within);
         Some((block, self.upper[block].binary_search_by_key(&number, |&(cell, _)| cell).ok()?))
     }
 
-    fn separate(&mut self, parts: &Parts<'_>, below: [u32; 3], axis: usize) {
-        if let Some((block, n)) = self.find(parts, below) {
+    fn separate(&mut self, samples: &Samples<'_>, below: [u32; 3], axis: usize) {
+        if let Some((block, n)) = self.find(samples, below) {
             self.upper[block][n].1 &= !(1 << axis);
         }
     }

@@ -27,8 +27,8 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::joined::Joined;
-use super::sharp::{Fan, Place, Segment, Special, segments};
-use super::{Found, Parts};
+use super::samples::{Samples, split_cell};
+use super::sharp::{Fan, Segment, Special, segments};
 use crate::mesh::feature::{Candidate, settle};
 use crate::mesh::loops::CellLoop;
 use crate::mesh::qef::Planes;
@@ -47,7 +47,7 @@ pub(super) struct Region {
 }
 
 /// The regions that candidates ask for, those that fit their planes worst first; in the order of the blocks.
-pub(super) fn regions(parts: &Parts<'_>, place: &Place<'_>, special: &[Special], joined: &Joined) -> Vec<Region> {
+pub(super) fn regions(samples: &Samples<'_>, special: &[Special], joined: &Joined) -> Vec<Region> {
     let mut asking: Vec<Wish> = Vec::new();
     for (block, list) in special.iter().enumerate() {
         for candidate in &list.candidates {
@@ -60,7 +60,7 @@ pub(super) fn regions(parts: &Parts<'_>, place: &Place<'_>, special: &[Special],
                 }
             } else {
                 for along in candidate.crease().into_iter().flat_map(|d| [d, -d]) {
-                    if let Some((size, other, at)) = beyond(parts, candidate, along) {
+                    if let Some((size, other, at)) = beyond(samples, candidate, along) {
                         asking.push(Wish { size, block, candidate, other, at, allowed: 2.0 * MISFIT });
                     }
                 }
@@ -68,7 +68,7 @@ pub(super) fn regions(parts: &Parts<'_>, place: &Place<'_>, special: &[Special],
         }
     }
     asking.sort_by(|a, b| b.size.total_cmp(&a.size));
-    let mut known = Known { parts, place, special, joined, taken: HashMap::new() };
+    let mut known = Known { samples, special, joined, taken: HashMap::new() };
     let mut regions: Vec<Region> = asking.iter().filter_map(|wish| known.region(wish)).collect();
     regions.sort_by_key(|region| region.block);
     regions
@@ -102,7 +102,7 @@ fn towards(cell: [u32; 3], target: DVec3) -> Option<[u32; 3]> {
 /// Follows a crease from the point of a cell. If it goes through empty cells and then comes to
 /// one that is a neighbour of the first by an edge or a corner: how long it is in them, the cell, and
 /// the middle of that part.
-fn beyond(parts: &Parts<'_>, candidate: &Candidate, along: DVec3) -> Option<(f64, [u32; 3], DVec3)> {
+fn beyond(samples: &Samples<'_>, candidate: &Candidate, along: DVec3) -> Option<(f64, [u32; 3], DVec3)> {
     let (mut cell, mut at) = (candidate.cell, candidate.at);
     let mut entry: Option<DVec3> = None;
     for _ in 0..4 {
@@ -120,7 +120,7 @@ fn beyond(parts: &Parts<'_>, candidate: &Candidate, along: DVec3) -> Option<(f64
         if (0..3).any(|n| cell[n].abs_diff(candidate.cell[n]) > 1) {
             return None;
         }
-        match (entry, matches!(parts.case(cell), 0 | 255)) {
+        match (entry, matches!(samples.case(cell), 0 | 255)) {
             (None, false) => return None,
             (None, true) => entry = Some(at),
             (Some(start), false) => return Some((0.5 * (at - start).length(), cell, 0.5 * (start + at))),
@@ -131,8 +131,7 @@ fn beyond(parts: &Parts<'_>, candidate: &Candidate, along: DVec3) -> Option<(f64
 }
 
 struct Known<'a> {
-    parts: &'a Parts<'a>,
-    place: &'a Place<'a>,
+    samples: &'a Samples<'a>,
     special: &'a [Special],
     joined: &'a Joined,
     /// The cells that are in a region.
@@ -153,7 +152,7 @@ impl Known<'_> {
                     if self.taken.contains_key(&cell) {
                         return None;
                     }
-                    let case = self.parts.case(cell);
+                    let case = self.samples.case(cell);
                     if case == 0 || case == 255 {
                         cells.push((cell, 0));
                         continue;
@@ -161,7 +160,7 @@ impl Known<'_> {
                     let candidate = self.candidate(cell, case)?;
                     planes.append(&candidate.planes);
                     cells.push((cell, CaseTable::get().triangles(case).len()));
-                    all.extend(segments(self.parts, &candidate)?);
+                    all.extend(segments(self.samples, &candidate)?);
                     patches += 1;
                 }
             }
@@ -173,20 +172,20 @@ impl Known<'_> {
             return None;
         }
         self.taken.extend(cells.iter().map(|&(cell, _)| (cell, ())));
-        Some(Region { block, fan: Fan { segments, at: self.place.inside(at, low, high) }, cells })
+        Some(Region { block, fan: Fan { segments, at: self.samples.inside(at, low, high) }, cells })
     }
 
     /// A crossed cell with a single loop.
     fn candidate(&self, cell: [u32; 3], case: u8) -> Option<Candidate> {
-        let (block, _) = super::sharp::split_cell(cell);
-        let block = self.parts.neighbours.find(block, [0; 3])?;
+        let (block, _) = split_cell(cell);
+        let block = self.samples.find(block)?;
         if let Some(candidate) = self.special[block].candidates.iter().find(|candidate| candidate.cell == cell) {
             return Some(candidate.clone());
         }
-        let outline = CellLoop::single(case, self.joined.of(self.parts, cell, case))?;
-        let vertex = |&edge: &u8| Some(self.parts.get(self.parts.vertex(cell, edge)?));
+        let outline = CellLoop::single(case, self.joined.of(self.samples, cell, case))?;
+        let vertex = |&edge: &u8| Some(self.samples.get(self.samples.vertex(cell, edge)?));
         let vertices: Option<Vec<_>> = outline.edges().iter().map(vertex).collect();
-        Some(self.place.candidate(cell, outline, &vertices?))
+        Some(self.samples.candidate(cell, outline, &vertices?))
     }
 }
 
@@ -194,7 +193,7 @@ impl Known<'_> {
 /// vertices are on the boundary of.
 fn glued(all: Vec<Segment>, patches: usize) -> Option<Vec<Segment>> {
     // The segments in the order of the cells, each with its end.
-    let mut ends: Vec<Found> = Vec::with_capacity(all.len());
+    let mut ends: Vec<u32> = Vec::with_capacity(all.len());
     let mut start = 0;
     for (n, segment) in all.iter().enumerate() {
         let last = all.get(n + 1).is_none_or(|next| next.cell != segment.cell);
@@ -203,7 +202,7 @@ fn glued(all: Vec<Segment>, patches: usize) -> Option<Vec<Segment>> {
             start = n + 1;
         }
     }
-    let sides: Vec<(Found, Found)> = all.iter().map(|segment| segment.from).zip(ends).collect();
+    let sides: Vec<(u32, u32)> = all.iter().map(|segment| segment.from).zip(ends).collect();
     let outer: Vec<usize> = (0..all.len()).filter(|&n| !sides.contains(&(sides[n].1, sides[n].0))).collect();
     // Shared segments count twice; patches in a tree share one fewer than they are.
     if all.len() - outer.len() != 2 * (patches - 1) {
@@ -220,6 +219,6 @@ fn glued(all: Vec<Segment>, patches: usize) -> Option<Vec<Segment>> {
             return None;
         }
     }
-    let is_in_ring = |vertex: Found| ring.iter().any(|segment| segment.from == vertex);
+    let is_in_ring = |vertex: u32| ring.iter().any(|segment| segment.from == vertex);
     (ring.len() == outer.len() && all.iter().all(|segment| is_in_ring(segment.from))).then_some(ring)
 }

@@ -37,28 +37,31 @@
 use std::collections::HashSet;
 use std::ops::Range;
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use rayon::prelude::*;
 
+use super::join::Corners;
 use super::joined::{Joined, proposals};
 use super::region::{Region, regions};
-use super::{Found, Lookup, Meter, Parts, Sampler};
-use crate::mesh::feature::{Candidate, SMOOTH, is_smooth, refine};
-use crate::mesh::lattice::Lattice;
+use super::samples::{Samples, cell_number, split_cell};
+use super::{Meter, Sampler};
+use crate::mesh::feature::{Candidate, is_smooth, refine};
 use crate::mesh::loops::{CellLoop, LONGEST};
-use crate::mesh::signs::{BLOCK, for_each_cell};
+use crate::mesh::signs::for_each_cell;
 use crate::mesh::table::CaseTable;
 use crate::run::{Cancelled, Run};
 
 /// A segment of a loop: from a vertex to that of the next segment.
 #[derive(Clone, Copy)]
 pub(super) struct Segment {
-    pub(super) from: Found,
+    pub(super) from: u32,
     /// The cell that it bounds the surface of, and the face that it is in.
     pub(super) cell: [u32; 3],
     pub(super) face: (usize, bool),
     /// Whether it may be turned: its ends have different normals.
     pub(super) turns: bool,
+    /// The fan on the other side, if the edge between the two is turned.
+    pub(super) across: Option<u32>,
     /// The normal close to the feature point on the side of the vertex.
     pub(super) normal: Vec3,
 }
@@ -97,54 +100,38 @@ struct OfBlock {
     opposite: Vec<(u16, u8)>,
 }
 
-/// The block of a cell, by its first cell, and the number of the cell in it: x fastest, then y, then z.
-pub(super) fn split_cell(cell: [u32; 3]) -> ([u32; 3], [usize; 3]) {
-    let within = cell.map(|n| n as usize % BLOCK);
-    (std::array::from_fn(|axis| cell[axis] - within[axis] as u32), within)
-}
-
-pub(super) fn cell_number([i, j, k]: [usize; 3]) -> u16 {
-    (i + BLOCK * (j + BLOCK * k)) as u16
-}
-
 /// Finds the cells that hold creases and corners, and gives them fans.
-pub(super) fn find<S: Sampler>(
-    parts: &Parts<'_>,
-    sampler: &S,
-    lattice: &Lattice,
-    run: &Run,
-) -> Result<Fans, Cancelled> {
-    let blocks = || (0..parts.blocks.len()).into_par_iter();
-    let meter = Meter::new(run, parts.blocks.len());
-    let place = Place { lattice };
+pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) -> Result<Fans, Cancelled> {
     // Most blocks are settled as a whole.
-    let spread: Vec<bool> =
-        blocks().map(|n| Lookup::new(parts, n).normal_spread().length_squared() > 2.0 - 2.0 * SMOOTH).collect();
+    let spread = samples.spread();
     if !spread.contains(&true) {
         return Ok(Fans::default());
     }
+    let blocks = || (0..spread.len()).into_par_iter();
     let of_block = |scratch: &mut S::Scratch, n: usize| {
-        if spread[n] { proposals(parts, sampler, scratch, lattice, n) } else { Vec::new() }
+        if spread[n] { proposals(samples, sampler, scratch, n) } else { Vec::new() }
     };
-    let joined = Joined::new(parts, blocks().map_init(|| sampler.scratch(), of_block).collect());
-    let of_block = |scratch: &mut S::Scratch, n: usize| {
+    let joined = Joined::new(samples, blocks().map_init(|| sampler.scratch(), of_block).collect());
+    let meter = Meter::new(run, spread.len());
+    let of_block = |(scratch, corners): &mut (S::Scratch, Corners), n: usize| {
         meter.step()?;
-        if !spread[n] && !joined.concerns(parts, n) {
+        if !spread[n] && !joined.concerns(samples, n) {
             return Ok(Special::default());
         }
-        let mut special = special(parts, &place, &joined, n);
+        let mut special = special(samples, &joined, n, corners);
         let mut points = Vec::new();
-        refine(&mut special.candidates, lattice.step(), |local, out| {
+        refine(&mut special.candidates, samples.lattice.step(), |local, out| {
             points.clear();
-            points.extend(local.iter().map(|p| place.world(*p)));
-            sampler.slopes(scratch, parts.blocks[n], &points, out)
+            points.extend(local.iter().map(|p| samples.world(*p)));
+            sampler.slopes(scratch, n, samples.blocks()[n], &points, out)
         });
         Ok(special)
     };
-    let special: Result<Vec<Special>, Cancelled> = blocks().map_init(|| sampler.scratch(), of_block).collect();
+    let special: Result<Vec<Special>, Cancelled> =
+        blocks().map_init(|| (sampler.scratch(), Corners::new()), of_block).collect();
     let special = special?;
-    let regions = regions(parts, &place, &special, &joined);
-    Ok(Fans::new(parts, &place, special, regions))
+    let regions = regions(samples, &special, &joined);
+    Ok(Fans::new(samples, special, regions))
 }
 
 /// The cells of a block that do not have the patches of the table.
@@ -157,70 +144,43 @@ pub(super) struct Special {
 }
 
 /// The cells of block `n` around which the normals spread, or faces are joined.
-fn special(parts: &Parts<'_>, place: &Place<'_>, joined: &Joined, n: usize) -> Special {
-    let lookup = Lookup::new(parts, n);
+fn special(samples: &Samples<'_>, joined: &Joined, n: usize, corners: &mut Corners) -> Special {
     let mut found = Special::default();
-    let block = parts.blocks[n];
+    // What is missing in a neighbour is an error of the second pass.
+    if !samples.parts.number(n, corners) {
+        return found;
+    }
+    let block = samples.blocks()[n];
     let mut around = Vec::with_capacity(LONGEST);
-    for_each_cell(&parts.sampled[n].signs, |cell, case| {
-        let lattice_cell = std::array::from_fn(|axis| block[axis] + cell[axis] as u32);
-        let faces = joined.of(parts, lattice_cell, case);
+    for_each_cell(&samples.parts.part(n).signs, |within, case| {
+        let cell = std::array::from_fn(|axis| block[axis] + within[axis] as u32);
+        let faces = joined.of(samples, cell, case);
         let Some(outline) = CellLoop::single(case, faces) else {
             if faces != 0 {
-                found.opposite.push((cell_number(cell), case));
+                found.opposite.push((cell_number(within), case));
             }
             return;
         };
         around.clear();
-        for &edge in outline.edges() {
-            let Some(vertex) = lookup.vertex(cell, edge) else { return };
-            around.push(parts.get(vertex));
-        }
+        around.extend(outline.edges().iter().map(|&edge| samples.get(corners.vertex(within, edge))));
         // The table knows nothing of joined faces.
         if faces != 0 || !is_smooth(&around) {
-            found.candidates.push(place.candidate(lattice_cell, outline, &around));
+            found.candidates.push(samples.candidate(cell, outline, &around));
         }
     });
     found
 }
 
-/// Positions in cells from the lattice's first node, and back.
-pub(super) struct Place<'a> {
-    lattice: &'a Lattice,
-}
-
-impl Place<'_> {
-    fn local(&self, p: Vec3) -> DVec3 {
-        (p.as_dvec3() - self.lattice.origin()) / self.lattice.step()
-    }
-
-    fn world(&self, p: DVec3) -> DVec3 {
-        self.lattice.origin() + p * self.lattice.step()
-    }
-
-    pub(super) fn candidate(&self, cell: [u32; 3], outline: CellLoop, vertices: &[(Vec3, Vec3)]) -> Candidate {
-        let local: Vec<(DVec3, Vec3)> = vertices.iter().map(|&(p, normal)| (self.local(p), normal)).collect();
-        Candidate::new(cell, outline, &local)
-    }
-
-    /// The position of a point as f32, strictly inside of the box of cells from `low` up to `high`,
-    /// exclusive.
-    pub(super) fn inside(&self, at: DVec3, low: [u32; 3], high: [u32; 3]) -> Vec3 {
-        let node = |[i, j, k]: [u32; 3]| self.lattice.node(i, j, k).as_vec3().to_array();
-        let (low, high) = (node(low).map(f32::next_up), node(high).map(f32::next_down));
-        self.world(at).as_vec3().clamp(low.into(), high.into())
-    }
-}
-
 /// The segments of a cell's loop.
-pub(super) fn segments(parts: &Parts<'_>, candidate: &Candidate) -> Option<Vec<Segment>> {
+pub(super) fn segments(samples: &Samples<'_>, candidate: &Candidate) -> Option<Vec<Segment>> {
     let outline = candidate.outline;
     let segment = |(n, &edge): (usize, &u8)| {
         Some(Segment {
-            from: parts.vertex(candidate.cell, edge)?,
+            from: samples.vertex(candidate.cell, edge)?,
             cell: candidate.cell,
             face: outline.face(n),
             turns: candidate.split >> n & 1 == 1,
+            across: None,
             normal: candidate.normal(n),
         })
     };
@@ -228,8 +188,8 @@ pub(super) fn segments(parts: &Parts<'_>, candidate: &Candidate) -> Option<Vec<S
 }
 
 impl Fans {
-    fn new(parts: &Parts<'_>, place: &Place<'_>, special: Vec<Special>, regions: Vec<Region>) -> Fans {
-        let mut all = Fans { fans: Vec::new(), blocks: vec![OfBlock::default(); parts.blocks.len()] };
+    fn new(samples: &Samples<'_>, special: Vec<Special>, regions: Vec<Region>) -> Fans {
+        let mut all = Fans { fans: Vec::new(), blocks: vec![OfBlock::default(); samples.blocks().len()] };
         // A region is listed with the block of the candidate that asked for it.
         let in_region: HashSet<[u32; 3]> =
             regions.iter().flat_map(|region| region.cells.iter().map(|&(cell, _)| cell)).collect();
@@ -239,27 +199,28 @@ impl Fans {
             all.blocks[block].opposite = opposite;
             let start = all.fans.len();
             for candidate in candidates.iter().filter(|candidate| !in_region.contains(&candidate.cell)) {
-                let Some(segments) = segments(parts, candidate) else { continue };
+                let Some(segments) = segments(samples, candidate) else { continue };
                 let high = candidate.cell.map(|n| n + 1);
-                let fan = Fan { segments, at: place.inside(candidate.at, candidate.cell, high) };
-                all.add(parts, fan, &[(candidate.cell, table.triangles(parts.case(candidate.cell)).len())]);
+                let fan = Fan { segments, at: samples.inside(candidate.at, candidate.cell, high) };
+                all.add(samples, fan, &[(candidate.cell, table.triangles(samples.case(candidate.cell)).len())]);
             }
             while let Some(region) = regions.next_if(|region| region.block == block) {
-                all.add(parts, region.fan, &region.cells);
+                all.add(samples, region.fan, &region.cells);
             }
             all.blocks[block].listed = start..all.fans.len();
         }
         for block in &mut all.blocks {
             block.cells.sort_unstable();
         }
+        all.turn(samples);
         all
     }
 
     /// Adds a fan that takes the place of the patches of cells, each with the number of its triangles.
-    fn add(&mut self, parts: &Parts<'_>, fan: Fan, cells: &[([u32; 3], usize)]) {
+    fn add(&mut self, samples: &Samples<'_>, fan: Fan, cells: &[([u32; 3], usize)]) {
         for &(cell, count) in cells {
             let (block, within) = split_cell(cell);
-            if let Some(block) = parts.neighbours.find(block, [0; 3]) {
+            if let Some(block) = samples.find(block) {
                 self.blocks[block].cells.push((cell_number(within), self.fans.len() as u32));
                 self.blocks[block].dropped += count;
             }
@@ -288,25 +249,39 @@ impl Fans {
         self.blocks.get(block).map_or(&[], |block| &block.opposite)
     }
 
-    /// Calls `put` with the triangles of the fans that are listed with a block: feature points
-    /// by the number of their fan, vertices on edges as they are.
-    pub(super) fn triangles(&self, parts: &Parts<'_>, block: usize, mut put: impl FnMut([Corner; 3])) {
-        let Some(of_block) = self.blocks.get(block) else { return };
-        for nth in of_block.listed.clone() {
+    /// The triangles of the fans that are listed with a block; feature points are numbered from
+    /// `centres`, in the order of the fans.
+    pub(super) fn triangles(&self, block: usize, centres: u32) -> impl Iterator<Item = [u32; 3]> {
+        let listed = self.blocks.get(block).map_or(0..0, |block| block.listed.clone());
+        listed.flat_map(move |nth| {
             let segments = &self.fans[nth].segments;
-            for (n, segment) in segments.iter().enumerate() {
-                let end = match self.across(parts, nth, segment) {
-                    Some(other) => Corner::Centre(other),
-                    None => Corner::Edge(segments[(n + 1) % segments.len()].from),
+            segments.iter().enumerate().map(move |(n, segment)| {
+                let end = match segment.across {
+                    Some(other) => centres + other,
+                    None => segments[(n + 1) % segments.len()].from,
                 };
-                put([Corner::Centre(nth), Corner::Edge(segment.from), end]);
+                [centres + nth as u32, segment.from, end]
+            })
+        })
+    }
+
+    /// Finds out which edges between fans are turned.
+    fn turn(&mut self, samples: &Samples<'_>) {
+        let all = &*self;
+        let across: Vec<Vec<Option<u32>>> = (0..all.fans.len())
+            .into_par_iter()
+            .map(|nth| all.fans[nth].segments.iter().map(|segment| all.across(samples, nth, segment)).collect())
+            .collect();
+        for (fan, across) in self.fans.iter_mut().zip(across) {
+            for (segment, across) in fan.segments.iter_mut().zip(across) {
+                segment.across = across;
             }
         }
     }
 
     /// The fan on the other side of a segment, if the edge between the two is turned there. Both find
     /// the same.
-    fn across(&self, parts: &Parts<'_>, fan: usize, segment: &Segment) -> Option<usize> {
+    fn across(&self, samples: &Samples<'_>, fan: usize, segment: &Segment) -> Option<u32> {
         if !segment.turns {
             return None;
         }
@@ -314,21 +289,21 @@ impl Fans {
         let mut cell = segment.cell;
         cell[axis] = if upper { cell[axis] + 1 } else { cell[axis].checked_sub(1)? };
         let (block, within) = split_cell(cell);
-        let cells = self.cells(parts.neighbours.find(block, [0; 3])?);
+        let cells = self.cells(samples.find(block)?);
         let other = cells.binary_search_by_key(&cell_number(within), |&(cell, _)| cell).ok()?;
-        let other = cells[other].1 as usize;
-        self.turns(parts, fan, other, segment).then_some(other)
+        let other = cells[other].1;
+        self.turns(samples, fan, other as usize, segment).then_some(other)
     }
 
     /// Whether the edge between two fans is turned at a segment of the first.
-    fn turns(&self, parts: &Parts<'_>, fan: usize, other: usize, segment: &Segment) -> bool {
+    fn turns(&self, samples: &Samples<'_>, fan: usize, other: usize, segment: &Segment) -> bool {
         // Both fans calculate with the same numbers in the same order.
         let (axis, upper) = segment.face;
         let (low, high) = if upper { (fan, other) } else { (other, fan) };
         let mut above = segment.cell;
         above[axis] += u32::from(upper);
         let (a, b) = (self.fans[low].at.as_dvec3(), self.fans[high].at.as_dvec3());
-        let node = |[i, j, k]: [u32; 3]| parts.lattice.node(i, j, k).as_vec3().as_dvec3();
+        let node = |[i, j, k]: [u32; 3]| samples.node([i, j, k]).as_dvec3();
         let (first, last) = (node(above), node(above.map(|n| n + 1)));
         let x = a + (b - a) * ((first[axis] - a[axis]) / (b[axis] - a[axis]));
         // More than the rounding of the line above.
@@ -344,7 +319,7 @@ impl Fans {
         // Of the two segments of an ambiguous face, the one that is closer may be turned, if the other one
         // is not in the way: twice the area of the triangle of a segment and x, with the sign of the side.
         let area = |n: usize| {
-            let ends = [n, (n + 1) % segments.len()].map(|n| parts.get(segments[n].from).0.as_dvec3() - x);
+            let ends = [n, (n + 1) % segments.len()].map(|n| samples.get(segments[n].from).0.as_dvec3() - x);
             ends[0][u] * ends[1][v] - ends[0][v] * ends[1][u]
         };
         let (own, foreign) = if segments[p].from == segment.from { (p, q) } else { (q, p) };
@@ -352,20 +327,11 @@ impl Fans {
         // Both run such that what is between them is on the same hand.
         let reach = margin * (last - first).max_element() * 4.0;
         let side = {
-            let ends = [foreign, (foreign + 1) % segments.len()].map(|n| parts.get(segments[n].from).0.as_dvec3());
-            let s = parts.get(segment.from).0.as_dvec3();
+            let ends = [foreign, (foreign + 1) % segments.len()].map(|n| samples.get(segments[n].from).0.as_dvec3());
+            let s = samples.get(segment.from).0.as_dvec3();
             let (d, e) = (ends[0] - s, ends[1] - s);
             d[u] * e[v] - d[v] * e[u]
         };
         size.abs() < away.abs() && away.abs() > reach && (away > 0.0) == (side > 0.0)
     }
-}
-
-/// A corner of a triangle of a fan.
-#[derive(Clone, Copy)]
-pub(super) enum Corner {
-    /// The feature point of the fan with this number.
-    Centre(usize),
-    /// A vertex on an edge.
-    Edge(Found),
 }

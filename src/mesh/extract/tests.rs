@@ -5,6 +5,7 @@ use crate::bounds::Bounds;
 use crate::mesh::{CellSize, MeshReport};
 use crate::run::Progress;
 use glam::DVec3;
+use crate::mesh::signs::BLOCK;
 use std::f64::consts::PI;
 use std::sync::{Arc, Mutex};
 
@@ -32,16 +33,16 @@ impl<F: Fn(DVec3) -> f64 + Sync> Sampler for Analytic<'_, F> {
 
     fn scratch(&self) {}
 
-    fn nodes(&self, (): &mut (), block: [u32; 3], out: &mut [f32; NODES]) {
+    fn nodes(&self, (): &mut (), _: usize, block: [u32; 3], out: &mut [f32; NODES]) {
         for (n, value) in out.iter_mut().enumerate() {
             let node = [n % 9, n / 9 % 9, n / 81];
             *value = (self.f)(self.node(block, node)) as f32;
         }
     }
 
-    fn roots(&self, (): &mut (), block: [u32; 3], edges: &[EdgeRef], out: &mut [Root]) {
+    fn roots(&self, (): &mut (), edges: &[EdgeRef], out: &mut [Root]) {
         for (edge, root) in edges.iter().zip(out) {
-            let base = self.node(block, edge.node.map(usize::from));
+            let base = self.node(edge.node, [0; 3]);
             let mut along = DVec3::ZERO;
             along[usize::from(edge.axis)] = self.lattice.step();
             assert_eq!((self.f)(base) as f32 > 0.0, edge.leaves);
@@ -69,7 +70,7 @@ fn surface_blocks<S: Sampler>(sampler: &S, lattice: &Lattice) -> Vec<[u32; 3]> {
     let mut blocks = Vec::new();
     for n in 0..x * y * z {
         let block = [n % x, n / x % y, n / (x * y)].map(|i| i * BLOCK as u32);
-        sampler.nodes(&mut scratch, block, &mut values);
+        sampler.nodes(&mut scratch, n as usize, block, &mut values);
         let inside = values.iter().filter(|&&v| v > 0.0).count();
         if inside != 0 && inside != NODES {
             blocks.push(block);
@@ -180,7 +181,7 @@ impl Sampler for Noise<'_> {
 
     fn scratch(&self) {}
 
-    fn nodes(&self, (): &mut (), block: [u32; 3], out: &mut [f32; NODES]) {
+    fn nodes(&self, (): &mut (), _: usize, block: [u32; 3], out: &mut [f32; NODES]) {
         for (n, value) in out.iter_mut().enumerate() {
             let within = [n % 9, n / 9 % 9, n / 81];
             let node = std::array::from_fn(|axis| block[axis] + within[axis] as u32);
@@ -192,10 +193,9 @@ impl Sampler for Noise<'_> {
         }
     }
 
-    fn roots(&self, (): &mut (), block: [u32; 3], edges: &[EdgeRef], out: &mut [Root]) {
+    fn roots(&self, (): &mut (), edges: &[EdgeRef], out: &mut [Root]) {
         for (edge, root) in edges.iter().zip(out) {
-            let node = std::array::from_fn(|axis| block[axis] + u32::from(edge.node[axis]));
-            let h = self.hash(node, 1 + u64::from(edge.axis));
+            let h = self.hash(edge.node, 1 + u64::from(edge.axis));
             root.t = (h % 5) as f64 / 4.0;
             root.normal = [f32::NAN; 3];
         }
@@ -298,13 +298,13 @@ fn neighbours_that_disagree_are_reported() {
     impl<F: Fn(DVec3) -> f64 + Sync> Sampler for Flipped<'_, F> {
         type Scratch = ();
         fn scratch(&self) {}
-        fn nodes(&self, (): &mut (), block: [u32; 3], out: &mut [f32; NODES]) {
-            self.0.nodes(&mut (), block, out);
+        fn nodes(&self, (): &mut (), _: usize, block: [u32; 3], out: &mut [f32; NODES]) {
+            self.0.nodes(&mut (), 0, block, out);
             if block == self.1 {
                 out[NODES - 1] = -out[NODES - 1];
             }
         }
-        fn roots(&self, (): &mut (), _: [u32; 3], _: &[EdgeRef], out: &mut [Root]) {
+        fn roots(&self, (): &mut (), _: &[EdgeRef], out: &mut [Root]) {
             out.fill(Root::default());
         }
     }
