@@ -106,9 +106,7 @@ impl Signs {
     pub(super) fn is_crossed(&self, axes: [bool; 3], [j, k]: [usize; 2]) -> bool {
         let row = self.row(j, k);
         let differs = |other: u16| (row ^ other) & OWNED_BITS != 0;
-        axes[0] && differs(row >> 1)
-            || axes[1] && differs(self.row(j + 1, k))
-            || axes[2] && differs(self.row(j, k + 1))
+        axes[0] && differs(row >> 1) || axes[1] && differs(self.row(j + 1, k)) || axes[2] && differs(self.row(j, k + 1))
     }
 }
 

@@ -267,10 +267,12 @@ impl Sampler for SolidSampler<'_> {
         let [x, y, z] = &scratch.single;
         let [value, dx, dy, dz] = &mut scratch.slopes;
         scratch.evaluator.gradients(tape, x, y, z, Gradients { value, dx, dy, dz });
-        out.extend((0..points.len()).map(|n| Slope {
-            value: value[n].into(),
-            gradient: DVec3::new(dx[n].into(), dy[n].into(), dz[n].into()),
-        }));
+        out.extend(
+            (0..points.len()).map(|n| Slope {
+                value: value[n].into(),
+                gradient: DVec3::new(dx[n].into(), dy[n].into(), dz[n].into()),
+            }),
+        );
         true
     }
 }
