@@ -111,6 +111,19 @@ impl Tape {
         self.origin
     }
 
+    /// Makes points relative to another origin.
+    pub(crate) fn recentre(&mut self, origin: DVec3) {
+        let by = DAffine3::from_translation(origin - self.origin);
+        let moved = |of: &Placement| Placement::new(&(of.map() * by), of.scale, of.shift);
+        for frame in self.frames.iter_mut().filter(|frame| frame.from == 0) {
+            frame.placement = moved(&frame.placement);
+        }
+        for leaf in self.leaves.iter_mut().filter(|leaf| leaf.slot == 0) {
+            leaf.placement = moved(&leaf.placement);
+        }
+        self.origin = origin;
+    }
+
     /// Where a single-precision value of a surface program is larger than this in absolute
     /// value, its sign is that of the true value, for points of the region.
     #[must_use]

@@ -2,11 +2,15 @@
 
 mod check;
 mod extract;
+mod feature;
 mod lattice;
+mod loops;
+mod qef;
+mod roots;
 mod signs;
 mod solid;
 mod table;
 
 pub use check::MeshReport;
 pub use lattice::{CellSize, Lattice, LatticeError};
-pub use solid::{MeshSettings, MeshingError};
+pub use solid::{Features, MeshSettings, MeshingError};

@@ -26,6 +26,7 @@ mod rfunction;
 mod sampling;
 mod scale;
 mod subdivision;
+mod sharp;
 mod superellipsoid;
 mod superquadric;
 mod supershape;
