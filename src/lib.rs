@@ -346,7 +346,9 @@ pub use field::{
 };
 pub use geom::{Camera, CameraError, Image, ImageError, Mesh, MeshError, Projection, Rays};
 pub use io::{SaveError, write_png, write_stl};
-pub use mesh::{CellSize, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError};
+pub use mesh::{
+    CellSize, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError, Volume, VolumeError, VolumeSettings,
+};
 pub use num::{Dual, Interval, Monotone, Monotone3, Norm, Real};
 pub use render::{Background, RenderError, RenderSettings};
 pub use run::{CancelToken, Cancelled, Progress, Run};
