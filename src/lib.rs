@@ -359,8 +359,14 @@ pub use field::{
     Supershape, Supertoroid, Torus, Turns, VALUE_LIMIT, Wedge,
 };
 pub use geom::{Camera, CameraError, Corner, Image, ImageError, Mesh, MeshError, Projection, QuadMesh, Rays};
-pub use io::{LengthUnit, SaveError, SaveSettings, write_3mf, write_glb, write_obj, write_ply, write_png, write_stl, write_stl_ascii};
-pub use mesh::{CellSize, Features, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError};
+pub use io::{
+    LengthUnit, SaveError, SaveSettings, write_3mf, write_glb, write_obj, write_ply, write_png, write_stl,
+    write_stl_ascii,
+};
+pub use mesh::{
+    CellSize, Features, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError, Volume, VolumeError,
+    VolumeSettings,
+};
 pub use num::{Dual, Interval, Monotone, Monotone3, Norm, Real};
 pub use render::{Background, RenderError, RenderSettings};
 pub use run::{CancelToken, Cancelled, Progress, Run};

@@ -10,7 +10,9 @@ mod roots;
 mod signs;
 mod solid;
 mod table;
+mod volume;
 
 pub use check::MeshReport;
 pub use lattice::{CellSize, Lattice, LatticeError};
 pub use solid::{Features, MeshSettings, MeshingError};
+pub use volume::{Volume, VolumeError, VolumeSettings};
