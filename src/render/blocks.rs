@@ -16,10 +16,6 @@ use crate::{Bounds, Cancelled, Run};
 /// Marks a block of the grid that the surface does not cross.
 const EMPTY: u32 = u32::MAX;
 
-/// At most this many blocks along the longest side: the list of all blocks stays below nine
-/// megabytes, and a ray passes fewer than four hundred.
-pub(super) const MOST: u32 = 128;
-
 /// The surface of a solid, by blocks.
 pub(super) struct Blocks {
     grid: Grid,
@@ -32,21 +28,14 @@ pub(super) struct Blocks {
 
 impl Blocks {
     /// The blocks of `program`, whose solid lies within `bounds` (finite, of some size):
-    /// `across` of them along the longest side. `eye` is where rays start, for the rounding
-    /// of points that are far away from it.
-    pub(super) fn new(
-        program: &Program,
-        bounds: &Bounds,
-        across: u32,
-        eye: DVec3,
-        run: &Run,
-    ) -> Result<Blocks, Cancelled> {
+    /// `across` of them along the longest side.
+    pub(super) fn new(program: &Program, bounds: &Bounds, across: u32, run: &Run) -> Result<Blocks, Cancelled> {
         let longest = bounds.longest_side();
         // Room around the solid, so that rays start outside of it; not a round part of a
         // block, so that faces on round coordinates do not lie on planes of the grid.
         let bounds = bounds.inflate(0.37 * longest / f64::from(across.max(1)));
         let grid = Grid::over(&bounds, across);
-        let distance = eye.abs().max_element() + eye.distance(bounds.center()) + bounds.size().length();
+        let distance = bounds.center().abs().max_element() + 1e3 * bounds.size().length();
         let margin = 1e-6 * grid.side + 16.0 * f64::EPSILON * distance;
         let blocks = surface_blocks(program, &grid, margin, run)?;
         let [nx, ny, nz] = grid.blocks.map(|count| count as usize);

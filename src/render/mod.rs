@@ -5,10 +5,14 @@
 //! lights that move with the camera. Pixels at outlines and creases are sampled more often.
 
 mod blocks;
+mod gbuffer;
 mod picture;
+mod scene;
 mod settings;
 mod shade;
 mod solid;
 mod walk;
 
+pub use gbuffer::{GBuffer, Surface, Window};
+pub use scene::Scene;
 pub use settings::{Background, RenderError, RenderSettings};
