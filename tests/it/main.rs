@@ -18,6 +18,7 @@ mod parameters;
 mod primitives;
 mod profile;
 mod queries;
+mod rays;
 mod rfunction;
 mod scale;
 mod superellipsoid;
