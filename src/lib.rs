@@ -368,7 +368,9 @@ pub use mesh::{
     VolumeSettings,
 };
 pub use num::{Dual, Interval, Monotone, Monotone3, Norm, Real};
-pub use render::{Background, RenderError, RenderSettings};
+#[doc(hidden)]
+pub use render::CNT;
+pub use render::{Background, GBuffer, RenderError, RenderSettings, Scene, Surface, Window};
 pub use run::{CancelToken, Cancelled, Progress, Run};
 pub use solid::{Caps, Extrusion, Helix, PlaneBounds, Profile, Solid, SolidError};
 pub use surface::{

@@ -23,6 +23,7 @@ mod patches;
 mod primitives;
 mod profile;
 mod queries;
+mod rays;
 mod rfunction;
 mod sampling;
 mod scale;
