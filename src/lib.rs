@@ -330,6 +330,7 @@ pub mod idioms;
 mod io;
 mod mesh;
 mod num;
+mod raster;
 mod render;
 mod run;
 mod solid;
@@ -349,6 +350,10 @@ pub use geom::{Camera, CameraError, Corner, Image, ImageError, Mesh, MeshError, 
 pub use io::{SaveError, write_png, write_stl};
 pub use mesh::{CellSize, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError};
 pub use num::{Dual, Interval, Monotone, Monotone3, Norm, Real};
+pub use raster::{
+    Buffers, ClosedMesh, Csg, CsgMethod, Facing, Fragments, LANES, LayerSource, MeshLayers, RasterError, RasterView, SurfaceId,
+    Tile,
+};
 pub use render::{Background, RenderError, RenderSettings};
 pub use run::{CancelToken, Cancelled, Progress, Run};
 pub use solid::{Caps, Extrusion, Helix, PlaneBounds, Profile, Solid, SolidError};
