@@ -354,7 +354,7 @@ pub use raster::{
     Buffers, ClosedMesh, Csg, CsgMethod, Facing, Fragments, LANES, LayerSource, MeshLayers, RasterError, RasterView, SurfaceId,
     Tile,
 };
-pub use render::{Background, RenderError, RenderSettings};
+pub use render::{Background, GBuffer, RenderError, RenderSettings, Scene, Surface, Window};
 pub use run::{CancelToken, Cancelled, Progress, Run};
 pub use solid::{Caps, Extrusion, Helix, PlaneBounds, Profile, Solid, SolidError};
 pub use surface::{Frame, ParametricSurface, PatchError, PatchSettings, Spacing};

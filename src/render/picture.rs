@@ -12,7 +12,7 @@ use glam::{DVec3, Vec4};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use super::blocks::Blocks;
+use super::scene::Scene;
 use super::settings::RenderSettings;
 use super::shade::{Studio, bytes};
 use crate::{Cancelled, Rays, Run};
@@ -47,15 +47,14 @@ struct Sample {
 }
 
 /// All that rays need.
-pub(super) struct Scene<'a> {
-    /// `None` if there is nothing to see.
-    pub(super) blocks: Option<Blocks>,
+pub(super) struct Picture<'a> {
+    pub(super) scene: &'a Scene,
     pub(super) studio: Studio,
     pub(super) rays: Rays,
     pub(super) settings: &'a RenderSettings,
 }
 
-impl Scene<'_> {
+impl Picture<'_> {
     /// All pixels, row by row from the top.
     pub(super) fn pixels(&self, run: &Run) -> Result<Vec<[u8; 4]>, Cancelled> {
         let RenderSettings { width, height, .. } = *self.settings;
@@ -121,8 +120,7 @@ impl Scene<'_> {
     /// The ray at pixel coordinates (x, y).
     fn sample(&self, x: f64, y: f64) -> Sample {
         let (origin, direction) = self.rays.ray(x, y);
-        let hit = self.blocks.as_ref().and_then(|blocks| Some((blocks, blocks.first_hit(origin, direction)?)));
-        let Some((blocks, hit)) = hit else {
+        let Some(hit) = self.scene.first_hit(origin, direction) else {
             return Sample { light: self.studio.background(y / f64::from(self.settings.height)), seen: None };
         };
         let viewer = -direction;
@@ -132,7 +130,7 @@ impl Scene<'_> {
         let from_outside = outward.dot(viewer) >= 0.0;
         let normal = if from_outside { outward } else { -outward };
         let key = self.studio.key();
-        let shadowed = || blocks.first_hit(hit.point + blocks.hair() * normal, key).is_some();
+        let shadowed = || self.scene.first_hit(hit.point + self.scene.hair() * normal, key).is_some();
         let lit = normal.dot(key) > 0.0 && !(self.settings.shadows && from_outside && shadowed());
         let seen = Seen { point: hit.point, normal, owner: hit.owner, lit, distance: hit.distance };
         Sample { light: self.studio.surface(normal, viewer, lit), seen: Some(seen) }
