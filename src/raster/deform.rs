@@ -1,6 +1,7 @@
-//! Deformed meshes: Barr's taper, twist and bend, vertex by vertex.
+//! Moved and deformed meshes: affine maps, and Barr's taper, twist and bend, vertex by vertex.
 //!
 //! ```text
+//! affine X = A x + b
 //! taper  t = clamp(z/h, −1, 1), s = 1 + K t          X = s_x x,  Y = s_y y,  Z = z
 //! twist  φ = ω z                                     (X, Y) = (x, y) turned by φ,  Z = z
 //! bend   r = along u = (cos α, sin α), γ = κ z       R = r + (1 − κr) z sin(γ/2) sinc(γ/2)
@@ -16,13 +17,38 @@
 //! Sources: A. H. Barr, *Global and local deformations of solid primitives* (1984); F. Solina
 //! and R. Bajcsy (1990) for the bend.
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 
 use super::error::RasterError;
-use crate::Mesh;
 use crate::field::{AnyWarp, Bend, Taper, Twist};
+use crate::{Mesh, ParamError};
 
 impl Mesh {
+    /// The mesh moved by an affine map. A map that mirrors turns the triangles round, so that
+    /// they face outward again.
+    ///
+    /// # Errors
+    ///
+    /// [`RasterError::Parameter`] for a map that flattens or is not finite;
+    /// [`RasterError::Mesh`] if a vertex is moved out of single precision.
+    pub fn affine(&self, map: DAffine3) -> Result<Mesh, RasterError> {
+        let determinant = map.matrix3.determinant();
+        if !map.is_finite() || determinant == 0.0 {
+            return Err(ParamError::new("determinant of the map", determinant, "finite, and not 0").into());
+        }
+        let turned = map.matrix3.inverse().transpose();
+        let moved = moved(self, |p, n| (map.transform_point3(p), turned * n))?;
+        if determinant > 0.0 {
+            return Ok(moved);
+        }
+        let triangles = moved.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
+        let mirrored = Mesh::new(moved.positions().to_vec(), triangles)?;
+        match moved.normals() {
+            Some(normals) => Ok(mirrored.with_normals(normals.to_vec())?),
+            None => Ok(mirrored),
+        }
+    }
+
     /// The mesh tapered along z, with the parameters of [`Solid::taper`](crate::Solid::taper).
     ///
     /// ```
@@ -87,11 +113,16 @@ impl Mesh {
     }
 }
 
-/// The mesh with its vertices and normals moved by `map`.
+/// The mesh moved by `map` if `warp` takes what it holds.
 fn deformed(mesh: &Mesh, warp: &dyn AnyWarp, map: impl Fn(DVec3, DVec3) -> (DVec3, DVec3)) -> Result<Mesh, RasterError> {
     if !mesh.positions().is_empty() {
         warp.check(&mesh.bounds())?;
     }
+    moved(mesh, map)
+}
+
+/// The mesh with its vertices and normals, of any length, moved by `map`.
+fn moved(mesh: &Mesh, map: impl Fn(DVec3, DVec3) -> (DVec3, DVec3)) -> Result<Mesh, RasterError> {
     let positions: Vec<DVec3> = mesh.positions().iter().map(|p| p.as_dvec3()).collect();
     let moved = positions.iter().map(|&p| map(p, DVec3::ZERO).0.as_vec3()).collect();
     let deformed = Mesh::new(moved, mesh.triangles().to_vec())?;

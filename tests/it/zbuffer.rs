@@ -1,9 +1,12 @@
 //! Depth-buffer CSG: the acceptance checks of the mathematics on analytic layers, and meshes
 //! against interval CSG of the same triangles.
 
-use glam::{DMat3, DVec3, Vec3};
+use std::f64::consts::{PI, TAU};
+
+use glam::{DAffine3, DMat3, DVec3, Vec3};
 use rvachev::{
-    Buffers, Camera, ClosedMesh, Csg, CsgMethod, Facing, Fragments, LayerSource, Mesh, RasterError, RasterView, Run, Tile,
+    Buffers, Camera, ClosedMesh, Csg, CsgMethod, Facing, Fragments, LayerSource, Mesh, MeshLayers, PatchSettings,
+    RFunction, RasterError, RasterView, Run, Solid, Superellipsoid, Tile,
 };
 
 /// The picture of the acceptance checks: 160 × 160 pixel middles over [−2, 2]², along +z.
@@ -212,7 +215,6 @@ fn a_torus_needs_all_its_layers() {
     // 4256 by samples alone, which miss two thin spans.
     assert_eq!(compare(&all, &tree, &csg(&all, &tree, CsgMethod::Intervals)), (4258, 0));
     let (_, wrong) = compare(&all, &tree, &csg(&all, &tree, CsgMethod::Stencil));
-    println!("stencil wrong {wrong}");
     assert!((400..=432).contains(&wrong), "{wrong}");
     let (_, wrong) = compare(&all, &tree, &csg(&all, &tree, CsgMethod::Sequenced));
     assert!(wrong > 300, "{wrong}");
@@ -296,8 +298,6 @@ fn patch(n: u32, m: u32, wraps: bool, at: impl Fn(f64, f64) -> DVec3) -> Mesh {
     }
     Mesh::new(positions, triangles).unwrap()
 }
-
-use std::f64::consts::{PI, TAU};
 
 fn ball_mesh(n: u32, radii: DVec3, centre: DVec3) -> Mesh {
     patch(n, n / 2, false, |u, v| {
@@ -466,6 +466,143 @@ fn same_bytes_for_any_number_of_threads() {
     };
     let one = with(1);
     assert!(one == with(2) && one == with(5));
+}
+
+// The same solid by meshes and by fields.
+
+/// How far the middles of triangles and edges are from the surface of the solid that the mesh
+/// stands for, at most, to first order.
+fn chord_error(mesh: &Mesh, solid: &Solid) -> f64 {
+    let middles = mesh.triangles().iter().flat_map(|t| {
+        let [a, b, c] = t.map(|i| mesh.positions()[i as usize].as_dvec3());
+        [(a + b + c) / 3.0, (a + b) / 2.0, (b + c) / 2.0, (c + a) / 2.0]
+    });
+    let off = |p: DVec3| {
+        let slope = solid.gradient(p).unwrap().length();
+        if slope > 0.0 { solid.value(p).unwrap().abs() / slope } else { 0.0 }
+    };
+    middles.map(off).fold(0.0, f64::max)
+}
+
+/// Depths and normals by rasterising against rays that are cast at the field. Returns the pixels
+/// that both see and those left out at silhouettes; asserts all others.
+fn like_for_like(view: &RasterView, meshes: &[&Mesh], tree: &Csg, solid: &Solid, tolerance: f64) -> (usize, usize) {
+    let layers: Vec<MeshLayers> = meshes.iter().map(|mesh| view.layers(ClosedMesh::new(mesh).unwrap())).collect();
+    let operands: Vec<&dyn LayerSource> = layers.iter().map(|l| l as &dyn LayerSource).collect();
+    let buffers = view.csg(&operands, tree, CsgMethod::Intervals).unwrap();
+    let (mut compared, mut silhouettes) = (0, 0);
+    for y in 0..view.height() {
+        for x in 0..view.width() {
+            let (px, py) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
+            let (origin, direction) = view.camera().ray(px, py, view.width(), view.height());
+            let (hit, id) = (solid.raycast(origin, direction).unwrap(), buffers.id(x, y));
+            let (Some(hit), Some(id)) = (hit, id) else {
+                silhouettes += usize::from(hit.is_some() != id.is_some());
+                continue;
+            };
+            let facing = hit.normal.dot(direction).abs();
+            if facing < 0.2 || hit.owner != id.operand {
+                silhouettes += 1;
+                continue;
+            }
+            let point = buffers.point(x, y).unwrap();
+            // A step along the ray is a shorter one off the surface.
+            let off = (point - hit.point).length() * facing;
+            if off > tolerance {
+                // An edge of the result may pass between the two.
+                let next = |dx: i32, dy: i32| buffers.id(x.wrapping_add_signed(dx), y.wrapping_add_signed(dy));
+                let around = [next(1, 0), next(-1, 0), next(0, 1), next(0, -1)];
+                let same = |other: &Option<rvachev::SurfaceId>| other.is_some_and(|o| (o.operand, o.facing) == (id.operand, id.facing));
+                assert!(!around.iter().all(same), "({x}, {y}): {off:e}, {tolerance:e} allowed");
+                silhouettes += 1;
+                continue;
+            }
+            let normal = operands[id.operand as usize].normal(id.face, point);
+            let outward = if id.facing == Facing::Front { normal } else { -normal };
+            assert!(outward.dot(hit.normal) > 0.95, "({x}, {y}): {outward} {}", hit.normal);
+            compared += 1;
+        }
+    }
+    (compared, silhouettes)
+}
+
+fn patch_settings() -> PatchSettings {
+    PatchSettings { rows: 48, columns: 96, ..PatchSettings::default() }
+}
+
+#[test]
+fn superellipsoids_like_for_like_with_rays() {
+    let shapes = [
+        Superellipsoid::new([1.2, 1.0, 0.8], 0.6, 0.7),
+        Superellipsoid::new([0.8, 0.7, 0.9], 1.0, 1.3),
+        Superellipsoid::new([0.4, 0.4, 1.3], 0.5, 1.0),
+    ];
+    let places = [[0.0, 0.0, 0.0], [0.7, -0.6, 0.5], [-0.5, -0.1, 0.1]].map(|p| DAffine3::from_translation(p.into()));
+    let meshes: Vec<Mesh> = shapes
+        .iter()
+        .zip(places)
+        .map(|(shape, place)| shape.surface().unwrap().mesh(&patch_settings()).unwrap().affine(place).unwrap())
+        .collect();
+    let solids: Vec<Solid> =
+        shapes.iter().zip(places).map(|(shape, place)| Solid::from(*shape).affine(place)).collect();
+    let error = meshes.iter().zip(&solids).map(|(mesh, solid)| chord_error(mesh, solid)).fold(0.0, f64::max);
+    assert!(error < 0.005, "{error}");
+    let [a, b, c] = operands();
+    let min = RFunction::MIN_MAX;
+    let (p, q, r) = (&solids[0], &solids[1], &solids[2]);
+    for (tree, solid) in [
+        (a.clone() - b.clone(), p.difference(q, min)),
+        (a.clone() & b.clone(), p.intersection(q, min)),
+        ((a | b) - c, p.union(q, min).difference(r, min)),
+    ] {
+        for camera in cameras() {
+            let view = RasterView::new(&camera, 60, 45).unwrap();
+            let all: Vec<&Mesh> = meshes.iter().take(tree.operands()).collect();
+            // Twice, for curvature within a triangle.
+            let (compared, silhouettes) = like_for_like(&view, &all, &tree, &solid, 2.0 * error);
+            println!("{tree}: {compared} pixels within {:.1e}, {silhouettes} at silhouettes", 2.0 * error);
+            assert!(compared > 200 && silhouettes < compared / 4, "{tree}: {compared} {silhouettes}");
+        }
+    }
+}
+
+#[test]
+fn deformed_operands_like_for_like_with_rays() {
+    let bar = Superellipsoid::new([0.5, 0.4, 1.2], 0.6, 0.6);
+    let mesh = bar.surface().unwrap().mesh(&patch_settings()).unwrap();
+    let bar = Solid::from(bar);
+    let ball_solid = Solid::sphere(0.5).translate([0.4, -0.5, 0.3]);
+    let ball = ball_mesh(64, DVec3::splat(0.5), DVec3::new(0.4, -0.5, 0.3));
+    let [a, b] = operands();
+    let tree = a - b;
+    for (mesh, solid) in [
+        (mesh.taper(0.4, -0.3, 1.2).unwrap(), bar.taper(0.4, -0.3, 1.2)),
+        (mesh.twist(0.8).unwrap(), bar.twist(0.8)),
+        (mesh.bend(0.5, 0.7).unwrap(), bar.bend(0.5, 0.7)),
+        (mesh.bend(-0.4, 0.2).unwrap(), bar.bend(-0.4, 0.2)),
+        (
+            mesh.taper(0.3, 0.3, 1.2).unwrap().twist(0.6).unwrap().bend(0.3, 0.5).unwrap(),
+            bar.taper(0.3, 0.3, 1.2).twist(0.6).bend(0.3, 0.5),
+        ),
+    ] {
+        ClosedMesh::new(&mesh).unwrap();
+        let error = chord_error(&mesh, &solid).max(chord_error(&ball, &ball_solid));
+        assert!(error < 0.005, "{error}");
+        let view = RasterView::new(&cameras()[0], 50, 40).unwrap();
+        let all = solid.difference(&ball_solid, RFunction::MIN_MAX);
+        let (compared, silhouettes) = like_for_like(&view, &[&mesh, &ball], &tree, &all, 2.0 * error);
+        assert!(compared > 150 && silhouettes < compared / 3, "{compared} {silhouettes}");
+    }
+    let parameter = |result: Result<Mesh, RasterError>| result.unwrap_err().to_string();
+    assert!(parameter(mesh.taper(1.5, 0.0, 1.0)).starts_with("kx is 1.5, allowed: -0.999 to 0.999"));
+    assert!(parameter(mesh.twist(f64::NAN)).starts_with("rate is NaN"));
+    assert!(parameter(mesh.bend(5.0, 0.0)).starts_with("curvature is 5"));
+    let flat = DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0));
+    assert!(parameter(mesh.affine(flat)).starts_with("determinant of the map is 0"));
+    // A mirror image still faces outward.
+    let mirrored = mesh.affine(DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0))).unwrap();
+    assert!((mirrored.volume() - mesh.volume()).abs() < 1e-6);
+    ClosedMesh::new(&mirrored).unwrap();
 }
 
 #[test]
