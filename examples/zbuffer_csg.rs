@@ -165,46 +165,48 @@ fn joins() -> Result<Sheet> {
     Ok(Sheet { across: 4, panels })
 }
 
-/// What a set is made of: meshes, and the tree over them.
+/// What a set is made of: meshes with their colours.
 #[derive(Default)]
 struct Parts {
     meshes: Vec<Mesh>,
+    colors: Vec<[u8; 3]>,
 }
 
 impl Parts {
-    fn add(&mut self, mesh: Mesh) -> Csg {
+    fn add(&mut self, mesh: Mesh, color: [u8; 3]) -> Csg {
         self.meshes.push(mesh);
+        self.colors.push(color);
         Csg::operand(self.meshes.len() as u32 - 1)
     }
 }
 
 /// A mug with a bent handle, a twisted candle on a stand, a bowl, and dice on a table.
 fn set(parts: &mut Parts) -> Result<Csg> {
-    let table = parts.add(moved(superellipsoid([3.6, 2.3, 0.12], 0.1, 0.2)?, 0.0, 0.0, -0.12)?);
+    let table = parts.add(moved(superellipsoid([3.6, 2.3, 0.12], 0.1, 0.2)?, 0.0, 0.0, -0.12)?, [150, 128, 104]);
 
     let outside = superellipsoid([0.72, 0.72, 0.85], 0.2, 1.0)?.taper(0.12, 0.12, 0.85)?;
-    let outside = parts.add(moved(outside, -2.1, -0.3, 0.85)?);
+    let outside = parts.add(moved(outside, -2.1, -0.3, 0.85)?, [92, 138, 178]);
     let inside = superellipsoid([0.62, 0.62, 0.85], 0.25, 1.0)?.taper(0.12, 0.12, 0.85)?;
-    let inside = parts.add(moved(inside, -2.1, -0.3, 0.99)?);
+    let inside = parts.add(moved(inside, -2.1, -0.3, 0.99)?, [226, 226, 220]);
     let ring = Supertoroid::new([0.13, 0.13, 0.13], 3.2, 1.0, 1.0).surface()?.mesh(&patch(32, 96))?;
     let ring = ring.affine(DAffine3::from_rotation_x(std::f64::consts::FRAC_PI_2))?;
-    let ring = parts.add(moved(ring, -1.38, -0.3, 0.85)?);
+    let ring = parts.add(moved(ring, -1.38, -0.3, 0.85)?, [92, 138, 178]);
     let mug = (outside | ring) - inside;
 
-    let ball = parts.add(moved(superellipsoid([0.95, 0.95, 0.8], 1.0, 1.0)?, 0.1, 0.75, 0.62)?);
-    let hollow = parts.add(moved(superellipsoid([0.85, 0.85, 0.7], 1.0, 1.0)?, 0.1, 0.75, 0.66)?);
-    let above = parts.add(moved(superellipsoid([1.2, 1.2, 0.6], 0.1, 0.1)?, 0.1, 0.75, 1.3)?);
-    let foot = parts.add(moved(superellipsoid([0.5, 0.5, 0.1], 0.1, 1.0)?, 0.1, 0.75, 0.1)?);
+    let ball = parts.add(moved(superellipsoid([0.95, 0.95, 0.8], 1.0, 1.0)?, 0.1, 0.75, 0.62)?, [126, 166, 108]);
+    let hollow = parts.add(moved(superellipsoid([0.85, 0.85, 0.7], 1.0, 1.0)?, 0.1, 0.75, 0.66)?, [222, 226, 210]);
+    let above = parts.add(moved(superellipsoid([1.2, 1.2, 0.6], 0.1, 0.1)?, 0.1, 0.75, 1.3)?, [186, 190, 176]);
+    let foot = parts.add(moved(superellipsoid([0.5, 0.5, 0.1], 0.1, 1.0)?, 0.1, 0.75, 0.1)?, [126, 166, 108]);
     let bowl = ((ball - hollow) - above) | foot;
-    let fruit = parts.add(moved(superellipsoid([0.34, 0.34, 0.3], 0.8, 1.0)?, 0.0, 0.62, 0.6)?);
+    let fruit = parts.add(moved(superellipsoid([0.34, 0.34, 0.3], 0.8, 1.0)?, 0.0, 0.62, 0.6)?, [206, 92, 66]);
     let banana = superellipsoid([0.13, 0.13, 0.75], 0.8, 0.7)?.taper(-0.15, -0.15, 0.75)?.bend(1.1, 0.0)?;
     let banana = banana.affine(DAffine3::from_rotation_y(-0.5) * DAffine3::from_rotation_z(0.4))?;
-    let banana = parts.add(moved(banana, 0.42, 0.8, 0.95)?);
+    let banana = parts.add(moved(banana, 0.42, 0.8, 0.95)?, [226, 192, 84]);
 
     let candle = superellipsoid([0.24, 0.24, 0.95], 0.15, 0.25)?.twist(1.9)?.taper(-0.25, -0.25, 0.95)?;
-    let candle = parts.add(moved(candle, 2.2, 0.4, 1.15)?);
-    let plate = parts.add(moved(superellipsoid([0.75, 0.75, 0.2], 0.6, 1.0)?, 2.2, 0.4, 0.2)?);
-    let dish = parts.add(moved(superellipsoid([0.62, 0.62, 0.18], 0.6, 1.0)?, 2.2, 0.4, 0.36)?);
+    let candle = parts.add(moved(candle, 2.2, 0.4, 1.15)?, [236, 222, 190]);
+    let plate = parts.add(moved(superellipsoid([0.75, 0.75, 0.2], 0.6, 1.0)?, 2.2, 0.4, 0.2)?, [140, 130, 176]);
+    let dish = parts.add(moved(superellipsoid([0.62, 0.62, 0.18], 0.6, 1.0)?, 2.2, 0.4, 0.36)?, [190, 184, 208]);
     let stand = (plate - dish) | candle;
 
     let mut all = table | mug | bowl | fruit | banana | stand;
@@ -217,7 +219,7 @@ fn set(parts: &mut Parts) -> Result<Csg> {
 /// A die on the table, with spots on top, in front and at its right.
 fn die(parts: &mut Parts, x: f64, y: f64, turn: f64, spots: [usize; 3]) -> Result<Csg> {
     let place = DAffine3::from_translation(DVec3::new(x, y, 0.32)) * DAffine3::from_rotation_z(turn);
-    let mut die = parts.add(superellipsoid([0.32, 0.32, 0.32], 0.25, 0.25)?.affine(place)?);
+    let mut die = parts.add(superellipsoid([0.32, 0.32, 0.32], 0.25, 0.25)?.affine(place)?, [232, 230, 224]);
     let ball = Superellipsoid::new([0.062, 0.062, 0.062], 1.0, 1.0).surface()?.mesh(&patch(16, 32))?;
     let all = [(0.0, 0.0), (0.15, 0.15), (-0.15, -0.15), (0.15, -0.15), (-0.15, 0.15), (0.15, 0.0), (-0.15, 0.0)];
     let places: [&[usize]; 6] = [&[0], &[1, 2], &[0, 1, 2], &[1, 2, 3, 4], &[0, 1, 2, 3, 4], &[1, 2, 3, 4, 5, 6]];
@@ -230,7 +232,7 @@ fn die(parts: &mut Parts, x: f64, y: f64, turn: f64, spots: [usize; 3]) -> Resul
         for &spot in places[count - 1] {
             let (u, v) = all[spot];
             let dent = ball.affine(place * DAffine3::from_translation(side(u, v)))?;
-            die = die - parts.add(dent);
+            die = die - parts.add(dent, [48, 46, 52]);
         }
     }
     Ok(die)
@@ -275,7 +277,7 @@ fn main() -> Result<()> {
         view.height(),
         drawing.elapsed().as_secs_f64()
     );
-    let sheet = Sheet { across: 1, panels: vec![buffers.picture(&operands, &COLORS)?] };
+    let sheet = Sheet { across: 1, panels: vec![buffers.picture(&operands, &parts.colors)?] };
     save("set", &sheet, start)?;
     Ok(())
 }

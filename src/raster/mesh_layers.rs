@@ -1,6 +1,7 @@
 //! The layers of a mesh in a view: vertices are projected, triangles cut off at the near plane,
 //! and sorted into the tiles that they touch.
 
+use fearless_simd::{Level, Simd, dispatch};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -113,6 +114,16 @@ impl<'a> MeshLayers<'a> {
         self.mesh
     }
 
+    /// Every level gives the same to the bit: no operation rounds less on some.
+    #[inline(always)]
+    fn draw<S: Simd, const PERSPECTIVE: bool>(&self, simd: S, tile: &Tile, sink: &mut dyn FnMut(&[Fragments])) {
+        let mut batch = Batch::new();
+        for &number in self.bin(tile) {
+            self.triangles[number as usize].draw::<S, PERSPECTIVE>(simd, tile, self.view.fraction, &mut batch, sink);
+        }
+        batch.flush(sink);
+    }
+
     fn bin(&self, tile: &Tile) -> &[u32] {
         let [across, _] = Tile::grid(self.view.width, self.view.height);
         let number = (tile.y / Tile::SIDE * across + tile.x / Tile::SIDE) as usize;
@@ -126,17 +137,12 @@ impl LayerSource for MeshLayers<'_> {
     }
 
     fn layers(&self, tile: &Tile, sink: &mut dyn FnMut(&[Fragments])) {
-        let mut batch = Batch::new();
-        let fraction = self.view.fraction;
-        for &number in self.bin(tile) {
-            let triangle = &self.triangles[number as usize];
-            if self.view.parallel {
-                triangle.draw::<false>(tile, fraction, &mut batch, sink);
-            } else {
-                triangle.draw::<true>(tile, fraction, &mut batch, sink);
-            }
+        let level = Level::new();
+        if self.view.parallel {
+            dispatch!(level, simd => self.draw::<_, false>(simd, tile, sink));
+        } else {
+            dispatch!(level, simd => self.draw::<_, true>(simd, tile, sink));
         }
-        batch.flush(sink);
     }
 
     fn touches(&self, tile: &Tile) -> bool {

@@ -16,6 +16,9 @@
 //!
 //! Source: J. Pineda, *A parallel algorithm for polygon rasterization* (1988).
 
+use fearless_simd::prelude::*;
+use fearless_simd::{Simd, f64x4};
+
 use super::layers::{Facing, Fragments, LANES, Tile};
 
 /// A triangle with its corners at fractions of a pixel, clockwise in the picture.
@@ -85,8 +88,10 @@ impl Triangle {
     }
 
     /// Draws what is in the tile.
-    pub(super) fn draw<const PERSPECTIVE: bool>(
+    #[inline(always)]
+    pub(super) fn draw<S: Simd, const PERSPECTIVE: bool>(
         &self,
+        simd: S,
         tile: &Tile,
         fraction: u32,
         batch: &mut Batch,
@@ -129,27 +134,22 @@ impl Triangle {
         let inverse = 1.0 / ((ux * vy - uy * vx) as f64);
         let rise = [(self.key[1] - self.key[0]) * inverse, (self.key[2] - self.key[0]) * inverse];
 
+        let splat = |x: f64| f64x4::splat(simd, x);
+        let lane = f64x4::simd_from(simd, [0.0, 1.0, 2.0, 3.0]);
+        let across = step.map(|s| (lane * s[0], splat(s[0] * LANES as f64)));
+        let (first_key, nothing) = (splat(self.key[0]), splat(f64::INFINITY));
         for row in top..=bottom {
-            let mut e = at_left;
+            let mut e: [f64x4<S>; 3] = [0, 1, 2].map(|i| across[i].0 + at_left[i]);
             let mut at = (row * Tile::SIDE as i32 + left) as u32;
             for _ in (left..=right).step_by(LANES) {
-                let mut depth = [f64::INFINITY; LANES];
-                let mut any = false;
-                for lane in 0..LANES {
-                    let k = lane as f64;
-                    let [e0, e1, e2] = [0, 1, 2].map(|i| e[i] + k * step[i][0]);
-                    let inside = (e0 >= least[0]) & (e1 >= least[1]) & (e2 >= least[2]);
-                    let key = self.key[0] + (e1 * rise[0] + e2 * rise[1]);
+                let inside = e[0].simd_ge(least[0]) & e[1].simd_ge(least[1]) & e[2].simd_ge(least[2]);
+                if inside.any_true() {
+                    let key = first_key + (e[1] * rise[0] + e[2] * rise[1]);
                     let z = if PERSPECTIVE { 1.0 / key } else { key };
-                    depth[lane] = if inside { z } else { f64::INFINITY };
-                    any |= inside;
-                }
-                if any {
+                    let depth: [f64; LANES] = inside.select(z, nothing).into();
                     batch.push(Fragments { at, facing: self.facing, face: self.face, depth }, sink);
                 }
-                for i in 0..3 {
-                    e[i] += LANES as f64 * step[i][0];
-                }
+                e = [0, 1, 2].map(|i| e[i] + across[i].1);
                 at += LANES as u32;
             }
             for i in 0..3 {
