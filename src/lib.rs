@@ -343,6 +343,7 @@ pub mod idioms;
 mod io;
 mod mesh;
 mod num;
+mod raster;
 mod render;
 mod run;
 mod solid;
@@ -370,6 +371,7 @@ pub use mesh::{
 pub use num::{Dual, Interval, Monotone, Monotone3, Norm, Real};
 #[doc(hidden)]
 pub use render::CNT;
+pub use raster::{Buffers, ClosedMesh, Csg, CsgMethod, Facing, Fragments, LANES, LayerSource, MeshLayers, RasterError, RasterView, SurfaceId, Tile};
 pub use render::{Background, GBuffer, RenderError, RenderSettings, Scene, Surface, Window};
 pub use run::{CancelToken, Cancelled, Progress, Run};
 pub use solid::{Caps, Extrusion, Helix, PlaneBounds, Profile, Solid, SolidError};
