@@ -344,8 +344,14 @@ pub use field::{
     SheetLattice, SineWave, Slab, SmoothStep, Sphere, Superellipse, Superellipsoid, Superhyperboloid, Superpolygon,
     Supershape, Supertoroid, Torus, Turns, VALUE_LIMIT, Wedge,
 };
-pub use geom::{Camera, CameraError, Image, ImageError, Mesh, MeshError, Projection, Rays};
-pub use io::{SaveError, write_png, write_stl};
+pub use geom::{
+    Camera, CameraError, Coordinates, Image, ImageError, Intrinsics, Mesh, MeshError, Noise, Plane, PointCloud,
+    PointCloudError, Polyline, Projection, RangeImage, RangeImageError, Rays, View,
+};
+pub use io::{
+    Colors, Floats, Pixel, SaveError, write_dxf, write_exr, write_gif, write_ply_points, write_png, write_stl,
+    write_svg,
+};
 pub use mesh::{CellSize, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError};
 pub use num::{Dual, Interval, Monotone, Monotone3, Norm, Real};
 pub use render::{Background, GBuffer, RenderError, RenderSettings, Scene, Surface, Window};
