@@ -5,6 +5,7 @@
 //! R-functions, which is the same solid with the same surface and normals, and which can be
 //! narrowed to a region.
 
+mod bend;
 mod code;
 mod compile;
 mod composite;
@@ -31,5 +32,6 @@ pub use query::Owner;
 pub use ray::Hit;
 pub use tape::{Evaluator, Gradients, Tape};
 
+pub(crate) use bend::Bend;
 pub(crate) use compile::compiled;
-pub(crate) use ray::{Course, first_hit};
+pub(crate) use ray::first_hit;

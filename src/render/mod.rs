@@ -1,17 +1,18 @@
 //! From a solid to a picture.
 //!
-//! A grid of blocks is laid over the solid; each ray walks through it and asks, in the blocks
-//! that the surface may cross, for the first crossing. What it meets is shaded by three
+//! The space around the solid is divided into cells where the surface may cross; rays are taken
+//! through them in packets and ask each for the first crossing. What it meets is shaded by three
 //! lights that move with the camera. Pixels at outlines and creases are sampled more often.
 
-mod blocks;
+mod cells;
 mod gbuffer;
+mod march;
 mod picture;
 mod scene;
 mod settings;
 mod shade;
 mod solid;
-mod walk;
+mod tile;
 
 pub use gbuffer::{GBuffer, Surface, Window};
 pub use scene::Scene;

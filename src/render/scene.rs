@@ -4,14 +4,15 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use super::blocks::Blocks;
+use super::cells::Cells;
 use super::gbuffer::{GBuffer, Surface, Window};
 use super::settings::RenderError;
+use super::tile::{TILE, Tracer, View};
 use crate::eval::compiled;
 use crate::{Bounds, Cancelled, Hit, Rays, Run, Solid};
 
-/// Rows of a band.
-const BAND: u32 = 16;
+/// How far a ray from a hit starts off the surface, in proportion to the solid.
+const HAIR: f64 = 1e-7;
 
 /// Rays of a packet.
 const PACKET: usize = 1024;
@@ -34,7 +35,7 @@ const PACKET: usize = 1024;
 pub struct Scene {
     bounds: Bounds,
     /// `None` if there is nothing to see.
-    blocks: Option<Blocks>,
+    cells: Option<Cells>,
 }
 
 impl Solid {
@@ -59,9 +60,9 @@ impl Solid {
             run.check()?;
             // A box without extent holds nothing that could be seen.
             let visible = !bounds.is_empty() && bounds.longest_side() > 0.0;
-            let blocks = if visible { Some(Blocks::new(&programs.surface, &bounds, 48, &run)?) } else { None };
+            let cells = visible.then(|| Cells::new(&programs.surface, &bounds));
             run.report(1.0);
-            Ok(Scene { bounds, blocks })
+            Ok(Scene { bounds, cells })
         })
     }
 }
@@ -76,14 +77,18 @@ impl Scene {
     /// A length that is small for the solid, and large for the rounding of its points: rays
     /// from a hit start this far off the surface.
     pub(super) fn hair(&self) -> f64 {
-        self.blocks.as_ref().map_or(0.0, Blocks::hair)
+        if self.cells.is_some() { HAIR * self.bounds.longest_side() } else { 0.0 }
     }
 
     /// The first crossing on the ray from `origin` along `direction`, which must be a unit
     /// vector. From inside the solid it is where the ray leaves it.
     #[must_use]
     pub fn first_hit(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
-        self.blocks.as_ref()?.first_hit(origin, direction)
+        let mut found = [Surface::NONE];
+        Tracer::default().list(self.cells.as_ref()?, &[(origin, direction)], &mut found);
+        let Surface { distance, normal, owner } = found[0];
+        let point = origin + distance * direction;
+        found[0].is_hit().then_some(Hit { distance, point, normal: normal.as_dvec3(), owner })
     }
 
     /// [`first_hit`](Scene::first_hit) along many rays, each an origin and a unit direction,
@@ -91,17 +96,11 @@ impl Scene {
     #[must_use]
     pub fn first_hits(&self, rays: &[(DVec3, DVec3)]) -> Vec<Surface> {
         let mut found = vec![Surface::NONE; rays.len()];
-        let packets = found.par_chunks_mut(PACKET).zip(rays.par_chunks(PACKET));
-        packets.for_each(|(found, rays)| self.packet(rays, found));
-        found
-    }
-
-    fn packet(&self, rays: &[(DVec3, DVec3)], found: &mut [Surface]) {
-        for (found, (origin, direction)) in found.iter_mut().zip(rays) {
-            if let Some(hit) = self.first_hit(*origin, *direction) {
-                *found = Surface { distance: hit.distance, normal: hit.normal.as_vec3(), owner: hit.owner };
-            }
+        if let Some(cells) = &self.cells {
+            let packets = found.par_chunks_mut(PACKET).zip(rays.par_chunks(PACKET));
+            packets.for_each_init(Tracer::default, |tracer, (found, rays)| tracer.list(cells, rays, found));
         }
+        found
     }
 
     /// What the pixels of `window` see along `rays`. Runs on the current rayon pool; the
@@ -124,16 +123,33 @@ impl Scene {
 
     fn trace(&self, rays: &Rays, window: Window, run: &Run) -> Result<GBuffer, Cancelled> {
         let mut surfaces = vec![Surface::NONE; window.count()];
+        let Some(cells) = &self.cells else { return Ok(GBuffer::new(window, surfaces)) };
+        let view = View::new(cells, rays);
+        let (across, down) = (window.width.div_ceil(TILE), window.height.div_ceil(TILE));
         let done = AtomicU32::new(0);
-        let bands = surfaces.par_chunks_mut((window.width * BAND).max(1) as usize).enumerate();
+        let bands = surfaces.par_chunks_mut((window.width * TILE).max(1) as usize).enumerate();
         bands.try_for_each(|(band, surfaces)| {
-            run.check()?;
-            for (row, y) in surfaces.chunks_mut(window.width as usize).zip(band as u32 * BAND..) {
-                let rays: Vec<(DVec3, DVec3)> = (0..window.width).map(|x| window.ray(rays, x, y)).collect();
-                self.packet(&rays, row);
+            let tile = |column: u32| {
+                let (x, y) = (column * TILE, band as u32 * TILE);
+                let (width, height) = (TILE.min(window.width - x), TILE.min(window.height - y));
+                Window { left: window.left + x, top: window.top + y, width, height, ..window }
+            };
+            let traced = |tracer: &mut Tracer, column: u32| {
+                run.check()?;
+                let found = tracer.tile(cells, &view, tile(column));
+                let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+                run.report(f64::from(done) / f64::from(across * down));
+                Ok(found)
+            };
+            let tiles: Result<Vec<_>, Cancelled> =
+                (0..across).into_par_iter().map_init(Tracer::default, traced).collect();
+            for (column, found) in (0..).zip(tiles?) {
+                let Window { width, .. } = tile(column);
+                let rows = surfaces.chunks_mut(window.width as usize).zip(found.chunks(width as usize));
+                for (row, found) in rows {
+                    row[(column * TILE) as usize..][..width as usize].copy_from_slice(found);
+                }
             }
-            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-            run.report(f64::from(done) / f64::from(window.height.div_ceil(BAND)));
             Ok(())
         })?;
         Ok(GBuffer::new(window, surfaces))
