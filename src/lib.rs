@@ -336,7 +336,7 @@ mod solid;
 mod space;
 
 pub use bounds::Bounds;
-pub use eval::{Evaluator, Gradients, Hit, Owner, Program, Region, Tape};
+pub use eval::{Evaluator, Gradients, Hit, Owner, Palette, Program, Region, Tape};
 pub use field::{
     Blend, COORDINATE_LIMIT, Capsule, Circle, Cone, Cuboid, Cylinder, Ellipsoid, Field, Formula, FormulaError,
     GeneralisedSuperquadric, Gielis, Grading, HalfSpace, Kernel, Law, LawTable, LinearLaw, MinimalSurface,
@@ -354,6 +354,9 @@ pub use io::{
 };
 pub use mesh::{CellSize, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError};
 pub use num::{Dual, Interval, Monotone, Monotone3, Norm, Real};
-pub use render::{Background, GBuffer, RenderError, RenderSettings, Scene, Surface, Window};
+pub use render::{
+    Background, GBuffer, Isolines, Layers, Lights, RenderError, RenderSettings, Scene, Slice, SliceSettings, Style,
+    Surface, Transfer, Window,
+};
 pub use run::{CancelToken, Cancelled, Progress, Run};
-pub use solid::{Caps, Extrusion, Helix, PlaneBounds, Profile, Solid, SolidError};
+pub use solid::{Caps, Extrusion, Helix, Paint, PlaneBounds, Profile, Solid, SolidError};
