@@ -3,6 +3,7 @@
 mod accuracy;
 mod blends;
 mod building;
+mod check;
 mod deformation;
 mod errors;
 mod forms;
