@@ -3,10 +3,13 @@
 use std::fs::File;
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use glam::{DVec3, Vec3};
 
 use super::file::write_whole;
-use super::{LengthUnit, write_3mf, write_glb, write_obj, write_ply, write_png, write_stl, write_stl_ascii};
-use crate::geom::{Image, Mesh};
+use super::{LengthUnit, write_3mf, write_dxf, write_exr, write_gif, write_glb, write_obj, write_ply, write_ply_points, write_png, write_stl, write_stl_ascii, write_svg};
+use crate::geom::{Image, Mesh, PointCloud, Polyline};
 
 /// Why a file could not be saved. Whatever was at the path before is still there, and no
 /// half-written file is left.
@@ -124,8 +127,49 @@ impl Mesh {
     }
 }
 
-impl Image {
-    /// Saves the picture in the format that the extension stands for: `.png`.
+/// A pixel whose pictures can be saved: see [`Image::save`]. This trait is closed.
+pub trait Pixel: Sized + sealed::Pixel {}
+
+mod sealed {
+    pub trait Pixel: Sized {
+        const KNOWN: &'static str;
+        fn writer(extension: &str) -> Option<super::Writer<super::Image<Self>>>;
+    }
+}
+
+/// Says which formats hold which pixels.
+macro_rules! pixel {
+    ($($pixel:ty: $known:literal, $($extension:literal => $write:ident),*;)*) => {$(
+        impl Pixel for $pixel {}
+        impl sealed::Pixel for $pixel {
+            const KNOWN: &'static str = $known;
+            fn writer(extension: &str) -> Option<Writer<Image<Self>>> {
+                match extension {
+                    $($extension => Some(|image, out| $write(image, out)),)*
+                    _ => None,
+                }
+            }
+        }
+    )*};
+}
+
+pixel! {
+    [u8; 4]: ".png", "png" => write_png;
+    [u16; 4]: ".png", "png" => write_png;
+    u8: ".png", "png" => write_png;
+    u16: ".png", "png" => write_png;
+    bool: ".png", "png" => write_png;
+    Option<u32>: ".png", "png" => write_png;
+    [f32; 4]: ".exr", "exr" => write_exr;
+    f64: ".exr, .png", "exr" => write_exr, "png" => write_png;
+    Vec3: ".exr, .png", "exr" => write_exr, "png" => write_png;
+    DVec3: ".exr", "exr" => write_exr;
+}
+
+impl<P: Pixel> Image<P> {
+    /// Saves the picture in the format that the extension stands for: `.png` for colours, greys,
+    /// masks, leaves, depths and normals ([`Colors`](crate::Colors) says how), `.exr` for what is
+    /// made of floats: light, depths, normals, positions.
     ///
     /// The file appears complete or not at all. Missing directories are not made.
     ///
@@ -134,6 +178,66 @@ impl Image {
     /// [`SaveError`], naming the file and the cause.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
         save(self, &(), path.as_ref(), &[("png", |image, (), out| write_png(image, out))])
+        save(self, path.as_ref(), P::writer, P::KNOWN)
+    }
+}
+
+impl Image {
+    /// Saves pictures as an animation, each shown for `pause`: `.gif`.
+    ///
+    /// The file appears complete or not at all. Missing directories are not made.
+    ///
+    /// # Errors
+    ///
+    /// [`SaveError`], naming the file and the cause; that there are no pictures is one.
+    pub fn save_animation(pictures: &[Image], pause: Duration, path: impl AsRef<Path>) -> Result<(), SaveError> {
+        let animation = (pictures, pause);
+        let writer = |extension: &str| -> Option<Writer<(&[Image], Duration)>> {
+            match extension {
+                "gif" => Some(|(pictures, pause), out| write_gif(pictures, *pause, out)),
+                _ => None,
+            }
+        };
+        save(&animation, path.as_ref(), writer, ".gif")
+    }
+}
+
+impl PointCloud {
+    /// Saves the points in the format that the extension stands for: `.ply`, binary PLY.
+    ///
+    /// The file appears complete or not at all. Missing directories are not made.
+    ///
+    /// # Errors
+    ///
+    /// [`SaveError`], naming the file and the cause.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
+        let writer = |extension: &str| -> Option<Writer<PointCloud>> {
+            match extension {
+                "ply" => Some(|cloud, out| write_ply_points(cloud, out)),
+                _ => None,
+            }
+        };
+        save(self, path.as_ref(), writer, ".ply")
+    }
+}
+impl Polyline {
+    /// Saves polylines as a drawing in the format that the extension stands for: `.svg` or
+    /// `.dxf`.
+    ///
+    /// The file appears complete or not at all. Missing directories are not made.
+    ///
+    /// # Errors
+    ///
+    /// [`SaveError`], naming the file and the cause.
+    pub fn save_all(lines: &[Polyline], path: impl AsRef<Path>) -> Result<(), SaveError> {
+        let writer = |extension: &str| -> Option<Writer<&[Polyline]>> {
+            match extension {
+                "svg" => Some(|lines, out| write_svg(lines, out)),
+                "dxf" => Some(|lines, out| write_dxf(lines, out)),
+                _ => None,
+            }
+        };
+        save(&lines, path.as_ref(), writer, ".svg, .dxf")
     }
 }
 
@@ -158,7 +262,6 @@ fn save<T, S>(data: &T, settings: &S, path: &Path, formats: &[(&str, Writer<T, S
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec3;
     use std::fs;
 
     /// A directory of its own for a test, removed at the end.
