@@ -10,9 +10,7 @@ use std::io::{Write, stderr};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use rvachev::{
-    Background, Blend, Camera, Image, Paint, Progress, RenderSettings, Run, Scene, Solid, View,
-};
+use rvachev::{Background, Blend, Camera, Image, Paint, Progress, RenderSettings, Run, Scene, Solid, View};
 
 const FRAMES: u32 = 30;
 const WIDTH: u32 = 360;

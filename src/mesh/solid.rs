@@ -233,7 +233,7 @@ impl Sampler for SolidSampler<'_> {
     }
 
     fn roots(&self, scratch: &mut Scratch, edges: &[EdgeRef], out: &mut [Root]) {
-        let Scratch { evaluator, tapes, finder, order, edges: sorted, roots } = scratch;
+        let Scratch { evaluator, tapes, finder, order, edges: sorted, roots, .. } = scratch;
         let group = |edge: &EdgeRef| self.groups[edge.block as usize];
         order.clear();
         order.extend(0..edges.len() as u32);

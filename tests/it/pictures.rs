@@ -257,9 +257,8 @@ fn a_scene_is_framed_tighter_than_its_box() {
     let framed = scene.framing(View::ThreeQuarter, 1.0);
     assert!(framed.eye.length() < 0.85 * boxed.eye.length());
     let mask = scene.layers(&framed, 64, 64, &Run::default()).unwrap().mask();
-    let touched = (0..64).any(|i| {
-        [(i, 0), (i, 63), (0, i), (63, i)].into_iter().any(|(x, y)| mask.pixel(x, y) == Some(true))
-    });
+    let touched =
+        (0..64).any(|i| [(i, 0), (i, 63), (0, i), (63, i)].into_iter().any(|(x, y)| mask.pixel(x, y) == Some(true)));
     assert!(!touched);
 }
 
