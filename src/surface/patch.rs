@@ -35,7 +35,7 @@ pub enum Spacing {
     EqualArc,
     /// As few as keep the mesh within this distance (length units) of the surface; `rows` and
     /// `columns` are not used. Rings have as many vertices as each needs, so that there are
-    /// triangles only, 1.3 to 1.6 times the least number possible on a smooth convex surface.
+    /// triangles only: 1.4 times (sphere) to 1.65 times (ellipsoid of 1 : 2 : 3) the least number possible.
     /// 10⁻⁶ to 0.3 of the size. (Barr's two sheets along x are even grids of rows and columns,
     /// as many as it takes, at most 1024 rows.)
     Chord(f64),
