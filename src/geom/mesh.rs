@@ -12,6 +12,7 @@
 //! ```
 
 mod attributes;
+mod measure;
 
 use glam::{DVec3, Vec3};
 
@@ -130,45 +131,6 @@ impl Mesh {
         triangle.map(|i| self.positions[i as usize].as_dvec3())
     }
 
-    /// The enclosed volume by the divergence theorem, in cubic length units: Σ a·(b × c) / 6
-    /// over the triangles. Positive if they face outward. Without meaning for an open mesh.
-    #[must_use]
-    pub fn volume(&self) -> f64 {
-        self.volume_and_moment().0
-    }
-
-    /// The centroid of the enclosed volume; `None` if that volume is 0.
-    #[must_use]
-    pub fn centroid(&self) -> Option<DVec3> {
-        let (volume, moment) = self.volume_and_moment();
-        (volume != 0.0).then(|| self.bounds().center() + moment / volume)
-    }
-
-    /// Volume, and first moment about the centre of the bounds. The tetrahedra are spanned
-    /// from that centre: from a far origin their large volumes would cancel.
-    fn volume_and_moment(&self) -> (f64, DVec3) {
-        let origin = self.bounds().center();
-        let mut volume = 0.0;
-        let mut moment = DVec3::ZERO;
-        for &t in &self.triangles {
-            let [a, b, c] = self.corners(t).map(|p| p - origin);
-            let six = a.dot(b.cross(c));
-            volume += six;
-            moment += (a + b + c) * six;
-        }
-        (volume / 6.0, moment / 24.0)
-    }
-
-    /// The total area of the triangles, in square length units.
-    #[must_use]
-    pub fn area(&self) -> f64 {
-        let twice = |&t: &[u32; 3]| {
-            let [a, b, c] = self.corners(t);
-            (b - a).cross(c - a).length()
-        };
-        self.triangles.iter().map(twice).sum::<f64>() / 2.0
-    }
-
     /// The smallest box that holds all vertices; [`Bounds::EMPTY`] without any.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
@@ -202,13 +164,19 @@ mod tests {
         let middle = DVec3::splat(4096.0) + DVec3::new(1.0, 1.5, 2.0);
         assert!((mesh.centroid().unwrap() - middle).length() < 1e-12);
         assert_eq!(mesh.bounds().size(), DVec3::new(2.0, 3.0, 4.0));
+        // m (b² + c²) / 12, and no product of inertia.
+        let inertia = mesh.inertia().unwrap();
+        for (k, exact) in [2.0 * 25.0, 2.0 * 20.0, 2.0 * 13.0].into_iter().enumerate() {
+            assert!((inertia.col(k)[k] - exact).abs() < 1e-11);
+            assert!(inertia.col(k)[(k + 1) % 3].abs() < 1e-11);
+        }
     }
 
     #[test]
     fn empty() {
         let mesh = Mesh::default();
         assert_eq!(mesh.volume(), 0.0);
-        assert_eq!(mesh.centroid(), None);
+        assert_eq!((mesh.centroid(), mesh.inertia()), (None, None));
         assert_eq!(mesh.bounds(), Bounds::EMPTY);
     }
 
