@@ -194,7 +194,7 @@ fn set(parts: &mut Parts) -> Result<Csg> {
     let hollow = parts.add(moved(superellipsoid([0.85, 0.85, 0.7], 1.0, 1.0)?, 0.1, 0.75, 0.66)?, [222, 226, 210]);
     let above = parts.add(moved(superellipsoid([1.2, 1.2, 0.6], 0.1, 0.1)?, 0.1, 0.75, 1.3)?, [186, 190, 176]);
     let foot = parts.add(moved(superellipsoid([0.5, 0.5, 0.1], 0.1, 1.0)?, 0.1, 0.75, 0.1)?, [126, 166, 108]);
-    let bowl = ((ball - hollow) - above) | foot;
+    let bowl = ((ball | foot) - hollow) - above;
     let fruit = parts.add(moved(superellipsoid([0.34, 0.34, 0.3], 0.8, 1.0)?, 0.0, 0.62, 0.6)?, [206, 92, 66]);
     let banana = superellipsoid([0.13, 0.13, 0.75], 0.8, 0.7)?.taper(-0.15, -0.15, 0.75)?.bend(1.1, 0.0)?;
     let banana = banana.affine(DAffine3::from_rotation_y(-0.5) * DAffine3::from_rotation_z(0.4))?;
