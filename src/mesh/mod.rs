@@ -6,11 +6,14 @@ mod feature;
 mod lattice;
 mod loops;
 mod qef;
+mod resolve;
 mod roots;
+mod settings;
 mod signs;
 mod solid;
 mod table;
 
 pub use check::MeshReport;
 pub use lattice::{CellSize, Lattice, LatticeError};
-pub use solid::{Features, MeshSettings, MeshingError};
+pub use settings::{AtBounds, Features, MeshSettings, ThinFeatures};
+pub use solid::MeshingError;
