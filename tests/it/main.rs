@@ -19,6 +19,7 @@ mod parameters;
 mod primitives;
 mod profile;
 mod queries;
+mod random_fields;
 mod rfunction;
 mod scale;
 mod sharp;
