@@ -35,6 +35,9 @@ pub struct MeshSettings {
 /// What becomes of creases and corners.
 ///
 /// Both give meshes that are closed, manifold and free of self-intersection, whatever the solid.
+///
+#[doc = picture!("sharp" = "docs/sharp.png")]
+///
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Features {
     /// They are cut off, by a fraction of a cell: marching cubes.

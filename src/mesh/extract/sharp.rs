@@ -32,7 +32,15 @@
 //! planes rounded, rounding keeps order, and feature points are moved strictly between the rounded
 //! planes.
 //!
-//! Cells with several loops and ambiguous faces stay as the table has them.
+//! An ambiguous face has two segments, and x may be in the way of the other: there the edge of the
+//! closer segment is turned if x is on the near side of the other one, with more than the rounding to
+//! spare, and the other is not. [Regions](super::region) have fans as well; between those the line a–b
+//! need not go through the face of the segment, and the edge is turned only where it does. That
+//! also keeps two fans from having two edges in common.
+//!
+//! Limits: cells with several loops stay as the table has them, or as that of the opposite case
+//! (see [`joined`](super::joined)). Where a crease passes an empty cell and no region comes about, it is
+//! cut off by what it goes into that cell, up to half a cell or more.
 
 use std::collections::HashSet;
 use std::ops::Range;

@@ -111,9 +111,8 @@ fn no_diagonal_goes_through_a_triangle() {
 fn triangles_that_share_a_side_do_not_fold() {
     for case in 0..=255 {
         let triangles = CaseTable::get().triangles(case);
-        let faces = |triangle: [u8; 3], w: Vector| {
-            settled(triangle, |[a, b, c]| dot(cross(minus(b, a), minus(c, a)), w)) == 1
-        };
+        let faces =
+            |triangle: [u8; 3], w: Vector| settled(triangle, |[a, b, c]| dot(cross(minus(b, a), minus(c, a)), w)) == 1;
         for (n, &t) in triangles.iter().enumerate() {
             for &u in triangles[..n].iter().filter(|&&u| runs_along(t, u).is_some()) {
                 assert!(directions().any(|w| faces(t, w) && faces(u, w)), "case {case}: {t:?} and {u:?}");
