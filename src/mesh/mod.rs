@@ -6,7 +6,9 @@ mod feature;
 mod lattice;
 mod loops;
 mod qef;
+mod resolve;
 mod roots;
+mod settings;
 mod signs;
 mod solid;
 mod table;
@@ -14,5 +16,6 @@ mod volume;
 
 pub use check::MeshReport;
 pub use lattice::{CellSize, Lattice, LatticeError};
-pub use solid::{Features, MeshSettings, MeshingError};
+pub use solid::MeshingError;
 pub use volume::{Volume, VolumeError, VolumeSettings};
+pub use settings::{AtBounds, Features, MeshSettings, ThinFeatures};

@@ -26,6 +26,7 @@ mod pictures;
 mod primitives;
 mod profile;
 mod queries;
+mod random_fields;
 mod range_images;
 mod raster;
 mod rays;
