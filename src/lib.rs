@@ -359,13 +359,17 @@ pub use field::{
     SheetLattice, SineWave, Slab, SmoothStep, Sphere, Superellipse, Superellipsoid, Superhyperboloid, Superpolygon,
     Supershape, Supertoroid, Torus, Turns, VALUE_LIMIT, Wedge,
 };
-pub use geom::{Camera, CameraError, Coordinates, Corner, Image, ImageError, Intrinsics, Mesh, MeshError, Noise, Plane, PointCloud, PointCloudError, Polyline, Projection, QuadMesh, RangeImage, RangeImageError, Rays, View};
-pub use io::{Colors, Floats, LengthUnit, Pixel, SaveError, SaveSettings, write_3mf, write_dxf, write_exr, write_gif, write_glb, write_obj, write_ply, write_ply_points, write_png, write_stl, write_stl_ascii, write_svg};
+pub use geom::{
+    Camera, CameraError, Coordinates, Corner, Image, ImageError, Intrinsics, Mesh, MeshError, Noise, Plane, PointCloud,
+    PointCloudError, Polyline, Projection, QuadMesh, RangeImage, RangeImageError, Rays, View,
+};
+pub use io::{
+    Colors, Floats, LengthUnit, Pixel, SaveError, SaveSettings, write_3mf, write_dxf, write_exr, write_gif, write_glb,
+    write_obj, write_ply, write_ply_points, write_png, write_stl, write_stl_ascii, write_svg,
+};
 pub use mesh::{
-    CellSize, Features, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError, Volume, VolumeError,
-    VolumeSettings,
-pub use mesh::{
-    AtBounds, CellSize, Features, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError, ThinFeatures,
+    AtBounds, CellSize, Features, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError, ThinFeatures, Volume,
+    VolumeError, VolumeSettings,
 };
 pub use num::{Dual, Interval, Monotone, Monotone3, Norm, Real};
 pub use raster::{

@@ -16,6 +16,6 @@ mod volume;
 
 pub use check::MeshReport;
 pub use lattice::{CellSize, Lattice, LatticeError};
+pub use settings::{AtBounds, Features, MeshSettings, ThinFeatures};
 pub use solid::MeshingError;
 pub use volume::{Volume, VolumeError, VolumeSettings};
-pub use settings::{AtBounds, Features, MeshSettings, ThinFeatures};
