@@ -14,8 +14,8 @@ mod range_image;
 mod view;
 
 pub use camera::{Camera, CameraError, Projection, Rays};
-pub(crate) use image::{from_linear, to_linear};
 pub use image::{Image, ImageError};
+pub(crate) use image::{from_linear, to_linear};
 pub use mesh::{Mesh, MeshError};
 pub use plane::Plane;
 pub use point_cloud::{PointCloud, PointCloudError};

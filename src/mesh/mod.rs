@@ -3,6 +3,7 @@
 mod check;
 mod extract;
 mod lattice;
+mod paint;
 mod signs;
 mod solid;
 mod table;

@@ -6,8 +6,8 @@ use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::cells::Cells;
-use super::gbuffer::{GBuffer, Surface, Window};
 use super::extent::{corners, lowest};
+use super::gbuffer::{GBuffer, Surface, Window};
 use super::settings::RenderError;
 use super::tile::{TILE, Tracer, View};
 use crate::eval::{Program, compiled};
