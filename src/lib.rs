@@ -138,6 +138,24 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! Parts have [paint](Solid::paint), pictures have [styles](Style); behind a picture are its
+//! [layers](Solid::layers): depth, normals, positions, leaves. A [slice](Solid::slice) shows the
+//! field on a plane, and its [contours](Slice::contours).
+//!
+//! ```
+//! use rvachev::{Camera, Coordinates, Plane, RenderSettings, Solid, Style};
+//!
+//! let part = Solid::cuboid([4.0, 3.0, 1.0]).paint([60, 100, 160]) - Solid::cylinder(1.0, 2.0).paint([220, 140, 40]);
+//! let camera = Camera::framing(&part.bounds()?).orbit(30.0, 10.0);
+//! let settings = RenderSettings { width: 40, height: 30, style: Style::Technical, ..RenderSettings::default() };
+//! let drawing = part.render(&camera, &settings)?;
+//! let cloud = part.layers(&camera, 40, 30)?.range_image().points(Coordinates::World)?;
+//! assert!(cloud.len() > 100);
+//! let contours = part.slice(&Plane::xy(0.0))?.contours(1e-3)?;
+//! assert_eq!(contours.len(), 2);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! [Twelve idioms](idioms) show how things are commonly built: plates with holes, named parts,
 //! rings of parts, leaves of one's own.
 //!
@@ -278,6 +296,7 @@
 //! |---|---|
 //! | [`named`](Solid::named) | the name that errors, [`owner`](Solid::owner) and the tree speak of |
 //! | [`Display`](Solid#impl-Display-for-Solid) | the solid as an indented tree |
+//! | [`paint`](Solid::paint) | its colour, in pictures and meshes |
 //! | [`==`](Solid#impl-PartialEq-for-Solid), `Hash` | by structure: solids may be keys of a map |
 //! | [`simplified`](Solid::simplified) | the same values from fewer nodes |
 //!

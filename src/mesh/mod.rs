@@ -5,6 +5,7 @@ mod extract;
 mod feature;
 mod lattice;
 mod loops;
+mod paint;
 mod qef;
 mod resolve;
 mod roots;

@@ -137,7 +137,7 @@ impl<'a> Obstacles<'a> {
     /// 1 near the solid, 0 where its shadows are not drawn.
     fn nearness(&self, p: DVec3) -> f64 {
         let away = p.distance(self.middle) / self.radius;
-        ((5.0 - away) / 2.5).clamp(0.0, 1.0)
+        ((3.2 - away) / 1.6).clamp(0.0, 1.0)
     }
 
     fn rays(&self, spot: &Spot, number: u32, pattern: usize) -> Vec<(Ask, (DVec3, DVec3))> {
