@@ -18,7 +18,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 use rvachev::{
-    Bounds, Camera, CellSize, Gielis, Helix, MeshSettings, Profile, Paint, RenderSettings, SineWave, Solid, Supershape,
+    Bounds, Camera, CellSize, Gielis, Helix, MeshSettings, Paint, Profile, RenderSettings, SineWave, Solid, Supershape,
 };
 
 const WALL: f64 = 1.8;

@@ -10,13 +10,11 @@ use std::io::{Write, stderr};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use rvachev::{
-    Background, Blend, Camera, Image, Paint, Progress, RenderSettings, Run, Scene, Solid, View,
-};
+use rvachev::{Background, Camera, Image, Paint, Progress, RenderSettings, Run, Scene, Solid, View};
 
-const FRAMES: u32 = 30;
-const WIDTH: u32 = 360;
-const HEIGHT: u32 = 270;
+const FRAMES: u32 = 24;
+const WIDTH: u32 = 280;
+const HEIGHT: u32 = 210;
 
 /// A valve: a body with two flanges, a bonnet blended onto it, bores cut by brass.
 fn valve() -> Solid {
@@ -28,7 +26,7 @@ fn valve() -> Solid {
         let holes = Solid::cylinder(1.3, 8.0).translate([9.0, 0.0, 0.0]).repeat_polar(6);
         (Solid::cylinder(12.0, 4.0) - holes).rotate_y_degrees(90.0).translate([x, 0.0, 0.0])
     };
-    let body = Solid::sphere(10.5).union_with(barrel, Blend::Fillet { radius: 2.0 }).paint(iron);
+    let body = Solid::sphere(10.5).smooth_union(barrel, 3.0).paint(iron);
     let flanges = (flange(-18.0) | flange(18.0)).paint(iron);
     let bonnet = Solid::cone(7.5, 4.0, 12.0).translate([0.0, 0.0, 11.0]).paint(brass);
     let stem = Solid::cylinder(1.6, 12.0).translate([0.0, 0.0, 20.0]).paint(brass);
@@ -67,6 +65,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         width: WIDTH,
         height: HEIGHT,
         samples: 2,
+        // One ray to the light a pixel, none to the sky.
+        softness: 0.0,
+        occlusion: false,
         background: Background::Plain([244, 244, 245]),
         ..RenderSettings::default()
     };

@@ -116,7 +116,6 @@ impl<P> Image<P> {
 }
 
 impl Image {
-
     /// Whether every pixel has alpha 255.
     #[must_use]
     pub fn is_opaque(&self) -> bool {
@@ -143,8 +142,7 @@ impl Image<f64> {
     #[must_use]
     pub fn range(&self) -> Option<(f64, f64)> {
         let finite = self.pixels.iter().filter(|v| v.is_finite());
-        let (low, high) =
-            finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
+        let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
         (low <= high).then_some((low, high))
     }
 

@@ -2,7 +2,9 @@
 
 use std::io::{self, Cursor, Write};
 
-use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image as File, Layer, LayerAttributes, WritableImage};
+use exr::prelude::{
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Image as File, Layer, LayerAttributes, WritableImage,
+};
 use glam::{DVec3, Vec3};
 
 use crate::geom::Image;

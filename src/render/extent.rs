@@ -17,8 +17,8 @@ use std::collections::BinaryHeap;
 
 use glam::DVec3;
 
-use crate::eval::{Program, Region};
 use crate::Bounds;
+use crate::eval::{Program, Region};
 
 /// Boxes are halved in every direction this many times: the result is exact to a thousandth of
 /// the height.

@@ -97,9 +97,11 @@ impl Layers {
     #[must_use]
     pub fn depth(&self) -> Image<f64> {
         let forward = self.rays.forward();
-        self.image(|_, direction, surface| {
-            if surface.is_hit() { surface.distance * direction.dot(forward) } else { f64::INFINITY }
-        })
+        self.image(
+            |_, direction, surface| {
+                if surface.is_hit() { surface.distance * direction.dot(forward) } else { f64::INFINITY }
+            },
+        )
     }
 
     /// Depth along each pixel's ray, in length units, as laser scanners give it; infinite where
@@ -118,9 +120,11 @@ impl Layers {
     /// Points of the surface in world coordinates; infinite where there is nothing.
     #[must_use]
     pub fn position(&self) -> Image<DVec3> {
-        self.image(|origin, direction, surface| {
-            if surface.is_hit() { origin + surface.distance * direction } else { DVec3::INFINITY }
-        })
+        self.image(
+            |origin, direction, surface| {
+                if surface.is_hit() { origin + surface.distance * direction } else { DVec3::INFINITY }
+            },
+        )
     }
 
     /// Whether there is something.

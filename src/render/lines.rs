@@ -129,10 +129,7 @@ impl Lines<'_> {
             _ => return Line::Outline,
         }
         let pixel = self.pixel.pixel_size(a.distance.min(b.distance)) / f64::from(self.samples);
-        // A surface that is seen edge-on falls away quickly and is no step.
-        let between = b.point - a.point;
-        let off = between.dot(a.normal).abs().min(between.dot(b.normal).abs());
-        if off > STEP * pixel {
+        if a.steps(b) > STEP * pixel {
             return Line::Outline;
         }
         if a.normal.dot(b.normal) < CREASE { Line::Crease } else { Line::None }

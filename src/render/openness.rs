@@ -58,13 +58,7 @@ struct Ask {
 
 impl<'a> Obstacles<'a> {
     /// Those of a scene; `softness` is half the angle that the light appears under.
-    pub(super) fn new(
-        scene: &'a Scene,
-        key: DVec3,
-        shadows: bool,
-        softness: f64,
-        occlusion: bool,
-    ) -> Obstacles<'a> {
+    pub(super) fn new(scene: &'a Scene, key: DVec3, shadows: bool, softness: f64, occlusion: bool) -> Obstacles<'a> {
         // The R₂ sequence in the unit square, and the disc from it.
         let disc = |i: usize| {
             let at = |step: f64| (0.5 + step * i as f64).fract();
@@ -74,7 +68,13 @@ impl<'a> Obstacles<'a> {
         let spread = softness.to_radians().tan();
         let count = PATTERNS * RAYS;
         // A light without extent needs one ray, the same for every pixel.
-        let shadow_count = if !shadows { 0 } else if spread == 0.0 { 1 } else { count };
+        let shadow_count = if !shadows {
+            0
+        } else if spread == 0.0 {
+            1
+        } else {
+            count
+        };
         let bounds = scene.bounds();
         Obstacles {
             scene,
@@ -137,7 +137,7 @@ impl<'a> Obstacles<'a> {
     /// 1 near the solid, 0 where its shadows are not drawn.
     fn nearness(&self, p: DVec3) -> f64 {
         let away = p.distance(self.middle) / self.radius;
-        ((5.0 - away) / 2.5).clamp(0.0, 1.0)
+        ((3.2 - away) / 1.6).clamp(0.0, 1.0)
     }
 
     fn rays(&self, spot: &Spot, number: u32, pattern: usize) -> Vec<(Ask, (DVec3, DVec3))> {
@@ -173,7 +173,12 @@ impl<'a> Obstacles<'a> {
 }
 
 /// The mean of what the points of a picture see: `width` of them a row.
-pub(super) fn smoothed(spots: &[Spot], seen: &[Openness], width: usize, pixel: impl Fn(f64) -> f64 + Sync) -> Vec<Openness> {
+pub(super) fn smoothed(
+    spots: &[Spot],
+    seen: &[Openness],
+    width: usize,
+    pixel: impl Fn(f64) -> f64 + Sync,
+) -> Vec<Openness> {
     let height = spots.len() / width;
     let reach = REACH as isize;
     let weight = |d: isize| if d.abs() == reach { 0.5f32 } else { 1.0 };

@@ -92,7 +92,7 @@ impl Studio {
         let towards = |x: f64, y: f64, z: f64| (x * pose.x_axis - y * pose.y_axis - z * pose.z_axis).normalize();
         let lights = settings.lights;
         Studio {
-            key: towards(-0.60, 0.72, 0.62),
+            key: towards(-0.58, 0.66, 0.76),
             fill: towards(0.90, 0.10, 0.42),
             rim: towards(0.55, 0.52, -0.66),
             lights: [KEY * lights.key as f32, FILL * lights.fill as f32, RIM * lights.rim as f32],

@@ -60,12 +60,7 @@ pub struct SliceSettings {
 
 impl Default for SliceSettings {
     fn default() -> SliceSettings {
-        SliceSettings {
-            width: 800,
-            isolines: Isolines::Auto,
-            inside: [236, 176, 106],
-            outside: [126, 162, 196],
-        }
+        SliceSettings { width: 800, isolines: Isolines::Auto, inside: [236, 176, 106], outside: [126, 162, 196] }
     }
 }
 

@@ -212,6 +212,7 @@ fn take_operands(node: &mut Node, pending: &mut Vec<Solid>) {
         | Node::Warp { operand, .. }
         | Node::Length { operand, .. }
         | Node::Named { operand, .. }
+        | Node::Painted { operand, .. }
         | Node::Complement(operand) => pending.push(operand),
         Node::Blend { operands, lengths, .. } => {
             pending.extend(operands);

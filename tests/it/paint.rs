@@ -1,7 +1,7 @@
 //! Paint: on leaves, through joins and blends.
 
 use glam::DVec3;
-use rvachev::{Blend, Paint, RFunction, Solid, SolidError};
+use rvachev::{Blend, CellSize, MeshSettings, Paint, RFunction, Solid, SolidError};
 
 const RED: [u8; 3] = [200, 0, 0];
 const BLUE: [u8; 3] = [0, 0, 200];
@@ -63,11 +63,7 @@ fn paint_survives_maps_copies_and_lengths() {
 fn blends_mix() {
     let foot = Solid::half_space(DVec3::Z, 0.0).paint(RED);
     let wall = Solid::half_space(DVec3::X, 0.0).paint(BLUE);
-    for blend in [
-        Blend::Smooth { radius: 1.0 },
-        Blend::Fillet { radius: 1.0 },
-        Blend::Chamfer { width: 1.0 },
-    ] {
+    for blend in [Blend::Smooth { radius: 1.0 }, Blend::Fillet { radius: 1.0 }, Blend::Chamfer { width: 1.0 }] {
         let both = foot.union_with(&wall, blend);
         // Along a line from one operand to the other, red falls and blue rises.
         let at = |t: f64| {
@@ -112,4 +108,37 @@ fn errors_name_the_paint() {
     let error = wrong.bounds().unwrap_err();
     assert!(matches!(error, SolidError::Parameter { .. }));
     assert_eq!(error.to_string(), "paint: roughness is 2, allowed: 0 to 1");
+}
+
+#[test]
+fn a_mesh_carries_the_paint_of_its_owners() {
+    let plate = Solid::cuboid([4.0, 4.0, 1.0]).paint(RED);
+    let part = plate - Solid::cylinder(1.0, 3.0).paint(BLUE);
+    let mesh = part.mesh(&MeshSettings { cell: CellSize::LongestSide(40), ..MeshSettings::default() }).unwrap();
+    let mesh = mesh.painted(&part, Paint::default()).unwrap();
+    let (colors, owners) = (mesh.corner_colors().unwrap(), mesh.owners().unwrap());
+    let mut blue = 0;
+    for ((triangle, corners), owner) in mesh.triangles().iter().zip(colors).zip(owners) {
+        let center = triangle.map(|i| mesh.positions()[i as usize]).into_iter().sum::<glam::Vec3>() / 3.0;
+        // Each triangle has one colour, that of its owner; the bore is blue.
+        assert!(corners.iter().all(|corner| corner == &corners[0]));
+        let [r, g, b, _] = corners[0];
+        assert_eq!(part.palette().unwrap().of(*owner).unwrap().color, [r, g, b]);
+        let radius = center.truncate().length();
+        if radius < 0.97 + 0.03 && center.z.abs() < 0.4 {
+            assert_eq!([r, g, b], BLUE, "{center}");
+            blue += 1;
+        }
+        if radius > 1.2 {
+            assert_eq!([r, g, b], RED, "{center}");
+        }
+    }
+    assert!(blue > 50, "{blue}");
+    // A blend mixes corner by corner.
+    let ball =
+        Solid::sphere(1.0).paint(RED).smooth_union(Solid::sphere(1.0).translate([1.5, 0.0, 0.0]).paint(BLUE), 0.8);
+    let mesh = ball.mesh(&MeshSettings { cell: CellSize::LongestSide(24), ..MeshSettings::default() }).unwrap();
+    let mesh = mesh.painted(&ball, Paint::default()).unwrap();
+    let mixed = mesh.corner_colors().unwrap().iter().flatten().filter(|c| c[0] > 30 && c[2] > 30).count();
+    assert!(mixed > 50, "{mixed}");
 }

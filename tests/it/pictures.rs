@@ -13,7 +13,7 @@ fn part() -> Solid {
     let foot = Solid::cuboid([6.0, 4.0, 1.0]).paint([70, 110, 160]);
     let post = Solid::cylinder(1.2, 3.0).translate([-1.0, 0.0, 1.5]).paint([200, 160, 70]);
     let bore = Solid::cylinder(0.7, 9.0).translate([1.8, 0.0, 0.0]).paint([190, 50, 40]);
-    foot.union_with(post, Blend::Fillet { radius: 0.5 }) - bore
+    foot.union_with(post, Blend::Smooth { radius: 0.8 }) - bore
 }
 
 fn small(style: Style) -> RenderSettings {
@@ -176,9 +176,8 @@ fn files_of_every_kind() {
     assert_eq!(image::open(at("a.gif")).unwrap().to_rgba8().dimensions(), (20, 16));
 
     // What is read from EXR is what was written.
-    use exr::prelude::*;
     let depth = layers.depth();
-    let file = read_first_flat_layer_from_file(at("depth.exr")).unwrap();
+    let file = exr::prelude::read_first_flat_layer_from_file(at("depth.exr")).unwrap();
     let channel = &file.layer_data.channel_data.list[0];
     assert_eq!(channel.name.to_string(), "Z");
     let read: Vec<f32> = channel.sample_data.values_as_f32().collect();
@@ -257,9 +256,8 @@ fn a_scene_is_framed_tighter_than_its_box() {
     let framed = scene.framing(View::ThreeQuarter, 1.0);
     assert!(framed.eye.length() < 0.85 * boxed.eye.length());
     let mask = scene.layers(&framed, 64, 64, &Run::default()).unwrap().mask();
-    let touched = (0..64).any(|i| {
-        [(i, 0), (i, 63), (0, i), (63, i)].into_iter().any(|(x, y)| mask.pixel(x, y) == Some(true))
-    });
+    let touched =
+        (0..64).any(|i| [(i, 0), (i, 63), (0, i), (63, i)].into_iter().any(|(x, y)| mask.pixel(x, y) == Some(true)));
     assert!(!touched);
 }
 

@@ -3,9 +3,7 @@
 use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
-use rvachev::{
-    Isolines, Plane, PlaneBounds, Polyline, RFunction, SliceSettings, Solid, write_dxf, write_svg,
-};
+use rvachev::{Isolines, Plane, PlaneBounds, Polyline, RFunction, SliceSettings, Solid, write_dxf, write_svg};
 
 use crate::golden::{ascii, same_as_golden};
 
