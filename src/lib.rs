@@ -351,8 +351,8 @@ pub use io::{SaveError, write_png, write_stl};
 pub use mesh::{CellSize, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError};
 pub use num::{Dual, Interval, Monotone, Monotone3, Norm, Real};
 pub use raster::{
-    Buffers, ClosedMesh, Csg, CsgMethod, Facing, Fragments, LANES, LayerSource, MeshLayers, RasterError, RasterView, SurfaceId,
-    Tile,
+    Buffers, ClosedMesh, Csg, CsgMethod, Facing, Fragments, LANES, LayerSource, MeshLayers, RasterError, RasterView,
+    SurfaceId, Tile,
 };
 pub use render::{Background, GBuffer, RenderError, RenderSettings, Scene, Surface, Window};
 pub use run::{CancelToken, Cancelled, Progress, Run};

@@ -509,7 +509,9 @@ fn like_for_like(view: &RasterView, meshes: &[&Mesh], tree: &Csg, solid: &Solid,
                 // An edge of the result may pass between the two.
                 let next = |dx: i32, dy: i32| buffers.id(x.wrapping_add_signed(dx), y.wrapping_add_signed(dy));
                 let around = [next(1, 0), next(-1, 0), next(0, 1), next(0, -1)];
-                let same = |other: &Option<rvachev::SurfaceId>| other.is_some_and(|o| (o.operand, o.facing) == (id.operand, id.facing));
+                let same = |other: &Option<rvachev::SurfaceId>| {
+                    other.is_some_and(|o| (o.operand, o.facing) == (id.operand, id.facing))
+                };
                 assert!(!around.iter().all(same), "({x}, {y}): {off:e}, {tolerance:e} allowed");
                 silhouettes += 1;
                 continue;
@@ -584,7 +586,7 @@ fn deformed_operands_like_for_like_with_rays() {
     ] {
         ClosedMesh::new(&mesh).unwrap();
         let error = chord_error(&mesh, &solid).max(chord_error(&ball, &ball_solid));
-        assert!(error < 0.005, "{error}");
+        assert!(error < 0.01, "{error}");
         let view = RasterView::new(&cameras()[0], 50, 40).unwrap();
         let all = solid.difference(&ball_solid, RFunction::MIN_MAX);
         let (compared, silhouettes) = like_for_like(&view, &[&mesh, &ball], &tree, &all, 2.0 * error);
