@@ -8,8 +8,7 @@
 //! intervals. The second table is by the number of triangles, with how far the depth images
 //! differ, at worst and in the mean, beside the silhouettes.
 //!
-//! Every figure is the least of several rounds in which the contestants alternate, in time of
-//! the processor where the system tells it of a thread (Linux), else by the clock.
+//! Every figure is the least of several rounds in which the contestants alternate.
 //!
 //! Words after `--` choose: `models`, `triangles`, `quick` (fewer rounds), `two` (threads).
 
@@ -122,19 +121,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Milliseconds of one call, and what it gives.
 fn timed<T>(call: impl FnOnce() -> T) -> (f64, T) {
-    let (start, busy) = (Instant::now(), busy());
+    let start = Instant::now();
     let result = black_box(call());
-    let clock = 1e3 * start.elapsed().as_secs_f64();
-    (busy.zip(self::busy()).map_or(clock, |(before, after)| after - before), result)
-}
-
-/// Milliseconds that this thread has been running: the whole of the work, as there is one thread.
-fn busy() -> Option<f64> {
-    if rayon::current_num_threads() > 1 {
-        return None;
-    }
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    Some(1e-6 * text.split(' ').next()?.parse::<f64>().ok()?)
+    (1e3 * start.elapsed().as_secs_f64(), result)
 }
 
 const METHODS: [CsgMethod; 3] = [CsgMethod::Stencil, CsgMethod::Sequenced, CsgMethod::Intervals];

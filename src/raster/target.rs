@@ -41,9 +41,9 @@ impl Target {
         layers.layers(tile, &mut |runs| {
             for run in runs.iter().filter(|run| run.facing == facing) {
                 let Some(depth) = lanes_mut(&mut self.depth, run) else { continue };
-                for lane in 0..LANES {
-                    if run.depth[lane] < depth[lane] {
-                        depth[lane] = run.depth[lane];
+                for (lane, (depth, new)) in depth.iter_mut().zip(run.depth).enumerate() {
+                    if new < *depth {
+                        *depth = new;
                         self.operand[run.at as usize + lane] = operand;
                         self.face[run.at as usize + lane] = run.face;
                     }

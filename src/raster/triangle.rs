@@ -169,9 +169,9 @@ impl Triangle {
                     let depth: [f64; LANES] = inside.select(z, nothing).into();
                     batch.push(Fragments { at: at as u32, facing: self.facing, face: self.face, depth }, sink);
                 }
-                e0 = e0 + run0;
-                e1 = e1 + run1;
-                e2 = e2 + run2;
+                e0 += run0;
+                e1 += run1;
+                e2 += run2;
                 at += LANES as i32;
             }
             for i in 0..3 {
