@@ -3,10 +3,16 @@
 use std::fs::File;
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use glam::{DVec3, Vec3};
 
 use super::file::write_whole;
-use super::{LengthUnit, write_3mf, write_glb, write_obj, write_ply, write_png, write_stl, write_stl_ascii};
-use crate::geom::{Image, Mesh};
+use super::{
+    LengthUnit, write_3mf, write_dxf, write_exr, write_gif, write_glb, write_obj, write_ply, write_ply_points,
+    write_png, write_stl, write_stl_ascii, write_svg,
+};
+use crate::geom::{Image, Mesh, PointCloud, Polyline};
 
 /// Why a file could not be saved. Whatever was at the path before is still there, and no
 /// half-written file is left.
@@ -124,8 +130,43 @@ impl Mesh {
     }
 }
 
-impl Image {
-    /// Saves the picture in the format that the extension stands for: `.png`.
+/// A pixel whose pictures can be saved: see [`Image::save`]. This trait is closed.
+pub trait Pixel: Sized + sealed::Pixel {}
+
+mod sealed {
+    pub trait Pixel: Sized + 'static {
+        const FORMATS: &'static [(&'static str, super::Writer<super::Image<Self>, ()>)];
+    }
+}
+
+/// Says which formats hold which pixels.
+macro_rules! pixel {
+    ($($pixel:ty: $($extension:literal => $write:ident),*;)*) => {$(
+        impl Pixel for $pixel {}
+        impl sealed::Pixel for $pixel {
+            const FORMATS: &'static [(&'static str, Writer<Image<Self>, ()>)] =
+                &[$(($extension, |image, (), out| $write(image, out))),*];
+        }
+    )*};
+}
+
+pixel! {
+    [u8; 4]: "png" => write_png;
+    [u16; 4]: "png" => write_png;
+    u8: "png" => write_png;
+    u16: "png" => write_png;
+    bool: "png" => write_png;
+    Option<u32>: "png" => write_png;
+    [f32; 4]: "exr" => write_exr;
+    f64: "exr" => write_exr, "png" => write_png;
+    Vec3: "exr" => write_exr, "png" => write_png;
+    DVec3: "exr" => write_exr;
+}
+
+impl<P: Pixel> Image<P> {
+    /// Saves the picture in the format that the extension stands for: `.png` for colours, greys,
+    /// masks, leaves, depths and normals ([`Colors`](crate::Colors) says how), `.exr` for what is
+    /// made of floats: light, depths, normals, positions.
     ///
     /// The file appears complete or not at all. Missing directories are not made.
     ///
@@ -133,7 +174,56 @@ impl Image {
     ///
     /// [`SaveError`], naming the file and the cause.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
-        save(self, &(), path.as_ref(), &[("png", |image, (), out| write_png(image, out))])
+        save(self, &(), path.as_ref(), P::FORMATS)
+    }
+}
+
+impl Image {
+    /// Saves pictures as an animation, each shown for `pause`: `.gif`.
+    ///
+    /// The file appears complete or not at all. Missing directories are not made.
+    ///
+    /// # Errors
+    ///
+    /// [`SaveError`], naming the file and the cause; that there are no pictures is one.
+    pub fn save_animation(pictures: &[Image], pause: Duration, path: impl AsRef<Path>) -> Result<(), SaveError> {
+        save(
+            &(pictures, pause),
+            &(),
+            path.as_ref(),
+            &[("gif", |(pictures, pause), (), out| write_gif(pictures, *pause, out))],
+        )
+    }
+}
+
+impl PointCloud {
+    /// Saves the points in the format that the extension stands for: `.ply`, binary PLY.
+    ///
+    /// The file appears complete or not at all. Missing directories are not made.
+    ///
+    /// # Errors
+    ///
+    /// [`SaveError`], naming the file and the cause.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
+        save(self, &(), path.as_ref(), &[("ply", |cloud, (), out| write_ply_points(cloud, out))])
+    }
+}
+impl Polyline {
+    /// Saves polylines as a drawing in the format that the extension stands for: `.svg` or
+    /// `.dxf`.
+    ///
+    /// The file appears complete or not at all. Missing directories are not made.
+    ///
+    /// # Errors
+    ///
+    /// [`SaveError`], naming the file and the cause.
+    pub fn save_all(lines: &[Polyline], path: impl AsRef<Path>) -> Result<(), SaveError> {
+        save(
+            &lines,
+            &(),
+            path.as_ref(),
+            &[("dxf", |lines, (), out| write_dxf(lines, out)), ("svg", |lines, (), out| write_svg(lines, out))],
+        )
     }
 }
 
@@ -158,7 +248,6 @@ fn save<T, S>(data: &T, settings: &S, path: &Path, formats: &[(&str, Writer<T, S
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec3;
     use std::fs;
 
     /// A directory of its own for a test, removed at the end.
@@ -194,7 +283,7 @@ mod tests {
         fs::write(&path, "something else, and longer than what follows".repeat(9)).unwrap();
         triangle().save(&path).unwrap();
         assert_eq!(fs::read(&path).unwrap().len(), 134);
-        let image = Image::new(1, 1, vec![[1, 2, 3, 255]]).unwrap();
+        let image = Image::new(1, 1, vec![[1u8, 2, 3, 255]]).unwrap();
         image.save(folder.0.join("dot.png")).unwrap();
         let read = image::open(folder.0.join("dot.png")).unwrap();
         assert_eq!(read.into_rgba8().into_raw(), [1, 2, 3, 255]);
@@ -208,7 +297,7 @@ mod tests {
             error.to_string(),
             "cannot save a/part.step: the extension .step is not known; known: .3mf, .glb, .obj, .ply, .stl"
         );
-        let image = Image::new(1, 1, vec![[0; 4]]).unwrap();
+        let image = Image::new(1, 1, vec![[0u8; 4]]).unwrap();
         assert_eq!(
             image.save("view").unwrap_err().to_string(),
             "cannot save view: its name has no extension; known: .png"

@@ -1,35 +1,19 @@
 //! Meshing a solid: `solid.mesh(..)`.
 
-use std::collections::HashMap;
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 
-use glam::DVec3;
-
-use super::extract::{ExtractError, Root, Sampler, extract};
+use super::extract::{BATCH, ExtractError, Root, Sampler, extract};
+use super::feature::Slope;
 use super::lattice::{CellSize, Lattice, LatticeError};
-use super::signs::{BLOCK, EdgeRef, NODES};
+use super::resolve::unresolved_cells;
+use super::roots::RootFinder;
+use super::settings::{AtBounds, MeshSettings};
+use super::signs::{BLOCK, EdgeRef, NODES, SIDE};
 use crate::eval::{Evaluator, Gradients, Program, Tape, compiled};
 use crate::geom::Mesh;
 use crate::space::{Grid, surface_blocks};
 use crate::{Bounds, Cancelled, RFunction, Run, Solid, SolidError};
-
-/// What to mesh.
-///
-/// ```
-/// use rvachev::{CellSize, MeshSettings, Solid};
-///
-/// let settings = MeshSettings { cell: CellSize::LongestSide(32), ..MeshSettings::default() };
-/// let mesh = Solid::sphere(1.0).mesh(&settings)?;
-/// assert!(mesh.check().is_closed());
-/// # Ok::<(), rvachev::MeshingError>(())
-/// ```
-#[derive(Clone, Debug, Default)]
-pub struct MeshSettings {
-    /// The resolution. Default: 128 cells along the longest side of the bounds.
-    pub cell: CellSize,
-    /// The box to mesh, in length units; where the solid leaves it, the mesh is that of
-    /// their intersection. Default (`None`): the box of the solid.
-    pub bounds: Option<Bounds>,
-}
 
 /// Why there is no mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -49,6 +33,12 @@ pub enum MeshingError {
     TooLarge {
         /// How many vertices the mesh would have.
         vertices: u64,
+    },
+    /// The solid leaves the bounds, and the settings do not want it cut.
+    #[error("the solid goes on beyond the bounds at {at}; allowed: a solid within them, or `AtBounds::Cap`")]
+    LeavesBounds {
+        /// A point of the boundary of the bounds that is inside the solid.
+        at: DVec3,
     },
     /// The extraction contradicts itself: a defect of this crate.
     #[error("internal error, please report it: {what}")]
@@ -90,22 +80,51 @@ impl Solid {
         if bounds.is_empty() {
             return Ok(Mesh::default());
         }
-        let lattice = Lattice::new(&bounds, settings.cell)?;
         let programs = compiled(&solid)?;
         let run = run.stage(0.0, 1.0);
         run.install(|| {
-            let grid = Grid {
-                origin: lattice.origin(),
-                side: lattice.step() * BLOCK as f64,
-                blocks: lattice.cells().map(|cells| cells.div_ceil(BLOCK as u32)),
-            };
-            let found = surface_blocks(&programs.surface, &grid, 0.0, &run)?;
-            run.report(0.3);
-            let blocks: Vec<[u32; 3]> = found.iter().map(|b| b.index.map(|i| i * BLOCK as u32)).collect();
-            let programs = blocks.iter().copied().zip(found.into_iter().map(|b| b.program)).collect();
-            let sampler = SolidSampler { lattice: &lattice, programs };
-            Ok(extract(&sampler, &lattice, &blocks, &run.stage(0.3, 1.0))?)
+            let mut lattice = Lattice::new(&bounds, settings.cell)?;
+            let mut blocks = Blocks::find(&programs.surface, &lattice, &run.stage(0.0, 0.3))?;
+            let (mut unresolved, mut halvings) = (None, 0);
+            if let Some(most) = settings.thin.halvings() {
+                loop {
+                    let count = unresolved_cells(&lattice, &blocks.cells, &blocks.programs, &run)?;
+                    unresolved = Some(count);
+                    if count == 0 || halvings == most {
+                        break;
+                    }
+                    halvings += 1;
+                    lattice = Lattice::new(&bounds, CellSize::Length(0.5 * lattice.step()))?;
+                    blocks = Blocks::find(&programs.surface, &lattice, &run.stage(0.0, 0.3))?;
+                }
+            }
+            let sampler = SolidSampler::new(&lattice, &blocks.cells, blocks.programs);
+            let mut mesh = extract(&sampler, &lattice, &blocks.cells, settings.features, &run.stage(0.3, 1.0))?;
+            if let (AtBounds::Refuse, Some(given)) = (settings.at_bounds, &settings.bounds) {
+                self.refuse_caps(&mesh, given, lattice.step())?;
+            }
+            if settings.owners {
+                let owners = mesh.triangles().par_iter().map(|&triangle| sampler.owner(&mesh, triangle)).collect();
+                mesh = mesh.with_owners(owners).map_err(ExtractError::from)?;
+            }
+            Ok(match unresolved {
+                Some(count) => mesh.with_unresolved_cells(count),
+                None => mesh,
+            })
         })
+    }
+
+    /// An error if a vertex on a face of the bounds is inside the solid.
+    fn refuse_caps(&self, mesh: &Mesh, given: &Bounds, step: f64) -> Result<(), MeshingError> {
+        // Vertices may be off by a thousandth of a cell.
+        let slack = 0.01 * step;
+        let program = &compiled(self)?.surface;
+        let inner = given.inflate(-slack);
+        let beyond = |p: &&Vec3| !inner.contains(p.as_dvec3()) && program.value(p.as_dvec3()) > slack;
+        match mesh.positions().iter().find(beyond) {
+            Some(at) => Err(MeshingError::LeavesBounds { at: at.as_dvec3() }),
+            None => Ok(()),
+        }
     }
 
     /// The solid cut to a box, if there is one and the solid leaves it, and the box that
@@ -125,29 +144,98 @@ impl Solid {
     }
 }
 
-/// The surface program, block by block.
-struct SolidSampler<'a> {
-    lattice: &'a Lattice,
-    programs: HashMap<[u32; 3], Program>,
+/// The blocks that the surface may cross, each with its program.
+struct Blocks {
+    /// Their first cells; z first, ascending.
+    cells: Vec<[u32; 3]>,
+    programs: Vec<Program>,
 }
 
-/// What a thread keeps between the nodes of a block and its roots.
+impl Blocks {
+    fn find(program: &Program, lattice: &Lattice, run: &Run) -> Result<Blocks, Cancelled> {
+        let grid = Grid {
+            origin: lattice.origin(),
+            side: lattice.step() * BLOCK as f64,
+            blocks: lattice.cells().map(|cells| cells.div_ceil(BLOCK as u32)),
+        };
+        let found = surface_blocks(program, &grid, 0.0, run)?;
+        let cells = found.iter().map(|block| block.index.map(|i| i * BLOCK as u32)).collect();
+        Ok(Blocks { cells, programs: found.into_iter().map(|block| block.program).collect() })
+    }
+}
+
+/// The surface program, block by block.
+///
+/// The blocks of a batch that have the same program form a group; a group has one tape.
+struct SolidSampler<'a> {
+    lattice: &'a Lattice,
+    blocks: &'a [[u32; 3]],
+    programs: Vec<Program>,
+    /// The number of the first block of each block's group.
+    groups: Vec<u32>,
+    /// The nodes of a block, relative to the first, x fastest.
+    pattern: [Vec<f32>; 3],
+}
+
+/// What a thread keeps from block to block.
 #[derive(Default)]
 struct Scratch {
     evaluator: Evaluator,
-    tape: Option<Tape>,
+    /// The tapes of the groups sampled since roots were asked for.
+    tapes: Vec<(u32, Tape)>,
+    finder: RootFinder,
     single: [Vec<f32>; 3],
-    double: [Vec<f64>; 3],
-    values: Vec<f64>,
     slopes: [Vec<f32>; 4],
+    /// Edges in the order of their groups: their places, themselves, their roots.
+    order: Vec<u32>,
+    edges: Vec<EdgeRef>,
+    roots: Vec<Root>,
 }
 
-/// Roots are bracketed to this part of an edge.
-const PRECISION: f64 = 1e-9;
+impl SolidSampler<'_> {
+    fn new<'a>(lattice: &'a Lattice, blocks: &'a [[u32; 3]], programs: Vec<Program>) -> SolidSampler<'a> {
+        let mut groups: Vec<u32> = Vec::with_capacity(blocks.len());
+        let mut heads: Vec<u32> = Vec::new();
+        for (n, program) in programs.iter().enumerate() {
+            if n % BATCH == 0 {
+                heads.clear();
+            }
+            // The latest first: blocks that follow each other are near each other.
+            let head = heads.iter().rev().find(|&&head| programs[head as usize].is_same(program));
+            let group = head.copied().unwrap_or(n as u32);
+            if group == n as u32 {
+                heads.push(group);
+            }
+            groups.push(group);
+        }
+        let at = |node: usize, stride: usize| (node / stride % SIDE) as f64 * lattice.step();
+        let pattern = [1, SIDE, SIDE * SIDE].map(|stride| (0..NODES).map(|n| at(n, stride) as f32).collect());
+        SolidSampler { lattice, blocks, programs, groups, pattern }
+    }
 
-/// At most this many steps; from `HALVING` on they halve.
-const STEPS: usize = 40;
-const HALVING: usize = 12;
+    /// The leaf that decides at the middle of a triangle.
+    fn owner(&self, mesh: &Mesh, triangle: [u32; 3]) -> u32 {
+        let middle = mesh.corners(triangle).into_iter().sum::<DVec3>() / 3.0;
+        let cell = (middle - self.lattice.origin()) / self.lattice.step();
+        let block = cell.to_array().map(|x| x.max(0.0) as u32 / BLOCK as u32 * BLOCK as u32);
+        let key = |[x, y, z]: [u32; 3]| [z, y, x];
+        // A triangle of several blocks has its middle in one of them.
+        let nth = self.blocks.binary_search_by_key(&key(block), |&block| key(block));
+        nth.map_or(0, |nth| self.programs[nth].deciding_leaf(middle))
+    }
+
+    /// A tape for the group that starts with a block.
+    fn tape(&self, group: u32) -> Tape {
+        let first = group as usize;
+        let batch = first..(first / BATCH * BATCH + BATCH).min(self.blocks.len());
+        let bounds = batch.filter(|&n| self.groups[n] == group).fold(Bounds::EMPTY, |all, n| {
+            let block = self.blocks[n];
+            let at = |i: u32| self.lattice.node(block[0] + i, block[1] + i, block[2] + i);
+            all.union(&Bounds::new(at(0), at(BLOCK as u32)))
+        });
+        Tape::new(&self.programs[first], &bounds)
+    }
+}
 
 impl Sampler for SolidSampler<'_> {
     type Scratch = Scratch;
@@ -156,185 +244,94 @@ impl Sampler for SolidSampler<'_> {
         Scratch::default()
     }
 
-    fn nodes(&self, scratch: &mut Scratch, block: [u32; 3], out: &mut [f32; NODES]) {
-        let Some(program) = self.programs.get(&block) else { return };
-        let at = |i: u32| self.lattice.node(block[0] + i, block[1] + i, block[2] + i);
-        let tape = Tape::new(program, &Bounds::new(at(0), at(BLOCK as u32)));
-        let origin = tape.origin();
-        for axis in &mut scratch.single {
-            axis.clear();
-        }
-        let place = |i: usize, axis: usize| block[axis] + i as u32;
-        let side = BLOCK + 1;
-        for k in 0..side {
-            for j in 0..side {
-                for i in 0..side {
-                    let p = self.lattice.node(place(i, 0), place(j, 1), place(k, 2)) - origin;
-                    scratch.single[0].push(p.x as f32);
-                    scratch.single[1].push(p.y as f32);
-                    scratch.single[2].push(p.z as f32);
-                }
-            }
-        }
-        let [x, y, z] = &scratch.single;
-        scratch.evaluator.values(&tape, x, y, z, out);
+    fn nodes(&self, scratch: &mut Scratch, number: usize, block: [u32; 3], out: &mut [f32; NODES]) {
+        let group = self.groups[number];
+        let at = scratch.tapes.iter().rposition(|(other, _)| *other == group).unwrap_or_else(|| {
+            scratch.tapes.push((group, self.tape(group)));
+            scratch.tapes.len() - 1
+        });
+        let tape = &mut scratch.tapes[at].1;
+        tape.recentre(self.lattice.node(block[0], block[1], block[2]));
+        let [x, y, z] = &self.pattern;
+        scratch.evaluator.values(tape, x, y, z, out);
         // A sign that rounding may have turned is settled in double precision.
         let doubt = tape.roundoff() as f32;
+        if !out.iter().fold(false, |any, value| any | (value.abs() <= doubt)) {
+            return;
+        }
+        let program = &self.programs[number];
         for (n, value) in out.iter_mut().enumerate() {
             if value.abs() <= doubt {
-                let (i, j, k) = (n % side, n / side % side, n / (side * side));
-                let exact = program.value(self.lattice.node(place(i, 0), place(j, 1), place(k, 2)));
+                let at = |axis: usize, stride: usize| block[axis] + (n / stride % SIDE) as u32;
+                let exact = program.value(self.lattice.node(at(0, 1), at(1, SIDE), at(2, SIDE * SIDE)));
                 *value = if exact > 0.0 { value.abs().max(f32::MIN_POSITIVE) } else { -value.abs() };
             }
         }
-        scratch.tape = Some(tape);
     }
 
-    fn roots(&self, scratch: &mut Scratch, block: [u32; 3], edges: &[EdgeRef], out: &mut [Root]) {
-        let Some(tape) = scratch.tape.take() else { return };
-        let origin = tape.origin();
-        let step = self.lattice.step();
-        let starts: Vec<DVec3> = edges
-            .iter()
-            .map(|edge| {
-                let node: [u32; 3] = std::array::from_fn(|axis| block[axis] + u32::from(edge.node[axis]));
-                self.lattice.node(node[0], node[1], node[2]) - origin
-            })
-            .collect();
-        let point = |edge: usize, t: f64| {
-            let mut p = starts[edge];
-            p[edges[edge].axis as usize] += t * step;
-            p
-        };
-        let mut brackets: Vec<Bracket> = edges.iter().map(|edge| Bracket::new(edge.leaves)).collect();
-        for end in [0.0, 1.0] {
-            evaluate(scratch, &tape, (0..edges.len()).map(|edge| point(edge, end)));
-            for (bracket, value) in brackets.iter_mut().zip(&scratch.values) {
-                bracket.end(end, *value);
+    fn roots(&self, scratch: &mut Scratch, edges: &[EdgeRef], out: &mut [Root]) {
+        let Scratch { evaluator, tapes, finder, order, edges: sorted, roots, .. } = scratch;
+        let group = |edge: &EdgeRef| self.groups[edge.block as usize];
+        order.clear();
+        order.extend(0..edges.len() as u32);
+        order.sort_by_key(|&n| group(&edges[n as usize]));
+        sorted.clear();
+        sorted.extend(order.iter().map(|&n| edges[n as usize]));
+        roots.resize(edges.len(), Root::default());
+        let mut rest = &mut roots[..edges.len()];
+        for edges in sorted.chunk_by(|a, b| group(a) == group(b)) {
+            let group = group(&edges[0]);
+            let roots = rest.split_off_mut(..edges.len()).unwrap_or_default();
+            match tapes.iter().find(|(other, _)| *other == group) {
+                Some((_, tape)) => finder.find(evaluator, tape, self.lattice, edges, roots),
+                None => finder.find(evaluator, &self.tape(group), self.lattice, edges, roots),
             }
         }
-        let mut open: Vec<usize> = (0..edges.len()).collect();
-        for round in 0..STEPS {
-            open.retain(|&edge| brackets[edge].is_open());
-            if open.is_empty() {
-                break;
-            }
-            for &edge in &open {
-                brackets[edge].propose(round >= HALVING);
-            }
-            evaluate(scratch, &tape, open.iter().map(|&edge| point(edge, brackets[edge].t)));
-            for (&edge, value) in open.iter().zip(&scratch.values) {
-                brackets[edge].learn(*value);
-            }
+        for (&n, root) in order.iter().zip(&*roots) {
+            out[n as usize] = *root;
         }
-        for (root, bracket) in out.iter_mut().zip(&brackets) {
-            root.t = bracket.root();
-        }
-        self.normals(scratch, &tape, out, point);
+        tapes.clear();
     }
-}
 
-impl SolidSampler<'_> {
-    fn normals(&self, scratch: &mut Scratch, tape: &Tape, out: &mut [Root], point: impl Fn(usize, f64) -> DVec3) {
+    fn slopes(
+        &self,
+        scratch: &mut Scratch,
+        number: usize,
+        block: [u32; 3],
+        points: &[DVec3],
+        out: &mut Vec<Slope>,
+    ) -> bool {
+        let group = self.groups[number];
+        if scratch.tapes.last().is_none_or(|(last, _)| *last != group) {
+            scratch.tapes.clear();
+            scratch.tapes.push((group, self.tape(group)));
+        }
+        let Some((_, tape)) = scratch.tapes.last_mut() else { return false };
+        let node = |by: u32| self.lattice.node(block[0] + by, block[1] + by, block[2] + by);
+        let (low, high) = (node(0), node(BLOCK as u32));
+        tape.recentre(low);
+        // The program holds in the block and nowhere else.
+        let local = points.iter().map(|p| p.clamp(low, high) - low);
         for axis in &mut scratch.single {
             axis.clear();
         }
-        for (edge, root) in out.iter().enumerate() {
-            let p = point(edge, root.t);
+        for p in local {
             for axis in 0..3 {
                 scratch.single[axis].push(p[axis] as f32);
             }
         }
         for slope in &mut scratch.slopes {
-            slope.resize(out.len(), 0.0);
+            slope.resize(points.len(), 0.0);
         }
         let [x, y, z] = &scratch.single;
         let [value, dx, dy, dz] = &mut scratch.slopes;
         scratch.evaluator.gradients(tape, x, y, z, Gradients { value, dx, dy, dz });
-        for (edge, root) in out.iter_mut().enumerate() {
-            let inward = DVec3::new(dx[edge].into(), dy[edge].into(), dz[edge].into());
-            root.normal = (-inward.normalize_or_zero()).as_vec3().to_array();
-        }
-    }
-}
-
-/// The values at points relative to the tape's origin, into the scratch.
-fn evaluate(scratch: &mut Scratch, tape: &Tape, points: impl Iterator<Item = DVec3>) {
-    for axis in &mut scratch.double {
-        axis.clear();
-    }
-    for p in points {
-        for axis in 0..3 {
-            scratch.double[axis].push(p[axis]);
-        }
-    }
-    let [x, y, z] = &scratch.double;
-    scratch.values.resize(x.len(), 0.0);
-    scratch.evaluator.values_f64(tape, x, y, z, &mut scratch.values);
-}
-
-/// A root on an edge, closed in on by false position with halved weights (Illinois).
-struct Bracket {
-    low: f64,
-    high: f64,
-    at_low: f64,
-    at_high: f64,
-    inside_low: bool,
-    t: f64,
-    /// Which end has stayed: −1 low, 1 high.
-    stayed: i8,
-}
-
-impl Bracket {
-    fn new(inside_low: bool) -> Bracket {
-        Bracket { low: 0.0, high: 1.0, at_low: 0.0, at_high: 0.0, inside_low, t: 0.5, stayed: 0 }
-    }
-
-    /// The value at an end. Its sign is known from the node, so one that rounding has turned
-    /// is as good as 0.
-    fn end(&mut self, end: f64, value: f64) {
-        let size = value.abs().max(f64::MIN_POSITIVE);
-        let inside = if end == 0.0 { self.inside_low } else { !self.inside_low };
-        let agrees = (value > 0.0) == inside;
-        let signed = if agrees { size } else { f64::MIN_POSITIVE } * if inside { 1.0 } else { -1.0 };
-        if end == 0.0 {
-            self.at_low = signed;
-        } else {
-            self.at_high = signed;
-        }
-    }
-
-    fn is_open(&self) -> bool {
-        self.high - self.low > PRECISION
-    }
-
-    fn propose(&mut self, halve: bool) {
-        let width = self.high - self.low;
-        let secant = self.low + width * (self.at_low / (self.at_low - self.at_high));
-        // A hair beyond the secant closes the bracket from the other side next time.
-        let inner = secant.clamp(self.low + 0.25 * PRECISION, self.high - 0.25 * PRECISION);
-        self.t = if halve || !secant.is_finite() { 0.5 * (self.low + self.high) } else { inner };
-    }
-
-    fn learn(&mut self, value: f64) {
-        if (value > 0.0) == self.inside_low {
-            self.low = self.t;
-            self.at_low = value;
-            if self.stayed == 1 {
-                self.at_high *= 0.5;
-            }
-            self.stayed = 1;
-        } else {
-            self.high = self.t;
-            self.at_high = if value == 0.0 { f64::MIN_POSITIVE.copysign(self.at_high) } else { value };
-            if self.stayed == -1 {
-                self.at_low *= 0.5;
-            }
-            self.stayed = -1;
-        }
-    }
-
-    fn root(&self) -> f64 {
-        0.5 * (self.low + self.high)
+        out.extend(
+            (0..points.len()).map(|n| Slope {
+                value: value[n].into(),
+                gradient: DVec3::new(dx[n].into(), dy[n].into(), dz[n].into()),
+            }),
+        );
+        true
     }
 }
