@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::{CameraError, Cancelled, ImageError, MeshError, ParamError};
+use crate::{CameraError, Cancelled, ImageError, MeshError, ParamError, RangeImageError};
 
 /// Why there is no depth buffer.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -87,6 +87,9 @@ pub enum RasterError {
     /// The work was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+    /// The camera's numbers do not make a range image.
+    #[error(transparent)]
+    Range(#[from] RangeImageError),
     /// The pixels do not make a picture: a defect of this crate.
     #[error("internal error, please report it: {0}")]
     Image(#[from] ImageError),

@@ -52,6 +52,7 @@ mod intervals;
 mod layers;
 mod mesh_layers;
 mod picture;
+mod range;
 mod sequence;
 mod stencil;
 mod target;

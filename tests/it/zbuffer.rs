@@ -5,8 +5,8 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use rvachev::{
-    Buffers, Camera, ClosedMesh, Csg, CsgMethod, Facing, Fragments, LayerSource, Mesh, MeshLayers, PatchSettings,
-    RFunction, RasterError, RasterView, Run, Solid, Superellipsoid, Tile,
+    Buffers, Camera, ClosedMesh, Coordinates, Csg, CsgMethod, Facing, Fragments, LayerSource, Mesh, MeshLayers,
+    PatchSettings, RFunction, RasterError, RasterView, Run, Solid, Superellipsoid, Tile,
 };
 
 /// The picture of the acceptance checks: 160 × 160 pixel middles over [−2, 2]², along +z.
@@ -463,6 +463,24 @@ fn same_bytes_for_any_number_of_threads() {
     };
     let one = with(1);
     assert!(one == with(2) && one == with(5));
+}
+
+#[test]
+fn a_depth_buffer_is_a_range_image() {
+    let mesh = ball_mesh(40, DVec3::new(1.2, 1.0, 0.9), DVec3::ZERO);
+    for camera in cameras() {
+        let view = RasterView::new(&camera, 60, 40).unwrap();
+        let layers = view.layers(ClosedMesh::new(&mesh).unwrap());
+        let buffers = view.csg(&[&layers], &Csg::operand(0), CsgMethod::Stencil).unwrap();
+        let cloud = buffers.range_image().unwrap().points(Coordinates::World).unwrap();
+        let pixels = (0..40).flat_map(|y| (0..60).map(move |x| (x, y)));
+        let points: Vec<DVec3> = pixels.filter_map(|(x, y)| buffers.point(x, y)).collect();
+        assert_eq!(cloud.positions().len(), points.len());
+        assert!(points.len() > 300);
+        for (a, b) in cloud.positions().iter().zip(&points) {
+            assert!((*a - *b).length() < 1e-12, "{a} {b}");
+        }
+    }
 }
 
 // The same solid by meshes and by fields.
