@@ -348,8 +348,6 @@ pub use geom::{Camera, CameraError, Image, ImageError, Mesh, MeshError, Projecti
 pub use io::{SaveError, write_png, write_stl};
 pub use mesh::{CellSize, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError};
 pub use num::{Dual, Interval, Monotone, Monotone3, Norm, Real};
-#[doc(hidden)]
-pub use render::CNT;
 pub use render::{Background, GBuffer, RenderError, RenderSettings, Scene, Surface, Window};
 pub use run::{CancelToken, Cancelled, Progress, Run};
 pub use solid::{Caps, Extrusion, Helix, PlaneBounds, Profile, Solid, SolidError};

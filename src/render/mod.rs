@@ -17,5 +17,3 @@ mod tile;
 pub use gbuffer::{GBuffer, Surface, Window};
 pub use scene::Scene;
 pub use settings::{Background, RenderError, RenderSettings};
-#[doc(hidden)]
-pub use march::CNT;

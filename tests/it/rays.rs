@@ -185,13 +185,17 @@ fn the_first_hit_is_found() {
     assert!(tally.grazing <= tally.rays / 200 && 2 * tally.hits > tally.rays / 2, "{tally:?}");
 }
 
-/// The gradient by central differences, where those of two lengths agree.
+/// The gradient's direction by central differences, where those of two lengths and of both
+/// sides agree.
 fn differences(program: &Program, p: DVec3, size: f64) -> Option<DVec3> {
+    let middle = program.value(p);
     let by = |h: f64| {
-        let along = |axis: DVec3| program.value(p + h * axis) - program.value(p - h * axis);
-        DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z)).normalize_or_zero()
+        let sides = DVec3::AXES.map(|axis| [program.value(p + h * axis), program.value(p - h * axis)]);
+        let gradient = DVec3::from_array(sides.map(|[above, below]| (above - below) / (2.0 * h)));
+        let kink = sides.iter().map(|[above, below]| ((above + below - 2.0 * middle) / h).abs()).fold(0.0, f64::max);
+        (kink < 1e-3 * gradient.length()).then(|| gradient.normalize_or_zero())
     };
-    let (fine, coarse) = (by(1e-6 * size), by(4e-5 * size));
+    let (fine, coarse) = (by(1e-6 * size)?, by(4e-5 * size)?);
     (fine.is_normalized() && fine.distance(coarse) < 1e-3).then_some(fine)
 }
 
