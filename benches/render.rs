@@ -13,7 +13,7 @@
 //! once, at 512² only in the lean form; `all` after `--` draws them at every size.
 //!
 //! Words after `--` choose: `normals`, `shaded`, `prospero`, `many`, names of models, `512`,
-//! `1024`, `two` (threads), `quick` (fewer rounds), `ours` (without fidget).
+//! `1024`, `two` (threads), `quick` (fewer rounds), `ours` (without fidget), `vm` (without its JIT).
 
 #[path = "evaluate/lean.rs"]
 mod lean;
@@ -195,7 +195,7 @@ fn compare(choice: &Choice, model: &Model, size: u32, threads: usize) {
             ours.push(voxels::<VmFunction>("VM", &tree, model.half, size, pool.as_ref()));
             // The JIT is slower than the VM on every one of these, and compiles M4 for minutes.
             #[cfg(feature = "jit")]
-            if !matches!(model.name, "M3" | "M4" | "M5") || choice.has("all") {
+            if !(choice.has("vm") || matches!(model.name, "M3" | "M4" | "M5")) || choice.has("all") {
                 ours.push(voxels::<fidget::jit::JitFunction>("JIT", &tree, model.half, size, pool.as_ref()));
             }
         }
@@ -265,7 +265,9 @@ fn prospero(choice: &Choice) {
                 pixels::<VmFunction>("VM", &tree, size, pool.as_ref()),
             ];
             #[cfg(feature = "jit")]
-            all.push(pixels::<fidget::jit::JitFunction>("JIT", &tree, size, pool.as_ref()));
+            if !choice.has("vm") {
+                all.push(pixels::<fidget::jit::JitFunction>("JIT", &tree, size, pool.as_ref()));
+            }
             let times = race(choice.rounds(), &mut all);
             let (vm, jit) = (least(&all, &times, "VM"), least(&all, &times, "JIT"));
             println!(
