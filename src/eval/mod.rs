@@ -18,6 +18,7 @@ mod hierarchy;
 mod lower;
 mod narrow;
 mod nearest;
+mod palette;
 mod point;
 mod program;
 mod query;
@@ -27,6 +28,7 @@ mod repeat;
 mod scene;
 mod tape;
 
+pub use palette::Palette;
 pub use program::{Program, Region};
 pub use query::Owner;
 pub use ray::Hit;

@@ -76,14 +76,14 @@ pub struct CameraError {
 
 /// The vertical field of view of [`Camera::framing`], in degrees: about that of a portrait
 /// lens, which keeps parallel edges nearly parallel.
-const FRAMING_FOV: f64 = 30.0;
+pub(super) const FRAMING_FOV: f64 = 30.0;
 
 /// The direction from the box to the eye of the default view: 34° to the right of the front
 /// and 29° above it, so that no face of a box is seen edge-on or hides another.
 const FRAMING_DIRECTION: DVec3 = DVec3::new(2.0, -3.0, 2.0);
 
 /// How much larger than the box the view is when it is fitted.
-const FRAMING_MARGIN: f64 = 1.06;
+pub(super) const FRAMING_MARGIN: f64 = 1.06;
 
 impl Camera {
     /// A perspective camera; `fov` is the vertical field of view in degrees, in (0, 180).
@@ -191,7 +191,8 @@ impl Camera {
     }
 
     /// Right, up and forward: unit vectors at right angles; NaN where they are not defined.
-    fn axes(&self) -> [DVec3; 3] {
+    pub(crate) fn axes(&self) -> [DVec3; 3] {
+    pub(super) fn axes(&self) -> [DVec3; 3] {
         let forward = unit(self.target - self.eye);
         let right = unit(forward.cross(unit(self.up)));
         [right, right.cross(forward), forward]

@@ -4,14 +4,16 @@ use std::cell::RefCell;
 
 use glam::DVec3;
 use rayon::prelude::*;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::cells::Cells;
 use super::gbuffer::{GBuffer, Surface, Window};
+use super::extent::{corners, lowest};
 use super::settings::RenderError;
 use super::tile::{TILE, Tracer, View};
-use crate::eval::compiled;
-use crate::{Bounds, Cancelled, Hit, Rays, Run, Solid};
+use crate::eval::{Program, compiled};
+use crate::{Bounds, Cancelled, Hit, Palette, Rays, Run, Solid};
 
 /// How far a ray from a hit starts off the surface, in proportion to the solid.
 const HAIR: f64 = 1e-7;
@@ -42,6 +44,10 @@ pub struct Scene {
     bounds: Bounds,
     /// `None` if there is nothing to see.
     cells: Option<Cells>,
+    palette: Palette,
+    program: Program,
+    /// The height of the lowest point, once somebody has asked for it.
+    lowest: OnceLock<f64>,
 }
 
 impl Solid {
@@ -68,7 +74,8 @@ impl Solid {
             let visible = !bounds.is_empty() && bounds.longest_side() > 0.0;
             let cells = visible.then(|| Cells::new(&programs.surface, &bounds));
             run.report(1.0);
-            Ok(Scene { bounds, cells })
+            let (palette, program) = (self.palette()?, programs.surface.clone());
+            Ok(Scene { bounds, cells, palette, program, lowest: OnceLock::new() })
         })
     }
 }
@@ -78,6 +85,24 @@ impl Scene {
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         self.bounds
+    }
+
+    /// The paint of the solid's parts.
+    #[must_use]
+    pub fn palette(&self) -> &Palette {
+        &self.palette
+    }
+
+    /// The height at which the solid stands on a level ground: its lowest point, to a thousandth
+    /// of its height, or a little below.
+    #[must_use]
+    pub fn lowest(&self) -> f64 {
+        *self.lowest.get_or_init(|| lowest(&self.program, &self.bounds))
+    }
+
+    /// Points such that what holds them holds the solid.
+    pub(super) fn hull(&self) -> Vec<DVec3> {
+        corners(&self.program, &self.bounds)
     }
 
     /// A length that is small for the solid, and large for the rounding of its points: rays

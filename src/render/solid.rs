@@ -4,7 +4,7 @@ use super::picture::Picture;
 use super::scene::Scene;
 use super::settings::{RenderError, RenderSettings};
 use super::shade::Studio;
-use crate::{Camera, Image, Run, Solid};
+use crate::{Camera, Image, Palette, Run, Solid};
 
 impl Solid {
     /// A picture of the solid.
@@ -43,7 +43,10 @@ impl Solid {
         settings.check()?;
         camera.check()?;
         let run = run.stage(0.0, 1.0);
-        run.install(|| self.scene_with(&run.stage(0.0, 0.1))?.picture(camera, settings, &run.stage(0.1, 1.0)))
+        run.install(|| {
+            let scene = self.scene_with(&run.stage(0.0, 0.1))?;
+            Ok(scene.picture(camera, settings, &run.stage(0.1, 1.0))?.to_8bit())
+        })
     }
 }
 
@@ -64,13 +67,45 @@ impl Scene {
         settings.check()?;
         camera.check()?;
         let run = run.stage(0.0, 1.0);
+        Ok(run.install(|| self.picture(camera, settings, &run))?.to_8bit())
+    }
+
+    /// The same as linear light, weighted by alpha, before it becomes bytes: with
+    /// [`Transfer::Srgb`](crate::Transfer::Srgb) the radiances themselves, else what the
+    /// transfer makes of them. Saved as EXR, or as PNG of 8 or 16 bits.
+    ///
+    /// ```
+    /// use rvachev::{Camera, RenderSettings, Run, Solid};
+    ///
+    /// let scene = Solid::sphere(1.0).scene()?;
+    /// let settings = RenderSettings { width: 32, height: 24, ..RenderSettings::default() };
+    /// let light = scene.light(&Camera::framing(&scene.bounds()), &settings, &Run::default())?;
+    /// light.to_16bit().save(std::env::temp_dir().join("rvachev_light.png"))?;
+    /// # std::fs::remove_file(std::env::temp_dir().join("rvachev_light.png"))?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// What is wrong with the camera or the settings, or that the work was cancelled.
+    pub fn light(&self, camera: &Camera, settings: &RenderSettings, run: &Run) -> Result<Image<[f32; 4]>, RenderError> {
+        settings.check()?;
+        camera.check()?;
+        let run = run.stage(0.0, 1.0);
         run.install(|| self.picture(camera, settings, &run))
     }
 
-    fn picture(&self, camera: &Camera, settings: &RenderSettings, run: &Run) -> Result<Image, RenderError> {
+    fn picture(&self, camera: &Camera, settings: &RenderSettings, run: &Run) -> Result<Image<[f32; 4]>, RenderError> {
+        run.check()?;
         let RenderSettings { width, height, .. } = *settings;
-        let rays = camera.rays(width, height);
-        let picture = Picture { scene: self, studio: Studio::new(camera, settings), rays, settings };
+        let stands = settings.ground && settings.style.has_shadows() && !self.bounds().is_empty();
+        let picture = Picture {
+            scene: self,
+            studio: Studio::new(camera, settings),
+            rays: camera.rays(width, height),
+            settings,
+            palette: Some(self.palette().clone()).filter(Palette::is_painted),
+            ground: stands.then(|| self.lowest()),
+        };
         Ok(Image::new(width, height, picture.pixels(run)?)?)
     }
 }
@@ -88,7 +123,8 @@ mod tests {
     }
 
     fn transparent(width: u32, height: u32) -> RenderSettings {
-        RenderSettings { width, height, background: Background::Transparent, ..RenderSettings::default() }
+        let background = Background::Transparent;
+        RenderSettings { width, height, background, ground: false, ..RenderSettings::default() }
     }
 
     /// The picture's alpha: `#` from ¾ on, `+` from ¼ on.
