@@ -13,7 +13,7 @@
 //! once, at 512² only in the lean form; `all` after `--` draws them at every size.
 //!
 //! Words after `--` choose: `normals`, `shaded`, `prospero`, `many`, names of models, `512`,
-//! `1024`, `two` (threads), `quick` (fewer rounds), `ours` (without fidget).
+//! `1024`, `two` (threads), `quick` (fewer rounds), `ours` (without fidget), `vm` (without its JIT).
 
 #[path = "evaluate/lean.rs"]
 mod lean;
@@ -195,16 +195,11 @@ fn compare(choice: &Choice, model: &Model, size: u32, threads: usize) {
             ours.push(voxels::<VmFunction>("VM", &tree, model.half, size, pool.as_ref()));
             // The JIT is slower than the VM on every one of these, and compiles M4 for minutes.
             #[cfg(feature = "jit")]
-            if !matches!(model.name, "M3" | "M4" | "M5") || choice.has("all") {
+            if !(choice.has("vm") || matches!(model.name, "M3" | "M4" | "M5")) || choice.has("all") {
                 ours.push(voxels::<fidget::jit::JitFunction>("JIT", &tree, model.half, size, pool.as_ref()));
             }
         }
     }
-    let c: Vec<u64> = rvachev::CNT.iter().map(|c| c.swap(0, std::sync::atomic::Ordering::Relaxed)).collect();
-    println!(
-        "marches {} spans {} search {} unique {} open {} {} {} evals {} chunks {} doubts {}",
-        c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7], c[8], c[9]
-    );
     let rounds = if smooth && ours.len() > 2 { 1 } else { choice.rounds() };
     let times = race(rounds, &mut ours);
     let (vm, jit) = (least(&ours, &times, "VM"), least(&ours, &times, "JIT"));
@@ -270,7 +265,9 @@ fn prospero(choice: &Choice) {
                 pixels::<VmFunction>("VM", &tree, size, pool.as_ref()),
             ];
             #[cfg(feature = "jit")]
-            all.push(pixels::<fidget::jit::JitFunction>("JIT", &tree, size, pool.as_ref()));
+            if !choice.has("vm") {
+                all.push(pixels::<fidget::jit::JitFunction>("JIT", &tree, size, pool.as_ref()));
+            }
             let times = race(choice.rounds(), &mut all);
             let (vm, jit) = (least(&all, &times, "VM"), least(&all, &times, "JIT"));
             println!(

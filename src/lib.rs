@@ -395,8 +395,6 @@ pub use raster::{
     Buffers, ClosedMesh, Csg, CsgMethod, Facing, Fragments, LANES, LayerSource, MeshLayers, RasterError, RasterView,
     SurfaceId, Tile,
 };
-#[doc(hidden)]
-pub use render::CNT;
 pub use render::{
     Background, GBuffer, Isolines, Layers, Lights, RenderError, RenderSettings, Scene, Slice, SliceSettings, Style,
     Surface, Transfer, Window,

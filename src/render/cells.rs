@@ -153,7 +153,7 @@ impl Cell {
         self.slopes.get_or_init(|| {
             let whole = self.bounds.inflate(self.margin);
             let slopes = self.program.slopes(&whole);
-            if self.leaves > 2 || slopes.iter().all(|slope| slope.width() < LEVEL) {
+            if self.leaves > 1 || slopes.iter().all(|slope| slope.width() < LEVEL) {
                 return slopes;
             }
             // The ranges of eight parts together are narrower.

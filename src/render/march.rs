@@ -116,10 +116,6 @@ const FINE: f64 = 6e-6;
 /// Crossings nearer to each other than this, in proportion to the solid, are one.
 const CLOSE: f64 = 4e-5;
 
-pub static CNT: [std::sync::atomic::AtomicU64; 12] = [const { std::sync::atomic::AtomicU64::new(0) }; 12];
-fn cnt(i: usize, n: usize) {
-    CNT[i].fetch_add(n as u64, std::sync::atomic::Ordering::Relaxed);
-}
 /// Scratch memory of a thread.
 #[derive(Default)]
 pub(super) struct Marcher {
@@ -143,31 +139,25 @@ impl Marcher {
         self.open.clear();
         self.found.clear();
         let job = Job::new(cells, cell, rays, spans);
-        cnt(0, 1);
-        cnt(1, spans.len());
         self.load(&job);
         self.near_ends(&job);
         self.far_ends(&job);
-        cnt(2, self.search.len());
-        cnt(3, self.unique.len());
         if cell.bend.is_some() {
             self.search_bent(&job);
         } else {
             self.search_steep(&job);
         }
-        cnt(4, self.open.len());
         self.newton(&job);
-        cnt(5, self.open.len());
         self.finish(&job, surfaces);
-        cnt(6, self.open.len());
         for &Span { ray, near, far } in &self.open {
             let Ray { origin, direction, base, .. } = rays[ray as usize];
-            let (near, far) = match job.tangents(ray, near, far) {
+            let first = |near, far| first_hit(&cell.program, &job.reach, origin, direction, near, far);
+            let hit = match job.tangents(ray, near, far) {
                 Outcome::Miss => continue,
-                Outcome::Between(before, after) => (before, after),
-                Outcome::Open => (near, far),
+                Outcome::Between(before, after) => first(before, after).or_else(|| first(near, far)),
+                Outcome::Open => first(near, far),
             };
-            if let Some(hit) = first_hit(&cell.program, &job.reach, origin, direction, near, far) {
+            if let Some(hit) = hit {
                 surfaces[ray as usize] =
                     Surface { distance: base + hit.distance, normal: hit.normal.as_vec3(), owner: hit.owner };
                 self.hits.push(ray);
@@ -211,8 +201,6 @@ impl Marcher {
     /// Evaluates lanes at `at`.
     fn evaluate(&mut self, job: &Job<'_>, lanes: &[Lane]) {
         let count = lanes.len();
-        cnt(7, count);
-        cnt(8, count.div_ceil(256));
         for list in &mut self.single {
             if list.len() < count {
                 list.resize(count, 0.0);
@@ -264,9 +252,14 @@ impl Marcher {
             }
             self.sift(job, &mut lanes, |lists, lane, Local { g, s, gradient }| {
                 if g > job.doubt {
-                    (lane.right, lane.g_right, lane.s_right) = (lane.at, g, s);
-                    lane.aim(lane.at - g / s);
-                    lists.unique.push(*lane);
+                    if lane.at > 0.0 {
+                        (lane.right, lane.g_right, lane.s_right) = (lane.at, g, s);
+                        lane.aim(lane.at - g / s);
+                        lists.unique.push(*lane);
+                    } else {
+                        // The ray has crossed already, at the border to this cell.
+                        lists.open.push(job.span(lane));
+                    }
                     return false;
                 }
                 let rise = s + SLOPE_ERROR * s.abs() + 1e-6;
@@ -314,7 +307,6 @@ impl Marcher {
         }
         self.sift(job, &mut lanes, |lists, lane, Local { mut g, s, .. }| {
             if g.abs() <= job.doubt {
-                cnt(9, 1);
                 let Span { ray, far, .. } = job.span(lane);
                 let crossed = (job.value(ray, far) > 0.0) != (lane.turn < 0.0);
                 g = if crossed { f32::MIN_POSITIVE } else { -f32::MIN_POSITIVE };
@@ -647,16 +639,17 @@ impl<'a> Job<'a> {
             if g >= 0.0 {
                 // Rounding has put it a hair beyond.
                 let before = (t - 1e-6 * self.size).max(near);
-                return if at(before).0 < 0.0 { Outcome::Between(before, t) } else { Outcome::Open };
+                let after = (t + 1e-8 * self.size).min(far);
+                return if at(before).0 < 0.0 { Outcome::Between(before, after) } else { Outcome::Open };
             }
             let next = t - g / s;
             if s <= 0.0 || next > far {
                 return Outcome::Miss;
             }
             if next - t <= 1e-9 * self.size {
-                let after = (next + (next - t) + 1e-12 * self.size).min(far);
+                let (before, after) = ((t - 1e-8 * self.size).max(near), (next + 1e-8 * self.size).min(far));
                 if at(after).0 > 0.0 {
-                    return Outcome::Between(t, after);
+                    return Outcome::Between(before, after);
                 }
             }
             if next <= t {

@@ -24,8 +24,6 @@ mod tile;
 
 pub use gbuffer::{GBuffer, Surface, Window};
 pub use layers::Layers;
-#[doc(hidden)]
-pub use march::CNT;
 pub use scene::Scene;
 pub use settings::{Background, Lights, RenderError, RenderSettings, Style, Transfer};
 pub use slice::{Isolines, Slice, SliceSettings};

@@ -274,6 +274,9 @@ impl Ray {
 
 /// A ray made ready, and whether it meets the box of all cells.
 fn entering(cells: &Cells, bounds: &Bounds, origin: DVec3, direction: DVec3, inside: Option<bool>) -> (Ray, bool) {
+    if !(origin.is_finite() && direction.is_finite() && direction != DVec3::ZERO) {
+        return (Ray::NONE, false);
+    }
     // A number instead of infinity, so that planes at a distance of 0 stay there.
     let inverse = direction.recip().clamp(DVec3::splat(-STEEPEST), DVec3::splat(STEEPEST));
     let mut ray = Ray { origin, direction, inverse, base: 0.0, inside: false };

@@ -170,7 +170,7 @@ fn the_first_hit_is_found() {
     let asked = std::env::var("RAYS").unwrap_or_default();
     let count = |part: Option<&str>, default: usize| part.and_then(|n| n.parse().ok()).unwrap_or(default);
     let mut parts = asked.split('x');
-    let (subjects, rays) = (count(parts.next(), 60), count(parts.next(), 40));
+    let (subjects, rays) = (count(parts.next(), 40), count(parts.next(), 15));
     let first = count(parts.next(), 0);
     let mut tally = Tally::default();
     for number in first..first + subjects {
@@ -182,16 +182,20 @@ fn the_first_hit_is_found() {
     }
     println!("{} rays, {} hits, {} grazing, {} not isolated", tally.rays, tally.hits, tally.grazing, tally.unknown);
     assert!(tally.wrong.is_empty(), "{} wrong:\n{}", tally.wrong.len(), tally.wrong.join("\n"));
-    assert!(tally.grazing <= tally.rays / 200 && 2 * tally.hits > tally.rays / 2, "{tally:?}");
+    assert!(tally.grazing <= 2 + tally.rays / 200 && 4 * tally.hits > tally.rays, "{tally:?}");
 }
 
-/// The gradient by central differences, where those of two lengths agree.
+/// The gradient's direction by central differences, where those of two lengths and of both
+/// sides agree.
 fn differences(program: &Program, p: DVec3, size: f64) -> Option<DVec3> {
+    let middle = program.value(p);
     let by = |h: f64| {
-        let along = |axis: DVec3| program.value(p + h * axis) - program.value(p - h * axis);
-        DVec3::new(along(DVec3::X), along(DVec3::Y), along(DVec3::Z)).normalize_or_zero()
+        let sides = DVec3::AXES.map(|axis| [program.value(p + h * axis), program.value(p - h * axis)]);
+        let gradient = DVec3::from_array(sides.map(|[above, below]| (above - below) / (2.0 * h)));
+        let kink = sides.iter().map(|[above, below]| ((above + below - 2.0 * middle) / h).abs()).fold(0.0, f64::max);
+        (kink < 1e-3 * gradient.length()).then(|| gradient.normalize_or_zero())
     };
-    let (fine, coarse) = (by(1e-6 * size), by(4e-5 * size));
+    let (fine, coarse) = (by(1e-6 * size)?, by(4e-5 * size)?);
     (fine.is_normalized() && fine.distance(coarse) < 1e-3).then_some(fine)
 }
 
@@ -199,12 +203,12 @@ fn differences(program: &Program, p: DVec3, size: f64) -> Option<DVec3> {
 fn depths_and_normals_are_those_of_the_surface() {
     let mut random = Random::new(77);
     let mut compared = 0;
-    for number in 0..50 {
+    for number in 0..40 {
         let solid = subject(&mut random, number);
         let program = solid.surface_program().unwrap();
         let frame = frame_of(&solid);
         let size = frame.longest_side();
-        let rays: Vec<(DVec3, DVec3)> = (0..60).map(|_| ray(&mut random, &frame)).collect();
+        let rays: Vec<(DVec3, DVec3)> = (0..30).map(|_| ray(&mut random, &frame)).collect();
         let found = solid.scene().unwrap().first_hits(&rays);
         for (&(origin, direction), found) in rays.iter().zip(&found) {
             if !found.is_hit() {
@@ -226,7 +230,7 @@ fn depths_and_normals_are_those_of_the_surface() {
             assert!(off < 5e-3, "subject {number}: {found:?}, {gradient}, from {origin:?} along {direction:?}");
         }
     }
-    assert!(compared > 500, "{compared}");
+    assert!(compared > 200, "{compared}");
 }
 
 fn normal_image(scene: &Scene, camera: &Camera, threads: usize) -> Vec<Surface> {
@@ -248,7 +252,7 @@ fn pictures_see_what_single_rays_hit() {
             assert!(seen == normal_image(&model.solid.scene().unwrap(), &camera, 3), "{}", model.name);
             let size = bounds.longest_side();
             let mut differ = 0;
-            for (i, seen) in seen.iter().enumerate().filter(|(i, _)| i % 7 == 0) {
+            for (i, seen) in seen.iter().enumerate().filter(|(i, _)| i % 31 == 0) {
                 let (origin, direction) = camera.ray((i % 150) as f64 + 0.5, (i / 150) as f64 + 0.5, 150, 110);
                 let hit = model.solid.raycast(origin, direction).unwrap();
                 let distance = hit.map_or(f64::INFINITY, |hit| hit.distance);
