@@ -277,6 +277,19 @@
 //! | [`taper`](Solid::taper), [`twist`](Solid::twist), [`bend`](Solid::bend) | Barr's deformations |
 //! | [`taper_by`](Solid::taper_by), [`twist_by`](Solid::twist_by) | by any [`Law`] of z: [`LinearLaw`], [`SmoothStep`], [`SineWave`], [`LawTable`], a number, your own |
 //!
+//! ## Explicit surfaces
+//!
+//! Without a field or a grid:
+//!
+//! | | |
+//! |---|---|
+//! | [`Superellipsoid::surface`] and its like | a [`ParametricSurface`]: points, tangents, exact normals by two parameters |
+//! | [`ParametricSurface::mesh`], [`quad_mesh`](ParametricSurface::quad_mesh) | closed triangles and quadrilaterals, by angles, by lengths or within a tolerance ([`Spacing`]) |
+//! | [`ParametricSurface::sample`] | points uniform by area |
+//! | [`Superellipse::curve`], [`Gielis::curve`], [`ParametricCurve`] | the same of plane curves |
+//! | [`Superellipsoid::points`], [`Superellipse::points`] | points by Franklin and Barr's methods ([`PointMethod`]) |
+//! | [`ControlPolygon`], [`SubdivisionRevolution`], [`ControlGrid`] | subdivision: conics, quadrics, free forms |
+//!
 //! ## Solids as values
 //!
 //! | | |
@@ -349,10 +362,12 @@ pub mod idioms;
 mod io;
 mod mesh;
 mod num;
+mod raster;
 mod render;
 mod run;
 mod solid;
 mod space;
+mod surface;
 
 pub use bounds::Bounds;
 pub use eval::{Evaluator, Gradients, Hit, Owner, Palette, Program, Region, Tape};
@@ -363,19 +378,14 @@ pub use field::{
     SheetLattice, SineWave, Slab, SmoothStep, Sphere, Superellipse, Superellipsoid, Superhyperboloid, Superpolygon,
     Supershape, Supertoroid, Torus, Turns, VALUE_LIMIT, Wedge,
 };
-pub use geom::{
-    Camera, CameraError, Coordinates, Image, ImageError, Intrinsics, Mesh, MeshError, Noise, Plane, PointCloud,
-    PointCloudError, Polyline, Projection, RangeImage, RangeImageError, Rays, View,
-};
-pub use io::{
-    Colors, Floats, Pixel, SaveError, write_dxf, write_exr, write_gif, write_ply_points, write_png, write_stl,
-    write_svg,
-};
-pub use mesh::{CellSize, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError};
+pub use geom::{Camera, CameraError, Coordinates, Corner, Image, ImageError, Intrinsics, Mesh, MeshError, Noise, Plane, PointCloud, PointCloudError, Polyline, Projection, QuadMesh, RangeImage, RangeImageError, Rays, View};
+pub use io::{Colors, Floats, LengthUnit, Pixel, SaveError, SaveSettings, write_3mf, write_dxf, write_exr, write_gif, write_glb, write_obj, write_ply, write_ply_points, write_png, write_stl, write_stl_ascii, write_svg};
+pub use mesh::{CellSize, Features, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError, Volume, VolumeError, VolumeSettings};
 pub use num::{Dual, Interval, Monotone, Monotone3, Norm, Real};
-pub use render::{
-    Background, GBuffer, Isolines, Layers, Lights, RenderError, RenderSettings, Scene, Slice, SliceSettings, Style,
-    Surface, Transfer, Window,
-};
+#[doc(hidden)]
+pub use render::CNT;
+pub use raster::{Buffers, ClosedMesh, Csg, CsgMethod, Facing, Fragments, LANES, LayerSource, MeshLayers, RasterError, RasterView, SurfaceId, Tile};
+pub use render::{Background, GBuffer, Isolines, Layers, Lights, RenderError, RenderSettings, Scene, Slice, SliceSettings, Style, Surface, Transfer, Window};
 pub use run::{CancelToken, Cancelled, Progress, Run};
 pub use solid::{Caps, Extrusion, Helix, Paint, PlaneBounds, Profile, Solid, SolidError};
+pub use surface::{BinomialSeries, ControlGrid, ControlPoint, ControlPolygon, CurveSpread, ExactExplicit, Frame, LogTable, ParametricCurve, ParametricSurface, PatchError, PatchSettings, PlaneSymmetry, PointError, PointMethod, PointSettings, PowerTables, ProductTables, ProfileEnd, SeriesExplicit, Spacing, SubdivisionError, SubdivisionRevolution, SurfacePoint, Symmetry, Tension, hyperbola_of_ellipse, raw_parametric, raw_parametric_octant, reflect, reflect_plane};

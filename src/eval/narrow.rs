@@ -116,6 +116,9 @@ impl Program {
     pub(crate) fn narrow_zone(&self, world: &Zone) -> Region {
         let world = &Pieces::one(*world);
         let zones = self.zones(world);
+        if let Some(region) = self.narrow_leaf(&zones, world) {
+            return region;
+        }
         let mut pass = Pass::new(self, &zones, world);
         pass.run(Asked { sign: true, value: false });
         let Pass { signs, nodes, list, simpler, .. } = pass;
@@ -123,8 +126,39 @@ impl Program {
             Sign::Positive => Region::Inside,
             Sign::Negative => Region::Outside,
             Sign::Unknown => Region::Surface(self.clone()),
+            Sign::Open(_) if simpler.is_empty() && self.has_all(&nodes, &list) => Region::Surface(self.clone()),
             Sign::Open(root) => Region::Surface(self.trimmed(nodes, list, simpler, root)),
         }
+    }
+
+    /// Whether nothing was left out on the way to these nodes, each of which came of one of
+    /// the program's.
+    fn has_all(&self, nodes: &[Node], list: &[Edge]) -> bool {
+        // A fillet may have become a plain join.
+        let is_edge = |node: &Node| matches!(node.kind, Kind::Edge { .. });
+        nodes.len() == self.nodes.len() && list.len() == self.operands.len() && !self.nodes.iter().any(is_edge)
+    }
+
+    /// The answer for a program of one leaf that no region makes simpler, what most regions
+    /// come down to: it needs no tables, and what stays open shares its program.
+    fn narrow_leaf(&self, zones: &[Pieces], world: &Pieces) -> Option<Region> {
+        let [Node { kind: Kind::Leaf(leaf), .. }] = self.nodes[..] else { return None };
+        let instance = self.instance(leaf);
+        let zone = self.zone_in(zones, instance.frame, world);
+        let range = if zone.any(|zone| instance.bounds.intersects(&hull_of(zone))) {
+            zone.range(&instance.to_local, |zone| instance.placed_range(zone))
+        } else {
+            Interval::new(f64::NEG_INFINITY, -f64::MIN_POSITIVE)
+        };
+        let range = if self.root.negated() { -range } else { range };
+        if range.lo() > 0.0 {
+            return Some(Region::Inside);
+        }
+        if range.hi() < 0.0 {
+            return Some(Region::Outside);
+        }
+        let simpler = zone.only().and_then(|zone| instance.field.narrowed(&zone.mapped(&instance.to_local)));
+        if simpler.is_some() { None } else { Some(Region::Surface(self.clone())) }
     }
 
     /// A program of the same values over a zone, from what may decide them there.

@@ -230,6 +230,34 @@ impl Program {
         self.nodes.iter().filter(|node| matches!(node.kind, Kind::Leaf(_))).count()
     }
 
+    /// Whether it evaluates the same leaves in the same way as another program of its solid.
+    /// Long programs that were narrowed apart count as different.
+    pub(crate) fn is_same(&self, other: &Program) -> bool {
+        const LONG: usize = 16;
+        if !Arc::ptr_eq(&self.scene, &other.scene) || self.root != other.root {
+            return false;
+        }
+        let shared = Arc::ptr_eq(&self.nodes, &other.nodes)
+            && Arc::ptr_eq(&self.operands, &other.operands)
+            && Arc::ptr_eq(&self.simpler, &other.simpler);
+        let same = |a: &Node, b: &Node| {
+            a.range() == b.range()
+                && match (&a.kind, &b.kind) {
+                    (Kind::Leaf(a), Kind::Leaf(b)) => a == b,
+                    (Kind::Join { op: a, rule: r, .. }, Kind::Join { op: b, rule: s, .. }) => a == b && r == s,
+                    (Kind::Shift(a), Kind::Shift(b)) => a == b,
+                    _ => false,
+                }
+        };
+        shared
+            || self.nodes.len() <= LONG
+                && self.nodes.len() == other.nodes.len()
+                && self.simpler.is_empty()
+                && other.simpler.is_empty()
+                && self.operands == other.operands
+                && self.nodes.iter().zip(&other.nodes[..]).all(|(a, b)| same(a, b))
+    }
+
     /// The operands of a node.
     pub(crate) fn list(&self, node: &Node) -> &[Edge] {
         &self.operands[node.range()]

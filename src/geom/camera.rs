@@ -191,6 +191,7 @@ impl Camera {
     }
 
     /// Right, up and forward: unit vectors at right angles; NaN where they are not defined.
+    pub(crate) fn axes(&self) -> [DVec3; 3] {
     pub(super) fn axes(&self) -> [DVec3; 3] {
         let forward = unit(self.target - self.eye);
         let right = unit(forward.cross(unit(self.up)));

@@ -7,6 +7,7 @@
 mod camera;
 mod image;
 mod mesh;
+mod quad_mesh;
 mod plane;
 mod point_cloud;
 mod polyline;
@@ -17,6 +18,7 @@ pub use camera::{Camera, CameraError, Projection, Rays};
 pub use image::{Image, ImageError};
 pub(crate) use image::{from_linear, to_linear};
 pub use mesh::{Mesh, MeshError};
+pub use quad_mesh::{Corner, QuadMesh};
 pub use plane::Plane;
 pub use point_cloud::{PointCloud, PointCloudError};
 pub use polyline::Polyline;

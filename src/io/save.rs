@@ -8,7 +8,7 @@ use std::time::Duration;
 use glam::{DVec3, Vec3};
 
 use super::file::write_whole;
-use super::{write_dxf, write_exr, write_gif, write_ply_points, write_png, write_stl, write_svg};
+use super::{LengthUnit, write_3mf, write_dxf, write_exr, write_gif, write_glb, write_obj, write_ply, write_ply_points, write_png, write_stl, write_stl_ascii, write_svg};
 use crate::geom::{Image, Mesh, PointCloud, Polyline};
 
 /// Why a file could not be saved. Whatever was at the path before is still there, and no
@@ -24,7 +24,7 @@ pub enum SaveError {
         /// Its extension, without the dot; empty if it has none.
         extension: String,
         /// The extensions that are known, as a list to read.
-        known: &'static str,
+        known: String,
     },
     /// The directory that the file should go to does not exist; saving does not make
     /// directories.
@@ -56,11 +56,50 @@ fn unknown(extension: &str) -> String {
     }
 }
 
-/// A writer of one format.
-type Writer<T> = fn(&T, &mut BufWriter<File>) -> io::Result<()>;
+/// How a mesh is saved, where the format leaves a choice.
+///
+/// ```no_run
+/// use rvachev::{LengthUnit, MeshSettings, SaveSettings, Solid};
+///
+/// let mesh = Solid::sphere(1.0).mesh(&MeshSettings::default())?;
+/// mesh.save_with("ball.3mf", &SaveSettings { unit: LengthUnit::Inch, ..SaveSettings::default() })?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SaveSettings {
+    /// What a length of 1 means. Default: a millimetre. For `.3mf` and `.glb`; the other
+    /// formats have no units.
+    pub unit: LengthUnit,
+    /// Whether `.stl` is written as text. Default: binary. The other formats have one form.
+    pub ascii: bool,
+    /// Whether `.obj` has normals even where a vertex has several: at creases, one for each
+    /// corner. Default: no, as some readers (trimesh, and most that only draw) split the
+    /// vertices there, and no longer see a closed mesh. `.glb` always has them.
+    pub crease_normals: bool,
+}
+
+/// A writer of one format, for `T` by settings `S`.
+type Writer<T, S> = fn(&T, &S, &mut BufWriter<File>) -> io::Result<()>;
+
+/// The formats of a mesh, by extension.
+const MESH_FORMATS: [(&str, Writer<Mesh, SaveSettings>); 5] = [
+    ("3mf", |mesh, settings, out| write_3mf(mesh, settings, out)),
+    ("glb", |mesh, settings, out| write_glb(mesh, settings, out)),
+    ("obj", |mesh, settings, out| write_obj(mesh, settings, out)),
+    ("ply", |mesh, _, out| write_ply(mesh, out)),
+    ("stl", |mesh, settings, out| if settings.ascii { write_stl_ascii(mesh, out) } else { write_stl(mesh, out) }),
+];
 
 impl Mesh {
-    /// Saves the mesh in the format that the extension stands for: `.stl`, binary STL.
+    /// Saves the mesh in the format that the extension stands for:
+    ///
+    /// | extension | format | besides the shape |
+    /// |---|---|---|
+    /// | `.stl` | binary STL | |
+    /// | `.obj` | OBJ | normals (at creases: on request) and texture coordinates per corner |
+    /// | `.ply` | binary PLY | normals per vertex, colours, owners |
+    /// | `.glb` | binary glTF | normals, colours and texture coordinates per corner; in millimetres |
+    /// | `.3mf` | 3MF | colours per corner; in millimetres |
     ///
     /// The file appears complete or not at all. Missing directories are not made.
     ///
@@ -68,20 +107,23 @@ impl Mesh {
     /// use rvachev::Mesh;
     ///
     /// let error = Mesh::default().save("bolt.xyz").unwrap_err();
-    /// assert!(error.to_string().contains("known: .stl"));
+    /// assert!(error.to_string().contains("known: .3mf, .glb, .obj, .ply, .stl"));
     /// ```
     ///
     /// # Errors
     ///
     /// [`SaveError`], naming the file and the cause.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
-        let writer = |extension: &str| -> Option<Writer<Mesh>> {
-            match extension {
-                "stl" => Some(|mesh, out| write_stl(mesh, out)),
-                _ => None,
-            }
-        };
-        save(self, path.as_ref(), writer, ".stl")
+        self.save_with(path, &SaveSettings::default())
+    }
+
+    /// [`save`](Mesh::save) with a choice of unit, of STL as text, of OBJ with all its normals.
+    ///
+    /// # Errors
+    ///
+    /// [`SaveError`], naming the file and the cause.
+    pub fn save_with(&self, path: impl AsRef<Path>, settings: &SaveSettings) -> Result<(), SaveError> {
+        save(self, settings, path.as_ref(), &MESH_FORMATS)
     }
 }
 
@@ -135,6 +177,7 @@ impl<P: Pixel> Image<P> {
     ///
     /// [`SaveError`], naming the file and the cause.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
+        save(self, &(), path.as_ref(), &[("png", |image, (), out| write_png(image, out))])
         save(self, path.as_ref(), P::writer, P::KNOWN)
     }
 }
@@ -177,7 +220,6 @@ impl PointCloud {
         save(self, path.as_ref(), writer, ".ply")
     }
 }
-
 impl Polyline {
     /// Saves polylines as a drawing in the format that the extension stands for: `.svg` or
     /// `.dxf`.
@@ -199,16 +241,13 @@ impl Polyline {
     }
 }
 
-/// Saves `data` with the writer that `writer` gives for the extension in lower case.
-fn save<T>(
-    data: &T,
-    path: &Path,
-    writer: impl FnOnce(&str) -> Option<Writer<T>>,
-    known: &'static str,
-) -> Result<(), SaveError> {
+/// Saves `data` with the writer that `formats` has for the extension, in upper or lower case.
+fn save<T, S>(data: &T, settings: &S, path: &Path, formats: &[(&str, Writer<T, S>)]) -> Result<(), SaveError> {
     let extension = path.extension().unwrap_or_default().to_string_lossy();
-    let Some(write) = writer(&extension.to_ascii_lowercase()) else {
-        return Err(SaveError::Extension { path: path.into(), extension: extension.into_owned(), known });
+    let Some((_, write)) = formats.iter().find(|(known, _)| extension.eq_ignore_ascii_case(known)) else {
+        let known: Vec<String> = formats.iter().map(|(known, _)| format!(".{known}")).collect();
+        let (path, extension) = (path.into(), extension.into_owned());
+        return Err(SaveError::Extension { path, extension, known: known.join(", ") });
     };
     // The parent of a bare file name is the empty path, which stands for here.
     if let Some(directory) = path.parent()
@@ -217,7 +256,7 @@ fn save<T>(
     {
         return Err(SaveError::Directory { path: path.into(), directory: directory.into() });
     }
-    write_whole(path, |out| write(data, out)).map_err(|source| SaveError::Write { path: path.into(), source })
+    write_whole(path, |out| write(data, settings, out)).map_err(|source| SaveError::Write { path: path.into(), source })
 }
 
 #[cfg(test)]
@@ -268,7 +307,10 @@ mod tests {
     #[test]
     fn unknown_extensions_are_listed() {
         let error = triangle().save("a/part.step").unwrap_err();
-        assert_eq!(error.to_string(), "cannot save a/part.step: the extension .step is not known; known: .stl");
+        assert_eq!(
+            error.to_string(),
+            "cannot save a/part.step: the extension .step is not known; known: .3mf, .glb, .obj, .ply, .stl"
+        );
         let image = Image::new(1, 1, vec![[0; 4]]).unwrap();
         assert_eq!(
             image.save("view").unwrap_err().to_string(),
@@ -324,6 +366,23 @@ mod tests {
         assert_eq!(failed.unwrap_err().kind(), io::ErrorKind::StorageFull);
         assert_eq!(fs::read(&path).unwrap(), b"before");
         assert_eq!(folder.entries(), 1);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_device_is_written_to_and_not_replaced() {
+        use std::os::unix::fs::FileTypeExt;
+        let folder = Folder::new("device");
+        for extension in ["stl", "obj", "ply", "glb", "3mf"] {
+            let link = folder.0.join(format!("part.{extension}"));
+            std::os::unix::fs::symlink("/dev/full", &link).unwrap();
+            let error = triangle().save(&link).unwrap_err();
+            let SaveError::Write { path, source } = &error else { panic!("{error}") };
+            assert_eq!((path, source.kind()), (&link, io::ErrorKind::StorageFull));
+            assert!(error.to_string().contains(&format!("part.{extension}")));
+        }
+        assert!(fs::metadata("/dev/full").unwrap().file_type().is_char_device());
+        assert_eq!(folder.entries(), 5);
     }
 
     #[cfg(unix)]

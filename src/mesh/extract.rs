@@ -13,9 +13,14 @@
 //! the number of threads:
 //!
 //! 1. Sample the nodes; list the owned edges that cross the surface, in the order of their
-//!    numbers, and find the roots on them: these are the block's vertices. Keep the signs.
+//!    numbers, and find the roots on them, a batch of blocks at a time: these are the
+//!    blocks' vertices. Keep the signs.
 //! 2. With the number of vertices before each block known: list the triangles of each cell by
-//!    the case table. A corner on an edge of a neighbour is found in the neighbour's list.
+//!    the case table. The vertex of an edge has the number of its row's first one and the
+//!    count of crossed edges between them, in the own block or in a neighbour.
+//!
+//! In between, [`sharp`] finds the cells that hold creases and corners, if it is asked to; they
+//! have fans of triangles in the second pass, whose centres follow the vertices on edges.
 //!
 //! Between the two, the signs in the faces of the blocks are compared, which makes the mesh
 //! closed: wherever a sign changes in a face, the block on the other side must be there and
@@ -26,20 +31,30 @@
 //!
 //! Source: W. E. Lorensen and H. E. Cline, Marching cubes (1987).
 
-use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
+use self::join::Parts;
+use self::neighbours::Neighbours;
+use super::Features;
+use super::feature::Slope;
 use super::lattice::Lattice;
-use super::signs::{BLOCK, EdgeRef, NODES, OWNED, Signs, edge_number, for_each_cell, is_mixed, list_edges};
-use super::table::{CaseTable, EDGE_CORNERS, edge_axis};
+use super::signs::{EdgeRef, NODES, Rows, Signs, for_each_cell, list_edges};
+use super::table::CaseTable;
 use crate::geom::{Mesh, MeshError};
 use crate::run::{Cancelled, Run};
 
-/// Blocks that share scratch memory. Small enough for threads to share work evenly.
-const BATCH: usize = 32;
+mod join;
+mod joined;
+mod neighbours;
+mod region;
+mod samples;
+mod sharp;
+
+/// Blocks whose roots are found together. Small enough for threads to share work evenly.
+pub(super) const BATCH: usize = 64;
 
 /// What the extractor asks of a surface.
 pub(crate) trait Sampler: Sync {
@@ -49,14 +64,28 @@ pub(crate) trait Sampler: Sync {
     /// New scratch memory.
     fn scratch(&self) -> Self::Scratch;
 
-    /// The values at the nodes of a block that starts at cell `block`, x fastest, then y, then
-    /// z. A value above 0 is inside, any other outside. Blocks that share a node must give it
-    /// the same sign.
-    fn nodes(&self, scratch: &mut Self::Scratch, block: [u32; 3], out: &mut [f32; NODES]);
+    /// The values at the nodes of a block, given by its place in the list of blocks and by
+    /// its first cell: x fastest, then y, then z. A value above 0 is inside, any other outside.
+    /// Blocks that share a node must give it the same sign.
+    fn nodes(&self, scratch: &mut Self::Scratch, number: usize, block: [u32; 3], out: &mut [f32; NODES]);
 
-    /// Where the surface crosses edges of the block that [`Sampler::nodes`] was called for
-    /// last, with the same scratch. `out` is as long as `edges`.
-    fn roots(&self, scratch: &mut Self::Scratch, block: [u32; 3], edges: &[EdgeRef], out: &mut [Root]);
+    /// Where the surface crosses edges, in the order of their blocks. `out` is as long as
+    /// `edges`.
+    fn roots(&self, scratch: &mut Self::Scratch, edges: &[EdgeRef], out: &mut [Root]);
+
+    /// Adds values and gradients of the field at points of a block, in the order of the points,
+    /// to `out`; whether it did. The default knows of none: features are placed by the normals of
+    /// the roots alone.
+    fn slopes(
+        &self,
+        _scratch: &mut Self::Scratch,
+        _number: usize,
+        _block: [u32; 3],
+        _points: &[DVec3],
+        _out: &mut Vec<Slope>,
+    ) -> bool {
+        false
+    }
 }
 
 /// Where the surface crosses an edge.
@@ -106,27 +135,34 @@ pub(crate) fn extract<S: Sampler>(
     sampler: &S,
     lattice: &Lattice,
     blocks: &[[u32; 3]],
+    features: Features,
     run: &Run,
 ) -> Result<Mesh, ExtractError> {
     run.install(|| {
         let neighbours = Neighbours::new(blocks)?;
-        let sampled = sample_all(sampler, lattice, blocks, &run.stage(0.0, 0.9))?;
-        let parts = Parts { blocks, neighbours, sampled };
+        let batches = sample_all(sampler, lattice, blocks, &run.stage(0.0, 0.9))?;
+        let parts = Parts::new(blocks, neighbours, batches)?;
         parts.check_faces()?;
-        let mesh = parts.join(&run.stage(0.9, 1.0))?;
+        let mesh = parts.join(sampler, lattice, features, &run.stage(0.9, 1.0))?;
         run.report(1.0);
         Ok(mesh)
     })
 }
 
 /// What the first pass leaves of a block.
-struct Sampled {
+struct Part {
     signs: Signs,
-    /// The owned edges that are crossed, by number, ascending.
-    edges: Vec<u16>,
-    /// Position and normal on each of them.
-    vertices: Vec<(Vec3, Vec3)>,
-    triangles: usize,
+    rows: Rows,
+    /// The number of its first vertex: within the batch first, then in the mesh.
+    first: u32,
+    triangles: u32,
+}
+
+/// What it leaves of consecutive blocks.
+struct Batch {
+    parts: Vec<Part>,
+    positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
 }
 
 /// The first pass.
@@ -135,20 +171,11 @@ fn sample_all<S: Sampler>(
     lattice: &Lattice,
     blocks: &[[u32; 3]],
     run: &Run,
-) -> Result<Vec<Sampled>, Cancelled> {
+) -> Result<Vec<Batch>, Cancelled> {
     let meter = Meter::new(run, blocks.len());
-    let batches: Result<Vec<Vec<Sampled>>, Cancelled> = blocks
-        .par_chunks(BATCH)
-        .map(|batch| {
-            let mut worker = Worker::new(sampler, lattice);
-            let sample = |&block: &[u32; 3]| {
-                meter.step()?;
-                Ok(worker.sample(block))
-            };
-            batch.iter().map(sample).collect()
-        })
-        .collect();
-    Ok(batches?.into_iter().flatten().collect())
+    let worker = || Worker::new(sampler, lattice);
+    let batches = blocks.par_chunks(BATCH).enumerate();
+    batches.map_init(worker, |worker, (n, blocks)| worker.sample(n * BATCH, blocks, &meter)).collect()
 }
 
 /// One thread's means to sample blocks.
@@ -158,44 +185,43 @@ struct Worker<'a, S: Sampler> {
     scratch: S::Scratch,
     values: Box<[f32; NODES]>,
     edges: Vec<EdgeRef>,
-    numbers: Vec<u16>,
     roots: Vec<Root>,
 }
 
 impl<'a, S: Sampler> Worker<'a, S> {
     fn new(sampler: &'a S, lattice: &'a Lattice) -> Self {
-        Worker {
-            sampler,
-            lattice,
-            scratch: sampler.scratch(),
-            values: Box::new([0.0; NODES]),
-            edges: Vec::new(),
-            numbers: Vec::new(),
-            roots: Vec::new(),
-        }
+        let scratch = sampler.scratch();
+        Worker { sampler, lattice, scratch, values: Box::new([0.0; NODES]), edges: Vec::new(), roots: Vec::new() }
     }
 
-    fn sample(&mut self, block: [u32; 3]) -> Sampled {
-        self.sampler.nodes(&mut self.scratch, block, &mut self.values);
-        let signs = Signs::new(&self.values);
-        list_edges(&signs, &mut self.edges, &mut self.numbers);
+    /// Samples the blocks from number `start` on.
+    fn sample(&mut self, start: usize, blocks: &[[u32; 3]], meter: &Meter<'_>) -> Result<Batch, Cancelled> {
+        let table = CaseTable::get();
+        self.edges.clear();
+        let mut parts = Vec::with_capacity(blocks.len());
+        for (number, &block) in (start..).zip(blocks) {
+            meter.step()?;
+            self.sampler.nodes(&mut self.scratch, number, block, &mut self.values);
+            let signs = Signs::new(&self.values);
+            let first = self.edges.len() as u32;
+            let rows = list_edges(&signs, &self.values, number as u32, block, &mut self.edges);
+            let mut triangles = 0;
+            for_each_cell(&signs, |_, case| triangles += table.triangles(case).len() as u32);
+            parts.push(Part { signs, rows, first, triangles });
+        }
         self.roots.clear();
         self.roots.resize(self.edges.len(), Root::default());
         if !self.edges.is_empty() {
-            self.sampler.roots(&mut self.scratch, block, &self.edges, &mut self.roots);
+            self.sampler.roots(&mut self.scratch, &self.edges, &mut self.roots);
         }
-        let vertex = |(edge, root): (&EdgeRef, &Root)| {
-            let node = std::array::from_fn(|axis| block[axis] + u32::from(edge.node[axis]));
-            let position = self.lattice.vertex(node, usize::from(edge.axis), root.t);
+        let position = |(edge, root): (&EdgeRef, &Root)| self.lattice.vertex(edge.node, usize::from(edge.axis), root.t);
+        let normal = |root: &Root| {
             let normal = Vec3::from_array(root.normal);
-            let normal = if normal.is_finite() { normal } else { Vec3::ZERO };
-            (position, normal)
+            if normal.is_finite() { normal } else { Vec3::ZERO }
         };
-        let vertices = self.edges.iter().zip(&self.roots).map(vertex).collect();
-        let table = CaseTable::get();
-        let mut triangles = 0;
-        for_each_cell(&signs, |_, case| triangles += table.triangles(case).len());
-        Sampled { signs, edges: self.numbers.clone(), vertices, triangles }
+        let positions = self.edges.iter().zip(&self.roots).map(position).collect();
+        let normals = self.roots.iter().map(normal).collect();
+        Ok(Batch { parts, positions, normals })
     }
 }
 
@@ -217,171 +243,6 @@ impl<'a> Meter<'a> {
         self.run.report(done as f64 / self.total as f64);
         self.run.check()
     }
-}
-
-/// Finds blocks by their coordinates.
-struct Neighbours(HashMap<[u32; 3], u32>);
-
-impl Neighbours {
-    fn new(blocks: &[[u32; 3]]) -> Result<Neighbours, ExtractError> {
-        let mut map = HashMap::with_capacity(blocks.len());
-        for (index, &block) in blocks.iter().enumerate() {
-            let error = |what| Err(ExtractError::Blocks { block, what });
-            if block.iter().any(|&n| n % BLOCK as u32 != 0) {
-                return error("its cell is not a multiple of the block size");
-            }
-            let Ok(index) = u32::try_from(index) else {
-                return error("there are more blocks than 32 bits can number");
-            };
-            if map.insert(block, index).is_some() {
-                return error("it is listed twice");
-            }
-        }
-        Ok(Neighbours(map))
-    }
-
-    /// The block that is `by` blocks further along each axis, if it is in the list.
-    fn find(&self, block: [u32; 3], by: [i32; 3]) -> Option<usize> {
-        let mut at = block;
-        for axis in 0..3 {
-            at[axis] = at[axis].checked_add_signed(by[axis] * BLOCK as i32)?;
-        }
-        self.0.get(&at).map(|&index| index as usize)
-    }
-}
-
-/// All blocks after the first pass.
-struct Parts<'a> {
-    blocks: &'a [[u32; 3]],
-    neighbours: Neighbours,
-    sampled: Vec<Sampled>,
-}
-
-impl Parts<'_> {
-    /// Checks that wherever a face has both signs there is a block on its other side, and
-    /// that the two agree. It follows that every cell around a crossed edge is in a block,
-    /// and every vertex in the list of its owner.
-    fn check_faces(&self) -> Result<(), ExtractError> {
-        (0..self.blocks.len()).into_par_iter().try_for_each(|n| {
-            let block = self.blocks[n];
-            let error = |what| Err(ExtractError::Blocks { block, what });
-            for axis in 0..3 {
-                let mut by = [0; 3];
-                by[axis] = 1;
-                let ours = self.sampled[n].signs.face(axis, true);
-                match self.neighbours.find(block, by) {
-                    Some(other) if self.sampled[other].signs.face(axis, false) != ours => {
-                        return error("an upper neighbour has other signs on their common face");
-                    }
-                    None if is_mixed(&ours) => {
-                        return error("the surface goes on in an upper neighbour not listed");
-                    }
-                    _ => {}
-                }
-                by[axis] = -1;
-                if is_mixed(&self.sampled[n].signs.face(axis, false)) && self.neighbours.find(block, by).is_none() {
-                    return error("the surface goes on in a lower neighbour not listed");
-                }
-            }
-            Ok(())
-        })
-    }
-
-    /// The second pass.
-    fn join(mut self, run: &Run) -> Result<Mesh, ExtractError> {
-        let meter = Meter::new(run, self.blocks.len());
-        // The number of the first vertex of each block.
-        let mut starts = Vec::with_capacity(self.sampled.len());
-        let (mut vertices, mut triangles) = (0u64, 0);
-        for part in &self.sampled {
-            starts.push(vertices as u32);
-            vertices += part.vertices.len() as u64;
-            triangles += part.triangles;
-        }
-        if vertices > u64::from(u32::MAX) {
-            return Err(ExtractError::TooLarge { count: vertices });
-        }
-
-        let mut indices = vec![[0; 3]; triangles];
-        let pieces = split(&mut indices, self.sampled.iter().map(|part| part.triangles));
-        pieces.into_par_iter().enumerate().try_for_each(|(n, piece)| {
-            meter.step()?;
-            self.list_triangles(n, &starts, piece)
-        })?;
-
-        let mut positions = vec![Vec3::ZERO; vertices as usize];
-        let mut normals = vec![Vec3::ZERO; vertices as usize];
-        let sizes = || self.sampled.iter().map(|part| part.vertices.len());
-        let places = split(&mut positions, sizes());
-        let directions = split(&mut normals, sizes());
-        self.sampled.par_iter_mut().zip(places.into_par_iter().zip(directions)).for_each(
-            |(part, (places, directions))| {
-                // Taken, so that the memory is given back on the way.
-                let vertices = std::mem::take(&mut part.vertices);
-                let slots = places.iter_mut().zip(directions);
-                for ((place, direction), vertex) in slots.zip(vertices) {
-                    (*place, *direction) = vertex;
-                }
-            },
-        );
-        Ok(Mesh::new(positions, indices)?.with_normals(normals)?)
-    }
-
-    /// The triangles of block `n`, in the order of its cells.
-    fn list_triangles(&self, n: usize, starts: &[u32], out: &mut [[u32; 3]]) -> Result<(), ExtractError> {
-        let part = &self.sampled[n];
-        let block = self.blocks[n];
-        // The vertices on owned edges, by the number of the edge.
-        let mut own = [0; OWNED];
-        for (vertex, &edge) in (starts[n]..).zip(&part.edges) {
-            own[usize::from(edge)] = vertex;
-        }
-        // The upper neighbours, by the axes along which they are further: bits 0 to 2.
-        let upper: [Option<usize>; 8] = std::array::from_fn(|bits| {
-            let by = [0, 1, 2].map(|axis| (bits >> axis & 1) as i32);
-            if bits == 0 { Some(n) } else { self.neighbours.find(block, by) }
-        });
-        let vertex = |cell: [usize; 3], edge: u8| -> Option<u32> {
-            let corner = usize::from(EDGE_CORNERS[usize::from(edge)][0]);
-            let node: [usize; 3] = std::array::from_fn(|axis| cell[axis] + (corner >> axis & 1));
-            let bits = (0..3).fold(0, |bits, axis| bits | (node[axis] / BLOCK) << axis);
-            let number = edge_number(node.map(|x| x % BLOCK), usize::from(edge_axis(edge)));
-            if bits == 0 {
-                return Some(own[usize::from(number)]);
-            }
-            let owner = upper[bits]?;
-            let nth = self.sampled[owner].edges.binary_search(&number).ok()?;
-            Some(starts[owner] + nth as u32)
-        };
-
-        let table = CaseTable::get();
-        let mut slots = out.iter_mut();
-        let mut complete = true;
-        for_each_cell(&part.signs, |cell, case| {
-            for (&[a, b, c], slot) in table.triangles(case).iter().zip(&mut slots) {
-                match (vertex(cell, a), vertex(cell, b), vertex(cell, c)) {
-                    (Some(a), Some(b), Some(c)) => *slot = [a, b, c],
-                    _ => complete = false,
-                }
-            }
-        });
-        if complete {
-            Ok(())
-        } else {
-            let what = "a vertex is missing in the neighbour that owns it";
-            Err(ExtractError::Blocks { block, what })
-        }
-    }
-}
-
-/// Cuts a slice into consecutive pieces of the given lengths, whose sum is its length.
-fn split<T>(mut slice: &mut [T], lengths: impl Iterator<Item = usize>) -> Vec<&mut [T]> {
-    let cut = |length| {
-        let (piece, rest) = std::mem::take(&mut slice).split_at_mut(length);
-        slice = rest;
-        piece
-    };
-    lengths.map(cut).collect()
 }
 
 #[cfg(test)]

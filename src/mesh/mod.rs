@@ -2,12 +2,18 @@
 
 mod check;
 mod extract;
+mod feature;
 mod lattice;
+mod loops;
 mod paint;
+mod qef;
+mod roots;
 mod signs;
 mod solid;
 mod table;
+mod volume;
 
 pub use check::MeshReport;
 pub use lattice::{CellSize, Lattice, LatticeError};
-pub use solid::{MeshSettings, MeshingError};
+pub use solid::{Features, MeshSettings, MeshingError};
+pub use volume::{Volume, VolumeError, VolumeSettings};

@@ -17,38 +17,54 @@ pub(crate) const BLOCK: usize = 8;
 pub(super) const SIDE: usize = BLOCK + 1;
 /// Nodes of a block.
 pub(crate) const NODES: usize = SIDE * SIDE * SIDE;
-/// Edges that a block owns.
-pub(super) const OWNED: usize = 3 * BLOCK * BLOCK * BLOCK;
 
-/// An edge of the lattice within a block: from a node upwards along an axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// An edge of the lattice that the surface crosses: from a node upwards along an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct EdgeRef {
-    /// The lower end, as a node within the block: 0 to 7 along every axis.
-    pub node: [u8; 3],
+    /// The lower end, as a node of the lattice.
+    pub node: [u32; 3],
+    /// The number of the block that owns it.
+    pub block: u32,
     /// The axis, 0 to 2.
     pub axis: u8,
     /// Whether the lower end is the inside one.
     pub leaves: bool,
+    /// The values at the lower and the upper end.
+    pub values: [f32; 2],
 }
 
 /// The signs of the nodes of a block: bit i of row `SIDE · k + j` is set if node (i, j, k) is
 /// inside.
 pub(super) struct Signs([u16; SIDE * SIDE]);
 
+/// Eight bytes of 0 or 1 as the bits of one, the first lowest.
+///
+/// A product does it: its term 2^(56 − 7 i) moves byte i to bit 56 + i, and no two terms meet.
+pub(super) fn gathered(bytes: [u8; 8]) -> u8 {
+    const GATHER: u64 = 0x0102_0408_1020_4080;
+    (u64::from_le_bytes(bytes).wrapping_mul(GATHER) >> 56) as u8
+}
+
 impl Signs {
     pub(super) fn new(values: &[f32; NODES]) -> Signs {
         let (rows, _) = values.as_chunks::<SIDE>();
         let mut signs = Signs([0; SIDE * SIDE]);
-        for (bits, row) in signs.0.iter_mut().zip(rows) {
-            for (i, &value) in row.iter().enumerate() {
-                *bits |= u16::from(value > 0.0) << i;
-            }
+        for (bits, &[a, b, c, d, e, f, g, h, last]) in signs.0.iter_mut().zip(rows) {
+            let first = gathered([a, b, c, d, e, f, g, h].map(|value| u8::from(value > 0.0)));
+            *bits = u16::from(first) | u16::from(last > 0.0) << BLOCK;
         }
         signs
     }
 
-    fn row(&self, j: usize, k: usize) -> u16 {
+    /// The signs of a row of nodes.
+    pub(super) fn row(&self, j: usize, k: usize) -> u16 {
         self.0[SIDE * k + j]
+    }
+
+    /// The case of a cell.
+    pub(super) fn case(&self, [i, j, k]: [usize; 3]) -> u8 {
+        let rows = [self.row(j, k), self.row(j + 1, k), self.row(j, k + 1), self.row(j + 1, k + 1)];
+        rows.iter().enumerate().fold(0, |case, (n, row)| case | (row >> i & 3) << (2 * n)) as u8
     }
 
     /// The signs in the lower or upper face of an axis, nine rows of nine.
@@ -71,37 +87,69 @@ pub(super) fn is_mixed(face: &[u16; SIDE]) -> bool {
 /// Positions within a row, as bits, that hold an owned node.
 const OWNED_BITS: u16 = (1 << BLOCK) - 1;
 
-/// The number of an owned edge within its block.
-pub(super) fn edge_number(node: [usize; 3], axis: usize) -> u16 {
-    let [i, j, k] = node;
-    (3 * (BLOCK * (BLOCK * k + j) + i) + axis) as u16
+/// How many vertices of a block come before those of each row of owned edges, `BLOCK · k + j`.
+///
+/// Owned edges are numbered row by row; within a row those along x come first, then those
+/// along y, then those along z. The number of an edge is then its row's start and the bits
+/// before it.
+pub(super) struct Rows([u16; BLOCK * BLOCK]);
+
+impl Rows {
+    /// Where a row starts.
+    pub(super) fn start(&self, j: usize, k: usize) -> u32 {
+        u32::from(self.0[BLOCK * k + j])
+    }
 }
 
-/// The owned edges that cross the surface, in the order of their numbers.
-pub(super) fn list_edges(signs: &Signs, edges: &mut Vec<EdgeRef>, numbers: &mut Vec<u16>) {
-    edges.clear();
-    numbers.clear();
+impl Signs {
+    /// The owned edges of a row that cross the surface, as bits, along x, y and z.
+    pub(super) fn crossed(&self, j: usize, k: usize) -> [u16; 3] {
+        let row = self.row(j, k);
+        [row ^ row >> 1, row ^ self.row(j + 1, k), row ^ self.row(j, k + 1)].map(|bits| bits & OWNED_BITS)
+    }
+
+    /// Whether an edge along one of the given axes, from one of the first nodes of a row,
+    /// crosses the surface.
+    pub(super) fn is_crossed(&self, axes: [bool; 3], [j, k]: [usize; 2]) -> bool {
+        let row = self.row(j, k);
+        let differs = |other: u16| (row ^ other) & OWNED_BITS != 0;
+        axes[0] && differs(row >> 1) || axes[1] && differs(self.row(j + 1, k)) || axes[2] && differs(self.row(j, k + 1))
+    }
+}
+
+/// Adds the owned edges that cross the surface, in the order of their numbers. `number` and
+/// `block` are those of the block in the list of blocks, and its first cell.
+pub(super) fn list_edges(
+    signs: &Signs,
+    values: &[f32; NODES],
+    number: u32,
+    block: [u32; 3],
+    edges: &mut Vec<EdgeRef>,
+) -> Rows {
+    const STRIDES: [usize; 3] = [1, SIDE, SIDE * SIDE];
+    let before = edges.len();
+    let mut rows = Rows([0; BLOCK * BLOCK]);
     for k in 0..BLOCK {
         for j in 0..BLOCK {
+            rows.0[BLOCK * k + j] = (edges.len() - before) as u16;
             let row = signs.row(j, k);
-            let crossed = [row ^ row >> 1, row ^ signs.row(j + 1, k), row ^ signs.row(j, k + 1)];
-            let mut any = (crossed[0] | crossed[1] | crossed[2]) & OWNED_BITS;
-            while any != 0 {
-                let i = any.trailing_zeros() as usize;
-                any &= any - 1;
-                for (axis, crossed) in crossed.into_iter().enumerate() {
-                    if crossed >> i & 1 == 1 {
-                        edges.push(EdgeRef {
-                            node: [i as u8, j as u8, k as u8],
-                            axis: axis as u8,
-                            leaves: row >> i & 1 == 1,
-                        });
-                        numbers.push(edge_number([i, j, k], axis));
-                    }
+            for (axis, mut crossed) in signs.crossed(j, k).into_iter().enumerate() {
+                while crossed != 0 {
+                    let i = crossed.trailing_zeros() as usize;
+                    crossed &= crossed - 1;
+                    let at = i + SIDE * (j + SIDE * k);
+                    edges.push(EdgeRef {
+                        node: [block[0] + i as u32, block[1] + j as u32, block[2] + k as u32],
+                        block: number,
+                        axis: axis as u8,
+                        leaves: row >> i & 1 == 1,
+                        values: [values[at], values[at + STRIDES[axis]]],
+                    });
                 }
             }
         }
     }
+    rows
 }
 
 /// Calls `visit` for every cell that the surface crosses, with its coordinates in the block

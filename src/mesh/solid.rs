@@ -1,12 +1,12 @@
 //! Meshing a solid: `solid.mesh(..)`.
 
-use std::collections::HashMap;
-
 use glam::DVec3;
 
-use super::extract::{ExtractError, Root, Sampler, extract};
+use super::extract::{BATCH, ExtractError, Root, Sampler, extract};
+use super::feature::Slope;
 use super::lattice::{CellSize, Lattice, LatticeError};
-use super::signs::{BLOCK, EdgeRef, NODES};
+use super::roots::RootFinder;
+use super::signs::{BLOCK, EdgeRef, NODES, SIDE};
 use crate::eval::{Evaluator, Gradients, Program, Tape, compiled};
 use crate::geom::Mesh;
 use crate::space::{Grid, surface_blocks};
@@ -29,6 +29,20 @@ pub struct MeshSettings {
     /// The box to mesh, in length units; where the solid leaves it, the mesh is that of
     /// their intersection. Default (`None`): the box of the solid.
     pub bounds: Option<Bounds>,
+    /// Whether creases and corners are kept. Default: [`Features::Sharp`].
+    pub features: Features,
+}
+
+/// What becomes of creases and corners.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Features {
+    /// They are cut off, by a fraction of a cell: marching cubes.
+    Smooth,
+    /// They are kept: where the normals in a cell spread, the cell has a vertex on the crease or
+    /// in the corner, and the mesh has edges along the crease. Elsewhere the mesh is that of
+    /// [`Smooth`](Features::Smooth).
+    #[default]
+    Sharp,
 }
 
 /// Why there is no mesh.
@@ -99,12 +113,11 @@ impl Solid {
                 side: lattice.step() * BLOCK as f64,
                 blocks: lattice.cells().map(|cells| cells.div_ceil(BLOCK as u32)),
             };
-            let found = surface_blocks(&programs.surface, &grid, 0.0, &run)?;
-            run.report(0.3);
+            let found = surface_blocks(&programs.surface, &grid, 0.0, &run.stage(0.0, 0.3))?;
             let blocks: Vec<[u32; 3]> = found.iter().map(|b| b.index.map(|i| i * BLOCK as u32)).collect();
-            let programs = blocks.iter().copied().zip(found.into_iter().map(|b| b.program)).collect();
-            let sampler = SolidSampler { lattice: &lattice, programs };
-            Ok(extract(&sampler, &lattice, &blocks, &run.stage(0.3, 1.0))?)
+            let programs = found.into_iter().map(|b| b.program).collect();
+            let sampler = SolidSampler::new(&lattice, &blocks, programs);
+            Ok(extract(&sampler, &lattice, &blocks, settings.features, &run.stage(0.3, 1.0))?)
         })
     }
 
@@ -126,28 +139,66 @@ impl Solid {
 }
 
 /// The surface program, block by block.
+///
+/// The blocks of a batch that have the same program form a group; a group has one tape.
 struct SolidSampler<'a> {
     lattice: &'a Lattice,
-    programs: HashMap<[u32; 3], Program>,
+    blocks: &'a [[u32; 3]],
+    programs: Vec<Program>,
+    /// The number of the first block of each block's group.
+    groups: Vec<u32>,
+    /// The nodes of a block, relative to the first, x fastest.
+    pattern: [Vec<f32>; 3],
 }
 
-/// What a thread keeps between the nodes of a block and its roots.
+/// What a thread keeps from block to block.
 #[derive(Default)]
 struct Scratch {
     evaluator: Evaluator,
-    tape: Option<Tape>,
+    /// The tapes of the groups sampled since roots were asked for.
+    tapes: Vec<(u32, Tape)>,
+    finder: RootFinder,
     single: [Vec<f32>; 3],
-    double: [Vec<f64>; 3],
-    values: Vec<f64>,
     slopes: [Vec<f32>; 4],
+    /// Edges in the order of their groups: their places, themselves, their roots.
+    order: Vec<u32>,
+    edges: Vec<EdgeRef>,
+    roots: Vec<Root>,
 }
 
-/// Roots are bracketed to this part of an edge.
-const PRECISION: f64 = 1e-9;
+impl SolidSampler<'_> {
+    fn new<'a>(lattice: &'a Lattice, blocks: &'a [[u32; 3]], programs: Vec<Program>) -> SolidSampler<'a> {
+        let mut groups: Vec<u32> = Vec::with_capacity(blocks.len());
+        let mut heads: Vec<u32> = Vec::new();
+        for (n, program) in programs.iter().enumerate() {
+            if n % BATCH == 0 {
+                heads.clear();
+            }
+            // The latest first: blocks that follow each other are near each other.
+            let head = heads.iter().rev().find(|&&head| programs[head as usize].is_same(program));
+            let group = head.copied().unwrap_or(n as u32);
+            if group == n as u32 {
+                heads.push(group);
+            }
+            groups.push(group);
+        }
+        let at = |node: usize, stride: usize| (node / stride % SIDE) as f64 * lattice.step();
+        let pattern = [1, SIDE, SIDE * SIDE].map(|stride| (0..NODES).map(|n| at(n, stride) as f32).collect());
+        SolidSampler { lattice, blocks, programs, groups, pattern }
+    }
 
-/// At most this many steps; from `HALVING` on they halve.
-const STEPS: usize = 40;
-const HALVING: usize = 12;
+    /// A tape for the group that starts with a block.
+    fn tape(&self, group: u32) -> Tape {
+        let first = group as usize;
+        let batch = first..(first / BATCH * BATCH + BATCH).min(self.blocks.len());
+        let bounds = batch.filter(|&n| self.groups[n] == group).fold(Bounds::EMPTY, |all, n| {
+            let block = self.blocks[n];
+            let at = |i: u32| self.lattice.node(block[0] + i, block[1] + i, block[2] + i);
+            all.union(&Bounds::new(at(0), at(BLOCK as u32)))
+        });
+        Tape::new(&self.programs[first], &bounds)
+    }
+}
 
 impl Sampler for SolidSampler<'_> {
     type Scratch = Scratch;
@@ -156,185 +207,94 @@ impl Sampler for SolidSampler<'_> {
         Scratch::default()
     }
 
-    fn nodes(&self, scratch: &mut Scratch, block: [u32; 3], out: &mut [f32; NODES]) {
-        let Some(program) = self.programs.get(&block) else { return };
-        let at = |i: u32| self.lattice.node(block[0] + i, block[1] + i, block[2] + i);
-        let tape = Tape::new(program, &Bounds::new(at(0), at(BLOCK as u32)));
-        let origin = tape.origin();
-        for axis in &mut scratch.single {
-            axis.clear();
-        }
-        let place = |i: usize, axis: usize| block[axis] + i as u32;
-        let side = BLOCK + 1;
-        for k in 0..side {
-            for j in 0..side {
-                for i in 0..side {
-                    let p = self.lattice.node(place(i, 0), place(j, 1), place(k, 2)) - origin;
-                    scratch.single[0].push(p.x as f32);
-                    scratch.single[1].push(p.y as f32);
-                    scratch.single[2].push(p.z as f32);
-                }
-            }
-        }
-        let [x, y, z] = &scratch.single;
-        scratch.evaluator.values(&tape, x, y, z, out);
+    fn nodes(&self, scratch: &mut Scratch, number: usize, block: [u32; 3], out: &mut [f32; NODES]) {
+        let group = self.groups[number];
+        let at = scratch.tapes.iter().rposition(|(other, _)| *other == group).unwrap_or_else(|| {
+            scratch.tapes.push((group, self.tape(group)));
+            scratch.tapes.len() - 1
+        });
+        let tape = &mut scratch.tapes[at].1;
+        tape.recentre(self.lattice.node(block[0], block[1], block[2]));
+        let [x, y, z] = &self.pattern;
+        scratch.evaluator.values(tape, x, y, z, out);
         // A sign that rounding may have turned is settled in double precision.
         let doubt = tape.roundoff() as f32;
+        if !out.iter().fold(false, |any, value| any | (value.abs() <= doubt)) {
+            return;
+        }
+        let program = &self.programs[number];
         for (n, value) in out.iter_mut().enumerate() {
             if value.abs() <= doubt {
-                let (i, j, k) = (n % side, n / side % side, n / (side * side));
-                let exact = program.value(self.lattice.node(place(i, 0), place(j, 1), place(k, 2)));
+                let at = |axis: usize, stride: usize| block[axis] + (n / stride % SIDE) as u32;
+                let exact = program.value(self.lattice.node(at(0, 1), at(1, SIDE), at(2, SIDE * SIDE)));
                 *value = if exact > 0.0 { value.abs().max(f32::MIN_POSITIVE) } else { -value.abs() };
             }
         }
-        scratch.tape = Some(tape);
     }
 
-    fn roots(&self, scratch: &mut Scratch, block: [u32; 3], edges: &[EdgeRef], out: &mut [Root]) {
-        let Some(tape) = scratch.tape.take() else { return };
-        let origin = tape.origin();
-        let step = self.lattice.step();
-        let starts: Vec<DVec3> = edges
-            .iter()
-            .map(|edge| {
-                let node: [u32; 3] = std::array::from_fn(|axis| block[axis] + u32::from(edge.node[axis]));
-                self.lattice.node(node[0], node[1], node[2]) - origin
-            })
-            .collect();
-        let point = |edge: usize, t: f64| {
-            let mut p = starts[edge];
-            p[edges[edge].axis as usize] += t * step;
-            p
-        };
-        let mut brackets: Vec<Bracket> = edges.iter().map(|edge| Bracket::new(edge.leaves)).collect();
-        for end in [0.0, 1.0] {
-            evaluate(scratch, &tape, (0..edges.len()).map(|edge| point(edge, end)));
-            for (bracket, value) in brackets.iter_mut().zip(&scratch.values) {
-                bracket.end(end, *value);
+    fn roots(&self, scratch: &mut Scratch, edges: &[EdgeRef], out: &mut [Root]) {
+        let Scratch { evaluator, tapes, finder, order, edges: sorted, roots } = scratch;
+        let group = |edge: &EdgeRef| self.groups[edge.block as usize];
+        order.clear();
+        order.extend(0..edges.len() as u32);
+        order.sort_by_key(|&n| group(&edges[n as usize]));
+        sorted.clear();
+        sorted.extend(order.iter().map(|&n| edges[n as usize]));
+        roots.resize(edges.len(), Root::default());
+        let mut rest = &mut roots[..edges.len()];
+        for edges in sorted.chunk_by(|a, b| group(a) == group(b)) {
+            let group = group(&edges[0]);
+            let roots = rest.split_off_mut(..edges.len()).unwrap_or_default();
+            match tapes.iter().find(|(other, _)| *other == group) {
+                Some((_, tape)) => finder.find(evaluator, tape, self.lattice, edges, roots),
+                None => finder.find(evaluator, &self.tape(group), self.lattice, edges, roots),
             }
         }
-        let mut open: Vec<usize> = (0..edges.len()).collect();
-        for round in 0..STEPS {
-            open.retain(|&edge| brackets[edge].is_open());
-            if open.is_empty() {
-                break;
-            }
-            for &edge in &open {
-                brackets[edge].propose(round >= HALVING);
-            }
-            evaluate(scratch, &tape, open.iter().map(|&edge| point(edge, brackets[edge].t)));
-            for (&edge, value) in open.iter().zip(&scratch.values) {
-                brackets[edge].learn(*value);
-            }
+        for (&n, root) in order.iter().zip(&*roots) {
+            out[n as usize] = *root;
         }
-        for (root, bracket) in out.iter_mut().zip(&brackets) {
-            root.t = bracket.root();
-        }
-        self.normals(scratch, &tape, out, point);
+        tapes.clear();
     }
-}
 
-impl SolidSampler<'_> {
-    fn normals(&self, scratch: &mut Scratch, tape: &Tape, out: &mut [Root], point: impl Fn(usize, f64) -> DVec3) {
+    fn slopes(
+        &self,
+        scratch: &mut Scratch,
+        number: usize,
+        block: [u32; 3],
+        points: &[DVec3],
+        out: &mut Vec<Slope>,
+    ) -> bool {
+        let group = self.groups[number];
+        if scratch.tapes.last().is_none_or(|(last, _)| *last != group) {
+            scratch.tapes.clear();
+            scratch.tapes.push((group, self.tape(group)));
+        }
+        let Some((_, tape)) = scratch.tapes.last_mut() else { return false };
+        let node = |by: u32| self.lattice.node(block[0] + by, block[1] + by, block[2] + by);
+        let (low, high) = (node(0), node(BLOCK as u32));
+        tape.recentre(low);
+        // The program holds in the block and nowhere else.
+        let local = points.iter().map(|p| p.clamp(low, high) - low);
         for axis in &mut scratch.single {
             axis.clear();
         }
-        for (edge, root) in out.iter().enumerate() {
-            let p = point(edge, root.t);
+        for p in local {
             for axis in 0..3 {
                 scratch.single[axis].push(p[axis] as f32);
             }
         }
         for slope in &mut scratch.slopes {
-            slope.resize(out.len(), 0.0);
+            slope.resize(points.len(), 0.0);
         }
         let [x, y, z] = &scratch.single;
         let [value, dx, dy, dz] = &mut scratch.slopes;
         scratch.evaluator.gradients(tape, x, y, z, Gradients { value, dx, dy, dz });
-        for (edge, root) in out.iter_mut().enumerate() {
-            let inward = DVec3::new(dx[edge].into(), dy[edge].into(), dz[edge].into());
-            root.normal = (-inward.normalize_or_zero()).as_vec3().to_array();
-        }
-    }
-}
-
-/// The values at points relative to the tape's origin, into the scratch.
-fn evaluate(scratch: &mut Scratch, tape: &Tape, points: impl Iterator<Item = DVec3>) {
-    for axis in &mut scratch.double {
-        axis.clear();
-    }
-    for p in points {
-        for axis in 0..3 {
-            scratch.double[axis].push(p[axis]);
-        }
-    }
-    let [x, y, z] = &scratch.double;
-    scratch.values.resize(x.len(), 0.0);
-    scratch.evaluator.values_f64(tape, x, y, z, &mut scratch.values);
-}
-
-/// A root on an edge, closed in on by false position with halved weights (Illinois).
-struct Bracket {
-    low: f64,
-    high: f64,
-    at_low: f64,
-    at_high: f64,
-    inside_low: bool,
-    t: f64,
-    /// Which end has stayed: −1 low, 1 high.
-    stayed: i8,
-}
-
-impl Bracket {
-    fn new(inside_low: bool) -> Bracket {
-        Bracket { low: 0.0, high: 1.0, at_low: 0.0, at_high: 0.0, inside_low, t: 0.5, stayed: 0 }
-    }
-
-    /// The value at an end. Its sign is known from the node, so one that rounding has turned
-    /// is as good as 0.
-    fn end(&mut self, end: f64, value: f64) {
-        let size = value.abs().max(f64::MIN_POSITIVE);
-        let inside = if end == 0.0 { self.inside_low } else { !self.inside_low };
-        let agrees = (value > 0.0) == inside;
-        let signed = if agrees { size } else { f64::MIN_POSITIVE } * if inside { 1.0 } else { -1.0 };
-        if end == 0.0 {
-            self.at_low = signed;
-        } else {
-            self.at_high = signed;
-        }
-    }
-
-    fn is_open(&self) -> bool {
-        self.high - self.low > PRECISION
-    }
-
-    fn propose(&mut self, halve: bool) {
-        let width = self.high - self.low;
-        let secant = self.low + width * (self.at_low / (self.at_low - self.at_high));
-        // A hair beyond the secant closes the bracket from the other side next time.
-        let inner = secant.clamp(self.low + 0.25 * PRECISION, self.high - 0.25 * PRECISION);
-        self.t = if halve || !secant.is_finite() { 0.5 * (self.low + self.high) } else { inner };
-    }
-
-    fn learn(&mut self, value: f64) {
-        if (value > 0.0) == self.inside_low {
-            self.low = self.t;
-            self.at_low = value;
-            if self.stayed == 1 {
-                self.at_high *= 0.5;
-            }
-            self.stayed = 1;
-        } else {
-            self.high = self.t;
-            self.at_high = if value == 0.0 { f64::MIN_POSITIVE.copysign(self.at_high) } else { value };
-            if self.stayed == -1 {
-                self.at_low *= 0.5;
-            }
-            self.stayed = -1;
-        }
-    }
-
-    fn root(&self) -> f64 {
-        0.5 * (self.low + self.high)
+        out.extend(
+            (0..points.len()).map(|n| Slope {
+                value: value[n].into(),
+                gradient: DVec3::new(dx[n].into(), dy[n].into(), dz[n].into()),
+            }),
+        );
+        true
     }
 }

@@ -172,7 +172,7 @@ fn doubled_middle(edge: u8) -> [i32; 3] {
 /// The face that two edges have in common, as its axis and whether it is the upper one.
 /// Edges that are at a right angle have at most one; of parallel edges, those that are
 /// diagonally opposite have none.
-fn common_face(a: u8, b: u8) -> Option<(usize, bool)> {
+pub(super) fn common_face(a: u8, b: u8) -> Option<(usize, bool)> {
     let (a, b) = (doubled_middle(a), doubled_middle(b));
     (0..3).find(|&axis| a[axis] == b[axis] && a[axis] != 1).map(|axis| (axis, a[axis] == 2))
 }

@@ -46,6 +46,8 @@ pub(super) struct Cell {
     pub(super) bend: Option<Bend>,
     /// Its length along its longest side, in proportion to that of the solid.
     pub(super) share: f64,
+    /// How many leaves the program has.
+    pub(super) leaves: usize,
     margin: f64,
     halves: OnceLock<Halves>,
     slopes: OnceLock<[Interval; 3]>,
@@ -96,7 +98,7 @@ impl Cells {
                 Part::Inside => return true,
                 Part::Outside => return false,
                 Part::Cell(cell) => {
-                    if cell.program.leaf_count() <= FEW {
+                    if cell.leaves <= FEW {
                         return cell.program.value(p) > 0.0;
                     }
                     let halves = cell.halves();
@@ -107,6 +109,9 @@ impl Cells {
     }
 }
 
+/// Slopes that differ by less than this in a cell are known well enough.
+const LEVEL: f64 = 0.05;
+
 /// Programs of at most this many leaves are evaluated at a point rather than narrowed.
 const FEW: usize = 4;
 
@@ -115,9 +120,9 @@ fn part(program: &Program, bounds: Bounds, share: f64, margin: f64) -> Part {
         Region::Inside => Part::Inside,
         Region::Outside => Part::Outside,
         Region::Surface(program) => {
-            let bend = program.bend();
+            let (bend, leaves) = (program.bend(), program.leaf_count());
             let (halves, slopes, tape) = (OnceLock::new(), OnceLock::new(), OnceLock::new());
-            Part::Cell(Box::new(Cell { bounds, program, bend, share, margin, halves, slopes, tape }))
+            Part::Cell(Box::new(Cell { bounds, program, bend, share, leaves, margin, halves, slopes, tape }))
         }
     }
 }
@@ -145,7 +150,18 @@ impl Cell {
 
     /// Ranges of the value's derivatives in the cell.
     pub(super) fn slopes(&self) -> &[Interval; 3] {
-        self.slopes.get_or_init(|| self.program.slopes(&self.bounds.inflate(self.margin)))
+        self.slopes.get_or_init(|| {
+            let whole = self.bounds.inflate(self.margin);
+            let slopes = self.program.slopes(&whole);
+            if self.leaves > 2 || slopes.iter().all(|slope| slope.width() < LEVEL) {
+                return slopes;
+            }
+            // The ranges of eight parts together are narrower.
+            let middle = whole.center();
+            let parts = whole.corners().map(|corner| self.program.slopes(&Bounds::from_corners(corner, middle)));
+            let hull = |axis: usize| parts.iter().map(|part| part[axis]).reduce(Interval::hull).unwrap_or(slopes[axis]);
+            [0, 1, 2].map(|axis| slopes[axis].narrowed_by(hull(axis)))
+        })
     }
 
     /// The program for bulk evaluation.

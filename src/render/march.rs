@@ -11,9 +11,9 @@
 //!      |  ___...--'               below 0, or the bounds on the slope do
 //! ```
 //!
-//! What is left open by the far end is looked at from the near end, in steps that cannot pass a
-//! crossing: up to where the tangents from both ends meet if g bends downwards (its value there
-//! bounds it), else as far as the bounds on the slope allow. A bracketed Newton iteration in
+//! Where g bends downwards, Newton's method from the near end never passes a crossing, and what
+//! takes it long is bounded by the tangents from both ends. Else what the far end leaves open is
+//! looked at from the near end in steps as long as the bounds on the slope allow. A bracketed Newton iteration in
 //! single precision and one step in double precision find the crossing. Signs of values within
 //! the rounding error of single precision are looked up in double precision; a ray that takes too
 //! many steps is divided by intervals (`eval::first_hit`).
@@ -22,8 +22,8 @@ use glam::{DVec3, Vec3};
 
 use super::cells::{Cell, Cells};
 use super::gbuffer::Surface;
-use crate::Hit;
-use crate::eval::{Bend, Evaluator, Gradients, first_hit};
+use crate::eval::{Bend, Evaluator, Gradients, Tape, first_hit};
+use crate::{Bounds, Interval};
 
 /// A ray under way.
 #[derive(Clone, Copy, Debug)]
@@ -50,7 +50,8 @@ pub(super) struct Span {
 /// span's near end.
 #[derive(Clone, Copy)]
 struct Lane {
-    span: Span,
+    /// The number of its span.
+    span: u32,
     start: [f32; 3],
     direction: [f32; 3],
     /// Turns the value into g.
@@ -70,17 +71,38 @@ struct Lane {
     probe: bool,
 }
 
+/// What the field is like where a lane is.
+#[derive(Clone, Copy)]
+struct Local {
+    /// The value, turned, and its slope along the ray.
+    g: f32,
+    s: f32,
+    /// The gradient of the value.
+    gradient: Vec3,
+}
+
 /// A crossing found in single precision.
 #[derive(Clone, Copy)]
 struct Found {
     lane: Lane,
     slope: f32,
-    normal: Vec3,
+    gradient: Vec3,
 }
 
 /// Steps of the searches, after which rays are divided by intervals.
-const SEARCH: usize = 24;
+const TANGENTS: usize = 8;
+const SEARCH: usize = 40;
 const NEWTON: usize = 16;
+
+/// Steps of a single ray in double precision.
+const ROUNDS: usize = 48;
+
+/// Fewer lanes than this are better off one by one: bulk evaluation costs as much for one as for
+/// a chunk of them.
+const FEW: usize = 5;
+
+/// After as many steps of a search.
+const SETTLED: usize = 10;
 
 /// A Newton step below this part of the cell's side is the last one in single precision.
 const LAST_STEP: f32 = 3e-4;
@@ -88,13 +110,24 @@ const LAST_STEP: f32 = 3e-4;
 /// Slopes in single precision are trusted to this part.
 const SLOPE_ERROR: f32 = 1e-3;
 
+/// Depths this exact, in proportion to the solid, need no step in double precision.
+const FINE: f64 = 6e-6;
+
+/// Crossings nearer to each other than this, in proportion to the solid, are one.
+const CLOSE: f64 = 4e-5;
+
+pub static CNT: [std::sync::atomic::AtomicU64; 12] = [const { std::sync::atomic::AtomicU64::new(0) }; 12];
+fn cnt(i: usize, n: usize) {
+    CNT[i].fetch_add(n as u64, std::sync::atomic::Ordering::Relaxed);
+}
 /// Scratch memory of a thread.
 #[derive(Default)]
 pub(super) struct Marcher {
     evaluator: Evaluator,
     single: [Vec<f32>; 7],
     double: [Vec<f64>; 4],
-    lanes: Vec<Lane>,
+    near: Vec<Lane>,
+    far: Vec<Lane>,
     search: Vec<Lane>,
     unique: Vec<Lane>,
     found: Vec<Found>,
@@ -105,48 +138,62 @@ pub(super) struct Marcher {
 
 impl Marcher {
     /// Marches the spans' rays through `cell`; what they hit goes to `surfaces`, by ray.
-    pub(super) fn march(&mut self, cells: &Cells, cell: &Cell, rays: &[Ray], spans: &[Span], surfaces: &mut [Surface]) {
+    pub(super) fn march(
+        &mut self,
+        cells: &Cells,
+        cell: &Cell,
+        rays: &[Ray],
+        spans: &[Span],
+        surfaces: &mut [Surface],
+    ) {
         self.hits.clear();
         self.open.clear();
         self.found.clear();
+        let job = Job::new(cells, cell, rays, spans);
+        cnt(0, 1);
+        cnt(1, spans.len());
+        self.load(&job);
+        self.near_ends(&job);
+        self.far_ends(&job);
+        cnt(2, self.search.len());
+        cnt(3, self.unique.len());
+        if cell.bend.is_some() {
+            self.search_bent(&job);
+        } else {
+            self.search_steep(&job);
+        }
+        cnt(4, self.open.len());
+        self.newton(&job);
+        cnt(5, self.open.len());
+        self.finish(&job, surfaces);
+        cnt(6, self.open.len());
+        for &Span { ray, near, far } in &self.open {
+            let Ray { origin, direction, base, .. } = rays[ray as usize];
+            let (near, far) = match job.tangents(ray, near, far) {
+                Outcome::Miss => continue,
+                Outcome::Between(before, after) => (before, after),
+                Outcome::Open => (near, far),
+            };
+            if let Some(hit) = first_hit(&cell.program, &job.reach, origin, direction, near, far) {
+                surfaces[ray as usize] =
+                    Surface { distance: base + hit.distance, normal: hit.normal.as_vec3(), owner: hit.owner };
+                self.hits.push(ray);
+            }
+        }
+    }
+
+    /// The lanes of the spans: those along which g bends downwards start at the near end.
+    fn load(&mut self, job: &Job<'_>) {
+        self.near.clear();
+        self.far.clear();
         self.search.clear();
         self.unique.clear();
-        let job = Job::new(cells, cell, rays);
-        self.load(&job, spans);
-        self.far_ends(&job);
-        if !self.search.is_empty() {
-            match cell.bend {
-                Some(_) => self.search_bent(&job),
-                None => self.search_steep(&job),
-            }
-        }
-        self.newton(&job);
-        self.polish(&job, surfaces);
-        for at in 0..self.open.len() {
-            let Span { ray, near, far } = self.open[at];
-            let Ray { origin, direction, .. } = rays[ray as usize];
-            if let Some(hit) = first_hit(&cell.program, &job.reach, origin, direction, near, far) {
-                self.settle(&job, ray, hit, surfaces);
-            }
-        }
-    }
-
-    fn settle(&mut self, job: &Job<'_>, ray: u32, hit: Hit, surfaces: &mut [Surface]) {
-        let Ray { base, .. } = job.rays[ray as usize];
-        surfaces[ray as usize] =
-            Surface { distance: base + hit.distance, normal: hit.normal.as_vec3(), owner: hit.owner };
-        self.hits.push(ray);
-    }
-
-    /// The lanes of the spans.
-    fn load(&mut self, job: &Job<'_>, spans: &[Span]) {
-        self.lanes.clear();
-        self.lanes.extend(spans.iter().map(|&span| {
+        for (number, span) in (0..).zip(job.spans) {
             let ray = &job.rays[span.ray as usize];
             let start = ray.origin + span.near * ray.direction - job.center;
             let len = (span.far - span.near) as f32;
-            Lane {
-                span,
+            let mut lane = Lane {
+                span: number,
                 start: start.as_vec3().to_array(),
                 direction: ray.direction.as_vec3().to_array(),
                 turn: if ray.inside { -1.0 } else { 1.0 },
@@ -156,252 +203,293 @@ impl Marcher {
                 s_left: 0.0,
                 g_right: 0.0,
                 s_right: 0.0,
-                at: len,
+                at: 0.0,
                 probe: false,
+            };
+            if job.bends(&lane) == Some(Bend::Concave) {
+                self.near.push(lane);
+            } else {
+                lane.at = len;
+                self.far.push(lane);
             }
-        }));
+        }
     }
 
-    /// Evaluates the first of the lists of lanes at `at`.
+    /// Evaluates lanes at `at`.
     fn evaluate(&mut self, job: &Job<'_>, lanes: &[Lane]) {
-        let [x, y, z, v, dx, dy, dz] = &mut self.single;
         let count = lanes.len();
-        for list in [&mut *x, &mut *y, &mut *z] {
-            list.clear();
-        }
-        for lane in lanes {
-            let [a, b, c] = lane.start;
-            let [d, e, f] = lane.direction;
-            x.push(a + lane.at * d);
-            y.push(b + lane.at * e);
-            z.push(c + lane.at * f);
-        }
-        for list in [&mut *v, &mut *dx, &mut *dy, &mut *dz] {
+        cnt(7, count);
+        cnt(8, count.div_ceil(256));
+        for list in &mut self.single {
             if list.len() < count {
                 list.resize(count, 0.0);
             }
         }
-        let out =
-            Gradients { value: &mut v[..count], dx: &mut dx[..count], dy: &mut dy[..count], dz: &mut dz[..count] };
-        self.evaluator.gradients(job.tape, x, y, z, out);
+        let [x, y, z, value, dx, dy, dz] = self.single.each_mut().map(|list| &mut list[..count]);
+        for (((lane, x), y), z) in lanes.iter().zip(&mut *x).zip(&mut *y).zip(&mut *z) {
+            *x = lane.start[0] + lane.at * lane.direction[0];
+            *y = lane.start[1] + lane.at * lane.direction[1];
+            *z = lane.start[2] + lane.at * lane.direction[2];
+        }
+        self.evaluator.gradients(job.tape, x, y, z, Gradients { value, dx, dy, dz });
     }
 
-    /// g, its slope along the ray and the gradient of the value for lane number `i`.
-    fn result(&self, i: usize, lane: &Lane) -> (f32, f32, Vec3) {
-        let [_, _, _, v, dx, dy, dz] = &self.single;
-        let gradient = Vec3::new(dx[i], dy[i], dz[i]);
-        let slope = gradient.dot(Vec3::from_array(lane.direction));
-        (lane.turn * v[i], lane.turn * slope, gradient)
+    /// Evaluates lanes at `at` and calls `visit` with each; those for which it gives `true` stay,
+    /// in their order.
+    fn sift(&mut self, job: &Job<'_>, lanes: &mut Vec<Lane>, mut visit: impl FnMut(&mut Lists<'_>, &mut Lane, Local) -> bool) {
+        self.evaluate(job, lanes);
+        let count = lanes.len();
+        let [_, _, _, value, dx, dy, dz] = self.single.each_ref().map(|list| &list[..count]);
+        let mut lists = Lists {
+            search: &mut self.search,
+            unique: &mut self.unique,
+            found: &mut self.found,
+            open: &mut self.open,
+        };
+        let mut kept = 0;
+        for i in 0..count {
+            let mut lane = lanes[i];
+            let gradient = Vec3::new(dx[i], dy[i], dz[i]);
+            let slope = gradient.dot(Vec3::from_array(lane.direction));
+            let local = Local { g: lane.turn * value[i], s: lane.turn * slope, gradient };
+            if visit(&mut lists, &mut lane, local) {
+                lanes[kept] = lane;
+                kept += 1;
+            }
+        }
+        lanes.truncate(kept);
     }
 
-    /// Sorts the lanes by what their far ends tell.
+    /// Lanes along which g bends downwards, from the near end: a step of Newton's never passes
+    /// the first crossing, and where the tangent does not meet 0 there is none.
+    fn near_ends(&mut self, job: &Job<'_>) {
+        let mut lanes = std::mem::take(&mut self.near);
+        for round in 0..TANGENTS {
+            if lanes.is_empty() || (round > 0 && lanes.len() < FEW) {
+                break;
+            }
+            self.sift(job, &mut lanes, |lists, lane, Local { g, s, gradient }| {
+                if g > job.doubt {
+                    (lane.right, lane.g_right, lane.s_right) = (lane.at, g, s);
+                    lane.aim(lane.at - g / s);
+                    lists.unique.push(*lane);
+                    return false;
+                }
+                let rise = s + SLOPE_ERROR * s.abs() + 1e-6;
+                let ahead = lane.right - lane.at;
+                if g + job.doubt + rise * ahead <= 0.0 {
+                    return false;
+                }
+                let step = -g / s;
+                if s > 0.0 && step.abs() <= job.last_step {
+                    if job.doubt > job.close * s {
+                        lists.open.push(job.span(lane));
+                        return false;
+                    }
+                    lane.at += step;
+                    lists.found.push(Found { lane: *lane, slope: s, gradient });
+                    return false;
+                }
+                (lane.left, lane.g_left, lane.s_left) = (lane.at, g, s);
+                if !(step > 0.0 && step < ahead) {
+                    // Nearly level: the far end tells more.
+                    lane.at = lane.right;
+                    lists.search.push(*lane);
+                    return false;
+                }
+                lane.at += step;
+                true
+            });
+        }
+        for lane in &mut lanes {
+            lane.at = lane.right;
+        }
+        self.search.append(&mut lanes);
+        if self.search.len() < FEW {
+            self.open.extend(self.search.drain(..).map(|lane| job.span(&lane)));
+        }
+        self.near = lanes;
+    }
+
+    /// Sorts the other lanes by what their far ends tell.
     fn far_ends(&mut self, job: &Job<'_>) {
-        let mut lanes = std::mem::take(&mut self.lanes);
-        self.evaluate(job, &lanes);
-        for (i, lane) in lanes.iter_mut().enumerate() {
-            let (mut g, s, _) = self.result(i, lane);
+        let mut lanes = std::mem::take(&mut self.far);
+        if lanes.is_empty() {
+            self.far = lanes;
+            return;
+        }
+        self.sift(job, &mut lanes, |lists, lane, Local { mut g, s, .. }| {
             if g.abs() <= job.doubt {
-                let inside = job.value(lane.span.ray, lane.span.far) > 0.0;
-                let crossed = inside != (lane.turn < 0.0);
+                cnt(9, 1);
+                let Span { ray, far, .. } = job.span(lane);
+                let crossed = (job.value(ray, far) > 0.0) != (lane.turn < 0.0);
                 g = if crossed { f32::MIN_POSITIVE } else { -f32::MIN_POSITIVE };
             }
             (lane.g_right, lane.s_right) = (g, s);
             let (lo, hi) = job.slopes(lane);
-            let rises = lo >= 0.0;
-            if g > 0.0 {
-                if rises || job.bend.is_some() {
-                    let newton = lane.right - g / s;
-                    lane.at = if newton > 0.0 && newton < lane.right { newton } else { 0.5 * lane.right };
-                    self.unique.push(*lane);
-                } else {
-                    lane.at = 0.0;
-                    self.search.push(*lane);
-                }
-                continue;
+            let one = lo >= 0.0 || job.bend.is_some();
+            if g > 0.0 && one {
+                lane.aim(lane.right - g / s);
+                lists.unique.push(*lane);
+            } else if g > 0.0 || !(one || hi <= 0.0) {
+                lane.at = 0.0;
+                lists.search.push(*lane);
             }
-            // What bends upwards lies below the chord of its ends.
-            let misses = rises || hi <= 0.0 || job.bends(lane) == Some(Bend::Convex);
-            if misses || (job.bends(lane) == Some(Bend::Concave) && s > SLOPE_ERROR) {
-                continue;
-            }
-            lane.at = 0.0;
-            self.search.push(*lane);
-        }
-        self.lanes = lanes;
+            false
+        });
+        self.far = lanes;
     }
 
-    /// Lanes along which g bends downwards, with both ends below 0.
+    /// Lanes along which g bends downwards and that are still below 0: where the tangents from
+    /// both ends meet, g is below them.
     fn search_bent(&mut self, job: &Job<'_>) {
         let mut lanes = std::mem::take(&mut self.search);
-        for _ in 0..SEARCH {
-            if lanes.is_empty() {
+        for round in 0..TANGENTS {
+            if lanes.is_empty() || (round > 0 && lanes.len() < FEW) {
                 break;
             }
-            self.evaluate(job, &lanes);
-            let mut kept = 0;
-            for i in 0..lanes.len() {
-                let mut lane = lanes[i];
-                let (g, s, _) = self.result(i, &lane);
+            self.sift(job, &mut lanes, |lists, lane, Local { g, s, .. }| {
                 if g > job.doubt {
-                    // Up once between the left end and here.
-                    lane.right = lane.at;
-                    (lane.g_right, lane.s_right) = (g, s);
-                    lane.at = (lane.at - g / s).max(lane.left);
-                    if !(lane.at < lane.right) {
-                        lane.at = 0.5 * (lane.left + lane.right);
-                    }
-                    self.unique.push(lane);
-                    continue;
+                    (lane.right, lane.g_right, lane.s_right) = (lane.at, g, s);
+                    lane.aim(lane.at - g / s);
+                    lists.unique.push(*lane);
+                    return false;
                 }
                 if g >= -job.doubt {
-                    self.open.push(lane.span);
-                    continue;
+                    lists.open.push(job.span(lane));
+                    return false;
                 }
-                if s > 0.0 || lane.g_left.is_nan() {
+                if s > 0.0 {
+                    if round == 0 {
+                        // It still rises at the far end.
+                        return false;
+                    }
                     (lane.left, lane.g_left, lane.s_left) = (lane.at, g, s);
                 } else {
                     (lane.right, lane.g_right, lane.s_right) = (lane.at, g, s);
                 }
-                let steep = |s: f32| s + SLOPE_ERROR * (s.abs() + 0.01);
-                let up = steep(lane.s_left);
-                let down = steep(-lane.s_right);
+                let steep = |s: f32| s + SLOPE_ERROR * s.abs() + 1e-6;
+                let (up, down) = (steep(lane.s_left), steep(-lane.s_right));
                 let width = lane.right - lane.left;
                 if up <= 0.0 || down <= 0.0 {
-                    continue;
+                    return false;
                 }
-                // Where the tangents meet, and their height there.
                 let ahead = ((lane.g_right - lane.g_left + down * width) / (up + down)).clamp(0.0, width);
                 if lane.g_left + up * ahead < -job.doubt {
-                    continue;
+                    return false;
                 }
-                if !(ahead > 1e-6 * width && ahead < width) {
-                    self.open.push(lane.span);
-                    continue;
+                if !(ahead > 1e-6 * width && ahead < width * (1.0 - 1e-6)) {
+                    lists.open.push(job.span(lane));
+                    return false;
                 }
                 lane.at = lane.left + ahead;
-                lanes[kept] = lane;
-                kept += 1;
-            }
-            lanes.truncate(kept);
+                true
+            });
         }
-        self.open.extend(lanes.iter().map(|lane| lane.span));
+        self.open.extend(lanes.iter().map(|lane| job.span(lane)));
         lanes.clear();
         self.search = lanes;
     }
 
-    /// Lanes along which only bounds of the slope are known.
+    /// Lanes along which only bounds of the slope are known: steps that cannot pass a crossing.
     fn search_steep(&mut self, job: &Job<'_>) {
         let mut lanes = std::mem::take(&mut self.search);
-        for _ in 0..SEARCH {
-            if lanes.is_empty() {
+        for round in 0..SEARCH {
+            if lanes.is_empty() || (round >= SETTLED && lanes.len() < FEW) {
                 break;
             }
-            self.evaluate(job, &lanes);
-            let mut kept = 0;
-            for i in 0..lanes.len() {
-                let mut lane = lanes[i];
-                let (g, s, _) = self.result(i, &lane);
-                let (lo, hi) = job.slopes(&lane);
+            self.sift(job, &mut lanes, |lists, lane, Local { g, s, .. }| {
                 if lane.probe {
                     lane.probe = false;
                     if g > job.doubt {
-                        lane.right = lane.at;
-                        (lane.g_right, lane.s_right) = (g, s);
-                        lane.at = 0.5 * (lane.left + lane.right);
-                        self.unique.push(lane);
-                        continue;
+                        (lane.right, lane.g_right, lane.s_right) = (lane.at, g, s);
+                        lane.aim(lane.at - g / s);
+                        lists.unique.push(*lane);
+                        return false;
                     }
-                    // Nothing is before `left`: on from there.
                     lane.at = lane.left;
-                    lanes[kept] = lane;
-                    kept += 1;
-                    continue;
+                    return true;
                 }
-                if !(g < -job.doubt && hi.is_finite()) {
-                    self.open.push(job.rest(&lane));
-                    continue;
-                }
-                // No crossing is nearer than the value allows.
+                let (lo, hi) = job.slopes(lane);
                 let safe = lane.at + (-g - job.doubt) / hi;
-                let end = if lane.g_right < 0.0 {
-                    lane.right - (-lane.g_right - job.doubt).max(0.0) / -lo
-                } else {
-                    lane.right
-                };
+                if !(g < -job.doubt && hi.is_finite() && safe > lane.at) {
+                    lists.open.push(job.rest(lane));
+                    return false;
+                }
+                let mut end = lane.right;
+                if lane.g_right < 0.0 {
+                    end -= (-lane.g_right - job.doubt).max(0.0) / -lo;
+                }
                 if safe >= end {
                     if lane.g_right > 0.0 {
-                        self.open.push(job.rest(&lane));
+                        lists.open.push(job.rest(lane));
                     }
-                    continue;
-                }
-                if safe <= lane.at {
-                    self.open.push(job.rest(&lane));
-                    continue;
+                    return false;
                 }
                 // A little beyond where the tangent meets 0, if no crossing that is nearer makes
                 // a difference.
                 let beyond = lane.at + (-1.05 * g + 4.0 * job.doubt) / s;
                 lane.left = safe;
-                lane.probe = s > 0.0 && beyond < lane.right && beyond - safe <= job.close;
+                lane.probe = s > 0.0 && beyond > safe && beyond < lane.right && beyond - safe <= job.close;
                 lane.at = if lane.probe { beyond } else { safe };
-                lanes[kept] = lane;
-                kept += 1;
-            }
-            lanes.truncate(kept);
+                true
+            });
         }
         self.open.extend(lanes.iter().map(|lane| job.rest(lane)));
         lanes.clear();
         self.search = lanes;
     }
-}
 
-impl Marcher {
     /// The crossings between `left` and `right`, where g changes its sign: Newton's method,
     /// halving where it leaves the bracket.
     fn newton(&mut self, job: &Job<'_>) {
         let mut lanes = std::mem::take(&mut self.unique);
-        for _ in 0..NEWTON {
-            if lanes.is_empty() {
+        for round in 0..NEWTON {
+            if lanes.is_empty() || (round >= SETTLED && lanes.len() < FEW) {
                 break;
             }
-            self.evaluate(job, &lanes);
-            let mut kept = 0;
-            for i in 0..lanes.len() {
-                let mut lane = lanes[i];
-                let (g, s, gradient) = self.result(i, &lane);
+            self.sift(job, &mut lanes, |lists, lane, Local { g, s, gradient }| {
                 if g < 0.0 {
                     lane.left = lane.left.max(lane.at);
                 } else {
                     lane.right = lane.right.min(lane.at);
                 }
                 let next = lane.at - g / s;
-                let step = (next - lane.at).abs();
-                if s > 0.0 && step <= job.last_step {
+                if s > 0.0 && (next - lane.at).abs() <= job.last_step {
                     lane.at = next;
-                    self.found.push(Found { lane, slope: s, normal: gradient });
-                    continue;
+                    lists.found.push(Found { lane: *lane, slope: s, gradient });
+                    return false;
                 }
                 if g.abs() <= job.doubt {
-                    self.open.push(lane.span);
-                    continue;
+                    lists.open.push(job.span(lane));
+                    return false;
                 }
-                lane.at = if s > 0.0 && next > lane.left && next < lane.right {
-                    next
-                } else {
-                    0.5 * (lane.left + lane.right)
-                };
-                lanes[kept] = lane;
-                kept += 1;
-            }
-            lanes.truncate(kept);
+                lane.aim(next);
+                true
+            });
         }
-        self.open.extend(lanes.iter().map(|lane| lane.span));
+        self.open.extend(lanes.iter().map(|lane| job.span(lane)));
         lanes.clear();
         self.unique = lanes;
     }
 
-    /// One step in double precision, and the surface.
-    fn polish(&mut self, job: &Job<'_>, surfaces: &mut [Surface]) {
+    /// The surfaces of the crossings, after one step in double precision where the rounding of
+    /// single precision would show.
+    fn finish(&mut self, job: &Job<'_>, surfaces: &mut [Surface]) {
+        let mut coarse = 0;
+        for at in 0..self.found.len() {
+            let found = self.found[at];
+            if job.doubt <= job.fine * found.slope {
+                self.surface(job, &found, 0.0, surfaces);
+            } else {
+                self.found[coarse] = found;
+                coarse += 1;
+            }
+        }
+        self.found.truncate(coarse);
+        if coarse == 0 {
+            return;
+        }
         let [x, y, z, v] = &mut self.double;
         for list in [&mut *x, &mut *y, &mut *z] {
             list.clear();
@@ -412,27 +500,56 @@ impl Marcher {
             y.push(p.y);
             z.push(p.z);
         }
-        let count = self.found.len();
-        if v.len() < count {
-            v.resize(count, 0.0);
-        }
-        self.evaluator.values_f64(job.tape, x, y, z, &mut v[..count]);
-        for (found, v) in self.found.iter().zip(&*v) {
-            let Found { lane, slope, normal } = *found;
-            let Span { ray, near, far } = lane.span;
-            let step = -f64::from(lane.turn) * v / f64::from(slope);
-            let t = near + f64::from(lane.at) + step;
-            let Ray { origin, direction, base, .. } = job.rays[ray as usize];
-            let outward = (-normal).normalize_or_zero();
-            if !(step.abs() <= job.far_off && outward != Vec3::ZERO) {
-                self.open.push(lane.span);
-                continue;
+        v.resize(coarse, 0.0);
+        self.evaluator.values_f64(job.tape, x, y, z, v);
+        for at in 0..coarse {
+            let found = self.found[at];
+            let step = -f64::from(found.lane.turn) * self.double[3][at] / f64::from(found.slope);
+            if step.abs() <= job.far_off {
+                self.surface(job, &found, step, surfaces);
+            } else {
+                self.open.push(job.span(&found.lane));
             }
-            let t = t.clamp(near, far);
-            let owner = job.owner.unwrap_or_else(|| job.cell.program.deciding_leaf(origin + t * direction));
-            surfaces[ray as usize] = Surface { distance: base + t, normal: outward, owner };
-            self.hits.push(ray);
         }
+    }
+
+    fn surface(&mut self, job: &Job<'_>, found: &Found, step: f64, surfaces: &mut [Surface]) {
+        let Span { ray, near, far } = job.span(&found.lane);
+        let Ray { origin, direction, base, .. } = job.rays[ray as usize];
+        let t = (near + f64::from(found.lane.at) + step).clamp(near, far);
+        let normal = -found.gradient * found.gradient.length_recip();
+        if !normal.is_finite() {
+            self.open.push(job.span(&found.lane));
+            return;
+        }
+        let owner = job.owner.unwrap_or_else(|| job.cell.program.deciding_leaf(origin + t * direction));
+        surfaces[ray as usize] = Surface { distance: base + t, normal, owner };
+        self.hits.push(ray);
+    }
+}
+
+/// What the tangents tell.
+enum Outcome {
+    Miss,
+    /// A crossing, and no other, between these distances.
+    Between(f64, f64),
+    Open,
+}
+
+/// Where lanes go from a step.
+struct Lists<'a> {
+    search: &'a mut Vec<Lane>,
+    unique: &'a mut Vec<Lane>,
+    found: &'a mut Vec<Found>,
+    open: &'a mut Vec<Span>,
+}
+
+impl Lane {
+    /// Goes to `next`, or to the middle of the bracket if that is not in it.
+    #[inline(always)]
+    fn aim(&mut self, next: f32) {
+        let within = next > self.left && next < self.right;
+        self.at = if within { next } else { 0.5 * (self.left + self.right) };
     }
 }
 
@@ -440,9 +557,10 @@ impl Marcher {
 struct Job<'a> {
     cell: &'a Cell,
     rays: &'a [Ray],
-    tape: &'a crate::eval::Tape,
+    spans: &'a [Span],
+    tape: &'a Tape,
     center: DVec3,
-    reach: crate::Bounds,
+    reach: Bounds,
     bend: Option<Bend>,
     owner: Option<u32>,
     /// Lower and upper bounds of the three derivatives, rounding allowed for.
@@ -451,21 +569,24 @@ struct Job<'a> {
     /// Values this small may have the wrong sign.
     doubt: f32,
     last_step: f32,
-    /// Crossings nearer to each other than this are one.
     close: f32,
+    fine: f32,
     far_off: f64,
+    size: f64,
 }
 
 impl<'a> Job<'a> {
-    fn new(cells: &Cells, cell: &'a Cell, rays: &'a [Ray]) -> Job<'a> {
+    fn new(cells: &Cells, cell: &'a Cell, rays: &'a [Ray], spans: &'a [Span]) -> Job<'a> {
         let tape = cell.tape();
-        let slopes = cell.slopes();
+        // How a value bends tells more.
+        let slopes = if cell.bend.is_some() { &[Interval::ALL; 3] } else { cell.slopes() };
         let reach = cells.reach();
         let size = reach.longest_side();
         let outward = |v: f64, by: f64| (v + by * (1e-6 * v.abs() + 1e-12)) as f32;
         Job {
             cell,
             rays,
+            spans,
             tape,
             center: tape.origin(),
             reach,
@@ -475,8 +596,10 @@ impl<'a> Job<'a> {
             most: slopes.map(|s| outward(s.hi(), 1.0)),
             doubt: tape.roundoff() as f32,
             last_step: LAST_STEP * cell.side() as f32,
-            close: 4e-6 * size as f32,
+            close: (CLOSE * size) as f32,
+            fine: (FINE * size) as f32,
             far_off: (1e-3 * cell.side()).min(1e-4 * size),
+            size,
         }
     }
 
@@ -488,8 +611,9 @@ impl<'a> Job<'a> {
 
     /// The point where the lane is.
     fn point(&self, lane: &Lane) -> DVec3 {
-        let Ray { origin, direction, .. } = self.rays[lane.span.ray as usize];
-        origin + (lane.span.near + f64::from(lane.at)) * direction
+        let Span { ray, near, .. } = self.spans[lane.span as usize];
+        let Ray { origin, direction, .. } = self.rays[ray as usize];
+        origin + (near + f64::from(lane.at)) * direction
     }
 
     /// Bounds of the slope of g along the ray.
@@ -511,8 +635,51 @@ impl<'a> Job<'a> {
         self.bend.map(|bend| if lane.turn < 0.0 { bend.turned() } else { bend })
     }
 
+    /// A ray along which g bends downwards, in double precision: by Newton's method from the near
+    /// end, which never passes the first crossing.
+    fn tangents(&self, ray: u32, near: f64, far: f64) -> Outcome {
+        let Ray { origin, direction, inside, .. } = self.rays[ray as usize];
+        let (turn, wanted) = if inside { (-1.0, Bend::Convex) } else { (1.0, Bend::Concave) };
+        if self.bend != Some(wanted) {
+            return Outcome::Open;
+        }
+        let at = |t: f64| {
+            let (value, gradient) = self.cell.program.gradient(origin + t * direction);
+            (turn * value, turn * gradient.dot(direction))
+        };
+        let mut t = near;
+        for _ in 0..ROUNDS {
+            let (g, s) = at(t);
+            if g >= 0.0 {
+                // Rounding has put it a hair beyond.
+                let before = (t - 1e-6 * self.size).max(near);
+                return if at(before).0 < 0.0 { Outcome::Between(before, t) } else { Outcome::Open };
+            }
+            let next = t - g / s;
+            if s <= 0.0 || next > far {
+                return Outcome::Miss;
+            }
+            if next - t <= 1e-9 * self.size {
+                let after = (next + (next - t) + 1e-12 * self.size).min(far);
+                if at(after).0 > 0.0 {
+                    return Outcome::Between(t, after);
+                }
+            }
+            if next <= t {
+                return Outcome::Open;
+            }
+            t = next;
+        }
+        Outcome::Open
+    }
+
+    fn span(&self, lane: &Lane) -> Span {
+        self.spans[lane.span as usize]
+    }
+
     /// What of the lane's span nothing is known of.
     fn rest(&self, lane: &Lane) -> Span {
-        Span { near: lane.span.near + f64::from(lane.left), ..lane.span }
+        let span = self.span(lane);
+        Span { near: span.near + f64::from(lane.left), ..span }
     }
 }

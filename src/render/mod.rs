@@ -26,4 +26,6 @@ pub use gbuffer::{GBuffer, Surface, Window};
 pub use layers::Layers;
 pub use scene::Scene;
 pub use settings::{Background, Lights, RenderError, RenderSettings, Style, Transfer};
+#[doc(hidden)]
+pub use march::CNT;
 pub use slice::{Isolines, Slice, SliceSettings};

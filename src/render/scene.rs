@@ -1,5 +1,7 @@
 //! A solid prepared for rays, once for any number of cameras.
 
+use std::cell::RefCell;
+
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::OnceLock;
@@ -17,7 +19,11 @@ use crate::{Bounds, Cancelled, Hit, Palette, Rays, Run, Solid};
 const HAIR: f64 = 1e-7;
 
 /// Rays of a packet.
-const PACKET: usize = 1024;
+const PACKET: usize = 8192;
+
+thread_local! {
+    static TRACER: RefCell<Tracer> = RefCell::default();
+}
 
 /// A solid prepared for rays: the space around it divided into what is inside, what is
 /// outside and cells that the surface may cross.
@@ -110,7 +116,8 @@ impl Scene {
     #[must_use]
     pub fn first_hit(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
         let mut found = [Surface::NONE];
-        Tracer::default().list(self.cells.as_ref()?, &[(origin, direction)], &mut found);
+        let cells = self.cells.as_ref()?;
+        TRACER.with_borrow_mut(|tracer| tracer.list(cells, &[(origin, direction)], &mut found));
         let Surface { distance, normal, owner } = found[0];
         let point = origin + distance * direction;
         found[0].is_hit().then_some(Hit { distance, point, normal: normal.as_dvec3(), owner })
@@ -123,7 +130,7 @@ impl Scene {
         let mut found = vec![Surface::NONE; rays.len()];
         if let Some(cells) = &self.cells {
             let packets = found.par_chunks_mut(PACKET).zip(rays.par_chunks(PACKET));
-            packets.for_each_init(Tracer::default, |tracer, (found, rays)| tracer.list(cells, rays, found));
+            packets.for_each(|(found, rays)| TRACER.with_borrow_mut(|tracer| tracer.list(cells, rays, found)));
         }
         found
     }
@@ -159,15 +166,15 @@ impl Scene {
                 let (width, height) = (TILE.min(window.width - x), TILE.min(window.height - y));
                 Window { left: window.left + x, top: window.top + y, width, height, ..window }
             };
-            let traced = |tracer: &mut Tracer, column: u32| {
+            let traced = |column: u32| {
                 run.check()?;
-                let found = tracer.tile(cells, &view, tile(column));
+                let found = TRACER.with_borrow_mut(|tracer| tracer.tile(cells, &view, tile(column)));
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                 run.report(f64::from(done) / f64::from(across * down));
                 Ok(found)
             };
             let tiles: Result<Vec<_>, Cancelled> =
-                (0..across).into_par_iter().map_init(Tracer::default, traced).collect();
+                (0..across).into_par_iter().map(traced).collect();
             for (column, found) in (0..).zip(tiles?) {
                 let Window { width, .. } = tile(column);
                 let rows = surfaces.chunks_mut(window.width as usize).zip(found.chunks(width as usize));

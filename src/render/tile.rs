@@ -13,7 +13,7 @@ use glam::DVec3;
 use super::cells::{Cell, Cells, Part};
 use super::gbuffer::{Surface, Window};
 use super::march::{Marcher, Ray, Span};
-use crate::{Bounds, Rays};
+use crate::{Bounds, Interval, Rays};
 
 /// Pixels along a tile's side: the bits of a word.
 pub(super) const TILE: u32 = 64;
@@ -25,6 +25,17 @@ pub(super) struct Tracer {
     rays: Vec<Ray>,
     spans: Vec<Span>,
 }
+
+/// What the rays of a packet have in common.
+#[derive(Clone, Copy)]
+struct Sheaf {
+    /// The least and the greatest of their directions' components.
+    low: DVec3,
+    high: DVec3,
+    /// Whether any of them starts inside the solid.
+    inside: bool,
+}
+
 
 /// The rays of a tile that are still under way, a word a row.
 struct Alive([u64; TILE as usize]);
@@ -45,13 +56,20 @@ impl Tracer {
         let mut alive = Alive([0; TILE as usize]);
         self.rays.clear();
         let bounds = cells.bounds();
+        let mut sheaf = Sheaf::EMPTY;
+        let seen = view.rectangle(bounds, &tile);
         for y in 0..tile.height {
             for x in 0..tile.width {
+                if !seen.is_some_and(|seen| seen.contains(x, y)) {
+                    self.rays.push(Ray::NONE);
+                    continue;
+                }
                 let (origin, direction) = tile.ray(view.rays, x, y);
                 let (ray, enters) = entering(cells, bounds, origin, direction, view.inside);
                 self.rays.push(ray);
                 if enters {
                     alive.0[y as usize] |= 1 << x;
+                    sheaf.add(&ray);
                 }
             }
         }
@@ -63,7 +81,12 @@ impl Tracer {
             if count == 0 {
                 continue;
             }
-            if divides(cell, count) {
+            let slope = sheaf.slope(cell);
+            if !sheaf.inside && slope.hi() <= 0.0 {
+                // Seen from behind.
+                continue;
+            }
+            if divides(cell, count, slope) {
                 let halves = cell.halves();
                 let above = view.looks_up(halves.axis, halves.plane);
                 let [near, far] = if above { [0, 1] } else { [1, 0] };
@@ -113,6 +136,8 @@ impl Tracer {
         let mut done = vec![false; rays.len()];
         for (octant, list) in octants.into_iter().enumerate() {
             // Cells with the rays that may pass them: the list's tail from `first`.
+            let mut sheaf = Sheaf::EMPTY;
+            list.iter().for_each(|&ray| sheaf.add(&self.rays[ray as usize]));
             let mut lists = list;
             let mut pending: Vec<(&Cell, usize, usize)> = vec![(root, 0, lists.len())];
             while let Some((cell, first, end)) = pending.pop() {
@@ -129,7 +154,11 @@ impl Tracer {
                 if self.spans.is_empty() {
                     continue;
                 }
-                if divides(cell, self.spans.len()) {
+                let slope = sheaf.slope(cell);
+                if !sheaf.inside && slope.hi() <= 0.0 {
+                    continue;
+                }
+                if divides(cell, self.spans.len(), slope) {
                     let halves = cell.halves();
                     let [near, far] = if octant >> halves.axis & 1 == 0 { [0, 1] } else { [1, 0] };
                     let first = lists.len();
@@ -211,9 +240,43 @@ impl Alive {
     }
 }
 
+impl Rectangle {
+    fn contains(&self, x: u32, y: u32) -> bool {
+        (self.top..self.bottom).contains(&(y as usize)) && self.columns >> x & 1 == 1
+    }
+}
+
+impl Sheaf {
+    const EMPTY: Sheaf = Sheaf { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY, inside: false };
+
+    fn add(&mut self, ray: &Ray) {
+        self.low = self.low.min(ray.direction);
+        self.high = self.high.max(ray.direction);
+        self.inside |= ray.inside;
+    }
+
+    /// The slopes of the value that the rays may find in a cell; all, of a cell whose slopes are
+    /// not worth knowing.
+    fn slope(&self, cell: &Cell) -> Interval {
+        if cell.bend.is_some() || cell.leaves > MANY || cell.share > COARSE {
+            return Interval::ALL;
+        }
+        let slopes = cell.slopes();
+        let along = |axis: usize| slopes[axis] * Interval::new(self.low[axis], self.high[axis]);
+        along(0) + along(1) + along(2)
+    }
+}
+
+impl Ray {
+    /// Of a pixel that sees nothing.
+    const NONE: Ray =
+        Ray { origin: DVec3::ZERO, direction: DVec3::ZERO, inverse: DVec3::ZERO, base: 0.0, inside: false };
+}
+
 /// A ray made ready, and whether it meets the box of all cells.
 fn entering(cells: &Cells, bounds: &Bounds, origin: DVec3, direction: DVec3, inside: Option<bool>) -> (Ray, bool) {
-    let inverse = direction.recip();
+    // A number instead of infinity, so that planes at a distance of 0 stay there.
+    let inverse = direction.recip().clamp(DVec3::splat(-STEEPEST), DVec3::splat(STEEPEST));
     let mut ray = Ray { origin, direction, inverse, base: 0.0, inside: false };
     let Some((near, _)) = span(bounds, &ray) else { return (ray, false) };
     if near > 0.0 {
@@ -228,38 +291,47 @@ fn entering(cells: &Cells, bounds: &Bounds, origin: DVec3, direction: DVec3, ins
 
 /// The part of a ray in a box. Two boxes that share a face share the distance to its plane, to
 /// the bit.
-#[inline]
+#[inline(always)]
 fn span(bounds: &Bounds, ray: &Ray) -> Option<(f64, f64)> {
     let (mut near, mut far) = (0.0f64, f64::INFINITY);
     for axis in 0..3 {
         let (o, inverse) = (ray.origin[axis], ray.inverse[axis]);
-        let (low, high) = (bounds.min[axis], bounds.max[axis]);
-        if inverse.is_infinite() {
-            // Along the planes: those below belong to the box.
-            if !(low <= o && o < high) {
-                return None;
-            }
-            continue;
-        }
-        let (a, b) = ((low - o) * inverse, (high - o) * inverse);
-        near = near.max(a.min(b));
-        far = far.min(a.max(b));
+        let (a, b) = ((bounds.min[axis] - o) * inverse, (bounds.max[axis] - o) * inverse);
+        let (a, b) = if a < b { (a, b) } else { (b, a) };
+        near = if a > near { a } else { near };
+        far = if b < far { b } else { far };
     }
     (near < far).then_some((near, far))
 }
 
-/// Cells of one leaf whose value bends one way are divided down to this part of the whole.
-const PLAIN: f64 = 1.0 / 8.0;
+/// The inverse of a direction's component is at most this: a ray along a plane then passes the
+/// box on one side of it from end to end, and that on the other not at all.
+const STEEPEST: f64 = 1e200;
 
-/// Whether `count` rays are better off in the halves of a cell.
-fn divides(cell: &Cell, count: usize) -> bool {
-    let share = cell.share;
-    let leaves = cell.program.leaf_count();
-    if leaves == 1 && cell.bend.is_some() {
+/// Cells of one leaf whose value bends one way are divided down to this part of the whole.
+const PLAIN: f64 = 0.5;
+
+/// The slopes of larger cells are hardly ever of one sign.
+const COARSE: f64 = 0.2;
+
+/// Nor are those of cells with more leaves.
+const MANY: usize = 8;
+
+/// No cell is divided below this part of the whole.
+const FINEST: f64 = 1.0 / 4096.0;
+
+/// Whether `count` rays are better off in the halves of a cell, where `slope` is what they may
+/// find.
+fn divides(cell: &Cell, count: usize, slope: Interval) -> bool {
+    let Cell { share, leaves, bend, .. } = *cell;
+    let bent = bend.is_some();
+    if bent && leaves == 1 {
         return share > PLAIN;
     }
-    if leaves == 1 {
-        return share > 1.0 / 16.0 || (count > 512 && share > 1.0 / 256.0);
+    if share > COARSE || leaves > MANY {
+        return share > FINEST;
     }
-    share > 1.0 / 512.0 && count.max(32) * leaves > 512
+    let one_way = bent || slope.lo() >= 0.0 || slope.hi() <= 0.0;
+    let cost = count * leaves;
+    share > FINEST && if one_way { cost > 2048 && leaves > 1 } else { cost > 128 }
 }

@@ -5,6 +5,8 @@
 //! program that is narrowed already. Work is proportional to the surface, and to the leaves
 //! that matter locally.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -50,6 +52,11 @@ impl Part {
         [self.to[0] - self.from[0], self.to[1] - self.from[1], self.to[2] - self.from[2]]
     }
 
+    /// How many blocks it has: fewer than 2⁴⁴ cells' worth.
+    fn volume(&self) -> u64 {
+        self.size().map(u64::from).iter().product()
+    }
+
     /// The two halves along the longest side; the upper one has the odd block.
     fn halves(self) -> [Part; 2] {
         let size = self.size();
@@ -65,49 +72,76 @@ impl Part {
     }
 }
 
-/// The blocks of `grid` that the surface may cross, in an order that does not depend on the
-/// number of threads. Every block grown by `margin` length units on each side is narrowed as
-/// a whole.
+/// The blocks of `grid` that the surface may cross, in the order of the halvings: blocks that
+/// follow each other are near each other, and often have one program. Every block grown by
+/// `margin` length units on each side is narrowed as a whole. The order does not depend on the
+/// number of threads.
 pub(crate) fn surface_blocks(program: &Program, grid: &Grid, margin: f64, run: &Run) -> Result<Vec<Block>, Cancelled> {
     let root = Part { from: [0; 3], to: grid.blocks, program: program.clone() };
+    let meter = Meter { run, done: AtomicU64::new(0), total: root.volume() };
     // Breadth first until there is work for every thread, then depth first in each part.
     let mut parts = vec![root];
     let wanted = 64 * rayon::current_num_threads().max(1);
     let mut divided = true;
     while divided && parts.len() < wanted {
-        run.check()?;
         divided = false;
         let mut next = Vec::new();
         for part in parts {
+            run.check()?;
             if part.size() == [1; 3] {
                 next.push(part);
                 continue;
             }
             divided = true;
-            next.extend(narrowed(part, grid, margin).into_iter().flat_map(Part::halves));
+            let volume = part.volume();
+            match narrowed(part, grid, margin) {
+                Some(part) => next.extend(part.halves()),
+                None => meter.add(volume),
+            }
         }
         parts = next;
     }
     let found: Result<Vec<Vec<Block>>, Cancelled> =
-        parts.into_par_iter().map(|part| descend(part, grid, margin, run)).collect();
-    let mut blocks: Vec<Block> = found?.into_iter().flatten().collect();
-    blocks.sort_by_key(|block| (block.index[2], block.index[1], block.index[0]));
+        parts.into_par_iter().map(|part| descend(part, grid, margin, &meter)).collect();
+    run.report(1.0);
+    let found = found?;
+    let mut blocks = Vec::with_capacity(found.iter().map(Vec::len).sum());
+    found.into_iter().for_each(|list| blocks.extend(list));
     Ok(blocks)
 }
 
-fn descend(part: Part, grid: &Grid, margin: f64, run: &Run) -> Result<Vec<Block>, Cancelled> {
+fn descend(part: Part, grid: &Grid, margin: f64, meter: &Meter<'_>) -> Result<Vec<Block>, Cancelled> {
     let mut blocks = Vec::new();
     let mut pending = vec![part];
     while let Some(part) = pending.pop() {
-        run.check()?;
-        let Some(part) = narrowed(part, grid, margin) else { continue };
-        if part.size() == [1; 3] {
-            blocks.push(Block { index: part.from, program: part.program });
-        } else {
-            pending.extend(part.halves());
+        meter.run.check()?;
+        let (volume, single) = (part.volume(), part.size() == [1; 3]);
+        match narrowed(part, grid, margin) {
+            Some(part) if !single => {
+                let [below, above] = part.halves();
+                pending.extend([above, below]);
+            }
+            found => {
+                blocks.extend(found.map(|part| Block { index: part.from, program: part.program }));
+                meter.add(volume);
+            }
         }
     }
     Ok(blocks)
+}
+
+/// Counts the blocks that are decided.
+struct Meter<'a> {
+    run: &'a Run,
+    done: AtomicU64,
+    total: u64,
+}
+
+impl Meter<'_> {
+    fn add(&self, blocks: u64) {
+        let done = self.done.fetch_add(blocks, Ordering::Relaxed) + blocks;
+        self.run.report(done as f64 / self.total as f64);
+    }
 }
 
 /// The part with the program narrowed to it, if the surface may cross it.

@@ -1,0 +1,108 @@
+//! Meshing beside fidget-mesh on the models M1 to M6, and how it scales.
+//!
+//! `cargo bench --bench mesh` prints, on one thread and on two: seconds (of the processor on one
+//! thread, of the clock on two; the least of several runs), triangles, millions of triangles a
+//! second, the peak of memory during the run, and how many times faster than fidget's VM on the
+//! same model, box and number of cells, in the same run. Ours is `Smooth`: marching cubes,
+//! with welded indices and normals; fidget's is manifold dual contouring without normals.
+//!
+//! Then come extraction alone, from arrays of 257³ samples, and scale: a sphere at 1024³ and
+//! 2048³, a ball of gyroid at 512³, unions of 100 and of 10 000 superellipsoids at 256³.
+//!
+//! Words after `--` choose: `models`, `arrays`, `scale`; names of models, cells along the side
+//! (64, 128, 256), `one` or `two` threads; `fidget` for fidget on all models, also where it takes
+//! minutes, `alone` for ours without fidget.
+
+#[path = "evaluate/lean.rs"]
+mod lean;
+#[path = "mesh/measure.rs"]
+mod measure;
+#[path = "../tests/it/models.rs"]
+mod models;
+#[path = "mesh/peer.rs"]
+mod peer;
+#[path = "mesh/scale.rs"]
+mod scale;
+#[path = "mesh/volume.rs"]
+mod volume;
+
+use rvachev::{CellSize, MeshSettings, Run};
+
+use measure::{Cost, measured};
+use models::Model;
+
+/// What the words on the command line choose.
+struct Chosen {
+    words: Vec<String>,
+}
+
+impl Chosen {
+    /// Whether a word of a group is among the words, or none of the group is.
+    fn takes(&self, word: &str, group: &[&str]) -> bool {
+        self.has(word) || !group.iter().any(|other| self.has(other))
+    }
+
+    fn has(&self, word: &str) -> bool {
+        self.words.iter().any(|other| other == word)
+    }
+}
+
+fn ours(model: &Model, cells: u32, threads: usize) -> (Cost, usize) {
+    let cell = CellSize::Length(2.0 * model.half / f64::from(cells));
+    let settings = MeshSettings { cell, bounds: Some(model.cube()), ..MeshSettings::default() };
+    let run = Run { threads, ..Run::default() };
+    measured(threads, || model.solid.mesh_with(&settings, &run).expect("a model").triangles().len())
+}
+
+fn row(name: &str, cells: u32, threads: usize, who: &str, cost: Cost, triangles: usize, ratio: Option<f64>) {
+    let Cost { seconds, megabytes } = cost;
+    let rate = triangles as f64 / seconds * 1e-6;
+    let ratio = ratio.map_or(String::new(), |ratio| format!("{ratio:8.1} x"));
+    println!(
+        "{name:4} {cells:4}³ {threads:2} {who:8} {seconds:9.4} s {triangles:9} {rate:8.2} Mtri/s {megabytes:7.1} MB{ratio}"
+    );
+}
+
+/// Whether fidget takes more than some ten seconds.
+fn is_slow(name: &str, cells: u32) -> bool {
+    match name {
+        "M3" => cells > 128,
+        "M4" => cells > 128,
+        "M5" => true,
+        _ => false,
+    }
+}
+
+fn main() {
+    let chosen = Chosen { words: std::env::args().skip(1).collect() };
+    const NAMES: [&str; 6] = ["M1", "M2", "M3", "M4", "M5", "M6"];
+    const CELLS: [&str; 3] = ["64", "128", "256"];
+    const THREADS: [&str; 2] = ["one", "two"];
+    const PARTS: [&str; 3] = ["models", "arrays", "scale"];
+    if chosen.takes("arrays", &PARTS) {
+        volume::rows();
+    }
+    if chosen.takes("scale", &PARTS) {
+        for threads in (1..=2).filter(|&threads| chosen.takes(THREADS[threads - 1], &THREADS)) {
+            scale::rows(threads);
+        }
+    }
+    if !chosen.takes("models", &PARTS) {
+        return;
+    }
+    for model in models::all().into_iter().filter(|model| chosen.takes(model.name, &NAMES)) {
+        for cells in CELLS.into_iter().filter(|cells| chosen.takes(cells, &CELLS)) {
+            let cells: u32 = cells.parse().expect("a number");
+            for threads in (1..=2).filter(|&threads| chosen.takes(THREADS[threads - 1], &THREADS)) {
+                let mine = ours(&model, cells, threads);
+                let skipped = chosen.has("alone") || is_slow(model.name, cells) && !chosen.has("fidget");
+                let other = (!skipped).then(|| peer::fidget(&model, cells.ilog2(), threads));
+                let ratio = other.map(|(cost, _)| cost.seconds / mine.0.seconds);
+                row(model.name, cells, threads, "ours", mine.0, mine.1, ratio);
+                if let Some((cost, triangles)) = other {
+                    row(model.name, cells, threads, "fidget", cost, triangles, None);
+                }
+            }
+        }
+    }
+}

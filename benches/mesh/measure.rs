@@ -1,0 +1,55 @@
+//! Time, threads and memory of a job.
+
+use std::fs;
+use std::time::Instant;
+
+use cpu_time::ProcessTime;
+
+/// What a job took.
+#[derive(Clone, Copy)]
+pub struct Cost {
+    /// The least seconds of all runs: of the processor on one thread, of the clock on more.
+    pub seconds: f64,
+    /// The most memory in use during a run beyond what was before, in MB; NaN where the system
+    /// does not tell.
+    pub megabytes: f64,
+}
+
+/// Runs a job on a pool of some threads, several times if it is short, and gives its cost and
+/// its result.
+pub fn measured<T: Send>(threads: usize, mut job: impl FnMut() -> T + Send) -> (Cost, T) {
+    /// Seconds to spend at least, and runs at most.
+    const TURN: f64 = 2.0;
+    const RUNS: usize = 15;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+    pool.install(|| {
+        let before = memory("VmRSS:");
+        // Starts the peak afresh.
+        let _ = fs::write("/proc/self/clear_refs", "5");
+        let (mut seconds, mut spent) = (f64::INFINITY, 0.0);
+        let mut megabytes = f64::NAN;
+        let mut runs = 0;
+        loop {
+            let (clock, processor) = (Instant::now(), ProcessTime::now());
+            let result = job();
+            let (clock, processor) = (clock.elapsed().as_secs_f64(), processor.elapsed().as_secs_f64());
+            seconds = seconds.min(if threads == 1 { processor } else { clock });
+            spent += clock;
+            runs += 1;
+            if runs == 1 {
+                megabytes = memory("VmHWM:") - before;
+            }
+            if spent > TURN || runs == RUNS {
+                return (Cost { seconds, megabytes }, result);
+            }
+        }
+    })
+}
+
+/// A line of the process's status, in MB.
+fn memory(name: &str) -> f64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix(name));
+    let kilobytes = line.and_then(|rest| rest.trim().trim_end_matches(" kB").parse::<f64>().ok());
+    kilobytes.map_or(f64::NAN, |kilobytes| kilobytes / 1024.0)
+}

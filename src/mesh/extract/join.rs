@@ -1,0 +1,305 @@
+//! The second pass: the blocks' vertices in one list, and triangles between them.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use super::neighbours::Neighbours;
+use super::samples::{Samples, cell_number};
+use super::sharp::{self, Fan, Fans};
+use super::{BATCH, Batch, ExtractError, Meter, Part, Sampler};
+use crate::geom::Mesh;
+use crate::mesh::Features;
+use crate::mesh::lattice::Lattice;
+use crate::mesh::signs::{BLOCK, SIDE, for_each_cell, is_mixed};
+use crate::mesh::table::{CaseTable, EDGE_CORNERS, edge_axis};
+use crate::run::{Cancelled, Run};
+
+/// All blocks after the first pass.
+pub(super) struct Parts<'a> {
+    pub(super) blocks: &'a [[u32; 3]],
+    pub(super) neighbours: Neighbours,
+    /// In batches, as they were sampled.
+    parts: Vec<Vec<Part>>,
+    positions: Vec<Vec<Vec3>>,
+    normals: Vec<Vec<Vec3>>,
+    vertices: usize,
+}
+
+impl<'a> Parts<'a> {
+    /// Numbers the vertices.
+    pub(super) fn new(
+        blocks: &'a [[u32; 3]],
+        neighbours: Neighbours,
+        batches: Vec<Batch>,
+    ) -> Result<Parts<'a>, ExtractError> {
+        let count: u64 = batches.iter().map(|batch| batch.positions.len() as u64).sum();
+        if count > u64::from(u32::MAX) {
+            return Err(ExtractError::TooLarge { count });
+        }
+        let mut all = Parts {
+            blocks,
+            neighbours,
+            parts: Vec::with_capacity(batches.len()),
+            positions: Vec::with_capacity(batches.len()),
+            normals: Vec::with_capacity(batches.len()),
+            vertices: count as usize,
+        };
+        let mut start = 0;
+        for Batch { mut parts, positions, normals } in batches {
+            for part in &mut parts {
+                part.first += start;
+            }
+            start += positions.len() as u32;
+            all.parts.push(parts);
+            all.positions.push(positions);
+            all.normals.push(normals);
+        }
+        Ok(all)
+    }
+
+    pub(super) fn part(&self, n: usize) -> &Part {
+        &self.parts[n / BATCH][n % BATCH]
+    }
+
+    /// Checks that wherever a face has both signs there is a block on its other side, and
+    /// that the two agree. It follows that every cell around a crossed edge is in a block,
+    /// and every vertex in the list of its owner.
+    pub(super) fn check_faces(&self) -> Result<(), ExtractError> {
+        (0..self.blocks.len()).into_par_iter().try_for_each(|n| {
+            let block = self.blocks[n];
+            let error = |what| Err(ExtractError::Blocks { block, what });
+            let signs = &self.part(n).signs;
+            for axis in 0..3 {
+                let ours = signs.face(axis, true);
+                match self.neighbours.upper(n, 1 << axis) {
+                    Some(other) if self.part(other).signs.face(axis, false) != ours => {
+                        return error("an upper neighbour has other signs on their common face");
+                    }
+                    None if is_mixed(&ours) => {
+                        return error("the surface goes on in an upper neighbour not listed");
+                    }
+                    _ => {}
+                }
+                if self.neighbours.lower(n, axis).is_none() && is_mixed(&signs.face(axis, false)) {
+                    return error("the surface goes on in a lower neighbour not listed");
+                }
+            }
+            Ok(())
+        })
+    }
+
+    /// The mesh.
+    pub(super) fn join<S: Sampler>(
+        mut self,
+        sampler: &S,
+        lattice: &Lattice,
+        features: Features,
+        run: &Run,
+    ) -> Result<Mesh, ExtractError> {
+        let (positions, normals) = (std::mem::take(&mut self.positions), std::mem::take(&mut self.normals));
+        let (positions, normals) =
+            rayon::join(|| concatenated(positions, self.vertices, run), || concatenated(normals, self.vertices, run));
+        let (mut positions, mut normals) = (positions?, normals?);
+
+        let fans = match features {
+            Features::Smooth => Fans::default(),
+            Features::Sharp => {
+                let samples = Samples::new(&self, lattice, &positions, &normals);
+                sharp::find(&samples, sampler, &run.stage(0.0, 0.6))?
+            }
+        };
+        let count = positions.len() as u64 + fans.fans.len() as u64;
+        if count > u64::from(u32::MAX) {
+            return Err(ExtractError::TooLarge { count });
+        }
+        positions.extend(fans.fans.iter().map(|fan| fan.at));
+        normals.extend(fans.fans.iter().map(Fan::normal));
+
+        let run = run.stage(0.6, 1.0);
+        let meter = Meter::new(&run, self.blocks.len());
+        let counts: Vec<usize> = (0..self.parts.len())
+            .map(|batch| {
+                let parts = (batch * BATCH..).zip(&self.parts[batch]);
+                parts.map(|(n, part)| fans.count(n, part.triangles as usize)).sum()
+            })
+            .collect();
+        let mut triangles = vec![[0; 3]; counts.iter().sum()];
+        let pieces = split(&mut triangles, counts.into_iter());
+        pieces.into_par_iter().enumerate().try_for_each_init(Corners::new, |corners, (batch, piece)| {
+            let mut slots = piece.iter_mut();
+            for n in (batch * BATCH..).take(self.parts[batch].len()) {
+                meter.step()?;
+                self.list_triangles(n, corners, &fans, &mut slots)?;
+            }
+            Ok::<(), ExtractError>(())
+        })?;
+        Ok(Mesh::new(positions, triangles)?.with_normals(normals)?)
+    }
+
+    /// The triangles of block `n`: those of the table, in the order of its cells, then those of its
+    /// fans.
+    fn list_triangles(
+        &self,
+        n: usize,
+        corners: &mut Corners,
+        fans: &Fans,
+        slots: &mut std::slice::IterMut<'_, [u32; 3]>,
+    ) -> Result<(), ExtractError> {
+        if self.part(n).triangles == 0 {
+            return Ok(());
+        }
+        if !self.number(n, corners) {
+            let what = "a vertex is missing in the neighbour that owns it";
+            return Err(ExtractError::Blocks { block: self.blocks[n], what });
+        }
+        let table = CaseTable::get();
+        let mut with_fan = fans.cells(n).iter().peekable();
+        let mut opposite = fans.opposite(n).iter().peekable();
+        for_each_cell(&self.part(n).signs, |cell, case| {
+            let number = cell_number(cell);
+            while with_fan.next_if(|(other, _)| *other < number).is_some() {}
+            if with_fan.peek().is_some_and(|(other, _)| *other == number) {
+                return;
+            }
+            let ids = corners.of_cell(cell);
+            if opposite.next_if(|(other, _)| *other == number).is_some() {
+                for (&[a, b, c], slot) in table.triangles(!case).iter().zip(&mut *slots) {
+                    *slot = [a, c, b].map(|edge| ids[corners.offsets[usize::from(edge)]]);
+                }
+                return;
+            }
+            for (triangle, slot) in table.triangles(case).iter().zip(&mut *slots) {
+                *slot = triangle.map(|edge| ids[corners.offsets[usize::from(edge)]]);
+            }
+        });
+        let centres = self.vertices as u32;
+        for (triangle, slot) in fans.triangles(n, centres).zip(slots) {
+            *slot = triangle;
+        }
+        Ok(())
+    }
+
+    /// Notes the vertices on all edges of the cells of block `n`; false if the owner of one is
+    /// not there.
+    ///
+    /// Edges that start in an upper face belong to the neighbour there: those along the two
+    /// other axes, in its first row or column.
+    pub(super) fn number(&self, n: usize, corners: &mut Corners) -> bool {
+        let part = self.part(n);
+        for k in 0..BLOCK {
+            for j in 0..BLOCK {
+                corners.row(part, [true; 3], [j, k], [j, k]);
+            }
+        }
+        let signs = &part.signs;
+        let upper = |bits: usize| self.neighbours.upper(n, bits).map(|other| self.part(other));
+        let mut complete = true;
+        // Beyond y and z: rows as they are.
+        let mut row = |bits: usize, axes: [bool; 3], to: [usize; 2]| match upper(bits) {
+            Some(other) => corners.row(other, axes, to.map(|at| at % BLOCK), to),
+            None => complete &= !signs.is_crossed(axes, to),
+        };
+        for n in 0..BLOCK {
+            row(2, [true, false, true], [BLOCK, n]);
+            row(4, [true, true, false], [n, BLOCK]);
+        }
+        row(6, [true, false, false], [BLOCK, BLOCK]);
+        // Beyond x: the first edges of rows, along y and z.
+        let last = |j: usize, k: usize| signs.row(j, k) >> BLOCK & 1;
+        for k in 0..SIDE {
+            for j in 0..SIDE {
+                let along_y = j < BLOCK && last(j, k) != last(j + 1, k);
+                let along_z = k < BLOCK && last(j, k) != last(j, k + 1);
+                if !(along_y || along_z) {
+                    continue;
+                }
+                let bits = 1 | (j / BLOCK) << 1 | (k / BLOCK) << 2;
+                let Some(other) = upper(bits) else { return false };
+                let (row_j, row_k) = (j % BLOCK, k % BLOCK);
+                let [x, y, _] = other.signs.crossed(row_j, row_k).map(u16::count_ones);
+                let vertex = other.first + other.rows.start(row_j, row_k) + x;
+                if along_y {
+                    corners.ids[Corners::place(1, [BLOCK, j, k])] = vertex;
+                }
+                if along_z {
+                    corners.ids[Corners::place(2, [BLOCK, j, k])] = vertex + y;
+                }
+            }
+        }
+        complete
+    }
+}
+
+/// The vertices on the edges of a block's cells.
+pub(super) struct Corners {
+    /// By axis, then by the lower node, x fastest; what lies on edges that are not crossed has
+    /// no meaning.
+    ids: Box<[u32; 3 * SIDE * SIDE * SIDE]>,
+    /// Where the edges of a cell are, from the place of its first node.
+    offsets: [usize; 12],
+}
+
+impl Corners {
+    pub(super) fn new() -> Corners {
+        let offset = |edge: usize| {
+            let corner = usize::from(EDGE_CORNERS[edge][0]);
+            Corners::place(usize::from(edge_axis(edge as u8)), [corner & 1, corner >> 1 & 1, corner >> 2])
+        };
+        Corners { ids: Box::new([0; 3 * SIDE * SIDE * SIDE]), offsets: std::array::from_fn(offset) }
+    }
+
+    /// The list from the place of a cell's first node on.
+    fn of_cell(&self, [i, j, k]: [usize; 3]) -> &[u32] {
+        &self.ids[i + SIDE * (j + SIDE * k)..]
+    }
+
+    /// The vertex on an edge of a cell.
+    pub(super) fn vertex(&self, cell: [usize; 3], edge: u8) -> u32 {
+        self.of_cell(cell)[self.offsets[usize::from(edge)]]
+    }
+
+    fn place(axis: usize, [i, j, k]: [usize; 3]) -> usize {
+        i + SIDE * (j + SIDE * (k + SIDE * axis))
+    }
+
+    /// Notes the vertices of a row `from` of `part`, those along some axes, in row `to`.
+    fn row(&mut self, part: &Part, axes: [bool; 3], from: [usize; 2], to: [usize; 2]) {
+        let crossed = part.signs.crossed(from[0], from[1]);
+        if crossed == [0; 3] {
+            return;
+        }
+        let mut vertex = part.first + part.rows.start(from[0], from[1]);
+        for (axis, mut bits) in crossed.into_iter().enumerate() {
+            if !axes[axis] {
+                vertex += bits.count_ones();
+                continue;
+            }
+            let ids = &mut self.ids[Corners::place(axis, [0, to[0], to[1]])..][..BLOCK];
+            while bits != 0 {
+                ids[bits.trailing_zeros() as usize] = vertex;
+                vertex += 1;
+                bits &= bits - 1;
+            }
+        }
+    }
+}
+
+/// The pieces one after the other, each given back as soon as it is copied.
+fn concatenated(pieces: Vec<Vec<Vec3>>, length: usize, run: &Run) -> Result<Vec<Vec3>, Cancelled> {
+    let mut all = Vec::with_capacity(length);
+    for piece in pieces {
+        run.check()?;
+        all.extend_from_slice(&piece);
+    }
+    Ok(all)
+}
+
+/// Cuts a slice into consecutive pieces of the given lengths, whose sum is its length.
+fn split<T>(mut slice: &mut [T], lengths: impl Iterator<Item = usize>) -> Vec<&mut [T]> {
+    let cut = |length| {
+        let (piece, rest) = std::mem::take(&mut slice).split_at_mut(length);
+        slice = rest;
+        piece
+    };
+    lengths.map(cut).collect()
+}

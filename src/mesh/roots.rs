@@ -1,0 +1,317 @@
+//! Roots on lattice edges, many at a time.
+//!
+//! ```text
+//!    value
+//!      |*                        a, b   known from the nodes
+//!      | \                       1      on the chord of a and b
+//!      |   \                     2      a Newton step from 1, by the gradient there
+//!     -+-----*-2-*------+--> t   3      another one, from the value in double precision, and
+//!      |         1 ` -  *               a last one from the value at 3
+//! ```
+//!
+//! The gradient in single precision at the chord's point gives the slope for all three steps, and
+//! the normal. Most edges are settled by them; the few that are not, because a crease or a
+//! strong bend lies between, are closed in on by false position with halved weights (Illinois),
+//! and halving. Where the root is away from where the gradient was taken, the normal is taken
+//! anew.
+
+use glam::DVec3;
+
+use super::extract::Root;
+use super::lattice::Lattice;
+use super::signs::EdgeRef;
+use crate::eval::{Evaluator, Gradients, Tape};
+
+/// A root is settled when the next step is shorter than this part of an edge; that step is
+/// taken as well.
+const SETTLED: f64 = 2.5e-7;
+
+/// At most this many steps of false position; from `HALVING` on they halve.
+const STEPS: usize = 40;
+const HALVING: usize = 12;
+
+/// Normals are taken anew where a root moves by more than this after its gradient was.
+const MOVED: f64 = 1.0 / 256.0;
+
+/// Memory for the edges at hand, one number an edge in each list.
+#[derive(Default)]
+pub(super) struct RootFinder {
+    /// The coordinate of the lower end along the edge, relative to the tape's origin.
+    lower: Vec<f64>,
+    t: Vec<f64>,
+    slope: Vec<f64>,
+    /// Where the gradient was taken.
+    seen: Vec<f64>,
+    /// The point before, and the value there.
+    before: Vec<[f64; 2]>,
+    single: [Vec<f32>; 3],
+    double: [Vec<f64>; 3],
+    gathered: [Vec<f64>; 3],
+    exact: Vec<f64>,
+    gradient: [Vec<f32>; 4],
+    open: Vec<u32>,
+    brackets: Vec<Bracket>,
+}
+
+impl RootFinder {
+    /// The roots on `edges`, into `out`; `tape` is for a region that holds them.
+    pub(super) fn find(
+        &mut self,
+        evaluator: &mut Evaluator,
+        tape: &Tape,
+        lattice: &Lattice,
+        edges: &[EdgeRef],
+        out: &mut [Root],
+    ) {
+        let step = lattice.step();
+        self.start(tape, lattice, edges);
+        self.approach(evaluator, tape, edges, step, out);
+        self.settle(evaluator, tape, edges, step);
+        self.normals(evaluator, tape, edges, step, out);
+        for (root, &t) in out.iter_mut().zip(&self.t) {
+            root.t = t;
+        }
+    }
+
+    /// The lower ends, and the points on the chords.
+    fn start(&mut self, tape: &Tape, lattice: &Lattice, edges: &[EdgeRef]) {
+        let (origin, step) = (tape.origin(), lattice.step());
+        for axis in 0..3 {
+            self.single[axis].clear();
+            self.double[axis].clear();
+        }
+        self.lower.clear();
+        self.t.clear();
+        for edge in edges {
+            let [i, j, k] = edge.node;
+            let p = (lattice.node(i, j, k) - origin).to_array();
+            let axis = usize::from(edge.axis);
+            let [a, b] = edge.values;
+            let chord = f64::from(a / (a - b));
+            let t = if chord >= 0.0 && chord <= 1.0 { chord } else { 0.5 };
+            let low = p[axis];
+            self.lower.push(low);
+            self.t.push(t);
+            for axis in 0..3 {
+                self.single[axis].push(p[axis] as f32);
+                self.double[axis].push(p[axis]);
+            }
+            if let Some(along) = self.single[axis].last_mut() {
+                *along = (low + t * step) as f32;
+            }
+        }
+    }
+
+    /// In single precision: near the root, with slope and normal.
+    fn approach(&mut self, evaluator: &mut Evaluator, tape: &Tape, edges: &[EdgeRef], step: f64, out: &mut [Root]) {
+        let [x, y, z] = &self.single;
+        for list in &mut self.gradient {
+            list.resize(edges.len(), 0.0);
+        }
+        let [value, dx, dy, dz] = &mut self.gradient;
+        evaluator.gradients(tape, x, y, z, Gradients { value, dx, dy, dz });
+        self.slope.clear();
+        self.seen.clone_from(&self.t);
+        for (n, edge) in edges.iter().enumerate() {
+            let axis = usize::from(edge.axis);
+            let slope = f64::from(self.gradient[axis + 1][n]) * step;
+            self.t[n] = newton(self.t[n], f64::from(self.gradient[0][n]), slope);
+            self.slope.push(slope);
+            out[n].normal = outward(&self.gradient, n);
+        }
+    }
+
+    /// In double precision, to the end.
+    fn settle(&mut self, evaluator: &mut Evaluator, tape: &Tape, edges: &[EdgeRef], step: f64) {
+        self.evaluate_all(evaluator, tape, edges, step);
+        self.before.clear();
+        for (n, &value) in self.exact.iter().enumerate() {
+            self.before.push([self.t[n], value]);
+            self.t[n] = newton(self.t[n], value, self.slope[n]);
+        }
+        self.evaluate_all(evaluator, tape, edges, step);
+        self.open.clear();
+        self.brackets.clear();
+        for (n, edge) in edges.iter().enumerate() {
+            let (t, value, slope, [before, first]) = (self.t[n], self.exact[n], self.slope[n], self.before[n]);
+            let by = value / slope;
+            // By both slopes, that of the gradient and that of the last step, unless it went
+            // nowhere. NaN stays open.
+            let steep = ((value - first) / (t - before)).abs();
+            if by.abs() <= SETTLED && (value.abs() <= SETTLED * steep || (t - before).abs() <= SETTLED) {
+                self.t[n] = t - by;
+                continue;
+            }
+            let mut bracket = Bracket::new(edge);
+            for (t, value) in [(before, first), (t, value)] {
+                if bracket.holds(t) {
+                    bracket.learn(t, value);
+                }
+            }
+            bracket.next = bracket.secant();
+            self.open.push(n as u32);
+            self.brackets.push(bracket);
+        }
+        for round in 0..STEPS {
+            if self.open.is_empty() {
+                break;
+            }
+            self.evaluate_open(evaluator, tape, edges, step);
+            let mut kept = 0;
+            for at in 0..self.open.len() {
+                let n = self.open[at] as usize;
+                let mut bracket = self.brackets[at];
+                let (t, value) = (bracket.next, self.exact[at]);
+                // From the last point to this one.
+                let by = value * (t - bracket.t) / (value - bracket.value);
+                bracket.learn(t, value);
+                if by.abs() <= SETTLED && value.abs() <= SETTLED * self.slope[n].abs() || bracket.width() <= SETTLED {
+                    self.t[n] = bracket.nearest(t - by);
+                    continue;
+                }
+                bracket.next = if round < HALVING { bracket.secant() } else { bracket.middle() };
+                self.open[kept] = n as u32;
+                self.brackets[kept] = bracket;
+                kept += 1;
+            }
+            self.open.truncate(kept);
+            self.brackets.truncate(kept);
+        }
+        for (&n, bracket) in self.open.iter().zip(&self.brackets) {
+            self.t[n as usize] = bracket.middle();
+        }
+    }
+
+    /// The values at the points of all edges.
+    fn evaluate_all(&mut self, evaluator: &mut Evaluator, tape: &Tape, edges: &[EdgeRef], step: f64) {
+        for (n, edge) in edges.iter().enumerate() {
+            self.double[usize::from(edge.axis)][n] = self.lower[n] + self.t[n] * step;
+        }
+        let [x, y, z] = &self.double;
+        self.exact.resize(edges.len(), 0.0);
+        evaluator.values_f64(tape, x, y, z, &mut self.exact);
+    }
+
+    /// The values at the next points of the open edges, in their order.
+    fn evaluate_open(&mut self, evaluator: &mut Evaluator, tape: &Tape, edges: &[EdgeRef], step: f64) {
+        self.gathered.iter_mut().for_each(Vec::clear);
+        for (&n, bracket) in self.open.iter().zip(&self.brackets) {
+            let n = n as usize;
+            let along = usize::from(edges[n].axis);
+            for (axis, list) in self.gathered.iter_mut().enumerate() {
+                list.push(if axis == along { self.lower[n] + bracket.next * step } else { self.double[axis][n] });
+            }
+        }
+        let [x, y, z] = &self.gathered;
+        evaluator.values_f64(tape, x, y, z, &mut self.exact[..x.len()]);
+    }
+
+    /// New normals for the roots that have moved.
+    fn normals(&mut self, evaluator: &mut Evaluator, tape: &Tape, edges: &[EdgeRef], step: f64, out: &mut [Root]) {
+        self.open.clear();
+        let moved = |&n: &u32| (self.t[n as usize] - self.seen[n as usize]).abs() > MOVED;
+        self.open.extend((0..edges.len() as u32).filter(moved));
+        if self.open.is_empty() {
+            return;
+        }
+        for list in &mut self.single {
+            list.clear();
+        }
+        for &n in &self.open {
+            let n = n as usize;
+            let along = usize::from(edges[n].axis);
+            for (axis, list) in self.single.iter_mut().enumerate() {
+                let c = if axis == along { self.lower[n] + self.t[n] * step } else { self.double[axis][n] };
+                list.push(c as f32);
+            }
+        }
+        let [x, y, z] = &self.single;
+        let [value, dx, dy, dz] = &mut self.gradient;
+        evaluator.gradients(tape, x, y, z, Gradients { value, dx, dy, dz });
+        for (at, &n) in self.open.iter().enumerate() {
+            out[n as usize].normal = outward(&self.gradient, at);
+        }
+    }
+}
+
+/// The outward unit normal of a gradient, which points inward; 0 for none.
+fn outward([_, dx, dy, dz]: &[Vec<f32>; 4], n: usize) -> [f32; 3] {
+    let inward = DVec3::new(dx[n].into(), dy[n].into(), dz[n].into());
+    (-inward.normalize_or_zero()).as_vec3().to_array()
+}
+
+/// A Newton step from `t`, if it stays on the edge.
+fn newton(t: f64, value: f64, slope: f64) -> f64 {
+    let next = t - value / slope;
+    if (0.0..=1.0).contains(&next) { next } else { t }
+}
+
+/// A root on an edge, closed in on.
+#[derive(Clone, Copy)]
+struct Bracket {
+    low: f64,
+    high: f64,
+    at_low: f64,
+    at_high: f64,
+    inside_low: bool,
+    /// The last point, and the value there.
+    t: f64,
+    value: f64,
+    /// The point to look at next.
+    next: f64,
+    /// Which end has stayed: −1 low, 1 high.
+    stayed: i8,
+}
+
+impl Bracket {
+    fn new(edge: &EdgeRef) -> Bracket {
+        let [at_low, at_high] = edge.values.map(f64::from);
+        let inside_low = edge.leaves;
+        Bracket { low: 0.0, high: 1.0, at_low, at_high, inside_low, t: 0.0, value: at_low, next: 0.5, stayed: 0 }
+    }
+
+    /// The value at a point within.
+    fn learn(&mut self, t: f64, value: f64) {
+        (self.t, self.value) = (t, value);
+        if (value > 0.0) == self.inside_low {
+            self.low = t;
+            self.at_low = value;
+            if self.stayed == 1 {
+                self.at_high *= 0.5;
+            }
+            self.stayed = 1;
+        } else {
+            self.high = t;
+            self.at_high = value;
+            if self.stayed == -1 {
+                self.at_low *= 0.5;
+            }
+            self.stayed = -1;
+        }
+    }
+
+    fn width(&self) -> f64 {
+        self.high - self.low
+    }
+
+    fn holds(&self, t: f64) -> bool {
+        t > self.low && t < self.high
+    }
+
+    /// The point of the bracket nearest to `t`; its middle for NaN.
+    fn nearest(&self, t: f64) -> f64 {
+        if t.is_nan() { self.middle() } else { t.clamp(self.low, self.high) }
+    }
+
+    fn middle(&self) -> f64 {
+        0.5 * (self.low + self.high)
+    }
+
+    /// On the chord, a hair from the ends: beyond the root, it closes the bracket from the
+    /// other side.
+    fn secant(&self) -> f64 {
+        let secant = self.low + self.width() * (self.at_low / (self.at_low - self.at_high));
+        let hair = (0.25 * SETTLED).min(0.25 * self.width());
+        if secant.is_finite() { secant.clamp(self.low + hair, self.high - hair) } else { self.middle() }
+    }
+}
