@@ -10,7 +10,7 @@ use super::signs::{BLOCK, EdgeRef, NODES, SIDE};
 use crate::eval::{Evaluator, Gradients, Program, Tape, compiled};
 use crate::geom::Mesh;
 use crate::space::{Grid, surface_blocks};
-use crate::{Bounds, Cancelled, RFunction, Run, Solid, SolidError};
+use crate::{Bounds, Cancelled, Paint, RFunction, Run, Solid, SolidError};
 
 /// What to mesh.
 ///
@@ -117,7 +117,9 @@ impl Solid {
             let blocks: Vec<[u32; 3]> = found.iter().map(|b| b.index.map(|i| i * BLOCK as u32)).collect();
             let programs = found.into_iter().map(|b| b.program).collect();
             let sampler = SolidSampler::new(&lattice, &blocks, programs);
-            Ok(extract(&sampler, &lattice, &blocks, settings.features, &run.stage(0.3, 1.0))?)
+            let mesh = extract(&sampler, &lattice, &blocks, settings.features, &run.stage(0.3, 1.0))?;
+            // A mesh has the paint of its solid, if there is any.
+            if solid.palette()?.is_painted() { Ok(mesh.painted(&solid, Paint::default())?) } else { Ok(mesh) }
         })
     }
 
