@@ -215,7 +215,16 @@ fn by_model(rounds: usize) -> Result<(), Box<dyn Error>> {
                 row.methods.map(|time| time.map_or("-".to_string(), |ms| format!("{ms:.2}")));
             println!(
                 "{:<20}{:>6}{:>9.2}{:>9.2}{:>9}{:>9}{:>9}{:>9.2}{:>9.2}{:>8.1}",
-                model.name, side, row.meshes, row.project, stencil, sequence, interval, row.scene, row.trace, row.ratio()
+                model.name,
+                side,
+                row.meshes,
+                row.project,
+                stencil,
+                sequence,
+                interval,
+                row.scene,
+                row.trace,
+                row.ratio()
             );
         }
     }

@@ -201,7 +201,10 @@ fn compare(choice: &Choice, model: &Model, size: u32, threads: usize) {
         }
     }
     let c: Vec<u64> = rvachev::CNT.iter().map(|c| c.swap(0, std::sync::atomic::Ordering::Relaxed)).collect();
-    println!("marches {} spans {} search {} unique {} open {} {} {} evals {} chunks {} doubts {}", c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7], c[8], c[9]);
+    println!(
+        "marches {} spans {} search {} unique {} open {} {} {} evals {} chunks {} doubts {}",
+        c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7], c[8], c[9]
+    );
     let rounds = if smooth && ours.len() > 2 { 1 } else { choice.rounds() };
     let times = race(rounds, &mut ours);
     let (vm, jit) = (least(&ours, &times, "VM"), least(&ours, &times, "JIT"));
@@ -234,10 +237,7 @@ fn shaded(choice: &Choice) {
                     ("full", Box::new(|| drop(black_box(model.solid.render_with(&camera, &full, &run))))),
                 ];
                 let times = race(choice.rounds().min(5), &mut all);
-                println!(
-                    "{:5} {size:4} {threads:7} {:6.1} {:12.1} {:11.1}",
-                    model.name, times[0], times[1], times[2]
-                );
+                println!("{:5} {size:4} {threads:7} {:6.1} {:12.1} {:11.1}", model.name, times[0], times[1], times[2]);
             }
         }
     }

@@ -137,11 +137,8 @@ fn joins() -> Result<Sheet> {
     let c = superellipsoid([0.42, 0.42, 1.4], 0.1, 1.0)?;
     let camera = Camera::framing(&a.bounds().union(&b.bounds()).union(&c.bounds()));
     let view = RasterView::new(&camera, 220 * FINER, 220 * FINER)?;
-    let layers = [
-        view.layers(ClosedMesh::new(&a)?),
-        view.layers(ClosedMesh::new(&b)?),
-        view.layers(ClosedMesh::new(&c)?),
-    ];
+    let layers =
+        [view.layers(ClosedMesh::new(&a)?), view.layers(ClosedMesh::new(&b)?), view.layers(ClosedMesh::new(&c)?)];
     let operands: Vec<&dyn LayerSource> = layers.iter().map(|l| l as &dyn LayerSource).collect();
     let [a, b, c] = [0, 1, 2].map(Csg::operand);
     let mut panels = Vec::new();
@@ -197,7 +194,7 @@ fn set(parts: &mut Parts) -> Result<Csg> {
     let hollow = parts.add(moved(superellipsoid([0.85, 0.85, 0.7], 1.0, 1.0)?, 0.1, 0.75, 0.66)?, [222, 226, 210]);
     let above = parts.add(moved(superellipsoid([1.2, 1.2, 0.6], 0.1, 0.1)?, 0.1, 0.75, 1.3)?, [186, 190, 176]);
     let foot = parts.add(moved(superellipsoid([0.5, 0.5, 0.1], 0.1, 1.0)?, 0.1, 0.75, 0.1)?, [126, 166, 108]);
-    let bowl = ((ball - hollow) - above) | foot;
+    let bowl = ((ball | foot) - hollow) - above;
     let fruit = parts.add(moved(superellipsoid([0.34, 0.34, 0.3], 0.8, 1.0)?, 0.0, 0.62, 0.6)?, [206, 92, 66]);
     let banana = superellipsoid([0.13, 0.13, 0.75], 0.8, 0.7)?.taper(-0.15, -0.15, 0.75)?.bend(1.1, 0.0)?;
     let banana = banana.affine(DAffine3::from_rotation_y(-0.5) * DAffine3::from_rotation_z(0.4))?;
@@ -223,11 +220,8 @@ fn die(parts: &mut Parts, x: f64, y: f64, turn: f64, spots: [usize; 3]) -> Resul
     let ball = Superellipsoid::new([0.062, 0.062, 0.062], 1.0, 1.0).surface()?.mesh(&patch(16, 32))?;
     let all = [(0.0, 0.0), (0.15, 0.15), (-0.15, -0.15), (0.15, -0.15), (-0.15, 0.15), (0.15, 0.0), (-0.15, 0.0)];
     let places: [&[usize]; 6] = [&[0], &[1, 2], &[0, 1, 2], &[1, 2, 3, 4], &[0, 1, 2, 3, 4], &[1, 2, 3, 4, 5, 6]];
-    let sides: [fn(f64, f64) -> DVec3; 3] = [
-        |u, v| DVec3::new(u, v, 0.33),
-        |u, v| DVec3::new(u, -0.33, v),
-        |u, v| DVec3::new(0.33, u, v),
-    ];
+    let sides: [fn(f64, f64) -> DVec3; 3] =
+        [|u, v| DVec3::new(u, v, 0.33), |u, v| DVec3::new(u, -0.33, v), |u, v| DVec3::new(0.33, u, v)];
     for (count, side) in spots.into_iter().zip(sides) {
         for &spot in places[count - 1] {
             let (u, v) = all[spot];

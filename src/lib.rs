@@ -378,14 +378,35 @@ pub use field::{
     SheetLattice, SineWave, Slab, SmoothStep, Sphere, Superellipse, Superellipsoid, Superhyperboloid, Superpolygon,
     Supershape, Supertoroid, Torus, Turns, VALUE_LIMIT, Wedge,
 };
-pub use geom::{Camera, CameraError, Coordinates, Corner, Image, ImageError, Intrinsics, Mesh, MeshError, Noise, Plane, PointCloud, PointCloudError, Polyline, Projection, QuadMesh, RangeImage, RangeImageError, Rays, View};
-pub use io::{Colors, Floats, LengthUnit, Pixel, SaveError, SaveSettings, write_3mf, write_dxf, write_exr, write_gif, write_glb, write_obj, write_ply, write_ply_points, write_png, write_stl, write_stl_ascii, write_svg};
-pub use mesh::{CellSize, Features, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError, Volume, VolumeError, VolumeSettings};
+pub use geom::{
+    Camera, CameraError, Coordinates, Corner, Image, ImageError, Intrinsics, Mesh, MeshError, Noise, Plane, PointCloud,
+    PointCloudError, Polyline, Projection, QuadMesh, RangeImage, RangeImageError, Rays, View,
+};
+pub use io::{
+    Colors, Floats, LengthUnit, Pixel, SaveError, SaveSettings, write_3mf, write_dxf, write_exr, write_gif, write_glb,
+    write_obj, write_ply, write_ply_points, write_png, write_stl, write_stl_ascii, write_svg,
+};
+pub use mesh::{
+    AtBounds, CellSize, Features, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError, ThinFeatures, Volume,
+    VolumeError, VolumeSettings,
+};
 pub use num::{Dual, Interval, Monotone, Monotone3, Norm, Real};
+pub use raster::{
+    Buffers, ClosedMesh, Csg, CsgMethod, Facing, Fragments, LANES, LayerSource, MeshLayers, RasterError, RasterView,
+    SurfaceId, Tile,
+};
 #[doc(hidden)]
 pub use render::CNT;
-pub use raster::{Buffers, ClosedMesh, Csg, CsgMethod, Facing, Fragments, LANES, LayerSource, MeshLayers, RasterError, RasterView, SurfaceId, Tile};
-pub use render::{Background, GBuffer, Isolines, Layers, Lights, RenderError, RenderSettings, Scene, Slice, SliceSettings, Style, Surface, Transfer, Window};
+pub use render::{
+    Background, GBuffer, Isolines, Layers, Lights, RenderError, RenderSettings, Scene, Slice, SliceSettings, Style,
+    Surface, Transfer, Window,
+};
 pub use run::{CancelToken, Cancelled, Progress, Run};
 pub use solid::{Caps, Extrusion, Helix, Paint, PlaneBounds, Profile, Solid, SolidError};
-pub use surface::{BinomialSeries, ControlGrid, ControlPoint, ControlPolygon, CurveSpread, ExactExplicit, Frame, LogTable, ParametricCurve, ParametricSurface, PatchError, PatchSettings, PlaneSymmetry, PointError, PointMethod, PointSettings, PowerTables, ProductTables, ProfileEnd, SeriesExplicit, Spacing, SubdivisionError, SubdivisionRevolution, SurfacePoint, Symmetry, Tension, hyperbola_of_ellipse, raw_parametric, raw_parametric_octant, reflect, reflect_plane};
+pub use surface::{
+    BinomialSeries, ControlGrid, ControlPoint, ControlPolygon, CurveSpread, ExactExplicit, Frame, LogTable,
+    ParametricCurve, ParametricSurface, PatchError, PatchSettings, PlaneSymmetry, PointError, PointMethod,
+    PointSettings, PowerTables, ProductTables, ProfileEnd, SeriesExplicit, Spacing, SubdivisionError,
+    SubdivisionRevolution, SurfacePoint, Symmetry, Tension, hyperbola_of_ellipse, raw_parametric,
+    raw_parametric_octant, reflect, reflect_plane,
+};

@@ -192,7 +192,6 @@ impl Camera {
 
     /// Right, up and forward: unit vectors at right angles; NaN where they are not defined.
     pub(crate) fn axes(&self) -> [DVec3; 3] {
-    pub(super) fn axes(&self) -> [DVec3; 3] {
         let forward = unit(self.target - self.eye);
         let right = unit(forward.cross(unit(self.up)));
         [right, right.cross(forward), forward]

@@ -7,10 +7,10 @@
 mod camera;
 mod image;
 mod mesh;
-mod quad_mesh;
 mod plane;
 mod point_cloud;
 mod polyline;
+mod quad_mesh;
 mod range_image;
 mod view;
 
@@ -18,9 +18,9 @@ pub use camera::{Camera, CameraError, Projection, Rays};
 pub use image::{Image, ImageError};
 pub(crate) use image::{from_linear, to_linear};
 pub use mesh::{Mesh, MeshError};
-pub use quad_mesh::{Corner, QuadMesh};
 pub use plane::Plane;
 pub use point_cloud::{PointCloud, PointCloudError};
 pub use polyline::Polyline;
+pub use quad_mesh::{Corner, QuadMesh};
 pub use range_image::{Coordinates, Noise, RangeImage, RangeImageError};
 pub use view::{Intrinsics, View};

@@ -8,7 +8,10 @@ use std::time::Duration;
 use glam::{DVec3, Vec3};
 
 use super::file::write_whole;
-use super::{LengthUnit, write_3mf, write_dxf, write_exr, write_gif, write_glb, write_obj, write_ply, write_ply_points, write_png, write_stl, write_stl_ascii, write_svg};
+use super::{
+    LengthUnit, write_3mf, write_dxf, write_exr, write_gif, write_glb, write_obj, write_ply, write_ply_points,
+    write_png, write_stl, write_stl_ascii, write_svg,
+};
 use crate::geom::{Image, Mesh, PointCloud, Polyline};
 
 /// Why a file could not be saved. Whatever was at the path before is still there, and no
@@ -131,39 +134,33 @@ impl Mesh {
 pub trait Pixel: Sized + sealed::Pixel {}
 
 mod sealed {
-    pub trait Pixel: Sized {
-        const KNOWN: &'static str;
-        fn writer(extension: &str) -> Option<super::Writer<super::Image<Self>>>;
+    pub trait Pixel: Sized + 'static {
+        const FORMATS: &'static [(&'static str, super::Writer<super::Image<Self>, ()>)];
     }
 }
 
 /// Says which formats hold which pixels.
 macro_rules! pixel {
-    ($($pixel:ty: $known:literal, $($extension:literal => $write:ident),*;)*) => {$(
+    ($($pixel:ty: $($extension:literal => $write:ident),*;)*) => {$(
         impl Pixel for $pixel {}
         impl sealed::Pixel for $pixel {
-            const KNOWN: &'static str = $known;
-            fn writer(extension: &str) -> Option<Writer<Image<Self>>> {
-                match extension {
-                    $($extension => Some(|image, out| $write(image, out)),)*
-                    _ => None,
-                }
-            }
+            const FORMATS: &'static [(&'static str, Writer<Image<Self>, ()>)] =
+                &[$(($extension, |image, (), out| $write(image, out))),*];
         }
     )*};
 }
 
 pixel! {
-    [u8; 4]: ".png", "png" => write_png;
-    [u16; 4]: ".png", "png" => write_png;
-    u8: ".png", "png" => write_png;
-    u16: ".png", "png" => write_png;
-    bool: ".png", "png" => write_png;
-    Option<u32>: ".png", "png" => write_png;
-    [f32; 4]: ".exr", "exr" => write_exr;
-    f64: ".exr, .png", "exr" => write_exr, "png" => write_png;
-    Vec3: ".exr, .png", "exr" => write_exr, "png" => write_png;
-    DVec3: ".exr", "exr" => write_exr;
+    [u8; 4]: "png" => write_png;
+    [u16; 4]: "png" => write_png;
+    u8: "png" => write_png;
+    u16: "png" => write_png;
+    bool: "png" => write_png;
+    Option<u32>: "png" => write_png;
+    [f32; 4]: "exr" => write_exr;
+    f64: "exr" => write_exr, "png" => write_png;
+    Vec3: "exr" => write_exr, "png" => write_png;
+    DVec3: "exr" => write_exr;
 }
 
 impl<P: Pixel> Image<P> {
@@ -177,8 +174,7 @@ impl<P: Pixel> Image<P> {
     ///
     /// [`SaveError`], naming the file and the cause.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
-        save(self, &(), path.as_ref(), &[("png", |image, (), out| write_png(image, out))])
-        save(self, path.as_ref(), P::writer, P::KNOWN)
+        save(self, &(), path.as_ref(), P::FORMATS)
     }
 }
 
@@ -191,14 +187,12 @@ impl Image {
     ///
     /// [`SaveError`], naming the file and the cause; that there are no pictures is one.
     pub fn save_animation(pictures: &[Image], pause: Duration, path: impl AsRef<Path>) -> Result<(), SaveError> {
-        let animation = (pictures, pause);
-        let writer = |extension: &str| -> Option<Writer<(&[Image], Duration)>> {
-            match extension {
-                "gif" => Some(|(pictures, pause), out| write_gif(pictures, *pause, out)),
-                _ => None,
-            }
-        };
-        save(&animation, path.as_ref(), writer, ".gif")
+        save(
+            &(pictures, pause),
+            &(),
+            path.as_ref(),
+            &[("gif", |(pictures, pause), (), out| write_gif(pictures, *pause, out))],
+        )
     }
 }
 
@@ -211,13 +205,7 @@ impl PointCloud {
     ///
     /// [`SaveError`], naming the file and the cause.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
-        let writer = |extension: &str| -> Option<Writer<PointCloud>> {
-            match extension {
-                "ply" => Some(|cloud, out| write_ply_points(cloud, out)),
-                _ => None,
-            }
-        };
-        save(self, path.as_ref(), writer, ".ply")
+        save(self, &(), path.as_ref(), &[("ply", |cloud, (), out| write_ply_points(cloud, out))])
     }
 }
 impl Polyline {
@@ -230,14 +218,12 @@ impl Polyline {
     ///
     /// [`SaveError`], naming the file and the cause.
     pub fn save_all(lines: &[Polyline], path: impl AsRef<Path>) -> Result<(), SaveError> {
-        let writer = |extension: &str| -> Option<Writer<&[Polyline]>> {
-            match extension {
-                "svg" => Some(|lines, out| write_svg(lines, out)),
-                "dxf" => Some(|lines, out| write_dxf(lines, out)),
-                _ => None,
-            }
-        };
-        save(&lines, path.as_ref(), writer, ".svg, .dxf")
+        save(
+            &lines,
+            &(),
+            path.as_ref(),
+            &[("dxf", |lines, (), out| write_dxf(lines, out)), ("svg", |lines, (), out| write_svg(lines, out))],
+        )
     }
 }
 
@@ -297,7 +283,7 @@ mod tests {
         fs::write(&path, "something else, and longer than what follows".repeat(9)).unwrap();
         triangle().save(&path).unwrap();
         assert_eq!(fs::read(&path).unwrap().len(), 134);
-        let image = Image::new(1, 1, vec![[1, 2, 3, 255]]).unwrap();
+        let image = Image::new(1, 1, vec![[1u8, 2, 3, 255]]).unwrap();
         image.save(folder.0.join("dot.png")).unwrap();
         let read = image::open(folder.0.join("dot.png")).unwrap();
         assert_eq!(read.into_rgba8().into_raw(), [1, 2, 3, 255]);
@@ -311,7 +297,7 @@ mod tests {
             error.to_string(),
             "cannot save a/part.step: the extension .step is not known; known: .3mf, .glb, .obj, .ply, .stl"
         );
-        let image = Image::new(1, 1, vec![[0; 4]]).unwrap();
+        let image = Image::new(1, 1, vec![[0u8; 4]]).unwrap();
         assert_eq!(
             image.save("view").unwrap_err().to_string(),
             "cannot save view: its name has no extension; known: .png"

@@ -7,7 +7,13 @@ mod lattice;
 mod loops;
 mod paint;
 mod qef;
+<<<<<<< HEAD
 mod roots;
+=======
+mod resolve;
+mod roots;
+mod settings;
+>>>>>>> 4ff4ae6e5719d34b35b802a4a71b63df01fd9069
 mod signs;
 mod solid;
 mod table;
@@ -15,5 +21,6 @@ mod volume;
 
 pub use check::MeshReport;
 pub use lattice::{CellSize, Lattice, LatticeError};
-pub use solid::{Features, MeshSettings, MeshingError};
+pub use settings::{AtBounds, Features, MeshSettings, ThinFeatures};
+pub use solid::MeshingError;
 pub use volume::{Volume, VolumeError, VolumeSettings};

@@ -1,49 +1,19 @@
 //! Meshing a solid: `solid.mesh(..)`.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 
 use super::extract::{BATCH, ExtractError, Root, Sampler, extract};
 use super::feature::Slope;
 use super::lattice::{CellSize, Lattice, LatticeError};
+use super::resolve::unresolved_cells;
 use super::roots::RootFinder;
+use super::settings::{AtBounds, MeshSettings};
 use super::signs::{BLOCK, EdgeRef, NODES, SIDE};
 use crate::eval::{Evaluator, Gradients, Program, Tape, compiled};
 use crate::geom::Mesh;
 use crate::space::{Grid, surface_blocks};
 use crate::{Bounds, Cancelled, Paint, RFunction, Run, Solid, SolidError};
-
-/// What to mesh.
-///
-/// ```
-/// use rvachev::{CellSize, MeshSettings, Solid};
-///
-/// let settings = MeshSettings { cell: CellSize::LongestSide(32), ..MeshSettings::default() };
-/// let mesh = Solid::sphere(1.0).mesh(&settings)?;
-/// assert!(mesh.check().is_closed());
-/// # Ok::<(), rvachev::MeshingError>(())
-/// ```
-#[derive(Clone, Debug, Default)]
-pub struct MeshSettings {
-    /// The resolution. Default: 128 cells along the longest side of the bounds.
-    pub cell: CellSize,
-    /// The box to mesh, in length units; where the solid leaves it, the mesh is that of
-    /// their intersection. Default (`None`): the box of the solid.
-    pub bounds: Option<Bounds>,
-    /// Whether creases and corners are kept. Default: [`Features::Sharp`].
-    pub features: Features,
-}
-
-/// What becomes of creases and corners.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Features {
-    /// They are cut off, by a fraction of a cell: marching cubes.
-    Smooth,
-    /// They are kept: where the normals in a cell spread, the cell has a vertex on the crease or
-    /// in the corner, and the mesh has edges along the crease. Elsewhere the mesh is that of
-    /// [`Smooth`](Features::Smooth).
-    #[default]
-    Sharp,
-}
 
 /// Why there is no mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -63,6 +33,12 @@ pub enum MeshingError {
     TooLarge {
         /// How many vertices the mesh would have.
         vertices: u64,
+    },
+    /// The solid leaves the bounds, and the settings do not want it cut.
+    #[error("the solid goes on beyond the bounds at {at}; allowed: a solid within them, or `AtBounds::Cap`")]
+    LeavesBounds {
+        /// A point of the boundary of the bounds that is inside the solid.
+        at: DVec3,
     },
     /// The extraction contradicts itself: a defect of this crate.
     #[error("internal error, please report it: {what}")]
@@ -104,10 +80,10 @@ impl Solid {
         if bounds.is_empty() {
             return Ok(Mesh::default());
         }
-        let lattice = Lattice::new(&bounds, settings.cell)?;
         let programs = compiled(&solid)?;
         let run = run.stage(0.0, 1.0);
         run.install(|| {
+<<<<<<< HEAD
             let grid = Grid {
                 origin: lattice.origin(),
                 side: lattice.step() * BLOCK as f64,
@@ -120,7 +96,50 @@ impl Solid {
             let mesh = extract(&sampler, &lattice, &blocks, settings.features, &run.stage(0.3, 1.0))?;
             // A mesh has the paint of its solid, if there is any.
             if solid.palette()?.is_painted() { Ok(mesh.painted(&solid, Paint::default())?) } else { Ok(mesh) }
+=======
+            let mut lattice = Lattice::new(&bounds, settings.cell)?;
+            let mut blocks = Blocks::find(&programs.surface, &lattice, &run.stage(0.0, 0.3))?;
+            let (mut unresolved, mut halvings) = (None, 0);
+            if let Some(most) = settings.thin.halvings() {
+                loop {
+                    let count = unresolved_cells(&lattice, &blocks.cells, &blocks.programs, &run)?;
+                    unresolved = Some(count);
+                    if count == 0 || halvings == most {
+                        break;
+                    }
+                    halvings += 1;
+                    lattice = Lattice::new(&bounds, CellSize::Length(0.5 * lattice.step()))?;
+                    blocks = Blocks::find(&programs.surface, &lattice, &run.stage(0.0, 0.3))?;
+                }
+            }
+            let sampler = SolidSampler::new(&lattice, &blocks.cells, blocks.programs);
+            let mut mesh = extract(&sampler, &lattice, &blocks.cells, settings.features, &run.stage(0.3, 1.0))?;
+            if let (AtBounds::Refuse, Some(given)) = (settings.at_bounds, &settings.bounds) {
+                self.refuse_caps(&mesh, given, lattice.step())?;
+            }
+            if settings.owners {
+                let owners = mesh.triangles().par_iter().map(|&triangle| sampler.owner(&mesh, triangle)).collect();
+                mesh = mesh.with_owners(owners).map_err(ExtractError::from)?;
+            }
+            Ok(match unresolved {
+                Some(count) => mesh.with_unresolved_cells(count),
+                None => mesh,
+            })
+>>>>>>> 4ff4ae6e5719d34b35b802a4a71b63df01fd9069
         })
+    }
+
+    /// An error if a vertex on a face of the bounds is inside the solid.
+    fn refuse_caps(&self, mesh: &Mesh, given: &Bounds, step: f64) -> Result<(), MeshingError> {
+        // Vertices may be off by a thousandth of a cell.
+        let slack = 0.01 * step;
+        let program = &compiled(self)?.surface;
+        let inner = given.inflate(-slack);
+        let beyond = |p: &&Vec3| !inner.contains(p.as_dvec3()) && program.value(p.as_dvec3()) > slack;
+        match mesh.positions().iter().find(beyond) {
+            Some(at) => Err(MeshingError::LeavesBounds { at: at.as_dvec3() }),
+            None => Ok(()),
+        }
     }
 
     /// The solid cut to a box, if there is one and the solid leaves it, and the box that
@@ -137,6 +156,26 @@ impl Solid {
         }
         let cut = self.intersection(Solid::cuboid(size).translate(given.center()), RFunction::MIN_MAX);
         Ok((cut, own.intersection(given)))
+    }
+}
+
+/// The blocks that the surface may cross, each with its program.
+struct Blocks {
+    /// Their first cells; z first, ascending.
+    cells: Vec<[u32; 3]>,
+    programs: Vec<Program>,
+}
+
+impl Blocks {
+    fn find(program: &Program, lattice: &Lattice, run: &Run) -> Result<Blocks, Cancelled> {
+        let grid = Grid {
+            origin: lattice.origin(),
+            side: lattice.step() * BLOCK as f64,
+            blocks: lattice.cells().map(|cells| cells.div_ceil(BLOCK as u32)),
+        };
+        let found = surface_blocks(program, &grid, 0.0, run)?;
+        let cells = found.iter().map(|block| block.index.map(|i| i * BLOCK as u32)).collect();
+        Ok(Blocks { cells, programs: found.into_iter().map(|block| block.program).collect() })
     }
 }
 
@@ -189,6 +228,17 @@ impl SolidSampler<'_> {
         SolidSampler { lattice, blocks, programs, groups, pattern }
     }
 
+    /// The leaf that decides at the middle of a triangle.
+    fn owner(&self, mesh: &Mesh, triangle: [u32; 3]) -> u32 {
+        let middle = mesh.corners(triangle).into_iter().sum::<DVec3>() / 3.0;
+        let cell = (middle - self.lattice.origin()) / self.lattice.step();
+        let block = cell.to_array().map(|x| x.max(0.0) as u32 / BLOCK as u32 * BLOCK as u32);
+        let key = |[x, y, z]: [u32; 3]| [z, y, x];
+        // A triangle of several blocks has its middle in one of them.
+        let nth = self.blocks.binary_search_by_key(&key(block), |&block| key(block));
+        nth.map_or(0, |nth| self.programs[nth].deciding_leaf(middle))
+    }
+
     /// A tape for the group that starts with a block.
     fn tape(&self, group: u32) -> Tape {
         let first = group as usize;
@@ -235,7 +285,7 @@ impl Sampler for SolidSampler<'_> {
     }
 
     fn roots(&self, scratch: &mut Scratch, edges: &[EdgeRef], out: &mut [Root]) {
-        let Scratch { evaluator, tapes, finder, order, edges: sorted, roots } = scratch;
+        let Scratch { evaluator, tapes, finder, order, edges: sorted, roots, .. } = scratch;
         let group = |edge: &EdgeRef| self.groups[edge.block as usize];
         order.clear();
         order.extend(0..edges.len() as u32);

@@ -80,7 +80,12 @@ impl Buffers {
     ///
     /// [`RasterError::Size`] if the layers were made for a picture of another size;
     /// [`RasterError::Setting`] for a number of 2³¹ − 1 or more.
-    pub fn draw<L: LayerSource + ?Sized>(&mut self, layers: &L, number: u32, facing: Facing) -> Result<(), RasterError> {
+    pub fn draw<L: LayerSource + ?Sized>(
+        &mut self,
+        layers: &L,
+        number: u32,
+        facing: Facing,
+    ) -> Result<(), RasterError> {
         if number >= REVERSED - 1 {
             let allowed = "numbers below 2147483647";
             return Err(RasterError::Setting { setting: "number", value: number.to_string(), allowed });

@@ -114,7 +114,11 @@ impl Mesh {
 }
 
 /// The mesh moved by `map` if `warp` takes what it holds.
-fn deformed(mesh: &Mesh, warp: &dyn AnyWarp, map: impl Fn(DVec3, DVec3) -> (DVec3, DVec3)) -> Result<Mesh, RasterError> {
+fn deformed(
+    mesh: &Mesh,
+    warp: &dyn AnyWarp,
+    map: impl Fn(DVec3, DVec3) -> (DVec3, DVec3),
+) -> Result<Mesh, RasterError> {
     if !mesh.positions().is_empty() {
         warp.check(&mesh.bounds())?;
     }

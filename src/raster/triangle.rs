@@ -80,11 +80,18 @@ impl Triangle {
 
     /// The first and last column and row whose pixels' middles are within the triangle's box;
     /// empty if the last is before the first.
+    #[inline(always)]
     pub(super) fn pixels(&self, fraction: u32) -> [i32; 4] {
         let half = 1 << (fraction - 1);
-        let first = |v: [i32; 3]| (v[0].min(v[1]).min(v[2]) + half - 1) >> fraction;
-        let last = |v: [i32; 3]| (v[0].max(v[1]).max(v[2]) - half) >> fraction;
-        [first(self.x), last(self.x), first(self.y), last(self.y)]
+        let ([x0, x1, x2], [y0, y1, y2]) = (self.x, self.y);
+        let (left, right) = (x0.min(x1).min(x2), x0.max(x1).max(x2));
+        let (top, bottom) = (y0.min(y1).min(y2), y0.max(y1).max(y2));
+        [
+            (left + half - 1) >> fraction,
+            (right - half) >> fraction,
+            (top + half - 1) >> fraction,
+            (bottom - half) >> fraction,
+        ]
     }
 
     /// Draws what is in the tile.
@@ -104,11 +111,11 @@ impl Triangle {
         if left > right || top > bottom {
             return;
         }
-        let one = 1i64 << fraction;
-        let middle = |pixel: i32| i64::from(pixel) * one + one / 2;
+        let pixel = 1i64 << fraction;
         // Runs start at multiples of their length.
         let left = left & !(LANES as i32 - 1);
-        let (px, py) = (middle(x0 + left), middle(y0 + top));
+        let px = i64::from(x0 + left) * pixel + pixel / 2;
+        let py = i64::from(y0 + top) * pixel + pixel / 2;
 
         // Edge i is opposite to corner i.
         let mut at_left = [0.0; 3];
@@ -116,11 +123,11 @@ impl Triangle {
         let mut least = [0.0; 3];
         for i in 0..3 {
             let (a, b) = ((i + 1) % 3, (i + 2) % 3);
-            let [ax, ay, bx, by] = [self.x[a], self.y[a], self.x[b], self.y[b]].map(i64::from);
-            let (dx, dy) = (bx - ax, by - ay);
+            let (ax, ay) = (i64::from(self.x[a]), i64::from(self.y[a]));
+            let (dx, dy) = (i64::from(self.x[b]) - ax, i64::from(self.y[b]) - ay);
             let is_top_or_left = dy < 0 || (dy == 0 && dx > 0);
             at_left[i] = (dx * (py - ay) - dy * (px - ax)) as f64;
-            step[i] = [(-dy * one) as f64, (dx * one) as f64];
+            step[i] = [(-dy * pixel) as f64, (dx * pixel) as f64];
             least[i] = if is_top_or_left { 0.0 } else { 1.0 };
             // All of the tile's part of the box on the outer side?
             let reach_x = (step[i][0] * f64::from(right - left)).max(0.0);
@@ -129,28 +136,43 @@ impl Triangle {
                 return;
             }
         }
-        let [ux, uy, vx, vy] =
-            [self.x[1] - self.x[0], self.y[1] - self.y[0], self.x[2] - self.x[0], self.y[2] - self.y[0]].map(i64::from);
+        let (ux, uy) = (i64::from(self.x[1] - self.x[0]), i64::from(self.y[1] - self.y[0]));
+        let (vx, vy) = (i64::from(self.x[2] - self.x[0]), i64::from(self.y[2] - self.y[0]));
         let inverse = 1.0 / ((ux * vy - uy * vx) as f64);
         let rise = [(self.key[1] - self.key[0]) * inverse, (self.key[2] - self.key[0]) * inverse];
 
-        let splat = |x: f64| f64x4::splat(simd, x);
+        // Written out edge by edge: what is not inlined here (a closure, `array::map`) would not be
+        // compiled for the level.
         let lane = f64x4::simd_from(simd, [0.0, 1.0, 2.0, 3.0]);
-        let across = step.map(|s| (lane * s[0], splat(s[0] * LANES as f64)));
-        let (first_key, nothing) = (splat(self.key[0]), splat(f64::INFINITY));
+        let (lane0, lane1, lane2) = (lane * step[0][0], lane * step[1][0], lane * step[2][0]);
+        let run = LANES as f64;
+        let run0 = f64x4::splat(simd, run * step[0][0]);
+        let run1 = f64x4::splat(simd, run * step[1][0]);
+        let run2 = f64x4::splat(simd, run * step[2][0]);
+        let least0 = f64x4::splat(simd, least[0]);
+        let least1 = f64x4::splat(simd, least[1]);
+        let least2 = f64x4::splat(simd, least[2]);
+        let (rise1, rise2) = (f64x4::splat(simd, rise[0]), f64x4::splat(simd, rise[1]));
+        let first_key = f64x4::splat(simd, self.key[0]);
+        let (one, nothing) = (f64x4::splat(simd, 1.0), f64x4::splat(simd, f64::INFINITY));
         for row in top..=bottom {
-            let mut e: [f64x4<S>; 3] = [0, 1, 2].map(|i| across[i].0 + at_left[i]);
-            let mut at = (row * Tile::SIDE as i32 + left) as u32;
-            for _ in (left..=right).step_by(LANES) {
-                let inside = e[0].simd_ge(least[0]) & e[1].simd_ge(least[1]) & e[2].simd_ge(least[2]);
+            let mut e0 = lane0 + f64x4::splat(simd, at_left[0]);
+            let mut e1 = lane1 + f64x4::splat(simd, at_left[1]);
+            let mut e2 = lane2 + f64x4::splat(simd, at_left[2]);
+            let mut at = row * Tile::SIDE as i32 + left;
+            let end = row * Tile::SIDE as i32 + right;
+            while at <= end {
+                let inside = e0.simd_ge(least0) & e1.simd_ge(least1) & e2.simd_ge(least2);
                 if inside.any_true() {
-                    let key = first_key + (e[1] * rise[0] + e[2] * rise[1]);
-                    let z = if PERSPECTIVE { 1.0 / key } else { key };
+                    let key = first_key + (e1 * rise1 + e2 * rise2);
+                    let z = if PERSPECTIVE { one / key } else { key };
                     let depth: [f64; LANES] = inside.select(z, nothing).into();
-                    batch.push(Fragments { at, facing: self.facing, face: self.face, depth }, sink);
+                    batch.push(Fragments { at: at as u32, facing: self.facing, face: self.face, depth }, sink);
                 }
-                e = [0, 1, 2].map(|i| e[i] + across[i].1);
-                at += LANES as u32;
+                e0 = e0 + run0;
+                e1 = e1 + run1;
+                e2 = e2 + run2;
+                at += LANES as i32;
             }
             for i in 0..3 {
                 at_left[i] += step[i][1];

@@ -138,14 +138,7 @@ pub(super) struct Marcher {
 
 impl Marcher {
     /// Marches the spans' rays through `cell`; what they hit goes to `surfaces`, by ray.
-    pub(super) fn march(
-        &mut self,
-        cells: &Cells,
-        cell: &Cell,
-        rays: &[Ray],
-        spans: &[Span],
-        surfaces: &mut [Surface],
-    ) {
+    pub(super) fn march(&mut self, cells: &Cells, cell: &Cell, rays: &[Ray], spans: &[Span], surfaces: &mut [Surface]) {
         self.hits.clear();
         self.open.clear();
         self.found.clear();
@@ -236,16 +229,17 @@ impl Marcher {
 
     /// Evaluates lanes at `at` and calls `visit` with each; those for which it gives `true` stay,
     /// in their order.
-    fn sift(&mut self, job: &Job<'_>, lanes: &mut Vec<Lane>, mut visit: impl FnMut(&mut Lists<'_>, &mut Lane, Local) -> bool) {
+    fn sift(
+        &mut self,
+        job: &Job<'_>,
+        lanes: &mut Vec<Lane>,
+        mut visit: impl FnMut(&mut Lists<'_>, &mut Lane, Local) -> bool,
+    ) {
         self.evaluate(job, lanes);
         let count = lanes.len();
         let [_, _, _, value, dx, dy, dz] = self.single.each_ref().map(|list| &list[..count]);
-        let mut lists = Lists {
-            search: &mut self.search,
-            unique: &mut self.unique,
-            found: &mut self.found,
-            open: &mut self.open,
-        };
+        let mut lists =
+            Lists { search: &mut self.search, unique: &mut self.unique, found: &mut self.found, open: &mut self.open };
         let mut kept = 0;
         for i in 0..count {
             let mut lane = lanes[i];

@@ -24,8 +24,8 @@ mod tile;
 
 pub use gbuffer::{GBuffer, Surface, Window};
 pub use layers::Layers;
-pub use scene::Scene;
-pub use settings::{Background, Lights, RenderError, RenderSettings, Style, Transfer};
 #[doc(hidden)]
 pub use march::CNT;
+pub use scene::Scene;
+pub use settings::{Background, Lights, RenderError, RenderSettings, Style, Transfer};
 pub use slice::{Isolines, Slice, SliceSettings};

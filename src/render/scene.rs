@@ -173,8 +173,7 @@ impl Scene {
                 run.report(f64::from(done) / f64::from(across * down));
                 Ok(found)
             };
-            let tiles: Result<Vec<_>, Cancelled> =
-                (0..across).into_par_iter().map(traced).collect();
+            let tiles: Result<Vec<_>, Cancelled> = (0..across).into_par_iter().map(traced).collect();
             for (column, found) in (0..).zip(tiles?) {
                 let Window { width, .. } = tile(column);
                 let rows = surfaces.chunks_mut(window.width as usize).zip(found.chunks(width as usize));

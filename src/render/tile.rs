@@ -36,7 +36,6 @@ struct Sheaf {
     inside: bool,
 }
 
-
 /// The rays of a tile that are still under way, a word a row.
 struct Alive([u64; TILE as usize]);
 

@@ -16,7 +16,7 @@
 //! With a tolerance of t, triangles of a smooth convex surface of curvature K number at least
 //! `N = ∫√K dA / (1.5·√3·t)` (each equilateral in the metric of the curvature, its error being half
 //! of its squared circumradius). Rings of right triangles come to 1.30·N where all goes by the
-//! formula; measured on spheres and ellipsoids they take 1.3 to 1.6·N.
+//! formula; measured, they take 1.38·N on a sphere and 1.64·N on an ellipsoid of 1 : 2 : 3.
 
 use std::collections::HashMap;
 

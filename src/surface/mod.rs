@@ -16,6 +16,7 @@ mod parametric;
 mod parametric_curve;
 mod patch;
 mod points;
+mod polar;
 mod sampling;
 mod spacing;
 mod stitch;

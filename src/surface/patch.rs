@@ -2,13 +2,10 @@
 //!
 //! Rows run along the meridian, columns along the equator; a ring (torus) closes both ways.
 
-use std::f64::consts::PI;
-
 use glam::{DVec2, DVec3};
 
 use super::adaptive;
-use super::angle::sin_cos;
-use super::curve::{By, Curve};
+use super::curve::By;
 use super::parametric::{ParametricSurface, Shape};
 use super::spacing::{Arc, Sample};
 use super::stitch::{End, Knot, Knots, Layout, stitch};
@@ -38,8 +35,9 @@ pub enum Spacing {
     EqualArc,
     /// As few as keep the mesh within this distance (length units) of the surface; `rows` and
     /// `columns` are not used. Rings have as many vertices as each needs, so that there are
-    /// triangles only, 1.3 to 1.6 times the least number possible on a smooth convex surface.
-    /// 10⁻⁶ to 0.3 of the size. (Barr's two sheets along x keep rows and columns.)
+    /// triangles only: 1.4 times (sphere) to 1.65 times (ellipsoid of 1 : 2 : 3) the least number possible.
+    /// 10⁻⁶ to 0.3 of the size. (Barr's two sheets along x are even grids of rows and columns,
+    /// as many as it takes, at most 1024 rows.)
     Chord(f64),
 }
 
@@ -135,6 +133,7 @@ impl ParametricSurface {
     /// A setting out of its range.
     pub fn quad_mesh(&self, settings: &PatchSettings) -> Result<QuadMesh, PatchError> {
         settings.check(self.shape)?;
+        let mut settings = *settings;
         let mut mesh = QuadMesh::default();
         for sheet in std::iter::once(*self).chain(self.other_sheet()) {
             if let Spacing::Chord(tolerance) = settings.spacing {
@@ -143,12 +142,13 @@ impl ParametricSurface {
                 if !(least..=most).contains(&tolerance) {
                     return Err(PatchError::Tolerance { value: tolerance, least, most });
                 }
-                if !matches!(self.shape, Shape::BarrBowl { .. }) {
+                let Shape::BarrBowl { end, e1, e2 } = self.shape else {
                     adaptive::append(&sheet, tolerance, &mut mesh)?;
                     continue;
-                }
+                };
+                [settings.rows, settings.columns] = sheet.polar_counts([end, e1, e2], tolerance);
             }
-            let grid = Grid::new(&sheet, settings);
+            let grid = Grid::new(&sheet, &settings);
             stitch(&grid, grid.layout(), &mut mesh);
         }
         Ok(mesh)
@@ -248,22 +248,5 @@ impl ParametricSurface {
             return knot;
         }
         Knot { sides: meridian.sides.map(|m| equator.sides.map(|e| normal(m, e))), ..knot }
-    }
-
-    /// Barr's bowl about its apex. At `x/a₁ = ξ` the logarithm of ξ, the sum of those of the two
-    /// secants, is divided between them by the squared cosine and sine of the column's angle.
-    fn polar_knot(&self, [end, e1, e2]: [f64; 3], row: f64, column: f64) -> Knot {
-        let (sin, cos) = sin_cos((2.0 * column - 1.0) * PI);
-        let log = end.ln() * row * row;
-        let curve = |e: f64, share: f64| Curve::at_secant(e, (log * share * share).exp(), share);
-        // In this order columns run anticlockwise about the apex, seen from outside.
-        let (m, n) = (curve(e1, sin), curve(e2, cos));
-        let mut point = self.point_of(m.point, n.point);
-        if row == 1.0 {
-            // On the clipping plane, which the product of the two secants leaves by some rounding.
-            point.x = (end * self.semi_axes().x).copysign(point.x);
-        }
-        let normal = self.normal_of(m.normal, n.normal, n.point);
-        Knot::smooth(point, normal, DVec2::new(column, row))
     }
 }

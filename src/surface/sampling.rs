@@ -97,7 +97,7 @@ impl<'a> Cells<'a> {
         });
         // Two pieces each way of a cell: the curves at their ends are shared by whole rows.
         let points = [(&surface.meridian, &lines[0]), (&surface.equator, &lines[1])].map(|(curve, line)| {
-            let at = |i: usize| if i % 2 == 0 { line[i / 2] } else { 0.5 * (line[i / 2] + line[i / 2 + 1]) };
+            let at = |i: usize| if i.is_multiple_of(2) { line[i / 2] } else { 0.5 * (line[i / 2] + line[i / 2 + 1]) };
             (0..=2 * CELLS).map(|i| curve.at(at(i), By::Even).point).collect::<Vec<DVec2>>()
         });
         let corner = |i: usize, j: usize| surface.point_of(points[0][i], points[1][j]);

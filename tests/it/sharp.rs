@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use glam::{DQuat, DVec3};
-use rvachev::{CellSize, Features, Mesh, MeshSettings, Solid};
+use rvachev::{AtBounds, Bounds, CellSize, Features, Mesh, MeshSettings, MeshingError, Solid};
 
 use crate::models;
 use crate::support::Random;
@@ -90,8 +90,7 @@ impl std::fmt::Display for Statistics {
 fn mesh(solid: &Solid, cell: f64, features: Features) -> Mesh {
     let mesh = solid.mesh(&MeshSettings { cell: CellSize::Length(cell), features, ..MeshSettings::default() }).unwrap();
     let report = mesh.check();
-    assert!(report.is_closed() && report.is_manifold(), "{report:?}");
-    assert_eq!((report.duplicate_vertices, report.unused_vertices), (0, 0));
+    assert!(report.is_sound(), "{report:?}");
     mesh
 }
 
@@ -219,9 +218,104 @@ fn edges_of_a_body() {
     println!("M2, {} points on edges, sharp:  {}", points.len(), edges[0]);
     println!("M2, edges, smooth: {}", edges[1]);
     println!("M2, surface, sharp:  {}; {} triangles", surface[0], sharp.triangles().len());
+    {
+        let e = surface_errors(&sharp, &model.solid, cell);
+        let mut o: Vec<usize> = (0..e.len()).collect();
+        o.sort_by(|a, b| e[*b].total_cmp(&e[*a]));
+        let on_edges = smooth.positions().len() as u32;
+        println!(
+            "sum sq top100 {} all {}",
+            o[..100].iter().map(|&n| e[n] * e[n]).sum::<f64>(),
+            e.iter().map(|x| x * x).sum::<f64>()
+        );
+        let prog = model.solid.surface_program().unwrap();
+        for &n in o.iter().take(40).chain(o.iter().skip(100).take(10)).chain(o.iter().skip(1000).take(10)) {
+            let t = sharp.triangles()[n];
+            let g: Vec<_> = t
+                .iter()
+                .map(|&i| {
+                    let p = sharp.positions()[i as usize].as_dvec3();
+                    let (v, g) = prog.gradient(p);
+                    format!(
+                        "{}{:.3} {:.2}",
+                        if i >= on_edges { "F" } else { "e" },
+                        v / g.length() / cell,
+                        g.normalize()
+                    )
+                })
+                .collect();
+            println!("{:.3} {t:?} {:.2} {g:?}", e[n], sharp.positions()[t[0] as usize] / cell as f32);
+        }
+    }
     println!("M2, surface, smooth: {}; {} triangles", surface[1], smooth.triangles().len());
     assert!(edges[0].median <= 0.005 && edges[0].part90 <= 0.05, "{}", edges[0]);
     assert!(edges[0].median < edges[1].median && edges[0].part90 < edges[1].part90);
     assert!(edges[0].rms < edges[1].rms && edges[0].max < edges[1].max);
     assert!(surface[0].rms <= 0.006, "{}", surface[0]);
+}
+
+#[test]
+fn a_smooth_solid_is_the_same_in_both_modes() {
+    for solid in [Solid::sphere(1.0), Solid::torus(1.0, 0.4), Solid::superellipsoid(DVec3::ONE, 1.0, 0.8)] {
+        assert_eq!(mesh(&solid, 0.04, Features::Sharp), mesh(&solid, 0.04, Features::Smooth));
+    }
+}
+
+#[test]
+fn normals_at_creases_are_those_of_the_faces() {
+    let mesh = mesh(&Solid::cuboid(DVec3::splat(2.0)).rotate_x(0.3).rotate_z(0.5), 0.11, Features::Sharp);
+    let corners = mesh.corner_normals().expect("a cube has creases");
+    let mut astray = 0;
+    for (triangle, normals) in mesh.triangles().iter().zip(corners) {
+        let [a, b, c] = triangle.map(|i| mesh.positions()[i as usize].as_dvec3());
+        let face = (b - a).cross(c - a).normalize();
+        astray += usize::from(normals.iter().any(|normal| normal.as_dvec3().dot(face) < 0.999));
+    }
+    println!("corner normals: {astray} of {} triangles are not flat", corners.len());
+    assert!(astray * 50 < corners.len(), "{astray} of {}", corners.len());
+    // A smooth solid has a normal for each vertex and no more.
+    let ball = Solid::sphere(1.0).mesh(&MeshSettings::default()).unwrap();
+    assert!(ball.corner_normals().is_none() && ball.normals().is_some());
+}
+
+#[test]
+fn caps_are_flat_and_sharp_or_an_error() {
+    let bounds = Bounds::new(DVec3::new(-2.0, -2.0, -0.313), DVec3::new(2.0, 2.0, 0.427));
+    let settings = MeshSettings { cell: CellSize::Length(0.07), bounds: Some(bounds), ..MeshSettings::default() };
+    let mesh = Solid::sphere(1.0).mesh(&settings).unwrap();
+    assert!(mesh.check().is_sound());
+    let exact = std::f64::consts::PI * (0.74 - (0.427f64.powi(3) + 0.313f64.powi(3)) / 3.0);
+    assert!((mesh.volume() / exact - 1.0).abs() < 2e-3, "{} {exact}", mesh.volume());
+    let rim = |z: f64| DVec3::new((1.0 - z * z).sqrt(), 0.0, z);
+    let nearness = Nearness::new(&mesh, 0.07);
+    for n in 0..500 {
+        let turn = DQuat::from_rotation_z(f64::from(n) / 79.0);
+        for z in [-0.313, 0.427] {
+            assert!(nearness.distance(turn * rim(z)) < 0.2, "{n}: {}", nearness.distance(turn * rim(z)));
+        }
+    }
+    let refused = MeshSettings { at_bounds: AtBounds::Refuse, ..settings.clone() };
+    match Solid::sphere(1.0).mesh(&refused) {
+        Err(MeshingError::LeavesBounds { at }) => {
+            assert!(at.length() < 1.0 && (at.z + 0.313).abs().min((at.z - 0.427).abs()) < 1e-3, "{at}");
+        }
+        other => panic!("{other:?}"),
+    }
+    // Touching the bounds is not leaving them.
+    let flush = MeshSettings { bounds: Some(Bounds::from_center(DVec3::ZERO, DVec3::splat(0.5))), ..refused };
+    assert!(Solid::cuboid(DVec3::ONE).mesh(&flush).is_ok());
+}
+
+#[test]
+fn owners_are_the_leaves() {
+    let solid = Solid::cuboid(DVec3::splat(2.0)) - Solid::cylinder(0.5, 4.0);
+    let settings = MeshSettings { cell: CellSize::Length(0.1), owners: true, ..MeshSettings::default() };
+    let mesh = solid.mesh(&settings).unwrap();
+    let owners = mesh.owners().expect("they are asked for");
+    let mut right = 0;
+    for (triangle, &owner) in mesh.triangles().iter().zip(owners) {
+        let middle = triangle.iter().map(|&i| mesh.positions()[i as usize].as_dvec3()).sum::<DVec3>() / 3.0;
+        right += usize::from((middle.truncate().length() < 0.6) == (owner == 1));
+    }
+    assert!(right * 100 > 99 * owners.len(), "{right} of {}", owners.len());
 }

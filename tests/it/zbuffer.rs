@@ -509,7 +509,9 @@ fn like_for_like(view: &RasterView, meshes: &[&Mesh], tree: &Csg, solid: &Solid,
                 // An edge of the result may pass between the two.
                 let next = |dx: i32, dy: i32| buffers.id(x.wrapping_add_signed(dx), y.wrapping_add_signed(dy));
                 let around = [next(1, 0), next(-1, 0), next(0, 1), next(0, -1)];
-                let same = |other: &Option<rvachev::SurfaceId>| other.is_some_and(|o| (o.operand, o.facing) == (id.operand, id.facing));
+                let same = |other: &Option<rvachev::SurfaceId>| {
+                    other.is_some_and(|o| (o.operand, o.facing) == (id.operand, id.facing))
+                };
                 assert!(!around.iter().all(same), "({x}, {y}): {off:e}, {tolerance:e} allowed");
                 silhouettes += 1;
                 continue;

@@ -133,7 +133,11 @@ impl<'a> Parts<'a> {
             }
             Ok::<(), ExtractError>(())
         })?;
-        Ok(Mesh::new(positions, triangles)?.with_normals(normals)?)
+        if fans.fans.is_empty() {
+            return Ok(Mesh::new(positions, triangles)?.with_normals(normals)?);
+        }
+        let corners = fans.corner_normals(&positions, &normals, &triangles);
+        Ok(Mesh::new(positions, triangles)?.with_normals(normals)?.with_corner_normals(corners)?)
     }
 
     /// The triangles of block `n`: those of the table, in the order of its cells, then those of its

@@ -32,7 +32,15 @@
 //! planes rounded, rounding keeps order, and feature points are moved strictly between the rounded
 //! planes.
 //!
-//! Cells with several loops and ambiguous faces stay as the table has them.
+//! An ambiguous face has two segments, and x may be in the way of the other: there the edge of the
+//! closer segment is turned if x is on the near side of the other one, with more than the rounding to
+//! spare, and the other is not. [Regions](super::region) have fans as well; between those the line a–b
+//! need not go through the face of the segment, and the edge is turned only where it does. That
+//! also keeps two fans from having two edges in common.
+//!
+//! Limits: cells with several loops stay as the table has them, or as that of the opposite case
+//! (see [`joined`](super::joined)). Where a crease passes an empty cell and no region comes about, it is
+//! cut off by what it goes into that cell, up to half a cell or more.
 
 use std::collections::HashSet;
 use std::ops::Range;
@@ -50,6 +58,9 @@ use crate::mesh::loops::{CellLoop, LONGEST};
 use crate::mesh::signs::for_each_cell;
 use crate::mesh::table::CaseTable;
 use crate::run::{Cancelled, Run};
+
+/// A normal that is farther from that of its triangle than 45° is of another side: the cosine.
+const ASTRAY: f32 = 0.7;
 
 /// A segment of a loop: from a vertex to that of the next segment.
 #[derive(Clone, Copy)]
@@ -263,6 +274,39 @@ impl Fans {
                 [centres + nth as u32, segment.from, end]
             })
         })
+    }
+
+    /// The normals at the corners of all triangles: at feature points that of the triangle's side,
+    /// elsewhere that of the vertex, which lies on one side.
+    pub(super) fn corner_normals(
+        &self,
+        positions: &[Vec3],
+        normals: &[Vec3],
+        triangles: &[[u32; 3]],
+    ) -> Vec<[Vec3; 3]> {
+        let centres = (positions.len() - self.fans.len()) as u32;
+        let own = |vertex: u32| normals[vertex as usize];
+        // The normal close to a fan's point, on the side of a vertex.
+        let close = |fan: u32, vertex: u32| {
+            let segments = &self.fans[fan as usize].segments;
+            segments.iter().find(|segment| segment.from == vertex).map_or(Vec3::ZERO, |segment| segment.normal)
+        };
+        let corners = |&[a, b, c]: &[u32; 3]| {
+            if a < centres {
+                return [own(a), own(b), own(c)];
+            }
+            let [p, q, r] = [a, b, c].map(|vertex| positions[vertex as usize]);
+            let face = (q - p).cross(r - p).normalize_or_zero();
+            let near = close(a - centres, b);
+            let given = if c >= centres {
+                [near, own(b), close(c - centres, b)]
+            } else {
+                [(near + close(a - centres, c)).normalize_or_zero(), own(b), own(c)]
+            };
+            // A vertex on the crease itself may have the normal of the other side.
+            given.map(|normal| if normal.dot(face) > ASTRAY { normal } else { face })
+        };
+        triangles.par_iter().map(corners).collect()
     }
 
     /// Finds out which edges between fans are turned.

@@ -61,7 +61,7 @@ impl ControlGrid {
         if rows.checked_mul(columns) != Some(points.len()) {
             return Err(SubdivisionError::Grid { points: points.len(), rows, columns });
         }
-        let bad = |p: &DVec3| p.to_array().into_iter().find(|c| !(c.abs() <= 1e12));
+        let bad = |p: &DVec3| p.to_array().into_iter().find(|c| c.is_nan() || c.abs() > 1e12);
         if let Some((index, value)) = points.iter().enumerate().find_map(|(i, p)| bad(p).map(|c| (i, c))) {
             return Err(SubdivisionError::Coordinate { index, value });
         }

@@ -58,7 +58,7 @@ pub(super) mod sealed {
             Vec::len(self)
         }
         fn bad_coordinate(&self) -> Option<(usize, f64)> {
-            let bad = |p: &[f64; N]| p.iter().copied().find(|c| !(c.abs() <= super::LARGEST));
+            let bad = |p: &[f64; N]| p.iter().copied().find(|c| c.is_nan() || c.abs() > super::LARGEST);
             self.iter().enumerate().find_map(|(i, p)| bad(p).map(|c| (i, c)))
         }
         fn refined(&self, closed: bool, mask: [f64; 2], to: &mut Self) {
