@@ -7,13 +7,9 @@ mod lattice;
 mod loops;
 mod paint;
 mod qef;
-<<<<<<< HEAD
-mod roots;
-=======
 mod resolve;
 mod roots;
 mod settings;
->>>>>>> 4ff4ae6e5719d34b35b802a4a71b63df01fd9069
 mod signs;
 mod solid;
 mod table;

@@ -83,20 +83,6 @@ impl Solid {
         let programs = compiled(&solid)?;
         let run = run.stage(0.0, 1.0);
         run.install(|| {
-<<<<<<< HEAD
-            let grid = Grid {
-                origin: lattice.origin(),
-                side: lattice.step() * BLOCK as f64,
-                blocks: lattice.cells().map(|cells| cells.div_ceil(BLOCK as u32)),
-            };
-            let found = surface_blocks(&programs.surface, &grid, 0.0, &run.stage(0.0, 0.3))?;
-            let blocks: Vec<[u32; 3]> = found.iter().map(|b| b.index.map(|i| i * BLOCK as u32)).collect();
-            let programs = found.into_iter().map(|b| b.program).collect();
-            let sampler = SolidSampler::new(&lattice, &blocks, programs);
-            let mesh = extract(&sampler, &lattice, &blocks, settings.features, &run.stage(0.3, 1.0))?;
-            // A mesh has the paint of its solid, if there is any.
-            if solid.palette()?.is_painted() { Ok(mesh.painted(&solid, Paint::default())?) } else { Ok(mesh) }
-=======
             let mut lattice = Lattice::new(&bounds, settings.cell)?;
             let mut blocks = Blocks::find(&programs.surface, &lattice, &run.stage(0.0, 0.3))?;
             let (mut unresolved, mut halvings) = (None, 0);
@@ -117,15 +103,19 @@ impl Solid {
             if let (AtBounds::Refuse, Some(given)) = (settings.at_bounds, &settings.bounds) {
                 self.refuse_caps(&mesh, given, lattice.step())?;
             }
-            if settings.owners {
+            // A mesh has the paint of its solid, if there is any, by the owners of its triangles.
+            let painted = solid.palette()?.is_painted();
+            if settings.owners || painted {
                 let owners = mesh.triangles().par_iter().map(|&triangle| sampler.owner(&mesh, triangle)).collect();
                 mesh = mesh.with_owners(owners).map_err(ExtractError::from)?;
+            }
+            if painted {
+                mesh = mesh.painted(&solid, Paint::default())?;
             }
             Ok(match unresolved {
                 Some(count) => mesh.with_unresolved_cells(count),
                 None => mesh,
             })
->>>>>>> 4ff4ae6e5719d34b35b802a4a71b63df01fd9069
         })
     }
 
