@@ -107,7 +107,7 @@ impl sealed::Colors for Option<u32> {
 impl Colors for Vec3 {}
 impl sealed::Colors for Vec3 {
     fn encode(image: &Image<Self>) -> io::Result<(Vec<u8>, ExtendedColorType)> {
-        if let Some(far) = image.pixels().iter().find(|n| !(n.abs().max_element() <= 1.0001)) {
+        if let Some(far) = image.pixels().iter().find(|n| !n.is_finite() || n.abs().max_element() > 1.0001) {
             return Err(io::Error::other(format!("a pixel is {far}; allowed in a PNG: −1 to 1")));
         }
         let level = |c: f32| ((0.5 + 0.5 * c).clamp(0.0, 1.0) * 65535.0).round() as u16;

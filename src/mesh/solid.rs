@@ -13,7 +13,7 @@ use super::signs::{BLOCK, EdgeRef, NODES, SIDE};
 use crate::eval::{Evaluator, Gradients, Program, Tape, compiled};
 use crate::geom::Mesh;
 use crate::space::{Grid, surface_blocks};
-use crate::{Bounds, Cancelled, RFunction, Run, Solid, SolidError};
+use crate::{Bounds, Cancelled, Paint, RFunction, Run, Solid, SolidError};
 
 /// Why there is no mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -103,9 +103,14 @@ impl Solid {
             if let (AtBounds::Refuse, Some(given)) = (settings.at_bounds, &settings.bounds) {
                 self.refuse_caps(&mesh, given, lattice.step())?;
             }
-            if settings.owners {
+            // A mesh has the paint of its solid, if there is any, by the owners of its triangles.
+            let painted = solid.palette()?.is_painted();
+            if settings.owners || painted {
                 let owners = mesh.triangles().par_iter().map(|&triangle| sampler.owner(&mesh, triangle)).collect();
                 mesh = mesh.with_owners(owners).map_err(ExtractError::from)?;
+            }
+            if painted {
+                mesh = mesh.painted(&solid, Paint::default())?;
             }
             Ok(match unresolved {
                 Some(count) => mesh.with_unresolved_cells(count),

@@ -111,8 +111,9 @@ impl<'a> Obstacles<'a> {
             .enumerate()
             .map(|(i, spot)| self.rays(spot, i as u32, ORDER[pattern(i) % PATTERNS]))
             .collect();
-        let asks: Vec<Ask> = wanted.iter().flatten().map(|(ask, _)| *ask).collect();
-        let rays: Vec<(DVec3, DVec3)> = wanted.into_iter().flatten().map(|(_, ray)| ray).collect();
+        // Rays to one light side by side: they take the same way through space.
+        let (keys, skies): (Vec<_>, Vec<_>) = wanted.into_iter().flatten().partition(|(ask, _)| !ask.sky);
+        let (asks, rays): (Vec<Ask>, Vec<(DVec3, DVec3)>) = keys.into_iter().chain(skies).unzip();
         let hits = self.scene.first_hits(&rays);
         let mut counts = vec![[0u32; 2]; spots.len()];
         let mut hidden = vec![[0.0f32; 2]; spots.len()];

@@ -67,7 +67,7 @@ fn blends_mix() {
         let both = foot.union_with(&wall, blend);
         // Along a line from one operand to the other, red falls and blue rises.
         let at = |t: f64| {
-            let start = DVec3::new(t, 0.0, 1.0 - t) * 4.0;
+            let start = DVec3::new(2.0 + 4.0 * t, 0.0, 6.0 - 4.0 * t);
             let hit = both.raycast(start, [-1.0, 0.0, -1.0]).unwrap().unwrap();
             both.paint_at(hit.point).unwrap().unwrap().color
         };

@@ -134,18 +134,17 @@ fn silhouette_and_leaves_in_ascii() {
     let owner = solid.layers(&slanted, 26, 13).unwrap().owner();
     let found = ascii(&owner, |o| o.map_or(' ', |o| ['o', 'x'][o as usize]));
     let expected = "
-          oooooo
+           oooo
+         oooooooo
         oooooooooo
-       oooooooooooo
-      oooooooooooooo
-      ooooxxxxxxoooo
-      oooo      oooo
-      oooo      oooo
-      oooo      oooo
-      oooooooooooooo
-       oooooooooooo
         oooooooooo
-          oooooo
+        oooooooooo
+        ooo    ooo
+        oooxxxxooo
+        oooxxxxooo
+        oooooooooo
+         oooooooo
+           oooo
 ";
     assert!(found.trim_matches('\n') == expected.trim_matches('\n'), "found:\n{found}");
 }
@@ -237,10 +236,12 @@ fn fitted_cameras_hold_every_point_tightly() {
                     let part = pixel / DVec2::new(600.0 * aspect, 600.0);
                     (least, most) = (least.min(part), most.max(part));
                 }
-                // Within, centred, and one of the two directions filled.
+                // Within, and one of the two directions filled.
                 assert!(least.min_element() > 0.02 && most.max_element() < 0.98, "{view:?} {least} {most}");
                 assert!((most - least).max_element() > 0.93, "{view:?} {aspect} {least} {most}");
-                assert!((least + most - 1.0).abs().max_element() < 0.02, "{view:?} {aspect} {least} {most}");
+                // What is not filled is centred in space, which depth shifts in a picture.
+                let off = (least + most - 1.0).abs().max_element();
+                assert!(off < if lens.parallel { 1e-9 } else { 0.2 }, "{view:?} {aspect} {least} {most}");
             }
         }
     }
