@@ -319,3 +319,32 @@ fn owners_are_the_leaves() {
     }
     assert!(right * 100 > 99 * owners.len(), "{right} of {}", owners.len());
 }
+
+#[test]
+#[ignore = "a timing"]
+fn cost_of_features() {
+    let run = rvachev::Run { threads: 1, ..rvachev::Run::default() };
+    for (model, across) in models::all().into_iter().flat_map(|model| [(model.clone(), 128.0), (model, 256.0)]) {
+        let cell = CellSize::Length(2.0 * model.half / across);
+        let time = |features| {
+            let settings = MeshSettings { cell, bounds: Some(model.cube()), features, ..MeshSettings::default() };
+            let start = std::time::Instant::now();
+            let mesh = model.solid.mesh_with(&settings, &run).unwrap();
+            (start.elapsed().as_secs_f64(), mesh.triangles().len())
+        };
+        // Alternating, the least of each: other work on the machine falls on both.
+        let (mut least, mut triangles) = ([f64::INFINITY; 2], [0; 2]);
+        for _ in 0..7 {
+            for (n, features) in [Features::Smooth, Features::Sharp].into_iter().enumerate() {
+                let (seconds, count) = time(features);
+                least[n] = least[n].min(seconds);
+                triangles[n] = count;
+            }
+        }
+        let [smooth, sharp] = least;
+        println!(
+            "{} at {across}: smooth {:.1} ms, sharp {:.1} ms, ratio {:.2}; triangles {triangles:?}",
+            model.name, 1e3 * smooth, 1e3 * sharp, sharp / smooth
+        );
+    }
+}
