@@ -45,7 +45,7 @@ mod join;
 mod neighbours;
 
 /// Blocks whose roots are found together. Small enough for threads to share work evenly.
-pub(super) const BATCH: usize = 64;
+pub(super) const BATCH: usize = 256;
 
 /// What the extractor asks of a surface.
 pub(crate) trait Sampler: Sync {
