@@ -1,9 +1,9 @@
 //! fidget-mesh on a model.
 
 use fidget::context::Tree;
+use fidget::render::ThreadPool;
 use fidget::vm::VmShape;
 use fidget_mesh::{Octree, Settings};
-use fidget::render::ThreadPool;
 
 use crate::lean::lean;
 use crate::measure::{Cost, measured};

@@ -11,13 +11,19 @@
 //!      a *-----* b
 //! ```
 
+mod attributes;
+mod measure;
+
 use glam::{DVec3, Vec3};
 
+use self::attributes::Attributes;
 use crate::bounds::Bounds;
 
-/// A triangle mesh: positions, triangles that index them, and perhaps a normal per vertex.
+/// A triangle mesh: positions and triangles that index them, and perhaps normals per vertex
+/// and per corner, colours and texture coordinates per corner, owners per triangle.
 ///
 /// Every index is in range and every position finite; nothing else is promised.
+/// [`Mesh::check`] tells the rest.
 ///
 /// ```
 /// use glam::Vec3;
@@ -33,7 +39,7 @@ use crate::bounds::Bounds;
 pub struct Mesh {
     positions: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
-    normals: Option<Vec<Vec3>>,
+    attributes: Attributes,
 }
 
 /// Why a mesh cannot be built from the given parts.
@@ -66,6 +72,26 @@ pub enum MeshError {
         /// Number of vertices.
         vertices: usize,
     },
+    /// Values for corners or triangles are not as many as the triangles.
+    #[error("{what} for {given} triangles, but there are {triangles}; every triangle needs them")]
+    Corners {
+        /// What the values are.
+        what: &'static str,
+        /// Number of triangles that they are given for.
+        given: usize,
+        /// Number of triangles.
+        triangles: usize,
+    },
+    /// A value at a corner is NaN or infinite.
+    #[error("the {what} at corner {corner} of triangle {triangle} is not finite")]
+    NotFinite {
+        /// What the value is.
+        what: &'static str,
+        /// The triangle, counted from 0.
+        triangle: usize,
+        /// Its corner, 0 to 2.
+        corner: usize,
+    },
 }
 
 impl Mesh {
@@ -84,21 +110,7 @@ impl Mesh {
                 return Err(MeshError::Index { triangle, index, vertices });
             }
         }
-        Ok(Mesh { positions, triangles, normals: None })
-    }
-
-    /// The same mesh with a unit normal per vertex, pointing out of the solid, in place of
-    /// any that it had.
-    ///
-    /// # Errors
-    ///
-    /// [`MeshError::Normals`] if their number is not that of the vertices.
-    pub fn with_normals(mut self, normals: Vec<Vec3>) -> Result<Mesh, MeshError> {
-        if normals.len() != self.positions.len() {
-            return Err(MeshError::Normals { normals: normals.len(), vertices: self.positions.len() });
-        }
-        self.normals = Some(normals);
-        Ok(self)
+        Ok(Mesh { positions, triangles, attributes: Attributes::default() })
     }
 
     /// The positions of the vertices, in length units.
@@ -113,55 +125,10 @@ impl Mesh {
         &self.triangles
     }
 
-    /// The unit normals of the vertices, if the mesh has them.
-    #[must_use]
-    pub fn normals(&self) -> Option<&[Vec3]> {
-        self.normals.as_deref()
-    }
-
     /// The corners of a triangle of this mesh, in f64.
     #[must_use]
     pub(crate) fn corners(&self, triangle: [u32; 3]) -> [DVec3; 3] {
         triangle.map(|i| self.positions[i as usize].as_dvec3())
-    }
-
-    /// The enclosed volume by the divergence theorem, in cubic length units: Σ a·(b × c) / 6
-    /// over the triangles. Positive if they face outward. Without meaning for an open mesh.
-    #[must_use]
-    pub fn volume(&self) -> f64 {
-        self.volume_and_moment().0
-    }
-
-    /// The centroid of the enclosed volume; `None` if that volume is 0.
-    #[must_use]
-    pub fn centroid(&self) -> Option<DVec3> {
-        let (volume, moment) = self.volume_and_moment();
-        (volume != 0.0).then(|| self.bounds().center() + moment / volume)
-    }
-
-    /// Volume, and first moment about the centre of the bounds. The tetrahedra are spanned
-    /// from that centre: from a far origin their large volumes would cancel.
-    fn volume_and_moment(&self) -> (f64, DVec3) {
-        let origin = self.bounds().center();
-        let mut volume = 0.0;
-        let mut moment = DVec3::ZERO;
-        for &t in &self.triangles {
-            let [a, b, c] = self.corners(t).map(|p| p - origin);
-            let six = a.dot(b.cross(c));
-            volume += six;
-            moment += (a + b + c) * six;
-        }
-        (volume / 6.0, moment / 24.0)
-    }
-
-    /// The total area of the triangles, in square length units.
-    #[must_use]
-    pub fn area(&self) -> f64 {
-        let twice = |&t: &[u32; 3]| {
-            let [a, b, c] = self.corners(t);
-            (b - a).cross(c - a).length()
-        };
-        self.triangles.iter().map(twice).sum::<f64>() / 2.0
     }
 
     /// The smallest box that holds all vertices; [`Bounds::EMPTY`] without any.
@@ -197,13 +164,19 @@ mod tests {
         let middle = DVec3::splat(4096.0) + DVec3::new(1.0, 1.5, 2.0);
         assert!((mesh.centroid().unwrap() - middle).length() < 1e-12);
         assert_eq!(mesh.bounds().size(), DVec3::new(2.0, 3.0, 4.0));
+        // m (b² + c²) / 12, and no product of inertia.
+        let inertia = mesh.inertia().unwrap();
+        for (k, exact) in [2.0 * 25.0, 2.0 * 20.0, 2.0 * 13.0].into_iter().enumerate() {
+            assert!((inertia.col(k)[k] - exact).abs() < 1e-11);
+            assert!(inertia.col(k)[(k + 1) % 3].abs() < 1e-11);
+        }
     }
 
     #[test]
     fn empty() {
         let mesh = Mesh::default();
         assert_eq!(mesh.volume(), 0.0);
-        assert_eq!(mesh.centroid(), None);
+        assert_eq!((mesh.centroid(), mesh.inertia()), (None, None));
         assert_eq!(mesh.bounds(), Bounds::EMPTY);
     }
 

@@ -19,6 +19,9 @@
 //!    the case table. The vertex of an edge has the number of its row's first one and the
 //!    count of crossed edges between them, in the own block or in a neighbour.
 //!
+//! In between, [`sharp`] finds the cells that hold creases and corners, if it is asked to; they
+//! have fans of triangles in the second pass, whose centres follow the vertices on edges.
+//!
 //! Between the two, the signs in the faces of the blocks are compared, which makes the mesh
 //! closed: wherever a sign changes in a face, the block on the other side must be there and
 //! have the same signs.
@@ -30,11 +33,13 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use self::join::Parts;
 use self::neighbours::Neighbours;
+use super::Features;
+use super::feature::Slope;
 use super::lattice::Lattice;
 use super::signs::{EdgeRef, NODES, Rows, Signs, for_each_cell, list_edges};
 use super::table::CaseTable;
@@ -42,7 +47,11 @@ use crate::geom::{Mesh, MeshError};
 use crate::run::{Cancelled, Run};
 
 mod join;
+mod joined;
 mod neighbours;
+mod region;
+mod samples;
+mod sharp;
 
 /// Blocks whose roots are found together. Small enough for threads to share work evenly.
 pub(super) const BATCH: usize = 256;
@@ -63,6 +72,20 @@ pub(crate) trait Sampler: Sync {
     /// Where the surface crosses edges, in the order of their blocks. `out` is as long as
     /// `edges`.
     fn roots(&self, scratch: &mut Self::Scratch, edges: &[EdgeRef], out: &mut [Root]);
+
+    /// Adds values and gradients of the field at points of a block, in the order of the points,
+    /// to `out`; whether it did. The default knows of none: features are placed by the normals of
+    /// the roots alone.
+    fn slopes(
+        &self,
+        _scratch: &mut Self::Scratch,
+        _number: usize,
+        _block: [u32; 3],
+        _points: &[DVec3],
+        _out: &mut Vec<Slope>,
+    ) -> bool {
+        false
+    }
 }
 
 /// Where the surface crosses an edge.
@@ -112,6 +135,7 @@ pub(crate) fn extract<S: Sampler>(
     sampler: &S,
     lattice: &Lattice,
     blocks: &[[u32; 3]],
+    features: Features,
     run: &Run,
 ) -> Result<Mesh, ExtractError> {
     run.install(|| {
@@ -119,7 +143,7 @@ pub(crate) fn extract<S: Sampler>(
         let batches = sample_all(sampler, lattice, blocks, &run.stage(0.0, 0.9))?;
         let parts = Parts::new(blocks, neighbours, batches)?;
         parts.check_faces()?;
-        let mesh = parts.join(&run.stage(0.9, 1.0))?;
+        let mesh = parts.join(sampler, lattice, features, &run.stage(0.9, 1.0))?;
         run.report(1.0);
         Ok(mesh)
     })

@@ -2,8 +2,14 @@
 
 mod check;
 mod extract;
+mod feature;
 mod lattice;
+mod loops;
+mod paint;
+mod qef;
+mod resolve;
 mod roots;
+mod settings;
 mod signs;
 mod solid;
 mod table;
@@ -11,5 +17,6 @@ mod volume;
 
 pub use check::MeshReport;
 pub use lattice::{CellSize, Lattice, LatticeError};
-pub use solid::{MeshSettings, MeshingError};
+pub use settings::{AtBounds, Features, MeshSettings, ThinFeatures};
+pub use solid::MeshingError;
 pub use volume::{Volume, VolumeError, VolumeSettings};

@@ -61,6 +61,12 @@ impl Signs {
         self.0[SIDE * k + j]
     }
 
+    /// The case of a cell.
+    pub(super) fn case(&self, [i, j, k]: [usize; 3]) -> u8 {
+        let rows = [self.row(j, k), self.row(j + 1, k), self.row(j, k + 1), self.row(j + 1, k + 1)];
+        rows.iter().enumerate().fold(0, |case, (n, row)| case | (row >> i & 3) << (2 * n)) as u8
+    }
+
     /// The signs in the lower or upper face of an axis, nine rows of nine.
     pub(super) fn face(&self, axis: usize, upper: bool) -> [u16; SIDE] {
         let at = if upper { BLOCK } else { 0 };
@@ -107,9 +113,7 @@ impl Signs {
     pub(super) fn is_crossed(&self, axes: [bool; 3], [j, k]: [usize; 2]) -> bool {
         let row = self.row(j, k);
         let differs = |other: u16| (row ^ other) & OWNED_BITS != 0;
-        axes[0] && differs(row >> 1)
-            || axes[1] && differs(self.row(j + 1, k))
-            || axes[2] && differs(self.row(j, k + 1))
+        axes[0] && differs(row >> 1) || axes[1] && differs(self.row(j + 1, k)) || axes[2] && differs(self.row(j, k + 1))
     }
 }
 

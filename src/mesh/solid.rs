@@ -1,32 +1,19 @@
 //! Meshing a solid: `solid.mesh(..)`.
 
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
 use super::extract::{BATCH, ExtractError, Root, Sampler, extract};
+use super::feature::Slope;
 use super::lattice::{CellSize, Lattice, LatticeError};
+use super::resolve::unresolved_cells;
 use super::roots::RootFinder;
+use super::settings::{AtBounds, MeshSettings};
 use super::signs::{BLOCK, EdgeRef, NODES, SIDE};
-use crate::eval::{Evaluator, Program, Tape, compiled};
+use crate::eval::{Evaluator, Gradients, Program, Tape, compiled};
 use crate::geom::Mesh;
 use crate::space::{Grid, surface_blocks};
 use crate::{Bounds, Cancelled, RFunction, Run, Solid, SolidError};
-
-/// What to mesh.
-///
-/// ```
-/// use rvachev::{CellSize, MeshSettings, Solid};
-///
-/// let settings = MeshSettings { cell: CellSize::LongestSide(32), ..MeshSettings::default() };
-/// let mesh = Solid::sphere(1.0).mesh(&settings)?;
-/// assert!(mesh.check().is_closed());
-/// # Ok::<(), rvachev::MeshingError>(())
-/// ```
-#[derive(Clone, Debug, Default)]
-pub struct MeshSettings {
-    /// The resolution. Default: 128 cells along the longest side of the bounds.
-    pub cell: CellSize,
-    /// The box to mesh, in length units; where the solid leaves it, the mesh is that of
-    /// their intersection. Default (`None`): the box of the solid.
-    pub bounds: Option<Bounds>,
-}
 
 /// Why there is no mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -46,6 +33,12 @@ pub enum MeshingError {
     TooLarge {
         /// How many vertices the mesh would have.
         vertices: u64,
+    },
+    /// The solid leaves the bounds, and the settings do not want it cut.
+    #[error("the solid goes on beyond the bounds at {at}; allowed: a solid within them, or `AtBounds::Cap`")]
+    LeavesBounds {
+        /// A point of the boundary of the bounds that is inside the solid.
+        at: DVec3,
     },
     /// The extraction contradicts itself: a defect of this crate.
     #[error("internal error, please report it: {what}")]
@@ -87,21 +80,51 @@ impl Solid {
         if bounds.is_empty() {
             return Ok(Mesh::default());
         }
-        let lattice = Lattice::new(&bounds, settings.cell)?;
         let programs = compiled(&solid)?;
         let run = run.stage(0.0, 1.0);
         run.install(|| {
-            let grid = Grid {
-                origin: lattice.origin(),
-                side: lattice.step() * BLOCK as f64,
-                blocks: lattice.cells().map(|cells| cells.div_ceil(BLOCK as u32)),
-            };
-            let found = surface_blocks(&programs.surface, &grid, 0.0, &run.stage(0.0, 0.3))?;
-            let blocks: Vec<[u32; 3]> = found.iter().map(|b| b.index.map(|i| i * BLOCK as u32)).collect();
-            let programs = found.into_iter().map(|b| b.program).collect();
-            let sampler = SolidSampler::new(&lattice, &blocks, programs);
-            Ok(extract(&sampler, &lattice, &blocks, &run.stage(0.3, 1.0))?)
+            let mut lattice = Lattice::new(&bounds, settings.cell)?;
+            let mut blocks = Blocks::find(&programs.surface, &lattice, &run.stage(0.0, 0.3))?;
+            let (mut unresolved, mut halvings) = (None, 0);
+            if let Some(most) = settings.thin.halvings() {
+                loop {
+                    let count = unresolved_cells(&lattice, &blocks.cells, &blocks.programs, &run)?;
+                    unresolved = Some(count);
+                    if count == 0 || halvings == most {
+                        break;
+                    }
+                    halvings += 1;
+                    lattice = Lattice::new(&bounds, CellSize::Length(0.5 * lattice.step()))?;
+                    blocks = Blocks::find(&programs.surface, &lattice, &run.stage(0.0, 0.3))?;
+                }
+            }
+            let sampler = SolidSampler::new(&lattice, &blocks.cells, blocks.programs);
+            let mut mesh = extract(&sampler, &lattice, &blocks.cells, settings.features, &run.stage(0.3, 1.0))?;
+            if let (AtBounds::Refuse, Some(given)) = (settings.at_bounds, &settings.bounds) {
+                self.refuse_caps(&mesh, given, lattice.step())?;
+            }
+            if settings.owners {
+                let owners = mesh.triangles().par_iter().map(|&triangle| sampler.owner(&mesh, triangle)).collect();
+                mesh = mesh.with_owners(owners).map_err(ExtractError::from)?;
+            }
+            Ok(match unresolved {
+                Some(count) => mesh.with_unresolved_cells(count),
+                None => mesh,
+            })
         })
+    }
+
+    /// An error if a vertex on a face of the bounds is inside the solid.
+    fn refuse_caps(&self, mesh: &Mesh, given: &Bounds, step: f64) -> Result<(), MeshingError> {
+        // Vertices may be off by a thousandth of a cell.
+        let slack = 0.01 * step;
+        let program = &compiled(self)?.surface;
+        let inner = given.inflate(-slack);
+        let beyond = |p: &&Vec3| !inner.contains(p.as_dvec3()) && program.value(p.as_dvec3()) > slack;
+        match mesh.positions().iter().find(beyond) {
+            Some(at) => Err(MeshingError::LeavesBounds { at: at.as_dvec3() }),
+            None => Ok(()),
+        }
     }
 
     /// The solid cut to a box, if there is one and the solid leaves it, and the box that
@@ -118,6 +141,26 @@ impl Solid {
         }
         let cut = self.intersection(Solid::cuboid(size).translate(given.center()), RFunction::MIN_MAX);
         Ok((cut, own.intersection(given)))
+    }
+}
+
+/// The blocks that the surface may cross, each with its program.
+struct Blocks {
+    /// Their first cells; z first, ascending.
+    cells: Vec<[u32; 3]>,
+    programs: Vec<Program>,
+}
+
+impl Blocks {
+    fn find(program: &Program, lattice: &Lattice, run: &Run) -> Result<Blocks, Cancelled> {
+        let grid = Grid {
+            origin: lattice.origin(),
+            side: lattice.step() * BLOCK as f64,
+            blocks: lattice.cells().map(|cells| cells.div_ceil(BLOCK as u32)),
+        };
+        let found = surface_blocks(program, &grid, 0.0, run)?;
+        let cells = found.iter().map(|block| block.index.map(|i| i * BLOCK as u32)).collect();
+        Ok(Blocks { cells, programs: found.into_iter().map(|block| block.program).collect() })
     }
 }
 
@@ -144,6 +187,8 @@ struct Scratch {
     /// The tapes of the groups sampled since roots were asked for.
     tapes: Vec<(u32, Tape)>,
     finder: RootFinder,
+    single: [Vec<f32>; 3],
+    slopes: [Vec<f32>; 4],
     /// Edges in the order of their groups: their places, themselves, their roots.
     order: Vec<u32>,
     edges: Vec<EdgeRef>,
@@ -169,6 +214,17 @@ impl SolidSampler<'_> {
         let at = |node: usize, stride: usize| (node / stride % SIDE) as f64 * lattice.step();
         let pattern = [1, SIDE, SIDE * SIDE].map(|stride| (0..NODES).map(|n| at(n, stride) as f32).collect());
         SolidSampler { lattice, blocks, programs, groups, pattern }
+    }
+
+    /// The leaf that decides at the middle of a triangle.
+    fn owner(&self, mesh: &Mesh, triangle: [u32; 3]) -> u32 {
+        let middle = mesh.corners(triangle).into_iter().sum::<DVec3>() / 3.0;
+        let cell = (middle - self.lattice.origin()) / self.lattice.step();
+        let block = cell.to_array().map(|x| x.max(0.0) as u32 / BLOCK as u32 * BLOCK as u32);
+        let key = |[x, y, z]: [u32; 3]| [z, y, x];
+        // A triangle of several blocks has its middle in one of them.
+        let nth = self.blocks.binary_search_by_key(&key(block), |&block| key(block));
+        nth.map_or(0, |nth| self.programs[nth].deciding_leaf(middle))
     }
 
     /// A tape for the group that starts with a block.
@@ -217,7 +273,7 @@ impl Sampler for SolidSampler<'_> {
     }
 
     fn roots(&self, scratch: &mut Scratch, edges: &[EdgeRef], out: &mut [Root]) {
-        let Scratch { evaluator, tapes, finder, order, edges: sorted, roots } = scratch;
+        let Scratch { evaluator, tapes, finder, order, edges: sorted, roots, .. } = scratch;
         let group = |edge: &EdgeRef| self.groups[edge.block as usize];
         order.clear();
         order.extend(0..edges.len() as u32);
@@ -244,5 +300,47 @@ impl Sampler for SolidSampler<'_> {
             out[n as usize] = *root;
         }
         tapes.clear();
+    }
+
+    fn slopes(
+        &self,
+        scratch: &mut Scratch,
+        number: usize,
+        block: [u32; 3],
+        points: &[DVec3],
+        out: &mut Vec<Slope>,
+    ) -> bool {
+        let group = self.groups[number];
+        if scratch.tapes.last().is_none_or(|(last, _)| *last != group) {
+            scratch.tapes.clear();
+            scratch.tapes.push((group, self.tape(group)));
+        }
+        let Some((_, tape)) = scratch.tapes.last_mut() else { return false };
+        let node = |by: u32| self.lattice.node(block[0] + by, block[1] + by, block[2] + by);
+        let (low, high) = (node(0), node(BLOCK as u32));
+        tape.recentre(low);
+        // The program holds in the block and nowhere else.
+        let local = points.iter().map(|p| p.clamp(low, high) - low);
+        for axis in &mut scratch.single {
+            axis.clear();
+        }
+        for p in local {
+            for axis in 0..3 {
+                scratch.single[axis].push(p[axis] as f32);
+            }
+        }
+        for slope in &mut scratch.slopes {
+            slope.resize(points.len(), 0.0);
+        }
+        let [x, y, z] = &scratch.single;
+        let [value, dx, dy, dz] = &mut scratch.slopes;
+        scratch.evaluator.gradients(tape, x, y, z, Gradients { value, dx, dy, dz });
+        out.extend(
+            (0..points.len()).map(|n| Slope {
+                value: value[n].into(),
+                gradient: DVec3::new(dx[n].into(), dy[n].into(), dz[n].into()),
+            }),
+        );
+        true
     }
 }

@@ -33,6 +33,8 @@
 //! * on a face, the segments depend on the four signs of the face alone, and the cells on its
 //!   two sides run along them in opposite directions: the mesh is closed and consistently
 //!   oriented;
+//! * the triangles of a cell do not cross, wherever on the edges the vertices are: the mesh is free of
+//!   self-intersection, as no triangle lies in a face and cells have no more than faces in common;
 //! * the triangles of a cell at one vertex form a single path between the two faces that meet
 //!   there: the four cells around a lattice edge close it to one ring, so that vertices are
 //!   manifold.
@@ -172,7 +174,7 @@ fn doubled_middle(edge: u8) -> [i32; 3] {
 /// The face that two edges have in common, as its axis and whether it is the upper one.
 /// Edges that are at a right angle have at most one; of parallel edges, those that are
 /// diagonally opposite have none.
-fn common_face(a: u8, b: u8) -> Option<(usize, bool)> {
+pub(super) fn common_face(a: u8, b: u8) -> Option<(usize, bool)> {
     let (a, b) = (doubled_middle(a), doubled_middle(b));
     (0..3).find(|&axis| a[axis] == b[axis] && a[axis] != 1).map(|axis| (axis, a[axis] == 2))
 }
@@ -256,6 +258,9 @@ fn faces_outward(case: u8, triangle: [u8; 3]) -> Option<bool> {
     }
     None
 }
+
+#[cfg(test)]
+mod embedded;
 
 #[cfg(test)]
 mod tests {

@@ -98,7 +98,9 @@ pub enum VolumeError {
         value: DVec3,
     },
     /// Single precision does not resolve the cells: they are too small for where they are.
-    #[error("the farthest coordinate is {farthest} with a spacing of {spacing}; allowed: a spacing of {smallest} or more")]
+    #[error(
+        "the farthest coordinate is {farthest} with a spacing of {spacing}; allowed: a spacing of {smallest} or more"
+    )]
     Far {
         /// The largest coordinate in absolute value, in length units.
         farthest: f64,

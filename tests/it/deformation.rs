@@ -146,7 +146,7 @@ fn values_move_with_the_points() {
 
 /// The volume of the mesh, which is within 0.1 % at this resolution.
 fn volume(solid: &Solid) -> f64 {
-    let settings = MeshSettings { cell: CellSize::LongestSide(200), bounds: None };
+    let settings = MeshSettings { cell: CellSize::LongestSide(200), ..MeshSettings::default() };
     solid.mesh(&settings).expect("the solid is bounded").volume()
 }
 

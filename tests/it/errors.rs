@@ -254,7 +254,7 @@ fn mesh_settings_out_of_range() {
         let text = ball.mesh(&at(bounds)).unwrap_err().to_string();
         assert!(text.contains("bounds are") && text.contains("allowed"), "{text}");
     }
-    let cells = |cell: CellSize| ball.mesh(&MeshSettings { cell, bounds: None }).unwrap_err().to_string();
+    let cells = |cell: CellSize| ball.mesh(&MeshSettings { cell, ..MeshSettings::default() }).unwrap_err().to_string();
     assert!(cells(CellSize::LongestSide(0)).contains("is 0; it must be at least 1"));
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(cells(CellSize::Length(bad)).contains(&format!("cell size is {bad}")));

@@ -422,7 +422,7 @@ fn folds_prune_as_copies_do() {
 fn repetition_meshes_and_is_hit_by_rays() {
     let ball = Solid::sphere(0.3).translate(DVec3::X * 0.2);
     let solid = ball.repeat([3, 2, 1], DVec3::ONE);
-    let settings = MeshSettings { cell: CellSize::LongestSide(40), bounds: None };
+    let settings = MeshSettings { cell: CellSize::LongestSide(40), ..MeshSettings::default() };
     let report = solid.mesh(&settings).unwrap().check();
     assert!(report.is_closed() && report.is_manifold());
     let volume = 6.0 * 4.0 / 3.0 * std::f64::consts::PI * 0.3f64.powi(3);

@@ -11,7 +11,7 @@ use crate::models;
 use crate::support::near;
 
 fn cells(count: u32) -> MeshSettings {
-    MeshSettings { cell: CellSize::LongestSide(count), bounds: None }
+    MeshSettings { cell: CellSize::LongestSide(count), ..MeshSettings::default() }
 }
 
 #[track_caller]
@@ -38,7 +38,11 @@ fn outward(mesh: &Mesh) -> f64 {
 #[test]
 fn the_models_are_closed_manifold_and_outward() {
     for (model, across) in models::all().iter().flat_map(|model| [(model, 64.0), (model, 128.0)]) {
-        let settings = MeshSettings { cell: CellSize::Length(2.0 * model.half / across), bounds: Some(model.cube()) };
+        let settings = MeshSettings {
+            cell: CellSize::Length(2.0 * model.half / across),
+            bounds: Some(model.cube()),
+            ..MeshSettings::default()
+        };
         let (mesh, report) = mesh(&model.solid, &settings);
         assert!(report.volume > 0.0, "{}", model.name);
         assert!(outward(&mesh) > 0.98, "{}: {}", model.name, outward(&mesh));
@@ -68,7 +72,11 @@ fn the_volume_converges_with_the_square_of_the_cell() {
     const VOLUME: f64 = 3.1731914305231785;
     let model = models::m1();
     let error = |across: f64| {
-        let settings = MeshSettings { cell: CellSize::Length(2.0 * model.half / across), bounds: Some(model.cube()) };
+        let settings = MeshSettings {
+            cell: CellSize::Length(2.0 * model.half / across),
+            bounds: Some(model.cube()),
+            ..MeshSettings::default()
+        };
         let (_, report) = mesh(&model.solid, &settings);
         report.volume / VOLUME - 1.0
     };
@@ -167,25 +175,31 @@ fn a_solid_without_itself_is_nothing() {
 fn given_bounds_cut_the_solid() {
     let ball = Solid::sphere(1.0);
     let half = Bounds::new(DVec3::new(0.0, -2.0, -2.0), DVec3::splat(2.0));
-    let settings = MeshSettings { cell: CellSize::Length(0.05), bounds: Some(half) };
+    let settings = MeshSettings { cell: CellSize::Length(0.05), bounds: Some(half), ..MeshSettings::default() };
     let (_, report) = mesh(&ball, &settings);
     near(report.volume, 2.0 / 3.0 * PI, 0.01);
     assert!(half.inflate(1e-6).contains_bounds(&report.bounds));
     // Off round coordinates, on several sides at once.
     let part = Bounds::new(DVec3::new(-0.31, -0.47, 0.113), DVec3::new(0.217, 0.53, 1.5));
-    let (_, report) = mesh(&ball, &MeshSettings { cell: CellSize::Length(0.04), bounds: Some(part) });
+    let (_, report) =
+        mesh(&ball, &MeshSettings { cell: CellSize::Length(0.04), bounds: Some(part), ..MeshSettings::default() });
     assert!(part.inflate(1e-6).contains_bounds(&report.bounds));
     assert_eq!((report.shells, report.genus), (1, Some(0)));
     // Within the solid it is the box; around it the solid.
     let core = Bounds::from_center(DVec3::ZERO, DVec3::splat(0.5));
-    let (_, report) = mesh(&ball, &MeshSettings { cell: CellSize::Length(0.05), bounds: Some(core) });
+    let (_, report) =
+        mesh(&ball, &MeshSettings { cell: CellSize::Length(0.05), bounds: Some(core), ..MeshSettings::default() });
     near(report.volume, 1.0, 0.02);
     let around = Some(Bounds::from_center(DVec3::ZERO, DVec3::splat(5.0)));
-    let whole = ball.mesh(&MeshSettings { cell: CellSize::Length(0.1), bounds: around }).unwrap();
-    assert_eq!(whole, ball.mesh(&MeshSettings { cell: CellSize::Length(0.1), bounds: None }).unwrap());
+    let whole =
+        ball.mesh(&MeshSettings { cell: CellSize::Length(0.1), bounds: around, ..MeshSettings::default() }).unwrap();
+    assert_eq!(whole, ball.mesh(&MeshSettings { cell: CellSize::Length(0.1), ..MeshSettings::default() }).unwrap());
     // Away from it there is nothing.
     let away = Some(Bounds::from_center(DVec3::splat(9.0), DVec3::ONE));
-    assert_eq!(ball.mesh(&MeshSettings { cell: CellSize::Length(0.1), bounds: away }), Ok(Mesh::default()));
+    assert_eq!(
+        ball.mesh(&MeshSettings { cell: CellSize::Length(0.1), bounds: away, ..MeshSettings::default() }),
+        Ok(Mesh::default())
+    );
 }
 
 fn bytes(mesh: &Mesh) -> Vec<u8> {

@@ -5,8 +5,8 @@ use std::sync::{Arc, Mutex};
 
 use glam::{DQuat, DVec3};
 use rvachev::{
-    Bounds, CancelToken, CellSize, Field, Lattice, Mesh, MeshSettings, MeshingError, ParamError, Progress, RFunction, Real,
-    Run, Solid, Superellipsoid,
+    Bounds, CancelToken, CellSize, Field, Lattice, Mesh, MeshSettings, MeshingError, ParamError, Progress, RFunction,
+    Real, Run, Solid, Superellipsoid,
 };
 
 use crate::models;
@@ -45,7 +45,8 @@ fn clamped(name: &str, solid: &Solid, cell: CellSize, mesh: &Mesh) -> usize {
 
 #[test]
 fn vertices_are_roots_to_a_millionth_of_a_cell() {
-    let rotated = Solid::cuboid(DVec3::new(1.0, 1.3, 0.7)).rotate(DQuat::from_euler(glam::EulerRot::ZYX, 0.4, 0.9, 0.2));
+    let rotated =
+        Solid::cuboid(DVec3::new(1.0, 1.3, 0.7)).rotate(DQuat::from_euler(glam::EulerRot::ZYX, 0.4, 0.9, 0.2));
     let pinched = Solid::superellipsoid(DVec3::new(1.0, 0.9, 0.8), 2.5, 0.4);
     let flat = Solid::superellipsoid(DVec3::ONE, 0.05, 0.05);
     let solids = [("cuboid", rotated), ("pinched", pinched), ("flat", flat)].map(|(name, solid)| (name, solid));
@@ -67,7 +68,10 @@ fn progress_is_even() {
         let seen = Arc::new(Mutex::new(Vec::new()));
         let sink = seen.clone();
         let progress = Some(Progress::new(move |fraction| sink.lock().unwrap().push(fraction)));
-        model.solid.mesh_with(&settings(CellSize::LongestSide(100)), &Run { threads: 1, progress, ..Run::default() }).unwrap();
+        model
+            .solid
+            .mesh_with(&settings(CellSize::LongestSide(100)), &Run { threads: 1, progress, ..Run::default() })
+            .unwrap();
         let seen = seen.lock().unwrap();
         let longest = seen.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max);
         assert!(longest < 0.05, "{}: {longest}", model.name);

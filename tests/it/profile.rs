@@ -17,7 +17,7 @@ fn plane(random: &mut Random, half: f64) -> DVec2 {
 /// The mesh, which must be closed and manifold.
 #[track_caller]
 fn mesh(solid: &Solid, across: u32) -> Mesh {
-    let settings = MeshSettings { cell: CellSize::LongestSide(across), bounds: None };
+    let settings = MeshSettings { cell: CellSize::LongestSide(across), ..MeshSettings::default() };
     let mesh = solid.mesh(&settings).expect("the solid is bounded");
     let report = mesh.check();
     assert!(report.is_closed() && report.is_manifold(), "{solid:?}: {report:?}");

@@ -181,6 +181,7 @@ fn long_unions_mesh_and_narrow_to_what_is_near() {
         assert!(narrowed.leaf_count() < 60, "{}", narrowed.leaf_count());
     }
     let bounds = Some(Bounds::from_center(DVec3::splat(25.0), DVec3::splat(2.0)));
-    let mesh = solid.mesh(&MeshSettings { cell: CellSize::LongestSide(32), bounds }).unwrap();
+    let mesh =
+        solid.mesh(&MeshSettings { cell: CellSize::LongestSide(32), bounds, ..MeshSettings::default() }).unwrap();
     assert!(mesh.check().is_closed() && mesh.check().is_manifold());
 }

@@ -9,7 +9,8 @@ use crate::support::{Random, near};
 
 /// Samples of a function at integer points.
 fn sampled(size: [usize; 3], f: impl Fn(DVec3) -> f64) -> Vec<f32> {
-    let at = |n: usize| DVec3::new((n % size[0]) as f64, (n / size[0] % size[1]) as f64, (n / (size[0] * size[1])) as f64);
+    let at =
+        |n: usize| DVec3::new((n % size[0]) as f64, (n / size[0] % size[1]) as f64, (n / (size[0] * size[1])) as f64);
     (0..size.iter().product()).map(|n| f(at(n)) as f32).collect()
 }
 
@@ -125,7 +126,8 @@ fn threads_do_not_change_a_byte_and_progress_is_even() {
 
 #[test]
 fn errors_name_the_parameter() {
-    let text = |samples: &[f32], size, origin, spacing| Volume::new(samples, size, origin, spacing).unwrap_err().to_string();
+    let text =
+        |samples: &[f32], size, origin, spacing| Volume::new(samples, size, origin, spacing).unwrap_err().to_string();
     let eight = [1.0; 8];
     assert_eq!(
         text(&eight, [2, 2, 3], DVec3::ZERO, DVec3::ONE),

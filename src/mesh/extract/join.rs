@@ -4,16 +4,20 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::neighbours::Neighbours;
-use super::{BATCH, Batch, ExtractError, Meter, Part};
+use super::samples::{Samples, cell_number};
+use super::sharp::{self, Fan, Fans};
+use super::{BATCH, Batch, ExtractError, Meter, Part, Sampler};
 use crate::geom::Mesh;
+use crate::mesh::Features;
+use crate::mesh::lattice::Lattice;
 use crate::mesh::signs::{BLOCK, SIDE, for_each_cell, is_mixed};
 use crate::mesh::table::{CaseTable, EDGE_CORNERS, edge_axis};
 use crate::run::{Cancelled, Run};
 
 /// All blocks after the first pass.
 pub(super) struct Parts<'a> {
-    blocks: &'a [[u32; 3]],
-    neighbours: Neighbours,
+    pub(super) blocks: &'a [[u32; 3]],
+    pub(super) neighbours: Neighbours,
     /// In batches, as they were sampled.
     parts: Vec<Vec<Part>>,
     positions: Vec<Vec<Vec3>>,
@@ -53,7 +57,7 @@ impl<'a> Parts<'a> {
         Ok(all)
     }
 
-    fn part(&self, n: usize) -> &Part {
+    pub(super) fn part(&self, n: usize) -> &Part {
         &self.parts[n / BATCH][n % BATCH]
     }
 
@@ -85,32 +89,64 @@ impl<'a> Parts<'a> {
     }
 
     /// The mesh.
-    pub(super) fn join(mut self, run: &Run) -> Result<Mesh, ExtractError> {
+    pub(super) fn join<S: Sampler>(
+        mut self,
+        sampler: &S,
+        lattice: &Lattice,
+        features: Features,
+        run: &Run,
+    ) -> Result<Mesh, ExtractError> {
         let (positions, normals) = (std::mem::take(&mut self.positions), std::mem::take(&mut self.normals));
         let (positions, normals) =
             rayon::join(|| concatenated(positions, self.vertices, run), || concatenated(normals, self.vertices, run));
-        let (positions, normals) = (positions?, normals?);
+        let (mut positions, mut normals) = (positions?, normals?);
 
-        let meter = Meter::new(run, self.blocks.len());
-        let count = |parts: &Vec<Part>| parts.iter().map(|part| part.triangles as usize).sum::<usize>();
-        let mut triangles = vec![[0; 3]; self.parts.iter().map(count).sum()];
-        let pieces = split(&mut triangles, self.parts.iter().map(count));
+        let fans = match features {
+            Features::Smooth => Fans::default(),
+            Features::Sharp => {
+                let samples = Samples::new(&self, lattice, &positions, &normals);
+                sharp::find(&samples, sampler, &run.stage(0.0, 0.6))?
+            }
+        };
+        let count = positions.len() as u64 + fans.fans.len() as u64;
+        if count > u64::from(u32::MAX) {
+            return Err(ExtractError::TooLarge { count });
+        }
+        positions.extend(fans.fans.iter().map(|fan| fan.at));
+        normals.extend(fans.fans.iter().map(Fan::normal));
+
+        let run = run.stage(0.6, 1.0);
+        let meter = Meter::new(&run, self.blocks.len());
+        let counts: Vec<usize> = (0..self.parts.len())
+            .map(|batch| {
+                let parts = (batch * BATCH..).zip(&self.parts[batch]);
+                parts.map(|(n, part)| fans.count(n, part.triangles as usize)).sum()
+            })
+            .collect();
+        let mut triangles = vec![[0; 3]; counts.iter().sum()];
+        let pieces = split(&mut triangles, counts.into_iter());
         pieces.into_par_iter().enumerate().try_for_each_init(Corners::new, |corners, (batch, piece)| {
             let mut slots = piece.iter_mut();
             for n in (batch * BATCH..).take(self.parts[batch].len()) {
                 meter.step()?;
-                self.list_triangles(n, corners, &mut slots)?;
+                self.list_triangles(n, corners, &fans, &mut slots)?;
             }
             Ok::<(), ExtractError>(())
         })?;
-        Ok(Mesh::new(positions, triangles)?.with_normals(normals)?)
+        if fans.fans.is_empty() {
+            return Ok(Mesh::new(positions, triangles)?.with_normals(normals)?);
+        }
+        let corners = fans.corner_normals(&positions, &normals, &triangles);
+        Ok(Mesh::new(positions, triangles)?.with_normals(normals)?.with_corner_normals(corners)?)
     }
 
-    /// The triangles of block `n`, in the order of its cells.
+    /// The triangles of block `n`: those of the table, in the order of its cells, then those of its
+    /// fans.
     fn list_triangles(
         &self,
         n: usize,
         corners: &mut Corners,
+        fans: &Fans,
         slots: &mut std::slice::IterMut<'_, [u32; 3]>,
     ) -> Result<(), ExtractError> {
         if self.part(n).triangles == 0 {
@@ -121,12 +157,29 @@ impl<'a> Parts<'a> {
             return Err(ExtractError::Blocks { block: self.blocks[n], what });
         }
         let table = CaseTable::get();
-        for_each_cell(&self.part(n).signs, |[i, j, k], case| {
-            let ids = &corners.ids[i + SIDE * (j + SIDE * k)..];
+        let mut with_fan = fans.cells(n).iter().peekable();
+        let mut opposite = fans.opposite(n).iter().peekable();
+        for_each_cell(&self.part(n).signs, |cell, case| {
+            let number = cell_number(cell);
+            while with_fan.next_if(|(other, _)| *other < number).is_some() {}
+            if with_fan.peek().is_some_and(|(other, _)| *other == number) {
+                return;
+            }
+            let ids = corners.of_cell(cell);
+            if opposite.next_if(|(other, _)| *other == number).is_some() {
+                for (&[a, b, c], slot) in table.triangles(!case).iter().zip(&mut *slots) {
+                    *slot = [a, c, b].map(|edge| ids[corners.offsets[usize::from(edge)]]);
+                }
+                return;
+            }
             for (triangle, slot) in table.triangles(case).iter().zip(&mut *slots) {
                 *slot = triangle.map(|edge| ids[corners.offsets[usize::from(edge)]]);
             }
         });
+        let centres = self.vertices as u32;
+        for (triangle, slot) in fans.triangles(n, centres).zip(slots) {
+            *slot = triangle;
+        }
         Ok(())
     }
 
@@ -135,7 +188,7 @@ impl<'a> Parts<'a> {
     ///
     /// Edges that start in an upper face belong to the neighbour there: those along the two
     /// other axes, in its first row or column.
-    fn number(&self, n: usize, corners: &mut Corners) -> bool {
+    pub(super) fn number(&self, n: usize, corners: &mut Corners) -> bool {
         let part = self.part(n);
         for k in 0..BLOCK {
             for j in 0..BLOCK {
@@ -182,7 +235,7 @@ impl<'a> Parts<'a> {
 }
 
 /// The vertices on the edges of a block's cells.
-struct Corners {
+pub(super) struct Corners {
     /// By axis, then by the lower node, x fastest; what lies on edges that are not crossed has
     /// no meaning.
     ids: Box<[u32; 3 * SIDE * SIDE * SIDE]>,
@@ -191,12 +244,22 @@ struct Corners {
 }
 
 impl Corners {
-    fn new() -> Corners {
+    pub(super) fn new() -> Corners {
         let offset = |edge: usize| {
             let corner = usize::from(EDGE_CORNERS[edge][0]);
             Corners::place(usize::from(edge_axis(edge as u8)), [corner & 1, corner >> 1 & 1, corner >> 2])
         };
         Corners { ids: Box::new([0; 3 * SIDE * SIDE * SIDE]), offsets: std::array::from_fn(offset) }
+    }
+
+    /// The list from the place of a cell's first node on.
+    fn of_cell(&self, [i, j, k]: [usize; 3]) -> &[u32] {
+        &self.ids[i + SIDE * (j + SIDE * k)..]
+    }
+
+    /// The vertex on an edge of a cell.
+    pub(super) fn vertex(&self, cell: [usize; 3], edge: u8) -> u32 {
+        self.of_cell(cell)[self.offsets[usize::from(edge)]]
     }
 
     fn place(axis: usize, [i, j, k]: [usize; 3]) -> usize {

@@ -2,10 +2,10 @@
 
 use super::*;
 use crate::bounds::Bounds;
+use crate::mesh::signs::BLOCK;
 use crate::mesh::{CellSize, MeshReport};
 use crate::run::Progress;
 use glam::DVec3;
-use crate::mesh::signs::BLOCK;
 use std::f64::consts::PI;
 use std::sync::{Arc, Mutex};
 
@@ -83,7 +83,7 @@ fn mesh_of(bounds: &Bounds, cell: CellSize, f: impl Fn(DVec3) -> f64 + Sync) -> 
     let lattice = &Lattice::new(bounds, cell).unwrap();
     let sampler = Analytic { f, lattice };
     let blocks = surface_blocks(&sampler, lattice);
-    let mesh = extract(&sampler, lattice, &blocks, &Run::default()).unwrap();
+    let mesh = extract(&sampler, lattice, &blocks, Features::Smooth, &Run::default()).unwrap();
     let report = mesh.check();
     assert!(report.is_closed() && report.is_manifold(), "{report:?}");
     assert_eq!(report.duplicate_vertices + report.unused_vertices, 0);
@@ -163,6 +163,8 @@ struct Noise<'a> {
     seed: u64,
     /// The part of the nodes that is inside, in 256ths.
     density: u64,
+    /// Whether there are normals and slopes, of any direction and size.
+    slopes: bool,
 }
 
 impl Noise<'_> {
@@ -197,9 +199,57 @@ impl Sampler for Noise<'_> {
         for (edge, root) in edges.iter().zip(out) {
             let h = self.hash(edge.node, 1 + u64::from(edge.axis));
             root.t = (h % 5) as f64 / 4.0;
-            root.normal = [f32::NAN; 3];
+            let coordinate = |salt: u64| (self.hash(edge.node, salt + u64::from(edge.axis)) % 255) as f32 - 127.0;
+            let normal = Vec3::new(coordinate(5), coordinate(9), coordinate(13)).normalize_or_zero();
+            root.normal = if self.slopes { normal.to_array() } else { [f32::NAN; 3] };
         }
     }
+
+    fn slopes(&self, (): &mut (), _: usize, _: [u32; 3], points: &[DVec3], out: &mut Vec<Slope>) -> bool {
+        out.extend(points.iter().map(|p| {
+            let bits = p.to_array().map(|x| (x.to_bits() >> 20) as u32);
+            let number = |salt: u64| (self.hash(bits, salt) % 255) as f64 / 127.0 - 1.0;
+            Slope { value: number(1), gradient: DVec3::new(number(2), number(3), number(4)) }
+        }));
+        self.slopes
+    }
+}
+
+const DENSITIES: [u64; 5] = [20, 80, 128, 170, 235];
+
+/// Meshes of noise on 17³ nodes, with normals and slopes that are noise as well: what feature
+/// points, regions and joined faces come to is as bad as it can be.
+fn noise_with_features(seeds: std::ops::Range<u64>) {
+    let mut fans = 0;
+    for seed in seeds {
+        // Far from the origin the positions have few bits.
+        let at = [0.0, 1e4, 3e5][seed as usize % 3];
+        let bounds = Bounds::new(DVec3::splat(at), DVec3::splat(at + 14.0));
+        let lattice = Lattice::new(&bounds, CellSize::Length(1.0)).unwrap();
+        let density = DENSITIES[seed as usize / 3 % 5];
+        let noise = Noise { lattice: &lattice, seed, density, slopes: seed % 7 != 0 };
+        let blocks = surface_blocks(&noise, &lattice);
+        let [smooth, sharp] = [Features::Smooth, Features::Sharp].map(|features| {
+            let mesh = extract(&noise, &lattice, &blocks, features, &Run::default()).unwrap();
+            let report = mesh.check();
+            assert!(report.is_sound(), "seed {seed}, {features:?}: {report:?}");
+            assert!(report.volume > 0.0, "seed {seed}, {features:?}");
+            mesh
+        });
+        fans += sharp.positions().len() - smooth.positions().len();
+    }
+    assert!(fans > 0);
+}
+
+#[test]
+fn noise_is_sound_with_features() {
+    noise_with_features(0..60);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn much_noise_is_sound_with_features() {
+    noise_with_features(60..1000);
 }
 
 #[test]
@@ -207,9 +257,9 @@ fn noise_is_closed_and_manifold() {
     let bounds = Bounds::new(DVec3::ZERO, DVec3::splat(14.0));
     let lattice = Lattice::new(&bounds, CellSize::Length(1.0)).unwrap();
     for seed in 0..60 {
-        let noise = Noise { lattice: &lattice, seed, density: [20, 80, 128, 170, 235][seed as usize % 5] };
+        let noise = Noise { lattice: &lattice, seed, density: DENSITIES[seed as usize % 5], slopes: false };
         let blocks = surface_blocks(&noise, &lattice);
-        let mesh = extract(&noise, &lattice, &blocks, &Run::default()).unwrap();
+        let mesh = extract(&noise, &lattice, &blocks, Features::Smooth, &Run::default()).unwrap();
         let report = mesh.check();
         assert!(report.is_closed() && report.is_manifold(), "{report:?}");
         assert_eq!(report.duplicate_vertices + report.unused_vertices, 0);
@@ -228,7 +278,7 @@ fn the_same_bytes_for_any_number_of_threads() {
         let sink = seen.clone();
         let run =
             Run { threads, progress: Some(Progress::new(move |f| sink.lock().unwrap().push(f))), ..Run::default() };
-        let mesh = extract(&sampler, &lattice, &blocks, &run).unwrap();
+        let mesh = extract(&sampler, &lattice, &blocks, Features::Smooth, &run).unwrap();
         let seen = seen.lock().unwrap();
         assert!(seen.windows(2).all(|w| w[0] < w[1]));
         assert!(seen.len() > 50 && seen.last() == Some(&1.0));
@@ -253,7 +303,7 @@ fn cancelling_stops_the_work() {
     let quiet = Analytic { f: sphere, lattice: &lattice };
     let blocks = surface_blocks(&quiet, &lattice);
     let sampler = Analytic { f, lattice: &lattice };
-    let result = extract(&sampler, &lattice, &blocks, &run);
+    let result = extract(&sampler, &lattice, &blocks, Features::Smooth, &run);
     assert_eq!(result.unwrap_err(), ExtractError::Cancelled(Cancelled));
     assert!(count.load(Ordering::Relaxed) < 40 * NODES);
 }
@@ -264,7 +314,7 @@ fn bad_lists_of_blocks_are_reported() {
     let sampler = Analytic { f: sphere, lattice: &lattice };
     let blocks = surface_blocks(&sampler, &lattice);
     let what = |blocks: &[[u32; 3]]| {
-        let error = extract(&sampler, &lattice, blocks, &Run::default()).unwrap_err();
+        let error = extract(&sampler, &lattice, blocks, Features::Smooth, &Run::default()).unwrap_err();
         let ExtractError::Blocks { what, .. } = error else {
             panic!("{error}");
         };
@@ -283,8 +333,11 @@ fn bad_lists_of_blocks_are_reported() {
     let mut more = blocks.clone();
     more.push([800, 800, 800]);
     let run = Run::default();
-    assert_eq!(extract(&sampler, &lattice, &more, &run), extract(&sampler, &lattice, &blocks, &run));
-    let none = extract(&sampler, &lattice, &[], &run).unwrap();
+    assert_eq!(
+        extract(&sampler, &lattice, &more, Features::Smooth, &run),
+        extract(&sampler, &lattice, &blocks, Features::Smooth, &run)
+    );
+    let none = extract(&sampler, &lattice, &[], Features::Smooth, &run).unwrap();
     assert!(none.triangles().is_empty());
 }
 
@@ -309,7 +362,7 @@ fn neighbours_that_disagree_are_reported() {
     let sampler = Analytic { f: sphere, lattice: &lattice };
     let blocks = surface_blocks(&sampler, &lattice);
     let flipped = Flipped(sampler, blocks[0]);
-    let error = extract(&flipped, &lattice, &blocks, &Run::default()).unwrap_err();
+    let error = extract(&flipped, &lattice, &blocks, Features::Smooth, &Run::default()).unwrap_err();
     assert!(matches!(error, ExtractError::Blocks { .. }));
 }
 
@@ -322,7 +375,7 @@ fn extraction_time() {
     for threads in [1, 2] {
         let run = Run { threads, ..Run::default() };
         let start = std::time::Instant::now();
-        let mesh = extract(&noise, &lattice, &blocks, &run).unwrap();
+        let mesh = extract(&noise, &lattice, &blocks, Features::Smooth, &run).unwrap();
         let (blocks, triangles) = (blocks.len(), mesh.triangles().len());
         println!("{threads} threads: {blocks} blocks, {triangles} triangles, {:?}", start.elapsed());
     }

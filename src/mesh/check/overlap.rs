@@ -1,0 +1,227 @@
+//! All pairs of triangles that meet where they should not.
+//!
+//! ```text
+//!   level 2   +---------------------------------------+      Triangles are sorted along a
+//!   level 1   +---------+---------+---------+---------+      Morton curve; a box of a level
+//!   level 0   t t t t   t t t t   t t t t   t t t t          holds four of the level below.
+//! ```
+//!
+//! Each group of four triangles descends from the top to the groups whose boxes overlap its
+//! own, at or behind itself. Most of the pairs found that way are neighbours that share a
+//! vertex with a flat fan, and done with; most of the others are settled by a separating plane
+//! in f64; the rest is decided exactly.
+
+use glam::{DVec3, UVec3, Vec3};
+use rayon::prelude::*;
+
+use super::fans::{Fans, repeats};
+use super::meet::{is_degenerate, meet, meet_beyond_edge, meet_beyond_vertex, surely_apart};
+use crate::geom::Mesh;
+
+/// How many pairs are listed.
+pub(super) const LISTED: usize = 16;
+
+/// Boxes that one of the level above holds.
+const GROUP: usize = 4;
+
+/// Groups of triangles that a thread takes at a time.
+const CHUNK: usize = 1 << 10;
+
+/// Pairs of triangles that meet where they should not.
+#[derive(Default)]
+pub(super) struct Overlaps {
+    pub count: usize,
+    /// The first of them, in order, at most [`LISTED`].
+    pub pairs: Vec<[u32; 2]>,
+}
+
+impl Overlaps {
+    pub(super) fn find(mesh: &Mesh, fans: &Fans) -> Overlaps {
+        let order = along_curve(mesh);
+        let search = Search::new(mesh, fans, order);
+        let groups = search.levels.get(1).map_or(0, Vec::len);
+        let chunks: Vec<Overlaps> = (0..groups.div_ceil(CHUNK))
+            .into_par_iter()
+            .map(|chunk| {
+                let mut found = Overlaps::default();
+                for group in chunk * CHUNK..groups.min((chunk + 1) * CHUNK) {
+                    search.group(group, &mut found);
+                }
+                found
+            })
+            .collect();
+        let mut all = Overlaps::default();
+        for found in chunks {
+            all.count += found.count;
+            all.pairs.extend(found.pairs);
+        }
+        all.trim();
+        all
+    }
+
+    fn add(&mut self, a: u32, b: u32) {
+        self.count += 1;
+        self.pairs.push([a.min(b), a.max(b)]);
+        if self.pairs.len() >= 64 * LISTED {
+            self.trim();
+        }
+    }
+
+    fn trim(&mut self) {
+        self.pairs.sort_unstable();
+        self.pairs.truncate(LISTED);
+    }
+}
+
+/// The triangles in the order of a Morton curve through the middles of their boxes; those that
+/// are degenerate are left out.
+fn along_curve(mesh: &Mesh) -> Vec<u32> {
+    let bounds = mesh.bounds();
+    // 2²¹ steps along the longest side: 63 bits.
+    let scale = 2097151.0 / bounds.longest_side().max(f64::MIN_POSITIVE);
+    let mut keys: Vec<(u64, u32)> = mesh
+        .triangles()
+        .par_iter()
+        .enumerate()
+        .filter(|&(_, &t)| !repeats(t) && !is_degenerate(mesh.corners(t)))
+        .map(|(i, &t)| {
+            let [a, b, c] = mesh.corners(t);
+            let middle = 0.5 * (a.min(b).min(c) + a.max(b).max(c));
+            let place = ((middle - bounds.min) * scale).as_uvec3().min(UVec3::splat(2097151));
+            let key = spread(place.x) | spread(place.y) << 1 | spread(place.z) << 2;
+            (key, i as u32)
+        })
+        .collect();
+    keys.par_sort_unstable();
+    keys.into_iter().map(|(_, i)| i).collect()
+}
+
+/// The bits of a number below 2²¹, each with two zeros before it.
+fn spread(x: u32) -> u64 {
+    let mut x = u64::from(x);
+    x = (x | x << 32) & 0x001f_0000_0000_ffff;
+    x = (x | x << 16) & 0x001f_0000_ff00_00ff;
+    x = (x | x << 8) & 0x100f_00f0_0f00_f00f;
+    x = (x | x << 4) & 0x10c3_0c30_c30c_30c3;
+    (x | x << 2) & 0x1249_2492_4924_9249
+}
+
+#[derive(Clone, Copy)]
+struct Box {
+    min: Vec3,
+    max: Vec3,
+}
+
+impl Box {
+    fn union(self, other: Box) -> Box {
+        Box { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    fn overlaps(&self, other: &Box) -> bool {
+        // Without branches: which of the six fails is anybody's guess.
+        (self.min.x <= other.max.x)
+            & (other.min.x <= self.max.x)
+            & (self.min.y <= other.max.y)
+            & (other.min.y <= self.max.y)
+            & (self.min.z <= other.max.z)
+            & (other.min.z <= self.max.z)
+    }
+}
+
+struct Search<'a> {
+    mesh: &'a Mesh,
+    fans: &'a Fans,
+    /// Triangles, in order.
+    order: Vec<u32>,
+    corners: Vec<[u32; 3]>,
+    /// The boxes of the triangles, of groups of them, of groups of those, up to a single one.
+    levels: Vec<Vec<Box>>,
+}
+
+impl<'a> Search<'a> {
+    fn new(mesh: &'a Mesh, fans: &'a Fans, order: Vec<u32>) -> Search<'a> {
+        let corners: Vec<[u32; 3]> = order.par_iter().map(|&t| mesh.triangles()[t as usize]).collect();
+        let positions = mesh.positions();
+        let boxes = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|i| positions[i as usize]);
+            Box { min: a.min(b).min(c), max: a.max(b).max(c) }
+        };
+        let mut levels: Vec<Vec<Box>> = vec![corners.par_iter().map(boxes).collect()];
+        while let Some(below) = levels.last()
+            && (below.len() > 1 || levels.len() == 1 && !below.is_empty())
+        {
+            let union = |group: &[Box]| group[1..].iter().fold(group[0], |a, &b| a.union(b));
+            levels.push(below.par_chunks(GROUP).map(union).collect());
+        }
+        Search { mesh, fans, order, corners, levels }
+    }
+
+    /// Looks at the pairs of a group's triangles with one another and with those of later groups.
+    fn group(&self, group: usize, found: &mut Overlaps) {
+        let own = self.levels[1][group];
+        // (level, place); on every level at most GROUP − 1 wait.
+        let mut waiting = [(0u8, 0u32); 64];
+        waiting[0] = (self.levels.len() as u8 - 1, 0);
+        let mut count = 1;
+        while count > 0 {
+            count -= 1;
+            let (level, place) = waiting[count];
+            let (level, place) = (usize::from(level), place as usize);
+            if level == 1 {
+                self.groups(group, place, found);
+                continue;
+            }
+            let below = &self.levels[level - 1];
+            // Places below this one hold only earlier groups.
+            let first = group >> (2 * (level - 2));
+            let children = (GROUP * place).max(first)..below.len().min(GROUP * (place + 1));
+            for child in children {
+                if below[child].overlaps(&own) {
+                    waiting[count] = (level as u8 - 1, child as u32);
+                    count += 1;
+                }
+            }
+        }
+    }
+
+    fn groups(&self, a: usize, b: usize, found: &mut Overlaps) {
+        let boxes = &self.levels[0];
+        let range = |group: usize| GROUP * group..boxes.len().min(GROUP * (group + 1));
+        for i in range(a) {
+            for j in range(b) {
+                if i < j && boxes[i].overlaps(&boxes[j]) && self.pair_meets(self.corners[i], self.corners[j]) {
+                    found.add(self.order[i], self.order[j]);
+                }
+            }
+        }
+    }
+
+    /// Whether two triangles meet in more than the vertices and sides that they share.
+    fn pair_meets(&self, s: [u32; 3], t: [u32; 3]) -> bool {
+        let is_shared = |v: u32| (v == t[0]) | (v == t[1]) | (v == t[2]);
+        let shared = s.map(is_shared);
+        if shared == [false; 3] {
+            let (p, q) = (self.mesh.corners(s), self.mesh.corners(t));
+            return !surely_apart(&p, &q) && meet(&p, &q);
+        }
+        if (0..3).any(|k| shared[k] && self.fans.flat[s[k] as usize]) {
+            return false;
+        }
+        self.neighbours_meet(s, t, shared)
+    }
+
+    #[cold]
+    fn neighbours_meet(&self, s: [u32; 3], t: [u32; 3], shared: [bool; 3]) -> bool {
+        let at = |v: u32| -> DVec3 { self.mesh.positions()[v as usize].as_dvec3() };
+        let rest = |of: [u32; 3], besides: [u32; 3]| of.into_iter().filter(move |v| !besides.contains(v));
+        let own: Vec<DVec3> = rest(s, t).map(at).collect();
+        let other: Vec<DVec3> = rest(t, s).map(at).collect();
+        let common: Vec<DVec3> = (0..3).filter(|&k| shared[k]).map(|k| at(s[k])).collect();
+        match (&common[..], &own[..], &other[..]) {
+            (&[v], &[p0, p1], &[q0, q1]) => meet_beyond_vertex(v, [p0, p1], [q0, q1]),
+            (&[a, b], &[p], &[q]) => meet_beyond_edge(a, b, p, q),
+            // The same triangle twice.
+            _ => true,
+        }
+    }
+}

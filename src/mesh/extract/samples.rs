@@ -1,0 +1,132 @@
+//! All blocks after the first pass, seen as one lattice of cells with vertices on their edges.
+
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+use super::join::Parts;
+use crate::mesh::feature::{Candidate, SMOOTH};
+use crate::mesh::lattice::Lattice;
+use crate::mesh::loops::CellLoop;
+use crate::mesh::signs::BLOCK;
+use crate::mesh::table::{EDGE_CORNERS, edge_axis};
+
+/// What the first pass has found, by cell.
+pub(super) struct Samples<'a> {
+    pub(super) parts: &'a Parts<'a>,
+    pub(super) lattice: &'a Lattice,
+    positions: &'a [Vec3],
+    normals: &'a [Vec3],
+    /// The blocks by their first cells, z first, ascending; with their numbers.
+    sorted: Vec<([u32; 3], u32)>,
+}
+
+/// The block of a cell, by its first cell, and where the cell is in it.
+pub(super) fn split_cell(cell: [u32; 3]) -> ([u32; 3], [usize; 3]) {
+    let within = cell.map(|n| n as usize % BLOCK);
+    (std::array::from_fn(|axis| cell[axis] - within[axis] as u32), within)
+}
+
+/// The number of a cell in its block: x fastest, then y, then z.
+pub(super) fn cell_number([i, j, k]: [usize; 3]) -> u16 {
+    (i + BLOCK * (j + BLOCK * k)) as u16
+}
+
+/// The order of blocks.
+fn key([x, y, z]: [u32; 3]) -> [u32; 3] {
+    [z, y, x]
+}
+
+impl<'a> Samples<'a> {
+    pub(super) fn new(
+        parts: &'a Parts<'a>,
+        lattice: &'a Lattice,
+        positions: &'a [Vec3],
+        normals: &'a [Vec3],
+    ) -> Samples<'a> {
+        let mut sorted: Vec<([u32; 3], u32)> = parts.blocks.iter().map(|&block| key(block)).zip(0..).collect();
+        sorted.sort_unstable();
+        Samples { parts, lattice, positions, normals, sorted }
+    }
+
+    pub(super) fn blocks(&self) -> &[[u32; 3]] {
+        self.parts.blocks
+    }
+
+    /// The number of the block with a first cell.
+    pub(super) fn find(&self, block: [u32; 3]) -> Option<usize> {
+        let at = self.sorted.binary_search_by_key(&key(block), |&(key, _)| key).ok()?;
+        Some(self.sorted[at].1 as usize)
+    }
+
+    /// The case of a cell of the lattice; 0 where no block is.
+    pub(super) fn case(&self, cell: [u32; 3]) -> u8 {
+        let (block, within) = split_cell(cell);
+        self.find(block).map_or(0, |block| self.parts.part(block).signs.case(within))
+    }
+
+    /// The vertex on an edge, which is crossed, of a cell of the lattice.
+    pub(super) fn vertex(&self, cell: [u32; 3], edge: u8) -> Option<u32> {
+        let corner = EDGE_CORNERS[usize::from(edge)][0];
+        let node = std::array::from_fn(|axis| cell[axis] + u32::from(corner >> axis & 1));
+        let (block, [i, j, k]) = split_cell(node);
+        let part = self.parts.part(self.find(block)?);
+        let crossed = part.signs.crossed(j, k);
+        let axis = usize::from(edge_axis(edge));
+        let before: u32 = crossed[..axis].iter().map(|bits| bits.count_ones()).sum();
+        let in_row = (crossed[axis] & ((1 << i) - 1)).count_ones();
+        (crossed[axis] >> i & 1 == 1).then(|| part.first + part.rows.start(j, k) + before + in_row)
+    }
+
+    /// Position and normal of a vertex.
+    pub(super) fn get(&self, vertex: u32) -> (Vec3, Vec3) {
+        (self.positions[vertex as usize], self.normals[vertex as usize])
+    }
+
+    /// By block, whether the normals at the vertices of its cells differ by more than those of a
+    /// smooth cell.
+    pub(super) fn spread(&self) -> Vec<bool> {
+        let count = self.blocks().len();
+        let first = |n: usize| if n < count { self.parts.part(n).first as usize } else { self.normals.len() };
+        let hull = |[a, b]: [Vec3; 2], [c, d]: [Vec3; 2]| [a.min(c), b.max(d)];
+        let none = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+        let own: Vec<[Vec3; 2]> = (0..count)
+            .into_par_iter()
+            .map(|n| self.normals[first(n)..first(n + 1)].iter().fold(none, |all, &normal| hull(all, [normal; 2])))
+            .collect();
+        (0..count)
+            .into_par_iter()
+            .map(|n| {
+                let upper = (1..7).filter_map(|bits| self.parts.neighbours.upper(n, bits));
+                let [low, high] = upper.map(|other| own[other]).fold(own[n], hull);
+                (high - low).length_squared() > 2.0 - 2.0 * SMOOTH
+            })
+            .collect()
+    }
+
+    /// A position in cells from the lattice's first node, and back.
+    fn local(&self, p: Vec3) -> DVec3 {
+        (p.as_dvec3() - self.lattice.origin()) / self.lattice.step()
+    }
+
+    pub(super) fn world(&self, p: DVec3) -> DVec3 {
+        self.lattice.origin() + p * self.lattice.step()
+    }
+
+    pub(super) fn candidate(&self, cell: [u32; 3], outline: CellLoop, vertices: &[(Vec3, Vec3)]) -> Candidate {
+        let local: Vec<(DVec3, Vec3)> = vertices.iter().map(|&(p, normal)| (self.local(p), normal)).collect();
+        Candidate::new(cell, outline, &local)
+    }
+
+    /// A node as vertices have it, rounded to f32.
+    pub(super) fn node(&self, [i, j, k]: [u32; 3]) -> Vec3 {
+        self.lattice.node(i, j, k).as_vec3()
+    }
+
+    /// The position of a point as f32, strictly inside of the box of cells from `low` up to `high`,
+    /// exclusive.
+    pub(super) fn inside(&self, at: DVec3, low: [u32; 3], high: [u32; 3]) -> Vec3 {
+        let low = self.node(low).to_array().map(f32::next_up);
+        let high = self.node(high).to_array().map(f32::next_down);
+        self.world(at).as_vec3().clamp(low.into(), high.into())
+    }
+}

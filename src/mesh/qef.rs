@@ -1,0 +1,164 @@
+//! The point of a box that fits a set of planes best.
+//!
+//! ```text
+//!     ----o-------x        minimise  Σ (nᵢ·y − dᵢ)² + λ n |y − s|²   over low ≤ y ≤ high
+//!                  \
+//!                   o      o  a point of the surface, with its tangent plane nᵢ·y = dᵢ
+//!                    \     x  where the planes meet: on the crease, or in the corner
+//! ```
+//!
+//! The second term (n is the number of planes) holds the point where the planes leave it free:
+//! along a crease, and within the surface where there is only one plane. A step from s to the
+//! minimum is a damped Gauss–Newton step; repeated, it takes the point to the planes and hardly
+//! along them.
+//!
+//! The minimum over the box is exact: the function is strictly convex, so it is the best of the
+//! minima over the inside, the faces, the edges and the corners that lie in the box. Where the
+//! planes meet outside, the point slides along the crease first and leaves it only if the crease
+//! misses the box.
+//!
+//! Source: T. Ju, F. Losasso, S. Schaefer and J. Warren, Dual contouring of Hermite data (2002),
+//! for the quadratic; K. Levenberg (1944) for the damping.
+
+use glam::{DMat3, DVec3};
+
+/// Planes that a point should be on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Planes {
+    /// Σ n nᵀ
+    matrix: DMat3,
+    /// Σ d n
+    vector: DVec3,
+    /// Σ d²
+    square: f64,
+    count: u32,
+}
+
+impl Planes {
+    /// No planes.
+    pub(super) const NONE: Planes = Planes { matrix: DMat3::ZERO, vector: DVec3::ZERO, square: 0.0, count: 0 };
+
+    /// Adds the plane nᵢ·y = dᵢ; the normal is a unit vector.
+    pub(super) fn add(&mut self, normal: DVec3, d: f64) {
+        let DVec3 { x, y, z } = normal;
+        self.matrix += DMat3::from_cols(normal * x, normal * y, normal * z);
+        self.vector += normal * d;
+        self.square += d * d;
+        self.count += 1;
+    }
+
+    /// Adds the planes of another set.
+    pub(super) fn append(&mut self, other: &Planes) {
+        self.matrix += other.matrix;
+        self.vector += other.vector;
+        self.square += other.square;
+        self.count += other.count;
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// The root of the mean square distance of a point from the planes.
+    pub(super) fn distance(&self, y: DVec3) -> f64 {
+        let sum = y.dot(self.matrix * y) - 2.0 * self.vector.dot(y) + self.square;
+        (sum.max(0.0) / f64::from(self.count.max(1))).sqrt()
+    }
+
+    /// The point of the box from `low` to `high` that is best, with damping λ towards `from`.
+    pub(super) fn nearest(&self, from: DVec3, damping: f64, low: DVec3, high: DVec3) -> DVec3 {
+        let weight = damping * f64::from(self.count.max(1));
+        let m = self.matrix + DMat3::from_diagonal(DVec3::splat(weight));
+        let b = self.vector + weight * from;
+        let free = m.inverse() * b;
+        if free.cmpge(low).all() && free.cmple(high).all() {
+            return free;
+        }
+        let mut best = (f64::INFINITY, from.clamp(low, high));
+        for choice in 1..27 {
+            // By axis: 0 free, 1 at the low side, 2 at the high side.
+            let sides = [choice % 3, choice / 3 % 3, choice / 9];
+            let mut y = DVec3::ZERO;
+            for axis in 0..3 {
+                y[axis] = [0.0, low[axis], high[axis]][sides[axis]];
+            }
+            solve(&m, b, sides, &mut y);
+            if y.cmpge(low).all() && y.cmple(high).all() {
+                let energy = y.dot(m * y) - 2.0 * b.dot(y);
+                if energy < best.0 {
+                    best = (energy, y);
+                }
+            }
+        }
+        best.1
+    }
+}
+
+/// Sets the free coordinates (side 0) to where the quadratic yᵀm y − 2 bᵀy is least.
+fn solve(m: &DMat3, b: DVec3, sides: [usize; 3], y: &mut DVec3) {
+    // With the free coordinates 0, this is what is left for them to balance.
+    let rest = b - *m * *y;
+    let mut free = (0..3).filter(|&axis| sides[axis] == 0);
+    match (free.next(), free.next()) {
+        (Some(a), Some(c)) => {
+            let (aa, ac, cc) = (m.col(a)[a], m.col(a)[c], m.col(c)[c]);
+            let determinant = aa * cc - ac * ac;
+            y[a] = (rest[a] * cc - rest[c] * ac) / determinant;
+            y[c] = (rest[c] * aa - rest[a] * ac) / determinant;
+        }
+        (Some(a), None) => y[a] = rest[a] / m.col(a)[a],
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn planes(list: &[(DVec3, f64)]) -> Planes {
+        let mut planes = Planes::NONE;
+        for &(normal, d) in list {
+            planes.add(normal.normalize(), d / normal.length());
+        }
+        planes
+    }
+
+    #[test]
+    fn three_planes_meet_in_a_point() {
+        let planes = planes(&[(DVec3::X, 0.25), (DVec3::Y, 0.5), (DVec3::new(0.0, 1.0, 1.0), 1.2)]);
+        let mut y = DVec3::splat(0.5);
+        for _ in 0..6 {
+            y = planes.nearest(y, 1e-3, DVec3::ZERO, DVec3::ONE);
+        }
+        assert!((y - DVec3::new(0.25, 0.5, 0.7)).length() < 1e-9, "{y}");
+        assert!(planes.distance(y) < 1e-9);
+    }
+
+    #[test]
+    fn a_crease_leaves_the_point_free_along_it() {
+        let planes = planes(&[(DVec3::X, 0.25), (DVec3::Y, 0.5)]);
+        let y = planes.nearest(DVec3::new(0.9, 0.1, 0.3), 1e-6, DVec3::ZERO, DVec3::ONE);
+        assert!((y - DVec3::new(0.25, 0.5, 0.3)).length() < 1e-5, "{y}");
+    }
+
+    #[test]
+    fn outside_the_box_it_slides_along_the_crease() {
+        // The crease x = y, z = 1/2 + x; seen from (0.8, 0.8) it is above the box.
+        let planes = planes(&[(DVec3::new(1.0, -1.0, 0.0), 0.0), (DVec3::new(-1.0, 0.0, 1.0), 0.5)]);
+        let y = planes.nearest(DVec3::new(0.8, 0.8, 0.9), 1e-6, DVec3::ZERO, DVec3::ONE);
+        assert!(planes.distance(y) < 1e-4 && (y.z - 1.0).abs() < 1e-4, "{y}");
+    }
+
+    #[test]
+    fn the_minimum_over_the_box_is_a_minimum() {
+        let list = [(DVec3::new(1.0, 2.0, -0.5), 3.0), (DVec3::new(-1.0, 0.3, 0.9), -2.0), (DVec3::Y, 1.7)];
+        let planes = planes(&list);
+        let from = DVec3::new(0.2, 0.4, 0.6);
+        let value = |y: DVec3| planes.distance(y).powi(2) + 1e-3 * (y - from).length_squared();
+        let y = planes.nearest(from, 1e-3, DVec3::ZERO, DVec3::ONE);
+        for n in 0..4096 {
+            let p = DVec3::new(f64::from(n % 16), f64::from(n / 16 % 16), f64::from(n / 256)) / 15.0;
+            assert!(value(p) >= value(y) - 1e-12, "{p} is better than {y}");
+        }
+    }
+}

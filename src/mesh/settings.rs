@@ -1,0 +1,100 @@
+//! What to mesh, and how finely.
+
+use super::lattice::CellSize;
+use crate::Bounds;
+
+/// What to mesh.
+///
+/// ```
+/// use rvachev::{CellSize, MeshSettings, Solid};
+///
+/// let settings = MeshSettings { cell: CellSize::LongestSide(32), ..MeshSettings::default() };
+/// let mesh = Solid::sphere(1.0).mesh(&settings)?;
+/// assert!(mesh.check().is_closed());
+/// # Ok::<(), rvachev::MeshingError>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct MeshSettings {
+    /// The resolution. Default: 128 cells along the longest side of the bounds.
+    pub cell: CellSize,
+    /// The box to mesh, in length units; where the solid leaves it, the mesh is that of
+    /// their intersection. Default (`None`): the box of the solid.
+    pub bounds: Option<Bounds>,
+    /// What becomes of a solid that leaves the bounds. Default: [`AtBounds::Cap`].
+    pub at_bounds: AtBounds,
+    /// Whether creases and corners are kept. Default: [`Features::Sharp`].
+    pub features: Features,
+    /// What becomes of features that may be thinner than a cell. Default: [`ThinFeatures::Ignore`].
+    pub thin: ThinFeatures,
+    /// Whether the mesh says which leaf each triangle is of: [`Mesh::owners`](crate::Mesh::owners).
+    /// The numbers are those of [`Solid::owner`](crate::Solid::owner); that of a cap is one
+    /// more than the last. Default: `false`.
+    pub owners: bool,
+}
+
+/// What becomes of creases and corners.
+///
+/// Both give meshes that are closed, manifold and free of self-intersection, whatever the solid.
+///
+#[doc = picture!("sharp" = "docs/sharp.png")]
+///
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Features {
+    /// They are cut off, by a fraction of a cell: marching cubes.
+    Smooth,
+    /// They are kept: where the normals in a cell differ by more than 26°, the cell has a vertex on the
+    /// crease or in the corner, and the mesh has edges along the crease. Elsewhere the mesh is that
+    /// of [`Smooth`](Features::Smooth).
+    ///
+    /// Where a crease passes cells that have no surface of their own (all their corners are on the same
+    /// side), the cells around share a vertex on it, if their surface has a single boundary; else
+    /// the crease is cut off there by a part of a cell.
+    #[default]
+    Sharp,
+}
+
+/// What becomes of a solid that leaves the bounds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum AtBounds {
+    /// It is cut: the mesh has caps in the faces of the bounds, their edges sharp with
+    /// [`Features::Sharp`].
+    #[default]
+    Cap,
+    /// It is an error, [`MeshingError::LeavesBounds`](crate::MeshingError::LeavesBounds), which says
+    /// where. A hundredth of a cell is let pass.
+    Refuse,
+}
+
+/// What becomes of features that may be thinner than a cell.
+///
+/// A cell is unresolved if all its corners are on the same side, and the ranges of the value
+/// and of all three components of the gradient over the cell contain 0: the surface may come into the cell
+/// and turn round in it, as at a thin wall or a narrow slot. Ranges are wider than what they hold, so
+/// there may be nothing; without unresolved cells nothing of that kind is lost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum ThinFeatures {
+    /// Nothing is done, and the report of the mesh says nothing of them.
+    #[default]
+    Ignore,
+    /// Unresolved cells are counted:
+    /// [`MeshReport::unresolved_cells`](crate::MeshReport::unresolved_cells). This may take longer than
+    /// the mesh.
+    Count,
+    /// While there are any, the cells are halved, all of them, at most so many times; then those that are
+    /// left are counted.
+    Refine {
+        /// The most times that the cell size is halved.
+        halvings: u32,
+    },
+}
+
+impl ThinFeatures {
+    /// How often the cells may be halved; `None` if none are counted.
+    pub(super) fn halvings(self) -> Option<u32> {
+        match self {
+            ThinFeatures::Ignore => None,
+            ThinFeatures::Count => Some(0),
+            ThinFeatures::Refine { halvings } => Some(halvings),
+        }
+    }
+}

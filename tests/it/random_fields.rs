@@ -1,0 +1,178 @@
+//! Meshes of random fields, in both modes: nothing is wrong with any of them.
+
+use glam::{DQuat, DVec3};
+use rvachev::{
+    Bounds, CellSize, Features, Field, Interval, MeshSettings, ParamError, RFunction, Real, Run, Solid, ThinFeatures,
+};
+
+use crate::support::Random;
+
+/// The sum of 24 sines, some of them shorter than a cell.
+#[derive(Clone, Debug)]
+struct Sines([[f64; 5]; 24]);
+
+impl Field for Sines {
+    fn name(&self) -> &'static str {
+        "sines"
+    }
+
+    #[inline(always)]
+    fn eval<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
+        let mut sum = x.lift(0.3);
+        for [a, b, c, phase, size] in self.0 {
+            let (sin, _) = (x * a + y * b + z * c + phase).sin_cos();
+            sum = sum + sin * size;
+        }
+        sum
+    }
+
+    fn bounds(&self) -> Bounds {
+        Bounds::ALL
+    }
+
+    fn check(&self) -> Result<(), ParamError> {
+        Ok(())
+    }
+
+    fn range(&self, _: [Interval; 3]) -> Interval {
+        let size: f64 = self.0.iter().map(|wave| wave[4].abs()).sum();
+        Interval::new(0.3 - size, 0.3 + size)
+    }
+}
+
+/// The cell of all meshes here: 1/8. With the lattice's shift of 11/32 of a cell, nodes are at odd
+/// multiples of 1/256.
+const CELL: f64 = 0.125;
+
+/// A multiple of a quarter of a cell, or a coordinate of nodes.
+fn round(random: &mut Random) -> f64 {
+    let cells = random.below(17) as f64 - 8.0;
+    let part = random.pick(&[0.0, 0.25, 0.5, 11.0 / 32.0, 11.0 / 32.0]);
+    (cells + part) * CELL
+}
+
+fn leaf(random: &mut Random) -> Solid {
+    let size = DVec3::from_array([0; 3].map(|_| (1 + random.below(8)) as f64 * CELL));
+    match random.below(8) {
+        0 | 1 => Solid::cuboid(size),
+        2 => Solid::sphere(0.5 * size.x),
+        3 => Solid::cylinder(0.5 * size.x, size.z),
+        4 => Solid::superellipsoid(0.5 * size, random.range(0.1, 2.0), random.range(0.1, 2.0)),
+        5 => Solid::torus(0.5 * size.x.max(size.y) + 0.1, 0.3 * size.z.min(0.4)),
+        6 => Solid::cone(0.5 * size.x, 0.25 * size.y * f64::from(u8::from(random.chance(0.5))), size.z),
+        _ => Solid::capsule(0.3 * size.x, size.z),
+    }
+}
+
+/// A leaf in a place where its faces may lie on those of others, on nodes, or askew.
+fn placed(random: &mut Random) -> Solid {
+    let solid = leaf(random);
+    let at = DVec3::new(round(random), round(random), round(random));
+    match random.below(4) {
+        0 => solid.rotate(random.rotation()).translate(random.vector(-0.7, 0.7)),
+        1 => solid.rotate(DQuat::from_rotation_x(0.5 * std::f64::consts::PI)).translate(at),
+        _ => solid.translate(at),
+    }
+}
+
+fn csg(random: &mut Random) -> Solid {
+    let mut solid = placed(random);
+    for _ in 0..1 + random.below(4) {
+        let other = placed(random);
+        solid = match random.below(5) {
+            0 => solid & other,
+            1 | 2 => solid | other,
+            3 => solid - other,
+            _ => solid.symmetric_difference(other, RFunction::MIN_MAX),
+        };
+    }
+    solid
+}
+
+/// Two solids that touch in a point, along an edge or in a face, or a wall thinner than a cell.
+fn touching(random: &mut Random) -> Solid {
+    let a = (2 + random.below(6)) as f64 * CELL;
+    let block = || Solid::cuboid(DVec3::splat(a));
+    let pair = match random.below(6) {
+        0 => Solid::sphere(a) | Solid::sphere(0.5 * a).translate(DVec3::X * 1.5 * a),
+        1 => block() | block().translate(DVec3::new(a, a, 0.0)),
+        2 => block() | block().translate(DVec3::splat(a)),
+        3 => block() | block().translate(DVec3::new(a, 0.5 * a, 0.0)),
+        4 => Solid::sphere(a).shell(random.log_range(0.02, 2.0) * CELL),
+        _ => block() - Solid::sphere(0.5 * a),
+    };
+    if random.chance(0.5) {
+        pair.translate(DVec3::splat(round(random)))
+    } else {
+        pair.rotate(random.rotation()).translate(random.vector(-0.2, 0.2))
+    }
+}
+
+fn sines(random: &mut Random) -> Solid {
+    let mut wave = || {
+        let k = random.direction() * random.log_range(1.0, 40.0);
+        [k.x, k.y, k.z, random.range(0.0, 6.3), random.range(-1.0, 1.0)]
+    };
+    Solid::new(Sines(std::array::from_fn(|_| wave())))
+}
+
+fn fields(seeds: std::ops::Range<u64>) {
+    let (mut triangles, mut cut, mut empty) = (0, 0, 0);
+    for seed in seeds {
+        let mut random = Random::new(seed.wrapping_mul(0x9e37_79b9) + 3);
+        let solid = match seed % 4 {
+            0 => sines(&mut random),
+            1 | 2 => csg(&mut random),
+            _ => touching(&mut random),
+        };
+        let bounded = solid.bounds().unwrap().is_finite();
+        let part = random.chance(0.3) || !bounded;
+        let half = DVec3::new(round(&mut random), round(&mut random), round(&mut random)).abs() + CELL;
+        let middle = DVec3::splat(round(&mut random));
+        let bounds = part.then(|| Bounds::from_center(middle, half.min(DVec3::splat(0.8))));
+        for features in [Features::Sharp, Features::Smooth] {
+            let settings = MeshSettings { cell: CellSize::Length(CELL), bounds, features, ..MeshSettings::default() };
+            let run = Run { threads: 1, ..Run::default() };
+            let mesh = solid.mesh_with(&settings, &run).unwrap();
+            if mesh.triangles().is_empty() {
+                empty += 1;
+                continue;
+            }
+            let report = mesh.check();
+            assert!(report.is_sound(), "seed {seed}, {features:?}, {bounds:?}: {report:?}\n{solid}");
+            triangles += report.triangles;
+            cut += usize::from(part);
+            if let Some(bounds) = bounds {
+                assert!(bounds.inflate(1e-6).contains_bounds(&report.bounds), "seed {seed}: {:?}", report.bounds);
+            }
+        }
+    }
+    println!("{triangles} triangles; {cut} meshes cut at bounds, {empty} empty");
+}
+
+#[test]
+fn a_thousand_fields() {
+    fields(0..1000);
+}
+
+#[test]
+#[ignore = "takes many minutes"]
+fn twenty_thousand_fields() {
+    fields(0..20_000);
+}
+
+#[test]
+fn thin_walls_are_counted_and_refined() {
+    // A wall of a third of a cell, between the nodes.
+    let wall = Solid::cuboid((1.0, 1.0, 0.04)).translate(DVec3::Z * 0.1);
+    let settings = |thin| MeshSettings { cell: CellSize::Length(CELL), thin, ..MeshSettings::default() };
+    let report = |thin| wall.mesh(&settings(thin)).unwrap().check();
+    assert_eq!(report(ThinFeatures::Ignore).unresolved_cells, None);
+    assert!(report(ThinFeatures::Count).unresolved_cells.unwrap() > 0);
+    let fine = report(ThinFeatures::Refine { halvings: 4 });
+    assert_eq!((fine.unresolved_cells, fine.shells), (Some(0), 1));
+    assert!((fine.volume / 0.04 - 1.0).abs() < 0.02, "{}", fine.volume);
+    // A body without thin parts has none.
+    let ball = Solid::sphere(1.0).mesh(&settings(ThinFeatures::Count)).unwrap();
+    assert_eq!(ball.unresolved_cells(), Some(0));
+}

@@ -1,0 +1,321 @@
+//! Creases and corners: how far the mesh is from the true edges and from the true surface.
+
+use std::collections::HashMap;
+
+use glam::{DQuat, DVec3};
+use rvachev::{AtBounds, Bounds, CellSize, Features, Mesh, MeshSettings, MeshingError, Solid};
+
+use crate::models;
+use crate::support::Random;
+
+/// A point's distance to a mesh, for points that are close to it.
+struct Nearness<'a> {
+    mesh: &'a Mesh,
+    cell: f64,
+    buckets: HashMap<[i32; 3], Vec<u32>>,
+}
+
+impl<'a> Nearness<'a> {
+    fn new(mesh: &'a Mesh, cell: f64) -> Self {
+        let mut buckets: HashMap<[i32; 3], Vec<u32>> = HashMap::new();
+        for (n, t) in mesh.triangles().iter().enumerate() {
+            let p = t.map(|i| mesh.positions()[i as usize].as_dvec3());
+            let low = (p[0].min(p[1]).min(p[2]) / cell).floor().as_ivec3();
+            let high = (p[0].max(p[1]).max(p[2]) / cell).floor().as_ivec3();
+            for x in low.x..=high.x {
+                for y in low.y..=high.y {
+                    for z in low.z..=high.z {
+                        buckets.entry([x, y, z]).or_default().push(n as u32);
+                    }
+                }
+            }
+        }
+        Nearness { mesh, cell, buckets }
+    }
+
+    /// In cells; anything beyond a cell is a cell.
+    fn distance(&self, p: DVec3) -> f64 {
+        let at = (p / self.cell).floor().as_ivec3();
+        let mut best = self.cell * self.cell;
+        for n in 0..27 {
+            let key = [at.x + n % 3 - 1, at.y + n / 3 % 3 - 1, at.z + n / 9 - 1];
+            for &t in self.buckets.get(&key).into_iter().flatten() {
+                let corners = self.mesh.triangles()[t as usize].map(|i| self.mesh.positions()[i as usize].as_dvec3());
+                best = best.min((nearest_on(corners, p) - p).length_squared());
+            }
+        }
+        best.sqrt() / self.cell
+    }
+}
+
+/// The point of a triangle that is nearest to p.
+fn nearest_on([a, b, c]: [DVec3; 3], p: DVec3) -> DVec3 {
+    let normal = (b - a).cross(c - a);
+    let within = |u: DVec3, v: DVec3| (v - u).cross(p - u).dot(normal) >= 0.0;
+    if within(a, b) && within(b, c) && within(c, a) {
+        return p - normal * ((p - a).dot(normal) / normal.length_squared());
+    }
+    let on = |u: DVec3, v: DVec3| u + (v - u) * ((p - u).dot(v - u) / (v - u).length_squared()).clamp(0.0, 1.0);
+    let sides = [on(a, b), on(b, c), on(c, a)];
+    sides.into_iter().min_by(|u, v| (*u - p).length_squared().total_cmp(&(*v - p).length_squared())).unwrap()
+}
+
+/// What is said of a list of errors, in cells.
+#[derive(Clone, Copy, Debug)]
+struct Statistics {
+    median: f64,
+    part90: f64,
+    rms: f64,
+    max: f64,
+}
+
+fn statistics(mut errors: Vec<f64>) -> Statistics {
+    errors.sort_by(f64::total_cmp);
+    let count = errors.len();
+    Statistics {
+        median: errors[count / 2],
+        part90: errors[count * 9 / 10],
+        rms: (errors.iter().map(|e| e * e).sum::<f64>() / count as f64).sqrt(),
+        max: errors[count - 1],
+    }
+}
+
+impl std::fmt::Display for Statistics {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Statistics { median, part90, rms, max } = self;
+        write!(f, "median {median:.4}, 90 % {part90:.4}, rms {rms:.4}, max {max:.3}")
+    }
+}
+
+fn mesh(solid: &Solid, cell: f64, features: Features) -> Mesh {
+    let mesh = solid.mesh(&MeshSettings { cell: CellSize::Length(cell), features, ..MeshSettings::default() }).unwrap();
+    let report = mesh.check();
+    assert!(report.is_sound(), "{report:?}");
+    mesh
+}
+
+/// The distances of the centroids of triangles from the zero set of a field, to first order.
+fn surface_errors(mesh: &Mesh, solid: &Solid, cell: f64) -> Vec<f64> {
+    let program = solid.surface_program().unwrap();
+    let error = |t: &[u32; 3]| {
+        let centroid = t.iter().map(|&i| mesh.positions()[i as usize].as_dvec3()).sum::<DVec3>() / 3.0;
+        let (value, gradient) = program.gradient(centroid);
+        value.abs() / gradient.length() / cell
+    };
+    mesh.triangles().iter().map(error).collect()
+}
+
+fn edge_errors(mesh: &Mesh, points: &[DVec3], cell: f64) -> Vec<f64> {
+    let nearness = Nearness::new(mesh, cell);
+    points.iter().map(|&p| nearness.distance(p)).collect()
+}
+
+/// Points every hundredth of a cell on the edges of a cube of side 2.
+fn cube_edges(cell: f64) -> Vec<DVec3> {
+    let count = (2.0 / (0.01 * cell)) as usize;
+    let mut points = Vec::new();
+    for edge in 0..12 {
+        let (axis, u, v) = (edge % 3, (edge + 1) % 3, (edge + 2) % 3);
+        for n in 0..=count {
+            let mut p = DVec3::ZERO;
+            p[axis] = 2.0 * n as f64 / count as f64 - 1.0;
+            p[u] = if edge / 3 % 2 == 0 { -1.0 } else { 1.0 };
+            p[v] = if edge / 6 == 0 { -1.0 } else { 1.0 };
+            points.push(p);
+        }
+    }
+    points
+}
+
+#[test]
+fn edges_of_a_turned_cube() {
+    let cell = 2.0 * 3f64.sqrt() / 64.0;
+    let edges = cube_edges(cell);
+    let mut random = Random::new(12);
+    let (mut sharp, mut smooth, mut surface, mut faces) = (Vec::new(), Vec::new(), Vec::new(), [0, 0]);
+    for n in 0..12 {
+        let turn = if n == 0 { DQuat::IDENTITY } else { random.rotation() };
+        let shift = random.vector(-0.1, 0.1);
+        let solid = Solid::cuboid(DVec3::splat(2.0)).rotate(turn).translate(shift);
+        let points: Vec<DVec3> = edges.iter().map(|p| turn * *p + shift).collect();
+        for (features, errors) in [(Features::Sharp, &mut sharp), (Features::Smooth, &mut smooth)] {
+            let mesh = mesh(&solid, cell, features);
+            faces[(features == Features::Smooth) as usize] += mesh.triangles().len();
+            errors.extend(edge_errors(&mesh, &points, cell));
+            if features == Features::Sharp {
+                let errors = surface_errors(&mesh, &solid, cell);
+                println!("  turn {n}: surface {}", statistics(errors.clone()));
+                surface.extend(errors);
+            }
+        }
+        let count = points.len();
+        println!("cube {n}: {}", statistics(sharp[sharp.len() - count..].to_vec()));
+    }
+    let (sharp, smooth, surface) = (statistics(sharp), statistics(smooth), statistics(surface));
+    println!("cubes, edges, sharp:  {sharp}");
+    println!("cubes, edges, smooth: {smooth}");
+    println!("cubes, surface, sharp: {surface}; triangles {faces:?}");
+    assert!(sharp.median <= 0.005 && sharp.part90 <= 0.05, "{sharp}");
+    assert!(sharp.median < smooth.median && sharp.part90 < smooth.part90, "{sharp}, {smooth}");
+    assert!(sharp.rms < smooth.rms && sharp.max < smooth.max, "{sharp}, {smooth}");
+    assert!(surface.rms <= 0.006, "{surface}");
+}
+
+/// Points on the true edges of M2: where two of its parts have the value 0, found by Newton steps from
+/// around the vertices of a mesh.
+fn body_edges(near: &Mesh, cell: f64) -> Vec<DVec3> {
+    let parts: Vec<_> = models::set("M2")
+        .unwrap()
+        .solids
+        .iter()
+        .map(|part| {
+            let solid = Solid::superellipsoid(part.semi_axes, part.exponents[0], part.exponents[1]);
+            solid.affine(part.pose).surface_program().unwrap()
+        })
+        .collect();
+    let body = models::m2().solid.surface_program().unwrap();
+    let mut random = Random::new(5);
+    let mut points = Vec::new();
+    for vertex in near.positions() {
+        let vertex = vertex.as_dvec3();
+        let close: Vec<usize> = (0..parts.len())
+            .filter(|&n| {
+                let (value, gradient) = parts[n].gradient(vertex);
+                value.abs() < 0.7 * cell * gradient.length()
+            })
+            .collect();
+        for (n, &a) in close.iter().enumerate() {
+            for &b in &close[..n] {
+                for _ in 0..4 {
+                    let mut p = vertex + random.vector(-0.5, 0.5) * cell;
+                    for _ in 0..8 {
+                        let ((f, u), (g, v)) = (parts[a].gradient(p), parts[b].gradient(p));
+                        // The smallest step that takes both to 0 to first order.
+                        let (uu, uv, vv) = (u.dot(u), u.dot(v), v.dot(v));
+                        let determinant = uu * vv - uv * uv;
+                        p -= (u * (f * vv - g * uv) + v * (g * uu - f * uv)) / determinant;
+                    }
+                    let on_both = parts[a].value(p).abs().max(parts[b].value(p).abs()) < 1e-9;
+                    if on_both && body.value(p).abs() < 1e-8 && (p - vertex).length() < 1.5 * cell {
+                        points.push(p);
+                    }
+                }
+            }
+        }
+    }
+    points
+}
+
+#[test]
+fn edges_of_a_body() {
+    let model = models::m2();
+    let cell = 2.0 * model.half / 128.0;
+    let smooth = mesh(&model.solid, cell, Features::Smooth);
+    let sharp = mesh(&model.solid, cell, Features::Sharp);
+    let points = body_edges(&smooth, cell);
+    let edges = [&sharp, &smooth].map(|mesh| statistics(edge_errors(mesh, &points, cell)));
+    let surface = [&sharp, &smooth].map(|mesh| statistics(surface_errors(mesh, &model.solid, cell)));
+    println!("M2, {} points on edges, sharp:  {}", points.len(), edges[0]);
+    println!("M2, edges, smooth: {}", edges[1]);
+    println!("M2, surface, sharp:  {}; {} triangles", surface[0], sharp.triangles().len());
+    {
+        let e = surface_errors(&sharp, &model.solid, cell);
+        let mut o: Vec<usize> = (0..e.len()).collect();
+        o.sort_by(|a, b| e[*b].total_cmp(&e[*a]));
+        let on_edges = smooth.positions().len() as u32;
+        println!(
+            "sum sq top100 {} all {}",
+            o[..100].iter().map(|&n| e[n] * e[n]).sum::<f64>(),
+            e.iter().map(|x| x * x).sum::<f64>()
+        );
+        let prog = model.solid.surface_program().unwrap();
+        for &n in o.iter().take(40).chain(o.iter().skip(100).take(10)).chain(o.iter().skip(1000).take(10)) {
+            let t = sharp.triangles()[n];
+            let g: Vec<_> = t
+                .iter()
+                .map(|&i| {
+                    let p = sharp.positions()[i as usize].as_dvec3();
+                    let (v, g) = prog.gradient(p);
+                    format!(
+                        "{}{:.3} {:.2}",
+                        if i >= on_edges { "F" } else { "e" },
+                        v / g.length() / cell,
+                        g.normalize()
+                    )
+                })
+                .collect();
+            println!("{:.3} {t:?} {:.2} {g:?}", e[n], sharp.positions()[t[0] as usize] / cell as f32);
+        }
+    }
+    println!("M2, surface, smooth: {}; {} triangles", surface[1], smooth.triangles().len());
+    assert!(edges[0].median <= 0.005 && edges[0].part90 <= 0.05, "{}", edges[0]);
+    assert!(edges[0].median < edges[1].median && edges[0].part90 < edges[1].part90);
+    assert!(edges[0].rms < edges[1].rms && edges[0].max < edges[1].max);
+    assert!(surface[0].rms <= 0.006, "{}", surface[0]);
+}
+
+#[test]
+fn a_smooth_solid_is_the_same_in_both_modes() {
+    for solid in [Solid::sphere(1.0), Solid::torus(1.0, 0.4), Solid::superellipsoid(DVec3::ONE, 1.0, 0.8)] {
+        assert_eq!(mesh(&solid, 0.04, Features::Sharp), mesh(&solid, 0.04, Features::Smooth));
+    }
+}
+
+#[test]
+fn normals_at_creases_are_those_of_the_faces() {
+    let mesh = mesh(&Solid::cuboid(DVec3::splat(2.0)).rotate_x(0.3).rotate_z(0.5), 0.11, Features::Sharp);
+    let corners = mesh.corner_normals().expect("a cube has creases");
+    let mut astray = 0;
+    for (triangle, normals) in mesh.triangles().iter().zip(corners) {
+        let [a, b, c] = triangle.map(|i| mesh.positions()[i as usize].as_dvec3());
+        let face = (b - a).cross(c - a).normalize();
+        astray += usize::from(normals.iter().any(|normal| normal.as_dvec3().dot(face) < 0.999));
+    }
+    println!("corner normals: {astray} of {} triangles are not flat", corners.len());
+    assert!(astray * 50 < corners.len(), "{astray} of {}", corners.len());
+    // A smooth solid has a normal for each vertex and no more.
+    let ball = Solid::sphere(1.0).mesh(&MeshSettings::default()).unwrap();
+    assert!(ball.corner_normals().is_none() && ball.normals().is_some());
+}
+
+#[test]
+fn caps_are_flat_and_sharp_or_an_error() {
+    let bounds = Bounds::new(DVec3::new(-2.0, -2.0, -0.313), DVec3::new(2.0, 2.0, 0.427));
+    let settings = MeshSettings { cell: CellSize::Length(0.07), bounds: Some(bounds), ..MeshSettings::default() };
+    let mesh = Solid::sphere(1.0).mesh(&settings).unwrap();
+    assert!(mesh.check().is_sound());
+    let exact = std::f64::consts::PI * (0.74 - (0.427f64.powi(3) + 0.313f64.powi(3)) / 3.0);
+    assert!((mesh.volume() / exact - 1.0).abs() < 2e-3, "{} {exact}", mesh.volume());
+    let rim = |z: f64| DVec3::new((1.0 - z * z).sqrt(), 0.0, z);
+    let nearness = Nearness::new(&mesh, 0.07);
+    for n in 0..500 {
+        let turn = DQuat::from_rotation_z(f64::from(n) / 79.0);
+        for z in [-0.313, 0.427] {
+            assert!(nearness.distance(turn * rim(z)) < 0.2, "{n}: {}", nearness.distance(turn * rim(z)));
+        }
+    }
+    let refused = MeshSettings { at_bounds: AtBounds::Refuse, ..settings.clone() };
+    match Solid::sphere(1.0).mesh(&refused) {
+        Err(MeshingError::LeavesBounds { at }) => {
+            assert!(at.length() < 1.0 && (at.z + 0.313).abs().min((at.z - 0.427).abs()) < 1e-3, "{at}");
+        }
+        other => panic!("{other:?}"),
+    }
+    // Touching the bounds is not leaving them.
+    let flush = MeshSettings { bounds: Some(Bounds::from_center(DVec3::ZERO, DVec3::splat(0.5))), ..refused };
+    assert!(Solid::cuboid(DVec3::ONE).mesh(&flush).is_ok());
+}
+
+#[test]
+fn owners_are_the_leaves() {
+    let solid = Solid::cuboid(DVec3::splat(2.0)) - Solid::cylinder(0.5, 4.0);
+    let settings = MeshSettings { cell: CellSize::Length(0.1), owners: true, ..MeshSettings::default() };
+    let mesh = solid.mesh(&settings).unwrap();
+    let owners = mesh.owners().expect("they are asked for");
+    let mut right = 0;
+    for (triangle, &owner) in mesh.triangles().iter().zip(owners) {
+        let middle = triangle.iter().map(|&i| mesh.positions()[i as usize].as_dvec3()).sum::<DVec3>() / 3.0;
+        right += usize::from((middle.truncate().length() < 0.6) == (owner == 1));
+    }
+    assert!(right * 100 > 99 * owners.len(), "{right} of {}", owners.len());
+}
