@@ -20,7 +20,7 @@ use glam::DVec3;
 use super::extract::Root;
 use super::lattice::Lattice;
 use super::signs::EdgeRef;
-use crate::eval::{Evaluator, Gradients, Tape};
+use crate::eval::{Evaluator, Gradients, Program, Tape};
 
 /// A root is settled when the next step is shorter than this part of an edge; that step is
 /// taken as well.
@@ -29,6 +29,9 @@ const SETTLED: f64 = 2.5e-7;
 /// At most this many steps of false position; from `HALVING` on they halve.
 const STEPS: usize = 40;
 const HALVING: usize = 12;
+
+/// Fewer points than this are evaluated one by one: lanes are padded to a chunk.
+const FEW: usize = 8;
 
 /// Normals are taken anew where a root moves by more than this after its gradient was.
 const MOVED: f64 = 1.0 / 256.0;
@@ -54,11 +57,12 @@ pub(super) struct RootFinder {
 }
 
 impl RootFinder {
-    /// The roots on `edges`, into `out`; `tape` is for a region that holds them.
+    /// The roots on `edges`, into `out`; `tape` is that of `program` for a region that holds
+    /// them.
     pub(super) fn find(
         &mut self,
         evaluator: &mut Evaluator,
-        tape: &Tape,
+        (program, tape): (&Program, &Tape),
         lattice: &Lattice,
         edges: &[EdgeRef],
         out: &mut [Root],
@@ -66,7 +70,7 @@ impl RootFinder {
         let step = lattice.step();
         self.start(tape, lattice, edges);
         self.approach(evaluator, tape, edges, step, out);
-        self.settle(evaluator, tape, edges, step);
+        self.settle(evaluator, (program, tape), edges, step);
         self.normals(evaluator, tape, edges, step, out);
         for (root, &t) in out.iter_mut().zip(&self.t) {
             root.t = t;
@@ -122,7 +126,7 @@ impl RootFinder {
     }
 
     /// In double precision, to the end.
-    fn settle(&mut self, evaluator: &mut Evaluator, tape: &Tape, edges: &[EdgeRef], step: f64) {
+    fn settle(&mut self, evaluator: &mut Evaluator, (program, tape): (&Program, &Tape), edges: &[EdgeRef], step: f64) {
         self.evaluate_all(evaluator, tape, edges, step);
         self.before.clear();
         for (n, &value) in self.exact.iter().enumerate() {
@@ -156,7 +160,7 @@ impl RootFinder {
             if self.open.is_empty() {
                 break;
             }
-            self.evaluate_open(evaluator, tape, edges, step);
+            self.evaluate_open(evaluator, (program, tape), edges, step);
             let mut kept = 0;
             for at in 0..self.open.len() {
                 let n = self.open[at] as usize;
@@ -193,7 +197,13 @@ impl RootFinder {
     }
 
     /// The values at the next points of the open edges, in their order.
-    fn evaluate_open(&mut self, evaluator: &mut Evaluator, tape: &Tape, edges: &[EdgeRef], step: f64) {
+    fn evaluate_open(
+        &mut self,
+        evaluator: &mut Evaluator,
+        (program, tape): (&Program, &Tape),
+        edges: &[EdgeRef],
+        step: f64,
+    ) {
         self.gathered.iter_mut().for_each(Vec::clear);
         for (&n, bracket) in self.open.iter().zip(&self.brackets) {
             let n = n as usize;
@@ -203,6 +213,12 @@ impl RootFinder {
             }
         }
         let [x, y, z] = &self.gathered;
+        if x.len() < FEW {
+            for (value, (&x, (&y, &z))) in self.exact.iter_mut().zip(x.iter().zip(y.iter().zip(z))) {
+                *value = program.value(tape.origin() + DVec3::new(x, y, z));
+            }
+            return;
+        }
         evaluator.values_f64(tape, x, y, z, &mut self.exact[..x.len()]);
     }
 

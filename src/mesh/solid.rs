@@ -182,6 +182,9 @@ struct SolidSampler<'a> {
     pattern: [Vec<f32>; 3],
 }
 
+/// Roots that are found at once; a multiple of the points that lanes are run on.
+const AT_ONCE: usize = 2048;
+
 /// What a thread keeps from block to block.
 #[derive(Default)]
 struct Scratch {
@@ -287,9 +290,15 @@ impl Sampler for SolidSampler<'_> {
         for edges in sorted.chunk_by(|a, b| group(a) == group(b)) {
             let group = group(&edges[0]);
             let roots = rest.split_off_mut(..edges.len()).unwrap_or_default();
-            match tapes.iter().find(|(other, _)| *other == group) {
-                Some((_, tape)) => finder.find(evaluator, tape, self.lattice, edges, roots),
-                None => finder.find(evaluator, &self.tape(group), self.lattice, edges, roots),
+            let made = tapes.iter().position(|(other, _)| *other == group);
+            let at = made.unwrap_or_else(|| {
+                tapes.push((group, self.tape(group)));
+                tapes.len() - 1
+            });
+            let pair = (&self.programs[group as usize], &tapes[at].1);
+            // As many as the cache holds.
+            for (edges, roots) in edges.chunks(AT_ONCE).zip(roots.chunks_mut(AT_ONCE)) {
+                finder.find(evaluator, pair, self.lattice, edges, roots);
             }
         }
         for (&n, root) in order.iter().zip(&*roots) {

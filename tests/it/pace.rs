@@ -123,7 +123,7 @@ fn cancelling_is_noticed_within_a_few_blocks() {
         let run = Run { threads: 1, cancel, progress: Some(progress) };
         assert_eq!(ball.mesh_with(&cell, &run).unwrap_err(), MeshingError::Cancelled(rvachev::Cancelled));
         let more = count.load(Ordering::Relaxed) - after.load(Ordering::Relaxed);
-        // A batch of 64 blocks has 2000 evaluations of vectors, a hundredth of a second at most.
+        // A batch of 256 blocks has 10 000 evaluations of vectors, a hundredth of a second or so.
         assert!(more < 20_000 && more < all / 10, "{more} of {all} evaluations after cancelling at {at}");
     }
 }
