@@ -344,7 +344,10 @@ fn cost_of_features() {
         let [smooth, sharp] = least;
         println!(
             "{} at {across}: smooth {:.1} ms, sharp {:.1} ms, ratio {:.2}; triangles {triangles:?}",
-            model.name, 1e3 * smooth, 1e3 * sharp, sharp / smooth
+            model.name,
+            1e3 * smooth,
+            1e3 * sharp,
+            sharp / smooth
         );
     }
 }
