@@ -35,7 +35,6 @@ use glam::DVec3;
 use rvachev::{Bounds, Evaluator, Formula, Gradients, Program, Solid, Tape};
 
 use lean::lean;
-use models::Model;
 
 /// Points are handed to fidget in slices of this length, which suits its VM.
 const SLICE: usize = 512;

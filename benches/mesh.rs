@@ -6,8 +6,12 @@
 //! same model, box and number of cells, in the same run. Ours is `Smooth`: marching cubes,
 //! with welded indices and normals; fidget's is manifold dual contouring without normals.
 //!
-//! Words after `--` choose: names of models, cells along the side (64, 128, 256), `fidget` for
-//! fidget on all models, also where it takes minutes, `alone` for ours without fidget.
+//! Then come extraction alone, from arrays of 257³ samples, and scale: a sphere at 1024³ and
+//! 2048³, a ball of gyroid at 512³, unions of 100 and of 10 000 superellipsoids at 256³.
+//!
+//! Words after `--` choose: `models`, `arrays`, `scale`; names of models, cells along the side
+//! (64, 128, 256), `one` or `two` threads; `fidget` for fidget on all models, also where it takes
+//! minutes, `alone` for ours without fidget.
 
 #[path = "evaluate/lean.rs"]
 mod lean;
@@ -17,6 +21,10 @@ mod measure;
 mod models;
 #[path = "mesh/peer.rs"]
 mod peer;
+#[path = "mesh/scale.rs"]
+mod scale;
+#[path = "mesh/volume.rs"]
+mod volume;
 
 use rvachev::{CellSize, MeshSettings, Run};
 
@@ -70,6 +78,18 @@ fn main() {
     const NAMES: [&str; 6] = ["M1", "M2", "M3", "M4", "M5", "M6"];
     const CELLS: [&str; 3] = ["64", "128", "256"];
     const THREADS: [&str; 2] = ["one", "two"];
+    const PARTS: [&str; 3] = ["models", "arrays", "scale"];
+    if chosen.takes("arrays", &PARTS) {
+        volume::rows();
+    }
+    if chosen.takes("scale", &PARTS) {
+        for threads in (1..=2).filter(|&threads| chosen.takes(THREADS[threads - 1], &THREADS)) {
+            scale::rows(threads);
+        }
+    }
+    if !chosen.takes("models", &PARTS) {
+        return;
+    }
     for model in models::all().into_iter().filter(|model| chosen.takes(model.name, &NAMES)) {
         for cells in CELLS.into_iter().filter(|cells| chosen.takes(cells, &CELLS)) {
             let cells: u32 = cells.parse().expect("a number");

@@ -18,7 +18,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 use rvachev::{
-    Bounds, Camera, CellSize, Gielis, Helix, MeshSettings, Profile, RenderSettings, SineWave, Solid, Supershape,
+    Bounds, Camera, CellSize, Gielis, Helix, MeshSettings, Paint, Profile, RenderSettings, SineWave, Solid, Supershape,
 };
 
 const WALL: f64 = 1.8;
@@ -86,8 +86,7 @@ fn picture(solid: &Solid, frame: &Bounds, path: &Path) -> Result<(), Box<dyn Err
         width: 160,
         height: 290,
         samples: 2,
-        color: [112, 150, 124],
-        gloss: 0.7,
+        paint: Paint { color: [112, 150, 124], roughness: 0.3 },
         ..RenderSettings::default()
     };
     let camera = Camera::framing(frame).fitted(frame, f64::from(settings.width) / f64::from(settings.height));

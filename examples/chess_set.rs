@@ -208,8 +208,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         piece.translate([square * SQUARE, 0.0, if i % 2 == 1 { -1.0 } else { 0.0 }]).named(name)
     });
     let scene = Solid::union_all(row, RFunction::MIN_MAX) | board();
-    let settings =
-        RenderSettings { width: 640, height: 270, samples: 2, color: [226, 205, 166], ..RenderSettings::default() };
+    let settings = RenderSettings {
+        width: 640,
+        height: 270,
+        samples: 2,
+        paint: [226, 205, 166].into(),
+        ..RenderSettings::default()
+    };
     let view = Camera::perspective([50.0, -300.0, 105.0], DVec3::ZERO, DVec3::Z, 24.0);
     let camera = view.fitted(&scene.bounds()?.inflate(-8.0), f64::from(settings.width) / f64::from(settings.height));
     let path = folder.join("chess_set.png");

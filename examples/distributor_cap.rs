@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use glam::DVec3;
-use rvachev::{Camera, CellSize, Gielis, MeshSettings, RenderSettings, Solid, Supershape};
+use rvachev::{Camera, CellSize, Gielis, MeshSettings, Paint, RenderSettings, Solid, Supershape};
 
 /// The ring of towers: how many, and its radius.
 const LEADS: u32 = 6;
@@ -121,8 +121,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         width: 420,
         height: 315,
         samples: 1,
-        color: [158, 74, 48],
-        gloss: 0.5,
+        paint: Paint { color: [158, 74, 48], roughness: 0.4 },
         ..RenderSettings::default()
     };
     let view = Camera::perspective([40.0, -260.0, 190.0], DVec3::ZERO, DVec3::Z, 24.0);

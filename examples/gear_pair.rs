@@ -178,7 +178,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("  {:.1} x {:.1} x {:.1} mm", bounds.size().x, bounds.size().y, bounds.size().z);
 
     let start = Instant::now();
-    let settings = RenderSettings { width: 800, height: 520, samples: 2, color: [190, 154, 84], ..Default::default() };
+    let settings =
+        RenderSettings { width: 800, height: 520, samples: 2, paint: [190, 154, 84].into(), ..Default::default() };
     let eye = DVec3::new(0.5, -1.7, 2.4);
     let camera = Camera::perspective(eye, DVec3::ZERO, DVec3::Z, 28.0);
     // Gears leave the corners of their box empty.

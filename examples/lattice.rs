@@ -81,7 +81,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("  {:.1} x {:.1} x {:.1} mm", bounds.size().x, bounds.size().y, bounds.size().z);
 
     let start = Instant::now();
-    let settings = RenderSettings { width: 420, height: 340, samples: 2, color: [126, 158, 176], ..Default::default() };
+    let settings =
+        RenderSettings { width: 420, height: 340, samples: 2, paint: [126, 158, 176].into(), ..Default::default() };
     let camera = Camera::framing(&bounds).fitted(&bounds, f64::from(settings.width) / f64::from(settings.height));
     let path = folder.join("lattice.png");
     light.render(&camera, &settings)?.save(&path)?;

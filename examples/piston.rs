@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use glam::DVec3;
-use rvachev::{Camera, CellSize, Gielis, MeshSettings, RenderSettings, Solid, Supershape};
+use rvachev::{Camera, CellSize, Gielis, MeshSettings, Paint, RenderSettings, Solid, Supershape};
 
 /// Radius of the piston, and the height of its crown above the skirt's lower edge.
 const RADIUS: f64 = 40.0;
@@ -130,8 +130,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         width: 420,
         height: 360,
         samples: 2,
-        color: [176, 182, 190],
-        gloss: 0.6,
+        paint: Paint { color: [176, 182, 190], roughness: 0.35 },
         ..RenderSettings::default()
     };
     let view = Camera::perspective([60.0, -260.0, 150.0], DVec3::ZERO, DVec3::Z, 24.0);

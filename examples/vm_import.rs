@@ -170,8 +170,13 @@ fn import(name: &str, text: &str, folder: &Path) -> Result<(), Box<dyn Error>> {
 
     // The mesh knows how large the model is.
     let start = Instant::now();
-    let settings =
-        RenderSettings { width: 480, height: 400, samples: 2, color: [204, 160, 118], ..RenderSettings::default() };
+    let settings = RenderSettings {
+        width: 480,
+        height: 400,
+        samples: 2,
+        paint: [204, 160, 118].into(),
+        ..RenderSettings::default()
+    };
     let eye = if flat { DVec3::new(0.5, -2.0, 4.0) } else { DVec3::new(2.0, -3.0, 2.0) };
     let camera = Camera::perspective(eye, DVec3::ZERO, DVec3::Z, 30.0);
     let camera = camera.fitted(&report.bounds, f64::from(settings.width) / f64::from(settings.height));

@@ -300,8 +300,9 @@
 //! let settings = RenderSettings {
 //!     width: 64,
 //!     height: 48,
-//!     color: [200, 160, 60],
+//!     paint: [200, 160, 60].into(),
 //!     background: Background::Transparent,
+//!     ground: false,
 //!     ..RenderSettings::default()
 //! };
 //! let from_above = Camera::perspective([0.0, -12.0, 14.0], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0], 35.0);

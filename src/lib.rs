@@ -138,6 +138,24 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! Parts have [paint](Solid::paint), pictures have [styles](Style); behind a picture are its
+//! [layers](Solid::layers): depth, normals, positions, leaves. A [slice](Solid::slice) shows the
+//! field on a plane, and its [contours](Slice::contours).
+//!
+//! ```
+//! use rvachev::{Camera, Coordinates, Plane, RenderSettings, Solid, Style};
+//!
+//! let part = Solid::cuboid([4.0, 3.0, 1.0]).paint([60, 100, 160]) - Solid::cylinder(1.0, 2.0).paint([220, 140, 40]);
+//! let camera = Camera::framing(&part.bounds()?).orbit(30.0, 10.0);
+//! let settings = RenderSettings { width: 40, height: 30, style: Style::Technical, ..RenderSettings::default() };
+//! let drawing = part.render(&camera, &settings)?;
+//! let cloud = part.layers(&camera, 40, 30)?.range_image().points(Coordinates::World)?;
+//! assert!(cloud.len() > 100);
+//! let contours = part.slice(&Plane::xy(0.0))?.contours(1e-3)?;
+//! assert_eq!(contours.len(), 2);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! [Twelve idioms](idioms) show how things are commonly built: plates with holes, named parts,
 //! rings of parts, leaves of one's own.
 //!
@@ -259,12 +277,26 @@
 //! | [`taper`](Solid::taper), [`twist`](Solid::twist), [`bend`](Solid::bend) | Barr's deformations |
 //! | [`taper_by`](Solid::taper_by), [`twist_by`](Solid::twist_by) | by any [`Law`] of z: [`LinearLaw`], [`SmoothStep`], [`SineWave`], [`LawTable`], a number, your own |
 //!
+//! ## Explicit surfaces
+//!
+//! Without a field or a grid:
+//!
+//! | | |
+//! |---|---|
+//! | [`Superellipsoid::surface`] and its like | a [`ParametricSurface`]: points, tangents, exact normals by two parameters |
+//! | [`ParametricSurface::mesh`], [`quad_mesh`](ParametricSurface::quad_mesh) | closed triangles and quadrilaterals, by angles, by lengths or within a tolerance ([`Spacing`]) |
+//! | [`ParametricSurface::sample`] | points uniform by area |
+//! | [`Superellipse::curve`], [`Gielis::curve`], [`ParametricCurve`] | the same of plane curves |
+//! | [`Superellipsoid::points`], [`Superellipse::points`] | points by Franklin and Barr's methods ([`PointMethod`]) |
+//! | [`ControlPolygon`], [`SubdivisionRevolution`], [`ControlGrid`] | subdivision: conics, quadrics, free forms |
+//!
 //! ## Solids as values
 //!
 //! | | |
 //! |---|---|
 //! | [`named`](Solid::named) | the name that errors, [`owner`](Solid::owner) and the tree speak of |
 //! | [`Display`](Solid#impl-Display-for-Solid) | the solid as an indented tree |
+//! | [`paint`](Solid::paint) | its colour, in pictures and meshes |
 //! | [`==`](Solid#impl-PartialEq-for-Solid), `Hash` | by structure: solids may be keys of a map |
 //! | [`simplified`](Solid::simplified) | the same values from fewer nodes |
 //!
@@ -330,13 +362,15 @@ pub mod idioms;
 mod io;
 mod mesh;
 mod num;
+mod raster;
 mod render;
 mod run;
 mod solid;
 mod space;
+mod surface;
 
 pub use bounds::Bounds;
-pub use eval::{Evaluator, Gradients, Hit, Owner, Program, Region, Tape};
+pub use eval::{Evaluator, Gradients, Hit, Owner, Palette, Program, Region, Tape};
 pub use field::{
     Blend, COORDINATE_LIMIT, Capsule, Circle, Cone, Cuboid, Cylinder, Ellipsoid, Field, Formula, FormulaError,
     GeneralisedSuperquadric, Gielis, Grading, HalfSpace, Kernel, Law, LawTable, LinearLaw, MinimalSurface,
@@ -344,12 +378,33 @@ pub use field::{
     SheetLattice, SineWave, Slab, SmoothStep, Sphere, Superellipse, Superellipsoid, Superhyperboloid, Superpolygon,
     Supershape, Supertoroid, Torus, Turns, VALUE_LIMIT, Wedge,
 };
-pub use geom::{Camera, CameraError, Image, ImageError, Mesh, MeshError, Projection, Rays};
-pub use io::{SaveError, write_png, write_stl};
+pub use geom::{
+    Camera, CameraError, Coordinates, Corner, Image, ImageError, Intrinsics, Mesh, MeshError, Noise, Plane, PointCloud,
+    PointCloudError, Polyline, Projection, QuadMesh, RangeImage, RangeImageError, Rays, View,
+};
+pub use io::{
+    Colors, Floats, LengthUnit, Pixel, SaveError, SaveSettings, write_3mf, write_dxf, write_exr, write_gif, write_glb,
+    write_obj, write_ply, write_ply_points, write_png, write_stl, write_stl_ascii, write_svg,
+};
 pub use mesh::{
-    AtBounds, CellSize, Features, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError, ThinFeatures,
+    AtBounds, CellSize, Features, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError, ThinFeatures, Volume,
+    VolumeError, VolumeSettings,
 };
 pub use num::{Dual, Interval, Monotone, Monotone3, Norm, Real};
-pub use render::{Background, RenderError, RenderSettings};
+pub use raster::{
+    Buffers, ClosedMesh, Csg, CsgMethod, Facing, Fragments, LANES, LayerSource, MeshLayers, RasterError, RasterView,
+    SurfaceId, Tile,
+};
+pub use render::{
+    Background, GBuffer, Isolines, Layers, Lights, RenderError, RenderSettings, Scene, Slice, SliceSettings, Style,
+    Surface, Transfer, Window,
+};
 pub use run::{CancelToken, Cancelled, Progress, Run};
-pub use solid::{Caps, Extrusion, Helix, PlaneBounds, Profile, Solid, SolidError};
+pub use solid::{Caps, Extrusion, Helix, Paint, PlaneBounds, Profile, Solid, SolidError};
+pub use surface::{
+    BinomialSeries, ControlGrid, ControlPoint, ControlPolygon, CurveSpread, ExactExplicit, Frame, LogTable,
+    ParametricCurve, ParametricSurface, PatchError, PatchSettings, PlaneSymmetry, PointError, PointMethod,
+    PointSettings, PowerTables, ProductTables, ProfileEnd, SeriesExplicit, Spacing, SubdivisionError,
+    SubdivisionRevolution, SurfacePoint, Symmetry, Tension, hyperbola_of_ellipse, raw_parametric,
+    raw_parametric_octant, reflect, reflect_plane,
+};

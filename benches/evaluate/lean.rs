@@ -1,10 +1,10 @@
-//! The models M1 to M5 for fidget, written out with as few operations as its instruction set
+//! Models for fidget, negative inside, written with as few operations as its instruction set
 //! allows.
 
 use fidget::context::Tree;
 use glam::DVec3;
 
-use crate::models::{self, Model};
+use super::models::{self, Model};
 
 /// The model for fidget, negative inside, with as few operations as it takes.
 pub fn lean(model: &Model) -> Option<Tree> {
@@ -34,7 +34,7 @@ pub fn lean(model: &Model) -> Option<Tree> {
     Some(subtracted.iter().fold(union, |all, hole| and(all, -hole.clone())))
 }
 
-fn superellipsoid(a: DVec3, [e1, e2]: [f64; 2], to_local: &glam::DAffine3, size: f32) -> Tree {
+pub fn superellipsoid(a: DVec3, [e1, e2]: [f64; 2], to_local: &glam::DAffine3, size: f32) -> Tree {
     let (x, y, z) = Tree::axes();
     let rows = to_local.matrix3.transpose();
     let axis = |i: usize| {

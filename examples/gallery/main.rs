@@ -52,7 +52,8 @@ fn picture(solid: &Solid, color: [u8; 3], manner: Manner) -> Result<RgbImage, Re
         width: WIDTH,
         height: HEIGHT,
         samples: manner.samples,
-        color,
+        paint: color.into(),
+        ground: false,
         background: Background::Plain(BACKGROUND),
         ..RenderSettings::default()
     };

@@ -115,7 +115,10 @@ impl Compiler {
             }
             let below = self.contexts.below(&solid, context).iter().copied();
             let down = match solid.node() {
-                solid::Node::Affine { .. } | solid::Node::Warp { .. } | solid::Node::Named { .. } => below.collect(),
+                solid::Node::Affine { .. }
+                | solid::Node::Warp { .. }
+                | solid::Node::Named { .. }
+                | solid::Node::Painted { .. } => below.collect(),
                 solid::Node::Join { operation: Operation::Union, operands, .. } => {
                     below.filter(|&(operand, inner)| open(self, &operands[operand], inner)).collect()
                 }
@@ -192,7 +195,7 @@ impl Compiler {
         let mut inner = below.iter().map(|&(at, inner)| (&node.operands()[at], inner));
         let mut first = |c: f64| inner.next().map_or(Bounds::ALL, |(s, inner)| self.above(s, inner, c, depth - 1));
         match node {
-            solid::Node::Affine { .. } | solid::Node::Named { .. } => first(c),
+            solid::Node::Affine { .. } | solid::Node::Named { .. } | solid::Node::Painted { .. } => first(c),
             solid::Node::Warp { warp, .. } if self.contexts.get(context).anchor.is_none() => {
                 let inside = first(c);
                 if inside.is_empty() {
@@ -239,7 +242,7 @@ impl Compiler {
             .collect();
         match node {
             solid::Node::Leaf(field) => Ok(self.leaf(field, site)),
-            solid::Node::Affine { .. } | solid::Node::Named { .. } => Ok(below[0]),
+            solid::Node::Affine { .. } | solid::Node::Named { .. } | solid::Node::Painted { .. } => Ok(below[0]),
             solid::Node::Warp { operand, warp } => self.warped(site, operand, warp, below[0]),
             solid::Node::Complement(_) => Ok(below[0].complement()),
             solid::Node::Join { operation, rule, .. } => {
@@ -406,6 +409,7 @@ fn check(node: &solid::Node) -> Result<(), ParamError> {
         solid::Node::Join { rule, .. } => rule.check(),
         solid::Node::Blend { blend, .. } => blend.check(),
         solid::Node::Length { length, .. } => length.check(),
+        solid::Node::Painted { paint, .. } => paint.check(),
         // A deformation is checked against what it deforms.
         solid::Node::Warp { .. } | solid::Node::Complement(_) | solid::Node::Named { .. } => Ok(()),
     }

@@ -38,6 +38,8 @@ enum Step {
     Length(f64),
     /// Below a length: the complement of what is above.
     Flip,
+    /// Nothing differs but the paint.
+    Paint,
 }
 
 pub(super) struct Contexts {
@@ -86,6 +88,11 @@ impl Contexts {
         let list = match solid.node() {
             Node::Leaf(_) => Vec::new(),
             Node::Named { .. } => vec![(0, context)],
+            // What is painted is apart from the same parts without paint.
+            Node::Painted { .. } => {
+                let inner = *self.get(context);
+                vec![(0, self.push(context, Step::Paint, inner))]
+            }
             Node::Affine { forward, .. } => {
                 let inner = Context {
                     to_local: inverse(forward) * above.to_local,
@@ -206,7 +213,7 @@ impl Contexts {
                     chain.push((to_local, warp.clone()));
                     to_local = DAffine3::IDENTITY;
                 }
-                Step::World | Step::Length(_) | Step::Flip => {}
+                Step::World | Step::Length(_) | Step::Flip | Step::Paint => {}
             }
         }
         let distance = Distance::new(chain, to_local, field.clone());

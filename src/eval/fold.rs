@@ -20,7 +20,6 @@ pub(super) trait Conjunction {
     fn rule(&self) -> Rule;
 }
 
-pub(super) struct MinMax;
 pub(super) struct Alpha(f64);
 pub(super) struct Zero(u32);
 pub(super) struct Distance;
@@ -59,7 +58,6 @@ macro_rules! conjunction {
 }
 
 conjunction! {
-    MinMax: self => Rule::MinMax;
     Alpha: self => Rule::Alpha(self.0);
     Zero: self => Rule::Zero(self.0);
     Distance: self => Rule::Distance;
@@ -88,10 +86,38 @@ impl<C: Conjunction> Fold<4> for Join<C> {
     }
 }
 
+/// Min, with signs before and after: what most joins of a surface program are.
+pub(super) struct Least {
+    sign: f64,
+    sign_next: f64,
+}
+
+impl Fold<1> for Least {
+    #[inline(always)]
+    fn fold<R: Real>(&self, [all]: [R; 1], [next]: [R; 1]) -> [R; 1] {
+        [(all * self.sign).min(next * self.sign_next) * self.sign]
+    }
+}
+
+impl Fold<4> for Least {
+    #[inline(always)]
+    fn fold<R: Real>(&self, all: [R; 4], next: [R; 4]) -> [R; 4] {
+        // What is taken over keeps its own sign, or that of the joined operand.
+        let turn = self.sign * self.sign_next;
+        let stays = next[0] * self.sign_next - all[0] * self.sign;
+        [
+            stays.select(all[0], next[0] * turn),
+            stays.select(all[1], next[1] * turn),
+            stays.select(all[2], next[2] * turn),
+            stays.select(all[3], next[3] * turn),
+        ]
+    }
+}
+
 /// Joins `next`, or its negative, to `all`.
 pub(super) fn join<E: Element, const N: usize>(op: Op, rule: Rule, negate: bool, all: [&mut [E]; N], next: [&[E]; N])
 where
-    Join<MinMax>: Fold<N>,
+    Least: Fold<N>,
     Join<Alpha>: Fold<N>,
     Join<Zero>: Fold<N>,
     Join<Distance>: Fold<N>,
@@ -105,7 +131,7 @@ where
     let sign = if op == Op::And { 1.0 } else { -1.0 };
     let sign_next = if negate { -sign } else { sign };
     match rule {
-        Rule::MinMax => fold(&Join { conjunction: MinMax, sign, sign_next }, all, next),
+        Rule::MinMax => fold(&Least { sign, sign_next }, all, next),
         Rule::Alpha(alpha) => fold(&Join { conjunction: Alpha(alpha), sign, sign_next }, all, next),
         Rule::Zero(m) => fold(&Join { conjunction: Zero(m), sign, sign_next }, all, next),
         Rule::Distance => fold(&Join { conjunction: Distance, sign, sign_next }, all, next),

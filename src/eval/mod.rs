@@ -5,6 +5,7 @@
 //! R-functions, which is the same solid with the same surface and normals, and which can be
 //! narrowed to a region.
 
+mod bend;
 mod code;
 mod compile;
 mod composite;
@@ -17,6 +18,7 @@ mod hierarchy;
 mod lower;
 mod narrow;
 mod nearest;
+mod palette;
 mod point;
 mod program;
 mod query;
@@ -26,10 +28,12 @@ mod repeat;
 mod scene;
 mod tape;
 
+pub use palette::Palette;
 pub use program::{Program, Region};
 pub use query::Owner;
 pub use ray::Hit;
 pub use tape::{Evaluator, Gradients, Tape};
 
+pub(crate) use bend::Bend;
 pub(crate) use compile::compiled;
-pub(crate) use ray::{Course, first_hit};
+pub(crate) use ray::first_hit;

@@ -149,6 +149,13 @@ impl Program {
         (saturate(dual.v), DVec3::from_array(dual.d))
     }
 
+    /// The values of all nodes at a point.
+    pub(super) fn node_values(&self, p: DVec3) -> Vec<f64> {
+        let mut values = Vec::new();
+        self.evaluate_nodes(limited(p), &mut values, None);
+        values
+    }
+
     /// The number of the leaf whose value decides at a point.
     pub(crate) fn deciding_leaf(&self, p: DVec3) -> u32 {
         let mut values = Vec::new();

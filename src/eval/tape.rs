@@ -4,6 +4,7 @@
 //! are rebased to that origin in double precision, so a small solid far from the origin of
 //! coordinates is evaluated as accurately as one at it.
 
+use std::any::Any;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
@@ -12,7 +13,10 @@ use super::fold::join;
 use super::program::{Op, Program};
 use super::register::{Step, schedule};
 use crate::Bounds;
-use crate::field::{AnyField, AnyWarp, COORDINATE_LIMIT, Chunk, Placement, Product, Pull, Rule, Zone};
+use crate::field::{
+    AnyField, AnyWarp, COORDINATE_LIMIT, Capsule, Chunk, Cone, Cuboid, Cylinder, Ellipsoid, GeneralisedSuperquadric,
+    HalfSpace, Placement, Product, Pull, Rule, Slab, Sphere, Superellipsoid, Supertoroid, Torus, Zone,
+};
 use crate::num::kernel::{CHUNK, Element, run, within};
 
 /// A program ready for bulk evaluation over a region: immutable, shared between threads;
@@ -41,6 +45,8 @@ pub struct Tape {
     result: u32,
     origin: DVec3,
     roundoff: f64,
+    /// Whether every leaf takes short chunks; deformations do.
+    short: bool,
 }
 
 /// A deformation to run: from the points in slot `from` to those in the next slot.
@@ -102,7 +108,8 @@ impl Tape {
                 field: instance.field.clone(),
             });
         }
-        Tape { frames, leaves, steps, registers: plan.registers, result: plan.result, origin, roundoff }
+        let short = leaves.iter().all(|leaf| takes_short(&*leaf.field));
+        Tape { frames, leaves, steps, registers: plan.registers, result: plan.result, origin, roundoff, short }
     }
 
     /// What points are relative to.
@@ -130,6 +137,24 @@ impl Tape {
     pub fn roundoff(&self) -> f64 {
         self.roundoff
     }
+}
+
+/// Whether a leaf runs over any multiple of the widest vectors, as all do that are one formula.
+/// Leaves with loops of their own count on whole chunks; what is not listed is taken for one.
+fn takes_short(field: &dyn AnyField) -> bool {
+    let field: &dyn Any = field;
+    field.is::<Superellipsoid>()
+        || field.is::<GeneralisedSuperquadric>()
+        || field.is::<Supertoroid>()
+        || field.is::<Sphere>()
+        || field.is::<Ellipsoid>()
+        || field.is::<Cuboid>()
+        || field.is::<Cylinder>()
+        || field.is::<Cone>()
+        || field.is::<Capsule>()
+        || field.is::<Torus>()
+        || field.is::<HalfSpace>()
+        || field.is::<Slab>()
 }
 
 /// How a region looks in a frame, and how far its points may be off in single precision.
@@ -224,36 +249,47 @@ impl Evaluator {
 trait Mode<const N: usize> {
     type E: Element;
     const COORDINATES: usize;
+    /// Short chunks are multiples of this many points: of the widest vectors that a kernel is
+    /// run on.
+    const GRANULE: usize;
     fn leaf(leaf: &LeafStep, points: Points<'_, Self::E>, out: [&mut [Self::E]; N]);
     fn frame(frame: &FrameStep, points: Points<'_, Self::E>, out: &mut [Self::E]);
     fn join(op: Op, rule: Rule, negate: bool, all: [&mut [Self::E]; N], next: [&[Self::E]; N]);
 }
 
-/// Points of a chunk: three slices, or a slot behind a deformation.
+/// Points of a chunk: three slices, or a slot behind a deformation and how many of its points
+/// count.
 enum Points<'a, E> {
     World([&'a [E]; 3]),
-    Slot(&'a [E]),
+    Slot(&'a [E], usize),
 }
 
-/// Slices of a chunk each.
-fn split<E, const K: usize>(slot: &[E]) -> [&[E]; K] {
-    std::array::from_fn(|i| &slot[i * CHUNK..(i + 1) * CHUNK])
+/// The first `size` of a chunk each.
+fn split<E, const K: usize>(slot: &[E], size: usize) -> [&[E]; K] {
+    std::array::from_fn(|i| &slot[i * CHUNK..i * CHUNK + size])
 }
 
-fn split_mut<E, const K: usize>(slot: &mut [E]) -> [&mut [E]; K] {
+fn split_mut<E, const K: usize>(slot: &mut [E], size: usize) -> [&mut [E]; K] {
     let mut rest = slot;
     std::array::from_fn(|_| {
         let (head, tail) = std::mem::take(&mut rest).split_at_mut(CHUNK);
         rest = tail;
-        head
+        &mut head[..size]
     })
 }
 
 impl<'a, E> Points<'a, E> {
+    fn size(&self) -> usize {
+        match self {
+            Points::World([x, ..]) => x.len(),
+            Points::Slot(_, size) => *size,
+        }
+    }
+
     fn coordinates(&self) -> [&'a [E]; 3] {
         match self {
             Points::World(points) => *points,
-            Points::Slot(slot) => split(slot),
+            Points::Slot(slot, size) => split(slot, *size),
         }
     }
 }
@@ -263,6 +299,7 @@ struct Values<E>(std::marker::PhantomData<E>);
 impl Mode<1> for Values<f32> {
     type E = f32;
     const COORDINATES: usize = 3;
+    const GRANULE: usize = 64;
 
     fn leaf(leaf: &LeafStep, points: Points<'_, f32>, out: [&mut [f32]; 1]) {
         leaf.field.lanes32(Chunk { points: points.coordinates(), placement: &leaf.placement, out });
@@ -273,7 +310,7 @@ impl Mode<1> for Values<f32> {
     }
 
     fn frame(frame: &FrameStep, points: Points<'_, f32>, out: &mut [f32]) {
-        let out = split_mut(out);
+        let out = split_mut(out, points.size());
         frame.warp.lanes32(Chunk { points: points.coordinates(), placement: &frame.placement, out });
     }
 }
@@ -281,6 +318,7 @@ impl Mode<1> for Values<f32> {
 impl Mode<1> for Values<f64> {
     type E = f64;
     const COORDINATES: usize = 3;
+    const GRANULE: usize = 8;
 
     fn leaf(leaf: &LeafStep, points: Points<'_, f64>, out: [&mut [f64]; 1]) {
         leaf.field.lanes64(Chunk { points: points.coordinates(), placement: &leaf.placement, out });
@@ -291,7 +329,7 @@ impl Mode<1> for Values<f64> {
     }
 
     fn frame(frame: &FrameStep, points: Points<'_, f64>, out: &mut [f64]) {
-        let out = split_mut(out);
+        let out = split_mut(out, points.size());
         frame.warp.lanes64(Chunk { points: points.coordinates(), placement: &frame.placement, out });
     }
 }
@@ -301,16 +339,17 @@ struct Slopes;
 impl Mode<4> for Slopes {
     type E = f32;
     const COORDINATES: usize = 12;
+    const GRANULE: usize = 64;
 
     fn leaf(leaf: &LeafStep, points: Points<'_, f32>, out: [&mut [f32]; 4]) {
         let chunk = Chunk { points: points.coordinates(), placement: &leaf.placement, out };
-        let Points::Slot(slot) = points else { return leaf.field.gradients(chunk) };
+        let Points::Slot(slot, size) = points else { return leaf.field.gradients(chunk) };
         let mut own = [0.0; 4 * CHUNK];
         let [value, dx, dy, dz] = chunk.out;
-        leaf.field.gradients(Chunk { out: split_mut(&mut own), ..chunk });
-        let [v, x, y, z] = split(&own);
+        leaf.field.gradients(Chunk { out: split_mut(&mut own, size), ..chunk });
+        let [v, x, y, z] = split(&own, size);
         value.copy_from_slice(v);
-        let [a, b, c, d, e, f, g, h, i] = split::<_, 9>(&slot[3 * CHUNK..]);
+        let [a, b, c, d, e, f, g, h, i] = split::<_, 9>(&slot[3 * CHUNK..], size);
         run(&Pull, [a, b, c, d, e, f, g, h, i, x, y, z], [dx, dy, dz]);
     }
 
@@ -319,16 +358,17 @@ impl Mode<4> for Slopes {
     }
 
     fn frame(frame: &FrameStep, points: Points<'_, f32>, out: &mut [f32]) {
-        let chunk = Chunk { points: points.coordinates(), placement: &frame.placement, out: split_mut(out) };
-        let Points::Slot(slot) = points else { return frame.warp.jacobians(chunk) };
+        let size = points.size();
+        let chunk = Chunk { points: points.coordinates(), placement: &frame.placement, out: split_mut(out, size) };
+        let Points::Slot(slot, _) = points else { return frame.warp.jacobians(chunk) };
         let mut own = [0.0; 12 * CHUNK];
         let [x, y, z, jacobian @ ..] = chunk.out;
-        frame.warp.jacobians(Chunk { out: split_mut(&mut own), ..chunk });
-        let local = split::<_, 12>(&own);
+        frame.warp.jacobians(Chunk { out: split_mut(&mut own, size), ..chunk });
+        let local = split::<_, 12>(&own, size);
         for (to, from) in [x, y, z].into_iter().zip(local) {
             to.copy_from_slice(from);
         }
-        let above = split::<_, 9>(&slot[3 * CHUNK..]);
+        let above = split::<_, 9>(&slot[3 * CHUNK..], size);
         let both = std::array::from_fn(|i| if i < 9 { local[i + 3] } else { above[i - 9] });
         run(&Product, both, jacobian);
     }
@@ -347,23 +387,29 @@ fn execute<M: Mode<N>, const N: usize>(
     memory.padded.resize(3 * CHUNK, zero);
     let Memory { registers, slots, padded } = memory;
     let limit = M::E::from_f64(COORDINATE_LIMIT);
+    let granule = if tape.short { M::GRANULE } else { CHUNK };
     let mut at = 0;
     while at < count {
         let len = CHUNK.min(count - at);
+        let size = len.next_multiple_of(granule);
         let mut world = points.map(|p| &p[at..at + len]);
-        if len < CHUNK || !world.iter().all(|axis| within(axis, limit)) {
+        let near = world.iter().all(|axis| within(axis, limit));
+        if len < size || !near {
             // The tail is padded with copies of its last point; coordinates are held.
-            for (to, from) in split_mut::<_, 3>(padded).into_iter().zip(world) {
-                for (i, to) in to.iter_mut().enumerate() {
-                    *to = held(from[i.min(len - 1)]);
+            for (to, from) in split_mut::<_, 3>(padded, size).into_iter().zip(world) {
+                let (head, tail) = to.split_at_mut(len);
+                head.copy_from_slice(from);
+                tail.fill(from[len - 1]);
+                if !near {
+                    to.iter_mut().for_each(|c| *c = held(*c));
                 }
             }
-            world = split::<_, 3>(padded);
+            world = split::<_, 3>(padded, size);
         }
         chunk::<M, N>(tape, world, registers, slots);
         let result = &registers[tape.result as usize * N * CHUNK..][..N * CHUNK];
-        for (to, from) in out.iter_mut().zip(split::<_, N>(result)) {
-            to[at..at + len].copy_from_slice(&from[..len]);
+        for (to, from) in out.iter_mut().zip(split::<_, N>(result, len)) {
+            to[at..at + len].copy_from_slice(from);
         }
         at += len;
     }
@@ -371,11 +417,12 @@ fn execute<M: Mode<N>, const N: usize>(
 
 fn chunk<M: Mode<N>, const N: usize>(tape: &Tape, world: [&[M::E]; 3], registers: &mut [M::E], slots: &mut [M::E]) {
     let coordinates = M::COORDINATES * CHUNK;
+    let size = world[0].len();
     for (number, frame) in tape.frames.iter().enumerate() {
         let (before, after) = slots.split_at_mut(number * coordinates);
         let points = match frame.from {
             0 => Points::World(world),
-            slot => Points::Slot(&before[(slot - 1) * coordinates..slot * coordinates]),
+            slot => Points::Slot(&before[(slot - 1) * coordinates..slot * coordinates], size),
         };
         M::frame(frame, points, &mut after[..coordinates]);
     }
@@ -386,13 +433,13 @@ fn chunk<M: Mode<N>, const N: usize>(tape: &Tape, world: [&[M::E]; 3], registers
                 let leaf = &tape.leaves[leaf as usize];
                 let points = match leaf.slot {
                     0 => Points::World(world),
-                    slot => Points::Slot(&slots[(slot - 1) * coordinates..slot * coordinates]),
+                    slot => Points::Slot(&slots[(slot - 1) * coordinates..slot * coordinates], size),
                 };
-                M::leaf(leaf, points, split_mut(&mut registers[to as usize * width..][..width]));
+                M::leaf(leaf, points, split_mut(&mut registers[to as usize * width..][..width], size));
             }
             Step::Fold { op, rule, negate, from, to } => {
                 let (all, next) = two(registers, to as usize * width, from as usize * width, width);
-                M::join(op, rule, negate, split_mut(all), split(next));
+                M::join(op, rule, negate, split_mut(all, size), split(next, size));
             }
             Step::Copy { from, to } => {
                 registers.copy_within(from as usize * width..(from as usize + 1) * width, to as usize * width);

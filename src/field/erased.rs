@@ -286,6 +286,7 @@ impl<F: Field> AnyField for F {
     }
 }
 
+#[inline]
 fn lanes<E: Element, F: Field>(field: &F, chunk: Chunk<'_, E, 1>) {
     run(&Value(field, chunk.placement), chunk.points, chunk.out);
 }

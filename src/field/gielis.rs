@@ -284,7 +284,12 @@ impl Gielis {
     /// The radius of an angle in [−π, π].
     #[inline(always)]
     pub(super) fn radius_at<R: Real>(&self, theta: R, radius: Radius, winding: Winding) -> R {
-        let sum = self.sum_at(theta, radius, winding);
+        self.radius_of_sum(self.sum_at(theta, radius, winding), radius)
+    }
+
+    /// The radius that belongs to a sum of powers.
+    #[inline(always)]
+    fn radius_of_sum<R: Real>(&self, sum: R, radius: Radius) -> R {
         match radius {
             Radius::Standard => (sum * (-1.0 / self.n1)).exp2(),
             Radius::Rational => {
@@ -293,6 +298,11 @@ impl Gielis {
                 ratio + scale * (1.0 - 1.0 / self.n1)
             }
         }
+    }
+
+    /// The radius of one turn, by the sine and cosine of the phase mθ/4.
+    pub(crate) fn radius_of_phase<R: Real>(&self, sin: R, cos: R, radius: Radius) -> R {
+        self.radius_of_sum(self.sum(sin, cos, radius), radius)
     }
 
     /// One over the radius, without a division where there need be none.

@@ -164,6 +164,18 @@ impl Superhyperboloid {
         self.half_length
     }
 
+    /// Whether there are two sheets.
+    #[must_use]
+    pub fn has_two_sheets(&self) -> bool {
+        self.sheets == Sheets::Two
+    }
+
+    /// Whether the axis is that of x.
+    #[must_use]
+    pub fn is_along_x(&self) -> bool {
+        self.along_x
+    }
+
     /// The function h of the whole, unclipped hyperboloid: positive inside, no unit.
     #[must_use]
     pub fn unclipped(&self, p: DVec3) -> f64 {

@@ -172,6 +172,18 @@ impl Supershape {
         self.meridian
     }
 
+    /// The semi-axes that the product of the curves is scaled by.
+    #[must_use]
+    pub fn scale(&self) -> DVec3 {
+        self.scale
+    }
+
+    /// Which formula gives the radii of the curves.
+    #[must_use]
+    pub fn radius(&self) -> Radius {
+        self.radius
+    }
+
     /// The gauge G: below 1 inside, 1 on the surface; `p / G(p)` lies on the surface.
     #[must_use]
     pub fn gauge(&self, p: impl Into<DVec3>) -> f64 {

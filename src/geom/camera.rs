@@ -76,14 +76,14 @@ pub struct CameraError {
 
 /// The vertical field of view of [`Camera::framing`], in degrees: about that of a portrait
 /// lens, which keeps parallel edges nearly parallel.
-const FRAMING_FOV: f64 = 30.0;
+pub(super) const FRAMING_FOV: f64 = 30.0;
 
 /// The direction from the box to the eye of the default view: 34° to the right of the front
 /// and 29° above it, so that no face of a box is seen edge-on or hides another.
 const FRAMING_DIRECTION: DVec3 = DVec3::new(2.0, -3.0, 2.0);
 
 /// How much larger than the box the view is when it is fitted.
-const FRAMING_MARGIN: f64 = 1.06;
+pub(super) const FRAMING_MARGIN: f64 = 1.06;
 
 impl Camera {
     /// A perspective camera; `fov` is the vertical field of view in degrees, in (0, 180).
@@ -191,7 +191,7 @@ impl Camera {
     }
 
     /// Right, up and forward: unit vectors at right angles; NaN where they are not defined.
-    fn axes(&self) -> [DVec3; 3] {
+    pub(crate) fn axes(&self) -> [DVec3; 3] {
         let forward = unit(self.target - self.eye);
         let right = unit(forward.cross(unit(self.up)));
         [right, right.cross(forward), forward]
@@ -267,6 +267,34 @@ impl Rays {
         if self.parallel { (self.eye + offset, self.forward) } else { (self.eye, (self.forward + offset).normalize()) }
     }
 
+    /// The pixel coordinates at which a point appears; `None` if rays meet in an eye that the
+    /// point is beside or behind.
+    pub(crate) fn project(&self, p: DVec3) -> Option<[f64; 2]> {
+        let seen = p - self.eye;
+        let offset = if self.parallel {
+            seen
+        } else {
+            let depth = seen.dot(self.forward);
+            // Nearer to the eye's plane than this, rounding decides on which side it is.
+            if depth <= 1e-9 * seen.length() {
+                return None;
+            }
+            seen / depth
+        };
+        let at = |axis: DVec3| (offset - self.corner).dot(axis) / axis.length_squared();
+        Some([at(self.across), at(self.down)])
+    }
+
+    /// Where the rays of a perspective camera meet.
+    pub(crate) fn meeting_point(&self) -> Option<DVec3> {
+        (!self.parallel).then_some(self.eye)
+    }
+
+    /// The direction of the view.
+    pub(crate) fn forward(&self) -> DVec3 {
+        self.forward
+    }
+
     /// What a pixel spans at distance `t` along a ray near the middle, in length units.
     #[must_use]
     pub fn pixel_size(&self, t: f64) -> f64 {
@@ -304,6 +332,20 @@ mod tests {
                 assert!((p - o).cross(d).length() < 1e-12);
                 assert!((p - o).dot(d) > 0.0);
             }
+        }
+    }
+
+    #[test]
+    fn points_of_a_ray_appear_at_its_pixel() {
+        let eye = DVec3::new(3.0, -4.0, 5.0);
+        for camera in
+            [Camera::perspective(eye, DVec3::ONE, DVec3::Z, 50.0), Camera::orthographic(eye, DVec3::ONE, DVec3::Z, 7.0)]
+        {
+            let rays = camera.rays(64, 48);
+            let (origin, direction) = rays.ray(12.5, 40.25);
+            let [x, y] = rays.project(origin + 3.0 * direction).unwrap();
+            assert!((x - 12.5).abs() < 1e-9 && (y - 40.25).abs() < 1e-9);
+            assert_eq!(rays.project(eye - direction).is_none(), rays.meeting_point().is_some());
         }
     }
 

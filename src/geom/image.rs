@@ -8,7 +8,19 @@
 //!           y ↓ height
 //! ```
 
-/// A picture: 8-bit sRGB with (straight, linear) alpha, rows from top to bottom.
+/// A picture: rows of pixels from top to bottom. What a pixel is says what the picture is of:
+///
+/// | pixel | picture |
+/// |---|---|
+/// | `[u8; 4]` | colour and alpha: sRGB, alpha straight and linear |
+/// | `[u16; 4]` | the same in 16 bits |
+/// | `[f32; 4]` | linear light, weighted by alpha |
+/// | `f64` | depths or values, in length units; infinite where there is nothing |
+/// | [`Vec3`](glam::Vec3) | normals, 0 where there is nothing |
+/// | [`DVec3`](glam::DVec3) | positions, infinite where there is nothing |
+/// | `bool` | a mask |
+/// | [`Option<u32>`](Option) | the number of the leaf that is seen |
+/// | `u8`, `u16` | greys: sRGB |
 ///
 /// ```
 /// use rvachev::Image;
@@ -19,10 +31,10 @@
 /// # Ok::<(), rvachev::ImageError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Image {
+pub struct Image<P = [u8; 4]> {
     width: u32,
     height: u32,
-    pixels: Vec<[u8; 4]>,
+    pixels: Vec<P>,
 }
 
 /// Why a picture cannot be built from the given parts.
@@ -49,13 +61,13 @@ pub enum ImageError {
     },
 }
 
-impl Image {
-    /// A picture from its pixels (red, green, blue, alpha), row by row from the top left.
+impl<P> Image<P> {
+    /// A picture from its pixels, row by row from the top left.
     ///
     /// # Errors
     ///
     /// If a side is 0, or the number of pixels is not `width · height`.
-    pub fn new(width: u32, height: u32, pixels: Vec<[u8; 4]>) -> Result<Image, ImageError> {
+    pub fn new(width: u32, height: u32, pixels: Vec<P>) -> Result<Image<P>, ImageError> {
         if width == 0 || height == 0 {
             return Err(ImageError::NoPixels { width, height });
         }
@@ -77,15 +89,18 @@ impl Image {
         self.height
     }
 
-    /// All pixels (red, green, blue, alpha), row by row from the top left.
+    /// All pixels, row by row from the top left.
     #[must_use]
-    pub fn pixels(&self) -> &[[u8; 4]] {
+    pub fn pixels(&self) -> &[P] {
         &self.pixels
     }
 
     /// The pixel in column `x` and row `y`; `None` beyond the picture.
     #[must_use]
-    pub fn pixel(&self, x: u32, y: u32) -> Option<[u8; 4]> {
+    pub fn pixel(&self, x: u32, y: u32) -> Option<P>
+    where
+        P: Copy,
+    {
         if x >= self.width || y >= self.height {
             return None;
         }
@@ -93,11 +108,87 @@ impl Image {
         self.pixels.get(usize::try_from(index).ok()?).copied()
     }
 
+    /// The picture of what `f` makes of each pixel, row by row from the top left.
+    #[must_use]
+    pub fn map<Q>(&self, f: impl FnMut(&P) -> Q) -> Image<Q> {
+        Image { width: self.width, height: self.height, pixels: self.pixels.iter().map(f).collect() }
+    }
+}
+
+impl Image {
     /// Whether every pixel has alpha 255.
     #[must_use]
     pub fn is_opaque(&self) -> bool {
         self.pixels.iter().all(|p| p[3] == 255)
     }
+}
+
+impl Image<[f32; 4]> {
+    /// As 8-bit sRGB; light beyond what a screen shows is cut off.
+    #[must_use]
+    pub fn to_8bit(&self) -> Image {
+        self.map(|light| encoded(*light).map(|c| (255.0 * c).round() as u8))
+    }
+
+    /// As 16-bit sRGB; light beyond what a screen shows is cut off.
+    #[must_use]
+    pub fn to_16bit(&self) -> Image<[u16; 4]> {
+        self.map(|light| encoded(*light).map(|c| (65535.0 * c).round() as u16))
+    }
+}
+
+impl Image<f64> {
+    /// The least and the greatest finite pixel; none if no pixel is finite.
+    #[must_use]
+    pub fn range(&self) -> Option<(f64, f64)> {
+        let finite = self.pixels.iter().filter(|v| v.is_finite());
+        let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(*v), high.max(*v)));
+        (low <= high).then_some((low, high))
+    }
+
+    /// As 8-bit grey: what is `white` or less is white, `black` or more is nearly black, and
+    /// what is not finite is black.
+    #[must_use]
+    pub fn to_grey8(&self, white: f64, black: f64) -> Image<u8> {
+        self.map(|v| grey(*v, white, black, f64::from(u8::MAX)) as u8)
+    }
+
+    /// As 16-bit grey: what is `white` or less is white, `black` or more is nearly black, and
+    /// what is not finite is black.
+    #[must_use]
+    pub fn to_grey16(&self, white: f64, black: f64) -> Image<u16> {
+        self.map(|v| grey(*v, white, black, f64::from(u16::MAX)) as u16)
+    }
+}
+
+/// A depth as a grey from 1 to `most`; 0 where there is none.
+fn grey(v: f64, white: f64, black: f64, most: f64) -> f64 {
+    if !v.is_finite() {
+        return 0.0;
+    }
+    let span = black - white;
+    let down = if span == 0.0 { 0.0 } else { ((v - white) / span).clamp(0.0, 1.0) };
+    // A tenth of the greys is kept from what there is, to tell it from nothing.
+    (most * (1.0 - 0.9 * down)).round()
+}
+
+/// Linear light, weighted by alpha, as sRGB (IEC 61966-2-1) and straight alpha from 0 to 1.
+fn encoded([r, g, b, alpha]: [f32; 4]) -> [f32; 4] {
+    if alpha.is_nan() || alpha <= 0.0 {
+        return [0.0; 4];
+    }
+    let color = |c: f32| from_linear((c / alpha).clamp(0.0, 1.0)).clamp(0.0, 1.0);
+    [color(r), color(g), color(b), alpha.min(1.0)]
+}
+
+/// From sRGB to linear.
+pub(crate) fn to_linear(c: f32) -> f32 {
+    if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+}
+
+/// From linear to sRGB.
+pub(crate) fn from_linear(c: f32) -> f32 {
+    if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
 }
 
 #[cfg(test)]
@@ -118,9 +209,29 @@ mod tests {
     #[test]
     fn bad_sizes() {
         assert_eq!(
-            Image::new(0, 2, vec![]).unwrap_err().to_string(),
+            Image::<u8>::new(0, 2, vec![]).unwrap_err().to_string(),
             "an image of 0 × 2 pixels; each side must be at least 1"
         );
-        assert!(matches!(Image::new(u32::MAX, u32::MAX, vec![]), Err(ImageError::Count { pixels: 0, .. })));
+        assert!(matches!(Image::<u8>::new(u32::MAX, u32::MAX, vec![]), Err(ImageError::Count { pixels: 0, .. })));
+    }
+
+    #[test]
+    fn bytes_survive_the_transfer() {
+        for byte in 0..=255u8 {
+            let c = to_linear(f32::from(byte) / 255.0);
+            let half = Image::new(2, 1, vec![[c, c, c, 1.0], [0.5 * c, 0.5 * c, 0.5 * c, 0.5]]).unwrap();
+            assert_eq!(half.to_8bit().pixels(), [[byte, byte, byte, 255], [byte, byte, byte, 128]]);
+            assert_eq!(half.to_16bit().pixels()[0][0], u16::from(byte) * 257);
+        }
+        let odd = Image::new(2, 1, vec![[f32::NAN; 4], [9.0, -1.0, 0.0, 2.0]]).unwrap();
+        assert_eq!(odd.to_8bit().pixels(), [[0; 4], [255, 0, 0, 255]]);
+    }
+
+    #[test]
+    fn depths_as_greys() {
+        let depth = Image::new(4, 1, vec![2.0, 4.0, f64::INFINITY, 3.0]).unwrap();
+        assert_eq!(depth.range(), Some((2.0, 4.0)));
+        assert_eq!(depth.to_grey8(2.0, 4.0).pixels(), [255, 26, 0, 140]);
+        assert_eq!(depth.to_grey16(2.0, 2.0).pixels()[0], 65535);
     }
 }

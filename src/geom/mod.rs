@@ -1,4 +1,4 @@
-//! Plain data that other modules make and use: meshes, images, cameras.
+//! Plain data that other modules make and use: meshes, points, polylines, planes, images, cameras.
 //!
 //! Nothing here evaluates, renders or reads files. A type has private fields where they must
 //! agree with one another ([`Mesh`], [`Image`]) and public ones where any combination can at
@@ -7,7 +7,20 @@
 mod camera;
 mod image;
 mod mesh;
+mod plane;
+mod point_cloud;
+mod polyline;
+mod quad_mesh;
+mod range_image;
+mod view;
 
 pub use camera::{Camera, CameraError, Projection, Rays};
 pub use image::{Image, ImageError};
+pub(crate) use image::{from_linear, to_linear};
 pub use mesh::{Mesh, MeshError};
+pub use plane::Plane;
+pub use point_cloud::{PointCloud, PointCloudError};
+pub use polyline::Polyline;
+pub use quad_mesh::{Corner, QuadMesh};
+pub use range_image::{Coordinates, Noise, RangeImage, RangeImageError};
+pub use view::{Intrinsics, View};

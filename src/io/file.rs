@@ -3,9 +3,11 @@
 //! Content goes to a temporary file in the directory of the target, which is flushed to the
 //! disk and then renamed: a rename within a directory replaces the target in one step. When
 //! anything fails, the temporary file is removed and the target is as it was.
+//!
+//! What is no file, as a pipe or a device, is written to as it is.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufWriter};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -19,6 +21,11 @@ pub(super) fn write_whole(path: &Path, content: impl FnOnce(&mut BufWriter<File>
     if let Some(existing) = &existing {
         if existing.is_dir() {
             return Err(io::ErrorKind::IsADirectory.into());
+        }
+        if !existing.is_file() {
+            let mut out = BufWriter::with_capacity(1 << 16, OpenOptions::new().write(true).open(&target)?);
+            content(&mut out)?;
+            return out.flush();
         }
         // The rename would replace it all the same.
         if existing.permissions().readonly() {

@@ -1,15 +1,56 @@
-//! Writers of meshes and pictures: through [`std::io::Write`], and to a path by extension.
+//! Writers of meshes, points, drawings and pictures: through [`std::io::Write`], and to a path by
+//! extension.
 //!
-//! | type | extension | format |
-//! |---|---|---|
-//! | [`Mesh`](crate::Mesh) | `.stl` | binary STL, see [`write_stl`] |
-//! | [`Image`](crate::Image) | `.png` | 8-bit sRGB PNG, see [`write_png`] |
+//! | type | extension | format | carries |
+//! |---|---|---|---|
+//! | [`Mesh`](crate::Mesh) | `.stl` | STL, binary or text, see [`write_stl`] | facets |
+//! | | `.obj` | OBJ, see [`write_obj`] | normals and texture per corner |
+//! | | `.ply` | binary PLY, see [`write_ply`] | normals per vertex, colours, owners |
+//! | | `.glb` | binary glTF, see [`write_glb`] | normals, colours and texture per corner, unit |
+//! | | `.3mf` | 3MF, see [`write_3mf`] | colours per corner, unit |
+//! | [`Image`](crate::Image) | `.png` | PNG of 8 and 16 bits, see [`write_png`] | |
+//! | | `.exr` | OpenEXR, see [`write_exr`] | |
+//! | images in a row | `.gif` | animated GIF, see [`write_gif`] | |
+//! | [`PointCloud`](crate::PointCloud) | `.ply` | binary PLY, see [`write_ply_points`] | normals |
+//! | [`Polyline`](crate::Polyline)s | `.svg`, `.dxf` | see [`write_svg`] and [`write_dxf`] | |
+//!
+//! No writer joins vertices by their position, and only GLB splits them: where the corners of
+//! a vertex carry different normals, colours or texture coordinates.
 
+mod drawing;
+mod exr;
 mod file;
+mod gif;
+mod glb;
+mod normal;
+mod obj;
+mod ply;
 mod png;
+mod points;
 mod save;
+mod split;
 mod stl;
+mod text;
+mod threemf;
+mod unit;
 
-pub use png::write_png;
-pub use save::SaveError;
-pub use stl::write_stl;
+use std::io;
+
+pub use drawing::{write_dxf, write_svg};
+pub use exr::{Floats, write_exr};
+pub use gif::write_gif;
+pub use glb::write_glb;
+pub use obj::write_obj;
+pub use ply::write_ply;
+pub use png::{Colors, write_png};
+pub use points::write_ply_points;
+pub use save::{Pixel, SaveError, SaveSettings};
+pub use stl::{write_stl, write_stl_ascii};
+pub use threemf::write_3mf;
+pub use unit::LengthUnit;
+
+/// The error for a mesh that is too large for a format.
+fn too_many(format: &str) -> io::Error {
+    let what = format!("the mesh has more vertices or triangles than {format} can hold");
+    io::Error::new(io::ErrorKind::InvalidInput, what)
+}

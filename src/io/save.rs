@@ -3,10 +3,16 @@
 use std::fs::File;
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use glam::{DVec3, Vec3};
 
 use super::file::write_whole;
-use super::{write_png, write_stl};
-use crate::geom::{Image, Mesh};
+use super::{
+    LengthUnit, write_3mf, write_dxf, write_exr, write_gif, write_glb, write_obj, write_ply, write_ply_points,
+    write_png, write_stl, write_stl_ascii, write_svg,
+};
+use crate::geom::{Image, Mesh, PointCloud, Polyline};
 
 /// Why a file could not be saved. Whatever was at the path before is still there, and no
 /// half-written file is left.
@@ -21,7 +27,7 @@ pub enum SaveError {
         /// Its extension, without the dot; empty if it has none.
         extension: String,
         /// The extensions that are known, as a list to read.
-        known: &'static str,
+        known: String,
     },
     /// The directory that the file should go to does not exist; saving does not make
     /// directories.
@@ -53,11 +59,50 @@ fn unknown(extension: &str) -> String {
     }
 }
 
-/// A writer of one format.
-type Writer<T> = fn(&T, &mut BufWriter<File>) -> io::Result<()>;
+/// How a mesh is saved, where the format leaves a choice.
+///
+/// ```no_run
+/// use rvachev::{LengthUnit, MeshSettings, SaveSettings, Solid};
+///
+/// let mesh = Solid::sphere(1.0).mesh(&MeshSettings::default())?;
+/// mesh.save_with("ball.3mf", &SaveSettings { unit: LengthUnit::Inch, ..SaveSettings::default() })?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SaveSettings {
+    /// What a length of 1 means. Default: a millimetre. For `.3mf` and `.glb`; the other
+    /// formats have no units.
+    pub unit: LengthUnit,
+    /// Whether `.stl` is written as text. Default: binary. The other formats have one form.
+    pub ascii: bool,
+    /// Whether `.obj` has normals even where a vertex has several: at creases, one for each
+    /// corner. Default: no, as some readers (trimesh, and most that only draw) split the
+    /// vertices there, and no longer see a closed mesh. `.glb` always has them.
+    pub crease_normals: bool,
+}
+
+/// A writer of one format, for `T` by settings `S`.
+type Writer<T, S> = fn(&T, &S, &mut BufWriter<File>) -> io::Result<()>;
+
+/// The formats of a mesh, by extension.
+const MESH_FORMATS: [(&str, Writer<Mesh, SaveSettings>); 5] = [
+    ("3mf", |mesh, settings, out| write_3mf(mesh, settings, out)),
+    ("glb", |mesh, settings, out| write_glb(mesh, settings, out)),
+    ("obj", |mesh, settings, out| write_obj(mesh, settings, out)),
+    ("ply", |mesh, _, out| write_ply(mesh, out)),
+    ("stl", |mesh, settings, out| if settings.ascii { write_stl_ascii(mesh, out) } else { write_stl(mesh, out) }),
+];
 
 impl Mesh {
-    /// Saves the mesh in the format that the extension stands for: `.stl`, binary STL.
+    /// Saves the mesh in the format that the extension stands for:
+    ///
+    /// | extension | format | besides the shape |
+    /// |---|---|---|
+    /// | `.stl` | binary STL | |
+    /// | `.obj` | OBJ | normals (at creases: on request) and texture coordinates per corner |
+    /// | `.ply` | binary PLY | normals per vertex, colours, owners |
+    /// | `.glb` | binary glTF | normals, colours and texture coordinates per corner; in millimetres |
+    /// | `.3mf` | 3MF | colours per corner; in millimetres |
     ///
     /// The file appears complete or not at all. Missing directories are not made.
     ///
@@ -65,25 +110,63 @@ impl Mesh {
     /// use rvachev::Mesh;
     ///
     /// let error = Mesh::default().save("bolt.xyz").unwrap_err();
-    /// assert!(error.to_string().contains("known: .stl"));
+    /// assert!(error.to_string().contains("known: .3mf, .glb, .obj, .ply, .stl"));
     /// ```
     ///
     /// # Errors
     ///
     /// [`SaveError`], naming the file and the cause.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
-        let writer = |extension: &str| -> Option<Writer<Mesh>> {
-            match extension {
-                "stl" => Some(|mesh, out| write_stl(mesh, out)),
-                _ => None,
-            }
-        };
-        save(self, path.as_ref(), writer, ".stl")
+        self.save_with(path, &SaveSettings::default())
+    }
+
+    /// [`save`](Mesh::save) with a choice of unit, of STL as text, of OBJ with all its normals.
+    ///
+    /// # Errors
+    ///
+    /// [`SaveError`], naming the file and the cause.
+    pub fn save_with(&self, path: impl AsRef<Path>, settings: &SaveSettings) -> Result<(), SaveError> {
+        save(self, settings, path.as_ref(), &MESH_FORMATS)
     }
 }
 
-impl Image {
-    /// Saves the picture in the format that the extension stands for: `.png`.
+/// A pixel whose pictures can be saved: see [`Image::save`]. This trait is closed.
+pub trait Pixel: Sized + sealed::Pixel {}
+
+mod sealed {
+    pub trait Pixel: Sized + 'static {
+        const FORMATS: &'static [(&'static str, super::Writer<super::Image<Self>, ()>)];
+    }
+}
+
+/// Says which formats hold which pixels.
+macro_rules! pixel {
+    ($($pixel:ty: $($extension:literal => $write:ident),*;)*) => {$(
+        impl Pixel for $pixel {}
+        impl sealed::Pixel for $pixel {
+            const FORMATS: &'static [(&'static str, Writer<Image<Self>, ()>)] =
+                &[$(($extension, |image, (), out| $write(image, out))),*];
+        }
+    )*};
+}
+
+pixel! {
+    [u8; 4]: "png" => write_png;
+    [u16; 4]: "png" => write_png;
+    u8: "png" => write_png;
+    u16: "png" => write_png;
+    bool: "png" => write_png;
+    Option<u32>: "png" => write_png;
+    [f32; 4]: "exr" => write_exr;
+    f64: "exr" => write_exr, "png" => write_png;
+    Vec3: "exr" => write_exr, "png" => write_png;
+    DVec3: "exr" => write_exr;
+}
+
+impl<P: Pixel> Image<P> {
+    /// Saves the picture in the format that the extension stands for: `.png` for colours, greys,
+    /// masks, leaves, depths and normals ([`Colors`](crate::Colors) says how), `.exr` for what is
+    /// made of floats: light, depths, normals, positions.
     ///
     /// The file appears complete or not at all. Missing directories are not made.
     ///
@@ -91,26 +174,66 @@ impl Image {
     ///
     /// [`SaveError`], naming the file and the cause.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
-        let writer = |extension: &str| -> Option<Writer<Image>> {
-            match extension {
-                "png" => Some(|image, out| write_png(image, out)),
-                _ => None,
-            }
-        };
-        save(self, path.as_ref(), writer, ".png")
+        save(self, &(), path.as_ref(), P::FORMATS)
     }
 }
 
-/// Saves `data` with the writer that `writer` gives for the extension in lower case.
-fn save<T>(
-    data: &T,
-    path: &Path,
-    writer: impl FnOnce(&str) -> Option<Writer<T>>,
-    known: &'static str,
-) -> Result<(), SaveError> {
+impl Image {
+    /// Saves pictures as an animation, each shown for `pause`: `.gif`.
+    ///
+    /// The file appears complete or not at all. Missing directories are not made.
+    ///
+    /// # Errors
+    ///
+    /// [`SaveError`], naming the file and the cause; that there are no pictures is one.
+    pub fn save_animation(pictures: &[Image], pause: Duration, path: impl AsRef<Path>) -> Result<(), SaveError> {
+        save(
+            &(pictures, pause),
+            &(),
+            path.as_ref(),
+            &[("gif", |(pictures, pause), (), out| write_gif(pictures, *pause, out))],
+        )
+    }
+}
+
+impl PointCloud {
+    /// Saves the points in the format that the extension stands for: `.ply`, binary PLY.
+    ///
+    /// The file appears complete or not at all. Missing directories are not made.
+    ///
+    /// # Errors
+    ///
+    /// [`SaveError`], naming the file and the cause.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), SaveError> {
+        save(self, &(), path.as_ref(), &[("ply", |cloud, (), out| write_ply_points(cloud, out))])
+    }
+}
+impl Polyline {
+    /// Saves polylines as a drawing in the format that the extension stands for: `.svg` or
+    /// `.dxf`.
+    ///
+    /// The file appears complete or not at all. Missing directories are not made.
+    ///
+    /// # Errors
+    ///
+    /// [`SaveError`], naming the file and the cause.
+    pub fn save_all(lines: &[Polyline], path: impl AsRef<Path>) -> Result<(), SaveError> {
+        save(
+            &lines,
+            &(),
+            path.as_ref(),
+            &[("dxf", |lines, (), out| write_dxf(lines, out)), ("svg", |lines, (), out| write_svg(lines, out))],
+        )
+    }
+}
+
+/// Saves `data` with the writer that `formats` has for the extension, in upper or lower case.
+fn save<T, S>(data: &T, settings: &S, path: &Path, formats: &[(&str, Writer<T, S>)]) -> Result<(), SaveError> {
     let extension = path.extension().unwrap_or_default().to_string_lossy();
-    let Some(write) = writer(&extension.to_ascii_lowercase()) else {
-        return Err(SaveError::Extension { path: path.into(), extension: extension.into_owned(), known });
+    let Some((_, write)) = formats.iter().find(|(known, _)| extension.eq_ignore_ascii_case(known)) else {
+        let known: Vec<String> = formats.iter().map(|(known, _)| format!(".{known}")).collect();
+        let (path, extension) = (path.into(), extension.into_owned());
+        return Err(SaveError::Extension { path, extension, known: known.join(", ") });
     };
     // The parent of a bare file name is the empty path, which stands for here.
     if let Some(directory) = path.parent()
@@ -119,13 +242,12 @@ fn save<T>(
     {
         return Err(SaveError::Directory { path: path.into(), directory: directory.into() });
     }
-    write_whole(path, |out| write(data, out)).map_err(|source| SaveError::Write { path: path.into(), source })
+    write_whole(path, |out| write(data, settings, out)).map_err(|source| SaveError::Write { path: path.into(), source })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec3;
     use std::fs;
 
     /// A directory of its own for a test, removed at the end.
@@ -161,7 +283,7 @@ mod tests {
         fs::write(&path, "something else, and longer than what follows".repeat(9)).unwrap();
         triangle().save(&path).unwrap();
         assert_eq!(fs::read(&path).unwrap().len(), 134);
-        let image = Image::new(1, 1, vec![[1, 2, 3, 255]]).unwrap();
+        let image = Image::new(1, 1, vec![[1u8, 2, 3, 255]]).unwrap();
         image.save(folder.0.join("dot.png")).unwrap();
         let read = image::open(folder.0.join("dot.png")).unwrap();
         assert_eq!(read.into_rgba8().into_raw(), [1, 2, 3, 255]);
@@ -171,8 +293,11 @@ mod tests {
     #[test]
     fn unknown_extensions_are_listed() {
         let error = triangle().save("a/part.step").unwrap_err();
-        assert_eq!(error.to_string(), "cannot save a/part.step: the extension .step is not known; known: .stl");
-        let image = Image::new(1, 1, vec![[0; 4]]).unwrap();
+        assert_eq!(
+            error.to_string(),
+            "cannot save a/part.step: the extension .step is not known; known: .3mf, .glb, .obj, .ply, .stl"
+        );
+        let image = Image::new(1, 1, vec![[0u8; 4]]).unwrap();
         assert_eq!(
             image.save("view").unwrap_err().to_string(),
             "cannot save view: its name has no extension; known: .png"
@@ -227,6 +352,23 @@ mod tests {
         assert_eq!(failed.unwrap_err().kind(), io::ErrorKind::StorageFull);
         assert_eq!(fs::read(&path).unwrap(), b"before");
         assert_eq!(folder.entries(), 1);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_device_is_written_to_and_not_replaced() {
+        use std::os::unix::fs::FileTypeExt;
+        let folder = Folder::new("device");
+        for extension in ["stl", "obj", "ply", "glb", "3mf"] {
+            let link = folder.0.join(format!("part.{extension}"));
+            std::os::unix::fs::symlink("/dev/full", &link).unwrap();
+            let error = triangle().save(&link).unwrap_err();
+            let SaveError::Write { path, source } = &error else { panic!("{error}") };
+            assert_eq!((path, source.kind()), (&link, io::ErrorKind::StorageFull));
+            assert!(error.to_string().contains(&format!("part.{extension}")));
+        }
+        assert!(fs::metadata("/dev/full").unwrap().file_type().is_char_device());
+        assert_eq!(folder.entries(), 5);
     }
 
     #[cfg(unix)]

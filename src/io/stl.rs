@@ -1,4 +1,4 @@
-//! Binary STL.
+//! STL, binary and as text.
 //!
 //! ```text
 //!   80 bytes   header, any text that does not begin with "solid"
@@ -6,14 +6,26 @@
 //!   50 × n     normal, corner, corner, corner: 12 × f32; then 2 bytes, 0
 //! ```
 //!
-//! All numbers are little-endian. Facets are anticlockwise seen from outside, their normals
-//! of length 1. The format has no units, no shared vertices and no room for more than
-//! 2³² − 1 facets.
+//! ```text
+//!   solid rvachev
+//!     facet normal 0 0 1
+//!       outer loop
+//!         vertex 0 0 0          three of them
+//!       endloop
+//!     endfacet
+//!   endsolid rvachev
+//! ```
+//!
+//! In the binary form all numbers are little-endian. Facets are anticlockwise seen from outside, their normals
+//! of length 1. The format has no units and no shared vertices, and in binary no room for more
+//! than 2³² − 1 facets.
 //!
 //! Source: 3D Systems, StereoLithography Interface Specification (1988).
 
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 
+use super::text::Numbers;
+use super::too_many;
 use crate::geom::Mesh;
 
 /// Facets that are put together before they are handed to the writer.
@@ -41,7 +53,7 @@ const CHUNK: usize = 1024;
 /// triangles.
 pub fn write_stl(mesh: &Mesh, mut out: impl Write) -> io::Result<()> {
     let Ok(count) = u32::try_from(mesh.triangles().len()) else {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "STL holds at most 4294967295 triangles"));
+        return Err(too_many("binary STL"));
     };
     let mut header = [b' '; 80];
     let title = b"binary STL, written by rvachev";
@@ -53,19 +65,39 @@ pub fn write_stl(mesh: &Mesh, mut out: impl Write) -> io::Result<()> {
     for chunk in mesh.triangles().chunks(CHUNK) {
         bytes.clear();
         for &triangle in chunk {
-            let [a, b, c] = mesh.corners(triangle);
-            let normal = (b - a).cross(c - a).normalize_or_zero();
-            for v in [normal, a, b, c] {
-                // Exact for the corners: they were f32.
-                for x in v.as_vec3().to_array() {
-                    bytes.extend_from_slice(&x.to_le_bytes());
-                }
+            for x in facet(mesh, triangle).as_flattened() {
+                bytes.extend_from_slice(&x.to_le_bytes());
             }
             bytes.extend_from_slice(&[0, 0]);
         }
         out.write_all(&bytes)?;
     }
     out.flush()
+}
+
+/// Writes a mesh as STL in text, for programs that do not read the binary form: five times as
+/// large. The writer need not be buffered.
+///
+/// # Errors
+///
+/// Those of the writer.
+pub fn write_stl_ascii(mesh: &Mesh, out: impl Write) -> io::Result<()> {
+    let mut out = BufWriter::with_capacity(1 << 16, out);
+    writeln!(out, "solid rvachev")?;
+    for &triangle in mesh.triangles() {
+        let [normal, a, b, c] = facet(mesh, triangle).map(Numbers);
+        writeln!(out, "facet normal {normal}\nouter loop\nvertex {a}\nvertex {b}\nvertex {c}\nendloop\nendfacet")?;
+    }
+    writeln!(out, "endsolid rvachev")?;
+    out.flush()
+}
+
+/// Unit normal and corners.
+fn facet(mesh: &Mesh, triangle: [u32; 3]) -> [[f32; 3]; 4] {
+    let [a, b, c] = mesh.corners(triangle);
+    let normal = (b - a).cross(c - a).normalize_or_zero();
+    // Exact for the corners: they were f32.
+    [normal, a, b, c].map(|v| v.as_vec3().to_array())
 }
 
 #[cfg(test)]

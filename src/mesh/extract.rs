@@ -54,7 +54,7 @@ mod samples;
 mod sharp;
 
 /// Blocks whose roots are found together. Small enough for threads to share work evenly.
-const BATCH: usize = 64;
+pub(super) const BATCH: usize = 64;
 
 /// What the extractor asks of a surface.
 pub(crate) trait Sampler: Sync {

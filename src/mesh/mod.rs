@@ -5,6 +5,7 @@ mod extract;
 mod feature;
 mod lattice;
 mod loops;
+mod paint;
 mod qef;
 mod resolve;
 mod roots;
@@ -12,8 +13,10 @@ mod settings;
 mod signs;
 mod solid;
 mod table;
+mod volume;
 
 pub use check::MeshReport;
 pub use lattice::{CellSize, Lattice, LatticeError};
 pub use settings::{AtBounds, Features, MeshSettings, ThinFeatures};
 pub use solid::MeshingError;
+pub use volume::{Volume, VolumeError, VolumeSettings};

@@ -4,16 +4,16 @@
 //!    value
 //!      |*                        a, b   known from the nodes
 //!      | \                       1      on the chord of a and b
-//!      |   \                     2      by inverse quadratic interpolation of a, 1 and b
-//!     -+-----*-2-*------+--> t   3      a Newton step from 2, and so on in f64
-//!      |         1 ` -  *
+//!      |   \                     2      a Newton step from 1, by the gradient there
+//!     -+-----*-2-*------+--> t   3      another one, from the value in double precision, and
+//!      |         1 ` -  *               a last one from the value at 3
 //! ```
 //!
-//! Single precision brings every edge near its root in three evaluations, of which the last has
-//! the gradient: it gives the normal, and the slope for the two Newton steps in double precision
-//! that most edges then take. The few that are not settled by then, because a crease or a
+//! The gradient in single precision at the chord's point gives the slope for all three steps, and
+//! the normal. Most edges are settled by them; the few that are not, because a crease or a
 //! strong bend lies between, are closed in on by false position with halved weights (Illinois),
-//! and halving.
+//! and halving. Where the root is away from where the gradient was taken, the normal is taken
+//! anew.
 
 use glam::DVec3;
 
@@ -31,7 +31,7 @@ const STEPS: usize = 40;
 const HALVING: usize = 12;
 
 /// Normals are taken anew where a root moves by more than this after its gradient was.
-const MOVED: f64 = 1.0 / 64.0;
+const MOVED: f64 = 1.0 / 256.0;
 
 /// Memory for the edges at hand, one number an edge in each list.
 #[derive(Default)]
@@ -42,9 +42,11 @@ pub(super) struct RootFinder {
     slope: Vec<f64>,
     /// Where the gradient was taken.
     seen: Vec<f64>,
+    /// The point before, and the value there.
+    before: Vec<[f64; 2]>,
     single: [Vec<f32>; 3],
     double: [Vec<f64>; 3],
-    values: Vec<f32>,
+    gathered: [Vec<f64>; 3],
     exact: Vec<f64>,
     gradient: [Vec<f32>; 4],
     open: Vec<u32>,
@@ -87,13 +89,15 @@ impl RootFinder {
             let [a, b] = edge.values;
             let chord = f64::from(a / (a - b));
             let t = if chord >= 0.0 && chord <= 1.0 { chord } else { 0.5 };
-            self.lower.push(p[axis]);
+            let low = p[axis];
+            self.lower.push(low);
             self.t.push(t);
-            let mut at = p;
-            at[axis] += t * step;
             for axis in 0..3 {
-                self.single[axis].push(at[axis] as f32);
+                self.single[axis].push(p[axis] as f32);
                 self.double[axis].push(p[axis]);
+            }
+            if let Some(along) = self.single[axis].last_mut() {
+                *along = (low + t * step) as f32;
             }
         }
     }
@@ -101,27 +105,17 @@ impl RootFinder {
     /// In single precision: near the root, with slope and normal.
     fn approach(&mut self, evaluator: &mut Evaluator, tape: &Tape, edges: &[EdgeRef], step: f64, out: &mut [Root]) {
         let [x, y, z] = &self.single;
-        self.values.resize(edges.len(), 0.0);
-        evaluator.values(tape, x, y, z, &mut self.values);
-        self.seen.clear();
-        for (n, edge) in edges.iter().enumerate() {
-            let t = interpolated(edge, self.t[n], self.values[n]);
-            self.seen.push(t);
-            self.single[usize::from(edge.axis)][n] = (self.lower[n] + t * step) as f32;
-        }
-        let [x, y, z] = &self.single;
         for list in &mut self.gradient {
             list.resize(edges.len(), 0.0);
         }
         let [value, dx, dy, dz] = &mut self.gradient;
         evaluator.gradients(tape, x, y, z, Gradients { value, dx, dy, dz });
         self.slope.clear();
+        self.seen.clone_from(&self.t);
         for (n, edge) in edges.iter().enumerate() {
             let axis = usize::from(edge.axis);
             let slope = f64::from(self.gradient[axis + 1][n]) * step;
-            let t = self.seen[n];
-            let next = t - f64::from(self.gradient[0][n]) / slope;
-            self.t[n] = if next >= 0.0 && next <= 1.0 { next } else { t };
+            self.t[n] = newton(self.t[n], f64::from(self.gradient[0][n]), slope);
             self.slope.push(slope);
             out[n].normal = outward(&self.gradient, n);
         }
@@ -129,26 +123,32 @@ impl RootFinder {
 
     /// In double precision, to the end.
     fn settle(&mut self, evaluator: &mut Evaluator, tape: &Tape, edges: &[EdgeRef], step: f64) {
-        for (n, edge) in edges.iter().enumerate() {
-            self.double[usize::from(edge.axis)][n] = self.lower[n] + self.t[n] * step;
+        self.evaluate_all(evaluator, tape, edges, step);
+        self.before.clear();
+        for (n, &value) in self.exact.iter().enumerate() {
+            self.before.push([self.t[n], value]);
+            self.t[n] = newton(self.t[n], value, self.slope[n]);
         }
-        let [x, y, z] = &self.double;
-        self.exact.resize(edges.len(), 0.0);
-        evaluator.values_f64(tape, x, y, z, &mut self.exact);
+        self.evaluate_all(evaluator, tape, edges, step);
         self.open.clear();
         self.brackets.clear();
         for (n, edge) in edges.iter().enumerate() {
-            let (t, value) = (self.t[n], self.exact[n]);
-            let by = value / self.slope[n];
-            let next = t - by;
-            // NaN stays open.
-            if by.abs() <= SETTLED {
-                self.t[n] = next;
+            let (t, value, slope, [before, first]) = (self.t[n], self.exact[n], self.slope[n], self.before[n]);
+            let by = value / slope;
+            // By both slopes, that of the gradient and that of the last step, unless it went
+            // nowhere. NaN stays open.
+            let steep = ((value - first) / (t - before)).abs();
+            if by.abs() <= SETTLED && (value.abs() <= SETTLED * steep || (t - before).abs() <= SETTLED) {
+                self.t[n] = t - by;
                 continue;
             }
             let mut bracket = Bracket::new(edge);
-            bracket.learn(t, value);
-            bracket.next = if bracket.holds(next) { next } else { bracket.secant() };
+            for (t, value) in [(before, first), (t, value)] {
+                if bracket.holds(t) {
+                    bracket.learn(t, value);
+                }
+            }
+            bracket.next = bracket.secant();
             self.open.push(n as u32);
             self.brackets.push(bracket);
         }
@@ -162,19 +162,14 @@ impl RootFinder {
                 let n = self.open[at] as usize;
                 let mut bracket = self.brackets[at];
                 let (t, value) = (bracket.next, self.exact[at]);
-                // From the last point to this one, unless they are one.
-                let slope = (value - bracket.value) / (t - bracket.t);
-                let by = value / slope;
+                // From the last point to this one.
+                let by = value * (t - bracket.t) / (value - bracket.value);
                 bracket.learn(t, value);
-                if by.abs() <= SETTLED && (value / self.slope[n]).abs() <= SETTLED || bracket.width() <= SETTLED {
+                if by.abs() <= SETTLED && value.abs() <= SETTLED * self.slope[n].abs() || bracket.width() <= SETTLED {
                     self.t[n] = bracket.nearest(t - by);
                     continue;
                 }
-                bracket.next = match round {
-                    0 if bracket.holds(t - by) => t - by,
-                    _ if round < HALVING => bracket.secant(),
-                    _ => bracket.middle(),
-                };
+                bracket.next = if round < HALVING { bracket.secant() } else { bracket.middle() };
                 self.open[kept] = n as u32;
                 self.brackets[kept] = bracket;
                 kept += 1;
@@ -187,18 +182,27 @@ impl RootFinder {
         }
     }
 
+    /// The values at the points of all edges.
+    fn evaluate_all(&mut self, evaluator: &mut Evaluator, tape: &Tape, edges: &[EdgeRef], step: f64) {
+        for (n, edge) in edges.iter().enumerate() {
+            self.double[usize::from(edge.axis)][n] = self.lower[n] + self.t[n] * step;
+        }
+        let [x, y, z] = &self.double;
+        self.exact.resize(edges.len(), 0.0);
+        evaluator.values_f64(tape, x, y, z, &mut self.exact);
+    }
+
     /// The values at the next points of the open edges, in their order.
     fn evaluate_open(&mut self, evaluator: &mut Evaluator, tape: &Tape, edges: &[EdgeRef], step: f64) {
-        // The coordinates across an edge stay; what is gathered overwrites what came before.
-        let mut gathered: [Vec<f64>; 3] = std::array::from_fn(|_| Vec::with_capacity(self.open.len()));
+        self.gathered.iter_mut().for_each(Vec::clear);
         for (&n, bracket) in self.open.iter().zip(&self.brackets) {
             let n = n as usize;
             let along = usize::from(edges[n].axis);
-            for (axis, list) in gathered.iter_mut().enumerate() {
+            for (axis, list) in self.gathered.iter_mut().enumerate() {
                 list.push(if axis == along { self.lower[n] + bracket.next * step } else { self.double[axis][n] });
             }
         }
-        let [x, y, z] = &gathered;
+        let [x, y, z] = &self.gathered;
         evaluator.values_f64(tape, x, y, z, &mut self.exact[..x.len()]);
     }
 
@@ -236,19 +240,10 @@ fn outward([_, dx, dy, dz]: &[Vec<f32>; 4], n: usize) -> [f32; 3] {
     (-inward.normalize_or_zero()).as_vec3().to_array()
 }
 
-/// Where the inverse of the parabola through the ends of an edge and a value at `t` is 0, if
-/// that is on the side where the sign changes; on the chord there, if not.
-fn interpolated(edge: &EdgeRef, t: f64, value: f32) -> f64 {
-    let [a, b] = edge.values.map(f64::from);
-    let v = f64::from(value);
-    let root = t * a * b / ((v - a) * (v - b)) + a * v / ((b - a) * (b - v));
-    let above = (value > 0.0) == edge.leaves;
-    let (low, high) = if above { (t, 1.0) } else { (0.0, t) };
-    if root >= low && root <= high {
-        return root;
-    }
-    let chord = if above { t + (1.0 - t) * v / (v - b) } else { t * a / (a - v) };
-    if chord >= low && chord <= high { chord } else { 0.5 * (low + high) }
+/// A Newton step from `t`, if it stays on the edge.
+fn newton(t: f64, value: f64, slope: f64) -> f64 {
+    let next = t - value / slope;
+    if (0.0..=1.0).contains(&next) { next } else { t }
 }
 
 /// A root on an edge, closed in on.

@@ -37,14 +37,21 @@ pub(crate) struct EdgeRef {
 /// inside.
 pub(super) struct Signs([u16; SIDE * SIDE]);
 
+/// Eight bytes of 0 or 1 as the bits of one, the first lowest.
+///
+/// A product does it: its term 2^(56 − 7 i) moves byte i to bit 56 + i, and no two terms meet.
+pub(super) fn gathered(bytes: [u8; 8]) -> u8 {
+    const GATHER: u64 = 0x0102_0408_1020_4080;
+    (u64::from_le_bytes(bytes).wrapping_mul(GATHER) >> 56) as u8
+}
+
 impl Signs {
     pub(super) fn new(values: &[f32; NODES]) -> Signs {
         let (rows, _) = values.as_chunks::<SIDE>();
         let mut signs = Signs([0; SIDE * SIDE]);
-        for (bits, row) in signs.0.iter_mut().zip(rows) {
-            for (i, &value) in row.iter().enumerate() {
-                *bits |= u16::from(value > 0.0) << i;
-            }
+        for (bits, &[a, b, c, d, e, f, g, h, last]) in signs.0.iter_mut().zip(rows) {
+            let first = gathered([a, b, c, d, e, f, g, h].map(|value| u8::from(value > 0.0)));
+            *bits = u16::from(first) | u16::from(last > 0.0) << BLOCK;
         }
         signs
     }

@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-use super::extract::{ExtractError, Root, Sampler, extract};
+use super::extract::{BATCH, ExtractError, Root, Sampler, extract};
 use super::feature::Slope;
 use super::lattice::{CellSize, Lattice, LatticeError};
 use super::resolve::unresolved_cells;
@@ -13,7 +13,7 @@ use super::signs::{BLOCK, EdgeRef, NODES, SIDE};
 use crate::eval::{Evaluator, Gradients, Program, Tape, compiled};
 use crate::geom::Mesh;
 use crate::space::{Grid, surface_blocks};
-use crate::{Bounds, Cancelled, RFunction, Run, Solid, SolidError};
+use crate::{Bounds, Cancelled, Paint, RFunction, Run, Solid, SolidError};
 
 /// Why there is no mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -103,9 +103,14 @@ impl Solid {
             if let (AtBounds::Refuse, Some(given)) = (settings.at_bounds, &settings.bounds) {
                 self.refuse_caps(&mesh, given, lattice.step())?;
             }
-            if settings.owners {
+            // A mesh has the paint of its solid, if there is any, by the owners of its triangles.
+            let painted = solid.palette()?.is_painted();
+            if settings.owners || painted {
                 let owners = mesh.triangles().par_iter().map(|&triangle| sampler.owner(&mesh, triangle)).collect();
                 mesh = mesh.with_owners(owners).map_err(ExtractError::from)?;
+            }
+            if painted {
+                mesh = mesh.painted(&solid, Paint::default())?;
             }
             Ok(match unresolved {
                 Some(count) => mesh.with_unresolved_cells(count),
@@ -166,7 +171,7 @@ impl Blocks {
 
 /// The surface program, block by block.
 ///
-/// Blocks that follow each other and have the same program form a group; a group has one tape.
+/// The blocks of a batch that have the same program form a group; a group has one tape.
 struct SolidSampler<'a> {
     lattice: &'a Lattice,
     blocks: &'a [[u32; 3]],
@@ -177,26 +182,36 @@ struct SolidSampler<'a> {
     pattern: [Vec<f32>; 3],
 }
 
-/// At most this many blocks share a tape: its bound on rounding is for all of them.
-const GROUP: usize = 64;
-
 /// What a thread keeps from block to block.
 #[derive(Default)]
 struct Scratch {
     evaluator: Evaluator,
-    /// The tapes of the groups sampled since roots were asked for, the last one at hand.
+    /// The tapes of the groups sampled since roots were asked for.
     tapes: Vec<(u32, Tape)>,
     finder: RootFinder,
     single: [Vec<f32>; 3],
     slopes: [Vec<f32>; 4],
+    /// Edges in the order of their groups: their places, themselves, their roots.
+    order: Vec<u32>,
+    edges: Vec<EdgeRef>,
+    roots: Vec<Root>,
 }
 
 impl SolidSampler<'_> {
     fn new<'a>(lattice: &'a Lattice, blocks: &'a [[u32; 3]], programs: Vec<Program>) -> SolidSampler<'a> {
         let mut groups: Vec<u32> = Vec::with_capacity(blocks.len());
-        for n in 0..blocks.len() {
-            let goes_on = n % GROUP != 0 && programs[n].is_same(&programs[n - 1]);
-            groups.push(if goes_on { groups[n - 1] } else { n as u32 });
+        let mut heads: Vec<u32> = Vec::new();
+        for (n, program) in programs.iter().enumerate() {
+            if n % BATCH == 0 {
+                heads.clear();
+            }
+            // The latest first: blocks that follow each other are near each other.
+            let head = heads.iter().rev().find(|&&head| programs[head as usize].is_same(program));
+            let group = head.copied().unwrap_or(n as u32);
+            if group == n as u32 {
+                heads.push(group);
+            }
+            groups.push(group);
         }
         let at = |node: usize, stride: usize| (node / stride % SIDE) as f64 * lattice.step();
         let pattern = [1, SIDE, SIDE * SIDE].map(|stride| (0..NODES).map(|n| at(n, stride) as f32).collect());
@@ -217,8 +232,9 @@ impl SolidSampler<'_> {
     /// A tape for the group that starts with a block.
     fn tape(&self, group: u32) -> Tape {
         let first = group as usize;
-        let members = self.groups[first..].iter().take_while(|&&other| other == group).count();
-        let bounds = self.blocks[first..first + members].iter().fold(Bounds::EMPTY, |all, block| {
+        let batch = first..(first / BATCH * BATCH + BATCH).min(self.blocks.len());
+        let bounds = batch.filter(|&n| self.groups[n] == group).fold(Bounds::EMPTY, |all, n| {
+            let block = self.blocks[n];
             let at = |i: u32| self.lattice.node(block[0] + i, block[1] + i, block[2] + i);
             all.union(&Bounds::new(at(0), at(BLOCK as u32)))
         });
@@ -235,10 +251,11 @@ impl Sampler for SolidSampler<'_> {
 
     fn nodes(&self, scratch: &mut Scratch, number: usize, block: [u32; 3], out: &mut [f32; NODES]) {
         let group = self.groups[number];
-        if scratch.tapes.last().is_none_or(|(last, _)| *last != group) {
+        let at = scratch.tapes.iter().rposition(|(other, _)| *other == group).unwrap_or_else(|| {
             scratch.tapes.push((group, self.tape(group)));
-        }
-        let Some((_, tape)) = scratch.tapes.last_mut() else { return };
+            scratch.tapes.len() - 1
+        });
+        let tape = &mut scratch.tapes[at].1;
         tape.recentre(self.lattice.node(block[0], block[1], block[2]));
         let [x, y, z] = &self.pattern;
         scratch.evaluator.values(tape, x, y, z, out);
@@ -258,17 +275,27 @@ impl Sampler for SolidSampler<'_> {
     }
 
     fn roots(&self, scratch: &mut Scratch, edges: &[EdgeRef], out: &mut [Root]) {
+        let Scratch { evaluator, tapes, finder, order, edges: sorted, roots, .. } = scratch;
         let group = |edge: &EdgeRef| self.groups[edge.block as usize];
-        let mut out = out;
-        for edges in edges.chunk_by(|a, b| group(a) == group(b)) {
-            let (roots, rest) = out.split_at_mut(edges.len());
-            out = rest;
-            let made = scratch.tapes.iter().position(|(other, _)| *other == group(&edges[0]));
-            let made = made.map(|at| scratch.tapes.swap_remove(at).1);
-            let tape = made.unwrap_or_else(|| self.tape(group(&edges[0])));
-            scratch.finder.find(&mut scratch.evaluator, &tape, self.lattice, edges, roots);
+        order.clear();
+        order.extend(0..edges.len() as u32);
+        order.sort_by_key(|&n| group(&edges[n as usize]));
+        sorted.clear();
+        sorted.extend(order.iter().map(|&n| edges[n as usize]));
+        roots.resize(edges.len(), Root::default());
+        let mut rest = &mut roots[..edges.len()];
+        for edges in sorted.chunk_by(|a, b| group(a) == group(b)) {
+            let group = group(&edges[0]);
+            let roots = rest.split_off_mut(..edges.len()).unwrap_or_default();
+            match tapes.iter().find(|(other, _)| *other == group) {
+                Some((_, tape)) => finder.find(evaluator, tape, self.lattice, edges, roots),
+                None => finder.find(evaluator, &self.tape(group), self.lattice, edges, roots),
+            }
         }
-        scratch.tapes.clear();
+        for (&n, root) in order.iter().zip(&*roots) {
+            out[n as usize] = *root;
+        }
+        tapes.clear();
     }
 
     fn slopes(

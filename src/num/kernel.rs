@@ -5,32 +5,30 @@
 //! into one spills registers and is slower.
 
 use fearless_simd::{Level, Simd};
-use fearless_simd_macros::simd;
 
 use super::Real;
 use super::lanes::{F32, F64, Lanes, Twice};
 
-/// Calls a function with the token of the machine's SIMD level. On x86-64 the levels are SSE2,
-/// AVX2 and AVX-512: every further one costs a compilation of every kernel. The switches of
-/// `fearless_simd` that leave levels out of a build are honoured. The unit tests, which compile
-/// all kernels again, have SSE2 alone; the integration tests run the machine's best level.
+/// Calls a function with the token of the machine's SIMD level, or does without. On x86-64 the
+/// levels are AVX2 and AVX-512, and machines that have neither (from before 2013) compute point
+/// by point: every further level costs a compilation of every kernel. So do the unit tests, which
+/// compile the crate a second time; the integration tests run the machine's level. The switches
+/// of `fearless_simd` that leave levels out of a build are honoured.
 macro_rules! on_level {
-    ($simd:ident => $call:expr) => {{
-        let level = Level::new();
+    ($simd:ident => $call:expr, else $scalar:expr) => {{
         #[cfg(not(target_arch = "x86_64"))]
-        fearless_simd::dispatch!(level, $simd => $call);
-        #[cfg(all(target_arch = "x86_64", not(disable_dispatch_avx512), not(test)))]
-        if let Some($simd) = level.as_avx512() {
-            return $call;
+        if !cfg!(test) {
+            return fearless_simd::dispatch!(Level::new(), $simd => $call);
         }
-        #[cfg(all(target_arch = "x86_64", not(disable_dispatch_avx2), not(test)))]
-        if let Some($simd) = level.as_avx2() {
-            return $call;
+        #[cfg(all(target_arch = "x86_64", not(disable_dispatch_avx512)))]
+        if !cfg!(test) && let Some($simd) = Level::new().as_avx512() {
+            return Simd::vectorize($simd, #[inline(always)] || $call);
         }
-        #[cfg(target_arch = "x86_64")]
-        if let Some($simd) = level.as_sse2() {
-            return $call;
+        #[cfg(all(target_arch = "x86_64", not(disable_dispatch_avx2)))]
+        if !cfg!(test) && let Some($simd) = Level::new().as_avx2() {
+            return Simd::vectorize($simd, #[inline(always)] || $call);
         }
+        $scalar
     }};
 }
 
@@ -70,6 +68,8 @@ pub(crate) trait Element: Copy + Default + Send + Sync + PartialOrd + 'static {
 
     fn from_f64(v: f64) -> Self;
 
+    fn to_f64(self) -> f64;
+
     fn negated(self) -> Self;
 
     fn plus(self, other: Self) -> Self;
@@ -81,6 +81,10 @@ impl Element for f32 {
 
     fn from_f64(v: f64) -> f32 {
         v as f32
+    }
+
+    fn to_f64(self) -> f64 {
+        self.into()
     }
 
     fn negated(self) -> f32 {
@@ -100,6 +104,10 @@ impl Element for f64 {
         v
     }
 
+    fn to_f64(self) -> f64 {
+        self
+    }
+
     fn negated(self) -> f64 {
         -self
     }
@@ -110,15 +118,16 @@ impl Element for f64 {
 }
 
 /// Runs `formula` over slices of one length, a multiple of [`CHUNK`].
+#[inline]
 pub(crate) fn run<E: Element, const I: usize, const O: usize>(
     formula: &impl Formula<I, O>,
     inputs: [&[E]; I],
     outputs: [&mut [E]; O],
 ) {
-    on_level!(simd => run_on(simd, formula, inputs, outputs))
+    on_level!(simd => run_on(simd, formula, inputs, outputs), else run_by_point(formula, inputs, outputs))
 }
 
-#[simd]
+#[inline(always)]
 fn run_on<S: Simd, E: Element, const I: usize, const O: usize, F: Formula<I, O>>(
     simd: S,
     formula: &F,
@@ -173,27 +182,44 @@ fn sweep<L: Lanes, const I: usize, const O: usize, F: Formula<I, O>>(
     }
 }
 
+/// The same point by point, in double precision.
+#[inline]
+fn run_by_point<E: Element, const I: usize, const O: usize>(
+    formula: &impl Formula<I, O>,
+    inputs: [&[E]; I],
+    outputs: [&mut [E]; O],
+) {
+    for at in 0..inputs[0].len() {
+        let y = formula.run(inputs.map(|input| input[at].to_f64()));
+        for o in 0..O {
+            outputs[o][at] = E::from_f64(y[o]);
+        }
+    }
+}
+
 /// Work on slices by loops that the compiler turns into vectors; `run` must be inlined.
 pub(crate) trait Task {
     fn run(self);
 }
 
 /// Runs a task compiled for the machine's SIMD level.
+#[inline]
 pub(crate) fn dispatched(task: impl Task) {
-    on_level!(simd => dispatched_on(simd, task))
+    on_level!(simd => dispatched_on(simd, task), else task.run())
 }
 
-#[simd]
+#[inline(always)]
 fn dispatched_on<S: Simd, T: Task>(_simd: S, task: T) {
     task.run();
 }
 
 /// Folds `next` into `all`, slices of one length, a multiple of [`CHUNK`].
+#[inline]
 pub(crate) fn fold<E: Element, const N: usize>(formula: &impl Fold<N>, all: [&mut [E]; N], next: [&[E]; N]) {
-    on_level!(simd => fold_on(simd, formula, all, next))
+    on_level!(simd => fold_on(simd, formula, all, next), else fold_by_point(formula, all, next))
 }
 
-#[simd]
+#[inline(always)]
 fn fold_on<S: Simd, E: Element, const N: usize, F: Fold<N>>(simd: S, formula: &F, all: [&mut [E]; N], next: [&[E]; N]) {
     let width = E::Lean::<S>::WIDTH;
     let len = all[0].len();
@@ -217,6 +243,17 @@ fn fold_on<S: Simd, E: Element, const N: usize, F: Fold<N>>(simd: S, formula: &F
     }
 }
 
+#[inline]
+fn fold_by_point<E: Element, const N: usize>(formula: &impl Fold<N>, all: [&mut [E]; N], next: [&[E]; N]) {
+    for at in 0..next[0].len() {
+        let x = std::array::from_fn(|i| all[i][at].to_f64());
+        let joined = formula.fold(x, next.map(|next| next[at].to_f64()));
+        for i in 0..N {
+            all[i][at] = E::from_f64(joined[i]);
+        }
+    }
+}
+
 /// Whether all numbers of a slice are within ±`limit`; NaN is not.
 pub(crate) fn within<E: Element>(numbers: &[E], limit: E) -> bool {
     let mut all = true;
@@ -224,16 +261,22 @@ pub(crate) fn within<E: Element>(numbers: &[E], limit: E) -> bool {
     all
 }
 
+#[inline]
 fn check_within<E: Element>(numbers: &[E], limit: E, all: &mut bool) {
-    on_level!(simd => within_on(simd, numbers, limit, all))
+    on_level!(simd => within_on(simd, numbers, limit, all), else *all = are_within(numbers, limit))
 }
 
-#[simd]
+#[inline(always)]
 fn within_on<S: Simd, E: Element>(_simd: S, numbers: &[E], limit: E, all: &mut bool) {
+    *all = are_within(numbers, limit);
+}
+
+#[inline(always)]
+fn are_within<E: Element>(numbers: &[E], limit: E) -> bool {
     let low = limit.negated();
     let mut inside = true;
     for &number in numbers {
         inside &= (number >= low) & (number <= limit);
     }
-    *all = inside;
+    inside
 }

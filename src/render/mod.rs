@@ -1,14 +1,29 @@
 //! From a solid to a picture.
 //!
-//! A grid of blocks is laid over the solid; each ray walks through it and asks, in the blocks
-//! that the surface may cross, for the first crossing. What it meets is shaded by three
-//! lights that move with the camera. Pixels at outlines and creases are sampled more often.
+//! The space around the solid is divided into cells where the surface may cross; rays are taken
+//! through them in packets and ask each for the first crossing. What they meet are the layers of
+//! a picture, or it is shaded: lights that move with the camera, shadows and hollows by more
+//! rays, and more rays still at outlines and creases. Slices show the field on a plane.
 
-mod blocks;
+mod cells;
+mod contour;
+mod extent;
+mod gbuffer;
+mod layers;
+mod lines;
+mod march;
+mod openness;
 mod picture;
+mod scene;
 mod settings;
 mod shade;
+mod slice;
 mod solid;
-mod walk;
+mod spot;
+mod tile;
 
-pub use settings::{Background, RenderError, RenderSettings};
+pub use gbuffer::{GBuffer, Surface, Window};
+pub use layers::Layers;
+pub use scene::Scene;
+pub use settings::{Background, Lights, RenderError, RenderSettings, Style, Transfer};
+pub use slice::{Isolines, Slice, SliceSettings};

@@ -1,8 +1,13 @@
 //! What a picture shall be, and why there is none.
 
-use crate::{CameraError, Cancelled, ImageError, SolidError};
+use crate::{CameraError, Cancelled, ImageError, Paint, SolidError};
 
 /// What to render.
+///
+/// The default is a studio: a warm key light from the upper left that casts soft shadows, a cool
+/// fill light from the right, a rim light from behind, and a sky that every part sees as much of
+/// as the others leave free. The solid stands on a ground that shows shadows and nothing else. All lights move with the
+/// camera; up is +z.
 ///
 /// ```
 /// use rvachev::{Background, Camera, RenderSettings, Solid};
@@ -20,18 +25,31 @@ pub struct RenderSettings {
     pub width: u32,
     /// Height of the picture in pixels, 1 to 16384. Default: 600.
     pub height: u32,
-    /// Against stairs: a pixel at an outline, a crease or the edge of a shadow is the mean of
-    /// `samples` × `samples` rays. 1 to 8, 1 meaning one ray for every pixel. Default: 3.
+    /// Against stairs: a pixel at an outline, a crease or the edge of a hard shadow is the mean
+    /// of `samples` × `samples` rays. 1 to 8, 1 meaning one ray for every pixel. Default: 3.
     ///
     /// Where to sample more is seen from one ray a pixel, so a solid that is thinner than a
     /// pixel may show gaps.
     pub samples: u32,
-    /// Colour of the solid: red, green, blue in sRGB. Default: a warm grey.
-    pub color: [u8; 3],
-    /// Strength of the highlights, 0 (matt) to 1 (polished). Default: 0.4.
-    pub gloss: f64,
+    /// How the solid is drawn. Default: [`Style::Studio`].
+    pub style: Style,
+    /// The paint of what has [none](crate::Solid::paint). Default: a warm grey, half rough.
+    pub paint: Paint,
+    /// The strengths of the lights. Default: 1 each.
+    pub lights: Lights,
     /// Whether the key light casts shadows. Default: true.
     pub shadows: bool,
+    /// Half the angle that the key light appears under, in degrees, 0 to 45: shadows are the
+    /// softer the larger it is, and have hard edges at 0. Default: 7.
+    pub softness: f64,
+    /// Whether parts hide the sky from each other, which darkens corners and hollows.
+    /// Default: true.
+    pub occlusion: bool,
+    /// Whether the solid stands on a ground, at the height of its lowest point, that receives its
+    /// shadows; seen from above only. Default: true.
+    pub ground: bool,
+    /// How light becomes colour. Default: [`Transfer::Filmic`].
+    pub transfer: Transfer,
     /// What is behind the solid. Default: nearly white, a little darker at the bottom.
     pub background: Background,
 }
@@ -42,18 +60,78 @@ impl Default for RenderSettings {
             width: 800,
             height: 600,
             samples: 3,
-            color: [186, 178, 168],
-            gloss: 0.4,
+            style: Style::default(),
+            paint: Paint::default(),
+            lights: Lights::default(),
             shadows: true,
+            softness: 7.0,
+            occlusion: true,
+            ground: true,
+            transfer: Transfer::default(),
             background: Background::default(),
         }
     }
 }
 
+/// How a solid is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum Style {
+    /// In its paint, under the lights of a studio, on a ground.
+    #[default]
+    Studio,
+    /// As a model of pale clay in the same light: form without paint and without reflections.
+    Clay,
+    /// Every surface in the colour of its outward normal: red, green and blue grow with x, y
+    /// and z.
+    Normals,
+    /// As in a manual: flat pale shades, thick lines at outlines, thin ones at creases.
+    Technical,
+}
+
+impl Style {
+    /// Every style.
+    pub const ALL: [Style; 4] = [Style::Studio, Style::Clay, Style::Normals, Style::Technical];
+
+    /// Whether it has light that can be kept off.
+    pub(super) fn has_shadows(self) -> bool {
+        matches!(self, Style::Studio | Style::Clay)
+    }
+}
+
+/// The strengths of the lights: 1 is the default, 0 turns a light off, 10 is the most.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lights {
+    /// The main light, from the upper left.
+    pub key: f64,
+    /// The light that brightens shadows, from the right.
+    pub fill: f64,
+    /// The light from behind that draws bright edges.
+    pub rim: f64,
+    /// The light from all around, most of it from above.
+    pub sky: f64,
+}
+
+impl Default for Lights {
+    fn default() -> Lights {
+        Lights { key: 1.0, fill: 1.0, rim: 1.0, sky: 1.0 }
+    }
+}
+
+/// How light becomes colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum Transfer {
+    /// As it is, in sRGB; what is brighter than white is cut off.
+    Srgb,
+    /// As on film: a soft shoulder that keeps highlights from being cut off, a slight toe that
+    /// deepens shadows.
+    #[default]
+    Filmic,
+}
+
 /// What is behind the solid. Colours are red, green, blue in sRGB.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Background {
-    /// Nothing: alpha is 0 there, and in between at the outline.
+    /// Nothing: alpha is 0 there, and in between at the outline and in shadows on the ground.
     Transparent,
     /// One colour.
     Plain([u8; 3]),
@@ -106,22 +184,39 @@ const LARGEST: u32 = 16384;
 /// The largest number of samples along a pixel's side.
 const MOST_SAMPLES: u32 = 8;
 
+/// The error of a setting.
+pub(super) fn setting(setting: &'static str, value: impl std::fmt::Display, allowed: &'static str) -> RenderError {
+    RenderError::Setting { setting, value: value.to_string(), allowed }
+}
+
+/// Whether the sides of a picture are in their range.
+pub(super) fn check_size(width: u32, height: u32) -> Result<(), RenderError> {
+    for (name, side) in [("width", width), ("height", height)] {
+        if !(1..=LARGEST).contains(&side) {
+            return Err(setting(name, side, "1 to 16384 pixels"));
+        }
+    }
+    Ok(())
+}
+
 impl RenderSettings {
     /// Whether every setting is in its range.
     pub(super) fn check(&self) -> Result<(), RenderError> {
-        let error = |setting, value: &dyn std::fmt::Display, allowed| {
-            Err(RenderError::Setting { setting, value: value.to_string(), allowed })
-        };
-        for (name, side) in [("width", self.width), ("height", self.height)] {
-            if !(1..=LARGEST).contains(&side) {
-                return error(name, &side, "1 to 16384 pixels");
-            }
-        }
+        check_size(self.width, self.height)?;
         if !(1..=MOST_SAMPLES).contains(&self.samples) {
-            return error("samples", &self.samples, "1 to 8");
+            return Err(setting("samples", self.samples, "1 to 8"));
         }
-        if !(0.0..=1.0).contains(&self.gloss) {
-            return error("gloss", &self.gloss, "0 to 1");
+        if !(0.0..=1.0).contains(&self.paint.roughness) {
+            return Err(setting("paint.roughness", self.paint.roughness, "0 to 1"));
+        }
+        if !(0.0..=45.0).contains(&self.softness) {
+            return Err(setting("softness", self.softness, "0 to 45 degrees"));
+        }
+        let Lights { key, fill, rim, sky } = self.lights;
+        for (name, light) in [("lights.key", key), ("lights.fill", fill), ("lights.rim", rim), ("lights.sky", sky)] {
+            if !(0.0..=10.0).contains(&light) {
+                return Err(setting(name, light, "0 to 10"));
+            }
         }
         Ok(())
     }
@@ -134,12 +229,15 @@ mod tests {
     #[test]
     fn errors_name_the_setting() {
         let good = RenderSettings::default();
-        assert_eq!(good.check(), Ok(()));
+        good.check().unwrap();
         let message = |settings: RenderSettings| settings.check().unwrap_err().to_string();
         assert_eq!(message(RenderSettings { width: 0, ..good.clone() }), "width is 0; allowed: 1 to 16384 pixels");
-        let high = RenderSettings { height: 20_000, ..good.clone() };
-        assert_eq!(message(high), "height is 20000; allowed: 1 to 16384 pixels");
-        assert_eq!(message(RenderSettings { samples: 9, ..good.clone() }), "samples is 9; allowed: 1 to 8");
-        assert_eq!(message(RenderSettings { gloss: f64::NAN, ..good }), "gloss is NaN; allowed: 0 to 1");
+        assert!(message(RenderSettings { height: 20_000, ..good.clone() }).starts_with("height is 20000"));
+        assert!(message(RenderSettings { samples: 9, ..good.clone() }).starts_with("samples is 9"));
+        assert!(message(RenderSettings { softness: f64::NAN, ..good.clone() }).starts_with("softness is NaN"));
+        let lights = Lights { rim: -1.0, ..Lights::default() };
+        assert!(message(RenderSettings { lights, ..good.clone() }).starts_with("lights.rim is -1"));
+        let paint = Paint { roughness: f64::NAN, ..Paint::default() };
+        assert!(message(RenderSettings { paint, ..good }).starts_with("paint.roughness is NaN"));
     }
 }

@@ -1,45 +1,86 @@
-//! Light: from a hit to a colour, and from colours to bytes.
+//! Light: from a point of a surface to what the eye receives.
 //!
 //! ```text
-//!      sky            L = albedo·(key·max(n·k, 0)·lit + fill·max(n·f, 0) + hemisphere(n·up))
-//!   key     .             + gloss·(highlight(n·h) + rim(n·v))
-//!     \   (n)
-//!      \  ( )  fill   k, f  directions to the lights, fixed to the camera: key from the upper
-//!       * ( )-- *           left, fill from the right
-//!       ground        h     half-way between k and the viewer v
+//!        sky                 L = albedo·(key·max(n·k, 0)·seen + fill·half(n·f)
+//!   key      . rim                       + rim·max(n·r, 0) + sky(n)·open)
+//!     \     /                  + highlight(key) + highlight(rim)
+//!      (n) /                   + F(n·v)·room(reflected, roughness)·open
+//!      ( )      fill
+//!       *  - - - *           k, f, r are fixed to the camera; the sky is above, +z.
+//! ------------------ ground  seen, open: the shares of the key light and of the sky that
+//!                            nothing hides
 //! ```
 //!
-//! Linear light throughout, in `f32`; very bright values bend into a shoulder rather than
-//! being cut off. The bytes are sRGB (IEC 61966-2-1).
+//! The room that polished surfaces reflect is drawn by formulas: a sky that brightens upwards, a
+//! soft box at the key light and a strip at the rim light. Linear light throughout, in `f32`.
 //!
-//! Sources: J. Blinn, *Models of light reflection for computer synthesized pictures* (1977)
-//! for the highlight; C. Schlick (1994) for the shape of the rim.
+//! Sources: B. Walter and others, *Microfacet models for refraction through rough surfaces*
+//! (2007), for the highlight (GGX); C. Schlick (1994) for Fresnel's factor; J. Jimenez and
+//! others, *Practical realtime strategies for accurate indirect occlusion* (2016), for the light
+//! that bounces out of hollows.
 
 use glam::{DVec3, Vec3, Vec4};
 
-use super::settings::{Background, RenderSettings};
-use crate::Camera;
+use super::settings::{Background, RenderSettings, Style, Transfer};
+use crate::geom::to_linear;
+use crate::{Camera, Paint};
 
 /// Irradiances over π, so that a white matt surface that faces the light has this radiance.
-const KEY: Vec3 = Vec3::new(0.90, 0.87, 0.82);
-const FILL: Vec3 = Vec3::new(0.17, 0.19, 0.22);
-const SKY: Vec3 = Vec3::new(0.36, 0.38, 0.42);
-const GROUND: Vec3 = Vec3::new(0.15, 0.14, 0.13);
+const KEY: Vec3 = Vec3::new(1.00, 0.955, 0.89);
+const FILL: Vec3 = Vec3::new(0.15, 0.17, 0.20);
+const RIM: Vec3 = Vec3::new(0.34, 0.36, 0.40);
+const SKY: Vec3 = Vec3::new(0.40, 0.425, 0.47);
+/// What the ground sends back up.
+const BOUNCE: Vec3 = Vec3::new(0.19, 0.18, 0.17);
 
-/// The exponent of the highlight: as wide as that of brushed metal.
-const SHARPNESS: i32 = 28;
+/// What a surface without metal reflects when seen at a right angle.
+const REFLECTANCE: f32 = 0.04;
 
-/// Radiance above this bends towards 1.
-const SHOULDER: f32 = 0.72;
+/// What is left of the background in the deepest shadow.
+const SHADOW: Vec3 = Vec3::new(0.030, 0.033, 0.042);
 
-/// The lights of a picture, and the materials of what is in it.
+/// The pale clay of [`Style::Clay`].
+const CLAY: [u8; 3] = [214, 205, 194];
+
+/// What is known of the light at a point: the shares of the key light and of the sky that
+/// nothing hides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Openness {
+    pub(super) key: f32,
+    pub(super) sky: f32,
+}
+
+impl Openness {
+    /// Nothing is hidden.
+    pub(super) const FULL: Openness = Openness { key: 1.0, sky: 1.0 };
+}
+
+/// A paint, ready for light.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Material {
+    albedo: Vec3,
+    /// The width of highlights: the square of the roughness.
+    width: f32,
+}
+
+impl From<Paint> for Material {
+    fn from(paint: Paint) -> Material {
+        // A perfect mirror of a light without extent would not be seen at all.
+        let roughness = paint.roughness.clamp(0.08, 1.0) as f32;
+        Material { albedo: unit(paint.color).map(to_linear), width: roughness * roughness }
+    }
+}
+
+/// The lights of a picture, and what is behind the solid.
 pub(super) struct Studio {
-    /// Directions to the lights, and up.
     key: DVec3,
     fill: DVec3,
-    up: DVec3,
-    albedo: Vec3,
-    gloss: f32,
+    rim: DVec3,
+    /// Their strengths.
+    lights: [Vec3; 3],
+    sky: f32,
+    style: Style,
+    transfer: Transfer,
     /// Top and bottom in sRGB from 0 to 1, or nothing.
     background: Option<[Vec3; 2]>,
 }
@@ -47,17 +88,17 @@ pub(super) struct Studio {
 impl Studio {
     /// The lights for a camera that has been checked.
     pub(super) fn new(camera: &Camera, settings: &RenderSettings) -> Studio {
-        let (_, forward) = camera.ray(0.5, 0.5, 1, 1);
-        let up = (camera.up / camera.up.abs().max_element()).normalize();
-        let right = forward.cross(up).normalize();
-        let above = right.cross(forward);
-        let towards = |x: f64, y: f64, z: f64| (x * right + y * above - z * forward).normalize();
+        let pose = camera.pose().matrix3;
+        let towards = |x: f64, y: f64, z: f64| (x * pose.x_axis - y * pose.y_axis - z * pose.z_axis).normalize();
+        let lights = settings.lights;
         Studio {
-            key: towards(-0.62, 0.66, 0.62),
-            fill: towards(0.85, 0.05, 0.45),
-            up,
-            albedo: unit(settings.color).map(linear),
-            gloss: settings.gloss as f32,
+            key: towards(-0.58, 0.66, 0.76),
+            fill: towards(0.90, 0.10, 0.42),
+            rim: towards(0.55, 0.52, -0.66),
+            lights: [KEY * lights.key as f32, FILL * lights.fill as f32, RIM * lights.rim as f32],
+            sky: lights.sky as f32,
+            style: settings.style,
+            transfer: settings.transfer,
             background: match settings.background {
                 Background::Transparent => None,
                 Background::Plain(color) => Some([unit(color); 2]),
@@ -66,22 +107,108 @@ impl Studio {
         }
     }
 
-    /// The direction to the light that casts shadows.
+    /// The direction to the middle of the light that casts shadows.
     pub(super) fn key(&self) -> DVec3 {
         self.key
     }
 
-    /// The colour of a surface: `normal` and `viewer` are unit vectors on the same side of
-    /// it; `lit` tells whether the key light reaches it.
-    pub(super) fn surface(&self, normal: DVec3, viewer: DVec3, lit: bool) -> Vec4 {
+    /// The material that stands for `paint` in this style; `own` tells whether it was given to
+    /// the part or is that of the settings.
+    pub(super) fn material(&self, paint: Paint, own: bool) -> Material {
+        match self.style {
+            Style::Studio | Style::Normals => paint.into(),
+            Style::Clay => Paint { color: CLAY, roughness: 1.0 }.into(),
+            // Pale, so that lines stand out; what nobody painted is paper.
+            Style::Technical => {
+                let paper = Vec3::new(0.93, 0.935, 0.94);
+                let share = if own { 0.55 } else { 0.0 };
+                Material { albedo: paper.lerp(unit(paint.color).map(to_linear), share), width: 1.0 }
+            }
+        }
+    }
+
+    /// The colour of a surface, as it is shown: `normal` and `viewer` are unit vectors on the
+    /// same side of it, `outward` is the normal out of the solid.
+    pub(super) fn surface(
+        &self,
+        normal: DVec3,
+        outward: DVec3,
+        viewer: DVec3,
+        material: &Material,
+        open: Openness,
+    ) -> Vec4 {
+        let light = match self.style {
+            Style::Studio => self.developed(self.lit(normal, viewer, material, open, 1.0)),
+            Style::Clay => self.developed(self.lit(normal, viewer, material, open, 0.0)),
+            Style::Normals => (0.5 + 0.5 * outward.as_vec3()).map(to_linear),
+            Style::Technical => material.albedo * self.flat(normal),
+        };
+        light.extend(1.0)
+    }
+
+    /// The shade of a face in a manual.
+    fn flat(&self, normal: DVec3) -> f32 {
+        let towards = 0.5 + 0.5 * normal.dot(self.key) as f32;
+        0.62 + 0.38 * towards
+    }
+
+    /// Light that leaves a surface towards the viewer; `polish` is 0 for a surface that only
+    /// scatters.
+    fn lit(&self, normal: DVec3, viewer: DVec3, material: &Material, open: Openness, polish: f32) -> Vec3 {
         let cosine = |light: DVec3| normal.dot(light).max(0.0) as f32;
-        let key = if lit { cosine(self.key) } else { 0.0 };
-        let sky = GROUND.lerp(SKY, (0.5 + 0.5 * normal.dot(self.up)) as f32);
-        let matt = self.albedo * (KEY * key + FILL * cosine(self.fill) + sky);
-        let half = (self.key + viewer).normalize_or_zero();
-        let highlight = if key > 0.0 { 0.45 * cosine(half).powi(SHARPNESS) * KEY } else { Vec3::ZERO };
-        let rim = 0.5 * (1.0 - cosine(viewer)).powi(4) * sky;
-        (matt + self.gloss * (highlight + rim)).map(shoulder).extend(1.0)
+        let [key, fill, rim] = self.lights;
+        let albedo = material.albedo;
+        // Out of hollows comes light of the colour of their walls.
+        let sky = albedo.map(|a| bounced(open.sky, a));
+        // The fill is a large light: it reaches around the terminator.
+        let wrapped = (0.35 + 0.65 * normal.dot(self.fill) as f32).max(0.0);
+        let direct = key * (cosine(self.key) * open.key);
+        let around = fill * wrapped + self.sky * BOUNCE.lerp(SKY, (0.5 + 0.5 * normal.z) as f32);
+        let matt = albedo * (direct + sky * (around + rim * cosine(self.rim)));
+        if polish == 0.0 {
+            return matt;
+        }
+        let facing = cosine(viewer).max(1e-3);
+        let fresnel = REFLECTANCE + (1.0 - REFLECTANCE) * (1.0 - facing).powi(5) * (1.0 - 0.7 * material.width);
+        let highlight = |light: DVec3| {
+            let half = (light + viewer).normalize_or_zero();
+            let f = REFLECTANCE + (1.0 - REFLECTANCE) * (1.0 - half.dot(viewer).clamp(0.0, 1.0) as f32).powi(5);
+            f * microfacets(cosine(half), cosine(light), facing, material.width) * cosine(light)
+        };
+        let reflected = 2.0 * normal.dot(viewer) * normal - viewer;
+        let lights = key * (open.key * highlight(self.key)) + rim * (open.sky * highlight(self.rim));
+        matt + polish * (lights + fresnel * open.sky * self.room(reflected, material.width))
+    }
+
+    /// What a surface reflects of the room, blurred as its roughness blurs it.
+    fn room(&self, direction: DVec3, width: f32) -> Vec3 {
+        let up = direction.z as f32;
+        let sky = BOUNCE.lerp(2.2 * SKY, smooth(-0.35 - width, 0.9 + width, up));
+        // Lights with an extent, so that their images are soft shapes and not points.
+        let soft_box = |light: DVec3, narrow: f32| {
+            let away = 1.0 - direction.dot(light) as f32;
+            (-away / (narrow + 1.2 * width)).exp() / (1.0 + 6.0 * width)
+        };
+        let [key, fill, rim] = self.lights;
+        self.sky * sky
+            + key * 2.6 * soft_box(self.key, 0.05)
+            + fill * 2.0 * soft_box(self.fill, 0.12)
+            + rim * 2.4 * soft_box(self.rim, 0.08)
+    }
+
+    /// The background as the ground shows it: darker in shadow. Transparent ground is shadow
+    /// and nothing else.
+    pub(super) fn ground(&self, background: Vec4, open: Openness) -> Vec4 {
+        let luminance = |c: Vec3| c.dot(Vec3::new(0.2126, 0.7152, 0.0722));
+        let key = luminance(self.lights[0]) * self.key.z.max(0.0) as f32;
+        let sky = luminance(self.lights[1]) + self.sky * luminance(SKY);
+        let whole = key + sky;
+        if whole <= 0.0 {
+            return background;
+        }
+        let lit = ((key * open.key + sky * open.sky) / whole).clamp(0.0, 1.0);
+        let dark = 1.0 - lit;
+        (background.truncate() * lit + SHADOW * dark).extend(background.w * lit + dark)
     }
 
     /// The colour behind the solid; `down` runs from 0 at the top of the picture to 1.
@@ -89,39 +216,58 @@ impl Studio {
         match self.background {
             None => Vec4::ZERO,
             // Between the bytes and not the radiances, which makes steps of equal height.
-            Some([top, bottom]) => top.lerp(bottom, down as f32).map(linear).extend(1.0),
+            Some([top, bottom]) => top.lerp(bottom, down as f32).map(to_linear).extend(1.0),
+        }
+    }
+
+    /// Light as it is shown.
+    fn developed(&self, light: Vec3) -> Vec3 {
+        match self.transfer {
+            Transfer::Srgb => light,
+            Transfer::Filmic => light.map(filmic),
         }
     }
 }
 
-/// Linear radiance, weighted by alpha, as bytes.
-pub(super) fn bytes(light: Vec4) -> [u8; 4] {
-    let alpha = light.w;
-    if alpha <= 0.0 {
-        return [0; 4];
-    }
-    let color = (light.truncate() / alpha).map(encoded).extend(alpha);
-    color.to_array().map(|c| (255.0 * c.clamp(0.0, 1.0)).round() as u8)
+/// GGX: distribution of the microfacets and what they hide of each other, over 4·(n·l)·(n·v),
+/// times π for lights given as irradiance over π.
+fn microfacets(half: f32, light: f32, viewer: f32, width: f32) -> f32 {
+    let a2 = width * width;
+    let d = half * half * (a2 - 1.0) + 1.0;
+    let distribution = a2 / (d * d).max(1e-9);
+    let k = 0.5 * width;
+    let hidden = (light * (1.0 - k) + k) * (viewer * (1.0 - k) + k);
+    // Highlights of a light of some extent do not grow without end.
+    (distribution / (4.0 * hidden).max(1e-4)).min(14.0)
 }
 
-/// Bytes as numbers from 0 to 1.
+/// The share of light that leaves a hollow that sees `open` of the sky and whose walls have the
+/// given albedo.
+fn bounced(open: f32, albedo: f32) -> f32 {
+    let a = 2.0404 * albedo - 0.3324;
+    let b = -4.7951 * albedo + 0.6417;
+    let c = 2.7552 * albedo + 0.6903;
+    open.max(((open * a + b) * open + c) * open)
+}
+
+/// From 0 to 1 between two edges, smoothly.
+fn smooth(from: f32, to: f32, x: f32) -> f32 {
+    let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// A number from 0 to 1 for each byte.
 fn unit(color: [u8; 3]) -> Vec3 {
     Vec3::from_array(color.map(|c| f32::from(c) / 255.0))
 }
 
-/// From sRGB to linear.
-fn linear(c: f32) -> f32 {
-    if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
-}
-
-/// From linear to sRGB.
-fn encoded(c: f32) -> f32 {
-    if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
-}
-
-/// The identity up to [`SHOULDER`], then smoothly towards 1.
-fn shoulder(light: f32) -> f32 {
+/// A curve with a toe, nearly straight in the middle, and a shoulder towards 1.
+fn filmic(light: f32) -> f32 {
+    const TOE: f32 = 0.012;
+    const SHOULDER: f32 = 0.66;
     const ROOM: f32 = 1.0 - SHOULDER;
+    let light = light.max(0.0);
+    let light = light * light / (light + TOE);
     if light <= SHOULDER { light } else { 1.0 - ROOM * ((SHOULDER - light) / ROOM).exp() }
 }
 
@@ -130,24 +276,29 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bytes_survive_the_transfer() {
-        for byte in 0..=255u8 {
-            let color = unit([byte; 3]).map(linear);
-            assert_eq!(bytes(color.extend(1.0)), [byte, byte, byte, 255]);
-            // Half covered: the colour stays.
-            assert_eq!(bytes(color.extend(1.0) * 0.5), [byte, byte, byte, 128]);
+    fn lit_surfaces_are_brighter_and_none_is_cut_off() {
+        let camera = Camera::perspective(DVec3::new(2.0, -3.0, 2.0), DVec3::ZERO, DVec3::Z, 30.0);
+        let studio = Studio::new(&camera, &RenderSettings::default());
+        let n = camera.eye.normalize();
+        for color in [[255; 3], [0; 3], [200, 30, 20]] {
+            for roughness in [0.0, 0.3, 1.0] {
+                let material = Paint { color, roughness }.into();
+                let shade = |open| studio.surface(n, n, n, &material, open).truncate();
+                let (lit, dark) = (shade(Openness::FULL), shade(Openness { key: 0.0, sky: 0.3 }));
+                assert!(lit.cmpgt(dark).all(), "{lit} {dark}");
+                assert!(dark.min_element() >= 0.0 && lit.max_element() <= 1.0, "{lit} {dark}");
+            }
         }
-        assert_eq!(bytes(Vec4::ZERO), [0; 4]);
     }
 
     #[test]
-    fn lit_surfaces_are_brighter_and_none_is_cut_off() {
+    fn the_ground_is_the_background_where_nothing_hides_the_light() {
         let camera = Camera::perspective(DVec3::new(2.0, -3.0, 2.0), DVec3::ZERO, DVec3::Z, 30.0);
-        let studio = Studio::new(&camera, &RenderSettings { color: [255; 3], gloss: 1.0, ..Default::default() });
-        let viewer = camera.eye.normalize();
-        let lit = studio.surface(viewer, viewer, true);
-        let dark = studio.surface(viewer, viewer, false);
-        assert!(lit.truncate().cmpgt(dark.truncate()).all(), "{lit} {dark}");
-        assert!(dark.min_element() > 0.0 && lit.truncate().max_element() < 1.0, "{lit} {dark}");
+        let studio = Studio::new(&camera, &RenderSettings::default());
+        let background = studio.background(0.7);
+        assert_eq!(studio.ground(background, Openness::FULL), background);
+        assert_eq!(studio.ground(Vec4::ZERO, Openness::FULL), Vec4::ZERO);
+        let shadow = studio.ground(Vec4::ZERO, Openness { key: 0.0, sky: 0.5 });
+        assert!(shadow.w > 0.5 && shadow.x < 0.05, "{shadow}");
     }
 }

@@ -1,18 +1,10 @@
 //! Rendering a solid: `solid.render(..)`.
 
-use super::blocks::{Blocks, MOST};
-use super::picture::Scene;
+use super::picture::Picture;
+use super::scene::Scene;
 use super::settings::{RenderError, RenderSettings};
 use super::shade::Studio;
-use crate::eval::compiled;
-use crate::{Bounds, Camera, Image, Rays, Run, Solid};
-
-/// The side of a block in pixels: about as long as a ray through one block costs as much as
-/// the blocks that it walks past.
-const BLOCK_PIXELS: f64 = 5.0;
-
-/// The least number of blocks along the longest side.
-const FEWEST: u32 = 8;
+use crate::{Camera, Image, Palette, Run, Solid};
 
 impl Solid {
     /// A picture of the solid.
@@ -50,35 +42,72 @@ impl Solid {
     pub fn render_with(&self, camera: &Camera, settings: &RenderSettings, run: &Run) -> Result<Image, RenderError> {
         settings.check()?;
         camera.check()?;
-        let bounds = self.finite_bounds()?;
-        let programs = compiled(self)?;
-        let RenderSettings { width, height, .. } = *settings;
-        let rays = camera.rays(width, height);
         let run = run.stage(0.0, 1.0);
         run.install(|| {
-            run.check()?;
-            // A box without extent holds nothing that could be seen.
-            let visible = !bounds.is_empty() && bounds.longest_side() > 0.0;
-            let blocks = if visible {
-                let across = blocks_across(&bounds, camera, &rays);
-                Some(Blocks::new(&programs.surface, &bounds, across, camera.eye, &run)?)
-            } else {
-                None
-            };
-            run.report(0.1);
-            let scene = Scene { blocks, studio: Studio::new(camera, settings), rays, settings };
-            let pixels = scene.pixels(&run.stage(0.1, 1.0))?;
-            Ok(Image::new(width, height, pixels)?)
+            let scene = self.scene_with(&run.stage(0.0, 0.1))?;
+            Ok(scene.picture(camera, settings, &run.stage(0.1, 1.0))?.to_8bit())
         })
     }
 }
 
-/// How many blocks there are along the longest side of `bounds`.
-fn blocks_across(bounds: &Bounds, camera: &Camera, rays: &Rays) -> u32 {
-    let pixel = rays.pixel_size(camera.eye.distance(bounds.center()));
-    let blocks = (bounds.longest_side() / (BLOCK_PIXELS * pixel)).ceil();
-    // The conversion saturates; NaN, which a checked camera does not give, becomes 0.
-    (blocks as u32).clamp(FEWEST, MOST)
+impl Scene {
+    /// A picture of the solid: see [`Solid::render`].
+    ///
+    /// # Errors
+    /// What is wrong with the camera or the settings.
+    pub fn render(&self, camera: &Camera, settings: &RenderSettings) -> Result<Image, RenderError> {
+        self.render_with(camera, settings, &Run::default())
+    }
+
+    /// [`render`](Scene::render) with a choice of threads, a cancel token and a progress sink.
+    ///
+    /// # Errors
+    /// What is wrong with the camera or the settings, or that the work was cancelled.
+    pub fn render_with(&self, camera: &Camera, settings: &RenderSettings, run: &Run) -> Result<Image, RenderError> {
+        settings.check()?;
+        camera.check()?;
+        let run = run.stage(0.0, 1.0);
+        Ok(run.install(|| self.picture(camera, settings, &run))?.to_8bit())
+    }
+
+    /// The same as linear light, weighted by alpha, before it becomes bytes: with
+    /// [`Transfer::Srgb`](crate::Transfer::Srgb) the radiances themselves, else what the
+    /// transfer makes of them. Saved as EXR, or as PNG of 8 or 16 bits.
+    ///
+    /// ```
+    /// use rvachev::{Camera, RenderSettings, Run, Solid};
+    ///
+    /// let scene = Solid::sphere(1.0).scene()?;
+    /// let settings = RenderSettings { width: 32, height: 24, ..RenderSettings::default() };
+    /// let light = scene.light(&Camera::framing(&scene.bounds()), &settings, &Run::default())?;
+    /// light.to_16bit().save(std::env::temp_dir().join("rvachev_light.png"))?;
+    /// # std::fs::remove_file(std::env::temp_dir().join("rvachev_light.png"))?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// What is wrong with the camera or the settings, or that the work was cancelled.
+    pub fn light(&self, camera: &Camera, settings: &RenderSettings, run: &Run) -> Result<Image<[f32; 4]>, RenderError> {
+        settings.check()?;
+        camera.check()?;
+        let run = run.stage(0.0, 1.0);
+        run.install(|| self.picture(camera, settings, &run))
+    }
+
+    fn picture(&self, camera: &Camera, settings: &RenderSettings, run: &Run) -> Result<Image<[f32; 4]>, RenderError> {
+        run.check()?;
+        let RenderSettings { width, height, .. } = *settings;
+        let stands = settings.ground && settings.style.has_shadows() && !self.bounds().is_empty();
+        let picture = Picture {
+            scene: self,
+            studio: Studio::new(camera, settings),
+            rays: camera.rays(width, height),
+            settings,
+            palette: Some(self.palette().clone()).filter(Palette::is_painted),
+            ground: stands.then(|| self.lowest()),
+        };
+        Ok(Image::new(width, height, picture.pixels(run)?)?)
+    }
 }
 
 #[cfg(test)]
@@ -94,7 +123,8 @@ mod tests {
     }
 
     fn transparent(width: u32, height: u32) -> RenderSettings {
-        RenderSettings { width, height, background: Background::Transparent, ..RenderSettings::default() }
+        let background = Background::Transparent;
+        RenderSettings { width, height, background, ground: false, ..RenderSettings::default() }
     }
 
     /// The picture's alpha: `#` from ¾ on, `+` from ¼ on.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Node, Solid};
+use super::{Node, Paint, Solid};
 use crate::ParamError;
 
 /// Why a solid cannot be evaluated. `path` leads from the root to the node:
@@ -84,6 +84,7 @@ struct Step {
     label: Label,
     /// Position among the parent's operands, where it has several.
     position: Option<usize>,
+    paint: Option<Paint>,
 }
 
 /// What a step is called.
@@ -105,8 +106,18 @@ impl Trail {
             Node::Named { name, .. } => Label::Name(name.clone()),
             node => Label::Kind(node.name()),
         };
-        self.0.push(Step { parent: parent.map(|(step, ..)| step), label, position });
+        let paint = match solid.node() {
+            Node::Painted { paint, .. } => Some(*paint),
+            _ => None,
+        };
+        self.0.push(Step { parent: parent.map(|(step, ..)| step), label, position, paint });
         (self.0.len() - 1) as u32
+    }
+
+    /// The outermost paint on a node.
+    pub(crate) fn paint(&self, step: u32) -> Option<Paint> {
+        let above = std::iter::successors(Some(step), |step| self.0[*step as usize].parent);
+        above.filter_map(|step| self.0[step as usize].paint).last()
     }
 
     /// The path to a node: at most eight steps, the middle of a longer one left out.
@@ -116,7 +127,7 @@ impl Trail {
         let mut position: Option<usize> = None;
         let mut next = Some(step);
         while let Some(step) = next {
-            let Step { parent, label, position: own } = &self.0[step as usize];
+            let Step { parent, label, position: own, .. } = &self.0[step as usize];
             match (label, position) {
                 (Label::Kind(kind), Some(operand)) => names.push(format!("{kind}[{operand}]")),
                 (Label::Kind(kind), None) => names.push((*kind).to_string()),

@@ -5,6 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::DAffine3;
 
+use super::Paint;
 use crate::field::{AnyField, AnyWarp, check};
 use crate::{Blend, ParamError, RFunction};
 
@@ -59,6 +60,11 @@ pub(crate) enum Node {
     Named {
         operand: Solid,
         name: Arc<str>,
+    },
+    /// The operand, painted.
+    Painted {
+        operand: Solid,
+        paint: Paint,
     },
     /// Two operands joined with the transition between them shaped.
     Blend {
@@ -142,6 +148,7 @@ impl Node {
             Node::Blend { operation, blend, .. } => super::blend::name(blend, *operation),
             Node::Length { length, .. } => length.name(),
             Node::Named { .. } => "named",
+            Node::Painted { .. } => "paint",
         }
     }
 
@@ -153,6 +160,7 @@ impl Node {
             | Node::Warp { operand, .. }
             | Node::Length { operand, .. }
             | Node::Named { operand, .. }
+            | Node::Painted { operand, .. }
             | Node::Complement(operand) => std::slice::from_ref(operand),
             Node::Blend { operands, .. } => operands,
             Node::Join { operands, .. } => operands,
@@ -204,6 +212,7 @@ fn take_operands(node: &mut Node, pending: &mut Vec<Solid>) {
         | Node::Warp { operand, .. }
         | Node::Length { operand, .. }
         | Node::Named { operand, .. }
+        | Node::Painted { operand, .. }
         | Node::Complement(operand) => pending.push(operand),
         Node::Blend { operands, lengths, .. } => {
             pending.extend(operands);

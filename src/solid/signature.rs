@@ -18,6 +18,10 @@ impl Node {
             Node::Join { rule, .. } => format!("by {rule:?}"),
             Node::Complement(_) => String::new(),
             Node::Named { name, .. } => name.to_string(),
+            Node::Painted { paint, .. } => {
+                let [r, g, b] = paint.color;
+                format!("#{r:02x}{g:02x}{b:02x}, roughness {:?}", paint.roughness)
+            }
             Node::Blend { blend, .. } => format!("by {blend:?}"),
             Node::Length { length, .. } => format!("by {:?}", length.amount()),
         }
@@ -32,6 +36,7 @@ impl Node {
             | Node::Join { .. }
             | Node::Complement(_)
             | Node::Named { .. }
+            | Node::Painted { .. }
             | Node::Blend { .. }
             | Node::Length { .. } => return None,
         };
@@ -50,7 +55,8 @@ impl Node {
             | Node::Warp { operand, .. }
             | Node::Complement(operand)
             | Node::Length { operand, .. }
-            | Node::Named { operand, .. } => std::slice::from_mut(operand),
+            | Node::Named { operand, .. }
+            | Node::Painted { operand, .. } => std::slice::from_mut(operand),
             Node::Blend { operands, .. } => operands,
             Node::Join { operands, .. } => &mut operands[..],
         };

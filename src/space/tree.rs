@@ -25,13 +25,6 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
-    /// A grid over `bounds` with `across` blocks along its longest side.
-    pub(crate) fn over(bounds: &Bounds, across: u32) -> Grid {
-        let side = bounds.longest_side() / f64::from(across.max(1));
-        let blocks = bounds.size().to_array().map(|size| ((size / side).ceil() as u32).max(1));
-        Grid { origin: bounds.min, side, blocks }
-    }
-
     /// The box of the blocks from `from` up to `to`, exclusive.
     pub(crate) fn bounds(&self, from: [u32; 3], to: [u32; 3]) -> Bounds {
         let corner = |at: [u32; 3]| self.origin + self.side * DVec3::from_array(at.map(f64::from));

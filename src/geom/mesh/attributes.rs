@@ -110,7 +110,6 @@ impl Mesh {
 
     /// Notes how many cells may have lost a feature thinner than a cell.
     #[must_use]
-    #[allow(dead_code, reason = "for the mesher")]
     pub(crate) fn with_unresolved_cells(mut self, count: usize) -> Mesh {
         self.attributes.unresolved_cells = Some(count);
         self

@@ -174,7 +174,8 @@ impl<'a> Search<'a> {
             let below = &self.levels[level - 1];
             // Places below this one hold only earlier groups.
             let first = group >> (2 * (level - 2));
-            for child in (GROUP * place).max(first)..below.len().min(GROUP * (place + 1)) {
+            let children = (GROUP * place).max(first)..below.len().min(GROUP * (place + 1));
+            for child in children {
                 if below[child].overlaps(&own) {
                     waiting[count] = (level as u8 - 1, child as u32);
                     count += 1;

@@ -1,0 +1,71 @@
+//! How a program's value bends along straight lines, and its slopes over boxes: what tells how
+//! many crossings a ray may have.
+//!
+//! A concave value is above 0 on one piece of any line, a convex one on all but one. Minima keep
+//! concave values concave and maxima convex ones convex; a negation exchanges the two.
+
+use super::program::{Kind, Node, Op, Program};
+use crate::field::Rule;
+use crate::{Bounds, Dual, Interval};
+
+/// How the value bends along straight lines.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Bend {
+    /// It lies above its chords: what is inside is convex.
+    Concave,
+    /// It lies below its chords: what is outside is convex.
+    Convex,
+}
+
+impl Bend {
+    fn flip_if(self, negate: bool) -> Bend {
+        match (self, negate) {
+            (Bend::Concave, false) | (Bend::Convex, true) => Bend::Concave,
+            _ => Bend::Convex,
+        }
+    }
+
+    /// That of the negated value.
+    pub(crate) fn turned(self) -> Bend {
+        self.flip_if(true)
+    }
+}
+
+impl Program {
+    /// How the value bends along straight lines, where that is known: leaves that are not
+    /// deformed, their intersections and the complements of these.
+    pub(crate) fn bend(&self) -> Option<Bend> {
+        if !self.frames.is_empty() {
+            return None;
+        }
+        let mut bends: Vec<Option<Bend>> = Vec::with_capacity(self.nodes.len());
+        for node in &self.nodes[..] {
+            let mut operands = self.list(node).iter().map(|e| bends[e.node()].map(|bend| bend.flip_if(e.negated())));
+            let bend = match &node.kind {
+                Kind::Leaf(leaf) => self.instance(*leaf).field.convex().then_some(Bend::Concave),
+                Kind::Shift(_) => operands.next().flatten(),
+                Kind::Join { op, rule: Rule::MinMax, .. } => {
+                    let bend = if *op == Op::And { Bend::Concave } else { Bend::Convex };
+                    operands.all(|operand| operand == Some(bend)).then_some(bend)
+                }
+                Kind::Join { .. } | Kind::Edge { .. } => None,
+            };
+            bends.push(bend);
+        }
+        bends[self.root.node()].map(|bend| bend.flip_if(self.root.negated()))
+    }
+
+    /// The number of its leaf, if it is one leaf and nothing else.
+    pub(crate) fn only_leaf(&self) -> Option<u32> {
+        match &self.nodes[..] {
+            [Node { kind: Kind::Leaf(leaf), .. }] => Some(self.instance(*leaf).number),
+            _ => None,
+        }
+    }
+
+    /// Ranges of the derivatives over a box.
+    pub(crate) fn slopes(&self, region: &Bounds) -> [Interval; 3] {
+        let side = |axis: usize| Interval::new(region.min[axis], region.max[axis]);
+        self.evaluate(Dual::point([side(0), side(1), side(2)]), &mut Vec::new()).gradient()
+    }
+}

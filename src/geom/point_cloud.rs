@@ -1,0 +1,115 @@
+//! Points of a surface without connections.
+
+use glam::{DVec3, Vec3};
+
+/// Points in space, each with a normal and a colour if the cloud has them.
+///
+/// ```
+/// use glam::{DVec3, Vec3};
+/// use rvachev::PointCloud;
+///
+/// let cloud = PointCloud::new(vec![DVec3::X, DVec3::Y])?.with_normals(vec![Vec3::X, Vec3::Y])?;
+/// assert_eq!(cloud.len(), 2);
+/// # Ok::<(), rvachev::PointCloudError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct PointCloud {
+    positions: Vec<DVec3>,
+    normals: Option<Vec<Vec3>>,
+    colors: Option<Vec<[u8; 3]>>,
+}
+
+/// Why a point cloud cannot be built from the given parts.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum PointCloudError {
+    /// A position has a component that is NaN or infinite.
+    #[error("point {point} is at {position}, which is not finite")]
+    Position {
+        /// The point, counted from 0.
+        point: usize,
+        /// Where it is.
+        position: DVec3,
+    },
+    /// There are not as many of an attribute as of points.
+    #[error("{given} {attribute} for {points} points; one a point is needed")]
+    Count {
+        /// What was given.
+        attribute: &'static str,
+        /// How many.
+        given: usize,
+        /// Number of points.
+        points: usize,
+    },
+}
+
+impl PointCloud {
+    /// A cloud of points, in length units.
+    ///
+    /// # Errors
+    ///
+    /// [`PointCloudError::Position`], naming the first that is not finite.
+    pub fn new(positions: Vec<DVec3>) -> Result<PointCloud, PointCloudError> {
+        if let Some(point) = positions.iter().position(|p| !p.is_finite()) {
+            return Err(PointCloudError::Position { point, position: positions[point] });
+        }
+        Ok(PointCloud { positions, normals: None, colors: None })
+    }
+
+    fn counted(&self, attribute: &'static str, given: usize) -> Result<(), PointCloudError> {
+        let points = self.positions.len();
+        if given == points { Ok(()) } else { Err(PointCloudError::Count { attribute, given, points }) }
+    }
+
+    /// The same cloud with a unit normal per point, out of the solid.
+    ///
+    /// # Errors
+    ///
+    /// [`PointCloudError::Count`] if their number is not that of the points.
+    pub fn with_normals(mut self, normals: Vec<Vec3>) -> Result<PointCloud, PointCloudError> {
+        self.counted("normals", normals.len())?;
+        self.normals = Some(normals);
+        Ok(self)
+    }
+
+    /// The same cloud with an sRGB colour per point.
+    ///
+    /// # Errors
+    ///
+    /// [`PointCloudError::Count`] if their number is not that of the points.
+    pub fn with_colors(mut self, colors: Vec<[u8; 3]>) -> Result<PointCloud, PointCloudError> {
+        self.counted("colors", colors.len())?;
+        self.colors = Some(colors);
+        Ok(self)
+    }
+
+    /// Number of points.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Whether there is no point.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.positions.is_empty()
+    }
+
+    /// The points, in length units.
+    #[must_use]
+    pub fn positions(&self) -> &[DVec3] {
+        &self.positions
+    }
+
+    /// Their unit normals, if the cloud has them.
+    #[must_use]
+    pub fn normals(&self) -> Option<&[Vec3]> {
+        self.normals.as_deref()
+    }
+
+    /// Their sRGB colours, if the cloud has them.
+    #[must_use]
+    pub fn colors(&self) -> Option<&[[u8; 3]]> {
+        self.colors.as_deref()
+    }
+}

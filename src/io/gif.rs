@@ -1,0 +1,37 @@
+//! Animated GIF, through the `image` crate.
+
+use std::io::{self, Write};
+use std::time::Duration;
+
+use image::codecs::gif::{GifEncoder, Repeat};
+use image::{Delay, Frame, RgbaImage};
+
+use crate::geom::Image;
+
+/// Writes pictures as an animated GIF without end, each shown for `pause` (a GIF counts in
+/// hundredths of a second). Every picture has the 256 colours that suit it best.
+///
+/// # Errors
+///
+/// Those of the writer; that there is no picture; that a side is beyond 65535.
+pub fn write_gif(pictures: &[Image], pause: Duration, out: impl Write) -> io::Result<()> {
+    if pictures.is_empty() {
+        return Err(io::Error::other("no picture to write"));
+    }
+    let error = |error| match error {
+        image::ImageError::IoError(error) => error,
+        other => io::Error::other(other),
+    };
+    // Of the speeds from 1 to 30, one that is fast and not yet seen.
+    let mut encoder = GifEncoder::new_with_speed(out, 10);
+    encoder.set_repeat(Repeat::Infinite).map_err(error)?;
+    for picture in pictures {
+        let bytes = picture.pixels().as_flattened().to_vec();
+        let Some(buffer) = RgbaImage::from_raw(picture.width(), picture.height(), bytes) else {
+            return Err(io::Error::other("the pixels do not make a picture"));
+        };
+        let delay = Delay::from_saturating_duration(pause);
+        encoder.encode_frame(Frame::from_parts(buffer, 0, 0, delay)).map_err(error)?;
+    }
+    Ok(())
+}

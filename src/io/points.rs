@@ -1,0 +1,56 @@
+//! PLY of point clouds.
+//!
+//! Binary, little-endian: x, y and z as doubles, so that nothing is lost; normals as floats and
+//! colours as bytes where the cloud has them.
+//!
+//! Source: G. Turk, *The PLY Polygon File Format* (1994).
+
+use std::io::{self, Write};
+
+use crate::geom::PointCloud;
+
+/// Writes a point cloud as PLY.
+///
+/// ```
+/// use glam::DVec3;
+/// use rvachev::{PointCloud, write_ply_points};
+///
+/// let mut file = Vec::new();
+/// write_ply_points(&PointCloud::new(vec![DVec3::X])?, &mut file)?;
+/// assert!(file.starts_with(b"ply\nformat binary_little_endian 1.0\n"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+///
+/// Those of the writer.
+pub fn write_ply_points(cloud: &PointCloud, mut out: impl Write) -> io::Result<()> {
+    writeln!(out, "ply\nformat binary_little_endian 1.0\nelement vertex {}", cloud.len())?;
+    for axis in ["x", "y", "z"] {
+        writeln!(out, "property double {axis}")?;
+    }
+    if cloud.normals().is_some() {
+        for axis in ["nx", "ny", "nz"] {
+            writeln!(out, "property float {axis}")?;
+        }
+    }
+    if cloud.colors().is_some() {
+        for channel in ["red", "green", "blue"] {
+            writeln!(out, "property uchar {channel}")?;
+        }
+    }
+    writeln!(out, "end_header")?;
+    let mut record = Vec::with_capacity(39);
+    for (i, p) in cloud.positions().iter().enumerate() {
+        record.clear();
+        record.extend(p.to_array().into_iter().flat_map(f64::to_le_bytes));
+        if let Some(normals) = cloud.normals() {
+            record.extend(normals[i].to_array().into_iter().flat_map(f32::to_le_bytes));
+        }
+        if let Some(colors) = cloud.colors() {
+            record.extend(colors[i]);
+        }
+        out.write_all(&record)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,106 @@
+//! Meshes that are known to enclose a solid.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::error::RasterError;
+use crate::Mesh;
+
+/// A mesh whose surface is closed and faces outward, as every join of layers needs it.
+///
+/// Closed means that every edge is used as often in one direction as in the other, so that a ray
+/// leaves as often as it enters; edges of four triangles, separate shells and cavities are all
+/// right. Vertices at the same position count as one, so it does not matter whether a seam is
+/// welded.
+///
+/// ```
+/// use rvachev::{CellSize, ClosedMesh, MeshSettings, Solid};
+///
+/// let settings = MeshSettings { cell: CellSize::LongestSide(16), ..MeshSettings::default() };
+/// let mesh = Solid::sphere(1.0).mesh(&settings)?;
+/// let closed = ClosedMesh::new(&mesh)?;
+/// assert_eq!(closed.mesh().triangles().len(), mesh.triangles().len());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct ClosedMesh<'a> {
+    mesh: &'a Mesh,
+}
+
+impl<'a> ClosedMesh<'a> {
+    /// Looks whether the mesh is closed and faces outward. A mesh without triangles is closed,
+    /// and encloses nothing.
+    ///
+    /// # Errors
+    ///
+    /// [`RasterError::Open`] or [`RasterError::InsideOut`].
+    pub fn new(mesh: &'a Mesh) -> Result<ClosedMesh<'a>, RasterError> {
+        if !uneven_edges(mesh.triangles()).is_empty() {
+            let welded = by_position(mesh);
+            let triangles: Vec<[u32; 3]> = mesh.triangles().par_iter().map(|t| t.map(|i| welded[i as usize])).collect();
+            let uneven = uneven_edges(&triangles);
+            if let Some(&first) = uneven.first() {
+                let at = mesh.positions()[first as usize].as_dvec3();
+                return Err(RasterError::Open { edges: uneven.len(), at });
+            }
+        }
+        let volume = mesh.volume();
+        if volume < 0.0 {
+            return Err(RasterError::InsideOut { volume });
+        }
+        Ok(ClosedMesh { mesh })
+    }
+
+    /// The mesh.
+    #[must_use]
+    pub fn mesh(&self) -> &'a Mesh {
+        self.mesh
+    }
+}
+
+/// For every edge that is not used as often in one direction as in the other, its lower end.
+fn uneven_edges(triangles: &[[u32; 3]]) -> Vec<u32> {
+    // Both ends, lower first, and the direction in the lowest bit.
+    let mut uses: Vec<(u64, bool)> = triangles
+        .par_iter()
+        .flat_map_iter(|&[a, b, c]| [[a, b], [b, c], [c, a]])
+        .filter(|[from, to]| from != to)
+        .map(|[from, to]| (u64::from(from.min(to)) << 32 | u64::from(from.max(to)), from > to))
+        .collect();
+    uses.par_sort_unstable();
+    let is_uneven = |edge: &&[(u64, bool)]| 2 * edge.iter().filter(|e| e.1).count() != edge.len();
+    uses.chunk_by(|a, b| a.0 == b.0).filter(is_uneven).map(|edge| (edge[0].0 >> 32) as u32).collect()
+}
+
+/// For every vertex the first one at its position.
+fn by_position(mesh: &Mesh) -> Vec<u32> {
+    // Adding 0 makes −0 and 0 the same.
+    let key = |i: u32| mesh.positions()[i as usize].to_array().map(|x| (x + 0.0).to_bits());
+    let mut order: Vec<u32> = (0..mesh.positions().len() as u32).collect();
+    order.par_sort_unstable_by_key(|&i| (key(i), i));
+    let mut first = vec![0; order.len()];
+    for same in order.chunk_by(|&a, &b| key(a) == key(b)) {
+        for &i in same {
+            first[i as usize] = same[0];
+        }
+    }
+    first
+}
+
+/// The normal of a triangle at a point on it: between those of the corners, or its own; 0 where
+/// it has none.
+pub(super) fn normal(mesh: &Mesh, triangle: u32, point: DVec3) -> DVec3 {
+    let Some(&corners) = mesh.triangles().get(triangle as usize) else { return DVec3::ZERO };
+    let [a, b, c] = mesh.corners(corners);
+    let area = (b - a).cross(c - a);
+    let Some(normals) = mesh.normals() else { return area.normalize_or_zero() };
+    let square = area.length_squared();
+    if square == 0.0 {
+        return DVec3::ZERO;
+    }
+    // Barycentric coordinates by parts of the area.
+    let v = (point - a).cross(c - a).dot(area) / square;
+    let w = (b - a).cross(point - a).dot(area) / square;
+    let [na, nb, nc] = corners.map(|i| normals[i as usize].as_dvec3());
+    (na * (1.0 - v - w) + nb * v + nc * w).normalize_or_zero()
+}

@@ -1,0 +1,139 @@
+//! Depth buffers of whole trees.
+
+use rayon::prelude::*;
+
+use super::buffers::Buffers;
+use super::error::RasterError;
+use super::expression::{Circuit, Csg};
+use super::intervals;
+use super::layers::{LayerSource, Tile};
+use super::sequence::Sequences;
+use super::stencil::Passes;
+use super::target::Target;
+use super::view::RasterView;
+use crate::Run;
+
+/// How the depth buffer of a tree is found.
+///
+/// | method | trees | operands | the eye |
+/// |---|---|---|---|
+/// | `Intervals` | any bounded one | any closed solids | anywhere |
+/// | `Sequenced` | unions of up to 4096 products | convex | outside of all |
+/// | `Stencil` | unions; intersection and difference of two | convex, but in unions any | outside of all |
+///
+/// All give the same depths where all apply.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum CsgMethod {
+    /// The sorted layers of each pixel.
+    #[default]
+    Intervals,
+    /// Products of convex operands, by sequenced subtraction.
+    Sequenced,
+    /// The stencil passes of Kim et al.
+    Stencil,
+}
+
+enum Plan {
+    Intervals(Circuit),
+    Sequenced(Sequences),
+    Stencil(Passes),
+}
+
+impl Plan {
+    fn tile(&self, operands: &[&dyn LayerSource], tile: &Tile) -> Target {
+        match self {
+            Plan::Intervals(circuit) => intervals::tile(circuit, operands, tile),
+            Plan::Sequenced(sequences) => sequences.tile(operands, tile),
+            Plan::Stencil(passes) => passes.tile(operands, tile),
+        }
+    }
+}
+
+impl RasterView {
+    /// The depth buffer of a tree of operands, which it names by their place in `operands`.
+    ///
+    /// What is seen is the first surface of the result behind the near plane. An eye inside of
+    /// the result sees its walls from behind.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use rvachev::{Camera, CellSize, ClosedMesh, Csg, CsgMethod, MeshSettings, RasterView, Solid};
+    ///
+    /// let settings = MeshSettings { cell: CellSize::LongestSide(24), ..MeshSettings::default() };
+    /// let block = Solid::cuboid([2.0, 2.0, 2.0]).mesh(&settings)?;
+    /// let hole = Solid::cylinder(0.5, 3.0).mesh(&settings)?;
+    ///
+    /// let camera = Camera::perspective(DVec3::new(0.0, 0.0, 6.0), DVec3::ZERO, DVec3::Y, 40.0);
+    /// let view = RasterView::new(&camera, 80, 60)?;
+    /// let block = view.layers(ClosedMesh::new(&block)?);
+    /// let hole = view.layers(ClosedMesh::new(&hole)?);
+    /// let part = Csg::operand(0) - Csg::operand(1);
+    /// let buffers = view.csg(&[&block, &hole], &part, CsgMethod::Intervals)?;
+    /// assert!((buffers.depth(60, 30).unwrap() - 5.0).abs() < 1e-6);
+    /// assert_eq!(buffers.depth(40, 30), None);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`RasterError::Operand`], [`Size`](RasterError::Size), [`Surface`](RasterError::Surface)
+    /// or [`Unbounded`](RasterError::Unbounded) for what no method takes;
+    /// [`Tree`](RasterError::Tree), [`Products`](RasterError::Products) or
+    /// [`Cut`](RasterError::Cut) for what `method` does not. Whether operands are convex is not
+    /// looked at.
+    pub fn csg(&self, operands: &[&dyn LayerSource], tree: &Csg, method: CsgMethod) -> Result<Buffers, RasterError> {
+        self.csg_with(operands, tree, method, &Run::default())
+    }
+
+    /// [`csg`](RasterView::csg) with a choice of threads, a cancel token and a progress sink.
+    ///
+    /// The result is the same to the byte for any number of threads.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`csg`](RasterView::csg), and [`RasterError::Cancelled`].
+    pub fn csg_with(
+        &self,
+        operands: &[&dyn LayerSource],
+        tree: &Csg,
+        method: CsgMethod,
+        run: &Run,
+    ) -> Result<Buffers, RasterError> {
+        if tree.operands() > operands.len() {
+            return Err(RasterError::Operand { operand: tree.operands() - 1, operands: operands.len() });
+        }
+        for (operand, layers) in operands.iter().enumerate() {
+            self.fits(layers.size())?;
+            if !layers.is_closed() {
+                return Err(RasterError::Surface { operand });
+            }
+            if layers.is_cut() && method != CsgMethod::Intervals {
+                return Err(RasterError::Cut { operand });
+            }
+        }
+        // Every method wants a bounded tree.
+        let circuit = Circuit::new(tree, operands.len())?;
+        let plan = match method {
+            CsgMethod::Intervals => Plan::Intervals(circuit),
+            CsgMethod::Sequenced => Plan::Sequenced(Sequences::new(tree, operands.len())?),
+            CsgMethod::Stencil => Plan::Stencil(Passes::new(tree)?),
+        };
+        let run = run.stage(0.0, 1.0);
+        let [across, down] = Tile::grid(self.width, self.height);
+        let count = across * down;
+        let done = std::sync::atomic::AtomicU32::new(0);
+        let tiles = run.install(|| {
+            (0..count)
+                .into_par_iter()
+                .map(|number| {
+                    run.check()?;
+                    let target = plan.tile(operands, &Tile::number(number, self.width, self.height));
+                    let done = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
+                    run.report(f64::from(done) / f64::from(count));
+                    Ok(target)
+                })
+                .collect::<Result<Vec<Target>, RasterError>>()
+        })?;
+        Ok(Buffers { view: *self, tiles })
+    }
+}

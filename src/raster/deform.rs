@@ -1,0 +1,141 @@
+//! Moved and deformed meshes: affine maps, and Barr's taper, twist and bend, vertex by vertex.
+//!
+//! ```text
+//! affine X = A x + b
+//! taper  t = clamp(z/h, −1, 1), s = 1 + K t          X = s_x x,  Y = s_y y,  Z = z
+//! twist  φ = ω z                                     (X, Y) = (x, y) turned by φ,  Z = z
+//! bend   r = along u = (cos α, sin α), γ = κ z       R = r + (1 − κr) z sin(γ/2) sinc(γ/2)
+//!                                                    Z = (1 − κr) z sinc γ
+//! normal J⁻ᵀ n at length 1
+//! ```
+//!
+//! The same maps, parameters and ranges as those of solids ([`Solid::taper`](crate::Solid::taper),
+//! [`twist`](crate::Solid::twist), [`bend`](crate::Solid::bend)), run forwards. A triangle stays
+//! flat, so a mesh wants to be as fine as the deformed surface asks for. Closed meshes stay
+//! closed; convex ones mostly do not stay convex.
+//!
+//! Sources: A. H. Barr, *Global and local deformations of solid primitives* (1984); F. Solina
+//! and R. Bajcsy (1990) for the bend.
+
+use glam::{DAffine3, DVec3};
+
+use super::error::RasterError;
+use crate::field::{AnyWarp, Bend, Taper, Twist};
+use crate::{Mesh, ParamError};
+
+impl Mesh {
+    /// The mesh moved by an affine map. A map that mirrors turns the triangles round, so that
+    /// they face outward again.
+    ///
+    /// # Errors
+    ///
+    /// [`RasterError::Parameter`] for a map that flattens or is not finite;
+    /// [`RasterError::Mesh`] if a vertex is moved out of single precision.
+    pub fn affine(&self, map: DAffine3) -> Result<Mesh, RasterError> {
+        let determinant = map.matrix3.determinant();
+        if !map.is_finite() || determinant == 0.0 {
+            return Err(ParamError::new("determinant of the map", determinant, "finite, and not 0").into());
+        }
+        let turned = map.matrix3.inverse().transpose();
+        let moved = moved(self, |p, n| (map.transform_point3(p), turned * n))?;
+        if determinant > 0.0 {
+            return Ok(moved);
+        }
+        let triangles = moved.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
+        let mirrored = Mesh::new(moved.positions().to_vec(), triangles)?;
+        match moved.normals() {
+            Some(normals) => Ok(mirrored.with_normals(normals.to_vec())?),
+            None => Ok(mirrored),
+        }
+    }
+
+    /// The mesh tapered along z, with the parameters of [`Solid::taper`](crate::Solid::taper).
+    ///
+    /// ```
+    /// use rvachev::{ClosedMesh, PatchSettings, Superellipsoid};
+    ///
+    /// let bar = Superellipsoid::new([0.5, 0.5, 2.0], 0.3, 0.3).surface()?.mesh(&PatchSettings::default())?;
+    /// let bent = bar.taper(0.4, 0.4, 2.0)?.twist(0.6)?.bend(0.3, 0.0)?;
+    /// ClosedMesh::new(&bent)?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`RasterError::Parameter`] for a parameter that a solid of this size would not take.
+    pub fn taper(&self, kx: f64, ky: f64, half_height: f64) -> Result<Mesh, RasterError> {
+        deformed(self, &Taper { kx, ky, half_height }, |p, n| {
+            let t = (p.z / half_height).clamp(-1.0, 1.0);
+            let (sx, sy) = (1.0 + kx * t, 1.0 + ky * t);
+            let across = DVec3::new(n.x / sx, n.y / sy, 0.0);
+            // Beyond the ends the section does not change.
+            let rate = if p.z.abs() < half_height { 1.0 / half_height } else { 0.0 };
+            let along = n.z - rate * (kx * p.x * across.x + ky * p.y * across.y);
+            (DVec3::new(sx * p.x, sy * p.y, p.z), across + along * DVec3::Z)
+        })
+    }
+
+    /// The mesh twisted about the z axis, with the parameter of
+    /// [`Solid::twist`](crate::Solid::twist).
+    ///
+    /// # Errors
+    ///
+    /// [`RasterError::Parameter`].
+    pub fn twist(&self, rate: f64) -> Result<Mesh, RasterError> {
+        deformed(self, &Twist { rate }, |p, n| {
+            let (sin, cos) = (rate * p.z).sin_cos();
+            let turned = |v: DVec3| DVec3::new(v.x * cos - v.y * sin, v.x * sin + v.y * cos, v.z);
+            (turned(p), turned(n) - DVec3::Z * (rate * (p.x * n.y - p.y * n.x)))
+        })
+    }
+
+    /// The mesh bent, with the parameters of [`Solid::bend`](crate::Solid::bend).
+    ///
+    /// # Errors
+    ///
+    /// [`RasterError::Parameter`].
+    pub fn bend(&self, curvature: f64, angle: f64) -> Result<Mesh, RasterError> {
+        let k = curvature;
+        let (sin_angle, cos_angle) = angle.sin_cos();
+        let along = DVec3::new(cos_angle, sin_angle, 0.0);
+        deformed(self, &Bend { curvature, angle }, |p, n| {
+            let r = p.dot(along);
+            let left = 1.0 - k * r;
+            let (sin, cos) = (k * p.z).sin_cos();
+            let half = 0.5 * k * p.z;
+            let shift = left * p.z * half.sin() * sinc(half);
+            let point = DVec3::new(p.x, p.y, 0.0) + along * shift + DVec3::Z * (left * p.z * sinc(k * p.z));
+            // The map turns by γ about the axis of the bend and stretches by `left` along the arc.
+            let (nr, nz) = (n.dot(along), n.z / left);
+            let side = n - along * nr - DVec3::Z * n.z;
+            (point, side + along * (cos * nr + sin * nz) + DVec3::Z * (cos * nz - sin * nr))
+        })
+    }
+}
+
+/// The mesh moved by `map` if `warp` takes what it holds.
+fn deformed(
+    mesh: &Mesh,
+    warp: &dyn AnyWarp,
+    map: impl Fn(DVec3, DVec3) -> (DVec3, DVec3),
+) -> Result<Mesh, RasterError> {
+    if !mesh.positions().is_empty() {
+        warp.check(&mesh.bounds())?;
+    }
+    moved(mesh, map)
+}
+
+/// The mesh with its vertices and normals, of any length, moved by `map`.
+fn moved(mesh: &Mesh, map: impl Fn(DVec3, DVec3) -> (DVec3, DVec3)) -> Result<Mesh, RasterError> {
+    let positions: Vec<DVec3> = mesh.positions().iter().map(|p| p.as_dvec3()).collect();
+    let moved = positions.iter().map(|&p| map(p, DVec3::ZERO).0.as_vec3()).collect();
+    let deformed = Mesh::new(moved, mesh.triangles().to_vec())?;
+    let Some(normals) = mesh.normals() else { return Ok(deformed) };
+    let turned = positions.iter().zip(normals).map(|(&p, n)| map(p, n.as_dvec3()).1.normalize_or_zero().as_vec3());
+    Ok(deformed.with_normals(turned.collect())?)
+}
+
+/// `sin(x)/x`.
+fn sinc(x: f64) -> f64 {
+    if x.abs() < 1e-8 { 1.0 } else { x.sin() / x }
+}

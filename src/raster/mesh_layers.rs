@@ -1,0 +1,239 @@
+//! The layers of a mesh in a view: vertices are projected, triangles cut off at the near plane,
+//! and sorted into the tiles that they touch.
+
+use fearless_simd::{Level, Simd, dispatch};
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::closed::{ClosedMesh, normal};
+use super::layers::{Fragments, LayerSource, Tile};
+use super::triangle::{Batch, Triangle};
+use super::view::RasterView;
+use crate::Mesh;
+
+/// Triangles that are prepared at once by a thread.
+const CHUNK: usize = 4096;
+
+/// A mesh in a view, ready to be drawn and joined: made by
+/// [`RasterView::layers`] and [`RasterView::surface`].
+#[derive(Clone, Debug)]
+pub struct MeshLayers<'a> {
+    mesh: &'a Mesh,
+    view: RasterView,
+    is_closed: bool,
+    is_cut: bool,
+    triangles: Vec<Triangle>,
+    /// The triangles of tile i are `bins[starts[i]..starts[i + 1]]`, in their order in the mesh.
+    starts: Vec<u32>,
+    bins: Vec<u32>,
+}
+
+/// A vertex in the picture.
+#[derive(Clone, Copy)]
+struct Corner {
+    /// In fractions of a pixel, with the key; `None` if it is beyond what can be drawn.
+    drawn: Option<(i32, i32, f64)>,
+    /// Relative to the eye.
+    relative: DVec3,
+}
+
+impl RasterView {
+    /// The layers of a solid's mesh, seen in this view.
+    ///
+    /// Uses the rayon pool of the caller ([`Run::install`](crate::Run::install) chooses one).
+    #[must_use]
+    pub fn layers<'a>(&self, mesh: ClosedMesh<'a>) -> MeshLayers<'a> {
+        MeshLayers::new(mesh.mesh(), self, true)
+    }
+
+    /// The layers of any mesh, also of an open one. They can be drawn
+    /// ([`Buffers::draw`](super::Buffers::draw)), but not be joined with others.
+    #[must_use]
+    pub fn surface<'a>(&self, mesh: &'a Mesh) -> MeshLayers<'a> {
+        MeshLayers::new(mesh, self, false)
+    }
+}
+
+impl<'a> MeshLayers<'a> {
+    fn new(mesh: &'a Mesh, view: &RasterView, is_closed: bool) -> MeshLayers<'a> {
+        let corner = |p: &glam::Vec3| {
+            let relative = view.relative(p.as_dvec3());
+            let is_whole = (0..RasterView::BOUNDS).all(|bound| view.clearance(bound, relative) > 0.0);
+            Corner { drawn: is_whole.then(|| snapped(view, relative)), relative }
+        };
+        let corners: Vec<Corner> = mesh.positions().par_iter().with_min_len(CHUNK).map(corner).collect();
+        let parts: Vec<(Vec<Triangle>, bool)> = mesh
+            .triangles()
+            .par_chunks(CHUNK)
+            .enumerate()
+            .map(|(chunk, triangles)| {
+                let mut part = (Vec::with_capacity(triangles.len()), false);
+                for (i, t) in triangles.iter().enumerate() {
+                    let face = (chunk * CHUNK + i) as u32;
+                    part.1 |= prepare(view, t.map(|v| corners[v as usize]), face, &mut part.0);
+                }
+                part
+            })
+            .collect();
+        let is_cut = parts.iter().any(|part| part.1);
+        let triangles = parts.into_iter().flat_map(|part| part.0).collect();
+        let mut layers =
+            MeshLayers { mesh, view: *view, is_closed, is_cut, triangles, starts: Vec::new(), bins: Vec::new() };
+        layers.sort_into_tiles();
+        layers
+    }
+
+    /// A counting sort, which keeps the order.
+    fn sort_into_tiles(&mut self) {
+        let [across, down] = Tile::grid(self.view.width, self.view.height);
+        let fraction = self.view.fraction;
+        let mut starts = vec![0u32; (across * down) as usize + 1];
+        for triangle in &self.triangles {
+            for tile in tiles(triangle, fraction, across, down) {
+                starts[tile as usize + 1] += 1;
+            }
+        }
+        for tile in 1..starts.len() {
+            starts[tile] += starts[tile - 1];
+        }
+        let mut free = starts.clone();
+        let mut bins = vec![0; starts[starts.len() - 1] as usize];
+        for (number, triangle) in self.triangles.iter().enumerate() {
+            for tile in tiles(triangle, fraction, across, down) {
+                let slot = &mut free[tile as usize];
+                bins[*slot as usize] = number as u32;
+                *slot += 1;
+            }
+        }
+        (self.starts, self.bins) = (starts, bins);
+    }
+
+    /// The mesh.
+    #[must_use]
+    pub fn mesh(&self) -> &'a Mesh {
+        self.mesh
+    }
+
+    /// Every level gives the same to the bit: no operation rounds less on some.
+    #[inline(always)]
+    fn draw<S: Simd, const PERSPECTIVE: bool>(&self, simd: S, tile: &Tile, sink: &mut dyn FnMut(&[Fragments])) {
+        let mut batch = Batch::new();
+        for &number in self.bin(tile) {
+            self.triangles[number as usize].draw::<S, PERSPECTIVE>(simd, tile, self.view.fraction, &mut batch, sink);
+        }
+        batch.flush(sink);
+    }
+
+    fn bin(&self, tile: &Tile) -> &[u32] {
+        let [across, _] = Tile::grid(self.view.width, self.view.height);
+        let number = (tile.y / Tile::SIDE * across + tile.x / Tile::SIDE) as usize;
+        &self.bins[self.starts[number] as usize..self.starts[number + 1] as usize]
+    }
+}
+
+impl LayerSource for MeshLayers<'_> {
+    fn size(&self) -> [u32; 2] {
+        [self.view.width, self.view.height]
+    }
+
+    fn layers(&self, tile: &Tile, sink: &mut dyn FnMut(&[Fragments])) {
+        let level = Level::new();
+        if self.view.parallel {
+            dispatch!(level, simd => self.draw::<_, false>(simd, tile, sink));
+        } else {
+            dispatch!(level, simd => self.draw::<_, true>(simd, tile, sink));
+        }
+    }
+
+    fn touches(&self, tile: &Tile) -> bool {
+        !self.bin(tile).is_empty()
+    }
+
+    fn normal(&self, face: u32, point: DVec3) -> DVec3 {
+        normal(self.mesh, face, point)
+    }
+
+    fn is_closed(&self) -> bool {
+        self.is_closed
+    }
+
+    fn is_cut(&self) -> bool {
+        self.is_cut
+    }
+}
+
+/// The numbers of the tiles that a triangle may touch.
+fn tiles(triangle: &Triangle, fraction: u32, across: u32, down: u32) -> impl Iterator<Item = u32> {
+    let side = Tile::SIDE as i32;
+    let [left, right, top, bottom] = triangle.pixels(fraction);
+    let within = |pixel: i32, count: u32| pixel.div_euclid(side).clamp(-1, count as i32);
+    let columns = within(left, across).max(0)..=within(right, across).min(across as i32 - 1);
+    let rows = within(top, down).max(0)..=within(bottom, down).min(down as i32 - 1);
+    let is_empty = left > right;
+    rows.filter(move |_| !is_empty)
+        .flat_map(move |row| columns.clone().map(move |column| row as u32 * across + column as u32))
+}
+
+fn snapped(view: &RasterView, relative: DVec3) -> (i32, i32, f64) {
+    let [x, y, z] = view.picture(relative);
+    let one = f64::from(1u32 << view.fraction);
+    // Within the guard: the conversions are exact.
+    ((x * one).round() as i32, (y * one).round() as i32, view.key(z))
+}
+
+/// Adds a triangle, or what is left of it within the bounds of what can be drawn. Whether the
+/// near plane cut it.
+fn prepare(view: &RasterView, corners: [Corner; 3], face: u32, out: &mut Vec<Triangle>) -> bool {
+    let mut add = |corners: [(i32, i32, f64); 3]| {
+        if let Some(triangle) = Triangle::new(corners, face) {
+            let [left, right, top, bottom] = triangle.pixels(view.fraction);
+            let (width, height) = (view.width as i32, view.height as i32);
+            if left <= right && top <= bottom && left < width && right >= 0 && top < height && bottom >= 0 {
+                out.push(triangle);
+            }
+        }
+    };
+    if let [Some(a), Some(b), Some(c)] = corners.map(|c| c.drawn) {
+        add([a, b, c]);
+        return false;
+    }
+    let relative = corners.map(|c| c.relative);
+    let is_cut = relative.iter().any(|&q| view.clearance(0, q) <= 0.0);
+    let mut polygon = relative.to_vec();
+    for bound in 0..RasterView::BOUNDS {
+        polygon = cut(&polygon, |q| view.clearance(bound, q));
+    }
+    // A fan from the first corner.
+    let drawn: Vec<_> = polygon.into_iter().map(|q| held(view, q)).collect();
+    for i in 2..drawn.len() {
+        add([drawn[0], drawn[i - 1], drawn[i]]);
+    }
+    is_cut
+}
+
+/// A point that rounding may have put a little beyond the guard.
+fn held(view: &RasterView, relative: DVec3) -> (i32, i32, f64) {
+    let (x, y, key) = snapped(view, relative);
+    let most = (view.guard as i32 + 1) << view.fraction;
+    (x.clamp(-most, most), y.clamp(-most, most), key)
+}
+
+/// What is left of a polygon on the side of a plane where `clearance` is above 0 (I. E.
+/// Sutherland and G. W. Hodgman, 1974). An edge is cut at the same point whichever way it runs,
+/// so neighbours stay neighbours.
+fn cut(polygon: &[DVec3], clearance: impl Fn(DVec3) -> f64) -> Vec<DVec3> {
+    let mut kept = Vec::with_capacity(polygon.len() + 1);
+    for (i, &b) in polygon.iter().enumerate() {
+        let a = polygon[(i + polygon.len() - 1) % polygon.len()];
+        let (at_a, at_b) = (clearance(a), clearance(b));
+        if (at_a > 0.0) != (at_b > 0.0) {
+            // From the inner end to the outer one.
+            let (inner, outer, at_inner, at_outer) = if at_a > 0.0 { (a, b, at_a, at_b) } else { (b, a, at_b, at_a) };
+            kept.push(inner + (outer - inner) * (at_inner / (at_inner - at_outer)));
+        }
+        if at_b > 0.0 {
+            kept.push(b);
+        }
+    }
+    kept
+}

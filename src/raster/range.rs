@@ -1,0 +1,40 @@
+//! Depth buffers as range images.
+
+use super::buffers::Buffers;
+use super::error::RasterError;
+use crate::{Image, RangeImage};
+
+impl Buffers {
+    /// The depth buffer as a range image, of the same kind as those that rays make: depths along
+    /// the view, with the camera's intrinsics and pose. From it come points, of the camera's or
+    /// of the world's coordinates, and the noise of a range finder.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use rvachev::{
+    ///     Buffers, Camera, ClosedMesh, Coordinates, Facing, Noise, PatchSettings, RasterView, Superellipsoid,
+    /// };
+    ///
+    /// let mesh = Superellipsoid::new([1.0, 1.0, 1.0], 1.0, 1.0).surface()?.mesh(&PatchSettings::default())?;
+    /// let camera = Camera::perspective([3.0, -4.0, 2.0], DVec3::ZERO, DVec3::Z, 30.0);
+    /// let view = RasterView::new(&camera, 64, 48)?;
+    /// let mut buffers = Buffers::new(&view);
+    /// buffers.draw(&view.layers(ClosedMesh::new(&mesh)?), 0, Facing::Front)?;
+    /// let noisy = buffers.range_image()?.with_noise(&Noise { deviation: 0.002, missing: 0.1, seed: 7 })?;
+    /// let cloud = noisy.points(Coordinates::World)?;
+    /// assert!(cloud.positions().len() > 500);
+    /// assert!(cloud.positions().iter().all(|p| (p.length() - 1.0).abs() < 0.02));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`RasterError::Range`] for a camera whose numbers are too extreme for intrinsics.
+    pub fn range_image(&self) -> Result<RangeImage, RasterError> {
+        let view = self.view();
+        let (width, height) = (view.width(), view.height());
+        let depth = Image::new(width, height, self.depths())?;
+        let camera = view.camera();
+        Ok(RangeImage::new(depth, camera.intrinsics(width, height), camera.pose())?)
+    }
+}

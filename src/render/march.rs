@@ -1,0 +1,672 @@
+//! Many rays through one cell, in bulk.
+//!
+//! Every ray comes with the sign that the value has where the ray enters: it has not crossed the
+//! surface before. With `g` the value turned so that it is negative there,
+//!
+//! ```text
+//!      g                    .--   a crossing for certain if g > 0 at the far end; the only one
+//!      |                 .-'      if g rises all along the ray, or bends one way only
+//!    --+---------------.'------   a miss for certain if g < 0 there and g rises or falls all
+//!      | near      .--'    far    along, or bends upwards, or tangents from both ends meet
+//!      |  ___...--'               below 0, or the bounds on the slope do
+//! ```
+//!
+//! Where g bends downwards, Newton's method from the near end never passes a crossing, and what
+//! takes it long is bounded by the tangents from both ends. Else what the far end leaves open is
+//! looked at from the near end in steps as long as the bounds on the slope allow. A bracketed Newton iteration in
+//! single precision and one step in double precision find the crossing. Signs of values within
+//! the rounding error of single precision are looked up in double precision; a ray that takes too
+//! many steps is divided by intervals (`eval::first_hit`).
+
+use glam::{DVec3, Vec3};
+
+use super::cells::{Cell, Cells};
+use super::gbuffer::Surface;
+use crate::eval::{Bend, Evaluator, Gradients, Tape, first_hit};
+use crate::{Bounds, Interval};
+
+/// A ray under way.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ray {
+    /// Where it enters the box of all cells, or its own origin in there.
+    pub(super) origin: DVec3,
+    pub(super) direction: DVec3,
+    pub(super) inverse: DVec3,
+    /// How far `origin` is from the ray's own.
+    pub(super) base: f64,
+    /// Whether it starts inside the solid.
+    pub(super) inside: bool,
+}
+
+/// The part of a ray in the cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Span {
+    pub(super) ray: u32,
+    pub(super) near: f64,
+    pub(super) far: f64,
+}
+
+/// A ray in the cell, in single precision relative to the tape's origin, distances from the
+/// span's near end.
+#[derive(Clone, Copy)]
+struct Lane {
+    /// The number of its span.
+    span: u32,
+    start: [f32; 3],
+    direction: [f32; 3],
+    /// Turns the value into g.
+    turn: f32,
+    /// Nothing is crossed before `left`; `right` is the far end or, if g is positive there,
+    /// beyond a crossing.
+    left: f32,
+    right: f32,
+    /// g and its slope at `left` and `right`, where they are known.
+    g_left: f32,
+    s_left: f32,
+    g_right: f32,
+    s_right: f32,
+    /// Where it is evaluated next.
+    at: f32,
+    /// Whether that is a probe beyond `left`.
+    probe: bool,
+}
+
+/// What the field is like where a lane is.
+#[derive(Clone, Copy)]
+struct Local {
+    /// The value, turned, and its slope along the ray.
+    g: f32,
+    s: f32,
+    /// The gradient of the value.
+    gradient: Vec3,
+}
+
+/// A crossing found in single precision.
+#[derive(Clone, Copy)]
+struct Found {
+    lane: Lane,
+    slope: f32,
+    gradient: Vec3,
+}
+
+/// Steps of the searches, after which rays are divided by intervals.
+const TANGENTS: usize = 8;
+const SEARCH: usize = 40;
+const NEWTON: usize = 16;
+
+/// Steps of a single ray in double precision.
+const ROUNDS: usize = 48;
+
+/// Fewer lanes than this are better off one by one: bulk evaluation costs as much for one as for
+/// a chunk of them.
+const FEW: usize = 5;
+
+/// After as many steps of a search.
+const SETTLED: usize = 10;
+
+/// A Newton step below this part of the cell's side is the last one in single precision.
+const LAST_STEP: f32 = 3e-4;
+
+/// Slopes in single precision are trusted to this part.
+const SLOPE_ERROR: f32 = 1e-3;
+
+/// Depths this exact, in proportion to the solid, need no step in double precision.
+const FINE: f64 = 6e-6;
+
+/// Crossings nearer to each other than this, in proportion to the solid, are one.
+const CLOSE: f64 = 4e-5;
+
+/// Scratch memory of a thread.
+#[derive(Default)]
+pub(super) struct Marcher {
+    evaluator: Evaluator,
+    single: [Vec<f32>; 7],
+    double: [Vec<f64>; 4],
+    near: Vec<Lane>,
+    far: Vec<Lane>,
+    search: Vec<Lane>,
+    unique: Vec<Lane>,
+    found: Vec<Found>,
+    open: Vec<Span>,
+    /// The rays that hit something in the last march.
+    pub(super) hits: Vec<u32>,
+}
+
+impl Marcher {
+    /// Marches the spans' rays through `cell`; what they hit goes to `surfaces`, by ray.
+    pub(super) fn march(&mut self, cells: &Cells, cell: &Cell, rays: &[Ray], spans: &[Span], surfaces: &mut [Surface]) {
+        self.hits.clear();
+        self.open.clear();
+        self.found.clear();
+        let job = Job::new(cells, cell, rays, spans);
+        self.load(&job);
+        self.near_ends(&job);
+        self.far_ends(&job);
+        if cell.bend.is_some() {
+            self.search_bent(&job);
+        } else {
+            self.search_steep(&job);
+        }
+        self.newton(&job);
+        self.finish(&job, surfaces);
+        for &Span { ray, near, far } in &self.open {
+            let Ray { origin, direction, base, .. } = rays[ray as usize];
+            let first = |near, far| first_hit(&cell.program, &job.reach, origin, direction, near, far);
+            let hit = match job.tangents(ray, near, far) {
+                Outcome::Miss => continue,
+                Outcome::Between(before, after) => first(before, after).or_else(|| first(near, far)),
+                Outcome::Open => first(near, far),
+            };
+            if let Some(hit) = hit {
+                surfaces[ray as usize] =
+                    Surface { distance: base + hit.distance, normal: hit.normal.as_vec3(), owner: hit.owner };
+                self.hits.push(ray);
+            }
+        }
+    }
+
+    /// The lanes of the spans: those along which g bends downwards start at the near end.
+    fn load(&mut self, job: &Job<'_>) {
+        self.near.clear();
+        self.far.clear();
+        self.search.clear();
+        self.unique.clear();
+        for (number, span) in (0..).zip(job.spans) {
+            let ray = &job.rays[span.ray as usize];
+            let start = ray.origin + span.near * ray.direction - job.center;
+            let len = (span.far - span.near) as f32;
+            let mut lane = Lane {
+                span: number,
+                start: start.as_vec3().to_array(),
+                direction: ray.direction.as_vec3().to_array(),
+                turn: if ray.inside { -1.0 } else { 1.0 },
+                left: 0.0,
+                right: len,
+                g_left: f32::NAN,
+                s_left: 0.0,
+                g_right: 0.0,
+                s_right: 0.0,
+                at: 0.0,
+                probe: false,
+            };
+            if job.bends(&lane) == Some(Bend::Concave) {
+                self.near.push(lane);
+            } else {
+                lane.at = len;
+                self.far.push(lane);
+            }
+        }
+    }
+
+    /// Evaluates lanes at `at`.
+    fn evaluate(&mut self, job: &Job<'_>, lanes: &[Lane]) {
+        let count = lanes.len();
+        for list in &mut self.single {
+            if list.len() < count {
+                list.resize(count, 0.0);
+            }
+        }
+        let [x, y, z, value, dx, dy, dz] = self.single.each_mut().map(|list| &mut list[..count]);
+        for (((lane, x), y), z) in lanes.iter().zip(&mut *x).zip(&mut *y).zip(&mut *z) {
+            *x = lane.start[0] + lane.at * lane.direction[0];
+            *y = lane.start[1] + lane.at * lane.direction[1];
+            *z = lane.start[2] + lane.at * lane.direction[2];
+        }
+        self.evaluator.gradients(job.tape, x, y, z, Gradients { value, dx, dy, dz });
+    }
+
+    /// Evaluates lanes at `at` and calls `visit` with each; those for which it gives `true` stay,
+    /// in their order.
+    fn sift(
+        &mut self,
+        job: &Job<'_>,
+        lanes: &mut Vec<Lane>,
+        mut visit: impl FnMut(&mut Lists<'_>, &mut Lane, Local) -> bool,
+    ) {
+        self.evaluate(job, lanes);
+        let count = lanes.len();
+        let [_, _, _, value, dx, dy, dz] = self.single.each_ref().map(|list| &list[..count]);
+        let mut lists =
+            Lists { search: &mut self.search, unique: &mut self.unique, found: &mut self.found, open: &mut self.open };
+        let mut kept = 0;
+        for i in 0..count {
+            let mut lane = lanes[i];
+            let gradient = Vec3::new(dx[i], dy[i], dz[i]);
+            let slope = gradient.dot(Vec3::from_array(lane.direction));
+            let local = Local { g: lane.turn * value[i], s: lane.turn * slope, gradient };
+            if visit(&mut lists, &mut lane, local) {
+                lanes[kept] = lane;
+                kept += 1;
+            }
+        }
+        lanes.truncate(kept);
+    }
+
+    /// Lanes along which g bends downwards, from the near end: a step of Newton's never passes
+    /// the first crossing, and where the tangent does not meet 0 there is none.
+    fn near_ends(&mut self, job: &Job<'_>) {
+        let mut lanes = std::mem::take(&mut self.near);
+        for round in 0..TANGENTS {
+            if lanes.is_empty() || (round > 0 && lanes.len() < FEW) {
+                break;
+            }
+            self.sift(job, &mut lanes, |lists, lane, Local { g, s, gradient }| {
+                if g > job.doubt {
+                    if lane.at > 0.0 {
+                        (lane.right, lane.g_right, lane.s_right) = (lane.at, g, s);
+                        lane.aim(lane.at - g / s);
+                        lists.unique.push(*lane);
+                    } else {
+                        // The ray has crossed already, at the border to this cell.
+                        lists.open.push(job.span(lane));
+                    }
+                    return false;
+                }
+                let rise = s + SLOPE_ERROR * s.abs() + 1e-6;
+                let ahead = lane.right - lane.at;
+                if g + job.doubt + rise * ahead <= 0.0 {
+                    return false;
+                }
+                let step = -g / s;
+                if s > 0.0 && step.abs() <= job.last_step {
+                    if job.doubt > job.close * s {
+                        lists.open.push(job.span(lane));
+                        return false;
+                    }
+                    lane.at += step;
+                    lists.found.push(Found { lane: *lane, slope: s, gradient });
+                    return false;
+                }
+                (lane.left, lane.g_left, lane.s_left) = (lane.at, g, s);
+                if !(step > 0.0 && step < ahead) {
+                    // Nearly level: the far end tells more.
+                    lane.at = lane.right;
+                    lists.search.push(*lane);
+                    return false;
+                }
+                lane.at += step;
+                true
+            });
+        }
+        for lane in &mut lanes {
+            lane.at = lane.right;
+        }
+        self.search.append(&mut lanes);
+        if self.search.len() < FEW {
+            self.open.extend(self.search.drain(..).map(|lane| job.span(&lane)));
+        }
+        self.near = lanes;
+    }
+
+    /// Sorts the other lanes by what their far ends tell.
+    fn far_ends(&mut self, job: &Job<'_>) {
+        let mut lanes = std::mem::take(&mut self.far);
+        if lanes.is_empty() {
+            self.far = lanes;
+            return;
+        }
+        self.sift(job, &mut lanes, |lists, lane, Local { mut g, s, .. }| {
+            if g.abs() <= job.doubt {
+                let Span { ray, far, .. } = job.span(lane);
+                let crossed = (job.value(ray, far) > 0.0) != (lane.turn < 0.0);
+                g = if crossed { f32::MIN_POSITIVE } else { -f32::MIN_POSITIVE };
+            }
+            (lane.g_right, lane.s_right) = (g, s);
+            let (lo, hi) = job.slopes(lane);
+            let one = lo >= 0.0 || job.bend.is_some();
+            if g > 0.0 && one {
+                lane.aim(lane.right - g / s);
+                lists.unique.push(*lane);
+            } else if g > 0.0 || !(one || hi <= 0.0) {
+                lane.at = 0.0;
+                lists.search.push(*lane);
+            }
+            false
+        });
+        self.far = lanes;
+    }
+
+    /// Lanes along which g bends downwards and that are still below 0: where the tangents from
+    /// both ends meet, g is below them.
+    fn search_bent(&mut self, job: &Job<'_>) {
+        let mut lanes = std::mem::take(&mut self.search);
+        for round in 0..TANGENTS {
+            if lanes.is_empty() || (round > 0 && lanes.len() < FEW) {
+                break;
+            }
+            self.sift(job, &mut lanes, |lists, lane, Local { g, s, .. }| {
+                if g > job.doubt {
+                    (lane.right, lane.g_right, lane.s_right) = (lane.at, g, s);
+                    lane.aim(lane.at - g / s);
+                    lists.unique.push(*lane);
+                    return false;
+                }
+                if g >= -job.doubt {
+                    lists.open.push(job.span(lane));
+                    return false;
+                }
+                if s > 0.0 {
+                    if round == 0 {
+                        // It still rises at the far end.
+                        return false;
+                    }
+                    (lane.left, lane.g_left, lane.s_left) = (lane.at, g, s);
+                } else {
+                    (lane.right, lane.g_right, lane.s_right) = (lane.at, g, s);
+                }
+                let steep = |s: f32| s + SLOPE_ERROR * s.abs() + 1e-6;
+                let (up, down) = (steep(lane.s_left), steep(-lane.s_right));
+                let width = lane.right - lane.left;
+                if up <= 0.0 || down <= 0.0 {
+                    return false;
+                }
+                let ahead = ((lane.g_right - lane.g_left + down * width) / (up + down)).clamp(0.0, width);
+                if lane.g_left + up * ahead < -job.doubt {
+                    return false;
+                }
+                if !(ahead > 1e-6 * width && ahead < width * (1.0 - 1e-6)) {
+                    lists.open.push(job.span(lane));
+                    return false;
+                }
+                lane.at = lane.left + ahead;
+                true
+            });
+        }
+        self.open.extend(lanes.iter().map(|lane| job.span(lane)));
+        lanes.clear();
+        self.search = lanes;
+    }
+
+    /// Lanes along which only bounds of the slope are known: steps that cannot pass a crossing.
+    fn search_steep(&mut self, job: &Job<'_>) {
+        let mut lanes = std::mem::take(&mut self.search);
+        for round in 0..SEARCH {
+            if lanes.is_empty() || (round >= SETTLED && lanes.len() < FEW) {
+                break;
+            }
+            self.sift(job, &mut lanes, |lists, lane, Local { g, s, .. }| {
+                if lane.probe {
+                    lane.probe = false;
+                    if g > job.doubt {
+                        (lane.right, lane.g_right, lane.s_right) = (lane.at, g, s);
+                        lane.aim(lane.at - g / s);
+                        lists.unique.push(*lane);
+                        return false;
+                    }
+                    lane.at = lane.left;
+                    return true;
+                }
+                let (lo, hi) = job.slopes(lane);
+                let safe = lane.at + (-g - job.doubt) / hi;
+                if !(g < -job.doubt && hi.is_finite() && safe > lane.at) {
+                    lists.open.push(job.rest(lane));
+                    return false;
+                }
+                let mut end = lane.right;
+                if lane.g_right < 0.0 {
+                    end -= (-lane.g_right - job.doubt).max(0.0) / -lo;
+                }
+                if safe >= end {
+                    if lane.g_right > 0.0 {
+                        lists.open.push(job.rest(lane));
+                    }
+                    return false;
+                }
+                // A little beyond where the tangent meets 0, if no crossing that is nearer makes
+                // a difference.
+                let beyond = lane.at + (-1.05 * g + 4.0 * job.doubt) / s;
+                lane.left = safe;
+                lane.probe = s > 0.0 && beyond > safe && beyond < lane.right && beyond - safe <= job.close;
+                lane.at = if lane.probe { beyond } else { safe };
+                true
+            });
+        }
+        self.open.extend(lanes.iter().map(|lane| job.rest(lane)));
+        lanes.clear();
+        self.search = lanes;
+    }
+
+    /// The crossings between `left` and `right`, where g changes its sign: Newton's method,
+    /// halving where it leaves the bracket.
+    fn newton(&mut self, job: &Job<'_>) {
+        let mut lanes = std::mem::take(&mut self.unique);
+        for round in 0..NEWTON {
+            if lanes.is_empty() || (round >= SETTLED && lanes.len() < FEW) {
+                break;
+            }
+            self.sift(job, &mut lanes, |lists, lane, Local { g, s, gradient }| {
+                if g < 0.0 {
+                    lane.left = lane.left.max(lane.at);
+                } else {
+                    lane.right = lane.right.min(lane.at);
+                }
+                let next = lane.at - g / s;
+                if s > 0.0 && (next - lane.at).abs() <= job.last_step {
+                    lane.at = next;
+                    lists.found.push(Found { lane: *lane, slope: s, gradient });
+                    return false;
+                }
+                if g.abs() <= job.doubt {
+                    lists.open.push(job.span(lane));
+                    return false;
+                }
+                lane.aim(next);
+                true
+            });
+        }
+        self.open.extend(lanes.iter().map(|lane| job.span(lane)));
+        lanes.clear();
+        self.unique = lanes;
+    }
+
+    /// The surfaces of the crossings, after one step in double precision where the rounding of
+    /// single precision would show.
+    fn finish(&mut self, job: &Job<'_>, surfaces: &mut [Surface]) {
+        let mut coarse = 0;
+        for at in 0..self.found.len() {
+            let found = self.found[at];
+            if job.doubt <= job.fine * found.slope {
+                self.surface(job, &found, 0.0, surfaces);
+            } else {
+                self.found[coarse] = found;
+                coarse += 1;
+            }
+        }
+        self.found.truncate(coarse);
+        if coarse == 0 {
+            return;
+        }
+        let [x, y, z, v] = &mut self.double;
+        for list in [&mut *x, &mut *y, &mut *z] {
+            list.clear();
+        }
+        for found in &self.found {
+            let p = job.point(&found.lane) - job.center;
+            x.push(p.x);
+            y.push(p.y);
+            z.push(p.z);
+        }
+        v.resize(coarse, 0.0);
+        self.evaluator.values_f64(job.tape, x, y, z, v);
+        for at in 0..coarse {
+            let found = self.found[at];
+            let step = -f64::from(found.lane.turn) * self.double[3][at] / f64::from(found.slope);
+            if step.abs() <= job.far_off {
+                self.surface(job, &found, step, surfaces);
+            } else {
+                self.open.push(job.span(&found.lane));
+            }
+        }
+    }
+
+    fn surface(&mut self, job: &Job<'_>, found: &Found, step: f64, surfaces: &mut [Surface]) {
+        let Span { ray, near, far } = job.span(&found.lane);
+        let Ray { origin, direction, base, .. } = job.rays[ray as usize];
+        let t = (near + f64::from(found.lane.at) + step).clamp(near, far);
+        let normal = -found.gradient * found.gradient.length_recip();
+        if !normal.is_finite() {
+            self.open.push(job.span(&found.lane));
+            return;
+        }
+        let owner = job.owner.unwrap_or_else(|| job.cell.program.deciding_leaf(origin + t * direction));
+        surfaces[ray as usize] = Surface { distance: base + t, normal, owner };
+        self.hits.push(ray);
+    }
+}
+
+/// What the tangents tell.
+enum Outcome {
+    Miss,
+    /// A crossing, and no other, between these distances.
+    Between(f64, f64),
+    Open,
+}
+
+/// Where lanes go from a step.
+struct Lists<'a> {
+    search: &'a mut Vec<Lane>,
+    unique: &'a mut Vec<Lane>,
+    found: &'a mut Vec<Found>,
+    open: &'a mut Vec<Span>,
+}
+
+impl Lane {
+    /// Goes to `next`, or to the middle of the bracket if that is not in it.
+    #[inline(always)]
+    fn aim(&mut self, next: f32) {
+        let within = next > self.left && next < self.right;
+        self.at = if within { next } else { 0.5 * (self.left + self.right) };
+    }
+}
+
+/// What a march knows of its cell.
+struct Job<'a> {
+    cell: &'a Cell,
+    rays: &'a [Ray],
+    spans: &'a [Span],
+    tape: &'a Tape,
+    center: DVec3,
+    reach: Bounds,
+    bend: Option<Bend>,
+    owner: Option<u32>,
+    /// Lower and upper bounds of the three derivatives, rounding allowed for.
+    least: [f32; 3],
+    most: [f32; 3],
+    /// Values this small may have the wrong sign.
+    doubt: f32,
+    last_step: f32,
+    close: f32,
+    fine: f32,
+    far_off: f64,
+    size: f64,
+}
+
+impl<'a> Job<'a> {
+    fn new(cells: &Cells, cell: &'a Cell, rays: &'a [Ray], spans: &'a [Span]) -> Job<'a> {
+        let tape = cell.tape();
+        // How a value bends tells more.
+        let slopes = if cell.bend.is_some() { &[Interval::ALL; 3] } else { cell.slopes() };
+        let reach = cells.reach();
+        let size = reach.longest_side();
+        let outward = |v: f64, by: f64| (v + by * (1e-6 * v.abs() + 1e-12)) as f32;
+        Job {
+            cell,
+            rays,
+            spans,
+            tape,
+            center: tape.origin(),
+            reach,
+            bend: cell.bend,
+            owner: cell.program.only_leaf(),
+            least: slopes.map(|s| outward(s.lo(), -1.0)),
+            most: slopes.map(|s| outward(s.hi(), 1.0)),
+            doubt: tape.roundoff() as f32,
+            last_step: LAST_STEP * cell.side() as f32,
+            close: (CLOSE * size) as f32,
+            fine: (FINE * size) as f32,
+            far_off: (1e-3 * cell.side()).min(1e-4 * size),
+            size,
+        }
+    }
+
+    /// The value in double precision.
+    fn value(&self, ray: u32, t: f64) -> f64 {
+        let Ray { origin, direction, .. } = self.rays[ray as usize];
+        self.cell.program.value(origin + t * direction)
+    }
+
+    /// The point where the lane is.
+    fn point(&self, lane: &Lane) -> DVec3 {
+        let Span { ray, near, .. } = self.spans[lane.span as usize];
+        let Ray { origin, direction, .. } = self.rays[ray as usize];
+        origin + (near + f64::from(lane.at)) * direction
+    }
+
+    /// Bounds of the slope of g along the ray.
+    fn slopes(&self, lane: &Lane) -> (f32, f32) {
+        let (mut lo, mut hi) = (0.0, 0.0);
+        for axis in 0..3 {
+            let d = lane.direction[axis];
+            if d != 0.0 {
+                let (a, b) = (self.least[axis] * d, self.most[axis] * d);
+                lo += a.min(b);
+                hi += a.max(b);
+            }
+        }
+        if lane.turn < 0.0 { (-hi, -lo) } else { (lo, hi) }
+    }
+
+    /// How g bends along the ray.
+    fn bends(&self, lane: &Lane) -> Option<Bend> {
+        self.bend.map(|bend| if lane.turn < 0.0 { bend.turned() } else { bend })
+    }
+
+    /// A ray along which g bends downwards, in double precision: by Newton's method from the near
+    /// end, which never passes the first crossing.
+    fn tangents(&self, ray: u32, near: f64, far: f64) -> Outcome {
+        let Ray { origin, direction, inside, .. } = self.rays[ray as usize];
+        let (turn, wanted) = if inside { (-1.0, Bend::Convex) } else { (1.0, Bend::Concave) };
+        if self.bend != Some(wanted) {
+            return Outcome::Open;
+        }
+        let at = |t: f64| {
+            let (value, gradient) = self.cell.program.gradient(origin + t * direction);
+            (turn * value, turn * gradient.dot(direction))
+        };
+        let mut t = near;
+        for _ in 0..ROUNDS {
+            let (g, s) = at(t);
+            if g >= 0.0 {
+                // Rounding has put it a hair beyond.
+                let before = (t - 1e-6 * self.size).max(near);
+                let after = (t + 1e-8 * self.size).min(far);
+                return if at(before).0 < 0.0 { Outcome::Between(before, after) } else { Outcome::Open };
+            }
+            let next = t - g / s;
+            if s <= 0.0 || next > far {
+                return Outcome::Miss;
+            }
+            if next - t <= 1e-9 * self.size {
+                let (before, after) = ((t - 1e-8 * self.size).max(near), (next + 1e-8 * self.size).min(far));
+                if at(after).0 > 0.0 {
+                    return Outcome::Between(before, after);
+                }
+            }
+            if next <= t {
+                return Outcome::Open;
+            }
+            t = next;
+        }
+        Outcome::Open
+    }
+
+    fn span(&self, lane: &Lane) -> Span {
+        self.spans[lane.span as usize]
+    }
+
+    /// What of the lane's span nothing is known of.
+    fn rest(&self, lane: &Lane) -> Span {
+        let span = self.span(lane);
+        Span { near: span.near + f64::from(lane.left), ..span }
+    }
+}

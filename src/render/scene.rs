@@ -1,0 +1,194 @@
+//! A solid prepared for rays, once for any number of cameras.
+
+use std::cell::RefCell;
+
+use glam::DVec3;
+use rayon::prelude::*;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use super::cells::Cells;
+use super::extent::{corners, lowest};
+use super::gbuffer::{GBuffer, Surface, Window};
+use super::settings::RenderError;
+use super::tile::{TILE, Tracer, View};
+use crate::eval::{Program, compiled};
+use crate::{Bounds, Cancelled, Hit, Palette, Rays, Run, Solid};
+
+/// How far a ray from a hit starts off the surface, in proportion to the solid.
+const HAIR: f64 = 1e-7;
+
+/// Rays of a packet.
+const PACKET: usize = 8192;
+
+thread_local! {
+    static TRACER: RefCell<Tracer> = RefCell::default();
+}
+
+/// A solid prepared for rays: the space around it divided into what is inside, what is
+/// outside and cells that the surface may cross.
+///
+/// Preparing costs more than a picture of a small solid; a scene is worth keeping where the
+/// camera moves.
+///
+/// ```
+/// use rvachev::{Camera, Solid, Window};
+///
+/// let scene = Solid::sphere(1.0).scene()?;
+/// let camera = Camera::framing(&scene.bounds());
+/// let seen = scene.surfaces(&camera.rays(64, 64), Window::whole(64, 64));
+/// assert!(seen.at(32, 32).is_hit() && !seen.at(0, 0).is_hit());
+/// # Ok::<(), rvachev::RenderError>(())
+/// ```
+pub struct Scene {
+    bounds: Bounds,
+    /// `None` if there is nothing to see.
+    cells: Option<Cells>,
+    palette: Palette,
+    program: Program,
+    /// The height of the lowest point, once somebody has asked for it.
+    lowest: OnceLock<f64>,
+}
+
+impl Solid {
+    /// The solid prepared for rays.
+    ///
+    /// # Errors
+    /// What is wrong with the solid. An unbounded one is at fault; intersect it with something
+    /// bounded.
+    pub fn scene(&self) -> Result<Scene, RenderError> {
+        self.scene_with(&Run::default())
+    }
+
+    /// [`scene`](Solid::scene) with a choice of threads, a cancel token and a progress sink.
+    ///
+    /// # Errors
+    /// What is wrong with the solid, or that the work was cancelled.
+    pub fn scene_with(&self, run: &Run) -> Result<Scene, RenderError> {
+        let bounds = self.finite_bounds()?;
+        let programs = compiled(self)?;
+        let run = run.stage(0.0, 1.0);
+        run.install(|| {
+            run.check()?;
+            // A box without extent holds nothing that could be seen.
+            let visible = !bounds.is_empty() && bounds.longest_side() > 0.0;
+            let cells = visible.then(|| Cells::new(&programs.surface, &bounds));
+            run.report(1.0);
+            let (palette, program) = (self.palette()?, programs.surface.clone());
+            Ok(Scene { bounds, cells, palette, program, lowest: OnceLock::new() })
+        })
+    }
+}
+
+impl Scene {
+    /// The solid's box.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    /// The paint of the solid's parts.
+    #[must_use]
+    pub fn palette(&self) -> &Palette {
+        &self.palette
+    }
+
+    /// The height at which the solid stands on a level ground: its lowest point, to a thousandth
+    /// of its height, or a little below.
+    #[must_use]
+    pub fn lowest(&self) -> f64 {
+        *self.lowest.get_or_init(|| lowest(&self.program, &self.bounds))
+    }
+
+    /// Points such that what holds them holds the solid.
+    pub(super) fn hull(&self) -> Vec<DVec3> {
+        corners(&self.program, &self.bounds)
+    }
+
+    /// A length that is small for the solid, and large for the rounding of its points: rays
+    /// from a hit start this far off the surface.
+    pub(super) fn hair(&self) -> f64 {
+        if self.cells.is_some() { HAIR * self.bounds.longest_side() } else { 0.0 }
+    }
+
+    /// The first crossing on the ray from `origin` along `direction`, which must be a unit
+    /// vector. From inside the solid it is where the ray leaves it.
+    #[must_use]
+    pub fn first_hit(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
+        let mut found = [Surface::NONE];
+        let cells = self.cells.as_ref()?;
+        TRACER.with_borrow_mut(|tracer| tracer.list(cells, &[(origin, direction)], &mut found));
+        let Surface { distance, normal, owner } = found[0];
+        let point = origin + distance * direction;
+        found[0].is_hit().then_some(Hit { distance, point, normal: normal.as_dvec3(), owner })
+    }
+
+    /// [`first_hit`](Scene::first_hit) along many rays, each an origin and a unit direction,
+    /// together, which is faster. Runs on the current rayon pool.
+    #[must_use]
+    pub fn first_hits(&self, rays: &[(DVec3, DVec3)]) -> Vec<Surface> {
+        let mut found = vec![Surface::NONE; rays.len()];
+        if let Some(cells) = &self.cells {
+            let packets = found.par_chunks_mut(PACKET).zip(rays.par_chunks(PACKET));
+            packets.for_each(|(found, rays)| TRACER.with_borrow_mut(|tracer| tracer.list(cells, rays, found)));
+        }
+        found
+    }
+
+    /// What the pixels of `window` see along `rays`. Runs on the current rayon pool; the
+    /// result is the same for any number of threads.
+    #[must_use]
+    pub fn surfaces(&self, rays: &Rays, window: Window) -> GBuffer {
+        // A run that nobody else holds is not cancelled.
+        self.surfaces_with(rays, window, &Run::default()).unwrap_or_else(|Cancelled| GBuffer::new(window, Vec::new()))
+    }
+
+    /// [`surfaces`](Scene::surfaces) with a choice of threads, a cancel token and a progress
+    /// sink.
+    ///
+    /// # Errors
+    /// That the work was cancelled.
+    pub fn surfaces_with(&self, rays: &Rays, window: Window, run: &Run) -> Result<GBuffer, Cancelled> {
+        let run = run.stage(0.0, 1.0);
+        run.install(|| self.trace(rays, window, &run))
+    }
+
+    fn trace(&self, rays: &Rays, window: Window, run: &Run) -> Result<GBuffer, Cancelled> {
+        let mut surfaces = vec![Surface::NONE; window.count()];
+        let Some(cells) = &self.cells else { return Ok(GBuffer::new(window, surfaces)) };
+        let view = View::new(cells, rays);
+        let (across, down) = (window.width.div_ceil(TILE), window.height.div_ceil(TILE));
+        let done = AtomicU32::new(0);
+        let bands = surfaces.par_chunks_mut((window.width * TILE).max(1) as usize).enumerate();
+        bands.try_for_each(|(band, surfaces)| {
+            let tile = |column: u32| {
+                let (x, y) = (column * TILE, band as u32 * TILE);
+                let (width, height) = (TILE.min(window.width - x), TILE.min(window.height - y));
+                Window { left: window.left + x, top: window.top + y, width, height, ..window }
+            };
+            let traced = |column: u32| {
+                run.check()?;
+                let found = TRACER.with_borrow_mut(|tracer| tracer.tile(cells, &view, tile(column)));
+                let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+                run.report(f64::from(done) / f64::from(across * down));
+                Ok(found)
+            };
+            let tiles: Result<Vec<_>, Cancelled> = (0..across).into_par_iter().map(traced).collect();
+            for (column, found) in (0..).zip(tiles?) {
+                let Window { width, .. } = tile(column);
+                let rows = surfaces.chunks_mut(window.width as usize).zip(found.chunks(width as usize));
+                for (row, found) in rows {
+                    row[(column * TILE) as usize..][..width as usize].copy_from_slice(found);
+                }
+            }
+            Ok(())
+        })?;
+        Ok(GBuffer::new(window, surfaces))
+    }
+}
+
+impl std::fmt::Debug for Scene {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Scene({:?})", self.bounds)
+    }
+}

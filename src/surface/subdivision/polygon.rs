@@ -1,0 +1,213 @@
+//! Control polygons and their limit curves.
+//!
+//! ```text
+//!     closed   every point has two neighbours; the limit curve is closed
+//!
+//!     open     p0 . . p1 ___ p2 ___ p3 . . p4     the curve runs from the limit of the second
+//!                                                 point to that of the last but one
+//!     clamped  the same with a mirrored point before and after: 2p0 − p1; the curve runs from
+//!              the first point to the last
+//! ```
+
+use glam::{DVec2, DVec3};
+
+use super::refine::{refine, stencil};
+use super::{SubdivisionError, Tension, check_levels};
+
+/// A point of the plane or of space: `DVec2` or `DVec3`.
+pub trait ControlPoint: Copy + sealed::Coordinates {}
+
+impl ControlPoint for DVec2 {}
+impl ControlPoint for DVec3 {}
+
+pub(super) mod sealed {
+    use glam::{DVec2, DVec3};
+
+    /// A point as a row of coordinates.
+    pub trait Coordinates: Sized {
+        /// A row of rows of them.
+        type Rows: Rows<Self>;
+    }
+
+    /// Rows of coordinates of one dimension.
+    pub trait Rows<P>: Clone + std::fmt::Debug + PartialEq + Default {
+        fn new(points: &[P]) -> Self;
+        fn points(&self) -> Vec<P>;
+        fn len(&self) -> usize;
+        fn bad_coordinate(&self) -> Option<(usize, f64)>;
+        fn refined(&self, closed: bool, mask: [f64; 2], to: &mut Self);
+        fn stencilled(&self, closed: bool, weights: [f64; 3]) -> Self;
+    }
+
+    impl Coordinates for DVec2 {
+        type Rows = Vec<[f64; 2]>;
+    }
+
+    impl Coordinates for DVec3 {
+        type Rows = Vec<[f64; 3]>;
+    }
+
+    impl<P: Copy + From<[f64; N]> + Into<[f64; N]>, const N: usize> Rows<P> for Vec<[f64; N]> {
+        fn new(points: &[P]) -> Self {
+            points.iter().map(|&p| p.into()).collect()
+        }
+        fn points(&self) -> Vec<P> {
+            self.iter().map(|&p| P::from(p)).collect()
+        }
+        fn len(&self) -> usize {
+            Vec::len(self)
+        }
+        fn bad_coordinate(&self) -> Option<(usize, f64)> {
+            let bad = |p: &[f64; N]| p.iter().copied().find(|c| c.is_nan() || c.abs() > super::LARGEST);
+            self.iter().enumerate().find_map(|(i, p)| bad(p).map(|c| (i, c)))
+        }
+        fn refined(&self, closed: bool, mask: [f64; 2], to: &mut Self) {
+            super::refine(self, closed, mask, to);
+        }
+        fn stencilled(&self, closed: bool, weights: [f64; 3]) -> Self {
+            super::stencil(self, closed, weights)
+        }
+    }
+}
+
+use sealed::Rows;
+
+/// Coordinates are at most this.
+const LARGEST: f64 = 1e12;
+
+/// A control polygon: points, whether it is closed, and its [`Tension`].
+///
+/// ```
+/// use glam::DVec2;
+/// use rvachev::ControlPolygon;
+///
+/// // The ellipse that touches the sides of a rectangle of 6 × 3.
+/// let ellipse = ControlPolygon::ellipse(DVec2::new(3.0, 1.5))?;
+/// for p in ellipse.limit(5)? {
+///     assert!(((p.x / 3.0).powi(2) + (p.y / 1.5).powi(2) - 1.0).abs() < 1e-14);
+/// }
+/// # Ok::<(), rvachev::SubdivisionError>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct ControlPolygon<P: ControlPoint> {
+    rows: P::Rows,
+    closed: bool,
+    tension: Tension,
+}
+
+impl<P: ControlPoint> ControlPolygon<P> {
+    /// A closed polygon of 3 points or more.
+    ///
+    /// # Errors
+    /// Fewer points, or a coordinate that is not finite or beyond 10¹².
+    pub fn closed(points: &[P], tension: Tension) -> Result<ControlPolygon<P>, SubdivisionError> {
+        ControlPolygon::new(points, true, tension, 3)
+    }
+
+    /// An open polygon of 4 points or more. Its curve runs from the limit of the second point to
+    /// that of the last but one: the ends only steer.
+    ///
+    /// # Errors
+    /// Fewer points, or a coordinate that is not finite or beyond 10¹².
+    pub fn open(points: &[P], tension: Tension) -> Result<ControlPolygon<P>, SubdivisionError> {
+        ControlPolygon::new(points, false, tension, 4)
+    }
+
+    fn new(points: &[P], closed: bool, tension: Tension, least: usize) -> Result<ControlPolygon<P>, SubdivisionError> {
+        let of = if closed { "a closed polygon" } else { "an open polygon" };
+        let rows = P::Rows::new(points);
+        if rows.len() < least {
+            return Err(SubdivisionError::TooFewPoints { of, points: points.len(), least });
+        }
+        if let Some((index, value)) = rows.bad_coordinate() {
+            return Err(SubdivisionError::Coordinate { index, value });
+        }
+        Ok(ControlPolygon { rows, closed, tension })
+    }
+
+    /// The points.
+    #[must_use]
+    pub fn points(&self) -> Vec<P> {
+        self.rows.points()
+    }
+
+    /// How many points there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whether there are no points: never.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Whether the polygon is closed.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        self.closed
+    }
+
+    /// The tension.
+    #[must_use]
+    pub fn tension(&self) -> Tension {
+        self.tension
+    }
+
+    /// The polygon after some levels of subdivision, with the tension that goes on from there. A
+    /// closed polygon doubles its points a level; an open one of n has 2n − 3 after it.
+    ///
+    /// # Errors
+    /// [`SubdivisionError::Levels`] for more than 2²⁸ points.
+    pub fn subdivided(&self, levels: u32) -> Result<ControlPolygon<P>, SubdivisionError> {
+        check_levels(self.len(), levels, 1)?;
+        let (mut rows, mut next) = (self.rows.clone(), P::Rows::default());
+        for level in 1..=levels {
+            rows.refined(self.closed, self.tension.mask(level), &mut next);
+            std::mem::swap(&mut rows, &mut next);
+        }
+        Ok(ControlPolygon { rows, closed: self.closed, tension: self.tension.at_level(levels) })
+    }
+
+    /// Where the points end up on the limit curve; of an open polygon all but the first and last.
+    #[must_use]
+    pub fn limit_points(&self) -> Vec<P> {
+        let [neighbour, own] = self.tension.limit_weights(0);
+        self.rows.stencilled(self.closed, [neighbour, own, neighbour]).points()
+    }
+
+    /// The derivatives of the limit curve at the limit points, per radian of the tension's step
+    /// (per control interval for the cubic one).
+    #[must_use]
+    pub fn limit_tangents(&self) -> Vec<P> {
+        let weight = self.tension.tangent_weight(0);
+        self.rows.stencilled(self.closed, [-weight, 0.0, weight]).points()
+    }
+
+    /// Points of the limit curve after some levels: [`subdivided`](Self::subdivided), then
+    /// [`limit_points`](Self::limit_points).
+    ///
+    /// # Errors
+    /// [`SubdivisionError::Levels`] for more than 2²⁸ points.
+    pub fn limit(&self, levels: u32) -> Result<Vec<P>, SubdivisionError> {
+        Ok(self.subdivided(levels)?.limit_points())
+    }
+}
+
+impl<P: ControlPoint + std::ops::Sub<Output = P> + std::ops::Add<Output = P>> ControlPolygon<P> {
+    /// An open polygon of 2 points or more, whose curve runs from the first to the last of them.
+    ///
+    /// # Errors
+    /// Fewer points, or a coordinate that is not finite or beyond 10¹².
+    pub fn clamped(points: &[P], tension: Tension) -> Result<ControlPolygon<P>, SubdivisionError> {
+        let of = "a clamped polygon";
+        let (&[first, second, ..], &[.., before, last]) = (points, points) else {
+            return Err(SubdivisionError::TooFewPoints { of, points: points.len(), least: 2 });
+        };
+        let mut extended = vec![first + first - second];
+        extended.extend_from_slice(points);
+        extended.push(last + last - before);
+        ControlPolygon::open(&extended, tension)
+    }
+}

@@ -1,0 +1,303 @@
+//! Rays through scenes: the first hit is found, whatever the solid.
+//!
+//! The oracle is an isolation of roots by intervals that shares nothing with the marcher but the
+//! ranges: a piece of the ray whose box the program says is all inside or all outside has no
+//! crossing, any other is halved, the nearer half first, until it is short.
+
+use glam::DVec3;
+use rvachev::{Bounds, Camera, Program, Region, Run, Scene, Solid, Surface, Window};
+
+use crate::models;
+use crate::support::{Random, frame_of, near, random_leaf, random_solid};
+
+/// Pieces this short, in proportion to the solid, are not halved.
+const SHORT: f64 = 2e-6;
+
+/// Depths must agree to this.
+const CLOSE: f64 = 1e-4;
+
+/// What the oracle says of a ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Answer {
+    Miss,
+    Hit(f64),
+    /// It gave up.
+    Unknown,
+}
+
+/// The first crossing up to `far`, to [`SHORT`].
+fn isolated(program: &Program, size: f64, origin: DVec3, direction: DVec3, far: f64) -> Answer {
+    let at = |t: f64| origin + t * direction;
+    let inside = program.value(origin) > 0.0;
+    let mut pieces = vec![(program.clone(), 0.0, far)];
+    let mut patience = 20_000;
+    while let Some((program, t0, t1)) = pieces.pop() {
+        patience -= 1;
+        if patience == 0 {
+            return Answer::Unknown;
+        }
+        match program.narrow(&Bounds::from_corners(at(t0), at(t1)).inflate(1e-12 * size)) {
+            Region::Inside if inside => {}
+            Region::Outside if !inside => {}
+            // The sign has changed at the border to this piece.
+            Region::Inside | Region::Outside => return Answer::Hit(t0),
+            Region::Surface(program) => {
+                if t1 - t0 > SHORT * size {
+                    let middle = 0.5 * (t0 + t1);
+                    pieces.push((program.clone(), middle, t1));
+                    pieces.push((program, t0, middle));
+                } else if (program.value(at(t1)) > 0.0) != inside {
+                    return Answer::Hit(0.5 * (t0 + t1));
+                }
+            }
+        }
+    }
+    Answer::Miss
+}
+
+fn agree(answer: Answer, found: &Surface, size: f64) -> bool {
+    match answer {
+        Answer::Miss => !found.is_hit(),
+        Answer::Hit(t) => (found.distance - t).abs() <= CLOSE * size,
+        Answer::Unknown => true,
+    }
+}
+
+/// A ray of one kind or another: from anywhere to anywhere, from inside, along the axes, in the
+/// axis planes, through corners and edges of the box.
+fn ray(random: &mut Random, frame: &Bounds) -> (DVec3, DVec3) {
+    let around = frame.inflate(0.6 * frame.longest_side());
+    let mut origin = random.point_in(&around);
+    let mut target = random.point_in(frame);
+    match random.below(8) {
+        0 => origin = random.point_in(frame),
+        1 => {
+            let axis = random.below(3);
+            target = origin;
+            target[axis] += random.pick(&[-1.0, 1.0]);
+            origin[axis] = if target[axis] > origin[axis] { around.min[axis] } else { around.max[axis] };
+        }
+        2 => {
+            let axis = random.below(3);
+            (origin[axis], target[axis]) = (0.0, 0.0);
+        }
+        3 => {
+            let axis = random.below(3);
+            origin = DVec3::ZERO;
+            origin[axis] = random.pick(&[-1.0, 1.0]) * around.longest_side();
+            target = DVec3::ZERO;
+        }
+        4 => target = random.pick(&frame.corners()),
+        5 => target = (target * 8.0).round() / 8.0,
+        _ => {}
+    }
+    let direction = (target - origin).normalize_or_zero();
+    (origin, if direction == DVec3::ZERO { DVec3::X } else { direction })
+}
+
+/// A bounded solid of any kind; some of them thin shells, flush faces, tangent silhouettes.
+fn subject(random: &mut Random, number: usize) -> Solid {
+    let depth = number % 4;
+    let solid = match number % 10 {
+        8 => {
+            // Faces on each other, and one that another ends at.
+            let half = random.range(0.3, 0.7);
+            let block = Solid::cuboid(DVec3::splat(2.0 * half));
+            let beside = Solid::cuboid(DVec3::splat(half)).translate(DVec3::X * 1.5 * half);
+            let cut = Solid::cuboid(DVec3::splat(half)).translate(DVec3::Z * 0.5 * half);
+            if random.chance(0.5) { block | beside } else { block - cut }
+        }
+        9 => {
+            let (inner, outer) = (random.range(0.4, 0.8), random.log_range(1e-4, 1e-2));
+            Solid::sphere(inner + outer) - Solid::sphere(inner)
+        }
+        7 => {
+            let e = [0.05, 0.1, 1.0, 2.0, 2.5];
+            Solid::superellipsoid(random.vector(0.2, 0.9), random.pick(&e), random.pick(&e))
+        }
+        6 => random_leaf(random),
+        _ => random_solid(random, depth),
+    };
+    if solid.bounds().is_ok_and(|bounds| bounds.is_finite()) { solid } else { solid & Solid::sphere(2.5) }
+}
+
+/// What came of many rays.
+#[derive(Debug, Default)]
+struct Tally {
+    rays: usize,
+    hits: usize,
+    grazing: usize,
+    unknown: usize,
+    wrong: Vec<String>,
+}
+
+impl Tally {
+    fn compare(&mut self, number: usize, solid: &Solid, rays: &[(DVec3, DVec3)]) {
+        let program = solid.surface_program().unwrap();
+        let frame = frame_of(solid);
+        let size = frame.longest_side();
+        let found = solid.scene().unwrap().first_hits(rays);
+        for (&(origin, direction), found) in rays.iter().zip(&found) {
+            let far = origin.distance(frame.center()) + frame.size().length();
+            let answer = isolated(&program, size, origin, direction, far);
+            self.rays += 1;
+            self.hits += usize::from(found.is_hit());
+            self.unknown += usize::from(answer == Answer::Unknown);
+            if agree(answer, found, size) {
+                continue;
+            }
+            // A ray beside it, no further than a tangent may be, sees the same.
+            let side = direction.any_orthonormal_vector();
+            let shifts = (0..8).map(|i| glam::DQuat::from_axis_angle(direction, f64::from(i) * 0.785) * side);
+            let grazes = shifts
+                .map(|shift| isolated(&program, size, origin + 1e-5 * size * shift, direction, far))
+                .any(|answer| agree(answer, found, size));
+            if grazes {
+                self.grazing += 1;
+            } else {
+                self.wrong.push(format!(
+                    "subject {number}: found {} where {answer:?}, from {origin:?} along {direction:?}",
+                    found.distance
+                ));
+            }
+        }
+    }
+}
+
+/// `RAYS=200x1000` in the environment is the full count.
+#[test]
+fn the_first_hit_is_found() {
+    let asked = std::env::var("RAYS").unwrap_or_default();
+    let count = |part: Option<&str>, default: usize| part.and_then(|n| n.parse().ok()).unwrap_or(default);
+    let mut parts = asked.split('x');
+    let (subjects, rays) = (count(parts.next(), 40), count(parts.next(), 15));
+    let first = count(parts.next(), 0);
+    let mut tally = Tally::default();
+    for number in first..first + subjects {
+        let mut random = Random::new(5000 + number as u64);
+        let solid = subject(&mut random, number);
+        let frame = frame_of(&solid);
+        let rays: Vec<(DVec3, DVec3)> = (0..rays).map(|_| ray(&mut random, &frame)).collect();
+        tally.compare(number, &solid, &rays);
+    }
+    println!("{} rays, {} hits, {} grazing, {} not isolated", tally.rays, tally.hits, tally.grazing, tally.unknown);
+    assert!(tally.wrong.is_empty(), "{} wrong:\n{}", tally.wrong.len(), tally.wrong.join("\n"));
+    assert!(tally.grazing <= 2 + tally.rays / 200 && 4 * tally.hits > tally.rays, "{tally:?}");
+}
+
+/// The gradient's direction by central differences, where those of two lengths and of both
+/// sides agree.
+fn differences(program: &Program, p: DVec3, size: f64) -> Option<DVec3> {
+    let middle = program.value(p);
+    let by = |h: f64| {
+        let sides = DVec3::AXES.map(|axis| [program.value(p + h * axis), program.value(p - h * axis)]);
+        let gradient = DVec3::from_array(sides.map(|[above, below]| (above - below) / (2.0 * h)));
+        let kink = sides.iter().map(|[above, below]| ((above + below - 2.0 * middle) / h).abs()).fold(0.0, f64::max);
+        (kink < 1e-3 * gradient.length()).then(|| gradient.normalize_or_zero())
+    };
+    let (fine, coarse) = (by(1e-6 * size)?, by(4e-5 * size)?);
+    (fine.is_normalized() && fine.distance(coarse) < 1e-3).then_some(fine)
+}
+
+#[test]
+fn depths_and_normals_are_those_of_the_surface() {
+    let mut random = Random::new(77);
+    let mut compared = 0;
+    for number in 0..40 {
+        let solid = subject(&mut random, number);
+        let program = solid.surface_program().unwrap();
+        let frame = frame_of(&solid);
+        let size = frame.longest_side();
+        let rays: Vec<(DVec3, DVec3)> = (0..30).map(|_| ray(&mut random, &frame)).collect();
+        let found = solid.scene().unwrap().first_hits(&rays);
+        for (&(origin, direction), found) in rays.iter().zip(&found) {
+            if !found.is_hit() {
+                continue;
+            }
+            let at = |t: f64| program.value(origin + t * direction) > 0.0;
+            let inside = at(0.0);
+            let (before, after) = (found.distance - 1e-5 * size, found.distance + 1e-5 * size);
+            let graze = at(before.max(0.0)) != inside || at(after) == inside;
+            let point = origin + found.distance * direction;
+            let Some(gradient) = differences(&program, point, size) else { continue };
+            let facing = found.normal.as_dvec3().dot(direction);
+            if facing.abs() > 0.02 {
+                assert!(!graze, "subject {number}: {found:?} from {origin:?} along {direction:?}");
+                assert_eq!(facing > 0.0, inside, "subject {number}: {found:?} from {origin:?} along {direction:?}");
+            }
+            compared += 1;
+            let off = (found.normal.as_dvec3() + gradient).length();
+            assert!(off < 5e-3, "subject {number}: {found:?}, {gradient}, from {origin:?} along {direction:?}");
+        }
+    }
+    assert!(compared > 200, "{compared}");
+}
+
+fn normal_image(scene: &Scene, camera: &Camera, threads: usize) -> Vec<Surface> {
+    let run = Run { threads, ..Run::default() };
+    let seen = scene.surfaces_with(&camera.rays(150, 110), Window::whole(150, 110), &run).unwrap();
+    seen.surfaces().to_vec()
+}
+
+#[test]
+fn pictures_see_what_single_rays_hit() {
+    for model in [models::m1(), models::m2(), models::m4(), models::m6()] {
+        let bounds = model.solid.bounds().unwrap();
+        let inside = Camera::perspective(bounds.center(), bounds.max, DVec3::Z, 100.0);
+        for camera in [Camera::framing(&bounds), Camera::framing_orthographic(&bounds), inside] {
+            let scene = model.solid.scene().unwrap();
+            let seen = normal_image(&scene, &camera, 1);
+            // Fresh or used, on one thread or several: the same to the bit.
+            assert!(seen == normal_image(&scene, &camera, 2), "{}", model.name);
+            assert!(seen == normal_image(&model.solid.scene().unwrap(), &camera, 3), "{}", model.name);
+            let size = bounds.longest_side();
+            let mut differ = 0;
+            for (i, seen) in seen.iter().enumerate().filter(|(i, _)| i % 31 == 0) {
+                let (origin, direction) = camera.ray((i % 150) as f64 + 0.5, (i / 150) as f64 + 0.5, 150, 110);
+                let hit = model.solid.raycast(origin, direction).unwrap();
+                let distance = hit.map_or(f64::INFINITY, |hit| hit.distance);
+                let close = distance == seen.distance || (distance - seen.distance).abs() < 1e-5 * size;
+                differ += usize::from(!close);
+            }
+            assert!(differ <= 2, "{} {camera:?}: {differ}", model.name);
+        }
+    }
+}
+
+#[test]
+fn windows_are_parts_of_the_picture() {
+    let scene = models::m2().solid.scene().unwrap();
+    let camera = Camera::framing(&scene.bounds());
+    let rays = camera.rays(150, 110);
+    let whole = scene.surfaces(&rays, Window::whole(150, 110));
+    let window = Window { left: 33, top: 21, width: 90, height: 70, ..Window::whole(150, 110) };
+    let part = scene.surfaces(&rays, window);
+    for y in 0..70 {
+        for x in 0..90 {
+            let (a, b) = (part.at(x, y), whole.at(x + 33, y + 21));
+            assert_eq!(a.is_hit(), b.is_hit());
+            assert!(a == b || (a.distance - b.distance).abs() < 1e-6);
+        }
+    }
+    assert!(!part.at(90, 0).is_hit());
+}
+
+#[test]
+fn scenes_of_any_size_and_place() {
+    let ball = Solid::sphere(1.0);
+    for (scale, place) in [(1e-6, 0.0), (1.0, 1e5), (1e6, 1.0)] {
+        let solid = ball.scale(scale).translate(DVec3::X * place * scale);
+        let scene = solid.scene().unwrap();
+        for far in [3.0, 1e6] {
+            let origin = DVec3::new(place, 0.3, far) * scale;
+            let hit = scene.first_hit(origin, -DVec3::Z).expect("aimed at it");
+            near(hit.distance / scale, far - 0.91f64.sqrt(), 2e-5 + 1e-9 * far);
+            assert!(hit.normal.dot(DVec3::new(0.0, 0.3, 0.91f64.sqrt())) > 0.9999);
+        }
+        assert!(scene.first_hit(DVec3::new(place + 1.1, 0.0, 9.0) * scale, -DVec3::Z).is_none());
+        assert!(scene.first_hit(DVec3::new(place, 0.0, 9.0) * scale, DVec3::Z).is_none());
+    }
+    let nothing = Solid::sphere(1.0) & Solid::sphere(1.0).translate(DVec3::X * 5.0);
+    assert!(nothing.scene().unwrap().first_hit(DVec3::Z * 9.0, -DVec3::Z).is_none());
+    assert!((!ball).scene().is_err());
+}

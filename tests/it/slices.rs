@@ -1,0 +1,110 @@
+//! Slices: pictures of fields, and contours.
+
+use std::f64::consts::PI;
+
+use glam::{DVec2, DVec3};
+use rvachev::{Isolines, Plane, PlaneBounds, Polyline, RFunction, SliceSettings, Solid, write_dxf, write_svg};
+
+use crate::golden::{ascii, same_as_golden};
+
+fn ring() -> Solid {
+    Solid::cylinder(2.0, 1.0) - Solid::cuboid([1.4, 1.4, 3.0])
+}
+
+#[test]
+fn picture_of_a_slice() {
+    let settings = SliceSettings { width: 90, ..SliceSettings::default() };
+    let slice = ring().slice(&Plane::xy(0.1)).unwrap();
+    same_as_golden("slice", &slice.picture(&settings).unwrap());
+    let (x, y) = (Solid::half_space(-DVec3::X, 0.0), Solid::half_space(-DVec3::Y, 0.0));
+    let region = PlaneBounds { min: DVec2::NEG_ONE, max: DVec2::ONE };
+    let settings = SliceSettings { isolines: Isolines::Every(0.2), ..settings };
+    let union = x.union(&y, RFunction::P(2.0)).slice_within(&Plane::xy(0.0), region).unwrap();
+    same_as_golden("slice_r_p", &union.picture(&settings).unwrap());
+    let signs = ascii(&union.values(8).unwrap(), |v| if v > 0.0 { '#' } else { '.' });
+    assert_eq!(signs, "########\n########\n########\n########\n....####\n....####\n....####\n....####\n");
+}
+
+#[test]
+fn contours_are_closed_oriented_and_on_the_surface() {
+    let solid = ring();
+    let plane = Plane::xy(0.1);
+    let contours = solid.slice(&plane).unwrap().contours(1e-5).unwrap();
+    assert_eq!(contours.len(), 2);
+    let mut areas: Vec<f64> = contours.iter().map(Polyline::area).collect();
+    areas.sort_by(f64::total_cmp);
+    // The hole runs clockwise.
+    assert!((areas[0] + 1.96).abs() < 1e-4, "{areas:?}");
+    assert!((areas[1] - 4.0 * PI).abs() < 1e-3, "{areas:?}");
+    for contour in &contours {
+        assert!(contour.is_closed());
+        for p in contour.points() {
+            assert!(solid.value(plane.point(*p)).unwrap().abs() < 1e-9);
+        }
+    }
+    // Straight sides need few points.
+    let hole = contours.iter().find(|contour| contour.area() < 0.0).unwrap();
+    assert!(hole.points().len() < 40, "{}", hole.points().len());
+}
+
+#[test]
+fn contours_of_slanted_planes_and_many_pieces() {
+    let grid = Solid::sphere(0.4).repeat([4, 3, 1], [1.0, 1.0, 1.0]);
+    let contours = grid.slice(&Plane::new([0.0, 0.0, 0.0], [0.05, 0.03, 1.0])).unwrap().contours(1e-4).unwrap();
+    assert_eq!(contours.len(), 12);
+    assert!(contours.iter().all(|contour| contour.area() > 0.0));
+    let cone = Solid::cone(2.0, 0.0, 4.0).slice(&Plane::xz(0.0)).unwrap().contours(1e-4).unwrap();
+    assert_eq!(cone.len(), 1);
+    assert!((cone[0].area() - 8.0).abs() < 1e-2, "{}", cone[0].area());
+}
+
+#[test]
+fn contours_end_at_the_region() {
+    let wall = Solid::half_space(DVec3::X, 0.3);
+    let region = PlaneBounds { min: DVec2::ZERO, max: DVec2::ONE };
+    let contours = wall.slice_within(&Plane::xy(0.0), region).unwrap().contours(1e-6).unwrap();
+    assert_eq!(contours.len(), 1);
+    assert!((contours[0].area() - 0.3).abs() < 1e-5);
+    let all = Solid::half_space(DVec3::X, 9.0).slice_within(&Plane::xy(0.0), region).unwrap();
+    assert!((all.contours(1e-6).unwrap()[0].area() - 1.0).abs() < 1e-5);
+    let none = Solid::half_space(DVec3::X, -9.0).slice_within(&Plane::xy(0.0), region).unwrap();
+    assert!(none.contours(1e-6).unwrap().is_empty());
+}
+
+#[test]
+fn drawings() {
+    let contours = ring().slice(&Plane::xy(0.1)).unwrap().contours(1e-3).unwrap();
+    let (mut svg, mut dxf) = (Vec::new(), Vec::new());
+    write_svg(&contours, &mut svg).unwrap();
+    write_dxf(&contours, &mut dxf).unwrap();
+    let (svg, dxf) = (String::from_utf8(svg).unwrap(), String::from_utf8(dxf).unwrap());
+    assert_eq!(svg.matches('Z').count(), 2);
+    assert_eq!(dxf.matches("\nPOLYLINE\n").count(), 2);
+    let points: usize = contours.iter().map(|contour| contour.points().len()).sum();
+    assert_eq!(dxf.matches("\nVERTEX\n").count(), points);
+    let mut nothing = Vec::new();
+    write_svg(&[], &mut nothing).unwrap();
+    assert!(nothing.ends_with(b"</svg>\n"));
+    let path = std::env::temp_dir().join(format!("rvachev-drawing-{}.dxf", std::process::id()));
+    Polyline::save_all(&contours, &path).unwrap();
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), dxf);
+    std::fs::remove_file(path).unwrap();
+    assert!(Polyline::save_all(&contours, "a.pdf").unwrap_err().to_string().ends_with("known: .svg, .dxf"));
+}
+
+#[test]
+fn errors() {
+    let ball = Solid::sphere(1.0);
+    let slice = ball.slice(&Plane::xy(0.0)).unwrap();
+    let message = |e: rvachev::RenderError| e.to_string();
+    assert!(message(slice.contours(0.0).unwrap_err()).starts_with("tolerance is 0"));
+    assert!(message(slice.values(0).unwrap_err()).starts_with("width is 0"));
+    let settings = SliceSettings { isolines: Isolines::Every(-1.0), ..SliceSettings::default() };
+    assert!(message(slice.picture(&settings).unwrap_err()).starts_with("isolines is -1"));
+    assert!(message(ball.slice(&Plane::new(DVec3::ZERO, DVec3::ZERO)).unwrap_err()).starts_with("plane is"));
+    let flat = PlaneBounds { min: DVec2::ZERO, max: DVec2::X };
+    assert!(message(ball.slice_within(&Plane::xy(0.0), flat).unwrap_err()).starts_with("region is"));
+    assert!(ball.complement().slice(&Plane::xy(0.0)).is_err());
+    let nothing = ball.slice(&Plane::xy(5.0)).unwrap();
+    assert!(nothing.contours(1e-3).unwrap().is_empty());
+}
