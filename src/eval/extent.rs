@@ -20,51 +20,50 @@ const LARGEST: f64 = 1e9;
 pub(super) fn extent(program: &Program, known: &Bounds) -> Bounds {
     let limit = DVec3::splat(LARGEST);
     let start = known.intersection(&Bounds::new(-limit, limit));
-    let mut boxes = vec![(start, program.clone())];
+    // All boxes that may hold some of it, of different sizes: only those that the hull rests on
+    // are halved.
+    let mut boxes: Vec<(Bounds, Program)> = narrowed(start, program).into_iter().collect();
     loop {
-        let mut next = Vec::new();
-        let mut hull = Bounds::EMPTY;
-        for (bounds, program) in boxes {
-            let narrowed = match program.narrow(&bounds) {
-                Region::Outside => continue,
-                Region::Inside => program,
-                Region::Surface(narrowed) => narrowed,
-            };
-            hull = hull.union(&bounds);
-            next.push((bounds, narrowed));
-        }
+        let hull = boxes.iter().fold(Bounds::EMPTY, |hull, (bounds, _)| hull.union(bounds));
         if hull.is_empty() {
             return Bounds::EMPTY;
         }
         // What reaches the limit does not end.
-        let largest = next.iter().map(|(bounds, _)| bounds.longest_side()).fold(0.0, f64::max);
         let ends = (0..3).all(|axis| {
             let ends = |side: f64, known: f64| known.is_finite() || side.abs() < 0.5 * LARGEST;
             ends(hull.min[axis], known.min[axis]) && ends(hull.max[axis], known.max[axis])
         });
-        if ends && largest <= FINEST * hull.longest_side() {
-            return hull.intersection(known);
-        }
-        if !ends && (next.len() > PATIENCE || largest < 1e-3 * LARGEST) {
-            return *known;
-        }
-        if next.len() > PATIENCE {
+        let finest = if ends { FINEST * hull.longest_side() } else { 1e-3 * LARGEST };
+        let halved = |bounds: &Bounds| rests(&hull, bounds) && bounds.longest_side() > finest;
+        let count = boxes.iter().filter(|(bounds, _)| halved(bounds)).count();
+        if count == 0 || boxes.len() > PATIENCE {
             // A flat side takes many small boxes: what is known by now is near enough.
-            return hull.intersection(known);
+            return if ends { hull.intersection(known) } else { *known };
         }
-        // Only boxes at the hull matter: what is well inside cannot move it.
-        boxes = next
-            .into_iter()
-            .filter(|(bounds, _)| !inside(bounds, &hull, largest))
-            .flat_map(|(bounds, program)| halves(&bounds).map(|half| (half, program.clone())))
-            .collect();
+        let mut next = Vec::with_capacity(boxes.len() + count);
+        for (bounds, program) in boxes {
+            if halved(&bounds) {
+                next.extend(halves(&bounds).into_iter().filter_map(|half| narrowed(half, &program)));
+            } else {
+                next.push((bounds, program));
+            }
+        }
+        boxes = next;
     }
 }
 
-/// Whether a box is farther than `margin` from every side of the hull.
-fn inside(bounds: &Bounds, hull: &Bounds, margin: f64) -> bool {
-    let margin = DVec3::splat(margin);
-    (bounds.min - hull.min).cmpgt(margin).all() && (hull.max - bounds.max).cmpgt(margin).all()
+/// The box with the program narrowed to it, if it may hold some of the inside.
+fn narrowed(bounds: Bounds, program: &Program) -> Option<(Bounds, Program)> {
+    match program.narrow(&bounds) {
+        Region::Outside => None,
+        Region::Inside => Some((bounds, program.clone())),
+        Region::Surface(narrowed) => Some((bounds, narrowed)),
+    }
+}
+
+/// Whether a side of the hull is one of the box.
+fn rests(hull: &Bounds, bounds: &Bounds) -> bool {
+    bounds.min.cmple(hull.min).any() || bounds.max.cmpge(hull.max).any()
 }
 
 fn halves(bounds: &Bounds) -> [Bounds; 2] {
