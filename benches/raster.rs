@@ -143,8 +143,11 @@ impl Row {
     }
 }
 
+/// A row, and the depths that meshes and rays find.
+type Measured = (Row, Vec<f64>, Vec<f64>);
+
 /// Times one model, and gives both depth images of the last round.
-fn measure(model: &Model, columns: u32, side: u32, rounds: usize) -> Result<(Row, Vec<f64>, Vec<f64>), Box<dyn Error>> {
+fn measure(model: &Model, columns: u32, side: u32, rounds: usize) -> Result<Measured, Box<dyn Error>> {
     let bounds = model.solid.bounds()?;
     let camera = Camera::framing(&bounds);
     let view = RasterView::new(&camera, side, side)?;

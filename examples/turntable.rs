@@ -33,7 +33,7 @@ fn valve() -> Solid {
     let spokes = Solid::capsule(0.8, 8.0).rotate_y_degrees(90.0).translate([4.0, 0.0, 0.0]).repeat_polar(5);
     let wheel = (Solid::torus(8.5, 1.3) | spokes | Solid::cylinder(2.2, 3.0)).translate([0.0, 0.0, 25.0]).paint(red);
     let bore = Solid::cylinder(4.6, 60.0).rotate_y_degrees(90.0).paint(brass);
-    (body.smooth_union(bonnet, 3.0) | flanges) - bore | stem | wheel
+    ((body.smooth_union(bonnet, 3.0) | flanges) - bore) | stem | wheel
 }
 
 /// Draws a bar over the last one.

@@ -7,6 +7,9 @@ use crate::measure::measured;
 
 const SIDE: usize = 257;
 
+/// A value at a point.
+type Shape<'a> = &'a dyn Fn(f32, f32, f32) -> f32;
+
 /// Prints voxels and triangles a second on a sphere and a gyroid of 257³ samples.
 pub fn rows() {
     let at = |i: usize| 2.0 * i as f32 / (SIDE - 1) as f32 - 1.0;
@@ -16,7 +19,7 @@ pub fn rows() {
         let [x, y, z] = [x, y, z].map(wave);
         x.sin() * y.cos() + y.sin() * z.cos() + z.sin() * x.cos()
     };
-    let shapes: [(&str, &dyn Fn(f32, f32, f32) -> f32); 2] = [("sphere", &sphere), ("gyroid", &gyroid)];
+    let shapes: [(&str, Shape); 2] = [("sphere", &sphere), ("gyroid", &gyroid)];
     for (name, f) in shapes {
         let samples: Vec<f32> =
             (0..SIDE.pow(3)).map(|n| f(at(n % SIDE), at(n / SIDE % SIDE), at(n / (SIDE * SIDE)))).collect();

@@ -10,8 +10,12 @@ use crate::Bounds;
 /// Boxes are halved until they are this small, in proportion to what is found.
 const FINEST: f64 = 1.0 / 64.0;
 
-/// More boxes than this at one size say that the solid does not end.
+/// With more boxes than this, what is known by then is near enough: a flat side takes many.
 const PATIENCE: usize = 3000;
+
+/// More boxes than this before the hull is off the limit say that the solid does not end; one
+/// that ends is in the eight boxes about the origin until then.
+const IMPATIENCE: usize = 200;
 
 /// Solids larger than this count as unbounded.
 const LARGEST: f64 = 1e9;
@@ -36,8 +40,7 @@ pub(super) fn extent(program: &Program, known: &Bounds) -> Bounds {
         let finest = if ends { FINEST * hull.longest_side() } else { 1e-3 * LARGEST };
         let halved = |bounds: &Bounds| rests(&hull, bounds) && bounds.longest_side() > finest;
         let count = boxes.iter().filter(|(bounds, _)| halved(bounds)).count();
-        if count == 0 || boxes.len() > PATIENCE {
-            // A flat side takes many small boxes: what is known by now is near enough.
+        if count == 0 || boxes.len() > if ends { PATIENCE } else { IMPATIENCE } {
             return if ends { hull.intersection(known) } else { *known };
         }
         let mut next = Vec::with_capacity(boxes.len() + count);

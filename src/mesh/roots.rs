@@ -92,13 +92,15 @@ impl RootFinder {
             let axis = usize::from(edge.axis);
             let [a, b] = edge.values;
             let chord = f64::from(a / (a - b));
-            let t = if chord >= 0.0 && chord <= 1.0 { chord } else { 0.5 };
+            let t = if (0.0..=1.0).contains(&chord) { chord } else { 0.5 };
             let low = p[axis];
             self.lower.push(low);
             self.t.push(t);
-            for axis in 0..3 {
-                self.single[axis].push(p[axis] as f32);
-                self.double[axis].push(p[axis]);
+            for (list, p) in self.single.iter_mut().zip(p) {
+                list.push(p as f32);
+            }
+            for (list, p) in self.double.iter_mut().zip(p) {
+                list.push(p);
             }
             if let Some(along) = self.single[axis].last_mut() {
                 *along = (low + t * step) as f32;

@@ -106,7 +106,7 @@ impl Solid {
             // A mesh has the paint of its solid, if there is any, by the owners of its triangles.
             let painted = solid.palette()?.is_painted();
             if settings.owners || painted {
-                let owners = mesh.triangles().par_iter().map(|&triangle| sampler.owner(&mesh, triangle)).collect();
+                let owners = sampler.owners(&mesh, &programs.surface);
                 mesh = mesh.with_owners(owners).map_err(ExtractError::from)?;
             }
             if painted {
@@ -221,15 +221,20 @@ impl SolidSampler<'_> {
         SolidSampler { lattice, blocks, programs, groups, pattern }
     }
 
-    /// The leaf that decides at the middle of a triangle.
-    fn owner(&self, mesh: &Mesh, triangle: [u32; 3]) -> u32 {
-        let middle = mesh.corners(triangle).into_iter().sum::<DVec3>() / 3.0;
-        let cell = (middle - self.lattice.origin()) / self.lattice.step();
-        let block = cell.to_array().map(|x| x.max(0.0) as u32 / BLOCK as u32 * BLOCK as u32);
-        let key = |[x, y, z]: [u32; 3]| [z, y, x];
-        // A triangle of several blocks has its middle in one of them.
-        let nth = self.blocks.binary_search_by_key(&key(block), |&block| key(block));
-        nth.map_or(0, |nth| self.programs[nth].deciding_leaf(middle))
+    /// The leaves that decide at the middles of the triangles, by the programs of their blocks;
+    /// `whole` is that of the solid.
+    fn owners(&self, mesh: &Mesh, whole: &Program) -> Vec<u32> {
+        let mut places: Vec<([u32; 3], usize)> = self.blocks.iter().copied().zip(0..).collect();
+        places.sort_unstable();
+        let owner = |&triangle: &[u32; 3]| {
+            let middle = mesh.corners(triangle).into_iter().sum::<DVec3>() / 3.0;
+            let cell = (middle - self.lattice.origin()) / self.lattice.step();
+            let block = cell.to_array().map(|x| x.max(0.0) as u32 / BLOCK as u32 * BLOCK as u32);
+            // A triangle of several blocks may have its middle in one that holds no vertex.
+            let nth = places.binary_search_by_key(&block, |&(block, _)| block).ok();
+            nth.map_or(whole, |nth| &self.programs[places[nth].1]).deciding_leaf(middle)
+        };
+        mesh.triangles().par_iter().map(owner).collect()
     }
 
     /// A tape for the group that starts with a block.

@@ -347,7 +347,7 @@ impl<'a> Rows<'a> {
     /// the layer are noted.
     fn count(&self, k: usize, starts: &mut [Start]) -> Count {
         let mut count = Count::default();
-        for j in 0..=self.volume.size[1] {
+        for (j, start) in starts[..=self.volume.size[1]].iter_mut().enumerate() {
             let cells = self.cells(j, k);
             let mut along = [0; 3];
             for w in 0..self.words {
@@ -365,7 +365,7 @@ impl<'a> Rows<'a> {
                 }
             }
             let first = count.vertices as u32;
-            starts[j] = [first, first + along[0], first + along[0] + along[1]];
+            *start = [first, first + along[0], first + along[0] + along[1]];
             count.vertices += u64::from(along[0]) + u64::from(along[1]) + u64::from(along[2]);
         }
         starts[self.volume.size[1] + 1] = [count.vertices as u32; 3];

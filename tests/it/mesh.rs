@@ -5,7 +5,9 @@ use std::fs;
 use std::path::PathBuf;
 
 use glam::{DQuat, DVec3, Vec3};
-use rvachev::{Bounds, CellSize, Mesh, MeshReport, MeshSettings, MeshingError, Progress, Run, Solid, write_stl};
+use rvachev::{
+    Bounds, CellSize, Features, Mesh, MeshReport, MeshSettings, MeshingError, Progress, Run, Solid, write_stl,
+};
 
 use crate::models;
 use crate::support::near;
@@ -57,7 +59,8 @@ fn the_models_are_closed_manifold_and_outward() {
 #[test]
 fn vertices_are_on_the_surface() {
     for model in [models::m1(), models::m2(), models::m6()] {
-        let (mesh, _) = mesh(&model.solid, &cells(32));
+        let settings = MeshSettings { features: Features::Smooth, ..cells(32) };
+        let (mesh, _) = mesh(&model.solid, &settings);
         let program = model.solid.surface_program().unwrap();
         for p in mesh.positions() {
             let v = program.value(p.as_dvec3());
@@ -178,12 +181,13 @@ fn given_bounds_cut_the_solid() {
     let settings = MeshSettings { cell: CellSize::Length(0.05), bounds: Some(half), ..MeshSettings::default() };
     let (_, report) = mesh(&ball, &settings);
     near(report.volume, 2.0 / 3.0 * PI, 0.01);
-    assert!(half.inflate(1e-6).contains_bounds(&report.bounds));
+    // Edges of caps are found as all features are.
+    assert!(half.inflate(0.01 * 0.05).contains_bounds(&report.bounds), "{:?}", report.bounds);
     // Off round coordinates, on several sides at once.
     let part = Bounds::new(DVec3::new(-0.31, -0.47, 0.113), DVec3::new(0.217, 0.53, 1.5));
     let (_, report) =
         mesh(&ball, &MeshSettings { cell: CellSize::Length(0.04), bounds: Some(part), ..MeshSettings::default() });
-    assert!(part.inflate(1e-6).contains_bounds(&report.bounds));
+    assert!(part.inflate(0.01 * 0.04).contains_bounds(&report.bounds));
     assert_eq!((report.shells, report.genus), (1, Some(0)));
     // Within the solid it is the box; around it the solid.
     let core = Bounds::from_center(DVec3::ZERO, DVec3::splat(0.5));
@@ -274,7 +278,7 @@ fn a_saved_file_reads_back() {
 fn a_save_that_fails_names_the_file_and_leaves_nothing() {
     let folder = Folder::new("failed");
     let (mesh, _) = mesh(&Solid::sphere(1.0), &cells(8));
-    for (file, says) in [("none/part.stl", "no directory"), ("part.xyz", "known: .stl"), ("part", "no extension")] {
+    for (file, says) in [("none/part.stl", "no directory"), ("part.xyz", "known: .3mf"), ("part", "no extension")] {
         let text = mesh.save(folder.0.join(file)).unwrap_err().to_string();
         assert!(text.contains(file) && text.contains(says), "{text}");
     }

@@ -5,15 +5,15 @@ use std::sync::{Arc, Mutex};
 
 use glam::{DQuat, DVec3};
 use rvachev::{
-    Bounds, CancelToken, CellSize, Field, Lattice, Mesh, MeshSettings, MeshingError, ParamError, Progress, RFunction,
-    Real, Run, Solid, Superellipsoid,
+    Bounds, CancelToken, CellSize, Features, Field, Lattice, Mesh, MeshSettings, MeshingError, ParamError, Progress,
+    RFunction, Real, Run, Solid, Superellipsoid,
 };
 
 use crate::models;
 use crate::support::Random;
 
 fn settings(cell: CellSize) -> MeshSettings {
-    MeshSettings { cell, ..MeshSettings::default() }
+    MeshSettings { cell, features: Features::Smooth, ..MeshSettings::default() }
 }
 
 /// Checks that every vertex is on an edge of the lattice and within 10⁻⁶ of a cell or one f32 of

@@ -60,7 +60,7 @@ fn leaf(random: &mut Random) -> Solid {
         4 => Solid::superellipsoid(0.5 * size, random.range(0.1, 2.0), random.range(0.1, 2.0)),
         5 => Solid::torus(0.5 * size.x.max(size.y) + 0.1, 0.3 * size.z.min(0.4)),
         6 => Solid::cone(0.5 * size.x, 0.25 * size.y * f64::from(u8::from(random.chance(0.5))), size.z),
-        _ => Solid::capsule(0.3 * size.x, size.z),
+        _ => Solid::capsule(0.3 * size.x, size.z + 0.6 * size.x),
     }
 }
 
@@ -117,7 +117,7 @@ fn sines(random: &mut Random) -> Solid {
 }
 
 fn fields(seeds: std::ops::Range<u64>) {
-    let (mut triangles, mut cut, mut empty) = (0, 0, 0);
+    let (mut triangles, mut cut, mut empty, mut beyond) = (0, 0, 0, 0.0f64);
     for seed in seeds {
         let mut random = Random::new(seed.wrapping_mul(0x9e37_79b9) + 3);
         let solid = match seed % 4 {
@@ -143,11 +143,14 @@ fn fields(seeds: std::ops::Range<u64>) {
             triangles += report.triangles;
             cut += usize::from(part);
             if let Some(bounds) = bounds {
-                assert!(bounds.inflate(1e-6).contains_bounds(&report.bounds), "seed {seed}: {:?}", report.bounds);
+                // The edges of caps are placed as all features are.
+                let by = (bounds.min - report.bounds.min).max(report.bounds.max - bounds.max).max_element() / CELL;
+                beyond = beyond.max(by);
+                assert!(by < 1.0, "seed {seed}: {by} cells beyond");
             }
         }
     }
-    println!("{triangles} triangles; {cut} meshes cut at bounds, {empty} empty");
+    println!("{triangles} triangles; {cut} meshes cut at bounds, up to {beyond:.4} cells beyond; {empty} empty");
 }
 
 #[test]

@@ -287,7 +287,7 @@ fn owners_are_the_leaves() {
     let mut right = 0;
     for (triangle, &owner) in mesh.triangles().iter().zip(owners) {
         let middle = triangle.iter().map(|&i| mesh.positions()[i as usize].as_dvec3()).sum::<DVec3>() / 3.0;
-        right += usize::from((middle.truncate().length() < 0.6) == (owner == 1));
+        right += usize::from((middle.truncate().length() < 0.5) == (owner == 1));
     }
     assert!(right * 100 > 99 * owners.len(), "{right} of {}", owners.len());
 }

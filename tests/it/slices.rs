@@ -89,7 +89,7 @@ fn drawings() {
     Polyline::save_all(&contours, &path).unwrap();
     assert_eq!(std::fs::read_to_string(&path).unwrap(), dxf);
     std::fs::remove_file(path).unwrap();
-    assert!(Polyline::save_all(&contours, "a.pdf").unwrap_err().to_string().ends_with("known: .svg, .dxf"));
+    assert!(Polyline::save_all(&contours, "a.pdf").unwrap_err().to_string().ends_with("known: .dxf, .svg"));
 }
 
 #[test]
