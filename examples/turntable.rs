@@ -12,9 +12,9 @@ use std::time::{Duration, Instant};
 
 use rvachev::{Background, Camera, Image, Paint, Progress, RenderSettings, Run, Scene, Solid, View};
 
-const FRAMES: u32 = 24;
-const WIDTH: u32 = 280;
-const HEIGHT: u32 = 210;
+const FRAMES: u32 = 12;
+const WIDTH: u32 = 200;
+const HEIGHT: u32 = 150;
 
 /// A valve: a body with two flanges, a bonnet blended onto it, bores cut by brass.
 fn valve() -> Solid {
