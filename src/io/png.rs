@@ -160,7 +160,7 @@ mod tests {
         let mask = Image::new(2, 1, vec![true, false]).unwrap();
         assert_eq!(read(&mask).into_luma8().as_raw(), &[255, 0]);
         let depth = Image::new(3, 1, vec![1.0, f64::INFINITY, 3.0]).unwrap();
-        assert_eq!(read(&depth).into_luma16().as_raw(), &[65535, 0, 6554]);
+        assert_eq!(read(&depth).into_luma16().as_raw(), &[65535, 0, 6553]);
     }
 
     #[test]
