@@ -48,7 +48,7 @@ impl Solid {
     /// let body = Solid::cuboid([4.0, 4.0, 2.0]).paint([40, 90, 160]);
     /// let bore = Solid::cylinder(1.0, 3.0).paint(Paint { color: [230, 140, 30], roughness: 0.3 });
     /// let part = body - bore;
-    /// assert_eq!(part.paint_at([0.5, 0.0, 1.0])?.map(|p| p.color), Some([40, 90, 160]));
+    /// assert_eq!(part.paint_at([1.5, 0.0, 1.0])?.map(|p| p.color), Some([40, 90, 160]));
     /// assert_eq!(part.paint_at([1.0, 0.0, 0.0])?.map(|p| p.color), Some([230, 140, 30]));
     /// # Ok::<(), rvachev::SolidError>(())
     /// ```
