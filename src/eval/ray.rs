@@ -26,7 +26,11 @@ pub struct Hit {
 
 /// Pieces shorter than this times the solid's size are not halved further: what crosses
 /// within them and back touches rather than crosses.
-const SHORTEST: f64 = 1e-11;
+const SHORTEST: f64 = 1e-7;
+
+/// A piece is narrowed when it is shorter than this part of the one narrowed before: halves that
+/// differ little from the whole tell little more.
+const ASK: f64 = 0.2;
 
 /// After as many pieces a ray is given up as a miss. A solid of finite size never comes near;
 /// an unbounded deformed one may wind about the ray without end.
@@ -35,11 +39,17 @@ const PIECES: usize = 1 << 18;
 /// The slope is asked for only of programs with at most this many leaves.
 const FEW: usize = 6;
 
-/// A piece of a ray, and which of its ends are inside.
+/// A piece of a ray.
 struct Piece {
     program: Program,
     ends: [f64; 2],
+    values: [f64; 2],
+    /// Which of its ends are inside; close to the surface rounding may tell otherwise.
     inside: [bool; 2],
+    /// Bounds of the value's slope along it.
+    slopes: Interval,
+    /// The length of the piece that these and the program were made for.
+    known: f64,
 }
 
 /// The first crossing on `origin + t·direction` (a unit vector) with `near ≤ t ≤ far`.
@@ -59,46 +69,72 @@ pub(crate) fn first_hit(
     let size = if bounds.is_finite() { bounds.size().length() } else { 1.0 };
     let shortest = SHORTEST * (size + origin.abs().max_element().min(1e6) + near);
     let at = |t: f64| origin + t * direction;
-    let inside = [near, far].map(|t| program.value(at(t)) > 0.0);
-    let mut pieces = vec![Piece { program: program.clone(), ends: [near, far], inside }];
+    let values = [near, far].map(|t| program.value(at(t)));
+    let (inside, slopes) = (values.map(|value| value > 0.0), Interval::ALL);
+    let known = f64::INFINITY;
+    let mut pieces = vec![Piece { program: program.clone(), ends: [near, far], values, inside, slopes, known }];
     for _ in 0..PIECES {
-        let Some(Piece { mut program, ends: [t0, t1], inside }) = pieces.pop() else { break };
-        let slope = |program: &Program| match program.leaf_count() <= FEW {
-            true => slope_along(program, origin, direction, t0, t1),
-            false => Interval::ALL,
-        };
-        // Narrowing one leaf leaves one.
-        let single = program.leaf_count() == 1;
-        let mut slopes = if single { slope(&program) } else { Interval::ALL };
-        if !one_signed(slopes) {
-            let Region::Surface(narrowed) = program.narrow_zone(&Zone::of_segment(at(t0), at(t1))) else { continue };
-            program = narrowed;
-            slopes = if single { slopes } else { slope(&program) };
-        }
-        if t1 - t0 <= shortest || one_signed(slopes) {
-            if inside[0] == inside[1] {
+        let Some(mut piece) = pieces.pop() else { break };
+        let [t0, t1] = piece.ends;
+        let [from, to] = within_reach(&piece);
+        if to - from <= shortest || one_signed(piece.slopes) {
+            if piece.inside[0] == piece.inside[1] {
                 continue;
             }
-            return Some(hit_between(&program, &at, t0, t1));
+            let [from, to] = if one_signed(piece.slopes) { piece.ends } else { [from.min(to), from.max(to)] };
+            return Some(hit_between(&piece.program, &at, from, to));
         }
-        let [t0, t1] = within_reach(slopes, [t0, t1], [t0, t1].map(|t| program.value(at(t))));
-        if t0 >= t1 {
-            if inside[0] == inside[1] {
+        if to - from <= 0.5 * (t1 - t0) {
+            piece.ends = [from, to];
+            piece.values = piece.ends.map(|t| piece.program.value(at(t)));
+            pieces.push(piece);
+            continue;
+        }
+        if t1 - t0 < ASK * piece.known {
+            let slopes = |program: &Program| match program.leaf_count() <= FEW {
+                true => slope_along(program, origin, direction, t0, t1),
+                false => Interval::ALL,
+            };
+            // Narrowing one leaf leaves one.
+            let single = piece.program.leaf_count() == 1;
+            let mut found = if single { slopes(&piece.program) } else { Interval::ALL };
+            if !one_signed(found) {
+                let zone = Zone::of_segment(at(t0), at(t1));
+                let Region::Surface(narrowed) = piece.program.narrow_zone(&zone) else { continue };
+                piece.program = narrowed;
+                found = if single { found } else { slopes(&piece.program) };
+            }
+            let better = found.width() < 0.5 * piece.slopes.width();
+            (piece.slopes, piece.known) = (found, t1 - t0);
+            if better {
+                pieces.push(piece);
                 continue;
             }
-            return Some(hit_between(&program, &at, t1, t0));
         }
         let middle = 0.5 * (t0 + t1);
-        let between = program.value(at(middle)) > 0.0;
-        pieces.push(Piece { program: program.clone(), ends: [middle, t1], inside: [between, inside[1]] });
-        pieces.push(Piece { program, ends: [t0, middle], inside: [inside[0], between] });
+        let value = piece.program.value(at(middle));
+        let after = Piece {
+            program: piece.program.clone(),
+            ends: [middle, t1],
+            values: [value, piece.values[1]],
+            inside: [value > 0.0, piece.inside[1]],
+            ..piece
+        };
+        pieces.push(after);
+        pieces.push(Piece {
+            ends: [t0, middle],
+            values: [piece.values[0], value],
+            inside: [piece.inside[0], value > 0.0],
+            ..piece
+        });
     }
     None
 }
 
-/// What is left of a piece where the value may be 0, given those at its ends and the slopes
-/// between: from either end it takes the value a while to get there.
-fn within_reach(slopes: Interval, [t0, t1]: [f64; 2], [v0, v1]: [f64; 2]) -> [f64; 2] {
+/// What is left of a piece where the value may be 0: from either end it takes the value a while
+/// to get there.
+fn within_reach(piece: &Piece) -> [f64; 2] {
+    let Piece { ends: [t0, t1], values: [v0, v1], slopes, .. } = *piece;
     let way = |value: f64, fall: f64, rise: f64| {
         let steepest = if value > 0.0 { fall } else { rise };
         let way = value.abs() / (steepest * (1.0 + 1e-9));

@@ -114,7 +114,7 @@ const SLOPE_ERROR: f32 = 1e-3;
 const FINE: f64 = 6e-6;
 
 /// Crossings nearer to each other than this, in proportion to the solid, are one.
-const CLOSE: f64 = 4e-5;
+const CLOSE: f64 = 8e-5;
 
 /// Scratch memory of a thread.
 #[derive(Default)]
