@@ -13,8 +13,8 @@ use std::time::Instant;
 
 use glam::{DVec2, DVec3};
 use rvachev::{
-    ControlPolygon, ExactExplicit, LogTable, PointMethod, PowerTables, ProductTables, SeriesExplicit, Tension,
-    raw_parametric, raw_parametric_octant,
+    ControlPolygon, ExactExplicit, LogTable, PointMethod, PowerTables, ProductTables, RawParametric, SeriesExplicit,
+    Tension,
 };
 
 /// Points that times are given for. (Method 5 makes 101 × 101 at a time.)
@@ -97,11 +97,12 @@ fn contestants(n: f64, tolerance: f64, wedge: &Wedge) -> Vec<Contestant<'_>> {
         all.push(Contestant { number, name, method, error, points, run, best: f64::INFINITY });
     };
 
+    let raw = RawParametric::new(e, e).expect("a good exponent");
     let mut xyz = [(); 3].map(|()| vec![0.0f64; POINTS]);
     let run = move || {
         let [x, y, z] = &mut xyz;
         for i in 0..POINTS {
-            [x[i], y[i], z[i]] = raw_parametric(e, e, wedge.eta[i], wedge.omega[i]);
+            [x[i], y[i], z[i]] = raw.point(wedge.eta[i], wedge.omega[i]);
         }
         black_box(&xyz);
     };
@@ -115,7 +116,7 @@ fn contestants(n: f64, tolerance: f64, wedge: &Wedge) -> Vec<Contestant<'_>> {
     );
     let mut xyz32 = [(); 3].map(|()| vec![0.0f32; POINTS]);
     let run = move || {
-        raw_parametric_octant(e, e, &wedge.eta32, &wedge.omega32, xyz32.each_mut().map(|v| v.as_mut_slice()));
+        raw.octant_single(&wedge.eta32, &wedge.omega32, xyz32.each_mut().map(|v| v.as_mut_slice()));
         black_box(&xyz32);
     };
     add(1, "raw parametric, SIMD f32", None, 1e-6, POINTS, Box::new(run));

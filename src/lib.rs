@@ -404,7 +404,6 @@ pub use solid::{Caps, Extrusion, Helix, Paint, PlaneBounds, Profile, Solid, Soli
 pub use surface::{
     BinomialSeries, ControlGrid, ControlPoint, ControlPolygon, CurveSpread, ExactExplicit, Frame, LogTable,
     ParametricCurve, ParametricSurface, PatchError, PatchSettings, PlaneSymmetry, PointError, PointMethod,
-    PointSettings, PowerTables, ProductTables, ProfileEnd, SeriesExplicit, Spacing, SubdivisionError,
-    SubdivisionRevolution, SurfacePoint, Symmetry, Tension, hyperbola_of_ellipse, raw_parametric,
-    raw_parametric_octant, reflect, reflect_plane,
+    PointSettings, PowerTables, ProductTables, ProfileEnd, RawParametric, SeriesExplicit, Spacing, SubdivisionError,
+    SubdivisionRevolution, SurfacePoint, Symmetry, Tension, hyperbola_of_ellipse, reflect, reflect_plane,
 };

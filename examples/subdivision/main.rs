@@ -18,7 +18,8 @@ use std::time::Instant;
 use glam::{DVec2, DVec3};
 use painter::{Canvas, View};
 use rvachev::{
-    ControlGrid, ControlPolygon, ProfileEnd, QuadMesh, SubdivisionRevolution, Tension, hyperbola_of_ellipse,
+    ControlGrid, ControlPolygon, ProfileEnd, QuadMesh, SubdivisionError, SubdivisionRevolution, Tension,
+    hyperbola_of_ellipse,
 };
 
 const WIDTH: u32 = 720;
@@ -88,18 +89,16 @@ fn curves() -> Result<Vec<Curve>, Box<dyn Error>> {
 }
 
 impl Curve {
-    fn moved(&self, points: Vec<DVec2>) -> Vec<DVec2> {
-        match self.by_map {
-            // What runs off to infinity is cut off.
-            Some(a) => hyperbola_of_ellipse(&points, a).into_iter().filter(|p| p.y.abs() < 4.0).collect(),
-            None => points,
-        }
+    fn moved(&self, points: Vec<DVec2>) -> Result<Vec<DVec2>, SubdivisionError> {
+        let Some(a) = self.by_map else { return Ok(points) };
+        // What runs off to infinity is cut off.
+        Ok(hyperbola_of_ellipse(&points, a)?.into_iter().filter(|p| p.y.abs() < 4.0).collect())
     }
 
     fn draw(&self, canvas: &mut Canvas) -> Result<f64, Box<dyn Error>> {
         let closed = self.polygon.is_closed();
         let once = self.polygon.subdivided(1)?.points();
-        let limit = self.moved(self.polygon.limit(6)?);
+        let limit = self.moved(self.polygon.limit(6)?)?;
         let residual = limit.iter().map(|&p| (self.equation)(p).abs()).fold(0.0, f64::max);
         let cage = self.polygon.points();
         let view = View::of_plane(cage.iter().chain(&limit).copied());

@@ -6,8 +6,8 @@ use std::f64::consts::FRAC_PI_2;
 use glam::{DVec2, DVec3};
 use rvachev::{
     BinomialSeries, CurveSpread, ExactExplicit, GeneralisedSuperquadric, LogTable, PointMethod, PointSettings,
-    PowerTables, ProductTables, SeriesExplicit, Superellipse, Superellipsoid, Symmetry, raw_parametric,
-    raw_parametric_octant, reflect,
+    PowerTables, ProductTables, RawParametric, SeriesExplicit, Superellipse, Superellipsoid, Symmetry,
+    reflect,
 };
 
 /// The wedge 0 ≤ x ≤ y ≤ z on nodes i/size, with exact heights.
@@ -113,15 +113,16 @@ fn look_up_fails_outside_the_wedge() {
 fn the_printed_table_of_the_parametric_form() {
     let printed = [(5.0, [0.9998, 0.9070]), (25.0, [0.9961, 0.9661]), (45.0, [0.9862, 0.9862])];
     for (degrees, [cos, sin]) in printed {
-        let [x, _, z] = raw_parametric(0.04, 1.0, f64::to_radians(degrees), 0.0);
+        let [x, _, z] = RawParametric::new(0.04, 1.0).unwrap().point(f64::to_radians(degrees), 0.0);
         assert!((x - cos).abs() < 6e-5 && (z - sin).abs() < 6e-5, "{degrees}: {x} {z}");
     }
     let angles: Vec<f32> = (0..300).map(|i| i as f32 * (FRAC_PI_2 as f32 / 299.0)).collect();
     let turned: Vec<f32> = angles.iter().rev().copied().collect();
     let mut out = [vec![0.0; 300], vec![0.0; 300], vec![0.0; 300]];
-    raw_parametric_octant(0.5, 1.5, &angles, &turned, out.each_mut().map(|v| v.as_mut_slice()));
+    let raw = RawParametric::new(0.5, 1.5).unwrap();
+    raw.octant_single(&angles, &turned, out.each_mut().map(|v| v.as_mut_slice()));
     for i in 1..299 {
-        let exact = raw_parametric(0.5, 1.5, f64::from(angles[i]), f64::from(turned[i]));
+        let exact = raw.point(f64::from(angles[i]), f64::from(turned[i]));
         for (o, e) in out.iter().zip(exact) {
             assert!((f64::from(o[i]) - e).abs() < 3e-6, "{i}: {} {e}", o[i]);
         }

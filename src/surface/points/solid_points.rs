@@ -13,7 +13,8 @@ use glam::DVec3;
 
 use super::PointError;
 use super::curve_points;
-use super::explicit::{ExactExplicit, SeriesExplicit, raw_parametric};
+use super::explicit::{ExactExplicit, SeriesExplicit};
+use super::raw::RawParametric;
 use super::tables::{LogTable, PowerTables};
 use super::wedge::{Symmetry, reflect};
 use crate::{Field, GeneralisedSuperquadric, Superellipsoid};
@@ -115,7 +116,7 @@ impl Superellipsoid {
         // On nodes of a table that is as fine as the tolerance asks.
         let size = ((1.0 / tolerance) as u32).clamp(1000, 1 << 20);
         let unit = match settings.method.resolved() {
-            PointMethod::RawParametric => raw(e1, e2, eighth),
+            PointMethod::RawParametric => raw(&RawParametric::new(e1, e2)?, eighth),
             PointMethod::SphericalProduct | PointMethod::Auto => products(e1, e2, eighth)?,
             _ if e1 != e2 => return Err(PointError::Exponents { e1, e2 }),
             PointMethod::ExactExplicit => {
@@ -182,12 +183,12 @@ fn on_nodes(n: f64, k: u32, size: u32, height: impl Fn(f64, f64) -> f64) -> Vec<
 }
 
 /// Equal angles over the octant, reflected.
-fn raw(e1: f64, e2: f64, eighth: u32) -> Vec<DVec3> {
+fn raw(parametric: &RawParametric, eighth: u32) -> Vec<DVec3> {
     let quarter = 2 * eighth;
     let angle = |i: u32| std::f64::consts::FRAC_PI_2 * f64::from(i) / f64::from(quarter);
     let mut points = vec![DVec3::Z];
     for i in 0..quarter {
-        points.extend((0..=quarter).map(|j| DVec3::from(raw_parametric(e1, e2, angle(i), angle(j)))));
+        points.extend((0..=quarter).map(|j| DVec3::from(parametric.point(angle(i), angle(j)))));
     }
     reflect(&points, Symmetry::Cuboid)
 }

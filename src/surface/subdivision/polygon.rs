@@ -12,7 +12,7 @@
 use glam::{DVec2, DVec3};
 
 use super::refine::{refine, stencil};
-use super::{SubdivisionError, Tension, check_levels};
+use super::{MOST_ON_CURVE, SubdivisionError, Tension, check_coordinates, check_levels};
 
 /// A point of the plane or of space: `DVec2` or `DVec3`.
 pub trait ControlPoint: Copy + sealed::Coordinates {}
@@ -34,7 +34,7 @@ pub(super) mod sealed {
         fn new(points: &[P]) -> Self;
         fn points(&self) -> Vec<P>;
         fn len(&self) -> usize;
-        fn bad_coordinate(&self) -> Option<(usize, f64)>;
+        fn check(&self) -> Result<(), super::SubdivisionError>;
         fn refined(&self, closed: bool, mask: [f64; 2], to: &mut Self);
         fn stencilled(&self, closed: bool, weights: [f64; 3]) -> Self;
     }
@@ -57,9 +57,8 @@ pub(super) mod sealed {
         fn len(&self) -> usize {
             Vec::len(self)
         }
-        fn bad_coordinate(&self) -> Option<(usize, f64)> {
-            let bad = |p: &[f64; N]| p.iter().copied().find(|c| c.is_nan() || c.abs() > super::LARGEST);
-            self.iter().enumerate().find_map(|(i, p)| bad(p).map(|c| (i, c)))
+        fn check(&self) -> Result<(), super::SubdivisionError> {
+            super::check_coordinates(self.iter().copied())
         }
         fn refined(&self, closed: bool, mask: [f64; 2], to: &mut Self) {
             super::refine(self, closed, mask, to);
@@ -71,9 +70,6 @@ pub(super) mod sealed {
 }
 
 use sealed::Rows;
-
-/// Coordinates are at most this.
-const LARGEST: f64 = 1e12;
 
 /// A control polygon: points, whether it is closed, and its [`Tension`].
 ///
@@ -119,9 +115,7 @@ impl<P: ControlPoint> ControlPolygon<P> {
         if rows.len() < least {
             return Err(SubdivisionError::TooFewPoints { of, points: points.len(), least });
         }
-        if let Some((index, value)) = rows.bad_coordinate() {
-            return Err(SubdivisionError::Coordinate { index, value });
-        }
+        rows.check()?;
         Ok(ControlPolygon { rows, closed, tension })
     }
 
@@ -159,9 +153,9 @@ impl<P: ControlPoint> ControlPolygon<P> {
     /// closed polygon doubles its points a level; an open one of n has 2n − 3 after it.
     ///
     /// # Errors
-    /// [`SubdivisionError::Levels`] for more than 2²⁸ points.
+    /// [`SubdivisionError::Levels`] for more than 2²⁶ points.
     pub fn subdivided(&self, levels: u32) -> Result<ControlPolygon<P>, SubdivisionError> {
-        check_levels(self.len(), levels, 1)?;
+        check_levels(self.len(), levels, 1, MOST_ON_CURVE)?;
         let (mut rows, mut next) = (self.rows.clone(), P::Rows::default());
         for level in 1..=levels {
             rows.refined(self.closed, self.tension.mask(level), &mut next);
@@ -189,7 +183,7 @@ impl<P: ControlPoint> ControlPolygon<P> {
     /// [`limit_points`](Self::limit_points).
     ///
     /// # Errors
-    /// [`SubdivisionError::Levels`] for more than 2²⁸ points.
+    /// [`SubdivisionError::Levels`] for more than 2²⁶ points.
     pub fn limit(&self, levels: u32) -> Result<Vec<P>, SubdivisionError> {
         Ok(self.subdivided(levels)?.limit_points())
     }
