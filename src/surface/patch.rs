@@ -7,6 +7,7 @@ use glam::{DVec2, DVec3};
 use super::adaptive;
 use super::curve::By;
 use super::parametric::{ParametricSurface, Shape};
+use super::polar::Lines;
 use super::spacing::{Arc, Sample};
 use super::stitch::{End, Knot, Knots, Layout, stitch};
 use crate::geom::{Mesh, MeshError, QuadMesh};
@@ -31,13 +32,14 @@ pub enum Spacing {
     #[default]
     UniformAngle,
     /// By equal lengths along meridian and equator: the longest gap between neighbours on either
-    /// is at most 1.5 of the shortest. (Barr's two sheets along x keep uniform angles.)
+    /// is at most 1.5 of the shortest. (Of Barr's two sheets along x: along the rim of the clipped
+    /// end, and along the line from the apex to its farthest point.)
     EqualArc,
     /// As few as keep the mesh within this distance (length units) of the surface; `rows` and
     /// `columns` are not used. Rings have as many vertices as each needs, so that there are
     /// triangles only: 1.4 times (sphere) to 1.65 times (ellipsoid of 1 : 2 : 3) the least number possible.
-    /// 10⁻⁶ to 0.3 of the size. (Barr's two sheets along x are even grids of rows and columns,
-    /// as many as it takes, at most 1024 rows.)
+    /// 10⁻⁶ to 0.3 of the size. (Barr's two sheets along x are grids of rows and columns: they
+    /// take two to four times as many as sheets along z.)
     Chord(f64),
 }
 
@@ -81,8 +83,8 @@ pub enum PatchError {
 /// The most rows or columns.
 const MOST: u32 = 100_000;
 
-/// The most vertices: 2²⁸ of them are 12 GB.
-const MOST_VERTICES: u64 = 1 << 28;
+/// The most vertices: 2²⁴ of them are some 4 GB, with faces, normals and texture coordinates.
+const MOST_VERTICES: u64 = 1 << 24;
 
 pub(super) fn count(parameter: &'static str, value: u64, least: u64, most: u64) -> Result<(), PatchError> {
     if (least..=most).contains(&value) { Ok(()) } else { Err(PatchError::Count { parameter, value, least, most }) }
@@ -133,7 +135,6 @@ impl ParametricSurface {
     /// A setting out of its range.
     pub fn quad_mesh(&self, settings: &PatchSettings) -> Result<QuadMesh, PatchError> {
         settings.check(self.shape)?;
-        let mut settings = *settings;
         let mut mesh = QuadMesh::default();
         for sheet in std::iter::once(*self).chain(self.other_sheet()) {
             if let Spacing::Chord(tolerance) = settings.spacing {
@@ -142,13 +143,12 @@ impl ParametricSurface {
                 if !(least..=most).contains(&tolerance) {
                     return Err(PatchError::Tolerance { value: tolerance, least, most });
                 }
-                let Shape::BarrBowl { end, e1, e2 } = self.shape else {
+                if !matches!(self.shape, Shape::BarrBowl { .. }) {
                     adaptive::append(&sheet, tolerance, &mut mesh)?;
                     continue;
-                };
-                [settings.rows, settings.columns] = sheet.polar_counts([end, e1, e2], tolerance);
+                }
             }
-            let grid = Grid::new(&sheet, &settings);
+            let grid = Grid::new(&sheet, settings)?;
             stitch(&grid, grid.layout(), &mut mesh);
         }
         Ok(mesh)
@@ -168,24 +168,30 @@ enum Product {
     /// Samples of meridian and equator.
     Curves { meridian: Vec<Sample>, equator: Vec<Sample> },
     /// Barr's bowl, in polar form.
-    Polar { end: f64, e1: f64, e2: f64 },
+    Polar { bowl: [f64; 3], lines: Lines },
 }
 
 impl<'a> Grid<'a> {
-    fn new(surface: &'a ParametricSurface, settings: &PatchSettings) -> Grid<'a> {
+    fn new(surface: &'a ParametricSurface, settings: &PatchSettings) -> Result<Grid<'a>, PatchError> {
         let PatchSettings { rows, columns, spacing } = *settings;
-        let product = match (surface.shape, spacing) {
-            (Shape::BarrBowl { end, e1, e2 }, _) => Product::Polar { end, e1, e2 },
-            (_, Spacing::UniformAngle) => Product::Curves {
-                meridian: surface.meridian_arc(By::Angle).uniform(rows),
-                equator: surface.equator_arc(By::Angle).uniform(columns),
-            },
-            (_, _) => Product::Curves {
-                meridian: surface.meridian_arc(By::Even).equal(rows),
-                equator: surface.equator_arc(By::Even).equal(columns),
-            },
+        if let Shape::BarrBowl { end, e1, e2 } = surface.shape {
+            let (bowl, counts) = ([end, e1, e2], [rows, columns]);
+            let lines = match spacing {
+                Spacing::UniformAngle => ParametricSurface::polar_uniform(counts),
+                Spacing::EqualArc => surface.polar_equal(bowl, counts),
+                Spacing::Chord(tolerance) => surface.polar_chords(bowl, tolerance)?,
+            };
+            let [rows, columns] = lines.counts();
+            return Ok(Grid { surface, rows, columns, product: Product::Polar { bowl, lines } });
+        }
+        let (by, even) = match spacing {
+            Spacing::UniformAngle => (By::Angle, false),
+            _ => (By::Even, true),
         };
-        Grid { surface, rows, columns, product }
+        let samples = |arc: Arc, count: u32| if even { arc.equal(count) } else { arc.uniform(count) };
+        let meridian = samples(surface.meridian_arc(by), rows);
+        let equator = samples(surface.equator_arc(by), columns);
+        Ok(Grid { surface, rows, columns, product: Product::Curves { meridian, equator } })
     }
 
     fn layout(&self) -> Layout {
@@ -214,10 +220,7 @@ impl Knots for Grid<'_> {
             Product::Curves { meridian, equator } => {
                 self.surface.knot(&meridian[row as usize], &equator[column as usize])
             }
-            &Product::Polar { end, e1, e2 } => {
-                let share = |i: u32, of: u32| f64::from(i) / f64::from(of);
-                self.surface.polar_knot([end, e1, e2], share(row, self.rows), share(column, self.columns))
-            }
+            Product::Polar { bowl, lines } => self.surface.polar_vertex(*bowl, lines, [row, column]),
         }
     }
 }

@@ -346,7 +346,7 @@ fn depth_buffers_take_anything() {
         buffers.draw(&view.surface(&mesh), 7, Facing::Back).unwrap();
         assert!(buffers.picture(&operands, &[[200; 3]]).is_ok() != buffers.depths().iter().any(|d| d.is_finite()));
     }
-    assert!(drawn > 20, "{drawn}");
+    assert!(drawn > 10, "{drawn}");
 }
 
 #[test]
@@ -361,7 +361,10 @@ fn deformations_of_meshes_take_anything() {
             match result {
                 Ok(mesh) => {
                     let normals = mesh.normals().unwrap_or(&[]);
-                    assert!(mesh.positions().iter().chain(normals).all(|p: &Vec3| p.is_finite()), "{a} {b} {c} {map:?}");
+                    assert!(
+                        mesh.positions().iter().chain(normals).all(|p: &Vec3| p.is_finite()),
+                        "{a} {b} {c} {map:?}"
+                    );
                 }
                 Err(error) => assert!(!error.to_string().is_empty()),
             }

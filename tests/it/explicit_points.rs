@@ -6,8 +6,7 @@ use std::f64::consts::FRAC_PI_2;
 use glam::{DVec2, DVec3};
 use rvachev::{
     BinomialSeries, CurveSpread, ExactExplicit, GeneralisedSuperquadric, LogTable, PointMethod, PointSettings,
-    PowerTables, ProductTables, RawParametric, SeriesExplicit, Superellipse, Superellipsoid, Symmetry,
-    reflect,
+    PowerTables, ProductTables, RawParametric, SeriesExplicit, Superellipse, Superellipsoid, Symmetry, reflect,
 };
 
 /// The wedge 0 ≤ x ≤ y ≤ z on nodes i/size, with exact heights.

@@ -218,7 +218,11 @@ impl Formula<2, 1> for WholeSeries<'_> {
 }
 
 /// Runs a formula over slices of any length: whole chunks as they are, the rest padded.
-pub(super) fn over_slices<E: Element, const O: usize>(formula: &impl Formula<2, O>, from: [&[E]; 2], mut to: [&mut [E]; O]) {
+pub(super) fn over_slices<E: Element, const O: usize>(
+    formula: &impl Formula<2, O>,
+    from: [&[E]; 2],
+    mut to: [&mut [E]; O],
+) {
     let len = from[0].len();
     assert!(from[1].len() == len && to.iter().all(|o| o.len() == len), "slices of one length are needed");
     let whole = len - len % CHUNK;

@@ -128,10 +128,11 @@ impl Tension {
     }
 
     /// The weights of the mask that makes level `level` (1 or more) from the one before:
-    /// `[1, 2 + 4α] / (4 + 4α)`, of each neighbour and of the point itself.
+    /// `[1, 2 + 4α] / (4 + 4α)`, of each neighbour and of the point itself. (No mask makes level
+    /// 0; asked for, it is that of level 1.)
     #[must_use]
     pub fn mask(&self, level: u32) -> [f64; 2] {
-        let alpha = self.alpha(level);
+        let alpha = self.alpha(level.max(1));
         let neighbour = 0.25 / (1.0 + alpha);
         [neighbour, 1.0 - 2.0 * neighbour]
     }
