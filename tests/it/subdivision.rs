@@ -22,15 +22,40 @@ fn a_square_becomes_a_circle() {
     let radii =
         [FRAC_PI_2, 1.110_720_734_540, 1.026_172_152_977, 1.006_454_542_800, 1.001_608_189_084, 1.000_401_708_155];
     for (level, radius) in radii.into_iter().enumerate() {
-        for p in polygon.subdivided(level as u32).unwrap().points() {
-            assert!((p.length() - radius).abs() < 1e-12, "level {level}: {}", p.length());
-        }
+        let points = polygon.subdivided(level as u32).unwrap().points();
+        let (least, most) =
+            points.iter().fold((f64::INFINITY, 0f64), |(a, b), p| (a.min(p.length()), b.max(p.length())));
+        assert!((least - radius).abs() < 1e-12 && most - least < 1e-15, "level {level}: {least} to {most}");
         for p in polygon.limit(level as u32).unwrap() {
             assert!((p.length() - 1.0).abs() < 1e-15, "level {level}: {}", p.length());
         }
     }
     let error = |level: u32| polygon.subdivided(level).unwrap().points()[1].length() - 1.0;
     assert!((error(7) / error(8) - 4.0).abs() < 1e-3);
+}
+
+#[test]
+fn polygons_of_any_length() {
+    // Longer than the blocks that a level is made by, and not: against the mask, point by point.
+    for count in [3usize, 4, 127, 128, 129, 130, 131, 255, 256, 257, 258, 259, 1000] {
+        let points: Vec<DVec2> = (0..count).map(|i| DVec2::new((i * i % 17) as f64, (7 * i % 23) as f64)).collect();
+        let tension = Tension::hyperbolic(0.7).unwrap();
+        let [neighbour, own] = tension.mask(1);
+        let even = |i: usize| (points[(i + count - 1) % count] + points[(i + 1) % count]) * neighbour + points[i] * own;
+        let odd = |i: usize| 0.5 * (points[i] + points[(i + 1) % count]);
+        let closed: Vec<DVec2> = (0..count).flat_map(|i| [even(i), odd(i)]).collect();
+        assert_eq!(ControlPolygon::closed(&points, tension).unwrap().subdivided(1).unwrap().points(), closed);
+        if count > 3 {
+            let open = ControlPolygon::open(&points, tension).unwrap();
+            assert_eq!(open.subdivided(1).unwrap().points(), closed[1..2 * count - 2]);
+            // Into whatever was there before.
+            let mut fine = ControlPolygon::closed(&closed, Tension::CUBIC).unwrap();
+            open.subdivide_into(3, &mut fine).unwrap();
+            assert_eq!(fine, open.subdivided(3).unwrap());
+            assert!(open.subdivide_into(60, &mut fine).is_err());
+            assert_eq!(fine, open.subdivided(3).unwrap());
+        }
+    }
 }
 
 #[test]
@@ -107,6 +132,7 @@ fn conics() {
     }
     let ellipse = ControlPolygon::ellipse([3.0, 1.5]).unwrap();
     let points = ellipse.limit(5).unwrap();
+    assert!(points.iter().all(|p| ((p.x / 3.0).powi(2) + (p.y / 1.5).powi(2) - 1.0).abs() < 1e-14));
     let extent = points.iter().fold(DVec2::ZERO, |e, p| e.max(p.abs()));
     assert!((extent - DVec2::new(3.0, 1.5)).length() < 1e-15);
 

@@ -9,7 +9,7 @@
 //!     i = 0: x = 0   j = k: y = z
 //! ```
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::PointError;
 use super::curve_points;
@@ -93,7 +93,8 @@ impl PointMethod {
 
 impl Superellipsoid {
     /// Points all over the surface, each once: a wedge of the unit surface by the method, reflected
-    /// 48-fold, 16-fold or 8-fold as the exponents and the method allow, then scaled.
+    /// 48-fold or 8-fold as the method allows, then scaled; or, by products, a wedge of the equator
+    /// reflected 8-fold, and a meridian.
     ///
     /// ```
     /// use rvachev::{PointSettings, Superellipsoid};
@@ -117,7 +118,7 @@ impl Superellipsoid {
         let size = ((1.0 / tolerance) as u32).clamp(1000, 1 << 20);
         let unit = match settings.method.resolved() {
             PointMethod::RawParametric => raw(&RawParametric::new(e1, e2)?, eighth),
-            PointMethod::SphericalProduct | PointMethod::Auto => products(e1, e2, eighth)?,
+            PointMethod::SphericalProduct | PointMethod::Auto => return products(self, eighth),
             _ if e1 != e2 => return Err(PointError::Exponents { e1, e2 }),
             PointMethod::ExactExplicit => {
                 let explicit = ExactExplicit::new(n)?;
@@ -193,15 +194,31 @@ fn raw(parametric: &RawParametric, eighth: u32) -> Vec<DVec3> {
     reflect(&points, Symmetry::Cuboid)
 }
 
-/// Products of two tables over the 16th, reflected.
-fn products(e1: f64, e2: f64, eighth: u32) -> Result<Vec<DVec3>, PointError> {
+/// Products of two tables, ring by ring from pole to pole: what is reflected is the equator, so
+/// that a point costs two multiplications here too.
+fn products(shape: &Superellipsoid, eighth: u32) -> Result<Vec<DVec3>, PointError> {
+    let ([e1, e2], a) = (shape.exponents(), shape.semi_axes());
     let (meridian, equator) = (curve_points::quarter(e1, eighth)?, curve_points::quarter(e2, eighth)?);
-    let mut points = vec![DVec3::Z];
-    for m in &meridian[..meridian.len() - 1] {
-        // From x = y on, where x ≤ y.
-        points.extend(equator[eighth as usize..].iter().map(|e| DVec3::new(m.x * e.x, m.x * e.y, m.y)));
+    let last = equator.len() - 1;
+    let (onward, back) = (1..=last, (0..last).rev());
+    // From the x axis through y, −x and −y; each axis once, and no negative zeros.
+    let ring: Vec<DVec2> = std::iter::once(equator[0])
+        .chain(onward.clone().map(|i| equator[i]))
+        .chain(back.clone().map(|i| DVec2::new(0.0 - equator[i].x, equator[i].y)))
+        .chain(onward.map(|i| DVec2::new(0.0 - equator[i].x, 0.0 - equator[i].y)))
+        .chain(back.filter(|&i| i > 0).map(|i| DVec2::new(equator[i].x, 0.0 - equator[i].y)))
+        .map(|p| p * a.truncate())
+        .collect();
+    let mut points = Vec::with_capacity(2 + (2 * meridian.len() - 3) * ring.len());
+    let mut row = |width: f64, z: f64| points.extend(ring.iter().map(|p| DVec3::new(width * p.x, width * p.y, z)));
+    for m in meridian[1..last].iter().rev() {
+        row(m.x, a.z * m.y);
     }
-    Ok(reflect(&points, Symmetry::SquarePrism))
+    for m in &meridian[..last] {
+        row(m.x, 0.0 - a.z * m.y);
+    }
+    points.extend([DVec3::Z * a.z, DVec3::NEG_Z * a.z + DVec3::ZERO]);
+    Ok(points)
 }
 
 impl GeneralisedSuperquadric {

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::refine::{refine, stencil};
+use super::refine::{refine, refined_len, stencil};
 use super::{MOST_IN_MESH, SubdivisionError, Tension, check_coordinates, check_levels};
 use crate::geom::QuadMesh;
 use crate::surface::stitch::{End, Knot, Knots, Layout, stitch};
@@ -87,8 +87,15 @@ impl ControlGrid {
         let mut grid = self.clone();
         for level in 1..=levels {
             let masks = self.tension.map(|tension| tension.mask(level));
-            grid = grid.along_rows(|row, closed, to| refine(row, closed, masks[1], to));
-            grid = grid.transposed().along_rows(|row, closed, to| refine(row, closed, masks[0], to)).transposed();
+            let level = |mask: [f64; 2]| {
+                move |row: &[[f64; 3]], closed: bool, to: &mut Vec<[f64; 3]>| {
+                    to.clear();
+                    to.extend_from_slice(row);
+                    to.resize(refined_len(row.len(), closed), [0.0; 3]);
+                    refine(to, row.len(), closed, mask);
+                }
+            };
+            grid = grid.along_rows(level(masks[1])).transposed().along_rows(level(masks[0])).transposed();
         }
         Ok(ControlGrid { tension: self.tension.map(|tension| tension.at_level(levels)), ..grid })
     }

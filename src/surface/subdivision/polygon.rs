@@ -11,7 +11,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::refine::{refine, stencil};
+use super::refine::{refine, refined_len, stencil};
 use super::{MOST_ON_CURVE, SubdivisionError, Tension, check_coordinates, check_levels};
 
 /// A point of the plane or of space: `DVec2` or `DVec3`.
@@ -34,8 +34,9 @@ pub(super) mod sealed {
         fn new(points: &[P]) -> Self;
         fn points(&self) -> Vec<P>;
         fn len(&self) -> usize;
+        fn assign(&mut self, other: &Self);
         fn check(&self) -> Result<(), super::SubdivisionError>;
-        fn refined(&self, closed: bool, mask: [f64; 2], to: &mut Self);
+        fn refine(&mut self, closed: bool, masks: impl ExactSizeIterator<Item = [f64; 2]>);
         fn stencilled(&self, closed: bool, weights: [f64; 3]) -> Self;
     }
 
@@ -57,11 +58,20 @@ pub(super) mod sealed {
         fn len(&self) -> usize {
             Vec::len(self)
         }
+        fn assign(&mut self, other: &Self) {
+            self.clone_from(other);
+        }
         fn check(&self) -> Result<(), super::SubdivisionError> {
             super::check_coordinates(self.iter().copied())
         }
-        fn refined(&self, closed: bool, mask: [f64; 2], to: &mut Self) {
-            super::refine(self, closed, mask, to);
+        fn refine(&mut self, closed: bool, masks: impl ExactSizeIterator<Item = [f64; 2]>) {
+            let mut count = Vec::len(self);
+            let len = (0..masks.len()).fold(count, |count, _| super::refined_len(count, closed));
+            self.resize(len, [0.0; N]);
+            for mask in masks {
+                super::refine(self, count, closed, mask);
+                count = super::refined_len(count, closed);
+            }
         }
         fn stencilled(&self, closed: bool, weights: [f64; 3]) -> Self {
             super::stencil(self, closed, weights)
@@ -155,13 +165,35 @@ impl<P: ControlPoint> ControlPolygon<P> {
     /// # Errors
     /// [`SubdivisionError::Levels`] for more than 2²⁶ points.
     pub fn subdivided(&self, levels: u32) -> Result<ControlPolygon<P>, SubdivisionError> {
+        let mut fine = ControlPolygon { rows: P::Rows::default(), closed: self.closed, tension: self.tension };
+        self.subdivide_into(levels, &mut fine)?;
+        Ok(fine)
+    }
+
+    /// The same in place of another polygon, whose memory is used again: fresh memory from the
+    /// system may cost several times what the arithmetic does.
+    ///
+    /// ```
+    /// use rvachev::ControlPolygon;
+    ///
+    /// let mut fine = ControlPolygon::ellipse([1.0, 1.0])?;
+    /// for width in [1.0, 2.0, 3.0] {
+    ///     ControlPolygon::ellipse([width, 1.0])?.subdivide_into(8, &mut fine)?;
+    ///     assert_eq!(fine.len(), 4 << 8);
+    ///     assert!((fine.limit_points()[0].x - width).abs() < 1e-14);
+    /// }
+    /// # Ok::<(), rvachev::SubdivisionError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SubdivisionError::Levels`] for more than 2²⁶ points; `fine` is then as it was.
+    pub fn subdivide_into(&self, levels: u32, fine: &mut ControlPolygon<P>) -> Result<(), SubdivisionError> {
         check_levels(self.len(), levels, 1, MOST_ON_CURVE)?;
-        let (mut rows, mut next) = (self.rows.clone(), P::Rows::default());
-        for level in 1..=levels {
-            rows.refined(self.closed, self.tension.mask(level), &mut next);
-            std::mem::swap(&mut rows, &mut next);
-        }
-        Ok(ControlPolygon { rows, closed: self.closed, tension: self.tension.at_level(levels) })
+        let ControlPolygon { rows, closed, tension } = fine;
+        (*closed, *tension) = (self.closed, self.tension.at_level(levels));
+        rows.assign(&self.rows);
+        rows.refine(self.closed, (0..levels).map(|level| self.tension.mask(level + 1)));
+        Ok(())
     }
 
     /// Where the points end up on the limit curve; of an open polygon all but the first and last.
