@@ -22,8 +22,8 @@ use rvachev::{
     hyperbola_of_ellipse,
 };
 
-const WIDTH: u32 = 720;
-const HEIGHT: u32 = 250;
+const WIDTH: u32 = 1080;
+const HEIGHT: u32 = 380;
 
 const CAGE: [f64; 3] = [0.75, 0.20, 0.12];
 const CURVE: [f64; 3] = [0.10, 0.32, 0.55];
@@ -101,6 +101,8 @@ impl Curve {
         let limit = self.moved(self.polygon.limit(6)?)?;
         let residual = limit.iter().map(|&p| (self.equation)(p).abs()).fold(0.0, f64::max);
         let cage = self.polygon.points();
+        // Of what is moved, the ellipse that it comes from.
+        let source = if self.by_map.is_some() { self.polygon.limit(6)? } else { vec![] };
         let view = View::of_plane(cage.iter().chain(&limit).copied());
         let line = |points: &[DVec2]| points.iter().map(|p| p.extend(0.0)).collect::<Vec<DVec3>>();
         for panel in 0..3 {
@@ -112,7 +114,10 @@ impl Curve {
                     canvas.polyline(&place, &line(&once), closed, CURVE, 2.0);
                     canvas.dots(&place, &line(&once), CURVE);
                 }
-                _ => canvas.polyline(&place, &line(&limit), closed && self.by_map.is_none(), CURVE, 3.0),
+                _ => {
+                    canvas.polyline(&place, &line(&source), closed, CURVE, 1.0);
+                    canvas.polyline(&place, &line(&limit), closed && self.by_map.is_none(), CURVE, 3.0);
+                }
             }
         }
         Ok(residual)
@@ -173,17 +178,22 @@ fn surfaces() -> Result<Vec<Surface>, Box<dyn Error>> {
         limit: sheet.limit_mesh(4)?,
         equation: |_| 0.0,
     };
+    // Without their flat ends one sees into them.
+    let one_sheet = SubdivisionRevolution::one_sheet([0.8, 0.6, 0.8], 1.2)?;
+    let one_sheet = one_sheet.with_ends(ProfileEnd::Open, ProfileEnd::Open);
+    let two_sheets = SubdivisionRevolution::two_sheets([0.6, 0.5, 0.5], 1.0)?;
+    let two_sheets = two_sheets.with_ends(ProfileEnd::Pole, ProfileEnd::Open);
     Ok(vec![
         revolution("ellipsoid", &SubdivisionRevolution::ellipsoid([1.5, 1.0, 0.8])?, |p| {
             (p.x / 1.5).powi(2) + p.y.powi(2) + (p.z / 0.8).powi(2) - 1.0
         })?,
-        revolution("one_sheet", &SubdivisionRevolution::one_sheet([0.8, 0.6, 0.8], 1.2)?, |p| {
+        revolution("one_sheet", &one_sheet, |p| {
             let (a, z) = ((p.x / 0.8).powi(2) + (p.y / 0.6).powi(2), (p.z / 0.8).powi(2));
-            if a < 1e-20 { 0.0 } else { (a - z - 1.0) / a }
+            (a - z - 1.0) / a
         })?,
-        revolution("two_sheets", &SubdivisionRevolution::two_sheets([0.6, 0.5, 0.5], 1.3)?, |p| {
+        revolution("two_sheets", &two_sheets, |p| {
             let (a, z) = ((p.x / 0.6).powi(2) + (p.y / 0.5).powi(2), (p.z / 0.5).powi(2));
-            if a < 1e-20 && p.z.abs() > 0.6 { 0.0 } else { (z - a - 1.0) / z }
+            (z - a - 1.0) / z
         })?,
         revolution("elliptic_torus", &SubdivisionRevolution::elliptic_torus([0.4, 0.5], 1.3, 0.7)?, |p| {
             let across = (p.x.hypot(p.y / 0.7) - 1.3) / 0.4;

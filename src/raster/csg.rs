@@ -40,9 +40,9 @@ enum Plan {
 }
 
 impl Plan {
-    fn tile(&self, operands: &[&dyn LayerSource], tile: &Tile) -> Target {
+    fn tile(&self, operands: &[&dyn LayerSource], tile: &Tile, scratch: &mut intervals::Scratch) -> Target {
         match self {
-            Plan::Intervals(circuit) => intervals::tile(circuit, operands, tile),
+            Plan::Intervals(circuit) => intervals::tile(circuit, operands, tile, scratch),
             Plan::Sequenced(sequences) => sequences.tile(operands, tile),
             Plan::Stencil(passes) => passes.tile(operands, tile),
         }
@@ -125,9 +125,9 @@ impl RasterView {
         let tiles = run.install(|| {
             (0..count)
                 .into_par_iter()
-                .map(|number| {
+                .map_init(intervals::Scratch::default, |scratch, number| {
                     run.check()?;
-                    let target = plan.tile(operands, &Tile::number(number, self.width, self.height));
+                    let target = plan.tile(operands, &Tile::number(number, self.width, self.height), scratch);
                     let done = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
                     run.report(f64::from(done) / f64::from(count));
                     Ok(target)

@@ -674,7 +674,8 @@ fn trees_are_lowered_rightly() {
 
 #[test]
 fn long_trees_do_not_exhaust_the_stack() {
-    let a = ball(1.0, [0.0; 3]);
+    // Few pixels, each of which follows the whole tree.
+    let a = ball(0.1, [0.0; 3]);
     let mut tree = Csg::operand(0);
     for i in 0..100_000u32 {
         tree = match i % 3 {
