@@ -96,7 +96,7 @@ fn steps() -> Result<Sheet> {
     let a = superellipsoid([1.2, 1.0, 0.8], 0.35, 0.35)?;
     let b = moved(superellipsoid([0.8, 0.8, 0.8], 1.0, 1.0)?, 0.75, -0.65, 0.45)?;
     let camera = Camera::framing(&a.bounds().union(&b.bounds()));
-    let view = RasterView::new(&camera, 220 * FINER, 200 * FINER)?;
+    let view = RasterView::new(&camera, 280 * FINER, 240 * FINER)?;
     let [a, b] = [view.layers(ClosedMesh::new(&a)?), view.layers(ClosedMesh::new(&b)?)];
     let operands: [&dyn LayerSource; 2] = [&a, &b];
     let mut panels = Vec::new();
@@ -136,7 +136,7 @@ fn joins() -> Result<Sheet> {
     let b = moved(superellipsoid([0.75, 0.75, 0.75], 1.0, 1.0)?, 0.55, -0.6, 0.4)?;
     let c = superellipsoid([0.42, 0.42, 1.4], 0.1, 1.0)?;
     let camera = Camera::framing(&a.bounds().union(&b.bounds()).union(&c.bounds()));
-    let view = RasterView::new(&camera, 220 * FINER, 220 * FINER)?;
+    let view = RasterView::new(&camera, 240 * FINER, 240 * FINER)?;
     let layers =
         [view.layers(ClosedMesh::new(&a)?), view.layers(ClosedMesh::new(&b)?), view.layers(ClosedMesh::new(&c)?)];
     let operands: Vec<&dyn LayerSource> = layers.iter().map(|l| l as &dyn LayerSource).collect();

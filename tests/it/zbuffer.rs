@@ -638,6 +638,32 @@ fn deformed_operands_like_for_like_with_rays() {
 }
 
 #[test]
+fn moved_meshes_keep_what_they_carry() {
+    let octahedron = Superellipsoid::new([1.0, 1.0, 1.0], 2.0, 2.0).surface().unwrap();
+    let mesh = octahedron.mesh(&PatchSettings { rows: 8, columns: 16, ..PatchSettings::default() }).unwrap();
+    let count = mesh.triangles().len();
+    let colors = (0..count).map(|t| [0, 1, 2].map(|k| [t as u8, k, 7, 255])).collect();
+    let mesh = mesh.with_corner_colors(colors).unwrap().with_owners((0..count as u32).collect()).unwrap();
+    let shear = DMat3::from_cols(DVec3::X, DVec3::new(0.5, 1.0, 0.2), DVec3::new(0.0, 0.3, 2.0));
+    let mirror = DMat3::from_diagonal(DVec3::new(1.0, -1.0, 1.0));
+    for (map, order) in [(shear, [0, 1, 2]), (mirror * shear, [0, 2, 1])] {
+        let moved = mesh.affine(DAffine3::from_mat3(map)).unwrap();
+        assert_eq!(moved.owners(), mesh.owners());
+        for t in 0..count {
+            assert_eq!(moved.triangles()[t], order.map(|k| mesh.triangles()[t][k]));
+            assert_eq!(moved.corner_colors().unwrap()[t], order.map(|k| mesh.corner_colors().unwrap()[t][k]));
+            assert_eq!(moved.corner_texture().unwrap()[t], order.map(|k| mesh.corner_texture().unwrap()[t][k]));
+            // Faces stay flat, and each corner has its own face's normal.
+            let [a, b, c] = moved.triangles()[t].map(|i| moved.positions()[i as usize]);
+            let face = (b - a).cross(c - a).normalize();
+            assert!(moved.corner_normals().unwrap()[t].iter().all(|n| n.distance(face) < 1e-4));
+        }
+    }
+    let twisted = mesh.twist(0.3).unwrap();
+    assert!(twisted.corner_normals().is_some() && twisted.corner_texture() == mesh.corner_texture());
+}
+
+#[test]
 fn trees_are_lowered_rightly() {
     // All trees of a few operations against the table of truth, by the products and by the
     // circuit: four balls that meet in every way, seen along the eye.
