@@ -13,6 +13,19 @@ use super::stitch::{End, Knot, Knots, Layout, stitch};
 use crate::geom::{Mesh, MeshError, QuadMesh};
 
 /// How a parametric surface is meshed.
+///
+/// ```
+/// use rvachev::{PatchSettings, Spacing, Superellipsoid};
+///
+/// // A rounded box: by angles most of the triangles are at its edges, and some too long.
+/// let surface = Superellipsoid::new([1.0, 1.5, 0.7], 0.2, 0.2).surface()?;
+/// let by_angle = surface.mesh(&PatchSettings::default())?;
+/// let within = surface.mesh(&PatchSettings { spacing: Spacing::Chord(0.005), ..PatchSettings::default() })?;
+/// let even = surface.mesh(&PatchSettings { spacing: Spacing::EqualArc, ..PatchSettings::default() })?;
+/// assert!(within.triangles().len() < by_angle.triangles().len() / 3);
+/// assert_eq!(even.triangles().len(), by_angle.triangles().len());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PatchSettings {
     /// Rows of faces along the meridian, 2 to 100 000 (3 around a tube). Default: 32.
@@ -128,11 +141,13 @@ impl ParametricSurface {
         Ok(self.quad_mesh(settings)?.to_mesh()?)
     }
 
-    /// The same as quadrilaterals in double precision, with triangles at poles and clipped ends.
+    /// The same as quadrilaterals in double precision, with triangles at poles and clipped ends;
+    /// by [`Spacing::Chord`] triangles only. Positions are in length units, normals of length 1.
     ///
     /// # Errors
     ///
-    /// A setting out of its range.
+    /// [`PatchError::Count`] or [`PatchError::Tolerance`] for a setting out of its range, and for a
+    /// tolerance that is not met.
     pub fn quad_mesh(&self, settings: &PatchSettings) -> Result<QuadMesh, PatchError> {
         settings.check(self.shape)?;
         let mut mesh = QuadMesh::default();

@@ -590,9 +590,8 @@ fn superellipsoids_like_for_like_with_rays() {
         for camera in cameras() {
             let view = RasterView::new(&camera, 60, 45).unwrap();
             let all: Vec<&Mesh> = meshes.iter().take(tree.operands()).collect();
-            // Twice, for curvature within a triangle.
-            let (compared, silhouettes) = like_for_like(&view, &all, &tree, &solid, 2.0 * error);
-            println!("{tree}: {compared} pixels within {:.1e}, {silhouettes} at silhouettes", 2.0 * error);
+            let (compared, silhouettes) = like_for_like(&view, &all, &tree, &solid, error);
+            println!("{tree}: {compared} pixels within {error:.1e}, {silhouettes} at silhouettes");
             assert!(compared > 200 && silhouettes < compared / 4, "{tree}: {compared} {silhouettes}");
         }
     }
@@ -622,7 +621,7 @@ fn deformed_operands_like_for_like_with_rays() {
         assert!(error < 0.01, "{error}");
         let view = RasterView::new(&cameras()[0], 50, 40).unwrap();
         let all = solid.difference(&ball_solid, RFunction::MIN_MAX);
-        let (compared, silhouettes) = like_for_like(&view, &[&mesh, &ball], &tree, &all, 2.0 * error);
+        let (compared, silhouettes) = like_for_like(&view, &[&mesh, &ball], &tree, &all, error);
         assert!(compared > 150 && silhouettes < compared / 3, "{compared} {silhouettes}");
     }
     let parameter = |result: Result<Mesh, RasterError>| result.unwrap_err().to_string();

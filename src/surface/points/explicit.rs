@@ -130,6 +130,16 @@ fn product<R: Real>(x: R, n: u32) -> R {
 }
 
 /// Heights by the binomial series (method 3): two powers and a polynomial.
+///
+/// ```
+/// use rvachev::SeriesExplicit;
+///
+/// let series = SeriesExplicit::new(5.0, 1e-3)?;
+/// assert_eq!(series.series().terms(), 8);
+/// let exact = (1.0 - 0.5f64.powi(5) - 0.7f64.powi(5)).powf(0.2);
+/// assert!((series.height(0.5, 0.7) - exact).abs() < 1e-3);
+/// # Ok::<(), rvachev::PointError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct SeriesExplicit {
     n: f64,

@@ -232,6 +232,16 @@ impl GeneralisedSuperquadric {
     /// `2·eighth` to a side, moved to `d/G(d)`; reflected 48-fold, 16-fold or 8-fold as the
     /// exponents are equal or not, then scaled.
     ///
+    /// ```
+    /// use rvachev::{Field, GeneralisedSuperquadric};
+    ///
+    /// let shape = GeneralisedSuperquadric::new([1.0, 2.0, 3.0], [5.0, 3.0, 1.5]);
+    /// let points = shape.points(8)?;
+    /// assert_eq!(points.len(), 6 * 16 * 16 + 2);
+    /// assert!(points.iter().all(|p| shape.eval(p.to_array()).abs() < 1e-12));
+    /// # Ok::<(), rvachev::PointError>(())
+    /// ```
+    ///
     /// # Errors
     /// A parameter out of its range.
     pub fn points(&self, eighth: u32) -> Result<Vec<DVec3>, PointError> {
