@@ -66,9 +66,11 @@ impl Batch {
 impl Triangle {
     /// A triangle from its corners' coordinates in fractions of a pixel, anticlockwise in the
     /// picture if it is seen from its front; `None` if it has no area.
+    #[inline]
     pub(super) fn new(corners: [(i32, i32, f64); 3], face: u32) -> Option<Triangle> {
         let [a, b, c] = corners;
-        let [ux, uy, vx, vy] = [b.0 - a.0, b.1 - a.1, c.0 - a.0, c.1 - a.1].map(i64::from);
+        let (ux, uy) = (i64::from(b.0 - a.0), i64::from(b.1 - a.1));
+        let (vx, vy) = (i64::from(c.0 - a.0), i64::from(c.1 - a.1));
         let area = ux * vy - uy * vx;
         let (facing, [a, b, c]) = match area {
             0 => return None,

@@ -196,6 +196,8 @@ fn hyperbola(e: f64, t: f64, end: f64, by_height: bool) -> Local {
 /// The Gielis curve; of several turns the one that counts.
 fn gielis(curve: &Gielis, radius: Radius, turns: u32, theta: f64) -> Local {
     let quarter = 0.25 * curve.m;
+    // What is so large has no digits left for the angle, and its multiples may overflow.
+    let theta = if theta.abs() > 1e15 { theta % (2.0 * PI) } else { theta };
     let of_turn = |turn: u32| {
         let (sin, cos) = sin_cos(quarter * (theta + f64::from(turn) * 2.0 * PI));
         let sin = Dual::new(sin, [quarter * cos, 0.0, 0.0]);

@@ -77,6 +77,8 @@ fn sound(what: &str, mesh: &QuadMesh) {
 }
 
 fn try_surface(what: &str, surface: &ParametricSurface, chance: &mut Chance) {
+    // Never a point that is none, and looks like one.
+    assert!(surface.point(0.3, f64::NAN).is_nan() && surface.point(f64::NAN, 0.3).is_nan(), "{what}");
     for eta in angles() {
         let omega = GOOD[chance.below(GOOD.len())];
         for frame in [surface.frame(eta, omega), surface.frame(omega, eta)] {
@@ -228,7 +230,7 @@ fn points_take_anything() {
         }
         if let Ok(raw) = RawParametric::new(n, e2) {
             for angle in angles() {
-                finite("raw", [raw.point(angle, x.clamp(-9.0, 9.0)).into()]);
+                finite("raw", [raw.point(angle, 0.3).into(), raw.point(0.3, angle).into()]);
             }
         }
     }
