@@ -2,8 +2,8 @@
 //!
 //! A piece of the ray is a region like any other. Where the program narrowed to it has one
 //! sign, there is no crossing. Where the slope along the ray has one sign, there is one
-//! crossing if the ends differ in sign and none if they agree; bracketing finds it. Else the
-//! piece is halved, the nearer half first.
+//! crossing if the ends differ in sign and none if they agree; bracketing finds it. Else what
+//! the values at the ends and the slopes leave of the piece is halved, the nearer half first.
 
 use glam::DVec3;
 
@@ -35,6 +35,13 @@ const PIECES: usize = 1 << 18;
 /// The slope is asked for only of programs with at most this many leaves.
 const FEW: usize = 6;
 
+/// A piece of a ray, and which of its ends are inside.
+struct Piece {
+    program: Program,
+    ends: [f64; 2],
+    inside: [bool; 2],
+}
+
 /// The first crossing on `origin + t·direction` (a unit vector) with `near ≤ t ≤ far`.
 pub(crate) fn first_hit(
     program: &Program,
@@ -52,27 +59,55 @@ pub(crate) fn first_hit(
     let size = if bounds.is_finite() { bounds.size().length() } else { 1.0 };
     let shortest = SHORTEST * (size + origin.abs().max_element().min(1e6) + near);
     let at = |t: f64| origin + t * direction;
-    let mut pieces = vec![(program.clone(), near, far)];
+    let inside = [near, far].map(|t| program.value(at(t)) > 0.0);
+    let mut pieces = vec![Piece { program: program.clone(), ends: [near, far], inside }];
     for _ in 0..PIECES {
-        let Some((program, t0, t1)) = pieces.pop() else { break };
-        let Region::Surface(program) = program.narrow_zone(&Zone::of_segment(at(t0), at(t1))) else { continue };
-        let (inside0, inside1) = (program.value(at(t0)) > 0.0, program.value(at(t1)) > 0.0);
-        let certain =
-            t1 - t0 <= shortest || (program.leaf_count() <= FEW && one_way(&program, origin, direction, t0, t1));
-        if certain {
-            if inside0 == inside1 {
+        let Some(Piece { mut program, ends: [t0, t1], inside }) = pieces.pop() else { break };
+        let slope = |program: &Program| match program.leaf_count() <= FEW {
+            true => slope_along(program, origin, direction, t0, t1),
+            false => Interval::ALL,
+        };
+        // Narrowing one leaf leaves one.
+        let single = program.leaf_count() == 1;
+        let mut slopes = if single { slope(&program) } else { Interval::ALL };
+        if !one_signed(slopes) {
+            let Region::Surface(narrowed) = program.narrow_zone(&Zone::of_segment(at(t0), at(t1))) else { continue };
+            program = narrowed;
+            slopes = if single { slopes } else { slope(&program) };
+        }
+        if t1 - t0 <= shortest || one_signed(slopes) {
+            if inside[0] == inside[1] {
                 continue;
             }
             return Some(hit_between(&program, &at, t0, t1));
         }
+        let [t0, t1] = within_reach(slopes, [t0, t1], [t0, t1].map(|t| program.value(at(t))));
+        if t0 >= t1 {
+            if inside[0] == inside[1] {
+                continue;
+            }
+            return Some(hit_between(&program, &at, t1, t0));
+        }
         let middle = 0.5 * (t0 + t1);
-        pieces.push((program.clone(), middle, t1));
-        pieces.push((program, t0, middle));
+        let between = program.value(at(middle)) > 0.0;
+        pieces.push(Piece { program: program.clone(), ends: [middle, t1], inside: [between, inside[1]] });
+        pieces.push(Piece { program, ends: [t0, middle], inside: [inside[0], between] });
     }
     None
 }
 
-/// The hit between two distances whose values differ in sign.
+/// What is left of a piece where the value may be 0, given those at its ends and the slopes
+/// between: from either end it takes the value a while to get there.
+fn within_reach(slopes: Interval, [t0, t1]: [f64; 2], [v0, v1]: [f64; 2]) -> [f64; 2] {
+    let way = |value: f64, fall: f64, rise: f64| {
+        let steepest = if value > 0.0 { fall } else { rise };
+        let way = value.abs() / (steepest * (1.0 + 1e-9));
+        if way.is_finite() { way } else { 0.0 }
+    };
+    [t0 + way(v0, -slopes.lo(), slopes.hi()), t1 - way(v1, slopes.hi(), -slopes.lo())]
+}
+
+/// The hit between two distances whose values differ in sign, but for rounding.
 fn hit_between(program: &Program, at: &impl Fn(f64) -> DVec3, t0: f64, t1: f64) -> Hit {
     let t = bracket(program, at, t0, t1);
     let point = at(t);
@@ -80,13 +115,12 @@ fn hit_between(program: &Program, at: &impl Fn(f64) -> DVec3, t0: f64, t1: f64) 
     Hit { distance: t, point, normal, owner: program.deciding_leaf(point) }
 }
 
-/// Whether the value only rises or only falls from `t0` to `t1`.
-fn one_way(program: &Program, origin: DVec3, direction: DVec3, t0: f64, t1: f64) -> bool {
+/// The slopes of the value along the ray from `t0` to `t1`.
+fn slope_along(program: &Program, origin: DVec3, direction: DVec3, t0: f64, t1: f64) -> Interval {
     let t = Dual::variable(Interval::new(t0, t1), 0);
     let along = |o: f64, d: f64| t * Dual::constant(Interval::point(d)) + Dual::constant(Interval::point(o));
     let p = [along(origin.x, direction.x), along(origin.y, direction.y), along(origin.z, direction.z)];
-    let slope = program.evaluate(p, &mut Vec::new()).gradient()[0];
-    one_signed(slope)
+    program.evaluate(p, &mut Vec::new()).gradient()[0]
 }
 
 /// Whether a value with this slope only rises or only falls, but for rounding: a flat piece
@@ -96,11 +130,14 @@ fn one_signed(slope: Interval) -> bool {
     slope.lo() > -ROUNDING || slope.hi() < ROUNDING
 }
 
-/// The crossing between `t0` and `t1`, whose values differ in sign: the false position
-/// method with halving (Illinois), which never leaves the bracket.
+/// The crossing between `t0` and `t1`: the false position method with halving (Illinois), which
+/// never leaves the bracket. Where rounding has the same sign at both ends it is at one of them.
 fn bracket(program: &Program, at: &impl Fn(f64) -> DVec3, mut t0: f64, mut t1: f64) -> f64 {
     let (mut f0, mut f1) = (program.value(at(t0)), program.value(at(t1)));
     let inside0 = f0 > 0.0;
+    if inside0 == (f1 > 0.0) {
+        return if f0.abs() < f1.abs() { t0 } else { t1 };
+    }
     let mut kept = 0i32;
     for _ in 0..80 {
         let width = t1 - t0;
