@@ -35,7 +35,8 @@ struct Curve {
     polygon: ControlPolygon<DVec2>,
     /// Moves points of an ellipse to a hyperbola.
     by_map: Option<f64>,
-    equation: fn(DVec2) -> f64,
+    /// 0 on the figure, if it has an equation.
+    equation: Option<fn(DVec2) -> f64>,
 }
 
 fn curves() -> Result<Vec<Curve>, Box<dyn Error>> {
@@ -46,44 +47,49 @@ fn curves() -> Result<Vec<Curve>, Box<dyn Error>> {
             name: "ellipse",
             polygon: ControlPolygon::ellipse([1.6, 1.0])?,
             by_map: None,
-            equation: |p| (p.x / 1.6).powi(2) + p.y.powi(2) - 1.0,
+            equation: Some(|p| (p.x / 1.6).powi(2) + p.y.powi(2) - 1.0),
         },
         Curve {
             name: "triangle_to_circle",
             polygon: ControlPolygon::ellipse_of(3, [1.0, 1.0])?,
             by_map: None,
-            equation: |p| p.length_squared() - 1.0,
+            equation: Some(|p| p.length_squared() - 1.0),
         },
         Curve {
             name: "hyperbola",
             polygon: ControlPolygon::hyperbola([1.0, 1.0], 2.0, 2)?,
             by_map: None,
-            equation: |p| (p.x * p.x - p.y * p.y - 1.0) / (p.x * p.x),
+            equation: Some(|p| (p.x * p.x - p.y * p.y - 1.0) / (p.x * p.x)),
         },
         Curve {
             name: "hyperbola_of_ellipse",
             polygon: ControlPolygon::ellipse_of(12, [1.0, 1.0])?,
             by_map: Some(1.0),
-            equation: |p| (p.x * p.x - p.y * p.y - 1.0) / (p.x * p.x),
+            equation: Some(|p| (p.x * p.x - p.y * p.y - 1.0) / (p.x * p.x)),
         },
         Curve {
             name: "parabola",
             polygon: ControlPolygon::parabola(0.5, 2.0, 2)?,
             by_map: None,
-            equation: |p| p.y - 0.5 * p.x * p.x,
+            equation: Some(|p| p.y - 0.5 * p.x * p.x),
         },
         Curve {
             name: "cosine",
             polygon: ControlPolygon::cosine_graph(5)?,
             by_map: None,
-            equation: |p| p.y - p.x.cos(),
+            equation: Some(|p| p.y - p.x.cos()),
         },
-        Curve { name: "sine", polygon: ControlPolygon::sine_graph(5)?, by_map: None, equation: |p| p.y - p.x.sin() },
+        Curve {
+            name: "sine",
+            polygon: ControlPolygon::sine_graph(5)?,
+            by_map: None,
+            equation: Some(|p| p.y - p.x.sin()),
+        },
         Curve {
             name: "free_polygon",
             polygon: ControlPolygon::closed(&free, Tension::trigonometric(std::f64::consts::FRAC_PI_3)?)?,
             by_map: None,
-            equation: |_| 0.0,
+            equation: None,
         },
     ])
 }
@@ -95,11 +101,11 @@ impl Curve {
         Ok(hyperbola_of_ellipse(&points, a)?.into_iter().filter(|p| p.y.abs() < 4.0).collect())
     }
 
-    fn draw(&self, canvas: &mut Canvas) -> Result<f64, Box<dyn Error>> {
+    fn draw(&self, canvas: &mut Canvas) -> Result<Option<f64>, Box<dyn Error>> {
         let closed = self.polygon.is_closed();
         let once = self.polygon.subdivided(1)?.points();
         let limit = self.moved(self.polygon.limit(6)?)?;
-        let residual = limit.iter().map(|&p| (self.equation)(p).abs()).fold(0.0, f64::max);
+        let residual = self.equation.map(|equation| limit.iter().map(|&p| equation(p).abs()).fold(0.0, f64::max));
         let cage = self.polygon.points();
         // Of what is moved, the ellipse that it comes from.
         let source = if self.by_map.is_some() { self.polygon.limit(6)? } else { vec![] };
@@ -130,13 +136,13 @@ struct Surface {
     cage: QuadMesh,
     once: QuadMesh,
     limit: QuadMesh,
-    equation: fn(DVec3) -> f64,
+    equation: Option<fn(DVec3) -> f64>,
 }
 
 fn revolution(
     name: &'static str,
     figure: &SubdivisionRevolution,
-    equation: fn(DVec3) -> f64,
+    equation: Option<fn(DVec3) -> f64>,
 ) -> Result<Surface, Box<dyn Error>> {
     Ok(Surface {
         name,
@@ -176,7 +182,7 @@ fn surfaces() -> Result<Vec<Surface>, Box<dyn Error>> {
         cage: sheet.control_cage(),
         once: sheet.subdivided(1)?.control_cage(),
         limit: sheet.limit_mesh(4)?,
-        equation: |_| 0.0,
+        equation: None,
     };
     // Without their flat ends one sees into them.
     let one_sheet = SubdivisionRevolution::one_sheet([0.8, 0.6, 0.8], 1.2)?;
@@ -184,33 +190,51 @@ fn surfaces() -> Result<Vec<Surface>, Box<dyn Error>> {
     let two_sheets = SubdivisionRevolution::two_sheets([0.6, 0.5, 0.5], 1.0)?;
     let two_sheets = two_sheets.with_ends(ProfileEnd::Pole, ProfileEnd::Open);
     Ok(vec![
-        revolution("ellipsoid", &SubdivisionRevolution::ellipsoid([1.5, 1.0, 0.8])?, |p| {
-            (p.x / 1.5).powi(2) + p.y.powi(2) + (p.z / 0.8).powi(2) - 1.0
-        })?,
-        revolution("one_sheet", &one_sheet, |p| {
-            let (a, z) = ((p.x / 0.8).powi(2) + (p.y / 0.6).powi(2), (p.z / 0.8).powi(2));
-            (a - z - 1.0) / a
-        })?,
-        revolution("two_sheets", &two_sheets, |p| {
-            let (a, z) = ((p.x / 0.6).powi(2) + (p.y / 0.5).powi(2), (p.z / 0.5).powi(2));
-            (z - a - 1.0) / z
-        })?,
-        revolution("elliptic_torus", &SubdivisionRevolution::elliptic_torus([0.4, 0.5], 1.3, 0.7)?, |p| {
-            let across = (p.x.hypot(p.y / 0.7) - 1.3) / 0.4;
-            across.powi(2) + (p.z / 0.5).powi(2) - 1.0
-        })?,
-        revolution("elliptic_cylinder", &SubdivisionRevolution::elliptic_cylinder([1.2, 0.8], 0.9)?, |p| {
-            let a = (p.x / 1.2).powi(2) + (p.y / 0.8).powi(2);
-            if a < 1e-20 { 0.0 } else { a - 1.0 }
-        })?,
-        revolution("vase", &vase, |_| 0.0)?,
-        revolution("free_ring", &ring, |_| 0.0)?,
+        revolution(
+            "ellipsoid",
+            &SubdivisionRevolution::ellipsoid([1.5, 1.0, 0.8])?,
+            Some(|p| (p.x / 1.5).powi(2) + p.y.powi(2) + (p.z / 0.8).powi(2) - 1.0),
+        )?,
+        revolution(
+            "one_sheet",
+            &one_sheet,
+            Some(|p| {
+                let (a, z) = ((p.x / 0.8).powi(2) + (p.y / 0.6).powi(2), (p.z / 0.8).powi(2));
+                (a - z - 1.0) / a
+            }),
+        )?,
+        revolution(
+            "two_sheets",
+            &two_sheets,
+            Some(|p| {
+                let (a, z) = ((p.x / 0.6).powi(2) + (p.y / 0.5).powi(2), (p.z / 0.5).powi(2));
+                (z - a - 1.0) / z
+            }),
+        )?,
+        revolution(
+            "elliptic_torus",
+            &SubdivisionRevolution::elliptic_torus([0.4, 0.5], 1.3, 0.7)?,
+            Some(|p| {
+                let across = (p.x.hypot(p.y / 0.7) - 1.3) / 0.4;
+                across.powi(2) + (p.z / 0.5).powi(2) - 1.0
+            }),
+        )?,
+        revolution(
+            "elliptic_cylinder",
+            &SubdivisionRevolution::elliptic_cylinder([1.2, 0.8], 0.9)?,
+            Some(|p| {
+                let a = (p.x / 1.2).powi(2) + (p.y / 0.8).powi(2);
+                if a < 1e-20 { 0.0 } else { a - 1.0 }
+            }),
+        )?,
+        revolution("vase", &vase, None)?,
+        revolution("free_ring", &ring, None)?,
         sheet,
     ])
 }
 
 impl Surface {
-    fn draw(&self, canvas: &mut Canvas) -> f64 {
+    fn draw(&self, canvas: &mut Canvas) -> Option<f64> {
         let view = View::of_space(self.cage.positions().iter().chain(self.limit.positions()).copied());
         let place = canvas.panel(0, 3, &view);
         canvas.faces(&place, &self.cage, SURFACE);
@@ -221,7 +245,8 @@ impl Surface {
         let place = canvas.panel(2, 3, &view);
         canvas.faces(&place, &self.limit, SURFACE);
         canvas.edges(&place, &self.cage, CAGE, true);
-        self.limit.positions().iter().map(|&p| (self.equation)(p).abs()).fold(0.0, f64::max)
+        let positions = self.limit.positions();
+        self.equation.map(|equation| positions.iter().map(|&p| equation(p).abs()).fold(0.0, f64::max))
     }
 }
 
@@ -230,10 +255,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all(&folder)?;
     println!("Control polygon or cage, one level, limit; how far points of the limit are from the equation:");
     let start = Instant::now();
-    let save = |name: &str, residual: f64, canvas: Canvas| -> Result<(), Box<dyn Error>> {
+    let save = |name: &str, residual: Option<f64>, canvas: Canvas| -> Result<(), Box<dyn Error>> {
         let path = folder.join(format!("subdivision_{name}.png"));
         canvas.image()?.save(&path)?;
-        println!("  {:50} {residual:.0e}", path.display());
+        let residual = residual.map_or("no equation".into(), |residual| format!("{residual:.0e}"));
+        println!("  {:54} {residual}", path.display());
         Ok(())
     };
     for curve in curves()? {
