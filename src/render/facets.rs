@@ -123,7 +123,7 @@ impl Facets {
         for axis in 0..3 {
             let len = self.blocks[axis] as usize;
             let stride = [1, self.blocks.x, self.blocks.x * self.blocks.y][axis] as usize;
-            for start in (0..near.len()).filter(|at| at / stride % len == 0) {
+            for start in (0..near.len()).filter(|at| (at / stride).is_multiple_of(len)) {
                 line.clear();
                 line.extend((0..len).map(|i| near[start + i * stride]));
                 for i in 0..len {
@@ -165,7 +165,7 @@ impl Facets {
             near = near.max(a.min(b));
             far = far.min(a.max(b));
         }
-        if !(near < far) {
+        if near >= far {
             return None;
         }
         let ray = Walk {
