@@ -36,4 +36,4 @@ pub use tape::{Evaluator, Gradients, Tape};
 
 pub(crate) use bend::Bend;
 pub(crate) use compile::compiled;
-pub(crate) use ray::first_hit;
+pub(crate) use ray::{Care, first_hit};

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::nearest::nearest;
 use super::point::limited;
 use super::tape::{Evaluator, Tape};
-use super::{Hit, Program, Region, compiled, first_hit};
+use super::{Care, Hit, Program, Region, compiled, first_hit};
 use crate::{Bounds, Interval, Solid, SolidError};
 
 /// A leaf of a solid, as an answer: which leaf decides here?
@@ -167,7 +167,8 @@ impl Solid {
         if direction == DVec3::ZERO || !origin.is_finite() {
             return Ok(None);
         }
-        Ok(first_hit(&programs.surface, &programs.bounds, origin, direction, 0.0, f64::INFINITY))
+        let whole = [0.0, f64::INFINITY];
+        Ok(first_hit(&programs.surface, &programs.bounds, (origin, direction), whole, Care::Full))
     }
 
     /// The point of the surface nearest to `p`, to about 10⁻⁹ of the solid's size where the

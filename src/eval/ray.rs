@@ -24,9 +24,29 @@ pub struct Hit {
     pub owner: u32,
 }
 
-/// Pieces shorter than this times the solid's size are not halved further: what crosses
-/// within them and back touches rather than crosses.
-const SHORTEST: f64 = 1e-7;
+/// How much is done for a ray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Care {
+    /// A crossing and back within 10⁻¹⁰ of the size is a touch. The value of a fillet or chamfer
+    /// jumps where its edge cannot be found, and its slopes are not trusted.
+    Full,
+    /// Within 10⁻⁶; slopes of blends are trusted.
+    Picture,
+}
+
+impl Care {
+    /// Pieces shorter than this times the solid's size are not halved further.
+    fn shortest(self) -> f64 {
+        match self {
+            Care::Full => 1e-10,
+            Care::Picture => 1e-6,
+        }
+    }
+
+    fn trusts(self, program: &Program) -> bool {
+        self == Care::Picture || program.idle.is_none()
+    }
+}
 
 /// A piece is narrowed when it is shorter than this part of the one narrowed before: halves that
 /// differ little from the whole tell little more.
@@ -56,10 +76,9 @@ struct Piece {
 pub(crate) fn first_hit(
     program: &Program,
     bounds: &Bounds,
-    origin: DVec3,
-    direction: DVec3,
-    near: f64,
-    far: f64,
+    (origin, direction): (DVec3, DVec3),
+    [near, far]: [f64; 2],
+    care: Care,
 ) -> Option<Hit> {
     let (enter, leave) = clip(bounds, origin, direction)?;
     let (near, far) = (near.max(enter), far.min(leave));
@@ -67,7 +86,7 @@ pub(crate) fn first_hit(
         return None;
     }
     let size = if bounds.is_finite() { bounds.size().length() } else { 1.0 };
-    let shortest = SHORTEST * (size + origin.abs().max_element().min(1e6) + near);
+    let shortest = care.shortest() * (size + origin.abs().max_element().min(1e6) + near);
     let at = |t: f64| origin + t * direction;
     let values = [near, far].map(|t| program.value(at(t)));
     let (inside, slopes) = (values.map(|value| value > 0.0), Interval::ALL);
@@ -91,7 +110,7 @@ pub(crate) fn first_hit(
             continue;
         }
         if t1 - t0 < ASK * piece.known {
-            let slopes = |program: &Program| match program.leaf_count() <= FEW {
+            let slopes = |program: &Program| match program.leaf_count() <= FEW && care.trusts(program) {
                 true => slope_along(program, origin, direction, t0, t1),
                 false => Interval::ALL,
             };

@@ -22,7 +22,7 @@ use glam::{DVec3, Vec3};
 
 use super::cells::{Cell, Cells};
 use super::gbuffer::Surface;
-use crate::eval::{Bend, Evaluator, Gradients, Tape, first_hit};
+use crate::eval::{Bend, Care, Evaluator, Gradients, Tape, first_hit};
 use crate::{Bounds, Interval};
 
 /// A ray under way.
@@ -101,6 +101,9 @@ const ROUNDS: usize = 48;
 /// a chunk of them.
 const FEW: usize = 5;
 
+/// A search leaps this part of what a step may go on beyond where it is safe.
+const LEAP: f32 = 0.9;
+
 /// After as many steps of a search.
 const SETTLED: usize = 10;
 
@@ -113,8 +116,10 @@ const SLOPE_ERROR: f32 = 1e-3;
 /// Depths this exact, in proportion to the solid, need no step in double precision.
 const FINE: f64 = 6e-6;
 
-/// Crossings nearer to each other than this, in proportion to the solid, are one.
+/// Crossings nearer to each other than this, in proportion to the solid, are one; so are those
+/// within a few lengths of the doubt where that is larger, as it is of fillets and chamfers.
 const CLOSE: f64 = 8e-5;
+const DOUBTS: f64 = 16.0;
 
 /// Scratch memory of a thread.
 #[derive(Default)]
@@ -160,7 +165,8 @@ impl Marcher {
         self.finish(&job, surfaces);
         for &Span { ray, near, far } in &self.open {
             let Ray { origin, direction, base, .. } = rays[ray as usize];
-            let first = |near, far| first_hit(&cell.program, &job.reach, origin, direction, near, far);
+            let first =
+                |near, far| first_hit(&cell.program, &job.reach, (origin, direction), [near, far], Care::Picture);
             let hit = match job.tangents(ray, near, far) {
                 Outcome::Miss => continue,
                 Outcome::Between(before, after) => first(before, after).or_else(|| first(near, far)),
@@ -394,18 +400,22 @@ impl Marcher {
                 break;
             }
             self.sift(job, &mut lanes, |lists, lane, Local { g, s, .. }| {
+                let (lo, hi) = job.slopes(lane);
                 if lane.probe {
                     lane.probe = false;
-                    if g > job.doubt {
+                    if g > job.doubt && lane.at - lane.left <= job.close {
                         (lane.right, lane.g_right, lane.s_right) = (lane.at, g, s);
                         lane.aim(lane.at - g / s);
                         lists.unique.push(*lane);
                         return false;
                     }
-                    lane.at = lane.left;
-                    return true;
+                    // What the value takes to rise from 0 to here may cover all of the leap.
+                    let covered = lane.at - (-g - job.doubt) / -lo <= lane.left;
+                    if !(g < -job.doubt && covered) {
+                        lane.at = lane.left;
+                        return true;
+                    }
                 }
-                let (lo, hi) = job.slopes(lane);
                 let safe = lane.at + (-g - job.doubt) / hi;
                 if !(g < -job.doubt && hi.is_finite() && safe > lane.at) {
                     lists.open.push(job.rest(lane));
@@ -425,8 +435,18 @@ impl Marcher {
                 // a difference.
                 let beyond = lane.at + (-1.05 * g + 4.0 * job.doubt) / s;
                 lane.left = safe;
-                lane.probe = s > 0.0 && beyond > safe && beyond < lane.right && beyond - safe <= job.close;
-                lane.at = if lane.probe { beyond } else { safe };
+                let near = s > 0.0 && beyond > safe && beyond < lane.right && beyond - safe <= job.close;
+                // A step that the bounds from both of its ends just cover if the value goes on as
+                // it does here.
+                let (way, back) = (safe - lane.at, (-g - job.doubt) / -lo);
+                let leap = lane.at + way + LEAP * ((way + back) / (1.0 + s / -lo) - way);
+                let far = lo < 0.0 && leap > safe && leap < end;
+                lane.probe = near || far;
+                lane.at = match (near, far) {
+                    (true, _) => beyond,
+                    (false, true) => leap,
+                    (false, false) => safe,
+                };
                 true
             });
         }
@@ -589,7 +609,7 @@ impl<'a> Job<'a> {
             most: outward(slope.hi(), 1.0),
             doubt: tape.roundoff() as f32,
             last_step: LAST_STEP * cell.side() as f32,
-            close: (CLOSE * size) as f32,
+            close: (CLOSE * size).max(DOUBTS * tape.roundoff()) as f32,
             fine: (FINE * size) as f32,
             far_off: (1e-3 * cell.side()).min(1e-4 * size),
             size,
