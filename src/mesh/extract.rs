@@ -31,8 +31,6 @@
 //!
 //! Source: W. E. Lorensen and H. E. Cline, Marching cubes (1987).
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
@@ -41,6 +39,7 @@ use self::neighbours::Neighbours;
 use super::Features;
 use super::feature::Slope;
 use super::lattice::Lattice;
+use super::meter::Meter;
 use super::signs::{EdgeRef, NODES, Rows, Signs, for_each_cell, list_edges};
 use super::table::CaseTable;
 use crate::geom::{Mesh, MeshError};
@@ -222,26 +221,6 @@ impl<'a, S: Sampler> Worker<'a, S> {
         let positions = self.edges.iter().zip(&self.roots).map(position).collect();
         let normals = self.roots.iter().map(normal).collect();
         Ok(Batch { parts, positions, normals })
-    }
-}
-
-/// Counts blocks that are done, and stops when the run is cancelled.
-struct Meter<'a> {
-    run: &'a Run,
-    done: AtomicUsize,
-    total: usize,
-}
-
-impl<'a> Meter<'a> {
-    fn new(run: &'a Run, total: usize) -> Meter<'a> {
-        Meter { run, done: AtomicUsize::new(0), total }
-    }
-
-    /// Called before each block.
-    fn step(&self) -> Result<(), Cancelled> {
-        let done = self.done.fetch_add(1, Ordering::Relaxed);
-        self.run.report(done as f64 / self.total as f64);
-        self.run.check()
     }
 }
 
