@@ -47,6 +47,11 @@ impl CellLoop {
         if joined == 0 { LOOPS[usize::from(case)] } else { CellLoop::derive(case, joined) }
     }
 
+    /// All loops of a case.
+    pub(super) fn all(case: u8, joined: u8) -> impl Iterator<Item = CellLoop> {
+        loops(case, joined).into_iter().map(|segments| CellLoop::new(&segments))
+    }
+
     /// The edges of the cell that the loop passes, in order.
     pub(super) fn edges(&self) -> &[u8] {
         &self.edges[..usize::from(self.len)]
@@ -57,20 +62,24 @@ impl CellLoop {
         usize::from(self.len)
     }
 
-    /// The face of the segment from edge `n` to the next: axis, and whether it is the upper one.
-    pub(super) fn face(&self, n: usize) -> (usize, bool) {
-        (usize::from(self.faces[n] / 2), self.faces[n] % 2 == 1)
+    /// The face of the segment from edge `n` to the next: twice its axis, and 1 more for the upper one.
+    pub(super) fn face(&self, n: usize) -> u8 {
+        self.faces[n]
     }
 
     fn derive(case: u8, joined: u8) -> Option<CellLoop> {
         let all = loops(case, joined);
         let [segments] = &all[..] else { return None };
+        Some(CellLoop::new(segments))
+    }
+
+    fn new(segments: &[Segment]) -> CellLoop {
         let mut out = CellLoop { edges: [0; LONGEST], faces: [0; LONGEST], len: segments.len() as u8 };
         for (n, segment) in segments.iter().enumerate() {
             out.edges[n] = segment.from;
             out.faces[n] = segment.face;
         }
-        Some(out)
+        out
     }
 }
 
@@ -146,6 +155,15 @@ mod tests {
                     assert_eq!(one.last().map(|segment| segment.to), one.first().map(|segment| segment.from));
                 }
             }
+        }
+    }
+
+    #[test]
+    fn every_loop_bounds_a_disc() {
+        // A disc with n corners has n − 2 triangles, a tube between two loops more.
+        for case in 0..=255 {
+            let discs: usize = CellLoop::all(case, 0).map(|outline| outline.len() - 2).sum();
+            assert_eq!(discs, CaseTable::get().triangles(case).len(), "case {case}");
         }
     }
 

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::neighbours::Neighbours;
 use super::samples::{Samples, cell_number};
-use super::sharp::{self, Fan, Fans};
+use super::sharp::{self, Fans};
 use super::{BATCH, Batch, ExtractError, Part, Sampler};
 use crate::geom::Mesh;
 use crate::mesh::Features;
@@ -114,7 +114,7 @@ impl<'a> Parts<'a> {
             return Err(ExtractError::TooLarge { count });
         }
         positions.extend(fans.fans.iter().map(|fan| fan.at));
-        normals.extend(fans.fans.iter().map(Fan::normal));
+        normals.extend(fans.normals());
 
         let run = run.stage(0.6, 1.0);
         let meter = Meter::new(&run, self.blocks.len());
@@ -138,6 +138,12 @@ impl<'a> Parts<'a> {
             return Ok(Mesh::new(positions, triangles)?.with_normals(normals)?);
         }
         let corners = fans.corner_normals(&positions, &normals, &triangles);
+        if !fans.unused.is_empty() {
+            let used = used(positions.len(), &fans.unused);
+            triangles.par_iter_mut().for_each(|corners| *corners = corners.map(|n| used[n as usize]));
+            positions = kept(&positions, &fans.unused);
+            normals = kept(&normals, &fans.unused);
+        }
         Ok(Mesh::new(positions, triangles)?.with_normals(normals)?.with_corner_normals(corners)?)
     }
 
@@ -297,6 +303,24 @@ fn concatenated(pieces: Vec<Vec<Vec3>>, length: usize, run: &Run) -> Result<Vec<
         all.extend_from_slice(&piece);
     }
     Ok(all)
+}
+
+/// The numbers of vertices when the ones that are not used, in ascending order, are gone.
+fn used(count: usize, unused: &[u32]) -> Vec<u32> {
+    let mut gone = unused.iter().copied().peekable();
+    let mut before = 0;
+    let number = |n: u32| {
+        before += u32::from(gone.next_if_eq(&n).is_some());
+        n - before.min(n)
+    };
+    (0..count as u32).map(number).collect()
+}
+
+/// A list without the ones that are not used, in ascending order.
+fn kept(list: &[Vec3], unused: &[u32]) -> Vec<Vec3> {
+    let mut gone = unused.iter().copied().peekable();
+    let stays = |n: &usize| gone.next_if_eq(&(*n as u32)).is_none();
+    (0..list.len()).filter(stays).map(|n| list[n]).collect()
 }
 
 /// Cuts a slice into consecutive pieces of the given lengths, whose sum is its length.

@@ -4,9 +4,9 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::join::Parts;
-use crate::mesh::feature::{Candidate, SMOOTH};
+use crate::mesh::feature::{Candidate, SMOOTH, Side};
 use crate::mesh::lattice::Lattice;
-use crate::mesh::loops::CellLoop;
+use crate::mesh::loops::{CellLoop, LONGEST};
 use crate::mesh::signs::BLOCK;
 use crate::mesh::table::{EDGE_CORNERS, edge_axis};
 
@@ -29,6 +29,13 @@ pub(super) fn split_cell(cell: [u32; 3]) -> ([u32; 3], [usize; 3]) {
 /// The number of a cell in its block: x fastest, then y, then z.
 pub(super) fn cell_number([i, j, k]: [usize; 3]) -> u16 {
     (i + BLOCK * (j + BLOCK * k)) as u16
+}
+
+/// The cell of a block, given by its first cell, that has a number.
+pub(super) fn cell_of(block: [u32; 3], number: u16) -> [u32; 3] {
+    let n = u32::from(number);
+    let side = BLOCK as u32;
+    [block[0] + n % side, block[1] + n / side % side, block[2] + n / (side * side)]
 }
 
 /// The order of blocks.
@@ -82,6 +89,10 @@ impl<'a> Samples<'a> {
         (self.positions[vertex as usize], self.normals[vertex as usize])
     }
 
+    pub(super) fn normal(&self, vertex: u32) -> Vec3 {
+        self.normals[vertex as usize]
+    }
+
     /// By block, whether the normals at the vertices of its cells differ by more than those of a
     /// smooth cell.
     pub(super) fn spread(&self) -> Vec<bool> {
@@ -112,9 +123,15 @@ impl<'a> Samples<'a> {
         self.lattice.origin() + p * self.lattice.step()
     }
 
-    pub(super) fn candidate(&self, cell: [u32; 3], outline: CellLoop, vertices: &[(Vec3, Vec3)]) -> Candidate {
-        let local: Vec<(DVec3, Vec3)> = vertices.iter().map(|&(p, normal)| (self.local(p), normal)).collect();
-        Candidate::new(cell, outline, &local)
+    /// A cell with a loop, given the vertices on it.
+    pub(super) fn candidate(&self, cell: [u32; 3], outline: CellLoop, vertices: &[u32]) -> Candidate {
+        let low: DVec3 = cell.map(f64::from).into();
+        let mut sides = [Side::default(); LONGEST];
+        for (side, &vertex) in sides.iter_mut().zip(vertices) {
+            let (position, normal) = self.get(vertex);
+            *side = Side { vertex, at: (self.local(position) - low).as_vec3(), normal };
+        }
+        Candidate::new(cell, outline, sides)
     }
 
     /// A node as vertices have it, rounded to f32.

@@ -32,11 +32,10 @@
 //! planes rounded, rounding keeps order, and feature points are moved strictly between the rounded
 //! planes.
 //!
-//! An ambiguous face has two segments, and x may be in the way of the other: there the edge of the
-//! closer segment is turned if x is on the near side of the other one, with more than the rounding to
-//! spare, and the other is not. [Regions](super::region) have fans as well; between those the line a–b
-//! need not go through the face of the segment, and the edge is turned only where it does. That
-//! also keeps two fans from having two edges in common.
+//! [Regions](super::region) of several cells have fans as well, and what two fans have in common is a
+//! rectangle of faces then. That, like an ambiguous face, may hold several segments, and the path s–x–t may be
+//! in the way of another: of the segments whose ends have different normals, the one closest to x is turned, if
+//! the path is clear of all others by more than the rounding. Two fans have no more than one edge in common so.
 //!
 //! Limits: cells with several loops stay as the table has them, or as that of the opposite case
 //! (see [`joined`](super::joined)). Where a crease passes an empty cell and no region comes about, it is
@@ -45,15 +44,15 @@
 use std::collections::HashSet;
 use std::ops::Range;
 
-use glam::Vec3;
+use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::join::Corners;
 use super::joined::{Joined, proposals};
-use super::region::{Region, regions};
-use super::samples::{Samples, cell_number, split_cell};
+use super::region::{Region, Span, regions};
+use super::samples::{Samples, cell_number, cell_of, split_cell};
 use super::Sampler;
-use crate::mesh::feature::{Candidate, is_smooth, refine};
+use crate::mesh::feature::{Candidate, Side, is_smooth, refine};
 use crate::mesh::loops::{CellLoop, LONGEST};
 use crate::mesh::meter::Meter;
 use crate::mesh::signs::for_each_cell;
@@ -67,9 +66,10 @@ const ASTRAY: f32 = 0.7;
 #[derive(Clone, Copy)]
 pub(super) struct Segment {
     pub(super) from: u32,
-    /// The cell that it bounds the surface of, and the face that it is in.
+    /// The cell that it bounds the surface of, and the face that it is in: twice the axis, and 1 more for
+    /// the upper one.
     pub(super) cell: [u32; 3],
-    pub(super) face: (usize, bool),
+    pub(super) face: u8,
     /// Whether it may be turned: its ends have different normals.
     pub(super) turns: bool,
     /// The fan on the other side, if the edge between the two is turned.
@@ -80,23 +80,22 @@ pub(super) struct Segment {
 
 /// The fan of a cell, or of a region of several.
 pub(super) struct Fan {
-    pub(super) segments: Vec<Segment>,
+    /// The place of its segments in the list of all.
+    segments: Range<u32>,
+    /// The cells that it is in.
+    span: Span,
     /// The feature point, strictly inside.
     pub(super) at: Vec3,
-}
-
-impl Fan {
-    /// The normal that stands for all sides.
-    pub(super) fn normal(&self) -> Vec3 {
-        self.segments.iter().map(|segment| segment.normal).sum::<Vec3>().normalize_or_zero()
-    }
 }
 
 /// All fans.
 #[derive(Default)]
 pub(super) struct Fans {
     pub(super) fans: Vec<Fan>,
+    segments: Vec<Segment>,
     blocks: Vec<OfBlock>,
+    /// The vertices within regions, which no triangle has any more; ascending.
+    pub(super) unused: Vec<u32>,
 }
 
 /// The fans of a block.
@@ -163,7 +162,7 @@ fn special(samples: &Samples<'_>, joined: &Joined, n: usize, corners: &mut Corne
         return found;
     }
     let block = samples.blocks()[n];
-    let mut around = Vec::with_capacity(LONGEST);
+    let (mut vertices, mut normals) = ([0; LONGEST], [Vec3::ZERO; LONGEST]);
     for_each_cell(&samples.parts.part(n).signs, |within, case| {
         let cell = std::array::from_fn(|axis| block[axis] + within[axis] as u32);
         let faces = joined.of(samples, cell, case);
@@ -173,54 +172,62 @@ fn special(samples: &Samples<'_>, joined: &Joined, n: usize, corners: &mut Corne
             }
             return;
         };
-        around.clear();
-        around.extend(outline.edges().iter().map(|&edge| samples.get(corners.vertex(within, edge))));
+        let count = outline.len();
+        for (n, &edge) in outline.edges().iter().enumerate() {
+            vertices[n] = corners.vertex(within, edge);
+            normals[n] = samples.normal(vertices[n]);
+        }
         // The table knows nothing of joined faces.
-        if faces != 0 || !is_smooth(&around) {
-            found.candidates.push(samples.candidate(cell, outline, &around));
+        if faces != 0 || !is_smooth(&normals[..count]) {
+            found.candidates.push(samples.candidate(cell, outline, &vertices[..count]));
         }
     });
     found
 }
 
 /// The segments of a cell's loop.
-pub(super) fn segments(samples: &Samples<'_>, candidate: &Candidate) -> Option<Vec<Segment>> {
-    let outline = candidate.outline;
-    let segment = |(n, &edge): (usize, &u8)| {
-        Some(Segment {
-            from: samples.vertex(candidate.cell, edge)?,
-            cell: candidate.cell,
-            face: outline.face(n),
-            turns: candidate.split >> n & 1 == 1,
-            across: None,
-            normal: candidate.normal(n),
-        })
+pub(super) fn segments(candidate: &Candidate) -> impl Iterator<Item = Segment> {
+    let segment = |(n, side): (usize, &Side)| Segment {
+        from: side.vertex,
+        cell: candidate.cell,
+        face: candidate.outline.face(n),
+        turns: candidate.split >> n & 1 == 1,
+        across: None,
+        normal: side.normal,
     };
-    outline.edges().iter().enumerate().map(segment).collect()
+    candidate.sides().iter().enumerate().map(segment)
 }
 
 impl Fans {
     fn new(samples: &Samples<'_>, special: Vec<Special>, regions: Vec<Region>) -> Fans {
-        let mut all = Fans { fans: Vec::new(), blocks: vec![OfBlock::default(); samples.blocks().len()] };
+        let mut all = Fans { blocks: vec![OfBlock::default(); samples.blocks().len()], ..Fans::default() };
         // A region is listed with the block of the candidate that asked for it.
         let in_region: HashSet<[u32; 3]> =
             regions.iter().flat_map(|region| region.cells.iter().map(|&(cell, _)| cell)).collect();
         let mut regions = regions.into_iter().peekable();
         let table = CaseTable::get();
-        for (block, Special { candidates, opposite }) in special.into_iter().enumerate() {
+        for (block, Special { candidates, mut opposite }) in special.into_iter().enumerate() {
+            let first = samples.blocks()[block];
+            opposite.retain(|&(number, _)| !in_region.contains(&cell_of(first, number)));
             all.blocks[block].opposite = opposite;
             let start = all.fans.len();
+            let signs = &samples.parts.part(block).signs;
             for candidate in candidates.iter().filter(|candidate| !in_region.contains(&candidate.cell)) {
-                let Some(segments) = segments(samples, candidate) else { continue };
                 let high = candidate.cell.map(|n| n + 1);
-                let fan = Fan { segments, at: samples.inside(candidate.at, candidate.cell, high) };
-                all.add(samples, fan, &[(candidate.cell, table.triangles(samples.case(candidate.cell)).len())]);
+                let (_, within) = split_cell(candidate.cell);
+                all.blocks[block].cells.push((cell_number(within), all.fans.len() as u32));
+                all.blocks[block].dropped += table.triangles(signs.case(within)).len();
+                let at = samples.inside(candidate.at, candidate.cell, high);
+                all.add(segments(candidate), Span { low: candidate.cell, high }, at);
             }
             while let Some(region) = regions.next_if(|region| region.block == block) {
-                all.add(samples, region.fan, &region.cells);
+                all.cover(samples, &region.cells);
+                all.unused.extend(region.within);
+                all.add(region.segments.into_iter(), region.span, region.at);
             }
             all.blocks[block].listed = start..all.fans.len();
         }
+        all.unused.sort_unstable();
         for block in &mut all.blocks {
             block.cells.sort_unstable();
         }
@@ -228,8 +235,8 @@ impl Fans {
         all
     }
 
-    /// Adds a fan that takes the place of the patches of cells, each with the number of its triangles.
-    fn add(&mut self, samples: &Samples<'_>, fan: Fan, cells: &[([u32; 3], usize)]) {
+    /// Notes that the next fan takes the place of the patches of cells, each with the number of its triangles.
+    fn cover(&mut self, samples: &Samples<'_>, cells: &[([u32; 3], usize)]) {
         for &(cell, count) in cells {
             let (block, within) = split_cell(cell);
             if let Some(block) = samples.find(block) {
@@ -237,7 +244,24 @@ impl Fans {
                 self.blocks[block].dropped += count;
             }
         }
-        self.fans.push(fan);
+    }
+
+    fn add(&mut self, segments: impl Iterator<Item = Segment>, span: Span, at: Vec3) {
+        let first = self.segments.len() as u32;
+        self.segments.extend(segments);
+        self.fans.push(Fan { segments: first..self.segments.len() as u32, span, at });
+    }
+
+    /// The segments of a fan.
+    fn of(&self, fan: usize) -> &[Segment] {
+        let Range { start, end } = self.fans[fan].segments;
+        &self.segments[start as usize..end as usize]
+    }
+
+    /// The normals that stand for all sides of each fan.
+    pub(super) fn normals(&self) -> impl Iterator<Item = Vec3> {
+        let normal = |fan| self.of(fan).iter().map(|segment| segment.normal).sum::<Vec3>().normalize_or_zero();
+        (0..self.fans.len()).map(normal)
     }
 
     /// The cells of a block that have a fan, by number, and which fan.
@@ -248,7 +272,7 @@ impl Fans {
     /// How many triangles a block has, which has `count` without fans.
     pub(super) fn count(&self, block: usize, count: usize) -> usize {
         let Some(of_block) = self.blocks.get(block) else { return count };
-        let listed = self.fans[of_block.listed.clone()].iter().map(|fan| fan.segments.len());
+        let listed = of_block.listed.clone().map(|fan| self.of(fan).len());
         let table = CaseTable::get();
         let triangles = |case: u8| table.triangles(case).len();
         let gone: usize = of_block.opposite.iter().map(|&(_, case)| triangles(case)).sum();
@@ -266,7 +290,7 @@ impl Fans {
     pub(super) fn triangles(&self, block: usize, centres: u32) -> impl Iterator<Item = [u32; 3]> {
         let listed = self.blocks.get(block).map_or(0..0, |block| block.listed.clone());
         listed.flat_map(move |nth| {
-            let segments = &self.fans[nth].segments;
+            let segments = self.of(nth);
             segments.iter().enumerate().map(move |(n, segment)| {
                 let end = match segment.across {
                     Some(other) => centres + other,
@@ -289,7 +313,7 @@ impl Fans {
         let own = |vertex: u32| normals[vertex as usize];
         // The normal close to a fan's point, on the side of a vertex.
         let close = |fan: u32, vertex: u32| {
-            let segments = &self.fans[fan as usize].segments;
+            let segments = self.of(fan as usize);
             segments.iter().find(|segment| segment.from == vertex).map_or(Vec3::ZERO, |segment| segment.normal)
         };
         let corners = |&[a, b, c]: &[u32; 3]| {
@@ -313,14 +337,10 @@ impl Fans {
     /// Finds out which edges between fans are turned.
     fn turn(&mut self, samples: &Samples<'_>) {
         let all = &*self;
-        let across: Vec<Vec<Option<u32>>> = (0..all.fans.len())
-            .into_par_iter()
-            .map(|nth| all.fans[nth].segments.iter().map(|segment| all.across(samples, nth, segment)).collect())
-            .collect();
-        for (fan, across) in self.fans.iter_mut().zip(across) {
-            for (segment, across) in fan.segments.iter_mut().zip(across) {
-                segment.across = across;
-            }
+        let of_fan = |fan: usize| all.of(fan).iter().map(move |segment| all.across(samples, fan, segment));
+        let across: Vec<Option<u32>> = (0..all.fans.len()).into_par_iter().flat_map_iter(of_fan).collect();
+        for (segment, across) in self.segments.iter_mut().zip(across) {
+            segment.across = across;
         }
     }
 
@@ -330,7 +350,7 @@ impl Fans {
         if !segment.turns {
             return None;
         }
-        let (axis, upper) = segment.face;
+        let (axis, upper) = (usize::from(segment.face / 2), segment.face % 2 == 1);
         let mut cell = segment.cell;
         cell[axis] = if upper { cell[axis] + 1 } else { cell[axis].checked_sub(1)? };
         let (block, within) = split_cell(cell);
@@ -343,40 +363,65 @@ impl Fans {
     /// Whether the edge between two fans is turned at a segment of the first.
     fn turns(&self, samples: &Samples<'_>, fan: usize, other: usize, segment: &Segment) -> bool {
         // Both fans calculate with the same numbers in the same order.
-        let (axis, upper) = segment.face;
+        let (axis, upper) = (usize::from(segment.face / 2), segment.face % 2 == 1);
         let (low, high) = if upper { (fan, other) } else { (other, fan) };
-        let mut above = segment.cell;
-        above[axis] += u32::from(upper);
-        let (a, b) = (self.fans[low].at.as_dvec3(), self.fans[high].at.as_dvec3());
-        let node = |[i, j, k]: [u32; 3]| samples.node([i, j, k]).as_dvec3();
-        let (first, last) = (node(above), node(above.map(|n| n + 1)));
+        let [below, above] = [low, high].map(|fan| &self.fans[fan]);
+        let (a, b) = (below.at.as_dvec3(), above.at.as_dvec3());
+        // What the two have in common: a part of a plane of the lattice.
+        let mut shared = below.span.intersection(&above.span);
+        (shared.low[axis], shared.high[axis]) = (above.span.low[axis], above.span.low[axis]);
+        let [first, last] = [shared.low, shared.high].map(|node| samples.node(node).as_dvec3());
         let x = a + (b - a) * ((first[axis] - a[axis]) / (b[axis] - a[axis]));
         // More than the rounding of the line above.
         let margin = 1e-12 * first.abs().max(last.abs()).max_element();
-        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        if ![u, v].into_iter().all(|n| x[n] > first[n] + margin && x[n] < last[n] - margin) {
+        let across = [(axis + 1) % 3, (axis + 2) % 3];
+        if !across.into_iter().all(|n| x[n] > first[n] + margin && x[n] < last[n] - margin) {
             return false;
         }
-        let segments = &self.fans[fan].segments;
-        let in_face = |n: &usize| segments[*n].cell == segment.cell && segments[*n].face == segment.face;
-        let mut both = (0..segments.len()).filter(in_face);
-        let (Some(p), Some(q)) = (both.next(), both.next()) else { return true };
-        // Of the two segments of an ambiguous face, the one that is closer may be turned, if the other one
-        // is not in the way: twice the area of the triangle of a segment and x, with the sign of the side.
-        let area = |n: usize| {
-            let ends = [n, (n + 1) % segments.len()].map(|n| samples.get(segments[n].from).0.as_dvec3() - x);
-            ends[0][u] * ends[1][v] - ends[0][v] * ends[1][u]
+        let flat = |p: DVec3| DVec2::new(p[across[0]], p[across[1]]);
+        let x = flat(x);
+        // Where the segments are that both fans have in it.
+        let ring = self.of(low);
+        let face = 2 * axis as u8 + 1;
+        let is_shared = |n: &usize| {
+            let cell = ring[*n].cell;
+            ring[*n].face == face
+                && cell[axis] + 1 == shared.low[axis]
+                && across.iter().all(|&n| (shared.low[n]..shared.high[n]).contains(&cell[n]))
         };
-        let (own, foreign) = if segments[p].from == segment.from { (p, q) } else { (q, p) };
-        let (size, away) = (area(own), area(foreign));
-        // Both run such that what is between them is on the same hand.
-        let reach = margin * (last - first).max_element() * 4.0;
-        let side = {
-            let ends = [foreign, (foreign + 1) % segments.len()].map(|n| samples.get(segments[n].from).0.as_dvec3());
-            let s = samples.get(segment.from).0.as_dvec3();
-            let (d, e) = (ends[0] - s, ends[1] - s);
-            d[u] * e[v] - d[v] * e[u]
+        let place = |vertex: u32| (vertex, flat(samples.get(vertex).0.as_dvec3()));
+        let ends = |n: usize| [n, (n + 1) % ring.len()].map(|n| place(ring[n].from));
+        let common = || (0..ring.len()).filter(is_shared);
+        // The edge can take the place of one of them: that which it is closest to.
+        let distance = |n: &usize| {
+            let [(_, s), (_, t)] = ends(*n);
+            (t - s).perp_dot(x - s).abs() / (t - s).length()
         };
-        size.abs() < away.abs() && away.abs() > reach && (away > 0.0) == (side > 0.0)
+        let nearest = common().filter(|&n| ring[n].turns).min_by(|m, n| distance(m).total_cmp(&distance(n)));
+        let Some(nearest) = nearest else { return false };
+        let [s, t] = ends(nearest);
+        if segment.from != if upper { s.0 } else { t.0 } {
+            return false;
+        }
+        let reach = 4.0 * margin * (last - first).max_element();
+        let is_clear = |n: usize| [s, t].into_iter().all(|end| is_apart([end, (NONE, x)], ends(n), reach));
+        common().filter(|&n| n != nearest).all(is_clear)
     }
+}
+
+/// The number of a point that is no vertex.
+const NONE: u32 = u32::MAX;
+
+/// Whether two segments, by numbers and places of their ends, have no point in common but an end. `reach` is more
+/// than the rounding of twice the area of a triangle.
+fn is_apart(one: [(u32, DVec2); 2], other: [(u32, DVec2); 2], reach: f64) -> bool {
+    let area = |[(_, s), (_, t)]: [(u32, DVec2); 2], (_, p): (u32, DVec2)| (t - s).perp_dot(p - s);
+    let [a, b] = other.map(|end| area(one, end));
+    if one.iter().any(|(n, _)| other.iter().any(|(m, _)| n == m)) {
+        // The one that is not in common is not on the line.
+        return a.abs().max(b.abs()) > reach;
+    }
+    let [c, d] = one.map(|end| area(other, end));
+    let one_side = |a: f64, b: f64| a.min(b) > reach || a.max(b) < -reach;
+    one_side(a, b) || one_side(c, d)
 }
