@@ -31,7 +31,7 @@ pub(super) const SMOOTH: f32 = 0.9;
 const HALF_SMOOTH: f32 = 0.975;
 
 /// How far feature points stay from the faces of their cell, in cells.
-const INSET: f64 = 1.0 / 128.0;
+pub(super) const INSET: f64 = 1.0 / 128.0;
 
 /// The damping of the steps; it takes the distance from the crease to a hundredth a step.
 const DAMPING: f64 = 3e-3;

@@ -109,12 +109,13 @@ impl<'a> Parts<'a> {
                 sharp::find(&samples, sampler, &run.stage(0.0, 0.6))?
             }
         };
-        let count = positions.len() as u64 + fans.fans.len() as u64;
+        let (more, more_normals): (Vec<Vec3>, Vec<Vec3>) = fans.vertices().unzip();
+        let count = positions.len() as u64 + more.len() as u64;
         if count > u64::from(u32::MAX) {
             return Err(ExtractError::TooLarge { count });
         }
-        positions.extend(fans.fans.iter().map(|fan| fan.at));
-        normals.extend(fans.normals());
+        positions.extend(more);
+        normals.extend(more_normals);
 
         let run = run.stage(0.6, 1.0);
         let meter = Meter::new(&run, self.blocks.len());

@@ -36,12 +36,14 @@
 //! rectangle of faces then. That, like an ambiguous face, may hold several segments, and the path s–x–t may be
 //! in the way of another: of the segments whose ends have different normals, the one closest to x is turned, if
 //! the path is clear of all others by more than the rounding. Two fans have no more than one edge in common so.
+//! Where the line a–b misses the rectangle, x is the point of it next to the line, and a vertex: the two loops
+//! are s–x–t there.
 //!
 //! Limits: cells with several loops stay as the table has them, or as that of the opposite case
 //! (see [`joined`](super::joined)). Where a crease passes an empty cell and no region comes about, it is
 //! cut off by what it goes into that cell, up to half a cell or more.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 use glam::{DVec2, DVec3, Vec3};
@@ -52,7 +54,7 @@ use super::joined::{Joined, proposals};
 use super::region::{Region, Span, regions};
 use super::samples::{Samples, cell_number, cell_of, split_cell};
 use super::Sampler;
-use crate::mesh::feature::{Candidate, Side, is_smooth, refine};
+use crate::mesh::feature::{Candidate, INSET, Side, is_smooth, refine};
 use crate::mesh::loops::{CellLoop, LONGEST};
 use crate::mesh::meter::Meter;
 use crate::mesh::signs::for_each_cell;
@@ -72,7 +74,8 @@ pub(super) struct Segment {
     pub(super) face: u8,
     /// Whether it may be turned: its ends have different normals.
     pub(super) turns: bool,
-    /// The fan on the other side, if the edge between the two is turned.
+    /// What the edge is turned to: the fan on the other side by its number, or a point between the two by its
+    /// number after those of all fans.
     pub(super) across: Option<u32>,
     /// The normal close to the feature point on the side of the vertex.
     pub(super) normal: Vec3,
@@ -93,6 +96,8 @@ pub(super) struct Fan {
 pub(super) struct Fans {
     pub(super) fans: Vec<Fan>,
     segments: Vec<Segment>,
+    /// Points of creases between two fans.
+    points: Vec<Vec3>,
     blocks: Vec<OfBlock>,
     /// The vertices within regions, which no triangle has any more; ascending.
     pub(super) unused: Vec<u32>,
@@ -258,10 +263,22 @@ impl Fans {
         &self.segments[start as usize..end as usize]
     }
 
-    /// The normals that stand for all sides of each fan.
-    pub(super) fn normals(&self) -> impl Iterator<Item = Vec3> {
+    /// Whether a segment is turned to a point between the two fans.
+    fn is_bent(&self, segment: &Segment) -> bool {
+        segment.across.is_some_and(|other| other as usize >= self.fans.len())
+    }
+
+    /// The vertices that fans add, feature points first, with the normals that stand for all their sides.
+    pub(super) fn vertices(&self) -> impl Iterator<Item = (Vec3, Vec3)> {
         let normal = |fan| self.of(fan).iter().map(|segment| segment.normal).sum::<Vec3>().normalize_or_zero();
-        (0..self.fans.len()).map(normal)
+        let mut between = vec![Vec3::ZERO; self.points.len()];
+        for segment in self.segments.iter().filter(|segment| self.is_bent(segment)) {
+            let nth = segment.across.map_or(0, |other| other as usize - self.fans.len());
+            between[nth] += segment.normal;
+        }
+        let between = between.into_iter().map(Vec3::normalize_or_zero);
+        let centres = (0..self.fans.len()).map(move |fan| (self.fans[fan].at, normal(fan)));
+        centres.chain(self.points.iter().copied().zip(between))
     }
 
     /// The cells of a block that have a fan, by number, and which fan.
@@ -272,7 +289,7 @@ impl Fans {
     /// How many triangles a block has, which has `count` without fans.
     pub(super) fn count(&self, block: usize, count: usize) -> usize {
         let Some(of_block) = self.blocks.get(block) else { return count };
-        let listed = of_block.listed.clone().map(|fan| self.of(fan).len());
+        let listed = of_block.listed.clone().flat_map(|fan| self.of(fan)).map(|segment| 1 + usize::from(self.is_bent(segment)));
         let table = CaseTable::get();
         let triangles = |case: u8| table.triangles(case).len();
         let gone: usize = of_block.opposite.iter().map(|&(_, case)| triangles(case)).sum();
@@ -291,12 +308,11 @@ impl Fans {
         let listed = self.blocks.get(block).map_or(0..0, |block| block.listed.clone());
         listed.flat_map(move |nth| {
             let segments = self.of(nth);
-            segments.iter().enumerate().map(move |(n, segment)| {
-                let end = match segment.across {
-                    Some(other) => centres + other,
-                    None => segments[(n + 1) % segments.len()].from,
-                };
-                [centres + nth as u32, segment.from, end]
+            segments.iter().enumerate().flat_map(move |(n, segment)| {
+                let (centre, next) = (centres + nth as u32, segments[(n + 1) % segments.len()].from);
+                let to = segment.across.map_or(next, |other| centres + other);
+                let second = self.is_bent(segment).then_some([centre, to, next]);
+                std::iter::once([centre, segment.from, to]).chain(second)
             })
         })
     }
@@ -309,7 +325,8 @@ impl Fans {
         normals: &[Vec3],
         triangles: &[[u32; 3]],
     ) -> Vec<[Vec3; 3]> {
-        let centres = (positions.len() - self.fans.len()) as u32;
+        let fans = self.fans.len() as u32;
+        let centres = (positions.len() - self.points.len()) as u32 - fans;
         let own = |vertex: u32| normals[vertex as usize];
         // The normal close to a fan's point, on the side of a vertex.
         let close = |fan: u32, vertex: u32| {
@@ -322,11 +339,17 @@ impl Fans {
             }
             let [p, q, r] = [a, b, c].map(|vertex| positions[vertex as usize]);
             let face = (q - p).cross(r - p).normalize_or_zero();
-            let near = close(a - centres, b);
-            let given = if c >= centres {
-                [near, own(b), close(c - centres, b)]
+            let fan = a - centres;
+            let given = if b >= centres {
+                let near = close(fan, c);
+                [near, near, own(c)]
             } else {
-                [(near + close(a - centres, c)).normalize_or_zero(), own(b), own(c)]
+                let near = close(fan, b);
+                match c.checked_sub(centres) {
+                    None => [(near + close(fan, c)).normalize_or_zero(), own(b), own(c)],
+                    Some(other) if other < fans => [near, own(b), close(other, b)],
+                    Some(_) => [near, own(b), near],
+                }
             };
             // A vertex on the crease itself may have the normal of the other side.
             given.map(|normal| if normal.dot(face) > ASTRAY { normal } else { face })
@@ -334,34 +357,43 @@ impl Fans {
         triangles.par_iter().map(corners).collect()
     }
 
-    /// Finds out which edges between fans are turned.
+    /// Finds out which edges between fans are turned, and to what.
     fn turn(&mut self, samples: &Samples<'_>) {
         let all = &*self;
         let of_fan = |fan: usize| all.of(fan).iter().map(move |segment| all.across(samples, fan, segment));
-        let across: Vec<Option<u32>> = (0..all.fans.len()).into_par_iter().flat_map_iter(of_fan).collect();
-        for (segment, across) in self.segments.iter_mut().zip(across) {
-            segment.across = across;
+        let turns: Vec<Option<(u32, Turn)>> = (0..all.fans.len()).into_par_iter().flat_map_iter(of_fan).collect();
+        // Two fans have a point in common: it is numbered for the first, and found by the second.
+        let mut known: HashMap<[u32; 2], u32> = HashMap::new();
+        let fans = self.fans.len() as u32;
+        let points = &mut self.points;
+        for (segment, turn) in self.segments.iter_mut().zip(turns) {
+            segment.across = turn.map(|(other, turn)| match turn {
+                Turn::Edge => other,
+                Turn::Point { at, ends } => *known.entry(ends).or_insert_with(|| {
+                    points.push(at);
+                    fans + points.len() as u32 - 1
+                }),
+            });
         }
     }
 
-    /// The fan on the other side of a segment, if the edge between the two is turned there. Both find
-    /// the same.
-    fn across(&self, samples: &Samples<'_>, fan: usize, segment: &Segment) -> Option<u32> {
+    /// The fan on the other side of a segment, if the edge between the two is turned there. Both find the same.
+    fn across(&self, samples: &Samples<'_>, fan: usize, segment: &Segment) -> Option<(u32, Turn)> {
         if !segment.turns {
             return None;
         }
-        let (axis, upper) = (usize::from(segment.face / 2), segment.face % 2 == 1);
+        let axis = usize::from(segment.face / 2);
         let mut cell = segment.cell;
-        cell[axis] = if upper { cell[axis] + 1 } else { cell[axis].checked_sub(1)? };
+        cell[axis] = if segment.face % 2 == 1 { cell[axis] + 1 } else { cell[axis].checked_sub(1)? };
         let (block, within) = split_cell(cell);
         let cells = self.cells(samples.find(block)?);
         let other = cells.binary_search_by_key(&cell_number(within), |&(cell, _)| cell).ok()?;
         let other = cells[other].1;
-        self.turns(samples, fan, other as usize, segment).then_some(other)
+        Some((other, self.turned(samples, fan, other as usize, segment)?))
     }
 
-    /// Whether the edge between two fans is turned at a segment of the first.
-    fn turns(&self, samples: &Samples<'_>, fan: usize, other: usize, segment: &Segment) -> bool {
+    /// What the edge between two fans is turned to at a segment of the first, if it is.
+    fn turned(&self, samples: &Samples<'_>, fan: usize, other: usize, segment: &Segment) -> Option<Turn> {
         // Both fans calculate with the same numbers in the same order.
         let (axis, upper) = (usize::from(segment.face / 2), segment.face % 2 == 1);
         let (low, high) = if upper { (fan, other) } else { (other, fan) };
@@ -375,11 +407,18 @@ impl Fans {
         // More than the rounding of the line above.
         let margin = 1e-12 * first.abs().max(last.abs()).max_element();
         let across = [(axis + 1) % 3, (axis + 2) % 3];
-        if !across.into_iter().all(|n| x[n] > first[n] + margin && x[n] < last[n] - margin) {
-            return false;
-        }
+        let is_straight = across.into_iter().all(|n| x[n] > first[n] + margin && x[n] < last[n] - margin);
         let flat = |p: DVec3| DVec2::new(p[across[0]], p[across[1]]);
-        let x = flat(x);
+        let aim = flat(x);
+        // A line that misses it is bent.
+        let mut bent = x.as_vec3();
+        let inset = (INSET * samples.lattice.step()) as f32;
+        for n in across {
+            let [low, high] = [first[n] as f32, last[n] as f32];
+            bent[n] = bent[n].clamp((low + inset).next_up(), (high - inset).next_down());
+        }
+        bent[axis] = first[axis] as f32;
+        let x = if is_straight { aim } else { flat(bent.as_dvec3()) };
         // Where the segments are that both fans have in it.
         let ring = self.of(low);
         let face = 2 * axis as u8 + 1;
@@ -397,16 +436,30 @@ impl Fans {
             let [(_, s), (_, t)] = ends(*n);
             (t - s).perp_dot(x - s).abs() / (t - s).length()
         };
-        let nearest = common().filter(|&n| ring[n].turns).min_by(|m, n| distance(m).total_cmp(&distance(n)));
-        let Some(nearest) = nearest else { return false };
+        let nearest = common().filter(|&n| ring[n].turns).min_by(|m, n| distance(m).total_cmp(&distance(n)))?;
         let [s, t] = ends(nearest);
         if segment.from != if upper { s.0 } else { t.0 } {
-            return false;
+            return None;
+        }
+        // A point that is no closer to the line than the segment is not worth it.
+        let off = (aim - s.1).length().min((aim - t.1).length());
+        if !is_straight && !((aim - x).length() < 0.5 * off) {
+            return None;
         }
         let reach = 4.0 * margin * (last - first).max_element();
         let is_clear = |n: usize| [s, t].into_iter().all(|end| is_apart([end, (NONE, x)], ends(n), reach));
-        common().filter(|&n| n != nearest).all(is_clear)
+        let turn = if is_straight { Turn::Edge } else { Turn::Point { at: bent, ends: [s.0, t.0] } };
+        common().filter(|&n| n != nearest).all(is_clear).then_some(turn)
     }
+}
+
+/// What the edge between two fans is turned to.
+#[derive(Clone, Copy)]
+enum Turn {
+    /// The straight line from one feature point to the other.
+    Edge,
+    /// A way by a point between the two; with the ends of the segment, to tell it by.
+    Point { at: Vec3, ends: [u32; 2] },
 }
 
 /// The number of a point that is no vertex.
