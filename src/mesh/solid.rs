@@ -285,9 +285,18 @@ impl Sampler for SolidSampler<'_> {
     fn roots(&self, scratch: &mut Scratch, edges: &[EdgeRef], out: &mut [Root]) {
         let Scratch { evaluator, tapes, finder, order, edges: sorted, roots, .. } = scratch;
         let group = |edge: &EdgeRef| self.groups[edge.block as usize];
-        order.clear();
-        order.extend(0..edges.len() as u32);
-        order.sort_by_key(|&n| group(&edges[n as usize]));
+        // Counted first, then each to its place: a group is named by a block of the batch.
+        let Some(first) = edges.first() else { return };
+        let start = first.block as usize / BATCH * BATCH;
+        let mut places = [0u32; BATCH + 1];
+        edges.iter().for_each(|edge| places[group(edge) as usize - start + 1] += 1);
+        (0..BATCH).for_each(|n| places[n + 1] += places[n]);
+        order.resize(edges.len(), 0);
+        for (n, edge) in (0..).zip(edges) {
+            let place = &mut places[group(edge) as usize - start];
+            order[*place as usize] = n;
+            *place += 1;
+        }
         sorted.clear();
         sorted.extend(order.iter().map(|&n| edges[n as usize]));
         roots.resize(edges.len(), Root::default());

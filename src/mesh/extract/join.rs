@@ -58,6 +58,7 @@ impl<'a> Parts<'a> {
         Ok(all)
     }
 
+    #[inline]
     pub(super) fn part(&self, n: usize) -> &Part {
         &self.parts[n / BATCH][n % BATCH]
     }
@@ -174,14 +175,15 @@ impl<'a> Parts<'a> {
                 return;
             }
             let ids = corners.of_cell(cell);
+            let corner = |edge: u8| ids[corners.offsets[usize::from(edge)]];
             if opposite.next_if(|(other, _)| *other == number).is_some() {
                 for (&[a, b, c], slot) in table.triangles(!case).iter().zip(&mut *slots) {
-                    *slot = [a, c, b].map(|edge| ids[corners.offsets[usize::from(edge)]]);
+                    *slot = [corner(a), corner(c), corner(b)];
                 }
                 return;
             }
-            for (triangle, slot) in table.triangles(case).iter().zip(&mut *slots) {
-                *slot = triangle.map(|edge| ids[corners.offsets[usize::from(edge)]]);
+            for (&[a, b, c], slot) in table.triangles(case).iter().zip(&mut *slots) {
+                *slot = [corner(a), corner(b), corner(c)];
             }
         });
         let centres = self.vertices as u32;
@@ -261,15 +263,18 @@ impl Corners {
     }
 
     /// The list from the place of a cell's first node on.
+    #[inline]
     fn of_cell(&self, [i, j, k]: [usize; 3]) -> &[u32] {
         &self.ids[i + SIDE * (j + SIDE * k)..]
     }
 
     /// The vertex on an edge of a cell.
+    #[inline]
     pub(super) fn vertex(&self, cell: [usize; 3], edge: u8) -> u32 {
         self.of_cell(cell)[self.offsets[usize::from(edge)]]
     }
 
+    #[inline]
     fn place(axis: usize, [i, j, k]: [usize; 3]) -> usize {
         i + SIDE * (j + SIDE * (k + SIDE * axis))
     }

@@ -17,13 +17,16 @@ pub(super) struct Samples<'a> {
     positions: &'a [Vec3],
     normals: &'a [Vec3],
     /// The blocks by their first cells, z first, ascending; with their numbers.
-    sorted: Vec<([u32; 3], u32)>,
+    sorted: Vec<((u64, u32), u32)>,
 }
 
 /// The block of a cell, by its first cell, and where the cell is in it.
+#[inline]
 pub(super) fn split_cell(cell: [u32; 3]) -> ([u32; 3], [usize; 3]) {
-    let within = cell.map(|n| n as usize % BLOCK);
-    (std::array::from_fn(|axis| cell[axis] - within[axis] as u32), within)
+    let [x, y, z] = cell;
+    let side = BLOCK as u32;
+    let within = [x % side, y % side, z % side];
+    ([x - within[0], y - within[1], z - within[2]], [within[0] as usize, within[1] as usize, within[2] as usize])
 }
 
 /// The number of a cell in its block: x fastest, then y, then z.
@@ -38,9 +41,10 @@ pub(super) fn cell_of(block: [u32; 3], number: u16) -> [u32; 3] {
     [block[0] + n % side, block[1] + n / side % side, block[2] + n / (side * side)]
 }
 
-/// The order of blocks.
-fn key([x, y, z]: [u32; 3]) -> [u32; 3] {
-    [z, y, x]
+/// The order of blocks: z first, then y, then x.
+#[inline]
+pub(super) fn key([x, y, z]: [u32; 3]) -> (u64, u32) {
+    (u64::from(z) << 32 | u64::from(y), x)
 }
 
 impl<'a> Samples<'a> {
@@ -50,7 +54,7 @@ impl<'a> Samples<'a> {
         positions: &'a [Vec3],
         normals: &'a [Vec3],
     ) -> Samples<'a> {
-        let mut sorted: Vec<([u32; 3], u32)> = parts.blocks.iter().map(|&block| key(block)).zip(0..).collect();
+        let mut sorted: Vec<((u64, u32), u32)> = parts.blocks.iter().map(|&block| key(block)).zip(0..).collect();
         sorted.sort_unstable();
         Samples { parts, lattice, positions, normals, sorted }
     }
