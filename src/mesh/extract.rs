@@ -42,6 +42,7 @@ use super::lattice::Lattice;
 use super::meter::Meter;
 use super::signs::{EdgeRef, NODES, Rows, Signs, for_each_cell, list_edges};
 use super::table::CaseTable;
+use crate::bounds::Bounds;
 use crate::geom::{Mesh, MeshError};
 use crate::run::{Cancelled, Run};
 
@@ -71,6 +72,12 @@ pub(crate) trait Sampler: Sync {
     /// Where the surface crosses edges, in the order of their blocks. `out` is as long as
     /// `edges`.
     fn roots(&self, scratch: &mut Self::Scratch, edges: &[EdgeRef], out: &mut [Root]);
+
+    /// A box that the surface is in: features are held in it, where it cuts the cell of one. The default is all
+    /// space.
+    fn limits(&self) -> Bounds {
+        Bounds::ALL
+    }
 
     /// Adds values and gradients of the field at points of a block, in the order of the points,
     /// to `out`; whether it did. The default knows of none: features are placed by the normals of
@@ -162,6 +169,8 @@ struct Batch {
     parts: Vec<Part>,
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
+    /// How many of them are moved to keep clear of nodes.
+    clamped: usize,
 }
 
 /// The first pass.
@@ -220,7 +229,8 @@ impl<'a, S: Sampler> Worker<'a, S> {
         };
         let positions = self.edges.iter().zip(&self.roots).map(position).collect();
         let normals = self.roots.iter().map(normal).collect();
-        Ok(Batch { parts, positions, normals })
+        let clamped = self.roots.iter().filter(|root| self.lattice.is_clamped(root.t)).count();
+        Ok(Batch { parts, positions, normals, clamped })
     }
 }
 

@@ -221,6 +221,12 @@ impl Lattice {
         Bounds::new(self.origin, self.node(i, j, k))
     }
 
+    /// Whether [`vertex`](Lattice::vertex) moves `t`.
+    #[inline]
+    pub(crate) fn is_clamped(&self, t: f64) -> bool {
+        !(self.clearance..=1.0 - self.clearance).contains(&t)
+    }
+
     /// The vertex on the edge that leaves a node along an axis, at `t` from 0 to 1 of its
     /// length. `t` is moved to be clear of the ends; that of NaN is the middle.
     #[inline]

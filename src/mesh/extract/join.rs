@@ -24,6 +24,7 @@ pub(super) struct Parts<'a> {
     positions: Vec<Vec<Vec3>>,
     normals: Vec<Vec<Vec3>>,
     vertices: usize,
+    clamped: usize,
 }
 
 impl<'a> Parts<'a> {
@@ -44,9 +45,10 @@ impl<'a> Parts<'a> {
             positions: Vec::with_capacity(batches.len()),
             normals: Vec::with_capacity(batches.len()),
             vertices: count as usize,
+            clamped: batches.iter().map(|batch| batch.clamped).sum(),
         };
         let mut start = 0;
-        for Batch { mut parts, positions, normals } in batches {
+        for Batch { mut parts, positions, normals, .. } in batches {
             for part in &mut parts {
                 part.first += start;
             }
@@ -106,7 +108,7 @@ impl<'a> Parts<'a> {
         let fans = match features {
             Features::Smooth => Fans::default(),
             Features::Sharp => {
-                let samples = Samples::new(&self, lattice, &positions, &normals);
+                let samples = Samples::new(&self, lattice, sampler.limits(), [&positions, &normals]);
                 sharp::find(&samples, sampler, &run.stage(0.0, 0.6))?
             }
         };
@@ -137,16 +139,21 @@ impl<'a> Parts<'a> {
             Ok::<(), ExtractError>(())
         })?;
         if fans.fans.is_empty() {
-            return Ok(Mesh::new(positions, triangles)?.with_normals(normals)?);
+            return Ok(Mesh::new(positions, triangles)?.with_normals(normals)?.with_clamped_vertices(self.clamped));
         }
         let corners = fans.corner_normals(&positions, &normals, &triangles);
         if !fans.unused.is_empty() {
             let used = used(positions.len(), &fans.unused);
-            triangles.par_iter_mut().for_each(|corners| *corners = corners.map(|n| used[n as usize]));
+            let number = |n: u32| used[n as usize];
+            triangles.par_iter_mut().for_each(|slot| {
+                let [a, b, c] = *slot;
+                *slot = [number(a), number(b), number(c)];
+            });
             positions = kept(&positions, &fans.unused);
             normals = kept(&normals, &fans.unused);
         }
-        Ok(Mesh::new(positions, triangles)?.with_normals(normals)?.with_corner_normals(corners)?)
+        let mesh = Mesh::new(positions, triangles)?.with_normals(normals)?.with_corner_normals(corners)?;
+        Ok(mesh.with_clamped_vertices(self.clamped))
     }
 
     /// The triangles of block `n`: those of the table, in the order of its cells, then those of its
@@ -313,20 +320,25 @@ fn concatenated(pieces: Vec<Vec<Vec3>>, length: usize, run: &Run) -> Result<Vec<
 
 /// The numbers of vertices when the ones that are not used, in ascending order, are gone.
 fn used(count: usize, unused: &[u32]) -> Vec<u32> {
-    let mut gone = unused.iter().copied().peekable();
-    let mut before = 0;
-    let number = |n: u32| {
-        before += u32::from(gone.next_if_eq(&n).is_some());
-        n - before.min(n)
-    };
-    (0..count as u32).map(number).collect()
+    let mut numbers: Vec<u32> = Vec::with_capacity(count);
+    for (before, &gone) in (0..).zip(unused) {
+        numbers.extend(numbers.len() as u32 - before..gone - before);
+        // No triangle has it.
+        numbers.push(gone - before);
+    }
+    numbers.extend((numbers.len() - unused.len()) as u32..(count - unused.len()) as u32);
+    numbers
 }
 
 /// A list without the ones that are not used, in ascending order.
 fn kept(list: &[Vec3], unused: &[u32]) -> Vec<Vec3> {
-    let mut gone = unused.iter().copied().peekable();
-    let stays = |n: &usize| gone.next_if_eq(&(*n as u32)).is_none();
-    (0..list.len()).filter(stays).map(|n| list[n]).collect()
+    let mut all = Vec::with_capacity(list.len());
+    let mut start = 0;
+    for end in unused.iter().map(|&n| n as usize).chain([list.len()]) {
+        all.extend_from_slice(&list[start..end]);
+        start = end + 1;
+    }
+    all
 }
 
 /// Cuts a slice into consecutive pieces of the given lengths, whose sum is its length.

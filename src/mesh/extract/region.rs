@@ -101,9 +101,15 @@ pub(super) fn regions(samples: &Samples<'_>, special: &[Special], joined: &Joine
         for candidate in &list.candidates {
             let misfit = candidate.planes.distance(candidate.at);
             if misfit > MISFIT {
+                let mut last = None;
                 for reach in [1.0, 2.0] {
                     let at = candidate.unbound(reach);
-                    if let Some(other) = towards(candidate.cell, at.floor(), reach as i32) {
+                    let other = towards(candidate.cell, at.floor(), reach as i32);
+                    if other == last {
+                        continue;
+                    }
+                    last = other;
+                    if let Some(other) = other {
                         asking.push(Wish { size: misfit, block, candidate, other, at, allowed: 0.5 * misfit });
                     }
                 }
@@ -120,9 +126,7 @@ pub(super) fn regions(samples: &Samples<'_>, special: &[Special], joined: &Joine
     let mut known = Known { samples, special, joined, taken: HashMap::new(), regions: Vec::new() };
     // Regions that stand alone come first: they are smaller than those that others are merged into.
     for merges in [false, true] {
-        for wish in &asking {
-            known.grant(wish, merges);
-        }
+        asking.retain(|wish| !known.grant(wish, merges));
     }
     let mut regions: Vec<Region> = known.regions.into_iter().flatten().collect();
     regions.sort_by_key(|region| region.block);
@@ -197,38 +201,32 @@ struct Known<'a> {
 
 impl Known<'_> {
     /// Makes the region that a cell wishes for, if it can be; merged with the regions in its way, or not at all
-    /// where there are any.
-    fn grant(&mut self, wish: &Wish<'_>, merges: bool) {
+    /// where there are any. Whether there is no more to be done for the cell.
+    fn grant(&mut self, wish: &Wish<'_>, merges: bool) -> bool {
+        // One that it is in already is what it wished for, or better.
+        if self.taken.contains_key(&wish.candidate.cell) {
+            return true;
+        }
         let mut span = Span::of(wish.candidate.cell, wish.other);
         let mut merged: Vec<usize> = Vec::new();
-        loop {
-            let in_way = span.cells().filter_map(|cell| self.taken.get(&cell)).copied();
-            let others: Vec<usize> = in_way.filter(|region| !merged.contains(region)).collect();
-            if others.is_empty() {
-                break;
+        while let Some(&region) =
+            span.cells().filter_map(|cell| self.taken.get(&cell)).find(|&region| !merged.contains(region))
+        {
+            if let Some(other) = &self.regions[region] {
+                span = span.union(&other.span);
             }
-            // One that the cell is in already is what it wished for, or better.
-            if !merges || self.taken.contains_key(&wish.candidate.cell) {
-                return;
-            }
-            for region in others {
-                if let Some(other) = &self.regions[region] {
-                    span = span.union(&other.span);
-                }
-                if !merged.contains(&region) {
-                    merged.push(region);
-                }
-            }
-            if !span.is_small() {
-                return;
+            merged.push(region);
+            if !merges || !span.is_small() {
+                return merges;
             }
         }
-        let Some(region) = self.region(wish, span) else { return };
+        let Some(region) = self.region(wish, span) else { return merged.is_empty() };
         for old in merged {
             self.regions[old] = None;
         }
         self.taken.extend(region.cells.iter().map(|&(cell, _)| (cell, self.regions.len())));
         self.regions.push(Some(region));
+        true
     }
 
     fn region(&self, wish: &Wish<'_>, span: Span) -> Option<Region> {

@@ -4,6 +4,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::join::Parts;
+use crate::bounds::Bounds;
 use crate::mesh::feature::{Candidate, SMOOTH, Side};
 use crate::mesh::lattice::Lattice;
 use crate::mesh::loops::{CellLoop, LONGEST};
@@ -14,6 +15,7 @@ use crate::mesh::table::{EDGE_CORNERS, edge_axis};
 pub(super) struct Samples<'a> {
     pub(super) parts: &'a Parts<'a>,
     pub(super) lattice: &'a Lattice,
+    limits: Bounds,
     positions: &'a [Vec3],
     normals: &'a [Vec3],
     /// The blocks by their first cells, z first, ascending; with their numbers.
@@ -51,12 +53,12 @@ impl<'a> Samples<'a> {
     pub(super) fn new(
         parts: &'a Parts<'a>,
         lattice: &'a Lattice,
-        positions: &'a [Vec3],
-        normals: &'a [Vec3],
+        limits: Bounds,
+        [positions, normals]: [&'a [Vec3]; 2],
     ) -> Samples<'a> {
         let mut sorted: Vec<((u64, u32), u32)> = parts.blocks.iter().map(|&block| key(block)).zip(0..).collect();
         sorted.sort_unstable();
-        Samples { parts, lattice, positions, normals, sorted }
+        Samples { parts, lattice, limits, positions, normals, sorted }
     }
 
     pub(super) fn blocks(&self) -> &[[u32; 3]] {
@@ -143,11 +145,16 @@ impl<'a> Samples<'a> {
         self.lattice.node(i, j, k).as_vec3()
     }
 
+    /// The point of the box of the surface that is nearest.
+    pub(super) fn limited(&self, p: DVec3) -> DVec3 {
+        p.clamp(self.limits.min, self.limits.max)
+    }
+
     /// The position of a point as f32, strictly inside of the box of cells from `low` up to `high`,
     /// exclusive.
     pub(super) fn inside(&self, at: DVec3, low: [u32; 3], high: [u32; 3]) -> Vec3 {
         let low = self.node(low).to_array().map(f32::next_up);
         let high = self.node(high).to_array().map(f32::next_down);
-        self.world(at).as_vec3().clamp(low.into(), high.into())
+        self.limited(self.world(at)).as_vec3().clamp(low.into(), high.into())
     }
 }

@@ -49,11 +49,11 @@ use std::ops::Range;
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
+use super::Sampler;
 use super::join::Corners;
 use super::joined::{Joined, proposals};
 use super::region::{Region, Span, regions};
 use super::samples::{Samples, cell_number, cell_of, split_cell};
-use super::Sampler;
 use crate::mesh::feature::{Candidate, INSET, Side, is_smooth, refine};
 use crate::mesh::loops::{CellLoop, LONGEST};
 use crate::mesh::meter::Meter;
@@ -289,7 +289,8 @@ impl Fans {
     /// How many triangles a block has, which has `count` without fans.
     pub(super) fn count(&self, block: usize, count: usize) -> usize {
         let Some(of_block) = self.blocks.get(block) else { return count };
-        let listed = of_block.listed.clone().flat_map(|fan| self.of(fan)).map(|segment| 1 + usize::from(self.is_bent(segment)));
+        let listed =
+            of_block.listed.clone().flat_map(|fan| self.of(fan)).map(|segment| 1 + usize::from(self.is_bent(segment)));
         let table = CaseTable::get();
         let triangles = |case: u8| table.triangles(case).len();
         let gone: usize = of_block.opposite.iter().map(|&(_, case)| triangles(case)).sum();
@@ -328,6 +329,7 @@ impl Fans {
         let fans = self.fans.len() as u32;
         let centres = (positions.len() - self.points.len()) as u32 - fans;
         let own = |vertex: u32| normals[vertex as usize];
+        let at = |vertex: u32| positions[vertex as usize];
         // The normal close to a fan's point, on the side of a vertex.
         let close = |fan: u32, vertex: u32| {
             let segments = self.of(fan as usize);
@@ -337,7 +339,7 @@ impl Fans {
             if a < centres {
                 return [own(a), own(b), own(c)];
             }
-            let [p, q, r] = [a, b, c].map(|vertex| positions[vertex as usize]);
+            let (p, q, r) = (at(a), at(b), at(c));
             let face = (q - p).cross(r - p).normalize_or_zero();
             let fan = a - centres;
             let given = if b >= centres {
@@ -352,7 +354,8 @@ impl Fans {
                 }
             };
             // A vertex on the crease itself may have the normal of the other side.
-            given.map(|normal| if normal.dot(face) > ASTRAY { normal } else { face })
+            let on_side = |normal: Vec3| if normal.dot(face) > ASTRAY { normal } else { face };
+            [on_side(given[0]), on_side(given[1]), on_side(given[2])]
         };
         triangles.par_iter().map(corners).collect()
     }
@@ -411,7 +414,7 @@ impl Fans {
         let flat = |p: DVec3| DVec2::new(p[across[0]], p[across[1]]);
         let aim = flat(x);
         // A line that misses it is bent.
-        let mut bent = x.as_vec3();
+        let mut bent = samples.limited(x).as_vec3();
         let inset = (INSET * samples.lattice.step()) as f32;
         for n in across {
             let [low, high] = [first[n] as f32, last[n] as f32];
