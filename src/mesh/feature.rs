@@ -5,14 +5,14 @@
 //!     --o---.                smooth surface's do. Their planes meet near the crease: a first p.
 //!       q0 ·.\               Then the field is asked at points q on the way from p to each
 //!            p x  crease     vertex, for the planes that the sides have close to p, and p moves
-//!       q1 · /               to where those meet; and once more, closer.
+//!       q1 · /               to where those meet.
 //!     --o---'
 //!      x1
 //! ```
 //!
 //! Each step is a damped Gauss–Newton step (see [`Planes`]) that is held in the cell. On
 //! plane sides the first is exact; on curved ones the error falls from d²/2R to δ²d²/2R, with
-//! d the distance of the vertices, R the radius of curvature and δ = 1/10 at last. Where the
+//! d the distance of the vertices, R the radius of curvature and δ = 2/5. Where the
 //! cell turns out smooth, though strongly curved, the planes are nearly the same, and p
 //! ends on the surface.
 //!
@@ -36,8 +36,9 @@ pub(super) const INSET: f64 = 1.0 / 128.0;
 /// The damping of the steps; it takes the distance from the crease to a hundredth a step.
 const DAMPING: f64 = 3e-3;
 
-/// Where the field is asked, as parts of the way from the feature point to a vertex: a step each.
-const CLOSER: [f64; 2] = [0.4, 0.1];
+/// Where the field is asked, as a part of the way from the feature point to a vertex. Much closer, and what
+/// is found is the side of the crease that the first point missed it to.
+const CLOSER: f64 = 0.4;
 
 /// A value and a gradient of the field.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -149,34 +150,30 @@ pub(super) fn refine(
     mut slopes: impl FnMut(&[DVec3], &mut Vec<Slope>) -> bool,
 ) {
     let (mut points, mut found) = (Vec::new(), Vec::new());
-    for part in CLOSER {
-        points.clear();
-        found.clear();
-        for candidate in candidates.iter() {
-            let (low, at) = (candidate.low(), candidate.at);
-            points.extend(candidate.sides().iter().map(|side| at + part * (low + side.at.as_dvec3() - at)));
-        }
-        if !slopes(&points, &mut found) || found.len() != points.len() {
-            return;
-        }
-        let mut asked = points.iter().zip(&found);
-        for candidate in candidates.iter_mut() {
-            let mut planes = Planes::NONE;
-            let count = candidate.outline.len();
-            for (side, (point, slope)) in candidate.sides[..count].iter_mut().zip(&mut asked) {
-                let steepness = slope.gradient.length();
-                let depth = slope.value / (steepness * step);
-                // A plane that is farther away than the cell tells nothing; neither does NaN.
-                if steepness > 0.0 && depth.abs() < 1.0 {
-                    let normal = -slope.gradient / steepness;
-                    side.normal = normal.as_vec3();
-                    planes.add(normal, normal.dot(*point) + depth);
-                }
+    for candidate in candidates.iter() {
+        let (low, at) = (candidate.low(), candidate.at);
+        points.extend(candidate.sides().iter().map(|side| at + CLOSER * (low + side.at.as_dvec3() - at)));
+    }
+    if !slopes(&points, &mut found) || found.len() != points.len() {
+        return;
+    }
+    let mut asked = points.iter().zip(&found);
+    for candidate in candidates.iter_mut() {
+        let mut planes = Planes::NONE;
+        let count = candidate.outline.len();
+        for (side, (point, slope)) in candidate.sides[..count].iter_mut().zip(&mut asked) {
+            let steepness = slope.gradient.length();
+            let depth = slope.value / (steepness * step);
+            // A plane that is farther away than the cell tells nothing; neither does NaN.
+            if steepness > 0.0 && depth.abs() < 1.0 {
+                let normal = -slope.gradient / steepness;
+                side.normal = normal.as_vec3();
+                planes.add(normal, normal.dot(*point) + depth);
             }
-            if !planes.is_empty() {
-                candidate.planes = planes;
-                candidate.settle();
-            }
+        }
+        if !planes.is_empty() {
+            candidate.planes = planes;
+            candidate.settle();
         }
     }
 }

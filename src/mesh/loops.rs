@@ -41,6 +41,7 @@ pub(super) struct CellLoop {
 impl CellLoop {
     /// The loop of a case, if it has one and no more. `joined` has a bit for each ambiguous face whose
     /// inside corners are joined.
+    #[inline]
     pub(super) fn single(case: u8, joined: u8) -> Option<CellLoop> {
         static LOOPS: LazyLock<Vec<Option<CellLoop>>> =
             LazyLock::new(|| (0..=255).map(|case| CellLoop::derive(case, 0)).collect());
@@ -53,16 +54,19 @@ impl CellLoop {
     }
 
     /// The edges of the cell that the loop passes, in order.
+    #[inline]
     pub(super) fn edges(&self) -> &[u8] {
         &self.edges[..usize::from(self.len)]
     }
 
     /// The number of segments, which is that of edges.
+    #[inline]
     pub(super) fn len(&self) -> usize {
         usize::from(self.len)
     }
 
     /// The face of the segment from edge `n` to the next: twice its axis, and 1 more for the upper one.
+    #[inline]
     pub(super) fn face(&self, n: usize) -> u8 {
         self.faces[n]
     }
@@ -84,6 +88,7 @@ impl CellLoop {
 }
 
 /// The ambiguous faces of a case, as bits.
+#[inline]
 pub(super) fn ambiguous_faces(case: u8) -> u8 {
     static FACES: LazyLock<Vec<u8>> = LazyLock::new(|| {
         let is_ambiguous = |case: u8, face: u8| {

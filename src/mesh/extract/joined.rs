@@ -99,11 +99,9 @@ impl Joined {
     }
 
     /// The joined faces of a cell of the given case, as bits.
+    #[inline]
     pub(super) fn of(&self, samples: &Samples<'_>, cell: [u32; 3], case: u8) -> u8 {
         let mut ambiguous = ambiguous_faces(case);
-        if self.upper.is_empty() {
-            return 0;
-        }
         let mut bits = 0;
         while ambiguous != 0 {
             let face = ambiguous.trailing_zeros() as usize;

@@ -22,7 +22,7 @@
 //! cells holds for that of the region. A vertex on an edge within the box is in no triangle any more, and is
 //! left out.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 use glam::{DVec3, Vec3};
 
@@ -279,20 +279,20 @@ struct Disc {
 /// Several patches, each given by the loop around it, as one, if they make a disc.
 fn glued(patches: &[Vec<Segment>]) -> Option<Disc> {
     // Segments with their ends; one that two patches share is there in both directions.
-    let ends = |patch: &'_ Vec<Segment>| {
+    let mut all: Vec<(Segment, u32)> = Vec::with_capacity(8 * patches.len());
+    for patch in patches {
         let next = patch.iter().cycle().skip(1).map(|segment| segment.from);
-        patch.iter().copied().zip(next).collect::<Vec<_>>()
-    };
-    let all: Vec<(Segment, u32)> = patches.iter().flat_map(ends).collect();
-    let sides: HashSet<(u32, u32)> = all.iter().map(|&(segment, to)| (segment.from, to)).collect();
-    let is_outer = |&(segment, to): &(Segment, u32)| !sides.contains(&(to, segment.from));
-    let outer: HashMap<u32, (Segment, u32)> =
-        all.iter().copied().filter(is_outer).map(|side| (side.0.from, side)).collect();
-    let (first, _) = *all.iter().find(|side| is_outer(side))?;
+        all.extend(patch.iter().copied().zip(next));
+    }
+    let mut sides: Vec<(u32, u32)> = all.iter().map(|&(segment, to)| (segment.from, to)).collect();
+    sides.sort_unstable();
+    let is_outer = |(segment, to): &(Segment, u32)| sides.binary_search(&(*to, segment.from)).is_err();
+    let outer: Vec<(Segment, u32)> = all.iter().copied().filter(is_outer).collect();
+    let (first, _) = *outer.first()?;
     let mut ring = Vec::with_capacity(outer.len());
     let mut at = first.from;
     loop {
-        let &(segment, to) = outer.get(&at)?;
+        let &(segment, to) = outer.iter().find(|(segment, _)| segment.from == at)?;
         ring.push(segment);
         at = to;
         if at == first.from {
@@ -302,28 +302,25 @@ fn glued(patches: &[Vec<Segment>]) -> Option<Disc> {
             return None;
         }
     }
-    let outside = all.iter().filter(|side| is_outer(side)).count();
     // Vertices − edges + patches is 1 for a disc; edges within are listed twice.
     let mut vertices: Vec<u32> = all.iter().map(|(segment, _)| segment.from).collect();
     vertices.sort_unstable();
     vertices.dedup();
-    let edges = outside + (all.len() - outside) / 2;
-    if ring.len() != outside || vertices.len() + patches.len() != edges + 1 || !hangs_together(patches) {
+    let edges = outer.len() + (all.len() - outer.len()) / 2;
+    if ring.len() != outer.len() || vertices.len() + patches.len() != edges + 1 || !hangs_together(patches) {
         return None;
     }
-    let on_ring: HashSet<u32> = ring.iter().map(|segment| segment.from).collect();
-    vertices.retain(|vertex| !on_ring.contains(vertex));
+    vertices.retain(|vertex| ring.iter().all(|segment| segment.from != *vertex));
     Some(Disc { ring, within: vertices })
 }
 
 /// Whether one comes from every patch to every other by vertices that they share.
 fn hangs_together(patches: &[Vec<Segment>]) -> bool {
     let mut left: Vec<&Vec<Segment>> = patches.iter().collect();
-    let mut reached: HashSet<u32> = left.pop().into_iter().flatten().map(|segment| segment.from).collect();
-    while !left.is_empty() {
-        let touches = |patch: &&Vec<Segment>| patch.iter().any(|segment| reached.contains(&segment.from));
-        let Some(next) = left.iter().position(touches) else { return false };
-        reached.extend(left.swap_remove(next).iter().map(|segment| segment.from));
+    let mut reached: Vec<&Vec<Segment>> = left.pop().into_iter().collect();
+    while let Some(patch) = reached.pop() {
+        let shares = |other: &&Vec<Segment>| patch.iter().any(|a| other.iter().any(|b| a.from == b.from));
+        reached.extend(left.extract_if(.., |other| shares(&&**other)));
     }
-    true
+    left.is_empty()
 }

@@ -91,10 +91,12 @@ impl<'a> Samples<'a> {
     }
 
     /// Position and normal of a vertex.
+    #[inline]
     pub(super) fn get(&self, vertex: u32) -> (Vec3, Vec3) {
         (self.positions[vertex as usize], self.normals[vertex as usize])
     }
 
+    #[inline]
     pub(super) fn normal(&self, vertex: u32) -> Vec3 {
         self.normals[vertex as usize]
     }
