@@ -33,6 +33,7 @@ use crate::mesh::feature::{Candidate, settle};
 use crate::mesh::loops::CellLoop;
 use crate::mesh::qef::Planes;
 use crate::mesh::table::CaseTable;
+use crate::run::{Cancelled, Run};
 
 /// A cell asks for a region if its point is farther from the planes than this, in cells.
 const MISFIT: f64 = 0.01;
@@ -95,9 +96,15 @@ impl Span {
 }
 
 /// The regions that candidates ask for, those that fit their planes worst first; in the order of the blocks.
-pub(super) fn regions(samples: &Samples<'_>, special: &[Special], joined: &Joined) -> Vec<Region> {
+pub(super) fn regions(
+    samples: &Samples<'_>,
+    special: &[Special],
+    joined: &Joined,
+    run: &Run,
+) -> Result<Vec<Region>, Cancelled> {
     let mut asking: Vec<Wish> = Vec::new();
     for (block, list) in special.iter().enumerate() {
+        run.check()?;
         for candidate in &list.candidates {
             let misfit = candidate.planes.distance(candidate.at);
             if misfit > MISFIT {
@@ -126,11 +133,12 @@ pub(super) fn regions(samples: &Samples<'_>, special: &[Special], joined: &Joine
     let mut known = Known { samples, special, joined, taken: HashMap::new(), regions: Vec::new() };
     // Regions that stand alone come first: they are smaller than those that others are merged into.
     for merges in [false, true] {
-        asking.retain(|wish| !known.grant(wish, merges));
+        asking.retain(|wish| !run.cancel.is_cancelled() && !known.grant(wish, merges));
     }
+    run.check()?;
     let mut regions: Vec<Region> = known.regions.into_iter().flatten().collect();
     regions.sort_by_key(|region| region.block);
-    regions
+    Ok(regions)
 }
 
 /// A region that a cell asks for.

@@ -125,9 +125,11 @@ pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) ->
     }
     let blocks = || (0..spread.len()).into_par_iter();
     let of_block = |scratch: &mut S::Scratch, n: usize| {
-        if spread[n] { proposals(samples, sampler, scratch, n) } else { Vec::new() }
+        run.check()?;
+        Ok(if spread[n] { proposals(samples, sampler, scratch, n) } else { Vec::new() })
     };
-    let joined = Joined::new(samples, blocks().map_init(|| sampler.scratch(), of_block).collect());
+    let proposed: Result<Vec<_>, Cancelled> = blocks().map_init(|| sampler.scratch(), of_block).collect();
+    let joined = Joined::new(samples, proposed?);
     let meter = Meter::new(run, spread.len());
     let of_block = |(scratch, corners): &mut (S::Scratch, Corners), n: usize| {
         meter.step()?;
@@ -146,8 +148,8 @@ pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) ->
     let special: Result<Vec<Special>, Cancelled> =
         blocks().map_init(|| (sampler.scratch(), Corners::new()), of_block).collect();
     let special = special?;
-    let regions = regions(samples, &special, &joined);
-    Ok(Fans::new(samples, special, regions))
+    let regions = regions(samples, &special, &joined, run)?;
+    Fans::new(samples, special, regions, run)
 }
 
 /// The cells of a block that do not have the patches of the table.
@@ -204,7 +206,7 @@ pub(super) fn segments(candidate: &Candidate) -> impl Iterator<Item = Segment> {
 }
 
 impl Fans {
-    fn new(samples: &Samples<'_>, special: Vec<Special>, regions: Vec<Region>) -> Fans {
+    fn new(samples: &Samples<'_>, special: Vec<Special>, regions: Vec<Region>, run: &Run) -> Result<Fans, Cancelled> {
         let mut all = Fans { blocks: vec![OfBlock::default(); samples.blocks().len()], ..Fans::default() };
         // A region is listed with the block of the candidate that asked for it.
         let in_region: HashSet<[u32; 3]> =
@@ -212,6 +214,7 @@ impl Fans {
         let mut regions = regions.into_iter().peekable();
         let table = CaseTable::get();
         for (block, Special { candidates, mut opposite }) in special.into_iter().enumerate() {
+            run.check()?;
             let first = samples.blocks()[block];
             opposite.retain(|&(number, _)| !in_region.contains(&cell_of(first, number)));
             all.blocks[block].opposite = opposite;
@@ -236,8 +239,8 @@ impl Fans {
         for block in &mut all.blocks {
             block.cells.sort_unstable();
         }
-        all.turn(samples);
-        all
+        all.turn(samples, run)?;
+        Ok(all)
     }
 
     /// Notes that the next fan takes the place of the patches of cells, each with the number of its triangles.
@@ -361,15 +364,20 @@ impl Fans {
     }
 
     /// Finds out which edges between fans are turned, and to what.
-    fn turn(&mut self, samples: &Samples<'_>) {
+    fn turn(&mut self, samples: &Samples<'_>, run: &Run) -> Result<(), Cancelled> {
         let all = &*self;
-        let of_fan = |fan: usize| all.of(fan).iter().map(move |segment| all.across(samples, fan, segment));
-        let turns: Vec<Option<(u32, Turn)>> = (0..all.fans.len()).into_par_iter().flat_map_iter(of_fan).collect();
+        let of_segment = |fan, segment| {
+            run.check()?;
+            Ok(all.across(samples, fan, segment))
+        };
+        let of_fan = |fan: usize| all.of(fan).iter().map(move |segment| of_segment(fan, segment));
+        let turns: Result<Vec<Option<(u32, Turn)>>, Cancelled> =
+            (0..all.fans.len()).into_par_iter().flat_map_iter(of_fan).collect();
         // Two fans have a point in common: it is numbered for the first, and found by the second.
         let mut known: HashMap<[u32; 2], u32> = HashMap::new();
         let fans = self.fans.len() as u32;
         let points = &mut self.points;
-        for (segment, turn) in self.segments.iter_mut().zip(turns) {
+        for (segment, turn) in self.segments.iter_mut().zip(turns?) {
             segment.across = turn.map(|(other, turn)| match turn {
                 Turn::Edge => other,
                 Turn::Point { at, ends } => *known.entry(ends).or_insert_with(|| {
@@ -378,6 +386,7 @@ impl Fans {
                 }),
             });
         }
+        Ok(())
     }
 
     /// The fan on the other side of a segment, if the edge between the two is turned there. Both find the same.
