@@ -3,9 +3,13 @@
 //!
 //! `cargo bench --bench points` prints, for the exponent n = 5, the time that each method takes for
 //! 10 000 points and its ratio to method 1, beside the ratios printed in 1981 (a Prime 750); then,
-//! for each of several exponents and tolerances, which method is best, and whether `Auto` is. Methods
-//! are compared on the same kind of work: points of an octant or wedge in three arrays. A time is
-//! the least of several rounds; rounds of the contestants alternate.
+//! for each of several exponents and tolerances, which method is best for heights over points that
+//! are given, and which for whole surfaces, where `Auto` chooses. Exponents that are no whole numbers
+//! are among them: whole powers are products, and cheaper. In the first two tables methods are
+//! compared on the same kind of work: points of an octant or wedge in arrays. A time is the least of
+//! several rounds; rounds of the contestants alternate.
+//!
+//! Words after `--` choose: `table`, `heights`, `surfaces`, `subdivision`.
 
 use std::f64::consts::FRAC_PI_2;
 use std::hint::black_box;
@@ -13,8 +17,8 @@ use std::time::Instant;
 
 use glam::{DVec2, DVec3};
 use rvachev::{
-    ControlPolygon, ExactExplicit, LogTable, PointMethod, PowerTables, ProductTables, SeriesExplicit, Tension,
-    raw_parametric, raw_parametric_octant,
+    ControlPolygon, ExactExplicit, LogTable, PointMethod, PointSettings, PowerTables, ProductTables, RawParametric,
+    SeriesExplicit, Superellipsoid, Tension,
 };
 
 /// Points that times are given for. (Method 5 makes 101 × 101 at a time.)
@@ -28,7 +32,6 @@ const TURN: f64 = 2e-3;
 struct Contestant<'a> {
     number: u32,
     name: &'static str,
-    method: Option<PointMethod>,
     error: f64,
     /// Points of a run.
     points: usize,
@@ -93,32 +96,26 @@ fn race(contestants: &mut [Contestant]) {
 fn contestants(n: f64, tolerance: f64, wedge: &Wedge) -> Vec<Contestant<'_>> {
     let e = 2.0 / n;
     let mut all: Vec<Contestant> = vec![];
-    let mut add = |number, name, method, error, points, run| {
-        all.push(Contestant { number, name, method, error, points, run, best: f64::INFINITY });
+    let mut add = |number, name, error, points, run| {
+        all.push(Contestant { number, name, error, points, run, best: f64::INFINITY });
     };
 
+    let raw = RawParametric::new(e, e).expect("a good exponent");
     let mut xyz = [(); 3].map(|()| vec![0.0f64; POINTS]);
     let run = move || {
         let [x, y, z] = &mut xyz;
         for i in 0..POINTS {
-            [x[i], y[i], z[i]] = raw_parametric(e, e, wedge.eta[i], wedge.omega[i]);
+            [x[i], y[i], z[i]] = raw.point(wedge.eta[i], wedge.omega[i]);
         }
         black_box(&xyz);
     };
-    add(
-        1,
-        "raw parametric, scalar f64",
-        Some(PointMethod::RawParametric),
-        1e-15,
-        POINTS,
-        Box::new(run) as Box<dyn FnMut()>,
-    );
+    add(1, "raw parametric, scalar f64", 1e-15, POINTS, Box::new(run) as Box<dyn FnMut()>);
     let mut xyz32 = [(); 3].map(|()| vec![0.0f32; POINTS]);
     let run = move || {
-        raw_parametric_octant(e, e, &wedge.eta32, &wedge.omega32, xyz32.each_mut().map(|v| v.as_mut_slice()));
+        raw.octant_single(&wedge.eta32, &wedge.omega32, xyz32.each_mut().map(|v| v.as_mut_slice()));
         black_box(&xyz32);
     };
-    add(1, "raw parametric, SIMD f32", None, 1e-6, POINTS, Box::new(run));
+    add(1, "raw parametric, SIMD f32", 1e-6, POINTS, Box::new(run));
 
     let explicit = ExactExplicit::new(n).expect("a good exponent");
     let mut z = vec![0.0f64; POINTS];
@@ -128,19 +125,19 @@ fn contestants(n: f64, tolerance: f64, wedge: &Wedge) -> Vec<Contestant<'_>> {
         }
         black_box(&z);
     };
-    add(2, "exact explicit, scalar f64", Some(PointMethod::ExactExplicit), 1e-15, POINTS, Box::new(run));
+    add(2, "exact explicit, scalar f64", 1e-15, POINTS, Box::new(run));
     let mut z = vec![0.0f64; POINTS];
     let run = move || {
         explicit.heights(&wedge.x, &wedge.y, &mut z);
         black_box(&z);
     };
-    add(2, "exact explicit, SIMD f64", None, 1e-14, POINTS, Box::new(run));
+    add(2, "exact explicit, SIMD f64", 1e-14, POINTS, Box::new(run));
     let mut z = vec![0.0f32; POINTS];
     let run = move || {
         explicit.heights_single(&wedge.x32, &wedge.y32, &mut z);
         black_box(&z);
     };
-    add(2, "exact explicit, SIMD f32", None, 1e-6, POINTS, Box::new(run));
+    add(2, "exact explicit, SIMD f32", 1e-6, POINTS, Box::new(run));
 
     if let Ok(series) = SeriesExplicit::new(n, tolerance) {
         let mut z = vec![0.0f64; POINTS];
@@ -152,13 +149,13 @@ fn contestants(n: f64, tolerance: f64, wedge: &Wedge) -> Vec<Contestant<'_>> {
             black_box(&z);
         };
         let error = series.error_bound();
-        add(3, "binomial series, scalar f64", Some(PointMethod::BinomialSeries), error, POINTS, Box::new(run));
+        add(3, "binomial series, scalar f64", error, POINTS, Box::new(run));
         let mut z = vec![0.0f32; POINTS];
         let run = move || {
             series.heights_single(&wedge.x32, &wedge.y32, &mut z);
             black_box(&z);
         };
-        add(3, "binomial series, SIMD f32", None, error + 1e-6, POINTS, Box::new(run));
+        add(3, "binomial series, SIMD f32", error + 1e-6, POINTS, Box::new(run));
     }
     let size = ((1.0 / tolerance) as u32).clamp(1000, 1 << 20);
     // A whole number of thousandths, so that the points are nodes.
@@ -170,7 +167,7 @@ fn contestants(n: f64, tolerance: f64, wedge: &Wedge) -> Vec<Contestant<'_>> {
             logs.heights(&wedge.x32, &wedge.y32, &mut z);
             black_box(&z);
         };
-        add(4, "series and log table", Some(PointMethod::LogTable), error, POINTS, Box::new(run));
+        add(4, "series and log table", error, POINTS, Box::new(run));
     }
     let products = ProductTables::new(e, e, 50).expect("good exponents");
     let [rows, columns] = products.size();
@@ -181,13 +178,13 @@ fn contestants(n: f64, tolerance: f64, wedge: &Wedge) -> Vec<Contestant<'_>> {
         black_box(&out);
     };
     let points = rows * columns;
-    add(5, "spherical product, SIMD f32", None, 3e-7, points, Box::new(run));
+    add(5, "spherical product, SIMD f32", 3e-7, points, Box::new(run));
     let mut out = [(); 3].map(|()| vec![0.0f64; rows * columns]);
     let run = move || {
         products.octant_double(out.each_mut().map(|v| v.as_mut_slice()));
         black_box(&out);
     };
-    add(5, "spherical product, SIMD f64", Some(PointMethod::SphericalProduct), 1e-15, points, Box::new(run));
+    add(5, "spherical product, SIMD f64", 1e-15, points, Box::new(run));
     let tables = PowerTables::new(n, size).expect("a good exponent");
     let error = tables.error_bound();
     let mut z = vec![0.0f32; POINTS];
@@ -195,7 +192,7 @@ fn contestants(n: f64, tolerance: f64, wedge: &Wedge) -> Vec<Contestant<'_>> {
         tables.heights(&wedge.x32, &wedge.y32, &mut z);
         black_box(&z);
     };
-    add(6, "explicit with power tables", Some(PointMethod::PowerTables), error, POINTS, Box::new(run));
+    add(6, "explicit with power tables", error, POINTS, Box::new(run));
     all
 }
 
@@ -226,31 +223,89 @@ fn the_table() {
     println!();
 }
 
-fn the_best() {
-    println!("best method for whole octants, and for heights over given points (ns a point)");
-    println!("      n  tolerance  octant                              heights                        Auto, ratio to 1");
-    for n in [2.0, 5.0, 20.0, 50.0, 100.0] {
+const EXPONENTS: [f64; 7] = [2.0, 3.7, 5.0, 20.0, 33.3, 50.0, 100.0];
+const TOLERANCES: [f64; 3] = [1e-3, 1e-5, 1e-12];
+
+fn heights() {
+    println!("heights over points that are given: the best method (ns a point), and exact explicit on SIMD lanes,");
+    println!("as ratios to method 1");
+    println!("      n  tolerance  best                          ns   ratio  explicit f64  explicit f32");
+    for n in EXPONENTS {
         let wedge = Wedge::new(n);
-        for tolerance in [1e-3, 1e-5, 1e-12] {
+        for tolerance in TOLERANCES {
             let mut all = contestants(n, tolerance, &wedge);
             race(&mut all);
             let first = all[0].best;
-            let fastest = |numbers: &[u32]| {
-                let fit = all.iter().filter(|c| c.error <= tolerance && numbers.contains(&c.number));
-                fit.min_by(|a, b| a.best.total_cmp(&b.best)).expect("method 1 or 2 fits")
-            };
-            let each = |c: &Contestant| c.best * 1e9 / POINTS as f64;
-            let (octant, heights) = (fastest(&[1, 2, 3, 4, 5, 6]), fastest(&[2, 3, 4, 6]));
-            let auto = PointMethod::Auto.resolved();
-            let chosen = all.iter().find(|c| c.method == Some(auto)).expect("every method runs");
+            let fit = all.iter().filter(|c| c.error <= tolerance && [2, 3, 4, 6].contains(&c.number));
+            let best = fit.min_by(|a, b| a.best.total_cmp(&b.best)).expect("method 2 fits");
+            let explicit = |name: &str| all.iter().find(|c| c.name == name).map_or(f64::NAN, |c| first / c.best);
             println!(
-                "  {n:5}  {tolerance:9.0e}  {:28} {:5.2}  {:26} {:5.2}  {:?} {:.1}",
-                octant.name,
-                each(octant),
-                heights.name,
-                each(heights),
-                auto,
-                first / chosen.best
+                "  {n:5}  {tolerance:9.0e}  {:28} {:5.2} {:7.1} {:13.1} {:13.1}",
+                best.name,
+                best.best * 1e9 / POINTS as f64,
+                first / best.best,
+                explicit("exact explicit, SIMD f64"),
+                explicit("exact explicit, SIMD f32")
+            );
+        }
+    }
+    println!();
+}
+
+const METHODS: [PointMethod; 6] = [
+    PointMethod::RawParametric,
+    PointMethod::ExactExplicit,
+    PointMethod::BinomialSeries,
+    PointMethod::LogTable,
+    PointMethod::SphericalProduct,
+    PointMethod::PowerTables,
+];
+
+fn whole_surfaces() {
+    println!("whole surfaces by Superellipsoid::points, tables, reflection and scaling included (ns a point);");
+    println!("ratio: of Auto to method 1 at every point");
+    println!(
+        "      n  tolerance     1      2      3      4      5      6   best               Auto               ratio"
+    );
+    for n in EXPONENTS {
+        let e = 2.0 / n;
+        let raw = RawParametric::new(e, e).expect("a good exponent");
+        let wedge = Wedge::new(n);
+        for tolerance in TOLERANCES {
+            let shape = Superellipsoid::new([1.0, 2.0, 3.0], e, e);
+            let mut times = [f64::INFINITY; 7];
+            let mut xyz = vec![[0.0; 3]; POINTS];
+            for _ in 0..ROUNDS {
+                for (method, best) in METHODS.into_iter().zip(&mut times) {
+                    let settings = PointSettings { eighth: 24, method, tolerance };
+                    // The others do not keep the tolerance.
+                    let coarse = [PointMethod::LogTable, PointMethod::PowerTables].contains(&method);
+                    if coarse && tolerance < 2e-6 {
+                        continue;
+                    }
+                    let start = Instant::now();
+                    let count = black_box(shape.points(&settings)).map_or(0, |points| points.len());
+                    *best = best.min(start.elapsed().as_secs_f64() / count as f64);
+                }
+                let start = Instant::now();
+                for (to, (&eta, &omega)) in xyz.iter_mut().zip(wedge.eta.iter().zip(&wedge.omega)) {
+                    *to = raw.point(eta, omega);
+                }
+                black_box(&xyz);
+                times[6] = times[6].min(start.elapsed().as_secs_f64() / POINTS as f64);
+            }
+            let first = times[6];
+            let best = (0..6).min_by(|&i, &j| times[i].total_cmp(&times[j])).expect("six methods");
+            let auto = PointMethod::Auto.resolved();
+            let chosen = METHODS.iter().position(|&method| method == auto).expect("one of six");
+            let each =
+                times[..6].iter().map(|t| if t.is_finite() { format!("{:6.1}", t * 1e9) } else { "     -".into() });
+            println!(
+                "  {n:5}  {tolerance:9.0e} {}   {:18} {:18} {:5.1}",
+                each.collect::<Vec<_>>().join(" "),
+                format!("{:?}", METHODS[best]),
+                format!("{auto:?}"),
+                first / times[chosen]
             );
         }
     }
@@ -274,18 +329,34 @@ fn subdivision() {
         }
         vertices as f64 / best / 1e6
     };
-    let plane = time(&mut || {
-        black_box(flat.subdivided(levels).expect("10 levels"));
-    });
-    let space = time(&mut || {
-        black_box(deep.subdivided(levels).expect("10 levels"));
-    });
+    let (mut fine, mut deep_fine) = (flat.clone(), deep.clone());
+    let plane = [
+        time(&mut || flat.subdivide_into(levels, black_box(&mut fine)).expect("10 levels")),
+        time(&mut || drop(black_box(flat.subdivided(levels)))),
+    ];
+    let space = [
+        time(&mut || deep.subdivide_into(levels, black_box(&mut deep_fine)).expect("10 levels")),
+        time(&mut || drop(black_box(deep.subdivided(levels)))),
+    ];
     println!("subdivision of a closed polygon of 64 points by {levels} levels, one thread: Mvertex/s");
-    println!("  in the plane {plane:8.0}\n  in space     {space:8.0}");
+    println!("               memory used again   fresh memory");
+    println!("  in the plane {:17.0} {:14.0}", plane[0], plane[1]);
+    println!("  in space     {:17.0} {:14.0}", space[0], space[1]);
 }
 
 fn main() {
-    the_table();
-    the_best();
-    subdivision();
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with('-')).collect();
+    let wanted = |word: &str| words.is_empty() || words.iter().any(|w| w == word);
+    if wanted("table") {
+        the_table();
+    }
+    if wanted("heights") {
+        heights();
+    }
+    if wanted("surfaces") {
+        whole_surfaces();
+    }
+    if wanted("subdivision") {
+        subdivision();
+    }
 }

@@ -1,8 +1,8 @@
 //! Depth images of the same CSG by meshes and by fields, one thread.
 //!
 //! `cargo bench --bench raster` prints two tables. The first is by model, at 256², 512² and
-//! 1024²: milliseconds for the meshes of the operands (made once), for projecting them and
-//! sorting them into tiles (each view), and for the depth image by each method of depth-buffer
+//! 1024²: milliseconds for the meshes of the operands and for finding them closed (once), for
+//! projecting them and sorting them into tiles (each view), and for the depth image by each method of depth-buffer
 //! CSG that can do the model; then for the scene of the implicit renderer (made once) and its
 //! depth image. The ratio is that of the implicit renderer's image to projecting and
 //! intervals. The second table is by the number of triangles, with how far the depth images
@@ -157,9 +157,9 @@ fn measure(model: &Model, columns: u32, side: u32, rounds: usize) -> Result<Meas
     for _ in 0..rounds {
         let (time, meshes) = timed(|| model.meshes(columns));
         let meshes = meshes?;
-        row.meshes = row.meshes.min(time);
-        let closed: Result<Vec<ClosedMesh>, _> = meshes.iter().map(ClosedMesh::new).collect();
+        let (check, closed) = timed(|| meshes.iter().map(ClosedMesh::new).collect::<Result<Vec<_>, _>>());
         let closed = closed?;
+        row.meshes = row.meshes.min(time + check);
         let (time, layers) = timed(|| closed.iter().map(|mesh| view.layers(*mesh)).collect::<Vec<_>>());
         row.project = row.project.min(time);
         let operands: Vec<&dyn LayerSource> = layers.iter().map(|l| l as &dyn LayerSource).collect();

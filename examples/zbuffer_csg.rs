@@ -20,7 +20,7 @@ use rvachev::{
 };
 
 /// A picture is drawn this many times as large, and every square of pixels becomes one.
-const FINER: u32 = 3;
+const FINER: u32 = 2;
 
 /// Colours of the operands.
 const COLORS: [[u8; 3]; 6] =
@@ -46,21 +46,37 @@ struct Sheet {
     panels: Vec<Image>,
 }
 
+/// Pixels of white around what a panel shows.
+const MARGIN: u32 = 16;
+
 impl Sheet {
     fn image(&self) -> Result<Image> {
-        let (w, h) = (self.panels[0].width() / FINER, self.panels[0].height() / FINER);
+        let [left, top, right, bottom] = self.shown();
+        let (w, h) = (right - left + 2 * MARGIN, bottom - top + 2 * MARGIN);
         let down = (self.panels.len() as u32).div_ceil(self.across);
         let (width, height) = (w * self.across, h * down);
         let mut pixels = vec![[255u8; 4]; (width * height) as usize];
         for (i, panel) in (0u32..).zip(&self.panels) {
-            let (left, top) = (i % self.across * w, i / self.across * h);
-            for y in 0..h {
-                for x in 0..w {
-                    pixels[((top + y) * width + left + x) as usize] = mean(panel, x, y);
+            let (x0, y0) = (i % self.across * w + MARGIN, i / self.across * h + MARGIN);
+            for y in top..bottom {
+                for x in left..right {
+                    pixels[((y0 + y - top) * width + x0 + x - left) as usize] = mean(panel, x, y);
                 }
             }
         }
         Ok(Image::new(width, height, pixels)?)
+    }
+
+    /// The columns and rows of the picture where any of the panels shows something, the last ones
+    /// excluded: the same of all, so that panels can be compared.
+    fn shown(&self) -> [u32; 4] {
+        let (w, h) = (self.panels[0].width(), self.panels[0].height());
+        let seen = |x: u32, y: u32| self.panels.iter().any(|p| p.pixel(x, y).is_some_and(|[.., alpha]| alpha > 0));
+        let columns: Vec<u32> = (0..w).filter(|&x| (0..h).any(|y| seen(x, y))).map(|x| x / FINER).collect();
+        let rows: Vec<u32> = (0..h).filter(|&y| (0..w).any(|x| seen(x, y))).map(|y| y / FINER).collect();
+        let first = |v: &[u32]| v.first().copied().unwrap_or(0);
+        let last = |v: &[u32]| v.last().map_or(1, |i| i + 1);
+        [first(&columns), first(&rows), last(&columns), last(&rows)]
     }
 }
 
@@ -96,7 +112,7 @@ fn steps() -> Result<Sheet> {
     let a = superellipsoid([1.2, 1.0, 0.8], 0.35, 0.35)?;
     let b = moved(superellipsoid([0.8, 0.8, 0.8], 1.0, 1.0)?, 0.75, -0.65, 0.45)?;
     let camera = Camera::framing(&a.bounds().union(&b.bounds()));
-    let view = RasterView::new(&camera, 220 * FINER, 200 * FINER)?;
+    let view = RasterView::new(&camera, 420 * FINER, 380 * FINER)?;
     let [a, b] = [view.layers(ClosedMesh::new(&a)?), view.layers(ClosedMesh::new(&b)?)];
     let operands: [&dyn LayerSource; 2] = [&a, &b];
     let mut panels = Vec::new();
@@ -136,7 +152,7 @@ fn joins() -> Result<Sheet> {
     let b = moved(superellipsoid([0.75, 0.75, 0.75], 1.0, 1.0)?, 0.55, -0.6, 0.4)?;
     let c = superellipsoid([0.42, 0.42, 1.4], 0.1, 1.0)?;
     let camera = Camera::framing(&a.bounds().union(&b.bounds()).union(&c.bounds()));
-    let view = RasterView::new(&camera, 220 * FINER, 220 * FINER)?;
+    let view = RasterView::new(&camera, 380 * FINER, 380 * FINER)?;
     let layers =
         [view.layers(ClosedMesh::new(&a)?), view.layers(ClosedMesh::new(&b)?), view.layers(ClosedMesh::new(&c)?)];
     let operands: Vec<&dyn LayerSource> = layers.iter().map(|l| l as &dyn LayerSource).collect();
@@ -256,7 +272,7 @@ fn main() -> Result<()> {
     let tree = set(&mut parts)?;
     let bounds = parts.meshes.iter().map(Mesh::bounds).reduce(|a, b| a.union(&b)).unwrap_or(Bounds::EMPTY);
     let camera = Camera::perspective([2.5, -7.0, 4.6], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0], 30.0).fitted(&bounds, 1.5);
-    let view = RasterView::new(&camera, 720 * FINER, 440 * FINER)?;
+    let view = RasterView::new(&camera, 1080 * FINER, 660 * FINER)?;
     let layers: std::result::Result<Vec<MeshLayers>, _> =
         parts.meshes.iter().map(|mesh| Ok::<_, rvachev::RasterError>(view.layers(ClosedMesh::new(mesh)?))).collect();
     let layers = layers?;

@@ -290,6 +290,22 @@
 //! | [`Superellipsoid::points`], [`Superellipse::points`] | points by Franklin and Barr's methods ([`PointMethod`]) |
 //! | [`ControlPolygon`], [`SubdivisionRevolution`], [`ControlGrid`] | subdivision: conics, quadrics, free forms |
 //!
+//! A single primitive as a mesh is best made so: exact points and normals, texture coordinates, few
+//! triangles. What is joined, blended or lacks a patch is meshed from its field ([`Solid::mesh`]).
+//! Subdivision is for curves and surfaces that are shaped by points.
+//!
+//! ## Depth buffers
+//!
+//! Depths, pictures and range images of meshes joined by CSG, without any field:
+//!
+//! | | |
+//! |---|---|
+//! | [`ClosedMesh`] | a mesh that encloses a solid; [`Mesh::affine`], [`taper`](Mesh::taper), [`twist`](Mesh::twist) and [`bend`](Mesh::bend) move and deform it |
+//! | [`RasterView`] | a camera and its picture; the [`layers`](RasterView::layers) of a mesh in it |
+//! | [`RasterView::csg`] | the depth buffer of a tree of operands ([`Csg`]) by one of three methods ([`CsgMethod`] says which, and when rays are better) |
+//! | [`Buffers`] | depth, stencil and ids; passes to go step by step; [`picture`](Buffers::picture), [`range_image`](Buffers::range_image) |
+//! | [`LayerSource`] | operands that are no meshes |
+//!
 //! ## Solids as values
 //!
 //! | | |
@@ -404,7 +420,6 @@ pub use solid::{Caps, Extrusion, Helix, Paint, PlaneBounds, Profile, Solid, Soli
 pub use surface::{
     BinomialSeries, ControlGrid, ControlPoint, ControlPolygon, CurveSpread, ExactExplicit, Frame, LogTable,
     ParametricCurve, ParametricSurface, PatchError, PatchSettings, PlaneSymmetry, PointError, PointMethod,
-    PointSettings, PowerTables, ProductTables, ProfileEnd, SeriesExplicit, Spacing, SubdivisionError,
-    SubdivisionRevolution, SurfacePoint, Symmetry, Tension, hyperbola_of_ellipse, raw_parametric,
-    raw_parametric_octant, reflect, reflect_plane,
+    PointSettings, PowerTables, ProductTables, ProfileEnd, RawParametric, SeriesExplicit, Spacing, SubdivisionError,
+    SubdivisionRevolution, SurfacePoint, Symmetry, Tension, hyperbola_of_ellipse, reflect, reflect_plane,
 };

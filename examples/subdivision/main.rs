@@ -18,11 +18,12 @@ use std::time::Instant;
 use glam::{DVec2, DVec3};
 use painter::{Canvas, View};
 use rvachev::{
-    ControlGrid, ControlPolygon, ProfileEnd, QuadMesh, SubdivisionRevolution, Tension, hyperbola_of_ellipse,
+    ControlGrid, ControlPolygon, ProfileEnd, QuadMesh, SubdivisionError, SubdivisionRevolution, Tension,
+    hyperbola_of_ellipse,
 };
 
-const WIDTH: u32 = 720;
-const HEIGHT: u32 = 250;
+const WIDTH: u32 = 1080;
+const HEIGHT: u32 = 380;
 
 const CAGE: [f64; 3] = [0.75, 0.20, 0.12];
 const CURVE: [f64; 3] = [0.10, 0.32, 0.55];
@@ -34,7 +35,8 @@ struct Curve {
     polygon: ControlPolygon<DVec2>,
     /// Moves points of an ellipse to a hyperbola.
     by_map: Option<f64>,
-    equation: fn(DVec2) -> f64,
+    /// 0 on the figure, if it has an equation.
+    equation: Option<fn(DVec2) -> f64>,
 }
 
 fn curves() -> Result<Vec<Curve>, Box<dyn Error>> {
@@ -45,63 +47,68 @@ fn curves() -> Result<Vec<Curve>, Box<dyn Error>> {
             name: "ellipse",
             polygon: ControlPolygon::ellipse([1.6, 1.0])?,
             by_map: None,
-            equation: |p| (p.x / 1.6).powi(2) + p.y.powi(2) - 1.0,
+            equation: Some(|p| (p.x / 1.6).powi(2) + p.y.powi(2) - 1.0),
         },
         Curve {
             name: "triangle_to_circle",
             polygon: ControlPolygon::ellipse_of(3, [1.0, 1.0])?,
             by_map: None,
-            equation: |p| p.length_squared() - 1.0,
+            equation: Some(|p| p.length_squared() - 1.0),
         },
         Curve {
             name: "hyperbola",
             polygon: ControlPolygon::hyperbola([1.0, 1.0], 2.0, 2)?,
             by_map: None,
-            equation: |p| (p.x * p.x - p.y * p.y - 1.0) / (p.x * p.x),
+            equation: Some(|p| (p.x * p.x - p.y * p.y - 1.0) / (p.x * p.x)),
         },
         Curve {
             name: "hyperbola_of_ellipse",
             polygon: ControlPolygon::ellipse_of(12, [1.0, 1.0])?,
             by_map: Some(1.0),
-            equation: |p| (p.x * p.x - p.y * p.y - 1.0) / (p.x * p.x),
+            equation: Some(|p| (p.x * p.x - p.y * p.y - 1.0) / (p.x * p.x)),
         },
         Curve {
             name: "parabola",
             polygon: ControlPolygon::parabola(0.5, 2.0, 2)?,
             by_map: None,
-            equation: |p| p.y - 0.5 * p.x * p.x,
+            equation: Some(|p| p.y - 0.5 * p.x * p.x),
         },
         Curve {
             name: "cosine",
             polygon: ControlPolygon::cosine_graph(5)?,
             by_map: None,
-            equation: |p| p.y - p.x.cos(),
+            equation: Some(|p| p.y - p.x.cos()),
         },
-        Curve { name: "sine", polygon: ControlPolygon::sine_graph(5)?, by_map: None, equation: |p| p.y - p.x.sin() },
+        Curve {
+            name: "sine",
+            polygon: ControlPolygon::sine_graph(5)?,
+            by_map: None,
+            equation: Some(|p| p.y - p.x.sin()),
+        },
         Curve {
             name: "free_polygon",
             polygon: ControlPolygon::closed(&free, Tension::trigonometric(std::f64::consts::FRAC_PI_3)?)?,
             by_map: None,
-            equation: |_| 0.0,
+            equation: None,
         },
     ])
 }
 
 impl Curve {
-    fn moved(&self, points: Vec<DVec2>) -> Vec<DVec2> {
-        match self.by_map {
-            // What runs off to infinity is cut off.
-            Some(a) => hyperbola_of_ellipse(&points, a).into_iter().filter(|p| p.y.abs() < 4.0).collect(),
-            None => points,
-        }
+    fn moved(&self, points: Vec<DVec2>) -> Result<Vec<DVec2>, SubdivisionError> {
+        let Some(a) = self.by_map else { return Ok(points) };
+        // What runs off to infinity is cut off.
+        Ok(hyperbola_of_ellipse(&points, a)?.into_iter().filter(|p| p.y.abs() < 4.0).collect())
     }
 
-    fn draw(&self, canvas: &mut Canvas) -> Result<f64, Box<dyn Error>> {
+    fn draw(&self, canvas: &mut Canvas) -> Result<Option<f64>, Box<dyn Error>> {
         let closed = self.polygon.is_closed();
         let once = self.polygon.subdivided(1)?.points();
-        let limit = self.moved(self.polygon.limit(6)?);
-        let residual = limit.iter().map(|&p| (self.equation)(p).abs()).fold(0.0, f64::max);
+        let limit = self.moved(self.polygon.limit(6)?)?;
+        let residual = self.equation.map(|equation| limit.iter().map(|&p| equation(p).abs()).fold(0.0, f64::max));
         let cage = self.polygon.points();
+        // Of what is moved, the ellipse that it comes from.
+        let source = if self.by_map.is_some() { self.polygon.limit(6)? } else { vec![] };
         let view = View::of_plane(cage.iter().chain(&limit).copied());
         let line = |points: &[DVec2]| points.iter().map(|p| p.extend(0.0)).collect::<Vec<DVec3>>();
         for panel in 0..3 {
@@ -113,7 +120,10 @@ impl Curve {
                     canvas.polyline(&place, &line(&once), closed, CURVE, 2.0);
                     canvas.dots(&place, &line(&once), CURVE);
                 }
-                _ => canvas.polyline(&place, &line(&limit), closed && self.by_map.is_none(), CURVE, 3.0),
+                _ => {
+                    canvas.polyline(&place, &line(&source), closed, CURVE, 1.0);
+                    canvas.polyline(&place, &line(&limit), closed && self.by_map.is_none(), CURVE, 3.0);
+                }
             }
         }
         Ok(residual)
@@ -126,13 +136,13 @@ struct Surface {
     cage: QuadMesh,
     once: QuadMesh,
     limit: QuadMesh,
-    equation: fn(DVec3) -> f64,
+    equation: Option<fn(DVec3) -> f64>,
 }
 
 fn revolution(
     name: &'static str,
     figure: &SubdivisionRevolution,
-    equation: fn(DVec3) -> f64,
+    equation: Option<fn(DVec3) -> f64>,
 ) -> Result<Surface, Box<dyn Error>> {
     Ok(Surface {
         name,
@@ -172,36 +182,59 @@ fn surfaces() -> Result<Vec<Surface>, Box<dyn Error>> {
         cage: sheet.control_cage(),
         once: sheet.subdivided(1)?.control_cage(),
         limit: sheet.limit_mesh(4)?,
-        equation: |_| 0.0,
+        equation: None,
     };
+    // Without their flat ends one sees into them.
+    let one_sheet = SubdivisionRevolution::one_sheet([0.8, 0.6, 0.8], 1.2)?;
+    let one_sheet = one_sheet.with_ends(ProfileEnd::Open, ProfileEnd::Open);
+    let two_sheets = SubdivisionRevolution::two_sheets([0.6, 0.5, 0.5], 1.0)?;
+    let two_sheets = two_sheets.with_ends(ProfileEnd::Pole, ProfileEnd::Open);
     Ok(vec![
-        revolution("ellipsoid", &SubdivisionRevolution::ellipsoid([1.5, 1.0, 0.8])?, |p| {
-            (p.x / 1.5).powi(2) + p.y.powi(2) + (p.z / 0.8).powi(2) - 1.0
-        })?,
-        revolution("one_sheet", &SubdivisionRevolution::one_sheet([0.8, 0.6, 0.8], 1.2)?, |p| {
-            let (a, z) = ((p.x / 0.8).powi(2) + (p.y / 0.6).powi(2), (p.z / 0.8).powi(2));
-            if a < 1e-20 { 0.0 } else { (a - z - 1.0) / a }
-        })?,
-        revolution("two_sheets", &SubdivisionRevolution::two_sheets([0.6, 0.5, 0.5], 1.3)?, |p| {
-            let (a, z) = ((p.x / 0.6).powi(2) + (p.y / 0.5).powi(2), (p.z / 0.5).powi(2));
-            if a < 1e-20 && p.z.abs() > 0.6 { 0.0 } else { (z - a - 1.0) / z }
-        })?,
-        revolution("elliptic_torus", &SubdivisionRevolution::elliptic_torus([0.4, 0.5], 1.3, 0.7)?, |p| {
-            let across = (p.x.hypot(p.y / 0.7) - 1.3) / 0.4;
-            across.powi(2) + (p.z / 0.5).powi(2) - 1.0
-        })?,
-        revolution("elliptic_cylinder", &SubdivisionRevolution::elliptic_cylinder([1.2, 0.8], 0.9)?, |p| {
-            let a = (p.x / 1.2).powi(2) + (p.y / 0.8).powi(2);
-            if a < 1e-20 { 0.0 } else { a - 1.0 }
-        })?,
-        revolution("vase", &vase, |_| 0.0)?,
-        revolution("free_ring", &ring, |_| 0.0)?,
+        revolution(
+            "ellipsoid",
+            &SubdivisionRevolution::ellipsoid([1.5, 1.0, 0.8])?,
+            Some(|p| (p.x / 1.5).powi(2) + p.y.powi(2) + (p.z / 0.8).powi(2) - 1.0),
+        )?,
+        revolution(
+            "one_sheet",
+            &one_sheet,
+            Some(|p| {
+                let (a, z) = ((p.x / 0.8).powi(2) + (p.y / 0.6).powi(2), (p.z / 0.8).powi(2));
+                (a - z - 1.0) / a
+            }),
+        )?,
+        revolution(
+            "two_sheets",
+            &two_sheets,
+            Some(|p| {
+                let (a, z) = ((p.x / 0.6).powi(2) + (p.y / 0.5).powi(2), (p.z / 0.5).powi(2));
+                (z - a - 1.0) / z
+            }),
+        )?,
+        revolution(
+            "elliptic_torus",
+            &SubdivisionRevolution::elliptic_torus([0.4, 0.5], 1.3, 0.7)?,
+            Some(|p| {
+                let across = (p.x.hypot(p.y / 0.7) - 1.3) / 0.4;
+                across.powi(2) + (p.z / 0.5).powi(2) - 1.0
+            }),
+        )?,
+        revolution(
+            "elliptic_cylinder",
+            &SubdivisionRevolution::elliptic_cylinder([1.2, 0.8], 0.9)?,
+            Some(|p| {
+                let a = (p.x / 1.2).powi(2) + (p.y / 0.8).powi(2);
+                if a < 1e-20 { 0.0 } else { a - 1.0 }
+            }),
+        )?,
+        revolution("vase", &vase, None)?,
+        revolution("free_ring", &ring, None)?,
         sheet,
     ])
 }
 
 impl Surface {
-    fn draw(&self, canvas: &mut Canvas) -> f64 {
+    fn draw(&self, canvas: &mut Canvas) -> Option<f64> {
         let view = View::of_space(self.cage.positions().iter().chain(self.limit.positions()).copied());
         let place = canvas.panel(0, 3, &view);
         canvas.faces(&place, &self.cage, SURFACE);
@@ -212,7 +245,8 @@ impl Surface {
         let place = canvas.panel(2, 3, &view);
         canvas.faces(&place, &self.limit, SURFACE);
         canvas.edges(&place, &self.cage, CAGE, true);
-        self.limit.positions().iter().map(|&p| (self.equation)(p).abs()).fold(0.0, f64::max)
+        let positions = self.limit.positions();
+        self.equation.map(|equation| positions.iter().map(|&p| equation(p).abs()).fold(0.0, f64::max))
     }
 }
 
@@ -221,10 +255,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all(&folder)?;
     println!("Control polygon or cage, one level, limit; how far points of the limit are from the equation:");
     let start = Instant::now();
-    let save = |name: &str, residual: f64, canvas: Canvas| -> Result<(), Box<dyn Error>> {
+    let save = |name: &str, residual: Option<f64>, canvas: Canvas| -> Result<(), Box<dyn Error>> {
         let path = folder.join(format!("subdivision_{name}.png"));
         canvas.image()?.save(&path)?;
-        println!("  {:50} {residual:.0e}", path.display());
+        let residual = residual.map_or("no equation".into(), |residual| format!("{residual:.0e}"));
+        println!("  {:54} {residual}", path.display());
         Ok(())
     };
     for curve in curves()? {

@@ -80,7 +80,7 @@ impl Canvas {
     /// Puts a view into one of several panels, side by side.
     pub fn panel(&self, index: u32, of: u32, view: &View) -> Place {
         let size = DVec2::new(f64::from(self.width) / f64::from(of), f64::from(self.height));
-        let scale = (0.86 * size / (view.max - view.min)).min_element();
+        let scale = (0.9 * size / (view.max - view.min)).min_element();
         let middle = 0.5 * (view.min + view.max) * scale;
         let center = DVec2::new(size.x * (f64::from(index) + 0.5), 0.5 * size.y);
         Place { axes: view.axes, scale, offset: DVec2::new(center.x - middle.x, center.y + middle.y) }

@@ -1,12 +1,10 @@
-//! How a program's value bends along straight lines, and its slopes over boxes: what tells how
-//! many crossings a ray may have.
+//! How a program's value bends along straight lines: what tells how many crossings a ray may have.
 //!
 //! A concave value is above 0 on one piece of any line, a convex one on all but one. Minima keep
 //! concave values concave and maxima convex ones convex; a negation exchanges the two.
 
 use super::program::{Kind, Node, Op, Program};
 use crate::field::Rule;
-use crate::{Bounds, Dual, Interval};
 
 /// How the value bends along straight lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,11 +59,5 @@ impl Program {
             [Node { kind: Kind::Leaf(leaf), .. }] => Some(self.instance(*leaf).number),
             _ => None,
         }
-    }
-
-    /// Ranges of the derivatives over a box.
-    pub(crate) fn slopes(&self, region: &Bounds) -> [Interval; 3] {
-        let side = |axis: usize| Interval::new(region.min[axis], region.max[axis]);
-        self.evaluate(Dual::point([side(0), side(1), side(2)]), &mut Vec::new()).gradient()
     }
 }

@@ -110,6 +110,10 @@ impl AnyField for Composite {
         let slopes = with_evaluator(|evaluator| local.gradients(evaluator, self.program.tape()));
         write_gradients(chunk.placement, &slopes, chunk.out);
     }
+
+    fn takes_short(&self) -> bool {
+        true
+    }
 }
 
 /// How far lanes of a program may be off within `reach` of the origin.
@@ -132,6 +136,8 @@ pub(super) fn with_evaluator<T>(work: impl FnOnce(&mut Evaluator) -> T) -> T {
 /// A chunk's points in a leaf's own coordinates.
 pub(super) struct Locals {
     pub(super) at: [[f32; CHUNK]; 3],
+    /// How many of them count.
+    pub(super) count: usize,
 }
 
 /// Values and gradients of a chunk.
@@ -156,13 +162,17 @@ impl Slopes {
 
 impl Locals {
     pub(super) fn of(points: &[&[f32]; 3], placement: &Placement) -> Locals {
-        let mut locals = Locals { at: [[0.0; CHUNK]; 3] };
         let [xs, ys, zs] = points;
+        let mut locals = Locals { at: [[0.0; CHUNK]; 3], count: xs.len() };
         for (i, ((x, y), z)) in xs.iter().zip(*ys).zip(*zs).enumerate() {
             let p = placement.apply([f64::from(*x), f64::from(*y), f64::from(*z)]);
             locals.set(i, DVec3::from_array(p));
         }
         locals
+    }
+
+    fn coordinates(&self) -> [&[f32]; 3] {
+        self.at.each_ref().map(|axis| &axis[..self.count])
     }
 
     pub(super) fn get(&self, i: usize) -> DVec3 {
@@ -176,14 +186,14 @@ impl Locals {
     }
 
     pub(super) fn values(&self, evaluator: &mut Evaluator, tape: &Tape, out: &mut [f32]) {
-        let [x, y, z] = &self.at;
+        let [x, y, z] = self.coordinates();
         evaluator.values(tape, x, y, z, out);
     }
 
     pub(super) fn gradients(&self, evaluator: &mut Evaluator, tape: &Tape) -> Slopes {
         let mut slopes = Slopes { value: [0.0; CHUNK], gradient: [[0.0; CHUNK]; 3] };
         let Slopes { value, gradient: [dx, dy, dz] } = &mut slopes;
-        let [x, y, z] = &self.at;
+        let [x, y, z] = self.coordinates();
         evaluator.gradients(tape, x, y, z, Gradients { value, dx, dy, dz });
         slopes
     }
@@ -199,7 +209,7 @@ pub(super) fn finish(placement: &Placement, values: &mut [f32]) {
 /// Values and gradients as they count outside of the leaf's frame.
 pub(super) fn write_gradients(placement: &Placement, slopes: &Slopes, out: [&mut [f32]; 4]) {
     let [value, dx, dy, dz] = out;
-    for i in 0..CHUNK {
+    for i in 0..value.len() {
         let (v, g) = slopes.at(i);
         let [x, y, z] = placement.pull((g * placement.scale).to_array());
         value[i] = placement.finish(v) as f32;

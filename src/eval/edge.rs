@@ -29,7 +29,7 @@ use glam::{DAffine3, DVec3};
 
 use super::composite::{Locals, Slopes, Whole, finish, points64, roundoff, with_evaluator, write_gradients};
 use super::{Program, Tape};
-use crate::field::{AnyField, Chunk, Zone};
+use crate::field::{AnyField, Chunk, Zone, steep_slopes};
 use crate::num::kernel::CHUNK;
 use crate::num::symbol::Symbol;
 use crate::solid::Operation;
@@ -292,13 +292,7 @@ impl AnyField for EdgeBlend {
 
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
         let hull = p.map(Dual::value);
-        let value = self.range(&Zone::of_sides(hull));
-        let any = Interval::new(-STEEPEST, STEEPEST);
-        let along = |i: usize| {
-            let parts = p.map(|side| side.gradient()[i] * any);
-            parts[0] + parts[1] + parts[2]
-        };
-        Dual::new(value, [along(0), along(1), along(2)])
+        Dual::new(self.range(&Zone::of_sides(hull)), steep_slopes(STEEPEST, p))
     }
 
     fn convex(&self) -> bool {
@@ -347,11 +341,11 @@ impl AnyField for EdgeBlend {
                 values[i].iter_mut().for_each(|v| *v *= sign);
             }
         });
-        for (x, y) in values[0].iter().zip(&values[1]) {
+        for (x, y) in values[0].iter().zip(&values[1]).take(local.count) {
             near |= self.near([f64::from(*x), f64::from(*y)]);
         }
         if near {
-            out.copy_from_slice(&self.chunk(&local, tapes).value);
+            out.copy_from_slice(&self.chunk(&local, tapes).value[..out.len()]);
         } else {
             for (i, out) in out.iter_mut().enumerate() {
                 *out = self.sign as f32 * values[0][i].max(values[1][i]);
@@ -369,6 +363,10 @@ impl AnyField for EdgeBlend {
         let tapes = [self.operands[0].tape(), self.operands[1].tape()];
         write_gradients(chunk.placement, &self.chunk(&local, tapes), chunk.out);
     }
+
+    fn takes_short(&self) -> bool {
+        true
+    }
 }
 
 impl EdgeBlend {
@@ -383,12 +381,12 @@ impl EdgeBlend {
                 })
             };
             let here = sample(local);
-            let mut feet: Vec<(Foot, bool)> = Vec::with_capacity(CHUNK);
-            for i in 0..CHUNK {
+            let mut feet: Vec<(Foot, bool)> = Vec::with_capacity(local.count);
+            for i in 0..local.count {
                 let near = self.near(signed(&here, i).map(|(value, _)| value));
                 feet.push((Foot::new(local.get(i)), near));
             }
-            let mut at = Locals { at: local.at };
+            let mut at = Locals { ..*local };
             let mut there: Option<[Slopes; 2]> = None;
             for _ in 0..STEPS {
                 let sides = there.as_ref().unwrap_or(&here);

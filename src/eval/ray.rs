@@ -2,8 +2,8 @@
 //!
 //! A piece of the ray is a region like any other. Where the program narrowed to it has one
 //! sign, there is no crossing. Where the slope along the ray has one sign, there is one
-//! crossing if the ends differ in sign and none if they agree; bracketing finds it. Else the
-//! piece is halved, the nearer half first.
+//! crossing if the ends differ in sign and none if they agree; bracketing finds it. Else what
+//! the values at the ends and the slopes leave of the piece is halved, the nearer half first.
 
 use glam::DVec3;
 
@@ -26,7 +26,11 @@ pub struct Hit {
 
 /// Pieces shorter than this times the solid's size are not halved further: what crosses
 /// within them and back touches rather than crosses.
-const SHORTEST: f64 = 1e-11;
+const SHORTEST: f64 = 1e-7;
+
+/// A piece is narrowed when it is shorter than this part of the one narrowed before: halves that
+/// differ little from the whole tell little more.
+const ASK: f64 = 0.2;
 
 /// After as many pieces a ray is given up as a miss. A solid of finite size never comes near;
 /// an unbounded deformed one may wind about the ray without end.
@@ -34,6 +38,19 @@ const PIECES: usize = 1 << 18;
 
 /// The slope is asked for only of programs with at most this many leaves.
 const FEW: usize = 6;
+
+/// A piece of a ray.
+struct Piece {
+    program: Program,
+    ends: [f64; 2],
+    values: [f64; 2],
+    /// Which of its ends are inside; close to the surface rounding may tell otherwise.
+    inside: [bool; 2],
+    /// Bounds of the value's slope along it.
+    slopes: Interval,
+    /// The length of the piece that these and the program were made for.
+    known: f64,
+}
 
 /// The first crossing on `origin + t·direction` (a unit vector) with `near ≤ t ≤ far`.
 pub(crate) fn first_hit(
@@ -52,27 +69,81 @@ pub(crate) fn first_hit(
     let size = if bounds.is_finite() { bounds.size().length() } else { 1.0 };
     let shortest = SHORTEST * (size + origin.abs().max_element().min(1e6) + near);
     let at = |t: f64| origin + t * direction;
-    let mut pieces = vec![(program.clone(), near, far)];
+    let values = [near, far].map(|t| program.value(at(t)));
+    let (inside, slopes) = (values.map(|value| value > 0.0), Interval::ALL);
+    let known = f64::INFINITY;
+    let mut pieces = vec![Piece { program: program.clone(), ends: [near, far], values, inside, slopes, known }];
     for _ in 0..PIECES {
-        let Some((program, t0, t1)) = pieces.pop() else { break };
-        let Region::Surface(program) = program.narrow_zone(&Zone::of_segment(at(t0), at(t1))) else { continue };
-        let (inside0, inside1) = (program.value(at(t0)) > 0.0, program.value(at(t1)) > 0.0);
-        let certain =
-            t1 - t0 <= shortest || (program.leaf_count() <= FEW && one_way(&program, origin, direction, t0, t1));
-        if certain {
-            if inside0 == inside1 {
+        let Some(mut piece) = pieces.pop() else { break };
+        let [t0, t1] = piece.ends;
+        let [from, to] = within_reach(&piece);
+        if to - from <= shortest || one_signed(piece.slopes) {
+            if piece.inside[0] == piece.inside[1] {
                 continue;
             }
-            return Some(hit_between(&program, &at, t0, t1));
+            let [from, to] = if one_signed(piece.slopes) { piece.ends } else { [from.min(to), from.max(to)] };
+            return Some(hit_between(&piece.program, &at, from, to));
+        }
+        if to - from <= 0.5 * (t1 - t0) {
+            piece.ends = [from, to];
+            piece.values = piece.ends.map(|t| piece.program.value(at(t)));
+            pieces.push(piece);
+            continue;
+        }
+        if t1 - t0 < ASK * piece.known {
+            let slopes = |program: &Program| match program.leaf_count() <= FEW {
+                true => slope_along(program, origin, direction, t0, t1),
+                false => Interval::ALL,
+            };
+            // Narrowing one leaf leaves one.
+            let single = piece.program.leaf_count() == 1;
+            let mut found = if single { slopes(&piece.program) } else { Interval::ALL };
+            if !one_signed(found) {
+                let zone = Zone::of_segment(at(t0), at(t1));
+                let Region::Surface(narrowed) = piece.program.narrow_zone(&zone) else { continue };
+                piece.program = narrowed;
+                found = if single { found } else { slopes(&piece.program) };
+            }
+            let better = found.width() < 0.5 * piece.slopes.width();
+            (piece.slopes, piece.known) = (found, t1 - t0);
+            if better {
+                pieces.push(piece);
+                continue;
+            }
         }
         let middle = 0.5 * (t0 + t1);
-        pieces.push((program.clone(), middle, t1));
-        pieces.push((program, t0, middle));
+        let value = piece.program.value(at(middle));
+        let after = Piece {
+            program: piece.program.clone(),
+            ends: [middle, t1],
+            values: [value, piece.values[1]],
+            inside: [value > 0.0, piece.inside[1]],
+            ..piece
+        };
+        pieces.push(after);
+        pieces.push(Piece {
+            ends: [t0, middle],
+            values: [piece.values[0], value],
+            inside: [piece.inside[0], value > 0.0],
+            ..piece
+        });
     }
     None
 }
 
-/// The hit between two distances whose values differ in sign.
+/// What is left of a piece where the value may be 0: from either end it takes the value a while
+/// to get there.
+fn within_reach(piece: &Piece) -> [f64; 2] {
+    let Piece { ends: [t0, t1], values: [v0, v1], slopes, .. } = *piece;
+    let way = |value: f64, fall: f64, rise: f64| {
+        let steepest = if value > 0.0 { fall } else { rise };
+        let way = value.abs() / (steepest * (1.0 + 1e-9));
+        if way.is_finite() { way } else { 0.0 }
+    };
+    [t0 + way(v0, -slopes.lo(), slopes.hi()), t1 - way(v1, slopes.hi(), -slopes.lo())]
+}
+
+/// The hit between two distances whose values differ in sign, but for rounding.
 fn hit_between(program: &Program, at: &impl Fn(f64) -> DVec3, t0: f64, t1: f64) -> Hit {
     let t = bracket(program, at, t0, t1);
     let point = at(t);
@@ -80,13 +151,12 @@ fn hit_between(program: &Program, at: &impl Fn(f64) -> DVec3, t0: f64, t1: f64) 
     Hit { distance: t, point, normal, owner: program.deciding_leaf(point) }
 }
 
-/// Whether the value only rises or only falls from `t0` to `t1`.
-fn one_way(program: &Program, origin: DVec3, direction: DVec3, t0: f64, t1: f64) -> bool {
+/// The slopes of the value along the ray from `t0` to `t1`.
+fn slope_along(program: &Program, origin: DVec3, direction: DVec3, t0: f64, t1: f64) -> Interval {
     let t = Dual::variable(Interval::new(t0, t1), 0);
     let along = |o: f64, d: f64| t * Dual::constant(Interval::point(d)) + Dual::constant(Interval::point(o));
     let p = [along(origin.x, direction.x), along(origin.y, direction.y), along(origin.z, direction.z)];
-    let slope = program.evaluate(p, &mut Vec::new()).gradient()[0];
-    one_signed(slope)
+    program.evaluate(p, &mut Vec::new()).gradient()[0]
 }
 
 /// Whether a value with this slope only rises or only falls, but for rounding: a flat piece
@@ -96,11 +166,14 @@ fn one_signed(slope: Interval) -> bool {
     slope.lo() > -ROUNDING || slope.hi() < ROUNDING
 }
 
-/// The crossing between `t0` and `t1`, whose values differ in sign: the false position
-/// method with halving (Illinois), which never leaves the bracket.
+/// The crossing between `t0` and `t1`: the false position method with halving (Illinois), which
+/// never leaves the bracket. Where rounding has the same sign at both ends it is at one of them.
 fn bracket(program: &Program, at: &impl Fn(f64) -> DVec3, mut t0: f64, mut t1: f64) -> f64 {
     let (mut f0, mut f1) = (program.value(at(t0)), program.value(at(t1)));
     let inside0 = f0 > 0.0;
+    if inside0 == (f1 > 0.0) {
+        return if f0.abs() < f1.abs() { t0 } else { t1 };
+    }
     let mut kept = 0i32;
     for _ in 0..80 {
         let width = t1 - t0;

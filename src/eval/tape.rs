@@ -4,7 +4,6 @@
 //! are rebased to that origin in double precision, so a small solid far from the origin of
 //! coordinates is evaluated as accurately as one at it.
 
-use std::any::Any;
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
@@ -13,10 +12,7 @@ use super::fold::join;
 use super::program::{Op, Program};
 use super::register::{Step, schedule};
 use crate::Bounds;
-use crate::field::{
-    AnyField, AnyWarp, COORDINATE_LIMIT, Capsule, Chunk, Cone, Cuboid, Cylinder, Ellipsoid, GeneralisedSuperquadric,
-    HalfSpace, Placement, Product, Pull, Rule, Slab, Sphere, Superellipsoid, Supertoroid, Torus, Zone,
-};
+use crate::field::{AnyField, AnyWarp, COORDINATE_LIMIT, Chunk, Placement, Product, Pull, Rule, Zone};
 use crate::num::kernel::{CHUNK, Element, run, within};
 
 /// A program ready for bulk evaluation over a region: immutable, shared between threads;
@@ -45,7 +41,7 @@ pub struct Tape {
     result: u32,
     origin: DVec3,
     roundoff: f64,
-    /// Whether every leaf takes short chunks; deformations do.
+    /// Whether every leaf takes short chunks; deformations and joins do.
     short: bool,
 }
 
@@ -108,7 +104,7 @@ impl Tape {
                 field: instance.field.clone(),
             });
         }
-        let short = leaves.iter().all(|leaf| takes_short(&*leaf.field));
+        let short = leaves.iter().all(|leaf| leaf.field.takes_short());
         Tape { frames, leaves, steps, registers: plan.registers, result: plan.result, origin, roundoff, short }
     }
 
@@ -137,24 +133,6 @@ impl Tape {
     pub fn roundoff(&self) -> f64 {
         self.roundoff
     }
-}
-
-/// Whether a leaf runs over any multiple of the widest vectors, as all do that are one formula.
-/// Leaves with loops of their own count on whole chunks; what is not listed is taken for one.
-fn takes_short(field: &dyn AnyField) -> bool {
-    let field: &dyn Any = field;
-    field.is::<Superellipsoid>()
-        || field.is::<GeneralisedSuperquadric>()
-        || field.is::<Supertoroid>()
-        || field.is::<Sphere>()
-        || field.is::<Ellipsoid>()
-        || field.is::<Cuboid>()
-        || field.is::<Cylinder>()
-        || field.is::<Cone>()
-        || field.is::<Capsule>()
-        || field.is::<Torus>()
-        || field.is::<HalfSpace>()
-        || field.is::<Slab>()
 }
 
 /// How a region looks in a frame, and how far its points may be off in single precision.

@@ -124,6 +124,20 @@ pub(crate) trait AnyField: Any + Debug + Send + Sync {
     fn lanes64(&self, chunk: Chunk<'_, f64, 1>);
     /// Value and the three derivatives.
     fn gradients(&self, chunk: Chunk<'_, f32, 4>);
+    /// Whether the lanes run over any multiple of the widest vectors, not over whole chunks only.
+    fn takes_short(&self) -> bool {
+        false
+    }
+}
+
+/// The derivatives, along the variables of `p`, of a value that changes by at most `steepest` per
+/// length unit of p.
+pub(crate) fn steep_slopes(steepest: f64, p: [Dual<Interval>; 3]) -> [Interval; 3] {
+    [0, 1, 2].map(|axis| {
+        let [x, y, z] = p.map(|side| side.d[axis].magnitude());
+        let most = steepest * (1.0 + 1e-12) * (x * x + y * y + z * z).sqrt();
+        Interval::new(-most, most)
+    })
 }
 
 struct Value<'a, F>(&'a F, &'a Placement);
@@ -283,6 +297,10 @@ impl<F: Field> AnyField for F {
 
     fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
         run(&Gradient(self, chunk.placement), chunk.points, chunk.out);
+    }
+
+    fn takes_short(&self) -> bool {
+        true
     }
 }
 

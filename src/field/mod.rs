@@ -54,7 +54,7 @@ pub(crate) use deform::{AnyWarp, Bend, Cells, Comb, Elongate, Sectors, Taper, Ta
 pub use deform::{Law, LawTable, LinearLaw, SineWave, SmoothStep};
 pub(crate) use distance::Distance;
 pub use ellipsoid::Ellipsoid;
-pub(crate) use erased::{AnyField, Chunk, Placement, smallest_stretch};
+pub(crate) use erased::{AnyField, Chunk, Placement, smallest_stretch, steep_slopes};
 pub use formula::{Formula, FormulaError};
 pub use generalised::GeneralisedSuperquadric;
 pub use gielis::{Gielis, Radius, Turns};

@@ -21,7 +21,40 @@ use crate::Run;
 /// | `Sequenced` | unions of up to 4096 products | convex | outside of all |
 /// | `Stencil` | unions; intersection and difference of two | convex, but in unions any | outside of all |
 ///
-/// All give the same depths where all apply.
+/// All give the same depths where all apply. `Intervals` is as quick as the others in pictures of
+/// 256 × 256 pixels and from some ten operands on (32: 0.7 of the time of `Sequenced`); for few
+/// operands in larger pictures it takes up to 1.5 times as long, for it keeps every layer. Passes
+/// and sequences are what graphics hardware can do, and are here to be compared and followed step
+/// by step.
+///
+/// # Or rays
+///
+/// The [`Scene`](crate::Scene) of the implicit renderer makes the same depth image from the field.
+/// `cargo bench --bench raster` measures both, on one thread, in one run; how many times as long
+/// rays take as projecting the meshes and joining their intervals:
+///
+/// | superellipsoids, of 8064 triangles each | 256² pixels | 512² | 1024² |
+/// |---|---|---|---|
+/// | 2 | 3.5 | 3.9 | 2.7 |
+/// | 3 | 1.7 | 1.9 | 2.2 |
+/// | 13 | 2.1 | 2.2 | 2.1 |
+/// | 32 | 1.7 | 2.1 | 2.2 |
+///
+/// | triangles of each of 2, 512² pixels | 960 | 3968 | 16 128 | 65 024 | 261 120 | 1 046 528 |
+/// |---|---|---|---|---|---|---|
+/// | times as long by rays | 4.5 | 3.5 | 3.0 | 1.6 | 1.0 | 0.3 |
+/// | mean difference of the depths, of the size | 3·10⁻³ | 8·10⁻⁴ | 2·10⁻⁴ | 5·10⁻⁵ | 1·10⁻⁵ | 3·10⁻⁶ |
+///
+/// * Rasterising costs by the triangles, and by the pixels and layers that they cover, whatever
+///   the surfaces are made of. Rays cost by the pixels, and by what the field costs.
+/// * Meshes have a chord error, which falls as one over the number of triangles; their joints are
+///   exact to the pixel for the meshes. Rays find the surface itself.
+/// * A mesh is made and [found closed](super::ClosedMesh) once, which takes up to ten times as long
+///   as a view of it; it serves any number of views.
+///
+/// So: many views of primitives of up to some 100 000 triangles, synthetic range images by the
+/// thousand, scans and other meshes that have no field: rasterise. A single view, blends, fillets,
+/// offsets, lattices and formulas, close-ups, shadows, and whatever must be exact: cast rays.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum CsgMethod {
     /// The sorted layers of each pixel.
@@ -40,9 +73,9 @@ enum Plan {
 }
 
 impl Plan {
-    fn tile(&self, operands: &[&dyn LayerSource], tile: &Tile) -> Target {
+    fn tile(&self, operands: &[&dyn LayerSource], tile: &Tile, scratch: &mut intervals::Scratch) -> Target {
         match self {
-            Plan::Intervals(circuit) => intervals::tile(circuit, operands, tile),
+            Plan::Intervals(circuit) => intervals::tile(circuit, operands, tile, scratch),
             Plan::Sequenced(sequences) => sequences.tile(operands, tile),
             Plan::Stencil(passes) => passes.tile(operands, tile),
         }
@@ -125,9 +158,9 @@ impl RasterView {
         let tiles = run.install(|| {
             (0..count)
                 .into_par_iter()
-                .map(|number| {
+                .map_init(intervals::Scratch::default, |scratch, number| {
                     run.check()?;
-                    let target = plan.tile(operands, &Tile::number(number, self.width, self.height));
+                    let target = plan.tile(operands, &Tile::number(number, self.width, self.height), scratch);
                     let done = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
                     run.report(f64::from(done) / f64::from(count));
                     Ok(target)

@@ -17,15 +17,26 @@
 //! Sources: A. H. Barr, *Global and local deformations of solid primitives* (1984); F. Solina
 //! and R. Bajcsy (1990) for the bend.
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DVec3, Vec3};
 
 use super::error::RasterError;
 use crate::field::{AnyWarp, Bend, Taper, Twist};
 use crate::{Mesh, ParamError};
 
 impl Mesh {
-    /// The mesh moved by an affine map. A map that mirrors turns the triangles round, so that
-    /// they face outward again.
+    /// The mesh moved by an affine map, with all that it carries. A map that mirrors turns the
+    /// triangles round, so that they face outward again.
+    ///
+    /// ```
+    /// use glam::{DAffine3, DVec3};
+    /// use rvachev::{PatchSettings, Superellipsoid};
+    ///
+    /// let mesh = Superellipsoid::new([1.0, 1.0, 1.0], 1.0, 1.0).surface()?.mesh(&PatchSettings::default())?;
+    /// let flipped = mesh.affine(DAffine3::from_scale(DVec3::new(-2.0, 1.0, 1.0)))?;
+    /// assert!((flipped.volume() / mesh.volume() - 2.0).abs() < 1e-6);
+    /// assert!(flipped.corner_texture().is_some());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     ///
@@ -37,16 +48,7 @@ impl Mesh {
             return Err(ParamError::new("determinant of the map", determinant, "finite, and not 0").into());
         }
         let turned = map.matrix3.inverse().transpose();
-        let moved = moved(self, |p, n| (map.transform_point3(p), turned * n))?;
-        if determinant > 0.0 {
-            return Ok(moved);
-        }
-        let triangles = moved.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
-        let mirrored = Mesh::new(moved.positions().to_vec(), triangles)?;
-        match moved.normals() {
-            Some(normals) => Ok(mirrored.with_normals(normals.to_vec())?),
-            None => Ok(mirrored),
-        }
+        moved(self, determinant < 0.0, |p, n| (map.transform_point3(p), turned * n))
     }
 
     /// The mesh tapered along z, with the parameters of [`Solid::taper`](crate::Solid::taper).
@@ -122,17 +124,46 @@ fn deformed(
     if !mesh.positions().is_empty() {
         warp.check(&mesh.bounds())?;
     }
-    moved(mesh, map)
+    moved(mesh, false, map)
 }
 
-/// The mesh with its vertices and normals, of any length, moved by `map`.
-fn moved(mesh: &Mesh, map: impl Fn(DVec3, DVec3) -> (DVec3, DVec3)) -> Result<Mesh, RasterError> {
+/// The mesh with its vertices and normals, of any length, moved by `map`; its triangles the other
+/// way round if that mirrors. All else that it carries stays with its corners and triangles.
+fn moved(mesh: &Mesh, mirrors: bool, map: impl Fn(DVec3, DVec3) -> (DVec3, DVec3)) -> Result<Mesh, RasterError> {
     let positions: Vec<DVec3> = mesh.positions().iter().map(|p| p.as_dvec3()).collect();
-    let moved = positions.iter().map(|&p| map(p, DVec3::ZERO).0.as_vec3()).collect();
-    let deformed = Mesh::new(moved, mesh.triangles().to_vec())?;
-    let Some(normals) = mesh.normals() else { return Ok(deformed) };
-    let turned = positions.iter().zip(normals).map(|(&p, n)| map(p, n.as_dvec3()).1.normalize_or_zero().as_vec3());
-    Ok(deformed.with_normals(turned.collect())?)
+    let normal = |vertex: u32, n: Vec3| {
+        // Of length 1 first: one that is next to nothing would be rounded away.
+        let n = map(positions[vertex as usize], n.as_dvec3()).1;
+        (n / n.abs().max_element().max(f64::MIN_POSITIVE)).normalize_or_zero().as_vec3()
+    };
+    let vertices = positions.iter().map(|&p| map(p, DVec3::ZERO).0.as_vec3()).collect();
+    let triangles = mesh.triangles();
+    let mut moved = Mesh::new(vertices, turned_round(triangles, mirrors))?;
+    if let Some(normals) = mesh.normals() {
+        moved = moved.with_normals((0u32..).zip(normals).map(|(vertex, &n)| normal(vertex, n)).collect())?;
+    }
+    if let Some(normals) = mesh.corner_normals() {
+        let turned = triangles.iter().zip(normals).map(|(t, n)| std::array::from_fn(|k| normal(t[k], n[k])));
+        moved = moved.with_corner_normals(turned_round(&turned.collect::<Vec<_>>(), mirrors))?;
+    }
+    if let Some(colors) = mesh.corner_colors() {
+        moved = moved.with_corner_colors(turned_round(colors, mirrors))?;
+    }
+    if let Some(texture) = mesh.corner_texture() {
+        moved = moved.with_corner_texture(turned_round(texture, mirrors))?;
+    }
+    if let Some(owners) = mesh.owners() {
+        moved = moved.with_owners(owners.to_vec())?;
+    }
+    Ok(match mesh.unresolved_cells() {
+        Some(count) => moved.with_unresolved_cells(count),
+        None => moved,
+    })
+}
+
+/// What triangles have at their corners, the last two exchanged if they are to be turned round.
+fn turned_round<T: Copy>(corners: &[[T; 3]], turn: bool) -> Vec<[T; 3]> {
+    corners.iter().map(|&[a, b, c]| if turn { [a, c, b] } else { [a, b, c] }).collect()
 }
 
 /// `sin(x)/x`.

@@ -215,6 +215,7 @@ struct Node {
 }
 
 impl Node {
+    #[inline]
     fn holds(&self, count: u32) -> bool {
         match self.rule {
             Rule::And => count == self.children,
@@ -357,6 +358,7 @@ impl Circuit {
     }
 
     /// Tells that an operand now holds the place, or no longer.
+    #[inline]
     pub(super) fn set(&self, state: &mut State, operand: u32, inside: bool) {
         for &(node, complement) in &self.uses[operand as usize] {
             let (mut at, mut holds) = (node as usize, inside != complement);
@@ -383,6 +385,7 @@ impl Circuit {
 
 impl State {
     /// Whether the tree holds the place.
+    #[inline]
     pub(super) fn is_inside(&self) -> bool {
         self.inside
     }

@@ -32,6 +32,7 @@ struct Event {
 }
 
 impl Event {
+    #[inline]
     fn order(&self, other: &Event) -> Ordering {
         let key = |e: &Event| (e.operand, e.face, e.facing);
         self.depth.total_cmp(&other.depth).then_with(|| key(self).cmp(&key(other)))
@@ -43,26 +44,39 @@ impl Event {
     }
 }
 
-/// Room for the work on a tile.
-struct Scratch {
+/// Room for the work on tiles, which a thread uses again.
+#[derive(Default)]
+pub(super) struct Scratch {
+    /// As they come.
+    found: Vec<Event>,
+    /// Pixel by pixel, and where those of each pixel end.
+    events: Vec<Event>,
+    ends: Vec<u32>,
+    follow: Follow,
+}
+
+/// Where a ray is.
+#[derive(Default)]
+struct Follow {
     state: State,
     winding: Vec<i32>,
 }
 
-pub(super) fn tile(circuit: &Circuit, operands: &[&dyn LayerSource], tile: &Tile) -> Target {
+pub(super) fn tile(circuit: &Circuit, operands: &[&dyn LayerSource], tile: &Tile, scratch: &mut Scratch) -> Target {
     let mut target = Target::new();
-    let (mut events, ends) = gather(operands, tile);
-    let mut scratch = Scratch { state: State::default(), winding: vec![0; operands.len()] };
+    gather(operands, tile, scratch);
+    let Scratch { events, ends, follow, .. } = scratch;
+    follow.winding.resize(operands.len(), 0);
     let mut start = 0;
     for (pixel, &end) in ends.iter().enumerate() {
-        let layers = &mut events[start..end];
-        start = end;
+        let layers = &mut events[start..end as usize];
+        start = end as usize;
         if layers.is_empty() {
             continue;
         }
-        layers.sort_unstable_by(Event::order);
+        sort(layers);
         target.stencil[pixel] = layers.len() as i32;
-        if let Some(seen) = first_change(circuit, layers, &mut scratch) {
+        if let Some(seen) = first_change(circuit, layers, follow) {
             target.depth[pixel] = seen.depth;
             target.operand[pixel] = seen.operand | if seen.facing == Facing::Back { REVERSED } else { 0 };
             target.face[pixel] = seen.face;
@@ -71,10 +85,31 @@ pub(super) fn tile(circuit: &Circuit, operands: &[&dyn LayerSource], tile: &Tile
     target
 }
 
+/// Puts layers in order. Most pixels have two to six, too few for a sort that is a call.
+#[inline]
+fn sort(layers: &mut [Event]) {
+    const FEW: usize = 12;
+    if layers.len() > FEW {
+        layers.sort_unstable_by(Event::order);
+        return;
+    }
+    for i in 1..layers.len() {
+        let event = layers[i];
+        let mut j = i;
+        while j > 0 && event.order(&layers[j - 1]) == Ordering::Less {
+            layers[j] = layers[j - 1];
+            j -= 1;
+        }
+        layers[j] = event;
+    }
+}
+
 /// All layers in a tile by pixel, and where those of each pixel end.
-fn gather(operands: &[&dyn LayerSource], tile: &Tile) -> (Vec<Event>, Vec<usize>) {
-    let mut found = Vec::new();
-    let mut ends = vec![0usize; Tile::PIXELS];
+fn gather(operands: &[&dyn LayerSource], tile: &Tile, scratch: &mut Scratch) {
+    let Scratch { found, events, ends, .. } = scratch;
+    found.clear();
+    ends.clear();
+    ends.resize(Tile::PIXELS, 0);
     for (number, layers) in operands.iter().enumerate().filter(|(_, layers)| layers.touches(tile)) {
         layers.layers(tile, &mut |runs| {
             for run in runs {
@@ -90,23 +125,25 @@ fn gather(operands: &[&dyn LayerSource], tile: &Tile) -> (Vec<Event>, Vec<usize>
         });
     }
     let mut next = 0;
-    for end in &mut ends {
+    for end in ends.iter_mut() {
         // First where they start; each one that is put in its place moves it on.
         next += *end;
         *end = next - *end;
     }
-    let mut sorted = found.clone();
+    // What is there is written over.
+    if let Some(&any) = found.first() {
+        events.resize(found.len(), any);
+    }
     for event in found {
         let slot = &mut ends[event.pixel as usize];
-        sorted[*slot] = event;
+        events[*slot as usize] = *event;
         *slot += 1;
     }
-    (sorted, ends)
 }
 
 /// The layer at which the tree first changes between inside and outside. `layers` are in order.
-fn first_change(circuit: &Circuit, layers: &[Event], scratch: &mut Scratch) -> Option<Event> {
-    let Scratch { state, winding } = scratch;
+fn first_change(circuit: &Circuit, layers: &[Event], follow: &mut Follow) -> Option<Event> {
+    let Follow { state, winding } = follow;
     circuit.reset(state);
     for event in layers {
         winding[event.operand as usize] = 0;

@@ -58,8 +58,11 @@ impl<'a> MeshLayers<'a> {
     fn new(mesh: &'a Mesh, view: &RasterView, is_closed: bool) -> MeshLayers<'a> {
         let corner = |p: &glam::Vec3| {
             let relative = view.relative(p.as_dvec3());
-            let is_whole = (0..RasterView::BOUNDS).all(|bound| view.clearance(bound, relative) > 0.0);
-            Corner { drawn: is_whole.then(|| snapped(view, relative)), relative }
+            let mut is_whole = true;
+            for bound in 0..RasterView::BOUNDS {
+                is_whole &= view.clearance(bound, relative) > 0.0;
+            }
+            Corner { drawn: if is_whole { Some(snapped(view, relative)) } else { None }, relative }
         };
         let corners: Vec<Corner> = mesh.positions().par_iter().with_min_len(CHUNK).map(corner).collect();
         let parts: Vec<(Vec<Triangle>, bool)> = mesh
@@ -70,13 +73,17 @@ impl<'a> MeshLayers<'a> {
                 let mut part = (Vec::with_capacity(triangles.len()), false);
                 for (i, t) in triangles.iter().enumerate() {
                     let face = (chunk * CHUNK + i) as u32;
-                    part.1 |= prepare(view, t.map(|v| corners[v as usize]), face, &mut part.0);
+                    let [a, b, c] = [corners[t[0] as usize], corners[t[1] as usize], corners[t[2] as usize]];
+                    part.1 |= prepare(view, [a, b, c], face, &mut part.0);
                 }
                 part
             })
             .collect();
         let is_cut = parts.iter().any(|part| part.1);
-        let triangles = parts.into_iter().flat_map(|part| part.0).collect();
+        let mut triangles = Vec::with_capacity(parts.iter().map(|part| part.0.len()).sum());
+        for mut part in parts {
+            triangles.append(&mut part.0);
+        }
         let mut layers =
             MeshLayers { mesh, view: *view, is_closed, is_cut, triangles, starts: Vec::new(), bins: Vec::new() };
         layers.sort_into_tiles();
@@ -89,9 +96,7 @@ impl<'a> MeshLayers<'a> {
         let fraction = self.view.fraction;
         let mut starts = vec![0u32; (across * down) as usize + 1];
         for triangle in &self.triangles {
-            for tile in tiles(triangle, fraction, across, down) {
-                starts[tile as usize + 1] += 1;
-            }
+            for_tiles(triangle, fraction, across, down, |tile| starts[tile as usize + 1] += 1);
         }
         for tile in 1..starts.len() {
             starts[tile] += starts[tile - 1];
@@ -99,11 +104,11 @@ impl<'a> MeshLayers<'a> {
         let mut free = starts.clone();
         let mut bins = vec![0; starts[starts.len() - 1] as usize];
         for (number, triangle) in self.triangles.iter().enumerate() {
-            for tile in tiles(triangle, fraction, across, down) {
+            for_tiles(triangle, fraction, across, down, |tile| {
                 let slot = &mut free[tile as usize];
                 bins[*slot as usize] = number as u32;
                 *slot += 1;
-            }
+            });
         }
         (self.starts, self.bins) = (starts, bins);
     }
@@ -162,18 +167,25 @@ impl LayerSource for MeshLayers<'_> {
     }
 }
 
-/// The numbers of the tiles that a triangle may touch.
-fn tiles(triangle: &Triangle, fraction: u32, across: u32, down: u32) -> impl Iterator<Item = u32> {
+/// Calls a function with the number of each tile that a triangle may touch, most often one.
+#[inline(always)]
+fn for_tiles(triangle: &Triangle, fraction: u32, across: u32, down: u32, mut call: impl FnMut(u32)) {
     let side = Tile::SIDE as i32;
     let [left, right, top, bottom] = triangle.pixels(fraction);
-    let within = |pixel: i32, count: u32| pixel.div_euclid(side).clamp(-1, count as i32);
-    let columns = within(left, across).max(0)..=within(right, across).min(across as i32 - 1);
-    let rows = within(top, down).max(0)..=within(bottom, down).min(down as i32 - 1);
-    let is_empty = left > right;
-    rows.filter(move |_| !is_empty)
-        .flat_map(move |row| columns.clone().map(move |column| row as u32 * across + column as u32))
+    let (across, down) = (across as i32, down as i32);
+    if left > right || top > bottom || right < 0 || bottom < 0 {
+        return;
+    }
+    let (first, last) = (left.max(0) / side, (right / side).min(across - 1));
+    let (upper, lower) = (top.max(0) / side, (bottom / side).min(down - 1));
+    for row in upper..=lower {
+        for column in first..=last {
+            call((row * across + column) as u32);
+        }
+    }
 }
 
+#[inline]
 fn snapped(view: &RasterView, relative: DVec3) -> (i32, i32, f64) {
     let [x, y, z] = view.picture(relative);
     let one = f64::from(1u32 << view.fraction);
@@ -183,18 +195,11 @@ fn snapped(view: &RasterView, relative: DVec3) -> (i32, i32, f64) {
 
 /// Adds a triangle, or what is left of it within the bounds of what can be drawn. Whether the
 /// near plane cut it.
+#[inline]
 fn prepare(view: &RasterView, corners: [Corner; 3], face: u32, out: &mut Vec<Triangle>) -> bool {
-    let mut add = |corners: [(i32, i32, f64); 3]| {
-        if let Some(triangle) = Triangle::new(corners, face) {
-            let [left, right, top, bottom] = triangle.pixels(view.fraction);
-            let (width, height) = (view.width as i32, view.height as i32);
-            if left <= right && top <= bottom && left < width && right >= 0 && top < height && bottom >= 0 {
-                out.push(triangle);
-            }
-        }
-    };
-    if let [Some(a), Some(b), Some(c)] = corners.map(|c| c.drawn) {
-        add([a, b, c]);
+    let [a, b, c] = &corners;
+    if let (Some(a), Some(b), Some(c)) = (a.drawn, b.drawn, c.drawn) {
+        add(view, [a, b, c], face, out);
         return false;
     }
     let relative = corners.map(|c| c.relative);
@@ -206,9 +211,21 @@ fn prepare(view: &RasterView, corners: [Corner; 3], face: u32, out: &mut Vec<Tri
     // A fan from the first corner.
     let drawn: Vec<_> = polygon.into_iter().map(|q| held(view, q)).collect();
     for i in 2..drawn.len() {
-        add([drawn[0], drawn[i - 1], drawn[i]]);
+        add(view, [drawn[0], drawn[i - 1], drawn[i]], face, out);
     }
     is_cut
+}
+
+/// Adds a triangle if there is a pixel's middle in its box.
+#[inline]
+fn add(view: &RasterView, corners: [(i32, i32, f64); 3], face: u32, out: &mut Vec<Triangle>) {
+    if let Some(triangle) = Triangle::new(corners, face) {
+        let [left, right, top, bottom] = triangle.pixels(view.fraction);
+        let (width, height) = (view.width as i32, view.height as i32);
+        if left <= right && top <= bottom && left < width && right >= 0 && top < height && bottom >= 0 {
+            out.push(triangle);
+        }
+    }
 }
 
 /// A point that rounding may have put a little beyond the guard.

@@ -19,25 +19,8 @@
 //! | `expression` | trees of operands, lowered for each method |
 //! | `picture` | shaded pictures, and pictures of depth |
 //!
-//! # Which method, and when rays instead
-//!
-//! [`CsgMethod::Intervals`] is the general one, and as quick as the others or quicker: for the
-//! difference of two balls at 512 × 512, one thread, it takes 20, 23 and 39 ms with 4000, 16 000
-//! and 260 000 triangles each, where stencil passes take 19, 28 and 64 (they draw operands two to
-//! four times), sequences 20, 24 and 61. At 1024 × 1024 and few triangles the others are ahead by
-//! a fifth. Passes and sequences are exact for convex operands only; they are what graphics
-//! hardware can do, and are here to be compared and followed step by step.
-//!
-//! Against the [`Scene`](crate::Scene) of the implicit renderer (`cargo bench --bench raster`
-//! prints it for models of 2 to 32 superellipsoids):
-//!
-//! * The depth image of meshes costs by the triangles and the pixels that they cover, whatever
-//!   the surfaces are made of; that of a field costs by the pixels and by what the field costs.
-//! * Meshes have a chord error, which falls as one over the number of triangles, and edges of
-//!   a joint are exact to the pixel for the meshes. Rays find the surface itself.
-//! * So: many views of few superquadrics, synthetic range images by the thousand, previews while
-//!   parameters change, point sets that have no field: rasterise. Blends, fillets, offsets,
-//!   lattices and formulas, close-ups, shadows, and whatever must be exact: cast rays.
+//! Which method to take, and when rays instead, is said at [`CsgMethod`], with what
+//! `cargo bench --bench raster` measures.
 //!
 //! Sources: H. S. Kim et al. on superquadrics and the depth buffer; J. Goldfeather et al. (1986,
 //! 1989); N. Stewart et al. (1998); J. Pineda (1988).

@@ -1,7 +1,8 @@
 //! Pictures of buffers: shaded, and of depth.
 //!
 //! ```text
-//!     light = colour · (key · max(n·k, 0) + fill · max(n·f, 0) + sky · (1 + n·up)/2)
+//!     light = colour · (key · max(n·k, 0) + fill · max(n·f, 0) + sky · (1 + n·up)/2
+//!                       + ground · (1 − n·up)/2)
 //! ```
 //!
 //! k from the upper left and f from the right of the camera; linear light, bytes in sRGB
@@ -20,6 +21,7 @@ use crate::Image;
 const KEY: f64 = 0.95;
 const FILL: f64 = 0.18;
 const SKY: f64 = 0.38;
+const GROUND: f64 = 0.14;
 
 /// Grey levels of the nearest and of the farthest depth of a picture of depth.
 const NEAREST: f64 = 245.0;
@@ -55,7 +57,8 @@ impl Buffers {
                 Facing::Back => -outward,
             };
             let lit = |direction: DVec3| normal.dot(direction).max(0.0);
-            let light = KEY * lit(key) + FILL * lit(fill) + SKY * 0.5 * (1.0 + normal.dot(up));
+            let share = 0.5 * (1.0 + normal.dot(up));
+            let light = KEY * lit(key) + FILL * lit(fill) + SKY * share + GROUND * (1.0 - share);
             let color = Vec3::from_array(colors[number % colors.len()].map(|c| f32::from(c) / 255.0));
             let seen = (color.map(linear) * light as f32).map(encoded);
             let [r, g, b] = seen.to_array().map(|c| (255.0 * c.clamp(0.0, 1.0)).round() as u8);

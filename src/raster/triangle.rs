@@ -66,9 +66,11 @@ impl Batch {
 impl Triangle {
     /// A triangle from its corners' coordinates in fractions of a pixel, anticlockwise in the
     /// picture if it is seen from its front; `None` if it has no area.
+    #[inline]
     pub(super) fn new(corners: [(i32, i32, f64); 3], face: u32) -> Option<Triangle> {
         let [a, b, c] = corners;
-        let [ux, uy, vx, vy] = [b.0 - a.0, b.1 - a.1, c.0 - a.0, c.1 - a.1].map(i64::from);
+        let (ux, uy) = (i64::from(b.0 - a.0), i64::from(b.1 - a.1));
+        let (vx, vy) = (i64::from(c.0 - a.0), i64::from(c.1 - a.1));
         let area = ux * vy - uy * vx;
         let (facing, [a, b, c]) = match area {
             0 => return None,
@@ -149,22 +151,24 @@ impl Triangle {
         let run0 = f64x4::splat(simd, run * step[0][0]);
         let run1 = f64x4::splat(simd, run * step[1][0]);
         let run2 = f64x4::splat(simd, run * step[2][0]);
-        let least0 = f64x4::splat(simd, least[0]);
+        let zero = f64x4::splat(simd, 0.0);
         let least1 = f64x4::splat(simd, least[1]);
         let least2 = f64x4::splat(simd, least[2]);
         let (rise1, rise2) = (f64x4::splat(simd, rise[0]), f64x4::splat(simd, rise[1]));
         let first_key = f64x4::splat(simd, self.key[0]);
         let (one, nothing) = (f64x4::splat(simd, 1.0), f64x4::splat(simd, f64::INFINITY));
+        // Edge functions are whole numbers, so that less their least values they are exact, and one
+        // comparison of the smallest of them decides. (A conjunction of masks is a call.)
         for row in top..=bottom {
-            let mut e0 = lane0 + f64x4::splat(simd, at_left[0]);
-            let mut e1 = lane1 + f64x4::splat(simd, at_left[1]);
-            let mut e2 = lane2 + f64x4::splat(simd, at_left[2]);
+            let mut e0 = lane0 + f64x4::splat(simd, at_left[0] - least[0]);
+            let mut e1 = lane1 + f64x4::splat(simd, at_left[1] - least[1]);
+            let mut e2 = lane2 + f64x4::splat(simd, at_left[2] - least[2]);
             let mut at = row * Tile::SIDE as i32 + left;
             let end = row * Tile::SIDE as i32 + right;
             while at <= end {
-                let inside = e0.simd_ge(least0) & e1.simd_ge(least1) & e2.simd_ge(least2);
+                let inside = e0.min(e1).min(e2).simd_ge(zero);
                 if inside.any_true() {
-                    let key = first_key + (e1 * rise1 + e2 * rise2);
+                    let key = first_key + ((e1 + least1) * rise1 + (e2 + least2) * rise2);
                     let z = if PERSPECTIVE { one / key } else { key };
                     let depth: [f64; LANES] = inside.select(z, nothing).into();
                     batch.push(Fragments { at: at as u32, facing: self.facing, face: self.face, depth }, sink);

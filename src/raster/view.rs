@@ -192,6 +192,7 @@ impl RasterView {
     }
 
     /// Coordinates along right, up and forward, from the eye.
+    #[inline]
     pub(super) fn relative(&self, p: DVec3) -> DVec3 {
         let q = p - self.camera.eye;
         let [right, up, forward] = self.axes;
@@ -199,6 +200,7 @@ impl RasterView {
     }
 
     /// Pixel coordinates and depth of a point that is relative to the eye.
+    #[inline]
     pub(super) fn picture(&self, q: DVec3) -> [f64; 3] {
         let s = if self.parallel { self.scale } else { self.scale / q.z };
         [0.5 * f64::from(self.width) + s * q.x, 0.5 * f64::from(self.height) - s * q.y, q.z]
@@ -206,6 +208,7 @@ impl RasterView {
 
     /// The value that is above 0 on the inner side of a bound of what can be drawn: the near
     /// plane, and four planes far out of the picture.
+    #[inline]
     pub(super) fn clearance(&self, bound: usize, q: DVec3) -> f64 {
         let weight = if self.parallel { 1.0 } else { q.z };
         let (half_width, half_height) = (0.5 * f64::from(self.width), 0.5 * f64::from(self.height));
@@ -222,6 +225,7 @@ impl RasterView {
     pub(super) const BOUNDS: usize = 5;
 
     /// What is linear over the picture of a triangle.
+    #[inline]
     pub(super) fn key(&self, depth: f64) -> f64 {
         if self.parallel { depth } else { 1.0 / depth }
     }

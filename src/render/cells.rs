@@ -21,7 +21,7 @@ use std::sync::OnceLock;
 use glam::DVec3;
 
 use crate::eval::{Bend, Program, Region, Tape};
-use crate::{Bounds, Interval};
+use crate::{Bounds, Dual, Interval};
 
 /// The tree.
 pub(super) struct Cells {
@@ -50,7 +50,6 @@ pub(super) struct Cell {
     pub(super) leaves: usize,
     margin: f64,
     halves: OnceLock<Halves>,
-    slopes: OnceLock<[Interval; 3]>,
     tape: OnceLock<Tape>,
 }
 
@@ -109,9 +108,6 @@ impl Cells {
     }
 }
 
-/// Slopes that differ by less than this in a cell are known well enough.
-const LEVEL: f64 = 0.05;
-
 /// Programs of at most this many leaves are evaluated at a point rather than narrowed.
 const FEW: usize = 4;
 
@@ -121,8 +117,8 @@ fn part(program: &Program, bounds: Bounds, share: f64, margin: f64) -> Part {
         Region::Outside => Part::Outside,
         Region::Surface(program) => {
             let (bend, leaves) = (program.bend(), program.leaf_count());
-            let (halves, slopes, tape) = (OnceLock::new(), OnceLock::new(), OnceLock::new());
-            Part::Cell(Box::new(Cell { bounds, program, bend, share, leaves, margin, halves, slopes, tape }))
+            let (halves, tape) = (OnceLock::new(), OnceLock::new());
+            Part::Cell(Box::new(Cell { bounds, program, bend, share, leaves, margin, halves, tape }))
         }
     }
 }
@@ -148,20 +144,15 @@ impl Cell {
         })
     }
 
-    /// Ranges of the value's derivatives in the cell.
-    pub(super) fn slopes(&self) -> &[Interval; 3] {
-        self.slopes.get_or_init(|| {
-            let whole = self.bounds.inflate(self.margin);
-            let slopes = self.program.slopes(&whole);
-            if self.leaves > 1 || slopes.iter().all(|slope| slope.width() < LEVEL) {
-                return slopes;
-            }
-            // The ranges of eight parts together are narrower.
-            let middle = whole.center();
-            let parts = whole.corners().map(|corner| self.program.slopes(&Bounds::from_corners(corner, middle)));
-            let hull = |axis: usize| parts.iter().map(|part| part[axis]).reduce(Interval::hull).unwrap_or(slopes[axis]);
-            [0, 1, 2].map(|axis| slopes[axis].narrowed_by(hull(axis)))
-        })
+    /// The slopes of the value along rays in the cell with directions from `low` to `high`.
+    pub(super) fn slope(&self, low: DVec3, high: DVec3) -> Interval {
+        let Bounds { min, max } = self.bounds.inflate(self.margin);
+        let zero = Interval::point(0.0);
+        let side = |axis: usize| {
+            let along = Interval::new(low[axis], high[axis]);
+            Dual::new(Interval::new(min[axis], max[axis]), [along, zero, zero])
+        };
+        self.program.evaluate([side(0), side(1), side(2)], &mut Vec::new()).gradient()[0]
     }
 
     /// The program for bulk evaluation.

@@ -114,7 +114,7 @@ const SLOPE_ERROR: f32 = 1e-3;
 const FINE: f64 = 6e-6;
 
 /// Crossings nearer to each other than this, in proportion to the solid, are one.
-const CLOSE: f64 = 4e-5;
+const CLOSE: f64 = 8e-5;
 
 /// Scratch memory of a thread.
 #[derive(Default)]
@@ -133,12 +133,21 @@ pub(super) struct Marcher {
 }
 
 impl Marcher {
-    /// Marches the spans' rays through `cell`; what they hit goes to `surfaces`, by ray.
-    pub(super) fn march(&mut self, cells: &Cells, cell: &Cell, rays: &[Ray], spans: &[Span], surfaces: &mut [Surface]) {
+    /// Marches the spans' rays through `cell`, with slopes within `slope` along them; what they
+    /// hit goes to `surfaces`, by ray.
+    pub(super) fn march(
+        &mut self,
+        cells: &Cells,
+        cell: &Cell,
+        slope: Interval,
+        rays: &[Ray],
+        spans: &[Span],
+        surfaces: &mut [Surface],
+    ) {
         self.hits.clear();
         self.open.clear();
         self.found.clear();
-        let job = Job::new(cells, cell, rays, spans);
+        let job = Job::new(cells, cell, slope, rays, spans);
         self.load(&job);
         self.near_ends(&job);
         self.far_ends(&job);
@@ -549,9 +558,9 @@ struct Job<'a> {
     reach: Bounds,
     bend: Option<Bend>,
     owner: Option<u32>,
-    /// Lower and upper bounds of the three derivatives, rounding allowed for.
-    least: [f32; 3],
-    most: [f32; 3],
+    /// Lower and upper bounds of the value's slope along the rays, rounding allowed for.
+    least: f32,
+    most: f32,
     /// Values this small may have the wrong sign.
     doubt: f32,
     last_step: f32,
@@ -562,10 +571,8 @@ struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
-    fn new(cells: &Cells, cell: &'a Cell, rays: &'a [Ray], spans: &'a [Span]) -> Job<'a> {
+    fn new(cells: &Cells, cell: &'a Cell, slope: Interval, rays: &'a [Ray], spans: &'a [Span]) -> Job<'a> {
         let tape = cell.tape();
-        // How a value bends tells more.
-        let slopes = if cell.bend.is_some() { &[Interval::ALL; 3] } else { cell.slopes() };
         let reach = cells.reach();
         let size = reach.longest_side();
         let outward = |v: f64, by: f64| (v + by * (1e-6 * v.abs() + 1e-12)) as f32;
@@ -578,8 +585,8 @@ impl<'a> Job<'a> {
             reach,
             bend: cell.bend,
             owner: cell.program.only_leaf(),
-            least: slopes.map(|s| outward(s.lo(), -1.0)),
-            most: slopes.map(|s| outward(s.hi(), 1.0)),
+            least: outward(slope.lo(), -1.0),
+            most: outward(slope.hi(), 1.0),
             doubt: tape.roundoff() as f32,
             last_step: LAST_STEP * cell.side() as f32,
             close: (CLOSE * size) as f32,
@@ -604,16 +611,7 @@ impl<'a> Job<'a> {
 
     /// Bounds of the slope of g along the ray.
     fn slopes(&self, lane: &Lane) -> (f32, f32) {
-        let (mut lo, mut hi) = (0.0, 0.0);
-        for axis in 0..3 {
-            let d = lane.direction[axis];
-            if d != 0.0 {
-                let (a, b) = (self.least[axis] * d, self.most[axis] * d);
-                lo += a.min(b);
-                hi += a.max(b);
-            }
-        }
-        if lane.turn < 0.0 { (-hi, -lo) } else { (lo, hi) }
+        if lane.turn < 0.0 { (-self.most, -self.least) } else { (self.least, self.most) }
     }
 
     /// How g bends along the ray.

@@ -2,12 +2,13 @@
 //!
 //! The space around the solid is divided into cells where the surface may cross; rays are taken
 //! through them in packets and ask each for the first crossing. What they meet are the layers of
-//! a picture, or it is shaded: lights that move with the camera, shadows and hollows by more
-//! rays, and more rays still at outlines and creases. Slices show the field on a plane.
+//! a picture, or it is shaded: lights that move with the camera, shadows and hollows by rays
+//! through a coarser copy of the surface, and more rays of its own at outlines and creases. Slices show the field on a plane.
 
 mod cells;
 mod contour;
 mod extent;
+mod facets;
 mod gbuffer;
 mod layers;
 mod lines;

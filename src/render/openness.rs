@@ -18,9 +18,12 @@
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
+use super::facets::Facets;
 use super::scene::Scene;
+use super::settings::RenderSettings;
 use super::shade::Openness;
 use super::spot::Spot;
+use crate::{Cancelled, Run};
 
 /// Rays to each of the two lights, of one pixel.
 const RAYS: usize = 4;
@@ -32,12 +35,19 @@ const ORDER: [usize; PATTERNS] = [0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7,
 /// Pixels that the mean reaches to each side.
 pub(super) const REACH: usize = 2;
 
-/// Points whose rays are traced together.
-const TOGETHER: usize = 1 << 14;
+/// Points whose rays to a light without extent are traced together.
+const TOGETHER: usize = 1 << 16;
+
+/// Facets are about so many pixels wide when the solid fills the picture, and there are at least
+/// and at most so many along its longest side.
+const PIXELS: u32 = 4;
+const FEWEST: u32 = 64;
+const MOST: u32 = 256;
 
 /// What hides the key light and the sky.
 pub(super) struct Obstacles<'a> {
     scene: &'a Scene,
+    facets: Facets,
     key: DVec3,
     /// Directions to points of the key light, relative to its middle, by pattern; none if it
     /// casts no shadow.
@@ -49,16 +59,20 @@ pub(super) struct Obstacles<'a> {
     radius: f64,
 }
 
-/// A request for a ray.
-#[derive(Clone, Copy)]
-struct Ask {
-    spot: u32,
-    sky: bool,
-}
-
 impl<'a> Obstacles<'a> {
-    /// Those of a scene; `softness` is half the angle that the light appears under.
-    pub(super) fn new(scene: &'a Scene, key: DVec3, shadows: bool, softness: f64, occlusion: bool) -> Obstacles<'a> {
+    /// Those of a scene under a light from `key`, if anything is to be hidden.
+    pub(super) fn new(
+        scene: &'a Scene,
+        key: DVec3,
+        settings: &RenderSettings,
+        run: &Run,
+    ) -> Result<Option<Obstacles<'a>>, Cancelled> {
+        let RenderSettings { width, height, style, shadows, softness, occlusion, .. } = *settings;
+        if !(style.has_shadows() && (shadows || occlusion)) {
+            return Ok(None);
+        }
+        let cells = (width.max(height) / PIXELS).clamp(FEWEST, MOST);
+        let Some(facets) = scene.facets(cells, run)? else { return Ok(None) };
         // The R₂ sequence in the unit square, and the disc from it.
         let disc = |i: usize| {
             let at = |step: f64| (0.5 + step * i as f64).fract();
@@ -68,22 +82,21 @@ impl<'a> Obstacles<'a> {
         let spread = softness.to_radians().tan();
         let count = PATTERNS * RAYS;
         // A light without extent needs one ray, the same for every pixel.
-        let shadow_count = if !shadows {
-            0
-        } else if spread == 0.0 {
-            1
-        } else {
-            count
+        let shadow_count = match (shadows, spread == 0.0) {
+            (false, _) => 0,
+            (true, true) => 1,
+            (true, false) => count,
         };
         let bounds = scene.bounds();
-        Obstacles {
+        Ok(Some(Obstacles {
             scene,
+            facets,
             key,
             shadows: (0..shadow_count).map(|i| spread * disc(i)).collect(),
             skies: (0..if occlusion { count } else { 0 }).map(disc).collect(),
             middle: bounds.center(),
             radius: bounds.half_extents().length(),
-        }
+        }))
     }
 
     /// Whether the edges of shadows are hard.
@@ -93,83 +106,90 @@ impl<'a> Obstacles<'a> {
 
     /// What each point sees by its own rays; `pattern` gives a number for the point at an index.
     pub(super) fn seen(&self, spots: &[Spot], pattern: impl Fn(usize) -> usize + Sync) -> Vec<Openness> {
-        let mut seen = vec![Openness::FULL; spots.len()];
-        if self.shadows.is_empty() && self.skies.is_empty() {
-            return seen;
-        }
-        for (chunk, seen) in seen.chunks_mut(TOGETHER).enumerate() {
-            let first = chunk * TOGETHER;
-            let spots = &spots[first..first + seen.len()];
-            self.trace(spots, |i| pattern(first + i), seen);
+        let open = |(i, spot): (usize, &Spot)| self.open(spot, ORDER[pattern(i) % PATTERNS]);
+        let mut seen: Vec<Openness> = spots.par_iter().enumerate().map(open).collect();
+        if self.is_hard() {
+            for (chunk, seen) in spots.chunks(TOGETHER).zip(seen.chunks_mut(TOGETHER)) {
+                self.hard(chunk, seen);
+            }
         }
         seen
     }
 
-    fn trace(&self, spots: &[Spot], pattern: impl Fn(usize) -> usize + Sync, seen: &mut [Openness]) {
-        let wanted: Vec<Vec<(Ask, (DVec3, DVec3))>> = spots
-            .par_iter()
-            .enumerate()
-            .map(|(i, spot)| self.rays(spot, i as u32, ORDER[pattern(i) % PATTERNS]))
-            .collect();
-        // Rays to one light side by side: they take the same way through space.
-        let (keys, skies): (Vec<_>, Vec<_>) = wanted.into_iter().flatten().partition(|(ask, _)| !ask.sky);
-        let (asks, rays): (Vec<Ask>, Vec<(DVec3, DVec3)>) = keys.into_iter().chain(skies).unzip();
-        let hits = self.scene.first_hits(&rays);
-        let mut counts = vec![[0u32; 2]; spots.len()];
-        let mut hidden = vec![[0.0f32; 2]; spots.len()];
-        for (ask, hit) in asks.iter().zip(&hits) {
-            let (spot, kind) = (ask.spot as usize, usize::from(ask.sky));
-            counts[spot][kind] += 1;
-            if hit.is_hit() {
-                // What is far away hides less of the sky: light comes in from its sides.
-                let share = if ask.sky { (-hit.distance / (1.2 * self.radius)).exp() as f32 } else { 1.0 };
-                hidden[spot][kind] += share;
-            }
+    /// What a point sees by its own rays to facets.
+    fn open(&self, spot: &Spot, pattern: usize) -> Openness {
+        let share = self.share(spot);
+        if share == 0.0 {
+            return Openness::FULL;
         }
-        for (((seen, counts), hidden), spot) in seen.iter_mut().zip(counts).zip(hidden).zip(spots) {
-            let open = |kind: usize| if counts[kind] == 0 { 1.0 } else { 1.0 - hidden[kind] / counts[kind] as f32 };
-            // Far out on the ground, shadows are let fade.
-            let near = if spot.is_ground() { self.nearness(spot.point) as f32 } else { 1.0 };
-            let open = |kind: usize| 1.0 - near * (1.0 - open(kind));
-            *seen = Openness { key: open(0), sky: open(1) };
-        }
-    }
-
-    /// 1 near the solid, 0 where its shadows are not drawn.
-    fn nearness(&self, p: DVec3) -> f64 {
-        let away = p.distance(self.middle) / self.radius;
-        ((3.2 - away) / 1.6).clamp(0.0, 1.0)
-    }
-
-    fn rays(&self, spot: &Spot, number: u32, pattern: usize) -> Vec<(Ask, (DVec3, DVec3))> {
-        // From inside the solid all light is hidden; its walls are lit as if none was.
-        let visible = spot.is_solid() && spot.is_front() || spot.is_ground() && self.nearness(spot.point) > 0.0;
-        if !visible {
-            return Vec::new();
-        }
-        let mut rays = Vec::with_capacity(2 * RAYS);
-        let origin = spot.point + self.scene.hair() * spot.normal;
-        if !self.shadows.is_empty() {
+        let origin = self.start(spot);
+        let (mut key, mut sky) = (Hidden::default(), Hidden::default());
+        if !self.is_hard() {
             let (t, b) = self.key.any_orthonormal_pair();
-            // The only direction of a light without extent is everyone's.
-            let first = if self.is_hard() { 0 } else { pattern };
-            for d in self.shadows.iter().skip(first).step_by(PATTERNS) {
+            for d in self.shadows.iter().skip(pattern).step_by(PATTERNS) {
                 let direction = (self.key + d.x * t + d.y * b).normalize();
                 // What faces away from a part of the light is dark there by its slope.
                 if direction.dot(spot.normal) > 0.0 {
-                    rays.push((Ask { spot: number, sky: false }, (origin, direction)));
+                    key.add(if self.facets.hit(origin, direction).is_some() { 1.0 } else { 0.0 });
                 }
             }
         }
-        if !self.skies.is_empty() {
-            let (t, b) = spot.normal.any_orthonormal_pair();
-            for d in self.skies.iter().skip(pattern).step_by(PATTERNS) {
-                let up = (1.0 - d.length_squared()).max(0.0).sqrt().max(0.02);
-                let direction = (up * spot.normal + d.x * t + d.y * b).normalize();
-                rays.push((Ask { spot: number, sky: true }, (origin, direction)));
+        let (t, b) = spot.normal.any_orthonormal_pair();
+        for d in self.skies.iter().skip(pattern).step_by(PATTERNS) {
+            let up = (1.0 - d.length_squared()).max(0.0).sqrt().max(0.02);
+            let direction = (up * spot.normal + d.x * t + d.y * b).normalize();
+            // What is far away hides less of the sky: light comes in from its sides.
+            let hit = self.facets.hit(origin, direction);
+            sky.add(hit.map_or(0.0, |distance| (-distance / (1.2 * self.radius)).exp() as f32));
+        }
+        Openness { key: key.open(share), sky: sky.open(share) }
+    }
+
+    /// Of a light without extent, whose shadows' edges would show the facets, the first hits in
+    /// the scene decide.
+    fn hard(&self, spots: &[Spot], seen: &mut [Openness]) {
+        let lit = |spot: &Spot| self.share(spot) > 0.0 && self.key.dot(spot.normal) > 0.0;
+        let asked: Vec<usize> = (0..spots.len()).filter(|&i| lit(&spots[i])).collect();
+        let rays: Vec<(DVec3, DVec3)> = asked.iter().map(|&i| (self.start(&spots[i]), self.key)).collect();
+        for (&i, hit) in asked.iter().zip(self.scene.first_hits(&rays)) {
+            if hit.is_hit() {
+                seen[i].key = 1.0 - self.share(&spots[i]);
             }
         }
-        rays
+    }
+
+    /// A hair off the surface.
+    fn start(&self, spot: &Spot) -> DVec3 {
+        spot.point + self.scene.hair() * spot.normal
+    }
+
+    /// How much of what hides light counts at a spot.
+    fn share(&self, spot: &Spot) -> f32 {
+        if spot.is_ground() {
+            // Far out on the ground, shadows are let fade.
+            let away = spot.point.distance(self.middle) / self.radius;
+            return ((3.2 - away) / 1.6).clamp(0.0, 1.0) as f32;
+        }
+        // From inside the solid all light is hidden; its walls are lit as if none was.
+        if spot.is_solid() && spot.is_front() { 1.0 } else { 0.0 }
+    }
+}
+
+/// The mean of what rays tell.
+#[derive(Default)]
+struct Hidden {
+    sum: f32,
+    rays: f32,
+}
+
+impl Hidden {
+    fn add(&mut self, hidden: f32) {
+        self.sum += hidden;
+        self.rays += 1.0;
+    }
+
+    fn open(&self, share: f32) -> f32 {
+        if self.rays == 0.0 { 1.0 } else { 1.0 - share * self.sum / self.rays }
     }
 }
 

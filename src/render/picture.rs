@@ -41,6 +41,8 @@ pub(super) struct Picture<'a> {
     pub(super) palette: Option<Palette>,
     /// The height of the ground.
     pub(super) ground: Option<f64>,
+    /// What hides light, where anything does.
+    pub(super) obstacles: Option<Obstacles<'a>>,
 }
 
 /// A band of rows with those around it that it depends on.
@@ -109,8 +111,8 @@ impl Picture<'_> {
             .collect();
         drop(seen);
         run.check()?;
-        let obstacles = self.obstacles();
-        let open = match &obstacles {
+        let obstacles = self.obstacles.as_ref();
+        let open = match obstacles {
             None => vec![Openness::FULL; spots.len()],
             Some(obstacles) => {
                 let pattern = |i: usize| (i % width as usize) % 4 + 4 * ((first as usize + i / width as usize) % 4);
@@ -127,10 +129,10 @@ impl Picture<'_> {
         run.check()?;
         run.report(0.7);
         let band = Band { top: first, width, spots, open };
-        let fine = self.fine(&band, top, end, obstacles.as_ref());
+        let fine = self.fine(&band, top, end, obstacles);
         run.check()?;
         run.report(0.85);
-        let light = self.fine_light(&band, &fine, obstacles.as_ref());
+        let light = self.fine_light(&band, &fine, obstacles);
         run.check()?;
         let n2 = (self.settings.samples * self.settings.samples) as usize;
         let lines = (style == Style::Technical).then(|| Lines {
@@ -158,13 +160,6 @@ impl Picture<'_> {
         let pixels = pixels.collect();
         run.report(1.0);
         Ok(pixels)
-    }
-
-    /// What hides light, where anything does.
-    fn obstacles(&self) -> Option<Obstacles<'_>> {
-        let RenderSettings { style, shadows, softness, occlusion, .. } = *self.settings;
-        let any = style.has_shadows() && (shadows || occlusion);
-        any.then(|| Obstacles::new(self.scene, self.studio.key(), shadows, softness, occlusion))
     }
 
     /// The pixels at edges, and what their rays meet.

@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::cells::Cells;
 use super::extent::{corners, lowest};
+use super::facets::Facets;
 use super::gbuffer::{GBuffer, Surface, Window};
 use super::settings::RenderError;
 use super::tile::{TILE, Tracer, View};
@@ -103,6 +104,12 @@ impl Scene {
     /// Points such that what holds them holds the solid.
     pub(super) fn hull(&self) -> Vec<DVec3> {
         corners(&self.program, &self.bounds)
+    }
+
+    /// The facets that hide light, about so many along the longest side; none if there is nothing
+    /// to see.
+    pub(super) fn facets(&self, cells: u32, run: &Run) -> Result<Option<Facets>, Cancelled> {
+        self.cells.as_ref().map(|_| Facets::new(&self.program, &self.bounds, cells, run)).transpose()
     }
 
     /// A length that is small for the solid, and large for the rounding of its points: rays

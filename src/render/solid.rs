@@ -1,5 +1,6 @@
 //! Rendering a solid: `solid.render(..)`.
 
+use super::openness::Obstacles;
 use super::picture::Picture;
 use super::scene::Scene;
 use super::settings::{RenderError, RenderSettings};
@@ -98,15 +99,18 @@ impl Scene {
         run.check()?;
         let RenderSettings { width, height, .. } = *settings;
         let stands = settings.ground && settings.style.has_shadows() && !self.bounds().is_empty();
+        let studio = Studio::new(camera, settings);
+        let obstacles = Obstacles::new(self, studio.key(), settings, &run.stage(0.0, 0.1))?;
         let picture = Picture {
             scene: self,
-            studio: Studio::new(camera, settings),
+            studio,
+            obstacles,
             rays: camera.rays(width, height),
             settings,
             palette: Some(self.palette().clone()).filter(Palette::is_painted),
             ground: stands.then(|| self.lowest()),
         };
-        Ok(Image::new(width, height, picture.pixels(run)?)?)
+        Ok(Image::new(width, height, picture.pixels(&run.stage(0.1, 1.0))?)?)
     }
 }
 

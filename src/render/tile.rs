@@ -110,7 +110,7 @@ impl Tracer {
             if self.spans.is_empty() {
                 continue;
             }
-            self.marcher.march(cells, cell, &self.rays, &self.spans, &mut surfaces);
+            self.marcher.march(cells, cell, slope, &self.rays, &self.spans, &mut surfaces);
             for &ray in &self.marcher.hits {
                 alive.0[(ray / tile.width) as usize] &= !(1 << (ray % tile.width));
             }
@@ -135,8 +135,6 @@ impl Tracer {
         let mut done = vec![false; rays.len()];
         for (octant, list) in octants.into_iter().enumerate() {
             // Cells with the rays that may pass them: the list's tail from `first`.
-            let mut sheaf = Sheaf::EMPTY;
-            list.iter().for_each(|&ray| sheaf.add(&self.rays[ray as usize]));
             let mut lists = list;
             let mut pending: Vec<(&Cell, usize, usize)> = vec![(root, 0, lists.len())];
             while let Some((cell, first, end)) = pending.pop() {
@@ -153,6 +151,8 @@ impl Tracer {
                 if self.spans.is_empty() {
                     continue;
                 }
+                let mut sheaf = Sheaf::EMPTY;
+                self.spans.iter().for_each(|span| sheaf.add(&self.rays[span.ray as usize]));
                 let slope = sheaf.slope(cell);
                 if !sheaf.inside && slope.hi() <= 0.0 {
                     continue;
@@ -169,7 +169,7 @@ impl Tracer {
                     }
                     continue;
                 }
-                self.marcher.march(cells, cell, &self.rays, &self.spans, surfaces);
+                self.marcher.march(cells, cell, slope, &self.rays, &self.spans, surfaces);
                 for &ray in &self.marcher.hits {
                     done[ray as usize] = true;
                 }
@@ -260,9 +260,7 @@ impl Sheaf {
         if cell.bend.is_some() || cell.leaves > MANY || cell.share > COARSE {
             return Interval::ALL;
         }
-        let slopes = cell.slopes();
-        let along = |axis: usize| slopes[axis] * Interval::new(self.low[axis], self.high[axis]);
-        along(0) + along(1) + along(2)
+        cell.slope(self.low, self.high)
     }
 }
 

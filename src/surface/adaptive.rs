@@ -100,8 +100,8 @@ impl<'a> Rings<'a> {
         let size = surface.size();
         Rings {
             surface,
-            along: Chain::new(&meridian, 1024),
-            around: Chain::new(&equator, 1024),
+            along: meridian.chain(1024),
+            around: equator.chain(1024),
             meridian,
             equator,
             poles,

@@ -6,10 +6,11 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-/// Sine and cosine, exactly 0 and ±1 at quarter turns.
+/// Sine and cosine, exactly 0 and ±1 at quarter turns; NaN of what is not finite.
 pub(super) fn sin_cos(angle: f64) -> (f64, f64) {
     let quarters = (angle / FRAC_PI_2).round();
-    if (angle - quarters * FRAC_PI_2).abs() > 4.0 * f64::EPSILON * angle.abs() {
+    let is_quarter = (angle - quarters * FRAC_PI_2).abs() <= 4.0 * f64::EPSILON * angle.abs();
+    if !is_quarter {
         return angle.sin_cos();
     }
     match quarters.rem_euclid(4.0) {
@@ -42,5 +43,8 @@ mod tests {
         }
         assert_eq!(sin_cos(1e-300), (1e-300, 1.0));
         assert_eq!(sin_cos(1.0), 1f64.sin_cos());
+        for angle in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            assert!(sin_cos(angle).0.is_nan() && sin_cos(angle).1.is_nan(), "{angle}");
+        }
     }
 }

@@ -92,15 +92,23 @@ impl Curve {
                 Local { point: DVec2::new(point.y, point.x), normal: -DVec2::new(normal.y, normal.x) }
             }
             Curve::Parabola { .. } => {
-                Local { point: DVec2::new(t, 0.5 * t * t), normal: DVec2::new(t, -1.0).normalize() }
+                // Divided first: the square of its length may overflow.
+                let normal = DVec2::new(t, -1.0) / t.abs().max(1.0);
+                Local { point: DVec2::new(t, 0.5 * t * t), normal: normal.normalize() }
             }
             Curve::Gielis { curve, radius, turns } => gielis(&curve, radius, turns, t),
         }
     }
 
-    /// The point of the hyperbola with exponent `e` whose secant is `u`, on the side of `side`.
-    pub(super) fn at_secant(e: f64, u: f64, side: f64) -> Local {
-        hyperbola(e, height_of(u, e).copysign(side), f64::INFINITY, true)
+    /// The point of the hyperbola with exponent `e` whose secant u has the logarithm
+    /// `exp(ln_log)`, on the side of `side`. (Squarish hyperbolas are flat about their apex: with
+    /// e = 0.01 half of their height has secants whose logarithm is below 10⁻⁶⁰.)
+    pub(super) fn at_secant(e: f64, ln_log: f64, side: f64) -> Local {
+        let (p, log) = (2.0 / e, ln_log.exp());
+        let t = p * log;
+        // ln(1 − e^(−t)), and ln t where the two are the same.
+        let rest = if t < 1e-9 { p.ln() + ln_log } else { (-(-t).exp_m1()).ln() };
+        hyperbola(e, (log + rest / p).exp().copysign(side), f64::INFINITY, true)
     }
 
     /// The normals just before and just after a parameter: they differ at a corner.
@@ -188,6 +196,8 @@ fn hyperbola(e: f64, t: f64, end: f64, by_height: bool) -> Local {
 /// The Gielis curve; of several turns the one that counts.
 fn gielis(curve: &Gielis, radius: Radius, turns: u32, theta: f64) -> Local {
     let quarter = 0.25 * curve.m;
+    // What is so large has no digits left for the angle, and its multiples may overflow.
+    let theta = if theta.abs() > 1e15 { theta % (2.0 * PI) } else { theta };
     let of_turn = |turn: u32| {
         let (sin, cos) = sin_cos(quarter * (theta + f64::from(turn) * 2.0 * PI));
         let sin = Dual::new(sin, [quarter * cos, 0.0, 0.0]);

@@ -27,8 +27,7 @@ pub use parametric_curve::ParametricCurve;
 pub use patch::{PatchError, PatchSettings, Spacing};
 pub use points::{
     BinomialSeries, CurveSpread, ExactExplicit, LogTable, PlaneSymmetry, PointError, PointMethod, PointSettings,
-    PowerTables, ProductTables, SeriesExplicit, Symmetry, raw_parametric, raw_parametric_octant, reflect,
-    reflect_plane,
+    PowerTables, ProductTables, RawParametric, SeriesExplicit, Symmetry, reflect, reflect_plane,
 };
 pub use sampling::SurfacePoint;
 pub use subdivision::{

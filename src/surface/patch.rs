@@ -7,11 +7,25 @@ use glam::{DVec2, DVec3};
 use super::adaptive;
 use super::curve::By;
 use super::parametric::{ParametricSurface, Shape};
+use super::polar::Lines;
 use super::spacing::{Arc, Sample};
 use super::stitch::{End, Knot, Knots, Layout, stitch};
 use crate::geom::{Mesh, MeshError, QuadMesh};
 
 /// How a parametric surface is meshed.
+///
+/// ```
+/// use rvachev::{PatchSettings, Spacing, Superellipsoid};
+///
+/// // A rounded box: by angles most of the triangles are at its edges, and some too long.
+/// let surface = Superellipsoid::new([1.0, 1.5, 0.7], 0.2, 0.2).surface()?;
+/// let by_angle = surface.mesh(&PatchSettings::default())?;
+/// let within = surface.mesh(&PatchSettings { spacing: Spacing::Chord(0.005), ..PatchSettings::default() })?;
+/// let even = surface.mesh(&PatchSettings { spacing: Spacing::EqualArc, ..PatchSettings::default() })?;
+/// assert!(within.triangles().len() < by_angle.triangles().len() / 3);
+/// assert_eq!(even.triangles().len(), by_angle.triangles().len());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PatchSettings {
     /// Rows of faces along the meridian, 2 to 100 000 (3 around a tube). Default: 32.
@@ -31,13 +45,14 @@ pub enum Spacing {
     #[default]
     UniformAngle,
     /// By equal lengths along meridian and equator: the longest gap between neighbours on either
-    /// is at most 1.5 of the shortest. (Barr's two sheets along x keep uniform angles.)
+    /// is at most 1.5 of the shortest. (Of Barr's two sheets along x: along the rim of the clipped
+    /// end, and along the line from the apex to its farthest point.)
     EqualArc,
     /// As few as keep the mesh within this distance (length units) of the surface; `rows` and
     /// `columns` are not used. Rings have as many vertices as each needs, so that there are
     /// triangles only: 1.4 times (sphere) to 1.65 times (ellipsoid of 1 : 2 : 3) the least number possible.
-    /// 10⁻⁶ to 0.3 of the size. (Barr's two sheets along x are even grids of rows and columns,
-    /// as many as it takes, at most 1024 rows.)
+    /// 10⁻⁶ to 0.3 of the size. (Barr's two sheets along x are grids of rows and columns: they
+    /// take two to four times as many as sheets along z, and many times as many where e is below 0.3.)
     Chord(f64),
 }
 
@@ -81,8 +96,8 @@ pub enum PatchError {
 /// The most rows or columns.
 const MOST: u32 = 100_000;
 
-/// The most vertices: 2²⁸ of them are 12 GB.
-const MOST_VERTICES: u64 = 1 << 28;
+/// The most vertices: 2²⁴ of them are some 4 GB, with faces, normals and texture coordinates.
+const MOST_VERTICES: u64 = 1 << 24;
 
 pub(super) fn count(parameter: &'static str, value: u64, least: u64, most: u64) -> Result<(), PatchError> {
     if (least..=most).contains(&value) { Ok(()) } else { Err(PatchError::Count { parameter, value, least, most }) }
@@ -126,14 +141,15 @@ impl ParametricSurface {
         Ok(self.quad_mesh(settings)?.to_mesh()?)
     }
 
-    /// The same as quadrilaterals in double precision, with triangles at poles and clipped ends.
+    /// The same as quadrilaterals in double precision, with triangles at poles and clipped ends;
+    /// by [`Spacing::Chord`] triangles only. Positions are in length units, normals of length 1.
     ///
     /// # Errors
     ///
-    /// A setting out of its range.
+    /// [`PatchError::Count`] or [`PatchError::Tolerance`] for a setting out of its range, and for a
+    /// tolerance that is not met.
     pub fn quad_mesh(&self, settings: &PatchSettings) -> Result<QuadMesh, PatchError> {
         settings.check(self.shape)?;
-        let mut settings = *settings;
         let mut mesh = QuadMesh::default();
         for sheet in std::iter::once(*self).chain(self.other_sheet()) {
             if let Spacing::Chord(tolerance) = settings.spacing {
@@ -142,13 +158,12 @@ impl ParametricSurface {
                 if !(least..=most).contains(&tolerance) {
                     return Err(PatchError::Tolerance { value: tolerance, least, most });
                 }
-                let Shape::BarrBowl { end, e1, e2 } = self.shape else {
+                if !matches!(self.shape, Shape::BarrBowl { .. }) {
                     adaptive::append(&sheet, tolerance, &mut mesh)?;
                     continue;
-                };
-                [settings.rows, settings.columns] = sheet.polar_counts([end, e1, e2], tolerance);
+                }
             }
-            let grid = Grid::new(&sheet, &settings);
+            let grid = Grid::new(&sheet, settings)?;
             stitch(&grid, grid.layout(), &mut mesh);
         }
         Ok(mesh)
@@ -168,24 +183,30 @@ enum Product {
     /// Samples of meridian and equator.
     Curves { meridian: Vec<Sample>, equator: Vec<Sample> },
     /// Barr's bowl, in polar form.
-    Polar { end: f64, e1: f64, e2: f64 },
+    Polar { bowl: [f64; 3], lines: Lines },
 }
 
 impl<'a> Grid<'a> {
-    fn new(surface: &'a ParametricSurface, settings: &PatchSettings) -> Grid<'a> {
+    fn new(surface: &'a ParametricSurface, settings: &PatchSettings) -> Result<Grid<'a>, PatchError> {
         let PatchSettings { rows, columns, spacing } = *settings;
-        let product = match (surface.shape, spacing) {
-            (Shape::BarrBowl { end, e1, e2 }, _) => Product::Polar { end, e1, e2 },
-            (_, Spacing::UniformAngle) => Product::Curves {
-                meridian: surface.meridian_arc(By::Angle).uniform(rows),
-                equator: surface.equator_arc(By::Angle).uniform(columns),
-            },
-            (_, _) => Product::Curves {
-                meridian: surface.meridian_arc(By::Even).equal(rows),
-                equator: surface.equator_arc(By::Even).equal(columns),
-            },
+        if let Shape::BarrBowl { end, e1, e2 } = surface.shape {
+            let (bowl, counts) = ([end, e1, e2], [rows, columns]);
+            let lines = match spacing {
+                Spacing::UniformAngle => ParametricSurface::polar_uniform(counts),
+                Spacing::EqualArc => surface.polar_equal(bowl, counts),
+                Spacing::Chord(tolerance) => surface.polar_chords(bowl, tolerance)?,
+            };
+            let [rows, columns] = lines.counts();
+            return Ok(Grid { surface, rows, columns, product: Product::Polar { bowl, lines } });
+        }
+        let (by, even) = match spacing {
+            Spacing::UniformAngle => (By::Angle, false),
+            _ => (By::Even, true),
         };
-        Grid { surface, rows, columns, product }
+        let samples = |arc: Arc, count: u32| if even { arc.equal(count) } else { arc.uniform(count) };
+        let meridian = samples(surface.meridian_arc(by), rows);
+        let equator = samples(surface.equator_arc(by), columns);
+        Ok(Grid { surface, rows, columns, product: Product::Curves { meridian, equator } })
     }
 
     fn layout(&self) -> Layout {
@@ -214,10 +235,7 @@ impl Knots for Grid<'_> {
             Product::Curves { meridian, equator } => {
                 self.surface.knot(&meridian[row as usize], &equator[column as usize])
             }
-            &Product::Polar { end, e1, e2 } => {
-                let share = |i: u32, of: u32| f64::from(i) / f64::from(of);
-                self.surface.polar_knot([end, e1, e2], share(row, self.rows), share(column, self.columns))
-            }
+            Product::Polar { bowl, lines } => self.surface.polar_vertex(*bowl, lines, [row, column]),
         }
     }
 }

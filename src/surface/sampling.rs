@@ -92,7 +92,7 @@ impl<'a> Cells<'a> {
     fn new(surface: &'a ParametricSurface) -> Cells<'a> {
         let arcs = [surface.meridian_arc(By::Even), surface.equator_arc(By::Even)];
         let lines = arcs.map(|arc| {
-            let chain = super::spacing::Chain::new(&arc, CELLS as u32);
+            let chain = arc.chain(CELLS as u32);
             (0..=CELLS).map(|i| chain.parameter(chain.length() * i as f64 / CELLS as f64)).collect::<Vec<f64>>()
         });
         // Two pieces each way of a cell: the curves at their ends are shared by whole rows.

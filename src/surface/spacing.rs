@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::curve::{By, Curve};
 
@@ -47,56 +47,25 @@ impl Arc {
 
     /// `count` intervals of equal parameter: both ends are among the samples.
     pub(super) fn uniform(&self, count: u32) -> Vec<Sample> {
-        (0..=count).map(|i| self.sample(self.share(i, count), f64::from(i) / f64::from(count))).collect()
+        (0..=count).map(|i| self.sample(share(self.range, i, count), f64::from(i) / f64::from(count))).collect()
     }
 
-    /// `count` intervals whose chords are as equal as can be: the curve by equal lengths, then
-    /// moved a little, for a chord that cuts a corner is shorter than its arc.
+    /// `count` intervals whose chords are as equal as can be.
     pub(super) fn equal(&self, count: u32) -> Vec<Sample> {
-        let chain = Chain::new(self, count);
-        let n = count as usize;
-        let mut at: Vec<f64> = (0..=n).map(|i| chain.length() * i as f64 / n as f64).collect();
-        let mut best = (f64::INFINITY, at.clone());
-        for _ in 0..EVENING {
-            let points: Vec<DVec2> = at.iter().map(|&s| self.point(chain.parameter(s))).collect();
-            let chords: Vec<f64> = points.windows(2).map(|w| w[0].distance(w[1])).collect();
-            let (least, most) = chords.iter().fold((f64::INFINITY, 0f64), |(a, b), &c| (a.min(c), b.max(c)));
-            let ratio = most / least;
-            if ratio < best.0 {
-                best = (ratio, at.clone());
-            }
-            let mut walked = vec![0.0];
-            walked.extend(chords.iter().scan(0.0, |sum, c| {
-                *sum += c;
-                Some(*sum)
-            }));
-            at = (0..=n).map(|i| interpolate(&walked, &at, walked[n] * i as f64 / n as f64)).collect();
-        }
-        let share = |i: usize| i as f64 / n as f64;
-        best.1.iter().enumerate().map(|(i, &s)| self.sample(self.snapped(chain.parameter(s)), share(i))).collect()
+        let steps = equal_steps(self.range, count, &|t| self.point(t).extend(0.0));
+        let share = |i: usize| i as f64 / f64::from(count);
+        steps.into_iter().enumerate().map(|(i, t)| self.sample(self.snapped(t), share(i))).collect()
+    }
+
+    /// Many points, close together.
+    pub(super) fn chain(&self, count: u32) -> Chain {
+        Chain::new(self.range, count, &|t| self.point(t).extend(0.0))
     }
 
     /// As few samples as keep every chord within `tolerance` of the curve, `least` intervals at
     /// least, with the slack spread evenly.
     pub(super) fn chords(&self, chain: &Chain, tolerance: f64, least: usize) -> Vec<f64> {
-        let few = chain.greedy(tolerance);
-        let count = few.len() - 1;
-        if count < least {
-            let at = |i: usize| chain.parameter(chain.length() * i as f64 / least as f64);
-            return (0..=least).map(|i| self.snapped(at(i))).collect();
-        }
-        // The smallest tolerance that needs no more samples.
-        let (mut tight, mut loose, mut best) = (0.0, tolerance, few);
-        for _ in 0..8 {
-            let middle = 0.5 * (tight + loose);
-            let tried = chain.greedy(middle);
-            if tried.len() - 1 > count {
-                tight = middle;
-            } else {
-                (loose, best) = (middle, tried);
-            }
-        }
-        best.into_iter().map(|i| self.snapped(chain.parameters[i])).collect()
+        chain.chords(tolerance, least).into_iter().map(|t| self.snapped(t)).collect()
     }
 
     /// The parameter, or the quarter turn that it is next to.
@@ -113,13 +82,37 @@ impl Arc {
         let [first, last] = self.range;
         (t - first) / (last - first)
     }
+}
 
-    /// The parameter that is i/count of the way: exactly in the middle and at quarters of it.
-    fn share(&self, i: u32, count: u32) -> f64 {
-        let [first, last] = self.range;
-        let share = f64::from(i) / f64::from(count);
-        if share == 1.0 { last } else { first + (last - first) * share }
+/// The parameter that is i/count of the way: exactly in the middle and at quarters of it.
+fn share([first, last]: [f64; 2], i: u32, count: u32) -> f64 {
+    let share = f64::from(i) / f64::from(count);
+    if share == 1.0 { last } else { first + (last - first) * share }
+}
+
+/// Parameters of `count` intervals whose chords are as equal as can be: the curve by equal
+/// lengths, then moved a little, for a chord that cuts a corner is shorter than its arc.
+pub(super) fn equal_steps(range: [f64; 2], count: u32, point: &impl Fn(f64) -> DVec3) -> Vec<f64> {
+    let chain = Chain::new(range, count, point);
+    let n = count as usize;
+    let mut at: Vec<f64> = (0..=n).map(|i| chain.length() * i as f64 / n as f64).collect();
+    let mut best = (f64::INFINITY, at.clone());
+    for _ in 0..EVENING {
+        let points: Vec<DVec3> = at.iter().map(|&s| point(chain.parameter(s))).collect();
+        let chords: Vec<f64> = points.windows(2).map(|w| w[0].distance(w[1])).collect();
+        let (least, most) = chords.iter().fold((f64::INFINITY, 0f64), |(a, b), &c| (a.min(c), b.max(c)));
+        let ratio = most / least;
+        if ratio < best.0 {
+            best = (ratio, at.clone());
+        }
+        let mut walked = vec![0.0];
+        walked.extend(chords.iter().scan(0.0, |sum, c| {
+            *sum += c;
+            Some(*sum)
+        }));
+        at = (0..=n).map(|i| interpolate(&walked, &at, walked[n] * i as f64 / n as f64)).collect();
     }
+    best.1.into_iter().map(|s| chain.parameter(s)).collect()
 }
 
 /// Rounds of evening chords out.
@@ -136,39 +129,38 @@ fn interpolate(xs: &[f64], ys: &[f64], x: f64) -> f64 {
 /// Many points of a curve, close together, with the lengths walked.
 #[derive(Clone, Debug)]
 pub(super) struct Chain {
-    pub(super) parameters: Vec<f64>,
-    points: Vec<DVec2>,
+    parameters: Vec<f64>,
+    points: Vec<DVec3>,
     walked: Vec<f64>,
 }
 
 impl Chain {
     /// Points so close together that `count` intervals have 16 of them each, and 2048 in all.
-    pub(super) fn new(arc: &Arc, count: u32) -> Chain {
+    pub(super) fn new(range: [f64; 2], count: u32, point: &impl Fn(f64) -> DVec3) -> Chain {
         const COARSE: u32 = 256;
         let mut rough = 0.0;
         let mut todo: Vec<[f64; 2]> = Vec::new();
         for i in (0..COARSE).rev() {
-            let [a, b] = [i, i + 1].map(|i| arc.share(i, COARSE));
-            rough += arc.point(a).distance(arc.point(b));
+            let [a, b] = [i, i + 1].map(|i| share(range, i, COARSE));
+            rough += point(a).distance(point(b));
             todo.push([a, b]);
         }
         let finest = rough / f64::from(count.max(128)) / 16.0;
         let mut chain = Chain { parameters: vec![], points: vec![], walked: vec![] };
-        chain.push(todo[todo.len() - 1][0], arc);
+        chain.push(range[0], point(range[0]));
         while let Some([a, b]) = todo.pop() {
             let middle = 0.5 * (a + b);
-            if arc.point(a).distance(arc.point(b)) > finest && a < middle && middle < b {
+            if point(a).distance(point(b)) > finest && a < middle && middle < b {
                 todo.push([middle, b]);
                 todo.push([a, middle]);
             } else {
-                chain.push(b, arc);
+                chain.push(b, point(b));
             }
         }
         chain
     }
 
-    fn push(&mut self, t: f64, arc: &Arc) {
-        let point = arc.point(t);
+    fn push(&mut self, t: f64, point: DVec3) {
         let walked = self.points.last().map_or(0.0, |last| self.length() + last.distance(point));
         self.parameters.push(t);
         self.points.push(point);
@@ -183,6 +175,34 @@ impl Chain {
     /// The parameter at a length walked.
     pub(super) fn parameter(&self, length: f64) -> f64 {
         interpolate(&self.walked, &self.parameters, length)
+    }
+
+    /// As few parameters as keep every chord within `tolerance`, `least` intervals at least, with
+    /// the slack spread evenly.
+    pub(super) fn chords(&self, tolerance: f64, least: usize) -> Vec<f64> {
+        let few = self.greedy(tolerance);
+        let count = few.len() - 1;
+        if count < least {
+            return (0..=least).map(|i| self.parameter(self.length() * i as f64 / least as f64)).collect();
+        }
+        // The smallest tolerance that needs no more samples.
+        let (mut tight, mut loose, mut best) = (0.0, tolerance, few);
+        for _ in 0..8 {
+            let middle = 0.5 * (tight + loose);
+            let tried = self.greedy(middle);
+            if tried.len() - 1 > count {
+                tight = middle;
+            } else {
+                (loose, best) = (middle, tried);
+            }
+        }
+        best.into_iter().map(|i| self.parameters[i]).collect()
+    }
+
+    /// The parameter that is a share of the way, by length, between two others.
+    pub(super) fn between(&self, [a, b]: [f64; 2], share: f64) -> f64 {
+        let [from, to] = [a, b].map(|t| interpolate(&self.parameters, &self.walked, t));
+        self.parameter(from + (to - from) * share)
     }
 
     /// The points that a walk needs which takes the longest chord at every step.
@@ -208,12 +228,13 @@ impl Chain {
         taken
     }
 
-    /// Whether the points between two are within `tolerance` of the chord.
+    /// Whether the points between two, or a hundred of them, are within `tolerance` of the chord.
     fn fits(&self, from: usize, to: usize, tolerance: f64) -> bool {
         let (a, b) = (self.points[from], self.points[to]);
         let along = (b - a).normalize_or_zero();
         let chord = a.distance(b);
-        self.points[from..=to].iter().all(|&p| {
+        let step = ((to - from) / 100).max(1);
+        self.points[from..=to].iter().step_by(step).all(|&p| {
             let d = p - a;
             let s = d.dot(along).clamp(0.0, chord);
             (d - along * s).length() <= tolerance

@@ -6,8 +6,7 @@ use std::f64::consts::FRAC_PI_2;
 use glam::{DVec2, DVec3};
 use rvachev::{
     BinomialSeries, CurveSpread, ExactExplicit, GeneralisedSuperquadric, LogTable, PointMethod, PointSettings,
-    PowerTables, ProductTables, SeriesExplicit, Superellipse, Superellipsoid, Symmetry, raw_parametric,
-    raw_parametric_octant, reflect,
+    PowerTables, ProductTables, RawParametric, SeriesExplicit, Superellipse, Superellipsoid, Symmetry, reflect,
 };
 
 /// The wedge 0 ≤ x ≤ y ≤ z on nodes i/size, with exact heights.
@@ -36,6 +35,37 @@ fn coefficients_of_the_series() {
     assert!((error(5) - 5.514e-4).abs() < 1e-7 && (error(4) - 1.349e-3).abs() < 1e-6);
     let explicit = ExactExplicit::new(5.0).unwrap();
     assert!((explicit.height(0.5, 0.0) - 0.993_670_377_332_229).abs() < 1e-15);
+    let u = 0.5f64.powi(5);
+    for (k, term) in [0.006_25, 7.8125e-5, 1.464_843_75e-6].into_iter().enumerate() {
+        assert!((series.coefficients()[k] * u.powi(k as i32 + 1) - term).abs() < 1e-17, "{k}");
+    }
+    for (k, term) in [0.1, 0.02, 0.006, 0.0021, 0.000_798].into_iter().enumerate() {
+        assert!((series.coefficients()[k] * 0.5f64.powi(k as i32 + 1) - term).abs() < 1e-15, "{k}");
+    }
+    // Nothing is promised where the series does not converge.
+    assert_eq!((series.error_bound(1.0), series.error_bound(f64::NAN)), (f64::INFINITY, f64::INFINITY));
+}
+
+#[test]
+fn whole_exponents_are_products() {
+    let xs: Vec<f64> = (0..=512).map(|i| f64::from(i) / 512.0).collect();
+    let ys: Vec<f64> = xs.iter().rev().map(|y| -0.7 * y).collect();
+    let single = |v: &[f64]| v.iter().map(|&c| c as f32).collect::<Vec<f32>>();
+    for n in [1.0, 2.0, 3.0, 4.0, 7.0, 63.0, 64.0, 10_000.0, 2.5] {
+        let explicit = ExactExplicit::new(n).unwrap();
+        let (mut z, mut z32) = (vec![0.0; xs.len()], vec![0.0f32; xs.len()]);
+        explicit.heights(&xs, &ys, &mut z);
+        explicit.heights_single(&single(&xs), &single(&ys), &mut z32);
+        for i in 0..xs.len() {
+            let exact = explicit.height(xs[i], ys[i]);
+            if exact >= xs[i].max(-ys[i]) {
+                assert!((z[i] - exact).abs() < 1e-14, "n = {n} at {}: {} {exact}", xs[i], z[i]);
+                assert!((f64::from(z32[i]) - exact).abs() < 1e-6, "n = {n} at {}: {} {exact}", xs[i], z32[i]);
+            } else {
+                assert!(z[i] >= 0.0 && z32[i] >= 0.0);
+            }
+        }
+    }
 }
 
 #[test]
@@ -113,15 +143,16 @@ fn look_up_fails_outside_the_wedge() {
 fn the_printed_table_of_the_parametric_form() {
     let printed = [(5.0, [0.9998, 0.9070]), (25.0, [0.9961, 0.9661]), (45.0, [0.9862, 0.9862])];
     for (degrees, [cos, sin]) in printed {
-        let [x, _, z] = raw_parametric(0.04, 1.0, f64::to_radians(degrees), 0.0);
+        let [x, _, z] = RawParametric::new(0.04, 1.0).unwrap().point(f64::to_radians(degrees), 0.0);
         assert!((x - cos).abs() < 6e-5 && (z - sin).abs() < 6e-5, "{degrees}: {x} {z}");
     }
     let angles: Vec<f32> = (0..300).map(|i| i as f32 * (FRAC_PI_2 as f32 / 299.0)).collect();
     let turned: Vec<f32> = angles.iter().rev().copied().collect();
     let mut out = [vec![0.0; 300], vec![0.0; 300], vec![0.0; 300]];
-    raw_parametric_octant(0.5, 1.5, &angles, &turned, out.each_mut().map(|v| v.as_mut_slice()));
+    let raw = RawParametric::new(0.5, 1.5).unwrap();
+    raw.octant_single(&angles, &turned, out.each_mut().map(|v| v.as_mut_slice()));
     for i in 1..299 {
-        let exact = raw_parametric(0.5, 1.5, f64::from(angles[i]), f64::from(turned[i]));
+        let exact = raw.point(f64::from(angles[i]), f64::from(turned[i]));
         for (o, e) in out.iter().zip(exact) {
             assert!((f64::from(o[i]) - e).abs() < 3e-6, "{i}: {} {e}", o[i]);
         }

@@ -6,6 +6,7 @@ mod building;
 mod check;
 mod deformation;
 mod errors;
+mod explicit_inputs;
 mod explicit_points;
 mod export;
 mod forms;

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
 use rvachev::{
-    Field, Gielis, Mesh, ParametricCurve, ParametricSurface, PatchSettings, Radius, Spacing, Superellipse,
+    Field, Gielis, Mesh, ParametricCurve, ParametricSurface, PatchError, PatchSettings, Radius, Spacing, Superellipse,
     Superellipsoid, Superhyperboloid, Supershape, Supertoroid,
 };
 
@@ -217,6 +217,30 @@ fn volumes_converge_at_second_order() {
 }
 
 #[test]
+fn volumes_and_moments_are_those_of_the_closed_forms() {
+    let even = PatchSettings { rows: 256, columns: 256, spacing: Spacing::EqualArc };
+    let solid = |surface: Result<ParametricSurface, rvachev::ParamError>| mesh_of(&surface.unwrap(), &even);
+    let box_like = solid(Superellipsoid::new([1.0, 2.0, 3.0], 0.1, 0.1).surface());
+    assert!((box_like.volume() / 47.462_883_333_105 - 1.0).abs() < 1e-3, "{}", box_like.volume());
+    let octahedron = solid(Superellipsoid::new([1.0, 2.0, 3.0], 2.0, 2.0).surface());
+    assert!((octahedron.volume() - 8.0).abs() < 1e-5, "{}", octahedron.volume());
+    // Integrals of x², y² and z² from the moments of inertia.
+    let squares = |mesh: &Mesh| {
+        let inertia = mesh.inertia().unwrap();
+        let [x, y, z] = [inertia.x_axis.x, inertia.y_axis.y, inertia.z_axis.z];
+        [(y + z - x) / 2.0, (z + x - y) / 2.0, (x + y - z) / 2.0]
+    };
+    for (surface, moments) in [
+        (Superellipsoid::new([1.0, 2.0, 3.0], 0.3, 0.8).surface(), [9.924_580_49, 39.698_321_97, 105.264_587_86]),
+        (Supertoroid::new([1.2, 0.8, 0.6], 1.5, 0.3, 0.7).surface(), [60.482_274_92, 26.881_011_08, 2.681_779_93]),
+    ] {
+        for (found, exact) in squares(&solid(surface)).into_iter().zip(moments) {
+            assert!((found / exact - 1.0).abs() < 1e-3, "{found} {exact}");
+        }
+    }
+}
+
+#[test]
 fn what_is_wrong_is_named() {
     let shape = Superellipsoid::new([1.0, -2.0, 3.0], 1.0, 1.0);
     assert!(shape.surface().unwrap_err().to_string().starts_with("semi_axes.y is -2"));
@@ -225,6 +249,13 @@ fn what_is_wrong_is_named() {
     assert_eq!(ball.mesh(&settings).unwrap_err().to_string(), "columns is 2, allowed: 3 to 100000");
     let settings = PatchSettings { rows: 100_000, columns: 100_000, spacing: Spacing::UniformAngle };
     assert!(ball.mesh(&settings).unwrap_err().to_string().starts_with("rows · columns is 10000000000"));
+    // A tolerance that Barr's sheets do not reach is an error, with what they reach.
+    let bowls = Superhyperboloid::two_sheets_x([1.0, 1.0, 1.0], 0.01, 0.01, 3.0).surface().unwrap();
+    let settings = PatchSettings { spacing: Spacing::Chord(4e-6), ..PatchSettings::default() };
+    match bowls.quad_mesh(&settings) {
+        Err(PatchError::Tolerance { value, least, .. }) => assert!(value == 4e-6 && least > value),
+        other => panic!("{:?}", other.map(|mesh| mesh.quads().len())),
+    }
 }
 
 #[test]
@@ -256,9 +287,6 @@ fn equal_arcs_have_equal_gaps() {
     let (rows, columns) = (46, 60);
     let settings = PatchSettings { rows, columns, spacing: Spacing::EqualArc };
     for case in cases() {
-        if case.name.contains("Two, along_x: true") {
-            continue;
-        }
         let quads = case.surface.quad_mesh(&settings).unwrap();
         let report = quads.to_mesh().unwrap().check();
         assert!(report.is_closed() && report.is_manifold(), "{}: {report:?}", case.name);
@@ -288,9 +316,11 @@ fn within_a_chord_tolerance() {
         assert!(report.is_closed() && report.is_manifold(), "{}: {report:?}", case.name);
         assert_eq!((report.shells, report.genus), (case.shells, Some(case.genus)), "{}", case.name);
         println!("{:6} triangles: {}", report.triangles, case.name);
-        // Where the solid is convex its field is at most the distance.
+        assert!(report.triangles < 10_000, "{}: {}", case.name, report.triangles);
+        // Where the exponents are at most 2 the field is at most the distance.
         let size = mesh.bounds().half_extents().length();
-        if !case.name.starts_with("Superellipsoid") || case.name.contains("e2: 2.5") || case.name.contains("e1: 3.0") {
+        let quadric = case.name.starts_with("Superellipsoid") || case.name.starts_with("Superhyperboloid");
+        if !quadric || case.name.contains("e2: 2.5") || case.name.contains("e1: 3.0") {
             continue;
         }
         for t in mesh.triangles() {

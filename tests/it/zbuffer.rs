@@ -92,14 +92,23 @@ fn spans_of(value: impl Fn(f64) -> f64, samples: u32) -> Vec<(f64, f64)> {
     ends.chunks_exact(2).map(|pair| (pair[0], pair[1])).collect()
 }
 
+/// The same by 1200 samples alone, as the acceptance check has it: from the first that is inside
+/// to the first that no longer is.
+fn sampled_spans(value: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+    let at = |k: u32| -2.0 + (f64::from(k) + 0.5) * 4.0 / 1200.0;
+    let inside = |k: u32| (1..1200).contains(&k) && value(at(k)) > 0.0;
+    let ends: Vec<f64> = (1..=1200).filter(|&k| inside(k) != inside(k - 1)).map(at).collect();
+    ends.chunks_exact(2).map(|pair| (pair[0], pair[1])).collect()
+}
+
 /// The torus of check 4.
+fn tilted_torus_value(p: DVec3) -> f64 {
+    let q = DMat3::from_rotation_x(1.3) * p;
+    0.4 - ((q.x.hypot(q.y) - 1.1).powi(2) + q.z * q.z).sqrt()
+}
+
 fn tilted_torus() -> Analytic {
-    let turn = DMat3::from_rotation_x(1.3);
-    let value = move |p: DVec3| {
-        let q = turn * p;
-        0.4 - ((q.x.hypot(q.y) - 1.1).powi(2) + q.z * q.z).sqrt()
-    };
-    Analytic::new(|x, y| spans_of(|z| value(DVec3::new(x, y, z)), 1200))
+    Analytic::new(|x, y| spans_of(|z| tilted_torus_value(DVec3::new(x, y, z)), 1200))
 }
 
 /// The first place of a ray that the tree holds, by trying all ends of all spans.
@@ -212,10 +221,16 @@ fn a_torus_needs_all_its_layers() {
     let [p, q] = operands();
     let tree = p - q;
     let all = [&torus, &sphere];
-    // 4256 by samples alone, which miss two thin spans.
     assert_eq!(compare(&all, &tree, &csg(&all, &tree, CsgMethod::Intervals)), (4258, 0));
+    // By samples, which miss two thin spans, the numbers are those of the acceptance check.
+    let centre = DVec3::new(0.0, 0.6, -1.0);
+    let torus = Analytic::new(|x, y| sampled_spans(|z| tilted_torus_value(DVec3::new(x, y, z))));
+    let sphere = Analytic::new(|x, y| sampled_spans(|z| 0.95 - DVec3::new(x, y, z).distance(centre)));
+    let sampled = [&torus, &sphere];
+    assert_eq!(compare(&sampled, &tree, &csg(&sampled, &tree, CsgMethod::Intervals)), (4256, 0));
+    assert_eq!(compare(&sampled, &tree, &csg(&sampled, &tree, CsgMethod::Stencil)).1, 416);
     let (_, wrong) = compare(&all, &tree, &csg(&all, &tree, CsgMethod::Stencil));
-    assert!((400..=432).contains(&wrong), "{wrong}");
+    assert_eq!(wrong, 412);
     let (_, wrong) = compare(&all, &tree, &csg(&all, &tree, CsgMethod::Sequenced));
     assert!(wrong > 300, "{wrong}");
 }
@@ -575,9 +590,8 @@ fn superellipsoids_like_for_like_with_rays() {
         for camera in cameras() {
             let view = RasterView::new(&camera, 60, 45).unwrap();
             let all: Vec<&Mesh> = meshes.iter().take(tree.operands()).collect();
-            // Twice, for curvature within a triangle.
-            let (compared, silhouettes) = like_for_like(&view, &all, &tree, &solid, 2.0 * error);
-            println!("{tree}: {compared} pixels within {:.1e}, {silhouettes} at silhouettes", 2.0 * error);
+            let (compared, silhouettes) = like_for_like(&view, &all, &tree, &solid, error);
+            println!("{tree}: {compared} pixels within {error:.1e}, {silhouettes} at silhouettes");
             assert!(compared > 200 && silhouettes < compared / 4, "{tree}: {compared} {silhouettes}");
         }
     }
@@ -607,7 +621,7 @@ fn deformed_operands_like_for_like_with_rays() {
         assert!(error < 0.01, "{error}");
         let view = RasterView::new(&cameras()[0], 50, 40).unwrap();
         let all = solid.difference(&ball_solid, RFunction::MIN_MAX);
-        let (compared, silhouettes) = like_for_like(&view, &[&mesh, &ball], &tree, &all, 2.0 * error);
+        let (compared, silhouettes) = like_for_like(&view, &[&mesh, &ball], &tree, &all, error);
         assert!(compared > 150 && silhouettes < compared / 3, "{compared} {silhouettes}");
     }
     let parameter = |result: Result<Mesh, RasterError>| result.unwrap_err().to_string();
@@ -620,6 +634,32 @@ fn deformed_operands_like_for_like_with_rays() {
     let mirrored = mesh.affine(DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0))).unwrap();
     assert!((mirrored.volume() - mesh.volume()).abs() < 1e-6);
     ClosedMesh::new(&mirrored).unwrap();
+}
+
+#[test]
+fn moved_meshes_keep_what_they_carry() {
+    let octahedron = Superellipsoid::new([1.0, 1.0, 1.0], 2.0, 2.0).surface().unwrap();
+    let mesh = octahedron.mesh(&PatchSettings { rows: 8, columns: 16, ..PatchSettings::default() }).unwrap();
+    let count = mesh.triangles().len();
+    let colors = (0..count).map(|t| [0, 1, 2].map(|k| [t as u8, k, 7, 255])).collect();
+    let mesh = mesh.with_corner_colors(colors).unwrap().with_owners((0..count as u32).collect()).unwrap();
+    let shear = DMat3::from_cols(DVec3::X, DVec3::new(0.5, 1.0, 0.2), DVec3::new(0.0, 0.3, 2.0));
+    let mirror = DMat3::from_diagonal(DVec3::new(1.0, -1.0, 1.0));
+    for (map, order) in [(shear, [0, 1, 2]), (mirror * shear, [0, 2, 1])] {
+        let moved = mesh.affine(DAffine3::from_mat3(map)).unwrap();
+        assert_eq!(moved.owners(), mesh.owners());
+        for t in 0..count {
+            assert_eq!(moved.triangles()[t], order.map(|k| mesh.triangles()[t][k]));
+            assert_eq!(moved.corner_colors().unwrap()[t], order.map(|k| mesh.corner_colors().unwrap()[t][k]));
+            assert_eq!(moved.corner_texture().unwrap()[t], order.map(|k| mesh.corner_texture().unwrap()[t][k]));
+            // Faces stay flat, and each corner has its own face's normal.
+            let [a, b, c] = moved.triangles()[t].map(|i| moved.positions()[i as usize]);
+            let face = (b - a).cross(c - a).normalize();
+            assert!(moved.corner_normals().unwrap()[t].iter().all(|n| n.distance(face) < 1e-4));
+        }
+    }
+    let twisted = mesh.twist(0.3).unwrap();
+    assert!(twisted.corner_normals().is_some() && twisted.corner_texture() == mesh.corner_texture());
 }
 
 #[test]
@@ -659,7 +699,8 @@ fn trees_are_lowered_rightly() {
 
 #[test]
 fn long_trees_do_not_exhaust_the_stack() {
-    let a = ball(1.0, [0.0; 3]);
+    // Few pixels, each of which follows the whole tree.
+    let a = ball(0.1, [0.0; 3]);
     let mut tree = Csg::operand(0);
     for i in 0..100_000u32 {
         tree = match i % 3 {

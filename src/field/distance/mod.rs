@@ -40,7 +40,7 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use self::chain::Chain;
 use self::step::Plane;
-use super::{AnyField, AnyWarp, Chunk, ParamError, VALUE_LIMIT, Zone, smallest_stretch};
+use super::{AnyField, AnyWarp, Chunk, ParamError, VALUE_LIMIT, Zone, smallest_stretch, steep_slopes};
 use crate::num::kernel::CHUNK;
 use crate::num::symbol::Symbol;
 use crate::{Bounds, Dual, Interval};
@@ -180,9 +180,7 @@ impl AnyField for Distance {
         let sides = p.map(Dual::value);
         let (low, high) = (sides.map(Interval::lo), sides.map(Interval::hi));
         let zone = Zone::of_bounds(&Bounds::new(DVec3::from_array(low), DVec3::from_array(high)));
-        let unit = Interval::new(-1.0, 1.0);
-        let along = |axis: usize| unit * p[0].d[axis] + unit * p[1].d[axis] + unit * p[2].d[axis];
-        Dual::new(self.range(&zone), [along(0), along(1), along(2)])
+        Dual::new(self.range(&zone), steep_slopes(1.0, p))
     }
 
     fn exact(&self) -> bool {

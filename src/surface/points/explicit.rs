@@ -1,50 +1,14 @@
-//! Heights by powers, by the series, and points by angles: methods 1, 2 and 3, scalar and on
-//! SIMD lanes.
+//! Heights by powers and by the series: methods 2 and 3, scalar and on SIMD lanes.
+//!
+//! A whole n is a product, by repeated squaring: exact to n roundings of a number whose share in
+//! the height is 1/n, and a third of the work.
 
 use super::series::BinomialSeries;
 use super::{PointError, check_exponent};
 use crate::Real;
-use crate::num::kernel::{CHUNK, Element, Formula, run};
-use crate::surface::angle::{signed_power, sin_cos};
+use crate::num::kernel::{CHUNK, Element, Formula, Visit, run};
 
-/// The point of a superellipsoid of unit size by its angles (method 1): four sines and cosines,
-/// four signed powers. Exact zeros at quarter turns.
-///
-/// ```
-/// let [x, y, z] = rvachev::raw_parametric(0.5, 0.5, 0.3, 0.4);
-/// assert!((x.powi(4) + y.powi(4) + z.powi(4) - 1.0).abs() < 1e-15);
-/// ```
-#[must_use]
-pub fn raw_parametric(e1: f64, e2: f64, eta: f64, omega: f64) -> [f64; 3] {
-    let ((sin_h, cos_h), (sin_w, cos_w)) = (sin_cos(eta), sin_cos(omega));
-    let across = signed_power(cos_h, e1);
-    [across * signed_power(cos_w, e2), across * signed_power(sin_w, e2), signed_power(sin_h, e1)]
-}
-
-/// [`raw_parametric`] on SIMD lanes of `f32`: `[x, y, z]` of each pair of angles. Signs of x and y
-/// are those of the first octant: angles from 0 to π/2.
-///
-/// # Panics
-/// If the slices differ in length.
-pub fn raw_parametric_octant(e1: f64, e2: f64, eta: &[f32], omega: &[f32], out: [&mut [f32]; 3]) {
-    over_slices(&Raw { e1, e2 }, [eta, omega], out);
-}
-
-struct Raw {
-    e1: f64,
-    e2: f64,
-}
-
-impl Formula<2, 3> for Raw {
-    #[inline(always)]
-    fn run<R: Real>(&self, [eta, omega]: [R; 2]) -> [R; 3] {
-        let ((sin_h, cos_h), (sin_w, cos_w)) = (eta.sin_cos(), omega.sin_cos());
-        let across = cos_h.pow(self.e1);
-        [across * cos_w.pow(self.e2), across * sin_w.pow(self.e2), sin_h.pow(self.e1)]
-    }
-}
-
-/// Heights `z = (1 − xⁿ − yⁿ)^(1/n)` (method 2): three powers in place of four and no sine.
+/// Heights `z = (1 − |x|ⁿ − |y|ⁿ)^(1/n)` (method 2): three powers in place of four and no sine.
 ///
 /// ```
 /// use rvachev::ExactExplicit;
@@ -68,11 +32,11 @@ impl ExactExplicit {
         Ok(ExactExplicit { n })
     }
 
-    /// The height over (x, y), both from 0 to 1; 0 outside the surface's shadow. Right to a few
-    /// units in the last place where it is the largest coordinate.
+    /// The height over (x, y); 0 outside the surface's shadow. Right to a few units in the last
+    /// place where it is the largest coordinate.
     #[must_use]
     pub fn height(&self, x: f64, y: f64) -> f64 {
-        let rest = 1.0 - x.powf(self.n) - y.powf(self.n);
+        let rest = 1.0 - x.abs().powf(self.n) - y.abs().powf(self.n);
         if rest > 0.0 { rest.powf(1.0 / self.n) } else { 0.0 }
     }
 
@@ -97,12 +61,85 @@ impl ExactExplicit {
 impl Formula<2, 1> for ExactExplicit {
     #[inline(always)]
     fn run<R: Real>(&self, [x, y]: [R; 2]) -> [R; 1] {
-        let rest = -(x.pow(self.n) + y.pow(self.n)) + 1.0;
-        [rest.max(rest.lift(0.0)).pow(1.0 / self.n)]
+        [root(x.pow(self.n) + y.pow(self.n), self.n)]
+    }
+
+    #[inline(always)]
+    fn specialised<V: Visit<2, 1>>(&self, visit: V) {
+        match whole(self.n) {
+            Some(2) => visit.visit(&Circle),
+            Some(n) => visit.visit(&Whole { n }),
+            None => visit.visit(self),
+        }
     }
 }
 
+/// `(1 − u)^(1/n)`, 0 for u above 1.
+#[inline(always)]
+fn root<R: Real>(u: R, n: f64) -> R {
+    let rest = -u + 1.0;
+    rest.max(rest.lift(0.0)).pow(1.0 / n)
+}
+
+/// The exponent if it is a whole number.
+fn whole(n: f64) -> Option<u32> {
+    (n == n.round()).then_some(n as u32).filter(|&n| n > 0)
+}
+
+/// n = 2.
+struct Circle;
+
+impl Formula<2, 1> for Circle {
+    #[inline(always)]
+    fn run<R: Real>(&self, [x, y]: [R; 2]) -> [R; 1] {
+        let rest = -(x * x + y * y) + 1.0;
+        [rest.max(rest.lift(0.0)).sqrt()]
+    }
+}
+
+/// A whole exponent.
+struct Whole {
+    n: u32,
+}
+
+impl Formula<2, 1> for Whole {
+    #[inline(always)]
+    fn run<R: Real>(&self, [x, y]: [R; 2]) -> [R; 1] {
+        [root(product(x, self.n) + product(y, self.n), f64::from(self.n))]
+    }
+}
+
+/// |x|ⁿ by repeated squaring, n above 0.
+#[inline(always)]
+fn product<R: Real>(x: R, n: u32) -> R {
+    let (mut square, mut n) = (x.abs(), n);
+    while n & 1 == 0 {
+        square = square * square;
+        n >>= 1;
+    }
+    let mut all = square;
+    n >>= 1;
+    while n > 0 {
+        square = square * square;
+        if n & 1 == 1 {
+            all = all * square;
+        }
+        n >>= 1;
+    }
+    all
+}
+
 /// Heights by the binomial series (method 3): two powers and a polynomial.
+///
+/// ```
+/// use rvachev::SeriesExplicit;
+///
+/// let series = SeriesExplicit::new(5.0, 1e-3)?;
+/// assert_eq!(series.series().terms(), 8);
+/// let exact = (1.0 - 0.5f64.powi(5) - 0.7f64.powi(5)).powf(0.2);
+/// assert!((series.height(0.5, 0.7) - exact).abs() < 1e-3);
+/// # Ok::<(), rvachev::PointError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct SeriesExplicit {
     n: f64,
@@ -138,10 +175,11 @@ impl SeriesExplicit {
         self.series.error_bound(2.0 / 3.0)
     }
 
-    /// The height over (x, y), both from 0 to 1.
+    /// The height over (x, y), both from 0 to 1; beyond the wedge the error grows, and outside
+    /// the surface's shadow the value means nothing.
     #[must_use]
     pub fn height(&self, x: f64, y: f64) -> f64 {
-        self.series.value(x.powf(self.n) + y.powf(self.n))
+        self.series.value(x.abs().powf(self.n) + y.abs().powf(self.n))
     }
 
     /// Heights over many points on SIMD lanes of `f64`.
@@ -166,10 +204,35 @@ impl Formula<2, 1> for SeriesExplicit {
     fn run<R: Real>(&self, [x, y]: [R; 2]) -> [R; 1] {
         [self.series.sum(x.pow(self.n) + y.pow(self.n))]
     }
+
+    #[inline(always)]
+    fn specialised<V: Visit<2, 1>>(&self, visit: V) {
+        match whole(self.n) {
+            Some(n) => visit.visit(&WholeSeries { n, series: &self.series }),
+            None => visit.visit(self),
+        }
+    }
+}
+
+/// The series for a whole exponent.
+struct WholeSeries<'a> {
+    n: u32,
+    series: &'a BinomialSeries,
+}
+
+impl Formula<2, 1> for WholeSeries<'_> {
+    #[inline(always)]
+    fn run<R: Real>(&self, [x, y]: [R; 2]) -> [R; 1] {
+        [self.series.sum(product(x, self.n) + product(y, self.n))]
+    }
 }
 
 /// Runs a formula over slices of any length: whole chunks as they are, the rest padded.
-fn over_slices<E: Element, const O: usize>(formula: &impl Formula<2, O>, from: [&[E]; 2], mut to: [&mut [E]; O]) {
+pub(super) fn over_slices<E: Element, const O: usize>(
+    formula: &impl Formula<2, O>,
+    from: [&[E]; 2],
+    mut to: [&mut [E]; O],
+) {
     let len = from[0].len();
     assert!(from[1].len() == len && to.iter().all(|o| o.len() == len), "slices of one length are needed");
     let whole = len - len % CHUNK;

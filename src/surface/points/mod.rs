@@ -2,7 +2,7 @@
 //!
 //! | # | method | a point | error |
 //! |---|---|---|---|
-//! | 1 | [`raw_parametric`] | 4 sines and cosines, 4 powers | rounding |
+//! | 1 | [`RawParametric`] | 4 sines and cosines, 4 powers | rounding |
 //! | 2 | [`ExactExplicit`] | 3 powers | rounding |
 //! | 3 | [`SeriesExplicit`] | 2 powers, a polynomial | [tail of the series](BinomialSeries::error_bound) |
 //! | 4 | [`LogTable`] | 2 look-ups, 2 `exp2`, a polynomial | the same |
@@ -17,14 +17,16 @@
 mod curve_points;
 mod explicit;
 mod product;
+mod raw;
 mod series;
 mod solid_points;
 mod tables;
 mod wedge;
 
 pub use curve_points::CurveSpread;
-pub use explicit::{ExactExplicit, SeriesExplicit, raw_parametric, raw_parametric_octant};
+pub use explicit::{ExactExplicit, SeriesExplicit};
 pub use product::ProductTables;
+pub use raw::RawParametric;
 pub use series::BinomialSeries;
 pub use solid_points::{PointMethod, PointSettings};
 pub use tables::{LogTable, PowerTables};

@@ -88,13 +88,19 @@ impl BinomialSeries {
         &self.coefficients
     }
 
-    /// The most by which the series is too large at u; it is never too small.
+    /// The most by which the series is too large for any argument from 0 to u; it is never too
+    /// small. +∞ for u from 1 on, where the series does not converge.
     #[must_use]
     pub fn error_bound(&self, u: f64) -> f64 {
-        self.next * u.powi(self.coefficients.len() as i32 + 1) / (1.0 - u)
+        if u < 1.0 {
+            let u = u.max(0.0);
+            self.next * u.powi(self.coefficients.len() as i32 + 1) / (1.0 - u)
+        } else {
+            f64::INFINITY
+        }
     }
 
-    /// The value at u.
+    /// The value at u, from 0 to below 1.
     #[must_use]
     pub fn value(&self, u: f64) -> f64 {
         self.sum(u)

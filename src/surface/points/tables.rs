@@ -91,6 +91,15 @@ impl PowerTables {
 /// ```
 ///
 /// On nodes x = i/N, y = j/N the error is that of the [`BinomialSeries`].
+///
+/// ```
+/// use rvachev::LogTable;
+///
+/// let table = LogTable::new(5.0, 1000, 1e-3)?;
+/// let exact = (1.0 - 0.5f64.powi(5) - 0.7f64.powi(5)).powf(0.2);
+/// assert!((table.height(0.5, 0.7) - exact).abs() <= table.error_bound());
+/// # Ok::<(), rvachev::PointError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct LogTable {
     n: f64,

@@ -70,7 +70,12 @@ pub fn reflect_plane(wedge: &[DVec2], symmetry: PlaneSymmetry) -> Vec<DVec2> {
 /// ```
 #[must_use]
 pub fn reflect(wedge: &[DVec3], symmetry: Symmetry) -> Vec<DVec3> {
-    let mut all = Vec::with_capacity(wedge.len() * 8);
+    let images = match symmetry {
+        Symmetry::Cuboid => 8,
+        Symmetry::SquarePrism => 16,
+        Symmetry::Cube => 48,
+    };
+    let mut all = Vec::with_capacity(images * wedge.len());
     for &p in wedge {
         let [x, y, z] = p.to_array();
         let orders: &[[f64; 3]] = match symmetry {

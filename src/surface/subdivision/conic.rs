@@ -14,7 +14,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use glam::DVec2;
 
-use super::{ControlPolygon, SubdivisionError, Tension};
+use super::{ControlPolygon, SubdivisionError, Tension, check_coordinates};
 use crate::surface::angle::sin_cos;
 
 pub(super) fn length(parameter: &'static str, value: f64) -> Result<(), SubdivisionError> {
@@ -151,8 +151,8 @@ fn graph(quarters: u32, phase: f64) -> Result<ControlPolygon<DVec2>, Subdivision
 }
 
 /// The points of an ellipse `(a cos θ, b sin θ)` with |θ| < π/2 moved to the hyperbola
-/// `x²/a² − y²/b² = 1`: `(a sec θ, b tan θ) = (a²/x, a·y/x)`. Points on the y axis and beyond are
-/// left out; the result runs from below to above.
+/// `x²/a² − y²/b² = 1`: `(a sec θ, b tan θ) = (a²/x, a·y/x)`. Points on the y axis and beyond (x up
+/// to 10⁻⁹·a) are left out; the result runs from below to above.
 ///
 /// Right only for points of the limit curve: raw points of level 5 end up 1.4·10⁻² off.
 ///
@@ -161,16 +161,21 @@ fn graph(quarters: u32, phase: f64) -> Result<ControlPolygon<DVec2>, Subdivision
 /// use rvachev::{ControlPolygon, hyperbola_of_ellipse};
 ///
 /// let ellipse = ControlPolygon::ellipse(DVec2::new(2.0, 1.0))?;
-/// for p in hyperbola_of_ellipse(&ellipse.limit(4)?, 2.0) {
+/// for p in hyperbola_of_ellipse(&ellipse.limit(4)?, 2.0)? {
 ///     let (x, y) = (p.x / 2.0, p.y);
 ///     assert!((x * x - y * y - 1.0).abs() < 1e-12 * x * x);
 /// }
 /// # Ok::<(), rvachev::SubdivisionError>(())
 /// ```
-#[must_use]
-pub fn hyperbola_of_ellipse(points: &[DVec2], a: f64) -> Vec<DVec2> {
-    let right = points.iter().filter(|p| p.x > 1e-12 * a);
+///
+/// # Errors
+/// [`SubdivisionError::Parameter`] for a semi-axis a out of its range,
+/// [`SubdivisionError::Coordinate`] for a point that is not finite or beyond 10¹².
+pub fn hyperbola_of_ellipse(points: &[DVec2], a: f64) -> Result<Vec<DVec2>, SubdivisionError> {
+    length("a", a)?;
+    check_coordinates(points.iter().map(DVec2::to_array))?;
+    let right = points.iter().filter(|p| p.x > 1e-9 * a);
     let mut moved: Vec<DVec2> = right.map(|p| DVec2::new(a * a / p.x, a * p.y / p.x)).collect();
     moved.sort_by(|p, q| p.y.total_cmp(&q.y));
-    moved
+    Ok(moved)
 }

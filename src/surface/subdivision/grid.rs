@@ -2,8 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
-use super::refine::{refine, stencil};
-use super::{SubdivisionError, Tension, check_levels};
+use super::refine::{refine, refined_len, stencil};
+use super::{MOST_IN_MESH, SubdivisionError, Tension, check_coordinates, check_levels};
 use crate::geom::QuadMesh;
 use crate::surface::stitch::{End, Knot, Knots, Layout, stitch};
 
@@ -61,10 +61,7 @@ impl ControlGrid {
         if rows.checked_mul(columns) != Some(points.len()) {
             return Err(SubdivisionError::Grid { points: points.len(), rows, columns });
         }
-        let bad = |p: &DVec3| p.to_array().into_iter().find(|c| c.is_nan() || c.abs() > 1e12);
-        if let Some((index, value)) = points.iter().enumerate().find_map(|(i, p)| bad(p).map(|c| (i, c))) {
-            return Err(SubdivisionError::Coordinate { index, value });
-        }
+        check_coordinates(points.iter().map(DVec3::to_array))?;
         let points = points.iter().map(DVec3::to_array).collect();
         Ok(ControlGrid { points, rows, columns, closed, tension })
     }
@@ -84,14 +81,21 @@ impl ControlGrid {
     /// The grid after some levels both ways, with the tensions that go on from there.
     ///
     /// # Errors
-    /// [`SubdivisionError::Levels`] for more than 2²⁸ points.
+    /// [`SubdivisionError::Levels`] for more than 2²⁴ points.
     pub fn subdivided(&self, levels: u32) -> Result<ControlGrid, SubdivisionError> {
-        check_levels(self.points.len(), levels, 2)?;
+        check_levels(self.points.len(), levels, 2, MOST_IN_MESH)?;
         let mut grid = self.clone();
         for level in 1..=levels {
             let masks = self.tension.map(|tension| tension.mask(level));
-            grid = grid.along_rows(|row, closed, to| refine(row, closed, masks[1], to));
-            grid = grid.transposed().along_rows(|row, closed, to| refine(row, closed, masks[0], to)).transposed();
+            let level = |mask: [f64; 2]| {
+                move |row: &[[f64; 3]], closed: bool, to: &mut Vec<[f64; 3]>| {
+                    to.clear();
+                    to.extend_from_slice(row);
+                    to.resize(refined_len(row.len(), closed), [0.0; 3]);
+                    refine(to, row.len(), closed, mask);
+                }
+            };
+            grid = grid.along_rows(level(masks[1])).transposed().along_rows(level(masks[0])).transposed();
         }
         Ok(ControlGrid { tension: self.tension.map(|tension| tension.at_level(levels)), ..grid })
     }
@@ -109,7 +113,7 @@ impl ControlGrid {
     /// where the surface is degenerate).
     ///
     /// # Errors
-    /// [`SubdivisionError::Levels`] for more than 2²⁸ points.
+    /// [`SubdivisionError::Levels`] for more than 2²⁴ points.
     pub fn limit_mesh(&self, levels: u32) -> Result<QuadMesh, SubdivisionError> {
         let grid = self.subdivided(levels)?;
         let point = grid.tension.map(|tension| {

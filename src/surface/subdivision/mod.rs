@@ -94,15 +94,26 @@ pub enum SubdivisionError {
     },
 }
 
-/// The most points of a result: 2²⁸, some 6 GB.
-const MOST_POINTS: usize = 1 << 28;
+/// The most points of a curve: 2²⁶, up to 1.6 GB, and twice that on the way.
+const MOST_ON_CURVE: usize = 1 << 26;
+
+/// The most vertices of a mesh: 2²⁴, some 4 GB with faces, normals and texture coordinates.
+const MOST_IN_MESH: usize = 1 << 24;
+
+/// Coordinates are at most this.
+const LARGEST: f64 = 1e12;
 
 /// Whether `points` may be doubled `levels` times in `directions` directions.
-fn check_levels(points: usize, levels: u32, directions: u32) -> Result<(), SubdivisionError> {
-    let allowed = (MOST_POINTS / points.max(1)).max(1).ilog2() / directions;
-    if levels <= allowed {
-        Ok(())
-    } else {
-        Err(SubdivisionError::Levels { levels, points, most: MOST_POINTS, allowed })
+fn check_levels(points: usize, levels: u32, directions: u32, most: usize) -> Result<(), SubdivisionError> {
+    let allowed = (most / points.max(1)).max(1).ilog2() / directions;
+    if levels <= allowed { Ok(()) } else { Err(SubdivisionError::Levels { levels, points, most, allowed }) }
+}
+
+/// Whether all coordinates are finite and of a usual size.
+fn check_coordinates<const N: usize>(points: impl Iterator<Item = [f64; N]>) -> Result<(), SubdivisionError> {
+    let bad = |p: [f64; N]| p.into_iter().find(|c| c.is_nan() || c.abs() > LARGEST);
+    match points.enumerate().find_map(|(index, p)| bad(p).map(|value| (index, value))) {
+        Some((index, value)) => Err(SubdivisionError::Coordinate { index, value }),
+        None => Ok(()),
     }
 }

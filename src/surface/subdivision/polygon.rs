@@ -11,8 +11,8 @@
 
 use glam::{DVec2, DVec3};
 
-use super::refine::{refine, stencil};
-use super::{SubdivisionError, Tension, check_levels};
+use super::refine::{refine, refined_len, stencil};
+use super::{MOST_ON_CURVE, SubdivisionError, Tension, check_coordinates, check_levels};
 
 /// A point of the plane or of space: `DVec2` or `DVec3`.
 pub trait ControlPoint: Copy + sealed::Coordinates {}
@@ -34,8 +34,9 @@ pub(super) mod sealed {
         fn new(points: &[P]) -> Self;
         fn points(&self) -> Vec<P>;
         fn len(&self) -> usize;
-        fn bad_coordinate(&self) -> Option<(usize, f64)>;
-        fn refined(&self, closed: bool, mask: [f64; 2], to: &mut Self);
+        fn assign(&mut self, other: &Self);
+        fn check(&self) -> Result<(), super::SubdivisionError>;
+        fn refine(&mut self, closed: bool, masks: impl ExactSizeIterator<Item = [f64; 2]>);
         fn stencilled(&self, closed: bool, weights: [f64; 3]) -> Self;
     }
 
@@ -57,12 +58,20 @@ pub(super) mod sealed {
         fn len(&self) -> usize {
             Vec::len(self)
         }
-        fn bad_coordinate(&self) -> Option<(usize, f64)> {
-            let bad = |p: &[f64; N]| p.iter().copied().find(|c| c.is_nan() || c.abs() > super::LARGEST);
-            self.iter().enumerate().find_map(|(i, p)| bad(p).map(|c| (i, c)))
+        fn assign(&mut self, other: &Self) {
+            self.clone_from(other);
         }
-        fn refined(&self, closed: bool, mask: [f64; 2], to: &mut Self) {
-            super::refine(self, closed, mask, to);
+        fn check(&self) -> Result<(), super::SubdivisionError> {
+            super::check_coordinates(self.iter().copied())
+        }
+        fn refine(&mut self, closed: bool, masks: impl ExactSizeIterator<Item = [f64; 2]>) {
+            let mut count = Vec::len(self);
+            let len = (0..masks.len()).fold(count, |count, _| super::refined_len(count, closed));
+            self.resize(len, [0.0; N]);
+            for mask in masks {
+                super::refine(self, count, closed, mask);
+                count = super::refined_len(count, closed);
+            }
         }
         fn stencilled(&self, closed: bool, weights: [f64; 3]) -> Self {
             super::stencil(self, closed, weights)
@@ -71,9 +80,6 @@ pub(super) mod sealed {
 }
 
 use sealed::Rows;
-
-/// Coordinates are at most this.
-const LARGEST: f64 = 1e12;
 
 /// A control polygon: points, whether it is closed, and its [`Tension`].
 ///
@@ -119,9 +125,7 @@ impl<P: ControlPoint> ControlPolygon<P> {
         if rows.len() < least {
             return Err(SubdivisionError::TooFewPoints { of, points: points.len(), least });
         }
-        if let Some((index, value)) = rows.bad_coordinate() {
-            return Err(SubdivisionError::Coordinate { index, value });
-        }
+        rows.check()?;
         Ok(ControlPolygon { rows, closed, tension })
     }
 
@@ -159,15 +163,37 @@ impl<P: ControlPoint> ControlPolygon<P> {
     /// closed polygon doubles its points a level; an open one of n has 2n − 3 after it.
     ///
     /// # Errors
-    /// [`SubdivisionError::Levels`] for more than 2²⁸ points.
+    /// [`SubdivisionError::Levels`] for more than 2²⁶ points.
     pub fn subdivided(&self, levels: u32) -> Result<ControlPolygon<P>, SubdivisionError> {
-        check_levels(self.len(), levels, 1)?;
-        let (mut rows, mut next) = (self.rows.clone(), P::Rows::default());
-        for level in 1..=levels {
-            rows.refined(self.closed, self.tension.mask(level), &mut next);
-            std::mem::swap(&mut rows, &mut next);
-        }
-        Ok(ControlPolygon { rows, closed: self.closed, tension: self.tension.at_level(levels) })
+        let mut fine = ControlPolygon { rows: P::Rows::default(), closed: self.closed, tension: self.tension };
+        self.subdivide_into(levels, &mut fine)?;
+        Ok(fine)
+    }
+
+    /// The same in place of another polygon, whose memory is used again: fresh memory from the
+    /// system may cost several times what the arithmetic does.
+    ///
+    /// ```
+    /// use rvachev::ControlPolygon;
+    ///
+    /// let mut fine = ControlPolygon::ellipse([1.0, 1.0])?;
+    /// for width in [1.0, 2.0, 3.0] {
+    ///     ControlPolygon::ellipse([width, 1.0])?.subdivide_into(8, &mut fine)?;
+    ///     assert_eq!(fine.len(), 4 << 8);
+    ///     assert!((fine.limit_points()[0].x - width).abs() < 1e-14);
+    /// }
+    /// # Ok::<(), rvachev::SubdivisionError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`SubdivisionError::Levels`] for more than 2²⁶ points; `fine` is then as it was.
+    pub fn subdivide_into(&self, levels: u32, fine: &mut ControlPolygon<P>) -> Result<(), SubdivisionError> {
+        check_levels(self.len(), levels, 1, MOST_ON_CURVE)?;
+        let ControlPolygon { rows, closed, tension } = fine;
+        (*closed, *tension) = (self.closed, self.tension.at_level(levels));
+        rows.assign(&self.rows);
+        rows.refine(self.closed, (0..levels).map(|level| self.tension.mask(level + 1)));
+        Ok(())
     }
 
     /// Where the points end up on the limit curve; of an open polygon all but the first and last.
@@ -189,7 +215,7 @@ impl<P: ControlPoint> ControlPolygon<P> {
     /// [`limit_points`](Self::limit_points).
     ///
     /// # Errors
-    /// [`SubdivisionError::Levels`] for more than 2²⁸ points.
+    /// [`SubdivisionError::Levels`] for more than 2²⁶ points.
     pub fn limit(&self, levels: u32) -> Result<Vec<P>, SubdivisionError> {
         Ok(self.subdivided(levels)?.limit_points())
     }

@@ -70,15 +70,16 @@ fn lengths(semi_axes: DVec3) -> Result<(), SubdivisionError> {
     length("semi_axes.z", semi_axes.z)
 }
 
-/// Half the length of a hyperboloid, at most so many times its semi-axis.
+/// Half the length of a hyperboloid, at least and at most so many times its semi-axis.
+const SHORTEST: f64 = 1e-6;
 const LONGEST: f64 = 1000.0;
 
 fn half_length(value: f64, above: f64, semi_axis: f64) -> Result<(), SubdivisionError> {
-    if value > above * semi_axis && value <= LONGEST * semi_axis {
+    if value > above * semi_axis && value >= SHORTEST * semi_axis && value <= LONGEST * semi_axis {
         return Ok(());
     }
     let allowed =
-        if above > 0.0 { "above semi_axes.z, up to 1000 times it" } else { "above 0, up to 1000 times semi_axes.z" };
+        if above > 0.0 { "above semi_axes.z, up to 1000 times it" } else { "0.000001 to 1000 times semi_axes.z" };
     Err(SubdivisionError::Parameter { parameter: "half_length", value, allowed })
 }
 
@@ -100,7 +101,7 @@ impl SubdivisionRevolution {
     /// the secant and tangent of an ellipsoid's meridian; flat at its ends.
     ///
     /// # Errors
-    /// A semi-axis out of its range, a length of more than 1000 semi-axes.
+    /// A semi-axis out of its range, a length below 10⁻⁶ or above 1000 semi-axes.
     pub fn one_sheet(semi_axes: impl Into<DVec3>, half_length: f64) -> Result<SubdivisionRevolution, SubdivisionError> {
         let a = semi_axes.into();
         lengths(a)?;

@@ -2,60 +2,82 @@
 //!
 //! A polygon is a flat row of numbers, the coordinates of a point side by side: the mask is the
 //! same for all of them, so a point of any dimension is a stride.
+//!
+//! ```text
+//!     |p0 p1 p2 p3|           |      a level goes through its row from the end: point i and the
+//!     |p0 p1 p2 p3|   ... q6 q7|      side after it become points 2i and 2i + 1, where nothing is
+//!     |q0 q1 q2 q3 q4 q5 q6 q7|      that is still to be read
+//! ```
+//!
+//! So there is one row, of its final length from the beginning: fresh memory costs more than
+//! the arithmetic.
 
 use crate::num::kernel::{Task, dispatched};
 
-/// One level: from `from`, whose points have `N` coordinates, to `to` of twice the length. Point i
-/// of `from` gives points 2i (by the mask) and 2i + 1 (the middle of the side after it).
+/// Points of a row after a level.
+pub(super) fn refined_len(count: usize, closed: bool) -> usize {
+    if closed { 2 * count } else { (2 * count).saturating_sub(3) }
+}
+
+/// One level: the first `count` points of `points` become the first
+/// [`refined_len`] of them. Point i gives points 2i (by the mask) and 2i + 1 (the middle of the
+/// side after it).
 ///
 /// Closed: every point has neighbours. Open: the first and the last have but one, and the
-/// points that would need the others are not made; `to` begins with the middle of the first side.
-pub(super) fn refine<const N: usize>(from: &[[f64; N]], closed: bool, mask: [f64; 2], to: &mut Vec<[f64; N]>) {
-    let count = from.len();
-    let new = if closed { 2 * count } else { (2 * count).saturating_sub(3) };
-    to.resize(new, [0.0; N]);
-    if new == 0 {
-        return;
-    }
-    let middle = |a: [f64; N], b: [f64; N]| -> [f64; N] { std::array::from_fn(|k| 0.5 * (a[k] + b[k])) };
-    if closed {
-        let [neighbour, own] = mask;
-        let (first, last) = (from[0], from[count - 1]);
-        let at = |a: [f64; N], p: [f64; N], b: [f64; N]| -> [f64; N] {
-            std::array::from_fn(|k| (a[k] + b[k]) * neighbour + p[k] * own)
-        };
-        to[0] = at(last, first, from[1 % count]);
-        to[2 * count - 1] = middle(last, first);
-        if count > 1 {
-            to[2 * count - 2] = at(from[count - 2], last, first);
-            to[1] = middle(first, from[1]);
-        }
-    } else {
-        to[0] = middle(from[0], from[1]);
-    }
+/// points that would need the others are not made; the row begins with the middle of the first
+/// side.
+pub(super) fn refine<const N: usize>(points: &mut [[f64; N]], count: usize, closed: bool, mask: [f64; 2]) {
     if count < 3 {
         return;
     }
-    // Points 1 to count − 2, each with the side after it.
-    let to = if closed { &mut to[2..2 * count - 2] } else { &mut to[1..] };
-    dispatched(Interior { from, to, mask });
+    dispatched(Level { points, count, closed, mask });
 }
 
-struct Interior<'a, const N: usize> {
-    from: &'a [[f64; N]],
-    to: &'a mut [[f64; N]],
+/// Points that are read before any of theirs is written.
+const BLOCK: usize = 128;
+
+struct Level<'a, const N: usize> {
+    points: &'a mut [[f64; N]],
+    count: usize,
+    closed: bool,
     mask: [f64; 2],
 }
 
-impl<const N: usize> Task for Interior<'_, N> {
+impl<const N: usize> Task for Level<'_, N> {
     #[inline(always)]
     fn run(self) {
-        let [neighbour, own] = self.mask;
-        for (window, pair) in self.from.windows(3).zip(self.to.chunks_exact_mut(2)) {
-            let (a, p, b) = (window[0], window[1], window[2]);
-            for k in 0..N {
-                pair[0][k] = (a[k] + b[k]) * neighbour + p[k] * own;
-                pair[1][k] = 0.5 * (p[k] + b[k]);
+        let Level { points, count, closed, mask: [neighbour, own] } = self;
+        let (first, second, last) = (points[0], points[1], points[count - 1]);
+        let (least, most) = if closed { (0, count) } else { (1, count - 1) };
+        let mut read = [[0.0; N]; BLOCK + 2];
+        let mut end = most;
+        while end > least {
+            let start = least.max(end.saturating_sub(BLOCK));
+            let len = end - start;
+            read[0] = if start == 0 { last } else { points[start - 1] };
+            read[1..=len].copy_from_slice(&points[start..end]);
+            read[len + 1] = if end == count { first } else { points[end] };
+            let to = if closed { 2 * start } else { 2 * start - 1 };
+            let (from, to) = (&read[..len + 2], &mut points[to..to + 2 * len]);
+            // Without iterators: what is not inlined here would not be compiled for the level.
+            let mut i = 0;
+            while i < len {
+                let (a, p, b) = (from[i], from[i + 1], from[i + 2]);
+                let mut k = 0;
+                while k < N {
+                    to[2 * i][k] = (a[k] + b[k]) * neighbour + p[k] * own;
+                    to[2 * i + 1][k] = 0.5 * (p[k] + b[k]);
+                    k += 1;
+                }
+                i += 1;
+            }
+            end = start;
+        }
+        if !closed {
+            let mut k = 0;
+            while k < N {
+                points[0][k] = 0.5 * (first[k] + second[k]);
+                k += 1;
             }
         }
     }

@@ -13,7 +13,7 @@
 use glam::{DVec2, DVec3};
 
 use super::quadric::ProfileMap;
-use super::{ControlPolygon, SubdivisionError, check_levels};
+use super::{ControlPolygon, MOST_IN_MESH, SubdivisionError, check_levels};
 use crate::geom::QuadMesh;
 use crate::surface::stitch::{End, Knot, Knots, Layout, stitch};
 
@@ -122,7 +122,7 @@ impl SubdivisionRevolution {
     /// stencil: they are off the limit surface by an error that falls by 4 a level.
     ///
     /// # Errors
-    /// [`SubdivisionError::Levels`] for more than 2²⁸ points.
+    /// [`SubdivisionError::Levels`] for more than 2²⁴ points.
     pub fn subdivided_mesh(&self, levels: [u32; 2]) -> Result<QuadMesh, SubdivisionError> {
         self.check(levels)?;
         let mut points = self.profile.subdivided(levels[0])?.points();
@@ -138,7 +138,7 @@ impl SubdivisionRevolution {
     /// exact for conics whatever the level.
     ///
     /// # Errors
-    /// [`SubdivisionError::Levels`] for more than 2²⁸ points.
+    /// [`SubdivisionError::Levels`] for more than 2²⁴ points.
     pub fn limit_mesh(&self, levels: [u32; 2]) -> Result<QuadMesh, SubdivisionError> {
         self.check(levels)?;
         let line = |polygon: &ControlPolygon<DVec2>, levels: u32, map: ProfileMap| {
@@ -160,8 +160,8 @@ impl SubdivisionRevolution {
     }
 
     fn check(&self, levels: [u32; 2]) -> Result<(), SubdivisionError> {
-        check_levels(self.profile.len(), levels[0], 1)?;
-        check_levels(self.path.len() * (self.profile.len() << levels[0]), levels[1], 1)
+        check_levels(self.profile.len(), levels[0], 1, MOST_IN_MESH)?;
+        check_levels(self.path.len() * (self.profile.len() << levels[0]), levels[1], 1, MOST_IN_MESH)
     }
 
     /// A mesh of positions and faces.

@@ -57,31 +57,37 @@ enum Kind {
 /// The largest hyperbolic step: cosh 30 is 5·10¹².
 const LARGEST_STEP: f64 = 30.0;
 
+/// The smallest step: its cosine has long been 1 in double precision.
+const SMALLEST_STEP: f64 = 1e-10;
+
+/// The level whose step is that of all above it.
+const DEEPEST: u32 = 900;
+
 impl Tension {
     /// The cubic B-spline.
     pub const CUBIC: Tension = Tension { kind: Kind::Cubic, step: 0.0 };
 
-    /// The tension for points at steps of `step` radians about a centre, above 0 and at most π:
-    /// 2π/m for a polygon of m sides.
+    /// The tension for points at steps of `step` radians about a centre, 10⁻¹⁰ to π: 2π/m for a
+    /// polygon of m sides.
     ///
     /// # Errors
     /// [`SubdivisionError::Tension`] for another step.
     pub fn trigonometric(step: f64) -> Result<Tension, SubdivisionError> {
-        let allowed = "above 0, at most π";
-        if step > 0.0 && step <= std::f64::consts::PI {
+        let allowed = "10⁻¹⁰ to π";
+        if (SMALLEST_STEP..=std::f64::consts::PI).contains(&step) {
             Ok(Tension { kind: Kind::Trigonometric, step })
         } else {
             Err(SubdivisionError::Tension { parameter: "step", value: step, allowed })
         }
     }
 
-    /// The tension for points at steps of `step` along a hyperbola, above 0 and at most 30.
+    /// The tension for points at steps of `step` along a hyperbola, 10⁻¹⁰ to 30.
     ///
     /// # Errors
     /// [`SubdivisionError::Tension`] for another step.
     pub fn hyperbolic(step: f64) -> Result<Tension, SubdivisionError> {
-        let allowed = "above 0, at most 30";
-        if step > 0.0 && step <= LARGEST_STEP {
+        let allowed = "10⁻¹⁰ to 30";
+        if (SMALLEST_STEP..=LARGEST_STEP).contains(&step) {
             Ok(Tension { kind: Kind::Hyperbolic, step })
         } else {
             Err(SubdivisionError::Tension { parameter: "step", value: step, allowed })
@@ -104,10 +110,11 @@ impl Tension {
         }
     }
 
-    /// The step at a level; 0 for the cubic one.
+    /// The step at a level; 0 for the cubic one. Levels above 900 count as 900 here and below:
+    /// steps are still above 0 there.
     #[must_use]
     pub fn step(&self, level: u32) -> f64 {
-        self.step * 0.5f64.powi(level as i32)
+        self.step * 0.5f64.powi(level.min(DEEPEST) as i32)
     }
 
     /// α at a level: cos, 1 or cosh of its step.
@@ -121,10 +128,11 @@ impl Tension {
     }
 
     /// The weights of the mask that makes level `level` (1 or more) from the one before:
-    /// `[1, 2 + 4α] / (4 + 4α)`, of each neighbour and of the point itself.
+    /// `[1, 2 + 4α] / (4 + 4α)`, of each neighbour and of the point itself. (No mask makes level
+    /// 0; asked for, it is that of level 1.)
     #[must_use]
     pub fn mask(&self, level: u32) -> [f64; 2] {
-        let alpha = self.alpha(level);
+        let alpha = self.alpha(level.max(1));
         let neighbour = 0.25 / (1.0 + alpha);
         [neighbour, 1.0 - 2.0 * neighbour]
     }

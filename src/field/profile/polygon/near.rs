@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec2};
 
-use super::super::super::{AnyField, Chunk, Field, ParamError, VALUE_LIMIT, Zone};
+use super::super::super::{AnyField, Chunk, Field, ParamError, VALUE_LIMIT, Zone, steep_slopes};
 use super::{Edge, Patch};
 use crate::num::symbol::Symbol;
 use crate::{Bounds, Dual, Interval, Real};
@@ -189,9 +189,7 @@ pub(super) fn margin(patch: &Patch, reach: f64) -> f64 {
 
 /// A range and slopes of a function that changes by at most 1 per length unit.
 pub(super) fn unit_slopes(value: Interval, [x, y, _]: [Dual<Interval>; 3]) -> Dual<Interval> {
-    let slope = Interval::new(-1.0, 1.0);
-    let (dx, dy) = (x.gradient(), y.gradient());
-    Dual::new(value, std::array::from_fn(|i| slope * dx[i] + slope * dy[i]))
+    Dual::new(value, steep_slopes(1.0, [x, y, Dual::constant(Interval::point(0.0))]))
 }
 
 impl AnyField for NearEdges {
