@@ -52,6 +52,7 @@ mod neighbours;
 mod region;
 mod samples;
 mod sharp;
+mod turn;
 
 /// Blocks whose roots are found together. Small enough for threads to share work evenly.
 pub(super) const BATCH: usize = 256;
