@@ -3,8 +3,8 @@
 //! `cargo bench --bench mesh` prints, on one thread and on two: seconds (of the processor on one
 //! thread, of the clock on two; the least of several runs), triangles, millions of triangles a
 //! second, the peak of memory during the run, and how many times faster than fidget's VM on the
-//! same model, box and number of cells, in the same run. Ours is `Smooth`: marching cubes,
-//! with welded indices and normals; fidget's is manifold dual contouring without normals.
+//! same model, box and number of cells, in the same run. Ours has welded indices and normals, once
+//! `Smooth` (marching cubes), once `Sharp`; fidget's is manifold dual contouring without normals.
 //!
 //! Then come extraction alone, from arrays of 257³ samples, and scale: a sphere at 1024³ and
 //! 2048³, a ball of gyroid at 512³, unions of 100 and of 10 000 superellipsoids at 256³.
@@ -26,7 +26,7 @@ mod scale;
 #[path = "mesh/volume.rs"]
 mod volume;
 
-use rvachev::{CellSize, MeshSettings, Run};
+use rvachev::{CellSize, Features, MeshSettings, Run};
 
 use measure::{Cost, measured};
 use models::Model;
@@ -47,9 +47,9 @@ impl Chosen {
     }
 }
 
-fn ours(model: &Model, cells: u32, threads: usize) -> (Cost, usize) {
+fn ours(model: &Model, cells: u32, features: Features, threads: usize) -> (Cost, usize) {
     let cell = CellSize::Length(2.0 * model.half / f64::from(cells));
-    let settings = MeshSettings { cell, bounds: Some(model.cube()), ..MeshSettings::default() };
+    let settings = MeshSettings { cell, bounds: Some(model.cube()), features, ..MeshSettings::default() };
     let run = Run { threads, ..Run::default() };
     measured(threads, || model.solid.mesh_with(&settings, &run).expect("a model").triangles().len())
 }
@@ -94,11 +94,15 @@ fn main() {
         for cells in CELLS.into_iter().filter(|cells| chosen.takes(cells, &CELLS)) {
             let cells: u32 = cells.parse().expect("a number");
             for threads in (1..=2).filter(|&threads| chosen.takes(THREADS[threads - 1], &THREADS)) {
-                let mine = ours(&model, cells, threads);
+                let mine = ours(&model, cells, Features::Smooth, threads);
+                let sharp = ours(&model, cells, Features::Sharp, threads);
                 let skipped = chosen.has("alone") || is_slow(model.name, cells) && !chosen.has("fidget");
                 let other = (!skipped).then(|| peer::fidget(&model, cells.ilog2(), threads));
                 let ratio = other.map(|(cost, _)| cost.seconds / mine.0.seconds);
-                row(model.name, cells, threads, "ours", mine.0, mine.1, ratio);
+                row(model.name, cells, threads, "smooth", mine.0, mine.1, ratio);
+                let ratio = other.map(|(cost, _)| cost.seconds / sharp.0.seconds);
+                row(model.name, cells, threads, "sharp", sharp.0, sharp.1, ratio);
+                println!("{:24}sharp over smooth: {:.2}", "", sharp.0.seconds / mine.0.seconds);
                 if let Some((cost, triangles)) = other {
                     row(model.name, cells, threads, "fidget", cost, triangles, None);
                 }

@@ -1,13 +1,14 @@
 //! Fine cells, and many parts.
 
 use glam::{DAffine3, DQuat, DVec3};
-use rvachev::{CellSize, MeshSettings, MinimalSurface, RFunction, Run, SheetLattice, Solid};
+use rvachev::{CellSize, Features, MeshSettings, MinimalSurface, RFunction, Run, SheetLattice, Solid};
 
 use crate::measure::{Cost, measured};
 
 /// Meshes and prints a row; gives the cost and the number of vertices.
 fn row(name: &str, solid: &Solid, cells: u32, threads: usize) -> (Cost, usize) {
-    let settings = MeshSettings { cell: CellSize::LongestSide(cells), ..MeshSettings::default() };
+    let settings =
+        MeshSettings { cell: CellSize::LongestSide(cells), features: Features::Smooth, ..MeshSettings::default() };
     let run = Run { threads, ..Run::default() };
     let (cost, (vertices, triangles)) = measured(threads, || {
         let mesh = solid.mesh_with(&settings, &run).expect("a mesh");

@@ -81,6 +81,9 @@ pub struct MeshReport {
     /// Cells of one sign in which a feature thinner than a cell may have been lost, as found
     /// while the mesh was made. `None` if it was not made from a solid.
     pub unresolved_cells: Option<usize>,
+    /// Vertices on edges of the lattice that are up to a thousandth of a cell off the surface, to keep
+    /// clear of the nodes. `None` if the mesh was not made from a solid.
+    pub clamped_vertices: Option<usize>,
 }
 
 impl MeshReport {
@@ -202,6 +205,7 @@ impl Mesh {
             inertia: measure.inertia,
             bounds: self.bounds(),
             unresolved_cells: self.unresolved_cells(),
+            clamped_vertices: self.clamped_vertices(),
         };
         if report.is_closed() && report.is_manifold() {
             report.genus = Some(report.shells as i64 - report.euler_characteristic / 2);

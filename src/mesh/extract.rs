@@ -31,8 +31,6 @@
 //!
 //! Source: W. E. Lorensen and H. E. Cline, Marching cubes (1987).
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
@@ -41,8 +39,10 @@ use self::neighbours::Neighbours;
 use super::Features;
 use super::feature::Slope;
 use super::lattice::Lattice;
+use super::meter::Meter;
 use super::signs::{EdgeRef, NODES, Rows, Signs, for_each_cell, list_edges};
 use super::table::CaseTable;
+use crate::bounds::Bounds;
 use crate::geom::{Mesh, MeshError};
 use crate::run::{Cancelled, Run};
 
@@ -52,6 +52,7 @@ mod neighbours;
 mod region;
 mod samples;
 mod sharp;
+mod turn;
 
 /// Blocks whose roots are found together. Small enough for threads to share work evenly.
 pub(super) const BATCH: usize = 256;
@@ -72,6 +73,12 @@ pub(crate) trait Sampler: Sync {
     /// Where the surface crosses edges, in the order of their blocks. `out` is as long as
     /// `edges`.
     fn roots(&self, scratch: &mut Self::Scratch, edges: &[EdgeRef], out: &mut [Root]);
+
+    /// A box that the surface is in: features are held in it, where it cuts the cell of one. The default is all
+    /// space.
+    fn limits(&self) -> Bounds {
+        Bounds::ALL
+    }
 
     /// Adds values and gradients of the field at points of a block, in the order of the points,
     /// to `out`; whether it did. The default knows of none: features are placed by the normals of
@@ -163,6 +170,8 @@ struct Batch {
     parts: Vec<Part>,
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
+    /// How many of them are moved to keep clear of nodes.
+    clamped: usize,
 }
 
 /// The first pass.
@@ -221,27 +230,8 @@ impl<'a, S: Sampler> Worker<'a, S> {
         };
         let positions = self.edges.iter().zip(&self.roots).map(position).collect();
         let normals = self.roots.iter().map(normal).collect();
-        Ok(Batch { parts, positions, normals })
-    }
-}
-
-/// Counts blocks that are done, and stops when the run is cancelled.
-struct Meter<'a> {
-    run: &'a Run,
-    done: AtomicUsize,
-    total: usize,
-}
-
-impl<'a> Meter<'a> {
-    fn new(run: &'a Run, total: usize) -> Meter<'a> {
-        Meter { run, done: AtomicUsize::new(0), total }
-    }
-
-    /// Called before each block.
-    fn step(&self) -> Result<(), Cancelled> {
-        let done = self.done.fetch_add(1, Ordering::Relaxed);
-        self.run.report(done as f64 / self.total as f64);
-        self.run.check()
+        let clamped = self.roots.iter().filter(|root| self.lattice.is_clamped(root.t)).count();
+        Ok(Batch { parts, positions, normals, clamped })
     }
 }
 

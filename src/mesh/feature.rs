@@ -5,14 +5,14 @@
 //!     --o---.                smooth surface's do. Their planes meet near the crease: a first p.
 //!       q0 ·.\               Then the field is asked at points q on the way from p to each
 //!            p x  crease     vertex, for the planes that the sides have close to p, and p moves
-//!       q1 · /               to where those meet; and once more, closer.
+//!       q1 · /               to where those meet.
 //!     --o---'
 //!      x1
 //! ```
 //!
 //! Each step is a damped Gauss–Newton step (see [`Planes`]) that is held in the cell. On
 //! plane sides the first is exact; on curved ones the error falls from d²/2R to δ²d²/2R, with
-//! d the distance of the vertices, R the radius of curvature and δ = 1/10 at last. Where the
+//! d the distance of the vertices, R the radius of curvature and δ = 2/5. Where the
 //! cell turns out smooth, though strongly curved, the planes are nearly the same, and p
 //! ends on the surface.
 //!
@@ -31,13 +31,14 @@ pub(super) const SMOOTH: f32 = 0.9;
 const HALF_SMOOTH: f32 = 0.975;
 
 /// How far feature points stay from the faces of their cell, in cells.
-const INSET: f64 = 1.0 / 128.0;
+pub(super) const INSET: f64 = 1.0 / 128.0;
 
 /// The damping of the steps; it takes the distance from the crease to a hundredth a step.
 const DAMPING: f64 = 3e-3;
 
-/// Where the field is asked, as parts of the way from the feature point to a vertex: a step each.
-const CLOSER: [f64; 2] = [0.4, 0.1];
+/// Where the field is asked, as a part of the way from the feature point to a vertex. Much closer, and what
+/// is found is the side of the crease that the first point missed it to.
+const CLOSER: f64 = 0.4;
 
 /// A value and a gradient of the field.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -49,14 +50,27 @@ pub(crate) struct Slope {
 }
 
 /// Whether no two of the normals of a cell's vertices differ as those of a crease do.
-pub(super) fn is_smooth(vertices: &[(Vec3, Vec3)]) -> bool {
-    let Some((_, first)) = vertices.first() else { return true };
+#[inline]
+pub(super) fn is_smooth(normals: &[Vec3]) -> bool {
+    let Some(first) = normals.first() else { return true };
     // If all are within half the angle of the first, no two differ by more than it.
-    if vertices.iter().all(|(_, normal)| first.dot(*normal) > HALF_SMOOTH) {
+    if normals.iter().all(|normal| first.dot(*normal) > HALF_SMOOTH) {
         return true;
     }
-    let mut pairs = (0..vertices.len()).flat_map(|a| (0..a).map(move |b| (a, b)));
-    pairs.all(|(a, b)| vertices[a].1.dot(vertices[b].1) > SMOOTH)
+    let mut pairs = (0..normals.len()).flat_map(|a| (0..a).map(move |b| (a, b)));
+    pairs.all(|(a, b)| normals[a].dot(normals[b]) > SMOOTH)
+}
+
+/// A vertex of a cell's loop.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Side {
+    /// Its number.
+    pub(super) vertex: u32,
+    /// Its position in cells, from the cell's first node.
+    pub(super) at: Vec3,
+    /// The outward normal there; later that which its side has close to the feature point, 0 if it is not
+    /// known.
+    pub(super) normal: Vec3,
 }
 
 /// A cell whose surface is not smooth. Positions are in cells, from the lattice's first node.
@@ -64,10 +78,7 @@ pub(super) fn is_smooth(vertices: &[(Vec3, Vec3)]) -> bool {
 pub(super) struct Candidate {
     pub(super) cell: [u32; 3],
     pub(super) outline: CellLoop,
-    /// The vertices of the loop.
-    vertices: [DVec3; LONGEST],
-    /// The outward normals there; later those that the sides of the vertices have close to `at`.
-    normals: [DVec3; LONGEST],
+    sides: [Side; LONGEST],
     /// The segments, from vertex n to the next, whose ends have different normals, as bits.
     pub(super) split: u16,
     /// The feature point.
@@ -77,63 +88,52 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
-    /// The cell with a first feature point. `given` are the vertices on the edges of the loop, in
-    /// order, with their outward normals.
-    pub(super) fn new(cell: [u32; 3], outline: CellLoop, given: &[(DVec3, Vec3)]) -> Candidate {
-        let mut candidate = Candidate {
-            cell,
-            outline,
-            vertices: [DVec3::ZERO; LONGEST],
-            normals: [DVec3::ZERO; LONGEST],
-            split: 0,
-            at: DVec3::ZERO,
-            planes: Planes::NONE,
-        };
-        for (n, &(position, normal)) in given.iter().enumerate() {
-            candidate.vertices[n] = position;
-            candidate.normals[n] = normal.as_dvec3().normalize_or_zero();
+    /// The cell with a first feature point. `sides` are the vertices on the edges of the loop, in order.
+    pub(super) fn new(cell: [u32; 3], outline: CellLoop, sides: [Side; LONGEST]) -> Candidate {
+        let mut candidate = Candidate { cell, outline, sides, split: 0, at: DVec3::ZERO, planes: Planes::NONE };
+        let low = candidate.low();
+        let given = &sides[..outline.len()];
+        for (n, side) in given.iter().enumerate() {
+            let (position, normal) = (low + side.at.as_dvec3(), side.normal.as_dvec3());
             candidate.at += position / given.len() as f64;
-            if candidate.normals[n] != DVec3::ZERO {
-                candidate.planes.add(candidate.normals[n], candidate.normals[n].dot(position));
+            if let Some(normal) = normal.try_normalize() {
+                candidate.planes.add(normal, normal.dot(position));
             }
-            let (_, next) = given[(n + 1) % given.len()];
-            candidate.split |= u16::from(normal.dot(next) < SMOOTH) << n;
+            let next = given[(n + 1) % given.len()].normal;
+            candidate.split |= u16::from(side.normal.dot(next) < SMOOTH) << n;
         }
         candidate.settle();
         candidate
     }
 
-    /// The vertices and the normals that their sides have close to the feature point.
-    fn sides(&mut self) -> impl Iterator<Item = (&DVec3, &mut DVec3)> {
-        self.vertices.iter().zip(&mut self.normals).take(self.outline.len())
+    fn low(&self) -> DVec3 {
+        self.cell.map(f64::from).into()
     }
 
-    /// The normal close to the feature point, on the side of vertex n of the loop; 0 if it is not
-    /// known.
-    pub(super) fn normal(&self, n: usize) -> Vec3 {
-        self.normals[n].as_vec3()
+    /// The vertices of the loop, in order.
+    pub(super) fn sides(&self) -> &[Side] {
+        &self.sides[..self.outline.len()]
     }
 
     fn settle(&mut self) {
-        let low = self.cell.map(f64::from).into();
-        self.at = settle(&self.planes, self.at, low, low + 1.0, 1);
+        self.at = settle(&self.planes, self.at, self.low(), self.low() + 1.0, 1);
     }
 
     /// The direction of the crease, if there are two sides and no more.
     pub(super) fn crease(&self) -> Option<DVec3> {
-        let normals = &self.normals[..self.outline.len()];
-        let pairs = (0..normals.len()).flat_map(|a| (0..a).map(move |b| (a, b)));
-        let across = pairs.map(|(a, b)| normals[a].cross(normals[b]));
+        let normals = self.sides().iter().map(|side| side.normal);
+        let pairs = normals.clone().enumerate().flat_map(|(n, a)| normals.clone().take(n).map(move |b| (a, b)));
+        let across = pairs.map(|(a, b)| a.cross(b));
         let along = across.max_by(|u, v| u.length_squared().total_cmp(&v.length_squared()))?;
         let unit = along.try_normalize()?;
         // A third side would have a normal along the crease of the two.
-        (along.length() > 0.3 && normals.iter().all(|normal| normal.dot(unit).abs() < 0.2)).then_some(unit)
+        let two = along.length() > 0.3 && self.sides().iter().all(|side| side.normal.dot(unit).abs() < 0.2);
+        two.then(|| unit.as_dvec3())
     }
 
-    /// Where the planes meet if the point may leave the cell, by one cell at most.
-    pub(super) fn unbound(&self) -> DVec3 {
-        let low = DVec3::from_array(self.cell.map(f64::from));
-        settle(&self.planes, self.at, low - 1.0, low + 2.0, 3)
+    /// Where the planes meet if the point may leave the cell, by some cells at most.
+    pub(super) fn unbound(&self, cells: f64) -> DVec3 {
+        settle(&self.planes, self.at, self.low() - cells, self.low() + 1.0 + cells, 3)
     }
 }
 
@@ -150,32 +150,30 @@ pub(super) fn refine(
     mut slopes: impl FnMut(&[DVec3], &mut Vec<Slope>) -> bool,
 ) {
     let (mut points, mut found) = (Vec::new(), Vec::new());
-    for part in CLOSER {
-        points.clear();
-        found.clear();
-        for candidate in candidates.iter_mut() {
-            let at = candidate.at;
-            points.extend(candidate.sides().map(|(vertex, _)| at + part * (*vertex - at)));
-        }
-        if !slopes(&points, &mut found) || found.len() != points.len() {
-            return;
-        }
-        let mut asked = points.iter().zip(&found);
-        for candidate in candidates.iter_mut() {
-            let mut planes = Planes::NONE;
-            for ((_, normal), (point, slope)) in candidate.sides().zip(&mut asked) {
-                let steepness = slope.gradient.length();
-                let depth = slope.value / (steepness * step);
-                // A plane that is farther away than the cell tells nothing; neither does NaN.
-                if steepness > 0.0 && depth.abs() < 1.0 {
-                    *normal = -slope.gradient / steepness;
-                    planes.add(*normal, normal.dot(*point) + depth);
-                }
+    for candidate in candidates.iter() {
+        let (low, at) = (candidate.low(), candidate.at);
+        points.extend(candidate.sides().iter().map(|side| at + CLOSER * (low + side.at.as_dvec3() - at)));
+    }
+    if !slopes(&points, &mut found) || found.len() != points.len() {
+        return;
+    }
+    let mut asked = points.iter().zip(&found);
+    for candidate in candidates.iter_mut() {
+        let mut planes = Planes::NONE;
+        let count = candidate.outline.len();
+        for (side, (point, slope)) in candidate.sides[..count].iter_mut().zip(&mut asked) {
+            let steepness = slope.gradient.length();
+            let depth = slope.value / (steepness * step);
+            // A plane that is farther away than the cell tells nothing; neither does NaN.
+            if steepness > 0.0 && depth.abs() < 1.0 {
+                let normal = -slope.gradient / steepness;
+                side.normal = normal.as_vec3();
+                planes.add(normal, normal.dot(*point) + depth);
             }
-            if !planes.is_empty() {
-                candidate.planes = planes;
-                candidate.settle();
-            }
+        }
+        if !planes.is_empty() {
+            candidate.planes = planes;
+            candidate.settle();
         }
     }
 }

@@ -208,6 +208,7 @@ impl Lattice {
 
     /// The position of a node, exact. Nodes beyond the last one are defined as well.
     #[must_use]
+    #[inline]
     pub fn node(&self, i: u32, j: u32, k: u32) -> DVec3 {
         let index = DVec3::new(f64::from(i), f64::from(j), f64::from(k));
         self.origin + index * self.step
@@ -220,8 +221,15 @@ impl Lattice {
         Bounds::new(self.origin, self.node(i, j, k))
     }
 
+    /// Whether [`vertex`](Lattice::vertex) moves `t`.
+    #[inline]
+    pub(crate) fn is_clamped(&self, t: f64) -> bool {
+        !(self.clearance..=1.0 - self.clearance).contains(&t)
+    }
+
     /// The vertex on the edge that leaves a node along an axis, at `t` from 0 to 1 of its
     /// length. `t` is moved to be clear of the ends; that of NaN is the middle.
+    #[inline]
     pub(crate) fn vertex(&self, node: [u32; 3], axis: usize, t: f64) -> Vec3 {
         let [i, j, k] = node;
         let mut p = self.node(i, j, k);

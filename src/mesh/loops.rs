@@ -41,40 +41,54 @@ pub(super) struct CellLoop {
 impl CellLoop {
     /// The loop of a case, if it has one and no more. `joined` has a bit for each ambiguous face whose
     /// inside corners are joined.
+    #[inline]
     pub(super) fn single(case: u8, joined: u8) -> Option<CellLoop> {
         static LOOPS: LazyLock<Vec<Option<CellLoop>>> =
             LazyLock::new(|| (0..=255).map(|case| CellLoop::derive(case, 0)).collect());
         if joined == 0 { LOOPS[usize::from(case)] } else { CellLoop::derive(case, joined) }
     }
 
+    /// All loops of a case.
+    pub(super) fn all(case: u8, joined: u8) -> impl Iterator<Item = CellLoop> {
+        loops(case, joined).into_iter().map(|segments| CellLoop::new(&segments))
+    }
+
     /// The edges of the cell that the loop passes, in order.
+    #[inline]
     pub(super) fn edges(&self) -> &[u8] {
         &self.edges[..usize::from(self.len)]
     }
 
     /// The number of segments, which is that of edges.
+    #[inline]
     pub(super) fn len(&self) -> usize {
         usize::from(self.len)
     }
 
-    /// The face of the segment from edge `n` to the next: axis, and whether it is the upper one.
-    pub(super) fn face(&self, n: usize) -> (usize, bool) {
-        (usize::from(self.faces[n] / 2), self.faces[n] % 2 == 1)
+    /// The face of the segment from edge `n` to the next: twice its axis, and 1 more for the upper one.
+    #[inline]
+    pub(super) fn face(&self, n: usize) -> u8 {
+        self.faces[n]
     }
 
     fn derive(case: u8, joined: u8) -> Option<CellLoop> {
         let all = loops(case, joined);
         let [segments] = &all[..] else { return None };
+        Some(CellLoop::new(segments))
+    }
+
+    fn new(segments: &[Segment]) -> CellLoop {
         let mut out = CellLoop { edges: [0; LONGEST], faces: [0; LONGEST], len: segments.len() as u8 };
         for (n, segment) in segments.iter().enumerate() {
             out.edges[n] = segment.from;
             out.faces[n] = segment.face;
         }
-        Some(out)
+        out
     }
 }
 
 /// The ambiguous faces of a case, as bits.
+#[inline]
 pub(super) fn ambiguous_faces(case: u8) -> u8 {
     static FACES: LazyLock<Vec<u8>> = LazyLock::new(|| {
         let is_ambiguous = |case: u8, face: u8| {
@@ -146,6 +160,15 @@ mod tests {
                     assert_eq!(one.last().map(|segment| segment.to), one.first().map(|segment| segment.from));
                 }
             }
+        }
+    }
+
+    #[test]
+    fn every_loop_bounds_a_disc() {
+        // A disc with n corners has n − 2 triangles, a tube between two loops more.
+        for case in 0..=255 {
+            let discs: usize = CellLoop::all(case, 0).map(|outline| outline.len() - 2).sum();
+            assert_eq!(discs, CaseTable::get().triangles(case).len(), "case {case}");
         }
     }
 

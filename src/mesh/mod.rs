@@ -5,6 +5,7 @@ mod extract;
 mod feature;
 mod lattice;
 mod loops;
+mod meter;
 mod paint;
 mod qef;
 mod resolve;

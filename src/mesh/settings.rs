@@ -47,8 +47,9 @@ pub enum Features {
     /// of [`Smooth`](Features::Smooth).
     ///
     /// Where a crease passes cells that have no surface of their own (all their corners are on the same
-    /// side), the cells around share a vertex on it, if their surface has a single boundary; else
-    /// the crease is cut off there by a part of a cell.
+    /// side), the cells around, up to three along each axis, share a vertex on it, if their surface is a
+    /// disc; else the crease is cut off there by a part of a cell. [`ThinFeatures::Refine`] asks for
+    /// smaller cells where it matters.
     #[default]
     Sharp,
 }

@@ -49,33 +49,49 @@ impl Signs {
     pub(super) fn new(values: &[f32; NODES]) -> Signs {
         let (rows, _) = values.as_chunks::<SIDE>();
         let mut signs = Signs([0; SIDE * SIDE]);
-        for (bits, &[a, b, c, d, e, f, g, h, last]) in signs.0.iter_mut().zip(rows) {
-            let first = gathered([a, b, c, d, e, f, g, h].map(|value| u8::from(value > 0.0)));
-            *bits = u16::from(first) | u16::from(last > 0.0) << BLOCK;
+        for (bits, row) in signs.0.iter_mut().zip(rows) {
+            for (n, &value) in row.iter().enumerate() {
+                *bits |= u16::from(value > 0.0) << n;
+            }
         }
         signs
     }
 
     /// The signs of a row of nodes.
+    #[inline]
     pub(super) fn row(&self, j: usize, k: usize) -> u16 {
         self.0[SIDE * k + j]
     }
 
     /// The case of a cell.
+    #[inline]
     pub(super) fn case(&self, [i, j, k]: [usize; 3]) -> u8 {
-        let rows = [self.row(j, k), self.row(j + 1, k), self.row(j, k + 1), self.row(j + 1, k + 1)];
-        rows.iter().enumerate().fold(0, |case, (n, row)| case | (row >> i & 3) << (2 * n)) as u8
+        case([self.row(j, k), self.row(j + 1, k), self.row(j, k + 1), self.row(j + 1, k + 1)], i)
     }
 
     /// The signs in the lower or upper face of an axis, nine rows of nine.
     pub(super) fn face(&self, axis: usize, upper: bool) -> [u16; SIDE] {
         let at = if upper { BLOCK } else { 0 };
-        std::array::from_fn(|n| match axis {
-            0 => (0..SIDE).fold(0, |bits, j| bits | (self.row(j, n) >> at & 1) << j),
-            1 => self.row(at, n),
-            _ => self.row(n, at),
-        })
+        let mut face = [0; SIDE];
+        for (n, bits) in face.iter_mut().enumerate() {
+            match axis {
+                0 => {
+                    for j in 0..SIDE {
+                        *bits |= (self.row(j, n) >> at & 1) << j;
+                    }
+                }
+                1 => *bits = self.row(at, n),
+                _ => *bits = self.row(n, at),
+            }
+        }
+        face
     }
+}
+
+/// The case of cell `i` of a row of cells, given the rows of nodes around it.
+#[inline]
+fn case([a, b, c, d]: [u16; 4], i: usize) -> u8 {
+    (a >> i & 3 | (b >> i & 3) << 2 | (c >> i & 3) << 4 | (d >> i & 3) << 6) as u8
 }
 
 /// Whether a face has nodes of both signs.
@@ -96,6 +112,7 @@ pub(super) struct Rows([u16; BLOCK * BLOCK]);
 
 impl Rows {
     /// Where a row starts.
+    #[inline]
     pub(super) fn start(&self, j: usize, k: usize) -> u32 {
         u32::from(self.0[BLOCK * k + j])
     }
@@ -103,9 +120,11 @@ impl Rows {
 
 impl Signs {
     /// The owned edges of a row that cross the surface, as bits, along x, y and z.
+    #[inline]
     pub(super) fn crossed(&self, j: usize, k: usize) -> [u16; 3] {
         let row = self.row(j, k);
-        [row ^ row >> 1, row ^ self.row(j + 1, k), row ^ self.row(j, k + 1)].map(|bits| bits & OWNED_BITS)
+        let along = |other: u16| (row ^ other) & OWNED_BITS;
+        [along(row >> 1), along(self.row(j + 1, k)), along(self.row(j, k + 1))]
     }
 
     /// Whether an edge along one of the given axes, from one of the first nodes of a row,
@@ -154,19 +173,19 @@ pub(super) fn list_edges(
 
 /// Calls `visit` for every cell that the surface crosses, with its coordinates in the block
 /// and its case.
+#[inline]
 pub(super) fn for_each_cell(signs: &Signs, mut visit: impl FnMut([usize; 3], u8)) {
     for k in 0..BLOCK {
         for j in 0..BLOCK {
             let rows = [signs.row(j, k), signs.row(j + 1, k), signs.row(j, k + 1), signs.row(j + 1, k + 1)];
-            let any = rows.iter().fold(0, |bits, row| bits | row);
-            let all = rows.iter().fold(u16::MAX, |bits, row| bits & row);
+            let [a, b, c, d] = rows;
+            let (any, all) = (a | b | c | d, a & b & c & d);
             // A cell is crossed if one of its nodes is inside and not all are.
             let mut crossed = (any | any >> 1) & !(all & all >> 1) & OWNED_BITS;
             while crossed != 0 {
                 let i = crossed.trailing_zeros() as usize;
                 crossed &= crossed - 1;
-                let case = rows.iter().enumerate().fold(0, |case, (n, row)| case | (row >> i & 3) << (2 * n));
-                visit([i, j, k], case as u8);
+                visit([i, j, k], case(rows, i));
             }
         }
     }

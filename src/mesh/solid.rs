@@ -98,7 +98,7 @@ impl Solid {
                     blocks = Blocks::find(&programs.surface, &lattice, &run.stage(0.0, 0.3))?;
                 }
             }
-            let sampler = SolidSampler::new(&lattice, &blocks.cells, blocks.programs);
+            let sampler = SolidSampler::new(&lattice, &blocks.cells, blocks.programs, bounds);
             let mut mesh = extract(&sampler, &lattice, &blocks.cells, settings.features, &run.stage(0.3, 1.0))?;
             if let (AtBounds::Refuse, Some(given)) = (settings.at_bounds, &settings.bounds) {
                 self.refuse_caps(&mesh, given, lattice.step())?;
@@ -178,6 +178,8 @@ struct SolidSampler<'a> {
     programs: Vec<Program>,
     /// The number of the first block of each block's group.
     groups: Vec<u32>,
+    /// The box that the surface is in.
+    limits: Bounds,
     /// The nodes of a block, relative to the first, x fastest.
     pattern: [Vec<f32>; 3],
 }
@@ -201,7 +203,12 @@ struct Scratch {
 }
 
 impl SolidSampler<'_> {
-    fn new<'a>(lattice: &'a Lattice, blocks: &'a [[u32; 3]], programs: Vec<Program>) -> SolidSampler<'a> {
+    fn new<'a>(
+        lattice: &'a Lattice,
+        blocks: &'a [[u32; 3]],
+        programs: Vec<Program>,
+        limits: Bounds,
+    ) -> SolidSampler<'a> {
         let mut groups: Vec<u32> = Vec::with_capacity(blocks.len());
         let mut heads: Vec<u32> = Vec::new();
         for (n, program) in programs.iter().enumerate() {
@@ -218,7 +225,7 @@ impl SolidSampler<'_> {
         }
         let at = |node: usize, stride: usize| (node / stride % SIDE) as f64 * lattice.step();
         let pattern = [1, SIDE, SIDE * SIDE].map(|stride| (0..NODES).map(|n| at(n, stride) as f32).collect());
-        SolidSampler { lattice, blocks, programs, groups, pattern }
+        SolidSampler { lattice, blocks, programs, groups, limits, pattern }
     }
 
     /// The leaves that decide at the middles of the triangles, by the programs of their blocks;
@@ -257,6 +264,10 @@ impl Sampler for SolidSampler<'_> {
         Scratch::default()
     }
 
+    fn limits(&self) -> Bounds {
+        self.limits
+    }
+
     fn nodes(&self, scratch: &mut Scratch, number: usize, block: [u32; 3], out: &mut [f32; NODES]) {
         let group = self.groups[number];
         let at = scratch.tapes.iter().rposition(|(other, _)| *other == group).unwrap_or_else(|| {
@@ -285,9 +296,18 @@ impl Sampler for SolidSampler<'_> {
     fn roots(&self, scratch: &mut Scratch, edges: &[EdgeRef], out: &mut [Root]) {
         let Scratch { evaluator, tapes, finder, order, edges: sorted, roots, .. } = scratch;
         let group = |edge: &EdgeRef| self.groups[edge.block as usize];
-        order.clear();
-        order.extend(0..edges.len() as u32);
-        order.sort_by_key(|&n| group(&edges[n as usize]));
+        // Counted first, then each to its place: a group is named by a block of the batch.
+        let Some(first) = edges.first() else { return };
+        let start = first.block as usize / BATCH * BATCH;
+        let mut places = [0u32; BATCH + 1];
+        edges.iter().for_each(|edge| places[group(edge) as usize - start + 1] += 1);
+        (0..BATCH).for_each(|n| places[n + 1] += places[n]);
+        order.resize(edges.len(), 0);
+        for (n, edge) in (0..).zip(edges) {
+            let place = &mut places[group(edge) as usize - start];
+            order[*place as usize] = n;
+            *place += 1;
+        }
         sorted.clear();
         sorted.extend(order.iter().map(|&n| edges[n as usize]));
         roots.resize(edges.len(), Root::default());

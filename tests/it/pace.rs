@@ -29,7 +29,7 @@ fn clamped(name: &str, solid: &Solid, cell: CellSize, mesh: &Mesh) -> usize {
         let axis = (0..3).max_by(|&a, &b| off[a].total_cmp(&off[b])).unwrap();
         let across = (0..3).filter(|&other| other != axis).map(|other| off[other]).fold(0.0, f64::max);
         assert!(across * step <= 1e-6 * step, "{name}: {vertex} is on no edge");
-        if off[axis] < 1.0 / 1024.0 + 1e-5 {
+        if off[axis] < 1.0 / 1024.0 + 1e-6 {
             clamped += 1;
             continue;
         }
@@ -56,6 +56,7 @@ fn vertices_are_roots_to_a_millionth_of_a_cell() {
             let cell = CellSize::LongestSide(cells);
             let mesh = solid.mesh(&settings(cell)).unwrap();
             let clamped = clamped(name, &solid, cell, &mesh);
+            assert_eq!(mesh.check().clamped_vertices, Some(clamped), "{name}");
             println!("{name} at {cells}: {clamped} of {} vertices clamped", mesh.positions().len());
             assert!(clamped * 100 < mesh.positions().len(), "{name}: {clamped}");
         }

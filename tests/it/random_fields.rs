@@ -143,11 +143,10 @@ fn fields(seeds: std::ops::Range<u64>) {
             triangles += report.triangles;
             cut += usize::from(part);
             if let Some(bounds) = bounds {
-                // The edges of caps are placed as all features are: well where normals tell where
-                // they are, and anywhere in their cells where the field turns within a cell.
+                // Vertices may be off by a thousandth of a cell.
                 let by = (bounds.min - report.bounds.min).max(report.bounds.max - bounds.max).max_element() / CELL;
                 beyond = beyond.max(by);
-                assert!(by < 2.0, "seed {seed}: {by} cells beyond");
+                assert!(by < 2e-3, "seed {seed}: {by} cells beyond");
             }
         }
     }

@@ -222,8 +222,24 @@ fn edges_of_a_body() {
     assert!(edges[0].median <= 0.005 && edges[0].part90 <= 0.05, "{}", edges[0]);
     assert!(edges[0].median < edges[1].median && edges[0].part90 < edges[1].part90);
     assert!(edges[0].rms < edges[1].rms && edges[0].max < edges[1].max);
-    // The target of 0.006 is missed: 0.0115, from fans whose neighbours have none.
-    assert!(surface[0].rms <= 0.012 && surface[0].rms < 0.5 * surface[1].rms, "{}", surface[0]);
+    // Where no edge is near and the normals spread little, both meshes are the same, with all vertices on the
+    // surface. What the rounded parts of the body leave to triangles of this size is more than 0.006 already.
+    let normals = smooth.normals().expect("a mesh of a solid has them");
+    let far: Vec<f64> = surface_errors(&smooth, &model.solid, cell)
+        .into_iter()
+        .zip(smooth.triangles())
+        .filter(|(_, t)| {
+            let [a, b, c] = t.map(|i| normals[i as usize]);
+            let centroid = t.iter().map(|&i| smooth.positions()[i as usize].as_dvec3()).sum::<DVec3>() / 3.0;
+            a.dot(b).min(b.dot(c)).min(c.dot(a)) > 0.9
+                && points.iter().all(|p| (*p - centroid).length_squared() > 4.0 * cell * cell)
+        })
+        .map(|(error, _)| error)
+        .collect();
+    let (share, far) = (far.len() as f64 / smooth.triangles().len() as f64, statistics(far));
+    println!("M2, surface, {:.0} % of the triangles, 2 cells and more from edges and not sharp: {far}", 100.0 * share);
+    assert!(surface[0].rms <= 0.0085 && surface[0].rms < 0.3 * surface[1].rms, "{}", surface[0]);
+    assert!(surface[0].rms < 1.1 * far.rms, "{}, {far}", surface[0]);
 }
 
 #[test]

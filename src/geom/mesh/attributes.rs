@@ -28,6 +28,7 @@ pub(super) struct Attributes {
     corner_texture: Option<Vec<[[f32; 2]; 3]>>,
     owners: Option<Vec<u32>>,
     unresolved_cells: Option<usize>,
+    clamped_vertices: Option<usize>,
 }
 
 impl Mesh {
@@ -154,6 +155,18 @@ impl Mesh {
         self.attributes.unresolved_cells
     }
 
+    pub(crate) fn with_clamped_vertices(mut self, count: usize) -> Mesh {
+        self.attributes.clamped_vertices = Some(count);
+        self
+    }
+
+    /// How many vertices keep clear of a node that the surface is closer to; `None` if the mesh was not
+    /// made from a solid. See [`MeshReport`](crate::MeshReport).
+    #[must_use]
+    pub fn clamped_vertices(&self) -> Option<usize> {
+        self.attributes.clamped_vertices
+    }
+
     fn fits_triangles(&self, what: &'static str, given: usize) -> Result<(), MeshError> {
         let triangles = self.triangles.len();
         if given == triangles { Ok(()) } else { Err(MeshError::Corners { what, given, triangles }) }
@@ -185,12 +198,13 @@ mod tests {
         let mesh = plain.with_normals(vec![Vec3::Z; 3]).unwrap();
         let mesh = mesh.with_corner_normals(vec![[Vec3::Z, Vec3::X, Vec3::Y]]).unwrap();
         let mesh = mesh.with_corner_colors(vec![colors]).unwrap().with_corner_texture(vec![texture]).unwrap();
-        let mesh = mesh.with_owners(vec![7]).unwrap().with_unresolved_cells(3);
+        let mesh = mesh.with_owners(vec![7]).unwrap().with_unresolved_cells(3).with_clamped_vertices(4);
         assert_eq!(mesh.normals().unwrap().len(), 3);
         assert_eq!(mesh.corner_normals().unwrap()[0][1], Vec3::X);
         assert_eq!(mesh.corner_colors(), Some(&[colors][..]));
         assert_eq!(mesh.corner_texture(), Some(&[texture][..]));
         assert_eq!((mesh.owners(), mesh.unresolved_cells()), (Some(&[7][..]), Some(3)));
+        assert_eq!((triangle().clamped_vertices(), mesh.clamped_vertices()), (None, Some(4)));
     }
 
     #[test]

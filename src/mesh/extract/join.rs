@@ -5,11 +5,12 @@ use rayon::prelude::*;
 
 use super::neighbours::Neighbours;
 use super::samples::{Samples, cell_number};
-use super::sharp::{self, Fan, Fans};
-use super::{BATCH, Batch, ExtractError, Meter, Part, Sampler};
+use super::sharp::{self, Fans};
+use super::{BATCH, Batch, ExtractError, Part, Sampler};
 use crate::geom::Mesh;
 use crate::mesh::Features;
 use crate::mesh::lattice::Lattice;
+use crate::mesh::meter::Meter;
 use crate::mesh::signs::{BLOCK, SIDE, for_each_cell, is_mixed};
 use crate::mesh::table::{CaseTable, EDGE_CORNERS, edge_axis};
 use crate::run::{Cancelled, Run};
@@ -23,6 +24,7 @@ pub(super) struct Parts<'a> {
     positions: Vec<Vec<Vec3>>,
     normals: Vec<Vec<Vec3>>,
     vertices: usize,
+    clamped: usize,
 }
 
 impl<'a> Parts<'a> {
@@ -43,9 +45,10 @@ impl<'a> Parts<'a> {
             positions: Vec::with_capacity(batches.len()),
             normals: Vec::with_capacity(batches.len()),
             vertices: count as usize,
+            clamped: batches.iter().map(|batch| batch.clamped).sum(),
         };
         let mut start = 0;
-        for Batch { mut parts, positions, normals } in batches {
+        for Batch { mut parts, positions, normals, .. } in batches {
             for part in &mut parts {
                 part.first += start;
             }
@@ -57,6 +60,7 @@ impl<'a> Parts<'a> {
         Ok(all)
     }
 
+    #[inline]
     pub(super) fn part(&self, n: usize) -> &Part {
         &self.parts[n / BATCH][n % BATCH]
     }
@@ -104,16 +108,17 @@ impl<'a> Parts<'a> {
         let fans = match features {
             Features::Smooth => Fans::default(),
             Features::Sharp => {
-                let samples = Samples::new(&self, lattice, &positions, &normals);
+                let samples = Samples::new(&self, lattice, sampler.limits(), [&positions, &normals]);
                 sharp::find(&samples, sampler, &run.stage(0.0, 0.6))?
             }
         };
-        let count = positions.len() as u64 + fans.fans.len() as u64;
+        let (more, more_normals): (Vec<Vec3>, Vec<Vec3>) = fans.vertices().unzip();
+        let count = positions.len() as u64 + more.len() as u64;
         if count > u64::from(u32::MAX) {
             return Err(ExtractError::TooLarge { count });
         }
-        positions.extend(fans.fans.iter().map(|fan| fan.at));
-        normals.extend(fans.fans.iter().map(Fan::normal));
+        positions.extend(more);
+        normals.extend(more_normals);
 
         let run = run.stage(0.6, 1.0);
         let meter = Meter::new(&run, self.blocks.len());
@@ -134,10 +139,21 @@ impl<'a> Parts<'a> {
             Ok::<(), ExtractError>(())
         })?;
         if fans.fans.is_empty() {
-            return Ok(Mesh::new(positions, triangles)?.with_normals(normals)?);
+            return Ok(Mesh::new(positions, triangles)?.with_normals(normals)?.with_clamped_vertices(self.clamped));
         }
         let corners = fans.corner_normals(&positions, &normals, &triangles);
-        Ok(Mesh::new(positions, triangles)?.with_normals(normals)?.with_corner_normals(corners)?)
+        if !fans.unused.is_empty() {
+            let used = used(positions.len(), &fans.unused);
+            let number = |n: u32| used[n as usize];
+            triangles.par_iter_mut().for_each(|slot| {
+                let [a, b, c] = *slot;
+                *slot = [number(a), number(b), number(c)];
+            });
+            positions = kept(&positions, &fans.unused);
+            normals = kept(&normals, &fans.unused);
+        }
+        let mesh = Mesh::new(positions, triangles)?.with_normals(normals)?.with_corner_normals(corners)?;
+        Ok(mesh.with_clamped_vertices(self.clamped))
     }
 
     /// The triangles of block `n`: those of the table, in the order of its cells, then those of its
@@ -166,14 +182,15 @@ impl<'a> Parts<'a> {
                 return;
             }
             let ids = corners.of_cell(cell);
+            let corner = |edge: u8| ids[corners.offsets[usize::from(edge)]];
             if opposite.next_if(|(other, _)| *other == number).is_some() {
                 for (&[a, b, c], slot) in table.triangles(!case).iter().zip(&mut *slots) {
-                    *slot = [a, c, b].map(|edge| ids[corners.offsets[usize::from(edge)]]);
+                    *slot = [corner(a), corner(c), corner(b)];
                 }
                 return;
             }
-            for (triangle, slot) in table.triangles(case).iter().zip(&mut *slots) {
-                *slot = triangle.map(|edge| ids[corners.offsets[usize::from(edge)]]);
+            for (&[a, b, c], slot) in table.triangles(case).iter().zip(&mut *slots) {
+                *slot = [corner(a), corner(b), corner(c)];
             }
         });
         let centres = self.vertices as u32;
@@ -253,15 +270,18 @@ impl Corners {
     }
 
     /// The list from the place of a cell's first node on.
+    #[inline]
     fn of_cell(&self, [i, j, k]: [usize; 3]) -> &[u32] {
         &self.ids[i + SIDE * (j + SIDE * k)..]
     }
 
     /// The vertex on an edge of a cell.
+    #[inline]
     pub(super) fn vertex(&self, cell: [usize; 3], edge: u8) -> u32 {
         self.of_cell(cell)[self.offsets[usize::from(edge)]]
     }
 
+    #[inline]
     fn place(axis: usize, [i, j, k]: [usize; 3]) -> usize {
         i + SIDE * (j + SIDE * (k + SIDE * axis))
     }
@@ -296,6 +316,29 @@ fn concatenated(pieces: Vec<Vec<Vec3>>, length: usize, run: &Run) -> Result<Vec<
         all.extend_from_slice(&piece);
     }
     Ok(all)
+}
+
+/// The numbers of vertices when the ones that are not used, in ascending order, are gone.
+fn used(count: usize, unused: &[u32]) -> Vec<u32> {
+    let mut numbers: Vec<u32> = Vec::with_capacity(count);
+    for (before, &gone) in (0..).zip(unused) {
+        numbers.extend(numbers.len() as u32 - before..gone - before);
+        // No triangle has it.
+        numbers.push(gone - before);
+    }
+    numbers.extend((numbers.len() - unused.len()) as u32..(count - unused.len()) as u32);
+    numbers
+}
+
+/// A list without the ones that are not used, in ascending order.
+fn kept(list: &[Vec3], unused: &[u32]) -> Vec<Vec3> {
+    let mut all = Vec::with_capacity(list.len());
+    let mut start = 0;
+    for end in unused.iter().map(|&n| n as usize).chain([list.len()]) {
+        all.extend_from_slice(&list[start..end]);
+        start = end + 1;
+    }
+    all
 }
 
 /// Cuts a slice into consecutive pieces of the given lengths, whose sum is its length.

@@ -12,7 +12,7 @@
 use glam::DVec3;
 
 use super::Sampler;
-use super::samples::{Samples, cell_number, split_cell};
+use super::samples::{Samples, cell_number, cell_of, split_cell};
 use crate::mesh::loops::{CellLoop, ambiguous_faces};
 use crate::mesh::signs::for_each_cell;
 
@@ -64,9 +64,7 @@ impl Joined {
         let mut cells: Vec<[u32; 3]> = Vec::new();
         for (n, list) in joined.upper.iter().enumerate() {
             for &(number, faces) in list {
-                let number = u32::from(number);
-                let within = [number % 8, number / 8 % 8, number / 64];
-                let cell: [u32; 3] = std::array::from_fn(|axis| samples.blocks()[n][axis] + within[axis]);
+                let cell = cell_of(samples.blocks()[n], number);
                 cells.push(cell);
                 for axis in (0..3).filter(|axis| faces >> axis & 1 == 1) {
                     cells.push(stepped(cell, axis));
@@ -101,11 +99,9 @@ impl Joined {
     }
 
     /// The joined faces of a cell of the given case, as bits.
+    #[inline]
     pub(super) fn of(&self, samples: &Samples<'_>, cell: [u32; 3], case: u8) -> u8 {
         let mut ambiguous = ambiguous_faces(case);
-        if self.upper.is_empty() {
-            return 0;
-        }
         let mut bits = 0;
         while ambiguous != 0 {
             let face = ambiguous.trailing_zeros() as usize;

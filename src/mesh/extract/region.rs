@@ -10,53 +10,115 @@
 //!     o-------o-------+
 //! ```
 //!
-//! A cell asks for a region if the planes of its sides meet outside, in another cell: the region is the
-//! smallest box of cells that holds both. It comes about if
+//! A cell asks for a region if the planes of its sides meet outside, in another cell, or if the crease
+//! goes on from it through empty cells: a box of cells that holds both ends, up to three along each axis,
+//! and the regions that the box cuts into. It comes about if
 //!
-//! * every cell of it has a single loop or none, and none is in a region yet;
-//! * the loops, with the segments that two of them share removed, make a single loop that all vertices
-//!   are in: the patches that are replaced make a disc, and so is the fan;
+//! * the patches of the box make a disc: they hang together and have a single loop as boundary, without
+//!   holes or handles;
 //! * the planes of all its cells meet better in the region than those of the cell did in it.
 //!
-//! The loop then lies in the boundary of a convex box, and what [`sharp`](super::sharp) says of the
-//! fans of cells holds for that of the region; an edge between two fans is turned only where it goes through
-//! the face that the segment is in, which is always so between single cells.
+//! The loop lies in the boundary of a convex box then, and what [`sharp`](super::sharp) says of the fans of
+//! cells holds for that of the region. A vertex on an edge within the box is in no triangle any more, and is
+//! left out.
 
 use std::collections::HashMap;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::joined::Joined;
 use super::samples::{Samples, split_cell};
-use super::sharp::{Fan, Segment, Special, segments};
+use super::sharp::{Segment, Special, segments};
 use crate::mesh::feature::{Candidate, settle};
 use crate::mesh::loops::CellLoop;
 use crate::mesh::qef::Planes;
 use crate::mesh::table::CaseTable;
+use crate::run::{Cancelled, Run};
 
 /// A cell asks for a region if its point is farther from the planes than this, in cells.
 const MISFIT: f64 = 0.01;
+
+/// The most cells along an axis of a region.
+const LARGEST: u32 = 3;
 
 /// Cells that share a fan.
 pub(super) struct Region {
     /// The block of the cell that asked for it.
     pub(super) block: usize,
-    pub(super) fan: Fan,
+    pub(super) segments: Vec<Segment>,
+    /// The feature point.
+    pub(super) at: Vec3,
     /// The cells, with the numbers of triangles that they have in the table.
     pub(super) cells: Vec<([u32; 3], usize)>,
+    /// The vertices within, ascending.
+    pub(super) within: Vec<u32>,
+    pub(super) span: Span,
+}
+
+/// A box of cells: from the first to the last, exclusive.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct Span {
+    pub(super) low: [u32; 3],
+    pub(super) high: [u32; 3],
+}
+
+impl Span {
+    fn of(a: [u32; 3], b: [u32; 3]) -> Span {
+        let low = std::array::from_fn(|axis| a[axis].min(b[axis]));
+        Span { low, high: std::array::from_fn(|axis| a[axis].max(b[axis]) + 1) }
+    }
+
+    fn union(&self, other: &Span) -> Span {
+        let low = std::array::from_fn(|axis| self.low[axis].min(other.low[axis]));
+        Span { low, high: std::array::from_fn(|axis| self.high[axis].max(other.high[axis])) }
+    }
+
+    /// What both hold, if there is any.
+    pub(super) fn intersection(&self, other: &Span) -> Span {
+        let low = std::array::from_fn(|axis| self.low[axis].max(other.low[axis]));
+        Span { low, high: std::array::from_fn(|axis| self.high[axis].min(other.high[axis])) }
+    }
+
+    fn is_small(&self) -> bool {
+        (0..3).all(|axis| self.high[axis] - self.low[axis] <= LARGEST)
+    }
+
+    fn cells(self) -> impl Iterator<Item = [u32; 3]> {
+        let Span { low, high } = self;
+        let rows = (low[2]..high[2]).flat_map(move |k| (low[1]..high[1]).map(move |j| [j, k]));
+        rows.flat_map(move |[j, k]| (low[0]..high[0]).map(move |i| [i, j, k]))
+    }
+
+    /// Its corners, in cells.
+    fn corners(&self) -> [DVec3; 2] {
+        [self.low, self.high].map(|cell| DVec3::from_array(cell.map(f64::from)))
+    }
 }
 
 /// The regions that candidates ask for, those that fit their planes worst first; in the order of the blocks.
-pub(super) fn regions(samples: &Samples<'_>, special: &[Special], joined: &Joined) -> Vec<Region> {
+pub(super) fn regions(
+    samples: &Samples<'_>,
+    special: &[Special],
+    joined: &Joined,
+    run: &Run,
+) -> Result<Vec<Region>, Cancelled> {
     let mut asking: Vec<Wish> = Vec::new();
     for (block, list) in special.iter().enumerate() {
+        run.check()?;
         for candidate in &list.candidates {
             let misfit = candidate.planes.distance(candidate.at);
             if misfit > MISFIT {
-                let at = candidate.unbound();
-                let target = at.floor();
-                if let Some(other) = towards(candidate.cell, target) {
-                    asking.push(Wish { size: misfit, block, candidate, other, at, allowed: 0.5 * misfit });
+                let mut last = None;
+                for reach in [1.0, 2.0] {
+                    let at = candidate.unbound(reach);
+                    let other = towards(candidate.cell, at.floor(), reach as i32);
+                    if other == last {
+                        continue;
+                    }
+                    last = other;
+                    if let Some(other) = other {
+                        asking.push(Wish { size: misfit, block, candidate, other, at, allowed: 0.5 * misfit });
+                    }
                 }
             } else {
                 for along in candidate.crease().into_iter().flat_map(|d| [d, -d]) {
@@ -68,10 +130,15 @@ pub(super) fn regions(samples: &Samples<'_>, special: &[Special], joined: &Joine
         }
     }
     asking.sort_by(|a, b| b.size.total_cmp(&a.size));
-    let mut known = Known { samples, special, joined, taken: HashMap::new() };
-    let mut regions: Vec<Region> = asking.iter().filter_map(|wish| known.region(wish)).collect();
+    let mut known = Known { samples, special, joined, taken: HashMap::new(), regions: Vec::new() };
+    // Regions that stand alone come first: they are smaller than those that others are merged into.
+    for merges in [false, true] {
+        asking.retain(|wish| !run.cancel.is_cancelled() && !known.grant(wish, merges));
+    }
+    run.check()?;
+    let mut regions: Vec<Region> = known.regions.into_iter().flatten().collect();
     regions.sort_by_key(|region| region.block);
-    regions
+    Ok(regions)
 }
 
 /// A region that a cell asks for.
@@ -89,11 +156,11 @@ struct Wish<'a> {
     allowed: f64,
 }
 
-/// The cell that is a step towards another, along every axis where they differ.
-fn towards(cell: [u32; 3], target: DVec3) -> Option<[u32; 3]> {
+/// The cell that is some steps towards another, along every axis where they differ.
+fn towards(cell: [u32; 3], target: DVec3, steps: i32) -> Option<[u32; 3]> {
     let mut other = cell;
     for axis in 0..3 {
-        let by = (target[axis] - f64::from(cell[axis])).clamp(-1.0, 1.0) as i32;
+        let by = ((target[axis] - f64::from(cell[axis])) as i32).clamp(-steps, steps);
         other[axis] = other[axis].checked_add_signed(by)?;
     }
     (other != cell).then_some(other)
@@ -134,91 +201,134 @@ struct Known<'a> {
     samples: &'a Samples<'a>,
     special: &'a [Special],
     joined: &'a Joined,
-    /// The cells that are in a region.
-    taken: HashMap<[u32; 3], ()>,
+    /// The cells that are in a region, and which.
+    taken: HashMap<[u32; 3], usize>,
+    /// All regions; `None` for those that others are merged from.
+    regions: Vec<Option<Region>>,
 }
 
 impl Known<'_> {
-    fn region(&mut self, wish: &Wish<'_>) -> Option<Region> {
-        let &Wish { block, candidate: asking, other, .. } = wish;
-        let low: [u32; 3] = std::array::from_fn(|axis| asking.cell[axis].min(other[axis]));
-        let high: [u32; 3] = std::array::from_fn(|axis| asking.cell[axis].max(other[axis]) + 1);
-
-        let (mut cells, mut all, mut planes, mut patches) = (Vec::new(), Vec::new(), Planes::NONE, 0);
-        for k in low[2]..high[2] {
-            for j in low[1]..high[1] {
-                for i in low[0]..high[0] {
-                    let cell = [i, j, k];
-                    if self.taken.contains_key(&cell) {
-                        return None;
-                    }
-                    let case = self.samples.case(cell);
-                    if case == 0 || case == 255 {
-                        cells.push((cell, 0));
-                        continue;
-                    }
-                    let candidate = self.candidate(cell, case)?;
-                    planes.append(&candidate.planes);
-                    cells.push((cell, CaseTable::get().triangles(case).len()));
-                    all.extend(segments(self.samples, &candidate)?);
-                    patches += 1;
-                }
+    /// Makes the region that a cell wishes for, if it can be; merged with the regions in its way, or not at all
+    /// where there are any. Whether there is no more to be done for the cell.
+    fn grant(&mut self, wish: &Wish<'_>, merges: bool) -> bool {
+        // One that it is in already is what it wished for, or better.
+        if self.taken.contains_key(&wish.candidate.cell) {
+            return true;
+        }
+        let mut span = Span::of(wish.candidate.cell, wish.other);
+        let mut merged: Vec<usize> = Vec::new();
+        while let Some(&region) =
+            span.cells().filter_map(|cell| self.taken.get(&cell)).find(|&region| !merged.contains(region))
+        {
+            if let Some(other) = &self.regions[region] {
+                span = span.union(&other.span);
+            }
+            merged.push(region);
+            if !merges || !span.is_small() {
+                return merges;
             }
         }
-        let segments = glued(all, patches)?;
-        let corner = |cell: [u32; 3]| DVec3::from_array(cell.map(f64::from));
-        let at = settle(&planes, wish.at, corner(low), corner(high), 3);
-        if planes.distance(at) > wish.allowed || asking.planes.distance(at) > wish.allowed {
-            return None;
+        let Some(region) = self.region(wish, span) else { return merged.is_empty() };
+        for old in merged {
+            self.regions[old] = None;
         }
-        self.taken.extend(cells.iter().map(|&(cell, _)| (cell, ())));
-        Some(Region { block, fan: Fan { segments, at: self.samples.inside(at, low, high) }, cells })
+        self.taken.extend(region.cells.iter().map(|&(cell, _)| (cell, self.regions.len())));
+        self.regions.push(Some(region));
+        true
     }
 
-    /// A crossed cell with a single loop.
-    fn candidate(&self, cell: [u32; 3], case: u8) -> Option<Candidate> {
+    fn region(&self, wish: &Wish<'_>, span: Span) -> Option<Region> {
+        let (mut cells, mut all, mut planes) = (Vec::new(), Vec::<Vec<Segment>>::new(), Planes::NONE);
+        for cell in span.cells() {
+            let case = self.samples.case(cell);
+            cells.push((cell, CaseTable::get().triangles(case).len()));
+            if case == 0 || case == 255 {
+                continue;
+            }
+            for candidate in self.candidates(cell, case)? {
+                planes.append(&candidate.planes);
+                all.push(segments(&candidate).collect());
+            }
+        }
+        let Disc { ring, within } = glued(&all)?;
+        let [low, high] = span.corners();
+        let at = settle(&planes, wish.at, low, high, 3);
+        if planes.distance(at) > wish.allowed || wish.candidate.planes.distance(at) > wish.allowed {
+            return None;
+        }
+        let at = self.samples.inside(at, span.low, span.high);
+        Some(Region { block: wish.block, segments: ring, at, cells, within, span })
+    }
+
+    /// What a crossed cell has, a candidate for each of its loops.
+    fn candidates(&self, cell: [u32; 3], case: u8) -> Option<Vec<Candidate>> {
         let (block, _) = split_cell(cell);
         let block = self.samples.find(block)?;
         if let Some(candidate) = self.special[block].candidates.iter().find(|candidate| candidate.cell == cell) {
-            return Some(candidate.clone());
+            return Some(vec![candidate.clone()]);
         }
-        let outline = CellLoop::single(case, self.joined.of(self.samples, cell, case))?;
-        let vertex = |&edge: &u8| Some(self.samples.get(self.samples.vertex(cell, edge)?));
-        let vertices: Option<Vec<_>> = outline.edges().iter().map(vertex).collect();
-        Some(self.samples.candidate(cell, outline, &vertices?))
+        let candidate = |outline: CellLoop| {
+            let vertices: Option<Vec<u32>> =
+                outline.edges().iter().map(|&edge| self.samples.vertex(cell, edge)).collect();
+            Some(self.samples.candidate(cell, outline, &vertices?))
+        };
+        CellLoop::all(case, self.joined.of(self.samples, cell, case)).map(candidate).collect()
     }
 }
 
-/// The loop around several patches, if they hang together such that they make a disc that all their
-/// vertices are on the boundary of.
-fn glued(all: Vec<Segment>, patches: usize) -> Option<Vec<Segment>> {
-    // The segments in the order of the cells, each with its end.
-    let mut ends: Vec<u32> = Vec::with_capacity(all.len());
-    let mut start = 0;
-    for (n, segment) in all.iter().enumerate() {
-        let last = all.get(n + 1).is_none_or(|next| next.cell != segment.cell);
-        ends.push(if last { all[start].from } else { all[n + 1].from });
-        if last {
-            start = n + 1;
+/// A disc of several patches.
+struct Disc {
+    /// Its boundary.
+    ring: Vec<Segment>,
+    /// The vertices that are not on it, ascending.
+    within: Vec<u32>,
+}
+
+/// Several patches, each given by the loop around it, as one, if they make a disc.
+fn glued(patches: &[Vec<Segment>]) -> Option<Disc> {
+    // Segments with their ends; one that two patches share is there in both directions.
+    let mut all: Vec<(Segment, u32)> = Vec::with_capacity(8 * patches.len());
+    for patch in patches {
+        let next = patch.iter().cycle().skip(1).map(|segment| segment.from);
+        all.extend(patch.iter().copied().zip(next));
+    }
+    let mut sides: Vec<(u32, u32)> = all.iter().map(|&(segment, to)| (segment.from, to)).collect();
+    sides.sort_unstable();
+    let is_outer = |(segment, to): &(Segment, u32)| sides.binary_search(&(*to, segment.from)).is_err();
+    let outer: Vec<(Segment, u32)> = all.iter().copied().filter(is_outer).collect();
+    let (first, _) = *outer.first()?;
+    let mut ring = Vec::with_capacity(outer.len());
+    let mut at = first.from;
+    loop {
+        let &(segment, to) = outer.iter().find(|(segment, _)| segment.from == at)?;
+        ring.push(segment);
+        at = to;
+        if at == first.from {
+            break;
         }
-    }
-    let sides: Vec<(u32, u32)> = all.iter().map(|segment| segment.from).zip(ends).collect();
-    let outer: Vec<usize> = (0..all.len()).filter(|&n| !sides.contains(&(sides[n].1, sides[n].0))).collect();
-    // Shared segments count twice; patches in a tree share one fewer than they are.
-    if all.len() - outer.len() != 2 * (patches - 1) {
-        return None;
-    }
-    let first = *outer.first()?;
-    let mut ring = vec![all[first]];
-    let mut at = sides[first].1;
-    while at != sides[first].0 {
-        let next = *outer.iter().find(|&&n| sides[n].0 == at)?;
-        ring.push(all[next]);
-        at = sides[next].1;
         if ring.len() > outer.len() {
             return None;
         }
     }
-    let is_in_ring = |vertex: u32| ring.iter().any(|segment| segment.from == vertex);
-    (ring.len() == outer.len() && all.iter().all(|segment| is_in_ring(segment.from))).then_some(ring)
+    // Vertices − edges + patches is 1 for a disc; edges within are listed twice.
+    let mut vertices: Vec<u32> = all.iter().map(|(segment, _)| segment.from).collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    let edges = outer.len() + (all.len() - outer.len()) / 2;
+    if ring.len() != outer.len() || vertices.len() + patches.len() != edges + 1 || !hangs_together(patches) {
+        return None;
+    }
+    vertices.retain(|vertex| ring.iter().all(|segment| segment.from != *vertex));
+    Some(Disc { ring, within: vertices })
+}
+
+/// Whether one comes from every patch to every other by vertices that they share.
+fn hangs_together(patches: &[Vec<Segment>]) -> bool {
+    let mut left: Vec<&Vec<Segment>> = patches.iter().collect();
+    let mut reached: Vec<&Vec<Segment>> = left.pop().into_iter().collect();
+    while let Some(patch) = reached.pop() {
+        let shares = |other: &&Vec<Segment>| patch.iter().any(|a| other.iter().any(|b| a.from == b.from));
+        reached.extend(left.extract_if(.., |other| shares(&&**other)));
+    }
+    left.is_empty()
 }

@@ -4,9 +4,10 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::join::Parts;
-use crate::mesh::feature::{Candidate, SMOOTH};
+use crate::bounds::Bounds;
+use crate::mesh::feature::{Candidate, SMOOTH, Side};
 use crate::mesh::lattice::Lattice;
-use crate::mesh::loops::CellLoop;
+use crate::mesh::loops::{CellLoop, LONGEST};
 use crate::mesh::signs::BLOCK;
 use crate::mesh::table::{EDGE_CORNERS, edge_axis};
 
@@ -14,16 +15,20 @@ use crate::mesh::table::{EDGE_CORNERS, edge_axis};
 pub(super) struct Samples<'a> {
     pub(super) parts: &'a Parts<'a>,
     pub(super) lattice: &'a Lattice,
+    limits: Bounds,
     positions: &'a [Vec3],
     normals: &'a [Vec3],
     /// The blocks by their first cells, z first, ascending; with their numbers.
-    sorted: Vec<([u32; 3], u32)>,
+    sorted: Vec<((u64, u32), u32)>,
 }
 
 /// The block of a cell, by its first cell, and where the cell is in it.
+#[inline]
 pub(super) fn split_cell(cell: [u32; 3]) -> ([u32; 3], [usize; 3]) {
-    let within = cell.map(|n| n as usize % BLOCK);
-    (std::array::from_fn(|axis| cell[axis] - within[axis] as u32), within)
+    let [x, y, z] = cell;
+    let side = BLOCK as u32;
+    let within = [x % side, y % side, z % side];
+    ([x - within[0], y - within[1], z - within[2]], [within[0] as usize, within[1] as usize, within[2] as usize])
 }
 
 /// The number of a cell in its block: x fastest, then y, then z.
@@ -31,21 +36,29 @@ pub(super) fn cell_number([i, j, k]: [usize; 3]) -> u16 {
     (i + BLOCK * (j + BLOCK * k)) as u16
 }
 
-/// The order of blocks.
-fn key([x, y, z]: [u32; 3]) -> [u32; 3] {
-    [z, y, x]
+/// The cell of a block, given by its first cell, that has a number.
+pub(super) fn cell_of(block: [u32; 3], number: u16) -> [u32; 3] {
+    let n = u32::from(number);
+    let side = BLOCK as u32;
+    [block[0] + n % side, block[1] + n / side % side, block[2] + n / (side * side)]
+}
+
+/// The order of blocks: z first, then y, then x.
+#[inline]
+pub(super) fn key([x, y, z]: [u32; 3]) -> (u64, u32) {
+    (u64::from(z) << 32 | u64::from(y), x)
 }
 
 impl<'a> Samples<'a> {
     pub(super) fn new(
         parts: &'a Parts<'a>,
         lattice: &'a Lattice,
-        positions: &'a [Vec3],
-        normals: &'a [Vec3],
+        limits: Bounds,
+        [positions, normals]: [&'a [Vec3]; 2],
     ) -> Samples<'a> {
-        let mut sorted: Vec<([u32; 3], u32)> = parts.blocks.iter().map(|&block| key(block)).zip(0..).collect();
+        let mut sorted: Vec<((u64, u32), u32)> = parts.blocks.iter().map(|&block| key(block)).zip(0..).collect();
         sorted.sort_unstable();
-        Samples { parts, lattice, positions, normals, sorted }
+        Samples { parts, lattice, limits, positions, normals, sorted }
     }
 
     pub(super) fn blocks(&self) -> &[[u32; 3]] {
@@ -78,8 +91,14 @@ impl<'a> Samples<'a> {
     }
 
     /// Position and normal of a vertex.
+    #[inline]
     pub(super) fn get(&self, vertex: u32) -> (Vec3, Vec3) {
         (self.positions[vertex as usize], self.normals[vertex as usize])
+    }
+
+    #[inline]
+    pub(super) fn normal(&self, vertex: u32) -> Vec3 {
+        self.normals[vertex as usize]
     }
 
     /// By block, whether the normals at the vertices of its cells differ by more than those of a
@@ -112,9 +131,15 @@ impl<'a> Samples<'a> {
         self.lattice.origin() + p * self.lattice.step()
     }
 
-    pub(super) fn candidate(&self, cell: [u32; 3], outline: CellLoop, vertices: &[(Vec3, Vec3)]) -> Candidate {
-        let local: Vec<(DVec3, Vec3)> = vertices.iter().map(|&(p, normal)| (self.local(p), normal)).collect();
-        Candidate::new(cell, outline, &local)
+    /// A cell with a loop, given the vertices on it.
+    pub(super) fn candidate(&self, cell: [u32; 3], outline: CellLoop, vertices: &[u32]) -> Candidate {
+        let low: DVec3 = cell.map(f64::from).into();
+        let mut sides = [Side::default(); LONGEST];
+        for (side, &vertex) in sides.iter_mut().zip(vertices) {
+            let (position, normal) = self.get(vertex);
+            *side = Side { vertex, at: (self.local(position) - low).as_vec3(), normal };
+        }
+        Candidate::new(cell, outline, sides)
     }
 
     /// A node as vertices have it, rounded to f32.
@@ -122,11 +147,16 @@ impl<'a> Samples<'a> {
         self.lattice.node(i, j, k).as_vec3()
     }
 
+    /// The point of the box of the surface that is nearest.
+    pub(super) fn limited(&self, p: DVec3) -> DVec3 {
+        p.clamp(self.limits.min, self.limits.max)
+    }
+
     /// The position of a point as f32, strictly inside of the box of cells from `low` up to `high`,
     /// exclusive.
     pub(super) fn inside(&self, at: DVec3, low: [u32; 3], high: [u32; 3]) -> Vec3 {
         let low = self.node(low).to_array().map(f32::next_up);
         let high = self.node(high).to_array().map(f32::next_down);
-        self.world(at).as_vec3().clamp(low.into(), high.into())
+        self.limited(self.world(at)).as_vec3().clamp(low.into(), high.into())
     }
 }

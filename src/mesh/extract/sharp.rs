@@ -20,23 +20,13 @@
 //!   only that point in common, so the cone over a simple closed curve on the boundary is
 //!   embedded, and it meets the boundary in the curve alone. The loop is such a curve: its
 //!   segments lie in faces, and two in one face do not cross.
-//! * Let A and B have the face F in common, with fans from a and b, and let s–t be the only
-//!   segment in F. The union of A and B is convex, so the segment a–b crosses F in a point x
-//!   of its interior. The triangles (a, s, b) and (b, t, a) that take the place of
-//!   (s, t, a) and (t, s, b) are, within A, the cone from a over the path s–x–t, and within B
-//!   that from b. The path is simple, as s and t lie in the boundary of F, and it meets no other
-//!   segment, as F has none: so all is as before, with the path in place of the segment. Faces
-//!   may be turned in any number and order, as paths of different faces do not meet.
+//! * An edge between two fans may be turned: see [`turn`](super::turn).
 //!
 //! Everything holds for the positions as f32: a vertex has the coordinates of its lattice
 //! planes rounded, rounding keeps order, and feature points are moved strictly between the rounded
 //! planes.
 //!
-//! An ambiguous face has two segments, and x may be in the way of the other: there the edge of the
-//! closer segment is turned if x is on the near side of the other one, with more than the rounding to
-//! spare, and the other is not. [Regions](super::region) have fans as well; between those the line a–b
-//! need not go through the face of the segment, and the edge is turned only where it does. That
-//! also keeps two fans from having two edges in common.
+//! [Regions](super::region) of several cells have fans as well.
 //!
 //! Limits: cells with several loops stay as the table has them, or as that of the opposite case
 //! (see [`joined`](super::joined)). Where a crease passes an empty cell and no region comes about, it is
@@ -48,13 +38,14 @@ use std::ops::Range;
 use glam::Vec3;
 use rayon::prelude::*;
 
+use super::Sampler;
 use super::join::Corners;
 use super::joined::{Joined, proposals};
-use super::region::{Region, regions};
-use super::samples::{Samples, cell_number, split_cell};
-use super::{Meter, Sampler};
-use crate::mesh::feature::{Candidate, is_smooth, refine};
+use super::region::{Region, Span, regions};
+use super::samples::{Samples, cell_number, cell_of, split_cell};
+use crate::mesh::feature::{Candidate, Side, is_smooth, refine};
 use crate::mesh::loops::{CellLoop, LONGEST};
+use crate::mesh::meter::Meter;
 use crate::mesh::signs::for_each_cell;
 use crate::mesh::table::CaseTable;
 use crate::run::{Cancelled, Run};
@@ -66,12 +57,14 @@ const ASTRAY: f32 = 0.7;
 #[derive(Clone, Copy)]
 pub(super) struct Segment {
     pub(super) from: u32,
-    /// The cell that it bounds the surface of, and the face that it is in.
+    /// The cell that it bounds the surface of, and the face that it is in: twice the axis, and 1 more for
+    /// the upper one.
     pub(super) cell: [u32; 3],
-    pub(super) face: (usize, bool),
+    pub(super) face: u8,
     /// Whether it may be turned: its ends have different normals.
     pub(super) turns: bool,
-    /// The fan on the other side, if the edge between the two is turned.
+    /// What the edge is turned to: the fan on the other side by its number, or a point between the two by its
+    /// number after those of all fans.
     pub(super) across: Option<u32>,
     /// The normal close to the feature point on the side of the vertex.
     pub(super) normal: Vec3,
@@ -79,23 +72,24 @@ pub(super) struct Segment {
 
 /// The fan of a cell, or of a region of several.
 pub(super) struct Fan {
-    pub(super) segments: Vec<Segment>,
+    /// The place of its segments in the list of all.
+    segments: Range<u32>,
+    /// The cells that it is in.
+    pub(super) span: Span,
     /// The feature point, strictly inside.
     pub(super) at: Vec3,
-}
-
-impl Fan {
-    /// The normal that stands for all sides.
-    pub(super) fn normal(&self) -> Vec3 {
-        self.segments.iter().map(|segment| segment.normal).sum::<Vec3>().normalize_or_zero()
-    }
 }
 
 /// All fans.
 #[derive(Default)]
 pub(super) struct Fans {
     pub(super) fans: Vec<Fan>,
+    pub(super) segments: Vec<Segment>,
+    /// Points of creases between two fans.
+    pub(super) points: Vec<Vec3>,
     blocks: Vec<OfBlock>,
+    /// The vertices within regions, which no triangle has any more; ascending.
+    pub(super) unused: Vec<u32>,
 }
 
 /// The fans of a block.
@@ -120,9 +114,11 @@ pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) ->
     }
     let blocks = || (0..spread.len()).into_par_iter();
     let of_block = |scratch: &mut S::Scratch, n: usize| {
-        if spread[n] { proposals(samples, sampler, scratch, n) } else { Vec::new() }
+        run.check()?;
+        Ok(if spread[n] { proposals(samples, sampler, scratch, n) } else { Vec::new() })
     };
-    let joined = Joined::new(samples, blocks().map_init(|| sampler.scratch(), of_block).collect());
+    let proposed: Result<Vec<_>, Cancelled> = blocks().map_init(|| sampler.scratch(), of_block).collect();
+    let joined = Joined::new(samples, proposed?);
     let meter = Meter::new(run, spread.len());
     let of_block = |(scratch, corners): &mut (S::Scratch, Corners), n: usize| {
         meter.step()?;
@@ -141,8 +137,8 @@ pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) ->
     let special: Result<Vec<Special>, Cancelled> =
         blocks().map_init(|| (sampler.scratch(), Corners::new()), of_block).collect();
     let special = special?;
-    let regions = regions(samples, &special, &joined);
-    Ok(Fans::new(samples, special, regions))
+    let regions = regions(samples, &special, &joined, run)?;
+    Fans::new(samples, special, regions, run)
 }
 
 /// The cells of a block that do not have the patches of the table.
@@ -162,7 +158,7 @@ fn special(samples: &Samples<'_>, joined: &Joined, n: usize, corners: &mut Corne
         return found;
     }
     let block = samples.blocks()[n];
-    let mut around = Vec::with_capacity(LONGEST);
+    let (mut vertices, mut normals) = ([0; LONGEST], [Vec3::ZERO; LONGEST]);
     for_each_cell(&samples.parts.part(n).signs, |within, case| {
         let cell = std::array::from_fn(|axis| block[axis] + within[axis] as u32);
         let faces = joined.of(samples, cell, case);
@@ -172,63 +168,72 @@ fn special(samples: &Samples<'_>, joined: &Joined, n: usize, corners: &mut Corne
             }
             return;
         };
-        around.clear();
-        around.extend(outline.edges().iter().map(|&edge| samples.get(corners.vertex(within, edge))));
+        let count = outline.len();
+        for (n, &edge) in outline.edges().iter().enumerate() {
+            vertices[n] = corners.vertex(within, edge);
+            normals[n] = samples.normal(vertices[n]);
+        }
         // The table knows nothing of joined faces.
-        if faces != 0 || !is_smooth(&around) {
-            found.candidates.push(samples.candidate(cell, outline, &around));
+        if faces != 0 || !is_smooth(&normals[..count]) {
+            found.candidates.push(samples.candidate(cell, outline, &vertices[..count]));
         }
     });
     found
 }
 
 /// The segments of a cell's loop.
-pub(super) fn segments(samples: &Samples<'_>, candidate: &Candidate) -> Option<Vec<Segment>> {
-    let outline = candidate.outline;
-    let segment = |(n, &edge): (usize, &u8)| {
-        Some(Segment {
-            from: samples.vertex(candidate.cell, edge)?,
-            cell: candidate.cell,
-            face: outline.face(n),
-            turns: candidate.split >> n & 1 == 1,
-            across: None,
-            normal: candidate.normal(n),
-        })
+pub(super) fn segments(candidate: &Candidate) -> impl Iterator<Item = Segment> {
+    let segment = |(n, side): (usize, &Side)| Segment {
+        from: side.vertex,
+        cell: candidate.cell,
+        face: candidate.outline.face(n),
+        turns: candidate.split >> n & 1 == 1,
+        across: None,
+        normal: side.normal,
     };
-    outline.edges().iter().enumerate().map(segment).collect()
+    candidate.sides().iter().enumerate().map(segment)
 }
 
 impl Fans {
-    fn new(samples: &Samples<'_>, special: Vec<Special>, regions: Vec<Region>) -> Fans {
-        let mut all = Fans { fans: Vec::new(), blocks: vec![OfBlock::default(); samples.blocks().len()] };
+    fn new(samples: &Samples<'_>, special: Vec<Special>, regions: Vec<Region>, run: &Run) -> Result<Fans, Cancelled> {
+        let mut all = Fans { blocks: vec![OfBlock::default(); samples.blocks().len()], ..Fans::default() };
         // A region is listed with the block of the candidate that asked for it.
         let in_region: HashSet<[u32; 3]> =
             regions.iter().flat_map(|region| region.cells.iter().map(|&(cell, _)| cell)).collect();
         let mut regions = regions.into_iter().peekable();
         let table = CaseTable::get();
-        for (block, Special { candidates, opposite }) in special.into_iter().enumerate() {
+        for (block, Special { candidates, mut opposite }) in special.into_iter().enumerate() {
+            run.check()?;
+            let first = samples.blocks()[block];
+            opposite.retain(|&(number, _)| !in_region.contains(&cell_of(first, number)));
             all.blocks[block].opposite = opposite;
             let start = all.fans.len();
+            let signs = &samples.parts.part(block).signs;
             for candidate in candidates.iter().filter(|candidate| !in_region.contains(&candidate.cell)) {
-                let Some(segments) = segments(samples, candidate) else { continue };
                 let high = candidate.cell.map(|n| n + 1);
-                let fan = Fan { segments, at: samples.inside(candidate.at, candidate.cell, high) };
-                all.add(samples, fan, &[(candidate.cell, table.triangles(samples.case(candidate.cell)).len())]);
+                let (_, within) = split_cell(candidate.cell);
+                all.blocks[block].cells.push((cell_number(within), all.fans.len() as u32));
+                all.blocks[block].dropped += table.triangles(signs.case(within)).len();
+                let at = samples.inside(candidate.at, candidate.cell, high);
+                all.add(segments(candidate), Span { low: candidate.cell, high }, at);
             }
             while let Some(region) = regions.next_if(|region| region.block == block) {
-                all.add(samples, region.fan, &region.cells);
+                all.cover(samples, &region.cells);
+                all.unused.extend(region.within);
+                all.add(region.segments.into_iter(), region.span, region.at);
             }
             all.blocks[block].listed = start..all.fans.len();
         }
+        all.unused.sort_unstable();
         for block in &mut all.blocks {
             block.cells.sort_unstable();
         }
-        all.turn(samples);
-        all
+        all.turn(samples, run)?;
+        Ok(all)
     }
 
-    /// Adds a fan that takes the place of the patches of cells, each with the number of its triangles.
-    fn add(&mut self, samples: &Samples<'_>, fan: Fan, cells: &[([u32; 3], usize)]) {
+    /// Notes that the next fan takes the place of the patches of cells, each with the number of its triangles.
+    fn cover(&mut self, samples: &Samples<'_>, cells: &[([u32; 3], usize)]) {
         for &(cell, count) in cells {
             let (block, within) = split_cell(cell);
             if let Some(block) = samples.find(block) {
@@ -236,7 +241,36 @@ impl Fans {
                 self.blocks[block].dropped += count;
             }
         }
-        self.fans.push(fan);
+    }
+
+    fn add(&mut self, segments: impl Iterator<Item = Segment>, span: Span, at: Vec3) {
+        let first = self.segments.len() as u32;
+        self.segments.extend(segments);
+        self.fans.push(Fan { segments: first..self.segments.len() as u32, span, at });
+    }
+
+    /// The segments of a fan.
+    pub(super) fn of(&self, fan: usize) -> &[Segment] {
+        let Range { start, end } = self.fans[fan].segments;
+        &self.segments[start as usize..end as usize]
+    }
+
+    /// Whether a segment is turned to a point between the two fans.
+    fn is_bent(&self, segment: &Segment) -> bool {
+        segment.across.is_some_and(|other| other as usize >= self.fans.len())
+    }
+
+    /// The vertices that fans add, feature points first, with the normals that stand for all their sides.
+    pub(super) fn vertices(&self) -> impl Iterator<Item = (Vec3, Vec3)> {
+        let normal = |fan| self.of(fan).iter().map(|segment| segment.normal).sum::<Vec3>().normalize_or_zero();
+        let mut between = vec![Vec3::ZERO; self.points.len()];
+        for segment in self.segments.iter().filter(|segment| self.is_bent(segment)) {
+            let nth = segment.across.map_or(0, |other| other as usize - self.fans.len());
+            between[nth] += segment.normal;
+        }
+        let between = between.into_iter().map(Vec3::normalize_or_zero);
+        let centres = (0..self.fans.len()).map(move |fan| (self.fans[fan].at, normal(fan)));
+        centres.chain(self.points.iter().copied().zip(between))
     }
 
     /// The cells of a block that have a fan, by number, and which fan.
@@ -247,7 +281,8 @@ impl Fans {
     /// How many triangles a block has, which has `count` without fans.
     pub(super) fn count(&self, block: usize, count: usize) -> usize {
         let Some(of_block) = self.blocks.get(block) else { return count };
-        let listed = self.fans[of_block.listed.clone()].iter().map(|fan| fan.segments.len());
+        let listed =
+            of_block.listed.clone().flat_map(|fan| self.of(fan)).map(|segment| 1 + usize::from(self.is_bent(segment)));
         let table = CaseTable::get();
         let triangles = |case: u8| table.triangles(case).len();
         let gone: usize = of_block.opposite.iter().map(|&(_, case)| triangles(case)).sum();
@@ -265,13 +300,12 @@ impl Fans {
     pub(super) fn triangles(&self, block: usize, centres: u32) -> impl Iterator<Item = [u32; 3]> {
         let listed = self.blocks.get(block).map_or(0..0, |block| block.listed.clone());
         listed.flat_map(move |nth| {
-            let segments = &self.fans[nth].segments;
-            segments.iter().enumerate().map(move |(n, segment)| {
-                let end = match segment.across {
-                    Some(other) => centres + other,
-                    None => segments[(n + 1) % segments.len()].from,
-                };
-                [centres + nth as u32, segment.from, end]
+            let segments = self.of(nth);
+            segments.iter().enumerate().flat_map(move |(n, segment)| {
+                let (centre, next) = (centres + nth as u32, segments[(n + 1) % segments.len()].from);
+                let to = segment.across.map_or(next, |other| centres + other);
+                let second = self.is_bent(segment).then_some([centre, to, next]);
+                std::iter::once([centre, segment.from, to]).chain(second)
             })
         })
     }
@@ -284,98 +318,37 @@ impl Fans {
         normals: &[Vec3],
         triangles: &[[u32; 3]],
     ) -> Vec<[Vec3; 3]> {
-        let centres = (positions.len() - self.fans.len()) as u32;
+        let fans = self.fans.len() as u32;
+        let centres = (positions.len() - self.points.len()) as u32 - fans;
         let own = |vertex: u32| normals[vertex as usize];
+        let at = |vertex: u32| positions[vertex as usize];
         // The normal close to a fan's point, on the side of a vertex.
         let close = |fan: u32, vertex: u32| {
-            let segments = &self.fans[fan as usize].segments;
+            let segments = self.of(fan as usize);
             segments.iter().find(|segment| segment.from == vertex).map_or(Vec3::ZERO, |segment| segment.normal)
         };
         let corners = |&[a, b, c]: &[u32; 3]| {
             if a < centres {
                 return [own(a), own(b), own(c)];
             }
-            let [p, q, r] = [a, b, c].map(|vertex| positions[vertex as usize]);
+            let (p, q, r) = (at(a), at(b), at(c));
             let face = (q - p).cross(r - p).normalize_or_zero();
-            let near = close(a - centres, b);
-            let given = if c >= centres {
-                [near, own(b), close(c - centres, b)]
+            let fan = a - centres;
+            let given = if b >= centres {
+                let near = close(fan, c);
+                [near, near, own(c)]
             } else {
-                [(near + close(a - centres, c)).normalize_or_zero(), own(b), own(c)]
+                let near = close(fan, b);
+                match c.checked_sub(centres) {
+                    None => [(near + close(fan, c)).normalize_or_zero(), own(b), own(c)],
+                    Some(other) if other < fans => [near, own(b), close(other, b)],
+                    Some(_) => [near, own(b), near],
+                }
             };
             // A vertex on the crease itself may have the normal of the other side.
-            given.map(|normal| if normal.dot(face) > ASTRAY { normal } else { face })
+            let on_side = |normal: Vec3| if normal.dot(face) > ASTRAY { normal } else { face };
+            [on_side(given[0]), on_side(given[1]), on_side(given[2])]
         };
         triangles.par_iter().map(corners).collect()
-    }
-
-    /// Finds out which edges between fans are turned.
-    fn turn(&mut self, samples: &Samples<'_>) {
-        let all = &*self;
-        let across: Vec<Vec<Option<u32>>> = (0..all.fans.len())
-            .into_par_iter()
-            .map(|nth| all.fans[nth].segments.iter().map(|segment| all.across(samples, nth, segment)).collect())
-            .collect();
-        for (fan, across) in self.fans.iter_mut().zip(across) {
-            for (segment, across) in fan.segments.iter_mut().zip(across) {
-                segment.across = across;
-            }
-        }
-    }
-
-    /// The fan on the other side of a segment, if the edge between the two is turned there. Both find
-    /// the same.
-    fn across(&self, samples: &Samples<'_>, fan: usize, segment: &Segment) -> Option<u32> {
-        if !segment.turns {
-            return None;
-        }
-        let (axis, upper) = segment.face;
-        let mut cell = segment.cell;
-        cell[axis] = if upper { cell[axis] + 1 } else { cell[axis].checked_sub(1)? };
-        let (block, within) = split_cell(cell);
-        let cells = self.cells(samples.find(block)?);
-        let other = cells.binary_search_by_key(&cell_number(within), |&(cell, _)| cell).ok()?;
-        let other = cells[other].1;
-        self.turns(samples, fan, other as usize, segment).then_some(other)
-    }
-
-    /// Whether the edge between two fans is turned at a segment of the first.
-    fn turns(&self, samples: &Samples<'_>, fan: usize, other: usize, segment: &Segment) -> bool {
-        // Both fans calculate with the same numbers in the same order.
-        let (axis, upper) = segment.face;
-        let (low, high) = if upper { (fan, other) } else { (other, fan) };
-        let mut above = segment.cell;
-        above[axis] += u32::from(upper);
-        let (a, b) = (self.fans[low].at.as_dvec3(), self.fans[high].at.as_dvec3());
-        let node = |[i, j, k]: [u32; 3]| samples.node([i, j, k]).as_dvec3();
-        let (first, last) = (node(above), node(above.map(|n| n + 1)));
-        let x = a + (b - a) * ((first[axis] - a[axis]) / (b[axis] - a[axis]));
-        // More than the rounding of the line above.
-        let margin = 1e-12 * first.abs().max(last.abs()).max_element();
-        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-        if ![u, v].into_iter().all(|n| x[n] > first[n] + margin && x[n] < last[n] - margin) {
-            return false;
-        }
-        let segments = &self.fans[fan].segments;
-        let in_face = |n: &usize| segments[*n].cell == segment.cell && segments[*n].face == segment.face;
-        let mut both = (0..segments.len()).filter(in_face);
-        let (Some(p), Some(q)) = (both.next(), both.next()) else { return true };
-        // Of the two segments of an ambiguous face, the one that is closer may be turned, if the other one
-        // is not in the way: twice the area of the triangle of a segment and x, with the sign of the side.
-        let area = |n: usize| {
-            let ends = [n, (n + 1) % segments.len()].map(|n| samples.get(segments[n].from).0.as_dvec3() - x);
-            ends[0][u] * ends[1][v] - ends[0][v] * ends[1][u]
-        };
-        let (own, foreign) = if segments[p].from == segment.from { (p, q) } else { (q, p) };
-        let (size, away) = (area(own), area(foreign));
-        // Both run such that what is between them is on the same hand.
-        let reach = margin * (last - first).max_element() * 4.0;
-        let side = {
-            let ends = [foreign, (foreign + 1) % segments.len()].map(|n| samples.get(segments[n].from).0.as_dvec3());
-            let s = samples.get(segment.from).0.as_dvec3();
-            let (d, e) = (ends[0] - s, ends[1] - s);
-            d[u] * e[v] - d[v] * e[u]
-        };
-        size.abs() < away.abs() && away.abs() > reach && (away > 0.0) == (side > 0.0)
     }
 }

@@ -7,6 +7,7 @@ use crate::mesh::{CellSize, MeshReport};
 use crate::run::Progress;
 use glam::DVec3;
 use std::f64::consts::PI;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
 /// A formula, its roots found by bisection.
