@@ -23,7 +23,7 @@ use crate::Run;
 ///
 /// All give the same depths where all apply. `Intervals` is as quick as the others in pictures of
 /// 256 × 256 pixels and from some ten operands on (32: 0.7 of the time of `Sequenced`); for few
-/// operands in larger pictures it takes up to 1.5 times as long, for it keeps every layer. Passes
+/// operands in larger pictures it takes up to 1.7 times as long, for it keeps every layer. Passes
 /// and sequences are what graphics hardware can do, and are here to be compared and followed step
 /// by step.
 ///
@@ -35,22 +35,22 @@ use crate::Run;
 ///
 /// | superellipsoids, of 8064 triangles each | 256² pixels | 512² | 1024² |
 /// |---|---|---|---|
-/// | 2 | 3.5 | 3.9 | 2.7 |
-/// | 3 | 1.7 | 1.9 | 2.2 |
-/// | 13 | 2.1 | 2.2 | 2.1 |
-/// | 32 | 1.7 | 2.1 | 2.2 |
+/// | 2 | 2.2 | 1.9 | 2.2 |
+/// | 3 | 1.9 | 1.8 | 2.2 |
+/// | 13 | 1.1 | 1.8 | 2.3 |
+/// | 32 | 1.1 | 1.3 | 1.7 |
 ///
 /// | triangles of each of 2, 512² pixels | 960 | 3968 | 16 128 | 65 024 | 261 120 | 1 046 528 |
 /// |---|---|---|---|---|---|---|
-/// | times as long by rays | 4.5 | 3.5 | 3.0 | 1.6 | 1.0 | 0.3 |
+/// | times as long by rays | 3.1 | 2.3 | 2.2 | 1.2 | 0.7 | 0.2 |
 /// | mean difference of the depths, of the size | 3·10⁻³ | 8·10⁻⁴ | 2·10⁻⁴ | 5·10⁻⁵ | 1·10⁻⁵ | 3·10⁻⁶ |
 ///
 /// * Rasterising costs by the triangles, and by the pixels and layers that they cover, whatever
 ///   the surfaces are made of. Rays cost by the pixels, and by what the field costs.
 /// * Meshes have a chord error, which falls as one over the number of triangles; their joints are
 ///   exact to the pixel for the meshes. Rays find the surface itself.
-/// * A mesh is made and [found closed](super::ClosedMesh) once, which takes up to ten times as long
-///   as a view of it; it serves any number of views.
+/// * A mesh is made and [found closed](super::ClosedMesh) once, which takes up to some fifteen times
+///   as long as a view of it; it serves any number of views.
 ///
 /// So: many views of primitives of up to some 100 000 triangles, synthetic range images by the
 /// thousand, scans and other meshes that have no field: rasterise. A single view, blends, fillets,
