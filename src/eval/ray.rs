@@ -43,6 +43,14 @@ impl Care {
         }
     }
 
+    /// Crossings are found to this times the solid's size.
+    fn precision(self) -> f64 {
+        match self {
+            Care::Full => 0.0,
+            Care::Picture => 1e-9,
+        }
+    }
+
     fn trusts(self, program: &Program) -> bool {
         self == Care::Picture || program.idle.is_none()
     }
@@ -101,7 +109,7 @@ pub(crate) fn first_hit(
                 continue;
             }
             let [from, to] = if one_signed(piece.slopes) { piece.ends } else { [from.min(to), from.max(to)] };
-            return Some(hit_between(&piece.program, &at, from, to));
+            return Some(hit_between(&piece.program, &at, [from, to], care.precision() * size));
         }
         if to - from <= 0.5 * (t1 - t0) {
             piece.ends = [from, to];
@@ -163,8 +171,8 @@ fn within_reach(piece: &Piece) -> [f64; 2] {
 }
 
 /// The hit between two distances whose values differ in sign, but for rounding.
-fn hit_between(program: &Program, at: &impl Fn(f64) -> DVec3, t0: f64, t1: f64) -> Hit {
-    let t = bracket(program, at, t0, t1);
+fn hit_between(program: &Program, at: &impl Fn(f64) -> DVec3, ends: [f64; 2], precision: f64) -> Hit {
+    let t = bracket(program, at, ends, precision);
     let point = at(t);
     let normal = -program.gradient(point).1.normalize_or_zero();
     Hit { distance: t, point, normal, owner: program.deciding_leaf(point) }
@@ -187,7 +195,7 @@ fn one_signed(slope: Interval) -> bool {
 
 /// The crossing between `t0` and `t1`: the false position method with halving (Illinois), which
 /// never leaves the bracket. Where rounding has the same sign at both ends it is at one of them.
-fn bracket(program: &Program, at: &impl Fn(f64) -> DVec3, mut t0: f64, mut t1: f64) -> f64 {
+fn bracket(program: &Program, at: &impl Fn(f64) -> DVec3, [mut t0, mut t1]: [f64; 2], precision: f64) -> f64 {
     let (mut f0, mut f1) = (program.value(at(t0)), program.value(at(t1)));
     let inside0 = f0 > 0.0;
     if inside0 == (f1 > 0.0) {
@@ -196,7 +204,7 @@ fn bracket(program: &Program, at: &impl Fn(f64) -> DVec3, mut t0: f64, mut t1: f
     let mut kept = 0i32;
     for _ in 0..80 {
         let width = t1 - t0;
-        if width <= 4.0 * f64::EPSILON * t1.abs().max(f64::MIN_POSITIVE) {
+        if width <= precision.max(4.0 * f64::EPSILON * t1.abs().max(f64::MIN_POSITIVE)) {
             break;
         }
         let secant = t0 + width * (f0 / (f0 - f1));

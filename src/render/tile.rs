@@ -333,5 +333,5 @@ fn divides(cell: &Cell, count: usize, slope: Interval) -> bool {
     }
     let one_way = bent || slope.lo() >= 0.0 || slope.hi() <= 0.0;
     let cost = count * leaves;
-    share > FINEST && if one_way { cost > 2048 && leaves > 1 } else { cost > 128 }
+    share > FINEST && if one_way { cost > 2048 && leaves > 1 } else { cost > 64 }
 }
