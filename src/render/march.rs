@@ -18,68 +18,13 @@
 //! the rounding error of single precision are looked up in double precision; a ray that takes too
 //! many steps is divided by intervals (`eval::first_hit`).
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 use super::cells::{Cell, Cells};
 use super::gbuffer::Surface;
-use crate::eval::{Bend, Care, Evaluator, Gradients, Tape, first_hit};
-use crate::{Bounds, Interval};
-
-/// A ray under way.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Ray {
-    /// Where it enters the box of all cells, or its own origin in there.
-    pub(super) origin: DVec3,
-    pub(super) direction: DVec3,
-    pub(super) inverse: DVec3,
-    /// How far `origin` is from the ray's own.
-    pub(super) base: f64,
-    /// Whether it starts inside the solid.
-    pub(super) inside: bool,
-}
-
-/// The part of a ray in the cell.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Span {
-    pub(super) ray: u32,
-    pub(super) near: f64,
-    pub(super) far: f64,
-}
-
-/// A ray in the cell, in single precision relative to the tape's origin, distances from the
-/// span's near end.
-#[derive(Clone, Copy)]
-struct Lane {
-    /// The number of its span.
-    span: u32,
-    start: [f32; 3],
-    direction: [f32; 3],
-    /// Turns the value into g.
-    turn: f32,
-    /// Nothing is crossed before `left`; `right` is the far end or, if g is positive there,
-    /// beyond a crossing.
-    left: f32,
-    right: f32,
-    /// g and its slope at `left` and `right`, where they are known.
-    g_left: f32,
-    s_left: f32,
-    g_right: f32,
-    s_right: f32,
-    /// Where it is evaluated next.
-    at: f32,
-    /// Whether that is a probe beyond `left`.
-    probe: bool,
-}
-
-/// What the field is like where a lane is.
-#[derive(Clone, Copy)]
-struct Local {
-    /// The value, turned, and its slope along the ray.
-    g: f32,
-    s: f32,
-    /// The gradient of the value.
-    gradient: Vec3,
-}
+use super::job::{Job, Lane, Local, Outcome, Ray, Span};
+use crate::Interval;
+use crate::eval::{Bend, Care, Evaluator, Gradients, first_hit};
 
 /// A crossing found in single precision.
 #[derive(Clone, Copy)]
@@ -94,9 +39,6 @@ const TANGENTS: usize = 8;
 const SEARCH: usize = 40;
 const NEWTON: usize = 16;
 
-/// Steps of a single ray in double precision.
-const ROUNDS: usize = 48;
-
 /// Fewer lanes than this are better off one by one: bulk evaluation costs as much for one as for
 /// a chunk of them.
 const FEW: usize = 5;
@@ -107,19 +49,8 @@ const LEAP: f32 = 0.9;
 /// After as many steps of a search.
 const SETTLED: usize = 10;
 
-/// A Newton step below this part of the cell's side is the last one in single precision.
-const LAST_STEP: f32 = 3e-4;
-
 /// Slopes in single precision are trusted to this part.
 const SLOPE_ERROR: f32 = 1e-3;
-
-/// Depths this exact, in proportion to the solid, need no step in double precision.
-const FINE: f64 = 6e-6;
-
-/// Crossings nearer to each other than this, in proportion to the solid, are one; so are those
-/// within a few lengths of the doubt where that is larger, as it is of fillets and chamfers.
-const CLOSE: f64 = 8e-5;
-const DOUBTS: f64 = 16.0;
 
 /// Scratch memory of a thread.
 #[derive(Default)]
@@ -543,148 +474,10 @@ impl Marcher {
     }
 }
 
-/// What the tangents tell.
-enum Outcome {
-    Miss,
-    /// A crossing, and no other, between these distances.
-    Between(f64, f64),
-    Open,
-}
-
 /// Where lanes go from a step.
 struct Lists<'a> {
     search: &'a mut Vec<Lane>,
     unique: &'a mut Vec<Lane>,
     found: &'a mut Vec<Found>,
     open: &'a mut Vec<Span>,
-}
-
-impl Lane {
-    /// Goes to `next`, or to the middle of the bracket if that is not in it.
-    #[inline(always)]
-    fn aim(&mut self, next: f32) {
-        let within = next > self.left && next < self.right;
-        self.at = if within { next } else { 0.5 * (self.left + self.right) };
-    }
-}
-
-/// What a march knows of its cell.
-struct Job<'a> {
-    cell: &'a Cell,
-    rays: &'a [Ray],
-    spans: &'a [Span],
-    tape: &'a Tape,
-    center: DVec3,
-    reach: Bounds,
-    bend: Option<Bend>,
-    owner: Option<u32>,
-    /// Lower and upper bounds of the value's slope along the rays, rounding allowed for.
-    least: f32,
-    most: f32,
-    /// Values this small may have the wrong sign.
-    doubt: f32,
-    last_step: f32,
-    close: f32,
-    fine: f32,
-    far_off: f64,
-    size: f64,
-}
-
-impl<'a> Job<'a> {
-    fn new(cells: &Cells, cell: &'a Cell, slope: Interval, rays: &'a [Ray], spans: &'a [Span]) -> Job<'a> {
-        let tape = cell.tape();
-        let reach = cells.reach();
-        let size = reach.longest_side();
-        let outward = |v: f64, by: f64| (v + by * (1e-6 * v.abs() + 1e-12)) as f32;
-        Job {
-            cell,
-            rays,
-            spans,
-            tape,
-            center: tape.origin(),
-            reach,
-            bend: cell.bend,
-            owner: cell.program.only_leaf(),
-            least: outward(slope.lo(), -1.0),
-            most: outward(slope.hi(), 1.0),
-            doubt: tape.roundoff() as f32,
-            last_step: LAST_STEP * cell.side() as f32,
-            close: (CLOSE * size).max(DOUBTS * tape.roundoff()) as f32,
-            fine: (FINE * size) as f32,
-            far_off: (1e-3 * cell.side()).min(1e-4 * size),
-            size,
-        }
-    }
-
-    /// The value in double precision.
-    fn value(&self, ray: u32, t: f64) -> f64 {
-        let Ray { origin, direction, .. } = self.rays[ray as usize];
-        self.cell.program.value(origin + t * direction)
-    }
-
-    /// The point where the lane is.
-    fn point(&self, lane: &Lane) -> DVec3 {
-        let Span { ray, near, .. } = self.spans[lane.span as usize];
-        let Ray { origin, direction, .. } = self.rays[ray as usize];
-        origin + (near + f64::from(lane.at)) * direction
-    }
-
-    /// Bounds of the slope of g along the ray.
-    fn slopes(&self, lane: &Lane) -> (f32, f32) {
-        if lane.turn < 0.0 { (-self.most, -self.least) } else { (self.least, self.most) }
-    }
-
-    /// How g bends along the ray.
-    fn bends(&self, lane: &Lane) -> Option<Bend> {
-        self.bend.map(|bend| if lane.turn < 0.0 { bend.turned() } else { bend })
-    }
-
-    /// A ray along which g bends downwards, in double precision: by Newton's method from the near
-    /// end, which never passes the first crossing.
-    fn tangents(&self, ray: u32, near: f64, far: f64) -> Outcome {
-        let Ray { origin, direction, inside, .. } = self.rays[ray as usize];
-        let (turn, wanted) = if inside { (-1.0, Bend::Convex) } else { (1.0, Bend::Concave) };
-        if self.bend != Some(wanted) {
-            return Outcome::Open;
-        }
-        let at = |t: f64| {
-            let (value, gradient) = self.cell.program.gradient(origin + t * direction);
-            (turn * value, turn * gradient.dot(direction))
-        };
-        let mut t = near;
-        for _ in 0..ROUNDS {
-            let (g, s) = at(t);
-            if g >= 0.0 {
-                // Rounding has put it a hair beyond.
-                let before = (t - 1e-6 * self.size).max(near);
-                let after = (t + 1e-8 * self.size).min(far);
-                return if at(before).0 < 0.0 { Outcome::Between(before, after) } else { Outcome::Open };
-            }
-            let next = t - g / s;
-            if s <= 0.0 || next > far {
-                return Outcome::Miss;
-            }
-            if next - t <= 1e-9 * self.size {
-                let (before, after) = ((t - 1e-8 * self.size).max(near), (next + 1e-8 * self.size).min(far));
-                if at(after).0 > 0.0 {
-                    return Outcome::Between(before, after);
-                }
-            }
-            if next <= t {
-                return Outcome::Open;
-            }
-            t = next;
-        }
-        Outcome::Open
-    }
-
-    fn span(&self, lane: &Lane) -> Span {
-        self.spans[lane.span as usize]
-    }
-
-    /// What of the lane's span nothing is known of.
-    fn rest(&self, lane: &Lane) -> Span {
-        let span = self.span(lane);
-        Span { near: span.near + f64::from(lane.left), ..span }
-    }
 }

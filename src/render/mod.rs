@@ -10,6 +10,7 @@ mod contour;
 mod extent;
 mod facets;
 mod gbuffer;
+mod job;
 mod layers;
 mod lines;
 mod march;

@@ -12,7 +12,8 @@ use glam::DVec3;
 
 use super::cells::{Cell, Cells, Part};
 use super::gbuffer::{Surface, Window};
-use super::march::{Marcher, Ray, Span};
+use super::job::{Ray, Span};
+use super::march::Marcher;
 use crate::{Bounds, Interval, Rays};
 
 /// Pixels along a tile's side: the bits of a word.
