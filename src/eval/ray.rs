@@ -128,6 +128,8 @@ pub(crate) fn first_hit(
             if !one_signed(found) {
                 let zone = Zone::of_segment(at(t0), at(t1));
                 let Region::Surface(narrowed) = piece.program.narrow_zone(&zone) else { continue };
+                // Of the same sign everywhere in the piece, not of the same value.
+                piece.values = piece.ends.map(|t| narrowed.value(at(t)));
                 piece.program = narrowed;
                 found = if single { found } else { slopes(&piece.program) };
             }

@@ -185,6 +185,18 @@ fn the_first_hit_is_found() {
     assert!(tally.grazing <= 2 + tally.rays / 200 && 4 * tally.hits > tally.rays, "{tally:?}");
 }
 
+/// Pieces were once judged by the values of a program before it was narrowed, and hits passed over.
+#[test]
+fn narrowing_changes_values_but_not_hits() {
+    let solid = subject(&mut Random::new(5054), 54);
+    let origin = DVec3::new(-0.6752307331073726, -0.30321878351103715, 0.5702222222936844);
+    let direction = DVec3::new(0.5017764840795649, 0.8464782674287488, -0.17803062319604854);
+    let single = solid.raycast(origin, direction).unwrap().unwrap();
+    assert!((single.distance - 0.8520242297941252).abs() < 1e-6, "{single:?}");
+    let found = solid.scene().unwrap().first_hit(origin, direction).unwrap();
+    assert!((found.distance - single.distance).abs() < 1e-4, "{found:?}");
+}
+
 /// The gradient's direction by central differences, where those of two lengths and of both
 /// sides agree.
 fn differences(program: &Program, p: DVec3, size: f64) -> Option<DVec3> {
