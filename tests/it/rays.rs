@@ -55,10 +55,11 @@ fn isolated(program: &Program, size: f64, origin: DVec3, direction: DVec3, far: 
     Answer::Miss
 }
 
-fn agree(answer: Answer, found: &Surface, size: f64) -> bool {
+/// Whether a hit at this distance, infinite for a miss, is what the oracle says.
+fn agree(answer: Answer, found: f64, size: f64) -> bool {
     match answer {
-        Answer::Miss => !found.is_hit(),
-        Answer::Hit(t) => (found.distance - t).abs() <= CLOSE * size,
+        Answer::Miss => found == f64::INFINITY,
+        Answer::Hit(t) => (found - t).abs() <= CLOSE * size,
         Answer::Unknown => true,
     }
 }
@@ -143,22 +144,24 @@ impl Tally {
             self.rays += 1;
             self.hits += usize::from(found.is_hit());
             self.unknown += usize::from(answer == Answer::Unknown);
-            if agree(answer, found, size) {
-                continue;
-            }
-            // A ray beside it, no further than a tangent may be, sees the same.
-            let side = direction.any_orthonormal_vector();
-            let shifts = (0..8).map(|i| glam::DQuat::from_axis_angle(direction, f64::from(i) * 0.785) * side);
-            let grazes = shifts
-                .map(|shift| isolated(&program, size, origin + 1e-5 * size * shift, direction, far))
-                .any(|answer| agree(answer, found, size));
-            if grazes {
-                self.grazing += 1;
-            } else {
-                self.wrong.push(format!(
-                    "subject {number}: found {} where {answer:?}, from {origin:?} along {direction:?}",
-                    found.distance
-                ));
+            let single = solid.raycast(origin, direction).unwrap().map_or(f64::INFINITY, |hit| hit.distance);
+            for (who, found) in [("scene", found.distance), ("raycast", single)] {
+                if agree(answer, found, size) {
+                    continue;
+                }
+                // A ray beside it, no further than a tangent may be, sees the same.
+                let side = direction.any_orthonormal_vector();
+                let shifts = (0..8).map(|i| glam::DQuat::from_axis_angle(direction, f64::from(i) * 0.785) * side);
+                let grazes = shifts
+                    .map(|shift| isolated(&program, size, origin + 1e-5 * size * shift, direction, far))
+                    .any(|answer| agree(answer, found, size));
+                if grazes {
+                    self.grazing += 1;
+                } else {
+                    self.wrong.push(format!(
+                        "subject {number}: {who} found {found} where {answer:?}, from {origin:?} along {direction:?}"
+                    ));
+                }
             }
         }
     }
