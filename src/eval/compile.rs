@@ -342,12 +342,21 @@ impl Compiler {
                 let chamfer = matches!(blend, Blend::Chamfer { .. });
                 let [a, b] = if chamfer { operands } else { lengths };
                 let [a, b] = [self.alone(site, a)?, self.alone(site, b)?];
+                let mut pair = pair;
+                if let (Blend::Chamfer { width }, Operation::Union) = (blend, operation) {
+                    // The face is where one operand is nearer than half the width.
+                    let near = [&a.surface, &b.surface].map(|alone| 0.5 * width * scale * steepest(alone));
+                    for (built, risen) in pair.iter_mut().zip(self.risen(site, near)) {
+                        built.sides.inside = risen;
+                    }
+                }
                 let edge = Arc::new(EdgeBlend::new(operation, blend, [a.surface.clone(), b.surface.clone()]));
                 let field: Arc<dyn AnyField> = edge.clone();
                 let (leaf, _) = self.place(&field, site);
                 let kind = Kind::Edge { op, leaf, edge };
                 let built = self.code.edge(operation, kind, pair);
-                // The material of a fillet is in the hull of its operands, hence in their box.
+                // The material of a fillet is in the hull of its operands, hence in their box; that of
+                // a chamfer is close to them.
                 self.scene.leaves[leaf as usize].bounds = built.sides.decisive(op);
                 Ok(built)
             }
@@ -399,6 +408,11 @@ impl Compiler {
         });
         (number, growth)
     }
+}
+
+/// How steep the values of a solid are taken to be.
+fn steepest(program: &Program) -> f64 {
+    if program.scene.leaves.iter().all(|leaf| leaf.field.exact() && leaf.frame == 0) { 1.0 } else { 4.0 }
 }
 
 /// What can be said about a node by itself.
