@@ -17,6 +17,7 @@ use super::extent::extent;
 use super::flatten::flatten;
 use super::program::{Edge, Kind, Op, Program, Sides};
 use super::scene::{Instance, Scene};
+use crate::bounds::column_times;
 use crate::field::{AnyField, AnyWarp, Placement, Rule, smallest_stretch};
 use crate::solid::{self, Length, Operation};
 use crate::{Blend, Bounds, Norm, ParamError, Solid, SolidError};
@@ -390,8 +391,8 @@ impl Compiler {
     /// Adds a leaf to the scene: its number, and how much its box grows per unit of value.
     fn place(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>) -> (u32, DVec3) {
         let Place { field, context, shift } = self.contexts.place(field, site.context);
-        let grown = |unit: DVec3| context.forward.matrix3.abs() * unit / context.scale;
-        let growth = grown(field.growth());
+        let (axes, unit) = (context.forward.matrix3.abs(), field.growth());
+        let growth = (0..3).map(|axis| column_times(axes.col(axis), unit[axis])).sum::<DVec3>() / context.scale;
         let mut bounds = snug(field.bounds_under(&context.forward));
         if shift > 0.0 {
             bounds = grow(&bounds, growth * shift);

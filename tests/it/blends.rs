@@ -461,3 +461,23 @@ fn boxes_of_blends_above_maps_and_of_turned_columns_end() -> Result<(), SolidErr
     assert!(size.x < 2.2 && size.y < 0.7 && size.z < 2.2, "{size}");
     Ok(())
 }
+
+/// Infinite growths once met the zeros of a rotation's matrix.
+#[test]
+fn a_level_of_what_has_no_end_is_found_anywhere() -> Result<(), SolidError> {
+    let lattices = crate::lattices::lattices().into_iter().map(|(_, lattice, _)| lattice.level(0.04));
+    for solid in lattices.map(|lattice| lattice.translate(DVec3::X).repeat_polar(24)) {
+        let program = solid.surface_program()?;
+        let mut random = Random::new(79);
+        for _ in 0..100 {
+            let p = random.vector(-3.0, 3.0);
+            let value = program.value(p);
+            match program.narrow(&Bounds::new(p - 1e-3, p + 1e-3)) {
+                Region::Inside => assert!(value > 0.0),
+                Region::Outside => assert!(value <= 0.0, "{value} at {p}"),
+                Region::Surface(narrowed) => assert_eq!(narrowed.value(p) > 0.0, value > 0.0),
+            }
+        }
+    }
+    Ok(())
+}
