@@ -27,10 +27,9 @@ pub struct Hit {
 /// How much is done for a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Care {
-    /// A crossing and back within 10⁻¹⁰ of the size is a touch. The value of a fillet or chamfer
-    /// jumps where its edge cannot be found, and its slopes are not trusted.
+    /// A crossing and back within 10⁻¹⁰ of the size is a touch.
     Full,
-    /// Within 10⁻⁶; slopes of blends are trusted.
+    /// Within 10⁻⁶.
     Picture,
 }
 
@@ -50,19 +49,18 @@ impl Care {
             Care::Picture => 1e-9,
         }
     }
-
-    fn trusts(self, program: &Program) -> bool {
-        self == Care::Picture || program.idle.is_none()
-    }
 }
 
 /// A piece is narrowed when it is shorter than this part of the one narrowed before: halves that
 /// differ little from the whole tell little more.
 const ASK: f64 = 0.2;
 
-/// After as many pieces a ray is given up as a miss. A solid of finite size never comes near;
-/// an unbounded deformed one may wind about the ray without end.
-const PIECES: usize = 1 << 18;
+/// After every so many pieces twice as long ones count as short: where ranges stay wide, or an
+/// unbounded deformed solid winds about the ray without end, the ray comes to an end all the same.
+const PATIENCE: usize = 1 << 10;
+
+/// Values nearer to 0, in proportion to the solid's size, may be 0.
+const ROUNDING: f64 = 1e-15;
 
 /// The slope is asked for only of programs with at most this many leaves.
 const FEW: usize = 6;
@@ -94,14 +92,21 @@ pub(crate) fn first_hit(
         return None;
     }
     let size = if bounds.is_finite() { bounds.size().length() } else { 1.0 };
-    let shortest = care.shortest() * (size + origin.abs().max_element().min(1e6) + near);
+    let mut shortest = care.shortest() * (size + origin.abs().max_element().min(1e6) + near);
     let at = |t: f64| origin + t * direction;
     let values = [near, far].map(|t| program.value(at(t)));
-    let (inside, slopes) = (values.map(|value| value > 0.0), Interval::ALL);
+    // In a face that two operands share, rounding has either sign: it counts as outside.
+    let doubt = ROUNDING * (size + origin.abs().max_element());
+    let is_inside = |value: f64| value > doubt;
+    let (inside, slopes) = (values.map(is_inside), Interval::ALL);
     let known = f64::INFINITY;
     let mut pieces = vec![Piece { program: program.clone(), ends: [near, far], values, inside, slopes, known }];
-    for _ in 0..PIECES {
-        let Some(mut piece) = pieces.pop() else { break };
+    let mut count = 0;
+    while let Some(mut piece) = pieces.pop() {
+        count += 1;
+        if count % PATIENCE == 0 {
+            shortest *= 2.0;
+        }
         let [t0, t1] = piece.ends;
         let [from, to] = within_reach(&piece);
         if to - from <= shortest || one_signed(piece.slopes) {
@@ -118,7 +123,7 @@ pub(crate) fn first_hit(
             continue;
         }
         if t1 - t0 < ASK * piece.known {
-            let slopes = |program: &Program| match program.leaf_count() <= FEW && care.trusts(program) {
+            let slopes = |program: &Program| match program.leaf_count() <= FEW {
                 true => slope_along(program, origin, direction, t0, t1),
                 false => Interval::ALL,
             };
@@ -146,14 +151,14 @@ pub(crate) fn first_hit(
             program: piece.program.clone(),
             ends: [middle, t1],
             values: [value, piece.values[1]],
-            inside: [value > 0.0, piece.inside[1]],
+            inside: [is_inside(value), piece.inside[1]],
             ..piece
         };
         pieces.push(after);
         pieces.push(Piece {
             ends: [t0, middle],
             values: [piece.values[0], value],
-            inside: [piece.inside[0], value > 0.0],
+            inside: [piece.inside[0], is_inside(value)],
             ..piece
         });
     }

@@ -17,6 +17,17 @@ pub(super) const STEPS: usize = 3;
 /// Slopes are at most 1, but for the approximation of distances below.
 pub(super) const STEEPEST: f64 = 1.05;
 
+/// A foot that is farther off the curve, in radii, is not where the ball touches; as much farther
+/// as makes up for its radius, the ball is gone.
+const ARRIVED: f64 = 0.05;
+const FADING: f64 = 8.0;
+
+/// Feet that are no farther off than this, in radii, tell of the feet of points around.
+pub(super) const TELLING: f64 = 0.01;
+
+/// Slopes are at most this where the ball fades.
+pub(super) const FADES: f64 = 30.0;
+
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fillet {
     pub(super) radius: f64,
@@ -34,19 +45,20 @@ impl Fillet {
         4.0 * self.reach()
     }
 
-    /// Whether a foot where the operands are like this is on the curve.
-    pub(super) fn arrived(self, sides: [Sample; 2]) -> bool {
-        let off = sides.iter().map(|(value, _)| (value + self.radius).abs()).fold(0.0, f64::max);
-        off <= 0.05 * self.radius
+    /// How far off the curve a foot is where the operands are like this, in radii.
+    pub(super) fn off(self, sides: [Sample; 2]) -> f64 {
+        sides.iter().map(|(value, _)| (value / self.radius + 1.0).abs()).fold(0.0, f64::max)
     }
 
-    /// The ball's surface at p, where p is between the lines of contact.
-    pub(super) fn ball(self, p: DVec3, foot: &Foot) -> Option<Sample> {
+    /// The ball's surface at p, where p is between the lines of contact. Where the steps end off
+    /// the curve the ball does not fit: it fades.
+    pub(super) fn ball(self, p: DVec3, foot: &Foot, off: f64) -> Option<Sample> {
         if foot.weights.iter().any(|&weight| weight > 0.0) {
             return None;
         }
         let away = p - foot.q;
-        Some((away.length() - self.radius, away.normalize_or_zero()))
+        let faded = FADING * (off - ARRIVED).max(0.0);
+        Some((away.length() - self.radius * (1.0 + faded), away.normalize_or_zero()))
     }
 }
 

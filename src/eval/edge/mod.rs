@@ -23,7 +23,7 @@ mod fillet;
 use glam::{DAffine3, DVec3};
 
 use self::chamfer::Chamfer;
-use self::fillet::{Fillet, Foot, STEEPEST, STEPS};
+use self::fillet::{FADES, Fillet, Foot, STEEPEST, STEPS, TELLING};
 use super::composite::{Locals, Slopes, Whole, finish, points64, roundoff, with_evaluator, write_gradients};
 use super::{Program, Tape};
 use crate::field::{AnyField, Chunk, Zone, steep_slopes};
@@ -153,7 +153,7 @@ impl EdgeBlend {
 
     /// The blend, and whether it tells anything of the points around: not where the search for
     /// the foot has failed, as it does on an operand's medial axis. Beside such a point the
-    /// blend may be far above the join.
+    /// blend may be above the join.
     fn filleted(&self, fillet: Fillet, p: DVec3) -> (Sample, bool) {
         let here = self.samples(p);
         let join = larger(here[0], here[1]);
@@ -170,26 +170,27 @@ impl EdgeBlend {
             }
             sides = self.samples(foot.q);
         }
-        if !fillet.arrived(sides) {
-            return (join, false);
-        }
-        (fillet.ball(p, &foot).map_or(join, |ball| larger(join, ball)), true)
+        let off = fillet.off(sides);
+        (fillet.ball(p, &foot, off).map_or(join, |ball| larger(join, ball)), off <= TELLING)
     }
 
-    fn fillet_range(&self, fillet: Fillet, join: Interval, zone: &Zone) -> Interval {
+    /// The range of a fillet, as a union, and the steepest slope in it where that is known.
+    fn fillet_range(&self, fillet: Fillet, join: Interval, zone: &Zone) -> (Interval, f64) {
         // The blend is at least the join, whatever became of its steps. Within reach of the
         // ball it is the distance from the centre curve, of slope 1; beyond, no more than the
         // longest way to a foot.
         let ((centre, _), told) = self.filleted(fillet, zone.centre);
         let extent = zone.extent().length();
-        let radius = STEEPEST * extent;
-        // Close to where the steps arrive they arrive from all about, and where they fail they
-        // fail all about.
-        let close = extent < if told { 0.25 } else { 0.05 } * fillet.radius;
+        let (steepest, close) = match told {
+            true => (STEEPEST, 0.25 * fillet.radius),
+            false => (FADES, 0.02 * fillet.radius),
+        };
+        let radius = steepest * extent;
+        let close = extent < close;
         let below = (told || close) && centre + radius < 0.0;
         let hi = if below { centre + radius } else { join.hi().max(fillet.farthest()) };
         let lo = if close { join.lo().max(centre - radius) } else { join.lo() };
-        Interval::new(lo, hi.max(lo))
+        (Interval::new(lo, hi.max(lo)), if close { steepest } else { f64::INFINITY })
     }
 
     /// The blend, as a union, where the operands have these values and gradients.
@@ -263,7 +264,11 @@ impl AnyField for EdgeBlend {
             return join * self.sign;
         }
         let chamfer = match self.shape {
-            Shape::Fillet(_) => return Dual::new(self.range(&zone), steep_slopes(STEEPEST, p)),
+            Shape::Fillet(fillet) => {
+                let (range, steepest) = self.fillet_range(fillet, join.value(), &zone);
+                let slopes = if steepest.is_finite() { steep_slopes(steepest, p) } else { [Interval::ALL; 3] };
+                return Dual::new(range, slopes) * self.sign;
+            }
             Shape::Chamfer(chamfer) => chamfer,
         };
         let gradients = self.duals(Dual::point(hull)).map(Dual::gradient);
@@ -287,7 +292,7 @@ impl AnyField for EdgeBlend {
         let join = values[0].max(values[1]);
         let blend = match self.shape {
             _ if values.iter().any(|value| value.hi() < -self.reach()) => join,
-            Shape::Fillet(fillet) => self.fillet_range(fillet, join, zone),
+            Shape::Fillet(fillet) => self.fillet_range(fillet, join, zone).0,
             Shape::Chamfer(chamfer) => {
                 let gradients = self.duals(Dual::point(zone.hull())).map(Dual::gradient);
                 self.chamfer_range(chamfer, values, gradients)
@@ -392,10 +397,9 @@ impl EdgeBlend {
         }
         let sides = there.as_ref().unwrap_or(here);
         for (i, (foot, near)) in feet.iter().enumerate() {
-            if *near && fillet.arrived(sides.at(i)) {
-                if let Some(ball) = fillet.ball(local.get(i), foot) {
-                    out.set(i, larger(out.at(i), ball));
-                }
+            let ball = near.then(|| fillet.ball(local.get(i), foot, fillet.off(sides.at(i)))).flatten();
+            if let Some(ball) = ball {
+                out.set(i, larger(out.at(i), ball));
             }
         }
     }
