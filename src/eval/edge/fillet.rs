@@ -22,8 +22,9 @@ pub(super) const STEEPEST: f64 = 1.05;
 const ARRIVED: f64 = 0.05;
 const FADING: f64 = 8.0;
 
-/// Feet that are no farther off than this, in radii, tell of the feet of points around.
-pub(super) const TELLING: f64 = 0.01;
+/// Feet that are no farther off than this, and have come to rest to this, in radii, tell of the
+/// feet of points around.
+const TELLING: f64 = 0.01;
 
 /// Slopes are at most this where the ball fades.
 pub(super) const FADES: f64 = 30.0;
@@ -50,6 +51,11 @@ impl Fillet {
         sides.iter().map(|(value, _)| (value / self.radius + 1.0).abs()).fold(0.0, f64::max)
     }
 
+    /// Whether a foot that is so far off tells of those of points around.
+    pub(super) fn tells(self, foot: &Foot, off: f64) -> bool {
+        off.max(foot.moved / self.radius) <= TELLING
+    }
+
     /// The ball's surface at p, where p is between the lines of contact. Where the steps end off
     /// the curve the ball does not fit: it fades.
     pub(super) fn ball(self, p: DVec3, foot: &Foot, off: f64) -> Option<Sample> {
@@ -68,11 +74,13 @@ pub(super) struct Foot {
     pub(super) q: DVec3,
     /// q − p in terms of the two gradients.
     weights: [f64; 2],
+    /// How far the last step has moved q.
+    moved: f64,
 }
 
 impl Foot {
     pub(super) fn new(p: DVec3) -> Foot {
-        Foot { q: p, weights: [0.0; 2] }
+        Foot { q: p, weights: [0.0; 2], moved: 0.0 }
     }
 
     /// A Newton step: the point nearest to p of the line on which both tangent planes at q are at
@@ -89,6 +97,7 @@ impl Foot {
         let (u, v) = (a.dot(from) - (x + fillet.radius), b.dot(from) - (y + fillet.radius));
         self.weights = [(bb * u - ab * v) / determinant, (aa * v - ab * u) / determinant];
         let step = self.weights[0] * a + self.weights[1] * b;
+        self.moved = (p + step).distance(self.q);
         self.q = p + step;
         step.length() <= fillet.farthest()
     }

@@ -23,7 +23,7 @@ mod fillet;
 use glam::{DAffine3, DVec3};
 
 use self::chamfer::Chamfer;
-use self::fillet::{FADES, Fillet, Foot, STEEPEST, STEPS, TELLING};
+use self::fillet::{FADES, Fillet, Foot, STEEPEST, STEPS};
 use super::composite::{Locals, Slopes, Whole, finish, points64, roundoff, with_evaluator, write_gradients};
 use super::{Program, Tape};
 use crate::field::{AnyField, Chunk, Zone, steep_slopes};
@@ -171,7 +171,7 @@ impl EdgeBlend {
             sides = self.samples(foot.q);
         }
         let off = fillet.off(sides);
-        (fillet.ball(p, &foot, off).map_or(join, |ball| larger(join, ball)), off <= TELLING)
+        (fillet.ball(p, &foot, off).map_or(join, |ball| larger(join, ball)), fillet.tells(&foot, off))
     }
 
     /// The range of a fillet, as a union, and the steepest slope in it where that is known.
