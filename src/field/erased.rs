@@ -79,7 +79,8 @@ impl Placement {
 }
 
 /// A chunk of points to run a kernel over; all slices are of one length, a multiple of
-/// [`CHUNK`](crate::num::kernel::CHUNK).
+/// [`CHUNK`](crate::num::kernel::CHUNK), or of the widest vectors for a field that
+/// [takes short ones](AnyField::takes_short).
 pub(crate) struct Chunk<'a, E, const OUT: usize> {
     pub(crate) points: [&'a [E]; 3],
     pub(crate) placement: &'a Placement,

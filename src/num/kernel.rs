@@ -117,7 +117,7 @@ impl Element for f64 {
     }
 }
 
-/// Runs `formula` over slices of one length, a multiple of [`CHUNK`].
+/// Runs `formula` over slices of one length, a multiple of the widest vectors ([`CHUNK`] is one).
 #[inline]
 pub(crate) fn run<E: Element, const I: usize, const O: usize>(
     formula: &impl Formula<I, O>,
@@ -213,7 +213,7 @@ fn dispatched_on<S: Simd, T: Task>(_simd: S, task: T) {
     task.run();
 }
 
-/// Folds `next` into `all`, slices of one length, a multiple of [`CHUNK`].
+/// Folds `next` into `all`, slices of one length, a multiple of the widest vectors.
 #[inline]
 pub(crate) fn fold<E: Element, const N: usize>(formula: &impl Fold<N>, all: [&mut [E]; N], next: [&[E]; N]) {
     on_level!(simd => fold_on(simd, formula, all, next), else fold_by_point(formula, all, next))

@@ -323,6 +323,9 @@ mod tests {
         });
         let wall = Solid::union_all(cubes, RFunction::MIN_MAX);
         let camera = Camera::orthographic(DVec3::new(0.5, -8.0, 0.5), DVec3::splat(0.5), DVec3::Z, 2.0);
+        let flat = RenderSettings { shadows: false, occlusion: false, ..transparent(64, 64) };
+        let image = wall.render(&camera, &flat).unwrap();
+        assert!(image.pixels().iter().all(|p| *p == image.pixels()[0] && p[3] == 255));
         let image = wall.render(&camera, &transparent(64, 64)).unwrap();
         // Where cubes meet, their facets are a little off; a hole is darker or shows the background.
         let like = |p: &[u8; 4]| p.iter().zip(image.pixels()[0]).all(|(a, b)| a.abs_diff(b) <= 3);
