@@ -52,13 +52,23 @@ pub(crate) struct Slope {
 /// Whether no two of the normals of a cell's vertices differ as those of a crease do.
 #[inline]
 pub(super) fn is_smooth(normals: &[Vec3]) -> bool {
-    let Some(first) = normals.first() else { return true };
-    // If all are within half the angle of the first, no two differ by more than it.
-    if normals.iter().all(|normal| first.dot(*normal) > HALF_SMOOTH) {
-        return true;
+    let Some((first, rest)) = normals.split_first() else { return true };
+    let mut least = 1.0f32;
+    for normal in rest {
+        least = least.min(first.dot(*normal));
     }
-    let mut pairs = (0..normals.len()).flat_map(|a| (0..a).map(move |b| (a, b)));
-    pairs.all(|(a, b)| normals[a].dot(normals[b]) > SMOOTH)
+    // If all are within half the angle of the first, no two differ by more than it.
+    if least > HALF_SMOOTH || least <= SMOOTH {
+        return least > SMOOTH;
+    }
+    for (n, a) in rest.iter().enumerate() {
+        for b in &rest[..n] {
+            if a.dot(*b) <= SMOOTH {
+                return false;
+            }
+        }
+    }
+    true
 }
 
 /// A vertex of a cell's loop.
@@ -121,10 +131,17 @@ impl Candidate {
 
     /// The direction of the crease, if there are two sides and no more.
     pub(super) fn crease(&self) -> Option<DVec3> {
-        let normals = self.sides().iter().map(|side| side.normal);
-        let pairs = normals.clone().enumerate().flat_map(|(n, a)| normals.clone().take(n).map(move |b| (a, b)));
-        let across = pairs.map(|(a, b)| a.cross(b));
-        let along = across.max_by(|u, v| u.length_squared().total_cmp(&v.length_squared()))?;
+        let sides = self.sides();
+        let (mut along, mut most) = (Vec3::ZERO, 0.0);
+        for (n, a) in sides.iter().enumerate() {
+            for b in &sides[..n] {
+                let across = a.normal.cross(b.normal);
+                let square = across.length_squared();
+                if square >= most {
+                    (along, most) = (across, square);
+                }
+            }
+        }
         let unit = along.try_normalize()?;
         // A third side would have a normal along the crease of the two.
         let two = along.length() > 0.3 && self.sides().iter().all(|side| side.normal.dot(unit).abs() < 0.2);

@@ -74,15 +74,29 @@ impl Planes {
         if free.cmpge(low).all() && free.cmple(high).all() {
             return free;
         }
+        // Most often it is where the coordinates that are beyond a side are held there.
+        let mut sides = [FREE; 3];
+        let mut y = free;
+        for _ in 0..3 {
+            for axis in 0..3 {
+                if y[axis] < low[axis] {
+                    sides[axis] = LOW;
+                } else if y[axis] > high[axis] {
+                    sides[axis] = HIGH;
+                }
+            }
+            y = on_sides(&m, b, sides, low, high);
+            if y.cmpge(low).all() && y.cmple(high).all() {
+                if is_pressed(b - m * y, sides) {
+                    return y;
+                }
+                break;
+            }
+        }
         let mut best = (f64::INFINITY, from.clamp(low, high));
         for choice in 1..27 {
-            // By axis: 0 free, 1 at the low side, 2 at the high side.
             let sides = [choice % 3, choice / 3 % 3, choice / 9];
-            let mut y = DVec3::ZERO;
-            for axis in 0..3 {
-                y[axis] = [0.0, low[axis], high[axis]][sides[axis]];
-            }
-            solve(&m, b, sides, &mut y);
+            let y = on_sides(&m, b, sides, low, high);
             if y.cmpge(low).all() && y.cmple(high).all() {
                 let energy = y.dot(m * y) - 2.0 * b.dot(y);
                 if energy < best.0 {
@@ -94,19 +108,48 @@ impl Planes {
     }
 }
 
+/// A coordinate that is free, at the low side of the box, and at the high one.
+const FREE: usize = 0;
+const LOW: usize = 1;
+const HIGH: usize = 2;
+
+/// Where the quadratic is least with some coordinates held at sides of the box.
+fn on_sides(m: &DMat3, b: DVec3, sides: [usize; 3], low: DVec3, high: DVec3) -> DVec3 {
+    let mut y = DVec3::ZERO;
+    for axis in 0..3 {
+        y[axis] = [0.0, low[axis], high[axis]][sides[axis]];
+    }
+    solve(m, b, sides, &mut y);
+    y
+}
+
+/// Whether the quadratic falls outward at every side that a coordinate is held at; `fall` is half its
+/// gradient, downwards. In the box that makes it the minimum over the box.
+fn is_pressed(fall: DVec3, sides: [usize; 3]) -> bool {
+    (0..3).all(|axis| match sides[axis] {
+        LOW => fall[axis] <= 0.0,
+        HIGH => fall[axis] >= 0.0,
+        _ => true,
+    })
+}
+
 /// Sets the free coordinates (side 0) to where the quadratic yᵀm y − 2 bᵀy is least.
 fn solve(m: &DMat3, b: DVec3, sides: [usize; 3], y: &mut DVec3) {
     // With the free coordinates 0, this is what is left for them to balance.
     let rest = b - *m * *y;
-    let mut free = (0..3).filter(|&axis| sides[axis] == 0);
-    match (free.next(), free.next()) {
-        (Some(a), Some(c)) => {
-            let (aa, ac, cc) = (m.col(a)[a], m.col(a)[c], m.col(c)[c]);
-            let determinant = aa * cc - ac * ac;
-            y[a] = (rest[a] * cc - rest[c] * ac) / determinant;
-            y[c] = (rest[c] * aa - rest[a] * ac) / determinant;
-        }
-        (Some(a), None) => y[a] = rest[a] / m.col(a)[a],
+    let mut pair = |a: usize, c: usize| {
+        let (aa, ac, cc) = (m.col(a)[a], m.col(a)[c], m.col(c)[c]);
+        let determinant = aa * cc - ac * ac;
+        y[a] = (rest[a] * cc - rest[c] * ac) / determinant;
+        y[c] = (rest[c] * aa - rest[a] * ac) / determinant;
+    };
+    match sides.map(|side| side == FREE) {
+        [true, true, _] => pair(0, 1),
+        [true, _, true] => pair(0, 2),
+        [_, true, true] => pair(1, 2),
+        [true, ..] => y.x = rest.x / m.x_axis.x,
+        [_, true, _] => y.y = rest.y / m.y_axis.y,
+        [.., true] => y.z = rest.z / m.z_axis.z,
         _ => {}
     }
 }

@@ -58,7 +58,7 @@ impl Signs {
     }
 
     /// The signs of a row of nodes.
-    #[inline]
+    #[inline(always)]
     pub(super) fn row(&self, j: usize, k: usize) -> u16 {
         self.0[SIDE * k + j]
     }
@@ -89,7 +89,7 @@ impl Signs {
 }
 
 /// The case of cell `i` of a row of cells, given the rows of nodes around it.
-#[inline]
+#[inline(always)]
 fn case([a, b, c, d]: [u16; 4], i: usize) -> u8 {
     (a >> i & 3 | (b >> i & 3) << 2 | (c >> i & 3) << 4 | (d >> i & 3) << 6) as u8
 }
@@ -112,7 +112,7 @@ pub(super) struct Rows([u16; BLOCK * BLOCK]);
 
 impl Rows {
     /// Where a row starts.
-    #[inline]
+    #[inline(always)]
     pub(super) fn start(&self, j: usize, k: usize) -> u32 {
         u32::from(self.0[BLOCK * k + j])
     }
@@ -120,7 +120,7 @@ impl Rows {
 
 impl Signs {
     /// The owned edges of a row that cross the surface, as bits, along x, y and z.
-    #[inline]
+    #[inline(always)]
     pub(super) fn crossed(&self, j: usize, k: usize) -> [u16; 3] {
         let row = self.row(j, k);
         let along = |other: u16| (row ^ other) & OWNED_BITS;

@@ -129,19 +129,27 @@ impl<'a> Parts<'a> {
             })
             .collect();
         let mut triangles = vec![[0; 3]; counts.iter().sum()];
-        let pieces = split(&mut triangles, counts.into_iter());
-        pieces.into_par_iter().enumerate().try_for_each_init(Corners::new, |corners, (batch, piece)| {
+        let pieces = split(&mut triangles, counts.iter().copied());
+        let of_batch = |corners: &mut Corners, (batch, piece): (usize, &mut [[u32; 3]])| {
+            let end: usize = counts[..=batch].iter().sum();
             let mut slots = piece.iter_mut();
+            let mut apart = Vec::new();
             for n in (batch * BATCH..).take(self.parts[batch].len()) {
                 meter.step()?;
                 self.list_triangles(n, corners, &fans, &mut slots)?;
+                fans.list(n, self.vertices as u32, [&positions, &normals], |triangle, corners| {
+                    apart.push((end - slots.len(), corners));
+                    slots.next().into_iter().for_each(|slot| *slot = triangle);
+                });
             }
-            Ok::<(), ExtractError>(())
-        })?;
+            Ok::<_, ExtractError>(apart)
+        };
+        let apart: Result<Vec<_>, ExtractError> =
+            pieces.into_par_iter().enumerate().map_init(Corners::new, of_batch).collect();
+        let apart = apart?.concat();
         if fans.fans.is_empty() {
             return Ok(Mesh::new(positions, triangles)?.with_normals(normals)?.with_clamped_vertices(self.clamped));
         }
-        let corners = fans.corner_normals(&positions, &normals, &triangles);
         if !fans.unused.is_empty() {
             let used = used(positions.len(), &fans.unused);
             let number = |n: u32| used[n as usize];
@@ -152,12 +160,11 @@ impl<'a> Parts<'a> {
             positions = kept(&positions, &fans.unused);
             normals = kept(&normals, &fans.unused);
         }
-        let mesh = Mesh::new(positions, triangles)?.with_normals(normals)?.with_corner_normals(corners)?;
+        let mesh = Mesh::new(positions, triangles)?.with_normals(normals)?.with_normals_apart(apart)?;
         Ok(mesh.with_clamped_vertices(self.clamped))
     }
 
-    /// The triangles of block `n`: those of the table, in the order of its cells, then those of its
-    /// fans.
+    /// The triangles of block `n` that are those of the table, in the order of its cells.
     fn list_triangles(
         &self,
         n: usize,
@@ -193,10 +200,6 @@ impl<'a> Parts<'a> {
                 *slot = [corner(a), corner(b), corner(c)];
             }
         });
-        let centres = self.vertices as u32;
-        for (triangle, slot) in fans.triangles(n, centres).zip(slots) {
-            *slot = triangle;
-        }
         Ok(())
     }
 
@@ -226,24 +229,24 @@ impl<'a> Parts<'a> {
         }
         row(6, [true, false, false], [BLOCK, BLOCK]);
         // Beyond x: the first edges of rows, along y and z.
-        let last = |j: usize, k: usize| signs.row(j, k) >> BLOCK & 1;
+        let last = signs.face(0, true);
         for k in 0..SIDE {
-            for j in 0..SIDE {
-                let along_y = j < BLOCK && last(j, k) != last(j + 1, k);
-                let along_z = k < BLOCK && last(j, k) != last(j, k + 1);
-                if !(along_y || along_z) {
-                    continue;
-                }
+            let along_y = (last[k] ^ last[k] >> 1) & ((1 << BLOCK) - 1);
+            let along_z = last.get(k + 1).map_or(0, |next| last[k] ^ next);
+            let mut crossed = along_y | along_z;
+            while crossed != 0 {
+                let j = crossed.trailing_zeros() as usize;
+                crossed &= crossed - 1;
                 let bits = 1 | (j / BLOCK) << 1 | (k / BLOCK) << 2;
                 let Some(other) = upper(bits) else { return false };
                 let (row_j, row_k) = (j % BLOCK, k % BLOCK);
-                let [x, y, _] = other.signs.crossed(row_j, row_k).map(u16::count_ones);
-                let vertex = other.first + other.rows.start(row_j, row_k) + x;
-                if along_y {
+                let [x, y, _] = other.signs.crossed(row_j, row_k);
+                let vertex = other.first + other.rows.start(row_j, row_k) + x.count_ones();
+                if along_y >> j & 1 == 1 {
                     corners.ids[Corners::place(1, [BLOCK, j, k])] = vertex;
                 }
-                if along_z {
-                    corners.ids[Corners::place(2, [BLOCK, j, k])] = vertex + y;
+                if along_z >> j & 1 == 1 {
+                    corners.ids[Corners::place(2, [BLOCK, j, k])] = vertex + y.count_ones();
                 }
             }
         }
@@ -270,18 +273,18 @@ impl Corners {
     }
 
     /// The list from the place of a cell's first node on.
-    #[inline]
+    #[inline(always)]
     fn of_cell(&self, [i, j, k]: [usize; 3]) -> &[u32] {
         &self.ids[i + SIDE * (j + SIDE * k)..]
     }
 
     /// The vertex on an edge of a cell.
-    #[inline]
+    #[inline(always)]
     pub(super) fn vertex(&self, cell: [usize; 3], edge: u8) -> u32 {
         self.of_cell(cell)[self.offsets[usize::from(edge)]]
     }
 
-    #[inline]
+    #[inline(always)]
     fn place(axis: usize, [i, j, k]: [usize; 3]) -> usize {
         i + SIDE * (j + SIDE * (k + SIDE * axis))
     }

@@ -158,11 +158,20 @@ fn special(samples: &Samples<'_>, joined: &Joined, n: usize, corners: &mut Corne
         return found;
     }
     let block = samples.blocks()[n];
+    let has_joined = joined.concerns(samples, n);
     let (mut vertices, mut normals) = ([0; LONGEST], [Vec3::ZERO; LONGEST]);
     for_each_cell(&samples.parts.part(n).signs, |within, case| {
-        let cell = std::array::from_fn(|axis| block[axis] + within[axis] as u32);
-        let faces = joined.of(samples, cell, case);
-        let Some(outline) = CellLoop::single(case, faces) else {
+        let [i, j, k] = within.map(|n| n as u32);
+        let cell = [block[0] + i, block[1] + j, block[2] + k];
+        let faces = if has_joined { joined.of(samples, cell, case) } else { 0 };
+        let derived;
+        let outline = if faces == 0 {
+            CellLoop::of_table(case)
+        } else {
+            derived = CellLoop::single(case, faces);
+            derived.as_ref()
+        };
+        let Some(outline) = outline else {
             if faces != 0 {
                 found.opposite.push((cell_number(within), case));
             }
@@ -175,7 +184,7 @@ fn special(samples: &Samples<'_>, joined: &Joined, n: usize, corners: &mut Corne
         }
         // The table knows nothing of joined faces.
         if faces != 0 || !is_smooth(&normals[..count]) {
-            found.candidates.push(samples.candidate(cell, outline, &vertices[..count]));
+            found.candidates.push(samples.candidate(cell, *outline, &vertices[..count]));
         }
     });
     found
@@ -295,60 +304,45 @@ impl Fans {
         self.blocks.get(block).map_or(&[], |block| &block.opposite)
     }
 
-    /// The triangles of the fans that are listed with a block; feature points are numbered from
+    /// Lists the triangles of the fans of a block, each with the normals at its corners: at feature points that
+    /// of the triangle's side, elsewhere that of the vertex, which lies on one side. Feature points are numbered from
     /// `centres`, in the order of the fans.
-    pub(super) fn triangles(&self, block: usize, centres: u32) -> impl Iterator<Item = [u32; 3]> {
-        let listed = self.blocks.get(block).map_or(0..0, |block| block.listed.clone());
-        listed.flat_map(move |nth| {
-            let segments = self.of(nth);
-            segments.iter().enumerate().flat_map(move |(n, segment)| {
-                let (centre, next) = (centres + nth as u32, segments[(n + 1) % segments.len()].from);
-                let to = segment.across.map_or(next, |other| centres + other);
-                let second = self.is_bent(segment).then_some([centre, to, next]);
-                std::iter::once([centre, segment.from, to]).chain(second)
-            })
-        })
-    }
-
-    /// The normals at the corners of all triangles: at feature points that of the triangle's side,
-    /// elsewhere that of the vertex, which lies on one side.
-    pub(super) fn corner_normals(
+    pub(super) fn list(
         &self,
-        positions: &[Vec3],
-        normals: &[Vec3],
-        triangles: &[[u32; 3]],
-    ) -> Vec<[Vec3; 3]> {
+        block: usize,
+        centres: u32,
+        [positions, normals]: [&[Vec3]; 2],
+        mut each: impl FnMut([u32; 3], [Vec3; 3]),
+    ) {
         let fans = self.fans.len() as u32;
-        let centres = (positions.len() - self.points.len()) as u32 - fans;
-        let own = |vertex: u32| normals[vertex as usize];
         let at = |vertex: u32| positions[vertex as usize];
-        // The normal close to a fan's point, on the side of a vertex.
-        let close = |fan: u32, vertex: u32| {
-            let segments = self.of(fan as usize);
-            segments.iter().find(|segment| segment.from == vertex).map_or(Vec3::ZERO, |segment| segment.normal)
-        };
-        let corners = |&[a, b, c]: &[u32; 3]| {
-            if a < centres {
-                return [own(a), own(b), own(c)];
-            }
-            let (p, q, r) = (at(a), at(b), at(c));
+        let own = |vertex: u32| normals[vertex as usize];
+        let mut list = |triangle: [u32; 3], given: [Vec3; 3]| {
+            let [p, q, r] = triangle.map(at);
             let face = (q - p).cross(r - p).normalize_or_zero();
-            let fan = a - centres;
-            let given = if b >= centres {
-                let near = close(fan, c);
-                [near, near, own(c)]
-            } else {
-                let near = close(fan, b);
-                match c.checked_sub(centres) {
-                    None => [(near + close(fan, c)).normalize_or_zero(), own(b), own(c)],
-                    Some(other) if other < fans => [near, own(b), close(other, b)],
-                    Some(_) => [near, own(b), near],
-                }
-            };
             // A vertex on the crease itself may have the normal of the other side.
             let on_side = |normal: Vec3| if normal.dot(face) > ASTRAY { normal } else { face };
-            [on_side(given[0]), on_side(given[1]), on_side(given[2])]
+            each(triangle, given.map(on_side));
         };
-        triangles.par_iter().map(corners).collect()
+        for nth in self.blocks.get(block).map_or(0..0, |block| block.listed.clone()) {
+            let (segments, centre) = (self.of(nth), centres + nth as u32);
+            for (n, segment) in segments.iter().enumerate() {
+                let next = segments.get(n + 1).unwrap_or(&segments[0]);
+                let (near, beside) = (segment.normal, next.normal);
+                let (from, to) = (segment.from, next.from);
+                match segment.across {
+                    None => list([centre, from, to], [(near + beside).normalize_or_zero(), own(from), own(to)]),
+                    Some(other) if other < fans => {
+                        let end = self.of(other as usize).iter().find(|segment| segment.from == from);
+                        let beyond = end.map_or(Vec3::ZERO, |segment| segment.normal);
+                        list([centre, from, centres + other], [near, own(from), beyond]);
+                    }
+                    Some(point) => {
+                        list([centre, from, centres + point], [near, own(from), near]);
+                        list([centre, centres + point, to], [beside, beside, own(to)]);
+                    }
+                }
+            }
+        }
     }
 }
