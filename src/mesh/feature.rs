@@ -19,9 +19,9 @@
 //! Source: L. P. Kobbelt, M. Botsch, U. Schwanecke and H.-P. Seidel, Feature sensitive surface
 //! extraction from volume data (2001), for the idea.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, UVec3, Vec3};
 
-use super::loops::{CellLoop, LONGEST};
+use super::loops::CellLoop;
 use super::qef::Planes;
 
 /// Normals of a cell that differ by less than this are those of a smooth surface: the cosine
@@ -84,11 +84,13 @@ pub(super) struct Side {
 }
 
 /// A cell whose surface is not smooth. Positions are in cells, from the lattice's first node.
-#[derive(Clone)]
+///
+/// The vertices of its loop, in order, are in a list of those of many cells.
 pub(super) struct Candidate {
     pub(super) cell: [u32; 3],
     pub(super) outline: CellLoop,
-    sides: [Side; LONGEST],
+    /// The place of the first of its vertices in the list.
+    pub(super) first: u32,
     /// The segments, from vertex n to the next, whose ends have different normals, as bits.
     pub(super) split: u16,
     /// The feature point.
@@ -99,17 +101,16 @@ pub(super) struct Candidate {
 
 impl Candidate {
     /// The cell with a first feature point. `sides` are the vertices on the edges of the loop, in order.
-    pub(super) fn new(cell: [u32; 3], outline: CellLoop, sides: [Side; LONGEST]) -> Candidate {
-        let mut candidate = Candidate { cell, outline, sides, split: 0, at: DVec3::ZERO, planes: Planes::NONE };
+    pub(super) fn new(cell: [u32; 3], outline: CellLoop, first: u32, sides: &[Side]) -> Candidate {
+        let mut candidate = Candidate { cell, outline, first, split: 0, at: DVec3::ZERO, planes: Planes::NONE };
         let low = candidate.low();
-        let given = &sides[..outline.len()];
-        for (n, side) in given.iter().enumerate() {
+        for (n, side) in sides.iter().enumerate() {
             let (position, normal) = (low + side.at.as_dvec3(), side.normal.as_dvec3());
-            candidate.at += position / given.len() as f64;
+            candidate.at += position / sides.len() as f64;
             if let Some(normal) = normal.try_normalize() {
                 candidate.planes.add(normal, normal.dot(position));
             }
-            let next = given[(n + 1) % given.len()].normal;
+            let next = sides.get(n + 1).unwrap_or(&sides[0]).normal;
             candidate.split |= u16::from(side.normal.dot(next) < SMOOTH) << n;
         }
         candidate.settle();
@@ -117,12 +118,13 @@ impl Candidate {
     }
 
     fn low(&self) -> DVec3 {
-        self.cell.map(f64::from).into()
+        UVec3::from_array(self.cell).as_dvec3()
     }
 
-    /// The vertices of the loop, in order.
-    pub(super) fn sides(&self) -> &[Side] {
-        &self.sides[..self.outline.len()]
+    /// The vertices of the loop, in order, of the list of all.
+    #[inline]
+    pub(super) fn sides<'a>(&self, all: &'a [Side]) -> &'a [Side] {
+        &all[self.first as usize..][..self.outline.len()]
     }
 
     fn settle(&mut self) {
@@ -130,8 +132,8 @@ impl Candidate {
     }
 
     /// The direction of the crease, if there are two sides and no more.
-    pub(super) fn crease(&self) -> Option<DVec3> {
-        let sides = self.sides();
+    pub(super) fn crease(&self, sides: &[Side]) -> Option<DVec3> {
+        let sides = self.sides(sides);
         let (mut along, mut most) = (Vec3::ZERO, 0.0);
         for (n, a) in sides.iter().enumerate() {
             for b in &sides[..n] {
@@ -144,7 +146,7 @@ impl Candidate {
         }
         let unit = along.try_normalize()?;
         // A third side would have a normal along the crease of the two.
-        let two = along.length() > 0.3 && self.sides().iter().all(|side| side.normal.dot(unit).abs() < 0.2);
+        let two = along.length() > 0.3 && sides.iter().all(|side| side.normal.dot(unit).abs() < 0.2);
         two.then(|| unit.as_dvec3())
     }
 
@@ -159,26 +161,29 @@ pub(super) fn settle(planes: &Planes, from: DVec3, low: DVec3, high: DVec3, step
     (0..steps).fold(from, |at, _| planes.nearest(at, DAMPING, low + INSET, high - INSET))
 }
 
-/// Moves feature points closer to the creases. `slopes` tells values and gradients at points, for cells of
-/// size `step`; without any, the points stay.
+/// Moves feature points closer to the creases. `sides` are the vertices of all candidates, one candidate's after the
+/// other's. `slopes` tells values and gradients at points, for cells of size `step`; without any, the points stay.
 pub(super) fn refine(
     candidates: &mut [Candidate],
+    sides: &mut [Side],
     step: f64,
     mut slopes: impl FnMut(&[DVec3], &mut Vec<Slope>) -> bool,
 ) {
-    let (mut points, mut found) = (Vec::new(), Vec::new());
-    for candidate in candidates.iter() {
-        let (low, at) = (candidate.low(), candidate.at);
-        points.extend(candidate.sides().iter().map(|side| at + CLOSER * (low + side.at.as_dvec3() - at)));
-    }
-    if !slopes(&points, &mut found) || found.len() != points.len() {
+    if candidates.is_empty() {
         return;
     }
-    let mut asked = points.iter().zip(&found);
+    let (mut points, mut found) = (Vec::with_capacity(sides.len()), Vec::new());
+    for candidate in candidates.iter() {
+        let (low, at) = (candidate.low(), candidate.at);
+        points.extend(candidate.sides(sides).iter().map(|side| at + CLOSER * (low + side.at.as_dvec3() - at)));
+    }
+    if !slopes(&points, &mut found) || found.len() != sides.len() {
+        return;
+    }
+    let mut asked = sides.iter_mut().zip(points.iter().zip(&found));
     for candidate in candidates.iter_mut() {
         let mut planes = Planes::NONE;
-        let count = candidate.outline.len();
-        for (side, (point, slope)) in candidate.sides[..count].iter_mut().zip(&mut asked) {
+        for (side, (point, slope)) in asked.by_ref().take(candidate.outline.len()) {
             let steepness = slope.gradient.length();
             let depth = slope.value / (steepness * step);
             // A plane that is farther away than the cell tells nothing; neither does NaN.

@@ -32,7 +32,6 @@
 //! (see [`joined`](super::joined)). Where a crease passes an empty cell and no region comes about, it is
 //! cut off by what it goes into that cell, up to half a cell or more.
 
-use std::collections::HashSet;
 use std::ops::Range;
 
 use glam::Vec3;
@@ -42,7 +41,7 @@ use super::Sampler;
 use super::join::Corners;
 use super::joined::{Joined, proposals};
 use super::region::{Region, Span, regions};
-use super::samples::{Samples, cell_number, cell_of, split_cell};
+use super::samples::{Samples, cell_number, split_cell};
 use crate::mesh::feature::{Candidate, Side, is_smooth, refine};
 use crate::mesh::loops::{CellLoop, LONGEST};
 use crate::mesh::meter::Meter;
@@ -73,7 +72,9 @@ pub(super) struct Segment {
 /// The fan of a cell, or of a region of several.
 pub(super) struct Fan {
     /// The place of its segments in the list of all.
-    segments: Range<u32>,
+    pub(super) segments: Range<u32>,
+    /// The block that it is listed with.
+    pub(super) block: usize,
     /// The cells that it is in.
     pub(super) span: Span,
     /// The feature point, strictly inside.
@@ -127,7 +128,7 @@ pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) ->
         }
         let mut special = special(samples, &joined, n, corners);
         let mut points = Vec::new();
-        refine(&mut special.candidates, samples.lattice.step(), |local, out| {
+        refine(&mut special.candidates, &mut special.sides, samples.lattice.step(), |local, out| {
             points.clear();
             points.extend(local.iter().map(|p| samples.world(*p)));
             sampler.slopes(scratch, n, samples.blocks()[n], &points, out)
@@ -146,6 +147,8 @@ pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) ->
 pub(super) struct Special {
     /// Those with a single loop, in order.
     pub(super) candidates: Vec<Candidate>,
+    /// The vertices of all candidates.
+    pub(super) sides: Vec<Side>,
     /// Those with the patches of the opposite case, by number, and their cases.
     opposite: Vec<(u16, u8)>,
 }
@@ -184,14 +187,14 @@ fn special(samples: &Samples<'_>, joined: &Joined, n: usize, corners: &mut Corne
         }
         // The table knows nothing of joined faces.
         if faces != 0 || !is_smooth(&normals[..count]) {
-            found.candidates.push(samples.candidate(cell, *outline, &vertices[..count]));
+            found.candidates.push(samples.candidate(cell, *outline, &vertices[..count], &mut found.sides));
         }
     });
     found
 }
 
-/// The segments of a cell's loop.
-pub(super) fn segments(candidate: &Candidate) -> impl Iterator<Item = Segment> {
+/// The segments of a cell's loop, whose vertices are in a list.
+pub(super) fn segments(candidate: &Candidate, sides: &[Side]) -> impl Iterator<Item = Segment> {
     let segment = |(n, side): (usize, &Side)| Segment {
         from: side.vertex,
         cell: candidate.cell,
@@ -200,36 +203,50 @@ pub(super) fn segments(candidate: &Candidate) -> impl Iterator<Item = Segment> {
         across: None,
         normal: side.normal,
     };
-    candidate.sides().iter().enumerate().map(segment)
+    candidate.sides(sides).iter().enumerate().map(segment)
 }
 
 impl Fans {
     fn new(samples: &Samples<'_>, special: Vec<Special>, regions: Vec<Region>, run: &Run) -> Result<Fans, Cancelled> {
         let mut all = Fans { blocks: vec![OfBlock::default(); samples.blocks().len()], ..Fans::default() };
+        all.fans.reserve(special.iter().map(|special| special.candidates.len()).sum());
+        all.segments.reserve(special.iter().map(|special| special.sides.len()).sum());
+        // The cells of regions, by the numbers of their blocks and their own.
+        let mut in_region: Vec<(usize, u16)> = Vec::new();
+        for &(cell, _) in regions.iter().flat_map(|region| &region.cells) {
+            let (block, within) = split_cell(cell);
+            in_region.extend(samples.find(block).map(|block| (block, cell_number(within))));
+        }
+        in_region.sort_unstable();
+        let mut in_region = &in_region[..];
         // A region is listed with the block of the candidate that asked for it.
-        let in_region: HashSet<[u32; 3]> =
-            regions.iter().flat_map(|region| region.cells.iter().map(|&(cell, _)| cell)).collect();
         let mut regions = regions.into_iter().peekable();
         let table = CaseTable::get();
-        for (block, Special { candidates, mut opposite }) in special.into_iter().enumerate() {
+        for (block, Special { candidates, sides, mut opposite }) in special.into_iter().enumerate() {
             run.check()?;
-            let first = samples.blocks()[block];
-            opposite.retain(|&(number, _)| !in_region.contains(&cell_of(first, number)));
+            let (taken, rest) = in_region.split_at(in_region.partition_point(|&(other, _)| other == block));
+            in_region = rest;
+            let is_free = |number: u16| taken.binary_search(&(block, number)).is_err();
+            opposite.retain(|&(number, _)| is_free(number));
             all.blocks[block].opposite = opposite;
+            all.blocks[block].cells.reserve_exact(candidates.len() + taken.len());
             let start = all.fans.len();
             let signs = &samples.parts.part(block).signs;
-            for candidate in candidates.iter().filter(|candidate| !in_region.contains(&candidate.cell)) {
-                let high = candidate.cell.map(|n| n + 1);
+            for candidate in &candidates {
                 let (_, within) = split_cell(candidate.cell);
-                all.blocks[block].cells.push((cell_number(within), all.fans.len() as u32));
-                all.blocks[block].dropped += table.triangles(signs.case(within)).len();
-                let at = samples.inside(candidate.at, candidate.cell, high);
-                all.add(segments(candidate), Span { low: candidate.cell, high }, at);
+                let number = cell_number(within);
+                if is_free(number) {
+                    all.blocks[block].cells.push((number, all.fans.len() as u32));
+                    all.blocks[block].dropped += table.triangles(signs.case(within)).len();
+                    let span = Span::single(candidate.cell);
+                    let at = samples.inside(candidate.at, span.low, span.high);
+                    all.add(block, segments(candidate, &sides), span, at);
+                }
             }
             while let Some(region) = regions.next_if(|region| region.block == block) {
                 all.cover(samples, &region.cells);
                 all.unused.extend(region.within);
-                all.add(region.segments.into_iter(), region.span, region.at);
+                all.add(block, region.segments.into_iter(), region.span, region.at);
             }
             all.blocks[block].listed = start..all.fans.len();
         }
@@ -252,10 +269,10 @@ impl Fans {
         }
     }
 
-    fn add(&mut self, segments: impl Iterator<Item = Segment>, span: Span, at: Vec3) {
+    fn add(&mut self, block: usize, segments: impl Iterator<Item = Segment>, span: Span, at: Vec3) {
         let first = self.segments.len() as u32;
         self.segments.extend(segments);
-        self.fans.push(Fan { segments: first..self.segments.len() as u32, span, at });
+        self.fans.push(Fan { segments: first..self.segments.len() as u32, block, span, at });
     }
 
     /// The segments of a fan.
@@ -318,11 +335,11 @@ impl Fans {
         let at = |vertex: u32| positions[vertex as usize];
         let own = |vertex: u32| normals[vertex as usize];
         let mut list = |triangle: [u32; 3], given: [Vec3; 3]| {
-            let [p, q, r] = triangle.map(at);
-            let face = (q - p).cross(r - p).normalize_or_zero();
+            let p = at(triangle[0]);
+            let face = (at(triangle[1]) - p).cross(at(triangle[2]) - p).normalize_or_zero();
             // A vertex on the crease itself may have the normal of the other side.
             let on_side = |normal: Vec3| if normal.dot(face) > ASTRAY { normal } else { face };
-            each(triangle, given.map(on_side));
+            each(triangle, [on_side(given[0]), on_side(given[1]), on_side(given[2])]);
         };
         for nth in self.blocks.get(block).map_or(0..0, |block| block.listed.clone()) {
             let (segments, centre) = (self.of(nth), centres + nth as u32);
