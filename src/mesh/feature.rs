@@ -21,7 +21,7 @@
 
 use glam::{DVec3, UVec3, Vec3};
 
-use super::loops::CellLoop;
+use super::loops::{CellLoop, LONGEST};
 use super::qef::Planes;
 
 /// Normals of a cell that differ by less than this are those of a smooth surface: the cosine
@@ -29,6 +29,9 @@ use super::qef::Planes;
 pub(super) const SMOOTH: f32 = 0.9;
 /// The cosine of half that angle, rounded up.
 const HALF_SMOOTH: f32 = 0.975;
+
+/// Normals of vertices that are on the same side of a crease, with little between them: the cosine of 11°.
+const ALIKE: f32 = 0.98;
 
 /// How far feature points stay from the faces of their cell, in cells.
 pub(super) const INSET: f64 = 1.0 / 128.0;
@@ -161,6 +164,26 @@ pub(super) fn settle(planes: &Planes, from: DVec3, low: DVec3, high: DVec3, step
     (0..steps).fold(from, |at, _| planes.nearest(at, DAMPING, low + INSET, high - INSET))
 }
 
+/// Vertices of a cell that have nearly the same normal, that of the first.
+#[derive(Clone, Copy, Default)]
+struct Group {
+    normal: Vec3,
+    sum: Vec3,
+    size: f32,
+}
+
+/// The plane that the surface has close to a point: its outward normal and its distance from the lattice's first
+/// node; `None` if the field does not tell.
+fn plane(point: DVec3, slope: &Slope, step: f64) -> Option<(DVec3, f64)> {
+    let steepness = slope.gradient.length();
+    let depth = slope.value / (steepness * step);
+    // A plane that is farther away than the cell tells nothing; neither does NaN.
+    (steepness > 0.0 && depth.abs() < 1.0).then(|| {
+        let normal = -slope.gradient / steepness;
+        (normal, normal.dot(point) + depth)
+    })
+}
+
 /// Moves feature points closer to the creases. `sides` are the vertices of all candidates, one candidate's after the
 /// other's. `slopes` tells values and gradients at points, for cells of size `step`; without any, the points stay.
 pub(super) fn refine(
@@ -172,25 +195,45 @@ pub(super) fn refine(
     if candidates.is_empty() {
         return;
     }
+    // Vertices that have nearly the same normal are on the same side: they share a point.
+    let mut places: Vec<u8> = Vec::with_capacity(sides.len());
     let (mut points, mut found) = (Vec::with_capacity(sides.len()), Vec::new());
     for candidate in candidates.iter() {
+        let mut groups = [Group::default(); LONGEST];
+        let mut count = 0;
+        for side in candidate.sides(sides) {
+            let place = groups[..count].iter().position(|group| group.normal.dot(side.normal) > ALIKE).unwrap_or(count);
+            if place == count {
+                groups[count].normal = side.normal;
+                count += 1;
+            }
+            groups[place].sum += side.at;
+            groups[place].size += 1.0;
+            places.push(place as u8);
+        }
         let (low, at) = (candidate.low(), candidate.at);
-        points.extend(candidate.sides(sides).iter().map(|side| at + CLOSER * (low + side.at.as_dvec3() - at)));
+        for Group { sum, size, .. } in &groups[..count] {
+            points.push(at + CLOSER * (low + (sum / size).as_dvec3() - at));
+        }
     }
-    if !slopes(&points, &mut found) || found.len() != sides.len() {
+    if !slopes(&points, &mut found) || found.len() != points.len() {
         return;
     }
-    let mut asked = sides.iter_mut().zip(points.iter().zip(&found));
+    let mut asked = points.iter().zip(&found);
+    let mut sides = sides.iter_mut().zip(places);
     for candidate in candidates.iter_mut() {
         let mut planes = Planes::NONE;
-        for (side, (point, slope)) in asked.by_ref().take(candidate.outline.len()) {
-            let steepness = slope.gradient.length();
-            let depth = slope.value / (steepness * step);
-            // A plane that is farther away than the cell tells nothing; neither does NaN.
-            if steepness > 0.0 && depth.abs() < 1.0 {
-                let normal = -slope.gradient / steepness;
+        let (mut known, mut seen) = ([None; LONGEST], 0);
+        for (side, place) in sides.by_ref().take(candidate.outline.len()) {
+            let place = usize::from(place);
+            // They are met in the order of their first vertices.
+            if place == seen {
+                known[place] = asked.next().and_then(|(point, slope)| plane(*point, slope, step));
+                seen += 1;
+            }
+            if let Some((normal, offset)) = known[place] {
                 side.normal = normal.as_vec3();
-                planes.add(normal, normal.dot(*point) + depth);
+                planes.add(normal, offset);
             }
         }
         if !planes.is_empty() {

@@ -15,7 +15,7 @@ pub(super) struct CornerNormals {
     all: OnceLock<Vec<[Vec3; 3]>>,
     /// The triangles whose corners have other normals than their vertices, and those normals; nothing once `all` is
     /// given.
-    apart: Vec<(usize, [Vec3; 3])>,
+    apart: Vec<Vec<(usize, [Vec3; 3])>>,
 }
 
 impl CornerNormals {
@@ -25,18 +25,21 @@ impl CornerNormals {
 }
 
 impl Mesh {
-    /// The same mesh, whose corners have the normals of their vertices, but for those of some triangles.
+    /// The same mesh, whose corners have the normals of their vertices, but for those of some triangles, given in
+    /// several lists.
     ///
     /// # Errors
     ///
     /// [`MeshError::Corners`] if there is no such triangle, [`MeshError::Normals`] if the vertices have no normals,
     /// and [`MeshError::NotFinite`] if a normal is NaN or infinite.
-    pub(crate) fn with_normals_apart(mut self, apart: Vec<(usize, [Vec3; 3])>) -> Result<Mesh, MeshError> {
+    pub(crate) fn with_normals_apart(mut self, apart: Vec<Vec<(usize, [Vec3; 3])>>) -> Result<Mesh, MeshError> {
         if self.normals().is_none() {
             return Err(MeshError::Normals { normals: 0, vertices: self.positions.len() });
         }
-        for (triangle, normals) in &apart {
-            self.fits_triangles("normals of corners", self.triangles.len().max(triangle + 1))?;
+        for (triangle, normals) in apart.iter().flatten() {
+            if *triangle >= self.triangles.len() {
+                self.fits_triangles("normals of corners", triangle + 1)?;
+            }
             if let Some(corner) = normals.iter().position(|normal| !normal.is_finite()) {
                 return Err(MeshError::NotFinite { what: "normal", triangle: *triangle, corner });
             }
@@ -54,7 +57,7 @@ impl Mesh {
             let normals = self.normals().unwrap_or_default();
             let mut all: Vec<[Vec3; 3]> =
                 self.triangles.iter().map(|&[a, b, c]| [a, b, c].map(|vertex| normals[vertex as usize])).collect();
-            for &(triangle, normals) in &corners.apart {
+            for &(triangle, normals) in corners.apart.iter().flatten() {
                 all[triangle] = normals;
             }
             all
@@ -71,17 +74,17 @@ mod tests {
     fn what_is_apart_is_listed_with_the_rest() {
         let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
         let mesh = Mesh::new(corners, vec![[0, 1, 2], [0, 3, 1], [1, 3, 2]]).unwrap();
-        assert!(mesh.clone().with_normals_apart(vec![(0, [Vec3::X; 3])]).is_err());
+        assert!(mesh.clone().with_normals_apart(vec![vec![(0, [Vec3::X; 3])]]).is_err());
         let mesh = mesh.with_normals(vec![Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_X]).unwrap();
-        assert!(mesh.clone().with_normals_apart(vec![(3, [Vec3::X; 3])]).is_err());
-        assert!(mesh.clone().with_normals_apart(vec![(1, [Vec3::NAN; 3])]).is_err());
-        let apart = mesh.clone().with_normals_apart(vec![(1, [Vec3::NEG_Z; 3])]).unwrap();
+        assert!(mesh.clone().with_normals_apart(vec![vec![(3, [Vec3::X; 3])]]).is_err());
+        assert!(mesh.clone().with_normals_apart(vec![vec![(1, [Vec3::NAN; 3])]]).is_err());
+        let apart = mesh.clone().with_normals_apart(vec![vec![(1, [Vec3::NEG_Z; 3])]]).unwrap();
         let all = [[Vec3::X, Vec3::Y, Vec3::Z], [Vec3::NEG_Z; 3], [Vec3::Y, Vec3::NEG_X, Vec3::Z]];
         assert_eq!(apart.corner_normals(), Some(&all[..]));
         assert_eq!(apart, mesh.clone().with_corner_normals(all.to_vec()).unwrap());
         assert_ne!(apart, mesh);
         // They do not follow other normals of the vertices.
-        let turned = mesh.with_normals_apart(vec![(1, [Vec3::NEG_Z; 3])]).unwrap().with_normals(vec![Vec3::Z; 4]);
+        let turned = mesh.with_normals_apart(vec![vec![(1, [Vec3::NEG_Z; 3])]]).unwrap().with_normals(vec![Vec3::Z; 4]);
         assert_eq!(turned.unwrap().corner_normals(), Some(&all[..]));
     }
 }

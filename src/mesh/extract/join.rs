@@ -133,7 +133,7 @@ impl<'a> Parts<'a> {
         let of_batch = |corners: &mut Corners, (batch, piece): (usize, &mut [[u32; 3]])| {
             let end: usize = counts[..=batch].iter().sum();
             let mut slots = piece.iter_mut();
-            let mut apart = Vec::new();
+            let mut apart = Vec::with_capacity(fans.listed(batch * BATCH..batch * BATCH + self.parts[batch].len()));
             for n in (batch * BATCH..).take(self.parts[batch].len()) {
                 meter.step()?;
                 self.list_triangles(n, corners, &fans, &mut slots)?;
@@ -146,7 +146,7 @@ impl<'a> Parts<'a> {
         };
         let apart: Result<Vec<_>, ExtractError> =
             pieces.into_par_iter().enumerate().map_init(Corners::new, of_batch).collect();
-        let apart = apart?.concat();
+        let apart = apart?;
         if fans.fans.is_empty() {
             return Ok(Mesh::new(positions, triangles)?.with_normals(normals)?.with_clamped_vertices(self.clamped));
         }

@@ -269,12 +269,12 @@ impl Known<'_> {
                 self.patches(wish.block, cell, case, &mut planes, &mut all)?;
             }
         }
-        let Disc { ring, within } = glued(&all)?;
         let [low, high] = span.corners();
         let at = settle(&planes, wish.at, low, high, 3);
         if planes.distance(at) > wish.allowed || wish.candidate.planes.distance(at) > wish.allowed {
             return None;
         }
+        let Disc { ring, within } = glued(&all)?;
         let at = self.samples.inside(at, span.low, span.high);
         Some(Region { block: wish.block, segments: ring, at, cells, within, span })
     }
@@ -295,7 +295,7 @@ impl Known<'_> {
             all.push(segments(candidate, sides).collect());
             return Some(());
         }
-        for outline in CellLoop::all(case, self.joined.of(self.samples, cell, case)) {
+        let mut add = |outline: CellLoop| {
             let (mut vertices, mut sides) = (Vec::with_capacity(outline.len()), Vec::with_capacity(outline.len()));
             for &edge in outline.edges() {
                 vertices.push(self.samples.vertex(cell, edge)?);
@@ -303,8 +303,13 @@ impl Known<'_> {
             let candidate = self.samples.candidate(cell, outline, &vertices, &mut sides);
             planes.append(&candidate.planes);
             all.push(segments(&candidate, &sides).collect());
+            Some(())
+        };
+        let faces = self.joined.of(self.samples, cell, case);
+        match CellLoop::of_table(case).filter(|_| faces == 0) {
+            Some(outline) => add(*outline),
+            None => CellLoop::all(case, faces).try_for_each(add),
         }
-        Some(())
     }
 }
 

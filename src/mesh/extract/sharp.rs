@@ -304,16 +304,20 @@ impl Fans {
         self.blocks.get(block).map_or(&[], |block| &block.cells)
     }
 
+    /// How many triangles the fans that are listed with some blocks have.
+    pub(super) fn listed(&self, blocks: Range<usize>) -> usize {
+        let fans = self.blocks.get(blocks).unwrap_or_default().iter().flat_map(|block| block.listed.clone());
+        fans.flat_map(|fan| self.of(fan)).map(|segment| 1 + usize::from(self.is_bent(segment))).sum()
+    }
+
     /// How many triangles a block has, which has `count` without fans.
     pub(super) fn count(&self, block: usize, count: usize) -> usize {
         let Some(of_block) = self.blocks.get(block) else { return count };
-        let listed =
-            of_block.listed.clone().flat_map(|fan| self.of(fan)).map(|segment| 1 + usize::from(self.is_bent(segment)));
         let table = CaseTable::get();
         let triangles = |case: u8| table.triangles(case).len();
         let gone: usize = of_block.opposite.iter().map(|&(_, case)| triangles(case)).sum();
         let come: usize = of_block.opposite.iter().map(|&(_, case)| triangles(!case)).sum();
-        count + listed.sum::<usize>() + come - of_block.dropped - gone
+        count + self.listed(block..block + 1) + come - of_block.dropped - gone
     }
 
     /// The cells of a block that have the patches of the opposite case, by number.
