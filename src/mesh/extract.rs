@@ -35,6 +35,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use self::join::Parts;
+use self::joined::proposals;
 use self::neighbours::Neighbours;
 use super::Features;
 use super::feature::Slope;
@@ -73,6 +74,19 @@ pub(crate) trait Sampler: Sync {
     /// Where the surface crosses edges, in the order of their blocks. `out` is as long as
     /// `edges`.
     fn roots(&self, scratch: &mut Self::Scratch, edges: &[EdgeRef], out: &mut [Root]);
+
+    /// Whether points of a block are inside, in the order of the points, added to `out`; whether it did. It is
+    /// asked right after the [`nodes`](Sampler::nodes) of the block. The default knows of none.
+    fn insides(
+        &self,
+        _scratch: &mut Self::Scratch,
+        _number: usize,
+        _block: [u32; 3],
+        _points: &[DVec3],
+        _out: &mut Vec<bool>,
+    ) -> bool {
+        false
+    }
 
     /// A box that the surface is in: features are held in it, where it cuts the cell of one. The default is all
     /// space.
@@ -147,7 +161,7 @@ pub(crate) fn extract<S: Sampler>(
 ) -> Result<Mesh, ExtractError> {
     run.install(|| {
         let neighbours = Neighbours::new(blocks)?;
-        let batches = sample_all(sampler, lattice, blocks, &run.stage(0.0, 0.9))?;
+        let batches = sample_all(sampler, lattice, blocks, features, &run.stage(0.0, 0.9))?;
         let parts = Parts::new(blocks, neighbours, batches)?;
         parts.check_faces()?;
         let mesh = parts.join(sampler, lattice, features, &run.stage(0.9, 1.0))?;
@@ -163,6 +177,8 @@ struct Part {
     /// The number of its first vertex: within the batch first, then in the mesh.
     first: u32,
     triangles: u32,
+    /// The upper ambiguous faces of its cells that would rather be joined, if that is asked for.
+    joins: Vec<(u16, u8)>,
 }
 
 /// What it leaves of consecutive blocks.
@@ -179,10 +195,11 @@ fn sample_all<S: Sampler>(
     sampler: &S,
     lattice: &Lattice,
     blocks: &[[u32; 3]],
+    features: Features,
     run: &Run,
 ) -> Result<Vec<Batch>, Cancelled> {
     let meter = Meter::new(run, blocks.len());
-    let worker = || Worker::new(sampler, lattice);
+    let worker = || Worker::new(sampler, lattice, features);
     let batches = blocks.par_chunks(BATCH).enumerate();
     batches.map_init(worker, |worker, (n, blocks)| worker.sample(n * BATCH, blocks, &meter)).collect()
 }
@@ -191,6 +208,7 @@ fn sample_all<S: Sampler>(
 struct Worker<'a, S: Sampler> {
     sampler: &'a S,
     lattice: &'a Lattice,
+    features: Features,
     scratch: S::Scratch,
     values: Box<[f32; NODES]>,
     edges: Vec<EdgeRef>,
@@ -198,9 +216,10 @@ struct Worker<'a, S: Sampler> {
 }
 
 impl<'a, S: Sampler> Worker<'a, S> {
-    fn new(sampler: &'a S, lattice: &'a Lattice) -> Self {
+    fn new(sampler: &'a S, lattice: &'a Lattice, features: Features) -> Self {
         let scratch = sampler.scratch();
-        Worker { sampler, lattice, scratch, values: Box::new([0.0; NODES]), edges: Vec::new(), roots: Vec::new() }
+        let values = Box::new([0.0; NODES]);
+        Worker { sampler, lattice, features, scratch, values, edges: Vec::new(), roots: Vec::new() }
     }
 
     /// Samples the blocks from number `start` on.
@@ -216,7 +235,11 @@ impl<'a, S: Sampler> Worker<'a, S> {
             let rows = list_edges(&signs, &self.values, number as u32, block, &mut self.edges);
             let mut triangles = 0;
             for_each_cell(&signs, |_, case| triangles += table.triangles(case).len() as u32);
-            parts.push(Part { signs, rows, first, triangles });
+            let joins = match self.features {
+                Features::Smooth => Vec::new(),
+                Features::Sharp => proposals(self.sampler, &mut self.scratch, self.lattice, (number, block), &signs),
+            };
+            parts.push(Part { signs, rows, first, triangles, joins });
         }
         self.roots.clear();
         self.roots.resize(self.edges.len(), Root::default());

@@ -293,6 +293,26 @@ impl Sampler for SolidSampler<'_> {
         }
     }
 
+    fn insides(
+        &self,
+        scratch: &mut Scratch,
+        number: usize,
+        block: [u32; 3],
+        points: &[DVec3],
+        out: &mut Vec<bool>,
+    ) -> bool {
+        let group = self.groups[number];
+        let Scratch { evaluator, tapes, single, slopes: [values, ..], .. } = scratch;
+        let Some((_, tape)) = tapes.iter().rfind(|(other, _)| *other == group) else { return false };
+        let origin = self.lattice.node(block[0], block[1], block[2]);
+        place(points.iter().map(|p| *p - origin), single);
+        values.resize(points.len(), 0.0);
+        let [x, y, z] = &*single;
+        evaluator.values(tape, x, y, z, values);
+        out.extend(values.iter().map(|value| *value > 0.0));
+        true
+    }
+
     fn roots(&self, scratch: &mut Scratch, edges: &[EdgeRef], out: &mut [Root]) {
         let Scratch { evaluator, tapes, finder, order, edges: sorted, roots, .. } = scratch;
         let group = |edge: &EdgeRef| self.groups[edge.block as usize];
@@ -350,15 +370,7 @@ impl Sampler for SolidSampler<'_> {
         let (low, high) = (node(0), node(BLOCK as u32));
         tape.recentre(low);
         // The program holds in the block and nowhere else.
-        let local = points.iter().map(|p| p.clamp(low, high) - low);
-        for axis in &mut scratch.single {
-            axis.clear();
-        }
-        for p in local {
-            for axis in 0..3 {
-                scratch.single[axis].push(p[axis] as f32);
-            }
-        }
+        place(points.iter().map(|p| p.clamp(low, high) - low), &mut scratch.single);
         for slope in &mut scratch.slopes {
             slope.resize(points.len(), 0.0);
         }
@@ -372,5 +384,17 @@ impl Sampler for SolidSampler<'_> {
             }),
         );
         true
+    }
+}
+
+/// The coordinates of points, axis by axis.
+fn place(points: impl Iterator<Item = DVec3>, [x, y, z]: &mut [Vec<f32>; 3]) {
+    x.clear();
+    y.clear();
+    z.clear();
+    for p in points {
+        x.push(p.x as f32);
+        y.push(p.y as f32);
+        z.push(p.z as f32);
     }
 }

@@ -175,6 +175,10 @@ impl<'a> Parts<'a> {
         if self.part(n).triangles == 0 {
             return Ok(());
         }
+        if let Some(plain) = fans.plain(n) {
+            plain.iter().zip(slots).for_each(|(triangle, slot)| *slot = *triangle);
+            return Ok(());
+        }
         if !self.number(n, corners) {
             let what = "a vertex is missing in the neighbour that owns it";
             return Err(ExtractError::Blocks { block: self.blocks[n], what });

@@ -39,7 +39,7 @@ use rayon::prelude::*;
 
 use super::Sampler;
 use super::join::Corners;
-use super::joined::{Joined, proposals};
+use super::joined::Joined;
 use super::region::{Region, Span, regions};
 use super::samples::{Samples, cell_number, split_cell};
 use crate::mesh::feature::{Candidate, Side, is_smooth, refine};
@@ -104,6 +104,8 @@ struct OfBlock {
     dropped: usize,
     /// The cells that have the patches of the opposite case, by number; ascending.
     opposite: Vec<(u16, u8)>,
+    /// The triangles of the cells that have those of the table, if they are listed already.
+    plain: Option<Vec<[u32; 3]>>,
 }
 
 /// Finds the cells that hold creases and corners, and gives them fans.
@@ -114,12 +116,11 @@ pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) ->
         return Ok(Fans::default());
     }
     let blocks = || (0..spread.len()).into_par_iter();
-    let of_block = |scratch: &mut S::Scratch, n: usize| {
-        run.check()?;
-        Ok(if spread[n] { proposals(samples, sampler, scratch, n) } else { Vec::new() })
-    };
-    let proposed: Result<Vec<_>, Cancelled> = blocks().map_init(|| sampler.scratch(), of_block).collect();
-    let joined = Joined::new(samples, proposed?);
+    let proposed = (0..spread.len()).map(|n| match spread[n] {
+        true => samples.parts.part(n).joins.clone(),
+        false => Vec::new(),
+    });
+    let joined = Joined::new(samples, proposed.collect());
     let meter = Meter::new(run, spread.len());
     let of_block = |(scratch, corners): &mut (S::Scratch, Corners), n: usize| {
         meter.step()?;
@@ -151,6 +152,8 @@ pub(super) struct Special {
     pub(super) sides: Vec<Side>,
     /// Those with the patches of the opposite case, by number, and their cases.
     opposite: Vec<(u16, u8)>,
+    /// The triangles of all other cells, in their order, if the block has been looked at.
+    plain: Option<Vec<[u32; 3]>>,
 }
 
 /// The cells of block `n` around which the normals spread, or faces are joined.
@@ -162,6 +165,13 @@ fn special(samples: &Samples<'_>, joined: &Joined, n: usize, corners: &mut Corne
     }
     let block = samples.blocks()[n];
     let has_joined = joined.concerns(samples, n);
+    let table = CaseTable::get();
+    let mut plain = Vec::with_capacity(samples.parts.part(n).triangles as usize);
+    let corners = &*corners;
+    let mut list = |within, case| {
+        let corner = |edge| corners.vertex(within, edge);
+        plain.extend(table.triangles(case).iter().map(|&[a, b, c]| [corner(a), corner(b), corner(c)]));
+    };
     let (mut vertices, mut normals) = ([0; LONGEST], [Vec3::ZERO; LONGEST]);
     for_each_cell(&samples.parts.part(n).signs, |within, case| {
         let [i, j, k] = within.map(|n| n as u32);
@@ -175,8 +185,9 @@ fn special(samples: &Samples<'_>, joined: &Joined, n: usize, corners: &mut Corne
             derived.as_ref()
         };
         let Some(outline) = outline else {
-            if faces != 0 {
-                found.opposite.push((cell_number(within), case));
+            match faces {
+                0 => list(within, case),
+                _ => found.opposite.push((cell_number(within), case)),
             }
             return;
         };
@@ -188,8 +199,11 @@ fn special(samples: &Samples<'_>, joined: &Joined, n: usize, corners: &mut Corne
         // The table knows nothing of joined faces.
         if faces != 0 || !is_smooth(&normals[..count]) {
             found.candidates.push(samples.candidate(cell, *outline, &vertices[..count], &mut found.sides));
+        } else {
+            list(within, case);
         }
     });
+    found.plain = Some(plain);
     found
 }
 
@@ -222,12 +236,16 @@ impl Fans {
         // A region is listed with the block of the candidate that asked for it.
         let mut regions = regions.into_iter().peekable();
         let table = CaseTable::get();
-        for (block, Special { candidates, sides, mut opposite }) in special.into_iter().enumerate() {
+        for (block, Special { candidates, sides, mut opposite, plain }) in special.into_iter().enumerate() {
             run.check()?;
             let (taken, rest) = in_region.split_at(in_region.partition_point(|&(other, _)| other == block));
             in_region = rest;
             let is_free = |number: u16| taken.binary_search(&(block, number)).is_err();
             opposite.retain(|&(number, _)| is_free(number));
+            // Regions may hold other cells than candidates.
+            let number = |candidate: &Candidate| cell_number(split_cell(candidate.cell).1);
+            let is_candidate = |&(_, cell): &(usize, u16)| candidates.binary_search_by_key(&cell, number).is_ok();
+            all.blocks[block].plain = plain.filter(|_| opposite.is_empty() && taken.iter().all(is_candidate));
             all.blocks[block].opposite = opposite;
             all.blocks[block].cells.reserve_exact(candidates.len() + taken.len());
             let start = all.fans.len();
@@ -297,6 +315,11 @@ impl Fans {
         let between = between.into_iter().map(Vec3::normalize_or_zero);
         let centres = (0..self.fans.len()).map(move |fan| (self.fans[fan].at, normal(fan)));
         centres.chain(self.points.iter().copied().zip(between))
+    }
+
+    /// The triangles of a block's cells that have those of the table, if they are listed already.
+    pub(super) fn plain(&self, block: usize) -> Option<&[[u32; 3]]> {
+        self.blocks.get(block)?.plain.as_deref()
     }
 
     /// The cells of a block that have a fan, by number, and which fan.
