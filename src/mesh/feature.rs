@@ -55,17 +55,19 @@ pub(crate) struct Slope {
 /// Whether no two of the normals of a cell's vertices differ as those of a crease do.
 #[inline]
 pub(super) fn is_smooth(normals: &[Vec3]) -> bool {
-    let Some((first, rest)) = normals.split_first() else { return true };
-    let mut least = 1.0f32;
-    for normal in rest {
-        least = least.min(first.dot(*normal));
+    let (mut sum, mut least) = (Vec3::ZERO, f32::INFINITY);
+    for normal in normals {
+        sum += *normal;
     }
-    // If all are within half the angle of the first, no two differ by more than it.
-    if least > HALF_SMOOTH || least <= SMOOTH {
-        return least > SMOOTH;
+    for normal in normals {
+        least = least.min(sum.dot(*normal));
     }
-    for (n, a) in rest.iter().enumerate() {
-        for b in &rest[..n] {
+    // If all are within half the angle of their mean, no two differ by more than it.
+    if least > HALF_SMOOTH * sum.length() {
+        return true;
+    }
+    for (n, a) in normals.iter().enumerate() {
+        for b in &normals[..n] {
             if a.dot(*b) <= SMOOTH {
                 return false;
             }

@@ -43,15 +43,15 @@ impl CellLoop {
     /// inside corners are joined.
     #[inline]
     pub(super) fn single(case: u8, joined: u8) -> Option<CellLoop> {
-        if joined == 0 { CellLoop::of_table(case).copied() } else { CellLoop::derive(case, joined) }
+        if joined == 0 { CellLoop::table()[usize::from(case)] } else { CellLoop::derive(case, joined) }
     }
 
-    /// The loop that a case has in the table, if it has one and no more.
+    /// The loops that cases have in the table, if they have one and no more.
     #[inline]
-    pub(super) fn of_table(case: u8) -> Option<&'static CellLoop> {
-        static LOOPS: LazyLock<Vec<Option<CellLoop>>> =
-            LazyLock::new(|| (0..=255).map(|case| CellLoop::derive(case, 0)).collect());
-        LOOPS[usize::from(case)].as_ref()
+    pub(super) fn table() -> &'static [Option<CellLoop>; 256] {
+        static LOOPS: LazyLock<[Option<CellLoop>; 256]> =
+            LazyLock::new(|| std::array::from_fn(|case| CellLoop::derive(case as u8, 0)));
+        &LOOPS
     }
 
     /// All loops of a case.

@@ -11,8 +11,8 @@ use crate::geom::Mesh;
 use crate::mesh::Features;
 use crate::mesh::lattice::Lattice;
 use crate::mesh::meter::Meter;
-use crate::mesh::signs::{BLOCK, SIDE, for_each_cell, is_mixed};
-use crate::mesh::table::{CaseTable, EDGE_CORNERS, edge_axis};
+use crate::mesh::signs::{BLOCK, NODES, SIDE, for_each_cell, is_mixed};
+use crate::mesh::table::CaseTable;
 use crate::run::{Cancelled, Run};
 
 /// All blocks after the first pass.
@@ -193,7 +193,7 @@ impl<'a> Parts<'a> {
                 return;
             }
             let ids = corners.of_cell(cell);
-            let corner = |edge: u8| ids[corners.offsets[usize::from(edge)]];
+            let corner = |edge: u8| ids[usize::from(edge & 15)];
             if opposite.next_if(|(other, _)| *other == number).is_some() {
                 for (&[a, b, c], slot) in table.triangles(!case).iter().zip(&mut *slots) {
                     *slot = [corner(a), corner(c), corner(b)];
@@ -262,30 +262,30 @@ impl<'a> Parts<'a> {
 pub(super) struct Corners {
     /// By axis, then by the lower node, x fastest; what lies on edges that are not crossed has
     /// no meaning.
-    ids: Box<[u32; 3 * SIDE * SIDE * SIDE]>,
-    /// Where the edges of a cell are, from the place of its first node.
-    offsets: [usize; 12],
+    ids: Box<[u32; 3 * NODES]>,
 }
 
 impl Corners {
     pub(super) fn new() -> Corners {
-        let offset = |edge: usize| {
-            let corner = usize::from(EDGE_CORNERS[edge][0]);
-            Corners::place(usize::from(edge_axis(edge as u8)), [corner & 1, corner >> 1 & 1, corner >> 2])
-        };
-        Corners { ids: Box::new([0; 3 * SIDE * SIDE * SIDE]), offsets: std::array::from_fn(offset) }
+        Corners { ids: Box::new([0; 3 * NODES]) }
     }
 
-    /// The list from the place of a cell's first node on.
+    /// The vertices on the edges of a cell, and four numbers without meaning: an index of 4 bits is in range.
     #[inline(always)]
-    fn of_cell(&self, [i, j, k]: [usize; 3]) -> &[u32] {
-        &self.ids[i + SIDE * (j + SIDE * k)..]
-    }
-
-    /// The vertex on an edge of a cell.
-    #[inline(always)]
-    pub(super) fn vertex(&self, cell: [usize; 3], edge: u8) -> u32 {
-        self.of_cell(cell)[self.offsets[usize::from(edge)]]
+    pub(super) fn of_cell(&self, cell: [usize; 3]) -> [u32; 16] {
+        // Along each axis, from the lower corners of the edges.
+        const X: usize = 0;
+        const Y: usize = NODES;
+        const Z: usize = 2 * NODES;
+        const J: usize = SIDE;
+        const K: usize = SIDE * SIDE;
+        let ids = &self.ids[Corners::place(0, cell)..][..Z + J + 2];
+        let [x, y, z] = [
+            [ids[X], ids[X + J], ids[X + K], ids[X + J + K]],
+            [ids[Y], ids[Y + 1], ids[Y + K], ids[Y + 1 + K]],
+            [ids[Z], ids[Z + 1], ids[Z + J], ids[Z + 1 + J]],
+        ];
+        [x[0], x[1], x[2], x[3], y[0], y[1], y[2], y[3], z[0], z[1], z[2], z[3], 0, 0, 0, 0]
     }
 
     #[inline(always)]

@@ -306,8 +306,8 @@ impl Known<'_> {
             Some(())
         };
         let faces = self.joined.of(self.samples, cell, case);
-        match CellLoop::of_table(case).filter(|_| faces == 0) {
-            Some(outline) => add(*outline),
+        match CellLoop::single(case, faces) {
+            Some(outline) => add(outline),
             None => CellLoop::all(case, faces).try_for_each(add),
         }
     }

@@ -167,40 +167,37 @@ fn special(samples: &Samples<'_>, joined: &Joined, n: usize, corners: &mut Corne
     let has_joined = joined.concerns(samples, n);
     let table = CaseTable::get();
     let mut plain = Vec::with_capacity(samples.parts.part(n).triangles as usize);
-    let corners = &*corners;
-    let mut list = |within, case| {
-        let corner = |edge| corners.vertex(within, edge);
-        plain.extend(table.triangles(case).iter().map(|&[a, b, c]| [corner(a), corner(b), corner(c)]));
-    };
+    let loops = CellLoop::table();
     let (mut vertices, mut normals) = ([0; LONGEST], [Vec3::ZERO; LONGEST]);
     for_each_cell(&samples.parts.part(n).signs, |within, case| {
-        let [i, j, k] = within.map(|n| n as u32);
-        let cell = [block[0] + i, block[1] + j, block[2] + k];
+        let [i, j, k] = within;
+        let cell = [block[0] + i as u32, block[1] + j as u32, block[2] + k as u32];
         let faces = if has_joined { joined.of(samples, cell, case) } else { 0 };
+        let ids = corners.of_cell(within);
         let derived;
         let outline = if faces == 0 {
-            CellLoop::of_table(case)
+            loops[usize::from(case)].as_ref()
         } else {
             derived = CellLoop::single(case, faces);
             derived.as_ref()
         };
-        let Some(outline) = outline else {
-            match faces {
-                0 => list(within, case),
-                _ => found.opposite.push((cell_number(within), case)),
+        if let Some(outline) = outline {
+            let count = outline.len();
+            for (n, &edge) in outline.edges().iter().enumerate() {
+                vertices[n] = ids[usize::from(edge & 15)];
+                normals[n] = samples.normal(vertices[n]);
             }
+            // The table knows nothing of joined faces.
+            if faces != 0 || !is_smooth(&normals[..count]) {
+                found.candidates.push(samples.candidate(cell, *outline, &vertices[..count], &mut found.sides));
+                return;
+            }
+        } else if faces != 0 {
+            found.opposite.push((cell_number(within), case));
             return;
-        };
-        let count = outline.len();
-        for (n, &edge) in outline.edges().iter().enumerate() {
-            vertices[n] = corners.vertex(within, edge);
-            normals[n] = samples.normal(vertices[n]);
         }
-        // The table knows nothing of joined faces.
-        if faces != 0 || !is_smooth(&normals[..count]) {
-            found.candidates.push(samples.candidate(cell, *outline, &vertices[..count], &mut found.sides));
-        } else {
-            list(within, case);
+        for &[a, b, c] in table.triangles(case) {
+            plain.push([ids[usize::from(a & 15)], ids[usize::from(b & 15)], ids[usize::from(c & 15)]]);
         }
     });
     found.plain = Some(plain);
