@@ -18,6 +18,7 @@ mod measure;
 use glam::{DVec3, Vec3};
 
 use self::attributes::Attributes;
+pub(crate) use self::corner_normals::Apart;
 use self::corner_normals::CornerNormals;
 use crate::bounds::Bounds;
 

@@ -35,11 +35,12 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use self::join::Parts;
-use self::joined::proposals;
+use self::joined::{UPPER, proposals};
 use self::neighbours::Neighbours;
 use super::Features;
 use super::feature::Slope;
 use super::lattice::Lattice;
+use super::loops::ambiguous_faces;
 use super::meter::Meter;
 use super::signs::{EdgeRef, NODES, Rows, Signs, for_each_cell, list_edges};
 use super::table::CaseTable;
@@ -224,7 +225,7 @@ impl<'a, S: Sampler> Worker<'a, S> {
 
     /// Samples the blocks from number `start` on.
     fn sample(&mut self, start: usize, blocks: &[[u32; 3]], meter: &Meter<'_>) -> Result<Batch, Cancelled> {
-        let table = CaseTable::get();
+        let (table, faces) = (CaseTable::get(), ambiguous_faces());
         self.edges.clear();
         let mut parts = Vec::with_capacity(blocks.len());
         for (number, &block) in (start..).zip(blocks) {
@@ -233,11 +234,15 @@ impl<'a, S: Sampler> Worker<'a, S> {
             let signs = Signs::new(&self.values);
             let first = self.edges.len() as u32;
             let rows = list_edges(&signs, &self.values, number as u32, block, &mut self.edges);
-            let mut triangles = 0;
-            for_each_cell(&signs, |_, case| triangles += table.triangles(case).len() as u32);
-            let joins = match self.features {
-                Features::Smooth => Vec::new(),
-                Features::Sharp => proposals(self.sampler, &mut self.scratch, self.lattice, (number, block), &signs),
+            let (mut triangles, mut ambiguous) = (0, 0);
+            for_each_cell(&signs, |_, case| {
+                triangles += table.triangles(case).len() as u32;
+                ambiguous |= faces[usize::from(case)];
+            });
+            let joins = if ambiguous & UPPER != 0 && self.features == Features::Sharp {
+                proposals(self.sampler, &mut self.scratch, self.lattice, (number, block), &signs)
+            } else {
+                Vec::new()
             };
             parts.push(Part { signs, rows, first, triangles, joins });
         }

@@ -7,7 +7,7 @@ use super::neighbours::Neighbours;
 use super::samples::{Samples, cell_number};
 use super::sharp::{self, Fans};
 use super::{BATCH, Batch, ExtractError, Part, Sampler};
-use crate::geom::Mesh;
+use crate::geom::{Apart, Mesh};
 use crate::mesh::Features;
 use crate::mesh::lattice::Lattice;
 use crate::mesh::meter::Meter;
@@ -133,14 +133,17 @@ impl<'a> Parts<'a> {
         let of_batch = |corners: &mut Corners, (batch, piece): (usize, &mut [[u32; 3]])| {
             let end: usize = counts[..=batch].iter().sum();
             let mut slots = piece.iter_mut();
-            let mut apart = Vec::with_capacity(fans.listed(batch * BATCH..batch * BATCH + self.parts[batch].len()));
-            for n in (batch * BATCH..).take(self.parts[batch].len()) {
+            let blocks = batch * BATCH..batch * BATCH + self.parts[batch].len();
+            let mut apart = Apart { runs: Vec::new(), normals: Vec::with_capacity(fans.listed(blocks.clone())) };
+            for n in blocks {
                 meter.step()?;
                 self.list_triangles(n, corners, &fans, &mut slots)?;
+                let first = end - slots.len();
                 fans.list(n, self.vertices as u32, [&positions, &normals], |triangle, corners| {
-                    apart.push((end - slots.len(), corners));
+                    apart.normals.push(corners);
                     slots.next().into_iter().for_each(|slot| *slot = triangle);
                 });
+                apart.runs.extend(Some(first..end - slots.len()).filter(|run| !run.is_empty()));
             }
             Ok::<_, ExtractError>(apart)
         };
@@ -157,8 +160,8 @@ impl<'a> Parts<'a> {
                 let [a, b, c] = *slot;
                 *slot = [number(a), number(b), number(c)];
             });
-            positions = kept(&positions, &fans.unused);
-            normals = kept(&normals, &fans.unused);
+            keep(&mut positions, &fans.unused);
+            keep(&mut normals, &fans.unused);
         }
         let mesh = Mesh::new(positions, triangles)?.with_normals(normals)?.with_normals_apart(apart)?;
         Ok(mesh.with_clamped_vertices(self.clamped))
@@ -337,15 +340,16 @@ fn used(count: usize, unused: &[u32]) -> Vec<u32> {
     numbers
 }
 
-/// A list without the ones that are not used, in ascending order.
-fn kept(list: &[Vec3], unused: &[u32]) -> Vec<Vec3> {
-    let mut all = Vec::with_capacity(list.len());
-    let mut start = 0;
-    for end in unused.iter().map(|&n| n as usize).chain([list.len()]) {
-        all.extend_from_slice(&list[start..end]);
-        start = end + 1;
+/// Takes the ones that are not used, in ascending order, out of a list.
+fn keep(list: &mut Vec<Vec3>, unused: &[u32]) {
+    let ends = unused.iter().map(|&n| n as usize).skip(1).chain([list.len()]);
+    let mut kept = unused.first().map_or(list.len(), |&n| n as usize);
+    for (&gone, end) in unused.iter().zip(ends) {
+        let start = gone as usize + 1;
+        list.copy_within(start..end, kept);
+        kept += end - start;
     }
-    all
+    list.truncate(kept);
 }
 
 /// Cuts a slice into consecutive pieces of the given lengths, whose sum is its length.

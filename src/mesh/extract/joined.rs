@@ -24,6 +24,9 @@ pub(super) struct Joined {
     upper: Vec<Vec<(u16, u8)>>,
 }
 
+/// The upper faces of a cell, as bits.
+pub(super) const UPPER: u8 = 0b10_1010;
+
 /// The upper ambiguous faces of a block's cells that would rather be joined. The block is given by its number and
 /// its first cell.
 pub(super) fn proposals<S: Sampler>(
@@ -33,10 +36,10 @@ pub(super) fn proposals<S: Sampler>(
     (number, block): (usize, [u32; 3]),
     signs: &Signs,
 ) -> Vec<(u16, u8)> {
-    const UPPER: u8 = 0b10_1010;
+    let all = ambiguous_faces();
     let (mut faces, mut middles, mut found) = (Vec::new(), Vec::new(), Vec::new());
     for_each_cell(signs, |[i, j, k], case| {
-        let ambiguous = ambiguous_faces(case) & UPPER;
+        let ambiguous = all[usize::from(case)] & UPPER;
         if ambiguous == 0 {
             return;
         }
@@ -80,7 +83,7 @@ impl Joined {
         while let Some(cell) = cells.pop() {
             let case = samples.case(cell);
             let faces = joined.of(samples, cell, case);
-            if faces == 0 || faces == ambiguous_faces(case) || CellLoop::single(case, faces).is_some() {
+            if faces == 0 || faces == ambiguous_faces()[usize::from(case)] || CellLoop::single(case, faces).is_some() {
                 continue;
             }
             for face in (0..6).filter(|face| faces >> face & 1 == 1) {
@@ -107,7 +110,7 @@ impl Joined {
     /// The joined faces of a cell of the given case, as bits.
     #[inline]
     pub(super) fn of(&self, samples: &Samples<'_>, cell: [u32; 3], case: u8) -> u8 {
-        let mut ambiguous = ambiguous_faces(case);
+        let mut ambiguous = ambiguous_faces()[usize::from(case)];
         let mut bits = 0;
         while ambiguous != 0 {
             let face = ambiguous.trailing_zeros() as usize;
