@@ -40,6 +40,7 @@ pub(super) struct Signs([u16; SIDE * SIDE]);
 /// Eight bytes of 0 or 1 as the bits of one, the first lowest.
 ///
 /// A product does it: its term 2^(56 − 7 i) moves byte i to bit 56 + i, and no two terms meet.
+#[inline(always)]
 pub(super) fn gathered(bytes: [u8; 8]) -> u8 {
     const GATHER: u64 = 0x0102_0408_1020_4080;
     (u64::from_le_bytes(bytes).wrapping_mul(GATHER) >> 56) as u8
