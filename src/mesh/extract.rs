@@ -162,8 +162,7 @@ pub(crate) fn extract<S: Sampler>(
 ) -> Result<Mesh, ExtractError> {
     run.install(|| {
         let neighbours = Neighbours::new(blocks)?;
-        let batches = sample_all(sampler, lattice, blocks, features, &run.stage(0.0, 0.9))?;
-        let parts = Parts::new(blocks, neighbours, batches)?;
+        let parts = sample_all(sampler, lattice, (blocks, neighbours), features, &run.stage(0.0, 0.9))?;
         parts.check_faces()?;
         let mesh = parts.join(sampler, lattice, features, &run.stage(0.9, 1.0))?;
         run.report(1.0);
@@ -191,18 +190,29 @@ struct Batch {
     clamped: usize,
 }
 
+/// Batches for each thread that are sampled before their vertices join those of all: enough for threads to share work
+/// evenly, and little memory for vertices that are held twice.
+const WAVE: usize = 16;
+
 /// The first pass.
-fn sample_all<S: Sampler>(
+fn sample_all<'a, S: Sampler>(
     sampler: &S,
     lattice: &Lattice,
-    blocks: &[[u32; 3]],
+    (blocks, neighbours): (&'a [[u32; 3]], Neighbours),
     features: Features,
     run: &Run,
-) -> Result<Vec<Batch>, Cancelled> {
+) -> Result<Parts<'a>, ExtractError> {
     let meter = Meter::new(run, blocks.len());
-    let worker = || Worker::new(sampler, lattice, features);
-    let batches = blocks.par_chunks(BATCH).enumerate();
-    batches.map_init(worker, |worker, (n, blocks)| worker.sample(n * BATCH, blocks, &meter)).collect()
+    let mut all = Parts::new(blocks, neighbours);
+    let wave = WAVE * BATCH * rayon::current_num_threads().max(1);
+    for (first, blocks) in (0..).step_by(wave).zip(blocks.chunks(wave)) {
+        let worker = || Worker::new(sampler, lattice, features);
+        let batches = blocks.par_chunks(BATCH).enumerate();
+        let sample = |worker: &mut Worker<'_, S>, (n, blocks)| worker.sample(first + n * BATCH, blocks, &meter);
+        let batches: Result<Vec<Batch>, Cancelled> = batches.map_init(worker, sample).collect();
+        batches?.into_iter().try_for_each(|batch| all.add(batch))?;
+    }
+    Ok(all)
 }
 
 /// One thread's means to sample blocks.

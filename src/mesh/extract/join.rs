@@ -13,7 +13,7 @@ use crate::mesh::lattice::Lattice;
 use crate::mesh::meter::Meter;
 use crate::mesh::signs::{BLOCK, NODES, SIDE, for_each_cell, is_mixed};
 use crate::mesh::table::CaseTable;
-use crate::run::{Cancelled, Run};
+use crate::run::Run;
 
 /// All blocks after the first pass.
 pub(super) struct Parts<'a> {
@@ -21,43 +21,35 @@ pub(super) struct Parts<'a> {
     pub(super) neighbours: Neighbours,
     /// In batches, as they were sampled.
     parts: Vec<Vec<Part>>,
-    positions: Vec<Vec<Vec3>>,
-    normals: Vec<Vec<Vec3>>,
-    vertices: usize,
+    positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    /// How many of the vertices are moved to keep clear of nodes.
     clamped: usize,
 }
 
 impl<'a> Parts<'a> {
-    /// Numbers the vertices.
-    pub(super) fn new(
-        blocks: &'a [[u32; 3]],
-        neighbours: Neighbours,
-        batches: Vec<Batch>,
-    ) -> Result<Parts<'a>, ExtractError> {
-        let count: u64 = batches.iter().map(|batch| batch.positions.len() as u64).sum();
+    /// Some blocks, before the first pass.
+    pub(super) fn new(blocks: &'a [[u32; 3]], neighbours: Neighbours) -> Parts<'a> {
+        let (parts, positions, normals) = (Vec::new(), Vec::new(), Vec::new());
+        Parts { blocks, neighbours, parts, positions, normals, clamped: 0 }
+    }
+
+    /// Adds what the first pass leaves of the next blocks, and numbers their vertices.
+    pub(super) fn add(&mut self, batch: Batch) -> Result<(), ExtractError> {
+        let Batch { mut parts, positions, normals, clamped } = batch;
+        let start = self.positions.len();
+        let count = start as u64 + positions.len() as u64;
         if count > u64::from(u32::MAX) {
             return Err(ExtractError::TooLarge { count });
         }
-        let mut all = Parts {
-            blocks,
-            neighbours,
-            parts: Vec::with_capacity(batches.len()),
-            positions: Vec::with_capacity(batches.len()),
-            normals: Vec::with_capacity(batches.len()),
-            vertices: count as usize,
-            clamped: batches.iter().map(|batch| batch.clamped).sum(),
-        };
-        let mut start = 0;
-        for Batch { mut parts, positions, normals, .. } in batches {
-            for part in &mut parts {
-                part.first += start;
-            }
-            start += positions.len() as u32;
-            all.parts.push(parts);
-            all.positions.push(positions);
-            all.normals.push(normals);
+        for part in &mut parts {
+            part.first += start as u32;
         }
-        Ok(all)
+        self.parts.push(parts);
+        self.positions.extend_from_slice(&positions);
+        self.normals.extend_from_slice(&normals);
+        self.clamped += clamped;
+        Ok(())
     }
 
     #[inline]
@@ -100,11 +92,8 @@ impl<'a> Parts<'a> {
         features: Features,
         run: &Run,
     ) -> Result<Mesh, ExtractError> {
-        let (positions, normals) = (std::mem::take(&mut self.positions), std::mem::take(&mut self.normals));
-        let (positions, normals) =
-            rayon::join(|| concatenated(positions, self.vertices, run), || concatenated(normals, self.vertices, run));
-        let (mut positions, mut normals) = (positions?, normals?);
-
+        let (mut positions, mut normals) = (std::mem::take(&mut self.positions), std::mem::take(&mut self.normals));
+        let vertices = positions.len();
         let fans = match features {
             Features::Smooth => Fans::default(),
             Features::Sharp => {
@@ -139,7 +128,7 @@ impl<'a> Parts<'a> {
                 meter.step()?;
                 self.list_triangles(n, corners, &fans, &mut slots)?;
                 let first = end - slots.len();
-                fans.list(n, self.vertices as u32, [&positions, &normals], |triangle, corners| {
+                fans.list(n, vertices as u32, [&positions, &normals], |triangle, corners| {
                     apart.normals.push(corners);
                     slots.next().into_iter().for_each(|slot| *slot = triangle);
                 });
@@ -151,6 +140,8 @@ impl<'a> Parts<'a> {
             pieces.into_par_iter().enumerate().map_init(Corners::new, of_batch).collect();
         let apart = apart?;
         if fans.fans.is_empty() {
+            positions.shrink_to_fit();
+            normals.shrink_to_fit();
             return Ok(Mesh::new(positions, triangles)?.with_normals(normals)?.with_clamped_vertices(self.clamped));
         }
         if !fans.unused.is_empty() {
@@ -163,6 +154,8 @@ impl<'a> Parts<'a> {
             keep(&mut positions, &fans.unused);
             keep(&mut normals, &fans.unused);
         }
+        positions.shrink_to_fit();
+        normals.shrink_to_fit();
         let mesh = Mesh::new(positions, triangles)?.with_normals(normals)?.with_normals_apart(apart)?;
         Ok(mesh.with_clamped_vertices(self.clamped))
     }
@@ -187,6 +180,18 @@ impl<'a> Parts<'a> {
             return Err(ExtractError::Blocks { block: self.blocks[n], what });
         }
         let table = CaseTable::get();
+        if fans.cells(n).is_empty() && fans.opposite(n).is_empty() {
+            for_each_cell(&self.part(n).signs, |cell, case| {
+                let ids = corners.of_cell(cell);
+                let corner = |edge: u8| ids[usize::from(edge & 15)];
+                for &[a, b, c] in table.triangles(case) {
+                    if let Some(slot) = slots.next() {
+                        *slot = [corner(a), corner(b), corner(c)];
+                    }
+                }
+            });
+            return Ok(());
+        }
         let mut with_fan = fans.cells(n).iter().peekable();
         let mut opposite = fans.opposite(n).iter().peekable();
         for_each_cell(&self.part(n).signs, |cell, case| {
@@ -316,16 +321,6 @@ impl Corners {
             }
         }
     }
-}
-
-/// The pieces one after the other, each given back as soon as it is copied.
-fn concatenated(pieces: Vec<Vec<Vec3>>, length: usize, run: &Run) -> Result<Vec<Vec3>, Cancelled> {
-    let mut all = Vec::with_capacity(length);
-    for piece in pieces {
-        run.check()?;
-        all.extend_from_slice(&piece);
-    }
-    Ok(all)
 }
 
 /// The numbers of vertices when the ones that are not used, in ascending order, are gone.
