@@ -152,8 +152,13 @@ pub(super) fn list_edges(
     for k in 0..BLOCK {
         for j in 0..BLOCK {
             rows.0[BLOCK * k + j] = (edges.len() - before) as u16;
+            let all = signs.crossed(j, k);
+            if all[0] | all[1] | all[2] == 0 {
+                continue;
+            }
             let row = signs.row(j, k);
-            for (axis, mut crossed) in signs.crossed(j, k).into_iter().enumerate() {
+            for axis in 0..3 {
+                let mut crossed = all[axis];
                 while crossed != 0 {
                     let i = crossed.trailing_zeros() as usize;
                     crossed &= crossed - 1;
