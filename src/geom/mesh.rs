@@ -119,7 +119,9 @@ impl Mesh {
         }
         let vertices = positions.len();
         for (triangle, corners) in triangles.iter().enumerate() {
-            if let Some(&index) = corners.iter().find(|&&i| i as usize >= vertices) {
+            let [a, b, c] = *corners;
+            if a.max(b).max(c) as usize >= vertices {
+                let index = [a, b, c].into_iter().find(|&i| i as usize >= vertices).unwrap_or(c);
                 return Err(MeshError::Index { triangle, index, vertices });
             }
         }

@@ -261,14 +261,17 @@ impl<'a, S: Sampler> Worker<'a, S> {
         if !self.edges.is_empty() {
             self.sampler.roots(&mut self.scratch, &self.edges, &mut self.roots);
         }
-        let position = |(edge, root): (&EdgeRef, &Root)| self.lattice.vertex(edge.node, usize::from(edge.axis), root.t);
-        let normal = |root: &Root| {
-            let normal = Vec3::from_array(root.normal);
-            if normal.is_finite() { normal } else { Vec3::ZERO }
-        };
-        let positions = self.edges.iter().zip(&self.roots).map(position).collect();
-        let normals = self.roots.iter().map(normal).collect();
-        let clamped = self.roots.iter().filter(|root| self.lattice.is_clamped(root.t)).count();
+        let count = self.edges.len();
+        let (mut positions, mut normals, mut clamped) = (vec![Vec3::ZERO; count], vec![Vec3::ZERO; count], 0);
+        let vertices = positions.iter_mut().zip(&mut normals);
+        for ((position, normal), (edge, root)) in vertices.zip(self.edges.iter().zip(&self.roots)) {
+            *position = self.lattice.vertex(edge.node, usize::from(edge.axis), root.t);
+            clamped += usize::from(self.lattice.is_clamped(root.t));
+            let given = Vec3::from_array(root.normal);
+            if given.is_finite() {
+                *normal = given;
+            }
+        }
         Ok(Batch { parts, positions, normals, clamped })
     }
 }
