@@ -53,27 +53,28 @@ pub(crate) struct Slope {
 }
 
 /// Whether no two of the normals of a cell's vertices differ as those of a crease do.
-#[inline]
-pub(super) fn is_smooth(normals: &[Vec3]) -> bool {
-    let (mut sum, mut least) = (Vec3::ZERO, f32::INFINITY);
-    for normal in normals {
-        sum += *normal;
-    }
+///
+/// `sum` is the sum of the normals.
+#[inline(always)]
+pub(super) fn is_smooth(normals: &[Vec3], sum: Vec3) -> bool {
+    let mut least = f32::INFINITY;
     for normal in normals {
         least = least.min(sum.dot(*normal));
     }
     // If all are within half the angle of their mean, no two differ by more than it.
-    if least > HALF_SMOOTH * sum.length() {
-        return true;
-    }
+    least > HALF_SMOOTH * sum.length() || !differ(normals)
+}
+
+/// Whether two of some normals differ as those of a crease do.
+fn differ(normals: &[Vec3]) -> bool {
     for (n, a) in normals.iter().enumerate() {
         for b in &normals[..n] {
             if a.dot(*b) <= SMOOTH {
-                return false;
+                return true;
             }
         }
     }
-    true
+    false
 }
 
 /// A vertex of a cell's loop.
@@ -122,12 +123,13 @@ impl Candidate {
         candidate
     }
 
+    #[inline(always)]
     fn low(&self) -> DVec3 {
         UVec3::from_array(self.cell).as_dvec3()
     }
 
     /// The vertices of the loop, in order, of the list of all.
-    #[inline]
+    #[inline(always)]
     pub(super) fn sides<'a>(&self, all: &'a [Side]) -> &'a [Side] {
         &all[self.first as usize..][..self.outline.len()]
     }

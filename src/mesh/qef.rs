@@ -39,6 +39,7 @@ impl Planes {
     pub(super) const NONE: Planes = Planes { matrix: DMat3::ZERO, vector: DVec3::ZERO, square: 0.0, count: 0 };
 
     /// Adds the plane nᵢ·y = dᵢ; the normal is a unit vector.
+    #[inline(always)]
     pub(super) fn add(&mut self, normal: DVec3, d: f64) {
         let DVec3 { x, y, z } = normal;
         self.matrix += DMat3::from_cols(normal * x, normal * y, normal * z);

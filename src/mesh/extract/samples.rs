@@ -23,7 +23,7 @@ pub(super) struct Samples<'a> {
 }
 
 /// The block of a cell, by its first cell, and where the cell is in it.
-#[inline]
+#[inline(always)]
 pub(super) fn split_cell(cell: [u32; 3]) -> ([u32; 3], [usize; 3]) {
     let [x, y, z] = cell;
     let side = BLOCK as u32;
@@ -32,6 +32,7 @@ pub(super) fn split_cell(cell: [u32; 3]) -> ([u32; 3], [usize; 3]) {
 }
 
 /// The number of a cell in its block: x fastest, then y, then z.
+#[inline(always)]
 pub(super) fn cell_number([i, j, k]: [usize; 3]) -> u16 {
     (i + BLOCK * (j + BLOCK * k)) as u16
 }
@@ -117,12 +118,12 @@ impl<'a> Samples<'a> {
     }
 
     /// Position and normal of a vertex.
-    #[inline]
+    #[inline(always)]
     pub(super) fn get(&self, vertex: u32) -> (Vec3, Vec3) {
         (self.positions[vertex as usize], self.normals[vertex as usize])
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn normal(&self, vertex: u32) -> Vec3 {
         self.normals[vertex as usize]
     }
@@ -149,10 +150,12 @@ impl<'a> Samples<'a> {
     }
 
     /// A position in cells from the lattice's first node, and back.
+    #[inline(always)]
     fn local(&self, p: Vec3) -> DVec3 {
         (p.as_dvec3() - self.lattice.origin()) / self.lattice.step()
     }
 
+    #[inline(always)]
     pub(super) fn world(&self, p: DVec3) -> DVec3 {
         self.lattice.origin() + p * self.lattice.step()
     }
@@ -167,10 +170,11 @@ impl<'a> Samples<'a> {
     ) -> Candidate {
         let low = UVec3::from_array(cell).as_dvec3();
         let first = sides.len();
-        sides.extend(vertices.iter().map(|&vertex| {
+        sides.reserve(vertices.len());
+        for &vertex in vertices {
             let (position, normal) = self.get(vertex);
-            Side { vertex, at: (self.local(position) - low).as_vec3(), normal }
-        }));
+            sides.push(Side { vertex, at: (self.local(position) - low).as_vec3(), normal });
+        }
         Candidate::new(cell, outline, first as u32, &sides[first..])
     }
 

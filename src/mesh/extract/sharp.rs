@@ -183,12 +183,15 @@ fn special(samples: &Samples<'_>, joined: &Joined, n: usize, corners: &mut Corne
         };
         if let Some(outline) = outline {
             let count = outline.len();
+            let mut sum = Vec3::ZERO;
             for (n, &edge) in outline.edges().iter().enumerate() {
-                vertices[n] = ids[usize::from(edge & 15)];
-                normals[n] = samples.normal(vertices[n]);
+                let vertex = ids[usize::from(edge & 15)];
+                let normal = samples.normal(vertex);
+                sum += normal;
+                (vertices[n], normals[n]) = (vertex, normal);
             }
             // The table knows nothing of joined faces.
-            if faces != 0 || !is_smooth(&normals[..count]) {
+            if faces != 0 || !is_smooth(&normals[..count], sum) {
                 found.candidates.push(samples.candidate(cell, *outline, &vertices[..count], &mut found.sides));
                 return;
             }
