@@ -194,6 +194,35 @@ mod tests {
     }
 
     #[test]
+    fn the_minimum_over_the_box_is_that_of_all_choices_of_sides() {
+        let mut state = 1u64;
+        let mut next = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f64 / f64::from(1 << 23) - 1.0
+        };
+        let mut outside = 0;
+        for _ in 0..2000 {
+            let list: Vec<(DVec3, f64)> =
+                (0..4).map(|_| (DVec3::new(next(), next(), next()) + 1e-3, 2.0 * next())).collect();
+            let planes = planes(&list);
+            let (low, high) = (DVec3::ZERO, DVec3::ONE);
+            let from = DVec3::new(next(), next(), next()).abs();
+            let y = planes.nearest(from, 3e-3, low, high);
+            let m = planes.matrix + DMat3::from_diagonal(DVec3::splat(3e-3 * 4.0));
+            let b = planes.vector + 3e-3 * 4.0 * from;
+            let energy = |y: DVec3| y.dot(m * y) - 2.0 * b.dot(y);
+            let choices = (0..27).map(|n| on_sides(&m, b, [n % 3, n / 3 % 3, n / 9], low, high));
+            let within = choices.filter(|y| y.cmpge(low).all() && y.cmple(high).all());
+            let best = within.map(energy).fold(f64::INFINITY, f64::min);
+            let free = m.inverse() * b;
+            let is_free = free.cmpge(low).all() && free.cmple(high).all();
+            outside += usize::from(!is_free);
+            assert!(energy(y) <= if is_free { energy(free) } else { best } + 1e-12, "{y}");
+        }
+        assert!(outside > 1000, "{outside}");
+    }
+
+    #[test]
     fn the_minimum_over_the_box_is_a_minimum() {
         let list = [(DVec3::new(1.0, 2.0, -0.5), 3.0), (DVec3::new(-1.0, 0.3, 0.9), -2.0), (DVec3::Y, 1.7)];
         let planes = planes(&list);

@@ -169,7 +169,11 @@ impl Mesh {
     }
 }
 
-pub(super) fn finite<T: Copy>(what: &'static str, values: &[[T; 3]], is_finite: impl Fn(T) -> bool) -> Result<(), MeshError> {
+pub(super) fn finite<T: Copy>(
+    what: &'static str,
+    values: &[[T; 3]],
+    is_finite: impl Fn(T) -> bool,
+) -> Result<(), MeshError> {
     match values.as_flattened().iter().position(|&value| !is_finite(value)) {
         None => Ok(()),
         Some(at) => Err(MeshError::NotFinite { what, triangle: at / 3, corner: at % 3 }),

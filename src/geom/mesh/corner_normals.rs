@@ -80,7 +80,8 @@ mod tests {
     use super::*;
 
     fn apart(triangle: usize, normal: Vec3) -> Vec<Apart> {
-        vec![Apart { runs: vec![triangle..triangle + 1], normals: vec![[normal; 3]] }]
+        let runs = std::iter::once(triangle..triangle + 1).collect();
+        vec![Apart { runs, normals: vec![[normal; 3]] }]
     }
 
     #[test]

@@ -173,12 +173,7 @@ fn towards(cell: [u32; 3], target: DVec3, steps: i32) -> Option<[u32; 3]> {
 /// Follows a crease from the point of a cell. If it goes through empty cells and then comes to
 /// one that is a neighbour of the first by an edge or a corner: how long it is in them, the cell, and
 /// the middle of that part.
-fn beyond(
-    samples: &Samples<'_>,
-    block: usize,
-    candidate: &Candidate,
-    along: DVec3,
-) -> Option<(f64, [u32; 3], DVec3)> {
+fn beyond(samples: &Samples<'_>, block: usize, candidate: &Candidate, along: DVec3) -> Option<(f64, [u32; 3], DVec3)> {
     let (mut cell, mut at) = (candidate.cell, candidate.at);
     let mut entry: Option<DVec3> = None;
     for _ in 0..4 {

@@ -65,7 +65,7 @@ impl Fans {
         nth: usize,
     ) -> Option<Turned> {
         let segment = &ring[nth];
-        if !segment.turns || segment.face % 2 == 0 {
+        if !segment.turns || segment.face.is_multiple_of(2) {
             return None;
         }
         let axis = usize::from(segment.face / 2);
