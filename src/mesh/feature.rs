@@ -10,6 +10,8 @@
 //!      x1
 //! ```
 //!
+//! Vertices with nearly the same normal share a point, on the way to the middle of them.
+//!
 //! Each step is a damped Gauss–Newton step (see [`Planes`]) that is held in the cell. On
 //! plane sides the first is exact; on curved ones the error falls from d²/2R to δ²d²/2R, with
 //! d the distance of the vertices, R the radius of curvature and δ = 2/5. Where the
@@ -168,7 +170,7 @@ pub(super) fn settle(planes: &Planes, from: DVec3, low: DVec3, high: DVec3, step
     (0..steps).fold(from, |at, _| planes.nearest(at, DAMPING, low + INSET, high - INSET))
 }
 
-/// Vertices of a cell that have nearly the same normal, that of the first.
+/// Vertices of a cell that have nearly the same normal as the first of them.
 #[derive(Clone, Copy, Default)]
 struct Group {
     normal: Vec3,
