@@ -12,11 +12,14 @@
 //! ```
 
 mod attributes;
+mod corner_normals;
 mod measure;
 
 use glam::{DVec3, Vec3};
 
 use self::attributes::Attributes;
+pub(crate) use self::corner_normals::Apart;
+use self::corner_normals::CornerNormals;
 use crate::bounds::Bounds;
 
 /// A triangle mesh: positions and triangles that index them, and perhaps normals per vertex
@@ -35,11 +38,21 @@ use crate::bounds::Bounds;
 /// assert!((tetrahedron.volume() - 1.0 / 6.0).abs() < 1e-15);
 /// # Ok::<(), rvachev::MeshError>(())
 /// ```
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Mesh {
     positions: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
     attributes: Attributes,
+    corner_normals: Option<CornerNormals>,
+}
+
+impl PartialEq for Mesh {
+    fn eq(&self, other: &Mesh) -> bool {
+        self.positions == other.positions
+            && self.triangles == other.triangles
+            && self.attributes == other.attributes
+            && self.corner_normals() == other.corner_normals()
+    }
 }
 
 /// Why a mesh cannot be built from the given parts.
@@ -106,11 +119,13 @@ impl Mesh {
         }
         let vertices = positions.len();
         for (triangle, corners) in triangles.iter().enumerate() {
-            if let Some(&index) = corners.iter().find(|&&i| i as usize >= vertices) {
+            let [a, b, c] = *corners;
+            if a.max(b).max(c) as usize >= vertices {
+                let index = [a, b, c].into_iter().find(|&i| i as usize >= vertices).unwrap_or(c);
                 return Err(MeshError::Index { triangle, index, vertices });
             }
         }
-        Ok(Mesh { positions, triangles, attributes: Attributes::default() })
+        Ok(Mesh { positions, triangles, attributes: Attributes::default(), corner_normals: None })
     }
 
     /// The positions of the vertices, in length units.

@@ -35,10 +35,12 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use self::join::Parts;
+use self::joined::{UPPER, proposals};
 use self::neighbours::Neighbours;
 use super::Features;
 use super::feature::Slope;
 use super::lattice::Lattice;
+use super::loops::ambiguous_faces;
 use super::meter::Meter;
 use super::signs::{EdgeRef, NODES, Rows, Signs, for_each_cell, list_edges};
 use super::table::CaseTable;
@@ -73,6 +75,19 @@ pub(crate) trait Sampler: Sync {
     /// Where the surface crosses edges, in the order of their blocks. `out` is as long as
     /// `edges`.
     fn roots(&self, scratch: &mut Self::Scratch, edges: &[EdgeRef], out: &mut [Root]);
+
+    /// Whether points of a block are inside, in the order of the points, added to `out`; whether it did. It is
+    /// asked right after the [`nodes`](Sampler::nodes) of the block. The default knows of none.
+    fn insides(
+        &self,
+        _scratch: &mut Self::Scratch,
+        _number: usize,
+        _block: [u32; 3],
+        _points: &[DVec3],
+        _out: &mut Vec<bool>,
+    ) -> bool {
+        false
+    }
 
     /// A box that the surface is in: features are held in it, where it cuts the cell of one. The default is all
     /// space.
@@ -147,8 +162,7 @@ pub(crate) fn extract<S: Sampler>(
 ) -> Result<Mesh, ExtractError> {
     run.install(|| {
         let neighbours = Neighbours::new(blocks)?;
-        let batches = sample_all(sampler, lattice, blocks, &run.stage(0.0, 0.9))?;
-        let parts = Parts::new(blocks, neighbours, batches)?;
+        let parts = sample_all(sampler, lattice, (blocks, neighbours), features, &run.stage(0.0, 0.9))?;
         parts.check_faces()?;
         let mesh = parts.join(sampler, lattice, features, &run.stage(0.9, 1.0))?;
         run.report(1.0);
@@ -163,6 +177,8 @@ struct Part {
     /// The number of its first vertex: within the batch first, then in the mesh.
     first: u32,
     triangles: u32,
+    /// The upper ambiguous faces of its cells that would rather be joined, if that is asked for.
+    joins: Vec<(u16, u8)>,
 }
 
 /// What it leaves of consecutive blocks.
@@ -174,23 +190,36 @@ struct Batch {
     clamped: usize,
 }
 
+/// Batches for each thread that are sampled before their vertices join those of all: enough for threads to share work
+/// evenly, and little memory for vertices that are held twice.
+const WAVE: usize = 16;
+
 /// The first pass.
-fn sample_all<S: Sampler>(
+fn sample_all<'a, S: Sampler>(
     sampler: &S,
     lattice: &Lattice,
-    blocks: &[[u32; 3]],
+    (blocks, neighbours): (&'a [[u32; 3]], Neighbours),
+    features: Features,
     run: &Run,
-) -> Result<Vec<Batch>, Cancelled> {
+) -> Result<Parts<'a>, ExtractError> {
     let meter = Meter::new(run, blocks.len());
-    let worker = || Worker::new(sampler, lattice);
-    let batches = blocks.par_chunks(BATCH).enumerate();
-    batches.map_init(worker, |worker, (n, blocks)| worker.sample(n * BATCH, blocks, &meter)).collect()
+    let mut all = Parts::new(blocks, neighbours);
+    let wave = WAVE * BATCH * rayon::current_num_threads().max(1);
+    for (first, blocks) in (0..).step_by(wave).zip(blocks.chunks(wave)) {
+        let worker = || Worker::new(sampler, lattice, features);
+        let batches = blocks.par_chunks(BATCH).enumerate();
+        let sample = |worker: &mut Worker<'_, S>, (n, blocks)| worker.sample(first + n * BATCH, blocks, &meter);
+        let batches: Result<Vec<Batch>, Cancelled> = batches.map_init(worker, sample).collect();
+        batches?.into_iter().try_for_each(|batch| all.add(batch))?;
+    }
+    Ok(all)
 }
 
 /// One thread's means to sample blocks.
 struct Worker<'a, S: Sampler> {
     sampler: &'a S,
     lattice: &'a Lattice,
+    features: Features,
     scratch: S::Scratch,
     values: Box<[f32; NODES]>,
     edges: Vec<EdgeRef>,
@@ -198,14 +227,15 @@ struct Worker<'a, S: Sampler> {
 }
 
 impl<'a, S: Sampler> Worker<'a, S> {
-    fn new(sampler: &'a S, lattice: &'a Lattice) -> Self {
+    fn new(sampler: &'a S, lattice: &'a Lattice, features: Features) -> Self {
         let scratch = sampler.scratch();
-        Worker { sampler, lattice, scratch, values: Box::new([0.0; NODES]), edges: Vec::new(), roots: Vec::new() }
+        let values = Box::new([0.0; NODES]);
+        Worker { sampler, lattice, features, scratch, values, edges: Vec::new(), roots: Vec::new() }
     }
 
     /// Samples the blocks from number `start` on.
     fn sample(&mut self, start: usize, blocks: &[[u32; 3]], meter: &Meter<'_>) -> Result<Batch, Cancelled> {
-        let table = CaseTable::get();
+        let (table, faces) = (CaseTable::get(), ambiguous_faces());
         self.edges.clear();
         let mut parts = Vec::with_capacity(blocks.len());
         for (number, &block) in (start..).zip(blocks) {
@@ -214,23 +244,34 @@ impl<'a, S: Sampler> Worker<'a, S> {
             let signs = Signs::new(&self.values);
             let first = self.edges.len() as u32;
             let rows = list_edges(&signs, &self.values, number as u32, block, &mut self.edges);
-            let mut triangles = 0;
-            for_each_cell(&signs, |_, case| triangles += table.triangles(case).len() as u32);
-            parts.push(Part { signs, rows, first, triangles });
+            let (mut triangles, mut ambiguous) = (0, 0);
+            for_each_cell(&signs, |_, case| {
+                triangles += table.triangles(case).len() as u32;
+                ambiguous |= faces[usize::from(case)];
+            });
+            let joins = if ambiguous & UPPER != 0 && self.features == Features::Sharp {
+                proposals(self.sampler, &mut self.scratch, self.lattice, (number, block), &signs)
+            } else {
+                Vec::new()
+            };
+            parts.push(Part { signs, rows, first, triangles, joins });
         }
         self.roots.clear();
         self.roots.resize(self.edges.len(), Root::default());
         if !self.edges.is_empty() {
             self.sampler.roots(&mut self.scratch, &self.edges, &mut self.roots);
         }
-        let position = |(edge, root): (&EdgeRef, &Root)| self.lattice.vertex(edge.node, usize::from(edge.axis), root.t);
-        let normal = |root: &Root| {
-            let normal = Vec3::from_array(root.normal);
-            if normal.is_finite() { normal } else { Vec3::ZERO }
-        };
-        let positions = self.edges.iter().zip(&self.roots).map(position).collect();
-        let normals = self.roots.iter().map(normal).collect();
-        let clamped = self.roots.iter().filter(|root| self.lattice.is_clamped(root.t)).count();
+        let count = self.edges.len();
+        let (mut positions, mut normals, mut clamped) = (vec![Vec3::ZERO; count], vec![Vec3::ZERO; count], 0);
+        let vertices = positions.iter_mut().zip(&mut normals);
+        for ((position, normal), (edge, root)) in vertices.zip(self.edges.iter().zip(&self.roots)) {
+            *position = self.lattice.vertex(edge.node, usize::from(edge.axis), root.t);
+            clamped += usize::from(self.lattice.is_clamped(root.t));
+            let given = Vec3::from_array(root.normal);
+            if given.is_finite() {
+                *normal = given;
+            }
+        }
         Ok(Batch { parts, positions, normals, clamped })
     }
 }

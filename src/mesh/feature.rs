@@ -10,6 +10,8 @@
 //!      x1
 //! ```
 //!
+//! Vertices with nearly the same normal share a point, on the way to the middle of them.
+//!
 //! Each step is a damped Gauss–Newton step (see [`Planes`]) that is held in the cell. On
 //! plane sides the first is exact; on curved ones the error falls from d²/2R to δ²d²/2R, with
 //! d the distance of the vertices, R the radius of curvature and δ = 2/5. Where the
@@ -19,7 +21,7 @@
 //! Source: L. P. Kobbelt, M. Botsch, U. Schwanecke and H.-P. Seidel, Feature sensitive surface
 //! extraction from volume data (2001), for the idea.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, UVec3, Vec3};
 
 use super::loops::{CellLoop, LONGEST};
 use super::qef::Planes;
@@ -29,6 +31,9 @@ use super::qef::Planes;
 pub(super) const SMOOTH: f32 = 0.9;
 /// The cosine of half that angle, rounded up.
 const HALF_SMOOTH: f32 = 0.975;
+
+/// Normals of vertices that are on the same side of a crease, with little between them: the cosine of 11°.
+const ALIKE: f32 = 0.98;
 
 /// How far feature points stay from the faces of their cell, in cells.
 pub(super) const INSET: f64 = 1.0 / 128.0;
@@ -50,15 +55,28 @@ pub(crate) struct Slope {
 }
 
 /// Whether no two of the normals of a cell's vertices differ as those of a crease do.
-#[inline]
-pub(super) fn is_smooth(normals: &[Vec3]) -> bool {
-    let Some(first) = normals.first() else { return true };
-    // If all are within half the angle of the first, no two differ by more than it.
-    if normals.iter().all(|normal| first.dot(*normal) > HALF_SMOOTH) {
-        return true;
+///
+/// `sum` is the sum of the normals.
+#[inline(always)]
+pub(super) fn is_smooth(normals: &[Vec3], sum: Vec3) -> bool {
+    let mut least = f32::INFINITY;
+    for normal in normals {
+        least = least.min(sum.dot(*normal));
     }
-    let mut pairs = (0..normals.len()).flat_map(|a| (0..a).map(move |b| (a, b)));
-    pairs.all(|(a, b)| normals[a].dot(normals[b]) > SMOOTH)
+    // If all are within half the angle of their mean, no two differ by more than it.
+    least > HALF_SMOOTH * sum.length() || !differ(normals)
+}
+
+/// Whether two of some normals differ as those of a crease do.
+fn differ(normals: &[Vec3]) -> bool {
+    for (n, a) in normals.iter().enumerate() {
+        for b in &normals[..n] {
+            if a.dot(*b) <= SMOOTH {
+                return true;
+            }
+        }
+    }
+    false
 }
 
 /// A vertex of a cell's loop.
@@ -74,11 +92,13 @@ pub(super) struct Side {
 }
 
 /// A cell whose surface is not smooth. Positions are in cells, from the lattice's first node.
-#[derive(Clone)]
+///
+/// The vertices of its loop, in order, are in a list of those of many cells.
 pub(super) struct Candidate {
     pub(super) cell: [u32; 3],
     pub(super) outline: CellLoop,
-    sides: [Side; LONGEST],
+    /// The place of the first of its vertices in the list.
+    pub(super) first: u32,
     /// The segments, from vertex n to the next, whose ends have different normals, as bits.
     pub(super) split: u16,
     /// The feature point.
@@ -89,30 +109,31 @@ pub(super) struct Candidate {
 
 impl Candidate {
     /// The cell with a first feature point. `sides` are the vertices on the edges of the loop, in order.
-    pub(super) fn new(cell: [u32; 3], outline: CellLoop, sides: [Side; LONGEST]) -> Candidate {
-        let mut candidate = Candidate { cell, outline, sides, split: 0, at: DVec3::ZERO, planes: Planes::NONE };
+    pub(super) fn new(cell: [u32; 3], outline: CellLoop, first: u32, sides: &[Side]) -> Candidate {
+        let mut candidate = Candidate { cell, outline, first, split: 0, at: DVec3::ZERO, planes: Planes::NONE };
         let low = candidate.low();
-        let given = &sides[..outline.len()];
-        for (n, side) in given.iter().enumerate() {
+        for (n, side) in sides.iter().enumerate() {
             let (position, normal) = (low + side.at.as_dvec3(), side.normal.as_dvec3());
-            candidate.at += position / given.len() as f64;
+            candidate.at += position / sides.len() as f64;
             if let Some(normal) = normal.try_normalize() {
                 candidate.planes.add(normal, normal.dot(position));
             }
-            let next = given[(n + 1) % given.len()].normal;
+            let next = sides.get(n + 1).unwrap_or(&sides[0]).normal;
             candidate.split |= u16::from(side.normal.dot(next) < SMOOTH) << n;
         }
         candidate.settle();
         candidate
     }
 
+    #[inline(always)]
     fn low(&self) -> DVec3 {
-        self.cell.map(f64::from).into()
+        UVec3::from_array(self.cell).as_dvec3()
     }
 
-    /// The vertices of the loop, in order.
-    pub(super) fn sides(&self) -> &[Side] {
-        &self.sides[..self.outline.len()]
+    /// The vertices of the loop, in order, of the list of all.
+    #[inline(always)]
+    pub(super) fn sides<'a>(&self, all: &'a [Side]) -> &'a [Side] {
+        &all[self.first as usize..][..self.outline.len()]
     }
 
     fn settle(&mut self) {
@@ -120,14 +141,21 @@ impl Candidate {
     }
 
     /// The direction of the crease, if there are two sides and no more.
-    pub(super) fn crease(&self) -> Option<DVec3> {
-        let normals = self.sides().iter().map(|side| side.normal);
-        let pairs = normals.clone().enumerate().flat_map(|(n, a)| normals.clone().take(n).map(move |b| (a, b)));
-        let across = pairs.map(|(a, b)| a.cross(b));
-        let along = across.max_by(|u, v| u.length_squared().total_cmp(&v.length_squared()))?;
+    pub(super) fn crease(&self, sides: &[Side]) -> Option<DVec3> {
+        let sides = self.sides(sides);
+        let (mut along, mut most) = (Vec3::ZERO, 0.0);
+        for (n, a) in sides.iter().enumerate() {
+            for b in &sides[..n] {
+                let across = a.normal.cross(b.normal);
+                let square = across.length_squared();
+                if square >= most {
+                    (along, most) = (across, square);
+                }
+            }
+        }
         let unit = along.try_normalize()?;
         // A third side would have a normal along the crease of the two.
-        let two = along.length() > 0.3 && self.sides().iter().all(|side| side.normal.dot(unit).abs() < 0.2);
+        let two = along.length() > 0.3 && sides.iter().all(|side| side.normal.dot(unit).abs() < 0.2);
         two.then(|| unit.as_dvec3())
     }
 
@@ -142,33 +170,76 @@ pub(super) fn settle(planes: &Planes, from: DVec3, low: DVec3, high: DVec3, step
     (0..steps).fold(from, |at, _| planes.nearest(at, DAMPING, low + INSET, high - INSET))
 }
 
-/// Moves feature points closer to the creases. `slopes` tells values and gradients at points, for cells of
-/// size `step`; without any, the points stay.
+/// Vertices of a cell that have nearly the same normal as the first of them.
+#[derive(Clone, Copy, Default)]
+struct Group {
+    normal: Vec3,
+    sum: Vec3,
+    size: f32,
+}
+
+/// The plane that the surface has close to a point: its outward normal and its distance from the lattice's first
+/// node; `None` if the field does not tell.
+fn plane(point: DVec3, slope: &Slope, step: f64) -> Option<(DVec3, f64)> {
+    let steepness = slope.gradient.length();
+    let depth = slope.value / (steepness * step);
+    // A plane that is farther away than the cell tells nothing; neither does NaN.
+    (steepness > 0.0 && depth.abs() < 1.0).then(|| {
+        let normal = -slope.gradient / steepness;
+        (normal, normal.dot(point) + depth)
+    })
+}
+
+/// Moves feature points closer to the creases. `sides` are the vertices of all candidates, one candidate's after the
+/// other's. `slopes` tells values and gradients at points, for cells of size `step`; without any, the points stay.
 pub(super) fn refine(
     candidates: &mut [Candidate],
+    sides: &mut [Side],
     step: f64,
     mut slopes: impl FnMut(&[DVec3], &mut Vec<Slope>) -> bool,
 ) {
-    let (mut points, mut found) = (Vec::new(), Vec::new());
+    if candidates.is_empty() {
+        return;
+    }
+    // Vertices that have nearly the same normal are on the same side: they share a point.
+    let mut places: Vec<u8> = Vec::with_capacity(sides.len());
+    let (mut points, mut found) = (Vec::with_capacity(sides.len()), Vec::new());
     for candidate in candidates.iter() {
+        let mut groups = [Group::default(); LONGEST];
+        let mut count = 0;
+        for side in candidate.sides(sides) {
+            let place = groups[..count].iter().position(|group| group.normal.dot(side.normal) > ALIKE).unwrap_or(count);
+            if place == count {
+                groups[count].normal = side.normal;
+                count += 1;
+            }
+            groups[place].sum += side.at;
+            groups[place].size += 1.0;
+            places.push(place as u8);
+        }
         let (low, at) = (candidate.low(), candidate.at);
-        points.extend(candidate.sides().iter().map(|side| at + CLOSER * (low + side.at.as_dvec3() - at)));
+        for Group { sum, size, .. } in &groups[..count] {
+            points.push(at + CLOSER * (low + (sum / size).as_dvec3() - at));
+        }
     }
     if !slopes(&points, &mut found) || found.len() != points.len() {
         return;
     }
     let mut asked = points.iter().zip(&found);
+    let mut sides = sides.iter_mut().zip(places);
     for candidate in candidates.iter_mut() {
         let mut planes = Planes::NONE;
-        let count = candidate.outline.len();
-        for (side, (point, slope)) in candidate.sides[..count].iter_mut().zip(&mut asked) {
-            let steepness = slope.gradient.length();
-            let depth = slope.value / (steepness * step);
-            // A plane that is farther away than the cell tells nothing; neither does NaN.
-            if steepness > 0.0 && depth.abs() < 1.0 {
-                let normal = -slope.gradient / steepness;
+        let (mut known, mut seen) = ([None; LONGEST], 0);
+        for (side, place) in sides.by_ref().take(candidate.outline.len()) {
+            let place = usize::from(place);
+            // They are met in the order of their first vertices.
+            if place == seen {
+                known[place] = asked.next().and_then(|(point, slope)| plane(*point, slope, step));
+                seen += 1;
+            }
+            if let Some((normal, offset)) = known[place] {
                 side.normal = normal.as_vec3();
-                planes.add(normal, normal.dot(*point) + depth);
+                planes.add(normal, offset);
             }
         }
         if !planes.is_empty() {

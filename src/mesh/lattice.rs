@@ -222,19 +222,24 @@ impl Lattice {
     }
 
     /// Whether [`vertex`](Lattice::vertex) moves `t`.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn is_clamped(&self, t: f64) -> bool {
         !(self.clearance..=1.0 - self.clearance).contains(&t)
     }
 
     /// The vertex on the edge that leaves a node along an axis, at `t` from 0 to 1 of its
     /// length. `t` is moved to be clear of the ends; that of NaN is the middle.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn vertex(&self, node: [u32; 3], axis: usize, t: f64) -> Vec3 {
         let [i, j, k] = node;
         let mut p = self.node(i, j, k);
         let t = if t.is_nan() { 0.5 } else { t };
-        p[axis] += t.clamp(self.clearance, 1.0 - self.clearance) * self.step;
+        let by = t.clamp(self.clearance, 1.0 - self.clearance) * self.step;
+        match axis {
+            0 => p.x += by,
+            1 => p.y += by,
+            _ => p.z += by,
+        }
         p.as_vec3()
     }
 }

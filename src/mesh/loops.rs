@@ -43,9 +43,15 @@ impl CellLoop {
     /// inside corners are joined.
     #[inline]
     pub(super) fn single(case: u8, joined: u8) -> Option<CellLoop> {
-        static LOOPS: LazyLock<Vec<Option<CellLoop>>> =
-            LazyLock::new(|| (0..=255).map(|case| CellLoop::derive(case, 0)).collect());
-        if joined == 0 { LOOPS[usize::from(case)] } else { CellLoop::derive(case, joined) }
+        if joined == 0 { CellLoop::table()[usize::from(case)] } else { CellLoop::derive(case, joined) }
+    }
+
+    /// The loops that cases have in the table, if they have one and no more.
+    #[inline]
+    pub(super) fn table() -> &'static [Option<CellLoop>; 256] {
+        static LOOPS: LazyLock<[Option<CellLoop>; 256]> =
+            LazyLock::new(|| std::array::from_fn(|case| CellLoop::derive(case as u8, 0)));
+        &LOOPS
     }
 
     /// All loops of a case.
@@ -87,19 +93,19 @@ impl CellLoop {
     }
 }
 
-/// The ambiguous faces of a case, as bits.
+/// The ambiguous faces of all cases, as bits.
 #[inline]
-pub(super) fn ambiguous_faces(case: u8) -> u8 {
-    static FACES: LazyLock<Vec<u8>> = LazyLock::new(|| {
+pub(super) fn ambiguous_faces() -> &'static [u8; 256] {
+    static FACES: LazyLock<[u8; 256]> = LazyLock::new(|| {
         let is_ambiguous = |case: u8, face: u8| {
             let corners = (0..8u8).filter(|c| c >> (face / 2) & 1 == face % 2);
             let inside: Vec<bool> = corners.map(|c| case >> c & 1 == 1).collect();
             inside[0] == inside[3] && inside[1] == inside[2] && inside[0] != inside[1]
         };
         let faces = |case| (0..6).fold(0, |bits, face| bits | u8::from(is_ambiguous(case, face)) << face);
-        (0..=255).map(faces).collect()
+        std::array::from_fn(|case| faces(case as u8))
     });
-    FACES[usize::from(case)]
+    &FACES
 }
 
 /// A segment, from edge to edge in a face.
@@ -150,7 +156,7 @@ mod tests {
     fn every_crossed_edge_is_in_one_loop_once_however_faces_are_joined() {
         for case in 0..=255 {
             let crossed: BTreeSet<u8> = CaseTable::get().triangles(case).iter().flatten().copied().collect();
-            let faces = ambiguous_faces(case);
+            let faces = ambiguous_faces()[usize::from(case)];
             for joined in (0..64).filter(|joined| joined & !faces == 0) {
                 let all = loops(case, joined);
                 let passed: Vec<u8> = all.concat().iter().map(|segment| segment.from).collect();
@@ -184,7 +190,7 @@ mod tests {
     #[test]
     fn a_face_has_two_segments_where_it_is_ambiguous_and_else_one() {
         for case in 0..=255 {
-            let faces = ambiguous_faces(case);
+            let faces = ambiguous_faces()[usize::from(case)];
             for joined in [0, faces] {
                 let segments = loops(case, joined).concat();
                 for face in 0..6 {
@@ -199,7 +205,7 @@ mod tests {
     fn segments_of_a_face_do_not_cross() {
         // The ends around a face, in turn: two segments cross if their ends alternate.
         for case in 0..=255 {
-            let faces = ambiguous_faces(case);
+            let faces = ambiguous_faces()[usize::from(case)];
             for joined in [0, faces] {
                 let segments = loops(case, joined).concat();
                 for face in (0..6).filter(|face| faces >> face & 1 == 1) {

@@ -39,6 +39,7 @@ impl Planes {
     pub(super) const NONE: Planes = Planes { matrix: DMat3::ZERO, vector: DVec3::ZERO, square: 0.0, count: 0 };
 
     /// Adds the plane nᵢ·y = dᵢ; the normal is a unit vector.
+    #[inline(always)]
     pub(super) fn add(&mut self, normal: DVec3, d: f64) {
         let DVec3 { x, y, z } = normal;
         self.matrix += DMat3::from_cols(normal * x, normal * y, normal * z);
@@ -74,15 +75,29 @@ impl Planes {
         if free.cmpge(low).all() && free.cmple(high).all() {
             return free;
         }
+        // Most often it is where the coordinates that are beyond a side are held there.
+        let mut sides = [FREE; 3];
+        let mut y = free;
+        for _ in 0..3 {
+            for axis in 0..3 {
+                if y[axis] < low[axis] {
+                    sides[axis] = LOW;
+                } else if y[axis] > high[axis] {
+                    sides[axis] = HIGH;
+                }
+            }
+            y = on_sides(&m, b, sides, low, high);
+            if y.cmpge(low).all() && y.cmple(high).all() {
+                if is_pressed(b - m * y, sides) {
+                    return y;
+                }
+                break;
+            }
+        }
         let mut best = (f64::INFINITY, from.clamp(low, high));
         for choice in 1..27 {
-            // By axis: 0 free, 1 at the low side, 2 at the high side.
             let sides = [choice % 3, choice / 3 % 3, choice / 9];
-            let mut y = DVec3::ZERO;
-            for axis in 0..3 {
-                y[axis] = [0.0, low[axis], high[axis]][sides[axis]];
-            }
-            solve(&m, b, sides, &mut y);
+            let y = on_sides(&m, b, sides, low, high);
             if y.cmpge(low).all() && y.cmple(high).all() {
                 let energy = y.dot(m * y) - 2.0 * b.dot(y);
                 if energy < best.0 {
@@ -94,19 +109,48 @@ impl Planes {
     }
 }
 
+/// A coordinate that is free, at the low side of the box, and at the high one.
+const FREE: usize = 0;
+const LOW: usize = 1;
+const HIGH: usize = 2;
+
+/// Where the quadratic is least with some coordinates held at sides of the box.
+fn on_sides(m: &DMat3, b: DVec3, sides: [usize; 3], low: DVec3, high: DVec3) -> DVec3 {
+    let mut y = DVec3::ZERO;
+    for axis in 0..3 {
+        y[axis] = [0.0, low[axis], high[axis]][sides[axis]];
+    }
+    solve(m, b, sides, &mut y);
+    y
+}
+
+/// Whether the quadratic falls outward at every side that a coordinate is held at; `fall` is half its
+/// gradient, downwards. In the box that makes it the minimum over the box.
+fn is_pressed(fall: DVec3, sides: [usize; 3]) -> bool {
+    (0..3).all(|axis| match sides[axis] {
+        LOW => fall[axis] <= 0.0,
+        HIGH => fall[axis] >= 0.0,
+        _ => true,
+    })
+}
+
 /// Sets the free coordinates (side 0) to where the quadratic yᵀm y − 2 bᵀy is least.
 fn solve(m: &DMat3, b: DVec3, sides: [usize; 3], y: &mut DVec3) {
     // With the free coordinates 0, this is what is left for them to balance.
     let rest = b - *m * *y;
-    let mut free = (0..3).filter(|&axis| sides[axis] == 0);
-    match (free.next(), free.next()) {
-        (Some(a), Some(c)) => {
-            let (aa, ac, cc) = (m.col(a)[a], m.col(a)[c], m.col(c)[c]);
-            let determinant = aa * cc - ac * ac;
-            y[a] = (rest[a] * cc - rest[c] * ac) / determinant;
-            y[c] = (rest[c] * aa - rest[a] * ac) / determinant;
-        }
-        (Some(a), None) => y[a] = rest[a] / m.col(a)[a],
+    let mut pair = |a: usize, c: usize| {
+        let (aa, ac, cc) = (m.col(a)[a], m.col(a)[c], m.col(c)[c]);
+        let determinant = aa * cc - ac * ac;
+        y[a] = (rest[a] * cc - rest[c] * ac) / determinant;
+        y[c] = (rest[c] * aa - rest[a] * ac) / determinant;
+    };
+    match sides.map(|side| side == FREE) {
+        [true, true, _] => pair(0, 1),
+        [true, _, true] => pair(0, 2),
+        [_, true, true] => pair(1, 2),
+        [true, ..] => y.x = rest.x / m.x_axis.x,
+        [_, true, _] => y.y = rest.y / m.y_axis.y,
+        [.., true] => y.z = rest.z / m.z_axis.z,
         _ => {}
     }
 }
@@ -147,6 +191,35 @@ mod tests {
         let planes = planes(&[(DVec3::new(1.0, -1.0, 0.0), 0.0), (DVec3::new(-1.0, 0.0, 1.0), 0.5)]);
         let y = planes.nearest(DVec3::new(0.8, 0.8, 0.9), 1e-6, DVec3::ZERO, DVec3::ONE);
         assert!(planes.distance(y) < 1e-4 && (y.z - 1.0).abs() < 1e-4, "{y}");
+    }
+
+    #[test]
+    fn the_minimum_over_the_box_is_that_of_all_choices_of_sides() {
+        let mut state = 1u64;
+        let mut next = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f64 / f64::from(1 << 23) - 1.0
+        };
+        let mut outside = 0;
+        for _ in 0..2000 {
+            let list: Vec<(DVec3, f64)> =
+                (0..4).map(|_| (DVec3::new(next(), next(), next()) + 1e-3, 2.0 * next())).collect();
+            let planes = planes(&list);
+            let (low, high) = (DVec3::ZERO, DVec3::ONE);
+            let from = DVec3::new(next(), next(), next()).abs();
+            let y = planes.nearest(from, 3e-3, low, high);
+            let m = planes.matrix + DMat3::from_diagonal(DVec3::splat(3e-3 * 4.0));
+            let b = planes.vector + 3e-3 * 4.0 * from;
+            let energy = |y: DVec3| y.dot(m * y) - 2.0 * b.dot(y);
+            let choices = (0..27).map(|n| on_sides(&m, b, [n % 3, n / 3 % 3, n / 9], low, high));
+            let within = choices.filter(|y| y.cmpge(low).all() && y.cmple(high).all());
+            let best = within.map(energy).fold(f64::INFINITY, f64::min);
+            let free = m.inverse() * b;
+            let is_free = free.cmpge(low).all() && free.cmple(high).all();
+            outside += usize::from(!is_free);
+            assert!(energy(y) <= if is_free { energy(free) } else { best } + 1e-12, "{y}");
+        }
+        assert!(outside > 1000, "{outside}");
     }
 
     #[test]

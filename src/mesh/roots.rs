@@ -80,60 +80,73 @@ impl RootFinder {
     /// The lower ends, and the points on the chords.
     fn start(&mut self, tape: &Tape, lattice: &Lattice, edges: &[EdgeRef]) {
         let (origin, step) = (tape.origin(), lattice.step());
-        for axis in 0..3 {
-            self.single[axis].clear();
-            self.double[axis].clear();
-        }
-        self.lower.clear();
-        self.t.clear();
-        for edge in edges {
-            let [i, j, k] = edge.node;
-            let p = (lattice.node(i, j, k) - origin).to_array();
-            let axis = usize::from(edge.axis);
+        let count = edges.len();
+        self.lower.resize(count, 0.0);
+        self.t.resize(count, 0.0);
+        self.single.iter_mut().for_each(|list| list.resize(count, 0.0));
+        self.double.iter_mut().for_each(|list| list.resize(count, 0.0));
+        let (lower, ts) = (&mut self.lower[..count], &mut self.t[..count]);
+        let [x, y, z] = &mut self.double;
+        let (x, y, z) = (&mut x[..count], &mut y[..count], &mut z[..count]);
+        let [single_x, single_y, single_z] = &mut self.single;
+        let (single_x, single_y, single_z) = (&mut single_x[..count], &mut single_y[..count], &mut single_z[..count]);
+        for (n, edge) in edges.iter().enumerate() {
+            let p = lattice.node(edge.node[0], edge.node[1], edge.node[2]) - origin;
             let [a, b] = edge.values;
             let chord = f64::from(a / (a - b));
             let t = if (0.0..=1.0).contains(&chord) { chord } else { 0.5 };
-            let low = p[axis];
-            self.lower.push(low);
-            self.t.push(t);
-            for (list, p) in self.single.iter_mut().zip(p) {
-                list.push(p as f32);
-            }
-            for (list, p) in self.double.iter_mut().zip(p) {
-                list.push(p);
-            }
-            if let Some(along) = self.single[axis].last_mut() {
-                *along = (low + t * step) as f32;
-            }
+            (x[n], y[n], z[n]) = (p.x, p.y, p.z);
+            (single_x[n], single_y[n], single_z[n]) = (p.x as f32, p.y as f32, p.z as f32);
+            let (low, along) = match edge.axis {
+                0 => (p.x, &mut single_x[n]),
+                1 => (p.y, &mut single_y[n]),
+                _ => (p.z, &mut single_z[n]),
+            };
+            *along = (low + t * step) as f32;
+            lower[n] = low;
+            ts[n] = t;
         }
     }
 
     /// In single precision: near the root, with slope and normal.
     fn approach(&mut self, evaluator: &mut Evaluator, tape: &Tape, edges: &[EdgeRef], step: f64, out: &mut [Root]) {
         let [x, y, z] = &self.single;
+        let count = edges.len();
         for list in &mut self.gradient {
-            list.resize(edges.len(), 0.0);
+            list.resize(count, 0.0);
         }
         let [value, dx, dy, dz] = &mut self.gradient;
         evaluator.gradients(tape, x, y, z, Gradients { value, dx, dy, dz });
-        self.slope.clear();
+        self.slope.resize(count, 0.0);
         self.seen.clone_from(&self.t);
+        let (value, dx, dy, dz) = (&value[..count], &dx[..count], &dy[..count], &dz[..count]);
+        let (slopes, ts, out) = (&mut self.slope[..count], &mut self.t[..count], &mut out[..count]);
         for (n, edge) in edges.iter().enumerate() {
-            let axis = usize::from(edge.axis);
-            let slope = f64::from(self.gradient[axis + 1][n]) * step;
-            self.t[n] = newton(self.t[n], f64::from(self.gradient[0][n]), slope);
-            self.slope.push(slope);
-            out[n].normal = outward(&self.gradient, n);
+            let gradient = [dx[n], dy[n], dz[n]];
+            let along = match edge.axis {
+                0 => gradient[0],
+                1 => gradient[1],
+                _ => gradient[2],
+            };
+            let slope = f64::from(along) * step;
+            ts[n] = newton(ts[n], f64::from(value[n]), slope);
+            slopes[n] = slope;
+            out[n].normal = outward(gradient);
         }
     }
 
     /// In double precision, to the end.
     fn settle(&mut self, evaluator: &mut Evaluator, (program, tape): (&Program, &Tape), edges: &[EdgeRef], step: f64) {
+        let count = edges.len();
         self.evaluate_all(evaluator, tape, edges, step);
-        self.before.clear();
-        for (n, &value) in self.exact.iter().enumerate() {
-            self.before.push([self.t[n], value]);
-            self.t[n] = newton(self.t[n], value, self.slope[n]);
+        self.before.resize(count, [0.0; 2]);
+        {
+            let (exact, slopes) = (&self.exact[..count], &self.slope[..count]);
+            let (before, ts) = (&mut self.before[..count], &mut self.t[..count]);
+            for n in 0..count {
+                before[n] = [ts[n], exact[n]];
+                ts[n] = newton(ts[n], exact[n], slopes[n]);
+            }
         }
         self.evaluate_all(evaluator, tape, edges, step);
         self.open.clear();
@@ -190,10 +203,20 @@ impl RootFinder {
 
     /// The values at the points of all edges.
     fn evaluate_all(&mut self, evaluator: &mut Evaluator, tape: &Tape, edges: &[EdgeRef], step: f64) {
-        for (n, edge) in edges.iter().enumerate() {
-            self.double[usize::from(edge.axis)][n] = self.lower[n] + self.t[n] * step;
+        let count = edges.len();
+        let [x, y, z] = &mut self.double;
+        {
+            let (lower, ts) = (&self.lower[..count], &self.t[..count]);
+            let (x, y, z) = (&mut x[..count], &mut y[..count], &mut z[..count]);
+            for (n, edge) in edges.iter().enumerate() {
+                let along = match edge.axis {
+                    0 => &mut x[n],
+                    1 => &mut y[n],
+                    _ => &mut z[n],
+                };
+                *along = lower[n] + ts[n] * step;
+            }
         }
-        let [x, y, z] = &self.double;
         self.exact.resize(edges.len(), 0.0);
         evaluator.values_f64(tape, x, y, z, &mut self.exact);
     }
@@ -247,18 +270,20 @@ impl RootFinder {
         let [value, dx, dy, dz] = &mut self.gradient;
         evaluator.gradients(tape, x, y, z, Gradients { value, dx, dy, dz });
         for (at, &n) in self.open.iter().enumerate() {
-            out[n as usize].normal = outward(&self.gradient, at);
+            out[n as usize].normal = outward([dx[at], dy[at], dz[at]]);
         }
     }
 }
 
 /// The outward unit normal of a gradient, which points inward; 0 for none.
-fn outward([_, dx, dy, dz]: &[Vec<f32>; 4], n: usize) -> [f32; 3] {
-    let inward = DVec3::new(dx[n].into(), dy[n].into(), dz[n].into());
+#[inline(always)]
+fn outward([dx, dy, dz]: [f32; 3]) -> [f32; 3] {
+    let inward = DVec3::new(dx.into(), dy.into(), dz.into());
     (-inward.normalize_or_zero()).as_vec3().to_array()
 }
 
 /// A Newton step from `t`, if it stays on the edge.
+#[inline(always)]
 fn newton(t: f64, value: f64, slope: f64) -> f64 {
     let next = t - value / slope;
     if (0.0..=1.0).contains(&next) { next } else { t }

@@ -40,6 +40,7 @@ pub(super) struct Signs([u16; SIDE * SIDE]);
 /// Eight bytes of 0 or 1 as the bits of one, the first lowest.
 ///
 /// A product does it: its term 2^(56 − 7 i) moves byte i to bit 56 + i, and no two terms meet.
+#[inline(always)]
 pub(super) fn gathered(bytes: [u8; 8]) -> u8 {
     const GATHER: u64 = 0x0102_0408_1020_4080;
     (u64::from_le_bytes(bytes).wrapping_mul(GATHER) >> 56) as u8
@@ -58,7 +59,7 @@ impl Signs {
     }
 
     /// The signs of a row of nodes.
-    #[inline]
+    #[inline(always)]
     pub(super) fn row(&self, j: usize, k: usize) -> u16 {
         self.0[SIDE * k + j]
     }
@@ -89,7 +90,7 @@ impl Signs {
 }
 
 /// The case of cell `i` of a row of cells, given the rows of nodes around it.
-#[inline]
+#[inline(always)]
 fn case([a, b, c, d]: [u16; 4], i: usize) -> u8 {
     (a >> i & 3 | (b >> i & 3) << 2 | (c >> i & 3) << 4 | (d >> i & 3) << 6) as u8
 }
@@ -112,7 +113,7 @@ pub(super) struct Rows([u16; BLOCK * BLOCK]);
 
 impl Rows {
     /// Where a row starts.
-    #[inline]
+    #[inline(always)]
     pub(super) fn start(&self, j: usize, k: usize) -> u32 {
         u32::from(self.0[BLOCK * k + j])
     }
@@ -120,7 +121,7 @@ impl Rows {
 
 impl Signs {
     /// The owned edges of a row that cross the surface, as bits, along x, y and z.
-    #[inline]
+    #[inline(always)]
     pub(super) fn crossed(&self, j: usize, k: usize) -> [u16; 3] {
         let row = self.row(j, k);
         let along = |other: u16| (row ^ other) & OWNED_BITS;
@@ -151,8 +152,13 @@ pub(super) fn list_edges(
     for k in 0..BLOCK {
         for j in 0..BLOCK {
             rows.0[BLOCK * k + j] = (edges.len() - before) as u16;
+            let all = signs.crossed(j, k);
+            if all[0] | all[1] | all[2] == 0 {
+                continue;
+            }
             let row = signs.row(j, k);
-            for (axis, mut crossed) in signs.crossed(j, k).into_iter().enumerate() {
+            for axis in 0..3 {
+                let mut crossed = all[axis];
                 while crossed != 0 {
                     let i = crossed.trailing_zeros() as usize;
                     crossed &= crossed - 1;

@@ -293,12 +293,51 @@ impl Sampler for SolidSampler<'_> {
         }
     }
 
+    fn insides(
+        &self,
+        scratch: &mut Scratch,
+        number: usize,
+        block: [u32; 3],
+        points: &[DVec3],
+        out: &mut Vec<bool>,
+    ) -> bool {
+        let group = self.groups[number];
+        let Scratch { evaluator, tapes, single, slopes: [values, ..], .. } = scratch;
+        let Some((_, tape)) = tapes.iter().rfind(|(other, _)| *other == group) else { return false };
+        let origin = self.lattice.node(block[0], block[1], block[2]);
+        place(points.iter().map(|p| *p - origin), single);
+        values.resize(points.len(), 0.0);
+        let [x, y, z] = &*single;
+        evaluator.values(tape, x, y, z, values);
+        out.extend(values.iter().map(|value| *value > 0.0));
+        true
+    }
+
     fn roots(&self, scratch: &mut Scratch, edges: &[EdgeRef], out: &mut [Root]) {
         let Scratch { evaluator, tapes, finder, order, edges: sorted, roots, .. } = scratch;
         let group = |edge: &EdgeRef| self.groups[edge.block as usize];
-        // Counted first, then each to its place: a group is named by a block of the batch.
-        let Some(first) = edges.first() else { return };
+        let (Some(first), Some(last)) = (edges.first(), edges.last()) else { return };
         let start = first.block as usize / BATCH * BATCH;
+        let mut find = |edges: &[EdgeRef], roots: &mut [Root]| {
+            let group = group(&edges[0]);
+            let made = tapes.iter().position(|(other, _)| *other == group);
+            let at = made.unwrap_or_else(|| {
+                tapes.push((group, self.tape(group)));
+                tapes.len() - 1
+            });
+            let pair = (&self.programs[group as usize], &tapes[at].1);
+            // As many as the cache holds.
+            for (edges, roots) in edges.chunks(AT_ONCE).zip(roots.chunks_mut(AT_ONCE)) {
+                finder.find(evaluator, pair, self.lattice, edges, roots);
+            }
+        };
+        let blocks = &self.groups[first.block as usize..=last.block as usize];
+        if blocks.iter().all(|other| *other == blocks[0]) {
+            find(edges, out);
+            tapes.clear();
+            return;
+        }
+        // Counted first, then each to its place: a group is named by a block of the batch.
         let mut places = [0u32; BATCH + 1];
         edges.iter().for_each(|edge| places[group(edge) as usize - start + 1] += 1);
         (0..BATCH).for_each(|n| places[n + 1] += places[n]);
@@ -313,18 +352,7 @@ impl Sampler for SolidSampler<'_> {
         roots.resize(edges.len(), Root::default());
         let mut rest = &mut roots[..edges.len()];
         for edges in sorted.chunk_by(|a, b| group(a) == group(b)) {
-            let group = group(&edges[0]);
-            let roots = rest.split_off_mut(..edges.len()).unwrap_or_default();
-            let made = tapes.iter().position(|(other, _)| *other == group);
-            let at = made.unwrap_or_else(|| {
-                tapes.push((group, self.tape(group)));
-                tapes.len() - 1
-            });
-            let pair = (&self.programs[group as usize], &tapes[at].1);
-            // As many as the cache holds.
-            for (edges, roots) in edges.chunks(AT_ONCE).zip(roots.chunks_mut(AT_ONCE)) {
-                finder.find(evaluator, pair, self.lattice, edges, roots);
-            }
+            find(edges, rest.split_off_mut(..edges.len()).unwrap_or_default());
         }
         for (&n, root) in order.iter().zip(&*roots) {
             out[n as usize] = *root;
@@ -350,15 +378,7 @@ impl Sampler for SolidSampler<'_> {
         let (low, high) = (node(0), node(BLOCK as u32));
         tape.recentre(low);
         // The program holds in the block and nowhere else.
-        let local = points.iter().map(|p| p.clamp(low, high) - low);
-        for axis in &mut scratch.single {
-            axis.clear();
-        }
-        for p in local {
-            for axis in 0..3 {
-                scratch.single[axis].push(p[axis] as f32);
-            }
-        }
+        place(points.iter().map(|p| p.clamp(low, high) - low), &mut scratch.single);
         for slope in &mut scratch.slopes {
             slope.resize(points.len(), 0.0);
         }
@@ -372,5 +392,17 @@ impl Sampler for SolidSampler<'_> {
             }),
         );
         true
+    }
+}
+
+/// The coordinates of points, axis by axis.
+fn place(points: impl Iterator<Item = DVec3>, [x, y, z]: &mut [Vec<f32>; 3]) {
+    x.clear();
+    y.clear();
+    z.clear();
+    for p in points {
+        x.push(p.x as f32);
+        y.push(p.y as f32);
+        z.push(p.z as f32);
     }
 }

@@ -95,6 +95,7 @@ impl CaseTable {
 
     /// The triangles of a case; their corners are on the given edges, anticlockwise seen
     /// from outside.
+    #[inline]
     pub(crate) fn triangles(&self, case: u8) -> &[[u8; 3]] {
         let case = usize::from(case);
         &self.triangles[usize::from(self.starts[case])..usize::from(self.starts[case + 1])]

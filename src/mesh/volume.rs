@@ -197,19 +197,22 @@ impl<'a> Volume<'a> {
 }
 
 impl Volume<'_> {
-    /// The gradient at a node (numbered from 1) by central differences, one-sided at the border.
-    fn gradient(&self, node: [usize; 3]) -> DVec3 {
-        let [nx, ny, _] = self.size;
-        let strides = [1, nx, nx * ny];
-        let at = [0, 1, 2].map(|axis| node[axis] - 1);
-        let place = at[0] + at[1] * strides[1] + at[2] * strides[2];
-        let along = |axis: usize| {
-            let below = usize::from(at[axis] > 0);
-            let above = usize::from(at[axis] + 1 < self.size[axis]);
-            let value = |place: usize| f64::from(self.samples[place]);
-            let rise = value(place + above * strides[axis]) - value(place - below * strides[axis]);
-            rise / ((below + above).max(1) as f64 * self.spacing[axis])
-        };
-        DVec3::new(along(0), along(1), along(2))
+    /// By how much the samples rise from one to the next along each axis, at a node (numbered from 1): by central
+    /// differences, one-sided at the border.
+    #[inline(always)]
+    fn rises(&self, node: [usize; 3]) -> DVec3 {
+        let [nx, ny, nz] = self.size;
+        let [x, y, z] = [node[0] - 1, node[1] - 1, node[2] - 1];
+        let place = x + nx * (y + ny * z);
+        DVec3::new(self.rise(place, x, nx, 1), self.rise(place, y, ny, nx), self.rise(place, z, nz, nx * ny))
+    }
+
+    /// The same along one axis, at sample `at` of `size`, which is at `place` of the list of all.
+    #[inline(always)]
+    fn rise(&self, place: usize, at: usize, size: usize, stride: usize) -> f64 {
+        let below = if at > 0 { stride } else { 0 };
+        let above = if at + 1 < size { stride } else { 0 };
+        let rise = f64::from(self.samples[place + above]) - f64::from(self.samples[place - below]);
+        if below + above == 2 * stride { 0.5 * rise } else { rise }
     }
 }

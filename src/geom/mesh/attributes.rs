@@ -17,13 +17,13 @@
 
 use glam::Vec3;
 
+use super::corner_normals::CornerNormals;
 use super::{Mesh, MeshError};
 
 /// What a mesh carries besides positions and triangles; `None` where it has no such values.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Attributes {
     normals: Option<Vec<Vec3>>,
-    corner_normals: Option<Vec<[Vec3; 3]>>,
     corner_colors: Option<Vec<[[u8; 4]; 3]>>,
     corner_texture: Option<Vec<[[f32; 2]; 3]>>,
     owners: Option<Vec<u32>>,
@@ -42,6 +42,8 @@ impl Mesh {
         if normals.len() != self.positions.len() {
             return Err(MeshError::Normals { normals: normals.len(), vertices: self.positions.len() });
         }
+        // Those of the corners may be kept by what differs from the ones that go.
+        let _ = self.corner_normals();
         self.attributes.normals = Some(normals);
         Ok(self)
     }
@@ -67,7 +69,7 @@ impl Mesh {
     pub fn with_corner_normals(mut self, normals: Vec<[Vec3; 3]>) -> Result<Mesh, MeshError> {
         self.fits_triangles("normals of corners", normals.len())?;
         finite("normal", &normals, |n| n.is_finite())?;
-        self.attributes.corner_normals = Some(normals);
+        self.corner_normals = Some(CornerNormals::given(normals));
         Ok(self)
     }
 
@@ -122,12 +124,6 @@ impl Mesh {
         self.attributes.normals.as_deref()
     }
 
-    /// The unit normals of the corners, if the mesh has them: three for each triangle.
-    #[must_use]
-    pub fn corner_normals(&self) -> Option<&[[Vec3; 3]]> {
-        self.attributes.corner_normals.as_deref()
-    }
-
     /// The colours of the corners, if the mesh has them: three for each triangle, each red,
     /// green, blue and opacity in sRGB, 0 to 255.
     #[must_use]
@@ -167,13 +163,17 @@ impl Mesh {
         self.attributes.clamped_vertices
     }
 
-    fn fits_triangles(&self, what: &'static str, given: usize) -> Result<(), MeshError> {
+    pub(super) fn fits_triangles(&self, what: &'static str, given: usize) -> Result<(), MeshError> {
         let triangles = self.triangles.len();
         if given == triangles { Ok(()) } else { Err(MeshError::Corners { what, given, triangles }) }
     }
 }
 
-fn finite<T: Copy>(what: &'static str, values: &[[T; 3]], is_finite: impl Fn(T) -> bool) -> Result<(), MeshError> {
+pub(super) fn finite<T: Copy>(
+    what: &'static str,
+    values: &[[T; 3]],
+    is_finite: impl Fn(T) -> bool,
+) -> Result<(), MeshError> {
     match values.as_flattened().iter().position(|&value| !is_finite(value)) {
         None => Ok(()),
         Some(at) => Err(MeshError::NotFinite { what, triangle: at / 3, corner: at % 3 }),

@@ -7,13 +7,13 @@ use super::neighbours::Neighbours;
 use super::samples::{Samples, cell_number};
 use super::sharp::{self, Fans};
 use super::{BATCH, Batch, ExtractError, Part, Sampler};
-use crate::geom::Mesh;
+use crate::geom::{Apart, Mesh};
 use crate::mesh::Features;
 use crate::mesh::lattice::Lattice;
 use crate::mesh::meter::Meter;
-use crate::mesh::signs::{BLOCK, SIDE, for_each_cell, is_mixed};
-use crate::mesh::table::{CaseTable, EDGE_CORNERS, edge_axis};
-use crate::run::{Cancelled, Run};
+use crate::mesh::signs::{BLOCK, NODES, SIDE, for_each_cell, is_mixed};
+use crate::mesh::table::CaseTable;
+use crate::run::Run;
 
 /// All blocks after the first pass.
 pub(super) struct Parts<'a> {
@@ -21,43 +21,35 @@ pub(super) struct Parts<'a> {
     pub(super) neighbours: Neighbours,
     /// In batches, as they were sampled.
     parts: Vec<Vec<Part>>,
-    positions: Vec<Vec<Vec3>>,
-    normals: Vec<Vec<Vec3>>,
-    vertices: usize,
+    positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    /// How many of the vertices are moved to keep clear of nodes.
     clamped: usize,
 }
 
 impl<'a> Parts<'a> {
-    /// Numbers the vertices.
-    pub(super) fn new(
-        blocks: &'a [[u32; 3]],
-        neighbours: Neighbours,
-        batches: Vec<Batch>,
-    ) -> Result<Parts<'a>, ExtractError> {
-        let count: u64 = batches.iter().map(|batch| batch.positions.len() as u64).sum();
+    /// Some blocks, before the first pass.
+    pub(super) fn new(blocks: &'a [[u32; 3]], neighbours: Neighbours) -> Parts<'a> {
+        let (parts, positions, normals) = (Vec::new(), Vec::new(), Vec::new());
+        Parts { blocks, neighbours, parts, positions, normals, clamped: 0 }
+    }
+
+    /// Adds what the first pass leaves of the next blocks, and numbers their vertices.
+    pub(super) fn add(&mut self, batch: Batch) -> Result<(), ExtractError> {
+        let Batch { mut parts, positions, normals, clamped } = batch;
+        let start = self.positions.len();
+        let count = start as u64 + positions.len() as u64;
         if count > u64::from(u32::MAX) {
             return Err(ExtractError::TooLarge { count });
         }
-        let mut all = Parts {
-            blocks,
-            neighbours,
-            parts: Vec::with_capacity(batches.len()),
-            positions: Vec::with_capacity(batches.len()),
-            normals: Vec::with_capacity(batches.len()),
-            vertices: count as usize,
-            clamped: batches.iter().map(|batch| batch.clamped).sum(),
-        };
-        let mut start = 0;
-        for Batch { mut parts, positions, normals, .. } in batches {
-            for part in &mut parts {
-                part.first += start;
-            }
-            start += positions.len() as u32;
-            all.parts.push(parts);
-            all.positions.push(positions);
-            all.normals.push(normals);
+        for part in &mut parts {
+            part.first += start as u32;
         }
-        Ok(all)
+        self.parts.push(parts);
+        self.positions.extend_from_slice(&positions);
+        self.normals.extend_from_slice(&normals);
+        self.clamped += clamped;
+        Ok(())
     }
 
     #[inline]
@@ -100,11 +92,8 @@ impl<'a> Parts<'a> {
         features: Features,
         run: &Run,
     ) -> Result<Mesh, ExtractError> {
-        let (positions, normals) = (std::mem::take(&mut self.positions), std::mem::take(&mut self.normals));
-        let (positions, normals) =
-            rayon::join(|| concatenated(positions, self.vertices, run), || concatenated(normals, self.vertices, run));
-        let (mut positions, mut normals) = (positions?, normals?);
-
+        let (mut positions, mut normals) = (std::mem::take(&mut self.positions), std::mem::take(&mut self.normals));
+        let vertices = positions.len();
         let fans = match features {
             Features::Smooth => Fans::default(),
             Features::Sharp => {
@@ -129,19 +118,32 @@ impl<'a> Parts<'a> {
             })
             .collect();
         let mut triangles = vec![[0; 3]; counts.iter().sum()];
-        let pieces = split(&mut triangles, counts.into_iter());
-        pieces.into_par_iter().enumerate().try_for_each_init(Corners::new, |corners, (batch, piece)| {
+        let pieces = split(&mut triangles, counts.iter().copied());
+        let of_batch = |corners: &mut Corners, (batch, piece): (usize, &mut [[u32; 3]])| {
+            let end: usize = counts[..=batch].iter().sum();
             let mut slots = piece.iter_mut();
-            for n in (batch * BATCH..).take(self.parts[batch].len()) {
+            let blocks = batch * BATCH..batch * BATCH + self.parts[batch].len();
+            let mut apart = Apart { runs: Vec::new(), normals: Vec::with_capacity(fans.listed(blocks.clone())) };
+            for n in blocks {
                 meter.step()?;
                 self.list_triangles(n, corners, &fans, &mut slots)?;
+                let first = end - slots.len();
+                fans.list(n, vertices as u32, [&positions, &normals], |triangle, corners| {
+                    apart.normals.push(corners);
+                    slots.next().into_iter().for_each(|slot| *slot = triangle);
+                });
+                apart.runs.extend(Some(first..end - slots.len()).filter(|run| !run.is_empty()));
             }
-            Ok::<(), ExtractError>(())
-        })?;
+            Ok::<_, ExtractError>(apart)
+        };
+        let apart: Result<Vec<_>, ExtractError> =
+            pieces.into_par_iter().enumerate().map_init(Corners::new, of_batch).collect();
+        let apart = apart?;
         if fans.fans.is_empty() {
+            positions.shrink_to_fit();
+            normals.shrink_to_fit();
             return Ok(Mesh::new(positions, triangles)?.with_normals(normals)?.with_clamped_vertices(self.clamped));
         }
-        let corners = fans.corner_normals(&positions, &normals, &triangles);
         if !fans.unused.is_empty() {
             let used = used(positions.len(), &fans.unused);
             let number = |n: u32| used[n as usize];
@@ -149,15 +151,16 @@ impl<'a> Parts<'a> {
                 let [a, b, c] = *slot;
                 *slot = [number(a), number(b), number(c)];
             });
-            positions = kept(&positions, &fans.unused);
-            normals = kept(&normals, &fans.unused);
+            keep(&mut positions, &fans.unused);
+            keep(&mut normals, &fans.unused);
         }
-        let mesh = Mesh::new(positions, triangles)?.with_normals(normals)?.with_corner_normals(corners)?;
+        positions.shrink_to_fit();
+        normals.shrink_to_fit();
+        let mesh = Mesh::new(positions, triangles)?.with_normals(normals)?.with_normals_apart(apart)?;
         Ok(mesh.with_clamped_vertices(self.clamped))
     }
 
-    /// The triangles of block `n`: those of the table, in the order of its cells, then those of its
-    /// fans.
+    /// The triangles of block `n` that are those of the table, in the order of its cells.
     fn list_triangles(
         &self,
         n: usize,
@@ -168,11 +171,27 @@ impl<'a> Parts<'a> {
         if self.part(n).triangles == 0 {
             return Ok(());
         }
+        if let Some(plain) = fans.plain(n) {
+            plain.iter().zip(slots).for_each(|(triangle, slot)| *slot = *triangle);
+            return Ok(());
+        }
         if !self.number(n, corners) {
             let what = "a vertex is missing in the neighbour that owns it";
             return Err(ExtractError::Blocks { block: self.blocks[n], what });
         }
         let table = CaseTable::get();
+        if fans.cells(n).is_empty() && fans.opposite(n).is_empty() {
+            for_each_cell(&self.part(n).signs, |cell, case| {
+                let ids = corners.of_cell(cell);
+                let corner = |edge: u8| ids[usize::from(edge & 15)];
+                for &[a, b, c] in table.triangles(case) {
+                    if let Some(slot) = slots.next() {
+                        *slot = [corner(a), corner(b), corner(c)];
+                    }
+                }
+            });
+            return Ok(());
+        }
         let mut with_fan = fans.cells(n).iter().peekable();
         let mut opposite = fans.opposite(n).iter().peekable();
         for_each_cell(&self.part(n).signs, |cell, case| {
@@ -182,7 +201,7 @@ impl<'a> Parts<'a> {
                 return;
             }
             let ids = corners.of_cell(cell);
-            let corner = |edge: u8| ids[corners.offsets[usize::from(edge)]];
+            let corner = |edge: u8| ids[usize::from(edge & 15)];
             if opposite.next_if(|(other, _)| *other == number).is_some() {
                 for (&[a, b, c], slot) in table.triangles(!case).iter().zip(&mut *slots) {
                     *slot = [corner(a), corner(c), corner(b)];
@@ -193,10 +212,6 @@ impl<'a> Parts<'a> {
                 *slot = [corner(a), corner(b), corner(c)];
             }
         });
-        let centres = self.vertices as u32;
-        for (triangle, slot) in fans.triangles(n, centres).zip(slots) {
-            *slot = triangle;
-        }
         Ok(())
     }
 
@@ -226,24 +241,24 @@ impl<'a> Parts<'a> {
         }
         row(6, [true, false, false], [BLOCK, BLOCK]);
         // Beyond x: the first edges of rows, along y and z.
-        let last = |j: usize, k: usize| signs.row(j, k) >> BLOCK & 1;
+        let last = signs.face(0, true);
         for k in 0..SIDE {
-            for j in 0..SIDE {
-                let along_y = j < BLOCK && last(j, k) != last(j + 1, k);
-                let along_z = k < BLOCK && last(j, k) != last(j, k + 1);
-                if !(along_y || along_z) {
-                    continue;
-                }
+            let along_y = (last[k] ^ last[k] >> 1) & ((1 << BLOCK) - 1);
+            let along_z = last.get(k + 1).map_or(0, |next| last[k] ^ next);
+            let mut crossed = along_y | along_z;
+            while crossed != 0 {
+                let j = crossed.trailing_zeros() as usize;
+                crossed &= crossed - 1;
                 let bits = 1 | (j / BLOCK) << 1 | (k / BLOCK) << 2;
                 let Some(other) = upper(bits) else { return false };
                 let (row_j, row_k) = (j % BLOCK, k % BLOCK);
-                let [x, y, _] = other.signs.crossed(row_j, row_k).map(u16::count_ones);
-                let vertex = other.first + other.rows.start(row_j, row_k) + x;
-                if along_y {
+                let [x, y, _] = other.signs.crossed(row_j, row_k);
+                let vertex = other.first + other.rows.start(row_j, row_k) + x.count_ones();
+                if along_y >> j & 1 == 1 {
                     corners.ids[Corners::place(1, [BLOCK, j, k])] = vertex;
                 }
-                if along_z {
-                    corners.ids[Corners::place(2, [BLOCK, j, k])] = vertex + y;
+                if along_z >> j & 1 == 1 {
+                    corners.ids[Corners::place(2, [BLOCK, j, k])] = vertex + y.count_ones();
                 }
             }
         }
@@ -255,33 +270,33 @@ impl<'a> Parts<'a> {
 pub(super) struct Corners {
     /// By axis, then by the lower node, x fastest; what lies on edges that are not crossed has
     /// no meaning.
-    ids: Box<[u32; 3 * SIDE * SIDE * SIDE]>,
-    /// Where the edges of a cell are, from the place of its first node.
-    offsets: [usize; 12],
+    ids: Box<[u32; 3 * NODES]>,
 }
 
 impl Corners {
     pub(super) fn new() -> Corners {
-        let offset = |edge: usize| {
-            let corner = usize::from(EDGE_CORNERS[edge][0]);
-            Corners::place(usize::from(edge_axis(edge as u8)), [corner & 1, corner >> 1 & 1, corner >> 2])
-        };
-        Corners { ids: Box::new([0; 3 * SIDE * SIDE * SIDE]), offsets: std::array::from_fn(offset) }
+        Corners { ids: Box::new([0; 3 * NODES]) }
     }
 
-    /// The list from the place of a cell's first node on.
-    #[inline]
-    fn of_cell(&self, [i, j, k]: [usize; 3]) -> &[u32] {
-        &self.ids[i + SIDE * (j + SIDE * k)..]
+    /// The vertices on the edges of a cell, and four numbers without meaning: an index of 4 bits is in range.
+    #[inline(always)]
+    pub(super) fn of_cell(&self, cell: [usize; 3]) -> [u32; 16] {
+        // Along each axis, from the lower corners of the edges.
+        const X: usize = 0;
+        const Y: usize = NODES;
+        const Z: usize = 2 * NODES;
+        const J: usize = SIDE;
+        const K: usize = SIDE * SIDE;
+        let ids = &self.ids[Corners::place(0, cell)..][..Z + J + 2];
+        let [x, y, z] = [
+            [ids[X], ids[X + J], ids[X + K], ids[X + J + K]],
+            [ids[Y], ids[Y + 1], ids[Y + K], ids[Y + 1 + K]],
+            [ids[Z], ids[Z + 1], ids[Z + J], ids[Z + 1 + J]],
+        ];
+        [x[0], x[1], x[2], x[3], y[0], y[1], y[2], y[3], z[0], z[1], z[2], z[3], 0, 0, 0, 0]
     }
 
-    /// The vertex on an edge of a cell.
-    #[inline]
-    pub(super) fn vertex(&self, cell: [usize; 3], edge: u8) -> u32 {
-        self.of_cell(cell)[self.offsets[usize::from(edge)]]
-    }
-
-    #[inline]
+    #[inline(always)]
     fn place(axis: usize, [i, j, k]: [usize; 3]) -> usize {
         i + SIDE * (j + SIDE * (k + SIDE * axis))
     }
@@ -308,16 +323,6 @@ impl Corners {
     }
 }
 
-/// The pieces one after the other, each given back as soon as it is copied.
-fn concatenated(pieces: Vec<Vec<Vec3>>, length: usize, run: &Run) -> Result<Vec<Vec3>, Cancelled> {
-    let mut all = Vec::with_capacity(length);
-    for piece in pieces {
-        run.check()?;
-        all.extend_from_slice(&piece);
-    }
-    Ok(all)
-}
-
 /// The numbers of vertices when the ones that are not used, in ascending order, are gone.
 fn used(count: usize, unused: &[u32]) -> Vec<u32> {
     let mut numbers: Vec<u32> = Vec::with_capacity(count);
@@ -330,15 +335,16 @@ fn used(count: usize, unused: &[u32]) -> Vec<u32> {
     numbers
 }
 
-/// A list without the ones that are not used, in ascending order.
-fn kept(list: &[Vec3], unused: &[u32]) -> Vec<Vec3> {
-    let mut all = Vec::with_capacity(list.len());
-    let mut start = 0;
-    for end in unused.iter().map(|&n| n as usize).chain([list.len()]) {
-        all.extend_from_slice(&list[start..end]);
-        start = end + 1;
+/// Takes the ones that are not used, in ascending order, out of a list.
+fn keep(list: &mut Vec<Vec3>, unused: &[u32]) {
+    let ends = unused.iter().map(|&n| n as usize).skip(1).chain([list.len()]);
+    let mut kept = unused.first().map_or(list.len(), |&n| n as usize);
+    for (&gone, end) in unused.iter().zip(ends) {
+        let start = gone as usize + 1;
+        list.copy_within(start..end, kept);
+        kept += end - start;
     }
-    all
+    list.truncate(kept);
 }
 
 /// Cuts a slice into consecutive pieces of the given lengths, whose sum is its length.

@@ -13,8 +13,9 @@ use glam::DVec3;
 
 use super::Sampler;
 use super::samples::{Samples, cell_number, cell_of, split_cell};
+use crate::mesh::lattice::Lattice;
 use crate::mesh::loops::{CellLoop, ambiguous_faces};
-use crate::mesh::signs::for_each_cell;
+use crate::mesh::signs::{Signs, for_each_cell};
 
 /// Which faces are joined.
 #[derive(Default)]
@@ -23,31 +24,39 @@ pub(super) struct Joined {
     upper: Vec<Vec<(u16, u8)>>,
 }
 
-/// The upper ambiguous faces of a block's cells that would rather be joined.
+/// The upper faces of a cell, as bits.
+pub(super) const UPPER: u8 = 0b10_1010;
+
+/// The upper ambiguous faces of a block's cells that would rather be joined. The block is given by its number and
+/// its first cell.
 pub(super) fn proposals<S: Sampler>(
-    samples: &Samples<'_>,
     sampler: &S,
     scratch: &mut S::Scratch,
-    n: usize,
+    lattice: &Lattice,
+    (number, block): (usize, [u32; 3]),
+    signs: &Signs,
 ) -> Vec<(u16, u8)> {
-    let block = samples.blocks()[n];
+    let all = ambiguous_faces();
     let (mut faces, mut middles, mut found) = (Vec::new(), Vec::new(), Vec::new());
-    for_each_cell(&samples.parts.part(n).signs, |cell, case| {
-        let ambiguous = ambiguous_faces(case);
+    for_each_cell(signs, |[i, j, k], case| {
+        let ambiguous = all[usize::from(case)] & UPPER;
+        if ambiguous == 0 {
+            return;
+        }
+        let node = lattice.node(block[0] + i as u32, block[1] + j as u32, block[2] + k as u32);
         for axis in (0..3).filter(|axis| ambiguous >> (2 * axis + 1) & 1 == 1) {
             let mut middle = DVec3::splat(0.5);
             middle[axis] = 1.0;
-            let node: [u32; 3] = std::array::from_fn(|axis| block[axis] + cell[axis] as u32);
-            faces.push((cell_number(cell), 1 << axis));
-            middles.push(samples.world(DVec3::from_array(node.map(f64::from)) + middle));
+            faces.push((cell_number([i, j, k]), 1 << axis));
+            middles.push(node + lattice.step() * middle);
         }
     });
-    if middles.is_empty() || !sampler.slopes(scratch, n, block, &middles, &mut found) {
+    if middles.is_empty() || !sampler.insides(scratch, number, block, &middles, &mut found) {
         return Vec::new();
     }
     let mut upper: Vec<(u16, u8)> = Vec::new();
-    for ((cell, face), slope) in faces.into_iter().zip(found) {
-        if slope.value > 0.0 {
+    for ((cell, face), is_inside) in faces.into_iter().zip(found) {
+        if is_inside {
             match upper.last_mut().filter(|last| last.0 == cell) {
                 Some(last) => last.1 |= face,
                 None => upper.push((cell, face)),
@@ -74,7 +83,7 @@ impl Joined {
         while let Some(cell) = cells.pop() {
             let case = samples.case(cell);
             let faces = joined.of(samples, cell, case);
-            if faces == 0 || faces == ambiguous_faces(case) || CellLoop::single(case, faces).is_some() {
+            if faces == 0 || faces == ambiguous_faces()[usize::from(case)] || CellLoop::single(case, faces).is_some() {
                 continue;
             }
             for face in (0..6).filter(|face| faces >> face & 1 == 1) {
@@ -101,7 +110,7 @@ impl Joined {
     /// The joined faces of a cell of the given case, as bits.
     #[inline]
     pub(super) fn of(&self, samples: &Samples<'_>, cell: [u32; 3], case: u8) -> u8 {
-        let mut ambiguous = ambiguous_faces(case);
+        let mut ambiguous = ambiguous_faces()[usize::from(case)];
         let mut bits = 0;
         while ambiguous != 0 {
             let face = ambiguous.trailing_zeros() as usize;

@@ -22,16 +22,15 @@
 //! cells holds for that of the region. A vertex on an edge within the box is in no triangle any more, and is
 //! left out.
 
-use std::collections::HashMap;
-
 use glam::{DVec3, Vec3};
 
 use super::joined::Joined;
-use super::samples::{Samples, split_cell};
+use super::samples::{Samples, cell_number, split_cell};
 use super::sharp::{Segment, Special, segments};
 use crate::mesh::feature::{Candidate, settle};
 use crate::mesh::loops::CellLoop;
 use crate::mesh::qef::Planes;
+use crate::mesh::signs::BLOCK;
 use crate::mesh::table::CaseTable;
 use crate::run::{Cancelled, Run};
 
@@ -63,6 +62,11 @@ pub(super) struct Span {
 }
 
 impl Span {
+    pub(super) fn single(cell: [u32; 3]) -> Span {
+        let [x, y, z] = cell;
+        Span { low: cell, high: [x + 1, y + 1, z + 1] }
+    }
+
     fn of(a: [u32; 3], b: [u32; 3]) -> Span {
         let low = std::array::from_fn(|axis| a[axis].min(b[axis]));
         Span { low, high: std::array::from_fn(|axis| a[axis].max(b[axis]) + 1) }
@@ -121,8 +125,8 @@ pub(super) fn regions(
                     }
                 }
             } else {
-                for along in candidate.crease().into_iter().flat_map(|d| [d, -d]) {
-                    if let Some((size, other, at)) = beyond(samples, candidate, along) {
+                for along in candidate.crease(&list.sides).into_iter().flat_map(|d| [d, -d]) {
+                    if let Some((size, other, at)) = beyond(samples, block, candidate, along) {
                         asking.push(Wish { size, block, candidate, other, at, allowed: 2.0 * MISFIT });
                     }
                 }
@@ -130,7 +134,7 @@ pub(super) fn regions(
         }
     }
     asking.sort_by(|a, b| b.size.total_cmp(&a.size));
-    let mut known = Known { samples, special, joined, taken: HashMap::new(), regions: Vec::new() };
+    let mut known = Known { samples, special, joined, taken: vec![Vec::new(); special.len()], regions: Vec::new() };
     // Regions that stand alone come first: they are smaller than those that others are merged into.
     for merges in [false, true] {
         asking.retain(|wish| !run.cancel.is_cancelled() && !known.grant(wish, merges));
@@ -169,7 +173,7 @@ fn towards(cell: [u32; 3], target: DVec3, steps: i32) -> Option<[u32; 3]> {
 /// Follows a crease from the point of a cell. If it goes through empty cells and then comes to
 /// one that is a neighbour of the first by an edge or a corner: how long it is in them, the cell, and
 /// the middle of that part.
-fn beyond(samples: &Samples<'_>, candidate: &Candidate, along: DVec3) -> Option<(f64, [u32; 3], DVec3)> {
+fn beyond(samples: &Samples<'_>, block: usize, candidate: &Candidate, along: DVec3) -> Option<(f64, [u32; 3], DVec3)> {
     let (mut cell, mut at) = (candidate.cell, candidate.at);
     let mut entry: Option<DVec3> = None;
     for _ in 0..4 {
@@ -187,7 +191,7 @@ fn beyond(samples: &Samples<'_>, candidate: &Candidate, along: DVec3) -> Option<
         if (0..3).any(|n| cell[n].abs_diff(candidate.cell[n]) > 1) {
             return None;
         }
-        match (entry, matches!(samples.case(cell), 0 | 255)) {
+        match (entry, matches!(samples.case_near(block, cell), 0 | 255)) {
             (None, false) => return None,
             (None, true) => entry = Some(at),
             (Some(start), false) => return Some((0.5 * (at - start).length(), cell, 0.5 * (start + at))),
@@ -201,8 +205,8 @@ struct Known<'a> {
     samples: &'a Samples<'a>,
     special: &'a [Special],
     joined: &'a Joined,
-    /// The cells that are in a region, and which.
-    taken: HashMap<[u32; 3], usize>,
+    /// By block, and the numbers of cells in it, the regions that they are in; nothing for a block without any.
+    taken: Vec<Vec<Option<u32>>>,
     /// All regions; `None` for those that others are merged from.
     regions: Vec<Option<Region>>,
 }
@@ -212,15 +216,15 @@ impl Known<'_> {
     /// where there are any. Whether there is no more to be done for the cell.
     fn grant(&mut self, wish: &Wish<'_>, merges: bool) -> bool {
         // One that it is in already is what it wished for, or better.
-        if self.taken.contains_key(&wish.candidate.cell) {
+        if self.taken(wish.block, wish.candidate.cell).is_some() {
             return true;
         }
         let mut span = Span::of(wish.candidate.cell, wish.other);
-        let mut merged: Vec<usize> = Vec::new();
-        while let Some(&region) =
-            span.cells().filter_map(|cell| self.taken.get(&cell)).find(|&region| !merged.contains(region))
+        let mut merged: Vec<u32> = Vec::new();
+        while let Some(region) =
+            span.cells().filter_map(|cell| self.taken(wish.block, cell)).find(|region| !merged.contains(region))
         {
-            if let Some(other) = &self.regions[region] {
+            if let Some(other) = &self.regions[region as usize] {
                 span = span.union(&other.span);
             }
             merged.push(region);
@@ -230,49 +234,77 @@ impl Known<'_> {
         }
         let Some(region) = self.region(wish, span) else { return merged.is_empty() };
         for old in merged {
-            self.regions[old] = None;
+            self.regions[old as usize] = None;
         }
-        self.taken.extend(region.cells.iter().map(|&(cell, _)| (cell, self.regions.len())));
+        for &(cell, _) in &region.cells {
+            let (block, within) = split_cell(cell);
+            if let Some(block) = self.samples.find_near(wish.block, block) {
+                let cells = &mut self.taken[block];
+                cells.resize(BLOCK * BLOCK * BLOCK, None);
+                cells[usize::from(cell_number(within))] = Some(self.regions.len() as u32);
+            }
+        }
         self.regions.push(Some(region));
         true
+    }
+
+    /// The region that a cell, close to block `near`, is in.
+    fn taken(&self, near: usize, cell: [u32; 3]) -> Option<u32> {
+        let (block, within) = split_cell(cell);
+        let block = self.samples.find_near(near, block)?;
+        *self.taken[block].get(usize::from(cell_number(within)))?
     }
 
     fn region(&self, wish: &Wish<'_>, span: Span) -> Option<Region> {
         let (mut cells, mut all, mut planes) = (Vec::new(), Vec::<Vec<Segment>>::new(), Planes::NONE);
         for cell in span.cells() {
-            let case = self.samples.case(cell);
+            let case = self.samples.case_near(wish.block, cell);
             cells.push((cell, CaseTable::get().triangles(case).len()));
-            if case == 0 || case == 255 {
-                continue;
-            }
-            for candidate in self.candidates(cell, case)? {
-                planes.append(&candidate.planes);
-                all.push(segments(&candidate).collect());
+            if case != 0 && case != 255 {
+                self.patches(wish.block, cell, case, &mut planes, &mut all)?;
             }
         }
-        let Disc { ring, within } = glued(&all)?;
         let [low, high] = span.corners();
         let at = settle(&planes, wish.at, low, high, 3);
         if planes.distance(at) > wish.allowed || wish.candidate.planes.distance(at) > wish.allowed {
             return None;
         }
+        let Disc { ring, within } = glued(&all)?;
         let at = self.samples.inside(at, span.low, span.high);
         Some(Region { block: wish.block, segments: ring, at, cells, within, span })
     }
 
-    /// What a crossed cell has, a candidate for each of its loops.
-    fn candidates(&self, cell: [u32; 3], case: u8) -> Option<Vec<Candidate>> {
+    /// Adds the planes of a crossed cell, close to block `near`, and the segments of each of its loops.
+    fn patches(
+        &self,
+        near: usize,
+        cell: [u32; 3],
+        case: u8,
+        planes: &mut Planes,
+        all: &mut Vec<Vec<Segment>>,
+    ) -> Option<()> {
         let (block, _) = split_cell(cell);
-        let block = self.samples.find(block)?;
-        if let Some(candidate) = self.special[block].candidates.iter().find(|candidate| candidate.cell == cell) {
-            return Some(vec![candidate.clone()]);
+        let Special { candidates, sides, .. } = &self.special[self.samples.find_near(near, block)?];
+        if let Some(candidate) = candidates.iter().find(|candidate| candidate.cell == cell) {
+            planes.append(&candidate.planes);
+            all.push(segments(candidate, sides).collect());
+            return Some(());
         }
-        let candidate = |outline: CellLoop| {
-            let vertices: Option<Vec<u32>> =
-                outline.edges().iter().map(|&edge| self.samples.vertex(cell, edge)).collect();
-            Some(self.samples.candidate(cell, outline, &vertices?))
+        let mut add = |outline: CellLoop| {
+            let (mut vertices, mut sides) = (Vec::with_capacity(outline.len()), Vec::with_capacity(outline.len()));
+            for &edge in outline.edges() {
+                vertices.push(self.samples.vertex(cell, edge)?);
+            }
+            let candidate = self.samples.candidate(cell, outline, &vertices, &mut sides);
+            planes.append(&candidate.planes);
+            all.push(segments(&candidate, &sides).collect());
+            Some(())
         };
-        CellLoop::all(case, self.joined.of(self.samples, cell, case)).map(candidate).collect()
+        let faces = self.joined.of(self.samples, cell, case);
+        match CellLoop::single(case, faces) {
+            Some(outline) => add(outline),
+            None => CellLoop::all(case, faces).try_for_each(add),
+        }
     }
 }
 

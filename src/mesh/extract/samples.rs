@@ -1,13 +1,13 @@
 //! All blocks after the first pass, seen as one lattice of cells with vertices on their edges.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, UVec3, Vec3};
 use rayon::prelude::*;
 
 use super::join::Parts;
 use crate::bounds::Bounds;
 use crate::mesh::feature::{Candidate, SMOOTH, Side};
 use crate::mesh::lattice::Lattice;
-use crate::mesh::loops::{CellLoop, LONGEST};
+use crate::mesh::loops::CellLoop;
 use crate::mesh::signs::BLOCK;
 use crate::mesh::table::{EDGE_CORNERS, edge_axis};
 
@@ -23,7 +23,7 @@ pub(super) struct Samples<'a> {
 }
 
 /// The block of a cell, by its first cell, and where the cell is in it.
-#[inline]
+#[inline(always)]
 pub(super) fn split_cell(cell: [u32; 3]) -> ([u32; 3], [usize; 3]) {
     let [x, y, z] = cell;
     let side = BLOCK as u32;
@@ -32,6 +32,7 @@ pub(super) fn split_cell(cell: [u32; 3]) -> ([u32; 3], [usize; 3]) {
 }
 
 /// The number of a cell in its block: x fastest, then y, then z.
+#[inline(always)]
 pub(super) fn cell_number([i, j, k]: [usize; 3]) -> u16 {
     (i + BLOCK * (j + BLOCK * k)) as u16
 }
@@ -71,6 +72,32 @@ impl<'a> Samples<'a> {
         Some(self.sorted[at].1 as usize)
     }
 
+    /// The number of the block with a first cell, quickly if it is next to block `near`.
+    pub(super) fn find_near(&self, near: usize, block: [u32; 3]) -> Option<usize> {
+        let first = self.blocks()[near];
+        if first == block {
+            return Some(near);
+        }
+        for axis in 0..3 {
+            let (others, side) = ([(axis + 1) % 3, (axis + 2) % 3], BLOCK as u32);
+            if others.iter().all(|&n| first[n] == block[n]) {
+                if block[axis] == first[axis] + side {
+                    return self.parts.neighbours.upper(near, 1 << axis);
+                }
+                if block[axis] + side == first[axis] {
+                    return self.parts.neighbours.lower(near, axis);
+                }
+            }
+        }
+        self.find(block)
+    }
+
+    /// The case of a cell of the lattice, quickly if it is in block `near` or next to it; 0 where no block is.
+    pub(super) fn case_near(&self, near: usize, cell: [u32; 3]) -> u8 {
+        let (block, within) = split_cell(cell);
+        self.find_near(near, block).map_or(0, |block| self.parts.part(block).signs.case(within))
+    }
+
     /// The case of a cell of the lattice; 0 where no block is.
     pub(super) fn case(&self, cell: [u32; 3]) -> u8 {
         let (block, within) = split_cell(cell);
@@ -91,12 +118,12 @@ impl<'a> Samples<'a> {
     }
 
     /// Position and normal of a vertex.
-    #[inline]
+    #[inline(always)]
     pub(super) fn get(&self, vertex: u32) -> (Vec3, Vec3) {
         (self.positions[vertex as usize], self.normals[vertex as usize])
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn normal(&self, vertex: u32) -> Vec3 {
         self.normals[vertex as usize]
     }
@@ -123,23 +150,32 @@ impl<'a> Samples<'a> {
     }
 
     /// A position in cells from the lattice's first node, and back.
+    #[inline(always)]
     fn local(&self, p: Vec3) -> DVec3 {
         (p.as_dvec3() - self.lattice.origin()) / self.lattice.step()
     }
 
+    #[inline(always)]
     pub(super) fn world(&self, p: DVec3) -> DVec3 {
         self.lattice.origin() + p * self.lattice.step()
     }
 
-    /// A cell with a loop, given the vertices on it.
-    pub(super) fn candidate(&self, cell: [u32; 3], outline: CellLoop, vertices: &[u32]) -> Candidate {
-        let low: DVec3 = cell.map(f64::from).into();
-        let mut sides = [Side::default(); LONGEST];
-        for (side, &vertex) in sides.iter_mut().zip(vertices) {
+    /// A cell with a loop, given the vertices on it, which are added to `sides`.
+    pub(super) fn candidate(
+        &self,
+        cell: [u32; 3],
+        outline: CellLoop,
+        vertices: &[u32],
+        sides: &mut Vec<Side>,
+    ) -> Candidate {
+        let low = UVec3::from_array(cell).as_dvec3();
+        let first = sides.len();
+        sides.reserve(vertices.len());
+        for &vertex in vertices {
             let (position, normal) = self.get(vertex);
-            *side = Side { vertex, at: (self.local(position) - low).as_vec3(), normal };
+            sides.push(Side { vertex, at: (self.local(position) - low).as_vec3(), normal });
         }
-        Candidate::new(cell, outline, sides)
+        Candidate::new(cell, outline, first as u32, &sides[first..])
     }
 
     /// A node as vertices have it, rounded to f32.
@@ -155,8 +191,9 @@ impl<'a> Samples<'a> {
     /// The position of a point as f32, strictly inside of the box of cells from `low` up to `high`,
     /// exclusive.
     pub(super) fn inside(&self, at: DVec3, low: [u32; 3], high: [u32; 3]) -> Vec3 {
-        let low = self.node(low).to_array().map(f32::next_up);
-        let high = self.node(high).to_array().map(f32::next_down);
-        self.limited(self.world(at)).as_vec3().clamp(low.into(), high.into())
+        let (low, high) = (self.node(low), self.node(high));
+        let low = Vec3::new(low.x.next_up(), low.y.next_up(), low.z.next_up());
+        let high = Vec3::new(high.x.next_down(), high.y.next_down(), high.z.next_down());
+        self.limited(self.world(at)).as_vec3().clamp(low, high)
     }
 }

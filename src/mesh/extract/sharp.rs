@@ -32,7 +32,6 @@
 //! (see [`joined`](super::joined)). Where a crease passes an empty cell and no region comes about, it is
 //! cut off by what it goes into that cell, up to half a cell or more.
 
-use std::collections::HashSet;
 use std::ops::Range;
 
 use glam::Vec3;
@@ -40,9 +39,9 @@ use rayon::prelude::*;
 
 use super::Sampler;
 use super::join::Corners;
-use super::joined::{Joined, proposals};
+use super::joined::Joined;
 use super::region::{Region, Span, regions};
-use super::samples::{Samples, cell_number, cell_of, split_cell};
+use super::samples::{Samples, cell_number, split_cell};
 use crate::mesh::feature::{Candidate, Side, is_smooth, refine};
 use crate::mesh::loops::{CellLoop, LONGEST};
 use crate::mesh::meter::Meter;
@@ -73,7 +72,9 @@ pub(super) struct Segment {
 /// The fan of a cell, or of a region of several.
 pub(super) struct Fan {
     /// The place of its segments in the list of all.
-    segments: Range<u32>,
+    pub(super) segments: Range<u32>,
+    /// The block that it is listed with.
+    pub(super) block: usize,
     /// The cells that it is in.
     pub(super) span: Span,
     /// The feature point, strictly inside.
@@ -103,6 +104,8 @@ struct OfBlock {
     dropped: usize,
     /// The cells that have the patches of the opposite case, by number; ascending.
     opposite: Vec<(u16, u8)>,
+    /// The triangles of the cells that have those of the table, if they are listed already.
+    plain: Option<Vec<[u32; 3]>>,
 }
 
 /// Finds the cells that hold creases and corners, and gives them fans.
@@ -113,12 +116,11 @@ pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) ->
         return Ok(Fans::default());
     }
     let blocks = || (0..spread.len()).into_par_iter();
-    let of_block = |scratch: &mut S::Scratch, n: usize| {
-        run.check()?;
-        Ok(if spread[n] { proposals(samples, sampler, scratch, n) } else { Vec::new() })
-    };
-    let proposed: Result<Vec<_>, Cancelled> = blocks().map_init(|| sampler.scratch(), of_block).collect();
-    let joined = Joined::new(samples, proposed?);
+    let proposed = (0..spread.len()).map(|n| match spread[n] {
+        true => samples.parts.part(n).joins.clone(),
+        false => Vec::new(),
+    });
+    let joined = Joined::new(samples, proposed.collect());
     let meter = Meter::new(run, spread.len());
     let of_block = |(scratch, corners): &mut (S::Scratch, Corners), n: usize| {
         meter.step()?;
@@ -127,7 +129,7 @@ pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) ->
         }
         let mut special = special(samples, &joined, n, corners);
         let mut points = Vec::new();
-        refine(&mut special.candidates, samples.lattice.step(), |local, out| {
+        refine(&mut special.candidates, &mut special.sides, samples.lattice.step(), |local, out| {
             points.clear();
             points.extend(local.iter().map(|p| samples.world(*p)));
             sampler.slopes(scratch, n, samples.blocks()[n], &points, out)
@@ -146,8 +148,12 @@ pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) ->
 pub(super) struct Special {
     /// Those with a single loop, in order.
     pub(super) candidates: Vec<Candidate>,
+    /// The vertices of all candidates.
+    pub(super) sides: Vec<Side>,
     /// Those with the patches of the opposite case, by number, and their cases.
     opposite: Vec<(u16, u8)>,
+    /// The triangles of all other cells, in their order, if the block has been looked at.
+    plain: Option<Vec<[u32; 3]>>,
 }
 
 /// The cells of block `n` around which the normals spread, or faces are joined.
@@ -158,31 +164,51 @@ fn special(samples: &Samples<'_>, joined: &Joined, n: usize, corners: &mut Corne
         return found;
     }
     let block = samples.blocks()[n];
+    let has_joined = joined.concerns(samples, n);
+    let table = CaseTable::get();
+    let mut plain = Vec::with_capacity(samples.parts.part(n).triangles as usize);
+    let loops = CellLoop::table();
     let (mut vertices, mut normals) = ([0; LONGEST], [Vec3::ZERO; LONGEST]);
     for_each_cell(&samples.parts.part(n).signs, |within, case| {
-        let cell = std::array::from_fn(|axis| block[axis] + within[axis] as u32);
-        let faces = joined.of(samples, cell, case);
-        let Some(outline) = CellLoop::single(case, faces) else {
-            if faces != 0 {
-                found.opposite.push((cell_number(within), case));
-            }
-            return;
+        let [i, j, k] = within;
+        let cell = [block[0] + i as u32, block[1] + j as u32, block[2] + k as u32];
+        let faces = if has_joined { joined.of(samples, cell, case) } else { 0 };
+        let ids = corners.of_cell(within);
+        let derived;
+        let outline = if faces == 0 {
+            loops[usize::from(case)].as_ref()
+        } else {
+            derived = CellLoop::single(case, faces);
+            derived.as_ref()
         };
-        let count = outline.len();
-        for (n, &edge) in outline.edges().iter().enumerate() {
-            vertices[n] = corners.vertex(within, edge);
-            normals[n] = samples.normal(vertices[n]);
+        if let Some(outline) = outline {
+            let count = outline.len();
+            let mut sum = Vec3::ZERO;
+            for (n, &edge) in outline.edges().iter().enumerate() {
+                let vertex = ids[usize::from(edge & 15)];
+                let normal = samples.normal(vertex);
+                sum += normal;
+                (vertices[n], normals[n]) = (vertex, normal);
+            }
+            // The table knows nothing of joined faces.
+            if faces != 0 || !is_smooth(&normals[..count], sum) {
+                found.candidates.push(samples.candidate(cell, *outline, &vertices[..count], &mut found.sides));
+                return;
+            }
+        } else if faces != 0 {
+            found.opposite.push((cell_number(within), case));
+            return;
         }
-        // The table knows nothing of joined faces.
-        if faces != 0 || !is_smooth(&normals[..count]) {
-            found.candidates.push(samples.candidate(cell, outline, &vertices[..count]));
+        for &[a, b, c] in table.triangles(case) {
+            plain.push([ids[usize::from(a & 15)], ids[usize::from(b & 15)], ids[usize::from(c & 15)]]);
         }
     });
+    found.plain = Some(plain);
     found
 }
 
-/// The segments of a cell's loop.
-pub(super) fn segments(candidate: &Candidate) -> impl Iterator<Item = Segment> {
+/// The segments of a cell's loop, whose vertices are in a list.
+pub(super) fn segments(candidate: &Candidate, sides: &[Side]) -> impl Iterator<Item = Segment> {
     let segment = |(n, side): (usize, &Side)| Segment {
         from: side.vertex,
         cell: candidate.cell,
@@ -191,36 +217,54 @@ pub(super) fn segments(candidate: &Candidate) -> impl Iterator<Item = Segment> {
         across: None,
         normal: side.normal,
     };
-    candidate.sides().iter().enumerate().map(segment)
+    candidate.sides(sides).iter().enumerate().map(segment)
 }
 
 impl Fans {
     fn new(samples: &Samples<'_>, special: Vec<Special>, regions: Vec<Region>, run: &Run) -> Result<Fans, Cancelled> {
         let mut all = Fans { blocks: vec![OfBlock::default(); samples.blocks().len()], ..Fans::default() };
+        all.fans.reserve(special.iter().map(|special| special.candidates.len()).sum());
+        all.segments.reserve(special.iter().map(|special| special.sides.len()).sum());
+        // The cells of regions, by the numbers of their blocks and their own.
+        let mut in_region: Vec<(usize, u16)> = Vec::new();
+        for &(cell, _) in regions.iter().flat_map(|region| &region.cells) {
+            let (block, within) = split_cell(cell);
+            in_region.extend(samples.find(block).map(|block| (block, cell_number(within))));
+        }
+        in_region.sort_unstable();
+        let mut in_region = &in_region[..];
         // A region is listed with the block of the candidate that asked for it.
-        let in_region: HashSet<[u32; 3]> =
-            regions.iter().flat_map(|region| region.cells.iter().map(|&(cell, _)| cell)).collect();
         let mut regions = regions.into_iter().peekable();
         let table = CaseTable::get();
-        for (block, Special { candidates, mut opposite }) in special.into_iter().enumerate() {
+        for (block, Special { candidates, sides, mut opposite, plain }) in special.into_iter().enumerate() {
             run.check()?;
-            let first = samples.blocks()[block];
-            opposite.retain(|&(number, _)| !in_region.contains(&cell_of(first, number)));
+            let (taken, rest) = in_region.split_at(in_region.partition_point(|&(other, _)| other == block));
+            in_region = rest;
+            let is_free = |number: u16| taken.binary_search(&(block, number)).is_err();
+            opposite.retain(|&(number, _)| is_free(number));
+            // Regions may hold other cells than candidates.
+            let number = |candidate: &Candidate| cell_number(split_cell(candidate.cell).1);
+            let is_candidate = |&(_, cell): &(usize, u16)| candidates.binary_search_by_key(&cell, number).is_ok();
+            all.blocks[block].plain = plain.filter(|_| opposite.is_empty() && taken.iter().all(is_candidate));
             all.blocks[block].opposite = opposite;
+            all.blocks[block].cells.reserve_exact(candidates.len() + taken.len());
             let start = all.fans.len();
             let signs = &samples.parts.part(block).signs;
-            for candidate in candidates.iter().filter(|candidate| !in_region.contains(&candidate.cell)) {
-                let high = candidate.cell.map(|n| n + 1);
+            for candidate in &candidates {
                 let (_, within) = split_cell(candidate.cell);
-                all.blocks[block].cells.push((cell_number(within), all.fans.len() as u32));
-                all.blocks[block].dropped += table.triangles(signs.case(within)).len();
-                let at = samples.inside(candidate.at, candidate.cell, high);
-                all.add(segments(candidate), Span { low: candidate.cell, high }, at);
+                let number = cell_number(within);
+                if is_free(number) {
+                    all.blocks[block].cells.push((number, all.fans.len() as u32));
+                    all.blocks[block].dropped += table.triangles(signs.case(within)).len();
+                    let span = Span::single(candidate.cell);
+                    let at = samples.inside(candidate.at, span.low, span.high);
+                    all.add(block, segments(candidate, &sides), span, at);
+                }
             }
             while let Some(region) = regions.next_if(|region| region.block == block) {
                 all.cover(samples, &region.cells);
                 all.unused.extend(region.within);
-                all.add(region.segments.into_iter(), region.span, region.at);
+                all.add(block, region.segments.into_iter(), region.span, region.at);
             }
             all.blocks[block].listed = start..all.fans.len();
         }
@@ -243,10 +287,10 @@ impl Fans {
         }
     }
 
-    fn add(&mut self, segments: impl Iterator<Item = Segment>, span: Span, at: Vec3) {
+    fn add(&mut self, block: usize, segments: impl Iterator<Item = Segment>, span: Span, at: Vec3) {
         let first = self.segments.len() as u32;
         self.segments.extend(segments);
-        self.fans.push(Fan { segments: first..self.segments.len() as u32, span, at });
+        self.fans.push(Fan { segments: first..self.segments.len() as u32, block, span, at });
     }
 
     /// The segments of a fan.
@@ -273,21 +317,30 @@ impl Fans {
         centres.chain(self.points.iter().copied().zip(between))
     }
 
+    /// The triangles of a block's cells that have those of the table, if they are listed already.
+    pub(super) fn plain(&self, block: usize) -> Option<&[[u32; 3]]> {
+        self.blocks.get(block)?.plain.as_deref()
+    }
+
     /// The cells of a block that have a fan, by number, and which fan.
     pub(super) fn cells(&self, block: usize) -> &[(u16, u32)] {
         self.blocks.get(block).map_or(&[], |block| &block.cells)
     }
 
+    /// How many triangles the fans that are listed with some blocks have.
+    pub(super) fn listed(&self, blocks: Range<usize>) -> usize {
+        let fans = self.blocks.get(blocks).unwrap_or_default().iter().flat_map(|block| block.listed.clone());
+        fans.flat_map(|fan| self.of(fan)).map(|segment| 1 + usize::from(self.is_bent(segment))).sum()
+    }
+
     /// How many triangles a block has, which has `count` without fans.
     pub(super) fn count(&self, block: usize, count: usize) -> usize {
         let Some(of_block) = self.blocks.get(block) else { return count };
-        let listed =
-            of_block.listed.clone().flat_map(|fan| self.of(fan)).map(|segment| 1 + usize::from(self.is_bent(segment)));
         let table = CaseTable::get();
         let triangles = |case: u8| table.triangles(case).len();
         let gone: usize = of_block.opposite.iter().map(|&(_, case)| triangles(case)).sum();
         let come: usize = of_block.opposite.iter().map(|&(_, case)| triangles(!case)).sum();
-        count + listed.sum::<usize>() + come - of_block.dropped - gone
+        count + self.listed(block..block + 1) + come - of_block.dropped - gone
     }
 
     /// The cells of a block that have the patches of the opposite case, by number.
@@ -295,60 +348,45 @@ impl Fans {
         self.blocks.get(block).map_or(&[], |block| &block.opposite)
     }
 
-    /// The triangles of the fans that are listed with a block; feature points are numbered from
+    /// Lists the triangles of the fans of a block, each with the normals at its corners: at feature points that
+    /// of the triangle's side, elsewhere that of the vertex, which lies on one side. Feature points are numbered from
     /// `centres`, in the order of the fans.
-    pub(super) fn triangles(&self, block: usize, centres: u32) -> impl Iterator<Item = [u32; 3]> {
-        let listed = self.blocks.get(block).map_or(0..0, |block| block.listed.clone());
-        listed.flat_map(move |nth| {
-            let segments = self.of(nth);
-            segments.iter().enumerate().flat_map(move |(n, segment)| {
-                let (centre, next) = (centres + nth as u32, segments[(n + 1) % segments.len()].from);
-                let to = segment.across.map_or(next, |other| centres + other);
-                let second = self.is_bent(segment).then_some([centre, to, next]);
-                std::iter::once([centre, segment.from, to]).chain(second)
-            })
-        })
-    }
-
-    /// The normals at the corners of all triangles: at feature points that of the triangle's side,
-    /// elsewhere that of the vertex, which lies on one side.
-    pub(super) fn corner_normals(
+    pub(super) fn list(
         &self,
-        positions: &[Vec3],
-        normals: &[Vec3],
-        triangles: &[[u32; 3]],
-    ) -> Vec<[Vec3; 3]> {
+        block: usize,
+        centres: u32,
+        [positions, normals]: [&[Vec3]; 2],
+        mut each: impl FnMut([u32; 3], [Vec3; 3]),
+    ) {
         let fans = self.fans.len() as u32;
-        let centres = (positions.len() - self.points.len()) as u32 - fans;
-        let own = |vertex: u32| normals[vertex as usize];
         let at = |vertex: u32| positions[vertex as usize];
-        // The normal close to a fan's point, on the side of a vertex.
-        let close = |fan: u32, vertex: u32| {
-            let segments = self.of(fan as usize);
-            segments.iter().find(|segment| segment.from == vertex).map_or(Vec3::ZERO, |segment| segment.normal)
-        };
-        let corners = |&[a, b, c]: &[u32; 3]| {
-            if a < centres {
-                return [own(a), own(b), own(c)];
-            }
-            let (p, q, r) = (at(a), at(b), at(c));
-            let face = (q - p).cross(r - p).normalize_or_zero();
-            let fan = a - centres;
-            let given = if b >= centres {
-                let near = close(fan, c);
-                [near, near, own(c)]
-            } else {
-                let near = close(fan, b);
-                match c.checked_sub(centres) {
-                    None => [(near + close(fan, c)).normalize_or_zero(), own(b), own(c)],
-                    Some(other) if other < fans => [near, own(b), close(other, b)],
-                    Some(_) => [near, own(b), near],
-                }
-            };
+        let own = |vertex: u32| normals[vertex as usize];
+        let mut list = |triangle: [u32; 3], given: [Vec3; 3]| {
+            let p = at(triangle[0]);
+            let face = (at(triangle[1]) - p).cross(at(triangle[2]) - p).normalize_or_zero();
             // A vertex on the crease itself may have the normal of the other side.
             let on_side = |normal: Vec3| if normal.dot(face) > ASTRAY { normal } else { face };
-            [on_side(given[0]), on_side(given[1]), on_side(given[2])]
+            each(triangle, [on_side(given[0]), on_side(given[1]), on_side(given[2])]);
         };
-        triangles.par_iter().map(corners).collect()
+        for nth in self.blocks.get(block).map_or(0..0, |block| block.listed.clone()) {
+            let (segments, centre) = (self.of(nth), centres + nth as u32);
+            for (n, segment) in segments.iter().enumerate() {
+                let next = segments.get(n + 1).unwrap_or(&segments[0]);
+                let (near, beside) = (segment.normal, next.normal);
+                let (from, to) = (segment.from, next.from);
+                match segment.across {
+                    None => list([centre, from, to], [(near + beside).normalize_or_zero(), own(from), own(to)]),
+                    Some(other) if other < fans => {
+                        let end = self.of(other as usize).iter().find(|segment| segment.from == from);
+                        let beyond = end.map_or(Vec3::ZERO, |segment| segment.normal);
+                        list([centre, from, centres + other], [near, own(from), beyond]);
+                    }
+                    Some(point) => {
+                        list([centre, from, centres + point], [near, own(from), near]);
+                        list([centre, centres + point, to], [beside, beside, own(to)]);
+                    }
+                }
+            }
+        }
     }
 }

@@ -14,69 +14,72 @@
 //! Where the line a–b misses the rectangle, x is the point of it next to the line, and a vertex: the two loops
 //! are s–x–t there.
 
-use std::collections::HashMap;
-
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::samples::{Samples, cell_number, split_cell};
-use super::sharp::{Fans, Segment};
+use super::sharp::{Fan, Fans, Segment};
 use crate::mesh::feature::INSET;
 use crate::run::{Cancelled, Run};
+
+/// Fans that a thread looks at before it asks whether to go on.
+const AT_ONCE: usize = 512;
 
 impl Fans {
     /// Finds out which edges between fans are turned, and to what.
     pub(super) fn turn(&mut self, samples: &Samples<'_>, run: &Run) -> Result<(), Cancelled> {
         let all = &*self;
-        let of_segment = |fan, segment| {
+        let of_fans = |(n, fans): (usize, &[Fan])| {
             run.check()?;
-            Ok(all.across(samples, fan, segment))
+            let mut found = Vec::new();
+            for (low, fan) in (n * AT_ONCE..).zip(fans) {
+                let ring = all.of(low);
+                found.extend((0..ring.len()).filter_map(|nth| all.turned(samples, (low, fan), ring, nth)));
+            }
+            Ok(found)
         };
-        let of_fan = |fan: usize| all.of(fan).iter().map(move |segment| of_segment(fan, segment));
-        let turns: Result<Vec<Option<(u32, Turn)>>, Cancelled> =
-            (0..all.fans.len()).into_par_iter().flat_map_iter(of_fan).collect();
-        // Two fans have a point in common: it is numbered for the first, and found by the second.
-        let mut known: HashMap<[u32; 2], u32> = HashMap::new();
+        let found: Result<Vec<Vec<Turned>>, Cancelled> =
+            all.fans.par_chunks(AT_ONCE).enumerate().map(of_fans).collect();
         let fans = self.fans.len() as u32;
-        let points = &mut self.points;
-        for (segment, turn) in self.segments.iter_mut().zip(turns?) {
-            segment.across = turn.map(|(other, turn)| match turn {
-                Turn::Edge => other,
-                Turn::Point { at, ends } => *known.entry(ends).or_insert_with(|| {
-                    points.push(at);
-                    fans + points.len() as u32 - 1
-                }),
-            });
+        for Turned { segments, fans: [low, high], turn } in found?.into_iter().flatten() {
+            let across = match turn {
+                Turn::Edge => [high, low],
+                Turn::Point(at) => {
+                    self.points.push(at);
+                    [fans + self.points.len() as u32 - 1; 2]
+                }
+            };
+            for (segment, across) in segments.into_iter().zip(across) {
+                self.segments[segment as usize].across = Some(across);
+            }
         }
         Ok(())
     }
 
-    /// The fan on the other side of a segment, if the edge between the two is turned there. Both find the same.
-    fn across(&self, samples: &Samples<'_>, fan: usize, segment: &Segment) -> Option<(u32, Turn)> {
-        if !segment.turns {
+    /// What the edge between two fans is turned to, at segment `nth` in the ring of the lower one, if it is.
+    fn turned(
+        &self,
+        samples: &Samples<'_>,
+        (low, below): (usize, &Fan),
+        ring: &[Segment],
+        nth: usize,
+    ) -> Option<Turned> {
+        let segment = &ring[nth];
+        if !segment.turns || segment.face.is_multiple_of(2) {
             return None;
         }
         let axis = usize::from(segment.face / 2);
         let mut cell = segment.cell;
-        cell[axis] = if segment.face % 2 == 1 { cell[axis] + 1 } else { cell[axis].checked_sub(1)? };
+        cell[axis] += 1;
         let (block, within) = split_cell(cell);
-        let cells = self.cells(samples.find(block)?);
-        let other = cells.binary_search_by_key(&cell_number(within), |&(cell, _)| cell).ok()?;
-        let other = cells[other].1;
-        Some((other, self.turned(samples, fan, other as usize, segment)?))
-    }
-
-    /// What the edge between two fans is turned to at a segment of the first, if it is.
-    fn turned(&self, samples: &Samples<'_>, fan: usize, other: usize, segment: &Segment) -> Option<Turn> {
-        // Both fans calculate with the same numbers in the same order.
-        let (axis, upper) = (usize::from(segment.face / 2), segment.face % 2 == 1);
-        let (low, high) = if upper { (fan, other) } else { (other, fan) };
-        let [below, above] = [low, high].map(|fan| &self.fans[fan]);
+        let cells = self.cells(samples.find_near(below.block, block)?);
+        let high = cells[cells.binary_search_by_key(&cell_number(within), |&(cell, _)| cell).ok()?].1;
+        let above = &self.fans[high as usize];
         let (a, b) = (below.at.as_dvec3(), above.at.as_dvec3());
         // What the two have in common: a part of a plane of the lattice.
         let mut shared = below.span.intersection(&above.span);
         (shared.low[axis], shared.high[axis]) = (above.span.low[axis], above.span.low[axis]);
-        let [first, last] = [shared.low, shared.high].map(|node| samples.node(node).as_dvec3());
+        let (first, last) = (samples.node(shared.low).as_dvec3(), samples.node(shared.high).as_dvec3());
         let x = a + (b - a) * ((first[axis] - a[axis]) / (b[axis] - a[axis]));
         // More than the rounding of the line above.
         let margin = 1e-12 * first.abs().max(last.abs()).max_element();
@@ -85,56 +88,77 @@ impl Fans {
         let flat = |p: DVec3| DVec2::new(p[across[0]], p[across[1]]);
         let aim = flat(x);
         // A line that misses it is bent.
-        let mut bent = samples.limited(x).as_vec3();
-        let inset = (INSET * samples.lattice.step()) as f32;
-        for n in across {
-            let [low, high] = [first[n] as f32, last[n] as f32];
-            bent[n] = bent[n].clamp((low + inset).next_up(), (high - inset).next_down());
-        }
-        bent[axis] = first[axis] as f32;
-        let x = if is_straight { aim } else { flat(bent.as_dvec3()) };
+        let mut bent = Vec3::ZERO;
+        let x = if is_straight {
+            aim
+        } else {
+            bent = samples.limited(x).as_vec3();
+            let inset = (INSET * samples.lattice.step()) as f32;
+            for n in across {
+                let (low, high) = (first[n] as f32, last[n] as f32);
+                bent[n] = bent[n].clamp((low + inset).next_up(), (high - inset).next_down());
+            }
+            bent[axis] = first[axis] as f32;
+            flat(bent.as_dvec3())
+        };
         // Where the segments are that both fans have in it.
-        let ring = self.of(low);
-        let face = 2 * axis as u8 + 1;
         let is_shared = |n: &usize| {
             let cell = ring[*n].cell;
-            ring[*n].face == face
+            ring[*n].face == segment.face
                 && cell[axis] + 1 == shared.low[axis]
                 && across.iter().all(|&n| (shared.low[n]..shared.high[n]).contains(&cell[n]))
         };
-        let place = |vertex: u32| (vertex, flat(samples.get(vertex).0.as_dvec3()));
-        let ends = |n: usize| [n, (n + 1) % ring.len()].map(|n| place(ring[n].from));
         let common = || (0..ring.len()).filter(is_shared);
+        let next = |n: usize| ring.get(n + 1).unwrap_or(&ring[0]).from;
+        let place = |vertex: u32| (vertex, flat(samples.get(vertex).0.as_dvec3()));
+        let ends = |n: usize| [place(ring[n].from), place(next(n))];
         // The edge can take the place of one of them: that which it is closest to.
-        let distance = |n: &usize| {
-            let [(_, s), (_, t)] = ends(*n);
+        let distance = |n: usize| {
+            let [(_, s), (_, t)] = ends(n);
             (t - s).perp_dot(x - s).abs() / (t - s).length()
         };
-        let nearest = common().filter(|&n| ring[n].turns).min_by(|m, n| distance(m).total_cmp(&distance(n)))?;
-        let [s, t] = ends(nearest);
-        if segment.from != if upper { s.0 } else { t.0 } {
-            return None;
+        let mut others = common().filter(|&n| n != nth && ring[n].turns).peekable();
+        if others.peek().is_some() {
+            // The first of those that are equally close.
+            let own = distance(nth);
+            if others.any(|n| distance(n).total_cmp(&own).then(n.cmp(&nth)).is_lt()) {
+                return None;
+            }
         }
+        let [s, t] = ends(nth);
         // A point that is no closer to the line than the segment is not worth it.
         let off = (aim - s.1).length().min((aim - t.1).length());
-        let is_worth = is_straight || (aim - x).length() < 0.5 * off;
-        if !is_worth {
+        if !(is_straight || (aim - x).length() < 0.5 * off) {
             return None;
         }
         let reach = 4.0 * margin * (last - first).max_element();
         let is_clear = |n: usize| [s, t].into_iter().all(|end| is_apart([end, (NONE, x)], ends(n), reach));
-        let turn = if is_straight { Turn::Edge } else { Turn::Point { at: bent, ends: [s.0, t.0] } };
-        common().filter(|&n| n != nearest).all(is_clear).then_some(turn)
+        if !common().filter(|&n| n != nth).all(is_clear) {
+            return None;
+        }
+        // The same segment in the ring of the upper fan, the other way round.
+        let is_same = |other: &Segment| other.from == t.0 && other.face + 1 == segment.face && other.cell == cell;
+        let other = self.of(high as usize).iter().position(is_same)?;
+        let segments = [below.segments.start + nth as u32, above.segments.start + other as u32];
+        let turn = if is_straight { Turn::Edge } else { Turn::Point(bent) };
+        Some(Turned { segments, fans: [low as u32, high], turn })
     }
 }
 
+/// An edge between two fans that is turned.
+struct Turned {
+    /// The places of its segments in the list of all, that of the lower fan first.
+    segments: [u32; 2],
+    fans: [u32; 2],
+    turn: Turn,
+}
+
 /// What the edge between two fans is turned to.
-#[derive(Clone, Copy)]
 enum Turn {
     /// The straight line from one feature point to the other.
     Edge,
-    /// A way by a point between the two; with the ends of the segment, to tell it by.
-    Point { at: Vec3, ends: [u32; 2] },
+    /// A way by a point between the two.
+    Point(Vec3),
 }
 
 /// The number of a point that is no vertex.

@@ -1,62 +1,72 @@
 //! Rows of signs as bits, and the cells between four of them.
+//!
+//! What is here runs once a word, or once a crossed cell: plain loops, always inlined.
 
 use crate::mesh::signs::gathered;
 
 /// A row of cells at hand: the rows of nodes at its corners, in the order of the corners.
 pub(super) struct CellRow<'a>(pub(super) [&'a [u64]; 4]);
 
+/// 64 cells of a row: the signs of the nodes at their lower and at their upper ends along x.
+#[derive(Clone, Copy)]
+pub(super) struct Word {
+    pub(super) row: [u64; 4],
+    pub(super) next: [u64; 4],
+}
+
 impl CellRow<'_> {
-    pub(super) fn words(&self, w: usize) -> [u64; 4] {
-        self.0.map(|row| row[w])
+    #[inline(always)]
+    pub(super) fn word(&self, w: usize) -> Word {
+        let [a, b, c, d] = self.0;
+        let row = [a[w], b[w], c[w], d[w]];
+        let after = if w + 1 < a.len() { [a[w + 1], b[w + 1], c[w + 1], d[w + 1]] } else { [0; 4] };
+        let shifted = |n: usize| row[n] >> 1 | after[n] << 63;
+        Word { row, next: [shifted(0), shifted(1), shifted(2), shifted(3)] }
+    }
+}
+
+impl Word {
+    /// The cells that have nodes of both signs.
+    #[inline(always)]
+    pub(super) fn mixed(&self) -> u64 {
+        let Word { row: [a, b, c, d], next: [e, f, g, h] } = *self;
+        (a | b | c | d | e | f | g | h) & !(a & b & c & d & e & f & g & h)
     }
 
-    /// The same, shifted by one node.
-    pub(super) fn next(&self, w: usize) -> [u64; 4] {
-        self.0.map(|row| row[w] >> 1 | row.get(w + 1).map_or(0, |next| next << 63))
-    }
-}
-
-/// The cells that have nodes of both signs.
-pub(super) fn mixed(row: [u64; 4], next: [u64; 4]) -> u64 {
-    let any = row.iter().chain(&next).fold(0, |all, bits| all | bits);
-    let all = row.iter().chain(&next).fold(u64::MAX, |all, bits| all & bits);
-    any & !all
-}
-
-/// The case of cell `bit`.
-pub(super) fn case(row: [u64; 4], next: [u64; 4], bit: u32) -> usize {
-    let pair = |n: usize| (row[n] >> bit & 1 | (next[n] >> bit & 1) << 1) << (2 * n);
-    (pair(0) | pair(1) | pair(2) | pair(3)) as usize
-}
-
-/// Calls `visit` with the number of every bit that is set.
-pub(super) fn each_bit(mut bits: u64, mut visit: impl FnMut(u32)) {
-    while bits != 0 {
-        visit(bits.trailing_zeros());
-        bits &= bits - 1;
+    /// The case of cell `bit`.
+    #[inline(always)]
+    pub(super) fn case(&self, bit: u32) -> usize {
+        let Word { row: [a, b, c, d], next: [e, f, g, h] } = *self;
+        let lower = a >> bit & 1 | (b >> bit & 1) << 2 | (c >> bit & 1) << 4 | (d >> bit & 1) << 6;
+        let upper = e >> bit & 1 | (f >> bit & 1) << 2 | (g >> bit & 1) << 4 | (h >> bit & 1) << 6;
+        (lower | upper << 1) as usize
     }
 }
 
 /// Packs whether samples are above a level.
+#[inline]
 pub(super) fn pack(samples: &[f32], level: f32, out: &mut [u64]) {
     // Node 0 is that of the layer around: the first sample is bit 1.
     let mut carry = 0;
-    let words = samples.chunks(64).map(|chunk| word(chunk, level));
-    for (out, word) in out.iter_mut().zip(words.chain(std::iter::once(0))) {
-        *out = word << 1 | carry;
-        carry = word >> 63;
+    let (chunks, rest) = samples.as_chunks::<64>();
+    let (whole, last) = out.split_at_mut(chunks.len());
+    for (out, chunk) in whole.iter_mut().zip(chunks) {
+        let mut bits = 0;
+        for n in 0..8 {
+            let mut bytes = [0; 8];
+            for m in 0..8 {
+                bytes[m] = u8::from(chunk[8 * n + m] > level);
+            }
+            bits |= u64::from(gathered(bytes)) << (8 * n);
+        }
+        *out = bits << 1 | carry;
+        carry = bits >> 63;
     }
-}
-
-/// 64 samples, or fewer, as bits.
-fn word(samples: &[f32], level: f32) -> u64 {
-    let (eights, rest) = samples.as_chunks::<8>();
     let mut bits = 0;
-    for (n, eight) in eights.iter().enumerate() {
-        bits |= u64::from(gathered(eight.map(|value| u8::from(value > level)))) << (8 * n);
-    }
     for (n, &value) in rest.iter().enumerate() {
-        bits |= u64::from(value > level) << (8 * eights.len() + n);
+        bits |= u64::from(value > level) << n;
     }
-    bits
+    for (n, out) in last.iter_mut().enumerate() {
+        *out = if n == 0 { bits << 1 | carry } else { bits >> 63 };
+    }
 }

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::bits::{CellRow, case, each_bit, mixed, pack};
+use super::bits::{CellRow, Word, pack};
 use super::{Volume, VolumeError, VolumeSettings};
 use crate::geom::Mesh;
 use crate::mesh::meter::Meter;
@@ -90,8 +90,10 @@ impl<'a> Rows<'a> {
     }
 
     /// The crossed edges of 64 nodes of a row, along x, y and z.
-    pub(super) fn crossed(&self, [j, k]: [usize; 2], w: usize, row: [u64; 4], next: [u64; 4]) -> [u64; 3] {
+    #[inline(always)]
+    pub(super) fn crossed(&self, [j, k]: [usize; 2], w: usize, word: &Word) -> [u64; 3] {
         let up = |axis: usize, at: usize| if self.upward[axis].contains(&at) { u64::MAX } else { 0 };
+        let Word { row, next } = word;
         [(row[0] ^ next[0]) & self.allowed[w], (row[0] ^ row[1]) & up(0, j), (row[0] ^ row[2]) & up(1, k)]
     }
 
@@ -106,19 +108,20 @@ impl<'a> Rows<'a> {
         let mut count = Count::default();
         for (j, start) in starts[..=self.volume.size[1]].iter_mut().enumerate() {
             let cells = self.cells(j, k);
+            let has_cells = self.has_cells(j, k);
             let mut along = [0; 3];
             for w in 0..self.words {
-                let (row, next) = (cells.words(w), cells.next(w));
-                let mixed = mixed(row, next);
+                let word = cells.word(w);
+                let mut mixed = word.mixed();
                 if mixed == 0 {
                     continue;
                 }
-                let crossed = self.crossed([j, k], w, row, next);
-                along.iter_mut().zip(crossed).for_each(|(along, bits)| *along += bits.count_ones());
-                if self.has_cells(j, k) {
-                    each_bit(mixed & self.allowed[w], |bit| {
-                        count.triangles += u64::from(self.table.triangles[case(row, next, bit)]);
-                    });
+                let [x, y, z] = self.crossed([j, k], w, &word);
+                along = [along[0] + x.count_ones(), along[1] + y.count_ones(), along[2] + z.count_ones()];
+                mixed &= if has_cells { self.allowed[w] } else { 0 };
+                while mixed != 0 {
+                    count.triangles += u64::from(self.table.triangles[word.case(mixed.trailing_zeros())]);
+                    mixed &= mixed - 1;
                 }
             }
             let first = count.vertices as u32;
