@@ -91,3 +91,21 @@ fn ranges_of_lengths_hold_every_value_at_length() {
         check(500 + seed, 400, 30);
     }
 }
+
+#[test]
+fn lanes_find_the_distance_to_flat_faces_from_afar() {
+    // Planes through one face are parallel but for rounding errors, and the other face is near.
+    let mut random = Random::new(121);
+    for _ in 0..300 {
+        let flat = if random.chance(0.3) { Solid::slab(DVec3::Z, 0.5) } else { Solid::cuboid(random.vector(0.1, 2.0)) };
+        let program = flat.affine(random.affine()).offset(-0.014).surface_program().unwrap();
+        let p = random.log_range(0.5, 300.0) * random.direction();
+        let region = Bounds::from_center(p, DVec3::splat(0.1));
+        let points = samples(&mut random, &region, 16);
+        let (seen, values) = lanes32(&program, &region, &points);
+        for (p, value) in seen.into_iter().zip(values) {
+            let want = program.value(p);
+            assert!((value - want).abs() < 2e-3 * (want.abs() + 0.01), "{value} for {want} at {p}");
+        }
+    }
+}

@@ -225,7 +225,8 @@ impl Feet {
             return;
         }
         let foot = |number: u32| &self.feet[number as usize];
-        let way = |number: u32| if number == NONE { f64::INFINITY } else { foot(number).point.distance_squared(centre) };
+        let way =
+            |number: u32| if number == NONE { f64::INFINITY } else { foot(number).point.distance_squared(centre) };
         let apart = |a: u32, b: u32| a != NONE && b != NONE && foot(a).normal.dot(foot(b).normal) < SAME_SIDE;
         if way(number) < way(first) {
             let other = if apart(number, first) {

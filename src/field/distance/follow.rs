@@ -75,8 +75,7 @@ impl Distance {
             let behind = (SURE * foot.length() + feet.slack).copysign(value);
             let changed = (self.chain.value((x + foot + normal * behind).to_array()) > 0.0) != (value > 0.0);
             if !changed || foot.length() > first[6] {
-                (normal, foot) =
-                    (DVec3::new(first[0], first[1], first[2]), DVec3::new(first[3], first[4], first[5]));
+                (normal, foot) = (DVec3::new(first[0], first[1], first[2]), DVec3::new(first[3], first[4], first[5]));
             }
         } else if best[6] >= BEHIND {
             return (value, normal);

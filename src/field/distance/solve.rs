@@ -182,13 +182,7 @@ impl Prepared<'_> {
         run(&Back { map: self.back }, columns(slopes), columns_mut(lengths));
     }
 
-    pub(super) fn start(
-        &self,
-        points: [&[f32]; 3],
-        seen: &[Column; 4],
-        taken: [&Column; 6],
-        out: &mut [Column; 4],
-    ) {
+    pub(super) fn start(&self, points: [&[f32]; 3], seen: &[Column; 4], taken: [&Column; 6], out: &mut [Column; 4]) {
         let [value, gx, gy, gz] = columns(seen);
         let [a, b, c, d, e, f] = taken.map(|column| &column[..]);
         let [x, y, z] = points;
@@ -234,13 +228,7 @@ impl Prepared<'_> {
         *found = [h, n0, n1, n2];
     }
 
-    fn slide(
-        &self,
-        points: [&[f32]; 3],
-        seen: &[Column; 4],
-        first: &[Column; 4],
-        found: &mut [Column; 4],
-    ) {
+    fn slide(&self, points: [&[f32]; 3], seen: &[Column; 4], first: &[Column; 4], found: &mut [Column; 4]) {
         let starts = self.distance.starts();
         let mut taken = [NONE; 6];
         found[0] = [f32::INFINITY; CHUNK];

@@ -18,8 +18,9 @@ const SAME_SIDE: f64 = 0.8;
 /// What puts a plane, or a point, behind all others.
 pub(super) const BEHIND: f64 = 1e15;
 
-/// The diagonal of the equations of two planes: above 1, so that parallel ones share evenly.
-const RIDGE: f64 = 1.0 + 1e-5;
+/// The diagonal of the equations of two planes: above 1 by far more than rounding errors of
+/// single precision, so that parallel planes share evenly.
+const RIDGE: f64 = 1.0 + 2e-4;
 
 /// Keeps denominators off 0.
 const TINY: f64 = 1e-30;
@@ -178,8 +179,8 @@ impl Formula<20, 14> for Follow {
         let left = dot(step, step).sqrt().max(lift.abs()) - best[6] * LET_BE;
         let next = choose(left, next, u);
         [
-            next[0], next[1], next[2], n[0], n[1], n[2], best[0], best[1], best[2], best[3], best[4], best[5],
-            best[6], left,
+            next[0], next[1], next[2], n[0], n[1], n[2], best[0], best[1], best[2], best[3], best[4], best[5], best[6],
+            left,
         ]
     }
 }
@@ -199,8 +200,8 @@ impl Formula<26, 22> for CutNear {
             i[16], i[17], i[18],
         ]);
         [
-            o[0], o[1], o[2], o[3], o[4], o[5], o[6], o[7], o[8], o[9], o[10], o[11], o[12], o[13], o[14], b[0],
-            b[1], b[2], b[3], b[4], b[5], b[6],
+            o[0], o[1], o[2], o[3], o[4], o[5], o[6], o[7], o[8], o[9], o[10], o[11], o[12], o[13], o[14], b[0], b[1],
+            b[2], b[3], b[4], b[5], b[6],
         ]
     }
 }
