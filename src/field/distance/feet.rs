@@ -55,6 +55,7 @@ pub(super) struct Foot {
 pub(super) struct Feet {
     low: DVec3,
     cell: DVec3,
+    inverse: DVec3,
     counts: [usize; 3],
     feet: Vec<Foot>,
     near: Vec<[u32; 2]>,
@@ -76,7 +77,7 @@ impl Feet {
         let low = bounds.min - cell * DVec3::new(0.97, 0.96, 0.95);
         let counts = (across + 2.0).to_array().map(|count| count as usize);
         let slack = cell.max_element() * 2.0 / f64::from(1u32 << HALVINGS) + roundoff;
-        let mut net = Feet { low, cell, counts, feet: Vec::new(), near: Vec::new(), slack };
+        let mut net = Feet { low, cell, inverse: cell.recip(), counts, feet: Vec::new(), near: Vec::new(), slack };
         net.feet = feet(chain, &net.crossed(chain));
         if net.feet.is_empty() || !slack.is_finite() {
             return None;
@@ -113,19 +114,25 @@ impl Feet {
     }
 
     /// The number of the cell of a point, axis by axis.
+    #[inline(always)]
     fn cell_at(&self, p: DVec3) -> [usize; 3] {
-        let at = (p - self.low) / self.cell;
-        [0, 1, 2].map(|axis| (at[axis].max(0.0) as usize).min(self.counts[axis] - 1))
+        let at = (p - self.low) * self.inverse;
+        let [i, j, k] = self.counts;
+        // A cast of what is negative or NaN is 0.
+        [(at.x as usize).min(i - 1), (at.y as usize).min(j - 1), (at.z as usize).min(k - 1)]
     }
 
+    #[inline(always)]
     fn index(&self, [i, j, k]: [usize; 3]) -> usize {
         (k * self.counts[1] + j) * self.counts[0] + i
     }
 
     /// The point nearest to the centre of the cell of `p`, and the nearest on another side;
     /// twice the same if there is only one side.
+    #[inline(always)]
     pub(super) fn at(&self, p: DVec3) -> [Foot; 2] {
-        self.near[self.index(self.cell_at(p))].map(|number| self.feet[number as usize])
+        let [first, second] = self.near[self.index(self.cell_at(p))];
+        [self.feet[first as usize], self.feet[second as usize]]
     }
 
     /// How far apart points are: so much farther away, another may still lead to a nearer one.

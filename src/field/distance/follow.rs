@@ -14,7 +14,7 @@
 use glam::DVec3;
 
 use super::Distance;
-use super::chain::{Column, columns_mut};
+use super::chain::{Column, columns, columns_mut};
 use super::feet::Foot;
 use super::solve::{NONE, Prepared, joined, step_to};
 use super::step::{BEHIND, CutNear, Follow, Start};
@@ -25,6 +25,9 @@ const SLIDES: usize = 6;
 
 /// Cuts outside, where slides come to no rest.
 const CUTS: usize = 6;
+
+/// A step that is shorter than this part of the length asked for is not made.
+const LET_BE: f64 = 3e-3;
 
 /// How far behind a point found the sign must have changed, as a part of its distance.
 pub(super) const SURE: f64 = 0.005;
@@ -41,7 +44,8 @@ fn at_first(x: DVec3, foot: &Foot) -> Best {
 impl Distance {
     fn following(&self) -> Follow {
         let size = self.bounds.half_extents().max_element();
-        Follow { curvature: if size.is_normal() { 1.0 / size } else { 0.0 } }
+        let curvature = if size.is_normal() { 1.0 / size } else { 0.0 };
+        Follow { curvature, let_be: LET_BE * self.asked + 1e-7 * size.min(1e9) }
     }
 
     /// Distance to the surface, negative outside, and outward normal.
@@ -60,7 +64,9 @@ impl Distance {
         let (mut best, mut open) = self.slides(x, first, first);
         if let Some(feet) = feet {
             let second = at_first(x, &feet.at(x)[1]);
-            if second[6] - feet.spacing() < best[6] {
+            let [a, b, c, u, v, w, way] = second;
+            let height = (a * u + b * v + c * w).abs();
+            if may_lead_nearer(way as f32, height as f32, best[6] as f32, feet.spacing() as f32) {
                 let still;
                 (best, still) = self.slides(x, second, best);
                 open |= still;
@@ -122,40 +128,143 @@ impl Distance {
     }
 }
 
+/// Whether another side's point may lead to one nearer than the best so far: its tangent
+/// plane is no farther, nor is it much farther itself.
+#[inline(always)]
+fn may_lead_nearer(way: f32, height: f32, best: f32, spacing: f32) -> bool {
+    way - spacing < best && height < 1.1 * best
+}
+
 /// The search of a chunk under way: u, u and normal before, best (7).
 type Way = [Column; 16];
 
 /// The columns of the best point.
 const BEST: usize = 9;
 
+/// Lanes run over multiples of this many points.
+const GRANULE: usize = 64;
+
+/// The points that are still searched from, close together; which of the chunk they are, and
+/// their state.
+struct Lanes<const K: usize> {
+    count: usize,
+    from: [usize; CHUNK],
+    points: [Column; 3],
+    state: [Column; K],
+    /// Whether fewer than a chunk can be run.
+    short: bool,
+}
+
+impl<const K: usize> Lanes<K> {
+    /// How many to run.
+    fn len(&self) -> usize {
+        if self.short { self.count.next_multiple_of(GRANULE) } else { CHUNK }
+    }
+
+    /// Takes what the points at `self.from` have of the chunk; `what` says which columns they
+    /// start with.
+    fn gather(&mut self, points: [&[f32]; 3], what: [&Column; K]) {
+        for (to, from) in self.points.iter_mut().zip(points) {
+            for lane in 0..self.count {
+                to[lane] = from[self.from[lane]];
+            }
+        }
+        for (to, from) in self.state.iter_mut().zip(what) {
+            for lane in 0..self.count {
+                to[lane] = from[self.from[lane]];
+            }
+        }
+    }
+
+    /// Writes the best points, which start at a column, to the chunk's.
+    fn scatter(&self, at: usize, best: &mut [Column; 7]) {
+        for (to, from) in best.iter_mut().zip(&self.state[at..at + 7]) {
+            for lane in 0..self.count {
+                to[self.from[lane]] = from[lane];
+            }
+        }
+    }
+
+    /// Keeps those that are not `left < 0`, in their order: NaN is no rest.
+    fn keep(&mut self, left: &Column) {
+        let mut kept = [0; CHUNK];
+        let mut count = 0;
+        for (lane, left) in left[..self.count].iter().enumerate() {
+            kept[count] = lane;
+            count += usize::from(*left >= 0.0 || left.is_nan());
+        }
+        if count < self.count {
+            for column in self.points.iter_mut().chain(&mut self.state) {
+                for (to, from) in kept[..count].iter().enumerate() {
+                    column[to] = column[*from];
+                }
+            }
+            for (to, from) in kept[..count].iter().enumerate() {
+                self.from[to] = self.from[*from];
+            }
+            self.count = count;
+        }
+    }
+
+    fn points(&self) -> [&[f32]; 3] {
+        columns(&self.points, self.len())
+    }
+}
+
+/// The best point before any step, of a chunk.
+#[inline(always)]
+fn put([n0, n1, n2, u0, u1, u2, way]: &mut [Column; 7], at: usize, x: DVec3, foot: &Foot) {
+    let (n, u) = (foot.normal.as_vec3(), (foot.point - x).as_vec3());
+    (n0[at], n1[at], n2[at]) = (n.x, n.y, n.z);
+    (u0[at], u1[at], u2[at]) = (u.x, u.y, u.z);
+    way[at] = u.length();
+}
+
 impl Prepared<'_> {
+    /// The points of a chunk of which `asked` holds.
+    fn lanes<const K: usize>(&self, asked: &[bool]) -> Lanes<K> {
+        let mut from = [0; CHUNK];
+        let mut count = 0;
+        for (i, asked) in asked.iter().enumerate() {
+            from[count] = i;
+            count += usize::from(*asked);
+        }
+        Lanes { count, from, points: [NONE; 3], state: [NONE; K], short: self.placed.takes_short() }
+    }
+
     /// Distance, negative outside, and outward normal.
     pub(super) fn follow(&self, points: [&[f32]; 3], value: &Column) -> [Column; 4] {
-        let at: [DVec3; CHUNK] = std::array::from_fn(|i| self.in_frame(points, i));
+        let count = points[0].len();
         let mut first = [NONE; 7];
         let mut second = [NONE; 7];
         match &self.distance.feet {
             Some(feet) => {
-                for (i, x) in at.iter().enumerate() {
-                    let [near, other] = feet.at(*x);
-                    put(&mut first, i, at_first(*x, &near));
-                    put(&mut second, i, at_first(*x, &other));
+                for i in 0..count {
+                    let x = self.in_frame(points, i);
+                    let [near, other] = feet.at(x);
+                    put(&mut first, i, x, &near);
+                    put(&mut second, i, x, &other);
                 }
             }
             None => self.from_here(points, &mut first),
         }
         let mut best = first;
+        let mut asked = [true; CHUNK];
         let mut open = [false; CHUNK];
-        self.slides(points, &first, &mut best, &[true; CHUNK], &mut open);
+        self.slides(points, &first, &mut best, &asked[..count], &mut open);
         if let Some(feet) = &self.distance.feet {
             let spacing = feet.spacing() as f32;
-            let asked = std::array::from_fn(|i| second[6][i] - spacing < best[6][i]);
-            self.slides(points, &second, &mut best, &asked, &mut open);
+            let [a, b, c, u, v, w, way] = &second;
+            for i in 0..count {
+                let height = (a[i] * u[i] + b[i] * v[i] + c[i] * w[i]).abs();
+                asked[i] = may_lead_nearer(way[i], height, best[6][i], spacing);
+            }
+            self.slides(points, &second, &mut best, &asked[..count], &mut open);
         }
-        for i in 0..CHUNK {
+        for i in 0..count {
             open[i] &= value[i] < 0.0;
         }
-        self.cuts(points, &mut best, &open);
+        self.cuts(points, &mut best, &open[..count]);
         self.sure(points, value, &first, &mut best);
         let [n0, n1, n2, .., way] = best;
         let mut height = way;
@@ -169,8 +278,13 @@ impl Prepared<'_> {
     fn from_here(&self, points: [&[f32]; 3], first: &mut [Column; 7]) {
         let mut seen = [NONE; 4];
         self.gradients(points, &mut seen);
+        let len = points[0].len();
+        let [value, gx, gy, gz] = columns(&seen, len);
+        let [x, y, z] = points;
+        let none = &NONE[..len];
         let mut plane = [NONE; 4];
-        self.start(points, &seen, [&NONE; 6], &mut plane);
+        let inputs = [x, y, z, gx, gy, gz, value, none, none, none, none, none, none];
+        run(&Start { planes: &[] }, inputs, columns_mut(&mut plane, len));
         let mut u = [NONE; 3];
         step_to(&plane, &mut u);
         let [n0, n1, n2, _] = plane;
@@ -184,91 +298,94 @@ impl Prepared<'_> {
         points: [&[f32]; 3],
         start: &[Column; 7],
         best: &mut [Column; 7],
-        asked: &[bool; CHUNK],
+        asked: &[bool],
         open: &mut [bool; CHUNK],
     ) {
-        if !asked.contains(&true) {
+        let mut lanes: Lanes<16> = self.lanes(asked);
+        if lanes.count == 0 {
             return;
         }
-        let follow = self.distance.following();
-        let mut way: Way = [NONE; 16];
-        for i in 0..3 {
-            (way[i], way[3 + i], way[6 + i]) = (start[3 + i], start[3 + i], start[i]);
-        }
-        for i in 0..CHUNK {
-            let from = if start[6][i] < best[6][i] { start } else { &*best };
-            for (to, from) in way[BEST..].iter_mut().zip(from) {
-                to[i] = from[i];
-            }
-        }
-        let mut left = NONE;
-        for _ in 0..SLIDES {
-            let mut seen = [NONE; 4];
-            self.displaced(points, [&way[0], &way[1], &way[2]], &mut seen);
-            let before = way;
-            let inputs = std::array::from_fn(|i| match i {
-                0..3 => &before[i][..],
-                3..7 => &seen[i - 3][..],
-                _ => &before[i - 4][..],
-            });
-            let mut next = [NONE; 14];
-            run::<f32, 20, 14>(&follow, inputs, columns_mut(&mut next));
-            way[..3].copy_from_slice(&next[..3]);
-            way[3..6].copy_from_slice(&before[..3]);
-            way[6..].copy_from_slice(&next[3..13]);
-            left = next[13];
-            if (0..CHUNK).all(|i| !asked[i] || left[i] < 0.0) {
-                break;
-            }
-        }
-        for i in 0..CHUNK {
-            if asked[i] {
-                // NaN is no rest.
-                open[i] |= !(left[i] < 0.0);
-                for (to, from) in best.iter_mut().zip(&way[BEST..]) {
+        for i in 0..asked.len() {
+            if asked[i] && start[6][i] < best[6][i] {
+                for (to, from) in best.iter_mut().zip(start) {
                     to[i] = from[i];
                 }
             }
         }
-    }
-
-    fn cuts(&self, points: [&[f32]; 3], best: &mut [Column; 7], asked: &[bool; CHUNK]) {
-        if !asked.contains(&true) {
-            return;
-        }
-        let mut state = [NONE; 22];
-        let mut plane = [best[0], best[1], best[2], NONE];
-        for i in 0..CHUNK {
-            plane[3][i] = best[0][i] * best[3][i] + best[1][i] * best[4][i] + best[2][i] * best[5][i];
-        }
-        step_to(&plane, &mut state);
-        state[3..7].copy_from_slice(&plane);
-        state[15..].copy_from_slice(&best[..]);
-        for _ in 0..CUTS {
+        let follow = self.distance.following();
+        let [n0, n1, n2, u, v, w, _] = start;
+        let [b0, b1, b2, b3, b4, b5, b6] = &*best;
+        lanes.gather(points, [u, v, w, u, v, w, n0, n1, n2, b0, b1, b2, b3, b4, b5, b6]);
+        for _ in 0..SLIDES {
+            let len = lanes.len();
             let mut seen = [NONE; 4];
-            self.displaced(points, [&state[0], &state[1], &state[2]], &mut seen);
-            let before = state;
+            let way: &Way = &lanes.state;
+            self.displaced(lanes.points(), [&way[0], &way[1], &way[2]], &mut seen);
             let inputs = std::array::from_fn(|i| match i {
-                0..3 => &before[i][..],
-                3..7 => &seen[i - 3][..],
-                _ => &before[i - 4][..],
+                0..3 => &way[i][..len],
+                3..7 => &seen[i - 3][..len],
+                _ => &way[i - 4][..len],
             });
-            run::<f32, 26, 22>(&CutNear, inputs, columns_mut(&mut state));
-        }
-        for (to, from) in best.iter_mut().zip(&state[15..]) {
-            for i in 0..CHUNK {
-                to[i] = if asked[i] { from[i] } else { to[i] };
+            let mut next = [NONE; 14];
+            run::<f32, 20, 14>(&follow, inputs, columns_mut(&mut next, len));
+            let [u, v, w, rest @ ..] = &mut lanes.state;
+            [rest[0], rest[1], rest[2]] = [*u, *v, *w];
+            [*u, *v, *w] = [next[0], next[1], next[2]];
+            rest[3..].copy_from_slice(&next[3..13]);
+            lanes.scatter(BEST, best);
+            lanes.keep(&next[13]);
+            if lanes.count == 0 {
+                return;
             }
         }
+        for from in &lanes.from[..lanes.count] {
+            open[*from] = true;
+        }
+    }
+
+    fn cuts(&self, points: [&[f32]; 3], best: &mut [Column; 7], asked: &[bool]) {
+        let mut lanes: Lanes<22> = self.lanes(asked);
+        if lanes.count == 0 {
+            return;
+        }
+        let [n0, n1, n2, u, v, w, way] = &*best;
+        let mut h = NONE;
+        let mut on = [NONE; 3];
+        for i in 0..asked.len() {
+            h[i] = n0[i] * u[i] + n1[i] * v[i] + n2[i] * w[i];
+            [on[0][i], on[1][i], on[2][i]] = [n0[i] * h[i], n1[i] * h[i], n2[i] * h[i]];
+        }
+        let none = &NONE;
+        let [x, y, z] = &on;
+        lanes.gather(
+            points,
+            [
+                x, y, z, n0, n1, n2, &h, none, none, none, none, none, none, none, none, n0, n1, n2, u, v, w, way,
+            ],
+        );
+        let len = lanes.len();
+        for _ in 0..CUTS {
+            let mut seen = [NONE; 4];
+            let before = lanes.state;
+            self.displaced(lanes.points(), [&before[0], &before[1], &before[2]], &mut seen);
+            let inputs = std::array::from_fn(|i| match i {
+                0..3 => &before[i][..len],
+                3..7 => &seen[i - 3][..len],
+                _ => &before[i - 4][..len],
+            });
+            run::<f32, 26, 22>(&CutNear, inputs, columns_mut(&mut lanes.state, len));
+        }
+        lanes.scatter(15, best);
     }
 
     /// Leaves of `best` what the leaf's sign confirms, and takes the first point elsewhere.
     /// Its way is then the distance between the points.
     fn sure(&self, points: [&[f32]; 3], value: &Column, first: &[Column; 7], best: &mut [Column; 7]) {
         let Some(feet) = &self.distance.feet else { return };
+        let count = points[0].len();
         let (slack, sure) = (feet.slack as f32, SURE as f32);
         let mut behind = [NONE; 3];
-        for i in 0..CHUNK {
+        for i in 0..count {
             let [x, y, z] = [3, 4, 5].map(|k| best[k][i]);
             let way = (x * x + y * y + z * z).sqrt();
             best[6][i] = way;
@@ -279,7 +396,7 @@ impl Prepared<'_> {
         }
         let mut values = NONE;
         self.values_at(points, [&behind[0], &behind[1], &behind[2]], &mut values);
-        for i in 0..CHUNK {
+        for i in 0..count {
             let changed = (values[i] > 0.0) != (value[i] > 0.0);
             // A NaN is not sure.
             if !(changed && best[6][i] <= first[6][i]) {
@@ -288,11 +405,5 @@ impl Prepared<'_> {
                 }
             }
         }
-    }
-}
-
-fn put(columns: &mut [Column; 7], at: usize, numbers: Best) {
-    for (column, number) in columns.iter_mut().zip(numbers) {
-        column[at] = number as f32;
     }
 }

@@ -130,7 +130,7 @@ impl Distance {
         } else if value < 0.0 {
             -size.max(self.gap(p, p)).max(f64::MIN_POSITIVE)
         } else {
-            0.0
+            -self.gap(p, p)
         }
     }
 }
@@ -208,7 +208,10 @@ impl AnyField for Distance {
     }
 
     fn range(&self, zone: &Zone) -> Interval {
-        self.range_over(zone)
+        match self.shape {
+            Shape::Convex => self.supported_range(zone),
+            Shape::Free => self.followed_range(zone),
+        }
     }
 
     /// To first order: the leaf's value by the length of its gradient. The search does not
@@ -221,8 +224,9 @@ impl AnyField for Distance {
         let Chunk { points, placement, out: [out] } = chunk;
         let prepared = self.prepared(placement);
         for at in (0..out.len()).step_by(CHUNK) {
-            let found = prepared.search(points.map(|axis| &axis[at..at + CHUNK]));
-            out[at..at + CHUNK].copy_from_slice(&found[0]);
+            let part = at..out.len().min(at + CHUNK);
+            let found = prepared.search(points.map(|axis| &axis[part.clone()]));
+            out[part.clone()].copy_from_slice(&found[0][..part.len()]);
         }
     }
 
@@ -237,12 +241,18 @@ impl AnyField for Distance {
     fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
         let Chunk { points, placement, mut out } = chunk;
         let prepared = self.prepared(placement);
-        for at in (0..out[0].len()).step_by(CHUNK) {
-            let found = prepared.search(points.map(|axis| &axis[at..at + CHUNK]));
+        let len = out[0].len();
+        for at in (0..len).step_by(CHUNK) {
+            let part = at..len.min(at + CHUNK);
+            let found = prepared.search(points.map(|axis| &axis[part.clone()]));
             for (to, from) in out.iter_mut().zip(&found) {
-                to[at..at + CHUNK].copy_from_slice(from);
+                to[part.clone()].copy_from_slice(&from[..part.len()]);
             }
         }
+    }
+
+    fn takes_short(&self) -> bool {
+        self.shape == Shape::Free && self.chain.leaf.takes_short()
     }
 }
 
@@ -251,8 +261,9 @@ impl Distance {
         smallest_stretch(&map.matrix3)
     }
 
-    /// Ranges: of the sign, what the leaf says.
-    fn range_over(&self, zone: &Zone) -> Interval {
+    /// The distance to a convex leaf changes by at most 1 per length unit and is concave; what
+    /// is found of it exceeds it by a little.
+    fn supported_range(&self, zone: &Zone) -> Interval {
         let leaf = self.chain.range(zone);
         let sign = Interval::new(
             if leaf.lo() > 0.0 { leaf.lo() * self.least } else { f64::NEG_INFINITY },
@@ -261,15 +272,6 @@ impl Distance {
         if !zone.is_finite() {
             return sign;
         }
-        match self.shape {
-            Shape::Convex => sign.narrowed_by(self.supported_range(zone)),
-            Shape::Free => self.followed_range(zone, sign),
-        }
-    }
-
-    /// The distance to a convex leaf changes by at most 1 per length unit and is concave; what
-    /// is found of it exceeds it by a little.
-    fn supported_range(&self, zone: &Zone) -> Interval {
         let radius = zone.radius();
         let (value, gradient) = self.at(zone.centre);
         let along = zone.axes.transpose() * gradient;
@@ -279,7 +281,7 @@ impl Distance {
         let hi = hi + LOOSE * hi.abs() + rounding;
         let lo = value - radius;
         let lo = lo - LOOSE_BELOW * lo.abs() - rounding;
-        if hi.is_finite() && lo.is_finite() { Interval::new(lo, hi) } else { Interval::ALL }
+        if hi.is_finite() && lo.is_finite() { Interval::new(lo, hi).narrowed_by(sign) } else { sign }
     }
 
     /// Of other leaves, what is found is no less than the distance, but for [`SURE`], and no
@@ -288,43 +290,48 @@ impl Distance {
     /// ```text
     ///     f keeps its sign within ρ of the zone   ⇒   |d| ≥ ρ
     /// ```
-    fn followed_range(&self, zone: &Zone, sign: Interval) -> Interval {
+    fn followed_range(&self, zone: &Zone) -> Interval {
         let hull = zone.hull();
         let gap = self.gap(DVec3::from_array(hull.map(Interval::lo)), DVec3::from_array(hull.map(Interval::hi)));
         // Rounding may count a face of the box to its neighbour.
-        let gap = (gap - 1e-13 * zone.reach()).max(0.0);
-        let Some(feet) = &self.feet else {
-            return if gap > 0.0 { sign.narrowed_by(Interval::new(f64::NEG_INFINITY, -gap)) } else { sign };
+        let gap = gap - 1e-13 * zone.reach();
+        let outside = if gap > 0.0 { Interval::new(f64::NEG_INFINITY, -gap) } else { Interval::ALL };
+        let Some(feet) = self.feet.as_ref().filter(|_| zone.is_finite()) else {
+            return signed(self.chain.range(zone), f64::MIN_POSITIVE, f64::INFINITY).narrowed_by(outside);
         };
         let rounding = 1e-9 * zone.radius() + 1e-13 * zone.reach();
-        let most = feet.farthest(hull) + feet.slack + rounding;
-        let decided = sign.lo() >= 0.0 || sign.hi() <= 0.0;
-        let mut least = gap.max(f64::MIN_POSITIVE);
-        if decided {
-            // First the length that is asked for, then what may be.
-            let far = feet.at(zone.centre)[0].point.distance(zone.centre) - zone.radius();
-            let asked = (1.0 + 2.0 * SURE) * (self.asked + 3.0 * feet.slack);
-            let mut clear = 0.0;
-            for by in [asked, 0.5 * far, 0.75 * far] {
-                if by <= clear || by > far {
-                    continue;
-                }
+        if gap > self.asked {
+            return Interval::new(-feet.farthest(hull).max(gap) - feet.slack - rounding, -gap);
+        }
+        let far = feet.at(zone.centre)[0].point.distance(zone.centre) - zone.radius();
+        // First the length that is asked for, then what may be.
+        let mut clear = f64::MIN_POSITIVE;
+        let mut leaf = None;
+        for by in [(1.0 + 2.0 * SURE) * (self.asked + 3.0 * feet.slack), 0.5 * far] {
+            if clear < by && by <= far {
                 let about = self.chain.range(&zone.inflated(by));
                 if about.lo() <= 0.0 && about.hi() >= 0.0 {
                     break;
                 }
-                clear = by;
+                (leaf, clear) = (Some(about), by);
             }
-            least = least.max((clear - 2.0 * feet.slack) / (1.0 + SURE) - rounding);
         }
-        let most = most.max(gap + rounding);
-        if sign.lo() >= 0.0 {
-            sign.narrowed_by(Interval::new(least, most))
-        } else if sign.hi() <= 0.0 {
-            sign.narrowed_by(Interval::new(-most, -least))
-        } else {
-            Interval::new(-most, most)
-        }
+        let leaf = leaf.unwrap_or_else(|| self.chain.range(zone));
+        let least = ((clear - 2.0 * feet.slack) / (1.0 + SURE) - rounding).max(f64::MIN_POSITIVE);
+        let most = feet.farthest(hull).max(gap) + feet.slack + rounding;
+        signed(leaf, least, most).narrowed_by(outside)
+    }
+}
+
+/// Of the sign that a leaf's range leaves, and from `least` to `most` from 0.
+fn signed(leaf: Interval, least: f64, most: f64) -> Interval {
+    let most = most.max(least);
+    if leaf.lo() > 0.0 {
+        Interval::new(least, most)
+    } else if leaf.hi() < 0.0 {
+        Interval::new(-most, -least)
+    } else {
+        Interval::new(-most, most)
     }
 }
 

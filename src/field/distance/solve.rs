@@ -103,7 +103,7 @@ pub(super) fn joined<const N: usize, const M: usize>(head: [f64; 7], tail: [f64;
 /// A search over chunks, made ready for a placement.
 pub(super) struct Prepared<'a> {
     pub(super) distance: &'a Distance,
-    placed: Placed<'a>,
+    pub(super) placed: Placed<'a>,
     planes: Vec<(Plane, [f64; 3])>,
     frame: DAffine3,
     /// From the points to the frame of lengths, and back.
@@ -124,13 +124,14 @@ impl Prepared<'_> {
             Shape::Convex => self.supported(points, &value),
             Shape::Free => self.follow(points, &value),
         };
+        let len = points[0].len();
         let mut out = [NONE; 4];
         let [height, normal @ ..] = &found;
         let [distance, slopes @ ..] = &mut out;
         let scale = -self.scale;
         let map = self.map.map(|row| row.map(|m| m * scale));
-        run(&Back { map }, columns(normal), columns_mut(slopes));
-        for i in 0..CHUNK {
+        run(&Back { map }, columns(normal, len), columns_mut(slopes, len));
+        for i in 0..len {
             let x = self.in_frame(points, i);
             let settled = self.distance.settled(x, f64::from(value[i]), f64::from(height[i]));
             distance[i] = (settled * self.scale + self.shift) as f32;
@@ -168,42 +169,45 @@ impl Prepared<'_> {
     }
 
     /// A point of the chunk in the frame of lengths.
+    #[inline(always)]
     pub(super) fn in_frame(&self, [x, y, z]: [&[f32]; 3], i: usize) -> DVec3 {
         self.frame.transform_point3(DVec3::new(x[i].into(), y[i].into(), z[i].into()))
     }
 
     /// Value and gradient, the gradient in lengths.
     pub(super) fn gradients(&self, points: [&[f32]; 3], out: &mut [Column; 4]) {
+        let len = points[0].len();
         let mut own = [NONE; 4];
         self.placed.gradients(points, &mut own);
         let [value, slopes @ ..] = &own;
         let [to, lengths @ ..] = out;
         *to = *value;
-        run(&Back { map: self.back }, columns(slopes), columns_mut(lengths));
+        run(&Back { map: self.back }, columns(slopes, len), columns_mut(lengths, len));
     }
 
     pub(super) fn start(&self, points: [&[f32]; 3], seen: &[Column; 4], taken: [&Column; 6], out: &mut [Column; 4]) {
-        let [value, gx, gy, gz] = columns(seen);
+        let [value, gx, gy, gz] = columns(seen, CHUNK);
         let [a, b, c, d, e, f] = taken.map(|column| &column[..]);
         let [x, y, z] = points;
         let inputs = [x, y, z, gx, gy, gz, value, a, b, c, d, e, f];
-        run(&Start { planes: &self.planes }, inputs, columns_mut(out));
+        run(&Start { planes: &self.planes }, inputs, columns_mut(out, CHUNK));
     }
 
     /// Value and gradient at the points displaced by u.
     pub(super) fn displaced(&self, points: [&[f32]; 3], u: [&Column; 3], out: &mut [Column; 4]) {
-        self.gradients(columns(&self.moved(points, u)), out);
+        self.gradients(columns(&self.moved(points, u), points[0].len()), out);
     }
 
     /// Values at the points displaced by u.
     pub(super) fn values_at(&self, points: [&[f32]; 3], u: [&Column; 3], out: &mut Column) {
-        self.placed.values(columns(&self.moved(points, u)), out);
+        self.placed.values(columns(&self.moved(points, u), points[0].len()), out);
     }
 
     fn moved(&self, points: [&[f32]; 3], u: [&Column; 3]) -> [Column; 3] {
         let mut moved = [NONE; 3];
-        let ([x, y, z], [u, v, w]) = (points, u.map(|column| &column[..]));
-        run(&Shift { back: self.back }, [x, y, z, u, v, w], columns_mut(&mut moved));
+        let len = points[0].len();
+        let ([x, y, z], [u, v, w]) = (points, u.map(|column| &column[..len]));
+        run(&Shift { back: self.back }, [x, y, z, u, v, w], columns_mut(&mut moved, len));
         moved
     }
 
@@ -222,7 +226,7 @@ impl Prepared<'_> {
                 3..7 => &seen[i - 3][..],
                 _ => &before[i - 4][..],
             });
-            run::<f32, 19, 15>(&Cut, inputs, columns_mut(&mut state));
+            run::<f32, 19, 15>(&Cut, inputs, columns_mut(&mut state, CHUNK));
         }
         let [_, _, _, n0, n1, n2, h, ..] = state;
         *found = [h, n0, n1, n2];
@@ -256,7 +260,7 @@ impl Prepared<'_> {
                     _ => &before[i - 4][..],
                 });
                 let mut next = [NONE; 10];
-                run::<f32, 17, 10>(&Slide, inputs, columns_mut(&mut next));
+                run::<f32, 17, 10>(&Slide, inputs, columns_mut(&mut next, CHUNK));
                 let [a, b, c, n0, n1, n2, b0, b1, b2, h] = next;
                 let [x, y, z, ..] = before;
                 state = [a, b, c, x, y, z, n0, n1, n2, b0, b1, b2, h];

@@ -163,6 +163,8 @@ fn nearer<R: Real>(u: [R; 3], n: [R; 3], lift: R, best: [R; 7]) -> [R; 7] {
 pub(super) struct Follow {
     /// The curvature that is taken for granted outside, before there is a secant.
     pub(super) curvature: f64,
+    /// A step shorter than this is not made either.
+    pub(super) let_be: f64,
 }
 
 impl Formula<20, 14> for Follow {
@@ -176,7 +178,7 @@ impl Formula<20, 14> for Follow {
         let turned = turning(u, n, [i[7], i[8], i[9]], [i[10], i[11], i[12]], unmoved);
         let next = slid(u, n, lift, h * turned);
         let step = minus(next, u);
-        let left = dot(step, step).sqrt().max(lift.abs()) - best[6] * LET_BE;
+        let left = dot(step, step).sqrt().max(lift.abs()) - best[6].scale_add(LET_BE, h.lift(self.let_be));
         let next = choose(left, next, u);
         [
             next[0], next[1], next[2], n[0], n[1], n[2], best[0], best[1], best[2], best[3], best[4], best[5], best[6],
