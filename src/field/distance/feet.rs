@@ -64,8 +64,8 @@ pub(super) struct Feet {
 }
 
 impl Feet {
-    /// The net of a leaf within `bounds`; none if that is infinite or no surface is found.
-    pub(super) fn new(chain: &Chain, bounds: &Bounds, roundoff: f64) -> Option<Feet> {
+    /// The net of a leaf within `bounds`, whose points may be `slack` from the surface; none if that is infinite or no surface is found.
+    pub(super) fn new(chain: &Chain, bounds: &Bounds, slack: f64) -> Option<Feet> {
         let size = bounds.size();
         let longest = size.max_element();
         if !bounds.is_finite() || bounds.is_empty() || longest <= 0.0 {
@@ -76,7 +76,7 @@ impl Feet {
         // A layer about the box, and off its planes of symmetry, where surfaces like to be.
         let low = bounds.min - cell * DVec3::new(0.97, 0.96, 0.95);
         let counts = (across + 2.0).to_array().map(|count| count as usize);
-        let slack = cell.max_element() * 2.0 / f64::from(1u32 << HALVINGS) + roundoff;
+        let slack = cell.max_element() * 2.0 / f64::from(1u32 << HALVINGS) + slack;
         let mut net = Feet { low, cell, inverse: cell.recip(), counts, feet: Vec::new(), near: Vec::new(), slack };
         net.feet = feet(chain, &net.crossed(chain));
         if net.feet.is_empty() || !slack.is_finite() {

@@ -32,6 +32,9 @@ const LET_BE: f64 = 3e-3;
 /// How far behind a point found the sign must have changed, as a part of its distance.
 pub(super) const SURE: f64 = 0.005;
 
+/// What is tried: parts of the distance and of the slack. Beyond the first it counts as way.
+const TRIES: [[f64; 2]; 2] = [[SURE, 1.0], [0.1, 20.0]];
+
 /// The best point so far: normal, the way to it from x, and the length of that.
 type Best = [f64; 7];
 
@@ -78,11 +81,16 @@ impl Distance {
         let [a, b, c, u, v, w, _] = best;
         let (mut normal, mut foot) = (DVec3::new(a, b, c), DVec3::new(u, v, w));
         if let Some(feet) = feet {
-            let behind = (SURE * foot.length() + feet.slack).copysign(value);
-            let changed = (self.chain.value((x + foot + normal * behind).to_array()) > 0.0) != (value > 0.0);
-            if !changed || foot.length() > first[6] {
-                (normal, foot) = (DVec3::new(first[0], first[1], first[2]), DVec3::new(first[3], first[4], first[5]));
+            for [part, slacks] in TRIES {
+                let by = part * foot.length() + slacks * feet.slack;
+                let behind = x + foot + normal * by.copysign(value);
+                let changed = (self.chain.value(behind.to_array()) > 0.0) != (value > 0.0);
+                let way = foot.length() + if part > SURE { by } else { 0.0 };
+                if changed && way <= first[6] {
+                    return (way.copysign(value), normal);
+                }
             }
+            (normal, foot) = (DVec3::new(first[0], first[1], first[2]), DVec3::new(first[3], first[4], first[5]));
         } else if best[6] >= BEHIND {
             return (value, normal);
         }
@@ -119,8 +127,9 @@ impl Distance {
         let mut rest = [0.0; 19];
         rest[..4].copy_from_slice(&[n0, n1, n2, h]);
         rest[12..].copy_from_slice(&best);
+        let cut = CutNear { let_be: self.following().let_be };
         for _ in 0..CUTS {
-            let [a, b, c, after @ ..] = CutNear.run(joined(self.seen_from(x, u), rest));
+            let [a, b, c, after @ ..] = cut.run(joined(self.seen_from(x, u), rest));
             (u, rest) = ([a, b, c], after);
         }
         let [.., n0, n1, n2, a, b, c, way] = rest;
@@ -359,11 +368,10 @@ impl Prepared<'_> {
         let [x, y, z] = &on;
         lanes.gather(
             points,
-            [
-                x, y, z, n0, n1, n2, &h, none, none, none, none, none, none, none, none, n0, n1, n2, u, v, w, way,
-            ],
+            [x, y, z, n0, n1, n2, &h, none, none, none, none, none, none, none, none, n0, n1, n2, u, v, w, way],
         );
         let len = lanes.len();
+        let cut = CutNear { let_be: self.distance.following().let_be };
         for _ in 0..CUTS {
             let mut seen = [NONE; 4];
             let before = lanes.state;
@@ -373,33 +381,49 @@ impl Prepared<'_> {
                 3..7 => &seen[i - 3][..len],
                 _ => &before[i - 4][..len],
             });
-            run::<f32, 26, 22>(&CutNear, inputs, columns_mut(&mut lanes.state, len));
+            run::<f32, 26, 22>(&cut, inputs, columns_mut(&mut lanes.state, len));
         }
         lanes.scatter(15, best);
     }
 
     /// Leaves of `best` what the leaf's sign confirms, and takes the first point elsewhere.
-    /// Its way is then the distance between the points.
+    /// Its way is then the distance between the points, or a bound of that.
     fn sure(&self, points: [&[f32]; 3], value: &Column, first: &[Column; 7], best: &mut [Column; 7]) {
         let Some(feet) = &self.distance.feet else { return };
         let count = points[0].len();
-        let (slack, sure) = (feet.slack as f32, SURE as f32);
-        let mut behind = [NONE; 3];
-        for i in 0..count {
-            let [x, y, z] = [3, 4, 5].map(|k| best[k][i]);
-            let way = (x * x + y * y + z * z).sqrt();
-            best[6][i] = way;
-            let by = (sure * way + slack).copysign(value[i]);
-            for k in 0..3 {
-                behind[k][i] = best[k][i].mul_add(by, best[3 + k][i]);
+        let mut open = [true; CHUNK];
+        for [part, slacks] in TRIES {
+            let (part, slack) = (part as f32, (slacks * feet.slack) as f32);
+            let mut behind = [NONE; 3];
+            let mut ways = NONE;
+            for i in 0..count {
+                let [x, y, z] = [best[3][i], best[4][i], best[5][i]];
+                let way = (x * x + y * y + z * z).sqrt();
+                let by = part * way + slack;
+                ways[i] = if f64::from(part) > SURE { way + by } else { way };
+                let by = by.copysign(value[i]);
+                behind[0][i] = best[0][i].mul_add(by, x);
+                behind[1][i] = best[1][i].mul_add(by, y);
+                behind[2][i] = best[2][i].mul_add(by, z);
+            }
+            let mut values = NONE;
+            self.values_at(points, [&behind[0], &behind[1], &behind[2]], &mut values);
+            let mut left = false;
+            for i in 0..count {
+                let changed = (values[i] > 0.0) != (value[i] > 0.0);
+                // A NaN is not sure.
+                if open[i] && changed && ways[i] <= first[6][i] {
+                    best[6][i] = ways[i];
+                    open[i] = false;
+                }
+                left |= open[i];
+            }
+            if !left {
+                return;
             }
         }
-        let mut values = NONE;
-        self.values_at(points, [&behind[0], &behind[1], &behind[2]], &mut values);
         for i in 0..count {
-            let changed = (values[i] > 0.0) != (value[i] > 0.0);
-            // A NaN is not sure.
-            if !(changed && best[6][i] <= first[6][i]) {
+            if open[i] {
                 for (to, from) in best.iter_mut().zip(first) {
                     to[i] = from[i];
                 }

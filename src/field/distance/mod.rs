@@ -54,6 +54,10 @@ use crate::{Bounds, Dual, Interval};
 const LOOSE: f64 = 0.05;
 const LOOSE_BELOW: f64 = 0.01;
 
+/// How far behind a surface point found beside a leaf that is not convex the sign must have
+/// changed, as a part of the length asked for.
+const SLACK: f64 = 1e-3;
+
 /// What is known of the shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Shape {
@@ -100,7 +104,8 @@ impl Distance {
         distance.bounds = distance.bounds_under(&DAffine3::IDENTITY);
         if shape == Shape::Free {
             let reach = distance.bounds.max.abs().max(distance.bounds.min.abs()).max_element();
-            distance.feet = Feet::new(&distance.chain, &distance.bounds, distance.roundoff(reach));
+            let slack = distance.roundoff(reach) + SLACK * asked;
+            distance.feet = Feet::new(&distance.chain, &distance.bounds, slack);
         }
         distance
     }

@@ -144,12 +144,12 @@ fn slid<R: Real>(u: [R; 3], n: [R; 3], lift: R, turn: R) -> [R; 3] {
 
 /// The better of the surface point by y and the best so far, as the normal there, the way to
 /// it from x, and the length of that. A y counts if it is on the surface but for an eighth of
-/// its distance.
+/// its distance, or for `let_be`.
 #[inline(always)]
-fn nearer<R: Real>(u: [R; 3], n: [R; 3], lift: R, best: [R; 7]) -> [R; 7] {
+fn nearer<R: Real>(u: [R; 3], n: [R; 3], lift: R, best: [R; 7], let_be: f64) -> [R; 7] {
     let off = lift.abs();
     let way = dot(u, u).sqrt() + off;
-    let arrived = way * 0.125 - off;
+    let arrived = way.scale_add(0.125, way.lift(let_be)) - off;
     let taken = arrived.select(best[6] - way, -best[6] - TINY);
     let normal = choose(taken, n, [best[0], best[1], best[2]]);
     let foot = choose(taken, along(u, n, lift), [best[3], best[4], best[5]]);
@@ -172,13 +172,14 @@ impl Formula<20, 14> for Follow {
     fn run<R: Real>(&self, i: [R; 20]) -> [R; 14] {
         let u = [i[0], i[1], i[2]];
         let (n, h, lift) = tangent(u, i[3], [i[4], i[5], i[6]]);
-        let best = nearer(u, n, lift, [i[13], i[14], i[15], i[16], i[17], i[18], i[19]]);
+        let best = nearer(u, n, lift, [i[13], i[14], i[15], i[16], i[17], i[18], i[19]], self.let_be);
         let zero = h.lift(0.0);
         let unmoved = h.select(zero, h.lift(self.curvature));
         let turned = turning(u, n, [i[7], i[8], i[9]], [i[10], i[11], i[12]], unmoved);
         let next = slid(u, n, lift, h * turned);
         let step = minus(next, u);
-        let left = dot(step, step).sqrt().max(lift.abs()) - best[6].scale_add(LET_BE, h.lift(self.let_be));
+        let way = dot(u, u).sqrt();
+        let left = dot(step, step).sqrt().max(lift.abs()) - way.scale_add(LET_BE, h.lift(self.let_be));
         let next = choose(left, next, u);
         [
             next[0], next[1], next[2], n[0], n[1], n[2], best[0], best[1], best[2], best[3], best[4], best[5], best[6],
@@ -189,14 +190,17 @@ impl Formula<20, 14> for Follow {
 
 /// One step of [`Cut`] about any surface, of which the best point is kept. Inputs: those of
 /// [`Cut`] (19), best (7). Outputs: those of [`Cut`] (15), best (7).
-pub(super) struct CutNear;
+pub(super) struct CutNear {
+    /// By how much a point may miss the surface.
+    pub(super) let_be: f64,
+}
 
 impl Formula<26, 22> for CutNear {
     #[inline(always)]
     fn run<R: Real>(&self, i: [R; 26]) -> [R; 22] {
         let u = [i[0], i[1], i[2]];
         let (n, _, lift) = tangent(u, i[3], [i[4], i[5], i[6]]);
-        let b = nearer(u, n, lift, [i[19], i[20], i[21], i[22], i[23], i[24], i[25]]);
+        let b = nearer(u, n, lift, [i[19], i[20], i[21], i[22], i[23], i[24], i[25]], self.let_be);
         let o = Cut.run([
             i[0], i[1], i[2], i[3], i[4], i[5], i[6], i[7], i[8], i[9], i[10], i[11], i[12], i[13], i[14], i[15],
             i[16], i[17], i[18],
