@@ -27,7 +27,7 @@ const SLIDES: usize = 6;
 const CUTS: usize = 6;
 
 /// A step that is shorter than this part of the length asked for is not made.
-const LET_BE: f64 = 3e-3;
+const LET_BE: f64 = 5e-3;
 
 /// How far behind a point found the sign must have changed, as a part of its distance.
 pub(super) const SURE: f64 = 0.005;
@@ -101,7 +101,10 @@ impl Distance {
     fn slides(&self, x: DVec3, start: Best, best: Best) -> (Best, bool) {
         let follow = self.following();
         let [n0, n1, n2, u0, u1, u2, _] = start;
-        let mut u = [u0, u1, u2];
+        // The first step is known: the normal is that of the start.
+        let h = n0 * u0 + n1 * u1 + n2 * u2;
+        let k = follow.stretch(h);
+        let mut u = [u0 + k * (n0 * h - u0), u1 + k * (n1 * h - u1), u2 + k * (n2 * h - u2)];
         let mut rest = [u0, u1, u2, n0, n1, n2, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         rest[6..].copy_from_slice(if start[6] < best[6] { &start } else { &best });
         let mut open = true;
@@ -324,7 +327,17 @@ impl Prepared<'_> {
         let follow = self.distance.following();
         let [n0, n1, n2, u, v, w, _] = start;
         let [b0, b1, b2, b3, b4, b5, b6] = &*best;
-        lanes.gather(points, [u, v, w, u, v, w, n0, n1, n2, b0, b1, b2, b3, b4, b5, b6]);
+        // The first step is known: the normal is that of the start.
+        let mut next = [NONE; 3];
+        for i in 0..asked.len() {
+            let h = n0[i] * u[i] + n1[i] * v[i] + n2[i] * w[i];
+            let k = follow.stretch(f64::from(h)) as f32;
+            next[0][i] = u[i] + k * (n0[i] * h - u[i]);
+            next[1][i] = v[i] + k * (n1[i] * h - v[i]);
+            next[2][i] = w[i] + k * (n2[i] * h - w[i]);
+        }
+        let [x, y, z] = &next;
+        lanes.gather(points, [x, y, z, u, v, w, n0, n1, n2, b0, b1, b2, b3, b4, b5, b6]);
         for _ in 0..SLIDES {
             let len = lanes.len();
             let mut seen = [NONE; 4];

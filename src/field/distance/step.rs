@@ -27,7 +27,7 @@ const TINY: f64 = 1e-30;
 
 /// A step that is shorter than this part of the distance is not made: what it would change
 /// of the distance is the square of it.
-const LET_BE: f64 = 3e-3;
+const LET_BE: f64 = 1e-2;
 
 #[inline(always)]
 pub(super) fn dot<R: Real>(a: [R; 3], b: [R; 3]) -> R {
@@ -165,6 +165,14 @@ pub(super) struct Follow {
     pub(super) curvature: f64,
     /// A step shorter than this is not made either.
     pub(super) let_be: f64,
+}
+
+impl Follow {
+    /// How much of the way to below x is gone at a height, before there is a secant.
+    #[inline(always)]
+    pub(super) fn stretch(&self, height: f64) -> f64 {
+        1.0 / (1.0 - height.min(0.0) * self.curvature).min(64.0)
+    }
 }
 
 impl Formula<20, 14> for Follow {
