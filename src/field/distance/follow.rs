@@ -258,7 +258,7 @@ impl Prepared<'_> {
                     put(&mut second, i, x, &other);
                 }
             }
-            None => self.from_here(points, &mut first),
+            None => self.down_from(points, &mut first),
         }
         let mut best = first;
         let mut asked = [true; CHUNK];
@@ -287,7 +287,7 @@ impl Prepared<'_> {
     }
 
     /// The starts where no surface point is known: down the gradient.
-    fn from_here(&self, points: [&[f32]; 3], first: &mut [Column; 7]) {
+    fn down_from(&self, points: [&[f32]; 3], first: &mut [Column; 7]) {
         let mut seen = [NONE; 4];
         self.gradients(points, &mut seen);
         let len = points[0].len();
