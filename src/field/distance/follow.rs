@@ -16,6 +16,7 @@ use glam::DVec3;
 use super::Distance;
 use super::chain::{Column, columns, columns_mut};
 use super::feet::Foot;
+use super::lanes::Lanes;
 use super::solve::{NONE, Prepared, joined, step_to};
 use super::step::{BEHIND, CutNear, Follow, Start};
 use crate::num::kernel::{CHUNK, Formula, run};
@@ -153,76 +154,6 @@ type Way = [Column; 16];
 /// The columns of the best point.
 const BEST: usize = 9;
 
-/// Lanes run over multiples of this many points.
-const GRANULE: usize = 64;
-
-/// The points that are still searched from, close together; which of the chunk they are, and
-/// their state.
-struct Lanes<const K: usize> {
-    count: usize,
-    from: [usize; CHUNK],
-    points: [Column; 3],
-    state: [Column; K],
-    /// Whether fewer than a chunk can be run.
-    short: bool,
-}
-
-impl<const K: usize> Lanes<K> {
-    /// How many to run.
-    fn len(&self) -> usize {
-        if self.short { self.count.next_multiple_of(GRANULE) } else { CHUNK }
-    }
-
-    /// Takes what the points at `self.from` have of the chunk; `what` says which columns they
-    /// start with.
-    fn gather(&mut self, points: [&[f32]; 3], what: [&Column; K]) {
-        for (to, from) in self.points.iter_mut().zip(points) {
-            for lane in 0..self.count {
-                to[lane] = from[self.from[lane]];
-            }
-        }
-        for (to, from) in self.state.iter_mut().zip(what) {
-            for lane in 0..self.count {
-                to[lane] = from[self.from[lane]];
-            }
-        }
-    }
-
-    /// Writes the best points, which start at a column, to the chunk's.
-    fn scatter(&self, at: usize, best: &mut [Column; 7]) {
-        for (to, from) in best.iter_mut().zip(&self.state[at..at + 7]) {
-            for lane in 0..self.count {
-                to[self.from[lane]] = from[lane];
-            }
-        }
-    }
-
-    /// Keeps those that are not `left < 0`, in their order: NaN is no rest.
-    fn keep(&mut self, left: &Column) {
-        let mut kept = [0; CHUNK];
-        let mut count = 0;
-        for (lane, left) in left[..self.count].iter().enumerate() {
-            kept[count] = lane;
-            count += usize::from(*left >= 0.0 || left.is_nan());
-        }
-        if count < self.count {
-            for column in self.points.iter_mut().chain(&mut self.state) {
-                for (to, from) in kept[..count].iter().enumerate() {
-                    column[to] = column[*from];
-                }
-            }
-            for (to, from) in kept[..count].iter().enumerate() {
-                self.from[to] = self.from[*from];
-            }
-            self.count = count;
-        }
-    }
-
-    fn points(&self) -> [&[f32]; 3] {
-        columns(&self.points, self.len())
-    }
-}
-
 /// The best point before any step, of a chunk.
 #[inline(always)]
 fn put([n0, n1, n2, u0, u1, u2, way]: &mut [Column; 7], at: usize, x: DVec3, foot: &Foot) {
@@ -233,17 +164,6 @@ fn put([n0, n1, n2, u0, u1, u2, way]: &mut [Column; 7], at: usize, x: DVec3, foo
 }
 
 impl Prepared<'_> {
-    /// The points of a chunk of which `asked` holds.
-    fn lanes<const K: usize>(&self, asked: &[bool]) -> Lanes<K> {
-        let mut from = [0; CHUNK];
-        let mut count = 0;
-        for (i, asked) in asked.iter().enumerate() {
-            from[count] = i;
-            count += usize::from(*asked);
-        }
-        Lanes { count, from, points: [NONE; 3], state: [NONE; K], short: self.placed.takes_short() }
-    }
-
     /// Distance, negative outside, and outward normal.
     pub(super) fn follow(&self, points: [&[f32]; 3], value: &Column) -> [Column; 4] {
         let count = points[0].len();
@@ -313,7 +233,7 @@ impl Prepared<'_> {
         asked: &[bool],
         open: &mut [bool; CHUNK],
     ) {
-        let mut lanes: Lanes<16> = self.lanes(asked);
+        let mut lanes: Lanes<16> = Lanes::new(asked, self.placed.takes_short());
         if lanes.count == 0 {
             return;
         }
@@ -366,7 +286,7 @@ impl Prepared<'_> {
     }
 
     fn cuts(&self, points: [&[f32]; 3], best: &mut [Column; 7], asked: &[bool]) {
-        let mut lanes: Lanes<22> = self.lanes(asked);
+        let mut lanes: Lanes<22> = Lanes::new(asked, self.placed.takes_short());
         if lanes.count == 0 {
             return;
         }

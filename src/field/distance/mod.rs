@@ -30,6 +30,7 @@
 mod chain;
 mod feet;
 mod follow;
+mod lanes;
 mod sample;
 mod solve;
 mod step;
@@ -257,7 +258,7 @@ impl AnyField for Distance {
     }
 
     fn takes_short(&self) -> bool {
-        self.shape == Shape::Free && self.chain.leaf.takes_short()
+        self.chain.leaf.takes_short()
     }
 }
 

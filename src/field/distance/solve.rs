@@ -3,6 +3,7 @@
 use glam::{DAffine3, DVec3};
 
 use super::chain::{Column, Placed, columns, columns_mut};
+use super::lanes::Lanes;
 use super::step::{Back, Cut, Plane, Shift, Slide, Start};
 use super::{Distance, Shape, rows};
 use crate::field::Placement;
@@ -144,24 +145,32 @@ impl Prepared<'_> {
         out
     }
 
-    /// Of a convex leaf: height and normal.
+    /// Of a convex leaf: height and normal. What is inside and what is outside are searched
+    /// apart from each other.
     fn supported(&self, points: [&[f32]; 3], value: &Column) -> [Column; 4] {
-        let mut seen = [NONE; 4];
-        self.gradients(points, &mut seen);
+        let count = points[0].len();
         let mut found = [NONE; 4];
-        let mut first = [NONE; 4];
-        self.start(points, &seen, [&NONE; 6], &mut first);
-        if value.iter().any(|&v| v < 0.0) {
-            self.cut(points, &first, &mut found);
-        }
-        if value.iter().any(|&v| v >= 0.0) {
-            let mut slid = [NONE; 4];
-            self.slide(points, &seen, &first, &mut slid);
-            for i in 0..CHUNK {
-                if value[i] >= 0.0 {
-                    for (to, from) in found.iter_mut().zip(&slid) {
-                        to[i] = from[i];
-                    }
+        for inside in [true, false] {
+            let asked: [bool; CHUNK] = value.map(|value| (value >= 0.0) == inside);
+            let mut lanes: Lanes<0> = Lanes::new(&asked[..count], self.placed.takes_short());
+            if lanes.count == 0 {
+                continue;
+            }
+            lanes.gather(points, []);
+            let points = lanes.points();
+            let mut seen = [NONE; 4];
+            self.gradients(points, &mut seen);
+            let mut first = [NONE; 4];
+            self.start(points, &seen, [&NONE; 6], &mut first);
+            let mut part = [NONE; 4];
+            if inside {
+                self.slide(points, &seen, &first, &mut part);
+            } else {
+                self.cut(points, &first, &mut part);
+            }
+            for (to, from) in found.iter_mut().zip(&part) {
+                for lane in 0..lanes.count {
+                    to[lanes.from[lane]] = from[lane];
                 }
             }
         }
@@ -185,12 +194,13 @@ impl Prepared<'_> {
         run(&Back { map: self.back }, columns(slopes, len), columns_mut(lengths, len));
     }
 
-    pub(super) fn start(&self, points: [&[f32]; 3], seen: &[Column; 4], taken: [&Column; 6], out: &mut [Column; 4]) {
-        let [value, gx, gy, gz] = columns(seen, CHUNK);
-        let [a, b, c, d, e, f] = taken.map(|column| &column[..]);
+    fn start(&self, points: [&[f32]; 3], seen: &[Column; 4], taken: [&Column; 6], out: &mut [Column; 4]) {
+        let len = points[0].len();
+        let [value, gx, gy, gz] = columns(seen, len);
+        let [a, b, c, d, e, f] = taken.map(|column| &column[..len]);
         let [x, y, z] = points;
         let inputs = [x, y, z, gx, gy, gz, value, a, b, c, d, e, f];
-        run(&Start { planes: &self.planes }, inputs, columns_mut(out, CHUNK));
+        run(&Start { planes: &self.planes }, inputs, columns_mut(out, len));
     }
 
     /// Value and gradient at the points displaced by u.
@@ -212,6 +222,7 @@ impl Prepared<'_> {
     }
 
     fn cut(&self, points: [&[f32]; 3], first: &[Column; 4], found: &mut [Column; 4]) {
+        let len = points[0].len();
         let mut state = [NONE; 15];
         step_to(first, &mut state);
         for (to, from) in state[3..7].iter_mut().zip(first) {
@@ -222,11 +233,11 @@ impl Prepared<'_> {
             self.displaced(points, [&state[0], &state[1], &state[2]], &mut seen);
             let before = state;
             let inputs = std::array::from_fn(|i| match i {
-                0..3 => &before[i][..],
-                3..7 => &seen[i - 3][..],
-                _ => &before[i - 4][..],
+                0..3 => &before[i][..len],
+                3..7 => &seen[i - 3][..len],
+                _ => &before[i - 4][..len],
             });
-            run::<f32, 19, 15>(&Cut, inputs, columns_mut(&mut state, CHUNK));
+            run::<f32, 19, 15>(&Cut, inputs, columns_mut(&mut state, len));
         }
         let [_, _, _, n0, n1, n2, h, ..] = state;
         *found = [h, n0, n1, n2];
@@ -234,6 +245,7 @@ impl Prepared<'_> {
 
     fn slide(&self, points: [&[f32]; 3], seen: &[Column; 4], first: &[Column; 4], found: &mut [Column; 4]) {
         let starts = self.distance.starts();
+        let len = points[0].len();
         let mut taken = [NONE; 6];
         found[0] = [f32::INFINITY; CHUNK];
         let mut start = *first;
@@ -255,18 +267,18 @@ impl Prepared<'_> {
                 self.displaced(points, [&state[0], &state[1], &state[2]], &mut seen);
                 let before = state;
                 let inputs = std::array::from_fn(|i| match i {
-                    0..3 => &before[i][..],
-                    3..7 => &seen[i - 3][..],
-                    _ => &before[i - 4][..],
+                    0..3 => &before[i][..len],
+                    3..7 => &seen[i - 3][..len],
+                    _ => &before[i - 4][..len],
                 });
                 let mut next = [NONE; 10];
-                run::<f32, 17, 10>(&Slide, inputs, columns_mut(&mut next, CHUNK));
+                run::<f32, 17, 10>(&Slide, inputs, columns_mut(&mut next, len));
                 let [a, b, c, n0, n1, n2, b0, b1, b2, h] = next;
                 let [x, y, z, ..] = before;
                 state = [a, b, c, x, y, z, n0, n1, n2, b0, b1, b2, h];
             }
             let [.., n0, n1, n2, h] = &state;
-            for i in 0..CHUNK {
+            for i in 0..len {
                 if h[i] < found[0][i] {
                     (found[0][i], found[1][i], found[2][i], found[3][i]) = (h[i], n0[i], n1[i], n2[i]);
                 }
