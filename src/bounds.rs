@@ -237,7 +237,7 @@ impl Bounds {
 }
 
 /// `column · x`, where 0 · ∞ is 0: an axis that a map does not feed on contributes nothing.
-fn column_times(column: DVec3, x: f64) -> DVec3 {
+pub(crate) fn column_times(column: DVec3, x: f64) -> DVec3 {
     DVec3::select(column.cmpeq(DVec3::ZERO), DVec3::ZERO, column * x)
 }
 

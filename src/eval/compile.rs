@@ -17,6 +17,7 @@ use super::extent::extent;
 use super::flatten::flatten;
 use super::program::{Edge, Kind, Op, Program, Sides};
 use super::scene::{Instance, Scene};
+use crate::bounds::column_times;
 use crate::field::{AnyField, AnyWarp, Placement, Rule, smallest_stretch};
 use crate::solid::{self, Length, Operation};
 use crate::{Blend, Bounds, Norm, ParamError, Solid, SolidError};
@@ -342,12 +343,21 @@ impl Compiler {
                 let chamfer = matches!(blend, Blend::Chamfer { .. });
                 let [a, b] = if chamfer { operands } else { lengths };
                 let [a, b] = [self.alone(site, a)?, self.alone(site, b)?];
+                let mut pair = pair;
+                if let (Blend::Chamfer { width }, Operation::Union) = (blend, operation) {
+                    // The face is where one operand is nearer than half the width.
+                    let near = [&a.surface, &b.surface].map(|alone| 0.5 * width * scale * steepest(alone));
+                    for (built, risen) in pair.iter_mut().zip(self.risen(site, near)) {
+                        built.sides.inside = risen;
+                    }
+                }
                 let edge = Arc::new(EdgeBlend::new(operation, blend, [a.surface.clone(), b.surface.clone()]));
                 let field: Arc<dyn AnyField> = edge.clone();
                 let (leaf, _) = self.place(&field, site);
                 let kind = Kind::Edge { op, leaf, edge };
                 let built = self.code.edge(operation, kind, pair);
-                // The material of a fillet is in the hull of its operands, hence in their box.
+                // The material of a fillet is in the hull of its operands, hence in their box; that of
+                // a chamfer is close to them.
                 self.scene.leaves[leaf as usize].bounds = built.sides.decisive(op);
                 Ok(built)
             }
@@ -381,8 +391,8 @@ impl Compiler {
     /// Adds a leaf to the scene: its number, and how much its box grows per unit of value.
     fn place(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>) -> (u32, DVec3) {
         let Place { field, context, shift } = self.contexts.place(field, site.context);
-        let grown = |unit: DVec3| context.forward.matrix3.abs() * unit / context.scale;
-        let growth = grown(field.growth());
+        let (axes, unit) = (context.forward.matrix3.abs(), field.growth());
+        let growth = (0..3).map(|axis| column_times(axes.col(axis), unit[axis])).sum::<DVec3>() / context.scale;
         let mut bounds = snug(field.bounds_under(&context.forward));
         if shift > 0.0 {
             bounds = grow(&bounds, growth * shift);
@@ -399,6 +409,11 @@ impl Compiler {
         });
         (number, growth)
     }
+}
+
+/// How steep the values of a solid are taken to be.
+fn steepest(program: &Program) -> f64 {
+    if program.scene.leaves.iter().all(|leaf| leaf.field.exact() && leaf.frame == 0) { 1.0 } else { 4.0 }
 }
 
 /// What can be said about a node by itself.

@@ -422,11 +422,16 @@ impl<'a> Pass<'a> {
                 self.signs[at] = self.sign_of_join(&node, None);
                 return;
             }
-            // What is decided over the region is left out, the neutral element of the join; a
-            // decision that counts has decided the blend.
+            // An operand that decides the join decides the blend, whatever the blend's range (the
+            // operand's box may have told its sign); one decided otherwise is left out.
             for edge in program.list(node) {
-                if let Sign::Open(edge) = self.signs[edge.node()].flip_if(edge.negated()) {
-                    operands.push(edge);
+                match (self.signs[edge.node()].flip_if(edge.negated()), op) {
+                    (sign @ Sign::Positive, Op::Or) | (sign @ Sign::Negative, Op::And) => {
+                        self.signs[at] = sign;
+                        return;
+                    }
+                    (Sign::Open(edge), _) => operands.push(edge),
+                    _ => {}
                 }
             }
         }

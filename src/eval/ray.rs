@@ -27,10 +27,9 @@ pub struct Hit {
 /// How much is done for a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Care {
-    /// A crossing and back within 10⁻¹⁰ of the size is a touch. The value of a fillet or chamfer
-    /// jumps where its edge cannot be found, and its slopes are not trusted.
+    /// A crossing and back within 10⁻¹⁰ of the size is a touch.
     Full,
-    /// Within 10⁻⁶; slopes of blends are trusted.
+    /// Within 10⁻⁶.
     Picture,
 }
 
@@ -50,22 +49,21 @@ impl Care {
             Care::Picture => 1e-9,
         }
     }
-
-    fn trusts(self, program: &Program) -> bool {
-        self == Care::Picture || program.idle.is_none()
-    }
 }
 
 /// A piece is narrowed when it is shorter than this part of the one narrowed before: halves that
 /// differ little from the whole tell little more.
 const ASK: f64 = 0.2;
 
-/// After as many pieces a ray is given up as a miss. A solid of finite size never comes near;
-/// an unbounded deformed one may wind about the ray without end.
-const PIECES: usize = 1 << 18;
+/// After every so many pieces twice as long ones count as short: where ranges stay wide, or an
+/// unbounded deformed solid winds about the ray without end, the ray comes to an end all the same.
+const PATIENCE: usize = 1 << 12;
+
+/// Values nearer to 0, in proportion to the solid's size, may be 0.
+const ROUNDING: f64 = 1e-15;
 
 /// The slope is asked for only of programs with at most this many leaves.
-const FEW: usize = 6;
+const FEW: usize = 24;
 
 /// A piece of a ray.
 struct Piece {
@@ -94,14 +92,21 @@ pub(crate) fn first_hit(
         return None;
     }
     let size = if bounds.is_finite() { bounds.size().length() } else { 1.0 };
-    let shortest = care.shortest() * (size + origin.abs().max_element().min(1e6) + near);
+    let mut shortest = care.shortest() * (size + origin.abs().max_element().min(1e6) + near);
     let at = |t: f64| origin + t * direction;
     let values = [near, far].map(|t| program.value(at(t)));
-    let (inside, slopes) = (values.map(|value| value > 0.0), Interval::ALL);
+    // In a face that two operands share, rounding has either sign: it counts as outside.
+    let doubt = ROUNDING * (size + origin.abs().max_element());
+    let is_inside = |value: f64| value > doubt;
+    let (inside, slopes) = (values.map(is_inside), Interval::ALL);
     let known = f64::INFINITY;
     let mut pieces = vec![Piece { program: program.clone(), ends: [near, far], values, inside, slopes, known }];
-    for _ in 0..PIECES {
-        let Some(mut piece) = pieces.pop() else { break };
+    let mut count = 0;
+    while let Some(mut piece) = pieces.pop() {
+        count += 1;
+        if count % PATIENCE == 0 {
+            shortest *= 2.0;
+        }
         let [t0, t1] = piece.ends;
         let [from, to] = within_reach(&piece);
         if to - from <= shortest || one_signed(piece.slopes) {
@@ -109,7 +114,7 @@ pub(crate) fn first_hit(
                 continue;
             }
             let [from, to] = if one_signed(piece.slopes) { piece.ends } else { [from.min(to), from.max(to)] };
-            return Some(hit_between(&piece.program, &at, [from, to], care.precision() * size));
+            return Some(hit_between(&piece.program, &at, [from, to], doubt, care.precision() * size));
         }
         if to - from <= 0.5 * (t1 - t0) {
             piece.ends = [from, to];
@@ -118,7 +123,7 @@ pub(crate) fn first_hit(
             continue;
         }
         if t1 - t0 < ASK * piece.known {
-            let slopes = |program: &Program| match program.leaf_count() <= FEW && care.trusts(program) {
+            let slopes = |program: &Program| match program.leaf_count() <= FEW {
                 true => slope_along(program, origin, direction, t0, t1),
                 false => Interval::ALL,
             };
@@ -127,7 +132,13 @@ pub(crate) fn first_hit(
             let mut found = if single { slopes(&piece.program) } else { Interval::ALL };
             if !one_signed(found) {
                 let zone = Zone::of_segment(at(t0), at(t1));
-                let Region::Surface(narrowed) = piece.program.narrow_zone(&zone) else { continue };
+                let narrowed = match piece.program.narrow_zone(&zone) {
+                    Region::Surface(narrowed) => narrowed,
+                    // Between the pieces before and this one, by no more than rounding.
+                    Region::Inside if !inside[0] => return Some(hit_at(&piece.program, at(t0), t0)),
+                    Region::Outside if inside[0] => return Some(hit_at(&piece.program, at(t0), t0)),
+                    Region::Inside | Region::Outside => continue,
+                };
                 // Of the same sign everywhere in the piece, not of the same value.
                 piece.values = piece.ends.map(|t| narrowed.value(at(t)));
                 piece.program = narrowed;
@@ -146,14 +157,14 @@ pub(crate) fn first_hit(
             program: piece.program.clone(),
             ends: [middle, t1],
             values: [value, piece.values[1]],
-            inside: [value > 0.0, piece.inside[1]],
+            inside: [is_inside(value), piece.inside[1]],
             ..piece
         };
         pieces.push(after);
         pieces.push(Piece {
             ends: [t0, middle],
             values: [piece.values[0], value],
-            inside: [piece.inside[0], value > 0.0],
+            inside: [piece.inside[0], is_inside(value)],
             ..piece
         });
     }
@@ -172,12 +183,15 @@ fn within_reach(piece: &Piece) -> [f64; 2] {
     [t0 + way(v0, -slopes.lo(), slopes.hi()), t1 - way(v1, slopes.hi(), -slopes.lo())]
 }
 
-/// The hit between two distances whose values differ in sign, but for rounding.
-fn hit_between(program: &Program, at: &impl Fn(f64) -> DVec3, ends: [f64; 2], precision: f64) -> Hit {
-    let t = bracket(program, at, ends, precision);
-    let point = at(t);
+/// The hit between two distances of which one is inside, where the value is above `doubt`.
+fn hit_between(program: &Program, at: &impl Fn(f64) -> DVec3, ends: [f64; 2], doubt: f64, precision: f64) -> Hit {
+    let t = bracket(&|t| program.value(at(t)) - doubt, ends, precision);
+    hit_at(program, at(t), t)
+}
+
+fn hit_at(program: &Program, point: DVec3, distance: f64) -> Hit {
     let normal = -program.gradient(point).1.normalize_or_zero();
-    Hit { distance: t, point, normal, owner: program.deciding_leaf(point) }
+    Hit { distance, point, normal, owner: program.deciding_leaf(point) }
 }
 
 /// The slopes of the value along the ray from `t0` to `t1`.
@@ -197,8 +211,8 @@ fn one_signed(slope: Interval) -> bool {
 
 /// The crossing between `t0` and `t1`: the false position method with halving (Illinois), which
 /// never leaves the bracket. Where rounding has the same sign at both ends it is at one of them.
-fn bracket(program: &Program, at: &impl Fn(f64) -> DVec3, [mut t0, mut t1]: [f64; 2], precision: f64) -> f64 {
-    let (mut f0, mut f1) = (program.value(at(t0)), program.value(at(t1)));
+fn bracket(value: &impl Fn(f64) -> f64, [mut t0, mut t1]: [f64; 2], precision: f64) -> f64 {
+    let (mut f0, mut f1) = (value(t0), value(t1));
     let inside0 = f0 > 0.0;
     if inside0 == (f1 > 0.0) {
         return if f0.abs() < f1.abs() { t0 } else { t1 };
@@ -210,13 +224,10 @@ fn bracket(program: &Program, at: &impl Fn(f64) -> DVec3, [mut t0, mut t1]: [f64
             break;
         }
         let secant = t0 + width * (f0 / (f0 - f1));
-        // Three sides in a row mean slow progress: halve.
+        // Three sides in a row mean slow progress: halve. (In a face the value is level.)
         let stuck = kept.abs() >= 3 || !(secant > t0 && secant < t1);
         let t = if stuck { 0.5 * (t0 + t1) } else { secant };
-        let f = program.value(at(t));
-        if f == 0.0 {
-            return t;
-        }
+        let f = value(t);
         if (f > 0.0) == inside0 {
             (t0, f0) = (t, f);
             if kept > 0 {

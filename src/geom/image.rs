@@ -123,11 +123,16 @@ impl Image {
     }
 }
 
+/// A pixel of linear light, weighted by alpha, as 8-bit sRGB.
+pub(crate) fn to_8bit(light: [f32; 4]) -> [u8; 4] {
+    encoded(light).map(|c| (255.0 * c).round() as u8)
+}
+
 impl Image<[f32; 4]> {
     /// As 8-bit sRGB; light beyond what a screen shows is cut off.
     #[must_use]
     pub fn to_8bit(&self) -> Image {
-        self.map(|light| encoded(*light).map(|c| (255.0 * c).round() as u8))
+        self.map(|light| to_8bit(*light))
     }
 
     /// As 16-bit sRGB; light beyond what a screen shows is cut off.

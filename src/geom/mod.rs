@@ -16,7 +16,7 @@ mod view;
 
 pub use camera::{Camera, CameraError, Projection, Rays};
 pub use image::{Image, ImageError};
-pub(crate) use image::{from_linear, to_linear};
+pub(crate) use image::{from_linear, to_8bit, to_linear};
 pub use mesh::{Mesh, MeshError};
 pub use plane::Plane;
 pub use point_cloud::{PointCloud, PointCloudError};

@@ -44,6 +44,7 @@ pub use obj::write_obj;
 pub use ply::write_ply;
 pub use png::{Colors, write_png};
 pub use points::write_ply_points;
+pub(crate) use save::save_rows;
 pub use save::{Pixel, SaveError, SaveSettings};
 pub use stl::{write_stl, write_stl_ascii};
 pub use threemf::write_3mf;

@@ -42,6 +42,33 @@ pub fn write_png<P: Colors>(image: &Image<P>, out: impl Write) -> io::Result<()>
     })
 }
 
+/// Takes the rows of a picture, from the top, as many at a time as there are.
+pub(crate) type Rows<'a> = dyn FnMut(&[[u8; 4]]) -> io::Result<()> + 'a;
+
+/// Writes a picture of 8-bit colours whose rows come bit by bit, so that it never is in memory.
+pub(super) fn write_png_rows(
+    size: [u32; 2],
+    has_alpha: bool,
+    rows: impl FnOnce(&mut Rows<'_>) -> io::Result<()>,
+    out: impl Write,
+) -> io::Result<()> {
+    let mut encoder = png::Encoder::new(out, size[0], size[1]);
+    encoder.set_color(if has_alpha { png::ColorType::Rgba } else { png::ColorType::Rgb });
+    encoder.set_depth(png::BitDepth::Eight);
+    let mut file = encoder.write_header()?;
+    let mut stream = file.stream_writer()?;
+    rows(&mut |pixels| {
+        if has_alpha {
+            return stream.write_all(pixels.as_flattened());
+        }
+        let colors: Vec<u8> = pixels.iter().flat_map(|p| [p[0], p[1], p[2]]).collect();
+        stream.write_all(&colors)
+    })?;
+    // An incomplete picture is an error here.
+    stream.finish()?;
+    Ok(file.finish()?)
+}
+
 impl Colors for [u8; 4] {}
 impl sealed::Colors for [u8; 4] {
     fn encode(image: &Image<Self>) -> io::Result<(Vec<u8>, ExtendedColorType)> {

@@ -8,6 +8,7 @@ use std::time::Duration;
 use glam::{DVec3, Vec3};
 
 use super::file::write_whole;
+use super::png::{Rows, write_png_rows};
 use super::{
     LengthUnit, write_3mf, write_dxf, write_exr, write_gif, write_glb, write_obj, write_ply, write_ply_points,
     write_png, write_stl, write_stl_ascii, write_svg,
@@ -229,12 +230,32 @@ impl Polyline {
 
 /// Saves `data` with the writer that `formats` has for the extension, in upper or lower case.
 fn save<T, S>(data: &T, settings: &S, path: &Path, formats: &[(&str, Writer<T, S>)]) -> Result<(), SaveError> {
+    let known: Vec<&str> = formats.iter().map(|(known, _)| *known).collect();
+    let (_, write) = formats[format_of(path, &known)?];
+    saved(path, |out| write(data, settings, out))
+}
+
+/// Saves a picture as PNG whose rows come bit by bit.
+pub(crate) fn save_rows(
+    path: &Path,
+    size: [u32; 2],
+    has_alpha: bool,
+    rows: impl FnOnce(&mut Rows<'_>) -> io::Result<()>,
+) -> Result<(), SaveError> {
+    format_of(path, &["png"])?;
+    saved(path, |out| write_png_rows(size, has_alpha, rows, out))
+}
+
+/// The place among those that are `known` of the format that the extension stands for.
+fn format_of(path: &Path, known: &[&str]) -> Result<usize, SaveError> {
     let extension = path.extension().unwrap_or_default().to_string_lossy();
-    let Some((_, write)) = formats.iter().find(|(known, _)| extension.eq_ignore_ascii_case(known)) else {
-        let known: Vec<String> = formats.iter().map(|(known, _)| format!(".{known}")).collect();
-        let (path, extension) = (path.into(), extension.into_owned());
-        return Err(SaveError::Extension { path, extension, known: known.join(", ") });
-    };
+    known.iter().position(|known| extension.eq_ignore_ascii_case(known)).ok_or_else(|| {
+        let known: Vec<String> = known.iter().map(|known| format!(".{known}")).collect();
+        SaveError::Extension { path: path.into(), extension: extension.clone().into_owned(), known: known.join(", ") }
+    })
+}
+
+fn saved(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<(), SaveError> {
     // The parent of a bare file name is the empty path, which stands for here.
     if let Some(directory) = path.parent()
         && !directory.as_os_str().is_empty()
@@ -242,7 +263,7 @@ fn save<T, S>(data: &T, settings: &S, path: &Path, formats: &[(&str, Writer<T, S
     {
         return Err(SaveError::Directory { path: path.into(), directory: directory.into() });
     }
-    write_whole(path, |out| write(data, settings, out)).map_err(|source| SaveError::Write { path: path.into(), source })
+    write_whole(path, write).map_err(|source| SaveError::Write { path: path.into(), source })
 }
 
 #[cfg(test)]

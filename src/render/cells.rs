@@ -48,6 +48,10 @@ pub(super) struct Cell {
     pub(super) share: f64,
     /// How many leaves the program has.
     pub(super) leaves: usize,
+    /// How many halvings ago it had a third more.
+    pub(super) stale: u32,
+    /// How many it had then.
+    before: usize,
     margin: f64,
     halves: OnceLock<Halves>,
     tape: OnceLock<Tape>,
@@ -69,7 +73,7 @@ impl Cells {
         let bounds = Bounds::new(bounds.min - 0.0537 * longest, bounds.max + 0.0411 * longest);
         let rounding = 64.0 * f64::EPSILON * (bounds.center().abs().max_element() + bounds.size().length());
         let margin = 1e-9 * longest + rounding;
-        Cells { root: part(program, bounds, 1.0, margin), bounds, margin }
+        Cells { root: part(program, bounds, 1.0, margin, (usize::MAX, 0)), bounds, margin }
     }
 
     pub(super) fn root(&self) -> &Part {
@@ -97,7 +101,7 @@ impl Cells {
                 Part::Inside => return true,
                 Part::Outside => return false,
                 Part::Cell(cell) => {
-                    if cell.leaves <= FEW {
+                    if cell.leaves <= FEW || cell.stale >= STALE {
                         return cell.program.value(p) > 0.0;
                     }
                     let halves = cell.halves();
@@ -111,14 +115,19 @@ impl Cells {
 /// Programs of at most this many leaves are evaluated at a point rather than narrowed.
 const FEW: usize = 4;
 
-fn part(program: &Program, bounds: Bounds, share: f64, margin: f64) -> Part {
+/// Where as many halvings have left the leaves what they were, more of them are of no use.
+pub(super) const STALE: u32 = 6;
+
+/// What a box holds; `before` are leaves of a box around it, and how many halvings ago.
+fn part(program: &Program, bounds: Bounds, share: f64, margin: f64, before: (usize, u32)) -> Part {
     match program.narrow(&bounds.inflate(margin)) {
         Region::Inside => Part::Inside,
         Region::Outside => Part::Outside,
         Region::Surface(program) => {
             let (bend, leaves) = (program.bend(), program.leaf_count());
+            let (before, stale) = if leaves <= before.0 / 4 * 3 { (leaves, 0) } else { before };
             let (halves, tape) = (OnceLock::new(), OnceLock::new());
-            Part::Cell(Box::new(Cell { bounds, program, bend, share, leaves, margin, halves, tape }))
+            Part::Cell(Box::new(Cell { bounds, program, bend, share, leaves, stale, before, margin, halves, tape }))
         }
     }
 }
@@ -139,7 +148,8 @@ impl Cell {
             below.max[axis] = plane;
             above.min[axis] = plane;
             let share = self.share * below.longest_side() / self.side();
-            let parts = [below, above].map(|bounds| part(&self.program, bounds, share, self.margin));
+            let before = (self.before, self.stale + 1);
+            let parts = [below, above].map(|bounds| part(&self.program, bounds, share, self.margin, before));
             Halves { axis, plane, parts }
         })
     }

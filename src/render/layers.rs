@@ -10,7 +10,7 @@ use glam::{DVec3, Vec3};
 
 use super::gbuffer::{GBuffer, Surface, Window};
 use super::scene::Scene;
-use super::settings::{RenderError, check_size};
+use super::settings::{RenderError, check_memory, check_size};
 use crate::{Camera, Image, RangeImage, Rays, Run, Solid, View};
 
 /// What the pixels of a picture see, through their middles.
@@ -54,6 +54,7 @@ impl Scene {
     /// What is wrong with the camera or the size, or that the work was cancelled.
     pub fn layers(&self, camera: &Camera, width: u32, height: u32, run: &Run) -> Result<Layers, RenderError> {
         check_size(width, height)?;
+        check_memory(width, height)?;
         camera.check()?;
         let rays = camera.rays(width, height);
         let seen = self.surfaces_with(&rays, Window::whole(width, height), run)?;

@@ -79,16 +79,30 @@ impl Picture<'_> {
     pub(super) fn pixels(&self, run: &Run) -> Result<Vec<[f32; 4]>, Cancelled> {
         let RenderSettings { width, height, .. } = *self.settings;
         let mut pixels = Vec::with_capacity(width as usize * height as usize);
+        self.bands(run, |band| {
+            pixels.extend(band);
+            Ok(())
+        })?;
+        Ok(pixels)
+    }
+
+    /// The same, some rows at a time.
+    pub(super) fn bands<E: From<Cancelled>>(
+        &self,
+        run: &Run,
+        mut take: impl FnMut(Vec<[f32; 4]>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let RenderSettings { width, height, .. } = *self.settings;
         let rows = (BAND / width).clamp(16, height.max(16));
         let mut top = 0;
         while top < height {
             let end = (top + rows).min(height);
             let part = |row: u32| f64::from(row) / f64::from(height);
-            pixels.extend(self.band(top, end, &run.stage(part(top), part(end)))?);
+            take(self.band(top, end, &run.stage(part(top), part(end)))?)?;
             top = end;
         }
         run.report(1.0);
-        Ok(pixels)
+        Ok(())
     }
 
     /// The rows from `top` to `end`.

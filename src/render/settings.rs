@@ -1,6 +1,6 @@
 //! What a picture shall be, and why there is none.
 
-use crate::{CameraError, Cancelled, ImageError, Paint, SolidError};
+use crate::{CameraError, Cancelled, ImageError, Paint, SaveError, SolidError};
 
 /// What to render.
 ///
@@ -21,9 +21,9 @@ use crate::{CameraError, Cancelled, ImageError, Paint, SolidError};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderSettings {
-    /// Width of the picture in pixels, 1 to 16384. Default: 800.
+    /// Width of the picture in pixels, 1 to 65 535. Default: 800.
     pub width: u32,
-    /// Height of the picture in pixels, 1 to 16384. Default: 600.
+    /// Height of the picture in pixels, 1 to 65 535. Default: 600.
     pub height: u32,
     /// Against stairs: a pixel at an outline, a crease or the edge of a hard shadow is the mean
     /// of `samples` × `samples` rays. 1 to 8, 1 meaning one ray for every pixel. Default: 3.
@@ -151,7 +151,7 @@ impl Default for Background {
 }
 
 /// Why there is no picture.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum RenderError {
     /// The solid is at fault, or unbounded.
@@ -170,6 +170,9 @@ pub enum RenderError {
         /// What is allowed.
         allowed: &'static str,
     },
+    /// The file of a picture could not be written.
+    #[error(transparent)]
+    Save(#[from] SaveError),
     /// The work was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -179,7 +182,10 @@ pub enum RenderError {
 }
 
 /// The largest side of a picture, in pixels.
-const LARGEST: u32 = 16384;
+const LARGEST: u32 = 65_535;
+
+/// The most pixels of a picture in memory; larger ones go to a file band by band.
+const MOST_PIXELS: u64 = 1 << 28;
 
 /// The largest number of samples along a pixel's side.
 const MOST_SAMPLES: u32 = 8;
@@ -189,11 +195,24 @@ pub(super) fn setting(setting: &'static str, value: impl std::fmt::Display, allo
     RenderError::Setting { setting, value: value.to_string(), allowed }
 }
 
+/// Whether a picture of this size fits into memory.
+pub(super) fn check_memory(width: u32, height: u32) -> Result<(), RenderError> {
+    if u64::from(width) * u64::from(height) > MOST_PIXELS {
+        let size = format!("{width} × {height}");
+        return Err(setting(
+            "size",
+            size,
+            "268 435 456 pixels in memory; `render_to` writes larger pictures to a file",
+        ));
+    }
+    Ok(())
+}
+
 /// Whether the sides of a picture are in their range.
 pub(super) fn check_size(width: u32, height: u32) -> Result<(), RenderError> {
     for (name, side) in [("width", width), ("height", height)] {
         if !(1..=LARGEST).contains(&side) {
-            return Err(setting(name, side, "1 to 16384 pixels"));
+            return Err(setting(name, side, "1 to 65 535 pixels"));
         }
     }
     Ok(())
@@ -231,7 +250,7 @@ mod tests {
         let good = RenderSettings::default();
         good.check().unwrap();
         let message = |settings: RenderSettings| settings.check().unwrap_err().to_string();
-        assert_eq!(message(RenderSettings { width: 0, ..good.clone() }), "width is 0; allowed: 1 to 16384 pixels");
+        assert_eq!(message(RenderSettings { width: 0, ..good.clone() }), "width is 0; allowed: 1 to 65 535 pixels");
         assert!(message(RenderSettings { height: 20_000, ..good.clone() }).starts_with("height is 20000"));
         assert!(message(RenderSettings { samples: 9, ..good.clone() }).starts_with("samples is 9"));
         assert!(message(RenderSettings { softness: f64::NAN, ..good.clone() }).starts_with("softness is NaN"));

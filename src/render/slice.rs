@@ -14,7 +14,7 @@
 use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 
-use super::settings::{RenderError, check_size, setting};
+use super::settings::{RenderError, check_memory, check_size, setting};
 use crate::eval::{Evaluator, Program, Tape, compiled};
 use crate::geom::{from_linear, to_linear};
 use crate::{Bounds, Image, Plane, PlaneBounds, Solid};
@@ -48,7 +48,7 @@ pub struct Slice {
 /// How a slice is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SliceSettings {
-    /// Width of the picture in pixels, 1 to 16384; its height follows from the region. Default: 800.
+    /// Width of the picture in pixels, 1 to 65 535; its height follows from the region. Default: 800.
     pub width: u32,
     /// Where isolines are drawn. Default: at multiples of a round number, about 16 of them.
     pub isolines: Isolines,
@@ -145,10 +145,11 @@ impl Slice {
     /// top left.
     ///
     /// # Errors
-    /// If the width, or the height that follows from it, is not from 1 to 16384.
+    /// If the width, or the height that follows from it, is not from 1 to 65 535, or both make more pixels than fit into memory.
     pub fn values(&self, width: u32) -> Result<Image<f64>, RenderError> {
         let height = self.height(width).min(f64::from(u32::MAX)) as u32;
         check_size(width, height)?;
+        check_memory(width, height)?;
         let PlaneBounds { min, max } = self.region;
         let middle = |i: u32, count: u32| (f64::from(i) + 0.5) / f64::from(count);
         let columns: Vec<f64> = (0..width).map(|i| min.x + (max.x - min.x) * middle(i, width)).collect();

@@ -1,20 +1,25 @@
 //! Rendering a solid: `solid.render(..)`.
 
+use std::io;
+use std::path::Path;
+
 use super::openness::Obstacles;
 use super::picture::Picture;
 use super::scene::Scene;
-use super::settings::{RenderError, RenderSettings};
+use super::settings::{Background, RenderError, RenderSettings, check_memory};
 use super::shade::Studio;
-use crate::{Camera, Image, Palette, Run, Solid};
+use crate::geom::to_8bit;
+use crate::io::save_rows;
+use crate::{Camera, Cancelled, Image, Palette, Run, Solid};
 
 impl Solid {
     /// A picture of the solid.
     ///
     /// The surface is found with certainty: along each ray, pieces are discarded only where
     /// an interval, of the value or of its slope in the block, shows that no surface crosses
-    /// them (a crossing and back within 10⁻⁷ of a block counts as a touch), and the first
-    /// crossing is bracketed to double precision. Shading, lights and colours are described at [`RenderSettings`]; the
-    /// lights move with the camera. A camera inside the solid sees its walls from behind.
+    /// them. (A crossing and back within 8·10⁻⁵ of the solid's size counts as a touch; the crossing
+    /// itself is found to 10⁻⁵.) Shading, lights and colours are described at [`RenderSettings`];
+    /// the lights move with the camera. A camera inside the solid sees its walls from behind.
     ///
     /// ```no_run
     /// use rvachev::{Camera, RenderSettings, Solid};
@@ -48,6 +53,21 @@ impl Solid {
             let scene = self.scene_with(&run.stage(0.0, 0.1))?;
             Ok(scene.picture(camera, settings, &run.stage(0.1, 1.0))?.to_8bit())
         })
+    }
+
+    /// A picture of any size, written to a PNG band by band: see [`Scene::render_to`].
+    ///
+    /// # Errors
+    /// What is wrong with the solid, the camera, the settings or the file, or that the work was
+    /// cancelled: see [`RenderError`].
+    pub fn render_to(
+        &self,
+        path: impl AsRef<Path>,
+        camera: &Camera,
+        settings: &RenderSettings,
+        run: &Run,
+    ) -> Result<(), RenderError> {
+        self.scene_with(&run.stage(0.0, 0.1))?.render_to(path, camera, settings, &run.stage(0.1, 1.0))
     }
 }
 
@@ -95,13 +115,73 @@ impl Scene {
         run.install(|| self.picture(camera, settings, &run))
     }
 
+    /// A picture of any size as a PNG of 8 bits, written band by band: it never is in memory.
+    ///
+    /// The file appears complete or not at all. Missing directories are not made.
+    ///
+    /// ```no_run
+    /// use rvachev::{Camera, RenderSettings, Run, Solid};
+    ///
+    /// let scene = Solid::superellipsoid([3.0, 2.0, 1.0], 0.3, 0.3).scene()?;
+    /// let poster = RenderSettings { width: 40_000, height: 30_000, ..RenderSettings::default() };
+    /// scene.render_to("poster.png", &Camera::framing(&scene.bounds()), &poster, &Run::default())?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// What is wrong with the camera, the settings or the file, or that the work was cancelled.
+    pub fn render_to(
+        &self,
+        path: impl AsRef<Path>,
+        camera: &Camera,
+        settings: &RenderSettings,
+        run: &Run,
+    ) -> Result<(), RenderError> {
+        settings.check()?;
+        camera.check()?;
+        let run = run.stage(0.0, 1.0);
+        let has_alpha = settings.background == Background::Transparent;
+        let path = path.as_ref();
+        run.install(|| {
+            let picture = self.prepared(camera, settings, &run)?;
+            let mut failed = None;
+            let saved = save_rows(path, [settings.width, settings.height], has_alpha, |rows| {
+                let written = picture.bands(&run.stage(0.1, 1.0), |band| {
+                    let bytes: Vec<[u8; 4]> = band.into_iter().map(to_8bit).collect();
+                    rows(&bytes).map_err(Stopped::Write)
+                });
+                written.map_err(|stopped| match stopped {
+                    Stopped::Write(error) => error,
+                    Stopped::Cancelled(cancelled) => {
+                        failed = Some(cancelled);
+                        io::Error::other(cancelled)
+                    }
+                })
+            });
+            failed.map_or(Ok(()), Err)?;
+            Ok(saved?)
+        })
+    }
+
     fn picture(&self, camera: &Camera, settings: &RenderSettings, run: &Run) -> Result<Image<[f32; 4]>, RenderError> {
+        let RenderSettings { width, height, .. } = *settings;
+        check_memory(width, height)?;
+        let picture = self.prepared(camera, settings, run)?;
+        Ok(Image::new(width, height, picture.pixels(&run.stage(0.1, 1.0))?)?)
+    }
+
+    fn prepared<'a>(
+        &'a self,
+        camera: &Camera,
+        settings: &'a RenderSettings,
+        run: &Run,
+    ) -> Result<Picture<'a>, RenderError> {
         run.check()?;
         let RenderSettings { width, height, .. } = *settings;
         let stands = settings.ground && settings.style.has_shadows() && !self.bounds().is_empty();
         let studio = Studio::new(camera, settings);
         let obstacles = Obstacles::new(self, studio.key(), settings, &run.stage(0.0, 0.1))?;
-        let picture = Picture {
+        Ok(Picture {
             scene: self,
             studio,
             obstacles,
@@ -109,8 +189,19 @@ impl Scene {
             settings,
             palette: Some(self.palette().clone()).filter(Palette::is_painted),
             ground: stands.then(|| self.lowest()),
-        };
-        Ok(Image::new(width, height, picture.pixels(&run.stage(0.1, 1.0))?)?)
+        })
+    }
+}
+
+/// Why bands end.
+enum Stopped {
+    Write(io::Error),
+    Cancelled(Cancelled),
+}
+
+impl From<Cancelled> for Stopped {
+    fn from(cancelled: Cancelled) -> Stopped {
+        Stopped::Cancelled(cancelled)
     }
 }
 
@@ -138,6 +229,42 @@ mod tests {
             marks.collect::<String>().trim_end().to_string() + "\n"
         });
         rows.collect()
+    }
+
+    #[test]
+    fn pictures_in_a_file_are_those_in_memory() -> Result<(), RenderError> {
+        let solid = Solid::sphere(1.0) - Solid::sphere(0.7).translate(DVec3::X);
+        let path = std::env::temp_dir().join(format!("rvachev-bands-{}.png", std::process::id()));
+        // Several bands.
+        let settings = RenderSettings {
+            width: 60_000,
+            height: 20,
+            samples: 1,
+            shadows: false,
+            occlusion: false,
+            ..Default::default()
+        };
+        for background in [Background::default(), Background::Transparent] {
+            let settings = RenderSettings { background, ..settings.clone() };
+            solid.render_to(&path, &front(3.0), &settings, &Run::default())?;
+            let read = image::open(&path).unwrap().into_rgba8();
+            let whole = solid.render(&front(3.0), &settings)?;
+            assert!(read.as_raw() == whole.pixels().as_flattened());
+            std::fs::remove_file(&path).unwrap();
+        }
+        let run = Run::default();
+        run.cancel.cancel();
+        let cancelled = solid.scene()?.render_to(&path, &front(3.0), &settings, &run);
+        assert!(matches!(cancelled, Err(RenderError::Cancelled(_))) && !path.exists());
+        let said = |width: u32, height: u32| {
+            let settings = RenderSettings { width, height, ..settings.clone() };
+            solid.render(&front(3.0), &settings).unwrap_err().to_string()
+        };
+        assert_eq!(said(65_536, 20), "width is 65536; allowed: 1 to 65 535 pixels");
+        assert!(said(40_000, 40_000).contains("size is 40000 × 40000; allowed: 268 435 456 pixels in memory"));
+        let error = solid.render_to("picture.jpg", &front(3.0), &settings, &Run::default()).unwrap_err();
+        assert!(error.to_string().contains("known: .png"), "{error}");
+        Ok(())
     }
 
     #[test]
@@ -246,6 +373,6 @@ mod tests {
         assert!(matches!(error, RenderError::Solid(SolidError::Unbounded { .. })), "{error}");
         let run = Run::default();
         run.cancel.cancel();
-        assert_eq!(ball.render_with(&front(1.0), &settings, &run), Err(RenderError::Cancelled(Cancelled)));
+        assert!(matches!(ball.render_with(&front(1.0), &settings, &run), Err(RenderError::Cancelled(Cancelled))));
     }
 }

@@ -10,7 +10,7 @@
 
 use glam::DVec3;
 
-use super::cells::{Cell, Cells, Part};
+use super::cells::{Cell, Cells, Part, STALE};
 use super::gbuffer::{Surface, Window};
 use super::job::{Ray, Span};
 use super::march::Marcher;
@@ -329,7 +329,10 @@ fn divides(cell: &Cell, count: usize, slope: Interval) -> bool {
     if bent && leaves == 1 {
         return share > PLAIN;
     }
-    if share > COARSE || leaves > MANY {
+    if share > COARSE {
+        return true;
+    }
+    if leaves > MANY && cell.stale < STALE {
         return share > FINEST;
     }
     let one_way = bent || slope.lo() >= 0.0 || slope.hi() <= 0.0;

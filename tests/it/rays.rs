@@ -330,3 +330,15 @@ fn scenes_of_any_size_and_place() {
     assert!(nothing.scene().unwrap().first_hit(DVec3::Z * 9.0, -DVec3::Z).is_none());
     assert!((!ball).scene().is_err());
 }
+
+#[test]
+#[ignore = "prints"]
+fn zz_print() {
+    for number in [
+        15usize, 23, 43, 55, 84, 91, 113, 122, 130, 138, 141, 143, 148, 163, 178, 183, 190, 191, 192, 193, 194, 195,
+        196, 197, 198, 199,
+    ] {
+        let solid = subject(&mut Random::new(5000 + number as u64), number);
+        println!("== {number}\n{solid}");
+    }
+}

@@ -1,0 +1,455 @@
+//! Fillets and chamfers: blends along the edge where two operands meet.
+//!
+//! For a union, with the operands' values x and y positive inside (true distances for a fillet):
+//!
+//! ```text
+//!     fillet    a ball of radius r rolls outside along both operands; where it is between them
+//!               its surface takes the place of max(x, y)
+//!     chamfer   max(x, y, T), where T = 0 is a plane that cuts a face of width w
+//! ```
+//!
+//! The other operations are those of complements (De Morgan). Both forms exceed max(x, y).
+//!
+//! A fillet is exact where the ball fits and touches each operand once. It needs operands
+//! that are smooth within a radius of the edge; where they have edges of their own it falls
+//! back on the join there.
+//!
+//! Source: J. R. Rossignac and A. A. G. Requicha, *Constant-radius blending in solid
+//! modelling* (1984), for the rolling ball.
+
+mod chamfer;
+mod fillet;
+
+use glam::{DAffine3, DVec3};
+
+use self::chamfer::Chamfer;
+use self::fillet::{FADES, Fillet, Foot, STEEPEST, STEPS};
+use super::composite::{Locals, Slopes, Whole, finish, points64, roundoff, with_evaluator, write_gradients};
+use super::{Program, Tape};
+use crate::field::{AnyField, Chunk, Zone, steep_slopes};
+use crate::num::kernel::CHUNK;
+use crate::num::symbol::Symbol;
+use crate::solid::Operation;
+use crate::{Blend, Bounds, Dual, Interval, ParamError, Real};
+
+/// The blend of two operands that are given as programs.
+#[derive(Clone, Debug)]
+pub(crate) struct EdgeBlend {
+    operands: [Whole; 2],
+    /// −1 for an operand whose complement is joined.
+    signs: [f64; 2],
+    /// −1 for the complement of a union of complements.
+    sign: f64,
+    shape: Shape,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Shape {
+    Fillet(Fillet),
+    Chamfer(Chamfer),
+}
+
+/// Differences of gradients are taken over this part of the width, point by point and in lanes.
+const TURN: f64 = 1e-4;
+const TURN_OF_LANES: f64 = 1e-2;
+
+/// A value and its gradient.
+type Sample = (f64, DVec3);
+
+impl EdgeBlend {
+    pub(super) fn new(operation: Operation, blend: Blend, operands: [Program; 2]) -> EdgeBlend {
+        let (sign, signs) = match operation {
+            Operation::Union => (1.0, [1.0, 1.0]),
+            Operation::Difference => (-1.0, [-1.0, 1.0]),
+            Operation::Intersection | Operation::SymmetricDifference => (-1.0, [-1.0, -1.0]),
+        };
+        let shape = match blend {
+            Blend::Chamfer { width } => Shape::Chamfer(Chamfer { width }),
+            Blend::Fillet { radius } => Shape::Fillet(Fillet { radius }),
+            _ => Shape::Fillet(Fillet { radius: 0.0 }),
+        };
+        EdgeBlend { operands: operands.map(Whole::new), signs, sign, shape }
+    }
+
+    /// The radius or width.
+    pub(super) fn size(&self) -> f64 {
+        match self.shape {
+            Shape::Fillet(Fillet { radius }) => radius,
+            Shape::Chamfer(Chamfer { width }) => width,
+        }
+    }
+
+    /// Where an operand's value is below the negative of this, the blend is the join.
+    fn reach(&self) -> f64 {
+        match self.shape {
+            Shape::Fillet(fillet) => fillet.reach(),
+            Shape::Chamfer(chamfer) => chamfer.reach(),
+        }
+    }
+
+    /// Whether the blend may be more than the join where the operands have these values. Well
+    /// inside of either, steps to the curve of a fillet say nothing new.
+    fn near(&self, [x, y]: [f64; 2]) -> bool {
+        x.min(y) >= -self.reach() && (matches!(self.shape, Shape::Chamfer(_)) || x.max(y) < self.size())
+    }
+
+    /// Whether the blend, moved by `shift`, may differ from the join over a zone.
+    pub(super) fn reaches(&self, zone: &Zone, shift: f64) -> bool {
+        let reach = self.reach() + shift.abs();
+        self.ranges(zone).iter().all(|range| range.hi() >= -reach)
+    }
+
+    fn ranges(&self, zone: &Zone) -> [Interval; 2] {
+        [0, 1].map(|i| self.operands[i].range_zone(zone) * Interval::point(self.signs[i]))
+    }
+
+    /// The operands' values over a box, with their slopes along the variables of `p`.
+    fn duals(&self, p: [Dual<Interval>; 3]) -> [Dual<Interval>; 2] {
+        [0, 1].map(|i| self.operands[i].evaluate(p, &mut Vec::new()) * self.signs[i])
+    }
+
+    /// The same blend over a zone, from simpler operands.
+    pub(super) fn reduced(&self, zone: &Zone) -> Option<EdgeBlend> {
+        let leaves = |[a, b]: [&Program; 2]| a.leaf_count() + b.leaf_count();
+        // Operands are asked for at most this far from the point.
+        let near = zone.inflated(match self.shape {
+            Shape::Fillet(fillet) => fillet.farthest(),
+            Shape::Chamfer(chamfer) => 2.0 * TURN_OF_LANES * chamfer.width,
+        });
+        let operands = [0, 1].map(|i| self.operands[i].reduced(&near));
+        let simpler = leaves(operands.each_ref()) < leaves(self.operands.each_ref().map(|operand| &**operand));
+        simpler.then(|| EdgeBlend { operands: operands.map(Whole::new), ..*self })
+    }
+
+    fn sample(&self, i: usize, p: DVec3) -> Sample {
+        let (value, gradient) = self.operands[i].gradient(p);
+        (self.signs[i] * value, self.signs[i] * gradient)
+    }
+
+    fn samples(&self, p: DVec3) -> [Sample; 2] {
+        [self.sample(0, p), self.sample(1, p)]
+    }
+
+    /// Value and gradient of the blend, as a union.
+    fn at(&self, p: DVec3) -> Sample {
+        match self.shape {
+            Shape::Fillet(fillet) => self.filleted(fillet, p).0,
+            Shape::Chamfer(chamfer) => self.chamfered(chamfer, p),
+        }
+    }
+
+    fn chamfered(&self, chamfer: Chamfer, p: DVec3) -> Sample {
+        let here = self.samples(p);
+        let join = larger(here[0], here[1]);
+        let height = chamfer.height(here);
+        if !(self.near(here.map(|(value, _)| value)) && height > join.0) {
+            return join;
+        }
+        let by = TURN * chamfer.width;
+        let beside = chamfer.normals(here).map(|normal| self.samples(p + by * normal));
+        let turn = |i: usize, j: usize| (beside[j][i].1 - here[i].1) / by;
+        (height, chamfer.slope(here, [0, 1].map(|i| [turn(i, 0), turn(i, 1)])))
+    }
+
+    /// The blend, and whether it tells anything of the points around: not where the search for
+    /// the foot has failed, as it does on an operand's medial axis. Beside such a point the
+    /// blend may be above the join.
+    fn filleted(&self, fillet: Fillet, p: DVec3) -> (Sample, bool) {
+        let here = self.samples(p);
+        let join = larger(here[0], here[1]);
+        if !self.near(here.map(|(value, _)| value)) {
+            return (join, true);
+        }
+        let mut foot = Foot::new(p);
+        let mut sides = here;
+        for _ in 0..STEPS {
+            if !foot.step(p, sides, fillet) {
+                // Faces that are flush are parallel all about.
+                let [a, b] = sides.map(|(_, gradient)| gradient.normalize_or_zero());
+                return (join, a.dot(b) > 0.999);
+            }
+            sides = self.samples(foot.q);
+        }
+        let off = fillet.off(sides);
+        (fillet.ball(p, &foot, off).map_or(join, |ball| larger(join, ball)), fillet.tells(&foot, off))
+    }
+
+    /// The range of a fillet, as a union, and the steepest slope in it where that is known.
+    fn fillet_range(&self, fillet: Fillet, join: Interval, zone: &Zone) -> (Interval, f64) {
+        // The blend is at least the join, whatever became of its steps. Within reach of the
+        // ball it is the distance from the centre curve, of slope 1; beyond, no more than the
+        // longest way to a foot.
+        let ((centre, _), told) = self.filleted(fillet, zone.centre);
+        let extent = zone.extent().length();
+        let (steepest, close) = match told {
+            true => (STEEPEST, 0.25 * fillet.radius),
+            false => (FADES, 0.02 * fillet.radius),
+        };
+        let radius = steepest * extent;
+        let close = extent < close;
+        let below = (told || close) && centre + radius < 0.0;
+        let hi = if below { centre + radius } else { join.hi().max(fillet.farthest()) };
+        let lo = if close { join.lo().max(centre - radius) } else { join.lo() };
+        (Interval::new(lo, hi.max(lo)), if close { steepest } else { f64::INFINITY })
+    }
+
+    /// The blend, as a union, where the operands have these values and gradients.
+    fn chamfer_range(&self, chamfer: Chamfer, values: [Interval; 2], gradients: [[Interval; 3]; 2]) -> Interval {
+        let join = values[0].max(values[1]);
+        let height = chamfer.range(values, gradients);
+        let lo = if self.within(values) { join.lo().max(height.lo()) } else { join.lo() };
+        Interval::new(lo, join.hi().max(height.hi()))
+    }
+
+    /// Whether operands with these values are within reach everywhere.
+    fn within(&self, values: [Interval; 2]) -> bool {
+        values.iter().all(|value| value.lo() >= -self.reach())
+    }
+}
+
+/// The one with the larger value.
+fn larger(a: Sample, b: Sample) -> Sample {
+    if a.0 >= b.0 { a } else { b }
+}
+
+impl AnyField for EdgeBlend {
+    fn name(&self) -> &'static str {
+        match self.shape {
+            Shape::Fillet(_) => "fillet",
+            Shape::Chamfer(_) => "chamfer",
+        }
+    }
+
+    fn bounds_under(&self, _map: &DAffine3) -> Bounds {
+        // Told by the node, from its operands.
+        Bounds::ALL
+    }
+
+    fn check(&self) -> Result<(), ParamError> {
+        Ok(())
+    }
+
+    fn roundoff(&self, reach: f64) -> f64 {
+        4.0 * (roundoff(&self.operands[0], reach) + roundoff(&self.operands[1], reach)) + 1e-6 * reach
+    }
+
+    fn exact(&self) -> bool {
+        true
+    }
+
+    fn value(&self, p: [f64; 3]) -> f64 {
+        let p = DVec3::from_array(p);
+        let here = [0, 1].map(|i| self.signs[i] * self.operands[i].value(p));
+        let join = here[0].max(here[1]);
+        self.sign
+            * match self.shape {
+                _ if !self.near(here) => join,
+                Shape::Fillet(_) => self.at(p).0,
+                Shape::Chamfer(chamfer) => join.max(chamfer.height(self.samples(p))),
+            }
+    }
+
+    fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64> {
+        let (value, gradient) = self.at(DVec3::from_array(p.map(Dual::value)));
+        let along = |i: usize| (0..3).map(|axis| gradient[axis] * p[axis].gradient()[i]).sum::<f64>() * self.sign;
+        Dual::new(self.sign * value, [along(0), along(1), along(2)])
+    }
+
+    fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
+        let hull = p.map(Dual::value);
+        let zone = Zone::of_sides(hull);
+        let sides = self.duals(p);
+        let join = sides[0].max(sides[1]);
+        if !self.reaches(&zone, 0.0) {
+            return join * self.sign;
+        }
+        let chamfer = match self.shape {
+            Shape::Fillet(fillet) => {
+                let (range, steepest) = self.fillet_range(fillet, join.value(), &zone);
+                let slopes = if steepest.is_finite() { steep_slopes(steepest, p) } else { [Interval::ALL; 3] };
+                return Dual::new(range, slopes) * self.sign;
+            }
+            Shape::Chamfer(chamfer) => chamfer,
+        };
+        let gradients = self.duals(Dual::point(hull)).map(Dual::gradient);
+        let values = sides.map(Dual::value);
+        if chamfer.range(values, gradients).hi() <= join.value().lo() {
+            return join * self.sign;
+        }
+        match chamfer.plane(sides, gradients) {
+            Some(plane) if self.within(values) => join.max(plane) * self.sign,
+            // How the operands bend is not known.
+            _ => Dual::new(self.range(&zone), [Interval::ALL; 3]),
+        }
+    }
+
+    fn convex(&self) -> bool {
+        false
+    }
+
+    fn range(&self, zone: &Zone) -> Interval {
+        let values = self.ranges(zone);
+        let join = values[0].max(values[1]);
+        let blend = match self.shape {
+            _ if values.iter().any(|value| value.hi() < -self.reach()) => join,
+            Shape::Fillet(fillet) => self.fillet_range(fillet, join, zone).0,
+            Shape::Chamfer(chamfer) => {
+                let gradients = self.duals(Dual::point(zone.hull())).map(Dual::gradient);
+                self.chamfer_range(chamfer, values, gradients)
+            }
+        };
+        blend * Interval::point(self.sign)
+    }
+
+    fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
+        // Programs with a fillet are not lowered; its join stands in for it.
+        let [a, b] = [0, 1].map(|i| self.operands[i].evaluate(p, &mut Vec::new()) * self.signs[i]);
+        a.max(b) * self.sign
+    }
+
+    fn lanes32(&self, chunk: Chunk<'_, f32, 1>) {
+        let local = Locals::of(&chunk.points, chunk.placement);
+        let [out] = chunk.out;
+        let mut values = [[0.0f32; CHUNK]; 2];
+        let tapes = [self.operands[0].tape(), self.operands[1].tape()];
+        let mut near = false;
+        with_evaluator(|evaluator| {
+            for i in 0..2 {
+                local.values(evaluator, tapes[i], &mut values[i]);
+                let sign = self.signs[i] as f32;
+                values[i].iter_mut().for_each(|v| *v *= sign);
+            }
+        });
+        for (x, y) in values[0].iter().zip(&values[1]).take(local.count) {
+            near |= self.near([f64::from(*x), f64::from(*y)]);
+        }
+        if near {
+            out.copy_from_slice(&self.chunk(&local, tapes, false).value[..out.len()]);
+        } else {
+            for (i, out) in out.iter_mut().enumerate() {
+                *out = self.sign as f32 * values[0][i].max(values[1][i]);
+            }
+        }
+        finish(chunk.placement, out);
+    }
+
+    fn lanes64(&self, chunk: Chunk<'_, f64, 1>) {
+        points64(self, chunk);
+    }
+
+    fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
+        let local = Locals::of(&chunk.points, chunk.placement);
+        let tapes = [self.operands[0].tape(), self.operands[1].tape()];
+        write_gradients(chunk.placement, &self.chunk(&local, tapes, true), chunk.out);
+    }
+
+    fn takes_short(&self) -> bool {
+        true
+    }
+}
+
+impl EdgeBlend {
+    /// Values and gradients of a chunk; without `steep` gradients are the join's.
+    fn chunk(&self, local: &Locals, tapes: [&Tape; 2], steep: bool) -> Slopes {
+        with_evaluator(|evaluator| {
+            let mut sample =
+                |at: &Locals| -> Pair { Pair([0, 1].map(|i| at.gradients(evaluator, tapes[i])), self.signs) };
+            let here = sample(local);
+            let mut out = Slopes { value: [0.0; CHUNK], gradient: [[0.0; CHUNK]; 3] };
+            for i in 0..local.count {
+                let [x, y] = here.at(i);
+                out.set(i, larger(x, y));
+            }
+            match self.shape {
+                Shape::Fillet(fillet) => self.filleted_lanes(fillet, local, &here, &mut sample, &mut out),
+                Shape::Chamfer(chamfer) => self.chamfered_lanes(chamfer, local, &here, &mut sample, &mut out, steep),
+            }
+            for list in [&mut out.value].into_iter().chain(&mut out.gradient) {
+                list.iter_mut().for_each(|v| *v *= self.sign as f32);
+            }
+            out
+        })
+    }
+
+    fn filleted_lanes(
+        &self,
+        fillet: Fillet,
+        local: &Locals,
+        here: &Pair,
+        sample: &mut impl FnMut(&Locals) -> Pair,
+        out: &mut Slopes,
+    ) {
+        let mut feet: Vec<(Foot, bool)> = (0..local.count)
+            .map(|i| (Foot::new(local.get(i)), self.near(here.at(i).map(|(value, _)| value))))
+            .collect();
+        let mut at = Locals { ..*local };
+        let mut there: Option<Pair> = None;
+        for _ in 0..STEPS {
+            let sides = there.as_ref().unwrap_or(here);
+            for (i, (foot, near)) in feet.iter_mut().enumerate() {
+                *near = *near && foot.step(local.get(i), sides.at(i), fillet);
+                at.set(i, foot.q);
+            }
+            if !feet.iter().any(|(_, near)| *near) {
+                return;
+            }
+            there = Some(sample(&at));
+        }
+        let sides = there.as_ref().unwrap_or(here);
+        for (i, (foot, near)) in feet.iter().enumerate() {
+            let ball = near.then(|| fillet.ball(local.get(i), foot, fillet.off(sides.at(i)))).flatten();
+            if let Some(ball) = ball {
+                out.set(i, larger(out.at(i), ball));
+            }
+        }
+    }
+
+    fn chamfered_lanes(
+        &self,
+        chamfer: Chamfer,
+        local: &Locals,
+        here: &Pair,
+        sample: &mut impl FnMut(&Locals) -> Pair,
+        out: &mut Slopes,
+        steep: bool,
+    ) {
+        let mut faces = Vec::new();
+        for i in 0..local.count {
+            let sides = here.at(i);
+            let height = chamfer.height(sides);
+            if self.near(sides.map(|(value, _)| value)) && height > out.at(i).0 {
+                out.value[i] = height as f32;
+                faces.push(i);
+            }
+        }
+        if faces.is_empty() || !steep {
+            return;
+        }
+        let by = TURN_OF_LANES * chamfer.width;
+        let beside = [0, 1].map(|side| {
+            let mut at = Locals { ..*local };
+            for &i in &faces {
+                at.set(i, local.get(i) + by * chamfer.normals(here.at(i))[side]);
+            }
+            sample(&at)
+        });
+        for i in faces {
+            let sides = here.at(i);
+            let turn = |k: usize, side: usize| (beside[side].at(i)[k].1 - sides[k].1) / by;
+            let slope = chamfer.slope(sides, [0, 1].map(|k| [turn(k, 0), turn(k, 1)]));
+            out.set(i, (f64::from(out.value[i]), slope));
+        }
+    }
+}
+
+/// Both operands over a chunk.
+struct Pair([Slopes; 2], [f64; 2]);
+
+impl Pair {
+    fn at(&self, i: usize) -> [Sample; 2] {
+        [0, 1].map(|k| {
+            let (value, gradient) = self.0[k].at(i);
+            (self.1[k] * value, self.1[k] * gradient)
+        })
+    }
+}
