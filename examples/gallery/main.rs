@@ -26,9 +26,9 @@ use rvachev::{Background, Camera, RenderError, RenderSettings, Run, Solid};
 
 use catalogue::{Entry, FAMILIES};
 
-/// Size of a picture, in pixels.
-const WIDTH: u32 = 128;
-const HEIGHT: u32 = 96;
+/// Size of a picture, in pixels: for the docs, and for a try.
+const DOCS_SIZE: (u32, u32) = (128, 96);
+const SIZE: (u32, u32) = (112, 84);
 
 const BACKGROUND: [u8; 3] = [248, 248, 248];
 
@@ -38,6 +38,7 @@ const COLOR_STEP: u8 = 4;
 /// How pictures are made.
 #[derive(Clone, Copy)]
 struct Manner {
+    size: (u32, u32),
     /// See [`RenderSettings::samples`].
     samples: u32,
     /// On one thread, and saying how long each takes.
@@ -47,10 +48,11 @@ struct Manner {
 /// A solid as all are shown: from the same direction, as large as its box allows.
 fn picture(solid: &Solid, color: [u8; 3], manner: Manner) -> Result<RgbImage, RenderError> {
     let bounds = solid.bounds()?;
-    let camera = Camera::framing(&bounds).fitted(&bounds, f64::from(WIDTH) / f64::from(HEIGHT));
+    let (width, height) = manner.size;
+    let camera = Camera::framing(&bounds).fitted(&bounds, f64::from(width) / f64::from(height));
     let settings = RenderSettings {
-        width: WIDTH,
-        height: HEIGHT,
+        width,
+        height,
         samples: manner.samples,
         paint: color.into(),
         ground: false,
@@ -60,20 +62,22 @@ fn picture(solid: &Solid, color: [u8; 3], manner: Manner) -> Result<RgbImage, Re
     let run = Run { threads: usize::from(manner.timed), ..Run::default() };
     let image = solid.render_with(&camera, &settings, &run)?;
     let round = |channel: u8| channel.min(BACKGROUND[0]).next_multiple_of(COLOR_STEP);
-    Ok(RgbImage::from_fn(WIDTH, HEIGHT, |x, y| {
+    Ok(RgbImage::from_fn(width, height, |x, y| {
         let [red, green, blue, _] = image.pixel(x, y).unwrap_or_default();
         Rgb([red, green, blue].map(round))
     }))
 }
 
-/// The picture of an entry.
-fn picture_of((name, make): &Entry, color: [u8; 3], manner: Manner) -> Result<RgbImage, String> {
+/// The picture of an entry, and the length of its file in `folder`.
+fn picture_of((name, make): &Entry, color: [u8; 3], manner: Manner, folder: &Path) -> Result<(RgbImage, u64), String> {
     let start = Instant::now();
-    let picture = picture(&make(), color, manner).map_err(|error| format!("{name}: {error}"))?;
+    let told = |error: &dyn Error| format!("{name}: {error}");
+    let picture = picture(&make(), color, manner).map_err(|error| told(&error))?;
+    let length = save(&picture, &folder.join(format!("{name}.png"))).map_err(|error| told(&*error))?;
     if manner.timed {
         println!("{:7.1} ms  {name}", 1e3 * start.elapsed().as_secs_f64());
     }
-    Ok(picture)
+    Ok((picture, length))
 }
 
 /// Writes a PNG file and returns its length.
@@ -87,12 +91,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let start = Instant::now();
     let mut folder = PathBuf::from("target/examples/gallery");
     let mut sheet_path = folder.join("sheet.png");
-    let mut manner = Manner { samples: 1, timed: false };
+    let mut manner = Manner { size: SIZE, samples: 1, timed: false };
     for argument in std::env::args().skip(1) {
         match argument.as_str() {
             "times" => manner.timed = true,
             "docs" => {
-                manner.samples = 3;
+                (manner.samples, manner.size) = (3, DOCS_SIZE);
                 (folder, sheet_path) = ("docs/gallery".into(), "docs/gallery.png".into());
             }
             other => (folder, sheet_path) = (other.into(), Path::new(other).join("sheet.png")),
@@ -102,20 +106,15 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let entries: Vec<(&Entry, [u8; 3])> =
         FAMILIES.iter().flat_map(|family| family.entries.iter().map(|entry| (entry, family.color))).collect();
-    let made: Result<Vec<RgbImage>, String> = if manner.timed {
-        entries.iter().map(|(entry, color)| picture_of(entry, *color, manner)).collect()
-    } else {
-        entries.par_iter().map(|(entry, color)| picture_of(entry, *color, manner)).collect()
-    };
-    let pictures = made?;
+    let make = |(entry, color): &(&Entry, [u8; 3])| picture_of(entry, *color, manner, &folder);
+    let made: Result<Vec<(RgbImage, u64)>, String> =
+        if manner.timed { entries.iter().map(make).collect() } else { entries.par_iter().map(make).collect() };
+    let (pictures, lengths): (Vec<RgbImage>, Vec<u64>) = made?.into_iter().unzip();
+    let bytes: u64 = lengths.iter().sum();
+    let (width, height) = manner.size;
+    println!("{}: {} pictures of {width} x {height} pixels, {bytes} bytes", folder.display(), pictures.len());
 
-    let mut bytes = 0;
-    for (((name, _), _), picture) in entries.iter().zip(&pictures) {
-        bytes += save(picture, &folder.join(format!("{name}.png")))?;
-    }
-    println!("{}: {} pictures of {WIDTH} x {HEIGHT} pixels, {bytes} bytes", folder.display(), pictures.len());
-
-    let sheet = sheet::sheet(&pictures);
+    let sheet = sheet::sheet(&pictures, manner.size);
     let length = save(&sheet, &sheet_path)?;
     println!("{}: {} x {} pixels, {length} bytes", sheet_path.display(), sheet.width(), sheet.height());
     println!("{:.1} s in all", start.elapsed().as_secs_f64());

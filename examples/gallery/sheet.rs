@@ -2,9 +2,9 @@
 
 use image::{Rgb, RgbImage, imageops};
 
+use crate::BACKGROUND;
 use crate::catalogue::FAMILIES;
 use crate::font;
-use crate::{BACKGROUND, HEIGHT, WIDTH};
 
 const COLUMNS: usize = 8;
 const GAP: u32 = 8;
@@ -13,11 +13,11 @@ const LABEL: u32 = 2 * font::LINE + 8;
 
 const INK: [u8; 3] = [48, 52, 58];
 
-/// The pictures of all families in the order of the catalogue, on one sheet.
-pub fn sheet(pictures: &[RgbImage]) -> RgbImage {
+/// The pictures of all families in the order of the catalogue, all of one size, on one sheet.
+pub fn sheet(pictures: &[RgbImage], (across, down): (u32, u32)) -> RgbImage {
     let rows = FAMILIES.iter().map(|family| family.entries.len().div_ceil(COLUMNS) as u32);
-    let height = rows.map(|rows| HEADING + rows * (HEIGHT + LABEL)).sum::<u32>() + GAP;
-    let width = COLUMNS as u32 * (WIDTH + GAP) + GAP;
+    let height = rows.map(|rows| HEADING + rows * (down + LABEL)).sum::<u32>() + GAP;
+    let width = COLUMNS as u32 * (across + GAP) + GAP;
     let mut sheet = RgbImage::from_pixel(width, height, Rgb(BACKGROUND));
 
     let mut pictures = pictures.iter();
@@ -30,17 +30,17 @@ pub fn sheet(pictures: &[RgbImage]) -> RgbImage {
         }
         top += HEADING;
         for row in family.entries.chunks(COLUMNS) {
-            let places = (0..).map(|column| GAP + column * (WIDTH + GAP));
+            let places = (0..).map(|column| GAP + column * (across + GAP));
             for ((left, (name, _)), picture) in places.zip(row).zip(&mut pictures) {
                 imageops::replace(&mut sheet, picture, i64::from(left), i64::from(top));
-                let mut line_top = top + HEIGHT + 2;
-                for line in font::lines(&name.replace('_', " "), WIDTH) {
-                    let indent = WIDTH.saturating_sub(font::width(&line)) / 2;
+                let mut line_top = top + down + 2;
+                for line in font::lines(&name.replace('_', " "), across) {
+                    let indent = across.saturating_sub(font::width(&line)) / 2;
                     font::write(&mut sheet, &line, (left + indent, line_top), 1, INK);
                     line_top += font::LINE;
                 }
             }
-            top += HEIGHT + LABEL;
+            top += down + LABEL;
         }
     }
     sheet

@@ -216,7 +216,7 @@ impl Contexts {
                 Step::World | Step::Length(_) | Step::Flip | Step::Paint => {}
             }
         }
-        let distance = Distance::new(chain, to_local, field.clone());
+        let distance = Distance::new(chain, to_local, field.clone(), shift / self.get(anchor).scale);
         Place { field: Arc::new(distance), context: *self.get(anchor), shift }
     }
 

@@ -38,7 +38,9 @@ impl Solid {
     #[doc = picture!("offset" = "docs/gallery/offset.png", "offset_inwards" = "docs/gallery/offset_inwards.png")]
     ///
     /// Leaves below count by true distance: their own where they have it, else the distance
-    /// to the foot that is found along the gradient, within 2 % for convex leaves. Joins
+    /// to the nearest surface point found, within 2 % for convex leaves. Of others, and behind
+    /// deformations, it is searched from points known beforehand on a net of 30 cells along the
+    /// leaf's box: parts that slip through between its nodes are not seen. Joins
     /// below act as min and max, so an offset edge stays sharp inside and is round outside
     /// of each leaf, and values are distances near the surface.
     ///

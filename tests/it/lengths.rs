@@ -3,10 +3,10 @@
 use glam::DVec3;
 use rvachev::{
     Capsule, Cone, Cuboid, Cylinder, Ellipsoid, GeneralisedSuperquadric, Gielis, Prism, Pyramid, Region, RoundedCuboid,
-    Solid, SolidError, Sphere, Superellipsoid, Superhyperboloid, Supershape, Wedge,
+    SineWave, Solid, SolidError, Sphere, Superellipsoid, Superhyperboloid, Supershape, Wedge,
 };
 
-use crate::support::Random;
+use crate::support::{Random, lanes32};
 
 fn convex_leaves() -> Vec<(String, Solid)> {
     let mut leaves: Vec<(String, Solid)> = vec![
@@ -145,6 +145,46 @@ fn offsets_of_leaves_that_are_not_convex_keep_their_sign_when_narrowed() -> Resu
                     Region::Surface(narrowed) => assert_eq!(narrowed.value(q) > 0.0, inside, "{name} {by} {q}"),
                 }
             }
+        }
+    }
+    Ok(())
+}
+
+/// A supershape of five lobes, twisted and with a waist: not convex, and curved both ways.
+fn lobed() -> Solid {
+    let body = Supershape::new(Gielis::new(5.0, 14.0, 6.0, 6.0), Gielis::new(4.0, 6.0, 6.0, 6.0));
+    let law = SineWave { mean: 0.9, amplitude: 0.1, wavelength: 3.5, phase: -1.9 };
+    Solid::from(body.scaled(DVec3::new(1.0, 1.0, 1.8))).taper_by(law, law).twist(0.4)
+}
+
+#[test]
+fn walls_of_deformed_supershapes_have_their_thickness() -> Result<(), SolidError> {
+    for part in [0.02, 0.06] {
+        for sign in [-1.0, 1.0] {
+            let (least, most) = measured(&lobed(), sign * part, 30)?;
+            println!("{sign:+} {part}: {least:.4} to {most:.4}");
+            assert!(least > 0.98 && most < 1.02, "{sign} {part}: {least} to {most}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn beside_a_surface_the_distance_is_small() -> Result<(), SolidError> {
+    let solid = lobed();
+    let shell = solid.offset(-0.06);
+    let program = shell.surface_program()?;
+    let mut random = Random::new(94);
+    for _ in 0..200 {
+        let Some(p) = way_out(&solid, DVec3::ZERO, random.direction())? else { continue };
+        let normal = -solid.gradient(p)?.normalize();
+        let beside = random.log_range(1e-5, 1e-2) * if random.chance(0.5) { 1.0 } else { -1.0 };
+        let q = p + beside * normal;
+        let region = rvachev::Bounds::from_center(q, DVec3::splat(0.01));
+        let (seen, lanes) = lanes32(&program, &region, &[q]);
+        for (at, value) in [(q, program.value(q)), (seen[0], lanes[0])] {
+            let off = value + 0.06 + (at - p).dot(normal);
+            assert!(off.abs() < 0.02 * beside.abs() + 2e-4, "{value} at {at}, {beside} from {p}");
         }
     }
     Ok(())

@@ -14,6 +14,7 @@ mod formula;
 mod golden;
 mod lattices;
 mod laws;
+mod length_ranges;
 mod lengths;
 mod maps;
 mod mesh;

@@ -19,11 +19,10 @@ pub(super) struct Chain {
     pub(super) leaf: Arc<dyn AnyField>,
 }
 
-/// Value and gradient, and the point behind the last deformation with its derivatives.
+/// Value and gradient.
 pub(super) struct Seen {
     pub(super) value: f64,
     pub(super) gradient: DVec3,
-    pub(super) local: [Dual<f64>; 3],
 }
 
 impl Chain {
@@ -33,7 +32,7 @@ impl Chain {
             local = warp.duals(Placement::new(map, 1.0, 0.0).apply(local));
         }
         let dual = self.leaf.dual(Placement::new(&self.to_leaf, 1.0, 0.0).apply(local));
-        Seen { value: dual.v, gradient: DVec3::from_array(dual.d), local }
+        Seen { value: dual.v, gradient: DVec3::from_array(dual.d) }
     }
 
     pub(super) fn value(&self, p: [f64; 3]) -> f64 {
@@ -83,55 +82,63 @@ pub(super) struct Placed<'a> {
 /// A chunk of one number a point.
 pub(super) type Column = [f32; CHUNK];
 
-/// `K` numbers a point, as slices.
-pub(super) fn columns<const K: usize>(all: &[Column; K]) -> [&[f32]; K] {
-    std::array::from_fn(|i| &all[i][..])
+/// `K` numbers each of the first `len` points, as slices.
+pub(super) fn columns<const K: usize>(all: &[Column; K], len: usize) -> [&[f32]; K] {
+    std::array::from_fn(|i| &all[i][..len])
 }
 
-pub(super) fn columns_mut<const K: usize>(all: &mut [Column; K]) -> [&mut [f32]; K] {
-    all.each_mut().map(|column| &mut column[..])
+pub(super) fn columns_mut<const K: usize>(all: &mut [Column; K], len: usize) -> [&mut [f32]; K] {
+    all.each_mut().map(|column| &mut column[..len])
 }
 
 impl Placed<'_> {
-    /// Value and gradient; `local` receives the point behind the last deformation and its
-    /// derivatives, row by row, where there is one.
-    pub(super) fn gradients(&self, points: [&[f32]; 3], local: &mut [Column; 12], out: &mut [Column; 4]) {
+    /// Whether slices may be shorter than a chunk.
+    pub(super) fn takes_short(&self) -> bool {
+        self.leaf.takes_short()
+    }
+
+    /// Value and gradient.
+    pub(super) fn gradients(&self, points: [&[f32]; 3], out: &mut [Column; 4]) {
+        let len = points[0].len();
         let leaf = |points, out: &mut [Column; 4]| {
-            self.leaf.gradients(Chunk { points, placement: &self.to_leaf, out: columns_mut(out) });
+            self.leaf.gradients(Chunk { points, placement: &self.to_leaf, out: columns_mut(out, len) });
         };
         let Some(((first, warp), rest)) = self.maps.split_first() else { return leaf(points, out) };
-        warp.jacobians(Chunk { points, placement: first, out: columns_mut(local) });
+        // The point behind the deformations so far, and its derivatives, row by row.
+        let mut local = [[0.0; CHUNK]; 12];
+        warp.jacobians(Chunk { points, placement: first, out: columns_mut(&mut local, len) });
         for (placement, warp) in rest {
-            let above = *local;
-            let [x, y, z, ..] = columns(&above);
+            let above = local;
+            let [x, y, z, ..] = columns(&above, len);
             let mut own = [[0.0; CHUNK]; 12];
-            warp.jacobians(Chunk { points: [x, y, z], placement, out: columns_mut(&mut own) });
-            let both = std::array::from_fn(|i| if i < 9 { &own[i + 3][..] } else { &above[i - 6][..] });
-            let [px, py, pz, derivatives @ ..] = local;
+            warp.jacobians(Chunk { points: [x, y, z], placement, out: columns_mut(&mut own, len) });
+            let both = std::array::from_fn(|i| if i < 9 { &own[i + 3][..len] } else { &above[i - 6][..len] });
+            let [px, py, pz, derivatives @ ..] = &mut local;
             for (to, from) in [px, py, pz].into_iter().zip(&own) {
                 *to = *from;
             }
-            run(&Product, both, derivatives.each_mut().map(|column| &mut column[..]));
+            run(&Product, both, columns_mut(derivatives, len));
         }
         let mut own = [[0.0; CHUNK]; 4];
-        let [x, y, z, ..] = columns(local);
+        let [x, y, z, ..] = columns(&local, len);
         leaf([x, y, z], &mut own);
-        let inputs = std::array::from_fn(|i| if i < 9 { &local[i + 3][..] } else { &own[i - 8][..] });
-        let [value, dx, dy, dz] = columns_mut(out);
+        let inputs = std::array::from_fn(|i| if i < 9 { &local[i + 3][..len] } else { &own[i - 8][..len] });
+        let [value, slopes @ ..] = out;
         value.copy_from_slice(&own[0]);
-        run(&Pull, inputs, [dx, dy, dz]);
+        run(&Pull, inputs, columns_mut(slopes, len));
     }
 
     /// Values, by the kernel of values.
     pub(super) fn values(&self, points: [&[f32]; 3], out: &mut Column) {
+        let len = points[0].len();
         let mut slot;
         let mut at = points;
         for (placement, warp) in &self.maps {
             let mut next = [[0.0; CHUNK]; 3];
-            warp.lanes32(Chunk { points: at, placement, out: columns_mut(&mut next) });
+            warp.lanes32(Chunk { points: at, placement, out: columns_mut(&mut next, len) });
             slot = next;
-            at = columns(&slot);
+            at = columns(&slot, len);
         }
-        self.leaf.lanes32(Chunk { points: at, placement: &self.to_leaf, out: [&mut out[..]] });
+        self.leaf.lanes32(Chunk { points: at, placement: &self.to_leaf, out: [&mut out[..len]] });
     }
 }

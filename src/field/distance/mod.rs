@@ -4,18 +4,18 @@
 //!     d(x) = sign f(x) · |x − y|,   y the surface point nearest to x,  f(y) = 0,  x − y ∥ ∇f(y)
 //! ```
 //!
-//! y is searched by a fixed number of steps, each of which evaluates the leaf's value and
-//! gradient once.
+//! y is searched by steps, each of which evaluates the leaf's value and gradient once.
 //!
-//! * Inside, from up to three tangent planes known beforehand, each of another side of the
-//!   body: y slides along its tangent plane to below x, by the secant curvature. For a
-//!   concave field every tangent plane holds the body, so the least height of x below those
-//!   met is the distance, from above.
-//! * Outside, y is the point nearest to x of the half-spaces below the last three tangent
-//!   planes and one that stands for those before: a bundle method, which converges at
+//! * Of a convex leaf, inside: from up to three tangent planes known beforehand, each of
+//!   another side of the body, y slides along its tangent plane to below x, by the secant
+//!   curvature. For a concave field every tangent plane holds the body, so the least height
+//!   of x below those met is the distance, from above.
+//! * Outside of it, y is the point nearest to x of the half-spaces below the last three
+//!   tangent planes and one that stands for those before: a bundle method, which converges at
 //!   rounded and sharp edges alike. Its distance is one from below.
-//! * Of a leaf that is not convex nothing is known beforehand: y slides down the gradient
-//!   from x and may end at another surface point than the nearest.
+//! * Of any other leaf, and behind deformations, surface points are found beforehand on a net
+//!   of cells; y slides on from the one that is nearest to the cell of x, and what is found
+//!   is neither less than the distance nor more than that to the point it came from.
 //!
 //! The sign is the leaf's own. Convex leaves behind affine maps are measured to some tenths
 //! of a per cent of the distance for lengths up to a tenth of the smallest half-size (to 4 %
@@ -28,6 +28,9 @@
 //! step size gradient methods* (1988).
 
 mod chain;
+mod feet;
+mod follow;
+mod lanes;
 mod sample;
 mod solve;
 mod step;
@@ -39,19 +42,28 @@ use std::sync::Arc;
 use glam::{DAffine3, DMat3, DVec3};
 
 use self::chain::Chain;
+use self::feet::Feet;
+use self::follow::SURE;
 use self::step::Plane;
 use super::{AnyField, AnyWarp, Chunk, ParamError, VALUE_LIMIT, Zone, smallest_stretch, steep_slopes};
 use crate::num::kernel::CHUNK;
 use crate::num::symbol::Symbol;
 use crate::{Bounds, Dual, Interval};
 
+/// By how much of itself what is found at a convex leaf may exceed the true distance, and by
+/// how much two values at one distance may differ.
+const LOOSE: f64 = 0.05;
+const LOOSE_BELOW: f64 = 0.01;
+
+/// How far behind a surface point found beside a leaf that is not convex the sign must have
+/// changed, as a part of the length asked for.
+const SLACK: f64 = 1e-3;
+
 /// What is known of the shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Shape {
     /// Convex, in the frame of the points.
     Convex,
-    /// Convex, but for deformations.
-    Bent,
     /// Anything.
     Free,
 }
@@ -61,9 +73,12 @@ enum Shape {
 pub(crate) struct Distance {
     chain: Chain,
     shape: Shape,
-    /// Tangent planes to start from: of the points' frame (convex), or of that behind the
-    /// last deformation (bent).
+    /// Tangent planes to start from, of a convex leaf.
     planes: Vec<(Plane, [f64; 3])>,
+    /// Surface points to start from, of any other that is bounded.
+    feet: Option<Feet>,
+    /// The length that is asked for: what counts is which side of it the distance is on.
+    asked: f64,
     /// `|d| ≥ |f|` times this.
     least: f64,
     /// The leaf's box.
@@ -72,24 +87,27 @@ pub(crate) struct Distance {
 
 impl Distance {
     /// The distance to `leaf` as it looks through `chain` (for each deformation the affine
-    /// map before it) and `to_leaf`.
+    /// map before it) and `to_leaf`; `asked` is the length that is asked for.
     pub(crate) fn new(
         chain: Vec<(DAffine3, Arc<dyn AnyWarp>)>,
         to_leaf: DAffine3,
         leaf: Arc<dyn AnyField>,
+        asked: f64,
     ) -> Distance {
-        let shape = match (leaf.convex(), chain.is_empty()) {
-            (true, true) => Shape::Convex,
-            (true, false) => Shape::Bent,
-            _ => Shape::Free,
-        };
+        let shape = if leaf.convex() && chain.is_empty() { Shape::Convex } else { Shape::Free };
         let planes = if shape == Shape::Free { Vec::new() } else { sample::planes(&*leaf, &to_leaf) };
         let stretch = 1.0 / smallest_stretch(&to_leaf.matrix3.inverse());
         let least = if shape == Shape::Convex && stretch.is_normal() { 1.0 / stretch } else { 0.0 };
         let planes = planes.into_iter().map(|plane: Plane| (plane, [plane[0], plane[1], plane[2]])).collect();
         let chain = Chain { maps: chain, to_leaf, leaf };
-        let mut distance = Distance { chain, shape, planes, least, bounds: Bounds::ALL };
+        let asked = asked.abs();
+        let mut distance = Distance { chain, shape, planes, feet: None, asked, least, bounds: Bounds::ALL };
         distance.bounds = distance.bounds_under(&DAffine3::IDENTITY);
+        if shape == Shape::Free {
+            let reach = distance.bounds.max.abs().max(distance.bounds.min.abs()).max_element();
+            let slack = distance.roundoff(reach) + SLACK * asked;
+            distance.feet = Feet::new(&distance.chain, &distance.bounds, slack);
+        }
         distance
     }
 
@@ -97,10 +115,7 @@ impl Distance {
     fn at(&self, p: DVec3) -> (f64, DVec3) {
         let value = self.chain.value(p.to_array());
         let (height, normal) = self.search(p, value);
-        let settled = self.settled(value, height);
-        // No surface is nearer than the leaf's box.
-        let settled = if settled < 0.0 { settled.min(-self.gap(p, p)) } else { settled };
-        (settled, -normal)
+        (self.settled(p, value, height), -normal)
     }
 
     /// How far a box is from the leaf's, at least.
@@ -108,9 +123,10 @@ impl Distance {
         (self.bounds.min - high).max(low - self.bounds.max).max(DVec3::ZERO).length()
     }
 
-    /// The distance, from a value of the leaf and what the search for the surface found:
-    /// never of another sign than the value, never below the bound that the slope gives.
-    fn settled(&self, value: f64, height: f64) -> f64 {
+    /// The distance at p, from a value of the leaf and what the search for the surface found:
+    /// never of another sign than the value, never below the bound that the slope gives, nor
+    /// nearer than the leaf's box.
+    fn settled(&self, p: DVec3, value: f64, height: f64) -> f64 {
         let least = value.abs() * self.least;
         let signed = if value < 0.0 { -height } else { height };
         let found = if signed.is_nan() || signed.is_infinite() { value.abs() } else { signed.max(0.0).max(least) };
@@ -118,9 +134,9 @@ impl Distance {
         if value > 0.0 {
             size.max(f64::MIN_POSITIVE)
         } else if value < 0.0 {
-            -size.max(f64::MIN_POSITIVE)
+            -size.max(self.gap(p, p)).max(f64::MIN_POSITIVE)
         } else {
-            0.0
+            -self.gap(p, p)
         }
     }
 }
@@ -198,7 +214,10 @@ impl AnyField for Distance {
     }
 
     fn range(&self, zone: &Zone) -> Interval {
-        self.range_over(zone)
+        match self.shape {
+            Shape::Convex => self.supported_range(zone),
+            Shape::Free => self.followed_range(zone),
+        }
     }
 
     /// To first order: the leaf's value by the length of its gradient. The search does not
@@ -211,8 +230,9 @@ impl AnyField for Distance {
         let Chunk { points, placement, out: [out] } = chunk;
         let prepared = self.prepared(placement);
         for at in (0..out.len()).step_by(CHUNK) {
-            let found = prepared.search(points.map(|axis| &axis[at..at + CHUNK]));
-            out[at..at + CHUNK].copy_from_slice(&found[0]);
+            let part = at..out.len().min(at + CHUNK);
+            let found = prepared.search(points.map(|axis| &axis[part.clone()]));
+            out[part.clone()].copy_from_slice(&found[0][..part.len()]);
         }
     }
 
@@ -227,12 +247,18 @@ impl AnyField for Distance {
     fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
         let Chunk { points, placement, mut out } = chunk;
         let prepared = self.prepared(placement);
-        for at in (0..out[0].len()).step_by(CHUNK) {
-            let found = prepared.search(points.map(|axis| &axis[at..at + CHUNK]));
+        let len = out[0].len();
+        for at in (0..len).step_by(CHUNK) {
+            let part = at..len.min(at + CHUNK);
+            let found = prepared.search(points.map(|axis| &axis[part.clone()]));
             for (to, from) in out.iter_mut().zip(&found) {
-                to[at..at + CHUNK].copy_from_slice(from);
+                to[part.clone()].copy_from_slice(&from[..part.len()]);
             }
         }
+    }
+
+    fn takes_short(&self) -> bool {
+        self.chain.leaf.takes_short()
     }
 }
 
@@ -241,19 +267,9 @@ impl Distance {
         smallest_stretch(&map.matrix3)
     }
 
-    /// By how much of itself a value may exceed the true distance, and two values at one
-    /// distance may differ.
-    fn looseness(&self) -> f64 {
-        match self.shape {
-            Shape::Convex => 0.05,
-            Shape::Bent => 0.1,
-            Shape::Free => 0.2,
-        }
-    }
-
-    /// The distance changes by at most 1 per length unit, and a convex one is concave; what
-    /// is found of it exceeds it by at most the looseness. The sign is the leaf's.
-    fn range_over(&self, zone: &Zone) -> Interval {
+    /// The distance to a convex leaf changes by at most 1 per length unit and is concave; what
+    /// is found of it exceeds it by a little.
+    fn supported_range(&self, zone: &Zone) -> Interval {
         let leaf = self.chain.range(zone);
         let sign = Interval::new(
             if leaf.lo() > 0.0 { leaf.lo() * self.least } else { f64::NEG_INFINITY },
@@ -262,30 +278,66 @@ impl Distance {
         if !zone.is_finite() {
             return sign;
         }
-        if self.shape == Shape::Free {
-            // What the search finds from a leaf that is not convex may jump: only its sign, and
-            // how far the leaf's box is, hold over a region.
-            let hull = zone.hull();
-            let (low, high) = (hull.map(Interval::lo), hull.map(Interval::hi));
-            let (low, high) = (DVec3::from_array(low), DVec3::from_array(high));
-            let gap = self.gap(low, high);
-            return if gap > 0.0 { sign.narrowed_by(Interval::new(f64::NEG_INFINITY, -gap)) } else { sign };
-        }
         let radius = zone.radius();
-        let (value, gradient) = self.centre(zone.centre);
-        let mut rise = radius;
-        if self.shape == Shape::Convex {
-            let along = zone.axes.transpose() * gradient;
-            rise = rise.min(along.abs().element_sum() + gradient.abs().dot(zone.slack));
-        }
+        let (value, gradient) = self.at(zone.centre);
+        let along = zone.axes.transpose() * gradient;
+        let rise = radius.min(along.abs().element_sum() + gradient.abs().dot(zone.slack));
         let rounding = 1e-9 * (value.abs() + radius) + 1e-13 * zone.reach();
-        let loose = self.looseness();
         let hi = value + rise;
-        let hi = hi + loose * hi.abs() + rounding;
+        let hi = hi + LOOSE * hi.abs() + rounding;
         let lo = value - radius;
-        let below = if self.shape == Shape::Convex { 0.01 } else { loose };
-        let lo = lo - below * lo.abs() - rounding;
+        let lo = lo - LOOSE_BELOW * lo.abs() - rounding;
         if hi.is_finite() && lo.is_finite() { Interval::new(lo, hi).narrowed_by(sign) } else { sign }
+    }
+
+    /// Of other leaves, what is found is no less than the distance, but for [`SURE`], and no
+    /// more than that to a known surface point.
+    ///
+    /// ```text
+    ///     f keeps its sign within ρ of the zone   ⇒   |d| ≥ ρ
+    /// ```
+    fn followed_range(&self, zone: &Zone) -> Interval {
+        let hull = zone.hull();
+        let gap = self.gap(DVec3::from_array(hull.map(Interval::lo)), DVec3::from_array(hull.map(Interval::hi)));
+        // Rounding may count a face of the box to its neighbour.
+        let gap = gap - 1e-13 * zone.reach();
+        let outside = if gap > 0.0 { Interval::new(f64::NEG_INFINITY, -gap) } else { Interval::ALL };
+        let Some(feet) = self.feet.as_ref().filter(|_| zone.is_finite()) else {
+            return signed(self.chain.range(zone), f64::MIN_POSITIVE, f64::INFINITY).narrowed_by(outside);
+        };
+        let rounding = 1e-9 * zone.radius() + 1e-13 * zone.reach();
+        if gap > self.asked {
+            return Interval::new(-feet.farthest(hull).max(gap) - feet.slack - rounding, -gap);
+        }
+        let far = feet.at(zone.centre)[0].point.distance(zone.centre) - zone.radius();
+        // First the length that is asked for, then what may be.
+        let mut clear = f64::MIN_POSITIVE;
+        let mut leaf = None;
+        for by in [(1.0 + 2.0 * SURE) * (self.asked + 3.0 * feet.slack), 0.5 * far] {
+            if clear < by && by <= far {
+                let about = self.chain.range(&zone.inflated(by));
+                if about.lo() <= 0.0 && about.hi() >= 0.0 {
+                    break;
+                }
+                (leaf, clear) = (Some(about), by);
+            }
+        }
+        let leaf = leaf.unwrap_or_else(|| self.chain.range(zone));
+        let least = ((clear - 2.0 * feet.slack) / (1.0 + SURE) - rounding).max(f64::MIN_POSITIVE);
+        let most = feet.farthest(hull).max(gap) + feet.slack + rounding;
+        signed(leaf, least, most).narrowed_by(outside)
+    }
+}
+
+/// Of the sign that a leaf's range leaves, and from `least` to `most` from 0.
+fn signed(leaf: Interval, least: f64, most: f64) -> Interval {
+    let most = most.max(least);
+    if leaf.lo() > 0.0 {
+        Interval::new(least, most)
+    } else if leaf.hi() < 0.0 {
+        Interval::new(-most, -least)
+    } else {
+        Interval::new(-most, most)
     }
 }
 

@@ -3,16 +3,13 @@
 use glam::{DAffine3, DVec3};
 
 use super::step::Plane;
-use crate::Dual;
 use crate::field::AnyField;
+use crate::{Bounds, Dual};
 
 /// The leaf's tangent planes where rays from its centre meet the surface: towards the faces,
-/// edges and corners of its box. They are given in the frame that `to_leaf` maps from.
+/// edges and corners of its box; an infinite one is cut. They are given in the frame that `to_leaf` maps from.
 pub(super) fn planes(leaf: &dyn AnyField, to_leaf: &DAffine3) -> Vec<Plane> {
-    let bounds = leaf.bounds_under(&DAffine3::IDENTITY);
-    if !bounds.is_finite() || bounds.is_empty() {
-        return Vec::new();
-    }
+    let Some(bounds) = finite(&leaf.bounds_under(&DAffine3::IDENTITY)) else { return Vec::new() };
     let (centre, half) = (bounds.center(), bounds.half_extents());
     let mut planes = Vec::new();
     for i in 0..27u32 {
@@ -36,6 +33,18 @@ pub(super) fn planes(leaf: &dyn AnyField, to_leaf: &DAffine3) -> Vec<Plane> {
         }
     }
     planes
+}
+
+/// The box, as long along the axes where it is infinite as it is along the others.
+fn finite(bounds: &Bounds) -> Option<Bounds> {
+    let sides = bounds.min.abs().max(bounds.max.abs());
+    let longest = sides.to_array().into_iter().filter(|side| side.is_finite()).fold(0.0, f64::max);
+    let long = DVec3::splat(longest);
+    if bounds.is_empty() || longest == 0.0 {
+        None
+    } else {
+        Some(Bounds::new(bounds.min.max(-long), bounds.max.min(long)))
+    }
 }
 
 /// Where the ray from `centre`, inside, leaves the leaf.

@@ -15,14 +15,19 @@ pub(super) type Plane = [f64; 4];
 /// Of a normal within this cosine of another, the plane is that of the same side.
 const SAME_SIDE: f64 = 0.8;
 
-/// What puts a plane behind all others.
-const BEHIND: f64 = 1e15;
+/// What puts a plane, or a point, behind all others.
+pub(super) const BEHIND: f64 = 1e15;
 
-/// The diagonal of the equations of two planes: above 1, so that parallel ones share evenly.
-const RIDGE: f64 = 1.0 + 1e-5;
+/// The diagonal of the equations of two planes: above 1 by far more than rounding errors of
+/// single precision, so that parallel planes share evenly.
+const RIDGE: f64 = 1.0 + 2e-4;
 
 /// Keeps denominators off 0.
 const TINY: f64 = 1e-30;
+
+/// A step that is shorter than this part of the distance is not made: what it would change
+/// of the distance is the square of it.
+const LET_BE: f64 = 1e-2;
 
 #[inline(always)]
 pub(super) fn dot<R: Real>(a: [R; 3], b: [R; 3]) -> R {
@@ -93,47 +98,6 @@ impl Formula<13, 4> for Start<'_> {
     }
 }
 
-/// The same behind a deformation: the planes are those of the leaf's frame, measured by the
-/// map's derivative at x. Inputs: point in the leaf's frame (3), derivatives of it, row by
-/// row (9), gradient and value at x (4), taken (6).
-pub(super) struct StartBent<'a> {
-    pub(super) planes: &'a [(Plane, [f64; 3])],
-    /// From displacements to the points that the derivatives are with respect to.
-    pub(super) back: [[f64; 3]; 3],
-}
-
-impl Formula<22, 4> for StartBent<'_> {
-    #[inline(always)]
-    fn run<R: Real>(&self, i: [R; 22]) -> [R; 4] {
-        let p = [i[0], i[1], i[2]];
-        let (first, second) = ([i[16], i[17], i[18]], [i[19], i[20], i[21]]);
-        let zero = i[0].lift(0.0);
-        let (mut n, mut h, _) = tangent([zero; 3], i[15], [i[12], i[13], i[14]]);
-        let back = Back { map: self.back };
-        let rows = [back.run([i[3], i[4], i[5]]), back.run([i[6], i[7], i[8]]), back.run([i[9], i[10], i[11]])];
-        let mut score = penalised(n, h, first, second);
-        let mut k = 0;
-        while k < self.planes.len() {
-            let ([a, b, c, o], _) = self.planes[k];
-            let pulled = [
-                rows[0][0].scale_add(a, rows[1][0].scale_add(b, rows[2][0] * c)),
-                rows[0][1].scale_add(a, rows[1][1].scale_add(b, rows[2][1] * c)),
-                rows[0][2].scale_add(a, rows[1][2].scale_add(b, rows[2][2] * c)),
-            ];
-            let inverse = zero.lift(1.0) / dot(pulled, pulled).max(zero.lift(TINY)).sqrt();
-            let normal = times(pulled, inverse);
-            let height = p[0].scale_add(-a, p[1].scale_add(-b, p[2].scale_add(-c, zero.lift(o)))) * inverse;
-            let other = penalised(normal, height, first, second);
-            let worse = other - score;
-            n = choose(worse, n, normal);
-            h = worse.select(h, height);
-            score = score.min(other);
-            k += 1;
-        }
-        [n[0], n[1], n[2], h]
-    }
-}
-
 #[inline(always)]
 fn penalised<R: Real>(n: [R; 3], h: R, first: [R; 3], second: [R; 3]) -> R {
     let same = dot(n, first).max(dot(n, second)) - SAME_SIDE;
@@ -144,43 +108,115 @@ fn penalised<R: Real>(n: [R; 3], h: R, first: [R; 3], second: [R; 3]) -> R {
 /// secant curvature (two such planes meet beyond: 1/(1 − hκ)), and along the normal to the
 /// surface. Inputs: u (3), value and gradient at y (4), u and normal before (6), best plane
 /// (4). Outputs: next u (3), normal at y (3), best plane (4).
-pub(super) struct Slide {
-    /// Whether every tangent plane bounds the distance from above; else the way to a point
-    /// of the surface does.
-    pub(super) least: bool,
-}
+pub(super) struct Slide;
 
 impl Formula<17, 10> for Slide {
     #[inline(always)]
     fn run<R: Real>(&self, i: [R; 17]) -> [R; 10] {
         let u = [i[0], i[1], i[2]];
-        let (u_old, n_old) = ([i[7], i[8], i[9]], [i[10], i[11], i[12]]);
         let (n, h, lift) = tangent(u, i[3], [i[4], i[5], i[6]]);
-        let (best, height, measure);
-        if self.least {
-            let worse = h - i[16];
-            best = choose(worse, [i[13], i[14], i[15]], n);
-            height = h.min(i[16]);
-            measure = height;
-        } else {
-            height = h;
-            // The way to y, if y is on the surface: it is never too short. The least of these;
-            // until y has been there, the last one, negative to tell it.
-            let way = dot(u, u).sqrt() + lift.abs();
-            let arrived = way * 0.125 - lift.abs();
-            let better = i[16].select(i[16] - way, h.lift(1.0));
-            let taken = arrived.select(better, -i[16] - TINY);
-            best = choose(taken, n, [i[13], i[14], i[15]]);
-            measure = taken.select(arrived.select(way, -way), i[16]);
-        }
-        let moved = minus(u, u_old);
-        let turned = dot(moved, minus(n, n_old)) / dot(moved, moved).max(h.lift(TINY));
-        let ratio = -(height * turned) + 1.0;
-        let stretch = h.lift(1.0) / ratio.max(h.lift(0.125)).min(h.lift(64.0));
-        // The tangential part of −u, and the way to the plane.
-        let drop = dot(n, u);
-        let next = along(times(u, -stretch + 1.0), n, stretch.mul_add(drop, lift));
-        [next[0], next[1], next[2], n[0], n[1], n[2], best[0], best[1], best[2], measure]
+        let best = choose(h - i[16], [i[13], i[14], i[15]], n);
+        let height = h.min(i[16]);
+        let turned = turning(u, n, [i[7], i[8], i[9]], [i[10], i[11], i[12]], h.lift(0.0));
+        let next = slid(u, n, lift, height * turned);
+        [next[0], next[1], next[2], n[0], n[1], n[2], best[0], best[1], best[2], height]
+    }
+}
+
+/// The curvature by which the normal turned on the way from the y before; `unmoved` if there
+/// is no such way.
+#[inline(always)]
+fn turning<R: Real>(u: [R; 3], n: [R; 3], u_old: [R; 3], n_old: [R; 3], unmoved: R) -> R {
+    let moved = minus(u, u_old);
+    let way = dot(moved, moved);
+    let turned = dot(moved, minus(n, n_old)) / way.max(way.lift(TINY));
+    (way - TINY).select(turned, unmoved)
+}
+
+/// Where y is to go; `turn` is height times curvature.
+#[inline(always)]
+fn slid<R: Real>(u: [R; 3], n: [R; 3], lift: R, turn: R) -> [R; 3] {
+    let ratio = -turn + 1.0;
+    let stretch = ratio.lift(1.0) / ratio.max(ratio.lift(0.125)).min(ratio.lift(64.0));
+    // The tangential part of −u, and the way to the plane.
+    along(times(u, -stretch + 1.0), n, stretch.mul_add(dot(n, u), lift))
+}
+
+/// The better of the surface point by y and the best so far, as the normal there, the way to
+/// it from x, and the length of that. A y counts if it is on the surface but for an eighth of
+/// its distance, or for `let_be`.
+#[inline(always)]
+fn nearer<R: Real>(u: [R; 3], n: [R; 3], lift: R, best: [R; 7], let_be: f64) -> [R; 7] {
+    let off = lift.abs();
+    let way = dot(u, u).sqrt() + off;
+    let arrived = way.scale_add(0.125, way.lift(let_be)) - off;
+    let taken = arrived.select(best[6] - way, -best[6] - TINY);
+    let normal = choose(taken, n, [best[0], best[1], best[2]]);
+    let foot = choose(taken, along(u, n, lift), [best[3], best[4], best[5]]);
+    [normal[0], normal[1], normal[2], foot[0], foot[1], foot[2], taken.select(way, best[6])]
+}
+
+/// One step along any surface: as [`Slide`], but what counts is the way to a point of the
+/// surface. A y that is where it should be stays there. Inputs: u (3), value and gradient at
+/// y (4), u and normal before (6), best (7: normal, foot, way). Outputs: next u (3), normal
+/// at y (3), best (7), how much there was left to move beyond what is let be.
+pub(super) struct Follow {
+    /// The curvature that is taken for granted outside, before there is a secant.
+    pub(super) curvature: f64,
+    /// A step shorter than this is not made either.
+    pub(super) let_be: f64,
+}
+
+impl Follow {
+    /// How much of the way to below x is gone at a height, before there is a secant.
+    #[inline(always)]
+    pub(super) fn stretch(&self, height: f64) -> f64 {
+        1.0 / (1.0 - height.min(0.0) * self.curvature).min(64.0)
+    }
+}
+
+impl Formula<20, 14> for Follow {
+    #[inline(always)]
+    fn run<R: Real>(&self, i: [R; 20]) -> [R; 14] {
+        let u = [i[0], i[1], i[2]];
+        let (n, h, lift) = tangent(u, i[3], [i[4], i[5], i[6]]);
+        let best = nearer(u, n, lift, [i[13], i[14], i[15], i[16], i[17], i[18], i[19]], self.let_be);
+        let zero = h.lift(0.0);
+        let unmoved = h.select(zero, h.lift(self.curvature));
+        let turned = turning(u, n, [i[7], i[8], i[9]], [i[10], i[11], i[12]], unmoved);
+        let next = slid(u, n, lift, h * turned);
+        let step = minus(next, u);
+        let way = dot(u, u).sqrt();
+        let left = dot(step, step).sqrt().max(lift.abs()) - way.scale_add(LET_BE, h.lift(self.let_be));
+        let next = choose(left, next, u);
+        [
+            next[0], next[1], next[2], n[0], n[1], n[2], best[0], best[1], best[2], best[3], best[4], best[5], best[6],
+            left,
+        ]
+    }
+}
+
+/// One step of [`Cut`] about any surface, of which the best point is kept. Inputs: those of
+/// [`Cut`] (19), best (7). Outputs: those of [`Cut`] (15), best (7).
+pub(super) struct CutNear {
+    /// By how much a point may miss the surface.
+    pub(super) let_be: f64,
+}
+
+impl Formula<26, 22> for CutNear {
+    #[inline(always)]
+    fn run<R: Real>(&self, i: [R; 26]) -> [R; 22] {
+        let u = [i[0], i[1], i[2]];
+        let (n, _, lift) = tangent(u, i[3], [i[4], i[5], i[6]]);
+        let b = nearer(u, n, lift, [i[19], i[20], i[21], i[22], i[23], i[24], i[25]], self.let_be);
+        let o = Cut.run([
+            i[0], i[1], i[2], i[3], i[4], i[5], i[6], i[7], i[8], i[9], i[10], i[11], i[12], i[13], i[14], i[15],
+            i[16], i[17], i[18],
+        ]);
+        [
+            o[0], o[1], o[2], o[3], o[4], o[5], o[6], o[7], o[8], o[9], o[10], o[11], o[12], o[13], o[14], b[0], b[1],
+            b[2], b[3], b[4], b[5], b[6],
+        ]
     }
 }
 

@@ -41,7 +41,7 @@ fn surface(shape: &Superellipsoid, map: &DAffine3, random: &mut Random) -> (DVec
 /// The largest relative errors of lengths `t` outward and inward, and those that all but one
 /// in a hundred stay below.
 fn errors(shape: Superellipsoid, map: DAffine3, share: f64, count: usize) -> [f64; 4] {
-    let distance = Distance::new(Vec::new(), map, Arc::new(shape));
+    let distance = Distance::new(Vec::new(), map, Arc::new(shape), 0.0);
     let mut random = Random(7);
     let dense: Vec<(DVec3, DVec3)> = (0..2000).map(|_| surface(&shape, &map, &mut random)).collect();
     let least = AnyField::bounds_under(&shape, &map.inverse()).half_extents().min_element();
@@ -157,18 +157,18 @@ fn lanes_and_points(distance: &Distance, reach: DVec3) {
 fn lanes_agree_with_points() {
     for (e, axes) in [(1.0, DVec3::new(1.0, 2.0, 1.5)), (0.1, DVec3::ONE), (1.5, DVec3::new(1.0, 1.0, 2.0))] {
         let shape = Arc::new(Superellipsoid::new(axes, e, e));
-        lanes_and_points(&Distance::new(Vec::new(), DAffine3::IDENTITY, shape.clone()), axes);
+        lanes_and_points(&Distance::new(Vec::new(), DAffine3::IDENTITY, shape.clone(), 0.0), axes);
         let twist: Arc<dyn AnyWarp> = Arc::new(Twist { rate: 0.3 });
         let bend: Arc<dyn AnyWarp> = Arc::new(Bend { curvature: 0.1, angle: 0.5 });
         let chain = vec![(DAffine3::IDENTITY, bend), (DAffine3::from_scale(DVec3::new(1.1, 1.0, 0.9)), twist)];
-        lanes_and_points(&Distance::new(chain, DAffine3::IDENTITY, shape), axes);
+        lanes_and_points(&Distance::new(chain, DAffine3::IDENTITY, shape, 0.0), axes);
     }
 }
 
 /// Errors through a deformation: lengths along the normal, against a cloud of its surface.
 fn bent_errors<W: Warp>(warp: W, shape: Superellipsoid, share: f64) -> [f64; 2] {
     let chain: Vec<(DAffine3, Arc<dyn AnyWarp>)> = vec![(DAffine3::IDENTITY, Arc::new(warp.clone()))];
-    let distance = Distance::new(chain, DAffine3::IDENTITY, Arc::new(shape));
+    let distance = Distance::new(chain, DAffine3::IDENTITY, Arc::new(shape), 0.0);
     let mut random = Random(11);
     let mut cloud = Vec::new();
     for _ in 0..6000 {
@@ -215,7 +215,7 @@ fn ranges_hold_what_is_found() {
         let shape = Arc::new(Superellipsoid::new(axes, e, e));
         let twist: Arc<dyn AnyWarp> = Arc::new(Twist { rate: 0.3 });
         for chain in [Vec::new(), vec![(DAffine3::IDENTITY, twist)]] {
-            let distance = Distance::new(chain, DAffine3::IDENTITY, shape.clone());
+            let distance = Distance::new(chain, DAffine3::IDENTITY, shape.clone(), 0.1);
             for _ in 0..60 {
                 let centre = axes * (DVec3::new(random.next(), random.next(), random.next()) * 3.0 - 1.5);
                 let half = DVec3::new(random.next(), random.next(), random.next()) * 0.5 * random.next().powi(3);
