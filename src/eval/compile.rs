@@ -344,14 +344,15 @@ impl Compiler {
                 let [a, b] = if chamfer { operands } else { lengths };
                 let [a, b] = [self.alone(site, a)?, self.alone(site, b)?];
                 let mut pair = pair;
+                let steepest = [&a.surface, &b.surface].map(steepest);
                 if let (Blend::Chamfer { width }, Operation::Union) = (blend, operation) {
                     // The face is where one operand is nearer than half the width.
-                    let near = [&a.surface, &b.surface].map(|alone| 0.5 * width * scale * steepest(alone));
+                    let near = steepest.map(|steepest| 0.5 * width * scale * steepest);
                     for (built, risen) in pair.iter_mut().zip(self.risen(site, near)) {
                         built.sides.inside = risen;
                     }
                 }
-                let edge = Arc::new(EdgeBlend::new(operation, blend, [a.surface.clone(), b.surface.clone()]));
+                let edge = Arc::new(EdgeBlend::new(operation, blend, [a.surface.clone(), b.surface.clone()], steepest));
                 let field: Arc<dyn AnyField> = edge.clone();
                 let (leaf, _) = self.place(&field, site);
                 let kind = Kind::Edge { op, leaf, edge };

@@ -135,8 +135,8 @@ impl Program {
     /// the program's.
     fn has_all(&self, nodes: &[Node], list: &[Edge]) -> bool {
         // A fillet may have become a plain join.
-        let is_edge = |node: &Node| matches!(node.kind, Kind::Edge { .. });
-        nodes.len() == self.nodes.len() && list.len() == self.operands.len() && !self.nodes.iter().any(is_edge)
+        let edges = |nodes: &[Node]| nodes.iter().filter(|node| matches!(node.kind, Kind::Edge { .. })).count();
+        nodes.len() == self.nodes.len() && list.len() == self.operands.len() && edges(nodes) == edges(&self.nodes)
     }
 
     /// The answer for a program of one leaf that no region makes simpler, what most regions
@@ -403,10 +403,17 @@ impl<'a> Pass<'a> {
         let Kind::Edge { op, leaf, edge } = &node.kind else { return };
         let instance = program.instance(*leaf);
         let pieces = program.zone_in(self.zones, instance.frame, self.world);
-        let range = pieces.range(&instance.to_local, |zone| instance.placed_range(zone));
         let whole = pieces.only().map(|zone| zone.mapped(&instance.to_local));
         // Seen through a deformation, the blend is part of a leaf of its own kind.
         let plain = std::ptr::addr_eq(Arc::as_ptr(&instance.field), Arc::as_ptr(edge));
+        let shift = instance.placement.shift / instance.placement.scale;
+        let (range, reaches) = match whole.filter(|_| plain) {
+            Some(zone) => {
+                let (range, reaches) = edge.survey(&zone, shift);
+                (instance.placed(range), reaches)
+            }
+            None => (pieces.range(&instance.to_local, |zone| instance.placed_range(zone)), true),
+        };
         let mut operands = Vec::new();
         if self.asked[at].value {
             operands.extend(program.list(node).iter().filter_map(|e| self.value(*e)).map(|(_, edge)| edge));
@@ -415,8 +422,7 @@ impl<'a> Pass<'a> {
                 self.signs[at] = Sign::of(range, || Edge::new(0));
                 return;
             }
-            let shift = instance.placement.shift / instance.placement.scale;
-            if plain && !pieces.any(|zone| edge.reaches(&zone.mapped(&instance.to_local), shift)) {
+            if !reaches {
                 let join = Kind::Join { op: *op, rule: Rule::MinMax, frame: instance.frame, hierarchy: None };
                 let node = Node { kind: join, first: node.first, len: node.len };
                 self.signs[at] = self.sign_of_join(&node, None);
@@ -435,13 +441,16 @@ impl<'a> Pass<'a> {
                 }
             }
         }
-        let mut simpler = instance.clone();
-        let mut blend = edge.clone();
-        if let (true, Some(reduced)) = (plain, whole.and_then(|zone| edge.reduced(&zone))) {
-            blend = Arc::new(reduced);
-            simpler.field = blend.clone();
-        }
-        let kind = Kind::Edge { op: *op, leaf: self.keep(simpler), edge: blend };
+        let reduced = whole.filter(|_| plain).and_then(|zone| edge.reduced(&zone)).map(Arc::new);
+        let kind = if reduced.is_none() && (*leaf as usize) < program.scene.leaves.len() {
+            node.kind.clone()
+        } else {
+            let mut simpler = instance.clone();
+            if let Some(reduced) = &reduced {
+                simpler.field = reduced.clone();
+            }
+            Kind::Edge { op: *op, leaf: self.keep(simpler), edge: reduced.unwrap_or_else(|| edge.clone()) }
+        };
         let edge = self.push(&kind, operands);
         self.know(at, range, edge);
     }

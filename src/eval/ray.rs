@@ -29,7 +29,7 @@ pub struct Hit {
 pub(crate) enum Care {
     /// A crossing and back within 10⁻¹⁰ of the size is a touch.
     Full,
-    /// Within 10⁻⁶.
+    /// Within 10⁻⁶; of three crossings within 5·10⁻⁵ any will do.
     Picture,
 }
 
@@ -39,6 +39,14 @@ impl Care {
         match self {
             Care::Full => 1e-10,
             Care::Picture => 1e-6,
+        }
+    }
+
+    /// Crossings that are closer to each other than this times the solid's size are one.
+    fn closest(self) -> f64 {
+        match self {
+            Care::Full => 1e-10,
+            Care::Picture => 5e-5,
         }
     }
 
@@ -93,6 +101,7 @@ pub(crate) fn first_hit(
     }
     let size = if bounds.is_finite() { bounds.size().length() } else { 1.0 };
     let mut shortest = care.shortest() * (size + origin.abs().max_element().min(1e6) + near);
+    let closest = care.closest() * size;
     let at = |t: f64| origin + t * direction;
     let values = [near, far].map(|t| program.value(at(t)));
     // In a face that two operands share, rounding has either sign: it counts as outside.
@@ -109,7 +118,8 @@ pub(crate) fn first_hit(
         }
         let [t0, t1] = piece.ends;
         let [from, to] = within_reach(&piece);
-        if to - from <= shortest || one_signed(piece.slopes) {
+        let short = if piece.inside[0] == piece.inside[1] { shortest } else { shortest.max(closest) };
+        if to - from <= short || one_signed(piece.slopes) {
             if piece.inside[0] == piece.inside[1] {
                 continue;
             }

@@ -48,7 +48,12 @@ pub(crate) struct Instance {
 impl Instance {
     /// A sound range over a zone of the leaf's own coordinates, as it counts outside of them.
     pub(crate) fn placed_range(&self, zone: &Zone) -> Interval {
-        self.field.range(zone) * Interval::point(self.placement.scale) + self.placement.shift
+        self.placed(self.field.range(zone))
+    }
+
+    /// A range of the leaf's own values, as it counts outside of it.
+    pub(crate) fn placed(&self, own: Interval) -> Interval {
+        own * Interval::point(self.placement.scale) + self.placement.shift
     }
 }
 

@@ -31,6 +31,8 @@ const FLAT: f64 = 1e-9;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chamfer {
     pub(super) width: f64,
+    /// The operands' slopes are at most this.
+    pub(super) steepest: f64,
 }
 
 /// What the face's height is made of.
@@ -61,9 +63,10 @@ fn factors(cosine: f64) -> (f64, f64) {
 }
 
 impl Chamfer {
-    /// Where an operand's value is below this, with slopes up to 4, the blend is the join.
+    /// Where an operand's value is below the negative of this, T is negative, and the blend is the
+    /// join.
     pub(super) fn reach(self) -> f64 {
-        4.0 * self.width
+        self.steepest * self.width
     }
 
     /// The value T; below all others where an operand has no slope.

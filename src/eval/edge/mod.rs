@@ -57,14 +57,15 @@ const TURN_OF_LANES: f64 = 1e-2;
 type Sample = (f64, DVec3);
 
 impl EdgeBlend {
-    pub(super) fn new(operation: Operation, blend: Blend, operands: [Program; 2]) -> EdgeBlend {
+    /// The blend of two operands whose slopes are at most `steepest`.
+    pub(super) fn new(operation: Operation, blend: Blend, operands: [Program; 2], steepest: [f64; 2]) -> EdgeBlend {
         let (sign, signs) = match operation {
             Operation::Union => (1.0, [1.0, 1.0]),
             Operation::Difference => (-1.0, [-1.0, 1.0]),
             Operation::Intersection | Operation::SymmetricDifference => (-1.0, [-1.0, -1.0]),
         };
         let shape = match blend {
-            Blend::Chamfer { width } => Shape::Chamfer(Chamfer { width }),
+            Blend::Chamfer { width } => Shape::Chamfer(Chamfer { width, steepest: steepest[0].max(steepest[1]) }),
             Blend::Fillet { radius } => Shape::Fillet(Fillet { radius }),
             _ => Shape::Fillet(Fillet { radius: 0.0 }),
         };
@@ -75,7 +76,7 @@ impl EdgeBlend {
     pub(super) fn size(&self) -> f64 {
         match self.shape {
             Shape::Fillet(Fillet { radius }) => radius,
-            Shape::Chamfer(Chamfer { width }) => width,
+            Shape::Chamfer(Chamfer { width, .. }) => width,
         }
     }
 
@@ -93,10 +94,26 @@ impl EdgeBlend {
         x.min(y) >= -self.reach() && (matches!(self.shape, Shape::Chamfer(_)) || x.max(y) < self.size())
     }
 
-    /// Whether the blend, moved by `shift`, may differ from the join over a zone.
-    pub(super) fn reaches(&self, zone: &Zone, shift: f64) -> bool {
-        let reach = self.reach() + shift.abs();
-        self.ranges(zone).iter().all(|range| range.hi() >= -reach)
+    /// The blend's range over a zone, and whether the blend, moved by `shift`, may have another
+    /// sign there than the join.
+    pub(super) fn survey(&self, zone: &Zone, shift: f64) -> (Interval, bool) {
+        let (values, shift) = (self.ranges(zone), shift.abs());
+        let join = values[0].max(values[1]);
+        let near = |by: f64| values.iter().all(|value| value.hi() >= -(self.reach() + by));
+        let (range, reaches) = match self.shape {
+            _ if !near(shift) => (join, false),
+            Shape::Fillet(fillet) => (if near(0.0) { self.fillet_range(fillet, join, zone).0 } else { join }, true),
+            Shape::Chamfer(chamfer) => {
+                let height = chamfer.range(values, self.gradients(zone));
+                (if near(0.0) { self.chamfered_range(values, height) } else { join }, height.hi() >= -shift)
+            }
+        };
+        (range * Interval::point(self.sign), reaches)
+    }
+
+    /// The operands' gradients over a zone.
+    fn gradients(&self, zone: &Zone) -> [[Interval; 3]; 2] {
+        self.duals(Dual::point(zone.hull())).map(Dual::gradient)
     }
 
     fn ranges(&self, zone: &Zone) -> [Interval; 2] {
@@ -111,6 +128,9 @@ impl EdgeBlend {
     /// The same blend over a zone, from simpler operands.
     pub(super) fn reduced(&self, zone: &Zone) -> Option<EdgeBlend> {
         let leaves = |[a, b]: [&Program; 2]| a.leaf_count() + b.leaf_count();
+        if leaves(self.operands.each_ref().map(|operand| &**operand)) <= 2 {
+            return None;
+        }
         // Operands are asked for at most this far from the point.
         let near = zone.inflated(match self.shape {
             Shape::Fillet(fillet) => fillet.farthest(),
@@ -193,10 +213,9 @@ impl EdgeBlend {
         (Interval::new(lo, hi.max(lo)), if close { steepest } else { f64::INFINITY })
     }
 
-    /// The blend, as a union, where the operands have these values and gradients.
-    fn chamfer_range(&self, chamfer: Chamfer, values: [Interval; 2], gradients: [[Interval; 3]; 2]) -> Interval {
+    /// The blend, as a union, where the operands have these values and T is `height`.
+    fn chamfered_range(&self, values: [Interval; 2], height: Interval) -> Interval {
         let join = values[0].max(values[1]);
-        let height = chamfer.range(values, gradients);
         let lo = if self.within(values) { join.lo().max(height.lo()) } else { join.lo() };
         Interval::new(lo, join.hi().max(height.hi()))
     }
@@ -257,30 +276,31 @@ impl AnyField for EdgeBlend {
 
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
         let hull = p.map(Dual::value);
-        let zone = Zone::of_sides(hull);
-        let sides = self.duals(p);
+        let here = self.duals(Dual::point(hull));
+        let (values, gradients) = (here.map(Dual::value), here.map(Dual::gradient));
+        // Along the variables of p.
+        let sides = here.map(|Dual { v, d }| {
+            let along = |i: usize| d[0] * p[0].d[i] + d[1] * p[1].d[i] + d[2] * p[2].d[i];
+            Dual::new(v, [along(0), along(1), along(2)])
+        });
         let join = sides[0].max(sides[1]);
-        if !self.reaches(&zone, 0.0) {
-            return join * self.sign;
-        }
-        let chamfer = match self.shape {
+        let blend = match self.shape {
+            _ if values.iter().any(|value| value.hi() < -self.reach()) => join,
             Shape::Fillet(fillet) => {
-                let (range, steepest) = self.fillet_range(fillet, join.value(), &zone);
-                let slopes = if steepest.is_finite() { steep_slopes(steepest, p) } else { [Interval::ALL; 3] };
-                return Dual::new(range, slopes) * self.sign;
+                let (range, steepest) = self.fillet_range(fillet, join.value(), &Zone::of_sides(hull));
+                Dual::new(range, if steepest.is_finite() { steep_slopes(steepest, p) } else { [Interval::ALL; 3] })
             }
-            Shape::Chamfer(chamfer) => chamfer,
+            Shape::Chamfer(chamfer) => {
+                let height = chamfer.range(values, gradients);
+                match chamfer.plane(sides, gradients) {
+                    _ if height.hi() <= join.value().lo() => join,
+                    Some(plane) if self.within(values) => join.max(plane),
+                    // How the operands bend is not known.
+                    _ => Dual::new(self.chamfered_range(values, height), [Interval::ALL; 3]),
+                }
+            }
         };
-        let gradients = self.duals(Dual::point(hull)).map(Dual::gradient);
-        let values = sides.map(Dual::value);
-        if chamfer.range(values, gradients).hi() <= join.value().lo() {
-            return join * self.sign;
-        }
-        match chamfer.plane(sides, gradients) {
-            Some(plane) if self.within(values) => join.max(plane) * self.sign,
-            // How the operands bend is not known.
-            _ => Dual::new(self.range(&zone), [Interval::ALL; 3]),
-        }
+        blend * self.sign
     }
 
     fn convex(&self) -> bool {
@@ -288,17 +308,7 @@ impl AnyField for EdgeBlend {
     }
 
     fn range(&self, zone: &Zone) -> Interval {
-        let values = self.ranges(zone);
-        let join = values[0].max(values[1]);
-        let blend = match self.shape {
-            _ if values.iter().any(|value| value.hi() < -self.reach()) => join,
-            Shape::Fillet(fillet) => self.fillet_range(fillet, join, zone).0,
-            Shape::Chamfer(chamfer) => {
-                let gradients = self.duals(Dual::point(zone.hull())).map(Dual::gradient);
-                self.chamfer_range(chamfer, values, gradients)
-            }
-        };
-        blend * Interval::point(self.sign)
+        self.survey(zone, 0.0).0
     }
 
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
