@@ -19,6 +19,7 @@ mod lower;
 mod narrow;
 mod nearest;
 mod palette;
+mod pass;
 mod point;
 mod program;
 mod query;

@@ -1,0 +1,375 @@
+//! One narrowing: down, what is asked of the nodes of a program; up, what is known of them over a
+//! region, and the program of what stays open.
+
+use std::sync::Arc;
+
+use super::narrow::{hull_of, joined};
+use super::program::{Edge, Kind, Node, Op, Program};
+use super::scene::Instance;
+use crate::field::{Pieces, Rule, Zone};
+use crate::{Bounds, Interval};
+
+/// What is known of a node over a region.
+#[derive(Clone, Copy)]
+pub(super) enum Sign {
+    /// Not asked for.
+    Unknown,
+    Positive,
+    Negative,
+    /// Open; the edge is that of the narrowed program.
+    Open(Edge),
+}
+
+impl Sign {
+    pub(super) fn of(range: Interval, open: impl FnOnce() -> Edge) -> Sign {
+        if range.lo() > 0.0 {
+            Sign::Positive
+        } else if range.hi() < 0.0 {
+            Sign::Negative
+        } else {
+            Sign::Open(open())
+        }
+    }
+
+    pub(super) fn flip_if(self, negate: bool) -> Sign {
+        match (self, negate) {
+            (Sign::Positive, true) => Sign::Negative,
+            (Sign::Negative, true) => Sign::Positive,
+            (Sign::Open(edge), _) => Sign::Open(edge.flip_if(negate)),
+            (sign, _) => sign,
+        }
+    }
+}
+
+/// What is asked about a node: its sign, or, below what reads values, its value.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Asked {
+    pub(super) sign: bool,
+    pub(super) value: bool,
+}
+
+/// One narrowing under way.
+pub(super) struct Pass<'a> {
+    program: &'a Program,
+    zones: &'a [Pieces],
+    world: &'a Pieces,
+    asked: Vec<Asked>,
+    /// The operands of long joins that are near.
+    near: Vec<Option<Vec<u32>>>,
+    pub(super) signs: Vec<Sign>,
+    /// The range of a node whose value is asked for, and the narrowed program's node of the
+    /// same value.
+    values: Vec<Option<(Interval, Edge)>>,
+    pub(super) nodes: Vec<Node>,
+    pub(super) list: Vec<Edge>,
+    pub(super) simpler: Vec<Instance>,
+}
+
+impl<'a> Pass<'a> {
+    pub(super) fn new(program: &'a Program, zones: &'a [Pieces], world: &'a Pieces) -> Pass<'a> {
+        let count = program.nodes.len();
+        Pass {
+            program,
+            zones,
+            world,
+            asked: vec![Asked::default(); count],
+            near: vec![None; count],
+            signs: vec![Sign::Unknown; count],
+            values: vec![None; count],
+            nodes: Vec::new(),
+            list: Vec::new(),
+            simpler: Vec::new(),
+        }
+    }
+
+    pub(super) fn run(&mut self, asked: Asked) {
+        self.ask(asked);
+        for at in 0..self.program.nodes.len() {
+            self.answer(at);
+        }
+    }
+
+    /// Down: what is asked about each node.
+    fn ask(&mut self, root: Asked) {
+        let program = self.program;
+        self.asked[program.root.node()] = root;
+        for (at, node) in program.nodes.iter().enumerate().rev() {
+            let Asked { sign, value } = self.asked[at];
+            if !sign && !value {
+                continue;
+            }
+            let operands = program.list(node);
+            let values = match &node.kind {
+                Kind::Leaf(_) => continue,
+                Kind::Edge { .. } => value,
+                Kind::Shift(_) => true,
+                Kind::Join { rule, .. } => value || rule.reads_values(),
+            };
+            if values {
+                for edge in operands {
+                    self.asked[edge.node()].value = true;
+                }
+                continue;
+            }
+            if let Kind::Join { frame, hierarchy: Some(hierarchy), .. } = &node.kind {
+                let mut region = Bounds::EMPTY;
+                program.zone_in(self.zones, *frame, self.world).each(|zone| region = region.union(&hull_of(zone)));
+                let mut near = Vec::new();
+                hierarchy.visit(&region, |operand| near.push(operand as u32));
+                for &operand in &near {
+                    self.asked[operands[operand as usize].node()].sign = true;
+                }
+                self.near[at] = Some(near);
+            } else {
+                for edge in operands {
+                    self.asked[edge.node()].sign = true;
+                }
+            }
+        }
+    }
+
+    /// Up: what is known of a node, and the narrowed program of what stays open.
+    fn answer(&mut self, at: usize) {
+        let program = self.program;
+        let node = &program.nodes[at];
+        let Asked { sign, value } = self.asked[at];
+        if !sign && !value {
+            return;
+        }
+        match &node.kind {
+            Kind::Leaf(leaf) => self.leaf(at, *leaf),
+            Kind::Edge { .. } => self.edge(at),
+            Kind::Join { rule, .. } if !value && !rule.reads_values() => {
+                let near = self.near[at].take();
+                self.signs[at] = self.sign_of_join(node, near.as_deref());
+            }
+            kind => {
+                let operands: Vec<(Interval, Edge)> =
+                    program.list(node).iter().filter_map(|e| self.value(*e)).collect();
+                let range = joined(kind, operands.iter().map(|(range, _)| *range));
+                let edge = match (kind, deciding(kind, &operands)) {
+                    (_, Some(only)) => only,
+                    (Kind::Join { op, rule: Rule::MinMax, .. }, None) => {
+                        let contenders = contenders(*op, &operands);
+                        self.push(kind, contenders)
+                    }
+                    _ => self.push(kind, operands.iter().map(|(_, edge)| *edge).collect()),
+                };
+                self.know(at, range, edge);
+            }
+        }
+    }
+
+    /// The range of an operand, and its node.
+    pub(super) fn value(&self, edge: Edge) -> Option<(Interval, Edge)> {
+        let (range, node) = self.values[edge.node()]?;
+        Some((if edge.negated() { -range } else { range }, node.flip_if(edge.negated())))
+    }
+
+    /// A node of the narrowed program that joins all of its operands.
+    fn push(&mut self, kind: &Kind, operands: Vec<Edge>) -> Edge {
+        if let ([only], Kind::Join { .. }) = (&operands[..], kind) {
+            return *only;
+        }
+        let mut kind = kind.clone();
+        if let Kind::Join { hierarchy, .. } = &mut kind {
+            // Its boxes tell signs, and their order is that of all the operands.
+            *hierarchy = None;
+        }
+        let first = self.list.len() as u32;
+        let len = operands.len() as u32;
+        self.list.extend(operands);
+        self.nodes.push(Node { kind, first, len });
+        Edge::new(self.nodes.len() - 1)
+    }
+
+    fn know(&mut self, at: usize, range: Interval, edge: Edge) {
+        self.values[at] = Some((range, edge));
+        self.signs[at] = Sign::of(range, || edge);
+    }
+
+    fn leaf(&mut self, at: usize, leaf: u32) {
+        let program = self.program;
+        let instance = program.instance(leaf);
+        let zone = program.zone_in(self.zones, instance.frame, self.world);
+        let value = self.asked[at].value;
+        if !value && !zone.any(|zone| instance.bounds.intersects(&hull_of(zone))) {
+            self.signs[at] = Sign::Negative;
+            return;
+        }
+        let range = zone.range(&instance.to_local, |zone| instance.placed_range(zone));
+        if !value && (range.lo() > 0.0 || range.hi() < 0.0) {
+            self.signs[at] = Sign::of(range, || Edge::new(0));
+            return;
+        }
+        let leaf = self.simplest(leaf, zone.only().map(|zone| zone.mapped(&instance.to_local)));
+        self.nodes.push(Node::leaf(leaf));
+        self.know(at, range, Edge::new(self.nodes.len() - 1));
+    }
+
+    /// The number, in the narrowed program, of a leaf made as simple as it is over `zone`.
+    fn simplest(&mut self, leaf: u32, zone: Option<Zone>) -> u32 {
+        let instance = self.program.instance(leaf);
+        let field = zone.and_then(|zone| instance.field.narrowed(&zone));
+        if field.is_none() && (leaf as usize) < self.program.scene.leaves.len() {
+            return leaf;
+        }
+        let mut simpler = instance.clone();
+        if let Some(field) = field {
+            simpler.field = field;
+        }
+        self.keep(simpler)
+    }
+
+    /// A fillet or chamfer is its operands' join where it does not reach.
+    fn edge(&mut self, at: usize) {
+        let program = self.program;
+        let node = &program.nodes[at];
+        let Kind::Edge { op, leaf, edge } = &node.kind else { return };
+        let instance = program.instance(*leaf);
+        let pieces = program.zone_in(self.zones, instance.frame, self.world);
+        let whole = pieces.only().map(|zone| zone.mapped(&instance.to_local));
+        // Seen through a deformation, the blend is part of a leaf of its own kind.
+        let plain = std::ptr::addr_eq(Arc::as_ptr(&instance.field), Arc::as_ptr(edge));
+        let shift = instance.placement.shift / instance.placement.scale;
+        let (range, reaches) = match whole.filter(|_| plain) {
+            Some(zone) => {
+                let (range, reaches) = edge.survey(&zone, shift);
+                (instance.placed(range), reaches)
+            }
+            None => (pieces.range(&instance.to_local, |zone| instance.placed_range(zone)), true),
+        };
+        let mut operands = Vec::new();
+        if self.asked[at].value {
+            operands.extend(program.list(node).iter().filter_map(|e| self.value(*e)).map(|(_, edge)| edge));
+        } else {
+            if range.lo() > 0.0 || range.hi() < 0.0 {
+                self.signs[at] = Sign::of(range, || Edge::new(0));
+                return;
+            }
+            if !reaches {
+                let join = Kind::Join { op: *op, rule: Rule::MinMax, frame: instance.frame, hierarchy: None };
+                let node = Node { kind: join, first: node.first, len: node.len };
+                self.signs[at] = self.sign_of_join(&node, None);
+                return;
+            }
+            // An operand that decides the join decides the blend, whatever the blend's range (the
+            // operand's box may have told its sign); one decided otherwise is left out.
+            for edge in program.list(node) {
+                match (self.signs[edge.node()].flip_if(edge.negated()), op) {
+                    (sign @ Sign::Positive, Op::Or) | (sign @ Sign::Negative, Op::And) => {
+                        self.signs[at] = sign;
+                        return;
+                    }
+                    (Sign::Open(edge), _) => operands.push(edge),
+                    _ => {}
+                }
+            }
+        }
+        let reduced = whole.filter(|_| plain).and_then(|zone| edge.reduced(&zone)).map(Arc::new);
+        let kind = if reduced.is_none() && (*leaf as usize) < program.scene.leaves.len() {
+            node.kind.clone()
+        } else {
+            let mut simpler = instance.clone();
+            if let Some(reduced) = &reduced {
+                simpler.field = reduced.clone();
+            }
+            Kind::Edge { op: *op, leaf: self.keep(simpler), edge: reduced.unwrap_or_else(|| edge.clone()) }
+        };
+        let edge = self.push(&kind, operands);
+        self.know(at, range, edge);
+    }
+
+    /// The number, in the narrowed program, of a leaf made simpler.
+    fn keep(&mut self, simpler: Instance) -> u32 {
+        self.simpler.push(simpler);
+        (self.program.scene.leaves.len() + self.simpler.len() - 1) as u32
+    }
+
+    fn sign_of_join(&mut self, node: &Node, near: Option<&[u32]>) -> Sign {
+        let Kind::Join { op, rule, frame, hierarchy } = &node.kind else { return Sign::Unknown };
+        let operands = self.program.list(node);
+        let start = self.list.len();
+        let mut kept: Vec<u32> = Vec::new();
+        let everything: Vec<u32>;
+        let candidates = match near {
+            Some(near) => near,
+            None => {
+                everything = (0..node.len).collect();
+                &everything
+            }
+        };
+        for &operand in candidates {
+            let edge = operands[operand as usize];
+            match (self.signs[edge.node()].flip_if(edge.negated()), op) {
+                (Sign::Positive, Op::Or) => {
+                    self.list.truncate(start);
+                    return Sign::Positive;
+                }
+                (Sign::Negative, Op::And) => {
+                    self.list.truncate(start);
+                    return Sign::Negative;
+                }
+                (Sign::Open(edge), _) => {
+                    self.list.push(edge);
+                    kept.push(operand);
+                }
+                // The neutral element.
+                _ => {}
+            }
+        }
+        match self.list.len() - start {
+            0 if *op == Op::Or => Sign::Negative,
+            0 => Sign::Positive,
+            1 => {
+                let only = self.list[start];
+                self.list.truncate(start);
+                Sign::Open(only)
+            }
+            open => {
+                let hierarchy = match hierarchy {
+                    Some(all) if open == operands.len() => Some(all.clone()),
+                    Some(all) => all.subset(&kept).map(Arc::new),
+                    None => None,
+                };
+                self.nodes.push(Node {
+                    kind: Kind::Join { op: *op, rule: *rule, frame: *frame, hierarchy },
+                    first: start as u32,
+                    len: open as u32,
+                });
+                Sign::Open(Edge::new(self.nodes.len() - 1))
+            }
+        }
+    }
+}
+
+/// The operand that a value-reading node is equal to over the region, if it is to one.
+fn deciding(kind: &Kind, operands: &[(Interval, Edge)]) -> Option<Edge> {
+    let (Kind::Join { op, rule: Rule::Smooth(width), .. }, [(x, first), (y, second)]) = (kind, operands) else {
+        return None;
+    };
+    let (x, y) = match op {
+        Op::Or => (*x, *y),
+        Op::And => (-*x, -*y),
+    };
+    if x.lo() - y.hi() >= *width {
+        Some(*first)
+    } else if y.lo() - x.hi() >= *width {
+        Some(*second)
+    } else {
+        None
+    }
+}
+
+/// The operands of a min or max that may decide its value over the region.
+fn contenders(op: Op, operands: &[(Interval, Edge)]) -> Vec<Edge> {
+    let best = match op {
+        Op::Or => operands.iter().map(|(range, _)| range.lo()).fold(f64::NEG_INFINITY, f64::max),
+        Op::And => operands.iter().map(|(range, _)| range.hi()).fold(f64::INFINITY, f64::min),
+    };
+    let contends = |range: &Interval| match op {
+        Op::Or => range.hi() >= best,
+        Op::And => range.lo() <= best,
+    };
+    operands.iter().filter(|(range, _)| contends(range)).map(|(_, edge)| *edge).collect()
+}
