@@ -28,7 +28,7 @@ use catalogue::{Entry, FAMILIES};
 
 /// Size of a picture, in pixels: for the docs, and for a try.
 const DOCS_SIZE: (u32, u32) = (128, 96);
-const SIZE: (u32, u32) = (96, 72);
+const SIZE: (u32, u32) = (88, 66);
 
 const BACKGROUND: [u8; 3] = [248, 248, 248];
 

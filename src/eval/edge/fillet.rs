@@ -6,6 +6,9 @@
 //! tangent planes meet: exact for planes at once, to a thousandth of r for what bends four times
 //! less than the ball after two. Since q is nearest, the gradient is `(p − q)/|p − q|` without
 //! second derivatives.
+//!
+//! Where the steps do not arrive (an operand has an edge of its own there), what the first of them
+//! tells is taken, by the values and slopes at p alone: the blend goes round that edge in a mitre.
 
 use glam::DVec3;
 
@@ -17,10 +20,10 @@ pub(super) const STEPS: usize = 3;
 /// Slopes are at most 1, but for the approximation of distances below.
 pub(super) const STEEPEST: f64 = 1.05;
 
-/// A foot that is farther off the curve, in radii, is not where the ball touches; as much farther
-/// as makes up for its radius, the ball is gone.
+/// A foot that is farther off the curve, in radii, is not where the ball touches: the share of the
+/// first foot grows by so much with what it is off.
 const ARRIVED: f64 = 0.05;
-const FADING: f64 = 8.0;
+const FADING: f64 = 4.0;
 
 /// Feet that are no farther off than this, and have come to rest to this, in radii, tell of the
 /// feet of points around.
@@ -56,15 +59,25 @@ impl Fillet {
         off.max(foot.moved / self.radius) <= TELLING
     }
 
-    /// The ball's surface at p, where p is between the lines of contact. Where the steps end off
-    /// the curve the ball does not fit: it fades.
-    pub(super) fn ball(self, p: DVec3, foot: &Foot, off: f64) -> Option<Sample> {
+    /// The ball's surface at p, where p is between the lines of contact.
+    fn ball(self, p: DVec3, foot: &Foot) -> Option<Sample> {
         if foot.weights.iter().any(|&weight| weight > 0.0) {
             return None;
         }
         let away = p - foot.q;
-        let faded = FADING * (off - ARRIVED).max(0.0);
-        Some((away.length() - self.radius * (1.0 + faded), away.normalize_or_zero()))
+        Some((away.length() - self.radius, away.normalize_or_zero()))
+    }
+
+    /// The blend at p, at least `join`, from the foot after the first step and the last one, which
+    /// is so far off.
+    pub(super) fn blend(self, p: DVec3, join: Sample, first: &Foot, last: &Foot, off: f64) -> Sample {
+        let at_least = |foot: &Foot| self.ball(p, foot).filter(|ball| ball.0 > join.0).unwrap_or(join);
+        let share = (FADING * (off - ARRIVED)).clamp(0.0, 1.0);
+        if share == 0.0 {
+            return at_least(last);
+        }
+        let (from, to) = (if share < 1.0 { at_least(last) } else { join }, at_least(first));
+        (from.0 + share * (to.0 - from.0), from.1.lerp(to.1, share))
     }
 }
 

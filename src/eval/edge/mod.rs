@@ -11,8 +11,8 @@
 //! The other operations are those of complements (De Morgan). Both forms exceed max(x, y).
 //!
 //! A fillet is exact where the ball fits and touches each operand once. It needs operands
-//! that are smooth within a radius of the edge; where they have edges of their own it falls
-//! back on the join there.
+//! that are smooth within a radius of the edge; where they have edges of their own it goes
+//! round them in a mitre.
 //!
 //! Source: J. R. Rossignac and A. A. G. Requicha, *Constant-radius blending in solid
 //! modelling* (1984), for the rolling ball.
@@ -181,17 +181,21 @@ impl EdgeBlend {
             return (join, true);
         }
         let mut foot = Foot::new(p);
-        let mut sides = here;
-        for _ in 0..STEPS {
-            if !foot.step(p, sides, fillet) {
-                // Faces that are flush are parallel all about.
-                let [a, b] = sides.map(|(_, gradient)| gradient.normalize_or_zero());
-                return (join, a.dot(b) > 0.999);
-            }
-            sides = self.samples(foot.q);
+        if !foot.step(p, here, fillet) {
+            // Faces that are flush are parallel all about.
+            let [a, b] = here.map(|(_, gradient)| gradient.normalize_or_zero());
+            return (join, a.dot(b) > 0.999);
         }
-        let off = fillet.off(sides);
-        (fillet.ball(p, &foot, off).map_or(join, |ball| larger(join, ball)), fillet.tells(&foot, off))
+        let (first, mut off) = (foot, f64::INFINITY);
+        for step in 1..=STEPS {
+            let sides = self.samples(foot.q);
+            off = fillet.off(sides);
+            if step < STEPS && !foot.step(p, sides, fillet) {
+                off = f64::INFINITY;
+                break;
+            }
+        }
+        (fillet.blend(p, join, &first, &foot, off), fillet.tells(&foot, off))
     }
 
     /// The range of a fillet, as a union, and the steepest slope in it where that is known.
@@ -389,27 +393,36 @@ impl EdgeBlend {
         sample: &mut impl FnMut(&Locals) -> Pair,
         out: &mut Slopes,
     ) {
-        let mut feet: Vec<(Foot, bool)> = (0..local.count)
-            .map(|i| (Foot::new(local.get(i)), self.near(here.at(i).map(|(value, _)| value))))
+        let mut feet: Vec<Option<[Foot; 2]>> = (0..local.count)
+            .map(|i| {
+                let (p, sides) = (local.get(i), here.at(i));
+                let mut foot = Foot::new(p);
+                let near = self.near(sides.map(|(value, _)| value)) && foot.step(p, sides, fillet);
+                near.then_some([foot; 2])
+            })
             .collect();
-        let mut at = Locals { ..*local };
-        let mut there: Option<Pair> = None;
-        for _ in 0..STEPS {
-            let sides = there.as_ref().unwrap_or(here);
-            for (i, (foot, near)) in feet.iter_mut().enumerate() {
-                *near = *near && foot.step(local.get(i), sides.at(i), fillet);
-                at.set(i, foot.q);
-            }
-            if !feet.iter().any(|(_, near)| *near) {
-                return;
-            }
-            there = Some(sample(&at));
+        if feet.iter().all(Option::is_none) {
+            return;
         }
-        let sides = there.as_ref().unwrap_or(here);
-        for (i, (foot, near)) in feet.iter().enumerate() {
-            let ball = near.then(|| fillet.ball(local.get(i), foot, fillet.off(sides.at(i)))).flatten();
-            if let Some(ball) = ball {
-                out.set(i, larger(out.at(i), ball));
+        let mut offs = vec![f64::INFINITY; local.count];
+        let mut lost = vec![false; local.count];
+        let mut at = Locals { ..*local };
+        for step in 1..=STEPS {
+            for (i, feet) in feet.iter().enumerate() {
+                at.set(i, feet.map_or(local.get(i), |[_, foot]| foot.q));
+            }
+            let sides = sample(&at);
+            for (i, feet) in feet.iter_mut().enumerate() {
+                let Some([_, foot]) = feet.as_mut().filter(|_| !lost[i]) else { continue };
+                offs[i] = fillet.off(sides.at(i));
+                if step < STEPS && !foot.step(local.get(i), sides.at(i), fillet) {
+                    (offs[i], lost[i]) = (f64::INFINITY, true);
+                }
+            }
+        }
+        for (i, feet) in feet.iter().enumerate() {
+            if let Some([first, last]) = feet {
+                out.set(i, fillet.blend(local.get(i), out.at(i), first, last, offs[i]));
             }
         }
     }
