@@ -27,7 +27,7 @@ use rvachev::{Background, Camera, RenderError, RenderSettings, Run, Solid};
 use catalogue::{Entry, FAMILIES};
 
 /// Size of a picture, in pixels: for the docs, and for a try.
-const DOCS_SIZE: (u32, u32) = (128, 96);
+const DOCS_SIZE: (u32, u32) = (112, 84);
 const SIZE: (u32, u32) = (88, 66);
 
 const BACKGROUND: [u8; 3] = [248, 248, 248];
