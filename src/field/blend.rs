@@ -25,7 +25,8 @@ use crate::{Norm, Real};
 /// ```text
 /// Smooth         x∧y = min(x, y) − max(radius − |x − y|, 0)²/(4·radius)
 /// Fillet         |p − q| − radius, q the centre of the ball that rolls along the edge
-/// Chamfer        a plane across the edge that cuts a face of the width
+/// Chamfer        max(x, y, (x + y + width·√((1 − c)/2))/√(2 + 2c)), c the cosine between the
+///                operands' gradients: a plane across the edge that cuts a face of the width
 /// Displacement   x∧y = x + y − √(x² + y²) + height/(1 + (x/falloff₀)² + (y/falloff₁)²)
 /// Ricci          G = (G₁^p + G₂^p)^(1/p) for the intersection, (G₁^−p + G₂^−p)^(−1/p) for
 ///                the union; the value is r·(1 − G)
@@ -34,8 +35,11 @@ use crate::{Norm, Real};
 /// ```
 ///
 /// Operands are read as they are: where a leaf's value is a true distance, lengths hold;
-/// where it is a gauge they hold near its surface. A fillet and a chamfer read distances from
-/// every leaf.
+/// where it is a gauge they hold near its surface. A fillet reads true distances from every
+/// leaf; a chamfer reads values over their slopes. On round operands a chamfer's width is right to
+/// 1 % up to a quarter of their radius. Where an operand has an edge of its own across the joined
+/// one, fillets and chamfers go round it in a mitre. Operands with a gap narrower than a chamfer's
+/// width, or through which a fillet's ball does not fit, are bridged.
 ///
 /// | blend | parameters | reach |
 /// |---|---|---|
@@ -45,8 +49,9 @@ use crate::{Norm, Real};
 /// | `Displacement` | `height`, length (adds material if positive); `falloff`, lengths, 10⁻⁹ to 10⁹ | everywhere, falling with the square of the values |
 /// | `Ricci` | `p`, 1.001 to 1000: larger is sharper | everywhere; operands must be gauges |
 ///
-/// The first three keep the Lipschitz constant of their operands (those of a fillet and a
-/// chamfer are distances, with 1); a displacement and Ricci's blend promise none.
+/// A smooth blend keeps the Lipschitz constant of its operands, a fillet that of distances where
+/// the ball fits, a chamfer where the operands are planes; where they bend it is a little steeper,
+/// and it jumps where a gradient does. A displacement and Ricci's blend promise none.
 ///
 /// Sources: A. A. Pasko and V. V. Savchenko, *Blending operations for the functionally based
 /// constructive geometry* (1994); A. Ricci, *A constructive geometry for computer graphics*

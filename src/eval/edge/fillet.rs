@@ -29,7 +29,7 @@ const FADING: f64 = 4.0;
 /// feet of points around.
 const TELLING: f64 = 0.01;
 
-/// Slopes are at most this where the ball fades.
+/// Slopes are taken to be at most this where the first foot takes over.
 pub(super) const FADES: f64 = 30.0;
 
 #[derive(Clone, Copy, Debug)]

@@ -172,8 +172,7 @@ impl EdgeBlend {
     }
 
     /// The blend, and whether it tells anything of the points around: not where the search for
-    /// the foot has failed, as it does on an operand's medial axis. Beside such a point the
-    /// blend may be above the join.
+    /// the foot has failed, as it does on an operand's medial axis and beside its own edges.
     fn filleted(&self, fillet: Fillet, p: DVec3) -> (Sample, bool) {
         let here = self.samples(p);
         let join = larger(here[0], here[1]);
