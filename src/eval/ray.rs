@@ -67,8 +67,12 @@ const ASK: f64 = 0.2;
 /// unbounded deformed solid winds about the ray without end, the ray comes to an end all the same.
 const PATIENCE: usize = 1 << 12;
 
-/// Values nearer to 0, in proportion to the solid's size, may be 0.
+/// Values nearer to 0, in proportion to the solid's size or to the values about it, may be 0.
 const ROUNDING: f64 = 1e-15;
+
+/// A slope that goes beyond 0 by no more than this, of values on the scale of lengths, is rounding:
+/// a flat piece may be on the way, a crossing and back may not.
+const LEVEL: f64 = 1e-13;
 
 /// The slope is asked for only of programs with at most this many leaves.
 const FEW: usize = 24;
@@ -104,8 +108,12 @@ pub(crate) fn first_hit(
     let closest = care.closest() * size;
     let at = |t: f64| origin + t * direction;
     let values = [near, far].map(|t| program.value(at(t)));
-    // In a face that two operands share, rounding has either sign: it counts as outside.
-    let doubt = ROUNDING * (size + origin.abs().max_element());
+    // In a face that two operands share, rounding has either sign: it counts as outside. Values of
+    // a formula may be on another scale than lengths.
+    let scale = 16.0 * values[0].abs().max(values[1].abs());
+    let doubt = ROUNDING * (size + origin.abs().max_element()).min(scale);
+    let level = LEVEL * (scale / size).min(1.0);
+    let one_signed = |slope: Interval| slope.lo() > -level || slope.hi() < level;
     let is_inside = |value: f64| value > doubt;
     let (inside, slopes) = (values.map(is_inside), Interval::ALL);
     let known = f64::INFINITY;
@@ -210,13 +218,6 @@ fn slope_along(program: &Program, origin: DVec3, direction: DVec3, t0: f64, t1: 
     let along = |o: f64, d: f64| t * Dual::constant(Interval::point(d)) + Dual::constant(Interval::point(o));
     let p = [along(origin.x, direction.x), along(origin.y, direction.y), along(origin.z, direction.z)];
     program.evaluate(p, &mut Vec::new()).gradient()[0]
-}
-
-/// Whether a value with this slope only rises or only falls, but for rounding: a flat piece
-/// may be on the way, a crossing and back may not.
-fn one_signed(slope: Interval) -> bool {
-    const ROUNDING: f64 = 1e-13;
-    slope.lo() > -ROUNDING || slope.hi() < ROUNDING
 }
 
 /// The crossing between `t0` and `t1`: the false position method with halving (Illinois), which

@@ -76,6 +76,18 @@ fn trees_are_negative_inside() {
     near(f64::from(value), 1.0, 1e-5);
 }
 
+/// Rounding is told apart from small values by the scale of the formula, not by lengths.
+#[test]
+fn formulas_of_any_scale_are_hit() {
+    let (x, y, z) = Tree::axes();
+    for scale in [1e-20, 1.0, 1e12] {
+        let tree = (x.square() + y.square() + z.square() - 1.0) * scale;
+        let ball = Solid::formula(&tree, Bounds::new(DVec3::splat(-1.5), DVec3::splat(1.5)));
+        let hit = ball.raycast(DVec3::new(0.2, 0.1, 3.0), -DVec3::Z).unwrap().expect("it is aimed at");
+        assert!((hit.distance - (3.0 - 0.95f64.sqrt())).abs() < 1e-6, "{scale}: {hit:?}");
+    }
+}
+
 #[test]
 fn what_is_undefined_is_outside() {
     let (x, y, _) = Tree::axes();
