@@ -129,6 +129,6 @@ impl Chamfer {
 }
 
 /// The length of a vector.
-fn length(d: [Interval; 3]) -> Interval {
+pub(super) fn length(d: [Interval; 3]) -> Interval {
     (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt()
 }

@@ -22,7 +22,7 @@ mod fillet;
 
 use glam::{DAffine3, DVec3};
 
-use self::chamfer::Chamfer;
+use self::chamfer::{Chamfer, length};
 use self::fillet::{FADES, Fillet, Foot, STEEPEST, STEPS};
 use super::composite::{Locals, Slopes, Whole, finish, points64, roundoff, with_evaluator, write_gradients};
 use super::{Program, Tape};
@@ -209,7 +209,9 @@ impl EdgeBlend {
             false => (FADES, 0.02 * fillet.radius),
         };
         let radius = steepest * extent;
-        let close = extent < close;
+        // Where a gradient may vanish, as on the axis of a disc, the blend jumps.
+        let turns = || self.gradients(zone).iter().any(|gradient| length(*gradient).lo() < 0.1);
+        let close = extent < close && (told || !turns());
         let below = (told || close) && centre + radius < 0.0;
         let hi = if below { centre + radius } else { join.hi().max(fillet.farthest()) };
         let lo = if close { join.lo().max(centre - radius) } else { join.lo() };
