@@ -111,6 +111,10 @@ impl AnyField for Composite {
         write_gradients(chunk.placement, &slopes, chunk.out);
     }
 
+    fn is_steady(&self) -> bool {
+        self.program.is_steady()
+    }
+
     fn takes_short(&self) -> bool {
         true
     }

@@ -263,6 +263,11 @@ impl Program {
         &self.operands[node.range()]
     }
 
+    /// Whether its values change as its slopes say.
+    pub(crate) fn is_steady(&self) -> bool {
+        self.nodes.iter().filter_map(Node::valued_by).all(|leaf| self.instance(leaf).field.is_steady())
+    }
+
     /// The leaf with this number.
     pub(crate) fn instance(&self, leaf: u32) -> &Instance {
         instance(&self.scene, &self.simpler, leaf)

@@ -27,13 +27,18 @@ pub struct Hit {
 /// How much is done for a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Care {
-    /// A crossing and back within 10⁻¹⁰ of the size is a touch.
+    /// A crossing and back within 10⁻¹⁰ of the size is a touch. Slopes of distances that are
+    /// searched for are not trusted.
     Full,
-    /// Within 10⁻⁶; of three crossings within 5·10⁻⁵ any will do.
+    /// Within 10⁻⁶; of three crossings within 5·10⁻⁵ any will do. Slopes are trusted.
     Picture,
 }
 
 impl Care {
+    fn trusts(self, program: &Program) -> bool {
+        self == Care::Picture || program.is_steady()
+    }
+
     /// Pieces shorter than this times the solid's size are not halved further.
     fn shortest(self) -> f64 {
         match self {
@@ -110,7 +115,8 @@ pub(crate) fn first_hit(
     let values = [near, far].map(|t| program.value(at(t)));
     // In a face that two operands share, rounding has either sign: it counts as outside. Values of
     // a formula may be on another scale than lengths.
-    let scale = 16.0 * values[0].abs().max(values[1].abs());
+    let between = program.value(at(0.5 * (near + far)));
+    let scale = 16.0 * values[0].abs().max(values[1].abs()).max(between.abs());
     let doubt = ROUNDING * (size + origin.abs().max_element()).min(scale);
     let level = LEVEL * (scale / size).min(1.0);
     let one_signed = |slope: Interval| slope.lo() > -level || slope.hi() < level;
@@ -141,7 +147,7 @@ pub(crate) fn first_hit(
             continue;
         }
         if t1 - t0 < ASK * piece.known {
-            let slopes = |program: &Program| match program.leaf_count() <= FEW {
+            let slopes = |program: &Program| match program.leaf_count() <= FEW && care.trusts(program) {
                 true => slope_along(program, origin, direction, t0, t1),
                 false => Interval::ALL,
             };
@@ -190,15 +196,15 @@ pub(crate) fn first_hit(
 }
 
 /// What is left of a piece where the value may be 0: from either end it takes the value a while
-/// to get there.
+/// to get there, from a value that is 0 but for rounding none.
 fn within_reach(piece: &Piece) -> [f64; 2] {
-    let Piece { ends: [t0, t1], values: [v0, v1], slopes, .. } = *piece;
-    let way = |value: f64, fall: f64, rise: f64| {
-        let steepest = if value > 0.0 { fall } else { rise };
+    let Piece { ends: [t0, t1], values: [v0, v1], inside: [inside0, inside1], slopes, .. } = *piece;
+    let way = |value: f64, inside: bool, fall: f64, rise: f64| {
+        let steepest = if inside { fall } else { rise };
         let way = value.abs() / (steepest * (1.0 + 1e-9));
-        if way.is_finite() { way } else { 0.0 }
+        if inside == (value > 0.0) && way.is_finite() { way } else { 0.0 }
     };
-    [t0 + way(v0, -slopes.lo(), slopes.hi()), t1 - way(v1, slopes.hi(), -slopes.lo())]
+    [t0 + way(v0, inside0, -slopes.lo(), slopes.hi()), t1 - way(v1, inside1, slopes.hi(), -slopes.lo())]
 }
 
 /// The hit between two distances of which one is inside, where the value is above `doubt`.

@@ -125,6 +125,10 @@ pub(crate) trait AnyField: Any + Debug + Send + Sync {
     fn lanes64(&self, chunk: Chunk<'_, f64, 1>);
     /// Value and the three derivatives.
     fn gradients(&self, chunk: Chunk<'_, f32, 4>);
+    /// Whether values change as the slopes of `dual_range` say: not those that come of a search.
+    fn is_steady(&self) -> bool {
+        true
+    }
     /// Whether the lanes run over any multiple of the widest vectors, not over whole chunks only.
     fn takes_short(&self) -> bool {
         false

@@ -358,6 +358,10 @@ impl AnyField for EdgeBlend {
         write_gradients(chunk.placement, &self.chunk(&local, tapes, true), chunk.out);
     }
 
+    fn is_steady(&self) -> bool {
+        self.operands.iter().all(|operand| operand.is_steady())
+    }
+
     fn takes_short(&self) -> bool {
         true
     }

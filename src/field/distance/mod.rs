@@ -203,6 +203,10 @@ impl AnyField for Distance {
         true
     }
 
+    fn is_steady(&self) -> bool {
+        false
+    }
+
     fn growth(&self) -> DVec3 {
         // By a length as much, and by what the search may miss of it.
         DVec3::splat(1.05)
