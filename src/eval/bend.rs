@@ -3,7 +3,7 @@
 //! A concave value is above 0 on one piece of any line, a convex one on all but one. Minima keep
 //! concave values concave and maxima convex ones convex; a negation exchanges the two.
 
-use super::program::{Kind, Node, Op, Program};
+use super::program::{Edge, Kind, Node, Op, Program};
 use crate::field::Rule;
 
 /// How the value bends along straight lines.
@@ -51,6 +51,20 @@ impl Program {
             bends.push(bend);
         }
         bends[self.root.node()].map(|bend| bend.flip_if(self.root.negated()))
+    }
+
+    /// The operands of a union of concave values: from outside, the first crossing of a ray is the
+    /// nearest of theirs, and each of them has one at most on the way in.
+    pub(crate) fn united(&self) -> Option<Vec<Program>> {
+        let root = &self.nodes[self.root.node()];
+        if self.root.negated() || !matches!(root.kind, Kind::Join { op: Op::Or, rule: Rule::MinMax, .. }) {
+            return None;
+        }
+        let operand = |&edge: &Edge| {
+            let program = self.trimmed(self.nodes.to_vec(), self.operands.to_vec(), self.simpler.to_vec(), edge);
+            (program.bend() == Some(Bend::Concave)).then_some(program)
+        };
+        self.list(root).iter().map(operand).collect()
     }
 
     /// The number of its leaf, if it is one leaf and nothing else.

@@ -3,7 +3,8 @@
 
 use glam::DVec3;
 
-use super::program::{Edge, Kind, Node, Op, Sides};
+use super::program::{Edge, Kind, Node, Op};
+use super::sides::Sides;
 use crate::Bounds;
 use crate::field::{RicciSide, Rule};
 use crate::solid::Operation;

@@ -27,6 +27,7 @@ mod ray;
 mod register;
 mod repeat;
 mod scene;
+mod sides;
 mod tape;
 
 pub use palette::Palette;

@@ -27,6 +27,12 @@ impl Program {
         self.narrow_zone(&Zone::of_bounds(region))
     }
 
+    /// As [`narrow`](Program::narrow), by the boxes of leaves alone: of a region that many leaves
+    /// lie in their ranges tell little more.
+    pub(crate) fn narrow_by_boxes(&self, region: &Bounds) -> Region {
+        self.narrow_pass(&Zone::of_bounds(region), true)
+    }
+
     /// A sound range of the value over a box; infinite where nothing is known.
     #[must_use]
     pub fn range(&self, region: &Bounds) -> Interval {
@@ -81,12 +87,17 @@ impl Program {
     }
 
     pub(crate) fn narrow_zone(&self, world: &Zone) -> Region {
+        self.narrow_pass(world, false)
+    }
+
+    fn narrow_pass(&self, world: &Zone, by_boxes: bool) -> Region {
         let world = &Pieces::one(*world);
         let zones = self.zones(world);
         if let Some(region) = self.narrow_leaf(&zones, world) {
             return region;
         }
         let mut pass = Pass::new(self, &zones, world);
+        pass.by_boxes = by_boxes;
         pass.run(Asked { sign: true, value: false });
         let Pass { signs, nodes, list, simpler, .. } = pass;
         match signs[self.root.node()].flip_if(self.root.negated()) {
@@ -143,7 +154,7 @@ impl Program {
     }
 
     /// A program of the nodes that `root` reaches.
-    fn trimmed(&self, nodes: Vec<Node>, operands: Vec<Edge>, simpler: Vec<Instance>, root: Edge) -> Program {
+    pub(super) fn trimmed(&self, nodes: Vec<Node>, operands: Vec<Edge>, simpler: Vec<Instance>, root: Edge) -> Program {
         if nodes.len() == 1 {
             return Program::assemble(self.scene.clone(), nodes, Vec::new(), root, simpler);
         }

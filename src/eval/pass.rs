@@ -53,6 +53,8 @@ pub(super) struct Pass<'a> {
     program: &'a Program,
     zones: &'a [Pieces],
     world: &'a Pieces,
+    /// Whether a leaf that is not far by its box is open, whatever its range.
+    pub(super) by_boxes: bool,
     asked: Vec<Asked>,
     /// The operands of long joins that are near.
     near: Vec<Option<Vec<u32>>>,
@@ -72,6 +74,7 @@ impl<'a> Pass<'a> {
             program,
             zones,
             world,
+            by_boxes: false,
             asked: vec![Asked::default(); count],
             near: vec![None; count],
             signs: vec![Sign::Unknown; count],
@@ -195,6 +198,11 @@ impl<'a> Pass<'a> {
         let value = self.asked[at].value;
         if !value && !zone.any(|zone| instance.bounds.intersects(&hull_of(zone))) {
             self.signs[at] = Sign::Negative;
+            return;
+        }
+        if !value && self.by_boxes && (leaf as usize) < program.scene.leaves.len() {
+            self.nodes.push(Node::leaf(leaf));
+            self.signs[at] = Sign::Open(Edge::new(self.nodes.len() - 1));
             return;
         }
         let range = zone.range(&instance.to_local, |zone| instance.placed_range(zone));

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use super::edge::EdgeBlend;
 use super::hierarchy::Hierarchy;
 use super::scene::{Instance, Scene};
-use crate::Bounds;
 use crate::field::Rule;
 use crate::solid::Operation;
 
@@ -105,47 +104,6 @@ impl Node {
         match self.kind {
             Kind::Leaf(leaf) | Kind::Edge { leaf, .. } => Some(leaf),
             Kind::Join { .. } | Kind::Shift(_) => None,
-        }
-    }
-}
-
-/// A box that holds what is inside, and one that holds what is outside.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Sides {
-    pub(crate) inside: Bounds,
-    pub(crate) outside: Bounds,
-}
-
-impl Default for Sides {
-    fn default() -> Sides {
-        Sides { inside: Bounds::ALL, outside: Bounds::ALL }
-    }
-}
-
-impl Sides {
-    /// Those of the complement, if `negate`.
-    pub(crate) fn flip_if(self, negate: bool) -> Sides {
-        if negate { Sides { inside: self.outside, outside: self.inside } } else { self }
-    }
-
-    /// Those of a join of two.
-    pub(crate) fn join(self, op: Op, other: Sides) -> Sides {
-        match op {
-            Op::Or => {
-                Sides { inside: self.inside.union(&other.inside), outside: self.outside.intersection(&other.outside) }
-            }
-            Op::And => {
-                Sides { inside: self.inside.intersection(&other.inside), outside: self.outside.union(&other.outside) }
-            }
-        }
-    }
-
-    /// Where an operand of `op` decides anything: outside of it the operand is the neutral
-    /// element of the operation.
-    pub(crate) fn decisive(self, op: Op) -> Bounds {
-        match op {
-            Op::Or => self.inside,
-            Op::And => self.outside,
         }
     }
 }

@@ -13,7 +13,7 @@ use super::program::{Op, Program};
 use super::register::{Step, schedule};
 use crate::Bounds;
 use crate::field::{AnyField, AnyWarp, COORDINATE_LIMIT, Chunk, Placement, Product, Pull, Rule, Zone};
-use crate::num::kernel::{CHUNK, Element, run, within};
+use crate::num::kernel::{CHUNK, Element, run, widest, within};
 
 /// A program ready for bulk evaluation over a region: immutable, shared between threads;
 /// each thread brings its own [`Evaluator`].
@@ -227,9 +227,6 @@ impl Evaluator {
 trait Mode<const N: usize> {
     type E: Element;
     const COORDINATES: usize;
-    /// Short chunks are multiples of this many points: of the widest vectors that a kernel is
-    /// run on.
-    const GRANULE: usize;
     fn leaf(leaf: &LeafStep, points: Points<'_, Self::E>, out: [&mut [Self::E]; N]);
     fn frame(frame: &FrameStep, points: Points<'_, Self::E>, out: &mut [Self::E]);
     fn join(op: Op, rule: Rule, negate: bool, all: [&mut [Self::E]; N], next: [&[Self::E]; N]);
@@ -277,7 +274,6 @@ struct Values<E>(std::marker::PhantomData<E>);
 impl Mode<1> for Values<f32> {
     type E = f32;
     const COORDINATES: usize = 3;
-    const GRANULE: usize = 64;
 
     fn leaf(leaf: &LeafStep, points: Points<'_, f32>, out: [&mut [f32]; 1]) {
         leaf.field.lanes32(Chunk { points: points.coordinates(), placement: &leaf.placement, out });
@@ -296,7 +292,6 @@ impl Mode<1> for Values<f32> {
 impl Mode<1> for Values<f64> {
     type E = f64;
     const COORDINATES: usize = 3;
-    const GRANULE: usize = 8;
 
     fn leaf(leaf: &LeafStep, points: Points<'_, f64>, out: [&mut [f64]; 1]) {
         leaf.field.lanes64(Chunk { points: points.coordinates(), placement: &leaf.placement, out });
@@ -317,7 +312,6 @@ struct Slopes;
 impl Mode<4> for Slopes {
     type E = f32;
     const COORDINATES: usize = 12;
-    const GRANULE: usize = 64;
 
     fn leaf(leaf: &LeafStep, points: Points<'_, f32>, out: [&mut [f32]; 4]) {
         let chunk = Chunk { points: points.coordinates(), placement: &leaf.placement, out };
@@ -365,7 +359,7 @@ fn execute<M: Mode<N>, const N: usize>(
     memory.padded.resize(3 * CHUNK, zero);
     let Memory { registers, slots, padded } = memory;
     let limit = M::E::from_f64(COORDINATE_LIMIT);
-    let granule = if tape.short { M::GRANULE } else { CHUNK };
+    let granule = if tape.short { widest::<M::E>() } else { CHUNK };
     let mut at = 0;
     while at < count {
         let len = CHUNK.min(count - at);

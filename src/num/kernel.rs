@@ -117,6 +117,16 @@ impl Element for f64 {
     }
 }
 
+/// How many elements the widest vectors of a kernel hold: slices are multiples of it.
+pub(crate) fn widest<E: Element>() -> usize {
+    on_level!(simd => widest_on::<_, E>(simd), else 1)
+}
+
+#[inline(always)]
+fn widest_on<S: Simd, E: Element>(_simd: S) -> usize {
+    E::Wide::<S>::WIDTH
+}
+
 /// Runs `formula` over slices of one length, a multiple of the widest vectors ([`CHUNK`] is one).
 #[inline]
 pub(crate) fn run<E: Element, const I: usize, const O: usize>(

@@ -16,7 +16,7 @@
 //! What is divided when does not change what a part of the tree is, so results do not depend
 //! on the order in which rays ask.
 
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 use glam::DVec3;
 
@@ -48,12 +48,10 @@ pub(super) struct Cell {
     pub(super) share: f64,
     /// How many leaves the program has.
     pub(super) leaves: usize,
-    /// How many halvings ago it had a third more.
-    pub(super) stale: u32,
-    /// How many it had then.
-    before: usize,
-    margin: f64,
+    around: Around,
+    slope: Mutex<Option<([DVec3; 2], Interval)>>,
     halves: OnceLock<Halves>,
+    united: OnceLock<Option<Vec<Cell>>>,
     tape: OnceLock<Tape>,
 }
 
@@ -73,7 +71,8 @@ impl Cells {
         let bounds = Bounds::new(bounds.min - 0.0537 * longest, bounds.max + 0.0411 * longest);
         let rounding = 64.0 * f64::EPSILON * (bounds.center().abs().max_element() + bounds.size().length());
         let margin = 1e-9 * longest + rounding;
-        Cells { root: part(program, bounds, 1.0, margin, (usize::MAX, 0)), bounds, margin }
+        let around = Around { whole: bounds.longest_side(), margin, leaves: usize::MAX, stale: 0 };
+        Cells { root: part(program, bounds, around), bounds, margin }
     }
 
     pub(super) fn root(&self) -> &Part {
@@ -101,7 +100,10 @@ impl Cells {
                 Part::Inside => return true,
                 Part::Outside => return false,
                 Part::Cell(cell) => {
-                    if cell.leaves <= FEW || cell.stale >= STALE {
+                    if !cell.bounds.contains(p) {
+                        return false;
+                    }
+                    if cell.leaves <= FEW || cell.is_stale() {
                         return cell.program.value(p) > 0.0;
                     }
                     let halves = cell.halves();
@@ -115,27 +117,63 @@ impl Cells {
 /// Programs of at most this many leaves are evaluated at a point rather than narrowed.
 const FEW: usize = 4;
 
-/// Where as many halvings have left the leaves what they were, more of them are of no use.
-pub(super) const STALE: u32 = 6;
+/// Boxes with more leaves are narrowed by the leaves' boxes alone.
+const CROWD: usize = 24;
 
-/// What a box holds; `before` are leaves of a box around it, and how many halvings ago.
-fn part(program: &Program, bounds: Bounds, share: f64, margin: f64, before: (usize, u32)) -> Part {
-    match program.narrow(&bounds.inflate(margin)) {
+/// Unions of more leaves are divided in space.
+const UNITED: usize = 8;
+
+/// Where as many halvings have left more than three quarters of the leaves, more are of no use.
+const STALE: u32 = 6;
+
+/// What is known of the boxes around a box.
+#[derive(Clone, Copy)]
+struct Around {
+    /// The longest side of the box of all.
+    whole: f64,
+    margin: f64,
+    /// The leaves of one of them, and how many halvings ago.
+    leaves: usize,
+    stale: u32,
+}
+
+/// What a box holds.
+fn part(program: &Program, bounds: Bounds, around: Around) -> Part {
+    let room = bounds.inflate(around.margin);
+    let found = if program.leaf_count() > CROWD { program.narrow_by_boxes(&room) } else { program.narrow(&room) };
+    match found {
         Region::Inside => Part::Inside,
         Region::Outside => Part::Outside,
         Region::Surface(program) => {
-            let (bend, leaves) = (program.bend(), program.leaf_count());
-            let (before, stale) = if leaves <= before.0 / 4 * 3 { (leaves, 0) } else { before };
-            let (halves, tape) = (OnceLock::new(), OnceLock::new());
-            Part::Cell(Box::new(Cell { bounds, program, bend, share, leaves, stale, before, margin, halves, tape }))
+            let bounds = program.reach().inflate(around.margin).intersection(&bounds);
+            if bounds.is_empty() {
+                return Part::Outside;
+            }
+            let leaves = program.leaf_count();
+            let fewer = leaves <= around.leaves / 4 * 3;
+            let around = if fewer { Around { leaves, stale: 0, ..around } } else { around };
+            Part::Cell(Box::new(Cell::new(program, bounds, around)))
         }
     }
 }
 
 impl Cell {
+    fn new(program: Program, bounds: Bounds, around: Around) -> Cell {
+        let (bend, leaves) = (program.bend(), program.leaf_count());
+        let share = bounds.longest_side() / around.whole;
+        let (slope, tape) = (Mutex::new(None), OnceLock::new());
+        let (halves, united) = (OnceLock::new(), OnceLock::new());
+        Cell { bounds, program, bend, share, leaves, around, slope, halves, united, tape }
+    }
+
     /// Its length along its longest side.
     pub(super) fn side(&self) -> f64 {
         self.bounds.longest_side()
+    }
+
+    /// Whether as many halvings have left the leaves what they were that more are of no use.
+    pub(super) fn is_stale(&self) -> bool {
+        self.around.stale >= STALE
     }
 
     /// Its halves, made when they are first asked for.
@@ -147,16 +185,44 @@ impl Cell {
             let (mut below, mut above) = (self.bounds, self.bounds);
             below.max[axis] = plane;
             above.min[axis] = plane;
-            let share = self.share * below.longest_side() / self.side();
-            let before = (self.before, self.stale + 1);
-            let parts = [below, above].map(|bounds| part(&self.program, bounds, share, self.margin, before));
+            let around = Around { stale: self.around.stale + 1, ..self.around };
+            let parts = [below, above].map(|bounds| part(&self.program, bounds, around));
             Halves { axis, plane, parts }
         })
     }
 
-    /// The slopes of the value along rays in the cell with directions from `low` to `high`.
+    /// The operands of a union of a few concave values, each in its part of the cell; they are made
+    /// when they are first asked for.
+    pub(super) fn united(&self) -> Option<&[Cell]> {
+        let parts = self.united.get_or_init(|| {
+            if self.leaves > UNITED {
+                return None;
+            }
+            let part = |program: Program| {
+                let bounds = program.reach().inflate(self.around.margin).intersection(&self.bounds);
+                Cell::new(program, bounds, self.around)
+            };
+            Some(self.program.united()?.into_iter().map(part).collect())
+        });
+        parts.as_deref()
+    }
+
+    /// The slopes of the value along rays in the cell with directions from `low` to `high`; those
+    /// last asked for are kept, as the tiles of an orthographic picture ask for the same.
     pub(super) fn slope(&self, low: DVec3, high: DVec3) -> Interval {
-        let Bounds { min, max } = self.bounds.inflate(self.margin);
+        let mut kept = self.slope.lock().unwrap_or_else(PoisonError::into_inner);
+        match *kept {
+            Some((directions, slope)) if directions == [low, high] => slope,
+            _ => {
+                let slope = self.slope_along(low, high);
+                *kept = Some(([low, high], slope));
+                slope
+            }
+        }
+    }
+
+    fn slope_along(&self, low: DVec3, high: DVec3) -> Interval {
+        let Bounds { min, max } = self.bounds.inflate(self.around.margin);
         let zero = Interval::point(0.0);
         let side = |axis: usize| {
             let along = Interval::new(low[axis], high[axis]);
@@ -167,6 +233,6 @@ impl Cell {
 
     /// The program for bulk evaluation.
     pub(super) fn tape(&self) -> &Tape {
-        self.tape.get_or_init(|| Tape::new(&self.program, &self.bounds.inflate(self.margin)))
+        self.tape.get_or_init(|| Tape::new(&self.program, &self.bounds.inflate(self.around.margin)))
     }
 }

@@ -71,6 +71,9 @@ const LAST_STEP: f32 = 3e-4;
 /// Depths this exact, in proportion to the solid, need no step in double precision.
 const FINE: f64 = 6e-6;
 
+/// A step in double precision below this is the last one, in proportion to the solid.
+const SETTLED: f64 = 1e-5;
+
 /// Crossings nearer to each other than this, in proportion to the solid, are one; so are those
 /// within a few lengths of the doubt where that is larger, as it is of fillets and chamfers.
 const CLOSE: f64 = 8e-5;
@@ -112,6 +115,7 @@ pub(super) struct Job<'a> {
     pub(super) close: f32,
     pub(super) fine: f32,
     pub(super) far_off: f64,
+    pub(super) settled: f64,
     pub(super) size: f64,
 }
 
@@ -137,6 +141,7 @@ impl<'a> Job<'a> {
             close: (CLOSE * size).max(DOUBTS * tape.roundoff()) as f32,
             fine: (FINE * size) as f32,
             far_off: (1e-3 * cell.side()).min(1e-4 * size),
+            settled: SETTLED * size,
             size,
         }
     }
@@ -147,11 +152,11 @@ impl<'a> Job<'a> {
         self.cell.program.value(origin + t * direction)
     }
 
-    /// The point where the lane is.
-    pub(super) fn point(&self, lane: &Lane) -> DVec3 {
+    /// The point this far beyond where the lane is.
+    pub(super) fn point(&self, lane: &Lane, ahead: f64) -> DVec3 {
         let Span { ray, near, .. } = self.spans[lane.span as usize];
         let Ray { origin, direction, .. } = self.rays[ray as usize];
-        origin + (near + f64::from(lane.at)) * direction
+        origin + (near + f64::from(lane.at) + ahead) * direction
     }
 
     /// Bounds of the slope of g along the ray.

@@ -33,22 +33,18 @@ struct Found {
     lane: Lane,
     slope: f32,
     gradient: Vec3,
+    /// How far double precision has led beyond the lane's `at`.
+    ahead: f64,
 }
 
 /// Steps of the searches, after which rays are divided by intervals.
 const TANGENTS: usize = 8;
 const SEARCH: usize = 40;
 const NEWTON: usize = 16;
-
-/// Fewer lanes than this are better off one by one: bulk evaluation costs as much for one as for
-/// a chunk of them.
-const FEW: usize = 5;
+const STEPS: usize = 4;
 
 /// A search leaps this part of what a step may go on beyond where it is safe.
 const LEAP: f32 = 0.9;
-
-/// After as many steps of a search.
-const SETTLED: usize = 10;
 
 /// Slopes in single precision are trusted to this part.
 const SLOPE_ERROR: f32 = 1e-3;
@@ -64,14 +60,15 @@ pub(super) struct Marcher {
     search: Vec<Lane>,
     unique: Vec<Lane>,
     found: Vec<Found>,
+    doubtful: Vec<Found>,
     open: Vec<Span>,
-    /// The rays that hit something in the last march.
+    /// The rays that have hit something.
     pub(super) hits: Vec<u32>,
 }
 
 impl Marcher {
     /// Marches the spans' rays through `cell`, with slopes within `slope` along them; what they
-    /// hit goes to `surfaces`, by ray.
+    /// hit goes to `surfaces`, by ray, and the numbers of those rays to `hits`.
     pub(super) fn march(
         &mut self,
         cells: &Cells,
@@ -81,7 +78,6 @@ impl Marcher {
         spans: &[Span],
         surfaces: &mut [Surface],
     ) {
-        self.hits.clear();
         self.open.clear();
         self.found.clear();
         let job = Job::new(cells, cell, slope, rays, spans);
@@ -94,6 +90,7 @@ impl Marcher {
             self.search_steep(&job);
         }
         self.newton(&job);
+        self.settle(&job);
         self.finish(&job, surfaces);
         for &Span { ray, near, far } in &self.open {
             let Ray { origin, direction, base, .. } = rays[ray as usize];
@@ -173,8 +170,13 @@ impl Marcher {
         self.evaluate(job, lanes);
         let count = lanes.len();
         let [_, _, _, value, dx, dy, dz] = self.single.each_ref().map(|list| &list[..count]);
-        let mut lists =
-            Lists { search: &mut self.search, unique: &mut self.unique, found: &mut self.found, open: &mut self.open };
+        let mut lists = Lists {
+            search: &mut self.search,
+            unique: &mut self.unique,
+            found: &mut self.found,
+            doubtful: &mut self.doubtful,
+            open: &mut self.open,
+        };
         let mut kept = 0;
         for i in 0..count {
             let mut lane = lanes[i];
@@ -193,8 +195,8 @@ impl Marcher {
     /// the first crossing, and where the tangent does not meet 0 there is none.
     fn near_ends(&mut self, job: &Job<'_>) {
         let mut lanes = std::mem::take(&mut self.near);
-        for round in 0..TANGENTS {
-            if lanes.is_empty() || (round > 0 && lanes.len() < FEW) {
+        for _ in 0..TANGENTS {
+            if lanes.is_empty() {
                 break;
             }
             self.sift(job, &mut lanes, |lists, lane, Local { g, s, gradient }| {
@@ -221,7 +223,7 @@ impl Marcher {
                         return false;
                     }
                     lane.at += step;
-                    lists.found.push(Found { lane: *lane, slope: s, gradient });
+                    lists.found.push(Found { lane: *lane, slope: s, gradient, ahead: 0.0 });
                     return false;
                 }
                 (lane.left, lane.g_left, lane.s_left) = (lane.at, g, s);
@@ -239,9 +241,6 @@ impl Marcher {
             lane.at = lane.right;
         }
         self.search.append(&mut lanes);
-        if self.search.len() < FEW {
-            self.open.extend(self.search.drain(..).map(|lane| job.span(&lane)));
-        }
         self.near = lanes;
     }
 
@@ -278,7 +277,7 @@ impl Marcher {
     fn search_bent(&mut self, job: &Job<'_>) {
         let mut lanes = std::mem::take(&mut self.search);
         for round in 0..TANGENTS {
-            if lanes.is_empty() || (round > 0 && lanes.len() < FEW) {
+            if lanes.is_empty() {
                 break;
             }
             self.sift(job, &mut lanes, |lists, lane, Local { g, s, .. }| {
@@ -327,11 +326,11 @@ impl Marcher {
     /// Lanes along which only bounds of the slope are known: steps that cannot pass a crossing.
     fn search_steep(&mut self, job: &Job<'_>) {
         let mut lanes = std::mem::take(&mut self.search);
-        for round in 0..SEARCH {
-            if lanes.is_empty() || (round >= SETTLED && lanes.len() < FEW) {
+        for _ in 0..SEARCH {
+            if lanes.is_empty() {
                 break;
             }
-            self.sift(job, &mut lanes, |lists, lane, Local { g, s, .. }| {
+            self.sift(job, &mut lanes, |lists, lane, Local { g, s, gradient }| {
                 let (lo, hi) = job.slopes(lane);
                 if lane.probe {
                     lane.probe = false;
@@ -350,7 +349,12 @@ impl Marcher {
                 }
                 let safe = lane.at + (-g - job.doubt) / hi;
                 if !(g < -job.doubt && hi.is_finite() && safe > lane.at) {
-                    lists.open.push(job.rest(lane));
+                    if g.abs() <= job.doubt && s > 0.0 {
+                        lane.left = lane.at;
+                        lists.doubtful.push(Found { lane: *lane, slope: s, gradient, ahead: 0.0 });
+                    } else {
+                        lists.open.push(job.rest(lane));
+                    }
                     return false;
                 }
                 let mut end = lane.right;
@@ -391,8 +395,8 @@ impl Marcher {
     /// halving where it leaves the bracket.
     fn newton(&mut self, job: &Job<'_>) {
         let mut lanes = std::mem::take(&mut self.unique);
-        for round in 0..NEWTON {
-            if lanes.is_empty() || (round >= SETTLED && lanes.len() < FEW) {
+        for _ in 0..NEWTON {
+            if lanes.is_empty() {
                 break;
             }
             self.sift(job, &mut lanes, |lists, lane, Local { g, s, gradient }| {
@@ -402,9 +406,11 @@ impl Marcher {
                     lane.right = lane.right.min(lane.at);
                 }
                 let next = lane.at - g / s;
-                if s > 0.0 && (next - lane.at).abs() <= job.last_step {
+                // Where rounding in single precision hides the sign, double precision goes on.
+                let is_close = g.abs() <= job.doubt && next >= lane.left && next <= lane.right;
+                if s > 0.0 && (is_close || (next - lane.at).abs() <= job.last_step) {
                     lane.at = next;
-                    lists.found.push(Found { lane: *lane, slope: s, gradient });
+                    lists.found.push(Found { lane: *lane, slope: s, gradient, ahead: 0.0 });
                     return false;
                 }
                 if g.abs() <= job.doubt {
@@ -420,50 +426,92 @@ impl Marcher {
         self.unique = lanes;
     }
 
-    /// The surfaces of the crossings, after one step in double precision where the rounding of
-    /// single precision would show.
-    fn finish(&mut self, job: &Job<'_>, surfaces: &mut [Surface]) {
-        let mut coarse = 0;
-        for at in 0..self.found.len() {
-            let found = self.found[at];
-            if job.doubt <= job.fine * found.slope {
-                self.surface(job, &found, 0.0, surfaces);
+    /// Lanes that have come so close to a crossing that rounding hides the sign: where a little
+    /// beyond where the tangent meets 0 the sign has changed, and a crossing that is nearer makes
+    /// no difference, that is it.
+    fn settle(&mut self, job: &Job<'_>) {
+        let mut doubtful = std::mem::take(&mut self.doubtful);
+        self.exact_values(job, &doubtful);
+        let mut kept = 0;
+        for at in 0..doubtful.len() {
+            let mut found = doubtful[at];
+            let g = f64::from(found.lane.turn) * self.double[3][at];
+            found.ahead = (-1.05 * g).max(0.0) / f64::from(found.slope) + 0.01 * job.settled;
+            let ahead = found.ahead as f32;
+            if ahead < job.close.min(found.lane.right - found.lane.at) {
+                doubtful[kept] = found;
+                kept += 1;
             } else {
-                self.found[coarse] = found;
-                coarse += 1;
+                self.open.push(job.rest(&found.lane));
             }
         }
-        self.found.truncate(coarse);
-        if coarse == 0 {
+        doubtful.truncate(kept);
+        self.exact_values(job, &doubtful);
+        for (found, value) in doubtful.drain(..).zip(&self.double[3]) {
+            if f64::from(found.lane.turn) * value > 0.0 {
+                self.found.push(found);
+            } else {
+                self.open.push(job.rest(&found.lane));
+            }
+        }
+        self.doubtful = doubtful;
+    }
+
+    /// The surfaces of the crossings, after steps in double precision where the rounding of
+    /// single precision would show.
+    fn finish(&mut self, job: &Job<'_>, surfaces: &mut [Surface]) {
+        let mut found = std::mem::take(&mut self.found);
+        found.retain(|found| {
+            let is_coarse = job.doubt > job.fine * found.slope;
+            if !is_coarse {
+                self.surface(job, found, surfaces);
+            }
+            is_coarse
+        });
+        for round in 0..STEPS {
+            self.exact_values(job, &found);
+            let mut kept = 0;
+            for at in 0..found.len() {
+                let Found { lane, slope, .. } = found[at];
+                let step = -f64::from(lane.turn) * self.double[3][at] / f64::from(slope);
+                found[at].ahead += step;
+                if step.abs() <= job.settled {
+                    self.surface(job, &found[at], surfaces);
+                } else if step.abs() > job.far_off || round + 1 == STEPS {
+                    self.open.push(job.span(&lane));
+                } else {
+                    found[kept] = found[at];
+                    kept += 1;
+                }
+            }
+            found.truncate(kept);
+        }
+        self.found = found;
+    }
+
+    /// Values of the program in double precision where the crossings are; their signs are certain.
+    fn exact_values(&mut self, job: &Job<'_>, found: &[Found]) {
+        if found.is_empty() {
             return;
         }
         let [x, y, z, v] = &mut self.double;
         for list in [&mut *x, &mut *y, &mut *z] {
             list.clear();
         }
-        for found in &self.found {
-            let p = job.point(&found.lane) - job.center;
+        for found in found {
+            let p = job.point(&found.lane, found.ahead) - job.center;
             x.push(p.x);
             y.push(p.y);
             z.push(p.z);
         }
-        v.resize(coarse, 0.0);
+        v.resize(found.len(), 0.0);
         self.evaluator.values_f64(job.tape, x, y, z, v);
-        for at in 0..coarse {
-            let found = self.found[at];
-            let step = -f64::from(found.lane.turn) * self.double[3][at] / f64::from(found.slope);
-            if step.abs() <= job.far_off {
-                self.surface(job, &found, step, surfaces);
-            } else {
-                self.open.push(job.span(&found.lane));
-            }
-        }
     }
 
-    fn surface(&mut self, job: &Job<'_>, found: &Found, step: f64, surfaces: &mut [Surface]) {
+    fn surface(&mut self, job: &Job<'_>, found: &Found, surfaces: &mut [Surface]) {
         let Span { ray, near, far } = job.span(&found.lane);
         let Ray { origin, direction, base, .. } = job.rays[ray as usize];
-        let t = (near + f64::from(found.lane.at) + step).clamp(near, far);
+        let t = (near + f64::from(found.lane.at) + found.ahead).clamp(near, far);
         let normal = -found.gradient * found.gradient.length_recip();
         if !normal.is_finite() {
             self.open.push(job.span(&found.lane));
@@ -480,5 +528,6 @@ struct Lists<'a> {
     search: &'a mut Vec<Lane>,
     unique: &'a mut Vec<Lane>,
     found: &'a mut Vec<Found>,
+    doubtful: &'a mut Vec<Found>,
     open: &'a mut Vec<Span>,
 }

@@ -10,7 +10,7 @@
 
 use glam::DVec3;
 
-use super::cells::{Cell, Cells, Part, STALE};
+use super::cells::{Cell, Cells, Part};
 use super::gbuffer::{Surface, Window};
 use super::job::{Ray, Span};
 use super::march::Marcher;
@@ -25,6 +25,8 @@ pub(super) struct Tracer {
     marcher: Marcher,
     rays: Vec<Ray>,
     spans: Vec<Span>,
+    /// Of those, what is nearer than what they have met.
+    nearer: Vec<Span>,
 }
 
 /// What the rays of a packet have in common.
@@ -74,6 +76,7 @@ impl Tracer {
             }
         }
         let Part::Cell(root) = cells.root() else { return surfaces };
+        let tie = TIE * bounds.longest_side();
         let mut pending: Vec<&Cell> = vec![root];
         while let Some(cell) = pending.pop() {
             let Some(rectangle) = view.rectangle(&cell.bounds, &tile) else { continue };
@@ -81,12 +84,13 @@ impl Tracer {
             if count == 0 {
                 continue;
             }
-            let slope = sheaf.slope(cell);
+            let united = sheaf.united(cell);
+            let slope = if united.is_some() { Interval::ALL } else { sheaf.slope(cell) };
             if !sheaf.inside && slope.hi() <= 0.0 {
                 // Seen from behind.
                 continue;
             }
-            if divides(cell, count, slope) {
+            if united.is_none() && divides(cell, count, slope) {
                 let halves = cell.halves();
                 let above = view.looks_up(halves.axis, halves.plane);
                 let [near, far] = if above { [0, 1] } else { [1, 0] };
@@ -97,21 +101,22 @@ impl Tracer {
                 }
                 continue;
             }
-            self.spans.clear();
-            for y in rectangle.top..rectangle.bottom {
-                let mut bits = alive.0[y] & rectangle.columns;
-                while bits != 0 {
-                    let ray = y as u32 * tile.width + bits.trailing_zeros();
-                    bits &= bits - 1;
-                    if let Some((near, far)) = span(&cell.bounds, &self.rays[ray as usize]) {
-                        self.spans.push(Span { ray, near, far });
+            self.marcher.hits.clear();
+            for part in united.unwrap_or(std::slice::from_ref(cell)) {
+                let Some(rectangle) = view.rectangle(&part.bounds, &tile) else { continue };
+                self.spans.clear();
+                for y in rectangle.top..rectangle.bottom {
+                    let mut bits = alive.0[y] & rectangle.columns;
+                    while bits != 0 {
+                        let ray = y as u32 * tile.width + bits.trailing_zeros();
+                        bits &= bits - 1;
+                        self.spans.extend(nearer(part, ray, &self.rays, &surfaces, tie));
                     }
                 }
+                if !self.spans.is_empty() {
+                    self.marcher.march(cells, part, slope, &self.rays, &self.spans, &mut surfaces);
+                }
             }
-            if self.spans.is_empty() {
-                continue;
-            }
-            self.marcher.march(cells, cell, slope, &self.rays, &self.spans, &mut surfaces);
             for &ray in &self.marcher.hits {
                 alive.0[(ray / tile.width) as usize] &= !(1 << (ray % tile.width));
             }
@@ -133,6 +138,7 @@ impl Tracer {
             }
         }
         let Part::Cell(root) = cells.root() else { return };
+        let tie = TIE * bounds.longest_side();
         let mut done = vec![false; rays.len()];
         for (octant, list) in octants.into_iter().enumerate() {
             // Cells with the rays that may pass them: the list's tail from `first`.
@@ -154,11 +160,12 @@ impl Tracer {
                 }
                 let mut sheaf = Sheaf::EMPTY;
                 self.spans.iter().for_each(|span| sheaf.add(&self.rays[span.ray as usize]));
-                let slope = sheaf.slope(cell);
+                let united = sheaf.united(cell);
+                let slope = if united.is_some() { Interval::ALL } else { sheaf.slope(cell) };
                 if !sheaf.inside && slope.hi() <= 0.0 {
                     continue;
                 }
-                if divides(cell, self.spans.len(), slope) {
+                if united.is_none() && divides(cell, self.spans.len(), slope) {
                     let halves = cell.halves();
                     let [near, far] = if octant >> halves.axis & 1 == 0 { [0, 1] } else { [1, 0] };
                     let first = lists.len();
@@ -170,7 +177,15 @@ impl Tracer {
                     }
                     continue;
                 }
-                self.marcher.march(cells, cell, slope, &self.rays, &self.spans, surfaces);
+                self.marcher.hits.clear();
+                for part in united.unwrap_or(std::slice::from_ref(cell)) {
+                    let rays = self.spans.iter().map(|span| span.ray);
+                    self.nearer.clear();
+                    self.nearer.extend(rays.filter_map(|ray| nearer(part, ray, &self.rays, surfaces, tie)));
+                    if !self.nearer.is_empty() {
+                        self.marcher.march(cells, part, slope, &self.rays, &self.nearer, surfaces);
+                    }
+                }
                 for &ray in &self.marcher.hits {
                     done[ray as usize] = true;
                 }
@@ -255,6 +270,11 @@ impl Sheaf {
         self.inside |= ray.inside;
     }
 
+    /// What a cell unites that the rays look for one by one, from outside.
+    fn united<'a>(&self, cell: &'a Cell) -> Option<&'a [Cell]> {
+        if self.inside || cell.bend.is_some() || cell.share > COARSE { None } else { cell.united() }
+    }
+
     /// The slopes of the value that the rays may find in a cell; all, of a cell whose slopes are
     /// not worth knowing.
     fn slope(&self, cell: &Cell) -> Interval {
@@ -305,6 +325,15 @@ fn span(bounds: &Bounds, ray: &Ray) -> Option<(f64, f64)> {
     (near < far).then_some((near, far))
 }
 
+/// The part of a ray in a cell that is nearer by `tie` than what the ray has met.
+#[inline(always)]
+fn nearer(cell: &Cell, ray: u32, rays: &[Ray], surfaces: &[Surface], tie: f64) -> Option<Span> {
+    let at = &rays[ray as usize];
+    let (near, far) = span(&cell.bounds, at)?;
+    let far = far.min(surfaces[ray as usize].distance - at.base - tie);
+    (near < far).then_some(Span { ray, near, far })
+}
+
 /// The inverse of a direction's component is at most this: a ray along a plane then passes the
 /// box on one side of it from end to end, and that on the other not at all.
 const STEEPEST: f64 = 1e200;
@@ -317,6 +346,10 @@ const COARSE: f64 = 0.2;
 
 /// Nor are those of cells with more leaves.
 const MANY: usize = 8;
+
+/// A crossing of a united operand must be nearer by this part of the whole than one of those before
+/// it.
+const TIE: f64 = 1e-7;
 
 /// No cell is divided below this part of the whole.
 const FINEST: f64 = 1.0 / 4096.0;
@@ -332,7 +365,7 @@ fn divides(cell: &Cell, count: usize, slope: Interval) -> bool {
     if share > COARSE {
         return true;
     }
-    if leaves > MANY && cell.stale < STALE {
+    if leaves > MANY && !cell.is_stale() {
         return share > FINEST;
     }
     let one_way = bent || slope.lo() >= 0.0 || slope.hi() <= 0.0;
