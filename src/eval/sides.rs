@@ -68,3 +68,33 @@ impl Program {
         sides[self.root.node()].flip_if(self.root.negated()).inside
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use crate::{Bounds, Region, Solid};
+
+    #[test]
+    fn what_is_inside_is_within_reach() {
+        let solid = (Solid::sphere(1.0) | Solid::sphere(0.5).translate(DVec3::new(2.0, 0.3, 0.0)))
+            - Solid::cuboid([0.6, 4.0, 4.0])
+            - Solid::half_space(DVec3::Z, -0.2);
+        let program = solid.surface_program().expect("the solid is valid");
+        let mut clipped = 0;
+        for number in 0..512 {
+            let at = |shift: u32| f64::from(number >> shift & 7) / 7.0;
+            let min = DVec3::new(-1.2 + 3.4 * at(0), -1.2 + 2.0 * at(3), -1.2 + 2.0 * at(6));
+            let region = Bounds::new(min, min + 0.6);
+            let Region::Surface(narrowed) = program.narrow(&region) else { continue };
+            let reach = narrowed.reach();
+            clipped += u32::from(!region.min.cmpge(reach.min).all() || !region.max.cmple(reach.max).all());
+            for point in 0..216 {
+                let step = |by: u32| f64::from(point / by % 6) / 5.0;
+                let p = region.min + region.size() * DVec3::new(step(1), step(6), step(36));
+                assert!(program.value(p) <= 0.0 || reach.contains(p), "{p} of {region:?}, reach {reach:?}");
+            }
+        }
+        assert!(clipped > 20, "{clipped}");
+    }
+}

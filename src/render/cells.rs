@@ -9,6 +9,10 @@
 //!     +-------------+------+
 //! ```
 //!
+//! A cell is no larger than what its leaves' boxes leave of it. In a small union of convex
+//! leaves rays look for each leaf by itself, in the part of the cell that the leaf may reach, and
+//! the nearest crossing counts: nothing is divided further to part the leaves.
+//!
 //! All programs of a solid agree on the sign of any point, and the parts of a ray in the boxes
 //! abut to the bit, as the crossings with a plane are computed alike on both sides of it: a
 //! crossing of the surface at the border of two cells belongs to one of them and is never lost.
@@ -66,9 +70,8 @@ impl Cells {
     /// The tree of `program`, whose solid lies within `bounds` (finite, of some size).
     pub(super) fn new(program: &Program, bounds: &Bounds) -> Cells {
         let longest = bounds.longest_side();
-        // Room around the solid, so that rays start outside of it; more on one side than on the
-        // other, so that planes of symmetry are not planes of the tree.
-        let bounds = Bounds::new(bounds.min - 0.0537 * longest, bounds.max + 0.0411 * longest);
+        // Room around the solid, so that rays start outside of it.
+        let bounds = bounds.inflate(0.05 * longest);
         let rounding = 64.0 * f64::EPSILON * (bounds.center().abs().max_element() + bounds.size().length());
         let margin = 1e-9 * longest + rounding;
         let around = Around { whole: bounds.longest_side(), margin, leaves: usize::MAX, stale: 0 };
@@ -114,6 +117,9 @@ impl Cells {
     }
 }
 
+/// Cells are divided a little off the middle: planes of symmetry are not planes of the tree.
+const MIDDLE: f64 = 0.493;
+
 /// Programs of at most this many leaves are evaluated at a point rather than narrowed.
 const FEW: usize = 4;
 
@@ -137,6 +143,13 @@ struct Around {
     stale: u32,
 }
 
+impl Around {
+    /// What of a box the program may have an inside in.
+    fn clipped(&self, program: &Program, bounds: &Bounds) -> Bounds {
+        program.reach().inflate(self.margin).intersection(bounds)
+    }
+}
+
 /// What a box holds.
 fn part(program: &Program, bounds: Bounds, around: Around) -> Part {
     let room = bounds.inflate(around.margin);
@@ -145,7 +158,7 @@ fn part(program: &Program, bounds: Bounds, around: Around) -> Part {
         Region::Inside => Part::Inside,
         Region::Outside => Part::Outside,
         Region::Surface(program) => {
-            let bounds = program.reach().inflate(around.margin).intersection(&bounds);
+            let bounds = around.clipped(&program, &bounds);
             if bounds.is_empty() {
                 return Part::Outside;
             }
@@ -181,7 +194,7 @@ impl Cell {
         self.halves.get_or_init(|| {
             let size = self.bounds.size();
             let axis = (0..3).rev().max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
-            let plane = 0.5 * (self.bounds.min[axis] + self.bounds.max[axis]);
+            let plane = self.bounds.min[axis] + MIDDLE * size[axis];
             let (mut below, mut above) = (self.bounds, self.bounds);
             below.max[axis] = plane;
             above.min[axis] = plane;
@@ -199,10 +212,10 @@ impl Cell {
                 return None;
             }
             let part = |program: Program| {
-                let bounds = program.reach().inflate(self.around.margin).intersection(&self.bounds);
-                Cell::new(program, bounds, self.around)
+                let bounds = self.around.clipped(&program, &self.bounds);
+                (!bounds.is_empty()).then(|| Cell::new(program, bounds, self.around))
             };
-            Some(self.program.united()?.into_iter().map(part).collect())
+            Some(self.program.united()?.into_iter().filter_map(part).collect())
         });
         parts.as_deref()
     }
