@@ -3,11 +3,11 @@
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
+use super::deciders::Deciders;
 use super::extract::{BATCH, ExtractError, Root, Sampler, extract};
 use super::feature::Slope;
 use super::lattice::{CellSize, Lattice, LatticeError};
 use super::resolve::unresolved_cells;
-use super::roots::RootFinder;
 use super::settings::{AtBounds, MeshSettings};
 use super::signs::{BLOCK, EdgeRef, NODES, SIDE};
 use crate::eval::{Evaluator, Gradients, Program, Tape, compiled};
@@ -193,7 +193,7 @@ struct Scratch {
     evaluator: Evaluator,
     /// The tapes of the groups sampled since roots were asked for.
     tapes: Vec<(u32, Tape)>,
-    finder: RootFinder,
+    finder: Deciders,
     single: [Vec<f32>; 3],
     slopes: [Vec<f32>; 4],
     /// Edges in the order of their groups: their places, themselves, their roots.
