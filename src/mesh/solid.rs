@@ -209,20 +209,18 @@ impl SolidSampler<'_> {
         programs: Vec<Program>,
         limits: Bounds,
     ) -> SolidSampler<'a> {
-        let mut groups: Vec<u32> = Vec::with_capacity(blocks.len());
-        let mut heads: Vec<u32> = Vec::new();
-        for (n, program) in programs.iter().enumerate() {
-            if n % BATCH == 0 {
-                heads.clear();
+        let mut groups = vec![0; blocks.len()];
+        groups.par_chunks_mut(BATCH).enumerate().for_each(|(batch, groups)| {
+            let mut heads: Vec<u32> = Vec::new();
+            for (n, group) in (batch * BATCH..).zip(groups) {
+                // The latest first: blocks that follow each other are near each other.
+                let head = heads.iter().rev().find(|&&head| programs[head as usize].is_same(&programs[n]));
+                *group = head.copied().unwrap_or(n as u32);
+                if *group == n as u32 {
+                    heads.push(*group);
+                }
             }
-            // The latest first: blocks that follow each other are near each other.
-            let head = heads.iter().rev().find(|&&head| programs[head as usize].is_same(program));
-            let group = head.copied().unwrap_or(n as u32);
-            if group == n as u32 {
-                heads.push(group);
-            }
-            groups.push(group);
-        }
+        });
         let at = |node: usize, stride: usize| (node / stride % SIDE) as f64 * lattice.step();
         let pattern = [1, SIDE, SIDE * SIDE].map(|stride| (0..NODES).map(|n| at(n, stride) as f32).collect());
         SolidSampler { lattice, blocks, programs, groups, limits, pattern }
