@@ -125,6 +125,12 @@ impl Tape {
         Some((*op, self.leaves.iter().zip(negated).map(|(leaf, negated)| self.alone(leaf, *negated))))
     }
 
+    /// Whether the value surely changes by at most 1 per length unit.
+    pub(crate) fn is_gentle(&self) -> bool {
+        let is_gentle = |leaf: &LeafStep| leaf.field.convex() || leaf.field.exact();
+        self.rivals.is_some() && self.frames.is_empty() && self.leaves.iter().all(is_gentle)
+    }
+
     /// The tape of one of its leaves, or of its complement.
     fn alone(&self, leaf: &LeafStep, negated: bool) -> Tape {
         let negate = negated.then_some(Step::Negate { register: 0 });

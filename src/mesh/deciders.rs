@@ -9,10 +9,13 @@
 //!
 //! What a value on the chord says is a guess: the root of the one leaf is taken only if there, in
 //! single precision and beyond its rounding, every other leaf leaves it the decision: it is
-//! outside, for a union, or inside, for an intersection. Edges where one does not are given to all
-//! leaves together.
+//! outside, for a union, or inside, for an intersection. The values on the chord show that of most
+//! edges, as the way from there to the root is short. Edges where another does not are given to
+//! all leaves together.
 //!
 //! The root of one leaf is one of all leaves then: near it the value is that leaf's.
+
+use std::ops::Range;
 
 use super::extract::Root;
 use super::lattice::Lattice;
@@ -24,14 +27,19 @@ use crate::eval::{Evaluator, Op, Program, Tape};
 #[derive(Default)]
 pub(super) struct Deciders {
     finder: RootFinder,
-    /// Where each edge is looked at, along it and relative to the tape's origin.
+    /// Where each edge is looked at, along it.
     t: Vec<f64>,
+    /// Points, relative to the tape's origin, and values there.
     points: [Vec<f32>; 3],
     value: Vec<f32>,
-    /// By edge, the value that decides, or would without the leaf that does, and the leaf.
+    /// By edge, the point on the chord, the value that decides there, the next to it, and the leaf that does.
+    seen: Vec<f64>,
     best: Vec<f32>,
+    second: Vec<f32>,
     leaf: Vec<u32>,
-    /// Edges for one search: their places in the group, themselves, where to begin, their roots.
+    /// By leaf, where its edges end among the places.
+    ends: Vec<u32>,
+    /// Edges for searches: their places in the group, themselves, where to begin, their roots.
     places: Vec<u32>,
     edges: Vec<EdgeRef>,
     starts: Vec<f64>,
@@ -54,56 +62,100 @@ impl Deciders {
         let rivals: Vec<Tape> = rivals.collect();
         // The largest of all values decides a union, of all negatives an intersection.
         let sign = if op == Op::Or { 1.0 } else { -1.0 };
-        self.t.clear();
-        self.t.extend(edges.iter().map(on_chord));
-        self.place(tape, lattice, edges);
-        self.best.clear();
-        self.best.resize(edges.len(), f32::NEG_INFINITY);
-        self.leaf.clear();
-        self.leaf.resize(edges.len(), 0);
-        for (number, rival) in (0..).zip(&rivals) {
-            self.evaluate(evaluator, rival);
-            for ((best, leaf), &value) in self.best.iter_mut().zip(&mut self.leaf).zip(&self.value) {
-                let value = sign * value;
-                *leaf = if value > *best { number } else { *leaf };
-                *best = if value > *best { value } else { *best };
-            }
+        self.guess(evaluator, (tape, &rivals, sign), lattice, edges);
+        self.sort(rivals.len());
+        let mut first = 0;
+        for (leaf, rival) in rivals.iter().enumerate() {
+            let end = self.ends[leaf] as usize;
+            self.search(evaluator, (program, rival), lattice, edges, first..end, out);
+            first = end;
         }
-        for ((t, &best), edge) in self.t.iter_mut().zip(&self.best).zip(edges) {
-            *t = beside(edge, *t, f64::from(sign * best));
-        }
-        for (number, rival) in (0..).zip(&rivals) {
-            self.places.clear();
-            self.places.extend((0..edges.len() as u32).filter(|&n| self.leaf[n as usize] == number));
-            self.search(evaluator, (program, rival), lattice, edges, out);
-        }
-        // Which others might decide there after all.
+        self.doubt(evaluator, (tape, &rivals, sign), lattice, edges, out);
+        // From where the guess has led.
         self.t.clear();
         self.t.extend(out.iter().map(|root| root.t));
-        self.place(tape, lattice, edges);
-        self.best.fill(f32::NEG_INFINITY);
-        for (number, rival) in (0..).zip(&rivals) {
+        self.search(evaluator, (program, tape), lattice, edges, 0..self.places.len(), out);
+    }
+
+    /// The leaf that decides on the chord of each edge, and by its value where to begin the search.
+    fn guess(
+        &mut self,
+        evaluator: &mut Evaluator,
+        (tape, rivals, sign): (&Tape, &[Tape], f32),
+        lattice: &Lattice,
+        edges: &[EdgeRef],
+    ) {
+        self.seen.clear();
+        self.seen.extend(edges.iter().map(on_chord));
+        place(tape, lattice, edges.iter().zip(self.seen.iter().copied()), &mut self.points);
+        for list in [&mut self.best, &mut self.second] {
+            list.clear();
+            list.resize(edges.len(), f32::NEG_INFINITY);
+        }
+        self.leaf.clear();
+        self.leaf.resize(edges.len(), 0);
+        for (number, rival) in (0..).zip(rivals) {
             self.evaluate(evaluator, rival);
-            for ((best, &leaf), &value) in self.best.iter_mut().zip(&self.leaf).zip(&self.value) {
-                let value = if leaf == number { f32::NEG_INFINITY } else { sign * value };
+            let known = self.best.iter_mut().zip(&mut self.second).zip(&mut self.leaf);
+            for (((best, second), leaf), &value) in known.zip(&self.value) {
+                let value = sign * value;
+                *leaf = if value > *best { number } else { *leaf };
+                *second = second.max(best.min(value));
                 *best = best.max(value);
             }
         }
-        let sure = -tape.roundoff() as f32;
-        self.places.clear();
-        self.places.extend((0..edges.len() as u32).filter(|&n| self.best[n as usize] >= sure));
-        self.search(evaluator, (program, tape), lattice, edges, out);
+        let known = self.seen.iter().zip(&self.best).zip(edges);
+        self.t.clear();
+        self.t.extend(known.map(|((&t, &best), edge)| beside(edge, t, f64::from(sign * best))));
     }
 
-    /// The points of the edges at `t`.
-    fn place(&mut self, tape: &Tape, lattice: &Lattice, edges: &[EdgeRef]) {
-        self.points.iter_mut().for_each(|list| list.resize(edges.len(), 0.0));
-        let [x, y, z] = &mut self.points;
-        for (n, (edge, t)) in edges.iter().zip(&self.t).enumerate() {
-            let mut p = lattice.node(edge.node[0], edge.node[1], edge.node[2]) - tape.origin();
-            p[usize::from(edge.axis)] += t * lattice.step();
-            (x[n], y[n], z[n]) = (p.x as f32, p.y as f32, p.z as f32);
+    /// Puts the edges in `places` in the order of their leaves.
+    fn sort(&mut self, leaves: usize) {
+        // Counted first, then each to its place.
+        self.ends.clear();
+        self.ends.resize(leaves + 1, 0);
+        self.leaf.iter().for_each(|&leaf| self.ends[leaf as usize + 1] += 1);
+        (0..leaves).for_each(|leaf| self.ends[leaf + 1] += self.ends[leaf]);
+        self.places.resize(self.leaf.len(), 0);
+        for (n, &leaf) in (0..).zip(&self.leaf) {
+            let end = &mut self.ends[leaf as usize];
+            self.places[*end as usize] = n;
+            *end += 1;
         }
+    }
+
+    /// Puts the edges in `places` where a leaf other than the one asked may decide.
+    fn doubt(
+        &mut self,
+        evaluator: &mut Evaluator,
+        (tape, rivals, sign): (&Tape, &[Tape], f32),
+        lattice: &Lattice,
+        edges: &[EdgeRef],
+        roots: &[Root],
+    ) {
+        let sure = -tape.roundoff();
+        // By how much a value may change on the way along an edge.
+        let rise = if tape.is_gentle() { lattice.step() } else { f64::INFINITY };
+        self.places.clear();
+        self.places.extend((0..edges.len() as u32).filter(|&n| {
+            let n = n as usize;
+            let way = (roots[n].t - self.seen[n]).abs();
+            let is_sure = f64::from(self.second[n]) + way * rise < sure;
+            !is_sure
+        }));
+        let there = self.places.iter().map(|&n| (&edges[n as usize], roots[n as usize].t));
+        place(tape, lattice, there, &mut self.points);
+        self.second.clear();
+        self.second.resize(self.places.len(), f32::NEG_INFINITY);
+        for (number, rival) in (0..).zip(rivals) {
+            self.evaluate(evaluator, rival);
+            for ((second, &n), &value) in self.second.iter_mut().zip(&self.places).zip(&self.value) {
+                let value = if self.leaf[n as usize] == number { f32::NEG_INFINITY } else { sign * value };
+                *second = second.max(value);
+            }
+        }
+        let mut others = self.second.iter();
+        self.places.retain(|_| others.next().is_none_or(|&second| f64::from(second) >= sure));
     }
 
     /// The values of a leaf at the points.
@@ -113,27 +165,48 @@ impl Deciders {
         evaluator.values(rival, x, y, z, &mut self.value);
     }
 
-    /// The roots of the edges in `places`.
+    /// The roots of some of the edges in `places`.
     fn search(
         &mut self,
         evaluator: &mut Evaluator,
         pair: (&Program, &Tape),
         lattice: &Lattice,
         edges: &[EdgeRef],
+        some: Range<usize>,
         out: &mut [Root],
     ) {
-        if self.places.is_empty() {
+        let places = &self.places[some];
+        if places.is_empty() {
             return;
         }
         self.edges.clear();
-        self.edges.extend(self.places.iter().map(|&n| edges[n as usize]));
+        self.edges.extend(places.iter().map(|&n| edges[n as usize]));
         self.starts.clear();
-        self.starts.extend(self.places.iter().map(|&n| self.t[n as usize]));
+        self.starts.extend(places.iter().map(|&n| self.t[n as usize]));
         self.roots.resize(self.edges.len(), Root::default());
         let starts = &self.starts;
         self.finder.find(evaluator, pair, lattice, &self.edges, |n, _| starts[n], &mut self.roots);
-        for (&n, root) in self.places.iter().zip(&self.roots) {
+        for (&n, root) in places.iter().zip(&self.roots) {
             out[n as usize] = *root;
         }
+    }
+}
+
+/// Points on edges, relative to the tape's origin.
+fn place<'a>(
+    tape: &Tape,
+    lattice: &Lattice,
+    edges: impl Iterator<Item = (&'a EdgeRef, f64)>,
+    [x, y, z]: &mut [Vec<f32>; 3],
+) {
+    x.clear();
+    y.clear();
+    z.clear();
+    for (edge, t) in edges {
+        let mut p = lattice.node(edge.node[0], edge.node[1], edge.node[2]) - tape.origin();
+        p[usize::from(edge.axis)] += t * lattice.step();
+        x.push(p.x as f32);
+        y.push(p.y as f32);
+        z.push(p.z as f32);
     }
 }
