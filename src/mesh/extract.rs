@@ -60,7 +60,7 @@ mod sharp;
 mod turn;
 
 /// Blocks whose roots are found together. Small enough for threads to share work evenly.
-pub(super) const BATCH: usize = 256;
+pub(super) const BATCH: usize = 128;
 
 /// What the extractor asks of a surface.
 pub(crate) trait Sampler: Sync {
