@@ -11,7 +11,7 @@ use glam::{DAffine3, DVec3};
 
 use super::code::{Built, Code, bounded, conjoined, disjoined, grow, snug};
 use super::composite::{Composite, Whole};
-use super::context::{Contexts, Place};
+use super::context::{Contexts, Place, least_stretch};
 use super::edge::EdgeBlend;
 use super::extent::extent;
 use super::flatten::flatten;
@@ -19,7 +19,7 @@ use super::program::{Edge, Kind, Op, Program};
 use super::scene::{Instance, Scene};
 use super::sides::Sides;
 use crate::bounds::column_times;
-use crate::field::{AnyField, AnyWarp, Placement, Rule, smallest_stretch};
+use crate::field::{AnyField, AnyWarp, Placement, Rule};
 use crate::solid::{self, Length, Operation};
 use crate::{Blend, Bounds, Norm, ParamError, Solid, SolidError};
 
@@ -450,8 +450,8 @@ fn check_affine(map: &DAffine3, label: &str) -> Result<(), ParamError> {
     if let Some(bad) = map.matrix3.to_cols_array().into_iter().find(|v| v.is_nan() || v.abs() > LARGEST) {
         return Err(ParamError::new(format_args!("{name} (an entry of the matrix)"), bad, "-1e9 to 1e9"));
     }
-    let least = if map.matrix3.determinant() == 0.0 { 0.0 } else { smallest_stretch(&map.matrix3) };
-    let most = 1.0 / if least > 0.0 { smallest_stretch(&map.matrix3.inverse()) } else { 1.0 };
+    let least = if map.matrix3.determinant() == 0.0 { 0.0 } else { least_stretch(&map.matrix3) };
+    let most = 1.0 / if least > 0.0 { least_stretch(&map.matrix3.inverse()) } else { 1.0 };
     if !(least >= 1e-9 && least >= 1e-9 * most) {
         return Err(ParamError::new(
             format_args!("{name} (smallest stretch)"),

@@ -246,8 +246,13 @@ fn is_similarity(m: &DMat3) -> bool {
 
 /// The smallest stretch, exactly 1 where nothing is stretched.
 fn stretch(m: &DMat3) -> f64 {
-    let stretch = smallest_stretch(m);
+    let stretch = least_stretch(m);
     if (stretch - 1.0).abs() < 1e-14 { 1.0 } else { stretch }
+}
+
+/// The smallest stretch. Most maps stretch all directions alike, and one direction tells.
+pub(super) fn least_stretch(m: &DMat3) -> f64 {
+    if is_similarity(m) { m.x_axis.length() } else { smallest_stretch(m) }
 }
 
 /// The inverse; a translation's is exact.

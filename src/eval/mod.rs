@@ -38,4 +38,5 @@ pub use tape::{Evaluator, Gradients, Tape};
 
 pub(crate) use bend::Bend;
 pub(crate) use compile::compiled;
+pub(crate) use program::Op;
 pub(crate) use ray::{Care, first_hit};

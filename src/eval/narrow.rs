@@ -123,6 +123,11 @@ impl Program {
         let [Node { kind: Kind::Leaf(leaf), .. }] = self.nodes[..] else { return None };
         let instance = self.instance(leaf);
         let zone = self.zone_in(zones, instance.frame, world);
+        let simpler = || zone.only().and_then(|zone| instance.field.narrowed(&zone.mapped(&instance.to_local)));
+        let open = || if simpler().is_some() { None } else { Some(Region::Surface(self.clone())) };
+        if zone.only().is_some_and(|zone| instance.is_crossed(zone)) {
+            return open();
+        }
         let range = if zone.any(|zone| instance.bounds.intersects(&hull_of(zone))) {
             zone.range(&instance.to_local, |zone| instance.placed_range(zone))
         } else {
@@ -135,8 +140,7 @@ impl Program {
         if range.hi() < 0.0 {
             return Some(Region::Outside);
         }
-        let simpler = zone.only().and_then(|zone| instance.field.narrowed(&zone.mapped(&instance.to_local)));
-        if simpler.is_some() { None } else { Some(Region::Surface(self.clone())) }
+        open()
     }
 
     /// A program of the same values over a zone, from what may decide them there.

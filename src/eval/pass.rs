@@ -205,14 +205,20 @@ impl<'a> Pass<'a> {
             self.signs[at] = Sign::Open(Edge::new(self.nodes.len() - 1));
             return;
         }
-        let range = zone.range(&instance.to_local, |zone| instance.placed_range(zone));
-        if !value && (range.lo() > 0.0 || range.hi() < 0.0) {
-            self.signs[at] = Sign::of(range, || Edge::new(0));
-            return;
+        if value || !zone.only().is_some_and(|zone| instance.is_crossed(zone)) {
+            let range = zone.range(&instance.to_local, |zone| instance.placed_range(zone));
+            if !value && (range.lo() > 0.0 || range.hi() < 0.0) {
+                self.signs[at] = Sign::of(range, || Edge::new(0));
+                return;
+            }
+            self.values[at] = Some((range, Edge::new(self.nodes.len())));
         }
         let leaf = self.simplest(leaf, zone.only().map(|zone| zone.mapped(&instance.to_local)));
+        self.signs[at] = match self.values[at] {
+            Some((range, edge)) => Sign::of(range, || edge),
+            None => Sign::Open(Edge::new(self.nodes.len())),
+        };
         self.nodes.push(Node::leaf(leaf));
-        self.know(at, range, Edge::new(self.nodes.len() - 1));
     }
 
     /// The number, in the narrowed program, of a leaf made as simple as it is over `zone`.

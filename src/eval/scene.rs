@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 
 use crate::field::{AnyField, AnyWarp, Placement, Zone};
 use crate::solid::Trail;
@@ -49,6 +49,29 @@ impl Instance {
     /// A sound range over a zone of the leaf's own coordinates, as it counts outside of them.
     pub(crate) fn placed_range(&self, zone: &Zone) -> Interval {
         self.placed(self.field.range(zone))
+    }
+
+    /// Whether two points show that a zone of its frame holds inside and outside: the farthest from
+    /// the leaf's middle, and the nearest. What they do not show is open.
+    ///
+    /// ```text
+    ///     +-------*     Most leaves that cross a zone are inside at the corner that is nearest to their
+    ///     |  _    |     middle, and outside at the farthest one. That costs two values, a range some
+    ///     *-' \   |     ten.
+    /// ```
+    pub(crate) fn is_crossed(&self, zone: &Zone) -> bool {
+        if !self.bounds.is_finite() || !self.field.is_steady() {
+            return false;
+        }
+        let from = zone.centre - self.bounds.center();
+        let (mut near, mut far) = (zone.centre, zone.centre);
+        for axis in [zone.axes.x_axis, zone.axes.y_axis, zone.axes.z_axis] {
+            let along = axis.dot(from);
+            far += axis * along.signum();
+            near -= axis * (along / axis.length_squared().max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0);
+        }
+        let is_inside = |p: DVec3| self.placement.finish(self.field.value(self.placement.apply(p.to_array()))) > 0.0;
+        is_inside(near) && !is_inside(far)
     }
 
     /// A range of the leaf's own values, as it counts outside of it.

@@ -31,6 +31,9 @@
 //!
 //! Source: W. E. Lorensen and H. E. Cline, Marching cubes (1987).
 
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
+
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
@@ -57,7 +60,7 @@ mod sharp;
 mod turn;
 
 /// Blocks whose roots are found together. Small enough for threads to share work evenly.
-pub(super) const BATCH: usize = 256;
+pub(super) const BATCH: usize = 128;
 
 /// What the extractor asks of a surface.
 pub(crate) trait Sampler: Sync {
@@ -190,11 +193,28 @@ struct Batch {
     clamped: usize,
 }
 
-/// Batches for each thread that are sampled before their vertices join those of all: enough for threads to share work
-/// evenly, and little memory for vertices that are held twice.
-const WAVE: usize = 16;
+/// Takes batches as they come, and adds them in their order.
+struct Queue<'a> {
+    all: Parts<'a>,
+    /// How many are added.
+    added: usize,
+    /// Those that others before them are missing for.
+    waiting: BTreeMap<usize, Batch>,
+}
 
-/// The first pass.
+impl Queue<'_> {
+    fn add(&mut self, number: usize, batch: Batch) -> Result<(), ExtractError> {
+        self.waiting.insert(number, batch);
+        while let Some(batch) = self.waiting.remove(&self.added) {
+            self.all.add(batch)?;
+            self.added += 1;
+        }
+        Ok(())
+    }
+}
+
+/// The first pass. Threads take the next batch each, so that few wait to be added; one thread adds while
+/// the others sample.
 fn sample_all<'a, S: Sampler>(
     sampler: &S,
     lattice: &Lattice,
@@ -203,16 +223,14 @@ fn sample_all<'a, S: Sampler>(
     run: &Run,
 ) -> Result<Parts<'a>, ExtractError> {
     let meter = Meter::new(run, blocks.len());
-    let mut all = Parts::new(blocks, neighbours);
-    let wave = WAVE * BATCH * rayon::current_num_threads().max(1);
-    for (first, blocks) in (0..).step_by(wave).zip(blocks.chunks(wave)) {
-        let worker = || Worker::new(sampler, lattice, features);
-        let batches = blocks.par_chunks(BATCH).enumerate();
-        let sample = |worker: &mut Worker<'_, S>, (n, blocks)| worker.sample(first + n * BATCH, blocks, &meter);
-        let batches: Result<Vec<Batch>, Cancelled> = batches.map_init(worker, sample).collect();
-        batches?.into_iter().try_for_each(|batch| all.add(batch))?;
-    }
-    Ok(all)
+    let queue = Mutex::new(Queue { all: Parts::new(blocks, neighbours), added: 0, waiting: BTreeMap::new() });
+    let worker = || Worker::new(sampler, lattice, features);
+    let sample = |worker: &mut Worker<'_, S>, (n, blocks)| {
+        let batch = worker.sample(n * BATCH, blocks, &meter)?;
+        queue.lock().unwrap_or_else(PoisonError::into_inner).add(n, batch)
+    };
+    blocks.chunks(BATCH).enumerate().par_bridge().map_init(worker, sample).collect::<Result<(), ExtractError>>()?;
+    Ok(queue.into_inner().unwrap_or_else(PoisonError::into_inner).all)
 }
 
 /// One thread's means to sample blocks.

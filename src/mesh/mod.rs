@@ -1,6 +1,7 @@
 //! From a solid to a triangle mesh, and what can be said about a mesh.
 
 mod check;
+mod deciders;
 mod extract;
 mod feature;
 mod lattice;

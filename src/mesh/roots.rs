@@ -30,7 +30,7 @@ const SETTLED: f64 = 2.5e-7;
 const STEPS: usize = 40;
 const HALVING: usize = 12;
 
-/// Fewer points than this are evaluated one by one: lanes are padded to a chunk.
+/// Fewer points than this are evaluated one by one where lanes are padded to a chunk.
 const FEW: usize = 8;
 
 /// Normals are taken anew where a root moves by more than this after its gradient was.
@@ -58,17 +58,18 @@ pub(super) struct RootFinder {
 
 impl RootFinder {
     /// The roots on `edges`, into `out`; `tape` is that of `program` for a region that holds
-    /// them.
+    /// them. `start` tells where on an edge, given by its place in the list, to begin.
     pub(super) fn find(
         &mut self,
         evaluator: &mut Evaluator,
         (program, tape): (&Program, &Tape),
         lattice: &Lattice,
         edges: &[EdgeRef],
+        start: impl Fn(usize, &EdgeRef) -> f64,
         out: &mut [Root],
     ) {
         let step = lattice.step();
-        self.start(tape, lattice, edges);
+        self.start(tape, lattice, edges, start);
         self.approach(evaluator, tape, edges, step, out);
         self.settle(evaluator, (program, tape), edges, step);
         self.normals(evaluator, tape, edges, step, out);
@@ -77,8 +78,8 @@ impl RootFinder {
         }
     }
 
-    /// The lower ends, and the points on the chords.
-    fn start(&mut self, tape: &Tape, lattice: &Lattice, edges: &[EdgeRef]) {
+    /// The lower ends, and the points to begin with.
+    fn start(&mut self, tape: &Tape, lattice: &Lattice, edges: &[EdgeRef], start: impl Fn(usize, &EdgeRef) -> f64) {
         let (origin, step) = (tape.origin(), lattice.step());
         let count = edges.len();
         self.lower.resize(count, 0.0);
@@ -92,9 +93,7 @@ impl RootFinder {
         let (single_x, single_y, single_z) = (&mut single_x[..count], &mut single_y[..count], &mut single_z[..count]);
         for (n, edge) in edges.iter().enumerate() {
             let p = lattice.node(edge.node[0], edge.node[1], edge.node[2]) - origin;
-            let [a, b] = edge.values;
-            let chord = f64::from(a / (a - b));
-            let t = if (0.0..=1.0).contains(&chord) { chord } else { 0.5 };
+            let t = start(n, edge);
             (x[n], y[n], z[n]) = (p.x, p.y, p.z);
             (single_x[n], single_y[n], single_z[n]) = (p.x as f32, p.y as f32, p.z as f32);
             let (low, along) = match edge.axis {
@@ -238,7 +237,7 @@ impl RootFinder {
             }
         }
         let [x, y, z] = &self.gathered;
-        if x.len() < FEW {
+        if x.len() < FEW && !tape.is_short() {
             for (value, (&x, (&y, &z))) in self.exact.iter_mut().zip(x.iter().zip(y.iter().zip(z))) {
                 *value = program.value(tape.origin() + DVec3::new(x, y, z));
             }
@@ -287,6 +286,24 @@ fn outward([dx, dy, dz]: [f32; 3]) -> [f32; 3] {
 fn newton(t: f64, value: f64, slope: f64) -> f64 {
     let next = t - value / slope;
     if (0.0..=1.0).contains(&next) { next } else { t }
+}
+
+/// The point of an edge where the chord of the values at its ends is 0.
+#[inline(always)]
+pub(super) fn on_chord(edge: &EdgeRef) -> f64 {
+    let [a, b] = edge.values;
+    let chord = f64::from(a / (a - b));
+    if (0.0..=1.0).contains(&chord) { chord } else { 0.5 }
+}
+
+/// The point of an edge where the chord on one side of `t`, at which the value is known, is 0.
+#[inline(always)]
+pub(super) fn beside(edge: &EdgeRef, t: f64, value: f64) -> f64 {
+    let mut bracket = Bracket::new(edge);
+    if bracket.holds(t) {
+        bracket.learn(t, value);
+    }
+    bracket.secant()
 }
 
 /// A root on an edge, closed in on.

@@ -3,11 +3,11 @@
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
+use super::deciders::Deciders;
 use super::extract::{BATCH, ExtractError, Root, Sampler, extract};
 use super::feature::Slope;
 use super::lattice::{CellSize, Lattice, LatticeError};
 use super::resolve::unresolved_cells;
-use super::roots::RootFinder;
 use super::settings::{AtBounds, MeshSettings};
 use super::signs::{BLOCK, EdgeRef, NODES, SIDE};
 use crate::eval::{Evaluator, Gradients, Program, Tape, compiled};
@@ -193,7 +193,7 @@ struct Scratch {
     evaluator: Evaluator,
     /// The tapes of the groups sampled since roots were asked for.
     tapes: Vec<(u32, Tape)>,
-    finder: RootFinder,
+    finder: Deciders,
     single: [Vec<f32>; 3],
     slopes: [Vec<f32>; 4],
     /// Edges in the order of their groups: their places, themselves, their roots.
@@ -209,20 +209,18 @@ impl SolidSampler<'_> {
         programs: Vec<Program>,
         limits: Bounds,
     ) -> SolidSampler<'a> {
-        let mut groups: Vec<u32> = Vec::with_capacity(blocks.len());
-        let mut heads: Vec<u32> = Vec::new();
-        for (n, program) in programs.iter().enumerate() {
-            if n % BATCH == 0 {
-                heads.clear();
+        let mut groups = vec![0; blocks.len()];
+        groups.par_chunks_mut(BATCH).enumerate().for_each(|(batch, groups)| {
+            let mut heads: Vec<u32> = Vec::new();
+            for (n, group) in (batch * BATCH..).zip(groups) {
+                // The latest first: blocks that follow each other are near each other.
+                let head = heads.iter().rev().find(|&&head| programs[head as usize].is_same(&programs[n]));
+                *group = head.copied().unwrap_or(n as u32);
+                if *group == n as u32 {
+                    heads.push(*group);
+                }
             }
-            // The latest first: blocks that follow each other are near each other.
-            let head = heads.iter().rev().find(|&&head| programs[head as usize].is_same(program));
-            let group = head.copied().unwrap_or(n as u32);
-            if group == n as u32 {
-                heads.push(group);
-            }
-            groups.push(group);
-        }
+        });
         let at = |node: usize, stride: usize| (node / stride % SIDE) as f64 * lattice.step();
         let pattern = [1, SIDE, SIDE * SIDE].map(|stride| (0..NODES).map(|n| at(n, stride) as f32).collect());
         SolidSampler { lattice, blocks, programs, groups, limits, pattern }

@@ -82,24 +82,23 @@ pub(crate) fn surface_blocks(program: &Program, grid: &Grid, margin: f64, run: &
     // Breadth first until there is work for every thread, then depth first in each part.
     let mut parts = vec![root];
     let wanted = 64 * rayon::current_num_threads().max(1);
-    let mut divided = true;
-    while divided && parts.len() < wanted {
-        divided = false;
-        let mut next = Vec::new();
-        for part in parts {
+    while parts.len() < wanted && parts.iter().any(|part| part.size() != [1; 3]) {
+        let divided = |part: Part| {
             run.check()?;
             if part.size() == [1; 3] {
-                next.push(part);
-                continue;
+                return Ok(vec![part]);
             }
-            divided = true;
             let volume = part.volume();
-            match narrowed(part, grid, margin) {
-                Some(part) => next.extend(part.halves()),
-                None => meter.add(volume),
-            }
-        }
-        parts = next;
+            Ok(match narrowed(part, grid, margin) {
+                Some(part) => Vec::from(part.halves()),
+                None => {
+                    meter.add(volume);
+                    Vec::new()
+                }
+            })
+        };
+        let next: Result<Vec<Vec<Part>>, Cancelled> = parts.into_par_iter().map(divided).collect();
+        parts = next?.into_iter().flatten().collect();
     }
     let found: Result<Vec<Vec<Block>>, Cancelled> =
         parts.into_par_iter().map(|part| descend(part, grid, margin, &meter)).collect();

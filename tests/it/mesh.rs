@@ -6,7 +6,8 @@ use std::path::PathBuf;
 
 use glam::{DQuat, DVec3, Vec3};
 use rvachev::{
-    Bounds, CellSize, Features, Mesh, MeshReport, MeshSettings, MeshingError, Progress, Run, Solid, write_stl,
+    Bounds, CellSize, Features, Mesh, MeshReport, MeshSettings, MeshingError, Progress, RFunction, Run, Solid,
+    write_stl,
 };
 
 use crate::models;
@@ -67,6 +68,33 @@ fn vertices_are_on_the_surface() {
             // Positions are f32, and vertices keep a thousandth of a cell from nodes.
             assert!(v.abs() < 2e-4, "{}: {v:e} at {p}", model.name);
         }
+    }
+}
+
+/// Where many leaves are near, one decides at each vertex, and its root is that of all.
+#[test]
+fn vertices_among_many_leaves_are_on_the_surface() {
+    let mut state = 7u64;
+    let mut next = move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 40) as f64 / f64::from(1 << 24)
+    };
+    let part = |_| {
+        let axes = DVec3::new(0.1 + 0.1 * next(), 0.1 + 0.1 * next(), 0.1 + 0.1 * next());
+        let turn = DQuat::from_scaled_axis(6.0 * DVec3::new(next(), next(), next()));
+        let at = DVec3::new(next(), next(), next());
+        Solid::superellipsoid(axes, 0.2 + 1.6 * next(), 0.2 + 1.6 * next()).rotate(turn).translate(at)
+    };
+    let crowd = Solid::union_all((0..100).map(part), RFunction::MIN_MAX);
+    let block = Solid::cuboid(DVec3::ONE).translate(DVec3::splat(0.5));
+    for solid in [block.difference(crowd.clone(), RFunction::MIN_MAX), crowd] {
+        let settings = MeshSettings { cell: CellSize::Length(1.0 / 64.0), features: Features::Smooth, ..cells(1) };
+        let mesh = solid.mesh(&settings).unwrap();
+        let program = solid.surface_program().unwrap();
+        // A millionth of a cell, and the rounding of the position.
+        let off = |p: &&Vec3| program.value(p.as_dvec3()).abs() > 1e-6 / 64.0 + 1.2e-7;
+        let count = mesh.positions().iter().filter(off).count();
+        assert!(Some(count) <= mesh.clamped_vertices(), "{count} of {}", mesh.positions().len());
     }
 }
 

@@ -112,6 +112,7 @@ impl<'a> Parts<'a> {
         let run = run.stage(0.6, 1.0);
         let meter = Meter::new(&run, self.blocks.len());
         let counts: Vec<usize> = (0..self.parts.len())
+            .into_par_iter()
             .map(|batch| {
                 let parts = (batch * BATCH..).zip(&self.parts[batch]);
                 parts.map(|(n, part)| fans.count(n, part.triangles as usize)).sum()

@@ -3,6 +3,8 @@
 //! Blocks in the order of their coordinates, z first: what is a given step further along the
 //! axes comes in the same order, so one sweep along the list finds it for every block.
 
+use rayon::prelude::*;
+
 use super::ExtractError;
 use crate::mesh::signs::BLOCK;
 
@@ -13,10 +15,11 @@ const NONE: u32 = u32::MAX;
 /// they are further, as bits 0 to 2; the last comes before the seventh, the diagonal one.
 const STEPS: usize = 6;
 
-/// The neighbours of every block.
+/// The neighbours of every block: for each step, that of each block.
 pub(super) struct Neighbours {
-    upper: Vec<[u32; STEPS]>,
-    lower: Vec<[u32; 3]>,
+    upper: Vec<Vec<u32>>,
+    /// Below along each axis.
+    lower: Vec<Vec<u32>>,
 }
 
 impl Neighbours {
@@ -32,37 +35,43 @@ impl Neighbours {
         // In the order of z, y, x.
         let key = |[x, y, z]: [u32; 3]| [z, y, x];
         let mut sorted: Vec<([u32; 3], u32)> = blocks.iter().map(|&b| key(b)).zip(0..).collect();
-        sorted.sort_unstable();
+        sorted.par_sort_unstable();
         if let Some(pair) = sorted.windows(2).find(|pair| pair[0].0 == pair[1].0) {
             return error(key(pair[0].0), "it is listed twice");
         }
-        let mut upper = vec![[NONE; STEPS]; blocks.len()];
-        let mut lower = vec![[NONE; 3]; blocks.len()];
-        for bits in 1..=STEPS {
-            let by = |axis: usize| (bits >> axis & 1) as u32 * BLOCK as u32;
-            let mut ahead = sorted.iter().peekable();
-            for &([z, y, x], number) in &sorted {
-                let step = || Some([z.checked_add(by(2))?, y.checked_add(by(1))?, x.checked_add(by(0))?]);
-                let Some(wanted) = step() else { continue };
-                while ahead.next_if(|(key, _)| *key < wanted).is_some() {}
-                if let Some(&&(_, other)) = ahead.peek().filter(|(key, _)| *key == wanted) {
-                    upper[number as usize][bits - 1] = other;
-                    if bits.is_power_of_two() {
-                        lower[other as usize][bits.trailing_zeros() as usize] = number;
-                    }
-                }
-            }
-        }
+        let (upper, mut lower): (Vec<_>, Vec<_>) = (1..=STEPS).into_par_iter().map(|bits| sweep(&sorted, bits)).unzip();
+        lower.retain(|list| !list.is_empty());
         Ok(Neighbours { upper, lower })
     }
 
     /// The neighbour of block `n` that is one block further along the axes in `bits`, 1 to 6.
     pub(super) fn upper(&self, n: usize, bits: usize) -> Option<usize> {
-        Some(self.upper[n][bits - 1]).filter(|&other| other != NONE).map(|other| other as usize)
+        Some(self.upper[bits - 1][n]).filter(|&other| other != NONE).map(|other| other as usize)
     }
 
     /// The neighbour of block `n` below it along an axis.
     pub(super) fn lower(&self, n: usize, axis: usize) -> Option<usize> {
-        Some(self.lower[n][axis]).filter(|&other| other != NONE).map(|other| other as usize)
+        Some(self.lower[axis][n]).filter(|&other| other != NONE).map(|other| other as usize)
     }
+}
+
+/// The neighbour of every block that is one block further along the axes in `bits`; and, if that is a
+/// single axis, the neighbour below it there. The blocks are given in order, with their numbers.
+fn sweep(sorted: &[([u32; 3], u32)], bits: usize) -> (Vec<u32>, Vec<u32>) {
+    let by = |axis: usize| (bits >> axis & 1) as u32 * BLOCK as u32;
+    let mut upper = vec![NONE; sorted.len()];
+    let mut lower = vec![NONE; if bits.is_power_of_two() { sorted.len() } else { 0 }];
+    let mut ahead = sorted.iter().peekable();
+    for &([z, y, x], number) in sorted {
+        let step = || Some([z.checked_add(by(2))?, y.checked_add(by(1))?, x.checked_add(by(0))?]);
+        let Some(wanted) = step() else { continue };
+        while ahead.next_if(|(key, _)| *key < wanted).is_some() {}
+        if let Some(&&(_, other)) = ahead.peek().filter(|(key, _)| *key == wanted) {
+            upper[number as usize] = other;
+            if let Some(below) = lower.get_mut(other as usize) {
+                *below = number;
+            }
+        }
+    }
+    (upper, lower)
 }

@@ -58,7 +58,7 @@ impl<'a> Samples<'a> {
         [positions, normals]: [&'a [Vec3]; 2],
     ) -> Samples<'a> {
         let mut sorted: Vec<((u64, u32), u32)> = parts.blocks.iter().map(|&block| key(block)).zip(0..).collect();
-        sorted.sort_unstable();
+        sorted.par_sort_unstable();
         Samples { parts, lattice, limits, positions, normals, sorted }
     }
 

@@ -1,0 +1,212 @@
+//! Roots on the edges of a union or an intersection, leaf by leaf.
+//!
+//! ```text
+//!        leaf A          leaf B
+//!     -----------\   /-----------      Of all the leaves near a block, one decides where the surface
+//!       |    |    \_/    |    |         crosses an edge. Which one it is, a value of each on the chord
+//!     --o----o----o-o----o----o--       tells; the steps to the root then ask that leaf alone.
+//! ```
+//!
+//! What a value on the chord says is a guess: the root of the one leaf is taken only if there, in
+//! single precision and beyond its rounding, every other leaf leaves it the decision: it is
+//! outside, for a union, or inside, for an intersection. The values on the chord show that of most
+//! edges, as the way from there to the root is short. Edges where another does not are given to
+//! all leaves together.
+//!
+//! The root of one leaf is one of all leaves then: near it the value is that leaf's.
+
+use std::ops::Range;
+
+use super::extract::Root;
+use super::lattice::Lattice;
+use super::roots::{RootFinder, beside, on_chord};
+use super::signs::EdgeRef;
+use crate::eval::{Evaluator, Op, Program, Tape};
+
+/// A group of edges, and memory for them.
+#[derive(Default)]
+pub(super) struct Deciders {
+    finder: RootFinder,
+    /// Where each edge is looked at, along it.
+    t: Vec<f64>,
+    /// Points, relative to the tape's origin, and values there.
+    points: [Vec<f32>; 3],
+    value: Vec<f32>,
+    /// By edge, the point on the chord, the value that decides there, the next to it, and the leaf that does.
+    seen: Vec<f64>,
+    best: Vec<f32>,
+    second: Vec<f32>,
+    leaf: Vec<u32>,
+    /// By leaf, where its edges end among the places.
+    ends: Vec<u32>,
+    /// Edges for searches: their places in the group, themselves, where to begin, their roots.
+    places: Vec<u32>,
+    edges: Vec<EdgeRef>,
+    starts: Vec<f64>,
+    roots: Vec<Root>,
+}
+
+impl Deciders {
+    /// The roots on `edges`, into `out`; `tape` is that of `program` for a region that holds them.
+    pub(super) fn find(
+        &mut self,
+        evaluator: &mut Evaluator,
+        (program, tape): (&Program, &Tape),
+        lattice: &Lattice,
+        edges: &[EdgeRef],
+        out: &mut [Root],
+    ) {
+        let Some((op, rivals)) = tape.rivals() else {
+            return self.finder.find(evaluator, (program, tape), lattice, edges, |_, edge| on_chord(edge), out);
+        };
+        let rivals: Vec<Tape> = rivals.collect();
+        // The largest of all values decides a union, of all negatives an intersection.
+        let sign = if op == Op::Or { 1.0 } else { -1.0 };
+        self.guess(evaluator, (tape, &rivals, sign), lattice, edges);
+        self.sort(rivals.len());
+        let mut first = 0;
+        for (leaf, rival) in rivals.iter().enumerate() {
+            let end = self.ends[leaf] as usize;
+            self.search(evaluator, (program, rival), lattice, edges, first..end, out);
+            first = end;
+        }
+        self.doubt(evaluator, (tape, &rivals, sign), lattice, edges, out);
+        // From where the guess has led.
+        self.t.clear();
+        self.t.extend(out.iter().map(|root| root.t));
+        self.search(evaluator, (program, tape), lattice, edges, 0..self.places.len(), out);
+    }
+
+    /// The leaf that decides on the chord of each edge, and by its value where to begin the search.
+    fn guess(
+        &mut self,
+        evaluator: &mut Evaluator,
+        (tape, rivals, sign): (&Tape, &[Tape], f32),
+        lattice: &Lattice,
+        edges: &[EdgeRef],
+    ) {
+        self.seen.clear();
+        self.seen.extend(edges.iter().map(on_chord));
+        place(tape, lattice, edges.iter().zip(self.seen.iter().copied()), &mut self.points);
+        for list in [&mut self.best, &mut self.second] {
+            list.clear();
+            list.resize(edges.len(), f32::NEG_INFINITY);
+        }
+        self.leaf.clear();
+        self.leaf.resize(edges.len(), 0);
+        for (number, rival) in (0..).zip(rivals) {
+            self.evaluate(evaluator, rival);
+            let known = self.best.iter_mut().zip(&mut self.second).zip(&mut self.leaf);
+            for (((best, second), leaf), &value) in known.zip(&self.value) {
+                let value = sign * value;
+                *leaf = if value > *best { number } else { *leaf };
+                *second = second.max(best.min(value));
+                *best = best.max(value);
+            }
+        }
+        let known = self.seen.iter().zip(&self.best).zip(edges);
+        self.t.clear();
+        self.t.extend(known.map(|((&t, &best), edge)| beside(edge, t, f64::from(sign * best))));
+    }
+
+    /// Puts the edges in `places` in the order of their leaves.
+    fn sort(&mut self, leaves: usize) {
+        // Counted first, then each to its place.
+        self.ends.clear();
+        self.ends.resize(leaves + 1, 0);
+        self.leaf.iter().for_each(|&leaf| self.ends[leaf as usize + 1] += 1);
+        (0..leaves).for_each(|leaf| self.ends[leaf + 1] += self.ends[leaf]);
+        self.places.resize(self.leaf.len(), 0);
+        for (n, &leaf) in (0..).zip(&self.leaf) {
+            let end = &mut self.ends[leaf as usize];
+            self.places[*end as usize] = n;
+            *end += 1;
+        }
+    }
+
+    /// Puts the edges in `places` where a leaf other than the one asked may decide.
+    fn doubt(
+        &mut self,
+        evaluator: &mut Evaluator,
+        (tape, rivals, sign): (&Tape, &[Tape], f32),
+        lattice: &Lattice,
+        edges: &[EdgeRef],
+        roots: &[Root],
+    ) {
+        let sure = -tape.roundoff();
+        // By how much a value may change on the way along an edge.
+        let rise = if tape.is_gentle() { lattice.step() } else { f64::INFINITY };
+        self.places.clear();
+        self.places.extend((0..edges.len() as u32).filter(|&n| {
+            let n = n as usize;
+            let way = (roots[n].t - self.seen[n]).abs();
+            let is_sure = f64::from(self.second[n]) + way * rise < sure;
+            !is_sure
+        }));
+        let there = self.places.iter().map(|&n| (&edges[n as usize], roots[n as usize].t));
+        place(tape, lattice, there, &mut self.points);
+        self.second.clear();
+        self.second.resize(self.places.len(), f32::NEG_INFINITY);
+        for (number, rival) in (0..).zip(rivals) {
+            self.evaluate(evaluator, rival);
+            for ((second, &n), &value) in self.second.iter_mut().zip(&self.places).zip(&self.value) {
+                let value = if self.leaf[n as usize] == number { f32::NEG_INFINITY } else { sign * value };
+                *second = second.max(value);
+            }
+        }
+        let mut others = self.second.iter();
+        self.places.retain(|_| others.next().is_none_or(|&second| f64::from(second) >= sure));
+    }
+
+    /// The values of a leaf at the points.
+    fn evaluate(&mut self, evaluator: &mut Evaluator, rival: &Tape) {
+        let [x, y, z] = &self.points;
+        self.value.resize(x.len(), 0.0);
+        evaluator.values(rival, x, y, z, &mut self.value);
+    }
+
+    /// The roots of some of the edges in `places`.
+    fn search(
+        &mut self,
+        evaluator: &mut Evaluator,
+        pair: (&Program, &Tape),
+        lattice: &Lattice,
+        edges: &[EdgeRef],
+        some: Range<usize>,
+        out: &mut [Root],
+    ) {
+        let places = &self.places[some];
+        if places.is_empty() {
+            return;
+        }
+        self.edges.clear();
+        self.edges.extend(places.iter().map(|&n| edges[n as usize]));
+        self.starts.clear();
+        self.starts.extend(places.iter().map(|&n| self.t[n as usize]));
+        self.roots.resize(self.edges.len(), Root::default());
+        let starts = &self.starts;
+        self.finder.find(evaluator, pair, lattice, &self.edges, |n, _| starts[n], &mut self.roots);
+        for (&n, root) in places.iter().zip(&self.roots) {
+            out[n as usize] = *root;
+        }
+    }
+}
+
+/// Points on edges, relative to the tape's origin.
+fn place<'a>(
+    tape: &Tape,
+    lattice: &Lattice,
+    edges: impl Iterator<Item = (&'a EdgeRef, f64)>,
+    [x, y, z]: &mut [Vec<f32>; 3],
+) {
+    x.clear();
+    y.clear();
+    z.clear();
+    for (edge, t) in edges {
+        let mut p = lattice.node(edge.node[0], edge.node[1], edge.node[2]) - tape.origin();
+        p[usize::from(edge.axis)] += t * lattice.step();
+        x.push(p.x as f32);
+        y.push(p.y as f32);
+        z.push(p.z as f32);
+    }
+}
