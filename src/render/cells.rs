@@ -129,6 +129,9 @@ const CROWD: usize = 24;
 /// Unions of more leaves are divided in space.
 const UNITED: usize = 8;
 
+/// Slopes below this come of 0 rounded outwards.
+const LEVEL: f64 = 1e-30;
+
 /// Where as many halvings have left more than three quarters of the leaves, more are of no use.
 const STALE: u32 = 6;
 
@@ -241,7 +244,9 @@ impl Cell {
             let along = Interval::new(low[axis], high[axis]);
             Dual::new(Interval::new(min[axis], max[axis]), [along, zero, zero])
         };
-        self.program.evaluate([side(0), side(1), side(2)], &mut Vec::new()).gradient()[0]
+        let slope = self.program.evaluate([side(0), side(1), side(2)], &mut Vec::new()).gradient()[0];
+        let level = |v: f64| if v.abs() < LEVEL { 0.0 } else { v };
+        Interval::new(level(slope.lo()), level(slope.hi()))
     }
 
     /// The program for bulk evaluation.

@@ -113,9 +113,12 @@ impl Formula {
     }
 
     pub(super) fn dual_range_of(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
+        // A derivative of 0 that was rounded outwards is 0: steep formulas would make much of it.
+        const LEVEL: f64 = 1e-300;
+        let level = |d: Interval| if d.magnitude() < LEVEL { Interval::point(0.0) } else { d };
         let point = p.map(|c| {
             let sure = |range| Sure { range, sure: true };
-            Slope { v: sure(c.value()), d: c.gradient().map(sure) }
+            Slope { v: sure(c.value()), d: c.gradient().map(|d| sure(level(d))) }
         });
         let value = self.0.code.plan().value(point, &mut Vec::new());
         let range = turned(value.v);
