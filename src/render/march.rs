@@ -15,8 +15,8 @@
 //! takes it long is bounded by the tangents from both ends. Else what the far end leaves open is
 //! looked at from the near end in steps as long as the bounds on the slope allow, or in leaps that
 //! the bounds from both of their ends cover. A bracketed Newton iteration in single precision and
-//! one step in double precision find the crossing. Signs of values within the rounding error of
-//! single precision are looked up in double precision; a ray that takes too many steps, or of
+//! steps in double precision (`exact`) find the crossing. Signs of values within the rounding error
+//! of single precision are looked up in double precision; a ray that takes too many steps, or of
 //! whose slopes nothing is known, is divided by intervals (`eval::first_hit`).
 
 use glam::Vec3;
@@ -29,19 +29,18 @@ use crate::eval::{Bend, Care, Evaluator, Gradients, first_hit};
 
 /// A crossing found in single precision.
 #[derive(Clone, Copy)]
-struct Found {
-    lane: Lane,
-    slope: f32,
-    gradient: Vec3,
+pub(super) struct Found {
+    pub(super) lane: Lane,
+    pub(super) slope: f32,
+    pub(super) gradient: Vec3,
     /// How far double precision has led beyond the lane's `at`.
-    ahead: f64,
+    pub(super) ahead: f64,
 }
 
 /// Steps of the searches, after which rays are divided by intervals.
 const TANGENTS: usize = 8;
 const SEARCH: usize = 40;
 const NEWTON: usize = 16;
-const STEPS: usize = 4;
 
 /// A search leaps this part of what a step may go on beyond where it is safe.
 const LEAP: f32 = 0.9;
@@ -52,16 +51,16 @@ const SLOPE_ERROR: f32 = 1e-3;
 /// Scratch memory of a thread.
 #[derive(Default)]
 pub(super) struct Marcher {
-    evaluator: Evaluator,
+    pub(super) evaluator: Evaluator,
     single: [Vec<f32>; 7],
-    double: [Vec<f64>; 4],
+    pub(super) double: [Vec<f64>; 4],
     near: Vec<Lane>,
     far: Vec<Lane>,
     search: Vec<Lane>,
     unique: Vec<Lane>,
-    found: Vec<Found>,
-    doubtful: Vec<Found>,
-    open: Vec<Span>,
+    pub(super) found: Vec<Found>,
+    pub(super) doubtful: Vec<Found>,
+    pub(super) open: Vec<Span>,
     /// The rays that have hit something.
     pub(super) hits: Vec<u32>,
 }
@@ -424,102 +423,6 @@ impl Marcher {
         self.open.extend(lanes.iter().map(|lane| job.span(lane)));
         lanes.clear();
         self.unique = lanes;
-    }
-
-    /// Lanes that have come so close to a crossing that rounding hides the sign: where a little
-    /// beyond where the tangent meets 0 the sign has changed, and a crossing that is nearer makes
-    /// no difference, that is it.
-    fn settle(&mut self, job: &Job<'_>) {
-        let mut doubtful = std::mem::take(&mut self.doubtful);
-        self.exact_values(job, &doubtful);
-        let mut kept = 0;
-        for at in 0..doubtful.len() {
-            let mut found = doubtful[at];
-            let g = f64::from(found.lane.turn) * self.double[3][at];
-            found.ahead = (-1.05 * g).max(0.0) / f64::from(found.slope) + 0.01 * job.settled;
-            let ahead = found.ahead as f32;
-            if ahead < job.close.min(found.lane.right - found.lane.at) {
-                doubtful[kept] = found;
-                kept += 1;
-            } else {
-                self.open.push(job.rest(&found.lane));
-            }
-        }
-        doubtful.truncate(kept);
-        self.exact_values(job, &doubtful);
-        for (found, value) in doubtful.drain(..).zip(&self.double[3]) {
-            if f64::from(found.lane.turn) * value > 0.0 {
-                self.found.push(found);
-            } else {
-                self.open.push(job.rest(&found.lane));
-            }
-        }
-        self.doubtful = doubtful;
-    }
-
-    /// The surfaces of the crossings, after steps in double precision where the rounding of
-    /// single precision would show.
-    fn finish(&mut self, job: &Job<'_>, surfaces: &mut [Surface]) {
-        let mut found = std::mem::take(&mut self.found);
-        found.retain(|found| {
-            let is_coarse = job.doubt > job.fine * found.slope;
-            if !is_coarse {
-                self.surface(job, found, surfaces);
-            }
-            is_coarse
-        });
-        for round in 0..STEPS {
-            self.exact_values(job, &found);
-            let mut kept = 0;
-            for at in 0..found.len() {
-                let Found { lane, slope, .. } = found[at];
-                let step = -f64::from(lane.turn) * self.double[3][at] / f64::from(slope);
-                found[at].ahead += step;
-                if step.abs() <= job.settled {
-                    self.surface(job, &found[at], surfaces);
-                } else if step.abs() > job.far_off || round + 1 == STEPS {
-                    self.open.push(job.span(&lane));
-                } else {
-                    found[kept] = found[at];
-                    kept += 1;
-                }
-            }
-            found.truncate(kept);
-        }
-        self.found = found;
-    }
-
-    /// Values of the program in double precision where the crossings are; their signs are certain.
-    fn exact_values(&mut self, job: &Job<'_>, found: &[Found]) {
-        if found.is_empty() {
-            return;
-        }
-        let [x, y, z, v] = &mut self.double;
-        for list in [&mut *x, &mut *y, &mut *z] {
-            list.clear();
-        }
-        for found in found {
-            let p = job.point(&found.lane, found.ahead) - job.center;
-            x.push(p.x);
-            y.push(p.y);
-            z.push(p.z);
-        }
-        v.resize(found.len(), 0.0);
-        self.evaluator.values_f64(job.tape, x, y, z, v);
-    }
-
-    fn surface(&mut self, job: &Job<'_>, found: &Found, surfaces: &mut [Surface]) {
-        let Span { ray, near, far } = job.span(&found.lane);
-        let Ray { origin, direction, base, .. } = job.rays[ray as usize];
-        let t = (near + f64::from(found.lane.at) + found.ahead).clamp(near, far);
-        let normal = -found.gradient * found.gradient.length_recip();
-        if !normal.is_finite() {
-            self.open.push(job.span(&found.lane));
-            return;
-        }
-        let owner = job.owner.unwrap_or_else(|| job.cell.program.deciding_leaf(origin + t * direction));
-        surfaces[ray as usize] = Surface { distance: base + t, normal, owner };
-        self.hits.push(ray);
     }
 }
 

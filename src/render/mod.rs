@@ -7,6 +7,7 @@
 
 mod cells;
 mod contour;
+mod exact;
 mod extent;
 mod facets;
 mod gbuffer;
