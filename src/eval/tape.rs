@@ -4,12 +4,15 @@
 //! are rebased to that origin in double precision, so a small solid far from the origin of
 //! coordinates is evaluated as accurately as one at it.
 
+mod rivals;
+
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
+use self::rivals::Rivals;
 use super::fold::join;
-use super::program::{Kind, Op, Program};
+use super::program::{Op, Program};
 use super::register::{Step, schedule};
 use crate::Bounds;
 use crate::field::{AnyField, AnyWarp, COORDINATE_LIMIT, Chunk, Placement, Product, Pull, Rule, Zone};
@@ -44,13 +47,6 @@ pub struct Tape {
     /// Whether every leaf takes short chunks; deformations and joins do.
     short: bool,
     rivals: Option<Rivals>,
-}
-
-/// What a plain min or max of leaves, in the order of their steps, is made of.
-#[derive(Clone)]
-struct Rivals {
-    op: Op,
-    negated: Vec<bool>,
 }
 
 /// A deformation to run: from the points in slot `from` to those in the next slot.
@@ -113,36 +109,8 @@ impl Tape {
             });
         }
         let short = leaves.iter().all(|leaf| leaf.field.takes_short());
-        let rivals = Rivals::of(program).filter(|rivals| rivals.negated.len() == leaves.len());
+        let rivals = Rivals::of(program, leaves.len());
         Tape { frames, leaves, steps, registers: plan.registers, result: plan.result, origin, roundoff, short, rivals }
-    }
-
-    /// The leaves of a plain min or max of them, if that is what the program is and lanes of any
-    /// length serve it: the value is the least of theirs for a conjunction, the largest for a
-    /// disjunction.
-    pub(crate) fn rivals(&self) -> Option<(Op, impl Iterator<Item = Tape>)> {
-        let Rivals { op, negated } = self.rivals.as_ref().filter(|_| self.short)?;
-        Some((*op, self.leaves.iter().zip(negated).map(|(leaf, negated)| self.alone(leaf, *negated))))
-    }
-
-    /// Whether the value surely changes by at most 1 per length unit.
-    pub(crate) fn is_gentle(&self) -> bool {
-        let is_gentle = |leaf: &LeafStep| leaf.field.convex() || leaf.field.exact();
-        self.rivals.is_some() && self.frames.is_empty() && self.leaves.iter().all(is_gentle)
-    }
-
-    /// The tape of one of its leaves, or of its complement.
-    fn alone(&self, leaf: &LeafStep, negated: bool) -> Tape {
-        let negate = negated.then_some(Step::Negate { register: 0 });
-        Tape {
-            frames: if leaf.slot == 0 { Vec::new() } else { self.frames.clone() },
-            leaves: vec![leaf.clone()],
-            steps: [Step::Leaf { leaf: 0, to: 0 }].into_iter().chain(negate).collect(),
-            registers: 1,
-            result: 0,
-            rivals: None,
-            ..*self
-        }
     }
 
     /// Whether few points are as quick as they are few: lanes are not padded to a whole chunk.
@@ -174,20 +142,6 @@ impl Tape {
     #[must_use]
     pub fn roundoff(&self) -> f64 {
         self.roundoff
-    }
-}
-
-impl Rivals {
-    fn of(program: &Program) -> Option<Rivals> {
-        let root = &program.nodes[program.root.node()];
-        let Kind::Join { op, rule: Rule::MinMax, .. } = root.kind else { return None };
-        let flip = program.root.negated();
-        let operands = program.list(root);
-        let is_leaf = |node: usize| matches!(program.nodes[node].kind, Kind::Leaf(_));
-        operands.iter().all(|edge| is_leaf(edge.node())).then(|| Rivals {
-            op: op.flip_if(flip),
-            negated: operands.iter().map(|edge| edge.negated() != flip).collect(),
-        })
     }
 }
 

@@ -1,0 +1,60 @@
+//! A plain min or max of leaves, taken apart: at a point one of them decides, and it can be
+//! evaluated alone.
+
+use super::{LeafStep, Tape};
+use crate::eval::program::{Kind, Op, Program};
+use crate::eval::register::Step;
+use crate::field::Rule;
+
+/// What a plain min or max of leaves, in the order of their steps, is made of.
+#[derive(Clone)]
+pub(super) struct Rivals {
+    op: Op,
+    negated: Vec<bool>,
+}
+
+impl Rivals {
+    /// Those of a program, if its tape has as many leaves: none of them is used twice.
+    pub(super) fn of(program: &Program, leaves: usize) -> Option<Rivals> {
+        let root = &program.nodes[program.root.node()];
+        let Kind::Join { op, rule: Rule::MinMax, .. } = root.kind else { return None };
+        let flip = program.root.negated();
+        let operands = program.list(root);
+        let is_leaf = |node: usize| matches!(program.nodes[node].kind, Kind::Leaf(_));
+        let is_plain = operands.len() == leaves && operands.iter().all(|edge| is_leaf(edge.node()));
+        is_plain.then(|| Rivals {
+            op: op.flip_if(flip),
+            negated: operands.iter().map(|edge| edge.negated() != flip).collect(),
+        })
+    }
+}
+
+impl Tape {
+    /// The leaves of a plain min or max of them, if that is what the program is and lanes of any
+    /// length serve it: the value is the least of theirs for a conjunction, the largest for a
+    /// disjunction.
+    pub(crate) fn rivals(&self) -> Option<(Op, impl Iterator<Item = Tape>)> {
+        let Rivals { op, negated } = self.rivals.as_ref().filter(|_| self.short)?;
+        Some((*op, self.leaves.iter().zip(negated).map(|(leaf, negated)| self.alone(leaf, *negated))))
+    }
+
+    /// Whether the value surely changes by at most 1 per length unit.
+    pub(crate) fn is_gentle(&self) -> bool {
+        let is_gentle = |leaf: &LeafStep| leaf.field.convex() || leaf.field.exact();
+        self.rivals.is_some() && self.frames.is_empty() && self.leaves.iter().all(is_gentle)
+    }
+
+    /// The tape of one of its leaves, or of its complement.
+    fn alone(&self, leaf: &LeafStep, negated: bool) -> Tape {
+        let negate = negated.then_some(Step::Negate { register: 0 });
+        Tape {
+            frames: if leaf.slot == 0 { Vec::new() } else { self.frames.clone() },
+            leaves: vec![leaf.clone()],
+            steps: [Step::Leaf { leaf: 0, to: 0 }].into_iter().chain(negate).collect(),
+            registers: 1,
+            result: 0,
+            rivals: None,
+            ..*self
+        }
+    }
+}
