@@ -267,22 +267,38 @@ impl Rays {
         if self.parallel { (self.eye + offset, self.forward) } else { (self.eye, (self.forward + offset).normalize()) }
     }
 
-    /// The pixel coordinates at which a point appears; `None` if rays meet in an eye that the
-    /// point is beside or behind.
-    pub(crate) fn project(&self, p: DVec3) -> Option<[f64; 2]> {
-        let seen = p - self.eye;
-        let offset = if self.parallel {
-            seen
-        } else {
-            let depth = seen.dot(self.forward);
-            // Nearer to the eye's plane than this, rounding decides on which side it is.
-            if depth <= 1e-9 * seen.length() {
-                return None;
+    /// The least and the greatest pixel coordinates, across and down, at which points of a box may
+    /// appear; `None` if rays meet in an eye that all of it is beside or behind.
+    pub(crate) fn outline(&self, bounds: &Bounds) -> Option<[[f64; 2]; 2]> {
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        let axes = [self.across, self.down].map(|axis| axis / axis.length_squared());
+        let seen = bounds.corners().map(|corner| corner - self.eye);
+        // Nearer to the eye's plane than this, rounding decides on which side it is.
+        let depth = |seen: DVec3| if self.parallel { 1.0 } else { seen.dot(self.forward) };
+        let in_front = |seen: DVec3| depth(seen) > 1e-9 * seen.length();
+        for (number, &corner) in seen.iter().enumerate() {
+            if in_front(corner) {
+                let offset = corner / depth(corner) - self.corner;
+                for axis in 0..2 {
+                    let at = offset.dot(axes[axis]);
+                    low[axis] = low[axis].min(at);
+                    high[axis] = high[axis].max(at);
+                }
+                continue;
             }
-            seen / depth
-        };
-        let at = |axis: DVec3| (offset - self.corner).dot(axis) / axis.length_squared();
-        Some([at(self.across), at(self.down)])
+            // Where its edges cross the eye's plane, the box goes on to infinity.
+            for other in [1, 2, 4].map(|bit| seen[number ^ bit]).into_iter().filter(|&other| in_front(other)) {
+                let (near, far) = (depth(corner), depth(other));
+                let crossing = corner + (other - corner) * (near / (near - far)).clamp(0.0, 1.0);
+                let rounding = 1e-6 * (corner.length() + other.length());
+                for axis in 0..2 {
+                    let side = crossing.dot(axes[axis]) / axes[axis].length();
+                    low[axis] = if side < rounding { f64::NEG_INFINITY } else { low[axis] };
+                    high[axis] = if side > -rounding { f64::INFINITY } else { high[axis] };
+                }
+            }
+        }
+        (low[0] <= high[0]).then(|| [0, 1].map(|axis| [low[axis], high[axis]]))
     }
 
     /// Where the rays of a perspective camera meet.
@@ -336,17 +352,46 @@ mod tests {
     }
 
     #[test]
-    fn points_of_a_ray_appear_at_its_pixel() {
-        let eye = DVec3::new(3.0, -4.0, 5.0);
-        for camera in
-            [Camera::perspective(eye, DVec3::ONE, DVec3::Z, 50.0), Camera::orthographic(eye, DVec3::ONE, DVec3::Z, 7.0)]
-        {
-            let rays = camera.rays(64, 48);
-            let (origin, direction) = rays.ray(12.5, 40.25);
-            let [x, y] = rays.project(origin + 3.0 * direction).unwrap();
-            assert!((x - 12.5).abs() < 1e-9 && (y - 40.25).abs() < 1e-9);
-            assert_eq!(rays.project(eye - direction).is_none(), rays.meeting_point().is_some());
+    fn boxes_appear_where_their_points_do() {
+        let random = |n: u32| {
+            f64::from(n.wrapping_mul(2_654_435_769).rotate_left(13).wrapping_mul(2_246_822_519)) / 2f64.powi(32)
+        };
+        let vector = |n: u32| DVec3::new(random(3 * n), random(3 * n + 1), random(3 * n + 2)) * 4.0 - 2.0;
+        let (mut nowhere, mut partly) = (0, 0);
+        for n in 0..2000 {
+            let (eye, target) = (vector(4 * n), vector(4 * n + 1));
+            let cameras =
+                [Camera::perspective(eye, target, DVec3::Z, 70.0), Camera::orthographic(eye, target, DVec3::Z, 3.0)];
+            for camera in cameras {
+                let rays = camera.rays(64, 48);
+                let bounds = Bounds::from_center(vector(4 * n + 2), vector(4 * n + 3).abs());
+                let outline = rays.outline(&bounds);
+                nowhere += usize::from(outline.is_none());
+                partly +=
+                    usize::from(outline.is_some_and(|[across, _]| across[0].is_infinite() != across[1].is_infinite()));
+                for m in 0..20 {
+                    let p = bounds.min + bounds.size() * (vector(m + 20 * n) + 2.0) / 4.0;
+                    if rays.meeting_point().is_none() || (p - eye).dot(rays.forward()) > 1e-6 {
+                        let (x, y) = project(&camera, p, 64.0, 48.0);
+                        let [across, down] = outline.expect("a point of it is in front");
+                        assert!(across[0] - 1e-6 < x && x < across[1] + 1e-6, "{x} {across:?}");
+                        assert!(down[0] - 1e-6 < y && y < down[1] + 1e-6, "{y} {down:?}");
+                    }
+                }
+                // Corners are where the outline ends.
+                if let Some([across, _]) =
+                    outline.filter(|outline| outline.as_flattened().iter().all(|v| v.is_finite()))
+                {
+                    let least = bounds
+                        .corners()
+                        .map(|p| project(&camera, p, 64.0, 48.0).0)
+                        .into_iter()
+                        .fold(f64::INFINITY, f64::min);
+                    assert!((across[0] - least).abs() < 1e-6 * (1.0 + least.abs()));
+                }
+            }
         }
+        assert!(nowhere > 20 && partly > 100, "{nowhere} {partly}");
     }
 
     #[test]

@@ -208,20 +208,12 @@ impl<'a> View<'a> {
 
     /// The pixels of a tile that may see the box.
     fn rectangle(&self, bounds: &Bounds, tile: &Window) -> Option<Rectangle> {
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for corner in bounds.corners() {
-            let Some(at) = self.rays.project(corner) else {
-                return Some(Rectangle { top: 0, bottom: tile.height as usize, columns: columns(0, tile.width) });
-            };
-            for axis in 0..2 {
-                low[axis] = low[axis].min(at[axis]);
-                high[axis] = high[axis].max(at[axis]);
-            }
-        }
+        let outline = self.rays.outline(bounds)?;
         // A pixel counts if its ray is within the box's outline, give or take rounding.
         let clip = |axis: usize, first: u32, count: u32, within: f64| {
-            let low = (low[axis] - within - 1e-3 - f64::from(first)).ceil().clamp(0.0, f64::from(count));
-            let high = (high[axis] - within + 1e-3 - f64::from(first)).floor() + 1.0;
+            let [low, high] = outline[axis];
+            let low = (low - within - 1e-3 - f64::from(first)).ceil().clamp(0.0, f64::from(count));
+            let high = (high - within + 1e-3 - f64::from(first)).floor() + 1.0;
             (low as u32, high.clamp(0.0, f64::from(count)) as u32)
         };
         let (left, right) = clip(0, tile.left, tile.width, tile.within.0);

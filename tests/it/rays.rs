@@ -274,7 +274,6 @@ fn pictures_see_what_single_rays_hit() {
 }
 
 #[test]
-#[ignore = "takes minutes"]
 fn pictures_of_many_and_of_bent_leaves_see_what_single_rays_hit() {
     compare_with_single_rays([models::m4(), models::m6()]);
 }
