@@ -1,9 +1,9 @@
 //! The operations of formulas, on the numbers that they are evaluated on.
 //!
-//! A formula is data, not code: one walk over its operations serves points (`f64`), blocks of
-//! points, ranges and gradients, each of which says here what an operation does to it. The
-//! meaning is that of fidget, on IEEE numbers: the root of −1 is NaN, a minimum of a number and NaN
-//! is NaN. What is undefined stays so to the end, where it counts as outside.
+//! A formula is data, not code: one walk over its operations serves points, ranges and gradients,
+//! each of which says here what an operation does to it. The meaning is that of fidget, on IEEE
+//! numbers: the root of −1 is NaN, a minimum of a number and NaN is NaN. What is undefined stays so
+//! to the end, where it counts as outside.
 
 use fidget::context::{BinaryOpcode, UnaryOpcode};
 
@@ -131,47 +131,55 @@ macro_rules! float {
                 }
             }
         }
+
+        impl Arithmetic for $float {
+            #[inline(always)]
+            fn constant(c: f64) -> $float {
+                $float::narrow(c)
+            }
+
+            #[inline(always)]
+            fn unary(op: UnaryOpcode, a: $float) -> $float {
+                $float::apply1(op, a)
+            }
+
+            #[inline(always)]
+            fn binary(op: BinaryOpcode, a: $float, b: $float) -> $float {
+                $float::apply2(op, a, b)
+            }
+        }
+
+        impl Scalar for $float {
+            #[inline(always)]
+            fn select(self, nonneg: $float, neg: $float) -> $float {
+                if self >= 0.0 { nonneg } else { neg }
+            }
+
+            #[inline(always)]
+            fn if_zero(self, zero: $float, other: $float) -> $float {
+                if self == 0.0 { zero } else { other }
+            }
+
+            #[inline(always)]
+            fn flat(self) -> $float {
+                0.0
+            }
+
+            #[inline(always)]
+            fn off_the_cut(slope: $float, _y: $float, _x: $float) -> $float {
+                slope
+            }
+
+            #[inline(always)]
+            fn vanishes(self) -> bool {
+                self == 0.0
+            }
+        }
     };
 }
 
 float!(f32);
 float!(f64);
-
-impl Arithmetic for f64 {
-    fn constant(c: f64) -> f64 {
-        c
-    }
-
-    fn unary(op: UnaryOpcode, a: f64) -> f64 {
-        f64::apply1(op, a)
-    }
-
-    fn binary(op: BinaryOpcode, a: f64, b: f64) -> f64 {
-        f64::apply2(op, a, b)
-    }
-}
-
-impl Scalar for f64 {
-    fn select(self, nonneg: f64, neg: f64) -> f64 {
-        if self >= 0.0 { nonneg } else { neg }
-    }
-
-    fn if_zero(self, zero: f64, other: f64) -> f64 {
-        if self == 0.0 { zero } else { other }
-    }
-
-    fn flat(self) -> f64 {
-        0.0
-    }
-
-    fn off_the_cut(slope: f64, _y: f64, _x: f64) -> f64 {
-        slope
-    }
-
-    fn vanishes(self) -> bool {
-        self == 0.0
-    }
-}
 
 /// Calls `$body` with `$op` bound to the operation as a constant, so that each gets a loop of
 /// its own.
@@ -205,52 +213,3 @@ macro_rules! each_binary {
 }
 
 pub(super) use {each_binary, each_unary};
-
-/// Several points at once: what a walk costs beside the arithmetic is shared by them.
-#[derive(Clone, Copy)]
-pub(super) struct Block(pub(super) [f32; Block::WIDTH]);
-
-impl Block {
-    pub(super) const WIDTH: usize = 16;
-
-    #[inline(always)]
-    fn zip(self, other: Block, f: impl Fn(f32, f32) -> f32) -> Block {
-        Block(std::array::from_fn(|i| f(self.0[i], other.0[i])))
-    }
-}
-
-impl Arithmetic for Block {
-    fn constant(c: f64) -> Block {
-        Block([f32::narrow(c); Block::WIDTH])
-    }
-
-    fn unary(op: UnaryOpcode, a: Block) -> Block {
-        each_unary!(op, OP => Block(a.0.map(|v| f32::apply1(OP, v))))
-    }
-
-    fn binary(op: BinaryOpcode, a: Block, b: Block) -> Block {
-        each_binary!(op, OP => a.zip(b, |v, w| f32::apply2(OP, v, w)))
-    }
-}
-
-impl Scalar for Block {
-    fn select(self, nonneg: Block, neg: Block) -> Block {
-        Block(std::array::from_fn(|i| if self.0[i] >= 0.0 { nonneg.0[i] } else { neg.0[i] }))
-    }
-
-    fn if_zero(self, zero: Block, other: Block) -> Block {
-        Block(std::array::from_fn(|i| if self.0[i] == 0.0 { zero.0[i] } else { other.0[i] }))
-    }
-
-    fn flat(self) -> Block {
-        Block([0.0; Block::WIDTH])
-    }
-
-    fn off_the_cut(slope: Block, _y: Block, _x: Block) -> Block {
-        slope
-    }
-
-    fn vanishes(self) -> bool {
-        self.0.iter().all(|v| *v == 0.0)
-    }
-}

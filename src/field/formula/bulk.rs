@@ -1,4 +1,4 @@
-//! Formulas over chunks of points.
+//! Values of formulas over chunks of points.
 //!
 //! The operations are run one after the other, each over the whole chunk, in a loop of its
 //! own that the compiler makes vectors of.
@@ -8,16 +8,14 @@ use std::cell::RefCell;
 use fidget::context::{BinaryOpcode, UnaryOpcode};
 
 use super::Formula;
-use super::arithmetic::{Block, Float, each_binary, each_unary};
-use super::erased::{turned, turned_slope};
+use super::arithmetic::{Float, each_binary, each_unary};
 use super::plan::{Plan, Source, Step};
-use super::slope::Slope;
 use crate::Real;
 use crate::field::{Chunk, Placement, VALUE_LIMIT};
-use crate::num::kernel::{self, CHUNK, Element, Task, dispatched};
+use crate::num::kernel::{self, Element, Task, dispatched};
 
 /// What a thread needs for chunks of one precision.
-struct Scratch<E> {
+pub(super) struct Scratch<E> {
     /// The chunk's points in the formula's frame.
     points: [Vec<E>; 3],
     registers: Vec<Vec<E>>,
@@ -29,12 +27,16 @@ impl<E: Element> Scratch<E> {
     }
 
     /// Fills in the points of the formula's frame.
-    fn place(&mut self, points: [&[E]; 3], placement: &Placement) {
+    pub(super) fn place(&mut self, points: [&[E]; 3], placement: &Placement) {
         let len = points[0].len();
         for axis in &mut self.points {
             axis.resize(len, E::default());
         }
         kernel::run(&Place(placement), points, self.points.each_mut().map(Vec::as_mut_slice));
+    }
+
+    pub(super) fn points(&self) -> [&[E]; 3] {
+        self.points.each_ref().map(Vec::as_slice)
     }
 
     /// Makes room for a plan.
@@ -48,9 +50,8 @@ impl<E: Element> Scratch<E> {
 }
 
 thread_local! {
-    static SINGLE: RefCell<Scratch<f32>> = const { RefCell::new(Scratch::new()) };
+    pub(super) static SINGLE: RefCell<Scratch<f32>> = const { RefCell::new(Scratch::new()) };
     static DOUBLE: RefCell<Scratch<f64>> = const { RefCell::new(Scratch::new()) };
-    static BLOCKS: RefCell<Vec<Slope<Block>>> = const { RefCell::new(Vec::new()) };
 }
 
 /// The map to the formula's frame.
@@ -67,7 +68,7 @@ pub(super) fn single(formula: &Formula, chunk: Chunk<'_, f32, 1>) {
     let [out] = chunk.out;
     SINGLE.with_borrow_mut(|scratch| {
         scratch.place(chunk.points, chunk.placement);
-        let points = scratch.points.each_ref().map(Vec::as_slice);
+        let points = scratch.points();
         if !formula.0.native.run(&formula.0.code, points, out) {
             interpret(formula.0.code.plan(), scratch, out);
         }
@@ -124,7 +125,7 @@ struct Interpret<'a, E> {
 }
 
 /// An operand of a chunk.
-enum Operand<'a, E> {
+pub(super) enum Operand<'a, E> {
     Slice(&'a [E]),
     Const(E),
 }
@@ -166,7 +167,7 @@ fn operand<'a, E: Element + Float>(source: Source, points: &'a [Vec<E>; 3], regi
 }
 
 #[inline(always)]
-fn unary<E: Float>(op: UnaryOpcode, a: Operand<'_, E>, result: &mut [E]) {
+pub(super) fn unary<E: Float>(op: UnaryOpcode, a: Operand<'_, E>, result: &mut [E]) {
     match a {
         Operand::Slice(a) => {
             for (r, a) in result.iter_mut().zip(a) {
@@ -178,7 +179,7 @@ fn unary<E: Float>(op: UnaryOpcode, a: Operand<'_, E>, result: &mut [E]) {
 }
 
 #[inline(always)]
-fn binary<E: Float>(op: BinaryOpcode, a: Operand<'_, E>, b: Operand<'_, E>, result: &mut [E]) {
+pub(super) fn binary<E: Float>(op: BinaryOpcode, a: Operand<'_, E>, b: Operand<'_, E>, result: &mut [E]) {
     match (a, b) {
         (Operand::Slice(a), Operand::Slice(b)) => {
             for ((r, a), b) in result.iter_mut().zip(a).zip(b) {
@@ -198,33 +199,3 @@ fn binary<E: Float>(op: BinaryOpcode, a: Operand<'_, E>, b: Operand<'_, E>, resu
         (Operand::Const(a), Operand::Const(b)) => result.fill(E::apply2(op, a, b)),
     }
 }
-
-/// Values and gradients, some points at a time.
-pub(super) fn gradients(formula: &Formula, chunk: Chunk<'_, f32, 4>) {
-    let plan = formula.0.code.plan();
-    let Chunk { points, placement, out: [value, dx, dy, dz] } = chunk;
-    let scale = placement.scale;
-    SINGLE.with_borrow_mut(|scratch| {
-        scratch.place(points, placement);
-        BLOCKS.with_borrow_mut(|registers| {
-            for start in (0..value.len()).step_by(Block::WIDTH) {
-                let point = std::array::from_fn(|axis| {
-                    let at = |i: usize| scratch.points[axis].get(start + i).copied().unwrap_or(0.0);
-                    let unit = |i: usize| Block([f32::from(u8::from(i == axis)); Block::WIDTH]);
-                    Slope { v: Block(std::array::from_fn(at)), d: std::array::from_fn(unit) }
-                });
-                let all = plan.value(point, registers);
-                for i in 0..Block::WIDTH.min(value.len() - start) {
-                    let defined = !all.v.0[i].is_nan();
-                    let slope = |axis: usize| turned_slope(f64::from(all.d[axis].0[i])) * f64::from(u8::from(defined));
-                    let pulled = placement.pull([slope(0), slope(1), slope(2)]);
-                    let at = start + i;
-                    value[at] = f32::narrow(placement.finish(turned(f64::from(all.v.0[i]))));
-                    [dx[at], dy[at], dz[at]] = pulled.map(|d| f32::narrow(d * scale));
-                }
-            }
-        });
-    });
-}
-
-const _: () = assert!(CHUNK.is_multiple_of(Block::WIDTH));

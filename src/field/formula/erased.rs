@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::DAffine3;
 
 use super::slope::Slope;
-use super::{Formula, bulk};
+use super::{Formula, bulk, gradients};
 use crate::field::{AnyField, Chunk, ParamError, VALUE_LIMIT, Zone};
 use crate::num::symbol::Symbol;
 use crate::{Bounds, Dual, Interval};
@@ -95,6 +95,10 @@ impl AnyField for Formula {
     }
 
     fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
-        bulk::gradients(self, chunk);
+        gradients::gradients(self, chunk);
+    }
+
+    fn takes_short(&self) -> bool {
+        true
     }
 }

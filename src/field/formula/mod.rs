@@ -26,6 +26,7 @@ mod arithmetic;
 mod bulk;
 mod code;
 mod erased;
+mod gradients;
 mod narrow;
 mod native;
 mod plan;

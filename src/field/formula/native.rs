@@ -12,7 +12,7 @@ pub(super) use jit::Native;
 mod jit {
     use std::cell::RefCell;
     use std::sync::OnceLock;
-    use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
+    use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
     use fidget::context::Context;
     use fidget::eval::{BulkEvaluator, Function, MathFunction, Tape};
@@ -24,8 +24,8 @@ mod jit {
     type Evaluator = <JitFunction as Function>::FloatSliceEval;
     type Machine = <Evaluator as BulkEvaluator>::Tape;
 
-    /// After so many chunks the rest is worth compiling for.
-    const CHUNKS: u32 = 32;
+    /// After so many points the rest are worth compiling for.
+    const POINTS: u64 = 8192;
 
     /// So many pieces of native code are alive at a time, at most.
     const MOST: usize = 256;
@@ -39,7 +39,7 @@ mod jit {
     /// The native code of a formula, if and when it has some.
     pub(in super::super) struct Native {
         worthwhile: bool,
-        chunks: AtomicU32,
+        points: AtomicU64,
         compiled: OnceLock<Option<Compiled>>,
     }
 
@@ -58,7 +58,7 @@ mod jit {
     impl Native {
         pub(in super::super) fn new(worthwhile: bool) -> Native {
             let worthwhile = worthwhile && runs_here();
-            Native { worthwhile, chunks: AtomicU32::new(0), compiled: OnceLock::new() }
+            Native { worthwhile, points: AtomicU64::new(0), compiled: OnceLock::new() }
         }
 
         /// Runs the native code over slices of one length; whether there is any.
@@ -68,7 +68,7 @@ mod jit {
             }
             let compiled = match self.compiled.get() {
                 Some(compiled) => compiled,
-                None if self.chunks.fetch_add(1, Ordering::Relaxed) < CHUNKS => return false,
+                None if self.points.fetch_add(out.len() as u64, Ordering::Relaxed) < POINTS => return false,
                 None => self.compiled.get_or_init(|| compile(code)),
             };
             let Some(compiled) = compiled else { return false };

@@ -4,30 +4,43 @@ use fidget::context::{BinaryOpcode, UnaryOpcode};
 
 use super::arithmetic::{Arithmetic, Scalar};
 
-/// A value and its derivatives along the three axes.
+/// A value and its derivatives along the three axes, or some of them.
 #[derive(Clone, Copy)]
-pub(super) struct Slope<S> {
+pub(super) struct Slope<S, const N: usize = 3> {
     pub(super) v: S,
-    pub(super) d: [S; 3],
+    pub(super) d: [S; N],
 }
 
-impl<S: Scalar> Slope<S> {
+impl<S: Scalar, const N: usize> Slope<S, N> {
+    #[inline(always)]
+    fn each(v: S, derivative: impl Fn(usize) -> S) -> Slope<S, N> {
+        let mut d = [v; N];
+        for (i, d) in d.iter_mut().enumerate() {
+            *d = derivative(i);
+        }
+        Slope { v, d }
+    }
+
     /// Value `v`, derivatives `k` times those of `self`.
-    fn chain(self, v: S, k: S) -> Slope<S> {
-        Slope { v, d: self.d.map(|d| times(d, k)) }
+    #[inline(always)]
+    fn chain(self, v: S, k: S) -> Slope<S, N> {
+        Slope::each(v, |i| times(self.d[i], k))
     }
 
     /// Value `v`, derivatives `a` times those of `self` plus `b` times those of `other`.
-    fn chain2(self, other: Slope<S>, v: S, a: S, b: S) -> Slope<S> {
-        Slope { v, d: std::array::from_fn(|i| sum(times(self.d[i], a), times(other.d[i], b))) }
+    #[inline(always)]
+    fn chain2(self, other: Slope<S, N>, v: S, a: S, b: S) -> Slope<S, N> {
+        Slope::each(v, |i| sum(times(self.d[i], a), times(other.d[i], b)))
     }
 
     /// Value `v`, the derivatives of one or the other as `choose` has it.
-    fn either(self, other: Slope<S>, v: S, choose: impl Fn(S, S) -> S) -> Slope<S> {
-        Slope { v, d: std::array::from_fn(|i| choose(self.d[i], other.d[i])) }
+    #[inline(always)]
+    fn either(self, other: Slope<S, N>, v: S, choose: impl Fn(S, S) -> S) -> Slope<S, N> {
+        Slope::each(v, |i| choose(self.d[i], other.d[i]))
     }
 }
 
+#[inline(always)]
 fn sum<S: Scalar>(a: S, b: S) -> S {
     if a.vanishes() {
         b
@@ -39,26 +52,31 @@ fn sum<S: Scalar>(a: S, b: S) -> S {
 }
 
 /// What does not move a value does not move its function, however steep that is.
+#[inline(always)]
 fn times<S: Scalar>(d: S, k: S) -> S {
     if d.vanishes() { d } else { S::binary(BinaryOpcode::Mul, d, k) }
 }
 
+#[inline(always)]
 fn negative<S: Scalar>(a: S) -> S {
     S::unary(UnaryOpcode::Neg, a)
 }
 
 /// `1 + k·a²`.
+#[inline(always)]
 fn one_and_square<S: Scalar>(a: S, k: f64) -> S {
     let square = S::unary(UnaryOpcode::Square, a);
     S::binary(BinaryOpcode::Add, S::constant(1.0), S::binary(BinaryOpcode::Mul, S::constant(k), square))
 }
 
-impl<S: Scalar> Arithmetic for Slope<S> {
-    fn constant(c: f64) -> Slope<S> {
-        Slope { v: S::constant(c), d: [S::constant(0.0); 3] }
+impl<S: Scalar, const N: usize> Arithmetic for Slope<S, N> {
+    #[inline(always)]
+    fn constant(c: f64) -> Slope<S, N> {
+        Slope { v: S::constant(c), d: [S::constant(0.0); N] }
     }
 
-    fn unary(op: UnaryOpcode, a: Slope<S>) -> Slope<S> {
+    #[inline(always)]
+    fn unary(op: UnaryOpcode, a: Slope<S, N>) -> Slope<S, N> {
         use UnaryOpcode as U;
         let v = S::unary(op, a.v);
         let one = S::constant(1.0);
@@ -82,7 +100,8 @@ impl<S: Scalar> Arithmetic for Slope<S> {
         a.chain(v, k)
     }
 
-    fn binary(op: BinaryOpcode, a: Slope<S>, b: Slope<S>) -> Slope<S> {
+    #[inline(always)]
+    fn binary(op: BinaryOpcode, a: Slope<S, N>, b: Slope<S, N>) -> Slope<S, N> {
         use BinaryOpcode as B;
         let v = S::binary(op, a.v, b.v);
         let one = S::constant(1.0);
@@ -122,7 +141,7 @@ impl<S: Scalar> Arithmetic for Slope<S> {
             B::Or => a.either(b, v, |x, y| a.v.if_zero(y, x)),
             B::Compare | B::Mix => {
                 let flat = v.flat();
-                Slope { v, d: [flat; 3] }
+                Slope { v, d: [flat; N] }
             }
         }
     }
