@@ -133,6 +133,10 @@ pub(crate) trait AnyField: Any + Debug + Send + Sync {
     fn takes_short(&self) -> bool {
         false
     }
+    /// What a value takes, in those of an ordinary leaf.
+    fn cost(&self) -> usize {
+        1
+    }
 }
 
 /// The derivatives, along the variables of `p`, of a value that changes by at most `steepest` per

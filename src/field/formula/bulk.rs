@@ -86,7 +86,7 @@ pub(super) fn double(formula: &Formula, chunk: Chunk<'_, f64, 1>) {
 }
 
 /// Turns the sign, and holds values within their limits; what is undefined is outside.
-fn finish<E: Element + Float>(out: &mut [E], placement: &Placement) {
+pub(super) fn finish<E: Element + Float>(out: &mut [E], placement: &Placement) {
     let (factor, shift) = (E::narrow(-placement.scale), E::narrow(placement.shift));
     dispatched(Finish { out, factor, shift, limit: E::narrow(VALUE_LIMIT) });
 }

@@ -33,6 +33,10 @@ pub(super) enum Flaw {
 pub(super) struct Code {
     pub(super) ops: Vec<Op>,
     pub(super) flaw: Option<Flaw>,
+    /// Which axes the value depends on.
+    pub(super) axes: [bool; 3],
+    /// How many operations choose one of their operands.
+    pub(super) choices: usize,
     /// No two codes have the same.
     pub(super) number: u64,
     plan: OnceLock<Plan>,
@@ -91,38 +95,51 @@ impl Builder {
 
     /// The code whose value is that of operation number `root`.
     pub(super) fn finish(self, root: u32) -> Code {
-        Code::new(live(&self.ops, root, |at| at), None)
+        let ops = &self.ops[..=root as usize];
+        Code::new(live(ops, ops.len(), |_| None).unwrap_or_default(), None)
     }
 }
 
-/// The operations that `root` reaches, `alias` telling what stands in for each.
-pub(super) fn live(ops: &[Op], root: u32, alias: impl Fn(u32) -> u32) -> Vec<Op> {
-    let root = alias(root) as usize;
-    let mut reached = vec![false; root + 1];
-    reached[root] = true;
+/// The operations that the last one needs, if they are at most `most`; `choice` gives the operand
+/// that an operation is equal to, where it is to one.
+pub(super) fn live(ops: &[Op], most: usize, choice: impl Fn(usize) -> Option<u32>) -> Option<Vec<Op>> {
+    // What stands for each operation: itself, an operand, or nothing where it is not needed.
+    const UNUSED: u32 = u32::MAX;
+    let mut stand_in = vec![UNUSED; ops.len()];
+    *stand_in.last_mut()? = 0;
     let mut count = 0;
-    for at in (0..=root).rev() {
-        if !reached[at] {
+    for at in (0..ops.len()).rev() {
+        if stand_in[at] == UNUSED {
             continue;
         }
+        if let Some(operand) = choice(at) {
+            (stand_in[at], stand_in[operand as usize]) = (operand, 0);
+            continue;
+        }
+        stand_in[at] = at as u32;
         count += 1;
+        if count > most {
+            return None;
+        }
         match ops[at] {
-            Op::Unary(_, a) => reached[alias(a) as usize] = true,
-            Op::Binary(_, a, b) => {
-                reached[alias(a) as usize] = true;
-                reached[alias(b) as usize] = true;
-            }
+            Op::Unary(_, a) => stand_in[a as usize] = 0,
+            Op::Binary(_, a, b) => (stand_in[a as usize], stand_in[b as usize]) = (0, 0),
             Op::Axis(_) | Op::Const(_) => {}
         }
     }
-    let mut moved = vec![0u32; root + 1];
+    // From here on, where each has gone to.
+    let mut moved = stand_in;
     let mut kept = Vec::with_capacity(count);
-    for at in 0..=root {
-        if !reached[at] {
+    for (at, op) in ops.iter().enumerate() {
+        if moved[at] == UNUSED {
             continue;
         }
-        let to = |a: u32| moved[alias(a) as usize];
-        let op = match ops[at] {
+        if moved[at] != at as u32 {
+            moved[at] = moved[moved[at] as usize];
+            continue;
+        }
+        let to = |a: u32| moved[a as usize];
+        let op = match *op {
             Op::Unary(op, a) => Op::Unary(op, to(a)),
             Op::Binary(op, a, b) => Op::Binary(op, to(a), to(b)),
             op => op,
@@ -130,15 +147,22 @@ pub(super) fn live(ops: &[Op], root: u32, alias: impl Fn(u32) -> u32) -> Vec<Op>
         moved[at] = kept.len() as u32;
         kept.push(op);
     }
-    kept
+    Some(kept)
 }
 
 impl Code {
     pub(super) fn new(ops: Vec<Op>, flaw: Option<Flaw>) -> Code {
         static NUMBER: AtomicU64 = AtomicU64::new(0);
-        let nan = ops.iter().any(|op| matches!(op, Op::Const(c) if c.is_nan()));
-        let flaw = flaw.or(nan.then_some(Flaw::NotANumber));
-        Code { ops, flaw, number: NUMBER.fetch_add(1, Ordering::Relaxed), plan: OnceLock::new() }
+        let (mut flaw, mut axes, mut choices) = (flaw, [false; 3], 0);
+        for op in &ops {
+            match *op {
+                Op::Axis(axis) => axes[usize::from(axis)] = true,
+                Op::Const(c) if c.is_nan() => flaw = flaw.or(Some(Flaw::NotANumber)),
+                Op::Binary(BinaryOpcode::Min | BinaryOpcode::Max, ..) => choices += 1,
+                _ => {}
+            }
+        }
+        Code { ops, flaw, axes, choices, number: NUMBER.fetch_add(1, Ordering::Relaxed), plan: OnceLock::new() }
     }
 
     /// The operations of a fidget tree.

@@ -21,11 +21,12 @@ pub(super) fn turned(value: f64) -> f64 {
 }
 
 /// A derivative of the solid from that of the formula.
-pub(super) fn turned_slope(slope: f64) -> f64 {
-    // Beyond this it is of no use as a direction, and its square would overflow.
-    const STEEPEST: f64 = 1e15;
-    if slope.is_nan() { 0.0 } else { (-slope).clamp(-STEEPEST, STEEPEST) }
+fn turned_slope(slope: f64) -> f64 {
+    if slope.is_nan() { 0.0 } else { (-slope).clamp(-f64::from(STEEPEST), f64::from(STEEPEST)) }
 }
+
+/// Steeper derivatives are of no use as a direction, and their squares would overflow.
+pub(super) const STEEPEST: f32 = 1e15;
 
 impl AnyField for Formula {
     fn signature(&self) -> String {
@@ -100,5 +101,10 @@ impl AnyField for Formula {
 
     fn takes_short(&self) -> bool {
         true
+    }
+
+    fn cost(&self) -> usize {
+        // So many operations are as much as a superquadric.
+        1 + self.len() / 8
     }
 }

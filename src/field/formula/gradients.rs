@@ -10,11 +10,12 @@ use fidget::context::{BinaryOpcode, UnaryOpcode};
 use super::Formula;
 use super::arithmetic::{Arithmetic, Float, each_binary, each_unary};
 use super::bulk::{self, SINGLE};
-use super::erased::{turned, turned_slope};
+use super::erased::STEEPEST;
 use super::plan::{Plan, Source, Step};
 use super::slope::Slope;
-use crate::field::Chunk;
-use crate::num::kernel::{CHUNK, Task, dispatched};
+use crate::Real;
+use crate::field::{Chunk, Placement};
+use crate::num::kernel::{self, CHUNK, Task, dispatched};
 
 /// A value and its derivatives; only those along the axes of `moves`, a bit each, are not 0.
 #[derive(Default)]
@@ -28,11 +29,12 @@ struct Register {
 struct Scratch {
     registers: Vec<Register>,
     constants: [[f32; CHUNK]; 2],
+    turned: [[f32; CHUNK]; 3],
 }
 
 thread_local! {
     static SCRATCH: RefCell<Scratch> =
-        const { RefCell::new(Scratch { registers: Vec::new(), constants: [[0.0; CHUNK]; 2] }) };
+        const { RefCell::new(Scratch { registers: Vec::new(), constants: [[0.0; CHUNK]; 2], turned: [[0.0; CHUNK]; 3] }) };
 }
 
 const ZEROS: [f32; CHUNK] = [0.0; CHUNK];
@@ -44,7 +46,7 @@ pub(super) fn gradients(formula: &Formula, chunk: Chunk<'_, f32, 4>) {
     let len = value.len();
     SINGLE.with_borrow_mut(|single| {
         single.place(points, placement);
-        SCRATCH.with_borrow_mut(|Scratch { registers, constants }| {
+        SCRATCH.with_borrow_mut(|Scratch { registers, constants, turned }| {
             registers.resize_with(plan.registers.max(registers.len()), Register::default);
             for register in &mut registers[..plan.registers] {
                 register.value.resize(len, 0.0);
@@ -53,17 +55,48 @@ pub(super) fn gradients(formula: &Formula, chunk: Chunk<'_, f32, 4>) {
             let points = single.points();
             dispatched(Differentiate { plan, points, registers, constants });
             let [constant, _] = constants;
-            let all = operand(plan.result, points, registers, constant);
-            for at in 0..len {
-                let v = f64::from(all.value[at]);
-                let defined = f64::from(u8::from(!v.is_nan()));
-                let slope = all.slopes.map(|slopes| turned_slope(f64::from(slopes[at])) * defined);
-                let pulled = placement.pull(slope);
-                value[at] = f32::narrow(placement.finish(turned(v)));
-                [dx[at], dy[at], dz[at]] = pulled.map(|d| f32::narrow(d * placement.scale));
+            let all = operand(plan.result, points, [registers, &[]], constant);
+            value.copy_from_slice(all.value);
+            let turned = &mut *turned;
+            for (slopes, turned) in all.slopes.into_iter().zip(&mut *turned) {
+                dispatched(Turn { value, slopes, turned: &mut turned[..len], scale: f32::narrow(placement.scale) });
             }
+            let turned = turned.each_ref().map(|slopes| &slopes[..len]);
+            kernel::run(&Pull(placement), turned, [dx, dy, dz]);
         });
     });
+    bulk::finish(value, placement);
+}
+
+/// Derivatives of the solid from those of the formula.
+struct Turn<'a> {
+    value: &'a [f32],
+    slopes: &'a [f32],
+    turned: &'a mut [f32],
+    scale: f32,
+}
+
+impl Task for Turn<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let len = self.turned.len();
+        let (value, slopes) = (&self.value[..len], &self.slopes[..len]);
+        for i in 0..len {
+            let held = (-slopes[i]).clamp(-STEEPEST, STEEPEST);
+            let defined = !(value[i].is_nan() || slopes[i].is_nan());
+            self.turned[i] = if defined { held * self.scale } else { 0.0 };
+        }
+    }
+}
+
+/// Derivatives in the frame of the points.
+struct Pull<'a>(&'a Placement);
+
+impl kernel::Formula<3, 3> for Pull<'_> {
+    #[inline(always)]
+    fn run<R: Real>(&self, d: [R; 3]) -> [R; 3] {
+        self.0.pull(d)
+    }
 }
 
 struct Differentiate<'a> {
@@ -80,26 +113,30 @@ struct Operand<'a> {
     moves: u8,
 }
 
+/// An operand of the operation whose result is in the register between those `before` and `after`.
+#[inline(always)]
 fn operand<'a>(
     source: Source,
     points: [&'a [f32]; 3],
-    registers: &'a [Register],
+    [before, after]: [&'a [Register]; 2],
     constant: &'a mut [f32; CHUNK],
 ) -> Operand<'a> {
     let len = points[0].len();
     match source {
         Source::Axis(number) => {
             let unit = |axis| if axis == usize::from(number) { &ONES[..len] } else { &ZEROS[..len] };
-            Operand { value: points[usize::from(number)], slopes: [0, 1, 2].map(unit), moves: 1 << number }
+            Operand { value: points[usize::from(number)], slopes: [unit(0), unit(1), unit(2)], moves: 1 << number }
         }
         Source::Const(c) => {
             constant[..len].fill(f32::narrow(c));
             Operand { value: &constant[..len], slopes: [&ZEROS[..len]; 3], moves: 0 }
         }
         Source::Register(number) => {
-            let Register { value, slopes, moves } = &registers[number as usize];
+            let number = number as usize;
+            let register = if number < before.len() { &before[number] } else { &after[number - before.len() - 1] };
+            let Register { value, slopes, moves } = register;
             let slope = |axis: usize| if moves >> axis & 1 == 1 { &*slopes[axis] } else { &ZEROS[..len] };
-            Operand { value, slopes: [0, 1, 2].map(slope), moves: *moves }
+            Operand { value, slopes: [slope(0), slope(1), slope(2)], moves: *moves }
         }
     }
 }
@@ -111,15 +148,16 @@ impl Task for Differentiate<'_> {
         for step in &plan.steps {
             let (Step::Unary(.., to) | Step::Binary(.., to)) = *step;
             // No operand is in the register of the result.
-            let mut result = std::mem::take(&mut registers[to as usize]);
-            let Register { value, slopes, moves } = &mut result;
+            let (before, rest) = registers.split_at_mut(to as usize);
+            let [Register { value, slopes, moves }, after @ ..] = rest else { continue };
+            let registers = [&*before, &*after];
             match *step {
                 Step::Unary(op, a, _) => {
                     let a = operand(a, points, registers, first);
                     *moves = a.moves;
                     each_unary!(op, OP => {
                         bulk::unary(OP, bulk::Operand::Slice(a.value), value);
-                        for axis in axes(*moves) {
+                        for axis in (0..3).filter(|axis| *moves >> axis & 1 == 1) {
                             unary(OP, a.value, a.slopes[axis], &mut slopes[axis]);
                         }
                     });
@@ -130,31 +168,30 @@ impl Task for Differentiate<'_> {
                     *moves = a.moves | b.moves;
                     each_binary!(op, OP => {
                         bulk::binary(OP, bulk::Operand::Slice(a.value), bulk::Operand::Slice(b.value), value);
-                        for axis in axes(*moves) {
+                        for axis in (0..3).filter(|axis| *moves >> axis & 1 == 1) {
                             binary(OP, [a.value, a.slopes[axis]], [b.value, b.slopes[axis]], &mut slopes[axis]);
                         }
                     });
                 }
             }
-            registers[to as usize] = result;
         }
     }
 }
 
-fn axes(moves: u8) -> impl Iterator<Item = usize> {
-    (0..3).filter(move |axis| moves >> axis & 1 == 1)
-}
-
 #[inline(always)]
 fn unary(op: UnaryOpcode, value: &[f32], slope: &[f32], out: &mut [f32]) {
-    for ((out, &v), &d) in out.iter_mut().zip(value).zip(slope) {
-        [*out] = Slope::unary(op, Slope { v, d: [d] }).d;
+    let len = out.len();
+    let (value, slope) = (&value[..len], &slope[..len]);
+    for i in 0..len {
+        [out[i]] = Slope::unary(op, Slope { v: value[i], d: [slope[i]] }).d;
     }
 }
 
 #[inline(always)]
-fn binary(op: BinaryOpcode, [va, da]: [&[f32]; 2], [vb, db]: [&[f32]; 2], out: &mut [f32]) {
-    for ((((out, &va), &da), &vb), &db) in out.iter_mut().zip(va).zip(da).zip(vb).zip(db) {
-        [*out] = Slope::binary(op, Slope { v: va, d: [da] }, Slope { v: vb, d: [db] }).d;
+fn binary(op: BinaryOpcode, a: [&[f32]; 2], b: [&[f32]; 2], out: &mut [f32]) {
+    let len = out.len();
+    let ([va, da], [vb, db]) = ([&a[0][..len], &a[1][..len]], [&b[0][..len], &b[1][..len]]);
+    for i in 0..len {
+        [out[i]] = Slope::binary(op, Slope { v: va[i], d: [da[i]] }, Slope { v: vb[i], d: [db[i]] }).d;
     }
 }

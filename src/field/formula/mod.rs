@@ -91,6 +91,8 @@ struct Inner {
     bounds: Bounds,
     /// The box that the operations stand for the formula in; infinite unless narrowed.
     region: [Interval; 3],
+    /// The range of the solid's value in that box.
+    range: Interval,
     native: Native,
 }
 
@@ -101,7 +103,7 @@ impl Formula {
     /// bounds that are none.
     #[must_use]
     pub fn new(tree: &Tree, bounds: Bounds) -> Formula {
-        Formula::of_code(Code::of_tree(tree), bounds, [Interval::ALL; 3])
+        Formula::of_code(Code::of_tree(tree), bounds)
     }
 
     /// The solid where the formula of a `.vm` text is negative. `bounds` must hold it.
@@ -132,12 +134,12 @@ impl Formula {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn from_vm(text: &str, bounds: Bounds) -> Result<Formula, FormulaError> {
-        Ok(Formula::of_code(text::parse(text)?, bounds, [Interval::ALL; 3]))
+        Ok(Formula::of_code(text::parse(text)?, bounds))
     }
 
-    fn of_code(code: Code, bounds: Bounds, region: [Interval; 3]) -> Formula {
-        let native = Native::new(code.is_elementary());
-        Formula(Arc::new(Inner { code, bounds, region, native }))
+    fn of_code(code: Code, bounds: Bounds) -> Formula {
+        let native = Native::default();
+        Formula(Arc::new(Inner { code, bounds, region: [Interval::ALL; 3], range: Interval::ALL, native }))
     }
 
     /// How many operations it takes, axes and constants counted.

@@ -6,15 +6,17 @@
 //! undefined.
 
 use std::cell::RefCell;
+use std::sync::Arc;
 
 use fidget::context::{BinaryOpcode, UnaryOpcode};
 use glam::DVec3;
 
-use super::Formula;
 use super::arithmetic::Arithmetic;
 use super::code::{Code, Op, live};
+use super::native::Native;
 use super::slope::Slope;
 use super::sure::Sure;
+use super::{Formula, Inner};
 use crate::field::{VALUE_LIMIT, Zone};
 use crate::{Dual, Interval};
 
@@ -33,6 +35,8 @@ thread_local! {
 
 /// Calls `then` with the ranges of all operations over a box.
 fn walked<T>(code: &Code, hull: [Interval; 3], then: impl FnOnce(&[Sure]) -> T) -> T {
+    // Boxes that differ along an axis that does not matter are the same.
+    let hull = [0, 1, 2].map(|axis| if code.axes[axis] { hull[axis] } else { Interval::point(0.0) });
     WALK.with_borrow_mut(|walk| {
         if walk.number != code.number || walk.hull != hull {
             // A coordinate is a number wherever it is.
@@ -44,8 +48,10 @@ fn walked<T>(code: &Code, hull: [Interval; 3], then: impl FnOnce(&[Sure]) -> T) 
     })
 }
 
-/// Formulas up to this length are worth the price of gradients for a tighter range.
+/// Formulas up to this length are worth the price of gradients for a tighter range, if at most one
+/// in so many operations is a choice: halving is what helps where many are.
 const SHORT: usize = 256;
+const CHOICES: usize = 16;
 
 /// A narrowed formula must leave at most this part of the operations, in eighths.
 const EIGHTHS_LEFT: usize = 6;
@@ -64,7 +70,12 @@ impl Formula {
         let Some(whole) = whole else { return Interval::ALL };
         let range = turned(whole);
         let decided = range.lo() > 0.0 || range.hi() < 0.0;
-        if decided || !whole.sure || code.ops.len() > SHORT || !zone.is_finite() {
+        if decided
+            || !whole.sure
+            || code.ops.len() > SHORT
+            || CHOICES * code.choices > code.ops.len().max(2 * CHOICES)
+            || !zone.is_finite()
+        {
             return range;
         }
         match self.centred(zone) {
@@ -107,23 +118,46 @@ impl Formula {
         }
         let code = &self.0.code;
         let hull = zone.hull();
-        let ops = walked(code, hull, |ranges| narrowed(&code.ops, ranges))?;
+        let (ops, range) = walked(code, hull, |ranges| Some((narrowed(&code.ops, ranges)?, ranges.last().copied()?)))?;
         let region = [0, 1, 2].map(|axis| self.0.region[axis].narrowed_by(hull[axis]));
-        Some(Formula::of_code(Code::new(ops, code.flaw), self.0.bounds, region))
+        let (code, native) = (Code::new(ops, code.flaw), Native::default());
+        Some(Formula(Arc::new(Inner { code, bounds: self.0.bounds, region, range: turned(range), native })))
     }
 
     pub(super) fn dual_range_of(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
         // A derivative of 0 that was rounded outwards is 0: steep formulas would make much of it.
         const LEVEL: f64 = 1e-300;
         let level = |d: Interval| if d.magnitude() < LEVEL { Interval::point(0.0) } else { d };
-        let point = p.map(|c| {
-            let sure = |range| Sure { range, sure: true };
-            Slope { v: sure(c.value()), d: c.gradient().map(|d| sure(level(d))) }
-        });
+        let p = p.map(|c| Dual::new(c.value(), c.gradient().map(level)));
+        let moves = |c: &Dual<Interval>, i: usize| c.gradient()[i].magnitude() > 0.0;
+        let code = &self.0.code;
+        if !p.iter().zip(code.axes).any(|(c, used)| used && (0..3).any(|i| moves(c, i))) {
+            let region = &self.0.region;
+            let within = |axis: usize| !code.axes[axis] || region[axis].hull(p[axis].v) == region[axis];
+            let range = if (0..3).all(within) {
+                self.0.range
+            } else {
+                walked(code, p.map(Dual::value), |ranges| ranges.last().copied().map_or(Interval::ALL, turned))
+            };
+            return Dual::constant(range);
+        }
+        // Rays ask for one derivative: the others are those of nothing.
+        if p.iter().any(|c| moves(c, 1) || moves(c, 2)) {
+            let (range, slopes) = self.slopes_of(p.map(|c| (c.value(), c.gradient())));
+            Dual::new(range, slopes)
+        } else {
+            let (range, [slope]) = self.slopes_of(p.map(|c| (c.value(), [c.gradient()[0]])));
+            Dual::new(range, [slope, Interval::point(0.0), Interval::point(0.0)])
+        }
+    }
+
+    /// The ranges of the value and of its derivatives from those of the coordinates.
+    fn slopes_of<const N: usize>(&self, p: [(Interval, [Interval; N]); 3]) -> (Interval, [Interval; N]) {
+        let sure = |range| Sure { range, sure: true };
+        let point = p.map(|(v, d)| Slope { v: sure(v), d: d.map(sure) });
         let value = self.0.code.plan().value(point, &mut Vec::new());
-        let range = turned(value.v);
         let slopes = value.d.map(|d| if value.v.sure && d.sure { -d.range } else { Interval::ALL });
-        Dual::new(range, slopes)
+        (turned(value.v), slopes)
     }
 }
 
@@ -137,21 +171,7 @@ fn variables(hull: [Interval; 3]) -> [Slope<Sure>; 3] {
 
 /// The operations without what is not chosen, if that saves enough.
 fn narrowed(ops: &[Op], ranges: &[Sure]) -> Option<Vec<Op>> {
-    let mut alias: Vec<u32> = Vec::with_capacity(ops.len());
-    let mut chosen = 0;
-    for (at, op) in ops.iter().enumerate() {
-        let kept = choice(op, ranges);
-        chosen += usize::from(kept.is_some());
-        alias.push(match kept {
-            Some(operand) => alias[operand as usize],
-            None => at as u32,
-        });
-    }
-    if chosen == 0 {
-        return None;
-    }
-    let left = live(ops, (ops.len() - 1) as u32, |at| alias[at as usize]);
-    (8 * left.len() <= EIGHTHS_LEFT * ops.len()).then_some(left)
+    live(ops, EIGHTHS_LEFT * ops.len() / 8, |at| choice(&ops[at], ranges))
 }
 
 /// The operand that the operation is equal to throughout.

@@ -37,8 +37,8 @@ mod jit {
     }
 
     /// The native code of a formula, if and when it has some.
+    #[derive(Default)]
     pub(in super::super) struct Native {
-        worthwhile: bool,
         points: AtomicU64,
         compiled: OnceLock<Option<Compiled>>,
     }
@@ -56,16 +56,8 @@ mod jit {
     }
 
     impl Native {
-        pub(in super::super) fn new(worthwhile: bool) -> Native {
-            let worthwhile = worthwhile && runs_here();
-            Native { worthwhile, points: AtomicU64::new(0), compiled: OnceLock::new() }
-        }
-
         /// Runs the native code over slices of one length; whether there is any.
         pub(in super::super) fn run(&self, code: &Code, points: [&[f32]; 3], out: &mut [f32]) -> bool {
-            if !self.worthwhile {
-                return false;
-            }
             let compiled = match self.compiled.get() {
                 Some(compiled) => compiled,
                 None if self.points.fetch_add(out.len() as u64, Ordering::Relaxed) < POINTS => return false,
@@ -100,6 +92,9 @@ mod jit {
     }
 
     fn compile(code: &Code) -> Option<Compiled> {
+        if !(code.is_elementary() && runs_here()) {
+            return None;
+        }
         if ALIVE.fetch_add(1, Ordering::Relaxed) >= MOST {
             ALIVE.fetch_sub(1, Ordering::Relaxed);
             return None;
@@ -128,14 +123,11 @@ mod jit {
 }
 
 #[cfg(not(feature = "jit"))]
+#[derive(Default)]
 pub(super) struct Native;
 
 #[cfg(not(feature = "jit"))]
 impl Native {
-    pub(super) fn new(_worthwhile: bool) -> Native {
-        Native
-    }
-
     pub(super) fn run(&self, _code: &super::code::Code, _points: [&[f32]; 3], _out: &mut [f32]) -> bool {
         false
     }

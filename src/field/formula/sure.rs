@@ -92,10 +92,12 @@ fn remainder(a: Sure, b: Sure) -> Interval {
 }
 
 impl Arithmetic for Sure {
+    #[inline(always)]
     fn constant(c: f64) -> Sure {
         Sure { range: Interval::point(c), sure: !c.is_nan() }
     }
 
+    #[inline]
     fn unary(op: UnaryOpcode, a: Sure) -> Sure {
         use UnaryOpcode as U;
         let Sure { range: r, sure } = a;
@@ -132,6 +134,7 @@ impl Arithmetic for Sure {
         Sure::new(range, sure)
     }
 
+    #[inline]
     fn binary(op: BinaryOpcode, a: Sure, b: Sure) -> Sure {
         use BinaryOpcode as B;
         let (r, s) = (a.range, b.range);
@@ -195,6 +198,7 @@ impl Scalar for Sure {
         if y.range.contains(0.0) && x.range.lo() <= 0.0 { UNSURE } else { slope }
     }
 
+    #[inline(always)]
     fn vanishes(self) -> bool {
         self.is(0.0)
     }

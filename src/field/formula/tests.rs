@@ -9,7 +9,7 @@ use super::Formula;
 use super::code::Builder;
 use crate::field::{AnyField, Chunk, Placement, VALUE_LIMIT, Zone};
 use crate::num::kernel::CHUNK;
-use crate::{Bounds, Dual, Interval};
+use crate::{Bounds, Dual};
 
 /// splitmix64.
 struct Random(u64);
@@ -88,7 +88,7 @@ fn random_formula(random: &mut Random, plain: bool) -> Formula {
         });
     }
     let root = list[list.len() - 1];
-    Formula::of_code(builder.finish(root), Bounds::ALL, [Interval::ALL; 3])
+    Formula::of_code(builder.finish(root), Bounds::ALL)
 }
 
 fn random_zone(random: &mut Random) -> Zone {
