@@ -192,6 +192,8 @@ struct Memory<E> {
     registers: Vec<E>,
     slots: Vec<E>,
     padded: Vec<E>,
+    /// What a leaf or a deformation makes in its own coordinates.
+    own: Vec<E>,
 }
 
 /// Value and gradient at many points, as slices of one length.
@@ -237,8 +239,8 @@ impl Evaluator {
 trait Mode<const N: usize> {
     type E: Element;
     const COORDINATES: usize;
-    fn leaf(leaf: &LeafStep, points: Points<'_, Self::E>, out: [&mut [Self::E]; N]);
-    fn frame(frame: &FrameStep, points: Points<'_, Self::E>, out: &mut [Self::E]);
+    fn leaf(leaf: &LeafStep, points: Points<'_, Self::E>, own: &mut [Self::E], out: [&mut [Self::E]; N]);
+    fn frame(frame: &FrameStep, points: Points<'_, Self::E>, own: &mut [Self::E], out: &mut [Self::E]);
     fn join(op: Op, rule: Rule, negate: bool, all: [&mut [Self::E]; N], next: [&[Self::E]; N]);
 }
 
@@ -285,7 +287,7 @@ impl Mode<1> for Values<f32> {
     type E = f32;
     const COORDINATES: usize = 3;
 
-    fn leaf(leaf: &LeafStep, points: Points<'_, f32>, out: [&mut [f32]; 1]) {
+    fn leaf(leaf: &LeafStep, points: Points<'_, f32>, _own: &mut [f32], out: [&mut [f32]; 1]) {
         leaf.field.lanes32(Chunk { points: points.coordinates(), placement: &leaf.placement, out });
     }
 
@@ -293,7 +295,7 @@ impl Mode<1> for Values<f32> {
         join(op, rule, negate, all, next);
     }
 
-    fn frame(frame: &FrameStep, points: Points<'_, f32>, out: &mut [f32]) {
+    fn frame(frame: &FrameStep, points: Points<'_, f32>, _own: &mut [f32], out: &mut [f32]) {
         let out = split_mut(out, points.size());
         frame.warp.lanes32(Chunk { points: points.coordinates(), placement: &frame.placement, out });
     }
@@ -303,7 +305,7 @@ impl Mode<1> for Values<f64> {
     type E = f64;
     const COORDINATES: usize = 3;
 
-    fn leaf(leaf: &LeafStep, points: Points<'_, f64>, out: [&mut [f64]; 1]) {
+    fn leaf(leaf: &LeafStep, points: Points<'_, f64>, _own: &mut [f64], out: [&mut [f64]; 1]) {
         leaf.field.lanes64(Chunk { points: points.coordinates(), placement: &leaf.placement, out });
     }
 
@@ -311,7 +313,7 @@ impl Mode<1> for Values<f64> {
         join(op, rule, negate, all, next);
     }
 
-    fn frame(frame: &FrameStep, points: Points<'_, f64>, out: &mut [f64]) {
+    fn frame(frame: &FrameStep, points: Points<'_, f64>, _own: &mut [f64], out: &mut [f64]) {
         let out = split_mut(out, points.size());
         frame.warp.lanes64(Chunk { points: points.coordinates(), placement: &frame.placement, out });
     }
@@ -323,13 +325,12 @@ impl Mode<4> for Slopes {
     type E = f32;
     const COORDINATES: usize = 12;
 
-    fn leaf(leaf: &LeafStep, points: Points<'_, f32>, out: [&mut [f32]; 4]) {
+    fn leaf(leaf: &LeafStep, points: Points<'_, f32>, own: &mut [f32], out: [&mut [f32]; 4]) {
         let chunk = Chunk { points: points.coordinates(), placement: &leaf.placement, out };
         let Points::Slot(slot, size) = points else { return leaf.field.gradients(chunk) };
-        let mut own = [0.0; 4 * CHUNK];
         let [value, dx, dy, dz] = chunk.out;
-        leaf.field.gradients(Chunk { out: split_mut(&mut own, size), ..chunk });
-        let [v, x, y, z] = split(&own, size);
+        leaf.field.gradients(Chunk { out: split_mut(own, size), ..chunk });
+        let [v, x, y, z] = split(own, size);
         value.copy_from_slice(v);
         let [a, b, c, d, e, f, g, h, i] = split::<_, 9>(&slot[3 * CHUNK..], size);
         run(&Pull, [a, b, c, d, e, f, g, h, i, x, y, z], [dx, dy, dz]);
@@ -339,14 +340,13 @@ impl Mode<4> for Slopes {
         join(op, rule, negate, all, next);
     }
 
-    fn frame(frame: &FrameStep, points: Points<'_, f32>, out: &mut [f32]) {
+    fn frame(frame: &FrameStep, points: Points<'_, f32>, own: &mut [f32], out: &mut [f32]) {
         let size = points.size();
         let chunk = Chunk { points: points.coordinates(), placement: &frame.placement, out: split_mut(out, size) };
         let Points::Slot(slot, _) = points else { return frame.warp.jacobians(chunk) };
-        let mut own = [0.0; 12 * CHUNK];
         let [x, y, z, jacobian @ ..] = chunk.out;
-        frame.warp.jacobians(Chunk { out: split_mut(&mut own, size), ..chunk });
-        let local = split::<_, 12>(&own, size);
+        frame.warp.jacobians(Chunk { out: split_mut(own, size), ..chunk });
+        let local = split::<_, 12>(own, size);
         for (to, from) in [x, y, z].into_iter().zip(local) {
             to.copy_from_slice(from);
         }
@@ -367,7 +367,8 @@ fn execute<M: Mode<N>, const N: usize>(
     memory.registers.resize(memory.registers.len().max(tape.registers * N * CHUNK), zero);
     memory.slots.resize(memory.slots.len().max(tape.frames.len() * M::COORDINATES * CHUNK), zero);
     memory.padded.resize(3 * CHUNK, zero);
-    let Memory { registers, slots, padded } = memory;
+    memory.own.resize(memory.own.len().max(M::COORDINATES * CHUNK), zero);
+    let Memory { registers, slots, padded, own } = memory;
     let limit = M::E::from_f64(COORDINATE_LIMIT);
     let granule = if tape.short { widest::<M::E>() } else { CHUNK };
     let mut at = 0;
@@ -388,7 +389,7 @@ fn execute<M: Mode<N>, const N: usize>(
             }
             world = split::<_, 3>(padded, size);
         }
-        chunk::<M, N>(tape, world, registers, slots);
+        chunk::<M, N>(tape, world, registers, slots, own);
         let result = &registers[tape.result as usize * N * CHUNK..][..N * CHUNK];
         for (to, from) in out.iter_mut().zip(split::<_, N>(result, len)) {
             to[at..at + len].copy_from_slice(from);
@@ -397,7 +398,13 @@ fn execute<M: Mode<N>, const N: usize>(
     }
 }
 
-fn chunk<M: Mode<N>, const N: usize>(tape: &Tape, world: [&[M::E]; 3], registers: &mut [M::E], slots: &mut [M::E]) {
+fn chunk<M: Mode<N>, const N: usize>(
+    tape: &Tape,
+    world: [&[M::E]; 3],
+    registers: &mut [M::E],
+    slots: &mut [M::E],
+    own: &mut [M::E],
+) {
     let coordinates = M::COORDINATES * CHUNK;
     let size = world[0].len();
     for (number, frame) in tape.frames.iter().enumerate() {
@@ -406,7 +413,7 @@ fn chunk<M: Mode<N>, const N: usize>(tape: &Tape, world: [&[M::E]; 3], registers
             0 => Points::World(world),
             slot => Points::Slot(&before[(slot - 1) * coordinates..slot * coordinates], size),
         };
-        M::frame(frame, points, &mut after[..coordinates]);
+        M::frame(frame, points, own, &mut after[..coordinates]);
     }
     let width = N * CHUNK;
     for step in &tape.steps {
@@ -417,7 +424,7 @@ fn chunk<M: Mode<N>, const N: usize>(tape: &Tape, world: [&[M::E]; 3], registers
                     0 => Points::World(world),
                     slot => Points::Slot(&slots[(slot - 1) * coordinates..slot * coordinates], size),
                 };
-                M::leaf(leaf, points, split_mut(&mut registers[to as usize * width..][..width], size));
+                M::leaf(leaf, points, own, split_mut(&mut registers[to as usize * width..][..width], size));
             }
             Step::Fold { op, rule, negate, from, to } => {
                 let (all, next) = two(registers, to as usize * width, from as usize * width, width);

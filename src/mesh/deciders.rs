@@ -59,7 +59,7 @@ impl Deciders {
         let Some((op, rivals)) = tape.rivals() else {
             return self.finder.find(evaluator, (program, tape), lattice, edges, |_, edge| on_chord(edge), out);
         };
-        let rivals: Vec<Tape> = rivals.collect();
+        let rivals: Vec<Tape> = rivals.map(|(_, rival)| rival).collect();
         // The largest of all values decides a union, of all negatives an intersection.
         let sign = if op == Op::Or { 1.0 } else { -1.0 };
         self.guess(evaluator, (tape, &rivals, sign), lattice, edges);

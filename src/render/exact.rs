@@ -4,6 +4,7 @@
 use super::gbuffer::Surface;
 use super::job::{Job, Ray, Span};
 use super::march::{Found, Marcher};
+use crate::eval::Op;
 
 /// Steps in double precision, after which rays are divided by intervals.
 const STEPS: usize = 4;
@@ -70,6 +71,40 @@ impl Marcher {
             found.truncate(kept);
         }
         self.found = found;
+        self.owners(job, surfaces);
+    }
+
+    /// The leaves that decide where rays have hit something.
+    fn owners(&mut self, job: &Job<'_>, surfaces: &mut [Surface]) {
+        if self.unowned.is_empty() {
+            return;
+        }
+        let Some((op, rivals)) = job.tape.rivals() else {
+            for (ray, p) in self.unowned.drain(..) {
+                surfaces[ray as usize].owner = job.cell.program.deciding_leaf(job.center + p);
+            }
+            return;
+        };
+        let [x, y, z, v] = &mut self.double;
+        for (axis, list) in [&mut *x, &mut *y, &mut *z].into_iter().enumerate() {
+            list.clear();
+            list.extend(self.unowned.iter().map(|(_, p)| p[axis]));
+        }
+        v.resize(self.unowned.len(), 0.0);
+        self.best.clear();
+        self.best.resize(self.unowned.len(), f64::NEG_INFINITY);
+        // The largest of all values decides a union, of all negatives an intersection.
+        let sign = if op == Op::Or { 1.0 } else { -1.0 };
+        for (number, rival) in rivals {
+            self.evaluator.values_f64(&rival, x, y, z, v);
+            for (((ray, _), best), value) in self.unowned.iter().zip(&mut self.best).zip(&*v) {
+                if sign * value > *best {
+                    *best = sign * value;
+                    surfaces[*ray as usize].owner = number;
+                }
+            }
+        }
+        self.unowned.clear();
     }
 
     /// Values of the program in double precision where the crossings are; their signs are certain.
@@ -100,8 +135,10 @@ impl Marcher {
             self.open.push(job.span(&found.lane));
             return;
         }
-        let owner = job.owner.unwrap_or_else(|| job.cell.program.deciding_leaf(origin + t * direction));
-        surfaces[ray as usize] = Surface { distance: base + t, normal, owner };
+        if job.owner.is_none() {
+            self.unowned.push((ray, origin + t * direction - job.center));
+        }
+        surfaces[ray as usize] = Surface { distance: base + t, normal, owner: job.owner.unwrap_or_default() };
         self.hits.push(ray);
     }
 }

@@ -2,7 +2,7 @@
 //! evaluated alone.
 
 use super::{LeafStep, Tape};
-use crate::eval::program::{Kind, Op, Program};
+use crate::eval::program::{Edge, Kind, Op, Program};
 use crate::eval::register::Step;
 use crate::field::Rule;
 
@@ -10,7 +10,8 @@ use crate::field::Rule;
 #[derive(Clone)]
 pub(super) struct Rivals {
     op: Op,
-    negated: Vec<bool>,
+    /// The number of each, and whether it counts negated.
+    leaves: Vec<(u32, bool)>,
 }
 
 impl Rivals {
@@ -20,22 +21,23 @@ impl Rivals {
         let Kind::Join { op, rule: Rule::MinMax, .. } = root.kind else { return None };
         let flip = program.root.negated();
         let operands = program.list(root);
-        let is_leaf = |node: usize| matches!(program.nodes[node].kind, Kind::Leaf(_));
-        let is_plain = operands.len() == leaves && operands.iter().all(|edge| is_leaf(edge.node()));
-        is_plain.then(|| Rivals {
-            op: op.flip_if(flip),
-            negated: operands.iter().map(|edge| edge.negated() != flip).collect(),
-        })
+        let leaf = |edge: &Edge| match program.nodes[edge.node()].kind {
+            Kind::Leaf(leaf) => Some((program.instance(leaf).number, edge.negated() != flip)),
+            _ => None,
+        };
+        let leaves = if operands.len() == leaves { operands.iter().map(leaf).collect() } else { None };
+        Some(Rivals { op: op.flip_if(flip), leaves: leaves? })
     }
 }
 
 impl Tape {
-    /// The leaves of a plain min or max of them, if that is what the program is and lanes of any
-    /// length serve it: the value is the least of theirs for a conjunction, the largest for a
-    /// disjunction.
-    pub(crate) fn rivals(&self) -> Option<(Op, impl Iterator<Item = Tape>)> {
-        let Rivals { op, negated } = self.rivals.as_ref().filter(|_| self.short)?;
-        Some((*op, self.leaves.iter().zip(negated).map(|(leaf, negated)| self.alone(leaf, *negated))))
+    /// The leaves of a plain min or max of them, each with its number, if that is what the program
+    /// is and lanes of any length serve it: the value is the least of theirs for a conjunction,
+    /// the largest for a disjunction.
+    pub(crate) fn rivals(&self) -> Option<(Op, impl Iterator<Item = (u32, Tape)>)> {
+        let Rivals { op, leaves } = self.rivals.as_ref().filter(|_| self.short)?;
+        let alone = |(leaf, (number, negated)): (&LeafStep, &(u32, bool))| (*number, self.alone(leaf, *negated));
+        Some((*op, self.leaves.iter().zip(leaves).map(alone)))
     }
 
     /// Whether the value surely changes by at most 1 per length unit.
