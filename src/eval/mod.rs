@@ -10,6 +10,7 @@ mod code;
 mod compile;
 mod composite;
 mod context;
+mod crossing;
 mod edge;
 mod extent;
 mod flatten;

@@ -188,6 +188,12 @@ impl Program {
         self.nodes.iter().filter(|node| matches!(node.kind, Kind::Leaf(_))).count()
     }
 
+    /// What a value takes, in those of ordinary leaves.
+    pub(crate) fn cost(&self) -> usize {
+        let leaf = |node: &Node| if let Kind::Leaf(leaf) = node.kind { self.instance(leaf).field.cost() } else { 0 };
+        self.nodes.iter().map(leaf).sum()
+    }
+
     /// Whether it evaluates the same leaves in the same way as another program of its solid.
     /// Long programs that were narrowed apart count as different.
     pub(crate) fn is_same(&self, other: &Program) -> bool {

@@ -262,6 +262,7 @@ impl Rays {
     /// The ray at pixel coordinates (x, y): its origin, and its direction of length 1. See
     /// [`Camera::ray`].
     #[must_use]
+    #[inline(always)]
     pub fn ray(&self, x: f64, y: f64) -> (DVec3, DVec3) {
         let offset = self.corner + self.across * x + self.down * y;
         if self.parallel { (self.eye + offset, self.forward) } else { (self.eye, (self.forward + offset).normalize()) }

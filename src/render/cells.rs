@@ -52,8 +52,10 @@ pub(super) struct Cell {
     pub(super) share: f64,
     /// How many leaves the program has.
     pub(super) leaves: usize,
+    /// What a value takes, in those of ordinary leaves.
+    pub(super) cost: usize,
     around: Around,
-    slope: Mutex<Option<([DVec3; 2], Interval)>>,
+    slopes: Mutex<Option<([DVec3; 2], Slopes)>>,
     halves: OnceLock<Halves>,
     united: OnceLock<Option<Vec<Cell>>>,
     tape: OnceLock<Tape>,
@@ -74,7 +76,7 @@ impl Cells {
         let bounds = bounds.inflate(0.05 * longest);
         let rounding = 64.0 * f64::EPSILON * (bounds.center().abs().max_element() + bounds.size().length());
         let margin = 1e-9 * longest + rounding;
-        let around = Around { whole: bounds.longest_side(), margin, leaves: usize::MAX, stale: 0 };
+        let around = Around { whole: bounds.longest_side(), margin, cost: usize::MAX, stale: 0, undivided: [true; 3] };
         Cells { root: part(program, bounds, around), bounds, margin }
     }
 
@@ -120,6 +122,9 @@ impl Cells {
 /// Cells are divided a little off the middle: planes of symmetry are not planes of the tree.
 const MIDDLE: f64 = 0.493;
 
+/// Cells thinner than this, in proportion to their longest side, are not halved across.
+const THIN: f64 = 1.0 / 64.0;
+
 /// Programs of at most this many leaves are evaluated at a point rather than narrowed.
 const FEW: usize = 4;
 
@@ -129,11 +134,44 @@ const CROWD: usize = 24;
 /// Unions of more leaves are divided in space.
 const UNITED: usize = 8;
 
-/// Slopes below this come of 0 rounded outwards.
-const LEVEL: f64 = 1e-30;
+/// Slopes below this part of the others come of 0 rounded outwards.
+const LEVEL: f64 = 1e-13;
 
-/// Where as many halvings have left more than three quarters of the leaves, more are of no use.
+/// Where as many halvings have left more than three quarters of the cost, more are of no use.
 const STALE: u32 = 6;
+
+/// What is known of slopes along rays in a cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slopes {
+    /// Those of the value.
+    pub(super) value: Interval,
+    /// Whether rays that go inside stay there: they cross the surface once at most.
+    pub(super) rises: bool,
+    /// Whether rays that go outside stay there.
+    pub(super) falls: bool,
+}
+
+impl Slopes {
+    /// Nothing is known.
+    pub(super) const ANY: Slopes = Slopes { value: Interval::ALL, rises: false, falls: false };
+
+    fn new(value: Interval) -> Slopes {
+        Slopes { value, rises: value.lo() >= 0.0, falls: value.hi() <= 0.0 }
+    }
+
+    /// Those of the negated value.
+    pub(super) fn turned(self) -> Slopes {
+        Slopes { value: -self.value, rises: self.falls, falls: self.rises }
+    }
+}
+
+/// The slopes without what comes of 0 rounded outwards: along a ray such slopes change a value by
+/// less than its own rounding does.
+fn level(slopes: Interval) -> Interval {
+    let least = LEVEL * slopes.magnitude().clamp(1e-17, 1.0);
+    let level = |v: f64| if v.abs() < least { 0.0 } else { v };
+    Interval::new(level(slopes.lo()), level(slopes.hi()))
+}
 
 /// What is known of the boxes around a box.
 #[derive(Clone, Copy)]
@@ -141,9 +179,11 @@ struct Around {
     /// The longest side of the box of all.
     whole: f64,
     margin: f64,
-    /// The leaves of one of them, and how many halvings ago.
-    leaves: usize,
+    /// What a value takes in one of them, and how many halvings ago.
+    cost: usize,
     stale: u32,
+    /// The axes along which none of them has been halved.
+    undivided: [bool; 3],
 }
 
 impl Around {
@@ -165,9 +205,9 @@ fn part(program: &Program, bounds: Bounds, around: Around) -> Part {
             if bounds.is_empty() {
                 return Part::Outside;
             }
-            let leaves = program.leaf_count();
-            let fewer = leaves <= around.leaves / 4 * 3;
-            let around = if fewer { Around { leaves, stale: 0, ..around } } else { around };
+            let cost = program.cost();
+            let less = cost <= around.cost / 4 * 3;
+            let around = if less { Around { cost, stale: 0, ..around } } else { around };
             Part::Cell(Box::new(Cell::new(program, bounds, around)))
         }
     }
@@ -175,11 +215,11 @@ fn part(program: &Program, bounds: Bounds, around: Around) -> Part {
 
 impl Cell {
     fn new(program: Program, bounds: Bounds, around: Around) -> Cell {
-        let (bend, leaves) = (program.bend(), program.leaf_count());
+        let (bend, leaves, cost) = (program.bend(), program.leaf_count(), program.cost());
         let share = bounds.longest_side() / around.whole;
-        let (slope, tape) = (Mutex::new(None), OnceLock::new());
+        let (slopes, tape) = (Mutex::new(None), OnceLock::new());
         let (halves, united) = (OnceLock::new(), OnceLock::new());
-        Cell { bounds, program, bend, share, leaves, around, slope, halves, united, tape }
+        Cell { bounds, program, bend, share, leaves, cost, around, slopes, halves, united, tape }
     }
 
     /// Its length along its longest side.
@@ -187,7 +227,7 @@ impl Cell {
         self.bounds.longest_side()
     }
 
-    /// Whether as many halvings have left the leaves what they were that more are of no use.
+    /// Whether as many halvings have left the cost what it was that more are of no use.
     pub(super) fn is_stale(&self) -> bool {
         self.around.stale >= STALE
     }
@@ -196,12 +236,17 @@ impl Cell {
     pub(super) fn halves(&self) -> &Halves {
         self.halves.get_or_init(|| {
             let size = self.bounds.size();
-            let axis = (0..3).rev().max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(0);
+            // Once along each axis at first: that parts the front of a plate from its back.
+            let undivided = self.around.undivided;
+            let first = |axis: usize| undivided[axis] && size[axis] > THIN * size.max_element();
+            let order = |a: usize, b: usize| first(a).cmp(&first(b)).then(size[a].total_cmp(&size[b]));
+            let axis = (0..3).rev().max_by(|&a, &b| order(a, b)).unwrap_or(0);
             let plane = self.bounds.min[axis] + MIDDLE * size[axis];
             let (mut below, mut above) = (self.bounds, self.bounds);
             below.max[axis] = plane;
             above.min[axis] = plane;
-            let around = Around { stale: self.around.stale + 1, ..self.around };
+            let mut around = Around { stale: self.around.stale + 1, ..self.around };
+            around.undivided[axis] = false;
             let parts = [below, above].map(|bounds| part(&self.program, bounds, around));
             Halves { axis, plane, parts }
         })
@@ -223,30 +268,34 @@ impl Cell {
         parts.as_deref()
     }
 
-    /// The slopes of the value along rays in the cell with directions from `low` to `high`; those
-    /// last asked for are kept, as the tiles of an orthographic picture ask for the same.
-    pub(super) fn slope(&self, low: DVec3, high: DVec3) -> Interval {
-        let mut kept = self.slope.lock().unwrap_or_else(PoisonError::into_inner);
+    /// The slopes along rays in the cell with directions from `low` to `high`; those last asked for
+    /// are kept, as the tiles of an orthographic picture ask for the same.
+    pub(super) fn slopes(&self, low: DVec3, high: DVec3) -> Slopes {
+        let mut kept = self.slopes.lock().unwrap_or_else(PoisonError::into_inner);
         match *kept {
-            Some((directions, slope)) if directions == [low, high] => slope,
+            Some((directions, slopes)) if directions == [low, high] => slopes,
             _ => {
-                let slope = self.slope_along(low, high);
-                *kept = Some(([low, high], slope));
-                slope
+                let slopes = self.slopes_along(low, high);
+                *kept = Some(([low, high], slopes));
+                slopes
             }
         }
     }
 
-    fn slope_along(&self, low: DVec3, high: DVec3) -> Interval {
-        let Bounds { min, max } = self.bounds.inflate(self.around.margin);
+    fn slopes_along(&self, low: DVec3, high: DVec3) -> Slopes {
+        let room = self.bounds.inflate(self.around.margin);
         let zero = Interval::point(0.0);
-        let side = |axis: usize| {
-            let along = Interval::new(low[axis], high[axis]);
-            Dual::new(Interval::new(min[axis], max[axis]), [along, zero, zero])
-        };
-        let slope = self.program.evaluate([side(0), side(1), side(2)], &mut Vec::new()).gradient()[0];
-        let level = |v: f64| if v.abs() < LEVEL { 0.0 } else { v };
-        Interval::new(level(slope.lo()), level(slope.hi()))
+        let along = [0, 1, 2].map(|axis| Interval::new(low[axis], high[axis]));
+        let side = |axis: usize| Dual::new(Interval::new(room.min[axis], room.max[axis]), [along[axis], zero, zero]);
+        let value = self.program.evaluate([side(0), side(1), side(2)], &mut Vec::new()).gradient()[0];
+        let value = Slopes::new(level(value));
+        if value.rises || value.falls {
+            return value;
+        }
+        match self.program.crossing_slopes(&room, along) {
+            Some(crossing) => Slopes { value: value.value, ..Slopes::new(level(crossing)) },
+            None => value,
+        }
     }
 
     /// The program for bulk evaluation.

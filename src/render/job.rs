@@ -2,9 +2,9 @@
 
 use glam::{DVec3, Vec3};
 
-use super::cells::{Cell, Cells};
+use super::cells::{Cell, Cells, Slopes};
+use crate::Bounds;
 use crate::eval::{Bend, Tape};
-use crate::{Bounds, Interval};
 
 /// A ray under way.
 #[derive(Clone, Copy, Debug)]
@@ -92,11 +92,14 @@ pub(super) enum Outcome {
 }
 
 impl Lane {
-    /// Goes to `next`, or to the middle of the bracket if that is not in it.
+    /// Goes to `next`, or, if that is not in the bracket, to its left end or, if that is known, to
+    /// its middle.
     #[inline(always)]
     pub(super) fn aim(&mut self, next: f32) {
         let within = next > self.left && next < self.right;
-        self.at = if within { next } else { 0.5 * (self.left + self.right) };
+        let middle = 0.5 * (self.left + self.right);
+        let other = if self.g_left.is_nan() { self.left } else { middle };
+        self.at = if within { next } else { other };
     }
 }
 
@@ -110,9 +113,8 @@ pub(super) struct Job<'a> {
     pub(super) reach: Bounds,
     pub(super) bend: Option<Bend>,
     pub(super) owner: Option<u32>,
-    /// Lower and upper bounds of the value's slope along the rays, rounding allowed for.
-    pub(super) least: f32,
-    pub(super) most: f32,
+    /// Slopes along the rays.
+    known: Slopes,
     /// Values this small may have the wrong sign.
     pub(super) doubt: f32,
     pub(super) last_step: f32,
@@ -124,11 +126,10 @@ pub(super) struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
-    pub(super) fn new(cells: &Cells, cell: &'a Cell, slope: Interval, rays: &'a [Ray], spans: &'a [Span]) -> Job<'a> {
+    pub(super) fn new(cells: &Cells, cell: &'a Cell, slopes: Slopes, rays: &'a [Ray], spans: &'a [Span]) -> Job<'a> {
         let tape = cell.tape();
         let reach = cells.reach();
         let size = reach.longest_side();
-        let outward = |v: f64, by: f64| (v + by * (1e-6 * v.abs() + 1e-12)) as f32;
         Job {
             cell,
             rays,
@@ -138,8 +139,7 @@ impl<'a> Job<'a> {
             reach,
             bend: cell.bend,
             owner: cell.program.only_leaf(),
-            least: outward(slope.lo(), -1.0),
-            most: outward(slope.hi(), 1.0),
+            known: slopes,
             doubt: tape.roundoff() as f32,
             last_step: LAST_STEP * cell.side() as f32,
             close: (CLOSE * size).max(DOUBTS * tape.roundoff()) as f32,
@@ -169,9 +169,16 @@ impl<'a> Job<'a> {
         origin + (near + f64::from(lane.at) + ahead) * direction
     }
 
-    /// Bounds of the slope of g along the ray.
+    /// What is known of the slopes of g along the ray.
+    pub(super) fn known(&self, lane: &Lane) -> Slopes {
+        if lane.turn < 0.0 { self.known.turned() } else { self.known }
+    }
+
+    /// Bounds of the slope of g along the ray, rounding allowed for.
     pub(super) fn slopes(&self, lane: &Lane) -> (f32, f32) {
-        if lane.turn < 0.0 { (-self.most, -self.least) } else { (self.least, self.most) }
+        let outward = |v: f64, by: f64| (v + by * (1e-6 * v.abs() + 1e-12)) as f32;
+        let slopes = self.known(lane).value;
+        (outward(slopes.lo(), -1.0), outward(slopes.hi(), 1.0))
     }
 
     /// How g bends along the ray.

@@ -19,12 +19,11 @@
 //! of single precision are looked up in double precision; a ray that takes too many steps, or of
 //! whose slopes nothing is known, is divided by intervals (`eval::first_hit`).
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
-use super::cells::{Cell, Cells};
+use super::cells::{Cell, Cells, Slopes};
 use super::gbuffer::Surface;
 use super::job::{Job, Lane, Local, Outcome, Ray, Span};
-use crate::Interval;
 use crate::eval::{Bend, Care, Evaluator, Gradients, first_hit};
 
 /// A crossing found in single precision.
@@ -41,6 +40,9 @@ pub(super) struct Found {
 const TANGENTS: usize = 8;
 const SEARCH: usize = 40;
 const NEWTON: usize = 16;
+
+/// Of programs that cost more, in ordinary leaves, gradients are not for every ray.
+const DEAR: usize = 8;
 
 /// A search leaps this part of what a step may go on beyond where it is safe.
 const LEAP: f32 = 0.9;
@@ -61,25 +63,29 @@ pub(super) struct Marcher {
     pub(super) found: Vec<Found>,
     pub(super) doubtful: Vec<Found>,
     pub(super) open: Vec<Span>,
+    /// Hits whose owners are still sought, relative to the tape's origin, and the values that
+    /// decide there.
+    pub(super) unowned: Vec<(u32, DVec3)>,
+    pub(super) best: Vec<f64>,
     /// The rays that have hit something.
     pub(super) hits: Vec<u32>,
 }
 
 impl Marcher {
-    /// Marches the spans' rays through `cell`, with slopes within `slope` along them; what they
+    /// Marches the spans' rays through `cell`, with `slopes` along them; what they
     /// hit goes to `surfaces`, by ray, and the numbers of those rays to `hits`.
     pub(super) fn march(
         &mut self,
         cells: &Cells,
         cell: &Cell,
-        slope: Interval,
+        slopes: Slopes,
         rays: &[Ray],
         spans: &[Span],
         surfaces: &mut [Surface],
     ) {
         self.open.clear();
         self.found.clear();
-        let job = Job::new(cells, cell, slope, rays, spans);
+        let job = Job::new(cells, cell, slopes, rays, spans);
         self.load(&job);
         self.near_ends(&job);
         self.far_ends(&job);
@@ -141,8 +147,8 @@ impl Marcher {
         }
     }
 
-    /// Evaluates lanes at `at`.
-    fn evaluate(&mut self, job: &Job<'_>, lanes: &[Lane]) {
+    /// Evaluates lanes at `at`, their values alone or with gradients.
+    fn evaluate(&mut self, job: &Job<'_>, lanes: &[Lane], alone: bool) {
         let count = lanes.len();
         for list in &mut self.single {
             if list.len() < count {
@@ -155,7 +161,12 @@ impl Marcher {
             *y = lane.start[1] + lane.at * lane.direction[1];
             *z = lane.start[2] + lane.at * lane.direction[2];
         }
-        self.evaluator.gradients(job.tape, x, y, z, Gradients { value, dx, dy, dz });
+        if alone {
+            self.evaluator.values(job.tape, x, y, z, value);
+            [dx, dy, dz].into_iter().for_each(|list| list.fill(f32::NAN));
+        } else {
+            self.evaluator.gradients(job.tape, x, y, z, Gradients { value, dx, dy, dz });
+        }
     }
 
     /// Evaluates lanes at `at` and calls `visit` with each; those for which it gives `true` stay,
@@ -164,9 +175,14 @@ impl Marcher {
         &mut self,
         job: &Job<'_>,
         lanes: &mut Vec<Lane>,
-        mut visit: impl FnMut(&mut Lists<'_>, &mut Lane, Local) -> bool,
+        visit: impl FnMut(&mut Lists<'_>, &mut Lane, Local) -> bool,
     ) {
-        self.evaluate(job, lanes);
+        self.evaluate(job, lanes, false);
+        self.visit(lanes, visit);
+    }
+
+    /// Calls `visit` with each lane and what it was evaluated to.
+    fn visit(&mut self, lanes: &mut Vec<Lane>, mut visit: impl FnMut(&mut Lists<'_>, &mut Lane, Local) -> bool) {
         let count = lanes.len();
         let [_, _, _, value, dx, dy, dz] = self.single.each_ref().map(|list| &list[..count]);
         let mut lists = Lists {
@@ -250,19 +266,21 @@ impl Marcher {
             self.far = lanes;
             return;
         }
-        self.sift(job, &mut lanes, |lists, lane, Local { mut g, s, .. }| {
+        // Most of these rays miss: gradients of long formulas are for those that do not.
+        self.evaluate(job, &lanes, job.cell.cost > DEAR && job.bend.is_none());
+        self.visit(&mut lanes, |lists, lane, Local { mut g, s, .. }| {
             if g.abs() <= job.doubt {
                 let Span { ray, far, .. } = job.span(lane);
                 let crossed = (job.value(ray, far) > 0.0) != (lane.turn < 0.0);
                 g = if crossed { f32::MIN_POSITIVE } else { -f32::MIN_POSITIVE };
             }
             (lane.g_right, lane.s_right) = (g, s);
-            let (lo, hi) = job.slopes(lane);
-            let one = lo >= 0.0 || job.bend.is_some();
+            let Slopes { rises, falls, .. } = job.known(lane);
+            let one = rises || job.bend.is_some();
             if g > 0.0 && one {
                 lane.aim(lane.right - g / s);
                 lists.unique.push(*lane);
-            } else if g > 0.0 || !(one || hi <= 0.0) {
+            } else if g > 0.0 || !(one || falls) {
                 lane.at = 0.0;
                 lists.search.push(*lane);
             }
@@ -400,7 +418,7 @@ impl Marcher {
             }
             self.sift(job, &mut lanes, |lists, lane, Local { g, s, gradient }| {
                 if g < 0.0 {
-                    lane.left = lane.left.max(lane.at);
+                    (lane.left, lane.g_left) = (lane.left.max(lane.at), g);
                 } else {
                     lane.right = lane.right.min(lane.at);
                 }

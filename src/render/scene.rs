@@ -12,7 +12,7 @@ use super::extent::{corners, lowest};
 use super::facets::Facets;
 use super::gbuffer::{GBuffer, Surface, Window};
 use super::settings::RenderError;
-use super::tile::{TILE, Tracer, View};
+use super::tile::{TILE, Tracer, View, divide_top};
 use crate::eval::{Program, compiled};
 use crate::{Bounds, Cancelled, Hit, Palette, Rays, Run, Solid};
 
@@ -164,6 +164,9 @@ impl Scene {
         let mut surfaces = vec![Surface::NONE; window.count()];
         let Some(cells) = &self.cells else { return Ok(GBuffer::new(window, surfaces)) };
         let view = View::new(cells, rays);
+        if rayon::current_num_threads() > 1 {
+            divide_top(cells, &view, &window);
+        }
         let (across, down) = (window.width.div_ceil(TILE), window.height.div_ceil(TILE));
         let done = AtomicU32::new(0);
         let bands = surfaces.par_chunks_mut((window.width * TILE).max(1) as usize).enumerate();

@@ -10,11 +10,11 @@
 
 use glam::DVec3;
 
-use super::cells::{Cell, Cells, Part};
+use super::cells::{Cell, Cells, Part, Slopes};
 use super::gbuffer::{Surface, Window};
 use super::job::{Ray, Span};
 use super::march::Marcher;
-use crate::{Bounds, Interval, Rays};
+use crate::{Bounds, Rays};
 
 /// Pixels along a tile's side: the bits of a word.
 pub(super) const TILE: u32 = 64;
@@ -27,6 +27,19 @@ pub(super) struct Tracer {
     spans: Vec<Span>,
     /// Of those, what is nearer than what they have met.
     nearer: Vec<Span>,
+}
+
+/// Divides what of the tree every tile would begin with, on all threads: none waits for another then.
+pub(super) fn divide_top(cells: &Cells, view: &View<'_>, window: &Window) {
+    fn divide(part: &Part, sees: &(impl Fn(&Bounds) -> bool + Sync)) {
+        let Part::Cell(cell) = part else { return };
+        let is_plain = cell.bend.is_some() && cell.leaves == 1;
+        if cell.share > COARSE && !is_plain && sees(&cell.bounds) {
+            let [below, above] = &cell.halves().parts;
+            rayon::join(|| divide(below, sees), || divide(above, sees));
+        }
+    }
+    divide(cells.root(), &|bounds| view.sees(bounds, window));
 }
 
 /// What the rays of a packet have in common.
@@ -56,22 +69,21 @@ impl Tracer {
     pub(super) fn tile(&mut self, cells: &Cells, view: &View<'_>, tile: Window) -> Vec<Surface> {
         let mut surfaces = vec![Surface::NONE; tile.count()];
         let mut alive = Alive([0; TILE as usize]);
-        self.rays.clear();
+        // Those of other pixels are never asked for.
+        self.rays.resize(tile.count().max(self.rays.len()), Ray::NONE);
         let bounds = cells.bounds();
         let mut sheaf = Sheaf::EMPTY;
-        let seen = view.rectangle(bounds, &tile);
-        for y in 0..tile.height {
-            for x in 0..tile.width {
-                if !seen.is_some_and(|seen| seen.contains(x, y)) {
-                    self.rays.push(Ray::NONE);
-                    continue;
-                }
-                let (origin, direction) = tile.ray(view.rays, x, y);
-                let (ray, enters) = entering(cells, bounds, origin, direction, view.inside);
-                self.rays.push(ray);
-                if enters {
-                    alive.0[y as usize] |= 1 << x;
-                    sheaf.add(&ray);
+        let Some(seen) = view.rectangle(bounds, &tile) else { return surfaces };
+        for y in seen.top..seen.bottom {
+            let mut bits = seen.columns;
+            while bits != 0 {
+                let x = bits.trailing_zeros();
+                bits &= bits - 1;
+                let (origin, direction) = tile.ray(view.rays, x, y as u32);
+                let ray = &mut self.rays[y * tile.width as usize + x as usize];
+                if enters(ray, cells, origin, direction, view.inside) {
+                    alive.0[y] |= 1 << x;
+                    sheaf.add(ray);
                 }
             }
         }
@@ -85,12 +97,12 @@ impl Tracer {
                 continue;
             }
             let united = sheaf.united(cell);
-            let slope = if united.is_some() { Interval::ALL } else { sheaf.slope(cell) };
-            if !sheaf.inside && slope.hi() <= 0.0 {
+            let slopes = if united.is_some() { Slopes::ANY } else { sheaf.slopes(cell) };
+            if !sheaf.inside && slopes.falls {
                 // Seen from behind.
                 continue;
             }
-            if united.is_none() && divides(cell, count, slope) {
+            if united.is_none() && divides(cell, count, slopes) {
                 let halves = cell.halves();
                 let above = view.looks_up(halves.axis, halves.plane);
                 let [near, far] = if above { [0, 1] } else { [1, 0] };
@@ -114,7 +126,7 @@ impl Tracer {
                     }
                 }
                 if !self.spans.is_empty() {
-                    self.marcher.march(cells, part, slope, &self.rays, &self.spans, &mut surfaces);
+                    self.marcher.march(cells, part, slopes, &self.rays, &self.spans, &mut surfaces);
                 }
             }
             for &ray in &self.marcher.hits {
@@ -130,12 +142,12 @@ impl Tracer {
         self.rays.clear();
         let mut octants: [Vec<u32>; 8] = Default::default();
         for (number, &(origin, direction)) in (0..).zip(rays) {
-            let (ray, enters) = entering(cells, bounds, origin, direction, None);
-            self.rays.push(ray);
-            if enters {
+            let mut ray = Ray::NONE;
+            if enters(&mut ray, cells, origin, direction, None) {
                 let octant = (0..3).map(|axis| usize::from(direction[axis] < 0.0) << axis).sum::<usize>();
                 octants[octant].push(number);
             }
+            self.rays.push(ray);
         }
         let Part::Cell(root) = cells.root() else { return };
         let tie = TIE * bounds.longest_side();
@@ -161,11 +173,11 @@ impl Tracer {
                 let mut sheaf = Sheaf::EMPTY;
                 self.spans.iter().for_each(|span| sheaf.add(&self.rays[span.ray as usize]));
                 let united = sheaf.united(cell);
-                let slope = if united.is_some() { Interval::ALL } else { sheaf.slope(cell) };
-                if !sheaf.inside && slope.hi() <= 0.0 {
+                let slopes = if united.is_some() { Slopes::ANY } else { sheaf.slopes(cell) };
+                if !sheaf.inside && slopes.falls {
                     continue;
                 }
-                if united.is_none() && divides(cell, self.spans.len(), slope) {
+                if united.is_none() && divides(cell, self.spans.len(), slopes) {
                     let halves = cell.halves();
                     let [near, far] = if octant >> halves.axis & 1 == 0 { [0, 1] } else { [1, 0] };
                     let first = lists.len();
@@ -183,7 +195,7 @@ impl Tracer {
                     self.nearer.clear();
                     self.nearer.extend(rays.filter_map(|ray| nearer(part, ray, &self.rays, surfaces, tie)));
                     if !self.nearer.is_empty() {
-                        self.marcher.march(cells, part, slope, &self.rays, &self.nearer, surfaces);
+                        self.marcher.march(cells, part, slopes, &self.rays, &self.nearer, surfaces);
                     }
                 }
                 for &ray in &self.marcher.hits {
@@ -208,6 +220,17 @@ impl<'a> View<'a> {
 
     /// The pixels of a tile that may see the box.
     fn rectangle(&self, bounds: &Bounds, tile: &Window) -> Option<Rectangle> {
+        let [left, right, top, bottom] = self.sides(bounds, tile)?;
+        Some(Rectangle { top: top as usize, bottom: bottom as usize, columns: columns(left, right) })
+    }
+
+    /// Whether pixels of a window may see the box.
+    fn sees(&self, bounds: &Bounds, window: &Window) -> bool {
+        self.sides(bounds, window).is_some()
+    }
+
+    /// The pixels of a window that may see the box: columns from left to right, rows from top to bottom.
+    fn sides(&self, bounds: &Bounds, window: &Window) -> Option<[u32; 4]> {
         let outline = self.rays.outline(bounds)?;
         // A pixel counts if its ray is within the box's outline, give or take rounding.
         let clip = |axis: usize, first: u32, count: u32, within: f64| {
@@ -216,13 +239,9 @@ impl<'a> View<'a> {
             let high = (high - within + 1e-3 - f64::from(first)).floor() + 1.0;
             (low as u32, high.clamp(0.0, f64::from(count)) as u32)
         };
-        let (left, right) = clip(0, tile.left, tile.width, tile.within.0);
-        let (top, bottom) = clip(1, tile.top, tile.height, tile.within.1);
-        (left < right && top < bottom).then(|| Rectangle {
-            top: top as usize,
-            bottom: bottom as usize,
-            columns: columns(left, right),
-        })
+        let (left, right) = clip(0, window.left, window.width, window.within.0);
+        let (top, bottom) = clip(1, window.top, window.height, window.within.1);
+        (left < right && top < bottom).then_some([left, right, top, bottom])
     }
 
     /// Whether rays cross the plane from below to above, if at all.
@@ -247,12 +266,6 @@ impl Alive {
     }
 }
 
-impl Rectangle {
-    fn contains(&self, x: u32, y: u32) -> bool {
-        (self.top..self.bottom).contains(&(y as usize)) && self.columns >> x & 1 == 1
-    }
-}
-
 impl Sheaf {
     const EMPTY: Sheaf = Sheaf { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY, inside: false };
 
@@ -269,11 +282,11 @@ impl Sheaf {
 
     /// The slopes of the value that the rays may find in a cell; all, of a cell whose slopes are
     /// not worth knowing.
-    fn slope(&self, cell: &Cell) -> Interval {
+    fn slopes(&self, cell: &Cell) -> Slopes {
         if cell.bend.is_some() || cell.leaves > MANY || cell.share > COARSE {
-            return Interval::ALL;
+            return Slopes::ANY;
         }
-        cell.slope(self.low, self.high)
+        cell.slopes(self.low, self.high)
     }
 }
 
@@ -283,15 +296,16 @@ impl Ray {
         Ray { origin: DVec3::ZERO, direction: DVec3::ZERO, inverse: DVec3::ZERO, base: 0.0, inside: false };
 }
 
-/// A ray made ready, and whether it meets the box of all cells.
-fn entering(cells: &Cells, bounds: &Bounds, origin: DVec3, direction: DVec3, inside: Option<bool>) -> (Ray, bool) {
+/// Makes a ray ready; whether it meets the box of all cells.
+#[inline(always)]
+fn enters(ray: &mut Ray, cells: &Cells, origin: DVec3, direction: DVec3, inside: Option<bool>) -> bool {
     if !(origin.is_finite() && direction.is_finite() && direction != DVec3::ZERO) {
-        return (Ray::NONE, false);
+        return false;
     }
     // A number instead of infinity, so that planes at a distance of 0 stay there.
-    let inverse = direction.recip().clamp(DVec3::splat(-STEEPEST), DVec3::splat(STEEPEST));
-    let mut ray = Ray { origin, direction, inverse, base: 0.0, inside: false };
-    let Some((near, _)) = span(bounds, &ray) else { return (ray, false) };
+    ray.inverse = direction.recip().clamp(DVec3::splat(-STEEPEST), DVec3::splat(STEEPEST));
+    (ray.origin, ray.direction, ray.base, ray.inside) = (origin, direction, 0.0, false);
+    let Some((near, _)) = span(cells.bounds(), ray) else { return false };
     if near > 0.0 {
         // From far away, points have rounding errors: the ray starts anew where it enters.
         ray.base = near;
@@ -299,7 +313,7 @@ fn entering(cells: &Cells, bounds: &Bounds, origin: DVec3, direction: DVec3, ins
     } else {
         ray.inside = inside.unwrap_or_else(|| cells.contains(origin));
     }
-    (ray, true)
+    true
 }
 
 /// The part of a ray in a box. Two boxes that share a face share the distance to its plane, to
@@ -346,10 +360,10 @@ const TIE: f64 = 1e-7;
 /// No cell is divided below this part of the whole.
 const FINEST: f64 = 1.0 / 4096.0;
 
-/// Whether `count` rays are better off in the halves of a cell, where `slope` is what they may
+/// Whether `count` rays are better off in the halves of a cell, where `slopes` are what they may
 /// find.
-fn divides(cell: &Cell, count: usize, slope: Interval) -> bool {
-    let Cell { share, leaves, bend, .. } = *cell;
+fn divides(cell: &Cell, count: usize, slopes: Slopes) -> bool {
+    let Cell { share, leaves, cost, bend, .. } = *cell;
     let bent = bend.is_some();
     if bent && leaves == 1 {
         return share > PLAIN;
@@ -360,7 +374,7 @@ fn divides(cell: &Cell, count: usize, slope: Interval) -> bool {
     if leaves > MANY && !cell.is_stale() {
         return share > FINEST;
     }
-    let one_way = bent || slope.lo() >= 0.0 || slope.hi() <= 0.0;
-    let cost = count * leaves;
-    share > FINEST && if one_way { cost > 2048 && leaves > 1 } else { cost > 64 }
+    let one_way = bent || slopes.rises || slopes.falls;
+    let much = if one_way { cost > 1 && !cell.is_stale() && count * cost > 8192 } else { count * leaves > 64 };
+    share > FINEST && much
 }

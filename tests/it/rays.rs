@@ -4,8 +4,9 @@
 //! ranges: a piece of the ray whose box the program says is all inside or all outside has no
 //! crossing, any other is halved, the nearer half first, until it is short.
 
-use glam::DVec3;
-use rvachev::{Bounds, Camera, Program, Region, Run, Scene, Solid, Surface, Window};
+use fidget::context::Tree;
+use glam::{DVec2, DVec3};
+use rvachev::{Bounds, Camera, PlaneBounds, Profile, Program, Region, Run, Scene, Solid, Surface, Window};
 
 use crate::models;
 use crate::support::{Random, frame_of, near, random_leaf, random_solid};
@@ -270,35 +271,49 @@ fn normal_image(scene: &Scene, camera: &Camera, threads: usize) -> Vec<Surface> 
 
 #[test]
 fn pictures_see_what_single_rays_hit() {
-    compare_with_single_rays([models::m1(), models::m2()]);
+    for model in [models::m1(), models::m2(), models::m4(), models::m6()] {
+        compare_with_single_rays(model.name, &model.solid);
+    }
 }
 
+/// Rings and bars of a formula that chooses a lot, as a plate with a hole.
 #[test]
-fn pictures_of_many_and_of_bent_leaves_see_what_single_rays_hit() {
-    compare_with_single_rays([models::m4(), models::m6()]);
+fn pictures_of_formulas_see_what_single_rays_hit() {
+    let (x, y, _) = Tree::axes();
+    let ring = |cx: f32, cy: f32, r: f32| {
+        let distance = ((x.clone() - cx).square() + (y.clone() - cy).square()).sqrt();
+        (distance.clone() - r).max(-distance + 0.7 * r)
+    };
+    let bar = |cx: f32, cy: f32| (x.clone() - cx).abs().max((y.clone() - cy).abs() - 0.15) - 0.02;
+    let at = |i: u8| f32::from(i) * 0.28 - 0.84;
+    let spots: Vec<(f32, f32)> = (0..49).map(|i| (at(i % 7), at(i / 7))).collect();
+    let first = ring(0.9, 0.9, 0.05);
+    let text = spots.iter().fold(first, |all, &(cx, cy)| all.min(ring(cx, cy, 0.1)).min(bar(cx + 0.13, cy)));
+    let profile = Profile::formula(&text, PlaneBounds { min: DVec2::NEG_ONE, max: DVec2::ONE });
+    let plate = profile.extrude(0.1) - Solid::sphere(0.3).translate([0.2, 0.1, 0.0]);
+    compare_with_single_rays("plate", &plate);
 }
 
-fn compare_with_single_rays(models: [models::Model; 2]) {
-    for model in models {
-        let bounds = model.solid.bounds().unwrap();
-        let inside = Camera::perspective(bounds.center(), bounds.max, DVec3::Z, 100.0);
-        for camera in [Camera::framing(&bounds), Camera::framing_orthographic(&bounds), inside] {
-            let scene = model.solid.scene().unwrap();
-            let seen = normal_image(&scene, &camera, 1);
-            // Fresh or used, on one thread or several: the same to the bit.
-            assert!(seen == normal_image(&scene, &camera, 2), "{}", model.name);
-            assert!(seen == normal_image(&model.solid.scene().unwrap(), &camera, 3), "{}", model.name);
-            let size = bounds.longest_side();
-            let mut differ = 0;
-            for (i, seen) in seen.iter().enumerate().filter(|(i, _)| i % 37 == 0) {
-                let (origin, direction) = camera.ray((i % 60) as f64 + 0.5, (i / 60) as f64 + 0.5, 60, 44);
-                let hit = model.solid.raycast(origin, direction).unwrap();
-                let distance = hit.map_or(f64::INFINITY, |hit| hit.distance);
-                let close = distance == seen.distance || (distance - seen.distance).abs() < 1e-5 * size;
-                differ += usize::from(!close);
-            }
-            assert!(differ <= 2, "{} {camera:?}: {differ}", model.name);
+fn compare_with_single_rays(name: &str, solid: &Solid) {
+    let bounds = solid.bounds().unwrap();
+    let inside = Camera::perspective(bounds.center(), bounds.max, DVec3::Z, 100.0);
+    let above = Camera::orthographic(bounds.center() + DVec3::Z * 9.0, bounds.center(), DVec3::Y, bounds.size().y);
+    for camera in [Camera::framing(&bounds), Camera::framing_orthographic(&bounds), inside, above] {
+        let scene = solid.scene().unwrap();
+        let seen = normal_image(&scene, &camera, 1);
+        // Fresh or used, on one thread or several: the same to the bit.
+        assert!(seen == normal_image(&scene, &camera, 2), "{name}");
+        assert!(seen == normal_image(&solid.scene().unwrap(), &camera, 3), "{name}");
+        let size = bounds.longest_side();
+        let mut differ = 0;
+        for (i, seen) in seen.iter().enumerate().filter(|(i, _)| i % 37 == 0) {
+            let (origin, direction) = camera.ray((i % 60) as f64 + 0.5, (i / 60) as f64 + 0.5, 60, 44);
+            let hit = solid.raycast(origin, direction).unwrap();
+            let distance = hit.map_or(f64::INFINITY, |hit| hit.distance);
+            let close = distance == seen.distance || (distance - seen.distance).abs() < 1e-5 * size;
+            differ += usize::from(!close);
         }
+        assert!(differ <= 2, "{name} {camera:?}: {differ}");
     }
 }
 
