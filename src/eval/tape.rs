@@ -431,16 +431,19 @@ fn chunk<M: Mode<N>, const N: usize>(
                 M::join(op, rule, negate, split_mut(all, size), split(next, size));
             }
             Step::Copy { from, to } => {
-                registers.copy_within(from as usize * width..(from as usize + 1) * width, to as usize * width);
+                let (copy, of) = two(registers, to as usize * width, from as usize * width, width);
+                for (copy, of) in split_mut::<_, N>(copy, size).into_iter().zip(split::<_, N>(of, size)) {
+                    copy.copy_from_slice(of);
+                }
             }
             Step::Negate { register } => {
-                for v in &mut registers[register as usize * width..][..width] {
-                    *v = M::E::negated(*v);
+                for list in split_mut::<_, N>(&mut registers[register as usize * width..][..width], size) {
+                    list.iter_mut().for_each(|v| *v = M::E::negated(*v));
                 }
             }
             Step::Shift { register, by } => {
                 // Of a value with its slopes, the value alone.
-                for v in &mut registers[register as usize * width..][..CHUNK] {
+                for v in &mut registers[register as usize * width..][..size] {
                     *v = v.plus(M::E::from_f64(by));
                 }
             }

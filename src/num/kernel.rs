@@ -79,18 +79,22 @@ impl Element for f32 {
     type Wide<S: Simd> = Twice<Twice<F32<S>>>;
     type Lean<S: Simd> = F32<S>;
 
+    #[inline(always)]
     fn from_f64(v: f64) -> f32 {
         v as f32
     }
 
+    #[inline(always)]
     fn to_f64(self) -> f64 {
         self.into()
     }
 
+    #[inline(always)]
     fn negated(self) -> f32 {
         -self
     }
 
+    #[inline(always)]
     fn plus(self, other: f32) -> f32 {
         self + other
     }
@@ -100,18 +104,22 @@ impl Element for f64 {
     type Wide<S: Simd> = F64<S>;
     type Lean<S: Simd> = F64<S>;
 
+    #[inline(always)]
     fn from_f64(v: f64) -> f64 {
         v
     }
 
+    #[inline(always)]
     fn to_f64(self) -> f64 {
         self
     }
 
+    #[inline(always)]
     fn negated(self) -> f64 {
         -self
     }
 
+    #[inline(always)]
     fn plus(self, other: f64) -> f64 {
         self + other
     }

@@ -122,7 +122,9 @@ impl Tracer {
                     while bits != 0 {
                         let ray = y as u32 * tile.width + bits.trailing_zeros();
                         bits &= bits - 1;
-                        self.spans.extend(nearer(part, ray, &self.rays, &surfaces, tie));
+                        if let Some(span) = nearer(part, ray, &self.rays, &surfaces, tie) {
+                            self.spans.push(span);
+                        }
                     }
                 }
                 if !self.spans.is_empty() {
