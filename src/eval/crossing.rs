@@ -18,9 +18,10 @@ use crate::{Bounds, Dual, Interval};
 
 impl Program {
     /// A range of the slopes that leaves have where they change their signs, along rays in a box
-    /// with directions from `along[0]` to `along[1]`: 0 if there are none. `None` where the sign is
-    /// not that of leaves, and where leaves are deformed: there it costs more than it tells. Where all are at least 0, a ray goes inside at most once and does
-    /// not come out; where all are at most 0, it does not go inside.
+    /// with directions in `along`: 0 if there are none. Where all
+    /// are at least 0, a ray goes inside at most once and does not come out; where all are at most
+    /// 0, it does not go inside. `None` where the sign is not that of leaves, and where leaves are
+    /// deformed: there it costs more than it tells.
     pub(crate) fn crossing_slopes(&self, bounds: &Bounds, along: [Interval; 3]) -> Option<Interval> {
         if !self.frames.is_empty() {
             return None;
@@ -104,9 +105,6 @@ mod tests {
             let direction = vector(3 * n + 2).normalize();
             let along = direction.to_array().map(|d| Interval::new(d - 0.05, d + 0.05));
             let slopes = program.crossing_slopes(&bounds, along).expect("its sign is that of leaves");
-            if n % 100 == 0 {
-                eprintln!("{bounds:?} {along:?} {slopes:?} {program:?}");
-            }
             // Give or take 0 rounded outwards.
             let (rises, falls) = (slopes.lo() > -1e-14, slopes.hi() < 1e-14);
             rising += u32::from(rises);
