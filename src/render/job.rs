@@ -113,8 +113,10 @@ pub(super) struct Job<'a> {
     pub(super) reach: Bounds,
     pub(super) bend: Option<Bend>,
     pub(super) owner: Option<u32>,
-    /// Slopes along the rays.
+    /// Slopes of the value along the rays, and bounds of them with rounding allowed for.
     known: Slopes,
+    least: f32,
+    most: f32,
     /// Values this small may have the wrong sign.
     pub(super) doubt: f32,
     pub(super) last_step: f32,
@@ -130,6 +132,7 @@ impl<'a> Job<'a> {
         let tape = cell.tape();
         let reach = cells.reach();
         let size = reach.longest_side();
+        let outward = |v: f64, by: f64| (v + by * (1e-6 * v.abs() + 1e-12)) as f32;
         Job {
             cell,
             rays,
@@ -140,6 +143,8 @@ impl<'a> Job<'a> {
             bend: cell.bend,
             owner: cell.program.only_leaf(),
             known: slopes,
+            least: outward(slopes.value.lo(), -1.0),
+            most: outward(slopes.value.hi(), 1.0),
             doubt: tape.roundoff() as f32,
             last_step: LAST_STEP * cell.side() as f32,
             close: (CLOSE * size).max(DOUBTS * tape.roundoff()) as f32,
@@ -174,11 +179,9 @@ impl<'a> Job<'a> {
         if lane.turn < 0.0 { self.known.turned() } else { self.known }
     }
 
-    /// Bounds of the slope of g along the ray, rounding allowed for.
+    /// Bounds of the slope of g along the ray.
     pub(super) fn slopes(&self, lane: &Lane) -> (f32, f32) {
-        let outward = |v: f64, by: f64| (v + by * (1e-6 * v.abs() + 1e-12)) as f32;
-        let slopes = self.known(lane).value;
-        (outward(slopes.lo(), -1.0), outward(slopes.hi(), 1.0))
+        if lane.turn < 0.0 { (-self.most, -self.least) } else { (self.least, self.most) }
     }
 
     /// How g bends along the ray.
