@@ -15,7 +15,7 @@ use super::fold::join;
 use super::program::{Op, Program};
 use super::register::{Step, schedule};
 use crate::Bounds;
-use crate::field::{AnyField, AnyWarp, COORDINATE_LIMIT, Chunk, Placement, Product, Pull, Rule, Zone};
+use crate::field::{AnyField, AnyWarp, COORDINATE_LIMIT, Chunk, Placement, Product, Pull, Rule, VALUE_LIMIT, Zone};
 use crate::num::kernel::{CHUNK, Element, run, widest, within};
 
 /// A program ready for bulk evaluation over a region: immutable, shared between threads;
@@ -185,6 +185,7 @@ impl Seen {
 pub struct Evaluator {
     single: Memory<f32>,
     double: Memory<f64>,
+    far: Vec<bool>,
 }
 
 #[derive(Default)]
@@ -218,19 +219,26 @@ impl Evaluator {
     /// Values at points relative to the tape's origin. As many points are evaluated as the
     /// shortest of the slices holds. Finite coordinates give finite values.
     pub fn values(&mut self, tape: &Tape, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]) {
-        execute::<Values<f32>, 1>(tape, &mut self.single, [x, y, z], [out]);
+        execute::<Values<f32>, 1>(tape, &mut self.single, &[], [x, y, z], [out]);
+    }
+
+    /// The same for points in `region`, which is not relative to the origin; leaves of a union that
+    /// it is outside of are left out: what is outside of all of them has any value below 0.
+    pub(crate) fn values_in(&mut self, (tape, region): (&Tape, &Bounds), [x, y, z]: [&[f32]; 3], out: &mut [f32]) {
+        tape.mark_far(region, &mut self.far);
+        execute::<Values<f32>, 1>(tape, &mut self.single, &self.far, [x, y, z], [out]);
     }
 
     /// [`values`](Evaluator::values) on lanes of `f64`: as accurate as
     /// [`Program::value`], to some 10⁻¹⁴ of the solid's size.
     pub fn values_f64(&mut self, tape: &Tape, x: &[f64], y: &[f64], z: &[f64], out: &mut [f64]) {
-        execute::<Values<f64>, 1>(tape, &mut self.double, [x, y, z], [out]);
+        execute::<Values<f64>, 1>(tape, &mut self.double, &[], [x, y, z], [out]);
     }
 
     /// Values and gradients at points relative to the tape's origin.
     pub fn gradients(&mut self, tape: &Tape, x: &[f32], y: &[f32], z: &[f32], out: Gradients<'_>) {
         let Gradients { value, dx, dy, dz } = out;
-        execute::<Slopes, 4>(tape, &mut self.single, [x, y, z], [value, dx, dy, dz]);
+        execute::<Slopes, 4>(tape, &mut self.single, &[], [x, y, z], [value, dx, dy, dz]);
     }
 }
 
@@ -359,6 +367,7 @@ impl Mode<4> for Slopes {
 fn execute<M: Mode<N>, const N: usize>(
     tape: &Tape,
     memory: &mut Memory<M::E>,
+    far: &[bool],
     points: [&[M::E]; 3],
     mut out: [&mut [M::E]; N],
 ) {
@@ -389,7 +398,7 @@ fn execute<M: Mode<N>, const N: usize>(
             }
             world = split::<_, 3>(padded, size);
         }
-        chunk::<M, N>(tape, world, registers, slots, own);
+        chunk::<M, N>((tape, far), world, registers, slots, own);
         let result = &registers[tape.result as usize * N * CHUNK..][..N * CHUNK];
         for (to, from) in out.iter_mut().zip(split::<_, N>(result, len)) {
             to[at..at + len].copy_from_slice(from);
@@ -399,7 +408,7 @@ fn execute<M: Mode<N>, const N: usize>(
 }
 
 fn chunk<M: Mode<N>, const N: usize>(
-    tape: &Tape,
+    (tape, far): (&Tape, &[bool]),
     world: [&[M::E]; 3],
     registers: &mut [M::E],
     slots: &mut [M::E],
@@ -418,6 +427,9 @@ fn chunk<M: Mode<N>, const N: usize>(
     let width = N * CHUNK;
     for step in &tape.steps {
         match *step {
+            Step::Leaf { leaf, to } if far.get(leaf as usize) == Some(&true) => {
+                registers[to as usize * width..][..size].fill(M::E::from_f64(-VALUE_LIMIT));
+            }
             Step::Leaf { leaf, to } => {
                 let leaf = &tape.leaves[leaf as usize];
                 let points = match leaf.slot {

@@ -240,7 +240,9 @@ impl Field for Superellipsoid {
     }
 
     fn roundoff(&self, reach: f64) -> f64 {
-        let size = self.circumscribed_radius().min(reach);
+        // The circumscribed radius is no less than the largest semi-axis.
+        let within = reach <= self.semi_axes.max_element();
+        let size = if within { reach } else { self.circumscribed_radius().min(reach) };
         if self.convex() {
             return 4e-6 * size;
         }

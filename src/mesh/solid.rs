@@ -187,6 +187,9 @@ struct SolidSampler<'a> {
 /// Roots that are found at once; a multiple of the points that lanes are run on.
 const AT_ONCE: usize = 2048;
 
+/// So many layers of a block's nodes are sampled together: a third of them.
+const LAYERS: usize = 3;
+
 /// What a thread keeps from block to block.
 #[derive(Default)]
 struct Scratch {
@@ -274,8 +277,18 @@ impl Sampler for SolidSampler<'_> {
         });
         let tape = &mut scratch.tapes[at].1;
         tape.recentre(self.lattice.node(block[0], block[1], block[2]));
-        let [x, y, z] = &self.pattern;
-        scratch.evaluator.values(tape, x, y, z, out);
+        // A few layers at a time: not all leaves of the block reach all of them. Nodes beside those
+        // inside of a leaf are in its reach.
+        for (layers, out) in out.chunks_mut(LAYERS * SIDE * SIDE).enumerate() {
+            let first = layers * LAYERS;
+            let points = self.pattern.each_ref().map(|axis| &axis[first * SIDE * SIDE..][..out.len()]);
+            let [x, y, z] = block;
+            let low = self.lattice.node(x, y, z + first as u32);
+            let last = first + out.len() / (SIDE * SIDE) - 1;
+            let high = self.lattice.node(x + BLOCK as u32, y + BLOCK as u32, z + last as u32);
+            let region = Bounds::new(low, high).inflate(1.01 * self.lattice.step());
+            scratch.evaluator.values_in((tape, &region), points, out);
+        }
         // A sign that rounding may have turned is settled in double precision.
         let doubt = tape.roundoff() as f32;
         if !out.iter().fold(false, |any, value| any | (value.abs() <= doubt)) {

@@ -2,6 +2,7 @@
 //! evaluated alone.
 
 use super::{LeafStep, Tape};
+use crate::Bounds;
 use crate::eval::program::{Edge, Kind, Op, Program};
 use crate::eval::register::Step;
 use crate::field::Rule;
@@ -10,8 +11,17 @@ use crate::field::Rule;
 #[derive(Clone)]
 pub(super) struct Rivals {
     op: Op,
-    /// The number of each, and whether it counts negated.
-    leaves: Vec<(u32, bool)>,
+    leaves: Vec<Rival>,
+}
+
+/// One of them.
+#[derive(Clone)]
+struct Rival {
+    number: u32,
+    /// Whether it counts negated.
+    negated: bool,
+    /// Nothing beyond is inside of it.
+    reach: Bounds,
 }
 
 impl Rivals {
@@ -22,7 +32,11 @@ impl Rivals {
         let flip = program.root.negated();
         let operands = program.list(root);
         let leaf = |edge: &Edge| match program.nodes[edge.node()].kind {
-            Kind::Leaf(leaf) => Some((program.instance(leaf).number, edge.negated() != flip)),
+            Kind::Leaf(leaf) => {
+                let instance = program.instance(leaf);
+                let reach = if program.frames.is_empty() { instance.bounds } else { Bounds::ALL };
+                Some(Rival { number: instance.number, negated: edge.negated() != flip, reach })
+            }
             _ => None,
         };
         let leaves = if operands.len() == leaves { operands.iter().map(leaf).collect() } else { None };
@@ -36,8 +50,16 @@ impl Tape {
     /// the largest for a disjunction.
     pub(crate) fn rivals(&self) -> Option<(Op, impl Iterator<Item = (u32, Tape)>)> {
         let Rivals { op, leaves } = self.rivals.as_ref().filter(|_| self.short)?;
-        let alone = |(leaf, (number, negated)): (&LeafStep, &(u32, bool))| (*number, self.alone(leaf, *negated));
+        let alone = |(leaf, rival): (&LeafStep, &Rival)| (rival.number, self.alone(leaf, rival.negated));
         Some((*op, self.leaves.iter().zip(leaves).map(alone)))
+    }
+
+    /// Marks the leaves of a union that nothing of `region` is inside of.
+    pub(super) fn mark_far(&self, region: &Bounds, far: &mut Vec<bool>) {
+        far.clear();
+        if let Some(Rivals { op: Op::Or, leaves }) = &self.rivals {
+            far.extend(leaves.iter().map(|rival| !rival.negated && !rival.reach.intersects(region)));
+        }
     }
 
     /// Whether the value surely changes by at most 1 per length unit.
