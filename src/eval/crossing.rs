@@ -55,7 +55,7 @@ impl Program {
     }
 
     /// The slopes of a leaf where it is 0; those in the parts of the box that it crosses, one
-    /// behind the other, if they are not of one sign.
+    /// behind the other, if they are not of one sign (and the leaf costs little).
     fn crossing(&self, leaf: u32, bounds: &Bounds, along: [Interval; 3], parts: u32) -> Option<Interval> {
         let instance = self.instance(leaf);
         let sides = [0, 1, 2].map(|axis| {
@@ -68,7 +68,8 @@ impl Program {
             return None;
         }
         let slope = value.gradient()[0];
-        if parts == 0 || slope.lo() >= 0.0 || slope.hi() <= 0.0 {
+        let is_dear = instance.field.cost() > 1;
+        if parts == 0 || is_dear || slope.lo() >= 0.0 || slope.hi() <= 0.0 {
             return Some(slope);
         }
         let axis = (0..3).max_by(|&a, &b| along[a].magnitude().total_cmp(&along[b].magnitude())).unwrap_or(0);

@@ -155,10 +155,6 @@ impl Slopes {
     /// Nothing is known.
     pub(super) const ANY: Slopes = Slopes { value: Interval::ALL, rises: false, falls: false };
 
-    fn new(value: Interval) -> Slopes {
-        Slopes { value, rises: value.lo() >= 0.0, falls: value.hi() <= 0.0 }
-    }
-
     /// Those of the negated value.
     pub(super) fn turned(self) -> Slopes {
         Slopes { value: -self.value, rises: self.falls, falls: self.rises }
@@ -284,18 +280,18 @@ impl Cell {
 
     fn slopes_along(&self, low: DVec3, high: DVec3) -> Slopes {
         let room = self.bounds.inflate(self.around.margin);
-        let zero = Interval::point(0.0);
         let along = [0, 1, 2].map(|axis| Interval::new(low[axis], high[axis]));
+        let crossing = self.program.crossing_slopes(&room, along).map(level);
+        if let Some((rises, falls)) = crossing.map(|slopes| (slopes.lo() >= 0.0, slopes.hi() <= 0.0))
+            && (rises || falls)
+        {
+            // How steep it is does not matter then.
+            return Slopes { rises, falls, ..Slopes::ANY };
+        }
+        let zero = Interval::point(0.0);
         let side = |axis: usize| Dual::new(Interval::new(room.min[axis], room.max[axis]), [along[axis], zero, zero]);
-        let value = self.program.evaluate([side(0), side(1), side(2)], &mut Vec::new()).gradient()[0];
-        let value = Slopes::new(level(value));
-        if value.rises || value.falls {
-            return value;
-        }
-        match self.program.crossing_slopes(&room, along) {
-            Some(crossing) => Slopes { value: value.value, ..Slopes::new(level(crossing)) },
-            None => value,
-        }
+        let value = level(self.program.evaluate([side(0), side(1), side(2)], &mut Vec::new()).gradient()[0]);
+        Slopes { value, rises: value.lo() >= 0.0, falls: value.hi() <= 0.0 }
     }
 
     /// The program for bulk evaluation.
