@@ -50,6 +50,8 @@ struct Sheaf {
     high: DVec3,
     /// Whether any of them starts inside the solid.
     inside: bool,
+    /// Where all of them come from, if that is one point.
+    eye: Option<DVec3>,
 }
 
 /// The rays of a tile that are still under way, a word a row.
@@ -72,7 +74,7 @@ impl Tracer {
         // Those of other pixels are never asked for.
         self.rays.resize(tile.count().max(self.rays.len()), Ray::NONE);
         let bounds = cells.bounds();
-        let mut sheaf = Sheaf::EMPTY;
+        let mut sheaf = Sheaf::new(view.rays.meeting_point());
         let Some(seen) = view.rectangle(bounds, &tile) else { return surfaces };
         for y in seen.top..seen.bottom {
             let mut bits = seen.columns;
@@ -152,6 +154,7 @@ impl Tracer {
             self.rays.push(ray);
         }
         let Part::Cell(root) = cells.root() else { return };
+        let eye = rays.first().map(|ray| ray.0).filter(|eye| rays.len() > 1 && rays.iter().all(|ray| ray.0 == *eye));
         let tie = TIE * bounds.longest_side();
         let mut done = vec![false; rays.len()];
         for (octant, list) in octants.into_iter().enumerate() {
@@ -172,7 +175,7 @@ impl Tracer {
                 if self.spans.is_empty() {
                     continue;
                 }
-                let mut sheaf = Sheaf::EMPTY;
+                let mut sheaf = Sheaf::new(eye);
                 self.spans.iter().for_each(|span| sheaf.add(&self.rays[span.ray as usize]));
                 let united = sheaf.united(cell);
                 let slopes = if united.is_some() { Slopes::ANY } else { sheaf.slopes(cell) };
@@ -269,7 +272,9 @@ impl Alive {
 }
 
 impl Sheaf {
-    const EMPTY: Sheaf = Sheaf { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY, inside: false };
+    fn new(eye: Option<DVec3>) -> Sheaf {
+        Sheaf { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY, inside: false, eye }
+    }
 
     fn add(&mut self, ray: &Ray) {
         self.low = self.low.min(ray.direction);
@@ -288,7 +293,9 @@ impl Sheaf {
         if cell.bend.is_some() || cell.leaves > MANY || cell.share > COARSE {
             return Slopes::ANY;
         }
-        cell.slopes(self.low, self.high)
+        // Those from the eye to any point of the cell are asked for by other tiles as well.
+        let [low, high] = self.eye.and_then(|eye| cone(&cell.bounds, eye)).unwrap_or([self.low, self.high]);
+        cell.slopes(low, high)
     }
 }
 
@@ -296,6 +303,20 @@ impl Ray {
     /// Of a pixel that sees nothing.
     const NONE: Ray =
         Ray { origin: DVec3::ZERO, direction: DVec3::ZERO, inverse: DVec3::ZERO, base: 0.0, inside: false };
+}
+
+/// The least and the greatest components of the directions from `eye` to a box, if it is far enough
+/// away for these to differ little.
+fn cone(bounds: &Bounds, eye: DVec3) -> Option<[DVec3; 2]> {
+    let near = (eye.clamp(bounds.min, bounds.max) - eye).length();
+    if bounds.longest_side() > NARROW * near {
+        return None;
+    }
+    let far = near + bounds.size().length();
+    let (low, high) = (bounds.min - eye, bounds.max - eye);
+    let least = DVec3::select(low.cmplt(DVec3::ZERO), low / near, low / far);
+    let most = DVec3::select(high.cmpgt(DVec3::ZERO), high / near, high / far);
+    Some([least - 1e-9, most + 1e-9])
 }
 
 /// Makes a ray ready; whether it meets the box of all cells.
@@ -355,6 +376,10 @@ const COARSE: f64 = 0.2;
 /// Nor are those of cells with more leaves.
 const MANY: usize = 8;
 
+/// Boxes up to this size, in proportion to their distance from the eye, are seen along much the same
+/// direction.
+const NARROW: f64 = 0.1;
+
 /// A crossing of a united operand must be nearer by this part of the whole than one of those before
 /// it.
 const TIE: f64 = 1e-7;
@@ -379,4 +404,31 @@ fn divides(cell: &Cell, count: usize, slopes: Slopes) -> bool {
     let one_way = bent || slopes.rises || slopes.falls;
     let much = if one_way { cost > 1 && !cell.is_stale() && count * cost > 8192 } else { count * leaves > 64 };
     share > FINEST && much
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cones_hold_the_directions_to_their_boxes() {
+        let random = |n: u32| {
+            f64::from(n.wrapping_mul(2_654_435_769).rotate_left(9).wrapping_mul(2_246_822_519)) / 2f64.powi(32)
+        };
+        let vector = |n: u32| DVec3::new(random(3 * n), random(3 * n + 1), random(3 * n + 2)) * 2.0 - 1.0;
+        let mut narrow = 0;
+        for n in 0..2000 {
+            let bounds = Bounds::from_center(0.3 * vector(3 * n), 0.2 * vector(3 * n + 1).abs() + 1e-3);
+            let eye = 4.0 * vector(3 * n + 2);
+            let Some([low, high]) = cone(&bounds, eye) else { continue };
+            narrow += 1;
+            assert!((high - low).max_element() < 0.3);
+            for m in 0..20 {
+                let p = bounds.min + bounds.size() * (vector(20 * n + m) + 1.0) / 2.0;
+                let direction = (p - eye).normalize();
+                assert!(direction.cmpge(low).all() && direction.cmple(high).all(), "{direction} {low} {high}");
+            }
+        }
+        assert!(narrow > 500, "{narrow}");
+    }
 }

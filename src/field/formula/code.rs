@@ -238,6 +238,7 @@ impl Code {
     }
 
     /// Whether every operation is an instruction of the processor, not a call to a library.
+    #[cfg(feature = "jit")]
     pub(super) fn is_elementary(&self) -> bool {
         use BinaryOpcode as B;
         use UnaryOpcode as U;

@@ -124,7 +124,7 @@ mod jit {
 
 #[cfg(not(feature = "jit"))]
 #[derive(Default)]
-pub(super) struct Native;
+pub(super) struct Native {}
 
 #[cfg(not(feature = "jit"))]
 impl Native {
