@@ -9,7 +9,8 @@
 //!     +-------------+------+
 //! ```
 //!
-//! A cell is no larger than what its leaves' boxes leave of it. In a small union of convex
+//! Once along each axis a cell is halved even where that is not its longest side, which parts the
+//! front of a plate from its back. A cell is no larger than what its leaves' boxes leave of it. In a small union of convex
 //! leaves rays look for each leaf by itself, in the part of the cell that the leaf may reach, and
 //! the nearest crossing counts: nothing is divided further to part the leaves.
 //!
@@ -161,8 +162,8 @@ impl Slopes {
     }
 }
 
-/// The slopes without what comes of 0 rounded outwards: along a ray such slopes change a value by
-/// less than its own rounding does.
+/// The slopes without what comes of 0 rounded outwards: on the way through a cell such slopes change
+/// a value by far less than the room that the boxes are given.
 fn level(slopes: Interval) -> Interval {
     let least = LEVEL * slopes.magnitude().clamp(1e-17, 1.0);
     let level = |v: f64| if v.abs() < least { 0.0 } else { v };

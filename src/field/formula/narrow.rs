@@ -48,10 +48,10 @@ fn walked<T>(code: &Code, hull: [Interval; 3], then: impl FnOnce(&[Sure]) -> T) 
     })
 }
 
-/// Formulas up to this length are worth the price of gradients for a tighter range, if at most one
-/// in so many operations is a choice: halving is what helps where many are.
+/// Formulas up to this length, and with up to so many minima and maxima, are worth the price of
+/// gradients for a tighter range: where there are more, what helps is to leave some of them out.
 const SHORT: usize = 256;
-const CHOICES: usize = 16;
+const CHOICES: usize = 8;
 
 /// A narrowed formula must leave at most this part of the operations, in eighths.
 const EIGHTHS_LEFT: usize = 6;
@@ -70,12 +70,8 @@ impl Formula {
         let Some(whole) = whole else { return Interval::ALL };
         let range = turned(whole);
         let decided = range.lo() > 0.0 || range.hi() < 0.0;
-        if decided
-            || !whole.sure
-            || code.ops.len() > SHORT
-            || CHOICES * code.choices > code.ops.len().max(2 * CHOICES)
-            || !zone.is_finite()
-        {
+        let is_dear = code.ops.len() > SHORT || code.choices > CHOICES;
+        if decided || is_dear || !whole.sure || !zone.is_finite() {
             return range;
         }
         match self.centred(zone) {
