@@ -37,6 +37,9 @@ pub use query::Owner;
 pub use ray::Hit;
 pub use tape::{Evaluator, Gradients, Tape};
 
+/// To so many boxes a program is best narrowed in one go, if any of its leaves are dear.
+pub(crate) use crate::field::BOXES as BOXES_AT_ONCE;
+
 pub(crate) use bend::Bend;
 pub(crate) use compile::compiled;
 pub(crate) use program::Op;

@@ -33,6 +33,37 @@ impl Program {
         self.narrow_pass(&Zone::of_bounds(region), true)
     }
 
+    /// Tells the leaves which regions the program will be narrowed to next: some answer for many of
+    /// them at once as quickly as for one.
+    pub(crate) fn foresee(&self, regions: &[Bounds]) {
+        for leaf in self.nodes.iter().filter_map(Node::valued_by) {
+            let instance = self.instance(leaf);
+            if instance.frame == 0 {
+                let zone = |region: &Bounds| Zone::of_bounds(region).mapped(&instance.to_local);
+                instance.field.foresee(&regions.iter().map(zone).collect::<Vec<_>>());
+            }
+        }
+    }
+
+    /// The axes of the world that a leaf of more than `dear` ordinary ones depends on, if there is
+    /// one.
+    pub(crate) fn dear_axes(&self, dear: usize) -> Option<[bool; 3]> {
+        let mut axes = None;
+        for leaf in self.nodes.iter().filter_map(Node::valued_by) {
+            let instance = self.instance(leaf);
+            if instance.field.cost() <= dear {
+                continue;
+            }
+            let own = instance.field.axes();
+            let matrix = instance.to_local.matrix3;
+            // A deformation mixes the axes.
+            let moves = |axis: usize| instance.frame != 0 || (0..3).any(|to| own[to] && matrix.col(axis)[to] != 0.0);
+            let known = axes.unwrap_or([false; 3]);
+            axes = Some([0, 1, 2].map(|axis| known[axis] || moves(axis)));
+        }
+        axes
+    }
+
     /// A sound range of the value over a box; infinite where nothing is known.
     #[must_use]
     pub fn range(&self, region: &Bounds) -> Interval {

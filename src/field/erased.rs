@@ -116,6 +116,13 @@ pub(crate) trait AnyField: Any + Debug + Send + Sync {
     fn convex(&self) -> bool;
     /// A sound range over a zone of the leaf's frame.
     fn range(&self, zone: &Zone) -> Interval;
+    /// Which of the leaf's own axes the value may depend on.
+    fn axes(&self) -> [bool; 3] {
+        [true; 3]
+    }
+    /// Told which zones it will be asked about next; leaves that answer for many of them at once as
+    /// quickly as for one do so here.
+    fn foresee(&self, _zones: &[Zone]) {}
     /// A leaf that is cheaper and has the same values over the zone, where there is one.
     fn narrowed(&self, _zone: &Zone) -> Option<Arc<dyn AnyField>> {
         None

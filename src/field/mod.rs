@@ -56,6 +56,7 @@ pub(crate) use distance::Distance;
 pub use ellipsoid::Ellipsoid;
 pub(crate) use erased::{AnyField, Chunk, Placement, smallest_stretch, steep_slopes};
 pub use formula::{Formula, FormulaError};
+pub(crate) use formula::BOXES;
 pub use generalised::GeneralisedSuperquadric;
 pub use gielis::{Gielis, Radius, Turns};
 pub use half_space::HalfSpace;

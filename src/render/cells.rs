@@ -25,7 +25,7 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 
 use glam::DVec3;
 
-use crate::eval::{Bend, Program, Region, Tape};
+use crate::eval::{BOXES_AT_ONCE, Bend, Program, Region, Tape};
 use crate::{Bounds, Dual, Interval};
 
 /// The tree.
@@ -41,6 +41,8 @@ pub(super) enum Part {
     Inside,
     Outside,
     Cell(Box<Cell>),
+    /// A box without a program of its own: its cell was divided more than once in one go.
+    Halves(Box<Halves>),
 }
 
 /// A box that the surface may cross.
@@ -67,6 +69,26 @@ pub(super) struct Halves {
     pub(super) axis: usize,
     pub(super) plane: f64,
     pub(super) parts: [Part; 2],
+}
+
+impl Halves {
+    fn part_of(&self, p: DVec3) -> &Part {
+        &self.parts[usize::from(p[self.axis] >= self.plane)]
+    }
+
+    /// Calls `visit` with the cells of both parts, the farthest first; `is_above` tells of an axis and a
+    /// plane across it whether the part above is the farther one.
+    pub(super) fn from_far<'a>(&'a self, is_above: &impl Fn(usize, f64) -> bool, visit: &mut impl FnMut(&'a Cell)) {
+        let [below, above] = &self.parts;
+        let order = if is_above(self.axis, self.plane) { [above, below] } else { [below, above] };
+        for part in order {
+            match part {
+                Part::Inside | Part::Outside => {}
+                Part::Cell(cell) => visit(cell),
+                Part::Halves(halves) => halves.from_far(is_above, visit),
+            }
+        }
+    }
 }
 
 impl Cells {
@@ -112,9 +134,9 @@ impl Cells {
                     if cell.leaves <= FEW || cell.is_stale() {
                         return cell.program.value(p) > 0.0;
                     }
-                    let halves = cell.halves();
-                    part = &halves.parts[usize::from(p[halves.axis] >= halves.plane)];
+                    part = cell.halves().part_of(p);
                 }
+                Part::Halves(halves) => part = halves.part_of(p),
             }
         }
     }
@@ -134,6 +156,11 @@ const CROWD: usize = 24;
 
 /// Unions of more leaves are divided in space.
 const UNITED: usize = 8;
+
+/// Cells with a leaf that costs more, in ordinary leaves, are halved more than once in one go: to narrow
+/// it to many boxes takes little longer than to narrow it to one.
+const DEAR: usize = 8;
+const AT_ONCE: u32 = BOXES_AT_ONCE.ilog2();
 
 /// Slopes below this part of the others come of 0 rounded outwards.
 const LEVEL: f64 = 1e-13;
@@ -184,6 +211,51 @@ struct Around {
 }
 
 impl Around {
+    /// The halves of a box, and what is known around them: once along each axis it is halved at first,
+    /// which parts the front of a plate from its back, then along the longest side across `axes`.
+    fn cut(&self, bounds: &Bounds, axes: [bool; 3]) -> (usize, f64, [Bounds; 2], Around) {
+        let size = bounds.size();
+        let first = |axis: usize| self.undivided[axis] && size[axis] > THIN * size.max_element();
+        let order = |a: usize, b: usize| {
+            first(a).cmp(&first(b)).then(axes[a].cmp(&axes[b])).then(size[a].total_cmp(&size[b]))
+        };
+        let axis = (0..3).rev().max_by(|&a, &b| order(a, b)).unwrap_or(0);
+        let plane = bounds.min[axis] + MIDDLE * size[axis];
+        let (mut below, mut above) = (*bounds, *bounds);
+        below.max[axis] = plane;
+        above.min[axis] = plane;
+        let mut around = Around { stale: self.stale + 1, ..*self };
+        around.undivided[axis] = false;
+        (axis, plane, [below, above], around)
+    }
+
+    /// The boxes that a box is halved into, so many times, with their room.
+    fn boxes(&self, bounds: &Bounds, axes: [bool; 3], times: u32, all: &mut Vec<Bounds>) {
+        if times == 0 {
+            all.push(bounds.inflate(self.margin));
+            return;
+        }
+        let (_, _, halves, around) = self.cut(bounds, axes);
+        halves.iter().for_each(|half| around.boxes(half, axes, times - 1, all));
+    }
+
+    /// What these boxes hold.
+    fn halves(&self, program: &Program, bounds: &Bounds, axes: [bool; 3], times: u32) -> Halves {
+        let (axis, plane, halves, around) = self.cut(bounds, axes);
+        let parts = halves.map(|half| {
+            if times == 1 {
+                return part(program, half, around);
+            }
+            let halves = around.halves(program, &half, axes, times - 1);
+            match halves.parts {
+                [Part::Inside, Part::Inside] => Part::Inside,
+                [Part::Outside, Part::Outside] => Part::Outside,
+                _ => Part::Halves(Box::new(halves)),
+            }
+        });
+        Halves { axis, plane, parts }
+    }
+
     /// What of a box the program may have an inside in.
     fn clipped(&self, program: &Program, bounds: &Bounds) -> Bounds {
         program.reach().inflate(self.margin).intersection(bounds)
@@ -232,20 +304,14 @@ impl Cell {
     /// Its halves, made when they are first asked for.
     pub(super) fn halves(&self) -> &Halves {
         self.halves.get_or_init(|| {
-            let size = self.bounds.size();
-            // Once along each axis at first: that parts the front of a plate from its back.
-            let undivided = self.around.undivided;
-            let first = |axis: usize| undivided[axis] && size[axis] > THIN * size.max_element();
-            let order = |a: usize, b: usize| first(a).cmp(&first(b)).then(size[a].total_cmp(&size[b]));
-            let axis = (0..3).rev().max_by(|&a, &b| order(a, b)).unwrap_or(0);
-            let plane = self.bounds.min[axis] + MIDDLE * size[axis];
-            let (mut below, mut above) = (self.bounds, self.bounds);
-            below.max[axis] = plane;
-            above.min[axis] = plane;
-            let mut around = Around { stale: self.around.stale + 1, ..self.around };
-            around.undivided[axis] = false;
-            let parts = [below, above].map(|bounds| part(&self.program, bounds, around));
-            Halves { axis, plane, parts }
+            let dear = self.program.dear_axes(DEAR);
+            let (axes, times) = dear.map_or(([true; 3], 1), |axes| (axes, AT_ONCE));
+            let mut boxes = Vec::new();
+            self.around.boxes(&self.bounds, axes, times, &mut boxes);
+            if boxes.len() > 2 {
+                self.program.foresee(&boxes);
+            }
+            self.around.halves(&self.program, &self.bounds, axes, times)
         })
     }
 

@@ -32,7 +32,15 @@ pub(super) struct Tracer {
 /// Divides what of the tree every tile would begin with, on all threads: none waits for another then.
 pub(super) fn divide_top(cells: &Cells, view: &View<'_>, window: &Window) {
     fn divide(part: &Part, sees: &(impl Fn(&Bounds) -> bool + Sync)) {
-        let Part::Cell(cell) = part else { return };
+        let cell = match part {
+            Part::Inside | Part::Outside => return,
+            Part::Cell(cell) => cell,
+            Part::Halves(halves) => {
+                let [below, above] = &halves.parts;
+                rayon::join(|| divide(below, sees), || divide(above, sees));
+                return;
+            }
+        };
         let is_plain = cell.bend.is_some() && cell.leaves == 1;
         if cell.share > COARSE && !is_plain && sees(&cell.bounds) {
             let [below, above] = &cell.halves().parts;
@@ -105,14 +113,7 @@ impl Tracer {
                 continue;
             }
             if united.is_none() && divides(cell, count, slopes) {
-                let halves = cell.halves();
-                let above = view.looks_up(halves.axis, halves.plane);
-                let [near, far] = if above { [0, 1] } else { [1, 0] };
-                for part in [&halves.parts[far], &halves.parts[near]] {
-                    if let Part::Cell(cell) = part {
-                        pending.push(cell);
-                    }
-                }
+                cell.halves().from_far(&|axis, plane| view.looks_up(axis, plane), &mut |cell| pending.push(cell));
                 continue;
             }
             self.marcher.hits.clear();
@@ -183,15 +184,10 @@ impl Tracer {
                     continue;
                 }
                 if united.is_none() && divides(cell, self.spans.len(), slopes) {
-                    let halves = cell.halves();
-                    let [near, far] = if octant >> halves.axis & 1 == 0 { [0, 1] } else { [1, 0] };
                     let first = lists.len();
                     lists.extend(self.spans.iter().map(|span| span.ray));
-                    for part in [&halves.parts[far], &halves.parts[near]] {
-                        if let Part::Cell(cell) = part {
-                            pending.push((cell, first, lists.len()));
-                        }
-                    }
+                    let is_above = |axis: usize, _: f64| octant >> axis & 1 == 0;
+                    cell.halves().from_far(&is_above, &mut |cell| pending.push((cell, first, lists.len())));
                     continue;
                 }
                 self.marcher.hits.clear();

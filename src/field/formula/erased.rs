@@ -78,6 +78,14 @@ impl AnyField for Formula {
         self.range_over(zone)
     }
 
+    fn axes(&self) -> [bool; 3] {
+        self.0.code.axes
+    }
+
+    fn foresee(&self, zones: &[Zone]) {
+        self.survey(zones);
+    }
+
     fn narrowed(&self, zone: &Zone) -> Option<Arc<dyn AnyField>> {
         self.narrowed_to(zone).map(|formula| Arc::new(formula) as Arc<dyn AnyField>)
     }

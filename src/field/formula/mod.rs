@@ -33,17 +33,19 @@ mod plan;
 mod roundoff;
 mod slope;
 mod sure;
+mod survey;
 #[cfg(test)]
 mod tests;
 mod text;
 
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use fidget::context::Tree;
 
 use self::code::{Code, Flaw};
 use self::native::Native;
+pub(crate) use self::survey::BOXES;
 pub use self::text::FormulaError;
 use super::{ParamError, check};
 use crate::{Bounds, Interval};
@@ -93,6 +95,10 @@ struct Inner {
     region: [Interval; 3],
     /// The range of the solid's value in that box.
     range: Interval,
+    /// The first of those that it was narrowed from that has a region.
+    elder: Option<Formula>,
+    /// The bound of rounding errors in all of its region, once it or a narrowed one was asked for it.
+    roundoff: OnceLock<f64>,
     native: Native,
 }
 
@@ -138,8 +144,15 @@ impl Formula {
     }
 
     fn of_code(code: Code, bounds: Bounds) -> Formula {
-        let native = Native::default();
-        Formula(Arc::new(Inner { code, bounds, region: [Interval::ALL; 3], range: Interval::ALL, native }))
+        Formula(Arc::new(Inner {
+            code,
+            bounds,
+            region: [Interval::ALL; 3],
+            range: Interval::ALL,
+            elder: None,
+            roundoff: OnceLock::new(),
+            native: Native::default(),
+        }))
     }
 
     /// How many operations it takes, axes and constants counted.

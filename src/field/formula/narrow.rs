@@ -6,7 +6,7 @@
 //! undefined.
 
 use std::cell::RefCell;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use fidget::context::{BinaryOpcode, UnaryOpcode};
 use glam::DVec3;
@@ -16,6 +16,7 @@ use super::code::{Code, Op, live};
 use super::native::Native;
 use super::slope::Slope;
 use super::sure::Sure;
+use super::survey::Survey;
 use super::{Formula, Inner};
 use crate::field::{VALUE_LIMIT, Zone};
 use crate::{Dual, Interval};
@@ -29,14 +30,20 @@ struct Walk {
 }
 
 thread_local! {
+    /// The last walk of a thread over many boxes.
+    static SURVEY: RefCell<Survey> = const { RefCell::new(Survey::new()) };
     static WALK: RefCell<Walk> =
         const { RefCell::new(Walk { number: u64::MAX, hull: [Interval::ALL; 3], ranges: Vec::new() }) };
 }
 
+/// The box by the axes that matter: boxes that differ along others are the same.
+fn seen(code: &Code, hull: [Interval; 3]) -> [Interval; 3] {
+    [0, 1, 2].map(|axis| if code.axes[axis] { hull[axis] } else { Interval::point(0.0) })
+}
+
 /// Calls `then` with the ranges of all operations over a box.
 fn walked<T>(code: &Code, hull: [Interval; 3], then: impl FnOnce(&[Sure]) -> T) -> T {
-    // Boxes that differ along an axis that does not matter are the same.
-    let hull = [0, 1, 2].map(|axis| if code.axes[axis] { hull[axis] } else { Interval::point(0.0) });
+    let hull = seen(code, hull);
     WALK.with_borrow_mut(|walk| {
         if walk.number != code.number || walk.hull != hull {
             // A coordinate is a number wherever it is.
@@ -64,10 +71,17 @@ pub(super) fn turned(value: Sure) -> Interval {
 }
 
 impl Formula {
+    /// Walks over many zones at once: their ranges and narrowed formulas will be asked for.
+    pub(super) fn survey(&self, zones: &[Zone]) {
+        let code = &self.0.code;
+        if zones.len() > 1 && zones.iter().all(Zone::is_finite) {
+            SURVEY.with_borrow_mut(|survey| survey.walk(code, zones.iter().map(|zone| seen(code, zone.hull()))));
+        }
+    }
+
     pub(super) fn range_over(&self, zone: &Zone) -> Interval {
         let code = &self.0.code;
-        let whole = walked(code, zone.hull(), |ranges| ranges.last().copied());
-        let Some(whole) = whole else { return Interval::ALL };
+        let Some(whole) = whole_range(code, zone.hull()) else { return Interval::ALL };
         let range = turned(whole);
         let decided = range.lo() > 0.0 || range.hi() < 0.0;
         let is_dear = code.ops.len() > SHORT || code.choices > CHOICES;
@@ -114,10 +128,18 @@ impl Formula {
         }
         let code = &self.0.code;
         let hull = zone.hull();
-        let (ops, range) = walked(code, hull, |ranges| Some((narrowed(&code.ops, ranges)?, ranges.last().copied()?)))?;
+        let (ops, range) = narrowed(code, hull)?;
         let region = [0, 1, 2].map(|axis| self.0.region[axis].narrowed_by(hull[axis]));
-        let (code, native) = (Code::new(ops, code.flaw), Native::default());
-        Some(Formula(Arc::new(Inner { code, bounds: self.0.bounds, region, range: turned(range), native })))
+        let has_region = self.0.region != [Interval::ALL; 3];
+        Some(Formula(Arc::new(Inner {
+            code: Code::new(ops, code.flaw),
+            bounds: self.0.bounds,
+            region,
+            range: turned(range),
+            elder: self.0.elder.clone().or_else(|| has_region.then(|| self.clone())),
+            roundoff: OnceLock::new(),
+            native: Native::default(),
+        })))
     }
 
     pub(super) fn dual_range_of(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
@@ -165,9 +187,28 @@ fn variables(hull: [Interval; 3]) -> [Slope<Sure>; 3] {
     })
 }
 
-/// The operations without what is not chosen, if that saves enough.
-fn narrowed(ops: &[Op], ranges: &[Sure]) -> Option<Vec<Op>> {
-    live(ops, EIGHTHS_LEFT * ops.len() / 8, |at| choice(&ops[at], ranges))
+/// The range of the formula over a box.
+fn whole_range(code: &Code, hull: [Interval; 3]) -> Option<Sure> {
+    let known = SURVEY.with_borrow(|survey| Some(survey.range(survey.lane(code, &seen(code, hull))?)));
+    known.or_else(|| walked(code, hull, |ranges| ranges.last().copied()))
+}
+
+/// The operations without what is not chosen in a box, if that saves enough, and their range.
+fn narrowed(code: &Code, hull: [Interval; 3]) -> Option<(Vec<Op>, Sure)> {
+    let ops = &code.ops;
+    let most = EIGHTHS_LEFT * ops.len() / 8;
+    let known = SURVEY.with_borrow(|survey| {
+        let lane = survey.lane(code, &seen(code, hull))?;
+        let choice = |at: usize| match ops[at] {
+            Op::Binary(op, a, b) if matches!(op, BinaryOpcode::Min | BinaryOpcode::Max | BinaryOpcode::And | BinaryOpcode::Or) => survey.choice(lane, at, [a, b]),
+            Op::Unary(UnaryOpcode::Abs, a) => survey.choice(lane, at, [a, a]),
+            _ => None,
+        };
+        Some(live(ops, most, choice).map(|ops| (ops, survey.range(lane))))
+    });
+    known.unwrap_or_else(|| {
+        walked(code, hull, |ranges| Some((live(ops, most, |at| choice(&ops[at], ranges))?, ranges.last().copied()?)))
+    })
 }
 
 /// The operand that the operation is equal to throughout.

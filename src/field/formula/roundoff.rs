@@ -15,6 +15,11 @@
 //! 0, and yet ‖(a, b)‖ is off by no more than ‖(e_a, e_b)‖. So sums of squares
 //! carry a bound on |√c − √t| beside e.
 //!
+//! A bound holds for what narrowing makes of a formula in a part of the box as well: all that it does
+//! is to put an operand in the place of a minimum or so that it is equal to there, whose e is no
+//! larger. So the copies of minima, maxima and absolute values are given room for t ± e,
+//! and narrowed formulas share the bound of the one that they all come from.
+//!
 //! Where a step, a pole or a place where the value is undefined comes too near there is no
 //! bound: it is infinite, and every sample is settled in double precision.
 
@@ -122,7 +127,8 @@ impl Arithmetic for Error {
             U::Not if !both.contains(0.0) => 0.0,
             U::Not | U::Rand => 1.0,
         };
-        Error { truth, seen, error, root }.checked(a.is_sure())
+        let whole = Error { truth, seen, error, root };
+        if op == U::Abs { whole.or_operand() } else { whole }.checked(a.is_sure())
     }
 
     fn binary(op: BinaryOpcode, a: Error, b: Error) -> Error {
@@ -168,11 +174,19 @@ impl Arithmetic for Error {
             }
             B::Mix => f64::INFINITY,
         };
-        Error { truth, seen, error, root }.checked(a.is_sure() && b.is_sure())
+        let whole = Error { truth, seen, error, root };
+        let chooses = matches!(op, B::Min | B::Max | B::And | B::Or);
+        if chooses { whole.or_operand() } else { whole }.checked(a.is_sure() && b.is_sure())
     }
 }
 
 impl Error {
+    /// What an operand in the place of the operation may be computed to, where it is equal to it.
+    fn or_operand(mut self) -> Error {
+        self.seen.range = self.seen.range.hull(self.truth.range.inflate(self.error));
+        self
+    }
+
     /// No bound where anything is undefined; never more than the two ranges are apart.
     fn checked(mut self, operands: bool) -> Error {
         if !(operands && self.is_sure()) || self.error.is_nan() {
@@ -186,12 +200,26 @@ impl Error {
     }
 }
 
+/// A bound that is taken from another formula is at most this part of the range of values: of points
+/// in a thousand one is settled in double precision for nothing.
+const SHARED: f64 = 1e-3;
+
 impl Formula {
     /// The bound within `reach` of the origin, for coordinates that are off by up to 10⁻⁶ of it.
     pub(super) fn roundoff_within(&self, reach: f64) -> f64 {
         if !reach.is_finite() {
             return f64::INFINITY;
         }
+        let shared = self.0.elder.as_ref().and_then(|elder| {
+            let region = elder.0.region;
+            let far = region.iter().fold(0.0f64, |far, side| far.max(side.magnitude()));
+            let bound = *elder.0.roundoff.get_or_init(|| elder.bound_within(far));
+            (reach <= far && bound <= SHARED * self.0.range.width()).then_some(bound)
+        });
+        shared.unwrap_or_else(|| self.bound_within(reach))
+    }
+
+    fn bound_within(&self, reach: f64) -> f64 {
         let off = 1e-6 * reach;
         let point = self.0.region.map(|region| {
             let truth = Interval::new(-reach, reach).narrowed_by(region);
