@@ -20,6 +20,7 @@ mod lower;
 mod narrow;
 mod nearest;
 mod palette;
+mod parting;
 mod pass;
 mod point;
 mod program;
@@ -42,5 +43,6 @@ pub(crate) use crate::field::BOXES as BOXES_AT_ONCE;
 
 pub(crate) use bend::Bend;
 pub(crate) use compile::compiled;
+pub(crate) use parting::Parting;
 pub(crate) use program::Op;
 pub(crate) use ray::{Care, first_hit};

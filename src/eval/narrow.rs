@@ -6,10 +6,12 @@
 //! value cannot be the one that counts. Ranges are taken leaf by leaf over the region as it looks in the
 //! leaf's frame.
 
+use std::sync::Arc;
+
 use super::pass::{Asked, Pass, Sign};
 use super::program::{Edge, Kind, Node, Program, Region};
 use super::scene::Instance;
-use crate::field::{Pieces, Zone};
+use crate::field::{AnyField, Pieces, Zone};
 use crate::{Bounds, Interval};
 
 impl Program {
@@ -45,23 +47,21 @@ impl Program {
         }
     }
 
-    /// The axes of the world that a leaf of more than `dear` ordinary ones depends on, if there is
-    /// one.
+    /// The axes of the world that leaves of more than `dear` ordinary ones depend on, if there are
+    /// such leaves.
     pub(crate) fn dear_axes(&self, dear: usize) -> Option<[bool; 3]> {
-        let mut axes = None;
-        for leaf in self.nodes.iter().filter_map(Node::valued_by) {
-            let instance = self.instance(leaf);
-            if instance.field.cost() <= dear {
-                continue;
-            }
-            let own = instance.field.axes();
-            let matrix = instance.to_local.matrix3;
-            // A deformation mixes the axes.
-            let moves = |axis: usize| instance.frame != 0 || (0..3).any(|to| own[to] && matrix.col(axis)[to] != 0.0);
-            let known = axes.unwrap_or([false; 3]);
-            axes = Some([0, 1, 2].map(|axis| known[axis] || moves(axis)));
-        }
-        axes
+        let leaves = self.nodes.iter().filter_map(Node::valued_by);
+        let dear = leaves.filter(|&leaf| self.instance(leaf).field.cost() > dear);
+        dear.map(|leaf| self.axes_of(leaf)).reduce(|a, b| [0, 1, 2].map(|axis| a[axis] || b[axis]))
+    }
+
+    /// The axes of the world that a leaf depends on.
+    pub(super) fn axes_of(&self, leaf: u32) -> [bool; 3] {
+        let instance = self.instance(leaf);
+        let own = instance.field.axes();
+        let matrix = instance.to_local.matrix3;
+        // A deformation mixes the axes.
+        [0, 1, 2].map(|axis| instance.frame != 0 || (0..3).any(|to| own[to] && matrix.col(axis)[to] != 0.0))
     }
 
     /// A sound range of the value over a box; infinite where nothing is known.
@@ -74,7 +74,7 @@ impl Program {
     }
 
     /// The world's zone seen from every live frame.
-    fn zones(&self, world: &Pieces) -> Vec<Pieces> {
+    pub(super) fn zones(&self, world: &Pieces) -> Vec<Pieces> {
         let mut zones = Vec::with_capacity(self.frames.len());
         for &number in &self.frames[..] {
             if let Some(frame) = self.scene.frame(number) {
@@ -130,6 +130,11 @@ impl Program {
         let mut pass = Pass::new(self, &zones, world);
         pass.by_boxes = by_boxes;
         pass.run(Asked { sign: true, value: false });
+        self.region(pass)
+    }
+
+    /// What a pass over a region that asked for signs has found.
+    pub(super) fn region(&self, pass: Pass<'_>) -> Region {
         let Pass { signs, nodes, list, simpler, .. } = pass;
         match signs[self.root.node()].flip_if(self.root.negated()) {
             Sign::Positive => Region::Inside,
@@ -148,14 +153,16 @@ impl Program {
         nodes.len() == self.nodes.len() && list.len() == self.operands.len() && edges(nodes) == edges(&self.nodes)
     }
 
-    /// The answer for a program of one leaf that no region makes simpler, what most regions
-    /// come down to: it needs no tables, and what stays open shares its program.
+    /// The answer for a program of one leaf, what most regions come down to: it needs no tables, and
+    /// what stays open shares its program, or all of it but a simpler leaf.
     fn narrow_leaf(&self, zones: &[Pieces], world: &Pieces) -> Option<Region> {
         let [Node { kind: Kind::Leaf(leaf), .. }] = self.nodes[..] else { return None };
         let instance = self.instance(leaf);
         let zone = self.zone_in(zones, instance.frame, world);
-        let simpler = || zone.only().and_then(|zone| instance.field.narrowed(&zone.mapped(&instance.to_local)));
-        let open = || if simpler().is_some() { None } else { Some(Region::Surface(self.clone())) };
+        let open = || {
+            let simpler = zone.only().and_then(|zone| instance.field.narrowed(&zone.mapped(&instance.to_local)));
+            Some(Region::Surface(simpler.map_or_else(|| self.clone(), |field| self.of_simpler(leaf, field))))
+        };
         if zone.only().is_some_and(|zone| instance.is_crossed(zone)) {
             return open();
         }
@@ -172,6 +179,14 @@ impl Program {
             return Some(Region::Outside);
         }
         open()
+    }
+
+    /// The program, which is of one leaf, with a simpler one in its place.
+    fn of_simpler(&self, leaf: u32, field: Arc<dyn AnyField>) -> Program {
+        let simpler: Arc<[Instance]> = [Instance { field, ..self.instance(leaf).clone() }].into();
+        let number = self.scene.leaves.len() as u32;
+        let nodes = if leaf == number { self.nodes.clone() } else { [Node::leaf(number)].into() };
+        Program { nodes, simpler, ..self.clone() }
     }
 
     /// A program of the same values over a zone, from what may decide them there.

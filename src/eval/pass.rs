@@ -55,6 +55,8 @@ pub(super) struct Pass<'a> {
     world: &'a Pieces,
     /// Whether a leaf that is not far by its box is open, whatever its range.
     pub(super) by_boxes: bool,
+    /// A leaf whose sign is known beforehand, by its node.
+    pub(super) given: Option<(usize, bool)>,
     asked: Vec<Asked>,
     /// The operands of long joins that are near.
     near: Vec<Option<Vec<u32>>>,
@@ -75,6 +77,7 @@ impl<'a> Pass<'a> {
             zones,
             world,
             by_boxes: false,
+            given: None,
             asked: vec![Asked::default(); count],
             near: vec![None; count],
             signs: vec![Sign::Unknown; count],
@@ -90,6 +93,11 @@ impl<'a> Pass<'a> {
         for at in 0..self.program.nodes.len() {
             self.answer(at);
         }
+    }
+
+    /// Whether the value of a node is asked for.
+    pub(super) fn is_value(&self, node: usize) -> bool {
+        self.asked[node].value
     }
 
     /// Down: what is asked about each node.
@@ -140,7 +148,12 @@ impl<'a> Pass<'a> {
             return;
         }
         match &node.kind {
-            Kind::Leaf(leaf) => self.leaf(at, *leaf),
+            Kind::Leaf(leaf) => match self.given {
+                Some((given, inside)) if given == at => {
+                    self.signs[at] = if inside { Sign::Positive } else { Sign::Negative };
+                }
+                _ => self.leaf(at, *leaf),
+            },
             Kind::Edge { .. } => self.edge(at),
             Kind::Join { rule, .. } if !value && !rule.reads_values() => {
                 let near = self.near[at].take();

@@ -312,6 +312,12 @@ impl Rays {
         self.forward
     }
 
+    /// Where the rays of an orthographic camera start: at pixel coordinates (0, 0), and what to add for a
+    /// pixel to the right and for one down.
+    pub(crate) fn starts(&self) -> Option<[DVec3; 3]> {
+        self.parallel.then(|| [self.eye + self.corner, self.across, self.down])
+    }
+
     /// What a pixel spans at distance `t` along a ray near the middle, in length units.
     #[must_use]
     pub fn pixel_size(&self, t: f64) -> f64 {

@@ -25,8 +25,9 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 
 use glam::DVec3;
 
+use super::still::Still;
 use crate::eval::{BOXES_AT_ONCE, Bend, Program, Region, Tape};
-use crate::{Bounds, Dual, Interval};
+use crate::{Bounds, Dual, Interval, Rays};
 
 /// The tree.
 pub(super) struct Cells {
@@ -34,6 +35,8 @@ pub(super) struct Cells {
     bounds: Bounds,
     /// Boxes are narrowed with this much room on each side, for the rounding of points.
     margin: f64,
+    program: Program,
+    still: OnceLock<Option<Box<Still>>>,
 }
 
 /// A box of the tree.
@@ -99,8 +102,32 @@ impl Cells {
         let bounds = bounds.inflate(0.05 * longest);
         let rounding = 64.0 * f64::EPSILON * (bounds.center().abs().max_element() + bounds.size().length());
         let margin = 1e-9 * longest + rounding;
-        let around = Around { whole: bounds.longest_side(), margin, cost: usize::MAX, stale: 0, undivided: [true; 3] };
-        Cells { root: part(program, bounds, around), bounds, margin }
+        Cells::within(program, bounds, margin, [true; 3])
+    }
+
+    /// The tree of `program` in a box that is as large as it has to be, halved once along each of `axes`
+    /// at first.
+    pub(super) fn within(program: &Program, bounds: Bounds, margin: f64, axes: [bool; 3]) -> Cells {
+        let around = Around { whole: bounds.longest_side(), margin, cost: usize::MAX, stale: 0, undivided: axes };
+        Cells {
+            root: part(program, bounds, around),
+            bounds,
+            margin,
+            program: program.clone(),
+            still: OnceLock::new(),
+        }
+    }
+
+    /// The tree in parts, if a long leaf does not change along parallel rays.
+    pub(super) fn still(&self, rays: &Rays) -> Option<&Still> {
+        if rays.meeting_point().is_some() {
+            return None;
+        }
+        let still = self.still.get_or_init(|| {
+            let parting = self.program.parting(&self.bounds, DEAR)?;
+            Still::new(parting, self.bounds, self.margin).map(Box::new)
+        });
+        still.as_deref().filter(|still| still.is_along(rays.forward()))
     }
 
     pub(super) fn root(&self) -> &Part {

@@ -23,6 +23,7 @@ mod shade;
 mod slice;
 mod solid;
 mod spot;
+mod still;
 mod tile;
 
 pub use gbuffer::{GBuffer, Surface, Window};

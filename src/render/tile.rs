@@ -14,6 +14,7 @@ use super::cells::{Cell, Cells, Part, Slopes};
 use super::gbuffer::{Surface, Window};
 use super::job::{Ray, Span};
 use super::march::Marcher;
+use super::still::Mask;
 use crate::{Bounds, Rays};
 
 /// Pixels along a tile's side: the bits of a word.
@@ -22,6 +23,7 @@ pub(super) const TILE: u32 = 64;
 /// Scratch memory of a thread.
 #[derive(Default)]
 pub(super) struct Tracer {
+    mask: Mask,
     marcher: Marcher,
     rays: Vec<Ray>,
     spans: Vec<Span>,
@@ -47,7 +49,14 @@ pub(super) fn divide_top(cells: &Cells, view: &View<'_>, window: &Window) {
             rayon::join(|| divide(below, sees), || divide(above, sees));
         }
     }
-    divide(cells.root(), &|bounds| view.sees(bounds, window));
+    let sees = |bounds: &Bounds| view.sees(bounds, window);
+    match cells.still(view.rays) {
+        Some(still) => {
+            divide(still.leaf.root(), &sees);
+            still.sides.iter().flatten().for_each(|side| divide_top(side, view, window));
+        }
+        None => divide(cells.root(), &sees),
+    }
 }
 
 /// What the rays of a packet have in common.
@@ -62,15 +71,16 @@ struct Sheaf {
     eye: Option<DVec3>,
 }
 
-/// The rays of a tile that are still under way, a word a row.
-struct Alive([u64; TILE as usize]);
+/// Some of the pixels of a tile, such as those whose rays are still under way: a word a row.
+#[derive(Clone, Copy)]
+pub(super) struct Pixels(pub(super) [u64; TILE as usize]);
 
 /// Rows and columns of a tile, the last exclusive.
 #[derive(Clone, Copy)]
-struct Rectangle {
-    top: usize,
-    bottom: usize,
-    columns: u64,
+pub(super) struct Rectangle {
+    pub(super) top: usize,
+    pub(super) bottom: usize,
+    pub(super) columns: u64,
 }
 
 impl Tracer {
@@ -78,14 +88,35 @@ impl Tracer {
     /// camera is in the solid, which no other has.
     pub(super) fn tile(&mut self, cells: &Cells, view: &View<'_>, tile: Window) -> Vec<Surface> {
         let mut surfaces = vec![Surface::NONE; tile.count()];
-        let mut alive = Alive([0; TILE as usize]);
+        self.trace(cells, view, &tile, Pixels([u64::MAX; TILE as usize]), &mut surfaces);
+        surfaces
+    }
+
+    /// What some of the pixels of a tile see.
+    fn trace(&mut self, cells: &Cells, view: &View<'_>, tile: &Window, among: Pixels, surfaces: &mut [Surface]) {
+        if let Some(still) = cells.still(view.rays) {
+            let mut inside = still.inside(&mut self.mask, view, tile);
+            let mut outside = among;
+            for ((inside, outside), among) in inside.0.iter_mut().zip(&mut outside.0).zip(among.0) {
+                *inside &= among;
+                *outside = among & !*inside;
+            }
+            for (side, among) in still.sides.iter().zip([outside, inside]) {
+                if let Some(side) = side {
+                    self.trace(side, view, tile, among, surfaces);
+                }
+            }
+            return;
+        }
+        let Part::Cell(root) = cells.root() else { return };
+        let mut alive = Pixels([0; TILE as usize]);
         // Those of other pixels are never asked for.
         self.rays.resize(tile.count().max(self.rays.len()), Ray::NONE);
         let bounds = cells.bounds();
         let mut sheaf = Sheaf::new(view.rays.meeting_point());
-        let Some(seen) = view.rectangle(bounds, &tile) else { return surfaces };
+        let Some(seen) = view.rectangle(bounds, tile) else { return };
         for y in seen.top..seen.bottom {
-            let mut bits = seen.columns;
+            let mut bits = seen.columns & among.0[y];
             while bits != 0 {
                 let x = bits.trailing_zeros();
                 bits &= bits - 1;
@@ -97,11 +128,10 @@ impl Tracer {
                 }
             }
         }
-        let Part::Cell(root) = cells.root() else { return surfaces };
         let tie = TIE * bounds.longest_side();
         let mut pending: Vec<&Cell> = vec![root];
         while let Some(cell) = pending.pop() {
-            let Some(rectangle) = view.rectangle(&cell.bounds, &tile) else { continue };
+            let Some(rectangle) = view.rectangle(&cell.bounds, tile) else { continue };
             let count = alive.count(rectangle);
             if count == 0 {
                 continue;
@@ -118,27 +148,26 @@ impl Tracer {
             }
             self.marcher.hits.clear();
             for part in united.unwrap_or(std::slice::from_ref(cell)) {
-                let Some(rectangle) = view.rectangle(&part.bounds, &tile) else { continue };
+                let Some(rectangle) = view.rectangle(&part.bounds, tile) else { continue };
                 self.spans.clear();
                 for y in rectangle.top..rectangle.bottom {
                     let mut bits = alive.0[y] & rectangle.columns;
                     while bits != 0 {
                         let ray = y as u32 * tile.width + bits.trailing_zeros();
                         bits &= bits - 1;
-                        if let Some(span) = nearer(part, ray, &self.rays, &surfaces, tie) {
+                        if let Some(span) = nearer(part, ray, &self.rays, surfaces, tie) {
                             self.spans.push(span);
                         }
                     }
                 }
                 if !self.spans.is_empty() {
-                    self.marcher.march(cells, part, slopes, &self.rays, &self.spans, &mut surfaces);
+                    self.marcher.march(cells, part, slopes, &self.rays, &self.spans, surfaces);
                 }
             }
             for &ray in &self.marcher.hits {
                 alive.0[(ray / tile.width) as usize] &= !(1 << (ray % tile.width));
             }
         }
-        surfaces
     }
 
     /// What a list of rays meets, each an origin and a unit direction.
@@ -220,7 +249,7 @@ impl<'a> View<'a> {
     }
 
     /// The pixels of a tile that may see the box.
-    fn rectangle(&self, bounds: &Bounds, tile: &Window) -> Option<Rectangle> {
+    pub(super) fn rectangle(&self, bounds: &Bounds, tile: &Window) -> Option<Rectangle> {
         let [left, right, top, bottom] = self.sides(bounds, tile)?;
         Some(Rectangle { top: top as usize, bottom: bottom as usize, columns: columns(left, right) })
     }
@@ -260,8 +289,8 @@ fn columns(left: u32, right: u32) -> u64 {
     below(right) & !below(left)
 }
 
-impl Alive {
-    fn count(&self, rectangle: Rectangle) -> usize {
+impl Pixels {
+    pub(super) fn count(&self, rectangle: Rectangle) -> usize {
         let rows = &self.0[rectangle.top..rectangle.bottom];
         rows.iter().map(|row| (row & rectangle.columns).count_ones() as usize).sum()
     }
