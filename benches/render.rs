@@ -262,10 +262,12 @@ fn prospero(choice: &Choice) {
             let mut all: Vec<Contestant<'_>> = vec![
                 ("first", Box::new(|| drop(black_box(picture(&scene(&plate, &run), &camera, size, &run))))),
                 ("next", Box::new(|| drop(black_box(picture(&kept, &camera, size, &run))))),
-                pixels::<VmFunction>("VM", &tree, size, pool.as_ref()),
             ];
+            if !choice.has("ours") {
+                all.push(pixels::<VmFunction>("VM", &tree, size, pool.as_ref()));
+            }
             #[cfg(feature = "jit")]
-            if !choice.has("vm") {
+            if !(choice.has("vm") || choice.has("ours")) {
                 all.push(pixels::<fidget::jit::JitFunction>("JIT", &tree, size, pool.as_ref()));
             }
             let times = race(choice.rounds(), &mut all);

@@ -10,6 +10,8 @@
 //!
 //! So the formula is divided along the axes that it depends on, by itself, and never marched through.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::cells::{Cell, Cells, Halves, Part};
@@ -17,6 +19,7 @@ use super::gbuffer::Window;
 use super::tile::{Pixels, Rectangle, TILE, View};
 use crate::Bounds;
 use crate::eval::{Evaluator, Parting, Region};
+use crate::num::kernel::{Task, dispatched};
 
 /// The leaf and the rest.
 pub(super) struct Still {
@@ -41,7 +44,7 @@ const LEVEL: f64 = 1e-15;
 
 /// Values of all the pixels of a cell cost less than dividing it if they are up to so many, in those of
 /// ordinary leaves.
-const FEW: usize = 2048;
+const FEW: usize = 16384;
 
 impl Still {
     /// `None` where inside of the leaf, or outside, nothing else would end the solid.
@@ -91,6 +94,22 @@ impl Grid {
         self.start + self.across * f64::from(column) + self.down * row as f64
     }
 
+    /// The columns among `columns` whose pixels in a row are in the half open box along an axis.
+    fn within(&self, bounds: &Bounds, axis: usize, row: usize, columns: u64) -> u64 {
+        let (min, max) = (bounds.min[axis], bounds.max[axis]);
+        let start = self.point(0, row)[axis];
+        let step = self.across[axis];
+        if step == 0.0 {
+            return if start >= min && start < max { columns } else { 0 };
+        }
+        let mut within = 0;
+        for column in columns.trailing_zeros()..u64::BITS - columns.leading_zeros() {
+            let at = start + step * f64::from(column);
+            within |= u64::from((at >= min) & (at < max)) << column;
+        }
+        within & columns
+    }
+
     /// The same rays from points as far along them as `p` is.
     fn beside(self, p: DVec3) -> Grid {
         Grid { start: self.start + (p - self.start).dot(self.forward) * self.forward, ..self }
@@ -112,21 +131,17 @@ impl Pass<'_> {
         self.part(leaf.root(), leaf.bounds());
     }
 
-    /// The pixels of a row that are in a box, along the axes that matter.
-    fn row(&self, bounds: &Bounds, row: usize, columns: u64) -> u64 {
-        let start = self.grid.point(0, row);
-        let mut here = columns;
-        for axis in (0..3).filter(|&axis| self.axes[axis]) {
-            let (start, step) = (start[axis], self.grid.across[axis]);
-            let (min, max) = (bounds.min[axis], bounds.max[axis]);
-            let mut within = 0;
-            for column in 0..TILE {
-                let at = start + step * f64::from(column);
-                within |= u64::from((at >= min) & (at < max)) << column;
-            }
-            here &= within;
-        }
-        here
+    /// The columns among `columns` that are in a box along the axes that matter, as far as that is the
+    /// same for all rows of the tile.
+    fn columns(&self, bounds: &Bounds, columns: u64) -> u64 {
+        let fixed = (0..3).filter(|&axis| self.axes[axis] && self.grid.down[axis] == 0.0);
+        fixed.fold(columns, |columns, axis| columns & self.grid.within(bounds, axis, 0, columns))
+    }
+
+    /// Those of them whose pixels in a row are in the box.
+    fn row(&self, bounds: &Bounds, columns: u64, row: usize) -> u64 {
+        let changing = (0..3).filter(|&axis| self.axes[axis] && self.grid.down[axis] != 0.0);
+        changing.fold(columns, |columns, axis| columns & self.grid.within(bounds, axis, row, columns))
     }
 
     /// The pixels of a part of the tree with these bounds. They are half open: a pixel is in one part.
@@ -150,8 +165,9 @@ impl Pass<'_> {
     /// All pixels of a box are inside.
     fn fill(&mut self, bounds: &Bounds) {
         let Some(Rectangle { top, bottom, columns }) = self.view.rectangle(bounds, self.tile) else { return };
-        for y in top..bottom {
-            self.found.0[y] |= self.row(bounds, y, columns);
+        let columns = self.columns(bounds, columns);
+        for row in top..bottom {
+            self.found.0[row] |= self.row(bounds, columns, row);
         }
     }
 
@@ -159,37 +175,24 @@ impl Pass<'_> {
         let Some(Rectangle { top, bottom, columns }) = self.view.rectangle(&cell.bounds, self.tile) else { return };
         let (rows, width) = (bottom - top, columns.count_ones() as usize);
         let count = rows * width;
-        if count > 1 && count * cell.cost > FEW && !cell.is_stale() {
+        if count > 1 && count * cell.cost > few() && !cell.is_stale() {
             self.halves(cell.halves(), &cell.bounds);
             return;
         }
         let tape = cell.tape();
         let grid = self.grid.beside(tape.origin());
         let left = columns.trailing_zeros();
-        let [x, y, z] = &mut self.mask.points;
-        for list in [&mut *x, &mut *y, &mut *z] {
-            list.resize(count, 0.0);
-        }
-        for (number, row) in (top..bottom).enumerate() {
-            let (start, step) = ((grid.point(left, row) - tape.origin()).as_vec3(), grid.across.as_vec3());
-            let here = number * width..(number + 1) * width;
-            for (axis, list) in [&mut *x, &mut *y, &mut *z].into_iter().enumerate() {
-                for (i, to) in (0u8..).zip(&mut list[here.clone()]) {
-                    *to = start[axis] + f32::from(i) * step[axis];
-                }
-            }
-        }
-        self.mask.values.resize(count, 0.0);
-        self.mask.evaluator.values(tape, x, y, z, &mut self.mask.values);
+        self.mask.place(&grid, tape.origin(), (top..bottom, left, width));
+        let Mask { evaluator, points: [x, y, z], values } = &mut *self.mask;
+        values.resize(count + STRIP, 0.0);
+        evaluator.values(tape, &x[..count], &y[..count], &z[..count], &mut values[..count]);
+        let columns = self.columns(&cell.bounds, columns);
         let doubt = tape.roundoff() as f32;
-        for (row, values) in (top..bottom).zip(self.mask.values.chunks_exact(width)) {
-            let (mut inside, mut doubtful) = (0u64, 0u64);
-            for (i, value) in values.iter().enumerate() {
-                inside |= u64::from(*value > doubt) << i;
-                doubtful |= u64::from(value.abs() <= doubt) << i;
-            }
-            let here = self.row(&cell.bounds, row, columns);
-            let (mut inside, mut doubtful) = (inside << left & here, doubtful << left & here);
+        for (number, row) in (top..bottom).enumerate() {
+            let mut signs = Signs::default();
+            dispatched(Compare { values: &self.mask.values[number * width..], width, doubt, signs: &mut signs });
+            let here = self.row(&cell.bounds, columns, row);
+            let (mut inside, mut doubtful) = (signs.inside << left & here, signs.doubtful << left & here);
             while doubtful != 0 {
                 let column = doubtful.trailing_zeros();
                 doubtful &= doubtful - 1;
@@ -198,4 +201,65 @@ impl Pass<'_> {
             self.found.0[row] |= inside;
         }
     }
+}
+
+/// Rows are written and read in strips of so many pixels, for the compiler to make vectors of; what a strip
+/// is too long is overwritten by the next row, or not looked at.
+const STRIP: usize = 8;
+
+impl Mask {
+    /// Fills in the points of some rows, so many pixels from column `left` each, relative to `origin`.
+    fn place(&mut self, grid: &Grid, origin: DVec3, (rows, left, width): (Range<usize>, u32, usize)) {
+        let step = grid.across.as_vec3().to_array();
+        for list in &mut self.points {
+            list.resize(rows.len() * width + STRIP, 0.0);
+        }
+        for (number, row) in rows.enumerate() {
+            let start = (grid.point(left, row) - origin).as_vec3().to_array();
+            for ((list, start), step) in self.points.iter_mut().zip(start).zip(step) {
+                for at in (0..width).step_by(STRIP) {
+                    let Some(strip) = list[number * width + at..].first_chunk_mut::<STRIP>() else { break };
+                    for (i, to) in strip.iter_mut().enumerate() {
+                        *to = start + (at + i) as f32 * step;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What the values of a row tell, a bit each.
+#[derive(Default)]
+struct Signs {
+    inside: u64,
+    doubtful: u64,
+}
+
+struct Compare<'a> {
+    values: &'a [f32],
+    width: usize,
+    doubt: f32,
+    signs: &'a mut Signs,
+}
+
+impl Task for Compare<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let Compare { values, width, doubt, signs } = self;
+        for at in (0..width).step_by(STRIP) {
+            let Some(strip) = values[at..].first_chunk::<STRIP>() else { break };
+            let (mut inside, mut doubtful) = (0u32, 0u32);
+            for (i, value) in strip.iter().enumerate() {
+                inside |= if *value > doubt { 1 << i } else { 0 };
+                doubtful |= if value.abs() <= doubt { 1 << i } else { 0 };
+            }
+            signs.inside |= u64::from(inside) << at;
+            signs.doubtful |= u64::from(doubtful) << at;
+        }
+    }
+}
+
+fn few() -> usize {
+    static F: std::sync::OnceLock<usize> = std::sync::OnceLock::new();
+    *F.get_or_init(|| std::env::var("FEW").ok().and_then(|v| v.parse().ok()).unwrap_or(FEW))
 }

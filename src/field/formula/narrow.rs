@@ -197,14 +197,9 @@ fn whole_range(code: &Code, hull: [Interval; 3]) -> Option<Sure> {
 fn narrowed(code: &Code, hull: [Interval; 3]) -> Option<(Vec<Op>, Sure)> {
     let ops = &code.ops;
     let most = EIGHTHS_LEFT * ops.len() / 8;
-    let known = SURVEY.with_borrow(|survey| {
+    let known = SURVEY.with_borrow_mut(|survey| {
         let lane = survey.lane(code, &seen(code, hull))?;
-        let choice = |at: usize| match ops[at] {
-            Op::Binary(op, a, b) if matches!(op, BinaryOpcode::Min | BinaryOpcode::Max | BinaryOpcode::And | BinaryOpcode::Or) => survey.choice(lane, at, [a, b]),
-            Op::Unary(UnaryOpcode::Abs, a) => survey.choice(lane, at, [a, a]),
-            _ => None,
-        };
-        Some(live(ops, most, choice).map(|ops| (ops, survey.range(lane))))
+        Some(survey.narrowed(code, lane, most).map(|ops| (ops, survey.range(lane))))
     });
     known.unwrap_or_else(|| {
         walked(code, hull, |ranges| Some((live(ops, most, |at| choice(&ops[at], ranges))?, ranges.last().copied()?)))

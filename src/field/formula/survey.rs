@@ -48,6 +48,21 @@ pub(super) struct Survey {
     choices: Vec<Choice>,
     value: Many,
     lost: [bool; BOXES],
+    live: Live,
+}
+
+/// What narrowing leaves of the operations, in all boxes at once: by operation, a bit for every box.
+struct Live {
+    /// Whether it is up to date.
+    known: bool,
+    /// Where the operation is needed, be it for an operand that it is equal to.
+    used: Vec<u16>,
+    /// Where it is left.
+    kept: Vec<u16>,
+    /// How many are left in each box.
+    counts: [u32; BOXES],
+    /// Where operations have gone to.
+    moved: Vec<u32>,
 }
 
 impl Survey {
@@ -59,6 +74,13 @@ impl Survey {
             choices: Vec::new(),
             value: Many::ZERO,
             lost: [true; BOXES],
+            live: Live {
+                known: false,
+                used: Vec::new(),
+                kept: Vec::new(),
+                counts: [0; BOXES],
+                moved: Vec::new(),
+            },
         }
     }
 
@@ -92,6 +114,7 @@ impl Survey {
         });
         self.value.test(&mut doubt);
         self.lost = doubt.map(|doubt| doubt != 0.0);
+        self.live.known = false;
     }
 
     /// The lane of a box that the code was walked over.
@@ -107,10 +130,74 @@ impl Survey {
         Sure { range: Interval::new(self.value.lo[lane], self.value.hi[lane]), sure: true }
     }
 
-    /// The operand that operation number `at`, one that chooses, is equal to throughout a lane.
-    pub(super) fn choice(&self, lane: usize, at: usize, [a, b]: [u32; 2]) -> Option<u32> {
-        let [first, second] = self.choices[at].map(|boxes| boxes >> lane & 1 == 1);
-        if first { Some(a) } else { second.then_some(b) }
+    /// The operations that are left in a lane, if they are at most `most`.
+    pub(super) fn narrowed(&mut self, code: &Code, lane: usize, most: usize) -> Option<Vec<Op>> {
+        if !self.live.known {
+            self.live.find(&code.ops, &self.choices);
+        }
+        let Live { used, kept, counts, moved, .. } = &mut self.live;
+        let count = counts[lane] as usize;
+        if count > most {
+            return None;
+        }
+        let mut left = Vec::with_capacity(count);
+        for (at, op) in code.ops.iter().enumerate() {
+            if used[at] >> lane & 1 == 0 {
+                continue;
+            }
+            if kept[at] >> lane & 1 == 0 {
+                let first = self.choices[at][0] >> lane & 1 == 1;
+                moved[at] = match *op {
+                    Op::Binary(_, _, b) if !first => moved[b as usize],
+                    Op::Binary(_, a, _) | Op::Unary(_, a) => moved[a as usize],
+                    Op::Axis(_) | Op::Const(_) => continue,
+                };
+                continue;
+            }
+            moved[at] = left.len() as u32;
+            left.push(match *op {
+                Op::Unary(op, a) => Op::Unary(op, moved[a as usize]),
+                Op::Binary(op, a, b) => Op::Binary(op, moved[a as usize], moved[b as usize]),
+                op => op,
+            });
+        }
+        Some(left)
+    }
+}
+
+impl Live {
+    /// Backwards from the value: what is needed for it.
+    fn find(&mut self, ops: &[Op], choices: &[Choice]) {
+        let Live { known, used, kept, counts, moved } = self;
+        *known = true;
+        *counts = [0; BOXES];
+        used.clear();
+        used.resize(ops.len(), 0);
+        kept.resize(kept.len().max(ops.len()), 0);
+        moved.resize(moved.len().max(ops.len()), 0);
+        if let Some(value) = used.last_mut() {
+            *value = u16::MAX;
+        }
+        for (at, op) in ops.iter().enumerate().rev() {
+            let here = used[at];
+            if here == 0 {
+                continue;
+            }
+            let [first, second] = if op.chooses() { choices[at] } else { [0; 2] };
+            match *op {
+                Op::Unary(_, a) => used[a as usize] |= here,
+                Op::Binary(_, a, b) => {
+                    used[a as usize] |= here & !second;
+                    used[b as usize] |= here & !first;
+                }
+                Op::Axis(_) | Op::Const(_) => {}
+            }
+            let left = here & !(first | second);
+            kept[at] = left;
+            for (lane, count) in counts.iter_mut().enumerate() {
+                *count += u32::from(left >> lane & 1);
+            }
+        }
     }
 }
 
