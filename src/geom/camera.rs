@@ -271,11 +271,20 @@ impl Rays {
     /// The least and the greatest pixel coordinates, across and down, at which points of a box may
     /// appear; `None` if rays meet in an eye that all of it is beside or behind.
     pub(crate) fn outline(&self, bounds: &Bounds) -> Option<[[f64; 2]; 2]> {
+        if self.parallel {
+            let (middle, half) = (bounds.center() - self.eye - self.corner, bounds.half_extents());
+            let along = |axis: DVec3| {
+                let axis = axis / axis.length_squared();
+                let (at, reach) = (middle.dot(axis), half.dot(axis.abs()));
+                [at - reach, at + reach]
+            };
+            return Some([along(self.across), along(self.down)]);
+        }
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         let axes = [self.across, self.down].map(|axis| axis / axis.length_squared());
         let seen = bounds.corners().map(|corner| corner - self.eye);
         // Nearer to the eye's plane than this, rounding decides on which side it is.
-        let depth = |seen: DVec3| if self.parallel { 1.0 } else { seen.dot(self.forward) };
+        let depth = |seen: DVec3| seen.dot(self.forward);
         let in_front = |seen: DVec3| depth(seen) > 1e-9 * seen.length();
         for (number, &corner) in seen.iter().enumerate() {
             if in_front(corner) {

@@ -206,6 +206,7 @@ impl Pass<'_> {
 /// Rows are written and read in strips of so many pixels, for the compiler to make vectors of; what a strip
 /// is too long is overwritten by the next row, or not looked at.
 const STRIP: usize = 8;
+const AHEAD: [f32; STRIP] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 impl Mask {
     /// Fills in the points of some rows, so many pixels from column `left` each, relative to `origin`.
@@ -219,8 +220,9 @@ impl Mask {
             for ((list, start), step) in self.points.iter_mut().zip(start).zip(step) {
                 for at in (0..width).step_by(STRIP) {
                     let Some(strip) = list[number * width + at..].first_chunk_mut::<STRIP>() else { break };
-                    for (i, to) in strip.iter_mut().enumerate() {
-                        *to = start + (at + i) as f32 * step;
+                    let first = start + at as f32 * step;
+                    for i in 0..STRIP {
+                        strip[i] = first + AHEAD[i] * step;
                     }
                 }
             }
@@ -249,9 +251,9 @@ impl Task for Compare<'_> {
         for at in (0..width).step_by(STRIP) {
             let Some(strip) = values[at..].first_chunk::<STRIP>() else { break };
             let (mut inside, mut doubtful) = (0u32, 0u32);
-            for (i, value) in strip.iter().enumerate() {
-                inside |= if *value > doubt { 1 << i } else { 0 };
-                doubtful |= if value.abs() <= doubt { 1 << i } else { 0 };
+            for i in 0..STRIP {
+                inside |= if strip[i] > doubt { 1 << i } else { 0 };
+                doubtful |= if strip[i].abs() <= doubt { 1 << i } else { 0 };
             }
             signs.inside |= u64::from(inside) << at;
             signs.doubtful |= u64::from(doubtful) << at;

@@ -168,10 +168,12 @@ fn operand<'a, E: Element + Float>(source: Source, points: &'a [Vec<E>; 3], regi
 
 #[inline(always)]
 pub(super) fn unary<E: Float>(op: UnaryOpcode, a: Operand<'_, E>, result: &mut [E]) {
+    let len = result.len();
     match a {
         Operand::Slice(a) => {
-            for (r, a) in result.iter_mut().zip(a) {
-                *r = E::apply1(op, *a);
+            let a = &a[..len];
+            for i in 0..len {
+                result[i] = E::apply1(op, a[i]);
             }
         }
         Operand::Const(a) => result.fill(E::apply1(op, a)),
@@ -180,20 +182,24 @@ pub(super) fn unary<E: Float>(op: UnaryOpcode, a: Operand<'_, E>, result: &mut [
 
 #[inline(always)]
 pub(super) fn binary<E: Float>(op: BinaryOpcode, a: Operand<'_, E>, b: Operand<'_, E>, result: &mut [E]) {
+    let len = result.len();
     match (a, b) {
         (Operand::Slice(a), Operand::Slice(b)) => {
-            for ((r, a), b) in result.iter_mut().zip(a).zip(b) {
-                *r = E::apply2(op, *a, *b);
+            let (a, b) = (&a[..len], &b[..len]);
+            for i in 0..len {
+                result[i] = E::apply2(op, a[i], b[i]);
             }
         }
         (Operand::Slice(a), Operand::Const(b)) => {
-            for (r, a) in result.iter_mut().zip(a) {
-                *r = E::apply2(op, *a, b);
+            let a = &a[..len];
+            for i in 0..len {
+                result[i] = E::apply2(op, a[i], b);
             }
         }
         (Operand::Const(a), Operand::Slice(b)) => {
-            for (r, b) in result.iter_mut().zip(b) {
-                *r = E::apply2(op, a, *b);
+            let b = &b[..len];
+            for i in 0..len {
+                result[i] = E::apply2(op, a, b[i]);
             }
         }
         (Operand::Const(a), Operand::Const(b)) => result.fill(E::apply2(op, a, b)),

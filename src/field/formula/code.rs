@@ -19,14 +19,6 @@ pub(super) enum Op {
     Binary(BinaryOpcode, u32, u32),
 }
 
-impl Op {
-    /// Whether it may be equal to one of its operands throughout a box.
-    pub(super) fn chooses(&self) -> bool {
-        use BinaryOpcode as B;
-        matches!(self, Op::Unary(UnaryOpcode::Abs, _) | Op::Binary(B::Min | B::Max | B::And | B::Or, ..))
-    }
-}
-
 /// What makes a formula no solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Flaw {

@@ -3,6 +3,8 @@
 //! A formula of thousands of operations has few values alive at a time. The result of an
 //! operation never shares a register with its operands, so that whole slices can be run.
 
+use std::cell::RefCell;
+
 use fidget::context::{BinaryOpcode, UnaryOpcode};
 
 use super::arithmetic::Arithmetic;
@@ -30,9 +32,31 @@ pub(super) struct Plan {
     pub(super) result: Source,
 }
 
+/// What a thread needs to make a plan.
+struct Scratch {
+    /// The operation that needs each one last.
+    last_use: Vec<u32>,
+    sources: Vec<Source>,
+    free: Vec<u32>,
+}
+
+thread_local! {
+    static SCRATCH: RefCell<Scratch> =
+        const { RefCell::new(Scratch { last_use: Vec::new(), sources: Vec::new(), free: Vec::new() }) };
+}
+
 impl Plan {
     pub(super) fn new(ops: &[Op]) -> Plan {
-        let mut last_use = vec![0u32; ops.len()];
+        SCRATCH.with_borrow_mut(|scratch| scratch.plan(ops))
+    }
+}
+
+impl Scratch {
+    fn plan(&mut self, ops: &[Op]) -> Plan {
+        let Scratch { last_use, sources, free } = self;
+        last_use.clear();
+        last_use.resize(ops.len(), 0);
+        let mut count = 0;
         for (at, op) in ops.iter().enumerate() {
             match *op {
                 Op::Unary(_, a) => last_use[a as usize] = at as u32,
@@ -40,15 +64,23 @@ impl Plan {
                     last_use[a as usize] = at as u32;
                     last_use[b as usize] = at as u32;
                 }
-                Op::Axis(_) | Op::Const(_) => {}
+                Op::Axis(_) | Op::Const(_) => continue,
             }
+            count += 1;
         }
-        let mut plan = Plan { steps: Vec::with_capacity(ops.len()), registers: 0, result: Source::Const(0.0) };
-        let mut free: Vec<u32> = Vec::new();
-        let mut sources: Vec<Source> = Vec::with_capacity(ops.len());
-        for (at, op) in ops.iter().enumerate() {
-            let at = at as u32;
-            let operands = match *op {
+        let mut plan = Plan { steps: Vec::with_capacity(count), registers: 0, result: Source::Const(0.0) };
+        free.clear();
+        sources.clear();
+        sources.reserve(ops.len());
+        for (at, op) in (0u32..).zip(ops) {
+            let mut out = || match free.pop() {
+                Some(register) => register,
+                None => {
+                    plan.registers += 1;
+                    plan.registers as u32 - 1
+                }
+            };
+            let (step, to, a, b) = match *op {
                 Op::Axis(axis) => {
                     sources.push(Source::Axis(axis));
                     continue;
@@ -57,33 +89,31 @@ impl Plan {
                     sources.push(Source::Const(c));
                     continue;
                 }
-                Op::Unary(_, a) => [a, a],
-                Op::Binary(_, a, b) => [a, b],
-            };
-            let out = free.pop().unwrap_or_else(|| {
-                plan.registers += 1;
-                (plan.registers - 1) as u32
-            });
-            let [a, b] = operands.map(|operand| sources[operand as usize]);
-            plan.steps.push(match *op {
-                Op::Binary(op, ..) => Step::Binary(op, a, b, out),
-                Op::Unary(op, _) => Step::Unary(op, a, out),
-                Op::Axis(_) | Op::Const(_) => continue,
-            });
-            sources.push(Source::Register(out));
-            let ended = if operands[0] == operands[1] { &operands[..1] } else { &operands[..] };
-            for operand in ended {
-                if let (true, Source::Register(register)) =
-                    (last_use[*operand as usize] == at, sources[*operand as usize])
-                {
-                    free.push(register);
+                Op::Unary(op, a) => {
+                    let to = out();
+                    (Step::Unary(op, sources[a as usize], to), to, a, a)
                 }
+                Op::Binary(op, a, b) => {
+                    let to = out();
+                    (Step::Binary(op, sources[a as usize], sources[b as usize], to), to, a, b)
+                }
+            };
+            plan.steps.push(step);
+            sources.push(Source::Register(to));
+            // From here on their registers serve others.
+            if let (true, Source::Register(register)) = (last_use[a as usize] == at, sources[a as usize]) {
+                free.push(register);
+            }
+            if let (true, Source::Register(register)) = (a != b && last_use[b as usize] == at, sources[b as usize]) {
+                free.push(register);
             }
         }
         plan.result = sources.last().copied().unwrap_or(Source::Const(0.0));
         plan
     }
+}
 
+impl Plan {
     /// The value at a point; `registers` is scratch.
     pub(super) fn value<N: Arithmetic>(&self, p: [N; 3], registers: &mut Vec<N>) -> N {
         let zero = N::constant(0.0);

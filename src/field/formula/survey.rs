@@ -44,25 +44,32 @@ pub(super) struct Survey {
     number: u64,
     boxes: Vec<[Interval; 3]>,
     registers: Vec<Many>,
-    /// By operation; only those of operations that choose are kept up.
+    /// By operation.
     choices: Vec<Choice>,
     value: Many,
     lost: [bool; BOXES],
     live: Live,
 }
 
-/// What narrowing leaves of the operations, in all boxes at once: by operation, a bit for every box.
+/// What narrowing leaves of the operations, in all boxes at once.
 struct Live {
     /// Whether it is up to date.
     known: bool,
-    /// Where the operation is needed, be it for an operand that it is equal to.
+    /// By operation, a bit for every box: where it is needed.
     used: Vec<u16>,
-    /// Where it is left.
-    kept: Vec<u16>,
-    /// How many are left in each box.
-    counts: [u32; BOXES],
+    /// Those that are needed in each box, the last one first, and how many of them are left.
+    needed: [Vec<Needed>; BOXES],
+    left: [usize; BOXES],
     /// Where operations have gone to.
     moved: Vec<u32>,
+}
+
+/// An operation that is needed in a box, be it for the operand that it is equal to there.
+#[derive(Clone, Copy)]
+enum Needed {
+    Itself(u32),
+    First(u32),
+    Second(u32),
 }
 
 impl Survey {
@@ -77,8 +84,8 @@ impl Survey {
             live: Live {
                 known: false,
                 used: Vec::new(),
-                kept: Vec::new(),
-                counts: [0; BOXES],
+                needed: [const { Vec::new() }; BOXES],
+                left: [0; BOXES],
                 moved: Vec::new(),
             },
         }
@@ -99,7 +106,8 @@ impl Survey {
         let plan = code.plan();
         self.number = code.number;
         self.registers.resize(self.registers.len().max(plan.registers), Many::ZERO);
-        self.choices.resize(self.choices.len().max(code.ops.len()), [0; 2]);
+        self.choices.clear();
+        self.choices.resize(code.ops.len(), [0; 2]);
         let mut doubt = [0.0; BOXES];
         for axis in &axes {
             axis.test(&mut doubt);
@@ -135,45 +143,48 @@ impl Survey {
         if !self.live.known {
             self.live.find(&code.ops, &self.choices);
         }
-        let Live { used, kept, counts, moved, .. } = &mut self.live;
-        let count = counts[lane] as usize;
-        if count > most {
+        let Live { needed, left, moved, .. } = &mut self.live;
+        if left[lane] > most {
             return None;
         }
-        let mut left = Vec::with_capacity(count);
-        for (at, op) in code.ops.iter().enumerate() {
-            if used[at] >> lane & 1 == 0 {
-                continue;
-            }
-            if kept[at] >> lane & 1 == 0 {
-                let first = self.choices[at][0] >> lane & 1 == 1;
-                moved[at] = match *op {
-                    Op::Binary(_, _, b) if !first => moved[b as usize],
-                    Op::Binary(_, a, _) | Op::Unary(_, a) => moved[a as usize],
-                    Op::Axis(_) | Op::Const(_) => continue,
-                };
-                continue;
-            }
-            moved[at] = left.len() as u32;
-            left.push(match *op {
-                Op::Unary(op, a) => Op::Unary(op, moved[a as usize]),
-                Op::Binary(op, a, b) => Op::Binary(op, moved[a as usize], moved[b as usize]),
-                op => op,
-            });
+        let mut ops = Vec::with_capacity(left[lane]);
+        for &needed in needed[lane].iter().rev() {
+            let (Needed::Itself(at) | Needed::First(at) | Needed::Second(at)) = needed;
+            let op = code.ops[at as usize];
+            moved[at as usize] = match (needed, op) {
+                (Needed::First(_), Op::Unary(_, operand) | Op::Binary(_, operand, _))
+                | (Needed::Second(_), Op::Binary(_, _, operand)) => moved[operand as usize],
+                _ => {
+                    ops.push(match op {
+                        Op::Unary(op, a) => Op::Unary(op, moved[a as usize]),
+                        Op::Binary(op, a, b) => Op::Binary(op, moved[a as usize], moved[b as usize]),
+                        op => op,
+                    });
+                    ops.len() as u32 - 1
+                }
+            };
         }
-        Some(left)
+        Some(ops)
+    }
+}
+
+/// Calls `visit` with the numbers of the bits that are set.
+fn bits(mut all: u16, mut visit: impl FnMut(usize)) {
+    while all != 0 {
+        visit(all.trailing_zeros() as usize);
+        all &= all - 1;
     }
 }
 
 impl Live {
     /// Backwards from the value: what is needed for it.
     fn find(&mut self, ops: &[Op], choices: &[Choice]) {
-        let Live { known, used, kept, counts, moved } = self;
+        let Live { known, used, needed, left, moved } = self;
         *known = true;
-        *counts = [0; BOXES];
+        *left = [0; BOXES];
         used.clear();
         used.resize(ops.len(), 0);
-        kept.resize(kept.len().max(ops.len()), 0);
+        needed.iter_mut().for_each(Vec::clear);
         moved.resize(moved.len().max(ops.len()), 0);
         if let Some(value) = used.last_mut() {
             *value = u16::MAX;
@@ -183,7 +194,7 @@ impl Live {
             if here == 0 {
                 continue;
             }
-            let [first, second] = if op.chooses() { choices[at] } else { [0; 2] };
+            let [first, second] = choices[at];
             match *op {
                 Op::Unary(_, a) => used[a as usize] |= here,
                 Op::Binary(_, a, b) => {
@@ -192,11 +203,13 @@ impl Live {
                 }
                 Op::Axis(_) | Op::Const(_) => {}
             }
-            let left = here & !(first | second);
-            kept[at] = left;
-            for (lane, count) in counts.iter_mut().enumerate() {
-                *count += u32::from(left >> lane & 1);
-            }
+            let at = at as u32;
+            bits(here & first, |lane| needed[lane].push(Needed::First(at)));
+            bits(here & second, |lane| needed[lane].push(Needed::Second(at)));
+            bits(here & !(first | second), |lane| {
+                needed[lane].push(Needed::Itself(at));
+                left[lane] += 1;
+            });
         }
     }
 }
