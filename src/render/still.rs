@@ -44,7 +44,7 @@ const LEVEL: f64 = 1e-15;
 
 /// Values of all the pixels of a cell cost less than dividing it if they are up to so many, in those of
 /// ordinary leaves.
-const FEW: usize = 16384;
+const FEW: usize = 10000;
 
 impl Still {
     /// `None` where inside of the leaf, or outside, nothing else would end the solid.

@@ -140,17 +140,17 @@ impl<E: Element + Float> Task for Interpret<'_, E> {
             let mut result = std::mem::take(&mut registers[to as usize]);
             match *step {
                 Step::Unary(op, a, _) => {
-                    let a = operand(a, points, registers);
+                    let a = operand(plan.source(a), points, registers);
                     each_unary!(op, OP => unary::<E>(OP, a, &mut result));
                 }
                 Step::Binary(op, a, b, _) => {
-                    let (a, b) = (operand(a, points, registers), operand(b, points, registers));
+                    let (a, b) = (operand(plan.source(a), points, registers), operand(plan.source(b), points, registers));
                     each_binary!(op, OP => binary::<E>(OP, a, b, &mut result));
                 }
             }
             registers[to as usize] = result;
         }
-        match operand(plan.result, points, registers) {
+        match operand(plan.result(), points, registers) {
             Operand::Slice(values) => out.copy_from_slice(values),
             Operand::Const(c) => out.fill(c),
         }

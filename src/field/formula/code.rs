@@ -237,6 +237,11 @@ impl Code {
         self.plan.get_or_init(|| Plan::new(&self.ops))
     }
 
+    /// The plan, if it was made.
+    pub(super) fn known_plan(&self) -> Option<&Plan> {
+        self.plan.get()
+    }
+
     /// Whether every operation is an instruction of the processor, not a call to a library.
     #[cfg(feature = "jit")]
     pub(super) fn is_elementary(&self) -> bool {

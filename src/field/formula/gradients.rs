@@ -55,7 +55,7 @@ pub(super) fn gradients(formula: &Formula, chunk: Chunk<'_, f32, 4>) {
             let points = single.points();
             dispatched(Differentiate { plan, points, registers, constants });
             let [constant, _] = constants;
-            let all = operand(plan.result, points, [registers, &[]], constant);
+            let all = operand(plan.result(), points, [registers, &[]], constant);
             value.copy_from_slice(all.value);
             let turned = &mut *turned;
             for (slopes, turned) in all.slopes.into_iter().zip(&mut *turned) {
@@ -153,7 +153,7 @@ impl Task for Differentiate<'_> {
             let registers = [&*before, &*after];
             match *step {
                 Step::Unary(op, a, _) => {
-                    let a = operand(a, points, registers, first);
+                    let a = operand(plan.source(a), points, registers, first);
                     *moves = a.moves;
                     each_unary!(op, OP => {
                         bulk::unary(OP, bulk::Operand::Slice(a.value), value);
@@ -163,8 +163,8 @@ impl Task for Differentiate<'_> {
                     });
                 }
                 Step::Binary(op, a, b, _) => {
-                    let a = operand(a, points, registers, first);
-                    let b = operand(b, points, registers, second);
+                    let a = operand(plan.source(a), points, registers, first);
+                    let b = operand(plan.source(b), points, registers, second);
                     *moves = a.moves | b.moves;
                     each_binary!(op, OP => {
                         bulk::binary(OP, bulk::Operand::Slice(a.value), bulk::Operand::Slice(b.value), value);

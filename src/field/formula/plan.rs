@@ -18,45 +18,78 @@ pub(super) enum Source {
     Register(u32),
 }
 
+/// The same in four bytes: plans are many, and most of what they take is operands.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slot(u32);
+
+impl Slot {
+    fn axis(axis: u8) -> Slot {
+        Slot(u32::from(axis) << 2)
+    }
+
+    fn constant(number: usize) -> Slot {
+        Slot((number as u32) << 2 | 1)
+    }
+
+    fn register(number: u32) -> Slot {
+        Slot(number << 2 | 2)
+    }
+
+    fn as_register(self) -> Option<u32> {
+        (self.0 & 3 == 2).then_some(self.0 >> 2)
+    }
+}
+
 /// An operation, its operands and the register of its result.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Step {
-    Unary(UnaryOpcode, Source, u32),
-    Binary(BinaryOpcode, Source, Source, u32),
+    Unary(UnaryOpcode, Slot, u32),
+    Binary(BinaryOpcode, Slot, Slot, u32),
 }
 
 #[derive(Debug)]
 pub(super) struct Plan {
     pub(super) steps: Vec<Step>,
+    constants: Vec<f64>,
     pub(super) registers: usize,
-    pub(super) result: Source,
+    result: Slot,
 }
 
 /// What a thread needs to make a plan.
 struct Scratch {
     /// The operation that needs each one last.
     last_use: Vec<u32>,
-    sources: Vec<Source>,
+    slots: Vec<Slot>,
     free: Vec<u32>,
 }
 
 thread_local! {
     static SCRATCH: RefCell<Scratch> =
-        const { RefCell::new(Scratch { last_use: Vec::new(), sources: Vec::new(), free: Vec::new() }) };
+        const { RefCell::new(Scratch { last_use: Vec::new(), slots: Vec::new(), free: Vec::new() }) };
 }
 
 impl Plan {
+    /// That of no operations.
+    pub(super) const EMPTY: Plan = Plan { steps: Vec::new(), constants: Vec::new(), registers: 0, result: Slot(0) };
+
     pub(super) fn new(ops: &[Op]) -> Plan {
-        SCRATCH.with_borrow_mut(|scratch| scratch.plan(ops))
+        let mut plan = Plan::EMPTY;
+        plan.make(ops);
+        plan
+    }
+
+    /// Becomes that of other operations.
+    pub(super) fn make(&mut self, ops: &[Op]) {
+        SCRATCH.with_borrow_mut(|scratch| scratch.plan(ops, self));
     }
 }
 
 impl Scratch {
-    fn plan(&mut self, ops: &[Op]) -> Plan {
-        let Scratch { last_use, sources, free } = self;
+    fn plan(&mut self, ops: &[Op], plan: &mut Plan) {
+        let Scratch { last_use, slots, free } = self;
         last_use.clear();
         last_use.resize(ops.len(), 0);
-        let mut count = 0;
+        let (mut constants, mut steps) = (0, 0);
         for (at, op) in ops.iter().enumerate() {
             match *op {
                 Op::Unary(_, a) => last_use[a as usize] = at as u32,
@@ -64,14 +97,22 @@ impl Scratch {
                     last_use[a as usize] = at as u32;
                     last_use[b as usize] = at as u32;
                 }
-                Op::Axis(_) | Op::Const(_) => continue,
+                Op::Axis(_) => continue,
+                Op::Const(_) => {
+                    constants += 1;
+                    continue;
+                }
             }
-            count += 1;
+            steps += 1;
         }
-        let mut plan = Plan { steps: Vec::with_capacity(count), registers: 0, result: Source::Const(0.0) };
+        plan.steps.clear();
+        plan.steps.reserve_exact(steps);
+        plan.constants.clear();
+        plan.constants.reserve_exact(constants);
+        plan.registers = 0;
         free.clear();
-        sources.clear();
-        sources.reserve(ops.len());
+        slots.clear();
+        slots.reserve(ops.len());
         for (at, op) in (0u32..).zip(ops) {
             let mut out = || match free.pop() {
                 Some(register) => register,
@@ -82,51 +123,67 @@ impl Scratch {
             };
             let (step, to, a, b) = match *op {
                 Op::Axis(axis) => {
-                    sources.push(Source::Axis(axis));
+                    slots.push(Slot::axis(axis));
                     continue;
                 }
                 Op::Const(c) => {
-                    sources.push(Source::Const(c));
+                    slots.push(Slot::constant(plan.constants.len()));
+                    plan.constants.push(c);
                     continue;
                 }
                 Op::Unary(op, a) => {
                     let to = out();
-                    (Step::Unary(op, sources[a as usize], to), to, a, a)
+                    (Step::Unary(op, slots[a as usize], to), to, a, a)
                 }
                 Op::Binary(op, a, b) => {
                     let to = out();
-                    (Step::Binary(op, sources[a as usize], sources[b as usize], to), to, a, b)
+                    (Step::Binary(op, slots[a as usize], slots[b as usize], to), to, a, b)
                 }
             };
             plan.steps.push(step);
-            sources.push(Source::Register(to));
+            slots.push(Slot::register(to));
             // From here on their registers serve others.
-            if let (true, Source::Register(register)) = (last_use[a as usize] == at, sources[a as usize]) {
+            if let (true, Some(register)) = (last_use[a as usize] == at, slots[a as usize].as_register()) {
                 free.push(register);
             }
-            if let (true, Source::Register(register)) = (a != b && last_use[b as usize] == at, sources[b as usize]) {
+            if let (true, Some(register)) = (a != b && last_use[b as usize] == at, slots[b as usize].as_register()) {
                 free.push(register);
             }
         }
-        plan.result = sources.last().copied().unwrap_or(Source::Const(0.0));
-        plan
+        plan.result = slots.last().copied().unwrap_or(Slot(0));
     }
 }
 
 impl Plan {
+    /// What is in a slot.
+    #[inline(always)]
+    pub(super) fn source(&self, Slot(slot): Slot) -> Source {
+        match slot & 3 {
+            0 => Source::Axis((slot >> 2) as u8),
+            1 => Source::Const(self.constants[slot as usize >> 2]),
+            _ => Source::Register(slot >> 2),
+        }
+    }
+
+    /// Where the value is in the end.
+    pub(super) fn result(&self) -> Source {
+        self.source(self.result)
+    }
+
     /// The value at a point; `registers` is scratch.
     pub(super) fn value<N: Arithmetic>(&self, p: [N; 3], registers: &mut Vec<N>) -> N {
         let zero = N::constant(0.0);
         registers.resize(self.registers.max(registers.len()), zero);
         for step in &self.steps {
             match *step {
-                Step::Unary(op, a, out) => registers[out as usize] = N::unary(op, read(a, &p, registers)),
+                Step::Unary(op, a, out) => registers[out as usize] = N::unary(op, read(self.source(a), &p, registers)),
                 Step::Binary(op, a, b, out) => {
-                    registers[out as usize] = N::binary(op, read(a, &p, registers), read(b, &p, registers));
+                    let (a, b) = (read(self.source(a), &p, registers), read(self.source(b), &p, registers));
+                    registers[out as usize] = N::binary(op, a, b);
                 }
             }
         }
-        read(self.result, &p, registers)
+        read(self.result(), &p, registers)
     }
 }
 

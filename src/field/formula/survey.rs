@@ -20,7 +20,7 @@ use fidget::context::{BinaryOpcode, UnaryOpcode};
 
 use super::arithmetic::{Arithmetic, each_binary, each_unary};
 use super::code::{Code, Op};
-use super::plan::{Source, Step};
+use super::plan::{Plan, Source, Step};
 use super::sure::Sure;
 use crate::Interval;
 use crate::num::kernel::{Task, dispatched};
@@ -42,6 +42,8 @@ pub(super) type Choice = [u16; 2];
 pub(super) struct Survey {
     /// Which code was walked; that of no code if none was.
     number: u64,
+    /// The plan of a code that is walked and not run.
+    plan: Plan,
     boxes: Vec<[Interval; 3]>,
     registers: Vec<Many>,
     /// By operation.
@@ -76,6 +78,7 @@ impl Survey {
     pub(super) const fn new() -> Survey {
         Survey {
             number: u64::MAX,
+            plan: Plan::EMPTY,
             boxes: Vec::new(),
             registers: Vec::new(),
             choices: Vec::new(),
@@ -103,7 +106,10 @@ impl Survey {
                 (axes[axis].lo[lane], axes[axis].hi[lane]) = (side.lo(), side.hi());
             }
         }
-        let plan = code.plan();
+        let plan = code.known_plan().unwrap_or_else(|| {
+            self.plan.make(&code.ops);
+            &self.plan
+        });
         self.number = code.number;
         self.registers.resize(self.registers.len().max(plan.registers), Many::ZERO);
         self.choices.clear();
@@ -114,6 +120,7 @@ impl Survey {
         }
         dispatched(Walk {
             code,
+            plan,
             axes: &axes,
             registers: &mut self.registers,
             choices: &mut self.choices,
@@ -276,6 +283,7 @@ fn product(all: [f64; 4], [p, q]: [f64; 2], [r, s]: [f64; 2]) -> (f64, f64) {
 
 struct Walk<'a> {
     code: &'a Code,
+    plan: &'a Plan,
     axes: &'a [Many; 3],
     registers: &'a mut [Many],
     choices: &'a mut [Choice],
@@ -286,8 +294,7 @@ struct Walk<'a> {
 impl Task for Walk<'_> {
     #[inline(always)]
     fn run(self) {
-        let Walk { code, axes, registers, choices, value, doubt } = self;
-        let plan = code.plan();
+        let Walk { code, plan, axes, registers, choices, value, doubt } = self;
         let mut constants = [Many::ZERO; 2];
         let mut steps = plan.steps.iter();
         for (at, op) in code.ops.iter().enumerate() {
@@ -303,17 +310,17 @@ impl Task for Walk<'_> {
             let [first, second] = &mut constants;
             match step {
                 Step::Unary(op, a, _) => {
-                    let a = operand(a, axes, registers, first);
+                    let a = operand(plan.source(a), axes, registers, first);
                     each_unary!(op, OP => unary(OP, a, result, &mut choices[at], doubt));
                 }
                 Step::Binary(op, a, b, _) => {
-                    let a = operand(a, axes, registers, first);
-                    let b = operand(b, axes, registers, second);
+                    let a = operand(plan.source(a), axes, registers, first);
+                    let b = operand(plan.source(b), axes, registers, second);
                     each_binary!(op, OP => binary(OP, a, b, result, &mut choices[at], doubt));
                 }
             }
         }
-        *value = *operand(plan.result, axes, [registers, &[]], &mut constants[0]);
+        *value = *operand(plan.result(), axes, [registers, &[]], &mut constants[0]);
     }
 }
 
