@@ -18,6 +18,7 @@ pub(crate) mod lanes;
 mod monotone;
 mod norm;
 mod real;
+pub(crate) mod signs;
 pub(crate) mod symbol;
 
 pub use dual::Dual;

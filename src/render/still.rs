@@ -20,6 +20,7 @@ use super::tile::{Pixels, Rectangle, TILE, View};
 use crate::Bounds;
 use crate::eval::{Evaluator, Parting, Region};
 use crate::num::kernel::{Task, dispatched};
+use crate::num::signs::{STRIP, signs};
 
 /// The leaf and the rest.
 pub(super) struct Still {
@@ -175,7 +176,7 @@ impl Pass<'_> {
         let Some(Rectangle { top, bottom, columns }) = self.view.rectangle(&cell.bounds, self.tile) else { return };
         let (rows, width) = (bottom - top, columns.count_ones() as usize);
         let count = rows * width;
-        if count > 1 && count * cell.cost > few() && !cell.is_stale() {
+        if count > 1 && count * cell.cost > FEW && !cell.is_stale() {
             self.halves(cell.halves(), &cell.bounds);
             return;
         }
@@ -185,14 +186,13 @@ impl Pass<'_> {
         self.mask.place(&grid, tape.origin(), (top..bottom, left, width));
         let Mask { evaluator, points: [x, y, z], values } = &mut *self.mask;
         values.resize(count + STRIP, 0.0);
-        evaluator.values(tape, &x[..count], &y[..count], &z[..count], &mut values[..count]);
+        evaluator.values(tape, x, y, z, &mut values[..count]);
         let columns = self.columns(&cell.bounds, columns);
         let doubt = tape.roundoff() as f32;
         for (number, row) in (top..bottom).enumerate() {
-            let mut signs = Signs::default();
-            dispatched(Compare { values: &self.mask.values[number * width..], width, doubt, signs: &mut signs });
             let here = self.row(&cell.bounds, columns, row);
-            let (mut inside, mut doubtful) = (signs.inside << left & here, signs.doubtful << left & here);
+            let [mut inside, mut doubtful] =
+                signs(&self.mask.values[number * width..], width, doubt).map(|bits| bits << left & here);
             while doubtful != 0 {
                 let column = doubtful.trailing_zeros();
                 doubtful &= doubtful - 1;
@@ -203,65 +203,37 @@ impl Pass<'_> {
     }
 }
 
-/// Rows are written and read in strips of so many pixels, for the compiler to make vectors of; what a strip
-/// is too long is overwritten by the next row, or not looked at.
-const STRIP: usize = 8;
-const AHEAD: [f32; STRIP] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
-
 impl Mask {
     /// Fills in the points of some rows, so many pixels from column `left` each, relative to `origin`.
     fn place(&mut self, grid: &Grid, origin: DVec3, (rows, left, width): (Range<usize>, u32, usize)) {
         let step = grid.across.as_vec3().to_array();
         for list in &mut self.points {
-            list.resize(rows.len() * width + STRIP, 0.0);
+            list.resize(rows.len() * width, 0.0);
         }
         for (number, row) in rows.enumerate() {
             let start = (grid.point(left, row) - origin).as_vec3().to_array();
-            for ((list, start), step) in self.points.iter_mut().zip(start).zip(step) {
-                for at in (0..width).step_by(STRIP) {
-                    let Some(strip) = list[number * width + at..].first_chunk_mut::<STRIP>() else { break };
-                    let first = start + at as f32 * step;
-                    for i in 0..STRIP {
-                        strip[i] = first + AHEAD[i] * step;
-                    }
-                }
+            for axis in 0..3 {
+                let row = &mut self.points[axis][number * width..(number + 1) * width];
+                dispatched(Ramp { start: start[axis], step: step[axis], row });
             }
         }
     }
 }
 
-/// What the values of a row tell, a bit each.
-#[derive(Default)]
-struct Signs {
-    inside: u64,
-    doubtful: u64,
+/// The points of a row along an axis.
+struct Ramp<'a> {
+    start: f32,
+    step: f32,
+    row: &'a mut [f32],
 }
 
-struct Compare<'a> {
-    values: &'a [f32],
-    width: usize,
-    doubt: f32,
-    signs: &'a mut Signs,
-}
-
-impl Task for Compare<'_> {
+impl Task for Ramp<'_> {
     #[inline(always)]
     fn run(self) {
-        let Compare { values, width, doubt, signs } = self;
-        for at in (0..width).step_by(STRIP) {
-            let Some(strip) = values[at..].first_chunk::<STRIP>() else { break };
-            let (mut inside, mut doubtful) = (0u32, 0u32);
-            for i in 0..STRIP {
-                inside |= if strip[i] > doubt { 1 << i } else { 0 };
-                doubtful |= if strip[i].abs() <= doubt { 1 << i } else { 0 };
-            }
-            signs.inside |= u64::from(inside) << at;
-            signs.doubtful |= u64::from(doubtful) << at;
+        let mut ahead = 0i32;
+        for to in self.row {
+            *to = self.start + ahead as f32 * self.step;
+            ahead += 1;
         }
     }
-}
-
-fn few() -> usize {
-    static F: std::sync::OnceLock<usize> = std::sync::OnceLock::new();
-    *F.get_or_init(|| std::env::var("FEW").ok().and_then(|v| v.parse().ok()).unwrap_or(FEW))
 }

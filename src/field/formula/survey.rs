@@ -16,6 +16,7 @@
 //! with s = fl(e), `|s − e| ≤ 2⁻⁵³·|s| + 2⁻¹⁰⁷⁵ < 2⁻⁵²·|s| + 2⁻¹⁰²²`, and what is subtracted from s
 //! is at least the next float away.
 
+use fearless_simd::{Level, Simd, dispatch};
 use fidget::context::{BinaryOpcode, UnaryOpcode};
 
 use super::arithmetic::{Arithmetic, each_binary, each_unary};
@@ -23,7 +24,7 @@ use super::code::{Code, Op};
 use super::plan::{Plan, Source, Step};
 use super::sure::Sure;
 use crate::Interval;
-use crate::num::kernel::{Task, dispatched};
+use crate::num::signs::at_least;
 
 /// So many boxes are walked at once.
 pub(crate) const BOXES: usize = 16;
@@ -118,15 +119,9 @@ impl Survey {
         for axis in &axes {
             axis.test(&mut doubt);
         }
-        dispatched(Walk {
-            code,
-            plan,
-            axes: &axes,
-            registers: &mut self.registers,
-            choices: &mut self.choices,
-            value: &mut self.value,
-            doubt: &mut doubt,
-        });
+        let (registers, choices) = (&mut self.registers[..], &mut self.choices[..]);
+        let walk = Walk { code, plan, axes: &axes, registers, choices, value: &mut self.value, doubt: &mut doubt };
+        dispatch!(Level::new(), simd => walk.run(simd));
         self.value.test(&mut doubt);
         self.lost = doubt.map(|doubt| doubt != 0.0);
         self.live.known = false;
@@ -240,7 +235,7 @@ impl Many {
 
     /// Makes doubtful the lanes whose ends are not finite: what is no number stays none in a sum.
     #[inline(always)]
-    fn test(&self, doubt: &mut [f64; BOXES]) {
+    fn test(&self, doubt: &mut Doubt) {
         for i in 0..BOXES {
             doubt[i] += (self.lo[i] - self.lo[i]) + (self.hi[i] - self.hi[i]);
         }
@@ -288,12 +283,12 @@ struct Walk<'a> {
     registers: &'a mut [Many],
     choices: &'a mut [Choice],
     value: &'a mut Many,
-    doubt: &'a mut [f64; BOXES],
+    doubt: &'a mut Doubt,
 }
 
-impl Task for Walk<'_> {
+impl Walk<'_> {
     #[inline(always)]
-    fn run(self) {
+    fn run<S: Simd>(self, simd: S) {
         let Walk { code, plan, axes, registers, choices, value, doubt } = self;
         let mut constants = [Many::ZERO; 2];
         let mut steps = plan.steps.iter();
@@ -311,12 +306,12 @@ impl Task for Walk<'_> {
             match step {
                 Step::Unary(op, a, _) => {
                     let a = operand(plan.source(a), axes, registers, first);
-                    each_unary!(op, OP => unary(OP, a, result, &mut choices[at], doubt));
+                    each_unary!(op, OP => unary(simd, OP, a, result, &mut choices[at], doubt));
                 }
                 Step::Binary(op, a, b, _) => {
                     let a = operand(plan.source(a), axes, registers, first);
                     let b = operand(plan.source(b), axes, registers, second);
-                    each_binary!(op, OP => binary(OP, a, b, result, &mut choices[at], doubt));
+                    each_binary!(op, OP => binary(simd, OP, [a, b], result, &mut choices[at], doubt));
                 }
             }
         }
@@ -360,24 +355,16 @@ fn join(a: &Many, b: &Many, result: &mut Many, each: impl Fn([f64; 2], [f64; 2])
     }
 }
 
-/// The lanes in which `first` is the case, and those in which only `second` is.
-#[inline(always)]
-fn chosen(first: impl Fn(usize) -> bool, second: impl Fn(usize) -> bool) -> Choice {
-    let (mut a, mut b) = (0u64, 0u64);
-    for i in 0..BOXES {
-        a |= if first(i) { 1 << i } else { 0 };
-        b |= if second(i) { 1 << i } else { 0 };
-    }
-    [a as u16, (b & !a) as u16]
-}
+/// Adds up what no number comes of.
+type Doubt = [f64; BOXES];
 
 #[inline(always)]
-fn unary(op: UnaryOpcode, a: &Many, result: &mut Many, choice: &mut Choice, doubt: &mut [f64; BOXES]) {
+fn unary<S: Simd>(simd: S, op: UnaryOpcode, a: &Many, result: &mut Many, choice: &mut Choice, doubt: &mut Doubt) {
     use UnaryOpcode as U;
     match op {
         U::Neg => return map(a, result, |lo, hi| (-hi, -lo)),
         U::Abs => {
-            *choice = chosen(|i| a.lo[i] >= 0.0, |_| false);
+            *choice = [at_least(simd, &a.lo, &Many::ZERO.lo), 0];
             return map(a, result, |lo, hi| (most(most(lo, -hi), 0.0), most(-lo, hi)));
         }
         U::Square => map(a, result, |lo, hi| {
@@ -396,7 +383,14 @@ fn unary(op: UnaryOpcode, a: &Many, result: &mut Many, choice: &mut Choice, doub
 }
 
 #[inline(always)]
-fn binary(op: BinaryOpcode, a: &Many, b: &Many, result: &mut Many, choice: &mut Choice, doubt: &mut [f64; BOXES]) {
+fn binary<S: Simd>(
+    simd: S,
+    op: BinaryOpcode,
+    [a, b]: [&Many; 2],
+    result: &mut Many,
+    choice: &mut Choice,
+    doubt: &mut Doubt,
+) {
     use BinaryOpcode as B;
     match op {
         B::Add => join(a, b, result, |[p, q], [r, s]| {
@@ -410,21 +404,24 @@ fn binary(op: BinaryOpcode, a: &Many, b: &Many, result: &mut Many, choice: &mut 
             if (r > 0.0) | (s < 0.0) { (lo, hi) } else { (f64::NAN, f64::NAN) }
         }),
         B::Min => {
-            *choice = chosen(|i| a.hi[i] <= b.lo[i], |i| b.hi[i] <= a.lo[i]);
+            let first = at_least(simd, &b.lo, &a.hi);
+            *choice = [first, at_least(simd, &a.lo, &b.hi) & !first];
             return join(a, b, result, |[p, q], [r, s]| (least(p, r), least(q, s)));
         }
         B::Max => {
-            *choice = chosen(|i| a.lo[i] >= b.hi[i], |i| b.lo[i] >= a.hi[i]);
+            let first = at_least(simd, &a.lo, &b.hi);
+            *choice = [first, at_least(simd, &b.lo, &a.hi) & !first];
             return join(a, b, result, |[p, q], [r, s]| (most(p, r), most(q, s)));
         }
         _ => {
             for lane in 0..BOXES {
                 result.put(lane, Sure::binary(op, a.sure(lane), b.sure(lane)));
             }
-            let other = |i: usize| a.lo[i] > 0.0 || a.hi[i] < 0.0;
+            let is_other = |lane: usize| a.lo[lane] > 0.0 || a.hi[lane] < 0.0;
+            let other = (0..BOXES).fold(0, |all, lane| all | u16::from(is_other(lane)) << lane);
             *choice = match op {
-                B::And => chosen(|_| false, other),
-                B::Or => chosen(other, |_| false),
+                B::And => [0, other],
+                B::Or => [other, 0],
                 _ => [0; 2],
             };
         }
