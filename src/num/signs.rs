@@ -1,7 +1,7 @@
 //! Signs of many numbers at once, as the bits of a word.
 
 use fearless_simd::prelude::*;
-use fearless_simd::{Level, Simd, dispatch, f32x8, f64x4};
+use fearless_simd::{Level, Simd, dispatch, f32x8};
 
 /// Numbers that [`signs`] looks at together.
 pub(crate) const STRIP: usize = 8;
@@ -27,19 +27,6 @@ fn signs_on<S: Simd>(simd: S, numbers: &[f32], count: usize, doubt: f32) -> [u64
     [above, within]
 }
 
-/// Where `a ≥ b`.
-#[inline(always)]
-pub(crate) fn at_least<S: Simd>(simd: S, a: &[f64; 16], b: &[f64; 16]) -> u16 {
-    let mut bits = 0;
-    let mut at = 0;
-    while at < 16 {
-        let (a, b) = (f64x4::from_slice(simd, &a[at..at + 4]), f64x4::from_slice(simd, &b[at..at + 4]));
-        bits |= a.simd_ge(b).to_bitmask() << at;
-        at += 4;
-    }
-    bits as u16
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -55,9 +42,5 @@ mod tests {
                 assert_eq!(within >> i & 1 == 1, v.abs() <= 0.25, "{i} {v}");
             }
         }
-        let a: [f64; 16] = std::array::from_fn(|i| (i * 5 % 16) as f64);
-        let b: [f64; 16] = std::array::from_fn(|i| i as f64);
-        let bits = dispatch!(Level::new(), simd => at_least(simd, &a, &b));
-        assert!((0..16).all(|i| (bits >> i & 1 == 1) == (a[i] >= b[i])));
     }
 }

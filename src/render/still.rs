@@ -19,7 +19,6 @@ use super::gbuffer::Window;
 use super::tile::{Pixels, Rectangle, TILE, View};
 use crate::Bounds;
 use crate::eval::{Evaluator, Parting, Region};
-use crate::num::kernel::{Task, dispatched};
 use crate::num::signs::{STRIP, signs};
 
 /// The leaf and the rest.
@@ -186,7 +185,7 @@ impl Pass<'_> {
         self.mask.place(&grid, tape.origin(), (top..bottom, left, width));
         let Mask { evaluator, points: [x, y, z], values } = &mut *self.mask;
         values.resize(count + STRIP, 0.0);
-        evaluator.values(tape, x, y, z, &mut values[..count]);
+        evaluator.values(tape, &x[..count], &y[..count], &z[..count], &mut values[..count]);
         let columns = self.columns(&cell.bounds, columns);
         let doubt = tape.roundoff() as f32;
         for (number, row) in (top..bottom).enumerate() {
@@ -204,36 +203,26 @@ impl Pass<'_> {
 }
 
 impl Mask {
-    /// Fills in the points of some rows, so many pixels from column `left` each, relative to `origin`.
+    /// Fills in the points of some rows, so many pixels from column `left` each, relative to `origin`. Rows
+    /// are written in whole strips; what is too much is overwritten by the next one.
     fn place(&mut self, grid: &Grid, origin: DVec3, (rows, left, width): (Range<usize>, u32, usize)) {
         let step = grid.across.as_vec3().to_array();
-        for list in &mut self.points {
-            list.resize(rows.len() * width, 0.0);
-        }
-        for (number, row) in rows.enumerate() {
-            let start = (grid.point(left, row) - origin).as_vec3().to_array();
-            for axis in 0..3 {
-                let row = &mut self.points[axis][number * width..(number + 1) * width];
-                dispatched(Ramp { start: start[axis], step: step[axis], row });
+        for axis in 0..3 {
+            let mut ahead = [0.0; TILE as usize];
+            for (i, ahead) in (0u8..).zip(&mut ahead) {
+                *ahead = f32::from(i) * step[axis];
             }
-        }
-    }
-}
-
-/// The points of a row along an axis.
-struct Ramp<'a> {
-    start: f32,
-    step: f32,
-    row: &'a mut [f32],
-}
-
-impl Task for Ramp<'_> {
-    #[inline(always)]
-    fn run(self) {
-        let mut ahead = 0i32;
-        for to in self.row {
-            *to = self.start + ahead as f32 * self.step;
-            ahead += 1;
+            let list = &mut self.points[axis];
+            list.resize(rows.len() * width + STRIP, 0.0);
+            for (number, row) in rows.clone().enumerate() {
+                let start = (grid.point(left, row) - origin)[axis] as f32;
+                let strips = list[number * width..].chunks_exact_mut(STRIP).zip(ahead.chunks_exact(STRIP));
+                for (to, ahead) in strips.take(width.div_ceil(STRIP)) {
+                    for i in 0..STRIP {
+                        to[i] = start + ahead[i];
+                    }
+                }
+            }
         }
     }
 }

@@ -165,6 +165,11 @@ impl Code {
         Code { ops, flaw, axes, choices, number: NUMBER.fetch_add(1, Ordering::Relaxed), plan: OnceLock::new() }
     }
 
+    /// With a plan that is made already.
+    pub(super) fn with_plan(self, plan: Plan) -> Code {
+        Code { plan: OnceLock::from(plan), ..self }
+    }
+
     /// The operations of a fidget tree.
     pub(super) fn of_tree(tree: &Tree) -> Code {
         let mut context = Context::new();

@@ -128,11 +128,11 @@ impl Formula {
         }
         let code = &self.0.code;
         let hull = zone.hull();
-        let (ops, range) = narrowed(code, hull)?;
+        let (code, range) = narrowed(code, hull)?;
         let region = [0, 1, 2].map(|axis| self.0.region[axis].narrowed_by(hull[axis]));
         let has_region = self.0.region != [Interval::ALL; 3];
         Some(Formula(Arc::new(Inner {
-            code: Code::new(ops, code.flaw),
+            code,
             bounds: self.0.bounds,
             region,
             range: turned(range),
@@ -193,16 +193,20 @@ fn whole_range(code: &Code, hull: [Interval; 3]) -> Option<Sure> {
     known.or_else(|| walked(code, hull, |ranges| ranges.last().copied()))
 }
 
-/// The operations without what is not chosen in a box, if that saves enough, and their range.
-fn narrowed(code: &Code, hull: [Interval; 3]) -> Option<(Vec<Op>, Sure)> {
+/// The code without what is not chosen in a box, if that saves enough, and its range.
+fn narrowed(code: &Code, hull: [Interval; 3]) -> Option<(Code, Sure)> {
     let ops = &code.ops;
     let most = EIGHTHS_LEFT * ops.len() / 8;
     let known = SURVEY.with_borrow_mut(|survey| {
         let lane = survey.lane(code, &seen(code, hull))?;
-        Some(survey.narrowed(code, lane, most).map(|ops| (ops, survey.range(lane))))
+        let left = survey.narrowed(code, lane, most);
+        Some(left.map(|(ops, plan)| (Code::new(ops, code.flaw).with_plan(plan), survey.range(lane))))
     });
     known.unwrap_or_else(|| {
-        walked(code, hull, |ranges| Some((live(ops, most, |at| choice(&ops[at], ranges))?, ranges.last().copied()?)))
+        walked(code, hull, |ranges| {
+            let left = live(ops, most, |at| choice(&ops[at], ranges))?;
+            Some((Code::new(left, code.flaw), ranges.last().copied()?))
+        })
     })
 }
 

@@ -23,6 +23,9 @@ pub(super) enum Source {
 pub(super) struct Slot(u32);
 
 impl Slot {
+    /// Of an operand that there is none of.
+    pub(super) const NONE: Slot = Slot(0);
+
     fn axis(axis: u8) -> Slot {
         Slot(u32::from(axis) << 2)
     }
@@ -82,6 +85,52 @@ impl Plan {
     pub(super) fn make(&mut self, ops: &[Op]) {
         SCRATCH.with_borrow_mut(|scratch| scratch.plan(ops, self));
     }
+
+    /// Forgets its steps, and makes room for others.
+    pub(super) fn clear(&mut self, room: usize) {
+        self.steps.clear();
+        self.constants.clear();
+        self.steps.reserve(room);
+        self.constants.reserve(room / 4);
+        self.registers = 0;
+    }
+
+    /// Adds an operation, whose value counts until another is added, with its operands where they are;
+    /// `ends` tells which of them nothing needs after it. Gives where its own value is. `free` are the
+    /// registers that are free at the moment, of no use to anybody else.
+    #[inline(always)]
+    pub(super) fn add(&mut self, op: Op, [a, b]: [Slot; 2], ends: [bool; 2], free: &mut Vec<u32>) -> Slot {
+        let mut out = || match free.pop() {
+            Some(register) => register,
+            None => {
+                self.registers += 1;
+                self.registers as u32 - 1
+            }
+        };
+        self.result = match op {
+            Op::Axis(axis) => Slot::axis(axis),
+            Op::Const(c) => {
+                self.constants.push(c);
+                Slot::constant(self.constants.len() - 1)
+            }
+            Op::Unary(op, _) => {
+                let to = out();
+                self.steps.push(Step::Unary(op, a, to));
+                Slot::register(to)
+            }
+            Op::Binary(op, ..) => {
+                let to = out();
+                self.steps.push(Step::Binary(op, a, b, to));
+                Slot::register(to)
+            }
+        };
+        for (slot, ends) in [(a, ends[0]), (b, ends[1])] {
+            if let (true, Some(register)) = (ends, slot.as_register()) {
+                free.push(register);
+            }
+        }
+        self.result
+    }
 }
 
 impl Scratch {
@@ -89,7 +138,6 @@ impl Scratch {
         let Scratch { last_use, slots, free } = self;
         last_use.clear();
         last_use.resize(ops.len(), 0);
-        let (mut constants, mut steps) = (0, 0);
         for (at, op) in ops.iter().enumerate() {
             match *op {
                 Op::Unary(_, a) => last_use[a as usize] = at as u32,
@@ -97,60 +145,21 @@ impl Scratch {
                     last_use[a as usize] = at as u32;
                     last_use[b as usize] = at as u32;
                 }
-                Op::Axis(_) => continue,
-                Op::Const(_) => {
-                    constants += 1;
-                    continue;
-                }
+                Op::Axis(_) | Op::Const(_) => {}
             }
-            steps += 1;
         }
-        plan.steps.clear();
-        plan.steps.reserve_exact(steps);
-        plan.constants.clear();
-        plan.constants.reserve_exact(constants);
-        plan.registers = 0;
+        plan.clear(ops.len());
         free.clear();
         slots.clear();
-        slots.reserve(ops.len());
         for (at, op) in (0u32..).zip(ops) {
-            let mut out = || match free.pop() {
-                Some(register) => register,
-                None => {
-                    plan.registers += 1;
-                    plan.registers as u32 - 1
-                }
+            let is_last = |operand: u32| last_use[operand as usize] == at;
+            let (operands, ends) = match *op {
+                Op::Axis(_) | Op::Const(_) => ([Slot::NONE; 2], [false; 2]),
+                Op::Unary(_, a) => ([slots[a as usize]; 2], [is_last(a), false]),
+                Op::Binary(_, a, b) => ([slots[a as usize], slots[b as usize]], [is_last(a), a != b && is_last(b)]),
             };
-            let (step, to, a, b) = match *op {
-                Op::Axis(axis) => {
-                    slots.push(Slot::axis(axis));
-                    continue;
-                }
-                Op::Const(c) => {
-                    slots.push(Slot::constant(plan.constants.len()));
-                    plan.constants.push(c);
-                    continue;
-                }
-                Op::Unary(op, a) => {
-                    let to = out();
-                    (Step::Unary(op, slots[a as usize], to), to, a, a)
-                }
-                Op::Binary(op, a, b) => {
-                    let to = out();
-                    (Step::Binary(op, slots[a as usize], slots[b as usize], to), to, a, b)
-                }
-            };
-            plan.steps.push(step);
-            slots.push(Slot::register(to));
-            // From here on their registers serve others.
-            if let (true, Some(register)) = (last_use[a as usize] == at, slots[a as usize].as_register()) {
-                free.push(register);
-            }
-            if let (true, Some(register)) = (a != b && last_use[b as usize] == at, slots[b as usize].as_register()) {
-                free.push(register);
-            }
+            slots.push(plan.add(*op, operands, ends, free));
         }
-        plan.result = slots.last().copied().unwrap_or(Slot(0));
     }
 }
 

@@ -16,15 +16,14 @@
 //! with s = fl(e), `|s − e| ≤ 2⁻⁵³·|s| + 2⁻¹⁰⁷⁵ < 2⁻⁵²·|s| + 2⁻¹⁰²²`, and what is subtracted from s
 //! is at least the next float away.
 
-use fearless_simd::{Level, Simd, dispatch};
 use fidget::context::{BinaryOpcode, UnaryOpcode};
 
 use super::arithmetic::{Arithmetic, each_binary, each_unary};
 use super::code::{Code, Op};
-use super::plan::{Plan, Source, Step};
+use super::plan::{Plan, Slot, Source, Step};
 use super::sure::Sure;
 use crate::Interval;
-use crate::num::signs::at_least;
+use crate::num::kernel::{Task, dispatched};
 
 /// So many boxes are walked at once.
 pub(crate) const BOXES: usize = 16;
@@ -58,13 +57,26 @@ pub(super) struct Survey {
 struct Live {
     /// Whether it is up to date.
     known: bool,
-    /// By operation, a bit for every box: where it is needed.
-    used: Vec<u16>,
-    /// Those that are needed in each box, the last one first, and how many of them are left.
+    uses: Vec<Uses>,
+    /// The operations that are needed in each box, the last one first, and how many of them are left.
     needed: [Vec<Needed>; BOXES],
     left: [usize; BOXES],
-    /// Where operations have gone to.
-    moved: Vec<u32>,
+    /// Where operations have gone to in one box.
+    moved: Vec<Moved>,
+    /// Registers that are free there.
+    free: Vec<u32>,
+}
+
+/// How an operation is used, a bit for every box.
+#[derive(Clone, Copy, Default)]
+struct Uses {
+    /// Where anything needs it.
+    some: u16,
+    /// Where it is the last to need its first and its second operand as such.
+    last: [u16; 2],
+    /// Where it is not known what needs it last: something does as such, and something as the result of an
+    /// operation that it is equal to.
+    unclear: u16,
 }
 
 /// An operation that is needed in a box, be it for the operand that it is equal to there.
@@ -73,6 +85,15 @@ enum Needed {
     Itself(u32),
     First(u32),
     Second(u32),
+}
+
+/// Where an operation has gone to: its number in the list, and where its value is.
+#[derive(Clone, Copy)]
+struct Moved {
+    to: u32,
+    slot: Slot,
+    /// Whether its register is never free again.
+    held: bool,
 }
 
 impl Survey {
@@ -87,10 +108,11 @@ impl Survey {
             lost: [true; BOXES],
             live: Live {
                 known: false,
-                used: Vec::new(),
+                uses: Vec::new(),
                 needed: [const { Vec::new() }; BOXES],
                 left: [0; BOXES],
                 moved: Vec::new(),
+                free: Vec::new(),
             },
         }
     }
@@ -121,7 +143,7 @@ impl Survey {
         }
         let (registers, choices) = (&mut self.registers[..], &mut self.choices[..]);
         let walk = Walk { code, plan, axes: &axes, registers, choices, value: &mut self.value, doubt: &mut doubt };
-        dispatch!(Level::new(), simd => walk.run(simd));
+        dispatched(walk);
         self.value.test(&mut doubt);
         self.lost = doubt.map(|doubt| doubt != 0.0);
         self.live.known = false;
@@ -140,37 +162,59 @@ impl Survey {
         Sure { range: Interval::new(self.value.lo[lane], self.value.hi[lane]), sure: true }
     }
 
-    /// The operations that are left in a lane, if they are at most `most`.
-    pub(super) fn narrowed(&mut self, code: &Code, lane: usize, most: usize) -> Option<Vec<Op>> {
+    /// The operations that are left in a lane, if they are at most `most`, and their plan.
+    pub(super) fn narrowed(&mut self, code: &Code, lane: usize, most: usize) -> Option<(Vec<Op>, Plan)> {
         if !self.live.known {
             self.live.find(&code.ops, &self.choices);
         }
-        let Live { needed, left, moved, .. } = &mut self.live;
+        let Live { uses, needed, left, moved, free, .. } = &mut self.live;
         if left[lane] > most {
             return None;
         }
         let mut ops = Vec::with_capacity(left[lane]);
+        let mut plan = Plan::EMPTY;
+        plan.clear(left[lane]);
+        free.clear();
         for &needed in needed[lane].iter().rev() {
             let (Needed::Itself(at) | Needed::First(at) | Needed::Second(at)) = needed;
             let op = code.ops[at as usize];
-            moved[at as usize] = match (needed, op) {
-                (Needed::First(_), Op::Unary(_, operand) | Op::Binary(_, operand, _))
-                | (Needed::Second(_), Op::Binary(_, _, operand)) => moved[operand as usize],
-                _ => {
-                    ops.push(match op {
-                        Op::Unary(op, a) => Op::Unary(op, moved[a as usize]),
-                        Op::Binary(op, a, b) => Op::Binary(op, moved[a as usize], moved[b as usize]),
-                        op => op,
-                    });
-                    ops.len() as u32 - 1
+            let Uses { last, unclear, .. } = uses[at as usize];
+            let held = unclear >> lane & 1 == 1;
+            if let (Needed::First(_), Op::Unary(_, operand) | Op::Binary(_, operand, _))
+            | (Needed::Second(_), Op::Binary(_, _, operand)) = (needed, op)
+            {
+                let stand_in = moved[operand as usize];
+                moved[at as usize] = Moved { held: stand_in.held || held, ..stand_in };
+                continue;
+            }
+            let ends = |number: usize, of: Moved| last[number] >> lane & 1 == 1 && !of.held;
+            let to = ops.len() as u32;
+            let slot = match op {
+                Op::Axis(_) | Op::Const(_) => {
+                    ops.push(op);
+                    plan.add(op, [Slot::NONE; 2], [false; 2], free)
+                }
+                Op::Unary(op, a) => {
+                    let a = moved[a as usize];
+                    let op = Op::Unary(op, a.to);
+                    ops.push(op);
+                    plan.add(op, [a.slot; 2], [ends(0, a), false], free)
+                }
+                Op::Binary(op, a, b) => {
+                    let (a, b) = (moved[a as usize], moved[b as usize]);
+                    let op = Op::Binary(op, a.to, b.to);
+                    ops.push(op);
+                    plan.add(op, [a.slot, b.slot], [ends(0, a), ends(1, b)], free)
                 }
             };
+            moved[at as usize] = Moved { to, slot, held };
         }
-        Some(ops)
+        Some((ops, plan))
     }
 }
 
 /// Calls `visit` with the numbers of the bits that are set.
+#[inline(always)]
 fn bits(mut all: u16, mut visit: impl FnMut(usize)) {
     while all != 0 {
         visit(all.trailing_zeros() as usize);
@@ -181,34 +225,43 @@ fn bits(mut all: u16, mut visit: impl FnMut(usize)) {
 impl Live {
     /// Backwards from the value: what is needed for it.
     fn find(&mut self, ops: &[Op], choices: &[Choice]) {
-        let Live { known, used, needed, left, moved } = self;
+        let Live { known, uses, needed, left, moved, .. } = self;
         *known = true;
         *left = [0; BOXES];
-        used.clear();
-        used.resize(ops.len(), 0);
+        uses.clear();
+        uses.resize(ops.len(), Uses::default());
         needed.iter_mut().for_each(Vec::clear);
-        moved.resize(moved.len().max(ops.len()), 0);
-        if let Some(value) = used.last_mut() {
-            *value = u16::MAX;
+        moved.resize(moved.len().max(ops.len()), Moved { to: 0, slot: Slot::NONE, held: false });
+        if let Some(value) = uses.last_mut() {
+            value.some = u16::MAX;
         }
         for (at, op) in ops.iter().enumerate().rev() {
-            let here = used[at];
+            let here = uses[at].some;
             if here == 0 {
                 continue;
             }
-            let [first, second] = choices[at];
+            let [first, second] = choices[at].map(|boxes| boxes & here);
+            let itself = here & !(first | second);
+            // Operands that are needed by the operation as such, and those that it is equal to.
+            let mut operand = |number: usize, operand: u32, equal: u16| {
+                let used = &mut uses[operand as usize];
+                let last = itself & !used.some;
+                used.unclear |= equal & used.some;
+                used.some |= itself | equal;
+                uses[at].last[number] = last;
+            };
             match *op {
-                Op::Unary(_, a) => used[a as usize] |= here,
+                Op::Unary(_, a) => operand(0, a, first),
                 Op::Binary(_, a, b) => {
-                    used[a as usize] |= here & !second;
-                    used[b as usize] |= here & !first;
+                    operand(0, a, first);
+                    operand(1, b, second);
                 }
                 Op::Axis(_) | Op::Const(_) => {}
             }
             let at = at as u32;
-            bits(here & first, |lane| needed[lane].push(Needed::First(at)));
-            bits(here & second, |lane| needed[lane].push(Needed::Second(at)));
-            bits(here & !(first | second), |lane| {
+            bits(first, |lane| needed[lane].push(Needed::First(at)));
+            bits(second, |lane| needed[lane].push(Needed::Second(at)));
+            bits(itself, |lane| {
                 needed[lane].push(Needed::Itself(at));
                 left[lane] += 1;
             });
@@ -286,9 +339,9 @@ struct Walk<'a> {
     doubt: &'a mut Doubt,
 }
 
-impl Walk<'_> {
+impl Task for Walk<'_> {
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
+    fn run(self) {
         let Walk { code, plan, axes, registers, choices, value, doubt } = self;
         let mut constants = [Many::ZERO; 2];
         let mut steps = plan.steps.iter();
@@ -306,12 +359,12 @@ impl Walk<'_> {
             match step {
                 Step::Unary(op, a, _) => {
                     let a = operand(plan.source(a), axes, registers, first);
-                    each_unary!(op, OP => unary(simd, OP, a, result, &mut choices[at], doubt));
+                    each_unary!(op, OP => unary(OP, a, result, &mut choices[at], doubt));
                 }
                 Step::Binary(op, a, b, _) => {
                     let a = operand(plan.source(a), axes, registers, first);
                     let b = operand(plan.source(b), axes, registers, second);
-                    each_binary!(op, OP => binary(simd, OP, [a, b], result, &mut choices[at], doubt));
+                    each_binary!(op, OP => binary(OP, [a, b], result, &mut choices[at], doubt));
                 }
             }
         }
@@ -355,16 +408,36 @@ fn join(a: &Many, b: &Many, result: &mut Many, each: impl Fn([f64; 2], [f64; 2])
     }
 }
 
+/// The lanes where `a ≥ b`; those of 0 and −0 may be left out. Written so that the compiler makes vectors of
+/// it: the sign of the difference, spread over a word, leaves a bit of it.
+#[inline(always)]
+fn at_least(a: &[f64; BOXES], b: &[f64; BOXES]) -> u16 {
+    const BITS: [u64; BOXES] = {
+        let mut bits = [0; BOXES];
+        let mut lane = 0;
+        while lane < BOXES {
+            bits[lane] = 1 << lane;
+            lane += 1;
+        }
+        bits
+    };
+    let mut below = 0;
+    for i in 0..BOXES {
+        below |= ((a[i] - b[i]).to_bits().cast_signed() >> 63).cast_unsigned() & BITS[i];
+    }
+    !(below as u16)
+}
+
 /// Adds up what no number comes of.
 type Doubt = [f64; BOXES];
 
 #[inline(always)]
-fn unary<S: Simd>(simd: S, op: UnaryOpcode, a: &Many, result: &mut Many, choice: &mut Choice, doubt: &mut Doubt) {
+fn unary(op: UnaryOpcode, a: &Many, result: &mut Many, choice: &mut Choice, doubt: &mut Doubt) {
     use UnaryOpcode as U;
     match op {
         U::Neg => return map(a, result, |lo, hi| (-hi, -lo)),
         U::Abs => {
-            *choice = [at_least(simd, &a.lo, &Many::ZERO.lo), 0];
+            *choice = [at_least(&a.lo, &Many::ZERO.lo), 0];
             return map(a, result, |lo, hi| (most(most(lo, -hi), 0.0), most(-lo, hi)));
         }
         U::Square => map(a, result, |lo, hi| {
@@ -383,8 +456,7 @@ fn unary<S: Simd>(simd: S, op: UnaryOpcode, a: &Many, result: &mut Many, choice:
 }
 
 #[inline(always)]
-fn binary<S: Simd>(
-    simd: S,
+fn binary(
     op: BinaryOpcode,
     [a, b]: [&Many; 2],
     result: &mut Many,
@@ -404,13 +476,13 @@ fn binary<S: Simd>(
             if (r > 0.0) | (s < 0.0) { (lo, hi) } else { (f64::NAN, f64::NAN) }
         }),
         B::Min => {
-            let first = at_least(simd, &b.lo, &a.hi);
-            *choice = [first, at_least(simd, &a.lo, &b.hi) & !first];
+            let first = at_least(&b.lo, &a.hi);
+            *choice = [first, at_least(&a.lo, &b.hi) & !first];
             return join(a, b, result, |[p, q], [r, s]| (least(p, r), least(q, s)));
         }
         B::Max => {
-            let first = at_least(simd, &a.lo, &b.hi);
-            *choice = [first, at_least(simd, &b.lo, &a.hi) & !first];
+            let first = at_least(&a.lo, &b.hi);
+            *choice = [first, at_least(&b.lo, &a.hi) & !first];
             return join(a, b, result, |[p, q], [r, s]| (most(p, r), most(q, s)));
         }
         _ => {
