@@ -216,11 +216,14 @@ impl Mask {
             list.resize(rows.len() * width + STRIP, 0.0);
             for (number, row) in rows.clone().enumerate() {
                 let start = (grid.point(left, row) - origin)[axis] as f32;
-                let strips = list[number * width..].chunks_exact_mut(STRIP).zip(ahead.chunks_exact(STRIP));
-                for (to, ahead) in strips.take(width.div_ceil(STRIP)) {
+                let mut strip = 0;
+                while strip < width {
+                    let to = &mut list[number * width + strip..][..STRIP];
+                    let ahead = &ahead[strip..][..STRIP];
                     for i in 0..STRIP {
                         to[i] = start + ahead[i];
                     }
+                    strip += STRIP;
                 }
             }
         }

@@ -26,18 +26,22 @@ impl Slot {
     /// Of an operand that there is none of.
     pub(super) const NONE: Slot = Slot(0);
 
+    #[inline(always)]
     fn axis(axis: u8) -> Slot {
         Slot(u32::from(axis) << 2)
     }
 
+    #[inline(always)]
     fn constant(number: usize) -> Slot {
         Slot((number as u32) << 2 | 1)
     }
 
+    #[inline(always)]
     fn register(number: u32) -> Slot {
         Slot(number << 2 | 2)
     }
 
+    #[inline(always)]
     fn as_register(self) -> Option<u32> {
         (self.0 & 3 == 2).then_some(self.0 >> 2)
     }
