@@ -42,9 +42,9 @@ pub(super) struct Mask {
 /// through the solid it is far less than the room that boxes are given.
 const LEVEL: f64 = 1e-15;
 
-/// Values of all the pixels of a cell cost less than dividing it if they are up to so many, in those of
-/// ordinary leaves.
-const FEW: usize = 10000;
+/// Values at all the pixels that see a cell, within the picture and beyond, cost less than dividing it if
+/// they are as much as up to so many of ordinary leaves.
+const FEW: f64 = 6e4;
 
 impl Still {
     /// `None` where inside of the leaf, or outside, nothing else would end the solid.
@@ -175,7 +175,7 @@ impl Pass<'_> {
         let Some(Rectangle { top, bottom, columns }) = self.view.rectangle(&cell.bounds, self.tile) else { return };
         let (rows, width) = (bottom - top, columns.count_ones() as usize);
         let count = rows * width;
-        if count > 1 && count * cell.cost > FEW && !cell.is_stale() {
+        if self.view.covers(&cell.bounds) * cell.cost as f64 > FEW && !cell.is_stale() {
             self.halves(cell.halves(), &cell.bounds);
             return;
         }

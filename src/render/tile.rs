@@ -254,6 +254,11 @@ impl<'a> View<'a> {
         Some(Rectangle { top: top as usize, bottom: bottom as usize, columns: columns(left, right) })
     }
 
+    /// How many pixels see a box, in a picture that goes on without end.
+    pub(super) fn covers(&self, bounds: &Bounds) -> f64 {
+        self.rays.outline(bounds).map_or(0.0, |outline| outline.iter().map(|[low, high]| high - low).product())
+    }
+
     /// Whether pixels of a window may see the box.
     fn sees(&self, bounds: &Bounds, window: &Window) -> bool {
         self.sides(bounds, window).is_some()
