@@ -171,27 +171,21 @@ impl Scene {
         let done = AtomicU32::new(0);
         let bands = surfaces.par_chunks_mut((window.width * TILE).max(1) as usize).enumerate();
         bands.try_for_each(|(band, surfaces)| {
-            let tile = |column: u32| {
-                let (x, y) = (column * TILE, band as u32 * TILE);
-                let (width, height) = (TILE.min(window.width - x), TILE.min(window.height - y));
-                Window { left: window.left + x, top: window.top + y, width, height, ..window }
-            };
-            let traced = |column: u32| {
+            // The rows of each tile.
+            let mut tiles: Vec<Vec<&mut [Surface]>> = (0..across).map(|_| Vec::with_capacity(TILE as usize)).collect();
+            for row in surfaces.chunks_mut(window.width as usize) {
+                tiles.iter_mut().zip(row.chunks_mut(TILE as usize)).for_each(|(tile, part)| tile.push(part));
+            }
+            tiles.into_par_iter().enumerate().try_for_each(|(column, mut rows)| {
                 run.check()?;
-                let found = TRACER.with_borrow_mut(|tracer| tracer.tile(cells, &view, tile(column)));
+                let (x, y) = (column as u32 * TILE, band as u32 * TILE);
+                let (width, height) = (TILE.min(window.width - x), TILE.min(window.height - y));
+                let tile = Window { left: window.left + x, top: window.top + y, width, height, ..window };
+                TRACER.with_borrow_mut(|tracer| tracer.tile(cells, &view, tile, &mut rows));
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                 run.report(f64::from(done) / f64::from(across * down));
-                Ok(found)
-            };
-            let tiles: Result<Vec<_>, Cancelled> = (0..across).into_par_iter().map(traced).collect();
-            for (column, found) in (0..).zip(tiles?) {
-                let Window { width, .. } = tile(column);
-                let rows = surfaces.chunks_mut(window.width as usize).zip(found.chunks(width as usize));
-                for (row, found) in rows {
-                    row[(column * TILE) as usize..][..width as usize].copy_from_slice(found);
-                }
-            }
-            Ok(())
+                Ok(())
+            })
         })?;
         Ok(GBuffer::new(window, surfaces))
     }

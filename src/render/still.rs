@@ -67,7 +67,7 @@ impl Still {
 
     /// The pixels of a tile whose rays are inside of the leaf.
     pub(super) fn inside(&self, mask: &mut Mask, view: &View<'_>, tile: &Window) -> Pixels {
-        let mut found = Pixels([0; TILE as usize]);
+        let mut found = Pixels::NONE;
         if let Some([start, across, down]) = view.rays.starts() {
             let (x, y) = (f64::from(tile.left) + tile.within.0, f64::from(tile.top) + tile.within.1);
             let grid = Grid { start: start + across * x + down * y, across, down, forward: view.rays.forward() };

@@ -24,6 +24,10 @@ pub(super) const TILE: u32 = 64;
 #[derive(Default)]
 pub(super) struct Tracer {
     mask: Mask,
+    /// What the pixels of a tile see; nothing but while it is traced.
+    surfaces: Vec<Surface>,
+    /// Those that see anything.
+    hit: Pixels,
     marcher: Marcher,
     rays: Vec<Ray>,
     spans: Vec<Span>,
@@ -84,12 +88,23 @@ pub(super) struct Rectangle {
 }
 
 impl Tracer {
-    /// What the pixels of `tile` see, row by row; `inside` tells whether the eye of a perspective
-    /// camera is in the solid, which no other has.
-    pub(super) fn tile(&mut self, cells: &Cells, view: &View<'_>, tile: Window) -> Vec<Surface> {
-        let mut surfaces = vec![Surface::NONE; tile.count()];
-        self.trace(cells, view, &tile, Pixels([u64::MAX; TILE as usize]), &mut surfaces);
-        surfaces
+    /// Puts what the pixels of `tile` see to its `rows`, in which there is nothing yet.
+    pub(super) fn tile(&mut self, cells: &Cells, view: &View<'_>, tile: Window, rows: &mut [&mut [Surface]]) {
+        let mut surfaces = std::mem::take(&mut self.surfaces);
+        // Those of other pixels are never asked for.
+        surfaces.resize(tile.count().max(surfaces.len()), Surface::NONE);
+        self.rays.resize(tile.count().max(self.rays.len()), Ray::NONE);
+        self.hit = Pixels::NONE;
+        self.trace(cells, view, &tile, Pixels::ALL, &mut surfaces);
+        for (y, row) in rows.iter_mut().enumerate() {
+            let mut bits = self.hit.0[y];
+            while bits != 0 {
+                let x = bits.trailing_zeros() as usize;
+                bits &= bits - 1;
+                row[x] = std::mem::replace(&mut surfaces[y * tile.width as usize + x], Surface::NONE);
+            }
+        }
+        self.surfaces = surfaces;
     }
 
     /// What some of the pixels of a tile see.
@@ -109,11 +124,14 @@ impl Tracer {
             return;
         }
         let Part::Cell(root) = cells.root() else { return };
-        let mut alive = Pixels([0; TILE as usize]);
-        // Those of other pixels are never asked for.
-        self.rays.resize(tile.count().max(self.rays.len()), Ray::NONE);
+        let mut alive = Pixels::NONE;
         let bounds = cells.bounds();
         let mut sheaf = Sheaf::new(view.rays.meeting_point());
+        // Parallel rays have a direction in common.
+        let beam = view.rays.meeting_point().is_none().then(|| view.rays.forward()).map(inverse);
+        if beam.is_some() {
+            (sheaf.low, sheaf.high) = (view.rays.forward(), view.rays.forward());
+        }
         let Some(seen) = view.rectangle(bounds, tile) else { return };
         for y in seen.top..seen.bottom {
             let mut bits = seen.columns & among.0[y];
@@ -122,9 +140,13 @@ impl Tracer {
                 bits &= bits - 1;
                 let (origin, direction) = tile.ray(view.rays, x, y as u32);
                 let ray = &mut self.rays[y * tile.width as usize + x as usize];
-                if enters(ray, cells, origin, direction, view.inside) {
+                if enters(ray, cells, (origin, direction), beam, view.inside) {
                     alive.0[y] |= 1 << x;
-                    sheaf.add(ray);
+                    if beam.is_some() {
+                        sheaf.inside |= ray.inside;
+                    } else {
+                        sheaf.add(ray);
+                    }
                 }
             }
         }
@@ -165,7 +187,9 @@ impl Tracer {
                 }
             }
             for &ray in &self.marcher.hits {
-                alive.0[(ray / tile.width) as usize] &= !(1 << (ray % tile.width));
+                let (row, bit) = ((ray / tile.width) as usize, 1 << (ray % tile.width));
+                alive.0[row] &= !bit;
+                self.hit.0[row] |= bit;
             }
         }
     }
@@ -177,7 +201,7 @@ impl Tracer {
         let mut octants: [Vec<u32>; 8] = Default::default();
         for (number, &(origin, direction)) in (0..).zip(rays) {
             let mut ray = Ray::NONE;
-            if enters(&mut ray, cells, origin, direction, None) {
+            if enters(&mut ray, cells, (origin, direction), None, None) {
                 let octant = (0..3).map(|axis| usize::from(direction[axis] < 0.0) << axis).sum::<usize>();
                 octants[octant].push(number);
             }
@@ -294,7 +318,16 @@ fn columns(left: u32, right: u32) -> u64 {
     below(right) & !below(left)
 }
 
+impl Default for Pixels {
+    fn default() -> Pixels {
+        Pixels::NONE
+    }
+}
+
 impl Pixels {
+    pub(super) const NONE: Pixels = Pixels([0; TILE as usize]);
+    const ALL: Pixels = Pixels([u64::MAX; TILE as usize]);
+
     pub(super) fn count(&self, rectangle: Rectangle) -> usize {
         let rows = &self.0[rectangle.top..rectangle.bottom];
         rows.iter().map(|row| (row & rectangle.columns).count_ones() as usize).sum()
@@ -349,14 +382,27 @@ fn cone(bounds: &Bounds, eye: DVec3) -> Option<[DVec3; 2]> {
     Some([least - 1e-9, most + 1e-9])
 }
 
-/// Makes a ray ready; whether it meets the box of all cells.
+/// The inverse of a direction's components: a number instead of infinity, so that planes at a distance
+/// of 0 stay there.
 #[inline(always)]
-fn enters(ray: &mut Ray, cells: &Cells, origin: DVec3, direction: DVec3, inside: Option<bool>) -> bool {
+fn inverse(direction: DVec3) -> DVec3 {
+    direction.recip().clamp(DVec3::splat(-STEEPEST), DVec3::splat(STEEPEST))
+}
+
+/// Makes a ray ready; whether it meets the box of all cells. `known` is the inverse of its direction, if
+/// others have the same.
+#[inline(always)]
+fn enters(
+    ray: &mut Ray,
+    cells: &Cells,
+    (origin, direction): (DVec3, DVec3),
+    known: Option<DVec3>,
+    inside: Option<bool>,
+) -> bool {
     if !(origin.is_finite() && direction.is_finite() && direction != DVec3::ZERO) {
         return false;
     }
-    // A number instead of infinity, so that planes at a distance of 0 stay there.
-    ray.inverse = direction.recip().clamp(DVec3::splat(-STEEPEST), DVec3::splat(STEEPEST));
+    ray.inverse = known.unwrap_or_else(|| inverse(direction));
     (ray.origin, ray.direction, ray.base, ray.inside) = (origin, direction, 0.0, false);
     let Some((near, _)) = span(cells.bounds(), ray) else { return false };
     if near > 0.0 {
