@@ -28,10 +28,13 @@ pub(super) enum Flaw {
     NotANumber,
 }
 
-/// The operations of a formula; the last is its value.
+/// The operations of a formula; the last is its value. They are kept as a list or as a plan, and in the
+/// other form as well once somebody has asked for that.
 #[derive(Debug)]
 pub(super) struct Code {
-    pub(super) ops: Vec<Op>,
+    ops: OnceLock<Vec<Op>>,
+    /// How many there are.
+    pub(super) len: usize,
     pub(super) flaw: Option<Flaw>,
     /// Which axes the value depends on.
     pub(super) axes: [bool; 3],
@@ -150,9 +153,14 @@ pub(super) fn live(ops: &[Op], most: usize, choice: impl Fn(usize) -> Option<u32
     Some(kept)
 }
 
+/// The number of the next code.
+fn next() -> u64 {
+    static NUMBER: AtomicU64 = AtomicU64::new(0);
+    NUMBER.fetch_add(1, Ordering::Relaxed)
+}
+
 impl Code {
     pub(super) fn new(ops: Vec<Op>, flaw: Option<Flaw>) -> Code {
-        static NUMBER: AtomicU64 = AtomicU64::new(0);
         let (mut flaw, mut axes, mut choices) = (flaw, [false; 3], 0);
         for op in &ops {
             match *op {
@@ -162,12 +170,26 @@ impl Code {
                 _ => {}
             }
         }
-        Code { ops, flaw, axes, choices, number: NUMBER.fetch_add(1, Ordering::Relaxed), plan: OnceLock::new() }
+        Code { len: ops.len(), ops: ops.into(), flaw, axes, choices, number: next(), plan: OnceLock::new() }
     }
 
-    /// With a plan that is made already.
-    pub(super) fn with_plan(self, plan: Plan) -> Code {
-        Code { plan: OnceLock::from(plan), ..self }
+    /// What is left of a code, `len` operations.
+    pub(super) fn narrowed(&self, plan: Plan, len: usize) -> Code {
+        let (axes, choices) = (plan.axes(), plan.choices());
+        Code { ops: OnceLock::new(), len, flaw: self.flaw, axes, choices, number: next(), plan: plan.into() }
+    }
+
+    pub(super) fn ops(&self) -> &[Op] {
+        self.ops.get_or_init(|| {
+            let mut ops = Vec::with_capacity(self.len);
+            self.plan().list(&mut ops);
+            ops
+        })
+    }
+
+    /// The list, if it was made.
+    pub(super) fn known_ops(&self) -> Option<&[Op]> {
+        self.ops.get().map(Vec::as_slice)
     }
 
     /// The operations of a fidget tree.
@@ -216,7 +238,7 @@ impl Code {
     /// The formula as a fidget tree of x, y and z, its constants in single precision.
     pub(super) fn tree(&self) -> Tree {
         let axes = [Var::X, Var::Y, Var::Z].map(|var| Arc::new(TreeOp::Input(var)));
-        let mut built: Vec<Arc<TreeOp>> = Vec::with_capacity(self.ops.len());
+        let mut built: Vec<Arc<TreeOp>> = Vec::with_capacity(self.len);
         let made = |op: &Op, built: &[Arc<TreeOp>]| match *op {
             Op::Axis(axis) => TreeOp::Input([Var::X, Var::Y, Var::Z][usize::from(axis)]),
             #[expect(clippy::cast_possible_truncation, reason = "fidget's constants are f32")]
@@ -224,7 +246,7 @@ impl Code {
             Op::Unary(op, a) => TreeOp::Unary(op, built[a as usize].clone()),
             Op::Binary(op, a, b) => TreeOp::Binary(op, built[a as usize].clone(), built[b as usize].clone()),
         };
-        let Some((root, rest)) = self.ops.split_last() else {
+        let Some((root, rest)) = self.ops().split_last() else {
             return Tree::constant(0.0);
         };
         for op in rest {
@@ -239,7 +261,7 @@ impl Code {
 
     /// Registers and steps for evaluation, made on first use.
     pub(super) fn plan(&self) -> &Plan {
-        self.plan.get_or_init(|| Plan::new(&self.ops))
+        self.plan.get_or_init(|| Plan::new(self.ops()))
     }
 
     /// The plan, if it was made.
@@ -252,7 +274,7 @@ impl Code {
     pub(super) fn is_elementary(&self) -> bool {
         use BinaryOpcode as B;
         use UnaryOpcode as U;
-        !self.ops.iter().any(|op| {
+        !self.ops().iter().any(|op| {
             matches!(
                 op,
                 Op::Unary(U::Sin | U::Cos | U::Tan | U::Asin | U::Acos | U::Atan | U::Exp | U::Ln | U::Rand, _)
@@ -264,8 +286,8 @@ impl Code {
     /// The values of all operations, in order.
     pub(super) fn values<N: Arithmetic>(&self, p: [N; 3], all: &mut Vec<N>) {
         all.clear();
-        all.reserve(self.ops.len());
-        for op in &self.ops {
+        all.reserve(self.len);
+        for op in self.ops() {
             let value = match *op {
                 Op::Axis(axis) => p[usize::from(axis)],
                 Op::Const(c) => N::constant(c),

@@ -159,7 +159,7 @@ impl Formula {
     #[must_use]
     #[expect(clippy::len_without_is_empty, reason = "no formula is empty")]
     pub fn len(&self) -> usize {
-        self.0.code.ops.len()
+        self.0.code.len
     }
 
     /// The box that holds the shape.
@@ -205,7 +205,7 @@ impl Formula {
 impl Formula {
     /// Bounds and operations, written out.
     fn text(&self) -> String {
-        format!("{:?} {:?} {:?}", self.0.bounds, self.0.region, self.0.code.ops)
+        format!("{:?} {:?} {:?}", self.0.bounds, self.0.region, self.0.code.ops())
     }
 }
 

@@ -84,7 +84,7 @@ impl Formula {
         let Some(whole) = whole_range(code, zone.hull()) else { return Interval::ALL };
         let range = turned(whole);
         let decided = range.lo() > 0.0 || range.hi() < 0.0;
-        let is_dear = code.ops.len() > SHORT || code.choices > CHOICES;
+        let is_dear = code.len > SHORT || code.choices > CHOICES;
         if decided || is_dear || !whole.sure || !zone.is_finite() {
             return range;
         }
@@ -195,15 +195,15 @@ fn whole_range(code: &Code, hull: [Interval; 3]) -> Option<Sure> {
 
 /// The code without what is not chosen in a box, if that saves enough, and its range.
 fn narrowed(code: &Code, hull: [Interval; 3]) -> Option<(Code, Sure)> {
-    let ops = &code.ops;
-    let most = EIGHTHS_LEFT * ops.len() / 8;
+    let most = EIGHTHS_LEFT * code.len / 8;
     let known = SURVEY.with_borrow_mut(|survey| {
         let lane = survey.lane(code, &seen(code, hull))?;
         let left = survey.narrowed(code, lane, most);
-        Some(left.map(|(ops, plan)| (Code::new(ops, code.flaw).with_plan(plan), survey.range(lane))))
+        Some(left.map(|(plan, len)| (code.narrowed(plan, len), survey.range(lane))))
     });
     known.unwrap_or_else(|| {
         walked(code, hull, |ranges| {
+            let ops = code.ops();
             let left = live(ops, most, |at| choice(&ops[at], ranges))?;
             Some((Code::new(left, code.flaw), ranges.last().copied()?))
         })

@@ -90,13 +90,78 @@ impl Plan {
         SCRATCH.with_borrow_mut(|scratch| scratch.plan(ops, self));
     }
 
-    /// Forgets its steps, and makes room for others.
-    pub(super) fn clear(&mut self, room: usize) {
+    /// One with room for so many steps and constants.
+    pub(super) fn with_room(steps: usize, constants: usize) -> Plan {
+        Plan { steps: Vec::with_capacity(steps), constants: Vec::with_capacity(constants), ..Plan::EMPTY }
+    }
+
+    /// Forgets its steps.
+    fn clear(&mut self) {
         self.steps.clear();
         self.constants.clear();
-        self.steps.reserve(room);
-        self.constants.reserve(room / 4);
         self.registers = 0;
+    }
+
+    /// Which axes its steps take.
+    pub(super) fn axes(&self) -> [bool; 3] {
+        let mut axes = [false; 3];
+        let mut take = |slot: Slot| {
+            if slot.0 & 3 == 0 {
+                axes[slot.0 as usize >> 2] = true;
+            }
+        };
+        for step in &self.steps {
+            match *step {
+                Step::Unary(_, a, _) => take(a),
+                Step::Binary(_, a, b, _) => {
+                    take(a);
+                    take(b);
+                }
+            }
+        }
+        take(self.result);
+        axes
+    }
+
+    /// How many steps choose one of their operands.
+    pub(super) fn choices(&self) -> usize {
+        use BinaryOpcode as B;
+        self.steps.iter().filter(|step| matches!(step, Step::Binary(B::Min | B::Max, ..))).count()
+    }
+
+    /// Writes the operations out as a list: axes and constants before what needs them.
+    pub(super) fn list(&self, ops: &mut Vec<Op>) {
+        const NONE: u32 = u32::MAX;
+        ops.clear();
+        let mut axes = [NONE; 3];
+        let mut constants = vec![NONE; self.constants.len()];
+        let mut registers = vec![NONE; self.registers];
+        let mut find = |slot: Slot, registers: &[u32], ops: &mut Vec<Op>| {
+            let (known, op) = match self.source(slot) {
+                Source::Register(register) => return registers[register as usize],
+                Source::Axis(axis) => (&mut axes[usize::from(axis)], Op::Axis(axis)),
+                Source::Const(c) => (&mut constants[slot.0 as usize >> 2], Op::Const(c)),
+            };
+            if *known == NONE {
+                *known = ops.len() as u32;
+                ops.push(op);
+            }
+            *known
+        };
+        for step in &self.steps {
+            let (op, to) = match *step {
+                Step::Unary(op, a, to) => (Op::Unary(op, find(a, &registers, ops)), to),
+                Step::Binary(op, a, b, to) => {
+                    let a = find(a, &registers, ops);
+                    (Op::Binary(op, a, find(b, &registers, ops)), to)
+                }
+            };
+            registers[to as usize] = ops.len() as u32;
+            ops.push(op);
+        }
+        if self.steps.is_empty() {
+            find(self.result, &registers, ops);
+        }
     }
 
     /// Adds an operation, whose value counts until another is added, with its operands where they are;
@@ -152,7 +217,8 @@ impl Scratch {
                 Op::Axis(_) | Op::Const(_) => {}
             }
         }
-        plan.clear(ops.len());
+        plan.clear();
+        plan.steps.reserve(ops.len());
         free.clear();
         slots.clear();
         for (at, op) in (0u32..).zip(ops) {
@@ -211,6 +277,25 @@ fn read<N: Arithmetic>(source: Source, p: &[N; 3], registers: &[N]) -> N {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_plan_is_written_out_as_the_list_that_it_came_of() {
+        use BinaryOpcode as B;
+        let ops = vec![
+            Op::Axis(1),
+            Op::Const(2.0),
+            Op::Binary(B::Mul, 0, 1),
+            Op::Axis(0),
+            Op::Binary(B::Min, 2, 3),
+            Op::Unary(UnaryOpcode::Neg, 2),
+            Op::Binary(B::Add, 4, 5),
+        ];
+        let mut list = Vec::new();
+        Plan::new(&ops).list(&mut list);
+        assert_eq!(list, ops);
+        Plan::new(&[Op::Const(3.0)]).list(&mut list);
+        assert_eq!(list, [Op::Const(3.0)]);
+    }
 
     #[test]
     fn a_long_chain_needs_two_registers() {

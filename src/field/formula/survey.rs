@@ -42,8 +42,9 @@ pub(super) type Choice = [u16; 2];
 pub(super) struct Survey {
     /// Which code was walked; that of no code if none was.
     number: u64,
-    /// The plan of a code that is walked and not run.
+    /// The plan of a code that has none, and the operations of one that has nothing else.
     plan: Plan,
+    ops: Vec<Op>,
     boxes: Vec<[Interval; 3]>,
     registers: Vec<Many>,
     /// By operation.
@@ -58,9 +59,10 @@ struct Live {
     /// Whether it is up to date.
     known: bool,
     uses: Vec<Uses>,
-    /// The operations that are needed in each box, the last one first, and how many of them are left.
+    /// The operations that are needed in each box, the last one first.
     needed: [Vec<Needed>; BOXES],
-    left: [usize; BOXES],
+    /// How many of them are left in each box, and how many of these are no axes or constants.
+    left: [[usize; BOXES]; 2],
     /// Where operations have gone to in one box.
     moved: Vec<Moved>,
     /// Registers that are free there.
@@ -87,10 +89,9 @@ enum Needed {
     Second(u32),
 }
 
-/// Where an operation has gone to: its number in the list, and where its value is.
+/// Where the value of an operation is.
 #[derive(Clone, Copy)]
 struct Moved {
-    to: u32,
     slot: Slot,
     /// Whether its register is never free again.
     held: bool,
@@ -101,6 +102,7 @@ impl Survey {
         Survey {
             number: u64::MAX,
             plan: Plan::EMPTY,
+            ops: Vec::new(),
             boxes: Vec::new(),
             registers: Vec::new(),
             choices: Vec::new(),
@@ -110,7 +112,7 @@ impl Survey {
                 known: false,
                 uses: Vec::new(),
                 needed: [const { Vec::new() }; BOXES],
-                left: [0; BOXES],
+                left: [[0; BOXES]; 2],
                 moved: Vec::new(),
                 free: Vec::new(),
             },
@@ -130,19 +132,23 @@ impl Survey {
             }
         }
         let plan = code.known_plan().unwrap_or_else(|| {
-            self.plan.make(&code.ops);
+            self.plan.make(code.ops());
             &self.plan
         });
+        if code.known_ops().is_none() {
+            plan.list(&mut self.ops);
+        }
+        let ops = code.known_ops().unwrap_or(&self.ops);
         self.number = code.number;
         self.registers.resize(self.registers.len().max(plan.registers), Many::ZERO);
         self.choices.clear();
-        self.choices.resize(code.ops.len(), [0; 2]);
+        self.choices.resize(ops.len(), [0; 2]);
         let mut doubt = [0.0; BOXES];
         for axis in &axes {
             axis.test(&mut doubt);
         }
         let (registers, choices) = (&mut self.registers[..], &mut self.choices[..]);
-        let walk = Walk { code, plan, axes: &axes, registers, choices, value: &mut self.value, doubt: &mut doubt };
+        let walk = Walk { ops, plan, axes: &axes, registers, choices, value: &mut self.value, doubt: &mut doubt };
         dispatched(walk);
         self.value.test(&mut doubt);
         self.lost = doubt.map(|doubt| doubt != 0.0);
@@ -162,22 +168,21 @@ impl Survey {
         Sure { range: Interval::new(self.value.lo[lane], self.value.hi[lane]), sure: true }
     }
 
-    /// The operations that are left in a lane, if they are at most `most`, and their plan.
-    pub(super) fn narrowed(&mut self, code: &Code, lane: usize, most: usize) -> Option<(Vec<Op>, Plan)> {
+    /// The plan of the operations that are left in a lane, if they are at most `most`, and how many they are.
+    pub(super) fn narrowed(&mut self, code: &Code, lane: usize, most: usize) -> Option<(Plan, usize)> {
+        let ops = code.known_ops().unwrap_or(&self.ops);
         if !self.live.known {
-            self.live.find(&code.ops, &self.choices);
+            self.live.find(ops, &self.choices);
         }
-        let Live { uses, needed, left, moved, free, .. } = &mut self.live;
+        let Live { uses, needed, left: [left, steps], moved, free, .. } = &mut self.live;
         if left[lane] > most {
             return None;
         }
-        let mut ops = Vec::with_capacity(left[lane]);
-        let mut plan = Plan::EMPTY;
-        plan.clear(left[lane]);
+        let mut plan = Plan::with_room(steps[lane], left[lane] - steps[lane]);
         free.clear();
         for &needed in needed[lane].iter().rev() {
             let (Needed::Itself(at) | Needed::First(at) | Needed::Second(at)) = needed;
-            let op = code.ops[at as usize];
+            let op = ops[at as usize];
             let Uses { last, unclear, .. } = uses[at as usize];
             let held = unclear >> lane & 1 == 1;
             if let (Needed::First(_), Op::Unary(_, operand) | Op::Binary(_, operand, _))
@@ -188,28 +193,20 @@ impl Survey {
                 continue;
             }
             let ends = |number: usize, of: Moved| last[number] >> lane & 1 == 1 && !of.held;
-            let to = ops.len() as u32;
-            let slot = match op {
-                Op::Axis(_) | Op::Const(_) => {
-                    ops.push(op);
-                    plan.add(op, [Slot::NONE; 2], [false; 2], free)
-                }
-                Op::Unary(op, a) => {
+            let (operands, ends) = match op {
+                Op::Axis(_) | Op::Const(_) => ([Slot::NONE; 2], [false; 2]),
+                Op::Unary(_, a) => {
                     let a = moved[a as usize];
-                    let op = Op::Unary(op, a.to);
-                    ops.push(op);
-                    plan.add(op, [a.slot; 2], [ends(0, a), false], free)
+                    ([a.slot; 2], [ends(0, a), false])
                 }
-                Op::Binary(op, a, b) => {
+                Op::Binary(_, a, b) => {
                     let (a, b) = (moved[a as usize], moved[b as usize]);
-                    let op = Op::Binary(op, a.to, b.to);
-                    ops.push(op);
-                    plan.add(op, [a.slot, b.slot], [ends(0, a), ends(1, b)], free)
+                    ([a.slot, b.slot], [ends(0, a), ends(1, b)])
                 }
             };
-            moved[at as usize] = Moved { to, slot, held };
+            moved[at as usize] = Moved { slot: plan.add(op, operands, ends, free), held };
         }
-        Some((ops, plan))
+        Some((plan, left[lane]))
     }
 }
 
@@ -227,11 +224,11 @@ impl Live {
     fn find(&mut self, ops: &[Op], choices: &[Choice]) {
         let Live { known, uses, needed, left, moved, .. } = self;
         *known = true;
-        *left = [0; BOXES];
+        *left = [[0; BOXES]; 2];
         uses.clear();
         uses.resize(ops.len(), Uses::default());
         needed.iter_mut().for_each(Vec::clear);
-        moved.resize(moved.len().max(ops.len()), Moved { to: 0, slot: Slot::NONE, held: false });
+        moved.resize(moved.len().max(ops.len()), Moved { slot: Slot::NONE, held: false });
         if let Some(value) = uses.last_mut() {
             value.some = u16::MAX;
         }
@@ -258,12 +255,14 @@ impl Live {
                 }
                 Op::Axis(_) | Op::Const(_) => {}
             }
+            let is_step = usize::from(!matches!(op, Op::Axis(_) | Op::Const(_)));
             let at = at as u32;
             bits(first, |lane| needed[lane].push(Needed::First(at)));
             bits(second, |lane| needed[lane].push(Needed::Second(at)));
             bits(itself, |lane| {
                 needed[lane].push(Needed::Itself(at));
-                left[lane] += 1;
+                left[0][lane] += 1;
+                left[1][lane] += is_step;
             });
         }
     }
@@ -330,7 +329,7 @@ fn product(all: [f64; 4], [p, q]: [f64; 2], [r, s]: [f64; 2]) -> (f64, f64) {
 }
 
 struct Walk<'a> {
-    code: &'a Code,
+    ops: &'a [Op],
     plan: &'a Plan,
     axes: &'a [Many; 3],
     registers: &'a mut [Many],
@@ -342,10 +341,10 @@ struct Walk<'a> {
 impl Task for Walk<'_> {
     #[inline(always)]
     fn run(self) {
-        let Walk { code, plan, axes, registers, choices, value, doubt } = self;
+        let Walk { ops, plan, axes, registers, choices, value, doubt } = self;
         let mut constants = [Many::ZERO; 2];
         let mut steps = plan.steps.iter();
-        for (at, op) in code.ops.iter().enumerate() {
+        for (at, op) in ops.iter().enumerate() {
             if matches!(op, Op::Axis(_) | Op::Const(_)) {
                 continue;
             }

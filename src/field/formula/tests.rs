@@ -173,7 +173,7 @@ fn single_precision_is_within_its_bound() {
         for (p, single) in points.iter().zip(lanes(&formula, &points)) {
             let truth = formula.value(*p);
             let off = (f64::from(single) - truth).abs();
-            assert!(off <= bound, "{off:e} over {bound:e} at {p:?}, true {truth:e}: {:?}", formula.0.code.ops);
+            assert!(off <= bound, "{off:e} over {bound:e} at {p:?}, true {truth:e}: {:?}", formula.0.code.ops());
         }
     }
     assert!(bounded > 250, "{bounded}");
@@ -206,7 +206,7 @@ fn ranges_hold_their_samples() {
             for _ in 0..12 {
                 let p = point_in(&mut random, &zone);
                 let value = formula.value(p);
-                assert!(range.contains(value), "{value:e} not in {range:?}: {:?}", formula.0.code.ops);
+                assert!(range.contains(value), "{value:e} not in {range:?}: {:?}", formula.0.code.ops());
                 assert!(dual.value().contains(value));
                 let slopes = formula.dual(Dual::point(p)).gradient();
                 for (slope, range) in slopes.into_iter().zip(dual.gradient()) {
@@ -214,7 +214,7 @@ fn ranges_hold_their_samples() {
                     assert!(
                         range.inflate(slack).contains(slope),
                         "{slope:e} not in {range:?} at {p:?} of {zone:?}: {:?}",
-                        formula.0.code.ops
+                        formula.0.code.ops()
                     );
                 }
             }
@@ -236,7 +236,7 @@ fn narrowed_formulas_have_the_same_values() {
         for _ in 0..16 {
             let p = point_in(&mut random, &zone);
             let (value, want) = (part.value(p), formula.value(p));
-            assert!(value == want, "{value:e}, {want:e} at {p:?}: {:?}", formula.0.code.ops);
+            assert!(value == want, "{value:e}, {want:e} at {p:?}: {:?}", formula.0.code.ops());
         }
         // Its bound is for the zone alone.
         let points: Vec<[f64; 3]> =
@@ -244,7 +244,7 @@ fn narrowed_formulas_have_the_same_values() {
         let bound = part.roundoff(zone.reach());
         for (p, single) in points.iter().zip(lanes(&part, &points)) {
             let off = (f64::from(single) - part.value(*p)).abs();
-            assert!(off <= bound, "{off:e} over {bound:e} at {p:?}: {:?}", part.0.code.ops);
+            assert!(off <= bound, "{off:e} over {bound:e} at {p:?}: {:?}", part.0.code.ops());
         }
     }
     assert!(narrowed > 300, "{narrowed}");
@@ -301,7 +301,7 @@ fn native_code_has_the_same_values() {
         let bound = formula.roundoff(2.0);
         for (a, b) in before.iter().zip(lanes(&formula, &points)) {
             let off = (f64::from(*a) - f64::from(b)).abs();
-            assert!(alike(*a, b) || off <= 2.0 * bound, "{a} and {b}: {:?}", formula.0.code.ops);
+            assert!(alike(*a, b) || off <= 2.0 * bound, "{a} and {b}: {:?}", formula.0.code.ops());
         }
     }
 }
