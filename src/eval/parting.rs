@@ -62,3 +62,49 @@ impl Program {
         (!pass.is_value(given.0)).then(|| self.region(pass))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use fidget::context::Tree;
+    use glam::{DVec2, DVec3};
+
+    use crate::{Bounds, PlaneBounds, Profile, Region, Solid};
+
+    #[test]
+    fn each_side_has_the_sign_of_the_whole() {
+        let (x, y, _) = Tree::axes();
+        let wave = |k: i16| (x.clone() * f32::from(k) + y.clone()).square() * 0.1 + x.clone().abs() - 0.5;
+        let long = (1..20).map(wave).reduce(|all, next| all.min(next)).expect("there are some");
+        let profile = Profile::formula(&long, PlaneBounds { min: DVec2::NEG_ONE, max: DVec2::ONE });
+        let plate = profile.extrude(0.4);
+        let ball = Solid::sphere(0.6).translate([0.3, 0.2, 0.1]);
+        let turned = plate.rotate_z(0.3).translate([0.1, 0.0, 0.0]);
+        let bounds = Bounds::from_center(DVec3::ZERO, DVec3::splat(2.0));
+        let random = |n: u32| {
+            f64::from(n.wrapping_mul(2_654_435_769).rotate_left(11).wrapping_mul(2_246_822_519)) / 2f64.powi(32)
+        };
+        let mut parted = 0;
+        for solid in [plate.clone(), &plate - &ball, &plate | &ball, &ball - &plate, &turned & &ball] {
+            let program = solid.surface_program().expect("the solid is valid");
+            let Some(parting) = program.parting(&bounds, 4) else { continue };
+            assert_eq!(parting.axes, [true, true, false]);
+            parted += 1;
+            for n in 0..1000 {
+                let p = 2.0 * DVec3::new(random(3 * n), random(3 * n + 1), random(3 * n + 2)) - 1.0;
+                let side = &parting.sides[usize::from(parting.leaf.value(p) > 0.0)];
+                let inside = match side {
+                    Region::Inside => true,
+                    Region::Outside => false,
+                    Region::Surface(side) => side.value(p) > 0.0,
+                };
+                assert_eq!(inside, program.value(p) > 0.0, "{p}");
+            }
+        }
+        assert_eq!(parted, 5);
+        // Below a blend its sign does not tell.
+        let blended = plate.smooth_union(&ball, 0.1).surface_program().expect("the solid is valid");
+        assert!(blended.parting(&bounds, 4).is_none());
+        // Nor is a short leaf worth it.
+        assert!(ball.surface_program().expect("the solid is valid").parting(&bounds, 4).is_none());
+    }
+}

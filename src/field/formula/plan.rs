@@ -234,6 +234,10 @@ impl Scratch {
 }
 
 impl Plan {
+    pub(super) fn constants(&self) -> &[f64] {
+        &self.constants
+    }
+
     /// What is in a slot.
     #[inline(always)]
     pub(super) fn source(&self, Slot(slot): Slot) -> Source {

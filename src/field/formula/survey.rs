@@ -143,7 +143,8 @@ impl Survey {
         self.registers.resize(self.registers.len().max(plan.registers), Many::ZERO);
         self.choices.clear();
         self.choices.resize(ops.len(), [0; 2]);
-        let mut doubt = [0.0; BOXES];
+        // Minima would lose a constant that is no number.
+        let mut doubt = [plan.constants().iter().map(|c| c - c).sum(); BOXES];
         for axis in &axes {
             axis.test(&mut doubt);
         }

@@ -9,7 +9,7 @@ use super::Formula;
 use super::code::Builder;
 use crate::field::{AnyField, Chunk, Placement, VALUE_LIMIT, Zone};
 use crate::num::kernel::CHUNK;
-use crate::{Bounds, Dual};
+use crate::{Bounds, Dual, Interval};
 
 /// splitmix64.
 struct Random(u64);
@@ -248,6 +248,80 @@ fn narrowed_formulas_have_the_same_values() {
         }
     }
     assert!(narrowed > 300, "{narrowed}");
+}
+
+/// The parts that a zone is halved into along its axes, again and again.
+fn parts_of(zone: &Zone, count: usize) -> Vec<Zone> {
+    let mut parts = vec![zone.hull()];
+    while parts.len() < count {
+        let axis = parts.len().ilog2() as usize % 3;
+        let halves = parts.iter().flat_map(|part| {
+            let mid = part[axis].mid();
+            [(part[axis].lo(), mid), (mid, part[axis].hi())].map(|(lo, hi)| {
+                let mut half = *part;
+                half[axis] = Interval::new(lo, hi);
+                half
+            })
+        });
+        parts = halves.collect();
+    }
+    parts.into_iter().map(Zone::of_sides).collect()
+}
+
+#[test]
+fn many_boxes_at_once_are_as_one_by_one() {
+    let mut random = Random(11);
+    let other = random_formula(&mut random, true);
+    let (mut narrowed, mut alike) = (0, 0);
+    for round in 0..600 {
+        let formula = random_formula(&mut random, round % 3 != 0);
+        let zones = parts_of(&random_zone(&mut random), 16);
+        let asked = || zones.iter().map(|zone| (formula.range(zone), formula.narrowed_to(zone))).collect::<Vec<_>>();
+        formula.survey(&zones);
+        let together = asked();
+        other.survey(&zones);
+        for ((zone, (range, part)), (alone, other)) in zones.iter().zip(together).zip(asked()) {
+            let slack = 1e-11 * (1.0 + alone.magnitude());
+            assert!(alone.inflate(slack).contains(range.lo()) && alone.inflate(slack).contains(range.hi()));
+            for _ in 0..4 {
+                let p = point_in(&mut random, zone);
+                assert!(range.contains(formula.value(p)), "{:?}", formula.0.code.ops());
+            }
+            let Some(part) = part else { continue };
+            narrowed += 1;
+            alike += usize::from(other.is_some_and(|other| other.len() == part.len()));
+            let points: Vec<[f64; 3]> = (0..4).map(|_| point_in(&mut random, zone)).collect();
+            let wide = double_lanes(&part, &points);
+            for (p, wide) in points.iter().zip(wide) {
+                assert_eq!((part.value(*p), wide), (formula.value(*p), formula.value(*p)), "{:?}", formula.0.code.ops());
+            }
+        }
+    }
+    // A minimum that only rounding decides may be left open.
+    assert!(narrowed > 1000 && alike * 100 > narrowed * 99, "{alike} of {narrowed}");
+}
+
+#[test]
+fn bounds_of_rounding_errors_hold_for_what_is_narrowed_further() {
+    let mut random = Random(12);
+    let mut shared = 0;
+    for round in 0..4000 {
+        let formula = random_formula(&mut random, round % 3 != 0);
+        let zone = random_zone(&mut random);
+        let Some(elder) = formula.narrowed_to(&zone) else { continue };
+        for zone in parts_of(&zone, 8) {
+            let Some(part) = elder.narrowed_to(&zone) else { continue };
+            let points: Vec<[f64; 3]> =
+                (0..8).map(|_| point_in(&mut random, &zone).map(|c| f64::from(c as f32))).collect();
+            let bound = part.roundoff(zone.reach());
+            shared += usize::from(elder.0.roundoff.get() == Some(&bound));
+            for (p, single) in points.iter().zip(lanes(&part, &points)) {
+                let off = (f64::from(single) - part.value(*p)).abs();
+                assert!(off <= bound, "{off:e} over {bound:e} at {p:?}: {:?}", part.0.code.ops());
+            }
+        }
+    }
+    assert!(shared > 50, "{shared}");
 }
 
 #[test]
