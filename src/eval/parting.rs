@@ -43,8 +43,7 @@ impl Program {
                 continue;
             };
             let leaf = vec![Node::leaf(leaf)];
-            let leaf =
-                Program::assemble(self.scene.clone(), leaf, Vec::new(), Edge::new(0), self.simpler.to_vec());
+            let leaf = Program::assemble(self.scene.clone(), leaf, Vec::new(), Edge::new(0), self.simpler.to_vec());
             return Some(Parting { axes, leaf, sides: [outside, inside] });
         }
         None

@@ -81,14 +81,14 @@ impl Halves {
 
     /// Calls `visit` with the cells of both parts, the farthest first; `is_above` tells of an axis and a
     /// plane across it whether the part above is the farther one.
-    pub(super) fn from_far<'a>(&'a self, is_above: &impl Fn(usize, f64) -> bool, visit: &mut impl FnMut(&'a Cell)) {
+    pub(super) fn far_first<'a>(&'a self, is_above: &impl Fn(usize, f64) -> bool, visit: &mut impl FnMut(&'a Cell)) {
         let [below, above] = &self.parts;
         let order = if is_above(self.axis, self.plane) { [above, below] } else { [below, above] };
         for part in order {
             match part {
                 Part::Inside | Part::Outside => {}
                 Part::Cell(cell) => visit(cell),
-                Part::Halves(halves) => halves.from_far(is_above, visit),
+                Part::Halves(halves) => halves.far_first(is_above, visit),
             }
         }
     }
@@ -109,13 +109,7 @@ impl Cells {
     /// at first.
     pub(super) fn within(program: &Program, bounds: Bounds, margin: f64, axes: [bool; 3]) -> Cells {
         let around = Around { whole: bounds.longest_side(), margin, cost: usize::MAX, stale: 0, undivided: axes };
-        Cells {
-            root: part(program, bounds, around),
-            bounds,
-            margin,
-            program: program.clone(),
-            still: OnceLock::new(),
-        }
+        Cells { root: part(program, bounds, around), bounds, margin, program: program.clone(), still: OnceLock::new() }
     }
 
     /// The tree in parts, if a long leaf does not change along parallel rays.
@@ -243,9 +237,8 @@ impl Around {
     fn cut(&self, bounds: &Bounds, axes: [bool; 3]) -> (usize, f64, [Bounds; 2], Around) {
         let size = bounds.size();
         let first = |axis: usize| self.undivided[axis] && size[axis] > THIN * size.max_element();
-        let order = |a: usize, b: usize| {
-            first(a).cmp(&first(b)).then(axes[a].cmp(&axes[b])).then(size[a].total_cmp(&size[b]))
-        };
+        let order =
+            |a: usize, b: usize| first(a).cmp(&first(b)).then(axes[a].cmp(&axes[b])).then(size[a].total_cmp(&size[b]));
         let axis = (0..3).rev().max_by(|&a, &b| order(a, b)).unwrap_or(0);
         let plane = bounds.min[axis] + MIDDLE * size[axis];
         let (mut below, mut above) = (*bounds, *bounds);

@@ -17,6 +17,7 @@ mod lines;
 mod march;
 mod openness;
 mod picture;
+mod pixels;
 mod scene;
 mod settings;
 mod shade;

@@ -11,8 +11,9 @@ use super::cells::Cells;
 use super::extent::{corners, lowest};
 use super::facets::Facets;
 use super::gbuffer::{GBuffer, Surface, Window};
+use super::pixels::TILE;
 use super::settings::RenderError;
-use super::tile::{TILE, Tracer, View, divide_top};
+use super::tile::{Tracer, View, divide_top};
 use crate::eval::{Program, compiled};
 use crate::{Bounds, Cancelled, Hit, Palette, Rays, Run, Solid};
 

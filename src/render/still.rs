@@ -16,7 +16,8 @@ use glam::DVec3;
 
 use super::cells::{Cell, Cells, Halves, Part};
 use super::gbuffer::Window;
-use super::tile::{Pixels, Rectangle, TILE, View};
+use super::pixels::{Pixels, Rectangle, TILE};
+use super::tile::View;
 use crate::Bounds;
 use crate::eval::{Evaluator, Parting, Region};
 use crate::num::signs::{STRIP, signs};
@@ -206,13 +207,11 @@ impl Mask {
     /// Fills in the points of some rows, so many pixels from column `left` each, relative to `origin`. Rows
     /// are written in whole strips; what is too much is overwritten by the next one.
     fn place(&mut self, grid: &Grid, origin: DVec3, (rows, left, width): (Range<usize>, u32, usize)) {
-        let step = grid.across.as_vec3().to_array();
-        for axis in 0..3 {
+        for (axis, (list, step)) in self.points.iter_mut().zip(grid.across.as_vec3().to_array()).enumerate() {
             let mut ahead = [0.0; TILE as usize];
             for (i, ahead) in (0u8..).zip(&mut ahead) {
-                *ahead = f32::from(i) * step[axis];
+                *ahead = f32::from(i) * step;
             }
-            let list = &mut self.points[axis];
             list.resize(rows.len() * width + STRIP, 0.0);
             for (number, row) in rows.clone().enumerate() {
                 let start = (grid.point(left, row) - origin)[axis] as f32;

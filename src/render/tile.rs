@@ -14,11 +14,9 @@ use super::cells::{Cell, Cells, Part, Slopes};
 use super::gbuffer::{Surface, Window};
 use super::job::{Ray, Span};
 use super::march::Marcher;
+use super::pixels::{Pixels, Rectangle, columns};
 use super::still::Mask;
 use crate::{Bounds, Rays};
-
-/// Pixels along a tile's side: the bits of a word.
-pub(super) const TILE: u32 = 64;
 
 /// Scratch memory of a thread.
 #[derive(Default)]
@@ -73,18 +71,6 @@ struct Sheaf {
     inside: bool,
     /// Where all of them come from, if that is one point.
     eye: Option<DVec3>,
-}
-
-/// Some of the pixels of a tile, such as those whose rays are still under way: a word a row.
-#[derive(Clone, Copy)]
-pub(super) struct Pixels(pub(super) [u64; TILE as usize]);
-
-/// Rows and columns of a tile, the last exclusive.
-#[derive(Clone, Copy)]
-pub(super) struct Rectangle {
-    pub(super) top: usize,
-    pub(super) bottom: usize,
-    pub(super) columns: u64,
 }
 
 impl Tracer {
@@ -165,7 +151,7 @@ impl Tracer {
                 continue;
             }
             if united.is_none() && divides(cell, count, slopes) {
-                cell.halves().from_far(&|axis, plane| view.looks_up(axis, plane), &mut |cell| pending.push(cell));
+                cell.halves().far_first(&|axis, plane| view.looks_up(axis, plane), &mut |cell| pending.push(cell));
                 continue;
             }
             self.marcher.hits.clear();
@@ -240,7 +226,7 @@ impl Tracer {
                     let first = lists.len();
                     lists.extend(self.spans.iter().map(|span| span.ray));
                     let is_above = |axis: usize, _: f64| octant >> axis & 1 == 0;
-                    cell.halves().from_far(&is_above, &mut |cell| pending.push((cell, first, lists.len())));
+                    cell.halves().far_first(&is_above, &mut |cell| pending.push((cell, first, lists.len())));
                     continue;
                 }
                 self.marcher.hits.clear();
@@ -309,28 +295,6 @@ impl<'a> View<'a> {
             Some(eye) => eye[axis] < plane,
             None => self.rays.forward()[axis] >= 0.0,
         }
-    }
-}
-
-/// The bits from `left` up to `right`, exclusive.
-fn columns(left: u32, right: u32) -> u64 {
-    let below = |end: u32| if end >= 64 { u64::MAX } else { (1 << end) - 1 };
-    below(right) & !below(left)
-}
-
-impl Default for Pixels {
-    fn default() -> Pixels {
-        Pixels::NONE
-    }
-}
-
-impl Pixels {
-    pub(super) const NONE: Pixels = Pixels([0; TILE as usize]);
-    const ALL: Pixels = Pixels([u64::MAX; TILE as usize]);
-
-    pub(super) fn count(&self, rectangle: Rectangle) -> usize {
-        let rows = &self.0[rectangle.top..rectangle.bottom];
-        rows.iter().map(|row| (row & rectangle.columns).count_ones() as usize).sum()
     }
 }
 

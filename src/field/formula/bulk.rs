@@ -144,7 +144,8 @@ impl<E: Element + Float> Task for Interpret<'_, E> {
                     each_unary!(op, OP => unary::<E>(OP, a, &mut result));
                 }
                 Step::Binary(op, a, b, _) => {
-                    let (a, b) = (operand(plan.source(a), points, registers), operand(plan.source(b), points, registers));
+                    let (a, b) =
+                        (operand(plan.source(a), points, registers), operand(plan.source(b), points, registers));
                     each_binary!(op, OP => binary::<E>(OP, a, b, &mut result));
                 }
             }

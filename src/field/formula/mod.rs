@@ -27,6 +27,8 @@ mod bulk;
 mod code;
 mod erased;
 mod gradients;
+mod live;
+mod many;
 mod narrow;
 mod native;
 mod plan;
@@ -44,8 +46,8 @@ use std::sync::{Arc, OnceLock};
 use fidget::context::Tree;
 
 use self::code::{Code, Flaw};
+pub(crate) use self::many::BOXES;
 use self::native::Native;
-pub(crate) use self::survey::BOXES;
 pub use self::text::FormulaError;
 use super::{ParamError, check};
 use crate::{Bounds, Interval};

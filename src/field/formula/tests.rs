@@ -293,7 +293,12 @@ fn many_boxes_at_once_are_as_one_by_one() {
             let points: Vec<[f64; 3]> = (0..4).map(|_| point_in(&mut random, zone)).collect();
             let wide = double_lanes(&part, &points);
             for (p, wide) in points.iter().zip(wide) {
-                assert_eq!((part.value(*p), wide), (formula.value(*p), formula.value(*p)), "{:?}", formula.0.code.ops());
+                assert_eq!(
+                    (part.value(*p), wide),
+                    (formula.value(*p), formula.value(*p)),
+                    "{:?}",
+                    formula.0.code.ops()
+                );
             }
         }
     }
