@@ -134,6 +134,7 @@ impl<'a> Parts<'a> {
                     slots.next().into_iter().for_each(|slot| *slot = triangle);
                 });
                 apart.runs.extend(Some(first..end - slots.len()).filter(|run| !run.is_empty()));
+                fans.bulges(n, vertices as u32).zip(&mut slots).for_each(|(triangle, slot)| *slot = triangle);
             }
             Ok::<_, ExtractError>(apart)
         };

@@ -26,7 +26,8 @@
 //! planes rounded, rounding keeps order, and feature points are moved strictly between the rounded
 //! planes.
 //!
-//! [Regions](super::region) of several cells have fans as well.
+//! [Regions](super::region) of several cells have fans as well, and so have smooth cells that are strongly
+//! [curved](super::bulge).
 //!
 //! Limits: cells with several loops stay as the table has them, or as that of the opposite case
 //! (see [`joined`](super::joined)). Where a crease passes an empty cell and no region comes about, it is
@@ -38,10 +39,12 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::Sampler;
+use super::bulge::{Bulge, is_bulge};
 use super::join::Corners;
 use super::joined::Joined;
-use super::region::{Region, Span, regions};
+use super::region::{Region, regions};
 use super::samples::{Samples, cell_number, split_cell};
+use super::span::Span;
 use crate::mesh::feature::{Candidate, Side, is_smooth, refine};
 use crate::mesh::loops::{CellLoop, LONGEST};
 use crate::mesh::meter::Meter;
@@ -96,8 +99,10 @@ pub(super) struct Fans {
 /// The fans of a block.
 #[derive(Clone, Default)]
 struct OfBlock {
-    /// Those that are listed with it.
+    /// Those that are listed with it: of creases and corners.
     listed: Range<usize>,
+    /// And of smooth cells.
+    bulges: Range<usize>,
     /// The cells that have a fan, by number, and which; ascending.
     cells: Vec<(u16, u32)>,
     /// How many triangles of the table they have no more.
@@ -150,6 +155,8 @@ pub(super) struct Special {
     pub(super) candidates: Vec<Candidate>,
     /// The vertices of all candidates.
     pub(super) sides: Vec<Side>,
+    /// Smooth ones with a vertex in their middle, in order.
+    bulges: Vec<Bulge>,
     /// Those with the patches of the opposite case, by number, and their cases.
     opposite: Vec<(u16, u8)>,
     /// The triangles of all other cells, in their order, if the block has been looked at.
@@ -195,6 +202,11 @@ fn special(samples: &Samples<'_>, joined: &Joined, n: usize, corners: &mut Corne
                 found.candidates.push(samples.candidate(cell, *outline, &vertices[..count], &mut found.sides));
                 return;
             }
+            let on_edges = |&triangle: &[u8; 3]| triangle.map(|edge| ids[usize::from(edge & 15)]);
+            if is_bulge(samples, &normals[..count], sum, table.triangles(case).iter().map(on_edges)) {
+                found.bulges.push(Bulge { cell, outline: *outline, vertices });
+                return;
+            }
         } else if faces != 0 {
             found.opposite.push((cell_number(within), case));
             return;
@@ -223,8 +235,9 @@ pub(super) fn segments(candidate: &Candidate, sides: &[Side]) -> impl Iterator<I
 impl Fans {
     fn new(samples: &Samples<'_>, special: Vec<Special>, regions: Vec<Region>, run: &Run) -> Result<Fans, Cancelled> {
         let mut all = Fans { blocks: vec![OfBlock::default(); samples.blocks().len()], ..Fans::default() };
-        all.fans.reserve(special.iter().map(|special| special.candidates.len()).sum());
-        all.segments.reserve(special.iter().map(|special| special.sides.len()).sum());
+        all.fans.reserve(special.iter().map(|special| special.candidates.len() + special.bulges.len()).sum());
+        let bulging = special.iter().flat_map(|special| &special.bulges).map(|bulge| bulge.outline.len());
+        all.segments.reserve(special.iter().map(|special| special.sides.len()).sum::<usize>() + bulging.sum::<usize>());
         // The cells of regions, by the numbers of their blocks and their own.
         let mut in_region: Vec<(usize, u16)> = Vec::new();
         for &(cell, _) in regions.iter().flat_map(|region| &region.cells) {
@@ -236,37 +249,43 @@ impl Fans {
         // A region is listed with the block of the candidate that asked for it.
         let mut regions = regions.into_iter().peekable();
         let table = CaseTable::get();
-        for (block, Special { candidates, sides, mut opposite, plain }) in special.into_iter().enumerate() {
+        for (block, Special { candidates, sides, bulges, mut opposite, plain }) in special.into_iter().enumerate() {
             run.check()?;
             let (taken, rest) = in_region.split_at(in_region.partition_point(|&(other, _)| other == block));
             in_region = rest;
             let is_free = |number: u16| taken.binary_search(&(block, number)).is_err();
             opposite.retain(|&(number, _)| is_free(number));
-            // Regions may hold other cells than candidates.
-            let number = |candidate: &Candidate| cell_number(split_cell(candidate.cell).1);
-            let is_candidate = |&(_, cell): &(usize, u16)| candidates.binary_search_by_key(&cell, number).is_ok();
-            all.blocks[block].plain = plain.filter(|_| opposite.is_empty() && taken.iter().all(is_candidate));
+            // Regions may hold cells that have their triangles among the plain ones.
+            let number = |cell: [u32; 3]| cell_number(split_cell(cell).1);
+            let has_fan = |&(_, cell): &(usize, u16)| {
+                candidates.binary_search_by_key(&cell, |candidate| number(candidate.cell)).is_ok()
+                    || bulges.binary_search_by_key(&cell, |bulge| number(bulge.cell)).is_ok()
+            };
+            all.blocks[block].plain = plain.filter(|_| opposite.is_empty() && taken.iter().all(has_fan));
             all.blocks[block].opposite = opposite;
-            all.blocks[block].cells.reserve_exact(candidates.len() + taken.len());
+            all.blocks[block].cells.reserve_exact(candidates.len() + bulges.len() + taken.len());
             let start = all.fans.len();
-            let signs = &samples.parts.part(block).signs;
-            for candidate in &candidates {
-                let (_, within) = split_cell(candidate.cell);
-                let number = cell_number(within);
-                if is_free(number) {
-                    all.blocks[block].cells.push((number, all.fans.len() as u32));
-                    all.blocks[block].dropped += table.triangles(signs.case(within)).len();
-                    let span = Span::single(candidate.cell);
-                    let at = samples.inside(candidate.at, span.low, span.high);
-                    all.add(block, segments(candidate, &sides), span, at);
-                }
+            let triangles = |cell| table.triangles(samples.parts.part(block).signs.case(split_cell(cell).1)).len();
+            for candidate in candidates.iter().filter(|candidate| is_free(number(candidate.cell))) {
+                all.hold(block, number(candidate.cell), triangles(candidate.cell));
+                let span = Span::single(candidate.cell);
+                let at = samples.inside(candidate.at, span.low, span.high);
+                all.add(block, segments(candidate, &sides), span, at);
             }
             while let Some(region) = regions.next_if(|region| region.block == block) {
                 all.cover(samples, &region.cells);
                 all.unused.extend(region.within);
                 all.add(block, region.segments.into_iter(), region.span, region.at);
             }
-            all.blocks[block].listed = start..all.fans.len();
+            let middle = all.fans.len();
+            for bulge in bulges.iter().filter(|bulge| is_free(number(bulge.cell))) {
+                all.hold(block, number(bulge.cell), triangles(bulge.cell));
+                let span = Span::single(bulge.cell);
+                let at = samples.held(bulge.top(samples).as_dvec3(), span.low, span.high);
+                all.add(block, bulge.segments(samples), span, at);
+            }
+            all.blocks[block].listed = start..middle;
+            all.blocks[block].bulges = middle..all.fans.len();
         }
         all.unused.sort_unstable();
         for block in &mut all.blocks {
@@ -281,10 +300,15 @@ impl Fans {
         for &(cell, count) in cells {
             let (block, within) = split_cell(cell);
             if let Some(block) = samples.find(block) {
-                self.blocks[block].cells.push((cell_number(within), self.fans.len() as u32));
-                self.blocks[block].dropped += count;
+                self.hold(block, cell_number(within), count);
             }
         }
+    }
+
+    /// Notes that the next fan takes the place of the patch of a cell, with the number of its triangles.
+    fn hold(&mut self, block: usize, number: u16, count: usize) {
+        self.blocks[block].cells.push((number, self.fans.len() as u32));
+        self.blocks[block].dropped += count;
     }
 
     fn add(&mut self, block: usize, segments: impl Iterator<Item = Segment>, span: Span, at: Vec3) {
@@ -327,10 +351,20 @@ impl Fans {
         self.blocks.get(block).map_or(&[], |block| &block.cells)
     }
 
-    /// How many triangles the fans that are listed with some blocks have.
+    /// How many triangles with normals of their own the fans that are listed with some blocks have.
     pub(super) fn listed(&self, blocks: Range<usize>) -> usize {
         let fans = self.blocks.get(blocks).unwrap_or_default().iter().flat_map(|block| block.listed.clone());
         fans.flat_map(|fan| self.of(fan)).map(|segment| 1 + usize::from(self.is_bent(segment))).sum()
+    }
+
+    /// Lists the triangles of a block's smooth fans, as [`list`](Fans::list) does.
+    pub(super) fn bulges(&self, block: usize, centres: u32) -> impl Iterator<Item = [u32; 3]> {
+        let fans = self.blocks.get(block).map_or(0..0, |block| block.bulges.clone());
+        fans.flat_map(move |nth| {
+            let segments = self.of(nth);
+            let next = segments.iter().cycle().skip(1);
+            segments.iter().zip(next).map(move |(segment, next)| [centres + nth as u32, segment.from, next.from])
+        })
     }
 
     /// How many triangles a block has, which has `count` without fans.
@@ -340,7 +374,8 @@ impl Fans {
         let triangles = |case: u8| table.triangles(case).len();
         let gone: usize = of_block.opposite.iter().map(|&(_, case)| triangles(case)).sum();
         let come: usize = of_block.opposite.iter().map(|&(_, case)| triangles(!case)).sum();
-        count + self.listed(block..block + 1) + come - of_block.dropped - gone
+        let smooth: usize = of_block.bulges.clone().map(|fan| self.of(fan).len()).sum();
+        count + self.listed(block..block + 1) + smooth + come - of_block.dropped - gone
     }
 
     /// The cells of a block that have the patches of the opposite case, by number.
