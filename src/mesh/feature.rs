@@ -29,8 +29,8 @@ use super::qef::Planes;
 /// Normals of a cell that differ by less than this are those of a smooth surface: the cosine
 /// of the angle between them.
 pub(super) const SMOOTH: f32 = 0.9;
-/// The cosine of half that angle, rounded up.
-const HALF_SMOOTH: f32 = 0.975;
+/// The square of the cosine of half that angle, rounded up: no two normals that are closer to their mean differ by more.
+pub(super) const HALF_SMOOTH: f32 = 0.950_1;
 
 /// Normals of vertices that are on the same side of a crease, with little between them: the cosine of 11°.
 const ALIKE: f32 = 0.98;
@@ -57,27 +57,8 @@ pub(crate) struct Slope {
     pub gradient: DVec3,
 }
 
-/// Whether no two of the normals of a cell's vertices differ as those of a crease do.
-///
-/// `sum` is the sum of the normals.
-#[inline(always)]
-pub(super) fn is_smooth(normals: &[Vec3], sum: Vec3) -> bool {
-    // If all are within half the angle of their mean, no two differ by more than it.
-    are_within(normals, sum, HALF_SMOOTH) || !differ(normals)
-}
-
-/// Whether normals are closer to their mean than an angle, given by its cosine. `sum` is their sum.
-#[inline(always)]
-pub(super) fn are_within(normals: &[Vec3], sum: Vec3, cosine: f32) -> bool {
-    let mut least = f32::INFINITY;
-    for normal in normals {
-        least = least.min(sum.dot(*normal));
-    }
-    least > cosine * sum.length()
-}
-
 /// Whether two of some normals differ as those of a crease do.
-fn differ(normals: &[Vec3]) -> bool {
+pub(super) fn differ(normals: &[Vec3]) -> bool {
     for (n, a) in normals.iter().enumerate() {
         for b in &normals[..n] {
             if a.dot(*b) <= SMOOTH {
@@ -103,6 +84,7 @@ pub(super) struct Side {
 /// A cell whose surface is not smooth. Positions are in cells, from the lattice's first node.
 ///
 /// The vertices of its loop, in order, are in a list of those of many cells.
+#[derive(Clone)]
 pub(super) struct Candidate {
     pub(super) cell: [u32; 3],
     pub(super) outline: CellLoop,

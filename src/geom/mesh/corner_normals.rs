@@ -36,7 +36,7 @@ impl CornerNormals {
 
 impl Mesh {
     /// The same mesh, whose corners have the normals of their vertices, but for those of some triangles, given in
-    /// several lists, if there are any.
+    /// several lists.
     ///
     /// # Errors
     ///
@@ -52,9 +52,7 @@ impl Mesh {
             }
             finite("normal", normals, |n| n.is_finite())?;
         }
-        if apart.iter().any(|apart| !apart.runs.is_empty()) {
-            self.corner_normals = Some(CornerNormals { all: OnceLock::new(), apart });
-        }
+        self.corner_normals = Some(CornerNormals { all: OnceLock::new(), apart });
         Ok(self)
     }
 

@@ -1,100 +1,146 @@
 //! Smooth cells whose triangles would be too far off the surface: a vertex in their middle.
 //!
 //! ```text
-//!          m   ____   n      With normals m and n at p and q, the surface between them is above the
-//!          \ .'    `. /      chord p–q, and the more so the larger (p − q)·(m − n) is. If that is too
-//!           p--------q       much, the loop of the cell has a fan instead, around a point that is as
-//!                            far above the middle of the loop as the surface.
+//!        m  ___  n       The normals m, n … at the vertices p, q … of a cell's loop tell how far the surface is
+//!        \.' c './       above the middle of the loop. If that is too much, the cell has triangles from
+//!         p-----q        there, from c, to the segments of the loop.
 //! ```
 //!
-//! Let the surface be at the height h(x) = −½ xᵀKx. To first order its normal is (Kx, 1), so that
-//! (p − q)·(m − n) is (x − y)ᵀK(x − y) for the points above x and y. With r the way from the middle of some
-//! points to each of them, the surface is above the middle of the points by half the mean of rᵀKr. Hence
+//! Let the surface be at the height h(x) = −½ xᵀKx. To first order its normal is (Kx, 1). With r the way from the
+//! middle of some points of it to each of them, the surface is above the middle by half the mean of rᵀKr, which is
+//! half the mean of n·(p − middle) over the points. Where it bends both ways, as a saddle does, the terms have both
+//! signs; the mean of their sizes tells how far it may be from triangles.
 //!
-//! * the middle of a triangle is below the surface by a 18th of the sum of (p − q)·(m − n) over its sides;
-//! * the surface is above the middle of a polygon on it by half the mean of n·(p − middle) over its corners.
-//!
-//! What is of third order is left out. The triangles of a fan are off by half as much as those of the table, or
+//! What is of third order is left out. The triangles around c are off by half as much as those of the table, or
 //! less, and no more values of the field are needed for them. That fans are embedded is shown in
 //! [`sharp`](super::sharp).
 
 use glam::Vec3;
 
 use super::samples::Samples;
-use super::sharp::Segment;
-use crate::mesh::feature::are_within;
-use crate::mesh::loops::{CellLoop, LONGEST};
+use crate::mesh::feature::{HALF_SMOOTH, differ};
+use crate::mesh::loops::LONGEST;
 
-/// The distance of a triangle's middle from the surface, in cells, beyond which there is a fan.
+/// The distance of a loop's middle from the surface, in cells, beyond which there is a vertex.
 const FAR: f32 = 0.01;
 
-/// If no two of the normals at a triangle's corners are farther apart than this, the triangle is not far off:
-/// its sides have a length of at most 3√2 cells together.
-pub(super) const SPREAD: f32 = 18.0 * FAR / (3.0 * std::f32::consts::SQRT_2);
+/// If all normals of a cell are closer to one of them than this, the cell is nearly flat. Typical ones are off by
+/// 0.008 cells then.
+pub(super) const SPREAD: f32 = 0.033;
 
-/// The cosine of half the angle between such normals, rounded up: 1 − ⅛ SPREAD² is below it.
-const FLAT: f32 = 0.999_78;
+/// The cosine of that angle.
+const FLAT: f32 = 1.0 - 0.5 * SPREAD * SPREAD;
 
-/// Whether a smooth cell is to have a vertex in its middle, given the normals at the vertices of its loop, their sum,
-/// and the triangles that it has otherwise.
+/// Whether the normals at the vertices on some edges, given those of a cell, are those of a cell that is nearly flat.
 #[inline(always)]
-pub(super) fn is_bulge(
-    samples: &Samples<'_>,
-    normals: &[Vec3],
+pub(super) fn is_flat(samples: &Samples<'_>, edges: &[u8], ids: &[u32; 16]) -> bool {
+    let normal = |edge: u8| samples.normal(ids[usize::from(edge & 15)]);
+    let [first, rest @ ..] = edges else { return true };
+    let first = normal(*first);
+    let mut least = 1.0;
+    for &edge in rest {
+        let along = first.dot(normal(edge));
+        least = if along < least { along } else { least };
+    }
+    least > FLAT
+}
+
+/// The vertices on a cell's loop, in order.
+pub(super) struct Ring {
+    vertices: [u32; LONGEST],
+    normals: [Vec3; LONGEST],
+    len: usize,
+    /// The sum of the normals.
     sum: Vec3,
-    mut triangles: impl Iterator<Item = [u32; 3]>,
-) -> bool {
-    let step = samples.lattice.step() as f32;
-    !are_within(normals, sum, FLAT) && triangles.any(|triangle| off(triangle.map(|n| samples.get(n))) > FAR * step)
+    /// The least of the products of the sum with the normals.
+    least: f32,
 }
 
-/// How far the middle of a triangle, given by the positions of its corners and the normals there, is off the
-/// surface.
-fn off([a, b, c]: [(Vec3, Vec3); 3]) -> f32 {
-    let bend = |(p, m): (Vec3, Vec3), (q, n): (Vec3, Vec3)| (p - q).dot(m - n);
-    (bend(a, b) + bend(b, c) + bend(c, a)).abs() / 18.0
-}
+impl Ring {
+    /// A ring without vertices.
+    pub(super) const NONE: Ring =
+        Ring { vertices: [0; LONGEST], normals: [Vec3::ZERO; LONGEST], len: 0, sum: Vec3::ZERO, least: 0.0 };
 
-/// The point of the surface above the middle of a polygon on it.
-fn top(corners: &[(Vec3, Vec3)]) -> Vec3 {
-    let share = 1.0 / corners.len() as f32;
-    let middle = corners.iter().map(|(at, _)| share * at).sum::<Vec3>();
-    let normal = corners.iter().map(|(_, normal)| normal).sum::<Vec3>().normalize_or_zero();
-    let height: f32 = corners.iter().map(|(at, normal)| 0.5 * share * normal.dot(at - middle)).sum();
-    middle + height * normal
-}
-
-/// A smooth cell with a fan.
-pub(super) struct Bulge {
-    pub(super) cell: [u32; 3],
-    pub(super) outline: CellLoop,
-    /// Those on the edges of the loop, in order.
-    pub(super) vertices: [u32; LONGEST],
-}
-
-impl Bulge {
-    fn vertices(&self) -> &[u32] {
-        &self.vertices[..self.outline.len()]
+    /// Takes the vertices on other edges, given those of a cell by their edges.
+    #[inline(always)]
+    pub(super) fn take(&mut self, samples: &Samples<'_>, edges: &[u8], ids: &[u32; 16]) {
+        let mut sum = Vec3::ZERO;
+        for ((vertex, normal), &edge) in self.vertices.iter_mut().zip(&mut self.normals).zip(edges) {
+            *vertex = ids[usize::from(edge & 15)];
+            *normal = samples.normal(*vertex);
+            sum += *normal;
+        }
+        self.len = edges.len();
+        let mut least = f32::INFINITY;
+        for normal in self.normals() {
+            let along = sum.dot(*normal);
+            least = if along < least { along } else { least };
+        }
+        (self.sum, self.least) = (sum, least);
     }
 
-    /// The point of its fan, in length units.
-    pub(super) fn top(&self, samples: &Samples<'_>) -> Vec3 {
-        let mut corners = [(Vec3::ZERO, Vec3::ZERO); LONGEST];
-        let list = self.vertices().iter().zip(&mut corners);
-        list.for_each(|(&vertex, corner)| *corner = samples.get(vertex));
-        top(&corners[..self.outline.len()])
+    pub(super) fn vertices(&self) -> &[u32] {
+        &self.vertices[..self.len]
     }
 
-    pub(super) fn segments(&self, samples: &Samples<'_>) -> impl Iterator<Item = Segment> {
-        self.vertices().iter().enumerate().map(|(n, &from)| Segment {
-            from,
-            cell: self.cell,
-            face: self.outline.face(n),
-            turns: false,
-            across: None,
-            normal: samples.normal(from),
+    fn normals(&self) -> &[Vec3] {
+        &self.normals[..self.len]
+    }
+
+    /// Whether no two normals differ as those of a crease do.
+    #[inline(always)]
+    pub(super) fn is_smooth(&self) -> bool {
+        // If all are within half the angle of their mean, no two differ by more than it.
+        let is_narrow = self.least > 0.0 && self.least * self.least > HALF_SMOOTH * self.sum.length_squared();
+        is_narrow || !differ(self.normals())
+    }
+
+    /// The point of the surface above the middle, if the two are far from each other, and the unit normal there.
+    #[inline(always)]
+    pub(super) fn top(&self, samples: &Samples<'_>) -> Option<(Vec3, Vec3)> {
+        let mut positions = [Vec3::ZERO; LONGEST];
+        let list = positions.iter_mut().zip(self.vertices());
+        list.for_each(|(at, &vertex)| *at = samples.position(vertex));
+        let (height, far, middle) = height(&positions[..self.len], self.normals());
+        (far > FAR * samples.lattice.step() as f32).then(|| {
+            let normal = self.sum.normalize_or_zero();
+            (middle + height * normal, normal)
         })
     }
+}
+
+/// How far the surface is above the middle of points on it, given with the normals there; how far it may be from
+/// triangles between them; and the middle.
+#[inline(always)]
+fn height(positions: &[Vec3], normals: &[Vec3]) -> (f32, f32, Vec3) {
+    let share = 1.0 / positions.len() as f32;
+    let middle = share * positions.iter().sum::<Vec3>();
+    let (mut height, mut far) = (0.0, 0.0);
+    for (at, normal) in positions.iter().zip(normals) {
+        let rise = normal.dot(*at - middle);
+        height += rise;
+        far += rise.abs();
+    }
+    (0.5 * share * height, 0.5 * share * far, middle)
+}
+
+/// A smooth cell with a vertex in its middle.
+#[derive(Clone, Copy)]
+pub(super) struct Bulge {
+    /// The cell, by its number in the block.
+    pub(super) cell: u16,
+    /// How many segments its loop has.
+    pub(super) sides: u16,
+    /// The place of its first triangle among the plain ones of the block.
+    pub(super) first: u32,
+    pub(super) at: Vec3,
+    pub(super) normal: Vec3,
+}
+
+/// The triangles around a vertex, to the segments of a ring.
+pub(super) fn around(centre: u32, ring: &[u32]) -> impl ExactSizeIterator<Item = [u32; 3]> {
+    let next = |n: usize| ring.get(n + 1).unwrap_or(&ring[0]);
+    ring.iter().enumerate().map(move |(n, &from)| [centre, from, *next(n)])
 }
 
 #[cfg(test)]
@@ -102,32 +148,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_said_of_triangles_and_polygons_holds_on_a_sphere() {
-        // A ball 16 cells across.
-        let corner = |x: f32, y: f32| {
+    fn what_is_said_of_heights_holds() {
+        // A ball 16 cells across, and a saddle.
+        let ball = |x: f32, y: f32| {
             let normal = Vec3::new(x, y, 8.0).normalize();
             (8.0 * normal, normal)
         };
-        let corners = [corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)];
-        for triangle in [[0, 1, 2], [0, 2, 3]] {
-            let triangle = triangle.map(|n: usize| corners[n]);
-            let middle = triangle.iter().map(|(at, _)| at).sum::<Vec3>() / 3.0;
-            let depth = 8.0 - middle.length();
-            assert!(depth > 0.02 && (off(triangle) / depth - 1.0).abs() < 0.02, "{depth}, {}", off(triangle));
-        }
-        assert!((top(&corners).length() - 8.0).abs() < 5e-4, "{}", top(&corners).length());
-        let fan = [(top(&corners), top(&corners) / 8.0), corners[0], corners[1]];
-        assert!(off(fan) < 0.6 * off([corners[0], corners[1], corners[2]]));
-    }
-
-    #[test]
-    fn flat_cells_are_not_far_off() {
-        assert!(f64::from(FLAT) > 1.0 - f64::from(SPREAD).powi(2) / 8.0);
-        let (a, b) = (Vec3::X, Vec3::Y);
-        let corners = [Vec3::ZERO, a + b, a + Vec3::Z];
-        // The corners of a cell that are farthest apart, and normals that are.
-        let lean = |toward: Vec3| (Vec3::Z + SPREAD / 3f32.sqrt() * toward.normalize_or_zero()).normalize();
-        let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
-        assert!(off(corners.map(|at| (at, lean(at - middle)))) < FAR);
+        let saddle = |x: f32, y: f32| (Vec3::new(x, y, (x * x - y * y) / 16.0), Vec3::new(-x, y, 8.0).normalize());
+        let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+        let look =
+            |corners: [(Vec3, Vec3); 4]| height(&corners.map(|corner| corner.0), &corners.map(|corner| corner.1));
+        let (above, far, middle) = look(square.map(|(x, y)| ball(x, y)));
+        assert!((middle.length() + above - 8.0).abs() < 1e-3 && far > 0.03, "{above}, {far}");
+        let (above, far, middle) = look(square.map(|(x, y)| saddle(x - 0.5, y - 0.5)));
+        assert!(middle.length() < 1e-6 && above.abs() < 1e-3, "{above}");
+        assert!(far < 1e-6, "the vertices are at one height: {far}");
+        let diamond = [(0.5, 0.0), (0.0, 0.5), (-0.5, 0.0), (0.0, -0.5)];
+        let (above, far, _) = look(diamond.map(|(x, y)| saddle(x, y)));
+        assert!(above.abs() < 1e-3 && far > 0.01, "{above}, {far}");
     }
 }

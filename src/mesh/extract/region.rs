@@ -74,18 +74,19 @@ pub(super) fn regions(
     run: &Run,
 ) -> Result<Vec<Region>, Cancelled> {
     let mut known = Known { samples, special, joined, taken: vec![Vec::new(); special.len()], regions: Vec::new() };
-    let (mut whole, mut partial) = (Vec::new(), Vec::new());
-    for (block, list) in special.iter().enumerate() {
-        run.check()?;
-        for candidate in &list.candidates {
-            Asker::candidate(block, candidate).misfits(MISFIT, &mut whole, &mut partial);
+    // Boxes towards where planes meet; where that cannot be, such that are larger along some axes only.
+    for is_whole in [true, false] {
+        let mut wishes = Vec::new();
+        for (block, list) in special.iter().enumerate() {
+            run.check()?;
+            for candidate in list.candidates.iter().filter(|one| known.taken(block, one.cell).is_none()) {
+                Asker::candidate(block, candidate).misfits(MISFIT, is_whole, &mut wishes);
+            }
         }
-    }
-    // Regions that stand alone come first: they are smaller than those that others are merged into.
-    for mut wishes in [whole, partial] {
         wishes.sort_by(|a, b| b.size.total_cmp(&a.size));
-        for merges in [false, true] {
-            wishes.retain(|wish| !run.cancel.is_cancelled() && !known.grant(wish, merges.then_some(LARGEST)));
+        // Regions that stand alone come first: they are smaller than those that others are merged into.
+        for merges in [None, Some(LARGEST)] {
+            wishes.retain(|wish| !run.cancel.is_cancelled() && !known.grant(wish, merges));
         }
     }
     // Then those that creases leave through empty cells.
@@ -98,11 +99,11 @@ pub(super) fn regions(
                 known.exits(&Asker::candidate(block, candidate), normals, &mut wishes);
             }
         }
-        for region in known.regions.iter().flatten() {
-            let asker = Asker::region(region);
-            let mut partial = Vec::new();
-            asker.misfits(2.0 * MISFIT, &mut wishes, &mut partial);
-            wishes.append(&mut partial);
+        for (number, region) in known.regions.iter().enumerate() {
+            let Some(region) = region else { continue };
+            let asker = Asker::region(number, region);
+            asker.misfits(2.0 * MISFIT, true, &mut wishes);
+            asker.misfits(2.0 * MISFIT, false, &mut wishes);
             known.exits(&asker, region.segments.iter().map(|segment| segment.normal), &mut wishes);
         }
         wishes.sort_by(|a, b| b.size.total_cmp(&a.size));
@@ -120,34 +121,41 @@ pub(super) fn regions(
     Ok(regions)
 }
 
+/// A cell, or a region by its number.
+#[derive(Clone, Copy)]
+enum Who<'a> {
+    Cell(&'a Candidate),
+    Region(usize),
+}
+
 /// A cell or a region that may want to be part of a larger one.
-struct Asker {
+struct Asker<'a> {
+    who: Who<'a>,
     block: usize,
-    /// The cell, if it is one.
-    cell: Option<[u32; 3]>,
     span: Span,
     /// The feature point, and what it should be on.
     at: DVec3,
     planes: Planes,
 }
 
-impl Asker {
-    fn candidate(block: usize, candidate: &Candidate) -> Asker {
+impl<'a> Asker<'a> {
+    fn candidate(block: usize, candidate: &'a Candidate) -> Asker<'a> {
         let Candidate { cell, at, planes, .. } = *candidate;
-        Asker { block, cell: Some(cell), span: Span::single(cell), at, planes }
+        Asker { who: Who::Cell(candidate), block, span: Span::single(cell), at, planes }
     }
 
-    fn region(region: &Region) -> Asker {
-        Asker { block: region.block, cell: None, span: region.span, at: region.place, planes: region.planes }
+    fn region(number: usize, region: &Region) -> Asker<'a> {
+        let Region { block, span, place, planes, .. } = *region;
+        Asker { who: Who::Region(number), block, span, at: place, planes }
     }
 
-    fn wish(&self, size: f64, span: Span, at: DVec3, allowed: f64) -> Wish {
-        Wish { size, block: self.block, cell: self.cell, planes: self.planes, span, at, allowed }
+    fn wish(&self, size: f64, span: Span, at: DVec3, allowed: f64) -> Wish<'a> {
+        Wish { size, block: self.block, who: self.who, span, at, allowed }
     }
 
-    /// The boxes towards where the planes meet, if that is outside: whole ones, and such that are larger along
-    /// some of the axes only.
-    fn misfits(&self, most: f64, whole: &mut Vec<Wish>, partial: &mut Vec<Wish>) {
+    /// Wishes for the boxes towards where the planes meet, if that is outside: the whole ones, or those that are larger
+    /// along some of the axes only.
+    fn misfits(&self, most: f64, is_whole: bool, wishes: &mut Vec<Wish<'a>>) {
         let misfit = self.planes.distance(self.at);
         if misfit <= most {
             return;
@@ -161,24 +169,21 @@ impl Asker {
                 continue;
             }
             last = span;
-            whole.push(self.wish(misfit, span, at, 0.5 * misfit));
-            let parts =
-                (1..7).map(|axes| self.span.grown(&span, axes)).filter(|part| *part != span && *part != self.span);
-            partial.extend(parts.map(|part| self.wish(misfit, part, at, 0.5 * misfit)));
+            let all = if is_whole { 7..8 } else { 1..7 };
+            let parts = all.map(|axes| self.span.grown(&span, axes)).filter(|part| *part != self.span);
+            let parts = parts.filter(|part| is_whole || *part != span);
+            wishes.extend(parts.map(|part| self.wish(misfit, part, at, 0.5 * misfit)));
         }
     }
 }
 
 /// A region that a cell, or another region, asks for.
-struct Wish {
+struct Wish<'a> {
     /// How far off the mesh may be without it, in cells.
     size: f64,
-    /// The block of the cell.
+    /// Who asks, and the block of it.
+    who: Who<'a>,
     block: usize,
-    /// The cell, unless a region asks.
-    cell: Option<[u32; 3]>,
-    /// What the point should be on.
-    planes: Planes,
     span: Span,
     /// About where the point goes.
     at: DVec3,
@@ -199,9 +204,9 @@ struct Known<'a> {
 impl Known<'_> {
     /// Makes the region that a cell wishes for, if it can be; merged with the regions in its way, or not at all
     /// where there are any. Whether there is no more to be done for the cell.
-    fn grant(&mut self, wish: &Wish, merged_up_to: Option<u32>) -> bool {
+    fn grant(&mut self, wish: &Wish<'_>, merged_up_to: Option<u32>) -> bool {
         // One that it is in already is what it wished for, or better.
-        if wish.cell.is_some_and(|cell| self.taken(wish.block, cell).is_some()) {
+        if matches!(wish.who, Who::Cell(candidate) if self.taken(wish.block, candidate.cell).is_some()) {
             return true;
         }
         let mut span = wish.span;
@@ -234,7 +239,7 @@ impl Known<'_> {
     }
 
     /// The boxes that hold an empty cell as well, which the crease goes on through.
-    fn exits(&self, asker: &Asker, normals: impl Iterator<Item = Vec3> + Clone, wishes: &mut Vec<Wish>) {
+    fn exits<'w>(&self, asker: &Asker<'w>, normals: impl Iterator<Item = Vec3> + Clone, wishes: &mut Vec<Wish<'w>>) {
         for along in crease(normals).into_iter().flat_map(|along| [along, -along]) {
             let Some((cell, length)) = asker.span.exit(asker.at, along) else { continue };
             let is_empty = matches!(self.samples.case_near(asker.block, cell), 0 | 255);
@@ -252,7 +257,7 @@ impl Known<'_> {
         *self.taken[block].get(usize::from(cell_number(within)))?
     }
 
-    fn region(&self, wish: &Wish, span: Span) -> Option<Region> {
+    fn region(&self, wish: &Wish<'_>, span: Span) -> Option<Region> {
         let (mut cells, mut all, mut planes) = (Vec::new(), Vec::<Vec<Segment>>::new(), Planes::NONE);
         for cell in span.cells() {
             let case = self.samples.case_near(wish.block, cell);
@@ -263,7 +268,12 @@ impl Known<'_> {
         }
         let [low, high] = span.corners();
         let place = settle(&planes, wish.at, low, high, 3);
-        if planes.distance(place) > wish.allowed || wish.planes.distance(place) > wish.allowed {
+        let own = match wish.who {
+            Who::Cell(candidate) => &candidate.planes,
+            // None if it is part of another by now.
+            Who::Region(number) => &self.regions[number].as_ref()?.planes,
+        };
+        if planes.distance(place).max(own.distance(place)) > wish.allowed {
             return None;
         }
         let Disc { ring, within } = glued(&all)?;

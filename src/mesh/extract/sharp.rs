@@ -35,18 +35,18 @@
 
 use std::ops::Range;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::Sampler;
-use super::bulge::{Bulge, is_bulge};
+use super::bulge::{Bulge, Ring, around, is_flat};
 use super::join::Corners;
 use super::joined::Joined;
 use super::region::{Region, regions};
 use super::samples::{Samples, cell_number, split_cell};
 use super::span::Span;
-use crate::mesh::feature::{Candidate, Side, is_smooth, refine};
-use crate::mesh::loops::{CellLoop, LONGEST};
+use crate::mesh::feature::{Candidate, Side, refine};
+use crate::mesh::loops::CellLoop;
 use crate::mesh::meter::Meter;
 use crate::mesh::signs::for_each_cell;
 use crate::mesh::table::CaseTable;
@@ -91,6 +91,10 @@ pub(super) struct Fans {
     pub(super) segments: Vec<Segment>,
     /// Points of creases between two fans.
     pub(super) points: Vec<Vec3>,
+    /// Smooth cells with a vertex in their middle.
+    bulges: Vec<Bulge>,
+    /// The number of the first of these vertices.
+    first_bulge: u32,
     blocks: Vec<OfBlock>,
     /// The vertices within regions, which no triangle has any more; ascending.
     pub(super) unused: Vec<u32>,
@@ -101,7 +105,7 @@ pub(super) struct Fans {
 struct OfBlock {
     /// Those that are listed with it: of creases and corners.
     listed: Range<usize>,
-    /// And of smooth cells.
+    /// Its bulges.
     bulges: Range<usize>,
     /// The cells that have a fan, by number, and which; ascending.
     cells: Vec<(u16, u32)>,
@@ -127,29 +131,28 @@ pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) ->
     });
     let joined = Joined::new(samples, proposed.collect());
     let meter = Meter::new(run, spread.len());
-    let of_block = |(scratch, corners): &mut (S::Scratch, Corners), n: usize| {
+    let of_block = |(scratch, corners, found, points): &mut (S::Scratch, Corners, Special, Vec<DVec3>), n: usize| {
         meter.step()?;
         if !spread[n] && !joined.concerns(samples, n) {
             return Ok(Special::default());
         }
-        let mut special = special(samples, &joined, n, corners);
-        let mut points = Vec::new();
-        refine(&mut special.candidates, &mut special.sides, samples.lattice.step(), |local, out| {
+        found.fill(samples, &joined, n, corners);
+        refine(&mut found.candidates, &mut found.sides, samples.lattice.step(), |local, out| {
             points.clear();
             points.extend(local.iter().map(|p| samples.world(*p)));
-            sampler.slopes(scratch, n, samples.blocks()[n], &points, out)
+            sampler.slopes(scratch, n, samples.blocks()[n], points, out)
         });
-        Ok(special)
+        Ok(found.clone())
     };
-    let special: Result<Vec<Special>, Cancelled> =
-        blocks().map_init(|| (sampler.scratch(), Corners::new()), of_block).collect();
+    let worker = || (sampler.scratch(), Corners::new(), Special::default(), Vec::new());
+    let special: Result<Vec<Special>, Cancelled> = blocks().map_init(worker, of_block).collect();
     let special = special?;
     let regions = regions(samples, &special, &joined, run)?;
     Fans::new(samples, special, regions, run)
 }
 
 /// The cells of a block that do not have the patches of the table.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Special {
     /// Those with a single loop, in order.
     pub(super) candidates: Vec<Candidate>,
@@ -163,60 +166,75 @@ pub(super) struct Special {
     plain: Option<Vec<[u32; 3]>>,
 }
 
-/// The cells of block `n` around which the normals spread, or faces are joined.
-fn special(samples: &Samples<'_>, joined: &Joined, n: usize, corners: &mut Corners) -> Special {
-    let mut found = Special::default();
-    // What is missing in a neighbour is an error of the second pass.
-    if !samples.parts.number(n, corners) {
-        return found;
-    }
-    let block = samples.blocks()[n];
-    let has_joined = joined.concerns(samples, n);
-    let table = CaseTable::get();
-    let mut plain = Vec::with_capacity(samples.parts.part(n).triangles as usize);
-    let loops = CellLoop::table();
-    let (mut vertices, mut normals) = ([0; LONGEST], [Vec3::ZERO; LONGEST]);
-    for_each_cell(&samples.parts.part(n).signs, |within, case| {
-        let [i, j, k] = within;
-        let cell = [block[0] + i as u32, block[1] + j as u32, block[2] + k as u32];
-        let faces = if has_joined { joined.of(samples, cell, case) } else { 0 };
-        let ids = corners.of_cell(within);
-        let derived;
-        let outline = if faces == 0 {
-            loops[usize::from(case)].as_ref()
-        } else {
-            derived = CellLoop::single(case, faces);
-            derived.as_ref()
-        };
-        if let Some(outline) = outline {
-            let count = outline.len();
-            let mut sum = Vec3::ZERO;
-            for (n, &edge) in outline.edges().iter().enumerate() {
-                let vertex = ids[usize::from(edge & 15)];
-                let normal = samples.normal(vertex);
-                sum += normal;
-                (vertices[n], normals[n]) = (vertex, normal);
-            }
-            // The table knows nothing of joined faces.
-            if faces != 0 || !is_smooth(&normals[..count], sum) {
-                found.candidates.push(samples.candidate(cell, *outline, &vertices[..count], &mut found.sides));
-                return;
-            }
-            let on_edges = |&triangle: &[u8; 3]| triangle.map(|edge| ids[usize::from(edge & 15)]);
-            if is_bulge(samples, &normals[..count], sum, table.triangles(case).iter().map(on_edges)) {
-                found.bulges.push(Bulge { cell, outline: *outline, vertices });
-                return;
-            }
-        } else if faces != 0 {
-            found.opposite.push((cell_number(within), case));
+impl Special {
+    /// Finds those of block `n`: where the normals spread, or faces are joined.
+    fn fill(&mut self, samples: &Samples<'_>, joined: &Joined, n: usize, corners: &mut Corners) {
+        self.candidates.clear();
+        self.sides.clear();
+        self.bulges.clear();
+        self.opposite.clear();
+        let mut plain = self.plain.take().unwrap_or_default();
+        plain.clear();
+        // What is missing in a neighbour is an error of the second pass.
+        if !samples.parts.number(n, corners) {
             return;
         }
-        for &[a, b, c] in table.triangles(case) {
-            plain.push([ids[usize::from(a & 15)], ids[usize::from(b & 15)], ids[usize::from(c & 15)]]);
+        let block = samples.blocks()[n];
+        let has_joined = joined.concerns(samples, n);
+        let (table, loops) = (CaseTable::get(), CellLoop::table());
+        let mut ring = Ring::NONE;
+        for_each_cell(&samples.parts.part(n).signs, |within, case| {
+            let ids = corners.of_cell(within);
+            let outline = loops[usize::from(case)].as_ref();
+            let is_flat = outline.is_none_or(|outline| is_flat(samples, outline.edges(), &ids));
+            if has_joined || !is_flat {
+                let [i, j, k] = within;
+                let cell = [block[0] + i as u32, block[1] + j as u32, block[2] + k as u32];
+                let faces = if has_joined { joined.of(samples, cell, case) } else { 0 };
+                if (faces != 0 || !is_flat) && self.takes(samples, cell, (case, faces), &ids, &mut ring, &mut plain) {
+                    return;
+                }
+            }
+            for triangle in table.triangles(case) {
+                plain.push(triangle.map(|edge| ids[usize::from(edge & 15)]));
+            }
+        });
+        self.plain = Some(plain);
+    }
+
+    /// Lists a cell that is not flat, or has joined faces, if it is not to have the triangles of the table. `ids` are
+    /// the vertices on its edges; `plain` gets the triangles of a bulge.
+    #[inline(never)]
+    fn takes(
+        &mut self,
+        samples: &Samples<'_>,
+        cell: [u32; 3],
+        (case, faces): (u8, u8),
+        ids: &[u32; 16],
+        ring: &mut Ring,
+        plain: &mut Vec<[u32; 3]>,
+    ) -> bool {
+        let number = cell_number(split_cell(cell).1);
+        let Some(outline) = CellLoop::single(case, faces) else {
+            if faces != 0 {
+                self.opposite.push((number, case));
+            }
+            return faces != 0;
+        };
+        ring.take(samples, outline.edges(), ids);
+        // The table knows nothing of joined faces.
+        if faces != 0 || !ring.is_smooth() {
+            self.candidates.push(samples.candidate(cell, outline, ring.vertices(), &mut self.sides));
+            return true;
         }
-    });
-    found.plain = Some(plain);
-    found
+        let Some((at, normal)) = ring.top(samples) else { return false };
+        let at = samples.held(at.as_dvec3(), cell, cell.map(|n| n + 1));
+        let (sides, first) = (outline.len() as u16, plain.len() as u32);
+        self.bulges.push(Bulge { cell: number, sides, first, at, normal });
+        // Its number is not known yet.
+        plain.extend(around(0, ring.vertices()));
+        true
+    }
 }
 
 /// The segments of a cell's loop, whose vertices are in a list.
@@ -235,9 +253,9 @@ pub(super) fn segments(candidate: &Candidate, sides: &[Side]) -> impl Iterator<I
 impl Fans {
     fn new(samples: &Samples<'_>, special: Vec<Special>, regions: Vec<Region>, run: &Run) -> Result<Fans, Cancelled> {
         let mut all = Fans { blocks: vec![OfBlock::default(); samples.blocks().len()], ..Fans::default() };
-        all.fans.reserve(special.iter().map(|special| special.candidates.len() + special.bulges.len()).sum());
-        let bulging = special.iter().flat_map(|special| &special.bulges).map(|bulge| bulge.outline.len());
-        all.segments.reserve(special.iter().map(|special| special.sides.len()).sum::<usize>() + bulging.sum::<usize>());
+        all.fans.reserve(special.iter().map(|special| special.candidates.len()).sum());
+        all.segments.reserve(special.iter().map(|special| special.sides.len()).sum());
+        all.bulges.reserve(special.iter().map(|special| special.bulges.len()).sum());
         // The cells of regions, by the numbers of their blocks and their own.
         let mut in_region: Vec<(usize, u16)> = Vec::new();
         for &(cell, _) in regions.iter().flat_map(|region| &region.cells) {
@@ -255,44 +273,55 @@ impl Fans {
             in_region = rest;
             let is_free = |number: u16| taken.binary_search(&(block, number)).is_err();
             opposite.retain(|&(number, _)| is_free(number));
-            // Regions may hold cells that have their triangles among the plain ones.
-            let number = |cell: [u32; 3]| cell_number(split_cell(cell).1);
-            let has_fan = |&(_, cell): &(usize, u16)| {
-                candidates.binary_search_by_key(&cell, |candidate| number(candidate.cell)).is_ok()
-                    || bulges.binary_search_by_key(&cell, |bulge| number(bulge.cell)).is_ok()
-            };
-            all.blocks[block].plain = plain.filter(|_| opposite.is_empty() && taken.iter().all(has_fan));
+            // Regions may hold other cells than candidates.
+            let number = |candidate: &Candidate| cell_number(split_cell(candidate.cell).1);
+            let is_candidate = |&(_, cell): &(usize, u16)| candidates.binary_search_by_key(&cell, number).is_ok();
+            all.blocks[block].plain = plain.filter(|_| opposite.is_empty() && taken.iter().all(is_candidate));
             all.blocks[block].opposite = opposite;
-            all.blocks[block].cells.reserve_exact(candidates.len() + bulges.len() + taken.len());
+            all.blocks[block].cells.reserve_exact(candidates.len() + taken.len());
             let start = all.fans.len();
-            let triangles = |cell| table.triangles(samples.parts.part(block).signs.case(split_cell(cell).1)).len();
-            for candidate in candidates.iter().filter(|candidate| is_free(number(candidate.cell))) {
-                all.hold(block, number(candidate.cell), triangles(candidate.cell));
-                let span = Span::single(candidate.cell);
-                let at = samples.inside(candidate.at, span.low, span.high);
-                all.add(block, segments(candidate, &sides), span, at);
+            let signs = &samples.parts.part(block).signs;
+            for candidate in &candidates {
+                let (_, within) = split_cell(candidate.cell);
+                let number = cell_number(within);
+                if is_free(number) {
+                    all.hold(block, number, table.triangles(signs.case(within)).len());
+                    let span = Span::single(candidate.cell);
+                    let at = samples.inside(candidate.at, span.low, span.high);
+                    all.add(block, segments(candidate, &sides), span, at);
+                }
             }
             while let Some(region) = regions.next_if(|region| region.block == block) {
                 all.cover(samples, &region.cells);
                 all.unused.extend(region.within);
                 all.add(block, region.segments.into_iter(), region.span, region.at);
             }
-            let middle = all.fans.len();
-            for bulge in bulges.iter().filter(|bulge| is_free(number(bulge.cell))) {
-                all.hold(block, number(bulge.cell), triangles(bulge.cell));
-                let span = Span::single(bulge.cell);
-                let at = samples.held(bulge.top(samples).as_dvec3(), span.low, span.high);
-                all.add(block, bulge.segments(samples), span, at);
-            }
-            all.blocks[block].listed = start..middle;
-            all.blocks[block].bulges = middle..all.fans.len();
+            all.blocks[block].listed = start..all.fans.len();
+            let start = all.bulges.len();
+            all.bulges.extend(bulges.iter().filter(|bulge| is_free(bulge.cell)));
+            all.blocks[block].bulges = start..all.bulges.len();
         }
         all.unused.sort_unstable();
         for block in &mut all.blocks {
             block.cells.sort_unstable();
         }
         all.turn(samples, run)?;
+        all.number_bulges(samples.count() as u32);
         Ok(all)
+    }
+
+    /// Numbers the vertices of bulges, which follow those of fans, which follow `count` others.
+    fn number_bulges(&mut self, count: u32) {
+        self.first_bulge = count + (self.fans.len() + self.points.len()) as u32;
+        let (first, bulges) = (self.first_bulge, &self.bulges);
+        self.blocks.par_iter_mut().for_each(|block| {
+            let Some(plain) = &mut block.plain else { return };
+            for n in block.bulges.clone() {
+                let Bulge { sides, first: place, .. } = bulges[n];
+                let triangles = &mut plain[place as usize..][..usize::from(sides)];
+                triangles.iter_mut().for_each(|triangle| triangle[0] = first + n as u32);
+            }
+        });
     }
 
     /// Notes that the next fan takes the place of the patches of cells, each with the number of its triangles.
@@ -328,7 +357,7 @@ impl Fans {
         segment.across.is_some_and(|other| other as usize >= self.fans.len())
     }
 
-    /// The vertices that fans add, feature points first, with the normals that stand for all their sides.
+    /// The vertices that fans add, feature points first and bulges last, with the normals that stand for all their sides.
     pub(super) fn vertices(&self) -> impl Iterator<Item = (Vec3, Vec3)> {
         let normal = |fan| self.of(fan).iter().map(|segment| segment.normal).sum::<Vec3>().normalize_or_zero();
         let mut between = vec![Vec3::ZERO; self.points.len()];
@@ -338,7 +367,8 @@ impl Fans {
         }
         let between = between.into_iter().map(Vec3::normalize_or_zero);
         let centres = (0..self.fans.len()).map(move |fan| (self.fans[fan].at, normal(fan)));
-        centres.chain(self.points.iter().copied().zip(between))
+        let bulges = self.bulges.iter().map(|bulge| (bulge.at, bulge.normal));
+        centres.chain(self.points.iter().copied().zip(between)).chain(bulges)
     }
 
     /// The triangles of a block's cells that have those of the table, if they are listed already.
@@ -351,20 +381,16 @@ impl Fans {
         self.blocks.get(block).map_or(&[], |block| &block.cells)
     }
 
-    /// How many triangles with normals of their own the fans that are listed with some blocks have.
+    /// How many triangles the fans that are listed with some blocks have.
     pub(super) fn listed(&self, blocks: Range<usize>) -> usize {
         let fans = self.blocks.get(blocks).unwrap_or_default().iter().flat_map(|block| block.listed.clone());
         fans.flat_map(|fan| self.of(fan)).map(|segment| 1 + usize::from(self.is_bent(segment))).sum()
     }
 
-    /// Lists the triangles of a block's smooth fans, as [`list`](Fans::list) does.
-    pub(super) fn bulges(&self, block: usize, centres: u32) -> impl Iterator<Item = [u32; 3]> {
-        let fans = self.blocks.get(block).map_or(0..0, |block| block.bulges.clone());
-        fans.flat_map(move |nth| {
-            let segments = self.of(nth);
-            let next = segments.iter().cycle().skip(1);
-            segments.iter().zip(next).map(move |(segment, next)| [centres + nth as u32, segment.from, next.from])
-        })
+    /// The bulges of a block: the cells by number, and the vertices.
+    pub(super) fn bulges(&self, block: usize) -> impl Iterator<Item = (u16, u32)> {
+        let bulges = self.blocks.get(block).map_or(0..0, |block| block.bulges.clone());
+        bulges.map(|n| (self.bulges[n].cell, self.first_bulge + n as u32))
     }
 
     /// How many triangles a block has, which has `count` without fans.
@@ -374,8 +400,14 @@ impl Fans {
         let triangles = |case: u8| table.triangles(case).len();
         let gone: usize = of_block.opposite.iter().map(|&(_, case)| triangles(case)).sum();
         let come: usize = of_block.opposite.iter().map(|&(_, case)| triangles(!case)).sum();
-        let smooth: usize = of_block.bulges.clone().map(|fan| self.of(fan).len()).sum();
-        count + self.listed(block..block + 1) + smooth + come - of_block.dropped - gone
+        // A ring around a vertex has two triangles more than one without.
+        let more = 2 * of_block.bulges.len();
+        count + self.listed(block..block + 1) + more + come - of_block.dropped - gone
+    }
+
+    /// Whether all cells of a block have the triangles of the table.
+    pub(super) fn is_plain(&self, block: usize) -> bool {
+        self.cells(block).is_empty() && self.opposite(block).is_empty() && self.bulges(block).next().is_none()
     }
 
     /// The cells of a block that have the patches of the opposite case, by number.
