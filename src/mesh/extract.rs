@@ -51,12 +51,14 @@ use crate::bounds::Bounds;
 use crate::geom::{Mesh, MeshError};
 use crate::run::{Cancelled, Run};
 
+mod bulge;
 mod join;
 mod joined;
 mod neighbours;
 mod region;
 mod samples;
 mod sharp;
+mod span;
 mod turn;
 
 /// Blocks whose roots are found together. Small enough for threads to share work evenly.

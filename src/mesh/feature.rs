@@ -29,14 +29,17 @@ use super::qef::Planes;
 /// Normals of a cell that differ by less than this are those of a smooth surface: the cosine
 /// of the angle between them.
 pub(super) const SMOOTH: f32 = 0.9;
-/// The cosine of half that angle, rounded up.
-const HALF_SMOOTH: f32 = 0.975;
+/// The square of the cosine of half that angle, rounded up: no two normals that are closer to their mean differ by more.
+pub(super) const HALF_SMOOTH: f32 = 0.950_1;
 
 /// Normals of vertices that are on the same side of a crease, with little between them: the cosine of 11°.
 const ALIKE: f32 = 0.98;
 
 /// How far feature points stay from the faces of their cell, in cells.
 pub(super) const INSET: f64 = 1.0 / 128.0;
+
+/// Normals of a side that is not the one that was asked for: the cosine of 45°.
+const ASTRAY: f64 = 0.7;
 
 /// The damping of the steps; it takes the distance from the crease to a hundredth a step.
 const DAMPING: f64 = 3e-3;
@@ -54,21 +57,8 @@ pub(crate) struct Slope {
     pub gradient: DVec3,
 }
 
-/// Whether no two of the normals of a cell's vertices differ as those of a crease do.
-///
-/// `sum` is the sum of the normals.
-#[inline(always)]
-pub(super) fn is_smooth(normals: &[Vec3], sum: Vec3) -> bool {
-    let mut least = f32::INFINITY;
-    for normal in normals {
-        least = least.min(sum.dot(*normal));
-    }
-    // If all are within half the angle of their mean, no two differ by more than it.
-    least > HALF_SMOOTH * sum.length() || !differ(normals)
-}
-
 /// Whether two of some normals differ as those of a crease do.
-fn differ(normals: &[Vec3]) -> bool {
+pub(super) fn differ(normals: &[Vec3]) -> bool {
     for (n, a) in normals.iter().enumerate() {
         for b in &normals[..n] {
             if a.dot(*b) <= SMOOTH {
@@ -94,6 +84,7 @@ pub(super) struct Side {
 /// A cell whose surface is not smooth. Positions are in cells, from the lattice's first node.
 ///
 /// The vertices of its loop, in order, are in a list of those of many cells.
+#[derive(Clone)]
 pub(super) struct Candidate {
     pub(super) cell: [u32; 3],
     pub(super) outline: CellLoop,
@@ -139,30 +130,24 @@ impl Candidate {
     fn settle(&mut self) {
         self.at = settle(&self.planes, self.at, self.low(), self.low() + 1.0, 1);
     }
+}
 
-    /// The direction of the crease, if there are two sides and no more.
-    pub(super) fn crease(&self, sides: &[Side]) -> Option<DVec3> {
-        let sides = self.sides(sides);
-        let (mut along, mut most) = (Vec3::ZERO, 0.0);
-        for (n, a) in sides.iter().enumerate() {
-            for b in &sides[..n] {
-                let across = a.normal.cross(b.normal);
-                let square = across.length_squared();
-                if square >= most {
-                    (along, most) = (across, square);
-                }
+/// The direction of a crease, by the normals around it, if there are two sides and no more.
+pub(super) fn crease(normals: impl Iterator<Item = Vec3> + Clone) -> Option<DVec3> {
+    let (mut along, mut most) = (Vec3::ZERO, 0.0);
+    for (n, a) in normals.clone().enumerate() {
+        for b in normals.clone().take(n) {
+            let across = a.cross(b);
+            let square = across.length_squared();
+            if square >= most {
+                (along, most) = (across, square);
             }
         }
-        let unit = along.try_normalize()?;
-        // A third side would have a normal along the crease of the two.
-        let two = along.length() > 0.3 && sides.iter().all(|side| side.normal.dot(unit).abs() < 0.2);
-        two.then(|| unit.as_dvec3())
     }
-
-    /// Where the planes meet if the point may leave the cell, by some cells at most.
-    pub(super) fn unbound(&self, cells: f64) -> DVec3 {
-        settle(&self.planes, self.at, self.low() - cells, self.low() + 1.0 + cells, 3)
-    }
+    let unit = along.try_normalize()?;
+    // A third side would have a normal along the crease of the two.
+    let two = along.length() > 0.3 && normals.clone().all(|normal| normal.dot(unit).abs() < 0.2);
+    two.then(|| unit.as_dvec3())
 }
 
 /// The point of a box of cells, clear of its faces, that the planes lead to in some steps.
@@ -228,7 +213,7 @@ pub(super) fn refine(
     let mut asked = points.iter().zip(&found);
     let mut sides = sides.iter_mut().zip(places);
     for candidate in candidates.iter_mut() {
-        let mut planes = Planes::NONE;
+        let (mut planes, low) = (Planes::NONE, candidate.low());
         let (mut known, mut seen) = ([None; LONGEST], 0);
         for (side, place) in sides.by_ref().take(candidate.outline.len()) {
             let place = usize::from(place);
@@ -237,9 +222,15 @@ pub(super) fn refine(
                 known[place] = asked.next().and_then(|(point, slope)| plane(*point, slope, step));
                 seen += 1;
             }
-            if let Some((normal, offset)) = known[place] {
-                side.normal = normal.as_vec3();
-                planes.add(normal, offset);
+            let own = side.normal.as_dvec3();
+            match known[place] {
+                Some((normal, offset)) if normal.dot(own) > ASTRAY => {
+                    side.normal = normal.as_vec3();
+                    planes.add(normal, offset);
+                }
+                // The point has come out on another side of the crease.
+                Some(_) => planes.add(own, own.dot(low + side.at.as_dvec3())),
+                None => {}
             }
         }
         if !planes.is_empty() {

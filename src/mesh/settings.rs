@@ -43,11 +43,12 @@ pub enum Features {
     /// They are cut off, by a fraction of a cell: marching cubes.
     Smooth,
     /// They are kept: where the normals in a cell differ by more than 26°, the cell has a vertex on the
-    /// crease or in the corner, and the mesh has edges along the crease. Elsewhere the mesh is that
-    /// of [`Smooth`](Features::Smooth).
+    /// crease or in the corner, and the mesh has edges along the crease. Where triangles of
+    /// [`Smooth`](Features::Smooth) would be off a curved surface by more than 0.01 cells in their middle, the cell
+    /// has a vertex on the surface. Elsewhere the mesh is that of `Smooth`.
     ///
     /// Where a crease passes cells that have no surface of their own (all their corners are on the same
-    /// side), the cells around, up to three along each axis, share a vertex on it, if their surface is a
+    /// side), the cells around, up to four along each axis, share a vertex on it, if their surface is a
     /// disc; else the crease is cut off there by a part of a cell. [`ThinFeatures::Refine`] asks for
     /// smaller cells where it matters.
     #[default]

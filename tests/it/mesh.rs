@@ -106,6 +106,7 @@ fn the_volume_converges_with_the_square_of_the_cell() {
         let settings = MeshSettings {
             cell: CellSize::Length(2.0 * model.half / across),
             bounds: Some(model.cube()),
+            features: Features::Smooth,
             ..MeshSettings::default()
         };
         let (_, report) = mesh(&model.solid, &settings);

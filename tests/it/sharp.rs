@@ -157,7 +157,7 @@ fn edges_of_a_turned_cube() {
     println!("cubes, surface, sharp: {surface}; triangles {faces:?}");
     assert!(sharp.median <= 0.005 && sharp.part90 <= 0.05, "{sharp}");
     assert!(sharp.median < smooth.median && sharp.part90 < smooth.part90, "{sharp}, {smooth}");
-    assert!(sharp.rms < smooth.rms && sharp.max < smooth.max, "{sharp}, {smooth}");
+    assert!(sharp.rms < 0.1 * smooth.rms && sharp.max < 0.4, "{sharp}, {smooth}");
     assert!(surface.rms <= 0.006, "{surface}");
 }
 
@@ -222,8 +222,7 @@ fn edges_of_a_body() {
     assert!(edges[0].median <= 0.005 && edges[0].part90 <= 0.05, "{}", edges[0]);
     assert!(edges[0].median < edges[1].median && edges[0].part90 < edges[1].part90);
     assert!(edges[0].rms < edges[1].rms && edges[0].max < edges[1].max);
-    // Where no edge is near and the normals spread little, both meshes are the same, with all vertices on the
-    // surface. What the rounded parts of the body leave to triangles of this size is more than 0.006 already.
+    // Where no edge is near, what the rounded parts of the body leave to triangles on lattice edges alone is more.
     let normals = smooth.normals().expect("a mesh of a solid has them");
     let far: Vec<f64> = surface_errors(&smooth, &model.solid, cell)
         .into_iter()
@@ -238,15 +237,36 @@ fn edges_of_a_body() {
         .collect();
     let (share, far) = (far.len() as f64 / smooth.triangles().len() as f64, statistics(far));
     println!("M2, surface, {:.0} % of the triangles, 2 cells and more from edges and not sharp: {far}", 100.0 * share);
-    assert!(surface[0].rms <= 0.0085 && surface[0].rms < 0.3 * surface[1].rms, "{}", surface[0]);
-    assert!(surface[0].rms < 1.1 * far.rms, "{}, {far}", surface[0]);
+    assert!(surface[0].rms <= 0.006 && surface[0].rms < 0.3 * surface[1].rms, "{}", surface[0]);
+    assert!(surface[0].rms < 0.8 * far.rms, "{}, {far}", surface[0]);
+    // Where an edge passes cells without a change of sign.
+    assert!(edges[0].max < 0.4, "{}", edges[0]);
 }
 
 #[test]
 fn a_smooth_solid_is_the_same_in_both_modes() {
-    for solid in [Solid::sphere(1.0), Solid::torus(1.0, 0.4), Solid::superellipsoid(DVec3::ONE, 1.0, 0.8)] {
-        assert_eq!(mesh(&solid, 0.04, Features::Sharp), mesh(&solid, 0.04, Features::Smooth));
+    for (solid, cell) in [
+        (Solid::sphere(1.0), 0.02),
+        (Solid::torus(1.0, 0.4), 0.01),
+        (Solid::superellipsoid(DVec3::ONE, 1.0, 0.8), 0.01),
+    ] {
+        let is_same = mesh(&solid, cell, Features::Sharp) == mesh(&solid, cell, Features::Smooth);
+        assert!(is_same, "{solid}");
     }
+}
+
+/// Few cells for a curved surface: vertices in the middle of cells take the mesh to it, without creases.
+#[test]
+fn strongly_curved_cells_bulge() {
+    for solid in [Solid::sphere(1.0), Solid::torus(1.0, 0.4), Solid::superellipsoid(DVec3::ONE, 0.5, 0.8)] {
+        let [sharp, smooth] = [Features::Sharp, Features::Smooth].map(|features| mesh(&solid, 0.1, features));
+        let [fine, plain] = [&sharp, &smooth].map(|mesh| statistics(surface_errors(mesh, &solid, 0.1)));
+        println!("sharp {fine}, {} triangles; smooth {plain}, {}", sharp.triangles().len(), smooth.triangles().len());
+        assert!(fine.rms < 0.6 * plain.rms && fine.part90 < 0.6 * plain.part90, "{fine}, {plain}");
+    }
+    let ball = mesh(&Solid::sphere(1.0), 0.1, Features::Sharp);
+    assert!(ball.corner_normals().is_none(), "one normal a vertex is enough");
+    assert!((ball.volume() / (4.0 / 3.0 * std::f64::consts::PI) - 1.0).abs() < 3e-3, "{}", ball.volume());
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
+use super::bulge::around;
 use super::neighbours::Neighbours;
 use super::samples::{Samples, cell_number};
 use super::sharp::{self, Fans};
@@ -10,6 +11,7 @@ use super::{BATCH, Batch, ExtractError, Part, Sampler};
 use crate::geom::{Apart, Mesh};
 use crate::mesh::Features;
 use crate::mesh::lattice::Lattice;
+use crate::mesh::loops::CellLoop;
 use crate::mesh::meter::Meter;
 use crate::mesh::signs::{BLOCK, NODES, SIDE, for_each_cell, is_mixed};
 use crate::mesh::table::CaseTable;
@@ -140,7 +142,7 @@ impl<'a> Parts<'a> {
         let apart: Result<Vec<_>, ExtractError> =
             pieces.into_par_iter().enumerate().map_init(Corners::new, of_batch).collect();
         let apart = apart?;
-        if fans.fans.is_empty() {
+        if apart.iter().all(|apart| apart.runs.is_empty()) {
             positions.shrink_to_fit();
             normals.shrink_to_fit();
             return Ok(Mesh::new(positions, triangles)?.with_normals(normals)?.with_clamped_vertices(self.clamped));
@@ -181,7 +183,7 @@ impl<'a> Parts<'a> {
             return Err(ExtractError::Blocks { block: self.blocks[n], what });
         }
         let table = CaseTable::get();
-        if fans.cells(n).is_empty() && fans.opposite(n).is_empty() {
+        if fans.is_plain(n) {
             for_each_cell(&self.part(n).signs, |cell, case| {
                 let ids = corners.of_cell(cell);
                 let corner = |edge: u8| ids[usize::from(edge & 15)];
@@ -195,6 +197,7 @@ impl<'a> Parts<'a> {
         }
         let mut with_fan = fans.cells(n).iter().peekable();
         let mut opposite = fans.opposite(n).iter().peekable();
+        let mut bulges = fans.bulges(n).peekable();
         for_each_cell(&self.part(n).signs, |cell, case| {
             let number = cell_number(cell);
             while with_fan.next_if(|(other, _)| *other < number).is_some() {}
@@ -203,6 +206,12 @@ impl<'a> Parts<'a> {
             }
             let ids = corners.of_cell(cell);
             let corner = |edge: u8| ids[usize::from(edge & 15)];
+            if let Some((_, centre)) = bulges.next_if(|(other, _)| *other == number) {
+                let outline = CellLoop::single(case, 0);
+                let ring: Vec<u32> = outline.iter().flat_map(CellLoop::edges).map(|&edge| corner(edge)).collect();
+                around(centre, &ring).zip(&mut *slots).for_each(|(triangle, slot)| *slot = triangle);
+                return;
+            }
             if opposite.next_if(|(other, _)| *other == number).is_some() {
                 for (&[a, b, c], slot) in table.triangles(!case).iter().zip(&mut *slots) {
                     *slot = [corner(a), corner(c), corner(b)];

@@ -10,13 +10,15 @@
 //!     o-------o-------+
 //! ```
 //!
-//! A cell asks for a region if the planes of its sides meet outside, in another cell, or if the crease
-//! goes on from it through empty cells: a box of cells that holds both ends, up to three along each axis,
-//! and the regions that the box cuts into. It comes about if
+//! A cell asks for a region if the planes of its sides meet outside: the box of cells up to there, or, if that
+//! cannot be, a box that is as large along some axes only; up to three cells along each axis, and with
+//! the regions that the box cuts into. Then all cells and regions ask whose crease leaves them through an empty
+//! cell: that cell is to be theirs as well. A region comes about if
 //!
 //! * the patches of the box make a disc: they hang together and have a single loop as boundary, without
 //!   holes or handles;
-//! * the planes of all its cells meet better in the region than those of the cell did in it.
+//! * the planes of all its cells meet better in the region than those of the cell did in it, or as well as those
+//!   of a region have to.
 //!
 //! The loop lies in the boundary of a convex box then, and what [`sharp`](super::sharp) says of the fans of
 //! cells holds for that of the region. A vertex on an edge within the box is in no triangle any more, and is
@@ -27,7 +29,8 @@ use glam::{DVec3, Vec3};
 use super::joined::Joined;
 use super::samples::{Samples, cell_number, split_cell};
 use super::sharp::{Segment, Special, segments};
-use crate::mesh::feature::{Candidate, settle};
+use super::span::Span;
+use crate::mesh::feature::{Candidate, crease, settle};
 use crate::mesh::loops::CellLoop;
 use crate::mesh::qef::Planes;
 use crate::mesh::signs::BLOCK;
@@ -40,6 +43,12 @@ const MISFIT: f64 = 0.01;
 /// The most cells along an axis of a region.
 const LARGEST: u32 = 3;
 
+/// How often regions may grow so.
+const ROUNDS: usize = 3;
+
+/// A crease that is in an empty cell for less than this, in cells, asks for nothing.
+const SHORT: f64 = 0.02;
+
 /// Cells that share a fan.
 pub(super) struct Region {
     /// The block of the cell that asked for it.
@@ -47,56 +56,14 @@ pub(super) struct Region {
     pub(super) segments: Vec<Segment>,
     /// The feature point.
     pub(super) at: Vec3,
+    /// The same in cells.
+    place: DVec3,
+    planes: Planes,
     /// The cells, with the numbers of triangles that they have in the table.
     pub(super) cells: Vec<([u32; 3], usize)>,
     /// The vertices within, ascending.
     pub(super) within: Vec<u32>,
     pub(super) span: Span,
-}
-
-/// A box of cells: from the first to the last, exclusive.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) struct Span {
-    pub(super) low: [u32; 3],
-    pub(super) high: [u32; 3],
-}
-
-impl Span {
-    pub(super) fn single(cell: [u32; 3]) -> Span {
-        let [x, y, z] = cell;
-        Span { low: cell, high: [x + 1, y + 1, z + 1] }
-    }
-
-    fn of(a: [u32; 3], b: [u32; 3]) -> Span {
-        let low = std::array::from_fn(|axis| a[axis].min(b[axis]));
-        Span { low, high: std::array::from_fn(|axis| a[axis].max(b[axis]) + 1) }
-    }
-
-    fn union(&self, other: &Span) -> Span {
-        let low = std::array::from_fn(|axis| self.low[axis].min(other.low[axis]));
-        Span { low, high: std::array::from_fn(|axis| self.high[axis].max(other.high[axis])) }
-    }
-
-    /// What both hold, if there is any.
-    pub(super) fn intersection(&self, other: &Span) -> Span {
-        let low = std::array::from_fn(|axis| self.low[axis].max(other.low[axis]));
-        Span { low, high: std::array::from_fn(|axis| self.high[axis].min(other.high[axis])) }
-    }
-
-    fn is_small(&self) -> bool {
-        (0..3).all(|axis| self.high[axis] - self.low[axis] <= LARGEST)
-    }
-
-    fn cells(self) -> impl Iterator<Item = [u32; 3]> {
-        let Span { low, high } = self;
-        let rows = (low[2]..high[2]).flat_map(move |k| (low[1]..high[1]).map(move |j| [j, k]));
-        rows.flat_map(move |[j, k]| (low[0]..high[0]).map(move |i| [i, j, k]))
-    }
-
-    /// Its corners, in cells.
-    fn corners(&self) -> [DVec3; 2] {
-        [self.low, self.high].map(|cell| DVec3::from_array(cell.map(f64::from)))
-    }
 }
 
 /// The regions that candidates ask for, those that fit their planes worst first; in the order of the blocks.
@@ -106,38 +73,47 @@ pub(super) fn regions(
     joined: &Joined,
     run: &Run,
 ) -> Result<Vec<Region>, Cancelled> {
-    let mut asking: Vec<Wish> = Vec::new();
-    for (block, list) in special.iter().enumerate() {
-        run.check()?;
-        for candidate in &list.candidates {
-            let misfit = candidate.planes.distance(candidate.at);
-            if misfit > MISFIT {
-                let mut last = None;
-                for reach in [1.0, 2.0] {
-                    let at = candidate.unbound(reach);
-                    let other = towards(candidate.cell, at.floor(), reach as i32);
-                    if other == last {
-                        continue;
-                    }
-                    last = other;
-                    if let Some(other) = other {
-                        asking.push(Wish { size: misfit, block, candidate, other, at, allowed: 0.5 * misfit });
-                    }
-                }
-            } else {
-                for along in candidate.crease(&list.sides).into_iter().flat_map(|d| [d, -d]) {
-                    if let Some((size, other, at)) = beyond(samples, block, candidate, along) {
-                        asking.push(Wish { size, block, candidate, other, at, allowed: 2.0 * MISFIT });
-                    }
-                }
+    let mut known = Known { samples, special, joined, taken: vec![Vec::new(); special.len()], regions: Vec::new() };
+    // Boxes towards where planes meet; where that cannot be, such that are larger along some axes only.
+    for is_whole in [true, false] {
+        let mut wishes = Vec::new();
+        for (block, list) in special.iter().enumerate() {
+            run.check()?;
+            for candidate in list.candidates.iter().filter(|one| known.taken(block, one.cell).is_none()) {
+                Asker::candidate(block, candidate).misfits(MISFIT, is_whole, &mut wishes);
             }
         }
+        wishes.sort_by(|a, b| b.size.total_cmp(&a.size));
+        // Regions that stand alone come first: they are smaller than those that others are merged into.
+        for merges in [None, Some(LARGEST)] {
+            wishes.retain(|wish| !run.cancel.is_cancelled() && !known.grant(wish, merges));
+        }
     }
-    asking.sort_by(|a, b| b.size.total_cmp(&a.size));
-    let mut known = Known { samples, special, joined, taken: vec![Vec::new(); special.len()], regions: Vec::new() };
-    // Regions that stand alone come first: they are smaller than those that others are merged into.
-    for merges in [false, true] {
-        asking.retain(|wish| !run.cancel.is_cancelled() && !known.grant(wish, merges));
+    // Then those that creases leave through empty cells.
+    for round in 0..ROUNDS {
+        run.check()?;
+        let mut wishes = Vec::new();
+        for (block, list) in special.iter().enumerate().filter(|_| round == 0) {
+            for candidate in list.candidates.iter().filter(|one| known.taken(block, one.cell).is_none()) {
+                let normals = candidate.sides(&list.sides).iter().map(|side| side.normal);
+                known.exits(&Asker::candidate(block, candidate), normals, &mut wishes);
+            }
+        }
+        for (number, region) in known.regions.iter().enumerate() {
+            let Some(region) = region else { continue };
+            let asker = Asker::region(number, region);
+            asker.misfits(2.0 * MISFIT, true, &mut wishes);
+            asker.misfits(2.0 * MISFIT, false, &mut wishes);
+            known.exits(&asker, region.segments.iter().map(|segment| segment.normal), &mut wishes);
+        }
+        wishes.sort_by(|a, b| b.size.total_cmp(&a.size));
+        let before = known.regions.len();
+        for wish in wishes {
+            known.grant(&wish, Some(LARGEST + 1));
+        }
+        if known.regions.len() == before {
+            break;
+        }
     }
     run.check()?;
     let mut regions: Vec<Region> = known.regions.into_iter().flatten().collect();
@@ -145,60 +121,74 @@ pub(super) fn regions(
     Ok(regions)
 }
 
-/// A region that a cell asks for.
+/// A cell, or a region by its number.
+#[derive(Clone, Copy)]
+enum Who<'a> {
+    Cell(&'a Candidate),
+    Region(usize),
+}
+
+/// A cell or a region that may want to be part of a larger one.
+struct Asker<'a> {
+    who: Who<'a>,
+    block: usize,
+    span: Span,
+    /// The feature point, and what it should be on.
+    at: DVec3,
+    planes: Planes,
+}
+
+impl<'a> Asker<'a> {
+    fn candidate(block: usize, candidate: &'a Candidate) -> Asker<'a> {
+        let Candidate { cell, at, planes, .. } = *candidate;
+        Asker { who: Who::Cell(candidate), block, span: Span::single(cell), at, planes }
+    }
+
+    fn region(number: usize, region: &Region) -> Asker<'a> {
+        let Region { block, span, place, planes, .. } = *region;
+        Asker { who: Who::Region(number), block, span, at: place, planes }
+    }
+
+    fn wish(&self, size: f64, span: Span, at: DVec3, allowed: f64) -> Wish<'a> {
+        Wish { size, block: self.block, who: self.who, span, at, allowed }
+    }
+
+    /// Wishes for the boxes towards where the planes meet, if that is outside: the whole ones, or those that are larger
+    /// along some of the axes only.
+    fn misfits(&self, most: f64, is_whole: bool, wishes: &mut Vec<Wish<'a>>) {
+        let misfit = self.planes.distance(self.at);
+        if misfit <= most {
+            return;
+        }
+        let mut last = self.span;
+        for reach in [1.0, 2.0] {
+            let [low, high] = self.span.corners();
+            let at = settle(&self.planes, self.at, low - reach, high + reach, 3);
+            let span = self.span.union(&Span::single(at.max(DVec3::ZERO).to_array().map(|x| x as u32)));
+            if span == last {
+                continue;
+            }
+            last = span;
+            let all = if is_whole { 7..8 } else { 1..7 };
+            let parts = all.map(|axes| self.span.grown(&span, axes)).filter(|part| *part != self.span);
+            let parts = parts.filter(|part| is_whole || *part != span);
+            wishes.extend(parts.map(|part| self.wish(misfit, part, at, 0.5 * misfit)));
+        }
+    }
+}
+
+/// A region that a cell, or another region, asks for.
 struct Wish<'a> {
     /// How far off the mesh may be without it, in cells.
     size: f64,
-    /// The block of the cell.
+    /// Who asks, and the block of it.
+    who: Who<'a>,
     block: usize,
-    candidate: &'a Candidate,
-    /// The cell in the opposite corner of the region.
-    other: [u32; 3],
+    span: Span,
     /// About where the point goes.
     at: DVec3,
     /// How far it may be from the planes.
     allowed: f64,
-}
-
-/// The cell that is some steps towards another, along every axis where they differ.
-fn towards(cell: [u32; 3], target: DVec3, steps: i32) -> Option<[u32; 3]> {
-    let mut other = cell;
-    for axis in 0..3 {
-        let by = ((target[axis] - f64::from(cell[axis])) as i32).clamp(-steps, steps);
-        other[axis] = other[axis].checked_add_signed(by)?;
-    }
-    (other != cell).then_some(other)
-}
-
-/// Follows a crease from the point of a cell. If it goes through empty cells and then comes to
-/// one that is a neighbour of the first by an edge or a corner: how long it is in them, the cell, and
-/// the middle of that part.
-fn beyond(samples: &Samples<'_>, block: usize, candidate: &Candidate, along: DVec3) -> Option<(f64, [u32; 3], DVec3)> {
-    let (mut cell, mut at) = (candidate.cell, candidate.at);
-    let mut entry: Option<DVec3> = None;
-    for _ in 0..4 {
-        // Where the line leaves the cell.
-        let (mut axis, mut least) = (0, f64::INFINITY);
-        for n in 0..3 {
-            let side = f64::from(cell[n]) + f64::from(u8::from(along[n] > 0.0));
-            let part = (side - at[n]) / along[n];
-            if part < least {
-                (axis, least) = (n, part);
-            }
-        }
-        at += along * least;
-        cell[axis] = cell[axis].checked_add_signed(if along[axis] > 0.0 { 1 } else { -1 })?;
-        if (0..3).any(|n| cell[n].abs_diff(candidate.cell[n]) > 1) {
-            return None;
-        }
-        match (entry, matches!(samples.case_near(block, cell), 0 | 255)) {
-            (None, false) => return None,
-            (None, true) => entry = Some(at),
-            (Some(start), false) => return Some((0.5 * (at - start).length(), cell, 0.5 * (start + at))),
-            (Some(_), true) => {}
-        }
-    }
-    None
 }
 
 struct Known<'a> {
@@ -214,12 +204,12 @@ struct Known<'a> {
 impl Known<'_> {
     /// Makes the region that a cell wishes for, if it can be; merged with the regions in its way, or not at all
     /// where there are any. Whether there is no more to be done for the cell.
-    fn grant(&mut self, wish: &Wish<'_>, merges: bool) -> bool {
+    fn grant(&mut self, wish: &Wish<'_>, merged_up_to: Option<u32>) -> bool {
         // One that it is in already is what it wished for, or better.
-        if self.taken(wish.block, wish.candidate.cell).is_some() {
+        if matches!(wish.who, Who::Cell(candidate) if self.taken(wish.block, candidate.cell).is_some()) {
             return true;
         }
-        let mut span = Span::of(wish.candidate.cell, wish.other);
+        let mut span = wish.span;
         let mut merged: Vec<u32> = Vec::new();
         while let Some(region) =
             span.cells().filter_map(|cell| self.taken(wish.block, cell)).find(|region| !merged.contains(region))
@@ -228,8 +218,8 @@ impl Known<'_> {
                 span = span.union(&other.span);
             }
             merged.push(region);
-            if !merges || !span.is_small() {
-                return merges;
+            if !merged_up_to.is_some_and(|most| span.is_small(most)) {
+                return merged_up_to.is_some();
             }
         }
         let Some(region) = self.region(wish, span) else { return merged.is_empty() };
@@ -246,6 +236,18 @@ impl Known<'_> {
         }
         self.regions.push(Some(region));
         true
+    }
+
+    /// The boxes that hold an empty cell as well, which the crease goes on through.
+    fn exits<'w>(&self, asker: &Asker<'w>, normals: impl Iterator<Item = Vec3> + Clone, wishes: &mut Vec<Wish<'w>>) {
+        for along in crease(normals).into_iter().flat_map(|along| [along, -along]) {
+            let Some((cell, length)) = asker.span.exit(asker.at, along) else { continue };
+            let is_empty = matches!(self.samples.case_near(asker.block, cell), 0 | 255);
+            if length > SHORT && is_empty && self.taken(asker.block, cell).is_none() {
+                let allowed = asker.planes.distance(asker.at).max(2.0 * MISFIT);
+                wishes.push(asker.wish(0.5 * length, asker.span.union(&Span::single(cell)), asker.at, allowed));
+            }
+        }
     }
 
     /// The region that a cell, close to block `near`, is in.
@@ -265,13 +267,18 @@ impl Known<'_> {
             }
         }
         let [low, high] = span.corners();
-        let at = settle(&planes, wish.at, low, high, 3);
-        if planes.distance(at) > wish.allowed || wish.candidate.planes.distance(at) > wish.allowed {
+        let place = settle(&planes, wish.at, low, high, 3);
+        let own = match wish.who {
+            Who::Cell(candidate) => &candidate.planes,
+            // None if it is part of another by now.
+            Who::Region(number) => &self.regions[number].as_ref()?.planes,
+        };
+        if planes.distance(place).max(own.distance(place)) > wish.allowed {
             return None;
         }
         let Disc { ring, within } = glued(&all)?;
-        let at = self.samples.inside(at, span.low, span.high);
-        Some(Region { block: wish.block, segments: ring, at, cells, within, span })
+        let at = self.samples.inside(place, span.low, span.high);
+        Some(Region { block: wish.block, segments: ring, at, place, planes, cells, within, span })
     }
 
     /// Adds the planes of a crossed cell, close to block `near`, and the segments of each of its loops.

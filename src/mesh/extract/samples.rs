@@ -3,9 +3,10 @@
 use glam::{DVec3, UVec3, Vec3};
 use rayon::prelude::*;
 
+use super::bulge::SPREAD;
 use super::join::Parts;
 use crate::bounds::Bounds;
-use crate::mesh::feature::{Candidate, SMOOTH, Side};
+use crate::mesh::feature::{Candidate, Side};
 use crate::mesh::lattice::Lattice;
 use crate::mesh::loops::CellLoop;
 use crate::mesh::signs::BLOCK;
@@ -123,13 +124,23 @@ impl<'a> Samples<'a> {
         (self.positions[vertex as usize], self.normals[vertex as usize])
     }
 
+    /// How many vertices there are.
+    pub(super) fn count(&self) -> usize {
+        self.positions.len()
+    }
+
+    #[inline(always)]
+    pub(super) fn position(&self, vertex: u32) -> Vec3 {
+        self.positions[vertex as usize]
+    }
+
     #[inline(always)]
     pub(super) fn normal(&self, vertex: u32) -> Vec3 {
         self.normals[vertex as usize]
     }
 
-    /// By block, whether the normals at the vertices of its cells differ by more than those of a
-    /// smooth cell.
+    /// By block, whether the normals at the vertices of its cells differ by more than those of cells
+    /// that are nearly flat.
     pub(super) fn spread(&self) -> Vec<bool> {
         let count = self.blocks().len();
         let first = |n: usize| if n < count { self.parts.part(n).first as usize } else { self.normals.len() };
@@ -144,7 +155,7 @@ impl<'a> Samples<'a> {
             .map(|n| {
                 let upper = (1..7).filter_map(|bits| self.parts.neighbours.upper(n, bits));
                 let [low, high] = upper.map(|other| own[other]).fold(own[n], hull);
-                (high - low).length_squared() > 2.0 - 2.0 * SMOOTH
+                (high - low).length_squared() > SPREAD * SPREAD
             })
             .collect()
     }
@@ -191,9 +202,14 @@ impl<'a> Samples<'a> {
     /// The position of a point as f32, strictly inside of the box of cells from `low` up to `high`,
     /// exclusive.
     pub(super) fn inside(&self, at: DVec3, low: [u32; 3], high: [u32; 3]) -> Vec3 {
+        self.held(self.world(at), low, high)
+    }
+
+    /// The same of a point in length units.
+    pub(super) fn held(&self, at: DVec3, low: [u32; 3], high: [u32; 3]) -> Vec3 {
         let (low, high) = (self.node(low), self.node(high));
         let low = Vec3::new(low.x.next_up(), low.y.next_up(), low.z.next_up());
         let high = Vec3::new(high.x.next_down(), high.y.next_down(), high.z.next_down());
-        self.limited(self.world(at)).as_vec3().clamp(low, high)
+        self.limited(at).as_vec3().clamp(low, high)
     }
 }

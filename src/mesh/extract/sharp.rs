@@ -26,7 +26,8 @@
 //! planes rounded, rounding keeps order, and feature points are moved strictly between the rounded
 //! planes.
 //!
-//! [Regions](super::region) of several cells have fans as well.
+//! [Regions](super::region) of several cells have fans as well, and so have smooth cells that are strongly
+//! [curved](super::bulge).
 //!
 //! Limits: cells with several loops stay as the table has them, or as that of the opposite case
 //! (see [`joined`](super::joined)). Where a crease passes an empty cell and no region comes about, it is
@@ -34,16 +35,18 @@
 
 use std::ops::Range;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::Sampler;
+use super::bulge::{Bulge, Ring, around, is_flat};
 use super::join::Corners;
 use super::joined::Joined;
-use super::region::{Region, Span, regions};
+use super::region::{Region, regions};
 use super::samples::{Samples, cell_number, split_cell};
-use crate::mesh::feature::{Candidate, Side, is_smooth, refine};
-use crate::mesh::loops::{CellLoop, LONGEST};
+use super::span::Span;
+use crate::mesh::feature::{Candidate, Side, refine};
+use crate::mesh::loops::CellLoop;
 use crate::mesh::meter::Meter;
 use crate::mesh::signs::for_each_cell;
 use crate::mesh::table::CaseTable;
@@ -88,6 +91,10 @@ pub(super) struct Fans {
     pub(super) segments: Vec<Segment>,
     /// Points of creases between two fans.
     pub(super) points: Vec<Vec3>,
+    /// Smooth cells with a vertex in their middle.
+    bulges: Vec<Bulge>,
+    /// The number of the first of these vertices.
+    first_bulge: u32,
     blocks: Vec<OfBlock>,
     /// The vertices within regions, which no triangle has any more; ascending.
     pub(super) unused: Vec<u32>,
@@ -96,8 +103,10 @@ pub(super) struct Fans {
 /// The fans of a block.
 #[derive(Clone, Default)]
 struct OfBlock {
-    /// Those that are listed with it.
+    /// Those that are listed with it: of creases and corners.
     listed: Range<usize>,
+    /// Its bulges.
+    bulges: Range<usize>,
     /// The cells that have a fan, by number, and which; ascending.
     cells: Vec<(u16, u32)>,
     /// How many triangles of the table they have no more.
@@ -122,89 +131,110 @@ pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) ->
     });
     let joined = Joined::new(samples, proposed.collect());
     let meter = Meter::new(run, spread.len());
-    let of_block = |(scratch, corners): &mut (S::Scratch, Corners), n: usize| {
+    let of_block = |(scratch, corners, found, points): &mut (S::Scratch, Corners, Special, Vec<DVec3>), n: usize| {
         meter.step()?;
         if !spread[n] && !joined.concerns(samples, n) {
             return Ok(Special::default());
         }
-        let mut special = special(samples, &joined, n, corners);
-        let mut points = Vec::new();
-        refine(&mut special.candidates, &mut special.sides, samples.lattice.step(), |local, out| {
+        found.fill(samples, &joined, n, corners);
+        refine(&mut found.candidates, &mut found.sides, samples.lattice.step(), |local, out| {
             points.clear();
             points.extend(local.iter().map(|p| samples.world(*p)));
-            sampler.slopes(scratch, n, samples.blocks()[n], &points, out)
+            sampler.slopes(scratch, n, samples.blocks()[n], points, out)
         });
-        Ok(special)
+        Ok(found.clone())
     };
-    let special: Result<Vec<Special>, Cancelled> =
-        blocks().map_init(|| (sampler.scratch(), Corners::new()), of_block).collect();
+    let worker = || (sampler.scratch(), Corners::new(), Special::default(), Vec::new());
+    let special: Result<Vec<Special>, Cancelled> = blocks().map_init(worker, of_block).collect();
     let special = special?;
     let regions = regions(samples, &special, &joined, run)?;
     Fans::new(samples, special, regions, run)
 }
 
 /// The cells of a block that do not have the patches of the table.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Special {
     /// Those with a single loop, in order.
     pub(super) candidates: Vec<Candidate>,
     /// The vertices of all candidates.
     pub(super) sides: Vec<Side>,
+    /// Smooth ones with a vertex in their middle, in order.
+    bulges: Vec<Bulge>,
     /// Those with the patches of the opposite case, by number, and their cases.
     opposite: Vec<(u16, u8)>,
     /// The triangles of all other cells, in their order, if the block has been looked at.
     plain: Option<Vec<[u32; 3]>>,
 }
 
-/// The cells of block `n` around which the normals spread, or faces are joined.
-fn special(samples: &Samples<'_>, joined: &Joined, n: usize, corners: &mut Corners) -> Special {
-    let mut found = Special::default();
-    // What is missing in a neighbour is an error of the second pass.
-    if !samples.parts.number(n, corners) {
-        return found;
-    }
-    let block = samples.blocks()[n];
-    let has_joined = joined.concerns(samples, n);
-    let table = CaseTable::get();
-    let mut plain = Vec::with_capacity(samples.parts.part(n).triangles as usize);
-    let loops = CellLoop::table();
-    let (mut vertices, mut normals) = ([0; LONGEST], [Vec3::ZERO; LONGEST]);
-    for_each_cell(&samples.parts.part(n).signs, |within, case| {
-        let [i, j, k] = within;
-        let cell = [block[0] + i as u32, block[1] + j as u32, block[2] + k as u32];
-        let faces = if has_joined { joined.of(samples, cell, case) } else { 0 };
-        let ids = corners.of_cell(within);
-        let derived;
-        let outline = if faces == 0 {
-            loops[usize::from(case)].as_ref()
-        } else {
-            derived = CellLoop::single(case, faces);
-            derived.as_ref()
-        };
-        if let Some(outline) = outline {
-            let count = outline.len();
-            let mut sum = Vec3::ZERO;
-            for (n, &edge) in outline.edges().iter().enumerate() {
-                let vertex = ids[usize::from(edge & 15)];
-                let normal = samples.normal(vertex);
-                sum += normal;
-                (vertices[n], normals[n]) = (vertex, normal);
-            }
-            // The table knows nothing of joined faces.
-            if faces != 0 || !is_smooth(&normals[..count], sum) {
-                found.candidates.push(samples.candidate(cell, *outline, &vertices[..count], &mut found.sides));
-                return;
-            }
-        } else if faces != 0 {
-            found.opposite.push((cell_number(within), case));
+impl Special {
+    /// Finds those of block `n`: where the normals spread, or faces are joined.
+    fn fill(&mut self, samples: &Samples<'_>, joined: &Joined, n: usize, corners: &mut Corners) {
+        self.candidates.clear();
+        self.sides.clear();
+        self.bulges.clear();
+        self.opposite.clear();
+        let mut plain = self.plain.take().unwrap_or_default();
+        plain.clear();
+        // What is missing in a neighbour is an error of the second pass.
+        if !samples.parts.number(n, corners) {
             return;
         }
-        for &[a, b, c] in table.triangles(case) {
-            plain.push([ids[usize::from(a & 15)], ids[usize::from(b & 15)], ids[usize::from(c & 15)]]);
+        let block = samples.blocks()[n];
+        let has_joined = joined.concerns(samples, n);
+        let (table, loops) = (CaseTable::get(), CellLoop::table());
+        let mut ring = Ring::NONE;
+        for_each_cell(&samples.parts.part(n).signs, |within, case| {
+            let ids = corners.of_cell(within);
+            let outline = loops[usize::from(case)].as_ref();
+            let is_flat = outline.is_none_or(|outline| is_flat(samples, outline.edges(), &ids));
+            if has_joined || !is_flat {
+                let [i, j, k] = within;
+                let cell = [block[0] + i as u32, block[1] + j as u32, block[2] + k as u32];
+                let faces = if has_joined { joined.of(samples, cell, case) } else { 0 };
+                if (faces != 0 || !is_flat) && self.takes(samples, cell, (case, faces), &ids, &mut ring, &mut plain) {
+                    return;
+                }
+            }
+            for triangle in table.triangles(case) {
+                plain.push(triangle.map(|edge| ids[usize::from(edge & 15)]));
+            }
+        });
+        self.plain = Some(plain);
+    }
+
+    /// Lists a cell that is not flat, or has joined faces, if it is not to have the triangles of the table. `ids` are
+    /// the vertices on its edges; `plain` gets the triangles of a bulge.
+    #[inline(never)]
+    fn takes(
+        &mut self,
+        samples: &Samples<'_>,
+        cell: [u32; 3],
+        (case, faces): (u8, u8),
+        ids: &[u32; 16],
+        ring: &mut Ring,
+        plain: &mut Vec<[u32; 3]>,
+    ) -> bool {
+        let number = cell_number(split_cell(cell).1);
+        let Some(outline) = CellLoop::single(case, faces) else {
+            if faces != 0 {
+                self.opposite.push((number, case));
+            }
+            return faces != 0;
+        };
+        ring.take(samples, outline.edges(), ids);
+        // The table knows nothing of joined faces.
+        if faces != 0 || !ring.is_smooth() {
+            self.candidates.push(samples.candidate(cell, outline, ring.vertices(), &mut self.sides));
+            return true;
         }
-    });
-    found.plain = Some(plain);
-    found
+        let Some((at, normal)) = ring.top(samples) else { return false };
+        let at = samples.held(at.as_dvec3(), cell, cell.map(|n| n + 1));
+        let (sides, first) = (outline.len() as u16, plain.len() as u32);
+        self.bulges.push(Bulge { cell: number, sides, first, at, normal });
+        // Its number is not known yet.
+        plain.extend(around(0, ring.vertices()));
+        true
+    }
 }
 
 /// The segments of a cell's loop, whose vertices are in a list.
@@ -225,6 +255,7 @@ impl Fans {
         let mut all = Fans { blocks: vec![OfBlock::default(); samples.blocks().len()], ..Fans::default() };
         all.fans.reserve(special.iter().map(|special| special.candidates.len()).sum());
         all.segments.reserve(special.iter().map(|special| special.sides.len()).sum());
+        all.bulges.reserve(special.iter().map(|special| special.bulges.len()).sum());
         // The cells of regions, by the numbers of their blocks and their own.
         let mut in_region: Vec<(usize, u16)> = Vec::new();
         for &(cell, _) in regions.iter().flat_map(|region| &region.cells) {
@@ -236,7 +267,7 @@ impl Fans {
         // A region is listed with the block of the candidate that asked for it.
         let mut regions = regions.into_iter().peekable();
         let table = CaseTable::get();
-        for (block, Special { candidates, sides, mut opposite, plain }) in special.into_iter().enumerate() {
+        for (block, Special { candidates, sides, bulges, mut opposite, plain }) in special.into_iter().enumerate() {
             run.check()?;
             let (taken, rest) = in_region.split_at(in_region.partition_point(|&(other, _)| other == block));
             in_region = rest;
@@ -254,8 +285,7 @@ impl Fans {
                 let (_, within) = split_cell(candidate.cell);
                 let number = cell_number(within);
                 if is_free(number) {
-                    all.blocks[block].cells.push((number, all.fans.len() as u32));
-                    all.blocks[block].dropped += table.triangles(signs.case(within)).len();
+                    all.hold(block, number, table.triangles(signs.case(within)).len());
                     let span = Span::single(candidate.cell);
                     let at = samples.inside(candidate.at, span.low, span.high);
                     all.add(block, segments(candidate, &sides), span, at);
@@ -267,13 +297,31 @@ impl Fans {
                 all.add(block, region.segments.into_iter(), region.span, region.at);
             }
             all.blocks[block].listed = start..all.fans.len();
+            let start = all.bulges.len();
+            all.bulges.extend(bulges.iter().filter(|bulge| is_free(bulge.cell)));
+            all.blocks[block].bulges = start..all.bulges.len();
         }
         all.unused.sort_unstable();
         for block in &mut all.blocks {
             block.cells.sort_unstable();
         }
         all.turn(samples, run)?;
+        all.number_bulges(samples.count() as u32);
         Ok(all)
+    }
+
+    /// Numbers the vertices of bulges, which follow those of fans, which follow `count` others.
+    fn number_bulges(&mut self, count: u32) {
+        self.first_bulge = count + (self.fans.len() + self.points.len()) as u32;
+        let (first, bulges) = (self.first_bulge, &self.bulges);
+        self.blocks.par_iter_mut().for_each(|block| {
+            let Some(plain) = &mut block.plain else { return };
+            for n in block.bulges.clone() {
+                let Bulge { sides, first: place, .. } = bulges[n];
+                let triangles = &mut plain[place as usize..][..usize::from(sides)];
+                triangles.iter_mut().for_each(|triangle| triangle[0] = first + n as u32);
+            }
+        });
     }
 
     /// Notes that the next fan takes the place of the patches of cells, each with the number of its triangles.
@@ -281,10 +329,15 @@ impl Fans {
         for &(cell, count) in cells {
             let (block, within) = split_cell(cell);
             if let Some(block) = samples.find(block) {
-                self.blocks[block].cells.push((cell_number(within), self.fans.len() as u32));
-                self.blocks[block].dropped += count;
+                self.hold(block, cell_number(within), count);
             }
         }
+    }
+
+    /// Notes that the next fan takes the place of the patch of a cell, with the number of its triangles.
+    fn hold(&mut self, block: usize, number: u16, count: usize) {
+        self.blocks[block].cells.push((number, self.fans.len() as u32));
+        self.blocks[block].dropped += count;
     }
 
     fn add(&mut self, block: usize, segments: impl Iterator<Item = Segment>, span: Span, at: Vec3) {
@@ -304,7 +357,7 @@ impl Fans {
         segment.across.is_some_and(|other| other as usize >= self.fans.len())
     }
 
-    /// The vertices that fans add, feature points first, with the normals that stand for all their sides.
+    /// The vertices that fans add, feature points first and bulges last, with the normals that stand for all their sides.
     pub(super) fn vertices(&self) -> impl Iterator<Item = (Vec3, Vec3)> {
         let normal = |fan| self.of(fan).iter().map(|segment| segment.normal).sum::<Vec3>().normalize_or_zero();
         let mut between = vec![Vec3::ZERO; self.points.len()];
@@ -314,7 +367,8 @@ impl Fans {
         }
         let between = between.into_iter().map(Vec3::normalize_or_zero);
         let centres = (0..self.fans.len()).map(move |fan| (self.fans[fan].at, normal(fan)));
-        centres.chain(self.points.iter().copied().zip(between))
+        let bulges = self.bulges.iter().map(|bulge| (bulge.at, bulge.normal));
+        centres.chain(self.points.iter().copied().zip(between)).chain(bulges)
     }
 
     /// The triangles of a block's cells that have those of the table, if they are listed already.
@@ -333,6 +387,12 @@ impl Fans {
         fans.flat_map(|fan| self.of(fan)).map(|segment| 1 + usize::from(self.is_bent(segment))).sum()
     }
 
+    /// The bulges of a block: the cells by number, and the vertices.
+    pub(super) fn bulges(&self, block: usize) -> impl Iterator<Item = (u16, u32)> {
+        let bulges = self.blocks.get(block).map_or(0..0, |block| block.bulges.clone());
+        bulges.map(|n| (self.bulges[n].cell, self.first_bulge + n as u32))
+    }
+
     /// How many triangles a block has, which has `count` without fans.
     pub(super) fn count(&self, block: usize, count: usize) -> usize {
         let Some(of_block) = self.blocks.get(block) else { return count };
@@ -340,7 +400,14 @@ impl Fans {
         let triangles = |case: u8| table.triangles(case).len();
         let gone: usize = of_block.opposite.iter().map(|&(_, case)| triangles(case)).sum();
         let come: usize = of_block.opposite.iter().map(|&(_, case)| triangles(!case)).sum();
-        count + self.listed(block..block + 1) + come - of_block.dropped - gone
+        // A ring around a vertex has two triangles more than one without.
+        let more = 2 * of_block.bulges.len();
+        count + self.listed(block..block + 1) + more + come - of_block.dropped - gone
+    }
+
+    /// Whether all cells of a block have the triangles of the table.
+    pub(super) fn is_plain(&self, block: usize) -> bool {
+        self.cells(block).is_empty() && self.opposite(block).is_empty() && self.bulges(block).next().is_none()
     }
 
     /// The cells of a block that have the patches of the opposite case, by number.

@@ -1,0 +1,170 @@
+//! Smooth cells whose triangles would be too far off the surface: a vertex in their middle.
+//!
+//! ```text
+//!        m  ___  n       The normals m, n … at the vertices p, q … of a cell's loop tell how far the surface is
+//!        \.' c './       above the middle of the loop. If that is too much, the cell has triangles from
+//!         p-----q        there, from c, to the segments of the loop.
+//! ```
+//!
+//! Let the surface be at the height h(x) = −½ xᵀKx. To first order its normal is (Kx, 1). With r the way from the
+//! middle of some points of it to each of them, the surface is above the middle by half the mean of rᵀKr, which is
+//! half the mean of n·(p − middle) over the points. Where it bends both ways, as a saddle does, the terms have both
+//! signs; the mean of their sizes tells how far it may be from triangles.
+//!
+//! What is of third order is left out. The triangles around c are off by half as much as those of the table, or
+//! less, and no more values of the field are needed for them. That fans are embedded is shown in
+//! [`sharp`](super::sharp).
+
+use glam::Vec3;
+
+use super::samples::Samples;
+use crate::mesh::feature::{HALF_SMOOTH, differ};
+use crate::mesh::loops::LONGEST;
+
+/// The distance of a loop's middle from the surface, in cells, beyond which there is a vertex.
+const FAR: f32 = 0.01;
+
+/// If all normals of a cell are closer to one of them than this, the cell is nearly flat. Typical ones are off by
+/// 0.008 cells then.
+pub(super) const SPREAD: f32 = 0.033;
+
+/// The cosine of that angle.
+const FLAT: f32 = 1.0 - 0.5 * SPREAD * SPREAD;
+
+/// Whether the normals at the vertices on some edges, given those of a cell, are those of a cell that is nearly flat.
+#[inline(always)]
+pub(super) fn is_flat(samples: &Samples<'_>, edges: &[u8], ids: &[u32; 16]) -> bool {
+    let normal = |edge: u8| samples.normal(ids[usize::from(edge & 15)]);
+    let [first, rest @ ..] = edges else { return true };
+    let first = normal(*first);
+    let mut least = 1.0;
+    for &edge in rest {
+        let along = first.dot(normal(edge));
+        least = if along < least { along } else { least };
+    }
+    least > FLAT
+}
+
+/// The vertices on a cell's loop, in order.
+pub(super) struct Ring {
+    vertices: [u32; LONGEST],
+    normals: [Vec3; LONGEST],
+    len: usize,
+    /// The sum of the normals.
+    sum: Vec3,
+    /// The least of the products of the sum with the normals.
+    least: f32,
+}
+
+impl Ring {
+    /// A ring without vertices.
+    pub(super) const NONE: Ring =
+        Ring { vertices: [0; LONGEST], normals: [Vec3::ZERO; LONGEST], len: 0, sum: Vec3::ZERO, least: 0.0 };
+
+    /// Takes the vertices on other edges, given those of a cell by their edges.
+    #[inline(always)]
+    pub(super) fn take(&mut self, samples: &Samples<'_>, edges: &[u8], ids: &[u32; 16]) {
+        let mut sum = Vec3::ZERO;
+        for ((vertex, normal), &edge) in self.vertices.iter_mut().zip(&mut self.normals).zip(edges) {
+            *vertex = ids[usize::from(edge & 15)];
+            *normal = samples.normal(*vertex);
+            sum += *normal;
+        }
+        self.len = edges.len();
+        let mut least = f32::INFINITY;
+        for normal in self.normals() {
+            let along = sum.dot(*normal);
+            least = if along < least { along } else { least };
+        }
+        (self.sum, self.least) = (sum, least);
+    }
+
+    pub(super) fn vertices(&self) -> &[u32] {
+        &self.vertices[..self.len]
+    }
+
+    fn normals(&self) -> &[Vec3] {
+        &self.normals[..self.len]
+    }
+
+    /// Whether no two normals differ as those of a crease do.
+    #[inline(always)]
+    pub(super) fn is_smooth(&self) -> bool {
+        // If all are within half the angle of their mean, no two differ by more than it.
+        let is_narrow = self.least > 0.0 && self.least * self.least > HALF_SMOOTH * self.sum.length_squared();
+        is_narrow || !differ(self.normals())
+    }
+
+    /// The point of the surface above the middle, if the two are far from each other, and the unit normal there.
+    #[inline(always)]
+    pub(super) fn top(&self, samples: &Samples<'_>) -> Option<(Vec3, Vec3)> {
+        let mut positions = [Vec3::ZERO; LONGEST];
+        let list = positions.iter_mut().zip(self.vertices());
+        list.for_each(|(at, &vertex)| *at = samples.position(vertex));
+        let (height, far, middle) = height(&positions[..self.len], self.normals());
+        (far > FAR * samples.lattice.step() as f32).then(|| {
+            let normal = self.sum.normalize_or_zero();
+            (middle + height * normal, normal)
+        })
+    }
+}
+
+/// How far the surface is above the middle of points on it, given with the normals there; how far it may be from
+/// triangles between them; and the middle.
+#[inline(always)]
+fn height(positions: &[Vec3], normals: &[Vec3]) -> (f32, f32, Vec3) {
+    let share = 1.0 / positions.len() as f32;
+    let middle = share * positions.iter().sum::<Vec3>();
+    let (mut height, mut far) = (0.0, 0.0);
+    for (at, normal) in positions.iter().zip(normals) {
+        let rise = normal.dot(*at - middle);
+        height += rise;
+        far += rise.abs();
+    }
+    (0.5 * share * height, 0.5 * share * far, middle)
+}
+
+/// A smooth cell with a vertex in its middle.
+#[derive(Clone, Copy)]
+pub(super) struct Bulge {
+    /// The cell, by its number in the block.
+    pub(super) cell: u16,
+    /// How many segments its loop has.
+    pub(super) sides: u16,
+    /// The place of its first triangle among the plain ones of the block.
+    pub(super) first: u32,
+    pub(super) at: Vec3,
+    pub(super) normal: Vec3,
+}
+
+/// The triangles around a vertex, to the segments of a ring.
+pub(super) fn around(centre: u32, ring: &[u32]) -> impl ExactSizeIterator<Item = [u32; 3]> {
+    let next = |n: usize| ring.get(n + 1).unwrap_or(&ring[0]);
+    ring.iter().enumerate().map(move |(n, &from)| [centre, from, *next(n)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_said_of_heights_holds() {
+        // A ball 16 cells across, and a saddle.
+        let ball = |x: f32, y: f32| {
+            let normal = Vec3::new(x, y, 8.0).normalize();
+            (8.0 * normal, normal)
+        };
+        let saddle = |x: f32, y: f32| (Vec3::new(x, y, (x * x - y * y) / 16.0), Vec3::new(-x, y, 8.0).normalize());
+        let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+        let look =
+            |corners: [(Vec3, Vec3); 4]| height(&corners.map(|corner| corner.0), &corners.map(|corner| corner.1));
+        let (above, far, middle) = look(square.map(|(x, y)| ball(x, y)));
+        assert!((middle.length() + above - 8.0).abs() < 1e-3 && far > 0.03, "{above}, {far}");
+        let (above, far, middle) = look(square.map(|(x, y)| saddle(x - 0.5, y - 0.5)));
+        assert!(middle.length() < 1e-6 && above.abs() < 1e-3, "{above}");
+        assert!(far < 1e-6, "the vertices are at one height: {far}");
+        let diamond = [(0.5, 0.0), (0.0, 0.5), (-0.5, 0.0), (0.0, -0.5)];
+        let (above, far, _) = look(diamond.map(|(x, y)| saddle(x, y)));
+        assert!(above.abs() < 1e-3 && far > 0.01, "{above}, {far}");
+    }
+}

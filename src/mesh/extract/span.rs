@@ -1,0 +1,76 @@
+//! Boxes of cells.
+
+use glam::DVec3;
+
+/// A box of cells: from the first to the last, exclusive.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct Span {
+    pub(super) low: [u32; 3],
+    pub(super) high: [u32; 3],
+}
+
+impl Span {
+    pub(super) fn single(cell: [u32; 3]) -> Span {
+        let [x, y, z] = cell;
+        Span { low: cell, high: [x + 1, y + 1, z + 1] }
+    }
+
+    /// The smallest that holds both.
+    pub(super) fn union(&self, other: &Span) -> Span {
+        let low = std::array::from_fn(|axis| self.low[axis].min(other.low[axis]));
+        Span { low, high: std::array::from_fn(|axis| self.high[axis].max(other.high[axis])) }
+    }
+
+    /// What both hold, if there is any.
+    pub(super) fn intersection(&self, other: &Span) -> Span {
+        let low = std::array::from_fn(|axis| self.low[axis].max(other.low[axis]));
+        Span { low, high: std::array::from_fn(|axis| self.high[axis].min(other.high[axis])) }
+    }
+
+    /// Whether it has at most so many cells along each axis.
+    pub(super) fn is_small(&self, most: u32) -> bool {
+        (0..3).all(|axis| self.high[axis] - self.low[axis] <= most)
+    }
+
+    /// As large as another along some axes, given as bits.
+    pub(super) fn grown(mut self, other: &Span, axes: usize) -> Span {
+        for axis in (0..3).filter(|axis| axes >> axis & 1 == 1) {
+            (self.low[axis], self.high[axis]) = (other.low[axis], other.high[axis]);
+        }
+        self
+    }
+
+    /// Where a line from within leaves it: the next cell, and for how long the line is in that.
+    pub(super) fn exit(&self, from: DVec3, along: DVec3) -> Option<([u32; 3], f64)> {
+        let (axis, start) = self.way_out(from, along);
+        let at = from + start * along;
+        let mut cell = std::array::from_fn(|n| (at[n].max(0.0) as u32).clamp(self.low[n], self.high[n] - 1));
+        cell[axis] = if along[axis] > 0.0 { self.high[axis] } else { self.low[axis].checked_sub(1)? };
+        let (_, end) = Span::single(cell).way_out(from, along);
+        Some((cell, end - start))
+    }
+
+    /// The axis along which a line leaves it, and after how long.
+    fn way_out(&self, from: DVec3, along: DVec3) -> (usize, f64) {
+        let (mut axis, mut least) = (0, f64::INFINITY);
+        for n in 0..3 {
+            let side = f64::from(if along[n] > 0.0 { self.high[n] } else { self.low[n] });
+            let part = (side - from[n]) / along[n];
+            if part < least {
+                (axis, least) = (n, part);
+            }
+        }
+        (axis, least)
+    }
+
+    pub(super) fn cells(self) -> impl Iterator<Item = [u32; 3]> {
+        let Span { low, high } = self;
+        let rows = (low[2]..high[2]).flat_map(move |k| (low[1]..high[1]).map(move |j| [j, k]));
+        rows.flat_map(move |[j, k]| (low[0]..high[0]).map(move |i| [i, j, k]))
+    }
+
+    /// Its corners, in cells.
+    pub(super) fn corners(&self) -> [DVec3; 2] {
+        [self.low, self.high].map(|cell| DVec3::from_array(cell.map(f64::from)))
+    }
+}
