@@ -10,8 +10,9 @@
 //! ```
 //!
 //! Once along each axis a cell is halved even where that is not its longest side, which parts the
-//! front of a plate from its back. A cell is no larger than what its leaves' boxes leave of it. In a small union of convex
-//! leaves rays look for each leaf by itself, in the part of the cell that the leaf may reach, and
+//! front of a plate from its back. Where a leaf is long, a cell is halved four times in one go, along
+//! the axes that the leaf depends on: it is narrowed to all of the sixteen boxes together. A cell is no
+//! larger than what its leaves' boxes leave of it. In a small union of convex leaves rays look for each leaf by itself, in the part of the cell that the leaf may reach, and
 //! the nearest crossing counts: nothing is divided further to part the leaves.
 //!
 //! All programs of a solid agree on the sign of any point, and the parts of a ray in the boxes
@@ -36,6 +37,7 @@ pub(super) struct Cells {
     /// Boxes are narrowed with this much room on each side, for the rounding of points.
     margin: f64,
     program: Program,
+    /// The tree in parts, for parallel rays along which a long leaf does not change.
     still: OnceLock<Option<Box<Still>>>,
 }
 
