@@ -95,9 +95,13 @@ impl Ring {
         is_narrow || !differ(self.normals())
     }
 
-    /// The point of the surface above the middle, if the two are far from each other, and the unit normal there.
+    /// The point of the surface above the middle, if the two are far from each other, and the unit normal there. A
+    /// single triangle is small, and stays.
     #[inline(always)]
     pub(super) fn top(&self, samples: &Samples<'_>) -> Option<(Vec3, Vec3)> {
+        if self.len == 3 {
+            return None;
+        }
         let mut positions = [Vec3::ZERO; LONGEST];
         let list = positions.iter_mut().zip(self.vertices());
         list.for_each(|(at, &vertex)| *at = samples.position(vertex));
