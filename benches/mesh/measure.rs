@@ -15,12 +15,12 @@ pub struct Cost {
     pub megabytes: f64,
 }
 
-/// Runs a job on a pool of some threads, several times if it is short, and gives its cost and
-/// its result.
+/// Runs a job on a pool of some threads several times, more often if it is short, and gives its cost
+/// and its result.
 pub fn measured<T: Send>(threads: usize, mut job: impl FnMut() -> T + Send) -> (Cost, T) {
-    /// Seconds to spend at least, and runs at most.
+    /// Seconds to spend at least, and runs at least and at most.
     const TURN: f64 = 2.0;
-    const RUNS: usize = 15;
+    const RUNS: [usize; 2] = [3, 15];
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
     pool.install(|| {
         let before = memory("VmRSS:");
@@ -39,7 +39,7 @@ pub fn measured<T: Send>(threads: usize, mut job: impl FnMut() -> T + Send) -> (
             if runs == 1 {
                 megabytes = memory("VmHWM:") - before;
             }
-            if spent > TURN || runs == RUNS {
+            if spent > TURN && runs >= RUNS[0] || runs == RUNS[1] {
                 return (Cost { seconds, megabytes }, result);
             }
         }

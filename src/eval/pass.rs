@@ -48,6 +48,9 @@ pub(super) struct Asked {
     pub(super) value: bool,
 }
 
+/// What is kept of most programs: lists have room for as many from the start.
+const FEW: usize = 32;
+
 /// One narrowing under way.
 pub(super) struct Pass<'a> {
     program: &'a Program,
@@ -82,8 +85,8 @@ impl<'a> Pass<'a> {
             near: vec![None; count],
             signs: vec![Sign::Unknown; count],
             values: vec![None; count],
-            nodes: Vec::new(),
-            list: Vec::new(),
+            nodes: Vec::with_capacity(count.min(FEW)),
+            list: Vec::with_capacity(program.operands.len().min(FEW)),
             simpler: Vec::new(),
         }
     }
@@ -125,7 +128,7 @@ impl<'a> Pass<'a> {
             if let Kind::Join { frame, hierarchy: Some(hierarchy), .. } = &node.kind {
                 let mut region = Bounds::EMPTY;
                 program.zone_in(self.zones, *frame, self.world).each(|zone| region = region.union(&hull_of(zone)));
-                let mut near = Vec::new();
+                let mut near = Vec::with_capacity(operands.len().min(FEW));
                 hierarchy.visit(&region, |operand| near.push(operand as u32));
                 for &operand in &near {
                     self.asked[operands[operand as usize].node()].sign = true;

