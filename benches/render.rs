@@ -4,7 +4,7 @@
 //! orthographic along z over the model's cube, one ray a pixel, distance, normal and owner. Our
 //! first picture prepares the scene, the next ones reuse it; fidget's VM and JIT start each time
 //! from a shape that is made already. Then come shaded perspective pictures, plain (one ray a
-//! pixel, no shadows) and with all that is on by default. Every figure is the median of several
+//! pixel, no shadows, no occlusion) and with all that is on by default. Every figure is the median of several
 //! rounds in which the contestants alternate. The ratio is that of the faster of fidget's two to
 //! our first picture.
 //!
@@ -224,7 +224,7 @@ fn shaded(choice: &Choice) {
                 let run = Run { threads, ..Run::default() };
                 let camera = Camera::framing(&model.solid.bounds().expect("the model is valid"));
                 let full = RenderSettings { width: size, height: size, ..RenderSettings::default() };
-                let plain = RenderSettings { samples: 1, shadows: false, ..full.clone() };
+                let plain = RenderSettings { samples: 1, shadows: false, occlusion: false, ..full.clone() };
                 let kept = scene(&model.solid, &run);
                 let mut all: Vec<Contestant<'_>> = vec![
                     ("plain", Box::new(|| drop(black_box(model.solid.render_with(&camera, &plain, &run))))),
