@@ -4,9 +4,9 @@
 //! orthographic along z over the model's cube, one ray a pixel, distance, normal and owner. Our
 //! first picture prepares the scene, the next ones reuse it; fidget's VM and JIT start each time
 //! from a shape that is made already. Then come shaded perspective pictures, plain (one ray a
-//! pixel, no shadows, no occlusion) and with all that is on by default. Every figure is the median of several
-//! rounds in which the contestants alternate. The ratio is that of the faster of fidget's two to
-//! our first picture.
+//! pixel, no shadows, no occlusion) and with all that is on by default. Every figure is the median
+//! of several rounds in which the contestants alternate. The ratio is that of the faster of
+//! fidget's two to our first picture.
 //!
 //! fidget is given each model lowered by `Solid::to_fidget` and, for M1 to M5, with as few
 //! operations as it takes; the faster counts. M3 and M5 take it minutes, so that it draws them

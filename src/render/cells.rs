@@ -12,8 +12,9 @@
 //! Once along each axis a cell is halved even where that is not its longest side, which parts the
 //! front of a plate from its back. Where a leaf is long, a cell is halved four times in one go, along
 //! the axes that the leaf depends on: it is narrowed to all of the sixteen boxes together. A cell is no
-//! larger than what its leaves' boxes leave of it. In a small union of convex leaves rays look for each leaf by itself, in the part of the cell that the leaf may reach, and
-//! the nearest crossing counts: nothing is divided further to part the leaves.
+//! larger than what its leaves' boxes leave of it. In a small union of convex leaves rays look for each
+//! leaf by itself, in the part of the cell that the leaf may reach, and the nearest crossing counts:
+//! nothing is divided further to part the leaves.
 //!
 //! All programs of a solid agree on the sign of any point, and the parts of a ray in the boxes
 //! abut to the bit, as the crossings with a plane are computed alike on both sides of it: a

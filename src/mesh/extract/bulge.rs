@@ -11,8 +11,8 @@
 //! half the mean of n·(p − middle) over the points. Where it bends both ways, as a saddle does, the terms have both
 //! signs; the mean of their sizes tells how far it may be from triangles.
 //!
-//! What is of third order is left out. The triangles around c are off by half as much as those of the table, or
-//! less, and no more values of the field are needed for them. That fans are embedded is shown in
+//! What is of third order is left out. The triangles around c are off by about half as much as those of the table,
+//! and no more values of the field are needed for them. That fans are embedded is shown in
 //! [`sharp`](super::sharp).
 
 use glam::Vec3;
@@ -61,7 +61,7 @@ impl Ring {
     pub(super) const NONE: Ring =
         Ring { vertices: [0; LONGEST], normals: [Vec3::ZERO; LONGEST], len: 0, sum: Vec3::ZERO, least: 0.0 };
 
-    /// Takes the vertices on other edges, given those of a cell by their edges.
+    /// Becomes that of some edges; `ids` are the vertices on all edges of the cell.
     #[inline(always)]
     pub(super) fn take(&mut self, samples: &Samples<'_>, edges: &[u8], ids: &[u32; 16]) {
         let mut sum = Vec3::ZERO;

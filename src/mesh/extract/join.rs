@@ -96,7 +96,7 @@ impl<'a> Parts<'a> {
     ) -> Result<Mesh, ExtractError> {
         let (mut positions, mut normals) = (std::mem::take(&mut self.positions), std::mem::take(&mut self.normals));
         let vertices = positions.len();
-        let fans = match features {
+        let mut fans = match features {
             Features::Smooth => Fans::default(),
             Features::Sharp => {
                 let samples = Samples::new(&self, lattice, sampler.limits(), [&positions, &normals]);
@@ -110,6 +110,7 @@ impl<'a> Parts<'a> {
         }
         positions.extend(more);
         normals.extend(more_normals);
+        fans.number_bulges(vertices as u32);
 
         let run = run.stage(0.6, 1.0);
         let meter = Meter::new(&run, self.blocks.len());

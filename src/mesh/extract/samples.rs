@@ -124,11 +124,6 @@ impl<'a> Samples<'a> {
         (self.positions[vertex as usize], self.normals[vertex as usize])
     }
 
-    /// How many vertices there are.
-    pub(super) fn count(&self) -> usize {
-        self.positions.len()
-    }
-
     #[inline(always)]
     pub(super) fn position(&self, vertex: u32) -> Vec3 {
         self.positions[vertex as usize]

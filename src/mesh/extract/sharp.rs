@@ -113,13 +113,13 @@ struct OfBlock {
     dropped: usize,
     /// The cells that have the patches of the opposite case, by number; ascending.
     opposite: Vec<(u16, u8)>,
-    /// The triangles of the cells that have those of the table, if they are listed already.
+    /// The triangles of its bulges, and of the cells that have those of the table, if they are listed already.
     plain: Option<Vec<[u32; 3]>>,
 }
 
 /// Finds the cells that hold creases and corners, and gives them fans.
 pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) -> Result<Fans, Cancelled> {
-    // Most blocks are settled as a whole.
+    // Blocks that are nearly flat are settled as a whole.
     let spread = samples.spread();
     if !spread.contains(&true) {
         return Ok(Fans::default());
@@ -162,7 +162,7 @@ pub(super) struct Special {
     bulges: Vec<Bulge>,
     /// Those with the patches of the opposite case, by number, and their cases.
     opposite: Vec<(u16, u8)>,
-    /// The triangles of all other cells, in their order, if the block has been looked at.
+    /// The triangles of bulges and of all other cells, in their order, if the block has been looked at.
     plain: Option<Vec<[u32; 3]>>,
 }
 
@@ -306,12 +306,12 @@ impl Fans {
             block.cells.sort_unstable();
         }
         all.turn(samples, run)?;
-        all.number_bulges(samples.count() as u32);
         Ok(all)
     }
 
-    /// Numbers the vertices of bulges, which follow those of fans, which follow `count` others.
-    fn number_bulges(&mut self, count: u32) {
+    /// Numbers the vertices of bulges, which follow those of fans, which follow `count` others; together they
+    /// are no more than indices of 32 bits.
+    pub(super) fn number_bulges(&mut self, count: u32) {
         self.first_bulge = count + (self.fans.len() + self.points.len()) as u32;
         let (first, bulges) = (self.first_bulge, &self.bulges);
         self.blocks.par_iter_mut().for_each(|block| {
@@ -357,7 +357,8 @@ impl Fans {
         segment.across.is_some_and(|other| other as usize >= self.fans.len())
     }
 
-    /// The vertices that fans add, feature points first and bulges last, with the normals that stand for all their sides.
+    /// The vertices that are added, feature points first and those of bulges last, with the normals that stand for
+    /// all their sides.
     pub(super) fn vertices(&self) -> impl Iterator<Item = (Vec3, Vec3)> {
         let normal = |fan| self.of(fan).iter().map(|segment| segment.normal).sum::<Vec3>().normalize_or_zero();
         let mut between = vec![Vec3::ZERO; self.points.len()];
@@ -371,7 +372,7 @@ impl Fans {
         centres.chain(self.points.iter().copied().zip(between)).chain(bulges)
     }
 
-    /// The triangles of a block's cells that have those of the table, if they are listed already.
+    /// The triangles of a block's bulges, and of its cells that have those of the table, if they are listed already.
     pub(super) fn plain(&self, block: usize) -> Option<&[[u32; 3]]> {
         self.blocks.get(block)?.plain.as_deref()
     }
