@@ -81,7 +81,7 @@ impl Planes {
         let diagonal = DVec3::new(d.y * d.z - e.x * e.x, d.z * d.x - e.y * e.y, d.x * d.y - e.z * e.z);
         let beside = DVec3::new(e.y * e.z - d.x * e.x, e.z * e.x - d.y * e.y, e.x * e.y - d.z * e.z);
         let determinant = d.x * diagonal.x + e.z * beside.z + e.y * beside.y;
-        let free = product(diagonal, beside, b) / determinant;
+        let free = product(diagonal, beside, b) * determinant.recip();
         let is_within = |y: DVec3| y.cmpge(low).all() && y.cmple(high).all();
         if is_within(free) { free } else { self.nearest_on_sides(free, from, weight, low, high) }
     }

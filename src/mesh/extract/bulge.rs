@@ -53,8 +53,10 @@ impl Ring {
         let mut sum = Vec3::ZERO;
         for ((vertex, normal), &edge) in self.vertices.iter_mut().zip(&mut self.normals).zip(edges) {
             *vertex = ids[usize::from(edge & 15)];
-            *normal = samples.normal(*vertex);
-            sum += *normal;
+            // From where it is, not from where it is put: what is stored in parts is slow to be read as a whole.
+            let given = samples.normal(*vertex);
+            sum += given;
+            *normal = given;
         }
         self.len = edges.len();
         let mut least = f32::INFINITY;

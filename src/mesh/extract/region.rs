@@ -317,11 +317,9 @@ impl Known<'_> {
     ) -> Option<()> {
         let (block, within) = split_cell(cell);
         let block = self.samples.find_near(near, block)?;
-        let candidates = self.special.candidates(block);
-        let number = |candidate: &Candidate| cell_number(split_cell(candidate.cell).1);
-        if let Ok(nth) = candidates.binary_search_by_key(&cell_number(within), number) {
-            planes.append(&candidates[nth].planes);
-            patches.add(self.special.segments(block, &candidates[nth]));
+        if let Some(candidate) = self.special.candidate(block, cell_number(within)) {
+            planes.append(&candidate.planes);
+            patches.add(self.special.segments(block, candidate));
             return Some(());
         }
         let faces = self.joined.of(self.samples, cell, case);

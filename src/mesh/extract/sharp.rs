@@ -43,7 +43,7 @@ use super::region::{Region, regions};
 use super::samples::{Samples, cell_number, split_cell};
 use super::span::Span;
 use super::special::{Special, list_of};
-use crate::mesh::feature::{Candidate, Segment};
+use crate::mesh::feature::Segment;
 use crate::mesh::table::CaseTable;
 use crate::run::{Cancelled, Run};
 
@@ -136,8 +136,7 @@ impl Fans {
             let is_free = |number: u16| taken.binary_search(&(block, number)).is_err();
             let candidates = special.candidates(block);
             // Regions may hold other cells than candidates.
-            let number = |candidate: &Candidate| cell_number(split_cell(candidate.cell).1);
-            let is_candidate = |&(_, cell): &(usize, u16)| candidates.binary_search_by_key(&cell, number).is_ok();
+            let is_candidate = |&(_, cell): &(usize, u16)| special.candidate(block, cell).is_some();
             let opposite: Vec<(u16, u8)> =
                 special.opposite(block).iter().copied().filter(|&(number, _)| is_free(number)).collect();
             let start = all.fans.len();

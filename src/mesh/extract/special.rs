@@ -35,6 +35,8 @@ pub(super) struct Special(Vec<Lists>);
 struct Lists {
     /// Those with a single loop whose normals spread, or that have joined faces.
     candidates: Vec<Candidate>,
+    /// Their numbers in their blocks.
+    numbers: Vec<u16>,
     /// The segments of all candidates.
     segments: Vec<Segment>,
     /// Smooth ones with a vertex in their middle.
@@ -115,6 +117,13 @@ impl Special {
         &lists.candidates[of_block.candidates.clone()]
     }
 
+    /// The candidate of a block that is a cell, given by its number.
+    pub(super) fn candidate(&self, block: usize, cell: u16) -> Option<&Candidate> {
+        let (lists, of_block) = self.at(block);
+        let nth = lists.numbers[of_block.candidates.clone()].binary_search(&cell).ok()?;
+        Some(&lists.candidates[of_block.candidates.start + nth])
+    }
+
     /// The segments of a candidate of a block.
     #[inline]
     pub(super) fn segments(&self, block: usize, candidate: &Candidate) -> &[Segment] {
@@ -193,6 +202,7 @@ impl<S: Sampler> Worker<S> {
 impl Lists {
     fn clear(&mut self) {
         self.candidates.clear();
+        self.numbers.clear();
         self.segments.clear();
         self.bulges.clear();
         self.opposite.clear();
@@ -229,6 +239,7 @@ impl Lists {
                     Some(outline) => {
                         ring.take(samples, outline.edges(), &ids);
                         let lists = (&mut self.segments, &mut *places);
+                        self.numbers.push(cell_number(within));
                         self.candidates.push(samples.candidate(cell(), &outline, ring.vertices(), lists));
                     }
                     None => self.opposite.push((cell_number(within), case)),
@@ -268,15 +279,17 @@ impl Lists {
         ring: &Ring,
         places: &mut Vec<Vec3>,
     ) -> bool {
+        let number = cell_number(split_cell(cell).1);
         if !ring.is_smooth() {
             let lists = (&mut self.segments, places);
+            self.numbers.push(number);
             self.candidates.push(samples.candidate(cell, outline, ring.vertices(), lists));
             return true;
         }
         let Some((at, normal)) = ring.top(samples) else { return false };
         let at = samples.held(at.as_dvec3(), cell, cell.map(|n| n + 1));
         let (sides, first) = (outline.len() as u16, self.plain.len() as u32);
-        self.bulges.push(Bulge { cell: cell_number(split_cell(cell).1), sides, first, at, normal });
+        self.bulges.push(Bulge { cell: number, sides, first, at, normal });
         // Its number is not known yet.
         self.plain.extend(around(0, ring.vertices()));
         true
