@@ -15,6 +15,7 @@ mod job;
 mod layers;
 mod lines;
 mod march;
+mod materials;
 mod openness;
 mod picture;
 mod pixels;

@@ -129,15 +129,16 @@ impl<'a> Obstacles<'a> {
             for d in self.shadows.iter().skip(pattern).step_by(PATTERNS) {
                 let direction = (self.key + d.x * t + d.y * b).normalize();
                 // What faces away from a part of the light is dark there by its slope.
-                if direction.dot(spot.normal) > 0.0 {
+                if direction.dot(spot.normal.as_dvec3()) > 0.0 {
                     key.add(if self.facets.hit(origin, direction).is_some() { 1.0 } else { 0.0 });
                 }
             }
         }
-        let (t, b) = spot.normal.any_orthonormal_pair();
+        let normal = spot.normal.as_dvec3();
+        let (t, b) = normal.any_orthonormal_pair();
         for d in self.skies.iter().skip(pattern).step_by(PATTERNS) {
             let up = (1.0 - d.length_squared()).max(0.0).sqrt().max(0.02);
-            let direction = (up * spot.normal + d.x * t + d.y * b).normalize();
+            let direction = (up * normal + d.x * t + d.y * b).normalize();
             // What is far away hides less of the sky: light comes in from its sides.
             let hit = self.facets.hit(origin, direction);
             sky.add(hit.map_or(0.0, |distance| (-distance / (1.2 * self.radius)).exp() as f32));
@@ -148,7 +149,7 @@ impl<'a> Obstacles<'a> {
     /// Of a light without extent, whose shadows' edges would show the facets, the first hits in
     /// the scene decide.
     fn hard(&self, spots: &[Spot], seen: &mut [Openness]) {
-        let lit = |spot: &Spot| self.share(spot) > 0.0 && self.key.dot(spot.normal) > 0.0;
+        let lit = |spot: &Spot| self.share(spot) > 0.0 && self.key.dot(spot.normal.as_dvec3()) > 0.0;
         let asked: Vec<usize> = (0..spots.len()).filter(|&i| lit(&spots[i])).collect();
         let rays: Vec<(DVec3, DVec3)> = asked.iter().map(|&i| (self.start(&spots[i]), self.key)).collect();
         for (&i, hit) in asked.iter().zip(self.scene.first_hits(&rays)) {
@@ -160,7 +161,7 @@ impl<'a> Obstacles<'a> {
 
     /// A hair off the surface.
     fn start(&self, spot: &Spot) -> DVec3 {
-        spot.point + self.scene.hair() * spot.normal
+        spot.point + self.scene.hair() * spot.normal.as_dvec3()
     }
 
     /// How much of what hides light counts at a spot.
