@@ -126,6 +126,7 @@ impl Image {
 }
 
 /// A pixel of linear light, weighted by alpha, as 8-bit sRGB.
+#[inline]
 pub(crate) fn to_8bit([r, g, b, alpha]: [f32; 4]) -> [u8; 4] {
     if alpha.is_nan() || alpha <= 0.0 {
         return [0; 4];

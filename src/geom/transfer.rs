@@ -33,6 +33,7 @@ pub(crate) fn from_linear(c: f32) -> f32 {
 
 /// The byte that is nearest to the sRGB of a linear number: 0 for what is negative or not a number,
 /// 255 for what is beyond 1.
+#[inline]
 pub(crate) fn to_byte(light: f32) -> u8 {
     // Of numbers that are not below another, NaN is one.
     if !(light >= LEAST) {

@@ -19,7 +19,7 @@
 //! others, *Practical realtime strategies for accurate indirect occlusion* (2016), for the light
 //! that bounces out of hollows.
 
-use glam::{DVec3, Vec3, Vec4};
+use glam::{DVec3, Vec3, Vec3A, Vec4};
 
 use super::settings::{Background, RenderSettings, Style, Transfer};
 use super::spot::Spot;
@@ -27,18 +27,18 @@ use crate::geom::to_linear;
 use crate::{Camera, Paint};
 
 /// Irradiances over π, so that a white matt surface that faces the light has this radiance.
-const KEY: Vec3 = Vec3::new(1.00, 0.955, 0.89);
-const FILL: Vec3 = Vec3::new(0.15, 0.17, 0.20);
-const RIM: Vec3 = Vec3::new(0.34, 0.36, 0.40);
-const SKY: Vec3 = Vec3::new(0.40, 0.425, 0.47);
+const KEY: Vec3A = Vec3A::new(1.00, 0.955, 0.89);
+const FILL: Vec3A = Vec3A::new(0.15, 0.17, 0.20);
+const RIM: Vec3A = Vec3A::new(0.34, 0.36, 0.40);
+const SKY: Vec3A = Vec3A::new(0.40, 0.425, 0.47);
 /// What the ground sends back up.
-const BOUNCE: Vec3 = Vec3::new(0.19, 0.18, 0.17);
+const BOUNCE: Vec3A = Vec3A::new(0.19, 0.18, 0.17);
 
 /// What a surface without metal reflects when seen at a right angle.
 const REFLECTANCE: f32 = 0.04;
 
 /// What is left of the background in the deepest shadow.
-const SHADOW: Vec3 = Vec3::new(0.030, 0.033, 0.042);
+const SHADOW: Vec3A = Vec3A::new(0.030, 0.033, 0.042);
 
 /// The pale clay of [`Style::Clay`].
 const CLAY: [u8; 3] = [214, 205, 194];
@@ -59,7 +59,7 @@ impl Openness {
 /// A paint, ready for light.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Material {
-    albedo: Vec3,
+    albedo: Vec3A,
     /// The width of highlights: the square of the roughness.
     width: f32,
 }
@@ -78,12 +78,12 @@ pub(super) struct Studio {
     fill: Vec3,
     rim: Vec3,
     /// Their strengths.
-    lights: [Vec3; 3],
+    lights: [Vec3A; 3],
     sky: f32,
     style: Style,
     transfer: Transfer,
     /// Top and bottom in sRGB from 0 to 1, or nothing.
-    background: Option<[Vec3; 2]>,
+    background: Option<[Vec3A; 2]>,
 }
 
 impl Studio {
@@ -124,7 +124,7 @@ impl Studio {
             Style::Clay => Paint { color: CLAY, roughness: 1.0 }.into(),
             // Pale, so that lines stand out; what nobody painted is paper.
             Style::Technical => {
-                let paper = Vec3::new(0.93, 0.935, 0.94);
+                let paper = Vec3A::new(0.93, 0.935, 0.94);
                 let share = if own { 0.55 } else { 0.0 };
                 Material { albedo: paper.lerp(unit(paint.color).map(to_linear), share), width: 1.0 }
             }
@@ -137,7 +137,7 @@ impl Studio {
         let light = match self.style {
             Style::Studio => self.developed(self.lit(normal, viewer, material, open, 1.0)),
             Style::Clay => self.developed(self.lit(normal, viewer, material, open, 0.0)),
-            Style::Normals => (0.5 + 0.5 * spot.outward()).map(to_linear),
+            Style::Normals => Vec3A::from(0.5 + 0.5 * spot.outward()).map(to_linear),
             Style::Technical => material.albedo * self.flat(normal),
         };
         light.extend(1.0)
@@ -151,12 +151,12 @@ impl Studio {
 
     /// Light that leaves a surface towards the viewer; `polish` is 0 for a surface that only
     /// scatters.
-    fn lit(&self, normal: Vec3, viewer: Vec3, material: &Material, open: Openness, polish: f32) -> Vec3 {
+    fn lit(&self, normal: Vec3, viewer: Vec3, material: &Material, open: Openness, polish: f32) -> Vec3A {
         let cosine = |light: Vec3| normal.dot(light).max(0.0);
         let [key, fill, rim] = self.lights;
         let albedo = material.albedo;
         // Out of hollows comes light of the colour of their walls.
-        let sky = albedo.map(|a| bounced(open.sky, a));
+        let sky = bounced(open.sky, albedo);
         // The fill is a large light: it reaches around the terminator.
         let wrapped = (0.35 + 0.65 * normal.dot(self.fill)).max(0.0);
         let direct = key * (cosine(self.key) * open.key);
@@ -182,24 +182,24 @@ impl Studio {
     }
 
     /// What a surface reflects of the room, blurred as its roughness blurs it.
-    fn room(&self, direction: Vec3, width: f32) -> Vec3 {
+    fn room(&self, direction: Vec3, width: f32) -> Vec3A {
         let sky = BOUNCE.lerp(2.2 * SKY, smooth(-0.35 - width, 0.9 + width, direction.z));
         // Lights with an extent, so that their images are soft shapes and not points.
         let soft_box = |light: Vec3, narrow: f32| {
             let away = 1.0 - direction.dot(light);
-            (-away / (narrow + 1.2 * width)).exp() / (1.0 + 6.0 * width)
+            (-away / (narrow + 1.2 * width)).exp()
         };
         let [key, fill, rim] = self.lights;
-        self.sky * sky
-            + key * 2.6 * soft_box(self.key, 0.05)
-            + fill * 2.0 * soft_box(self.fill, 0.12)
-            + rim * 2.4 * soft_box(self.rim, 0.08)
+        let boxes = key * (2.6 * soft_box(self.key, 0.05))
+            + fill * (2.0 * soft_box(self.fill, 0.12))
+            + rim * (2.4 * soft_box(self.rim, 0.08));
+        self.sky * sky + boxes / (1.0 + 6.0 * width)
     }
 
     /// The background as the ground shows it: darker in shadow. Transparent ground is shadow
     /// and nothing else.
     pub(super) fn ground(&self, background: Vec4, open: Openness) -> Vec4 {
-        let luminance = |c: Vec3| c.dot(Vec3::new(0.2126, 0.7152, 0.0722));
+        let luminance = |c: Vec3A| c.dot(Vec3A::new(0.2126, 0.7152, 0.0722));
         let key = luminance(self.lights[0]) * self.key.z.max(0.0);
         let sky = luminance(self.lights[1]) + self.sky * luminance(SKY);
         let whole = key + sky;
@@ -208,7 +208,7 @@ impl Studio {
         }
         let lit = ((key * open.key + sky * open.sky) / whole).clamp(0.0, 1.0);
         let dark = 1.0 - lit;
-        (background.truncate() * lit + SHADOW * dark).extend(background.w * lit + dark)
+        (Vec3A::from_vec4(background) * lit + SHADOW * dark).extend(background.w * lit + dark)
     }
 
     /// The colour behind the solid; `down` runs from 0 at the top of the picture to 1.
@@ -221,10 +221,10 @@ impl Studio {
     }
 
     /// Light as it is shown.
-    fn developed(&self, light: Vec3) -> Vec3 {
+    fn developed(&self, light: Vec3A) -> Vec3A {
         match self.transfer {
             Transfer::Srgb => light,
-            Transfer::Filmic => light.map(filmic),
+            Transfer::Filmic => filmic(light),
         }
     }
 }
@@ -242,11 +242,11 @@ fn microfacets(half: f32, light: f32, viewer: f32, width: f32) -> f32 {
 
 /// The share of light that leaves a hollow that sees `open` of the sky and whose walls have the
 /// given albedo.
-fn bounced(open: f32, albedo: f32) -> f32 {
+fn bounced(open: f32, albedo: Vec3A) -> Vec3A {
     let a = 2.0404 * albedo - 0.3324;
     let b = -4.7951 * albedo + 0.6417;
     let c = 2.7552 * albedo + 0.6903;
-    open.max(((open * a + b) * open + c) * open)
+    (((open * a + b) * open + c) * open).max(Vec3A::splat(open))
 }
 
 /// From 0 to 1 between two edges, smoothly.
@@ -256,18 +256,21 @@ fn smooth(from: f32, to: f32, x: f32) -> f32 {
 }
 
 /// A number from 0 to 1 for each byte.
-fn unit(color: [u8; 3]) -> Vec3 {
-    Vec3::from_array(color.map(|c| f32::from(c) / 255.0))
+fn unit(color: [u8; 3]) -> Vec3A {
+    Vec3A::from_array(color.map(|c| f32::from(c) / 255.0))
 }
 
 /// A curve with a toe, nearly straight in the middle, and a shoulder towards 1.
-fn filmic(light: f32) -> f32 {
+fn filmic(light: Vec3A) -> Vec3A {
     const TOE: f32 = 0.012;
     const SHOULDER: f32 = 0.66;
     const ROOM: f32 = 1.0 - SHOULDER;
-    let light = light.max(0.0);
+    let light = light.max(Vec3A::ZERO);
     let light = light * light / (light + TOE);
-    if light <= SHOULDER { light } else { 1.0 - ROOM * ((SHOULDER - light) / ROOM).exp() }
+    if light.max_element() <= SHOULDER {
+        return light;
+    }
+    light.map(|l| if l <= SHOULDER { l } else { 1.0 - ROOM * ((SHOULDER - l) / ROOM).exp() })
 }
 
 #[cfg(test)]
