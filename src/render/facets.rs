@@ -63,6 +63,11 @@ struct Block {
     before: [u16; SIDE],
     /// The value at the cell's middle and its slopes a cell, in the cells' order.
     facets: Vec<Vec4>,
+    /// A unit vector out of the solid, and how far along it from the block's corner, in cells, there is
+    /// something beyond a facet: rays that stay above meet none. Infinitely far where the facets face
+    /// all ways.
+    up: Vec3,
+    top: f32,
 }
 
 /// What a thread keeps from block to block.
@@ -188,17 +193,14 @@ impl Facets {
             let p = ray.at(t);
             let block = (p * (1.0 / SIDE as f32)).as_ivec3().clamp(IVec3::ZERO, self.blocks - 1);
             let kind = self.map[self.place(block)];
-            let (low, high) = if kind >= BLOCK {
-                let corner = (block * SIDE as i32).as_vec3();
-                if let Some(hit) = self.surface[(kind - BLOCK) as usize].walk(ray, corner, t) {
-                    return Some(hit);
-                }
-                (block, block + 1)
-            } else {
-                let reach = kind as i32 - 1;
-                (block - reach, block + reach + 1)
-            };
-            let end = ray.leaves((low * SIDE as i32).as_vec3(), (high * SIDE as i32).as_vec3());
+            let reach = if kind >= BLOCK { 0 } else { kind as i32 - 1 };
+            let corner = |block: IVec3| (block * SIDE as i32).as_vec3();
+            let end = ray.leaves(corner(block - reach), corner(block + reach + 1));
+            if kind >= BLOCK
+                && let Some(hit) = self.surface[(kind - BLOCK) as usize].walk(ray, corner(block), t, end)
+            {
+                return Some(hit);
+            }
             t = end.max(t) + NUDGE;
         }
         None
@@ -228,8 +230,19 @@ impl Walk {
 }
 
 impl Block {
-    /// The first facet on a ray that is in this block, whose corner is at `corner`, from `t` on.
-    fn walk(&self, ray: &Walk, corner: Vec3, mut t: f32) -> Option<f32> {
+    /// The first facet on a ray that is in this block, whose corner is at `corner`, from `t` to `end`.
+    fn walk(&self, ray: &Walk, corner: Vec3, mut t: f32, mut end: f32) -> Option<f32> {
+        // Where it is not yet, or no longer, above all facets.
+        let rises = self.up.dot(ray.direction);
+        let over = self.up.dot(ray.origin - corner) - self.top;
+        if rises > 0.0 {
+            end = end.min(-over / rises);
+        } else if rises < 0.0 {
+            t = t.max(-over / rises);
+        }
+        if t > end {
+            return None;
+        }
         let last = IVec3::splat(SIDE as i32 - 1);
         let mut cell = (ray.at(t) - corner).as_ivec3().clamp(IVec3::ZERO, last);
         let step = ray.direction.signum().as_ivec3();
@@ -244,7 +257,7 @@ impl Block {
             } else {
                 2
             };
-            let end = next[axis];
+            let after = next[axis];
             let bit = cell.x + SIDE as i32 * cell.y;
             let word = self.cells[cell.z as usize];
             if word >> bit & 1 == 1 {
@@ -253,13 +266,13 @@ impl Block {
                 let facet = self.facets[number];
                 let middle = corner + cell.as_vec3() + 0.5;
                 let value = |t: f32| facet.x + Vec3::new(facet.y, facet.z, facet.w).dot(ray.at(t) - middle);
-                let (enters, leaves) = (value(t), value(end));
+                let (enters, leaves) = (value(t), value(after));
                 if enters > 0.0 {
                     if t > ray.bias {
                         return Some(t);
                     }
                 } else if leaves > 0.0 {
-                    return Some(t + (end - t) * (enters / (enters - leaves)));
+                    return Some(t + (after - t) * (enters / (enters - leaves)));
                 }
             }
             cell[axis] += step[axis];
@@ -267,7 +280,10 @@ impl Block {
                 return None;
             }
             next[axis] += delta[axis];
-            t = t.max(end);
+            t = t.max(after);
+            if t > end {
+                return None;
+            }
         }
     }
 }
@@ -290,7 +306,9 @@ impl Maker {
 impl Block {
     /// The facets of a block from the values at its nodes, x fastest.
     fn new(values: &[f32]) -> Block {
-        let mut block = Block { cells: [0; SIDE], before: [0; SIDE], facets: Vec::new() };
+        let mut block =
+            Block { cells: [0; SIDE], before: [0; SIDE], facets: Vec::new(), up: Vec3::ZERO, top: f32::INFINITY };
+        let mut middles = Vec::new();
         for z in 0..SIDE {
             block.before[z] = block.facets.len() as u16;
             for y in 0..SIDE {
@@ -308,10 +326,39 @@ impl Block {
                     }
                     block.cells[z] |= 1 << (x + SIDE * y);
                     block.facets.push(facet);
+                    middles.push(Vec3::new(x as f32, y as f32, z as f32) + 0.5);
                 }
             }
         }
+        block.top_off(&middles);
         block
+    }
+
+    /// Finds what is above all facets.
+    ///
+    /// What is beyond the facet `v + g·q ≥ 0` of a cell, |qᵢ| ≤ ½ from its middle, is no further along a
+    /// unit vector `u` than, for any λ ≥ 0,
+    ///
+    /// ```text
+    ///   u·q ≤ u·q + λ (v + g·q) ≤ λ v + ½ |u + λ g|₁
+    /// ```
+    ///
+    /// which is the plane itself where λ = 1/|g| and g is along −u.
+    fn top_off(&mut self, middles: &[Vec3]) {
+        let slopes = |facet: &Vec4| Vec3::new(facet.y, facet.z, facet.w);
+        let up = -self.facets.iter().map(|facet| slopes(facet).normalize_or_zero()).sum::<Vec3>();
+        let up = up.normalize_or_zero();
+        if up == Vec3::ZERO {
+            return;
+        }
+        let reach = |(facet, middle): (&Vec4, &Vec3)| {
+            let bound = |share: f32| share * facet.x + 0.5 * (up + share * slopes(facet)).abs().element_sum();
+            let share = slopes(facet).length_recip();
+            let least = if share.is_finite() { bound(share).min(bound(0.0)) } else { bound(0.0) };
+            up.dot(*middle) + least
+        };
+        let top = self.facets.iter().zip(middles).map(reach).fold(f32::NEG_INFINITY, f32::max);
+        (self.up, self.top) = (up, top + NUDGE);
     }
 }
 
