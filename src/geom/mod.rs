@@ -16,8 +16,8 @@ mod transfer;
 mod view;
 
 pub use camera::{Camera, CameraError, Projection, Rays};
-pub use image::{Image, ImageError};
 pub(crate) use image::to_8bit;
+pub use image::{Image, ImageError};
 pub(crate) use mesh::Apart;
 pub use mesh::{Mesh, MeshError};
 pub use plane::Plane;

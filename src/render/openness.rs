@@ -15,7 +15,7 @@
 //! effectiveness of quasirandom sequences* (2018), for the directions; R. Cook, L. Porter,
 //! L. Carpenter, *Distributed ray tracing* (1984).
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec4};
 use rayon::prelude::*;
 
 use super::facets::Facets;
@@ -25,7 +25,7 @@ use super::shade::Openness;
 use super::spot::Spot;
 use crate::{Cancelled, Run};
 
-/// Rays to each of the two lights, of one pixel.
+/// Rays to each of the two lights, of one pixel: the lanes of a vector.
 const RAYS: usize = 4;
 
 /// Patterns, and the order in which a block of 4 × 4 pixels uses them: neighbours differ most.
@@ -49,11 +49,12 @@ pub(super) struct Obstacles<'a> {
     scene: &'a Scene,
     facets: Facets,
     key: DVec3,
-    /// Directions to points of the key light, relative to its middle, by pattern; none if it
-    /// casts no shadow.
-    shadows: Vec<DVec2>,
-    /// Directions to the sky, relative to the normal, by pattern; none if nothing hides it.
-    skies: Vec<DVec2>,
+    /// Directions to points of the key light, by pattern: a lane a ray. None if it casts no shadow, or
+    /// has no extent.
+    shadows: Vec<[Vec4; 3]>,
+    is_hard: bool,
+    /// Directions to the sky, by pattern, z along the normal; none if nothing hides it.
+    skies: Vec<[Vec4; 3]>,
     middle: DVec3,
     /// Half the diagonal of the solid's box.
     radius: f64,
@@ -80,20 +81,24 @@ impl<'a> Obstacles<'a> {
             DVec2::from_angle(std::f64::consts::TAU * at(0.569_840_290_998_053)) * radius
         };
         let spread = softness.to_radians().tan();
-        let count = PATTERNS * RAYS;
-        // A light without extent needs one ray, the same for every pixel.
-        let shadow_count = match (shadows, spread == 0.0) {
-            (false, _) => 0,
-            (true, true) => 1,
-            (true, false) => count,
+        let (t, b) = key.any_orthonormal_pair();
+        let to_light = |i: usize| {
+            let d = spread * disc(i);
+            (key + d.x * t + d.y * b).normalize()
         };
+        let to_sky = |i: usize| {
+            let d = disc(i);
+            d.extend((1.0 - d.length_squared()).max(0.0).sqrt().max(0.02)).normalize()
+        };
+        let has_soft = shadows && spread > 0.0;
         let bounds = scene.bounds();
         Ok(Some(Obstacles {
             scene,
             facets,
             key,
-            shadows: (0..shadow_count).map(|i| spread * disc(i)).collect(),
-            skies: (0..if occlusion { count } else { 0 }).map(disc).collect(),
+            shadows: if has_soft { patterns(to_light) } else { Vec::new() },
+            is_hard: shadows && !has_soft,
+            skies: if occlusion { patterns(to_sky) } else { Vec::new() },
             middle: bounds.center(),
             radius: bounds.half_extents().length(),
         }))
@@ -101,7 +106,7 @@ impl<'a> Obstacles<'a> {
 
     /// Whether the edges of shadows are hard.
     pub(super) fn is_hard(&self) -> bool {
-        self.shadows.len() == 1
+        self.is_hard
     }
 
     /// What each point sees by its own rays; `pattern` gives a number for the point at an index.
@@ -123,27 +128,28 @@ impl<'a> Obstacles<'a> {
             return Openness::FULL;
         }
         let origin = self.start(spot);
-        let (mut key, mut sky) = (Hidden::default(), Hidden::default());
-        if !self.is_hard() {
-            let (t, b) = self.key.any_orthonormal_pair();
-            for d in self.shadows.iter().skip(pattern).step_by(PATTERNS) {
-                let direction = (self.key + d.x * t + d.y * b).normalize();
-                // What faces away from a part of the light is dark there by its slope.
-                if direction.dot(spot.normal.as_dvec3()) > 0.0 {
-                    key.add(if self.facets.hit(origin, direction).is_some() { 1.0 } else { 0.0 });
-                }
+        let mut open = Openness::FULL;
+        if let Some(directions) = self.shadows.get(pattern) {
+            // What faces away from a part of the light is dark there by its slope.
+            let [x, y, z] = directions;
+            let asked = (x * spot.normal.x + y * spot.normal.y + z * spot.normal.z).cmpgt(Vec4::ZERO).bitmask();
+            if asked != 0 {
+                let hits = self.facets.hits(origin, directions, asked);
+                let hidden = hits.iter().filter(|distance| distance.is_finite()).count();
+                open.key = 1.0 - share * hidden as f32 / asked.count_ones() as f32;
             }
         }
-        let normal = spot.normal.as_dvec3();
-        let (t, b) = normal.any_orthonormal_pair();
-        for d in self.skies.iter().skip(pattern).step_by(PATTERNS) {
-            let up = (1.0 - d.length_squared()).max(0.0).sqrt().max(0.02);
-            let direction = (up * normal + d.x * t + d.y * b).normalize();
+        if let Some([x, y, up]) = self.skies.get(pattern) {
+            let (t, b) = spot.normal.any_orthonormal_pair();
+            let n = spot.normal;
+            let directions = [x * t.x + y * b.x + up * n.x, x * t.y + y * b.y + up * n.y, x * t.z + y * b.z + up * n.z];
             // What is far away hides less of the sky: light comes in from its sides.
-            let hit = self.facets.hit(origin, direction);
-            sky.add(hit.map_or(0.0, |distance| (-distance / (1.2 * self.radius)).exp() as f32));
+            let hits = self.facets.hits(origin, &directions, (1 << RAYS) - 1);
+            let near = hits.iter().filter(|distance| distance.is_finite());
+            let hidden: f64 = near.map(|distance| (-distance / (1.2 * self.radius)).exp()).sum();
+            open.sky = 1.0 - share * hidden as f32 / RAYS as f32;
         }
-        Openness { key: key.open(share), sky: sky.open(share) }
+        open
     }
 
     /// Of a light without extent, whose shadows' edges would show the facets, the first hits in
@@ -176,22 +182,10 @@ impl<'a> Obstacles<'a> {
     }
 }
 
-/// The mean of what rays tell.
-#[derive(Default)]
-struct Hidden {
-    sum: f32,
-    rays: f32,
-}
-
-impl Hidden {
-    fn add(&mut self, hidden: f32) {
-        self.sum += hidden;
-        self.rays += 1.0;
-    }
-
-    fn open(&self, share: f32) -> f32 {
-        if self.rays == 0.0 { 1.0 } else { 1.0 - share * self.sum / self.rays }
-    }
+/// The directions of each pattern, those of one pattern far apart in their sequence: their components.
+fn patterns(direction: impl Fn(usize) -> DVec3) -> Vec<[Vec4; 3]> {
+    let lanes = |pattern: usize| [0, 1, 2, 3].map(|ray| direction(pattern + PATTERNS * ray).as_vec3());
+    (0..PATTERNS).map(|pattern| [0, 1, 2].map(|axis| Vec4::from_array(lanes(pattern).map(|d| d[axis])))).collect()
 }
 
 /// The mean of what the points of a picture see: `width` of them a row.

@@ -81,7 +81,11 @@ pub(super) struct Fine {
 
 impl Picture<'_> {
     /// All pixels, row by row from the top, as what `finish` makes of them: linear light, weighted by alpha.
-    pub(super) fn pixels<P: Pixel>(&self, run: &Run, finish: impl Fn([f32; 4]) -> P + Sync) -> Result<Vec<P>, Cancelled> {
+    pub(super) fn pixels<P: Pixel>(
+        &self,
+        run: &Run,
+        finish: impl Fn([f32; 4]) -> P + Sync,
+    ) -> Result<Vec<P>, Cancelled> {
         let RenderSettings { width, height, .. } = *self.settings;
         let mut pixels = vec![P::default(); width as usize * height as usize];
         for (top, end) in self.bands() {
