@@ -74,7 +74,7 @@ mod tests {
         let blocks = IVec3::new(9, 7, 8);
         let place = |at: IVec3| ((at.z * blocks.y + at.y) * blocks.x + at.x) as usize;
         let all = |low: IVec3, high: IVec3| {
-            let range = |axis: usize| low[axis]..high[axis];
+            let range = move |axis: usize| low[axis]..high[axis];
             range(2).flat_map(move |z| range(1).flat_map(move |y| range(0).map(move |x| IVec3::new(x, y, z))))
         };
         let full: Vec<bool> =

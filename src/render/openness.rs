@@ -195,40 +195,58 @@ pub(super) fn smoothed(
     width: usize,
     pixel: impl Fn(f64) -> f64 + Sync,
 ) -> Vec<Openness> {
+    const WEIGHTS: [f32; 2 * REACH + 1] = [0.5, 1.0, 1.0, 1.0, 0.5];
     let height = spots.len() / width;
-    let reach = REACH as isize;
-    let weight = |d: isize| if d.abs() == reach { 0.5f32 } else { 1.0 };
+    let calm = calm(seen, width);
     let mut mean = vec![Openness::FULL; spots.len()];
     mean.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+        let rows = y.saturating_sub(REACH)..(y + REACH + 1).min(height);
         for (x, mean) in row.iter_mut().enumerate() {
             let own = &spots[y * width + x];
-            if !own.is_solid() && !own.is_ground() {
+            let is_ground = own.is_ground();
+            if !own.is_solid() && !is_ground || rows.clone().all(|row| calm[row * width + x]) {
                 continue;
             }
-            let near = 2.0 * pixel(own.distance);
+            let near = 4.0 * pixel(own.distance);
+            let (left, right) = (x.saturating_sub(REACH), (x + REACH + 1).min(width));
             let (mut key, mut sky, mut sum) = (0.0, 0.0, 0.0);
-            for dy in -reach..=reach {
-                for dx in -reach..=reach {
-                    let (Some(x), Some(y)) = (x.checked_add_signed(dx), y.checked_add_signed(dy)) else { continue };
-                    if x >= width || y >= height {
-                        continue;
-                    }
-                    let at = y * width + x;
-                    let other = &spots[at];
-                    let counts = (dx, dy) == (0, 0)
-                        || own.same_piece(other)
-                            && own.normal.dot(other.normal) > 0.9
-                            && (own.is_ground() || own.steps(other) < near * 2.0);
+            for row in rows.clone() {
+                let down = WEIGHTS[row + REACH - y];
+                let places = row * width + left..row * width + right;
+                let across = &WEIGHTS[left + REACH - x..];
+                for ((other, seen), across) in spots[places.clone()].iter().zip(&seen[places]).zip(across) {
+                    let counts = if is_ground {
+                        other.is_ground()
+                    } else {
+                        other.is_solid() && own.normal.dot(other.normal) > 0.9 && own.steps(other) <= near
+                    };
                     if counts {
-                        let w = weight(dx) * weight(dy);
-                        key += w * seen[at].key;
-                        sky += w * seen[at].sky;
-                        sum += w;
+                        let weight = down * across;
+                        key += weight * seen.key;
+                        sky += weight * seen.sky;
+                        sum += weight;
                     }
                 }
             }
-            *mean = Openness { key: key / sum, sky: sky / sum };
+            // What counts not even itself has no normal.
+            *mean = if sum > 0.0 { Openness { key: key / sum, sky: sky / sum } } else { seen[y * width + x] };
         }
     });
     mean
+}
+
+/// By point, whether nothing is hidden from any of those of its row that the mean reaches.
+fn calm(seen: &[Openness], width: usize) -> Vec<bool> {
+    let mut calm = vec![false; seen.len()];
+    calm.par_chunks_mut(width).zip(seen.par_chunks(width)).for_each(|(calm, seen)| {
+        // How many are free up to here; there is nothing to hide beyond the row.
+        let mut free = REACH;
+        for x in 0..width + REACH {
+            free = if seen.get(x).is_none_or(|seen| *seen == Openness::FULL) { free + 1 } else { 0 };
+            if x >= REACH {
+                calm[x - REACH] = free > 2 * REACH;
+            }
+        }
+    });
+    calm
 }
