@@ -39,7 +39,8 @@ pub(crate) fn to_byte(light: f32) -> u8 {
     if !(light >= LEAST) {
         return 0;
     }
-    let Step { code, next } = STEPS[((light.min(1.0).to_bits() - LEAST.to_bits()) >> STEP_BITS) as usize];
+    let light = light.min(1.0);
+    let Step { code, next } = STEPS[((light.to_bits() - LEAST.to_bits()) >> STEP_BITS) as usize];
     code + u8::from(light >= next)
 }
 

@@ -36,12 +36,6 @@ impl Ray {
     pub(super) fn at(&self, t: f32) -> Vec3A {
         self.origin + t * self.direction
     }
-
-    /// How far it is to the first of three planes, one across each axis.
-    #[inline(always)]
-    pub(super) fn reaches(&self, planes: Vec3A) -> f32 {
-        ((planes - self.origin) * self.inverse).min_element()
-    }
 }
 
 /// A block that the surface may cross.

@@ -17,7 +17,7 @@
 //! Source: J. Amanatides and A. Woo, *A fast voxel traversal algorithm for ray tracing* (1987),
 //! for the way through the cells.
 
-use glam::{DVec3, IVec3, Vec3A, Vec4};
+use glam::{DVec3, IVec3, Vec3, Vec3A, Vec4};
 use rayon::prelude::*;
 
 use super::facet_block::{Block, NODES, Ray, SIDE};
@@ -141,63 +141,104 @@ impl Facets {
             near = near.max(a.min(b));
             far = far.min(a.max(b));
         }
-        let enter = near.cmplt(far).bitmask() & asked;
-        if enter == 0 {
-            return hits;
-        }
-        let (x, y, z, near, far) = (x.to_array(), y.to_array(), z.to_array(), near.to_array(), far.to_array());
-        let (over_x, over_y, over_z) = (over_x.to_array(), over_y.to_array(), over_z.to_array());
-        for lane in 0..4 {
-            if enter >> lane & 1 == 0 {
-                continue;
-            }
-            let direction = Vec3A::new(x[lane], y[lane], z[lane]);
-            let inverse = Vec3A::new(over_x[lane], over_y[lane], over_z[lane]);
-            let ray = Ray { origin: origin.into(), direction, inverse, signs: Vec3A::ONE.copysign(direction) };
-            if let Some(t) = self.walk(&ray, near[lane], far[lane]) {
-                hits[lane] = f64::from(t) * self.cell;
-            }
-        }
+        let inverses = [over_x, over_y, over_z];
+        let rays = Rays { origin, directions: [x, y, z], inverses };
+        self.walk(&rays, near, far, asked, &mut hits);
         hits
     }
 
-    /// The first facet on a ray between two distances, both in the grid.
-    fn walk(&self, ray: &Ray, mut t: f32, far: f32) -> Option<f32> {
-        let leaps = self.leaps.along(ray.direction.cmpgt(Vec3A::ZERO).bitmask());
+    /// Fills in the first facets on those rays, among the ones asked for, that are in the grid between
+    /// `near` and `far`.
+    fn walk(&self, rays: &Rays, near: Vec4, far: Vec4, asked: u32, hits: &mut [f64; 4]) {
+        let Rays { origin, directions: [x, y, z], inverses: [over_x, over_y, over_z], .. } = rays;
         let side = SIDE as f32;
-        let middle = 0.5 * side * (Vec3A::ONE - ray.signs);
-        while t < far {
-            let block = (ray.at(t) * (1.0 / side)).floor().clamp(Vec3A::ZERO, self.last);
-            // Exact: there are less than 2²⁴ blocks.
-            let place = block.dot(self.strides) as i32 as usize;
-            let leap = leaps[place];
-            let corner = block * side;
+        let part = 1.0 / side;
+        let (sign_x, sign_y, sign_z) = (Vec4::ONE.copysign(*x), Vec4::ONE.copysign(*y), Vec4::ONE.copysign(*z));
+        // Cubes reach from a block's low corner upwards, or from its high corner downwards.
+        let (out_x, out_y, out_z) =
+            (0.5 * side * (1.0 - sign_x), 0.5 * side * (1.0 - sign_y), 0.5 * side * (1.0 - sign_z));
+        let ways = sign_x.max(Vec4::ZERO) + 2.0 * sign_y.max(Vec4::ZERO) + 4.0 * sign_z.max(Vec4::ZERO);
+        let ways = ways * self.leaps.count() as f32;
+        let mut t = near;
+        let mut under_way = near.cmplt(far).bitmask() & asked;
+        while under_way != 0 {
+            let block_x = whole((origin.x + t * x) * part).clamp(Vec4::ZERO, Vec4::splat(self.last.x));
+            let block_y = whole((origin.y + t * y) * part).clamp(Vec4::ZERO, Vec4::splat(self.last.y));
+            let block_z = whole((origin.z + t * z) * part).clamp(Vec4::ZERO, Vec4::splat(self.last.z));
+            // Exact: there are less than 2²⁰ blocks.
+            let place = block_x + block_y * self.strides.y + block_z * self.strides.z;
+            // Loops, as calls of closures on arrays are not inlined.
+            let (mut empty, mut cubes) = ([false; 4], [0.0; 4]);
+            for (lane, at) in (place + ways).to_array().into_iter().enumerate() {
+                let leap = self.leaps.side(at as i32 as usize);
+                empty[lane] = leap > 0;
+                cubes[lane] = f32::from(leap.max(1));
+            }
             // The sides of the cube of blocks that the ray leaves by.
-            let across = side * f32::from(leap.max(1));
-            let end = ray.reaches(corner + middle + across * ray.signs);
-            if leap == 0 {
-                let number = self.numbers[place] as usize;
-                let Top { up, height } = self.tops[number];
-                // How high it is above all facets, and how fast it rises.
-                let rises = up.dot(ray.direction);
-                let over = up.dot(ray.origin) - height;
-                let above = over + t * rises > 0.0;
-                let (mut from, mut to) = (t, end);
-                if above {
-                    from = if rises < 0.0 { -over / rises } else { f32::INFINITY };
-                } else if rises > 0.0 {
-                    to = to.min(-over / rises);
-                }
-                if from <= to
-                    && let Some(hit) = self.surface[number].walk(ray, corner, from, to)
-                {
-                    return Some(hit);
+            let across = side * Vec4::from_array(cubes);
+            let end_x = (block_x * side + out_x + across * sign_x - origin.x) * over_x;
+            let end_y = (block_y * side + out_y + across * sign_y - origin.y) * over_y;
+            let end_z = (block_z * side + out_z + across * sign_z - origin.z) * over_z;
+            let end = end_x.min(end_y).min(end_z);
+            for lane in 0..4 {
+                if !empty[lane] && under_way >> lane & 1 == 1 {
+                    let corner = side * Vec3A::new(block_x[lane], block_y[lane], block_z[lane]);
+                    let number = self.numbers[place[lane] as i32 as usize] as usize;
+                    if let Some(hit) = self.block(number, &rays.ray(lane), corner, t[lane], end[lane]) {
+                        hits[lane] = f64::from(hit) * self.cell;
+                        under_way &= !(1 << lane);
+                    }
                 }
             }
             t = end.max(t) + NUDGE;
+            under_way &= t.cmplt(far).bitmask();
         }
-        None
     }
+
+    /// The first facet of a block on a ray that is in it from `t` to `end`.
+    #[inline]
+    fn block(&self, number: usize, ray: &Ray, corner: Vec3A, mut t: f32, mut end: f32) -> Option<f32> {
+        let Top { up, height } = self.tops[number];
+        // How high it is above all facets, and how fast it rises.
+        let rises = up.dot(ray.direction);
+        let over = up.dot(ray.origin) - height;
+        if over + t * rises > 0.0 {
+            if rises >= 0.0 {
+                return None;
+            }
+            t = -over / rises;
+        } else if rises > 0.0 {
+            end = end.min(-over / rises);
+        }
+        if t <= end { self.surface[number].walk(ray, corner, t, end) } else { None }
+    }
+}
+
+/// Four rays, in cells: a lane each.
+struct Rays {
+    origin: Vec3,
+    directions: [Vec4; 3],
+    inverses: [Vec4; 3],
+}
+
+impl Rays {
+    #[inline]
+    fn ray(&self, lane: usize) -> Ray {
+        let [x, y, z] = &self.directions;
+        let direction = Vec3A::new(x[lane], y[lane], z[lane]);
+        let [x, y, z] = &self.inverses;
+        let inverse = Vec3A::new(x[lane], y[lane], z[lane]);
+        Ray { origin: self.origin.into(), direction, inverse, signs: Vec3A::ONE.copysign(direction) }
+    }
+}
+
+/// The whole numbers below these, to which rounding to even is close enough where they are whole, and 0 or
+/// less of what is below 1.
+#[inline(always)]
+fn whole(v: Vec4) -> Vec4 {
+    // From 2²³ on, single precision has no fractions.
+    const WHOLE: f32 = 8_388_608.0;
+    (v + (WHOLE - 0.5)) - WHOLE
 }
 
 impl Maker {

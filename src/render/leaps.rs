@@ -58,10 +58,16 @@ impl Leaps {
         Leaps { count, sides }
     }
 
-    /// By block, for directions of a way: bit `axis` of it is set if they go up that axis.
+    /// How many blocks there are.
+    pub(super) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The side of the cube of a block, in the way of a direction, whose bit `axis` is set if it goes up
+    /// that axis: that at `way · count + place`.
     #[inline]
-    pub(super) fn along(&self, way: u32) -> &[u8] {
-        &self.sides[way as usize * self.count..][..self.count]
+    pub(super) fn side(&self, at: usize) -> u8 {
+        self.sides[at]
     }
 }
 
@@ -78,13 +84,13 @@ mod tests {
             range(2).flat_map(move |z| range(1).flat_map(move |y| range(0).map(move |x| IVec3::new(x, y, z))))
         };
         let full: Vec<bool> =
-            (0..blocks.element_product() as u32).map(|n| n.wrapping_mul(2_654_435_761) % 61 == 7).collect();
+            (0..blocks.element_product() as u32).map(|n| n.wrapping_mul(2_654_435_761) >> 16 & 63 == 7).collect();
         assert!(full.iter().filter(|full| **full).count() > 5);
         let leaps = Leaps::new(blocks, &full);
         for w in 0..8 {
             let ups = [0, 1, 2].map(|axis| w >> axis & 1 == 1);
             for at in all(IVec3::ZERO, blocks) {
-                let side = i32::from(leaps.along(w)[place(at)]);
+                let side = i32::from(leaps.side(w * leaps.count() + place(at)));
                 let is_empty = |side: i32| {
                     let step = IVec3::from_array(ups.map(|up| if up { side - 1 } else { 1 - side }));
                     let (low, high) = (at.min(at + step).max(IVec3::ZERO), at.max(at + step).min(blocks - 1));
