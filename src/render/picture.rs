@@ -250,17 +250,21 @@ impl Picture<'_> {
         // Lines are wider than a pixel: what is about an edge is sampled more often as well.
         let reach = if style == Style::Technical { Lines::reach(height) } else { 0 };
         let (first, last) = (top.saturating_sub(reach).max(band.top), (end + reach).min(band.end()));
-        let edges: Vec<(u32, u32)> = (first..last)
-            .into_par_iter()
-            .flat_map_iter(|y| (0..width).map(move |x| (x, y)))
-            .filter(|&(x, y)| {
-                let at = band.place(x, y);
-                x > 0 && differ(at, at - 1)
-                    || x + 1 < width && differ(at, at + 1)
-                    || y > band.top && differ(at, at - width as usize)
-                    || y + 1 < band.end() && differ(at, at + width as usize)
-            })
-            .collect();
+        let columns = width as usize;
+        // By pixel, whether it differs from the one to its right, and from the one below.
+        let mut steps = vec![[false; 2]; band.spots.len()];
+        steps.par_chunks_mut(columns).enumerate().for_each(|(row, steps)| {
+            let start = row * columns;
+            for (x, step) in steps.iter_mut().enumerate() {
+                let (at, below) = (start + x, start + x + columns);
+                *step = [x + 1 < columns && differ(at, at + 1), below < band.spots.len() && differ(at, below)];
+            }
+        });
+        let is_edge = |x: u32, y: u32| {
+            let at = band.place(x, y);
+            steps[at] != [false; 2] || x > 0 && steps[at - 1][0] || at >= columns && steps[at - columns][1]
+        };
+        let edges = (first..last).flat_map(|y| (0..width).map(move |x| (x, y))).filter(|&(x, y)| is_edge(x, y));
         let mut pixels = Vec::new();
         for (x, y) in edges {
             for y in y.saturating_sub(reach).max(first)..=(y + reach).min(last - 1) {
@@ -285,7 +289,7 @@ impl Picture<'_> {
             })
             .collect();
         let hits = self.scene.first_hits(&rays);
-        let spots = rays.iter().zip(&hits).map(|(ray, hit)| Spot::new(ray.0, ray.1, hit, self.ground)).collect();
+        let spots = rays.par_iter().zip(&hits).map(|(ray, hit)| Spot::new(ray.0, ray.1, hit, self.ground)).collect();
         Fine { numbers, spots }
     }
 
