@@ -35,6 +35,9 @@ const ORDER: [usize; PATTERNS] = [0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7,
 /// Pixels that the mean reaches to each side.
 pub(super) const REACH: usize = 2;
 
+/// Points along the side of a tile.
+pub(super) const TILE: usize = 32;
+
 /// Points whose rays to a light without extent are traced together.
 const TOGETHER: usize = 1 << 16;
 
@@ -109,10 +112,31 @@ impl<'a> Obstacles<'a> {
         self.is_hard
     }
 
-    /// What each point sees by its own rays; `pattern` gives a number for the point at an index.
-    pub(super) fn seen(&self, spots: &[Spot], pattern: impl Fn(usize) -> usize + Sync) -> Vec<Openness> {
-        let open = |(i, spot): (usize, &Spot)| self.open(spot, ORDER[pattern(i) % PATTERNS]);
-        let mut seen: Vec<Openness> = spots.par_iter().enumerate().map(open).collect();
+    /// What each point sees by its own rays; `pattern` gives a number for the point at an index. They go
+    /// tile by tile of a picture with rows of `width`, as neighbours meet the same facets.
+    pub(super) fn seen(&self, spots: &[Spot], width: usize, pattern: impl Fn(usize) -> usize + Sync) -> Vec<Openness> {
+        let across = width.div_ceil(TILE).max(1);
+        let down = spots.len().div_ceil(TILE * width.max(1));
+        // By the number of a tile: the runs of places in its rows.
+        let runs = |tile: usize| {
+            let (top, left) = (tile / across * TILE, tile % across * TILE);
+            let run = move |row: usize| {
+                (row * width + left).min(spots.len())..(row * width + width.min(left + TILE)).min(spots.len())
+            };
+            (top..top + TILE).map(run)
+        };
+        let open = |at: usize| self.open(&spots[at], ORDER[pattern(at) % PATTERNS]);
+        let tiles: Vec<Vec<Openness>> =
+            (0..across * down).into_par_iter().map(|tile| runs(tile).flatten().map(open).collect()).collect();
+        let mut seen = vec![Openness::FULL; spots.len()];
+        for (tile, found) in tiles.iter().enumerate() {
+            let mut rest = &found[..];
+            for run in runs(tile) {
+                let (row, after) = rest.split_at(run.len());
+                seen[run].copy_from_slice(row);
+                rest = after;
+            }
+        }
         if self.is_hard() {
             for (chunk, seen) in spots.chunks(TOGETHER).zip(seen.chunks_mut(TOGETHER)) {
                 self.hard(chunk, seen);

@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use super::gbuffer::{Surface, Window};
 use super::lines::Lines;
 use super::materials::Materials;
-use super::openness::{Obstacles, REACH, smoothed};
+use super::openness::{Obstacles, REACH, TILE, smoothed};
 use super::scene::Scene;
 use super::settings::{RenderSettings, Style};
 use super::shade::{Openness, Studio};
@@ -155,7 +155,7 @@ impl Picture<'_> {
             None => vec![Openness::FULL; spots.len()],
             Some(obstacles) => {
                 let pattern = |i: usize| (i % width as usize) % 4 + 4 * ((first as usize + i / width as usize) % 4);
-                let own = obstacles.seen(&spots, pattern);
+                let own = obstacles.seen(&spots, width as usize, pattern);
                 let sharp = obstacles.is_hard().then(|| own.clone());
                 let mut open = smoothed(&spots, &own, width as usize, |t| self.rays.pixel_size(t));
                 // The edges of a light without extent stay as they are.
@@ -317,7 +317,7 @@ impl Picture<'_> {
         let spots: Vec<Spot> = alone.iter().map(|k| fine.spots[*k]).collect();
         let mut open: Vec<Openness> = matched.iter().map(|open| open.unwrap_or(Openness::FULL)).collect();
         if let Some(obstacles) = obstacles {
-            for (k, seen) in alone.iter().zip(obstacles.seen(&spots, |i| alone[i])) {
+            for (k, seen) in alone.iter().zip(obstacles.seen(&spots, TILE, |i| alone[i])) {
                 open[*k] = seen;
             }
         }

@@ -191,10 +191,11 @@ impl Scene {
             scene: self,
             materials: Materials::new(self.palette(), &studio, settings.paint),
             studio,
-            obstacles,
             rays: camera.rays(width, height),
             settings,
-            ground: stands.then(|| self.lowest()),
+            // Ground that nothing hides light from looks like what is behind it.
+            ground: (stands && obstacles.is_some()).then(|| self.lowest()),
+            obstacles,
         })
     }
 }
