@@ -35,8 +35,7 @@ pub(crate) fn from_linear(c: f32) -> f32 {
 /// 255 for what is beyond 1.
 #[inline]
 pub(crate) fn to_byte(light: f32) -> u8 {
-    // Of numbers that are not below another, NaN is one.
-    if !(light >= LEAST) {
+    if light.is_nan() || light < LEAST {
         return 0;
     }
     let light = light.min(1.0);
