@@ -59,6 +59,7 @@ mod region;
 mod samples;
 mod sharp;
 mod span;
+mod special;
 mod turn;
 
 /// Blocks whose roots are found together. Small enough for threads to share work evenly.

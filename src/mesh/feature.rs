@@ -21,9 +21,11 @@
 //! Source: L. P. Kobbelt, M. Botsch, U. Schwanecke and H.-P. Seidel, Feature sensitive surface
 //! extraction from volume data (2001), for the idea.
 
+use std::ops::Range;
+
 use glam::{DVec3, UVec3, Vec3};
 
-use super::loops::{CellLoop, LONGEST};
+use super::loops::LONGEST;
 use super::qef::Planes;
 
 /// Normals of a cell that differ by less than this are those of a smooth surface: the cosine
@@ -70,29 +72,33 @@ pub(super) fn differ(normals: &[Vec3]) -> bool {
     false
 }
 
-/// A vertex of a cell's loop.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Side {
-    /// Its number.
-    pub(super) vertex: u32,
-    /// Its position in cells, from the cell's first node.
-    pub(super) at: Vec3,
-    /// The outward normal there; later that which its side has close to the feature point, 0 if it is not
-    /// known.
+/// A segment of a loop: from a vertex to that of the next segment.
+#[derive(Clone, Copy)]
+pub(super) struct Segment {
+    pub(super) from: u32,
+    /// The cell that it bounds the surface of, and the face that it is in: twice the axis, and 1 more for
+    /// the upper one.
+    pub(super) cell: [u32; 3],
+    pub(super) face: u8,
+    /// Whether it may be turned: its ends have different normals.
+    pub(super) turns: bool,
+    /// What the edge is turned to: the fan on the other side by its number, or a point between the two by its
+    /// number after those of all fans.
+    pub(super) across: Option<u32>,
+    /// The outward unit normal at the vertex; later that which its side has close to the feature point. 0 if it
+    /// is not known.
     pub(super) normal: Vec3,
 }
 
 /// A cell whose surface is not smooth. Positions are in cells, from the lattice's first node.
 ///
-/// The vertices of its loop, in order, are in a list of those of many cells.
+/// The segments of its loop, in order, are in a list of those of many cells.
 #[derive(Clone)]
 pub(super) struct Candidate {
     pub(super) cell: [u32; 3],
-    pub(super) outline: CellLoop,
-    /// The place of the first of its vertices in the list.
-    pub(super) first: u32,
-    /// The segments, from vertex n to the next, whose ends have different normals, as bits.
-    pub(super) split: u16,
+    /// The place of the first segment in the list, and the number of them.
+    first: u32,
+    len: u32,
     /// The feature point.
     pub(super) at: DVec3,
     /// The sides' planes close to it.
@@ -100,55 +106,69 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
-    /// The cell with a first feature point. `sides` are the vertices on the edges of the loop, in order.
-    pub(super) fn new(cell: [u32; 3], outline: CellLoop, first: u32, sides: &[Side]) -> Candidate {
-        let mut candidate = Candidate { cell, outline, first, split: 0, at: DVec3::ZERO, planes: Planes::NONE };
-        let low = candidate.low();
-        for (n, side) in sides.iter().enumerate() {
-            let (position, normal) = (low + side.at.as_dvec3(), side.normal.as_dvec3());
-            candidate.at += position / sides.len() as f64;
-            if let Some(normal) = normal.try_normalize() {
-                candidate.planes.add(normal, normal.dot(position));
+    /// The cell with a first feature point. Its segments are those from `first` on of the list of all, and
+    /// are told which of them turn; `places` are their vertices in cells, from the cell's first node.
+    pub(super) fn new(cell: [u32; 3], first: usize, all: &mut [Segment], places: &[Vec3]) -> Candidate {
+        let segments = &mut all[first..];
+        let (mut planes, mut middle) = (Planes::NONE, DVec3::ZERO);
+        let low = low(cell);
+        let mut next = segments.first().map_or(Vec3::ZERO, |segment| segment.normal);
+        for (segment, at) in segments.iter_mut().zip(places).rev() {
+            let at = at.as_dvec3();
+            middle += at;
+            if segment.normal != Vec3::ZERO {
+                let normal = segment.normal.as_dvec3();
+                planes.add(normal, normal.dot(low + at));
             }
-            let next = sides.get(n + 1).unwrap_or(&sides[0]).normal;
-            candidate.split |= u16::from(side.normal.dot(next) < SMOOTH) << n;
+            segment.turns = segment.normal.dot(next) < SMOOTH;
+            next = segment.normal;
         }
+        let len = segments.len();
+        let at = low + middle / len as f64;
+        let mut candidate = Candidate { cell, first: first as u32, len: len as u32, at, planes };
         candidate.settle();
         candidate
     }
 
+    /// The segments of the loop, in order, of the list of all.
     #[inline(always)]
-    fn low(&self) -> DVec3 {
-        UVec3::from_array(self.cell).as_dvec3()
+    pub(super) fn segments<'a>(&self, all: &'a [Segment]) -> &'a [Segment] {
+        &all[self.range()]
     }
 
-    /// The vertices of the loop, in order, of the list of all.
+    /// The places of its segments in the list.
     #[inline(always)]
-    pub(super) fn sides<'a>(&self, all: &'a [Side]) -> &'a [Side] {
-        &all[self.first as usize..][..self.outline.len()]
+    pub(super) fn range(&self) -> Range<usize> {
+        self.first as usize..(self.first + self.len) as usize
     }
 
     fn settle(&mut self) {
-        self.at = settle(&self.planes, self.at, self.low(), self.low() + 1.0, 1);
+        let low = low(self.cell);
+        self.at = settle(&self.planes, self.at, low, low + 1.0, 1);
     }
+}
+
+/// The first node of a cell.
+#[inline(always)]
+fn low(cell: [u32; 3]) -> DVec3 {
+    UVec3::from_array(cell).as_dvec3()
 }
 
 /// The direction of a crease, by the normals around it, if there are two sides and no more.
 pub(super) fn crease(normals: impl Iterator<Item = Vec3> + Clone) -> Option<DVec3> {
+    // Two sides: that of the first normal, and that of the one that is farthest from it.
+    let first = normals.clone().find(|normal| *normal != Vec3::ZERO)?;
     let (mut along, mut most) = (Vec3::ZERO, 0.0);
-    for (n, a) in normals.clone().enumerate() {
-        for b in normals.clone().take(n) {
-            let across = a.cross(b);
-            let square = across.length_squared();
-            if square >= most {
-                (along, most) = (across, square);
-            }
+    for normal in normals.clone() {
+        let across = first.cross(normal);
+        let square = across.length_squared();
+        if square > most {
+            (along, most) = (across, square);
         }
     }
-    let unit = along.try_normalize()?;
     // A third side would have a normal along the crease of the two.
-    let two = along.length() > 0.3 && normals.clone().all(|normal| normal.dot(unit).abs() < 0.2);
-    two.then(|| unit.as_dvec3())
+    let two = most > 0.09 && normals.clone().all(|normal| normal.dot(along).powi(2) < 0.04 * most);
+    two.then(|| along.as_dvec3().normalize())
 }
 
 /// The point of a box of cells, clear of its faces, that the planes lead to in some steps.
@@ -176,67 +196,87 @@ fn plane(point: DVec3, slope: &Slope, step: f64) -> Option<(DVec3, f64)> {
     })
 }
 
-/// Moves feature points closer to the creases. `sides` are the vertices of all candidates, one candidate's after the
-/// other's. `slopes` tells values and gradients at points, for cells of size `step`; without any, the points stay.
-pub(super) fn refine(
-    candidates: &mut [Candidate],
-    sides: &mut [Side],
-    step: f64,
-    mut slopes: impl FnMut(&[DVec3], &mut Vec<Slope>) -> bool,
-) {
-    if candidates.is_empty() {
-        return;
-    }
-    // Vertices that have nearly the same normal are on the same side: they share a point.
-    let mut places: Vec<u8> = Vec::with_capacity(sides.len());
-    let (mut points, mut found) = (Vec::with_capacity(sides.len()), Vec::new());
-    for candidate in candidates.iter() {
+/// Memory to refine candidates with.
+#[derive(Default)]
+pub(super) struct Refiner {
+    /// By segment, the side that its vertex is on.
+    sides: Vec<u8>,
+    /// One for each side of each candidate, and the field there.
+    points: Vec<DVec3>,
+    found: Vec<Slope>,
+}
+
+impl Refiner {
+    /// Moves feature points closer to the creases. The candidates are consecutive, and so are their `segments` and
+    /// `places`, of the vertices in cells from the cell's first node. `slopes` tells values and gradients at points,
+    /// for cells of size `step`; without any, feature points stay.
+    pub(super) fn refine(
+        &mut self,
+        candidates: &mut [Candidate],
+        segments: &mut [Segment],
+        places: &[Vec3],
+        step: f64,
+        mut slopes: impl FnMut(&[DVec3], &mut Vec<Slope>) -> bool,
+    ) {
+        let Some(start) = candidates.first().map(|candidate| candidate.first as usize) else { return };
+        let Refiner { sides, points, found } = self;
+        sides.clear();
+        points.clear();
+        found.clear();
+        // Vertices that have nearly the same normal are on the same side: they share a point.
         let mut groups = [Group::default(); LONGEST];
-        let mut count = 0;
-        for side in candidate.sides(sides) {
-            let place = groups[..count].iter().position(|group| group.normal.dot(side.normal) > ALIKE).unwrap_or(count);
-            if place == count {
-                groups[count].normal = side.normal;
-                count += 1;
-            }
-            groups[place].sum += side.at;
-            groups[place].size += 1.0;
-            places.push(place as u8);
-        }
-        let (low, at) = (candidate.low(), candidate.at);
-        for Group { sum, size, .. } in &groups[..count] {
-            points.push(at + CLOSER * (low + (sum / size).as_dvec3() - at));
-        }
-    }
-    if !slopes(&points, &mut found) || found.len() != points.len() {
-        return;
-    }
-    let mut asked = points.iter().zip(&found);
-    let mut sides = sides.iter_mut().zip(places);
-    for candidate in candidates.iter_mut() {
-        let (mut planes, low) = (Planes::NONE, candidate.low());
-        let (mut known, mut seen) = ([None; LONGEST], 0);
-        for (side, place) in sides.by_ref().take(candidate.outline.len()) {
-            let place = usize::from(place);
-            // They are met in the order of their first vertices.
-            if place == seen {
-                known[place] = asked.next().and_then(|(point, slope)| plane(*point, slope, step));
-                seen += 1;
-            }
-            let own = side.normal.as_dvec3();
-            match known[place] {
-                Some((normal, offset)) if normal.dot(own) > ASTRAY => {
-                    side.normal = normal.as_vec3();
-                    planes.add(normal, offset);
+        for candidate in candidates.iter() {
+            let range = candidate.range();
+            let mut count = 0;
+            for (segment, &at) in segments[range.clone()].iter().zip(&places[range]) {
+                let mut side = 0;
+                while side < count && groups[side].normal.dot(segment.normal) <= ALIKE {
+                    side += 1;
                 }
-                // The point has come out on another side of the crease.
-                Some(_) => planes.add(own, own.dot(low + side.at.as_dvec3())),
-                None => {}
+                if side == count {
+                    groups[count] = Group { normal: segment.normal, ..Group::default() };
+                    count += 1;
+                }
+                groups[side].sum += at;
+                groups[side].size += 1.0;
+                sides.push(side as u8);
+            }
+            let (low, at) = (low(candidate.cell), candidate.at);
+            for Group { sum, size, .. } in &groups[..count] {
+                points.push(at + CLOSER * (low + (sum / size).as_dvec3() - at));
             }
         }
-        if !planes.is_empty() {
-            candidate.planes = planes;
-            candidate.settle();
+        if !slopes(points, found) || found.len() != points.len() {
+            return;
+        }
+        let mut asked = points.iter().zip(found);
+        let mut known = [None; LONGEST];
+        for candidate in candidates {
+            let range = candidate.range();
+            let (mut planes, low, mut count) = (Planes::NONE, low(candidate.cell), 0);
+            let sides = &sides[range.start - start..range.end - start];
+            for ((segment, at), side) in segments[range.clone()].iter_mut().zip(&places[range]).zip(sides) {
+                let side = usize::from(*side);
+                // They are met in the order of their first vertices.
+                if side == count {
+                    known[count] = asked.next().and_then(|(point, slope)| plane(*point, slope, step));
+                    count += 1;
+                }
+                let own = segment.normal.as_dvec3();
+                match known[side] {
+                    Some((normal, offset)) if normal.dot(own) > ASTRAY => {
+                        segment.normal = normal.as_vec3();
+                        planes.add(normal, offset);
+                    }
+                    // The point has come out on another side of the crease.
+                    Some(_) => planes.add(own, own.dot(low + at.as_dvec3())),
+                    None => {}
+                }
+            }
+            if !planes.is_empty() {
+                candidate.planes = planes;
+                candidate.settle();
+            }
         }
     }
 }

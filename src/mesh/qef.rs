@@ -25,8 +25,9 @@ use glam::{DMat3, DVec3};
 /// Planes that a point should be on.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Planes {
-    /// Σ n nᵀ
-    matrix: DMat3,
+    /// Σ n nᵀ: what is on the diagonal, and what is opposite to each of these, at yz, zx and xy.
+    diagonal: DVec3,
+    beside: DVec3,
     /// Σ d n
     vector: DVec3,
     /// Σ d²
@@ -36,13 +37,15 @@ pub(super) struct Planes {
 
 impl Planes {
     /// No planes.
-    pub(super) const NONE: Planes = Planes { matrix: DMat3::ZERO, vector: DVec3::ZERO, square: 0.0, count: 0 };
+    pub(super) const NONE: Planes =
+        Planes { diagonal: DVec3::ZERO, beside: DVec3::ZERO, vector: DVec3::ZERO, square: 0.0, count: 0 };
 
     /// Adds the plane nᵢ·y = dᵢ; the normal is a unit vector.
     #[inline(always)]
     pub(super) fn add(&mut self, normal: DVec3, d: f64) {
         let DVec3 { x, y, z } = normal;
-        self.matrix += DMat3::from_cols(normal * x, normal * y, normal * z);
+        self.diagonal += normal * normal;
+        self.beside += DVec3::new(y * z, z * x, x * y);
         self.vector += normal * d;
         self.square += d * d;
         self.count += 1;
@@ -50,7 +53,8 @@ impl Planes {
 
     /// Adds the planes of another set.
     pub(super) fn append(&mut self, other: &Planes) {
-        self.matrix += other.matrix;
+        self.diagonal += other.diagonal;
+        self.beside += other.beside;
         self.vector += other.vector;
         self.square += other.square;
         self.count += other.count;
@@ -62,19 +66,30 @@ impl Planes {
 
     /// The root of the mean square distance of a point from the planes.
     pub(super) fn distance(&self, y: DVec3) -> f64 {
-        let sum = y.dot(self.matrix * y) - 2.0 * self.vector.dot(y) + self.square;
+        let along = product(self.diagonal, self.beside, y);
+        let sum = y.dot(along) - 2.0 * self.vector.dot(y) + self.square;
         (sum.max(0.0) / f64::from(self.count.max(1))).sqrt()
     }
 
     /// The point of the box from `low` to `high` that is best, with damping λ towards `from`.
+    #[inline]
     pub(super) fn nearest(&self, from: DVec3, damping: f64, low: DVec3, high: DVec3) -> DVec3 {
         let weight = damping * f64::from(self.count.max(1));
-        let m = self.matrix + DMat3::from_diagonal(DVec3::splat(weight));
         let b = self.vector + weight * from;
-        let free = m.inverse() * b;
-        if free.cmpge(low).all() && free.cmple(high).all() {
-            return free;
-        }
+        // Cramer's rule.
+        let (d, e) = (self.diagonal + weight, self.beside);
+        let diagonal = DVec3::new(d.y * d.z - e.x * e.x, d.z * d.x - e.y * e.y, d.x * d.y - e.z * e.z);
+        let beside = DVec3::new(e.y * e.z - d.x * e.x, e.z * e.x - d.y * e.y, e.x * e.y - d.z * e.z);
+        let determinant = d.x * diagonal.x + e.z * beside.z + e.y * beside.y;
+        let free = product(diagonal, beside, b) / determinant;
+        let is_within = |y: DVec3| y.cmpge(low).all() && y.cmple(high).all();
+        if is_within(free) { free } else { self.nearest_on_sides(free, from, weight, low, high) }
+    }
+
+    /// The same where the point that is best of all is not in the box.
+    #[cold]
+    fn nearest_on_sides(&self, free: DVec3, from: DVec3, weight: f64, low: DVec3, high: DVec3) -> DVec3 {
+        let (m, b) = (self.matrix(weight), self.vector + weight * from);
         // Most often it is where the coordinates that are beyond a side are held there.
         let mut sides = [FREE; 3];
         let mut y = free;
@@ -107,6 +122,19 @@ impl Planes {
         }
         best.1
     }
+
+    /// Σ n nᵀ, and a number more on the diagonal.
+    fn matrix(&self, more: f64) -> DMat3 {
+        let (DVec3 { x, y, z }, e) = (self.diagonal + more, self.beside);
+        DMat3::from_cols(DVec3::new(x, e.z, e.y), DVec3::new(e.z, y, e.x), DVec3::new(e.y, e.x, z))
+    }
+}
+
+/// A symmetric matrix, given like that of [`Planes`], times a vector.
+#[inline(always)]
+fn product(d: DVec3, e: DVec3, y: DVec3) -> DVec3 {
+    let row = |a: f64, b: f64, c: f64| a * y.x + b * y.y + c * y.z;
+    DVec3::new(row(d.x, e.z, e.y), row(e.z, d.y, e.x), row(e.y, e.x, d.z))
 }
 
 /// A coordinate that is free, at the low side of the box, and at the high one.
@@ -208,7 +236,7 @@ mod tests {
             let (low, high) = (DVec3::ZERO, DVec3::ONE);
             let from = DVec3::new(next(), next(), next()).abs();
             let y = planes.nearest(from, 3e-3, low, high);
-            let m = planes.matrix + DMat3::from_diagonal(DVec3::splat(3e-3 * 4.0));
+            let m = planes.matrix(3e-3 * 4.0);
             let b = planes.vector + 3e-3 * 4.0 * from;
             let energy = |y: DVec3| y.dot(m * y) - 2.0 * b.dot(y);
             let choices = (0..27).map(|n| on_sides(&m, b, [n % 3, n / 3 % 3, n / 9], low, high));

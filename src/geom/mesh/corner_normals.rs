@@ -2,14 +2,19 @@
 //!
 //! Of a mesh with creases most triangles are far from any: their corners have the normals of their
 //! vertices. Only the others are kept then, and the list of all is made when it is first asked for.
+//!
+//! A vertex on a crease itself may have been given the normal of the other side. What is farther from the triangle's
+//! own normal than 45° is replaced by that.
 
 use std::ops::Range;
 use std::sync::OnceLock;
 
 use glam::Vec3;
 
-use super::attributes::finite;
 use super::{Mesh, MeshError};
+
+/// A normal that is farther from that of its triangle is of another side: the cosine.
+const ASTRAY: f32 = 0.7;
 
 /// The normals of the corners of a mesh.
 #[derive(Clone, Debug, Default)]
@@ -24,7 +29,7 @@ pub(super) struct CornerNormals {
 pub(crate) struct Apart {
     /// The triangles.
     pub(crate) runs: Vec<Range<usize>>,
-    /// Their normals, one run's after the other's.
+    /// Their normals, one run's after the other's; 0 at a corner that has that of its vertex.
     pub(crate) normals: Vec<[Vec3; 3]>,
 }
 
@@ -40,17 +45,16 @@ impl Mesh {
     ///
     /// # Errors
     ///
-    /// [`MeshError::Corners`] if there are no such triangles, [`MeshError::Normals`] if the vertices have no normals,
-    /// and [`MeshError::NotFinite`] if a normal is NaN or infinite.
+    /// [`MeshError::Corners`] if there are no such triangles, and [`MeshError::Normals`] if the vertices have no
+    /// normals.
     pub(crate) fn with_normals_apart(mut self, apart: Vec<Apart>) -> Result<Mesh, MeshError> {
         if self.normals().is_none() {
             return Err(MeshError::Normals { normals: 0, vertices: self.positions.len() });
         }
-        for Apart { runs, normals } in &apart {
+        for Apart { runs, .. } in &apart {
             if let Some(run) = runs.iter().find(|run| run.end > self.triangles.len()) {
                 self.fits_triangles("normals of corners", run.end)?;
             }
-            finite("normal", normals, |n| n.is_finite())?;
         }
         self.corner_normals = Some(CornerNormals { all: OnceLock::new(), apart });
         Ok(self)
@@ -66,12 +70,25 @@ impl Mesh {
             let mut all: Vec<[Vec3; 3]> =
                 self.triangles.iter().map(|&[a, b, c]| [a, b, c].map(|vertex| normals[vertex as usize])).collect();
             for Apart { runs, normals } in &corners.apart {
-                let triangles = runs.iter().cloned().flatten();
-                triangles.zip(normals).for_each(|(triangle, normals)| all[triangle] = *normals);
+                for (triangle, &given) in runs.iter().cloned().flatten().zip(normals) {
+                    all[triangle] = self.straightened(self.triangles[triangle], all[triangle], given);
+                }
             }
             all
         };
         Some(corners.all.get_or_init(list))
+    }
+
+    /// The normals at the corners of a triangle, given those of its vertices and others, 0 where there is none.
+    fn straightened(&self, [a, b, c]: [u32; 3], own: [Vec3; 3], given: [Vec3; 3]) -> [Vec3; 3] {
+        let [p, q, r] = [a, b, c].map(|vertex| self.positions[vertex as usize]);
+        let face = (q - p).cross(r - p);
+        let least = ASTRAY * face.length();
+        std::array::from_fn(|corner| {
+            let normal = if given[corner] == Vec3::ZERO { own[corner] } else { given[corner] };
+            // NaN is astray as well.
+            if normal.dot(face) > least { normal } else { face.normalize_or_zero() }
+        })
     }
 }
 
@@ -79,26 +96,30 @@ impl Mesh {
 mod tests {
     use super::*;
 
-    fn apart(triangle: usize, normal: Vec3) -> Vec<Apart> {
+    fn apart(triangle: usize, normals: [Vec3; 3]) -> Vec<Apart> {
         let runs = std::iter::once(triangle..triangle + 1).collect();
-        vec![Apart { runs, normals: vec![[normal; 3]] }]
+        vec![Apart { runs, normals: vec![normals] }]
     }
 
     #[test]
     fn what_is_apart_is_listed_with_the_rest() {
         let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
         let mesh = Mesh::new(corners, vec![[0, 1, 2], [0, 3, 1], [1, 3, 2]]).unwrap();
-        assert!(mesh.clone().with_normals_apart(apart(0, Vec3::X)).is_err());
-        let mesh = mesh.with_normals(vec![Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_X]).unwrap();
-        assert!(mesh.clone().with_normals_apart(apart(3, Vec3::X)).is_err());
-        assert!(mesh.clone().with_normals_apart(apart(1, Vec3::NAN)).is_err());
-        let listed = mesh.clone().with_normals_apart(apart(1, Vec3::NEG_Z)).unwrap();
-        let all = [[Vec3::X, Vec3::Y, Vec3::Z], [Vec3::NEG_Z; 3], [Vec3::Y, Vec3::NEG_X, Vec3::Z]];
+        let up = Vec3::new(0.0, 0.6, 0.8);
+        assert!(mesh.clone().with_normals_apart(apart(0, [up; 3])).is_err());
+        let mesh = mesh.with_normals(vec![up, Vec3::Y, Vec3::Z, Vec3::NEG_X]).unwrap();
+        assert!(mesh.clone().with_normals_apart(apart(3, [up; 3])).is_err());
+        // At the last corner one that is astray; the vertex of the second has one that is.
+        let given = [Vec3::ZERO, up, Vec3::NEG_Z];
+        let listed = mesh.clone().with_normals_apart(apart(0, given)).unwrap();
+        let all = [[up, up, Vec3::Z], [up, Vec3::NEG_X, Vec3::Y], [Vec3::Y, Vec3::NEG_X, Vec3::Z]];
         assert_eq!(listed.corner_normals(), Some(&all[..]));
         assert_eq!(listed, mesh.clone().with_corner_normals(all.to_vec()).unwrap());
         assert_ne!(listed, mesh);
+        let listed = mesh.clone().with_normals_apart(apart(0, [Vec3::NAN, Vec3::ZERO, up])).unwrap();
+        assert_eq!(listed.corner_normals().unwrap()[0], [Vec3::Z, Vec3::Z, up]);
         // They do not follow other normals of the vertices.
-        let turned = mesh.with_normals_apart(apart(1, Vec3::NEG_Z)).unwrap().with_normals(vec![Vec3::Z; 4]);
+        let turned = mesh.with_normals_apart(apart(0, given)).unwrap().with_normals(vec![Vec3::Z; 4]);
         assert_eq!(turned.unwrap().corner_normals(), Some(&all[..]));
     }
 }

@@ -24,26 +24,12 @@ use crate::mesh::loops::LONGEST;
 /// The distance of a loop's middle from the surface, in cells, beyond which there is a vertex.
 const FAR: f32 = 0.01;
 
-/// If all normals of a cell are closer to one of them than this, the cell is nearly flat. Typical ones are off by
-/// 0.008 cells then.
+/// If no normals of a cell differ by more than this angle, the cell is nearly flat. Typical ones are off by 0.008
+/// cells then.
 pub(super) const SPREAD: f32 = 0.033;
 
-/// The cosine of that angle.
-const FLAT: f32 = 1.0 - 0.5 * SPREAD * SPREAD;
-
-/// Whether the normals at the vertices on some edges, given those of a cell, are those of a cell that is nearly flat.
-#[inline(always)]
-pub(super) fn is_flat(samples: &Samples<'_>, edges: &[u8], ids: &[u32; 16]) -> bool {
-    let normal = |edge: u8| samples.normal(ids[usize::from(edge & 15)]);
-    let [first, rest @ ..] = edges else { return true };
-    let first = normal(*first);
-    let mut least = 1.0;
-    for &edge in rest {
-        let along = first.dot(normal(edge));
-        least = if along < least { along } else { least };
-    }
-    least > FLAT
-}
+/// The square of the cosine of half that angle.
+const HALF_FLAT: f32 = 1.0 - 0.25 * SPREAD * SPREAD;
 
 /// The vertices on a cell's loop, in order.
 pub(super) struct Ring {
@@ -87,12 +73,23 @@ impl Ring {
         &self.normals[..self.len]
     }
 
+    /// Whether all normals are closer to their mean than an angle, given by the square of its cosine; no two differ by
+    /// more than twice that then.
+    #[inline(always)]
+    fn is_narrow(&self, square: f32) -> bool {
+        self.least > 0.0 && self.least * self.least > square * self.sum.length_squared()
+    }
+
+    /// Whether the cell is nearly flat.
+    #[inline(always)]
+    pub(super) fn is_flat(&self) -> bool {
+        self.is_narrow(HALF_FLAT)
+    }
+
     /// Whether no two normals differ as those of a crease do.
     #[inline(always)]
     pub(super) fn is_smooth(&self) -> bool {
-        // If all are within half the angle of their mean, no two differ by more than it.
-        let is_narrow = self.least > 0.0 && self.least * self.least > HALF_SMOOTH * self.sum.length_squared();
-        is_narrow || !differ(self.normals())
+        self.is_narrow(HALF_SMOOTH) || !differ(self.normals())
     }
 
     /// The point of the surface above the middle, if the two are far from each other, and the unit normal there. A
@@ -133,12 +130,24 @@ fn height(positions: &[Vec3], normals: &[Vec3]) -> (f32, f32, Vec3) {
 pub(super) struct Bulge {
     /// The cell, by its number in the block.
     pub(super) cell: u16,
-    /// How many segments its loop has.
+    /// How many segments its loop has; 0 if it is dropped.
     pub(super) sides: u16,
-    /// The place of its first triangle among the plain ones of the block.
+    /// The place of its first triangle among the plain ones.
     pub(super) first: u32,
     pub(super) at: Vec3,
     pub(super) normal: Vec3,
+}
+
+impl Bulge {
+    /// Whether it is not dropped.
+    pub(super) fn is_there(&self) -> bool {
+        self.sides > 0
+    }
+
+    /// The cell is part of a region.
+    pub(super) fn drop_it(&mut self) {
+        self.sides = 0;
+    }
 }
 
 /// The triangles around a vertex, to the segments of a ring.

@@ -103,13 +103,11 @@ impl<'a> Parts<'a> {
                 sharp::find(&samples, sampler, &run.stage(0.0, 0.6))?
             }
         };
-        let (more, more_normals): (Vec<Vec3>, Vec<Vec3>) = fans.vertices().unzip();
-        let count = positions.len() as u64 + more.len() as u64;
+        let count = vertices as u64 + fans.vertices() as u64;
         if count > u64::from(u32::MAX) {
             return Err(ExtractError::TooLarge { count });
         }
-        positions.extend(more);
-        normals.extend(more_normals);
+        fans.add_vertices(&mut positions, &mut normals);
         fans.number_bulges(vertices as u32);
 
         let run = run.stage(0.6, 1.0);
@@ -132,7 +130,7 @@ impl<'a> Parts<'a> {
                 meter.step()?;
                 self.list_triangles(n, corners, &fans, &mut slots)?;
                 let first = end - slots.len();
-                fans.list(n, vertices as u32, [&positions, &normals], |triangle, corners| {
+                fans.list(n, vertices as u32, |triangle, corners| {
                     apart.normals.push(corners);
                     slots.next().into_iter().for_each(|slot| *slot = triangle);
                 });

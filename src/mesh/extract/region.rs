@@ -28,12 +28,11 @@ use glam::{DVec3, Vec3};
 
 use super::joined::Joined;
 use super::samples::{Samples, cell_number, split_cell};
-use super::sharp::{Segment, Special, segments};
 use super::span::Span;
-use crate::mesh::feature::{Candidate, crease, settle};
+use super::special::Special;
+use crate::mesh::feature::{Candidate, Segment, crease, settle};
 use crate::mesh::loops::CellLoop;
 use crate::mesh::qef::Planes;
-use crate::mesh::signs::BLOCK;
 use crate::mesh::table::CaseTable;
 use crate::run::{Cancelled, Run};
 
@@ -69,20 +68,31 @@ pub(super) struct Region {
 /// The regions that candidates ask for, those that fit their planes worst first; in the order of the blocks.
 pub(super) fn regions(
     samples: &Samples<'_>,
-    special: &[Special],
+    special: &Special,
     joined: &Joined,
     run: &Run,
 ) -> Result<Vec<Region>, Cancelled> {
-    let mut known = Known { samples, special, joined, taken: vec![Vec::new(); special.len()], regions: Vec::new() };
+    let blocks = samples.blocks().len();
+    let mut known = Known {
+        samples,
+        special,
+        joined,
+        taken: vec![Vec::new(); blocks],
+        regions: Vec::new(),
+        patches: Patches::default(),
+    };
+    let mut all: Vec<Asker<'_>> = Vec::new();
+    for block in 0..blocks {
+        run.check()?;
+        let askers = special.candidates(block).iter().map(|candidate| Asker::candidate(block, candidate));
+        all.extend(askers.filter(|asker| asker.planes.distance(asker.at) > MISFIT));
+    }
     // Boxes towards where planes meet; where that cannot be, such that are larger along some axes only.
     for is_whole in [true, false] {
         let mut wishes = Vec::new();
-        for (block, list) in special.iter().enumerate() {
-            run.check()?;
-            for candidate in list.candidates.iter().filter(|one| known.taken(block, one.cell).is_none()) {
-                Asker::candidate(block, candidate).misfits(MISFIT, is_whole, &mut wishes);
-            }
-        }
+        run.check()?;
+        all.retain(|asker| known.taken(asker.block, asker.span.low).is_none());
+        all.iter().for_each(|asker| asker.misfits(MISFIT, is_whole, &mut wishes));
         wishes.sort_by(|a, b| b.size.total_cmp(&a.size));
         // Regions that stand alone come first: they are smaller than those that others are merged into.
         for merges in [None, Some(LARGEST)] {
@@ -93,10 +103,10 @@ pub(super) fn regions(
     for round in 0..ROUNDS {
         run.check()?;
         let mut wishes = Vec::new();
-        for (block, list) in special.iter().enumerate().filter(|_| round == 0) {
-            for candidate in list.candidates.iter().filter(|one| known.taken(block, one.cell).is_none()) {
-                let normals = candidate.sides(&list.sides).iter().map(|side| side.normal);
-                known.exits(&Asker::candidate(block, candidate), normals, &mut wishes);
+        for block in (0..blocks).filter(|_| round == 0) {
+            for candidate in special.candidates(block).iter().filter(|one| known.taken(block, one.cell).is_none()) {
+                let ring = special.segments(block, candidate);
+                known.exits(&Asker::candidate(block, candidate), ring, &mut wishes);
             }
         }
         for (number, region) in known.regions.iter().enumerate() {
@@ -104,7 +114,7 @@ pub(super) fn regions(
             let asker = Asker::region(number, region);
             asker.misfits(2.0 * MISFIT, true, &mut wishes);
             asker.misfits(2.0 * MISFIT, false, &mut wishes);
-            known.exits(&asker, region.segments.iter().map(|segment| segment.normal), &mut wishes);
+            known.exits(&asker, &region.segments, &mut wishes);
         }
         wishes.sort_by(|a, b| b.size.total_cmp(&a.size));
         let before = known.regions.len();
@@ -193,12 +203,14 @@ struct Wish<'a> {
 
 struct Known<'a> {
     samples: &'a Samples<'a>,
-    special: &'a [Special],
+    special: &'a Special,
     joined: &'a Joined,
-    /// By block, and the numbers of cells in it, the regions that they are in; nothing for a block without any.
-    taken: Vec<Vec<Option<u32>>>,
+    /// By block, the cells that are in regions, by number, and in which.
+    taken: Vec<Vec<(u16, u32)>>,
     /// All regions; `None` for those that others are merged from.
     regions: Vec<Option<Region>>,
+    /// Memory for the patches at hand.
+    patches: Patches,
 }
 
 impl Known<'_> {
@@ -222,16 +234,22 @@ impl Known<'_> {
                 return merged_up_to.is_some();
             }
         }
-        let Some(region) = self.region(wish, span) else { return merged.is_empty() };
+        let mut patches = std::mem::take(&mut self.patches);
+        let region = self.region(wish, span, &mut patches);
+        self.patches = patches;
+        let Some(region) = region else { return merged.is_empty() };
         for old in merged {
             self.regions[old as usize] = None;
         }
         for &(cell, _) in &region.cells {
             let (block, within) = split_cell(cell);
             if let Some(block) = self.samples.find_near(wish.block, block) {
-                let cells = &mut self.taken[block];
-                cells.resize(BLOCK * BLOCK * BLOCK, None);
-                cells[usize::from(cell_number(within))] = Some(self.regions.len() as u32);
+                let (cells, number) = (&mut self.taken[block], cell_number(within));
+                let region = self.regions.len() as u32;
+                match cells.iter_mut().find(|(cell, _)| *cell == number) {
+                    Some(cell) => cell.1 = region,
+                    None => cells.push((number, region)),
+                }
             }
         }
         self.regions.push(Some(region));
@@ -239,7 +257,8 @@ impl Known<'_> {
     }
 
     /// The boxes that hold an empty cell as well, which the crease goes on through.
-    fn exits<'w>(&self, asker: &Asker<'w>, normals: impl Iterator<Item = Vec3> + Clone, wishes: &mut Vec<Wish<'w>>) {
+    fn exits<'w>(&self, asker: &Asker<'w>, ring: &[Segment], wishes: &mut Vec<Wish<'w>>) {
+        let normals = ring.iter().map(|segment| segment.normal);
         for along in crease(normals).into_iter().flat_map(|along| [along, -along]) {
             let Some((cell, length)) = asker.span.exit(asker.at, along) else { continue };
             let is_empty = matches!(self.samples.case_near(asker.block, cell), 0 | 255);
@@ -254,16 +273,22 @@ impl Known<'_> {
     fn taken(&self, near: usize, cell: [u32; 3]) -> Option<u32> {
         let (block, within) = split_cell(cell);
         let block = self.samples.find_near(near, block)?;
-        *self.taken[block].get(usize::from(cell_number(within)))?
+        let cells = &self.taken[block];
+        if cells.is_empty() {
+            return None;
+        }
+        let number = cell_number(within);
+        cells.iter().find(|(cell, _)| *cell == number).map(|&(_, region)| region)
     }
 
-    fn region(&self, wish: &Wish<'_>, span: Span) -> Option<Region> {
-        let (mut cells, mut all, mut planes) = (Vec::new(), Vec::<Vec<Segment>>::new(), Planes::NONE);
+    fn region(&self, wish: &Wish<'_>, span: Span, patches: &mut Patches) -> Option<Region> {
+        let (mut cells, mut planes) = (Vec::with_capacity(8), Planes::NONE);
+        patches.clear();
         for cell in span.cells() {
             let case = self.samples.case_near(wish.block, cell);
             cells.push((cell, CaseTable::get().triangles(case).len()));
             if case != 0 && case != 255 {
-                self.patches(wish.block, cell, case, &mut planes, &mut all)?;
+                self.add_patches(wish.block, cell, case, &mut planes, patches)?;
             }
         }
         let [low, high] = span.corners();
@@ -276,43 +301,51 @@ impl Known<'_> {
         if planes.distance(place).max(own.distance(place)) > wish.allowed {
             return None;
         }
-        let Disc { ring, within } = glued(&all)?;
+        let Disc { ring, within } = patches.glued()?;
         let at = self.samples.inside(place, span.low, span.high);
         Some(Region { block: wish.block, segments: ring, at, place, planes, cells, within, span })
     }
 
-    /// Adds the planes of a crossed cell, close to block `near`, and the segments of each of its loops.
-    fn patches(
+    /// Adds the planes of a crossed cell, close to block `near`, and its patches.
+    fn add_patches(
         &self,
         near: usize,
         cell: [u32; 3],
         case: u8,
         planes: &mut Planes,
-        all: &mut Vec<Vec<Segment>>,
+        patches: &mut Patches,
     ) -> Option<()> {
-        let (block, _) = split_cell(cell);
-        let Special { candidates, sides, .. } = &self.special[self.samples.find_near(near, block)?];
-        if let Some(candidate) = candidates.iter().find(|candidate| candidate.cell == cell) {
-            planes.append(&candidate.planes);
-            all.push(segments(candidate, sides).collect());
+        let (block, within) = split_cell(cell);
+        let block = self.samples.find_near(near, block)?;
+        let candidates = self.special.candidates(block);
+        let number = |candidate: &Candidate| cell_number(split_cell(candidate.cell).1);
+        if let Ok(nth) = candidates.binary_search_by_key(&cell_number(within), number) {
+            planes.append(&candidates[nth].planes);
+            patches.add(self.special.segments(block, &candidates[nth]));
             return Some(());
         }
-        let mut add = |outline: CellLoop| {
-            let (mut vertices, mut sides) = (Vec::with_capacity(outline.len()), Vec::with_capacity(outline.len()));
-            for &edge in outline.edges() {
-                vertices.push(self.samples.vertex(cell, edge)?);
-            }
-            let candidate = self.samples.candidate(cell, outline, &vertices, &mut sides);
-            planes.append(&candidate.planes);
-            all.push(segments(&candidate, &sides).collect());
+        let faces = self.joined.of(self.samples, cell, case);
+        let mut add = |outline: &CellLoop| {
+            let vertices: Option<Vec<u32>> =
+                outline.edges().iter().map(|&edge| self.samples.vertex(near, cell, edge)).collect();
+            let mut own = Vec::with_capacity(outline.len());
+            let lists = (&mut own, &mut Vec::with_capacity(outline.len()));
+            planes.append(&self.samples.candidate(cell, outline, &vertices?, lists).planes);
+            patches.add(&own);
             Some(())
         };
-        let faces = self.joined.of(self.samples, cell, case);
         match CellLoop::single(case, faces) {
-            Some(outline) => add(outline),
-            None => CellLoop::all(case, faces).try_for_each(add),
+            Some(outline) => add(&outline),
+            None => CellLoop::all(case, faces).try_for_each(|outline| add(&outline)),
         }
     }
+}
+
+/// The patches of several cells: the segments of the loops around them, with their ends and the numbers of the patches.
+#[derive(Default)]
+struct Patches {
+    segments: Vec<(Segment, u32, u32)>,
+    count: u32,
 }
 
 /// A disc of several patches.
@@ -323,51 +356,72 @@ struct Disc {
     within: Vec<u32>,
 }
 
-/// Several patches, each given by the loop around it, as one, if they make a disc.
-fn glued(patches: &[Vec<Segment>]) -> Option<Disc> {
-    // Segments with their ends; one that two patches share is there in both directions.
-    let mut all: Vec<(Segment, u32)> = Vec::with_capacity(8 * patches.len());
-    for patch in patches {
-        let next = patch.iter().cycle().skip(1).map(|segment| segment.from);
-        all.extend(patch.iter().copied().zip(next));
+impl Patches {
+    fn clear(&mut self) {
+        self.segments.clear();
+        self.count = 0;
     }
-    let mut sides: Vec<(u32, u32)> = all.iter().map(|&(segment, to)| (segment.from, to)).collect();
-    sides.sort_unstable();
-    let is_outer = |(segment, to): &(Segment, u32)| sides.binary_search(&(*to, segment.from)).is_err();
-    let outer: Vec<(Segment, u32)> = all.iter().copied().filter(is_outer).collect();
-    let (first, _) = *outer.first()?;
-    let mut ring = Vec::with_capacity(outer.len());
-    let mut at = first.from;
-    loop {
-        let &(segment, to) = outer.iter().find(|(segment, _)| segment.from == at)?;
-        ring.push(segment);
-        at = to;
-        if at == first.from {
-            break;
+
+    /// Adds a patch.
+    fn add(&mut self, ring: &[Segment]) {
+        let next = ring.iter().cycle().skip(1).map(|segment| segment.from);
+        self.segments.extend(ring.iter().zip(next).map(|(segment, to)| (*segment, to, self.count)));
+        self.count += 1;
+    }
+
+    /// All as one, if they make a disc.
+    fn glued(&self) -> Option<Disc> {
+        // A segment that two patches share is there in both directions.
+        let mut sides: Vec<(u32, u32)> = self.segments.iter().map(|&(segment, to, _)| (segment.from, to)).collect();
+        sides.sort_unstable();
+        let is_outer = |(segment, to, _): &&(Segment, u32, u32)| sides.binary_search(&(*to, segment.from)).is_err();
+        let outer: Vec<&(Segment, u32, u32)> = self.segments.iter().filter(is_outer).collect();
+        let mut ring: Vec<Segment> = Vec::with_capacity(outer.len());
+        let (first, ..) = *outer.first()?;
+        let mut at = first.from;
+        loop {
+            let &&(segment, to, _) = outer.iter().find(|(segment, ..)| segment.from == at)?;
+            ring.push(segment);
+            at = to;
+            if at == first.from {
+                break;
+            }
+            if ring.len() > outer.len() {
+                return None;
+            }
         }
-        if ring.len() > outer.len() {
+        // Vertices − edges + patches is 1 for a disc; edges within are listed twice.
+        let mut vertices: Vec<(u32, u32)> =
+            self.segments.iter().map(|&(segment, _, patch)| (segment.from, patch)).collect();
+        vertices.sort_unstable();
+        if ring.len() != outer.len() || !self.hangs_together(&vertices) {
             return None;
         }
+        vertices.dedup_by_key(|(vertex, _)| *vertex);
+        let edges = outer.len() + (self.segments.len() - outer.len()) / 2;
+        if vertices.len() + self.count as usize != edges + 1 {
+            return None;
+        }
+        let mut within: Vec<u32> = vertices.into_iter().map(|(vertex, _)| vertex).collect();
+        within.retain(|vertex| ring.iter().all(|segment| segment.from != *vertex));
+        Some(Disc { ring, within })
     }
-    // Vertices − edges + patches is 1 for a disc; edges within are listed twice.
-    let mut vertices: Vec<u32> = all.iter().map(|(segment, _)| segment.from).collect();
-    vertices.sort_unstable();
-    vertices.dedup();
-    let edges = outer.len() + (all.len() - outer.len()) / 2;
-    if ring.len() != outer.len() || vertices.len() + patches.len() != edges + 1 || !hangs_together(patches) {
-        return None;
-    }
-    vertices.retain(|vertex| ring.iter().all(|segment| segment.from != *vertex));
-    Some(Disc { ring, within: vertices })
-}
 
-/// Whether one comes from every patch to every other by vertices that they share.
-fn hangs_together(patches: &[Vec<Segment>]) -> bool {
-    let mut left: Vec<&Vec<Segment>> = patches.iter().collect();
-    let mut reached: Vec<&Vec<Segment>> = left.pop().into_iter().collect();
-    while let Some(patch) = reached.pop() {
-        let shares = |other: &&Vec<Segment>| patch.iter().any(|a| other.iter().any(|b| a.from == b.from));
-        reached.extend(left.extract_if(.., |other| shares(&&**other)));
+    /// Whether one comes from every patch to every other by vertices that they share; given the vertices in order,
+    /// each with its patches.
+    fn hangs_together(&self, vertices: &[(u32, u32)]) -> bool {
+        let mut reached: Vec<bool> = (0..self.count).map(|patch| patch == 0).collect();
+        let mut is_new = true;
+        while is_new {
+            is_new = false;
+            for around in vertices.chunk_by(|a, b| a.0 == b.0) {
+                if around.iter().any(|&(_, patch)| reached[patch as usize]) {
+                    for &(_, patch) in around {
+                        is_new |= !std::mem::replace(&mut reached[patch as usize], true);
+                    }
+                }
+            }
+        }
+        reached.into_iter().all(|patch| patch)
     }
-    left.is_empty()
 }

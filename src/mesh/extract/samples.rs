@@ -1,12 +1,12 @@
 //! All blocks after the first pass, seen as one lattice of cells with vertices on their edges.
 
-use glam::{DVec3, UVec3, Vec3};
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::bulge::SPREAD;
 use super::join::Parts;
 use crate::bounds::Bounds;
-use crate::mesh::feature::{Candidate, Side};
+use crate::mesh::feature::{Candidate, Segment};
 use crate::mesh::lattice::Lattice;
 use crate::mesh::loops::CellLoop;
 use crate::mesh::signs::BLOCK;
@@ -105,12 +105,13 @@ impl<'a> Samples<'a> {
         self.find(block).map_or(0, |block| self.parts.part(block).signs.case(within))
     }
 
-    /// The vertex on an edge, which is crossed, of a cell of the lattice.
-    pub(super) fn vertex(&self, cell: [u32; 3], edge: u8) -> Option<u32> {
+    /// The vertex on an edge, which is crossed, of a cell of the lattice; found quickly if it is in block `near` or next
+    /// to it.
+    pub(super) fn vertex(&self, near: usize, cell: [u32; 3], edge: u8) -> Option<u32> {
         let corner = EDGE_CORNERS[usize::from(edge)][0];
         let node = std::array::from_fn(|axis| cell[axis] + u32::from(corner >> axis & 1));
         let (block, [i, j, k]) = split_cell(node);
-        let part = self.parts.part(self.find(block)?);
+        let part = self.parts.part(self.find_near(near, block)?);
         let crossed = part.signs.crossed(j, k);
         let axis = usize::from(edge_axis(edge));
         let before: u32 = crossed[..axis].iter().map(|bits| bits.count_ones()).sum();
@@ -139,7 +140,10 @@ impl<'a> Samples<'a> {
     pub(super) fn spread(&self) -> Vec<bool> {
         let count = self.blocks().len();
         let first = |n: usize| if n < count { self.parts.part(n).first as usize } else { self.normals.len() };
-        let hull = |[a, b]: [Vec3; 2], [c, d]: [Vec3; 2]| [a.min(c), b.max(d)];
+        // There is no NaN among them.
+        let least = |a: Vec3, b: Vec3| Vec3::select(a.cmplt(b), a, b);
+        let most = |a: Vec3, b: Vec3| Vec3::select(a.cmpgt(b), a, b);
+        let hull = |[a, b]: [Vec3; 2], [c, d]: [Vec3; 2]| [least(a, c), most(b, d)];
         let none = [Vec3::INFINITY, Vec3::NEG_INFINITY];
         let own: Vec<[Vec3; 2]> = (0..count)
             .into_par_iter()
@@ -155,33 +159,30 @@ impl<'a> Samples<'a> {
             .collect()
     }
 
-    /// A position in cells from the lattice's first node, and back.
-    #[inline(always)]
-    fn local(&self, p: Vec3) -> DVec3 {
-        (p.as_dvec3() - self.lattice.origin()) / self.lattice.step()
-    }
-
+    /// A position in cells from the lattice's first node, in length units.
     #[inline(always)]
     pub(super) fn world(&self, p: DVec3) -> DVec3 {
         self.lattice.origin() + p * self.lattice.step()
     }
 
-    /// A cell with a loop, given the vertices on it, which are added to `sides`.
+    /// A cell with a loop, given the vertices on it. Its segments are added to a list, and the places of its
+    /// vertices in the cell to another.
     pub(super) fn candidate(
         &self,
         cell: [u32; 3],
-        outline: CellLoop,
+        outline: &CellLoop,
         vertices: &[u32],
-        sides: &mut Vec<Side>,
+        (segments, places): (&mut Vec<Segment>, &mut Vec<Vec3>),
     ) -> Candidate {
-        let low = UVec3::from_array(cell).as_dvec3();
-        let first = sides.len();
-        sides.reserve(vertices.len());
-        for &vertex in vertices {
-            let (position, normal) = self.get(vertex);
-            sides.push(Side { vertex, at: (self.local(position) - low).as_vec3(), normal });
+        let low = self.lattice.node(cell[0], cell[1], cell[2]);
+        let share = 1.0 / self.lattice.step();
+        let first = segments.len();
+        for (n, &from) in vertices.iter().enumerate() {
+            let (position, normal) = self.get(from);
+            segments.push(Segment { from, cell, face: outline.face(n), turns: false, across: None, normal });
+            places.push((share * (position.as_dvec3() - low)).as_vec3());
         }
-        Candidate::new(cell, outline, first as u32, &sides[first..])
+        Candidate::new(cell, first, segments, &places[first..])
     }
 
     /// A node as vertices have it, rounded to f32.
@@ -203,8 +204,12 @@ impl<'a> Samples<'a> {
     /// The same of a point in length units.
     pub(super) fn held(&self, at: DVec3, low: [u32; 3], high: [u32; 3]) -> Vec3 {
         let (low, high) = (self.node(low), self.node(high));
+        let at = self.limited(at).as_vec3();
+        if at.cmpgt(low).all() && at.cmplt(high).all() {
+            return at;
+        }
         let low = Vec3::new(low.x.next_up(), low.y.next_up(), low.z.next_up());
         let high = Vec3::new(high.x.next_down(), high.y.next_down(), high.z.next_down());
-        self.limited(at).as_vec3().clamp(low, high)
+        at.clamp(low, high)
     }
 }

@@ -18,8 +18,8 @@ use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::samples::{Samples, cell_number, split_cell};
-use super::sharp::{Fan, Fans, Segment};
-use crate::mesh::feature::INSET;
+use super::sharp::{Fan, Fans};
+use crate::mesh::feature::{INSET, Segment};
 use crate::run::{Cancelled, Run};
 
 /// Fans that a thread looks at before it asks whether to go on.
@@ -50,7 +50,8 @@ impl Fans {
                 }
             };
             for (segment, across) in segments.into_iter().zip(across) {
-                self.segments[segment as usize].across = Some(across);
+                let [list, segment] = segment;
+                self.segments[list as usize][segment as usize].across = Some(across);
             }
         }
         Ok(())
@@ -139,7 +140,8 @@ impl Fans {
         // The same segment in the ring of the upper fan, the other way round.
         let is_same = |other: &Segment| other.from == t.0 && other.face + 1 == segment.face && other.cell == cell;
         let other = self.of(high as usize).iter().position(is_same)?;
-        let segments = [below.segments.start + nth as u32, above.segments.start + other as u32];
+        let place = |fan: &Fan, nth: usize| [fan.list, fan.segments.start + nth as u32];
+        let segments = [place(below, nth), place(above, other)];
         let turn = if is_straight { Turn::Edge } else { Turn::Point(bent) };
         Some(Turned { segments, fans: [low as u32, high], turn })
     }
@@ -147,8 +149,8 @@ impl Fans {
 
 /// An edge between two fans that is turned.
 struct Turned {
-    /// The places of its segments in the list of all, that of the lower fan first.
-    segments: [u32; 2],
+    /// The lists of its segments and their places there, those of the lower fan first.
+    segments: [[u32; 2]; 2],
     fans: [u32; 2],
     turn: Turn,
 }

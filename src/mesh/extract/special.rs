@@ -1,0 +1,284 @@
+//! The cells of blocks that do not have the patches of the case table: found block by block, and kept for many
+//! blocks in one list each.
+
+use std::ops::Range;
+
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+use super::Sampler;
+use super::bulge::{Bulge, Ring, around};
+use super::join::Corners;
+use super::joined::Joined;
+use super::samples::{Samples, cell_number, split_cell};
+use crate::mesh::feature::{Candidate, Refiner, Segment};
+use crate::mesh::loops::CellLoop;
+use crate::mesh::meter::Meter;
+use crate::mesh::signs::for_each_cell;
+use crate::mesh::table::CaseTable;
+use crate::run::{Cancelled, Run};
+
+/// Blocks that have their lists together.
+const AT_ONCE: usize = 16;
+
+/// The number of the list that the segments of a block are in.
+pub(super) fn list_of(block: usize) -> u32 {
+    (block / AT_ONCE) as u32
+}
+
+/// The special cells of all blocks.
+#[derive(Default)]
+pub(super) struct Special(Vec<Lists>);
+
+/// Those of consecutive blocks, each list in the order of the blocks and of their cells.
+#[derive(Clone, Default)]
+struct Lists {
+    /// Those with a single loop whose normals spread, or that have joined faces.
+    candidates: Vec<Candidate>,
+    /// The segments of all candidates.
+    segments: Vec<Segment>,
+    /// Smooth ones with a vertex in their middle.
+    bulges: Vec<Bulge>,
+    /// Those with the patches of the opposite case, by number, and their cases.
+    opposite: Vec<(u16, u8)>,
+    /// The triangles of bulges, and of all cells that have those of the table.
+    plain: Vec<[u32; 3]>,
+    blocks: Vec<OfBlock>,
+}
+
+/// Where the lists have what belongs to a block.
+#[derive(Clone, Default)]
+struct OfBlock {
+    candidates: Range<usize>,
+    bulges: Range<usize>,
+    opposite: Range<usize>,
+    /// None for a block that has not been looked at.
+    plain: Option<Range<usize>>,
+}
+
+impl Special {
+    /// Finds the special cells of the blocks whose normals spread or that have joined faces.
+    pub(super) fn find<S: Sampler>(
+        samples: &Samples<'_>,
+        sampler: &S,
+        (spread, joined): (&[bool], &Joined),
+        run: &Run,
+    ) -> Result<Special, Cancelled> {
+        let meter = Meter::new(run, spread.len());
+        let of_chunk = |worker: &mut Worker<S>, (chunk, spread): (usize, &[bool])| {
+            let mut lists = std::mem::take(&mut worker.lists);
+            lists.clear();
+            worker.places.clear();
+            for (n, spreads) in (chunk * AT_ONCE..).zip(spread) {
+                meter.step()?;
+                let is_special = *spreads || joined.concerns(samples, n);
+                let block =
+                    if is_special { lists.add(samples, sampler, joined, n, worker) } else { OfBlock::default() };
+                lists.blocks.push(block);
+            }
+            // Copies take no more memory than they need.
+            worker.lists = lists;
+            Ok(worker.lists.clone())
+        };
+        let chunks = spread.par_chunks(AT_ONCE).enumerate();
+        let lists: Result<_, Cancelled> = chunks.map_init(|| Worker::new(sampler), of_chunk).collect();
+        Ok(Special(lists?))
+    }
+
+    /// The lists that hold what belongs to a block, and where.
+    fn at(&self, block: usize) -> (&Lists, &OfBlock) {
+        let lists = &self.0[block / AT_ONCE];
+        (lists, &lists.blocks[block % AT_ONCE])
+    }
+
+    /// How many candidates there are.
+    pub(super) fn count(&self) -> usize {
+        self.0.iter().map(|lists| lists.candidates.len()).sum()
+    }
+
+    /// Takes the segments, in lists: see [`list_of`].
+    pub(super) fn take_segments(&mut self) -> Vec<Vec<Segment>> {
+        self.0.iter_mut().map(|lists| std::mem::take(&mut lists.segments)).collect()
+    }
+
+    /// Drops the candidates.
+    pub(super) fn drop_candidates(&mut self) {
+        for lists in &mut self.0 {
+            lists.candidates = Vec::new();
+            lists.blocks.iter_mut().for_each(|block| block.candidates = 0..0);
+        }
+    }
+
+    /// The candidates of a block, in order.
+    pub(super) fn candidates(&self, block: usize) -> &[Candidate] {
+        let (lists, of_block) = self.at(block);
+        &lists.candidates[of_block.candidates.clone()]
+    }
+
+    /// The segments of a candidate of a block.
+    #[inline]
+    pub(super) fn segments(&self, block: usize, candidate: &Candidate) -> &[Segment] {
+        candidate.segments(&self.0[block / AT_ONCE].segments)
+    }
+
+    /// The cells of a block with the patches of the opposite case, in order: by number, with their cases.
+    pub(super) fn opposite(&self, block: usize) -> &[(u16, u8)] {
+        let (lists, of_block) = self.at(block);
+        &lists.opposite[of_block.opposite.clone()]
+    }
+
+    /// The bulges of a block, in order.
+    pub(super) fn bulges(&self, block: usize) -> &[Bulge] {
+        let Some(lists) = self.0.get(block / AT_ONCE) else { return &[] };
+        &lists.bulges[lists.blocks[block % AT_ONCE].bulges.clone()]
+    }
+
+    /// The triangles of a block's bulges, and of its cells that have those of the table, if it has been looked at.
+    pub(super) fn plain(&self, block: usize) -> Option<&[[u32; 3]]> {
+        let (lists, of_block) = self.at(block);
+        of_block.plain.clone().map(|plain| &lists.plain[plain])
+    }
+
+    /// Drops the bulges of a block that are not wanted, given by the numbers of their cells; how many are left.
+    pub(super) fn keep_bulges(&mut self, block: usize, is_wanted: impl Fn(u16) -> bool) -> usize {
+        let lists = &mut self.0[block / AT_ONCE];
+        let bulges = &mut lists.bulges[lists.blocks[block % AT_ONCE].bulges.clone()];
+        bulges.iter_mut().filter(|bulge| !is_wanted(bulge.cell)).for_each(Bulge::drop_it);
+        bulges.iter().filter(|bulge| bulge.is_there()).count()
+    }
+
+    /// All bulges that are there, in order.
+    pub(super) fn all_bulges(&self) -> impl Iterator<Item = &Bulge> {
+        self.0.iter().flat_map(|lists| &lists.bulges).filter(|bulge| bulge.is_there())
+    }
+
+    /// Numbers the vertices of bulges in the triangles; `first` tells the number of the first one of a block.
+    pub(super) fn number_bulges(&mut self, first: impl Fn(usize) -> u32 + Sync) {
+        self.0.par_iter_mut().enumerate().for_each(|(chunk, lists)| {
+            let bulges = lists.bulges.iter().filter(|bulge| bulge.is_there());
+            for (number, bulge) in (first(chunk * AT_ONCE)..).zip(bulges) {
+                let triangles = &mut lists.plain[bulge.first as usize..][..usize::from(bulge.sides)];
+                triangles.iter_mut().for_each(|triangle| triangle[0] = number);
+            }
+        });
+    }
+}
+
+/// One thread's means to look at blocks.
+struct Worker<S: Sampler> {
+    scratch: S::Scratch,
+    corners: Corners,
+    ring: Ring,
+    /// By segment, the place of its vertex in the cell.
+    places: Vec<Vec3>,
+    refiner: Refiner,
+    points: Vec<DVec3>,
+    lists: Lists,
+}
+
+impl<S: Sampler> Worker<S> {
+    fn new(sampler: &S) -> Worker<S> {
+        Worker {
+            scratch: sampler.scratch(),
+            corners: Corners::new(),
+            ring: Ring::NONE,
+            places: Vec::new(),
+            refiner: Refiner::default(),
+            points: Vec::new(),
+            lists: Lists::default(),
+        }
+    }
+}
+
+impl Lists {
+    fn clear(&mut self) {
+        self.candidates.clear();
+        self.segments.clear();
+        self.bulges.clear();
+        self.opposite.clear();
+        self.plain.clear();
+        self.blocks.clear();
+    }
+
+    /// Adds what is special in block `n`.
+    fn add<S: Sampler>(
+        &mut self,
+        samples: &Samples<'_>,
+        sampler: &S,
+        joined: &Joined,
+        n: usize,
+        worker: &mut Worker<S>,
+    ) -> OfBlock {
+        // What is missing in a neighbour is an error of the second pass.
+        if !samples.parts.number(n, &mut worker.corners) {
+            return OfBlock::default();
+        }
+        let Worker { scratch, corners, ring, places, refiner, points, .. } = worker;
+        let (candidates, bulges) = (self.candidates.len(), self.bulges.len());
+        let (opposite, plain) = (self.opposite.len(), self.plain.len());
+        let block = samples.blocks()[n];
+        let has_joined = joined.concerns(samples, n);
+        let (table, loops) = (CaseTable::get(), CellLoop::table());
+        for_each_cell(&samples.parts.part(n).signs, |within, case| {
+            let ids = corners.of_cell(within);
+            let cell = || std::array::from_fn(|axis| block[axis] + within[axis] as u32);
+            let faces = if has_joined { joined.of(samples, cell(), case) } else { 0 };
+            if faces != 0 {
+                // The table knows nothing of joined faces.
+                match CellLoop::single(case, faces) {
+                    Some(outline) => {
+                        ring.take(samples, outline.edges(), &ids);
+                        let lists = (&mut self.segments, &mut *places);
+                        self.candidates.push(samples.candidate(cell(), &outline, ring.vertices(), lists));
+                    }
+                    None => self.opposite.push((cell_number(within), case)),
+                }
+                return;
+            }
+            if let Some(outline) = &loops[usize::from(case)] {
+                ring.take(samples, outline.edges(), &ids);
+                if !ring.is_flat() && self.takes(samples, cell(), outline, ring, places) {
+                    return;
+                }
+            }
+            let corner = |edge: u8| ids[usize::from(edge & 15)];
+            self.plain.extend(table.triangles(case).iter().map(|&[a, b, c]| [corner(a), corner(b), corner(c)]));
+        });
+        let found = &mut self.candidates[candidates..];
+        refiner.refine(found, &mut self.segments, places, samples.lattice.step(), |local, out| {
+            points.clear();
+            points.extend(local.iter().map(|p| samples.world(*p)));
+            sampler.slopes(scratch, n, block, points, out)
+        });
+        OfBlock {
+            candidates: candidates..self.candidates.len(),
+            bulges: bulges..self.bulges.len(),
+            opposite: opposite..self.opposite.len(),
+            plain: Some(plain..self.plain.len()),
+        }
+    }
+
+    /// Lists a cell that is not flat, if it is not to have the triangles of the table.
+    #[inline(never)]
+    fn takes(
+        &mut self,
+        samples: &Samples<'_>,
+        cell: [u32; 3],
+        outline: &CellLoop,
+        ring: &Ring,
+        places: &mut Vec<Vec3>,
+    ) -> bool {
+        if !ring.is_smooth() {
+            let lists = (&mut self.segments, places);
+            self.candidates.push(samples.candidate(cell, outline, ring.vertices(), lists));
+            return true;
+        }
+        let Some((at, normal)) = ring.top(samples) else { return false };
+        let at = samples.held(at.as_dvec3(), cell, cell.map(|n| n + 1));
+        let (sides, first) = (outline.len() as u16, self.plain.len() as u32);
+        self.bulges.push(Bulge { cell: cell_number(split_cell(cell).1), sides, first, at, normal });
+        // Its number is not known yet.
+        self.plain.extend(around(0, ring.vertices()));
+        true
+    }
+}
