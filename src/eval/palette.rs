@@ -11,7 +11,7 @@ use glam::{DVec3, Vec3};
 use super::compiled;
 use super::program::{Kind, Op, Program};
 use crate::field::Rule;
-use crate::geom::{from_linear, to_linear};
+use crate::geom::{to_byte, to_linear};
 use crate::{Dual, Paint, Solid, SolidError};
 
 /// The paint of a solid's parts.
@@ -128,6 +128,16 @@ impl Palette {
         self.paints.get(owner as usize).copied().flatten()
     }
 
+    /// How many leaves the solid has.
+    pub(crate) fn leaves(&self) -> u32 {
+        self.paints.len() as u32
+    }
+
+    /// Whether the paint of a leaf changes along its surface.
+    pub(crate) fn is_mixed(&self, owner: u32) -> bool {
+        self.mixed.get(owner as usize).is_some_and(|mixed| *mixed)
+    }
+
     /// The paint at a point of the surface that the leaf `owner` decides: a mixture where a
     /// blend is made of parts of different paint, those without paint counted as
     /// [`Paint::default`].
@@ -138,7 +148,7 @@ impl Palette {
 
     /// The same, with the paint that parts without any are counted as.
     pub(crate) fn mixture(&self, owner: u32, p: DVec3, unpainted: Paint) -> Option<Paint> {
-        if !self.mixed.get(owner as usize).is_some_and(|mixed| *mixed) {
+        if !self.is_mixed(owner) {
             return self.of(owner);
         }
         let (mut color, mut roughness, mut sum) = (Vec3::ZERO, 0.0, 0.0);
@@ -154,8 +164,7 @@ impl Palette {
         if !any || sum <= 0.0 {
             return self.of(owner);
         }
-        let byte = |c: f32| (255.0 * from_linear(c)).round().clamp(0.0, 255.0) as u8;
-        Some(Paint { color: (color / sum as f32).to_array().map(byte), roughness: roughness / sum })
+        Some(Paint { color: (color / sum as f32).to_array().map(to_byte), roughness: roughness / sum })
     }
 }
 

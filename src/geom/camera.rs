@@ -329,6 +329,7 @@ impl Rays {
 
     /// What a pixel spans at distance `t` along a ray near the middle, in length units.
     #[must_use]
+    #[inline]
     pub fn pixel_size(&self, t: f64) -> f64 {
         let pixel = self.across.length();
         if self.parallel { pixel } else { pixel * t }

@@ -8,6 +8,8 @@
 //!           y ↓ height
 //! ```
 
+use super::transfer::{from_linear, to_byte};
+
 /// A picture: rows of pixels from top to bottom. What a pixel is says what the picture is of:
 ///
 /// | pixel | picture |
@@ -124,8 +126,16 @@ impl Image {
 }
 
 /// A pixel of linear light, weighted by alpha, as 8-bit sRGB.
-pub(crate) fn to_8bit(light: [f32; 4]) -> [u8; 4] {
-    encoded(light).map(|c| (255.0 * c).round() as u8)
+#[inline]
+pub(crate) fn to_8bit([r, g, b, alpha]: [f32; 4]) -> [u8; 4] {
+    if alpha.is_nan() || alpha <= 0.0 {
+        return [0; 4];
+    }
+    if alpha == 1.0 {
+        return [to_byte(r), to_byte(g), to_byte(b), 255];
+    }
+    let color = |c: f32| to_byte(c / alpha);
+    [color(r), color(g), color(b), (255.0 * alpha).round() as u8]
 }
 
 impl Image<[f32; 4]> {
@@ -186,18 +196,9 @@ fn encoded([r, g, b, alpha]: [f32; 4]) -> [f32; 4] {
     [color(r), color(g), color(b), alpha.min(1.0)]
 }
 
-/// From sRGB to linear.
-pub(crate) fn to_linear(c: f32) -> f32 {
-    if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
-}
-
-/// From linear to sRGB.
-pub(crate) fn from_linear(c: f32) -> f32 {
-    if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::transfer::to_linear;
     use super::*;
 
     #[test]

@@ -2,9 +2,9 @@
 //!
 //! ```text
 //!      +---+---+-------+      A block is a cube of 8³ cells. Blocks that the surface may cross
-//!      | 1 |///| \     |      know which of their cells it crosses, and a plane in each; the
-//!      +---+---+  \    |      others know how many blocks away the nearest of these is, and
-//!      | 1 | 1 |   \   |      a ray leaps over all that is nearer.
+//!      |   |///| \     |      know which of their cells it crosses, and a plane in each (see
+//!      +---+---+  \    |      `facet_block`); what is between them, a ray leaps over (see
+//!      |   |   |   \   |      `leaps`).
 //!      +---+---+-------+
 //! ```
 //!
@@ -17,23 +17,23 @@
 //! Source: J. Amanatides and A. Woo, *A fast voxel traversal algorithm for ray tracing* (1987),
 //! for the way through the cells.
 
-use glam::{DVec3, IVec3, Vec3, Vec4};
+use glam::{DVec3, IVec3, Vec3, Vec3A, Vec4};
 use rayon::prelude::*;
 
+use super::facet_block::{Block, NODES, Ray, SIDE};
+use super::leaps::Leaps;
 use crate::eval::{Evaluator, Program, Tape};
 use crate::space::{Grid, surface_blocks};
 use crate::{Bounds, Cancelled, Run};
 
-/// Cells along a block.
-const SIDE: usize = 8;
-/// Samples along a block.
-const NODES: usize = SIDE + 1;
-
-/// A surface does not hide from itself what is nearer than this, in cells.
-const BIAS: f32 = 2.0;
-
 /// Rays step this far over a border, in cells.
 const NUDGE: f32 = 1e-3;
+
+/// Further than this from a ray's origin, in cells, single precision cannot tell a nudge.
+const FARTHEST: f32 = 8192.0;
+
+/// Components of directions are at least this, so that their inverses are finite.
+const LEAST: f32 = 1e-20;
 
 /// Blocks that are made by a thread at once.
 const TOGETHER: usize = 64;
@@ -44,25 +44,21 @@ pub(super) struct Facets {
     origin: DVec3,
     /// The side of a cell in length units.
     cell: f64,
-    /// Blocks along each axis.
-    blocks: IVec3,
-    /// By block, x first: [`BLOCK`] and the number of the one with facets, or how many blocks
-    /// away the nearest of these is.
-    map: Vec<u32>,
+    /// By block, x first: the number of the one with facets.
+    numbers: Vec<u32>,
+    leaps: Leaps,
     surface: Vec<Block>,
+    tops: Vec<Top>,
+    /// The far corner of the grid in cells, the last block, and what makes a block's place of it.
+    top: Vec3A,
+    last: Vec3A,
+    strides: Vec3A,
 }
 
-/// Marks the numbers of blocks with facets.
-const BLOCK: u32 = 1 << 31;
-
-/// A block that the surface may cross.
-struct Block {
-    /// The cells with facets: a word a layer, a byte a row.
-    cells: [u64; SIDE],
-    /// How many facets the layers before have.
-    before: [u16; SIDE],
-    /// The value at the cell's middle and its slopes a cell, in the cells' order.
-    facets: Vec<Vec4>,
+/// What is above all facets of a block, along a unit vector from the grid's corner, in cells.
+struct Top {
+    up: Vec3A,
+    height: f32,
 }
 
 /// What a thread keeps from block to block.
@@ -100,176 +96,149 @@ impl Facets {
         let made: Result<Vec<Vec<Block>>, Cancelled> = made.collect();
         let surface: Vec<Block> = made?.into_iter().flatten().collect();
         let blocks = blocks.as_ivec3();
-        let mut facets = Facets { origin, cell, blocks, map: Vec::new(), surface };
-        facets.map = vec![BLOCK - 1; blocks.element_product() as usize];
+        let tops = found.par_iter().zip(&surface).map(|(found, block)| {
+            let corner = IVec3::from_array(found.index.map(|i| i as i32 * SIDE as i32)).as_vec3();
+            let (up, height) = block.top();
+            Top { up: up.into(), height: height + up.dot(corner) }
+        });
+        let mut numbers = vec![u32::MAX; blocks.element_product() as usize];
         for (number, block) in (0..).zip(&found) {
-            let place = facets.place(IVec3::from_array(block.index.map(|i| i as i32)));
-            facets.map[place] = BLOCK | number;
+            let [x, y, z] = block.index.map(|i| i as i32);
+            numbers[((z * blocks.y + y) * blocks.x + x) as usize] = number;
         }
-        facets.spread();
-        Ok(facets)
+        let full: Vec<bool> = numbers.iter().map(|number| *number != u32::MAX).collect();
+        Ok(Facets {
+            origin,
+            cell,
+            numbers,
+            leaps: Leaps::new(blocks, &full),
+            tops: tops.collect(),
+            surface,
+            top: (blocks * SIDE as i32).as_vec3a(),
+            last: (blocks - 1).as_vec3a(),
+            strides: IVec3::new(1, blocks.x, blocks.x * blocks.y).as_vec3a(),
+        })
     }
 
-    fn place(&self, block: IVec3) -> usize {
-        ((block.z * self.blocks.y + block.y) * self.blocks.x + block.x) as usize
-    }
-
-    /// Tells every empty block how far the nearest of the others is, by steps to any of its 26
-    /// neighbours: along rows, then columns, then piles, as the largest of three distances is.
-    fn spread(&mut self) {
-        let mut near: Vec<u32> = self.map.iter().map(|&at| if at >= BLOCK { 0 } else { BLOCK - 1 }).collect();
-        // The least over a line of max(|i − j|, d(j)).
-        let mut line = Vec::new();
-        for axis in 0..3 {
-            let len = self.blocks[axis] as usize;
-            let stride = [1, self.blocks.x, self.blocks.x * self.blocks.y][axis] as usize;
-            for start in (0..near.len()).filter(|at| (at / stride).is_multiple_of(len)) {
-                line.clear();
-                line.extend((0..len).map(|i| near[start + i * stride]));
-                for i in 0..len {
-                    let mut least = line[i];
-                    let mut away = 1;
-                    while away < least && (away as usize) < len {
-                        let step = away as usize;
-                        let one = i.checked_sub(step).map_or(u32::MAX, |j| line[j]);
-                        let other = line.get(i + step).copied().unwrap_or(u32::MAX);
-                        least = least.min(one.min(other).max(away));
-                        away += 1;
-                    }
-                    near[start + i * stride] = least;
-                }
-            }
+    /// How far along each of four rays the first facet is, in length units; infinite where there is none.
+    /// They start at `origin`; `directions` are the components of unit vectors, a lane a ray, and `asked`
+    /// has a bit for each ray that is wanted. What is within two cells of the origin counts only if the
+    /// ray passes its plane there.
+    pub(super) fn hits(&self, origin: DVec3, directions: &[Vec4; 3], asked: u32) -> [f64; 4] {
+        let mut hits = [f64::INFINITY; 4];
+        let origin = ((origin - self.origin) / self.cell).as_vec3();
+        if asked == 0 || !origin.is_finite() {
+            return hits;
         }
-        for (at, near) in self.map.iter_mut().zip(near) {
-            if *at < BLOCK {
-                *at = near;
-            }
-        }
-    }
-
-    /// How far along the ray its first facet is, in length units; `direction` is a unit vector.
-    /// What is within two cells of the origin counts only if the ray passes its plane there.
-    pub(super) fn hit(&self, origin: DVec3, direction: DVec3) -> Option<f64> {
-        if !(origin.is_finite() && direction.is_finite()) {
-            return None;
-        }
-        let top = (self.blocks * SIDE as i32).as_dvec3();
-        let from = (origin - self.origin) / self.cell;
-        let inverse = direction.recip();
-        let (mut near, mut far) = (0.0f64, f64::INFINITY);
-        for axis in 0..3 {
-            if direction[axis] == 0.0 {
-                if !(from[axis] >= 0.0 && from[axis] < top[axis]) {
-                    return None;
-                }
-                continue;
-            }
-            let (a, b) = (-from[axis] * inverse[axis], (top[axis] - from[axis]) * inverse[axis]);
+        let turned = |d: Vec4| d.abs().max(Vec4::splat(LEAST)).copysign(d);
+        let (x, y, z) = (turned(directions[0]), turned(directions[1]), turned(directions[2]));
+        let (over_x, over_y, over_z) = (x.recip(), y.recip(), z.recip());
+        let (mut near, mut far) = (Vec4::ZERO, Vec4::splat(FARTHEST));
+        for (origin, top, inverse) in
+            [(origin.x, self.top.x, over_x), (origin.y, self.top.y, over_y), (origin.z, self.top.z, over_z)]
+        {
+            let (a, b) = (-origin * inverse, (top - origin) * inverse);
             near = near.max(a.min(b));
             far = far.min(a.max(b));
         }
-        if near >= far {
-            return None;
-        }
-        let ray = Walk {
-            origin: (from + near * direction).as_vec3(),
-            direction: direction.as_vec3(),
-            // A ray along a plane never reaches the next one.
-            inverse: inverse.as_vec3().clamp(Vec3::splat(-1e30), Vec3::splat(1e30)),
-            // What is met at the grid's border is as far from the ray's start as that.
-            bias: BIAS - near as f32,
-        };
-        self.walk(&ray, (far - near) as f32).map(|t| (near + f64::from(t)) * self.cell)
+        let inverses = [over_x, over_y, over_z];
+        let rays = Rays { origin, directions: [x, y, z], inverses };
+        self.walk(&rays, near, far, asked, &mut hits);
+        hits
     }
 
-    fn walk(&self, ray: &Walk, far: f32) -> Option<f32> {
-        let mut t = 0.0f32;
-        while t < far {
-            let p = ray.at(t);
-            let block = (p * (1.0 / SIDE as f32)).as_ivec3().clamp(IVec3::ZERO, self.blocks - 1);
-            let kind = self.map[self.place(block)];
-            let (low, high) = if kind >= BLOCK {
-                let corner = (block * SIDE as i32).as_vec3();
-                if let Some(hit) = self.surface[(kind - BLOCK) as usize].walk(ray, corner, t) {
-                    return Some(hit);
-                }
-                (block, block + 1)
-            } else {
-                let reach = kind as i32 - 1;
-                (block - reach, block + reach + 1)
-            };
-            let end = ray.leaves((low * SIDE as i32).as_vec3(), (high * SIDE as i32).as_vec3());
-            t = end.max(t) + NUDGE;
-        }
-        None
-    }
-}
-
-/// A ray in cells from the grid's corner.
-struct Walk {
-    origin: Vec3,
-    direction: Vec3,
-    inverse: Vec3,
-    bias: f32,
-}
-
-impl Walk {
-    #[inline(always)]
-    fn at(&self, t: f32) -> Vec3 {
-        self.origin + t * self.direction
-    }
-
-    /// Where it leaves a box that it is in.
-    #[inline(always)]
-    fn leaves(&self, low: Vec3, high: Vec3) -> f32 {
-        let ends = ((low - self.origin) * self.inverse).max((high - self.origin) * self.inverse);
-        ends.min_element()
-    }
-}
-
-impl Block {
-    /// The first facet on a ray that is in this block, whose corner is at `corner`, from `t` on.
-    fn walk(&self, ray: &Walk, corner: Vec3, mut t: f32) -> Option<f32> {
-        let last = IVec3::splat(SIDE as i32 - 1);
-        let mut cell = (ray.at(t) - corner).as_ivec3().clamp(IVec3::ZERO, last);
-        let step = ray.direction.signum().as_ivec3();
-        let ahead = corner + (cell + step.max(IVec3::ZERO)).as_vec3();
-        let mut next = (ahead - ray.origin) * ray.inverse;
-        let delta = ray.inverse.abs();
-        loop {
-            let axis = if next.x < next.y {
-                if next.x < next.z { 0 } else { 2 }
-            } else if next.y < next.z {
-                1
-            } else {
-                2
-            };
-            let end = next[axis];
-            let bit = cell.x + SIDE as i32 * cell.y;
-            let word = self.cells[cell.z as usize];
-            if word >> bit & 1 == 1 {
-                let number =
-                    usize::from(self.before[cell.z as usize]) + (word & ((1 << bit) - 1)).count_ones() as usize;
-                let facet = self.facets[number];
-                let middle = corner + cell.as_vec3() + 0.5;
-                let value = |t: f32| facet.x + Vec3::new(facet.y, facet.z, facet.w).dot(ray.at(t) - middle);
-                let (enters, leaves) = (value(t), value(end));
-                if enters > 0.0 {
-                    if t > ray.bias {
-                        return Some(t);
+    /// Fills in the first facets on those rays, among the ones asked for, that are in the grid between
+    /// `near` and `far`.
+    fn walk(&self, rays: &Rays, near: Vec4, far: Vec4, asked: u32, hits: &mut [f64; 4]) {
+        let Rays { origin, directions: [x, y, z], inverses: [over_x, over_y, over_z], .. } = rays;
+        let side = SIDE as f32;
+        let part = 1.0 / side;
+        let (sign_x, sign_y, sign_z) = (Vec4::ONE.copysign(*x), Vec4::ONE.copysign(*y), Vec4::ONE.copysign(*z));
+        // Cubes reach from a block's low corner upwards, or from its high corner downwards.
+        let (out_x, out_y, out_z) =
+            (0.5 * side * (1.0 - sign_x), 0.5 * side * (1.0 - sign_y), 0.5 * side * (1.0 - sign_z));
+        let ways = sign_x.max(Vec4::ZERO) + 2.0 * sign_y.max(Vec4::ZERO) + 4.0 * sign_z.max(Vec4::ZERO);
+        let ways = ways * self.leaps.count() as f32;
+        let mut t = near;
+        let mut under_way = near.cmplt(far).bitmask() & asked;
+        while under_way != 0 {
+            let block_x = whole((origin.x + t * x) * part).clamp(Vec4::ZERO, Vec4::splat(self.last.x));
+            let block_y = whole((origin.y + t * y) * part).clamp(Vec4::ZERO, Vec4::splat(self.last.y));
+            let block_z = whole((origin.z + t * z) * part).clamp(Vec4::ZERO, Vec4::splat(self.last.z));
+            // Exact: there are less than 2²⁰ blocks.
+            let place = block_x + block_y * self.strides.y + block_z * self.strides.z;
+            // Loops, as calls of closures on arrays are not inlined.
+            let (mut empty, mut cubes) = ([false; 4], [0.0; 4]);
+            for (lane, at) in (place + ways).to_array().into_iter().enumerate() {
+                let leap = self.leaps.side(at as i32 as usize);
+                empty[lane] = leap > 0;
+                cubes[lane] = f32::from(leap.max(1));
+            }
+            // The sides of the cube of blocks that the ray leaves by.
+            let across = side * Vec4::from_array(cubes);
+            let end_x = (block_x * side + out_x + across * sign_x - origin.x) * over_x;
+            let end_y = (block_y * side + out_y + across * sign_y - origin.y) * over_y;
+            let end_z = (block_z * side + out_z + across * sign_z - origin.z) * over_z;
+            let end = end_x.min(end_y).min(end_z);
+            for lane in 0..4 {
+                if !empty[lane] && under_way >> lane & 1 == 1 {
+                    let corner = side * Vec3A::new(block_x[lane], block_y[lane], block_z[lane]);
+                    let number = self.numbers[place[lane] as i32 as usize] as usize;
+                    if let Some(hit) = self.block(number, &rays.ray(lane), corner, t[lane], end[lane]) {
+                        hits[lane] = f64::from(hit) * self.cell;
+                        under_way &= !(1 << lane);
                     }
-                } else if leaves > 0.0 {
-                    return Some(t + (end - t) * (enters / (enters - leaves)));
                 }
             }
-            cell[axis] += step[axis];
-            if cell[axis] < 0 || cell[axis] > last[axis] {
+            t = end.max(t) + NUDGE;
+            under_way &= t.cmplt(far).bitmask();
+        }
+    }
+
+    /// The first facet of a block on a ray that is in it from `t` to `end`.
+    #[inline]
+    fn block(&self, number: usize, ray: &Ray, corner: Vec3A, mut t: f32, mut end: f32) -> Option<f32> {
+        let Top { up, height } = self.tops[number];
+        // How high it is above all facets, and how fast it rises.
+        let rises = up.dot(ray.direction);
+        let over = up.dot(ray.origin) - height;
+        if over + t * rises > 0.0 {
+            if rises >= 0.0 {
                 return None;
             }
-            next[axis] += delta[axis];
-            t = t.max(end);
+            t = -over / rises;
+        } else if rises > 0.0 {
+            end = end.min(-over / rises);
         }
+        if t <= end { self.surface[number].walk(ray, corner, t, end) } else { None }
     }
+}
+
+/// Four rays, in cells: a lane each.
+struct Rays {
+    origin: Vec3,
+    directions: [Vec4; 3],
+    inverses: [Vec4; 3],
+}
+
+impl Rays {
+    #[inline]
+    fn ray(&self, lane: usize) -> Ray {
+        let [x, y, z] = &self.directions;
+        let direction = Vec3A::new(x[lane], y[lane], z[lane]);
+        let [x, y, z] = &self.inverses;
+        let inverse = Vec3A::new(x[lane], y[lane], z[lane]);
+        Ray { origin: self.origin.into(), direction, inverse, signs: Vec3A::ONE.copysign(direction) }
+    }
+}
+
+/// The whole numbers below these, to which rounding to even is close enough where they are whole, and 0 or
+/// less of what is below 1.
+#[inline(always)]
+fn whole(v: Vec4) -> Vec4 {
+    // From 2²³ on, single precision has no fractions.
+    const WHOLE: f32 = 8_388_608.0;
+    (v + (WHOLE - 0.5)) - WHOLE
 }
 
 impl Maker {
@@ -287,34 +256,6 @@ impl Maker {
     }
 }
 
-impl Block {
-    /// The facets of a block from the values at its nodes, x fastest.
-    fn new(values: &[f32]) -> Block {
-        let mut block = Block { cells: [0; SIDE], before: [0; SIDE], facets: Vec::new() };
-        for z in 0..SIDE {
-            block.before[z] = block.facets.len() as u16;
-            for y in 0..SIDE {
-                for x in 0..SIDE {
-                    let first = (z * NODES + y) * NODES + x;
-                    let corner = |n: usize| values[first + (n & 1) + (n >> 1 & 1) * NODES + (n >> 2) * NODES * NODES];
-                    let inside = (0..8).filter(|&n| corner(n) > 0.0).count();
-                    if inside == 0 || inside == 8 {
-                        continue;
-                    }
-                    let mut facet = Vec4::ZERO;
-                    for n in 0..8 {
-                        let side = |axis: usize| if n >> axis & 1 == 1 { 0.25 } else { -0.25 };
-                        facet += corner(n) * Vec4::new(0.125, side(0), side(1), side(2));
-                    }
-                    block.cells[z] |= 1 << (x + SIDE * y);
-                    block.facets.push(facet);
-                }
-            }
-        }
-        block
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -323,6 +264,12 @@ mod tests {
     fn facets(solid: &Solid, cells: u32) -> Facets {
         let program = solid.surface_program().unwrap();
         Facets::new(&program, &solid.bounds().unwrap(), cells, &Run::default()).unwrap()
+    }
+
+    /// Infinite if there is none.
+    fn hit(facets: &Facets, origin: DVec3, direction: DVec3) -> f64 {
+        let lanes = direction.as_vec3().to_array().map(|d| Vec4::new(0.0, d, 1.0, -d));
+        facets.hits(origin, &lanes, 2)[1]
     }
 
     #[test]
@@ -334,27 +281,28 @@ mod tests {
             let at = |step: f64| (0.5 + step * f64::from(i)).fract() * 2.0 - 1.0;
             let origin = 3.0 * DVec3::new(at(0.819), at(0.671), at(0.549)).normalize();
             let direction = (DVec3::new(at(0.357), at(0.211), at(0.733)) - origin).normalize();
-            let found = facets.hit(origin, direction);
+            let found = hit(&facets, origin, direction);
             match solid.raycast(origin, direction).unwrap() {
                 None => {
                     // A ray close by may touch a facet.
                     let near = (0..300).map(|k| origin + 0.02 * f64::from(k) * direction);
                     let grazes = near.map(|p| solid.value(p).unwrap()).any(|v| v > -0.04);
-                    assert!(found.is_none() || grazes, "{i}: {found:?}");
+                    assert!(found == f64::INFINITY || grazes, "{i}: {found:?}");
                 }
                 Some(hit) => {
                     // A ray may cut an edge within a cell.
                     let deep = solid.value(hit.point + 0.1 * direction).unwrap() > 0.03;
                     if deep && hit.normal.dot(direction).abs() > 0.3 {
                         hits += 1;
-                        let found = found.unwrap_or_else(|| panic!("{i}: {hit:?}"));
                         assert!((found - hit.distance).abs() < 0.06, "{i}: {found} for {hit:?}");
                     }
                 }
             }
         }
         assert!(hits > 1000, "{hits}");
-        assert_eq!(facets.hit(DVec3::ZERO, DVec3::NAN), None);
+        assert_eq!(hit(&facets, DVec3::NAN, DVec3::X), f64::INFINITY);
+        hit(&facets, DVec3::ZERO, DVec3::NAN);
+        hit(&facets, DVec3::splat(3.0), DVec3::ZERO);
     }
 
     #[test]
@@ -366,29 +314,65 @@ mod tests {
             let normal = DVec3::new(at(0.819), at(0.671), at(0.549)).normalize();
             let (t, _) = normal.any_orthonormal_pair();
             let direction = (0.03 * normal + t).normalize();
-            assert!(facets.hit(normal * (1.0 + 1e-7), direction).is_none(), "{normal}");
-            assert!(facets.hit(normal * (1.0 + 1e-7), -direction).is_none() || direction.dot(normal) > 0.0);
+            assert!(hit(&facets, normal * (1.0 + 1e-7), direction) == f64::INFINITY, "{normal}");
+            let inwards = hit(&facets, normal * (1.0 + 1e-7), -direction);
+            assert!(inwards == f64::INFINITY || direction.dot(normal) > 0.0);
         }
     }
 
+    /// A ray meets what it meets if every facet of the grid is looked at.
     #[test]
-    fn empty_blocks_know_the_nearest_of_the_others() {
-        let solid = Solid::sphere(0.2) | Solid::sphere(0.2).translate(DVec3::new(3.0, 1.0, 0.5));
-        let facets = facets(&solid, 128);
-        let all: Vec<IVec3> = (0..facets.map.len() as i32)
-            .map(|n| {
-                IVec3::new(
-                    n % facets.blocks.x,
-                    n / facets.blocks.x % facets.blocks.y,
-                    n / (facets.blocks.x * facets.blocks.y),
-                )
+    fn nothing_is_leapt_over() {
+        let solid =
+            Solid::superellipsoid(DVec3::new(1.0, 0.8, 0.6), 0.3, 0.7) - Solid::cylinder(0.3, 3.0).rotate_x(0.4);
+        let solid = solid | Solid::torus(1.2, 0.08);
+        let facets = facets(&solid, 90);
+        let cells: Vec<(DVec3, DVec3, f64)> = (0..facets.numbers.len())
+            .filter(|at| facets.numbers[*at] != u32::MAX)
+            .flat_map(|at| {
+                let size = facets.last.as_ivec3() + 1;
+                let at = IVec3::new(at as i32 % size.x, at as i32 / size.x % size.y, at as i32 / (size.x * size.y));
+                let block = &facets.surface[facets.numbers[((at.z * size.y + at.y) * size.x + at.x) as usize] as usize];
+                let corner = (at * SIDE as i32).as_dvec3();
+                block.facets().map(move |(middle, facet)| {
+                    let slopes = facet.truncate().as_dvec3();
+                    (corner + middle.as_dvec3(), slopes, f64::from(facet.w) - slopes.dot(corner))
+                })
             })
             .collect();
-        let full: Vec<IVec3> = all.iter().copied().filter(|&at| facets.map[facets.place(at)] >= BLOCK).collect();
-        for at in all {
-            let near = full.iter().map(|&other| (other - at).abs().max_element()).min().unwrap();
-            let known = facets.map[facets.place(at)];
-            assert!(if near == 0 { known >= BLOCK } else { known == near as u32 }, "{at}: {known} for {near}");
+        let first = |origin: DVec3, direction: DVec3| {
+            let mut least = f64::INFINITY;
+            for (middle, slopes, value) in &cells {
+                let (a, b) = ((middle - 0.5 - origin) / direction, (middle + 0.5 - origin) / direction);
+                let (near, far) = (a.min(b).max_element().max(0.0), a.max(b).min_element());
+                let (value, rate) = (value + slopes.dot(origin), slopes.dot(direction));
+                if near >= far {
+                    continue;
+                }
+                if value + near * rate > 0.0 {
+                    least = if near > 2.0 { least.min(near) } else { least };
+                } else if value + far * rate > 0.0 {
+                    least = least.min(-value / rate);
+                }
+            }
+            least
+        };
+        let (mut met, mut missed, mut off) = (0, 0, 0);
+        for i in 1..4000 {
+            let at = |step: f64| (0.5 + step * f64::from(i)).fract() * 2.0 - 1.0;
+            let direction = DVec3::new(at(0.357), at(0.211), at(0.733)).normalize();
+            // From the surface, and from anywhere.
+            let start = 1.5 * DVec3::new(at(0.819), at(0.671), at(0.549));
+            let origin = match solid.raycast(start, -start.normalize()).unwrap() {
+                Some(hit) if i % 2 == 0 => hit.point + 1e-7 * hit.normal,
+                _ => start,
+            };
+            let expected = first((origin - facets.origin) / facets.cell, direction) * facets.cell;
+            let found = hit(&facets, origin, direction);
+            // Rays through the edges of cells may see either of two facets.
+            off += usize::from(found.is_finite() != expected.is_finite() || (found - expected).abs() > 0.02);
+            *(if found.is_finite() { &mut met } else { &mut missed }) += 1;
         }
+        assert!(met > 500 && missed > 500 && off < 8, "{met} {missed} {off}");
     }
 }

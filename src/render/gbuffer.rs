@@ -28,6 +28,7 @@ impl Surface {
 
     /// Whether the ray meets something.
     #[must_use]
+    #[inline]
     pub fn is_hit(&self) -> bool {
         self.distance < f64::INFINITY
     }

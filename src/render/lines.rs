@@ -23,7 +23,7 @@ use crate::Rays;
 const INK: Vec3 = Vec3::new(0.011, 0.014, 0.02);
 
 /// Neighbours whose normals differ by more (cosine of 20°) are on both sides of a crease.
-const CREASE: f64 = 0.94;
+const CREASE: f32 = 0.94;
 
 /// Off the tangent plane by more than this many pixels is a step in depth.
 const STEP: f64 = 2.5;

@@ -15,7 +15,7 @@
 //! effectiveness of quasirandom sequences* (2018), for the directions; R. Cook, L. Porter,
 //! L. Carpenter, *Distributed ray tracing* (1984).
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec4};
 use rayon::prelude::*;
 
 use super::facets::Facets;
@@ -25,7 +25,7 @@ use super::shade::Openness;
 use super::spot::Spot;
 use crate::{Cancelled, Run};
 
-/// Rays to each of the two lights, of one pixel.
+/// Rays to each of the two lights, of one pixel: the lanes of a vector.
 const RAYS: usize = 4;
 
 /// Patterns, and the order in which a block of 4 × 4 pixels uses them: neighbours differ most.
@@ -34,6 +34,9 @@ const ORDER: [usize; PATTERNS] = [0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7,
 
 /// Pixels that the mean reaches to each side.
 pub(super) const REACH: usize = 2;
+
+/// Points along the side of a tile.
+pub(super) const TILE: usize = 32;
 
 /// Points whose rays to a light without extent are traced together.
 const TOGETHER: usize = 1 << 16;
@@ -49,11 +52,12 @@ pub(super) struct Obstacles<'a> {
     scene: &'a Scene,
     facets: Facets,
     key: DVec3,
-    /// Directions to points of the key light, relative to its middle, by pattern; none if it
-    /// casts no shadow.
-    shadows: Vec<DVec2>,
-    /// Directions to the sky, relative to the normal, by pattern; none if nothing hides it.
-    skies: Vec<DVec2>,
+    /// Directions to points of the key light, by pattern: a lane a ray. None if it casts no shadow, or
+    /// has no extent.
+    shadows: Vec<[Vec4; 3]>,
+    is_hard: bool,
+    /// Directions to the sky, by pattern, z along the normal; none if nothing hides it.
+    skies: Vec<[Vec4; 3]>,
     middle: DVec3,
     /// Half the diagonal of the solid's box.
     radius: f64,
@@ -80,20 +84,24 @@ impl<'a> Obstacles<'a> {
             DVec2::from_angle(std::f64::consts::TAU * at(0.569_840_290_998_053)) * radius
         };
         let spread = softness.to_radians().tan();
-        let count = PATTERNS * RAYS;
-        // A light without extent needs one ray, the same for every pixel.
-        let shadow_count = match (shadows, spread == 0.0) {
-            (false, _) => 0,
-            (true, true) => 1,
-            (true, false) => count,
+        let (t, b) = key.any_orthonormal_pair();
+        let to_light = |i: usize| {
+            let d = spread * disc(i);
+            (key + d.x * t + d.y * b).normalize()
         };
+        let to_sky = |i: usize| {
+            let d = disc(i);
+            d.extend((1.0 - d.length_squared()).max(0.0).sqrt().max(0.02)).normalize()
+        };
+        let has_soft = shadows && spread > 0.0;
         let bounds = scene.bounds();
         Ok(Some(Obstacles {
             scene,
             facets,
             key,
-            shadows: (0..shadow_count).map(|i| spread * disc(i)).collect(),
-            skies: (0..if occlusion { count } else { 0 }).map(disc).collect(),
+            shadows: if has_soft { patterns(to_light) } else { Vec::new() },
+            is_hard: shadows && !has_soft,
+            skies: if occlusion { patterns(to_sky) } else { Vec::new() },
             middle: bounds.center(),
             radius: bounds.half_extents().length(),
         }))
@@ -101,13 +109,34 @@ impl<'a> Obstacles<'a> {
 
     /// Whether the edges of shadows are hard.
     pub(super) fn is_hard(&self) -> bool {
-        self.shadows.len() == 1
+        self.is_hard
     }
 
-    /// What each point sees by its own rays; `pattern` gives a number for the point at an index.
-    pub(super) fn seen(&self, spots: &[Spot], pattern: impl Fn(usize) -> usize + Sync) -> Vec<Openness> {
-        let open = |(i, spot): (usize, &Spot)| self.open(spot, ORDER[pattern(i) % PATTERNS]);
-        let mut seen: Vec<Openness> = spots.par_iter().enumerate().map(open).collect();
+    /// What each point sees by its own rays; `pattern` gives a number for the point at an index. They go
+    /// tile by tile of a picture with rows of `width`, as neighbours meet the same facets.
+    pub(super) fn seen(&self, spots: &[Spot], width: usize, pattern: impl Fn(usize) -> usize + Sync) -> Vec<Openness> {
+        let across = width.div_ceil(TILE).max(1);
+        let down = spots.len().div_ceil(TILE * width.max(1));
+        // By the number of a tile: the runs of places in its rows.
+        let runs = |tile: usize| {
+            let (top, left) = (tile / across * TILE, tile % across * TILE);
+            let run = move |row: usize| {
+                (row * width + left).min(spots.len())..(row * width + width.min(left + TILE)).min(spots.len())
+            };
+            (top..top + TILE).map(run)
+        };
+        let open = |at: usize| self.open(&spots[at], ORDER[pattern(at) % PATTERNS]);
+        let tiles: Vec<Vec<Openness>> =
+            (0..across * down).into_par_iter().map(|tile| runs(tile).flatten().map(open).collect()).collect();
+        let mut seen = vec![Openness::FULL; spots.len()];
+        for (tile, found) in tiles.iter().enumerate() {
+            let mut rest = &found[..];
+            for run in runs(tile) {
+                let (row, after) = rest.split_at(run.len());
+                seen[run].copy_from_slice(row);
+                rest = after;
+            }
+        }
         if self.is_hard() {
             for (chunk, seen) in spots.chunks(TOGETHER).zip(seen.chunks_mut(TOGETHER)) {
                 self.hard(chunk, seen);
@@ -123,32 +152,34 @@ impl<'a> Obstacles<'a> {
             return Openness::FULL;
         }
         let origin = self.start(spot);
-        let (mut key, mut sky) = (Hidden::default(), Hidden::default());
-        if !self.is_hard() {
-            let (t, b) = self.key.any_orthonormal_pair();
-            for d in self.shadows.iter().skip(pattern).step_by(PATTERNS) {
-                let direction = (self.key + d.x * t + d.y * b).normalize();
-                // What faces away from a part of the light is dark there by its slope.
-                if direction.dot(spot.normal) > 0.0 {
-                    key.add(if self.facets.hit(origin, direction).is_some() { 1.0 } else { 0.0 });
-                }
+        let mut open = Openness::FULL;
+        if let Some(directions) = self.shadows.get(pattern) {
+            // What faces away from a part of the light is dark there by its slope.
+            let [x, y, z] = directions;
+            let asked = (x * spot.normal.x + y * spot.normal.y + z * spot.normal.z).cmpgt(Vec4::ZERO).bitmask();
+            if asked != 0 {
+                let hits = self.facets.hits(origin, directions, asked);
+                let hidden = hits.iter().filter(|distance| distance.is_finite()).count();
+                open.key = 1.0 - share * hidden as f32 / asked.count_ones() as f32;
             }
         }
-        let (t, b) = spot.normal.any_orthonormal_pair();
-        for d in self.skies.iter().skip(pattern).step_by(PATTERNS) {
-            let up = (1.0 - d.length_squared()).max(0.0).sqrt().max(0.02);
-            let direction = (up * spot.normal + d.x * t + d.y * b).normalize();
+        if let Some([x, y, up]) = self.skies.get(pattern) {
+            let (t, b) = spot.normal.any_orthonormal_pair();
+            let n = spot.normal;
+            let directions = [x * t.x + y * b.x + up * n.x, x * t.y + y * b.y + up * n.y, x * t.z + y * b.z + up * n.z];
             // What is far away hides less of the sky: light comes in from its sides.
-            let hit = self.facets.hit(origin, direction);
-            sky.add(hit.map_or(0.0, |distance| (-distance / (1.2 * self.radius)).exp() as f32));
+            let hits = self.facets.hits(origin, &directions, (1 << RAYS) - 1);
+            let near = hits.iter().filter(|distance| distance.is_finite());
+            let hidden: f64 = near.map(|distance| (-distance / (1.2 * self.radius)).exp()).sum();
+            open.sky = 1.0 - share * hidden as f32 / RAYS as f32;
         }
-        Openness { key: key.open(share), sky: sky.open(share) }
+        open
     }
 
     /// Of a light without extent, whose shadows' edges would show the facets, the first hits in
     /// the scene decide.
     fn hard(&self, spots: &[Spot], seen: &mut [Openness]) {
-        let lit = |spot: &Spot| self.share(spot) > 0.0 && self.key.dot(spot.normal) > 0.0;
+        let lit = |spot: &Spot| self.share(spot) > 0.0 && self.key.dot(spot.normal.as_dvec3()) > 0.0;
         let asked: Vec<usize> = (0..spots.len()).filter(|&i| lit(&spots[i])).collect();
         let rays: Vec<(DVec3, DVec3)> = asked.iter().map(|&i| (self.start(&spots[i]), self.key)).collect();
         for (&i, hit) in asked.iter().zip(self.scene.first_hits(&rays)) {
@@ -160,7 +191,7 @@ impl<'a> Obstacles<'a> {
 
     /// A hair off the surface.
     fn start(&self, spot: &Spot) -> DVec3 {
-        spot.point + self.scene.hair() * spot.normal
+        spot.point + self.scene.hair() * spot.normal.as_dvec3()
     }
 
     /// How much of what hides light counts at a spot.
@@ -175,22 +206,10 @@ impl<'a> Obstacles<'a> {
     }
 }
 
-/// The mean of what rays tell.
-#[derive(Default)]
-struct Hidden {
-    sum: f32,
-    rays: f32,
-}
-
-impl Hidden {
-    fn add(&mut self, hidden: f32) {
-        self.sum += hidden;
-        self.rays += 1.0;
-    }
-
-    fn open(&self, share: f32) -> f32 {
-        if self.rays == 0.0 { 1.0 } else { 1.0 - share * self.sum / self.rays }
-    }
+/// The directions of each pattern, those of one pattern far apart in their sequence: their components.
+fn patterns(direction: impl Fn(usize) -> DVec3) -> Vec<[Vec4; 3]> {
+    let lanes = |pattern: usize| [0, 1, 2, 3].map(|ray| direction(pattern + PATTERNS * ray).as_vec3());
+    (0..PATTERNS).map(|pattern| [0, 1, 2].map(|axis| Vec4::from_array(lanes(pattern).map(|d| d[axis])))).collect()
 }
 
 /// The mean of what the points of a picture see: `width` of them a row.
@@ -200,40 +219,58 @@ pub(super) fn smoothed(
     width: usize,
     pixel: impl Fn(f64) -> f64 + Sync,
 ) -> Vec<Openness> {
+    const WEIGHTS: [f32; 2 * REACH + 1] = [0.5, 1.0, 1.0, 1.0, 0.5];
     let height = spots.len() / width;
-    let reach = REACH as isize;
-    let weight = |d: isize| if d.abs() == reach { 0.5f32 } else { 1.0 };
+    let calm = calm(seen, width);
     let mut mean = vec![Openness::FULL; spots.len()];
     mean.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+        let rows = y.saturating_sub(REACH)..(y + REACH + 1).min(height);
         for (x, mean) in row.iter_mut().enumerate() {
             let own = &spots[y * width + x];
-            if !own.is_solid() && !own.is_ground() {
+            let is_ground = own.is_ground();
+            if !own.is_solid() && !is_ground || rows.clone().all(|row| calm[row * width + x]) {
                 continue;
             }
-            let near = 2.0 * pixel(own.distance);
+            let near = 4.0 * pixel(own.distance);
+            let (left, right) = (x.saturating_sub(REACH), (x + REACH + 1).min(width));
             let (mut key, mut sky, mut sum) = (0.0, 0.0, 0.0);
-            for dy in -reach..=reach {
-                for dx in -reach..=reach {
-                    let (Some(x), Some(y)) = (x.checked_add_signed(dx), y.checked_add_signed(dy)) else { continue };
-                    if x >= width || y >= height {
-                        continue;
-                    }
-                    let at = y * width + x;
-                    let other = &spots[at];
-                    let counts = (dx, dy) == (0, 0)
-                        || own.same_piece(other)
-                            && own.normal.dot(other.normal) > 0.9
-                            && (own.is_ground() || own.steps(other) < near * 2.0);
+            for row in rows.clone() {
+                let down = WEIGHTS[row + REACH - y];
+                let places = row * width + left..row * width + right;
+                let across = &WEIGHTS[left + REACH - x..];
+                for ((other, seen), across) in spots[places.clone()].iter().zip(&seen[places]).zip(across) {
+                    let counts = if is_ground {
+                        other.is_ground()
+                    } else {
+                        other.is_solid() && own.normal.dot(other.normal) > 0.9 && own.steps(other) <= near
+                    };
                     if counts {
-                        let w = weight(dx) * weight(dy);
-                        key += w * seen[at].key;
-                        sky += w * seen[at].sky;
-                        sum += w;
+                        let weight = down * across;
+                        key += weight * seen.key;
+                        sky += weight * seen.sky;
+                        sum += weight;
                     }
                 }
             }
-            *mean = Openness { key: key / sum, sky: sky / sum };
+            // What counts not even itself has no normal.
+            *mean = if sum > 0.0 { Openness { key: key / sum, sky: sky / sum } } else { seen[y * width + x] };
         }
     });
     mean
+}
+
+/// By point, whether nothing is hidden from any of those of its row that the mean reaches.
+fn calm(seen: &[Openness], width: usize) -> Vec<bool> {
+    let mut calm = vec![false; seen.len()];
+    calm.par_chunks_mut(width).zip(seen.par_chunks(width)).for_each(|(calm, seen)| {
+        // How many are free up to here; there is nothing to hide beyond the row.
+        let mut free = REACH;
+        for x in 0..width + REACH {
+            free = if seen.get(x).is_none_or(|seen| *seen == Openness::FULL) { free + 1 } else { 0 };
+            if x >= REACH {
+                calm[x - REACH] = free > 2 * REACH;
+            }
+        }
+    });
+    calm
 }

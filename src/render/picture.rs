@@ -16,14 +16,15 @@
 use glam::{DVec3, Vec4};
 use rayon::prelude::*;
 
-use super::gbuffer::Window;
+use super::gbuffer::{Surface, Window};
 use super::lines::Lines;
-use super::openness::{Obstacles, REACH, smoothed};
+use super::materials::Materials;
+use super::openness::{Obstacles, REACH, TILE, smoothed};
 use super::scene::Scene;
 use super::settings::{RenderSettings, Style};
-use super::shade::{Material, Openness, Studio};
+use super::shade::{Openness, Studio};
 use super::spot::Spot;
-use crate::{Cancelled, Palette, Rays, Run};
+use crate::{Cancelled, Rays, Run};
 
 /// Pixels of a band, about: some tens of megabytes.
 const BAND: u32 = 1 << 19;
@@ -37,13 +38,17 @@ pub(super) struct Picture<'a> {
     pub(super) studio: Studio,
     pub(super) rays: Rays,
     pub(super) settings: &'a RenderSettings,
-    /// The paint of parts, if any is painted.
-    pub(super) palette: Option<Palette>,
+    pub(super) materials: Materials,
     /// The height of the ground.
     pub(super) ground: Option<f64>,
     /// What hides light, where anything does.
     pub(super) obstacles: Option<Obstacles<'a>>,
 }
+
+/// What a pixel of a finished picture can be.
+pub(super) trait Pixel: Copy + Default + Send {}
+
+impl<P: Copy + Default + Send> Pixel for P {}
 
 /// A band of rows with those around it that it depends on.
 struct Band {
@@ -75,39 +80,61 @@ pub(super) struct Fine {
 }
 
 impl Picture<'_> {
-    /// All pixels, row by row from the top: linear light, weighted by alpha.
-    pub(super) fn pixels(&self, run: &Run) -> Result<Vec<[f32; 4]>, Cancelled> {
+    /// All pixels, row by row from the top, as what `finish` makes of them: linear light, weighted by alpha.
+    pub(super) fn pixels<P: Pixel>(
+        &self,
+        run: &Run,
+        finish: impl Fn([f32; 4]) -> P + Sync,
+    ) -> Result<Vec<P>, Cancelled> {
         let RenderSettings { width, height, .. } = *self.settings;
-        let mut pixels = Vec::with_capacity(width as usize * height as usize);
-        self.bands(run, |band| {
-            pixels.extend(band);
-            Ok(())
-        })?;
+        let mut pixels = vec![P::default(); width as usize * height as usize];
+        for (top, end) in self.bands() {
+            let place = |row: u32| row as usize * width as usize;
+            self.band((top, end), run, &finish, &mut pixels[place(top)..place(end)])?;
+        }
+        run.report(1.0);
         Ok(pixels)
     }
 
     /// The same, some rows at a time.
-    pub(super) fn bands<E: From<Cancelled>>(
+    pub(super) fn rows<P: Pixel, E: From<Cancelled>>(
         &self,
         run: &Run,
-        mut take: impl FnMut(Vec<[f32; 4]>) -> Result<(), E>,
+        finish: impl Fn([f32; 4]) -> P + Sync,
+        mut take: impl FnMut(&[P]) -> Result<(), E>,
     ) -> Result<(), E> {
-        let RenderSettings { width, height, .. } = *self.settings;
-        let rows = (BAND / width).clamp(16, height.max(16));
-        let mut top = 0;
-        while top < height {
-            let end = (top + rows).min(height);
-            let part = |row: u32| f64::from(row) / f64::from(height);
-            take(self.band(top, end, &run.stage(part(top), part(end)))?)?;
-            top = end;
+        let mut pixels = Vec::new();
+        for (top, end) in self.bands() {
+            pixels.resize((end - top) as usize * self.settings.width as usize, P::default());
+            self.band((top, end), run, &finish, &mut pixels)?;
+            take(&pixels)?;
         }
         run.report(1.0);
         Ok(())
     }
 
+    /// The first row of each band and the one after its last.
+    fn bands(&self) -> impl Iterator<Item = (u32, u32)> + use<> {
+        let RenderSettings { width, height, .. } = *self.settings;
+        let rows = (BAND / width).clamp(16, height.max(16));
+        (0..height).step_by(rows as usize).map(move |top| (top, (top + rows).min(height)))
+    }
+
     /// The rows from `top` to `end`.
-    fn band(&self, top: u32, end: u32, run: &Run) -> Result<Vec<[f32; 4]>, Cancelled> {
-        let RenderSettings { width, height, style, .. } = *self.settings;
+    fn band<P: Pixel>(
+        &self,
+        (top, end): (u32, u32),
+        run: &Run,
+        finish: &(impl Fn([f32; 4]) -> P + Sync),
+        pixels: &mut [P],
+    ) -> Result<(), Cancelled> {
+        let RenderSettings { width, height, style, samples, .. } = *self.settings;
+        let part = |row: u32| f64::from(row) / f64::from(height);
+        let run = &run.stage(part(top), part(end));
+        let obstacles = self.obstacles.as_ref();
+        if samples < 2 && obstacles.is_none() {
+            return self.plain((top, end), run, finish, pixels);
+        }
         // One pixel for the comparison with neighbours, and what the mean and the lines reach.
         let halo = 1 + (REACH as u32).max(if style == Style::Technical { Lines::reach(height) } else { 0 });
         let (first, last) = (top.saturating_sub(halo), (end + halo).min(height));
@@ -119,18 +146,16 @@ impl Picture<'_> {
             .enumerate()
             .map(|(i, surface)| {
                 let (x, y) = (i as u32 % width, first + i as u32 / width);
-                let (origin, direction) = self.rays.ray(f64::from(x) + 0.5, f64::from(y) + 0.5);
-                Spot::new(origin, direction, surface, self.ground)
+                self.spot(x, y, surface)
             })
             .collect();
         drop(seen);
         run.check()?;
-        let obstacles = self.obstacles.as_ref();
         let open = match obstacles {
             None => vec![Openness::FULL; spots.len()],
             Some(obstacles) => {
                 let pattern = |i: usize| (i % width as usize) % 4 + 4 * ((first as usize + i / width as usize) % 4);
-                let own = obstacles.seen(&spots, pattern);
+                let own = obstacles.seen(&spots, width as usize, pattern);
                 let sharp = obstacles.is_hard().then(|| own.clone());
                 let mut open = smoothed(&spots, &own, width as usize, |t| self.rays.pixel_size(t));
                 // The edges of a light without extent stay as they are.
@@ -148,32 +173,62 @@ impl Picture<'_> {
         run.report(0.85);
         let light = self.fine_light(&band, &fine, obstacles);
         run.check()?;
-        let n2 = (self.settings.samples * self.settings.samples) as usize;
+        let n2 = (samples * samples) as usize;
         let lines = (style == Style::Technical).then(|| Lines {
             height,
-            samples: self.settings.samples,
+            samples,
             width,
             spots: &band.spots,
             fine: &fine,
             pixel: &self.rays,
         });
-        let pixels = (top..end).into_par_iter().flat_map_iter(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| {
-            let at = band.place(x, y);
-            let mut light = match fine.numbers[at] {
-                u32::MAX => self.shade(&band.spots[at], band.open[at], f64::from(y) + 0.5),
-                number => {
-                    let own = &light[number as usize * n2..][..n2];
-                    own.iter().copied().sum::<Vec4>() / n2 as f32
+        (top..end).into_par_iter().zip(pixels.par_chunks_mut(width as usize)).for_each(|(y, row)| {
+            let behind = self.behind(f64::from(y) + 0.5);
+            for (x, pixel) in (0..width).zip(row) {
+                let at = band.place(x, y);
+                let mut light = match fine.numbers[at] {
+                    u32::MAX => self.shade(&band.spots[at], band.open[at], behind),
+                    number => {
+                        let own = &light[number as usize * n2..][..n2];
+                        own.iter().copied().sum::<Vec4>() / n2 as f32
+                    }
+                };
+                if let Some(lines) = &lines {
+                    light = lines.drawn(light, at);
                 }
-            };
-            if let Some(lines) = &lines {
-                light = lines.drawn(light, at);
+                *pixel = finish(light.to_array());
             }
-            light.to_array()
         });
-        let pixels = pixels.collect();
         run.report(1.0);
-        Ok(pixels)
+        Ok(())
+    }
+
+    /// The rows from `top` to `end` of a picture whose pixels have one ray each, and no shadows: they
+    /// need not know of each other.
+    fn plain<P: Pixel>(
+        &self,
+        (top, end): (u32, u32),
+        run: &Run,
+        finish: &(impl Fn([f32; 4]) -> P + Sync),
+        pixels: &mut [P],
+    ) -> Result<(), Cancelled> {
+        let RenderSettings { width, height, .. } = *self.settings;
+        let window = Window { top, height: end - top, ..Window::whole(width, height) };
+        let seen = self.scene.surfaces_with(&self.rays, window, &run.stage(0.0, 0.8))?;
+        let rows = seen.surfaces().par_chunks(width as usize).zip(pixels.par_chunks_mut(width as usize));
+        (top..end).into_par_iter().zip(rows).for_each(|(y, (surfaces, row))| {
+            // Without shadows the ground looks like what is behind it.
+            let behind = finish(self.behind(f64::from(y) + 0.5).to_array());
+            for ((x, surface), pixel) in (0..width).zip(surfaces).zip(row) {
+                *pixel = if surface.is_hit() {
+                    finish(self.solid(&self.spot(x, y, surface), Openness::FULL).to_array())
+                } else {
+                    behind
+                };
+            }
+        });
+        run.report(1.0);
+        Ok(())
     }
 
     /// The pixels at edges, and what their rays meet.
@@ -195,17 +250,21 @@ impl Picture<'_> {
         // Lines are wider than a pixel: what is about an edge is sampled more often as well.
         let reach = if style == Style::Technical { Lines::reach(height) } else { 0 };
         let (first, last) = (top.saturating_sub(reach).max(band.top), (end + reach).min(band.end()));
-        let edges: Vec<(u32, u32)> = (first..last)
-            .into_par_iter()
-            .flat_map_iter(|y| (0..width).map(move |x| (x, y)))
-            .filter(|&(x, y)| {
-                let at = band.place(x, y);
-                x > 0 && differ(at, at - 1)
-                    || x + 1 < width && differ(at, at + 1)
-                    || y > band.top && differ(at, at - width as usize)
-                    || y + 1 < band.end() && differ(at, at + width as usize)
-            })
-            .collect();
+        let columns = width as usize;
+        // By pixel, whether it differs from the one to its right, and from the one below.
+        let mut steps = vec![[false; 2]; band.spots.len()];
+        steps.par_chunks_mut(columns).enumerate().for_each(|(row, steps)| {
+            let start = row * columns;
+            for (x, step) in steps.iter_mut().enumerate() {
+                let (at, below) = (start + x, start + x + columns);
+                *step = [x + 1 < columns && differ(at, at + 1), below < band.spots.len() && differ(at, below)];
+            }
+        });
+        let is_edge = |x: u32, y: u32| {
+            let at = band.place(x, y);
+            steps[at] != [false; 2] || x > 0 && steps[at - 1][0] || at >= columns && steps[at - columns][1]
+        };
+        let edges = (first..last).flat_map(|y| (0..width).map(move |x| (x, y))).filter(|&(x, y)| is_edge(x, y));
         let mut pixels = Vec::new();
         for (x, y) in edges {
             for y in y.saturating_sub(reach).max(first)..=(y + reach).min(last - 1) {
@@ -230,7 +289,7 @@ impl Picture<'_> {
             })
             .collect();
         let hits = self.scene.first_hits(&rays);
-        let spots = rays.iter().zip(&hits).map(|(ray, hit)| Spot::new(ray.0, ray.1, hit, self.ground)).collect();
+        let spots = rays.par_iter().zip(&hits).map(|(ray, hit)| Spot::new(ray.0, ray.1, hit, self.ground)).collect();
         Fine { numbers, spots }
     }
 
@@ -258,7 +317,7 @@ impl Picture<'_> {
         let spots: Vec<Spot> = alone.iter().map(|k| fine.spots[*k]).collect();
         let mut open: Vec<Openness> = matched.iter().map(|open| open.unwrap_or(Openness::FULL)).collect();
         if let Some(obstacles) = obstacles {
-            for (k, seen) in alone.iter().zip(obstacles.seen(&spots, |i| alone[i])) {
+            for (k, seen) in alone.iter().zip(obstacles.seen(&spots, TILE, |i| alone[i])) {
                 open[*k] = seen;
             }
         }
@@ -266,7 +325,7 @@ impl Picture<'_> {
         let shade = |(k, spot): (usize, &Spot)| {
             let down = (k % n2) as u32 / n;
             let y = row(places[k / n2]) + (f64::from(down) + 0.5) / f64::from(n);
-            self.shade(spot, open[k], y)
+            self.shade(spot, open[k], self.behind(y))
         };
         fine.spots.par_iter().enumerate().map(shade).collect()
     }
@@ -306,17 +365,31 @@ impl Picture<'_> {
         best.map(|(_, open)| open)
     }
 
-    /// What a spot looks like, in row `y` of the picture.
-    fn shade(&self, spot: &Spot, open: Openness, y: f64) -> Vec4 {
-        if !spot.is_solid() {
-            let background = self.studio.background(y / f64::from(self.settings.height));
-            return if spot.is_ground() { self.studio.ground(background, open) } else { background };
-        }
-        self.studio.surface(spot.normal, spot.outward, spot.viewer, &self.material(spot), open)
+    /// What the ray through the middle of a pixel meets.
+    #[inline]
+    fn spot(&self, x: u32, y: u32, surface: &Surface) -> Spot {
+        let (origin, direction) = self.rays.ray(f64::from(x) + 0.5, f64::from(y) + 0.5);
+        Spot::new(origin, direction, surface, self.ground)
     }
 
-    fn material(&self, spot: &Spot) -> Material {
-        let own = self.palette.as_ref().and_then(|p| p.mixture(spot.owner, spot.point, self.settings.paint));
-        self.studio.material(own.unwrap_or(self.settings.paint), own.is_some())
+    /// What is behind the solid in row `y`.
+    fn behind(&self, y: f64) -> Vec4 {
+        self.studio.background(y / f64::from(self.settings.height))
+    }
+
+    /// What a spot looks like with this behind it.
+    fn shade(&self, spot: &Spot, open: Openness, behind: Vec4) -> Vec4 {
+        if spot.is_solid() {
+            self.solid(spot, open)
+        } else if spot.is_ground() {
+            self.studio.ground(behind, open)
+        } else {
+            behind
+        }
+    }
+
+    /// What a spot on the solid looks like.
+    fn solid(&self, spot: &Spot, open: Openness) -> Vec4 {
+        self.studio.surface(spot, &self.materials.at(&self.studio, spot.owner, spot.point), open)
     }
 }

@@ -19,25 +19,26 @@
 //! others, *Practical realtime strategies for accurate indirect occlusion* (2016), for the light
 //! that bounces out of hollows.
 
-use glam::{DVec3, Vec3, Vec4};
+use glam::{DVec3, Vec3, Vec3A, Vec4};
 
 use super::settings::{Background, RenderSettings, Style, Transfer};
+use super::spot::Spot;
 use crate::geom::to_linear;
 use crate::{Camera, Paint};
 
 /// Irradiances over π, so that a white matt surface that faces the light has this radiance.
-const KEY: Vec3 = Vec3::new(1.00, 0.955, 0.89);
-const FILL: Vec3 = Vec3::new(0.15, 0.17, 0.20);
-const RIM: Vec3 = Vec3::new(0.34, 0.36, 0.40);
-const SKY: Vec3 = Vec3::new(0.40, 0.425, 0.47);
+const KEY: Vec3A = Vec3A::new(1.00, 0.955, 0.89);
+const FILL: Vec3A = Vec3A::new(0.15, 0.17, 0.20);
+const RIM: Vec3A = Vec3A::new(0.34, 0.36, 0.40);
+const SKY: Vec3A = Vec3A::new(0.40, 0.425, 0.47);
 /// What the ground sends back up.
-const BOUNCE: Vec3 = Vec3::new(0.19, 0.18, 0.17);
+const BOUNCE: Vec3A = Vec3A::new(0.19, 0.18, 0.17);
 
 /// What a surface without metal reflects when seen at a right angle.
 const REFLECTANCE: f32 = 0.04;
 
 /// What is left of the background in the deepest shadow.
-const SHADOW: Vec3 = Vec3::new(0.030, 0.033, 0.042);
+const SHADOW: Vec3A = Vec3A::new(0.030, 0.033, 0.042);
 
 /// The pale clay of [`Style::Clay`].
 const CLAY: [u8; 3] = [214, 205, 194];
@@ -58,7 +59,7 @@ impl Openness {
 /// A paint, ready for light.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Material {
-    albedo: Vec3,
+    albedo: Vec3A,
     /// The width of highlights: the square of the roughness.
     width: f32,
 }
@@ -73,23 +74,26 @@ impl From<Paint> for Material {
 
 /// The lights of a picture, and what is behind the solid.
 pub(super) struct Studio {
-    key: DVec3,
-    fill: DVec3,
-    rim: DVec3,
+    key: Vec3,
+    fill: Vec3,
+    rim: Vec3,
     /// Their strengths.
-    lights: [Vec3; 3],
+    lights: [Vec3A; 3],
     sky: f32,
     style: Style,
     transfer: Transfer,
     /// Top and bottom in sRGB from 0 to 1, or nothing.
-    background: Option<[Vec3; 2]>,
+    background: Option<[Vec3A; 2]>,
 }
 
 impl Studio {
     /// The lights for a camera that has been checked.
     pub(super) fn new(camera: &Camera, settings: &RenderSettings) -> Studio {
         let pose = camera.pose().matrix3;
-        let towards = |x: f64, y: f64, z: f64| (x * pose.x_axis - y * pose.y_axis - z * pose.z_axis).normalize();
+        let towards = |x: f64, y: f64, z: f64| {
+            let direction = x * pose.x_axis - y * pose.y_axis - z * pose.z_axis;
+            direction.normalize().as_vec3()
+        };
         let lights = settings.lights;
         Studio {
             key: towards(-0.58, 0.66, 0.76),
@@ -109,7 +113,7 @@ impl Studio {
 
     /// The direction to the middle of the light that casts shadows.
     pub(super) fn key(&self) -> DVec3 {
-        self.key
+        self.key.as_dvec3().normalize()
     }
 
     /// The material that stands for `paint` in this style; `own` tells whether it was given to
@@ -120,60 +124,57 @@ impl Studio {
             Style::Clay => Paint { color: CLAY, roughness: 1.0 }.into(),
             // Pale, so that lines stand out; what nobody painted is paper.
             Style::Technical => {
-                let paper = Vec3::new(0.93, 0.935, 0.94);
+                let paper = Vec3A::new(0.93, 0.935, 0.94);
                 let share = if own { 0.55 } else { 0.0 };
                 Material { albedo: paper.lerp(unit(paint.color).map(to_linear), share), width: 1.0 }
             }
         }
     }
 
-    /// The colour of a surface, as it is shown: `normal` and `viewer` are unit vectors on the
-    /// same side of it, `outward` is the normal out of the solid.
-    pub(super) fn surface(
-        &self,
-        normal: DVec3,
-        outward: DVec3,
-        viewer: DVec3,
-        material: &Material,
-        open: Openness,
-    ) -> Vec4 {
+    /// The colour of a surface, as it is shown.
+    pub(super) fn surface(&self, spot: &Spot, material: &Material, open: Openness) -> Vec4 {
+        let (normal, viewer) = (spot.normal, spot.viewer);
         let light = match self.style {
             Style::Studio => self.developed(self.lit(normal, viewer, material, open, 1.0)),
             Style::Clay => self.developed(self.lit(normal, viewer, material, open, 0.0)),
-            Style::Normals => (0.5 + 0.5 * outward.as_vec3()).map(to_linear),
+            Style::Normals => Vec3A::from(0.5 + 0.5 * spot.outward()).map(to_linear),
             Style::Technical => material.albedo * self.flat(normal),
         };
         light.extend(1.0)
     }
 
     /// The shade of a face in a manual.
-    fn flat(&self, normal: DVec3) -> f32 {
-        let towards = 0.5 + 0.5 * normal.dot(self.key) as f32;
+    fn flat(&self, normal: Vec3) -> f32 {
+        let towards = 0.5 + 0.5 * normal.dot(self.key);
         0.62 + 0.38 * towards
     }
 
     /// Light that leaves a surface towards the viewer; `polish` is 0 for a surface that only
     /// scatters.
-    fn lit(&self, normal: DVec3, viewer: DVec3, material: &Material, open: Openness, polish: f32) -> Vec3 {
-        let cosine = |light: DVec3| normal.dot(light).max(0.0) as f32;
+    fn lit(&self, normal: Vec3, viewer: Vec3, material: &Material, open: Openness, polish: f32) -> Vec3A {
+        let cosine = |light: Vec3| normal.dot(light).max(0.0);
         let [key, fill, rim] = self.lights;
         let albedo = material.albedo;
         // Out of hollows comes light of the colour of their walls.
-        let sky = albedo.map(|a| bounced(open.sky, a));
+        let sky = bounced(open.sky, albedo);
         // The fill is a large light: it reaches around the terminator.
-        let wrapped = (0.35 + 0.65 * normal.dot(self.fill) as f32).max(0.0);
+        let wrapped = (0.35 + 0.65 * normal.dot(self.fill)).max(0.0);
         let direct = key * (cosine(self.key) * open.key);
-        let around = fill * wrapped + self.sky * BOUNCE.lerp(SKY, (0.5 + 0.5 * normal.z) as f32);
+        let around = fill * wrapped + self.sky * BOUNCE.lerp(SKY, 0.5 + 0.5 * normal.z);
         let matt = albedo * (direct + sky * (around + rim * cosine(self.rim)));
         if polish == 0.0 {
             return matt;
         }
         let facing = cosine(viewer).max(1e-3);
         let fresnel = REFLECTANCE + (1.0 - REFLECTANCE) * (1.0 - facing).powi(5) * (1.0 - 0.7 * material.width);
-        let highlight = |light: DVec3| {
+        let highlight = |light: Vec3| {
+            let towards = cosine(light);
+            if towards == 0.0 {
+                return 0.0;
+            }
             let half = (light + viewer).normalize_or_zero();
-            let f = REFLECTANCE + (1.0 - REFLECTANCE) * (1.0 - half.dot(viewer).clamp(0.0, 1.0) as f32).powi(5);
-            f * microfacets(cosine(half), cosine(light), facing, material.width) * cosine(light)
+            let f = REFLECTANCE + (1.0 - REFLECTANCE) * (1.0 - half.dot(viewer).clamp(0.0, 1.0)).powi(5);
+            f * microfacets(cosine(half), towards, facing, material.width) * towards
         };
         let reflected = 2.0 * normal.dot(viewer) * normal - viewer;
         let lights = key * (open.key * highlight(self.key)) + rim * (open.sky * highlight(self.rim));
@@ -181,26 +182,25 @@ impl Studio {
     }
 
     /// What a surface reflects of the room, blurred as its roughness blurs it.
-    fn room(&self, direction: DVec3, width: f32) -> Vec3 {
-        let up = direction.z as f32;
-        let sky = BOUNCE.lerp(2.2 * SKY, smooth(-0.35 - width, 0.9 + width, up));
+    fn room(&self, direction: Vec3, width: f32) -> Vec3A {
+        let sky = BOUNCE.lerp(2.2 * SKY, smooth(-0.35 - width, 0.9 + width, direction.z));
         // Lights with an extent, so that their images are soft shapes and not points.
-        let soft_box = |light: DVec3, narrow: f32| {
-            let away = 1.0 - direction.dot(light) as f32;
-            (-away / (narrow + 1.2 * width)).exp() / (1.0 + 6.0 * width)
+        let soft_box = |light: Vec3, narrow: f32| {
+            let away = 1.0 - direction.dot(light);
+            (-away / (narrow + 1.2 * width)).exp()
         };
         let [key, fill, rim] = self.lights;
-        self.sky * sky
-            + key * 2.6 * soft_box(self.key, 0.05)
-            + fill * 2.0 * soft_box(self.fill, 0.12)
-            + rim * 2.4 * soft_box(self.rim, 0.08)
+        let boxes = key * (2.6 * soft_box(self.key, 0.05))
+            + fill * (2.0 * soft_box(self.fill, 0.12))
+            + rim * (2.4 * soft_box(self.rim, 0.08));
+        self.sky * sky + boxes / (1.0 + 6.0 * width)
     }
 
     /// The background as the ground shows it: darker in shadow. Transparent ground is shadow
     /// and nothing else.
     pub(super) fn ground(&self, background: Vec4, open: Openness) -> Vec4 {
-        let luminance = |c: Vec3| c.dot(Vec3::new(0.2126, 0.7152, 0.0722));
-        let key = luminance(self.lights[0]) * self.key.z.max(0.0) as f32;
+        let luminance = |c: Vec3A| c.dot(Vec3A::new(0.2126, 0.7152, 0.0722));
+        let key = luminance(self.lights[0]) * self.key.z.max(0.0);
         let sky = luminance(self.lights[1]) + self.sky * luminance(SKY);
         let whole = key + sky;
         if whole <= 0.0 {
@@ -208,7 +208,7 @@ impl Studio {
         }
         let lit = ((key * open.key + sky * open.sky) / whole).clamp(0.0, 1.0);
         let dark = 1.0 - lit;
-        (background.truncate() * lit + SHADOW * dark).extend(background.w * lit + dark)
+        (Vec3A::from_vec4(background) * lit + SHADOW * dark).extend(background.w * lit + dark)
     }
 
     /// The colour behind the solid; `down` runs from 0 at the top of the picture to 1.
@@ -221,10 +221,10 @@ impl Studio {
     }
 
     /// Light as it is shown.
-    fn developed(&self, light: Vec3) -> Vec3 {
+    fn developed(&self, light: Vec3A) -> Vec3A {
         match self.transfer {
             Transfer::Srgb => light,
-            Transfer::Filmic => light.map(filmic),
+            Transfer::Filmic => filmic(light),
         }
     }
 }
@@ -234,20 +234,19 @@ impl Studio {
 fn microfacets(half: f32, light: f32, viewer: f32, width: f32) -> f32 {
     let a2 = width * width;
     let d = half * half * (a2 - 1.0) + 1.0;
-    let distribution = a2 / (d * d).max(1e-9);
     let k = 0.5 * width;
     let hidden = (light * (1.0 - k) + k) * (viewer * (1.0 - k) + k);
     // Highlights of a light of some extent do not grow without end.
-    (distribution / (4.0 * hidden).max(1e-4)).min(14.0)
+    (a2 / ((d * d).max(1e-9) * (4.0 * hidden).max(1e-4))).min(14.0)
 }
 
 /// The share of light that leaves a hollow that sees `open` of the sky and whose walls have the
 /// given albedo.
-fn bounced(open: f32, albedo: f32) -> f32 {
+fn bounced(open: f32, albedo: Vec3A) -> Vec3A {
     let a = 2.0404 * albedo - 0.3324;
     let b = -4.7951 * albedo + 0.6417;
     let c = 2.7552 * albedo + 0.6903;
-    open.max(((open * a + b) * open + c) * open)
+    (((open * a + b) * open + c) * open).max(Vec3A::splat(open))
 }
 
 /// From 0 to 1 between two edges, smoothly.
@@ -257,22 +256,26 @@ fn smooth(from: f32, to: f32, x: f32) -> f32 {
 }
 
 /// A number from 0 to 1 for each byte.
-fn unit(color: [u8; 3]) -> Vec3 {
-    Vec3::from_array(color.map(|c| f32::from(c) / 255.0))
+fn unit(color: [u8; 3]) -> Vec3A {
+    Vec3A::from_array(color.map(|c| f32::from(c) / 255.0))
 }
 
 /// A curve with a toe, nearly straight in the middle, and a shoulder towards 1.
-fn filmic(light: f32) -> f32 {
+fn filmic(light: Vec3A) -> Vec3A {
     const TOE: f32 = 0.012;
     const SHOULDER: f32 = 0.66;
     const ROOM: f32 = 1.0 - SHOULDER;
-    let light = light.max(0.0);
+    let light = light.max(Vec3A::ZERO);
     let light = light * light / (light + TOE);
-    if light <= SHOULDER { light } else { 1.0 - ROOM * ((SHOULDER - light) / ROOM).exp() }
+    if light.max_element() <= SHOULDER {
+        return light;
+    }
+    light.map(|l| if l <= SHOULDER { l } else { 1.0 - ROOM * ((SHOULDER - l) / ROOM).exp() })
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::gbuffer::Surface;
     use super::*;
 
     #[test]
@@ -280,10 +283,13 @@ mod tests {
         let camera = Camera::perspective(DVec3::new(2.0, -3.0, 2.0), DVec3::ZERO, DVec3::Z, 30.0);
         let studio = Studio::new(&camera, &RenderSettings::default());
         let n = camera.eye.normalize();
+        // On a ball, seen from the camera.
+        let facing = Surface { distance: 1.0, normal: n.as_vec3(), owner: 0 };
+        let spot = Spot::new(camera.eye, -n, &facing, None);
         for color in [[255; 3], [0; 3], [200, 30, 20]] {
             for roughness in [0.0, 0.3, 1.0] {
                 let material = Paint { color, roughness }.into();
-                let shade = |open| studio.surface(n, n, n, &material, open).truncate();
+                let shade = |open| studio.surface(&spot, &material, open).truncate();
                 let (lit, dark) = (shade(Openness::FULL), shade(Openness { key: 0.0, sky: 0.3 }));
                 assert!(lit.cmpgt(dark).all(), "{lit} {dark}");
                 assert!(dark.min_element() >= 0.0 && lit.max_element() <= 1.0, "{lit} {dark}");

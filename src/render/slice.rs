@@ -16,7 +16,7 @@ use rayon::prelude::*;
 
 use super::settings::{RenderError, check_memory, check_size, setting};
 use crate::eval::{Evaluator, Program, Tape, compiled};
-use crate::geom::{from_linear, to_linear};
+use crate::geom::{to_byte, to_linear};
 use crate::{Bounds, Image, Plane, PlaneBounds, Solid};
 
 /// How far the region of a slice goes beyond the solid, in proportion to its size.
@@ -180,6 +180,8 @@ impl Slice {
         let depth = 4.0 * step.unwrap_or(size / 20.0);
         // Lines keep their width on paper.
         let scale = (values.width() as f32 / 800.0).clamp(0.5, 4.0);
+        let linear = |color: [u8; 3]| Vec3::from_array(color.map(|c| to_linear(f32::from(c) / 255.0)));
+        let (inside, outside) = (linear(settings.inside), linear(settings.outside));
         let pixels: Vec<[u8; 4]> = (0..width * height)
             .into_par_iter()
             .map(|at| {
@@ -193,8 +195,7 @@ impl Slice {
                 let down = slope((y > 0).then(|| at - width), (y + 1 < height).then(|| at + width));
                 let change = across.hypot(down).max(1e-300);
                 let ink = |away: f64, half: f32| (half + 0.5 - (away / change) as f32).clamp(0.0, 1.0);
-                let tint = if v[at] > 0.0 { settings.inside } else { settings.outside };
-                let tint = Vec3::from_array(tint.map(|c| to_linear(f32::from(c) / 255.0)));
+                let tint = if v[at] > 0.0 { inside } else { outside };
                 // Pale at the surface, deeper away from it.
                 let deep = (v[at].abs() / (v[at].abs() + depth)) as f32;
                 let mut color = Vec3::splat(0.94).lerp(tint, 0.22 + 0.78 * deep);
@@ -207,8 +208,7 @@ impl Slice {
                     color = color.lerp(tint * 0.12, strength * ink((v[at] - nearest * step).abs(), 0.35 * scale));
                 }
                 color = color.lerp(Vec3::new(0.008, 0.012, 0.02), ink(v[at].abs(), 1.0 * scale));
-                let byte = |c: f32| (255.0 * from_linear(c)).round().clamp(0.0, 255.0) as u8;
-                let [r, g, b] = color.to_array().map(byte);
+                let [r, g, b] = color.to_array().map(to_byte);
                 [r, g, b, 255]
             })
             .collect();

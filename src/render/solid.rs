@@ -3,14 +3,15 @@
 use std::io;
 use std::path::Path;
 
+use super::materials::Materials;
 use super::openness::Obstacles;
-use super::picture::Picture;
+use super::picture::{Picture, Pixel};
 use super::scene::Scene;
 use super::settings::{Background, RenderError, RenderSettings, check_memory};
 use super::shade::Studio;
 use crate::geom::to_8bit;
 use crate::io::save_rows;
-use crate::{Camera, Cancelled, Image, Palette, Run, Solid};
+use crate::{Camera, Cancelled, Image, Run, Solid};
 
 impl Solid {
     /// A picture of the solid.
@@ -51,7 +52,7 @@ impl Solid {
         let run = run.stage(0.0, 1.0);
         run.install(|| {
             let scene = self.scene_with(&run.stage(0.0, 0.1))?;
-            Ok(scene.picture(camera, settings, &run.stage(0.1, 1.0))?.to_8bit())
+            scene.picture(camera, settings, &run.stage(0.1, 1.0), to_8bit)
         })
     }
 
@@ -88,7 +89,7 @@ impl Scene {
         settings.check()?;
         camera.check()?;
         let run = run.stage(0.0, 1.0);
-        Ok(run.install(|| self.picture(camera, settings, &run))?.to_8bit())
+        run.install(|| self.picture(camera, settings, &run, to_8bit))
     }
 
     /// The same as linear light, weighted by alpha, before it becomes bytes: with
@@ -112,7 +113,7 @@ impl Scene {
         settings.check()?;
         camera.check()?;
         let run = run.stage(0.0, 1.0);
-        run.install(|| self.picture(camera, settings, &run))
+        run.install(|| self.picture(camera, settings, &run, |light| light))
     }
 
     /// A picture of any size as a PNG of 8 bits, written band by band: it never is in memory.
@@ -146,10 +147,8 @@ impl Scene {
             let picture = self.prepared(camera, settings, &run)?;
             let mut failed = None;
             let saved = save_rows(path, [settings.width, settings.height], has_alpha, |rows| {
-                let written = picture.bands(&run.stage(0.1, 1.0), |band| {
-                    let bytes: Vec<[u8; 4]> = band.into_iter().map(to_8bit).collect();
-                    rows(&bytes).map_err(Stopped::Write)
-                });
+                let written =
+                    picture.rows(&run.stage(0.1, 1.0), to_8bit, |pixels| rows(pixels).map_err(Stopped::Write));
                 written.map_err(|stopped| match stopped {
                     Stopped::Write(error) => error,
                     Stopped::Cancelled(cancelled) => {
@@ -163,11 +162,18 @@ impl Scene {
         })
     }
 
-    fn picture(&self, camera: &Camera, settings: &RenderSettings, run: &Run) -> Result<Image<[f32; 4]>, RenderError> {
+    /// The picture whose pixels `finish` makes of linear light.
+    fn picture<P: Pixel>(
+        &self,
+        camera: &Camera,
+        settings: &RenderSettings,
+        run: &Run,
+        finish: impl Fn([f32; 4]) -> P + Sync,
+    ) -> Result<Image<P>, RenderError> {
         let RenderSettings { width, height, .. } = *settings;
         check_memory(width, height)?;
         let picture = self.prepared(camera, settings, run)?;
-        Ok(Image::new(width, height, picture.pixels(&run.stage(0.1, 1.0))?)?)
+        Ok(Image::new(width, height, picture.pixels(&run.stage(0.1, 1.0), finish)?)?)
     }
 
     fn prepared<'a>(
@@ -183,12 +189,13 @@ impl Scene {
         let obstacles = Obstacles::new(self, studio.key(), settings, &run.stage(0.0, 0.1))?;
         Ok(Picture {
             scene: self,
+            materials: Materials::new(self.palette(), &studio, settings.paint),
             studio,
-            obstacles,
             rays: camera.rays(width, height),
             settings,
-            palette: Some(self.palette().clone()).filter(Palette::is_painted),
-            ground: stands.then(|| self.lowest()),
+            // Ground that nothing hides light from looks like what is behind it.
+            ground: (stands && obstacles.is_some()).then(|| self.lowest()),
+            obstacles,
         })
     }
 }
