@@ -31,9 +31,6 @@ use super::qef::Planes;
 /// Normals of a cell that differ by less than this are those of a smooth surface: the cosine
 /// of the angle between them.
 pub(super) const SMOOTH: f32 = 0.9;
-/// The square of the cosine of half that angle, rounded up: no two normals that are closer to their mean than that
-/// differ by more.
-pub(super) const HALF_SMOOTH: f32 = 0.950_1;
 
 /// Normals of vertices that are on the same side of a crease, with little between them: the cosine of 11°.
 const ALIKE: f32 = 0.98;

@@ -18,7 +18,7 @@
 use glam::Vec3;
 
 use super::samples::Samples;
-use crate::mesh::feature::{HALF_SMOOTH, differ};
+use crate::mesh::feature::{SMOOTH, differ};
 use crate::mesh::loops::LONGEST;
 
 /// The distance of a loop's middle from the surface, in cells, beyond which there is a vertex.
@@ -28,9 +28,6 @@ const FAR: f32 = 0.01;
 /// cells then.
 pub(super) const SPREAD: f32 = 0.033;
 
-/// The square of the cosine of half that angle.
-const HALF_FLAT: f32 = 1.0 - 0.25 * SPREAD * SPREAD;
-
 /// The vertices on a cell's loop, in order.
 pub(super) struct Ring {
     vertices: [u32; LONGEST],
@@ -38,14 +35,14 @@ pub(super) struct Ring {
     len: usize,
     /// The sum of the normals.
     sum: Vec3,
-    /// The least of the products of the sum with the normals.
-    least: f32,
+    /// The mean of the squares of their distances from their mean: what the square of that lacks of 1.
+    variance: f32,
 }
 
 impl Ring {
     /// A ring without vertices.
     pub(super) const NONE: Ring =
-        Ring { vertices: [0; LONGEST], normals: [Vec3::ZERO; LONGEST], len: 0, sum: Vec3::ZERO, least: 0.0 };
+        Ring { vertices: [0; LONGEST], normals: [Vec3::ZERO; LONGEST], len: 0, sum: Vec3::ZERO, variance: 0.0 };
 
     /// Becomes that of some edges; `ids` are the vertices on all edges of the cell.
     #[inline(always)]
@@ -59,12 +56,9 @@ impl Ring {
             *normal = given;
         }
         self.len = edges.len();
-        let mut least = f32::INFINITY;
-        for normal in self.normals() {
-            let along = sum.dot(*normal);
-            least = if along < least { along } else { least };
-        }
-        (self.sum, self.least) = (sum, least);
+        let count = edges.len() as f32;
+        self.sum = sum;
+        self.variance = 1.0 - sum.length_squared() / (count * count);
     }
 
     pub(super) fn vertices(&self) -> &[u32] {
@@ -75,23 +69,17 @@ impl Ring {
         &self.normals[..self.len]
     }
 
-    /// Whether all normals are closer to their mean than an angle, given by the square of its cosine; no two differ by
-    /// more than twice that then.
-    #[inline(always)]
-    fn is_narrow(&self, square: f32) -> bool {
-        self.least > 0.0 && self.least * self.least > square * self.sum.length_squared()
-    }
-
-    /// Whether the cell is nearly flat.
+    /// Whether the cell is nearly flat: a few normals in a circle of that diameter are this far from their mean.
     #[inline(always)]
     pub(super) fn is_flat(&self) -> bool {
-        self.is_narrow(HALF_FLAT)
+        self.variance < 0.25 * SPREAD * SPREAD
     }
 
     /// Whether no two normals differ as those of a crease do.
     #[inline(always)]
     pub(super) fn is_smooth(&self) -> bool {
-        self.is_narrow(HALF_SMOOTH) || !differ(self.normals())
+        // The square of the distance of two is at most twice the sum of the squares of those from the mean.
+        2.0 * self.len as f32 * self.variance < 2.0 - 2.0 * SMOOTH || !differ(self.normals())
     }
 
     /// The point of the surface above the middle, if the two are far from each other, and the unit normal there. A

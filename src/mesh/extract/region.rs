@@ -163,6 +163,12 @@ impl<'a> Asker<'a> {
         Wish { size, block: self.block, who: self.who, span, at, allowed }
     }
 
+    /// About how far from the planes the point would be in a box.
+    fn distance_in(&self, span: &Span, at: DVec3) -> f64 {
+        let [low, high] = span.corners();
+        self.planes.distance(settle(&self.planes, at, low, high, 1))
+    }
+
     /// Wishes for the boxes towards where the planes meet, if that is outside: the whole ones, or those that are larger
     /// along some of the axes only.
     fn misfits(&self, most: f64, is_whole: bool, wishes: &mut Vec<Wish<'a>>) {
@@ -181,7 +187,7 @@ impl<'a> Asker<'a> {
             last = span;
             let all = if is_whole { 7..8 } else { 1..7 };
             let parts = all.map(|axes| self.span.grown(&span, axes)).filter(|part| *part != self.span);
-            let parts = parts.filter(|part| is_whole || *part != span);
+            let parts = parts.filter(|part| is_whole || *part != span && self.distance_in(part, at) <= 0.5 * misfit);
             wishes.extend(parts.map(|part| self.wish(misfit, part, at, 0.5 * misfit)));
         }
     }
