@@ -95,7 +95,6 @@ impl<'a> Parts<'a> {
         run: &Run,
     ) -> Result<Mesh, ExtractError> {
         let (mut positions, mut normals) = (std::mem::take(&mut self.positions), std::mem::take(&mut self.normals));
-        let vertices = positions.len();
         let mut fans = match features {
             Features::Smooth => Fans::default(),
             Features::Sharp => {
@@ -103,12 +102,12 @@ impl<'a> Parts<'a> {
                 sharp::find(&samples, sampler, &run.stage(0.0, 0.6))?
             }
         };
-        let count = vertices as u64 + fans.vertices() as u64;
+        let count = positions.len() as u64 + fans.vertices() as u64;
         if count > u64::from(u32::MAX) {
             return Err(ExtractError::TooLarge { count });
         }
         fans.add_vertices(&mut positions, &mut normals);
-        fans.number_bulges(vertices as u32);
+        fans.number_bulges();
 
         let run = run.stage(0.6, 1.0);
         let meter = Meter::new(&run, self.blocks.len());
@@ -130,7 +129,7 @@ impl<'a> Parts<'a> {
                 meter.step()?;
                 self.list_triangles(n, corners, &fans, &mut slots)?;
                 let first = end - slots.len();
-                fans.list(n, vertices as u32, |triangle, corners| {
+                fans.list(n, |triangle, corners| {
                     apart.normals.push(corners);
                     slots.next().into_iter().for_each(|slot| *slot = triangle);
                 });
@@ -146,15 +145,16 @@ impl<'a> Parts<'a> {
             normals.shrink_to_fit();
             return Ok(Mesh::new(positions, triangles)?.with_normals(normals)?.with_clamped_vertices(self.clamped));
         }
-        if !fans.unused.is_empty() {
-            let used = used(positions.len(), &fans.unused);
+        let unused = fans.unused();
+        if !unused.is_empty() {
+            let used = used(positions.len(), unused);
             let number = |n: u32| used[n as usize];
             triangles.par_iter_mut().for_each(|slot| {
                 let [a, b, c] = *slot;
                 *slot = [number(a), number(b), number(c)];
             });
-            keep(&mut positions, &fans.unused);
-            keep(&mut normals, &fans.unused);
+            keep(&mut positions, unused);
+            keep(&mut normals, unused);
         }
         positions.shrink_to_fit();
         normals.shrink_to_fit();

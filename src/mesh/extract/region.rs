@@ -265,8 +265,11 @@ impl Known<'_> {
     /// The boxes that hold an empty cell as well, which the crease goes on through.
     fn exits<'w>(&self, asker: &Asker<'w>, ring: &[Segment], wishes: &mut Vec<Wish<'w>>) {
         let normals = ring.iter().map(|segment| segment.normal);
+        // Beyond a face that the surface crosses there is some of it.
+        let is_crossed =
+            |face: u8| matches!(asker.who, Who::Cell(_)) && ring.iter().any(|segment| segment.face == face);
         for along in crease(normals).into_iter().flat_map(|along| [along, -along]) {
-            let Some((cell, length)) = asker.span.exit(asker.at, along) else { continue };
+            let Some((cell, length)) = asker.span.exit(asker.at, along, is_crossed) else { continue };
             let is_empty = matches!(self.samples.case_near(asker.block, cell), 0 | 255);
             if length > SHORT && is_empty && self.taken(asker.block, cell).is_none() {
                 let allowed = asker.planes.distance(asker.at).max(2.0 * MISFIT);

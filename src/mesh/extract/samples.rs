@@ -119,6 +119,11 @@ impl<'a> Samples<'a> {
         (crossed[axis] >> i & 1 == 1).then(|| part.first + part.rows.start(j, k) + before + in_row)
     }
 
+    /// How many vertices there are.
+    pub(super) fn vertices(&self) -> u32 {
+        self.positions.len() as u32
+    }
+
     /// Position and normal of a vertex.
     #[inline(always)]
     pub(super) fn get(&self, vertex: u32) -> (Vec3, Vec3) {

@@ -70,11 +70,12 @@ pub(super) struct Fans {
     pub(super) points: Vec<Vec3>,
     /// The cells that they are in, and the smooth ones with a vertex in their middle.
     special: Special,
-    /// The number of the first of these vertices.
-    first_bulge: u32,
+    /// How many vertices there are on edges.
+    on_edges: u32,
     blocks: Vec<OfBlock>,
-    /// The vertices within regions, which no triangle has any more; ascending.
-    pub(super) unused: Vec<u32>,
+    /// The vertices within regions, which no triangle has any more: they are where the first of those that are added
+    /// go. Ascending.
+    free: Vec<u32>,
 }
 
 /// The fans of a block.
@@ -113,7 +114,8 @@ pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) ->
 
 impl Fans {
     fn new(samples: &Samples<'_>, mut special: Special, regions: Vec<Region>, run: &Run) -> Result<Fans, Cancelled> {
-        let mut all = Fans { blocks: vec![OfBlock::default(); samples.blocks().len()], ..Fans::default() };
+        let blocks = vec![OfBlock::default(); samples.blocks().len()];
+        let mut all = Fans { blocks, on_edges: samples.vertices(), ..Fans::default() };
         all.fans.reserve(special.count());
         all.segments = special.take_segments();
         let mut in_regions: Vec<Segment> = Vec::new();
@@ -159,7 +161,7 @@ impl Fans {
             }
             while let Some(region) = regions.next_if(|region| region.block == block) {
                 all.cover(samples, &region.cells);
-                all.unused.extend(region.within);
+                all.free.extend(region.within);
                 let start = in_regions.len() as u32;
                 in_regions.extend(region.segments);
                 let (list, segments) = (all.segments.len() as u32, start..in_regions.len() as u32);
@@ -170,7 +172,7 @@ impl Fans {
             bulges += special.keep_bulges(block, is_free) as u32;
             all.blocks[block].bulges = start..bulges;
         }
-        all.unused.sort_unstable();
+        all.free.sort_unstable();
         for block in &mut all.blocks {
             block.cells.sort_unstable();
         }
@@ -181,11 +183,26 @@ impl Fans {
         Ok(all)
     }
 
-    /// Numbers the vertices of bulges, which follow those of fans, which follow `count` others; together they
-    /// are no more than indices of 32 bits.
-    pub(super) fn number_bulges(&mut self, count: u32) {
-        self.first_bulge = count + (self.fans.len() + self.points.len()) as u32;
-        self.special.number_bulges(|block| self.first_bulge + self.blocks[block].bulges.start);
+    /// The number of the vertex that is added as `nth`: those of fans come first, then points of creases, then those of
+    /// bulges.
+    #[inline]
+    fn number(&self, nth: u32) -> u32 {
+        match self.free.get(nth as usize) {
+            Some(&free) => free,
+            None => self.on_edges + (nth - self.free.len() as u32),
+        }
+    }
+
+    /// Numbers the vertices of bulges, given that all vertices together are no more than indices of 32 bits.
+    pub(super) fn number_bulges(&mut self) {
+        let mut special = std::mem::take(&mut self.special);
+        special.number_bulges(|block| self.first_bulge(block), |nth| self.number(nth));
+        self.special = special;
+    }
+
+    /// Which of the vertices that are added the first of a block's bulges is.
+    fn first_bulge(&self, block: usize) -> u32 {
+        (self.fans.len() + self.points.len()) as u32 + self.blocks[block].bulges.start
     }
 
     /// Notes that the next fan takes the place of the patches of cells, each with the number of its triangles.
@@ -215,32 +232,40 @@ impl Fans {
         segment.across.is_some_and(|other| other as usize >= self.fans.len())
     }
 
-    /// Adds the vertices, feature points first and those of bulges last, with the normals that stand for all their
-    /// sides, to all positions and normals.
+    /// Adds the vertices, with the normals that stand for all their sides, to all positions and normals.
     pub(super) fn add_vertices(&self, positions: &mut Vec<Vec3>, normals: &mut Vec<Vec3>) {
-        let count = self.vertices();
+        let count = self.vertices().saturating_sub(self.free.len());
         positions.reserve_exact(count);
         normals.reserve_exact(count);
+        let mut free = self.free.iter();
+        let mut add = |at: Vec3, normal: Vec3| match free.next() {
+            Some(&free) => (positions[free as usize], normals[free as usize]) = (at, normal),
+            None => {
+                positions.push(at);
+                normals.push(normal);
+            }
+        };
+        for (nth, fan) in self.fans.iter().enumerate() {
+            add(fan.at, self.of(nth).iter().map(|segment| segment.normal).sum::<Vec3>().normalize_or_zero());
+        }
         let mut between = vec![Vec3::ZERO; self.points.len()];
         for segment in self.segments.iter().flatten().filter(|segment| self.is_bent(segment)) {
             let nth = segment.across.map_or(0, |other| other as usize - self.fans.len());
             between[nth] += segment.normal;
         }
-        positions.extend(self.fans.iter().map(|fan| fan.at));
-        let normal = |fan| self.of(fan).iter().map(|segment| segment.normal).sum::<Vec3>().normalize_or_zero();
-        normals.extend((0..self.fans.len()).map(normal));
-        positions.extend_from_slice(&self.points);
-        normals.extend(between.into_iter().map(Vec3::normalize_or_zero));
-        for bulge in self.special.all_bulges() {
-            positions.push(bulge.at);
-            normals.push(bulge.normal);
-        }
+        self.points.iter().zip(between).for_each(|(at, normal)| add(*at, normal.normalize_or_zero()));
+        self.special.all_bulges().for_each(|bulge| add(bulge.at, bulge.normal));
     }
 
     /// How many vertices are added.
     pub(super) fn vertices(&self) -> usize {
         let bulges = self.blocks.last().map_or(0, |block| block.bulges.end);
         self.fans.len() + self.points.len() + bulges as usize
+    }
+
+    /// The vertices within regions that no other takes the place of.
+    pub(super) fn unused(&self) -> &[u32] {
+        self.free.get(self.vertices()..).unwrap_or_default()
     }
 
     /// The triangles of a block's bulges, and of its cells that have those of the table, if they are listed already.
@@ -261,9 +286,8 @@ impl Fans {
 
     /// The bulges of a block: the cells by number, and the vertices.
     pub(super) fn bulges(&self, block: usize) -> impl Iterator<Item = (u16, u32)> {
-        let numbers = self.blocks.get(block).map_or(0..0, |block| block.bulges.clone());
         let bulges = self.special.bulges(block).iter().filter(|bulge| bulge.is_there());
-        numbers.zip(bulges).map(|(number, bulge)| (bulge.cell, self.first_bulge + number))
+        bulges.enumerate().map(move |(n, bulge)| (bulge.cell, self.number(self.first_bulge(block) + n as u32)))
     }
 
     /// How many triangles a block has, which has `count` without fans.
@@ -291,13 +315,12 @@ impl Fans {
     }
 
     /// Lists the triangles of the fans of a block, each with the normals at its corners: at feature points that
-    /// of the triangle's side; 0 elsewhere, at vertices that lie on one side. Feature points are numbered from
-    /// `centres`, in the order of the fans.
-    pub(super) fn list(&self, block: usize, centres: u32, mut each: impl FnMut([u32; 3], [Vec3; 3])) {
+    /// of the triangle's side; 0 elsewhere, at vertices that lie on one side.
+    pub(super) fn list(&self, block: usize, mut each: impl FnMut([u32; 3], [Vec3; 3])) {
         const OWN: Vec3 = Vec3::ZERO;
         let fans = self.fans.len() as u32;
         for nth in self.blocks.get(block).map_or(0..0, |block| block.listed.clone()) {
-            let (segments, centre) = (self.of(nth), centres + nth as u32);
+            let (segments, centre) = (self.of(nth), self.number(nth as u32));
             for (n, segment) in segments.iter().enumerate() {
                 let next = segments.get(n + 1).unwrap_or(&segments[0]);
                 let (near, beside) = (segment.normal, next.normal);
@@ -307,11 +330,12 @@ impl Fans {
                     Some(other) if other < fans => {
                         let end = self.of(other as usize).iter().find(|segment| segment.from == from);
                         let beyond = end.map_or(Vec3::ZERO, |segment| segment.normal);
-                        each([centre, from, centres + other], [near, OWN, beyond]);
+                        each([centre, from, self.number(other)], [near, OWN, beyond]);
                     }
                     Some(point) => {
-                        each([centre, from, centres + point], [near, OWN, near]);
-                        each([centre, centres + point, to], [beside, beside, OWN]);
+                        let point = self.number(point);
+                        each([centre, from, point], [near, OWN, near]);
+                        each([centre, point, to], [beside, beside, OWN]);
                     }
                 }
             }

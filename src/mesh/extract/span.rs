@@ -40,9 +40,13 @@ impl Span {
         self
     }
 
-    /// Where a line from within leaves it: the next cell, and for how long the line is in that.
-    pub(super) fn exit(&self, from: DVec3, along: DVec3) -> Option<([u32; 3], f64)> {
+    /// Where a line from within leaves it: the next cell, and for how long the line is in that. None if it leaves it by a
+    /// face that is ruled out, given as twice the axis, and 1 more for the upper one.
+    pub(super) fn exit(&self, from: DVec3, along: DVec3, is_ruled_out: impl Fn(u8) -> bool) -> Option<([u32; 3], f64)> {
         let (axis, start) = self.way_out(from, along);
+        if is_ruled_out(2 * axis as u8 + u8::from(along[axis] > 0.0)) {
+            return None;
+        }
         let at = from + start * along;
         let mut cell = std::array::from_fn(|n| (at[n].max(0.0) as u32).clamp(self.low[n], self.high[n] - 1));
         cell[axis] = if along[axis] > 0.0 { self.high[axis] } else { self.low[axis].checked_sub(1)? };

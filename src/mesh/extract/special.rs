@@ -161,13 +161,14 @@ impl Special {
         self.0.iter().flat_map(|lists| &lists.bulges).filter(|bulge| bulge.is_there())
     }
 
-    /// Numbers the vertices of bulges in the triangles; `first` tells the number of the first one of a block.
-    pub(super) fn number_bulges(&mut self, first: impl Fn(usize) -> u32 + Sync) {
+    /// Numbers the vertices of bulges in the triangles; `first` tells which vertex the first one of a block is, and
+    /// `number` the number of that.
+    pub(super) fn number_bulges(&mut self, first: impl Fn(usize) -> u32 + Sync, number: impl Fn(u32) -> u32 + Sync) {
         self.0.par_iter_mut().enumerate().for_each(|(chunk, lists)| {
             let bulges = lists.bulges.iter().filter(|bulge| bulge.is_there());
-            for (number, bulge) in (first(chunk * AT_ONCE)..).zip(bulges) {
+            for (nth, bulge) in (first(chunk * AT_ONCE)..).zip(bulges) {
                 let triangles = &mut lists.plain[bulge.first as usize..][..usize::from(bulge.sides)];
-                triangles.iter_mut().for_each(|triangle| triangle[0] = number);
+                triangles.iter_mut().for_each(|triangle| triangle[0] = number(nth));
             }
         });
     }
