@@ -16,6 +16,7 @@ mod corner_normals;
 mod measure;
 
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 
 use self::attributes::Attributes;
 pub(crate) use self::corner_normals::Apart;
@@ -107,6 +108,17 @@ pub enum MeshError {
     },
 }
 
+/// The place of the first one of a list that something holds for. Threads share long lists.
+fn first<T: Sync>(list: &[T], holds: impl Fn(&T) -> bool + Sync) -> Option<usize> {
+    /// Fewer are not worth a second thread.
+    const MANY: usize = 1 << 16;
+    if list.len() <= MANY {
+        return list.iter().position(holds);
+    }
+    let in_chunk = |(n, chunk): (usize, &[T])| chunk.iter().position(&holds).map(|at| n * MANY + at);
+    list.par_chunks(MANY).enumerate().find_map_first(in_chunk)
+}
+
 impl Mesh {
     /// A mesh from positions (length units) and triangles, anticlockwise seen from outside.
     ///
@@ -114,16 +126,14 @@ impl Mesh {
     ///
     /// [`MeshError::Index`] or [`MeshError::Position`], naming the first offender.
     pub fn new(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Result<Mesh, MeshError> {
-        if let Some(vertex) = positions.iter().position(|p| !p.is_finite()) {
+        if let Some(vertex) = first(&positions, |p| !p.is_finite()) {
             return Err(MeshError::Position { vertex, position: positions[vertex] });
         }
         let vertices = positions.len();
-        for (triangle, corners) in triangles.iter().enumerate() {
-            let [a, b, c] = *corners;
-            if a.max(b).max(c) as usize >= vertices {
-                let index = [a, b, c].into_iter().find(|&i| i as usize >= vertices).unwrap_or(c);
-                return Err(MeshError::Index { triangle, index, vertices });
-            }
+        if let Some(triangle) = first(&triangles, |[a, b, c]| *a.max(b).max(c) as usize >= vertices) {
+            let [a, b, c] = triangles[triangle];
+            let index = [a, b, c].into_iter().find(|&i| i as usize >= vertices).unwrap_or(c);
+            return Err(MeshError::Index { triangle, index, vertices });
         }
         Ok(Mesh { positions, triangles, attributes: Attributes::default(), corner_normals: None })
     }
