@@ -65,10 +65,11 @@ fn thread() -> Solid {
 /// rays along its normals meet the inner one.
 fn measured(bottle: &Solid) -> Result<(f64, f64), Box<dyn Error>> {
     let (mut least, mut most) = (f64::INFINITY, 0.0f64);
-    for i in 0..12 {
-        let z = -0.8 * HALF + 0.14 * HALF * f64::from(i);
-        for j in 0..24 {
-            let (sin, cos) = (TAU * f64::from(j) / 24.0).sin_cos();
+    for i in 0..6 {
+        let z = -0.8 * HALF + 0.28 * HALF * f64::from(i);
+        // Not more: a ray asks for distances to a twisted supershape, and each is a search.
+        for j in 0..12 {
+            let (sin, cos) = (TAU * f64::from(j) / 12.0).sin_cos();
             let direction = DVec3::new(cos, sin, 0.0);
             let Some(outer) = bottle.raycast(DVec3::Z * z + 60.0 * direction, -direction)? else { continue };
             let Some(inner) = bottle.raycast(outer.point - 1e-3 * outer.normal, -outer.normal)? else { continue };
