@@ -132,7 +132,7 @@ impl Picture<'_> {
         let part = |row: u32| f64::from(row) / f64::from(height);
         let run = &run.stage(part(top), part(end));
         let obstacles = self.obstacles.as_ref();
-        if samples < 2 && obstacles.is_none() {
+        if samples < 2 && obstacles.is_none() && style != Style::Technical {
             return self.plain((top, end), run, finish, pixels);
         }
         // One pixel for the comparison with neighbours, and what the mean and the lines reach.
@@ -203,7 +203,7 @@ impl Picture<'_> {
         Ok(())
     }
 
-    /// The rows from `top` to `end` of a picture whose pixels have one ray each, and no shadows: they
+    /// The rows from `top` to `end` of a picture whose pixels have one ray each, and no shadows or lines: they
     /// need not know of each other.
     fn plain<P: Pixel>(
         &self,
@@ -238,7 +238,8 @@ impl Picture<'_> {
     fn fine(&self, band: &Band, top: u32, end: u32, obstacles: Option<&Obstacles<'_>>) -> Fine {
         let RenderSettings { samples, width, height, style, .. } = *self.settings;
         let mut numbers = vec![u32::MAX; band.spots.len()];
-        if samples < 2 {
+        // Lines are drawn where there are fine rays, be it one a pixel.
+        if samples < 2 && style != Style::Technical {
             return Fine { numbers, spots: Vec::new() };
         }
         let hard = obstacles.is_some_and(Obstacles::is_hard);

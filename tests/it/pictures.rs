@@ -66,6 +66,27 @@ fn switches() {
     }
 }
 
+/// One ray a pixel and no shadows is a way of its own through the renderer.
+#[test]
+fn one_ray_a_pixel_shows_the_same() {
+    let scene = part().scene().unwrap();
+    let camera = Camera::framing(&scene.bounds());
+    for style in Style::ALL {
+        let with = |samples| {
+            let settings = RenderSettings { samples, shadows: false, occlusion: false, ..small(style) };
+            scene.render(&camera, &settings).unwrap()
+        };
+        let (one, many) = (with(1), with(3));
+        // Away from edges there is one ray a pixel in both.
+        let same = one.pixels().iter().zip(many.pixels()).filter(|(a, b)| a == b).count();
+        assert!(4 * same > 3 * one.pixels().len(), "{style:?}: {same}");
+        // Lines are drawn, if not as smoothly.
+        let dark = |image: &Image| image.pixels().iter().filter(|p| p[..3].iter().all(|c| *c < 140)).count();
+        let (few, all) = (dark(&one), dark(&many));
+        assert!(style != Style::Technical || all > 200 && 2 * few > all, "{few} of {all}");
+    }
+}
+
 #[test]
 fn the_same_bytes_for_any_number_of_threads() {
     let scene = part().scene().unwrap();
