@@ -7,7 +7,7 @@
 //!                    \     x  where the planes meet: on the crease, or in the corner
 //! ```
 //!
-//! The second term (n is the number of planes) holds the point where the planes leave it free:
+//! The second term (n is the number of planes; they may have weights, and then it is their sum) holds the point where the planes leave it free:
 //! along a crease, and within the surface where there is only one plane. A step from s to the
 //! minimum is a damped Gauss–Newton step; repeated, it takes the point to the planes and hardly
 //! along them.
@@ -32,13 +32,14 @@ pub(super) struct Planes {
     vector: DVec3,
     /// Σ d²
     square: f64,
-    count: u32,
+    /// Σ 1
+    weight: f64,
 }
 
 impl Planes {
     /// No planes.
     pub(super) const NONE: Planes =
-        Planes { diagonal: DVec3::ZERO, beside: DVec3::ZERO, vector: DVec3::ZERO, square: 0.0, count: 0 };
+        Planes { diagonal: DVec3::ZERO, beside: DVec3::ZERO, vector: DVec3::ZERO, square: 0.0, weight: 0.0 };
 
     /// Adds the plane nᵢ·y = dᵢ; the normal is a unit vector.
     #[inline(always)]
@@ -48,33 +49,38 @@ impl Planes {
         self.beside += DVec3::new(y * z, z * x, x * y);
         self.vector += normal * d;
         self.square += d * d;
-        self.count += 1;
+        self.weight += 1.0;
     }
 
-    /// Adds the planes of another set.
-    pub(super) fn append(&mut self, other: &Planes) {
-        self.diagonal += other.diagonal;
-        self.beside += other.beside;
-        self.vector += other.vector;
-        self.square += other.square;
-        self.count += other.count;
+    /// Adds the planes of another set, each with a weight.
+    pub(super) fn append(&mut self, other: &Planes, weight: f64) {
+        self.diagonal += weight * other.diagonal;
+        self.beside += weight * other.beside;
+        self.vector += weight * other.vector;
+        self.square += weight * other.square;
+        self.weight += weight * other.weight;
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        self.count == 0
+        self.weight == 0.0
+    }
+
+    /// The sum of the weights; 1 without planes.
+    fn total(&self) -> f64 {
+        if self.is_empty() { 1.0 } else { self.weight }
     }
 
     /// The root of the mean square distance of a point from the planes.
     pub(super) fn distance(&self, y: DVec3) -> f64 {
         let along = product(self.diagonal, self.beside, y);
         let sum = y.dot(along) - 2.0 * self.vector.dot(y) + self.square;
-        (sum.max(0.0) / f64::from(self.count.max(1))).sqrt()
+        (sum.max(0.0) / self.total()).sqrt()
     }
 
     /// The point of the box from `low` to `high` that is best, with damping λ towards `from`.
     #[inline]
     pub(super) fn nearest(&self, from: DVec3, damping: f64, low: DVec3, high: DVec3) -> DVec3 {
-        let weight = damping * f64::from(self.count.max(1));
+        let weight = damping * self.total();
         let b = self.vector + weight * from;
         // Cramer's rule.
         let (d, e) = (self.diagonal + weight, self.beside);

@@ -186,7 +186,7 @@ fn body_edges(near: &Mesh, cell: f64) -> Vec<DVec3> {
             .collect();
         for (n, &a) in close.iter().enumerate() {
             for &b in &close[..n] {
-                for _ in 0..4 {
+                for _ in 0..16 {
                     let mut p = vertex + random.vector(-0.5, 0.5) * cell;
                     for _ in 0..8 {
                         let ((f, u), (g, v)) = (parts[a].gradient(p), parts[b].gradient(p));
@@ -221,7 +221,7 @@ fn edges_of_a_body() {
     println!("M2, surface, smooth: {}; {} triangles", surface[1], smooth.triangles().len());
     assert!(edges[0].median <= 0.005 && edges[0].part90 <= 0.05, "{}", edges[0]);
     assert!(edges[0].median < edges[1].median && edges[0].part90 < edges[1].part90);
-    assert!(edges[0].rms < 0.1 * edges[1].rms && edges[0].max < edges[1].max);
+    assert!(edges[0].rms < 0.03 * edges[1].rms && edges[0].max < 0.15 * edges[1].max);
     // Where no edge is near, what the rounded parts of the body leave to triangles on lattice edges alone is more.
     let normals = smooth.normals().expect("a mesh of a solid has them");
     let far: Vec<f64> = surface_errors(&smooth, &model.solid, cell)
@@ -239,8 +239,8 @@ fn edges_of_a_body() {
     println!("M2, surface, {:.0} % of the triangles, 2 cells and more from edges and not sharp: {far}", 100.0 * share);
     assert!(surface[0].rms <= 0.006 && surface[0].rms < 0.3 * surface[1].rms, "{}", surface[0]);
     assert!(surface[0].rms < 0.8 * far.rms, "{}, {far}", surface[0]);
-    // Where an edge passes cells without a change of sign.
-    assert!(edges[0].max < 0.4, "{}", edges[0]);
+    // Where an edge passes cells without a change of sign, too.
+    assert!(edges[0].max < 0.1, "{}", edges[0]);
 }
 
 #[test]

@@ -10,11 +10,14 @@
 //!     o-------o-------+
 //! ```
 //!
-//! A cell asks for a region if the planes of its sides meet outside: the box of cells up to there, or, if that
-//! cannot be, a box that is as large along some axes only; up to three cells along each axis, and with
-//! the regions that the box cuts into. Then all cells and regions ask whose crease leaves them through an empty
-//! cell: that cell is to be theirs as well. A region comes about if
+//! A cell asks for a region if the planes of its sides meet outside. First it asks for a slab, so that the crease
+//! has a point in each layer of cells: the box of cells up to where the planes meet in its own layer, across
+//! the axis that the crease goes along most, or else across the next one. Then it asks for the box up to where they
+//! meet at all. Last come cells and regions whose crease leaves them through an empty cell, which is to be theirs
+//! as well, and regions that are still off. A box that cuts into regions is merged with them; one for a slab only if
+//! that makes a slab. A region comes about if
 //!
+//! * it has up to four cells along each axis;
 //! * the patches of the box make a disc: they hang together and have a single loop as boundary, without
 //!   holes or handles;
 //! * the planes of all its cells meet better in the region than those of the cell did in it, or as well as those
@@ -40,10 +43,16 @@ use crate::run::{Cancelled, Run};
 const MISFIT: f64 = 0.01;
 
 /// The most cells along an axis of a region.
-const LARGEST: u32 = 3;
+const LARGEST: u32 = 4;
 
 /// How often regions may grow so.
 const ROUNDS: usize = 3;
+
+/// How often the point of a region is sought: the weights of planes depend on it.
+const STEPS: usize = 3;
+
+/// The weight of a cell's planes is 1 over the square of its distance, in cells, and this.
+const NEAR: f64 = 0.1;
 
 /// A crease that is in an empty cell for less than this, in cells, asks for nothing.
 const SHORT: f64 = 0.02;
@@ -77,26 +86,36 @@ pub(super) fn regions(
         samples,
         special,
         joined,
+        run,
         taken: vec![Vec::new(); blocks],
         regions: Vec::new(),
         patches: Patches::default(),
     };
-    let mut all: Vec<Asker<'_>> = Vec::new();
+    let mut all: Vec<(Asker<'_>, &[Segment])> = Vec::new();
     for block in 0..blocks {
         run.check()?;
-        let askers = special.candidates(block).iter().map(|candidate| Asker::candidate(block, candidate));
-        all.extend(askers.filter(|asker| asker.planes.distance(asker.at) > MISFIT));
+        for candidate in special.candidates(block) {
+            let asker = Asker::candidate(block, candidate);
+            if asker.planes.distance(asker.at) > MISFIT {
+                all.push((asker, special.segments(block, candidate)));
+            }
+        }
     }
-    // Boxes towards where planes meet; where that cannot be, such that are larger along some axes only.
-    for is_whole in [true, false] {
+    // Regions that stand alone come first: they are smaller than those that others are merged into.
+    for stage in [Stage::Slab(0), Stage::Slab(1), Stage::Box] {
         let mut wishes = Vec::new();
         run.check()?;
-        all.retain(|asker| known.taken(asker.block, asker.span.low).is_none());
-        all.iter().for_each(|asker| asker.misfits(MISFIT, is_whole, &mut wishes));
+        all.retain(|(asker, _)| known.taken(asker.block, asker.span.low).is_none());
+        for (asker, ring) in &all {
+            match stage {
+                Stage::Slab(nth) => asker.slabs(ring, nth, &mut wishes),
+                Stage::Box => asker.boxes(&mut wishes),
+            }
+        }
         wishes.sort_by(|a, b| b.size.total_cmp(&a.size));
-        // Regions that stand alone come first: they are smaller than those that others are merged into.
-        for merges in [None, Some(LARGEST)] {
-            wishes.retain(|wish| !run.cancel.is_cancelled() && !known.grant(wish, merges));
+        wishes.retain(|wish| !known.grant(wish, false));
+        if matches!(stage, Stage::Box) {
+            wishes.retain(|wish| !known.grant(wish, true));
         }
     }
     // Then those that creases leave through empty cells.
@@ -105,22 +124,22 @@ pub(super) fn regions(
         let mut wishes = Vec::new();
         for block in (0..blocks).filter(|_| round == 0) {
             for candidate in special.candidates(block).iter().filter(|one| known.taken(block, one.cell).is_none()) {
-                let ring = special.segments(block, candidate);
-                known.exits(&Asker::candidate(block, candidate), ring, &mut wishes);
+                known.exits(&Asker::candidate(block, candidate), special.segments(block, candidate), &mut wishes);
             }
         }
         for (number, region) in known.regions.iter().enumerate() {
             let Some(region) = region else { continue };
             let asker = Asker::region(number, region);
-            asker.misfits(2.0 * MISFIT, true, &mut wishes);
-            asker.misfits(2.0 * MISFIT, false, &mut wishes);
+            if asker.planes.distance(asker.at) > 2.0 * MISFIT {
+                asker.slabs(&region.segments, 0, &mut wishes);
+                asker.boxes(&mut wishes);
+            }
             known.exits(&asker, &region.segments, &mut wishes);
         }
         wishes.sort_by(|a, b| b.size.total_cmp(&a.size));
         let before = known.regions.len();
-        for wish in wishes {
-            known.grant(&wish, Some(LARGEST + 1));
-        }
+        wishes.retain(|wish| wish.slab.is_none() || !known.grant(wish, false));
+        wishes.retain(|wish| !known.grant(wish, true));
         if known.regions.len() == before {
             break;
         }
@@ -129,6 +148,27 @@ pub(super) fn regions(
     let mut regions: Vec<Region> = known.regions.into_iter().flatten().collect();
     regions.sort_by_key(|region| region.block);
     Ok(regions)
+}
+
+/// What cells ask for.
+enum Stage {
+    /// Slabs across the axis that is the nth of those that the crease goes along.
+    Slab(usize),
+    /// Any boxes.
+    Box,
+}
+
+/// The normals at the vertices of a ring.
+fn normals(ring: &[Segment]) -> impl Iterator<Item = Vec3> + Clone {
+    ring.iter().map(|segment| segment.normal)
+}
+
+/// The axes that a crease goes along: that which it is closest to, and the next one if it is not much farther from that.
+fn axes(along: DVec3) -> [Option<usize>; 2] {
+    let size = along.abs().to_array();
+    let mut order = [0, 1, 2];
+    order.sort_by(|&a: &usize, &b: &usize| size[b].total_cmp(&size[a]));
+    [Some(order[0]), Some(order[1]).filter(|_| size[order[1]] >= 0.5 * size[order[0]])]
 }
 
 /// A cell, or a region by its number.
@@ -160,35 +200,36 @@ impl<'a> Asker<'a> {
     }
 
     fn wish(&self, size: f64, span: Span, at: DVec3, allowed: f64) -> Wish<'a> {
-        Wish { size, block: self.block, who: self.who, span, at, allowed }
+        Wish { size, block: self.block, who: self.who, span, slab: None, at, allowed }
     }
 
-    /// About how far from the planes the point would be in a box.
-    fn distance_in(&self, span: &Span, at: DVec3) -> f64 {
-        let [low, high] = span.corners();
-        self.planes.distance(settle(&self.planes, at, low, high, 1))
-    }
-
-    /// Wishes for the boxes towards where the planes meet, if that is outside: the whole ones, or those that are larger
-    /// along some of the axes only.
-    fn misfits(&self, most: f64, is_whole: bool, wishes: &mut Vec<Wish<'a>>) {
-        let misfit = self.planes.distance(self.at);
-        if misfit <= most {
-            return;
+    /// Wishes for slabs up to where the planes meet, across the axis that is the nth of those that the crease goes
+    /// along, if it is a slab itself.
+    fn slabs(&self, ring: &[Segment], nth: usize, wishes: &mut Vec<Wish<'a>>) {
+        let axis = crease(normals(ring)).and_then(|along| axes(along)[nth]);
+        if let Some(axis) = axis.filter(|&axis| self.span.is_slab(axis)) {
+            let mut across = DVec3::ONE;
+            across[axis] = 0.0;
+            self.towards([across, 2.0 * across, 3.0 * across], Some(axis), wishes);
         }
-        let mut last = self.span;
-        for reach in [1.0, 2.0] {
+    }
+
+    /// Wishes for the boxes up to where the planes meet.
+    fn boxes(&self, wishes: &mut Vec<Wish<'a>>) {
+        self.towards([1.0, 2.0].map(DVec3::splat), None, wishes);
+    }
+
+    /// Wishes for the boxes up to where the planes meet, among the cells that are so far away along the axes.
+    fn towards<const N: usize>(&self, reaches: [DVec3; N], slab: Option<usize>, wishes: &mut Vec<Wish<'a>>) {
+        let (misfit, mut last) = (self.planes.distance(self.at), self.span);
+        for reach in reaches {
             let [low, high] = self.span.corners();
             let at = settle(&self.planes, self.at, low - reach, high + reach, 3);
             let span = self.span.union(&Span::single(at.max(DVec3::ZERO).to_array().map(|x| x as u32)));
-            if span == last {
-                continue;
+            if span != last {
+                wishes.push(Wish { slab, ..self.wish(misfit, span, at, 0.5 * misfit) });
+                last = span;
             }
-            last = span;
-            let all = if is_whole { 7..8 } else { 1..7 };
-            let parts = all.map(|axes| self.span.grown(&span, axes)).filter(|part| *part != self.span);
-            let parts = parts.filter(|part| is_whole || *part != span && self.distance_in(part, at) <= 0.5 * misfit);
-            wishes.extend(parts.map(|part| self.wish(misfit, part, at, 0.5 * misfit)));
         }
     }
 }
@@ -201,6 +242,8 @@ struct Wish<'a> {
     who: Who<'a>,
     block: usize,
     span: Span,
+    /// The axis along which it is to stay one cell thick, if there is one.
+    slab: Option<usize>,
     /// About where the point goes.
     at: DVec3,
     /// How far it may be from the planes.
@@ -211,6 +254,7 @@ struct Known<'a> {
     samples: &'a Samples<'a>,
     special: &'a Special,
     joined: &'a Joined,
+    run: &'a Run,
     /// By block, the cells that are in regions, by number, and in which.
     taken: Vec<Vec<(u16, u32)>>,
     /// All regions; `None` for those that others are merged from.
@@ -220,11 +264,12 @@ struct Known<'a> {
 }
 
 impl Known<'_> {
-    /// Makes the region that a cell wishes for, if it can be; merged with the regions in its way, or not at all
-    /// where there are any. Whether there is no more to be done for the cell.
-    fn grant(&mut self, wish: &Wish<'_>, merged_up_to: Option<u32>) -> bool {
-        // One that it is in already is what it wished for, or better.
-        if matches!(wish.who, Who::Cell(candidate) if self.taken(wish.block, candidate.cell).is_some()) {
+    /// Makes the region that is wished for, if it can be: merged with the regions in its way if it `merges`, or if
+    /// that makes a slab of a slab, and else only where there are none. Whether there is no more to be done for the wish.
+    fn grant(&mut self, wish: &Wish<'_>, merges: bool) -> bool {
+        // A region that a cell is in already is what it wished for, or better.
+        let is_granted = matches!(wish.who, Who::Cell(candidate) if self.taken(wish.block, candidate.cell).is_some());
+        if is_granted || self.run.cancel.is_cancelled() {
             return true;
         }
         let mut span = wish.span;
@@ -236,8 +281,9 @@ impl Known<'_> {
                 span = span.union(&other.span);
             }
             merged.push(region);
-            if !merged_up_to.is_some_and(|most| span.is_small(most)) {
-                return merged_up_to.is_some();
+            let may_merge = merges || wish.slab.is_some_and(|axis| span.is_slab(axis));
+            if !may_merge || !span.is_small(LARGEST) {
+                return merges;
             }
         }
         let mut patches = std::mem::take(&mut self.patches);
@@ -264,16 +310,17 @@ impl Known<'_> {
 
     /// The boxes that hold an empty cell as well, which the crease goes on through.
     fn exits<'w>(&self, asker: &Asker<'w>, ring: &[Segment], wishes: &mut Vec<Wish<'w>>) {
-        let normals = ring.iter().map(|segment| segment.normal);
         // Beyond a face that the surface crosses there is some of it.
         let is_crossed =
             |face: u8| matches!(asker.who, Who::Cell(_)) && ring.iter().any(|segment| segment.face == face);
-        for along in crease(normals).into_iter().flat_map(|along| [along, -along]) {
+        for along in crease(normals(ring)).into_iter().flat_map(|along| [along, -along]) {
             let Some((cell, length)) = asker.span.exit(asker.at, along, is_crossed) else { continue };
             let is_empty = matches!(self.samples.case_near(asker.block, cell), 0 | 255);
             if length > SHORT && is_empty && self.taken(asker.block, cell).is_none() {
                 let allowed = asker.planes.distance(asker.at).max(2.0 * MISFIT);
-                wishes.push(asker.wish(0.5 * length, asker.span.union(&Span::single(cell)), asker.at, allowed));
+                let span = asker.span.union(&Span::single(cell));
+                let slab = axes(along)[0].filter(|&axis| span.is_slab(axis));
+                wishes.push(Wish { slab, ..asker.wish(0.5 * length, span, asker.at, allowed) });
             }
         }
     }
@@ -291,17 +338,21 @@ impl Known<'_> {
     }
 
     fn region(&self, wish: &Wish<'_>, span: Span, patches: &mut Patches) -> Option<Region> {
-        let (mut cells, mut planes) = (Vec::with_capacity(8), Planes::NONE);
+        let mut cells = Vec::with_capacity(8);
         patches.clear();
         for cell in span.cells() {
             let case = self.samples.case_near(wish.block, cell);
             cells.push((cell, CaseTable::get().triangles(case).len()));
             if case != 0 && case != 255 {
-                self.add_patches(wish.block, cell, case, &mut planes, patches)?;
+                self.add_patches(wish.block, cell, case, patches)?;
             }
         }
         let [low, high] = span.corners();
-        let place = settle(&planes, wish.at, low, high, 3);
+        let (mut planes, mut place) = (Planes::NONE, wish.at);
+        for _ in 0..STEPS {
+            planes = patches.planes(place);
+            place = settle(&planes, place, low, high, 3);
+        }
         let own = match wish.who {
             Who::Cell(candidate) => &candidate.planes,
             // None if it is part of another by now.
@@ -316,19 +367,11 @@ impl Known<'_> {
     }
 
     /// Adds the planes of a crossed cell, close to block `near`, and its patches.
-    fn add_patches(
-        &self,
-        near: usize,
-        cell: [u32; 3],
-        case: u8,
-        planes: &mut Planes,
-        patches: &mut Patches,
-    ) -> Option<()> {
+    fn add_patches(&self, near: usize, cell: [u32; 3], case: u8, patches: &mut Patches) -> Option<()> {
         let (block, within) = split_cell(cell);
         let block = self.samples.find_near(near, block)?;
         if let Some(candidate) = self.special.candidate(block, cell_number(within)) {
-            planes.append(&candidate.planes);
-            patches.add(self.special.segments(block, candidate));
+            patches.add(cell, self.special.segments(block, candidate), &candidate.planes);
             return Some(());
         }
         let faces = self.joined.of(self.samples, cell, case);
@@ -337,8 +380,8 @@ impl Known<'_> {
                 outline.edges().iter().map(|&edge| self.samples.vertex(near, cell, edge)).collect();
             let mut own = Vec::with_capacity(outline.len());
             let lists = (&mut own, &mut Vec::with_capacity(outline.len()));
-            planes.append(&self.samples.candidate(cell, outline, &vertices?, lists).planes);
-            patches.add(&own);
+            let planes = self.samples.candidate(cell, outline, &vertices?, lists).planes;
+            patches.add(cell, &own, &planes);
             Some(())
         };
         match CellLoop::single(case, faces) {
@@ -352,7 +395,8 @@ impl Known<'_> {
 #[derive(Default)]
 struct Patches {
     segments: Vec<(Segment, u32, u32)>,
-    count: u32,
+    /// By patch, the middle of its cell and the planes.
+    planes: Vec<(DVec3, Planes)>,
 }
 
 /// A disc of several patches.
@@ -366,14 +410,27 @@ struct Disc {
 impl Patches {
     fn clear(&mut self) {
         self.segments.clear();
-        self.count = 0;
+        self.planes.clear();
     }
 
-    /// Adds a patch.
-    fn add(&mut self, ring: &[Segment]) {
-        let next = ring.iter().cycle().skip(1).map(|segment| segment.from);
-        self.segments.extend(ring.iter().zip(next).map(|(segment, to)| (*segment, to, self.count)));
-        self.count += 1;
+    /// Adds a patch of a cell.
+    fn add(&mut self, cell: [u32; 3], ring: &[Segment], planes: &Planes) {
+        let (next, count) = (ring.iter().cycle().skip(1).map(|segment| segment.from), self.count());
+        self.segments.extend(ring.iter().zip(next).map(|(segment, to)| (*segment, to, count)));
+        self.planes.push((DVec3::from_array(cell.map(f64::from)) + 0.5, *planes));
+    }
+
+    fn count(&self) -> u32 {
+        self.planes.len() as u32
+    }
+
+    /// All planes; those of cells close to a point tell the most.
+    fn planes(&self, point: DVec3) -> Planes {
+        let mut all = Planes::NONE;
+        for (middle, planes) in &self.planes {
+            all.append(planes, (NEAR + (*middle - point).length_squared()).recip());
+        }
+        all
     }
 
     /// All as one, if they make a disc.
@@ -406,7 +463,7 @@ impl Patches {
         }
         vertices.dedup_by_key(|(vertex, _)| *vertex);
         let edges = outer.len() + (self.segments.len() - outer.len()) / 2;
-        if vertices.len() + self.count as usize != edges + 1 {
+        if vertices.len() + self.count() as usize != edges + 1 {
             return None;
         }
         let mut within: Vec<u32> = vertices.into_iter().map(|(vertex, _)| vertex).collect();
@@ -417,7 +474,7 @@ impl Patches {
     /// Whether one comes from every patch to every other by vertices that they share; given the vertices in order,
     /// each with its patches.
     fn hangs_together(&self, vertices: &[(u32, u32)]) -> bool {
-        let mut reached: Vec<bool> = (0..self.count).map(|patch| patch == 0).collect();
+        let mut reached: Vec<bool> = (0..self.count()).map(|patch| patch == 0).collect();
         let mut is_new = true;
         while is_new {
             is_new = false;

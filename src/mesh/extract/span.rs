@@ -32,12 +32,9 @@ impl Span {
         (0..3).all(|axis| self.high[axis] - self.low[axis] <= most)
     }
 
-    /// As large as another along some axes, given as bits.
-    pub(super) fn grown(mut self, other: &Span, axes: usize) -> Span {
-        for axis in (0..3).filter(|axis| axes >> axis & 1 == 1) {
-            (self.low[axis], self.high[axis]) = (other.low[axis], other.high[axis]);
-        }
-        self
+    /// Whether it is one cell thick along an axis.
+    pub(super) fn is_slab(&self, axis: usize) -> bool {
+        self.low[axis] + 1 == self.high[axis]
     }
 
     /// Where a line from within leaves it: the next cell, and for how long the line is in that. None if it leaves it by a
