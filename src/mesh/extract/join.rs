@@ -3,15 +3,13 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::bulge::around;
 use super::neighbours::Neighbours;
-use super::samples::{Samples, cell_number};
+use super::samples::{Samples, cell_number, cell_of};
 use super::sharp::{self, Fans};
 use super::{BATCH, Batch, ExtractError, Part, Sampler};
 use crate::geom::{Apart, Mesh};
 use crate::mesh::Features;
 use crate::mesh::lattice::Lattice;
-use crate::mesh::loops::CellLoop;
 use crate::mesh::meter::Meter;
 use crate::mesh::signs::{BLOCK, NODES, SIDE, for_each_cell, is_mixed};
 use crate::mesh::table::CaseTable;
@@ -48,10 +46,25 @@ impl<'a> Parts<'a> {
             part.first += start as u32;
         }
         self.parts.push(parts);
+        self.reserve(positions.len());
         self.positions.extend_from_slice(&positions);
         self.normals.extend_from_slice(&normals);
         self.clamped += clamped;
         Ok(())
+    }
+
+    /// Makes room for more vertices, and for those to come, by what the blocks have so far: moving many is slow.
+    fn reserve(&mut self, more: usize) {
+        let count = self.positions.len() + more;
+        if count <= self.positions.capacity() {
+            return;
+        }
+        let (done, all) = (self.parts.len(), self.blocks.len().div_ceil(BATCH));
+        // Few blocks do not tell.
+        let share = if done * 16 < all { 2.0 } else { 1.1 * all as f64 / done as f64 };
+        let room = (share * count as f64) as usize - self.positions.len();
+        self.positions.reserve_exact(room);
+        self.normals.reserve_exact(room);
     }
 
     #[inline]
@@ -115,7 +128,7 @@ impl<'a> Parts<'a> {
             .into_par_iter()
             .map(|batch| {
                 let parts = (batch * BATCH..).zip(&self.parts[batch]);
-                parts.map(|(n, part)| fans.count(n, part.triangles as usize)).sum()
+                parts.map(|(n, part)| self.plain_triangles(n, part, &fans) + fans.listed(n..n + 1)).sum()
             })
             .collect();
         let mut triangles = vec![[0; 3]; counts.iter().sum()];
@@ -162,7 +175,20 @@ impl<'a> Parts<'a> {
         Ok(mesh.with_clamped_vertices(self.clamped))
     }
 
-    /// The triangles of block `n` that are those of the table, in the order of its cells.
+    /// How many triangles the cells of block `n` without fans have.
+    fn plain_triangles(&self, n: usize, part: &Part, fans: &Fans) -> usize {
+        fans.plain(n).map_or_else(
+            || {
+                let within = |number: u16| cell_of([0; 3], number).map(|n| n as usize);
+                let case = |&(number, _): &(u16, u32)| part.signs.case(within(number));
+                let dropped = fans.cells(n).iter().map(|cell| CaseTable::get().triangles(case(cell)).len());
+                part.triangles as usize - dropped.sum::<usize>()
+            },
+            <[_]>::len,
+        )
+    }
+
+    /// The triangles of the cells of block `n` without fans, in the order of the cells.
     fn list_triangles(
         &self,
         n: usize,
@@ -182,43 +208,17 @@ impl<'a> Parts<'a> {
             return Err(ExtractError::Blocks { block: self.blocks[n], what });
         }
         let table = CaseTable::get();
-        if fans.is_plain(n) {
-            for_each_cell(&self.part(n).signs, |cell, case| {
-                let ids = corners.of_cell(cell);
-                let corner = |edge: u8| ids[usize::from(edge & 15)];
-                for &[a, b, c] in table.triangles(case) {
-                    if let Some(slot) = slots.next() {
-                        *slot = [corner(a), corner(b), corner(c)];
-                    }
-                }
-            });
-            return Ok(());
-        }
-        let mut with_fan = fans.cells(n).iter().peekable();
-        let mut opposite = fans.opposite(n).iter().peekable();
-        let mut bulges = fans.bulges(n).peekable();
+        let with_fan = fans.cells(n);
         for_each_cell(&self.part(n).signs, |cell, case| {
-            let number = cell_number(cell);
-            while with_fan.next_if(|(other, _)| *other < number).is_some() {}
-            if with_fan.peek().is_some_and(|(other, _)| *other == number) {
+            if !with_fan.is_empty() && with_fan.binary_search_by_key(&cell_number(cell), |&(cell, _)| cell).is_ok() {
                 return;
             }
             let ids = corners.of_cell(cell);
             let corner = |edge: u8| ids[usize::from(edge & 15)];
-            if let Some((_, centre)) = bulges.next_if(|(other, _)| *other == number) {
-                let outline = CellLoop::single(case, 0);
-                let ring: Vec<u32> = outline.iter().flat_map(CellLoop::edges).map(|&edge| corner(edge)).collect();
-                around(centre, &ring).zip(&mut *slots).for_each(|(triangle, slot)| *slot = triangle);
-                return;
-            }
-            if opposite.next_if(|(other, _)| *other == number).is_some() {
-                for (&[a, b, c], slot) in table.triangles(!case).iter().zip(&mut *slots) {
-                    *slot = [corner(a), corner(c), corner(b)];
+            for &[a, b, c] in table.triangles(case) {
+                if let Some(slot) = slots.next() {
+                    *slot = [corner(a), corner(b), corner(c)];
                 }
-                return;
-            }
-            for (&[a, b, c], slot) in table.triangles(case).iter().zip(&mut *slots) {
-                *slot = [corner(a), corner(b), corner(c)];
             }
         });
         Ok(())

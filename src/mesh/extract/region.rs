@@ -36,7 +36,6 @@ use super::special::Special;
 use crate::mesh::feature::{Candidate, Segment, crease, settle};
 use crate::mesh::loops::CellLoop;
 use crate::mesh::qef::Planes;
-use crate::mesh::table::CaseTable;
 use crate::run::{Cancelled, Run};
 
 /// A cell asks for a region if its point is farther from the planes than this, in cells.
@@ -49,7 +48,7 @@ const LARGEST: u32 = 4;
 const ROUNDS: usize = 3;
 
 /// How often the point of a region is sought: the weights of planes depend on it.
-const STEPS: usize = 3;
+const STEPS: usize = 5;
 
 /// The weight of a cell's planes is 1 over the square of its distance, in cells, and this.
 const NEAR: f64 = 0.1;
@@ -67,8 +66,6 @@ pub(super) struct Region {
     /// The same in cells.
     place: DVec3,
     planes: Planes,
-    /// The cells, with the numbers of triangles that they have in the table.
-    pub(super) cells: Vec<([u32; 3], usize)>,
     /// The vertices within, ascending.
     pub(super) within: Vec<u32>,
     pub(super) span: Span,
@@ -95,9 +92,8 @@ pub(super) fn regions(
     for block in 0..blocks {
         run.check()?;
         for candidate in special.candidates(block) {
-            let asker = Asker::candidate(block, candidate);
-            if asker.planes.distance(asker.at) > MISFIT {
-                all.push((asker, special.segments(block, candidate)));
+            if candidate.planes.distance(candidate.at) > MISFIT {
+                all.push((Asker::candidate(block, candidate), special.segments(block, candidate)));
             }
         }
     }
@@ -293,7 +289,7 @@ impl Known<'_> {
         for old in merged {
             self.regions[old as usize] = None;
         }
-        for &(cell, _) in &region.cells {
+        for cell in region.span.cells() {
             let (block, within) = split_cell(cell);
             if let Some(block) = self.samples.find_near(wish.block, block) {
                 let (cells, number) = (&mut self.taken[block], cell_number(within));
@@ -338,11 +334,9 @@ impl Known<'_> {
     }
 
     fn region(&self, wish: &Wish<'_>, span: Span, patches: &mut Patches) -> Option<Region> {
-        let mut cells = Vec::with_capacity(8);
         patches.clear();
         for cell in span.cells() {
             let case = self.samples.case_near(wish.block, cell);
-            cells.push((cell, CaseTable::get().triangles(case).len()));
             if case != 0 && case != 255 {
                 self.add_patches(wish.block, cell, case, patches)?;
             }
@@ -351,7 +345,7 @@ impl Known<'_> {
         let (mut planes, mut place) = (Planes::NONE, wish.at);
         for _ in 0..STEPS {
             planes = patches.planes(place);
-            place = settle(&planes, place, low, high, 3);
+            place = settle(&planes, place, low, high, 1);
         }
         let own = match wish.who {
             Who::Cell(candidate) => &candidate.planes,
@@ -363,7 +357,7 @@ impl Known<'_> {
         }
         let Disc { ring, within } = patches.glued()?;
         let at = self.samples.inside(place, span.low, span.high);
-        Some(Region { block: wish.block, segments: ring, at, place, planes, cells, within, span })
+        Some(Region { block: wish.block, segments: ring, at, place, planes, within, span })
     }
 
     /// Adds the planes of a crossed cell, close to block `near`, and its patches.

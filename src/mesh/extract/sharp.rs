@@ -44,7 +44,6 @@ use super::samples::{Samples, cell_number, split_cell};
 use super::span::Span;
 use super::special::{Special, list_of};
 use crate::mesh::feature::Segment;
-use crate::mesh::table::CaseTable;
 use crate::run::{Cancelled, Run};
 
 /// The fan of a cell, or of a region of several.
@@ -81,18 +80,13 @@ pub(super) struct Fans {
 /// The fans of a block.
 #[derive(Clone, Default)]
 struct OfBlock {
-    /// Those that are listed with it: of creases and corners.
+    /// Those that are listed with it, of creases and corners, and how many triangles they have.
     listed: Range<usize>,
+    triangles: usize,
     /// The cells that have a fan, by number, and which; ascending.
     cells: Vec<(u16, u32)>,
-    /// How many triangles of the table they have no more.
-    dropped: usize,
     /// The bulges, by their numbers.
     bulges: Range<u32>,
-    /// The cells that have the patches of the opposite case, by number; ascending.
-    opposite: Vec<(u16, u8)>,
-    /// Whether the triangles of its bulges, and of the cells that have those of the table, are listed already.
-    is_listed: bool,
 }
 
 /// Finds the cells that hold creases and corners, and gives them fans.
@@ -121,7 +115,7 @@ impl Fans {
         let mut in_regions: Vec<Segment> = Vec::new();
         // The cells of regions, by the numbers of their blocks and their own.
         let mut in_region: Vec<(usize, u16)> = Vec::new();
-        for &(cell, _) in regions.iter().flat_map(|region| &region.cells) {
+        for cell in regions.iter().flat_map(|region| region.span.cells()) {
             let (block, within) = split_cell(cell);
             in_region.extend(samples.find(block).map(|block| (block, cell_number(within))));
         }
@@ -129,30 +123,19 @@ impl Fans {
         let mut in_region = &in_region[..];
         // A region is listed with the block of the candidate that asked for it.
         let mut regions = regions.into_iter().peekable();
-        let table = CaseTable::get();
         let mut bulges = 0;
         for block in 0..all.blocks.len() {
             run.check()?;
             let (taken, rest) = in_region.split_at(in_region.partition_point(|&(other, _)| other == block));
             in_region = rest;
             let is_free = |number: u16| taken.binary_search(&(block, number)).is_err();
-            let candidates = special.candidates(block);
-            // Regions may hold other cells than candidates.
-            let is_candidate = |&(_, cell): &(usize, u16)| special.candidate(block, cell).is_some();
-            let opposite: Vec<(u16, u8)> =
-                special.opposite(block).iter().copied().filter(|&(number, _)| is_free(number)).collect();
             let start = all.fans.len();
-            let of_block = &mut all.blocks[block];
-            of_block.is_listed =
-                special.plain(block).is_some() && opposite.is_empty() && taken.iter().all(is_candidate);
-            of_block.opposite = opposite;
-            of_block.cells.reserve(candidates.len() + taken.len());
-            let signs = &samples.parts.part(block).signs;
+            let candidates = special.candidates(block);
+            all.blocks[block].cells.reserve(candidates.len() + taken.len());
             for candidate in candidates {
-                let (_, within) = split_cell(candidate.cell);
-                let number = cell_number(within);
-                if is_free(number) {
-                    all.hold(block, number, table.triangles(signs.case(within)).len());
+                let number = cell_number(split_cell(candidate.cell).1);
+                if taken.is_empty() || is_free(number) {
+                    all.blocks[block].cells.push((number, all.fans.len() as u32));
                     let span = Span::single(candidate.cell);
                     let at = samples.inside(candidate.at, span.low, span.high);
                     let Range { start, end } = candidate.range();
@@ -160,17 +143,22 @@ impl Fans {
                 }
             }
             while let Some(region) = regions.next_if(|region| region.block == block) {
-                all.cover(samples, &region.cells);
+                all.cover(samples, region.span);
                 all.free.extend(region.within);
                 let start = in_regions.len() as u32;
                 in_regions.extend(region.segments);
                 let (list, segments) = (all.segments.len() as u32, start..in_regions.len() as u32);
                 all.fans.push(Fan { list, segments, block, span: region.span, at: region.at });
             }
-            all.blocks[block].listed = start..all.fans.len();
+            if !taken.is_empty() {
+                special.keep(samples, block, is_free);
+            }
+            let of_block = &mut all.blocks[block];
+            of_block.listed = start..all.fans.len();
+            of_block.triangles = all.fans[start..].iter().map(|fan| fan.segments.len()).sum();
             let start = bulges;
-            bulges += special.keep_bulges(block, is_free) as u32;
-            all.blocks[block].bulges = start..bulges;
+            bulges += special.bulges(block).iter().filter(|bulge| bulge.is_there()).count() as u32;
+            of_block.bulges = start..bulges;
         }
         all.free.sort_unstable();
         for block in &mut all.blocks {
@@ -205,20 +193,23 @@ impl Fans {
         (self.fans.len() + self.points.len()) as u32 + self.blocks[block].bulges.start
     }
 
-    /// Notes that the next fan takes the place of the patches of cells, each with the number of its triangles.
-    fn cover(&mut self, samples: &Samples<'_>, cells: &[([u32; 3], usize)]) {
-        for &(cell, count) in cells {
+    /// Notes that the next fan takes the place of the patches of some cells.
+    fn cover(&mut self, samples: &Samples<'_>, span: Span) {
+        for cell in span.cells() {
             let (block, within) = split_cell(cell);
             if let Some(block) = samples.find(block) {
-                self.hold(block, cell_number(within), count);
+                self.blocks[block].cells.push((cell_number(within), self.fans.len() as u32));
             }
         }
     }
 
-    /// Notes that the next fan takes the place of the patch of a cell, with the number of its triangles.
-    fn hold(&mut self, block: usize, number: u16, count: usize) {
-        self.blocks[block].cells.push((number, self.fans.len() as u32));
-        self.blocks[block].dropped += count;
+    /// Notes that segments are turned to a point between two fans.
+    pub(super) fn bend(&mut self, fans: [u32; 2], at: Vec3) {
+        self.points.push(at);
+        for fan in fans {
+            // One triangle becomes two.
+            self.blocks[self.fans[fan as usize].block].triangles += 1;
+        }
     }
 
     /// The segments of a fan.
@@ -227,9 +218,9 @@ impl Fans {
         &self.segments[*list as usize][*start as usize..*end as usize]
     }
 
-    /// Whether a segment is turned to a point between the two fans.
-    fn is_bent(&self, segment: &Segment) -> bool {
-        segment.across.is_some_and(|other| other as usize >= self.fans.len())
+    /// Which of the points between two fans a segment is turned to, if it is.
+    fn point(&self, segment: &Segment) -> Option<usize> {
+        (segment.across? as usize).checked_sub(self.fans.len())
     }
 
     /// Adds the vertices, with the normals that stand for all their sides, to all positions and normals.
@@ -245,13 +236,16 @@ impl Fans {
                 normals.push(normal);
             }
         };
-        for (nth, fan) in self.fans.iter().enumerate() {
-            add(fan.at, self.of(nth).iter().map(|segment| segment.normal).sum::<Vec3>().normalize_or_zero());
-        }
         let mut between = vec![Vec3::ZERO; self.points.len()];
-        for segment in self.segments.iter().flatten().filter(|segment| self.is_bent(segment)) {
-            let nth = segment.across.map_or(0, |other| other as usize - self.fans.len());
-            between[nth] += segment.normal;
+        for (nth, fan) in self.fans.iter().enumerate() {
+            let mut sum = Vec3::ZERO;
+            for segment in self.of(nth) {
+                sum += segment.normal;
+                if let Some(point) = self.point(segment) {
+                    between[point] += segment.normal;
+                }
+            }
+            add(fan.at, sum.normalize_or_zero());
         }
         self.points.iter().zip(between).for_each(|(at, normal)| add(*at, normal.normalize_or_zero()));
         self.special.all_bulges().for_each(|bulge| add(bulge.at, bulge.normal));
@@ -268,9 +262,9 @@ impl Fans {
         self.free.get(self.vertices()..).unwrap_or_default()
     }
 
-    /// The triangles of a block's bulges, and of its cells that have those of the table, if they are listed already.
+    /// The triangles of a block's cells without fans, if the block has been looked at.
     pub(super) fn plain(&self, block: usize) -> Option<&[[u32; 3]]> {
-        if self.blocks.get(block)?.is_listed { self.special.plain(block) } else { None }
+        self.special.plain(block)
     }
 
     /// The cells of a block that have a fan, by number, and which fan.
@@ -280,38 +274,7 @@ impl Fans {
 
     /// How many triangles the fans that are listed with some blocks have.
     pub(super) fn listed(&self, blocks: Range<usize>) -> usize {
-        let fans = self.blocks.get(blocks).unwrap_or_default().iter().flat_map(|block| block.listed.clone());
-        fans.flat_map(|fan| self.of(fan)).map(|segment| 1 + usize::from(self.is_bent(segment))).sum()
-    }
-
-    /// The bulges of a block: the cells by number, and the vertices.
-    pub(super) fn bulges(&self, block: usize) -> impl Iterator<Item = (u16, u32)> {
-        let bulges = self.special.bulges(block).iter().filter(|bulge| bulge.is_there());
-        bulges.enumerate().map(move |(n, bulge)| (bulge.cell, self.number(self.first_bulge(block) + n as u32)))
-    }
-
-    /// How many triangles a block has, which has `count` without fans.
-    pub(super) fn count(&self, block: usize, count: usize) -> usize {
-        let Some(of_block) = self.blocks.get(block) else { return count };
-        let table = CaseTable::get();
-        let triangles = |case: u8| table.triangles(case).len();
-        let gone: usize = of_block.opposite.iter().map(|&(_, case)| triangles(case)).sum();
-        let come: usize = of_block.opposite.iter().map(|&(_, case)| triangles(!case)).sum();
-        // A ring around a vertex has two triangles more than one without.
-        let more = 2 * of_block.bulges.len();
-        count + self.listed(block..block + 1) + more + come - of_block.dropped - gone
-    }
-
-    /// Whether all cells of a block have the triangles of the table.
-    pub(super) fn is_plain(&self, block: usize) -> bool {
-        self.cells(block).is_empty()
-            && self.opposite(block).is_empty()
-            && self.blocks.get(block).is_none_or(|block| block.bulges.is_empty())
-    }
-
-    /// The cells of a block that have the patches of the opposite case, by number.
-    pub(super) fn opposite(&self, block: usize) -> &[(u16, u8)] {
-        self.blocks.get(block).map_or(&[], |block| &block.opposite)
+        self.blocks.get(blocks).unwrap_or_default().iter().map(|block| block.triangles).sum()
     }
 
     /// Lists the triangles of the fans of a block, each with the normals at its corners: at feature points that

@@ -41,9 +41,9 @@ struct Lists {
     segments: Vec<Segment>,
     /// Smooth ones with a vertex in their middle.
     bulges: Vec<Bulge>,
-    /// Those with the patches of the opposite case, by number, and their cases.
-    opposite: Vec<(u16, u8)>,
-    /// The triangles of bulges, and of all cells that have those of the table.
+    /// Those with the patches of the opposite case, by number.
+    opposite: Vec<u16>,
+    /// The triangles of all but the candidates, in the order of cells.
     plain: Vec<[u32; 3]>,
     blocks: Vec<OfBlock>,
 }
@@ -130,30 +130,52 @@ impl Special {
         candidate.segments(&self.0[block / AT_ONCE].segments)
     }
 
-    /// The cells of a block with the patches of the opposite case, in order: by number, with their cases.
-    pub(super) fn opposite(&self, block: usize) -> &[(u16, u8)] {
-        let (lists, of_block) = self.at(block);
-        &lists.opposite[of_block.opposite.clone()]
-    }
-
     /// The bulges of a block, in order.
     pub(super) fn bulges(&self, block: usize) -> &[Bulge] {
         let Some(lists) = self.0.get(block / AT_ONCE) else { return &[] };
         &lists.bulges[lists.blocks[block % AT_ONCE].bulges.clone()]
     }
 
-    /// The triangles of a block's bulges, and of its cells that have those of the table, if it has been looked at.
+    /// The triangles of a block's cells that are no candidates, in order, if it has been looked at.
     pub(super) fn plain(&self, block: usize) -> Option<&[[u32; 3]]> {
-        let (lists, of_block) = self.at(block);
+        let lists = self.0.get(block / AT_ONCE)?;
+        let of_block = &lists.blocks[block % AT_ONCE];
         of_block.plain.clone().map(|plain| &lists.plain[plain])
     }
 
-    /// Drops the bulges of a block that are not wanted, given by the numbers of their cells; how many are left.
-    pub(super) fn keep_bulges(&mut self, block: usize, is_wanted: impl Fn(u16) -> bool) -> usize {
+    /// Drops the triangles and bulges of a block but those of the cells that are to keep them, by their numbers.
+    pub(super) fn keep(&mut self, samples: &Samples<'_>, block: usize, is_kept: impl Fn(u16) -> bool) {
         let lists = &mut self.0[block / AT_ONCE];
-        let bulges = &mut lists.bulges[lists.blocks[block % AT_ONCE].bulges.clone()];
-        bulges.iter_mut().filter(|bulge| !is_wanted(bulge.cell)).for_each(Bulge::drop_it);
-        bulges.iter().filter(|bulge| bulge.is_there()).count()
+        let OfBlock { candidates, bulges, opposite, plain } = &mut lists.blocks[block % AT_ONCE];
+        let Some(plain) = plain else { return };
+        let mut candidates = lists.numbers[candidates.clone()].iter().peekable();
+        let mut bulges = lists.bulges[bulges.clone()].iter_mut().peekable();
+        let mut opposite = lists.opposite[opposite.clone()].iter().peekable();
+        let table = CaseTable::get();
+        let (mut from, mut to) = (plain.start, plain.start);
+        for_each_cell(&samples.parts.part(block).signs, |within, case| {
+            let number = cell_number(within);
+            if candidates.next_if(|other| **other == number).is_some() {
+                return;
+            }
+            let bulge = bulges.next_if(|bulge| bulge.cell == number);
+            let count = match &bulge {
+                Some(bulge) => usize::from(bulge.sides),
+                None if opposite.next_if(|other| **other == number).is_some() => table.triangles(!case).len(),
+                None => table.triangles(case).len(),
+            };
+            if is_kept(number) {
+                if let Some(bulge) = bulge {
+                    bulge.first = to as u32;
+                }
+                lists.plain.copy_within(from..from + count, to);
+                to += count;
+            } else if let Some(bulge) = bulge {
+                bulge.drop_it();
+            }
+            from += count;
+        });
+        plain.end = to;
     }
 
     /// All bulges that are there, in order.
@@ -243,7 +265,12 @@ impl Lists {
                         self.numbers.push(cell_number(within));
                         self.candidates.push(samples.candidate(cell(), &outline, ring.vertices(), lists));
                     }
-                    None => self.opposite.push((cell_number(within), case)),
+                    None => {
+                        self.opposite.push(cell_number(within));
+                        let corner = |edge: u8| ids[usize::from(edge & 15)];
+                        let turned = table.triangles(!case).iter();
+                        self.plain.extend(turned.map(|&[a, b, c]| [corner(a), corner(c), corner(b)]));
+                    }
                 }
                 return;
             }

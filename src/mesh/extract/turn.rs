@@ -45,7 +45,7 @@ impl Fans {
             let across = match turn {
                 Turn::Edge => [high, low],
                 Turn::Point(at) => {
-                    self.points.push(at);
+                    self.bend([low, high], at);
                     [fans + self.points.len() as u32 - 1; 2]
                 }
             };
