@@ -186,7 +186,7 @@ fn body_edges(near: &Mesh, cell: f64) -> Vec<DVec3> {
             .collect();
         for (n, &a) in close.iter().enumerate() {
             for &b in &close[..n] {
-                for _ in 0..16 {
+                for _ in 0..40 {
                     let mut p = vertex + random.vector(-0.5, 0.5) * cell;
                     for _ in 0..8 {
                         let ((f, u), (g, v)) = (parts[a].gradient(p), parts[b].gradient(p));

@@ -48,7 +48,7 @@ const LARGEST: u32 = 4;
 const ROUNDS: usize = 3;
 
 /// How often the point of a region is sought: the weights of planes depend on it.
-const STEPS: usize = 5;
+const STEPS: usize = 3;
 
 /// The weight of a cell's planes is 1 over the square of its distance, in cells, and this.
 const NEAR: f64 = 0.1;
@@ -345,7 +345,7 @@ impl Known<'_> {
         let (mut planes, mut place) = (Planes::NONE, wish.at);
         for _ in 0..STEPS {
             planes = patches.planes(place);
-            place = settle(&planes, place, low, high, 1);
+            place = settle(&planes, place, low, high, 3);
         }
         let own = match wish.who {
             Who::Cell(candidate) => &candidate.planes,
