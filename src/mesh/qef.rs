@@ -7,10 +7,10 @@
 //!                    \     x  where the planes meet: on the crease, or in the corner
 //! ```
 //!
-//! The second term (n is the number of planes; they may have weights, and then it is their sum) holds the point where the planes leave it free:
-//! along a crease, and within the surface where there is only one plane. A step from s to the
-//! minimum is a damped Gauss–Newton step; repeated, it takes the point to the planes and hardly
-//! along them.
+//! The second term holds the point where the planes leave it free: along a crease, and within the
+//! surface where there is only one plane. The planes may have weights; n is their sum, the number of
+//! the planes without. A step from s to the minimum is a damped Gauss–Newton step; repeated, it takes
+//! the point to the planes and hardly along them.
 //!
 //! The minimum over the box is exact: the function is strictly convex, so it is the best of the
 //! minima over the inside, the faces, the edges and the corners that lie in the box. Where the
@@ -32,7 +32,7 @@ pub(super) struct Planes {
     vector: DVec3,
     /// Σ d²
     square: f64,
-    /// Σ 1
+    /// Σ 1; each of the sums has the weights of the planes, 1 unless said.
     weight: f64,
 }
 
