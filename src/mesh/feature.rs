@@ -69,22 +69,54 @@ pub(super) fn differ(normals: &[Vec3]) -> bool {
     false
 }
 
-/// A segment of a loop: from a vertex to that of the next segment.
-#[derive(Clone, Copy)]
+/// A segment of a loop: from a vertex to that of the next segment. There are many: it is kept small.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Segment {
     pub(super) from: u32,
-    /// The cell that it bounds the surface of, and the face that it is in: twice the axis, and 1 more for
-    /// the upper one.
-    pub(super) cell: [u32; 3],
-    pub(super) face: u8,
-    /// Whether it may be turned: its ends have different normals.
-    pub(super) turns: bool,
-    /// What the edge is turned to: the fan on the other side by its number, or a point between the two by its
-    /// number after those of all fans.
-    pub(super) across: Option<u32>,
+    across: u32,
     /// The outward unit normal at the vertex; later that which its side has close to the feature point. 0 if it
     /// is not known.
     pub(super) normal: Vec3,
+    /// The cell that it bounds the surface of: how far that is along each axis from the first one of its fan's box, two
+    /// bits each.
+    place: u8,
+    /// The face of the cell that it is in: twice the axis, and 1 more for the upper one.
+    pub(super) face: u8,
+    /// Whether it may be turned: its ends have different normals.
+    pub(super) turns: bool,
+}
+
+impl Segment {
+    /// Marks one that is not turned.
+    const STRAIGHT: u32 = u32::MAX;
+
+    /// A segment of a single cell.
+    pub(super) fn new(from: u32, normal: Vec3, face: u8) -> Segment {
+        Segment { from, across: Segment::STRAIGHT, normal, place: 0, face, turns: false }
+    }
+
+    /// What the edge is turned to, if it is: the fan on the other side by its number, or a point between the two by its
+    /// number after those of all fans.
+    #[inline]
+    pub(super) fn across(&self) -> Option<u32> {
+        Some(self.across).filter(|&across| across != Segment::STRAIGHT)
+    }
+
+    pub(super) fn turn(&mut self, across: u32) {
+        self.across = across;
+    }
+
+    /// Its cell, given the first one of the fan's box.
+    #[inline]
+    pub(super) fn cell(&self, low: [u32; 3]) -> [u32; 3] {
+        std::array::from_fn(|axis| low[axis] + u32::from(self.place >> (2 * axis) & 3))
+    }
+
+    /// The same in the fan of a box, of up to four cells along each axis, given the first one.
+    pub(super) fn placed(mut self, cell: [u32; 3], low: [u32; 3]) -> Segment {
+        self.place = (0..3).fold(0, |place, axis| place | ((cell[axis] - low[axis]) as u8) << (2 * axis));
+        self
+    }
 }
 
 /// A cell whose surface is not smooth. Positions are in cells, from the lattice's first node.

@@ -7,7 +7,7 @@ use super::neighbours::Neighbours;
 use super::samples::{Samples, cell_number, cell_of};
 use super::sharp::{self, Fans};
 use super::{BATCH, Batch, ExtractError, Part, Sampler};
-use crate::geom::{Apart, Mesh};
+use crate::geom::Mesh;
 use crate::mesh::Features;
 use crate::mesh::lattice::Lattice;
 use crate::mesh::meter::Meter;
@@ -128,7 +128,7 @@ impl<'a> Parts<'a> {
             .into_par_iter()
             .map(|batch| {
                 let parts = (batch * BATCH..).zip(&self.parts[batch]);
-                parts.map(|(n, part)| self.plain_triangles(n, part, &fans) + fans.listed(n..n + 1)).sum()
+                parts.map(|(n, part)| self.plain_triangles(n, part, &fans) + fans.listed(n)).sum()
             })
             .collect();
         let mut triangles = vec![[0; 3]; counts.iter().sum()];
@@ -137,27 +137,18 @@ impl<'a> Parts<'a> {
             let end: usize = counts[..=batch].iter().sum();
             let mut slots = piece.iter_mut();
             let blocks = batch * BATCH..batch * BATCH + self.parts[batch].len();
-            let mut apart = Apart { runs: Vec::new(), normals: Vec::with_capacity(fans.listed(blocks.clone())) };
+            let mut first = Vec::with_capacity(blocks.len());
             for n in blocks {
                 meter.step()?;
                 self.list_triangles(n, corners, &fans, &mut slots)?;
-                let first = end - slots.len();
-                fans.list(n, |triangle, corners| {
-                    apart.normals.push(corners);
-                    slots.next().into_iter().for_each(|slot| *slot = triangle);
-                });
-                apart.runs.extend(Some(first..end - slots.len()).filter(|run| !run.is_empty()));
+                first.push(end - slots.len());
+                fans.list(n, |triangle| slots.next().into_iter().for_each(|slot| *slot = triangle));
             }
-            Ok::<_, ExtractError>(apart)
+            Ok::<_, ExtractError>(first)
         };
-        let apart: Result<Vec<_>, ExtractError> =
+        let first: Result<Vec<_>, ExtractError> =
             pieces.into_par_iter().enumerate().map_init(Corners::new, of_batch).collect();
-        let apart = apart?;
-        if apart.iter().all(|apart| apart.runs.is_empty()) {
-            positions.shrink_to_fit();
-            normals.shrink_to_fit();
-            return Ok(Mesh::new(positions, triangles)?.with_normals(normals)?.with_clamped_vertices(self.clamped));
-        }
+        let first = first?.concat();
         let unused = fans.unused();
         if !unused.is_empty() {
             let used = used(positions.len(), unused);
@@ -171,8 +162,11 @@ impl<'a> Parts<'a> {
         }
         positions.shrink_to_fit();
         normals.shrink_to_fit();
-        let mesh = Mesh::new(positions, triangles)?.with_normals(normals)?.with_normals_apart(apart)?;
-        Ok(mesh.with_clamped_vertices(self.clamped))
+        let mesh = Mesh::new(positions, triangles)?.with_normals(normals)?.with_clamped_vertices(self.clamped);
+        Ok(match fans.into_sides(first) {
+            Some(sides) => mesh.with_normals_apart(sides)?,
+            None => mesh,
+        })
     }
 
     /// How many triangles the cells of block `n` without fans have.

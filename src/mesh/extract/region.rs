@@ -355,7 +355,7 @@ impl Known<'_> {
         if planes.distance(place).max(own.distance(place)) > wish.allowed {
             return None;
         }
-        let Disc { ring, within } = patches.glued()?;
+        let Disc { ring, within } = patches.glued(span.low)?;
         let at = self.samples.inside(place, span.low, span.high);
         Some(Region { block: wish.block, segments: ring, at, place, planes, within, span })
     }
@@ -389,8 +389,8 @@ impl Known<'_> {
 #[derive(Default)]
 struct Patches {
     segments: Vec<(Segment, u32, u32)>,
-    /// By patch, the middle of its cell and the planes.
-    planes: Vec<(DVec3, Planes)>,
+    /// By patch, its cell and the planes.
+    planes: Vec<([u32; 3], Planes)>,
 }
 
 /// A disc of several patches.
@@ -411,7 +411,7 @@ impl Patches {
     fn add(&mut self, cell: [u32; 3], ring: &[Segment], planes: &Planes) {
         let (next, count) = (ring.iter().cycle().skip(1).map(|segment| segment.from), self.count());
         self.segments.extend(ring.iter().zip(next).map(|(segment, to)| (*segment, to, count)));
-        self.planes.push((DVec3::from_array(cell.map(f64::from)) + 0.5, *planes));
+        self.planes.push((cell, *planes));
     }
 
     fn count(&self) -> u32 {
@@ -421,14 +421,15 @@ impl Patches {
     /// All planes; those of cells close to a point tell the most.
     fn planes(&self, point: DVec3) -> Planes {
         let mut all = Planes::NONE;
-        for (middle, planes) in &self.planes {
-            all.append(planes, (NEAR + (*middle - point).length_squared()).recip());
+        for (cell, planes) in &self.planes {
+            let middle = DVec3::from_array(cell.map(f64::from)) + 0.5;
+            all.append(planes, (NEAR + (middle - point).length_squared()).recip());
         }
         all
     }
 
-    /// All as one, if they make a disc.
-    fn glued(&self) -> Option<Disc> {
+    /// All as one, if they make a disc; `low` is the first cell of the box that they are in.
+    fn glued(&self, low: [u32; 3]) -> Option<Disc> {
         // A segment that two patches share is there in both directions.
         let mut sides: Vec<(u32, u32)> = self.segments.iter().map(|&(segment, to, _)| (segment.from, to)).collect();
         sides.sort_unstable();
@@ -438,8 +439,8 @@ impl Patches {
         let (first, ..) = *outer.first()?;
         let mut at = first.from;
         loop {
-            let &&(segment, to, _) = outer.iter().find(|(segment, ..)| segment.from == at)?;
-            ring.push(segment);
+            let &&(segment, to, patch) = outer.iter().find(|(segment, ..)| segment.from == at)?;
+            ring.push(segment.placed(self.planes[patch as usize].0, low));
             at = to;
             if at == first.from {
                 break;

@@ -184,7 +184,7 @@ impl<'a> Samples<'a> {
         let first = segments.len();
         for (n, &from) in vertices.iter().enumerate() {
             let (position, normal) = self.get(from);
-            segments.push(Segment { from, cell, face: outline.face(n), turns: false, across: None, normal });
+            segments.push(Segment::new(from, normal, outline.face(n)));
             places.push((share * (position.as_dvec3() - low)).as_vec3());
         }
         Candidate::new(cell, first, segments, &places[first..])

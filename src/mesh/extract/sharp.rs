@@ -43,10 +43,12 @@ use super::region::{Region, regions};
 use super::samples::{Samples, cell_number, split_cell};
 use super::span::Span;
 use super::special::{Special, list_of};
+use crate::geom::Apart;
 use crate::mesh::feature::Segment;
 use crate::run::{Cancelled, Run};
 
 /// The fan of a cell, or of a region of several.
+#[derive(Debug)]
 pub(super) struct Fan {
     /// The list that its segments are in, and their place there.
     pub(super) list: u32,
@@ -57,6 +59,13 @@ pub(super) struct Fan {
     pub(super) span: Span,
     /// The feature point, strictly inside.
     pub(super) at: Vec3,
+}
+
+impl Fan {
+    /// Its segments, of those of all fans.
+    fn of<'a>(&self, segments: &'a [Vec<Segment>]) -> &'a [Segment] {
+        &segments[self.list as usize][self.segments.start as usize..self.segments.end as usize]
+    }
 }
 
 /// All fans.
@@ -214,13 +223,12 @@ impl Fans {
 
     /// The segments of a fan.
     pub(super) fn of(&self, fan: usize) -> &[Segment] {
-        let Fan { list, segments: Range { start, end }, .. } = &self.fans[fan];
-        &self.segments[*list as usize][*start as usize..*end as usize]
+        self.fans[fan].of(&self.segments)
     }
 
     /// Which of the points between two fans a segment is turned to, if it is.
     fn point(&self, segment: &Segment) -> Option<usize> {
-        (segment.across? as usize).checked_sub(self.fans.len())
+        (segment.across()? as usize).checked_sub(self.fans.len())
     }
 
     /// Adds the vertices, with the normals that stand for all their sides, to all positions and normals.
@@ -272,33 +280,75 @@ impl Fans {
         self.blocks.get(block).map_or(&[], |block| &block.cells)
     }
 
-    /// How many triangles the fans that are listed with some blocks have.
-    pub(super) fn listed(&self, blocks: Range<usize>) -> usize {
-        self.blocks.get(blocks).unwrap_or_default().iter().map(|block| block.triangles).sum()
+    /// How many triangles the fans that are listed with a block have.
+    pub(super) fn listed(&self, block: usize) -> usize {
+        self.blocks.get(block).map_or(0, |block| block.triangles)
     }
 
-    /// Lists the triangles of the fans of a block, each with the normals at its corners: at feature points that
-    /// of the triangle's side; 0 elsewhere, at vertices that lie on one side.
-    pub(super) fn list(&self, block: usize, mut each: impl FnMut([u32; 3], [Vec3; 3])) {
-        const OWN: Vec3 = Vec3::ZERO;
+    /// The triangles of the fans of a block.
+    pub(super) fn list(&self, block: usize, mut each: impl FnMut([u32; 3])) {
         let fans = self.fans.len() as u32;
         for nth in self.blocks.get(block).map_or(0..0, |block| block.listed.clone()) {
             let (segments, centre) = (self.of(nth), self.number(nth as u32));
             for (n, segment) in segments.iter().enumerate() {
-                let next = segments.get(n + 1).unwrap_or(&segments[0]);
-                let (near, beside) = (segment.normal, next.normal);
-                let (from, to) = (segment.from, next.from);
-                match segment.across {
-                    None => each([centre, from, to], [(near + beside).normalize_or_zero(), OWN, OWN]),
-                    Some(other) if other < fans => {
-                        let end = self.of(other as usize).iter().find(|segment| segment.from == from);
-                        let beyond = end.map_or(Vec3::ZERO, |segment| segment.normal);
-                        each([centre, from, self.number(other)], [near, OWN, beyond]);
-                    }
+                let (from, to) = (segment.from, segments.get(n + 1).unwrap_or(&segments[0]).from);
+                match segment.across() {
+                    None => each([centre, from, to]),
+                    Some(other) if other < fans => each([centre, from, self.number(other)]),
                     Some(point) => {
                         let point = self.number(point);
-                        each([centre, from, point], [near, OWN, near]);
-                        each([centre, point, to], [beside, beside, OWN]);
+                        each([centre, from, point]);
+                        each([centre, point, to]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// What tells the normals of the fans' triangles, given the first one of each block; nothing without fans.
+    pub(super) fn into_sides(self, first: Vec<usize>) -> Option<Sides> {
+        let listed = self.blocks.into_iter().map(|block| block.listed);
+        let blocks: Vec<_> = listed.zip(first).filter(|(listed, _)| !listed.is_empty()).collect();
+        (!blocks.is_empty()).then_some(Sides { fans: self.fans, segments: self.segments, blocks })
+    }
+}
+
+/// The sides that the triangles of fans are on: what tells the normals at their corners.
+#[derive(Debug)]
+pub(super) struct Sides {
+    fans: Vec<Fan>,
+    segments: Vec<Vec<Segment>>,
+    /// By block, the fans that are listed with it, and the first of their triangles.
+    blocks: Vec<(Range<usize>, usize)>,
+}
+
+impl Sides {
+    fn of(&self, fan: usize) -> &[Segment] {
+        self.fans[fan].of(&self.segments)
+    }
+}
+
+impl Apart for Sides {
+    /// At feature points the normal is that of the triangle's side; other vertices lie on one side.
+    fn tell(&self, each: &mut dyn FnMut(usize, [Vec3; 3])) {
+        const OWN: Vec3 = Vec3::ZERO;
+        for (listed, first) in &self.blocks {
+            let mut numbers = *first..;
+            let mut each = |normals| numbers.next().into_iter().for_each(|triangle| each(triangle, normals));
+            for fan in listed.clone() {
+                let segments = self.of(fan);
+                for (n, segment) in segments.iter().enumerate() {
+                    let (near, beside) = (segment.normal, segments.get(n + 1).unwrap_or(&segments[0]).normal);
+                    match segment.across().map(|other| self.fans.get(other as usize)) {
+                        None => each([(near + beside).normalize_or_zero(), OWN, OWN]),
+                        Some(Some(other)) => {
+                            let end = other.of(&self.segments).iter().find(|other| other.from == segment.from);
+                            each([near, OWN, end.map_or(OWN, |end| end.normal)]);
+                        }
+                        Some(None) => {
+                            each([near, OWN, near]);
+                            each([beside, beside, OWN]);
+                        }
                     }
                 }
             }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 /// A box of cells: from the first to the last, exclusive.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Span {
     pub(super) low: [u32; 3],
     pub(super) high: [u32; 3],

@@ -51,7 +51,7 @@ impl Fans {
             };
             for (segment, across) in segments.into_iter().zip(across) {
                 let [list, segment] = segment;
-                self.segments[list as usize][segment as usize].across = Some(across);
+                self.segments[list as usize][segment as usize].turn(across);
             }
         }
         Ok(())
@@ -70,7 +70,7 @@ impl Fans {
             return None;
         }
         let axis = usize::from(segment.face / 2);
-        let mut cell = segment.cell;
+        let mut cell = segment.cell(below.span.low);
         cell[axis] += 1;
         let (block, within) = split_cell(cell);
         let cells = self.cells(samples.find_near(below.block, block)?);
@@ -104,7 +104,7 @@ impl Fans {
         };
         // Where the segments are that both fans have in it.
         let is_shared = |n: &usize| {
-            let cell = ring[*n].cell;
+            let cell = ring[*n].cell(below.span.low);
             ring[*n].face == segment.face
                 && cell[axis] + 1 == shared.low[axis]
                 && across.iter().all(|&n| (shared.low[n]..shared.high[n]).contains(&cell[n]))
@@ -138,7 +138,9 @@ impl Fans {
             return None;
         }
         // The same segment in the ring of the upper fan, the other way round.
-        let is_same = |other: &Segment| other.from == t.0 && other.face + 1 == segment.face && other.cell == cell;
+        let is_same = |other: &Segment| {
+            other.from == t.0 && other.face + 1 == segment.face && other.cell(above.span.low) == cell
+        };
         let other = self.of(high as usize).iter().position(is_same)?;
         let place = |fan: &Fan, nth: usize| [fan.list, fan.segments.start + nth as u32];
         let segments = [place(below, nth), place(above, other)];
