@@ -34,7 +34,7 @@
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, Vec3A};
 use rayon::prelude::*;
 
 use self::join::Parts;
@@ -101,15 +101,15 @@ pub(crate) trait Sampler: Sync {
         Bounds::ALL
     }
 
-    /// Adds values and gradients of the field at points of a block, in the order of the points,
-    /// to `out`; whether it did. The default knows of none: features are placed by the normals of
+    /// Adds values and gradients of the field at points of a block, given in cells from its first node, in the order of
+    /// the points, to `out`; whether it did. The default knows of none: features are placed by the normals of
     /// the roots alone.
     fn slopes(
         &self,
         _scratch: &mut Self::Scratch,
         _number: usize,
         _block: [u32; 3],
-        _points: &[DVec3],
+        _points: &[Vec3A],
         _out: &mut Vec<Slope>,
     ) -> bool {
         false
@@ -226,7 +226,7 @@ fn sample_all<'a, S: Sampler>(
     run: &Run,
 ) -> Result<Parts<'a>, ExtractError> {
     let meter = Meter::new(run, blocks.len());
-    let queue = Mutex::new(Queue { all: Parts::new(blocks, neighbours), added: 0, waiting: BTreeMap::new() });
+    let queue = Mutex::new(Queue { all: Parts::new(blocks, neighbours, features), added: 0, waiting: BTreeMap::new() });
     let worker = || Worker::new(sampler, lattice, features);
     let sample = |worker: &mut Worker<'_, S>, (n, blocks)| {
         let batch = worker.sample(n * BATCH, blocks, &meter)?;

@@ -23,7 +23,7 @@
 
 use std::ops::Range;
 
-use glam::{DVec3, UVec3, Vec3};
+use glam::{Vec3, Vec3A};
 
 use super::loops::LONGEST;
 use super::qef::Planes;
@@ -36,29 +36,29 @@ pub(super) const SMOOTH: f32 = 0.9;
 const ALIKE: f32 = 0.98;
 
 /// How far feature points stay from the faces of their cell, in cells.
-pub(super) const INSET: f64 = 1.0 / 128.0;
+pub(super) const INSET: f32 = 1.0 / 128.0;
 
 /// Normals of a side that is not the one that was asked for: the cosine of 45°.
-const ASTRAY: f64 = 0.7;
+const ASTRAY: f32 = 0.7;
 
 /// The damping of the steps; it takes the distance from the crease to a hundredth a step.
-const DAMPING: f64 = 3e-3;
+const DAMPING: f32 = 3e-3;
 
 /// Where the field is asked, as a part of the way from the feature point to a vertex. Much closer, and what
 /// is found is the side of the crease that the first point missed it to.
-const CLOSER: f64 = 0.4;
+const CLOSER: f32 = 0.4;
 
 /// A value and a gradient of the field.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Slope {
     /// The value, in length units.
-    pub value: f64,
+    pub value: f32,
     /// The gradient, inward.
-    pub gradient: DVec3,
+    pub gradient: Vec3A,
 }
 
 /// Whether two of some normals differ as those of a crease do.
-pub(super) fn differ(normals: &[Vec3]) -> bool {
+pub(super) fn differ(normals: &[Vec3A]) -> bool {
     for (n, a) in normals.iter().enumerate() {
         for b in &normals[..n] {
             if a.dot(*b) <= SMOOTH {
@@ -119,41 +119,26 @@ impl Segment {
     }
 }
 
-/// A cell whose surface is not smooth. Positions are in cells, from the lattice's first node.
-///
-/// The segments of its loop, in order, are in a list of those of many cells.
+/// A cell whose surface is not smooth. Its segments, in order, are in a list of those of many cells.
 #[derive(Clone)]
 pub(super) struct Candidate {
     pub(super) cell: [u32; 3],
     /// The place of the first segment in the list, and the number of them.
     first: u32,
     len: u32,
-    /// The feature point.
-    pub(super) at: DVec3,
-    /// The sides' planes close to it.
+    /// The feature point, in cells from the cell's first node, as are the sides' planes close to it.
+    pub(super) at: Vec3A,
     pub(super) planes: Planes,
 }
 
 impl Candidate {
     /// The cell with a first feature point. Its segments are those from `first` on of the list of all, and
     /// are told which of them turn; `places` are their vertices in cells, from the cell's first node.
-    pub(super) fn new(cell: [u32; 3], first: usize, all: &mut [Segment], places: &[Vec3]) -> Candidate {
+    pub(super) fn new(cell: [u32; 3], first: usize, all: &mut [Segment], places: &[Vec3A]) -> Candidate {
         let segments = &mut all[first..];
-        let (mut planes, mut middle) = (Planes::NONE, DVec3::ZERO);
-        let low = low(cell);
-        let mut next = segments.first().map_or(Vec3::ZERO, |segment| segment.normal);
-        for (segment, at) in segments.iter_mut().zip(places).rev() {
-            let at = at.as_dvec3();
-            middle += at;
-            if segment.normal != Vec3::ZERO {
-                let normal = segment.normal.as_dvec3();
-                planes.add(normal, normal.dot(low + at));
-            }
-            segment.turns = segment.normal.dot(next) < SMOOTH;
-            next = segment.normal;
-        }
+        let planes = tangents(segments, places);
         let len = segments.len();
-        let at = low + middle / len as f64;
+        let at = places.iter().sum::<Vec3A>() / len as f32;
         let mut candidate = Candidate { cell, first: first as u32, len: len as u32, at, planes };
         candidate.settle();
         candidate
@@ -171,23 +156,33 @@ impl Candidate {
         self.first as usize..(self.first + self.len) as usize
     }
 
+    #[inline(always)]
     fn settle(&mut self) {
-        let low = low(self.cell);
-        self.at = settle(&self.planes, self.at, low, low + 1.0, 1);
+        self.at = settle(&self.planes, self.at, Vec3A::ZERO, Vec3A::ONE, 1);
     }
 }
 
-/// The first node of a cell.
-#[inline(always)]
-fn low(cell: [u32; 3]) -> DVec3 {
-    UVec3::from_array(cell).as_dvec3()
+/// The planes of the surface at the vertices of a cell's loop, given where these are from the cell's first node; tells
+/// the segments which of them turn.
+pub(super) fn tangents(segments: &mut [Segment], places: &[Vec3A]) -> Planes {
+    let mut planes = Planes::NONE;
+    let mut next = segments.first().map_or(Vec3A::ZERO, |segment| segment.normal.into());
+    for (segment, at) in segments.iter_mut().zip(places).rev() {
+        let normal = Vec3A::from(segment.normal);
+        if normal != Vec3A::ZERO {
+            planes.add(normal, normal.dot(*at));
+        }
+        segment.turns = normal.dot(next) < SMOOTH;
+        next = normal;
+    }
+    planes
 }
 
 /// The direction of a crease, by the normals around it, if there are two sides and no more.
-pub(super) fn crease(normals: impl Iterator<Item = Vec3> + Clone) -> Option<DVec3> {
+pub(super) fn crease(normals: impl Iterator<Item = Vec3A> + Clone) -> Option<Vec3A> {
     // Two sides: that of the first normal, and that of the one that is farthest from it.
-    let first = normals.clone().find(|normal| *normal != Vec3::ZERO)?;
-    let (mut along, mut most) = (Vec3::ZERO, 0.0);
+    let first = normals.clone().find(|normal| *normal != Vec3A::ZERO)?;
+    let (mut along, mut most) = (Vec3A::ZERO, 0.0);
     for normal in normals.clone() {
         let across = first.cross(normal);
         let square = across.length_squared();
@@ -197,30 +192,32 @@ pub(super) fn crease(normals: impl Iterator<Item = Vec3> + Clone) -> Option<DVec
     }
     // A third side would have a normal along the crease of the two.
     let two = most > 0.09 && normals.clone().all(|normal| normal.dot(along).powi(2) < 0.04 * most);
-    two.then(|| along.as_dvec3().normalize())
+    two.then(|| along.normalize())
 }
 
 /// The point of a box of cells, clear of its faces, that the planes lead to in some steps.
-pub(super) fn settle(planes: &Planes, from: DVec3, low: DVec3, high: DVec3, steps: usize) -> DVec3 {
+#[inline]
+pub(super) fn settle(planes: &Planes, from: Vec3A, low: Vec3A, high: Vec3A, steps: usize) -> Vec3A {
     (0..steps).fold(from, |at, _| planes.nearest(at, DAMPING, low + INSET, high - INSET))
 }
 
 /// Vertices of a cell that have nearly the same normal as the first of them.
 #[derive(Clone, Copy, Default)]
 struct Group {
-    normal: Vec3,
-    sum: Vec3,
+    normal: Vec3A,
+    sum: Vec3A,
     size: f32,
 }
 
-/// The plane that the surface has close to a point: its outward normal and its distance from the lattice's first
-/// node; `None` if the field does not tell.
-fn plane(point: DVec3, slope: &Slope, step: f64) -> Option<(DVec3, f64)> {
+/// The plane that the surface has close to a point: its outward normal and its distance from the node that the point is
+/// given from; `None` if the field does not tell.
+#[inline(always)]
+fn plane(point: Vec3A, slope: &Slope, step: f32) -> Option<(Vec3A, f32)> {
     let steepness = slope.gradient.length();
     let depth = slope.value / (steepness * step);
     // A plane that is farther away than the cell tells nothing; neither does NaN.
     (steepness > 0.0 && depth.abs() < 1.0).then(|| {
-        let normal = -slope.gradient / steepness;
+        let normal = slope.gradient / -steepness;
         (normal, normal.dot(point) + depth)
     })
 }
@@ -230,27 +227,31 @@ fn plane(point: DVec3, slope: &Slope, step: f64) -> Option<(DVec3, f64)> {
 pub(super) struct Refiner {
     /// By segment, the side that its vertex is on.
     sides: Vec<u8>,
-    /// One for each side of each candidate, and the field there.
-    points: Vec<DVec3>,
+    /// One for each side of each candidate, in cells from the candidate's first node; and the same from the block's.
+    points: Vec<Vec3A>,
+    in_block: Vec<Vec3A>,
+    /// The field there.
     found: Vec<Slope>,
 }
 
 impl Refiner {
-    /// Moves feature points closer to the creases. The candidates are consecutive, and so are their `segments` and
-    /// `places`, of the vertices in cells from the cell's first node. `slopes` tells values and gradients at points,
-    /// for cells of size `step`; without any, feature points stay.
+    /// Moves feature points closer to the creases. The candidates are consecutive, of the block with a first cell, and so
+    /// are their `segments` and `places`, of the vertices in cells from the cell's first node. `slopes` tells values and
+    /// gradients at points, in cells from the block's first node, for cells of size `step`; without any, feature points
+    /// stay.
     pub(super) fn refine(
         &mut self,
+        block: [u32; 3],
         candidates: &mut [Candidate],
-        segments: &mut [Segment],
-        places: &[Vec3],
-        step: f64,
-        mut slopes: impl FnMut(&[DVec3], &mut Vec<Slope>) -> bool,
+        (segments, places): (&mut [Segment], &[Vec3A]),
+        step: f32,
+        mut slopes: impl FnMut(&[Vec3A], &mut Vec<Slope>) -> bool,
     ) {
         let Some(start) = candidates.first().map(|candidate| candidate.first as usize) else { return };
-        let Refiner { sides, points, found } = self;
+        let Refiner { sides, points, in_block, found } = self;
         sides.clear();
         points.clear();
+        in_block.clear();
         found.clear();
         // Vertices that have nearly the same normal are on the same side: they share a point.
         let mut groups = [Group::default(); LONGEST];
@@ -258,31 +259,34 @@ impl Refiner {
             let range = candidate.range();
             let mut count = 0;
             for (segment, &at) in segments[range.clone()].iter().zip(&places[range]) {
+                let normal = Vec3A::from(segment.normal);
                 let mut side = 0;
-                while side < count && groups[side].normal.dot(segment.normal) <= ALIKE {
+                while side < count && groups[side].normal.dot(normal) <= ALIKE {
                     side += 1;
                 }
                 if side == count {
-                    groups[count] = Group { normal: segment.normal, ..Group::default() };
+                    groups[count] = Group { normal, ..Group::default() };
                     count += 1;
                 }
                 groups[side].sum += at;
                 groups[side].size += 1.0;
                 sides.push(side as u8);
             }
-            let (low, at) = (low(candidate.cell), candidate.at);
+            let low = Vec3A::from_array(std::array::from_fn(|axis| (candidate.cell[axis] - block[axis]) as f32));
             for Group { sum, size, .. } in &groups[..count] {
-                points.push(at + CLOSER * (low + (sum / size).as_dvec3() - at));
+                let point = candidate.at + CLOSER * (*sum / *size - candidate.at);
+                points.push(point);
+                in_block.push(low + point);
             }
         }
-        if !slopes(points, found) || found.len() != points.len() {
+        if !slopes(in_block, found) || found.len() != points.len() {
             return;
         }
         let mut asked = points.iter().zip(found);
         let mut known = [None; LONGEST];
         for candidate in candidates {
             let range = candidate.range();
-            let (mut planes, low, mut count) = (Planes::NONE, low(candidate.cell), 0);
+            let (mut planes, mut count) = (Planes::NONE, 0);
             let sides = &sides[range.start - start..range.end - start];
             for ((segment, at), side) in segments[range.clone()].iter_mut().zip(&places[range]).zip(sides) {
                 let side = usize::from(*side);
@@ -291,14 +295,14 @@ impl Refiner {
                     known[count] = asked.next().and_then(|(point, slope)| plane(*point, slope, step));
                     count += 1;
                 }
-                let own = segment.normal.as_dvec3();
+                let own = Vec3A::from(segment.normal);
                 match known[side] {
                     Some((normal, offset)) if normal.dot(own) > ASTRAY => {
-                        segment.normal = normal.as_vec3();
+                        segment.normal = normal.into();
                         planes.add(normal, offset);
                     }
                     // The point has come out on another side of the crease.
-                    Some(_) => planes.add(own, own.dot(low + at.as_dvec3())),
+                    Some(_) => planes.add(own, own.dot(*at)),
                     None => {}
                 }
             }

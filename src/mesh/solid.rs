@@ -1,6 +1,6 @@
 //! Meshing a solid: `solid.mesh(..)`.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, Vec3A};
 use rayon::prelude::*;
 
 use super::deciders::Deciders;
@@ -245,6 +245,17 @@ impl SolidSampler<'_> {
         mesh.triangles().par_iter().map(owner).collect()
     }
 
+    /// The tape of a group, made if it is not among those at hand.
+    fn tape_of<'t>(&self, tapes: &'t mut Vec<(u32, Tape)>, group: u32) -> &'t mut Tape {
+        // The latest first: blocks that follow each other are near each other.
+        let made = tapes.iter().rposition(|(other, _)| *other == group);
+        let at = made.unwrap_or_else(|| {
+            tapes.push((group, self.tape(group)));
+            tapes.len() - 1
+        });
+        &mut tapes[at].1
+    }
+
     /// A tape for the group that starts with a block.
     fn tape(&self, group: u32) -> Tape {
         let first = group as usize;
@@ -271,11 +282,7 @@ impl Sampler for SolidSampler<'_> {
 
     fn nodes(&self, scratch: &mut Scratch, number: usize, block: [u32; 3], out: &mut [f32; NODES]) {
         let group = self.groups[number];
-        let at = scratch.tapes.iter().rposition(|(other, _)| *other == group).unwrap_or_else(|| {
-            scratch.tapes.push((group, self.tape(group)));
-            scratch.tapes.len() - 1
-        });
-        let tape = &mut scratch.tapes[at].1;
+        let tape = self.tape_of(&mut scratch.tapes, group);
         tape.recentre(self.lattice.node(block[0], block[1], block[2]));
         // A few layers at a time: not all leaves of the block reach all of them. Nodes beside those
         // inside of a leaf are in its reach.
@@ -316,7 +323,7 @@ impl Sampler for SolidSampler<'_> {
         let Scratch { evaluator, tapes, single, slopes: [values, ..], .. } = scratch;
         let Some((_, tape)) = tapes.iter().rfind(|(other, _)| *other == group) else { return false };
         let origin = self.lattice.node(block[0], block[1], block[2]);
-        place(points.iter().map(|p| *p - origin), single);
+        place(points.iter().map(|p| (*p - origin).as_vec3a()), single);
         values.resize(points.len(), 0.0);
         let [x, y, z] = &*single;
         evaluator.values(tape, x, y, z, values);
@@ -331,12 +338,7 @@ impl Sampler for SolidSampler<'_> {
         let start = first.block as usize / BATCH * BATCH;
         let mut find = |edges: &[EdgeRef], roots: &mut [Root]| {
             let group = group(&edges[0]);
-            let made = tapes.iter().position(|(other, _)| *other == group);
-            let at = made.unwrap_or_else(|| {
-                tapes.push((group, self.tape(group)));
-                tapes.len() - 1
-            });
-            let pair = (&self.programs[group as usize], &tapes[at].1);
+            let pair = (&self.programs[group as usize], &*self.tape_of(tapes, group));
             // As many as the cache holds.
             for (edges, roots) in edges.chunks(AT_ONCE).zip(roots.chunks_mut(AT_ONCE)) {
                 finder.find(evaluator, pair, self.lattice, edges, roots);
@@ -376,44 +378,38 @@ impl Sampler for SolidSampler<'_> {
         scratch: &mut Scratch,
         number: usize,
         block: [u32; 3],
-        points: &[DVec3],
+        points: &[Vec3A],
         out: &mut Vec<Slope>,
     ) -> bool {
         let group = self.groups[number];
-        if scratch.tapes.last().is_none_or(|(last, _)| *last != group) {
+        // Those of another batch are not asked for again.
+        if scratch.tapes.last().is_some_and(|(last, _)| *last as usize / BATCH != number / BATCH) {
             scratch.tapes.clear();
-            scratch.tapes.push((group, self.tape(group)));
         }
-        let Some((_, tape)) = scratch.tapes.last_mut() else { return false };
-        let node = |by: u32| self.lattice.node(block[0] + by, block[1] + by, block[2] + by);
-        let (low, high) = (node(0), node(BLOCK as u32));
-        tape.recentre(low);
+        let tape = self.tape_of(&mut scratch.tapes, group);
+        tape.recentre(self.lattice.node(block[0], block[1], block[2]));
         // The program holds in the block and nowhere else.
-        place(points.iter().map(|p| p.clamp(low, high) - low), &mut scratch.single);
+        let (high, step) = (Vec3A::splat(BLOCK as f32), self.lattice.step() as f32);
+        place(points.iter().map(|p| step * p.clamp(Vec3A::ZERO, high)), &mut scratch.single);
         for slope in &mut scratch.slopes {
             slope.resize(points.len(), 0.0);
         }
         let [x, y, z] = &scratch.single;
         let [value, dx, dy, dz] = &mut scratch.slopes;
         scratch.evaluator.gradients(tape, x, y, z, Gradients { value, dx, dy, dz });
-        out.extend(
-            (0..points.len()).map(|n| Slope {
-                value: value[n].into(),
-                gradient: DVec3::new(dx[n].into(), dy[n].into(), dz[n].into()),
-            }),
-        );
+        out.extend((0..points.len()).map(|n| Slope { value: value[n], gradient: Vec3A::new(dx[n], dy[n], dz[n]) }));
         true
     }
 }
 
 /// The coordinates of points, axis by axis.
-fn place(points: impl Iterator<Item = DVec3>, [x, y, z]: &mut [Vec<f32>; 3]) {
+fn place(points: impl Iterator<Item = Vec3A>, [x, y, z]: &mut [Vec<f32>; 3]) {
     x.clear();
     y.clear();
     z.clear();
     for p in points {
-        x.push(p.x as f32);
-        y.push(p.y as f32);
-        z.push(p.z as f32);
+        x.push(p.x);
+        y.push(p.y);
+        z.push(p.z);
     }
 }

@@ -15,7 +15,7 @@
 //! and no more values of the field are needed for them. That fans are embedded is shown in
 //! [`sharp`](super::sharp).
 
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 
 use super::samples::Samples;
 use crate::mesh::feature::{SMOOTH, differ};
@@ -31,10 +31,10 @@ pub(super) const SPREAD: f32 = 0.033;
 /// The vertices on a cell's loop, in order.
 pub(super) struct Ring {
     vertices: [u32; LONGEST],
-    normals: [Vec3; LONGEST],
+    normals: [Vec3A; LONGEST],
     len: usize,
     /// The sum of the normals.
-    sum: Vec3,
+    sum: Vec3A,
     /// The mean of the squares of their distances from their mean: what the square of that lacks of 1.
     variance: f32,
 }
@@ -42,16 +42,15 @@ pub(super) struct Ring {
 impl Ring {
     /// A ring without vertices.
     pub(super) const NONE: Ring =
-        Ring { vertices: [0; LONGEST], normals: [Vec3::ZERO; LONGEST], len: 0, sum: Vec3::ZERO, variance: 0.0 };
+        Ring { vertices: [0; LONGEST], normals: [Vec3A::ZERO; LONGEST], len: 0, sum: Vec3A::ZERO, variance: 0.0 };
 
     /// Becomes that of some edges; `ids` are the vertices on all edges of the cell.
     #[inline(always)]
     pub(super) fn take(&mut self, samples: &Samples<'_>, edges: &[u8], ids: &[u32; 16]) {
-        let mut sum = Vec3::ZERO;
+        let mut sum = Vec3A::ZERO;
         for ((vertex, normal), &edge) in self.vertices.iter_mut().zip(&mut self.normals).zip(edges) {
             *vertex = ids[usize::from(edge & 15)];
-            // From where it is, not from where it is put: what is stored in parts is slow to be read as a whole.
-            let given = samples.normal(*vertex);
+            let given = Vec3A::from(samples.normal(*vertex));
             sum += given;
             *normal = given;
         }
@@ -65,7 +64,7 @@ impl Ring {
         &self.vertices[..self.len]
     }
 
-    fn normals(&self) -> &[Vec3] {
+    fn normals(&self) -> &[Vec3A] {
         &self.normals[..self.len]
     }
 
@@ -85,13 +84,13 @@ impl Ring {
     /// The point of the surface above the middle, if the two are far from each other, and the unit normal there. A
     /// single triangle is small, and stays.
     #[inline(always)]
-    pub(super) fn top(&self, samples: &Samples<'_>) -> Option<(Vec3, Vec3)> {
+    pub(super) fn top(&self, samples: &Samples<'_>) -> Option<(Vec3A, Vec3A)> {
         if self.len == 3 {
             return None;
         }
-        let mut positions = [Vec3::ZERO; LONGEST];
+        let mut positions = [Vec3A::ZERO; LONGEST];
         let list = positions.iter_mut().zip(self.vertices());
-        list.for_each(|(at, &vertex)| *at = samples.position(vertex));
+        list.for_each(|(at, &vertex)| *at = samples.position(vertex).into());
         let (height, far, middle) = height(&positions[..self.len], self.normals());
         (far > FAR * samples.lattice.step() as f32).then(|| {
             let normal = self.sum.normalize_or_zero();
@@ -103,9 +102,9 @@ impl Ring {
 /// How far the surface is above the middle of points on it, given with the normals there; how far it may be from
 /// triangles between them; and the middle.
 #[inline(always)]
-fn height(positions: &[Vec3], normals: &[Vec3]) -> (f32, f32, Vec3) {
+fn height(positions: &[Vec3A], normals: &[Vec3A]) -> (f32, f32, Vec3A) {
     let share = 1.0 / positions.len() as f32;
-    let middle = share * positions.iter().sum::<Vec3>();
+    let middle = share * positions.iter().sum::<Vec3A>();
     let (mut height, mut far) = (0.0, 0.0);
     for (at, normal) in positions.iter().zip(normals) {
         let rise = normal.dot(*at - middle);
@@ -154,13 +153,13 @@ mod tests {
     fn what_is_said_of_heights_holds() {
         // A ball 16 cells across, and a saddle.
         let ball = |x: f32, y: f32| {
-            let normal = Vec3::new(x, y, 8.0).normalize();
+            let normal = Vec3A::new(x, y, 8.0).normalize();
             (8.0 * normal, normal)
         };
-        let saddle = |x: f32, y: f32| (Vec3::new(x, y, (x * x - y * y) / 16.0), Vec3::new(-x, y, 8.0).normalize());
+        let saddle = |x: f32, y: f32| (Vec3A::new(x, y, (x * x - y * y) / 16.0), Vec3A::new(-x, y, 8.0).normalize());
         let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
         let look =
-            |corners: [(Vec3, Vec3); 4]| height(&corners.map(|corner| corner.0), &corners.map(|corner| corner.1));
+            |corners: [(Vec3A, Vec3A); 4]| height(&corners.map(|corner| corner.0), &corners.map(|corner| corner.1));
         let (above, far, middle) = look(square.map(|(x, y)| ball(x, y)));
         assert!((middle.length() + above - 8.0).abs() < 1e-3 && far > 0.03, "{above}, {far}");
         let (above, far, middle) = look(square.map(|(x, y)| saddle(x - 0.5, y - 0.5)));

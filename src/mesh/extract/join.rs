@@ -23,15 +23,21 @@ pub(super) struct Parts<'a> {
     parts: Vec<Vec<Part>>,
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
+    /// How many times as many vertices there is room made for: for some to be added.
+    room: f64,
     /// How many of the vertices are moved to keep clear of nodes.
     clamped: usize,
 }
 
 impl<'a> Parts<'a> {
     /// Some blocks, before the first pass.
-    pub(super) fn new(blocks: &'a [[u32; 3]], neighbours: Neighbours) -> Parts<'a> {
+    pub(super) fn new(blocks: &'a [[u32; 3]], neighbours: Neighbours, features: Features) -> Parts<'a> {
         let (parts, positions, normals) = (Vec::new(), Vec::new(), Vec::new());
-        Parts { blocks, neighbours, parts, positions, normals, clamped: 0 }
+        let room = match features {
+            Features::Smooth => 1.1,
+            Features::Sharp => 1.8,
+        };
+        Parts { blocks, neighbours, parts, positions, normals, room, clamped: 0 }
     }
 
     /// Adds what the first pass leaves of the next blocks, and numbers their vertices.
@@ -61,7 +67,7 @@ impl<'a> Parts<'a> {
         }
         let (done, all) = (self.parts.len(), self.blocks.len().div_ceil(BATCH));
         // Few blocks do not tell.
-        let share = if done * 16 < all { 2.0 } else { 1.1 * all as f64 / done as f64 };
+        let share = if done * 16 < all { 2.0 } else { self.room * all as f64 / done as f64 };
         let room = (share * count as f64) as usize - self.positions.len();
         self.positions.reserve_exact(room);
         self.normals.reserve_exact(room);

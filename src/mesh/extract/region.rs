@@ -27,19 +27,19 @@
 //! cells holds for that of the region. A vertex on an edge within the box is in no triangle any more, and is
 //! left out.
 
-use glam::{DVec3, Vec3};
+use glam::{Vec3, Vec3A};
 
 use super::joined::Joined;
 use super::samples::{Samples, cell_number, split_cell};
-use super::span::Span;
+use super::span::{Span, offset};
 use super::special::Special;
-use crate::mesh::feature::{Candidate, Segment, crease, settle};
-use crate::mesh::loops::CellLoop;
+use crate::mesh::feature::{Candidate, Segment, crease, settle, tangents};
+use crate::mesh::loops::{CellLoop, LONGEST};
 use crate::mesh::qef::Planes;
 use crate::run::{Cancelled, Run};
 
 /// A cell asks for a region if its point is farther from the planes than this, in cells.
-const MISFIT: f64 = 0.01;
+const MISFIT: f32 = 0.01;
 
 /// The most cells along an axis of a region.
 const LARGEST: u32 = 4;
@@ -51,10 +51,10 @@ const ROUNDS: usize = 3;
 const STEPS: usize = 3;
 
 /// The weight of a cell's planes is 1 over the square of its distance, in cells, and this.
-const NEAR: f64 = 0.1;
+const NEAR: f32 = 0.1;
 
 /// A crease that is in an empty cell for less than this, in cells, asks for nothing.
-const SHORT: f64 = 0.02;
+const SHORT: f32 = 0.02;
 
 /// Cells that share a fan.
 pub(super) struct Region {
@@ -63,8 +63,8 @@ pub(super) struct Region {
     pub(super) segments: Vec<Segment>,
     /// The feature point.
     pub(super) at: Vec3,
-    /// The same in cells.
-    place: DVec3,
+    /// The same in cells from the first node of its box, as are the planes.
+    place: Vec3A,
     planes: Planes,
     /// The vertices within, ascending.
     pub(super) within: Vec<u32>,
@@ -155,12 +155,12 @@ enum Stage {
 }
 
 /// The normals at the vertices of a ring.
-fn normals(ring: &[Segment]) -> impl Iterator<Item = Vec3> + Clone {
-    ring.iter().map(|segment| segment.normal)
+fn normals(ring: &[Segment]) -> impl Iterator<Item = Vec3A> + Clone {
+    ring.iter().map(|segment| segment.normal.into())
 }
 
 /// The axes that a crease goes along: that which it is closest to, and the next one if it is not much farther from that.
-fn axes(along: DVec3) -> [Option<usize>; 2] {
+fn axes(along: Vec3A) -> [Option<usize>; 2] {
     let size = along.abs().to_array();
     let mut order = [0, 1, 2];
     order.sort_by(|&a: &usize, &b: &usize| size[b].total_cmp(&size[a]));
@@ -179,8 +179,8 @@ struct Asker<'a> {
     who: Who<'a>,
     block: usize,
     span: Span,
-    /// The feature point, and what it should be on.
-    at: DVec3,
+    /// The feature point, and what it should be on, in cells from the first node of the box.
+    at: Vec3A,
     planes: Planes,
 }
 
@@ -195,8 +195,8 @@ impl<'a> Asker<'a> {
         Asker { who: Who::Region(number), block, span, at: place, planes }
     }
 
-    fn wish(&self, size: f64, span: Span, at: DVec3, allowed: f64) -> Wish<'a> {
-        Wish { size, block: self.block, who: self.who, span, slab: None, at, allowed }
+    fn wish(&self, size: f32, span: Span, at: Vec3A, allowed: f32) -> Wish<'a> {
+        Wish { size, block: self.block, who: self.who, from: self.span.low, span, slab: None, at, allowed }
     }
 
     /// Wishes for slabs up to where the planes meet, across the axis that is the nth of those that the crease goes
@@ -204,7 +204,7 @@ impl<'a> Asker<'a> {
     fn slabs(&self, ring: &[Segment], nth: usize, wishes: &mut Vec<Wish<'a>>) {
         let axis = crease(normals(ring)).and_then(|along| axes(along)[nth]);
         if let Some(axis) = axis.filter(|&axis| self.span.is_slab(axis)) {
-            let mut across = DVec3::ONE;
+            let mut across = Vec3A::ONE;
             across[axis] = 0.0;
             self.towards([across, 2.0 * across, 3.0 * across], Some(axis), wishes);
         }
@@ -212,16 +212,17 @@ impl<'a> Asker<'a> {
 
     /// Wishes for the boxes up to where the planes meet.
     fn boxes(&self, wishes: &mut Vec<Wish<'a>>) {
-        self.towards([1.0, 2.0].map(DVec3::splat), None, wishes);
+        self.towards([1.0, 2.0].map(Vec3A::splat), None, wishes);
     }
 
     /// Wishes for the boxes up to where the planes meet, among the cells that are so far away along the axes.
-    fn towards<const N: usize>(&self, reaches: [DVec3; N], slab: Option<usize>, wishes: &mut Vec<Wish<'a>>) {
+    fn towards<const N: usize>(&self, reaches: [Vec3A; N], slab: Option<usize>, wishes: &mut Vec<Wish<'a>>) {
         let (misfit, mut last) = (self.planes.distance(self.at), self.span);
         for reach in reaches {
-            let [low, high] = self.span.corners();
-            let at = settle(&self.planes, self.at, low - reach, high + reach, 3);
-            let span = self.span.union(&Span::single(at.max(DVec3::ZERO).to_array().map(|x| x as u32)));
+            let at = settle(&self.planes, self.at, -reach, self.span.size() + reach, 3);
+            let low = self.span.low;
+            let cell = std::array::from_fn(|axis| low[axis].saturating_add_signed(at[axis].floor() as i32));
+            let span = self.span.union(&Span::single(cell));
             if span != last {
                 wishes.push(Wish { slab, ..self.wish(misfit, span, at, 0.5 * misfit) });
                 last = span;
@@ -233,17 +234,18 @@ impl<'a> Asker<'a> {
 /// A region that a cell, or another region, asks for.
 struct Wish<'a> {
     /// How far off the mesh may be without it, in cells.
-    size: f64,
+    size: f32,
     /// Who asks, and the block of it.
     who: Who<'a>,
     block: usize,
     span: Span,
     /// The axis along which it is to stay one cell thick, if there is one.
     slab: Option<usize>,
-    /// About where the point goes.
-    at: DVec3,
+    /// About where the point goes, from the first node of the box of who asks.
+    at: Vec3A,
+    from: [u32; 3],
     /// How far it may be from the planes.
-    allowed: f64,
+    allowed: f32,
 }
 
 struct Known<'a> {
@@ -341,18 +343,18 @@ impl Known<'_> {
                 self.add_patches(wish.block, cell, case, patches)?;
             }
         }
-        let [low, high] = span.corners();
-        let (mut planes, mut place) = (Planes::NONE, wish.at);
+        let (shift, size) = (offset(wish.from, span.low), span.size());
+        let (mut planes, mut place) = (Planes::NONE, wish.at + shift);
         for _ in 0..STEPS {
-            planes = patches.planes(place);
-            place = settle(&planes, place, low, high, 3);
+            planes = patches.planes(span.low, place);
+            place = settle(&planes, place, Vec3A::ZERO, size, 3);
         }
         let own = match wish.who {
             Who::Cell(candidate) => &candidate.planes,
             // None if it is part of another by now.
             Who::Region(number) => &self.regions[number].as_ref()?.planes,
         };
-        if planes.distance(place).max(own.distance(place)) > wish.allowed {
+        if planes.distance(place).max(own.distance(place - shift)) > wish.allowed {
             return None;
         }
         let Disc { ring, within } = patches.glued(span.low)?;
@@ -370,12 +372,18 @@ impl Known<'_> {
         }
         let faces = self.joined.of(self.samples, cell, case);
         let mut add = |outline: &CellLoop| {
-            let vertices: Option<Vec<u32>> =
-                outline.edges().iter().map(|&edge| self.samples.vertex(near, cell, edge)).collect();
-            let mut own = Vec::with_capacity(outline.len());
-            let lists = (&mut own, &mut Vec::with_capacity(outline.len()));
-            let planes = self.samples.candidate(cell, outline, &vertices?, lists).planes;
-            patches.add(cell, &own, &planes);
+            let vertex = |&edge: &u8| self.samples.vertex(near, cell, edge);
+            let mut vertices = [0; LONGEST];
+            for (place, edge) in vertices.iter_mut().zip(outline.edges()) {
+                *place = vertex(edge)?;
+            }
+            let (mut ring, mut places) = (std::mem::take(&mut patches.ring), std::mem::take(&mut patches.places));
+            ring.clear();
+            places.clear();
+            self.samples.ring(cell, outline, &vertices[..outline.len()], (&mut ring, &mut places));
+            let planes = tangents(&mut ring, &places);
+            patches.add(cell, &ring, &planes);
+            (patches.ring, patches.places) = (ring, places);
             Some(())
         };
         match CellLoop::single(case, faces) {
@@ -391,6 +399,9 @@ struct Patches {
     segments: Vec<(Segment, u32, u32)>,
     /// By patch, its cell and the planes.
     planes: Vec<([u32; 3], Planes)>,
+    /// Memory for the loop of one, and where its vertices are in the cell.
+    ring: Vec<Segment>,
+    places: Vec<Vec3A>,
 }
 
 /// A disc of several patches.
@@ -418,12 +429,12 @@ impl Patches {
         self.planes.len() as u32
     }
 
-    /// All planes; those of cells close to a point tell the most.
-    fn planes(&self, point: DVec3) -> Planes {
+    /// All planes, from the first node of cell `low`; those of cells close to a point tell the most.
+    fn planes(&self, low: [u32; 3], point: Vec3A) -> Planes {
         let mut all = Planes::NONE;
         for (cell, planes) in &self.planes {
-            let middle = DVec3::from_array(cell.map(f64::from)) + 0.5;
-            all.append(planes, (NEAR + (middle - point).length_squared()).recip());
+            let shift = offset(*cell, low);
+            all.append(planes, shift, (NEAR + (shift + 0.5 - point).length_squared()).recip());
         }
         all
     }

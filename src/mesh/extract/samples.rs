@@ -1,6 +1,6 @@
 //! All blocks after the first pass, seen as one lattice of cells with vertices on their edges.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, Vec3A};
 use rayon::prelude::*;
 
 use super::bulge::SPREAD;
@@ -145,15 +145,11 @@ impl<'a> Samples<'a> {
     pub(super) fn spread(&self) -> Vec<bool> {
         let count = self.blocks().len();
         let first = |n: usize| if n < count { self.parts.part(n).first as usize } else { self.normals.len() };
-        // There is no NaN among them.
-        let least = |a: Vec3, b: Vec3| Vec3::select(a.cmplt(b), a, b);
-        let most = |a: Vec3, b: Vec3| Vec3::select(a.cmpgt(b), a, b);
-        let hull = |[a, b]: [Vec3; 2], [c, d]: [Vec3; 2]| [least(a, c), most(b, d)];
-        let none = [Vec3::INFINITY, Vec3::NEG_INFINITY];
-        let own: Vec<[Vec3; 2]> = (0..count)
-            .into_par_iter()
-            .map(|n| self.normals[first(n)..first(n + 1)].iter().fold(none, |all, &normal| hull(all, [normal; 2])))
-            .collect();
+        let hull = |[a, b]: [Vec3A; 2], [c, d]: [Vec3A; 2]| [a.min(c), b.max(d)];
+        let none = [Vec3A::INFINITY, Vec3A::NEG_INFINITY];
+        let of = |normals: &[Vec3]| normals.iter().fold(none, |all, &normal| hull(all, [normal.into(); 2]));
+        let own: Vec<[Vec3A; 2]> =
+            (0..count).into_par_iter().map(|n| of(&self.normals[first(n)..first(n + 1)])).collect();
         (0..count)
             .into_par_iter()
             .map(|n| {
@@ -164,29 +160,34 @@ impl<'a> Samples<'a> {
             .collect()
     }
 
-    /// A position in cells from the lattice's first node, in length units.
-    #[inline(always)]
-    pub(super) fn world(&self, p: DVec3) -> DVec3 {
-        self.lattice.origin() + p * self.lattice.step()
+    /// Adds the segments of a loop of a cell, given the vertices on it, to a list, and the places of the vertices in
+    /// the cell to another.
+    pub(super) fn ring(
+        &self,
+        cell: [u32; 3],
+        outline: &CellLoop,
+        vertices: &[u32],
+        (segments, places): (&mut Vec<Segment>, &mut Vec<Vec3A>),
+    ) {
+        let low = self.lattice.node(cell[0], cell[1], cell[2]);
+        let share = 1.0 / self.lattice.step();
+        for (n, &from) in vertices.iter().enumerate() {
+            let (position, normal) = self.get(from);
+            segments.push(Segment::new(from, normal, outline.face(n)));
+            places.push((share * (position.as_dvec3() - low)).as_vec3a());
+        }
     }
 
-    /// A cell with a loop, given the vertices on it. Its segments are added to a list, and the places of its
-    /// vertices in the cell to another.
+    /// A cell with a single loop, likewise.
     pub(super) fn candidate(
         &self,
         cell: [u32; 3],
         outline: &CellLoop,
         vertices: &[u32],
-        (segments, places): (&mut Vec<Segment>, &mut Vec<Vec3>),
+        (segments, places): (&mut Vec<Segment>, &mut Vec<Vec3A>),
     ) -> Candidate {
-        let low = self.lattice.node(cell[0], cell[1], cell[2]);
-        let share = 1.0 / self.lattice.step();
         let first = segments.len();
-        for (n, &from) in vertices.iter().enumerate() {
-            let (position, normal) = self.get(from);
-            segments.push(Segment::new(from, normal, outline.face(n)));
-            places.push((share * (position.as_dvec3() - low)).as_vec3());
-        }
+        self.ring(cell, outline, vertices, (segments, places));
         Candidate::new(cell, first, segments, &places[first..])
     }
 
@@ -201,9 +202,10 @@ impl<'a> Samples<'a> {
     }
 
     /// The position of a point as f32, strictly inside of the box of cells from `low` up to `high`,
-    /// exclusive.
-    pub(super) fn inside(&self, at: DVec3, low: [u32; 3], high: [u32; 3]) -> Vec3 {
-        self.held(self.world(at), low, high)
+    /// exclusive. It is given in cells from the first node of the box.
+    pub(super) fn inside(&self, at: Vec3A, low: [u32; 3], high: [u32; 3]) -> Vec3 {
+        let [i, j, k] = low;
+        self.held(self.lattice.node(i, j, k) + at.as_dvec3() * self.lattice.step(), low, high)
     }
 
     /// The same of a point in length units.

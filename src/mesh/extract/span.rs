@@ -1,6 +1,6 @@
 //! Boxes of cells.
 
-use glam::DVec3;
+use glam::Vec3A;
 
 /// A box of cells: from the first to the last, exclusive.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,31 +37,27 @@ impl Span {
         self.low[axis] + 1 == self.high[axis]
     }
 
+    /// How many cells it has along each axis.
+    pub(super) fn size(&self) -> Vec3A {
+        offset(self.high, self.low)
+    }
+
     /// Where a line from within leaves it: the next cell, and for how long the line is in that. None if it leaves it by a
-    /// face that is ruled out, given as twice the axis, and 1 more for the upper one.
-    pub(super) fn exit(&self, from: DVec3, along: DVec3, is_ruled_out: impl Fn(u8) -> bool) -> Option<([u32; 3], f64)> {
-        let (axis, start) = self.way_out(from, along);
+    /// face that is ruled out, given as twice the axis, and 1 more for the upper one. The line's start is in cells from
+    /// the first node of the box.
+    pub(super) fn exit(&self, from: Vec3A, along: Vec3A, is_ruled_out: impl Fn(u8) -> bool) -> Option<([u32; 3], f32)> {
+        let (axis, start) = way_out(Vec3A::ZERO, self.size(), from, along);
         if is_ruled_out(2 * axis as u8 + u8::from(along[axis] > 0.0)) {
             return None;
         }
         let at = from + start * along;
-        let mut cell = std::array::from_fn(|n| (at[n].max(0.0) as u32).clamp(self.low[n], self.high[n] - 1));
+        let mut cell: [u32; 3] = std::array::from_fn(|n| {
+            self.low[n].saturating_add(at[n].max(0.0) as u32).clamp(self.low[n], self.high[n] - 1)
+        });
         cell[axis] = if along[axis] > 0.0 { self.high[axis] } else { self.low[axis].checked_sub(1)? };
-        let (_, end) = Span::single(cell).way_out(from, along);
+        let low = offset(cell, self.low);
+        let (_, end) = way_out(low, low + 1.0, from, along);
         Some((cell, end - start))
-    }
-
-    /// The axis along which a line leaves it, and after how long.
-    fn way_out(&self, from: DVec3, along: DVec3) -> (usize, f64) {
-        let (mut axis, mut least) = (0, f64::INFINITY);
-        for n in 0..3 {
-            let side = f64::from(if along[n] > 0.0 { self.high[n] } else { self.low[n] });
-            let part = (side - from[n]) / along[n];
-            if part < least {
-                (axis, least) = (n, part);
-            }
-        }
-        (axis, least)
     }
 
     pub(super) fn cells(self) -> impl Iterator<Item = [u32; 3]> {
@@ -69,9 +65,22 @@ impl Span {
         let rows = (low[2]..high[2]).flat_map(move |k| (low[1]..high[1]).map(move |j| [j, k]));
         rows.flat_map(move |[j, k]| (low[0]..high[0]).map(move |i| [i, j, k]))
     }
+}
 
-    /// Its corners, in cells.
-    pub(super) fn corners(&self) -> [DVec3; 2] {
-        [self.low, self.high].map(|cell| DVec3::from_array(cell.map(f64::from)))
+/// The way from one cell to another, in cells.
+pub(super) fn offset(to: [u32; 3], from: [u32; 3]) -> Vec3A {
+    Vec3A::from_array(std::array::from_fn(|axis| (i64::from(to[axis]) - i64::from(from[axis])) as f32))
+}
+
+/// The axis along which a line leaves a box, and after how long.
+fn way_out(low: Vec3A, high: Vec3A, from: Vec3A, along: Vec3A) -> (usize, f32) {
+    let (mut axis, mut least) = (0, f32::INFINITY);
+    for n in 0..3 {
+        let side = if along[n] > 0.0 { high[n] } else { low[n] };
+        let part = (side - from[n]) / along[n];
+        if part < least {
+            (axis, least) = (n, part);
+        }
     }
+    (axis, least)
 }

@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use glam::{DVec3, Vec3};
+use glam::Vec3A;
 use rayon::prelude::*;
 
 use super::Sampler;
@@ -202,9 +202,8 @@ struct Worker<S: Sampler> {
     corners: Corners,
     ring: Ring,
     /// By segment, the place of its vertex in the cell.
-    places: Vec<Vec3>,
+    places: Vec<Vec3A>,
     refiner: Refiner,
-    points: Vec<DVec3>,
     lists: Lists,
 }
 
@@ -216,7 +215,6 @@ impl<S: Sampler> Worker<S> {
             ring: Ring::NONE,
             places: Vec::new(),
             refiner: Refiner::default(),
-            points: Vec::new(),
             lists: Lists::default(),
         }
     }
@@ -246,7 +244,7 @@ impl Lists {
         if !samples.parts.number(n, &mut worker.corners) {
             return OfBlock::default();
         }
-        let Worker { scratch, corners, ring, places, refiner, points, .. } = worker;
+        let Worker { scratch, corners, ring, places, refiner, .. } = worker;
         let (candidates, bulges) = (self.candidates.len(), self.bulges.len());
         let (opposite, plain) = (self.opposite.len(), self.plain.len());
         let block = samples.blocks()[n];
@@ -284,9 +282,8 @@ impl Lists {
             self.plain.extend(table.triangles(case).iter().map(|&[a, b, c]| [corner(a), corner(b), corner(c)]));
         });
         let found = &mut self.candidates[candidates..];
-        refiner.refine(found, &mut self.segments, places, samples.lattice.step(), |local, out| {
-            points.clear();
-            points.extend(local.iter().map(|p| samples.world(*p)));
+        let lists = (&mut self.segments[..], &places[..]);
+        refiner.refine(block, found, lists, samples.lattice.step() as f32, |points, out| {
             sampler.slopes(scratch, n, block, points, out)
         });
         OfBlock {
@@ -305,7 +302,7 @@ impl Lists {
         cell: [u32; 3],
         outline: &CellLoop,
         ring: &Ring,
-        places: &mut Vec<Vec3>,
+        places: &mut Vec<Vec3A>,
     ) -> bool {
         let number = cell_number(split_cell(cell).1);
         if !ring.is_smooth() {
@@ -317,7 +314,7 @@ impl Lists {
         let Some((at, normal)) = ring.top(samples) else { return false };
         let at = samples.held(at.as_dvec3(), cell, cell.map(|n| n + 1));
         let (sides, first) = (outline.len() as u16, self.plain.len() as u32);
-        self.bulges.push(Bulge { cell: number, sides, first, at, normal });
+        self.bulges.push(Bulge { cell: number, sides, first, at, normal: normal.into() });
         // Its number is not known yet.
         self.plain.extend(around(0, ring.vertices()));
         true

@@ -206,11 +206,11 @@ impl Sampler for Noise<'_> {
         }
     }
 
-    fn slopes(&self, (): &mut (), _: usize, _: [u32; 3], points: &[DVec3], out: &mut Vec<Slope>) -> bool {
+    fn slopes(&self, (): &mut (), _: usize, _: [u32; 3], points: &[Vec3A], out: &mut Vec<Slope>) -> bool {
         out.extend(points.iter().map(|p| {
-            let bits = p.to_array().map(|x| (x.to_bits() >> 20) as u32);
-            let number = |salt: u64| (self.hash(bits, salt) % 255) as f64 / 127.0 - 1.0;
-            Slope { value: number(1), gradient: DVec3::new(number(2), number(3), number(4)) }
+            let bits = p.to_array().map(f32::to_bits);
+            let number = |salt: u64| (self.hash(bits, salt) % 255) as f32 / 127.0 - 1.0;
+            Slope { value: number(1), gradient: Vec3A::new(number(2), number(3), number(4)) }
         }));
         self.slopes
     }

@@ -94,7 +94,7 @@ impl Fans {
             aim
         } else {
             bent = samples.limited(x).as_vec3();
-            let inset = (INSET * samples.lattice.step()) as f32;
+            let inset = INSET * samples.lattice.step() as f32;
             for n in across {
                 let (low, high) = (first[n] as f32, last[n] as f32);
                 bent[n] = bent[n].clamp((low + inset).next_up(), (high - inset).next_down());
@@ -113,33 +113,33 @@ impl Fans {
         let next = |n: usize| ring.get(n + 1).unwrap_or(&ring[0]).from;
         let place = |vertex: u32| (vertex, flat(samples.get(vertex).0.as_dvec3()));
         let ends = |n: usize| [place(ring[n].from), place(next(n))];
+        let others = || common().filter(|&n| n != nth);
         // The edge can take the place of one of them: that which it is closest to.
         let distance = |n: usize| {
             let [(_, s), (_, t)] = ends(n);
             (t - s).perp_dot(x - s).abs() / (t - s).length()
         };
-        let mut others = common().filter(|&n| n != nth && ring[n].turns).peekable();
-        if others.peek().is_some() {
-            // The first of those that are equally close.
-            let own = distance(nth);
-            if others.any(|n| distance(n).total_cmp(&own).then(n.cmp(&nth)).is_lt()) {
-                return None;
-            }
+        // The first of those that are equally close.
+        let is_closer = |n: usize| distance(n).total_cmp(&distance(nth)).then(n.cmp(&nth)).is_lt();
+        if others().any(|n| ring[n].turns && is_closer(n)) {
+            return None;
         }
-        let [s, t] = ends(nth);
         // A point that is no closer to the line than the segment is not worth it.
-        let off = (aim - s.1).length().min((aim - t.1).length());
-        if !(is_straight || (aim - x).length() < 0.5 * off) {
+        let is_worth_it = || {
+            let [(_, s), (_, t)] = ends(nth);
+            (aim - x).length() < 0.5 * (aim - s).length().min((aim - t).length())
+        };
+        if !(is_straight || is_worth_it()) {
             return None;
         }
         let reach = 4.0 * margin * (last - first).max_element();
-        let is_clear = |n: usize| [s, t].into_iter().all(|end| is_apart([end, (NONE, x)], ends(n), reach));
-        if !common().filter(|&n| n != nth).all(is_clear) {
+        let is_clear = |n: usize| ends(nth).into_iter().all(|end| is_apart([end, (NONE, x)], ends(n), reach));
+        if !others().all(is_clear) {
             return None;
         }
         // The same segment in the ring of the upper fan, the other way round.
         let is_same = |other: &Segment| {
-            other.from == t.0 && other.face + 1 == segment.face && other.cell(above.span.low) == cell
+            other.from == next(nth) && other.face + 1 == segment.face && other.cell(above.span.low) == cell
         };
         let other = self.of(high as usize).iter().position(is_same)?;
         let place = |fan: &Fan, nth: usize| [fan.list, fan.segments.start + nth as u32];
