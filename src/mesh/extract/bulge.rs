@@ -88,10 +88,8 @@ impl Ring {
         if self.len == 3 {
             return None;
         }
-        let mut positions = [Vec3A::ZERO; LONGEST];
-        let list = positions.iter_mut().zip(self.vertices());
-        list.for_each(|(at, &vertex)| *at = samples.position(vertex).into());
-        let (height, far, middle) = height(&positions[..self.len], self.normals());
+        let positions = self.vertices().iter().map(|&vertex| samples.position(vertex).into());
+        let (height, far, middle) = height(positions, self.normals());
         (far > FAR * samples.lattice.step() as f32).then(|| {
             let normal = self.sum.normalize_or_zero();
             (middle + height * normal, normal)
@@ -102,12 +100,12 @@ impl Ring {
 /// How far the surface is above the middle of points on it, given with the normals there; how far it may be from
 /// triangles between them; and the middle.
 #[inline(always)]
-fn height(positions: &[Vec3A], normals: &[Vec3A]) -> (f32, f32, Vec3A) {
-    let share = 1.0 / positions.len() as f32;
-    let middle = share * positions.iter().sum::<Vec3A>();
+fn height(positions: impl Iterator<Item = Vec3A> + Clone, normals: &[Vec3A]) -> (f32, f32, Vec3A) {
+    let share = 1.0 / normals.len() as f32;
+    let middle = share * positions.clone().sum::<Vec3A>();
     let (mut height, mut far) = (0.0, 0.0);
-    for (at, normal) in positions.iter().zip(normals) {
-        let rise = normal.dot(*at - middle);
+    for (at, normal) in positions.zip(normals) {
+        let rise = normal.dot(at - middle);
         height += rise;
         far += rise.abs();
     }
@@ -158,8 +156,9 @@ mod tests {
         };
         let saddle = |x: f32, y: f32| (Vec3A::new(x, y, (x * x - y * y) / 16.0), Vec3A::new(-x, y, 8.0).normalize());
         let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
-        let look =
-            |corners: [(Vec3A, Vec3A); 4]| height(&corners.map(|corner| corner.0), &corners.map(|corner| corner.1));
+        let look = |corners: [(Vec3A, Vec3A); 4]| {
+            height(corners.into_iter().map(|corner| corner.0), &corners.map(|corner| corner.1))
+        };
         let (above, far, middle) = look(square.map(|(x, y)| ball(x, y)));
         assert!((middle.length() + above - 8.0).abs() < 1e-3 && far > 0.03, "{above}, {far}");
         let (above, far, middle) = look(square.map(|(x, y)| saddle(x - 0.5, y - 0.5)));

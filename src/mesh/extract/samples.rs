@@ -1,6 +1,6 @@
 //! All blocks after the first pass, seen as one lattice of cells with vertices on their edges.
 
-use glam::{DVec3, Vec3, Vec3A};
+use glam::{Vec3, Vec3A};
 use rayon::prelude::*;
 
 use super::bulge::SPREAD;
@@ -16,7 +16,8 @@ use crate::mesh::table::{EDGE_CORNERS, edge_axis};
 pub(super) struct Samples<'a> {
     pub(super) parts: &'a Parts<'a>,
     pub(super) lattice: &'a Lattice,
-    limits: Bounds,
+    /// The box of the surface, as vertices have it.
+    limits: [Vec3; 2],
     positions: &'a [Vec3],
     normals: &'a [Vec3],
     /// The blocks by their first cells, z first, ascending; with their numbers.
@@ -60,6 +61,7 @@ impl<'a> Samples<'a> {
     ) -> Samples<'a> {
         let mut sorted: Vec<((u64, u32), u32)> = parts.blocks.iter().map(|&block| key(block)).zip(0..).collect();
         sorted.par_sort_unstable();
+        let limits = [limits.min.as_vec3(), limits.max.as_vec3()];
         Samples { parts, lattice, limits, positions, normals, sorted }
     }
 
@@ -171,6 +173,8 @@ impl<'a> Samples<'a> {
     ) {
         let low = self.lattice.node(cell[0], cell[1], cell[2]);
         let share = 1.0 / self.lattice.step();
+        segments.reserve(vertices.len());
+        places.reserve(vertices.len());
         for (n, &from) in vertices.iter().enumerate() {
             let (position, normal) = self.get(from);
             segments.push(Segment::new(from, normal, outline.face(n)));
@@ -197,21 +201,22 @@ impl<'a> Samples<'a> {
     }
 
     /// The point of the box of the surface that is nearest.
-    pub(super) fn limited(&self, p: DVec3) -> DVec3 {
-        p.clamp(self.limits.min, self.limits.max)
+    pub(super) fn limited(&self, p: Vec3) -> Vec3 {
+        let [low, high] = self.limits;
+        p.clamp(low, high)
     }
 
     /// The position of a point as f32, strictly inside of the box of cells from `low` up to `high`,
     /// exclusive. It is given in cells from the first node of the box.
     pub(super) fn inside(&self, at: Vec3A, low: [u32; 3], high: [u32; 3]) -> Vec3 {
         let [i, j, k] = low;
-        self.held(self.lattice.node(i, j, k) + at.as_dvec3() * self.lattice.step(), low, high)
+        self.held((self.lattice.node(i, j, k) + at.as_dvec3() * self.lattice.step()).as_vec3(), low, high)
     }
 
     /// The same of a point in length units.
-    pub(super) fn held(&self, at: DVec3, low: [u32; 3], high: [u32; 3]) -> Vec3 {
+    pub(super) fn held(&self, at: Vec3, low: [u32; 3], high: [u32; 3]) -> Vec3 {
         let (low, high) = (self.node(low), self.node(high));
-        let at = self.limited(at).as_vec3();
+        let at = self.limited(at);
         if at.cmpgt(low).all() && at.cmplt(high).all() {
             return at;
         }

@@ -160,7 +160,7 @@ impl Fans {
                 all.fans.push(Fan { list, segments, block, span: region.span, at: region.at });
             }
             if !taken.is_empty() {
-                special.keep(samples, block, is_free);
+                special.drop_cells(samples, block, taken.iter().map(|&(_, number)| number));
             }
             let of_block = &mut all.blocks[block];
             of_block.listed = start..all.fans.len();

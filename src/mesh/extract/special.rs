@@ -143,18 +143,22 @@ impl Special {
         of_block.plain.clone().map(|plain| &lists.plain[plain])
     }
 
-    /// Drops the triangles and bulges of a block but those of the cells that are to keep them, by their numbers.
-    pub(super) fn keep(&mut self, samples: &Samples<'_>, block: usize, is_kept: impl Fn(u16) -> bool) {
+    /// Drops the triangles and bulges of some cells of a block, given by their numbers, ascending.
+    pub(super) fn drop_cells(&mut self, samples: &Samples<'_>, block: usize, cells: impl Iterator<Item = u16>) {
         let lists = &mut self.0[block / AT_ONCE];
         let OfBlock { candidates, bulges, opposite, plain } = &mut lists.blocks[block % AT_ONCE];
         let Some(plain) = plain else { return };
+        let mut cells = cells.peekable();
         let mut candidates = lists.numbers[candidates.clone()].iter().peekable();
         let mut bulges = lists.bulges[bulges.clone()].iter_mut().peekable();
         let mut opposite = lists.opposite[opposite.clone()].iter().peekable();
         let table = CaseTable::get();
-        let (mut from, mut to) = (plain.start, plain.start);
+        // Where the triangles of the next cell are, where those start that are to be moved, and where to.
+        let (mut at, mut from, mut to) = (plain.start, plain.start, plain.start);
         for_each_cell(&samples.parts.part(block).signs, |within, case| {
             let number = cell_number(within);
+            while cells.next_if(|other| *other < number).is_some() {}
+            let is_dropped = cells.peek() == Some(&number);
             if candidates.next_if(|other| **other == number).is_some() {
                 return;
             }
@@ -164,18 +168,19 @@ impl Special {
                 None if opposite.next_if(|other| **other == number).is_some() => table.triangles(!case).len(),
                 None => table.triangles(case).len(),
             };
-            if is_kept(number) {
-                if let Some(bulge) = bulge {
-                    bulge.first = to as u32;
+            match (is_dropped, bulge) {
+                (true, bulge) => {
+                    lists.plain.copy_within(from..at, to);
+                    (from, to) = (at + count, to + at - from);
+                    bulge.into_iter().for_each(Bulge::drop_it);
                 }
-                lists.plain.copy_within(from..from + count, to);
-                to += count;
-            } else if let Some(bulge) = bulge {
-                bulge.drop_it();
+                (false, Some(bulge)) => bulge.first = (to + at - from) as u32,
+                (false, None) => {}
             }
-            from += count;
+            at += count;
         });
-        plain.end = to;
+        lists.plain.copy_within(from..at, to);
+        plain.end = to + at - from;
     }
 
     /// All bulges that are there, in order.
@@ -312,7 +317,7 @@ impl Lists {
             return true;
         }
         let Some((at, normal)) = ring.top(samples) else { return false };
-        let at = samples.held(at.as_dvec3(), cell, cell.map(|n| n + 1));
+        let at = samples.held(at.into(), cell, cell.map(|n| n + 1));
         let (sides, first) = (outline.len() as u16, self.plain.len() as u32);
         self.bulges.push(Bulge { cell: number, sides, first, at, normal: normal.into() });
         // Its number is not known yet.

@@ -93,7 +93,7 @@ impl Fans {
         let x = if is_straight {
             aim
         } else {
-            bent = samples.limited(x).as_vec3();
+            bent = samples.limited(x.as_vec3());
             let inset = INSET * samples.lattice.step() as f32;
             for n in across {
                 let (low, high) = (first[n] as f32, last[n] as f32);
