@@ -31,10 +31,15 @@ impl Fans {
         let all = &*self;
         let of_fans = |(n, fans): (usize, &[Fan])| {
             run.check()?;
-            let mut found = Vec::new();
+            let mut found = Vec::with_capacity(fans.len());
             for (low, fan) in (n * AT_ONCE..).zip(fans) {
                 let ring = all.of(low);
-                found.extend((0..ring.len()).filter_map(|nth| all.turned(samples, (low, fan), ring, nth)));
+                for (nth, segment) in ring.iter().enumerate() {
+                    // Of two fans the lower one sees to it.
+                    if segment.turns && segment.face % 2 == 1 {
+                        found.extend(all.turned(samples, (low, fan), ring, nth));
+                    }
+                }
             }
             Ok(found)
         };
@@ -57,7 +62,8 @@ impl Fans {
         Ok(())
     }
 
-    /// What the edge between two fans is turned to, at segment `nth` in the ring of the lower one, if it is.
+    /// What the edge between two fans is turned to, at segment `nth` in the ring of the lower one, if it is: one that turns,
+    /// in an upper face.
     fn turned(
         &self,
         samples: &Samples<'_>,
@@ -66,9 +72,6 @@ impl Fans {
         nth: usize,
     ) -> Option<Turned> {
         let segment = &ring[nth];
-        if !segment.turns || segment.face.is_multiple_of(2) {
-            return None;
-        }
         let axis = usize::from(segment.face / 2);
         let mut cell = segment.cell(below.span.low);
         cell[axis] += 1;
@@ -113,6 +116,8 @@ impl Fans {
         let next = |n: usize| ring.get(n + 1).unwrap_or(&ring[0]).from;
         let place = |vertex: u32| (vertex, flat(samples.get(vertex).0.as_dvec3()));
         let ends = |n: usize| [place(ring[n].from), place(next(n))];
+        // Most often there is no other.
+        let is_alone = ring.iter().filter(|other| other.face == segment.face).count() == 1;
         let others = || common().filter(|&n| n != nth);
         // The edge can take the place of one of them: that which it is closest to.
         let distance = |n: usize| {
@@ -121,7 +126,7 @@ impl Fans {
         };
         // The first of those that are equally close.
         let is_closer = |n: usize| distance(n).total_cmp(&distance(nth)).then(n.cmp(&nth)).is_lt();
-        if others().any(|n| ring[n].turns && is_closer(n)) {
+        if !is_alone && others().any(|n| ring[n].turns && is_closer(n)) {
             return None;
         }
         // A point that is no closer to the line than the segment is not worth it.
@@ -134,7 +139,7 @@ impl Fans {
         }
         let reach = 4.0 * margin * (last - first).max_element();
         let is_clear = |n: usize| ends(nth).into_iter().all(|end| is_apart([end, (NONE, x)], ends(n), reach));
-        if !others().all(is_clear) {
+        if !(is_alone || others().all(is_clear)) {
             return None;
         }
         // The same segment in the ring of the upper fan, the other way round.
