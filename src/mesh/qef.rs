@@ -20,7 +20,7 @@
 //! Source: T. Ju, F. Losasso, S. Schaefer and J. Warren, Dual contouring of Hermite data (2002),
 //! for the quadratic; K. Levenberg (1944) for the damping.
 
-use glam::{Mat3A, Vec3A, Vec3Swizzles};
+use glam::{Vec3A, Vec3Swizzles};
 
 /// Planes that a point should be on. Positions are in cells, from a node that is close: single precision does.
 #[derive(Clone, Copy, Debug)]
@@ -82,13 +82,9 @@ impl Planes {
     #[inline]
     pub(super) fn nearest(&self, from: Vec3A, damping: f32, low: Vec3A, high: Vec3A) -> Vec3A {
         let weight = damping * self.total();
-        // The step to it, by Cramer's rule.
-        let (d, e) = (self.diagonal + weight, self.beside);
-        let diagonal = d.yzx() * d.zxy() - e * e;
-        let beside = e.yzx() * e.zxy() - d * e;
-        let determinant = d.x * diagonal.x + e.z * beside.z + e.y * beside.y;
+        // The step to it.
         let fall = self.vector - product(self.diagonal, self.beside, from);
-        let free = from + product(diagonal, beside, fall) / determinant;
+        let free = from + solve(self.diagonal + weight, self.beside, fall);
         let is_within = free.cmpge(low) & free.cmple(high);
         if is_within.all() { free } else { self.nearest_on_sides(free, from, weight, low, high) }
     }
@@ -96,21 +92,17 @@ impl Planes {
     /// The same where the point that is best of all is not in the box.
     #[cold]
     fn nearest_on_sides(&self, free: Vec3A, from: Vec3A, weight: f32, low: Vec3A, high: Vec3A) -> Vec3A {
-        let (m, b) = (self.matrix(weight), self.vector + weight * from);
+        let (d, e, b) = (self.diagonal + weight, self.beside, self.vector + weight * from);
+        let is_within = |y: Vec3A| (y.cmpge(low) & y.cmple(high)).all();
         // Most often it is where the coordinates that are beyond a side are held there.
-        let mut sides = [FREE; 3];
-        let mut y = free;
+        let (mut sides, mut y) = (Vec3A::ZERO, free);
         for _ in 0..3 {
-            for axis in 0..3 {
-                if y[axis] < low[axis] {
-                    sides[axis] = LOW;
-                } else if y[axis] > high[axis] {
-                    sides[axis] = HIGH;
-                }
-            }
-            y = on_sides(&m, b, sides, low, high);
-            if (y.cmpge(low) & y.cmple(high)).all() {
-                if is_pressed(b - m * y, sides) {
+            sides = Vec3A::select(y.cmplt(low), Vec3A::NEG_ONE, Vec3A::select(y.cmpgt(high), Vec3A::ONE, sides));
+            y = on_sides((d, e, b), sides, low, high);
+            if is_within(y) {
+                // In the box it is the minimum if the quadratic falls outward at every side.
+                let fall = b - product(d, e, y);
+                if (sides * fall).cmpge(Vec3A::ZERO).all() {
                     return y;
                 }
                 break;
@@ -118,10 +110,9 @@ impl Planes {
         }
         let mut best = (f32::INFINITY, from.clamp(low, high));
         for choice in 1..27 {
-            let sides = [choice % 3, choice / 3 % 3, choice / 9];
-            let y = on_sides(&m, b, sides, low, high);
-            if (y.cmpge(low) & y.cmple(high)).all() {
-                let energy = y.dot(m * y) - 2.0 * b.dot(y);
+            let y = on_sides((d, e, b), sides_of(choice), low, high);
+            if is_within(y) {
+                let energy = y.dot(product(d, e, y) - 2.0 * b);
                 if energy < best.0 {
                     best = (energy, y);
                 }
@@ -129,12 +120,12 @@ impl Planes {
         }
         best.1
     }
+}
 
-    /// Σ n nᵀ, and a number more on the diagonal.
-    fn matrix(&self, more: f32) -> Mat3A {
-        let ([x, y, z], e) = ((self.diagonal + more).to_array(), self.beside);
-        Mat3A::from_cols(Vec3A::new(x, e.z, e.y), Vec3A::new(e.z, y, e.x), Vec3A::new(e.y, e.x, z))
-    }
+/// The choices of sides of a box, by number: along each axis −1 for the low side, 1 for the high one, and 0 for none; none
+/// at all for 0.
+fn sides_of(choice: u8) -> Vec3A {
+    Vec3A::from_array([choice % 3, choice / 3 % 3, choice / 9].map(|n| [0.0, -1.0, 1.0][usize::from(n)]))
 }
 
 /// A symmetric matrix, given like that of [`Planes`], times a vector.
@@ -143,50 +134,24 @@ fn product(d: Vec3A, e: Vec3A, y: Vec3A) -> Vec3A {
     d * y + e.zxy() * y.yzx() + e.yzx() * y.zxy()
 }
 
-/// A coordinate that is free, at the low side of the box, and at the high one.
-const FREE: usize = 0;
-const LOW: usize = 1;
-const HIGH: usize = 2;
-
-/// Where the quadratic is least with some coordinates held at sides of the box.
-fn on_sides(m: &Mat3A, b: Vec3A, sides: [usize; 3], low: Vec3A, high: Vec3A) -> Vec3A {
-    let mut y = Vec3A::ZERO;
-    for axis in 0..3 {
-        y[axis] = [0.0, low[axis], high[axis]][sides[axis]];
-    }
-    solve(m, b, sides, &mut y);
-    y
+/// What a symmetric matrix takes to a vector, by Cramer's rule.
+#[inline(always)]
+fn solve(d: Vec3A, e: Vec3A, b: Vec3A) -> Vec3A {
+    let diagonal = d.yzx() * d.zxy() - e * e;
+    let beside = e.yzx() * e.zxy() - d * e;
+    let determinant = d.x * diagonal.x + e.z * beside.z + e.y * beside.y;
+    product(diagonal, beside, b) / determinant
 }
 
-/// Whether the quadratic falls outward at every side that a coordinate is held at; `fall` is half its
-/// gradient, downwards. In the box that makes it the minimum over the box.
-fn is_pressed(fall: Vec3A, sides: [usize; 3]) -> bool {
-    (0..3).all(|axis| match sides[axis] {
-        LOW => fall[axis] <= 0.0,
-        HIGH => fall[axis] >= 0.0,
-        _ => true,
-    })
-}
-
-/// Sets the free coordinates (side 0) to where the quadratic yᵀm y − 2 bᵀy is least.
-fn solve(m: &Mat3A, b: Vec3A, sides: [usize; 3], y: &mut Vec3A) {
-    // With the free coordinates 0, this is what is left for them to balance.
-    let rest = b - *m * *y;
-    let mut pair = |a: usize, c: usize| {
-        let (aa, ac, cc) = (m.col(a)[a], m.col(a)[c], m.col(c)[c]);
-        let determinant = aa * cc - ac * ac;
-        y[a] = (rest[a] * cc - rest[c] * ac) / determinant;
-        y[c] = (rest[c] * aa - rest[a] * ac) / determinant;
-    };
-    match sides.map(|side| side == FREE) {
-        [true, true, _] => pair(0, 1),
-        [true, _, true] => pair(0, 2),
-        [_, true, true] => pair(1, 2),
-        [true, ..] => y.x = rest.x / m.x_axis.x,
-        [_, true, _] => y.y = rest.y / m.y_axis.y,
-        [.., true] => y.z = rest.z / m.z_axis.z,
-        _ => {}
-    }
+/// Where the quadratic yᵀm y − 2 bᵀy is least with some coordinates held at sides of a box; m is given like that of
+/// [`Planes`].
+fn on_sides((d, e, b): (Vec3A, Vec3A, Vec3A), sides: Vec3A, low: Vec3A, high: Vec3A) -> Vec3A {
+    let (held, free) = (sides.abs(), Vec3A::ONE - sides.abs());
+    // What is held stands for itself in its row; the others have to balance what is left.
+    let at = held * Vec3A::select(sides.cmplt(Vec3A::ZERO), low, high);
+    let rest = free * (b - product(d, e, at)) + at;
+    let y = solve(free * d + held, free.yzx() * free.zxy() * e, rest);
+    free * y + at
 }
 
 #[cfg(test)]
@@ -242,13 +207,12 @@ mod tests {
             let (low, high) = (Vec3A::ZERO, Vec3A::ONE);
             let from = Vec3A::new(next(), next(), next()).abs();
             let y = planes.nearest(from, 3e-3, low, high);
-            let m = planes.matrix(3e-3 * 4.0);
-            let b = planes.vector + 3e-3 * 4.0 * from;
-            let energy = |y: Vec3A| y.dot(m * y) - 2.0 * b.dot(y);
-            let choices = (0..27).map(|n| on_sides(&m, b, [n % 3, n / 3 % 3, n / 9], low, high));
+            let (d, e, b) = (planes.diagonal + 3e-3 * 4.0, planes.beside, planes.vector + 3e-3 * 4.0 * from);
+            let energy = |y: Vec3A| y.dot(product(d, e, y) - 2.0 * b);
+            let choices = (0..27).map(|n| on_sides((d, e, b), sides_of(n), low, high));
             let within = choices.filter(|y| y.cmpge(low).all() && y.cmple(high).all());
             let best = within.map(energy).fold(f32::INFINITY, f32::min);
-            let free = m.inverse() * b;
+            let free = solve(d, e, b);
             let is_free = free.cmpge(low).all() && free.cmple(high).all();
             outside += usize::from(!is_free);
             assert!(energy(y) <= if is_free { energy(free) } else { best } + 1e-5, "{y}");

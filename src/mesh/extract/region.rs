@@ -119,7 +119,8 @@ pub(super) fn regions(
         run.check()?;
         let mut wishes = Vec::new();
         for block in (0..blocks).filter(|_| round == 0) {
-            for candidate in special.candidates(block).iter().filter(|one| known.taken(block, one.cell).is_none()) {
+            let is_free = |cell| known.taken[block].is_empty() || known.taken(block, cell).is_none();
+            for candidate in special.candidates(block).iter().filter(|one| is_free(one.cell)) {
                 known.exits(&Asker::candidate(block, candidate), special.segments(block, candidate), &mut wishes);
             }
         }

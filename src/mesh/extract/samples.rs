@@ -214,6 +214,7 @@ impl<'a> Samples<'a> {
     }
 
     /// The same of a point in length units.
+    #[inline]
     pub(super) fn held(&self, at: Vec3, low: [u32; 3], high: [u32; 3]) -> Vec3 {
         let (low, high) = (self.node(low), self.node(high));
         let at = self.limited(at);
