@@ -26,7 +26,7 @@ const FAR: f32 = 0.01;
 
 /// If no normals of a cell differ by more than this angle, the cell is nearly flat. Typical ones are off by 0.008
 /// cells then.
-pub(super) const SPREAD: f32 = 0.033;
+pub(super) const SPREAD: f32 = 0.05;
 
 /// The vertices on a cell's loop, in order.
 pub(super) struct Ring {
