@@ -51,7 +51,8 @@ fn ours(model: &Model, cells: u32, features: Features, threads: usize) -> (Cost,
     let cell = CellSize::Length(2.0 * model.half / f64::from(cells));
     let settings = MeshSettings { cell, bounds: Some(model.cube()), features, ..MeshSettings::default() };
     let run = Run { threads, ..Run::default() };
-    measured(threads, || model.solid.mesh_with(&settings, &run).expect("a model").triangles().len())
+    let (cost, mesh) = measured(threads, || model.solid.mesh_with(&settings, &run).expect("a model"));
+    (cost, mesh.triangles().len())
 }
 
 fn row(name: &str, cells: u32, threads: usize, who: &str, cost: Cost, triangles: usize, ratio: Option<f64>) {

@@ -16,7 +16,7 @@ pub struct Cost {
 }
 
 /// Runs a job on a pool of some threads several times, more often if it is short, and gives its cost
-/// and its result.
+/// and its result. The clock stops when the result is there: giving back its memory is not counted.
 pub fn measured<T: Send>(threads: usize, mut job: impl FnMut() -> T + Send) -> (Cost, T) {
     /// Seconds to spend at least, and runs at least and at most.
     const TURN: f64 = 2.0;

@@ -20,8 +20,10 @@ pub fn fidget(model: &Model, depth: u32, threads: usize) -> (Cost, usize) {
         settings.world_to_model[(axis, axis)] = model.half as f32;
     }
     settings.threads = (threads > 1).then_some(&ThreadPool::Global);
-    measured(threads, || {
+    let (cost, (_, mesh)) = measured(threads, || {
         let octree = Octree::build(&shape, &settings).expect("nobody cancels");
-        octree.walk_dual().triangles.len()
-    })
+        let mesh = octree.walk_dual();
+        (octree, mesh)
+    });
+    (cost, mesh.triangles.len())
 }

@@ -10,10 +10,8 @@ fn row(name: &str, solid: &Solid, cells: u32, threads: usize) -> (Cost, usize) {
     let settings =
         MeshSettings { cell: CellSize::LongestSide(cells), features: Features::Smooth, ..MeshSettings::default() };
     let run = Run { threads, ..Run::default() };
-    let (cost, (vertices, triangles)) = measured(threads, || {
-        let mesh = solid.mesh_with(&settings, &run).expect("a mesh");
-        (mesh.positions().len(), mesh.triangles().len())
-    });
+    let (cost, mesh) = measured(threads, || solid.mesh_with(&settings, &run).expect("a mesh"));
+    let (vertices, triangles) = (mesh.positions().len(), mesh.triangles().len());
     let rate = triangles as f64 / cost.seconds * 1e-6;
     println!(
         "{name} {cells}³ {threads} {:9.4} s {triangles:9} {rate:7.2} Mtri/s {:7.1} MB",

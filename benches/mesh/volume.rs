@@ -29,8 +29,8 @@ pub fn rows() {
             for normals in [false, true] {
                 let settings = VolumeSettings { normals, ..VolumeSettings::default() };
                 let run = Run { threads, ..Run::default() };
-                let mesh = || volume.mesh_with(&settings, &run).expect("a mesh").triangles().len();
-                let (cost, triangles) = measured(threads, mesh);
+                let (cost, mesh) = measured(threads, || volume.mesh_with(&settings, &run).expect("a mesh"));
+                let triangles = mesh.triangles().len();
                 let voxels = samples.len() as f64 / cost.seconds * 1e-6;
                 let rate = triangles as f64 / cost.seconds * 1e-6;
                 let with = if normals { "with normals" } else { "" };

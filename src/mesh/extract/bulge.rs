@@ -24,8 +24,8 @@ use crate::mesh::loops::LONGEST;
 /// The distance of a loop's middle from the surface, in cells, beyond which there is a vertex.
 const FAR: f32 = 0.01;
 
-/// If no normals of a cell differ by more than this angle, the cell is nearly flat. Typical ones are off by 0.008
-/// cells then.
+/// If no normals of a cell differ by more than this angle, the cell is nearly flat: the normals of a loop within 0.8
+/// cells of its middle make it no farther off than [`FAR`] then.
 pub(super) const SPREAD: f32 = 0.05;
 
 /// The vertices on a cell's loop, in order.
