@@ -32,6 +32,7 @@ mod scene;
 mod sides;
 mod tape;
 
+pub(crate) use narrow::Narrowed;
 pub use palette::Palette;
 pub use program::{Program, Region};
 pub use query::Owner;

@@ -14,6 +14,18 @@ use super::scene::Instance;
 use crate::field::{AnyField, Pieces, Zone};
 use crate::{Bounds, Interval};
 
+/// What a region holds of a solid, and the program for it if that is another.
+pub(crate) enum Narrowed {
+    /// Every point is inside.
+    Inside,
+    /// Every point is outside.
+    Outside,
+    /// The surface may cross the region, and every leaf may matter there.
+    Same,
+    /// The surface may cross the region, which a simpler program tells as much of.
+    Simpler(Program),
+}
+
 impl Program {
     /// What `region` holds of the solid: nothing but inside, nothing but outside, or perhaps
     /// the surface, with a program of the leaves that matter there. The region must be
@@ -23,16 +35,30 @@ impl Program {
     /// the sign of the full one.
     #[must_use]
     pub fn narrow(&self, region: &Bounds) -> Region {
+        self.region(self.narrowed(region))
+    }
+
+    /// The same without a copy of the program: many threads that count the users of one are in each other's way.
+    pub(crate) fn narrowed(&self, region: &Bounds) -> Narrowed {
         if !region.is_finite() || region.is_empty() {
-            return Region::Surface(self.clone());
+            return Narrowed::Same;
         }
-        self.narrow_zone(&Zone::of_bounds(region))
+        self.narrow_pass(&Zone::of_bounds(region), false)
+    }
+
+    pub(super) fn region(&self, narrowed: Narrowed) -> Region {
+        match narrowed {
+            Narrowed::Inside => Region::Inside,
+            Narrowed::Outside => Region::Outside,
+            Narrowed::Same => Region::Surface(self.clone()),
+            Narrowed::Simpler(program) => Region::Surface(program),
+        }
     }
 
     /// As [`narrow`](Program::narrow), by the boxes of leaves alone: of a region that many leaves
     /// lie in their ranges tell little more.
     pub(crate) fn narrow_by_boxes(&self, region: &Bounds) -> Region {
-        self.narrow_pass(&Zone::of_bounds(region), true)
+        self.region(self.narrow_pass(&Zone::of_bounds(region), true))
     }
 
     /// Tells the leaves which regions the program will be narrowed to next: some answer for many of
@@ -118,30 +144,30 @@ impl Program {
     }
 
     pub(crate) fn narrow_zone(&self, world: &Zone) -> Region {
-        self.narrow_pass(world, false)
+        self.region(self.narrow_pass(world, false))
     }
 
-    fn narrow_pass(&self, world: &Zone, by_boxes: bool) -> Region {
+    fn narrow_pass(&self, world: &Zone, by_boxes: bool) -> Narrowed {
         let world = &Pieces::one(*world);
         let zones = self.zones(world);
-        if let Some(region) = self.narrow_leaf(&zones, world) {
-            return region;
+        if let Some(narrowed) = self.narrow_leaf(&zones, world) {
+            return narrowed;
         }
         let mut pass = Pass::new(self, &zones, world);
         pass.by_boxes = by_boxes;
         pass.run(Asked { sign: true, value: false });
-        self.region(pass)
+        self.found(pass)
     }
 
     /// What a pass over a region that asked for signs has found.
-    pub(super) fn region(&self, pass: Pass<'_>) -> Region {
+    pub(super) fn found(&self, pass: Pass<'_>) -> Narrowed {
         let Pass { signs, nodes, list, simpler, .. } = pass;
         match signs[self.root.node()].flip_if(self.root.negated()) {
-            Sign::Positive => Region::Inside,
-            Sign::Negative => Region::Outside,
-            Sign::Unknown => Region::Surface(self.clone()),
-            Sign::Open(_) if simpler.is_empty() && self.has_all(&nodes, &list) => Region::Surface(self.clone()),
-            Sign::Open(root) => Region::Surface(self.trimmed(nodes, list, simpler, root)),
+            Sign::Positive => Narrowed::Inside,
+            Sign::Negative => Narrowed::Outside,
+            Sign::Unknown => Narrowed::Same,
+            Sign::Open(_) if simpler.is_empty() && self.has_all(&nodes, &list) => Narrowed::Same,
+            Sign::Open(root) => Narrowed::Simpler(self.trimmed(nodes, list, simpler, root)),
         }
     }
 
@@ -155,13 +181,13 @@ impl Program {
 
     /// The answer for a program of one leaf, what most regions come down to: it needs no tables, and
     /// what stays open shares its program, or all of it but a simpler leaf.
-    fn narrow_leaf(&self, zones: &[Pieces], world: &Pieces) -> Option<Region> {
+    fn narrow_leaf(&self, zones: &[Pieces], world: &Pieces) -> Option<Narrowed> {
         let [Node { kind: Kind::Leaf(leaf), .. }] = self.nodes[..] else { return None };
         let instance = self.instance(leaf);
         let zone = self.zone_in(zones, instance.frame, world);
         let open = || {
             let simpler = zone.only().and_then(|zone| instance.field.narrowed(&zone.mapped(&instance.to_local)));
-            Some(Region::Surface(simpler.map_or_else(|| self.clone(), |field| self.of_simpler(leaf, field))))
+            Some(simpler.map_or(Narrowed::Same, |field| Narrowed::Simpler(self.of_simpler(leaf, field))))
         };
         if zone.only().is_some_and(|zone| instance.is_crossed(zone)) {
             return open();
@@ -173,10 +199,10 @@ impl Program {
         };
         let range = if self.root.negated() { -range } else { range };
         if range.lo() > 0.0 {
-            return Some(Region::Inside);
+            return Some(Narrowed::Inside);
         }
         if range.hi() < 0.0 {
-            return Some(Region::Outside);
+            return Some(Narrowed::Outside);
         }
         open()
     }

@@ -58,7 +58,7 @@ impl Program {
         pass.by_boxes = true;
         pass.given = Some(given);
         pass.run(Asked { sign: true, value: false });
-        (!pass.is_value(given.0)).then(|| self.region(pass))
+        (!pass.is_value(given.0)).then(|| self.region(self.found(pass)))
     }
 }
 

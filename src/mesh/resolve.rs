@@ -16,16 +16,17 @@ use super::signs::BLOCK;
 use crate::eval::Program;
 use crate::{Bounds, Cancelled, Dual, Interval, Run};
 
-/// The number of cells, of the given blocks, all of whose nodes are on one side, though the ranges
+/// The number of cells, of the given blocks, whose programs are told by their numbers, all of whose nodes are on one side, though the ranges
 /// of the value and of each component of the gradient contain 0.
-pub(super) fn unresolved_cells(
+pub(super) fn unresolved_cells<'a>(
     lattice: &Lattice,
     blocks: &[[u32; 3]],
-    programs: &[Program],
+    program: impl Fn(usize) -> &'a Program + Sync,
     run: &Run,
 ) -> Result<usize, Cancelled> {
-    let of_block = |(&block, program): (&[u32; 3], &Program)| {
+    let of_block = |(n, &block): (usize, &[u32; 3])| {
         run.check()?;
+        let program = program(n);
         let mut open = vec![(block, BLOCK as u32)];
         let (mut count, mut memory) = (0, Vec::new());
         while let Some((cell, size)) = open.pop() {
@@ -44,7 +45,7 @@ pub(super) fn unresolved_cells(
         }
         Ok(count)
     };
-    blocks.par_iter().zip(programs).map(of_block).sum()
+    blocks.par_iter().enumerate().map(of_block).sum()
 }
 
 /// Whether a box has no surface, or none that turns round.

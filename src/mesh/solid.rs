@@ -88,7 +88,7 @@ impl Solid {
             let (mut unresolved, mut halvings) = (None, 0);
             if let Some(most) = settings.thin.halvings() {
                 loop {
-                    let count = unresolved_cells(&lattice, &blocks.cells, &blocks.programs, &run)?;
+                    let count = unresolved_cells(&lattice, &blocks.cells, |n| blocks.programs.of(n), &run)?;
                     unresolved = Some(count);
                     if count == 0 || halvings == most {
                         break;
@@ -149,11 +149,28 @@ impl Solid {
     }
 }
 
-/// The blocks that the surface may cross, each with its program.
+/// The blocks that the surface may cross.
 struct Blocks {
     /// Their first cells; z first, ascending.
     cells: Vec<[u32; 3]>,
-    programs: Vec<Program>,
+    programs: Programs,
+}
+
+/// The programs of blocks: of each its number, and all.
+struct Programs {
+    numbers: Vec<u32>,
+    all: Vec<Program>,
+}
+
+impl Programs {
+    fn of(&self, block: usize) -> &Program {
+        &self.all[self.numbers[block] as usize]
+    }
+
+    /// Whether two blocks have the same.
+    fn is_same(&self, one: usize, other: usize) -> bool {
+        self.numbers[one] == self.numbers[other] || self.of(one).is_same(self.of(other))
+    }
 }
 
 impl Blocks {
@@ -164,8 +181,9 @@ impl Blocks {
             blocks: lattice.cells().map(|cells| cells.div_ceil(BLOCK as u32)),
         };
         let found = surface_blocks(program, &grid, 0.0, run)?;
-        let cells = found.iter().map(|block| block.index.map(|i| i * BLOCK as u32)).collect();
-        Ok(Blocks { cells, programs: found.into_iter().map(|block| block.program).collect() })
+        let cells = found.blocks.iter().map(|block| block.index.map(|i| i * BLOCK as u32)).collect();
+        let numbers = found.blocks.iter().map(|block| block.program).collect();
+        Ok(Blocks { cells, programs: Programs { numbers, all: found.programs } })
     }
 }
 
@@ -175,7 +193,7 @@ impl Blocks {
 struct SolidSampler<'a> {
     lattice: &'a Lattice,
     blocks: &'a [[u32; 3]],
-    programs: Vec<Program>,
+    programs: Programs,
     /// The number of the first block of each block's group.
     groups: Vec<u32>,
     /// The box that the surface is in.
@@ -206,18 +224,13 @@ struct Scratch {
 }
 
 impl SolidSampler<'_> {
-    fn new<'a>(
-        lattice: &'a Lattice,
-        blocks: &'a [[u32; 3]],
-        programs: Vec<Program>,
-        limits: Bounds,
-    ) -> SolidSampler<'a> {
+    fn new<'a>(lattice: &'a Lattice, blocks: &'a [[u32; 3]], programs: Programs, limits: Bounds) -> SolidSampler<'a> {
         let mut groups = vec![0; blocks.len()];
         groups.par_chunks_mut(BATCH).enumerate().for_each(|(batch, groups)| {
             let mut heads: Vec<u32> = Vec::new();
             for (n, group) in (batch * BATCH..).zip(groups) {
                 // The latest first: blocks that follow each other are near each other.
-                let head = heads.iter().rev().find(|&&head| programs[head as usize].is_same(&programs[n]));
+                let head = heads.iter().rev().find(|&&head| programs.is_same(head as usize, n));
                 *group = head.copied().unwrap_or(n as u32);
                 if *group == n as u32 {
                     heads.push(*group);
@@ -240,7 +253,7 @@ impl SolidSampler<'_> {
             let block = cell.to_array().map(|x| x.max(0.0) as u32 / BLOCK as u32 * BLOCK as u32);
             // A triangle of several blocks may have its middle in one that holds no vertex.
             let nth = places.binary_search_by_key(&block, |&(block, _)| block).ok();
-            nth.map_or(whole, |nth| &self.programs[places[nth].1]).deciding_leaf(middle)
+            nth.map_or(whole, |nth| self.programs.of(places[nth].1)).deciding_leaf(middle)
         };
         mesh.triangles().par_iter().map(owner).collect()
     }
@@ -265,7 +278,7 @@ impl SolidSampler<'_> {
             let at = |i: u32| self.lattice.node(block[0] + i, block[1] + i, block[2] + i);
             all.union(&Bounds::new(at(0), at(BLOCK as u32)))
         });
-        Tape::new(&self.programs[first], &bounds)
+        Tape::new(self.programs.of(first), &bounds)
     }
 }
 
@@ -301,7 +314,7 @@ impl Sampler for SolidSampler<'_> {
         if !out.iter().fold(false, |any, value| any | (value.abs() <= doubt)) {
             return;
         }
-        let program = &self.programs[number];
+        let program = self.programs.of(number);
         for (n, value) in out.iter_mut().enumerate() {
             if value.abs() <= doubt {
                 let at = |axis: usize, stride: usize| block[axis] + (n / stride % SIDE) as u32;
@@ -338,7 +351,7 @@ impl Sampler for SolidSampler<'_> {
         let start = first.block as usize / BATCH * BATCH;
         let mut find = |edges: &[EdgeRef], roots: &mut [Root]| {
             let group = group(&edges[0]);
-            let pair = (&self.programs[group as usize], &*self.tape_of(tapes, group));
+            let pair = (self.programs.of(group as usize), &*self.tape_of(tapes, group));
             // As many as the cache holds.
             for (edges, roots) in edges.chunks(AT_ONCE).zip(roots.chunks_mut(AT_ONCE)) {
                 finder.find(evaluator, pair, self.lattice, edges, roots);

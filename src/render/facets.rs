@@ -23,7 +23,7 @@ use rayon::prelude::*;
 use super::facet_block::{Block, NODES, Ray, SIDE};
 use super::leaps::Leaps;
 use crate::eval::{Evaluator, Program, Tape};
-use crate::space::{Grid, surface_blocks};
+use crate::space::{Grid, SurfaceBlocks, surface_blocks};
 use crate::{Bounds, Cancelled, Run};
 
 /// Rays step this far over a border, in cells.
@@ -79,12 +79,12 @@ impl Facets {
         let origin = bounds.min - 0.37 * cell;
         let blocks = ((bounds.max - origin) / side).floor().as_uvec3() + 1;
         let grid = Grid { origin, side, blocks: blocks.to_array() };
-        let found = surface_blocks(program, &grid, 0.0, run)?;
+        let SurfaceBlocks { blocks: found, programs } = surface_blocks(program, &grid, 0.0, run)?;
         let node = |along: usize| (along as f64 - 0.5 * SIDE as f64) * cell;
         let place = |n: usize| [n % NODES, n / NODES % NODES, n / (NODES * NODES)].map(|along| node(along) as f32);
         let nodes = [0, 1, 2].map(|axis| (0..NODES * NODES * NODES).map(|n| place(n)[axis]).collect::<Vec<f32>>());
         let make = |maker: &mut Maker, at: usize| {
-            let (program, index) = (&found[at].program, found[at].index);
+            let (program, index) = (&programs[found[at].program as usize], found[at].index);
             let next = [0, 1, 2].map(|axis| index[axis] + 1);
             maker.block(program, &grid.bounds(index, next), &nodes)
         };

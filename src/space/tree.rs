@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::eval::{Program, Region};
+use crate::eval::{Narrowed, Program};
 use crate::{Bounds, Cancelled, Run};
 
 /// A regular grid of cubic blocks.
@@ -33,18 +33,50 @@ impl Grid {
 }
 
 /// A block that the surface may cross.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Block {
     /// Its place in the grid.
     pub(crate) index: [u32; 3],
-    pub(crate) program: Program,
+    /// The number of its program.
+    pub(crate) program: u32,
 }
 
-/// A range of blocks, with the program narrowed to a box that holds it.
+/// Blocks that the surface may cross.
+#[derive(Default)]
+pub(crate) struct SurfaceBlocks {
+    pub(crate) blocks: Vec<Block>,
+    /// Their programs; neighbours often share one.
+    pub(crate) programs: Vec<Program>,
+}
+
+impl SurfaceBlocks {
+    /// Adds others.
+    fn append(&mut self, other: SurfaceBlocks) {
+        let before = self.programs.len() as u32;
+        self.blocks.extend(other.blocks.iter().map(|block| Block { program: before + block.program, ..*block }));
+        self.programs.extend(other.programs);
+    }
+
+    /// Blocks whose programs are among some, of which only theirs are kept.
+    fn of(mut blocks: Vec<Block>, programs: Vec<Program>) -> SurfaceBlocks {
+        let mut numbers = vec![None; programs.len()];
+        for block in &blocks {
+            numbers[block.program as usize] = Some(0);
+        }
+        (0..).zip(numbers.iter_mut().flatten()).for_each(|(next, number)| *number = next);
+        for block in &mut blocks {
+            block.program = numbers[block.program as usize].unwrap_or_default();
+        }
+        let kept = programs.into_iter().zip(&numbers).filter(|(_, number)| number.is_some());
+        SurfaceBlocks { blocks, programs: kept.map(|(program, _)| program).collect() }
+    }
+}
+
+/// A range of blocks.
+#[derive(Clone, Copy)]
 struct Part {
     from: [u32; 3],
     to: [u32; 3],
-    program: Program,
 }
 
 impl Part {
@@ -65,10 +97,12 @@ impl Part {
         let (mut below, mut above) = (self.to, self.from);
         below[axis] = middle;
         above[axis] = middle;
-        [
-            Part { from: self.from, to: below, program: self.program.clone() },
-            Part { from: above, to: self.to, program: self.program },
-        ]
+        [Part { from: self.from, to: below }, Part { from: above, to: self.to }]
+    }
+
+    /// What it holds, given the program of a part that holds it.
+    fn narrowed(&self, program: &Program, grid: &Grid, margin: f64) -> Narrowed {
+        program.narrowed(&grid.bounds(self.from, self.to).inflate(margin))
     }
 }
 
@@ -76,57 +110,77 @@ impl Part {
 /// follow each other are near each other, and often have one program. Every block grown by
 /// `margin` length units on each side is narrowed as a whole. The order does not depend on the
 /// number of threads.
-pub(crate) fn surface_blocks(program: &Program, grid: &Grid, margin: f64, run: &Run) -> Result<Vec<Block>, Cancelled> {
-    let root = Part { from: [0; 3], to: grid.blocks, program: program.clone() };
+pub(crate) fn surface_blocks(
+    program: &Program,
+    grid: &Grid,
+    margin: f64,
+    run: &Run,
+) -> Result<SurfaceBlocks, Cancelled> {
+    let root = Part { from: [0; 3], to: grid.blocks };
     let meter = Meter { run, done: AtomicU64::new(0), total: root.volume() };
     // Breadth first until there is work for every thread, then depth first in each part.
-    let mut parts = vec![root];
+    let mut parts = vec![(root, program.clone())];
     let wanted = 64 * rayon::current_num_threads().max(1);
-    while parts.len() < wanted && parts.iter().any(|part| part.size() != [1; 3]) {
-        let divided = |part: Part| {
+    while parts.len() < wanted && parts.iter().any(|(part, _)| part.size() != [1; 3]) {
+        let divided = |(part, program): (Part, Program)| {
             run.check()?;
             if part.size() == [1; 3] {
-                return Ok(vec![part]);
+                return Ok(vec![(part, program)]);
             }
-            let volume = part.volume();
-            Ok(match narrowed(part, grid, margin) {
-                Some(part) => Vec::from(part.halves()),
-                None => {
-                    meter.add(volume);
-                    Vec::new()
+            let program = match part.narrowed(&program, grid, margin) {
+                Narrowed::Inside | Narrowed::Outside => {
+                    meter.add(part.volume());
+                    return Ok(Vec::new());
                 }
-            })
+                Narrowed::Same => program,
+                Narrowed::Simpler(simpler) => simpler,
+            };
+            Ok(part.halves().map(|half| (half, program.clone())).into())
         };
-        let next: Result<Vec<Vec<Part>>, Cancelled> = parts.into_par_iter().map(divided).collect();
+        let next: Result<Vec<Vec<(Part, Program)>>, Cancelled> = parts.into_par_iter().map(divided).collect();
         parts = next?.into_iter().flatten().collect();
     }
-    let found: Result<Vec<Vec<Block>>, Cancelled> =
-        parts.into_par_iter().map(|part| descend(part, grid, margin, &meter)).collect();
+    let found: Result<Vec<SurfaceBlocks>, Cancelled> =
+        parts.into_par_iter().map(|(part, program)| descend(part, program, (grid, margin), &meter)).collect();
     run.report(1.0);
     let found = found?;
-    let mut blocks = Vec::with_capacity(found.iter().map(Vec::len).sum());
-    found.into_iter().for_each(|list| blocks.extend(list));
-    Ok(blocks)
+    let mut all = SurfaceBlocks::default();
+    all.blocks.reserve_exact(found.iter().map(|found| found.blocks.len()).sum());
+    found.into_iter().for_each(|found| all.append(found));
+    Ok(all)
 }
 
-fn descend(part: Part, grid: &Grid, margin: f64, meter: &Meter<'_>) -> Result<Vec<Block>, Cancelled> {
-    let mut blocks = Vec::new();
-    let mut pending = vec![part];
-    while let Some(part) = pending.pop() {
+fn descend(
+    part: Part,
+    program: Program,
+    (grid, margin): (&Grid, f64),
+    meter: &Meter<'_>,
+) -> Result<SurfaceBlocks, Cancelled> {
+    let (mut blocks, mut programs) = (Vec::new(), vec![program]);
+    // Each with the number of a program that holds in it.
+    let mut pending = vec![(part, 0)];
+    while let Some((part, number)) = pending.pop() {
         meter.run.check()?;
-        let (volume, single) = (part.volume(), part.size() == [1; 3]);
-        match narrowed(part, grid, margin) {
-            Some(part) if !single => {
-                let [below, above] = part.halves();
-                pending.extend([above, below]);
+        let program = match part.narrowed(&programs[number as usize], grid, margin) {
+            Narrowed::Inside | Narrowed::Outside => {
+                meter.add(part.volume());
+                continue;
             }
-            found => {
-                blocks.extend(found.map(|part| Block { index: part.from, program: part.program }));
-                meter.add(volume);
+            Narrowed::Same => number,
+            Narrowed::Simpler(simpler) => {
+                programs.push(simpler);
+                programs.len() as u32 - 1
             }
+        };
+        if part.size() == [1; 3] {
+            blocks.push(Block { index: part.from, program });
+            meter.add(1);
+        } else {
+            let [below, above] = part.halves();
+            pending.extend([(above, program), (below, program)]);
         }
     }
-    Ok(blocks)
+    Ok(SurfaceBlocks::of(blocks, programs))
 }
 
 /// Counts the blocks that are decided.
@@ -140,13 +194,5 @@ impl Meter<'_> {
     fn add(&self, blocks: u64) {
         let done = self.done.fetch_add(blocks, Ordering::Relaxed) + blocks;
         self.run.report(done as f64 / self.total as f64);
-    }
-}
-
-/// The part with the program narrowed to it, if the surface may cross it.
-fn narrowed(part: Part, grid: &Grid, margin: f64) -> Option<Part> {
-    match part.program.narrow(&grid.bounds(part.from, part.to).inflate(margin)) {
-        Region::Surface(program) => Some(Part { program, ..part }),
-        Region::Inside | Region::Outside => None,
     }
 }
