@@ -32,6 +32,8 @@ pub(super) const SPREAD: f32 = 0.05;
 pub(super) struct Ring {
     vertices: [u32; LONGEST],
     normals: [Vec3A; LONGEST],
+    /// Memory for their places.
+    positions: [Vec3A; LONGEST],
     len: usize,
     /// The sum of the normals.
     sum: Vec3A,
@@ -41,8 +43,14 @@ pub(super) struct Ring {
 
 impl Ring {
     /// A ring without vertices.
-    pub(super) const NONE: Ring =
-        Ring { vertices: [0; LONGEST], normals: [Vec3A::ZERO; LONGEST], len: 0, sum: Vec3A::ZERO, variance: 0.0 };
+    pub(super) const NONE: Ring = Ring {
+        vertices: [0; LONGEST],
+        normals: [Vec3A::ZERO; LONGEST],
+        positions: [Vec3A::ZERO; LONGEST],
+        len: 0,
+        sum: Vec3A::ZERO,
+        variance: 0.0,
+    };
 
     /// Becomes that of some edges; `ids` are the vertices on all edges of the cell.
     #[inline(always)]
@@ -84,12 +92,15 @@ impl Ring {
     /// The point of the surface above the middle, if the two are far from each other, and the unit normal there. A
     /// single triangle is small, and stays.
     #[inline(always)]
-    pub(super) fn top(&self, samples: &Samples<'_>) -> Option<(Vec3A, Vec3A)> {
+    pub(super) fn top(&mut self, samples: &Samples<'_>) -> Option<(Vec3A, Vec3A)> {
         if self.len == 3 {
             return None;
         }
-        let positions = self.vertices().iter().map(|&vertex| samples.position(vertex).into());
-        let (height, far, middle) = height(positions, self.normals());
+        let (positions, normals) = (&mut self.positions[..self.len], &self.normals[..self.len]);
+        for (at, &vertex) in positions.iter_mut().zip(&self.vertices) {
+            *at = samples.position(vertex).into();
+        }
+        let (height, far, middle) = height(positions, normals);
         (far > FAR * samples.lattice.step() as f32).then(|| {
             let normal = self.sum.normalize_or_zero();
             (middle + height * normal, normal)
@@ -100,12 +111,12 @@ impl Ring {
 /// How far the surface is above the middle of points on it, given with the normals there; how far it may be from
 /// triangles between them; and the middle.
 #[inline(always)]
-fn height(positions: impl Iterator<Item = Vec3A> + Clone, normals: &[Vec3A]) -> (f32, f32, Vec3A) {
+fn height(positions: &[Vec3A], normals: &[Vec3A]) -> (f32, f32, Vec3A) {
     let share = 1.0 / normals.len() as f32;
-    let middle = share * positions.clone().sum::<Vec3A>();
+    let middle = share * positions.iter().sum::<Vec3A>();
     let (mut height, mut far) = (0.0, 0.0);
-    for (at, normal) in positions.zip(normals) {
-        let rise = normal.dot(at - middle);
+    for (at, normal) in positions.iter().zip(normals) {
+        let rise = normal.dot(*at - middle);
         height += rise;
         far += rise.abs();
     }
@@ -156,9 +167,8 @@ mod tests {
         };
         let saddle = |x: f32, y: f32| (Vec3A::new(x, y, (x * x - y * y) / 16.0), Vec3A::new(-x, y, 8.0).normalize());
         let square = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
-        let look = |corners: [(Vec3A, Vec3A); 4]| {
-            height(corners.into_iter().map(|corner| corner.0), &corners.map(|corner| corner.1))
-        };
+        let look =
+            |corners: [(Vec3A, Vec3A); 4]| height(&corners.map(|corner| corner.0), &corners.map(|corner| corner.1));
         let (above, far, middle) = look(square.map(|(x, y)| ball(x, y)));
         assert!((middle.length() + above - 8.0).abs() < 1e-3 && far > 0.03, "{above}, {far}");
         let (above, far, middle) = look(square.map(|(x, y)| saddle(x - 0.5, y - 0.5)));

@@ -306,7 +306,7 @@ impl Lists {
         samples: &Samples<'_>,
         cell: [u32; 3],
         outline: &CellLoop,
-        ring: &Ring,
+        ring: &mut Ring,
         places: &mut Vec<Vec3A>,
     ) -> bool {
         let number = cell_number(split_cell(cell).1);
