@@ -78,6 +78,17 @@ impl Planes {
         (sum.max(0.0) / self.total()).sqrt()
     }
 
+    /// The direction that the planes have in common, if there are two sides and no more.
+    pub(super) fn crease(&self) -> Option<Vec3A> {
+        // What the matrix of the normals takes to almost 0. Its adjugate has that in its columns; the sum of the
+        // products of two eigenvalues, and the least one, tell how many sides there are.
+        let Adjugate { diagonal: d, beside: e, determinant } = Adjugate::new(self.diagonal, self.beside);
+        let pairs = d.element_sum();
+        let is_crease = pairs > 0.015 * self.weight * self.weight && determinant < 0.008 * self.weight * pairs;
+        let columns = [Vec3A::new(d.x, e.z, e.y), Vec3A::new(e.z, d.y, e.x), Vec3A::new(e.y, e.x, d.z)];
+        is_crease.then(|| columns[d.max_position()].normalize())
+    }
+
     /// The point of the box from `low` to `high` that is best, with damping λ towards `from`.
     #[inline]
     pub(super) fn nearest(&self, from: Vec3A, damping: f32, low: Vec3A, high: Vec3A) -> Vec3A {
@@ -134,12 +145,27 @@ fn product(d: Vec3A, e: Vec3A, y: Vec3A) -> Vec3A {
     d * y + e.zxy() * y.yzx() + e.yzx() * y.zxy()
 }
 
+/// The adjugate of a symmetric matrix, given like that of [`Planes`], and the determinant.
+struct Adjugate {
+    diagonal: Vec3A,
+    beside: Vec3A,
+    determinant: f32,
+}
+
+impl Adjugate {
+    #[inline(always)]
+    fn new(d: Vec3A, e: Vec3A) -> Adjugate {
+        let diagonal = d.yzx() * d.zxy() - e * e;
+        let beside = e.yzx() * e.zxy() - d * e;
+        let determinant = d.x * diagonal.x + e.z * beside.z + e.y * beside.y;
+        Adjugate { diagonal, beside, determinant }
+    }
+}
+
 /// What a symmetric matrix takes to a vector, by Cramer's rule.
 #[inline(always)]
 fn solve(d: Vec3A, e: Vec3A, b: Vec3A) -> Vec3A {
-    let diagonal = d.yzx() * d.zxy() - e * e;
-    let beside = e.yzx() * e.zxy() - d * e;
-    let determinant = d.x * diagonal.x + e.z * beside.z + e.y * beside.y;
+    let Adjugate { diagonal, beside, determinant } = Adjugate::new(d, e);
     product(diagonal, beside, b) / determinant
 }
 
@@ -182,6 +208,18 @@ mod tests {
         let planes = planes(&[(Vec3A::X, 0.25), (Vec3A::Y, 0.5)]);
         let y = planes.nearest(Vec3A::new(0.9, 0.1, 0.3), 1e-6, Vec3A::ZERO, Vec3A::ONE);
         assert!((y - Vec3A::new(0.25, 0.5, 0.3)).length() < 1e-4, "{y}");
+    }
+
+    #[test]
+    fn the_direction_of_two_sides_is_told() {
+        let two = planes(&[(Vec3A::X, 0.25), (Vec3A::X, 0.25), (Vec3A::new(0.0, 1.0, 1.0), 0.5)]);
+        let along = two.crease().unwrap();
+        assert!(along.cross(Vec3A::new(0.0, 1.0, -1.0)).length() < 1e-4, "{along}");
+        let one = planes(&[(Vec3A::X, 0.25), (Vec3A::new(1.0, 0.1, 0.0), 0.25)]);
+        assert!(one.crease().is_none());
+        let three = planes(&[(Vec3A::X, 0.25), (Vec3A::Y, 0.5), (Vec3A::Z, 0.5), (Vec3A::Z, 0.5)]);
+        assert!(three.crease().is_none());
+        assert!(Planes::NONE.crease().is_none());
     }
 
     #[test]

@@ -155,11 +155,6 @@ enum Stage {
     Box,
 }
 
-/// The normals at the vertices of a ring.
-fn normals(ring: &[Segment]) -> impl Iterator<Item = Vec3A> + Clone {
-    ring.iter().map(|segment| segment.normal.into())
-}
-
 /// The axes that a crease goes along: that which it is closest to, and the next one if it is not much farther from that.
 fn axes(along: Vec3A) -> [Option<usize>; 2] {
     let size = along.abs().to_array();
@@ -196,6 +191,15 @@ impl<'a> Asker<'a> {
         Asker { who: Who::Region(number), block, span, at: place, planes }
     }
 
+    /// The direction of its crease, if it has one and no corner; `ring` is around it.
+    fn crease(&self, ring: &[Segment]) -> Option<Vec3A> {
+        match self.who {
+            Who::Cell(_) => self.planes.crease(),
+            // The planes of all its cells tell less than its sides.
+            Who::Region(_) => crease(ring.iter().map(|segment| segment.normal.into())),
+        }
+    }
+
     fn wish(&self, size: f32, span: Span, at: Vec3A, allowed: f32) -> Wish<'a> {
         Wish { size, block: self.block, who: self.who, from: self.span.low, span, slab: None, at, allowed }
     }
@@ -203,7 +207,7 @@ impl<'a> Asker<'a> {
     /// Wishes for slabs up to where the planes meet, across the axis that is the nth of those that the crease goes
     /// along, if it is a slab itself.
     fn slabs(&self, ring: &[Segment], nth: usize, wishes: &mut Vec<Wish<'a>>) {
-        let axis = crease(normals(ring)).and_then(|along| axes(along)[nth]);
+        let axis = self.crease(ring).and_then(|along| axes(along)[nth]);
         if let Some(axis) = axis.filter(|&axis| self.span.is_slab(axis)) {
             let mut across = Vec3A::ONE;
             across[axis] = 0.0;
@@ -312,7 +316,7 @@ impl Known<'_> {
         // Beyond a face that the surface crosses there is some of it.
         let is_crossed =
             |face: u8| matches!(asker.who, Who::Cell(_)) && ring.iter().any(|segment| segment.face == face);
-        for along in crease(normals(ring)).into_iter().flat_map(|along| [along, -along]) {
+        for along in asker.crease(ring).into_iter().flat_map(|along| [along, -along]) {
             let Some((cell, length)) = asker.span.exit(asker.at, along, is_crossed) else { continue };
             let is_empty = matches!(self.samples.case_near(asker.block, cell), 0 | 255);
             if length > SHORT && is_empty && self.taken(asker.block, cell).is_none() {
