@@ -55,6 +55,7 @@ mod bulge;
 mod join;
 mod joined;
 mod neighbours;
+mod patches;
 mod region;
 mod samples;
 mod sharp;

@@ -87,6 +87,9 @@ pub(super) struct Segment {
 }
 
 impl Segment {
+    /// The most cells along an axis that a fan's box may have.
+    pub(super) const REACH: u32 = 4;
+
     /// Marks one that is not turned.
     const STRAIGHT: u32 = u32::MAX;
 
@@ -112,7 +115,7 @@ impl Segment {
         std::array::from_fn(|axis| low[axis] + u32::from(self.place >> (2 * axis) & 3))
     }
 
-    /// The same in the fan of a box, of up to four cells along each axis, given the first one.
+    /// The same in the fan of a box, of up to [`REACH`](Segment::REACH) cells along each axis, given the first one.
     pub(super) fn placed(mut self, cell: [u32; 3], low: [u32; 3]) -> Segment {
         self.place = (0..3).fold(0, |place, axis| place | ((cell[axis] - low[axis]) as u8) << (2 * axis));
         self

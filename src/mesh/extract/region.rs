@@ -30,10 +30,11 @@
 use glam::{Vec3, Vec3A};
 
 use super::joined::Joined;
+use super::patches::{Disc, Patches};
 use super::samples::{Samples, cell_number, split_cell};
 use super::span::{Span, offset};
 use super::special::Special;
-use crate::mesh::feature::{Candidate, Segment, crease, settle, tangents};
+use crate::mesh::feature::{Candidate, Segment, crease, settle};
 use crate::mesh::loops::{CellLoop, LONGEST};
 use crate::mesh::qef::Planes;
 use crate::run::{Cancelled, Run};
@@ -44,14 +45,13 @@ const MISFIT: f32 = 0.01;
 /// The most cells along an axis of a region.
 const LARGEST: u32 = 4;
 
+const _: () = assert!(LARGEST <= Segment::REACH);
+
 /// How often regions may grow so.
 const ROUNDS: usize = 3;
 
 /// How often the point of a region is sought: the weights of planes depend on it.
 const STEPS: usize = 3;
-
-/// The weight of a cell's planes is 1 over the square of its distance, in cells, and this.
-const NEAR: f32 = 0.1;
 
 /// A crease that is in an empty cell for less than this, in cells, asks for nothing.
 const SHORT: f32 = 0.02;
@@ -377,126 +377,16 @@ impl Known<'_> {
         }
         let faces = self.joined.of(self.samples, cell, case);
         let mut add = |outline: &CellLoop| {
-            let vertex = |&edge: &u8| self.samples.vertex(near, cell, edge);
             let mut vertices = [0; LONGEST];
-            for (place, edge) in vertices.iter_mut().zip(outline.edges()) {
-                *place = vertex(edge)?;
+            for (vertex, &edge) in vertices.iter_mut().zip(outline.edges()) {
+                *vertex = self.samples.vertex(near, cell, edge)?;
             }
-            let (mut ring, mut places) = (std::mem::take(&mut patches.ring), std::mem::take(&mut patches.places));
-            ring.clear();
-            places.clear();
-            self.samples.ring(cell, outline, &vertices[..outline.len()], (&mut ring, &mut places));
-            let planes = tangents(&mut ring, &places);
-            patches.add(cell, &ring, &planes);
-            (patches.ring, patches.places) = (ring, places);
+            patches.add_loop(self.samples, cell, outline, &vertices[..outline.len()]);
             Some(())
         };
         match CellLoop::single(case, faces) {
             Some(outline) => add(&outline),
             None => CellLoop::all(case, faces).try_for_each(|outline| add(&outline)),
         }
-    }
-}
-
-/// The patches of several cells: the segments of the loops around them, with their ends and the numbers of the patches.
-#[derive(Default)]
-struct Patches {
-    segments: Vec<(Segment, u32, u32)>,
-    /// By patch, its cell and the planes.
-    planes: Vec<([u32; 3], Planes)>,
-    /// Memory for the loop of one, and where its vertices are in the cell.
-    ring: Vec<Segment>,
-    places: Vec<Vec3A>,
-}
-
-/// A disc of several patches.
-struct Disc {
-    /// Its boundary.
-    ring: Vec<Segment>,
-    /// The vertices that are not on it, ascending.
-    within: Vec<u32>,
-}
-
-impl Patches {
-    fn clear(&mut self) {
-        self.segments.clear();
-        self.planes.clear();
-    }
-
-    /// Adds a patch of a cell.
-    fn add(&mut self, cell: [u32; 3], ring: &[Segment], planes: &Planes) {
-        let (next, count) = (ring.iter().cycle().skip(1).map(|segment| segment.from), self.count());
-        self.segments.extend(ring.iter().zip(next).map(|(segment, to)| (*segment, to, count)));
-        self.planes.push((cell, *planes));
-    }
-
-    fn count(&self) -> u32 {
-        self.planes.len() as u32
-    }
-
-    /// All planes, from the first node of cell `low`; those of cells close to a point tell the most.
-    fn planes(&self, low: [u32; 3], point: Vec3A) -> Planes {
-        let mut all = Planes::NONE;
-        for (cell, planes) in &self.planes {
-            let shift = offset(*cell, low);
-            all.append(planes, shift, (NEAR + (shift + 0.5 - point).length_squared()).recip());
-        }
-        all
-    }
-
-    /// All as one, if they make a disc; `low` is the first cell of the box that they are in.
-    fn glued(&self, low: [u32; 3]) -> Option<Disc> {
-        // A segment that two patches share is there in both directions.
-        let mut sides: Vec<(u32, u32)> = self.segments.iter().map(|&(segment, to, _)| (segment.from, to)).collect();
-        sides.sort_unstable();
-        let is_outer = |(segment, to, _): &&(Segment, u32, u32)| sides.binary_search(&(*to, segment.from)).is_err();
-        let outer: Vec<&(Segment, u32, u32)> = self.segments.iter().filter(is_outer).collect();
-        let mut ring: Vec<Segment> = Vec::with_capacity(outer.len());
-        let (first, ..) = *outer.first()?;
-        let mut at = first.from;
-        loop {
-            let &&(segment, to, patch) = outer.iter().find(|(segment, ..)| segment.from == at)?;
-            ring.push(segment.placed(self.planes[patch as usize].0, low));
-            at = to;
-            if at == first.from {
-                break;
-            }
-            if ring.len() > outer.len() {
-                return None;
-            }
-        }
-        // Vertices − edges + patches is 1 for a disc; edges within are listed twice.
-        let mut vertices: Vec<(u32, u32)> =
-            self.segments.iter().map(|&(segment, _, patch)| (segment.from, patch)).collect();
-        vertices.sort_unstable();
-        if ring.len() != outer.len() || !self.hangs_together(&vertices) {
-            return None;
-        }
-        vertices.dedup_by_key(|(vertex, _)| *vertex);
-        let edges = outer.len() + (self.segments.len() - outer.len()) / 2;
-        if vertices.len() + self.count() as usize != edges + 1 {
-            return None;
-        }
-        let mut within: Vec<u32> = vertices.into_iter().map(|(vertex, _)| vertex).collect();
-        within.retain(|vertex| ring.iter().all(|segment| segment.from != *vertex));
-        Some(Disc { ring, within })
-    }
-
-    /// Whether one comes from every patch to every other by vertices that they share; given the vertices in order,
-    /// each with its patches.
-    fn hangs_together(&self, vertices: &[(u32, u32)]) -> bool {
-        let mut reached: Vec<bool> = (0..self.count()).map(|patch| patch == 0).collect();
-        let mut is_new = true;
-        while is_new {
-            is_new = false;
-            for around in vertices.chunk_by(|a, b| a.0 == b.0) {
-                if around.iter().any(|&(_, patch)| reached[patch as usize]) {
-                    for &(_, patch) in around {
-                        is_new |= !std::mem::replace(&mut reached[patch as usize], true);
-                    }
-                }
-            }
-        }
-        reached.into_iter().all(|patch| patch)
     }
 }

@@ -322,21 +322,16 @@ pub(super) struct Sides {
     blocks: Vec<(Range<usize>, usize)>,
 }
 
-impl Sides {
-    fn of(&self, fan: usize) -> &[Segment] {
-        self.fans[fan].of(&self.segments)
-    }
-}
-
 impl Apart for Sides {
-    /// At feature points the normal is that of the triangle's side; other vertices lie on one side.
+    /// At feature points the normal is that of the triangle's side; other vertices lie on one side. The order is that of
+    /// [`Fans::list`].
     fn tell(&self, each: &mut dyn FnMut(usize, [Vec3; 3])) {
         const OWN: Vec3 = Vec3::ZERO;
         for (listed, first) in &self.blocks {
             let mut numbers = *first..;
             let mut each = |normals| numbers.next().into_iter().for_each(|triangle| each(triangle, normals));
             for fan in listed.clone() {
-                let segments = self.of(fan);
+                let segments = self.fans[fan].of(&self.segments);
                 for (n, segment) in segments.iter().enumerate() {
                     let (near, beside) = (segment.normal, segments.get(n + 1).unwrap_or(&segments[0]).normal);
                     match segment.across().map(|other| self.fans.get(other as usize)) {
