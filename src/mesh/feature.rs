@@ -181,23 +181,6 @@ pub(super) fn tangents(segments: &mut [Segment], places: &[Vec3A]) -> Planes {
     planes
 }
 
-/// The direction of a crease, by the normals around it, if there are two sides and no more.
-pub(super) fn crease(normals: impl Iterator<Item = Vec3A> + Clone) -> Option<Vec3A> {
-    // Two sides: that of the first normal, and that of the one that is farthest from it.
-    let first = normals.clone().find(|normal| *normal != Vec3A::ZERO)?;
-    let (mut along, mut most) = (Vec3A::ZERO, 0.0);
-    for normal in normals.clone() {
-        let across = first.cross(normal);
-        let square = across.length_squared();
-        if square > most {
-            (along, most) = (across, square);
-        }
-    }
-    // A third side would have a normal along the crease of the two.
-    let two = most > 0.09 && normals.clone().all(|normal| normal.dot(along).powi(2) < 0.04 * most);
-    two.then(|| along.normalize())
-}
-
 /// The point of a box of cells, clear of its faces, that the planes lead to in some steps.
 #[inline]
 pub(super) fn settle(planes: &Planes, from: Vec3A, low: Vec3A, high: Vec3A, steps: usize) -> Vec3A {

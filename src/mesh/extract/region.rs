@@ -34,7 +34,7 @@ use super::patches::{Disc, Patches};
 use super::samples::{Samples, cell_number, split_cell};
 use super::span::{Span, offset};
 use super::special::Special;
-use crate::mesh::feature::{Candidate, Segment, crease, settle};
+use crate::mesh::feature::{Candidate, Segment, settle};
 use crate::mesh::loops::{CellLoop, LONGEST};
 use crate::mesh::qef::Planes;
 use crate::run::{Cancelled, Run};
@@ -88,12 +88,12 @@ pub(super) fn regions(
         regions: Vec::new(),
         patches: Patches::default(),
     };
-    let mut all: Vec<(Asker<'_>, &[Segment])> = Vec::new();
+    let mut all: Vec<Asker<'_>> = Vec::new();
     for block in 0..blocks {
         run.check()?;
         for candidate in special.candidates(block) {
             if candidate.planes.distance(candidate.at) > MISFIT {
-                all.push((Asker::candidate(block, candidate), special.segments(block, candidate)));
+                all.push(Asker::candidate(block, candidate));
             }
         }
     }
@@ -101,10 +101,10 @@ pub(super) fn regions(
     for stage in [Stage::Slab(0), Stage::Slab(1), Stage::Box] {
         let mut wishes = Vec::new();
         run.check()?;
-        all.retain(|(asker, _)| known.taken(asker.block, asker.span.low).is_none());
-        for (asker, ring) in &all {
+        all.retain(|asker| known.taken(asker.block, asker.span.low).is_none());
+        for asker in &all {
             match stage {
-                Stage::Slab(nth) => asker.slabs(ring, nth, &mut wishes),
+                Stage::Slab(nth) => asker.slabs(nth, &mut wishes),
                 Stage::Box => asker.boxes(&mut wishes),
             }
         }
@@ -128,7 +128,7 @@ pub(super) fn regions(
             let Some(region) = region else { continue };
             let asker = Asker::region(number, region);
             if asker.planes.distance(asker.at) > 2.0 * MISFIT {
-                asker.slabs(&region.segments, 0, &mut wishes);
+                asker.slabs(0, &mut wishes);
                 asker.boxes(&mut wishes);
             }
             known.exits(&asker, &region.segments, &mut wishes);
@@ -191,23 +191,14 @@ impl<'a> Asker<'a> {
         Asker { who: Who::Region(number), block, span, at: place, planes }
     }
 
-    /// The direction of its crease, if it has one and no corner; `ring` is around it.
-    fn crease(&self, ring: &[Segment]) -> Option<Vec3A> {
-        match self.who {
-            Who::Cell(_) => self.planes.crease(),
-            // The planes of all its cells tell less than its sides.
-            Who::Region(_) => crease(ring.iter().map(|segment| segment.normal.into())),
-        }
-    }
-
     fn wish(&self, size: f32, span: Span, at: Vec3A, allowed: f32) -> Wish<'a> {
         Wish { size, block: self.block, who: self.who, from: self.span.low, span, slab: None, at, allowed }
     }
 
     /// Wishes for slabs up to where the planes meet, across the axis that is the nth of those that the crease goes
     /// along, if it is a slab itself.
-    fn slabs(&self, ring: &[Segment], nth: usize, wishes: &mut Vec<Wish<'a>>) {
-        let axis = self.crease(ring).and_then(|along| axes(along)[nth]);
+    fn slabs(&self, nth: usize, wishes: &mut Vec<Wish<'a>>) {
+        let axis = self.planes.crease().and_then(|along| axes(along)[nth]);
         if let Some(axis) = axis.filter(|&axis| self.span.is_slab(axis)) {
             let mut across = Vec3A::ONE;
             across[axis] = 0.0;
@@ -316,7 +307,7 @@ impl Known<'_> {
         // Beyond a face that the surface crosses there is some of it.
         let is_crossed =
             |face: u8| matches!(asker.who, Who::Cell(_)) && ring.iter().any(|segment| segment.face == face);
-        for along in asker.crease(ring).into_iter().flat_map(|along| [along, -along]) {
+        for along in asker.planes.crease().into_iter().flat_map(|along| [along, -along]) {
             let Some((cell, length)) = asker.span.exit(asker.at, along, is_crossed) else { continue };
             let is_empty = matches!(self.samples.case_near(asker.block, cell), 0 | 255);
             if length > SHORT && is_empty && self.taken(asker.block, cell).is_none() {
