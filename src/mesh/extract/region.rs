@@ -115,6 +115,7 @@ pub(super) fn regions(
         }
     }
     // Then those that creases leave through empty cells.
+    let mut asked = 0;
     for round in 0..ROUNDS {
         run.check()?;
         let mut wishes = Vec::new();
@@ -124,7 +125,8 @@ pub(super) fn regions(
                 known.exits(&Asker::candidate(block, candidate), special.segments(block, candidate), &mut wishes);
             }
         }
-        for (number, region) in known.regions.iter().enumerate() {
+        // What was not granted before is not asked for again.
+        for (number, region) in known.regions.iter().enumerate().skip(asked) {
             let Some(region) = region else { continue };
             let asker = Asker::region(number, region);
             if asker.planes.distance(asker.at) > 2.0 * MISFIT {
@@ -134,10 +136,10 @@ pub(super) fn regions(
             known.exits(&asker, &region.segments, &mut wishes);
         }
         wishes.sort_by(|a, b| b.size.total_cmp(&a.size));
-        let before = known.regions.len();
+        asked = known.regions.len();
         wishes.retain(|wish| wish.slab.is_none() || !known.grant(wish, false));
         wishes.retain(|wish| !known.grant(wish, true));
-        if known.regions.len() == before {
+        if known.regions.len() == asked {
             break;
         }
     }
@@ -304,11 +306,14 @@ impl Known<'_> {
 
     /// The boxes that hold an empty cell as well, which the crease goes on through.
     fn exits<'w>(&self, asker: &Asker<'w>, ring: &[Segment], wishes: &mut Vec<Wish<'w>>) {
+        let Some(along) = asker.planes.crease() else { return };
         // Beyond a face that the surface crosses there is some of it.
-        let is_crossed =
-            |face: u8| matches!(asker.who, Who::Cell(_)) && ring.iter().any(|segment| segment.face == face);
-        for along in asker.planes.crease().into_iter().flat_map(|along| [along, -along]) {
-            let Some((cell, length)) = asker.span.exit(asker.at, along, is_crossed) else { continue };
+        let crossed = match asker.who {
+            Who::Cell(_) => ring.iter().fold(0, |faces, segment| faces | 1 << segment.face),
+            Who::Region(_) => 0,
+        };
+        for along in [along, -along] {
+            let Some((cell, length)) = asker.span.exit(asker.at, along, crossed) else { continue };
             let is_empty = matches!(self.samples.case_near(asker.block, cell), 0 | 255);
             if length > SHORT && is_empty && self.taken(asker.block, cell).is_none() {
                 let allowed = asker.planes.distance(asker.at).max(2.0 * MISFIT);

@@ -42,19 +42,21 @@ impl Span {
         offset(self.high, self.low)
     }
 
-    /// Where a line from within leaves it: the next cell, and for how long the line is in that. None if it leaves it by a
-    /// face that is ruled out, given as twice the axis, and 1 more for the upper one. The line's start is in cells from
-    /// the first node of the box.
-    pub(super) fn exit(&self, from: Vec3A, along: Vec3A, is_ruled_out: impl Fn(u8) -> bool) -> Option<([u32; 3], f32)> {
+    /// Where a line from within leaves it: the next cell, and for how long the line is in that. None if it leaves it by
+    /// one of the faces that are ruled out, by a bit for each: that of twice the axis, and 1 more for the upper one. The
+    /// line's start is in cells from the first node of the box.
+    #[inline]
+    pub(super) fn exit(&self, from: Vec3A, along: Vec3A, ruled_out: u8) -> Option<([u32; 3], f32)> {
         let (axis, start) = way_out(Vec3A::ZERO, self.size(), from, along);
-        if is_ruled_out(2 * axis as u8 + u8::from(along[axis] > 0.0)) {
+        let is_upper = along[axis] > 0.0;
+        if ruled_out >> (2 * axis + usize::from(is_upper)) & 1 == 1 {
             return None;
         }
         let at = from + start * along;
         let mut cell: [u32; 3] = std::array::from_fn(|n| {
             self.low[n].saturating_add(at[n].max(0.0) as u32).clamp(self.low[n], self.high[n] - 1)
         });
-        cell[axis] = if along[axis] > 0.0 { self.high[axis] } else { self.low[axis].checked_sub(1)? };
+        cell[axis] = if is_upper { self.high[axis] } else { self.low[axis].checked_sub(1)? };
         let low = offset(cell, self.low);
         let (_, end) = way_out(low, low + 1.0, from, along);
         Some((cell, end - start))
@@ -72,15 +74,11 @@ pub(super) fn offset(to: [u32; 3], from: [u32; 3]) -> Vec3A {
     Vec3A::from_array(std::array::from_fn(|axis| (i64::from(to[axis]) - i64::from(from[axis])) as f32))
 }
 
-/// The axis along which a line leaves a box, and after how long.
+/// The axis along which a line from within leaves a box, and after how long.
+#[inline]
 fn way_out(low: Vec3A, high: Vec3A, from: Vec3A, along: Vec3A) -> (usize, f32) {
-    let (mut axis, mut least) = (0, f32::INFINITY);
-    for n in 0..3 {
-        let side = if along[n] > 0.0 { high[n] } else { low[n] };
-        let part = (side - from[n]) / along[n];
-        if part < least {
-            (axis, least) = (n, part);
-        }
-    }
-    (axis, least)
+    let side = Vec3A::select(along.cmpgt(Vec3A::ZERO), high, low);
+    // A line across an axis never leaves along it, whatever the sign of that 0.
+    let parts = ((side - from) / along).abs();
+    (parts.min_position(), parts.min_element())
 }
