@@ -211,8 +211,8 @@ fn plane(point: Vec3A, slope: &Slope, step: f32) -> Option<(Vec3A, f32)> {
 /// Memory to refine candidates with.
 #[derive(Default)]
 pub(super) struct Refiner {
-    /// By segment, the side that its vertex is on.
-    sides: Vec<u8>,
+    /// By candidate, the sides that the vertices of its segments are on, in order, four bits each.
+    sides: Vec<u64>,
     /// One for each side of each candidate, in cells from the candidate's first node; and the same from the block's.
     points: Vec<Vec3A>,
     in_block: Vec<Vec3A>,
@@ -233,7 +233,9 @@ impl Refiner {
         step: f32,
         mut slopes: impl FnMut(&[Vec3A], &mut Vec<Slope>) -> bool,
     ) {
-        let Some(start) = candidates.first().map(|candidate| candidate.first as usize) else { return };
+        if candidates.is_empty() {
+            return;
+        }
         let Refiner { sides, points, in_block, found } = self;
         sides.clear();
         points.clear();
@@ -243,7 +245,7 @@ impl Refiner {
         let mut groups = [Group::default(); LONGEST];
         for candidate in candidates.iter() {
             let range = candidate.range();
-            let mut count = 0;
+            let (mut count, mut on, mut shift) = (0, 0, 0);
             for (segment, &at) in segments[range.clone()].iter().zip(&places[range]) {
                 let normal = Vec3A::from(segment.normal);
                 let mut side = 0;
@@ -256,8 +258,10 @@ impl Refiner {
                 }
                 groups[side].sum += at;
                 groups[side].size += 1.0;
-                sides.push(side as u8);
+                on |= (side as u64) << shift;
+                shift += 4;
             }
+            sides.push(on);
             let low = Vec3A::from_array(std::array::from_fn(|axis| (candidate.cell[axis] - block[axis]) as f32));
             for Group { sum, size, .. } in &groups[..count] {
                 let point = candidate.at + CLOSER * (*sum / *size - candidate.at);
@@ -270,12 +274,12 @@ impl Refiner {
         }
         let mut asked = points.iter().zip(found);
         let mut known = [None; LONGEST];
-        for candidate in candidates {
+        for (candidate, &on) in candidates.iter_mut().zip(&*sides) {
             let range = candidate.range();
-            let (mut planes, mut count) = (Planes::NONE, 0);
-            let sides = &sides[range.start - start..range.end - start];
-            for ((segment, at), side) in segments[range.clone()].iter_mut().zip(&places[range]).zip(sides) {
-                let side = usize::from(*side);
+            let (mut planes, mut count, mut on) = (Planes::NONE, 0, on);
+            for (segment, at) in segments[range.clone()].iter_mut().zip(&places[range]) {
+                let side = (on & 15) as usize;
+                on >>= 4;
                 // They are met in the order of their first vertices.
                 if side == count {
                     known[count] = asked.next().and_then(|(point, slope)| plane(*point, slope, step));
