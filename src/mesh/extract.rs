@@ -54,6 +54,7 @@ use crate::run::{Cancelled, Run};
 mod bulge;
 mod join;
 mod joined;
+mod nearby;
 mod neighbours;
 mod patches;
 mod region;

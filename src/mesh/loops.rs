@@ -28,6 +28,9 @@ use super::table::{CaseTable, common_face};
 /// The most segments that a loop has: it passes an edge once.
 pub(super) const LONGEST: usize = 12;
 
+/// The most triangles that a case with a single loop has in the table.
+const MOST: usize = 5;
+
 /// A loop; the surface is on its left, seen from outside of the solid.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CellLoop {
@@ -36,6 +39,9 @@ pub(super) struct CellLoop {
     /// more for the upper face.
     faces: [u8; LONGEST],
     len: u8,
+    /// Of a case that has a single loop in the table, its triangles, their corners by the places of their edges in
+    /// the loop.
+    triangles: [[u8; 3]; MOST],
 }
 
 impl CellLoop {
@@ -50,8 +56,18 @@ impl CellLoop {
     #[inline]
     pub(super) fn table() -> &'static [Option<CellLoop>; 256] {
         static LOOPS: LazyLock<[Option<CellLoop>; 256]> =
-            LazyLock::new(|| std::array::from_fn(|case| CellLoop::derive(case as u8, 0)));
+            LazyLock::new(|| std::array::from_fn(|case| CellLoop::listed(case as u8)));
         &LOOPS
+    }
+
+    /// The loop of a case that has one in the table, with its triangles there.
+    fn listed(case: u8) -> Option<CellLoop> {
+        let mut outline = CellLoop::derive(case, 0)?;
+        let place = |edge: u8| outline.edges().iter().position(|&other| other == edge).map_or(0, |place| place as u8);
+        let triangles = CaseTable::get().triangles(case);
+        let triangles = std::array::from_fn(|n| triangles.get(n).map_or([0; 3], |triangle| triangle.map(place)));
+        outline.triangles = triangles;
+        Some(outline)
     }
 
     /// All loops of a case.
@@ -77,6 +93,12 @@ impl CellLoop {
         self.faces[n]
     }
 
+    /// The triangles of a [listed](CellLoop::table) loop of `N`, their corners by places in the loop.
+    #[inline(always)]
+    pub(super) fn triangles<const N: usize>(&self) -> &[[u8; 3]] {
+        &self.triangles[..N - 2]
+    }
+
     fn derive(case: u8, joined: u8) -> Option<CellLoop> {
         let all = loops(case, joined);
         let [segments] = &all[..] else { return None };
@@ -84,7 +106,8 @@ impl CellLoop {
     }
 
     fn new(segments: &[Segment]) -> CellLoop {
-        let mut out = CellLoop { edges: [0; LONGEST], faces: [0; LONGEST], len: segments.len() as u8 };
+        let (edges, faces, triangles) = ([0; LONGEST], [0; LONGEST], [[0; 3]; MOST]);
+        let mut out = CellLoop { edges, faces, len: segments.len() as u8, triangles };
         for (n, segment) in segments.iter().enumerate() {
             out.edges[n] = segment.from;
             out.faces[n] = segment.face;
@@ -185,6 +208,22 @@ mod tests {
             *lengths.entry(one.len()).or_insert(0) += 1;
         }
         assert_eq!(lengths.into_iter().collect::<Vec<_>>(), [(3, 16), (4, 30), (5, 48), (6, 44), (7, 24)]);
+    }
+
+    #[test]
+    fn listed_loops_have_the_triangles_of_the_table() {
+        for case in 0..=255 {
+            let Some(outline) = &CellLoop::table()[usize::from(case)] else { continue };
+            let triangles = match outline.len() {
+                3 => outline.triangles::<3>(),
+                4 => outline.triangles::<4>(),
+                5 => outline.triangles::<5>(),
+                6 => outline.triangles::<6>(),
+                _ => outline.triangles::<7>(),
+            };
+            let edges = triangles.iter().map(|triangle| triangle.map(|n| outline.edges()[usize::from(n)]));
+            assert_eq!(edges.collect::<Vec<_>>(), CaseTable::get().triangles(case));
+        }
     }
 
     #[test]

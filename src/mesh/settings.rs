@@ -43,9 +43,12 @@ pub enum Features {
     /// They are cut off, by a fraction of a cell: marching cubes.
     Smooth,
     /// They are kept: where the normals in a cell differ by more than 26°, the cell has a vertex on the
-    /// crease or in the corner, and the mesh has edges along the crease. Where two
-    /// or more triangles of [`Smooth`](Features::Smooth) in a cell would be off a curved surface by more than about
-    /// 0.01 cells in their middle, the cell has a vertex on the surface. Elsewhere the mesh is that of `Smooth`.
+    /// crease or in the corner, and the mesh has edges along the crease.
+    ///
+    /// Where a curved surface is off the triangles of [`Smooth`](Features::Smooth) in a cell by more than about
+    /// 0.01 cells in their middle, two triangles have the diagonal that bends less; and where that is not enough, the cell
+    /// has a vertex above the surface, as far as the triangles around it are below. Elsewhere the mesh is that of
+    /// `Smooth`.
     ///
     /// Where a crease passes cells that have no surface of their own (all their corners are on the same
     /// side), the cells around, up to four along each axis, share a vertex on it, if their surface is a

@@ -1,79 +1,70 @@
-//! Smooth cells whose triangles would be too far off the surface: a vertex in their middle.
+//! Smooth cells whose triangles would be too far off the surface: others, or a vertex in their middle.
 //!
 //! ```text
-//!        m  ___  n       The normals m, n … at the vertices p, q … of a cell's loop tell how far the surface is
-//!        \.' c './       above the middle of the loop. If that is too much, the cell has triangles from
-//!         p-----q        there, from c, to the segments of the loop.
+//!     m  ___  n      The normals m, n … at the vertices p, q … of a cell's loop tell how far the surface
+//!     \.' c './      is from triangles between them. Of four vertices the diagonal that bends less is the
+//!      p-----q       better one. If that is too far as well, the cell has triangles from c to the segments
+//!                    of the loop.
 //! ```
 //!
-//! Let the surface be at the height h(x) = −½ xᵀKx. To first order its normal is (Kx, 1). With r the way from the
-//! middle of some points of it to each of them, the surface is above the middle by half the mean of rᵀKr, which is
-//! half the mean of n·(p − middle) over the points. Where it bends both ways, as a saddle does, the terms have both
-//! signs; the mean of their sizes tells how far it may be from triangles.
+//! Let the surface be at the height h(x) = −½ xᵀKx. To first order its normal is (Kx, 1), and for two of its points
+//! with the way d between them the bend dᵀKd is (q − p)·(n − m). A triangle is below the surface by ½ Σ λᵢλⱼ dᵀKd
+//! over its sides, where λ are the barycentric coordinates: by an eighteenth of the three bends in its middle, and by an
+//! eighth of its bend in the middle of a side.
 //!
-//! What is of third order is left out. The triangles around c are off by about half as much as those of the table,
-//! and no more values of the field are needed for them. That fans are embedded is shown in
+//! * Two triangles with a diagonal between four vertices are off by (½ (a + b) + a)/18 in the mean, with a and b the
+//!   bends of that diagonal and of the other one: the four sides bend by a + b together. Neither diagonal lies in a face of
+//!   the cell, and either will do: two faces of a tetrahedron do not cross, and four points that a plane cuts from the
+//!   edges of a cube are the corners of a convex polygon.
+//! * With r the way from the middle of some points to each of them, the surface is above the middle by half the mean
+//!   of rᵀKr, which is half the mean of n·(p − middle). Where it bends both ways, as a saddle does, the terms have both
+//!   signs; the mean of their sizes tells how far it may be from triangles.
+//! * The segments of the loop stay, and so does what the triangles are off there: sin²(π/n) times that height, for a
+//!   regular loop of n. The vertex is as far above the surface as they are below: that takes a third to a half off what
+//!   the triangles are off in the mean, and no point is farther off than those segments.
+//!
+//! What is of third order is left out, and no more values of the field are needed. That fans are embedded is shown in
 //! [`sharp`](super::sharp).
 
 use glam::{Vec3, Vec3A};
 
-use super::samples::Samples;
+use super::nearby::Nearby;
 use crate::mesh::feature::{SMOOTH, differ};
-use crate::mesh::loops::LONGEST;
 
-/// The distance of a loop's middle from the surface, in cells, beyond which there is a vertex.
-const FAR: f32 = 0.01;
+/// How far the two triangles of four vertices may be off the surface in their middles, in cells, before the better
+/// diagonal is chosen.
+const TURNED: f32 = 0.01;
+
+/// And how far with the better diagonal, before there is a vertex.
+const FAR: f32 = 0.0175;
+
+/// The distance of a longer loop's middle from the surface, in cells, beyond which there is a vertex.
+const HIGH: f32 = 0.0125;
+
+/// How high the vertex is above the middle of a loop, as a part of how high the surface is: of four to seven vertices.
+const RAISED: [f32; 4] = [1.5, 1.345, 1.25, 1.188];
 
 /// If no normals of a cell differ by more than this angle, the cell is nearly flat: the normals of a loop within 0.8
-/// cells of its middle make it no farther off than [`FAR`] then.
+/// cells of its middle make it no farther off than [`TURNED`] then.
 pub(super) const SPREAD: f32 = 0.05;
 
 /// The vertices on a cell's loop, in order.
-pub(super) struct Ring {
-    vertices: [u32; LONGEST],
-    normals: [Vec3A; LONGEST],
-    /// Memory for their places.
-    positions: [Vec3A; LONGEST],
-    len: usize,
+pub(super) struct Ring<const N: usize> {
+    places: [u32; N],
+    normals: [Vec3A; N],
     /// The sum of the normals.
     sum: Vec3A,
     /// The mean of the squares of their distances from their mean: what the square of that lacks of 1.
     variance: f32,
 }
 
-impl Ring {
-    /// A ring without vertices.
-    pub(super) const NONE: Ring = Ring {
-        vertices: [0; LONGEST],
-        normals: [Vec3A::ZERO; LONGEST],
-        positions: [Vec3A::ZERO; LONGEST],
-        len: 0,
-        sum: Vec3A::ZERO,
-        variance: 0.0,
-    };
-
-    /// Becomes that of some edges; `ids` are the vertices on all edges of the cell.
+impl<const N: usize> Ring<N> {
     #[inline(always)]
-    pub(super) fn take(&mut self, samples: &Samples<'_>, edges: &[u8], ids: &[u32; 16]) {
-        let mut sum = Vec3A::ZERO;
-        for ((vertex, normal), &edge) in self.vertices.iter_mut().zip(&mut self.normals).zip(edges) {
-            *vertex = ids[usize::from(edge & 15)];
-            let given = Vec3A::from(samples.normal(*vertex));
-            sum += given;
-            *normal = given;
-        }
-        self.len = edges.len();
-        let count = edges.len() as f32;
-        self.sum = sum;
-        self.variance = 1.0 - sum.length_squared() / (count * count);
-    }
-
-    pub(super) fn vertices(&self) -> &[u32] {
-        &self.vertices[..self.len]
-    }
-
-    fn normals(&self) -> &[Vec3A] {
-        &self.normals[..self.len]
+    pub(super) fn new(nearby: &Nearby, places: [u32; N]) -> Ring<N> {
+        let normals = places.map(|place| nearby.normal(place));
+        let sum = normals.iter().sum::<Vec3A>();
+        let share = 1.0 / (N * N) as f32;
+        Ring { places, normals, sum, variance: 1.0 - share * sum.length_squared() }
     }
 
     /// Whether the cell is nearly flat: a few normals in a circle of that diameter are this far from their mean.
@@ -86,26 +77,52 @@ impl Ring {
     #[inline(always)]
     pub(super) fn is_smooth(&self) -> bool {
         // The square of the distance of two is at most twice the sum of the squares of those from the mean.
-        2.0 * self.len as f32 * self.variance < 2.0 - 2.0 * SMOOTH || !differ(self.normals())
+        2.0 * N as f32 * self.variance < 2.0 - 2.0 * SMOOTH || !differ(&self.normals)
     }
 
-    /// The point of the surface above the middle, if the two are far from each other, and the unit normal there. A
-    /// single triangle is small, and stays.
+    /// What a smooth cell that is not flat is to have.
     #[inline(always)]
-    pub(super) fn top(&mut self, samples: &Samples<'_>) -> Option<(Vec3A, Vec3A)> {
-        if self.len == 3 {
-            return None;
+    pub(super) fn cover(&self, nearby: &Nearby) -> Cover {
+        // A single triangle is small.
+        if N == 3 {
+            return Cover::Table;
         }
-        let (positions, normals) = (&mut self.positions[..self.len], &self.normals[..self.len]);
-        for (at, &vertex) in positions.iter_mut().zip(&self.vertices) {
-            *at = samples.position(vertex).into();
+        let positions = self.places.map(|place| nearby.position(place));
+        if N == 4 {
+            let [first, second] = diagonals(&positions, &self.normals);
+            if first.max(second) <= TURNED {
+                return Cover::Table;
+            }
+            if first.min(second) <= FAR {
+                return Cover::Two(if first <= second { [[0, 1, 2], [0, 2, 3]] } else { [[1, 2, 3], [1, 3, 0]] });
+            }
         }
-        let (height, far, middle) = height(positions, normals);
-        (far > FAR * samples.lattice.step() as f32).then(|| {
-            let normal = self.sum.normalize_or_zero();
-            (middle + height * normal, normal)
-        })
+        let (height, far, middle) = height(&positions, &self.normals);
+        if N > 4 && far <= HIGH {
+            return Cover::Table;
+        }
+        let normal = self.sum.normalize_or_zero();
+        let raised = RAISED[N.clamp(4, 7) - 4];
+        Cover::Top { at: middle + raised * height * normal, normal }
     }
+}
+
+/// What a smooth cell has.
+pub(super) enum Cover {
+    /// The triangles of the table.
+    Table,
+    /// These, with a diagonal between four vertices, by their places in the loop.
+    Two([[u8; 3]; 2]),
+    /// Triangles around a vertex, in cells from the block's first node, with the unit normal there.
+    Top { at: Vec3A, normal: Vec3A },
+}
+
+/// How far the triangles with the first, and with the second diagonal between four points of a surface are off it.
+#[inline(always)]
+fn diagonals(positions: &[Vec3A], normals: &[Vec3A]) -> [f32; 2] {
+    let bend = |n: usize, m: usize| (positions[m] - positions[n]).dot(normals[m] - normals[n]);
+    let (first, second) = (bend(0, 2), bend(1, 3));
+    [first, second].map(|own| (1.0 / 18.0) * (0.5 * (first + second) + own).abs())
 }
 
 /// How far the surface is above the middle of points on it, given with the normals there; how far it may be from
@@ -148,12 +165,6 @@ impl Bulge {
     }
 }
 
-/// The triangles around a vertex, to the segments of a ring.
-pub(super) fn around(centre: u32, ring: &[u32]) -> impl ExactSizeIterator<Item = [u32; 3]> {
-    let next = |n: usize| ring.get(n + 1).unwrap_or(&ring[0]);
-    ring.iter().enumerate().map(move |(n, &from)| [centre, from, *next(n)])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -177,5 +188,40 @@ mod tests {
         let diamond = [(0.5, 0.0), (0.0, 0.5), (-0.5, 0.0), (0.0, -0.5)];
         let (above, far, _) = look(diamond.map(|(x, y)| saddle(x, y)));
         assert!(above.abs() < 1e-3 && far > 0.007, "{above}, {far}");
+    }
+
+    #[test]
+    fn the_diagonal_along_a_tube_is_the_better_one() {
+        // A tube along x, 10 cells across.
+        let tube = |x: f32, y: f32| {
+            let height = (25.0 - y * y).sqrt();
+            (Vec3A::new(x, y, height), Vec3A::new(0.0, y, height) / 5.0)
+        };
+        let corners = [(0.5, 0.0), (0.0, 0.5), (-0.5, 0.0), (0.0, -0.5)].map(|(x, y)| tube(x, y));
+        let (positions, normals) = (corners.map(|corner| corner.0), corners.map(|corner| corner.1));
+        let [along, across] = diagonals(&positions, &normals);
+        // What the middles of the triangles are off.
+        let off = |triangle: [usize; 3]| {
+            let middle = triangle.iter().map(|&n| positions[n]).sum::<Vec3A>() / 3.0;
+            5.0 - middle.y.hypot(middle.z)
+        };
+        assert!((along - off([0, 1, 2])).abs() < 0.01 * along && along > 5e-3, "{along}, {}", off([0, 1, 2]));
+        assert!((across - off([1, 2, 3])).abs() < 0.01 * across && across > 2.9 * along, "{across}, {along}");
+    }
+
+    #[test]
+    fn a_raised_vertex_is_as_far_above_as_the_segments_around_it_are_below() {
+        for (n, raised) in (4..8).zip(RAISED) {
+            let at = |k: usize| {
+                let (sin, cos) = (std::f32::consts::TAU * k as f32 / n as f32).sin_cos();
+                let normal = Vec3A::new(0.5 * cos, 0.5 * sin, 8.0).normalize();
+                (8.0 * normal, normal)
+            };
+            let (positions, normals): (Vec<Vec3A>, Vec<Vec3A>) = (0..n).map(at).unzip();
+            let (height, _, middle) = height(&positions, &normals);
+            let above = middle.length() + raised * height - 8.0;
+            let below = 8.0 - (0.5 * (positions[0] + positions[1])).length();
+            assert!((above / below - 1.0).abs() < 0.02, "{n}: {above}, {below}");
+        }
     }
 }

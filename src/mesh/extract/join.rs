@@ -200,10 +200,13 @@ impl<'a> Parts<'a> {
             return Ok(());
         }
         if let Some(plain) = fans.plain(n) {
-            plain.iter().zip(slots).for_each(|(triangle, slot)| *slot = *triangle);
+            if let Some((piece, rest)) = std::mem::take(slots).into_slice().split_at_mut_checked(plain.len()) {
+                piece.copy_from_slice(plain);
+                *slots = rest.iter_mut();
+            }
             return Ok(());
         }
-        if !self.number(n, corners) {
+        if !self.number(n, |place, vertex| corners.note(place, vertex)) {
             let what = "a vertex is missing in the neighbour that owns it";
             return Err(ExtractError::Blocks { block: self.blocks[n], what });
         }
@@ -224,16 +227,16 @@ impl<'a> Parts<'a> {
         Ok(())
     }
 
-    /// Notes the vertices on all edges of the cells of block `n`; false if the owner of one is
-    /// not there.
+    /// Tells `note` the vertices on all edges of the cells of block `n`, and the places of these among its
+    /// [`Corners`]; false if the owner of one is not there.
     ///
     /// Edges that start in an upper face belong to the neighbour there: those along the two
     /// other axes, in its first row or column.
-    pub(super) fn number(&self, n: usize, corners: &mut Corners) -> bool {
+    pub(super) fn number(&self, n: usize, mut note: impl FnMut(usize, u32)) -> bool {
         let part = self.part(n);
         for k in 0..BLOCK {
             for j in 0..BLOCK {
-                corners.row(part, [true; 3], [j, k], [j, k]);
+                note_row(part, [true; 3], [j, k], [j, k], &mut note);
             }
         }
         let signs = &part.signs;
@@ -241,7 +244,7 @@ impl<'a> Parts<'a> {
         let mut complete = true;
         // Beyond y and z: rows as they are.
         let mut row = |bits: usize, axes: [bool; 3], to: [usize; 2]| match upper(bits) {
-            Some(other) => corners.row(other, axes, to.map(|at| at % BLOCK), to),
+            Some(other) => note_row(other, axes, to.map(|at| at % BLOCK), to, &mut note),
             None => complete &= !signs.is_crossed(axes, to),
         };
         for n in 0..BLOCK {
@@ -264,10 +267,10 @@ impl<'a> Parts<'a> {
                 let [x, y, _] = other.signs.crossed(row_j, row_k);
                 let vertex = other.first + other.rows.start(row_j, row_k) + x.count_ones();
                 if along_y >> j & 1 == 1 {
-                    corners.ids[Corners::place(1, [BLOCK, j, k])] = vertex;
+                    note(Corners::place(1, [BLOCK, j, k]), vertex);
                 }
                 if along_z >> j & 1 == 1 {
-                    corners.ids[Corners::place(2, [BLOCK, j, k])] = vertex + y.count_ones();
+                    note(Corners::place(2, [BLOCK, j, k]), vertex + y.count_ones());
                 }
             }
         }
@@ -275,7 +278,7 @@ impl<'a> Parts<'a> {
     }
 }
 
-/// The vertices on the edges of a block's cells.
+/// The vertices on the edges of a block's cells, by numbers.
 pub(super) struct Corners {
     /// By axis, then by the lower node, x fastest; what lies on edges that are not crossed has
     /// no meaning.
@@ -285,6 +288,12 @@ pub(super) struct Corners {
 impl Corners {
     pub(super) fn new() -> Corners {
         Corners { ids: Box::new([0; 3 * NODES]) }
+    }
+
+    /// Notes what is on an edge, given by its place.
+    #[inline(always)]
+    pub(super) fn note(&mut self, place: usize, vertex: u32) {
+        self.ids[place] = vertex;
     }
 
     /// The vertices on the edges of a cell, and four numbers without meaning: an index of 4 bits is in range.
@@ -305,29 +314,53 @@ impl Corners {
         [x[0], x[1], x[2], x[3], y[0], y[1], y[2], y[3], z[0], z[1], z[2], z[3], 0, 0, 0, 0]
     }
 
+    /// The vertices on some edges of a cell.
+    #[inline(always)]
+    pub(super) fn of_edges<const N: usize>(&self, cell: [usize; 3], edges: &[u8; N]) -> [u32; N] {
+        /// How far the vertices on a cell's edges are from that on its first.
+        const PLACES: [u16; 16] = {
+            const J: usize = SIDE;
+            const K: usize = SIDE * SIDE;
+            let from = [0, J, K, J + K, 0, 1, K, 1 + K, 0, 1, J, 1 + J];
+            let mut places = [0; 16];
+            let mut edge = 0;
+            while edge < from.len() {
+                places[edge] = (edge / 4 * NODES + from[edge]) as u16;
+                edge += 1;
+            }
+            places
+        };
+        let ids = &self.ids[Corners::place(0, cell)..];
+        let mut found = [0; N];
+        for (found, edge) in found.iter_mut().zip(edges) {
+            *found = ids[usize::from(PLACES[usize::from(edge & 15)])];
+        }
+        found
+    }
+
     #[inline(always)]
     fn place(axis: usize, [i, j, k]: [usize; 3]) -> usize {
         i + SIDE * (j + SIDE * (k + SIDE * axis))
     }
+}
 
-    /// Notes the vertices of a row `from` of `part`, those along some axes, in row `to`.
-    fn row(&mut self, part: &Part, axes: [bool; 3], from: [usize; 2], to: [usize; 2]) {
-        let crossed = part.signs.crossed(from[0], from[1]);
-        if crossed == [0; 3] {
-            return;
+/// Tells the vertices of a row `from` of `part`, those along some axes, and their places in row `to`.
+fn note_row(part: &Part, axes: [bool; 3], from: [usize; 2], to: [usize; 2], note: &mut impl FnMut(usize, u32)) {
+    let crossed = part.signs.crossed(from[0], from[1]);
+    if crossed == [0; 3] {
+        return;
+    }
+    let mut vertex = part.first + part.rows.start(from[0], from[1]);
+    for (axis, mut bits) in crossed.into_iter().enumerate() {
+        if !axes[axis] {
+            vertex += bits.count_ones();
+            continue;
         }
-        let mut vertex = part.first + part.rows.start(from[0], from[1]);
-        for (axis, mut bits) in crossed.into_iter().enumerate() {
-            if !axes[axis] {
-                vertex += bits.count_ones();
-                continue;
-            }
-            let ids = &mut self.ids[Corners::place(axis, [0, to[0], to[1]])..][..BLOCK];
-            while bits != 0 {
-                ids[bits.trailing_zeros() as usize] = vertex;
-                vertex += 1;
-                bits &= bits - 1;
-            }
+        let start = Corners::place(axis, [0, to[0], to[1]]);
+        while bits != 0 {
+            note(start + bits.trailing_zeros() as usize, vertex);
+            vertex += 1;
+            bits &= bits - 1;
         }
     }
 }

@@ -48,7 +48,12 @@ impl Patches {
         let (mut ring, mut places) = (std::mem::take(&mut self.ring), std::mem::take(&mut self.places));
         ring.clear();
         places.clear();
-        samples.ring(cell, outline, vertices, (&mut ring, &mut places));
+        let (low, share) = (samples.node(cell), 1.0 / samples.lattice.step() as f32);
+        for (n, &from) in vertices.iter().enumerate() {
+            let (position, normal) = samples.get(from);
+            ring.push(Segment::new(from, normal, outline.face(n)));
+            places.push(share * Vec3A::from(position - low));
+        }
         let planes = tangents(&mut ring, &places);
         self.add(cell, &ring, &planes);
         (self.ring, self.places) = (ring, places);

@@ -1,14 +1,14 @@
 //! All blocks after the first pass, seen as one lattice of cells with vertices on their edges.
 
+use std::ops::Range;
+
 use glam::{Vec3, Vec3A};
 use rayon::prelude::*;
 
 use super::bulge::SPREAD;
 use super::join::Parts;
 use crate::bounds::Bounds;
-use crate::mesh::feature::{Candidate, Segment};
 use crate::mesh::lattice::Lattice;
-use crate::mesh::loops::CellLoop;
 use crate::mesh::signs::BLOCK;
 use crate::mesh::table::{EDGE_CORNERS, edge_axis};
 
@@ -142,57 +142,34 @@ impl<'a> Samples<'a> {
         self.normals[vertex as usize]
     }
 
+    /// The vertices that block `n` owns.
+    pub(super) fn own(&self, n: usize) -> Range<usize> {
+        let first = |n: usize| match n < self.blocks().len() {
+            true => self.parts.part(n).first as usize,
+            false => self.normals.len(),
+        };
+        first(n)..first(n + 1)
+    }
+
+    /// Positions and normals of consecutive vertices.
+    pub(super) fn of(&self, vertices: Range<usize>) -> (&[Vec3], &[Vec3]) {
+        (&self.positions[vertices.clone()], &self.normals[vertices])
+    }
+
     /// By block, whether the normals at the vertices of its cells differ by more than those of cells
     /// that are nearly flat.
     pub(super) fn spread(&self) -> Vec<bool> {
         let count = self.blocks().len();
-        let first = |n: usize| if n < count { self.parts.part(n).first as usize } else { self.normals.len() };
-        let hull = |[a, b]: [Vec3A; 2], [c, d]: [Vec3A; 2]| [a.min(c), b.max(d)];
-        let none = [Vec3A::INFINITY, Vec3A::NEG_INFINITY];
-        let of = |normals: &[Vec3]| normals.iter().fold(none, |all, &normal| hull(all, [normal.into(); 2]));
-        let own: Vec<[Vec3A; 2]> =
-            (0..count).into_par_iter().map(|n| of(&self.normals[first(n)..first(n + 1)])).collect();
+        let joined = |[a, b]: [Vec3; 2], [c, d]: [Vec3; 2]| [a.min(c), b.max(d)];
+        let own: Vec<[Vec3; 2]> = (0..count).into_par_iter().map(|n| hull(self.of(self.own(n)).1)).collect();
         (0..count)
             .into_par_iter()
             .map(|n| {
                 let upper = (1..7).filter_map(|bits| self.parts.neighbours.upper(n, bits));
-                let [low, high] = upper.map(|other| own[other]).fold(own[n], hull);
+                let [low, high] = upper.map(|other| own[other]).fold(own[n], joined);
                 (high - low).length_squared() > SPREAD * SPREAD
             })
             .collect()
-    }
-
-    /// Adds the segments of a loop of a cell, given the vertices on it, to a list, and the places of the vertices in
-    /// the cell to another.
-    pub(super) fn ring(
-        &self,
-        cell: [u32; 3],
-        outline: &CellLoop,
-        vertices: &[u32],
-        (segments, places): (&mut Vec<Segment>, &mut Vec<Vec3A>),
-    ) {
-        let low = self.lattice.node(cell[0], cell[1], cell[2]);
-        let share = 1.0 / self.lattice.step();
-        segments.reserve(vertices.len());
-        places.reserve(vertices.len());
-        for (n, &from) in vertices.iter().enumerate() {
-            let (position, normal) = self.get(from);
-            segments.push(Segment::new(from, normal, outline.face(n)));
-            places.push((share * (position.as_dvec3() - low)).as_vec3a());
-        }
-    }
-
-    /// A cell with a single loop, likewise.
-    pub(super) fn candidate(
-        &self,
-        cell: [u32; 3],
-        outline: &CellLoop,
-        vertices: &[u32],
-        (segments, places): (&mut Vec<Segment>, &mut Vec<Vec3A>),
-    ) -> Candidate {
-        let first = segments.len();
-        self.ring(cell, outline, vertices, (segments, places));
-        Candidate::new(cell, first, segments, &places[first..])
     }
 
     /// A node as vertices have it, rounded to f32.
@@ -206,18 +183,12 @@ impl<'a> Samples<'a> {
         p.clamp(low, high)
     }
 
-    /// The position of a point as f32, strictly inside of the box of cells from `low` up to `high`,
+    /// The position of a point, strictly inside of the box of cells from `low` up to `high`,
     /// exclusive. It is given in cells from the first node of the box.
-    pub(super) fn inside(&self, at: Vec3A, low: [u32; 3], high: [u32; 3]) -> Vec3 {
-        let [i, j, k] = low;
-        self.held((self.lattice.node(i, j, k) + at.as_dvec3() * self.lattice.step()).as_vec3(), low, high)
-    }
-
-    /// The same of a point in length units.
     #[inline]
-    pub(super) fn held(&self, at: Vec3, low: [u32; 3], high: [u32; 3]) -> Vec3 {
+    pub(super) fn inside(&self, at: Vec3A, low: [u32; 3], high: [u32; 3]) -> Vec3 {
         let (low, high) = (self.node(low), self.node(high));
-        let at = self.limited(at);
+        let at = self.limited(low + Vec3::from(self.lattice.step() as f32 * at));
         if at.cmpgt(low).all() && at.cmplt(high).all() {
             return at;
         }
@@ -225,4 +196,22 @@ impl<'a> Samples<'a> {
         let high = Vec3::new(high.x.next_down(), high.y.next_down(), high.z.next_down());
         at.clamp(low, high)
     }
+}
+
+/// The least and the greatest coordinates of some vectors.
+fn hull(list: &[Vec3]) -> [Vec3; 2] {
+    // Twelve coordinates fill lanes.
+    let (fours, rest) = list.as_chunks::<4>();
+    let (mut low, mut high) = ([[f32::INFINITY; 3]; 4], [[f32::NEG_INFINITY; 3]; 4]);
+    for four in fours {
+        for ((low, high), v) in low.iter_mut().zip(&mut high).zip(four.map(|v| v.to_array())) {
+            for ((low, high), x) in low.iter_mut().zip(high).zip(v) {
+                *low = if x < *low { x } else { *low };
+                *high = if x > *high { x } else { *high };
+            }
+        }
+    }
+    let low = low.map(Vec3::from_array).into_iter().chain(rest.iter().copied()).fold(Vec3::INFINITY, Vec3::min);
+    let high = high.map(Vec3::from_array).into_iter().chain(rest.iter().copied()).fold(Vec3::NEG_INFINITY, Vec3::max);
+    [low, high]
 }

@@ -7,12 +7,12 @@ use glam::Vec3A;
 use rayon::prelude::*;
 
 use super::Sampler;
-use super::bulge::{Bulge, Ring, around};
-use super::join::Corners;
+use super::bulge::{Bulge, Cover, Ring};
 use super::joined::Joined;
-use super::samples::{Samples, cell_number, split_cell};
+use super::nearby::Nearby;
+use super::samples::{Samples, cell_number};
 use crate::mesh::feature::{Candidate, Refiner, Segment};
-use crate::mesh::loops::CellLoop;
+use crate::mesh::loops::{CellLoop, LONGEST};
 use crate::mesh::meter::Meter;
 use crate::mesh::signs::for_each_cell;
 use crate::mesh::table::CaseTable;
@@ -204,8 +204,7 @@ impl Special {
 /// One thread's means to look at blocks.
 struct Worker<S: Sampler> {
     scratch: S::Scratch,
-    corners: Corners,
-    ring: Ring,
+    nearby: Nearby,
     /// By segment, the place of its vertex in the cell.
     places: Vec<Vec3A>,
     refiner: Refiner,
@@ -216,8 +215,7 @@ impl<S: Sampler> Worker<S> {
     fn new(sampler: &S) -> Worker<S> {
         Worker {
             scratch: sampler.scratch(),
-            corners: Corners::new(),
-            ring: Ring::NONE,
+            nearby: Nearby::new(),
             places: Vec::new(),
             refiner: Refiner::default(),
             lists: Lists::default(),
@@ -246,45 +244,49 @@ impl Lists {
         worker: &mut Worker<S>,
     ) -> OfBlock {
         // What is missing in a neighbour is an error of the second pass.
-        if !samples.parts.number(n, &mut worker.corners) {
+        if !worker.nearby.load(samples, n) {
             return OfBlock::default();
         }
-        let Worker { scratch, corners, ring, places, refiner, .. } = worker;
+        let Worker { scratch, nearby, places, refiner, .. } = worker;
         let (candidates, bulges) = (self.candidates.len(), self.bulges.len());
         let (opposite, plain) = (self.opposite.len(), self.plain.len());
         let block = samples.blocks()[n];
         let has_joined = joined.concerns(samples, n);
         let (table, loops) = (CaseTable::get(), CellLoop::table());
         for_each_cell(&samples.parts.part(n).signs, |within, case| {
-            let ids = corners.of_cell(within);
             let cell = || std::array::from_fn(|axis| block[axis] + within[axis] as u32);
             let faces = if has_joined { joined.of(samples, cell(), case) } else { 0 };
-            if faces != 0 {
-                // The table knows nothing of joined faces.
-                match CellLoop::single(case, faces) {
-                    Some(outline) => {
-                        ring.take(samples, outline.edges(), &ids);
-                        let lists = (&mut self.segments, &mut *places);
-                        self.numbers.push(cell_number(within));
-                        self.candidates.push(samples.candidate(cell(), &outline, ring.vertices(), lists));
-                    }
-                    None => {
-                        self.opposite.push(cell_number(within));
-                        let corner = |edge: u8| ids[usize::from(edge & 15)];
-                        let turned = table.triangles(!case).iter();
-                        self.plain.extend(turned.map(|&[a, b, c]| [corner(a), corner(c), corner(b)]));
-                    }
-                }
-                return;
+            if faces == 0
+                && let Some(outline) = &loops[usize::from(case)]
+            {
+                return match outline.len() {
+                    3 => self.add_cell::<3>(samples, nearby, (block, within), outline, places),
+                    4 => self.add_cell::<4>(samples, nearby, (block, within), outline, places),
+                    5 => self.add_cell::<5>(samples, nearby, (block, within), outline, places),
+                    6 => self.add_cell::<6>(samples, nearby, (block, within), outline, places),
+                    _ => self.add_cell::<7>(samples, nearby, (block, within), outline, places),
+                };
             }
-            if let Some(outline) = &loops[usize::from(case)] {
-                ring.take(samples, outline.edges(), &ids);
-                if !ring.is_flat() && self.takes(samples, cell(), outline, ring, places) {
-                    return;
+            let all = nearby.all_places(within);
+            let corner = |edge: u8| nearby.vertex(all[usize::from(edge & 15)]);
+            if faces == 0 {
+                return self.plain.extend(table.triangles(case).iter().map(|triangle| triangle.map(corner)));
+            }
+            // The table knows nothing of joined faces.
+            match CellLoop::single(case, faces) {
+                Some(outline) => {
+                    let mut around = [0; LONGEST];
+                    for (place, &edge) in around.iter_mut().zip(outline.edges()) {
+                        *place = all[usize::from(edge & 15)];
+                    }
+                    self.add_candidate(nearby, (block, within), &outline, (&around[..outline.len()], places));
+                }
+                None => {
+                    self.opposite.push(cell_number(within));
+                    let turned = table.triangles(!case).iter();
+                    self.plain.extend(turned.map(|&[a, b, c]| [corner(a), corner(c), corner(b)]));
                 }
             }
-            let corner = |edge: u8| ids[usize::from(edge & 15)];
-            self.plain.extend(table.triangles(case).iter().map(|&[a, b, c]| [corner(a), corner(b), corner(c)]));
         });
         let found = &mut self.candidates[candidates..];
         let lists = (&mut self.segments[..], &places[..]);
@@ -299,29 +301,70 @@ impl Lists {
         }
     }
 
-    /// Lists a cell that is not flat, if it is not to have the triangles of the table.
+    /// Adds what a cell of a block, given by its first cell, with a loop of `N` in the table is to have.
     #[inline(never)]
-    fn takes(
+    fn add_cell<const N: usize>(
         &mut self,
         samples: &Samples<'_>,
-        cell: [u32; 3],
+        nearby: &Nearby,
+        (block, within): ([u32; 3], [usize; 3]),
         outline: &CellLoop,
-        ring: &mut Ring,
         places: &mut Vec<Vec3A>,
-    ) -> bool {
-        let number = cell_number(split_cell(cell).1);
-        if !ring.is_smooth() {
-            let lists = (&mut self.segments, places);
-            self.numbers.push(number);
-            self.candidates.push(samples.candidate(cell, outline, ring.vertices(), lists));
-            return true;
+    ) {
+        let Some(edges) = outline.edges().first_chunk::<N>() else { return };
+        let around = nearby.places(within, edges);
+        let ring = Ring::new(nearby, around);
+        let cover = if ring.is_flat() {
+            Cover::Table
+        } else if ring.is_smooth() {
+            ring.cover(nearby)
+        } else {
+            return self.add_candidate(nearby, (block, within), outline, (&around, places));
+        };
+        // As many as three bits tell.
+        let mut vertices = [0; 8];
+        for (vertex, &place) in vertices.iter_mut().zip(&around) {
+            *vertex = nearby.vertex(place);
         }
-        let Some((at, normal)) = ring.top(samples) else { return false };
-        let at = samples.held(at.into(), cell, cell.map(|n| n + 1));
-        let (sides, first) = (outline.len() as u16, self.plain.len() as u32);
-        self.bulges.push(Bulge { cell: number, sides, first, at, normal: normal.into() });
-        // Its number is not known yet.
-        self.plain.extend(around(0, ring.vertices()));
-        true
+        let corner = |n: u8| vertices[usize::from(n & 7)];
+        match cover {
+            Cover::Table => self.plain.extend(outline.triangles::<N>().iter().map(|triangle| triangle.map(corner))),
+            Cover::Two(triangles) => self.plain.extend_from_slice(&triangles.map(|triangle| triangle.map(corner))),
+            Cover::Top { at, normal } => {
+                let cell = std::array::from_fn(|axis| block[axis] + within[axis] as u32);
+                let at = samples.inside(at - vector(within), cell, cell.map(|n| n + 1));
+                let (cell, sides, first) = (cell_number(within), N as u16, self.plain.len() as u32);
+                self.bulges.push(Bulge { cell, sides, first, at, normal: normal.into() });
+                // Its number is not known yet.
+                let triangles: [_; N] = std::array::from_fn(|n| [0, vertices[n], vertices[(n + 1) % N]]);
+                self.plain.extend_from_slice(&triangles);
+            }
+        }
     }
+
+    /// Adds a cell with a single loop around it that is to have a fan.
+    fn add_candidate(
+        &mut self,
+        nearby: &Nearby,
+        (block, within): ([u32; 3], [usize; 3]),
+        outline: &CellLoop,
+        (around, places): (&[u32], &mut Vec<Vec3A>),
+    ) {
+        let (first, low) = (self.segments.len(), vector(within));
+        self.segments.extend(
+            around
+                .iter()
+                .enumerate()
+                .map(|(n, &place)| Segment::new(nearby.vertex(place), nearby.normal(place).into(), outline.face(n))),
+        );
+        places.extend(around.iter().map(|&place| nearby.position(place) - low));
+        self.numbers.push(cell_number(within));
+        let cell = std::array::from_fn(|axis| block[axis] + within[axis] as u32);
+        self.candidates.push(Candidate::new(cell, first, &mut self.segments, &places[first..]));
+    }
+}
+
+fn vector(cell: [usize; 3]) -> Vec3A {
+    let [x, y, z] = cell.map(|n| n as i32 as f32);
+    Vec3A::new(x, y, z)
 }

@@ -13,6 +13,7 @@
 //!   direction.
 
 use super::*;
+use crate::mesh::loops::CellLoop;
 
 type Vector = [i32; 3];
 
@@ -107,16 +108,36 @@ fn no_diagonal_goes_through_a_triangle() {
     assert!(by_sign > 1000);
 }
 
+/// Whether two triangles face the same way in some direction, wherever their corners are on their edges.
+fn face_one_way(t: [u8; 3], u: [u8; 3]) -> bool {
+    let faces =
+        |triangle: [u8; 3], w: Vector| settled(triangle, |[a, b, c]| dot(cross(minus(b, a), minus(c, a)), w)) == 1;
+    directions().any(|w| faces(t, w) && faces(u, w))
+}
+
 #[test]
 fn triangles_that_share_a_side_do_not_fold() {
     for case in 0..=255 {
         let triangles = CaseTable::get().triangles(case);
-        let faces =
-            |triangle: [u8; 3], w: Vector| settled(triangle, |[a, b, c]| dot(cross(minus(b, a), minus(c, a)), w)) == 1;
         for (n, &t) in triangles.iter().enumerate() {
             for &u in triangles[..n].iter().filter(|&&u| runs_along(t, u).is_some()) {
-                assert!(directions().any(|w| faces(t, w) && faces(u, w)), "case {case}: {t:?} and {u:?}");
+                assert!(face_one_way(t, u), "case {case}: {t:?} and {u:?}");
             }
         }
     }
+}
+
+#[test]
+fn a_loop_of_four_may_have_either_diagonal() {
+    let mut count = 0;
+    for outline in CellLoop::table().iter().flatten() {
+        let &[a, b, c, d] = outline.edges() else { continue };
+        count += 1;
+        for [t, u] in [[[a, b, c], [a, c, d]], [[b, c, d], [b, d, a]]] {
+            assert!(face_one_way(t, u), "{t:?} and {u:?}");
+        }
+        // The diagonals are in no face of the cell.
+        assert!(common_face(a, c).is_none() && common_face(b, d).is_none());
+    }
+    assert_eq!(count, 30);
 }
