@@ -1,5 +1,7 @@
 //! Meshing a solid: `solid.mesh(..)`.
 
+use std::sync::OnceLock;
+
 use glam::{DVec3, Vec3, Vec3A};
 use rayon::prelude::*;
 
@@ -8,7 +10,7 @@ use super::extract::{BATCH, ExtractError, Root, Sampler, extract};
 use super::feature::Slope;
 use super::lattice::{CellSize, Lattice, LatticeError};
 use super::resolve::unresolved_cells;
-use super::settings::{AtBounds, MeshSettings};
+use super::settings::{AtBounds, Features, MeshSettings};
 use super::signs::{BLOCK, EdgeRef, NODES, SIDE};
 use crate::eval::{Evaluator, Gradients, Program, Tape, compiled};
 use crate::geom::Mesh;
@@ -98,7 +100,10 @@ impl Solid {
                     blocks = Blocks::find(&programs.surface, &lattice, &run.stage(0.0, 0.3))?;
                 }
             }
-            let sampler = SolidSampler::new(&lattice, &blocks.cells, blocks.programs, bounds);
+            let mut sampler = SolidSampler::new(&lattice, &blocks.cells, blocks.programs, bounds);
+            if settings.features == Features::Sharp {
+                sampler.keep_tapes();
+            }
             let mut mesh = extract(&sampler, &lattice, &blocks.cells, settings.features, &run.stage(0.3, 1.0))?;
             if let (AtBounds::Refuse, Some(given)) = (settings.at_bounds, &settings.bounds) {
                 self.refuse_caps(&mesh, given, lattice.step())?;
@@ -200,6 +205,8 @@ struct SolidSampler<'a> {
     limits: Bounds,
     /// The nodes of a block, relative to the first, x fastest.
     pattern: [Vec<f32>; 3],
+    /// By batch, the tapes of its groups once its roots are found; empty if they are not to be kept.
+    kept: Vec<OnceLock<Vec<(u32, Tape)>>>,
 }
 
 /// Roots that are found at once; a multiple of the points that lanes are run on.
@@ -239,7 +246,7 @@ impl SolidSampler<'_> {
         });
         let at = |node: usize, stride: usize| (node / stride % SIDE) as f64 * lattice.step();
         let pattern = [1, SIDE, SIDE * SIDE].map(|stride| (0..NODES).map(|n| at(n, stride) as f32).collect());
-        SolidSampler { lattice, blocks, programs, groups, limits, pattern }
+        SolidSampler { lattice, blocks, programs, groups, limits, pattern, kept: Vec::new() }
     }
 
     /// The leaves that decide at the middles of the triangles, by the programs of their blocks;
@@ -263,10 +270,26 @@ impl SolidSampler<'_> {
         // The latest first: blocks that follow each other are near each other.
         let made = tapes.iter().rposition(|(other, _)| *other == group);
         let at = made.unwrap_or_else(|| {
-            tapes.push((group, self.tape(group)));
+            let kept = self.kept.get(group as usize / BATCH).and_then(OnceLock::get);
+            let kept = kept.and_then(|tapes| tapes.iter().find(|(other, _)| *other == group));
+            tapes.push(kept.cloned().unwrap_or_else(|| (group, self.tape(group))));
             tapes.len() - 1
         });
         &mut tapes[at].1
+    }
+
+    /// Keeps tapes for the slopes that are asked for after all roots.
+    fn keep_tapes(&mut self) {
+        self.kept.resize_with(self.blocks.len().div_ceil(BATCH), OnceLock::new);
+    }
+
+    /// Ends the use of the tapes of a batch for roots.
+    fn put_by(&self, batch: usize, tapes: &mut Vec<(u32, Tape)>) {
+        match self.kept.get(batch) {
+            // The roots of a batch are asked for once.
+            Some(kept) => _ = kept.set(std::mem::take(tapes)),
+            None => tapes.clear(),
+        }
     }
 
     /// A tape for the group that starts with a block.
@@ -360,7 +383,7 @@ impl Sampler for SolidSampler<'_> {
         let blocks = &self.groups[first.block as usize..=last.block as usize];
         if blocks.iter().all(|other| *other == blocks[0]) {
             find(edges, out);
-            tapes.clear();
+            self.put_by(start / BATCH, tapes);
             return;
         }
         // Counted first, then each to its place: a group is named by a block of the batch.
@@ -383,7 +406,7 @@ impl Sampler for SolidSampler<'_> {
         for (&n, root) in order.iter().zip(&*roots) {
             out[n as usize] = *root;
         }
-        tapes.clear();
+        self.put_by(start / BATCH, tapes);
     }
 
     fn slopes(

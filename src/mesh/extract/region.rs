@@ -40,7 +40,7 @@ use crate::mesh::qef::Planes;
 use crate::run::{Cancelled, Run};
 
 /// A cell asks for a region if its point is farther from the planes than this, in cells.
-const MISFIT: f32 = 0.01;
+const MISFIT: f32 = 0.02;
 
 /// The most cells along an axis of a region.
 const LARGEST: u32 = 4;
@@ -54,7 +54,7 @@ const ROUNDS: usize = 3;
 const STEPS: usize = 3;
 
 /// A crease that is in an empty cell for less than this, in cells, asks for nothing.
-const SHORT: f32 = 0.02;
+const SHORT: f32 = 0.05;
 
 /// Cells that share a fan.
 pub(super) struct Region {
