@@ -158,7 +158,8 @@ impl Special {
         for_each_cell(&samples.parts.part(block).signs, |within, case| {
             let number = cell_number(within);
             while cells.next_if(|other| *other < number).is_some() {}
-            let is_dropped = cells.peek() == Some(&number);
+            let Some(next) = cells.peek() else { return };
+            let is_dropped = *next == number;
             if candidates.next_if(|other| **other == number).is_some() {
                 return;
             }
@@ -179,8 +180,10 @@ impl Special {
             }
             at += count;
         });
-        lists.plain.copy_within(from..at, to);
-        plain.end = to + at - from;
+        // After the last one that is dropped all is moved as a whole.
+        bulges.for_each(|bulge| bulge.first -= (from - to) as u32);
+        lists.plain.copy_within(from..plain.end, to);
+        plain.end -= from - to;
     }
 
     /// All bulges that are there, in order.
