@@ -270,12 +270,18 @@ impl SolidSampler<'_> {
         // The latest first: blocks that follow each other are near each other.
         let made = tapes.iter().rposition(|(other, _)| *other == group);
         let at = made.unwrap_or_else(|| {
-            let kept = self.kept.get(group as usize / BATCH).and_then(OnceLock::get);
-            let kept = kept.and_then(|tapes| tapes.iter().find(|(other, _)| *other == group));
-            tapes.push(kept.cloned().unwrap_or_else(|| (group, self.tape(group))));
+            tapes.push((group, self.tape(group)));
             tapes.len() - 1
         });
         &mut tapes[at].1
+    }
+
+    /// The tape of a group for slopes: that which its roots were found with, if it is kept. Moved from block to block it
+    /// rounds, so each block starts from the same.
+    fn tape_for_slopes(&self, group: u32) -> Tape {
+        let kept = self.kept.get(group as usize / BATCH).and_then(OnceLock::get);
+        let kept = kept.and_then(|tapes| tapes.iter().find(|(other, _)| *other == group));
+        kept.map_or_else(|| self.tape(group), |(_, tape)| tape.clone())
     }
 
     /// Keeps tapes for the slopes that are asked for after all roots.
@@ -417,12 +423,7 @@ impl Sampler for SolidSampler<'_> {
         points: &[Vec3A],
         out: &mut Vec<Slope>,
     ) -> bool {
-        let group = self.groups[number];
-        // Those of another batch are not asked for again.
-        if scratch.tapes.last().is_some_and(|(last, _)| *last as usize / BATCH != number / BATCH) {
-            scratch.tapes.clear();
-        }
-        let tape = self.tape_of(&mut scratch.tapes, group);
+        let mut tape = self.tape_for_slopes(self.groups[number]);
         tape.recentre(self.lattice.node(block[0], block[1], block[2]));
         // The program holds in the block and nowhere else.
         let (high, step) = (Vec3A::splat(BLOCK as f32), self.lattice.step() as f32);
@@ -432,7 +433,7 @@ impl Sampler for SolidSampler<'_> {
         }
         let [x, y, z] = &scratch.single;
         let [value, dx, dy, dz] = &mut scratch.slopes;
-        scratch.evaluator.gradients(tape, x, y, z, Gradients { value, dx, dy, dz });
+        scratch.evaluator.gradients(&tape, x, y, z, Gradients { value, dx, dy, dz });
         out.extend((0..points.len()).map(|n| Slope { value: value[n], gradient: Vec3A::new(dx[n], dy[n], dz[n]) }));
         true
     }
