@@ -82,3 +82,26 @@ fn way_out(low: Vec3A, high: Vec3A, from: Vec3A, along: Vec3A) -> (usize, f32) {
     let parts = ((side - from) / along).abs();
     (parts.min_position(), parts.min_element())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_along_an_axis_leaves_along_that() {
+        let span = Span::single([3, 4, 5]);
+        let from = Vec3A::new(0.25, 0.5, 0.75);
+        for zero in [0.0, -0.0] {
+            let up = Vec3A::new(1.0, zero, zero);
+            assert_eq!(span.exit(from, up, 0), Some(([4, 4, 5], 1.0)));
+            assert_eq!(span.exit(from, -up, 0), Some(([2, 4, 5], 1.0)));
+            // The upper face along x is ruled out, the lower is not.
+            assert_eq!(span.exit(from, up, 0b10), None);
+            assert_eq!(span.exit(from, -up, 0b10), Some(([2, 4, 5], 1.0)));
+        }
+        let (cell, length) = span.exit(from, Vec3A::new(0.0, 0.6, 0.8), 0).unwrap();
+        assert_eq!(cell, [3, 4, 6]);
+        // Up by 0.25 it is at y = 0.6875, and leaves the next cell there after 0.3125 of y.
+        assert!((length - 0.3125 / 0.6).abs() < 1e-6, "{length}");
+    }
+}
