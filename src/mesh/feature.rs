@@ -25,7 +25,6 @@ use std::ops::Range;
 
 use glam::{Vec3, Vec3A};
 
-use super::loops::LONGEST;
 use super::qef::Planes;
 
 /// Normals of a cell that differ by less than this are those of a smooth surface: the cosine
@@ -43,6 +42,9 @@ const ASTRAY: f32 = 0.7;
 
 /// The damping of the steps; it takes the distance from the crease to a hundredth a step.
 const DAMPING: f32 = 3e-3;
+
+/// Steps that are shorter than this, in cells, are the last: what is left is a tenth of it at most.
+const CLOSE: f32 = 1e-3;
 
 /// Where the field is asked, as a part of the way from the feature point to a vertex. Much closer, and what
 /// is found is the side of the crease that the first point missed it to.
@@ -129,20 +131,23 @@ pub(super) struct Candidate {
     /// The place of the first segment in the list, and the number of them.
     first: u32,
     len: u32,
+    /// The normal that stands for all its sides.
+    pub(super) normal: Vec3,
     /// The feature point, in cells from the cell's first node, as are the sides' planes close to it.
     pub(super) at: Vec3A,
     pub(super) planes: Planes,
 }
 
 impl Candidate {
-    /// The cell with a first feature point. Its segments are those from `first` on of the list of all, and
-    /// are told which of them turn; `places` are their vertices in cells, from the cell's first node.
-    pub(super) fn new(cell: [u32; 3], first: usize, all: &mut [Segment], places: &[Vec3A]) -> Candidate {
-        let segments = &mut all[first..];
+    /// The cell with a first feature point. Its segments are told which of them turn, and are in the list from `first`
+    /// on; `places` are their vertices in cells, from the cell's first node.
+    #[inline(always)]
+    pub(super) fn new(cell: [u32; 3], first: usize, segments: &mut [Segment], places: &[Vec3A]) -> Candidate {
         let planes = tangents(segments, places);
         let len = segments.len();
         let at = places.iter().sum::<Vec3A>() / len as f32;
-        let mut candidate = Candidate { cell, first: first as u32, len: len as u32, at, planes };
+        let normal = segments.iter().map(|segment| segment.normal).sum::<Vec3>().normalize_or_zero();
+        let mut candidate = Candidate { cell, first: first as u32, len: len as u32, normal, at, planes };
         candidate.settle();
         candidate
     }
@@ -167,6 +172,7 @@ impl Candidate {
 
 /// The planes of the surface at the vertices of a cell's loop, given where these are from the cell's first node; tells
 /// the segments which of them turn.
+#[inline(always)]
 pub(super) fn tangents(segments: &mut [Segment], places: &[Vec3A]) -> Planes {
     let mut planes = Planes::NONE;
     let mut next = segments.first().map_or(Vec3A::ZERO, |segment| segment.normal.into());
@@ -181,18 +187,19 @@ pub(super) fn tangents(segments: &mut [Segment], places: &[Vec3A]) -> Planes {
     planes
 }
 
-/// The point of a box of cells, clear of its faces, that the planes lead to in some steps.
+/// The point of a box of cells, clear of its faces, that the planes lead to in up to some steps.
 #[inline]
 pub(super) fn settle(planes: &Planes, from: Vec3A, low: Vec3A, high: Vec3A, steps: usize) -> Vec3A {
-    (0..steps).fold(from, |at, _| planes.nearest(at, DAMPING, low + INSET, high - INSET))
-}
-
-/// Vertices of a cell that have nearly the same normal as the first of them.
-#[derive(Clone, Copy, Default)]
-struct Group {
-    normal: Vec3A,
-    sum: Vec3A,
-    size: f32,
+    let mut at = from;
+    for _ in 0..steps {
+        let next = planes.nearest(at, DAMPING, low + INSET, high - INSET);
+        let way = next - at;
+        at = next;
+        if way.length_squared() < CLOSE * CLOSE {
+            break;
+        }
+    }
+    at
 }
 
 /// The plane that the surface has close to a point: its outward normal and its distance from the node that the point is
@@ -208,11 +215,13 @@ fn plane(point: Vec3A, slope: &Slope, step: f32) -> Option<(Vec3A, f32)> {
     })
 }
 
-/// Memory to refine candidates with.
+/// Moves feature points closer to the creases.
 #[derive(Default)]
 pub(super) struct Refiner {
-    /// By candidate, the sides that the vertices of its segments are on, in order, four bits each.
-    sides: Vec<u64>,
+    /// By candidate, the sides that the vertices of its segments are on, in order, four bits each; and how many there are.
+    sides: Vec<(u64, u8)>,
+    /// By segment, how far the tangent plane at its vertex is from the candidate's first node.
+    offsets: Vec<f32>,
     /// One for each side of each candidate, in cells from the candidate's first node; and the same from the block's.
     points: Vec<Vec3A>,
     in_block: Vec<Vec3A>,
@@ -221,81 +230,85 @@ pub(super) struct Refiner {
 }
 
 impl Refiner {
-    /// Moves feature points closer to the creases. The candidates are consecutive, of the block with a first cell, and so
-    /// are their `segments` and `places`, of the vertices in cells from the cell's first node. `slopes` tells values and
-    /// gradients at points, in cells from the block's first node, for cells of size `step`; without any, feature points
-    /// stay.
-    pub(super) fn refine(
-        &mut self,
-        block: [u32; 3],
-        candidates: &mut [Candidate],
-        (segments, places): (&mut [Segment], &[Vec3A]),
-        step: f32,
-        mut slopes: impl FnMut(&[Vec3A], &mut Vec<Slope>) -> bool,
-    ) {
-        if candidates.is_empty() {
-            return;
-        }
-        let Refiner { sides, points, in_block, found } = self;
+    /// Forgets all candidates.
+    pub(super) fn clear(&mut self) {
+        let Refiner { sides, offsets, points, in_block, found } = self;
         sides.clear();
+        offsets.clear();
         points.clear();
         in_block.clear();
         found.clear();
-        // Vertices that have nearly the same normal are on the same side: they share a point.
-        let mut groups = [Group::default(); LONGEST];
-        for candidate in candidates.iter() {
-            let range = candidate.range();
-            let (mut count, mut on, mut shift) = (0, 0, 0);
-            for (segment, &at) in segments[range.clone()].iter().zip(&places[range]) {
-                let normal = Vec3A::from(segment.normal);
-                let mut side = 0;
-                while side < count && groups[side].normal.dot(normal) <= ALIKE {
-                    side += 1;
-                }
-                if side == count {
-                    groups[count] = Group { normal, ..Group::default() };
-                    count += 1;
-                }
-                groups[side].sum += at;
-                groups[side].size += 1.0;
-                on |= (side as u64) << shift;
-                shift += 4;
+    }
+
+    /// Adds the next candidate, given its feature point, and the normals and places of the vertices of its segments.
+    /// Places are in cells from its first node, which is at `low` in the block.
+    #[inline(always)]
+    pub(super) fn add(&mut self, low: Vec3A, at: Vec3A, normals: &[Vec3A], places: &[Vec3A]) {
+        self.offsets.extend(normals.iter().zip(places).map(|(normal, place)| normal.dot(*place)));
+        // Vertices that have nearly the same normal as the first of those that are left share a point with it.
+        let (mut on, mut count, mut left) = (0, 0, (1_u32 << normals.len()) - 1);
+        while left != 0 {
+            let first = left & left.wrapping_neg();
+            let leader = normals[first.trailing_zeros() as usize];
+            let alike = normals.iter().rev().fold(0, |bits, own| bits << 1 | u32::from(leader.dot(*own) > ALIKE));
+            let members = alike & left | first;
+            let (mut sum, mut size) = (Vec3A::ZERO, 0.0);
+            for (n, place) in places.iter().enumerate() {
+                let is_member = members >> n & 1;
+                let share = is_member as f32;
+                sum += share * place;
+                size += share;
+                on |= u64::from(is_member) * count << (4 * n);
             }
-            sides.push(on);
-            let low = Vec3A::from_array(std::array::from_fn(|axis| (candidate.cell[axis] - block[axis]) as f32));
-            for Group { sum, size, .. } in &groups[..count] {
-                let point = candidate.at + CLOSER * (*sum / *size - candidate.at);
-                points.push(point);
-                in_block.push(low + point);
-            }
+            let point = at + CLOSER * (sum / size - at);
+            self.points.push(point);
+            self.in_block.push(low + point);
+            left &= !members;
+            count += 1;
         }
-        if !slopes(in_block, found) || found.len() != points.len() {
+        self.sides.push((on, count as u8));
+    }
+
+    /// Refines the candidates that were added, whose `segments` are consecutive. `slopes` tells values and gradients at
+    /// points, in cells from the block's first node, for cells of size `step`; without any, feature points stay.
+    pub(super) fn refine(
+        &mut self,
+        candidates: &mut [Candidate],
+        segments: &mut [Segment],
+        step: f32,
+        mut slopes: impl FnMut(&[Vec3A], &mut Vec<Slope>) -> bool,
+    ) {
+        let Refiner { sides, offsets, points, in_block, found } = self;
+        if candidates.is_empty() || !slopes(in_block, found) || found.len() != points.len() {
             return;
         }
         let mut asked = points.iter().zip(found);
-        let mut known = [None; LONGEST];
-        for (candidate, &on) in candidates.iter_mut().zip(&*sides) {
-            let range = candidate.range();
-            let (mut planes, mut count, mut on) = (Planes::NONE, 0, on);
-            for (segment, at) in segments[range.clone()].iter_mut().zip(&places[range]) {
-                let side = (on & 15) as usize;
-                on >>= 4;
-                // They are met in the order of their first vertices.
-                if side == count {
-                    known[count] = asked.next().and_then(|(point, slope)| plane(*point, slope, step));
-                    count += 1;
-                }
+        let mut vertices = segments.iter_mut().zip(offsets);
+        // As many as four bits tell.
+        let mut known = [None; 16];
+        for (candidate, &(on, count)) in candidates.iter_mut().zip(&*sides) {
+            let (mut planes, mut sum, mut on) = (Planes::NONE, Vec3A::ZERO, on);
+            for (known, (point, slope)) in known[..usize::from(count)].iter_mut().zip(&mut asked) {
+                *known = plane(*point, slope, step);
+            }
+            for (segment, offset) in vertices.by_ref().take(candidate.len as usize) {
                 let own = Vec3A::from(segment.normal);
-                match known[side] {
+                match known[(on & 15) as usize] {
                     Some((normal, offset)) if normal.dot(own) > ASTRAY => {
                         segment.normal = normal.into();
+                        sum += normal;
                         planes.add(normal, offset);
                     }
                     // The point has come out on another side of the crease.
-                    Some(_) => planes.add(own, own.dot(*at)),
-                    None => {}
+                    Some(_) => {
+                        sum += own;
+                        planes.add(own, *offset);
+                    }
+                    None => sum += own,
                 }
+                on >>= 4;
             }
+            candidate.normal = sum.normalize_or_zero().into();
             if !planes.is_empty() {
                 candidate.planes = planes;
                 candidate.settle();

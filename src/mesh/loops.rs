@@ -28,8 +28,8 @@ use super::table::{CaseTable, common_face};
 /// The most segments that a loop has: it passes an edge once.
 pub(super) const LONGEST: usize = 12;
 
-/// The most triangles that a case with a single loop has in the table.
-const MOST: usize = 5;
+/// The most segments that the loop of a case has that has a single one in the table.
+pub(super) const MOST: usize = 7;
 
 /// A loop; the surface is on its left, seen from outside of the solid.
 #[derive(Clone, Copy, Debug)]
@@ -41,7 +41,7 @@ pub(super) struct CellLoop {
     len: u8,
     /// Of a case that has a single loop in the table, its triangles, their corners by the places of their edges in
     /// the loop.
-    triangles: [[u8; 3]; MOST],
+    triangles: [[u8; 3]; MOST - 2],
 }
 
 impl CellLoop {
@@ -106,7 +106,7 @@ impl CellLoop {
     }
 
     fn new(segments: &[Segment]) -> CellLoop {
-        let (edges, faces, triangles) = ([0; LONGEST], [0; LONGEST], [[0; 3]; MOST]);
+        let (edges, faces, triangles) = ([0; LONGEST], [0; LONGEST], [[0; 3]; MOST - 2]);
         let mut out = CellLoop { edges, faces, len: segments.len() as u8, triangles };
         for (n, segment) in segments.iter().enumerate() {
             out.edges[n] = segment.from;

@@ -51,7 +51,7 @@ pub(super) const SPREAD: f32 = 0.05;
 /// The vertices on a cell's loop, in order.
 pub(super) struct Ring<const N: usize> {
     places: [u32; N],
-    normals: [Vec3A; N],
+    pub(super) normals: [Vec3A; N],
     /// The sum of the normals.
     sum: Vec3A,
     /// The mean of the squares of their distances from their mean: what the square of that lacks of 1.

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::neighbours::Neighbours;
 use super::samples::{Samples, cell_number, cell_of};
 use super::sharp::{self, Fans};
+use super::special::DROPPED;
 use super::{BATCH, Batch, ExtractError, Part, Sampler};
 use crate::geom::Mesh;
 use crate::mesh::Features;
@@ -184,7 +185,7 @@ impl<'a> Parts<'a> {
                 let dropped = fans.cells(n).iter().map(|cell| CaseTable::get().triangles(case(cell)).len());
                 part.triangles as usize - dropped.sum::<usize>()
             },
-            <[_]>::len,
+            |(plain, dropped)| plain.len() - dropped,
         )
     }
 
@@ -199,8 +200,11 @@ impl<'a> Parts<'a> {
         if self.part(n).triangles == 0 {
             return Ok(());
         }
-        if let Some(plain) = fans.plain(n) {
-            if let Some((piece, rest)) = std::mem::take(slots).into_slice().split_at_mut_checked(plain.len()) {
+        if let Some((plain, dropped)) = fans.plain(n) {
+            if dropped > 0 {
+                let kept = plain.iter().filter(|&triangle| *triangle != DROPPED);
+                kept.zip(slots).for_each(|(triangle, slot)| *slot = *triangle);
+            } else if let Some((piece, rest)) = std::mem::take(slots).into_slice().split_at_mut_checked(plain.len()) {
                 piece.copy_from_slice(plain);
                 *slots = rest.iter_mut();
             }
@@ -213,7 +217,7 @@ impl<'a> Parts<'a> {
         let table = CaseTable::get();
         let with_fan = fans.cells(n);
         for_each_cell(&self.part(n).signs, |cell, case| {
-            if !with_fan.is_empty() && with_fan.binary_search_by_key(&cell_number(cell), |&(cell, _)| cell).is_ok() {
+            if !with_fan.is_empty() && with_fan.iter().any(|&(other, _)| other == cell_number(cell)) {
                 return;
             }
             let ids = corners.of_cell(cell);

@@ -20,6 +20,12 @@ pub(super) struct Patches {
     /// Memory for the loop of one, and where its vertices are in the cell.
     ring: Vec<Segment>,
     places: Vec<Vec3A>,
+    /// And for [`glued`](Patches::glued): the ends of all segments, those that no other shares, by number, all vertices
+    /// with the numbers of their patches, and the patches that are reached.
+    sides: Vec<(u32, u32)>,
+    outer: Vec<u32>,
+    vertices: Vec<(u32, u32)>,
+    reached: Vec<bool>,
 }
 
 /// A disc of several patches.
@@ -74,20 +80,27 @@ impl Patches {
     }
 
     /// All as one, if they make a disc; `low` is the first cell of the box that they are in.
-    pub(super) fn glued(&self, low: [u32; 3]) -> Option<Disc> {
+    pub(super) fn glued(&mut self, low: [u32; 3]) -> Option<Disc> {
+        let Patches { segments, planes, sides, outer, vertices, reached, .. } = self;
         // A segment that two patches share is there in both directions.
-        let mut sides: Vec<(u32, u32)> = self.segments.iter().map(|&(segment, to, _)| (segment.from, to)).collect();
+        sides.clear();
+        sides.extend(segments.iter().map(|&(segment, to, _)| (segment.from, to)));
         sides.sort_unstable();
-        let is_outer = |(segment, to, _): &&(Segment, u32, u32)| sides.binary_search(&(*to, segment.from)).is_err();
-        let outer: Vec<&(Segment, u32, u32)> = self.segments.iter().filter(is_outer).collect();
+        let is_outer = |&n: &u32| {
+            let (segment, to, _) = segments[n as usize];
+            sides.binary_search(&(to, segment.from)).is_err()
+        };
+        outer.clear();
+        outer.extend((0..segments.len() as u32).filter(is_outer));
         let mut ring: Vec<Segment> = Vec::with_capacity(outer.len());
-        let (first, ..) = *outer.first()?;
-        let mut at = first.from;
+        let first = segments[*outer.first()? as usize].0.from;
+        let mut at = first;
         loop {
-            let &&(segment, to, patch) = outer.iter().find(|(segment, ..)| segment.from == at)?;
-            ring.push(segment.placed(self.planes[patch as usize].0, low));
+            let all = outer.iter().map(|&n| &segments[n as usize]);
+            let &(segment, to, patch) = all.into_iter().find(|(segment, ..)| segment.from == at)?;
+            ring.push(segment.placed(planes[patch as usize].0, low));
             at = to;
-            if at == first.from {
+            if at == first {
                 break;
             }
             if ring.len() > outer.len() {
@@ -95,37 +108,39 @@ impl Patches {
             }
         }
         // Vertices − edges + patches is 1 for a disc; edges within are listed twice.
-        let mut vertices: Vec<(u32, u32)> =
-            self.segments.iter().map(|&(segment, _, patch)| (segment.from, patch)).collect();
+        vertices.clear();
+        vertices.extend(segments.iter().map(|&(segment, _, patch)| (segment.from, patch)));
         vertices.sort_unstable();
-        if ring.len() != outer.len() || !self.hangs_together(&vertices) {
+        reached.clear();
+        reached.resize(planes.len(), false);
+        if ring.len() != outer.len() || !hangs_together(vertices, reached) {
             return None;
         }
         vertices.dedup_by_key(|(vertex, _)| *vertex);
-        let edges = outer.len() + (self.segments.len() - outer.len()) / 2;
-        if vertices.len() + self.count() as usize != edges + 1 {
+        let edges = outer.len() + (segments.len() - outer.len()) / 2;
+        if vertices.len() + planes.len() != edges + 1 {
             return None;
         }
-        let mut within: Vec<u32> = vertices.into_iter().map(|(vertex, _)| vertex).collect();
-        within.retain(|vertex| ring.iter().all(|segment| segment.from != *vertex));
+        let is_within = |vertex: &u32| ring.iter().all(|segment| segment.from != *vertex);
+        let within = vertices.iter().map(|&(vertex, _)| vertex).filter(is_within).collect();
         Some(Disc { ring, within })
     }
+}
 
-    /// Whether one comes from every patch to every other by vertices that they share; given the vertices in order,
-    /// each with its patches.
-    fn hangs_together(&self, vertices: &[(u32, u32)]) -> bool {
-        let mut reached: Vec<bool> = (0..self.count()).map(|patch| patch == 0).collect();
-        let mut is_new = true;
-        while is_new {
-            is_new = false;
-            for around in vertices.chunk_by(|a, b| a.0 == b.0) {
-                if around.iter().any(|&(_, patch)| reached[patch as usize]) {
-                    for &(_, patch) in around {
-                        is_new |= !std::mem::replace(&mut reached[patch as usize], true);
-                    }
+/// Whether one comes from every patch to every other by vertices that they share; given the vertices in order,
+/// each with its patches, and a mark for each patch.
+fn hangs_together(vertices: &[(u32, u32)], reached: &mut [bool]) -> bool {
+    reached[0] = true;
+    let mut is_new = true;
+    while is_new {
+        is_new = false;
+        for around in vertices.chunk_by(|a, b| a.0 == b.0) {
+            if around.iter().any(|&(_, patch)| reached[patch as usize]) {
+                for &(_, patch) in around {
+                    is_new |= !std::mem::replace(&mut reached[patch as usize], true);
                 }
             }
         }
-        reached.into_iter().all(|patch| patch)
     }
+    reached.iter().all(|patch| *patch)
 }

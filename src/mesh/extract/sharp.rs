@@ -54,11 +54,13 @@ pub(super) struct Fan {
     pub(super) list: u32,
     pub(super) segments: Range<u32>,
     /// The block that it is listed with.
-    pub(super) block: usize,
+    pub(super) block: u32,
     /// The cells that it is in.
     pub(super) span: Span,
     /// The feature point, strictly inside.
     pub(super) at: Vec3,
+    /// The normal that stands for all its sides.
+    pub(super) normal: Vec3,
 }
 
 impl Fan {
@@ -71,11 +73,14 @@ impl Fan {
 /// All fans.
 #[derive(Default)]
 pub(super) struct Fans {
+    /// Those of regions first, then those of single cells, each in the order of the blocks.
     pub(super) fans: Vec<Fan>,
     /// The segments of fans: those of single cells as they were found, those of regions in a last list.
     pub(super) segments: Vec<Vec<Segment>>,
-    /// Points of creases between two fans.
-    pub(super) points: Vec<Vec3>,
+    /// Points of creases between two fans, with the normals that stand for all sides.
+    pub(super) points: Vec<(Vec3, Vec3)>,
+    /// The cells that have a fan, by number, and which; those of a block together.
+    cells: Vec<(u16, u32)>,
     /// The cells that they are in, and the smooth ones with a vertex in their middle.
     special: Special,
     /// How many vertices there are on edges.
@@ -90,13 +95,16 @@ pub(super) struct Fans {
 #[derive(Clone, Default)]
 struct OfBlock {
     /// Those that are listed with it, of creases and corners, and how many triangles they have.
-    listed: Range<usize>,
+    listed: Listed,
     triangles: usize,
-    /// The cells that have a fan, by number, and which; ascending.
-    cells: Vec<(u16, u32)>,
+    /// Where its cells are in the list of those that have a fan.
+    cells: Range<usize>,
     /// The bulges, by their numbers.
     bulges: Range<u32>,
 }
+
+/// Those of regions, and those of single cells.
+type Listed = [Range<usize>; 2];
 
 /// Finds the cells that hold creases and corners, and gives them fans.
 pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) -> Result<Fans, Cancelled> {
@@ -117,65 +125,65 @@ pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) ->
 
 impl Fans {
     fn new(samples: &Samples<'_>, mut special: Special, regions: Vec<Region>, run: &Run) -> Result<Fans, Cancelled> {
-        let blocks = vec![OfBlock::default(); samples.blocks().len()];
-        let mut all = Fans { blocks, on_edges: samples.vertices(), ..Fans::default() };
-        all.fans.reserve(special.count());
+        let mut all = Fans { on_edges: samples.vertices(), ..Fans::default() };
+        all.blocks.reserve_exact(samples.blocks().len());
+        all.fans.reserve_exact(regions.len() + special.count());
         all.segments = special.take_segments();
         let mut in_regions: Vec<Segment> = Vec::new();
-        // The cells of regions, by the numbers of their blocks and their own.
-        let mut in_region: Vec<(usize, u16)> = Vec::new();
-        for cell in regions.iter().flat_map(|region| region.span.cells()) {
-            let (block, within) = split_cell(cell);
-            in_region.extend(samples.find(block).map(|block| (block, cell_number(within))));
+        // The cells of regions, by the numbers of their blocks and their own; and which regions.
+        let mut taken: Vec<(usize, u16, u32)> = Vec::new();
+        for (number, region) in (0..).zip(regions) {
+            for cell in region.span.cells() {
+                let (block, within) = split_cell(cell);
+                taken.extend(samples.find_near(region.block, block).map(|n| (n, cell_number(within), number)));
+            }
+            all.free.extend(region.within);
+            let normal = region.segments.iter().map(|segment| segment.normal).sum::<Vec3>().normalize_or_zero();
+            let start = in_regions.len() as u32;
+            in_regions.extend(region.segments);
+            let (list, segments) = (all.segments.len() as u32, start..in_regions.len() as u32);
+            // A region is listed with the block of the candidate that asked for it.
+            let block = region.block as u32;
+            all.fans.push(Fan { list, segments, block, span: region.span, at: region.at, normal });
         }
-        in_region.sort_unstable();
-        let mut in_region = &in_region[..];
-        // A region is listed with the block of the candidate that asked for it.
-        let mut regions = regions.into_iter().peekable();
+        all.segments.push(in_regions);
+        all.free.sort_unstable();
+        taken.sort_unstable();
+        let mut taken = &taken[..];
+        let (mut listed, regions) = (0, all.fans.len());
         let mut bulges = 0;
-        for block in 0..all.blocks.len() {
+        for block in 0..samples.blocks().len() {
             run.check()?;
-            let (taken, rest) = in_region.split_at(in_region.partition_point(|&(other, _)| other == block));
-            in_region = rest;
-            let is_free = |number: u16| taken.binary_search(&(block, number)).is_err();
-            let start = all.fans.len();
-            let candidates = special.candidates(block);
-            all.blocks[block].cells.reserve(candidates.len() + taken.len());
-            for candidate in candidates {
+            let start = listed;
+            listed += all.fans[start..regions].iter().take_while(|fan| fan.block as usize == block).count();
+            let of_regions = start..listed;
+            let (own, rest) = taken.split_at(taken.partition_point(|&(other, ..)| other == block));
+            taken = rest;
+            let (first_cell, first_fan) = (all.cells.len(), all.fans.len());
+            all.cells.extend(own.iter().map(|&(_, number, fan)| (number, fan)));
+            for candidate in special.candidates(block) {
                 let number = cell_number(split_cell(candidate.cell).1);
-                if taken.is_empty() || is_free(number) {
-                    all.blocks[block].cells.push((number, all.fans.len() as u32));
+                if own.iter().all(|&(_, other, _)| other != number) {
+                    all.cells.push((number, all.fans.len() as u32));
                     let span = Span::single(candidate.cell);
                     let at = samples.inside(candidate.at, span.low, span.high);
                     let Range { start, end } = candidate.range();
-                    all.fans.push(Fan { list: list_of(block), segments: start as u32..end as u32, block, span, at });
+                    let (list, segments) = (list_of(block), start as u32..end as u32);
+                    all.fans.push(Fan { list, segments, block: block as u32, span, at, normal: candidate.normal });
                 }
             }
-            while let Some(region) = regions.next_if(|region| region.block == block) {
-                all.cover(samples, region.span);
-                all.free.extend(region.within);
-                let start = in_regions.len() as u32;
-                in_regions.extend(region.segments);
-                let (list, segments) = (all.segments.len() as u32, start..in_regions.len() as u32);
-                all.fans.push(Fan { list, segments, block, span: region.span, at: region.at });
+            if !own.is_empty() {
+                special.drop_cells(block, own.iter().map(|&(_, number, _)| number));
             }
-            if !taken.is_empty() {
-                special.drop_cells(samples, block, taken.iter().map(|&(_, number)| number));
-            }
-            let of_block = &mut all.blocks[block];
-            of_block.listed = start..all.fans.len();
-            of_block.triangles = all.fans[start..].iter().map(|fan| fan.segments.len()).sum();
-            let start = bulges;
-            bulges += special.bulges(block).iter().filter(|bulge| bulge.is_there()).count() as u32;
-            of_block.bulges = start..bulges;
-        }
-        all.free.sort_unstable();
-        for block in &mut all.blocks {
-            block.cells.sort_unstable();
+            let listed = [of_regions, first_fan..all.fans.len()];
+            let triangles = listed.iter().flat_map(|fans| &all.fans[fans.clone()]).map(|fan| fan.segments.len()).sum();
+            let first_bulge = bulges;
+            bulges += special.bulges(block) as u32;
+            let (cells, bulges) = (first_cell..all.cells.len(), first_bulge..bulges);
+            all.blocks.push(OfBlock { listed, triangles, cells, bulges });
         }
         special.drop_candidates();
         all.special = special;
-        all.segments.push(in_regions);
         all.turn(samples, run)?;
         Ok(all)
     }
@@ -202,33 +210,18 @@ impl Fans {
         (self.fans.len() + self.points.len()) as u32 + self.blocks[block].bulges.start
     }
 
-    /// Notes that the next fan takes the place of the patches of some cells.
-    fn cover(&mut self, samples: &Samples<'_>, span: Span) {
-        for cell in span.cells() {
-            let (block, within) = split_cell(cell);
-            if let Some(block) = samples.find(block) {
-                self.blocks[block].cells.push((cell_number(within), self.fans.len() as u32));
-            }
-        }
-    }
-
     /// Notes that segments are turned to a point between two fans.
-    pub(super) fn bend(&mut self, fans: [u32; 2], at: Vec3) {
-        self.points.push(at);
+    pub(super) fn bend(&mut self, fans: [u32; 2], at: Vec3, normal: Vec3) {
+        self.points.push((at, normal));
         for fan in fans {
             // One triangle becomes two.
-            self.blocks[self.fans[fan as usize].block].triangles += 1;
+            self.blocks[self.fans[fan as usize].block as usize].triangles += 1;
         }
     }
 
     /// The segments of a fan.
     pub(super) fn of(&self, fan: usize) -> &[Segment] {
         self.fans[fan].of(&self.segments)
-    }
-
-    /// Which of the points between two fans a segment is turned to, if it is.
-    fn point(&self, segment: &Segment) -> Option<usize> {
-        (segment.across()? as usize).checked_sub(self.fans.len())
     }
 
     /// Adds the vertices, with the normals that stand for all their sides, to all positions and normals.
@@ -244,18 +237,8 @@ impl Fans {
                 normals.push(normal);
             }
         };
-        let mut between = vec![Vec3::ZERO; self.points.len()];
-        for (nth, fan) in self.fans.iter().enumerate() {
-            let mut sum = Vec3::ZERO;
-            for segment in self.of(nth) {
-                sum += segment.normal;
-                if let Some(point) = self.point(segment) {
-                    between[point] += segment.normal;
-                }
-            }
-            add(fan.at, sum.normalize_or_zero());
-        }
-        self.points.iter().zip(between).for_each(|(at, normal)| add(*at, normal.normalize_or_zero()));
+        self.fans.iter().for_each(|fan| add(fan.at, fan.normal));
+        self.points.iter().for_each(|&(at, normal)| add(at, normal));
         self.special.all_bulges().for_each(|bulge| add(bulge.at, bulge.normal));
     }
 
@@ -270,14 +253,15 @@ impl Fans {
         self.free.get(self.vertices()..).unwrap_or_default()
     }
 
-    /// The triangles of a block's cells without fans, if the block has been looked at.
-    pub(super) fn plain(&self, block: usize) -> Option<&[[u32; 3]]> {
+    /// The triangles of a block's cells without fans, if the block has been looked at; and how many of them are
+    /// [`DROPPED`](super::special::DROPPED).
+    pub(super) fn plain(&self, block: usize) -> Option<(&[[u32; 3]], usize)> {
         self.special.plain(block)
     }
 
     /// The cells of a block that have a fan, by number, and which fan.
     pub(super) fn cells(&self, block: usize) -> &[(u16, u32)] {
-        self.blocks.get(block).map_or(&[], |block| &block.cells)
+        self.blocks.get(block).map_or(&[], |block| &self.cells[block.cells.clone()])
     }
 
     /// How many triangles the fans that are listed with a block have.
@@ -288,7 +272,9 @@ impl Fans {
     /// The triangles of the fans of a block.
     pub(super) fn list(&self, block: usize, mut each: impl FnMut([u32; 3])) {
         let fans = self.fans.len() as u32;
-        for nth in self.blocks.get(block).map_or(0..0, |block| block.listed.clone()) {
+        for nth in
+            self.blocks.get(block).map_or_else(Listed::default, |block| block.listed.clone()).into_iter().flatten()
+        {
             let (segments, centre) = (self.of(nth), self.number(nth as u32));
             for (n, segment) in segments.iter().enumerate() {
                 let (from, to) = (segment.from, segments.get(n + 1).unwrap_or(&segments[0]).from);
@@ -308,7 +294,7 @@ impl Fans {
     /// What tells the normals of the fans' triangles, given the first one of each block; nothing without fans.
     pub(super) fn into_sides(self, first: Vec<usize>) -> Option<Sides> {
         let listed = self.blocks.into_iter().map(|block| block.listed);
-        let blocks: Vec<_> = listed.zip(first).filter(|(listed, _)| !listed.is_empty()).collect();
+        let blocks: Vec<_> = listed.zip(first).filter(|(listed, _)| !listed.iter().all(Range::is_empty)).collect();
         (!blocks.is_empty()).then_some(Sides { fans: self.fans, segments: self.segments, blocks })
     }
 }
@@ -319,7 +305,7 @@ pub(super) struct Sides {
     fans: Vec<Fan>,
     segments: Vec<Vec<Segment>>,
     /// By block, the fans that are listed with it, and the first of their triangles.
-    blocks: Vec<(Range<usize>, usize)>,
+    blocks: Vec<(Listed, usize)>,
 }
 
 impl Apart for Sides {
@@ -330,7 +316,7 @@ impl Apart for Sides {
         for (listed, first) in &self.blocks {
             let mut numbers = *first..;
             let mut each = |normals| numbers.next().into_iter().for_each(|triangle| each(triangle, normals));
-            for fan in listed.clone() {
+            for fan in listed.clone().into_iter().flatten() {
                 let segments = self.fans[fan].of(&self.segments);
                 for (n, segment) in segments.iter().enumerate() {
                     let (near, beside) = (segment.normal, segments.get(n + 1).unwrap_or(&segments[0]).normal);

@@ -10,11 +10,11 @@ use super::Sampler;
 use super::bulge::{Bulge, Cover, Ring};
 use super::joined::Joined;
 use super::nearby::Nearby;
-use super::samples::{Samples, cell_number};
+use super::samples::{Samples, cell_number, cell_of};
 use crate::mesh::feature::{Candidate, Refiner, Segment};
-use crate::mesh::loops::{CellLoop, LONGEST};
+use crate::mesh::loops::{CellLoop, MOST};
 use crate::mesh::meter::Meter;
-use crate::mesh::signs::for_each_cell;
+use crate::mesh::signs::{BLOCK, for_each_cell};
 use crate::mesh::table::CaseTable;
 use crate::run::{Cancelled, Run};
 
@@ -30,7 +30,8 @@ pub(super) fn list_of(block: usize) -> u32 {
 #[derive(Default)]
 pub(super) struct Special(Vec<Lists>);
 
-/// Those of consecutive blocks, each list in the order of the blocks and of their cells.
+/// Those of consecutive blocks, each list in the order of the blocks; cells of a block are in the order of the lengths
+/// of their loops.
 #[derive(Clone, Default)]
 struct Lists {
     /// Those with a single loop whose normals spread, or that have joined faces.
@@ -41,9 +42,9 @@ struct Lists {
     segments: Vec<Segment>,
     /// Smooth ones with a vertex in their middle.
     bulges: Vec<Bulge>,
-    /// Those with the patches of the opposite case, by number.
-    opposite: Vec<u16>,
-    /// The triangles of all but the candidates, in the order of cells.
+    /// All but the candidates, by number, and how many triangles each has.
+    cells: Vec<(u16, u8)>,
+    /// Their triangles.
     plain: Vec<[u32; 3]>,
     blocks: Vec<OfBlock>,
 }
@@ -53,10 +54,16 @@ struct Lists {
 struct OfBlock {
     candidates: Range<usize>,
     bulges: Range<usize>,
-    opposite: Range<usize>,
+    cells: Range<usize>,
     /// None for a block that has not been looked at.
     plain: Option<Range<usize>>,
+    /// How many of these are dropped, and of the bulges.
+    dropped: usize,
+    dropped_bulges: usize,
 }
+
+/// What takes the place of triangles that are dropped: no vertex has that number.
+pub(super) const DROPPED: [u32; 3] = [u32::MAX; 3];
 
 impl Special {
     /// Finds the special cells of the blocks whose normals spread or that have joined faces.
@@ -70,7 +77,6 @@ impl Special {
         let of_chunk = |worker: &mut Worker<S>, (chunk, spread): (usize, &[bool])| {
             let mut lists = std::mem::take(&mut worker.lists);
             lists.clear();
-            worker.places.clear();
             for (n, spreads) in (chunk * AT_ONCE..).zip(spread) {
                 meter.step()?;
                 let is_special = *spreads || joined.concerns(samples, n);
@@ -111,7 +117,7 @@ impl Special {
         }
     }
 
-    /// The candidates of a block, in order.
+    /// The candidates of a block.
     pub(super) fn candidates(&self, block: usize) -> &[Candidate] {
         let (lists, of_block) = self.at(block);
         &lists.candidates[of_block.candidates.clone()]
@@ -120,7 +126,7 @@ impl Special {
     /// The candidate of a block that is a cell, given by its number.
     pub(super) fn candidate(&self, block: usize, cell: u16) -> Option<&Candidate> {
         let (lists, of_block) = self.at(block);
-        let nth = lists.numbers[of_block.candidates.clone()].binary_search(&cell).ok()?;
+        let nth = lists.numbers[of_block.candidates.clone()].iter().position(|&number| number == cell)?;
         Some(&lists.candidates[of_block.candidates.start + nth])
     }
 
@@ -130,60 +136,41 @@ impl Special {
         candidate.segments(&self.0[block / AT_ONCE].segments)
     }
 
-    /// The bulges of a block, in order.
-    pub(super) fn bulges(&self, block: usize) -> &[Bulge] {
-        let Some(lists) = self.0.get(block / AT_ONCE) else { return &[] };
-        &lists.bulges[lists.blocks[block % AT_ONCE].bulges.clone()]
+    /// How many bulges of a block are there.
+    pub(super) fn bulges(&self, block: usize) -> usize {
+        let (_, of_block) = self.at(block);
+        of_block.bulges.len() - of_block.dropped_bulges
     }
 
-    /// The triangles of a block's cells that are no candidates, in order, if it has been looked at.
-    pub(super) fn plain(&self, block: usize) -> Option<&[[u32; 3]]> {
+    /// The triangles of a block's cells that are no candidates, if it has been looked at; and how many of them are
+    /// [`DROPPED`].
+    pub(super) fn plain(&self, block: usize) -> Option<(&[[u32; 3]], usize)> {
         let lists = self.0.get(block / AT_ONCE)?;
-        let of_block = &lists.blocks[block % AT_ONCE];
-        of_block.plain.clone().map(|plain| &lists.plain[plain])
+        let OfBlock { plain, dropped, .. } = &lists.blocks[block % AT_ONCE];
+        plain.clone().map(|plain| (&lists.plain[plain], *dropped))
     }
 
-    /// Drops the triangles and bulges of some cells of a block, given by their numbers, ascending.
-    pub(super) fn drop_cells(&mut self, samples: &Samples<'_>, block: usize, cells: impl Iterator<Item = u16>) {
+    /// Drops the triangles and bulges of some cells of a block, given by their numbers.
+    pub(super) fn drop_cells(&mut self, block: usize, cells: impl Iterator<Item = u16>) {
+        let mut bits = [0_u64; BLOCK * BLOCK * BLOCK / 64];
+        cells.for_each(|number| bits[usize::from(number) / 64] |= 1 << (number % 64));
+        let is_dropped = |number: u16| bits[usize::from(number) / 64] >> (number % 64) & 1 == 1;
         let lists = &mut self.0[block / AT_ONCE];
-        let OfBlock { candidates, bulges, opposite, plain } = &mut lists.blocks[block % AT_ONCE];
+        let OfBlock { bulges, cells, plain, dropped, dropped_bulges, .. } = &mut lists.blocks[block % AT_ONCE];
         let Some(plain) = plain else { return };
-        let mut cells = cells.peekable();
-        let mut candidates = lists.numbers[candidates.clone()].iter().peekable();
-        let mut bulges = lists.bulges[bulges.clone()].iter_mut().peekable();
-        let mut opposite = lists.opposite[opposite.clone()].iter().peekable();
-        let table = CaseTable::get();
-        // Where the triangles of the next cell are, where those start that are to be moved, and where to.
-        let (mut at, mut from, mut to) = (plain.start, plain.start, plain.start);
-        for_each_cell(&samples.parts.part(block).signs, |within, case| {
-            let number = cell_number(within);
-            while cells.next_if(|other| *other < number).is_some() {}
-            let Some(next) = cells.peek() else { return };
-            let is_dropped = *next == number;
-            if candidates.next_if(|other| **other == number).is_some() {
-                return;
+        let mut rest = &mut lists.plain[plain.clone()];
+        for &(number, count) in &lists.cells[cells.clone()] {
+            let (triangles, others) = std::mem::take(&mut rest).split_at_mut(usize::from(count));
+            if is_dropped(number) {
+                triangles.fill(DROPPED);
+                *dropped += triangles.len();
             }
-            let bulge = bulges.next_if(|bulge| bulge.cell == number);
-            let count = match &bulge {
-                Some(bulge) => usize::from(bulge.sides),
-                None if opposite.next_if(|other| **other == number).is_some() => table.triangles(!case).len(),
-                None => table.triangles(case).len(),
-            };
-            match (is_dropped, bulge) {
-                (true, bulge) => {
-                    lists.plain.copy_within(from..at, to);
-                    (from, to) = (at + count, to + at - from);
-                    bulge.into_iter().for_each(Bulge::drop_it);
-                }
-                (false, Some(bulge)) => bulge.first = (to + at - from) as u32,
-                (false, None) => {}
-            }
-            at += count;
-        });
-        // After the last one that is dropped all is moved as a whole.
-        bulges.for_each(|bulge| bulge.first -= (from - to) as u32);
-        lists.plain.copy_within(from..plain.end, to);
-        plain.end -= from - to;
+            rest = others;
+        }
+        for bulge in lists.bulges[bulges.clone()].iter_mut().filter(|bulge| is_dropped(bulge.cell)) {
+            bulge.drop_it();
+            *dropped_bulges += 1;
+        }
     }
 
     /// All bulges that are there, in order.
@@ -208,8 +195,8 @@ impl Special {
 struct Worker<S: Sampler> {
     scratch: S::Scratch,
     nearby: Nearby,
-    /// By segment, the place of its vertex in the cell.
-    places: Vec<Vec3A>,
+    /// The cells at hand with a single loop, by the length of that: their numbers and cases.
+    by_length: [Vec<(u16, u8)>; MOST + 1],
     refiner: Refiner,
     lists: Lists,
 }
@@ -219,7 +206,7 @@ impl<S: Sampler> Worker<S> {
         Worker {
             scratch: sampler.scratch(),
             nearby: Nearby::new(),
-            places: Vec::new(),
+            by_length: Default::default(),
             refiner: Refiner::default(),
             lists: Lists::default(),
         }
@@ -232,7 +219,7 @@ impl Lists {
         self.numbers.clear();
         self.segments.clear();
         self.bulges.clear();
-        self.opposite.clear();
+        self.cells.clear();
         self.plain.clear();
         self.blocks.clear();
     }
@@ -250,120 +237,139 @@ impl Lists {
         if !worker.nearby.load(samples, n) {
             return OfBlock::default();
         }
-        let Worker { scratch, nearby, places, refiner, .. } = worker;
+        let Worker { scratch, nearby, by_length, refiner, .. } = worker;
         let (candidates, bulges) = (self.candidates.len(), self.bulges.len());
-        let (opposite, plain) = (self.opposite.len(), self.plain.len());
+        let (segments, cells, plain) = (self.segments.len(), self.cells.len(), self.plain.len());
+        refiner.clear();
+        by_length.iter_mut().for_each(Vec::clear);
         let block = samples.blocks()[n];
         let has_joined = joined.concerns(samples, n);
-        let (table, loops) = (CaseTable::get(), CellLoop::table());
+        let loops = CellLoop::table();
         for_each_cell(&samples.parts.part(n).signs, |within, case| {
             let cell = || std::array::from_fn(|axis| block[axis] + within[axis] as u32);
             let faces = if has_joined { joined.of(samples, cell(), case) } else { 0 };
-            if faces == 0
-                && let Some(outline) = &loops[usize::from(case)]
-            {
-                return match outline.len() {
-                    3 => self.add_cell::<3>(samples, nearby, (block, within), outline, places),
-                    4 => self.add_cell::<4>(samples, nearby, (block, within), outline, places),
-                    5 => self.add_cell::<5>(samples, nearby, (block, within), outline, places),
-                    6 => self.add_cell::<6>(samples, nearby, (block, within), outline, places),
-                    _ => self.add_cell::<7>(samples, nearby, (block, within), outline, places),
-                };
-            }
-            let all = nearby.all_places(within);
-            let corner = |edge: u8| nearby.vertex(all[usize::from(edge & 15)]);
-            if faces == 0 {
-                return self.plain.extend(table.triangles(case).iter().map(|triangle| triangle.map(corner)));
-            }
-            // The table knows nothing of joined faces.
-            match CellLoop::single(case, faces) {
-                Some(outline) => {
-                    let mut around = [0; LONGEST];
-                    for (place, &edge) in around.iter_mut().zip(outline.edges()) {
-                        *place = all[usize::from(edge & 15)];
-                    }
-                    self.add_candidate(nearby, (block, within), &outline, (&around[..outline.len()], places));
-                }
-                None => {
-                    self.opposite.push(cell_number(within));
-                    let turned = table.triangles(!case).iter();
-                    self.plain.extend(turned.map(|&[a, b, c]| [corner(a), corner(c), corner(b)]));
-                }
+            match &loops[usize::from(case)] {
+                Some(outline) if faces == 0 => by_length[outline.len()].push((cell_number(within), case)),
+                _ => self.add_other(nearby, (block, within), (case, faces), refiner),
             }
         });
-        let found = &mut self.candidates[candidates..];
-        let lists = (&mut self.segments[..], &places[..]);
-        refiner.refine(block, found, lists, samples.lattice.step() as f32, |points, out| {
+        // Cells with loops of one length are looked at by code for that length.
+        self.add_cells::<3>(samples, nearby, block, &by_length[3], refiner);
+        self.add_cells::<4>(samples, nearby, block, &by_length[4], refiner);
+        self.add_cells::<5>(samples, nearby, block, &by_length[5], refiner);
+        self.add_cells::<6>(samples, nearby, block, &by_length[6], refiner);
+        self.add_cells::<7>(samples, nearby, block, &by_length[7], refiner);
+        let found = (&mut self.candidates[candidates..], &mut self.segments[segments..]);
+        refiner.refine(found.0, found.1, samples.lattice.step() as f32, |points, out| {
             sampler.slopes(scratch, n, block, points, out)
         });
         OfBlock {
             candidates: candidates..self.candidates.len(),
             bulges: bulges..self.bulges.len(),
-            opposite: opposite..self.opposite.len(),
+            cells: cells..self.cells.len(),
             plain: Some(plain..self.plain.len()),
+            dropped: 0,
+            dropped_bulges: 0,
         }
     }
 
-    /// Adds what a cell of a block, given by its first cell, with a loop of `N` in the table is to have.
-    #[inline(never)]
-    fn add_cell<const N: usize>(
+    /// Adds what cells of a block, given by its first cell, with loops of `N` in the table are to have.
+    fn add_cells<const N: usize>(
         &mut self,
         samples: &Samples<'_>,
         nearby: &Nearby,
-        (block, within): ([u32; 3], [usize; 3]),
-        outline: &CellLoop,
-        places: &mut Vec<Vec3A>,
+        block: [u32; 3],
+        cells: &[(u16, u8)],
+        refiner: &mut Refiner,
     ) {
-        let Some(edges) = outline.edges().first_chunk::<N>() else { return };
-        let around = nearby.places(within, edges);
-        let ring = Ring::new(nearby, around);
-        let cover = if ring.is_flat() {
-            Cover::Table
-        } else if ring.is_smooth() {
-            ring.cover(nearby)
-        } else {
-            return self.add_candidate(nearby, (block, within), outline, (&around, places));
-        };
-        // As many as three bits tell.
-        let mut vertices = [0; 8];
-        for (vertex, &place) in vertices.iter_mut().zip(&around) {
-            *vertex = nearby.vertex(place);
-        }
-        let corner = |n: u8| vertices[usize::from(n & 7)];
-        match cover {
-            Cover::Table => self.plain.extend(outline.triangles::<N>().iter().map(|triangle| triangle.map(corner))),
-            Cover::Two(triangles) => self.plain.extend_from_slice(&triangles.map(|triangle| triangle.map(corner))),
-            Cover::Top { at, normal } => {
-                let cell = std::array::from_fn(|axis| block[axis] + within[axis] as u32);
-                let at = samples.inside(at - vector(within), cell, cell.map(|n| n + 1));
-                let (cell, sides, first) = (cell_number(within), N as u16, self.plain.len() as u32);
-                self.bulges.push(Bulge { cell, sides, first, at, normal: normal.into() });
-                // Its number is not known yet.
-                let triangles: [_; N] = std::array::from_fn(|n| [0, vertices[n], vertices[(n + 1) % N]]);
-                self.plain.extend_from_slice(&triangles);
+        let loops = CellLoop::table();
+        for &(number, case) in cells {
+            let Some(outline) = &loops[usize::from(case)] else { continue };
+            let Some(edges) = outline.edges().first_chunk::<N>() else { continue };
+            let within = cell_of([0; 3], number).map(|n| n as usize);
+            let around = nearby.places(within, edges);
+            let ring = Ring::new(nearby, around);
+            let vertices = around.map(|place| nearby.vertex(place));
+            let cover = if ring.is_flat() {
+                Cover::Table
+            } else if ring.is_smooth() {
+                ring.cover(nearby)
+            } else {
+                let low = vector(within);
+                let places = around.map(|place| nearby.position(place) - low);
+                let mut segments: [_; N] =
+                    std::array::from_fn(|n| Segment::new(vertices[n], ring.normals[n].into(), outline.face(n)));
+                self.add_candidate((block, within), &mut segments, (&ring.normals, &places), refiner);
+                continue;
+            };
+            // As many as three bits tell.
+            let mut corners = [0; 8];
+            corners[..N].copy_from_slice(&vertices);
+            let corner = |n: u8| corners[usize::from(n & 7)];
+            let start = self.plain.len();
+            match cover {
+                Cover::Table => self.plain.extend(outline.triangles::<N>().iter().map(|triangle| triangle.map(corner))),
+                Cover::Two(triangles) => self.plain.extend_from_slice(&triangles.map(|triangle| triangle.map(corner))),
+                Cover::Top { at, normal } => {
+                    let cell = std::array::from_fn(|axis| block[axis] + within[axis] as u32);
+                    let at = samples.inside(at - vector(within), cell, cell.map(|n| n + 1));
+                    let (sides, first) = (N as u16, start as u32);
+                    self.bulges.push(Bulge { cell: number, sides, first, at, normal: normal.into() });
+                    // Its number is not known yet.
+                    let triangles: [_; N] = std::array::from_fn(|n| [0, vertices[n], vertices[(n + 1) % N]]);
+                    self.plain.extend_from_slice(&triangles);
+                }
             }
+            self.cells.push((number, (self.plain.len() - start) as u8));
         }
     }
 
-    /// Adds a cell with a single loop around it that is to have a fan.
-    fn add_candidate(
+    /// Adds what a cell of a block, given by its first cell, with several loops or with joined faces is to have.
+    #[cold]
+    fn add_other(
         &mut self,
         nearby: &Nearby,
         (block, within): ([u32; 3], [usize; 3]),
-        outline: &CellLoop,
-        (around, places): (&[u32], &mut Vec<Vec3A>),
+        (case, faces): (u8, u8),
+        refiner: &mut Refiner,
     ) {
-        let (first, low) = (self.segments.len(), vector(within));
-        self.segments.extend(
-            around
-                .iter()
-                .enumerate()
-                .map(|(n, &place)| Segment::new(nearby.vertex(place), nearby.normal(place).into(), outline.face(n))),
-        );
-        places.extend(around.iter().map(|&place| nearby.position(place) - low));
-        self.numbers.push(cell_number(within));
+        let all = nearby.all_places(within);
+        let corner = |edge: u8| nearby.vertex(all[usize::from(edge & 15)]);
+        let (table, start) = (CaseTable::get(), self.plain.len());
+        if faces == 0 {
+            self.plain.extend(table.triangles(case).iter().map(|triangle| triangle.map(corner)));
+        } else if let Some(outline) = CellLoop::single(case, faces) {
+            // The table knows nothing of joined faces.
+            let (low, around) = (vector(within), outline.edges().iter().map(|&edge| all[usize::from(edge & 15)]));
+            let normals: Vec<Vec3A> = around.clone().map(|place| nearby.normal(place)).collect();
+            let places: Vec<Vec3A> = around.clone().map(|place| nearby.position(place) - low).collect();
+            let segment =
+                |(n, place): (usize, u32)| Segment::new(nearby.vertex(place), normals[n].into(), outline.face(n));
+            let mut segments: Vec<Segment> = around.enumerate().map(segment).collect();
+            return self.add_candidate((block, within), &mut segments, (&normals, &places), refiner);
+        } else {
+            let turned = table.triangles(!case).iter();
+            self.plain.extend(turned.map(|&[a, b, c]| [corner(a), corner(c), corner(b)]));
+        }
+        self.cells.push((cell_number(within), (self.plain.len() - start) as u8));
+    }
+
+    /// Adds a cell with a single loop around it that is to have a fan, given with the normals at its vertices and with
+    /// their places from the cell's first node.
+    #[inline(always)]
+    fn add_candidate(
+        &mut self,
+        (block, within): ([u32; 3], [usize; 3]),
+        segments: &mut [Segment],
+        (normals, places): (&[Vec3A], &[Vec3A]),
+        refiner: &mut Refiner,
+    ) {
         let cell = std::array::from_fn(|axis| block[axis] + within[axis] as u32);
-        self.candidates.push(Candidate::new(cell, first, &mut self.segments, &places[first..]));
+        let candidate = Candidate::new(cell, self.segments.len(), segments, places);
+        refiner.add(vector(within), candidate.at, normals, places);
+        self.segments.extend_from_slice(segments);
+        self.numbers.push(cell_number(within));
+        self.candidates.push(candidate);
     }
 }
 

@@ -50,7 +50,8 @@ impl Fans {
             let across = match turn {
                 Turn::Edge => [high, low],
                 Turn::Point(at) => {
-                    self.bend([low, high], at);
+                    let normals = segments.map(|[list, n]| self.segments[list as usize][n as usize].normal);
+                    self.bend([low, high], at, (normals[0] + normals[1]).normalize_or_zero());
                     [fans + self.points.len() as u32 - 1; 2]
                 }
             };
@@ -76,8 +77,8 @@ impl Fans {
         let mut cell = segment.cell(below.span.low);
         cell[axis] += 1;
         let (block, within) = split_cell(cell);
-        let cells = self.cells(samples.find_near(below.block, block)?);
-        let high = cells[cells.binary_search_by_key(&cell_number(within), |&(cell, _)| cell).ok()?].1;
+        let (cells, number) = (self.cells(samples.find_near(below.block as usize, block)?), cell_number(within));
+        let high = cells.iter().find(|&&(cell, _)| cell == number)?.1;
         let above = &self.fans[high as usize];
         let (a, b) = (below.at.as_dvec3(), above.at.as_dvec3());
         // What the two have in common: a part of a plane of the lattice.
