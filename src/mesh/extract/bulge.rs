@@ -26,7 +26,7 @@
 //! What is of third order is left out, and no more values of the field are needed. That fans are embedded is shown in
 //! [`sharp`](super::sharp).
 
-use glam::{Vec3, Vec3A};
+use glam::Vec3A;
 
 use super::nearby::Nearby;
 use crate::mesh::feature::{SMOOTH, differ};
@@ -138,31 +138,6 @@ fn height(positions: &[Vec3A], normals: &[Vec3A]) -> (f32, f32, Vec3A) {
         far += rise.abs();
     }
     (0.5 * share * height, 0.5 * share * far, middle)
-}
-
-/// A smooth cell with a vertex in its middle.
-#[derive(Clone, Copy)]
-pub(super) struct Bulge {
-    /// The cell, by its number in the block.
-    pub(super) cell: u16,
-    /// How many segments its loop has; 0 if it is dropped.
-    pub(super) sides: u16,
-    /// The place of its first triangle among the plain ones.
-    pub(super) first: u32,
-    pub(super) at: Vec3,
-    pub(super) normal: Vec3,
-}
-
-impl Bulge {
-    /// Whether it is not dropped.
-    pub(super) fn is_there(&self) -> bool {
-        self.sides > 0
-    }
-
-    /// The cell is part of a region.
-    pub(super) fn drop_it(&mut self) {
-        self.sides = 0;
-    }
 }
 
 #[cfg(test)]

@@ -4,9 +4,8 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::neighbours::Neighbours;
-use super::samples::{Samples, cell_number, cell_of};
-use super::sharp::{self, Fans};
-use super::special::DROPPED;
+use super::samples::Samples;
+use super::sharp;
 use super::{BATCH, Batch, ExtractError, Part, Sampler};
 use crate::geom::Mesh;
 use crate::mesh::Features;
@@ -53,25 +52,13 @@ impl<'a> Parts<'a> {
             part.first += start as u32;
         }
         self.parts.push(parts);
-        self.reserve(positions.len());
+        let progress = (self.parts.len(), self.blocks.len().div_ceil(BATCH));
+        reserve(&mut self.positions, positions.len(), progress, self.room);
+        reserve(&mut self.normals, normals.len(), progress, self.room);
         self.positions.extend_from_slice(&positions);
         self.normals.extend_from_slice(&normals);
         self.clamped += clamped;
         Ok(())
-    }
-
-    /// Makes room for more vertices, and for those to come, by what the blocks have so far: moving many is slow.
-    fn reserve(&mut self, more: usize) {
-        let count = self.positions.len() + more;
-        if count <= self.positions.capacity() {
-            return;
-        }
-        let (done, all) = (self.parts.len(), self.blocks.len().div_ceil(BATCH));
-        // Few blocks do not tell.
-        let share = if done * 16 < all { 2.0 } else { self.room * all as f64 / done as f64 };
-        let room = (share * count as f64) as usize - self.positions.len();
-        self.positions.reserve_exact(room);
-        self.normals.reserve_exact(room);
     }
 
     #[inline]
@@ -115,128 +102,102 @@ impl<'a> Parts<'a> {
         run: &Run,
     ) -> Result<Mesh, ExtractError> {
         let (mut positions, mut normals) = (std::mem::take(&mut self.positions), std::mem::take(&mut self.normals));
-        let mut fans = match features {
-            Features::Smooth => Fans::default(),
+        let fans = match features {
+            Features::Smooth => None,
             Features::Sharp => {
                 let samples = Samples::new(&self, lattice, sampler.limits(), [&positions, &normals]);
-                sharp::find(&samples, sampler, &run.stage(0.0, 0.6))?
+                sharp::find(&samples, sampler, &run.stage(0.0, 0.9))?
             }
         };
-        let count = positions.len() as u64 + fans.vertices() as u64;
+        let Some(fans) = fans else {
+            let triangles = self.triangles(run)?;
+            positions.shrink_to_fit();
+            normals.shrink_to_fit();
+            return Ok(Mesh::new(positions, triangles)?.with_normals(normals)?.with_clamped_vertices(self.clamped));
+        };
+        let count = positions.len() as u64 + fans.count() as u64;
         if count > u64::from(u32::MAX) {
             return Err(ExtractError::TooLarge { count });
         }
         fans.add_vertices(&mut positions, &mut normals);
-        fans.number_bulges();
-
-        let run = run.stage(0.6, 1.0);
-        let meter = Meter::new(&run, self.blocks.len());
-        let counts: Vec<usize> = (0..self.parts.len())
-            .into_par_iter()
-            .map(|batch| {
-                let parts = (batch * BATCH..).zip(&self.parts[batch]);
-                parts.map(|(n, part)| self.plain_triangles(n, part, &fans) + fans.listed(n)).sum()
-            })
-            .collect();
-        let mut triangles = vec![[0; 3]; counts.iter().sum()];
-        let pieces = split(&mut triangles, counts.iter().copied());
-        let of_batch = |corners: &mut Corners, (batch, piece): (usize, &mut [[u32; 3]])| {
-            let end: usize = counts[..=batch].iter().sum();
-            let mut slots = piece.iter_mut();
-            let blocks = batch * BATCH..batch * BATCH + self.parts[batch].len();
-            let mut first = Vec::with_capacity(blocks.len());
-            for n in blocks {
-                meter.step()?;
-                self.list_triangles(n, corners, &fans, &mut slots)?;
-                first.push(end - slots.len());
-                fans.list(n, |triangle| slots.next().into_iter().for_each(|slot| *slot = triangle));
-            }
-            Ok::<_, ExtractError>(first)
-        };
-        let first: Result<Vec<_>, ExtractError> =
-            pieces.into_par_iter().enumerate().map_init(Corners::new, of_batch).collect();
-        let first = first?.concat();
-        let unused = fans.unused();
+        let unused = fans.unused().to_vec();
+        let (mut triangles, sides) = fans.triangles(&run.stage(0.9, 1.0))?;
         if !unused.is_empty() {
-            let used = used(positions.len(), unused);
+            let used = used(positions.len(), &unused);
             let number = |n: u32| used[n as usize];
             triangles.par_iter_mut().for_each(|slot| {
                 let [a, b, c] = *slot;
                 *slot = [number(a), number(b), number(c)];
             });
-            keep(&mut positions, unused);
-            keep(&mut normals, unused);
+            let unused: Vec<usize> = unused.iter().map(|&n| n as usize).collect();
+            keep(&mut positions, &unused);
+            keep(&mut normals, &unused);
         }
+        triangles.shrink_to_fit();
         positions.shrink_to_fit();
         normals.shrink_to_fit();
         let mesh = Mesh::new(positions, triangles)?.with_normals(normals)?.with_clamped_vertices(self.clamped);
-        Ok(match fans.into_sides(first) {
+        Ok(match sides {
             Some(sides) => mesh.with_normals_apart(sides)?,
             None => mesh,
         })
     }
 
-    /// How many triangles the cells of block `n` without fans have.
-    fn plain_triangles(&self, n: usize, part: &Part, fans: &Fans) -> usize {
-        fans.plain(n).map_or_else(
-            || {
-                let within = |number: u16| cell_of([0; 3], number).map(|n| n as usize);
-                let case = |&(number, _): &(u16, u32)| part.signs.case(within(number));
-                let dropped = fans.cells(n).iter().map(|cell| CaseTable::get().triangles(case(cell)).len());
-                part.triangles as usize - dropped.sum::<usize>()
-            },
-            |(plain, dropped)| plain.len() - dropped,
-        )
+    /// The triangles of all cells by the case table, in the order of the blocks.
+    fn triangles(&self, run: &Run) -> Result<Vec<[u32; 3]>, ExtractError> {
+        let meter = Meter::new(run, self.blocks.len());
+        let counts: Vec<usize> =
+            self.parts.iter().map(|batch| batch.iter().map(|part| part.triangles as usize).sum()).collect();
+        let mut triangles = vec![[0; 3]; counts.iter().sum()];
+        let pieces = split(&mut triangles, counts.iter().copied());
+        let of_batch = |corners: &mut Corners, (batch, piece): (usize, &mut [[u32; 3]])| {
+            let mut slots = piece.iter_mut();
+            for n in batch * BATCH..batch * BATCH + self.parts[batch].len() {
+                meter.step()?;
+                self.list_triangles(n, corners, |triangle| {
+                    if let Some(slot) = slots.next() {
+                        *slot = triangle;
+                    }
+                })?;
+            }
+            Ok(())
+        };
+        pieces.into_par_iter().enumerate().map_init(Corners::new, of_batch).collect::<Result<(), ExtractError>>()?;
+        Ok(triangles)
     }
 
-    /// The triangles of the cells of block `n` without fans, in the order of the cells.
-    fn list_triangles(
+    /// Tells `each` the triangles of the cells of block `n` by the case table, in the order of the cells.
+    pub(super) fn list_triangles(
         &self,
         n: usize,
         corners: &mut Corners,
-        fans: &Fans,
-        slots: &mut std::slice::IterMut<'_, [u32; 3]>,
+        mut each: impl FnMut([u32; 3]),
     ) -> Result<(), ExtractError> {
         if self.part(n).triangles == 0 {
             return Ok(());
         }
-        if let Some((plain, dropped)) = fans.plain(n) {
-            if dropped > 0 {
-                let kept = plain.iter().filter(|&triangle| *triangle != DROPPED);
-                kept.zip(slots).for_each(|(triangle, slot)| *slot = *triangle);
-            } else if let Some((piece, rest)) = std::mem::take(slots).into_slice().split_at_mut_checked(plain.len()) {
-                piece.copy_from_slice(plain);
-                *slots = rest.iter_mut();
-            }
-            return Ok(());
-        }
-        if !self.number(n, |place, vertex| corners.note(place, vertex)) {
-            let what = "a vertex is missing in the neighbour that owns it";
-            return Err(ExtractError::Blocks { block: self.blocks[n], what });
-        }
+        self.number(n, |place, vertex| corners.note(place, vertex))?;
         let table = CaseTable::get();
-        let with_fan = fans.cells(n);
         for_each_cell(&self.part(n).signs, |cell, case| {
-            if !with_fan.is_empty() && with_fan.iter().any(|&(other, _)| other == cell_number(cell)) {
-                return;
-            }
             let ids = corners.of_cell(cell);
             let corner = |edge: u8| ids[usize::from(edge & 15)];
             for &[a, b, c] in table.triangles(case) {
-                if let Some(slot) = slots.next() {
-                    *slot = [corner(a), corner(b), corner(c)];
-                }
+                each([corner(a), corner(b), corner(c)]);
             }
         });
         Ok(())
     }
 
     /// Tells `note` the vertices on all edges of the cells of block `n`, and the places of these among its
-    /// [`Corners`]; false if the owner of one is not there.
+    /// [`Corners`]; an error if the owner of one is not there.
     ///
     /// Edges that start in an upper face belong to the neighbour there: those along the two
     /// other axes, in its first row or column.
-    pub(super) fn number(&self, n: usize, mut note: impl FnMut(usize, u32)) -> bool {
+    pub(super) fn number(&self, n: usize, mut note: impl FnMut(usize, u32)) -> Result<(), ExtractError> {
+        let missing = || {
+            let what = "a vertex is missing in the neighbour that owns it";
+            Err(ExtractError::Blocks { block: self.blocks[n], what })
+        };
         let part = self.part(n);
         for k in 0..BLOCK {
             for j in 0..BLOCK {
@@ -266,7 +227,7 @@ impl<'a> Parts<'a> {
                 let j = crossed.trailing_zeros() as usize;
                 crossed &= crossed - 1;
                 let bits = 1 | (j / BLOCK) << 1 | (k / BLOCK) << 2;
-                let Some(other) = upper(bits) else { return false };
+                let Some(other) = upper(bits) else { return missing() };
                 let (row_j, row_k) = (j % BLOCK, k % BLOCK);
                 let [x, y, _] = other.signs.crossed(row_j, row_k);
                 let vertex = other.first + other.rows.start(row_j, row_k) + x.count_ones();
@@ -278,7 +239,18 @@ impl<'a> Parts<'a> {
                 }
             }
         }
-        complete
+        if complete { Ok(()) } else { missing() }
+    }
+}
+
+/// Makes room for more in a list, and for what is to come by what it has when `done` parts of `all` are added, times
+/// `share`: moving much is slow.
+pub(super) fn reserve<T>(list: &mut Vec<T>, more: usize, (done, all): (usize, usize), share: f64) {
+    let count = list.len() + more;
+    if count > list.capacity() {
+        // Few parts do not tell.
+        let times = if done * 16 < all { 2.0 } else { share * all as f64 / done as f64 };
+        list.reserve_exact((times * count as f64) as usize - list.len());
     }
 }
 
@@ -382,19 +354,18 @@ fn used(count: usize, unused: &[u32]) -> Vec<u32> {
 }
 
 /// Takes the ones that are not used, in ascending order, out of a list.
-fn keep(list: &mut Vec<Vec3>, unused: &[u32]) {
-    let ends = unused.iter().map(|&n| n as usize).skip(1).chain([list.len()]);
-    let mut kept = unused.first().map_or(list.len(), |&n| n as usize);
+pub(super) fn keep<T: Copy>(list: &mut Vec<T>, unused: &[usize]) {
+    let ends = unused.iter().skip(1).copied().chain([list.len()]);
+    let mut kept = unused.first().copied().unwrap_or(list.len());
     for (&gone, end) in unused.iter().zip(ends) {
-        let start = gone as usize + 1;
-        list.copy_within(start..end, kept);
-        kept += end - start;
+        list.copy_within(gone + 1..end, kept);
+        kept += end - gone - 1;
     }
     list.truncate(kept);
 }
 
 /// Cuts a slice into consecutive pieces of the given lengths, whose sum is its length.
-fn split<T>(mut slice: &mut [T], lengths: impl Iterator<Item = usize>) -> Vec<&mut [T]> {
+pub(super) fn split<T>(mut slice: &mut [T], lengths: impl Iterator<Item = usize>) -> Vec<&mut [T]> {
     let cut = |length| {
         let (piece, rest) = std::mem::take(&mut slice).split_at_mut(length);
         slice = rest;

@@ -2,6 +2,7 @@
 
 use glam::{Vec3, Vec3A};
 
+use super::ExtractError;
 use super::join::Corners;
 use super::samples::Samples;
 
@@ -20,14 +21,14 @@ impl Nearby {
         Nearby { corners: Corners::new(), vertices: Vec::new(), normals: Vec::new(), positions: Vec::new() }
     }
 
-    /// Becomes that of block `n`; false if the owner of a vertex is not there.
-    pub(super) fn load(&mut self, samples: &Samples<'_>, n: usize) -> bool {
+    /// Becomes that of block `n`; an error if the owner of a vertex is not there.
+    pub(super) fn load(&mut self, samples: &Samples<'_>, n: usize) -> Result<(), ExtractError> {
         let Nearby { corners, vertices, normals, positions } = self;
         vertices.clear();
-        let is_complete = samples.parts.number(n, |place, vertex| {
+        samples.parts.number(n, |place, vertex| {
             corners.note(place, vertices.len() as u32);
             vertices.push(vertex);
-        });
+        })?;
         // The block's own come first, in their order.
         let own = samples.own(n);
         let others = &vertices[own.len().min(vertices.len())..];
@@ -40,7 +41,7 @@ impl Nearby {
         positions.clear();
         positions.extend(own_positions.iter().map(|&position| local(position)));
         positions.extend(others.iter().map(|&vertex| local(samples.position(vertex))));
-        is_complete
+        Ok(())
     }
 
     /// The places in the lists of the vertices on some edges of a cell.

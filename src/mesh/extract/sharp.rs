@@ -36,16 +36,22 @@
 use std::ops::Range;
 
 use glam::Vec3;
+use rayon::prelude::*;
 
-use super::Sampler;
+use super::join::{keep, split};
 use super::joined::Joined;
 use super::region::{Region, regions};
 use super::samples::{Samples, cell_number, split_cell};
 use super::span::Span;
-use super::special::{Special, list_of};
+use super::special::{Plain, Special, list_of};
+use super::{ExtractError, Sampler};
 use crate::geom::Apart;
 use crate::mesh::feature::Segment;
+use crate::mesh::meter::Meter;
 use crate::run::{Cancelled, Run};
+
+/// Fans that a thread looks at before it asks whether to go on.
+pub(super) const AT_ONCE: usize = 512;
 
 /// The fan of a cell, or of a region of several.
 #[derive(Debug)]
@@ -53,7 +59,7 @@ pub(super) struct Fan {
     /// The list that its segments are in, and their place there.
     pub(super) list: u32,
     pub(super) segments: Range<u32>,
-    /// The block that it is listed with.
+    /// The block of its cell, or of the one that asked for the region.
     pub(super) block: u32,
     /// The cells that it is in.
     pub(super) span: Span,
@@ -79,53 +85,41 @@ pub(super) struct Fans {
     pub(super) segments: Vec<Vec<Segment>>,
     /// Points of creases between two fans, with the normals that stand for all sides.
     pub(super) points: Vec<(Vec3, Vec3)>,
-    /// The cells that have a fan, by number, and which; those of a block together.
+    /// The cells that have a fan, by number, and which; and by block, where its cells are in this list.
     cells: Vec<(u16, u32)>,
-    /// The cells that they are in, and the smooth ones with a vertex in their middle.
-    special: Special,
-    /// How many vertices there are on edges.
-    on_edges: u32,
-    blocks: Vec<OfBlock>,
-    /// The vertices within regions, which no triangle has any more: they are where the first of those that are added
-    /// go. Ascending.
+    blocks: Vec<Range<usize>>,
+    /// How many triangles consecutive fans have, [`AT_ONCE`] together.
+    counts: Vec<usize>,
+    /// What cells without fans have.
+    plain: Plain,
+    /// The triangles of these that are gone, ascending: where the first of those of fans go.
+    holes: Vec<usize>,
+    /// How many vertices there are on edges and in the middle of smooth cells.
+    vertices: u32,
+    /// Those of them that no triangle has any more: where the first of those that are added go. Ascending.
     free: Vec<u32>,
 }
 
-/// The fans of a block.
-#[derive(Clone, Default)]
-struct OfBlock {
-    /// Those that are listed with it, of creases and corners, and how many triangles they have.
-    listed: Listed,
-    triangles: usize,
-    /// Where its cells are in the list of those that have a fan.
-    cells: Range<usize>,
-    /// The bulges, by their numbers.
-    bulges: Range<u32>,
-}
-
-/// Those of regions, and those of single cells.
-type Listed = [Range<usize>; 2];
-
-/// Finds the cells that hold creases and corners, and gives them fans.
-pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) -> Result<Fans, Cancelled> {
+/// Finds the cells that hold creases and corners, and gives them fans; nothing if the surface is nearly flat everywhere.
+pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) -> Result<Option<Fans>, ExtractError> {
     // Blocks that are nearly flat are settled as a whole.
     let spread = samples.spread();
     if !spread.contains(&true) {
-        return Ok(Fans::default());
+        return Ok(None);
     }
     let proposed = (0..spread.len()).map(|n| match spread[n] {
         true => samples.parts.part(n).joins.clone(),
         false => Vec::new(),
     });
     let joined = Joined::new(samples, proposed.collect());
-    let special = Special::find(samples, sampler, (&spread, &joined), run)?;
+    let special = Special::find(samples, sampler, (&spread, &joined), &run.stage(0.0, 0.8))?;
     let regions = regions(samples, &special, &joined, run)?;
-    Fans::new(samples, special, regions, run)
+    Ok(Some(Fans::new(samples, special, regions, run)?))
 }
 
 impl Fans {
     fn new(samples: &Samples<'_>, mut special: Special, regions: Vec<Region>, run: &Run) -> Result<Fans, Cancelled> {
-        let mut all = Fans { on_edges: samples.vertices(), ..Fans::default() };
+        let mut all = Fans::default();
         all.blocks.reserve_exact(samples.blocks().len());
         all.fans.reserve_exact(regions.len() + special.count());
         all.segments = special.take_segments();
@@ -142,24 +136,17 @@ impl Fans {
             let start = in_regions.len() as u32;
             in_regions.extend(region.segments);
             let (list, segments) = (all.segments.len() as u32, start..in_regions.len() as u32);
-            // A region is listed with the block of the candidate that asked for it.
             let block = region.block as u32;
             all.fans.push(Fan { list, segments, block, span: region.span, at: region.at, normal });
         }
         all.segments.push(in_regions);
-        all.free.sort_unstable();
         taken.sort_unstable();
         let mut taken = &taken[..];
-        let (mut listed, regions) = (0, all.fans.len());
-        let mut bulges = 0;
         for block in 0..samples.blocks().len() {
             run.check()?;
-            let start = listed;
-            listed += all.fans[start..regions].iter().take_while(|fan| fan.block as usize == block).count();
-            let of_regions = start..listed;
             let (own, rest) = taken.split_at(taken.partition_point(|&(other, ..)| other == block));
             taken = rest;
-            let (first_cell, first_fan) = (all.cells.len(), all.fans.len());
+            let start = all.cells.len();
             all.cells.extend(own.iter().map(|&(_, number, fan)| (number, fan)));
             for candidate in special.candidates(block) {
                 let number = cell_number(split_cell(candidate.cell).1);
@@ -172,42 +159,28 @@ impl Fans {
                     all.fans.push(Fan { list, segments, block: block as u32, span, at, normal: candidate.normal });
                 }
             }
+            all.blocks.push(start..all.cells.len());
             if !own.is_empty() {
-                special.drop_cells(block, own.iter().map(|&(_, number, _)| number));
+                let numbers = own.iter().map(|&(_, number, _)| number);
+                special.drop_cells(samples, block, numbers, (&mut all.holes, &mut all.free));
             }
-            let listed = [of_regions, first_fan..all.fans.len()];
-            let triangles = listed.iter().flat_map(|fans| &all.fans[fans.clone()]).map(|fan| fan.segments.len()).sum();
-            let first_bulge = bulges;
-            bulges += special.bulges(block) as u32;
-            let (cells, bulges) = (first_cell..all.cells.len(), first_bulge..bulges);
-            all.blocks.push(OfBlock { listed, triangles, cells, bulges });
         }
-        special.drop_candidates();
-        all.special = special;
+        all.free.sort_unstable();
+        all.plain = special.into_plain();
+        all.vertices = samples.vertices().wrapping_add(all.plain.tops[0].len() as u32);
+        let triangles = |fans: &[Fan]| fans.iter().map(|fan| fan.segments.len()).sum();
+        all.counts = all.fans.chunks(AT_ONCE).map(triangles).collect();
         all.turn(samples, run)?;
         Ok(all)
     }
 
-    /// The number of the vertex that is added as `nth`: those of fans come first, then points of creases, then those of
-    /// bulges.
+    /// The number of the vertex that is added as `nth`: those of fans come first, then points of creases.
     #[inline]
     fn number(&self, nth: u32) -> u32 {
         match self.free.get(nth as usize) {
             Some(&free) => free,
-            None => self.on_edges + (nth - self.free.len() as u32),
+            None => self.vertices + (nth - self.free.len() as u32),
         }
-    }
-
-    /// Numbers the vertices of bulges, given that all vertices together are no more than indices of 32 bits.
-    pub(super) fn number_bulges(&mut self) {
-        let mut special = std::mem::take(&mut self.special);
-        special.number_bulges(|block| self.first_bulge(block), |nth| self.number(nth));
-        self.special = special;
-    }
-
-    /// Which of the vertices that are added the first of a block's bulges is.
-    fn first_bulge(&self, block: usize) -> u32 {
-        (self.fans.len() + self.points.len()) as u32 + self.blocks[block].bulges.start
     }
 
     /// Notes that segments are turned to a point between two fans.
@@ -215,7 +188,7 @@ impl Fans {
         self.points.push((at, normal));
         for fan in fans {
             // One triangle becomes two.
-            self.blocks[self.fans[fan as usize].block as usize].triangles += 1;
+            self.counts[fan as usize / AT_ONCE] += 1;
         }
     }
 
@@ -224,11 +197,23 @@ impl Fans {
         self.fans[fan].of(&self.segments)
     }
 
-    /// Adds the vertices, with the normals that stand for all their sides, to all positions and normals.
+    /// How many vertices are added to those on edges, at most.
+    pub(super) fn count(&self) -> usize {
+        self.plain.tops[0].len() + self.fans.len() + self.points.len()
+    }
+
+    /// The vertices that are in no triangle, ascending.
+    pub(super) fn unused(&self) -> &[u32] {
+        self.free.get(self.fans.len() + self.points.len()..).unwrap_or_default()
+    }
+
+    /// Adds the vertices, with the normals that stand for all their sides, to those on edges.
     pub(super) fn add_vertices(&self, positions: &mut Vec<Vec3>, normals: &mut Vec<Vec3>) {
-        let count = self.vertices().saturating_sub(self.free.len());
-        positions.reserve_exact(count);
-        normals.reserve_exact(count);
+        let added = self.count().saturating_sub(self.free.len());
+        positions.reserve_exact(added);
+        normals.reserve_exact(added);
+        positions.extend_from_slice(&self.plain.tops[0]);
+        normals.extend_from_slice(&self.plain.tops[1]);
         let mut free = self.free.iter();
         let mut add = |at: Vec3, normal: Vec3| match free.next() {
             Some(&free) => (positions[free as usize], normals[free as usize]) = (at, normal),
@@ -239,63 +224,58 @@ impl Fans {
         };
         self.fans.iter().for_each(|fan| add(fan.at, fan.normal));
         self.points.iter().for_each(|&(at, normal)| add(at, normal));
-        self.special.all_bulges().for_each(|bulge| add(bulge.at, bulge.normal));
     }
 
-    /// How many vertices are added.
-    pub(super) fn vertices(&self) -> usize {
-        let bulges = self.blocks.last().map_or(0, |block| block.bulges.end);
-        self.fans.len() + self.points.len() + bulges as usize
+    /// All triangles, and what tells the normals of those of fans, if there are any.
+    pub(super) fn triangles(mut self, run: &Run) -> Result<(Vec<[u32; 3]>, Option<Sides>), Cancelled> {
+        let mut triangles = std::mem::take(&mut self.plain.triangles);
+        let (start, count) = (triangles.len(), self.counts.iter().sum::<usize>());
+        triangles.reserve_exact(count);
+        triangles.resize(start + count, [0; 3]);
+        let pieces = split(&mut triangles[start..], self.counts.iter().copied());
+        let meter = Meter::new(run, self.counts.len());
+        pieces.into_par_iter().enumerate().try_for_each(|(chunk, piece)| {
+            meter.step()?;
+            let mut slots = piece.iter_mut();
+            for fan in (chunk * AT_ONCE..self.fans.len()).take(AT_ONCE) {
+                self.list(fan, |triangle| slots.next().into_iter().for_each(|slot| *slot = triangle));
+            }
+            Ok(())
+        })?;
+        // The first ones go where others are gone.
+        let (filled, left) = self.holes.split_at(self.holes.len().min(count));
+        for (from, &hole) in (start..).zip(filled) {
+            triangles[hole] = triangles[from];
+        }
+        triangles.copy_within(start + filled.len().., start);
+        triangles.truncate(start + count - filled.len());
+        keep(&mut triangles, left);
+        self.holes.truncate(count);
+        let Fans { fans, segments, holes, .. } = self;
+        let sides = (!fans.is_empty()).then_some(Sides { fans, segments, holes, start });
+        Ok((triangles, sides))
     }
 
-    /// The vertices within regions that no other takes the place of.
-    pub(super) fn unused(&self) -> &[u32] {
-        self.free.get(self.vertices()..).unwrap_or_default()
-    }
-
-    /// The triangles of a block's cells without fans, if the block has been looked at; and how many of them are
-    /// [`DROPPED`](super::special::DROPPED).
-    pub(super) fn plain(&self, block: usize) -> Option<(&[[u32; 3]], usize)> {
-        self.special.plain(block)
-    }
-
-    /// The cells of a block that have a fan, by number, and which fan.
-    pub(super) fn cells(&self, block: usize) -> &[(u16, u32)] {
-        self.blocks.get(block).map_or(&[], |block| &self.cells[block.cells.clone()])
-    }
-
-    /// How many triangles the fans that are listed with a block have.
-    pub(super) fn listed(&self, block: usize) -> usize {
-        self.blocks.get(block).map_or(0, |block| block.triangles)
-    }
-
-    /// The triangles of the fans of a block.
-    pub(super) fn list(&self, block: usize, mut each: impl FnMut([u32; 3])) {
-        let fans = self.fans.len() as u32;
-        for nth in
-            self.blocks.get(block).map_or_else(Listed::default, |block| block.listed.clone()).into_iter().flatten()
-        {
-            let (segments, centre) = (self.of(nth), self.number(nth as u32));
-            for (n, segment) in segments.iter().enumerate() {
-                let (from, to) = (segment.from, segments.get(n + 1).unwrap_or(&segments[0]).from);
-                match segment.across() {
-                    None => each([centre, from, to]),
-                    Some(other) if other < fans => each([centre, from, self.number(other)]),
-                    Some(point) => {
-                        let point = self.number(point);
-                        each([centre, from, point]);
-                        each([centre, point, to]);
-                    }
+    /// The triangles of a fan.
+    fn list(&self, nth: usize, mut each: impl FnMut([u32; 3])) {
+        let (segments, centre, fans) = (self.of(nth), self.number(nth as u32), self.fans.len() as u32);
+        for (n, segment) in segments.iter().enumerate() {
+            let (from, to) = (segment.from, segments.get(n + 1).unwrap_or(&segments[0]).from);
+            match segment.across() {
+                None => each([centre, from, to]),
+                Some(other) if other < fans => each([centre, from, self.number(other)]),
+                Some(point) => {
+                    let point = self.number(point);
+                    each([centre, from, point]);
+                    each([centre, point, to]);
                 }
             }
         }
     }
 
-    /// What tells the normals of the fans' triangles, given the first one of each block; nothing without fans.
-    pub(super) fn into_sides(self, first: Vec<usize>) -> Option<Sides> {
-        let listed = self.blocks.into_iter().map(|block| block.listed);
-        let blocks: Vec<_> = listed.zip(first).filter(|(listed, _)| !listed.iter().all(Range::is_empty)).collect();
-        (!blocks.is_empty()).then_some(Sides { fans: self.fans, segments: self.segments, blocks })
+    /// The cells of a block that have a fan, by number, and which fan.
+    pub(super) fn cells(&self, block: usize) -> &[(u16, u32)] {
+        &self.cells[self.blocks[block].clone()]
     }
 }
 
@@ -304,32 +284,31 @@ impl Fans {
 pub(super) struct Sides {
     fans: Vec<Fan>,
     segments: Vec<Vec<Segment>>,
-    /// By block, the fans that are listed with it, and the first of their triangles.
-    blocks: Vec<(Listed, usize)>,
+    /// The first triangles of fans; the others follow from `start` on.
+    holes: Vec<usize>,
+    start: usize,
 }
 
 impl Apart for Sides {
     /// At feature points the normal is that of the triangle's side; other vertices lie on one side. The order is that of
-    /// [`Fans::list`].
+    /// [`Fans::triangles`].
     fn tell(&self, each: &mut dyn FnMut(usize, [Vec3; 3])) {
         const OWN: Vec3 = Vec3::ZERO;
-        for (listed, first) in &self.blocks {
-            let mut numbers = *first..;
-            let mut each = |normals| numbers.next().into_iter().for_each(|triangle| each(triangle, normals));
-            for fan in listed.clone().into_iter().flatten() {
-                let segments = self.fans[fan].of(&self.segments);
-                for (n, segment) in segments.iter().enumerate() {
-                    let (near, beside) = (segment.normal, segments.get(n + 1).unwrap_or(&segments[0]).normal);
-                    match segment.across().map(|other| self.fans.get(other as usize)) {
-                        None => each([(near + beside).normalize_or_zero(), OWN, OWN]),
-                        Some(Some(other)) => {
-                            let end = other.of(&self.segments).iter().find(|other| other.from == segment.from);
-                            each([near, OWN, end.map_or(OWN, |end| end.normal)]);
-                        }
-                        Some(None) => {
-                            each([near, OWN, near]);
-                            each([beside, beside, OWN]);
-                        }
+        let mut numbers = self.holes.iter().copied().chain(self.start..);
+        let mut each = |normals| numbers.next().into_iter().for_each(|triangle| each(triangle, normals));
+        for fan in &self.fans {
+            let segments = fan.of(&self.segments);
+            for (n, segment) in segments.iter().enumerate() {
+                let (near, beside) = (segment.normal, segments.get(n + 1).unwrap_or(&segments[0]).normal);
+                match segment.across().map(|other| self.fans.get(other as usize)) {
+                    None => each([(near + beside).normalize_or_zero(), OWN, OWN]),
+                    Some(Some(other)) => {
+                        let end = other.of(&self.segments).iter().find(|other| other.from == segment.from);
+                        each([near, OWN, end.map_or(OWN, |end| end.normal)]);
+                    }
+                    Some(None) => {
+                        each([near, OWN, near]);
+                        each([beside, beside, OWN]);
                     }
                 }
             }

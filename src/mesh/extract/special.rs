@@ -1,37 +1,47 @@
-//! The cells of blocks that do not have the patches of the case table: found block by block, and kept for many
-//! blocks in one list each.
+//! The cells of blocks that do not have the patches of the case table, found block by block and kept for many blocks in
+//! one list each; and the triangles of all that need no fan, which are written once, where they stay in the mesh.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 
-use glam::Vec3A;
+use glam::{Vec3, Vec3A};
 use rayon::prelude::*;
 
-use super::Sampler;
-use super::bulge::{Bulge, Cover, Ring};
+use super::bulge::{Cover, Ring};
+use super::join::{Corners, reserve};
 use super::joined::Joined;
 use super::nearby::Nearby;
 use super::samples::{Samples, cell_number, cell_of};
+use super::{ExtractError, Sampler};
 use crate::mesh::feature::{Candidate, Refiner, Segment};
 use crate::mesh::loops::{CellLoop, MOST};
 use crate::mesh::meter::Meter;
 use crate::mesh::signs::{BLOCK, for_each_cell};
 use crate::mesh::table::CaseTable;
-use crate::run::{Cancelled, Run};
+use crate::run::Run;
 
 /// Blocks that have their lists together.
 const AT_ONCE: usize = 16;
+
+/// How much more room there is made for triangles than those before tell: for those of fans.
+const ROOM: f64 = 1.3;
 
 /// The number of the list that the segments of a block are in.
 pub(super) fn list_of(block: usize) -> u32 {
     (block / AT_ONCE) as u32
 }
 
-/// The special cells of all blocks.
+/// The special cells of all blocks, and what the others have.
 #[derive(Default)]
-pub(super) struct Special(Vec<Lists>);
+pub(super) struct Special {
+    lists: Vec<Lists>,
+    /// The triangles of all cells but the candidates, in the order of the blocks.
+    plain: Plain,
+}
 
-/// Those of consecutive blocks, each list in the order of the blocks; cells of a block are in the order of the lengths
-/// of their loops.
+/// The special cells of consecutive blocks, each list in the order of the blocks; those of a block are in the order of
+/// the lengths of their loops.
 #[derive(Clone, Default)]
 struct Lists {
     /// Those with a single loop whose normals spread, or that have joined faces.
@@ -40,12 +50,8 @@ struct Lists {
     numbers: Vec<u16>,
     /// The segments of all candidates.
     segments: Vec<Segment>,
-    /// Smooth ones with a vertex in their middle.
-    bulges: Vec<Bulge>,
-    /// All but the candidates, by number, and how many triangles each has.
+    /// The others, by number, and how many triangles each has.
     cells: Vec<(u16, u8)>,
-    /// Their triangles.
-    plain: Vec<[u32; 3]>,
     blocks: Vec<OfBlock>,
 }
 
@@ -53,68 +59,118 @@ struct Lists {
 #[derive(Clone, Default)]
 struct OfBlock {
     candidates: Range<usize>,
-    bulges: Range<usize>,
-    cells: Range<usize>,
-    /// None for a block that has not been looked at.
-    plain: Option<Range<usize>>,
-    /// How many of these are dropped, and of the bulges.
-    dropped: usize,
-    dropped_bulges: usize,
+    /// None for a block that is nearly flat: all its cells have the triangles of the table.
+    cells: Option<Range<usize>>,
+    plain: Range<usize>,
 }
 
-/// What takes the place of triangles that are dropped: no vertex has that number.
-pub(super) const DROPPED: [u32; 3] = [u32::MAX; 3];
+/// The triangles of cells without fans.
+#[derive(Clone, Default)]
+pub(super) struct Plain {
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// Positions and normals of vertices in the middle of smooth cells.
+    pub(super) tops: [Vec<Vec3>; 2],
+    /// The first triangle around each of them that is not numbered yet, and how many there are.
+    around: Vec<(u32, u32)>,
+}
+
+/// Takes what chunks of blocks have as they come, and adds it in their order.
+struct Queue<'a> {
+    samples: &'a Samples<'a>,
+    all: Special,
+    /// Those that others before them are missing for.
+    waiting: BTreeMap<usize, (Lists, Plain)>,
+}
+
+impl Queue<'_> {
+    fn add(&mut self, chunk: usize, lists: Lists, plain: &mut Plain) {
+        if chunk != self.all.lists.len() {
+            self.waiting.insert(chunk, (lists, plain.clone()));
+            return;
+        }
+        self.append(lists, plain);
+        while let Some((lists, mut plain)) = self.waiting.remove(&self.all.lists.len()) {
+            self.append(lists, &mut plain);
+        }
+    }
+
+    fn append(&mut self, mut lists: Lists, plain: &mut Plain) {
+        let all = &mut self.all.plain;
+        // The vertices follow those on edges; whether there are too many is checked later.
+        let first = self.samples.vertices().wrapping_add(all.tops[0].len() as u32);
+        for (n, (start, count)) in (0..).zip(plain.around.drain(..)) {
+            let around = &mut plain.triangles[start as usize..(start + count) as usize];
+            around.iter_mut().for_each(|triangle| triangle[0] = first.wrapping_add(n));
+        }
+        let start = all.triangles.len();
+        for block in &mut lists.blocks {
+            block.plain = start + block.plain.start..start + block.plain.end;
+        }
+        self.all.lists.push(lists);
+        let progress = (self.all.lists.len(), self.samples.blocks().len().div_ceil(AT_ONCE));
+        reserve(&mut all.triangles, plain.triangles.len(), progress, ROOM);
+        all.triangles.extend_from_slice(&plain.triangles);
+        for (all, tops) in all.tops.iter_mut().zip(&plain.tops) {
+            reserve(all, tops.len(), progress, ROOM);
+            all.extend_from_slice(tops);
+        }
+    }
+}
 
 impl Special {
-    /// Finds the special cells of the blocks whose normals spread or that have joined faces.
+    /// Finds the special cells of the blocks whose normals spread or that have joined faces, and lists the triangles
+    /// of all others.
     pub(super) fn find<S: Sampler>(
         samples: &Samples<'_>,
         sampler: &S,
         (spread, joined): (&[bool], &Joined),
         run: &Run,
-    ) -> Result<Special, Cancelled> {
+    ) -> Result<Special, ExtractError> {
         let meter = Meter::new(run, spread.len());
+        let queue = Mutex::new(Queue { samples, all: Special::default(), waiting: BTreeMap::new() });
         let of_chunk = |worker: &mut Worker<S>, (chunk, spread): (usize, &[bool])| {
             let mut lists = std::mem::take(&mut worker.lists);
             lists.clear();
+            worker.plain.clear();
             for (n, spreads) in (chunk * AT_ONCE..).zip(spread) {
                 meter.step()?;
-                let is_special = *spreads || joined.concerns(samples, n);
-                let block =
-                    if is_special { lists.add(samples, sampler, joined, n, worker) } else { OfBlock::default() };
+                let start = worker.plain.triangles.len();
+                let mut block = match *spreads || joined.concerns(samples, n) {
+                    true => lists.add(samples, sampler, joined, n, worker)?,
+                    false => worker.list(samples, n)?,
+                };
+                block.plain = start..worker.plain.triangles.len();
                 lists.blocks.push(block);
             }
             // Copies take no more memory than they need.
+            queue.lock().unwrap_or_else(PoisonError::into_inner).add(chunk, lists.clone(), &mut worker.plain);
             worker.lists = lists;
-            Ok(worker.lists.clone())
+            Ok(())
         };
-        let chunks = spread.par_chunks(AT_ONCE).enumerate();
-        let lists: Result<_, Cancelled> = chunks.map_init(|| Worker::new(sampler), of_chunk).collect();
-        Ok(Special(lists?))
+        let chunks = spread.chunks(AT_ONCE).enumerate().par_bridge();
+        chunks.map_init(|| Worker::new(sampler), of_chunk).collect::<Result<(), ExtractError>>()?;
+        Ok(queue.into_inner().unwrap_or_else(PoisonError::into_inner).all)
     }
 
     /// The lists that hold what belongs to a block, and where.
     fn at(&self, block: usize) -> (&Lists, &OfBlock) {
-        let lists = &self.0[block / AT_ONCE];
+        let lists = &self.lists[block / AT_ONCE];
         (lists, &lists.blocks[block % AT_ONCE])
     }
 
     /// How many candidates there are.
     pub(super) fn count(&self) -> usize {
-        self.0.iter().map(|lists| lists.candidates.len()).sum()
+        self.lists.iter().map(|lists| lists.candidates.len()).sum()
     }
 
     /// Takes the segments, in lists: see [`list_of`].
     pub(super) fn take_segments(&mut self) -> Vec<Vec<Segment>> {
-        self.0.iter_mut().map(|lists| std::mem::take(&mut lists.segments)).collect()
+        self.lists.iter_mut().map(|lists| std::mem::take(&mut lists.segments)).collect()
     }
 
-    /// Drops the candidates.
-    pub(super) fn drop_candidates(&mut self) {
-        for lists in &mut self.0 {
-            lists.candidates = Vec::new();
-            lists.blocks.iter_mut().for_each(|block| block.candidates = 0..0);
-        }
+    /// What the cells without fans have.
+    pub(super) fn into_plain(self) -> Plain {
+        self.plain
     }
 
     /// The candidates of a block.
@@ -133,61 +189,37 @@ impl Special {
     /// The segments of a candidate of a block.
     #[inline]
     pub(super) fn segments(&self, block: usize, candidate: &Candidate) -> &[Segment] {
-        candidate.segments(&self.0[block / AT_ONCE].segments)
+        candidate.segments(&self.lists[block / AT_ONCE].segments)
     }
 
-    /// How many bulges of a block are there.
-    pub(super) fn bulges(&self, block: usize) -> usize {
-        let (_, of_block) = self.at(block);
-        of_block.bulges.len() - of_block.dropped_bulges
-    }
-
-    /// The triangles of a block's cells that are no candidates, if it has been looked at; and how many of them are
-    /// [`DROPPED`].
-    pub(super) fn plain(&self, block: usize) -> Option<(&[[u32; 3]], usize)> {
-        let lists = self.0.get(block / AT_ONCE)?;
-        let OfBlock { plain, dropped, .. } = &lists.blocks[block % AT_ONCE];
-        plain.clone().map(|plain| (&lists.plain[plain], *dropped))
-    }
-
-    /// Drops the triangles and bulges of some cells of a block, given by their numbers.
-    pub(super) fn drop_cells(&mut self, block: usize, cells: impl Iterator<Item = u16>) {
+    /// Gives up the triangles of some cells of a block, given by their numbers: tells `holes` their places among all, and
+    /// `free` the vertices that no triangle has any more.
+    pub(super) fn drop_cells(
+        &self,
+        samples: &Samples<'_>,
+        block: usize,
+        cells: impl Iterator<Item = u16>,
+        (holes, free): (&mut Vec<usize>, &mut Vec<u32>),
+    ) {
         let mut bits = [0_u64; BLOCK * BLOCK * BLOCK / 64];
         cells.for_each(|number| bits[usize::from(number) / 64] |= 1 << (number % 64));
-        let is_dropped = |number: u16| bits[usize::from(number) / 64] >> (number % 64) & 1 == 1;
-        let lists = &mut self.0[block / AT_ONCE];
-        let OfBlock { bulges, cells, plain, dropped, dropped_bulges, .. } = &mut lists.blocks[block % AT_ONCE];
-        let Some(plain) = plain else { return };
-        let mut rest = &mut lists.plain[plain.clone()];
-        for &(number, count) in &lists.cells[cells.clone()] {
-            let (triangles, others) = std::mem::take(&mut rest).split_at_mut(usize::from(count));
-            if is_dropped(number) {
-                triangles.fill(DROPPED);
-                *dropped += triangles.len();
+        let (lists, of_block) = self.at(block);
+        let mut end = of_block.plain.start;
+        let mut next = |number: u16, count: usize| {
+            let start = end;
+            end += count;
+            if bits[usize::from(number) / 64] >> (number % 64) & 1 == 1 {
+                holes.extend(start..end);
+                let first = self.plain.triangles[start..end].first().map(|triangle| triangle[0]);
+                free.extend(first.filter(|&vertex| vertex >= samples.vertices()));
             }
-            rest = others;
+        };
+        match &of_block.cells {
+            Some(cells) => lists.cells[cells.clone()].iter().for_each(|&(number, count)| next(number, count.into())),
+            None => for_each_cell(&samples.parts.part(block).signs, |within, case| {
+                next(cell_number(within), CaseTable::get().triangles(case).len());
+            }),
         }
-        for bulge in lists.bulges[bulges.clone()].iter_mut().filter(|bulge| is_dropped(bulge.cell)) {
-            bulge.drop_it();
-            *dropped_bulges += 1;
-        }
-    }
-
-    /// All bulges that are there, in order.
-    pub(super) fn all_bulges(&self) -> impl Iterator<Item = &Bulge> {
-        self.0.iter().flat_map(|lists| &lists.bulges).filter(|bulge| bulge.is_there())
-    }
-
-    /// Numbers the vertices of bulges in the triangles; `first` tells which vertex the first one of a block is, and
-    /// `number` the number of that.
-    pub(super) fn number_bulges(&mut self, first: impl Fn(usize) -> u32 + Sync, number: impl Fn(u32) -> u32 + Sync) {
-        self.0.par_iter_mut().enumerate().for_each(|(chunk, lists)| {
-            let bulges = lists.bulges.iter().filter(|bulge| bulge.is_there());
-            for (nth, bulge) in (first(chunk * AT_ONCE)..).zip(bulges) {
-                let triangles = &mut lists.plain[bulge.first as usize..][..usize::from(bulge.sides)];
-                triangles.iter_mut().for_each(|triangle| triangle[0] = number(nth));
-            }
-        });
     }
 }
 
@@ -195,10 +227,12 @@ impl Special {
 struct Worker<S: Sampler> {
     scratch: S::Scratch,
     nearby: Nearby,
+    corners: Corners,
     /// The cells at hand with a single loop, by the length of that: their numbers and cases.
     by_length: [Vec<(u16, u8)>; MOST + 1],
     refiner: Refiner,
     lists: Lists,
+    plain: Plain,
 }
 
 impl<S: Sampler> Worker<S> {
@@ -206,10 +240,38 @@ impl<S: Sampler> Worker<S> {
         Worker {
             scratch: sampler.scratch(),
             nearby: Nearby::new(),
+            corners: Corners::new(),
             by_length: Default::default(),
             refiner: Refiner::default(),
             lists: Lists::default(),
+            plain: Plain::default(),
         }
+    }
+
+    /// Lists the triangles of block `n`, which is nearly flat.
+    fn list(&mut self, samples: &Samples<'_>, n: usize) -> Result<OfBlock, ExtractError> {
+        let triangles = &mut self.plain.triangles;
+        samples.parts.list_triangles(n, &mut self.corners, |triangle| triangles.push(triangle))?;
+        Ok(OfBlock::default())
+    }
+}
+
+impl Plain {
+    fn clear(&mut self) {
+        self.triangles.clear();
+        self.tops.iter_mut().for_each(Vec::clear);
+        self.around.clear();
+    }
+
+    /// Adds a vertex in the middle of a cell, and triangles from it to the loop of the cell.
+    #[inline(always)]
+    fn add_top<const N: usize>(&mut self, at: Vec3, normal: Vec3, vertices: [u32; N]) {
+        self.tops[0].push(at);
+        self.tops[1].push(normal);
+        self.around.push((self.triangles.len() as u32, N as u32));
+        // Its number is not known yet.
+        let triangles: [_; N] = std::array::from_fn(|n| [0, vertices[n], vertices[(n + 1) % N]]);
+        self.triangles.extend_from_slice(&triangles);
     }
 }
 
@@ -218,9 +280,7 @@ impl Lists {
         self.candidates.clear();
         self.numbers.clear();
         self.segments.clear();
-        self.bulges.clear();
         self.cells.clear();
-        self.plain.clear();
         self.blocks.clear();
     }
 
@@ -232,14 +292,10 @@ impl Lists {
         joined: &Joined,
         n: usize,
         worker: &mut Worker<S>,
-    ) -> OfBlock {
-        // What is missing in a neighbour is an error of the second pass.
-        if !worker.nearby.load(samples, n) {
-            return OfBlock::default();
-        }
-        let Worker { scratch, nearby, by_length, refiner, .. } = worker;
-        let (candidates, bulges) = (self.candidates.len(), self.bulges.len());
-        let (segments, cells, plain) = (self.segments.len(), self.cells.len(), self.plain.len());
+    ) -> Result<OfBlock, ExtractError> {
+        let Worker { scratch, nearby, by_length, refiner, plain, .. } = worker;
+        nearby.load(samples, n)?;
+        let (candidates, segments, cells) = (self.candidates.len(), self.segments.len(), self.cells.len());
         refiner.clear();
         by_length.iter_mut().for_each(Vec::clear);
         let block = samples.blocks()[n];
@@ -250,27 +306,21 @@ impl Lists {
             let faces = if has_joined { joined.of(samples, cell(), case) } else { 0 };
             match &loops[usize::from(case)] {
                 Some(outline) if faces == 0 => by_length[outline.len()].push((cell_number(within), case)),
-                _ => self.add_other(nearby, (block, within), (case, faces), refiner),
+                _ => self.add_other(nearby, (block, within), (case, faces), (refiner, plain)),
             }
         });
         // Cells with loops of one length are looked at by code for that length.
-        self.add_cells::<3>(samples, nearby, block, &by_length[3], refiner);
-        self.add_cells::<4>(samples, nearby, block, &by_length[4], refiner);
-        self.add_cells::<5>(samples, nearby, block, &by_length[5], refiner);
-        self.add_cells::<6>(samples, nearby, block, &by_length[6], refiner);
-        self.add_cells::<7>(samples, nearby, block, &by_length[7], refiner);
+        self.add_cells::<3>(samples, nearby, (block, &by_length[3]), (refiner, plain));
+        self.add_cells::<4>(samples, nearby, (block, &by_length[4]), (refiner, plain));
+        self.add_cells::<5>(samples, nearby, (block, &by_length[5]), (refiner, plain));
+        self.add_cells::<6>(samples, nearby, (block, &by_length[6]), (refiner, plain));
+        self.add_cells::<7>(samples, nearby, (block, &by_length[7]), (refiner, plain));
         let found = (&mut self.candidates[candidates..], &mut self.segments[segments..]);
         refiner.refine(found.0, found.1, samples.lattice.step() as f32, |points, out| {
             sampler.slopes(scratch, n, block, points, out)
         });
-        OfBlock {
-            candidates: candidates..self.candidates.len(),
-            bulges: bulges..self.bulges.len(),
-            cells: cells..self.cells.len(),
-            plain: Some(plain..self.plain.len()),
-            dropped: 0,
-            dropped_bulges: 0,
-        }
+        let (candidates, cells) = (candidates..self.candidates.len(), Some(cells..self.cells.len()));
+        Ok(OfBlock { candidates, cells, plain: 0..0 })
     }
 
     /// Adds what cells of a block, given by its first cell, with loops of `N` in the table are to have.
@@ -278,9 +328,8 @@ impl Lists {
         &mut self,
         samples: &Samples<'_>,
         nearby: &Nearby,
-        block: [u32; 3],
-        cells: &[(u16, u8)],
-        refiner: &mut Refiner,
+        (block, cells): ([u32; 3], &[(u16, u8)]),
+        (refiner, plain): (&mut Refiner, &mut Plain),
     ) {
         let loops = CellLoop::table();
         for &(number, case) in cells {
@@ -306,21 +355,21 @@ impl Lists {
             let mut corners = [0; 8];
             corners[..N].copy_from_slice(&vertices);
             let corner = |n: u8| corners[usize::from(n & 7)];
-            let start = self.plain.len();
+            let start = plain.triangles.len();
             match cover {
-                Cover::Table => self.plain.extend(outline.triangles::<N>().iter().map(|triangle| triangle.map(corner))),
-                Cover::Two(triangles) => self.plain.extend_from_slice(&triangles.map(|triangle| triangle.map(corner))),
+                Cover::Table => {
+                    plain.triangles.extend(outline.triangles::<N>().iter().map(|triangle| triangle.map(corner)));
+                }
+                Cover::Two(triangles) => {
+                    plain.triangles.extend_from_slice(&triangles.map(|triangle| triangle.map(corner)));
+                }
                 Cover::Top { at, normal } => {
                     let cell = std::array::from_fn(|axis| block[axis] + within[axis] as u32);
                     let at = samples.inside(at - vector(within), cell, cell.map(|n| n + 1));
-                    let (sides, first) = (N as u16, start as u32);
-                    self.bulges.push(Bulge { cell: number, sides, first, at, normal: normal.into() });
-                    // Its number is not known yet.
-                    let triangles: [_; N] = std::array::from_fn(|n| [0, vertices[n], vertices[(n + 1) % N]]);
-                    self.plain.extend_from_slice(&triangles);
+                    plain.add_top(at, normal.into(), vertices);
                 }
             }
-            self.cells.push((number, (self.plain.len() - start) as u8));
+            self.cells.push((number, (plain.triangles.len() - start) as u8));
         }
     }
 
@@ -331,13 +380,13 @@ impl Lists {
         nearby: &Nearby,
         (block, within): ([u32; 3], [usize; 3]),
         (case, faces): (u8, u8),
-        refiner: &mut Refiner,
+        (refiner, plain): (&mut Refiner, &mut Plain),
     ) {
         let all = nearby.all_places(within);
         let corner = |edge: u8| nearby.vertex(all[usize::from(edge & 15)]);
-        let (table, start) = (CaseTable::get(), self.plain.len());
+        let (table, start) = (CaseTable::get(), plain.triangles.len());
         if faces == 0 {
-            self.plain.extend(table.triangles(case).iter().map(|triangle| triangle.map(corner)));
+            plain.triangles.extend(table.triangles(case).iter().map(|triangle| triangle.map(corner)));
         } else if let Some(outline) = CellLoop::single(case, faces) {
             // The table knows nothing of joined faces.
             let (low, around) = (vector(within), outline.edges().iter().map(|&edge| all[usize::from(edge & 15)]));
@@ -349,9 +398,9 @@ impl Lists {
             return self.add_candidate((block, within), &mut segments, (&normals, &places), refiner);
         } else {
             let turned = table.triangles(!case).iter();
-            self.plain.extend(turned.map(|&[a, b, c]| [corner(a), corner(c), corner(b)]));
+            plain.triangles.extend(turned.map(|&[a, b, c]| [corner(a), corner(c), corner(b)]));
         }
-        self.cells.push((cell_number(within), (self.plain.len() - start) as u8));
+        self.cells.push((cell_number(within), (plain.triangles.len() - start) as u8));
     }
 
     /// Adds a cell with a single loop around it that is to have a fan, given with the normals at its vertices and with

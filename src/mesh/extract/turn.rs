@@ -18,12 +18,9 @@ use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::samples::{Samples, cell_number, split_cell};
-use super::sharp::{Fan, Fans};
+use super::sharp::{AT_ONCE, Fan, Fans};
 use crate::mesh::feature::{INSET, Segment};
 use crate::run::{Cancelled, Run};
-
-/// Fans that a thread looks at before it asks whether to go on.
-const AT_ONCE: usize = 512;
 
 impl Fans {
     /// Finds out which edges between fans are turned, and to what.
