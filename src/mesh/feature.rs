@@ -31,7 +31,7 @@ use super::qef::Planes;
 /// of the angle between them.
 pub(super) const SMOOTH: f32 = 0.9;
 
-/// Normals of vertices that are on the same side of a crease, with little between them: the cosine of 11°.
+/// Normals of vertices next to each other that are on the same side of a crease: the cosine of 11°.
 const ALIKE: f32 = 0.98;
 
 /// How far feature points stay from the faces of their cell, in cells.
@@ -44,7 +44,7 @@ const ASTRAY: f32 = 0.7;
 const DAMPING: f32 = 3e-3;
 
 /// Steps that are shorter than this, in cells, are the last: what is left is a tenth of it at most.
-const CLOSE: f32 = 1e-3;
+pub(super) const CLOSE: f32 = 1e-3;
 
 /// Where the field is asked, as a part of the way from the feature point to a vertex. Much closer, and what
 /// is found is the side of the crease that the first point missed it to.
@@ -136,20 +136,22 @@ pub(super) struct Candidate {
     /// The feature point, in cells from the cell's first node, as are the sides' planes close to it.
     pub(super) at: Vec3A,
     pub(super) planes: Planes,
+    /// The feature point as a vertex has it.
+    pub(super) position: Vec3,
 }
 
 impl Candidate {
     /// The cell with a first feature point. Its segments are told which of them turn, and are in the list from `first`
-    /// on; `places` are their vertices in cells, from the cell's first node.
+    /// on; `places` are their vertices in cells, from the cell's first node. Then where sides start, see [`tangents`].
     #[inline(always)]
-    pub(super) fn new(cell: [u32; 3], first: usize, segments: &mut [Segment], places: &[Vec3A]) -> Candidate {
-        let planes = tangents(segments, places);
+    pub(super) fn new(cell: [u32; 3], first: usize, segments: &mut [Segment], places: &[Vec3A]) -> (Candidate, u32) {
+        let (planes, sides) = tangents(segments, places);
         let len = segments.len();
         let at = places.iter().sum::<Vec3A>() / len as f32;
-        let normal = segments.iter().map(|segment| segment.normal).sum::<Vec3>().normalize_or_zero();
-        let mut candidate = Candidate { cell, first: first as u32, len: len as u32, normal, at, planes };
+        let (first, len) = (first as u32, len as u32);
+        let mut candidate = Candidate { cell, first, len, normal: Vec3::ZERO, at, position: Vec3::ZERO, planes };
         candidate.settle();
-        candidate
+        (candidate, sides)
     }
 
     /// The segments of the loop, in order, of the list of all.
@@ -171,20 +173,25 @@ impl Candidate {
 }
 
 /// The planes of the surface at the vertices of a cell's loop, given where these are from the cell's first node; tells
-/// the segments which of them turn.
+/// the segments which of them turn. Then, by a bit for each vertex, where another side starts than that of the one before.
 #[inline(always)]
-pub(super) fn tangents(segments: &mut [Segment], places: &[Vec3A]) -> Planes {
-    let mut planes = Planes::NONE;
-    let mut next = segments.first().map_or(Vec3A::ZERO, |segment| segment.normal.into());
+pub(super) fn tangents(segments: &mut [Segment], places: &[Vec3A]) -> (Planes, u32) {
+    let (mut planes, mut sides) = (Planes::NONE, 0);
+    let first = segments.first().map_or(Vec3A::ZERO, |segment| segment.normal.into());
+    let mut next = first;
     for (segment, at) in segments.iter_mut().zip(places).rev() {
         let normal = Vec3A::from(segment.normal);
         if normal != Vec3A::ZERO {
             planes.add(normal, normal.dot(*at));
         }
-        segment.turns = normal.dot(next) < SMOOTH;
+        let alike = normal.dot(next);
+        segment.turns = alike < SMOOTH;
+        sides = sides << 1 | u32::from(alike <= ALIKE);
         next = normal;
     }
-    planes
+    // So far each bit is that of the vertex before.
+    let last = segments.len() - 1;
+    (planes, sides << 1 & ((2 << last) - 1) | sides >> last)
 }
 
 /// The point of a box of cells, clear of its faces, that the planes lead to in up to some steps.
@@ -240,33 +247,31 @@ impl Refiner {
         found.clear();
     }
 
-    /// Adds the next candidate, given its feature point, and the normals and places of the vertices of its segments.
-    /// Places are in cells from its first node, which is at `low` in the block.
+    /// Adds the next candidate, given its feature point, the normals and places of the vertices of its segments, and where
+    /// sides start. Places are in cells from its first node, which is at `low` in the block.
     #[inline(always)]
-    pub(super) fn add(&mut self, low: Vec3A, at: Vec3A, normals: &[Vec3A], places: &[Vec3A]) {
+    pub(super) fn add(&mut self, low: Vec3A, at: Vec3A, (normals, places): (&[Vec3A], &[Vec3A]), starts: u32) {
         self.offsets.extend(normals.iter().zip(places).map(|(normal, place)| normal.dot(*place)));
-        // Vertices that have nearly the same normal as the first of those that are left share a point with it.
-        let (mut on, mut count, mut left) = (0, 0, (1_u32 << normals.len()) - 1);
-        while left != 0 {
-            let first = left & left.wrapping_neg();
-            let leader = normals[first.trailing_zeros() as usize];
-            let alike = normals.iter().rev().fold(0, |bits, own| bits << 1 | u32::from(leader.dot(*own) > ALIKE));
-            let members = alike & left | first;
-            let (mut sum, mut size) = (Vec3A::ZERO, 0.0);
-            for (n, place) in places.iter().enumerate() {
-                let is_member = members >> n & 1;
-                let share = is_member as f32;
-                sum += share * place;
-                size += share;
-                on |= u64::from(is_member) * count << (4 * n);
-            }
+        let mut point = |sum: Vec3A, size: f32| {
             let point = at + CLOSER * (sum / size - at);
             self.points.push(point);
             self.in_block.push(low + point);
-            left &= !members;
-            count += 1;
+        };
+        // Vertices of a side share a point. The first side starts somewhere, if there are several.
+        let first = (places.len() - 1).min(starts.trailing_zeros() as usize);
+        let (mut on, mut side, mut sum, mut size) = (0, 0, Vec3A::ZERO, 0.0);
+        for n in (first..places.len()).chain(0..first) {
+            if starts >> n & 1 == 1 && size > 0.0 {
+                point(sum, size);
+                side += 1;
+                (sum, size) = (Vec3A::ZERO, 0.0);
+            }
+            sum += places[n];
+            size += 1.0;
+            on |= side << (4 * n);
         }
-        self.sides.push((on, count as u8));
+        point(sum, size);
+        self.sides.push((on, side as u8 + 1));
     }
 
     /// Refines the candidates that were added, whose `segments` are consecutive. `slopes` tells values and gradients at
@@ -279,8 +284,11 @@ impl Refiner {
         mut slopes: impl FnMut(&[Vec3A], &mut Vec<Slope>) -> bool,
     ) {
         let Refiner { sides, offsets, points, in_block, found } = self;
-        if candidates.is_empty() || !slopes(in_block, found) || found.len() != points.len() {
+        if candidates.is_empty() {
             return;
+        }
+        if !slopes(in_block, found) || found.len() != points.len() {
+            found.clear();
         }
         let mut asked = points.iter().zip(found);
         let mut vertices = segments.iter_mut().zip(offsets);

@@ -133,7 +133,10 @@ impl<'a> Parts<'a> {
             keep(&mut positions, &unused);
             keep(&mut normals, &unused);
         }
-        triangles.shrink_to_fit();
+        // Less is not worth a copy.
+        if triangles.capacity() > triangles.len() + triangles.len() / 8 {
+            triangles.shrink_to_fit();
+        }
         positions.shrink_to_fit();
         normals.shrink_to_fit();
         let mesh = Mesh::new(positions, triangles)?.with_normals(normals)?.with_clamped_vertices(self.clamped);

@@ -5,6 +5,7 @@ use glam::{Vec3, Vec3A};
 use super::ExtractError;
 use super::join::Corners;
 use super::samples::Samples;
+use crate::mesh::signs::SIDE;
 
 /// The vertices on the edges of a block's cells. Each is used by several cells: they are fetched once.
 pub(super) struct Nearby {
@@ -14,16 +15,23 @@ pub(super) struct Nearby {
     normals: Vec<Vec3A>,
     /// In cells, from the block's first node.
     positions: Vec<Vec3A>,
+    /// By axis, the coordinates of the nodes.
+    nodes: [[f32; SIDE]; 3],
 }
 
 impl Nearby {
     pub(super) fn new() -> Nearby {
-        Nearby { corners: Corners::new(), vertices: Vec::new(), normals: Vec::new(), positions: Vec::new() }
+        let (vertices, normals, positions) = (Vec::new(), Vec::new(), Vec::new());
+        Nearby { corners: Corners::new(), vertices, normals, positions, nodes: [[0.0; SIDE]; 3] }
     }
 
     /// Becomes that of block `n`; an error if the owner of a vertex is not there.
     pub(super) fn load(&mut self, samples: &Samples<'_>, n: usize) -> Result<(), ExtractError> {
-        let Nearby { corners, vertices, normals, positions } = self;
+        let Nearby { corners, vertices, normals, positions, nodes } = self;
+        for along in 0..SIDE {
+            let node = samples.node(samples.blocks()[n].map(|first| first + along as u32));
+            (nodes[0][along], nodes[1][along], nodes[2][along]) = node.into();
+        }
         vertices.clear();
         samples.parts.number(n, |place, vertex| {
             corners.note(place, vertices.len() as u32);
@@ -42,6 +50,13 @@ impl Nearby {
         positions.extend(own_positions.iter().map(|&position| local(position)));
         positions.extend(others.iter().map(|&vertex| local(samples.position(vertex))));
         Ok(())
+    }
+
+    /// The position of a point, strictly inside of a cell. It is given in cells from the cell's first node.
+    #[inline(always)]
+    pub(super) fn inside(&self, samples: &Samples<'_>, cell: [usize; 3], at: Vec3A) -> Vec3 {
+        let corner = |upper: usize| Vec3::from_array(std::array::from_fn(|axis| self.nodes[axis][cell[axis] + upper]));
+        samples.held(at, [corner(0), corner(1)])
     }
 
     /// The places in the lists of the vertices on some edges of a cell.

@@ -60,7 +60,7 @@ impl Patches {
             ring.push(Segment::new(from, normal, outline.face(n)));
             places.push(share * Vec3A::from(position - low));
         }
-        let planes = tangents(&mut ring, &places);
+        let (planes, _) = tangents(&mut ring, &places);
         self.add(cell, &ring, &planes);
         (self.ring, self.places) = (ring, places);
     }

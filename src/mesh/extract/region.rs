@@ -34,7 +34,7 @@ use super::patches::{Disc, Patches};
 use super::samples::{Samples, cell_number, split_cell};
 use super::span::{Span, offset};
 use super::special::Special;
-use crate::mesh::feature::{Candidate, Segment, settle};
+use crate::mesh::feature::{CLOSE, Candidate, Segment, settle};
 use crate::mesh::loops::{CellLoop, LONGEST};
 use crate::mesh::qef::Planes;
 use crate::run::{Cancelled, Run};
@@ -101,7 +101,7 @@ pub(super) fn regions(
     for stage in [Stage::Slab(0), Stage::Slab(1), Stage::Box] {
         let mut wishes = Vec::new();
         run.check()?;
-        all.retain(|asker| known.taken(asker.block, asker.span.low).is_none());
+        all.retain(|asker| known.own_taken(asker.block, asker.span.low).is_none());
         for asker in &all {
             match stage {
                 Stage::Slab(nth) => asker.slabs(nth, &mut wishes),
@@ -120,8 +120,8 @@ pub(super) fn regions(
         run.check()?;
         let mut wishes = Vec::new();
         for block in (0..blocks).filter(|_| round == 0) {
-            let is_free = |cell| known.taken[block].is_empty() || known.taken(block, cell).is_none();
-            for candidate in special.candidates(block).iter().filter(|one| is_free(one.cell)) {
+            let is_free = |candidate: &&Candidate| known.own_taken(block, candidate.cell).is_none();
+            for candidate in special.candidates(block).iter().filter(is_free) {
                 known.exits(&Asker::candidate(block, candidate), special.segments(block, candidate), &mut wishes);
             }
         }
@@ -264,7 +264,8 @@ impl Known<'_> {
     /// that makes a slab of a slab, and else only where there are none. Whether there is no more to be done for the wish.
     fn grant(&mut self, wish: &Wish<'_>, merges: bool) -> bool {
         // A region that a cell is in already is what it wished for, or better.
-        let is_granted = matches!(wish.who, Who::Cell(candidate) if self.taken(wish.block, candidate.cell).is_some());
+        let is_granted =
+            matches!(wish.who, Who::Cell(candidate) if self.own_taken(wish.block, candidate.cell).is_some());
         if is_granted || self.run.cancel.is_cancelled() {
             return true;
         }
@@ -327,13 +328,12 @@ impl Known<'_> {
     /// The region that a cell, close to block `near`, is in.
     fn taken(&self, near: usize, cell: [u32; 3]) -> Option<u32> {
         let (block, within) = split_cell(cell);
-        let block = self.samples.find_near(near, block)?;
-        let cells = &self.taken[block];
-        if cells.is_empty() {
-            return None;
-        }
-        let number = cell_number(within);
-        cells.iter().find(|(cell, _)| *cell == number).map(|&(_, region)| region)
+        find_taken(&self.taken[self.samples.find_near(near, block)?], within)
+    }
+
+    /// The same, of a cell of that block.
+    fn own_taken(&self, block: usize, cell: [u32; 3]) -> Option<u32> {
+        find_taken(&self.taken[block], split_cell(cell).1)
     }
 
     fn region(&self, wish: &Wish<'_>, span: Span, patches: &mut Patches) -> Option<Region> {
@@ -348,7 +348,12 @@ impl Known<'_> {
         let (mut planes, mut place) = (Planes::NONE, wish.at + shift);
         for _ in 0..STEPS {
             planes = patches.planes(span.low, place);
-            place = settle(&planes, place, Vec3A::ZERO, size, 3);
+            let next = settle(&planes, place, Vec3A::ZERO, size, 3);
+            let way = next - place;
+            place = next;
+            if way.length_squared() < CLOSE * CLOSE {
+                break;
+            }
         }
         let own = match wish.who {
             Who::Cell(candidate) => &candidate.planes,
@@ -385,4 +390,10 @@ impl Known<'_> {
             None => CellLoop::all(case, faces).try_for_each(|outline| add(&outline)),
         }
     }
+}
+
+/// The region that a cell, by its place in a block, is in, of the cells of that block.
+fn find_taken(cells: &[(u16, u32)], within: [usize; 3]) -> Option<u32> {
+    let number = cell_number(within);
+    cells.iter().find(|&&(cell, _)| cell == number).map(|&(_, region)| region)
 }

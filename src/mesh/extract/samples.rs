@@ -187,7 +187,12 @@ impl<'a> Samples<'a> {
     /// exclusive. It is given in cells from the first node of the box.
     #[inline]
     pub(super) fn inside(&self, at: Vec3A, low: [u32; 3], high: [u32; 3]) -> Vec3 {
-        let (low, high) = (self.node(low), self.node(high));
+        self.held(at, [self.node(low), self.node(high)])
+    }
+
+    /// The same, given the first and the last node.
+    #[inline(always)]
+    pub(super) fn held(&self, at: Vec3A, [low, high]: [Vec3; 2]) -> Vec3 {
         let at = self.limited(low + Vec3::from(self.lattice.step() as f32 * at));
         if at.cmpgt(low).all() && at.cmplt(high).all() {
             return at;

@@ -153,10 +153,10 @@ impl Fans {
                 if own.iter().all(|&(_, other, _)| other != number) {
                     all.cells.push((number, all.fans.len() as u32));
                     let span = Span::single(candidate.cell);
-                    let at = samples.inside(candidate.at, span.low, span.high);
                     let Range { start, end } = candidate.range();
                     let (list, segments) = (list_of(block), start as u32..end as u32);
-                    all.fans.push(Fan { list, segments, block: block as u32, span, at, normal: candidate.normal });
+                    let (at, normal) = (candidate.position, candidate.normal);
+                    all.fans.push(Fan { list, segments, block: block as u32, span, at, normal });
                 }
             }
             all.blocks.push(start..all.cells.len());

@@ -24,8 +24,8 @@ use crate::run::Run;
 /// Blocks that have their lists together.
 const AT_ONCE: usize = 16;
 
-/// How much more room there is made for triangles than those before tell: for those of fans.
-const ROOM: f64 = 1.3;
+/// How much more room there is made for triangles than those before tell.
+const ROOM: f64 = 1.05;
 
 /// The number of the list that the segments of a block are in.
 pub(super) fn list_of(block: usize) -> u32 {
@@ -78,6 +78,10 @@ pub(super) struct Plain {
 struct Queue<'a> {
     samples: &'a Samples<'a>,
     all: Special,
+    /// How many triangles the case table has in the blocks that are added, and in all.
+    in_table: [usize; 2],
+    /// How many segments the fans of those that are added have.
+    segments: usize,
     /// Those that others before them are missing for.
     waiting: BTreeMap<usize, (Lists, Plain)>,
 }
@@ -103,12 +107,17 @@ impl Queue<'_> {
             around.iter_mut().for_each(|triangle| triangle[0] = first.wrapping_add(n));
         }
         let start = all.triangles.len();
-        for block in &mut lists.blocks {
+        for (n, block) in (self.all.lists.len() * AT_ONCE..).zip(&mut lists.blocks) {
             block.plain = start + block.plain.start..start + block.plain.end;
+            self.in_table[0] += self.samples.parts.part(n).triangles as usize;
         }
+        self.segments += lists.segments.len();
         self.all.lists.push(lists);
-        let progress = (self.all.lists.len(), self.samples.blocks().len().div_ceil(AT_ONCE));
-        reserve(&mut all.triangles, plain.triangles.len(), progress, ROOM);
+        // Those of fans are to follow.
+        let count = start + plain.triangles.len();
+        let share = ROOM * (count + self.segments) as f64 / count as f64;
+        let progress = (self.in_table[0], self.in_table[1]);
+        reserve(&mut all.triangles, plain.triangles.len(), progress, share);
         all.triangles.extend_from_slice(&plain.triangles);
         for (all, tops) in all.tops.iter_mut().zip(&plain.tops) {
             reserve(all, tops.len(), progress, ROOM);
@@ -127,7 +136,9 @@ impl Special {
         run: &Run,
     ) -> Result<Special, ExtractError> {
         let meter = Meter::new(run, spread.len());
-        let queue = Mutex::new(Queue { samples, all: Special::default(), waiting: BTreeMap::new() });
+        let in_table = (0..spread.len()).map(|n| samples.parts.part(n).triangles as usize).sum();
+        let (all, in_table, waiting) = (Special::default(), [0, in_table], BTreeMap::new());
+        let queue = Mutex::new(Queue { samples, all, in_table, segments: 0, waiting });
         let of_chunk = |worker: &mut Worker<S>, (chunk, spread): (usize, &[bool])| {
             let mut lists = std::mem::take(&mut worker.lists);
             lists.clear();
@@ -315,10 +326,14 @@ impl Lists {
         self.add_cells::<5>(samples, nearby, (block, &by_length[5]), (refiner, plain));
         self.add_cells::<6>(samples, nearby, (block, &by_length[6]), (refiner, plain));
         self.add_cells::<7>(samples, nearby, (block, &by_length[7]), (refiner, plain));
-        let found = (&mut self.candidates[candidates..], &mut self.segments[segments..]);
-        refiner.refine(found.0, found.1, samples.lattice.step() as f32, |points, out| {
+        let (found, segments) = (&mut self.candidates[candidates..], &mut self.segments[segments..]);
+        refiner.refine(found, segments, samples.lattice.step() as f32, |points, out| {
             sampler.slopes(scratch, n, block, points, out)
         });
+        for candidate in &mut self.candidates[candidates..] {
+            let within = std::array::from_fn(|axis| (candidate.cell[axis] - block[axis]) as usize);
+            candidate.position = nearby.inside(samples, within, candidate.at);
+        }
         let (candidates, cells) = (candidates..self.candidates.len(), Some(cells..self.cells.len()));
         Ok(OfBlock { candidates, cells, plain: 0..0 })
     }
@@ -364,8 +379,7 @@ impl Lists {
                     plain.triangles.extend_from_slice(&triangles.map(|triangle| triangle.map(corner)));
                 }
                 Cover::Top { at, normal } => {
-                    let cell = std::array::from_fn(|axis| block[axis] + within[axis] as u32);
-                    let at = samples.inside(at - vector(within), cell, cell.map(|n| n + 1));
+                    let at = nearby.inside(samples, within, at - vector(within));
                     plain.add_top(at, normal.into(), vertices);
                 }
             }
@@ -414,8 +428,8 @@ impl Lists {
         refiner: &mut Refiner,
     ) {
         let cell = std::array::from_fn(|axis| block[axis] + within[axis] as u32);
-        let candidate = Candidate::new(cell, self.segments.len(), segments, places);
-        refiner.add(vector(within), candidate.at, normals, places);
+        let (candidate, sides) = Candidate::new(cell, self.segments.len(), segments, places);
+        refiner.add(vector(within), candidate.at, (normals, places), sides);
         self.segments.extend_from_slice(segments);
         self.numbers.push(cell_number(within));
         self.candidates.push(candidate);
