@@ -28,7 +28,7 @@
 
 use glam::Vec3A;
 
-use super::nearby::Nearby;
+use super::nearby::Vertex;
 use crate::mesh::feature::{SMOOTH, differ};
 
 /// How far the two triangles of four vertices may be off the surface in their middles, in cells, before the better
@@ -49,8 +49,8 @@ const RAISED: [f32; 4] = [1.5, 1.345, 1.25, 1.188];
 pub(super) const SPREAD: f32 = 0.05;
 
 /// The vertices on a cell's loop, in order.
-pub(super) struct Ring<const N: usize> {
-    places: [u32; N],
+pub(super) struct Ring<'a, const N: usize> {
+    vertices: [&'a Vertex; N],
     pub(super) normals: [Vec3A; N],
     /// The sum of the normals.
     sum: Vec3A,
@@ -58,13 +58,13 @@ pub(super) struct Ring<const N: usize> {
     variance: f32,
 }
 
-impl<const N: usize> Ring<N> {
+impl<'a, const N: usize> Ring<'a, N> {
     #[inline(always)]
-    pub(super) fn new(nearby: &Nearby, places: [u32; N]) -> Ring<N> {
-        let normals = places.map(|place| nearby.normal(place));
+    pub(super) fn new(vertices: [&'a Vertex; N]) -> Ring<'a, N> {
+        let normals = vertices.map(|vertex| vertex.normal);
         let sum = normals.iter().sum::<Vec3A>();
         let share = 1.0 / (N * N) as f32;
-        Ring { places, normals, sum, variance: 1.0 - share * sum.length_squared() }
+        Ring { vertices, normals, sum, variance: 1.0 - share * sum.length_squared() }
     }
 
     /// Whether the cell is nearly flat: a few normals in a circle of that diameter are this far from their mean.
@@ -82,12 +82,12 @@ impl<const N: usize> Ring<N> {
 
     /// What a smooth cell that is not flat is to have.
     #[inline(always)]
-    pub(super) fn cover(&self, nearby: &Nearby) -> Cover {
+    pub(super) fn cover(&self) -> Cover {
         // A single triangle is small.
         if N == 3 {
             return Cover::Table;
         }
-        let positions = self.places.map(|place| nearby.position(place));
+        let positions = self.vertices.map(|vertex| vertex.position);
         if N == 4 {
             let [first, second] = diagonals(&positions, &self.normals);
             if first.max(second) <= TURNED {

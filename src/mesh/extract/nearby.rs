@@ -7,48 +7,56 @@ use super::join::Corners;
 use super::samples::Samples;
 use crate::mesh::signs::SIDE;
 
+/// A vertex on an edge.
+pub(super) struct Vertex {
+    /// In cells, from the block's first node.
+    pub(super) position: Vec3A,
+    pub(super) normal: Vec3A,
+    pub(super) number: u32,
+}
+
 /// The vertices on the edges of a block's cells. Each is used by several cells: they are fetched once.
 pub(super) struct Nearby {
-    /// By edge, the place of its vertex in the lists.
+    /// By edge, the place of its vertex in the list.
     corners: Corners,
-    vertices: Vec<u32>,
-    normals: Vec<Vec3A>,
-    /// In cells, from the block's first node.
-    positions: Vec<Vec3A>,
+    vertices: Vec<Vertex>,
+    /// Memory for their numbers.
+    numbers: Vec<u32>,
     /// By axis, the coordinates of the nodes.
     nodes: [[f32; SIDE]; 3],
 }
 
 impl Nearby {
     pub(super) fn new() -> Nearby {
-        let (vertices, normals, positions) = (Vec::new(), Vec::new(), Vec::new());
-        Nearby { corners: Corners::new(), vertices, normals, positions, nodes: [[0.0; SIDE]; 3] }
+        let (corners, nodes) = (Corners::new(), [[0.0; SIDE]; 3]);
+        Nearby { corners, vertices: Vec::new(), numbers: Vec::new(), nodes }
     }
 
     /// Becomes that of block `n`; an error if the owner of a vertex is not there.
     pub(super) fn load(&mut self, samples: &Samples<'_>, n: usize) -> Result<(), ExtractError> {
-        let Nearby { corners, vertices, normals, positions, nodes } = self;
+        let Nearby { corners, vertices, numbers, nodes } = self;
         for along in 0..SIDE {
             let node = samples.node(samples.blocks()[n].map(|first| first + along as u32));
             (nodes[0][along], nodes[1][along], nodes[2][along]) = node.into();
         }
-        vertices.clear();
+        numbers.clear();
         samples.parts.number(n, |place, vertex| {
-            corners.note(place, vertices.len() as u32);
-            vertices.push(vertex);
+            corners.note(place, numbers.len() as u32);
+            numbers.push(vertex);
         })?;
         // The block's own come first, in their order.
         let own = samples.own(n);
-        let others = &vertices[own.len().min(vertices.len())..];
+        let others = &numbers[own.len().min(numbers.len())..];
         let (low, share) = (samples.node(samples.blocks()[n]), 1.0 / samples.lattice.step() as f32);
-        let local = |position: Vec3| share * Vec3A::from(position - low);
-        let (own_positions, own_normals) = samples.of(own);
-        normals.clear();
-        normals.extend(own_normals.iter().map(|&normal| Vec3A::from(normal)));
-        normals.extend(others.iter().map(|&vertex| Vec3A::from(samples.normal(vertex))));
-        positions.clear();
-        positions.extend(own_positions.iter().map(|&position| local(position)));
-        positions.extend(others.iter().map(|&vertex| local(samples.position(vertex))));
+        let vertex = |number: u32, position: Vec3, normal: Vec3| {
+            let position = share * Vec3A::from(position - low);
+            Vertex { position, normal: normal.into(), number }
+        };
+        let (positions, normals) = samples.of(own);
+        vertices.clear();
+        let own = numbers.iter().zip(positions).zip(normals);
+        vertices.extend(own.map(|((&number, &position), &normal)| vertex(number, position, normal)));
+        vertices.extend(others.iter().map(|&number| vertex(number, samples.position(number), samples.normal(number))));
         Ok(())
     }
 
@@ -59,31 +67,21 @@ impl Nearby {
         samples.held(at, [corner(0), corner(1)])
     }
 
-    /// The places in the lists of the vertices on some edges of a cell.
+    /// The vertices on some edges of a cell.
     #[inline(always)]
-    pub(super) fn places<const N: usize>(&self, cell: [usize; 3], edges: &[u8; N]) -> [u32; N] {
-        self.corners.of_edges(cell, edges)
+    pub(super) fn around<const N: usize>(&self, cell: [usize; 3], edges: &[u8; N]) -> [&Vertex; N] {
+        self.corners.of_edges(cell, edges).map(|place| self.vertex(place))
     }
 
-    /// The same of all edges of a cell, and four numbers without meaning.
+    /// The places of those on all edges of a cell, and four numbers without meaning.
     #[inline(always)]
     pub(super) fn all_places(&self, cell: [usize; 3]) -> [u32; 16] {
         self.corners.of_cell(cell)
     }
 
-    /// The number of the vertex at a place.
+    /// The vertex at a place.
     #[inline(always)]
-    pub(super) fn vertex(&self, place: u32) -> u32 {
-        self.vertices[place as usize]
-    }
-
-    #[inline(always)]
-    pub(super) fn normal(&self, place: u32) -> Vec3A {
-        self.normals[place as usize]
-    }
-
-    #[inline(always)]
-    pub(super) fn position(&self, place: u32) -> Vec3A {
-        self.positions[place as usize]
+    pub(super) fn vertex(&self, place: u32) -> &Vertex {
+        &self.vertices[place as usize]
     }
 }

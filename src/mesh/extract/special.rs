@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use super::bulge::{Cover, Ring};
 use super::join::{Corners, reserve};
 use super::joined::Joined;
-use super::nearby::Nearby;
+use super::nearby::{Nearby, Vertex};
 use super::samples::{Samples, cell_number, cell_of};
 use super::{ExtractError, Sampler};
 use crate::mesh::feature::{Candidate, Refiner, Segment};
@@ -351,16 +351,16 @@ impl Lists {
             let Some(outline) = &loops[usize::from(case)] else { continue };
             let Some(edges) = outline.edges().first_chunk::<N>() else { continue };
             let within = cell_of([0; 3], number).map(|n| n as usize);
-            let around = nearby.places(within, edges);
-            let ring = Ring::new(nearby, around);
-            let vertices = around.map(|place| nearby.vertex(place));
+            let around = nearby.around(within, edges);
+            let ring = Ring::new(around);
+            let vertices = around.map(|vertex| vertex.number);
             let cover = if ring.is_flat() {
                 Cover::Table
             } else if ring.is_smooth() {
-                ring.cover(nearby)
+                ring.cover()
             } else {
                 let low = vector(within);
-                let places = around.map(|place| nearby.position(place) - low);
+                let places = around.map(|vertex| vertex.position - low);
                 let mut segments: [_; N] =
                     std::array::from_fn(|n| Segment::new(vertices[n], ring.normals[n].into(), outline.face(n)));
                 self.add_candidate((block, within), &mut segments, (&ring.normals, &places), refiner);
@@ -397,17 +397,18 @@ impl Lists {
         (refiner, plain): (&mut Refiner, &mut Plain),
     ) {
         let all = nearby.all_places(within);
-        let corner = |edge: u8| nearby.vertex(all[usize::from(edge & 15)]);
+        let corner = |edge: u8| nearby.vertex(all[usize::from(edge & 15)]).number;
         let (table, start) = (CaseTable::get(), plain.triangles.len());
         if faces == 0 {
             plain.triangles.extend(table.triangles(case).iter().map(|triangle| triangle.map(corner)));
         } else if let Some(outline) = CellLoop::single(case, faces) {
             // The table knows nothing of joined faces.
-            let (low, around) = (vector(within), outline.edges().iter().map(|&edge| all[usize::from(edge & 15)]));
-            let normals: Vec<Vec3A> = around.clone().map(|place| nearby.normal(place)).collect();
-            let places: Vec<Vec3A> = around.clone().map(|place| nearby.position(place) - low).collect();
+            let low = vector(within);
+            let around = outline.edges().iter().map(|&edge| nearby.vertex(all[usize::from(edge & 15)]));
+            let normals: Vec<Vec3A> = around.clone().map(|vertex| vertex.normal).collect();
+            let places: Vec<Vec3A> = around.clone().map(|vertex| vertex.position - low).collect();
             let segment =
-                |(n, place): (usize, u32)| Segment::new(nearby.vertex(place), normals[n].into(), outline.face(n));
+                |(n, vertex): (usize, &Vertex)| Segment::new(vertex.number, vertex.normal.into(), outline.face(n));
             let mut segments: Vec<Segment> = around.enumerate().map(segment).collect();
             return self.add_candidate((block, within), &mut segments, (&normals, &places), refiner);
         } else {
