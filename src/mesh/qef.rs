@@ -105,18 +105,20 @@ impl Planes {
     fn nearest_on_sides(&self, free: Vec3A, from: Vec3A, weight: f32, low: Vec3A, high: Vec3A) -> Vec3A {
         let (d, e, b) = (self.diagonal + weight, self.beside, self.vector + weight * from);
         let is_within = |y: Vec3A| (y.cmpge(low) & y.cmple(high)).all();
-        // Most often it is where the coordinates that are beyond a side are held there.
+        // Most often it is where the coordinates that are beyond a side are held there, and those that it falls
+        // inward from are let go.
         let (mut sides, mut y) = (Vec3A::ZERO, free);
-        for _ in 0..3 {
+        for _ in 0..6 {
             sides = Vec3A::select(y.cmplt(low), Vec3A::NEG_ONE, Vec3A::select(y.cmpgt(high), Vec3A::ONE, sides));
             y = on_sides((d, e, b), sides, low, high);
             if is_within(y) {
                 // In the box it is the minimum if the quadratic falls outward at every side.
-                let fall = b - product(d, e, y);
-                if (sides * fall).cmpge(Vec3A::ZERO).all() {
+                let is_held = (sides * (b - product(d, e, y))).cmpge(Vec3A::ZERO);
+                if is_held.all() {
                     return y;
                 }
-                break;
+                sides = Vec3A::select(is_held, sides, Vec3A::ZERO);
+                y = on_sides((d, e, b), sides, low, high);
             }
         }
         let mut best = (f32::INFINITY, from.clamp(low, high));

@@ -238,7 +238,11 @@ impl Fans {
             meter.step()?;
             let mut slots = piece.iter_mut();
             for fan in (chunk * AT_ONCE..self.fans.len()).take(AT_ONCE) {
-                self.list(fan, |triangle| slots.next().into_iter().for_each(|slot| *slot = triangle));
+                self.list(fan, |triangle| {
+                    if let Some(slot) = slots.next() {
+                        *slot = triangle;
+                    }
+                });
             }
             Ok(())
         })?;
@@ -259,8 +263,9 @@ impl Fans {
     /// The triangles of a fan.
     fn list(&self, nth: usize, mut each: impl FnMut([u32; 3])) {
         let (segments, centre, fans) = (self.of(nth), self.number(nth as u32), self.fans.len() as u32);
-        for (n, segment) in segments.iter().enumerate() {
-            let (from, to) = (segment.from, segments.get(n + 1).unwrap_or(&segments[0]).from);
+        let mut to = segments[0].from;
+        for segment in segments.iter().rev() {
+            let from = segment.from;
             match segment.across() {
                 None => each([centre, from, to]),
                 Some(other) if other < fans => each([centre, from, self.number(other)]),
@@ -270,6 +275,7 @@ impl Fans {
                     each([centre, point, to]);
                 }
             }
+            to = from;
         }
     }
 
@@ -298,8 +304,9 @@ impl Apart for Sides {
         let mut each = |normals| numbers.next().into_iter().for_each(|triangle| each(triangle, normals));
         for fan in &self.fans {
             let segments = fan.of(&self.segments);
-            for (n, segment) in segments.iter().enumerate() {
-                let (near, beside) = (segment.normal, segments.get(n + 1).unwrap_or(&segments[0]).normal);
+            let mut beside = segments[0].normal;
+            for segment in segments.iter().rev() {
+                let near = segment.normal;
                 match segment.across().map(|other| self.fans.get(other as usize)) {
                     None => each([(near + beside).normalize_or_zero(), OWN, OWN]),
                     Some(Some(other)) => {
@@ -311,6 +318,7 @@ impl Apart for Sides {
                         each([beside, beside, OWN]);
                     }
                 }
+                beside = near;
             }
         }
     }
