@@ -22,7 +22,7 @@ use crate::mesh::table::CaseTable;
 use crate::run::Run;
 
 /// Blocks that have their lists together.
-const AT_ONCE: usize = 16;
+const AT_ONCE: usize = 32;
 
 /// How much more room there is made for triangles than those before tell.
 const ROOM: f64 = 1.05;
