@@ -19,8 +19,8 @@
 //!    the case table. The vertex of an edge has the number of its row's first one and the
 //!    count of crossed edges between them, in the own block or in a neighbour.
 //!
-//! In between, [`sharp`] finds the cells that hold creases and corners, if it is asked to; they
-//! have fans of triangles in the second pass, whose centres follow the vertices on edges.
+//! If it is asked to, [`sharp`] finds the cells that hold creases and corners in place of that. They have fans of
+//! triangles, which follow those of all other cells; the vertices that are added follow those on edges.
 //!
 //! Between the two, the signs in the faces of the blocks are compared, which makes the mesh
 //! closed: wherever a sign changes in a face, the block on the other side must be there and
@@ -155,8 +155,8 @@ pub(crate) enum ExtractError {
 }
 
 /// Extracts the surface from the given blocks, each named by its first cell, whose coordinates
-/// are multiples of [`BLOCK`]. Vertices and triangles are in the order of the blocks, the same
-/// for any number of threads.
+/// are multiples of [`BLOCK`]. Vertices on edges and triangles of the case table are in the order of the blocks; all is
+/// the same for any number of threads.
 ///
 /// # Errors
 ///

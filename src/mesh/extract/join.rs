@@ -356,8 +356,20 @@ fn used(count: usize, unused: &[u32]) -> Vec<u32> {
     numbers
 }
 
+/// Fills holes in a list, in ascending order, with the first of what follows from `start` on; what is left of the holes
+/// is closed.
+pub(super) fn fill<T: Copy>(list: &mut Vec<T>, start: usize, holes: &[usize]) {
+    let (filled, left) = holes.split_at(holes.len().min(list.len() - start));
+    for (from, &hole) in (start..).zip(filled) {
+        list[hole] = list[from];
+    }
+    list.copy_within(start + filled.len().., start);
+    list.truncate(list.len() - filled.len());
+    keep(list, left);
+}
+
 /// Takes the ones that are not used, in ascending order, out of a list.
-pub(super) fn keep<T: Copy>(list: &mut Vec<T>, unused: &[usize]) {
+fn keep<T: Copy>(list: &mut Vec<T>, unused: &[usize]) {
     let ends = unused.iter().skip(1).copied().chain([list.len()]);
     let mut kept = unused.first().copied().unwrap_or(list.len());
     for (&gone, end) in unused.iter().zip(ends) {
@@ -375,4 +387,25 @@ pub(super) fn split<T>(mut slice: &mut [T], lengths: impl Iterator<Item = usize>
         piece
     };
     lengths.map(cut).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn holes_are_filled_or_closed() {
+        let filled = |start: usize, holes: &[usize]| {
+            let mut list: Vec<u8> = (0..8).collect();
+            fill(&mut list, start, holes);
+            list
+        };
+        assert_eq!(filled(6, &[]), [0, 1, 2, 3, 4, 5, 6, 7]);
+        // 6 comes first, 7 moves up.
+        assert_eq!(filled(6, &[2]), [0, 1, 6, 3, 4, 5, 7]);
+        assert_eq!(filled(6, &[0, 5]), [6, 1, 2, 3, 4, 7]);
+        // There are more holes than there is to fill them.
+        assert_eq!(filled(6, &[1, 2, 3, 5]), [0, 6, 7, 4]);
+        assert_eq!(filled(8, &[0, 7]), [1, 2, 3, 4, 5, 6]);
+    }
 }

@@ -22,23 +22,21 @@ pub(super) struct Nearby {
     vertices: Vec<Vertex>,
     /// Memory for their numbers.
     numbers: Vec<u32>,
-    /// By axis, the coordinates of the nodes.
-    nodes: [[f32; SIDE]; 3],
+    /// The nodes on the diagonal: the coordinates of all.
+    nodes: [Vec3; SIDE],
 }
 
 impl Nearby {
     pub(super) fn new() -> Nearby {
-        let (corners, nodes) = (Corners::new(), [[0.0; SIDE]; 3]);
+        let (corners, nodes) = (Corners::new(), [Vec3::ZERO; SIDE]);
         Nearby { corners, vertices: Vec::new(), numbers: Vec::new(), nodes }
     }
 
     /// Becomes that of block `n`; an error if the owner of a vertex is not there.
     pub(super) fn load(&mut self, samples: &Samples<'_>, n: usize) -> Result<(), ExtractError> {
         let Nearby { corners, vertices, numbers, nodes } = self;
-        for along in 0..SIDE {
-            let node = samples.node(samples.blocks()[n].map(|first| first + along as u32));
-            (nodes[0][along], nodes[1][along], nodes[2][along]) = node.into();
-        }
+        let block = samples.blocks()[n];
+        *nodes = std::array::from_fn(|n| samples.node(block.map(|first| first + n as u32)));
         numbers.clear();
         samples.parts.number(n, |place, vertex| {
             corners.note(place, numbers.len() as u32);
@@ -47,7 +45,7 @@ impl Nearby {
         // The block's own come first, in their order.
         let own = samples.own(n);
         let others = &numbers[own.len().min(numbers.len())..];
-        let (low, share) = (samples.node(samples.blocks()[n]), 1.0 / samples.lattice.step() as f32);
+        let (low, share) = (nodes[0], 1.0 / samples.lattice.step() as f32);
         let vertex = |number: u32, position: Vec3, normal: Vec3| {
             let position = share * Vec3A::from(position - low);
             Vertex { position, normal: normal.into(), number }
@@ -63,8 +61,9 @@ impl Nearby {
     /// The position of a point, strictly inside of a cell. It is given in cells from the cell's first node.
     #[inline(always)]
     pub(super) fn inside(&self, samples: &Samples<'_>, cell: [usize; 3], at: Vec3A) -> Vec3 {
-        let corner = |upper: usize| Vec3::from_array(std::array::from_fn(|axis| self.nodes[axis][cell[axis] + upper]));
-        samples.held(at, [corner(0), corner(1)])
+        let nodes = &self.nodes;
+        let corner = |[x, y, z]: [usize; 3]| Vec3::new(nodes[x].x, nodes[y].y, nodes[z].z);
+        samples.held(at, [corner(cell), corner(cell.map(|n| n + 1))])
     }
 
     /// The vertices on some edges of a cell.

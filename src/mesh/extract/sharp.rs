@@ -38,7 +38,7 @@ use std::ops::Range;
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::join::{keep, split};
+use super::join::{fill, split};
 use super::joined::Joined;
 use super::region::{Region, regions};
 use super::samples::{Samples, cell_number, split_cell};
@@ -246,14 +246,7 @@ impl Fans {
             }
             Ok(())
         })?;
-        // The first ones go where others are gone.
-        let (filled, left) = self.holes.split_at(self.holes.len().min(count));
-        for (from, &hole) in (start..).zip(filled) {
-            triangles[hole] = triangles[from];
-        }
-        triangles.copy_within(start + filled.len().., start);
-        triangles.truncate(start + count - filled.len());
-        keep(&mut triangles, left);
+        fill(&mut triangles, start, &self.holes);
         self.holes.truncate(count);
         let Fans { fans, segments, holes, .. } = self;
         let sides = (!fans.is_empty()).then_some(Sides { fans, segments, holes, start });

@@ -22,7 +22,7 @@ use crate::mesh::table::CaseTable;
 use crate::run::Run;
 
 /// Blocks that have their lists together.
-const AT_ONCE: usize = 32;
+const AT_ONCE: usize = 64;
 
 /// How much more room there is made for triangles than those before tell.
 const ROOM: f64 = 1.05;
