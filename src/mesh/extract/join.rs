@@ -356,15 +356,15 @@ fn used(count: usize, unused: &[u32]) -> Vec<u32> {
     numbers
 }
 
-/// Fills holes in a list, in ascending order, with the first of what follows from `start` on; what is left of the holes
-/// is closed.
+/// Fills holes in a list, in ascending order, with the last of it, as far as they follow after `start`; what is left of
+/// the holes is closed.
 pub(super) fn fill<T: Copy>(list: &mut Vec<T>, start: usize, holes: &[usize]) {
     let (filled, left) = holes.split_at(holes.len().min(list.len() - start));
-    for (from, &hole) in (start..).zip(filled) {
+    let end = list.len() - filled.len();
+    for (from, &hole) in (end..).zip(filled) {
         list[hole] = list[from];
     }
-    list.copy_within(start + filled.len().., start);
-    list.truncate(list.len() - filled.len());
+    list.truncate(end);
     keep(list, left);
 }
 
@@ -401,8 +401,7 @@ mod tests {
             list
         };
         assert_eq!(filled(6, &[]), [0, 1, 2, 3, 4, 5, 6, 7]);
-        // 6 comes first, 7 moves up.
-        assert_eq!(filled(6, &[2]), [0, 1, 6, 3, 4, 5, 7]);
+        assert_eq!(filled(6, &[2]), [0, 1, 7, 3, 4, 5, 6]);
         assert_eq!(filled(6, &[0, 5]), [6, 1, 2, 3, 4, 7]);
         // There are more holes than there is to fill them.
         assert_eq!(filled(6, &[1, 2, 3, 5]), [0, 6, 7, 4]);

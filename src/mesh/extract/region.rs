@@ -122,7 +122,13 @@ pub(super) fn regions(
         for block in (0..blocks).filter(|_| round == 0) {
             let is_free = |candidate: &&Candidate| known.own_taken(block, candidate.cell).is_none();
             for candidate in special.candidates(block).iter().filter(is_free) {
-                known.exits(&Asker::candidate(block, candidate), special.segments(block, candidate), &mut wishes);
+                let Some(along) = candidate.planes.crease() else { continue };
+                // Beyond a face that the surface crosses there is some of it.
+                let ring = special.segments(block, candidate);
+                let crossed = ring.iter().fold(0, |faces, segment| faces | 1 << segment.face);
+                if !Span::is_shut(candidate.at, along, crossed) {
+                    known.exits(&Asker::candidate(block, candidate), crossed, &mut wishes);
+                }
             }
         }
         // What was not granted before is not asked for again.
@@ -133,7 +139,7 @@ pub(super) fn regions(
                 asker.slabs(0, &mut wishes);
                 asker.boxes(&mut wishes);
             }
-            known.exits(&asker, &region.segments, &mut wishes);
+            known.exits(&asker, 0, &mut wishes);
         }
         wishes.sort_by(|a, b| b.size.total_cmp(&a.size));
         asked = known.regions.len();
@@ -305,14 +311,9 @@ impl Known<'_> {
         true
     }
 
-    /// The boxes that hold an empty cell as well, which the crease goes on through.
-    fn exits<'w>(&self, asker: &Asker<'w>, ring: &[Segment], wishes: &mut Vec<Wish<'w>>) {
+    /// The boxes that hold an empty cell as well, which the crease goes on through by a face that is not crossed.
+    fn exits<'w>(&self, asker: &Asker<'w>, crossed: u8, wishes: &mut Vec<Wish<'w>>) {
         let Some(along) = asker.planes.crease() else { return };
-        // Beyond a face that the surface crosses there is some of it.
-        let crossed = match asker.who {
-            Who::Cell(_) => ring.iter().fold(0, |faces, segment| faces | 1 << segment.face),
-            Who::Region(_) => 0,
-        };
         for along in [along, -along] {
             let Some((cell, length)) = asker.span.exit(asker.at, along, crossed) else { continue };
             let is_empty = matches!(self.samples.case_near(asker.block, cell), 0 | 255);

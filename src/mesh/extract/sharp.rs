@@ -92,7 +92,7 @@ pub(super) struct Fans {
     counts: Vec<usize>,
     /// What cells without fans have.
     plain: Plain,
-    /// The triangles of these that are gone, ascending: where the first of those of fans go.
+    /// The triangles of these that are gone, ascending: where the last of those of fans go.
     holes: Vec<usize>,
     /// How many vertices there are on edges and in the middle of smooth cells.
     vertices: u32,
@@ -249,7 +249,8 @@ impl Fans {
         fill(&mut triangles, start, &self.holes);
         self.holes.truncate(count);
         let Fans { fans, segments, holes, .. } = self;
-        let sides = (!fans.is_empty()).then_some(Sides { fans, segments, holes, start });
+        let following = start..start + count - holes.len();
+        let sides = (!fans.is_empty()).then_some(Sides { fans, segments, following, holes });
         Ok((triangles, sides))
     }
 
@@ -283,9 +284,9 @@ impl Fans {
 pub(super) struct Sides {
     fans: Vec<Fan>,
     segments: Vec<Vec<Segment>>,
-    /// The first triangles of fans; the others follow from `start` on.
+    /// Where the triangles of fans are: those that follow the others, and the last ones.
+    following: Range<usize>,
     holes: Vec<usize>,
-    start: usize,
 }
 
 impl Apart for Sides {
@@ -293,7 +294,7 @@ impl Apart for Sides {
     /// [`Fans::triangles`].
     fn tell(&self, each: &mut dyn FnMut(usize, [Vec3; 3])) {
         const OWN: Vec3 = Vec3::ZERO;
-        let mut numbers = self.holes.iter().copied().chain(self.start..);
+        let mut numbers = self.following.clone().chain(self.holes.iter().copied());
         let mut each = |normals| numbers.next().into_iter().for_each(|triangle| each(triangle, normals));
         for fan in &self.fans {
             let segments = fan.of(&self.segments);

@@ -62,6 +62,17 @@ impl Span {
         Some((cell, end - start))
     }
 
+    /// Whether [`exit`](Span::exit) finds no way out of a single cell, either way along a line.
+    #[inline]
+    pub(super) fn is_shut(from: Vec3A, along: Vec3A, ruled_out: u8) -> bool {
+        let share = along.recip();
+        let (low, high) = (-from * share, (1.0 - from) * share);
+        // A line across an axis never leaves along it: both are infinite, or NaN at a side.
+        let (axis, other) = (low.max(high).min_position(), low.min(high).max_position());
+        let face = |axis: usize, is_upper: bool| ruled_out >> (2 * axis + usize::from(is_upper)) & 1 == 1;
+        face(axis, along[axis] > 0.0) && face(other, along[other] < 0.0)
+    }
+
     pub(super) fn cells(self) -> impl Iterator<Item = [u32; 3]> {
         let Span { low, high } = self;
         let rows = (low[2]..high[2]).flat_map(move |k| (low[1]..high[1]).map(move |j| [j, k]));
@@ -91,6 +102,12 @@ mod tests {
     fn a_line_along_an_axis_leaves_along_that() {
         let span = Span::single([3, 4, 5]);
         let from = Vec3A::new(0.25, 0.5, 0.75);
+        for faces in 0..64 {
+            for along in [Vec3A::X, Vec3A::NEG_Z, Vec3A::new(-0.6, -0.0, 0.8), Vec3A::new(1.0, 2.0, -3.0)] {
+                let is_shut = [along, -along].iter().all(|&along| span.exit(from, along, faces).is_none());
+                assert_eq!(Span::is_shut(from, along, faces), is_shut, "{along}, {faces}");
+            }
+        }
         for zero in [0.0, -0.0] {
             let up = Vec3A::new(1.0, zero, zero);
             assert_eq!(span.exit(from, up, 0), Some(([4, 4, 5], 1.0)));
