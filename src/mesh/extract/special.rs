@@ -89,7 +89,7 @@ struct Queue<'a> {
 impl Queue<'_> {
     fn add(&mut self, chunk: usize, lists: Lists, plain: &mut Plain) {
         if chunk != self.all.lists.len() {
-            self.waiting.insert(chunk, (lists, plain.clone()));
+            self.waiting.insert(chunk, (lists, std::mem::take(plain)));
             return;
         }
         self.append(lists, plain);
@@ -154,8 +154,9 @@ impl Special {
                 lists.blocks.push(block);
             }
             // Copies take no more memory than they need.
-            queue.lock().unwrap_or_else(PoisonError::into_inner).add(chunk, lists.clone(), &mut worker.plain);
+            let copy = lists.clone();
             worker.lists = lists;
+            queue.lock().unwrap_or_else(PoisonError::into_inner).add(chunk, copy, &mut worker.plain);
             Ok(())
         };
         let chunks = spread.chunks(AT_ONCE).enumerate().par_bridge();
