@@ -10,7 +10,8 @@
 //!      x1
 //! ```
 //!
-//! Vertices with nearly the same normal share a point, on the way to the middle of them.
+//! Vertices that follow each other on the loop with nearly the same normal are on one side: they share a point, on the
+//! way to the middle of them.
 //!
 //! Each step is a damped Gauss–Newton step (see [`Planes`]) that is held in the cell. On
 //! plane sides the first is exact; on curved ones the error falls from d²/2R to δ²d²/2R, with
@@ -43,7 +44,7 @@ const ASTRAY: f32 = 0.7;
 /// The damping of the steps; it takes the distance from the crease to a hundredth a step.
 const DAMPING: f32 = 3e-3;
 
-/// Steps that are shorter than this, in cells, are the last: what is left is a tenth of it at most.
+/// Steps that are shorter than this, in cells, are the last: what is left is less.
 pub(super) const CLOSE: f32 = 1e-3;
 
 /// Where the field is asked, as a part of the way from the feature point to a vertex. Much closer, and what

@@ -1,4 +1,4 @@
-//! The second pass: the blocks' vertices in one list, and triangles between them.
+//! The second pass: the blocks' vertices in one list, and triangles between them, by the case table or with fans.
 
 use glam::Vec3;
 use rayon::prelude::*;
