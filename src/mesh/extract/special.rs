@@ -68,13 +68,14 @@ struct OfBlock {
 #[derive(Clone, Default)]
 pub(super) struct Plain {
     pub(super) triangles: Vec<[u32; 3]>,
-    /// Positions and normals of vertices in the middle of smooth cells.
+    /// Positions and normals of vertices in the middle of smooth cells. They follow those on edges.
     pub(super) tops: [Vec<Vec3>; 2],
-    /// The first triangle around each of them that is not numbered yet, and how many there are.
+    /// The first triangle around each of them that is to be numbered anew if others come before it, and how many.
     around: Vec<(u32, u32)>,
 }
 
-/// Takes what chunks of blocks have as they come, and adds it in their order.
+/// Takes what chunks of blocks have as they come, and adds it in their order. A chunk whose turn it is adds to what
+/// those before it have itself.
 struct Queue<'a> {
     samples: &'a Samples<'a>,
     all: Special,
@@ -87,42 +88,73 @@ struct Queue<'a> {
 }
 
 impl Queue<'_> {
-    fn add(&mut self, chunk: usize, lists: Lists, plain: &mut Plain) {
-        if chunk != self.all.lists.len() {
+    /// What there is so far, with room for more, if it is the turn of a chunk.
+    fn begin(&mut self, chunk: usize) -> Option<Plain> {
+        (chunk == self.all.lists.len()).then(|| {
+            let blocks = (chunk * AT_ONCE..self.samples.blocks().len()).take(AT_ONCE);
+            let in_table = blocks.map(|n| self.samples.parts.part(n).triangles as usize).sum();
+            // Vertices in the middle of cells make it more than the table has, by half or less.
+            self.make_room(in_table, [in_table + in_table / 2, in_table / 2]);
+            std::mem::take(&mut self.all.plain)
+        })
+    }
+
+    /// Adds what a chunk has; that is more of what there was if it began in its turn.
+    fn end(&mut self, chunk: usize, lists: Lists, plain: &mut Plain, in_turn: bool) {
+        if in_turn {
+            self.all.plain = std::mem::take(plain);
+            self.all.plain.around.clear();
+            self.note(lists);
+        } else if chunk == self.all.lists.len() {
+            self.append(lists, plain);
+        } else {
             self.waiting.insert(chunk, (lists, std::mem::take(plain)));
-            return;
         }
-        self.append(lists, plain);
         while let Some((lists, mut plain)) = self.waiting.remove(&self.all.lists.len()) {
             self.append(lists, &mut plain);
         }
     }
 
+    /// Adds what a chunk has by itself.
     fn append(&mut self, mut lists: Lists, plain: &mut Plain) {
-        let all = &mut self.all.plain;
-        // The vertices follow those on edges; whether there are too many is checked later.
-        let first = self.samples.vertices().wrapping_add(all.tops[0].len() as u32);
-        for (n, (start, count)) in (0..).zip(plain.around.drain(..)) {
+        let all = &self.all.plain;
+        // Whether there are too many is checked later.
+        let before = all.tops[0].len() as u32;
+        for (start, count) in plain.around.drain(..) {
             let around = &mut plain.triangles[start as usize..(start + count) as usize];
-            around.iter_mut().for_each(|triangle| triangle[0] = first.wrapping_add(n));
+            around.iter_mut().for_each(|triangle| triangle[0] = triangle[0].wrapping_add(before));
         }
         let start = all.triangles.len();
-        for (n, block) in (self.all.lists.len() * AT_ONCE..).zip(&mut lists.blocks) {
+        for block in &mut lists.blocks {
             block.plain = start + block.plain.start..start + block.plain.end;
-            self.in_table[0] += self.samples.parts.part(n).triangles as usize;
         }
-        self.segments += lists.segments.len();
-        self.all.lists.push(lists);
-        // Those of fans are to follow.
-        let count = start + plain.triangles.len();
-        let share = ROOM * (count + self.segments) as f64 / count as f64;
-        let progress = (self.in_table[0], self.in_table[1]);
-        reserve(&mut all.triangles, plain.triangles.len(), progress, share);
+        self.note(lists);
+        self.make_room(0, [plain.triangles.len(), plain.tops[0].len()]);
+        let all = &mut self.all.plain;
         all.triangles.extend_from_slice(&plain.triangles);
         for (all, tops) in all.tops.iter_mut().zip(&plain.tops) {
-            reserve(all, tops.len(), progress, ROOM);
             all.extend_from_slice(tops);
         }
+    }
+
+    /// Adds the lists of a chunk.
+    fn note(&mut self, lists: Lists) {
+        let start = self.all.lists.len() * AT_ONCE;
+        let blocks = start..start + lists.blocks.len();
+        self.in_table[0] += blocks.map(|n| self.samples.parts.part(n).triangles as usize).sum::<usize>();
+        self.segments += lists.segments.len();
+        self.all.lists.push(lists);
+    }
+
+    /// Makes room for more triangles and vertices, those of blocks that have so many in the case table beyond those added.
+    fn make_room(&mut self, in_table: usize, [triangles, tops]: [usize; 2]) {
+        let all = &mut self.all.plain;
+        // Those of fans are to follow.
+        let count = all.triangles.len() + triangles;
+        let share = ROOM * (count + self.segments) as f64 / count as f64;
+        let progress = (self.in_table[0] + in_table, self.in_table[1]);
+        reserve(&mut all.triangles, triangles, progress, share);
+        all.tops.iter_mut().for_each(|all| reserve(all, tops, progress, ROOM));
     }
 }
 
@@ -139,24 +171,30 @@ impl Special {
         let in_table = (0..spread.len()).map(|n| samples.parts.part(n).triangles as usize).sum();
         let (all, in_table, waiting) = (Special::default(), [0, in_table], BTreeMap::new());
         let queue = Mutex::new(Queue { samples, all, in_table, segments: 0, waiting });
+        let lock = || queue.lock().unwrap_or_else(PoisonError::into_inner);
         let of_chunk = |worker: &mut Worker<S>, (chunk, spread): (usize, &[bool])| {
             let mut lists = std::mem::take(&mut worker.lists);
             lists.clear();
-            worker.plain.clear();
+            let begun = lock().begin(chunk);
+            let in_turn = begun.is_some();
+            let mut plain = begun.unwrap_or_else(|| std::mem::take(&mut worker.plain).cleared());
             for (n, spreads) in (chunk * AT_ONCE..).zip(spread) {
                 meter.step()?;
-                let start = worker.plain.triangles.len();
+                let start = plain.triangles.len();
                 let mut block = match *spreads || joined.concerns(samples, n) {
-                    true => lists.add(samples, sampler, joined, n, worker)?,
-                    false => worker.list(samples, n)?,
+                    true => lists.add(samples, (sampler, joined), n, worker, &mut plain)?,
+                    false => worker.list(samples, n, &mut plain)?,
                 };
-                block.plain = start..worker.plain.triangles.len();
+                block.plain = start..plain.triangles.len();
                 lists.blocks.push(block);
             }
             // Copies take no more memory than they need.
             let copy = lists.clone();
             worker.lists = lists;
-            queue.lock().unwrap_or_else(PoisonError::into_inner).add(chunk, copy, &mut worker.plain);
+            lock().end(chunk, copy, &mut plain, in_turn);
+            if !in_turn {
+                worker.plain = plain;
+            }
             Ok(())
         };
         let chunks = spread.chunks(AT_ONCE).enumerate().par_bridge();
@@ -261,28 +299,30 @@ impl<S: Sampler> Worker<S> {
     }
 
     /// Lists the triangles of block `n`, which is nearly flat.
-    fn list(&mut self, samples: &Samples<'_>, n: usize) -> Result<OfBlock, ExtractError> {
-        let triangles = &mut self.plain.triangles;
-        samples.parts.list_triangles(n, &mut self.corners, |triangle| triangles.push(triangle))?;
+    fn list(&mut self, samples: &Samples<'_>, n: usize, plain: &mut Plain) -> Result<OfBlock, ExtractError> {
+        samples.parts.list_triangles(n, &mut self.corners, |triangle| plain.triangles.push(triangle))?;
         Ok(OfBlock::default())
     }
 }
 
 impl Plain {
-    fn clear(&mut self) {
+    /// The memory, with nothing in it.
+    fn cleared(mut self) -> Plain {
         self.triangles.clear();
         self.tops.iter_mut().for_each(Vec::clear);
         self.around.clear();
+        self
     }
 
-    /// Adds a vertex in the middle of a cell, and triangles from it to the loop of the cell.
+    /// Adds a vertex in the middle of a cell, and triangles from it to the loop of the cell; there are so many vertices on
+    /// edges.
     #[inline(always)]
-    fn add_top<const N: usize>(&mut self, at: Vec3, normal: Vec3, vertices: [u32; N]) {
+    fn add_top<const N: usize>(&mut self, at: Vec3, normal: Vec3, vertices: [u32; N], on_edges: u32) {
+        let top = on_edges.wrapping_add(self.tops[0].len() as u32);
         self.tops[0].push(at);
         self.tops[1].push(normal);
         self.around.push((self.triangles.len() as u32, N as u32));
-        // Its number is not known yet.
-        let triangles: [_; N] = std::array::from_fn(|n| [0, vertices[n], vertices[(n + 1) % N]]);
+        let triangles: [_; N] = std::array::from_fn(|n| [top, vertices[n], vertices[(n + 1) % N]]);
         self.triangles.extend_from_slice(&triangles);
     }
 }
@@ -300,12 +340,12 @@ impl Lists {
     fn add<S: Sampler>(
         &mut self,
         samples: &Samples<'_>,
-        sampler: &S,
-        joined: &Joined,
+        (sampler, joined): (&S, &Joined),
         n: usize,
         worker: &mut Worker<S>,
+        plain: &mut Plain,
     ) -> Result<OfBlock, ExtractError> {
-        let Worker { scratch, nearby, by_length, refiner, plain, .. } = worker;
+        let Worker { scratch, nearby, by_length, refiner, .. } = worker;
         nearby.load(samples, n)?;
         let (candidates, segments, cells) = (self.candidates.len(), self.segments.len(), self.cells.len());
         refiner.clear();
@@ -381,7 +421,7 @@ impl Lists {
                 }
                 Cover::Top { at, normal } => {
                     let at = nearby.inside(samples, within, at - vector(within));
-                    plain.add_top(at, normal.into(), vertices);
+                    plain.add_top(at, normal.into(), vertices, samples.vertices());
                 }
             }
             self.cells.push((number, (plain.triangles.len() - start) as u8));
