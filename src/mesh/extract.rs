@@ -62,6 +62,7 @@ mod samples;
 mod sharp;
 mod span;
 mod special;
+mod trend;
 mod turn;
 
 /// Blocks whose roots are found together. Small enough for threads to share work evenly.

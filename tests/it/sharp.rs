@@ -243,22 +243,16 @@ fn edges_of_a_body() {
     assert!(edges[0].max < 0.1, "{}", edges[0]);
 }
 
+/// Radii of curvature of 37 cells and more, and of 18 and more along one line of the torus.
 #[test]
 fn a_smooth_solid_is_the_same_in_both_modes() {
     for (solid, cell) in [
-        (Solid::sphere(1.0), 0.02),
+        (Solid::sphere(1.0), 0.027),
+        (Solid::sphere(1.0), 0.01),
         (Solid::torus(1.0, 0.4), 0.01),
         (Solid::superellipsoid(DVec3::ONE, 1.0, 0.8), 0.01),
     ] {
         let [sharp, smooth] = [Features::Sharp, Features::Smooth].map(|features| mesh(&solid, cell, features));
-        assert!(sharp.positions() == smooth.positions() && sharp.normals() == smooth.normals(), "{solid}");
-        assert!(sharp.corner_normals().is_none(), "{solid}");
-        // In whatever order.
-        let [sharp, smooth] = [sharp, smooth].map(|mesh| {
-            let mut triangles = mesh.triangles().to_vec();
-            triangles.sort_unstable();
-            triangles
-        });
         assert!(sharp == smooth, "{solid}");
     }
 }

@@ -46,7 +46,7 @@ const RAISED: [f32; 4] = [1.5, 1.345, 1.25, 1.188];
 
 /// If no normals of a cell differ by more than this angle, the cell is nearly flat: the normals of a loop within 0.8
 /// cells of its middle make it no farther off than [`TURNED`] then.
-pub(super) const SPREAD: f32 = 0.05;
+const SPREAD: f32 = 0.05;
 
 /// The vertices on a cell's loop, in order.
 pub(super) struct Ring<'a, const N: usize> {

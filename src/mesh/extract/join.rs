@@ -93,6 +93,11 @@ impl<'a> Parts<'a> {
         })
     }
 
+    /// Positions and normals of all vertices, which are given up.
+    pub(super) fn take_vertices(&mut self) -> [Vec<Vec3>; 2] {
+        [std::mem::take(&mut self.positions), std::mem::take(&mut self.normals)]
+    }
+
     /// The mesh.
     pub(super) fn join<S: Sampler>(
         mut self,
@@ -101,7 +106,7 @@ impl<'a> Parts<'a> {
         features: Features,
         run: &Run,
     ) -> Result<Mesh, ExtractError> {
-        let (mut positions, mut normals) = (std::mem::take(&mut self.positions), std::mem::take(&mut self.normals));
+        let [mut positions, mut normals] = self.take_vertices();
         let fans = match features {
             Features::Smooth => None,
             Features::Sharp => {
@@ -153,15 +158,12 @@ impl<'a> Parts<'a> {
             self.parts.iter().map(|batch| batch.iter().map(|part| part.triangles as usize).sum()).collect();
         let mut triangles = vec![[0; 3]; counts.iter().sum()];
         let pieces = split(&mut triangles, counts.iter().copied());
-        let of_batch = |corners: &mut Corners, (batch, piece): (usize, &mut [[u32; 3]])| {
-            let mut slots = piece.iter_mut();
+        let of_batch = |corners: &mut Corners, (batch, mut piece): (usize, &mut [[u32; 3]])| {
             for n in batch * BATCH..batch * BATCH + self.parts[batch].len() {
                 meter.step()?;
-                self.list_triangles(n, corners, |triangle| {
-                    if let Some(slot) = slots.next() {
-                        *slot = triangle;
-                    }
-                })?;
+                let (own, rest) = std::mem::take(&mut piece).split_at_mut(self.part(n).triangles as usize);
+                self.list_triangles(n, corners, own)?;
+                piece = rest;
             }
             Ok(())
         };
@@ -169,23 +171,23 @@ impl<'a> Parts<'a> {
         Ok(triangles)
     }
 
-    /// Tells `each` the triangles of the cells of block `n` by the case table, in the order of the cells.
+    /// Lists the triangles of the cells of block `n` by the case table, in the order of the cells. There is room for
+    /// so many.
     pub(super) fn list_triangles(
         &self,
         n: usize,
         corners: &mut Corners,
-        mut each: impl FnMut([u32; 3]),
+        out: &mut [[u32; 3]],
     ) -> Result<(), ExtractError> {
-        if self.part(n).triangles == 0 {
+        if out.is_empty() {
             return Ok(());
         }
         self.number(n, |place, vertex| corners.note(place, vertex))?;
-        let table = CaseTable::get();
+        let (table, mut slots) = (CaseTable::get(), out.iter_mut());
         for_each_cell(&self.part(n).signs, |cell, case| {
             let ids = corners.of_cell(cell);
-            let corner = |edge: u8| ids[usize::from(edge & 15)];
-            for &[a, b, c] in table.triangles(case) {
-                each([corner(a), corner(b), corner(c)]);
+            for (triangle, slot) in table.triangles(case).iter().zip(&mut slots) {
+                *slot = triangle.map(|edge| ids[usize::from(edge & 15)]);
             }
         });
         Ok(())

@@ -5,7 +5,6 @@ use std::ops::Range;
 use glam::{Vec3, Vec3A};
 use rayon::prelude::*;
 
-use super::bulge::SPREAD;
 use super::join::Parts;
 use crate::bounds::Bounds;
 use crate::mesh::lattice::Lattice;
@@ -156,20 +155,13 @@ impl<'a> Samples<'a> {
         (&self.positions[vertices.clone()], &self.normals[vertices])
     }
 
-    /// By block, whether the normals at the vertices of its cells differ by more than those of cells
-    /// that are nearly flat.
-    pub(super) fn spread(&self) -> Vec<bool> {
-        let count = self.blocks().len();
-        let joined = |[a, b]: [Vec3; 2], [c, d]: [Vec3; 2]| [a.min(c), b.max(d)];
-        let own: Vec<[Vec3; 2]> = (0..count).into_par_iter().map(|n| hull(self.of(self.own(n)).1)).collect();
-        (0..count)
-            .into_par_iter()
-            .map(|n| {
-                let upper = (1..7).filter_map(|bits| self.parts.neighbours.upper(n, bits));
-                let [low, high] = upper.map(|other| own[other]).fold(own[n], joined);
-                (high - low).length_squared() > SPREAD * SPREAD
-            })
-            .collect()
+    /// Places, in cells from a node of the lattice, and normals of the vertices that block `n` owns.
+    pub(super) fn vertices_of(&self, n: usize, from: [u32; 3]) -> impl ExactSizeIterator<Item = (Vec3A, Vec3A)> {
+        let low: Vec3A = self.node(from).into();
+        let share = 1.0 / self.lattice.step() as f32;
+        let (positions, normals) = self.of(self.own(n));
+        let place = move |&position: &Vec3| share * (Vec3A::from(position) - low);
+        positions.iter().map(place).zip(normals.iter().map(|&normal| normal.into()))
     }
 
     /// A node as vertices have it, rounded to f32.
@@ -201,22 +193,4 @@ impl<'a> Samples<'a> {
         let high = Vec3::new(high.x.next_down(), high.y.next_down(), high.z.next_down());
         at.clamp(low, high)
     }
-}
-
-/// The least and the greatest coordinates of some vectors.
-fn hull(list: &[Vec3]) -> [Vec3; 2] {
-    // Twelve coordinates fill lanes.
-    let (fours, rest) = list.as_chunks::<4>();
-    let (mut low, mut high) = ([[f32::INFINITY; 3]; 4], [[f32::NEG_INFINITY; 3]; 4]);
-    for four in fours {
-        for ((low, high), v) in low.iter_mut().zip(&mut high).zip(four.map(|v| v.to_array())) {
-            for ((low, high), x) in low.iter_mut().zip(high).zip(v) {
-                *low = if x < *low { x } else { *low };
-                *high = if x > *high { x } else { *high };
-            }
-        }
-    }
-    let low = low.map(Vec3::from_array).into_iter().chain(rest.iter().copied()).fold(Vec3::INFINITY, Vec3::min);
-    let high = high.map(Vec3::from_array).into_iter().chain(rest.iter().copied()).fold(Vec3::NEG_INFINITY, Vec3::max);
-    [low, high]
 }

@@ -44,6 +44,7 @@ use super::region::{Region, regions};
 use super::samples::{Samples, cell_number, split_cell};
 use super::span::Span;
 use super::special::{Plain, Special, list_of};
+use super::trend::even_blocks;
 use super::{ExtractError, Sampler};
 use crate::geom::Apart;
 use crate::mesh::feature::Segment;
@@ -100,19 +101,19 @@ pub(super) struct Fans {
     free: Vec<u32>,
 }
 
-/// Finds the cells that hold creases and corners, and gives them fans; nothing if the surface is nearly flat everywhere.
+/// Finds the cells that hold creases and corners, and gives them fans; nothing if the surface is smooth everywhere.
 pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) -> Result<Option<Fans>, ExtractError> {
-    // Blocks that are nearly flat are settled as a whole.
-    let spread = samples.spread();
-    if !spread.contains(&true) {
+    // Blocks whose normals change evenly are settled as a whole.
+    let even = even_blocks(samples, &run.stage(0.0, 0.1))?;
+    if even.iter().all(|&is_even| is_even) {
         return Ok(None);
     }
-    let proposed = (0..spread.len()).map(|n| match spread[n] {
+    let proposed = (0..even.len()).map(|n| match !even[n] {
         true => samples.parts.part(n).joins.clone(),
         false => Vec::new(),
     });
     let joined = Joined::new(samples, proposed.collect());
-    let special = Special::find(samples, sampler, (&spread, &joined), &run.stage(0.0, 0.8))?;
+    let special = Special::find(samples, sampler, (&even, &joined), &run.stage(0.1, 0.8))?;
     let regions = regions(samples, &special, &joined, run)?;
     Ok(Some(Fans::new(samples, special, regions, run)?))
 }

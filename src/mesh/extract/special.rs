@@ -59,7 +59,7 @@ struct Lists {
 #[derive(Clone, Default)]
 struct OfBlock {
     candidates: Range<usize>,
-    /// None for a block that is nearly flat: all its cells have the triangles of the table.
+    /// None for a block that is even: all its cells have the triangles of the table.
     cells: Option<Range<usize>>,
     plain: Range<usize>,
 }
@@ -159,31 +159,30 @@ impl Queue<'_> {
 }
 
 impl Special {
-    /// Finds the special cells of the blocks whose normals spread or that have joined faces, and lists the triangles
-    /// of all others.
+    /// Finds the special cells of the blocks that are not even or have joined faces, and lists the triangles of all others.
     pub(super) fn find<S: Sampler>(
         samples: &Samples<'_>,
         sampler: &S,
-        (spread, joined): (&[bool], &Joined),
+        (even, joined): (&[bool], &Joined),
         run: &Run,
     ) -> Result<Special, ExtractError> {
-        let meter = Meter::new(run, spread.len());
-        let in_table = (0..spread.len()).map(|n| samples.parts.part(n).triangles as usize).sum();
+        let meter = Meter::new(run, even.len());
+        let in_table = (0..even.len()).map(|n| samples.parts.part(n).triangles as usize).sum();
         let (all, in_table, waiting) = (Special::default(), [0, in_table], BTreeMap::new());
         let queue = Mutex::new(Queue { samples, all, in_table, segments: 0, waiting });
         let lock = || queue.lock().unwrap_or_else(PoisonError::into_inner);
-        let of_chunk = |worker: &mut Worker<S>, (chunk, spread): (usize, &[bool])| {
+        let of_chunk = |worker: &mut Worker<S>, (chunk, even): (usize, &[bool])| {
             let mut lists = std::mem::take(&mut worker.lists);
             lists.clear();
             let begun = lock().begin(chunk);
             let in_turn = begun.is_some();
             let mut plain = begun.unwrap_or_else(|| std::mem::take(&mut worker.plain).cleared());
-            for (n, spreads) in (chunk * AT_ONCE..).zip(spread) {
+            for (n, is_even) in (chunk * AT_ONCE..).zip(even) {
                 meter.step()?;
                 let start = plain.triangles.len();
-                let mut block = match *spreads || joined.concerns(samples, n) {
-                    true => lists.add(samples, (sampler, joined), n, worker, &mut plain)?,
-                    false => worker.list(samples, n, &mut plain)?,
+                let mut block = match *is_even && !joined.concerns(samples, n) {
+                    true => worker.list(samples, n, &mut plain)?,
+                    false => lists.add(samples, (sampler, joined), n, worker, &mut plain)?,
                 };
                 block.plain = start..plain.triangles.len();
                 lists.blocks.push(block);
@@ -197,7 +196,7 @@ impl Special {
             }
             Ok(())
         };
-        let chunks = spread.chunks(AT_ONCE).enumerate().par_bridge();
+        let chunks = even.chunks(AT_ONCE).enumerate().par_bridge();
         chunks.map_init(|| Worker::new(sampler), of_chunk).collect::<Result<(), ExtractError>>()?;
         Ok(queue.into_inner().unwrap_or_else(PoisonError::into_inner).all)
     }
@@ -298,9 +297,11 @@ impl<S: Sampler> Worker<S> {
         }
     }
 
-    /// Lists the triangles of block `n`, which is nearly flat.
+    /// Lists the triangles of block `n`, which is even.
     fn list(&mut self, samples: &Samples<'_>, n: usize, plain: &mut Plain) -> Result<OfBlock, ExtractError> {
-        samples.parts.list_triangles(n, &mut self.corners, |triangle| plain.triangles.push(triangle))?;
+        let start = plain.triangles.len();
+        plain.triangles.resize(start + samples.parts.part(n).triangles as usize, [0; 3]);
+        samples.parts.list_triangles(n, &mut self.corners, &mut plain.triangles[start..])?;
         Ok(OfBlock::default())
     }
 }

@@ -309,6 +309,48 @@ fn cancelling_stops_the_work() {
     assert!(count.load(Ordering::Relaxed) < 40 * NODES);
 }
 
+/// What is said of blocks that are settled as a whole, looked at cell by cell; and how many are, in percent.
+#[test]
+fn no_cell_of_an_even_block_has_a_crease() {
+    let torus = |p: DVec3| 0.4 - (p.truncate().length() - 1.0).hypot(p.z);
+    let turned = glam::DMat3::from_euler(glam::EulerRot::XYZ, 0.4, 0.3, 0.2);
+    let cube = |p: DVec3| 1.0 - (turned * p).abs().max_element();
+    // Its ridge is blunt: normals differ by 0.39.
+    let roof = |p: DVec3| sphere(p).min(-(turned * p).z - 0.2 * (turned * p).x.abs());
+    let eight = |p: DVec3| sphere(p - 0.5 * DVec3::X).max(sphere(p + 0.5 * DVec3::X));
+    look_at_even_blocks(sphere, 200, 100..=100);
+    look_at_even_blocks(torus, 250, 96..=100);
+    look_at_even_blocks(torus, 60, 0..=5);
+    look_at_even_blocks(cube, 100, 35..=60);
+    look_at_even_blocks(roof, 200, 55..=80);
+    look_at_even_blocks(eight, 200, 85..=97);
+}
+
+fn look_at_even_blocks(f: impl Fn(DVec3) -> f64 + Sync, cells: u32, percent: std::ops::RangeInclusive<usize>) {
+    let lattice = &Lattice::new(&cube(1.6), CellSize::LongestSide(cells)).unwrap();
+    let sampler = Analytic { f, lattice };
+    let blocks = surface_blocks(&sampler, lattice);
+    let (run, neighbours) = (Run::default(), Neighbours::new(&blocks).unwrap());
+    let mut parts = sample_all(&sampler, lattice, (&blocks, neighbours), Features::Sharp, &run).unwrap();
+    let vertices = parts.take_vertices();
+    let samples = samples::Samples::new(&parts, lattice, Bounds::ALL, [&vertices[0], &vertices[1]]);
+    let even = trend::even_blocks(&samples, &run).unwrap();
+    let mut nearby = nearby::Nearby::new();
+    for n in (0..blocks.len()).filter(|&n| even[n]) {
+        nearby.load(&samples, n).unwrap();
+        for_each_cell(&samples.parts.part(n).signs, |cell, case| {
+            let (places, edges) = (nearby.all_places(cell), CaseTable::get().triangles(case).as_flattened());
+            let normal = |edge: &u8| nearby.vertex(places[usize::from(*edge)]).normal;
+            for (a, b) in edges.iter().flat_map(|a| edges.iter().map(move |b| (a, b))) {
+                assert!(normal(a).distance(normal(b)) < 0.2, "{:?}, {cell:?}", blocks[n]);
+            }
+        });
+    }
+    let found = 100 * even.iter().filter(|&&is_even| is_even).count() / even.len();
+    println!("{found} % of {} blocks", even.len());
+    assert!(percent.contains(&found), "{found}");
+}
+
 #[test]
 fn bad_lists_of_blocks_are_reported() {
     let lattice = Lattice::new(&cube(1.25), CellSize::LongestSide(40)).unwrap();

@@ -1,0 +1,203 @@
+//! Blocks whose normals change evenly from place to place, and little from cell to cell.
+//!
+//! ```text
+//!      n ^   _.-'|'-._   ^        The normals of a smooth surface are nearly an affine map of the place, the trend
+//!         \.'    |    './         of a block: a + Kp. What they have beside it is in a small box. For two blocks
+//!        .'  A   |  B   '.        the maps are not the same; how far they are apart where the surface leaves A
+//!       /        |        \       for B is found from the maps.
+//! ```
+//!
+//! Two normals of a cell differ at most by |Kd|, with d a diagonal of the cell, and by the size of the box: so a look at each
+//! vertex, with no look at any cell, tells that no cell of a block has a crease, and that none is far off its triangles.
+//!
+//! A block's cells have vertices of upper neighbours as well, in the common faces. Those are beside the block's trend by
+//! what they are beside that of the neighbour, and by what the two trends differ by. That is an affine map again: in the
+//! face, and no farther from a plane along the surface than vertices of the neighbour are, its values are in a box that a
+//! few products tell.
+//!
+//! Vertices tell nothing of K across the surface. There it is taken to be the mean of what it is along it, as it is
+//! with a sphere: whose normals have nothing beside their trend then, and that is the same in all blocks.
+
+use glam::{Mat3A, Vec3, Vec3A, Vec4, Vec4Swizzles};
+use rayon::prelude::*;
+
+use super::samples::Samples;
+use crate::mesh::meter::Meter;
+use crate::mesh::signs::BLOCK;
+use crate::run::{Cancelled, Run};
+
+/// How much the trend may change the normal within a cell, and how large the box of what normals have beside it may be: two
+/// normals of a cell differ by less than half of what those of a [crease](crate::mesh::feature::SMOOTH) do then, and by the
+/// trend, triangles are off by a fiftieth of a cell at most (see [`bulge`](super::bulge)).
+const EVEN: f32 = 0.1;
+
+/// So many vertices tell a trend.
+const ENOUGH: usize = 24;
+
+/// What is added to how much places spread along an axis, as a part of how much they do along all: flat surfaces have
+/// no spread across.
+const LEAST: f32 = 1e-3;
+
+/// Normals as an affine map of the place, in cells from a block's first node. The fourth coordinate is how high the place is
+/// along the mean normal.
+#[derive(Clone, Copy)]
+struct Trend {
+    start: Vec4,
+    by: [Vec4; 3],
+}
+
+/// The least and the greatest coordinates of what some normals have beside a trend; of the fourth, their places' heights below
+/// 0.
+type Rest = [Vec4; 2];
+
+/// What is known of the vertices of a block.
+enum Vertices {
+    /// They are too few to tell a trend.
+    Few,
+    Even(Trend, Rest),
+    Uneven,
+}
+
+impl Trend {
+    /// The trend of normals, given with their places: by least squares.
+    fn new(vertices: impl ExactSizeIterator<Item = (Vec3A, Vec3A)>) -> Trend {
+        let step = (vertices.len() / ENOUGH).max(1);
+        let (mut count, mut place, mut normal) = (0.0, Vec3A::ZERO, Vec3A::ZERO);
+        let (mut spread, mut with) = (Mat3A::ZERO, Mat3A::ZERO);
+        for (at, there) in vertices.step_by(step) {
+            count += 1.0;
+            place += at;
+            normal += there;
+            spread += product(at, at);
+            with += product(there, at);
+        }
+        let share = 1.0 / f32::max(count, 1.0);
+        (place, normal) = (share * place, share * normal);
+        let spread = share * spread - product(place, place);
+        let with = share * with - product(normal, place);
+        let least = LEAST * trace(&spread) + f32::MIN_POSITIVE;
+        let mut by = with * (spread + Mat3A::from_diagonal(Vec3::splat(least))).inverse();
+        let across = normal.normalize_or_zero();
+        let change = by * across;
+        let mean = 0.5 * (trace(&by) - across.dot(change));
+        by += product(mean * across - change, across);
+        let columns = [by.x_axis.extend(across.x), by.y_axis.extend(across.y), by.z_axis.extend(across.z)];
+        Trend { start: (normal - by * place).extend(0.0), by: columns }
+    }
+
+    #[inline(always)]
+    fn at(&self, place: Vec3A) -> Vec4 {
+        let ([x, y, z], [i, j, k]) = (self.by, place.to_array());
+        self.start + i * x + j * y + k * z
+    }
+
+    /// The same for places from another node, which is so far below.
+    fn moved(mut self, step: Vec3A) -> Trend {
+        self.start = self.at(-step);
+        self
+    }
+
+    /// Whether it changes normals within a cell by little.
+    fn is_slow(&self) -> bool {
+        let [x, y, z] = self.by;
+        [x + y + z, x + y - z, x - y + z, x - y - z].iter().all(|change| change.xyz().length_squared() <= EVEN * EVEN)
+    }
+
+    /// What normals, given with their places, have beside it.
+    fn beside(&self, vertices: impl Iterator<Item = (Vec3A, Vec3A)>) -> Rest {
+        vertices.fold([Vec4::INFINITY, Vec4::NEG_INFINITY], |[low, high], (place, normal)| {
+            let rest = normal.extend(0.0) - self.at(place);
+            [low.min(rest), high.max(rest)]
+        })
+    }
+
+    /// What normals in a box of places, given by its middle and half its size, have beside it if they have so much beside
+    /// another trend.
+    fn beside_other(&self, (other, rest): (&Trend, &Rest), [middle, half]: [Vec3A; 2]) -> Rest {
+        let (there, across) = (other.at(middle), other.by.map(|column| column.w));
+        let by: [Vec4; 3] = std::array::from_fn(|n| other.by[n] - self.by[n]);
+        let up = across[0] * by[0] + across[1] * by[1] + across[2] * by[2];
+        let along: [Vec4; 3] = std::array::from_fn(|n| (by[n] - across[n] * up).abs());
+        // The vertices are between these heights above the middle.
+        let [low, high] = [-rest[1].w - there.w, -rest[0].w - there.w];
+        let apart = there - self.at(middle) + 0.5 * (low + high) * up;
+        let reach = half.x * along[0] + half.y * along[1] + half.z * along[2] + 0.5 * (high - low) * up.abs();
+        [apart - reach + rest[0], apart + reach + rest[1]]
+    }
+}
+
+/// The matrix that takes a vector to its dot product with `b` times `a`.
+fn product(a: Vec3A, b: Vec3A) -> Mat3A {
+    let [x, y, z] = b.to_array();
+    Mat3A::from_cols(x * a, y * a, z * a)
+}
+
+fn trace(matrix: &Mat3A) -> f32 {
+    matrix.x_axis.x + matrix.y_axis.y + matrix.z_axis.z
+}
+
+impl Vertices {
+    /// Those that block `n` owns.
+    fn new(samples: &Samples<'_>, n: usize) -> Vertices {
+        let own = || samples.vertices_of(n, samples.blocks()[n]);
+        if own().len() < ENOUGH {
+            return Vertices::Few;
+        }
+        let trend = Trend::new(own());
+        if trend.is_slow() { Vertices::Even(trend, trend.beside(own())) } else { Vertices::Uneven }
+    }
+
+    /// Their trend.
+    fn trend(&self) -> Option<&Trend> {
+        match self {
+            Vertices::Even(trend, _) => Some(trend),
+            _ => None,
+        }
+    }
+}
+
+/// By block, whether normals change so evenly that all its cells are nearly flat.
+pub(super) fn even_blocks(samples: &Samples<'_>, run: &Run) -> Result<Vec<bool>, Cancelled> {
+    let count = samples.blocks().len();
+    let meter = Meter::new(run, 2 * count);
+    let goes_on = || meter.step().is_ok();
+    let look = |n| if goes_on() { Vertices::new(samples, n) } else { Vertices::Uneven };
+    let own: Vec<Vertices> = (0..count).into_par_iter().map(look).collect();
+    let even = (0..count).into_par_iter().map(|n| goes_on() && is_even(samples, &own, n)).collect();
+    run.check()?;
+    Ok(even)
+}
+
+fn is_even(samples: &Samples<'_>, own: &[Vertices], n: usize) -> bool {
+    const SIDE: Vec3A = Vec3A::splat(BLOCK as f32);
+    if samples.parts.part(n).triangles == 0 {
+        return true;
+    }
+    let (block, neighbours) = (samples.blocks()[n], &samples.parts.neighbours);
+    let step = |bits: usize| SIDE * Vec3A::from_array(std::array::from_fn(|axis| (bits >> axis & 1) as f32));
+    let upper = || (1..7).filter_map(|bits| Some((step(bits), neighbours.upper(n, bits)?)));
+    let (trend, mut rest) = match &own[n] {
+        Vertices::Even(trend, rest) => (*trend, *rest),
+        Vertices::Uneven => return false,
+        Vertices::Few => {
+            // That of a neighbour will do.
+            let lower = (0..3).filter_map(|axis| Some((-step(1 << axis), neighbours.lower(n, axis)?)));
+            let known = |(step, other): (Vec3A, usize)| Some(own[other].trend()?.moved(step));
+            let Some(trend) = upper().chain(lower).find_map(known) else { return false };
+            (trend, trend.beside(samples.vertices_of(n, block)))
+        }
+    };
+    for (step, other) in upper() {
+        let half = 0.5 * (SIDE - step);
+        let [low, high] = match &own[other] {
+            Vertices::Even(other, rest) => trend.beside_other((&other.moved(step), rest), [step + half, half]),
+            Vertices::Uneven => return false,
+            Vertices::Few => {
+                let in_face = |&(place, _): &(Vec3A, Vec3A)| place.cmplt(SIDE + 0.01).all();
+                trend.beside(samples.vertices_of(other, block).filter(in_face))
+            }
+        };
+        rest = [rest[0].min(low), rest[1].max(high)];
+    }
+    (rest[1] - rest[0]).xyz().length_squared() <= EVEN * EVEN
+}
