@@ -7,9 +7,10 @@
 //! `Smooth` (marching cubes), once `Sharp`; fidget's is manifold dual contouring without normals.
 //!
 //! Then come extraction alone, from arrays of 257³ samples, and scale: a sphere at 1024³ and
-//! 2048³, a ball of gyroid at 512³, unions of 100 and of 10 000 superellipsoids at 256³.
+//! 2048³, a ball of gyroid at 512³, unions of 100 and of 10 000 superellipsoids at 256³. Last, both modes on smooth
+//! solids.
 //!
-//! Words after `--` choose: `models`, `arrays`, `scale`; names of models, cells along the side
+//! Words after `--` choose: `models`, `arrays`, `scale`, `smooth`; names of models, cells along the side
 //! (64, 128, 256), `one` or `two` threads; `fidget` for fidget on all models, also where it takes
 //! minutes, `alone` for ours without fidget.
 
@@ -23,6 +24,8 @@ mod models;
 mod peer;
 #[path = "mesh/scale.rs"]
 mod scale;
+#[path = "mesh/smooth.rs"]
+mod smooth;
 #[path = "mesh/volume.rs"]
 mod volume;
 
@@ -79,13 +82,16 @@ fn main() {
     const NAMES: [&str; 6] = ["M1", "M2", "M3", "M4", "M5", "M6"];
     const CELLS: [&str; 3] = ["64", "128", "256"];
     const THREADS: [&str; 2] = ["one", "two"];
-    const PARTS: [&str; 3] = ["models", "arrays", "scale"];
+    const PARTS: [&str; 4] = ["models", "arrays", "scale", "smooth"];
     if chosen.takes("arrays", &PARTS) {
         volume::rows();
     }
-    if chosen.takes("scale", &PARTS) {
-        for threads in (1..=2).filter(|&threads| chosen.takes(THREADS[threads - 1], &THREADS)) {
+    for threads in (1..=2).filter(|&threads| chosen.takes(THREADS[threads - 1], &THREADS)) {
+        if chosen.takes("scale", &PARTS) {
             scale::rows(threads);
+        }
+        if chosen.takes("smooth", &PARTS) {
+            smooth::rows(threads);
         }
     }
     if !chosen.takes("models", &PARTS) {

@@ -1,0 +1,32 @@
+//! What the search for features costs where there are none.
+
+use glam::DVec3;
+use rvachev::{CellSize, Features, MeshSettings, Run, Solid};
+
+use crate::measure::measured;
+
+/// Prints the rows.
+pub fn rows(threads: usize) {
+    let solids = [
+        ("sphere", Solid::sphere(1.0)),
+        ("torus", Solid::torus(1.0, 0.4)),
+        ("superellipsoid", Solid::superellipsoid(DVec3::ONE, 1.0, 0.8)),
+    ];
+    let run = Run { threads, ..Run::default() };
+    for (name, solid) in solids {
+        for cells in [64, 128, 256, 512] {
+            let [(smooth, plain), (sharp, found)] = [Features::Smooth, Features::Sharp].map(|features| {
+                let cell = CellSize::LongestSide(cells);
+                let settings = MeshSettings { cell, features, ..MeshSettings::default() };
+                measured(threads, || solid.mesh_with(&settings, &run).expect("a mesh"))
+            });
+            println!(
+                "{name:14} {cells:3}³ {threads} smooth {:.5} s, sharp {:.5} s, {:.2} times; {} mesh",
+                smooth.seconds,
+                sharp.seconds,
+                sharp.seconds / smooth.seconds,
+                if plain == found { "the same" } else { "another" }
+            );
+        }
+    }
+}
