@@ -30,11 +30,9 @@ pub fn measured<T: Send>(threads: usize, mut job: impl FnMut() -> T + Send) -> (
         let mut megabytes = f64::NAN;
         let mut runs = 0;
         loop {
-            let (clock, processor) = (Instant::now(), ProcessTime::now());
-            let result = job();
-            let (clock, processor) = (clock.elapsed().as_secs_f64(), processor.elapsed().as_secs_f64());
-            seconds = seconds.min(if threads == 1 { processor } else { clock });
-            spent += clock;
+            let (took, result) = timed(threads, &mut job);
+            seconds = seconds.min(took);
+            spent += took;
             runs += 1;
             if runs == 1 {
                 megabytes = memory("VmHWM:") - before;
@@ -44,6 +42,30 @@ pub fn measured<T: Send>(threads: usize, mut job: impl FnMut() -> T + Send) -> (
             }
         }
     })
+}
+
+/// Runs two jobs in turn, `count` times each, and gives the least seconds and the last result of each: what memory
+/// the system takes back between runs is the same for both.
+pub fn in_turn<T: Send>(threads: usize, count: usize, mut jobs: [impl FnMut() -> T + Send; 2]) -> [(f64, T); 2] {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+    pool.install(|| {
+        let mut found = jobs.each_mut().map(|job| timed(threads, job));
+        for _ in 1..count {
+            for (found, job) in found.iter_mut().zip(&mut jobs) {
+                let (seconds, result) = timed(threads, job);
+                *found = (found.0.min(seconds), result);
+            }
+        }
+        found
+    })
+}
+
+/// Runs a job; gives its seconds, of the processor on one thread, of the clock on more, and its result.
+fn timed<T>(threads: usize, job: &mut impl FnMut() -> T) -> (f64, T) {
+    let (clock, processor) = (Instant::now(), ProcessTime::now());
+    let result = job();
+    let (clock, processor) = (clock.elapsed().as_secs_f64(), processor.elapsed().as_secs_f64());
+    (if threads == 1 { processor } else { clock }, result)
 }
 
 /// A line of the process's status, in MB.

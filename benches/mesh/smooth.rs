@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rvachev::{CellSize, Features, MeshSettings, Run, Solid};
 
-use crate::measure::measured;
+use crate::measure::in_turn;
 
 /// Prints the rows.
 pub fn rows(threads: usize) {
@@ -12,19 +12,18 @@ pub fn rows(threads: usize) {
         ("torus", Solid::torus(1.0, 0.4)),
         ("superellipsoid", Solid::superellipsoid(DVec3::ONE, 1.0, 0.8)),
     ];
-    let run = Run { threads, ..Run::default() };
-    for (name, solid) in solids {
+    let run = &Run { threads, ..Run::default() };
+    for (name, solid) in &solids {
         for cells in [64, 128, 256, 512] {
-            let [(smooth, plain), (sharp, found)] = [Features::Smooth, Features::Sharp].map(|features| {
+            let job = |features| {
                 let cell = CellSize::LongestSide(cells);
                 let settings = MeshSettings { cell, features, ..MeshSettings::default() };
-                measured(threads, || solid.mesh_with(&settings, &run).expect("a mesh"))
-            });
+                move || solid.mesh_with(&settings, run).expect("a mesh")
+            };
+            let [(smooth, plain), (sharp, found)] = in_turn(threads, 9, [Features::Smooth, Features::Sharp].map(job));
             println!(
-                "{name:14} {cells:3}³ {threads} smooth {:.5} s, sharp {:.5} s, {:.2} times; {} mesh",
-                smooth.seconds,
-                sharp.seconds,
-                sharp.seconds / smooth.seconds,
+                "{name:14} {cells:3}³ {threads} smooth {smooth:.5} s, sharp {sharp:.5} s, {:.2} times; {} mesh",
+                sharp / smooth,
                 if plain == found { "the same" } else { "another" }
             );
         }
