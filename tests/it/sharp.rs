@@ -243,12 +243,13 @@ fn edges_of_a_body() {
     assert!(edges[0].max < 0.1, "{}", edges[0]);
 }
 
-/// Radii of curvature of 37 cells and more, and of 18 and more along one line of the torus.
+/// Radii of curvature of 25 cells and more.
 #[test]
 fn a_smooth_solid_is_the_same_in_both_modes() {
     for (solid, cell) in [
-        (Solid::sphere(1.0), 0.027),
+        (Solid::sphere(1.0), 0.04),
         (Solid::sphere(1.0), 0.01),
+        (Solid::torus(1.0, 0.4), 0.016),
         (Solid::torus(1.0, 0.4), 0.01),
         (Solid::superellipsoid(DVec3::ONE, 1.0, 0.8), 0.01),
     ] {

@@ -319,7 +319,7 @@ fn no_cell_of_an_even_block_has_a_crease() {
     let roof = |p: DVec3| sphere(p).min(-(turned * p).z - 0.2 * (turned * p).x.abs());
     let eight = |p: DVec3| sphere(p - 0.5 * DVec3::X).max(sphere(p + 0.5 * DVec3::X));
     look_at_even_blocks(sphere, 200, 100..=100);
-    look_at_even_blocks(torus, 250, 96..=100);
+    look_at_even_blocks(torus, 200, 98..=100);
     look_at_even_blocks(torus, 60, 0..=5);
     look_at_even_blocks(cube, 100, 35..=60);
     look_at_even_blocks(roof, 200, 55..=80);
@@ -342,7 +342,7 @@ fn look_at_even_blocks(f: impl Fn(DVec3) -> f64 + Sync, cells: u32, percent: std
             let (places, edges) = (nearby.all_places(cell), CaseTable::get().triangles(case).as_flattened());
             let normal = |edge: &u8| nearby.vertex(places[usize::from(*edge)]).normal;
             for (a, b) in edges.iter().flat_map(|a| edges.iter().map(move |b| (a, b))) {
-                assert!(normal(a).distance(normal(b)) < 0.2, "{:?}, {cell:?}", blocks[n]);
+                assert!(normal(a).distance(normal(b)) < 0.3, "{:?}, {cell:?}", blocks[n]);
             }
         });
     }

@@ -26,9 +26,10 @@ use crate::mesh::meter::Meter;
 use crate::mesh::signs::BLOCK;
 use crate::run::{Cancelled, Run};
 
-/// How much the trend may change the normal within a cell, and how large the box of what normals have beside it may be: two
-/// normals of a cell differ by less than half of what those of a [crease](crate::mesh::feature::SMOOTH) do then, and by the
-/// trend, triangles are off by a fiftieth of a cell at most (see [`bulge`](super::bulge)).
+/// How much the trend may change the normal within a cell, and how large the box may be of what a block's own normals have
+/// beside it; with those of neighbours it may be twice that. Two normals of a cell differ by less than those of a
+/// [crease](crate::mesh::feature::SMOOTH) do then, and by the trend, triangles are off by a fiftieth of a cell at most (see
+/// [`bulge`](super::bulge)).
 const EVEN: f32 = 0.1;
 
 /// So many vertices tell a trend.
@@ -37,6 +38,8 @@ const ENOUGH: usize = 24;
 /// What is added to how much places spread along an axis, as a part of how much they do along all: flat surfaces have
 /// no spread across.
 const LEAST: f32 = 1e-3;
+
+const SIDE: Vec3A = Vec3A::splat(BLOCK as f32);
 
 /// Normals as an affine map of the place, in cells from a block's first node. The fourth coordinate is how high the place is
 /// along the mean normal.
@@ -144,7 +147,11 @@ impl Vertices {
             return Vertices::Few;
         }
         let trend = Trend::new(own());
-        if trend.is_slow() { Vertices::Even(trend, trend.beside(own())) } else { Vertices::Uneven }
+        if !trend.is_slow() {
+            return Vertices::Uneven;
+        }
+        let rest = trend.beside(own());
+        if is_within(&rest, EVEN) { Vertices::Even(trend, rest) } else { Vertices::Uneven }
     }
 
     /// Their trend.
@@ -169,35 +176,51 @@ pub(super) fn even_blocks(samples: &Samples<'_>, run: &Run) -> Result<Vec<bool>,
 }
 
 fn is_even(samples: &Samples<'_>, own: &[Vertices], n: usize) -> bool {
-    const SIDE: Vec3A = Vec3A::splat(BLOCK as f32);
     if samples.parts.part(n).triangles == 0 {
         return true;
     }
-    let (block, neighbours) = (samples.blocks()[n], &samples.parts.neighbours);
-    let step = |bits: usize| SIDE * Vec3A::from_array(std::array::from_fn(|axis| (bits >> axis & 1) as f32));
-    let upper = || (1..7).filter_map(|bits| Some((step(bits), neighbours.upper(n, bits)?)));
-    let (trend, mut rest) = match &own[n] {
-        Vertices::Even(trend, rest) => (*trend, *rest),
-        Vertices::Uneven => return false,
+    let neighbours = &samples.parts.neighbours;
+    match &own[n] {
+        Vertices::Even(trend, rest) => holds(samples, own, n, (trend, *rest)),
+        Vertices::Uneven => false,
+        // That of a neighbour will do.
         Vertices::Few => {
-            // That of a neighbour will do.
+            let upper = (1..7).filter_map(|bits| Some((step(bits), neighbours.upper(n, bits)?)));
             let lower = (0..3).filter_map(|axis| Some((-step(1 << axis), neighbours.lower(n, axis)?)));
             let known = |(step, other): (Vec3A, usize)| Some(own[other].trend()?.moved(step));
-            let Some(trend) = upper().chain(lower).find_map(known) else { return false };
-            (trend, trend.beside(samples.vertices_of(n, block)))
+            upper.chain(lower).filter_map(known).any(|trend| {
+                let rest = trend.beside(samples.vertices_of(n, samples.blocks()[n]));
+                holds(samples, own, n, (&trend, rest))
+            })
         }
-    };
-    for (step, other) in upper() {
-        let half = 0.5 * (SIDE - step);
+    }
+}
+
+/// Whether the normals of a block's cells have little beside a trend, given with what the block's own have.
+fn holds(samples: &Samples<'_>, own: &[Vertices], n: usize, (trend, mut rest): (&Trend, Rest)) -> bool {
+    for bits in 1..7 {
+        let (Some(other), step) = (samples.parts.neighbours.upper(n, bits), step(bits)) else { continue };
         let [low, high] = match &own[other] {
-            Vertices::Even(other, rest) => trend.beside_other((&other.moved(step), rest), [step + half, half]),
+            Vertices::Even(other, rest) => {
+                let half = 0.5 * (SIDE - step);
+                trend.beside_other((&other.moved(step), rest), [step + half, half])
+            }
             Vertices::Uneven => return false,
             Vertices::Few => {
                 let in_face = |&(place, _): &(Vec3A, Vec3A)| place.cmplt(SIDE + 0.01).all();
-                trend.beside(samples.vertices_of(other, block).filter(in_face))
+                trend.beside(samples.vertices_of(other, samples.blocks()[n]).filter(in_face))
             }
         };
         rest = [rest[0].min(low), rest[1].max(high)];
     }
-    (rest[1] - rest[0]).xyz().length_squared() <= EVEN * EVEN
+    is_within(&rest, 2.0 * EVEN)
+}
+
+/// The way to a neighbour, in cells, by the axes along which it is further, as bits.
+fn step(bits: usize) -> Vec3A {
+    SIDE * Vec3A::from_array(std::array::from_fn(|axis| (bits >> axis & 1) as f32))
+}
+
+fn is_within([low, high]: &Rest, most: f32) -> bool {
+    (high - low).xyz().length_squared() <= most * most
 }
