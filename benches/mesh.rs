@@ -4,7 +4,8 @@
 //! thread, of the clock on two; the least of several runs), triangles, millions of triangles a
 //! second, the peak of memory during the run, and how many times faster than fidget's VM on the
 //! same model, box and number of cells, in the same run. Ours has welded indices and normals, once
-//! `Smooth` (marching cubes), once `Sharp`; fidget's is manifold dual contouring without normals.
+//! `Smooth` (marching cubes), once `Sharp`, and then both in turn; fidget's is manifold dual contouring
+//! without normals.
 //!
 //! Then come extraction alone, from arrays of 257³ samples, and scale: a sphere at 1024³ and
 //! 2048³, a ball of gyroid at 512³, unions of 100 and of 10 000 superellipsoids at 256³. Last, both modes on smooth
@@ -29,9 +30,9 @@ mod smooth;
 #[path = "mesh/volume.rs"]
 mod volume;
 
-use rvachev::{CellSize, Features, MeshSettings, Run};
+use rvachev::{CellSize, Features, Mesh, MeshSettings, Run};
 
-use measure::{Cost, measured};
+use measure::{Cost, in_turn, measured};
 use models::Model;
 
 /// What the words on the command line choose.
@@ -50,12 +51,14 @@ impl Chosen {
     }
 }
 
-fn ours(model: &Model, cells: u32, features: Features, threads: usize) -> (Cost, usize) {
+/// What meshes a model: smooth, and sharp.
+fn ours(model: &Model, cells: u32, threads: usize) -> [impl FnMut() -> Mesh + Send; 2] {
     let cell = CellSize::Length(2.0 * model.half / f64::from(cells));
-    let settings = MeshSettings { cell, bounds: Some(model.cube()), features, ..MeshSettings::default() };
-    let run = Run { threads, ..Run::default() };
-    let (cost, mesh) = measured(threads, || model.solid.mesh_with(&settings, &run).expect("a model"));
-    (cost, mesh.triangles().len())
+    [Features::Smooth, Features::Sharp].map(|features| {
+        let settings = MeshSettings { cell, bounds: Some(model.cube()), features, ..MeshSettings::default() };
+        let run = Run { threads, ..Run::default() };
+        move || model.solid.mesh_with(&settings, &run).expect("a model")
+    })
 }
 
 fn row(name: &str, cells: u32, threads: usize, who: &str, cost: Cost, triangles: usize, ratio: Option<f64>) {
@@ -101,15 +104,19 @@ fn main() {
         for cells in CELLS.into_iter().filter(|cells| chosen.takes(cells, &CELLS)) {
             let cells: u32 = cells.parse().expect("a number");
             for threads in (1..=2).filter(|&threads| chosen.takes(THREADS[threads - 1], &THREADS)) {
-                let mine = ours(&model, cells, Features::Smooth, threads);
-                let sharp = ours(&model, cells, Features::Sharp, threads);
+                let cost = |job| {
+                    let (cost, mesh) = measured(threads, job);
+                    (cost, mesh.triangles().len())
+                };
+                let [mine, sharp] = ours(&model, cells, threads).map(cost);
                 let skipped = chosen.has("alone") || is_slow(model.name, cells) && !chosen.has("fidget");
                 let other = (!skipped).then(|| peer::fidget(&model, cells.ilog2(), threads));
                 let ratio = other.map(|(cost, _)| cost.seconds / mine.0.seconds);
                 row(model.name, cells, threads, "smooth", mine.0, mine.1, ratio);
                 let ratio = other.map(|(cost, _)| cost.seconds / sharp.0.seconds);
                 row(model.name, cells, threads, "sharp", sharp.0, sharp.1, ratio);
-                println!("{:24}sharp over smooth: {:.2}", "", sharp.0.seconds / mine.0.seconds);
+                let [(smooth, _), (sharp, _)] = in_turn(threads, 9, ours(&model, cells, threads));
+                println!("{:24}sharp over smooth, in turn: {:.2}", "", sharp / smooth);
                 if let Some((cost, triangles)) = other {
                     row(model.name, cells, threads, "fidget", cost, triangles, None);
                 }

@@ -63,11 +63,10 @@ enum Vertices {
 
 impl Trend {
     /// The trend of normals, given with their places: by least squares.
-    fn new(vertices: impl ExactSizeIterator<Item = (Vec3A, Vec3A)>) -> Trend {
-        let step = (vertices.len() / ENOUGH).max(1);
+    fn new(vertices: impl Iterator<Item = (Vec3A, Vec3A)>) -> Trend {
         let (mut count, mut place, mut normal) = (0.0, Vec3A::ZERO, Vec3A::ZERO);
         let (mut spread, mut with) = (Mat3A::ZERO, Mat3A::ZERO);
-        for (at, there) in vertices.step_by(step) {
+        for (at, there) in vertices {
             count += 1.0;
             place += at;
             normal += there;
@@ -143,10 +142,18 @@ impl Vertices {
     /// Those that block `n` owns.
     fn new(samples: &Samples<'_>, n: usize) -> Vertices {
         let own = || samples.vertices_of(n, samples.blocks()[n]);
-        if own().len() < ENOUGH {
+        let count = own().len();
+        if count < ENOUGH {
             return Vertices::Few;
         }
-        let trend = Trend::new(own());
+        let some = || own().step_by(count / ENOUGH);
+        // More than a slow trend and little beside it come to from end to end of a block.
+        let (mut low, mut high) = (Vec3A::INFINITY, Vec3A::NEG_INFINITY);
+        some().for_each(|(_, normal)| (low, high) = (low.min(normal), high.max(normal)));
+        if (high - low).max_element() > (BLOCK + 1) as f32 * EVEN {
+            return Vertices::Uneven;
+        }
+        let trend = Trend::new(some());
         if !trend.is_slow() {
             return Vertices::Uneven;
         }
