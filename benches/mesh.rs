@@ -104,18 +104,15 @@ fn main() {
         for cells in CELLS.into_iter().filter(|cells| chosen.takes(cells, &CELLS)) {
             let cells: u32 = cells.parse().expect("a number");
             for threads in (1..=2).filter(|&threads| chosen.takes(THREADS[threads - 1], &THREADS)) {
-                let cost = |job| {
-                    let (cost, mesh) = measured(threads, job);
-                    (cost, mesh.triangles().len())
-                };
-                let [mine, sharp] = ours(&model, cells, threads).map(cost);
                 let skipped = chosen.has("alone") || is_slow(model.name, cells) && !chosen.has("fidget");
                 let other = (!skipped).then(|| peer::fidget(&model, cells.ilog2(), threads));
-                let ratio = other.map(|(cost, _)| cost.seconds / mine.0.seconds);
-                row(model.name, cells, threads, "smooth", mine.0, mine.1, ratio);
-                let ratio = other.map(|(cost, _)| cost.seconds / sharp.0.seconds);
-                row(model.name, cells, threads, "sharp", sharp.0, sharp.1, ratio);
-                let [(smooth, _), (sharp, _)] = in_turn(threads, 9, ours(&model, cells, threads));
+                let mut jobs = ours(&model, cells, threads);
+                for (who, job) in ["smooth", "sharp"].into_iter().zip(&mut jobs) {
+                    let (cost, mesh) = measured(threads, job);
+                    let ratio = other.map(|(other, _)| other.seconds / cost.seconds);
+                    row(model.name, cells, threads, who, cost, mesh.triangles().len(), ratio);
+                }
+                let [(smooth, _), (sharp, _)] = in_turn(threads, 9, jobs);
                 println!("{:24}sharp over smooth, in turn: {:.2}", "", sharp / smooth);
                 if let Some((cost, triangles)) = other {
                     row(model.name, cells, threads, "fidget", cost, triangles, None);
