@@ -112,8 +112,7 @@ fn main() {
                     let ratio = other.map(|(other, _)| other.seconds / cost.seconds);
                     row(model.name, cells, threads, who, cost, mesh.triangles().len(), ratio);
                 }
-                let [(smooth, _), (sharp, _)] = in_turn(threads, 9, jobs);
-                println!("{:24}sharp over smooth, in turn: {:.2}", "", sharp / smooth);
+                println!("{:24}sharp over smooth, in turn: {:.2}", "", in_turn(threads, 15, jobs).ratio);
                 if let Some((cost, triangles)) = other {
                     row(model.name, cells, threads, "fidget", cost, triangles, None);
                 }

@@ -44,19 +44,32 @@ pub fn measured<T: Send>(threads: usize, mut job: impl FnMut() -> T + Send) -> (
     })
 }
 
-/// Runs two jobs in turn, `count` times each, and gives the least seconds and the last result of each: what memory
-/// the system takes back between runs is the same for both.
-pub fn in_turn<T: Send>(threads: usize, count: usize, mut jobs: [impl FnMut() -> T + Send; 2]) -> [(f64, T); 2] {
+/// What two jobs took that were run in turn.
+pub struct InTurn<T> {
+    /// The least seconds of each.
+    pub seconds: [f64; 2],
+    /// How many times as long the second took: the median of all turns.
+    pub ratio: f64,
+    /// What they gave last.
+    pub results: [T; 2],
+}
+
+/// Runs two jobs in turn, `count` times each: how fast the machine is at the time, and what memory the system takes back
+/// between runs, is the same for both.
+pub fn in_turn<T: Send>(threads: usize, count: usize, mut jobs: [impl FnMut() -> T + Send; 2]) -> InTurn<T> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
     pool.install(|| {
-        let mut least = [f64::INFINITY; 2];
+        let mut turns = Vec::new();
         for _ in 1..count {
-            for (least, job) in least.iter_mut().zip(&mut jobs) {
-                *least = least.min(timed(threads, job).0);
-            }
+            // Results are given up before the next run.
+            turns.push(jobs.each_mut().map(|job| timed(threads, job).0));
         }
         let [(first, one), (second, other)] = jobs.each_mut().map(|job| timed(threads, job));
-        [(least[0].min(first), one), (least[1].min(second), other)]
+        turns.push([first, second]);
+        let least = |n: usize| turns.iter().map(|turn| turn[n]).fold(f64::INFINITY, f64::min);
+        let mut ratios: Vec<f64> = turns.iter().map(|[first, second]| second / first).collect();
+        ratios.sort_by(f64::total_cmp);
+        InTurn { seconds: [least(0), least(1)], ratio: ratios[count / 2], results: [one, other] }
     })
 }
 

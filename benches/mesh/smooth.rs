@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rvachev::{CellSize, Features, MeshSettings, Run, Solid};
 
-use crate::measure::in_turn;
+use crate::measure::{InTurn, in_turn};
 
 /// Prints the rows.
 pub fn rows(threads: usize) {
@@ -20,11 +20,12 @@ pub fn rows(threads: usize) {
                 let settings = MeshSettings { cell, features, ..MeshSettings::default() };
                 move || solid.mesh_with(&settings, run).expect("a mesh")
             };
-            let [(smooth, plain), (sharp, found)] = in_turn(threads, 9, [Features::Smooth, Features::Sharp].map(job));
+            let InTurn { seconds, ratio, results } = in_turn(threads, 15, [Features::Smooth, Features::Sharp].map(job));
             println!(
-                "{name:14} {cells:3}³ {threads} smooth {smooth:.5} s, sharp {sharp:.5} s, {:.2} times; {} mesh",
-                sharp / smooth,
-                if plain == found { "the same" } else { "another" }
+                "{name:14} {cells:3}³ {threads} smooth {:.5} s, sharp {:.5} s, {ratio:.2} times; {} mesh",
+                seconds[0],
+                seconds[1],
+                if results[0] == results[1] { "the same" } else { "another" }
             );
         }
     }
