@@ -7,9 +7,9 @@
 //! `Smooth` (marching cubes), once `Sharp`, and then both in turn; fidget's is manifold dual contouring
 //! without normals.
 //!
-//! Then come extraction alone, from arrays of 257³ samples, and scale: a sphere at 1024³ and
-//! 2048³, a ball of gyroid at 512³, unions of 100 and of 10 000 superellipsoids at 256³. Last, both modes on smooth
-//! solids.
+//! Before that come extraction alone, from arrays of 257³ samples; scale: a sphere at 1024³ and
+//! 2048³, a ball of gyroid at 512³, unions of 100 and of 10 000 superellipsoids at 256³; and both modes
+//! on smooth solids.
 //!
 //! Words after `--` choose: `models`, `arrays`, `scale`, `smooth`; names of models, cells along the side
 //! (64, 128, 256), `one` or `two` threads; `fidget` for fidget on all models, also where it takes
@@ -112,7 +112,7 @@ fn main() {
                     let ratio = other.map(|(other, _)| other.seconds / cost.seconds);
                     row(model.name, cells, threads, who, cost, mesh.triangles().len(), ratio);
                 }
-                println!("{:24}sharp over smooth, in turn: {:.2}", "", in_turn(threads, 15, jobs).ratio);
+                println!("{:24}sharp over smooth, in turn: {:.2}", "", in_turn(threads, jobs).ratio);
                 if let Some((cost, triangles)) = other {
                     row(model.name, cells, threads, "fidget", cost, triangles, None);
                 }

@@ -54,13 +54,16 @@ pub struct InTurn<T> {
     pub results: [T; 2],
 }
 
-/// Runs two jobs in turn, `count` times each: how fast the machine is at the time, and what memory the system takes back
-/// between runs, is the same for both.
-pub fn in_turn<T: Send>(threads: usize, count: usize, mut jobs: [impl FnMut() -> T + Send; 2]) -> InTurn<T> {
+/// Runs two jobs in turn, 15 times each, less often if they are long: how fast the machine is at the time, and what memory
+/// the system takes back between runs, is the same for both.
+pub fn in_turn<T: Send>(threads: usize, mut jobs: [impl FnMut() -> T + Send; 2]) -> InTurn<T> {
+    /// Seconds to spend at most, but for the fewest turns.
+    const LONG: f64 = 10.0;
+    const TURNS: [usize; 2] = [5, 15];
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
     pool.install(|| {
-        let mut turns = Vec::new();
-        for _ in 1..count {
+        let (start, mut turns) = (Instant::now(), Vec::new());
+        while turns.len() + 1 < TURNS[1] && (turns.len() + 1 < TURNS[0] || start.elapsed().as_secs_f64() < LONG) {
             // Results are given up before the next run.
             turns.push(jobs.each_mut().map(|job| timed(threads, job).0));
         }
@@ -69,7 +72,7 @@ pub fn in_turn<T: Send>(threads: usize, count: usize, mut jobs: [impl FnMut() ->
         let least = |n: usize| turns.iter().map(|turn| turn[n]).fold(f64::INFINITY, f64::min);
         let mut ratios: Vec<f64> = turns.iter().map(|[first, second]| second / first).collect();
         ratios.sort_by(f64::total_cmp);
-        InTurn { seconds: [least(0), least(1)], ratio: ratios[count / 2], results: [one, other] }
+        InTurn { seconds: [least(0), least(1)], ratio: ratios[ratios.len() / 2], results: [one, other] }
     })
 }
 

@@ -20,7 +20,7 @@ pub fn rows(threads: usize) {
                 let settings = MeshSettings { cell, features, ..MeshSettings::default() };
                 move || solid.mesh_with(&settings, run).expect("a mesh")
             };
-            let InTurn { seconds, ratio, results } = in_turn(threads, 15, [Features::Smooth, Features::Sharp].map(job));
+            let InTurn { seconds, ratio, results } = in_turn(threads, [Features::Smooth, Features::Sharp].map(job));
             println!(
                 "{name:14} {cells:3}³ {threads} smooth {:.5} s, sharp {:.5} s, {ratio:.2} times; {} mesh",
                 seconds[0],

@@ -243,7 +243,7 @@ fn edges_of_a_body() {
     assert!(edges[0].max < 0.1, "{}", edges[0]);
 }
 
-/// Radii of curvature of 25 cells and more.
+/// Radii of curvature of some 25 cells and more.
 #[test]
 fn a_smooth_solid_is_the_same_in_both_modes() {
     for (solid, cell) in [

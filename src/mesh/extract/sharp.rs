@@ -101,16 +101,17 @@ pub(super) struct Fans {
     free: Vec<u32>,
 }
 
-/// Finds the cells that hold creases and corners, and gives them fans; nothing if the surface is smooth everywhere.
+/// Finds the cells that hold creases and corners, and gives them fans; nothing if normals change
+/// evenly everywhere.
 pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) -> Result<Option<Fans>, ExtractError> {
     // Blocks whose normals change evenly are settled as a whole.
     let even = even_blocks(samples, &run.stage(0.0, 0.1))?;
     if even.iter().all(|&is_even| is_even) {
         return Ok(None);
     }
-    let proposed = (0..even.len()).map(|n| match !even[n] {
-        true => samples.parts.part(n).joins.clone(),
-        false => Vec::new(),
+    let proposed = (0..even.len()).map(|n| match even[n] {
+        true => Vec::new(),
+        false => samples.parts.part(n).joins.clone(),
     });
     let joined = Joined::new(samples, proposed.collect());
     let special = Special::find(samples, sampler, (&even, &joined), &run.stage(0.1, 0.8))?;

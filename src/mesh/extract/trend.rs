@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Two normals of a cell differ at most by |Kd|, with d a diagonal of the cell, and by the size of the box: so a look at each
-//! vertex, with no look at any cell, tells that no cell of a block has a crease, and that none is far off its triangles.
+//! vertex, with no look at any cell, tells that no cell of a block has a crease, and how far they may be off their triangles.
 //!
 //! A block's cells have vertices of upper neighbours as well, in the common faces. Those are beside the block's trend by
 //! what they are beside that of the neighbour, and by what the two trends differ by. That is an affine map again: in the
@@ -28,8 +28,8 @@ use crate::run::{Cancelled, Run};
 
 /// How much the trend may change the normal within a cell, and how large the box may be of what a block's own normals have
 /// beside it; with those of neighbours it may be twice that. Two normals of a cell differ by less than those of a
-/// [crease](crate::mesh::feature::SMOOTH) do then, and by the trend, triangles are off by a fiftieth of a cell at most (see
-/// [`bulge`](super::bulge)).
+/// [crease](crate::mesh::feature::SMOOTH) do then. The middles of triangles are off by a fiftieth of a cell at most by the
+/// trend (see [`bulge`](super::bulge)), and by as much again where a blunt ridge of 6° makes all of the box.
 const EVEN: f32 = 0.1;
 
 /// So many vertices tell a trend.
@@ -39,7 +39,8 @@ const ENOUGH: usize = 24;
 /// no spread across.
 const LEAST: f32 = 1e-3;
 
-const SIDE: Vec3A = Vec3A::splat(BLOCK as f32);
+/// The size of a block, in cells.
+const LENGTH: Vec3A = Vec3A::splat(BLOCK as f32);
 
 /// Normals as an affine map of the place, in cells from a block's first node. The fourth coordinate is how high the place is
 /// along the mean normal.
@@ -49,8 +50,8 @@ struct Trend {
     by: [Vec4; 3],
 }
 
-/// The least and the greatest coordinates of what some normals have beside a trend; of the fourth, their places' heights below
-/// 0.
+/// The least and the greatest coordinates of what some normals have beside a trend; the fourth is minus the height of their
+/// places.
 type Rest = [Vec4; 2];
 
 /// What is known of the vertices of a block.
@@ -73,11 +74,11 @@ impl Trend {
             spread += product(at, at);
             with += product(there, at);
         }
-        let share = 1.0 / f32::max(count, 1.0);
+        let share = 1.0 / count;
         (place, normal) = (share * place, share * normal);
         let spread = share * spread - product(place, place);
         let with = share * with - product(normal, place);
-        let least = LEAST * trace(&spread) + f32::MIN_POSITIVE;
+        let least = LEAST * trace(&spread);
         let mut by = with * (spread + Mat3A::from_diagonal(Vec3::splat(least))).inverse();
         let across = normal.normalize_or_zero();
         let change = by * across;
@@ -99,7 +100,7 @@ impl Trend {
         self
     }
 
-    /// Whether it changes normals within a cell by little.
+    /// Whether it changes normals within a cell by little; one that is no number does not.
     fn is_slow(&self) -> bool {
         let [x, y, z] = self.by;
         [x + y + z, x + y - z, x - y + z, x - y - z].iter().all(|change| change.xyz().length_squared() <= EVEN * EVEN)
@@ -209,12 +210,13 @@ fn holds(samples: &Samples<'_>, own: &[Vertices], n: usize, (trend, mut rest): (
         let (Some(other), step) = (samples.parts.neighbours.upper(n, bits), step(bits)) else { continue };
         let [low, high] = match &own[other] {
             Vertices::Even(other, rest) => {
-                let half = 0.5 * (SIDE - step);
+                let half = 0.5 * (LENGTH - step);
                 trend.beside_other((&other.moved(step), rest), [step + half, half])
             }
             Vertices::Uneven => return false,
             Vertices::Few => {
-                let in_face = |&(place, _): &(Vec3A, Vec3A)| place.cmplt(SIDE + 0.01).all();
+                // Rounding of coordinates is less than that.
+                let in_face = |&(place, _): &(Vec3A, Vec3A)| place.cmplt(LENGTH + 0.25).all();
                 trend.beside(samples.vertices_of(other, samples.blocks()[n]).filter(in_face))
             }
         };
@@ -225,7 +227,7 @@ fn holds(samples: &Samples<'_>, own: &[Vertices], n: usize, (trend, mut rest): (
 
 /// The way to a neighbour, in cells, by the axes along which it is further, as bits.
 fn step(bits: usize) -> Vec3A {
-    SIDE * Vec3A::from_array(std::array::from_fn(|axis| (bits >> axis & 1) as f32))
+    LENGTH * Vec3A::from_array(std::array::from_fn(|axis| (bits >> axis & 1) as f32))
 }
 
 fn is_within([low, high]: &Rest, most: f32) -> bool {
