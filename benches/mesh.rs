@@ -104,15 +104,20 @@ fn main() {
         for cells in CELLS.into_iter().filter(|cells| chosen.takes(cells, &CELLS)) {
             let cells: u32 = cells.parse().expect("a number");
             for threads in (1..=2).filter(|&threads| chosen.takes(THREADS[threads - 1], &THREADS)) {
+                let mut jobs = ours(&model, cells, threads);
+                let costs = jobs.each_mut().map(|job| {
+                    let (cost, mesh) = measured(threads, job);
+                    (cost, mesh.triangles().len())
+                });
+                let sharp_over_smooth = in_turn(threads, jobs).ratio;
+                // Last, so that no memory of its is used again.
                 let skipped = chosen.has("alone") || is_slow(model.name, cells) && !chosen.has("fidget");
                 let other = (!skipped).then(|| peer::fidget(&model, cells.ilog2(), threads));
-                let mut jobs = ours(&model, cells, threads);
-                for (who, job) in ["smooth", "sharp"].into_iter().zip(&mut jobs) {
-                    let (cost, mesh) = measured(threads, job);
+                for (who, (cost, triangles)) in ["smooth", "sharp"].into_iter().zip(costs) {
                     let ratio = other.map(|(other, _)| other.seconds / cost.seconds);
-                    row(model.name, cells, threads, who, cost, mesh.triangles().len(), ratio);
+                    row(model.name, cells, threads, who, cost, triangles, ratio);
                 }
-                println!("{:24}sharp over smooth, in turn: {:.2}", "", in_turn(threads, jobs).ratio);
+                println!("{:24}sharp over smooth, in turn: {sharp_over_smooth:.2}", "");
                 if let Some((cost, triangles)) = other {
                     row(model.name, cells, threads, "fidget", cost, triangles, None);
                 }

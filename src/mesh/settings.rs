@@ -45,11 +45,11 @@ pub enum Features {
     /// They are kept: where the normals in a cell differ by more than 26°, the cell has a vertex on the
     /// crease or in the corner, and the mesh has edges along the crease.
     ///
-    /// Where a surface is smooth and curves little, with radii of 35 cells and more, the mesh is that of
-    /// [`Smooth`](Features::Smooth); all of a smooth solid is with radii of 25 cells. Where a surface curves more and is off
-    /// those triangles in a cell by more than some 0.01 or 0.02 cells in their middle, two triangles have the diagonal that
-    /// bends less; and where that is not enough, the cell has a vertex above the surface, as far as the triangles around it
-    /// are below.
+    /// Where a surface is smooth and its radii of curvature are some 35 cells or more, the mesh is that of
+    /// [`Smooth`](Features::Smooth); 25 cells are enough if the whole solid is smooth. Where a surface curves more and is
+    /// off those triangles in a cell by more than some 0.01 or 0.02 cells in their middle, two triangles have the diagonal
+    /// that bends less; and where that is not enough, the cell has a vertex above the surface, as far as the triangles
+    /// around it are below.
     ///
     /// Where a crease passes cells that have no surface of their own (all their corners are on the same
     /// side), the cells around, up to four along each axis, share a vertex on it, if their surface is a

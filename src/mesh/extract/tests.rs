@@ -324,6 +324,11 @@ fn no_cell_of_an_even_block_has_a_crease() {
     look_at_even_blocks(cube, 100, 35..=60);
     look_at_even_blocks(roof, 200, 55..=80);
     look_at_even_blocks(eight, 200, 85..=97);
+    // A ridge along blocks, also where the two sides are those of two blocks.
+    for n in 0..16 {
+        let ridge = |p: DVec3| sphere(p).min(-p.z - 0.25 * (p.x - 0.016 * f64::from(n)).abs());
+        look_at_even_blocks(ridge, 100, 0..=90);
+    }
 }
 
 fn look_at_even_blocks(f: impl Fn(DVec3) -> f64 + Sync, cells: u32, percent: std::ops::RangeInclusive<usize>) {

@@ -148,7 +148,7 @@ impl Vertices {
             return Vertices::Few;
         }
         let some = || own().step_by(count / ENOUGH);
-        // More than a slow trend and little beside it come to from end to end of a block.
+        // From end to end of a block, a slow trend and what may be beside it come to no more.
         let (mut low, mut high) = (Vec3A::INFINITY, Vec3A::NEG_INFINITY);
         some().for_each(|(_, normal)| (low, high) = (low.min(normal), high.max(normal)));
         if (high - low).max_element() > (BLOCK + 1) as f32 * EVEN {
