@@ -78,6 +78,17 @@ impl Run {
             progress: self.progress.as_ref().map(|p| p.stage(from, to)),
         }
     }
+
+    /// The [stages](Run::stage) of a job, given how long each of them takes, in any unit.
+    pub(crate) fn stages<const N: usize>(&self, times: [f64; N]) -> [Run; N] {
+        let all: f64 = times.iter().sum();
+        let mut end = 0.0;
+        times.map(|time| {
+            let start = end;
+            end += time;
+            self.stage(start / all, end / all)
+        })
+    }
 }
 
 /// A receiver of progress reports.

@@ -1,5 +1,6 @@
 //! From a solid to a triangle mesh, and what can be said about a mesh.
 
+mod bulk;
 mod check;
 mod deciders;
 mod extract;

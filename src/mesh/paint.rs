@@ -7,8 +7,9 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::eval::compiled;
-use crate::{Mesh, Paint, Solid, SolidError};
+use super::meter::Meter;
+use crate::eval::{Palette, compiled};
+use crate::{Cancelled, Mesh, Paint, Run, Solid, SolidError};
 
 impl Mesh {
     /// The same mesh with the [paint](Solid::paint) of the solid that it was made from: an owner
@@ -33,26 +34,57 @@ impl Mesh {
     pub fn painted(self, solid: &Solid, unpainted: Paint) -> Result<Mesh, SolidError> {
         let program = compiled(solid)?.surface.clone();
         let palette = solid.palette()?;
-        let owners: Vec<u32> = match self.owners() {
-            Some(owners) => owners.to_vec(),
-            None => {
-                let owner = |triangle: &[u32; 3]| {
-                    program.deciding_leaf(self.corners(*triangle).into_iter().sum::<DVec3>() / 3.0)
-                };
-                self.triangles().par_iter().map(owner).collect()
-            }
+        let run = Run::default();
+        let owner = |_, triangle| program.deciding_leaf(self.corners(triangle).into_iter().sum::<DVec3>() / 3.0);
+        let owners = match self.owners() {
+            Some(owners) => Ok(owners.to_vec()),
+            None => each_triangle(&self, &run, owner),
         };
-        let color = |(triangle, owner): (&[u32; 3], &u32)| {
-            self.corners(*triangle).map(|p| {
-                let paint = palette.mixture(*owner, p, unpainted).unwrap_or(unpainted);
-                let [red, green, blue] = paint.color;
-                [red, green, blue, 255]
-            })
-        };
-        let colors: Vec<[[u8; 4]; 3]> = self.triangles().par_iter().zip(&owners).map(color).collect();
-        match self.with_owners(owners).and_then(|mesh| mesh.with_corner_colors(colors)) {
-            Ok(mesh) => Ok(mesh),
-            Err(_) => unreachable!("one for each triangle"),
+        let painted = owners.and_then(|owners| {
+            let colors = corner_colors(&self, &palette, &owners, unpainted, &run)?;
+            Ok(self.with_owners(owners).and_then(|mesh| mesh.with_corner_colors(colors)))
+        });
+        match painted {
+            Ok(Ok(mesh)) => Ok(mesh),
+            Ok(Err(_)) => unreachable!("one for each triangle"),
+            Err(Cancelled) => unreachable!("nobody has the token"),
         }
     }
+}
+
+/// The colours of the corners of the triangles, given their owners.
+pub(super) fn corner_colors(
+    mesh: &Mesh,
+    palette: &Palette,
+    owners: &[u32],
+    unpainted: Paint,
+    run: &Run,
+) -> Result<Vec<[[u8; 4]; 3]>, Cancelled> {
+    each_triangle(mesh, run, |nth, triangle| {
+        mesh.corners(triangle).map(|p| {
+            let [red, green, blue] = palette.mixture(owners[nth], p, unpainted).unwrap_or(unpainted).color;
+            [red, green, blue, 255]
+        })
+    })
+}
+
+/// What is told of each triangle, by its place among all and its vertices.
+pub(super) fn each_triangle<T: Clone + Default + Send>(
+    mesh: &Mesh,
+    run: &Run,
+    tell: impl Fn(usize, [u32; 3]) -> T + Sync,
+) -> Result<Vec<T>, Cancelled> {
+    /// Triangles that are looked at before it is asked whether to go on.
+    const AT_ONCE: usize = 512;
+    let triangles = mesh.triangles();
+    let mut told = vec![T::default(); triangles.len()];
+    let meter = Meter::new(run, triangles.len().div_ceil(AT_ONCE));
+    told.par_chunks_mut(AT_ONCE).enumerate().try_for_each(|(chunk, told)| {
+        meter.step()?;
+        for (nth, told) in (chunk * AT_ONCE..).zip(told) {
+            *told = tell(nth, triangles[nth]);
+        }
+        Ok(())
+    })?;
+    Ok(told)
 }

@@ -12,20 +12,22 @@
 use rayon::prelude::*;
 
 use super::lattice::Lattice;
+use super::meter::Meter;
 use super::signs::BLOCK;
 use crate::eval::Program;
 use crate::{Bounds, Cancelled, Dual, Interval, Run};
 
-/// The number of cells, of the given blocks, whose programs are told by their numbers, all of whose nodes are on one side, though the ranges
-/// of the value and of each component of the gradient contain 0.
+/// The number of cells, of the given blocks, whose programs are told by their numbers, all of whose nodes are on one side,
+/// though the ranges of the value and of each component of the gradient contain 0.
 pub(super) fn unresolved_cells<'a>(
     lattice: &Lattice,
     blocks: &[[u32; 3]],
     program: impl Fn(usize) -> &'a Program + Sync,
     run: &Run,
 ) -> Result<usize, Cancelled> {
+    let meter = Meter::new(run, blocks.len());
     let of_block = |(n, &block): (usize, &[u32; 3])| {
-        run.check()?;
+        meter.step()?;
         let program = program(n);
         let mut open = vec![(block, BLOCK as u32)];
         let (mut count, mut memory) = (0, Vec::new());

@@ -9,8 +9,9 @@ use super::deciders::Deciders;
 use super::extract::{BATCH, ExtractError, Root, Sampler, extract};
 use super::feature::Slope;
 use super::lattice::{CellSize, Lattice, LatticeError};
+use super::paint::{corner_colors, each_triangle};
 use super::resolve::unresolved_cells;
-use super::settings::{AtBounds, Features, MeshSettings};
+use super::settings::{AtBounds, Features, MeshSettings, ThinFeatures};
 use super::signs::{BLOCK, EdgeRef, NODES, SIDE};
 use crate::eval::{Evaluator, Gradients, Program, Tape, compiled};
 use crate::geom::Mesh;
@@ -79,17 +80,29 @@ impl Solid {
     /// [`MeshingError`].
     pub fn mesh_with(&self, settings: &MeshSettings, run: &Run) -> Result<Mesh, MeshingError> {
         let (solid, bounds) = self.cut_to(settings.bounds.as_ref())?;
+        let run = run.stage(0.0, 1.0);
         if bounds.is_empty() {
+            run.report(1.0);
             return Ok(Mesh::default());
         }
         let programs = compiled(&solid)?;
-        let run = run.stage(0.0, 1.0);
+        // A mesh has the paint of its solid, if there is any, by the owners of its triangles.
+        let palette = solid.palette()?;
+        let painted = palette.is_painted();
+        let owned = settings.owners || painted;
         run.install(|| {
+            // How long each stage takes, more or less.
+            let if_done = |is_done: bool, time: f64| if is_done { time } else { 0.0 };
+            let counts = settings.thin != ThinFeatures::Ignore;
+            let times = [0.1, if_done(counts, 7.0), 0.9, if_done(owned, 0.8), if_done(painted, 0.2)];
+            let [to_find, to_count, to_extract, to_own, to_paint] = run.stages(times);
             let mut lattice = Lattice::new(&bounds, settings.cell)?;
-            let mut blocks = Blocks::find(&programs.surface, &lattice, &run.stage(0.0, 0.3))?;
+            let mut blocks = Blocks::find(&programs.surface, &lattice, &to_find)?;
             let (mut unresolved, mut halvings) = (None, 0);
             if let Some(most) = settings.thin.halvings() {
                 loop {
+                    let [done, next] = [halvings, halvings + 1].map(|n| f64::from(n) / (f64::from(most) + 1.0));
+                    let run = to_count.stage(done, next);
                     let count = unresolved_cells(&lattice, &blocks.cells, |n| blocks.programs.of(n), &run)?;
                     unresolved = Some(count);
                     if count == 0 || halvings == most {
@@ -97,26 +110,26 @@ impl Solid {
                     }
                     halvings += 1;
                     lattice = Lattice::new(&bounds, CellSize::Length(0.5 * lattice.step()))?;
-                    blocks = Blocks::find(&programs.surface, &lattice, &run.stage(0.0, 0.3))?;
+                    blocks = Blocks::find(&programs.surface, &lattice, &to_find)?;
                 }
             }
             let mut sampler = SolidSampler::new(&lattice, &blocks.cells, blocks.programs, bounds);
             if settings.features == Features::Sharp {
                 sampler.keep_tapes();
             }
-            let mut mesh = extract(&sampler, &lattice, &blocks.cells, settings.features, &run.stage(0.3, 1.0))?;
+            let mut mesh = extract(&sampler, &lattice, &blocks.cells, settings.features, &to_extract)?;
             if let (AtBounds::Refuse, Some(given)) = (settings.at_bounds, &settings.bounds) {
                 self.refuse_caps(&mesh, given, lattice.step())?;
             }
-            // A mesh has the paint of its solid, if there is any, by the owners of its triangles.
-            let painted = solid.palette()?.is_painted();
-            if settings.owners || painted {
-                let owners = sampler.owners(&mesh, &programs.surface);
+            if owned {
+                let owners = sampler.owners(&mesh, &programs.surface, &to_own)?;
+                if painted {
+                    let colors = corner_colors(&mesh, &palette, &owners, Paint::default(), &to_paint)?;
+                    mesh = mesh.with_corner_colors(colors).map_err(ExtractError::from)?;
+                }
                 mesh = mesh.with_owners(owners).map_err(ExtractError::from)?;
             }
-            if painted {
-                mesh = mesh.painted(&solid, Paint::default())?;
-            }
+            run.report(1.0);
             Ok(match unresolved {
                 Some(count) => mesh.with_unresolved_cells(count),
                 None => mesh,
@@ -251,18 +264,17 @@ impl SolidSampler<'_> {
 
     /// The leaves that decide at the middles of the triangles, by the programs of their blocks;
     /// `whole` is that of the solid.
-    fn owners(&self, mesh: &Mesh, whole: &Program) -> Vec<u32> {
+    fn owners(&self, mesh: &Mesh, whole: &Program, run: &Run) -> Result<Vec<u32>, Cancelled> {
         let mut places: Vec<([u32; 3], usize)> = self.blocks.iter().copied().zip(0..).collect();
-        places.sort_unstable();
-        let owner = |&triangle: &[u32; 3]| {
+        places.par_sort_unstable();
+        each_triangle(mesh, run, |_, triangle| {
             let middle = mesh.corners(triangle).into_iter().sum::<DVec3>() / 3.0;
             let cell = (middle - self.lattice.origin()) / self.lattice.step();
             let block = cell.to_array().map(|x| x.max(0.0) as u32 / BLOCK as u32 * BLOCK as u32);
             // A triangle of several blocks may have its middle in one that holds no vertex.
             let nth = places.binary_search_by_key(&block, |&(block, _)| block).ok();
             nth.map_or(whole, |nth| self.programs.of(places[nth].1)).deciding_leaf(middle)
-        };
-        mesh.triangles().par_iter().map(owner).collect()
+        })
     }
 
     /// The tape of a group, made if it is not among those at hand.

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 use glam::{DQuat, DVec3};
 use rvachev::{
     Bounds, CancelToken, CellSize, Features, Field, Lattice, Mesh, MeshSettings, MeshingError, ParamError, Progress,
-    RFunction, Real, Run, Solid, Superellipsoid,
+    RFunction, Real, Run, Solid, Superellipsoid, ThinFeatures,
 };
 
 use crate::models;
@@ -77,6 +77,33 @@ fn progress_is_even() {
         let longest = seen.windows(2).map(|w| w[1] - w[0]).fold(0.0, f64::max);
         assert!(longest < 0.05, "{}: {longest}", model.name);
         assert_eq!(seen.last(), Some(&1.0));
+    }
+}
+
+/// Evaluations of a union of two balls, one of them painted, between two reports: the most, and all.
+fn evaluations_between_reports(thin: ThinFeatures) -> (u64, u64) {
+    let count = Arc::new(AtomicU64::new(0));
+    let ball = Solid::new(Counting(count.clone()));
+    let solid = ball.clone().paint([200, 0, 0]) | ball.translate(DVec3::new(0.7, 0.0, 0.0));
+    let last = Arc::new(AtomicU64::new(0));
+    let longest = Arc::new(AtomicU64::new(0));
+    let (counted, before, most) = (count.clone(), last.clone(), longest.clone());
+    let progress = Progress::new(move |_| {
+        let now = counted.load(Ordering::Relaxed);
+        most.fetch_max(now - before.swap(now, Ordering::Relaxed), Ordering::Relaxed);
+    });
+    let settings = MeshSettings { cell: CellSize::LongestSide(100), thin, ..MeshSettings::default() };
+    solid.mesh_with(&settings, &Run { threads: 1, progress: Some(progress), ..Run::default() }).unwrap();
+    let all = count.load(Ordering::Relaxed);
+    (longest.load(Ordering::Relaxed).max(all - last.load(Ordering::Relaxed)), all)
+}
+
+#[test]
+fn counting_thin_cells_and_painting_tell_how_far_they_are() {
+    for thin in [ThinFeatures::Ignore, ThinFeatures::Count, ThinFeatures::Refine { halvings: 1 }] {
+        let (longest, all) = evaluations_between_reports(thin);
+        println!("{thin:?}: {longest} of {all}");
+        assert!(longest * 20 < all, "{thin:?}: {longest} of {all}");
     }
 }
 

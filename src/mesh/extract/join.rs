@@ -9,6 +9,7 @@ use super::sharp;
 use super::{BATCH, Batch, ExtractError, Part, Sampler};
 use crate::geom::Mesh;
 use crate::mesh::Features;
+use crate::mesh::bulk::Bulk;
 use crate::mesh::lattice::Lattice;
 use crate::mesh::meter::Meter;
 use crate::mesh::signs::{BLOCK, NODES, SIDE, for_each_cell, is_mixed};
@@ -21,8 +22,8 @@ pub(super) struct Parts<'a> {
     pub(super) neighbours: Neighbours,
     /// In batches, as they were sampled.
     parts: Vec<Vec<Part>>,
-    positions: Vec<Vec3>,
-    normals: Vec<Vec3>,
+    positions: Bulk<Vec3>,
+    normals: Bulk<Vec3>,
     /// How many times as many vertices there is room made for: for some to be added.
     room: f64,
     /// How many of the vertices are moved to keep clear of nodes.
@@ -32,7 +33,7 @@ pub(super) struct Parts<'a> {
 impl<'a> Parts<'a> {
     /// Some blocks, before the first pass.
     pub(super) fn new(blocks: &'a [[u32; 3]], neighbours: Neighbours, features: Features) -> Parts<'a> {
-        let (parts, positions, normals) = (Vec::new(), Vec::new(), Vec::new());
+        let (parts, positions, normals) = (Vec::new(), Bulk::default(), Bulk::default());
         let room = match features {
             Features::Smooth => 1.1,
             Features::Sharp => 1.8,
@@ -69,8 +70,10 @@ impl<'a> Parts<'a> {
     /// Checks that wherever a face has both signs there is a block on its other side, and
     /// that the two agree. It follows that every cell around a crossed edge is in a block,
     /// and every vertex in the list of its owner.
-    pub(super) fn check_faces(&self) -> Result<(), ExtractError> {
+    pub(super) fn check_faces(&self, run: &Run) -> Result<(), ExtractError> {
+        let meter = Meter::new(run, self.blocks.len());
         (0..self.blocks.len()).into_par_iter().try_for_each(|n| {
+            meter.step()?;
             let block = self.blocks[n];
             let error = |what| Err(ExtractError::Blocks { block, what });
             let signs = &self.part(n).signs;
@@ -94,7 +97,7 @@ impl<'a> Parts<'a> {
     }
 
     /// Positions and normals of all vertices, which are given up.
-    pub(super) fn take_vertices(&mut self) -> [Vec<Vec3>; 2] {
+    pub(super) fn take_vertices(&mut self) -> [Bulk<Vec3>; 2] {
         [std::mem::take(&mut self.positions), std::mem::take(&mut self.normals)]
     }
 
@@ -111,14 +114,17 @@ impl<'a> Parts<'a> {
             Features::Smooth => None,
             Features::Sharp => {
                 let samples = Samples::new(&self, lattice, sampler.limits(), [&positions, &normals]);
-                sharp::find(&samples, sampler, &run.stage(0.0, 0.9))?
+                sharp::find(&samples, sampler, &run.stage(0.0, 0.95))?
             }
         };
         let Some(fans) = fans else {
-            let triangles = self.triangles(run)?;
+            let rest = (features == Features::Sharp).then(|| run.stage(sharp::LOOKED, 1.0));
+            let triangles = self.triangles(rest.as_ref().unwrap_or(run))?.into_vec();
             positions.shrink_to_fit();
             normals.shrink_to_fit();
-            return Ok(Mesh::new(positions, triangles)?.with_normals(normals)?.with_clamped_vertices(self.clamped));
+            return Ok(Mesh::new(positions.into_vec(), triangles)?
+                .with_normals(normals.into_vec())?
+                .with_clamped_vertices(self.clamped));
         };
         let count = positions.len() as u64 + fans.count() as u64;
         if count > u64::from(u32::MAX) {
@@ -126,7 +132,7 @@ impl<'a> Parts<'a> {
         }
         fans.add_vertices(&mut positions, &mut normals);
         let unused = fans.unused().to_vec();
-        let (mut triangles, sides) = fans.triangles(&run.stage(0.9, 1.0))?;
+        let (mut triangles, sides) = fans.triangles(&run.stage(0.95, 1.0))?;
         if !unused.is_empty() {
             let used = used(positions.len(), &unused);
             let number = |n: u32| used[n as usize];
@@ -144,7 +150,9 @@ impl<'a> Parts<'a> {
         }
         positions.shrink_to_fit();
         normals.shrink_to_fit();
-        let mesh = Mesh::new(positions, triangles)?.with_normals(normals)?.with_clamped_vertices(self.clamped);
+        let mesh = Mesh::new(positions.into_vec(), triangles.into_vec())?
+            .with_normals(normals.into_vec())?
+            .with_clamped_vertices(self.clamped);
         Ok(match sides {
             Some(sides) => mesh.with_normals_apart(sides)?,
             None => mesh,
@@ -152,11 +160,11 @@ impl<'a> Parts<'a> {
     }
 
     /// The triangles of all cells by the case table, in the order of the blocks.
-    fn triangles(&self, run: &Run) -> Result<Vec<[u32; 3]>, ExtractError> {
+    fn triangles(&self, run: &Run) -> Result<Bulk<[u32; 3]>, ExtractError> {
         let meter = Meter::new(run, self.blocks.len());
         let counts: Vec<usize> =
             self.parts.iter().map(|batch| batch.iter().map(|part| part.triangles as usize).sum()).collect();
-        let mut triangles = vec![[0; 3]; counts.iter().sum()];
+        let mut triangles = Bulk::from(vec![[0; 3]; counts.iter().sum()]);
         let pieces = split(&mut triangles, counts.iter().copied());
         let of_batch = |corners: &mut Corners, (batch, mut piece): (usize, &mut [[u32; 3]])| {
             for n in batch * BATCH..batch * BATCH + self.parts[batch].len() {

@@ -126,7 +126,7 @@ impl Joined {
 
     fn find(&self, samples: &Samples<'_>, cell: [u32; 3]) -> Option<(usize, usize)> {
         let (block, within) = split_cell(cell);
-        let block = samples.find(block)?;
+        let block = samples.parts.neighbours.find(block)?;
         let number = cell_number(within);
         Some((block, self.upper[block].binary_search_by_key(&number, |&(cell, _)| cell).ok()?))
     }

@@ -15,8 +15,21 @@ const NONE: u32 = u32::MAX;
 /// they are further, as bits 0 to 2; the last comes before the seventh, the diagonal one.
 const STEPS: usize = 6;
 
+/// The first cell of a block: z and y, then x.
+type Key = (u64, u32);
+
+fn key([x, y, z]: [u32; 3]) -> Key {
+    (u64::from(z) << 32 | u64::from(y), x)
+}
+
+fn cell((zy, x): Key) -> [u32; 3] {
+    [x, zy as u32, (zy >> 32) as u32]
+}
+
 /// The neighbours of every block: for each step, that of each block.
 pub(super) struct Neighbours {
+    /// The blocks in the order of their coordinates, with their numbers.
+    sorted: Vec<(Key, u32)>,
     upper: Vec<Vec<u32>>,
     /// Below along each axis.
     lower: Vec<Vec<u32>>,
@@ -32,16 +45,20 @@ impl Neighbours {
         if blocks.len() >= NONE as usize {
             return error(blocks[NONE as usize], "there are more blocks than 32 bits can number");
         }
-        // In the order of z, y, x.
-        let key = |[x, y, z]: [u32; 3]| [z, y, x];
-        let mut sorted: Vec<([u32; 3], u32)> = blocks.iter().map(|&b| key(b)).zip(0..).collect();
+        let mut sorted: Vec<(Key, u32)> = blocks.iter().map(|&block| key(block)).zip(0..).collect();
         sorted.par_sort_unstable();
         if let Some(pair) = sorted.windows(2).find(|pair| pair[0].0 == pair[1].0) {
-            return error(key(pair[0].0), "it is listed twice");
+            return error(cell(pair[0].0), "it is listed twice");
         }
         let (upper, mut lower): (Vec<_>, Vec<_>) = (1..=STEPS).into_par_iter().map(|bits| sweep(&sorted, bits)).unzip();
         lower.retain(|list| !list.is_empty());
-        Ok(Neighbours { upper, lower })
+        Ok(Neighbours { sorted, upper, lower })
+    }
+
+    /// The number of the block with a first cell.
+    pub(super) fn find(&self, block: [u32; 3]) -> Option<usize> {
+        let at = self.sorted.binary_search_by_key(&key(block), |&(key, _)| key).ok()?;
+        Some(self.sorted[at].1 as usize)
     }
 
     /// The neighbour of block `n` that is one block further along the axes in `bits`, 1 to 6.
@@ -57,13 +74,14 @@ impl Neighbours {
 
 /// The neighbour of every block that is one block further along the axes in `bits`; and, if that is a
 /// single axis, the neighbour below it there. The blocks are given in order, with their numbers.
-fn sweep(sorted: &[([u32; 3], u32)], bits: usize) -> (Vec<u32>, Vec<u32>) {
+fn sweep(sorted: &[(Key, u32)], bits: usize) -> (Vec<u32>, Vec<u32>) {
     let by = |axis: usize| (bits >> axis & 1) as u32 * BLOCK as u32;
     let mut upper = vec![NONE; sorted.len()];
     let mut lower = vec![NONE; if bits.is_power_of_two() { sorted.len() } else { 0 }];
     let mut ahead = sorted.iter().peekable();
-    for &([z, y, x], number) in sorted {
-        let step = || Some([z.checked_add(by(2))?, y.checked_add(by(1))?, x.checked_add(by(0))?]);
+    for &(first, number) in sorted {
+        let [x, y, z] = cell(first);
+        let step = || Some(key([x.checked_add(by(0))?, y.checked_add(by(1))?, z.checked_add(by(2))?]));
         let Some(wanted) = step() else { continue };
         while ahead.next_if(|(key, _)| *key < wanted).is_some() {}
         if let Some(&&(_, other)) = ahead.peek().filter(|(key, _)| *key == wanted) {

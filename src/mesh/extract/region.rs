@@ -36,6 +36,7 @@ use super::span::{Span, offset};
 use super::special::Special;
 use crate::mesh::feature::{CLOSE, Candidate, Segment, settle};
 use crate::mesh::loops::{CellLoop, LONGEST};
+use crate::mesh::meter::Meter;
 use crate::mesh::qef::Planes;
 use crate::run::{Cancelled, Run};
 
@@ -78,6 +79,8 @@ pub(super) fn regions(
     joined: &Joined,
     run: &Run,
 ) -> Result<Vec<Region>, Cancelled> {
+    let stages = [Stage::Slab(0), Stage::Slab(1), Stage::Box];
+    let steps = Meter::new(run, stages.len() + ROUNDS);
     let blocks = samples.blocks().len();
     let mut known = Known {
         samples,
@@ -98,9 +101,9 @@ pub(super) fn regions(
         }
     }
     // Regions that stand alone come first: they are smaller than those that others are merged into.
-    for stage in [Stage::Slab(0), Stage::Slab(1), Stage::Box] {
+    for stage in stages {
         let mut wishes = Vec::new();
-        run.check()?;
+        steps.step()?;
         all.retain(|asker| known.own_taken(asker.block, asker.span.low).is_none());
         for asker in &all {
             match stage {
@@ -117,7 +120,7 @@ pub(super) fn regions(
     // Then those that creases leave through empty cells.
     let mut asked = 0;
     for round in 0..ROUNDS {
-        run.check()?;
+        steps.step()?;
         let mut wishes = Vec::new();
         for block in (0..blocks).filter(|_| round == 0) {
             let is_free = |candidate: &&Candidate| known.own_taken(block, candidate.cell).is_none();

@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use glam::{Vec3, Vec3A};
-use rayon::prelude::*;
 
 use super::join::Parts;
 use crate::bounds::Bounds;
@@ -19,8 +18,6 @@ pub(super) struct Samples<'a> {
     limits: [Vec3; 2],
     positions: &'a [Vec3],
     normals: &'a [Vec3],
-    /// The blocks by their first cells, z first, ascending; with their numbers.
-    sorted: Vec<((u64, u32), u32)>,
 }
 
 /// The block of a cell, by its first cell, and where the cell is in it.
@@ -45,12 +42,6 @@ pub(super) fn cell_of(block: [u32; 3], number: u16) -> [u32; 3] {
     [block[0] + n % side, block[1] + n / side % side, block[2] + n / (side * side)]
 }
 
-/// The order of blocks: z first, then y, then x.
-#[inline]
-pub(super) fn key([x, y, z]: [u32; 3]) -> (u64, u32) {
-    (u64::from(z) << 32 | u64::from(y), x)
-}
-
 impl<'a> Samples<'a> {
     pub(super) fn new(
         parts: &'a Parts<'a>,
@@ -58,20 +49,12 @@ impl<'a> Samples<'a> {
         limits: Bounds,
         [positions, normals]: [&'a [Vec3]; 2],
     ) -> Samples<'a> {
-        let mut sorted: Vec<((u64, u32), u32)> = parts.blocks.iter().map(|&block| key(block)).zip(0..).collect();
-        sorted.par_sort_unstable();
         let limits = [limits.min.as_vec3(), limits.max.as_vec3()];
-        Samples { parts, lattice, limits, positions, normals, sorted }
+        Samples { parts, lattice, limits, positions, normals }
     }
 
     pub(super) fn blocks(&self) -> &[[u32; 3]] {
         self.parts.blocks
-    }
-
-    /// The number of the block with a first cell.
-    pub(super) fn find(&self, block: [u32; 3]) -> Option<usize> {
-        let at = self.sorted.binary_search_by_key(&key(block), |&(key, _)| key).ok()?;
-        Some(self.sorted[at].1 as usize)
     }
 
     /// The number of the block with a first cell, quickly if it is next to block `near`.
@@ -91,7 +74,7 @@ impl<'a> Samples<'a> {
                 }
             }
         }
-        self.find(block)
+        self.parts.neighbours.find(block)
     }
 
     /// The case of a cell of the lattice, quickly if it is in block `near` or next to it; 0 where no block is.
@@ -103,7 +86,7 @@ impl<'a> Samples<'a> {
     /// The case of a cell of the lattice; 0 where no block is.
     pub(super) fn case(&self, cell: [u32; 3]) -> u8 {
         let (block, within) = split_cell(cell);
-        self.find(block).map_or(0, |block| self.parts.part(block).signs.case(within))
+        self.parts.neighbours.find(block).map_or(0, |block| self.parts.part(block).signs.case(within))
     }
 
     /// The vertex on an edge, which is crossed, of a cell of the lattice; found quickly if it is in block `near` or next

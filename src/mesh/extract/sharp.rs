@@ -47,9 +47,13 @@ use super::special::{Plain, Special, list_of};
 use super::trend::even_blocks;
 use super::{ExtractError, Sampler};
 use crate::geom::Apart;
+use crate::mesh::bulk::Bulk;
 use crate::mesh::feature::Segment;
 use crate::mesh::meter::Meter;
 use crate::run::{Cancelled, Run};
+
+/// How much of the work is done when it is known which blocks are even, more or less.
+pub(super) const LOOKED: f64 = 0.15;
 
 /// Fans that a thread looks at before it asks whether to go on.
 pub(super) const AT_ONCE: usize = 512;
@@ -105,7 +109,10 @@ pub(super) struct Fans {
 /// evenly everywhere.
 pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) -> Result<Option<Fans>, ExtractError> {
     // Blocks whose normals change evenly are settled as a whole.
-    let even = even_blocks(samples, &run.stage(0.0, 0.1))?;
+    // How long each stage takes, more or less.
+    let rest = run.stage(LOOKED, 1.0);
+    let [to_find, to_merge, to_fan] = rest.stages([7.0, 2.0, 1.0]);
+    let even = even_blocks(samples, &run.stage(0.0, LOOKED))?;
     if even.iter().all(|&is_even| is_even) {
         return Ok(None);
     }
@@ -114,9 +121,9 @@ pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) ->
         false => samples.parts.part(n).joins.clone(),
     });
     let joined = Joined::new(samples, proposed.collect());
-    let special = Special::find(samples, sampler, (&even, &joined), &run.stage(0.1, 0.8))?;
-    let regions = regions(samples, &special, &joined, run)?;
-    Ok(Some(Fans::new(samples, special, regions, run)?))
+    let special = Special::find(samples, sampler, (&even, &joined), &to_find)?;
+    let regions = regions(samples, &special, &joined, &to_merge)?;
+    Ok(Some(Fans::new(samples, special, regions, &to_fan)?))
 }
 
 impl Fans {
@@ -144,8 +151,9 @@ impl Fans {
         all.segments.push(in_regions);
         taken.sort_unstable();
         let mut taken = &taken[..];
+        let meter = Meter::new(run, samples.blocks().len());
         for block in 0..samples.blocks().len() {
-            run.check()?;
+            meter.step()?;
             let (own, rest) = taken.split_at(taken.partition_point(|&(other, ..)| other == block));
             taken = rest;
             let start = all.cells.len();
@@ -229,7 +237,7 @@ impl Fans {
     }
 
     /// All triangles, and what tells the normals of those of fans, if there are any.
-    pub(super) fn triangles(mut self, run: &Run) -> Result<(Vec<[u32; 3]>, Option<Sides>), Cancelled> {
+    pub(super) fn triangles(mut self, run: &Run) -> Result<(Bulk<[u32; 3]>, Option<Sides>), Cancelled> {
         let mut triangles = std::mem::take(&mut self.plain.triangles);
         let (start, count) = (triangles.len(), self.counts.iter().sum::<usize>());
         triangles.reserve_exact(count);

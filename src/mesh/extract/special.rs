@@ -14,6 +14,7 @@ use super::joined::Joined;
 use super::nearby::{Nearby, Vertex};
 use super::samples::{Samples, cell_number, cell_of};
 use super::{ExtractError, Sampler};
+use crate::mesh::bulk::Bulk;
 use crate::mesh::feature::{Candidate, Refiner, Segment};
 use crate::mesh::loops::{CellLoop, MOST};
 use crate::mesh::meter::Meter;
@@ -67,9 +68,9 @@ struct OfBlock {
 /// The triangles of cells without fans.
 #[derive(Clone, Default)]
 pub(super) struct Plain {
-    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) triangles: Bulk<[u32; 3]>,
     /// Positions and normals of vertices in the middle of smooth cells. They follow those on edges.
-    pub(super) tops: [Vec<Vec3>; 2],
+    pub(super) tops: [Bulk<Vec3>; 2],
     /// The first triangle around each of them that is to be numbered anew if others come before it, and how many.
     around: Vec<(u32, u32)>,
 }
@@ -311,7 +312,7 @@ impl Plain {
     /// The memory, with nothing in it.
     fn cleared(mut self) -> Plain {
         self.triangles.clear();
-        self.tops.iter_mut().for_each(Vec::clear);
+        self.tops.iter_mut().for_each(|tops| tops.clear());
         self.around.clear();
         self
     }
