@@ -8,13 +8,15 @@
 //! without normals.
 //!
 //! Before that come extraction alone, from arrays of 257³ samples; scale: a sphere at 1024³ and
-//! 2048³, a ball of gyroid at 512³, unions of 100 and of 10 000 superellipsoids at 256³; and both modes
-//! on smooth solids.
+//! 2048³, a ball of gyroid at 512³, unions of 100 and of 10 000 superellipsoids at 256³; how soon a
+//! cancelled run returns; and both modes on smooth solids.
 //!
-//! Words after `--` choose: `models`, `arrays`, `scale`, `smooth`; names of models, cells along the side
+//! Words after `--` choose: `models`, `arrays`, `scale`, `cancel`, `smooth`; names of models, cells along the side
 //! (64, 128, 256), `one` or `two` threads; `fidget` for fidget on all models, also where it takes
 //! minutes, `alone` for ours without fidget.
 
+#[path = "mesh/cancel.rs"]
+mod cancel;
 #[path = "evaluate/lean.rs"]
 mod lean;
 #[path = "mesh/measure.rs"]
@@ -85,13 +87,16 @@ fn main() {
     const NAMES: [&str; 6] = ["M1", "M2", "M3", "M4", "M5", "M6"];
     const CELLS: [&str; 3] = ["64", "128", "256"];
     const THREADS: [&str; 2] = ["one", "two"];
-    const PARTS: [&str; 4] = ["models", "arrays", "scale", "smooth"];
+    const PARTS: [&str; 5] = ["models", "arrays", "scale", "cancel", "smooth"];
     if chosen.takes("arrays", &PARTS) {
         volume::rows();
     }
     for threads in (1..=2).filter(|&threads| chosen.takes(THREADS[threads - 1], &THREADS)) {
         if chosen.takes("scale", &PARTS) {
             scale::rows(threads);
+        }
+        if chosen.takes("cancel", &PARTS) {
+            cancel::rows(threads);
         }
         if chosen.takes("smooth", &PARTS) {
             smooth::rows(threads);

@@ -94,7 +94,7 @@ impl Solid {
             // How long each stage takes, more or less.
             let if_done = |is_done: bool, time: f64| if is_done { time } else { 0.0 };
             let counts = settings.thin != ThinFeatures::Ignore;
-            let times = [0.1, if_done(counts, 7.0), 0.9, if_done(owned, 0.8), if_done(painted, 0.2)];
+            let times = [0.15, if_done(counts, 7.0), 0.85, if_done(owned, 0.8), if_done(painted, 0.2)];
             let [to_find, to_count, to_extract, to_own, to_paint] = run.stages(times);
             let mut lattice = Lattice::new(&bounds, settings.cell)?;
             let mut blocks = Blocks::find(&programs.surface, &lattice, &to_find)?;

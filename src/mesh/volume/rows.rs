@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use super::bits::{CellRow, Word, pack};
 use super::{Volume, VolumeError, VolumeSettings};
 use crate::geom::Mesh;
+use crate::mesh::bulk::Bulk;
 use crate::mesh::meter::Meter;
 use crate::mesh::table::{CaseTable, EDGE_CORNERS};
 use crate::run::{Cancelled, Run};
@@ -155,9 +156,9 @@ impl<'a> Rows<'a> {
         if all.vertices > u64::from(u32::MAX) {
             return Err(VolumeError::TooLarge { vertices: all.vertices });
         }
-        let mut positions = vec![Vec3::ZERO; all.vertices as usize];
-        let mut normals = vec![Vec3::ZERO; if self.settings.normals { all.vertices as usize } else { 0 }];
-        let mut triangles = vec![[0; 3]; all.triangles as usize];
+        let mut positions = Bulk::from(vec![Vec3::ZERO; all.vertices as usize]);
+        let mut normals = Bulk::from(vec![Vec3::ZERO; if self.settings.normals { all.vertices as usize } else { 0 }]);
+        let mut triangles = Bulk::from(vec![[0; 3]; all.triangles as usize]);
         let mut pieces = Vec::with_capacity(layers);
         let (mut places, mut directions, mut corners) = (&mut positions[..], &mut normals[..], &mut triangles[..]);
         for count in &counts {
@@ -175,8 +176,8 @@ impl<'a> Rows<'a> {
             self.triangles(k, starts, piece.triangles);
             Ok::<(), Cancelled>(())
         })?;
-        let mesh = Mesh::new(positions, triangles)?;
-        Ok(if self.settings.normals { mesh.with_normals(normals)? } else { mesh })
+        let mesh = Mesh::new(positions.into_vec(), triangles.into_vec())?;
+        Ok(if self.settings.normals { mesh.with_normals(normals.into_vec())? } else { mesh })
     }
 }
 
