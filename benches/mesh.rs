@@ -2,7 +2,7 @@
 //!
 //! `cargo bench --bench mesh` prints, on one thread and on two: seconds (of the processor on one
 //! thread, of the clock on two; the least of several runs), triangles, millions of triangles a
-//! second, the peak of memory during the run, and how many times faster than fidget's VM on the
+//! second, the peak of memory during a run in a process of its own, and how many times faster than fidget's VM on the
 //! same model, box and number of cells, in the same run. Ours has welded indices and normals, once
 //! `Smooth` (marching cubes), once `Sharp`, and then both in turn; fidget's is manifold dual contouring
 //! without normals.
@@ -34,7 +34,7 @@ mod volume;
 
 use rvachev::{CellSize, Features, Mesh, MeshSettings, Run};
 
-use measure::{Cost, in_turn, measured};
+use measure::{Cost, MEMORY, in_turn, measured, memory_apart, print_memory};
 use models::Model;
 
 /// What the words on the command line choose.
@@ -82,8 +82,32 @@ fn is_slow(name: &str, cells: u32) -> bool {
     }
 }
 
+/// Prints the memory of a job, given as [`memory_apart`] has it.
+fn print_memory_of([who, name, cells, threads]: [&str; 4]) {
+    let (cells, threads) = (cells.parse().expect("a number"), threads.parse().expect("a number"));
+    if who == scale::SCALE {
+        return print_memory(threads, scale::job(name, cells, threads));
+    }
+    let model = models::all().into_iter().find(|model| model.name == name).expect("a model");
+    let [smooth, sharp] = ours(&model, cells, threads);
+    match who {
+        SMOOTH => print_memory(threads, smooth),
+        SHARP => print_memory(threads, sharp),
+        _ => print_memory(threads, peer::fidget(&model, cells.ilog2(), threads)),
+    }
+}
+
+/// Whose rows there are.
+const SMOOTH: &str = "smooth";
+const SHARP: &str = "sharp";
+const FIDGET: &str = "fidget";
+
 fn main() {
-    let chosen = Chosen { words: std::env::args().skip(1).collect() };
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    if let [MEMORY, who, name, cells, threads] = words.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        return print_memory_of([who, name, cells, threads]);
+    }
+    let chosen = Chosen { words };
     const NAMES: [&str; 6] = ["M1", "M2", "M3", "M4", "M5", "M6"];
     const CELLS: [&str; 3] = ["64", "128", "256"];
     const THREADS: [&str; 2] = ["one", "two"];
@@ -110,21 +134,28 @@ fn main() {
             let cells: u32 = cells.parse().expect("a number");
             for threads in (1..=2).filter(|&threads| chosen.takes(THREADS[threads - 1], &THREADS)) {
                 let mut jobs = ours(&model, cells, threads);
+                let [cells_word, threads_word] = [cells as usize, threads].map(|n| n.to_string());
+                let memory = |who| memory_apart([who, model.name, &cells_word, &threads_word]);
                 let costs = jobs.each_mut().map(|job| {
-                    let (cost, mesh) = measured(threads, job);
-                    (cost, mesh.triangles().len())
+                    let (seconds, mesh) = measured(threads, job);
+                    (seconds, mesh.triangles().len())
                 });
                 let sharp_over_smooth = in_turn(threads, jobs).ratio;
                 // Last, so that no memory of its is used again.
                 let skipped = chosen.has("alone") || is_slow(model.name, cells) && !chosen.has("fidget");
-                let other = (!skipped).then(|| peer::fidget(&model, cells.ilog2(), threads));
-                for (who, (cost, triangles)) in ["smooth", "sharp"].into_iter().zip(costs) {
-                    let ratio = other.map(|(other, _)| other.seconds / cost.seconds);
+                let other = (!skipped).then(|| {
+                    let (seconds, (_, mesh)) = measured(threads, peer::fidget(&model, cells.ilog2(), threads));
+                    (seconds, mesh.triangles.len())
+                });
+                for (who, (seconds, triangles)) in [SMOOTH, SHARP].into_iter().zip(costs) {
+                    let ratio = other.map(|(other, _)| other / seconds);
+                    let cost = Cost { seconds, megabytes: memory(who) };
                     row(model.name, cells, threads, who, cost, triangles, ratio);
                 }
                 println!("{:24}sharp over smooth, in turn: {sharp_over_smooth:.2}", "");
-                if let Some((cost, triangles)) = other {
-                    row(model.name, cells, threads, "fidget", cost, triangles, None);
+                if let Some((seconds, triangles)) = other {
+                    let cost = Cost { seconds, megabytes: memory(FIDGET) };
+                    row(model.name, cells, threads, FIDGET, cost, triangles, None);
                 }
             }
         }

@@ -1,44 +1,38 @@
 //! Time, threads and memory of a job.
 
-use std::fs;
+use std::process::Command;
 use std::time::Instant;
+use std::{env, fs};
 
 use cpu_time::ProcessTime;
 
 /// What a job took.
 #[derive(Clone, Copy)]
 pub struct Cost {
-    /// The least seconds of all runs: of the processor on one thread, of the clock on more.
+    /// Of the processor on one thread, of the clock on more.
     pub seconds: f64,
-    /// The most memory in use during a run beyond what was before, in MB; NaN where the system
-    /// does not tell.
+    /// The most memory in use during a run beyond what was before, in MB, in a process that does nothing else; NaN
+    /// where the system does not tell.
     pub megabytes: f64,
 }
 
-/// Runs a job on a pool of some threads several times, more often if it is short, and gives its cost
-/// and its result. The clock stops when the result is there: giving back its memory is not counted.
-pub fn measured<T: Send>(threads: usize, mut job: impl FnMut() -> T + Send) -> (Cost, T) {
+/// Runs a job on a pool of some threads several times, more often if it is short, and gives the least seconds of all
+/// runs, as [`Cost`] has them, and its result. The clock stops when the result is there: giving back its memory is not
+/// counted.
+pub fn measured<T: Send>(threads: usize, mut job: impl FnMut() -> T + Send) -> (f64, T) {
     /// Seconds to spend at least, and runs at least and at most.
     const TURN: f64 = 2.0;
     const RUNS: [usize; 2] = [3, 15];
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
     pool.install(|| {
-        let before = memory("VmRSS:");
-        // Starts the peak afresh.
-        let _ = fs::write("/proc/self/clear_refs", "5");
-        let (mut seconds, mut spent) = (f64::INFINITY, 0.0);
-        let mut megabytes = f64::NAN;
-        let mut runs = 0;
+        let (mut seconds, mut spent, mut runs) = (f64::INFINITY, 0.0, 0);
         loop {
             let (took, result) = timed(threads, &mut job);
             seconds = seconds.min(took);
             spent += took;
             runs += 1;
-            if runs == 1 {
-                megabytes = memory("VmHWM:") - before;
-            }
             if spent > TURN && runs >= RUNS[0] || runs == RUNS[1] {
-                return (Cost { seconds, megabytes }, result);
+                return (seconds, result);
             }
         }
     })
@@ -82,6 +76,27 @@ fn timed<T>(threads: usize, job: &mut impl FnMut() -> T) -> (f64, T) {
     let result = job();
     let (clock, processor) = (clock.elapsed().as_secs_f64(), processor.elapsed().as_secs_f64());
     (if threads == 1 { processor } else { clock }, result)
+}
+
+/// The word that asks a process for the memory of a single job, which the words after it name.
+pub const MEMORY: &str = "memory";
+
+/// The most memory in use during a job beyond what was before, in MB, as a new process tells: what others have given
+/// back is not there to be used again.
+pub fn memory_apart(words: [&str; 4]) -> f64 {
+    let told = env::current_exe().and_then(|this| Command::new(this).arg(MEMORY).args(words).output());
+    let text = told.map(|output| String::from_utf8_lossy(&output.stdout).into_owned()).unwrap_or_default();
+    text.trim().parse().unwrap_or(f64::NAN)
+}
+
+/// Runs a job once and prints the memory that it takes, for [`memory_apart`].
+pub fn print_memory<T: Send>(threads: usize, mut job: impl FnMut() -> T + Send) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+    let before = memory("VmRSS:");
+    // Starts the peak afresh.
+    let _ = fs::write("/proc/self/clear_refs", "5");
+    let _result = pool.install(&mut job);
+    println!("{}", memory("VmHWM:") - before);
 }
 
 /// A line of the process's status, in MB.

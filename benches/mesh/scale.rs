@@ -1,23 +1,36 @@
 //! Fine cells, and many parts.
 
 use glam::{DAffine3, DQuat, DVec3};
-use rvachev::{CellSize, Features, MeshSettings, MinimalSurface, RFunction, Run, SheetLattice, Solid};
+use rvachev::{CellSize, Features, Mesh, MeshSettings, MinimalSurface, RFunction, Run, SheetLattice, Solid};
 
-use crate::measure::{Cost, measured};
+use crate::measure::{Cost, measured, memory_apart};
 
-/// Meshes and prints a row; gives the cost and the number of vertices.
-fn row(name: &str, solid: &Solid, cells: u32, threads: usize) -> (Cost, usize) {
+/// What the memory of a row is asked for by, beside its name.
+pub const SCALE: &str = "scale";
+
+/// What meshes the solid of a row.
+pub fn job(name: &str, cells: u32, threads: usize) -> impl FnMut() -> Mesh + Send {
+    let solid = match name.strip_prefix("union of ").and_then(|count| count.parse().ok()) {
+        Some(count) => crowd(count),
+        None if name == "sphere" => Solid::sphere(1.0),
+        None => Solid::new(SheetLattice { surface: MinimalSurface::Gyroid, cell: 0.25, thickness: 0.03 })
+            .intersection(Solid::sphere(1.0), RFunction::MIN_MAX),
+    };
     let settings =
         MeshSettings { cell: CellSize::LongestSide(cells), features: Features::Smooth, ..MeshSettings::default() };
     let run = Run { threads, ..Run::default() };
-    let (cost, mesh) = measured(threads, || solid.mesh_with(&settings, &run).expect("a mesh"));
+    move || solid.mesh_with(&settings, &run).expect("a mesh")
+}
+
+/// Meshes and prints a row; gives the cost and the number of vertices.
+fn row(name: &str, cells: u32, threads: usize) -> (Cost, usize) {
+    let (seconds, mesh) = measured(threads, job(name, cells, threads));
     let (vertices, triangles) = (mesh.positions().len(), mesh.triangles().len());
-    let rate = triangles as f64 / cost.seconds * 1e-6;
-    println!(
-        "{name} {cells}³ {threads} {:9.4} s {triangles:9} {rate:7.2} Mtri/s {:7.1} MB",
-        cost.seconds, cost.megabytes
-    );
-    (cost, vertices)
+    drop(mesh);
+    let megabytes = memory_apart([SCALE, name, &cells.to_string(), &threads.to_string()]);
+    let rate = triangles as f64 / seconds * 1e-6;
+    println!("{name} {cells}³ {threads} {seconds:9.4} s {triangles:9} {rate:7.2} Mtri/s {megabytes:7.1} MB");
+    (Cost { seconds, megabytes }, vertices)
 }
 
 /// Random superellipsoids, of a size such that their number fills a like part of the box.
@@ -40,19 +53,16 @@ fn crowd(count: usize) -> Solid {
 
 /// Prints the rows.
 pub fn rows(threads: usize) {
-    let sphere = Solid::sphere(1.0);
-    let (fine, _) = row("sphere", &sphere, 1024, threads);
-    let (finer, _) = row("sphere", &sphere, 2048, threads);
+    let (fine, _) = row("sphere", 1024, threads);
+    let (finer, _) = row("sphere", 2048, threads);
     println!(
         "       2048³ over 1024³: {:.2} times the time, {:.2} times the memory",
         finer.seconds / fine.seconds,
         finer.megabytes / fine.megabytes
     );
-    let gyroid = Solid::new(SheetLattice { surface: MinimalSurface::Gyroid, cell: 0.25, thickness: 0.03 })
-        .intersection(Solid::sphere(1.0), RFunction::MIN_MAX);
-    row("gyroid ball", &gyroid, 512, threads);
+    row("gyroid ball", 512, threads);
     let per_vertex = |(cost, vertices): (Cost, usize)| cost.seconds / vertices as f64;
-    let few = per_vertex(row("union of 100", &crowd(100), 256, threads));
-    let many = per_vertex(row("union of 10000", &crowd(10_000), 256, threads));
+    let few = per_vertex(row("union of 100", 256, threads));
+    let many = per_vertex(row("union of 10000", 256, threads));
     println!("       10000 over 100: {:.2} times the time a vertex", many / few);
 }

@@ -29,14 +29,14 @@ pub fn rows() {
             for normals in [false, true] {
                 let settings = VolumeSettings { normals, ..VolumeSettings::default() };
                 let run = Run { threads, ..Run::default() };
-                let (cost, mesh) = measured(threads, || volume.mesh_with(&settings, &run).expect("a mesh"));
+                let (seconds, mesh) = measured(threads, || volume.mesh_with(&settings, &run).expect("a mesh"));
                 let triangles = mesh.triangles().len();
-                let voxels = samples.len() as f64 / cost.seconds * 1e-6;
-                let rate = triangles as f64 / cost.seconds * 1e-6;
+                let voxels = samples.len() as f64 / seconds * 1e-6;
+                let rate = triangles as f64 / seconds * 1e-6;
                 let with = if normals { "with normals" } else { "" };
                 println!(
                     "{name} {SIDE}³ {threads} {:8.4} s {triangles:9} {rate:7.1} Mtri/s {voxels:7.0} Mvoxel/s {with}",
-                    cost.seconds
+                    seconds
                 );
             }
         }
