@@ -142,7 +142,10 @@ pub(crate) enum ExtractError {
         /// Number of vertices.
         count: u64,
     },
-    /// The list of blocks is at odds with the samples: a defect of the caller.
+    /// Signs do not go on from block to block: what told the blocks and their samples is at odds. There is at least one.
+    #[error("internal error: block at cell {:?}: {}", .0[0].block, .0[0].what)]
+    Rifts(Vec<Rift>),
+    /// The list of blocks is no such list: a defect of the caller.
     #[error("internal error: block at cell {block:?}: {what}")]
     Blocks {
         /// The first cell of the block.
@@ -153,6 +156,17 @@ pub(crate) enum ExtractError {
     /// The result is not a mesh: a defect of this module or of the lattice.
     #[error("internal error: {0}")]
     Mesh(#[from] MeshError),
+}
+
+/// A face of a block beyond which signs do not go on as they are in it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Rift {
+    /// The first cell of the block.
+    pub block: [u32; 3],
+    /// That of the block beyond, unless it is below the lattice.
+    pub beyond: Option<[u32; 3]>,
+    /// What is wrong.
+    pub what: &'static str,
 }
 
 /// Extracts the surface from the given blocks, each named by its first cell, whose coordinates

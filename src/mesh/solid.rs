@@ -1,18 +1,19 @@
 //! Meshing a solid: `solid.mesh(..)`.
 
+use std::collections::HashMap;
 use std::sync::OnceLock;
 
 use glam::{DVec3, Vec3, Vec3A};
 use rayon::prelude::*;
 
 use super::deciders::Deciders;
-use super::extract::{BATCH, ExtractError, Root, Sampler, extract};
+use super::extract::{BATCH, ExtractError, Rift, Root, Sampler, extract};
 use super::feature::Slope;
 use super::lattice::{CellSize, Lattice, LatticeError};
 use super::paint::{corner_colors, each_triangle};
 use super::resolve::unresolved_cells;
 use super::settings::{AtBounds, Features, MeshSettings, ThinFeatures};
-use super::signs::{BLOCK, EdgeRef, NODES, SIDE};
+use super::signs::{BLOCK, EdgeRef, NODES, SIDE, Signs, is_mixed};
 use crate::eval::{Evaluator, Gradients, Program, Tape, compiled};
 use crate::geom::Mesh;
 use crate::space::{Grid, surface_blocks};
@@ -113,16 +114,12 @@ impl Solid {
                     blocks = Blocks::find(&programs.surface, &lattice, &to_find)?;
                 }
             }
-            let mut sampler = SolidSampler::new(&lattice, &blocks.cells, blocks.programs, bounds);
-            if settings.features == Features::Sharp {
-                sampler.keep_tapes();
-            }
-            let mut mesh = extract(&sampler, &lattice, &blocks.cells, settings.features, &to_extract)?;
+            let mut mesh = blocks.extract(&programs.surface, (&lattice, bounds), settings.features, &to_extract)?;
             if let (AtBounds::Refuse, Some(given)) = (settings.at_bounds, &settings.bounds) {
                 self.refuse_caps(&mesh, given, lattice.step())?;
             }
             if owned {
-                let owners = sampler.owners(&mesh, &programs.surface, &to_own)?;
+                let owners = blocks.owners(&lattice, &mesh, &programs.surface, &to_own)?;
                 if painted {
                     let colors = corner_colors(&mesh, &palette, &owners, Paint::default(), &to_paint)?;
                     mesh = mesh.with_corner_colors(colors).map_err(ExtractError::from)?;
@@ -169,9 +166,11 @@ impl Solid {
 
 /// The blocks that the surface may cross.
 struct Blocks {
-    /// Their first cells; z first, ascending.
+    /// Their first cells.
     cells: Vec<[u32; 3]>,
     programs: Programs,
+    /// Those sampled by the whole program in double precision, if there are any.
+    exact: Vec<bool>,
 }
 
 /// The programs of blocks: of each its number, and all.
@@ -201,7 +200,97 @@ impl Blocks {
         let found = surface_blocks(program, &grid, 0.0, run)?;
         let cells = found.blocks.iter().map(|block| block.index.map(|i| i * BLOCK as u32)).collect();
         let numbers = found.blocks.iter().map(|block| block.program).collect();
-        Ok(Blocks { cells, programs: Programs { numbers, all: found.programs } })
+        Ok(Blocks { cells, programs: Programs { numbers, all: found.programs }, exact: Vec::new() })
+    }
+
+    /// The surface in the blocks, and in others where it goes on.
+    fn extract(
+        &mut self,
+        whole: &Program,
+        (lattice, limits): (&Lattice, Bounds),
+        features: Features,
+        run: &Run,
+    ) -> Result<Mesh, ExtractError> {
+        loop {
+            let mut sampler = SolidSampler::new(lattice, self, limits);
+            if features == Features::Sharp {
+                sampler.keep_tapes();
+            }
+            match extract(&sampler, lattice, &self.cells, features, run) {
+                Err(ExtractError::Rifts(rifts)) if self.mend(&rifts, whole, (lattice, &limits), run)? => {}
+                result => return result,
+            }
+        }
+    }
+
+    /// Makes blocks exact on both sides of rifts; and so, wherever the surface goes on from those in a block that is not
+    /// among them, that one. Whether there was anything to be done.
+    ///
+    /// Samples of a field that jumps depend on rounding, and ranges that are told of it, or that users tell of theirs, may
+    /// be wrong. All exact blocks have the same value at a node, so in the end all rifts are mended.
+    fn mend(
+        &mut self,
+        rifts: &[Rift],
+        whole: &Program,
+        (lattice, limits): (&Lattice, &Bounds),
+        run: &Run,
+    ) -> Result<bool, Cancelled> {
+        self.exact.resize(self.cells.len(), false);
+        let number = self.programs.all.len() as u32;
+        self.programs.all.push(whole.clone());
+        let mut known: HashMap<[u32; 3], usize> = self.cells.iter().copied().zip(0..).collect();
+        let is_there = |block: &[u32; 3]| (0..3).all(|axis| block[axis] < lattice.cells()[axis]);
+        let mut open: Vec<[u32; 3]> =
+            rifts.iter().flat_map(|rift| [Some(rift.block), rift.beyond.filter(is_there)]).flatten().collect();
+        let (mut values, mut changed) = ([0.0; NODES], false);
+        while let Some(block) = open.pop() {
+            run.check()?;
+            let n = *known.entry(block).or_insert_with(|| {
+                self.cells.push(block);
+                self.programs.numbers.push(number);
+                self.exact.push(false);
+                self.cells.len() - 1
+            });
+            if self.exact[n] {
+                continue;
+            }
+            (self.exact[n], self.programs.numbers[n], changed) = (true, number, true);
+            exact_nodes(whole, (lattice, limits), block, &mut values);
+            let signs = Signs::new(&values);
+            for (axis, up) in [0, 1, 2].into_iter().flat_map(|axis| [(axis, false), (axis, true)]) {
+                let mut beyond = block;
+                beyond[axis] = beyond[axis].wrapping_add_signed(if up { BLOCK as i32 } else { -(BLOCK as i32) });
+                if is_mixed(&signs.face(axis, up)) && is_there(&beyond) && !known.contains_key(&beyond) {
+                    open.push(beyond);
+                }
+            }
+        }
+        Ok(changed)
+    }
+
+    /// The leaves that decide at the middles of the triangles, by the programs of their blocks;
+    /// `whole` is that of the solid.
+    fn owners(&self, lattice: &Lattice, mesh: &Mesh, whole: &Program, run: &Run) -> Result<Vec<u32>, Cancelled> {
+        let mut places: Vec<([u32; 3], usize)> = self.cells.iter().copied().zip(0..).collect();
+        places.par_sort_unstable();
+        each_triangle(mesh, run, |_, triangle| {
+            let middle = mesh.corners(triangle).into_iter().sum::<DVec3>() / 3.0;
+            let cell = (middle - lattice.origin()) / lattice.step();
+            let block = cell.to_array().map(|x| x.max(0.0) as u32 / BLOCK as u32 * BLOCK as u32);
+            // A triangle of several blocks may have its middle in one that holds no vertex.
+            let nth = places.binary_search_by_key(&block, |&(block, _)| block).ok();
+            nth.map_or(whole, |nth| self.programs.of(places[nth].1)).deciding_leaf(middle)
+        })
+    }
+}
+
+/// The values at the nodes of a block in double precision; beyond the limits of the solid they are outside.
+fn exact_nodes(program: &Program, (lattice, limits): (&Lattice, &Bounds), block: [u32; 3], out: &mut [f32; NODES]) {
+    for (n, value) in out.iter_mut().enumerate() {
+        let at = |axis: usize, stride: usize| block[axis] + (n / stride % SIDE) as u32;
+        let p = lattice.node(at(0, 1), at(1, SIDE), at(2, SIDE * SIDE));
+        let exact = if limits.contains(p) { program.value(p) } else { -lattice.step() };
+        *value = if exact > 0.0 { (exact as f32).max(f32::MIN_POSITIVE) } else { (exact as f32).min(0.0) };
     }
 }
 
@@ -211,7 +300,9 @@ impl Blocks {
 struct SolidSampler<'a> {
     lattice: &'a Lattice,
     blocks: &'a [[u32; 3]],
-    programs: Programs,
+    programs: &'a Programs,
+    /// Which of the blocks are sampled in double precision, by their programs.
+    exact: &'a [bool],
     /// The number of the first block of each block's group.
     groups: Vec<u32>,
     /// The box that the surface is in.
@@ -244,7 +335,8 @@ struct Scratch {
 }
 
 impl SolidSampler<'_> {
-    fn new<'a>(lattice: &'a Lattice, blocks: &'a [[u32; 3]], programs: Programs, limits: Bounds) -> SolidSampler<'a> {
+    fn new<'a>(lattice: &'a Lattice, blocks: &'a Blocks, limits: Bounds) -> SolidSampler<'a> {
+        let Blocks { cells: blocks, programs, exact } = blocks;
         let mut groups = vec![0; blocks.len()];
         groups.par_chunks_mut(BATCH).enumerate().for_each(|(batch, groups)| {
             let mut heads: Vec<u32> = Vec::new();
@@ -259,22 +351,7 @@ impl SolidSampler<'_> {
         });
         let at = |node: usize, stride: usize| (node / stride % SIDE) as f64 * lattice.step();
         let pattern = [1, SIDE, SIDE * SIDE].map(|stride| (0..NODES).map(|n| at(n, stride) as f32).collect());
-        SolidSampler { lattice, blocks, programs, groups, limits, pattern, kept: Vec::new() }
-    }
-
-    /// The leaves that decide at the middles of the triangles, by the programs of their blocks;
-    /// `whole` is that of the solid.
-    fn owners(&self, mesh: &Mesh, whole: &Program, run: &Run) -> Result<Vec<u32>, Cancelled> {
-        let mut places: Vec<([u32; 3], usize)> = self.blocks.iter().copied().zip(0..).collect();
-        places.par_sort_unstable();
-        each_triangle(mesh, run, |_, triangle| {
-            let middle = mesh.corners(triangle).into_iter().sum::<DVec3>() / 3.0;
-            let cell = (middle - self.lattice.origin()) / self.lattice.step();
-            let block = cell.to_array().map(|x| x.max(0.0) as u32 / BLOCK as u32 * BLOCK as u32);
-            // A triangle of several blocks may have its middle in one that holds no vertex.
-            let nth = places.binary_search_by_key(&block, |&(block, _)| block).ok();
-            nth.map_or(whole, |nth| self.programs.of(places[nth].1)).deciding_leaf(middle)
-        })
+        SolidSampler { lattice, blocks, programs, exact, groups, limits, pattern, kept: Vec::new() }
     }
 
     /// The tape of a group, made if it is not among those at hand.
@@ -337,6 +414,9 @@ impl Sampler for SolidSampler<'_> {
     fn nodes(&self, scratch: &mut Scratch, number: usize, block: [u32; 3], out: &mut [f32; NODES]) {
         let group = self.groups[number];
         let tape = self.tape_of(&mut scratch.tapes, group);
+        if self.exact.get(number) == Some(&true) {
+            return exact_nodes(self.programs.of(number), (self.lattice, &self.limits), block, out);
+        }
         tape.recentre(self.lattice.node(block[0], block[1], block[2]));
         // A few layers at a time: not all leaves of the block reach all of them. Nodes beside those
         // inside of a leaf are in its reach.

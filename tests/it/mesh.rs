@@ -6,8 +6,8 @@ use std::path::PathBuf;
 
 use glam::{DQuat, DVec3, Vec3};
 use rvachev::{
-    Bounds, CellSize, Features, Mesh, MeshReport, MeshSettings, MeshingError, Progress, RFunction, Run, Solid,
-    write_stl,
+    Blend, Bounds, CellSize, Features, Helix, Mesh, MeshReport, MeshSettings, MeshingError, Profile, Progress,
+    RFunction, Run, Solid, write_stl,
 };
 
 use crate::models;
@@ -362,4 +362,26 @@ fn small_solids_far_away_mesh_like_those_at_hand() {
     let (_, far) = mesh(&part.scale(0.125).translate(DVec3::new(256.0, -512.0, 128.0)), &cells(40));
     near(far.volume, near_by.volume(), 3e-3 * near_by.volume());
     assert_eq!((far.shells, far.genus), (1, Some(1)));
+}
+
+/// Fields that jump, as fillets along operands with edges of their own do: samples depend on rounding, and ranges of blocks
+/// may be wrong.
+#[test]
+fn surfaces_of_fields_that_jump_are_closed() {
+    let thread = Profile::circle(0.08).sweep_helix(&Helix::new(0.3, 0.25, 2.5));
+    let fillet = Blend::Fillet { radius: 0.05 };
+    let on_core = |solid: &Solid| solid.union_with(Solid::cylinder(0.25, 1.4), fillet);
+    let on_cube = |solid: &Solid| solid.union_with(Solid::cuboid(DVec3::splat(0.5)), fillet);
+    let ring = |angle: f64| Profile::circle(0.2).revolve_by(angle);
+    let on_block = |solid: &Solid| solid.union_with(Solid::cuboid(DVec3::splat(0.3)).translate(DVec3::X * 0.1), fillet);
+    let mut solids = vec![(on_core(&thread), 64), (on_core(&thread), 96)];
+    solids.extend([4.9, 5.0, 5.1].map(|angle| (on_block(&ring(angle)), 40)));
+    solids.extend((0..5).map(|n| (on_cube(&thread.rotate_x(0.5 * f64::from(n)).rotate_z(0.3 * f64::from(n))), 24)));
+    for (nth, (solid, longest)) in solids.iter().enumerate() {
+        for features in [Features::Smooth, Features::Sharp] {
+            let mesh = solid.mesh(&MeshSettings { features, ..cells(*longest) });
+            let report = mesh.unwrap_or_else(|error| panic!("{nth}, {features:?}: {error}")).check();
+            assert!(report.is_sound(), "{nth}, {features:?}: {report:?}");
+        }
+    }
 }

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::neighbours::Neighbours;
 use super::samples::Samples;
 use super::sharp;
-use super::{BATCH, Batch, ExtractError, Part, Sampler};
+use super::{BATCH, Batch, ExtractError, Part, Rift, Sampler};
 use crate::geom::Mesh;
 use crate::mesh::Features;
 use crate::mesh::bulk::Bulk;
@@ -14,7 +14,7 @@ use crate::mesh::lattice::Lattice;
 use crate::mesh::meter::Meter;
 use crate::mesh::signs::{BLOCK, NODES, SIDE, for_each_cell, is_mixed};
 use crate::mesh::table::CaseTable;
-use crate::run::Run;
+use crate::run::{Cancelled, Run};
 
 /// All blocks after the first pass.
 pub(super) struct Parts<'a> {
@@ -72,28 +72,42 @@ impl<'a> Parts<'a> {
     /// and every vertex in the list of its owner.
     pub(super) fn check_faces(&self, run: &Run) -> Result<(), ExtractError> {
         let meter = Meter::new(run, self.blocks.len());
-        (0..self.blocks.len()).into_par_iter().try_for_each(|n| {
+        let blocks = (0..self.blocks.len()).into_par_iter();
+        let rifts = blocks.try_fold(Vec::new, |mut rifts, n| {
             meter.step()?;
-            let block = self.blocks[n];
-            let error = |what| Err(ExtractError::Blocks { block, what });
-            let signs = &self.part(n).signs;
-            for axis in 0..3 {
-                let ours = signs.face(axis, true);
-                match self.neighbours.upper(n, 1 << axis) {
-                    Some(other) if self.part(other).signs.face(axis, false) != ours => {
-                        return error("an upper neighbour has other signs on their common face");
-                    }
-                    None if is_mixed(&ours) => {
-                        return error("the surface goes on in an upper neighbour not listed");
-                    }
-                    _ => {}
+            self.add_rifts(n, &mut rifts);
+            Ok(rifts)
+        });
+        let rifts = rifts.try_reduce(Vec::new, |mut all, mut more| {
+            all.append(&mut more);
+            Ok::<_, Cancelled>(all)
+        })?;
+        if rifts.is_empty() { Ok(()) } else { Err(ExtractError::Rifts(rifts)) }
+    }
+
+    /// Adds the faces of block `n` that are not as they should be.
+    fn add_rifts(&self, n: usize, rifts: &mut Vec<Rift>) {
+        let (block, signs) = (self.blocks[n], &self.part(n).signs);
+        for axis in 0..3 {
+            let mut add = |up: bool, what| {
+                let mut beyond = block;
+                let side = BLOCK as u32;
+                let at = if up { block[axis].checked_add(side) } else { block[axis].checked_sub(side) };
+                beyond[axis] = at.unwrap_or_default();
+                rifts.push(Rift { block, beyond: at.map(|_| beyond), what });
+            };
+            let ours = signs.face(axis, true);
+            match self.neighbours.upper(n, 1 << axis) {
+                Some(other) if self.part(other).signs.face(axis, false) != ours => {
+                    add(true, "an upper neighbour has other signs on their common face");
                 }
-                if self.neighbours.lower(n, axis).is_none() && is_mixed(&signs.face(axis, false)) {
-                    return error("the surface goes on in a lower neighbour not listed");
-                }
+                None if is_mixed(&ours) => add(true, "the surface goes on in an upper neighbour not listed"),
+                _ => {}
             }
-            Ok(())
-        })
+            if self.neighbours.lower(n, axis).is_none() && is_mixed(&signs.face(axis, false)) {
+                add(false, "the surface goes on in a lower neighbour not listed");
+            }
+        }
     }
 
     /// Positions and normals of all vertices, which are given up.
