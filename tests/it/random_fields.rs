@@ -5,7 +5,7 @@ use rvachev::{
     Bounds, CellSize, Features, Field, Interval, MeshSettings, ParamError, RFunction, Real, Run, Solid, ThinFeatures,
 };
 
-use crate::support::Random;
+use crate::support::{Random, random_leaf, random_solid};
 
 /// The sum of 24 sines, some of them shorter than a cell.
 #[derive(Clone, Debug)]
@@ -53,14 +53,16 @@ fn round(random: &mut Random) -> f64 {
 
 fn leaf(random: &mut Random) -> Solid {
     let size = DVec3::from_array([0; 3].map(|_| (1 + random.below(8)) as f64 * CELL));
-    match random.below(8) {
+    match random.below(12) {
         0 | 1 => Solid::cuboid(size),
         2 => Solid::sphere(0.5 * size.x),
         3 => Solid::cylinder(0.5 * size.x, size.z),
         4 => Solid::superellipsoid(0.5 * size, random.range(0.1, 2.0), random.range(0.1, 2.0)),
         5 => Solid::torus(0.5 * size.x.max(size.y) + 0.1, 0.3 * size.z.min(0.4)),
         6 => Solid::cone(0.5 * size.x, 0.25 * size.y * f64::from(u8::from(random.chance(0.5))), size.z),
-        _ => Solid::capsule(0.3 * size.x, size.z + 0.6 * size.x),
+        7 => Solid::capsule(0.3 * size.x, size.z + 0.6 * size.x),
+        // Of all kinds.
+        _ => random_leaf(random),
     }
 }
 
@@ -120,10 +122,12 @@ fn fields(seeds: std::ops::Range<u64>) {
     let (mut triangles, mut cut, mut empty, mut beyond) = (0, 0, 0, 0.0f64);
     for seed in seeds {
         let mut random = Random::new(seed.wrapping_mul(0x9e37_79b9) + 3);
-        let solid = match seed % 4 {
+        let solid = match seed % 5 {
             0 => sines(&mut random),
             1 | 2 => csg(&mut random),
-            _ => touching(&mut random),
+            3 => touching(&mut random),
+            // Under maps, with blends, offsets and shells.
+            _ => random_solid(&mut random, 2),
         };
         let bounded = solid.bounds().unwrap().is_finite();
         let part = random.chance(0.3) || !bounded;
@@ -133,7 +137,8 @@ fn fields(seeds: std::ops::Range<u64>) {
         for features in [Features::Sharp, Features::Smooth] {
             let settings = MeshSettings { cell: CellSize::Length(CELL), bounds, features, ..MeshSettings::default() };
             let run = Run { threads: 1, ..Run::default() };
-            let mesh = solid.mesh_with(&settings, &run).unwrap();
+            let mesh = solid.mesh_with(&settings, &run);
+            let mesh = mesh.unwrap_or_else(|error| panic!("seed {seed}, {features:?}, {bounds:?}: {error}\n{solid}"));
             if mesh.triangles().is_empty() {
                 empty += 1;
                 continue;

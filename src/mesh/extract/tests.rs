@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::bounds::Bounds;
+use crate::mesh::loops::CellLoop;
 use crate::mesh::signs::BLOCK;
 use crate::mesh::{CellSize, MeshReport};
 use crate::run::Progress;
@@ -253,6 +254,25 @@ fn much_noise_is_sound_with_features() {
     noise_with_features(60..1000);
 }
 
+/// What the signs at nodes imply: a loop of n edges in a cell is a polygon of n sides, each of which it shares with another.
+fn euler_characteristic(noise: &Noise<'_>, blocks: &[[u32; 3]]) -> i64 {
+    let (mut crossed, mut sides, mut loops) = (0, 0, 0);
+    let mut values = [0.0; NODES];
+    for &block in blocks {
+        noise.nodes(&mut (), 0, block, &mut values);
+        let signs = Signs::new(&values);
+        let rows = (0..BLOCK).flat_map(|k| (0..BLOCK).map(move |j| (j, k)));
+        crossed += rows.flat_map(|(j, k)| signs.crossed(j, k)).map(|bits| i64::from(bits.count_ones())).sum::<i64>();
+        for_each_cell(&signs, |_, case| {
+            for outline in CellLoop::all(case, 0) {
+                loops += 1;
+                sides += outline.len() as i64;
+            }
+        });
+    }
+    crossed - sides / 2 + loops
+}
+
 #[test]
 fn noise_is_closed_and_manifold() {
     let bounds = Bounds::new(DVec3::ZERO, DVec3::splat(14.0));
@@ -265,6 +285,7 @@ fn noise_is_closed_and_manifold() {
         assert!(report.is_closed() && report.is_manifold(), "{report:?}");
         assert_eq!(report.duplicate_vertices + report.unused_vertices, 0);
         assert!(report.volume > 0.0);
+        assert_eq!(report.euler_characteristic, euler_characteristic(&noise, &blocks), "seed {seed}");
         assert!(mesh.normals().unwrap().iter().all(|&n| n == Vec3::ZERO));
     }
 }
