@@ -297,11 +297,13 @@ impl Refiner {
         let mut known = [None; 16];
         for (candidate, &(on, count)) in candidates.iter_mut().zip(&*sides) {
             let (mut planes, mut sum, mut on) = (Planes::NONE, Vec3A::ZERO, on);
+            let mut first = None;
             for (known, (point, slope)) in known[..usize::from(count)].iter_mut().zip(&mut asked) {
                 *known = plane(*point, slope, step);
             }
             for (segment, offset) in vertices.by_ref().take(candidate.len as usize) {
                 let own = Vec3A::from(segment.normal);
+                first.get_or_insert(own);
                 match known[(on & 15) as usize] {
                     Some((normal, offset)) if normal.dot(own) > ASTRAY => {
                         segment.normal = normal.into();
@@ -317,7 +319,8 @@ impl Refiner {
                 }
                 on >>= 4;
             }
-            candidate.normal = sum.normalize_or_zero().into();
+            // On both sides of a thin wall they may be no more than nothing together.
+            candidate.normal = sum.normalize_or(first.unwrap_or_default()).into();
             if !planes.is_empty() {
                 candidate.planes = planes;
                 candidate.settle();

@@ -140,7 +140,12 @@ impl Solid {
         let slack = 0.01 * step;
         let program = &compiled(self)?.surface;
         let inner = given.inflate(-slack);
-        let beyond = |p: &&Vec3| !inner.contains(p.as_dvec3()) && program.value(p.as_dvec3()) > slack;
+        // Values are no lengths; by the slope they tell how far it is to the surface.
+        let is_inside = |p: DVec3| {
+            let (value, slope) = program.gradient(p);
+            value > slack * slope.length()
+        };
+        let beyond = |p: &&Vec3| !inner.contains(p.as_dvec3()) && is_inside(p.as_dvec3());
         match mesh.positions().iter().find(beyond) {
             Some(at) => Err(MeshingError::LeavesBounds { at: at.as_dvec3() }),
             None => Ok(()),

@@ -385,3 +385,15 @@ fn surfaces_of_fields_that_jump_are_closed() {
         }
     }
 }
+
+#[test]
+fn thin_walls_have_normals() {
+    let shell = Solid::cuboid((0.64, 0.53, 0.85)).rotate_x(0.3).rotate_y(0.5).shell(0.025);
+    for features in [Features::Smooth, Features::Sharp] {
+        let mesh =
+            shell.mesh(&MeshSettings { cell: CellSize::Length(0.05), features, ..MeshSettings::default() }).unwrap();
+        let is_unit = |normal: &&Vec3| (normal.length() - 1.0).abs() < 1e-3;
+        let normals = mesh.normals().unwrap();
+        assert_eq!(normals.iter().filter(is_unit).count(), normals.len(), "{features:?}");
+    }
+}

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use glam::{DQuat, DVec3};
-use rvachev::{AtBounds, Bounds, CellSize, Features, Mesh, MeshSettings, MeshingError, Solid};
+use rvachev::{AtBounds, Bounds, CellSize, Features, Field, Mesh, MeshSettings, MeshingError, ParamError, Real, Solid};
 
 use crate::models;
 use crate::support::Random;
@@ -315,6 +315,45 @@ fn caps_are_flat_and_sharp_or_an_error() {
     // Touching the bounds is not leaving them.
     let flush = MeshSettings { bounds: Some(Bounds::from_center(DVec3::ZERO, DVec3::splat(0.5))), ..refused };
     assert!(Solid::cuboid(DVec3::ONE).mesh(&flush).is_ok());
+}
+
+/// A ball whose values are no lengths.
+#[derive(Clone, Debug)]
+struct Scaled(f64);
+
+impl Field for Scaled {
+    fn name(&self) -> &'static str {
+        "scaled"
+    }
+
+    #[inline(always)]
+    fn eval<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
+        (x * x + y * y + z * z + -1.0) * -self.0
+    }
+
+    fn bounds(&self) -> Bounds {
+        Bounds::from_center(DVec3::ZERO, DVec3::ONE)
+    }
+
+    fn check(&self) -> Result<(), ParamError> {
+        Ok(())
+    }
+}
+
+#[test]
+fn leaving_bounds_is_a_matter_of_lengths() {
+    for scale in [1e-4, 1.0, 1e4] {
+        let ball = Solid::new(Scaled(scale));
+        let refused = |half: f64| {
+            let bounds = Some(Bounds::from_center(DVec3::ZERO, DVec3::splat(half)));
+            let settings = MeshSettings { cell: CellSize::Length(0.07), bounds, ..MeshSettings::default() };
+            let result = ball.mesh(&MeshSettings { at_bounds: AtBounds::Refuse, ..settings });
+            matches!(result, Err(MeshingError::LeavesBounds { .. }))
+        };
+        assert!(refused(0.5) && refused(0.99), "{scale}");
+        // By less than a hundredth of a cell.
+        assert!(!refused(0.9996) && !refused(1.0), "{scale}");
+    }
 }
 
 #[test]

@@ -145,7 +145,7 @@ impl Mesh {
     }
 
     /// How many cells may have lost a feature thinner than a cell; `None` if the mesh was not
-    /// made from a solid. See [`MeshReport`](crate::MeshReport).
+    /// made from a solid, or they were not [asked for](crate::ThinFeatures). See [`MeshReport`](crate::MeshReport).
     #[must_use]
     pub fn unresolved_cells(&self) -> Option<usize> {
         self.attributes.unresolved_cells

@@ -141,7 +141,9 @@ impl Fans {
                 taken.extend(samples.find_near(region.block, block).map(|n| (n, cell_number(within), number)));
             }
             all.free.extend(region.within);
-            let normal = region.segments.iter().map(|segment| segment.normal).sum::<Vec3>().normalize_or_zero();
+            let mut normals = region.segments.iter().map(|segment| segment.normal);
+            let first = normals.next().unwrap_or_default();
+            let normal = normals.fold(first, |sum, normal| sum + normal).normalize_or(first);
             let start = in_regions.len() as u32;
             in_regions.extend(region.segments);
             let (list, segments) = (all.segments.len() as u32, start..in_regions.len() as u32);
@@ -312,7 +314,7 @@ impl Apart for Sides {
             for segment in segments.iter().rev() {
                 let near = segment.normal;
                 match segment.across().map(|other| self.fans.get(other as usize)) {
-                    None => each([(near + beside).normalize_or_zero(), OWN, OWN]),
+                    None => each([(near + beside).normalize_or(near), OWN, OWN]),
                     Some(Some(other)) => {
                         let end = other.of(&self.segments).iter().find(|other| other.from == segment.from);
                         each([near, OWN, end.map_or(OWN, |end| end.normal)]);

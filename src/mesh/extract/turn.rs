@@ -48,7 +48,7 @@ impl Fans {
                 Turn::Edge => [high, low],
                 Turn::Point(at) => {
                     let normals = segments.map(|[list, n]| self.segments[list as usize][n as usize].normal);
-                    self.bend([low, high], at, (normals[0] + normals[1]).normalize_or_zero());
+                    self.bend([low, high], at, (normals[0] + normals[1]).normalize_or(normals[0]));
                     [fans + self.points.len() as u32 - 1; 2]
                 }
             };
