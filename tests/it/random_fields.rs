@@ -129,7 +129,8 @@ fn fields(seeds: std::ops::Range<u64>) {
             // Under maps, with blends, offsets and shells.
             _ => random_solid(&mut random, 2),
         };
-        let bounded = solid.bounds().unwrap().is_finite();
+        // Not so large that cells are without number.
+        let bounded = solid.bounds().unwrap().longest_side() < 100.0 * CELL;
         let part = random.chance(0.3) || !bounded;
         let half = DVec3::new(round(&mut random), round(&mut random), round(&mut random)).abs() + CELL;
         let middle = DVec3::splat(round(&mut random));
