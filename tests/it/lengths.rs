@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 use rvachev::{
-    Capsule, Cone, Cuboid, Cylinder, Ellipsoid, GeneralisedSuperquadric, Gielis, Prism, Pyramid, Region, RoundedCuboid,
-    SineWave, Solid, SolidError, Sphere, Superellipsoid, Superhyperboloid, Supershape, Wedge,
+    Capsule, CellSize, Cone, Cuboid, Cylinder, Ellipsoid, Features, GeneralisedSuperquadric, Gielis, MeshSettings,
+    MinimalSurface, Prism, Pyramid, Region, RoundedCuboid, SheetLattice, SineWave, Solid, SolidError, Sphere,
+    Superellipsoid, Superhyperboloid, Supershape, Wedge,
 };
 
 use crate::support::{Random, lanes32};
@@ -188,4 +189,19 @@ fn beside_a_surface_the_distance_is_small() -> Result<(), SolidError> {
         }
     }
     Ok(())
+}
+
+/// A leaf without bounds has no size that would tell how far rounding moves a point.
+#[test]
+fn meshes_of_offset_lattices_are_where_the_field_is_zero() {
+    let lattice = Solid::new(SheetLattice { surface: MinimalSurface::Gyroid, cell: 0.4, thickness: 0.05 });
+    let solid = (Solid::sphere(0.3) & lattice).offset(0.03);
+    let program = solid.surface_program().unwrap();
+    let settings = MeshSettings { cell: CellSize::Length(0.02), features: Features::Smooth, ..MeshSettings::default() };
+    let mesh = solid.mesh(&settings).unwrap();
+    let count = mesh.positions().len();
+    let off = mesh.positions().iter().filter(|p| program.value(p.as_dvec3()).abs() > 2e-4).count();
+    let clamped = mesh.clamped_vertices().unwrap();
+    println!("{off} of {count} vertices off by more than a hundredth of a cell, {clamped} clamped");
+    assert!(off * 50 < count && clamped * 50 < count, "{off} and {clamped} of {count}");
 }

@@ -49,7 +49,9 @@ impl Distance {
     fn following(&self) -> Follow {
         let size = self.bounds.half_extents().max_element();
         let curvature = if size.is_normal() { 1.0 / size } else { 0.0 };
-        Follow { curvature, let_be: LET_BE * self.asked + 1e-7 * size.min(1e9) }
+        // Of one without bounds nothing is known of the rounding of places.
+        let rounding = if size.is_finite() { 1e-7 * size } else { 0.0 };
+        Follow { curvature, let_be: LET_BE * self.asked + rounding }
     }
 
     /// Distance to the surface, negative outside, and outward normal.
