@@ -1,7 +1,9 @@
 //! Blends: joins that read values.
 
 use glam::{DVec2, DVec3};
-use rvachev::{Blend, Bounds, Profile, Program, RFunction, Region, SmoothStep, Solid, SolidError};
+use rvachev::{
+    Blend, Bounds, CellSize, Helix, Lattice, Profile, Program, RFunction, Region, SmoothStep, Solid, SolidError,
+};
 
 use crate::support::{Random, lanes32, lanes64, near};
 
@@ -480,4 +482,22 @@ fn a_level_of_what_has_no_end_is_found_anywhere() -> Result<(), SolidError> {
         }
     }
     Ok(())
+}
+
+/// Along a thread's edges the ball has nowhere to touch; what is told of one place is not true of another.
+#[test]
+fn regions_of_a_filleted_thread_hold_its_values() {
+    let thread = Profile::circle(0.08).sweep_helix(&Helix::new(0.3, 0.25, 2.5));
+    let solid = thread.union_with(Solid::cylinder(0.25, 1.4), Blend::Fillet { radius: 0.05 });
+    let program = solid.surface_program().unwrap();
+    // A region that was taken to be outside.
+    let lattice = Lattice::new(&solid.finite_bounds().unwrap(), CellSize::LongestSide(64)).unwrap();
+    let region = Bounds::new(lattice.node(32, 24, 48), lattice.node(40, 32, 56));
+    let range = program.range(&region);
+    for n in 0..729 {
+        let p = lattice.node(32 + n % 9, 24 + n / 9 % 9, 48 + n / 81);
+        let value = program.value(p);
+        assert!(range.lo() <= value && value <= range.hi(), "{value} at {p}: {range:?}");
+    }
+    assert!(range.hi() > 0.0);
 }

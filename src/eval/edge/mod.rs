@@ -212,7 +212,8 @@ impl EdgeBlend {
         // Where a gradient may vanish, as on the axis of a disc, the blend jumps.
         let turns = || self.gradients(zone).iter().any(|gradient| length(*gradient).lo() < 0.1);
         let close = extent < close && (told || !turns());
-        let below = (told || close) && centre + radius < 0.0;
+        // No foot tells of those of points more than a radius away: an operand may have edges between.
+        let below = (told && extent < fillet.radius || close) && centre + radius < 0.0;
         let hi = if below { centre + radius } else { join.hi().max(fillet.farthest()) };
         let lo = if close { join.lo().max(centre - radius) } else { join.lo() };
         (Interval::new(lo, hi.max(lo)), if close { steepest } else { f64::INFINITY })
