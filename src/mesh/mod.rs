@@ -1,5 +1,6 @@
 //! From a solid to a triangle mesh, and what can be said about a mesh.
 
+mod blocks;
 mod bulk;
 mod check;
 mod deciders;
@@ -12,6 +13,7 @@ mod paint;
 mod qef;
 mod resolve;
 mod roots;
+mod sampler;
 mod settings;
 mod signs;
 mod solid;

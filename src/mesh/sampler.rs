@@ -1,0 +1,264 @@
+//! The surface program of a solid, sampled for the extractor.
+
+use std::sync::OnceLock;
+
+use glam::{DVec3, Vec3A};
+use rayon::prelude::*;
+
+use super::blocks::{Blocks, Programs, exact_nodes};
+use super::deciders::Deciders;
+use super::extract::{BATCH, Root, Sampler};
+use super::feature::Slope;
+use super::lattice::Lattice;
+use super::signs::{BLOCK, EdgeRef, NODES, SIDE};
+use crate::Bounds;
+use crate::eval::{Evaluator, Gradients, Tape};
+
+/// The surface program, block by block.
+///
+/// The blocks of a batch that have the same program form a group; a group has one tape.
+pub(super) struct SolidSampler<'a> {
+    lattice: &'a Lattice,
+    blocks: &'a [[u32; 3]],
+    programs: &'a Programs,
+    /// Which of the blocks are sampled in double precision, by their programs.
+    exact: &'a [bool],
+    /// The number of the first block of each block's group.
+    groups: Vec<u32>,
+    /// The box that the surface is in.
+    limits: Bounds,
+    /// The nodes of a block, relative to the first, x fastest.
+    pattern: [Vec<f32>; 3],
+    /// By batch, the tapes of its groups once its roots are found; empty if they are not to be kept.
+    kept: Vec<OnceLock<Vec<(u32, Tape)>>>,
+}
+
+/// Roots that are found at once; a multiple of the points that lanes are run on.
+const AT_ONCE: usize = 2048;
+
+/// So many layers of a block's nodes are sampled together: a third of them.
+const LAYERS: usize = 3;
+
+/// What a thread keeps from block to block.
+#[derive(Default)]
+pub(super) struct Scratch {
+    evaluator: Evaluator,
+    /// The tapes of the groups sampled since roots were asked for.
+    tapes: Vec<(u32, Tape)>,
+    finder: Deciders,
+    single: [Vec<f32>; 3],
+    slopes: [Vec<f32>; 4],
+    /// Edges in the order of their groups: their places, themselves, their roots.
+    order: Vec<u32>,
+    edges: Vec<EdgeRef>,
+    roots: Vec<Root>,
+}
+
+impl SolidSampler<'_> {
+    pub(super) fn new<'a>(lattice: &'a Lattice, blocks: &'a Blocks, limits: Bounds) -> SolidSampler<'a> {
+        let Blocks { cells: blocks, programs, exact } = blocks;
+        let mut groups = vec![0; blocks.len()];
+        groups.par_chunks_mut(BATCH).enumerate().for_each(|(batch, groups)| {
+            let mut heads: Vec<u32> = Vec::new();
+            for (n, group) in (batch * BATCH..).zip(groups) {
+                // The latest first: blocks that follow each other are near each other.
+                let head = heads.iter().rev().find(|&&head| programs.is_same(head as usize, n));
+                *group = head.copied().unwrap_or(n as u32);
+                if *group == n as u32 {
+                    heads.push(*group);
+                }
+            }
+        });
+        let at = |node: usize, stride: usize| (node / stride % SIDE) as f64 * lattice.step();
+        let pattern = [1, SIDE, SIDE * SIDE].map(|stride| (0..NODES).map(|n| at(n, stride) as f32).collect());
+        SolidSampler { lattice, blocks, programs, exact, groups, limits, pattern, kept: Vec::new() }
+    }
+
+    /// The tape of a group, made if it is not among those at hand.
+    fn tape_of<'t>(&self, tapes: &'t mut Vec<(u32, Tape)>, group: u32) -> &'t mut Tape {
+        // The latest first: blocks that follow each other are near each other.
+        let made = tapes.iter().rposition(|(other, _)| *other == group);
+        let at = made.unwrap_or_else(|| {
+            tapes.push((group, self.tape(group)));
+            tapes.len() - 1
+        });
+        &mut tapes[at].1
+    }
+
+    /// The tape of a group for slopes: that which its roots were found with, if it is kept. Moved from block to block it
+    /// rounds, so each block starts from the same.
+    fn tape_for_slopes(&self, group: u32) -> Tape {
+        let kept = self.kept.get(group as usize / BATCH).and_then(OnceLock::get);
+        let kept = kept.and_then(|tapes| tapes.iter().find(|(other, _)| *other == group));
+        kept.map_or_else(|| self.tape(group), |(_, tape)| tape.clone())
+    }
+
+    /// Keeps tapes for the slopes that are asked for after all roots.
+    pub(super) fn keep_tapes(&mut self) {
+        self.kept.resize_with(self.blocks.len().div_ceil(BATCH), OnceLock::new);
+    }
+
+    /// Ends the use of the tapes of a batch for roots.
+    fn put_by(&self, batch: usize, tapes: &mut Vec<(u32, Tape)>) {
+        match self.kept.get(batch) {
+            // The roots of a batch are asked for once.
+            Some(kept) => _ = kept.set(std::mem::take(tapes)),
+            None => tapes.clear(),
+        }
+    }
+
+    /// A tape for the group that starts with a block.
+    fn tape(&self, group: u32) -> Tape {
+        let first = group as usize;
+        let batch = first..(first / BATCH * BATCH + BATCH).min(self.blocks.len());
+        let bounds = batch.filter(|&n| self.groups[n] == group).fold(Bounds::EMPTY, |all, n| {
+            let block = self.blocks[n];
+            let at = |i: u32| self.lattice.node(block[0] + i, block[1] + i, block[2] + i);
+            all.union(&Bounds::new(at(0), at(BLOCK as u32)))
+        });
+        Tape::new(self.programs.of(first), &bounds)
+    }
+}
+
+impl Sampler for SolidSampler<'_> {
+    type Scratch = Scratch;
+
+    fn scratch(&self) -> Scratch {
+        Scratch::default()
+    }
+
+    fn limits(&self) -> Bounds {
+        self.limits
+    }
+
+    fn nodes(&self, scratch: &mut Scratch, number: usize, block: [u32; 3], out: &mut [f32; NODES]) {
+        let group = self.groups[number];
+        let tape = self.tape_of(&mut scratch.tapes, group);
+        if self.exact.get(number) == Some(&true) {
+            return exact_nodes(self.programs.of(number), (self.lattice, &self.limits), block, out);
+        }
+        tape.recentre(self.lattice.node(block[0], block[1], block[2]));
+        // A few layers at a time: not all leaves of the block reach all of them. Nodes beside those
+        // inside of a leaf are in its reach.
+        for (layers, out) in out.chunks_mut(LAYERS * SIDE * SIDE).enumerate() {
+            let first = layers * LAYERS;
+            let points = self.pattern.each_ref().map(|axis| &axis[first * SIDE * SIDE..][..out.len()]);
+            let [x, y, z] = block;
+            let low = self.lattice.node(x, y, z + first as u32);
+            let last = first + out.len() / (SIDE * SIDE) - 1;
+            let high = self.lattice.node(x + BLOCK as u32, y + BLOCK as u32, z + last as u32);
+            let region = Bounds::new(low, high).inflate(1.01 * self.lattice.step());
+            scratch.evaluator.values_in((tape, &region), points, out);
+        }
+        // A sign that rounding may have turned is settled in double precision.
+        let doubt = tape.roundoff() as f32;
+        if !out.iter().fold(false, |any, value| any | (value.abs() <= doubt)) {
+            return;
+        }
+        let program = self.programs.of(number);
+        for (n, value) in out.iter_mut().enumerate() {
+            if value.abs() <= doubt {
+                let at = |axis: usize, stride: usize| block[axis] + (n / stride % SIDE) as u32;
+                let exact = program.value(self.lattice.node(at(0, 1), at(1, SIDE), at(2, SIDE * SIDE)));
+                *value = if exact > 0.0 { value.abs().max(f32::MIN_POSITIVE) } else { -value.abs() };
+            }
+        }
+    }
+
+    fn insides(
+        &self,
+        scratch: &mut Scratch,
+        number: usize,
+        block: [u32; 3],
+        points: &[DVec3],
+        out: &mut Vec<bool>,
+    ) -> bool {
+        let group = self.groups[number];
+        let Scratch { evaluator, tapes, single, slopes: [values, ..], .. } = scratch;
+        let Some((_, tape)) = tapes.iter().rfind(|(other, _)| *other == group) else { return false };
+        let origin = self.lattice.node(block[0], block[1], block[2]);
+        place(points.iter().map(|p| (*p - origin).as_vec3a()), single);
+        values.resize(points.len(), 0.0);
+        let [x, y, z] = &*single;
+        evaluator.values(tape, x, y, z, values);
+        out.extend(values.iter().map(|value| *value > 0.0));
+        true
+    }
+
+    fn roots(&self, scratch: &mut Scratch, edges: &[EdgeRef], out: &mut [Root]) {
+        let Scratch { evaluator, tapes, finder, order, edges: sorted, roots, .. } = scratch;
+        let group = |edge: &EdgeRef| self.groups[edge.block as usize];
+        let (Some(first), Some(last)) = (edges.first(), edges.last()) else { return };
+        let start = first.block as usize / BATCH * BATCH;
+        let mut find = |edges: &[EdgeRef], roots: &mut [Root]| {
+            let group = group(&edges[0]);
+            let pair = (self.programs.of(group as usize), &*self.tape_of(tapes, group));
+            // As many as the cache holds.
+            for (edges, roots) in edges.chunks(AT_ONCE).zip(roots.chunks_mut(AT_ONCE)) {
+                finder.find(evaluator, pair, self.lattice, edges, roots);
+            }
+        };
+        let blocks = &self.groups[first.block as usize..=last.block as usize];
+        if blocks.iter().all(|other| *other == blocks[0]) {
+            find(edges, out);
+            self.put_by(start / BATCH, tapes);
+            return;
+        }
+        // Counted first, then each to its place: a group is named by a block of the batch.
+        let mut places = [0u32; BATCH + 1];
+        edges.iter().for_each(|edge| places[group(edge) as usize - start + 1] += 1);
+        (0..BATCH).for_each(|n| places[n + 1] += places[n]);
+        order.resize(edges.len(), 0);
+        for (n, edge) in (0..).zip(edges) {
+            let place = &mut places[group(edge) as usize - start];
+            order[*place as usize] = n;
+            *place += 1;
+        }
+        sorted.clear();
+        sorted.extend(order.iter().map(|&n| edges[n as usize]));
+        roots.resize(edges.len(), Root::default());
+        let mut rest = &mut roots[..edges.len()];
+        for edges in sorted.chunk_by(|a, b| group(a) == group(b)) {
+            find(edges, rest.split_off_mut(..edges.len()).unwrap_or_default());
+        }
+        for (&n, root) in order.iter().zip(&*roots) {
+            out[n as usize] = *root;
+        }
+        self.put_by(start / BATCH, tapes);
+    }
+
+    fn slopes(
+        &self,
+        scratch: &mut Scratch,
+        number: usize,
+        block: [u32; 3],
+        points: &[Vec3A],
+        out: &mut Vec<Slope>,
+    ) -> bool {
+        let mut tape = self.tape_for_slopes(self.groups[number]);
+        tape.recentre(self.lattice.node(block[0], block[1], block[2]));
+        // The program holds in the block and nowhere else.
+        let (high, step) = (Vec3A::splat(BLOCK as f32), self.lattice.step() as f32);
+        place(points.iter().map(|p| step * p.clamp(Vec3A::ZERO, high)), &mut scratch.single);
+        for slope in &mut scratch.slopes {
+            slope.resize(points.len(), 0.0);
+        }
+        let [x, y, z] = &scratch.single;
+        let [value, dx, dy, dz] = &mut scratch.slopes;
+        scratch.evaluator.gradients(&tape, x, y, z, Gradients { value, dx, dy, dz });
+        out.extend((0..points.len()).map(|n| Slope { value: value[n], gradient: Vec3A::new(dx[n], dy[n], dz[n]) }));
+        true
+    }
+}
+
+/// The coordinates of points, axis by axis.
+fn place(points: impl Iterator<Item = Vec3A>, [x, y, z]: &mut [Vec<f32>; 3]) {
+    x.clear();
+    y.clear();
+    z.clear();
+    for p in points {
+        x.push(p.x);
+        y.push(p.y);
+        z.push(p.z);
+    }
+}
