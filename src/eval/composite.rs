@@ -115,6 +115,10 @@ impl AnyField for Composite {
         self.program.is_steady()
     }
 
+    fn jumps(&self) -> bool {
+        self.program.jumps()
+    }
+
     fn takes_short(&self) -> bool {
         true
     }
@@ -145,15 +149,30 @@ pub(super) struct Locals {
 }
 
 /// Values and gradients of a chunk.
+#[derive(Clone)]
 pub(super) struct Slopes {
     pub(super) value: [f32; CHUNK],
     pub(super) gradient: [[f32; CHUNK]; 3],
+}
+
+impl Default for Slopes {
+    fn default() -> Slopes {
+        Slopes { value: [0.0; CHUNK], gradient: [[0.0; CHUNK]; 3] }
+    }
 }
 
 impl Slopes {
     pub(super) fn at(&self, i: usize) -> (f64, DVec3) {
         let [x, y, z] = &self.gradient;
         (f64::from(self.value[i]), DVec3::new(f64::from(x[i]), f64::from(y[i]), f64::from(z[i])))
+    }
+
+    /// Those of a multiple.
+    pub(super) fn times(mut self, factor: f64) -> Slopes {
+        for list in [&mut self.value].into_iter().chain(&mut self.gradient) {
+            list.iter_mut().for_each(|v| *v *= factor as f32);
+        }
+        self
     }
 
     pub(super) fn set(&mut self, i: usize, (value, gradient): (f64, DVec3)) {
@@ -195,7 +214,7 @@ impl Locals {
     }
 
     pub(super) fn gradients(&self, evaluator: &mut Evaluator, tape: &Tape) -> Slopes {
-        let mut slopes = Slopes { value: [0.0; CHUNK], gradient: [[0.0; CHUNK]; 3] };
+        let mut slopes = Slopes::default();
         let Slopes { value, gradient: [dx, dy, dz] } = &mut slopes;
         let [x, y, z] = self.coordinates();
         evaluator.gradients(tape, x, y, z, Gradients { value, dx, dy, dz });

@@ -126,8 +126,9 @@ impl Program {
         let world = &Pieces::one(*world);
         let zones = self.zones(world);
         let mut ranges: Vec<Interval> = Vec::with_capacity(self.nodes.len());
-        for node in &self.nodes[..] {
+        for (at, node) in self.nodes.iter().enumerate() {
             let range = match &node.kind {
+                _ if self.idle.as_ref().is_some_and(|idle| idle[at]) => Interval::ALL,
                 Kind::Leaf(leaf) | Kind::Edge { leaf, .. } => self.leaf_range(*leaf, &zones, world),
                 kind => {
                     let operand = |edge: &Edge| {
@@ -155,7 +156,7 @@ impl Program {
         }
         let mut pass = Pass::new(self, &zones, world);
         pass.by_boxes = by_boxes;
-        pass.run(Asked { sign: true, value: false });
+        pass.run(Asked { sign: true, ..Asked::default() });
         self.found(pass)
     }
 
@@ -220,13 +221,36 @@ impl Program {
         let world = &Pieces::one(*world);
         let zones = self.zones(world);
         let mut pass = Pass::new(self, &zones, world);
-        pass.run(Asked { sign: false, value: true });
+        pass.run(Asked { value: true, ..Asked::default() });
         let root = pass.value(self.root);
         let Pass { nodes, list, simpler, .. } = pass;
         match root {
             Some((_, root)) => self.trimmed(nodes, list, simpler, root),
             None => self.clone(),
         }
+    }
+
+    /// The program of a leaf, or of another in its place.
+    pub(super) fn of_leaf(&self, leaf: u32, other: Option<Arc<dyn AnyField>>) -> Program {
+        let (mut number, mut simpler) = (leaf, self.simpler.to_vec());
+        if let Some(field) = other {
+            number = (self.scene.leaves.len() + simpler.len()) as u32;
+            simpler.push(Instance { field, bounds: Bounds::ALL, ..self.instance(leaf).clone() });
+        }
+        Program::assemble(self.scene.clone(), vec![Node::leaf(number)], Vec::new(), Edge::new(0), simpler)
+    }
+
+    /// The program of a node, or of its join if it is one of these operands alone.
+    pub(super) fn of_node(&self, node: usize, operands: Option<&[Edge]>) -> Program {
+        let (mut nodes, mut list) = (self.nodes[..=node].to_vec(), self.operands.to_vec());
+        if let Some(operands) = operands {
+            (nodes[node].first, nodes[node].len) = (list.len() as u32, operands.len() as u32);
+            list.extend_from_slice(operands);
+            if let Kind::Join { hierarchy, .. } = &mut nodes[node].kind {
+                *hierarchy = None;
+            }
+        }
+        self.trimmed(nodes, list, self.simpler.to_vec(), Edge::new(node))
     }
 
     /// A program of the nodes that `root` reaches.

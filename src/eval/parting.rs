@@ -57,7 +57,7 @@ impl Program {
         let mut pass = Pass::new(self, &zones, world);
         pass.by_boxes = true;
         pass.given = Some(given);
-        pass.run(Asked { sign: true, value: false });
+        pass.run(Asked { sign: true, ..Asked::default() });
         (!pass.is_value(given.0)).then(|| self.region(self.found(pass)))
     }
 }

@@ -46,6 +46,9 @@ impl Sign {
 pub(super) struct Asked {
     pub(super) sign: bool,
     pub(super) value: bool,
+    /// Whether it is to be there: where the value of a fillet is read, that is its own, and its operands
+    /// stay as they are.
+    pub(super) stay: bool,
 }
 
 /// What is kept of most programs: lists have room for as many from the start.
@@ -108,14 +111,19 @@ impl<'a> Pass<'a> {
         let program = self.program;
         self.asked[program.root.node()] = root;
         for (at, node) in program.nodes.iter().enumerate().rev() {
-            let Asked { sign, value } = self.asked[at];
+            let Asked { sign, value, stay } = self.asked[at];
+            let operands = program.list(node);
             if !sign && !value {
+                operands.iter().filter(|_| stay).for_each(|edge| self.asked[edge.node()].stay = true);
                 continue;
             }
-            let operands = program.list(node);
             let values = match &node.kind {
                 Kind::Leaf(_) => continue,
-                Kind::Edge { .. } => value,
+                Kind::Edge { .. } if value => {
+                    operands.iter().for_each(|edge| self.asked[edge.node()].stay = true);
+                    continue;
+                }
+                Kind::Edge { .. } => false,
                 Kind::Shift(_) => true,
                 Kind::Join { rule, .. } => value || rule.reads_values(),
             };
@@ -144,12 +152,18 @@ impl<'a> Pass<'a> {
 
     /// Up: what is known of a node, and the narrowed program of what stays open.
     fn answer(&mut self, at: usize) {
+        let Asked { sign, value, stay } = self.asked[at];
+        if sign || value {
+            self.find(at, value);
+        }
+        if stay && self.values[at].is_none() {
+            self.keep_as_it_is(at);
+        }
+    }
+
+    fn find(&mut self, at: usize, value: bool) {
         let program = self.program;
         let node = &program.nodes[at];
-        let Asked { sign, value } = self.asked[at];
-        if !sign && !value {
-            return;
-        }
         match &node.kind {
             Kind::Leaf(leaf) => match self.given {
                 Some((given, inside)) if given == at => {
@@ -200,6 +214,17 @@ impl<'a> Pass<'a> {
         self.list.extend(operands);
         self.nodes.push(Node { kind, first, len });
         Edge::new(self.nodes.len() - 1)
+    }
+
+    fn keep_as_it_is(&mut self, at: usize) {
+        let node = &self.program.nodes[at];
+        let operands = self.program.list(node).iter().filter_map(|e| self.value(*e)).map(|(_, edge)| edge).collect();
+        let mut kind = node.kind.clone();
+        if let Kind::Leaf(leaf) | Kind::Edge { leaf, .. } = &mut kind {
+            *leaf = self.simplest(*leaf, None);
+        }
+        let edge = self.push(&kind, operands);
+        self.values[at] = Some((Interval::ALL, edge));
     }
 
     fn know(&mut self, at: usize, range: Interval, edge: Edge) {

@@ -232,6 +232,16 @@ impl Program {
         self.nodes.iter().filter_map(Node::valued_by).all(|leaf| self.instance(leaf).field.is_steady())
     }
 
+    /// Whether any of its leaves goes on in another one.
+    pub(crate) fn jumps(&self) -> bool {
+        self.nodes.iter().filter_map(Node::valued_by).any(|leaf| self.leaf_jumps(leaf))
+    }
+
+    pub(super) fn leaf_jumps(&self, leaf: u32) -> bool {
+        let instance = self.instance(leaf);
+        instance.frame != 0 || instance.field.jumps()
+    }
+
     /// The leaf with this number.
     pub(crate) fn instance(&self, leaf: u32) -> &Instance {
         instance(&self.scene, &self.simpler, leaf)

@@ -136,6 +136,10 @@ pub(crate) trait AnyField: Any + Debug + Send + Sync {
     fn is_steady(&self) -> bool {
         true
     }
+    /// Whether it goes on in another leaf, as the turns of a helix do in each other: by itself it jumps.
+    fn jumps(&self) -> bool {
+        false
+    }
     /// Whether the lanes run over any multiple of the widest vectors, not over whole chunks only.
     fn takes_short(&self) -> bool {
         false

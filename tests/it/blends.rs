@@ -501,3 +501,92 @@ fn regions_of_a_filleted_thread_hold_its_values() {
     }
     assert!(range.hi() > 0.0);
 }
+
+/// Solids filleted to others that have edges of their own, which run into the fillet: convex and concave, of
+/// joins and of leaves; with the radius.
+fn filleted_edges() -> Vec<(Solid, f64)> {
+    let fillet = Blend::Fillet { radius: 0.1 };
+    let floor = Solid::cuboid(DVec3::new(2.0, 2.0, 0.2));
+    let block = |x: f64, y: f64| Solid::cuboid(DVec3::new(x, y, 1.0)).translate(0.4 * DVec3::Z);
+    let post = block(0.4, 0.4) & block(0.4, 0.4).rotate_z(0.6);
+    let star = block(0.8, 0.3) | block(0.8, 0.3).rotate_z(1.2);
+    let cube = Solid::cuboid(DVec3::ONE);
+    let bite = Solid::sphere(0.5).translate(DVec3::new(0.5, 0.3, 0.5));
+    let opened = Profile::circle(0.2).revolve_by(5.0).translate(0.1 * DVec3::X);
+    vec![
+        (post.union_with(&floor, fillet), 0.1),
+        (floor.union_with(star, fillet), 0.1),
+        (cube.difference_with(&bite, fillet), 0.1),
+        (cube.intersection_with(bite, fillet), 0.1),
+        (
+            Solid::cylinder(0.5, 1.0).difference_with(Solid::sphere(0.3).translate(DVec3::new(0.5, 0.0, 0.4)), fillet),
+            0.1,
+        ),
+        (floor.union_with(opened, Blend::Fillet { radius: 0.05 }), 0.05),
+    ]
+}
+
+/// The distance from a ball's centre to what it may be at changes by no more than the way.
+#[test]
+fn fillets_of_edges_do_not_jump() {
+    for (nth, (solid, radius)) in filleted_edges().into_iter().enumerate() {
+        let program = solid.surface_program().unwrap();
+        let bounds = solid.finite_bounds().unwrap();
+        let mut random = Random::new(83);
+        let mut count = 0;
+        while count < 4000 {
+            let t = DVec3::new(random.range(0.0, 1.0), random.range(0.0, 1.0), random.range(0.0, 1.0));
+            let p = bounds.min + bounds.size() * t;
+            let value = program.value(p);
+            if value.abs() > 0.3 * radius {
+                continue;
+            }
+            count += 1;
+            let q = p + 0.02 * radius * random.vector(-1.0, 1.0).normalize();
+            let slope = (program.value(q) - value).abs() / p.distance(q);
+            assert!(slope < 1.02, "solid {nth}: {slope} at {p}");
+        }
+    }
+}
+
+/// What is told of a region by its middle is true of all of it; and of regions without a surface few are open.
+#[test]
+fn regions_of_fillets_of_edges_hold_their_values() {
+    for (nth, (solid, radius)) in filleted_edges().into_iter().enumerate() {
+        let program = solid.surface_program().unwrap();
+        let bounds = solid.finite_bounds().unwrap();
+        let mut random = Random::new(89);
+        let (mut open, mut crossed) = (0, 0);
+        for _ in 0..2000 {
+            let t = DVec3::new(random.range(0.0, 1.0), random.range(0.0, 1.0), random.range(0.0, 1.0));
+            let (p, half) = (bounds.min + bounds.size() * t, radius * 0.01f64.powf(random.range(-0.3, 1.0)));
+            let region = Bounds::new(p - half, p + half);
+            let (range, narrowed) = (program.range(&region), program.narrow(&region));
+            let values = [(); 24].map(|()| program.value(p + half * random.vector(-1.0, 1.0)));
+            for value in values {
+                // Well inside, the operands' join takes over from the blend.
+                let by_join = value.abs() >= radius;
+                assert!(range.contains(value) || by_join, "solid {nth}: {value} near {p}, {half}: {range:?}");
+                match &narrowed {
+                    Region::Inside => assert!(value > 0.0, "solid {nth}: {value} near {p}, {half}"),
+                    Region::Outside => assert!(value < 0.0, "solid {nth}: {value} near {p}, {half}"),
+                    Region::Surface(_) => {}
+                }
+            }
+            open += usize::from(matches!(narrowed, Region::Surface(_)));
+            crossed += usize::from(values.iter().any(|value| *value > 0.0) && values.iter().any(|value| *value < 0.0));
+        }
+        assert!(10 * open < 13 * crossed, "solid {nth}: {open} regions are open, {crossed} crossed");
+    }
+}
+
+/// Each asks those below it.
+#[test]
+fn rays_meet_chains_of_fillets() -> Result<(), SolidError> {
+    let chain = (1..30).fold(Solid::sphere(0.6), |all, i| {
+        all.union_with(Solid::sphere(0.6).translate(DVec3::X * f64::from(i)), Blend::Fillet { radius: 0.1 })
+    });
+    let hit = chain.raycast(DVec3::new(20.0, 0.0, 9.0), -DVec3::Z)?.unwrap();
+    near(hit.distance, 8.4, 1e-9);
+    Ok(())
+}

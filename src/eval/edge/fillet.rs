@@ -1,11 +1,11 @@
 //! The surface of a ball that rolls along two operands.
 //!
-//! Its centre runs on the curve x = y = −r. With q the point of the curve nearest to p, the
-//! blend is |p − q| − r where p − q lies between the two gradients at q. q is found by Newton
-//! steps on both conditions at once, each the nearest point to p of the line where the two
-//! tangent planes meet: exact for planes at once, to a thousandth of r for what bends four times
-//! less than the ball after two. Since q is nearest, the gradient is `(p − q)/|p − q|` without
-//! second derivatives.
+//! Its centre is where x ≤ −r and y ≤ −r, a set E, and the material of the blend is what no such ball
+//! reaches: with q the point of E nearest to p, the blend is |p − q| − r if q is on the edge of E, where
+//! x = y = −r, and the join of the operands if it is on a face. q is found by steps, each to the point
+//! nearest to p of what the tangent planes at the one before leave of E: exact for planes at once, and of
+//! second order for what bends. Since q is nearest, the gradient is `(p − q)/|p − q|` without
+//! second derivatives, and the slope is 1.
 //!
 //! Where the steps do not arrive (an operand has an edge of its own there), what the first of them
 //! tells is taken, by the values and slopes at p alone: the blend goes round that edge in a mitre.
@@ -14,14 +14,20 @@ use glam::DVec3;
 
 use super::Sample;
 
-/// As many Newton steps are made from a point to the curve.
-pub(super) const STEPS: usize = 3;
+/// At most so many steps are made from a point to the nearest centre of a ball.
+pub(super) const STEPS: usize = 8;
+
+/// The last one is shorter than this, in radii.
+const STILL: f64 = 1e-3;
+
+/// From the third on, each is shorter than the one before by this.
+const SHRINKS: f64 = 0.7;
 
 /// Slopes are at most 1, but for the approximation of distances below.
 pub(super) const STEEPEST: f64 = 1.05;
 
-/// A foot that is farther off the curve, in radii, is not where the ball touches: the share of the
-/// first foot grows by so much with what it is off.
+/// A foot that is farther off, in radii, is not where the ball touches: the share of the first foot
+/// grows by so much with what it is off.
 const ARRIVED: f64 = 0.05;
 const FADING: f64 = 4.0;
 
@@ -49,9 +55,25 @@ impl Fillet {
         4.0 * self.reach()
     }
 
-    /// How far off the curve a foot is where the operands are like this, in radii.
-    pub(super) fn off(self, sides: [Sample; 2]) -> f64 {
-        sides.iter().map(|(value, _)| (value / self.radius + 1.0).abs()).fold(0.0, f64::max)
+    /// Whether there are steps to make where the parts have these values. Well inside of either, at r
+    /// and more, the blend is taken to be the join: no surface is near.
+    pub(super) fn near(self, [x, y]: [f64; 2]) -> bool {
+        x.min(y) >= -self.reach() && x.max(y) < self.radius
+    }
+
+    /// How far off a foot is where the operands are like this, in radii.
+    pub(super) fn off(self, foot: &Foot, sides: [Sample; 2]) -> f64 {
+        let off = |i: usize| {
+            let over = sides[i].0 / self.radius + 1.0;
+            if foot.touches[i] { over.abs() } else { over.max(0.0) }
+        };
+        off(0).max(off(1))
+    }
+
+    /// Whether there are no more steps to make: a foot has come to rest, or does not come to rest, as on a
+    /// part's medial axis.
+    pub(super) fn ends(self, foot: &Foot, step: usize) -> bool {
+        foot.moved <= STILL * self.radius || step > 1 && foot.moved > SHRINKS * foot.before
     }
 
     /// Whether a foot that is so far off tells of those of points around.
@@ -61,7 +83,7 @@ impl Fillet {
 
     /// The ball's surface at p, where p is between the lines of contact.
     fn ball(self, p: DVec3, foot: &Foot) -> Option<Sample> {
-        if foot.weights.iter().any(|&weight| weight > 0.0) {
+        if foot.touches != [true; 2] {
             return None;
         }
         let away = p - foot.q;
@@ -81,37 +103,52 @@ impl Fillet {
     }
 }
 
-/// The point of the centre's curve nearest to a point, as far as it is known.
+/// The centre of a ball nearest to a point, as far as it is known.
 #[derive(Clone, Copy)]
 pub(super) struct Foot {
     pub(super) q: DVec3,
-    /// q − p in terms of the two gradients.
-    weights: [f64; 2],
-    /// How far the last step has moved q.
+    /// Which of the operands the ball touches.
+    touches: [bool; 2],
+    /// How far the last step has moved q, and the one before it.
     moved: f64,
+    before: f64,
 }
 
 impl Foot {
     pub(super) fn new(p: DVec3) -> Foot {
-        Foot { q: p, weights: [0.0; 2], moved: 0.0 }
+        Foot { q: p, touches: [false; 2], moved: 0.0, before: 0.0 }
     }
 
-    /// A Newton step: the point nearest to p of the line on which both tangent planes at q are at
-    /// −r. False if there is no such line near.
+    /// A step: to the point nearest to p where neither of the tangent planes at q is above −r. False if
+    /// there is none near.
     pub(super) fn step(&mut self, p: DVec3, sides: [Sample; 2], fillet: Fillet) -> bool {
-        let [(x, a), (y, b)] = sides;
-        let (aa, ab, bb) = (a.dot(a), a.dot(b), b.dot(b));
-        let determinant = aa * bb - ab * ab;
-        let parallel = determinant <= 1e-6 * aa * bb;
-        if parallel || determinant.is_nan() {
-            return false;
-        }
         let from = self.q - p;
-        let (u, v) = (a.dot(from) - (x + fillet.radius), b.dot(from) - (y + fillet.radius));
-        self.weights = [(bb * u - ab * v) / determinant, (aa * v - ab * u) / determinant];
-        let step = self.weights[0] * a + self.weights[1] * b;
-        self.moved = (p + step).distance(self.q);
-        self.q = p + step;
-        step.length() <= fillet.farthest()
+        let [(u, a), (v, b)] = sides.map(|(value, slope)| (slope.dot(from) - (value + fillet.radius), slope));
+        let Some((way, touches)) = least([a, b], [u, v]) else { return false };
+        (self.before, self.moved) = (self.moved, (p + way).distance(self.q));
+        (self.q, self.touches) = (p + way, touches);
+        way.length() <= fillet.farthest()
     }
+}
+
+/// The shortest d with a·d ≤ u and b·d ≤ v, and which of them it reaches.
+fn least([a, b]: [DVec3; 2], [u, v]: [f64; 2]) -> Option<(DVec3, [bool; 2])> {
+    if u >= 0.0 && v >= 0.0 {
+        return Some((DVec3::ZERO, [false; 2]));
+    }
+    let (aa, ab, bb) = (a.dot(a), a.dot(b), b.dot(b));
+    // To one of the planes, if that is behind the other.
+    if u < 0.0 && ab * u <= v * aa && aa > 0.0 {
+        return Some((a * (u / aa), [true, false]));
+    }
+    if v < 0.0 && ab * v <= u * bb && bb > 0.0 {
+        return Some((b * (v / bb), [false, true]));
+    }
+    let determinant = aa * bb - ab * ab;
+    let parallel = determinant <= 1e-6 * aa * bb;
+    if parallel || determinant.is_nan() {
+        return None;
+    }
+    let weights = [(bb * u - ab * v) / determinant, (aa * v - ab * u) / determinant];
+    Some((weights[0] * a + weights[1] * b, [true; 2]))
 }

@@ -10,22 +10,25 @@
 //!
 //! The other operations are those of complements (De Morgan). Both forms exceed max(x, y).
 //!
-//! A fillet is exact where the ball fits and touches each operand once. It needs operands
-//! that are smooth within a radius of the edge; where they have edges of their own it goes
-//! round them in a mitre.
+//! A fillet is exact where the ball fits and touches each operand once. Operands that are joins are
+//! taken [part by part](sides). It needs parts that are smooth within a radius of the edge; where they
+//! have edges of their own it goes round them in a mitre.
 //!
 //! Source: J. R. Rossignac and A. A. G. Requicha, *Constant-radius blending in solid
 //! modelling* (1984), for the rolling ball.
 
 mod chamfer;
 mod fillet;
+mod pair;
+mod sides;
 
 use glam::{DAffine3, DVec3};
 
 use self::chamfer::{Chamfer, length};
-use self::fillet::{FADES, Fillet, Foot, STEEPEST, STEPS};
+use self::fillet::{FADES, Fillet, STEEPEST};
+use self::sides::{Side, join, sides};
 use super::composite::{Locals, Slopes, Whole, finish, points64, roundoff, with_evaluator, write_gradients};
-use super::{Program, Tape};
+use super::{Evaluator, Program, Tape};
 use crate::field::{AnyField, Chunk, Zone, steep_slopes};
 use crate::num::kernel::CHUNK;
 use crate::num::symbol::Symbol;
@@ -41,12 +44,21 @@ pub(crate) struct EdgeBlend {
     /// −1 for the complement of a union of complements.
     sign: f64,
     shape: Shape,
+    /// What is told of all its leaves: blends may be nested deeply.
+    is_steady: bool,
+    jumps: bool,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 enum Shape {
-    Fillet(Fillet),
+    Fillet(Fillet, Box<[Side; 2]>),
     Chamfer(Chamfer),
+}
+
+impl Shape {
+    fn filleted(fillet: Fillet, operands: [&Program; 2], signs: [f64; 2]) -> Shape {
+        Shape::Fillet(fillet, Box::new(sides(operands, signs)))
+    }
 }
 
 /// Differences of gradients are taken over this part of the width, point by point and in lanes.
@@ -66,32 +78,40 @@ impl EdgeBlend {
         };
         let shape = match blend {
             Blend::Chamfer { width } => Shape::Chamfer(Chamfer { width, steepest: steepest[0].max(steepest[1]) }),
-            Blend::Fillet { radius } => Shape::Fillet(Fillet { radius }),
-            _ => Shape::Fillet(Fillet { radius: 0.0 }),
+            Blend::Fillet { radius } => Shape::filleted(Fillet { radius }, operands.each_ref(), signs),
+            _ => Shape::filleted(Fillet { radius: 0.0 }, operands.each_ref(), signs),
         };
-        EdgeBlend { operands: operands.map(Whole::new), signs, sign, shape }
+        EdgeBlend::of(operands, signs, sign, shape)
+    }
+
+    fn of(operands: [Program; 2], signs: [f64; 2], sign: f64, shape: Shape) -> EdgeBlend {
+        let is_steady = operands.iter().all(Program::is_steady);
+        let jumps = operands.iter().any(Program::jumps);
+        EdgeBlend { operands: operands.map(Whole::new), signs, sign, shape, is_steady, jumps }
     }
 
     /// The radius or width.
     pub(super) fn size(&self) -> f64 {
-        match self.shape {
-            Shape::Fillet(Fillet { radius }) => radius,
-            Shape::Chamfer(Chamfer { width, .. }) => width,
+        match &self.shape {
+            Shape::Fillet(fillet, _) => fillet.radius,
+            Shape::Chamfer(chamfer) => chamfer.width,
         }
     }
 
     /// Where an operand's value is below the negative of this, the blend is the join.
     fn reach(&self) -> f64 {
-        match self.shape {
-            Shape::Fillet(fillet) => fillet.reach(),
+        match &self.shape {
+            Shape::Fillet(fillet, _) => fillet.reach(),
             Shape::Chamfer(chamfer) => chamfer.reach(),
         }
     }
 
-    /// Whether the blend may be more than the join where the operands have these values. Well
-    /// inside of either, steps to the curve of a fillet say nothing new.
+    /// Whether the blend may be more than the join where the operands have these values.
     fn near(&self, [x, y]: [f64; 2]) -> bool {
-        x.min(y) >= -self.reach() && (matches!(self.shape, Shape::Chamfer(_)) || x.max(y) < self.size())
+        match &self.shape {
+            Shape::Fillet(fillet, _) => fillet.near([x, y]),
+            Shape::Chamfer(chamfer) => x.min(y) >= -chamfer.reach(),
+        }
     }
 
     /// The blend's range over a zone, and whether the blend, moved by `shift`, may have another
@@ -100,9 +120,11 @@ impl EdgeBlend {
         let (values, shift) = (self.ranges(zone), shift.abs());
         let join = values[0].max(values[1]);
         let near = |by: f64| values.iter().all(|value| value.hi() >= -(self.reach() + by));
-        let (range, reaches) = match self.shape {
+        let (range, reaches) = match &self.shape {
             _ if !near(shift) => (join, false),
-            Shape::Fillet(fillet) => (if near(0.0) { self.fillet_range(fillet, join, zone).0 } else { join }, true),
+            Shape::Fillet(fillet, sides) => {
+                (if near(0.0) { self.fillet_range(*fillet, sides, join, zone).0 } else { join }, true)
+            }
             Shape::Chamfer(chamfer) => {
                 let height = chamfer.range(values, self.gradients(zone));
                 (if near(0.0) { self.chamfered_range(values, height) } else { join }, height.hi() >= -shift)
@@ -132,13 +154,19 @@ impl EdgeBlend {
             return None;
         }
         // Operands are asked for at most this far from the point.
-        let near = zone.inflated(match self.shape {
-            Shape::Fillet(fillet) => fillet.farthest(),
+        let near = zone.inflated(match &self.shape {
+            Shape::Fillet(fillet, _) => fillet.farthest(),
             Shape::Chamfer(chamfer) => 2.0 * TURN_OF_LANES * chamfer.width,
         });
         let operands = [0, 1].map(|i| self.operands[i].reduced(&near));
         let simpler = leaves(operands.each_ref()) < leaves(self.operands.each_ref().map(|operand| &**operand));
-        simpler.then(|| EdgeBlend { operands: operands.map(Whole::new), ..*self })
+        simpler.then(|| {
+            let shape = match &self.shape {
+                Shape::Fillet(fillet, _) => Shape::filleted(*fillet, operands.each_ref(), self.signs),
+                Shape::Chamfer(chamfer) => Shape::Chamfer(*chamfer),
+            };
+            EdgeBlend::of(operands, self.signs, self.sign, shape)
+        })
     }
 
     fn sample(&self, i: usize, p: DVec3) -> Sample {
@@ -152,9 +180,9 @@ impl EdgeBlend {
 
     /// Value and gradient of the blend, as a union.
     fn at(&self, p: DVec3) -> Sample {
-        match self.shape {
-            Shape::Fillet(fillet) => self.filleted(fillet, p).0,
-            Shape::Chamfer(chamfer) => self.chamfered(chamfer, p),
+        match &self.shape {
+            Shape::Fillet(fillet, sides) => self.filleted(*fillet, sides, p).0,
+            Shape::Chamfer(chamfer) => self.chamfered(*chamfer, p),
         }
     }
 
@@ -173,50 +201,48 @@ impl EdgeBlend {
 
     /// The blend, and whether it tells anything of the points around: not where the search for
     /// the foot has failed, as it does on an operand's medial axis and beside its own edges.
-    fn filleted(&self, fillet: Fillet, p: DVec3) -> (Sample, bool) {
+    fn filleted(&self, fillet: Fillet, sides: &[Side; 2], p: DVec3) -> (Sample, bool) {
         let here = self.samples(p);
-        let join = larger(here[0], here[1]);
         if !self.near(here.map(|(value, _)| value)) {
-            return (join, true);
+            return (larger(here[0], here[1]), true);
         }
-        let mut foot = Foot::new(p);
-        if !foot.step(p, here, fillet) {
-            // Faces that are flush are parallel all about.
-            let [a, b] = here.map(|(_, gradient)| gradient.normalize_or_zero());
-            return (join, a.dot(b) > 0.999);
-        }
-        let (first, mut off) = (foot, f64::INFINITY);
-        for step in 1..=STEPS {
-            let sides = self.samples(foot.q);
-            off = fillet.off(sides);
-            if step < STEPS && !foot.step(p, sides, fillet) {
-                off = f64::INFINITY;
-                break;
-            }
-        }
-        (fillet.blend(p, join, &first, &foot, off), fillet.tells(&foot, off))
+        let parts = [0, 1].map(|i| sides[i].samples(here[i], p));
+        let mut told = true;
+        let blend = join(sides, |i, j| {
+            let pair = [&sides[0].parts[i], &sides[1].parts[j]];
+            let (blend, tells) = fillet.between(pair, [parts[0][i], parts[1][j]], p);
+            told &= tells;
+            blend
+        });
+        // Well inside, parts tell less than the operands do.
+        (larger(blend, larger(here[0], here[1])), told)
     }
 
     /// The range of a fillet, as a union, and the steepest slope in it where that is known.
-    fn fillet_range(&self, fillet: Fillet, join: Interval, zone: &Zone) -> (Interval, f64) {
-        // The blend is at least the join, whatever became of its steps. Within reach of the
-        // ball it is the distance from the centre curve, of slope 1; beyond, no more than the
-        // longest way to a foot.
-        let ((centre, _), told) = self.filleted(fillet, zone.centre);
+    fn fillet_range(&self, fillet: Fillet, sides: &[Side; 2], join: Interval, zone: &Zone) -> (Interval, f64) {
+        // The blend is at least the join, whatever became of its steps. Where they arrive it is a distance, of
+        // slope 1; else no more than the longest way to a foot.
+        let ((centre, _), told) = self.filleted(fillet, sides, zone.centre);
         let extent = zone.extent().length();
-        let (steepest, close) = match told {
-            true => (STEEPEST, 0.25 * fillet.radius),
+        let (steepest, reach) = match told {
+            true if self.is_steady && !self.jumps => (STEEPEST, f64::INFINITY),
+            // No foot tells of those of points more than a radius away: an operand may have edges between.
+            true => (STEEPEST, fillet.radius),
+            // Where a gradient may vanish, as on the axis of a disc, the blend jumps; those of distances that
+            // are searched for are not known, and do not vanish.
+            false if self.is_steady && self.gradients(zone).iter().any(|slope| length(*slope).lo() < 0.1) => {
+                (FADES, 0.0)
+            }
             false => (FADES, 0.02 * fillet.radius),
         };
+        if extent >= reach {
+            return (Interval::new(join.lo(), join.hi().max(fillet.farthest())), f64::INFINITY);
+        }
         let radius = steepest * extent;
-        // Where a gradient may vanish, as on the axis of a disc, the blend jumps.
-        let turns = || self.gradients(zone).iter().any(|gradient| length(*gradient).lo() < 0.1);
-        let close = extent < close && (told || !turns());
-        // No foot tells of those of points more than a radius away: an operand may have edges between.
-        let below = (told && extent < fillet.radius || close) && centre + radius < 0.0;
-        let hi = if below { centre + radius } else { join.hi().max(fillet.farthest()) };
-        let lo = if close { join.lo().max(centre - radius) } else { join.lo() };
-        (Interval::new(lo, hi.max(lo)), if close { steepest } else { f64::INFINITY })
+        // Where the join is r the blend falls back to it.
+        let lo = join.lo().max((centre - radius).min(fillet.radius));
+        let hi = if centre + radius < 0.0 { centre + radius } else { join.hi().max(fillet.farthest()) };
+        (Interval::new(lo, hi.max(lo)), steepest)
     }
 
     /// The blend, as a union, where the operands have these values and T is `height`.
@@ -240,7 +266,7 @@ fn larger(a: Sample, b: Sample) -> Sample {
 impl AnyField for EdgeBlend {
     fn name(&self) -> &'static str {
         match self.shape {
-            Shape::Fillet(_) => "fillet",
+            Shape::Fillet(..) => "fillet",
             Shape::Chamfer(_) => "chamfer",
         }
     }
@@ -267,9 +293,9 @@ impl AnyField for EdgeBlend {
         let here = [0, 1].map(|i| self.signs[i] * self.operands[i].value(p));
         let join = here[0].max(here[1]);
         self.sign
-            * match self.shape {
+            * match &self.shape {
                 _ if !self.near(here) => join,
-                Shape::Fillet(_) => self.at(p).0,
+                Shape::Fillet(..) => self.at(p).0,
                 Shape::Chamfer(chamfer) => join.max(chamfer.height(self.samples(p))),
             }
     }
@@ -290,10 +316,10 @@ impl AnyField for EdgeBlend {
             Dual::new(v, [along(0), along(1), along(2)])
         });
         let join = sides[0].max(sides[1]);
-        let blend = match self.shape {
+        let blend = match &self.shape {
             _ if values.iter().any(|value| value.hi() < -self.reach()) => join,
-            Shape::Fillet(fillet) => {
-                let (range, steepest) = self.fillet_range(fillet, join.value(), &Zone::of_sides(hull));
+            Shape::Fillet(fillet, sides) => {
+                let (range, steepest) = self.fillet_range(*fillet, sides, join.value(), &Zone::of_sides(hull));
                 Dual::new(range, if steepest.is_finite() { steep_slopes(steepest, p) } else { [Interval::ALL; 3] })
             }
             Shape::Chamfer(chamfer) => {
@@ -360,7 +386,11 @@ impl AnyField for EdgeBlend {
     }
 
     fn is_steady(&self) -> bool {
-        self.operands.iter().all(|operand| operand.is_steady())
+        self.is_steady
+    }
+
+    fn jumps(&self) -> bool {
+        self.jumps
     }
 
     fn takes_short(&self) -> bool {
@@ -373,63 +403,48 @@ impl EdgeBlend {
     fn chunk(&self, local: &Locals, tapes: [&Tape; 2], steep: bool) -> Slopes {
         with_evaluator(|evaluator| {
             let mut sample =
-                |at: &Locals| -> Pair { Pair([0, 1].map(|i| at.gradients(evaluator, tapes[i])), self.signs) };
+                |at: &Locals| -> Pair { Pair([0, 1].map(|i| at.gradients(evaluator, tapes[i]).times(self.signs[i]))) };
             let here = sample(local);
-            let mut out = Slopes { value: [0.0; CHUNK], gradient: [[0.0; CHUNK]; 3] };
+            let mut out = Slopes::default();
             for i in 0..local.count {
                 let [x, y] = here.at(i);
                 out.set(i, larger(x, y));
             }
-            match self.shape {
-                Shape::Fillet(fillet) => self.filleted_lanes(fillet, local, &here, &mut sample, &mut out),
-                Shape::Chamfer(chamfer) => self.chamfered_lanes(chamfer, local, &here, &mut sample, &mut out, steep),
+            match &self.shape {
+                Shape::Fillet(fillet, sides) => {
+                    self.filleted_lanes((*fillet, sides), local, &here, evaluator, &mut out)
+                }
+                Shape::Chamfer(chamfer) => self.chamfered_lanes(*chamfer, local, &here, &mut sample, &mut out, steep),
             }
-            for list in [&mut out.value].into_iter().chain(&mut out.gradient) {
-                list.iter_mut().for_each(|v| *v *= self.sign as f32);
-            }
-            out
+            out.times(self.sign)
         })
     }
 
     fn filleted_lanes(
         &self,
-        fillet: Fillet,
+        (fillet, sides): (Fillet, &[Side; 2]),
         local: &Locals,
         here: &Pair,
-        sample: &mut impl FnMut(&Locals) -> Pair,
+        evaluator: &mut Evaluator,
         out: &mut Slopes,
     ) {
-        let mut feet: Vec<Option<[Foot; 2]>> = (0..local.count)
-            .map(|i| {
-                let (p, sides) = (local.get(i), here.at(i));
-                let mut foot = Foot::new(p);
-                let near = self.near(sides.map(|(value, _)| value)) && foot.step(p, sides, fillet);
-                near.then_some([foot; 2])
-            })
-            .collect();
-        if feet.iter().all(Option::is_none) {
+        let near: Vec<bool> = (0..local.count).map(|i| fillet.near(here.at(i).map(|(value, _)| value))).collect();
+        if !near.contains(&true) {
             return;
         }
-        let mut offs = vec![f64::INFINITY; local.count];
-        let mut lost = vec![false; local.count];
-        let mut at = Locals { ..*local };
-        for step in 1..=STEPS {
-            for (i, feet) in feet.iter().enumerate() {
-                at.set(i, feet.map_or(local.get(i), |[_, foot]| foot.q));
-            }
-            let sides = sample(&at);
-            for (i, feet) in feet.iter_mut().enumerate() {
-                let Some([_, foot]) = feet.as_mut().filter(|_| !lost[i]) else { continue };
-                offs[i] = fillet.off(sides.at(i));
-                if step < STEPS && !foot.step(local.get(i), sides.at(i), fillet) {
-                    (offs[i], lost[i]) = (f64::INFINITY, true);
-                }
+        let parts = [0, 1].map(|i| sides[i].lanes(&here.0[i], local, evaluator));
+        let mut pairs = Vec::with_capacity(parts[0].len() * parts[1].len());
+        for (first, x) in sides[0].parts.iter().zip(&parts[0]) {
+            for (second, y) in sides[1].parts.iter().zip(&parts[1]) {
+                pairs.push(fillet.lanes_between([first, second], [x, y], (local, &near), evaluator));
             }
         }
-        for (i, feet) in feet.iter().enumerate() {
-            if let Some([first, last]) = feet {
-                out.set(i, fillet.blend(local.get(i), out.at(i), first, last, offs[i]));
-            }
+        for i in (0..local.count).filter(|&i| near[i]) {
+            let blend = join(sides, |a, b| match &pairs[a * parts[1].len() + b] {
+                Some(blend) => blend.at(i),
+                None => larger(parts[0][a].at(i), parts[1][b].at(i)),
+            });
+            out.set(i, larger(blend, out.at(i)));
         }
     }
 
@@ -472,13 +487,10 @@ impl EdgeBlend {
 }
 
 /// Both operands over a chunk.
-struct Pair([Slopes; 2], [f64; 2]);
+struct Pair([Slopes; 2]);
 
 impl Pair {
     fn at(&self, i: usize) -> [Sample; 2] {
-        [0, 1].map(|k| {
-            let (value, gradient) = self.0[k].at(i);
-            (self.1[k] * value, self.1[k] * gradient)
-        })
+        self.0.each_ref().map(|side| side.at(i))
     }
 }

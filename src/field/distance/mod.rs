@@ -207,6 +207,10 @@ impl AnyField for Distance {
         false
     }
 
+    fn jumps(&self) -> bool {
+        !self.chain.maps.is_empty()
+    }
+
     fn growth(&self) -> DVec3 {
         // By a length as much, and by what the search may miss of it.
         DVec3::splat(1.05)
