@@ -24,8 +24,8 @@ impl ParamError {
 }
 
 /// Lengths are between these bounds, far inside what the arithmetic can hold.
-pub(super) const SMALLEST_LENGTH: f64 = 1e-9;
-pub(super) const LARGEST_LENGTH: f64 = 1e9;
+pub(crate) const SMALLEST_LENGTH: f64 = 1e-9;
+pub(crate) const LARGEST_LENGTH: f64 = 1e9;
 
 /// A length: positive, neither NaN nor extreme.
 pub(crate) fn length(parameter: &str, value: f64) -> Result<(), ParamError> {

@@ -35,8 +35,8 @@ use crate::bounds::Bounds;
 pub enum CellSize {
     /// The side of a cubic cell in length units, finite and above 0.
     Length(f64),
-    /// The number of cells along the longest side of the bounds, at least 1. The default:
-    /// 128.
+    /// The number of cells along the longest side of the bounds, at least 1; of a solid that is cut,
+    /// of the part of its box within them. The default: 128.
     LongestSide(u32),
 }
 

@@ -67,7 +67,8 @@ pub enum AtBounds {
     #[default]
     Cap,
     /// It is an error, [`MeshingError::LeavesBounds`](crate::MeshingError::LeavesBounds), which says
-    /// where. A hundredth of a cell is let pass.
+    /// where, also of parts that are wholly outside. A hundredth of a cell is let pass, and of corners and thin
+    /// parts what does not show in cells of the size. It takes up to twice as long.
     Refuse,
 }
 

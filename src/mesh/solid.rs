@@ -7,8 +7,9 @@ use super::extract::ExtractError;
 use super::lattice::{CellSize, Lattice, LatticeError};
 use super::paint::corner_colors;
 use super::resolve::unresolved_cells;
-use super::settings::{AtBounds, MeshSettings, ThinFeatures};
+use super::settings::{AtBounds, Features, MeshSettings, ThinFeatures};
 use crate::eval::compiled;
+use crate::field::check::{LARGEST_LENGTH, SMALLEST_LENGTH};
 use crate::geom::Mesh;
 use crate::{Bounds, Cancelled, Paint, RFunction, Run, Solid, SolidError};
 
@@ -34,7 +35,8 @@ pub enum MeshingError {
     /// The solid leaves the bounds, and the settings do not want it cut.
     #[error("the solid goes on beyond the bounds at {at}; allowed: a solid within them, or `AtBounds::Cap`")]
     LeavesBounds {
-        /// A point of the boundary of the bounds that is inside the solid.
+        /// A point of the boundary of the bounds that is inside the solid; if there is none, one of the solid
+        /// outside of the bounds.
         at: DVec3,
     },
     /// The extraction contradicts itself: a defect of this crate.
@@ -44,6 +46,9 @@ pub enum MeshingError {
         what: String,
     },
 }
+
+/// What leaves the bounds by less, in cells, is let pass: vertices may be off by a thousandth.
+const SLACK: f64 = 0.01;
 
 impl From<ExtractError> for MeshingError {
     fn from(error: ExtractError) -> MeshingError {
@@ -75,7 +80,11 @@ impl Solid {
     pub fn mesh_with(&self, settings: &MeshSettings, run: &Run) -> Result<Mesh, MeshingError> {
         let (solid, bounds) = self.cut_to(settings.bounds.as_ref())?;
         let run = run.stage(0.0, 1.0);
+        let whole = settings.bounds.as_ref().filter(|_| settings.at_bounds == AtBounds::Refuse);
         if bounds.is_empty() {
+            if let Some(given) = whole {
+                self.refuse_beyond(given, Lattice::new(given, settings.cell)?.step(), &run)?;
+            }
             run.report(1.0);
             return Ok(Mesh::default());
         }
@@ -88,8 +97,9 @@ impl Solid {
             // How long each stage takes, more or less.
             let if_done = |is_done: bool, time: f64| if is_done { time } else { 0.0 };
             let counts = settings.thin != ThinFeatures::Ignore;
-            let times = [0.15, if_done(counts, 7.0), 0.85, if_done(owned, 0.8), if_done(painted, 0.2)];
-            let [to_find, to_count, to_extract, to_own, to_paint] = run.stages(times);
+            let [own, paint] = [if_done(owned, 0.8), if_done(painted, 0.2)];
+            let times = [0.15, if_done(counts, 7.0), 0.85, if_done(whole.is_some(), 1.0), own, paint];
+            let [to_find, to_count, to_extract, to_refuse, to_own, to_paint] = run.stages(times);
             let mut lattice = Lattice::new(&bounds, settings.cell)?;
             let mut blocks = Blocks::find(&programs.surface, &lattice, &to_find)?;
             let (mut unresolved, mut halvings) = (None, 0);
@@ -108,8 +118,9 @@ impl Solid {
                 }
             }
             let mut mesh = blocks.extract(&programs.surface, (&lattice, bounds), settings.features, &to_extract)?;
-            if let (AtBounds::Refuse, Some(given)) = (settings.at_bounds, &settings.bounds) {
+            if let Some(given) = whole {
                 self.refuse_caps(&mesh, given, lattice.step())?;
+                self.refuse_beyond(given, lattice.step(), &to_refuse)?;
             }
             if owned {
                 let owners = blocks.owners(&lattice, &mesh, &programs.surface, &to_own)?;
@@ -129,8 +140,7 @@ impl Solid {
 
     /// An error if a vertex on a face of the bounds is inside the solid.
     fn refuse_caps(&self, mesh: &Mesh, given: &Bounds, step: f64) -> Result<(), MeshingError> {
-        // Vertices may be off by a thousandth of a cell.
-        let slack = 0.01 * step;
+        let slack = SLACK * step;
         let program = &compiled(self)?.surface;
         let inner = given.inflate(-slack);
         // Values are no lengths; by the slope they tell how far it is to the surface.
@@ -145,19 +155,45 @@ impl Solid {
         }
     }
 
+    /// An error if there is a part of the solid beyond the bounds, of a size that cells of this size show.
+    fn refuse_beyond(&self, given: &Bounds, step: f64, run: &Run) -> Result<(), MeshingError> {
+        let own = self.bounds()?;
+        if given.contains_bounds(&own) || !own.is_finite() {
+            return Ok(());
+        }
+        let whole =
+            MeshSettings { cell: CellSize::Length(step), features: Features::Smooth, ..MeshSettings::default() };
+        let within = given.inflate(SLACK * step);
+        match self.mesh_with(&whole, run)?.positions().iter().find(|p| !within.contains(p.as_dvec3())) {
+            Some(at) => Err(MeshingError::LeavesBounds { at: at.as_dvec3() }),
+            None => Ok(()),
+        }
+    }
+
     /// The solid cut to a box, if there is one and the solid leaves it, and the box that
     /// holds what is left.
     fn cut_to(&self, bounds: Option<&Bounds>) -> Result<(Solid, Bounds), SolidError> {
         let Some(given) = bounds else { return Ok((self.clone(), self.finite_bounds()?)) };
-        let size = given.size();
-        if given.is_empty() || !given.is_finite() || size.min_element() <= 0.0 {
-            return Err(SolidError::Bounds { bounds: format!("{} to {}", given.min, given.max) });
+        let wrong = || SolidError::Bounds { bounds: format!("{} to {}", given.min, given.max) };
+        if given.is_empty() || !given.is_finite() || given.size().min_element() < SMALLEST_LENGTH {
+            return Err(wrong());
         }
         let own = self.bounds()?;
         if own.is_empty() || given.contains_bounds(&own) {
             return Ok((self.clone(), own));
         }
-        let cut = self.intersection(Solid::cuboid(size).translate(given.center()), RFunction::MIN_MAX);
-        Ok((cut, own.intersection(given)))
+        let part = own.intersection(given);
+        // Boxes are larger than what they hold by rounding.
+        let rounding = 1e-12 * given.min.abs().max(given.max.abs()).max_element();
+        if part.size().min_element() <= rounding {
+            return Ok((self.clone(), Bounds::EMPTY));
+        }
+        // Far from the solid the bounds cut nothing.
+        let knife = given.intersection(&own.inflate(own.size().max_element()));
+        if knife.size().max_element() > LARGEST_LENGTH {
+            return Err(wrong());
+        }
+        let cut = self.intersection(Solid::cuboid(knife.size()).translate(knife.center()), RFunction::MIN_MAX);
+        Ok((cut, part))
     }
 }

@@ -57,8 +57,11 @@ pub enum SolidError {
         /// The node that makes it so.
         path: String,
     },
-    /// Bounds that are empty, infinite or NaN.
-    #[error("bounds are {bounds}, allowed: finite, with min below max along every axis")]
+    /// Bounds that are empty, infinite or NaN, too thin, or too large to cut a solid.
+    #[error(
+        "bounds are {bounds}, allowed: finite, with min below max by at least 1e-9 along every axis, by at most 1e9 \
+         where a solid goes on to them"
+    )]
     Bounds {
         /// What was given.
         bounds: String,

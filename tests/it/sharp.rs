@@ -3,7 +3,9 @@
 use std::collections::HashMap;
 
 use glam::{DQuat, DVec3};
-use rvachev::{AtBounds, Bounds, CellSize, Features, Field, Mesh, MeshSettings, MeshingError, ParamError, Real, Solid};
+use rvachev::{
+    AtBounds, Bounds, CellSize, Features, Field, Mesh, MeshSettings, MeshingError, ParamError, RFunction, Real, Solid,
+};
 
 use crate::models;
 use crate::support::Random;
@@ -353,6 +355,47 @@ fn leaving_bounds_is_a_matter_of_lengths() {
         assert!(refused(0.5) && refused(0.99), "{scale}");
         // By less than a hundredth of a cell.
         assert!(!refused(0.9996) && !refused(1.0), "{scale}");
+    }
+}
+
+#[test]
+fn parts_wholly_outside_of_the_bounds_leave_them() {
+    let bounds = Bounds::from_center(DVec3::ZERO, DVec3::splat(1.5));
+    let settings = MeshSettings { cell: CellSize::LongestSide(24), bounds: Some(bounds), ..MeshSettings::default() };
+    let refused = MeshSettings { at_bounds: AtBounds::Refuse, ..settings.clone() };
+    let ball = Solid::sphere(1.0);
+    let far = ball.translate(3.0 * DVec3::X);
+    for solid in [far.clone(), &ball | &far] {
+        match solid.mesh(&refused) {
+            Err(MeshingError::LeavesBounds { at }) => assert!((at.distance(3.0 * DVec3::X) - 1.0).abs() < 0.02, "{at}"),
+            other => panic!("{other:?}"),
+        }
+    }
+    assert!(far.mesh(&settings).unwrap().triangles().is_empty());
+    assert!(ball.mesh(&refused).is_ok());
+    // A box that says less than is there.
+    assert!((ball.union(&far, RFunction::MIN_MAX) & Solid::sphere(1.2)).mesh(&refused).is_ok());
+}
+
+#[test]
+fn bounds_that_touch_or_are_far_away_are_bounds() {
+    let cube = Solid::cuboid(DVec3::ONE);
+    let mesh = |solid: &Solid, bounds: Bounds| {
+        solid.mesh(&MeshSettings { cell: CellSize::LongestSide(16), bounds: Some(bounds), ..MeshSettings::default() })
+    };
+    // In a corner, along an edge, in a face.
+    for touched in [DVec3::ONE, DVec3::new(1.0, 1.0, 0.0), DVec3::X] {
+        let bounds = Bounds::from_center(touched, DVec3::splat(0.5));
+        assert!(mesh(&cube, bounds).unwrap().triangles().is_empty(), "{touched}");
+    }
+    // Half of it, by bounds that go on far beyond.
+    let half = mesh(&cube, Bounds::new(DVec3::new(0.0, -1e10, -1e10), DVec3::splat(1e10))).unwrap();
+    assert!((half.volume() - 0.5).abs() < 1e-6);
+    let ground = Solid::half_space(DVec3::Z, 0.0);
+    let sliver = Bounds::new(DVec3::ZERO, DVec3::new(1.0, 1.0, 1e-12));
+    for (solid, bounds) in [(&ground, Bounds::from_center(DVec3::ZERO, DVec3::splat(1e10))), (&cube, sliver)] {
+        let error = mesh(solid, bounds).unwrap_err().to_string();
+        assert!(error.starts_with("bounds are"), "{error}");
     }
 }
 
