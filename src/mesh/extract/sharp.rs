@@ -108,10 +108,9 @@ pub(super) struct Fans {
 /// Finds the cells that hold creases and corners, and gives them fans; nothing if normals change
 /// evenly everywhere.
 pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) -> Result<Option<Fans>, ExtractError> {
-    // Blocks whose normals change evenly are settled as a whole.
     // How long each stage takes, more or less.
-    let rest = run.stage(LOOKED, 1.0);
-    let [to_find, to_merge, to_fan] = rest.stages([7.0, 2.0, 1.0]);
+    let [to_find, to_merge, to_fan] = run.stage(LOOKED, 1.0).stages([7.0, 2.0, 1.0]);
+    // Blocks whose normals change evenly are settled as a whole.
     let even = even_blocks(samples, &run.stage(0.0, LOOKED))?;
     if even.iter().all(|&is_even| is_even) {
         return Ok(None);
