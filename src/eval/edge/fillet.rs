@@ -76,9 +76,10 @@ impl Fillet {
         foot.moved <= STILL * self.radius || step > 1 && foot.moved > SHRINKS * foot.before
     }
 
-    /// Whether a foot that is so far off tells of those of points around.
-    pub(super) fn tells(self, foot: &Foot, off: f64) -> bool {
-        off.max(foot.moved / self.radius) <= TELLING
+    /// How far from p a foot that is so far off tells of the feet of points: not as far as where they are taken
+    /// to be too far away.
+    pub(super) fn tells(self, p: DVec3, foot: &Foot, off: f64) -> f64 {
+        if off.max(foot.moved / self.radius) <= TELLING { self.farthest() - p.distance(foot.q) } else { 0.0 }
     }
 
     /// The ball's surface at p, where p is between the lines of contact.

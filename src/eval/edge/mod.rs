@@ -199,19 +199,19 @@ impl EdgeBlend {
         (height, chamfer.slope(here, [0, 1].map(|i| [turn(i, 0), turn(i, 1)])))
     }
 
-    /// The blend, and whether it tells anything of the points around: not where the search for
-    /// the foot has failed, as it does on an operand's medial axis and beside its own edges.
-    fn filleted(&self, fillet: Fillet, sides: &[Side; 2], p: DVec3) -> (Sample, bool) {
+    /// The blend, and how far around it tells anything: nowhere if the search for a foot has failed, as it
+    /// does on an operand's medial axis and beside its own edges.
+    fn filleted(&self, fillet: Fillet, sides: &[Side; 2], p: DVec3) -> (Sample, f64) {
         let here = self.samples(p);
         if !self.near(here.map(|(value, _)| value)) {
-            return (larger(here[0], here[1]), true);
+            return (larger(here[0], here[1]), f64::INFINITY);
         }
         let parts = [0, 1].map(|i| sides[i].samples(here[i], p));
-        let mut told = true;
+        let mut told = f64::INFINITY;
         let blend = join(sides, |i, j| {
             let pair = [&sides[0].parts[i], &sides[1].parts[j]];
             let (blend, tells) = fillet.between(pair, [parts[0][i], parts[1][j]], p);
-            told &= tells;
+            told = told.min(tells);
             blend
         });
         // Well inside, parts tell less than the operands do.
@@ -224,23 +224,25 @@ impl EdgeBlend {
         // slope 1; else no more than the longest way to a foot.
         let ((centre, _), told) = self.filleted(fillet, sides, zone.centre);
         let extent = zone.extent().length();
-        let (steepest, reach) = match told {
-            true if self.is_steady && !self.jumps => (STEEPEST, f64::INFINITY),
-            // No foot tells of those of points more than a radius away: an operand may have edges between.
-            true => (STEEPEST, fillet.radius),
+        let (steepest, reach) = if told > 0.0 {
+            // Of operands that are not steady no foot tells of those of points more than a radius away: there may be
+            // edges between.
+            let most = if self.is_steady && !self.jumps { f64::INFINITY } else { fillet.radius };
+            (STEEPEST, most.min(told))
+        } else {
             // Where a gradient may vanish, as on the axis of a disc, the blend jumps; those of distances that
             // are searched for are not known, and do not vanish.
-            false if self.is_steady && self.gradients(zone).iter().any(|slope| length(*slope).lo() < 0.1) => {
-                (FADES, 0.0)
-            }
-            false => (FADES, 0.02 * fillet.radius),
+            let turns = || self.gradients(zone).iter().any(|slope| length(*slope).lo() < 0.1);
+            (FADES, if self.is_steady && turns() { 0.0 } else { 0.02 * fillet.radius })
         };
         if extent >= reach {
             return (Interval::new(join.lo(), join.hi().max(fillet.farthest())), f64::INFINITY);
         }
         let radius = steepest * extent;
-        // Where the join is r the blend falls back to it.
-        let lo = join.lo().max((centre - radius).min(fillet.radius));
+        // The blend falls back to the join where that is r, and where no foot is found between operands that are
+        // closer to each other than the ball is wide.
+        let close = extent < 0.25 * fillet.radius;
+        let lo = if close { join.lo().max((centre - radius).min(fillet.radius)) } else { join.lo() };
         let hi = if centre + radius < 0.0 { centre + radius } else { join.hi().max(fillet.farthest()) };
         (Interval::new(lo, hi.max(lo)), steepest)
     }

@@ -9,16 +9,16 @@ use super::sides::Part;
 use super::{Sample, larger};
 
 impl Fillet {
-    /// The blend of two parts, and whether it tells anything of the points around: not where the
-    /// search for the foot has failed, as it does on a part's medial axis and beside its own edges.
-    pub(super) fn between(self, parts: [&Part; 2], here: [Sample; 2], p: DVec3) -> (Sample, bool) {
+    /// The blend of two parts, and how far around it tells anything: nowhere if the search for the foot
+    /// has failed, as it does on a part's medial axis and beside its own edges.
+    pub(super) fn between(self, parts: [&Part; 2], here: [Sample; 2], p: DVec3) -> (Sample, f64) {
         let join = larger(here[0], here[1]);
         if !self.near(here.map(|(value, _)| value)) {
-            return (join, true);
+            return (join, f64::INFINITY);
         }
         let mut foot = Foot::new(p);
         if !foot.step(p, here, self) {
-            return (join, false);
+            return (join, 0.0);
         }
         let (first, mut off) = (foot, f64::INFINITY);
         for step in 1..=STEPS {
@@ -35,7 +35,7 @@ impl Fillet {
                 break;
             }
         }
-        (self.blend(p, join, &first, &foot, off), self.tells(&foot, off))
+        (self.blend(p, join, &first, &foot, off), self.tells(p, &foot, off))
     }
 
     /// The blend of two parts over a chunk, where it may be needed; none if it is their join there.
