@@ -128,7 +128,7 @@ impl Program {
         let mut ranges: Vec<Interval> = Vec::with_capacity(self.nodes.len());
         for (at, node) in self.nodes.iter().enumerate() {
             let range = match &node.kind {
-                _ if self.idle.as_ref().is_some_and(|idle| idle[at]) => Interval::ALL,
+                _ if self.is_idle(at) => Interval::ALL,
                 Kind::Leaf(leaf) | Kind::Edge { leaf, .. } => self.leaf_range(*leaf, &zones, world),
                 kind => {
                     let operand = |edge: &Edge| {

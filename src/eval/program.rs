@@ -188,6 +188,22 @@ impl Program {
         self.nodes.iter().filter(|node| matches!(node.kind, Kind::Leaf(_))).count()
     }
 
+    /// Whether a node only tells where a fillet or chamfer ends.
+    pub(super) fn is_idle(&self, node: usize) -> bool {
+        self.idle.as_ref().is_some_and(|idle| idle[node])
+    }
+
+    /// How many leaves a value takes, with those of the operands of fillets and chamfers.
+    pub(crate) fn evaluated_leaves(&self) -> usize {
+        let leaves = |(at, node): (usize, &Node)| match &node.kind {
+            _ if self.is_idle(at) => 0,
+            Kind::Leaf(_) => 1,
+            Kind::Edge { edge, .. } => edge.leaves(),
+            Kind::Join { .. } | Kind::Shift(_) => 0,
+        };
+        self.nodes.iter().enumerate().map(leaves).sum()
+    }
+
     /// What a value takes, in those of ordinary leaves.
     pub(crate) fn cost(&self) -> usize {
         let leaf = |node: &Node| if let Kind::Leaf(leaf) = node.kind { self.instance(leaf).field.cost() } else { 0 };

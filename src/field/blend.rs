@@ -39,7 +39,8 @@ use crate::{Norm, Real};
 /// leaf; a chamfer reads values over their slopes. On round operands a chamfer's width is right to
 /// 1 % up to a quarter of their radius. Where an operand has an edge of its own across the joined
 /// one, fillets and chamfers go round it in a mitre. Operands with a gap narrower than a chamfer's
-/// width, or through which a fillet's ball does not fit, are bridged.
+/// width, or through which a fillet's ball does not fit, are bridged; of walls and gaps narrower than the
+/// ball a thin skin may remain where their sides are nearly parallel.
 ///
 /// | blend | parameters | reach |
 /// |---|---|---|

@@ -83,7 +83,7 @@ impl Solid {
         let whole = settings.bounds.as_ref().filter(|_| settings.at_bounds == AtBounds::Refuse);
         if bounds.is_empty() {
             if let Some(given) = whole {
-                self.refuse_beyond(given, Lattice::new(given, settings.cell)?.step(), &run)?;
+                run.install(|| self.refuse_beyond(given, Lattice::new(given, settings.cell)?.step(), &run))?;
             }
             run.report(1.0);
             return Ok(Mesh::default());
@@ -155,16 +155,21 @@ impl Solid {
         }
     }
 
-    /// An error if there is a part of the solid beyond the bounds, of a size that cells of this size show.
+    /// An error if there is a part of the solid beyond the bounds, of a size that cells of this size show; where
+    /// they would be too many, cells of a thousandth of the solid's box.
     fn refuse_beyond(&self, given: &Bounds, step: f64, run: &Run) -> Result<(), MeshingError> {
         let own = self.bounds()?;
         if given.contains_bounds(&own) || !own.is_finite() {
             return Ok(());
         }
-        let whole =
-            MeshSettings { cell: CellSize::Length(step), features: Features::Smooth, ..MeshSettings::default() };
-        let within = given.inflate(SLACK * step);
-        match self.mesh_with(&whole, run)?.positions().iter().find(|p| !within.contains(p.as_dvec3())) {
+        let lattice =
+            Lattice::new(&own, CellSize::Length(step)).or_else(|_| Lattice::new(&own, CellSize::LongestSide(1000)))?;
+        let program = &compiled(self)?.surface;
+        let [to_find, to_extract] = run.stages([0.15, 0.85]);
+        let mut blocks = Blocks::find(program, &lattice, &to_find)?;
+        let mesh = blocks.extract(program, (&lattice, own), Features::Smooth, &to_extract)?;
+        let within = given.inflate(SLACK * lattice.step());
+        match mesh.positions().iter().find(|p| !within.contains(p.as_dvec3())) {
             Some(at) => Err(MeshingError::LeavesBounds { at: at.as_dvec3() }),
             None => Ok(()),
         }
@@ -184,7 +189,7 @@ impl Solid {
         }
         let part = own.intersection(given);
         // Boxes are larger than what they hold by rounding.
-        let rounding = 1e-12 * given.min.abs().max(given.max.abs()).max_element();
+        let rounding = 1e-12 * part.min.abs().max(part.max.abs()).max_element();
         if part.size().min_element() <= rounding {
             return Ok((self.clone(), Bounds::EMPTY));
         }

@@ -535,14 +535,13 @@ fn fillets_of_edges_do_not_jump() {
         let mut random = Random::new(83);
         let mut count = 0;
         while count < 4000 {
-            let t = DVec3::new(random.range(0.0, 1.0), random.range(0.0, 1.0), random.range(0.0, 1.0));
-            let p = bounds.min + bounds.size() * t;
+            let p = random.point_in(&bounds);
             let value = program.value(p);
             if value.abs() > 0.3 * radius {
                 continue;
             }
             count += 1;
-            let q = p + 0.02 * radius * random.vector(-1.0, 1.0).normalize();
+            let q = p + 0.02 * radius * random.direction();
             let slope = (program.value(q) - value).abs() / p.distance(q);
             assert!(slope < 1.02, "solid {nth}: {slope} at {p}");
         }
@@ -558,11 +557,10 @@ fn regions_of_fillets_of_edges_hold_their_values() {
         let mut random = Random::new(89);
         let (mut open, mut crossed) = (0, 0);
         for _ in 0..2000 {
-            let t = DVec3::new(random.range(0.0, 1.0), random.range(0.0, 1.0), random.range(0.0, 1.0));
-            let (p, half) = (bounds.min + bounds.size() * t, radius * 0.01f64.powf(random.range(-0.3, 1.0)));
-            let region = Bounds::new(p - half, p + half);
+            let (p, half) = (random.point_in(&bounds), radius * random.log_range(0.01, 4.0));
+            let region = Bounds::from_center(p, DVec3::splat(half));
             let (range, narrowed) = (program.range(&region), program.narrow(&region));
-            let values = [(); 24].map(|()| program.value(p + half * random.vector(-1.0, 1.0)));
+            let values = [(); 24].map(|()| program.value(random.point_in(&region)));
             for value in values {
                 // Well inside, the operands' join takes over from the blend.
                 let by_join = value.abs() >= radius;

@@ -373,7 +373,10 @@ fn parts_wholly_outside_of_the_bounds_leave_them() {
     }
     assert!(far.mesh(&settings).unwrap().triangles().is_empty());
     assert!(ball.mesh(&refused).is_ok());
-    // A box that says less than is there.
+    // By a part that is so far away that cells of the size would be too many.
+    let farther = &ball | Solid::sphere(1e5).translate(1e6 * DVec3::X);
+    assert!(matches!(farther.mesh(&refused), Err(MeshingError::LeavesBounds { .. })));
+    // A box that tells of more than is there.
     assert!((ball.union(&far, RFunction::MIN_MAX) & Solid::sphere(1.2)).mesh(&refused).is_ok());
 }
 
@@ -391,6 +394,10 @@ fn bounds_that_touch_or_are_far_away_are_bounds() {
     // Half of it, by bounds that go on far beyond.
     let half = mesh(&cube, Bounds::new(DVec3::new(0.0, -1e10, -1e10), DVec3::splat(1e10))).unwrap();
     assert!((half.volume() - 0.5).abs() < 1e-6);
+    // A sheet thinner than what far bounds are rounded by.
+    let sheet = Solid::cuboid(DVec3::new(0.02, 0.02, 0.002));
+    let half = mesh(&sheet, Bounds::new(DVec3::new(0.0, -1e10, -1e10), DVec3::splat(1e10))).unwrap();
+    assert!((half.volume() / 4e-7 - 1.0).abs() < 1e-5, "{}", half.volume());
     let ground = Solid::half_space(DVec3::Z, 0.0);
     let sliver = Bounds::new(DVec3::ZERO, DVec3::new(1.0, 1.0, 1e-12));
     for (solid, bounds) in [(&ground, Bounds::from_center(DVec3::ZERO, DVec3::splat(1e10))), (&cube, sliver)] {

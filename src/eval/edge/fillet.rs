@@ -15,7 +15,7 @@ use glam::DVec3;
 use super::Sample;
 
 /// At most so many steps are made from a point to the nearest centre of a ball.
-pub(super) const STEPS: usize = 8;
+const STEPS: usize = 8;
 
 /// The last one is shorter than this, in radii.
 const STILL: f64 = 1e-3;
@@ -61,27 +61,6 @@ impl Fillet {
         x.min(y) >= -self.reach() && x.max(y) < self.radius
     }
 
-    /// How far off a foot is where the operands are like this, in radii.
-    pub(super) fn off(self, foot: &Foot, sides: [Sample; 2]) -> f64 {
-        let off = |i: usize| {
-            let over = sides[i].0 / self.radius + 1.0;
-            if foot.touches[i] { over.abs() } else { over.max(0.0) }
-        };
-        off(0).max(off(1))
-    }
-
-    /// Whether there are no more steps to make: a foot has come to rest, or does not come to rest, as on a
-    /// part's medial axis.
-    pub(super) fn ends(self, foot: &Foot, step: usize) -> bool {
-        foot.moved <= STILL * self.radius || step > 1 && foot.moved > SHRINKS * foot.before
-    }
-
-    /// How far from p a foot that is so far off tells of the feet of points: not as far as where they are taken
-    /// to be too far away.
-    pub(super) fn tells(self, p: DVec3, foot: &Foot, off: f64) -> f64 {
-        if off.max(foot.moved / self.radius) <= TELLING { self.farthest() - p.distance(foot.q) } else { 0.0 }
-    }
-
     /// The ball's surface at p, where p is between the lines of contact.
     fn ball(self, p: DVec3, foot: &Foot) -> Option<Sample> {
         if foot.touches != [true; 2] {
@@ -90,44 +69,101 @@ impl Fillet {
         let away = p - foot.q;
         Some((away.length() - self.radius, away.normalize_or_zero()))
     }
+}
 
-    /// The blend at p, at least `join`, from the foot after the first step and the last one, which
-    /// is so far off.
-    pub(super) fn blend(self, p: DVec3, join: Sample, first: &Foot, last: &Foot, off: f64) -> Sample {
-        let at_least = |foot: &Foot| self.ball(p, foot).filter(|ball| ball.0 > join.0).unwrap_or(join);
-        let share = (FADING * (off - ARRIVED)).clamp(0.0, 1.0);
-        if share == 0.0 {
-            return at_least(last);
+/// The search for the centre of a ball that is nearest to a point.
+#[derive(Clone, Copy)]
+pub(super) struct Search {
+    fillet: Fillet,
+    p: DVec3,
+    /// After the first step, and after the last one.
+    first: Foot,
+    last: Foot,
+    steps: usize,
+    /// How far off the last foot is, in radii.
+    off: f64,
+    pub(super) ended: bool,
+}
+
+impl Search {
+    /// The first step, from where the parts are like this; none if there is no ball near.
+    pub(super) fn start(fillet: Fillet, p: DVec3, here: [Sample; 2]) -> Option<Search> {
+        let mut foot = Foot { q: p, touches: [false; 2], moved: 0.0 };
+        let found = foot.step(p, here, fillet);
+        found.then_some(Search { fillet, p, first: foot, last: foot, steps: 1, off: f64::INFINITY, ended: false })
+    }
+
+    /// Where the parts are asked for next.
+    pub(super) fn at(&self) -> DVec3 {
+        self.last.q
+    }
+
+    /// The next step, from where the parts are like this.
+    pub(super) fn go_on(&mut self, sides: [Sample; 2]) {
+        let before = self.last.moved;
+        self.off = self.last.off(sides, self.fillet);
+        self.ended = self.steps == STEPS;
+        if self.ended {
+            return;
         }
-        let (from, to) = (if share < 1.0 { at_least(last) } else { join }, at_least(first));
+        self.steps += 1;
+        if !self.last.step(self.p, sides, self.fillet) {
+            (self.off, self.ended) = (f64::INFINITY, true);
+        } else if self.last.moved <= STILL * self.fillet.radius {
+            // It is where it was, though it may touch another part than it did.
+            (self.off, self.ended) = (self.last.off(sides, self.fillet), true);
+        } else {
+            // On a part's medial axis it does not come to rest.
+            self.ended = self.steps > 2 && self.last.moved > SHRINKS * before;
+        }
+    }
+
+    /// How far from the point its foot tells of the feet of others: not as far as where they are taken to be
+    /// too far away, and nowhere if it has not arrived.
+    pub(super) fn tells(&self) -> f64 {
+        let arrived = self.off.max(self.last.moved / self.fillet.radius) <= TELLING;
+        if arrived { self.fillet.farthest() - self.p.distance(self.last.q) } else { 0.0 }
+    }
+
+    /// The blend, at least `join`.
+    pub(super) fn blend(&self, join: Sample) -> Sample {
+        let at_least = |foot: &Foot| self.fillet.ball(self.p, foot).filter(|ball| ball.0 > join.0).unwrap_or(join);
+        let share = (FADING * (self.off - ARRIVED)).clamp(0.0, 1.0);
+        if share == 0.0 {
+            return at_least(&self.last);
+        }
+        let (from, to) = (if share < 1.0 { at_least(&self.last) } else { join }, at_least(&self.first));
         (from.0 + share * (to.0 - from.0), from.1.lerp(to.1, share))
     }
 }
 
 /// The centre of a ball nearest to a point, as far as it is known.
 #[derive(Clone, Copy)]
-pub(super) struct Foot {
-    pub(super) q: DVec3,
-    /// Which of the operands the ball touches.
+struct Foot {
+    q: DVec3,
+    /// Which of the parts the ball touches.
     touches: [bool; 2],
-    /// How far the last step has moved q, and the one before it.
+    /// How far the last step has moved q.
     moved: f64,
-    before: f64,
 }
 
 impl Foot {
-    pub(super) fn new(p: DVec3) -> Foot {
-        Foot { q: p, touches: [false; 2], moved: 0.0, before: 0.0 }
+    /// How far off it is where the parts are like this, in radii.
+    fn off(&self, sides: [Sample; 2], fillet: Fillet) -> f64 {
+        let off = |i: usize| {
+            let over = sides[i].0 / fillet.radius + 1.0;
+            if self.touches[i] { over.abs() } else { over.max(0.0) }
+        };
+        off(0).max(off(1))
     }
 
     /// A step: to the point nearest to p where neither of the tangent planes at q is above −r. False if
     /// there is none near.
-    pub(super) fn step(&mut self, p: DVec3, sides: [Sample; 2], fillet: Fillet) -> bool {
+    fn step(&mut self, p: DVec3, sides: [Sample; 2], fillet: Fillet) -> bool {
         let from = self.q - p;
         let [(u, a), (v, b)] = sides.map(|(value, slope)| (slope.dot(from) - (value + fillet.radius), slope));
         let Some((way, touches)) = least([a, b], [u, v]) else { return false };
-        (self.before, self.moved) = (self.moved, (p + way).distance(self.q));
-        (self.q, self.touches) = (p + way, touches);
+        *self = Foot { q: p + way, touches, moved: (p + way).distance(self.q) };
         way.length() <= fillet.farthest()
     }
 }

@@ -44,9 +44,10 @@ pub(crate) struct EdgeBlend {
     /// −1 for the complement of a union of complements.
     sign: f64,
     shape: Shape,
-    /// What is told of all its leaves: blends may be nested deeply.
+    /// What is told of all its leaves, and how many are evaluated: blends may be nested deeply.
     is_steady: bool,
     jumps: bool,
+    leaves: usize,
 }
 
 #[derive(Clone, Debug)]
@@ -87,7 +88,13 @@ impl EdgeBlend {
     fn of(operands: [Program; 2], signs: [f64; 2], sign: f64, shape: Shape) -> EdgeBlend {
         let is_steady = operands.iter().all(Program::is_steady);
         let jumps = operands.iter().any(Program::jumps);
-        EdgeBlend { operands: operands.map(Whole::new), signs, sign, shape, is_steady, jumps }
+        let leaves = operands.iter().map(Program::evaluated_leaves).sum();
+        EdgeBlend { operands: operands.map(Whole::new), signs, sign, shape, is_steady, jumps, leaves }
+    }
+
+    /// How many leaves the operands evaluate.
+    pub(super) fn leaves(&self) -> usize {
+        self.leaves
     }
 
     /// The radius or width.
@@ -149,8 +156,7 @@ impl EdgeBlend {
 
     /// The same blend over a zone, from simpler operands.
     pub(super) fn reduced(&self, zone: &Zone) -> Option<EdgeBlend> {
-        let leaves = |[a, b]: [&Program; 2]| a.leaf_count() + b.leaf_count();
-        if leaves(self.operands.each_ref().map(|operand| &**operand)) <= 2 {
+        if self.leaves <= 2 {
             return None;
         }
         // Operands are asked for at most this far from the point.
@@ -159,10 +165,13 @@ impl EdgeBlend {
             Shape::Chamfer(chamfer) => 2.0 * TURN_OF_LANES * chamfer.width,
         });
         let operands = [0, 1].map(|i| self.operands[i].reduced(&near));
-        let simpler = leaves(operands.each_ref()) < leaves(self.operands.each_ref().map(|operand| &**operand));
+        let simpler = operands.iter().map(Program::evaluated_leaves).sum::<usize>() < self.leaves;
         simpler.then(|| {
             let shape = match &self.shape {
-                Shape::Fillet(fillet, _) => Shape::filleted(*fillet, operands.each_ref(), self.signs),
+                Shape::Fillet(fillet, sides) => {
+                    let reduced = [0, 1].map(|i| sides[i].reduced(&operands[i], self.signs[i]));
+                    Shape::Fillet(*fillet, Box::new(reduced))
+                }
                 Shape::Chamfer(chamfer) => Shape::Chamfer(*chamfer),
             };
             EdgeBlend::of(operands, self.signs, self.sign, shape)

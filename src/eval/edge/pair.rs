@@ -1,10 +1,10 @@
-//! The fillet of two parts: steps to the foot, at a point and in lanes.
+//! The fillet of two parts, at a point and in lanes.
 
 use glam::DVec3;
 
 use super::super::Evaluator;
 use super::super::composite::{Locals, Slopes};
-use super::fillet::{Fillet, Foot, STEPS};
+use super::fillet::{Fillet, Search};
 use super::sides::Part;
 use super::{Sample, larger};
 
@@ -16,26 +16,11 @@ impl Fillet {
         if !self.near(here.map(|(value, _)| value)) {
             return (join, f64::INFINITY);
         }
-        let mut foot = Foot::new(p);
-        if !foot.step(p, here, self) {
-            return (join, 0.0);
+        let Some(mut search) = Search::start(self, p, here) else { return (join, 0.0) };
+        while !search.ended {
+            search.go_on(parts.map(|part| part.sample(search.at())));
         }
-        let (first, mut off) = (foot, f64::INFINITY);
-        for step in 1..=STEPS {
-            let sides = parts.map(|part| part.sample(foot.q));
-            off = self.off(&foot, sides);
-            if step == STEPS {
-                break;
-            }
-            if !foot.step(p, sides, self) {
-                off = f64::INFINITY;
-                break;
-            }
-            if self.ends(&foot, step) {
-                break;
-            }
-        }
-        (self.blend(p, join, &first, &foot, off), self.tells(p, &foot, off))
+        (search.blend(join), search.tells())
     }
 
     /// The blend of two parts over a chunk, where it may be needed; none if it is their join there.
@@ -46,49 +31,31 @@ impl Fillet {
         (local, needed): (&Locals, &[bool]),
         evaluator: &mut Evaluator,
     ) -> Option<Slopes> {
-        let mut feet: Vec<Option<[Foot; 2]>> = (0..local.count)
-            .map(|i| {
-                let (p, sides) = (local.get(i), here.map(|side| side.at(i)));
-                let mut foot = Foot::new(p);
-                let near = needed[i] && self.near(sides.map(|(value, _)| value)) && foot.step(p, sides, self);
-                near.then_some([foot; 2])
-            })
-            .collect();
-        if feet.iter().all(Option::is_none) {
+        let here = |i: usize| here.map(|side| side.at(i));
+        let start = |i: usize| {
+            let near = needed[i] && self.near(here(i).map(|(value, _)| value));
+            near.then(|| Search::start(self, local.get(i), here(i)))?
+        };
+        let mut searches: Vec<Option<Search>> = (0..local.count).map(start).collect();
+        if searches.iter().all(Option::is_none) {
             return None;
         }
-        let mut offs = vec![f64::INFINITY; local.count];
-        let mut ends: Vec<bool> = feet.iter().map(Option::is_none).collect();
         let mut at = Locals { ..*local };
-        for step in 1..=STEPS {
-            for (i, feet) in feet.iter().enumerate() {
-                at.set(i, feet.filter(|_| !ends[i]).map_or(local.get(i), |[_, foot]| foot.q));
+        while searches.iter().flatten().any(|search| !search.ended) {
+            for (i, search) in searches.iter().enumerate() {
+                at.set(i, search.filter(|search| !search.ended).map_or(local.get(i), |search| search.at()));
             }
             let sides = parts.map(|part| part.lanes(&at, evaluator));
-            for (i, feet) in feet.iter_mut().enumerate() {
-                let Some([_, foot]) = feet.as_mut().filter(|_| !ends[i]) else { continue };
-                let sides = sides.each_ref().map(|side| side.at(i));
-                offs[i] = self.off(foot, sides);
-                if step == STEPS {
-                    continue;
+            for (i, search) in searches.iter_mut().enumerate() {
+                if let Some(search) = search.as_mut().filter(|search| !search.ended) {
+                    search.go_on(sides.each_ref().map(|side| side.at(i)));
                 }
-                if foot.step(local.get(i), sides, self) {
-                    ends[i] = self.ends(foot, step);
-                } else {
-                    (offs[i], ends[i]) = (f64::INFINITY, true);
-                }
-            }
-            if !ends.contains(&false) {
-                break;
             }
         }
         let mut out = Slopes::default();
-        for (i, feet) in feet.iter().enumerate() {
-            let join = larger(here[0].at(i), here[1].at(i));
-            out.set(
-                i,
-                feet.as_ref().map_or(join, |[first, last]| self.blend(local.get(i), join, first, last, offs[i])),
-            );
+        for (i, search) in searches.iter().enumerate() {
+            let [x, y] = here(i);
+            out.set(i, search.map_or(larger(x, y), |search| search.blend(larger(x, y))));
         }
         Some(out)
     }

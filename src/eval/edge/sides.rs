@@ -59,6 +59,11 @@ impl Side {
         Side { parts: vec![Part { program: Whole::new(program), sign }], terms: vec![Term::Part(0)] }
     }
 
+    /// The operand as it is reduced to: whether it is taken part by part does not depend on the place.
+    pub(super) fn reduced(&self, program: &Program, sign: f64) -> Side {
+        if let [_] = self.parts[..] { Side::single(program.clone(), sign) } else { Side::of(program, sign) }
+    }
+
     fn of(program: &Program, sign: f64) -> Side {
         let negated = program.root.negated() != (sign < 0.0);
         let jumps = jumps(program);
@@ -67,8 +72,9 @@ impl Side {
         let mut asked = vec![[false; 2]; program.nodes.len()];
         asked[program.root.node()][usize::from(negated)] = true;
         for (at, node) in program.nodes.iter().enumerate().rev() {
-            for turned in (0..2).filter(|&turned| is_join(node) && asked[at][turned]).collect::<Vec<usize>>() {
-                for edge in program.list(node).iter().filter(|edge| !jumps(edge)) {
+            let here = asked[at];
+            for edge in program.list(node).iter().filter(|edge| is_join(node) && !jumps(edge)) {
+                for turned in (0..2).filter(|&turned| here[turned]) {
                     asked[edge.node()][turned ^ usize::from(edge.negated())] = true;
                 }
             }
