@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 use glam::{DAffine3, DVec3};
 
 use super::{Evaluator, Gradients, Program, Tape};
-use crate::field::{AnyField, Chunk, Placement, Zone};
+use crate::field::{AnyField, Chunk, Placement, Way, Zone};
 use crate::num::kernel::CHUNK;
 use crate::num::symbol::Symbol;
 use crate::{Bounds, Dual, Interval, ParamError};
@@ -88,6 +88,10 @@ impl AnyField for Composite {
 
     fn range(&self, zone: &Zone) -> Interval {
         self.program.range_zone(zone)
+    }
+
+    fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
+        self.program.rises(zone, ways)
     }
 
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {

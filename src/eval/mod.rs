@@ -28,6 +28,7 @@ mod query;
 mod ray;
 mod register;
 mod repeat;
+mod rise;
 mod scene;
 mod sides;
 mod tape;

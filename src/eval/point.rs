@@ -73,13 +73,7 @@ impl Program {
             let value = self.leaf(*leaf, p);
             return if self.root.negated() { -value } else { value };
         }
-        let mut frames: Vec<[N; 3]> = Vec::with_capacity(self.frames.len());
-        for &number in &self.frames[..] {
-            let Some(frame) = self.scene.frame(number) else { continue };
-            let above = self.in_frame(&frames, frame.parent, p);
-            let local = Placement::new(&frame.to_local, 1.0, 0.0).apply(above);
-            frames.push(N::warp(&*frame.warp, local));
-        }
+        let frames = self.frame_points(p);
         values.clear();
         for (at, node) in self.nodes.iter().enumerate() {
             if idle.is_some_and(|idle| idle[at]) {
@@ -110,7 +104,19 @@ impl Program {
         if self.root.negated() { -value } else { value }
     }
 
-    fn leaf<N: Number>(&self, leaf: u32, p: [N; 3]) -> N {
+    /// The point in each live frame.
+    pub(super) fn frame_points<N: Number>(&self, p: [N; 3]) -> Vec<[N; 3]> {
+        let mut frames: Vec<[N; 3]> = Vec::with_capacity(self.frames.len());
+        for &number in &self.frames[..] {
+            let Some(frame) = self.scene.frame(number) else { continue };
+            let above = self.in_frame(&frames, frame.parent, p);
+            let local = Placement::new(&frame.to_local, 1.0, 0.0).apply(above);
+            frames.push(N::warp(&*frame.warp, local));
+        }
+        frames
+    }
+
+    pub(super) fn leaf<N: Number>(&self, leaf: u32, p: [N; 3]) -> N {
         let instance = self.instance(leaf);
         instance.placement.finish(N::leaf(&*instance.field, instance.placement.apply(p)))
     }

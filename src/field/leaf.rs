@@ -78,6 +78,12 @@ pub trait Field: Debug + Send + Sync + 'static {
         false
     }
 
+    /// The most that the value changes by per length unit, anywhere; infinite where nothing is known. Default: 1 of
+    /// leaves that are [`convex`](Field::convex) or [`exact`](Field::exact).
+    fn steepest(&self) -> f64 {
+        if self.convex() || self.exact() { 1.0 } else { f64::INFINITY }
+    }
+
     /// Whether the value is the true signed distance to the surface, everywhere. Offsets and
     /// shells take it as it is; from other leaves they find their way to the surface along
     /// the gradient. Default: `false`.

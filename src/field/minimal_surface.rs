@@ -86,6 +86,17 @@ impl MinimalSurface {
         }
     }
 
+    /// How fast the gradient of g/N, for walls, turns at most where |g/N| is at most `level`, both per radian of the
+    /// period: its second derivative along any direction. Found on grids and by search from their largest values.
+    pub(super) fn sharpest(self, level: f64) -> f64 {
+        let ([a, b, c], most) = match self {
+            MinimalSurface::Gyroid => ([0.92, 0.45, 1.1], 3.05),
+            MinimalSurface::SchwarzP => ([1.05, 0.5, 1.25], 6.1),
+            MinimalSurface::SchwarzD => ([1.14, 0.2, 2.72], 4.01),
+        };
+        (a + (b + c * level) * level).min(most)
+    }
+
     /// For networks, which need no thickness: P is less steep with a larger w.
     #[inline(always)]
     pub(super) fn network_weight(self) -> [f64; 2] {

@@ -72,15 +72,6 @@ impl<G: Grading> NetworkLattice<G> {
     fn allowed(&self) -> [f64; 2] {
         if self.surface == MinimalSurface::SchwarzP { [0.25, 0.75] } else { [0.1, 0.9] }
     }
-
-    /// The largest slope of a lattice of one fraction.
-    fn steepest(&self) -> f64 {
-        match self.surface {
-            MinimalSurface::Gyroid => 1.37,
-            MinimalSurface::SchwarzP => 1.32,
-            MinimalSurface::SchwarzD => 1.54,
-        }
-    }
 }
 
 impl<G: Grading> Field for NetworkLattice<G> {
@@ -114,16 +105,23 @@ impl<G: Grading> Field for NetworkLattice<G> {
             return self.eval(region);
         }
         let [here, slope_here] = self.parts(region.map(|side| Interval::point(side.mid())));
-        let mut coarse = Interval::ALL;
-        if self.fraction.limits().width() == 0.0 {
-            coarse = (here / slope_here).inflate(self.steepest() * diagonal);
-            if coarse.lo() > 0.0 || coarse.hi() < 0.0 {
-                return coarse;
-            }
+        let coarse = (here / slope_here).inflate(self.steepest() * diagonal);
+        if coarse.lo() > 0.0 || coarse.hi() < 0.0 {
+            return coarse;
         }
         // Without the division, which does not change the sign, slopes are tighter.
         let [above, slope] = self.parts(Dual::point(region));
         coarse.narrowed_by(mean_value_range(above, here, region) / slope.value())
+    }
+
+    fn steepest(&self) -> f64 {
+        // Gradings do not say how steep they are.
+        match self.surface {
+            _ if self.fraction.limits().width() != 0.0 => f64::INFINITY,
+            MinimalSurface::Gyroid => 1.37,
+            MinimalSurface::SchwarzP => 1.32,
+            MinimalSurface::SchwarzD => 1.54,
+        }
     }
 
     fn roundoff(&self, reach: f64) -> f64 {

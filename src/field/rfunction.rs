@@ -185,6 +185,11 @@ impl Rule {
         matches!(self, Rule::Smooth(_) | Rule::Displacement { .. } | Rule::Ricci { .. })
     }
 
+    /// Whether the value rises with those of the operands, or stays.
+    pub(crate) fn rises(self) -> bool {
+        !matches!(self, Rule::Zero(_) | Rule::Displacement { .. })
+    }
+
     /// `x ∧ y`.
     #[inline(always)]
     pub(crate) fn and<R: Real>(self, x: R, y: R) -> R {

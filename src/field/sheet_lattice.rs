@@ -1,7 +1,9 @@
 //! Sheet lattice: a minimal surface, thickened.
 
+use std::f64::consts::TAU;
+
 use super::minimal_surface::{graded, roundoff};
-use super::slope::{half_diagonal, mean_value_range};
+use super::slope::half_diagonal;
 use super::{Field, Grading, MinimalSurface, ParamError, check};
 use crate::{Bounds, Dual, Interval, Real};
 
@@ -56,10 +58,37 @@ pub struct SheetLattice<G = f64> {
     pub thickness: G,
 }
 
+/// The distance g/N about the middle of a region.
+struct Level {
+    gradient: [f64; 3],
+    /// Over the region.
+    over: Interval,
+    /// By how much derivatives differ at most from those in the middle.
+    turn: f64,
+}
+
 impl<G: Grading> SheetLattice<G> {
     #[inline(always)]
     fn parts<R: Real>(&self, p: [R; 3]) -> [R; 2] {
         self.surface.parts(self.surface.wall_weight(), self.cell, p)
+    }
+
+    /// ```text
+    /// |∇q(p) − ∇q(m)| ≤ K·ρ,   q(p) = q(m) + ∇q(m)·(p − m) ± K·ρ²/2,   |p − m| ≤ ρ
+    /// ```
+    fn level(&self, region: [Interval; 3]) -> Level {
+        let middle = region.map(Interval::mid);
+        let [g, slope] = self.parts(Dual::point(middle));
+        let gradient = (g / slope).gradient();
+        let [g, slope] = self.parts(middle.map(Interval::point));
+        let (here, radius) = (g / slope, half_diagonal(region));
+        let by_slope = here.inflate(self.surface.steepest() * radius);
+        let angle = TAU / self.cell;
+        let turn = self.surface.sharpest(by_slope.magnitude() * angle) * angle * radius;
+        let along = gradient.iter().zip(region).map(|(slope, side)| 0.5 * slope.abs() * side.width()).sum::<f64>();
+        let spread = (along + 0.5 * turn * radius) * (1.0 + 1e-12) + 1e-13 * self.cell;
+        let over = if spread.is_finite() { by_slope.narrowed_by(here.inflate(spread)) } else { by_slope };
+        Level { gradient, over, turn }
     }
 }
 
@@ -88,23 +117,24 @@ impl<G: Grading> Field for SheetLattice<G> {
     }
 
     fn range(&self, region: [Interval; 3]) -> Interval {
-        let middle = region.map(|side| Interval::point(side.mid()));
-        let [g_here, slope_here] = self.parts(middle);
-        let steepest = self.surface.steepest() * half_diagonal(region);
         let half = graded(&self.thickness, region) * 0.5;
-        let coarse = half - (g_here / slope_here).inflate(steepest).abs();
-        if !steepest.is_finite() || coarse.lo() > 0.0 || coarse.hi() < 0.0 {
-            return coarse.narrowed_by(half - Interval::new(0.0, self.cell));
-        }
-        // Without the division, and on either side of the surface, slopes are tighter:
-        // thickness/2·N − g and thickness/2·N + g have the signs of the value.
-        let point = Dual::point(region);
-        let [g, slope] = self.parts(point);
-        let wall = graded(&self.thickness, point) * 0.5 * slope;
-        let wall_here = graded(&self.thickness, middle) * 0.5 * slope_here;
-        let above = mean_value_range(wall - g, wall_here - g_here, region);
-        let below = mean_value_range(wall + g, wall_here + g_here, region);
-        coarse.narrowed_by(above.min(below) / slope.value())
+        (half - self.level(region).over.abs()).narrowed_by(half - Interval::new(0.0, self.cell))
+    }
+
+    fn slopes(&self, region: [Interval; 3]) -> [Interval; 3] {
+        let Level { gradient, over, turn } = self.level(region);
+        let thickness = graded(&self.thickness, Dual::point(region)).gradient();
+        let most = self.surface.steepest();
+        let side = over.select(Interval::point(-1.0), Interval::point(1.0));
+        [0, 1, 2].map(|axis| {
+            let along = Interval::around(gradient[axis], turn + 1e-12).narrowed_by(Interval::new(-most, most));
+            thickness[axis] * 0.5 + side * along
+        })
+    }
+
+    fn steepest(&self) -> f64 {
+        // Gradings do not say how steep they are.
+        if self.thickness.limits().width() == 0.0 { self.surface.steepest() } else { f64::INFINITY }
     }
 
     fn roundoff(&self, reach: f64) -> f64 {

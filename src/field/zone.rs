@@ -172,7 +172,10 @@ impl Pieces {
             (None, Some((map, other))) => {
                 Pieces { first: first.mapped(&map), second: other.map(|other| first.mapped(&other)) }
             }
-            (None, None) => Pieces::one(first.warped(warp)),
+            (None, None) => match warp.sheets(first.hull()) {
+                Some([one, other]) => Pieces { first: first.warped(&*one), second: Some(first.warped(&*other)) },
+                None => Pieces::one(first.warped(warp)),
+            },
             (Some(second), _) => {
                 let whole = |zone: Zone| match warp.branches(zone.hull()) {
                     Some((map, None)) => zone.mapped(&map),
@@ -209,6 +212,16 @@ impl Pieces {
             visit(second);
         }
     }
+}
+
+/// The product of two vectors within ranges.
+pub(crate) fn dot(a: [Interval; 3], b: [Interval; 3]) -> Interval {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// A map of a vector within ranges.
+pub(crate) fn product(map: &DMat3, vector: [Interval; 3]) -> [Interval; 3] {
+    [0, 1, 2].map(|row| dot(map.row(row).to_array().map(Interval::point), vector))
 }
 
 /// Range of a function over a zone by the mean-value form: the value at the centre and ranges
@@ -264,4 +277,39 @@ pub(super) fn concave_range(
     }
     range = range.narrowed_by(Interval::new(lowest - slip, f64::INFINITY));
     range
+}
+
+/// Whether a concave function with slope at most 1 rises throughout a zone along all directions within these ranges.
+///
+/// ```text
+///       .-------.        Along w a concave function rises at x if it is larger at any point beyond: first far
+///      (   x · · ·       beyond, where it may be larger than anywhere in the zone; then near, where it is least
+///     --+--x----'        above the tangent at one of the corners.
+/// ```
+pub(super) fn concave_rise(
+    zone: &Zone,
+    way: [Interval; 3],
+    at: impl Fn(DVec3) -> f64,
+    tangent: impl Fn([f64; 3]) -> Dual<f64>,
+) -> bool {
+    let middle = DVec3::from_array(way.map(Interval::mid));
+    let scale = 1.0 / middle.length();
+    let sway = scale * DVec3::from_array(way.map(|side| 0.5 * side.width())).length();
+    let (way, radius) = (scale * middle, zone.radius());
+    let here = at(zone.centre);
+    let slack = 1e-12 * (zone.reach() + 16.0 * radius + here.abs());
+    let rises_beyond = |by: f64| at(zone.centre + by * way) > here + 2.0 * radius + by * sway + slack;
+    if [2.5, 4.0, 8.0, 16.0].iter().any(|by| rises_beyond(by * radius)) {
+        return true;
+    }
+    let gradient = DVec3::from_array(tangent(zone.centre.to_array()).d);
+    let rises_near = |by: f64| {
+        let least = here + 2.0 * zone.slack.length() + by * sway + slack;
+        (0..8u32).all(|corner| {
+            let sign = |bit: u32| if corner >> bit & 1 == 0 { -1.0 } else { 1.0 };
+            let from = zone.axes * DVec3::new(sign(0), sign(1), sign(2));
+            at(zone.centre + from + by * way) > least + gradient.dot(from)
+        })
+    };
+    rises_near(radius) || rises_near(3.0 * radius)
 }

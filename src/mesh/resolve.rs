@@ -2,62 +2,126 @@
 //!
 //! ```text
 //!     o-------o       A wall passes between the nodes: all are outside, and the mesh has nothing.
-//!     |  ===  |       The value's range over the cell contains 0 then; and as the gradient is
-//!     o-------o       turned round within the wall, so does the range of each of its components.
+//!     |  ===  |       The value's range over the cell contains 0 then; and there is no direction along
+//!     o-------o       which the cell is entered and not left.
 //! ```
 //!
-//! Blocks are halved until the ranges show that a part has no surface, or that the value is
-//! monotone along some axis in it, or until it is a cell.
+//! Blocks are halved until the ranges show that a part has no surface, or until there is a direction along which
+//! it is only entered, or no cell in it has all its nodes on one side, or until it is a cell.
 
+use glam::DVec3;
 use rayon::prelude::*;
 
+use super::blocks::Blocks;
+use super::extract::Sampler;
 use super::lattice::Lattice;
 use super::meter::Meter;
-use super::signs::BLOCK;
-use crate::eval::Program;
-use crate::{Bounds, Cancelled, Dual, Interval, Run};
+use super::sampler::{Scratch, SolidSampler};
+use super::signs::{BLOCK, NODES, SIDE, Signs};
+use crate::eval::{Narrowed, Program};
+use crate::{Bounds, Cancelled, Interval, Run};
 
-/// The number of cells, of the given blocks, whose programs are told by their numbers, all of whose nodes are on one side,
-/// though the ranges of the value and of each component of the gradient contain 0.
-pub(super) fn unresolved_cells<'a>(
-    lattice: &Lattice,
-    blocks: &[[u32; 3]],
-    program: impl Fn(usize) -> &'a Program + Sync,
+/// The number of cells, all of whose nodes are on one side, that the surface may come into and turn round in.
+pub(super) fn unresolved_cells(
+    blocks: &Blocks,
+    (lattice, limits): (&Lattice, Bounds),
     run: &Run,
 ) -> Result<usize, Cancelled> {
-    let meter = Meter::new(run, blocks.len());
-    let of_block = |(n, &block): (usize, &[u32; 3])| {
+    let meter = Meter::new(run, blocks.cells.len());
+    let sampler = SolidSampler::new(lattice, blocks, limits);
+    let of_block = |scratch: &mut Scratch, (number, &block): (usize, &[u32; 3])| {
         meter.step()?;
-        let program = program(n);
-        let mut open = vec![(block, BLOCK as u32)];
-        let (mut count, mut memory) = (0, Vec::new());
-        while let Some((cell, size)) = open.pop() {
-            let node = |by: u32| lattice.node(cell[0] + by, cell[1] + by, cell[2] + by);
-            if is_settled(program, &Bounds::new(node(0), node(size)), &mut memory) {
-                continue;
-            }
-            if size > 1 {
-                let half = size / 2;
-                open.extend((0..8u32).map(|n| (std::array::from_fn(|axis| cell[axis] + (n >> axis & 1) * half), half)));
-            } else {
-                let corner = |n: u32| lattice.node(cell[0] + (n & 1), cell[1] + (n >> 1 & 1), cell[2] + (n >> 2));
-                let inside = (0..8).filter(|&n| program.value(corner(n)) > 0.0).count();
-                count += usize::from(inside == 0 || inside == 8);
-            }
+        let program = blocks.programs.of(number);
+        if program.is_entered_once(&[region(lattice, block, BLOCK)]) {
+            return Ok(0);
         }
-        Ok(count)
+        let mut values = [0.0; NODES];
+        scratch.forget();
+        sampler.nodes(scratch, number, block, &mut values);
+        let search = Search { lattice, block, signs: Signs::new(&values), values };
+        Ok(search.parts_of([0; 3], BLOCK, program))
     };
-    blocks.par_iter().enumerate().map(of_block).sum()
+    blocks.cells.par_iter().enumerate().map_init(|| sampler.scratch(), of_block).sum()
 }
 
-/// Whether a box has no surface, or none that turns round.
-fn is_settled(program: &Program, region: &Bounds, memory: &mut Vec<Dual<Interval>>) -> bool {
-    let range = program.range(region);
-    if range.lo() > 0.0 || range.hi() < 0.0 {
-        return true;
+/// The box of so many cells along each axis.
+fn region(lattice: &Lattice, first: [u32; 3], size: usize) -> Bounds {
+    let node = |by: u32| lattice.node(first[0] + by, first[1] + by, first[2] + by);
+    Bounds::new(node(0), node(size as u32))
+}
+
+/// The eight parts of a box.
+fn octants(region: &Bounds) -> [Bounds; 8] {
+    let half = region.half_extents();
+    std::array::from_fn(|n| {
+        let low = region.min + half * DVec3::from_array([0, 1, 2].map(|axis| (n >> axis & 1) as f64));
+        Bounds::new(low, low + half)
+    })
+}
+
+/// A block in which cells are sought.
+struct Search<'a> {
+    lattice: &'a Lattice,
+    block: [u32; 3],
+    signs: Signs,
+    values: [f32; NODES],
+}
+
+impl Search<'_> {
+    /// The unresolved cells of the eight parts of a cube of cells.
+    fn parts_of(&self, first: [usize; 3], size: usize, program: &Program) -> usize {
+        let half = size / 2;
+        let part = |n: usize| [0, 1, 2].map(|axis| first[axis] + (n >> axis & 1) * half);
+        (0..8).map(|n| self.unresolved(part(n), half, program)).sum()
     }
-    let side = |axis: usize| Interval::new(region.min[axis], region.max[axis]);
-    let over = program.evaluate(Dual::point([side(0), side(1), side(2)]), memory);
-    let excludes_0 = |range: &Interval| range.lo() > 0.0 || range.hi() < 0.0;
-    excludes_0(&over.value()) || over.gradient().iter().any(excludes_0)
+
+    /// Those of a cube of cells.
+    fn unresolved(&self, first: [usize; 3], size: usize, program: &Program) -> usize {
+        let at = [0, 1, 2].map(|axis| self.block[axis] + first[axis] as u32);
+        let region = region(self.lattice, at, size);
+        // No point of a cell is farther from its nearest node than half of its diagonal.
+        let near = 0.867 * self.lattice.step() * program.steepest(&region);
+        if !self.has_near(first, size, near) {
+            return 0;
+        }
+        let simpler = match program.narrowed(&region) {
+            Narrowed::Inside | Narrowed::Outside => return 0,
+            Narrowed::Same => None,
+            Narrowed::Simpler(simpler) => Some(simpler),
+        };
+        let program = simpler.as_ref().unwrap_or(program);
+        if program.is_entered_once(&[region]) {
+            0
+        } else if size > 1 {
+            self.parts_of(first, size, program)
+        } else {
+            let is_open = self.least(first) <= self.bulge(program, &region) && !program.is_entered_once(&octants(&region));
+            usize::from(is_open)
+        }
+    }
+
+    /// By how much the value may exceed those at the nodes of a cell, either way: along an axis it rises and falls
+    /// no faster than its slopes say.
+    fn bulge(&self, program: &Program, cell: &Bounds) -> f64 {
+        let along = |slope: Interval| match (slope.hi(), -slope.lo()) {
+            (up, down) if up > 0.0 && down > 0.0 => 1.0 / (1.0 / up + 1.0 / down),
+            _ => 0.0,
+        };
+        program.slopes(cell).map(along).iter().sum::<f64>() * self.lattice.step()
+    }
+
+    /// Whether a cube of cells has one whose nodes are all on one side, and the least of their values this near to 0.
+    fn has_near(&self, [i, j, k]: [usize; 3], size: usize, near: f64) -> bool {
+        let is_near = |n: usize| {
+            let cell = [i + n % size, j + n / size % size, k + n / (size * size)];
+            matches!(self.signs.case(cell), 0 | 255) && self.least(cell) <= near
+        };
+        (0..size * size * size).any(is_near)
+    }
+
+    /// The least absolute value at the nodes of a cell.
+    fn least(&self, [i, j, k]: [usize; 3]) -> f64 {
+        let node = |n: usize| (i + (n & 1)) + SIDE * (j + (n >> 1 & 1)) + SIDE * SIDE * (k + (n >> 2));
+        (0..8).map(|n| f64::from(self.values[node(n)].abs())).fold(f64::INFINITY, f64::min)
+    }
 }

@@ -54,6 +54,15 @@ pub(super) struct Scratch {
     roots: Vec<Root>,
 }
 
+impl Scratch {
+    /// Leaves no more tapes than a search of them is worth.
+    pub(super) fn forget(&mut self) {
+        if self.tapes.len() > 16 {
+            self.tapes.clear();
+        }
+    }
+}
+
 impl SolidSampler<'_> {
     pub(super) fn new<'a>(lattice: &'a Lattice, blocks: &'a Blocks, limits: Bounds) -> SolidSampler<'a> {
         let Blocks { cells: blocks, programs, exact } = blocks;

@@ -107,7 +107,7 @@ impl Solid {
                 loop {
                     let [done, next] = [halvings, halvings + 1].map(|n| f64::from(n) / (f64::from(most) + 1.0));
                     let run = to_count.stage(done, next);
-                    let count = unresolved_cells(&lattice, &blocks.cells, |n| blocks.programs.of(n), &run)?;
+                    let count = unresolved_cells(&blocks, (&lattice, bounds), &run)?;
                     unresolved = Some(count);
                     if count == 0 || halvings == most {
                         break;

@@ -29,7 +29,7 @@ use self::fillet::{FADES, Fillet, STEEPEST};
 use self::sides::{Side, join, sides};
 use super::composite::{Locals, Slopes, Whole, finish, points64, roundoff, with_evaluator, write_gradients};
 use super::{Evaluator, Program, Tape};
-use crate::field::{AnyField, Chunk, Zone, steep_slopes};
+use crate::field::{AnyField, Chunk, Way, Zone, bits, dot, steep_slopes};
 use crate::num::kernel::CHUNK;
 use crate::num::symbol::Symbol;
 use crate::solid::Operation;
@@ -176,6 +176,11 @@ impl EdgeBlend {
             };
             EdgeBlend::of(operands, self.signs, self.sign, shape)
         })
+    }
+
+    /// The operands' gradients at a point, as they count in the blend.
+    pub(super) fn operand_slopes(&self, p: [Dual<f64>; 3]) -> [DVec3; 2] {
+        [0, 1].map(|i| self.sign * self.signs[i] * DVec3::from_array(self.operands[i].evaluate(p, &mut Vec::new()).d))
     }
 
     fn sample(&self, i: usize, p: DVec3) -> Sample {
@@ -352,6 +357,37 @@ impl AnyField for EdgeBlend {
 
     fn range(&self, zone: &Zone) -> Interval {
         self.survey(zone, 0.0).0
+    }
+
+    /// With both operands, as far away as the nearest centre is, so does the distance to where neither a ball's centre
+    /// may be. What is outside of it is a union of balls: where those are wider than the zone nothing turns round
+    /// in it but the operands.
+    fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
+        match &self.shape {
+            Shape::Fillet(fillet, _) => {
+                let is_wide = fillet.radius > 2.0 * zone.radius();
+                let far = self.value(zone.centre.to_array()).abs() + zone.radius() + fillet.radius;
+                let about = if is_wide { *zone } else { zone.inflated(far) };
+                let turned = |i: usize| -> Vec<Way> {
+                    ways.iter().map(|way| way.map(|side| side * (self.sign * self.signs[i]))).collect()
+                };
+                self.operands[0].rises(&about, &turned(0)) & self.operands[1].rises(&about, &turned(1))
+            }
+            Shape::Chamfer(_) => {
+                let slopes = self.dual_range(Dual::point(zone.hull())).gradient();
+                bits(ways, |way| dot(slopes, way).lo() > 0.0)
+            }
+        }
+    }
+
+    fn steepest(&self, zone: &Zone) -> f64 {
+        match &self.shape {
+            Shape::Fillet(fillet, sides) => {
+                let join = self.ranges(zone).into_iter().reduce(Interval::max).unwrap_or(Interval::ALL);
+                self.fillet_range(*fillet, sides, join, zone).1
+            }
+            Shape::Chamfer(_) => f64::INFINITY,
+        }
     }
 
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {

@@ -78,6 +78,11 @@ pub(crate) trait Warp: Debug + Clone + Send + Sync + 'static {
         None
     }
 
+    /// Of a map that jumps within a box: two that do not, one of which it is at each point there.
+    fn sheets(&self, _hull: [Interval; 3]) -> Option<[Self; 2]> {
+        None
+    }
+
     /// Whether true distances are true distances after the map, as those of folds are.
     fn keeps_lengths(&self) -> bool {
         false
@@ -103,6 +108,7 @@ pub(crate) trait AnyWarp: Any + Debug + Send + Sync {
     fn roundoff_over(&self, hull: [Interval; 3]) -> f64;
     fn stretch(&self, hull: [Interval; 3]) -> f64;
     fn branches(&self, hull: [Interval; 3]) -> Option<Branches>;
+    fn sheets(&self, hull: [Interval; 3]) -> Option<[Box<dyn AnyWarp>; 2]>;
     fn keeps_lengths(&self) -> bool;
 }
 

@@ -45,7 +45,7 @@ use self::chain::Chain;
 use self::feet::Feet;
 use self::follow::SURE;
 use self::step::Plane;
-use super::{AnyField, AnyWarp, Chunk, ParamError, VALUE_LIMIT, Zone, smallest_stretch, steep_slopes};
+use super::{AnyField, AnyWarp, Chunk, ParamError, VALUE_LIMIT, Way, Zone, product, smallest_stretch, steep_slopes};
 use crate::num::kernel::CHUNK;
 use crate::num::symbol::Symbol;
 use crate::{Bounds, Dual, Interval};
@@ -226,6 +226,17 @@ impl AnyField for Distance {
             Shape::Convex => self.supported_range(zone),
             Shape::Free => self.followed_range(zone),
         }
+    }
+
+    /// Where the leaf rises about a zone, as far as its surface is, so does the distance to that.
+    fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
+        let far = self.range(zone).magnitude();
+        if !(self.chain.maps.is_empty() && far.is_finite()) {
+            return 0;
+        }
+        let map = &self.chain.to_leaf;
+        let ways: Vec<Way> = ways.iter().map(|way| product(&map.matrix3, *way)).collect();
+        self.chain.leaf.rises(&zone.inflated(far).mapped(map), &ways)
     }
 
     /// To first order: the leaf's value by the length of its gradient. The search does not

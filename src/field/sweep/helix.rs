@@ -18,6 +18,7 @@ use glam::DVec3;
 
 use super::super::ParamError;
 use super::super::deform::Warp;
+use super::super::dot;
 use crate::{Bounds, Dual, Interval, Norm, Real};
 
 /// Which turn of the helix a point is seen from.
@@ -43,13 +44,26 @@ pub(crate) struct HelixWarp {
     /// The factor of the coordinate along the helix.
     stretch: f64,
     turn: Turn,
+    /// Which way round the angle to the nearest turn is measured.
+    sheet: Sheet,
+}
+
+/// How the angle is measured from the middle of the nearest turn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sheet {
+    /// From −π to π.
+    Both,
+    /// From 0 to 2π.
+    Ahead,
+    /// From −2π to 0.
+    Behind,
 }
 
 impl HelixWarp {
     /// `middle` is that of the profile along y; `stretch` the factor of the third coordinate,
     /// which runs along z otherwise.
     pub(crate) fn new(radius: f64, pitch: f64, left_handed: bool, middle: f64, stretch: f64, turn: Turn) -> HelixWarp {
-        HelixWarp { radius, pitch, hand: if left_handed { -1.0 } else { 1.0 }, middle, stretch, turn }
+        HelixWarp { radius, pitch, hand: if left_handed { -1.0 } else { 1.0 }, middle, stretch, turn, sheet: Sheet::Both }
     }
 
     /// How far the point is along z from the middle of the nearest turn's section.
@@ -58,7 +72,23 @@ impl HelixWarp {
         let (sin, cos) = ((z - self.middle) * (TAU / self.pitch)).sin_cos();
         let y = y * self.hand;
         let (ahead, across) = (y.mul_add(cos, -(x * sin)), x.mul_add(cos, y * sin));
-        ahead.atan2(across) * (-self.pitch / TAU)
+        let angle = match self.sheet {
+            Sheet::Both => ahead.atan2(across),
+            // From the opposite side there is no jump there.
+            Sheet::Ahead => (-ahead).atan2(-across) + PI,
+            Sheet::Behind => (-ahead).atan2(-across) - PI,
+        };
+        angle * (-self.pitch / TAU)
+    }
+
+    /// Whether the angle, as it is measured, jumps within a box.
+    fn jumps(&self, hull: [Interval; 3]) -> bool {
+        let middle = match self.sheet {
+            Sheet::Both => 0.0,
+            Sheet::Ahead => PI,
+            Sheet::Behind => -PI,
+        };
+        (self.fold(hull) * (-TAU / self.pitch) - middle).magnitude() >= PI * (1.0 - 1e-14)
     }
 }
 
@@ -119,14 +149,31 @@ impl Warp for HelixWarp {
         1e-6 * reach * self.stretch.max(1.0)
     }
 
+    /// The angle's slopes are known without the turn that it is measured after:
+    ///
+    /// ```text
+    /// ∂y/∂(X, Y, Z) = (P/2π·Y/r², −P/2π·X/r², 1),   r² = X² + Y²
+    /// ```
     fn slopes(&self, p: [Dual<Interval>; 3]) -> [Dual<Interval>; 3] {
-        let image = self.inverse(p);
-        // The slopes of a region that meets the cut say nothing of the jump there.
-        let angle = self.fold(p.map(Dual::value)) * (TAU / self.pitch);
-        if angle.magnitude() < PI * (1.0 - 1e-14) {
-            return image;
-        }
-        let jump = |side: Dual<Interval>| Dual::new(side.value(), [Interval::ALL; 3]);
-        [image[0], jump(image[1]), jump(image[2])]
+        let hull = p.map(Dual::value);
+        let [_, y, along] = self.inverse(hull);
+        let [y_slopes, along_slopes] = if self.jumps(hull) {
+            // Slopes say nothing of the jump.
+            [[Interval::ALL; 3]; 2]
+        } else {
+            let rise = self.hand * self.pitch / TAU;
+            let squared = hull[0].square() + hull[1].square();
+            let (a, b) = (hull[1] / squared * rise, hull[0] / squared * -rise);
+            let level = [1.0, 0.0].map(Interval::point);
+            [[a, b, level[0]], [a * -self.stretch, b * -self.stretch, level[1]]]
+        };
+        let chain = |row: [Interval; 3]| [0, 1, 2].map(|i| dot(row, p.map(|side| side.gradient()[i])));
+        let across = p[0].norm(p[1], Norm::Euclid) - self.radius;
+        [across, Dual::new(y, chain(y_slopes)), Dual::new(along, chain(along_slopes))]
+    }
+
+    fn sheets(&self, hull: [Interval; 3]) -> Option<[HelixWarp; 2]> {
+        let sheets = [Sheet::Ahead, Sheet::Behind].map(|sheet| HelixWarp { sheet, ..*self });
+        (self.jumps(hull) && !sheets[0].jumps(hull)).then_some(sheets)
     }
 }

@@ -1,0 +1,221 @@
+//! Where a solid is entered once along every line of a direction.
+//!
+//! ```text
+//!     -----.            Along w both faces are entered. All joins rise with their operands, so along w
+//!           \   w -->   the whole rises: its surface does not turn round here.
+//!     -------`----
+//! ```
+//!
+//! A direction is guessed from the gradients in the middle of a region; that all leaves rise along it
+//! is shown of each [by itself](crate::field::AnyField::rises), as they see it: through a deformation it may be
+//! any within ranges.
+
+use glam::{DMat3, DVec3};
+
+use super::edge::EdgeBlend;
+use super::program::{Kind, Program};
+use super::scene::Instance;
+use crate::field::{AnyWarp, Pieces, Placement, Rule, Way, Zone, dot, product};
+use crate::{Bounds, Dual, Interval};
+
+/// A leaf, and whether its complement counts.
+#[derive(Clone, Copy)]
+struct Part<'a> {
+    leaf: u32,
+    negated: bool,
+    /// The fillet or chamfer that it is.
+    edge: Option<&'a EdgeBlend>,
+}
+
+impl Part<'_> {
+    /// What is said of the leaf, as what is said of what counts.
+    fn turned(self, way: DVec3) -> DVec3 {
+        if self.negated { -way } else { way }
+    }
+}
+
+/// How often a direction is turned towards the part that rises least along it.
+const TURNS: usize = 8;
+
+impl Program {
+    /// Whether a direction is found along which the solid is entered, and not left, throughout these regions.
+    pub(crate) fn is_entered_once(&self, regions: &[Bounds]) -> bool {
+        let Some(parts) = self.parts() else { return false };
+        let whole = regions.iter().fold(Bounds::EMPTY, |all, region| all.union(region));
+        let ways: Vec<Way> =
+            self.guesses(&parts, whole.center()).iter().map(|way| way.to_array().map(Interval::point)).collect();
+        let rise = |ways: &[Way]| {
+            let mut left = u8::MAX;
+            for region in regions {
+                let world = Pieces::one(Zone::of_bounds(region));
+                left &= self.all_rise(&parts, (&self.zones(&world), &world), ways);
+                if left == 0 {
+                    break;
+                }
+            }
+            left != 0
+        };
+        // The first guess does most often.
+        let (first, others) = ways.split_at(ways.len().min(1));
+        rise(first) || rise(others)
+    }
+
+    /// The directions, of up to eight, along which the value is found to rise, or to stay, throughout a zone.
+    pub(super) fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
+        let world = Pieces::one(*zone);
+        self.parts().map_or(0, |parts| self.all_rise(&parts, (&self.zones(&world), &world), ways))
+    }
+
+    /// A bound of the length of the gradient over a region.
+    pub(crate) fn steepest(&self, region: &Bounds) -> f64 {
+        let zone = Zone::of_bounds(region);
+        let is_plain = |kind: &Kind| match kind {
+            Kind::Join { rule, .. } => matches!(rule, Rule::MinMax | Rule::Smooth(_)),
+            _ => true,
+        };
+        let Some(parts) = self.parts().filter(|_| self.nodes.iter().all(|node| is_plain(&node.kind))) else {
+            return f64::INFINITY;
+        };
+        let p = Dual::point(zone.hull());
+        let frames = self.frame_points(p);
+        let steepest = |part: &Part<'_>| {
+            let Instance { field, frame, to_local, placement, .. } = self.instance(part.leaf);
+            if *frame == 0 {
+                return placement.scale * stretch(&to_local.matrix3) * field.steepest(&zone.mapped(to_local));
+            }
+            let slopes = self.leaf(part.leaf, self.in_frame(&frames, *frame, p)).d;
+            slopes.map(|slope: Interval| slope.magnitude().powi(2)).iter().sum::<f64>().sqrt()
+        };
+        parts.iter().map(steepest).fold(0.0, f64::max)
+    }
+
+    /// Ranges of the derivatives over a region.
+    pub(crate) fn slopes(&self, region: &Bounds) -> [Interval; 3] {
+        self.evaluate(Dual::point(Zone::of_bounds(region).hull()), &mut Vec::new()).d
+    }
+
+    /// The leaves that values come from; `None` if one of them counts both as it is and as its complement, or if
+    /// they are joined in a way that need not rise with them.
+    fn parts(&self) -> Option<Vec<Part<'_>>> {
+        let mut met = vec![[false; 2]; self.nodes.len()];
+        met[self.root.node()][usize::from(self.root.negated())] = true;
+        let mut parts = Vec::new();
+        for (at, node) in self.nodes.iter().enumerate().rev() {
+            let [plain, negated] = met[at];
+            if plain && negated {
+                return None;
+            }
+            if !(plain || negated) {
+                continue;
+            }
+            match &node.kind {
+                Kind::Leaf(leaf) => parts.push(Part { leaf: *leaf, negated, edge: None }),
+                Kind::Edge { leaf, edge, .. } => parts.push(Part { leaf: *leaf, negated, edge: Some(edge) }),
+                Kind::Join { rule, .. } if !rule.rises() => return None,
+                Kind::Join { .. } | Kind::Shift(_) => {
+                    for edge in self.list(node) {
+                        met[edge.node()][usize::from(edge.negated() != negated)] = true;
+                    }
+                }
+            }
+        }
+        Some(parts)
+    }
+
+    /// Directions that may do: by the gradients at a point, then those of them along an axis, and with the ways to
+    /// the middles of leaves in place of the gradients.
+    fn guesses(&self, parts: &[Part<'_>], from: DVec3) -> Vec<DVec3> {
+        let p = Dual::point(from.to_array());
+        let frames = self.frame_points(p);
+        let (mut slopes, mut ways) = (Vec::with_capacity(parts.len()), Vec::with_capacity(parts.len()));
+        for part in parts {
+            let Instance { frame, bounds, to_local, .. } = self.instance(part.leaf);
+            let mut add = |slope: DVec3, middle: Option<DVec3>| {
+                let slope = part.turned(slope).normalize_or_zero();
+                slopes.push(slope);
+                ways.push(middle.map_or(slope, |middle| part.turned(middle - from).normalize_or_zero()));
+            };
+            let seen = self.in_frame(&frames, *frame, p);
+            if let Some(edge) = part.edge {
+                // Where it rises both operands do.
+                let local = Placement::new(to_local, 1.0, 0.0).apply(seen);
+                edge.operand_slopes(local).into_iter().for_each(|slope| add(slope, None));
+            } else {
+                let middle = (*frame == 0 && bounds.is_finite()).then(|| bounds.center());
+                add(DVec3::from_array(self.leaf(part.leaf, seen).d), middle);
+            }
+        }
+        let mut guesses: Vec<DVec3> = common(&slopes).into_iter().collect();
+        for axis in DVec3::AXES {
+            let along = axis * slopes[0].dot(axis).signum();
+            if slopes.iter().all(|slope| slope.dot(along) > 0.1) {
+                guesses.push(along);
+            }
+        }
+        guesses.extend(common(&ways));
+        guesses
+    }
+
+    /// The directions of the world along which all parts rise, throughout its zone and those of the frames.
+    fn all_rise(&self, parts: &[Part<'_>], (zones, world): (&[Pieces], &Pieces), ways: &[Way]) -> u8 {
+        // The directions as the frames see them.
+        let mut seen: Vec<Vec<Way>> = Vec::with_capacity(self.frames.len());
+        for &number in &self.frames[..] {
+            let Some(frame) = self.scene.frame(number) else { continue };
+            let above = self.frames.binary_search(&frame.parent).map_or(ways, |slot| &seen[slot]);
+            let above: Vec<Way> = above.iter().map(|way| product(&frame.to_local.matrix3, *way)).collect();
+            let mut own: Vec<Way> = Vec::new();
+            self.zone_in(zones, frame.parent, world).each(|zone| {
+                let hull = zone.mapped(&frame.to_local).hull();
+                let mut see = |warp: &dyn AnyWarp| {
+                    let rows = warp.dual_ranges(Dual::point(hull)).map(|side| side.d);
+                    let images = above.iter().map(|way| rows.map(|row| dot(row, *way)));
+                    if own.is_empty() {
+                        own = images.collect();
+                    } else {
+                        let both = |own: &mut Way, image: Way| *own = [0, 1, 2].map(|i| own[i].hull(image[i]));
+                        own.iter_mut().zip(images).for_each(|(own, image)| both(own, image));
+                    }
+                };
+                match frame.warp.sheets(hull) {
+                    Some(sheets) => sheets.iter().for_each(|sheet| see(&**sheet)),
+                    None => see(&*frame.warp),
+                }
+            });
+            seen.push(own);
+        }
+        let mut left = u8::MAX;
+        for part in parts {
+            if left == 0 {
+                break;
+            }
+            let Instance { field, frame, to_local, .. } = self.instance(part.leaf);
+            let ways = self.frames.binary_search(frame).map_or(ways, |slot| &seen[slot]);
+            let sign = if part.negated { -1.0 } else { 1.0 };
+            let own: Vec<Way> =
+                ways.iter().map(|way| product(&to_local.matrix3, *way).map(|side| side * sign)).collect();
+            self.zone_in(zones, *frame, world).each(|zone| left &= field.rises(&zone.mapped(to_local), &own));
+        }
+        left
+    }
+}
+
+/// A direction at less than a right angle to all of these, if one is found.
+fn common(ways: &[DVec3]) -> Option<DVec3> {
+    let mut sum: DVec3 = ways.iter().sum();
+    for _ in 0..TURNS {
+        let least = ways.iter().min_by(|a, b| a.dot(sum).total_cmp(&b.dot(sum)))?;
+        if least.dot(sum) > 0.3 * sum.length() {
+            break;
+        }
+        sum += *least;
+    }
+    let is_common = ways.iter().all(|way| way.dot(sum) > 0.0);
+    sum.try_normalize().filter(|_| is_common)
+}
+
+/// A bound of how much a map stretches.
+fn stretch(map: &DMat3) -> f64 {
+    let squares = map.transpose() * *map;
+    [squares.x_axis, squares.y_axis, squares.z_axis].map(|row| row.abs().element_sum()).into_iter().fold(0.0, f64::max).sqrt()
+}
