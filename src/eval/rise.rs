@@ -40,24 +40,29 @@ const TURNS: usize = 8;
 impl Program {
     /// Whether a direction is found along which the solid is entered, and not left, throughout these regions.
     pub(crate) fn is_entered_once(&self, regions: &[Bounds]) -> bool {
-        let Some(parts) = self.parts() else { return false };
+        self.way_in(regions).is_some()
+    }
+
+    /// Such a direction.
+    fn way_in(&self, regions: &[Bounds]) -> Option<DVec3> {
+        let parts = self.parts()?;
         let whole = regions.iter().fold(Bounds::EMPTY, |all, region| all.union(region));
-        let ways: Vec<Way> =
-            self.guesses(&parts, whole.center()).iter().map(|way| way.to_array().map(Interval::point)).collect();
-        let rise = |ways: &[Way]| {
+        let guesses = self.guesses(&parts, whole.center());
+        let rising = |guesses: &[DVec3]| {
+            let ways: Vec<Way> = guesses.iter().map(|way| way.to_array().map(Interval::point)).collect();
             let mut left = u8::MAX;
             for region in regions {
-                let world = Pieces::one(Zone::of_bounds(region));
-                left &= self.all_rise(&parts, (&self.zones(&world), &world), ways);
                 if left == 0 {
                     break;
                 }
+                let world = Pieces::one(Zone::of_bounds(region));
+                left &= self.all_rise(&parts, (&self.zones(&world), &world), &ways);
             }
-            left != 0
+            guesses.get(left.trailing_zeros() as usize).copied()
         };
         // The first guess does most often.
-        let (first, others) = ways.split_at(ways.len().min(1));
-        rise(first) || rise(others)
+        let (first, others) = guesses.split_at(guesses.len().min(1));
+        rising(first).or_else(|| rising(others))
     }
 
     /// The directions, of up to eight, along which the value is found to rise, or to stay, throughout a zone.
@@ -217,5 +222,66 @@ fn common(ways: &[DVec3]) -> Option<DVec3> {
 /// A bound of how much a map stretches.
 fn stretch(map: &DMat3) -> f64 {
     let squares = map.transpose() * *map;
-    [squares.x_axis, squares.y_axis, squares.z_axis].map(|row| row.abs().element_sum()).into_iter().fold(0.0, f64::max).sqrt()
+    [squares.x_axis, squares.y_axis, squares.z_axis]
+        .map(|row| row.abs().element_sum())
+        .into_iter()
+        .fold(0.0, f64::max)
+        .sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::eval::compiled;
+    use crate::{Blend, Helix, MinimalSurface, Profile, Region, SheetLattice, Solid};
+
+    /// Once in the solid, a ray along the direction stays in it.
+    #[test]
+    fn what_is_entered_once_is_not_left() {
+        let cube = Solid::cuboid(DVec3::new(1.0, 0.8, 0.6)).rotate(glam::DQuat::from_rotation_x(0.5));
+        let cushion =
+            Solid::superellipsoid(DVec3::new(0.7, 0.5, 0.4), 0.3, 1.6).rotate(glam::DQuat::from_rotation_y(1.1));
+        let gyroid = SheetLattice { surface: MinimalSurface::Gyroid, cell: 1.0, thickness: 0.15 };
+        let rod = Solid::cylinder(0.2, 2.0);
+        let solids = [
+            &cube - &rod,
+            &cube | cushion.translate(DVec3::X * 0.4),
+            cushion.twist(0.9).bend(0.4, 0.3),
+            Solid::torus(0.6, 0.2) ^ &rod,
+            Solid::from(gyroid),
+            Profile::circle(0.12).sweep_helix(&Helix::new(0.4, 0.4, 2.0)) | &rod,
+            cube.union_with(&rod, Blend::Chamfer { width: 0.15 }),
+            cushion.offset(0.05),
+            cube.shell(0.1),
+        ];
+        let mut state = 5u64;
+        let mut random = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        for (number, solid) in solids.iter().enumerate() {
+            let program = &compiled(solid).unwrap().surface;
+            let (mut told, mut crossed) = (0, 0);
+            for n in 0..6000 {
+                let centre = DVec3::new(random(), random(), random()) * 2.0 - 1.0;
+                let region = Bounds::from_center(centre, DVec3::splat(0.005 * f64::powi(2.0, n % 6)));
+                let Region::Surface(narrowed) = program.narrow(&region) else { continue };
+                let Some(way) = narrowed.way_in(&[region]) else { continue };
+                told += 1;
+                for _ in 0..40 {
+                    let p = region.min + region.size() * DVec3::new(random(), random(), random());
+                    let q = p + way * (random() * 0.5 * region.size().x);
+                    if region.contains(q) {
+                        let (before, after) = (narrowed.value(p), narrowed.value(q));
+                        assert!(
+                            before < 1e-9 || after > -1e-9,
+                            "{number}: {before} at {p}, {after} at {q}, {region:?}"
+                        );
+                        crossed += usize::from(before < 0.0 && after > 0.0);
+                    }
+                }
+            }
+            assert!(told > 60 && crossed > 60, "{number}: {told} {crossed}");
+        }
+    }
 }

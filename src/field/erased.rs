@@ -325,7 +325,8 @@ impl<F: Field> AnyField for F {
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
         let along = |p: [f64; 3]| self.eval(Dual::point(p));
         let convex = Field::convex(self);
-        let found = if convex { bits(ways, |way| concave_rise(zone, way, |p| self.eval(p.to_array()), along)) } else { 0 };
+        let found =
+            if convex { bits(ways, |way| concave_rise(zone, way, |p| self.eval(p.to_array()), along)) } else { 0 };
         // Of boxes and single directions that says all.
         let is_single = |way: &Way| way.iter().all(|side| side.width() <= 1e-9 * side.magnitude());
         let is_box = zone.slack.length() <= 1e-9 * zone.radius();

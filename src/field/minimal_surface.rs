@@ -91,7 +91,7 @@ impl MinimalSurface {
     pub(super) fn sharpest(self, level: f64) -> f64 {
         let ([a, b, c], most) = match self {
             MinimalSurface::Gyroid => ([0.92, 0.45, 1.1], 3.05),
-            MinimalSurface::SchwarzP => ([1.05, 0.5, 1.25], 6.1),
+            MinimalSurface::SchwarzP => ([1.08, 0.5, 1.25], 6.1),
             MinimalSurface::SchwarzD => ([1.14, 0.2, 2.72], 4.01),
         };
         (a + (b + c * level) * level).min(most)
@@ -230,4 +230,35 @@ pub(super) fn roundoff(cell: f64, reach: f64) -> f64 {
         return cell;
     }
     4e-6 * cell + 1e-6 * reach
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Dual;
+
+    /// Gradients at points beside each other differ by no more than their distance times the bound.
+    #[test]
+    fn gradients_turn_no_faster_than_is_said() {
+        const STEP: f64 = 1e-5;
+        for surface in [MinimalSurface::Gyroid, MinimalSurface::SchwarzP, MinimalSurface::SchwarzD] {
+            let at = |p: [f64; 3]| {
+                let [g, slope] = surface.parts(surface.wall_weight(), TAU, Dual::point(p));
+                g / slope
+            };
+            let mut closest = 0.0_f64;
+            for n in 0..200_000u32 {
+                let along = |k: f64| (f64::from(n) * k).fract();
+                let p = [along(0.819_172_513), along(0.671_043_607), along(0.549_700_478)].map(|part| part * TAU);
+                let (turn, tilt) = (along(0.414_213_562) * TAU, along(0.732_050_808) * 2.0 - 1.0);
+                let flat = (1.0 - tilt * tilt).sqrt();
+                let way = [flat * turn.cos(), flat * turn.sin(), tilt];
+                let (here, beside) = (at(p), at([0, 1, 2].map(|i| p[i] + STEP * way[i])));
+                let squared = (0..3).map(|i| (beside.gradient()[i] - here.gradient()[i]).powi(2)).sum::<f64>();
+                let bound = surface.sharpest(here.value().abs() + 2.0 * STEP);
+                closest = closest.max(squared.sqrt() / STEP / bound);
+            }
+            assert!(closest < 1.0 && closest > 0.9, "{surface:?}: {closest}");
+        }
+    }
 }

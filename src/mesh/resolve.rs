@@ -95,7 +95,8 @@ impl Search<'_> {
         } else if size > 1 {
             self.parts_of(first, size, program)
         } else {
-            let is_open = self.least(first) <= self.bulge(program, &region) && !program.is_entered_once(&octants(&region));
+            let is_open =
+                self.least(first) <= self.bulge(program, &region) && !program.is_entered_once(&octants(&region));
             usize::from(is_open)
         }
     }

@@ -74,20 +74,22 @@ pub enum AtBounds {
 
 /// What becomes of features that may be thinner than a cell.
 ///
-/// A cell is unresolved if all its corners are on the same side, and the ranges of the value
-/// and of all three components of the gradient over the cell contain 0: the surface may come into the cell
-/// and turn round in it, as at a thin wall or a narrow slot. Ranges are wider than what they hold, so
-/// there may be nothing; without unresolved cells nothing is lost that lies within cells of one side. A wall that
-/// is not much thicker than a cell may still have holes, in cells with corners on both sides: a flat one is whole for certain if it
-/// is thicker than the diagonal of a cell, 1.74 times its side.
+/// A cell is unresolved if all its corners are on the same side, the range of the value over it contains 0, and no
+/// direction is found along which the solid is entered, and not left, throughout the cell: the surface may come into
+/// it and turn round, as at a thin wall or a narrow slot. Ranges are wider than what they hold, so there may be
+/// nothing, as where lattices have few cells for a period or radii are of two or three cells; without
+/// unresolved cells nothing is lost that lies within cells of one side. A wall that is not much thicker than a cell may
+/// still have holes, in cells with corners on both sides: a flat one is whole for certain if it is thicker than the
+/// diagonal of a cell, 1.74 times its side. A fillet is taken to have no features of its own that are thinner than its
+/// radius.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ThinFeatures {
     /// Nothing is done, and the report of the mesh says nothing of them.
     #[default]
     Ignore,
     /// Unresolved cells are counted:
-    /// [`MeshReport::unresolved_cells`](crate::MeshReport::unresolved_cells). This may take several times as
-    /// long as the mesh.
+    /// [`MeshReport::unresolved_cells`](crate::MeshReport::unresolved_cells). Of parts that cells show well this
+    /// takes a tenth to a half of the mesh's time, of lattices, threads and walls of a few cells several times as long.
     Count,
     /// While there are any, the cells are halved, all of them, at most so many times; then those that are
     /// left are counted.

@@ -98,7 +98,7 @@ impl Solid {
             let if_done = |is_done: bool, time: f64| if is_done { time } else { 0.0 };
             let counts = settings.thin != ThinFeatures::Ignore;
             let [own, paint] = [if_done(owned, 0.8), if_done(painted, 0.2)];
-            let times = [0.15, if_done(counts, 7.0), 0.85, if_done(whole.is_some(), 1.0), own, paint];
+            let times = [0.15, if_done(counts, 1.5), 0.85, if_done(whole.is_some(), 1.0), own, paint];
             let [to_find, to_count, to_extract, to_refuse, to_own, to_paint] = run.stages(times);
             let mut lattice = Lattice::new(&bounds, settings.cell)?;
             let mut blocks = Blocks::find(&programs.surface, &lattice, &to_find)?;

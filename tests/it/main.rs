@@ -43,6 +43,7 @@ mod superquadric;
 mod supershape;
 mod supershape_ranges;
 mod support;
+mod thin;
 mod volume;
 mod zbuffer;
 mod zoo;

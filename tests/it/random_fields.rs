@@ -1,9 +1,7 @@
 //! Meshes of random fields, in both modes: nothing is wrong with any of them.
 
 use glam::{DQuat, DVec3};
-use rvachev::{
-    Bounds, CellSize, Features, Field, Interval, MeshSettings, ParamError, RFunction, Real, Run, Solid, ThinFeatures,
-};
+use rvachev::{Bounds, CellSize, Features, Field, Interval, MeshSettings, ParamError, RFunction, Real, Run, Solid};
 
 use crate::support::{Random, random_leaf, random_solid};
 
@@ -168,20 +166,4 @@ fn a_thousand_fields() {
 #[ignore = "takes many minutes"]
 fn twenty_thousand_fields() {
     fields(0..20_000);
-}
-
-#[test]
-fn thin_walls_are_counted_and_refined() {
-    // A wall of a third of a cell, between the nodes.
-    let wall = Solid::cuboid((1.0, 1.0, 0.04)).translate(DVec3::Z * 0.1);
-    let settings = |thin| MeshSettings { cell: CellSize::Length(CELL), thin, ..MeshSettings::default() };
-    let report = |thin| wall.mesh(&settings(thin)).unwrap().check();
-    assert_eq!(report(ThinFeatures::Ignore).unresolved_cells, None);
-    assert!(report(ThinFeatures::Count).unresolved_cells.unwrap() > 0);
-    let fine = report(ThinFeatures::Refine { halvings: 4 });
-    assert_eq!((fine.unresolved_cells, fine.shells), (Some(0), 1));
-    assert!((fine.volume / 0.04 - 1.0).abs() < 0.02, "{}", fine.volume);
-    // A body without thin parts has none.
-    let ball = Solid::sphere(1.0).mesh(&settings(ThinFeatures::Count)).unwrap();
-    assert_eq!(ball.unresolved_cells(), Some(0));
 }

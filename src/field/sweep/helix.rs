@@ -63,7 +63,15 @@ impl HelixWarp {
     /// `middle` is that of the profile along y; `stretch` the factor of the third coordinate,
     /// which runs along z otherwise.
     pub(crate) fn new(radius: f64, pitch: f64, left_handed: bool, middle: f64, stretch: f64, turn: Turn) -> HelixWarp {
-        HelixWarp { radius, pitch, hand: if left_handed { -1.0 } else { 1.0 }, middle, stretch, turn, sheet: Sheet::Both }
+        HelixWarp {
+            radius,
+            pitch,
+            hand: if left_handed { -1.0 } else { 1.0 },
+            middle,
+            stretch,
+            turn,
+            sheet: Sheet::Both,
+        }
     }
 
     /// How far the point is along z from the middle of the nearest turn's section.
