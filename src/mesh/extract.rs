@@ -52,6 +52,7 @@ use crate::geom::{Mesh, MeshError};
 use crate::run::{Cancelled, Run};
 
 mod bulge;
+mod crease;
 mod join;
 mod joined;
 mod nearby;

@@ -45,9 +45,9 @@ pub enum Features {
     /// They are kept: where the normals in a cell differ by more than 26°, the cell has a vertex on the
     /// crease or in the corner, and the mesh has edges along the crease.
     ///
-    /// Where a surface is smooth and its radii of curvature are some 35 cells or more, the mesh is that of
-    /// [`Smooth`](Features::Smooth); 25 cells are enough if the whole solid is smooth. Where a surface curves more and is
-    /// off those triangles in a cell by more than some 0.01 or 0.02 cells in their middle, two triangles have the diagonal
+    /// A solid without creases has the mesh of [`Smooth`](Features::Smooth). One that has any is meshed more closely also
+    /// where it is smooth: where it curves so much, with radii below some 35 cells, that it is
+    /// off the triangles in a cell by more than some 0.01 or 0.02 cells in their middle, two triangles have the diagonal
     /// that bends less; and where that is not enough, the cell has a vertex above the surface, as far as the triangles
     /// around it are below.
     ///

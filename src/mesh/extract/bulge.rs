@@ -54,17 +54,37 @@ pub(super) struct Ring<'a, const N: usize> {
     pub(super) normals: [Vec3A; N],
     /// The sum of the normals.
     sum: Vec3A,
-    /// The mean of the squares of their distances from their mean: what the square of that lacks of 1.
     variance: f32,
+}
+
+/// The sum of some normals, and the mean of the squares of their distances from their mean: what the square of that lacks
+/// of 1.
+#[inline(always)]
+fn spread<const N: usize>(normals: &[Vec3A; N]) -> (Vec3A, f32) {
+    let sum = normals.iter().sum::<Vec3A>();
+    let share = 1.0 / (N * N) as f32;
+    (sum, 1.0 - share * sum.length_squared())
+}
+
+/// Whether two normals differ as those of a crease do, given their variance.
+#[inline(always)]
+fn are_creased<const N: usize>(normals: &[Vec3A; N], variance: f32) -> bool {
+    // The square of the distance of two is at most twice the sum of the squares of those from the mean.
+    2.0 * N as f32 * variance >= 2.0 - 2.0 * SMOOTH && differ(normals)
+}
+
+/// Whether two normals of a cell differ as those of a crease do.
+#[inline(always)]
+pub(super) fn is_crease<const N: usize>(normals: &[Vec3A; N]) -> bool {
+    are_creased(normals, spread(normals).1)
 }
 
 impl<'a, const N: usize> Ring<'a, N> {
     #[inline(always)]
     pub(super) fn new(vertices: [&'a Vertex; N]) -> Ring<'a, N> {
         let normals = vertices.map(|vertex| vertex.normal);
-        let sum = normals.iter().sum::<Vec3A>();
-        let share = 1.0 / (N * N) as f32;
-        Ring { vertices, normals, sum, variance: 1.0 - share * sum.length_squared() }
+        let (sum, variance) = spread(&normals);
+        Ring { vertices, normals, sum, variance }
     }
 
     /// Whether the cell is nearly flat: a few normals in a circle of that diameter are this far from their mean.
@@ -76,8 +96,7 @@ impl<'a, const N: usize> Ring<'a, N> {
     /// Whether no two normals differ as those of a crease do.
     #[inline(always)]
     pub(super) fn is_smooth(&self) -> bool {
-        // The square of the distance of two is at most twice the sum of the squares of those from the mean.
-        2.0 * N as f32 * self.variance < 2.0 - 2.0 * SMOOTH || !differ(&self.normals)
+        !are_creased(&self.normals, self.variance)
     }
 
     /// What a smooth cell that is not flat is to have.

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::neighbours::Neighbours;
 use super::samples::Samples;
-use super::sharp;
+use super::sharp::{self, Found};
 use super::{BATCH, Batch, ExtractError, Part, Rift, Sampler};
 use crate::geom::Mesh;
 use crate::mesh::Features;
@@ -15,6 +15,24 @@ use crate::mesh::meter::Meter;
 use crate::mesh::signs::{BLOCK, NODES, SIDE, for_each_cell, is_mixed};
 use crate::mesh::table::CaseTable;
 use crate::run::{Cancelled, Run};
+
+/// Why no more triangles are listed.
+enum Stop {
+    Open,
+    Error(ExtractError),
+}
+
+impl From<ExtractError> for Stop {
+    fn from(error: ExtractError) -> Stop {
+        Stop::Error(error)
+    }
+}
+
+impl From<Cancelled> for Stop {
+    fn from(cancelled: Cancelled) -> Stop {
+        Stop::Error(cancelled.into())
+    }
+}
 
 /// All blocks after the first pass.
 pub(super) struct Parts<'a> {
@@ -124,21 +142,22 @@ impl<'a> Parts<'a> {
         run: &Run,
     ) -> Result<Mesh, ExtractError> {
         let [mut positions, mut normals] = self.take_vertices();
-        let fans = match features {
-            Features::Smooth => None,
+        let found = match features {
+            Features::Smooth => Found::Table(self.triangles_unless(|_, _| false, run)?.unwrap_or_default()),
             Features::Sharp => {
                 let samples = Samples::new(&self, lattice, sampler.limits(), [&positions, &normals]);
                 sharp::find(&samples, sampler, &run.stage(0.0, 0.95))?
             }
         };
-        let Some(fans) = fans else {
-            let rest = (features == Features::Sharp).then(|| run.stage(sharp::LOOKED, 1.0));
-            let triangles = self.triangles(rest.as_ref().unwrap_or(run))?.into_vec();
-            positions.shrink_to_fit();
-            normals.shrink_to_fit();
-            return Ok(Mesh::new(positions.into_vec(), triangles)?
-                .with_normals(normals.into_vec())?
-                .with_clamped_vertices(self.clamped));
+        let fans = match found {
+            Found::Fans(fans) => fans,
+            Found::Table(triangles) => {
+                positions.shrink_to_fit();
+                normals.shrink_to_fit();
+                return Ok(Mesh::new(positions.into_vec(), triangles.into_vec())?
+                    .with_normals(normals.into_vec())?
+                    .with_clamped_vertices(self.clamped));
+            }
         };
         let count = positions.len() as u64 + fans.count() as u64;
         if count > u64::from(u32::MAX) {
@@ -173,8 +192,13 @@ impl<'a> Parts<'a> {
         })
     }
 
-    /// The triangles of all cells by the case table, in the order of the blocks.
-    fn triangles(&self, run: &Run) -> Result<Bulk<[u32; 3]>, ExtractError> {
+    /// The triangles of all cells by the case table, in the order of the blocks; nothing if a block, given with the
+    /// vertices of its cells, tells that they will not do.
+    pub(super) fn triangles_unless(
+        &self,
+        is_open: impl Fn(usize, &Corners) -> bool + Sync,
+        run: &Run,
+    ) -> Result<Option<Bulk<[u32; 3]>>, ExtractError> {
         let meter = Meter::new(run, self.blocks.len());
         let counts: Vec<usize> =
             self.parts.iter().map(|batch| batch.iter().map(|part| part.triangles as usize).sum()).collect();
@@ -186,11 +210,18 @@ impl<'a> Parts<'a> {
                 let (own, rest) = std::mem::take(&mut piece).split_at_mut(self.part(n).triangles as usize);
                 self.list_triangles(n, corners, own)?;
                 piece = rest;
+                if is_open(n, corners) {
+                    return Err(Stop::Open);
+                }
             }
             Ok(())
         };
-        pieces.into_par_iter().enumerate().map_init(Corners::new, of_batch).collect::<Result<(), ExtractError>>()?;
-        Ok(triangles)
+        let listed = pieces.into_par_iter().enumerate().map_init(Corners::new, of_batch).collect::<Result<(), Stop>>();
+        match listed {
+            Ok(()) => Ok(Some(triangles)),
+            Err(Stop::Open) => Ok(None),
+            Err(Stop::Error(error)) => Err(error),
+        }
     }
 
     /// Lists the triangles of the cells of block `n` by the case table, in the order of the cells. There is room for

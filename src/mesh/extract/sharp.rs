@@ -38,7 +38,8 @@ use std::ops::Range;
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::join::{fill, split};
+use super::crease::is_creased;
+use super::join::{Corners, fill, split};
 use super::joined::Joined;
 use super::region::{Region, regions};
 use super::samples::{Samples, cell_number, split_cell};
@@ -53,7 +54,7 @@ use crate::mesh::meter::Meter;
 use crate::run::{Cancelled, Run};
 
 /// How much of the work is done when it is known which blocks are even, more or less.
-pub(super) const LOOKED: f64 = 0.15;
+const LOOKED: f64 = 0.15;
 
 /// Fans that a thread looks at before it asks whether to go on.
 pub(super) const AT_ONCE: usize = 512;
@@ -105,16 +106,23 @@ pub(super) struct Fans {
     free: Vec<u32>,
 }
 
-/// Finds the cells that hold creases and corners, and gives them fans; nothing if normals change
-/// evenly everywhere.
-pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) -> Result<Option<Fans>, ExtractError> {
-    // How long each stage takes, more or less.
-    let [to_find, to_merge, to_fan] = run.stage(LOOKED, 1.0).stages([7.0, 2.0, 1.0]);
+/// What a mesh with sharp features is made of.
+pub(super) enum Found {
+    /// The triangles of the case table: there are no creases.
+    Table(Bulk<[u32; 3]>),
+    Fans(Fans),
+}
+
+/// Finds the cells that hold creases and corners, and gives them fans.
+pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) -> Result<Found, ExtractError> {
     // Blocks whose normals change evenly are settled as a whole.
     let even = even_blocks(samples, &run.stage(0.0, LOOKED))?;
-    if even.iter().all(|&is_even| is_even) {
-        return Ok(None);
+    let is_open = |n: usize, corners: &Corners| !even[n] && is_creased(samples, n, corners);
+    if let Some(triangles) = samples.parts.triangles_unless(is_open, &run.stage(LOOKED, 1.0))? {
+        return Ok(Found::Table(triangles));
     }
+    // How long each stage takes, more or less.
+    let [to_find, to_merge, to_fan] = run.stage(LOOKED, 1.0).stages([7.0, 2.0, 1.0]);
     let proposed = (0..even.len()).map(|n| match even[n] {
         true => Vec::new(),
         false => samples.parts.part(n).joins.clone(),
@@ -122,7 +130,7 @@ pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) ->
     let joined = Joined::new(samples, proposed.collect());
     let special = Special::find(samples, sampler, (&even, &joined), &to_find)?;
     let regions = regions(samples, &special, &joined, &to_merge)?;
-    Ok(Some(Fans::new(samples, special, regions, &to_fan)?))
+    Ok(Found::Fans(Fans::new(samples, special, regions, &to_fan)?))
 }
 
 impl Fans {
