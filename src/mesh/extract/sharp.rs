@@ -110,7 +110,7 @@ pub(super) struct Fans {
 pub(super) enum Found {
     /// The triangles of the case table: there are no creases.
     Table(Bulk<[u32; 3]>),
-    Fans(Fans),
+    Fans(Box<Fans>),
 }
 
 /// Finds the cells that hold creases and corners, and gives them fans.
@@ -130,7 +130,7 @@ pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) ->
     let joined = Joined::new(samples, proposed.collect());
     let special = Special::find(samples, sampler, (&even, &joined), &to_find)?;
     let regions = regions(samples, &special, &joined, &to_merge)?;
-    Ok(Found::Fans(Fans::new(samples, special, regions, &to_fan)?))
+    Ok(Found::Fans(Box::new(Fans::new(samples, special, regions, &to_fan)?)))
 }
 
 impl Fans {
