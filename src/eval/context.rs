@@ -6,7 +6,7 @@
 //! to each leaf's value, its sign turned by every complement on the way. What comes out is a
 //! program like any other.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use glam::{DAffine3, DMat3};
@@ -114,10 +114,17 @@ impl Contexts {
                 let difference = *operation == Operation::Difference;
                 (0..operands.len()).map(|i| (i, self.flip_if(context, difference && i > 0))).collect()
             }
-            Node::Blend { operation, blend, .. } => match blend {
+            Node::Blend { operation, blend, operands, .. } => match blend {
                 // Below a length these are leaves.
                 Blend::Displacement { .. } | Blend::Ricci { .. } if above.anchor.is_some() => Vec::new(),
-                _ => vec![(0, context), (1, self.flip_if(context, *operation == Operation::Difference))],
+                _ => {
+                    // A fillet rolls along the operands as lengths tell them: they are those everywhere.
+                    let is_fillet = matches!(blend, Blend::Fillet { .. }) && above.anchor.is_none();
+                    let [first, second] = operands.each_ref().map(|operand| {
+                        if is_fillet && differs_in_lengths(operand) { self.length(context, 0.0) } else { context }
+                    });
+                    vec![(0, first), (1, self.flip_if(second, *operation == Operation::Difference))]
+                }
             },
             Node::Length { length, .. } => match *length {
                 Length::Level(_) if above.anchor.is_some() => Vec::new(),
@@ -234,6 +241,24 @@ impl Contexts {
         }
         shift
     }
+}
+
+/// Whether a solid's surface is another where its leaves are told by lengths: where these, and not only their signs, are
+/// joined.
+fn differs_in_lengths(solid: &Solid) -> bool {
+    let (mut pending, mut met) = (vec![solid], HashSet::new());
+    while let Some(solid) = pending.pop() {
+        if !met.insert(solid.address()) {
+            continue;
+        }
+        match solid.node() {
+            Node::Blend { blend: Blend::Smooth { .. } | Blend::Chamfer { .. }, .. } => return true,
+            // These have their lengths in any case, or are leaves.
+            Node::Blend { .. } | Node::Length { length: Length::Offset(_) | Length::Level(_), .. } => {}
+            node => pending.extend(node.operands()),
+        }
+    }
+    false
 }
 
 /// Whether a map stretches all directions alike.
