@@ -2,7 +2,8 @@
 
 use glam::{DVec2, DVec3};
 use rvachev::{
-    Blend, Bounds, CellSize, Helix, Lattice, Profile, Program, RFunction, Region, SmoothStep, Solid, SolidError,
+    Blend, Bounds, CellSize, Features, Helix, Lattice, MeshSettings, Profile, Program, RFunction, Region, SmoothStep,
+    Solid, SolidError,
 };
 
 use crate::support::{Random, lanes32, lanes64, near};
@@ -586,5 +587,30 @@ fn rays_meet_chains_of_fillets() -> Result<(), SolidError> {
     });
     let hit = chain.raycast(DVec3::new(20.0, 0.0, 9.0), -DVec3::Z)?.unwrap();
     near(hit.distance, 8.4, 1e-9);
+    Ok(())
+}
+
+/// A smooth union of what are no distances has another surface than that of their distances, which a fillet rolls along. The
+/// same one counts near the fillet and away from it.
+#[test]
+fn fillets_of_smooth_unions_are_of_one_surface() -> Result<(), SolidError> {
+    const CELL: f64 = 0.05;
+    let wedge = Solid::cuboid((0.5, 0.7, 0.9)).taper(0.36, 0.8, 0.5).translate((0.1, 0.3, -0.1));
+    let smooth = wedge.smooth_union(Solid::cylinder(0.33, 0.7), 0.1);
+    let knob = Solid::ellipsoid((0.13, 0.18, 0.37)).offset(0.035).translate((0.35, -0.25, 0.0));
+    let solid = smooth.union_with(&knob, Blend::Fillet { radius: 0.05 });
+    let program = solid.surface_program()?;
+    let settings = MeshSettings { cell: CellSize::Length(CELL), features: Features::Smooth, ..MeshSettings::default() };
+    let mesh = solid.mesh(&settings).unwrap();
+    // Distances that are searched for jump here and there: what tells is the sign.
+    let crosses = |p: DVec3| {
+        DVec3::AXES.iter().any(|axis| {
+            let [before, after] = [-1e-5, 1e-5].map(|by| program.value(p + by * CELL * axis) > 0.0);
+            before != after
+        })
+    };
+    let off = mesh.positions().iter().filter(|p| !crosses(p.as_dvec3())).count();
+    let clamped = mesh.clamped_vertices().unwrap();
+    assert!(off <= clamped, "{off} of {} vertices, {clamped} clamped", mesh.positions().len());
     Ok(())
 }
