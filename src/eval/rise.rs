@@ -231,9 +231,13 @@ fn stretch(map: &DMat3) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
+    use glam::DVec2;
+
     use super::*;
     use crate::eval::compiled;
-    use crate::{Blend, Helix, MinimalSurface, Profile, Region, SheetLattice, Solid};
+    use crate::{Blend, Helix, MinimalSurface, Polygon, Profile, Region, SheetLattice, Solid};
 
     /// Once in the solid, a ray along the direction stays in it.
     #[test]
@@ -243,12 +247,14 @@ mod tests {
             Solid::superellipsoid(DVec3::new(0.7, 0.5, 0.4), 0.3, 1.6).rotate(glam::DQuat::from_rotation_y(1.1));
         let gyroid = SheetLattice { surface: MinimalSurface::Gyroid, cell: 1.0, thickness: 0.15 };
         let rod = Solid::cylinder(0.2, 2.0);
+        let star = (0..10).map(|n| DVec2::from_angle(f64::from(n) * 0.2 * PI) * if n % 2 == 0 { 0.8 } else { 0.4 });
         let solids = [
             &cube - &rod,
             &cube | cushion.translate(DVec3::X * 0.4),
             cushion.twist(0.9).bend(0.4, 0.3),
             Solid::torus(0.6, 0.2) ^ &rod,
             Solid::from(gyroid),
+            Profile::from(Polygon::new([star])).extrude(1.2),
             Profile::circle(0.12).sweep_helix(&Helix::new(0.4, 0.4, 2.0)) | &rod,
             cube.union_with(&rod, Blend::Chamfer { width: 0.15 }),
             cushion.offset(0.05),

@@ -1,8 +1,10 @@
 //! Cells that may hide a feature thinner than they are.
 
-use glam::{DQuat, DVec3};
+use std::f64::consts::PI;
+
+use glam::{DQuat, DVec2, DVec3};
 use rvachev::{
-    Blend, Bounds, CellSize, Helix, MeshSettings, MinimalSurface, Profile, SheetLattice, Solid, ThinFeatures,
+    Blend, Bounds, CellSize, Helix, MeshSettings, MinimalSurface, Polygon, Profile, SheetLattice, Solid, ThinFeatures,
 };
 
 use super::models;
@@ -60,6 +62,7 @@ fn bodies_without_thin_parts_have_no_unresolved_cells() {
     let (m2, m6) = (models::m2(), models::m6());
     let boss = cube.union_with(Solid::cylinder(0.6, 4.0), Blend::Fillet { radius: 0.2 });
     let thread = Profile::circle(0.08).sweep_helix(&Helix::new(0.3, 0.25, 2.5)) | Solid::cylinder(0.25, 1.4);
+    let star = (0..10).map(|n| DVec2::from_angle(f64::from(n) * 0.2 * PI + 0.1) * if n % 2 == 0 { 1.0 } else { 0.5 });
     let bodies = [
         ("ball", Solid::sphere(1.0), 48, None),
         ("cube", cube.clone(), 48, None),
@@ -71,6 +74,7 @@ fn bodies_without_thin_parts_have_no_unresolved_cells() {
         ("M6", m6.solid.clone(), 64, Some(m6.cube())),
         ("boss", boss, 64, None),
         ("thread", thread, 128, None),
+        ("star", Profile::from(Polygon::new([star])).extrude(0.5), 64, None),
     ];
     for (name, solid, cells, bounds) in bodies {
         let count = unresolved(&solid, CellSize::LongestSide(cells), bounds);

@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec2};
 
-use super::super::{AnyField, Chunk, ParamError, VALUE_LIMIT, Zone};
+use super::super::{AnyField, Chunk, ParamError, VALUE_LIMIT, Way, Zone};
 use crate::num::kernel::Element;
 use crate::num::symbol::Symbol;
 use crate::{Bounds, Dual, Interval, Real};
@@ -217,6 +217,13 @@ impl Shape {
         (found.len() <= MANY_EDGES).then_some(found)
     }
 
+    /// The edges that can be nearest in the patch, unless they are too many to ask for.
+    fn near(&self, patch: &Patch) -> Option<Vec<Edge>> {
+        let margin = near::margin(patch, self.reach());
+        let candidates = self.candidates(patch, self.value(patch.centre), margin)?;
+        Some(near::nearest_over(patch, candidates.into_iter(), margin))
+    }
+
     fn over(&self, patch: Option<Patch>) -> Interval {
         let Some(patch) = patch.filter(|_| !self.edges.is_empty()) else { return Interval::ALL };
         let value = self.value(patch.centre);
@@ -332,11 +339,14 @@ impl AnyField for Polygon {
         self.0.over(Patch::of_zone(zone))
     }
 
+    fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
+        let near = Patch::of_zone(zone).and_then(|patch| self.0.near(&patch));
+        near.map_or(0, |edges| near::rises(&edges, ways))
+    }
+
     fn narrowed(&self, zone: &Zone) -> Option<Arc<dyn AnyField>> {
         let patch = Patch::of_zone(zone)?;
-        let margin = near::margin(&patch, self.0.reach());
-        let candidates = self.0.candidates(&patch, self.0.value(patch.centre), margin)?;
-        let edges = near::nearest_over(&patch, candidates.into_iter(), margin);
+        let edges = self.0.near(&patch)?;
         if edges.is_empty() || edges.len() > FEW_EDGES || edges.len() == self.0.edges.len() {
             return None;
         }

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec2};
 
-use super::super::super::{AnyField, Chunk, Field, ParamError, VALUE_LIMIT, Zone, steep_slopes};
+use super::super::super::{AnyField, Chunk, Field, ParamError, VALUE_LIMIT, Way, Zone, bits, steep_slopes};
 use super::{Edge, Patch};
 use crate::num::symbol::Symbol;
 use crate::{Bounds, Dual, Interval, Real};
@@ -181,6 +181,16 @@ pub(super) fn nearest_over(patch: &Patch, edges: impl Iterator<Item = Edge>, mar
     bounded.into_iter().filter(|(low, _)| *low <= most + 2.0 * margin).map(|(_, edge)| edge).collect()
 }
 
+/// The directions along which the signed distance rises where these edges can be nearest: into the polygon across all of
+/// them, and so across their corners.
+pub(super) fn rises(edges: &[Edge], ways: &[Way]) -> u8 {
+    let across = |edge: &Edge, [x, y, _]: Way| {
+        let inwards = edge.along.perp();
+        (x * inwards.x + y * inwards.y).lo() > 0.0
+    };
+    bits(ways, |way| !edges.is_empty() && edges.iter().all(|edge| across(edge, way)))
+}
+
 /// By how much points may lie outside of the zone that they are said to be in: lanes round
 /// their coordinates.
 pub(super) fn margin(patch: &Patch, reach: f64) -> f64 {
@@ -235,6 +245,11 @@ impl AnyField for NearEdges {
 
     fn range(&self, zone: &Zone) -> Interval {
         self.over(Patch::of_zone(zone))
+    }
+
+    fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
+        let near = |patch: Patch| nearest_over(&patch, self.edges().copied(), margin(&patch, self.0.reach));
+        Patch::of_zone(zone).map_or(0, |patch| rises(&near(patch), ways))
     }
 
     fn narrowed(&self, zone: &Zone) -> Option<Arc<dyn AnyField>> {
