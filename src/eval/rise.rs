@@ -8,14 +8,14 @@
 //!
 //! A direction is guessed from the gradients in the middle of a region; that all leaves rise along it
 //! is shown of each [by itself](crate::field::AnyField::rises), as they see it: through a deformation it may be
-//! any within ranges.
+//! any within a cone.
 
-use glam::{DMat3, DVec3};
+use glam::DVec3;
 
 use super::edge::EdgeBlend;
 use super::program::{Kind, Program};
 use super::scene::Instance;
-use crate::field::{AnyWarp, Pieces, Placement, Rule, Way, Zone, dot, product};
+use crate::field::{AnyWarp, Pieces, Placement, Rule, Way, Zone, largest_stretch, steepest};
 use crate::{Bounds, Dual, Interval};
 
 /// A leaf, and whether its complement counts.
@@ -34,11 +34,22 @@ impl Part<'_> {
     }
 }
 
+/// The sine of 8.6°: the value is to rise along all directions within that angle of one. Two faces of a fin or a slot with a
+/// draft rise along a direction as well, but not along all of those if it is thin.
+///
+/// ```text
+///        .  o        Where all normals are within 81° of w, what is d beyond a tip, along w, holds a ball of radius
+///     o  |     o     0.15 d: within six cells of the tip, at most, it holds a node.
+///        |\    w
+/// ```
+const CONE: f64 = 0.15;
+
 /// How often a direction is turned towards the part that rises least along it.
-const TURNS: usize = 8;
+const TURNS: usize = 16;
 
 impl Program {
-    /// Whether a direction is found along which the solid is entered, and not left, throughout these regions.
+    /// Whether a direction is found such that along it, and all close to it, the solid is entered, and not left,
+    /// throughout these regions.
     pub(crate) fn is_entered_once(&self, regions: &[Bounds]) -> bool {
         self.way_in(regions).is_some()
     }
@@ -49,7 +60,7 @@ impl Program {
         let whole = regions.iter().fold(Bounds::EMPTY, |all, region| all.union(region));
         let guesses = self.guesses(&parts, whole.center());
         let rising = |guesses: &[DVec3]| {
-            let ways: Vec<Way> = guesses.iter().map(|way| way.to_array().map(Interval::point)).collect();
+            let ways: Vec<Way> = guesses.iter().map(|&middle| Way { middle, sway: CONE }).collect();
             let mut left = u8::MAX;
             for region in regions {
                 if left == 0 {
@@ -60,9 +71,35 @@ impl Program {
             }
             guesses.get(left.trailing_zeros() as usize).copied()
         };
-        // The first guess does most often.
+        // The first guess does most often; edges that pass beside the middle show at the corners.
         let (first, others) = guesses.split_at(guesses.len().min(1));
-        rising(first).or_else(|| rising(others))
+        let by_corners = || {
+            let corner =
+                |n: usize| whole.min + whole.size() * DVec3::from_array([0, 1, 2].map(|i| (n >> i & 1) as f64));
+            let slopes: Vec<DVec3> = (0..8).flat_map(|n| self.slopes_at(&parts, corner(n))).collect();
+            rising(&common(&slopes).into_iter().collect::<Vec<_>>())
+        };
+        rising(first).or_else(|| rising(others)).or_else(by_corners)
+    }
+
+    /// Unit vectors along the gradients of parts at a point.
+    fn slopes_at(&self, parts: &[Part<'_>], p: DVec3) -> Vec<DVec3> {
+        let p = Dual::point(p.to_array());
+        let frames = self.frame_points(p);
+        let mut slopes = Vec::with_capacity(parts.len());
+        for part in parts {
+            let Instance { frame, to_local, .. } = self.instance(part.leaf);
+            let seen = self.in_frame(&frames, *frame, p);
+            let mut add = |slope: DVec3| slopes.push(part.turned(slope).normalize_or_zero());
+            if let Some(edge) = part.edge {
+                // Where it rises both operands do.
+                let local = Placement::new(to_local, 1.0, 0.0).apply(seen);
+                edge.operand_slopes(local).into_iter().for_each(add);
+            } else {
+                add(DVec3::from_array(self.leaf(part.leaf, seen).d));
+            }
+        }
+        slopes
     }
 
     /// The directions, of up to eight, along which the value is found to rise, or to stay, throughout a zone.
@@ -83,15 +120,14 @@ impl Program {
         };
         let p = Dual::point(zone.hull());
         let frames = self.frame_points(p);
-        let steepest = |part: &Part<'_>| {
+        let of_part = |part: &Part<'_>| {
             let Instance { field, frame, to_local, placement, .. } = self.instance(part.leaf);
             if *frame == 0 {
-                return placement.scale * stretch(&to_local.matrix3) * field.steepest(&zone.mapped(to_local));
+                return placement.scale * largest_stretch(&to_local.matrix3) * field.steepest(&zone.mapped(to_local));
             }
-            let slopes = self.leaf(part.leaf, self.in_frame(&frames, *frame, p)).d;
-            slopes.map(|slope: Interval| slope.magnitude().powi(2)).iter().sum::<f64>().sqrt()
+            steepest(self.leaf(part.leaf, self.in_frame(&frames, *frame, p)).d)
         };
-        parts.iter().map(steepest).fold(0.0, f64::max)
+        parts.iter().map(of_part).fold(0.0, f64::max)
     }
 
     /// Ranges of the derivatives over a region.
@@ -130,26 +166,13 @@ impl Program {
     /// Directions that may do: by the gradients at a point, then those of them along an axis, and with the ways to
     /// the middles of leaves in place of the gradients.
     fn guesses(&self, parts: &[Part<'_>], from: DVec3) -> Vec<DVec3> {
-        let p = Dual::point(from.to_array());
-        let frames = self.frame_points(p);
-        let (mut slopes, mut ways) = (Vec::with_capacity(parts.len()), Vec::with_capacity(parts.len()));
-        for part in parts {
-            let Instance { frame, bounds, to_local, .. } = self.instance(part.leaf);
-            let mut add = |slope: DVec3, middle: Option<DVec3>| {
-                let slope = part.turned(slope).normalize_or_zero();
-                slopes.push(slope);
-                ways.push(middle.map_or(slope, |middle| part.turned(middle - from).normalize_or_zero()));
-            };
-            let seen = self.in_frame(&frames, *frame, p);
-            if let Some(edge) = part.edge {
-                // Where it rises both operands do.
-                let local = Placement::new(to_local, 1.0, 0.0).apply(seen);
-                edge.operand_slopes(local).into_iter().for_each(|slope| add(slope, None));
-            } else {
-                let middle = (*frame == 0 && bounds.is_finite()).then(|| bounds.center());
-                add(DVec3::from_array(self.leaf(part.leaf, seen).d), middle);
-            }
-        }
+        let slopes = self.slopes_at(parts, from);
+        let inwards = |part: &Part<'_>| {
+            let Instance { frame, bounds, .. } = self.instance(part.leaf);
+            let is_known = *frame == 0 && bounds.is_finite() && part.edge.is_none();
+            is_known.then(|| part.turned(bounds.center() - from).normalize_or_zero())
+        };
+        let known: Vec<DVec3> = parts.iter().filter_map(inwards).collect();
         let mut guesses: Vec<DVec3> = common(&slopes).into_iter().collect();
         for axis in DVec3::AXES {
             let along = axis * slopes[0].dot(axis).signum();
@@ -157,7 +180,8 @@ impl Program {
                 guesses.push(along);
             }
         }
-        guesses.extend(common(&ways));
+        // Towards the middles of all.
+        guesses.extend(common(&known).filter(|_| known.len() == parts.len()));
         guesses
     }
 
@@ -168,18 +192,17 @@ impl Program {
         for &number in &self.frames[..] {
             let Some(frame) = self.scene.frame(number) else { continue };
             let above = self.frames.binary_search(&frame.parent).map_or(ways, |slot| &seen[slot]);
-            let above: Vec<Way> = above.iter().map(|way| product(&frame.to_local.matrix3, *way)).collect();
+            let above: Vec<Way> = above.iter().map(|way| way.mapped(&frame.to_local.matrix3)).collect();
             let mut own: Vec<Way> = Vec::new();
             self.zone_in(zones, frame.parent, world).each(|zone| {
                 let hull = zone.mapped(&frame.to_local).hull();
                 let mut see = |warp: &dyn AnyWarp| {
                     let rows = warp.dual_ranges(Dual::point(hull)).map(|side| side.d);
-                    let images = above.iter().map(|way| rows.map(|row| dot(row, *way)));
+                    let images = above.iter().map(|way| way.seen_through(rows));
                     if own.is_empty() {
                         own = images.collect();
                     } else {
-                        let both = |own: &mut Way, image: Way| *own = [0, 1, 2].map(|i| own[i].hull(image[i]));
-                        own.iter_mut().zip(images).for_each(|(own, image)| both(own, image));
+                        own.iter_mut().zip(images).for_each(|(own, image)| *own = own.hull(image));
                     }
                 };
                 match frame.warp.sheets(hull) {
@@ -196,9 +219,7 @@ impl Program {
             }
             let Instance { field, frame, to_local, .. } = self.instance(part.leaf);
             let ways = self.frames.binary_search(frame).map_or(ways, |slot| &seen[slot]);
-            let sign = if part.negated { -1.0 } else { 1.0 };
-            let own: Vec<Way> =
-                ways.iter().map(|way| product(&to_local.matrix3, *way).map(|side| side * sign)).collect();
+            let own: Vec<Way> = ways.iter().map(|way| way.mapped(&to_local.matrix3).flip_if(part.negated)).collect();
             self.zone_in(zones, *frame, world).each(|zone| left &= field.rises(&zone.mapped(to_local), &own));
         }
         left
@@ -210,23 +231,13 @@ fn common(ways: &[DVec3]) -> Option<DVec3> {
     let mut sum: DVec3 = ways.iter().sum();
     for _ in 0..TURNS {
         let least = ways.iter().min_by(|a, b| a.dot(sum).total_cmp(&b.dot(sum)))?;
-        if least.dot(sum) > 0.3 * sum.length() {
+        if least.dot(sum) > 0.6 * sum.length() {
             break;
         }
         sum += *least;
     }
     let is_common = ways.iter().all(|way| way.dot(sum) > 0.0);
     sum.try_normalize().filter(|_| is_common)
-}
-
-/// A bound of how much a map stretches.
-fn stretch(map: &DMat3) -> f64 {
-    let squares = map.transpose() * *map;
-    [squares.x_axis, squares.y_axis, squares.z_axis]
-        .map(|row| row.abs().element_sum())
-        .into_iter()
-        .fold(0.0, f64::max)
-        .sqrt()
 }
 
 #[cfg(test)]

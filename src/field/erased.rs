@@ -12,7 +12,7 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use super::deform::{Branches, Warp};
 use super::zone::{concave_range, concave_rise, mean_value_range};
-use super::{AnyWarp, Field, Kernel, ParamError, Zone, dot, saturate};
+use super::{AnyWarp, Field, Kernel, ParamError, Way, Zone, bits, saturate, steepest};
 use crate::num::kernel::{Element, Formula, Visit, run};
 use crate::num::symbol::Symbol;
 use crate::{Bounds, Dual, Interval, Real};
@@ -117,15 +117,14 @@ pub(crate) trait AnyField: Any + Debug + Send + Sync {
     /// A sound range over a zone of the leaf's frame.
     fn range(&self, zone: &Zone) -> Interval;
     /// The directions, of up to eight, along which the value is found to rise, or to stay, throughout a zone: by
-    /// their numbers, as bits. Each is any within its ranges.
+    /// their numbers, as bits.
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
         let slopes = self.dual_range(Dual::point(zone.hull())).d;
-        bits(ways, |way| dot(slopes, way).lo() > 0.0)
+        bits(ways, |way| way.is_rise(slopes))
     }
     /// The most that the value changes by per length unit over a zone.
     fn steepest(&self, zone: &Zone) -> f64 {
-        let slopes = self.dual_range(Dual::point(zone.hull())).d;
-        slopes.map(|slope| slope.magnitude().powi(2)).iter().sum::<f64>().sqrt()
+        steepest(self.dual_range(Dual::point(zone.hull())).d)
     }
     /// Which of the leaf's own axes the value may depend on.
     fn axes(&self) -> [bool; 3] {
@@ -159,14 +158,6 @@ pub(crate) trait AnyField: Any + Debug + Send + Sync {
     fn cost(&self) -> usize {
         1
     }
-}
-
-/// A direction, of any length, within ranges.
-pub(crate) type Way = [Interval; 3];
-
-/// The directions that something is true of, by their numbers.
-pub(crate) fn bits(ways: &[Way], is_true: impl Fn(Way) -> bool) -> u8 {
-    (0..8).zip(ways).fold(0, |bits, (n, way)| bits | u8::from(is_true(*way)) << n)
 }
 
 /// The derivatives, along the variables of `p`, of a value that changes by at most `steepest` per
@@ -327,23 +318,17 @@ impl<F: Field> AnyField for F {
         let convex = Field::convex(self);
         let found =
             if convex { bits(ways, |way| concave_rise(zone, way, |p| self.eval(p.to_array()), along)) } else { 0 };
-        // Of boxes and single directions that says all.
-        let is_single = |way: &Way| way.iter().all(|side| side.width() <= 1e-9 * side.magnitude());
-        let is_box = zone.slack.length() <= 1e-9 * zone.radius();
-        if found != 0 || convex && is_box && ways.iter().all(is_single) {
+        // Of boxes, seen through no deformation, that says all.
+        if found != 0 || convex && zone.slack.length() <= 1e-9 * zone.radius() {
             return found;
         }
         let slopes = self.slopes(zone.hull());
-        bits(ways, |way| dot(slopes, way).lo() > 0.0)
+        bits(ways, |way| way.is_rise(slopes))
     }
 
     fn steepest(&self, zone: &Zone) -> f64 {
         let least = Field::steepest(self);
-        if least.is_finite() {
-            return least;
-        }
-        let slopes = self.slopes(zone.hull());
-        slopes.map(|slope| slope.magnitude().powi(2)).iter().sum::<f64>().sqrt()
+        if least.is_finite() { least } else { steepest(self.slopes(zone.hull())) }
     }
 
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {

@@ -55,7 +55,7 @@ pub(crate) use deform::{AnyWarp, Bend, Cells, Comb, Elongate, Sectors, Taper, Ta
 pub use deform::{Law, LawTable, LinearLaw, SineWave, SmoothStep};
 pub(crate) use distance::Distance;
 pub use ellipsoid::Ellipsoid;
-pub(crate) use erased::{AnyField, Chunk, Placement, Way, bits, smallest_stretch, steep_slopes};
+pub(crate) use erased::{AnyField, Chunk, Placement, smallest_stretch, steep_slopes};
 pub(crate) use faces::concave_faces;
 pub(crate) use formula::BOXES;
 pub use formula::{Formula, FormulaError};
@@ -82,7 +82,7 @@ pub use supertoroid::Supertoroid;
 pub(crate) use sweep::{HelixWarp, Opening, Revolution, Span, Turn};
 pub use torus::Torus;
 pub use wedge::Wedge;
-pub(crate) use zone::{Pieces, Zone, dot, product};
+pub(crate) use zone::{Pieces, Way, Zone, bits, dot, largest_stretch, steepest};
 
 /// Coordinates beyond this many length units are evaluated as if they lay there, so that no
 /// intermediate result overflows single precision.

@@ -214,14 +214,71 @@ impl Pieces {
     }
 }
 
+/// Directions, of any length: all within a ball.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Way {
+    pub(crate) middle: DVec3,
+    pub(crate) sway: f64,
+}
+
+impl Way {
+    /// What becomes of them by a linear map.
+    pub(crate) fn mapped(self, map: &DMat3) -> Way {
+        let sway = self.sway * largest_stretch(map);
+        let middle = *map * self.middle;
+        Way { middle, sway: sway + ROUNDING * middle.length() }
+    }
+
+    /// The same by a matrix within ranges, given row by row.
+    pub(crate) fn seen_through(self, rows: [[Interval; 3]; 3]) -> Way {
+        let images = rows.map(|[x, y, z]| x * self.middle.x + y * self.middle.y + z * self.middle.z);
+        let spread = DVec3::from_array(images.map(|image| 0.5 * image.width())).length();
+        let middle = DMat3::from_cols_array_2d(&rows.map(|row| row.map(Interval::mid))).transpose();
+        let rest = rows.as_flattened().iter().map(|slope| (0.5 * slope.width()).powi(2)).sum::<f64>().sqrt();
+        let steepest = largest_stretch(&middle) + rest;
+        Way {
+            middle: DVec3::from_array(images.map(Interval::mid)),
+            sway: (spread + self.sway * steepest) * (1.0 + 1e-12),
+        }
+    }
+
+    /// Those of both.
+    pub(crate) fn hull(self, other: Way) -> Way {
+        let middle = 0.5 * (self.middle + other.middle);
+        Way { middle, sway: (0.5 * (self.middle - other.middle).length() + self.sway.max(other.sway)) * (1.0 + 1e-12) }
+    }
+
+    pub(crate) fn flip_if(self, flip: bool) -> Way {
+        if flip { Way { middle: -self.middle, ..self } } else { self }
+    }
+
+    /// Whether a value of these slopes rises along all of them.
+    pub(crate) fn is_rise(self, slopes: [Interval; 3]) -> bool {
+        let [x, y, z] = [0, 1, 2].map(|axis| slopes[axis] * self.middle[axis]);
+        (x + y + z).lo() > self.sway * steepest(slopes)
+    }
+}
+
+/// The directions that something is true of, of up to eight, by their numbers as bits.
+pub(crate) fn bits(ways: &[Way], is_true: impl Fn(Way) -> bool) -> u8 {
+    (0..8).zip(ways).fold(0, |bits, (n, way)| bits | u8::from(is_true(*way)) << n)
+}
+
+/// The length of the longest vector within ranges.
+pub(crate) fn steepest(slopes: [Interval; 3]) -> f64 {
+    slopes.map(|slope| slope.magnitude().powi(2)).iter().sum::<f64>().sqrt() * (1.0 + 1e-12)
+}
+
+/// A bound of how much a map stretches.
+pub(crate) fn largest_stretch(map: &DMat3) -> f64 {
+    let squares = map.transpose() * *map;
+    let rows = [squares.x_axis, squares.y_axis, squares.z_axis].map(|row| row.abs().element_sum());
+    rows.into_iter().fold(0.0, f64::max).sqrt() * (1.0 + 1e-12)
+}
+
 /// The product of two vectors within ranges.
 pub(crate) fn dot(a: [Interval; 3], b: [Interval; 3]) -> Interval {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// A map of a vector within ranges.
-pub(crate) fn product(map: &DMat3, vector: [Interval; 3]) -> [Interval; 3] {
-    [0, 1, 2].map(|row| dot(map.row(row).to_array().map(Interval::point), vector))
 }
 
 /// Range of a function over a zone by the mean-value form: the value at the centre and ranges
@@ -279,7 +336,7 @@ pub(super) fn concave_range(
     range
 }
 
-/// Whether a concave function with slope at most 1 rises throughout a zone along all directions within these ranges.
+/// Whether a concave function with slope at most 1 rises throughout a zone along all these directions.
 ///
 /// ```text
 ///       .-------.        Along w a concave function rises at x if it is larger at any point beyond: first far
@@ -288,14 +345,12 @@ pub(super) fn concave_range(
 /// ```
 pub(super) fn concave_rise(
     zone: &Zone,
-    way: [Interval; 3],
+    Way { middle, sway }: Way,
     at: impl Fn(DVec3) -> f64,
     tangent: impl Fn([f64; 3]) -> Dual<f64>,
 ) -> bool {
-    let middle = DVec3::from_array(way.map(Interval::mid));
     let scale = 1.0 / middle.length();
-    let sway = scale * DVec3::from_array(way.map(|side| 0.5 * side.width())).length();
-    let (way, radius) = (scale * middle, zone.radius());
+    let (way, sway, radius) = (scale * middle, scale * sway, zone.radius());
     let here = at(zone.centre);
     let slack = 1e-12 * (zone.reach() + 16.0 * radius + here.abs());
     let rises_beyond = |by: f64| at(zone.centre + by * way) > here + 2.0 * radius + by * sway + slack;

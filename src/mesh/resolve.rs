@@ -2,8 +2,8 @@
 //!
 //! ```text
 //!     o-------o       A wall passes between the nodes: all are outside, and the mesh has nothing.
-//!     |  ===  |       The value's range over the cell contains 0 then; and there is no direction along
-//!     o-------o       which the cell is entered and not left.
+//!     |  ===  |       The value's range over the cell contains 0 then; and there is no direction such that
+//!     o-------o       along it, and all close to it, the solid is entered in the cell and not left.
 //! ```
 //!
 //! Blocks are halved until the ranges show that a part has no surface, or until there is a direction along which

@@ -45,7 +45,8 @@ pub enum Features {
     /// They are kept: where the normals in a cell differ by more than 26°, the cell has a vertex on the
     /// crease or in the corner, and the mesh has edges along the crease.
     ///
-    /// A solid without creases has the mesh of [`Smooth`](Features::Smooth). One that has any is meshed more closely also
+    /// A solid without creases, and with radii of four cells or more, has the mesh of [`Smooth`](Features::Smooth): there are
+    /// no such normals in any cell. One that has any is meshed more closely also
     /// where it is smooth: where it curves so much, with radii below some 35 cells, that it is
     /// off the triangles in a cell by more than some 0.01 or 0.02 cells in their middle, two triangles have the diagonal
     /// that bends less; and where that is not enough, the cell has a vertex above the surface, as far as the triangles
@@ -75,21 +76,25 @@ pub enum AtBounds {
 /// What becomes of features that may be thinner than a cell.
 ///
 /// A cell is unresolved if all its corners are on the same side, the range of the value over it contains 0, and no
-/// direction is found along which the solid is entered, and not left, throughout the cell: the surface may come into
-/// it and turn round, as at a thin wall or a narrow slot. Ranges are wider than what they hold, so there may be
-/// nothing, as where lattices have few cells for a period or radii are of two or three cells; without
-/// unresolved cells nothing is lost that lies within cells of one side. A wall that is not much thicker than a cell may
-/// still have holes, in cells with corners on both sides: a flat one is whole for certain if it is thicker than the
-/// diagonal of a cell, 1.74 times its side. A fillet is taken to have no features of its own that are thinner than its
-/// radius.
+/// direction is found such that along it, and along all directions within 8° of it, the solid is entered, and not left,
+/// throughout the cell: the surface may come into it and turn round, as at a thin wall, a narrow slot, or a fin with a draft of
+/// less than that. What is lost in resolved cells that all have corners on the same side is the tip of something blunter, up to
+/// six cells of it.
+///
+/// Ranges are wider than what they hold, so there may be nothing in an unresolved cell, as at edges of acute angles, where
+/// lattices have few cells for a period, and at radii of two or three cells. A wall that is not much thicker than a cell
+/// may still have holes, in cells with corners on both sides: a flat one is whole for certain if it is thicker than the
+/// diagonal of a cell, 1.74 times its side. A fillet or chamfer is taken to have no features of its own that are thinner
+/// than its size.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ThinFeatures {
     /// Nothing is done, and the report of the mesh says nothing of them.
     #[default]
     Ignore,
     /// Unresolved cells are counted:
-    /// [`MeshReport::unresolved_cells`](crate::MeshReport::unresolved_cells). Of parts that cells show well this
-    /// takes a tenth to a half of the mesh's time, of lattices, threads and walls of a few cells several times as long.
+    /// [`MeshReport::unresolved_cells`](crate::MeshReport::unresolved_cells). Of simple parts this takes
+    /// a tenth to a half of the mesh's time; of blends, deformed parts, lattices, and walls of a few cells several
+    /// times as long as the mesh.
     Count,
     /// While there are any, the cells are halved, all of them, at most so many times; then those that are
     /// left are counted.

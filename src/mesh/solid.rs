@@ -86,7 +86,8 @@ impl Solid {
                 run.install(|| self.refuse_beyond(given, Lattice::new(given, settings.cell)?.step(), &run))?;
             }
             run.report(1.0);
-            return Ok(Mesh::default());
+            let mesh = Mesh::default();
+            return Ok(if settings.thin == ThinFeatures::Ignore { mesh } else { mesh.with_unresolved_cells(0) });
         }
         let programs = compiled(&solid)?;
         // A mesh has the paint of its solid, if there is any, by the owners of its triangles.

@@ -29,7 +29,7 @@ use self::fillet::{FADES, Fillet, STEEPEST};
 use self::sides::{Side, join, sides};
 use super::composite::{Locals, Slopes, Whole, finish, points64, roundoff, with_evaluator, write_gradients};
 use super::{Evaluator, Program, Tape};
-use crate::field::{AnyField, Chunk, Way, Zone, bits, dot, steep_slopes};
+use crate::field::{AnyField, Chunk, Way, Zone, steep_slopes};
 use crate::num::kernel::CHUNK;
 use crate::num::symbol::Symbol;
 use crate::solid::Operation;
@@ -360,24 +360,19 @@ impl AnyField for EdgeBlend {
     }
 
     /// With both operands, as far away as the nearest centre is, so does the distance to where neither a ball's centre
-    /// may be. What is outside of it is a union of balls: where those are wider than the zone nothing turns round
-    /// in it but the operands.
+    /// may be. What is outside of it is a union of balls, and what a chamfer takes is a plane's: where the zone is small
+    /// beside them nothing turns round in it but the operands.
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
-        match &self.shape {
-            Shape::Fillet(fillet, _) => {
-                let is_wide = fillet.radius > 2.0 * zone.radius();
-                let far = self.value(zone.centre.to_array()).abs() + zone.radius() + fillet.radius;
-                let about = if is_wide { *zone } else { zone.inflated(far) };
-                let turned = |i: usize| -> Vec<Way> {
-                    ways.iter().map(|way| way.map(|side| side * (self.sign * self.signs[i]))).collect()
-                };
-                self.operands[0].rises(&about, &turned(0)) & self.operands[1].rises(&about, &turned(1))
-            }
-            Shape::Chamfer(_) => {
-                let slopes = self.dual_range(Dual::point(zone.hull())).gradient();
-                bits(ways, |way| dot(slopes, way).lo() > 0.0)
-            }
-        }
+        let is_wide = self.size() > 2.0 * zone.radius();
+        let far = match &self.shape {
+            _ if is_wide => 0.0,
+            Shape::Fillet(fillet, _) => self.value(zone.centre.to_array()).abs() + zone.radius() + fillet.radius,
+            Shape::Chamfer(_) => return 0,
+        };
+        let about = zone.inflated(far);
+        let turned =
+            |i: usize| -> Vec<Way> { ways.iter().map(|way| way.flip_if(self.sign * self.signs[i] < 0.0)).collect() };
+        self.operands[0].rises(&about, &turned(0)) & self.operands[1].rises(&about, &turned(1))
     }
 
     fn steepest(&self, zone: &Zone) -> f64 {

@@ -45,7 +45,7 @@ use self::chain::Chain;
 use self::feet::Feet;
 use self::follow::SURE;
 use self::step::Plane;
-use super::{AnyField, AnyWarp, Chunk, ParamError, VALUE_LIMIT, Way, Zone, product, smallest_stretch, steep_slopes};
+use super::{AnyField, AnyWarp, Chunk, ParamError, VALUE_LIMIT, Way, Zone, smallest_stretch, steep_slopes};
 use crate::num::kernel::CHUNK;
 use crate::num::symbol::Symbol;
 use crate::{Bounds, Dual, Interval};
@@ -235,7 +235,7 @@ impl AnyField for Distance {
             return 0;
         }
         let map = &self.chain.to_leaf;
-        let ways: Vec<Way> = ways.iter().map(|way| product(&map.matrix3, *way)).collect();
+        let ways: Vec<Way> = ways.iter().map(|way| way.mapped(&map.matrix3)).collect();
         self.chain.leaf.rises(&zone.inflated(far).mapped(map), &ways)
     }
 
