@@ -174,8 +174,9 @@ impl Program {
         };
         let known: Vec<DVec3> = parts.iter().filter_map(inwards).collect();
         let mut guesses: Vec<DVec3> = common(&slopes).into_iter().collect();
+        let Some(first) = slopes.first() else { return guesses };
         for axis in DVec3::AXES {
-            let along = axis * slopes[0].dot(axis).signum();
+            let along = axis * first.dot(axis).signum();
             if slopes.iter().all(|slope| slope.dot(along) > 0.1) {
                 guesses.push(along);
             }

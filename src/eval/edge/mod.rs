@@ -20,6 +20,7 @@
 mod chamfer;
 mod fillet;
 mod pair;
+mod rise;
 mod sides;
 
 use glam::{DAffine3, DVec3};
@@ -176,11 +177,6 @@ impl EdgeBlend {
             };
             EdgeBlend::of(operands, self.signs, self.sign, shape)
         })
-    }
-
-    /// The operands' gradients at a point, as they count in the blend.
-    pub(super) fn operand_slopes(&self, p: [Dual<f64>; 3]) -> [DVec3; 2] {
-        [0, 1].map(|i| self.sign * self.signs[i] * DVec3::from_array(self.operands[i].evaluate(p, &mut Vec::new()).d))
     }
 
     fn sample(&self, i: usize, p: DVec3) -> Sample {
@@ -359,30 +355,12 @@ impl AnyField for EdgeBlend {
         self.survey(zone, 0.0).0
     }
 
-    /// With both operands, as far away as the nearest centre is, so does the distance to where neither a ball's centre
-    /// may be. What is outside of it is a union of balls, and what a chamfer takes is a plane's: where the zone is small
-    /// beside them nothing turns round in it but the operands.
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
-        let is_wide = self.size() > 2.0 * zone.radius();
-        let far = match &self.shape {
-            _ if is_wide => 0.0,
-            Shape::Fillet(fillet, _) => self.value(zone.centre.to_array()).abs() + zone.radius() + fillet.radius,
-            Shape::Chamfer(_) => return 0,
-        };
-        let about = zone.inflated(far);
-        let turned =
-            |i: usize| -> Vec<Way> { ways.iter().map(|way| way.flip_if(self.sign * self.signs[i] < 0.0)).collect() };
-        self.operands[0].rises(&about, &turned(0)) & self.operands[1].rises(&about, &turned(1))
+        self.rising(zone, ways)
     }
 
     fn steepest(&self, zone: &Zone) -> f64 {
-        match &self.shape {
-            Shape::Fillet(fillet, sides) => {
-                let join = self.ranges(zone).into_iter().reduce(Interval::max).unwrap_or(Interval::ALL);
-                self.fillet_range(*fillet, sides, join, zone).1
-            }
-            Shape::Chamfer(_) => f64::INFINITY,
-        }
+        self.steepest_in(zone)
     }
 
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
