@@ -93,8 +93,8 @@ pub enum ThinFeatures {
     Ignore,
     /// Unresolved cells are counted:
     /// [`MeshReport::unresolved_cells`](crate::MeshReport::unresolved_cells). Of simple parts this takes
-    /// a tenth to a half of the mesh's time; of blends, deformed parts, lattices, and walls of a few cells several
-    /// times as long as the mesh.
+    /// a tenth to a half of the mesh's time; of blends, lattices, and walls of a few cells several times as long as the
+    /// mesh; of parts seen through several deformations up to twenty times.
     Count,
     /// While there are any, the cells are halved, all of them, at most so many times; then those that are
     /// left are counted.
