@@ -87,12 +87,12 @@ impl MinimalSurface {
     }
 
     /// How fast the gradient of g/N, for walls, turns at most where |g/N| is at most `level`, both per radian of the
-    /// period: its second derivative along any direction. Found on grids and by search from their largest values.
+    /// period: its second derivative along any direction. A hundredth above the largest that search has found.
     pub(super) fn sharpest(self, level: f64) -> f64 {
         let ([a, b, c], most) = match self {
-            MinimalSurface::Gyroid => ([0.92, 0.45, 1.1], 3.05),
-            MinimalSurface::SchwarzP => ([1.08, 0.5, 1.25], 6.1),
-            MinimalSurface::SchwarzD => ([1.14, 0.2, 2.72], 4.01),
+            MinimalSurface::Gyroid => ([0.94, 0.46, 1.13], 3.08),
+            MinimalSurface::SchwarzP => ([1.1, 0.51, 1.27], 6.15),
+            MinimalSurface::SchwarzD => ([1.16, 0.21, 2.75], 4.05),
         };
         (a + (b + c * level) * level).min(most)
     }
@@ -246,19 +246,37 @@ mod tests {
                 let [g, slope] = surface.parts(surface.wall_weight(), TAU, Dual::point(p));
                 g / slope
             };
-            let mut closest = 0.0_f64;
-            for n in 0..200_000u32 {
-                let along = |k: f64| (f64::from(n) * k).fract();
-                let p = [along(0.819_172_513), along(0.671_043_607), along(0.549_700_478)].map(|part| part * TAU);
-                let (turn, tilt) = (along(0.414_213_562) * TAU, along(0.732_050_808) * 2.0 - 1.0);
-                let flat = (1.0 - tilt * tilt).sqrt();
+            // The share of the bound that the turn from a point along a direction takes.
+            let share = |[x, y, z, turn, tilt]: [f64; 5]| {
+                let (p, flat) = ([x, y, z], (1.0 - tilt * tilt).max(0.0).sqrt());
                 let way = [flat * turn.cos(), flat * turn.sin(), tilt];
                 let (here, beside) = (at(p), at([0, 1, 2].map(|i| p[i] + STEP * way[i])));
                 let squared = (0..3).map(|i| (beside.gradient()[i] - here.gradient()[i]).powi(2)).sum::<f64>();
-                let bound = surface.sharpest(here.value().abs() + 2.0 * STEP);
-                closest = closest.max(squared.sqrt() / STEP / bound);
+                squared.sqrt() / STEP / surface.sharpest(here.value().abs() + 2.0 * STEP)
+            };
+            let draw = |n: u32| {
+                let along = |k: f64| (f64::from(n) * k).fract();
+                let [x, y, z] = [0.819_172_513, 0.671_043_607, 0.549_700_478].map(|k| along(k) * TAU);
+                [x, y, z, along(0.414_213_562) * TAU, (along(0.732_050_808) * 2.0 - 1.0).clamp(-1.0, 1.0)]
+            };
+            let mut all: Vec<(f64, [f64; 5])> = (0..100_000).map(|n| (share(draw(n)), draw(n))).collect();
+            all.sort_by(|a, b| b.0.total_cmp(&a.0));
+            // Up from the largest of them.
+            let mut closest = 0.0_f64;
+            for (mut most, mut from) in all.into_iter().take(200) {
+                for n in 0..300 {
+                    let by = draw(n).map(|x| x - x.floor() - 0.5);
+                    let mut next: [f64; 5] = std::array::from_fn(|i| from[i] + by[i] * 0.985_f64.powi(n as i32));
+                    next[4] = next[4].clamp(-1.0, 1.0);
+                    let there = share(next);
+                    if there > most {
+                        (most, from) = (there, next);
+                    }
+                }
+                closest = closest.max(most);
             }
-            assert!(closest < 1.0 && closest > 0.9, "{surface:?}: {closest}");
+            println!("{surface:?}: {closest}");
+            assert!(closest < 1.0 && closest > 0.97, "{surface:?}: {closest}");
         }
     }
 }
