@@ -36,7 +36,8 @@ use crate::{Norm, Real};
 ///
 /// Operands are read as they are: where a leaf's value is a true distance, lengths hold;
 /// where it is a gauge they hold near its surface. A fillet reads true distances from every
-/// leaf; a chamfer reads values over their slopes. On round operands a chamfer's width is right to
+/// leaf; an operand that is a smooth blend or a chamfer itself is that of these distances then, away from
+/// the fillet as well. A chamfer reads values over their slopes. On round operands a chamfer's width is right to
 /// 1 % up to a quarter of their radius. Where an operand has an edge of its own across the joined
 /// one, fillets and chamfers go round it in a mitre. Operands with a gap narrower than a chamfer's
 /// width, or through which a fillet's ball does not fit, are bridged; of walls and gaps narrower than the
