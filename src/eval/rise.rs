@@ -280,7 +280,7 @@ mod tests {
         for (number, solid) in solids.iter().enumerate() {
             let program = &compiled(solid).unwrap().surface;
             let (mut told, mut crossed) = (0, 0);
-            for n in 0..6000 {
+            for n in 0..12_000 {
                 let centre = DVec3::new(random(), random(), random()) * 2.0 - 1.0;
                 let region = Bounds::from_center(centre, DVec3::splat(0.005 * f64::powi(2.0, n % 6)));
                 let Region::Surface(narrowed) = program.narrow(&region) else { continue };
