@@ -44,7 +44,7 @@ pub use tape::{Evaluator, Gradients, Tape};
 pub(crate) use crate::field::BOXES as BOXES_AT_ONCE;
 
 pub(crate) use bend::Bend;
-pub(crate) use compile::compiled;
+pub(crate) use compile::{Compiled, compiled};
 pub(crate) use parting::Parting;
 pub(crate) use program::Op;
 pub(crate) use ray::{Care, first_hit};

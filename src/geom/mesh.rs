@@ -13,6 +13,7 @@
 
 mod attributes;
 mod corner_normals;
+mod late_count;
 mod measure;
 
 use glam::{DVec3, Vec3};
@@ -21,6 +22,7 @@ use rayon::prelude::*;
 use self::attributes::Attributes;
 pub(crate) use self::corner_normals::Apart;
 use self::corner_normals::CornerNormals;
+pub(crate) use self::late_count::LateCount;
 use crate::bounds::Bounds;
 
 /// A triangle mesh: positions and triangles that index them, and perhaps normals per vertex

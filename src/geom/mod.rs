@@ -18,7 +18,7 @@ mod view;
 pub use camera::{Camera, CameraError, Projection, Rays};
 pub(crate) use image::to_8bit;
 pub use image::{Image, ImageError};
-pub(crate) use mesh::Apart;
+pub(crate) use mesh::{Apart, LateCount};
 pub use mesh::{Mesh, MeshError};
 pub use plane::Plane;
 pub use point_cloud::{PointCloud, PointCloudError};

@@ -78,9 +78,8 @@ pub struct MeshReport {
     pub inertia: Option<DMat3>,
     /// The smallest box that holds all vertices.
     pub bounds: Bounds,
-    /// Cells of one sign in which a feature thinner than a cell may have been lost, as found
-    /// while the mesh was made. `None` if it was not made from a solid, or they were not asked for:
-    /// [`ThinFeatures`](crate::ThinFeatures).
+    /// Cells of one sign in which a feature thinner than a cell may have been lost when the mesh was made. `None`
+    /// if it was not made from a solid, or with [`ThinFeatures::Ignore`](crate::ThinFeatures::Ignore).
     pub unresolved_cells: Option<usize>,
     /// Vertices on edges of the lattice that are up to a thousandth of a cell off the surface, to keep
     /// clear of the nodes. `None` if the mesh was not made from a solid.

@@ -9,6 +9,8 @@
 //! Blocks are halved until the ranges show that a part has no surface, or until there is a direction along which
 //! it is only entered, or no cell in it has all its nodes on one side, or until it is a cell.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -18,7 +20,8 @@ use super::lattice::Lattice;
 use super::meter::Meter;
 use super::sampler::{Scratch, SolidSampler};
 use super::signs::{BLOCK, NODES, SIDE, Signs};
-use crate::eval::{Narrowed, Program};
+use crate::eval::{Compiled, Narrowed, Program};
+use crate::geom::LateCount;
 use crate::{Bounds, Cancelled, Interval, Run};
 
 /// The number of cells, all of whose nodes are on one side, that the surface may come into and turn round in.
@@ -38,10 +41,25 @@ pub(super) fn unresolved_cells(
         let mut values = [0.0; NODES];
         scratch.forget();
         sampler.nodes(scratch, number, block, &mut values);
-        let search = Search { lattice, block, signs: Signs::new(&values), values };
+        let whole = region(lattice, block, BLOCK);
+        // No point of a cell is farther from its nearest node than half of its diagonal.
+        let near = 0.867 * lattice.step() * program.steepest(&whole);
+        let signs = Signs::new(&values);
+        let mut search = Search { lattice, block, signs, values, near, tried: [Tries::default(); BLOCK] };
         Ok(search.parts_of([0; 3], BLOCK, program))
     };
     blocks.cells.par_iter().enumerate().map_init(|| sampler.scratch(), of_block).sum()
+}
+
+/// Their count, to be made when it is asked for.
+pub(super) fn late_count(programs: Arc<Compiled>, (lattice, limits): (Lattice, Bounds)) -> LateCount {
+    LateCount::new(move || {
+        let run = Run::default();
+        let blocks = Blocks::find(&programs.surface, &lattice, &run);
+        let count = blocks.and_then(|blocks| unresolved_cells(&blocks, (&lattice, limits), &run));
+        // A run without a token is not cancelled.
+        count.unwrap_or_default()
+    })
 }
 
 /// The box of so many cells along each axis.
@@ -65,23 +83,39 @@ struct Search<'a> {
     block: [u32; 3],
     signs: Signs,
     values: [f32; NODES],
+    /// The surface is in no cell whose nodes have larger values.
+    near: f64,
+    /// How it went with cubes of so many cells along an axis.
+    tried: [Tries; BLOCK],
+}
+
+/// How often a direction was sought, and found.
+#[derive(Clone, Copy, Default)]
+struct Tries {
+    sought: u32,
+    found: u32,
+}
+
+impl Tries {
+    /// Whether it is worth while: what is not found in cubes is sought in their parts all the same.
+    fn is_promising(&self) -> bool {
+        self.sought < 3 || 4 * self.found > self.sought
+    }
 }
 
 impl Search<'_> {
     /// The unresolved cells of the eight parts of a cube of cells.
-    fn parts_of(&self, first: [usize; 3], size: usize, program: &Program) -> usize {
+    fn parts_of(&mut self, first: [usize; 3], size: usize, program: &Program) -> usize {
         let half = size / 2;
         let part = |n: usize| [0, 1, 2].map(|axis| first[axis] + (n >> axis & 1) * half);
         (0..8).map(|n| self.unresolved(part(n), half, program)).sum()
     }
 
     /// Those of a cube of cells.
-    fn unresolved(&self, first: [usize; 3], size: usize, program: &Program) -> usize {
+    fn unresolved(&mut self, first: [usize; 3], size: usize, program: &Program) -> usize {
         let at = [0, 1, 2].map(|axis| self.block[axis] + first[axis] as u32);
         let region = region(self.lattice, at, size);
-        // No point of a cell is farther from its nearest node than half of its diagonal.
-        let near = 0.867 * self.lattice.step() * program.steepest(&region);
-        if !self.has_near(first, size, near) {
+        if !self.has_near(first, size, self.near) {
             return 0;
         }
         let simpler = match program.narrowed(&region) {
@@ -90,10 +124,18 @@ impl Search<'_> {
             Narrowed::Simpler(simpler) => Some(simpler),
         };
         let program = simpler.as_ref().unwrap_or(program);
-        if program.is_entered_once(&[region]) {
-            0
-        } else if size > 1 {
+        if size > 1 {
+            let tries = &mut self.tried[size];
+            if tries.is_promising() {
+                tries.sought += 1;
+                if program.is_entered_once(&[region]) {
+                    tries.found += 1;
+                    return 0;
+                }
+            }
             self.parts_of(first, size, program)
+        } else if program.is_entered_once(&[region]) {
+            0
         } else {
             let is_open =
                 self.least(first) <= self.bulge(program, &region) && !program.is_entered_once(&octants(&region));

@@ -24,7 +24,7 @@ pub struct MeshSettings {
     pub at_bounds: AtBounds,
     /// Whether creases and corners are kept. Default: [`Features::Sharp`].
     pub features: Features,
-    /// What becomes of features that may be thinner than a cell. Default: [`ThinFeatures::Ignore`].
+    /// What becomes of features that may be thinner than a cell. Default: [`ThinFeatures::Count`].
     pub thin: ThinFeatures,
     /// Whether the mesh says which leaf each triangle is of: [`Mesh::owners`](crate::Mesh::owners).
     /// The numbers are those of [`Solid::owner`](crate::Solid::owner); that of a cap is one
@@ -88,16 +88,16 @@ pub enum AtBounds {
 /// than its size.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ThinFeatures {
-    /// Nothing is done, and the report of the mesh says nothing of them.
-    #[default]
+    /// The mesh says nothing of them.
     Ignore,
-    /// Unresolved cells are counted:
+    /// Unresolved cells are counted for the report of the mesh, when [it](crate::Mesh::check) is asked for:
     /// [`MeshReport::unresolved_cells`](crate::MeshReport::unresolved_cells). Of simple parts this takes
-    /// a tenth to a half of the mesh's time; of blends, lattices, and walls of a few cells several times as long as the
-    /// mesh; of parts seen through several deformations up to twenty times.
+    /// a tenth to a half of the time that the mesh takes; of blends, lattices, and walls of a few cells up to six times as
+    /// long as the mesh; of parts seen through several deformations up to twelve times.
+    #[default]
     Count,
-    /// While there are any, the cells are halved, all of them, at most so many times; then those that are
-    /// left are counted.
+    /// While there are any, the cells are halved, all of them, at most so many times; then it is as with
+    /// [`Count`](ThinFeatures::Count).
     Refine {
         /// The most times that the cell size is halved.
         halvings: u32,
@@ -105,12 +105,16 @@ pub enum ThinFeatures {
 }
 
 impl ThinFeatures {
-    /// How often the cells may be halved; `None` if none are counted.
-    pub(super) fn halvings(self) -> Option<u32> {
+    /// Whether unresolved cells are counted.
+    pub(super) fn counts(self) -> bool {
+        self != ThinFeatures::Ignore
+    }
+
+    /// How often the cells may be halved.
+    pub(super) fn halvings(self) -> u32 {
         match self {
-            ThinFeatures::Ignore => None,
-            ThinFeatures::Count => Some(0),
-            ThinFeatures::Refine { halvings } => Some(halvings),
+            ThinFeatures::Ignore | ThinFeatures::Count => 0,
+            ThinFeatures::Refine { halvings } => halvings,
         }
     }
 }

@@ -6,11 +6,11 @@ use super::blocks::Blocks;
 use super::extract::ExtractError;
 use super::lattice::{CellSize, Lattice, LatticeError};
 use super::paint::corner_colors;
-use super::resolve::unresolved_cells;
-use super::settings::{AtBounds, Features, MeshSettings, ThinFeatures};
+use super::resolve::{late_count, unresolved_cells};
+use super::settings::{AtBounds, Features, MeshSettings};
 use crate::eval::compiled;
 use crate::field::check::{LARGEST_LENGTH, SMALLEST_LENGTH};
-use crate::geom::Mesh;
+use crate::geom::{LateCount, Mesh};
 use crate::{Bounds, Cancelled, Paint, RFunction, Run, Solid, SolidError};
 
 /// Why there is no mesh.
@@ -87,7 +87,7 @@ impl Solid {
             }
             run.report(1.0);
             let mesh = Mesh::default();
-            return Ok(if settings.thin == ThinFeatures::Ignore { mesh } else { mesh.with_unresolved_cells(0) });
+            return Ok(if settings.thin.counts() { mesh.with_unresolved_cells(LateCount::new(|| 0)) } else { mesh });
         }
         let programs = compiled(&solid)?;
         // A mesh has the paint of its solid, if there is any, by the owners of its triangles.
@@ -97,26 +97,19 @@ impl Solid {
         run.install(|| {
             // How long each stage takes, more or less.
             let if_done = |is_done: bool, time: f64| if is_done { time } else { 0.0 };
-            let counts = settings.thin != ThinFeatures::Ignore;
+            let most = settings.thin.halvings();
             let [own, paint] = [if_done(owned, 0.8), if_done(painted, 0.2)];
-            let times = [0.15, if_done(counts, 1.5), 0.85, if_done(whole.is_some(), 1.0), own, paint];
+            let times = [0.15, if_done(most > 0, 1.5), 0.85, if_done(whole.is_some(), 1.0), own, paint];
             let [to_find, to_count, to_extract, to_refuse, to_own, to_paint] = run.stages(times);
             let mut lattice = Lattice::new(&bounds, settings.cell)?;
             let mut blocks = Blocks::find(&programs.surface, &lattice, &to_find)?;
-            let (mut unresolved, mut halvings) = (None, 0);
-            if let Some(most) = settings.thin.halvings() {
-                loop {
-                    let [done, next] = [halvings, halvings + 1].map(|n| f64::from(n) / (f64::from(most) + 1.0));
-                    let run = to_count.stage(done, next);
-                    let count = unresolved_cells(&blocks, (&lattice, bounds), &run)?;
-                    unresolved = Some(count);
-                    if count == 0 || halvings == most {
-                        break;
-                    }
-                    halvings += 1;
-                    lattice = Lattice::new(&bounds, CellSize::Length(0.5 * lattice.step()))?;
-                    blocks = Blocks::find(&programs.surface, &lattice, &to_find)?;
+            for halving in 0..most {
+                let [done, next] = [halving, halving + 1].map(|n| f64::from(n) / f64::from(most));
+                if unresolved_cells(&blocks, (&lattice, bounds), &to_count.stage(done, next))? == 0 {
+                    break;
                 }
+                lattice = Lattice::new(&bounds, CellSize::Length(0.5 * lattice.step()))?;
+                blocks = Blocks::find(&programs.surface, &lattice, &to_find)?;
             }
             let mut mesh = blocks.extract(&programs.surface, (&lattice, bounds), settings.features, &to_extract)?;
             if let Some(given) = whole {
@@ -132,10 +125,10 @@ impl Solid {
                 mesh = mesh.with_owners(owners).map_err(ExtractError::from)?;
             }
             run.report(1.0);
-            Ok(match unresolved {
-                Some(count) => mesh.with_unresolved_cells(count),
-                None => mesh,
-            })
+            if settings.thin.counts() {
+                mesh = mesh.with_unresolved_cells(late_count(programs.clone(), (lattice, bounds)));
+            }
+            Ok(mesh)
         })
     }
 

@@ -10,9 +10,9 @@ use rvachev::{
 use super::models;
 
 fn unresolved(solid: &Solid, cell: CellSize, bounds: Option<Bounds>) -> usize {
-    let settings = MeshSettings { cell, bounds, thin: ThinFeatures::Count, ..MeshSettings::default() };
+    let settings = MeshSettings { cell, bounds, ..MeshSettings::default() };
     let count = solid.mesh(&settings).unwrap().check().unresolved_cells;
-    count.expect("they were asked for")
+    count.expect("they are counted unless they are ignored")
 }
 
 #[test]
@@ -110,12 +110,8 @@ fn bodies_without_thin_parts_have_no_unresolved_cells() {
         ("M6", m6.solid.clone(), 64, m6.cube()),
         ("thread", thread, 128, room),
     ] {
-        let settings = MeshSettings {
-            cell: CellSize::LongestSide(cells),
-            bounds: Some(bounds),
-            thin: ThinFeatures::Count,
-            ..MeshSettings::default()
-        };
+        let settings =
+            MeshSettings { cell: CellSize::LongestSide(cells), bounds: Some(bounds), ..MeshSettings::default() };
         let mesh = solid.mesh(&settings).unwrap();
         let count = mesh.unresolved_cells().unwrap();
         assert!(60 * count < mesh.triangles().len(), "{name}: {count} of {} triangles", mesh.triangles().len());

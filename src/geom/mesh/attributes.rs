@@ -18,7 +18,7 @@
 use glam::Vec3;
 
 use super::corner_normals::CornerNormals;
-use super::{Mesh, MeshError};
+use super::{LateCount, Mesh, MeshError};
 
 /// What a mesh carries besides positions and triangles; `None` where it has no such values.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -27,7 +27,7 @@ pub(super) struct Attributes {
     corner_colors: Option<Vec<[[u8; 4]; 3]>>,
     corner_texture: Option<Vec<[[f32; 2]; 3]>>,
     owners: Option<Vec<u32>>,
-    unresolved_cells: Option<usize>,
+    unresolved_cells: LateCount,
     clamped_vertices: Option<usize>,
 }
 
@@ -111,11 +111,16 @@ impl Mesh {
         Ok(self)
     }
 
-    /// Notes how many cells may have lost a feature thinner than a cell.
+    /// Notes what counts the cells that may have lost a feature thinner than a cell.
     #[must_use]
-    pub(crate) fn with_unresolved_cells(mut self, count: usize) -> Mesh {
-        self.attributes.unresolved_cells = Some(count);
+    pub(crate) fn with_unresolved_cells(mut self, count: LateCount) -> Mesh {
+        self.attributes.unresolved_cells = count;
         self
+    }
+
+    /// What was noted.
+    pub(crate) fn late_unresolved_cells(&self) -> LateCount {
+        self.attributes.unresolved_cells.clone()
     }
 
     /// The unit normals of the vertices, if the mesh has them.
@@ -145,10 +150,11 @@ impl Mesh {
     }
 
     /// How many cells may have lost a feature thinner than a cell; `None` if the mesh was not
-    /// made from a solid, or they were not [asked for](crate::ThinFeatures). See [`MeshReport`](crate::MeshReport).
+    /// made from a solid, or its settings [ignore](crate::ThinFeatures::Ignore) them. They are counted when this, or
+    /// the [report](Mesh::check), is first asked for, by the threads of the current rayon pool.
     #[must_use]
     pub fn unresolved_cells(&self) -> Option<usize> {
-        self.attributes.unresolved_cells
+        self.attributes.unresolved_cells.get()
     }
 
     pub(crate) fn with_clamped_vertices(mut self, count: usize) -> Mesh {
@@ -198,7 +204,8 @@ mod tests {
         let mesh = plain.with_normals(vec![Vec3::Z; 3]).unwrap();
         let mesh = mesh.with_corner_normals(vec![[Vec3::Z, Vec3::X, Vec3::Y]]).unwrap();
         let mesh = mesh.with_corner_colors(vec![colors]).unwrap().with_corner_texture(vec![texture]).unwrap();
-        let mesh = mesh.with_owners(vec![7]).unwrap().with_unresolved_cells(3).with_clamped_vertices(4);
+        let mesh = mesh.with_owners(vec![7]).unwrap().with_clamped_vertices(4);
+        let mesh = mesh.with_unresolved_cells(LateCount::new(|| 3));
         assert_eq!(mesh.normals().unwrap().len(), 3);
         assert_eq!(mesh.corner_normals().unwrap()[0][1], Vec3::X);
         assert_eq!(mesh.corner_colors(), Some(&[colors][..]));
