@@ -1,6 +1,6 @@
 //! The blocks of a lattice that the surface of a solid may cross, and what is done where that was wrong.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -11,12 +11,13 @@ use super::paint::each_triangle;
 use super::sampler::SolidSampler;
 use super::settings::Features;
 use super::signs::{BLOCK, NODES, SIDE, Signs, is_mixed};
-use crate::eval::Program;
+use crate::eval::{Narrowed, Program};
 use crate::geom::Mesh;
 use crate::space::{Grid, surface_blocks};
 use crate::{Bounds, Cancelled, Run};
 
 /// The blocks that the surface may cross.
+#[derive(Clone)]
 pub(super) struct Blocks {
     /// Their first cells.
     pub(super) cells: Vec<[u32; 3]>,
@@ -26,6 +27,7 @@ pub(super) struct Blocks {
 }
 
 /// The programs of blocks: of each its number, and all.
+#[derive(Clone)]
 pub(super) struct Programs {
     numbers: Vec<u32>,
     all: Vec<Program>,
@@ -53,6 +55,35 @@ impl Blocks {
         let cells = found.blocks.iter().map(|block| block.index.map(|i| i * BLOCK as u32)).collect();
         let numbers = found.blocks.iter().map(|block| block.program).collect();
         Ok(Blocks { cells, programs: Programs { numbers, all: found.programs }, exact: Vec::new() })
+    }
+
+    /// Those of the halved lattice, given with it, in the blocks whose numbers along the axes are chosen.
+    pub(super) fn halves(&self, lattice: &Lattice, is_chosen: impl Fn([u32; 3]) -> bool) -> Blocks {
+        let side = BLOCK as u32;
+        let (mut cells, mut numbers, mut all) = (Vec::new(), Vec::new(), Vec::new());
+        for (n, block) in self.cells.iter().enumerate().filter(|(_, block)| is_chosen(block.map(|at| at / side))) {
+            let whole = self.programs.of(n);
+            let mut shared = None;
+            for part in 0..8 {
+                let first = std::array::from_fn(|axis| 2 * block[axis] + (part >> axis & 1) * side);
+                let number = match whole.narrowed(&lattice.block(first)) {
+                    Narrowed::Inside | Narrowed::Outside => continue,
+                    Narrowed::Same => *shared.get_or_insert_with(|| push(&mut all, whole.clone())),
+                    Narrowed::Simpler(program) => push(&mut all, program),
+                };
+                cells.push(first);
+                numbers.push(number);
+            }
+        }
+        Blocks { cells, programs: Programs { numbers, all }, exact: Vec::new() }
+    }
+
+    /// Adds those that are not there yet, by their first cells; `whole` is the program of the solid.
+    pub(super) fn add(&mut self, blocks: impl Iterator<Item = [u32; 3]>, whole: &Program) {
+        let known: HashSet<[u32; 3]> = self.cells.iter().copied().collect();
+        let number = push(&mut self.programs.all, whole.clone());
+        self.cells.extend(blocks.filter(|block| !known.contains(block)));
+        self.programs.numbers.resize(self.cells.len(), number);
     }
 
     /// The surface in the blocks, and in others where it goes on.
@@ -88,8 +119,7 @@ impl Blocks {
         run: &Run,
     ) -> Result<bool, Cancelled> {
         self.exact.resize(self.cells.len(), false);
-        let number = self.programs.all.len() as u32;
-        self.programs.all.push(whole.clone());
+        let number = push(&mut self.programs.all, whole.clone());
         let mut known: HashMap<[u32; 3], usize> = self.cells.iter().copied().zip(0..).collect();
         let is_there = |block: &[u32; 3]| (0..3).all(|axis| block[axis] < lattice.cells()[axis]);
         let mut open: Vec<[u32; 3]> =
@@ -140,6 +170,12 @@ impl Blocks {
             nth.map_or(whole, |nth| self.programs.of(places[nth].1)).deciding_leaf(middle)
         })
     }
+}
+
+/// Adds a program to a list: its number.
+fn push(all: &mut Vec<Program>, program: Program) -> u32 {
+    all.push(program);
+    all.len() as u32 - 1
 }
 
 /// The values at the nodes of a block in double precision; beyond the limits of the solid they are outside.

@@ -105,6 +105,12 @@ pub(crate) trait Sampler: Sync {
         Bounds::ALL
     }
 
+    /// Whether a block, given by its first cell, is to have the triangles of the case table: no fan reaches into it. The
+    /// default has no such blocks.
+    fn is_plain(&self, _block: [u32; 3]) -> bool {
+        false
+    }
+
     /// Adds values and gradients of the field at points of a block, given in cells from its first node, in the order of
     /// the points, to `out`; whether it did. The default knows of none: features are placed by the normals of
     /// the roots alone.

@@ -25,6 +25,7 @@
 
 use glam::{DVec3, Vec3};
 
+use super::signs::BLOCK;
 use crate::bounds::Bounds;
 
 /// The resolution of a mesh.
@@ -165,27 +166,38 @@ impl Lattice {
         // cell in 2⁴⁰ is lost from the margin then, none from the bounds.
         let first = (bounds.min / step - SHIFT).floor() - 1.0;
         let last = (bounds.max / step - SHIFT).ceil() + 1.0;
-        let count = last - first;
-        if count.max_element() > MAX_CELLS_ALONG_AXIS || count.element_product() > MAX_CELLS {
-            let DVec3 { x, y, z } = count;
+        Lattice::checked((first + SHIFT) * step, step, (last - first).to_array(), reach + 2.0 * step)
+    }
+
+    /// The lattice of so many cells from a node, if it is not too fine; coordinates are up to `farthest`.
+    fn checked(origin: DVec3, step: f64, cells: [f64; 3], farthest: f64) -> Result<Lattice, LatticeError> {
+        let [x, y, z] = cells;
+        if x.max(y).max(z) > MAX_CELLS_ALONG_AXIS || x * y * z > MAX_CELLS {
             return Err(LatticeError::Cells { step, x, y, z });
         }
-
         // Two f32 apart, a vertex cannot fall together with the node or with a vertex on
         // another edge of it; a quarter of a cell is left between those at its two ends.
-        let farthest = reach + 2.0 * step;
         let spacing = f64::from((farthest as f32).next_up() - farthest as f32);
         let clearance = CLEARANCE.max(2.0 * spacing / step);
         if clearance > 0.25 {
             return Err(LatticeError::Far { step, farthest, smallest: 8.0 * spacing });
         }
         Ok(Lattice {
-            origin: (first + SHIFT) * step,
+            origin,
             step,
             // Integers between 3 and 2³¹.
-            cells: count.to_array().map(|n| n as u32),
+            cells: cells.map(|n| n as u32),
             clearance,
         })
+    }
+
+    /// The same box in cells of half the side: node (i, j, k) is node (2i, 2j, 2k) of it.
+    ///
+    /// # Errors
+    /// There are too many cells, or they are too small for f32.
+    pub(crate) fn halved(&self) -> Result<Lattice, LatticeError> {
+        let farthest = self.origin.abs().max(self.bounds().max.abs()).max_element();
+        Lattice::checked(self.origin, 0.5 * self.step, self.cells.map(|n| 2.0 * f64::from(n)), farthest)
     }
 
     /// The position of node (0, 0, 0), exact.
@@ -214,11 +226,23 @@ impl Lattice {
         self.origin + index * self.step
     }
 
+    /// The box of the block of cells that starts with one.
+    pub(super) fn block(&self, [i, j, k]: [u32; 3]) -> Bounds {
+        let side = BLOCK as u32;
+        Bounds::new(self.node(i, j, k), self.node(i + side, j + side, k + side))
+    }
+
     /// The box of all cells.
     #[must_use]
     pub fn bounds(&self) -> Bounds {
         let [i, j, k] = self.cells;
         Bounds::new(self.origin, self.node(i, j, k))
+    }
+
+    /// A vertex on an edge is farther than this from the planes of nodes across it, and closer to those along it, in
+    /// cells, whatever f32 makes of it.
+    pub(crate) fn slack(&self) -> f64 {
+        0.5 * self.clearance
     }
 
     /// Whether [`vertex`](Lattice::vertex) moves `t`.

@@ -11,6 +11,7 @@ mod loops;
 mod meter;
 mod paint;
 mod qef;
+mod refine;
 mod resolve;
 mod roots;
 mod sampler;

@@ -24,19 +24,37 @@ use crate::eval::{Compiled, Narrowed, Program};
 use crate::geom::LateCount;
 use crate::{Bounds, Cancelled, Interval, Run};
 
-/// The number of cells, all of whose nodes are on one side, that the surface may come into and turn round in.
+/// The cells of a block that the surface may come into and turn round in.
+pub(super) struct Unresolved {
+    /// The first cell of the block.
+    pub(super) block: [u32; 3],
+    /// The cells, relative to it.
+    pub(super) cells: Vec<[usize; 3]>,
+}
+
+/// Which cells are looked at.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Among {
+    /// Those whose nodes are all on one side: what turns round in them is lost.
+    OneSided,
+    /// All: what turns round in others may be torn.
+    All,
+}
+
+/// The unresolved cells of blocks that have any.
 pub(super) fn unresolved_cells(
     blocks: &Blocks,
     (lattice, limits): (&Lattice, Bounds),
+    among: Among,
     run: &Run,
-) -> Result<usize, Cancelled> {
+) -> Result<Vec<Unresolved>, Cancelled> {
     let meter = Meter::new(run, blocks.cells.len());
     let sampler = SolidSampler::new(lattice, blocks, limits);
     let of_block = |scratch: &mut Scratch, (number, &block): (usize, &[u32; 3])| {
         meter.step()?;
         let program = blocks.programs.of(number);
         if program.is_entered_once(&[region(lattice, block, BLOCK)]) {
-            return Ok(0);
+            return Ok(None);
         }
         let mut values = [0.0; NODES];
         scratch.forget();
@@ -45,10 +63,19 @@ pub(super) fn unresolved_cells(
         // No point of a cell is farther from its nearest node than half of its diagonal.
         let near = 0.867 * lattice.step() * program.steepest(&whole);
         let signs = Signs::new(&values);
-        let mut search = Search { lattice, block, signs, values, near, tried: [Tries::default(); BLOCK] };
-        Ok(search.parts_of([0; 3], BLOCK, program))
+        let mut search =
+            Search { lattice, block, among, signs, values, near, tried: [Tries::default(); BLOCK], found: Vec::new() };
+        search.parts_of([0; 3], BLOCK, program);
+        let cells = search.found;
+        Ok(Some(Unresolved { block, cells }).filter(|found| !found.cells.is_empty()))
     };
-    blocks.cells.par_iter().enumerate().map_init(|| sampler.scratch(), of_block).sum()
+    let found = blocks.cells.par_iter().enumerate().map_init(|| sampler.scratch(), of_block);
+    found.filter_map(Result::transpose).collect()
+}
+
+/// How many cells they are.
+pub(super) fn count(unresolved: &[Unresolved]) -> usize {
+    unresolved.iter().map(|block| block.cells.len()).sum()
 }
 
 /// Their count, to be made when it is asked for.
@@ -56,9 +83,9 @@ pub(super) fn late_count(programs: Arc<Compiled>, (lattice, limits): (Lattice, B
     LateCount::new(move || {
         let run = Run::default();
         let blocks = Blocks::find(&programs.surface, &lattice, &run);
-        let count = blocks.and_then(|blocks| unresolved_cells(&blocks, (&lattice, limits), &run));
+        let found = blocks.and_then(|blocks| unresolved_cells(&blocks, (&lattice, limits), Among::OneSided, &run));
         // A run without a token is not cancelled.
-        count.unwrap_or_default()
+        count(&found.unwrap_or_default())
     })
 }
 
@@ -81,12 +108,15 @@ fn octants(region: &Bounds) -> [Bounds; 8] {
 struct Search<'a> {
     lattice: &'a Lattice,
     block: [u32; 3],
+    among: Among,
     signs: Signs,
     values: [f32; NODES],
     /// The surface is in no cell whose nodes have larger values.
     near: f64,
     /// How it went with cubes of so many cells along an axis.
     tried: [Tries; BLOCK],
+    /// The unresolved cells so far.
+    found: Vec<[usize; 3]>,
 }
 
 /// How often a direction was sought, and found.
@@ -104,22 +134,23 @@ impl Tries {
 }
 
 impl Search<'_> {
-    /// The unresolved cells of the eight parts of a cube of cells.
-    fn parts_of(&mut self, first: [usize; 3], size: usize, program: &Program) -> usize {
+    /// Finds the unresolved cells of the eight parts of a cube of cells.
+    fn parts_of(&mut self, first: [usize; 3], size: usize, program: &Program) {
         let half = size / 2;
-        let part = |n: usize| [0, 1, 2].map(|axis| first[axis] + (n >> axis & 1) * half);
-        (0..8).map(|n| self.unresolved(part(n), half, program)).sum()
+        for n in 0..8 {
+            self.of(std::array::from_fn(|axis| first[axis] + (n >> axis & 1) * half), half, program);
+        }
     }
 
-    /// Those of a cube of cells.
-    fn unresolved(&mut self, first: [usize; 3], size: usize, program: &Program) -> usize {
+    /// Finds those of a cube of cells.
+    fn of(&mut self, first: [usize; 3], size: usize, program: &Program) {
         let at = [0, 1, 2].map(|axis| self.block[axis] + first[axis] as u32);
         let region = region(self.lattice, at, size);
         if !self.has_near(first, size, self.near) {
-            return 0;
+            return;
         }
         let simpler = match program.narrowed(&region) {
-            Narrowed::Inside | Narrowed::Outside => return 0,
+            Narrowed::Inside | Narrowed::Outside => return,
             Narrowed::Same => None,
             Narrowed::Simpler(simpler) => Some(simpler),
         };
@@ -130,16 +161,15 @@ impl Search<'_> {
                 tries.sought += 1;
                 if program.is_entered_once(&[region]) {
                     tries.found += 1;
-                    return 0;
+                    return;
                 }
             }
-            self.parts_of(first, size, program)
-        } else if program.is_entered_once(&[region]) {
-            0
-        } else {
-            let is_open =
-                self.least(first) <= self.bulge(program, &region) && !program.is_entered_once(&octants(&region));
-            usize::from(is_open)
+            self.parts_of(first, size, program);
+        } else if !program.is_entered_once(&[region])
+            && (!self.is_one_sided(first) || self.least(first) <= self.bulge(program, &region))
+            && !program.is_entered_once(&octants(&region))
+        {
+            self.found.push(first);
         }
     }
 
@@ -153,11 +183,16 @@ impl Search<'_> {
         program.slopes(cell).map(along).iter().sum::<f64>() * self.lattice.step()
     }
 
-    /// Whether a cube of cells has one whose nodes are all on one side, and the least of their values this near to 0.
+    fn is_one_sided(&self, cell: [usize; 3]) -> bool {
+        matches!(self.signs.case(cell), 0 | 255)
+    }
+
+    /// Whether a cube of cells has one to be looked at: one whose nodes are all on one side has the least of their values
+    /// this near to 0.
     fn has_near(&self, [i, j, k]: [usize; 3], size: usize, near: f64) -> bool {
         let is_near = |n: usize| {
             let cell = [i + n % size, j + n / size % size, k + n / (size * size)];
-            matches!(self.signs.case(cell), 0 | 255) && self.least(cell) <= near
+            if self.is_one_sided(cell) { self.least(cell) <= near } else { self.among == Among::All }
         };
         (0..size * size * size).any(is_near)
     }

@@ -6,7 +6,8 @@ use super::blocks::Blocks;
 use super::extract::ExtractError;
 use super::lattice::{CellSize, Lattice, LatticeError};
 use super::paint::corner_colors;
-use super::resolve::{late_count, unresolved_cells};
+use super::refine::{Job, refined};
+use super::resolve::{Among, late_count, unresolved_cells};
 use super::settings::{AtBounds, Features, MeshSettings};
 use crate::eval::compiled;
 use crate::field::check::{LARGEST_LENGTH, SMALLEST_LENGTH};
@@ -99,19 +100,32 @@ impl Solid {
             let if_done = |is_done: bool, time: f64| if is_done { time } else { 0.0 };
             let most = settings.thin.halvings();
             let [own, paint] = [if_done(owned, 0.8), if_done(painted, 0.2)];
-            let times = [0.15, if_done(most > 0, 1.5), 0.85, if_done(whole.is_some(), 1.0), own, paint];
-            let [to_find, to_count, to_extract, to_refuse, to_own, to_paint] = run.stages(times);
+            let [refine, extract] = [if_done(most > 0, 3.0), if_done(most == 0, 0.85)];
+            let times = [0.15, refine, extract, if_done(whole.is_some(), 1.0), own, paint];
+            let [to_find, to_refine, to_extract, to_refuse, to_own, to_paint] = run.stages(times);
             let mut lattice = Lattice::new(&bounds, settings.cell)?;
             let mut blocks = Blocks::find(&programs.surface, &lattice, &to_find)?;
-            for halving in 0..most {
-                let [done, next] = [halving, halving + 1].map(|n| f64::from(n) / f64::from(most));
-                if unresolved_cells(&blocks, (&lattice, bounds), &to_count.stage(done, next))? == 0 {
-                    break;
+            let job = Job { program: &programs.surface, limits: bounds, features: settings.features };
+            let refined = match most {
+                0 => None,
+                _ => refined(job, (&lattice, &blocks), most, &to_refine)?,
+            };
+            let (mut mesh, count) = match refined {
+                Some((mesh, left)) => (mesh, LateCount::new(move || left)),
+                None => {
+                    // Where the field jumps all cells are halved.
+                    for _ in 0..most {
+                        let given = (&lattice, bounds);
+                        if unresolved_cells(&blocks, given, Among::All, &run.stage(1.0, 1.0))?.is_empty() {
+                            break;
+                        }
+                        lattice = lattice.halved()?;
+                        blocks = Blocks::find(&programs.surface, &lattice, &run.stage(1.0, 1.0))?;
+                    }
+                    let mesh = blocks.extract(&programs.surface, (&lattice, bounds), settings.features, &to_extract)?;
+                    (mesh, late_count(programs.clone(), (lattice, bounds)))
                 }
-                lattice = Lattice::new(&bounds, CellSize::Length(0.5 * lattice.step()))?;
-                blocks = Blocks::find(&programs.surface, &lattice, &to_find)?;
-            }
-            let mut mesh = blocks.extract(&programs.surface, (&lattice, bounds), settings.features, &to_extract)?;
+            };
             if let Some(given) = whole {
                 self.refuse_caps(&mesh, given, lattice.step())?;
                 self.refuse_beyond(given, lattice.step(), &to_refuse)?;
@@ -126,7 +140,7 @@ impl Solid {
             }
             run.report(1.0);
             if settings.thin.counts() {
-                mesh = mesh.with_unresolved_cells(late_count(programs.clone(), (lattice, bounds)));
+                mesh = mesh.with_unresolved_cells(count);
             }
             Ok(mesh)
         })

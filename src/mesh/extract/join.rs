@@ -145,7 +145,8 @@ impl<'a> Parts<'a> {
         let found = match features {
             Features::Smooth => Found::Table(self.triangles_unless(|_, _| false, run)?.unwrap_or_default()),
             Features::Sharp => {
-                let samples = Samples::new(&self, lattice, sampler.limits(), [&positions, &normals]);
+                let is_plain = |block| sampler.is_plain(block);
+                let samples = Samples::new(&self, lattice, sampler.limits(), [&positions, &normals], &is_plain);
                 sharp::find(&samples, sampler, &run.stage(0.0, 0.95))?
             }
         };

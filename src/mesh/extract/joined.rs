@@ -101,10 +101,11 @@ impl Joined {
         joined
     }
 
-    /// Whether a block or one below it has joined faces.
+    /// Whether a block, or one below it, has joined faces; a plain one has none.
     pub(super) fn concerns(&self, samples: &Samples<'_>, n: usize) -> bool {
         let has = |block: usize| !self.upper[block].is_empty();
-        has(n) || (0..3).any(|axis| samples.parts.neighbours.lower(n, axis).is_some_and(has))
+        let is_below = |axis| samples.parts.neighbours.lower(n, axis).is_some_and(has);
+        !samples.is_plain(samples.blocks()[n]) && (has(n) || (0..3).any(is_below))
     }
 
     /// The joined faces of a cell of the given case, as bits.

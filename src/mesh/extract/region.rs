@@ -343,6 +343,9 @@ impl Known<'_> {
     fn region(&self, wish: &Wish<'_>, span: Span, patches: &mut Patches) -> Option<Region> {
         patches.clear();
         for cell in span.cells() {
+            if self.samples.is_plain(split_cell(cell).0) {
+                return None;
+            }
             let case = self.samples.case_near(wish.block, cell);
             if case != 0 && case != 255 {
                 self.add_patches(wish.block, cell, case, patches)?;

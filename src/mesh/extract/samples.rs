@@ -18,6 +18,8 @@ pub(super) struct Samples<'a> {
     limits: [Vec3; 2],
     positions: &'a [Vec3],
     normals: &'a [Vec3],
+    /// Whether a block, by its first cell, is to have the triangles of the case table.
+    plain: &'a (dyn Fn([u32; 3]) -> bool + Sync),
 }
 
 /// The block of a cell, by its first cell, and where the cell is in it.
@@ -48,9 +50,15 @@ impl<'a> Samples<'a> {
         lattice: &'a Lattice,
         limits: Bounds,
         [positions, normals]: [&'a [Vec3]; 2],
+        plain: &'a (dyn Fn([u32; 3]) -> bool + Sync),
     ) -> Samples<'a> {
         let limits = [limits.min.as_vec3(), limits.max.as_vec3()];
-        Samples { parts, lattice, limits, positions, normals }
+        Samples { parts, lattice, limits, positions, normals, plain }
+    }
+
+    /// Whether a block, by its first cell, is to have the triangles of the case table, whatever is in it.
+    pub(super) fn is_plain(&self, block: [u32; 3]) -> bool {
+        (self.plain)(block)
     }
 
     pub(super) fn blocks(&self) -> &[[u32; 3]] {

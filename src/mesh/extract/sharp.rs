@@ -51,6 +51,7 @@ use crate::geom::Apart;
 use crate::mesh::bulk::Bulk;
 use crate::mesh::feature::Segment;
 use crate::mesh::meter::Meter;
+use crate::mesh::signs::BLOCK;
 use crate::run::{Cancelled, Run};
 
 /// How much of the work is done when it is known which blocks are even, more or less.
@@ -125,12 +126,26 @@ pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) ->
     let [to_find, to_merge, to_fan] = run.stage(LOOKED, 1.0).stages([7.0, 2.0, 1.0]);
     let proposed = (0..even.len()).map(|n| match even[n] {
         true => Vec::new(),
-        false => samples.parts.part(n).joins.clone(),
+        false => joins(samples, n),
     });
     let joined = Joined::new(samples, proposed.collect());
     let special = Special::find(samples, sampler, (&even, &joined), &to_find)?;
     let regions = regions(samples, &special, &joined, &to_merge)?;
     Ok(Found::Fans(Box::new(Fans::new(samples, special, regions, &to_fan)?)))
+}
+
+/// The upper ambiguous faces of a block's cells that would rather be joined, but those of plain blocks.
+fn joins(samples: &Samples<'_>, n: usize) -> Vec<(u16, u8)> {
+    let mut joins = samples.parts.part(n).joins.clone();
+    for axis in 0..3 {
+        let mut beyond = samples.blocks()[n];
+        beyond[axis] += BLOCK as u32;
+        if !joins.is_empty() && samples.is_plain(beyond) {
+            let is_last = |number: u16| usize::from(number) / BLOCK.pow(axis as u32) % BLOCK == BLOCK - 1;
+            joins.iter_mut().filter(|(number, _)| is_last(*number)).for_each(|(_, faces)| *faces &= !(1 << axis));
+        }
+    }
+    joins
 }
 
 impl Fans {

@@ -184,7 +184,7 @@ pub(super) fn even_blocks(samples: &Samples<'_>, run: &Run) -> Result<Vec<bool>,
 }
 
 fn is_even(samples: &Samples<'_>, own: &[Vertices], n: usize) -> bool {
-    if samples.parts.part(n).triangles == 0 {
+    if samples.parts.part(n).triangles == 0 || samples.is_plain(samples.blocks()[n]) {
         return true;
     }
     let neighbours = &samples.parts.neighbours;

@@ -1,0 +1,195 @@
+//! A lattice, and what is meshed on it: what is in the inset of the one before, but not in its own.
+
+use glam::{DVec3, Vec3A};
+
+use super::Job;
+use super::inset::Inset;
+use super::piece::{Piece, Rim};
+use super::seam::Seam;
+use crate::Bounds;
+use crate::eval::Program;
+use crate::mesh::blocks::Blocks;
+use crate::mesh::extract::{ExtractError, Root, Sampler, extract};
+use crate::mesh::feature::Slope;
+use crate::mesh::lattice::{Lattice, LatticeError};
+use crate::mesh::sampler::{Scratch, SolidSampler};
+use crate::mesh::settings::Features;
+use crate::mesh::signs::{BLOCK, EdgeRef, NODES, SIDE};
+use crate::run::Run;
+
+pub(super) struct Level {
+    pub(super) lattice: Lattice,
+    /// Those that the surface may cross.
+    pub(super) blocks: Blocks,
+    /// Those that the next level meshes.
+    pub(super) inset: Inset,
+}
+
+/// Whose a block is: that of a level, one beyond its seam, or one of its inset.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Side {
+    Own,
+    Around,
+    Within,
+}
+
+impl Level {
+    pub(super) fn new(lattice: Lattice, blocks: Blocks) -> Level {
+        Level { lattice, blocks, inset: Inset::default() }
+    }
+
+    /// The inset in halved cells.
+    pub(super) fn halved(&self) -> Result<Level, LatticeError> {
+        let lattice = self.lattice.halved()?;
+        let blocks = self.blocks.halves(&lattice, |block| self.inset.has(block));
+        Ok(Level::new(lattice, blocks))
+    }
+
+    /// Whose a block is, by its number along each axis.
+    fn side(&self, outer: Option<&Seam>, block: [u32; 3]) -> Side {
+        match outer {
+            Some(seam) if !seam.inset.has_half(block) => Side::Around,
+            _ if self.inset.has(block) => Side::Within,
+            _ => Side::Own,
+        }
+    }
+
+    /// The mesh in the blocks of this level; `outer` is the seam around them.
+    pub(super) fn extract(
+        &mut self,
+        job: Job<'_>,
+        outer: Option<&Seam>,
+        run: &Run,
+    ) -> Result<(Piece, Vec<Rim>), ExtractError> {
+        if let Some(seam) = outer {
+            self.blocks.add(seam.blocks.iter().map(|block| block.map(|at| at * BLOCK as u32)), job.program);
+        }
+        let mut inner = SolidSampler::new(&self.lattice, &self.blocks, job.limits);
+        if job.features == Features::Sharp {
+            inner.keep_tapes();
+        }
+        let sampler = LevelSampler { inner, level: self, outer, program: job.program };
+        let mesh = extract(&sampler, &self.lattice, &self.blocks.cells, job.features, run)?;
+        let side = |p: DVec3| {
+            let cell = (p - self.lattice.origin()) / self.lattice.step();
+            self.side(outer, cell.to_array().map(|x| x.max(0.0) as u32 / BLOCK as u32))
+        };
+        Ok(Piece::cut(&mesh, side))
+    }
+}
+
+/// The surface program, but at the seam around a level and beyond.
+struct LevelSampler<'a> {
+    inner: SolidSampler<'a>,
+    level: &'a Level,
+    outer: Option<&'a Seam>,
+    program: &'a Program,
+}
+
+/// A block by its number along each axis.
+fn numbered(block: [u32; 3]) -> [u32; 3] {
+    block.map(|cell| cell / BLOCK as u32)
+}
+
+impl LevelSampler<'_> {
+    fn is_around(&self, block: [u32; 3]) -> bool {
+        self.level.side(self.outer, numbered(block)) == Side::Around
+    }
+
+    /// Where the surface crosses an edge that starts or ends in the seam, if the program does not tell.
+    fn root_at_seam(&self, seam: &Seam, edge: &EdgeRef) -> Option<Root> {
+        let axis = usize::from(edge.axis);
+        let mut ends = [edge.node; 2];
+        ends[1][axis] += 1;
+        let in_seam = ends.map(|node| seam.inset.is_seam(node));
+        if in_seam == [false; 2] {
+            return None;
+        }
+        let place = |t: f64| {
+            let [i, j, k] = edge.node;
+            let mut p = self.level.lattice.node(i, j, k);
+            p[axis] += t * self.level.lattice.step();
+            p
+        };
+        let root = |t: f64| {
+            let slope = self.program.gradient(place(t)).1;
+            Root { t, normal: (-slope.normalize_or_zero()).as_vec3().to_array() }
+        };
+        if in_seam == [true; 2] {
+            return Some(root(seam.crossing(edge.node, edge.axis)?));
+        }
+        let beyond = ends[usize::from(in_seam[0])];
+        if !seam.inset.blocks_at(beyond, BLOCK as u32).any(|block| seam.inset.has_half(block)) {
+            return Some(Root { t: 0.5, normal: [0.0; 3] });
+        }
+        // The sign in the seam is that of the larger cells. Where the program's is the other the surface is beyond.
+        let is_crossed = (self.program.value(place(0.0)) > 0.0) != (self.program.value(place(1.0)) > 0.0);
+        (!is_crossed).then(|| root(if in_seam[0] { 0.0 } else { 1.0 }))
+    }
+}
+
+impl Sampler for LevelSampler<'_> {
+    type Scratch = Scratch;
+
+    fn scratch(&self) -> Scratch {
+        self.inner.scratch()
+    }
+
+    fn limits(&self) -> Bounds {
+        self.inner.limits()
+    }
+
+    fn nodes(&self, scratch: &mut Scratch, number: usize, block: [u32; 3], out: &mut [f32; NODES]) {
+        let is_around = self.is_around(block);
+        if is_around {
+            out.fill(-1.0);
+        } else {
+            self.inner.nodes(scratch, number, block, out);
+        }
+        let Some(seam) = self.outer.filter(|seam| is_around || seam.is_near(numbered(block))) else { return };
+        for (n, value) in out.iter_mut().enumerate() {
+            let node = [1, SIDE, SIDE * SIDE].map(|stride| (n / stride % SIDE) as u32);
+            let node = std::array::from_fn(|axis| block[axis] + node[axis]);
+            if seam.inset.is_seam(node) {
+                let size = value.abs().max(f32::MIN_POSITIVE);
+                *value = if seam.is_inside(node) { size } else { -size };
+            }
+        }
+    }
+
+    fn roots(&self, scratch: &mut Scratch, edges: &[EdgeRef], out: &mut [Root]) {
+        self.inner.roots(scratch, edges, out);
+        let Some(seam) = self.outer else { return };
+        for (edge, root) in edges.iter().zip(out) {
+            if let Some(told) = self.root_at_seam(seam, edge) {
+                *root = told;
+            }
+        }
+    }
+
+    fn insides(
+        &self,
+        scratch: &mut Scratch,
+        number: usize,
+        block: [u32; 3],
+        points: &[DVec3],
+        out: &mut Vec<bool>,
+    ) -> bool {
+        !self.is_around(block) && self.inner.insides(scratch, number, block, points, out)
+    }
+
+    fn is_plain(&self, block: [u32; 3]) -> bool {
+        self.level.side(self.outer, numbered(block)) != Side::Own
+    }
+
+    fn slopes(
+        &self,
+        scratch: &mut Scratch,
+        number: usize,
+        block: [u32; 3],
+        points: &[Vec3A],
+        out: &mut Vec<Slope>,
+    ) -> bool {
+        self.inner.slopes(scratch, number, block, points, out)
+    }
+}
