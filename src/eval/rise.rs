@@ -130,6 +130,19 @@ impl Program {
         parts.iter().map(of_part).fold(0.0, f64::max)
     }
 
+    /// No radius of curvature of the surface is less than this; 0 where it may have creases. It is told of single
+    /// leaves.
+    pub(crate) fn least_radius(&self) -> f64 {
+        let (Kind::Leaf(leaf), false) = (&self.nodes[self.root.node()].kind, self.root.negated()) else { return 0.0 };
+        let Instance { field, frame, to_local, placement, .. } = self.instance(*leaf);
+        if *frame != 0 || placement.shift != 0.0 {
+            return 0.0;
+        }
+        // A map that stretches by s at least and by t at most makes of a radius r one of r s² / t or more.
+        let [most, least] = [to_local.matrix3, to_local.matrix3.inverse()].map(|map| largest_stretch(&map));
+        field.least_radius() / (most * most * least)
+    }
+
     /// Ranges of the derivatives over a region.
     pub(crate) fn slopes(&self, region: &Bounds) -> [Interval; 3] {
         self.evaluate(Dual::point(Zone::of_bounds(region).hull()), &mut Vec::new()).d

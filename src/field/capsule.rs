@@ -72,6 +72,10 @@ impl Field for Capsule {
         true
     }
 
+    fn least_radius(&self) -> f64 {
+        self.radius
+    }
+
     fn range(&self, region: [Interval; 3]) -> Interval {
         falling_range(self, region)
     }

@@ -63,6 +63,10 @@ impl Field for Ellipsoid {
         true
     }
 
+    fn least_radius(&self) -> f64 {
+        self.semi_axes.min_element().powi(2) / self.semi_axes.max_element()
+    }
+
     fn range(&self, region: [Interval; 3]) -> Interval {
         falling_range(self, region)
     }

@@ -103,6 +103,10 @@ pub(crate) trait AnyField: Any + Debug + Send + Sync {
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval>;
     /// Whether the value is the true distance.
     fn exact(&self) -> bool;
+    /// No radius of curvature of the surface is less.
+    fn least_radius(&self) -> f64 {
+        0.0
+    }
     /// The radius of a leaf valued `radius·(1 − G)`.
     fn gauge_radius(&self) -> Option<f64> {
         None
@@ -324,6 +328,10 @@ impl<F: Field> AnyField for F {
         }
         let slopes = self.slopes(zone.hull());
         bits(ways, |way| way.is_rise(slopes))
+    }
+
+    fn least_radius(&self) -> f64 {
+        Field::least_radius(self)
     }
 
     fn steepest(&self, zone: &Zone) -> f64 {

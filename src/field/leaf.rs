@@ -91,6 +91,12 @@ pub trait Field: Debug + Send + Sync + 'static {
         false
     }
 
+    /// No radius of curvature of the surface is less than this, in length units. Default: 0, of a surface that has
+    /// creases, or of which nothing is known.
+    fn least_radius(&self) -> f64 {
+        0.0
+    }
+
     /// The radius r of a leaf whose value is `r·(1 − G)` with a gauge G, homogeneous of degree 1
     /// about the leaf's origin: what [`Blend::Ricci`](crate::Blend::Ricci) asks of its
     /// operands. Default: `None`.

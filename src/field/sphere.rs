@@ -53,6 +53,10 @@ impl Field for Sphere {
         true
     }
 
+    fn least_radius(&self) -> f64 {
+        self.radius
+    }
+
     fn gauge_radius(&self) -> Option<f64> {
         Some(self.radius)
     }

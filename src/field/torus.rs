@@ -64,6 +64,10 @@ impl Field for Torus {
         true
     }
 
+    fn least_radius(&self) -> f64 {
+        self.tube.min(self.radius - self.tube)
+    }
+
     fn support(&self, d: DVec3) -> f64 {
         self.radius * d.truncate().length() + self.tube * d.length()
     }

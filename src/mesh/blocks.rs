@@ -111,7 +111,7 @@ impl Blocks {
     ///
     /// Samples of a field that jumps depend on rounding, and ranges that are told of it, or that users tell of theirs, may
     /// be wrong. All exact blocks have the same value at a node, so in the end all rifts are mended.
-    fn mend(
+    pub(super) fn mend(
         &mut self,
         rifts: &[Rift],
         whole: &Program,

@@ -70,6 +70,10 @@ pub(super) fn refined(
         let halved = last.halved()?;
         levels.push(halved);
     }
+    if let [Level { lattice, blocks, .. }] = &mut levels[..] {
+        let mesh = blocks.extract(job.program, (lattice, job.limits), job.features, &to_mesh)?;
+        return Ok(Some((mesh, left)));
+    }
     grade(&mut levels)?;
     let mut all = Piece::default();
     let mut seam: Option<Seam> = None;

@@ -46,7 +46,8 @@ pub enum Features {
     /// crease or in the corner, and the mesh has edges along the crease.
     ///
     /// A solid without creases, and with radii of four cells or more, has the mesh of [`Smooth`](Features::Smooth): there are
-    /// no such normals in any cell. One that has any is meshed more closely also
+    /// no such normals in any cell. Of a single [leaf that tells its least radius](crate::Field::least_radius), as
+    /// spheres, ellipsoids, tori, capsules and rounded boxes do, two cells are enough. One that has any is meshed more closely also
     /// where it is smooth: where it curves so much, with radii below some 35 cells, that it is
     /// off the triangles in a cell by more than some 0.01 or 0.02 cells in their middle, two triangles have the diagonal
     /// that bends less; and where that is not enough, the cell has a vertex above the surface, as far as the triangles
@@ -54,8 +55,7 @@ pub enum Features {
     ///
     /// Where a crease passes cells that have no surface of their own (all their corners are on the same
     /// side), the cells around, up to four along each axis, share a vertex on it, if their surface is a
-    /// disc; else the crease is cut off there by a part of a cell. [`ThinFeatures::Refine`] asks for
-    /// smaller cells where it matters.
+    /// disc; else the crease is cut off there by a part of a cell.
     #[default]
     Sharp,
 }
@@ -96,8 +96,11 @@ pub enum ThinFeatures {
     /// long as the mesh; of parts seen through several deformations up to twelve times.
     #[default]
     Count,
-    /// While there are any, the cells are halved, all of them, at most so many times; then it is as with
-    /// [`Count`](ThinFeatures::Count).
+    /// Blocks of cells that have any, and those close to them, are meshed in cells of half the size, and blocks of these
+    /// again, at most so many times; then it is as with [`Count`](ThinFeatures::Count). Here cells with corners on both
+    /// sides count as well, so that walls have no holes once their cells are small enough. The mesh keeps all that is
+    /// said of meshes; a crease is cut off, by a fraction of a cell, where it passes from larger cells to smaller ones.
+    /// Where a field jumps, all cells may be halved.
     Refine {
         /// The most times that the cell size is halved.
         halvings: u32,

@@ -51,6 +51,9 @@ pub enum MeshingError {
 /// What leaves the bounds by less, in cells, is let pass: vertices may be off by a thousandth.
 const SLACK: f64 = 0.01;
 
+/// A surface with radii of so many cells is known to have no creases.
+const ROUND: f64 = 2.0;
+
 impl From<ExtractError> for MeshingError {
     fn from(error: ExtractError) -> MeshingError {
         match error {
@@ -105,7 +108,9 @@ impl Solid {
             let [to_find, to_refine, to_extract, to_refuse, to_own, to_paint] = run.stages(times);
             let mut lattice = Lattice::new(&bounds, settings.cell)?;
             let mut blocks = Blocks::find(&programs.surface, &lattice, &to_find)?;
-            let job = Job { program: &programs.surface, limits: bounds, features: settings.features };
+            let is_round = programs.surface.least_radius() >= ROUND * lattice.step();
+            let features = if is_round { Features::Smooth } else { settings.features };
+            let job = Job { program: &programs.surface, limits: bounds, features };
             let refined = match most {
                 0 => None,
                 _ => refined(job, (&lattice, &blocks), most, &to_refine)?,
@@ -122,7 +127,7 @@ impl Solid {
                         lattice = lattice.halved()?;
                         blocks = Blocks::find(&programs.surface, &lattice, &run.stage(1.0, 1.0))?;
                     }
-                    let mesh = blocks.extract(&programs.surface, (&lattice, bounds), settings.features, &to_extract)?;
+                    let mesh = blocks.extract(&programs.surface, (&lattice, bounds), features, &to_extract)?;
                     (mesh, late_count(programs.clone(), (lattice, bounds)))
                 }
             };

@@ -1,7 +1,9 @@
 //! Meshes of random fields, in both modes: nothing is wrong with any of them.
 
 use glam::{DQuat, DVec3};
-use rvachev::{Bounds, CellSize, Features, Field, Interval, MeshSettings, ParamError, RFunction, Real, Run, Solid};
+use rvachev::{
+    Bounds, CellSize, Features, Field, Interval, MeshSettings, ParamError, RFunction, Real, Run, Solid, ThinFeatures,
+};
 
 use crate::support::{Random, random_leaf, random_solid};
 
@@ -38,7 +40,7 @@ impl Field for Sines {
     }
 }
 
-/// The cell of all meshes here: 1/8. With the lattice's shift of 11/32 of a cell, nodes are at odd
+/// The cell of meshes here: 1/8. With the lattice's shift of 11/32 of a cell, nodes are at odd
 /// multiples of 1/256.
 const CELL: f64 = 0.125;
 
@@ -116,7 +118,7 @@ fn sines(random: &mut Random) -> Solid {
     Solid::new(Sines(std::array::from_fn(|_| wave())))
 }
 
-fn fields(seeds: std::ops::Range<u64>) {
+fn fields(seeds: std::ops::Range<u64>, cell: f64, thin: ThinFeatures) {
     let (mut triangles, mut cut, mut empty, mut beyond) = (0, 0, 0, 0.0f64);
     for seed in seeds {
         let mut random = Random::new(seed.wrapping_mul(0x9e37_79b9) + 3);
@@ -134,7 +136,8 @@ fn fields(seeds: std::ops::Range<u64>) {
         let middle = DVec3::splat(round(&mut random));
         let bounds = part.then(|| Bounds::from_center(middle, half.min(DVec3::splat(0.8))));
         for features in [Features::Sharp, Features::Smooth] {
-            let settings = MeshSettings { cell: CellSize::Length(CELL), bounds, features, ..MeshSettings::default() };
+            let cell = CellSize::Length(cell);
+            let settings = MeshSettings { cell, bounds, features, thin, ..MeshSettings::default() };
             let run = Run { threads: 1, ..Run::default() };
             let mesh = solid.mesh_with(&settings, &run);
             let mesh = mesh.unwrap_or_else(|error| panic!("seed {seed}, {features:?}, {bounds:?}: {error}\n{solid}"));
@@ -159,11 +162,25 @@ fn fields(seeds: std::ops::Range<u64>) {
 
 #[test]
 fn a_thousand_fields() {
-    fields(0..1000);
+    fields(0..1000, CELL, ThinFeatures::Ignore);
 }
 
 #[test]
 #[ignore = "takes many minutes"]
 fn twenty_thousand_fields() {
-    fields(0..20_000);
+    fields(0..20_000, CELL, ThinFeatures::Ignore);
+}
+
+/// Where larger and smaller cells meet.
+#[test]
+fn fields_with_halved_cells() {
+    for seed in (20_000..20_030).filter(|seed| seed % 5 != 0) {
+        fields(seed..seed + 1, 0.5 * CELL, ThinFeatures::Refine { halvings: 1 + seed as u32 / 3 % 2 });
+    }
+}
+
+#[test]
+#[ignore = "takes many minutes"]
+fn two_thousand_fields_with_halved_cells() {
+    fields(30_000..32_000, 0.5 * CELL, ThinFeatures::Refine { halvings: 1 });
 }

@@ -252,6 +252,9 @@ fn a_smooth_solid_is_the_same_in_both_modes() {
         (Solid::sphere(1.0), 0.2),
         (Solid::torus(1.0, 0.4), 0.01),
         (Solid::torus(1.0, 0.4), 0.1),
+        // Radii of two cells and a little.
+        (Solid::torus(1.0, 0.4), 0.18),
+        (Solid::sphere(0.5).rotate_x(0.3), 0.23),
         (Solid::superellipsoid(DVec3::ONE, 1.0, 0.8), 0.05),
         (Solid::ellipsoid(DVec3::new(1.0, 0.7, 0.4)), 0.05),
         (Solid::cuboid(DVec3::ONE).offset(0.3), 0.06),

@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 
 use glam::{DQuat, DVec2, DVec3};
 use rvachev::{
-    Blend, Bounds, CellSize, Helix, MeshSettings, MinimalSurface, Polygon, Profile, SheetLattice, Solid, ThinFeatures,
+    Blend, Bounds, CellSize, Features, Helix, MeshSettings, MinimalSurface, Polygon, Profile, SheetLattice, Solid,
+    ThinFeatures,
 };
 
 use super::models;
@@ -27,6 +28,36 @@ fn thin_walls_are_counted_and_refined() {
     let fine = report(ThinFeatures::Refine { halvings: 4 });
     assert_eq!((fine.unresolved_cells, fine.shells), (Some(0), 1));
     assert!((fine.volume / 0.04 - 1.0).abs() < 0.02, "{}", fine.volume);
+}
+
+/// Smaller cells are where they are needed, and the mesh is whole across the seam.
+#[test]
+fn cells_are_halved_where_they_are_unresolved() {
+    let turn = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), 0.7);
+    let fin = Solid::cuboid((0.03, 0.8, 0.8)).translate(DVec3::Z * 1.3);
+    let whole = (Solid::cuboid(DVec3::splat(2.0)) | fin).rotate(turn);
+    let volume = 8.0 + 0.03 * 0.8 * 0.7;
+    for features in [Features::Smooth, Features::Sharp] {
+        let mesh = |cells: u32, thin| {
+            let cell = CellSize::LongestSide(cells);
+            whole.mesh(&MeshSettings { cell, features, thin, ..MeshSettings::default() }).unwrap()
+        };
+        let [coarse, fine] = [48, 192].map(|cells| mesh(cells, ThinFeatures::Ignore).triangles().len());
+        let refined = mesh(48, ThinFeatures::Refine { halvings: 2 });
+        let report = refined.check();
+        assert!(report.is_sound() && report.shells == 1, "{report}");
+        let count = refined.triangles().len();
+        assert!(coarse < count && 4 * count < fine, "{features:?}: {coarse}, {count}, {fine}");
+        let slack = if features == Features::Sharp { 2e-5 } else { 2e-3 };
+        assert!((report.volume / volume - 1.0).abs() < slack, "{features:?}: {}", report.volume);
+        // What has no thin parts is as it is.
+        let plain = Solid::cuboid(DVec3::splat(2.0)).rotate(turn);
+        let settings =
+            |thin| MeshSettings { cell: CellSize::LongestSide(48), features, thin, ..MeshSettings::default() };
+        let [plain, halved] =
+            [ThinFeatures::Ignore, ThinFeatures::Refine { halvings: 2 }].map(|thin| plain.mesh(&settings(thin)));
+        assert!(plain.unwrap() == halved.unwrap());
+    }
 }
 
 #[test]

@@ -64,12 +64,18 @@ impl Level {
         if let Some(seam) = outer {
             self.blocks.add(seam.blocks.iter().map(|block| block.map(|at| at * BLOCK as u32)), job.program);
         }
-        let mut inner = SolidSampler::new(&self.lattice, &self.blocks, job.limits);
-        if job.features == Features::Sharp {
-            inner.keep_tapes();
-        }
-        let sampler = LevelSampler { inner, level: self, outer, program: job.program };
-        let mesh = extract(&sampler, &self.lattice, &self.blocks.cells, job.features, run)?;
+        let mesh = loop {
+            let mut inner = SolidSampler::new(&self.lattice, &self.blocks, job.limits);
+            if job.features == Features::Sharp {
+                inner.keep_tapes();
+            }
+            let sampler = LevelSampler { inner, level: self, outer, program: job.program };
+            match extract(&sampler, &self.lattice, &self.blocks.cells, job.features, run) {
+                Err(ExtractError::Rifts(rifts))
+                    if self.blocks.mend(&rifts, job.program, (&self.lattice, &job.limits), run)? => {}
+                result => break result?,
+            }
+        };
         let side = |p: DVec3| {
             let cell = (p - self.lattice.origin()) / self.lattice.step();
             self.side(outer, cell.to_array().map(|x| x.max(0.0) as u32 / BLOCK as u32))
