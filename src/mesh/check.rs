@@ -82,7 +82,8 @@ pub struct MeshReport {
     /// if it was not made from a solid, or with [`ThinFeatures::Ignore`](crate::ThinFeatures::Ignore).
     pub unresolved_cells: Option<usize>,
     /// Vertices on edges of the lattice that are up to a thousandth of a cell off the surface, to keep
-    /// clear of the nodes. `None` if the mesh was not made from a solid.
+    /// clear of the nodes, or where the value jumps from one side to the other, as distances that are searched may; and those between larger and smaller
+    /// cells, see [`ThinFeatures::Refine`](crate::ThinFeatures::Refine). `None` if the mesh was not made from a solid.
     pub clamped_vertices: Option<usize>,
 }
 

@@ -134,6 +134,8 @@ pub(crate) struct Root {
     pub t: f64,
     /// The unit normal there, out of the solid. One that is not finite becomes 0.
     pub normal: [f32; 3],
+    /// Whether the value is not near 0 there: it jumps, or the place is told by what is beside the block.
+    pub is_off: bool,
 }
 
 /// Why there is no mesh.
@@ -222,7 +224,7 @@ struct Batch {
     parts: Vec<Part>,
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
-    /// How many of them are moved to keep clear of nodes.
+    /// How many of them are moved to keep clear of nodes, or off the surface.
     clamped: usize,
 }
 
@@ -317,7 +319,7 @@ impl<'a, S: Sampler> Worker<'a, S> {
         let vertices = positions.iter_mut().zip(&mut normals);
         for ((position, normal), (edge, root)) in vertices.zip(self.edges.iter().zip(&self.roots)) {
             *position = self.lattice.vertex(edge.node, usize::from(edge.axis), root.t);
-            clamped += usize::from(self.lattice.is_clamped(root.t));
+            clamped += usize::from(root.is_off || self.lattice.is_clamped(root.t));
             let given = Vec3::from_array(root.normal);
             if given.is_finite() {
                 *normal = given;

@@ -30,6 +30,10 @@ const SETTLED: f64 = 2.5e-7;
 const STEPS: usize = 40;
 const HALVING: usize = 12;
 
+/// Where the value is more than this part of what it changes by along an edge, and has the other sign right beside,
+/// it jumps.
+const JUMP: f64 = 1e-3;
+
 /// Fewer points than this are evaluated one by one where lanes are padded to a chunk.
 const FEW: usize = 8;
 
@@ -71,7 +75,8 @@ impl RootFinder {
         let step = lattice.step();
         self.start(tape, lattice, edges, start);
         self.approach(evaluator, tape, edges, step, out);
-        self.settle(evaluator, (program, tape), edges, step);
+        out.iter_mut().for_each(|root| root.is_off = false);
+        self.settle(evaluator, (program, tape), edges, step, out);
         self.normals(evaluator, tape, edges, step, out);
         for (root, &t) in out.iter_mut().zip(&self.t) {
             root.t = t;
@@ -135,7 +140,14 @@ impl RootFinder {
     }
 
     /// In double precision, to the end.
-    fn settle(&mut self, evaluator: &mut Evaluator, (program, tape): (&Program, &Tape), edges: &[EdgeRef], step: f64) {
+    fn settle(
+        &mut self,
+        evaluator: &mut Evaluator,
+        (program, tape): (&Program, &Tape),
+        edges: &[EdgeRef],
+        step: f64,
+        out: &mut [Root],
+    ) {
         let count = edges.len();
         self.evaluate_all(evaluator, tape, edges, step);
         self.before.resize(count, [0.0; 2]);
@@ -185,6 +197,7 @@ impl RootFinder {
                 bracket.learn(t, value);
                 if by.abs() <= SETTLED && value.abs() <= SETTLED * self.slope[n].abs() || bracket.width() <= SETTLED {
                     self.t[n] = bracket.nearest(t - by);
+                    out[n].is_off = value.abs() > JUMP * self.slope[n].abs();
                     continue;
                 }
                 bracket.next = if round < HALVING { bracket.secant() } else { bracket.middle() };
@@ -197,6 +210,7 @@ impl RootFinder {
         }
         for (&n, bracket) in self.open.iter().zip(&self.brackets) {
             self.t[n as usize] = bracket.middle();
+            out[n as usize].is_off = true;
         }
     }
 

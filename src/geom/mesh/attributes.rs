@@ -162,7 +162,7 @@ impl Mesh {
         self
     }
 
-    /// How many vertices keep clear of a node that the surface is closer to; `None` if the mesh was not
+    /// How many vertices keep clear of a node that the surface is closer to, or are off it for another reason; `None` if the mesh was not
     /// made from a solid. See [`MeshReport`](crate::MeshReport).
     #[must_use]
     pub fn clamped_vertices(&self) -> Option<usize> {

@@ -119,14 +119,16 @@ impl LevelSampler<'_> {
         };
         let root = |t: f64| {
             let slope = self.program.gradient(place(t)).1;
-            Root { t, normal: (-slope.normalize_or_zero()).as_vec3().to_array() }
+            Root { t, normal: (-slope.normalize_or_zero()).as_vec3().to_array(), is_off: false }
         };
         if in_seam == [true; 2] {
-            return Some(root(seam.crossing(edge.node, edge.axis)?));
+            // Within a face of a larger cell it is on that one's segment.
+            let is_off = (0..3).any(|n| n != axis && edge.node[n] % 2 == 1);
+            return Some(Root { is_off, ..root(seam.crossing(edge.node, edge.axis)?) });
         }
         let beyond = ends[usize::from(in_seam[0])];
         if !seam.inset.blocks_at(beyond, BLOCK as u32).any(|block| seam.inset.has_half(block)) {
-            return Some(Root { t: 0.5, normal: [0.0; 3] });
+            return Some(Root { t: 0.5, ..Root::default() });
         }
         // The sign in the seam is that of the larger cells. Where the program's is the other the surface is beyond.
         let is_crossed = (self.program.value(place(0.0)) > 0.0) != (self.program.value(place(1.0)) > 0.0);
