@@ -12,7 +12,8 @@
 //! The mesh of the larger cells without the inset and that of the smaller ones without the caps have the same
 //! boundary then, but that a segment of the first may be several of the second. A triangle at such a segment is cut
 //! into as many. Each of the two is embedded, they have nothing but the seam in common, and no fan reaches over it: so
-//! what is shown of one lattice holds for both together.
+//! what is shown of one lattice holds for both together. A crease has a point in the seam if the triangles on both
+//! sides are of fans: a fan's loop may take any way in a face.
 
 mod inset;
 mod level;
@@ -96,7 +97,7 @@ pub(super) fn refined(
         let Some(numbers) = joined else { return Ok(None) };
         if !level.inset.is_empty() {
             let rims = rims.into_iter().filter(|rim| !rim.is_outer).map(|rim| rim.moved(start, &numbers));
-            seam = Seam::new(job, level, rims, &all.positions);
+            seam = Seam::new(job, level, rims, &all);
             if seam.is_none() {
                 return Ok(None);
             }

@@ -31,8 +31,11 @@ const STEPS: usize = 40;
 const HALVING: usize = 12;
 
 /// Where the value is more than this part of what it changes by along an edge, and has the other sign right beside,
-/// it jumps.
+/// it may jump.
 const JUMP: f64 = 1e-3;
+
+/// It does if so many halvings more do not bring it down to a half.
+const CLOSER: usize = 20;
 
 /// Fewer points than this are evaluated one by one where lanes are padded to a chunk.
 const FEW: usize = 8;
@@ -197,7 +200,8 @@ impl RootFinder {
                 bracket.learn(t, value);
                 if by.abs() <= SETTLED && value.abs() <= SETTLED * self.slope[n].abs() || bracket.width() <= SETTLED {
                     self.t[n] = bracket.nearest(t - by);
-                    out[n].is_off = value.abs() > JUMP * self.slope[n].abs();
+                    let is_large = value.abs() > JUMP * self.slope[n].abs();
+                    out[n].is_off = is_large && self.jumps((program, tape), &edges[n], n, bracket, step);
                     continue;
                 }
                 bracket.next = if round < HALVING { bracket.secant() } else { bracket.middle() };
@@ -212,6 +216,33 @@ impl RootFinder {
             self.t[n as usize] = bracket.middle();
             out[n as usize].is_off = true;
         }
+    }
+
+    /// Whether the value of an edge jumps within a bracket, or has no change of sign there.
+    fn jumps(&self, (program, tape): (&Program, &Tape), edge: &EdgeRef, n: usize, bracket: Bracket, step: f64) -> bool {
+        let along = usize::from(edge.axis);
+        let value = |t: f64| {
+            let mut p = DVec3::new(self.double[0][n], self.double[1][n], self.double[2][n]);
+            p[along] = self.lower[n] + t * step;
+            program.value(tape.origin() + p)
+        };
+        let (mut low, mut high) = (bracket.low, bracket.high);
+        let mut ends = [low, high].map(value);
+        let least = |ends: [f64; 2]| ends[0].abs().min(ends[1].abs());
+        let first = least(ends);
+        for _ in 0..CLOSER {
+            if (ends[0] > 0.0) == (ends[1] > 0.0) {
+                return true;
+            }
+            let middle = 0.5 * (low + high);
+            let at_middle = value(middle);
+            if (at_middle > 0.0) == (ends[0] > 0.0) {
+                (low, ends[0]) = (middle, at_middle);
+            } else {
+                (high, ends[1]) = (middle, at_middle);
+            }
+        }
+        least(ends) > 0.5 * first
     }
 
     /// The values at the points of all edges.

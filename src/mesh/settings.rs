@@ -99,7 +99,8 @@ pub enum ThinFeatures {
     /// Blocks of cells that have any, and those close to them, are meshed in cells of half the size, and blocks of these
     /// again, at most so many times; then it is as with [`Count`](ThinFeatures::Count). Here cells with corners on both
     /// sides count as well, so that walls have no holes once their cells are small enough. The mesh keeps all that is
-    /// said of meshes; a crease is cut off, by a fraction of a cell, where it passes from larger cells to smaller ones.
+    /// said of meshes; where a crease passes from larger cells to smaller ones in a cell that has no surface of its own, it is cut
+    /// off by a fraction of a cell.
     /// Where a field jumps, all cells may be halved.
     Refine {
         /// The most times that the cell size is halved.

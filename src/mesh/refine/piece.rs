@@ -100,16 +100,28 @@ impl Piece {
         Some(numbers)
     }
 
+    /// Adds a vertex of a crease on an edge, with the normals on its two sides; nothing if there are too many.
+    pub(super) fn add(&mut self, at: Vec3, [before, after]: [Vec3; 2]) -> Option<Between> {
+        let vertex = u32::try_from(self.positions.len()).ok().filter(|&vertex| vertex < u32::MAX)?;
+        self.positions.push(at);
+        self.normals.push((before + after).normalize_or(before));
+        Some(Between { vertex, before, after })
+    }
+
+    /// A vertex on an edge that has the same normal on both sides.
+    pub(super) fn between(&self, vertex: u32) -> Between {
+        let normal = self.normals[vertex as usize];
+        Between { vertex, before: normal, after: normal }
+    }
+
     /// Cuts a triangle so that its edges have these vertices, in the order of its corners.
-    pub(super) fn split(&mut self, triangle: u32, edges: [Vec<u32>; 3]) {
-        let normals = &self.normals;
+    pub(super) fn split(&mut self, triangle: u32, edges: [Vec<Between>; 3]) {
         let own = self.corners.as_ref().map(|corners| corners[triangle as usize]);
         let corner = |n: usize| {
             let vertex = self.triangles[triangle as usize][n];
-            (vertex, own.map_or(normals[vertex as usize], |own| own[n]))
+            (vertex, own.map_or(self.normals[vertex as usize], |own| own[n]))
         };
         let mut parts = Vec::new();
-        let edges = edges.map(|edge| edge.into_iter().map(|vertex| (vertex, normals[vertex as usize])).collect());
         fill([corner(0), corner(1), corner(2)], edges, &mut parts);
         for (n, part) in parts.into_iter().enumerate() {
             let at = if n == 0 { triangle as usize } else { self.triangles.len() };
@@ -141,13 +153,23 @@ fn put<T>(list: &mut Vec<T>, at: usize, item: T) {
 /// A vertex with its normal.
 type Corner = (u32, Vec3);
 
+/// A vertex on an edge, and its normals on the two sides of it in the direction of the edge.
+#[derive(Clone, Copy)]
+pub(super) struct Between {
+    pub(super) vertex: u32,
+    pub(super) before: Vec3,
+    pub(super) after: Vec3,
+}
+
 /// The triangles of one whose edges have more vertices.
-fn fill([a, b, c]: [Corner; 3], [ab, bc, ca]: [Vec<Corner>; 3], out: &mut Vec<[Corner; 3]>) {
+fn fill([a, b, c]: [Corner; 3], [ab, bc, ca]: [Vec<Between>; 3], out: &mut Vec<[Corner; 3]>) {
     match (ab.first(), ab.last()) {
-        (Some(&first), Some(&last)) => {
-            fill([a, first, c], [Vec::new(), Vec::new(), ca], out);
-            out.extend(ab.windows(2).map(|pair| [pair[0], pair[1], c]));
-            fill([last, b, c], [Vec::new(), bc, Vec::new()], out);
+        (Some(first), Some(last)) => {
+            fill([a, (first.vertex, first.before), c], [Vec::new(), Vec::new(), ca], out);
+            out.extend(
+                ab.windows(2).map(|pair| [(pair[0].vertex, pair[0].after), (pair[1].vertex, pair[1].before), c]),
+            );
+            fill([(last.vertex, last.after), b, c], [Vec::new(), bc, Vec::new()], out);
         }
         _ if bc.is_empty() && ca.is_empty() => out.push([a, b, c]),
         _ => fill([b, c, a], [bc, ca, ab], out),

@@ -15,10 +15,11 @@ use glam::{DVec2, DVec3, Vec3};
 use super::Job;
 use super::inset::Inset;
 use super::level::Level;
-use super::piece::{Piece, Rim};
+use super::piece::{Between, Piece, Rim};
 use crate::mesh::extract::Sampler;
 use crate::mesh::lattice::Lattice;
 use crate::mesh::sampler::SolidSampler;
+use crate::mesh::settings::Features;
 use crate::mesh::signs::{BLOCK, NODES, SIDE};
 
 /// An edge of a lattice: its lower node, and its axis.
@@ -39,17 +40,29 @@ pub(super) struct Seam {
     vertices: HashMap<Edge, u32>,
     /// Their segments, face by face.
     segments: BTreeMap<Face, Vec<Rim>>,
+    /// Those of them that have a point of a crease.
+    bends: HashMap<Face, Bend>,
 }
+
+/// A point in which a segment is bent, as a crease passes the face there.
+struct Bend {
+    at: Vec3,
+    /// The face of a smaller cell that it is in.
+    half: Face,
+    /// The normals at the two ends of the segment.
+    normals: [Vec3; 2],
+}
+
+/// Normals that are farther apart are those of two sides of a crease: the cosine of 26°.
+const CREASE: f32 = 0.9;
+
+/// How far, in larger cells, a bend is from the sides of the smaller face that it is in.
+const INSET: f64 = 0.01;
 
 impl Seam {
     /// The seam around the inset of a level, given the border there and the positions of its vertices; nothing if they do
     /// not fit.
-    pub(super) fn new(
-        job: Job<'_>,
-        level: &Level,
-        rims: impl Iterator<Item = Rim>,
-        positions: &[Vec3],
-    ) -> Option<Seam> {
+    pub(super) fn new(job: Job<'_>, level: &Level, rims: impl Iterator<Item = Rim>, all: &Piece) -> Option<Seam> {
         let mut seam = Seam {
             inset: level.inset.clone(),
             blocks: BTreeSet::new(),
@@ -57,10 +70,11 @@ impl Seam {
             crossings: HashMap::new(),
             vertices: HashMap::new(),
             segments: BTreeMap::new(),
+            bends: HashMap::new(),
         };
         for rim in rims {
             let ends = [rim.from, rim.to];
-            let [from, to] = ends.map(|vertex| edge_of(&level.lattice, positions[vertex as usize]));
+            let [from, to] = ends.map(|vertex| edge_of(&level.lattice, all.positions[vertex as usize]));
             let edges = [from?, to?];
             seam.vertices.extend(edges.into_iter().zip(ends));
             seam.segments.entry(face_of(edges)?).or_default().push(rim);
@@ -104,7 +118,7 @@ impl Seam {
                     face[(axis + 1) % 3] += i as u32;
                     face[(axis + 2) % 3] += j as u32;
                     let corners = [is_inside(i, j), is_inside(i + 1, j), is_inside(i, j + 1), is_inside(i + 1, j + 1)];
-                    seam.divide(&level.lattice, (axis as u8, face), corners, positions)?;
+                    seam.divide((&level.lattice, job), (axis as u8, face), corners, all)?;
                 }
             }
         }
@@ -114,10 +128,10 @@ impl Seam {
     /// Divides a face, given whether its corners are inside.
     fn divide(
         &mut self,
-        lattice: &Lattice,
+        (lattice, job): (&Lattice, Job<'_>),
         (axis, first): Face,
         [a, b, c, d]: [bool; 4],
-        positions: &[Vec3],
+        all: &Piece,
     ) -> Option<()> {
         let [u, v] = [1, 2].map(|n| (usize::from(axis) + n) % 3);
         let node = |i: u32, j: u32| {
@@ -126,16 +140,25 @@ impl Seam {
             node[v] += j;
             node
         };
-        let place = |vertex: u32| (positions[vertex as usize].as_dvec3() - lattice.origin()) / lattice.step();
+        let place = |vertex: u32| (all.positions[vertex as usize].as_dvec3() - lattice.origin()) / lattice.step();
         let flat = |vertex: u32| {
             let p = place(vertex);
             DVec2::new(p[u] - f64::from(first[u]), p[v] - f64::from(first[v]))
         };
-        let segments: Vec<[DVec2; 2]> = self
-            .segments
-            .get(&(axis, first))
-            .map(|rims| rims.iter().map(|rim| [flat(rim.from), flat(rim.to)]).collect())
-            .unwrap_or_default();
+        let rims = self.segments.get(&(axis, first)).map(Vec::as_slice).unwrap_or_default();
+        let mut segments: Vec<[DVec2; 2]> = rims.iter().map(|rim| [flat(rim.from), flat(rim.to)]).collect();
+        let mut bend = None;
+        if let ([rim], Features::Sharp) = (rims, job.features)
+            && let Some((x, normals)) = bent(lattice, rim, ([u, v], [flat(rim.from), flat(rim.to)]), all)
+        {
+            let mut at = first.map(f64::from);
+            (at[u], at[v]) = (at[u] + x.x, at[v] + x.y);
+            let at = (lattice.origin() + DVec3::from_array(at) * lattice.step()).as_vec3();
+            let at = at.clamp(job.limits.min.as_vec3(), job.limits.max.as_vec3());
+            let half = (axis, node((2.0 * x.x) as u32, (2.0 * x.y) as u32));
+            bend = Some(Bend { at, half, normals });
+            segments = vec![[segments[0][0], x], [x, segments[0][1]]];
+        }
         let is_mixed = [a, b, c, d] != [a; 4];
         if is_mixed == segments.is_empty() {
             return None;
@@ -147,9 +170,21 @@ impl Seam {
             signs[1][2] = self.halve((node(0, 2), u), [c, d], place)?;
             signs[0][1] = self.halve((node(0, 0), v), [a, c], place)?;
             signs[2][1] = self.halve((node(2, 0), v), [b, d], place)?;
-            let side = |[from, to]: [DVec2; 2], p: DVec2| (to - from).perp_dot(p - from);
-            let parts = |&&segment: &&[DVec2; 2]| side(segment, DVec2::ZERO) * side(segment, DVec2::splat(0.5)) < 0.0;
+            // Whether a segment parts the first corner from the middle. One that ends on the line between the two counts
+            // with one of those that meet there.
+            let is_left = |[from, to]: [DVec2; 2], p: DVec2| (to - from).perp_dot(p - from) >= 0.0;
+            let diagonal = [DVec2::ZERO, DVec2::splat(0.5)];
+            let parts = |segment: &&[DVec2; 2]| {
+                is_left(diagonal, segment[0]) != is_left(diagonal, segment[1])
+                    && is_left(**segment, diagonal[0]) != is_left(**segment, diagonal[1])
+            };
             signs[1][1] = a ^ (segments.iter().filter(parts).count() % 2 == 1);
+            // A crease that is all there is between the middle and the sides is left out.
+            let beside = [signs[1][0], signs[1][2], signs[0][1], signs[2][1]];
+            if bend.is_some() && beside == [!signs[1][1]; 4] {
+                signs[1][1] = !signs[1][1];
+                bend = None;
+            }
             for (at, along) in [([0, 1], 0), ([1, 1], 0), ([1, 0], 1), ([1, 1], 1)] {
                 let mut end = at;
                 end[along] += 1;
@@ -164,6 +199,7 @@ impl Seam {
                     self.crossings.insert((node(at[0] as u32, at[1] as u32), [u, v][along] as u8), t);
                 }
             }
+            self.bends.extend(bend.map(|bend| ((axis, first), bend)));
         }
         for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
             let at = node(i, j);
@@ -219,7 +255,7 @@ impl Seam {
         rims: &[Rim],
     ) -> Option<Vec<u32>> {
         // The segments of each face of a larger cell, and the vertices that are those of larger cells.
-        let (mut paths, mut same) = (BTreeMap::<Face, Vec<[u32; 2]>>::new(), BTreeMap::new());
+        let (mut paths, mut same) = (BTreeMap::<Face, Vec<(Face, Rim)>>::new(), BTreeMap::new());
         for rim in rims.iter().filter(|rim| rim.is_outer) {
             let ends = [rim.from, rim.to];
             let [from, to] = ends.map(|vertex| edge_of(lattice, piece.positions[vertex as usize]));
@@ -229,31 +265,43 @@ impl Seam {
                     same.insert(vertex, *self.vertices.get(&(node.map(|at| at / 2), axis))?);
                 }
             }
-            let (axis, first) = face_of(edges)?;
-            paths.entry((axis, first.map(|at| at / 2))).or_default().push(ends);
+            let half = face_of(edges)?;
+            paths.entry((half.0, half.1.map(|at| at / 2))).or_default().push((half, *rim));
         }
         let same: Vec<(u32, u32)> = same.into_iter().collect();
+        let start = all.triangles.len() as u32;
         let numbers = all.append(piece, &same)?;
-        let mut cuts: BTreeMap<u32, [Vec<u32>; 3]> = BTreeMap::new();
+        let mut cuts: BTreeMap<u32, [Vec<Between>; 3]> = BTreeMap::new();
         for (face, segments) in &self.segments {
             let path = paths.remove(face).unwrap_or_default();
-            let mut next: HashMap<u32, u32> = path
-                .into_iter()
-                .map(|ends| ends.map(|vertex| numbers[vertex as usize]))
-                .map(<[u32; 2]>::into)
-                .collect();
+            let path: Vec<(Face, Rim)> =
+                path.into_iter().map(|(half, rim)| (half, rim.moved(start, &numbers))).collect();
+            let mut next: HashMap<u32, u32> = path.iter().map(|(_, rim)| (rim.from, rim.to)).collect();
+            // The smaller segment that the bend is in, if that may be bent too.
+            let bend = self.bends.get(face).and_then(|bend| {
+                let mut there = path.iter().filter(|(half, _)| *half == bend.half);
+                let (_, rim) = there.next().filter(|_| there.next().is_none())?;
+                is_fan(lattice, all, rim.triangle, rim.corner).then_some((bend, *rim))
+            });
+            let bend = match bend {
+                Some((bend, rim)) => Some((all.add(bend.at, bend.normals)?, rim)),
+                None => None,
+            };
             for rim in segments {
                 // The other way round.
                 let (mut between, mut at) = (Vec::new(), rim.to);
-                loop {
-                    at = next.remove(&at)?;
-                    if at == rim.from {
-                        break;
-                    }
-                    between.push(at);
+                while at != rim.from {
+                    let from = at;
+                    at = next.remove(&from)?;
+                    between.extend(bend.filter(|(_, half)| half.from == from).map(|(bend, _)| bend));
+                    between.extend((at != rim.from).then(|| all.between(at)));
                 }
                 between.reverse();
                 cuts.entry(rim.triangle).or_default()[usize::from(rim.corner)] = between;
+            }
+            if let Some((Between { vertex, before, after }, rim)) = bend {
+                let other = Between { vertex, before: after, after: before };
+                cuts.entry(rim.triangle).or_default()[usize::from(rim.corner)] = vec![other];
             }
             if !next.is_empty() {
                 return None;
@@ -262,6 +310,32 @@ impl Seam {
         cuts.into_iter().for_each(|(triangle, edges)| all.split(triangle, edges));
         paths.is_empty().then_some(numbers)
     }
+}
+
+/// The point in which a crease meets the face that a segment lies in, if it does, in cells from the first node of the face
+/// along two axes; and the normals at the ends of the segment. Its triangle has to be of a fan: then the segment may take
+/// any way in the face.
+fn bent(
+    lattice: &Lattice,
+    rim: &Rim,
+    ([u, v], [from, to]): ([usize; 2], [DVec2; 2]),
+    all: &Piece,
+) -> Option<(DVec2, [Vec3; 2])> {
+    let normals = [rim.from, rim.to].map(|vertex| all.normals[vertex as usize]);
+    if normals[0].dot(normals[1]) > CREASE || !is_fan(lattice, all, rim.triangle, rim.corner) {
+        return None;
+    }
+    let [a, b] = normals.map(|normal| DVec2::new(normal[u].into(), normal[v].into()));
+    let (at_a, at_b) = (a.dot(from), b.dot(to));
+    let x = DVec2::new(at_a * b.y - at_b * a.y, a.x * at_b - b.x * at_a) / a.perp_dot(b);
+    let is_within = |x: f64| x > INSET && x < 1.0 - INSET && (x - 0.5).abs() > INSET;
+    (is_within(x.x) && is_within(x.y)).then_some((x, normals))
+}
+
+/// Whether the corner opposite of an edge of a triangle is within a cell.
+fn is_fan(lattice: &Lattice, all: &Piece, triangle: u32, corner: u8) -> bool {
+    let apex = all.triangles[triangle as usize][usize::from(corner + 2) % 3];
+    edge_of(lattice, all.positions[apex as usize]).is_none()
 }
 
 /// The edge of a lattice that a vertex is on.
