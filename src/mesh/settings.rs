@@ -86,6 +86,21 @@ pub enum AtBounds {
 /// may still have holes, in cells with corners on both sides: a flat one is whole for certain if it is thicker than the
 /// diagonal of a cell, 1.74 times its side. A fillet or chamfer is taken to have no features of its own that are thinner
 /// than its size.
+///
+/// ```
+/// use rvachev::{CellSize, MeshSettings, Solid, ThinFeatures};
+///
+/// let fin = Solid::cuboid([0.03, 0.8, 0.8]).translate([0.0, 0.0, 1.3]);
+/// let part = Solid::cuboid([2.0, 2.0, 2.0]) | fin;
+/// let settings = MeshSettings { cell: CellSize::LongestSide(32), ..MeshSettings::default() };
+/// // The fin passes between the nodes, and the report says that something may.
+/// let report = part.mesh(&settings)?.check();
+/// assert!(report.unresolved_cells > Some(0) && report.bounds.max.z < 1.01);
+/// let settings = MeshSettings { thin: ThinFeatures::Refine { halvings: 2 }, ..settings };
+/// let report = part.mesh(&settings)?.check();
+/// assert!(report.unresolved_cells == Some(0) && report.bounds.max.z > 1.69);
+/// # Ok::<(), rvachev::MeshingError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ThinFeatures {
     /// The mesh says nothing of them.
