@@ -15,9 +15,11 @@
 //! what is shown of one lattice holds for both together. A crease has a point in the seam if the triangles on both
 //! sides are of fans: a fan's loop may take any way in a face.
 
+mod divided;
 mod inset;
 mod level;
 mod piece;
+mod place;
 mod seam;
 
 use self::inset::Inset;
@@ -107,7 +109,7 @@ pub(super) fn refined(
 }
 
 /// Makes each inset so large that the next one is surrounded by blocks of its own level.
-fn grade(levels: &mut Vec<Level>) -> Result<(), MeshingError> {
+fn grade(levels: &mut [Level]) -> Result<(), MeshingError> {
     for n in (1..levels.len()).rev() {
         let around: Vec<[u32; 3]> = levels[n].inset.around_all().collect();
         around.into_iter().for_each(|block| levels[n - 1].inset.add(block.map(|at| at / 2)));

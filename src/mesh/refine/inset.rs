@@ -85,7 +85,8 @@ impl Inset {
     pub(super) fn blocks_at(&self, node: [u32; 3], side: u32) -> impl Iterator<Item = [u32; 3]> {
         let counts = self.counts.map(|count| count * (2 * BLOCK as u32 / side));
         let first = node.map(|at| at / side);
-        let low = std::array::from_fn(|axis| first[axis] - u32::from(node[axis] % side == 0 && first[axis] > 0));
+        let low =
+            std::array::from_fn(|axis| first[axis] - u32::from(node[axis].is_multiple_of(side) && first[axis] > 0));
         let high: [u32; 3] = std::array::from_fn(|axis| first[axis].min(counts[axis] - 1));
         between(low, high)
     }
