@@ -100,7 +100,7 @@ impl Blocks {
                 sampler.keep_tapes();
             }
             match extract(&sampler, lattice, &self.cells, features, run) {
-                Err(ExtractError::Rifts(rifts)) if self.mend(&rifts, whole, (lattice, &limits), run)? => {}
+                Err(ExtractError::Rifts(rifts)) if self.mend(&rifts, whole, (lattice, &limits), |_| true, run)? => {}
                 result => return result,
             }
         }
@@ -110,18 +110,19 @@ impl Blocks {
     /// among them, that one. Whether there was anything to be done.
     ///
     /// Samples of a field that jumps depend on rounding, and ranges that are told of it, or that users tell of theirs, may
-    /// be wrong. All exact blocks have the same value at a node, so in the end all rifts are mended.
+    /// be wrong. There are none but those that it may have, told by their first cells. All exact blocks have the same value at a node, so in the end all rifts are mended.
     pub(super) fn mend(
         &mut self,
         rifts: &[Rift],
         whole: &Program,
         (lattice, limits): (&Lattice, &Bounds),
+        may_have: impl Fn([u32; 3]) -> bool,
         run: &Run,
     ) -> Result<bool, Cancelled> {
         self.exact.resize(self.cells.len(), false);
         let number = push(&mut self.programs.all, whole.clone());
         let mut known: HashMap<[u32; 3], usize> = self.cells.iter().copied().zip(0..).collect();
-        let is_there = |block: &[u32; 3]| (0..3).all(|axis| block[axis] < lattice.cells()[axis]);
+        let is_there = |block: &[u32; 3]| (0..3).all(|axis| block[axis] < lattice.cells()[axis]) && may_have(*block);
         let mut open: Vec<[u32; 3]> =
             rifts.iter().flat_map(|rift| [Some(rift.block), rift.beyond.filter(is_there)]).flatten().collect();
         let (mut values, mut changed) = ([0.0; NODES], false);

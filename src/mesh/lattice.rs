@@ -166,15 +166,16 @@ impl Lattice {
         // cell in 2⁴⁰ is lost from the margin then, none from the bounds.
         let first = (bounds.min / step - SHIFT).floor() - 1.0;
         let last = (bounds.max / step - SHIFT).ceil() + 1.0;
-        Lattice::checked((first + SHIFT) * step, step, (last - first).to_array(), reach + 2.0 * step)
-    }
-
-    /// The lattice of so many cells from a node, if it is not too fine; coordinates are up to `farthest`.
-    fn checked(origin: DVec3, step: f64, cells: [f64; 3], farthest: f64) -> Result<Lattice, LatticeError> {
-        let [x, y, z] = cells;
-        if x.max(y).max(z) > MAX_CELLS_ALONG_AXIS || x * y * z > MAX_CELLS {
+        let count = last - first;
+        if count.max_element() > MAX_CELLS_ALONG_AXIS || count.element_product() > MAX_CELLS {
+            let DVec3 { x, y, z } = count;
             return Err(LatticeError::Cells { step, x, y, z });
         }
+        Lattice::clear((first + SHIFT) * step, step, count.to_array(), reach + 2.0 * step)
+    }
+
+    /// The lattice of so many cells from a node, with vertices clear of nodes; coordinates are up to `farthest`.
+    fn clear(origin: DVec3, step: f64, cells: [f64; 3], farthest: f64) -> Result<Lattice, LatticeError> {
         // Two f32 apart, a vertex cannot fall together with the node or with a vertex on
         // another edge of it; a quarter of a cell is left between those at its two ends.
         let spacing = f64::from((farthest as f32).next_up() - farthest as f32);
@@ -191,13 +192,13 @@ impl Lattice {
         })
     }
 
-    /// The same box in cells of half the side: node (i, j, k) is node (2i, 2j, 2k) of it.
-    ///
-    /// # Errors
-    /// There are too many cells, or they are too small for f32.
-    pub(crate) fn halved(&self) -> Result<Lattice, LatticeError> {
+    /// The same box in cells of half the side: node (i, j, k) is node (2i, 2j, 2k) of it. `None` if they are too many along
+    /// an axis, or too small for f32.
+    pub(crate) fn halved(&self) -> Option<Lattice> {
         let farthest = self.origin.abs().max(self.bounds().max.abs()).max_element();
-        Lattice::checked(self.origin, 0.5 * self.step, self.cells.map(|n| 2.0 * f64::from(n)), farthest)
+        let (step, cells) = (0.5 * self.step, self.cells.map(|n| 2.0 * f64::from(n)));
+        let is_allowed = step > MIN_STEP && cells.iter().all(|&n| n <= MAX_CELLS_ALONG_AXIS);
+        Lattice::clear(self.origin, step, cells, farthest).ok().filter(|_| is_allowed)
     }
 
     /// The position of node (0, 0, 0), exact.

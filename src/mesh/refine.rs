@@ -29,8 +29,9 @@ use self::seam::Seam;
 use super::blocks::Blocks;
 use super::extract::ExtractError;
 use super::lattice::Lattice;
-use super::resolve::{Among, count, unresolved_cells};
+use super::resolve::{Among, Unresolved, count, unresolved_cells};
 use super::settings::Features;
+use super::signs::BLOCK;
 use super::solid::MeshingError;
 use crate::eval::Program;
 use crate::geom::Mesh;
@@ -45,79 +46,108 @@ pub(super) struct Job<'a> {
     pub(super) features: Features,
 }
 
-/// The mesh on a lattice whose cells are halved where they are unresolved, at most so many times, and how many are left;
-/// nothing if the two sides of a seam do not fit, as where the field jumps.
+/// The mesh on a lattice whose cells are halved where they are unresolved, at most so many times and as long as f32 has
+/// room for them, and how many are left.
 pub(super) fn refined(
     job: Job<'_>,
-    (lattice, blocks): (&Lattice, &Blocks),
+    (lattice, blocks): (Lattice, Blocks),
     halvings: u32,
     run: &Run,
-) -> Result<Option<(Mesh, usize)>, MeshingError> {
-    let [to_count, to_mesh] = run.stages([0.5, 0.5]);
-    let mut levels = vec![Level::new(*lattice, blocks.clone())];
-    let mut left = 0;
-    for halving in 0..=halvings {
-        let [done, next] = [halving, halving + 1].map(|n| f64::from(n) / (f64::from(halvings) + 1.0));
-        let Some(last) = levels.last_mut() else { break };
-        let run = to_count.stage(done, next);
-        let seek = |among| unresolved_cells(&last.blocks, (&last.lattice, job.limits), among, &run);
-        if halving == halvings {
-            left = count(&seek(Among::OneSided)?);
-            break;
-        }
-        let found = seek(Among::All)?;
+) -> Result<(Mesh, usize), MeshingError> {
+    let [to_find, to_mesh, to_count] = run.stages([0.5, 0.4, 0.1]);
+    let unresolved =
+        |level: &Level, run: &Run| unresolved_cells(&level.blocks, (&level.lattice, job.limits), Among::All, run);
+    let mut levels = vec![Level::new(lattice, blocks)];
+    let mut left = None;
+    for halving in 0..halvings {
+        let [done, next] = [0.0, 1.0].map(|by| (f64::from(halving) + by) / f64::from(halvings));
+        let last = levels.len() - 1;
+        let found = unresolved(&levels[last], &to_find.stage(done, next))?;
         if found.is_empty() {
+            left = Some(0);
             break;
         }
-        last.inset = Inset::around(&last.lattice, &found);
-        let halved = last.halved()?;
+        levels[last].inset = Inset::around(&levels[last].lattice, &found);
+        let Some(halved) = levels[last].halved() else {
+            levels[last].inset = Inset::default();
+            break;
+        };
         levels.push(halved);
     }
-    if let [Level { lattice, blocks, .. }] = &mut levels[..] {
-        let mesh = blocks.extract(job.program, (lattice, job.limits), job.features, &to_mesh)?;
-        return Ok(Some((mesh, left)));
+    grade(&mut levels);
+    loop {
+        match meshed(job, &mut levels, &to_mesh)? {
+            Ok(mesh) => {
+                let left = match (left, &levels[..]) {
+                    (Some(left), _) => left,
+                    (None, [.., outer, last]) => {
+                        let is_own =
+                            |found: &&Unresolved| outer.inset.has_half(found.block.map(|at| at / BLOCK as u32));
+                        unresolved(last, &to_count)?.iter().filter(is_own).map(|found| found.cells.len()).sum()
+                    }
+                    (None, levels) => count(&unresolved(&levels[0], &to_count)?),
+                };
+                return Ok((mesh, left));
+            }
+            // Without the level that does not fit.
+            Err(misfit) => {
+                levels.truncate(misfit);
+                levels[misfit - 1].inset = Inset::default();
+                left = None;
+            }
+        }
     }
-    grade(&mut levels)?;
+}
+
+/// The mesh of all levels together, or the number of one whose sides of the seam do not fit, as it may be where the field
+/// jumps; never the first.
+fn meshed(job: Job<'_>, levels: &mut [Level], run: &Run) -> Result<Result<Mesh, usize>, MeshingError> {
+    if let [Level { lattice, blocks, .. }] = levels {
+        return Ok(Ok(blocks.extract(job.program, (lattice, job.limits), job.features, run)?));
+    }
     let mut all = Piece::default();
     let mut seam: Option<Seam> = None;
     let times: Vec<f64> = levels.iter().map(|level| level.blocks.cells.len() as f64 + 1.0).collect();
-    let whole: f64 = times.iter().sum();
-    let mut done = 0.0;
-    for (level, time) in levels.iter_mut().zip(times) {
-        let run = to_mesh.stage(done / whole, (done + time) / whole);
-        done += time;
+    let (whole, mut end) = (times.iter().sum::<f64>(), 0.0);
+    let stages = times.iter().map(|time| {
+        let start = end;
+        end += time;
+        run.stage(start / whole, end / whole)
+    });
+    for (n, (level, run)) in levels.iter_mut().zip(stages).enumerate() {
         let outer = seam.take();
         let (piece, rims) = match level.extract(job, outer.as_ref(), &run) {
-            Err(ExtractError::Rifts(_)) => return Ok(None),
+            Err(ExtractError::Rifts(_)) if n > 0 => return Ok(Err(n)),
             result => result?,
         };
+        run.check()?;
         let start = all.triangles.len() as u32;
         let joined = match &outer {
             None => all.append(piece, &[]),
             Some(outer) => outer.stitch(&mut all, (&level.lattice, piece), &rims),
         };
-        let Some(numbers) = joined else { return Ok(None) };
+        let Some(numbers) = joined else { return Ok(Err(n)) };
         if !level.inset.is_empty() {
+            run.check()?;
             let rims = rims.into_iter().filter(|rim| !rim.is_outer).map(|rim| rim.moved(start, &numbers));
             seam = Seam::new(job, level, rims, &all);
             if seam.is_none() {
-                return Ok(None);
+                return Ok(Err(n + 1));
             }
         }
     }
-    Ok(Some((all.into_mesh().map_err(ExtractError::from)?, left)))
+    Ok(Ok(all.into_mesh().map_err(ExtractError::from)?))
 }
 
 /// Makes each inset so large that the next one is surrounded by blocks of its own level.
-fn grade(levels: &mut [Level]) -> Result<(), MeshingError> {
+fn grade(levels: &mut [Level]) {
     for n in (1..levels.len()).rev() {
         let around: Vec<[u32; 3]> = levels[n].inset.around_all().collect();
         around.into_iter().for_each(|block| levels[n - 1].inset.add(block.map(|at| at / 2)));
     }
     for n in 1..levels.len() {
-        let inset = std::mem::take(&mut levels[n].inset);
-        levels[n] = levels[n - 1].halved()?;
-        levels[n].inset = inset;
+        if let Some(halved) = levels[n - 1].halved() {
+            levels[n].blocks = halved.blocks;
+        }
     }
-    Ok(())
 }

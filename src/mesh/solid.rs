@@ -7,7 +7,7 @@ use super::extract::ExtractError;
 use super::lattice::{CellSize, Lattice, LatticeError};
 use super::paint::corner_colors;
 use super::refine::{Job, refined};
-use super::resolve::{Among, late_count, unresolved_cells};
+use super::resolve::late_count;
 use super::settings::{AtBounds, Features, MeshSettings};
 use crate::eval::compiled;
 use crate::field::check::{LARGEST_LENGTH, SMALLEST_LENGTH};
@@ -106,30 +106,17 @@ impl Solid {
             let [refine, extract] = [if_done(most > 0, 3.0), if_done(most == 0, 0.85)];
             let times = [0.15, refine, extract, if_done(whole.is_some(), 1.0), own, paint];
             let [to_find, to_refine, to_extract, to_refuse, to_own, to_paint] = run.stages(times);
-            let mut lattice = Lattice::new(&bounds, settings.cell)?;
+            let lattice = Lattice::new(&bounds, settings.cell)?;
             let mut blocks = Blocks::find(&programs.surface, &lattice, &to_find)?;
             let is_round = programs.surface.least_radius() >= ROUND * lattice.step();
             let features = if is_round { Features::Smooth } else { settings.features };
             let job = Job { program: &programs.surface, limits: bounds, features };
-            let refined = match most {
-                0 => None,
-                _ => refined(job, (&lattice, &blocks), most, &to_refine)?,
-            };
-            let (mut mesh, count) = match refined {
-                Some((mesh, left)) => (mesh, LateCount::new(move || left)),
-                None => {
-                    // Where the field jumps all cells are halved.
-                    for _ in 0..most {
-                        let given = (&lattice, bounds);
-                        if unresolved_cells(&blocks, given, Among::All, &run.stage(1.0, 1.0))?.is_empty() {
-                            break;
-                        }
-                        lattice = lattice.halved()?;
-                        blocks = Blocks::find(&programs.surface, &lattice, &run.stage(1.0, 1.0))?;
-                    }
-                    let mesh = blocks.extract(&programs.surface, (&lattice, bounds), features, &to_extract)?;
-                    (mesh, late_count(programs.clone(), (lattice, bounds)))
-                }
+            let (mut mesh, count) = if most > 0 {
+                let (mesh, left) = refined(job, (lattice, blocks.clone()), most, &to_refine)?;
+                (mesh, LateCount::new(move || left))
+            } else {
+                let mesh = blocks.extract(&programs.surface, (&lattice, bounds), features, &to_extract)?;
+                (mesh, late_count(programs.clone(), (lattice, bounds)))
             };
             if let Some(given) = whole {
                 self.refuse_caps(&mesh, given, lattice.step())?;

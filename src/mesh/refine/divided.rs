@@ -12,7 +12,7 @@ use glam::{DVec2, DVec3, Vec3};
 
 use super::Job;
 use super::piece::{Piece, Rim};
-use super::place::{Face, is_fan};
+use super::place::{Face, is_fan, place_of};
 use super::seam::Seam;
 use crate::mesh::lattice::Lattice;
 use crate::mesh::settings::Features;
@@ -49,7 +49,7 @@ impl Seam {
             node[v] += j;
             node
         };
-        let place = |vertex: u32| (all.positions[vertex as usize].as_dvec3() - lattice.origin()) / lattice.step();
+        let place = |vertex: u32| place_of(lattice, all.positions[vertex as usize]).0;
         let flat = |vertex: u32| {
             let p = place(vertex);
             DVec2::new(p[u] - f64::from(first[u]), p[v] - f64::from(first[v]))

@@ -11,7 +11,7 @@ use crate::eval::Program;
 use crate::mesh::blocks::Blocks;
 use crate::mesh::extract::{ExtractError, Root, Sampler, extract};
 use crate::mesh::feature::Slope;
-use crate::mesh::lattice::{Lattice, LatticeError};
+use crate::mesh::lattice::Lattice;
 use crate::mesh::sampler::{Scratch, SolidSampler};
 use crate::mesh::settings::Features;
 use crate::mesh::signs::{BLOCK, EdgeRef, NODES, SIDE};
@@ -38,11 +38,11 @@ impl Level {
         Level { lattice, blocks, inset: Inset::default() }
     }
 
-    /// The inset in halved cells.
-    pub(super) fn halved(&self) -> Result<Level, LatticeError> {
+    /// The inset in halved cells; `None` if there can be none so small.
+    pub(super) fn halved(&self) -> Option<Level> {
         let lattice = self.lattice.halved()?;
         let blocks = self.blocks.halves(&lattice, |block| self.inset.has(block));
-        Ok(Level::new(lattice, blocks))
+        Some(Level::new(lattice, blocks))
     }
 
     /// Whose a block is, by its number along each axis.
@@ -64,6 +64,7 @@ impl Level {
         if let Some(seam) = outer {
             self.blocks.add(seam.blocks.iter().map(|block| block.map(|at| at * BLOCK as u32)), job.program);
         }
+        let has = |block| outer.is_none_or(|seam| seam.inset.has_half(numbered(block)));
         let mesh = loop {
             let mut inner = SolidSampler::new(&self.lattice, &self.blocks, job.limits);
             if job.features == Features::Sharp {
@@ -72,15 +73,29 @@ impl Level {
             let sampler = LevelSampler { inner, level: self, outer, program: job.program };
             match extract(&sampler, &self.lattice, &self.blocks.cells, job.features, run) {
                 Err(ExtractError::Rifts(rifts))
-                    if self.blocks.mend(&rifts, job.program, (&self.lattice, &job.limits), run)? => {}
+                    if self.blocks.mend(&rifts, job.program, (&self.lattice, &job.limits), has, run)? => {}
                 result => break result?,
             }
         };
-        let side = |p: DVec3| {
-            let cell = (p - self.lattice.origin()) / self.lattice.step();
-            self.side(outer, cell.to_array().map(|x| x.max(0.0) as u32 / BLOCK as u32))
+        run.check()?;
+        Ok(Piece::cut(&mesh, |p| self.side(outer, self.block_at(p))))
+    }
+
+    /// The block that a point is in, by its number along each axis. What is rounded to f32 is between planes that are, too.
+    fn block_at(&self, p: DVec3) -> [u32; 3] {
+        let place = (p - self.lattice.origin()) / (self.lattice.step() * BLOCK as f64);
+        let plane = |block: u32| {
+            let at = block * BLOCK as u32;
+            self.lattice.node(at, at, at).as_vec3().as_dvec3()
         };
-        Ok(Piece::cut(&mesh, side))
+        std::array::from_fn(|axis| {
+            let block = place[axis].max(0.0) as u32;
+            if p[axis] < plane(block)[axis] {
+                block.saturating_sub(1)
+            } else {
+                block + u32::from(p[axis] >= plane(block + 1)[axis])
+            }
+        })
     }
 }
 

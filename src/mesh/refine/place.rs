@@ -12,9 +12,11 @@ pub(super) type Edge = ([u32; 3], u8);
 pub(super) type Face = (u8, [u32; 3]);
 
 /// Where a vertex is, in cells, and along which axes it is between planes of the lattice, and not in one.
-fn place_of(lattice: &Lattice, at: Vec3) -> (DVec3, [bool; 3]) {
+pub(super) fn place_of(lattice: &Lattice, at: Vec3) -> (DVec3, [bool; 3]) {
     let place = (at.as_dvec3() - lattice.origin()) / lattice.step();
-    (place, (place - place.round()).abs().to_array().map(|off| off > lattice.slack()))
+    let is_between = |axis: usize| (place[axis] - place[axis].round()).abs() > lattice.slack();
+    let exact = |axis| if is_between(axis) { place[axis] } else { place[axis].round() };
+    (DVec3::new(exact(0), exact(1), exact(2)), [0, 1, 2].map(is_between))
 }
 
 /// The edge of a lattice that a vertex is on.
@@ -22,7 +24,7 @@ pub(super) fn edge_of(lattice: &Lattice, at: Vec3) -> Option<Edge> {
     let (place, is_between) = place_of(lattice, at);
     let mut along = (0..3).filter(|&axis| is_between[axis]);
     let axis = along.next().filter(|_| along.next().is_none())?;
-    let node = std::array::from_fn(|n| if n == axis { place[n].floor() } else { place[n].round() } as u32);
+    let node = std::array::from_fn(|n| if n == axis { place[n].floor() } else { place[n] } as u32);
     Some((node, axis as u8))
 }
 
