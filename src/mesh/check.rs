@@ -80,8 +80,7 @@ pub struct MeshReport {
     pub bounds: Bounds,
     /// Cells of one sign in which a feature thinner than a cell may have been lost when the mesh was made. `None`
     /// if it was not made from a solid, or with [`ThinFeatures::Ignore`](crate::ThinFeatures::Ignore). Counting them is
-    /// a part of the report's time: how long it takes is told [there](crate::ThinFeatures::Count). With
-    /// [`ThinFeatures::Refine`](crate::ThinFeatures::Refine) all cells count that are left unresolved.
+    /// a part of the report's time: how long it takes is told [there](crate::ThinFeatures::Count).
     pub unresolved_cells: Option<usize>,
     /// Vertices on edges of the lattice that are up to a thousandth of a cell off the surface, to keep
     /// clear of the nodes, or where the value jumps from one side to the other, as distances that are searched may; and those between larger and smaller

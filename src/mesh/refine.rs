@@ -56,13 +56,14 @@ pub(super) fn refined(
 ) -> Result<(Mesh, usize), MeshingError> {
     let [to_find, to_mesh, to_count] = run.stages([0.5, 0.4, 0.1]);
     let unresolved =
-        |level: &Level, run: &Run| unresolved_cells(&level.blocks, (&level.lattice, job.limits), Among::All, run);
+        |level: &Level, among, run: &Run| unresolved_cells(&level.blocks, (&level.lattice, job.limits), among, run);
     let mut levels = vec![Level::new(lattice, blocks)];
     let mut left = None;
     for halving in 0..halvings {
         let [done, next] = [0.0, 1.0].map(|by| (f64::from(halving) + by) / f64::from(halvings));
         let last = levels.len() - 1;
-        let found = unresolved(&levels[last], &to_find.stage(done, next))?;
+        // What turns round in cells with nodes on both sides may be torn: they are halved, too.
+        let found = unresolved(&levels[last], Among::All, &to_find.stage(done, next))?;
         if found.is_empty() {
             left = Some(0);
             break;
@@ -83,9 +84,10 @@ pub(super) fn refined(
                     (None, [.., outer, last]) => {
                         let is_own =
                             |found: &&Unresolved| outer.inset.has_half(found.block.map(|at| at / BLOCK as u32));
-                        unresolved(last, &to_count)?.iter().filter(is_own).map(|found| found.cells.len()).sum()
+                        let found = unresolved(last, Among::OneSided, &to_count)?;
+                        found.iter().filter(is_own).map(|found| found.cells.len()).sum()
                     }
-                    (None, levels) => count(&unresolved(&levels[0], &to_count)?),
+                    (None, levels) => count(&unresolved(&levels[0], Among::OneSided, &to_count)?),
                 };
                 return Ok((mesh, left));
             }
@@ -141,6 +143,9 @@ fn meshed(job: Job<'_>, levels: &mut [Level], run: &Run) -> Result<Result<Mesh, 
 
 /// Makes each inset so large that the next one is surrounded by blocks of its own level.
 fn grade(levels: &mut [Level]) {
+    if levels.len() < 3 {
+        return;
+    }
     for n in (1..levels.len()).rev() {
         let around: Vec<[u32; 3]> = levels[n].inset.around_all().collect();
         around.into_iter().for_each(|block| levels[n - 1].inset.add(block.map(|at| at / 2)));

@@ -98,7 +98,7 @@ pub enum AtBounds {
 /// assert!(report.unresolved_cells > Some(0) && report.bounds.max.z < 1.01);
 /// let settings = MeshSettings { thin: ThinFeatures::Refine { halvings: 2 }, ..settings };
 /// let report = part.mesh(&settings)?.check();
-/// assert!(report.shells == 1 && report.bounds.max.z > 1.69);
+/// assert!(report.unresolved_cells == Some(0) && report.bounds.max.z > 1.69);
 /// # Ok::<(), rvachev::MeshingError>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -112,12 +112,12 @@ pub enum ThinFeatures {
     #[default]
     Count,
     /// Blocks of cells that have any, and those close to them, are meshed in cells of half the size, and blocks of these
-    /// again, at most so many times, as far as f32 allows; those that are left are counted. Here cells with corners on both
-    /// sides count as well, so that walls have no holes where none are left; so may those at the corners of walls of a few
-    /// cells. The mesh keeps all that is said of meshes;
-    /// where a crease passes from larger cells to smaller ones in a cell that has no surface of its own, it is cut off by
-    /// a fraction of a cell. Where larger and smaller cells do not fit, as it may be where a field jumps, they are
-    /// halved fewer times. [`AtBounds::Refuse`] and [`owners`](MeshSettings::owners) go by the cells that were asked for.
+    /// again, at most so many times, as far as f32 allows; those that are left are counted. Cells with corners on both
+    /// sides that a wall may be torn in are halved as well, as long as there is a halving left; they do not count. The
+    /// mesh keeps all that is said of meshes; where a crease passes from larger cells to smaller ones in a cell that has
+    /// no surface of its own, it is cut off by a fraction of a cell. Where larger and smaller cells do not fit, as it may
+    /// be where a field jumps, they are halved fewer times. [`AtBounds::Refuse`] and [`owners`](MeshSettings::owners) go
+    /// by the cells that were asked for.
     Refine {
         /// The most times that the cell size is halved.
         halvings: u32,

@@ -3,8 +3,8 @@
 use glam::DVec3;
 use rvachev::{
     Capsule, CellSize, Cone, Cuboid, Cylinder, Ellipsoid, Features, GeneralisedSuperquadric, Gielis, MeshSettings,
-    MinimalSurface, Prism, Pyramid, Region, RoundedCuboid, SheetLattice, SineWave, Solid, SolidError, Sphere,
-    Superellipsoid, Superhyperboloid, Supershape, Wedge,
+    MinimalSurface, Prism, Pyramid, RFunction, Region, RoundedCuboid, SheetLattice, SineWave, Solid, SolidError,
+    Sphere, Superellipsoid, Superhyperboloid, Supershape, Wedge,
 };
 
 use crate::support::{Random, lanes32};
@@ -204,4 +204,26 @@ fn meshes_of_offset_lattices_are_where_the_field_is_zero() {
     let clamped = mesh.clamped_vertices().unwrap();
     println!("{off} of {count} vertices off by more than a hundredth of a cell, {clamped} clamped");
     assert!(off * 50 < count && clamped * 50 < count, "{off} and {clamped} of {count}");
+}
+
+/// Where a searched distance jumps there is no root: such vertices are counted.
+#[test]
+fn vertices_at_jumps_are_counted() {
+    const CELL: f64 = 1.0 / 16.0;
+    let lattice = SheetLattice { surface: MinimalSurface::SchwarzP, cell: 0.4, thickness: 0.06970074901675335 };
+    let part = Solid::sphere(0.3518411910567806).intersection(Solid::new(lattice), RFunction::P(2.0));
+    let solid = part.offset(0.0857908967549771).translate((-0.1875, 0.4375, 0.3125));
+    let program = solid.surface_program().unwrap();
+    let settings = MeshSettings { cell: CellSize::Length(CELL), features: Features::Smooth, ..MeshSettings::default() };
+    let mesh = solid.mesh(&settings).unwrap();
+    let crosses = |p: DVec3| {
+        DVec3::AXES.iter().any(|axis| {
+            let [before, after] = [-1e-5, 1e-5].map(|by| program.value(p + by * CELL * axis) > 0.0);
+            before != after
+        })
+    };
+    let off = mesh.positions().iter().filter(|p| !crosses(p.as_dvec3())).count();
+    let clamped = mesh.clamped_vertices().unwrap();
+    println!("{off} of {} vertices, {clamped} clamped", mesh.positions().len());
+    assert!(off > 0 && off <= clamped, "{off} of {} vertices, {clamped} clamped", mesh.positions().len());
 }

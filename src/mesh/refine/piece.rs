@@ -56,9 +56,7 @@ impl Piece {
         let given = mesh.corner_normals();
         let normals = mesh.normals().unwrap_or_default();
         let mut corners = Vec::new();
-        for (n, (&triangle, _)) in
-            mesh.triangles().iter().zip(&sides).enumerate().filter(|(_, (_, side))| **side == Side::Own)
-        {
+        for (n, &triangle) in mesh.triangles().iter().enumerate().filter(|&(n, _)| sides[n] == Side::Own) {
             let new = triangle.map(|vertex| {
                 let number = &mut numbers[vertex as usize];
                 if *number == u32::MAX {
