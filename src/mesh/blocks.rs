@@ -66,7 +66,7 @@ impl Blocks {
             let mut shared = None;
             for part in 0..8 {
                 let first = std::array::from_fn(|axis| 2 * block[axis] + (part >> axis & 1) * side);
-                let number = match whole.narrowed(&lattice.block(first)) {
+                let number = match whole.narrowed(&lattice.region(first, BLOCK)) {
                     Narrowed::Inside | Narrowed::Outside => continue,
                     Narrowed::Same => *shared.get_or_insert_with(|| push(&mut all, whole.clone())),
                     Narrowed::Simpler(program) => push(&mut all, program),

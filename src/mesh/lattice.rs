@@ -25,7 +25,6 @@
 
 use glam::{DVec3, Vec3};
 
-use super::signs::BLOCK;
 use crate::bounds::Bounds;
 
 /// The resolution of a mesh.
@@ -227,10 +226,10 @@ impl Lattice {
         self.origin + index * self.step
     }
 
-    /// The box of the block of cells that starts with one.
-    pub(super) fn block(&self, [i, j, k]: [u32; 3]) -> Bounds {
-        let side = BLOCK as u32;
-        Bounds::new(self.node(i, j, k), self.node(i + side, j + side, k + side))
+    /// The box of so many cells along each axis, from one on.
+    pub(super) fn region(&self, [i, j, k]: [u32; 3], size: usize) -> Bounds {
+        let size = size as u32;
+        Bounds::new(self.node(i, j, k), self.node(i + size, j + size, k + size))
     }
 
     /// The box of all cells.

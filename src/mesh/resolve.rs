@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Blocks are halved until the ranges show that a part has no surface, or until there is a direction along which
-//! it is only entered, or no cell in it has all its nodes on one side, or until it is a cell.
+//! it is only entered, or no cell in it is one that is looked for, or until it is a cell.
 
 use std::sync::Arc;
 
@@ -53,13 +53,13 @@ pub(super) fn unresolved_cells(
     let of_block = |scratch: &mut Scratch, (number, &block): (usize, &[u32; 3])| {
         meter.step()?;
         let program = blocks.programs.of(number);
-        if program.is_entered_once(&[region(lattice, block, BLOCK)]) {
+        if program.is_entered_once(&[lattice.region(block, BLOCK)]) {
             return Ok(None);
         }
         let mut values = [0.0; NODES];
         scratch.forget();
         sampler.nodes(scratch, number, block, &mut values);
-        let whole = region(lattice, block, BLOCK);
+        let whole = lattice.region(block, BLOCK);
         // No point of a cell is farther from its nearest node than half of its diagonal.
         let near = 0.867 * lattice.step() * program.steepest(&whole);
         let signs = Signs::new(&values);
@@ -87,12 +87,6 @@ pub(super) fn late_count(programs: Arc<Compiled>, (lattice, limits): (Lattice, B
         // A run without a token is not cancelled.
         count(&found.unwrap_or_default())
     })
-}
-
-/// The box of so many cells along each axis.
-fn region(lattice: &Lattice, first: [u32; 3], size: usize) -> Bounds {
-    let node = |by: u32| lattice.node(first[0] + by, first[1] + by, first[2] + by);
-    Bounds::new(node(0), node(size as u32))
 }
 
 /// The eight parts of a box.
@@ -145,7 +139,7 @@ impl Search<'_> {
     /// Finds those of a cube of cells.
     fn of(&mut self, first: [usize; 3], size: usize, program: &Program) {
         let at = [0, 1, 2].map(|axis| self.block[axis] + first[axis] as u32);
-        let region = region(self.lattice, at, size);
+        let region = self.lattice.region(at, size);
         if !self.has_near(first, size, self.near) {
             return;
         }

@@ -120,11 +120,9 @@ impl SolidSampler<'_> {
     fn tape(&self, group: u32) -> Tape {
         let first = group as usize;
         let batch = first..(first / BATCH * BATCH + BATCH).min(self.blocks.len());
-        let bounds = batch.filter(|&n| self.groups[n] == group).fold(Bounds::EMPTY, |all, n| {
-            let block = self.blocks[n];
-            let at = |i: u32| self.lattice.node(block[0] + i, block[1] + i, block[2] + i);
-            all.union(&Bounds::new(at(0), at(BLOCK as u32)))
-        });
+        let bounds = batch
+            .filter(|&n| self.groups[n] == group)
+            .fold(Bounds::EMPTY, |all, n| all.union(&self.lattice.region(self.blocks[n], BLOCK)));
         Tape::new(self.programs.of(first), &bounds)
     }
 }
