@@ -34,6 +34,26 @@ impl From<Cancelled> for Stop {
     }
 }
 
+/// What looks on while triangles are listed by the case table.
+pub(super) trait Watch {
+    /// A vertex on an edge of the next block's cells, and its place among their [`Corners`].
+    fn note(&mut self, place: usize, vertex: u32);
+
+    /// Whether the triangles of block `n` will not do, given the vertices of its cells.
+    fn is_open(&mut self, n: usize, corners: &Corners) -> bool;
+}
+
+/// All will do.
+impl Watch for () {
+    #[inline(always)]
+    fn note(&mut self, _place: usize, _vertex: u32) {}
+
+    #[inline(always)]
+    fn is_open(&mut self, _n: usize, _corners: &Corners) -> bool {
+        false
+    }
+}
+
 /// All blocks after the first pass.
 pub(super) struct Parts<'a> {
     pub(super) blocks: &'a [[u32; 3]],
@@ -143,7 +163,7 @@ impl<'a> Parts<'a> {
     ) -> Result<Mesh, ExtractError> {
         let [mut positions, mut normals] = self.take_vertices();
         let found = match features {
-            Features::Smooth => Found::Table(self.triangles_unless(|_, _| false, run)?.unwrap_or_default()),
+            Features::Smooth => Found::Table(self.triangles_unless(|| (), run)?.unwrap_or_default()),
             Features::Sharp => {
                 let is_plain = |block| sampler.is_plain(block);
                 let samples = Samples::new(&self, lattice, sampler.limits(), [&positions, &normals], &is_plain);
@@ -193,11 +213,11 @@ impl<'a> Parts<'a> {
         })
     }
 
-    /// The triangles of all cells by the case table, in the order of the blocks; nothing if a block, given with the
-    /// vertices of its cells, tells that they will not do.
-    pub(super) fn triangles_unless(
+    /// The triangles of all cells by the case table, in the order of the blocks; nothing if what watches tells that
+    /// they will not do.
+    pub(super) fn triangles_unless<W: Watch>(
         &self,
-        is_open: impl Fn(usize, &Corners) -> bool + Sync,
+        watch: impl Fn() -> W + Sync + Send,
         run: &Run,
     ) -> Result<Option<Bulk<[u32; 3]>>, ExtractError> {
         let meter = Meter::new(run, self.blocks.len());
@@ -205,20 +225,20 @@ impl<'a> Parts<'a> {
             self.parts.iter().map(|batch| batch.iter().map(|part| part.triangles as usize).sum()).collect();
         let mut triangles = Bulk::from(vec![[0; 3]; counts.iter().sum()]);
         let pieces = split(&mut triangles, counts.iter().copied());
-        let of_batch = |corners: &mut Corners, (batch, mut piece): (usize, &mut [[u32; 3]])| {
+        let of_batch = |(corners, watch): &mut (Corners, W), (batch, mut piece): (usize, &mut [[u32; 3]])| {
             for n in batch * BATCH..batch * BATCH + self.parts[batch].len() {
                 meter.step()?;
                 let (own, rest) = std::mem::take(&mut piece).split_at_mut(self.part(n).triangles as usize);
-                self.list_triangles(n, corners, own)?;
+                self.list_triangles(n, (corners, watch), own)?;
                 piece = rest;
-                if is_open(n, corners) {
+                if watch.is_open(n, corners) {
                     return Err(Stop::Open);
                 }
             }
             Ok(())
         };
-        let listed = pieces.into_par_iter().enumerate().map_init(Corners::new, of_batch).collect::<Result<(), Stop>>();
-        match listed {
+        let worker = || (Corners::new(), watch());
+        match pieces.into_par_iter().enumerate().map_init(worker, of_batch).collect::<Result<(), Stop>>() {
             Ok(()) => Ok(Some(triangles)),
             Err(Stop::Open) => Ok(None),
             Err(Stop::Error(error)) => Err(error),
@@ -230,13 +250,16 @@ impl<'a> Parts<'a> {
     pub(super) fn list_triangles(
         &self,
         n: usize,
-        corners: &mut Corners,
+        (corners, watch): (&mut Corners, &mut impl Watch),
         out: &mut [[u32; 3]],
     ) -> Result<(), ExtractError> {
         if out.is_empty() {
             return Ok(());
         }
-        self.number(n, |place, vertex| corners.note(place, vertex))?;
+        self.number(n, |place, vertex| {
+            corners.note(place, vertex);
+            watch.note(place, vertex);
+        })?;
         let (table, mut slots) = (CaseTable::get(), out.iter_mut());
         for_each_cell(&self.part(n).signs, |cell, case| {
             let ids = corners.of_cell(cell);

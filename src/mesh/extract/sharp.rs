@@ -38,8 +38,8 @@ use std::ops::Range;
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::crease::is_creased;
-use super::join::{Corners, fill, split};
+use super::crease::Creases;
+use super::join::{fill, split};
 use super::joined::Joined;
 use super::region::{Region, regions};
 use super::samples::{Samples, cell_number, split_cell};
@@ -53,9 +53,6 @@ use crate::mesh::feature::Segment;
 use crate::mesh::meter::Meter;
 use crate::mesh::signs::BLOCK;
 use crate::run::{Cancelled, Run};
-
-/// How much of the work is done when it is known which blocks are even, more or less.
-const LOOKED: f64 = 0.15;
 
 /// Fans that a thread looks at before it asks whether to go on.
 pub(super) const AT_ONCE: usize = 512;
@@ -116,14 +113,14 @@ pub(super) enum Found {
 
 /// Finds the cells that hold creases and corners, and gives them fans.
 pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) -> Result<Found, ExtractError> {
-    // Blocks whose normals change evenly are settled as a whole.
-    let even = even_blocks(samples, &run.stage(0.0, LOOKED))?;
-    let is_open = |n: usize, corners: &Corners| !even[n] && is_creased(samples, n, corners);
-    if let Some(triangles) = samples.parts.triangles_unless(is_open, &run.stage(LOOKED, 1.0))? {
+    // Most creases are found soon.
+    if let Some(triangles) = samples.parts.triangles_unless(|| Creases::new(samples), &run.stage(0.0, 1.0))? {
         return Ok(Found::Table(triangles));
     }
     // How long each stage takes, more or less.
-    let [to_find, to_merge, to_fan] = run.stage(LOOKED, 1.0).stages([7.0, 2.0, 1.0]);
+    let [to_look, to_find, to_merge, to_fan] = run.stages([1.5, 6.0, 1.7, 0.8]);
+    // Blocks whose normals change evenly are settled as a whole.
+    let even = even_blocks(samples, &to_look)?;
     let proposed = (0..even.len()).map(|n| match even[n] {
         true => Vec::new(),
         false => joins(samples, n),

@@ -303,7 +303,7 @@ impl<S: Sampler> Worker<S> {
     fn list(&mut self, samples: &Samples<'_>, n: usize, plain: &mut Plain) -> Result<OfBlock, ExtractError> {
         let start = plain.triangles.len();
         plain.triangles.resize(start + samples.parts.part(n).triangles as usize, [0; 3]);
-        samples.parts.list_triangles(n, &mut self.corners, &mut plain.triangles[start..])?;
+        samples.parts.list_triangles(n, (&mut self.corners, &mut ()), &mut plain.triangles[start..])?;
         Ok(OfBlock::default())
     }
 }
