@@ -9,7 +9,7 @@
 //!
 //! Before that come extraction alone, from arrays of 257³ samples; scale: a sphere at 1024³ and
 //! 2048³, a ball of gyroid at 512³, unions of 100 and of 10 000 superellipsoids at 256³; how soon a
-//! cancelled run returns; and both modes on smooth solids.
+//! cancelled run returns; both modes on smooth solids; and how much faster two threads are than one, by the clock.
 //!
 //! Words after `--` choose: `models`, `arrays`, `scale`, `cancel`, `smooth`; names of models, cells along the side
 //! (64, 128, 256), `one` or `two` threads; `fidget` for fidget on all models, also where it takes
@@ -125,6 +125,9 @@ fn main() {
         if chosen.takes("smooth", &PARTS) {
             smooth::rows(threads);
         }
+    }
+    if chosen.takes("scale", &PARTS) && THREADS.iter().all(|threads| chosen.takes(threads, &THREADS)) {
+        scale::gains();
     }
     if !chosen.takes("models", &PARTS) {
         return;

@@ -7,6 +7,10 @@ use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
+pub(crate) use self::meter::Meter;
+
+mod meter;
+
 /// How to run a job: threads, cancelling, progress.
 ///
 /// The default uses all cores, cannot be cancelled from elsewhere and reports to nobody.
@@ -99,11 +103,11 @@ impl Run {
 #[derive(Clone)]
 pub struct Progress {
     sink: Arc<dyn Fn(f64) + Send + Sync>,
-    meter: Arc<Meter>,
+    highest: Arc<Highest>,
 }
 
 /// The highest fraction that was passed on.
-struct Meter {
+struct Highest {
     /// A copy of `passed` as bits, to turn most reports away without the lock.
     seen: AtomicU64,
     passed: Mutex<f64>,
@@ -122,13 +126,13 @@ impl Progress {
 
     fn of(sink: Arc<dyn Fn(f64) + Send + Sync>) -> Progress {
         let none = f64::NEG_INFINITY;
-        let meter = Arc::new(Meter { seen: AtomicU64::new(none.to_bits()), passed: Mutex::new(none) });
-        Progress { sink, meter }
+        let highest = Arc::new(Highest { seen: AtomicU64::new(none.to_bits()), passed: Mutex::new(none) });
+        Progress { sink, highest }
     }
 
     fn stage(&self, from: f64, to: f64) -> Progress {
         if from <= 0.0 && to >= 1.0 {
-            // A job of its own: the same sink, a new meter.
+            // A job of its own: the same sink, from 0 on.
             return Progress::of(self.sink.clone());
         }
         let whole = self.clone();
@@ -139,15 +143,15 @@ impl Progress {
         // NaN stays NaN, which is never news.
         let fraction = fraction.clamp(0.0, 1.0);
         let is_news = |highest: f64| fraction >= highest + FINEST || (fraction > highest && fraction == 1.0);
-        if !is_news(f64::from_bits(self.meter.seen.load(Ordering::Relaxed))) {
+        if !is_news(f64::from_bits(self.highest.seen.load(Ordering::Relaxed))) {
             return;
         }
         // The lock is held during the call, else two threads could call in the wrong order.
-        let passed = self.meter.passed.lock();
+        let passed = self.highest.passed.lock();
         let mut passed = passed.unwrap_or_else(PoisonError::into_inner);
         if is_news(*passed) {
             *passed = fraction;
-            self.meter.seen.store(fraction.to_bits(), Ordering::Relaxed);
+            self.highest.seen.store(fraction.to_bits(), Ordering::Relaxed);
             (self.sink)(fraction);
         }
     }
@@ -155,7 +159,7 @@ impl Progress {
 
 impl fmt::Debug for Progress {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let highest = f64::from_bits(self.meter.seen.load(Ordering::Relaxed));
+        let highest = f64::from_bits(self.highest.seen.load(Ordering::Relaxed));
         f.debug_tuple("Progress").field(&highest).finish()
     }
 }

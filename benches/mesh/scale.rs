@@ -3,7 +3,7 @@
 use glam::{DAffine3, DQuat, DVec3};
 use rvachev::{CellSize, Features, Mesh, MeshSettings, MinimalSurface, RFunction, Run, SheetLattice, Solid};
 
-use crate::measure::{Cost, measured, memory_apart};
+use crate::measure::{Cost, InTurn, in_turn, measured, memory_apart};
 
 /// What the memory of a row is asked for by, beside its name.
 pub const SCALE: &str = "scale";
@@ -65,4 +65,12 @@ pub fn rows(threads: usize) {
     let few = per_vertex(row("union of 100", 256, threads));
     let many = per_vertex(row("union of 10000", 256, threads));
     println!("       10000 over 100: {:.2} times the time a vertex", many / few);
+}
+
+/// Prints how many times faster two threads are than one, both run in turn.
+pub fn gains() {
+    for (name, cells) in [("sphere", 1024), ("gyroid ball", 512), ("union of 100", 256), ("union of 10000", 256)] {
+        let InTurn { seconds: [two, one], ratio, .. } = in_turn(2, [2, 1].map(|threads| job(name, cells, threads)));
+        println!("{name} {cells}³ on one thread {one:.4} s, on two {two:.4} s: {ratio:.2} times faster");
+    }
 }

@@ -44,12 +44,11 @@ use super::Features;
 use super::feature::Slope;
 use super::lattice::Lattice;
 use super::loops::ambiguous_faces;
-use super::meter::Meter;
 use super::signs::{EdgeRef, NODES, Rows, Signs, for_each_cell, list_edges};
 use super::table::CaseTable;
 use crate::bounds::Bounds;
 use crate::geom::{Mesh, MeshError};
-use crate::run::{Cancelled, Run};
+use crate::run::{Cancelled, Meter, Run};
 
 mod bulge;
 mod crease;
@@ -228,28 +227,38 @@ struct Batch {
     clamped: usize,
 }
 
-/// Takes batches as they come, and adds them in their order.
+/// Takes batches as they come, and adds them in their order. No thread waits for another that adds.
 struct Queue<'a> {
-    all: Parts<'a>,
-    /// How many are added.
-    added: usize,
-    /// Those that others before them are missing for.
-    waiting: BTreeMap<usize, Batch>,
+    /// What is added, and how many.
+    all: Mutex<(Parts<'a>, usize)>,
+    /// Those that are not, by number.
+    waiting: Mutex<BTreeMap<usize, Batch>>,
 }
 
-impl Queue<'_> {
-    fn add(&mut self, number: usize, batch: Batch) -> Result<(), ExtractError> {
-        self.waiting.insert(number, batch);
-        while let Some(batch) = self.waiting.remove(&self.added) {
-            self.all.add(batch)?;
-            self.added += 1;
+impl<'a> Queue<'a> {
+    fn add(&self, number: usize, batch: Batch) -> Result<(), ExtractError> {
+        self.waiting.lock().unwrap_or_else(PoisonError::into_inner).insert(number, batch);
+        // Another thread that adds takes this one as well, if it still looks for more; if not, it is taken with the next.
+        self.all.try_lock().map_or(Ok(()), |mut all| self.add_waiting(&mut all))
+    }
+
+    fn add_waiting(&self, (all, added): &mut (Parts<'a>, usize)) -> Result<(), ExtractError> {
+        let next = |number| self.waiting.lock().unwrap_or_else(PoisonError::into_inner).remove(&number);
+        while let Some(batch) = next(*added) {
+            all.add(batch)?;
+            *added += 1;
         }
         Ok(())
     }
+
+    /// All of them, when no more come.
+    fn into_parts(self) -> Result<Parts<'a>, ExtractError> {
+        self.add_waiting(&mut self.all.lock().unwrap_or_else(PoisonError::into_inner))?;
+        Ok(self.all.into_inner().unwrap_or_else(PoisonError::into_inner).0)
+    }
 }
 
-/// The first pass. Threads take the next batch each, so that few wait to be added; one thread adds while
-/// the others sample.
+/// The first pass. Threads take the next batch each; one thread adds while the others sample.
 fn sample_all<'a, S: Sampler>(
     sampler: &S,
     lattice: &Lattice,
@@ -258,14 +267,15 @@ fn sample_all<'a, S: Sampler>(
     run: &Run,
 ) -> Result<Parts<'a>, ExtractError> {
     let meter = Meter::new(run, blocks.len());
-    let queue = Mutex::new(Queue { all: Parts::new(blocks, neighbours, features), added: 0, waiting: BTreeMap::new() });
+    let all = Mutex::new((Parts::new(blocks, neighbours, features), 0));
+    let queue = Queue { all, waiting: Mutex::default() };
     let worker = || Worker::new(sampler, lattice, features);
     let sample = |worker: &mut Worker<'_, S>, (n, blocks)| {
         let batch = worker.sample(n * BATCH, blocks, &meter)?;
-        queue.lock().unwrap_or_else(PoisonError::into_inner).add(n, batch)
+        queue.add(n, batch)
     };
     blocks.chunks(BATCH).enumerate().par_bridge().map_init(worker, sample).collect::<Result<(), ExtractError>>()?;
-    Ok(queue.into_inner().unwrap_or_else(PoisonError::into_inner).all)
+    queue.into_parts()
 }
 
 /// One thread's means to sample blocks.

@@ -8,7 +8,6 @@ mod extract;
 mod feature;
 mod lattice;
 mod loops;
-mod meter;
 mod paint;
 mod qef;
 mod refine;

@@ -7,8 +7,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::meter::Meter;
 use crate::eval::{Palette, compiled};
+use crate::run::Meter;
 use crate::{Cancelled, Mesh, Paint, Run, Solid, SolidError};
 
 impl Mesh {

@@ -17,11 +17,11 @@ use rayon::prelude::*;
 use super::blocks::Blocks;
 use super::extract::Sampler;
 use super::lattice::Lattice;
-use super::meter::Meter;
 use super::sampler::{Scratch, SolidSampler};
 use super::signs::{BLOCK, NODES, SIDE, Signs};
 use crate::eval::{Compiled, Narrowed, Program};
 use crate::geom::LateCount;
+use crate::run::Meter;
 use crate::{Bounds, Cancelled, Interval, Run};
 
 /// The cells of a block that the surface may come into and turn round in.

@@ -12,6 +12,7 @@ use super::stencil::Passes;
 use super::target::Target;
 use super::view::RasterView;
 use crate::Run;
+use crate::run::Meter;
 
 /// How the depth buffer of a tree is found.
 ///
@@ -154,15 +155,14 @@ impl RasterView {
         let run = run.stage(0.0, 1.0);
         let [across, down] = Tile::grid(self.width, self.height);
         let count = across * down;
-        let done = std::sync::atomic::AtomicU32::new(0);
+        let meter = Meter::new(&run, count);
         let tiles = run.install(|| {
             (0..count)
                 .into_par_iter()
                 .map_init(intervals::Scratch::default, |scratch, number| {
-                    run.check()?;
+                    meter.check()?;
                     let target = plan.tile(operands, &Tile::number(number, self.width, self.height), scratch);
-                    let done = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
-                    run.report(f64::from(done) / f64::from(count));
+                    meter.add(1);
                     Ok(target)
                 })
                 .collect::<Result<Vec<Target>, RasterError>>()

@@ -5,7 +5,6 @@ use std::cell::RefCell;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::OnceLock;
-use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::cells::Cells;
 use super::extent::{corners, lowest};
@@ -15,6 +14,7 @@ use super::pixels::TILE;
 use super::settings::RenderError;
 use super::tile::{Tracer, View, divide_top};
 use crate::eval::{Program, compiled};
+use crate::run::Meter;
 use crate::{Bounds, Cancelled, Hit, Palette, Rays, Run, Solid};
 
 /// How far a ray from a hit starts off the surface, in proportion to the solid.
@@ -169,7 +169,7 @@ impl Scene {
             divide_top(cells, &view, &window);
         }
         let (across, down) = (window.width.div_ceil(TILE), window.height.div_ceil(TILE));
-        let done = AtomicU32::new(0);
+        let meter = Meter::new(run, across * down);
         let bands = surfaces.par_chunks_mut((window.width * TILE).max(1) as usize).enumerate();
         bands.try_for_each(|(band, surfaces)| {
             // The rows of each tile.
@@ -178,13 +178,12 @@ impl Scene {
                 tiles.iter_mut().zip(row.chunks_mut(TILE as usize)).for_each(|(tile, part)| tile.push(part));
             }
             tiles.into_par_iter().enumerate().try_for_each(|(column, mut rows)| {
-                run.check()?;
+                meter.check()?;
                 let (x, y) = (column as u32 * TILE, band as u32 * TILE);
                 let (width, height) = (TILE.min(window.width - x), TILE.min(window.height - y));
                 let tile = Window { left: window.left + x, top: window.top + y, width, height, ..window };
                 TRACER.with_borrow_mut(|tracer| tracer.tile(cells, &view, tile, &mut rows));
-                let done = done.fetch_add(1, Ordering::Relaxed) + 1;
-                run.report(f64::from(done) / f64::from(across * down));
+                meter.add(1);
                 Ok(())
             })
         })?;

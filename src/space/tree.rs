@@ -5,12 +5,11 @@
 //! program that is narrowed already. Work is proportional to the surface, and to the leaves
 //! that matter locally.
 
-use std::sync::atomic::{AtomicU64, Ordering};
-
 use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::eval::{Narrowed, Program};
+use crate::run::Meter;
 use crate::{Bounds, Cancelled, Run};
 
 /// A regular grid of cubic blocks.
@@ -117,7 +116,7 @@ pub(crate) fn surface_blocks(
     run: &Run,
 ) -> Result<SurfaceBlocks, Cancelled> {
     let root = Part { from: [0; 3], to: grid.blocks };
-    let meter = Meter { run, done: AtomicU64::new(0), total: root.volume() };
+    let meter = Meter::new(run, root.volume());
     // Breadth first until there is work for every thread, then depth first in each part.
     let mut parts = vec![(root, program.clone())];
     let wanted = 64 * rayon::current_num_threads().max(1);
@@ -160,7 +159,7 @@ fn descend(
     // Each with the number of a program that holds in it.
     let mut pending = vec![(part, 0)];
     while let Some((part, number)) = pending.pop() {
-        meter.run.check()?;
+        meter.check()?;
         let program = match part.narrowed(&programs[number as usize], grid, margin) {
             Narrowed::Inside | Narrowed::Outside => {
                 meter.add(part.volume());
@@ -181,18 +180,4 @@ fn descend(
         }
     }
     Ok(SurfaceBlocks::of(blocks, programs))
-}
-
-/// Counts the blocks that are decided.
-struct Meter<'a> {
-    run: &'a Run,
-    done: AtomicU64,
-    total: u64,
-}
-
-impl Meter<'_> {
-    fn add(&self, blocks: u64) {
-        let done = self.done.fetch_add(blocks, Ordering::Relaxed) + blocks;
-        self.run.report(done as f64 / self.total as f64);
-    }
 }

@@ -11,10 +11,9 @@ use crate::geom::Mesh;
 use crate::mesh::Features;
 use crate::mesh::bulk::Bulk;
 use crate::mesh::lattice::Lattice;
-use crate::mesh::meter::Meter;
 use crate::mesh::signs::{BLOCK, NODES, SIDE, for_each_cell, is_mixed};
 use crate::mesh::table::CaseTable;
-use crate::run::{Cancelled, Run};
+use crate::run::{Cancelled, Meter, Run};
 
 /// Why no more triangles are listed.
 enum Stop {

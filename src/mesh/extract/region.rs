@@ -36,9 +36,8 @@ use super::span::{Span, offset};
 use super::special::Special;
 use crate::mesh::feature::{CLOSE, Candidate, Segment, settle};
 use crate::mesh::loops::{CellLoop, LONGEST};
-use crate::mesh::meter::Meter;
 use crate::mesh::qef::Planes;
-use crate::run::{Cancelled, Run};
+use crate::run::{Cancelled, Meter, Run};
 
 /// A cell asks for a region if its point is farther from the planes than this, in cells.
 const MISFIT: f32 = 0.02;

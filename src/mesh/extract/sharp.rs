@@ -50,9 +50,8 @@ use super::{ExtractError, Sampler};
 use crate::geom::Apart;
 use crate::mesh::bulk::Bulk;
 use crate::mesh::feature::Segment;
-use crate::mesh::meter::Meter;
 use crate::mesh::signs::BLOCK;
-use crate::run::{Cancelled, Run};
+use crate::run::{Cancelled, Meter, Run};
 
 /// Fans that a thread looks at before it asks whether to go on.
 pub(super) const AT_ONCE: usize = 512;

@@ -17,10 +17,9 @@ use super::{ExtractError, Sampler};
 use crate::mesh::bulk::Bulk;
 use crate::mesh::feature::{Candidate, Refiner, Segment};
 use crate::mesh::loops::{CellLoop, MOST};
-use crate::mesh::meter::Meter;
 use crate::mesh::signs::{BLOCK, for_each_cell};
 use crate::mesh::table::CaseTable;
-use crate::run::Run;
+use crate::run::{Meter, Run};
 
 /// Blocks that have their lists together.
 const AT_ONCE: usize = 64;

@@ -22,9 +22,8 @@ use glam::{Mat3A, Vec3, Vec3A, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
 
 use super::samples::Samples;
-use crate::mesh::meter::Meter;
 use crate::mesh::signs::BLOCK;
-use crate::run::{Cancelled, Run};
+use crate::run::{Cancelled, Meter, Run};
 
 /// How much the trend may change the normal within a cell, and how large the box may be of what a block's own normals have
 /// beside it; with those of neighbours it may be twice that. Two normals of a cell differ by less than those of a

@@ -9,9 +9,8 @@ use super::bits::{CellRow, Word, pack};
 use super::{Volume, VolumeError, VolumeSettings};
 use crate::geom::Mesh;
 use crate::mesh::bulk::Bulk;
-use crate::mesh::meter::Meter;
 use crate::mesh::table::{CaseTable, EDGE_CORNERS};
-use crate::run::{Cancelled, Run};
+use crate::run::{Cancelled, Meter, Run};
 
 /// The signs of all nodes, with a layer of outside nodes around them: node i of the array is
 /// number i + 1 here.

@@ -1,0 +1,48 @@
+//! How far a job of many steps has come.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::{Cancelled, Run};
+
+/// Counts steps, and stops when the run is cancelled.
+pub(crate) struct Meter<'a> {
+    run: &'a Run,
+    total: u64,
+    done: Count,
+}
+
+/// A count apart from what threads read at each step. Without that, and where nobody asks for the count, threads would be
+/// in each other's way.
+#[repr(align(128))]
+#[derive(Default)]
+struct Count(AtomicU64);
+
+impl<'a> Meter<'a> {
+    pub(crate) fn new(run: &'a Run, total: impl TryInto<u64>) -> Meter<'a> {
+        Meter { run, total: total.try_into().unwrap_or(u64::MAX), done: Count::default() }
+    }
+
+    /// Called before each step.
+    pub(crate) fn step(&self) -> Result<(), Cancelled> {
+        self.count(1, 0);
+        self.check()
+    }
+
+    /// Whether the job may go on.
+    pub(crate) fn check(&self) -> Result<(), Cancelled> {
+        self.run.check()
+    }
+
+    /// Called after some steps.
+    pub(crate) fn add(&self, steps: u64) {
+        self.count(steps, steps);
+    }
+
+    /// Counts some steps, of which some are done.
+    fn count(&self, steps: u64, done: u64) {
+        if self.run.progress.is_some() {
+            let done = self.done.0.fetch_add(steps, Ordering::Relaxed) + done;
+            self.run.report(done as f64 / self.total as f64);
+        }
+    }
+}
