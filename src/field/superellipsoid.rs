@@ -69,6 +69,7 @@ pub struct Superellipsoid {
     inner: Norm,
     outer: Norm,
     inscribed: f64,
+    circumscribed: f64,
 }
 
 impl Superellipsoid {
@@ -87,6 +88,7 @@ impl Superellipsoid {
             inner: Norm::of_exponent(e2),
             outer: Norm::of_exponent(e1),
             inscribed: 1.0 / inverse.x.norm(inverse.y, s2).norm(inverse.z, s1),
+            circumscribed: semi_axes.x.norm(semi_axes.y, radius_norm(e2)).norm(semi_axes.z, radius_norm(e1)),
         }
     }
 
@@ -150,8 +152,7 @@ impl Superellipsoid {
     /// Radius of the smallest sphere about the origin that holds the solid.
     #[must_use]
     pub fn circumscribed_radius(&self) -> f64 {
-        let a = self.semi_axes;
-        a.x.norm(a.y, radius_norm(self.e2)).norm(a.z, radius_norm(self.e1))
+        self.circumscribed
     }
 
     #[inline(always)]
@@ -242,7 +243,7 @@ impl Field for Superellipsoid {
     fn roundoff(&self, reach: f64) -> f64 {
         // The circumscribed radius is no less than the largest semi-axis.
         let within = reach <= self.semi_axes.max_element();
-        let size = if within { reach } else { self.circumscribed_radius().min(reach) };
+        let size = if within { reach } else { self.circumscribed.min(reach) };
         if self.convex() {
             return 4e-6 * size;
         }

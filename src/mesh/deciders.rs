@@ -11,7 +11,8 @@
 //! single precision and beyond its rounding, every other leaf leaves it the decision: it is
 //! outside, for a union, or inside, for an intersection. The values on the chord show that of most
 //! edges, as the way from there to the root is short. Edges where another does not are given to
-//! all leaves together.
+//! all leaves together. A leaf without a root on an edge seems to jump there: only those that are asked together tell
+//! jumps.
 //!
 //! The root of one leaf is one of all leaves then: near it the value is that leaf's.
 
@@ -57,7 +58,7 @@ impl Deciders {
         out: &mut [Root],
     ) {
         let Some((op, rivals)) = tape.rivals() else {
-            return self.finder.find(evaluator, (program, tape), lattice, edges, |_, edge| on_chord(edge), out);
+            return self.finder.find(evaluator, (Some(program), tape), lattice, edges, |_, edge| on_chord(edge), out);
         };
         let rivals: Vec<Tape> = rivals.map(|(_, rival)| rival).collect();
         // The largest of all values decides a union, of all negatives an intersection.
@@ -67,14 +68,14 @@ impl Deciders {
         let mut first = 0;
         for (leaf, rival) in rivals.iter().enumerate() {
             let end = self.ends[leaf] as usize;
-            self.search(evaluator, (program, rival), lattice, edges, first..end, out);
+            self.search(evaluator, (None, rival), lattice, edges, first..end, out);
             first = end;
         }
         self.doubt(evaluator, (tape, &rivals, sign), lattice, edges, out);
         // From where the guess has led.
         self.t.clear();
         self.t.extend(out.iter().map(|root| root.t));
-        self.search(evaluator, (program, tape), lattice, edges, 0..self.places.len(), out);
+        self.search(evaluator, (Some(program), tape), lattice, edges, 0..self.places.len(), out);
     }
 
     /// The leaf that decides on the chord of each edge, and by its value where to begin the search.
@@ -124,7 +125,7 @@ impl Deciders {
         }
     }
 
-    /// Puts the edges in `places` where a leaf other than the one asked may decide.
+    /// Puts the edges in `places` where a leaf other than the one asked may decide, or its value may jump.
     fn doubt(
         &mut self,
         evaluator: &mut Evaluator,
@@ -141,7 +142,7 @@ impl Deciders {
             let n = n as usize;
             let way = (roots[n].t - self.seen[n]).abs();
             let is_sure = f64::from(self.second[n]) + way * rise < sure;
-            !is_sure
+            !is_sure || roots[n].is_off
         }));
         let there = self.places.iter().map(|&n| (&edges[n as usize], roots[n as usize].t));
         place(tape, lattice, there, &mut self.points);
@@ -155,7 +156,10 @@ impl Deciders {
             }
         }
         let mut others = self.second.iter();
-        self.places.retain(|_| others.next().is_none_or(|&second| f64::from(second) >= sure));
+        self.places.retain(|&n| {
+            let second = others.next().copied().unwrap_or(f32::INFINITY);
+            f64::from(second) >= sure || roots[n as usize].is_off
+        });
     }
 
     /// The values of a leaf at the points.
@@ -169,7 +173,7 @@ impl Deciders {
     fn search(
         &mut self,
         evaluator: &mut Evaluator,
-        pair: (&Program, &Tape),
+        pair: (Option<&Program>, &Tape),
         lattice: &Lattice,
         edges: &[EdgeRef],
         some: Range<usize>,

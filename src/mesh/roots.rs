@@ -65,11 +65,12 @@ pub(super) struct RootFinder {
 
 impl RootFinder {
     /// The roots on `edges`, into `out`; `tape` is that of `program` for a region that holds
-    /// them. `start` tells where on an edge, given by its place in the list, to begin.
+    /// them. `start` tells where on an edge, given by its place in the list, to begin. Without the program, what may be a
+    /// jump counts as one.
     pub(super) fn find(
         &mut self,
         evaluator: &mut Evaluator,
-        (program, tape): (&Program, &Tape),
+        (program, tape): (Option<&Program>, &Tape),
         lattice: &Lattice,
         edges: &[EdgeRef],
         start: impl Fn(usize, &EdgeRef) -> f64,
@@ -146,7 +147,7 @@ impl RootFinder {
     fn settle(
         &mut self,
         evaluator: &mut Evaluator,
-        (program, tape): (&Program, &Tape),
+        (program, tape): (Option<&Program>, &Tape),
         edges: &[EdgeRef],
         step: f64,
         out: &mut [Root],
@@ -201,7 +202,8 @@ impl RootFinder {
                 if by.abs() <= SETTLED && value.abs() <= SETTLED * self.slope[n].abs() || bracket.width() <= SETTLED {
                     self.t[n] = bracket.nearest(t - by);
                     let is_large = value.abs() > JUMP * self.slope[n].abs();
-                    out[n].is_off = is_large && self.jumps((program, tape), &edges[n], n, bracket, step);
+                    let jumps = |program| self.jumps((program, tape), &edges[n], n, bracket, step);
+                    out[n].is_off = is_large && program.is_none_or(jumps);
                     continue;
                 }
                 bracket.next = if round < HALVING { bracket.secant() } else { bracket.middle() };
@@ -269,7 +271,7 @@ impl RootFinder {
     fn evaluate_open(
         &mut self,
         evaluator: &mut Evaluator,
-        (program, tape): (&Program, &Tape),
+        (program, tape): (Option<&Program>, &Tape),
         edges: &[EdgeRef],
         step: f64,
     ) {
@@ -282,7 +284,7 @@ impl RootFinder {
             }
         }
         let [x, y, z] = &self.gathered;
-        if x.len() < FEW && !tape.is_short() {
+        if let Some(program) = program.filter(|_| x.len() < FEW && !tape.is_short()) {
             for (value, (&x, (&y, &z))) in self.exact.iter_mut().zip(x.iter().zip(y.iter().zip(z))) {
                 *value = program.value(tape.origin() + DVec3::new(x, y, z));
             }
