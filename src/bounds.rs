@@ -151,7 +151,7 @@ impl Bounds {
     /// Whether the two boxes have a point in common; boxes that touch do.
     #[must_use]
     pub fn intersects(&self, other: &Bounds) -> bool {
-        !self.intersection(other).is_empty()
+        !self.is_empty() && !other.is_empty() && self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
     }
 
     /// The smallest box that holds both.

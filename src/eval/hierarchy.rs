@@ -75,7 +75,7 @@ impl Hierarchy {
             Open(usize, usize),
             Close(usize),
         }
-        let mut boxes: Vec<Item> = Vec::new();
+        let mut boxes: Vec<Item> = Vec::with_capacity(4 * bounds.len().div_ceil(BUCKET));
         let mut tasks = vec![Task::Open(0, bounds.len())];
         while let Some(task) = tasks.pop() {
             match task {

@@ -258,29 +258,29 @@ impl Program {
         if nodes.len() == 1 {
             return Program::assemble(self.scene.clone(), nodes, Vec::new(), root, simpler);
         }
-        let mut reached = vec![false; nodes.len()];
-        reached[root.node()] = true;
+        // Of those that are reached, the number among them.
+        let mut numbers = vec![None; nodes.len()];
+        numbers[root.node()] = Some(0);
         for at in (0..nodes.len()).rev() {
-            if reached[at] {
+            if numbers[at].is_some() {
                 for edge in &operands[nodes[at].range()] {
-                    reached[edge.node()] = true;
+                    numbers[edge.node()] = Some(0);
                 }
             }
         }
-        let mut moved = vec![0; nodes.len()];
-        let mut kept = Vec::new();
-        let mut list = Vec::new();
+        let (mut kept, mut list) = (Vec::with_capacity(nodes.len()), Vec::with_capacity(operands.len()));
+        let moved = |numbers: &[Option<usize>], edge: Edge| edge.to(numbers[edge.node()].unwrap_or_default());
         for (at, mut node) in nodes.into_iter().enumerate() {
-            if !reached[at] {
+            if numbers[at].is_none() {
                 continue;
             }
             let old = node.range();
             node.first = list.len() as u32;
-            list.extend(operands[old].iter().map(|edge| edge.to(moved[edge.node()])));
-            moved[at] = kept.len();
+            list.extend(operands[old].iter().map(|&edge| moved(&numbers, edge)));
+            numbers[at] = Some(kept.len());
             kept.push(node);
         }
-        Program::assemble(self.scene.clone(), kept, list, root.to(moved[root.node()]), simpler)
+        Program::assemble(self.scene.clone(), kept, list, moved(&numbers, root), simpler)
     }
 }
 

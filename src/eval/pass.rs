@@ -345,7 +345,6 @@ impl<'a> Pass<'a> {
         let Kind::Join { op, rule, frame, hierarchy } = &node.kind else { return Sign::Unknown };
         let operands = self.program.list(node);
         let start = self.list.len();
-        let mut kept: Vec<u32> = Vec::new();
         let everything: Vec<u32>;
         let candidates = match near {
             Some(near) => near,
@@ -354,6 +353,7 @@ impl<'a> Pass<'a> {
                 &everything
             }
         };
+        let mut kept: Vec<u32> = Vec::with_capacity(if hierarchy.is_some() { candidates.len() } else { 0 });
         for &operand in candidates {
             let edge = operands[operand as usize];
             match (self.signs[edge.node()].flip_if(edge.negated()), op) {
@@ -367,7 +367,9 @@ impl<'a> Pass<'a> {
                 }
                 (Sign::Open(edge), _) => {
                     self.list.push(edge);
-                    kept.push(operand);
+                    if hierarchy.is_some() {
+                        kept.push(operand);
+                    }
                 }
                 // The neutral element.
                 _ => {}

@@ -72,7 +72,8 @@ pub(super) fn schedule(program: &Program) -> Schedule {
         // All but the first are computed beside one register that holds what is joined.
         needs[at] = own.first().copied().unwrap_or(1).max(own.get(1).map_or(0, |second| second + 1));
     }
-    let mut steps = Vec::new();
+    // One for each leaf, and one for each operand.
+    let mut steps = Vec::with_capacity(2 * count);
     let mut registers = Registers::default();
     // Where a node's value is kept while uses remain.
     let mut kept: Vec<Option<u32>> = vec![None; count];

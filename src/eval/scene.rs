@@ -71,7 +71,8 @@ impl Instance {
             near -= axis * (along / axis.length_squared().max(f64::MIN_POSITIVE)).clamp(-1.0, 1.0);
         }
         let is_inside = |p: DVec3| self.placement.finish(self.field.value(self.placement.apply(p.to_array()))) > 0.0;
-        is_inside(near) && !is_inside(far)
+        // Beyond the box there is no need of a value.
+        is_inside(near) && !(self.bounds.contains(far) && is_inside(far))
     }
 
     /// A range of the leaf's own values, as it counts outside of it.

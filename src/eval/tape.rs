@@ -91,7 +91,7 @@ impl Tape {
             seen.push(seen[from].through(&frame.to_local, &*frame.warp));
         }
         let plan = schedule(program);
-        let mut leaves = Vec::new();
+        let mut leaves = Vec::with_capacity(plan.steps.len());
         let mut roundoff = 0.0f64;
         let mut steps = plan.steps;
         for step in &mut steps {

@@ -28,6 +28,8 @@ use crate::eval::{Evaluator, Op, Program, Tape};
 #[derive(Default)]
 pub(super) struct Deciders {
     finder: RootFinder,
+    /// The tapes of the leaves, and memory for those of others.
+    rivals: Vec<Tape>,
     /// Where each edge is looked at, along it.
     t: Vec<f64>,
     /// Points, relative to the tape's origin, and values there.
@@ -57,13 +59,14 @@ impl Deciders {
         edges: &[EdgeRef],
         out: &mut [Root],
     ) {
-        let Some((op, rivals)) = tape.rivals() else {
+        let mut memory = std::mem::take(&mut self.rivals);
+        let Some((op, rivals)) = tape.rivals_into(&mut memory) else {
+            self.rivals = memory;
             return self.finder.find(evaluator, (Some(program), tape), lattice, edges, |_, edge| on_chord(edge), out);
         };
-        let rivals: Vec<Tape> = rivals.map(|(_, rival)| rival).collect();
         // The largest of all values decides a union, of all negatives an intersection.
         let sign = if op == Op::Or { 1.0 } else { -1.0 };
-        self.guess(evaluator, (tape, &rivals, sign), lattice, edges);
+        self.guess(evaluator, (tape, rivals, sign), lattice, edges);
         self.sort(rivals.len());
         let mut first = 0;
         for (leaf, rival) in rivals.iter().enumerate() {
@@ -71,11 +74,12 @@ impl Deciders {
             self.search(evaluator, (None, rival), lattice, edges, first..end, out);
             first = end;
         }
-        self.doubt(evaluator, (tape, &rivals, sign), lattice, edges, out);
+        self.doubt(evaluator, (tape, rivals, sign), lattice, edges, out);
         // From where the guess has led.
         self.t.clear();
         self.t.extend(out.iter().map(|root| root.t));
         self.search(evaluator, (Some(program), tape), lattice, edges, 0..self.places.len(), out);
+        self.rivals = memory;
     }
 
     /// The leaf that decides on the chord of each edge, and by its value where to begin the search.

@@ -54,6 +54,18 @@ impl Tape {
         Some((*op, self.leaves.iter().zip(leaves).map(alone)))
     }
 
+    /// The same without their numbers, in place of others whose memory they take.
+    pub(crate) fn rivals_into<'m>(&self, others: &'m mut Vec<Tape>) -> Option<(Op, &'m [Tape])> {
+        let Rivals { op, leaves } = self.rivals.as_ref().filter(|_| self.short)?;
+        for (n, (leaf, rival)) in self.leaves.iter().zip(leaves).enumerate() {
+            match others.get_mut(n) {
+                Some(other) => other.become_alone(self, leaf, rival.negated),
+                None => others.push(self.alone(leaf, rival.negated)),
+            }
+        }
+        Some((*op, &others[..leaves.len()]))
+    }
+
     /// Marks the leaves of a union that nothing of `region` is inside of.
     pub(super) fn mark_far(&self, region: &Bounds, far: &mut Vec<bool>) {
         far.clear();
@@ -70,15 +82,25 @@ impl Tape {
 
     /// The tape of one of its leaves, or of its complement.
     fn alone(&self, leaf: &LeafStep, negated: bool) -> Tape {
-        let negate = negated.then_some(Step::Negate { register: 0 });
-        Tape {
-            frames: if leaf.slot == 0 { Vec::new() } else { self.frames.clone() },
-            leaves: vec![leaf.clone()],
-            steps: [Step::Leaf { leaf: 0, to: 0 }].into_iter().chain(negate).collect(),
-            registers: 1,
-            result: 0,
-            rivals: None,
-            ..*self
+        let (frames, leaves, steps) = (Vec::new(), Vec::with_capacity(1), Vec::with_capacity(2));
+        let mut alone = Tape { frames, leaves, steps, rivals: None, ..*self };
+        alone.become_alone(self, leaf, negated);
+        alone
+    }
+
+    /// Becomes the tape of one of the leaves of `all`, or of its complement.
+    fn become_alone(&mut self, all: &Tape, leaf: &LeafStep, negated: bool) {
+        let Tape { frames, leaves, steps, .. } = self;
+        frames.clear();
+        if leaf.slot != 0 {
+            frames.extend_from_slice(&all.frames);
         }
+        leaves.clear();
+        leaves.push(leaf.clone());
+        steps.clear();
+        steps.push(Step::Leaf { leaf: 0, to: 0 });
+        steps.extend(negated.then_some(Step::Negate { register: 0 }));
+        let (frames, leaves, steps) = (std::mem::take(frames), std::mem::take(leaves), std::mem::take(steps));
+        *self = Tape { frames, leaves, steps, registers: 1, result: 0, rivals: None, ..*all };
     }
 }
