@@ -113,7 +113,7 @@ pub(super) enum Found {
 /// Finds the cells that hold creases and corners, and gives them fans.
 pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) -> Result<Found, ExtractError> {
     // Most creases are found soon.
-    if let Some(triangles) = samples.parts.triangles_unless(|| Creases::new(samples), &run.stage(0.0, 1.0))? {
+    if let Some(triangles) = samples.parts.triangles_unless(|| Creases::new(samples), run)? {
         return Ok(Found::Table(triangles));
     }
     // How long each stage takes, more or less.
