@@ -11,8 +11,8 @@ pub(crate) struct Meter<'a> {
     done: Count,
 }
 
-/// A count apart from what threads read at each step. Without that, and where nobody asks for the count, threads would be
-/// in each other's way.
+/// A count in a line of the cache of its own: apart from what all threads read at each step, which each count would take
+/// from the others.
 #[repr(align(128))]
 #[derive(Default)]
 struct Count(AtomicU64);
@@ -38,7 +38,7 @@ impl<'a> Meter<'a> {
         self.count(steps, steps);
     }
 
-    /// Counts some steps, of which some are done.
+    /// Counts some steps, of which some are done, if anybody asks for progress.
     fn count(&self, steps: u64, done: u64) {
         if self.run.progress.is_some() {
             let done = self.done.0.fetch_add(steps, Ordering::Relaxed) + done;

@@ -6,7 +6,7 @@ use rvachev::{
     Solid, SolidError,
 };
 
-use crate::support::{Random, lanes32, lanes64, near};
+use crate::support::{Random, lanes32, lanes64, near, off_surface};
 
 /// The half-space of the points below a plane through the origin that is tilted about the y
 /// axis: inside is where x sin(angle) is more than z cos(angle).
@@ -602,14 +602,7 @@ fn fillets_of_smooth_unions_are_of_one_surface() -> Result<(), SolidError> {
     let program = solid.surface_program()?;
     let settings = MeshSettings { cell: CellSize::Length(CELL), features: Features::Smooth, ..MeshSettings::default() };
     let mesh = solid.mesh(&settings).unwrap();
-    // Distances that are searched for jump here and there: what tells is the sign.
-    let crosses = |p: DVec3| {
-        DVec3::AXES.iter().any(|axis| {
-            let [before, after] = [-1e-5, 1e-5].map(|by| program.value(p + by * CELL * axis) > 0.0);
-            before != after
-        })
-    };
-    let off = mesh.positions().iter().filter(|p| !crosses(p.as_dvec3())).count();
+    let off = off_surface(&program, &mesh, CELL);
     let clamped = mesh.clamped_vertices().unwrap();
     assert!(off <= clamped, "{off} of {} vertices, {clamped} clamped", mesh.positions().len());
     Ok(())

@@ -7,7 +7,7 @@ use rvachev::{
     Sphere, Superellipsoid, Superhyperboloid, Supershape, Wedge,
 };
 
-use crate::support::{Random, lanes32};
+use crate::support::{Random, lanes32, off_surface};
 
 fn convex_leaves() -> Vec<(String, Solid)> {
     let mut leaves: Vec<(String, Solid)> = vec![
@@ -216,13 +216,7 @@ fn vertices_at_jumps_are_counted() {
     let program = solid.surface_program().unwrap();
     let settings = MeshSettings { cell: CellSize::Length(CELL), features: Features::Smooth, ..MeshSettings::default() };
     let mesh = solid.mesh(&settings).unwrap();
-    let crosses = |p: DVec3| {
-        DVec3::AXES.iter().any(|axis| {
-            let [before, after] = [-1e-5, 1e-5].map(|by| program.value(p + by * CELL * axis) > 0.0);
-            before != after
-        })
-    };
-    let off = mesh.positions().iter().filter(|p| !crosses(p.as_dvec3())).count();
+    let off = off_surface(&program, &mesh, CELL);
     let clamped = mesh.clamped_vertices().unwrap();
     println!("{off} of {} vertices, {clamped} clamped", mesh.positions().len());
     assert!(off > 0 && off <= clamped, "{off} of {} vertices, {clamped} clamped", mesh.positions().len());

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rvachev::{
-    Bounds, Cuboid, Cylinder, Evaluator, Gielis, Program, RFunction, Solid, Sphere, Supershape, Tape, Turns,
+    Bounds, Cuboid, Cylinder, Evaluator, Gielis, Mesh, Program, RFunction, Solid, Sphere, Supershape, Tape, Turns,
 };
 
 /// A random source (splitmix64) whose numbers depend on the seed alone.
@@ -262,4 +262,16 @@ pub fn value(solid: &Solid, p: DVec3) -> f64 {
 pub fn corpus(file: &str) -> Vec<Vec<f64>> {
     let numbers = |line: &str| line.split(' ').map(|word| word.parse().expect("a number")).collect();
     file.lines().filter(|line| !line.starts_with('#')).map(numbers).collect()
+}
+
+/// How many vertices have no change of sign close by along any axis. Distances that are searched for jump here and
+/// there: what tells is the sign.
+pub fn off_surface(program: &Program, mesh: &Mesh, cell: f64) -> usize {
+    let crosses = |p: DVec3| {
+        DVec3::AXES.iter().any(|axis| {
+            let [before, after] = [-1e-5, 1e-5].map(|by| program.value(p + by * cell * axis) > 0.0);
+            before != after
+        })
+    };
+    mesh.positions().iter().filter(|p| !crosses(p.as_dvec3())).count()
 }
