@@ -1,9 +1,11 @@
 //! Patches of several cells, glued to one.
 
+use std::ops::Range;
+
 use glam::Vec3A;
 
 use super::samples::Samples;
-use super::span::offset;
+use super::span::{Span, offset};
 use crate::mesh::feature::{Segment, tangents};
 use crate::mesh::loops::CellLoop;
 use crate::mesh::qef::Planes;
@@ -11,21 +13,34 @@ use crate::mesh::qef::Planes;
 /// The weight of a cell's planes is 1 over the square of its distance, in cells, and this.
 const NEAR: f32 = 0.1;
 
-/// The patches of several cells: the segments of the loops around them, with their ends and the numbers of the patches.
+/// The patches of several cells of a box, which meet in the faces between these.
 #[derive(Default)]
-pub(super) struct Patches {
-    segments: Vec<(Segment, u32, u32)>,
-    /// By patch, its cell and the planes.
-    planes: Vec<([u32; 3], Planes)>,
-    /// Memory for the loop of one, and where its vertices are in the cell.
-    ring: Vec<Segment>,
+pub(super) struct Patches<'a> {
+    all: Vec<Patch<'a>>,
+    /// The segments of those that are not known yet.
+    own: Vec<Segment>,
+    /// Memory for where the vertices of one are in its cell.
     places: Vec<Vec3A>,
-    /// And for [`glued`](Patches::glued): the ends of all segments, those that no other shares, by number, all vertices
-    /// with the numbers of their patches, and the patches that are reached.
-    sides: Vec<(u32, u32)>,
-    outer: Vec<u32>,
+    /// And for [`glued`](Patches::glued): the segments in the sides of the box, with their ends; the vertices within, each
+    /// four times; and what tells whether all hangs together.
+    outer: Vec<(Segment, u32)>,
+    within: Vec<u32>,
     vertices: Vec<(u32, u32)>,
     reached: Vec<bool>,
+}
+
+/// The patch of a loop of a cell.
+struct Patch<'a> {
+    cell: [u32; 3],
+    planes: Planes,
+    ring: Ring<'a>,
+}
+
+/// The segments of a loop.
+enum Ring<'a> {
+    Known(&'a [Segment]),
+    /// Where they are among the patches' own.
+    Own(Range<usize>),
 }
 
 /// A disc of several patches.
@@ -36,94 +51,105 @@ pub(super) struct Disc {
     pub(super) within: Vec<u32>,
 }
 
-impl Patches {
+impl<'a> Patches<'a> {
     pub(super) fn clear(&mut self) {
-        self.segments.clear();
-        self.planes.clear();
+        self.all.clear();
+        self.own.clear();
     }
 
-    /// Adds a patch of a cell.
-    pub(super) fn add(&mut self, cell: [u32; 3], ring: &[Segment], planes: &Planes) {
-        let (next, count) = (ring.iter().cycle().skip(1).map(|segment| segment.from), self.count());
-        self.segments.extend(ring.iter().zip(next).map(|(segment, to)| (*segment, to, count)));
-        self.planes.push((cell, *planes));
+    /// Adds a patch of a cell whose segments and planes are known.
+    pub(super) fn add(&mut self, cell: [u32; 3], ring: &'a [Segment], planes: Planes) {
+        self.all.push(Patch { cell, planes, ring: Ring::Known(ring) });
     }
 
     /// Adds the patch of a loop of a cell, given the vertices on it.
     pub(super) fn add_loop(&mut self, samples: &Samples<'_>, cell: [u32; 3], outline: &CellLoop, vertices: &[u32]) {
-        let (mut ring, mut places) = (std::mem::take(&mut self.ring), std::mem::take(&mut self.places));
-        ring.clear();
-        places.clear();
+        let start = self.own.len();
+        self.places.clear();
         let (low, share) = (samples.node(cell), 1.0 / samples.lattice.step() as f32);
         for (n, &from) in vertices.iter().enumerate() {
             let (position, normal) = samples.get(from);
-            ring.push(Segment::new(from, normal, outline.face(n)));
-            places.push(share * Vec3A::from(position - low));
+            self.own.push(Segment::new(from, normal, outline.face(n)));
+            self.places.push(share * Vec3A::from(position - low));
         }
-        let (planes, _) = tangents(&mut ring, &places);
-        self.add(cell, &ring, &planes);
-        (self.ring, self.places) = (ring, places);
-    }
-
-    fn count(&self) -> u32 {
-        self.planes.len() as u32
+        let (planes, _) = tangents(&mut self.own[start..], &self.places);
+        self.all.push(Patch { cell, planes, ring: Ring::Own(start..self.own.len()) });
     }
 
     /// All planes, from the first node of cell `low`; those of cells close to a point tell the most.
     pub(super) fn planes(&self, low: [u32; 3], point: Vec3A) -> Planes {
         let mut all = Planes::NONE;
-        for (cell, planes) in &self.planes {
+        for Patch { cell, planes, .. } in &self.all {
             let shift = offset(*cell, low);
             all.append(planes, shift, (NEAR + (shift + 0.5 - point).length_squared()).recip());
         }
         all
     }
 
-    /// All as one, if they make a disc; `low` is the first cell of the box that they are in.
-    pub(super) fn glued(&mut self, low: [u32; 3]) -> Option<Disc> {
-        let Patches { segments, planes, sides, outer, vertices, reached, .. } = self;
-        // A segment that two patches share is there in both directions.
-        sides.clear();
-        sides.extend(segments.iter().map(|&(segment, to, _)| (segment.from, to)));
-        sides.sort_unstable();
-        let is_outer = |&n: &u32| {
-            let (segment, to, _) = segments[n as usize];
-            sides.binary_search(&(to, segment.from)).is_err()
+    /// All as one, if they make a disc, given the box that they are in.
+    ///
+    /// A segment in a face between two cells of the box is that of both, one in a side of the box that of one. A vertex
+    /// is where a loop goes from a face to the next: it is within the box if none of them is in a side, and four cells
+    /// have it then.
+    pub(super) fn glued(&mut self, span: &Span) -> Option<Disc> {
+        let Patches { all, own, outer, within, vertices, reached, .. } = self;
+        let segments = |patch: &Patch<'a>| match &patch.ring {
+            Ring::Known(ring) => *ring,
+            Ring::Own(range) => &own[range.clone()],
         };
         outer.clear();
-        outer.extend((0..segments.len() as u32).filter(is_outer));
+        within.clear();
+        let mut shared = 0;
+        for patch in &*all {
+            let ring = segments(patch);
+            let is_outer = |segment: &Segment| span.is_side(patch.cell, segment.face);
+            let mut comes_within = ring.last().is_some_and(|last| !is_outer(last));
+            for (n, segment) in ring.iter().enumerate() {
+                let is_within = !is_outer(segment);
+                if is_within {
+                    shared += 1;
+                    within.extend(comes_within.then_some(segment.from));
+                } else {
+                    let next = ring.get(n + 1).unwrap_or(&ring[0]);
+                    outer.push((segment.placed(patch.cell, span.low), next.from));
+                }
+                comes_within = is_within;
+            }
+        }
+        // Vertices − edges + patches is 1 for a disc. On its boundary there are as many of the one as of the other.
+        if within.len() / 4 + all.len() != shared / 2 + 1 {
+            return None;
+        }
         let mut ring: Vec<Segment> = Vec::with_capacity(outer.len());
-        let first = segments[*outer.first()? as usize].0.from;
+        let first = outer.first()?.0.from;
         let mut at = first;
-        loop {
-            let all = outer.iter().map(|&n| &segments[n as usize]);
-            let &(segment, to, patch) = all.into_iter().find(|(segment, ..)| segment.from == at)?;
-            ring.push(segment.placed(planes[patch as usize].0, low));
+        while ring.len() < outer.len() {
+            let &(segment, to) = outer.iter().find(|(segment, _)| segment.from == at)?;
+            ring.push(segment);
             at = to;
             if at == first {
                 break;
             }
-            if ring.len() > outer.len() {
+        }
+        if ring.len() != outer.len() || at != first {
+            return None;
+        }
+        // What does not hang together with the rest is closed: it is around a node, with six vertices or more.
+        if within.len() / 4 >= 6 {
+            vertices.clear();
+            for (patch, number) in all.iter().zip(0..) {
+                vertices.extend(segments(patch).iter().map(|segment| (segment.from, number)));
+            }
+            vertices.sort_unstable();
+            reached.clear();
+            reached.resize(all.len(), false);
+            if !hangs_together(vertices, reached) {
                 return None;
             }
         }
-        // Vertices − edges + patches is 1 for a disc; edges within are listed twice.
-        vertices.clear();
-        vertices.extend(segments.iter().map(|&(segment, _, patch)| (segment.from, patch)));
-        vertices.sort_unstable();
-        reached.clear();
-        reached.resize(planes.len(), false);
-        if ring.len() != outer.len() || !hangs_together(vertices, reached) {
-            return None;
-        }
-        vertices.dedup_by_key(|(vertex, _)| *vertex);
-        let edges = outer.len() + (segments.len() - outer.len()) / 2;
-        if vertices.len() + planes.len() != edges + 1 {
-            return None;
-        }
-        let is_within = |vertex: &u32| ring.iter().all(|segment| segment.from != *vertex);
-        let within = vertices.iter().map(|&(vertex, _)| vertex).filter(is_within).collect();
-        Some(Disc { ring, within })
+        within.sort_unstable();
+        within.dedup();
+        Some(Disc { ring, within: within.clone() })
     }
 }
 

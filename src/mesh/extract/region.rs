@@ -264,10 +264,10 @@ struct Known<'a> {
     /// All regions; `None` for those that others are merged from.
     regions: Vec<Option<Region>>,
     /// Memory for the patches at hand.
-    patches: Patches,
+    patches: Patches<'a>,
 }
 
-impl Known<'_> {
+impl<'a> Known<'a> {
     /// Makes the region that is wished for, if it can be: merged with the regions in its way if it `merges`, or if
     /// that makes a slab of a slab, and else only where there are none. Whether there is no more to be done for the wish.
     fn grant(&mut self, wish: &Wish<'_>, merges: bool) -> bool {
@@ -339,7 +339,7 @@ impl Known<'_> {
         find_taken(&self.taken[block], split_cell(cell).1)
     }
 
-    fn region(&self, wish: &Wish<'_>, span: Span, patches: &mut Patches) -> Option<Region> {
+    fn region(&self, wish: &Wish<'_>, span: Span, patches: &mut Patches<'a>) -> Option<Region> {
         patches.clear();
         for cell in span.cells() {
             if self.samples.is_plain(split_cell(cell).0) {
@@ -369,17 +369,17 @@ impl Known<'_> {
         if planes.distance(place).max(own.distance(place - shift)) > wish.allowed {
             return None;
         }
-        let Disc { ring, within } = patches.glued(span.low)?;
+        let Disc { ring, within } = patches.glued(&span)?;
         let at = self.samples.inside(place, span.low, span.high);
         Some(Region { block: wish.block, segments: ring, at, place, planes, within, span })
     }
 
     /// Adds the planes of a crossed cell, close to block `near`, and its patches.
-    fn add_patches(&self, near: usize, cell: [u32; 3], case: u8, patches: &mut Patches) -> Option<()> {
+    fn add_patches(&self, near: usize, cell: [u32; 3], case: u8, patches: &mut Patches<'a>) -> Option<()> {
         let (block, within) = split_cell(cell);
         let block = self.samples.find_near(near, block)?;
         if let Some(candidate) = self.special.candidate(block, cell_number(within)) {
-            patches.add(cell, self.special.segments(block, candidate), &candidate.planes);
+            patches.add(cell, self.special.segments(block, candidate), candidate.planes);
             return Some(());
         }
         let faces = self.joined.of(self.samples, cell, case);

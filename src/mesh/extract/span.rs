@@ -37,6 +37,14 @@ impl Span {
         self.low[axis] + 1 == self.high[axis]
     }
 
+    /// Whether a face of one of its cells, by twice the axis and 1 more for the upper one, is in a side of it.
+    #[inline(always)]
+    pub(super) fn is_side(&self, cell: [u32; 3], face: u8) -> bool {
+        let axis = usize::from(face / 2);
+        let is_upper = face % 2 == 1;
+        if is_upper { cell[axis] + 1 == self.high[axis] } else { cell[axis] == self.low[axis] }
+    }
+
     /// How many cells it has along each axis.
     pub(super) fn size(&self) -> Vec3A {
         offset(self.high, self.low)
