@@ -51,6 +51,7 @@ use crate::geom::{Mesh, MeshError};
 use crate::run::{Cancelled, Meter, Run};
 
 mod bulge;
+mod cells;
 mod crease;
 mod join;
 mod joined;

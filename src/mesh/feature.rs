@@ -125,34 +125,31 @@ impl Segment {
     }
 }
 
-/// A cell whose surface is not smooth. Its segments, in order, are in a list of those of many cells.
+/// A cell whose surface is not smooth. Its segments, in order, are in a list of those of many cells. There are many: it is
+/// kept small.
 #[derive(Clone)]
 pub(super) struct Candidate {
-    pub(super) cell: [u32; 3],
     /// The place of the first segment in the list, and the number of them.
     first: u32,
-    len: u32,
+    len: u8,
+    /// Whether there is a crease that leaves the cell by a face that the surface does not cross.
+    pub(super) leaves: bool,
+    /// The number of the cell in its block.
+    pub(super) number: u16,
+    /// How far the feature point is from the planes, in cells.
+    pub(super) misfit: f32,
     /// The normal that stands for all its sides.
     pub(super) normal: Vec3,
     /// The feature point, in cells from the cell's first node, as are the sides' planes close to it.
-    pub(super) at: Vec3A,
-    pub(super) planes: Planes,
+    pub(super) at: Vec3,
+    planes: [f32; Planes::SUMS],
     /// The feature point as a vertex has it.
     pub(super) position: Vec3,
 }
 
 impl Candidate {
-    /// The cell with a first feature point. Its segments are told which of them turn, and are in the list from `first`
-    /// on; `places` are their vertices in cells, from the cell's first node. Then where sides start, see [`tangents`].
-    #[inline(always)]
-    pub(super) fn new(cell: [u32; 3], first: usize, segments: &mut [Segment], places: &[Vec3A]) -> (Candidate, u32) {
-        let (planes, sides) = tangents(segments, places);
-        let len = segments.len();
-        let at = places.iter().sum::<Vec3A>() / len as f32;
-        let (first, len) = (first as u32, len as u32);
-        let mut candidate = Candidate { cell, first, len, normal: Vec3::ZERO, at, position: Vec3::ZERO, planes };
-        candidate.settle();
-        (candidate, sides)
+    pub(super) fn planes(&self) -> Planes {
+        Planes::unpacked(&self.planes)
     }
 
     /// The segments of the loop, in order, of the list of all.
@@ -164,12 +161,8 @@ impl Candidate {
     /// The places of its segments in the list.
     #[inline(always)]
     pub(super) fn range(&self) -> Range<usize> {
-        self.first as usize..(self.first + self.len) as usize
-    }
-
-    #[inline(always)]
-    fn settle(&mut self) {
-        self.at = settle(&self.planes, self.at, Vec3A::ZERO, Vec3A::ONE, 1);
+        let first = self.first as usize;
+        first..first + usize::from(self.len)
     }
 }
 
@@ -223,11 +216,45 @@ fn plane(point: Vec3A, slope: &Slope, step: f32) -> Option<(Vec3A, f32)> {
     })
 }
 
-/// Moves feature points closer to the creases.
+/// A candidate in the making.
+pub(super) struct Draft {
+    first: u32,
+    len: u8,
+    /// How many sides there are, and which of them the vertices of its segments are on, in order, four bits each.
+    count: u8,
+    on: u64,
+    number: u16,
+    /// The first node of the cell, from that of the block, in cells.
+    low: Vec3A,
+    pub(super) at: Vec3A,
+    pub(super) planes: Planes,
+}
+
+impl Draft {
+    #[inline(always)]
+    fn settle(&mut self) {
+        self.at = settle(&self.planes, self.at, Vec3A::ZERO, Vec3A::ONE, 1);
+    }
+
+    /// The candidate, given its normal and position, and whether a crease leaves it.
+    #[inline(always)]
+    pub(super) fn done(&self, [normal, position]: [Vec3; 2], leaves: bool) -> Candidate {
+        let Draft { first, len, number, at, ref planes, .. } = *self;
+        let misfit = planes.distance(at);
+        Candidate { first, len, leaves, number, misfit, normal, at: at.into(), planes: planes.packed(), position }
+    }
+
+    /// The cell in its block.
+    #[inline(always)]
+    pub(super) fn within(&self) -> [usize; 3] {
+        self.low.to_array().map(|n| n as usize)
+    }
+}
+
+/// Places feature points, those of many cells together.
 #[derive(Default)]
 pub(super) struct Refiner {
-    /// By candidate, the sides that the vertices of its segments are on, in order, four bits each; and how many there are.
-    sides: Vec<(u64, u8)>,
+    drafts: Vec<Draft>,
     /// By segment, how far the tangent plane at its vertex is from the candidate's first node.
     offsets: Vec<f32>,
     /// One for each side of each candidate, in cells from the candidate's first node; and the same from the block's.
@@ -240,18 +267,30 @@ pub(super) struct Refiner {
 impl Refiner {
     /// Forgets all candidates.
     pub(super) fn clear(&mut self) {
-        let Refiner { sides, offsets, points, in_block, found } = self;
-        sides.clear();
+        let Refiner { drafts, offsets, points, in_block, found } = self;
+        drafts.clear();
         offsets.clear();
         points.clear();
         in_block.clear();
         found.clear();
     }
 
-    /// Adds the next candidate, given its feature point, the normals and places of the vertices of its segments, and where
-    /// sides start. Places are in cells from its first node, which is at `low` in the block.
+    /// Adds the next candidate: a cell, by its number in the block and by its first node there. Its segments are told
+    /// which of them turn, and will be in the list from `first` on. Normals and places, in cells from the first node, are
+    /// those of their vertices.
     #[inline(always)]
-    pub(super) fn add(&mut self, low: Vec3A, at: Vec3A, (normals, places): (&[Vec3A], &[Vec3A]), starts: u32) {
+    pub(super) fn add(
+        &mut self,
+        (number, low): (u16, Vec3A),
+        (first, segments): (usize, &mut [Segment]),
+        (normals, places): (&[Vec3A], &[Vec3A]),
+    ) {
+        let (planes, starts) = tangents(segments, places);
+        let at = places.iter().sum::<Vec3A>() / places.len() as f32;
+        let (first, len) = (first as u32, segments.len() as u8);
+        let mut draft = Draft { first, len, count: 0, on: 0, number, low, at, planes };
+        draft.settle();
+        let at = draft.at;
         self.offsets.extend(normals.iter().zip(places).map(|(normal, place)| normal.dot(*place)));
         let mut point = |sum: Vec3A, size: f32| {
             let point = at + CLOSER * (sum / size - at);
@@ -260,7 +299,7 @@ impl Refiner {
         };
         // Vertices of a side share a point. The first side starts somewhere, if there are several.
         let first = (places.len() - 1).min(starts.trailing_zeros() as usize);
-        let (mut on, mut side, mut sum, mut size) = (0, 0, Vec3A::ZERO, 0.0);
+        let (mut side, mut sum, mut size) = (0, Vec3A::ZERO, 0.0);
         for n in (first..places.len()).chain(0..first) {
             if starts >> n & 1 == 1 && size > 0.0 {
                 point(sum, size);
@@ -269,39 +308,44 @@ impl Refiner {
             }
             sum += places[n];
             size += 1.0;
-            on |= side << (4 * n);
+            draft.on |= side << (4 * n);
         }
         point(sum, size);
-        self.sides.push((on, side as u8 + 1));
+        draft.count = side as u8 + 1;
+        self.drafts.push(draft);
     }
 
-    /// Refines the candidates that were added, whose `segments` are consecutive. `slopes` tells values and gradients at
-    /// points, in cells from the block's first node, for cells of size `step`; without any, feature points stay.
+    /// Moves the points of the candidates that were added closer to the creases, and tells `each` of them, with the normal
+    /// that stands for its sides and its part of the `segments`, which are consecutive. `slopes` tells values and gradients
+    /// at points, in cells from the block's first node, for cells of size `step`; without any, feature points stay.
     pub(super) fn refine(
         &mut self,
-        candidates: &mut [Candidate],
         segments: &mut [Segment],
         step: f32,
         mut slopes: impl FnMut(&[Vec3A], &mut Vec<Slope>) -> bool,
+        mut each: impl FnMut(&Draft, Vec3, &[Segment]),
     ) {
-        let Refiner { sides, offsets, points, in_block, found } = self;
-        if candidates.is_empty() {
+        let Refiner { drafts, offsets, points, in_block, found } = self;
+        if drafts.is_empty() {
             return;
         }
         if !slopes(in_block, found) || found.len() != points.len() {
             found.clear();
         }
         let mut asked = points.iter().zip(found);
-        let mut vertices = segments.iter_mut().zip(offsets);
+        let (mut segments, mut offsets) = (segments, &offsets[..]);
         // As many as four bits tell.
         let mut known = [None; 16];
-        for (candidate, &(on, count)) in candidates.iter_mut().zip(&*sides) {
-            let (mut planes, mut sum, mut on) = (Planes::NONE, Vec3A::ZERO, on);
+        for draft in drafts {
+            let (mut planes, mut sum, mut on) = (Planes::NONE, Vec3A::ZERO, draft.on);
             let mut first = None;
-            for (known, (point, slope)) in known[..usize::from(count)].iter_mut().zip(&mut asked) {
+            for (known, (point, slope)) in known[..usize::from(draft.count)].iter_mut().zip(&mut asked) {
                 *known = plane(*point, slope, step);
             }
-            for (segment, offset) in vertices.by_ref().take(candidate.len as usize) {
+            let own = segments.split_off_mut(..usize::from(draft.len)).unwrap_or_default();
+            let (own_offsets, rest) = offsets.split_at(own.len());
+            offsets = rest;
+            for (segment, offset) in own.iter_mut().zip(own_offsets) {
                 let own = Vec3A::from(segment.normal);
                 first.get_or_insert(own);
                 match known[(on & 15) as usize] {
@@ -319,12 +363,12 @@ impl Refiner {
                 }
                 on >>= 4;
             }
-            // On both sides of a thin wall they may be no more than nothing together.
-            candidate.normal = sum.normalize_or(first.unwrap_or_default()).into();
             if !planes.is_empty() {
-                candidate.planes = planes;
-                candidate.settle();
+                draft.planes = planes;
+                draft.settle();
             }
+            // On both sides of a thin wall they may be no more than nothing together.
+            each(draft, sum.normalize_or(first.unwrap_or_default()).into(), own);
         }
     }
 }

@@ -41,6 +41,24 @@ impl Planes {
     pub(super) const NONE: Planes =
         Planes { diagonal: Vec3A::ZERO, beside: Vec3A::ZERO, vector: Vec3A::ZERO, square: 0.0, weight: 0.0 };
 
+    /// How many numbers these are.
+    pub(super) const SUMS: usize = 11;
+
+    /// The same as numbers alone, to be kept.
+    #[inline(always)]
+    pub(super) fn packed(&self) -> [f32; Planes::SUMS] {
+        let ([a, b, c], [d, e, f], [x, y, z]) =
+            (self.diagonal.to_array(), self.beside.to_array(), self.vector.to_array());
+        [a, b, c, d, e, f, x, y, z, self.square, self.weight]
+    }
+
+    /// What [`packed`](Planes::packed) has kept.
+    #[inline(always)]
+    pub(super) fn unpacked(&[a, b, c, d, e, f, x, y, z, square, weight]: &[f32; Planes::SUMS]) -> Planes {
+        let (diagonal, beside) = (Vec3A::new(a, b, c), Vec3A::new(d, e, f));
+        Planes { diagonal, beside, vector: Vec3A::new(x, y, z), square, weight }
+    }
+
     /// Adds the plane nᵢ·y = dᵢ; the normal is a unit vector.
     #[inline(always)]
     pub(super) fn add(&mut self, normal: Vec3A, d: f32) {

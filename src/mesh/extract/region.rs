@@ -29,9 +29,10 @@
 
 use glam::{Vec3, Vec3A};
 
+use super::cells::CellSet;
 use super::joined::Joined;
 use super::patches::{Disc, Patches};
-use super::samples::{Samples, cell_number, split_cell};
+use super::samples::{Samples, cell_number, cell_of, split_cell};
 use super::span::{Span, offset};
 use super::special::Special;
 use crate::mesh::feature::{CLOSE, Candidate, Segment, settle};
@@ -86,7 +87,7 @@ pub(super) fn regions(
         special,
         joined,
         run,
-        taken: vec![Vec::new(); blocks],
+        taken: vec![Taken::default(); blocks],
         regions: Vec::new(),
         patches: Patches::default(),
     };
@@ -94,8 +95,8 @@ pub(super) fn regions(
     for block in 0..blocks {
         run.check()?;
         for candidate in special.candidates(block) {
-            if candidate.planes.distance(candidate.at) > MISFIT {
-                all.push(Asker::candidate(block, candidate));
+            if candidate.misfit > MISFIT {
+                all.push(Asker::candidate(samples, block, candidate));
             }
         }
     }
@@ -103,7 +104,7 @@ pub(super) fn regions(
     for stage in stages {
         let mut wishes = Vec::new();
         steps.step()?;
-        all.retain(|asker| known.own_taken(asker.block, asker.span.low).is_none());
+        all.retain(|asker| known.own_taken(asker.block, cell_number(split_cell(asker.span.low).1)).is_none());
         for asker in &all {
             match stage {
                 Stage::Slab(nth) => asker.slabs(nth, &mut wishes),
@@ -122,15 +123,11 @@ pub(super) fn regions(
         steps.step()?;
         let mut wishes = Vec::new();
         for block in (0..blocks).filter(|_| round == 0) {
-            let is_free = |candidate: &&Candidate| known.own_taken(block, candidate.cell).is_none();
-            for candidate in special.candidates(block).iter().filter(is_free) {
-                let Some(along) = candidate.planes.crease() else { continue };
-                // Beyond a face that the surface crosses there is some of it.
+            let leaves = special.candidates(block).iter().filter(|candidate| candidate.leaves);
+            for candidate in leaves.filter(|candidate| known.own_taken(block, candidate.number).is_none()) {
                 let ring = special.segments(block, candidate);
                 let crossed = ring.iter().fold(0, |faces, segment| faces | 1 << segment.face);
-                if !Span::is_shut(candidate.at, along, crossed) {
-                    known.exits(&Asker::candidate(block, candidate), crossed, &mut wishes);
-                }
+                known.exits(&Asker::candidate(samples, block, candidate), crossed, &mut wishes);
             }
         }
         // What was not granted before is not asked for again.
@@ -191,9 +188,10 @@ struct Asker<'a> {
 }
 
 impl<'a> Asker<'a> {
-    fn candidate(block: usize, candidate: &'a Candidate) -> Asker<'a> {
-        let Candidate { cell, at, planes, .. } = *candidate;
-        Asker { who: Who::Cell(candidate), block, span: Span::single(cell), at, planes }
+    fn candidate(samples: &Samples<'_>, block: usize, candidate: &'a Candidate) -> Asker<'a> {
+        let span = Span::single(cell_of(samples.blocks()[block], candidate.number));
+        let (at, planes) = (candidate.at.into(), candidate.planes());
+        Asker { who: Who::Cell(candidate), block, span, at, planes }
     }
 
     fn region(number: usize, region: &Region) -> Asker<'a> {
@@ -259,12 +257,19 @@ struct Known<'a> {
     special: &'a Special,
     joined: &'a Joined,
     run: &'a Run,
-    /// By block, the cells that are in regions, by number, and in which.
-    taken: Vec<Vec<(u16, u32)>>,
+    /// By block.
+    taken: Vec<Taken>,
     /// All regions; `None` for those that others are merged from.
     regions: Vec<Option<Region>>,
     /// Memory for the patches at hand.
     patches: Patches<'a>,
+}
+
+/// The cells of a block that are in regions, by number, and in which.
+#[derive(Clone, Default)]
+struct Taken {
+    cells: CellSet,
+    regions: Vec<(u16, u32)>,
 }
 
 impl<'a> Known<'a> {
@@ -273,7 +278,7 @@ impl<'a> Known<'a> {
     fn grant(&mut self, wish: &Wish<'_>, merges: bool) -> bool {
         // A region that a cell is in already is what it wished for, or better.
         let is_granted =
-            matches!(wish.who, Who::Cell(candidate) if self.own_taken(wish.block, candidate.cell).is_some());
+            matches!(wish.who, Who::Cell(candidate) if self.own_taken(wish.block, candidate.number).is_some());
         if is_granted || self.run.cancel.is_cancelled() {
             return true;
         }
@@ -301,12 +306,7 @@ impl<'a> Known<'a> {
         for cell in region.span.cells() {
             let (block, within) = split_cell(cell);
             if let Some(block) = self.samples.find_near(wish.block, block) {
-                let (cells, number) = (&mut self.taken[block], cell_number(within));
-                let region = self.regions.len() as u32;
-                match cells.iter_mut().find(|(cell, _)| *cell == number) {
-                    Some(cell) => cell.1 = region,
-                    None => cells.push((number, region)),
-                }
+                self.taken[block].put(cell_number(within), self.regions.len() as u32);
             }
         }
         self.regions.push(Some(region));
@@ -331,12 +331,12 @@ impl<'a> Known<'a> {
     /// The region that a cell, close to block `near`, is in.
     fn taken(&self, near: usize, cell: [u32; 3]) -> Option<u32> {
         let (block, within) = split_cell(cell);
-        find_taken(&self.taken[self.samples.find_near(near, block)?], within)
+        self.own_taken(self.samples.find_near(near, block)?, cell_number(within))
     }
 
-    /// The same, of a cell of that block.
-    fn own_taken(&self, block: usize, cell: [u32; 3]) -> Option<u32> {
-        find_taken(&self.taken[block], split_cell(cell).1)
+    /// The same, of a cell of that block, by its number.
+    fn own_taken(&self, block: usize, number: u16) -> Option<u32> {
+        self.taken[block].get(number)
     }
 
     fn region(&self, wish: &Wish<'_>, span: Span, patches: &mut Patches<'a>) -> Option<Region> {
@@ -362,9 +362,9 @@ impl<'a> Known<'a> {
             }
         }
         let own = match wish.who {
-            Who::Cell(candidate) => &candidate.planes,
+            Who::Cell(candidate) => candidate.planes(),
             // None if it is part of another by now.
-            Who::Region(number) => &self.regions[number].as_ref()?.planes,
+            Who::Region(number) => self.regions[number].as_ref()?.planes,
         };
         if planes.distance(place).max(own.distance(place - shift)) > wish.allowed {
             return None;
@@ -379,7 +379,7 @@ impl<'a> Known<'a> {
         let (block, within) = split_cell(cell);
         let block = self.samples.find_near(near, block)?;
         if let Some(candidate) = self.special.candidate(block, cell_number(within)) {
-            patches.add(cell, self.special.segments(block, candidate), candidate.planes);
+            patches.add(cell, self.special.segments(block, candidate), candidate.planes());
             return Some(());
         }
         let faces = self.joined.of(self.samples, cell, case);
@@ -398,8 +398,21 @@ impl<'a> Known<'a> {
     }
 }
 
-/// The region that a cell, by its place in a block, is in, of the cells of that block.
-fn find_taken(cells: &[(u16, u32)], within: [usize; 3]) -> Option<u32> {
-    let number = cell_number(within);
-    cells.iter().find(|&&(cell, _)| cell == number).map(|&(_, region)| region)
+impl Taken {
+    /// The region that a cell is in.
+    #[inline]
+    fn get(&self, number: u16) -> Option<u32> {
+        // Most are in none.
+        let find = || self.regions.iter().find(|&&(cell, _)| cell == number).map(|&(_, region)| region);
+        self.cells.has(number).then(find)?
+    }
+
+    /// Puts a cell in a region.
+    fn put(&mut self, number: u16, region: u32) {
+        self.cells.insert(number);
+        match self.regions.iter_mut().find(|(cell, _)| *cell == number) {
+            Some(cell) => cell.1 = region,
+            None => self.regions.push((number, region)),
+        }
+    }
 }

@@ -66,11 +66,14 @@ impl<'a> Samples<'a> {
     }
 
     /// The number of the block with a first cell, quickly if it is next to block `near`.
+    #[inline]
     pub(super) fn find_near(&self, near: usize, block: [u32; 3]) -> Option<usize> {
+        if self.blocks()[near] == block { Some(near) } else { self.find_beside(near, block) }
+    }
+
+    /// The same of another block.
+    fn find_beside(&self, near: usize, block: [u32; 3]) -> Option<usize> {
         let first = self.blocks()[near];
-        if first == block {
-            return Some(near);
-        }
         for axis in 0..3 {
             let (others, side) = ([(axis + 1) % 3, (axis + 2) % 3], BLOCK as u32);
             if others.iter().all(|&n| first[n] == block[n]) {

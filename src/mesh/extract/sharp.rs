@@ -38,18 +38,19 @@ use std::ops::Range;
 use glam::Vec3;
 use rayon::prelude::*;
 
+use super::cells::{CellOrder, CellSet};
 use super::crease::Creases;
 use super::join::{fill, split};
 use super::joined::Joined;
 use super::region::{Region, regions};
-use super::samples::{Samples, cell_number, split_cell};
+use super::samples::{Samples, cell_number, cell_of, split_cell};
 use super::span::Span;
 use super::special::{Plain, Special, list_of};
 use super::trend::even_blocks;
 use super::{ExtractError, Sampler};
 use crate::geom::Apart;
 use crate::mesh::bulk::Bulk;
-use crate::mesh::feature::Segment;
+use crate::mesh::feature::{Candidate, Segment};
 use crate::mesh::signs::BLOCK;
 use crate::run::{Cancelled, Meter, Run};
 
@@ -88,9 +89,9 @@ pub(super) struct Fans {
     pub(super) segments: Vec<Vec<Segment>>,
     /// Points of creases between two fans, with the normals that stand for all sides.
     pub(super) points: Vec<(Vec3, Vec3)>,
-    /// The cells that have a fan, by number, and which; and by block, where its cells are in this list.
-    cells: Vec<(u16, u32)>,
-    blocks: Vec<Range<usize>>,
+    /// The fans of cells, block by block in the order of the cells; and where those of each block start, and their order.
+    cells: Vec<u32>,
+    blocks: Vec<(usize, CellOrder)>,
     /// How many triangles consecutive fans have, [`AT_ONCE`] together.
     counts: Vec<usize>,
     /// What cells without fans have.
@@ -172,24 +173,32 @@ impl Fans {
         taken.sort_unstable();
         let mut taken = &taken[..];
         let meter = Meter::new(run, samples.blocks().len());
+        let mut numbers = Vec::new();
         for block in 0..samples.blocks().len() {
             meter.step()?;
             let (own, rest) = taken.split_at(taken.partition_point(|&(other, ..)| other == block));
             taken = rest;
-            let start = all.cells.len();
-            all.cells.extend(own.iter().map(|&(_, number, fan)| (number, fan)));
-            for candidate in special.candidates(block) {
-                let number = cell_number(split_cell(candidate.cell).1);
-                if own.iter().all(|&(_, other, _)| other != number) {
-                    all.cells.push((number, all.fans.len() as u32));
-                    let span = Span::single(candidate.cell);
-                    let Range { start, end } = candidate.range();
-                    let (list, segments) = (list_of(block), start as u32..end as u32);
-                    let (at, normal) = (candidate.position, candidate.normal);
-                    all.fans.push(Fan { list, segments, block: block as u32, span, at, normal });
+            let mut cells: CellSet = own.iter().map(|&(_, number, _)| number).collect();
+            let free = |candidate: &&Candidate| !cells.has(candidate.number);
+            let alone = all.fans.len();
+            for candidate in special.candidates(block).iter().filter(free) {
+                numbers.push(candidate.number);
+                let span = Span::single(cell_of(samples.blocks()[block], candidate.number));
+                let Range { start, end } = candidate.range();
+                let (list, segments) = (list_of(block), start as u32..end as u32);
+                let (at, normal) = (candidate.position, candidate.normal);
+                all.fans.push(Fan { list, segments, block: block as u32, span, at, normal });
+            }
+            numbers.iter().for_each(|&number| cells.insert(number));
+            let (start, order) = (all.cells.len(), CellOrder::new(cells));
+            all.cells.resize(start + own.len() + numbers.len(), 0);
+            let single = numbers.drain(..).zip(alone as u32..);
+            for (number, fan) in own.iter().map(|&(_, number, fan)| (number, fan)).chain(single) {
+                if let Some(place) = order.place(number) {
+                    all.cells[start + place] = fan;
                 }
             }
-            all.blocks.push(start..all.cells.len());
+            all.blocks.push((start, order));
             if !own.is_empty() {
                 let numbers = own.iter().map(|&(_, number, _)| number);
                 special.drop_cells(samples, block, numbers, (&mut all.holes, &mut all.free));
@@ -303,9 +312,11 @@ impl Fans {
         }
     }
 
-    /// The cells of a block that have a fan, by number, and which fan.
-    pub(super) fn cells(&self, block: usize) -> &[(u16, u32)] {
-        &self.cells[self.blocks[block].clone()]
+    /// The fan of a cell of a block, by its number, if it has one.
+    #[inline]
+    pub(super) fn of_cell(&self, block: usize, number: u16) -> Option<u32> {
+        let (start, order) = &self.blocks[block];
+        Some(self.cells[start + order.place(number)?])
     }
 }
 

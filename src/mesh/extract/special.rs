@@ -9,15 +9,17 @@ use glam::{Vec3, Vec3A};
 use rayon::prelude::*;
 
 use super::bulge::{Cover, Ring};
+use super::cells::{CellOrder, CellSet};
 use super::join::{Corners, reserve};
 use super::joined::Joined;
 use super::nearby::{Nearby, Vertex};
 use super::samples::{Samples, cell_number, cell_of};
+use super::span::Span;
 use super::{ExtractError, Sampler};
 use crate::mesh::bulk::Bulk;
-use crate::mesh::feature::{Candidate, Refiner, Segment};
+use crate::mesh::feature::{Candidate, Refiner, Segment, Slope};
 use crate::mesh::loops::{CellLoop, MOST};
-use crate::mesh::signs::{BLOCK, for_each_cell};
+use crate::mesh::signs::for_each_cell;
 use crate::mesh::table::CaseTable;
 use crate::run::{Meter, Run};
 
@@ -42,12 +44,12 @@ pub(super) struct Special {
 
 /// The special cells of consecutive blocks, each list in the order of the blocks; those of a block are in the order of
 /// the lengths of their loops.
-#[derive(Clone, Default)]
+#[derive(Default)]
 struct Lists {
     /// Those with a single loop whose normals spread, or that have joined faces.
     candidates: Vec<Candidate>,
-    /// Their numbers in their blocks.
-    numbers: Vec<u16>,
+    /// By block, the places of its candidates among these, in the order of their numbers.
+    order: Vec<u16>,
     /// The segments of all candidates.
     segments: Vec<Segment>,
     /// The others, by number, and how many triangles each has.
@@ -56,9 +58,11 @@ struct Lists {
 }
 
 /// Where the lists have what belongs to a block.
-#[derive(Clone, Default)]
+#[derive(Default)]
 struct OfBlock {
     candidates: Range<usize>,
+    /// Where these are in their order.
+    order: CellOrder,
     /// None for a block that is even: all its cells have the triangles of the table.
     cells: Option<Range<usize>>,
     plain: Range<usize>,
@@ -173,8 +177,7 @@ impl Special {
         let queue = Mutex::new(Queue { samples, all, in_table, segments: 0, waiting });
         let lock = || queue.lock().unwrap_or_else(PoisonError::into_inner);
         let of_chunk = |worker: &mut Worker<S>, (chunk, even): (usize, &[bool])| {
-            let mut lists = std::mem::take(&mut worker.lists);
-            lists.clear();
+            let mut lists = Lists::with_room(worker.room);
             let begun = lock().begin(chunk);
             let in_turn = begun.is_some();
             let mut plain = begun.unwrap_or_else(|| std::mem::take(&mut worker.plain).cleared());
@@ -188,10 +191,8 @@ impl Special {
                 block.plain = start..plain.triangles.len();
                 lists.blocks.push(block);
             }
-            // Copies take no more memory than they need.
-            let copy = lists.clone();
-            worker.lists = lists;
-            lock().end(chunk, copy, &mut plain, in_turn);
+            worker.room = lists.fit();
+            lock().end(chunk, lists, &mut plain, in_turn);
             if !in_turn {
                 worker.plain = plain;
             }
@@ -232,8 +233,8 @@ impl Special {
     /// The candidate of a block that is a cell, given by its number.
     pub(super) fn candidate(&self, block: usize, cell: u16) -> Option<&Candidate> {
         let (lists, of_block) = self.at(block);
-        let nth = lists.numbers[of_block.candidates.clone()].iter().position(|&number| number == cell)?;
-        Some(&lists.candidates[of_block.candidates.start + nth])
+        let place = of_block.candidates.start + of_block.order.place(cell)?;
+        Some(&lists.candidates[of_block.candidates.start + usize::from(lists.order[place])])
     }
 
     /// The segments of a candidate of a block.
@@ -251,14 +252,13 @@ impl Special {
         cells: impl Iterator<Item = u16>,
         (holes, free): (&mut Vec<usize>, &mut Vec<u32>),
     ) {
-        let mut bits = [0_u64; BLOCK * BLOCK * BLOCK / 64];
-        cells.for_each(|number| bits[usize::from(number) / 64] |= 1 << (number % 64));
+        let dropped: CellSet = cells.collect();
         let (lists, of_block) = self.at(block);
         let mut end = of_block.plain.start;
         let mut next = |number: u16, count: usize| {
             let start = end;
             end += count;
-            if bits[usize::from(number) / 64] >> (number % 64) & 1 == 1 {
+            if dropped.has(number) {
                 holes.extend(start..end);
                 let first = self.plain.triangles[start..end].first().map(|triangle| triangle[0]);
                 free.extend(first.filter(|&vertex| vertex >= samples.vertices()));
@@ -281,7 +281,8 @@ struct Worker<S: Sampler> {
     /// The cells at hand with a single loop, by the length of that: their numbers and cases.
     by_length: [Vec<(u16, u8)>; MOST + 1],
     refiner: Refiner,
-    lists: Lists,
+    /// How long the last lists were.
+    room: [usize; 4],
     plain: Plain,
 }
 
@@ -293,7 +294,7 @@ impl<S: Sampler> Worker<S> {
             corners: Corners::new(),
             by_length: Default::default(),
             refiner: Refiner::default(),
-            lists: Lists::default(),
+            room: [0; 4],
             plain: Plain::default(),
         }
     }
@@ -330,12 +331,25 @@ impl Plain {
 }
 
 impl Lists {
-    fn clear(&mut self) {
-        self.candidates.clear();
-        self.numbers.clear();
-        self.segments.clear();
-        self.cells.clear();
-        self.blocks.clear();
+    /// Empty lists with room for about as much as others have.
+    fn with_room(lengths: [usize; 4]) -> Lists {
+        let [candidates, order, segments, cells] = lengths.map(|length| length + length / 4);
+        Lists {
+            candidates: Vec::with_capacity(candidates),
+            order: Vec::with_capacity(order),
+            segments: Vec::with_capacity(segments),
+            cells: Vec::with_capacity(cells),
+            blocks: Vec::with_capacity(AT_ONCE),
+        }
+    }
+
+    /// Gives back the room that is left; tells how long they are.
+    fn fit(&mut self) -> [usize; 4] {
+        self.candidates.shrink_to_fit();
+        self.order.shrink_to_fit();
+        self.segments.shrink_to_fit();
+        self.cells.shrink_to_fit();
+        [self.candidates.len(), self.order.len(), self.segments.len(), self.cells.len()]
     }
 
     /// Adds what is special in block `n`.
@@ -360,33 +374,48 @@ impl Lists {
             let faces = if has_joined { joined.of(samples, cell(), case) } else { 0 };
             match &loops[usize::from(case)] {
                 Some(outline) if faces == 0 => by_length[outline.len()].push((cell_number(within), case)),
-                _ => self.add_other(nearby, (block, within), (case, faces), (refiner, plain)),
+                _ => self.add_other(nearby, within, (case, faces), (refiner, plain)),
             }
         });
         // Cells with loops of one length are looked at by code for that length.
-        self.add_cells::<3>(samples, nearby, (block, &by_length[3]), (refiner, plain));
-        self.add_cells::<4>(samples, nearby, (block, &by_length[4]), (refiner, plain));
-        self.add_cells::<5>(samples, nearby, (block, &by_length[5]), (refiner, plain));
-        self.add_cells::<6>(samples, nearby, (block, &by_length[6]), (refiner, plain));
-        self.add_cells::<7>(samples, nearby, (block, &by_length[7]), (refiner, plain));
-        let (found, segments) = (&mut self.candidates[candidates..], &mut self.segments[segments..]);
-        refiner.refine(found, segments, samples.lattice.step() as f32, |points, out| {
-            sampler.slopes(scratch, n, block, points, out)
+        self.add_cells::<3>(samples, nearby, &by_length[3], (refiner, plain));
+        self.add_cells::<4>(samples, nearby, &by_length[4], (refiner, plain));
+        self.add_cells::<5>(samples, nearby, &by_length[5], (refiner, plain));
+        self.add_cells::<6>(samples, nearby, &by_length[6], (refiner, plain));
+        self.add_cells::<7>(samples, nearby, &by_length[7], (refiner, plain));
+        let slopes = |points: &[Vec3A], out: &mut Vec<Slope>| sampler.slopes(scratch, n, block, points, out);
+        let all = &mut self.candidates;
+        refiner.refine(&mut self.segments[segments..], samples.lattice.step() as f32, slopes, |draft, normal, ring| {
+            let position = nearby.inside(samples, draft.within(), draft.at);
+            // Beyond a face that the surface crosses there is some of it.
+            let crossed = ring.iter().fold(0, |faces, segment| faces | 1 << segment.face);
+            let leaves = draft.planes.crease().is_some_and(|along| !Span::is_shut(draft.at, along, crossed));
+            all.push(draft.done([normal, position], leaves));
         });
-        for candidate in &mut self.candidates[candidates..] {
-            let within = std::array::from_fn(|axis| (candidate.cell[axis] - block[axis]) as usize);
-            candidate.position = nearby.inside(samples, within, candidate.at);
-        }
+        let order = self.order(candidates);
         let (candidates, cells) = (candidates..self.candidates.len(), Some(cells..self.cells.len()));
-        Ok(OfBlock { candidates, cells, plain: 0..0 })
+        Ok(OfBlock { candidates, order, cells, plain: 0..0 })
     }
 
-    /// Adds what cells of a block, given by its first cell, with loops of `N` in the table are to have.
+    /// Notes the order of a block's candidates, the last ones from `first` on.
+    fn order(&mut self, first: usize) -> CellOrder {
+        let candidates = &self.candidates[first..];
+        let order = CellOrder::new(candidates.iter().map(|candidate| candidate.number).collect());
+        self.order.resize(first + candidates.len(), 0);
+        for (n, candidate) in (0..).zip(candidates) {
+            if let Some(place) = order.place(candidate.number) {
+                self.order[first + place] = n;
+            }
+        }
+        order
+    }
+
+    /// Adds what cells of a block with loops of `N` in the table are to have.
     fn add_cells<const N: usize>(
         &mut self,
         samples: &Samples<'_>,
         nearby: &Nearby,
-        (block, cells): ([u32; 3], &[(u16, u8)]),
+        cells: &[(u16, u8)],
         (refiner, plain): (&mut Refiner, &mut Plain),
     ) {
         let loops = CellLoop::table();
@@ -406,7 +435,7 @@ impl Lists {
                 let places = around.map(|vertex| vertex.position - low);
                 let mut segments: [_; N] =
                     std::array::from_fn(|n| Segment::new(vertices[n], ring.normals[n].into(), outline.face(n)));
-                self.add_candidate((block, within), &mut segments, (&ring.normals, &places), refiner);
+                self.add_candidate(within, &mut segments, (&ring.normals, &places), refiner);
                 continue;
             };
             // As many as three bits tell.
@@ -430,12 +459,12 @@ impl Lists {
         }
     }
 
-    /// Adds what a cell of a block, given by its first cell, with several loops or with joined faces is to have.
+    /// Adds what a cell of a block with several loops or with joined faces is to have.
     #[cold]
     fn add_other(
         &mut self,
         nearby: &Nearby,
-        (block, within): ([u32; 3], [usize; 3]),
+        within: [usize; 3],
         (case, faces): (u8, u8),
         (refiner, plain): (&mut Refiner, &mut Plain),
     ) {
@@ -453,7 +482,7 @@ impl Lists {
             let segment =
                 |(n, vertex): (usize, &Vertex)| Segment::new(vertex.number, vertex.normal.into(), outline.face(n));
             let mut segments: Vec<Segment> = around.enumerate().map(segment).collect();
-            return self.add_candidate((block, within), &mut segments, (&normals, &places), refiner);
+            return self.add_candidate(within, &mut segments, (&normals, &places), refiner);
         } else {
             let turned = table.triangles(!case).iter();
             plain.triangles.extend(turned.map(|&[a, b, c]| [corner(a), corner(c), corner(b)]));
@@ -466,17 +495,13 @@ impl Lists {
     #[inline(always)]
     fn add_candidate(
         &mut self,
-        (block, within): ([u32; 3], [usize; 3]),
+        within: [usize; 3],
         segments: &mut [Segment],
-        (normals, places): (&[Vec3A], &[Vec3A]),
+        vertices: (&[Vec3A], &[Vec3A]),
         refiner: &mut Refiner,
     ) {
-        let cell = std::array::from_fn(|axis| block[axis] + within[axis] as u32);
-        let (candidate, sides) = Candidate::new(cell, self.segments.len(), segments, places);
-        refiner.add(vector(within), candidate.at, (normals, places), sides);
+        refiner.add((cell_number(within), vector(within)), (self.segments.len(), segments), vertices);
         self.segments.extend_from_slice(segments);
-        self.numbers.push(cell_number(within));
-        self.candidates.push(candidate);
     }
 }
 

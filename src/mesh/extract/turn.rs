@@ -43,18 +43,21 @@ impl Fans {
         let found: Result<Vec<Vec<Turned>>, Cancelled> =
             all.fans.par_chunks(AT_ONCE).enumerate().map(of_fans).collect();
         let fans = self.fans.len() as u32;
-        for Turned { segments, fans: [low, high], turn } in found?.into_iter().flatten() {
-            let across = match turn {
-                Turn::Edge => [high, low],
-                Turn::Point(at) => {
-                    let normals = segments.map(|[list, n]| self.segments[list as usize][n as usize].normal);
-                    self.bend([low, high], at, (normals[0] + normals[1]).normalize_or(normals[0]));
+        for Turned { fans: [low, high], segments, at } in found?.into_iter().flatten() {
+            let places = [(low, segments[0]), (high, segments[1])].map(|(fan, nth)| {
+                let fan = &self.fans[fan as usize];
+                (fan.list as usize, fan.segments.start as usize + usize::from(nth))
+            });
+            let across = match at {
+                None => [high, low],
+                Some(at) => {
+                    let normals = places.map(|(list, n)| self.segments[list][n].normal);
+                    self.bend([low, high], *at, (normals[0] + normals[1]).normalize_or(normals[0]));
                     [fans + self.points.len() as u32 - 1; 2]
                 }
             };
-            for (segment, across) in segments.into_iter().zip(across) {
-                let [list, segment] = segment;
-                self.segments[list as usize][segment as usize].turn(across);
+            for ((list, segment), across) in places.into_iter().zip(across) {
+                self.segments[list][segment].turn(across);
             }
         }
         Ok(())
@@ -74,8 +77,7 @@ impl Fans {
         let mut cell = segment.cell(below.span.low);
         cell[axis] += 1;
         let (block, within) = split_cell(cell);
-        let (cells, number) = (self.cells(samples.find_near(below.block as usize, block)?), cell_number(within));
-        let high = cells.iter().find(|&&(cell, _)| cell == number)?.1;
+        let high = self.of_cell(samples.find_near(below.block as usize, block)?, cell_number(within))?;
         let above = &self.fans[high as usize];
         let (a, b) = (below.at.as_dvec3(), above.at.as_dvec3());
         // What the two have in common: a part of a plane of the lattice.
@@ -145,27 +147,19 @@ impl Fans {
             other.from == next(nth) && other.face + 1 == segment.face && other.cell(above.span.low) == cell
         };
         let other = self.of(high as usize).iter().position(is_same)?;
-        let place = |fan: &Fan, nth: usize| [fan.list, fan.segments.start + nth as u32];
-        let segments = [place(below, nth), place(above, other)];
-        let turn = if is_straight { Turn::Edge } else { Turn::Point(bent) };
-        Some(Turned { segments, fans: [low as u32, high], turn })
+        let segments = [nth as u16, other as u16];
+        Some(Turned { fans: [low as u32, high], segments, at: (!is_straight).then(|| Box::new(bent)) })
     }
 }
 
-/// An edge between two fans that is turned.
+/// An edge between two fans that is turned: to the straight line from one feature point to the other, or to a way by a
+/// point between the two.
 struct Turned {
-    /// The lists of its segments and their places there, those of the lower fan first.
-    segments: [[u32; 2]; 2],
     fans: [u32; 2],
-    turn: Turn,
-}
-
-/// What the edge between two fans is turned to.
-enum Turn {
-    /// The straight line from one feature point to the other.
-    Edge,
-    /// A way by a point between the two.
-    Point(Vec3),
+    /// The places of its segments in the rings of the two.
+    segments: [u16; 2],
+    /// Few have one.
+    at: Option<Box<Vec3>>,
 }
 
 /// The number of a point that is no vertex.
