@@ -2,6 +2,8 @@
 
 use std::ops::{Deref, DerefMut};
 
+use rayon::prelude::*;
+
 /// Bytes that are given back at once.
 const PIECE: usize = 1 << 25;
 
@@ -14,6 +16,16 @@ impl<T: Send> Bulk<T> {
     /// The list itself.
     pub(super) fn into_vec(mut self) -> Vec<T> {
         std::mem::take(&mut self.0)
+    }
+}
+
+impl Bulk<[u32; 3]> {
+    /// A list of zeros, written by all threads: that is when the system finds the memory.
+    pub(super) fn zeroed(length: usize) -> Bulk<[u32; 3]> {
+        match rayon::current_num_threads() {
+            1 => Bulk(vec![[0; 3]; length]),
+            _ => Bulk(rayon::iter::repeat_n([0; 3], length).collect()),
+        }
     }
 }
 

@@ -222,7 +222,7 @@ impl<'a> Parts<'a> {
         let meter = Meter::new(run, self.blocks.len());
         let counts: Vec<usize> =
             self.parts.iter().map(|batch| batch.iter().map(|part| part.triangles as usize).sum()).collect();
-        let mut triangles = Bulk::from(vec![[0; 3]; counts.iter().sum()]);
+        let mut triangles = Bulk::zeroed(counts.iter().sum());
         let pieces = split(&mut triangles, counts.iter().copied());
         let of_batch = |(corners, watch): &mut (Corners, W), (batch, mut piece): (usize, &mut [[u32; 3]])| {
             for n in batch * BATCH..batch * BATCH + self.parts[batch].len() {
