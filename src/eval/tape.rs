@@ -137,6 +137,17 @@ impl Tape {
         self.origin = origin;
     }
 
+    /// A copy of another tape, relative to another origin, in the memory of this one.
+    pub(crate) fn become_recentred(&mut self, other: &Tape, origin: DVec3) {
+        let (mut frames, mut leaves, mut steps) =
+            (std::mem::take(&mut self.frames), std::mem::take(&mut self.leaves), std::mem::take(&mut self.steps));
+        frames.clone_from(&other.frames);
+        leaves.clone_from(&other.leaves);
+        steps.clone_from(&other.steps);
+        *self = Tape { frames, leaves, steps, rivals: None, ..*other };
+        self.recentre(origin);
+    }
+
     /// Where a single-precision value of a surface program is larger than this in absolute
     /// value, its sign is that of the true value, for points of the region.
     #[must_use]

@@ -45,6 +45,8 @@ pub(super) struct Scratch {
     evaluator: Evaluator,
     /// The tapes of the groups sampled since roots were asked for.
     tapes: Vec<(u32, Tape)>,
+    /// That which slopes were asked of last.
+    copy: Option<Tape>,
     finder: Deciders,
     single: [Vec<f32>; 3],
     slopes: [Vec<f32>; 4],
@@ -94,12 +96,17 @@ impl SolidSampler<'_> {
         &mut tapes[at].1
     }
 
-    /// The tape of a group for slopes: that which its roots were found with, if it is kept. Moved from block to block it
-    /// rounds, so each block starts from the same.
-    fn tape_for_slopes(&self, group: u32) -> Tape {
+    /// The tape of a group for slopes, relative to a point: that which its roots were found with, if it is kept. Moved from
+    /// block to block it rounds, so each block starts from the same.
+    fn tape_for_slopes<'t>(&self, copy: &'t mut Option<Tape>, group: u32, origin: DVec3) -> &'t Tape {
         let kept = self.kept.get(group as usize / BATCH).and_then(OnceLock::get);
         let kept = kept.and_then(|tapes| tapes.iter().find(|(other, _)| *other == group));
-        kept.map_or_else(|| self.tape(group), |(_, tape)| tape.clone())
+        match (kept, &mut *copy) {
+            (Some((_, tape)), Some(copy)) => copy.become_recentred(tape, origin),
+            (Some((_, tape)), none) => none.insert(tape.clone()).recentre(origin),
+            (None, copy) => copy.insert(self.tape(group)).recentre(origin),
+        }
+        copy.get_or_insert_with(|| self.tape(group))
     }
 
     /// Keeps tapes for the slopes that are asked for after all roots.
@@ -242,8 +249,8 @@ impl Sampler for SolidSampler<'_> {
         points: &[Vec3A],
         out: &mut Vec<Slope>,
     ) -> bool {
-        let mut tape = self.tape_for_slopes(self.groups[number]);
-        tape.recentre(self.lattice.node(block[0], block[1], block[2]));
+        let origin = self.lattice.node(block[0], block[1], block[2]);
+        let tape = self.tape_for_slopes(&mut scratch.copy, self.groups[number], origin);
         // The program holds in the block and nowhere else.
         let (high, step) = (Vec3A::splat(BLOCK as f32), self.lattice.step() as f32);
         place(points.iter().map(|p| step * p.clamp(Vec3A::ZERO, high)), &mut scratch.single);
@@ -252,7 +259,7 @@ impl Sampler for SolidSampler<'_> {
         }
         let [x, y, z] = &scratch.single;
         let [value, dx, dy, dz] = &mut scratch.slopes;
-        scratch.evaluator.gradients(&tape, x, y, z, Gradients { value, dx, dy, dz });
+        scratch.evaluator.gradients(tape, x, y, z, Gradients { value, dx, dy, dz });
         out.extend((0..points.len()).map(|n| Slope { value: value[n], gradient: Vec3A::new(dx[n], dy[n], dz[n]) }));
         true
     }

@@ -48,6 +48,9 @@ const LARGEST: u32 = 4;
 
 const _: () = assert!(LARGEST <= Segment::REACH);
 
+/// How much farther from the planes than allowed a first point of a region may be.
+const NO_FARTHER: f32 = 1.5;
+
 /// How often regions may grow so.
 const ROUNDS: usize = 3;
 
@@ -228,7 +231,11 @@ impl<'a> Asker<'a> {
             let cell = std::array::from_fn(|axis| low[axis].saturating_add_signed(at[axis].floor() as i32));
             let span = self.span.union(&Span::single(cell));
             if span != last {
-                wishes.push(Wish { slab, ..self.wish(misfit, span, at, 0.5 * misfit) });
+                // No other point of the box is much closer to the planes.
+                let allowed = 0.5 * misfit;
+                if self.planes.distance(at) <= NO_FARTHER * allowed {
+                    wishes.push(Wish { slab, ..self.wish(misfit, span, at, allowed) });
+                }
                 last = span;
             }
         }
