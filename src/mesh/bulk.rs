@@ -20,12 +20,15 @@ impl<T: Send> Bulk<T> {
 }
 
 impl Bulk<[u32; 3]> {
-    /// A list of zeros, written by all threads: that is when the system finds the memory.
-    pub(super) fn zeroed(length: usize) -> Bulk<[u32; 3]> {
-        match rayon::current_num_threads() {
-            1 => Bulk(vec![[0; 3]; length]),
-            _ => Bulk(rayon::iter::repeat_n([0; 3], length).collect()),
+    /// Adds zeros. One thread leaves it to the system where memory is new; several write them, as it is then that memory
+    /// is found.
+    pub(super) fn add_zeros(&mut self, count: usize) {
+        if rayon::current_num_threads() > 1 {
+            return self.0.par_extend(rayon::iter::repeat_n([0; 3], count));
         }
+        let mut all = vec![[0; 3]; self.0.len() + count];
+        all[..self.0.len()].copy_from_slice(&self.0);
+        self.0 = all;
     }
 }
 

@@ -101,6 +101,12 @@ impl Segment {
         Segment { from, across: Segment::STRAIGHT, normal, place: 0, face, turns: false }
     }
 
+    /// The faces that segments are in, as bits.
+    #[inline(always)]
+    pub(super) fn faces(ring: &[Segment]) -> u8 {
+        ring.iter().fold(0, |faces, segment| faces | 1 << segment.face)
+    }
+
     /// What the edge is turned to, if it is: the fan on the other side by its number, or a point between the two by its
     /// number after those of all fans.
     #[inline]

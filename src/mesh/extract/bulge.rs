@@ -28,7 +28,6 @@
 
 use glam::Vec3A;
 
-use super::nearby::Vertex;
 use crate::mesh::feature::{SMOOTH, differ};
 
 /// How far the two triangles of four vertices may be off the surface in their middles, in cells, before the better
@@ -48,9 +47,8 @@ const RAISED: [f32; 4] = [1.5, 1.345, 1.25, 1.188];
 /// cells of its middle make it no farther off than [`TURNED`] then.
 const SPREAD: f32 = 0.05;
 
-/// The vertices on a cell's loop, in order.
-pub(super) struct Ring<'a, const N: usize> {
-    vertices: [&'a Vertex; N],
+/// The normals at the vertices on a cell's loop, in order.
+pub(super) struct Ring<const N: usize> {
     pub(super) normals: [Vec3A; N],
     /// The sum of the normals.
     sum: Vec3A,
@@ -79,12 +77,11 @@ pub(super) fn is_crease<const N: usize>(normals: &[Vec3A; N]) -> bool {
     are_creased(normals, spread(normals).1)
 }
 
-impl<'a, const N: usize> Ring<'a, N> {
+impl<const N: usize> Ring<N> {
     #[inline(always)]
-    pub(super) fn new(vertices: [&'a Vertex; N]) -> Ring<'a, N> {
-        let normals = vertices.map(|vertex| vertex.normal);
+    pub(super) fn new(normals: [Vec3A; N]) -> Ring<N> {
         let (sum, variance) = spread(&normals);
-        Ring { vertices, normals, sum, variance }
+        Ring { normals, sum, variance }
     }
 
     /// Whether the cell is nearly flat: a few normals in a circle of that diameter are this far from their mean.
@@ -99,14 +96,15 @@ impl<'a, const N: usize> Ring<'a, N> {
         !are_creased(&self.normals, self.variance)
     }
 
-    /// What a smooth cell that is not flat is to have.
+    /// What a smooth cell that is not flat is to have, if it asks where its vertices are, in cells from the block's first
+    /// node.
     #[inline(always)]
-    pub(super) fn cover(&self) -> Cover {
+    pub(super) fn cover(&self, positions: impl FnOnce() -> [Vec3A; N]) -> Cover {
         // A single triangle is small.
         if N == 3 {
             return Cover::Table;
         }
-        let positions = self.vertices.map(|vertex| vertex.position);
+        let positions = positions();
         if N == 4 {
             let [first, second] = diagonals(&positions, &self.normals);
             if first.max(second) <= TURNED {

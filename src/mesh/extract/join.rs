@@ -35,6 +35,9 @@ impl From<Cancelled> for Stop {
 
 /// What looks on while triangles are listed by the case table.
 pub(super) trait Watch {
+    /// Whether it may tell that triangles will not do.
+    const STOPS: bool = true;
+
     /// A vertex on an edge of the next block's cells, and its place among their [`Corners`].
     fn note(&mut self, place: usize, vertex: u32);
 
@@ -44,6 +47,8 @@ pub(super) trait Watch {
 
 /// All will do.
 impl Watch for () {
+    const STOPS: bool = false;
+
     #[inline(always)]
     fn note(&mut self, _place: usize, _vertex: u32) {}
 
@@ -222,8 +227,7 @@ impl<'a> Parts<'a> {
         let meter = Meter::new(run, self.blocks.len());
         let counts: Vec<usize> =
             self.parts.iter().map(|batch| batch.iter().map(|part| part.triangles as usize).sum()).collect();
-        let mut triangles = Bulk::zeroed(counts.iter().sum());
-        let pieces = split(&mut triangles, counts.iter().copied());
+        let mut triangles = Bulk::default();
         let of_batch = |(corners, watch): &mut (Corners, W), (batch, mut piece): (usize, &mut [[u32; 3]])| {
             for n in batch * BATCH..batch * BATCH + self.parts[batch].len() {
                 meter.step()?;
@@ -237,11 +241,21 @@ impl<'a> Parts<'a> {
             Ok(())
         };
         let worker = || (Corners::new(), watch());
-        match pieces.into_par_iter().enumerate().map_init(worker, of_batch).collect::<Result<(), Stop>>() {
-            Ok(()) => Ok(Some(triangles)),
-            Err(Stop::Open) => Ok(None),
-            Err(Stop::Error(error)) => Err(error),
+        // What watches most often has seen enough in the first batch: no room is made for more.
+        let all = counts.len();
+        let first = if W::STOPS { all.min(1) } else { all };
+        for batches in [0..first, first..all] {
+            let (start, counts) = (triangles.len(), &counts[batches.clone()]);
+            triangles.add_zeros(counts.iter().sum());
+            let pieces = split(&mut triangles[start..], counts.iter().copied());
+            let pieces = batches.into_par_iter().zip(pieces);
+            match pieces.map_init(worker, of_batch).collect::<Result<(), Stop>>() {
+                Ok(()) => {}
+                Err(Stop::Open) => return Ok(None),
+                Err(Stop::Error(error)) => return Err(error),
+            }
         }
+        Ok(Some(triangles))
     }
 
     /// Lists the triangles of the cells of block `n` by the case table, in the order of the cells. There is room for

@@ -128,8 +128,7 @@ pub(super) fn regions(
         for block in (0..blocks).filter(|_| round == 0) {
             let leaves = special.candidates(block).iter().filter(|candidate| candidate.leaves);
             for candidate in leaves.filter(|candidate| known.own_taken(block, candidate.number).is_none()) {
-                let ring = special.segments(block, candidate);
-                let crossed = ring.iter().fold(0, |faces, segment| faces | 1 << segment.face);
+                let crossed = Segment::faces(special.segments(block, candidate));
                 known.exits(&Asker::candidate(samples, block, candidate), crossed, &mut wishes);
             }
         }
@@ -231,7 +230,7 @@ impl<'a> Asker<'a> {
             let cell = std::array::from_fn(|axis| low[axis].saturating_add_signed(at[axis].floor() as i32));
             let span = self.span.union(&Span::single(cell));
             if span != last {
-                // No other point of the box is much closer to the planes.
+                // No other point is much closer to the planes.
                 let allowed = 0.5 * misfit;
                 if self.planes.distance(at) <= NO_FARTHER * allowed {
                     wishes.push(Wish { slab, ..self.wish(misfit, span, at, allowed) });

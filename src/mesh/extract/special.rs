@@ -12,7 +12,7 @@ use super::bulge::{Cover, Ring};
 use super::cells::{CellOrder, CellSet};
 use super::join::{Corners, reserve};
 use super::joined::Joined;
-use super::nearby::{Nearby, Vertex};
+use super::nearby::Nearby;
 use super::samples::{Samples, cell_number, cell_of};
 use super::span::Span;
 use super::{ExtractError, Sampler};
@@ -374,7 +374,7 @@ impl Lists {
             let faces = if has_joined { joined.of(samples, cell(), case) } else { 0 };
             match &loops[usize::from(case)] {
                 Some(outline) if faces == 0 => by_length[outline.len()].push((cell_number(within), case)),
-                _ => self.add_other(nearby, within, (case, faces), (refiner, plain)),
+                _ => self.add_other((samples, nearby), within, (case, faces), (refiner, plain)),
             }
         });
         // Cells with loops of one length are looked at by code for that length.
@@ -388,8 +388,8 @@ impl Lists {
         refiner.refine(&mut self.segments[segments..], samples.lattice.step() as f32, slopes, |draft, normal, ring| {
             let position = nearby.inside(samples, draft.within(), draft.at);
             // Beyond a face that the surface crosses there is some of it.
-            let crossed = ring.iter().fold(0, |faces, segment| faces | 1 << segment.face);
-            let leaves = draft.planes.crease().is_some_and(|along| !Span::is_shut(draft.at, along, crossed));
+            let is_shut = |along| Span::is_shut(draft.at, along, Segment::faces(ring));
+            let leaves = draft.planes.crease().is_some_and(|along| !is_shut(along));
             all.push(draft.done([normal, position], leaves));
         });
         let order = self.order(candidates);
@@ -423,16 +423,16 @@ impl Lists {
             let Some(outline) = &loops[usize::from(case)] else { continue };
             let Some(edges) = outline.edges().first_chunk::<N>() else { continue };
             let within = cell_of([0; 3], number).map(|n| n as usize);
-            let around = nearby.around(within, edges);
-            let ring = Ring::new(around);
-            let vertices = around.map(|vertex| vertex.number);
+            let vertices = nearby.around(within, edges);
+            let ring = Ring::new(vertices.map(|vertex| samples.normal(vertex).into()));
+            let positions = || vertices.map(|vertex| nearby.place(samples, vertex));
             let cover = if ring.is_flat() {
                 Cover::Table
             } else if ring.is_smooth() {
-                ring.cover()
+                ring.cover(positions)
             } else {
                 let low = vector(within);
-                let places = around.map(|vertex| vertex.position - low);
+                let places = positions().map(|place| place - low);
                 let mut segments: [_; N] =
                     std::array::from_fn(|n| Segment::new(vertices[n], ring.normals[n].into(), outline.face(n)));
                 self.add_candidate(within, &mut segments, (&ring.normals, &places), refiner);
@@ -463,24 +463,23 @@ impl Lists {
     #[cold]
     fn add_other(
         &mut self,
-        nearby: &Nearby,
+        (samples, nearby): (&Samples<'_>, &Nearby),
         within: [usize; 3],
         (case, faces): (u8, u8),
         (refiner, plain): (&mut Refiner, &mut Plain),
     ) {
-        let all = nearby.all_places(within);
-        let corner = |edge: u8| nearby.vertex(all[usize::from(edge & 15)]).number;
+        let all = nearby.all_around(within);
+        let corner = |edge: u8| all[usize::from(edge & 15)];
         let (table, start) = (CaseTable::get(), plain.triangles.len());
         if faces == 0 {
             plain.triangles.extend(table.triangles(case).iter().map(|triangle| triangle.map(corner)));
         } else if let Some(outline) = CellLoop::single(case, faces) {
             // The table knows nothing of joined faces.
             let low = vector(within);
-            let around = outline.edges().iter().map(|&edge| nearby.vertex(all[usize::from(edge & 15)]));
-            let normals: Vec<Vec3A> = around.clone().map(|vertex| vertex.normal).collect();
-            let places: Vec<Vec3A> = around.clone().map(|vertex| vertex.position - low).collect();
-            let segment =
-                |(n, vertex): (usize, &Vertex)| Segment::new(vertex.number, vertex.normal.into(), outline.face(n));
+            let around = outline.edges().iter().map(|&edge| corner(edge));
+            let normals: Vec<Vec3A> = around.clone().map(|vertex| samples.normal(vertex).into()).collect();
+            let places: Vec<Vec3A> = around.clone().map(|vertex| nearby.place(samples, vertex) - low).collect();
+            let segment = |(n, vertex)| Segment::new(vertex, samples.normal(vertex), outline.face(n));
             let mut segments: Vec<Segment> = around.enumerate().map(segment).collect();
             return self.add_candidate(within, &mut segments, (&normals, &places), refiner);
         } else {

@@ -365,8 +365,8 @@ fn look_at_even_blocks(f: impl Fn(DVec3) -> f64 + Sync, cells: u32, percent: std
     for n in (0..blocks.len()).filter(|&n| even[n]) {
         nearby.load(&samples, n).unwrap();
         for_each_cell(&samples.parts.part(n).signs, |cell, case| {
-            let (places, edges) = (nearby.all_places(cell), CaseTable::get().triangles(case).as_flattened());
-            let normal = |edge: &u8| nearby.vertex(places[usize::from(*edge)]).normal;
+            let (around, edges) = (nearby.all_around(cell), CaseTable::get().triangles(case).as_flattened());
+            let normal = |edge: &u8| Vec3A::from(samples.normal(around[usize::from(*edge)]));
             for (a, b) in edges.iter().flat_map(|a| edges.iter().map(move |b| (a, b))) {
                 assert!(normal(a).distance(normal(b)) < 0.3, "{:?}, {cell:?}", blocks[n]);
             }
