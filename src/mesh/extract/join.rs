@@ -244,7 +244,7 @@ impl<'a> Parts<'a> {
         // What watches most often has seen enough in the first batch: no room is made for more.
         let all = counts.len();
         let first = if W::STOPS { all.min(1) } else { all };
-        for batches in [0..first, first..all] {
+        for batches in [0..first, first..all].into_iter().filter(|batches| !batches.is_empty()) {
             let (start, counts) = (triangles.len(), &counts[batches.clone()]);
             triangles.add_zeros(counts.iter().sum());
             let pieces = split(&mut triangles[start..], counts.iter().copied());
