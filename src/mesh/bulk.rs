@@ -20,13 +20,14 @@ impl<T: Send> Bulk<T> {
 }
 
 impl Bulk<[u32; 3]> {
-    /// Adds zeros. One thread leaves it to the system where memory is new; several write them, as it is then that memory
-    /// is found.
+    /// Adds zeros. What is long is new memory, which is zero, and is found when it is written; so is what is short, or it
+    /// was used before: then several threads clear it.
     pub(super) fn add_zeros(&mut self, count: usize) {
-        if rayon::current_num_threads() > 1 {
+        let length = self.0.len() + count;
+        if rayon::current_num_threads() > 1 && length * size_of::<[u32; 3]>() <= PIECE {
             return self.0.par_extend(rayon::iter::repeat_n([0; 3], count));
         }
-        let mut all = vec![[0; 3]; self.0.len() + count];
+        let mut all = vec![[0; 3]; length];
         all[..self.0.len()].copy_from_slice(&self.0);
         self.0 = all;
     }
