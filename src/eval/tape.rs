@@ -137,7 +137,8 @@ impl Tape {
         self.origin = origin;
     }
 
-    /// A copy of another tape, relative to another origin, in the memory of this one.
+    /// Becomes a copy of another tape, relative to another origin, in memory that it has. It has no rivals: they are of no use
+    /// for gradients.
     pub(crate) fn become_recentred(&mut self, other: &Tape, origin: DVec3) {
         let (mut frames, mut leaves, mut steps) =
             (std::mem::take(&mut self.frames), std::mem::take(&mut self.leaves), std::mem::take(&mut self.steps));

@@ -20,8 +20,8 @@ impl<T: Send> Bulk<T> {
 }
 
 impl Bulk<[u32; 3]> {
-    /// Adds zeros. What is long is new memory, which is zero, and is found when it is written; so is what is short, or it
-    /// was used before: then several threads clear it.
+    /// Adds zeros. A long list is of memory that the system gives as zeros when it is first written. That for a short one
+    /// may have been used before: it is cleared by all threads, if there are several.
     pub(super) fn add_zeros(&mut self, count: usize) {
         let length = self.0.len() + count;
         if rayon::current_num_threads() > 1 && length * size_of::<[u32; 3]>() <= PIECE {

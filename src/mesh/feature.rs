@@ -133,7 +133,6 @@ impl Segment {
 
 /// A cell whose surface is not smooth. Its segments, in order, are in a list of those of many cells. There are many: it is
 /// kept small.
-#[derive(Clone)]
 pub(super) struct Candidate {
     /// The place of the first segment in the list, and the number of them.
     first: u32,
@@ -229,9 +228,7 @@ pub(super) struct Draft {
     /// How many sides there are, and which of them the vertices of its segments are on, in order, four bits each.
     count: u8,
     on: u64,
-    number: u16,
-    /// The first node of the cell, from that of the block, in cells.
-    low: Vec3A,
+    pub(super) number: u16,
     pub(super) at: Vec3A,
     pub(super) planes: Planes,
 }
@@ -248,12 +245,6 @@ impl Draft {
         let Draft { first, len, number, at, ref planes, .. } = *self;
         let misfit = planes.distance(at);
         Candidate { first, len, leaves, number, misfit, normal, at: at.into(), planes: planes.packed(), position }
-    }
-
-    /// The cell in its block.
-    #[inline(always)]
-    pub(super) fn within(&self) -> [usize; 3] {
-        self.low.to_array().map(|n| n as usize)
     }
 }
 
@@ -294,7 +285,7 @@ impl Refiner {
         let (planes, starts) = tangents(segments, places);
         let at = places.iter().sum::<Vec3A>() / places.len() as f32;
         let (first, len) = (first as u32, segments.len() as u8);
-        let mut draft = Draft { first, len, count: 0, on: 0, number, low, at, planes };
+        let mut draft = Draft { first, len, count: 0, on: 0, number, at, planes };
         draft.settle();
         let at = draft.at;
         self.offsets.extend(normals.iter().zip(places).map(|(normal, place)| normal.dot(*place)));
@@ -348,10 +339,10 @@ impl Refiner {
             for (known, (point, slope)) in known[..usize::from(draft.count)].iter_mut().zip(&mut asked) {
                 *known = plane(*point, slope, step);
             }
-            let own = segments.split_off_mut(..usize::from(draft.len)).unwrap_or_default();
-            let (own_offsets, rest) = offsets.split_at(own.len());
+            let ring = segments.split_off_mut(..usize::from(draft.len)).unwrap_or_default();
+            let (own, rest) = offsets.split_at(ring.len());
             offsets = rest;
-            for (segment, offset) in own.iter_mut().zip(own_offsets) {
+            for (segment, offset) in ring.iter_mut().zip(own) {
                 let own = Vec3A::from(segment.normal);
                 first.get_or_insert(own);
                 match known[(on & 15) as usize] {
@@ -374,7 +365,7 @@ impl Refiner {
                 draft.settle();
             }
             // On both sides of a thin wall they may be no more than nothing together.
-            each(draft, sum.normalize_or(first.unwrap_or_default()).into(), own);
+            each(draft, sum.normalize_or(first.unwrap_or_default()).into(), ring);
         }
     }
 }

@@ -101,12 +101,16 @@ impl SolidSampler<'_> {
     fn tape_for_slopes<'t>(&self, copy: &'t mut Option<Tape>, group: u32, origin: DVec3) -> &'t Tape {
         let kept = self.kept.get(group as usize / BATCH).and_then(OnceLock::get);
         let kept = kept.and_then(|tapes| tapes.iter().find(|(other, _)| *other == group));
-        match (kept, &mut *copy) {
-            (Some((_, tape)), Some(copy)) => copy.become_recentred(tape, origin),
-            (Some((_, tape)), none) => none.insert(tape.clone()).recentre(origin),
-            (None, copy) => copy.insert(self.tape(group)).recentre(origin),
-        }
-        copy.get_or_insert_with(|| self.tape(group))
+        let tape = match (kept, copy) {
+            (Some((_, kept)), Some(copy)) => {
+                copy.become_recentred(kept, origin);
+                return copy;
+            }
+            (Some((_, kept)), none) => none.insert(kept.clone()),
+            (None, copy) => copy.insert(self.tape(group)),
+        };
+        tape.recentre(origin);
+        tape
     }
 
     /// Keeps tapes for the slopes that are asked for after all roots.

@@ -241,7 +241,7 @@ impl<'a> Parts<'a> {
             Ok(())
         };
         let worker = || (Corners::new(), watch());
-        // What watches most often has seen enough in the first batch: no room is made for more.
+        // Most often the first batch tells that triangles will not do: room for those of others is made after it.
         let all = counts.len();
         let first = if W::STOPS { all.min(1) } else { all };
         for batches in [0..first, first..all].into_iter().filter(|batches| !batches.is_empty()) {

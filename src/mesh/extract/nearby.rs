@@ -12,17 +12,20 @@ pub(super) struct Nearby {
     corners: Corners,
     /// The nodes on the diagonal: the coordinates of all.
     nodes: [Vec3; SIDE],
+    /// What takes lengths to cells.
+    share: f32,
 }
 
 impl Nearby {
     pub(super) fn new() -> Nearby {
-        Nearby { corners: Corners::new(), nodes: [Vec3::ZERO; SIDE] }
+        Nearby { corners: Corners::new(), nodes: [Vec3::ZERO; SIDE], share: 1.0 }
     }
 
     /// Becomes that of block `n`; an error if the owner of a vertex is not there.
     pub(super) fn load(&mut self, samples: &Samples<'_>, n: usize) -> Result<(), ExtractError> {
         let block = samples.blocks()[n];
         self.nodes = std::array::from_fn(|n| samples.node(block.map(|first| first + n as u32)));
+        self.share = 1.0 / samples.lattice.step() as f32;
         samples.parts.number(n, |place, vertex| self.corners.note(place, vertex))
     }
 
@@ -49,7 +52,6 @@ impl Nearby {
     /// Where a vertex is, in cells from the block's first node.
     #[inline(always)]
     pub(super) fn place(&self, samples: &Samples<'_>, vertex: u32) -> Vec3A {
-        let share = 1.0 / samples.lattice.step() as f32;
-        share * Vec3A::from(samples.position(vertex) - self.nodes[0])
+        self.share * Vec3A::from(samples.position(vertex) - self.nodes[0])
     }
 }

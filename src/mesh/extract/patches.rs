@@ -89,8 +89,8 @@ impl<'a> Patches<'a> {
     /// All as one, if they make a disc, given the box that they are in.
     ///
     /// A segment in a face between two cells of the box is that of both, one in a side of the box that of one. A vertex
-    /// is where a loop goes from a face to the next: it is within the box if none of them is in a side, and four cells
-    /// have it then.
+    /// is where a loop goes from a face to the next: it is within the box if neither face is in a side; all four cells
+    /// around its edge are in the box then, and each has it once.
     pub(super) fn glued(&mut self, span: &Span) -> Option<Disc> {
         let Patches { all, own, outer, within, vertices, reached, .. } = self;
         let segments = |patch: &Patch<'a>| match &patch.ring {
@@ -117,7 +117,8 @@ impl<'a> Patches<'a> {
             }
         }
         // Vertices − edges + patches is 1 for a disc. On its boundary there are as many of the one as of the other.
-        if within.len() / 4 + all.len() != shared / 2 + 1 {
+        let is_shared_alike = within.len() % 4 == 0 && shared % 2 == 0;
+        if !is_shared_alike || within.len() / 4 + all.len() != shared / 2 + 1 {
             return None;
         }
         let mut ring: Vec<Segment> = Vec::with_capacity(outer.len());
@@ -134,7 +135,8 @@ impl<'a> Patches<'a> {
         if ring.len() != outer.len() || at != first {
             return None;
         }
-        // What does not hang together with the rest is closed: it is around a node, with six vertices or more.
+        // As there is a single boundary, what does not hang together with the rest is closed. There is a node in it, and it
+        // is crossed on all six ways along the axes from that: it has six vertices within, or more.
         if within.len() / 4 >= 6 {
             vertices.clear();
             for (patch, number) in all.iter().zip(0..) {

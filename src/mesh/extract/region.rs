@@ -48,7 +48,7 @@ const LARGEST: u32 = 4;
 
 const _: () = assert!(LARGEST <= Segment::REACH);
 
-/// How much farther from the planes than allowed a first point of a region may be.
+/// How much farther from the planes than allowed the point may be that a wish for a region starts from.
 const NO_FARTHER: f32 = 1.5;
 
 /// How often regions may grow so.
@@ -230,7 +230,7 @@ impl<'a> Asker<'a> {
             let cell = std::array::from_fn(|axis| low[axis].saturating_add_signed(at[axis].floor() as i32));
             let span = self.span.union(&Span::single(cell));
             if span != last {
-                // No other point is much closer to the planes.
+                // What is much farther off than allowed here will hardly be close enough in a region.
                 let allowed = 0.5 * misfit;
                 if self.planes.distance(at) <= NO_FARTHER * allowed {
                     wishes.push(Wish { slab, ..self.wish(misfit, span, at, allowed) });

@@ -42,13 +42,13 @@ pub(super) struct Special {
     plain: Plain,
 }
 
-/// The special cells of consecutive blocks, each list in the order of the blocks; those of a block are in the order of
-/// the lengths of their loops.
+/// The special cells of consecutive blocks, each list in the order of the blocks; candidates and other cells of a block are
+/// in the order that they are looked at in.
 #[derive(Default)]
 struct Lists {
     /// Those with a single loop whose normals spread, or that have joined faces.
     candidates: Vec<Candidate>,
-    /// By block, the places of its candidates among these, in the order of their numbers.
+    /// By block, its candidates in the order of their numbers: each by its place among those of the block.
     order: Vec<u16>,
     /// The segments of all candidates.
     segments: Vec<Segment>,
@@ -61,7 +61,7 @@ struct Lists {
 #[derive(Default)]
 struct OfBlock {
     candidates: Range<usize>,
-    /// Where these are in their order.
+    /// Which cells they are: tells their places in the list of the order, from the block's first.
     order: CellOrder,
     /// None for a block that is even: all its cells have the triangles of the table.
     cells: Option<Range<usize>>,
@@ -69,7 +69,7 @@ struct OfBlock {
 }
 
 /// The triangles of cells without fans.
-#[derive(Clone, Default)]
+#[derive(Default)]
 pub(super) struct Plain {
     pub(super) triangles: Bulk<[u32; 3]>,
     /// Positions and normals of vertices in the middle of smooth cells. They follow those on edges.
@@ -386,19 +386,20 @@ impl Lists {
         let slopes = |points: &[Vec3A], out: &mut Vec<Slope>| sampler.slopes(scratch, n, block, points, out);
         let all = &mut self.candidates;
         refiner.refine(&mut self.segments[segments..], samples.lattice.step() as f32, slopes, |draft, normal, ring| {
-            let position = nearby.inside(samples, draft.within(), draft.at);
+            let within = cell_of([0; 3], draft.number).map(|n| n as usize);
+            let position = nearby.inside(samples, within, draft.at);
             // Beyond a face that the surface crosses there is some of it.
             let is_shut = |along| Span::is_shut(draft.at, along, Segment::faces(ring));
             let leaves = draft.planes.crease().is_some_and(|along| !is_shut(along));
             all.push(draft.done([normal, position], leaves));
         });
-        let order = self.order(candidates);
+        let order = self.note_order(candidates);
         let (candidates, cells) = (candidates..self.candidates.len(), Some(cells..self.cells.len()));
         Ok(OfBlock { candidates, order, cells, plain: 0..0 })
     }
 
     /// Notes the order of a block's candidates, the last ones from `first` on.
-    fn order(&mut self, first: usize) -> CellOrder {
+    fn note_order(&mut self, first: usize) -> CellOrder {
         let candidates = &self.candidates[first..];
         let order = CellOrder::new(candidates.iter().map(|candidate| candidate.number).collect());
         self.order.resize(first + candidates.len(), 0);
