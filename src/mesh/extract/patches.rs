@@ -172,3 +172,90 @@ fn hangs_together(vertices: &[(u32, u32)], reached: &mut [bool]) -> bool {
     }
     reached.iter().all(|patch| *patch)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::{BTreeMap, BTreeSet};
+
+    use glam::Vec3;
+
+    use super::*;
+    use crate::mesh::table::{EDGE_CORNERS, edge_axis};
+
+    /// The patches of a box of cells, given which nodes are inside: their cells and their segments.
+    fn patches_of(span: &Span, is_inside: impl Fn([u32; 3]) -> bool) -> Vec<([u32; 3], Vec<Segment>)> {
+        let corner = |cell: [u32; 3], c: u8| std::array::from_fn(|axis| cell[axis] + u32::from(c >> axis & 1));
+        let mut all = Vec::new();
+        for cell in span.cells() {
+            let case = (0..8).fold(0, |case, c| case | u8::from(is_inside(corner(cell, c))) << c);
+            let vertex = |edge: u8| {
+                let [x, y, z] = corner(cell, EDGE_CORNERS[usize::from(edge)][0]);
+                x + 8 * (y + 8 * (z + 8 * u32::from(edge_axis(edge))))
+            };
+            for outline in CellLoop::all(case, 0) {
+                let segment = |(n, &edge): (usize, &u8)| Segment::new(vertex(edge), Vec3::X, outline.face(n));
+                all.push((cell, outline.edges().iter().enumerate().map(segment).collect()));
+            }
+        }
+        all
+    }
+
+    /// The same from the segments alone: those that no other runs along the other way are the boundary.
+    fn glued_by_pairs(all: &[([u32; 3], Vec<Segment>)]) -> Option<(Vec<u32>, Vec<u32>)> {
+        let sides = |(n, (_, ring)): (usize, &([u32; 3], Vec<Segment>))| {
+            let next = ring.iter().cycle().skip(1).map(|segment| segment.from);
+            ring.iter().zip(next).map(|(segment, to)| (segment.from, to, n)).collect::<Vec<_>>()
+        };
+        let sides: Vec<(u32, u32, usize)> = all.iter().enumerate().flat_map(sides).collect();
+        let pairs: BTreeSet<(u32, u32)> = sides.iter().map(|&(from, to, _)| (from, to)).collect();
+        let outer: Vec<(u32, u32)> =
+            pairs.iter().filter(|&&(from, to)| !pairs.contains(&(to, from))).copied().collect();
+        let next: BTreeMap<u32, u32> = outer.iter().copied().collect();
+        let start = sides.iter().find(|&&(from, to, _)| !pairs.contains(&(to, from)))?.0;
+        let mut ring = vec![start];
+        while let Some(&to) = next.get(ring.last()?).filter(|&&to| to != start) {
+            ring.push(to);
+        }
+        let vertices: BTreeSet<u32> = pairs.iter().map(|&(from, _)| from).collect();
+        let edges = outer.len() + (sides.len() - outer.len()) / 2;
+        let mut reached = BTreeSet::from([0]);
+        while let Some(&(.., patch)) = sides.iter().find(|&&(from, _, patch)| {
+            let is_near = |&(other, _, near): &(u32, u32, usize)| other == from && reached.contains(&near);
+            !reached.contains(&patch) && sides.iter().any(is_near)
+        }) {
+            reached.insert(patch);
+        }
+        let is_disc = vertices.len() + all.len() == edges + 1 && reached.len() == all.len();
+        let within = vertices.into_iter().filter(|vertex| !ring.contains(vertex)).collect();
+        (ring.len() == outer.len() && is_disc).then_some((ring, within))
+    }
+
+    #[test]
+    fn faces_tell_what_pairs_of_segments_do() {
+        let mut state = 1_u64;
+        let mut next = move |below: u32| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) as u32 % below
+        };
+        let mut discs = 0;
+        for _ in 0..4000 {
+            let low = [next(3), next(3), next(3)];
+            let span = Span { low, high: low.map(|at| at + 1 + next(4)) };
+            // A plane, with a few nodes turned to the other side, or all at random.
+            let (normal, level, noise) = ([next(5), next(5), next(5)], next(40), [0, 1, 4, 50][next(4) as usize]);
+            let turned: Vec<bool> = (0..512).map(|_| next(100) < noise).collect();
+            let is_inside = |[x, y, z]: [u32; 3]| {
+                let height = normal[0] * x + normal[1] * y + normal[2] * z;
+                (height < level) != turned[(x + 8 * (y + 8 * z)) as usize]
+            };
+            let all = patches_of(&span, is_inside);
+            let mut patches = Patches::default();
+            all.iter().for_each(|(cell, ring)| patches.add(*cell, ring, Planes::NONE));
+            let disc = patches.glued(&span);
+            let found = disc.map(|Disc { ring, within }| (ring.iter().map(|s| s.from).collect::<Vec<_>>(), within));
+            assert_eq!(found, glued_by_pairs(&all), "{span:?}");
+            discs += usize::from(found.is_some());
+        }
+        assert!(discs > 500, "{discs}");
+    }
+}
