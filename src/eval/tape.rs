@@ -5,12 +5,14 @@
 //! coordinates is evaluated as accurately as one at it.
 
 mod rivals;
+mod seen;
 
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
 use self::rivals::Rivals;
+use self::seen::Seen;
 use super::fold::join;
 use super::program::{Op, Program};
 use super::register::{Step, schedule};
@@ -79,7 +81,7 @@ impl Tape {
             let map = if slot_of(frame) == 0 { *to_local * rebase } else { *to_local };
             Placement::new(&map, of.scale, of.shift)
         };
-        let mut seen = vec![Seen { zone: world, error: 0.0 }];
+        let mut seen = vec![Seen::world(world)];
         let mut frames = Vec::new();
         for frame in program.frames.iter().filter_map(|&number| program.scene.frame(number)) {
             let from = slot_of(frame.parent);
@@ -154,40 +156,6 @@ impl Tape {
     #[must_use]
     pub fn roundoff(&self) -> f64 {
         self.roundoff
-    }
-}
-
-/// How a region looks in a frame, and how far its points may be off in single precision.
-struct Seen {
-    zone: Zone,
-    error: f64,
-}
-
-impl Seen {
-    fn through(&self, to_local: &DAffine3, warp: &dyn AnyWarp) -> Seen {
-        let local = self.zone.mapped(to_local);
-        let stretch = warp.stretch(local.hull());
-        let error = self.coordinate_error(to_local, &local) * stretch + warp.roundoff_over(local.hull());
-        Seen { zone: local.warped(warp), error }
-    }
-
-    /// By how much coordinates after an affine map may be off.
-    fn coordinate_error(&self, to_local: &DAffine3, local: &Zone) -> f64 {
-        let m = to_local.matrix3;
-        self.error * m.abs().row(0).element_sum().max(m.abs().row(1).element_sum()).max(m.abs().row(2).element_sum())
-            + 3e-7 * local.reach()
-    }
-
-    fn leaf_error(&self, to_local: &DAffine3, field: &dyn AnyField) -> f64 {
-        let local = self.zone.mapped(to_local);
-        let reach = local.reach();
-        let own = field.roundoff(reach);
-        // A leaf's bound allows for coordinates that are off by some rounding errors of
-        // their own; more than that counts in proportion.
-        let error = self.coordinate_error(to_local, &local);
-        let factor = if reach > 0.0 { (error / (1e-6 * reach)).max(1.0) } else { 1.0 };
-        let error = own * factor;
-        if error.is_nan() { f64::INFINITY } else { error }
     }
 }
 

@@ -58,6 +58,7 @@ mod joined;
 mod nearby;
 mod neighbours;
 mod patches;
+mod plain;
 mod region;
 mod samples;
 mod sharp;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
-use glam::{Vec3, Vec3A};
+use glam::Vec3A;
 use rayon::prelude::*;
 
 use super::bulge::{Cover, Ring};
@@ -13,10 +13,10 @@ use super::cells::{CellOrder, CellSet};
 use super::join::{Corners, reserve};
 use super::joined::Joined;
 use super::nearby::Nearby;
+use super::plain::Plain;
 use super::samples::{Samples, cell_number, cell_of};
 use super::span::Span;
 use super::{ExtractError, Sampler};
-use crate::mesh::bulk::Bulk;
 use crate::mesh::feature::{Candidate, Refiner, Segment, Slope};
 use crate::mesh::loops::{CellLoop, MOST};
 use crate::mesh::signs::for_each_cell;
@@ -66,16 +66,6 @@ struct OfBlock {
     /// None for a block that is even: all its cells have the triangles of the table.
     cells: Option<Range<usize>>,
     plain: Range<usize>,
-}
-
-/// The triangles of cells without fans.
-#[derive(Default)]
-pub(super) struct Plain {
-    pub(super) triangles: Bulk<[u32; 3]>,
-    /// Positions and normals of vertices in the middle of smooth cells. They follow those on edges.
-    pub(super) tops: [Bulk<Vec3>; 2],
-    /// The first triangle around each of them that is to be numbered anew if others come before it, and how many.
-    around: Vec<(u32, u32)>,
 }
 
 /// Takes what chunks of blocks have as they come, and adds it in their order. A chunk whose turn it is adds to what
@@ -305,28 +295,6 @@ impl<S: Sampler> Worker<S> {
         plain.triangles.resize(start + samples.parts.part(n).triangles as usize, [0; 3]);
         samples.parts.list_triangles(n, (&mut self.corners, &mut ()), &mut plain.triangles[start..])?;
         Ok(OfBlock::default())
-    }
-}
-
-impl Plain {
-    /// The memory, with nothing in it.
-    fn cleared(mut self) -> Plain {
-        self.triangles.clear();
-        self.tops.iter_mut().for_each(|tops| tops.clear());
-        self.around.clear();
-        self
-    }
-
-    /// Adds a vertex in the middle of a cell, and triangles from it to the loop of the cell; there are so many vertices on
-    /// edges.
-    #[inline(always)]
-    fn add_top<const N: usize>(&mut self, at: Vec3, normal: Vec3, vertices: [u32; N], on_edges: u32) {
-        let top = on_edges.wrapping_add(self.tops[0].len() as u32);
-        self.tops[0].push(at);
-        self.tops[1].push(normal);
-        self.around.push((self.triangles.len() as u32, N as u32));
-        let triangles: [_; N] = std::array::from_fn(|n| [top, vertices[n], vertices[(n + 1) % N]]);
-        self.triangles.extend_from_slice(&triangles);
     }
 }
 

@@ -1,0 +1,37 @@
+//! What cells without fans have.
+
+use glam::Vec3;
+
+use crate::mesh::bulk::Bulk;
+
+/// The triangles of cells without fans.
+#[derive(Default)]
+pub(super) struct Plain {
+    pub(super) triangles: Bulk<[u32; 3]>,
+    /// Positions and normals of vertices in the middle of smooth cells. They follow those on edges.
+    pub(super) tops: [Bulk<Vec3>; 2],
+    /// The first triangle around each of them that is to be numbered anew if others come before it, and how many.
+    pub(super) around: Vec<(u32, u32)>,
+}
+
+impl Plain {
+    /// The memory, with nothing in it.
+    pub(super) fn cleared(mut self) -> Plain {
+        self.triangles.clear();
+        self.tops.iter_mut().for_each(|tops| tops.clear());
+        self.around.clear();
+        self
+    }
+
+    /// Adds a vertex in the middle of a cell, and triangles from it to the loop of the cell; there are so many vertices on
+    /// edges.
+    #[inline(always)]
+    pub(super) fn add_top<const N: usize>(&mut self, at: Vec3, normal: Vec3, vertices: [u32; N], on_edges: u32) {
+        let top = on_edges.wrapping_add(self.tops[0].len() as u32);
+        self.tops[0].push(at);
+        self.tops[1].push(normal);
+        self.around.push((self.triangles.len() as u32, N as u32));
+        let triangles: [_; N] = std::array::from_fn(|n| [top, vertices[n], vertices[(n + 1) % N]]);
+        self.triangles.extend_from_slice(&triangles);
+    }
+}
