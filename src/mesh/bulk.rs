@@ -1,4 +1,4 @@
-//! Long lists that nobody waits for when they are dropped.
+//! Long lists that nobody waits for when they are made or dropped.
 
 use std::ops::{Deref, DerefMut};
 
