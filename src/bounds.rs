@@ -47,6 +47,13 @@ pub struct Bounds {
     pub max: DVec3,
 }
 
+/// The empty box.
+impl Default for Bounds {
+    fn default() -> Bounds {
+        Bounds::EMPTY
+    }
+}
+
 impl Bounds {
     /// The box that holds no point: `min = +∞`, `max = −∞`.
     pub const EMPTY: Bounds = Bounds { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };

@@ -15,6 +15,7 @@
 //! Vertices are the same if their index is. Positions are compared as they are, without a
 //! tolerance, and signs are exact: the report holds for the f32 numbers that are written.
 
+mod buckets;
 mod fans;
 mod meet;
 mod overlap;
@@ -24,14 +25,18 @@ use std::fmt;
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
+use self::buckets::{BUCKETS, sorted};
 use self::fans::{Fans, repeats};
 use self::meet::is_degenerate;
 use self::overlap::Overlaps;
 use crate::bounds::Bounds;
 use crate::geom::Mesh;
+use crate::{Cancelled, Run};
 
 /// The findings of [`Mesh::check`].
-#[derive(Clone, Debug, PartialEq)]
+///
+/// The default is that of a mesh without triangles.
+#[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct MeshReport {
     /// Number of triangles.
@@ -181,8 +186,42 @@ impl Mesh {
     /// ```
     #[must_use]
     pub fn check(&self) -> MeshReport {
-        let (fans, measure) = rayon::join(|| Fans::new(self), || self.measure());
-        let overlaps = Overlaps::find(self, &fans);
+        // A run that nobody else holds is not cancelled.
+        self.check_with(&Run::default()).unwrap_or_else(|Cancelled| MeshReport::default())
+    }
+
+    /// [`check`](Mesh::check) with a choice of threads, a cancel token and a progress sink.
+    ///
+    /// ```
+    /// use rvachev::{Cancelled, MeshSettings, Run, Solid};
+    ///
+    /// let mesh = Solid::torus(2.0, 0.5).mesh(&MeshSettings::default())?;
+    /// let run = Run { threads: 1, ..Run::default() };
+    /// assert_eq!(mesh.check_with(&run)?, mesh.check());
+    /// run.cancel.cancel();
+    /// assert_eq!(mesh.check_with(&run), Err(Cancelled));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Cancelled`] if the token was.
+    pub fn check_with(&self, run: &Run) -> Result<MeshReport, Cancelled> {
+        let run = run.stage(0.0, 1.0);
+        let report = run.install(|| self.examined(&run))?;
+        run.report(1.0);
+        Ok(report)
+    }
+
+    fn examined(&self, run: &Run) -> Result<MeshReport, Cancelled> {
+        // How long each stage takes, more or less; nobody knows how long the cells take.
+        let cells = if self.has_late_count() { 0.5 } else { 0.0 };
+        let [to_turn, to_compare, to_sort, to_count] = run.stages([0.4, 0.5, 0.1, cells]);
+        let (fans, measure) = rayon::join(|| Fans::new(self, &to_turn), || self.measure());
+        let fans = fans?;
+        let overlaps = Overlaps::find(self, &fans, &to_compare)?;
+        let degenerate_triangles = degenerate_triangles(self);
+        to_sort.check()?;
+        let duplicate_vertices = duplicate_vertices(self, &to_sort)?;
         let repeated_indices = self.triangles().iter().filter(|&&t| repeats(t)).count();
         let faces = self.triangles().len() - repeated_indices;
         let mut report = MeshReport {
@@ -192,9 +231,9 @@ impl Mesh {
             boundary_edges: fans.boundary_edges,
             non_manifold_edges: fans.non_manifold_edges,
             non_manifold_vertices: fans.non_manifold_vertices,
-            degenerate_triangles: degenerate_triangles(self),
+            degenerate_triangles,
             repeated_indices,
-            duplicate_vertices: duplicate_vertices(self),
+            duplicate_vertices,
             duplicate_triangles: fans.duplicate_triangles,
             self_intersections: overlaps.count,
             intersecting_pairs: overlaps.pairs,
@@ -206,13 +245,13 @@ impl Mesh {
             centroid: measure.centroid,
             inertia: measure.inertia,
             bounds: self.bounds(),
-            unresolved_cells: self.unresolved_cells(),
+            unresolved_cells: self.unresolved_cells_with(&to_count)?,
             clamped_vertices: self.clamped_vertices(),
         };
         if report.is_closed() && report.is_manifold() {
             report.genus = Some(report.shells as i64 - report.euler_characteristic / 2);
         }
-        report
+        Ok(report)
     }
 }
 
@@ -220,12 +259,14 @@ fn degenerate_triangles(mesh: &Mesh) -> usize {
     mesh.triangles().par_iter().filter(|&&t| repeats(t) || is_degenerate(mesh.corners(t))).count()
 }
 
-fn duplicate_vertices(mesh: &Mesh) -> usize {
+fn duplicate_vertices(mesh: &Mesh, run: &Run) -> Result<usize, Cancelled> {
     // Adding 0 makes −0 and 0 the same.
-    let mut keys: Vec<[u32; 3]> =
-        mesh.positions().par_iter().map(|p| p.to_array().map(|x| (x + 0.0).to_bits())).collect();
-    keys.par_sort_unstable();
-    keys.windows(2).filter(|w| w[0] == w[1]).count()
+    let keys: Vec<[u32; 3]> = mesh.positions().par_iter().map(|p| p.to_array().map(|x| (x + 0.0).to_bits())).collect();
+    // Any mixture of the bits will do: what counts is that equal ones are together.
+    let mixed =
+        |[x, y, z]: &[u32; 3]| x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b) ^ z.wrapping_mul(0xc2b2_ae35);
+    let keys = sorted(&keys, |key| (mixed(key).wrapping_mul(0x9e37_79b9) >> 20) as usize % BUCKETS, run)?;
+    Ok(keys.windows(2).filter(|w| w[0] == w[1]).count())
 }
 
 #[cfg(test)]

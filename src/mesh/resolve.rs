@@ -80,12 +80,10 @@ pub(super) fn count(unresolved: &[Unresolved]) -> usize {
 
 /// Their count, to be made when it is asked for.
 pub(super) fn late_count(programs: Arc<Compiled>, (lattice, limits): (Lattice, Bounds)) -> LateCount {
-    LateCount::new(move || {
-        let run = Run::default();
-        let blocks = Blocks::find(&programs.surface, &lattice, &run);
-        let found = blocks.and_then(|blocks| unresolved_cells(&blocks, (&lattice, limits), Among::OneSided, &run));
-        // A run without a token is not cancelled.
-        count(&found.unwrap_or_default())
+    LateCount::new(move |run| {
+        let [to_find, to_look] = run.stages([0.1, 1.0]);
+        let blocks = Blocks::find(&programs.surface, &lattice, &to_find)?;
+        Ok(count(&unresolved_cells(&blocks, (&lattice, limits), Among::OneSided, &to_look)?))
     })
 }
 

@@ -91,7 +91,7 @@ impl Solid {
             }
             run.report(1.0);
             let mesh = Mesh::default();
-            return Ok(if settings.thin.counts() { mesh.with_unresolved_cells(LateCount::new(|| 0)) } else { mesh });
+            return Ok(if settings.thin.counts() { mesh.with_unresolved_cells(LateCount::known(0)) } else { mesh });
         }
         let programs = compiled(&solid)?;
         // A mesh has the paint of its solid, if there is any, by the owners of its triangles.
@@ -113,7 +113,7 @@ impl Solid {
             let job = Job { program: &programs.surface, limits: bounds, features };
             let (mut mesh, count) = if most > 0 {
                 let (mesh, left) = refined(job, (lattice, blocks.clone()), most, &to_refine)?;
-                (mesh, LateCount::new(move || left))
+                (mesh, LateCount::known(left))
             } else {
                 let mesh = blocks.extract(&programs.surface, (&lattice, bounds), features, &to_extract)?;
                 (mesh, late_count(programs.clone(), (lattice, bounds)))

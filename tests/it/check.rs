@@ -1,8 +1,13 @@
 //! The checker of meshes, itself checked: by constructed defects of each kind, and by random
 //! triangles against whole-number arithmetic.
 
+use std::sync::{Arc, Mutex};
+
 use glam::{DQuat, DVec3, EulerRot, Vec3};
-use rvachev::{Mesh, MeshReport};
+use rvachev::{
+    CancelToken, Cancelled, CellSize, Mesh, MeshReport, MeshSettings, MinimalSurface, Progress, Run, SheetLattice,
+    Solid,
+};
 
 const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 
@@ -270,6 +275,39 @@ fn threads_do_not_change_the_report() {
         pool.install(|| mesh.check())
     };
     assert_eq!(on(1), on(3));
+}
+
+#[test]
+fn checking_tells_how_far_it_is_and_can_be_cancelled() {
+    let gyroid = SheetLattice { surface: MinimalSurface::Gyroid, cell: 0.5, thickness: 0.05 };
+    let ball = Solid::new(gyroid) & Solid::sphere(1.0);
+    // What is thinner than cells is counted once a mesh.
+    let mesh = || ball.mesh(&MeshSettings { cell: CellSize::LongestSide(96), ..MeshSettings::default() }).unwrap();
+    let report = mesh().check();
+    assert!(report.is_sound() && report.unresolved_cells > Some(0));
+    for threads in [1, 2] {
+        let told = Arc::new(Mutex::new(Vec::new()));
+        let sink = told.clone();
+        let progress = Some(Progress::new(move |fraction| sink.lock().unwrap().push(fraction)));
+        assert_eq!(mesh().check_with(&Run { threads, progress, ..Run::default() }), Ok(report.clone()));
+        let told = told.lock().unwrap();
+        assert!(told.is_sorted() && told.last() == Some(&1.0));
+        assert!(told.len() > 50 && told.windows(2).all(|two| two[1] - two[0] < 0.2), "{told:?}");
+    }
+    for at in [0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 0.99] {
+        let cancel = CancelToken::new();
+        let token = cancel.clone();
+        let progress = move |fraction| {
+            if fraction >= at {
+                token.cancel()
+            }
+        };
+        let mesh = mesh();
+        let run = Run { cancel, progress: Some(Progress::new(progress)), ..Run::default() };
+        assert_eq!(mesh.check_with(&run), Err(Cancelled), "at {at}");
+        assert_eq!(mesh.check(), report);
+    }
+    assert_eq!(Mesh::default().check(), MeshReport::default());
 }
 
 /// Exact intersection of triangles with whole-number corners, by separating directions.

@@ -19,6 +19,7 @@ use glam::Vec3;
 
 use super::corner_normals::CornerNormals;
 use super::{LateCount, Mesh, MeshError};
+use crate::{Cancelled, Run};
 
 /// What a mesh carries besides positions and triangles; `None` where it has no such values.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -154,7 +155,24 @@ impl Mesh {
     /// the [report](Mesh::check), is first asked for, by the threads of the current rayon pool.
     #[must_use]
     pub fn unresolved_cells(&self) -> Option<usize> {
-        self.attributes.unresolved_cells.get()
+        // A run that nobody else holds is not cancelled.
+        self.unresolved_cells_with(&Run::default()).unwrap_or_default()
+    }
+
+    /// [`unresolved_cells`](Mesh::unresolved_cells) with a choice of threads, a cancel token and a progress sink.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if the token was, before all were counted; they can be counted again.
+    pub fn unresolved_cells_with(&self, run: &Run) -> Result<Option<usize>, Cancelled> {
+        let run = run.stage(0.0, 1.0);
+        let count = run.install(|| self.attributes.unresolved_cells.get(&run))?;
+        run.report(1.0);
+        Ok(count)
+    }
+
+    /// Whether they have yet to be counted.
+    pub(crate) fn has_late_count(&self) -> bool {
+        self.attributes.unresolved_cells.is_open()
     }
 
     pub(crate) fn with_clamped_vertices(mut self, count: usize) -> Mesh {
@@ -205,7 +223,7 @@ mod tests {
         let mesh = mesh.with_corner_normals(vec![[Vec3::Z, Vec3::X, Vec3::Y]]).unwrap();
         let mesh = mesh.with_corner_colors(vec![colors]).unwrap().with_corner_texture(vec![texture]).unwrap();
         let mesh = mesh.with_owners(vec![7]).unwrap().with_clamped_vertices(4);
-        let mesh = mesh.with_unresolved_cells(LateCount::new(|| 3));
+        let mesh = mesh.with_unresolved_cells(LateCount::known(3));
         assert_eq!(mesh.normals().unwrap().len(), 3);
         assert_eq!(mesh.corner_normals().unwrap()[0][1], Vec3::X);
         assert_eq!(mesh.corner_colors(), Some(&[colors][..]));

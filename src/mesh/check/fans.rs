@@ -22,6 +22,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::geom::Mesh;
+use crate::run::Meter;
+use crate::{Cancelled, Run};
 
 /// The sine of the turn of a step, at least, as a part of the product of its sides.
 const TURN: f64 = 1e-8;
@@ -84,9 +86,11 @@ impl Tally {
 }
 
 impl Fans {
-    pub(super) fn new(mesh: &Mesh) -> Fans {
+    pub(super) fn new(mesh: &Mesh, run: &Run) -> Result<Fans, Cancelled> {
         let vertices = mesh.positions().len();
-        let (starts, mut steps) = steps_by_vertex(mesh);
+        // How long each stage takes, more or less.
+        let [to_sort, to_look, to_join] = run.stages([0.3, 0.4, 0.3]);
+        let (starts, mut steps) = steps_by_vertex(mesh, &to_sort)?;
         let mut flat = vec![false; vertices];
 
         // Each chunk of vertices owns the steps around them.
@@ -99,9 +103,11 @@ impl Fans {
             rest = others;
             jobs.push((first, flat, own));
         }
-        let tallies: Vec<Tally> = jobs
+        let meter = Meter::new(&to_look, jobs.len());
+        let tallies: Result<Vec<Tally>, Cancelled> = jobs
             .into_par_iter()
             .map(|(first, flat, own)| {
+                meter.step()?;
                 let mut tally = Tally::default();
                 let mut scratch = Vec::new();
                 let offset = starts[first];
@@ -113,20 +119,20 @@ impl Fans {
                         *flat = is_flat(mesh, vertex, &own[low..high]);
                     }
                 }
-                tally
+                Ok(tally)
             })
             .collect();
-        let tally = tallies.into_iter().fold(Tally::default(), Tally::add);
-        Fans {
+        let tally = tallies?.into_iter().fold(Tally::default(), Tally::add);
+        Ok(Fans {
             used: tally.used,
             edges: tally.edges,
             boundary_edges: tally.boundary,
             non_manifold_edges: tally.edges_off,
             non_manifold_vertices: tally.vertices_off,
             duplicate_triangles: tally.duplicates,
-            shells: shells(mesh, &starts, &steps),
+            shells: shells(mesh, &starts, &steps, &to_join)?,
             flat,
-        }
+        })
     }
 }
 
@@ -137,12 +143,13 @@ pub(super) fn repeats([a, b, c]: [u32; 3]) -> bool {
 
 /// The steps, put together by vertex with a counting sort: those of vertex v are
 /// `steps[starts[v]..starts[v + 1]]`, in the order of the triangles.
-fn steps_by_vertex(mesh: &Mesh) -> (Vec<u64>, Vec<Step>) {
+fn steps_by_vertex(mesh: &Mesh, run: &Run) -> Result<(Vec<u64>, Vec<Step>), Cancelled> {
     let vertices = mesh.positions().len();
     let mut starts = vec![0u64; vertices + 1];
-    let sound = || mesh.triangles().iter().enumerate().filter(|(_, t)| !repeats(**t));
-    for (_, triangle) in sound() {
-        for &v in triangle {
+    let meter = Meter::new(run, 2 * mesh.triangles().len().div_ceil(CHUNK));
+    for triangles in mesh.triangles().chunks(CHUNK) {
+        meter.step()?;
+        for &v in triangles.iter().filter(|t| !repeats(**t)).flatten() {
             starts[v as usize + 1] += 1;
         }
     }
@@ -150,15 +157,24 @@ fn steps_by_vertex(mesh: &Mesh) -> (Vec<u64>, Vec<Step>) {
         starts[v + 1] += starts[v];
     }
     let mut free = starts.clone();
-    let mut steps = vec![Step::default(); starts[vertices] as usize];
-    for (t, &[a, b, c]) in sound() {
-        for (corner, from, to) in [(a, b, c), (b, c, a), (c, a, b)] {
-            let slot = &mut free[corner as usize];
-            steps[*slot as usize] = Step { from, to, triangle: t as u32 };
-            *slot += 1;
+    let count = starts[vertices] as usize;
+    let mut steps = Vec::with_capacity(count);
+    while steps.len() < count {
+        run.check()?;
+        steps.resize(count.min(steps.len() + 16 * CHUNK), Step::default());
+    }
+    for (chunk, triangles) in mesh.triangles().chunks(CHUNK).enumerate() {
+        meter.step()?;
+        for (t, &[a, b, c]) in triangles.iter().enumerate().filter(|(_, t)| !repeats(**t)) {
+            let triangle = (chunk * CHUNK + t) as u32;
+            for (corner, from, to) in [(a, b, c), (b, c, a), (c, a, b)] {
+                let slot = &mut free[corner as usize];
+                steps[*slot as usize] = Step { from, to, triangle };
+                *slot += 1;
+            }
         }
     }
-    (starts, steps)
+    Ok((starts, steps))
 }
 
 /// Counts what is around a vertex and puts the steps in order along the ring or path, if they
@@ -313,10 +329,14 @@ fn is_flat(mesh: &Mesh, vertex: u32, steps: &[Step]) -> bool {
 }
 
 /// The number of pieces that hang together by edges.
-fn shells(mesh: &Mesh, starts: &[u64], steps: &[Step]) -> usize {
+fn shells(mesh: &Mesh, starts: &[u64], steps: &[Step], run: &Run) -> Result<usize, Cancelled> {
     let mut groups = Groups::new(mesh.triangles().len());
     let mut count = steps.len() / 3;
-    for range in starts.windows(2) {
+    let meter = Meter::new(run, starts.len() / CHUNK);
+    for (vertex, range) in starts.windows(2).enumerate() {
+        if vertex % CHUNK == CHUNK - 1 {
+            meter.step()?;
+        }
         let fan = &steps[range[0] as usize..range[1] as usize];
         let mut join = |a: u32, b: u32| count -= usize::from(groups.join(a, b));
         if fan.windows(2).all(|w| w[0].to == w[1].from) {
@@ -333,7 +353,7 @@ fn shells(mesh: &Mesh, starts: &[u64], steps: &[Step]) -> usize {
             ends.windows(2).filter(|w| w[0].0 == w[1].0).for_each(|w| join(w[0].1, w[1].1));
         }
     }
-    count
+    Ok(count)
 }
 
 /// Disjoint sets of triangles.

@@ -14,9 +14,12 @@
 use glam::{DVec3, UVec3, Vec3};
 use rayon::prelude::*;
 
+use super::buckets::{BUCKETS, sorted};
 use super::fans::{Fans, repeats};
 use super::meet::{is_degenerate, meet, meet_beyond_edge, meet_beyond_vertex, surely_apart};
 use crate::geom::Mesh;
+use crate::run::Meter;
+use crate::{Cancelled, Run};
 
 /// How many pairs are listed.
 pub(super) const LISTED: usize = 16;
@@ -36,27 +39,31 @@ pub(super) struct Overlaps {
 }
 
 impl Overlaps {
-    pub(super) fn find(mesh: &Mesh, fans: &Fans) -> Overlaps {
-        let order = along_curve(mesh);
-        let search = Search::new(mesh, fans, order);
+    pub(super) fn find(mesh: &Mesh, fans: &Fans, run: &Run) -> Result<Overlaps, Cancelled> {
+        // How long each stage takes, more or less.
+        let [to_sort, to_search] = run.stages([0.3, 0.7]);
+        let order = along_curve(mesh, &to_sort)?;
+        let search = Search::new(mesh, fans, order, run)?;
         let groups = search.levels.get(1).map_or(0, Vec::len);
-        let chunks: Vec<Overlaps> = (0..groups.div_ceil(CHUNK))
+        let meter = Meter::new(&to_search, groups.div_ceil(CHUNK));
+        let chunks: Result<Vec<Overlaps>, Cancelled> = (0..groups.div_ceil(CHUNK))
             .into_par_iter()
             .map(|chunk| {
+                meter.step()?;
                 let mut found = Overlaps::default();
                 for group in chunk * CHUNK..groups.min((chunk + 1) * CHUNK) {
                     search.group(group, &mut found);
                 }
-                found
+                Ok(found)
             })
             .collect();
         let mut all = Overlaps::default();
-        for found in chunks {
+        for found in chunks? {
             all.count += found.count;
             all.pairs.extend(found.pairs);
         }
         all.trim();
-        all
+        Ok(all)
     }
 
     fn add(&mut self, a: u32, b: u32) {
@@ -75,11 +82,11 @@ impl Overlaps {
 
 /// The triangles in the order of a Morton curve through the middles of their boxes; those that
 /// are degenerate are left out.
-fn along_curve(mesh: &Mesh) -> Vec<u32> {
+fn along_curve(mesh: &Mesh, run: &Run) -> Result<Vec<u32>, Cancelled> {
     let bounds = mesh.bounds();
     // 2²¹ steps along the longest side: 63 bits.
     let scale = 2097151.0 / bounds.longest_side().max(f64::MIN_POSITIVE);
-    let mut keys: Vec<(u64, u32)> = mesh
+    let keys: Vec<u128> = mesh
         .triangles()
         .par_iter()
         .enumerate()
@@ -89,11 +96,12 @@ fn along_curve(mesh: &Mesh) -> Vec<u32> {
             let middle = 0.5 * (a.min(b).min(c) + a.max(b).max(c));
             let place = ((middle - bounds.min) * scale).as_uvec3().min(UVec3::splat(2097151));
             let key = spread(place.x) | spread(place.y) << 1 | spread(place.z) << 2;
-            (key, i as u32)
+            u128::from(key) << 32 | i as u128
         })
         .collect();
-    keys.par_sort_unstable();
-    keys.into_iter().map(|(_, i)| i).collect()
+    // By the first twelve of the 63 bits, four along each axis.
+    let keys = sorted(&keys, |key| (key >> (32 + 51)) as usize % BUCKETS, run)?;
+    Ok(keys.into_iter().map(|key| key as u32).collect())
 }
 
 /// The bits of a number below 2²¹, each with two zeros before it.
@@ -139,8 +147,10 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(mesh: &'a Mesh, fans: &'a Fans, order: Vec<u32>) -> Search<'a> {
+    fn new(mesh: &'a Mesh, fans: &'a Fans, order: Vec<u32>, run: &Run) -> Result<Search<'a>, Cancelled> {
+        run.check()?;
         let corners: Vec<[u32; 3]> = order.par_iter().map(|&t| mesh.triangles()[t as usize]).collect();
+        run.check()?;
         let positions = mesh.positions();
         let boxes = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|i| positions[i as usize]);
@@ -150,10 +160,11 @@ impl<'a> Search<'a> {
         while let Some(below) = levels.last()
             && (below.len() > 1 || levels.len() == 1 && !below.is_empty())
         {
+            run.check()?;
             let union = |group: &[Box]| group[1..].iter().fold(group[0], |a, &b| a.union(b));
             levels.push(below.par_chunks(GROUP).map(union).collect());
         }
-        Search { mesh, fans, order, corners, levels }
+        Ok(Search { mesh, fans, order, corners, levels })
     }
 
     /// Looks at the pairs of a group's triangles with one another and with those of later groups.

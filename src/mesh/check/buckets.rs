@@ -1,0 +1,68 @@
+//! Long lists put in order, bucket by bucket.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use crate::run::Meter;
+use crate::{Cancelled, Run};
+
+/// How many buckets there are.
+pub(super) const BUCKETS: usize = 1 << 12;
+
+/// Items that are looked at, or moved, before it is asked whether to go on.
+const AT_ONCE: usize = 1 << 16;
+
+/// The same items by buckets, those of each in order. `bucket` tells which one, below [`BUCKETS`], an item belongs to.
+///
+/// It can be stopped at any time, as a sort of the whole list can't.
+pub(super) fn sorted<T: Copy + Default + Ord + Send>(
+    items: &[T],
+    bucket: impl Fn(&T) -> usize,
+    run: &Run,
+) -> Result<Vec<T>, Cancelled> {
+    let meter = Meter::new(run, 2 * items.len().div_ceil(AT_ONCE) + BUCKETS);
+    let mut starts = vec![0; BUCKETS + 1];
+    for items in items.chunks(AT_ONCE) {
+        meter.step()?;
+        items.iter().for_each(|item| starts[bucket(item) + 1] += 1);
+    }
+    (0..BUCKETS).for_each(|n| starts[n + 1] += starts[n]);
+    let mut free = starts.clone();
+    let mut sorted = vec![T::default(); items.len()];
+    for items in items.chunks(AT_ONCE) {
+        meter.step()?;
+        for item in items {
+            let place: &mut usize = &mut free[bucket(item)];
+            sorted[*place] = *item;
+            *place += 1;
+        }
+    }
+    let mut rest = &mut sorted[..];
+    let ranges = starts.windows(2).map(|ends| Range { start: ends[0], end: ends[1] });
+    let own: Vec<&mut [T]> = ranges.map(|range| rest.split_off_mut(..range.len()).unwrap_or_default()).collect();
+    own.into_par_iter().try_for_each(|own| {
+        meter.step()?;
+        own.sort_unstable();
+        Ok(())
+    })?;
+    Ok(sorted)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn buckets_follow_each_other_and_are_in_order() {
+        let items: Vec<u32> = (0..200_000u32).map(|n| n.wrapping_mul(2_654_435_761)).collect();
+        let found = sorted(&items, |item| (item >> 20) as usize, &Run::default()).unwrap();
+        let mut expected = items.clone();
+        expected.sort_unstable();
+        assert_eq!(found, expected);
+        assert_eq!(sorted(&[], |item: &u32| *item as usize, &Run::default()), Ok(Vec::new()));
+        let run = Run::default();
+        run.cancel.cancel();
+        assert_eq!(sorted(&items, |item| (item >> 20) as usize, &run), Err(Cancelled));
+    }
+}
