@@ -8,8 +8,8 @@
 //! without normals.
 //!
 //! Before that come extraction alone, from arrays of 257³ samples; scale: a sphere at 1024³ and
-//! 2048³, a ball of gyroid at 512³, unions of 100 and of 10 000 superellipsoids at 256³; how soon a
-//! cancelled run returns; both modes on smooth solids; and how much faster two threads are than one, by the clock.
+//! 2048³, a ball of gyroid at 512³, unions of 100 and of 10 000 superellipsoids at 256³; how soon
+//! cancelled runs and reports return; both modes on smooth solids; and how much faster two threads are than one, by the clock.
 //!
 //! Words after `--` choose: `models`, `arrays`, `scale`, `cancel`, `smooth`; names of models, cells along the side
 //! (64, 128, 256), `one` or `two` threads; `fidget` for fidget on all models, also where it takes

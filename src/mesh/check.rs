@@ -25,9 +25,8 @@ use std::fmt;
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
-use self::buckets::{BUCKETS, sorted};
+use self::buckets::sorted;
 use self::fans::{Fans, repeats};
-use self::meet::is_degenerate;
 use self::overlap::Overlaps;
 use crate::bounds::Bounds;
 use crate::geom::Mesh;
@@ -216,11 +215,9 @@ impl Mesh {
         // How long each stage takes, more or less; nobody knows how long the cells take.
         let cells = if self.has_late_count() { 0.5 } else { 0.0 };
         let [to_turn, to_compare, to_sort, to_count] = run.stages([0.4, 0.5, 0.1, cells]);
-        let (fans, measure) = rayon::join(|| Fans::new(self, &to_turn), || self.measure());
-        let fans = fans?;
+        let (fans, measure) = rayon::join(|| Fans::new(self, &to_turn), || run.check().map(|()| self.measure()));
+        let (fans, measure) = (fans?, measure?);
         let overlaps = Overlaps::find(self, &fans, &to_compare)?;
-        let degenerate_triangles = degenerate_triangles(self);
-        to_sort.check()?;
         let duplicate_vertices = duplicate_vertices(self, &to_sort)?;
         let repeated_indices = self.triangles().iter().filter(|&&t| repeats(t)).count();
         let faces = self.triangles().len() - repeated_indices;
@@ -231,7 +228,7 @@ impl Mesh {
             boundary_edges: fans.boundary_edges,
             non_manifold_edges: fans.non_manifold_edges,
             non_manifold_vertices: fans.non_manifold_vertices,
-            degenerate_triangles,
+            degenerate_triangles: overlaps.degenerate,
             repeated_indices,
             duplicate_vertices,
             duplicate_triangles: fans.duplicate_triangles,
@@ -255,17 +252,12 @@ impl Mesh {
     }
 }
 
-fn degenerate_triangles(mesh: &Mesh) -> usize {
-    mesh.triangles().par_iter().filter(|&&t| repeats(t) || is_degenerate(mesh.corners(t))).count()
-}
-
 fn duplicate_vertices(mesh: &Mesh, run: &Run) -> Result<usize, Cancelled> {
     // Adding 0 makes −0 and 0 the same.
     let keys: Vec<[u32; 3]> = mesh.positions().par_iter().map(|p| p.to_array().map(|x| (x + 0.0).to_bits())).collect();
     // Any mixture of the bits will do: what counts is that equal ones are together.
-    let mixed =
-        |[x, y, z]: &[u32; 3]| x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b) ^ z.wrapping_mul(0xc2b2_ae35);
-    let keys = sorted(&keys, |key| (mixed(key).wrapping_mul(0x9e37_79b9) >> 20) as usize % BUCKETS, run)?;
+    let mixed = |key: &[u32; 3]| key.iter().fold(0u32, |all, bits| (all ^ bits).wrapping_mul(0x9e37_79b9));
+    let keys = sorted(&keys, |key| mixed(key) >> 20, run)?;
     Ok(keys.windows(2).filter(|w| w[0] == w[1]).count())
 }
 

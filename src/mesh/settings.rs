@@ -108,7 +108,8 @@ pub enum ThinFeatures {
     /// Unresolved cells are counted for the report of the mesh, when [it](crate::Mesh::check) is asked for:
     /// [`MeshReport::unresolved_cells`](crate::MeshReport::unresolved_cells). Of simple parts this takes
     /// a tenth to a half of the time that the mesh takes; of blends, lattices, and walls of a few cells up to six times as
-    /// long as the mesh; of parts seen through several deformations up to twelve times.
+    /// long as the mesh; of parts seen through several deformations up to twelve times. It can be
+    /// [cancelled](crate::Mesh::check_with), and done later.
     #[default]
     Count,
     /// Blocks of cells that have any, and those close to them, are meshed in cells of half the size, and blocks of these

@@ -8,19 +8,21 @@ use crate::run::Meter;
 use crate::{Cancelled, Run};
 
 /// How many buckets there are.
-pub(super) const BUCKETS: usize = 1 << 12;
+const BUCKETS: usize = 1 << 12;
 
 /// Items that are looked at, or moved, before it is asked whether to go on.
 const AT_ONCE: usize = 1 << 16;
 
-/// The same items by buckets, those of each in order. `bucket` tells which one, below [`BUCKETS`], an item belongs to.
+/// The same items by buckets, those of each in order. `bucket` tells which one an item belongs
+/// to, by twelve bits.
 ///
 /// It can be stopped at any time, as a sort of the whole list can't.
 pub(super) fn sorted<T: Copy + Default + Ord + Send>(
     items: &[T],
-    bucket: impl Fn(&T) -> usize,
+    bucket: impl Fn(&T) -> u32,
     run: &Run,
 ) -> Result<Vec<T>, Cancelled> {
+    let bucket = |item: &T| bucket(item) as usize % BUCKETS;
     let meter = Meter::new(run, 2 * items.len().div_ceil(AT_ONCE) + BUCKETS);
     let mut starts = vec![0; BUCKETS + 1];
     for items in items.chunks(AT_ONCE) {
@@ -56,13 +58,13 @@ mod tests {
     #[test]
     fn buckets_follow_each_other_and_are_in_order() {
         let items: Vec<u32> = (0..200_000u32).map(|n| n.wrapping_mul(2_654_435_761)).collect();
-        let found = sorted(&items, |item| (item >> 20) as usize, &Run::default()).unwrap();
+        let found = sorted(&items, |item| item >> 20, &Run::default()).unwrap();
         let mut expected = items.clone();
         expected.sort_unstable();
         assert_eq!(found, expected);
-        assert_eq!(sorted(&[], |item: &u32| *item as usize, &Run::default()), Ok(Vec::new()));
+        assert_eq!(sorted(&[], |item: &u32| *item, &Run::default()), Ok(Vec::new()));
         let run = Run::default();
         run.cancel.cancel();
-        assert_eq!(sorted(&items, |item| (item >> 20) as usize, &run), Err(Cancelled));
+        assert_eq!(sorted(&items, |item| item >> 20, &run), Err(Cancelled));
     }
 }

@@ -14,7 +14,7 @@
 use glam::{DVec3, UVec3, Vec3};
 use rayon::prelude::*;
 
-use super::buckets::{BUCKETS, sorted};
+use super::buckets::sorted;
 use super::fans::{Fans, repeats};
 use super::meet::{is_degenerate, meet, meet_beyond_edge, meet_beyond_vertex, surely_apart};
 use crate::geom::Mesh;
@@ -36,6 +36,8 @@ pub(super) struct Overlaps {
     pub count: usize,
     /// The first of them, in order, at most [`LISTED`].
     pub pairs: Vec<[u32; 2]>,
+    /// Triangles that are left out, as they are degenerate.
+    pub degenerate: usize,
 }
 
 impl Overlaps {
@@ -43,6 +45,7 @@ impl Overlaps {
         // How long each stage takes, more or less.
         let [to_sort, to_search] = run.stages([0.3, 0.7]);
         let order = along_curve(mesh, &to_sort)?;
+        let degenerate = mesh.triangles().len() - order.len();
         let search = Search::new(mesh, fans, order, run)?;
         let groups = search.levels.get(1).map_or(0, Vec::len);
         let meter = Meter::new(&to_search, groups.div_ceil(CHUNK));
@@ -57,7 +60,7 @@ impl Overlaps {
                 Ok(found)
             })
             .collect();
-        let mut all = Overlaps::default();
+        let mut all = Overlaps { degenerate, ..Overlaps::default() };
         for found in chunks? {
             all.count += found.count;
             all.pairs.extend(found.pairs);
@@ -83,24 +86,33 @@ impl Overlaps {
 /// The triangles in the order of a Morton curve through the middles of their boxes; those that
 /// are degenerate are left out.
 fn along_curve(mesh: &Mesh, run: &Run) -> Result<Vec<u32>, Cancelled> {
+    const LEFT_OUT: u128 = u128::MAX;
+    // How long each stage takes, more or less.
+    let [to_look, to_sort] = run.stages([1.0, 1.0]);
     let bounds = mesh.bounds();
     // 2²¹ steps along the longest side: 63 bits.
     let scale = 2097151.0 / bounds.longest_side().max(f64::MIN_POSITIVE);
-    let keys: Vec<u128> = mesh
-        .triangles()
-        .par_iter()
-        .enumerate()
-        .filter(|&(_, &t)| !repeats(t) && !is_degenerate(mesh.corners(t)))
-        .map(|(i, &t)| {
-            let [a, b, c] = mesh.corners(t);
-            let middle = 0.5 * (a.min(b).min(c) + a.max(b).max(c));
-            let place = ((middle - bounds.min) * scale).as_uvec3().min(UVec3::splat(2097151));
-            let key = spread(place.x) | spread(place.y) << 1 | spread(place.z) << 2;
-            u128::from(key) << 32 | i as u128
-        })
-        .collect();
+    let key = |(i, &t): (usize, &[u32; 3])| {
+        if repeats(t) || is_degenerate(mesh.corners(t)) {
+            return LEFT_OUT;
+        }
+        let [a, b, c] = mesh.corners(t);
+        let middle = 0.5 * (a.min(b).min(c) + a.max(b).max(c));
+        let place = ((middle - bounds.min) * scale).as_uvec3().min(UVec3::splat(2097151));
+        let key = spread(place.x) | spread(place.y) << 1 | spread(place.z) << 2;
+        u128::from(key) << 32 | i as u128
+    };
+    let mut keys = vec![0; mesh.triangles().len()];
+    let meter = Meter::new(&to_look, keys.len().div_ceil(CHUNK));
+    keys.par_chunks_mut(CHUNK).enumerate().try_for_each(|(chunk, keys)| {
+        meter.step()?;
+        let triangles = mesh.triangles().iter().enumerate().skip(chunk * CHUNK);
+        keys.iter_mut().zip(triangles).for_each(|(own, triangle)| *own = key(triangle));
+        Ok(())
+    })?;
+    keys.retain(|&key| key != LEFT_OUT);
     // By the first twelve of the 63 bits, four along each axis.
-    let keys = sorted(&keys, |key| (key >> (32 + 51)) as usize % BUCKETS, run)?;
+    let keys = sorted(&keys, |key| (key >> (32 + 51)) as u32, &to_sort)?;
     Ok(keys.into_iter().map(|key| key as u32).collect())
 }
 
