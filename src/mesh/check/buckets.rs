@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::mesh::bulk::Bulk;
 use crate::run::Meter;
 use crate::{Cancelled, Run};
 
@@ -18,11 +17,11 @@ const AT_ONCE: usize = 1 << 16;
 /// to, by twelve bits.
 ///
 /// It can be stopped at any time, as a sort of the whole list can't.
-pub(super) fn sorted<T: Copy + Default + Ord + Send + 'static>(
+pub(super) fn sorted<T: Copy + Default + Ord + Send>(
     items: &[T],
     bucket: impl Fn(&T) -> u32,
     run: &Run,
-) -> Result<Bulk<T>, Cancelled> {
+) -> Result<Vec<T>, Cancelled> {
     let bucket = |item: &T| bucket(item) as usize % BUCKETS;
     let meter = Meter::new(run, 2 * items.len().div_ceil(AT_ONCE) + BUCKETS);
     let mut starts = vec![0; BUCKETS + 1];
@@ -32,7 +31,7 @@ pub(super) fn sorted<T: Copy + Default + Ord + Send + 'static>(
     }
     (0..BUCKETS).for_each(|n| starts[n + 1] += starts[n]);
     let mut free = starts.clone();
-    let mut sorted = Bulk::from(vec![T::default(); items.len()]);
+    let mut sorted = vec![T::default(); items.len()];
     for items in items.chunks(AT_ONCE) {
         meter.step()?;
         for item in items {
@@ -62,10 +61,10 @@ mod tests {
         let found = sorted(&items, |item| item >> 20, &Run::default()).unwrap();
         let mut expected = items.clone();
         expected.sort_unstable();
-        assert_eq!(*found, expected);
-        assert!(sorted(&[], |item: &u32| *item, &Run::default()).unwrap().is_empty());
+        assert_eq!(found, expected);
+        assert_eq!(sorted(&[], |item: &u32| *item, &Run::default()), Ok(Vec::new()));
         let run = Run::default();
         run.cancel.cancel();
-        assert!(sorted(&items, |item| item >> 20, &run).is_err());
+        assert_eq!(sorted(&items, |item| item >> 20, &run), Err(Cancelled));
     }
 }

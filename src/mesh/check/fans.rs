@@ -22,7 +22,6 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::geom::Mesh;
-use crate::mesh::bulk::Bulk;
 use crate::run::Meter;
 use crate::{Cancelled, Run};
 
@@ -144,7 +143,7 @@ pub(super) fn repeats([a, b, c]: [u32; 3]) -> bool {
 
 /// The steps, put together by vertex with a counting sort: those of vertex v are
 /// `steps[starts[v]..starts[v + 1]]`, in the order of the triangles.
-fn steps_by_vertex(mesh: &Mesh, run: &Run) -> Result<(Vec<u64>, Bulk<Step>), Cancelled> {
+fn steps_by_vertex(mesh: &Mesh, run: &Run) -> Result<(Vec<u64>, Vec<Step>), Cancelled> {
     let vertices = mesh.positions().len();
     let mut starts = vec![0u64; vertices + 1];
     let meter = Meter::new(run, 2 * mesh.triangles().len().div_ceil(CHUNK));
@@ -159,11 +158,10 @@ fn steps_by_vertex(mesh: &Mesh, run: &Run) -> Result<(Vec<u64>, Bulk<Step>), Can
     }
     let mut free = starts.clone();
     let count = starts[vertices] as usize;
-    let mut steps = Bulk::from(Vec::with_capacity(count));
+    let mut steps = Vec::with_capacity(count);
     while steps.len() < count {
         run.check()?;
-        let more = count.min(steps.len() + 16 * CHUNK);
-        steps.resize(more, Step::default());
+        steps.resize(count.min(steps.len() + 16 * CHUNK), Step::default());
     }
     for (chunk, triangles) in mesh.triangles().chunks(CHUNK).enumerate() {
         meter.step()?;

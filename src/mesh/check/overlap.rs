@@ -18,7 +18,6 @@ use super::buckets::sorted;
 use super::fans::{Fans, repeats};
 use super::meet::{is_degenerate, meet, meet_beyond_edge, meet_beyond_vertex, surely_apart};
 use crate::geom::Mesh;
-use crate::mesh::bulk::Bulk;
 use crate::run::Meter;
 use crate::{Cancelled, Run};
 
@@ -48,7 +47,7 @@ impl Overlaps {
         let order = along_curve(mesh, &to_sort)?;
         let degenerate = mesh.triangles().len() - order.len();
         let search = Search::new(mesh, fans, order, run)?;
-        let groups = search.levels.get(1).map_or(0, |level| level.len());
+        let groups = search.levels.get(1).map_or(0, Vec::len);
         let meter = Meter::new(&to_search, groups.div_ceil(CHUNK));
         let chunks: Result<Vec<Overlaps>, Cancelled> = (0..groups.div_ceil(CHUNK))
             .into_par_iter()
@@ -103,7 +102,7 @@ fn along_curve(mesh: &Mesh, run: &Run) -> Result<Vec<u32>, Cancelled> {
         let key = spread(place.x) | spread(place.y) << 1 | spread(place.z) << 2;
         u128::from(key) << 32 | i as u128
     };
-    let mut keys = Bulk::from(vec![0; mesh.triangles().len()]);
+    let mut keys = vec![0; mesh.triangles().len()];
     let meter = Meter::new(&to_look, keys.len().div_ceil(CHUNK));
     keys.par_chunks_mut(CHUNK).enumerate().try_for_each(|(chunk, keys)| {
         meter.step()?;
@@ -114,7 +113,7 @@ fn along_curve(mesh: &Mesh, run: &Run) -> Result<Vec<u32>, Cancelled> {
     keys.retain(|&key| key != LEFT_OUT);
     // By the first twelve of the 63 bits, four along each axis.
     let keys = sorted(&keys, |key| (key >> (32 + 51)) as u32, &to_sort)?;
-    Ok(keys.iter().map(|&key| key as u32).collect())
+    Ok(keys.into_iter().map(|key| key as u32).collect())
 }
 
 /// The bits of a number below 2²¹, each with two zeros before it.
@@ -154,28 +153,28 @@ struct Search<'a> {
     fans: &'a Fans,
     /// Triangles, in order.
     order: Vec<u32>,
-    corners: Bulk<[u32; 3]>,
+    corners: Vec<[u32; 3]>,
     /// The boxes of the triangles, of groups of them, of groups of those, up to a single one.
-    levels: Vec<Bulk<Box>>,
+    levels: Vec<Vec<Box>>,
 }
 
 impl<'a> Search<'a> {
     fn new(mesh: &'a Mesh, fans: &'a Fans, order: Vec<u32>, run: &Run) -> Result<Search<'a>, Cancelled> {
         run.check()?;
-        let corners = Bulk::from(order.par_iter().map(|&t| mesh.triangles()[t as usize]).collect::<Vec<_>>());
+        let corners: Vec<[u32; 3]> = order.par_iter().map(|&t| mesh.triangles()[t as usize]).collect();
         run.check()?;
         let positions = mesh.positions();
         let boxes = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|i| positions[i as usize]);
             Box { min: a.min(b).min(c), max: a.max(b).max(c) }
         };
-        let mut levels = vec![Bulk::from(corners.par_iter().map(boxes).collect::<Vec<Box>>())];
+        let mut levels: Vec<Vec<Box>> = vec![corners.par_iter().map(boxes).collect()];
         while let Some(below) = levels.last()
             && (below.len() > 1 || levels.len() == 1 && !below.is_empty())
         {
             run.check()?;
             let union = |group: &[Box]| group[1..].iter().fold(group[0], |a, &b| a.union(b));
-            levels.push(Bulk::from(below.par_chunks(GROUP).map(union).collect::<Vec<Box>>()));
+            levels.push(below.par_chunks(GROUP).map(union).collect());
         }
         Ok(Search { mesh, fans, order, corners, levels })
     }
