@@ -16,7 +16,8 @@ const AT_ONCE: usize = 1 << 16;
 /// The same items by buckets, those of each in order. `bucket` tells which one an item belongs
 /// to, by twelve bits.
 ///
-/// It can be stopped at any time, as a sort of the whole list can't.
+/// It can be stopped between buckets, as a sort of the whole list can't; a bucket that has most of the items, as where one is
+/// far from all others, is sorted by all threads.
 pub(super) fn sorted<T: Copy + Default + Ord + Send>(
     items: &[T],
     bucket: impl Fn(&T) -> u32,
@@ -45,7 +46,7 @@ pub(super) fn sorted<T: Copy + Default + Ord + Send>(
     let own: Vec<&mut [T]> = ranges.map(|range| rest.split_off_mut(..range.len()).unwrap_or_default()).collect();
     own.into_par_iter().try_for_each(|own| {
         meter.step()?;
-        own.sort_unstable();
+        own.par_sort_unstable();
         Ok(())
     })?;
     Ok(sorted)
