@@ -64,6 +64,7 @@ mod samples;
 mod sharp;
 mod span;
 mod special;
+mod spread;
 mod trend;
 mod turn;
 

@@ -51,6 +51,9 @@ pub(super) const CLOSE: f32 = 1e-3;
 /// is found is the side of the crease that the first point missed it to.
 const CLOSER: f32 = 0.4;
 
+/// The most sides that a cell may have: as many as four bits tell.
+const MOST_SIDES: usize = 16;
+
 /// A value and a gradient of the field.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Slope {
@@ -60,16 +63,27 @@ pub(crate) struct Slope {
     pub gradient: Vec3A,
 }
 
+impl Slope {
+    /// The outward normal of the surface close to the point, and how deep the point is below it, to first order and in
+    /// cells of size `step`; `None` if the field does not tell.
+    #[inline(always)]
+    pub(super) fn surface(&self, step: f32) -> Option<(Vec3A, f32)> {
+        let steepness = self.gradient.length();
+        let depth = self.value / (steepness * step);
+        // A surface that is farther away than the cell tells nothing; neither does NaN.
+        (steepness > 0.0 && depth.abs() < 1.0).then(|| (self.gradient / -steepness, depth))
+    }
+}
+
 /// Whether two of some normals differ as those of a crease do.
 pub(super) fn differ(normals: &[Vec3A]) -> bool {
+    let mut least = f32::INFINITY;
     for (n, a) in normals.iter().enumerate() {
         for b in &normals[..n] {
-            if a.dot(*b) <= SMOOTH {
-                return true;
-            }
+            least = least.min(a.dot(*b));
         }
     }
-    false
+    least <= SMOOTH
 }
 
 /// A segment of a loop: from a vertex to that of the next segment. There are many: it is kept small.
@@ -208,19 +222,6 @@ pub(super) fn settle(planes: &Planes, from: Vec3A, low: Vec3A, high: Vec3A, step
     at
 }
 
-/// The plane that the surface has close to a point: its outward normal and its distance from the node that the point is
-/// given from; `None` if the field does not tell.
-#[inline(always)]
-fn plane(point: Vec3A, slope: &Slope, step: f32) -> Option<(Vec3A, f32)> {
-    let steepness = slope.gradient.length();
-    let depth = slope.value / (steepness * step);
-    // A plane that is farther away than the cell tells nothing; neither does NaN.
-    (steepness > 0.0 && depth.abs() < 1.0).then(|| {
-        let normal = slope.gradient / -steepness;
-        (normal, normal.dot(point) + depth)
-    })
-}
-
 /// A candidate in the making.
 pub(super) struct Draft {
     first: u32,
@@ -273,14 +274,14 @@ impl Refiner {
     }
 
     /// Adds the next candidate: a cell, by its number in the block and by its first node there. Its segments are told
-    /// which of them turn, and will be in the list from `first` on. Normals and places, in cells from the first node, are
-    /// those of their vertices.
-    #[inline(always)]
+    /// which of them turn, and will be in the list from `first` on. The places are those of their vertices, in cells from
+    /// the first node.
+    #[inline]
     pub(super) fn add(
         &mut self,
         (number, low): (u16, Vec3A),
         (first, segments): (usize, &mut [Segment]),
-        (normals, places): (&[Vec3A], &[Vec3A]),
+        places: &[Vec3A],
     ) {
         let (planes, starts) = tangents(segments, places);
         let at = places.iter().sum::<Vec3A>() / places.len() as f32;
@@ -288,27 +289,26 @@ impl Refiner {
         let mut draft = Draft { first, len, count: 0, on: 0, number, at, planes };
         draft.settle();
         let at = draft.at;
-        self.offsets.extend(normals.iter().zip(places).map(|(normal, place)| normal.dot(*place)));
-        let mut point = |sum: Vec3A, size: f32| {
-            let point = at + CLOSER * (sum / size - at);
+        let vertices = segments.iter().zip(places);
+        self.offsets.extend(vertices.map(|(segment, place)| Vec3A::from(segment.normal).dot(*place)));
+        // Vertices of a side share a point. Those before the first start are on the last side, the one that goes on there.
+        let count = starts.count_ones().max(1);
+        let mut sides = [(Vec3A::ZERO, 0.0); MOST_SIDES];
+        let mut side = count - 1;
+        for (n, place) in places.iter().enumerate() {
+            side += starts >> n & 1;
+            side = if side == count { 0 } else { side };
+            let (sum, size) = &mut sides[side as usize % MOST_SIDES];
+            *sum += *place;
+            *size += 1.0;
+            draft.on |= u64::from(side) << (4 * n);
+        }
+        for (sum, size) in &sides[..count as usize % (MOST_SIDES + 1)] {
+            let point = at + CLOSER * (*sum / *size - at);
             self.points.push(point);
             self.in_block.push(low + point);
-        };
-        // Vertices of a side share a point. The first side starts somewhere, if there are several.
-        let first = (places.len() - 1).min(starts.trailing_zeros() as usize);
-        let (mut side, mut sum, mut size) = (0, Vec3A::ZERO, 0.0);
-        for n in (first..places.len()).chain(0..first) {
-            if starts >> n & 1 == 1 && size > 0.0 {
-                point(sum, size);
-                side += 1;
-                (sum, size) = (Vec3A::ZERO, 0.0);
-            }
-            sum += places[n];
-            size += 1.0;
-            draft.on |= side << (4 * n);
         }
-        point(sum, size);
-        draft.count = side as u8 + 1;
+        draft.count = count as u8;
         self.drafts.push(draft);
     }
 
@@ -331,13 +331,12 @@ impl Refiner {
         }
         let mut asked = points.iter().zip(found);
         let (mut segments, mut offsets) = (segments, &offsets[..]);
-        // As many as four bits tell.
-        let mut known = [None; 16];
+        let mut known = [None; MOST_SIDES];
         for draft in drafts {
             let (mut planes, mut sum, mut on) = (Planes::NONE, Vec3A::ZERO, draft.on);
             let mut first = None;
             for (known, (point, slope)) in known[..usize::from(draft.count)].iter_mut().zip(&mut asked) {
-                *known = plane(*point, slope, step);
+                *known = slope.surface(step).map(|(normal, depth)| (normal, normal.dot(*point) + depth));
             }
             let ring = segments.split_off_mut(..usize::from(draft.len)).unwrap_or_default();
             let (own, rest) = offsets.split_at(ring.len());

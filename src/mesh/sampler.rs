@@ -264,19 +264,19 @@ impl Sampler for SolidSampler<'_> {
         let [x, y, z] = &scratch.single;
         let [value, dx, dy, dz] = &mut scratch.slopes;
         scratch.evaluator.gradients(tape, x, y, z, Gradients { value, dx, dy, dz });
-        out.extend((0..points.len()).map(|n| Slope { value: value[n], gradient: Vec3A::new(dx[n], dy[n], dz[n]) }));
+        let gradients = dx.iter().zip(dy).zip(dz).map(|((dx, dy), dz)| Vec3A::new(*dx, *dy, *dz));
+        out.extend(value.iter().zip(gradients).map(|(&value, gradient)| Slope { value, gradient }));
         true
     }
 }
 
 /// The coordinates of points, axis by axis.
-fn place(points: impl Iterator<Item = Vec3A>, [x, y, z]: &mut [Vec<f32>; 3]) {
-    x.clear();
-    y.clear();
-    z.clear();
-    for p in points {
-        x.push(p.x);
-        y.push(p.y);
-        z.push(p.z);
+fn place(points: impl ExactSizeIterator<Item = Vec3A>, axes: &mut [Vec<f32>; 3]) {
+    for axis in &mut *axes {
+        axis.resize(points.len(), 0.0);
+    }
+    let [x, y, z] = axes;
+    for (((x, y), z), p) in x.iter_mut().zip(y).zip(z).zip(points) {
+        (*x, *y, *z) = (p.x, p.y, p.z);
     }
 }

@@ -281,6 +281,27 @@ fn strongly_curved_cells_bulge() {
     assert!((ball.volume() / volume - 1.0).abs() < 3e-3, "{}", ball.volume());
 }
 
+/// Normals that differ as those of a crease do are those of a ball all the same, if it has a radius of few cells.
+#[test]
+fn round_cells_have_no_creases() {
+    let cube = Solid::cuboid(DVec3::splat(1.5)).translate(DVec3::X * 2.5);
+    for cells in [1.5, 1.8, 2.1] {
+        let cell = 1.0 / cells;
+        let mesh = mesh(&(Solid::sphere(1.0) | &cube), cell * 0.999, Features::Sharp);
+        let (normals, corners) = (mesh.normals().unwrap(), mesh.corner_normals().expect("the cube has creases"));
+        let (mut count, mut creased) = (0, 0);
+        for (triangle, corners) in mesh.triangles().iter().zip(corners) {
+            if triangle.iter().all(|&n| mesh.positions()[n as usize].x < 1.2) {
+                let own = triangle.map(|n| normals[n as usize]);
+                count += 1;
+                creased += usize::from(own.iter().zip(corners).any(|(own, corner)| own.dot(*corner) < 0.99));
+            }
+        }
+        println!("a radius of {cells} cells: {creased} of {count} triangles have creases");
+        assert!(count > 60 && creased == 0, "{cells}: {creased} of {count}");
+    }
+}
+
 #[test]
 fn normals_at_creases_are_those_of_the_faces() {
     let mesh = mesh(&Solid::cuboid(DVec3::splat(2.0)).rotate_x(0.3).rotate_z(0.5), 0.11, Features::Sharp);

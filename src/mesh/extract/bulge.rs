@@ -23,12 +23,12 @@
 //!   regular loop of n. The vertex is as far above the surface as they are below: that takes a third to a half off what
 //!   the triangles are off in the mean, and no point is farther off than those segments.
 //!
-//! What is of third order is left out, and no more values of the field are needed. That fans are embedded is shown in
-//! [`sharp`](super::sharp).
+//! What is of third order is left out. No more values of the field are needed, but where normals differ as those of a crease
+//! do: see [`spread`](super::spread). That fans are embedded is shown in [`sharp`](super::sharp).
 
 use glam::Vec3A;
 
-use crate::mesh::feature::{SMOOTH, differ};
+use crate::mesh::feature::{SMOOTH, Slope, differ};
 
 /// How far the two triangles of four vertices may be off the surface in their middles, in cells, before the better
 /// diagonal is chosen.
@@ -40,8 +40,18 @@ const FAR: f32 = 0.0175;
 /// The distance of a longer loop's middle from the surface, in cells, beyond which there is a vertex.
 const HIGH: f32 = 0.0125;
 
-/// How high the vertex is above the middle of a loop, as a part of how high the surface is: of four to seven vertices.
-const RAISED: [f32; 4] = [1.5, 1.345, 1.25, 1.188];
+/// How high the vertex is above the middle of a loop, as a part of how high the surface is: of three to seven vertices.
+const RAISED: [f32; 5] = [1.75, 1.5, 1.345, 1.25, 1.188];
+
+/// Cells whose normals have a larger variance are hardly ever round: with half of them on each side of a right angle it is
+/// 1/2.
+const WIDE: f32 = 0.35;
+
+/// How much higher or lower a round cell's surface may be than its normals tell, as a part of what they do.
+const OFF: f32 = 0.2;
+
+/// The square of how much its normal in the middle may differ from the mean of those around, as a part of their variance.
+const ASKEW: f32 = 0.09;
 
 /// If no normals of a cell differ by more than this angle, the cell is nearly flat: the normals of a loop within 0.8
 /// cells of its middle make it no farther off than [`TURNED`] then.
@@ -96,6 +106,19 @@ impl<const N: usize> Ring<N> {
         !are_creased(&self.normals, self.variance)
     }
 
+    /// Whether a cell whose normals differ as those of a crease do may be round all the same.
+    #[inline(always)]
+    pub(super) fn may_be_round(&self) -> bool {
+        self.variance < WIDE
+    }
+
+    /// What a cell whose normals differ as those of a crease do has in its middle, given its vertices.
+    #[inline(always)]
+    pub(super) fn middle(&self, positions: &[Vec3A; N]) -> Middle {
+        let (height, far, at) = height(positions, &self.normals);
+        Middle { count: N, at, height, far, normal: self.sum.normalize_or_zero(), variance: self.variance }
+    }
+
     /// What a smooth cell that is not flat is to have, if it asks where its vertices are, in cells from the block's first
     /// node.
     #[inline(always)]
@@ -119,9 +142,14 @@ impl<const N: usize> Ring<N> {
             return Cover::Table;
         }
         let normal = self.sum.normalize_or_zero();
-        let raised = RAISED[N.clamp(4, 7) - 4];
-        Cover::Top { at: middle + raised * height * normal, normal }
+        Cover::Top { at: middle + raised(N) * height * normal, normal }
     }
+}
+
+/// How high the vertex is above the middle of so many, as a part of how high the surface is.
+#[inline(always)]
+fn raised(count: usize) -> f32 {
+    RAISED[count.clamp(3, 7) - 3]
 }
 
 /// What a smooth cell has.
@@ -132,6 +160,28 @@ pub(super) enum Cover {
     Two([[u8; 3]; 2]),
     /// Triangles around a vertex, in cells from the block's first node, with the unit normal there.
     Top { at: Vec3A, normal: Vec3A },
+}
+
+/// The middle of a loop whose normals differ as those of a crease do, and what a smooth surface would have there.
+pub(super) struct Middle {
+    /// How many vertices there are.
+    pub(super) count: usize,
+    pub(super) at: Vec3A,
+    height: f32,
+    far: f32,
+    normal: Vec3A,
+    variance: f32,
+}
+
+impl Middle {
+    /// The vertex that the cell is to have, and the unit normal there, if it is round, given the field in the middle.
+    #[inline(always)]
+    pub(super) fn top(&self, slope: &Slope, step: f32) -> Option<(Vec3A, Vec3A)> {
+        let (normal, depth) = slope.surface(step)?;
+        let is_near = (depth - self.height).abs() <= OFF * self.far;
+        let is_round = is_near && (normal - self.normal).length_squared() <= ASKEW * self.variance;
+        is_round.then(|| (self.at + raised(self.count) * depth * normal, normal))
+    }
 }
 
 /// How far the triangles with the first, and with the second diagonal between four points of a surface are off it.
@@ -203,7 +253,7 @@ mod tests {
 
     #[test]
     fn a_raised_vertex_is_as_far_above_as_the_segments_around_it_are_below() {
-        for (n, raised) in (4..8).zip(RAISED) {
+        for (n, raised) in (3..8).zip(RAISED) {
             let at = |k: usize| {
                 let (sin, cos) = (std::f32::consts::TAU * k as f32 / n as f32).sin_cos();
                 let normal = Vec3A::new(0.5 * cos, 0.5 * sin, 8.0).normalize();
@@ -214,6 +264,93 @@ mod tests {
             let above = middle.length() + raised * height - 8.0;
             let below = 8.0 - (0.5 * (positions[0] + positions[1])).length();
             assert!((above / below - 1.0).abs() < 0.02, "{n}: {above}, {below}");
+        }
+    }
+
+    /// What the cell has whose loop is a regular polygon, seen from above, if its normals spread, given the height of the
+    /// surface, its slope there, and the field in cells.
+    fn top_of<const N: usize>(
+        turn: f32,
+        surface: impl Fn(f32, f32) -> (f32, [f32; 2]),
+        field: impl Fn(Vec3A) -> (f32, Vec3A),
+    ) -> Option<Option<(Vec3A, Vec3A)>> {
+        let corner: [_; N] = std::array::from_fn(|n| {
+            let (sin, cos) = (turn + std::f32::consts::TAU * n as f32 / N as f32).sin_cos();
+            let (x, y) = (0.6 * cos, 0.6 * sin);
+            let (height, [u, v]) = surface(x, y);
+            (Vec3A::new(x, y, height), Vec3A::new(-u, -v, 1.0).normalize())
+        });
+        let ring = Ring::new(corner.map(|(_, normal)| normal));
+        let middle = ring.middle(&corner.map(|(at, _)| at));
+        let (value, gradient) = field(middle.at);
+        let is_asked = !ring.is_smooth() && ring.may_be_round();
+        is_asked.then(|| middle.top(&Slope { value, gradient }, 1.0))
+    }
+
+    #[test]
+    fn roofs_are_never_round() {
+        let (mut state, mut asked) = (1_u64, 0);
+        let mut next = move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f32 / (1 << 24) as f32
+        };
+        for n in 0..40_000 {
+            // Two planes through a ridge that is somewhere, along y and tilted; up to 84° from each other.
+            let (ridge, tilt, left, right) = (next() - 0.5, next() - 0.5, 0.9 * next(), 0.9 * next());
+            let planes = [left, -right].map(|slope| {
+                let normal = Vec3A::new(-slope, -tilt, 1.0);
+                (normal / normal.length(), normal.dot(Vec3A::X * ridge) / normal.length())
+            });
+            let surface = |x: f32, y: f32| {
+                let slope = if x < ridge { left } else { -right };
+                (slope * (x - ridge) + tilt * y, [slope, tilt])
+            };
+            // Joined by min, or by the R-function R_0: f + g − √(f² + g²).
+            let field = |p: Vec3A| {
+                let [(f, down), (g, other)] = planes.map(|(normal, d)| (d - normal.dot(p), -normal));
+                if n % 2 == 0 {
+                    return if f < g { (f, down) } else { (g, other) };
+                }
+                let root = f.hypot(g);
+                (f + g - root, down * (1.0 - f / root) + other * (1.0 - g / root))
+            };
+            let turn = 7.0 * next();
+            let found = match n / 2 % 4 {
+                0 => top_of::<4>(turn, surface, field),
+                1 => top_of::<5>(turn, surface, field),
+                2 => top_of::<6>(turn, surface, field),
+                _ => top_of::<7>(turn, surface, field),
+            };
+            asked += usize::from(found.is_some());
+            assert!(found.flatten().is_none(), "{n}: ridge at {ridge}, slopes {left}, {right}, tilt {tilt}");
+        }
+        assert!(asked > 10_000, "{asked}");
+    }
+
+    #[test]
+    fn arcs_and_balls_are_round() {
+        for (turn, radius) in [(0.1, 1.7), (0.4, 1.5), (0.7, 1.4), (0.3, 1.3)] {
+            let ball = |x: f32, y: f32| {
+                let z = (radius * radius - x * x - y * y).sqrt();
+                (z, [-x / z, -y / z])
+            };
+            let tube = |x: f32, _: f32| {
+                let z = (radius * radius - x * x).sqrt();
+                (z, [-x / z, 0.0])
+            };
+            let of_ball = |p: Vec3A| (radius - p.length(), -p.normalize());
+            let of_tube = |p: Vec3A| {
+                let across = Vec3A::new(p.x, 0.0, p.z);
+                (radius - across.length(), -across.normalize())
+            };
+            let tops =
+                [top_of::<4>(turn, ball, of_ball), top_of::<6>(turn, ball, of_ball), top_of::<4>(turn, tube, of_tube)];
+            for (n, top) in tops.into_iter().enumerate() {
+                let (at, normal) = top.expect("the normals spread").expect("it is round");
+                let (value, _) = if n == 2 { of_tube(at) } else { of_ball(at) };
+                // As high above the surface as the segments around it are below.
+                assert!(value < 0.0 && value > -0.12 && normal.z > 0.99, "{n} at {radius}: {value}");
+            }
         }
     }
 }

@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use crate::mesh::bulk::Bulk;
+use crate::mesh::feature::Segment;
 
 /// The triangles of cells without fans.
 #[derive(Default)]
@@ -33,5 +34,19 @@ impl Plain {
         self.around.push((self.triangles.len() as u32, N as u32));
         let triangles: [_; N] = std::array::from_fn(|n| [top, vertices[n], vertices[(n + 1) % N]]);
         self.triangles.extend_from_slice(&triangles);
+    }
+
+    /// The same, given the segments of the loop, of three to seven.
+    #[inline(always)]
+    pub(super) fn add_top_of(&mut self, at: Vec3, normal: Vec3, ring: &[Segment], on_edges: u32) {
+        let from = |segment: &Segment| segment.from;
+        match ring {
+            [a, b, c] => self.add_top(at, normal, [a, b, c].map(from), on_edges),
+            [a, b, c, d] => self.add_top(at, normal, [a, b, c, d].map(from), on_edges),
+            [a, b, c, d, e] => self.add_top(at, normal, [a, b, c, d, e].map(from), on_edges),
+            [a, b, c, d, e, f] => self.add_top(at, normal, [a, b, c, d, e, f].map(from), on_edges),
+            [a, b, c, d, e, f, g, ..] => self.add_top(at, normal, [a, b, c, d, e, f, g].map(from), on_edges),
+            _ => {}
+        }
     }
 }

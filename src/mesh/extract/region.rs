@@ -57,6 +57,9 @@ const ROUNDS: usize = 3;
 /// How often the point of a region is sought: the weights of planes depend on it.
 const STEPS: usize = 3;
 
+/// A point that is farther than this from the planes, as a part of what is allowed, will not come close enough.
+const NO_HOPE: f32 = 1.2;
+
 /// A crease that is in an empty cell for less than this, in cells, asks for nothing.
 const SHORT: f32 = 0.05;
 
@@ -107,14 +110,13 @@ pub(super) fn regions(
     for stage in stages {
         let mut wishes = Vec::new();
         steps.step()?;
-        all.retain(|asker| known.own_taken(asker.block, cell_number(split_cell(asker.span.low).1)).is_none());
-        for asker in &all {
+        for asker in all.iter().filter(|asker| !known.is_granted(asker.who, asker.block)) {
             match stage {
                 Stage::Slab(nth) => asker.slabs(nth, &mut wishes),
                 Stage::Box => asker.boxes(&mut wishes),
             }
         }
-        wishes.sort_by(|a, b| b.size.total_cmp(&a.size));
+        let mut wishes = largest_first(&wishes);
         wishes.retain(|wish| !known.grant(wish, false));
         if matches!(stage, Stage::Box) {
             wishes.retain(|wish| !known.grant(wish, true));
@@ -142,7 +144,7 @@ pub(super) fn regions(
             }
             known.exits(&asker, 0, &mut wishes);
         }
-        wishes.sort_by(|a, b| b.size.total_cmp(&a.size));
+        let mut wishes = largest_first(&wishes);
         asked = known.regions.len();
         wishes.retain(|wish| wish.slab.is_none() || !known.grant(wish, false));
         wishes.retain(|wish| !known.grant(wish, true));
@@ -227,7 +229,7 @@ impl<'a> Asker<'a> {
         for reach in reaches {
             let at = settle(&self.planes, self.at, -reach, self.span.size() + reach, 3);
             let low = self.span.low;
-            let cell = std::array::from_fn(|axis| low[axis].saturating_add_signed(at[axis].floor() as i32));
+            let cell = std::array::from_fn(|axis| low[axis].saturating_add_signed(floor(at[axis])));
             let span = self.span.union(&Span::single(cell));
             if span != last {
                 // What is much farther off than allowed here will hardly be close enough in a region.
@@ -239,6 +241,12 @@ impl<'a> Asker<'a> {
             }
         }
     }
+}
+
+/// The largest whole number that is not above a small one.
+fn floor(x: f32) -> i32 {
+    let towards_zero = x as i32;
+    towards_zero - i32::from(towards_zero as f32 > x)
 }
 
 /// A region that a cell, or another region, asks for.
@@ -256,6 +264,13 @@ struct Wish<'a> {
     from: [u32; 3],
     /// How far it may be from the planes.
     allowed: f32,
+}
+
+/// Wishes in the order that they are granted in: the mesh gains most by the first.
+fn largest_first<'w, 'a>(wishes: &'w [Wish<'a>]) -> Vec<&'w Wish<'a>> {
+    let mut order: Vec<&Wish<'_>> = wishes.iter().collect();
+    order.sort_by(|a, b| b.size.total_cmp(&a.size));
+    order
 }
 
 struct Known<'a> {
@@ -282,10 +297,7 @@ impl<'a> Known<'a> {
     /// Makes the region that is wished for, if it can be: merged with the regions in its way if it `merges`, or if
     /// that makes a slab of a slab, and else only where there are none. Whether there is no more to be done for the wish.
     fn grant(&mut self, wish: &Wish<'_>, merges: bool) -> bool {
-        // A region that a cell is in already is what it wished for, or better.
-        let is_granted =
-            matches!(wish.who, Who::Cell(candidate) if self.own_taken(wish.block, candidate.number).is_some());
-        if is_granted || self.run.cancel.is_cancelled() {
+        if self.is_granted(wish.who, wish.block) || self.run.cancel.is_cancelled() {
             return true;
         }
         let mut span = wish.span;
@@ -334,6 +346,11 @@ impl<'a> Known<'a> {
         }
     }
 
+    /// Whether who asks is a cell, of that block, that is in a region already: that is what it wished for, or better.
+    fn is_granted(&self, who: Who<'_>, block: usize) -> bool {
+        matches!(who, Who::Cell(candidate) if self.own_taken(block, candidate.number).is_some())
+    }
+
     /// The region that a cell, close to block `near`, is in.
     fn taken(&self, near: usize, cell: [u32; 3]) -> Option<u32> {
         let (block, within) = split_cell(cell);
@@ -357,23 +374,25 @@ impl<'a> Known<'a> {
             }
         }
         let (shift, size) = (offset(wish.from, span.low), span.size());
-        let (mut planes, mut place) = (Planes::NONE, wish.at + shift);
-        for _ in 0..STEPS {
-            planes = patches.planes(span.low, place);
-            let next = settle(&planes, place, Vec3A::ZERO, size, 3);
-            let way = next - place;
-            place = next;
-            if way.length_squared() < CLOSE * CLOSE {
-                break;
-            }
-        }
         let own = match wish.who {
             Who::Cell(candidate) => candidate.planes(),
             // None if it is part of another by now.
             Who::Region(number) => self.regions[number].as_ref()?.planes,
         };
-        if planes.distance(place).max(own.distance(place - shift)) > wish.allowed {
-            return None;
+        let (mut planes, mut place) = (Planes::NONE, wish.at + shift);
+        for step in 1..=STEPS {
+            planes = patches.planes(span.low, place);
+            let next = settle(&planes, place, Vec3A::ZERO, size, 3);
+            let way = next - place;
+            place = next;
+            let is_last = step == STEPS || way.length_squared() < CLOSE * CLOSE;
+            let allowed = if is_last { wish.allowed } else { NO_HOPE * wish.allowed };
+            if planes.distance(place).max(own.distance(place - shift)) > allowed {
+                return None;
+            }
+            if is_last {
+                break;
+            }
         }
         let Disc { ring, within } = patches.glued(&span)?;
         let at = self.samples.inside(place, span.low, span.high);

@@ -27,7 +27,7 @@
 //! planes.
 //!
 //! [Regions](super::region) of several cells have fans as well, and so have smooth cells that are strongly
-//! [curved](super::bulge).
+//! [curved](super::bulge), even if their normals differ as those of a crease do ([`spread`](super::spread)).
 //!
 //! Limits: cells with several loops stay as the table has them, or as that of the opposite case
 //! (see [`joined`](super::joined)). Where a crease passes an empty cell and no region comes about, it is

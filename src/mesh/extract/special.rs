@@ -16,6 +16,7 @@ use super::nearby::Nearby;
 use super::plain::Plain;
 use super::samples::{Samples, cell_number, cell_of};
 use super::span::Span;
+use super::spread::{Spread, Spreads};
 use super::{ExtractError, Sampler};
 use crate::mesh::feature::{Candidate, Refiner, Segment, Slope};
 use crate::mesh::loops::{CellLoop, MOST};
@@ -270,6 +271,7 @@ struct Worker<S: Sampler> {
     corners: Corners,
     /// The cells at hand with a single loop, by the length of that: their numbers and cases.
     by_length: [Vec<(u16, u8)>; MOST + 1],
+    spreads: Spreads,
     refiner: Refiner,
     /// How long the last lists were.
     room: [usize; 4],
@@ -283,6 +285,7 @@ impl<S: Sampler> Worker<S> {
             nearby: Nearby::new(),
             corners: Corners::new(),
             by_length: Default::default(),
+            spreads: Spreads::default(),
             refiner: Refiner::default(),
             room: [0; 4],
             plain: Plain::default(),
@@ -329,9 +332,10 @@ impl Lists {
         worker: &mut Worker<S>,
         plain: &mut Plain,
     ) -> Result<OfBlock, ExtractError> {
-        let Worker { scratch, nearby, by_length, refiner, .. } = worker;
+        let Worker { scratch, nearby, by_length, spreads, refiner, .. } = worker;
         nearby.load(samples, n)?;
         let (candidates, segments, cells) = (self.candidates.len(), self.segments.len(), self.cells.len());
+        spreads.clear();
         refiner.clear();
         by_length.iter_mut().for_each(Vec::clear);
         let block = samples.blocks()[n];
@@ -346,14 +350,24 @@ impl Lists {
             }
         });
         // Cells with loops of one length are looked at by code for that length.
-        self.add_cells::<3>(samples, nearby, &by_length[3], (refiner, plain));
-        self.add_cells::<4>(samples, nearby, &by_length[4], (refiner, plain));
-        self.add_cells::<5>(samples, nearby, &by_length[5], (refiner, plain));
-        self.add_cells::<6>(samples, nearby, &by_length[6], (refiner, plain));
-        self.add_cells::<7>(samples, nearby, &by_length[7], (refiner, plain));
-        let slopes = |points: &[Vec3A], out: &mut Vec<Slope>| sampler.slopes(scratch, n, block, points, out);
+        self.add_cells::<3>(samples, nearby, &by_length[3], (spreads, refiner, plain));
+        self.add_cells::<4>(samples, nearby, &by_length[4], (spreads, refiner, plain));
+        self.add_cells::<5>(samples, nearby, &by_length[5], (spreads, refiner, plain));
+        self.add_cells::<6>(samples, nearby, &by_length[6], (spreads, refiner, plain));
+        self.add_cells::<7>(samples, nearby, &by_length[7], (spreads, refiner, plain));
+        let step = samples.lattice.step() as f32;
+        let mut slopes = |points: &[Vec3A], out: &mut Vec<Slope>| sampler.slopes(scratch, n, block, points, out);
+        spreads.look(step, &mut slopes, |Spread { number, segments, places, top }| {
+            let within = cell_of([0; 3], number).map(|n| n as usize);
+            let Some((at, normal)) = top else {
+                return self.add_candidate(within, segments, places, refiner);
+            };
+            let at = nearby.inside(samples, within, at - vector(within));
+            plain.add_top_of(at, normal.into(), segments, samples.vertices());
+            self.cells.push((number, segments.len() as u8));
+        });
         let all = &mut self.candidates;
-        refiner.refine(&mut self.segments[segments..], samples.lattice.step() as f32, slopes, |draft, normal, ring| {
+        refiner.refine(&mut self.segments[segments..], step, slopes, |draft, normal, ring| {
             let within = cell_of([0; 3], draft.number).map(|n| n as usize);
             let position = nearby.inside(samples, within, draft.at);
             // Beyond a face that the surface crosses there is some of it.
@@ -385,7 +399,7 @@ impl Lists {
         samples: &Samples<'_>,
         nearby: &Nearby,
         cells: &[(u16, u8)],
-        (refiner, plain): (&mut Refiner, &mut Plain),
+        (spreads, refiner, plain): (&mut Spreads, &mut Refiner, &mut Plain),
     ) {
         let loops = CellLoop::table();
         for &(number, case) in cells {
@@ -400,11 +414,15 @@ impl Lists {
             } else if ring.is_smooth() {
                 ring.cover(positions)
             } else {
-                let low = vector(within);
-                let places = positions().map(|place| place - low);
+                let (low, positions) = (vector(within), positions());
+                let places = positions.map(|place| place - low);
                 let mut segments: [_; N] =
                     std::array::from_fn(|n| Segment::new(vertices[n], ring.normals[n].into(), outline.face(n)));
-                self.add_candidate(within, &mut segments, (&ring.normals, &places), refiner);
+                if ring.may_be_round() {
+                    spreads.add(number, ring.middle(&positions), &segments, &places);
+                } else {
+                    self.add_candidate(within, &mut segments, &places, refiner);
+                }
                 continue;
             };
             // As many as three bits tell.
@@ -446,11 +464,10 @@ impl Lists {
             // The table knows nothing of joined faces.
             let low = vector(within);
             let around = outline.edges().iter().map(|&edge| corner(edge));
-            let normals: Vec<Vec3A> = around.clone().map(|vertex| samples.normal(vertex).into()).collect();
             let places: Vec<Vec3A> = around.clone().map(|vertex| nearby.place(samples, vertex) - low).collect();
             let segment = |(n, vertex)| Segment::new(vertex, samples.normal(vertex), outline.face(n));
             let mut segments: Vec<Segment> = around.enumerate().map(segment).collect();
-            return self.add_candidate(within, &mut segments, (&normals, &places), refiner);
+            return self.add_candidate(within, &mut segments, &places, refiner);
         } else {
             let turned = table.triangles(!case).iter();
             plain.triangles.extend(turned.map(|&[a, b, c]| [corner(a), corner(c), corner(b)]));
@@ -458,17 +475,11 @@ impl Lists {
         self.cells.push((cell_number(within), (plain.triangles.len() - start) as u8));
     }
 
-    /// Adds a cell with a single loop around it that is to have a fan, given with the normals at its vertices and with
-    /// their places from the cell's first node.
-    #[inline(always)]
-    fn add_candidate(
-        &mut self,
-        within: [usize; 3],
-        segments: &mut [Segment],
-        vertices: (&[Vec3A], &[Vec3A]),
-        refiner: &mut Refiner,
-    ) {
-        refiner.add((cell_number(within), vector(within)), (self.segments.len(), segments), vertices);
+    /// Adds a cell with a single loop around it that is to have a fan, given with the places of its vertices from the
+    /// cell's first node.
+    #[inline]
+    fn add_candidate(&mut self, within: [usize; 3], segments: &mut [Segment], places: &[Vec3A], refiner: &mut Refiner) {
+        refiner.add((cell_number(within), vector(within)), (self.segments.len(), segments), places);
         self.segments.extend_from_slice(segments);
     }
 }

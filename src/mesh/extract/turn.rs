@@ -31,12 +31,10 @@ impl Fans {
             let mut found = Vec::with_capacity(fans.len());
             for (low, fan) in (n * AT_ONCE..).zip(fans) {
                 let ring = all.of(low);
-                for (nth, segment) in ring.iter().enumerate() {
-                    // Of two fans the lower one sees to it.
-                    if segment.turns && segment.face % 2 == 1 {
-                        found.extend(all.turned(samples, (low, fan), ring, nth));
-                    }
-                }
+                // Of two fans the lower one sees to it.
+                let turns = |&nth: &usize| ring[nth].turns & (ring[nth].face % 2 == 1);
+                let turned = |nth| all.turned(samples, (low, fan), ring, nth);
+                found.extend((0..ring.len()).filter(turns).filter_map(turned));
             }
             Ok(found)
         };
