@@ -9,7 +9,7 @@
 
 use glam::Vec3A;
 
-use super::bulge::is_crease;
+use super::bulge::is_strongly_curved;
 use super::join::{Corners, Watch};
 use super::samples::Samples;
 use crate::mesh::feature::SMOOTH;
@@ -116,7 +116,7 @@ fn is_creased(samples: &Samples<'_>, n: usize, corners: &Corners, eighths: u8) -
 #[inline(always)]
 fn differs<const N: usize>(samples: &Samples<'_>, corners: &Corners, cell: [usize; 3], edges: &[u8]) -> bool {
     let Some(edges) = edges.first_chunk::<N>() else { return false };
-    is_crease(&corners.of_edges(cell, edges).map(|vertex| samples.normal(vertex).into()))
+    is_strongly_curved(&corners.of_edges(cell, edges).map(|vertex| samples.normal(vertex).into()))
 }
 
 #[cfg(test)]

@@ -16,6 +16,13 @@ pub(super) struct Plain {
 }
 
 impl Plain {
+    /// Makes room for what cells have, given how many triangles the table has for them: vertices in the middle of cells
+    /// make it more, and fans are to follow. It is seldom more than three quarters more; then the lists grow as they must.
+    pub(super) fn make_room(&mut self, in_table: usize) {
+        self.triangles.reserve_exact(in_table / 4 * 7);
+        self.tops.iter_mut().for_each(|tops| tops.reserve_exact(in_table / 4));
+    }
+
     /// The memory, with nothing in it.
     pub(super) fn cleared(mut self) -> Plain {
         self.triangles.clear();

@@ -35,7 +35,7 @@ use super::patches::{Disc, Patches};
 use super::samples::{Samples, cell_number, cell_of, split_cell};
 use super::span::{Span, offset};
 use super::special::Special;
-use crate::mesh::feature::{CLOSE, Candidate, Segment, settle};
+use crate::mesh::feature::{CLOSE, Candidate, INSET, Segment, settle};
 use crate::mesh::loops::{CellLoop, LONGEST};
 use crate::mesh::qef::Planes;
 use crate::run::{Cancelled, Meter, Run};
@@ -227,7 +227,8 @@ impl<'a> Asker<'a> {
     fn towards<const N: usize>(&self, reaches: [Vec3A; N], slab: Option<usize>, wishes: &mut Vec<Wish<'a>>) {
         let (misfit, mut last) = (self.planes.distance(self.at), self.span);
         for reach in reaches {
-            let at = settle(&self.planes, self.at, -reach, self.span.size() + reach, 3);
+            let (first, end) = (-reach, self.span.size() + reach);
+            let at = settle(&self.planes, self.at, first, end, 3);
             let low = self.span.low;
             let cell = std::array::from_fn(|axis| low[axis].saturating_add_signed(floor(at[axis])));
             let span = self.span.union(&Span::single(cell));
@@ -238,6 +239,11 @@ impl<'a> Asker<'a> {
                     wishes.push(Wish { slab, ..self.wish(misfit, span, at, allowed) });
                 }
                 last = span;
+            }
+            // A point that is held by no side that moves is there among more cells as well.
+            let is_free = at.cmpgt(first + INSET) & at.cmplt(end - INSET) | reach.cmpeq(Vec3A::ZERO);
+            if is_free.all() {
+                break;
             }
         }
     }
@@ -365,12 +371,14 @@ impl<'a> Known<'a> {
     fn region(&self, wish: &Wish<'_>, span: Span, patches: &mut Patches<'a>) -> Option<Region> {
         patches.clear();
         for cell in span.cells() {
-            if self.samples.is_plain(split_cell(cell).0) {
+            let (first, within) = split_cell(cell);
+            if self.samples.is_plain(first) {
                 return None;
             }
-            let case = self.samples.case_near(wish.block, cell);
+            let Some(block) = self.samples.find_near(wish.block, first) else { continue };
+            let case = self.samples.parts.part(block).signs.case(within);
             if case != 0 && case != 255 {
-                self.add_patches(wish.block, cell, case, patches)?;
+                self.add_patches(block, within, (cell, case), patches)?;
             }
         }
         let (shift, size) = (offset(wish.from, span.low), span.size());
@@ -399,10 +407,14 @@ impl<'a> Known<'a> {
         Some(Region { block: wish.block, segments: ring, at, place, planes, within, span })
     }
 
-    /// Adds the planes of a crossed cell, close to block `near`, and its patches.
-    fn add_patches(&self, near: usize, cell: [u32; 3], case: u8, patches: &mut Patches<'a>) -> Option<()> {
-        let (block, within) = split_cell(cell);
-        let block = self.samples.find_near(near, block)?;
+    /// Adds the planes of a crossed cell of a block, and its patches.
+    fn add_patches(
+        &self,
+        block: usize,
+        within: [usize; 3],
+        (cell, case): ([u32; 3], u8),
+        patches: &mut Patches<'a>,
+    ) -> Option<()> {
         if let Some(candidate) = self.special.candidate(block, cell_number(within)) {
             patches.add(cell, self.special.segments(block, candidate), candidate.planes());
             return Some(());
@@ -411,7 +423,7 @@ impl<'a> Known<'a> {
         let mut add = |outline: &CellLoop| {
             let mut vertices = [0; LONGEST];
             for (vertex, &edge) in vertices.iter_mut().zip(outline.edges()) {
-                *vertex = self.samples.vertex(near, cell, edge)?;
+                *vertex = self.samples.vertex(block, cell, edge)?;
             }
             patches.add_loop(self.samples, cell, outline, &vertices[..outline.len()]);
             Some(())

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::bulge::{Cover, Ring};
 use super::cells::{CellOrder, CellSet};
-use super::join::{Corners, reserve};
+use super::join::Corners;
 use super::joined::Joined;
 use super::nearby::Nearby;
 use super::plain::Plain;
@@ -26,9 +26,6 @@ use crate::run::{Meter, Run};
 
 /// Blocks that have their lists together.
 const AT_ONCE: usize = 64;
-
-/// How much more room there is made for triangles than those before tell.
-const ROOM: f64 = 1.05;
 
 /// The number of the list that the segments of a block are in.
 pub(super) fn list_of(block: usize) -> u32 {
@@ -71,28 +68,17 @@ struct OfBlock {
 
 /// Takes what chunks of blocks have as they come, and adds it in their order. A chunk whose turn it is adds to what
 /// those before it have itself.
-struct Queue<'a> {
-    samples: &'a Samples<'a>,
+#[derive(Default)]
+struct Queue {
     all: Special,
-    /// How many triangles the case table has in the blocks that are added, and in all.
-    in_table: [usize; 2],
-    /// How many segments the fans of those that are added have.
-    segments: usize,
     /// Those that others before them are missing for.
     waiting: BTreeMap<usize, (Lists, Plain)>,
 }
 
-impl Queue<'_> {
-    /// What there is so far, with room for more, if it is the turn of a chunk.
+impl Queue {
+    /// What there is so far, if it is the turn of a chunk.
     fn begin(&mut self, chunk: usize) -> Option<Plain> {
-        (chunk == self.all.lists.len()).then(|| {
-            let blocks = (chunk * AT_ONCE..self.samples.blocks().len()).take(AT_ONCE);
-            let in_table = blocks.map(|n| self.samples.parts.part(n).triangles as usize).sum();
-            // Vertices in the middle of cells make it more than the table has; seldom by more than half, and then the
-            // list grows as it must.
-            self.make_room(in_table, [in_table + in_table / 2, in_table / 2]);
-            std::mem::take(&mut self.all.plain)
-        })
+        (chunk == self.all.lists.len()).then(|| std::mem::take(&mut self.all.plain))
     }
 
     /// Adds what a chunk has; that is more of what there was if it began in its turn.
@@ -100,7 +86,7 @@ impl Queue<'_> {
         if in_turn {
             self.all.plain = std::mem::take(plain);
             self.all.plain.around.clear();
-            self.note(lists);
+            self.all.lists.push(lists);
         } else if chunk == self.all.lists.len() {
             self.append(lists, plain);
         } else {
@@ -124,33 +110,12 @@ impl Queue<'_> {
         for block in &mut lists.blocks {
             block.plain = start + block.plain.start..start + block.plain.end;
         }
-        self.note(lists);
-        self.make_room(0, [plain.triangles.len(), plain.tops[0].len()]);
+        self.all.lists.push(lists);
         let all = &mut self.all.plain;
         all.triangles.extend_from_slice(&plain.triangles);
         for (all, tops) in all.tops.iter_mut().zip(&plain.tops) {
             all.extend_from_slice(tops);
         }
-    }
-
-    /// Adds the lists of a chunk.
-    fn note(&mut self, lists: Lists) {
-        let start = self.all.lists.len() * AT_ONCE;
-        let blocks = start..start + lists.blocks.len();
-        self.in_table[0] += blocks.map(|n| self.samples.parts.part(n).triangles as usize).sum::<usize>();
-        self.segments += lists.segments.len();
-        self.all.lists.push(lists);
-    }
-
-    /// Makes room for more triangles and vertices, those of blocks that have so many in the case table beyond those added.
-    fn make_room(&mut self, in_table: usize, [triangles, tops]: [usize; 2]) {
-        let all = &mut self.all.plain;
-        // Those of fans are to follow.
-        let count = all.triangles.len() + triangles;
-        let share = ROOM * (count + self.segments) as f64 / count as f64;
-        let progress = (self.in_table[0] + in_table, self.in_table[1]);
-        reserve(&mut all.triangles, triangles, progress, share);
-        all.tops.iter_mut().for_each(|all| reserve(all, tops, progress, ROOM));
     }
 }
 
@@ -163,9 +128,9 @@ impl Special {
         run: &Run,
     ) -> Result<Special, ExtractError> {
         let meter = Meter::new(run, even.len());
-        let in_table = (0..even.len()).map(|n| samples.parts.part(n).triangles as usize).sum();
-        let (all, in_table, waiting) = (Special::default(), [0, in_table], BTreeMap::new());
-        let queue = Mutex::new(Queue { samples, all, in_table, segments: 0, waiting });
+        let mut queue = Queue::default();
+        queue.all.plain.make_room((0..even.len()).map(|n| samples.parts.part(n).triangles as usize).sum());
+        let queue = Mutex::new(queue);
         let lock = || queue.lock().unwrap_or_else(PoisonError::into_inner);
         let of_chunk = |worker: &mut Worker<S>, (chunk, even): (usize, &[bool])| {
             let mut lists = Lists::with_room(worker.room);
@@ -407,15 +372,15 @@ impl Lists {
             let Some(edges) = outline.edges().first_chunk::<N>() else { continue };
             let within = cell_of([0; 3], number).map(|n| n as usize);
             let vertices = nearby.around(within, edges);
-            let ring = Ring::new(vertices.map(|vertex| samples.normal(vertex).into()));
-            let positions = || vertices.map(|vertex| nearby.place(samples, vertex));
+            let ring = Ring::new(std::array::from_fn(|n| samples.normal(vertices[n]).into()));
+            let positions = || std::array::from_fn(|n| nearby.place(samples, vertices[n]));
             let cover = if ring.is_flat() {
                 Cover::Table
             } else if ring.is_smooth() {
                 ring.cover(positions)
             } else {
-                let (low, positions) = (vector(within), positions());
-                let places = positions.map(|place| place - low);
+                let (low, positions): (_, [Vec3A; N]) = (vector(within), positions());
+                let places: [_; N] = std::array::from_fn(|n| positions[n] - low);
                 let mut segments: [_; N] =
                     std::array::from_fn(|n| Segment::new(vertices[n], ring.normals[n].into(), outline.face(n)));
                 if ring.may_be_round() {
