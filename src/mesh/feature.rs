@@ -186,17 +186,20 @@ impl Candidate {
 }
 
 /// The planes of the surface at the vertices of a cell's loop, given where these are from the cell's first node; tells
-/// the segments which of them turn. Then, by a bit for each vertex, where another side starts than that of the one before.
+/// the segments which of them turn, and `each` how far its plane is from that node, last vertex first. Then, by a bit for
+/// each vertex, where another side starts than that of the one before.
 #[inline(always)]
-pub(super) fn tangents(segments: &mut [Segment], places: &[Vec3A]) -> (Planes, u32) {
+pub(super) fn tangents(segments: &mut [Segment], places: &[Vec3A], mut each: impl FnMut(f32)) -> (Planes, u32) {
     let (mut planes, mut sides) = (Planes::NONE, 0);
     let first = segments.first().map_or(Vec3A::ZERO, |segment| segment.normal.into());
     let mut next = first;
     for (segment, at) in segments.iter_mut().zip(places).rev() {
         let normal = Vec3A::from(segment.normal);
+        let offset = normal.dot(*at);
         if normal != Vec3A::ZERO {
-            planes.add(normal, normal.dot(*at));
+            planes.add(normal, offset);
         }
+        each(offset);
         let alike = normal.dot(next);
         segment.turns = alike < SMOOTH;
         sides = sides << 1 | u32::from(alike <= ALIKE);
@@ -235,11 +238,6 @@ pub(super) struct Draft {
 }
 
 impl Draft {
-    #[inline(always)]
-    fn settle(&mut self) {
-        self.at = settle(&self.planes, self.at, Vec3A::ZERO, Vec3A::ONE, 1);
-    }
-
     /// The candidate, given its normal and position, and whether a crease leaves it.
     #[inline(always)]
     pub(super) fn done(&self, [normal, position]: [Vec3; 2], leaves: bool) -> Candidate {
@@ -253,7 +251,8 @@ impl Draft {
 #[derive(Default)]
 pub(super) struct Refiner {
     drafts: Vec<Draft>,
-    /// By segment, how far the tangent plane at its vertex is from the candidate's first node.
+    /// By segment, how far the tangent plane at its vertex is from the candidate's first node; those of a candidate from the
+    /// last to the first.
     offsets: Vec<f32>,
     /// One for each side of each candidate, in cells from the candidate's first node; and the same from the block's.
     points: Vec<Vec3A>,
@@ -283,33 +282,28 @@ impl Refiner {
         (first, segments): (usize, &mut [Segment]),
         places: &[Vec3A],
     ) {
-        let (planes, starts) = tangents(segments, places);
-        let at = places.iter().sum::<Vec3A>() / places.len() as f32;
-        let (first, len) = (first as u32, segments.len() as u8);
-        let mut draft = Draft { first, len, count: 0, on: 0, number, at, planes };
-        draft.settle();
-        let at = draft.at;
-        let vertices = segments.iter().zip(places);
-        self.offsets.extend(vertices.map(|(segment, place)| Vec3A::from(segment.normal).dot(*place)));
+        let (planes, starts) = tangents(segments, places, |offset| self.offsets.push(offset));
+        let middle = places.iter().sum::<Vec3A>() / places.len() as f32;
+        let at = settle(&planes, middle, Vec3A::ZERO, Vec3A::ONE, 1);
         // Vertices of a side share a point. Those before the first start are on the last side, the one that goes on there.
         let count = starts.count_ones().max(1);
         let mut sides = [(Vec3A::ZERO, 0.0); MOST_SIDES];
-        let mut side = count - 1;
+        let (mut side, mut on) = (count - 1, 0);
         for (n, place) in places.iter().enumerate() {
             side += starts >> n & 1;
             side = if side == count { 0 } else { side };
             let (sum, size) = &mut sides[side as usize % MOST_SIDES];
             *sum += *place;
             *size += 1.0;
-            draft.on |= u64::from(side) << (4 * n);
+            on |= u64::from(side) << (4 * n);
         }
         for (sum, size) in &sides[..count as usize % (MOST_SIDES + 1)] {
             let point = at + CLOSER * (*sum / *size - at);
             self.points.push(point);
             self.in_block.push(low + point);
         }
-        draft.count = count as u8;
-        self.drafts.push(draft);
+        let (first, len, count) = (first as u32, segments.len() as u8, count as u8);
+        self.drafts.push(Draft { first, len, count, on, number, at, planes });
     }
 
     /// Moves the points of the candidates that were added closer to the creases, and tells `each` of them, with the normal
@@ -341,7 +335,7 @@ impl Refiner {
             let ring = segments.split_off_mut(..usize::from(draft.len)).unwrap_or_default();
             let (own, rest) = offsets.split_at(ring.len());
             offsets = rest;
-            for (segment, offset) in ring.iter_mut().zip(own) {
+            for (segment, offset) in ring.iter_mut().zip(own.iter().rev()) {
                 let own = Vec3A::from(segment.normal);
                 first.get_or_insert(own);
                 match known[(on & 15) as usize] {
@@ -360,8 +354,8 @@ impl Refiner {
                 on >>= 4;
             }
             if !planes.is_empty() {
+                draft.at = settle(&planes, draft.at, Vec3A::ZERO, Vec3A::ONE, 1);
                 draft.planes = planes;
-                draft.settle();
             }
             // On both sides of a thin wall they may be no more than nothing together.
             each(draft, sum.normalize_or(first.unwrap_or_default()).into(), ring);

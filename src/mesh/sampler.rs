@@ -45,8 +45,8 @@ pub(super) struct Scratch {
     evaluator: Evaluator,
     /// The tapes of the groups sampled since roots were asked for.
     tapes: Vec<(u32, Tape)>,
-    /// That which slopes were asked of last.
-    copy: Option<Tape>,
+    /// That which slopes were asked of last, and the block that it is for.
+    copy: Option<(usize, Tape)>,
     finder: Deciders,
     single: [Vec<f32>; 3],
     slopes: [Vec<f32>; 4],
@@ -96,20 +96,25 @@ impl SolidSampler<'_> {
         &mut tapes[at].1
     }
 
-    /// The tape of a group for slopes, relative to a point: that which its roots were found with, if it is kept. Moved from
-    /// block to block it rounds, so each block starts from the same.
-    fn tape_for_slopes<'t>(&self, copy: &'t mut Option<Tape>, group: u32, origin: DVec3) -> &'t Tape {
+    /// The tape of a block for slopes, relative to its first node: that which the roots of its group were found with, if it
+    /// is kept. Moved from block to block it rounds, so each block starts from the same.
+    fn tape_for_slopes<'t>(&self, copy: &'t mut Option<(usize, Tape)>, number: usize, origin: DVec3) -> &'t Tape {
+        let group = self.groups[number];
         let kept = self.kept.get(group as usize / BATCH).and_then(OnceLock::get);
         let kept = kept.and_then(|tapes| tapes.iter().find(|(other, _)| *other == group));
-        let tape = match (kept, copy) {
-            (Some((_, kept)), Some(copy)) => {
-                copy.become_recentred(kept, origin);
-                return copy;
-            }
-            (Some((_, kept)), none) => none.insert(kept.clone()),
-            (None, copy) => copy.insert(self.tape(group)),
+        let made = || {
+            let mut tape = kept.map_or_else(|| self.tape(group), |(_, kept)| kept.clone());
+            tape.recentre(origin);
+            tape
         };
-        tape.recentre(origin);
+        let (block, tape) = copy.get_or_insert_with(|| (number, made()));
+        if *block != number {
+            *block = number;
+            match kept {
+                Some((_, kept)) => tape.become_recentred(kept, origin),
+                None => *tape = made(),
+            }
+        }
         tape
     }
 
@@ -254,7 +259,7 @@ impl Sampler for SolidSampler<'_> {
         out: &mut Vec<Slope>,
     ) -> bool {
         let origin = self.lattice.node(block[0], block[1], block[2]);
-        let tape = self.tape_for_slopes(&mut scratch.copy, self.groups[number], origin);
+        let tape = self.tape_for_slopes(&mut scratch.copy, number, origin);
         // The program holds in the block and nowhere else.
         let (high, step) = (Vec3A::splat(BLOCK as f32), self.lattice.step() as f32);
         place(points.iter().map(|p| step * p.clamp(Vec3A::ZERO, high)), &mut scratch.single);
