@@ -21,7 +21,7 @@ pub fn rows(threads: usize) {
         ("gyroid ball", ball.clone(), 512),
     ];
     for (name, solid, cells) in solids {
-        row(name, cells, threads, || (), |(), run| solid.mesh_with(&settings(cells), run).is_ok());
+        row(name, cells, threads, || (), |_, run| solid.mesh_with(&settings(cells), run).is_ok());
     }
     // What may be thinner than cells is counted once a mesh: each is a new one.
     for (name, solid, cells) in [("sphere, check", Solid::sphere(1.0), 1024), ("gyroid, check", ball, 256)] {
@@ -37,10 +37,10 @@ pub fn rows(threads: usize) {
     }
 }
 
-/// Prints the row of a job, which tells whether it was done, given what is made for each.
-fn row<T>(name: &str, cells: u32, threads: usize, make: impl Fn() -> T, job: impl Fn(T, &Run) -> bool) {
-    let (whole, off) = run_whole(threads, make(), &job);
-    let late = |moment: u32| cancelled(threads, whole * moment / MOMENTS, make(), &job);
+/// Prints the row of a job, which tells whether it was done, given what is made for each and given up after it.
+fn row<T>(name: &str, cells: u32, threads: usize, make: impl Fn() -> T, job: impl Fn(&T, &Run) -> bool) {
+    let (whole, off) = run_whole(threads, &make(), &job);
+    let late = |moment: u32| cancelled(threads, whole * moment / MOMENTS, &make(), &job);
     let mut late: Vec<f64> = (1..MOMENTS).filter_map(late).collect();
     late.sort_by(f64::total_cmp);
     println!(
@@ -55,7 +55,7 @@ fn row<T>(name: &str, cells: u32, threads: usize, make: impl Fn() -> T, job: imp
 }
 
 /// How long a run takes, and how far its progress is from the part of that time that has passed, at most.
-fn run_whole<T>(threads: usize, made: T, job: impl Fn(T, &Run) -> bool) -> (Duration, f64) {
+fn run_whole<T>(threads: usize, made: &T, job: impl Fn(&T, &Run) -> bool) -> (Duration, f64) {
     let reports = Arc::new(Mutex::new(Vec::new()));
     let (sink, start) = (reports.clone(), Instant::now());
     let report = move |fraction| sink.lock().expect("no panic").push((start.elapsed(), fraction));
@@ -71,7 +71,7 @@ fn run_whole<T>(threads: usize, made: T, job: impl Fn(T, &Run) -> bool) -> (Dura
 }
 
 /// How many seconds after its token is cancelled a run returns; `None` if it is done before.
-fn cancelled<T>(threads: usize, after: Duration, made: T, job: impl Fn(T, &Run) -> bool) -> Option<f64> {
+fn cancelled<T>(threads: usize, after: Duration, made: &T, job: impl Fn(&T, &Run) -> bool) -> Option<f64> {
     let run = Run { threads, ..Run::default() };
     let token = run.cancel.clone();
     let canceller = thread::spawn(move || {

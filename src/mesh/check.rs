@@ -15,18 +15,17 @@
 //! Vertices are the same if their index is. Positions are compared as they are, without a
 //! tolerance, and signs are exact: the report holds for the f32 numbers that are written.
 
-mod buckets;
 mod fans;
+mod lists;
 mod meet;
 mod overlap;
 
 use std::fmt;
 
 use glam::{DMat3, DVec3};
-use rayon::prelude::*;
 
-use self::buckets::sorted;
 use self::fans::{Fans, repeats};
+use self::lists::{mapped, sorted};
 use self::overlap::Overlaps;
 use crate::bounds::Bounds;
 use crate::geom::Mesh;
@@ -215,7 +214,7 @@ impl Mesh {
         // How long each stage takes, more or less; nobody knows how long the cells take.
         let cells = if self.has_late_count() { 0.5 } else { 0.0 };
         let [to_turn, to_compare, to_sort, to_count] = run.stages([0.4, 0.5, 0.1, cells]);
-        let (fans, measure) = rayon::join(|| Fans::new(self, &to_turn), || run.check().map(|()| self.measure()));
+        let (fans, measure) = rayon::join(|| Fans::new(self, &to_turn), || self.measure_with(run));
         let (fans, measure) = (fans?, measure?);
         let overlaps = Overlaps::find(self, &fans, &to_compare)?;
         let duplicate_vertices = duplicate_vertices(self, &to_sort)?;
@@ -254,7 +253,7 @@ impl Mesh {
 
 fn duplicate_vertices(mesh: &Mesh, run: &Run) -> Result<usize, Cancelled> {
     // Adding 0 makes −0 and 0 the same.
-    let keys: Vec<[u32; 3]> = mesh.positions().par_iter().map(|p| p.to_array().map(|x| (x + 0.0).to_bits())).collect();
+    let keys: Vec<[u32; 3]> = mapped(mesh.positions(), |p| p.to_array().map(|x| (x + 0.0).to_bits()), run)?;
     // Any mixture of the bits will do: what counts is that equal ones are together.
     let mixed = |key: &[u32; 3]| key.iter().fold(0u32, |all, bits| (all ^ bits).wrapping_mul(0x9e37_79b9));
     let keys = sorted(&keys, |key| mixed(key) >> 20, run)?;

@@ -12,6 +12,10 @@
 use glam::{DMat3, DVec3};
 
 use super::Mesh;
+use crate::{Cancelled, Run};
+
+/// Triangles that are added before it is asked whether to go on.
+const AT_ONCE: usize = 1 << 16;
 
 /// What the triangles add up to.
 pub(crate) struct Measure {
@@ -63,26 +67,57 @@ impl Mesh {
     }
 
     /// All of them at once.
-    pub(crate) fn measure(&self) -> Measure {
-        let origin = self.bounds().center();
-        let mut area = 0.0;
-        let mut volume = 0.0;
-        let mut first = DVec3::ZERO;
-        // xx, yy, zz and yz, zx, xy.
-        let (mut squares, mut products) = (DVec3::ZERO, DVec3::ZERO);
-        for &t in self.triangles() {
-            let [a, b, c] = self.corners(t).map(|p| p - origin);
-            area += (b - a).cross(c - a).length();
-            let six = a.dot(b.cross(c));
-            let sum = a + b + c;
-            volume += six;
-            first += sum * six;
-            for v in [a, b, c, sum] {
-                squares += v * v * six;
-                products += DVec3::new(v.y * v.z, v.z * v.x, v.x * v.y) * six;
-            }
+    fn measure(&self) -> Measure {
+        let mut sums = Sums::new(self.bounds().center());
+        self.triangles().iter().for_each(|&triangle| sums.add(self.corners(triangle)));
+        sums.measure()
+    }
+
+    /// The same; it can be stopped.
+    pub(crate) fn measure_with(&self, run: &Run) -> Result<Measure, Cancelled> {
+        let mut sums = Sums::new(self.bounds().center());
+        for triangles in self.triangles().chunks(AT_ONCE) {
+            run.check()?;
+            triangles.iter().for_each(|&triangle| sums.add(self.corners(triangle)));
         }
-        let (area, volume) = (area / 2.0, volume / 6.0);
+        Ok(sums.measure())
+    }
+}
+
+/// The sums over triangles of a mesh.
+struct Sums {
+    origin: DVec3,
+    area: f64,
+    volume: f64,
+    first: DVec3,
+    /// xx, yy, zz and yz, zx, xy.
+    squares: DVec3,
+    products: DVec3,
+}
+
+impl Sums {
+    fn new(origin: DVec3) -> Sums {
+        let (first, squares, products) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
+        Sums { origin, area: 0.0, volume: 0.0, first, squares, products }
+    }
+
+    #[inline]
+    fn add(&mut self, corners: [DVec3; 3]) {
+        let [a, b, c] = corners.map(|p| p - self.origin);
+        self.area += (b - a).cross(c - a).length();
+        let six = a.dot(b.cross(c));
+        let sum = a + b + c;
+        self.volume += six;
+        self.first += sum * six;
+        for v in [a, b, c, sum] {
+            self.squares += v * v * six;
+            self.products += DVec3::new(v.y * v.z, v.z * v.x, v.x * v.y) * six;
+        }
+    }
+
+    fn measure(self) -> Measure {
+        let Sums { origin, first, squares, products, .. } = self;
+        let (area, volume) = (self.area / 2.0, self.volume / 6.0);
         if volume == 0.0 {
             return Measure { area, volume, centroid: None, inertia: None };
         }

@@ -14,8 +14,8 @@
 use glam::{DVec3, UVec3, Vec3};
 use rayon::prelude::*;
 
-use super::buckets::sorted;
 use super::fans::{Fans, repeats};
+use super::lists::{mapped, sorted};
 use super::meet::{is_degenerate, meet, meet_beyond_edge, meet_beyond_vertex, surely_apart};
 use crate::geom::Mesh;
 use crate::run::Meter;
@@ -113,7 +113,7 @@ fn along_curve(mesh: &Mesh, run: &Run) -> Result<Vec<u32>, Cancelled> {
     keys.retain(|&key| key != LEFT_OUT);
     // By the first twelve of the 63 bits, four along each axis.
     let keys = sorted(&keys, |key| (key >> (32 + 51)) as u32, &to_sort)?;
-    Ok(keys.into_iter().map(|key| key as u32).collect())
+    mapped(&keys, |&key| key as u32, run)
 }
 
 /// The bits of a number below 2²¹, each with two zeros before it.
@@ -160,15 +160,13 @@ struct Search<'a> {
 
 impl<'a> Search<'a> {
     fn new(mesh: &'a Mesh, fans: &'a Fans, order: Vec<u32>, run: &Run) -> Result<Search<'a>, Cancelled> {
-        run.check()?;
-        let corners: Vec<[u32; 3]> = order.par_iter().map(|&t| mesh.triangles()[t as usize]).collect();
-        run.check()?;
+        let corners: Vec<[u32; 3]> = mapped(&order, |&t| mesh.triangles()[t as usize], run)?;
         let positions = mesh.positions();
         let boxes = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|i| positions[i as usize]);
             Box { min: a.min(b).min(c), max: a.max(b).max(c) }
         };
-        let mut levels: Vec<Vec<Box>> = vec![corners.par_iter().map(boxes).collect()];
+        let mut levels: Vec<Vec<Box>> = vec![mapped(&corners, boxes, run)?];
         while let Some(below) = levels.last()
             && (below.len() > 1 || levels.len() == 1 && !below.is_empty())
         {

@@ -1,4 +1,4 @@
-//! Long lists put in order, bucket by bucket.
+//! Long lists made from others, and put in order, part by part.
 
 use std::ops::Range;
 
@@ -10,8 +10,22 @@ use crate::{Cancelled, Run};
 /// How many buckets there are.
 const BUCKETS: usize = 1 << 12;
 
-/// Items that are looked at, or moved, before it is asked whether to go on.
+/// Items that are looked at, made or moved before it is asked whether to go on.
 const AT_ONCE: usize = 1 << 16;
+
+/// What becomes of each of some items, in order.
+pub(super) fn mapped<T: Sync, U: Send>(
+    items: &[T],
+    each: impl Fn(&T) -> U + Sync,
+    run: &Run,
+) -> Result<Vec<U>, Cancelled> {
+    let mut all = Vec::with_capacity(items.len());
+    for items in items.chunks(4 * AT_ONCE) {
+        run.check()?;
+        all.par_extend(items.par_iter().map(&each));
+    }
+    Ok(all)
+}
 
 /// The same items by buckets, those of each in order. `bucket` tells which one an item belongs
 /// to, by twelve bits.
@@ -67,5 +81,6 @@ mod tests {
         let run = Run::default();
         run.cancel.cancel();
         assert_eq!(sorted(&items, |item| item >> 20, &run), Err(Cancelled));
+        assert_eq!(mapped(&items, |item| item >> 20, &run), Err(Cancelled));
     }
 }
