@@ -1,7 +1,7 @@
 //! Time, threads and memory of a job.
 
 use std::process::Command;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use std::{env, fs};
 
 use cpu_time::ProcessTime;
@@ -70,8 +70,23 @@ pub fn in_turn<T: Send>(threads: usize, mut jobs: [impl FnMut() -> T + Send; 2])
     })
 }
 
+/// Keeps all threads of the pool busy for a moment. Two that were asleep may be woken on the same core, where the system
+/// leaves them for some 10 ms though another core is free: how often depends on what was run before.
+fn spread_threads() {
+    const MOMENT: Duration = Duration::from_millis(10);
+    rayon::broadcast(|_| {
+        let start = Instant::now();
+        while start.elapsed() < MOMENT {
+            std::hint::spin_loop();
+        }
+    });
+}
+
 /// Runs a job; gives its seconds, of the processor on one thread, of the clock on more, and its result.
 fn timed<T>(threads: usize, job: &mut impl FnMut() -> T) -> (f64, T) {
+    if threads > 1 {
+        spread_threads();
+    }
     let (clock, processor) = (Instant::now(), ProcessTime::now());
     let result = job();
     let (clock, processor) = (clock.elapsed().as_secs_f64(), processor.elapsed().as_secs_f64());
