@@ -100,15 +100,10 @@ impl<const N: usize> Ring<N> {
         self.variance < 0.25 * SPREAD * SPREAD
     }
 
-    /// Whether the normals of no two pairs of neighbours differ as those of a crease do: one that comes into a cell
-    /// leaves it.
+    /// Whether no two normals differ as those of a crease do.
     #[inline(always)]
     pub(super) fn is_smooth(&self) -> bool {
-        if !may_differ::<N>(self.variance) {
-            return true;
-        }
-        let unlike = |n: usize| u32::from(self.normals[n].dot(self.normals[(n + 1) % N]) <= SMOOTH);
-        (0..N).map(unlike).sum::<u32>() < 2
+        !(may_differ::<N>(self.variance) && differ(&self.normals))
     }
 
     /// Whether a cell that is not smooth may be round all the same.
@@ -129,7 +124,7 @@ impl<const N: usize> Ring<N> {
     #[inline(always)]
     pub(super) fn cover(&self, positions: impl FnOnce() -> [Vec3A; N]) -> Cover {
         // A single triangle is small.
-        if N == 3 && !(may_differ::<N>(self.variance) && differ(&self.normals)) {
+        if N == 3 {
             return Cover::Table;
         }
         let positions = positions();
@@ -143,7 +138,7 @@ impl<const N: usize> Ring<N> {
             }
         }
         let (height, far, middle) = height(&positions, &self.normals);
-        if N != 4 && far <= HIGH {
+        if N > 4 && far <= HIGH {
             return Cover::Table;
         }
         let normal = self.sum.normalize_or_zero();
