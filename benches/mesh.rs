@@ -11,6 +11,8 @@
 //! 2048³, a ball of gyroid at 512³, unions of 100 and of 10 000 superellipsoids at 256³; how soon
 //! cancelled runs and reports return; both modes on smooth solids; and how much faster two threads are than one, by the clock.
 //!
+//! Threads are those of a pool that is there before the clock starts, and awake; fidget's as ours.
+//!
 //! Words after `--` choose: `models`, `arrays`, `scale`, `cancel`, `smooth`; names of models, cells along the side
 //! (64, 128, 256), `one` or `two` threads; `fidget` for fidget on all models, also where it takes
 //! minutes, `alone` for ours without fidget.
@@ -97,6 +99,9 @@ fn print_memory_of([who, name, cells, threads]: [&str; 4]) {
     }
 }
 
+/// Models that are joined by R_p, and the same joined by min and max.
+const RFUNCTION_TWINS: [(&str, &str); 2] = [("M3", "M2"), ("M5", "M4")];
+
 /// Whose rows there are.
 const SMOOTH: &str = "smooth";
 const SHARP: &str = "sharp";
@@ -132,6 +137,7 @@ fn main() {
     if !chosen.takes("models", &PARTS) {
         return;
     }
+    let mut known: Vec<(&str, u32, usize, f64)> = Vec::new();
     for model in models::all().into_iter().filter(|model| chosen.takes(model.name, &NAMES)) {
         for cells in CELLS.into_iter().filter(|cells| chosen.takes(cells, &CELLS)) {
             let cells: u32 = cells.parse().expect("a number");
@@ -156,6 +162,13 @@ fn main() {
                     row(model.name, cells, threads, who, cost, triangles, ratio);
                 }
                 println!("{:24}sharp over smooth, in turn: {sharp_over_smooth:.2}", "");
+                known.push((model.name, cells, threads, costs[0].0));
+                // The same solids joined by R_p and by min and max.
+                let twin = RFUNCTION_TWINS.iter().find(|(name, _)| *name == model.name).map(|(_, twin)| *twin);
+                let of_twin = |&&(name, c, t, _): &&(_, _, _, f64)| (Some(name), c, t) == (twin, cells, threads);
+                if let Some(&(name, .., seconds)) = known.iter().find(of_twin) {
+                    println!("{:24}smooth over that of {name}: {:.2}", "", costs[0].0 / seconds);
+                }
                 if let Some((seconds, triangles)) = other {
                     let cost = Cost { seconds, megabytes: memory(FIDGET) };
                     row(model.name, cells, threads, FIDGET, cost, triangles, None);

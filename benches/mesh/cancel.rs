@@ -5,7 +5,10 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use rvachev::{CellSize, MeshSettings, MinimalSurface, Progress, RFunction, Run, SheetLattice, Solid};
+use rvachev::{
+    AtBounds, Bounds, CellSize, MeshSettings, MinimalSurface, Progress, RFunction, Run, SheetLattice, Solid,
+    ThinFeatures,
+};
 
 /// The moments of a run when it is cancelled, and those that progress is compared at, as parts of its time.
 const MOMENTS: u32 = 40;
@@ -15,13 +18,21 @@ pub fn rows(threads: usize) {
     let gyroid = SheetLattice { surface: MinimalSurface::Gyroid, cell: 0.25, thickness: 0.03 };
     let ball = Solid::new(gyroid).intersection(Solid::sphere(1.0), RFunction::MIN_MAX);
     let settings = |cells| MeshSettings { cell: CellSize::LongestSide(cells), ..MeshSettings::default() };
+    let turned = Solid::cuboid(DVec3::ONE).rotate_x(0.3);
+    let fin = Solid::cuboid([0.02, 0.8, 1.6]).rotate_z(0.4);
+    let refine = MeshSettings { thin: ThinFeatures::Refine { halvings: 2 }, ..settings(256) };
+    // Its faces are in those of the bounds: all vertices are looked at.
+    let bounds = Some(Bounds::from_center(DVec3::ZERO, DVec3::splat(0.5)));
+    let refuse = MeshSettings { bounds, at_bounds: AtBounds::Refuse, ..settings(1024) };
     let solids = [
-        ("sphere", Solid::sphere(1.0), 2048),
-        ("cube less ball", Solid::cuboid(DVec3::ONE).rotate_x(0.3) - Solid::sphere(0.6), 2048),
-        ("gyroid ball", ball.clone(), 512),
+        ("sphere", Solid::sphere(1.0), 2048, settings(2048)),
+        ("cube less ball", &turned - Solid::sphere(0.6), 2048, settings(2048)),
+        ("gyroid ball", ball.clone(), 512, settings(512)),
+        ("fin, refined", turned | fin, 256, refine),
+        ("cube, refused", Solid::cuboid(DVec3::ONE), 1024, refuse),
     ];
-    for (name, solid, cells) in solids {
-        row(name, cells, threads, || (), |_, run| solid.mesh_with(&settings(cells), run).is_ok());
+    for (name, solid, cells, settings) in solids {
+        row(name, cells, threads, || (), |_, run| solid.mesh_with(&settings, run).is_ok());
     }
     // What may be thinner than cells is counted once a mesh: each is a new one.
     for (name, solid, cells) in [("sphere, check", Solid::sphere(1.0), 1024), ("gyroid, check", ball, 256)] {

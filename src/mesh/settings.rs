@@ -42,8 +42,9 @@ pub struct MeshSettings {
 pub enum Features {
     /// They are cut off, by a fraction of a cell: marching cubes.
     Smooth,
-    /// They are kept: where the normals in a cell differ by more than 26°, the cell has a vertex on the
-    /// crease or in the corner, and the mesh has edges along the crease.
+    /// They are kept: where the normals in a cell differ by more than 26°, and a value of the field in its middle does not
+    /// tell that it is round all the same, the cell has a vertex on the crease or in the corner, and the mesh has edges
+    /// along the crease.
     ///
     /// A solid without creases, and with radii of four cells or more, has the mesh of [`Smooth`](Features::Smooth): there are
     /// no such normals in any cell. Of a single [leaf that tells its least radius](crate::Field::least_radius), as

@@ -1,6 +1,7 @@
 //! Meshing a solid: `solid.mesh(..)`.
 
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 
 use super::blocks::Blocks;
 use super::extract::ExtractError;
@@ -50,6 +51,9 @@ pub enum MeshingError {
 
 /// What leaves the bounds by less, in cells, is let pass: vertices may be off by a thousandth.
 const SLACK: f64 = 0.01;
+
+/// Vertices that are looked at before it is asked whether to go on.
+const AT_ONCE: usize = 1 << 14;
 
 /// A surface with radii of so many cells is known to have no creases.
 const ROUND: f64 = 2.0;
@@ -119,7 +123,7 @@ impl Solid {
                 (mesh, late_count(programs.clone(), (lattice, bounds)))
             };
             if let Some(given) = whole {
-                self.refuse_caps(&mesh, given, lattice.step())?;
+                self.refuse_caps(&mesh, given, lattice.step(), &to_refuse)?;
                 self.refuse_beyond(given, lattice.step(), &to_refuse)?;
             }
             if owned {
@@ -139,7 +143,7 @@ impl Solid {
     }
 
     /// An error if a vertex on a face of the bounds is inside the solid.
-    fn refuse_caps(&self, mesh: &Mesh, given: &Bounds, step: f64) -> Result<(), MeshingError> {
+    fn refuse_caps(&self, mesh: &Mesh, given: &Bounds, step: f64, run: &Run) -> Result<(), MeshingError> {
         let slack = SLACK * step;
         let program = &compiled(self)?.surface;
         let inner = given.inflate(-slack);
@@ -149,10 +153,13 @@ impl Solid {
             value > slack * slope.length()
         };
         let beyond = |p: &&Vec3| !inner.contains(p.as_dvec3()) && is_inside(p.as_dvec3());
-        match mesh.positions().iter().find(beyond) {
-            Some(at) => Err(MeshingError::LeavesBounds { at: at.as_dvec3() }),
-            None => Ok(()),
+        for positions in mesh.positions().chunks(AT_ONCE) {
+            run.check()?;
+            if let Some(at) = positions.par_iter().find_first(beyond) {
+                return Err(MeshingError::LeavesBounds { at: at.as_dvec3() });
+            }
         }
+        Ok(())
     }
 
     /// An error if there is a part of the solid beyond the bounds, of a size that cells of this size show; where

@@ -20,8 +20,7 @@ fn mesh(samples: &[f32], size: [usize; 3]) -> (Mesh, MeshReport) {
     let mesh = volume.mesh(&VolumeSettings::default()).unwrap();
     let report = mesh.check();
     let empty = mesh.triangles().is_empty();
-    assert!(empty || report.is_closed() && report.is_manifold(), "{size:?}: {report:?}");
-    assert_eq!((report.duplicate_vertices, report.unused_vertices), (0, 0), "{size:?}");
+    assert!(empty || report.is_sound(), "{size:?}: {report:?}");
     (mesh, report)
 }
 

@@ -20,7 +20,7 @@ pub(super) fn mapped<T: Sync, U: Send>(
     run: &Run,
 ) -> Result<Vec<U>, Cancelled> {
     let mut all = Vec::with_capacity(items.len());
-    for items in items.chunks(4 * AT_ONCE) {
+    for items in items.chunks(AT_ONCE) {
         run.check()?;
         all.par_extend(items.par_iter().map(&each));
     }

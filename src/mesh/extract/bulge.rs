@@ -68,7 +68,7 @@ pub(super) struct Ring<const N: usize> {
 /// The sum of some normals, and the mean of the squares of their distances from their mean: what the square of that lacks
 /// of 1.
 #[inline(always)]
-fn spread<const N: usize>(normals: &[Vec3A; N]) -> (Vec3A, f32) {
+fn sum_and_variance<const N: usize>(normals: &[Vec3A; N]) -> (Vec3A, f32) {
     let sum = normals.iter().sum::<Vec3A>();
     let share = 1.0 / (N * N) as f32;
     (sum, 1.0 - share * sum.length_squared())
@@ -84,13 +84,13 @@ fn may_differ<const N: usize>(variance: f32) -> bool {
 /// Whether two normals of a cell differ as those of a crease do.
 #[inline(always)]
 pub(super) fn is_strongly_curved<const N: usize>(normals: &[Vec3A; N]) -> bool {
-    may_differ::<N>(spread(normals).1) && differ(normals)
+    may_differ::<N>(sum_and_variance(normals).1) && differ(normals)
 }
 
 impl<const N: usize> Ring<N> {
     #[inline(always)]
     pub(super) fn new(normals: [Vec3A; N]) -> Ring<N> {
-        let (sum, variance) = spread(&normals);
+        let (sum, variance) = sum_and_variance(&normals);
         Ring { normals, sum, variance }
     }
 

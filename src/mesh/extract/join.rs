@@ -340,7 +340,7 @@ impl<'a> Parts<'a> {
 
 /// Makes room for more in a list, and for what is to come by what it has when `done` parts of `all` are added, times
 /// `share`: moving much is slow.
-pub(super) fn reserve<T>(list: &mut Vec<T>, more: usize, (done, all): (usize, usize), share: f64) {
+fn reserve<T>(list: &mut Vec<T>, more: usize, (done, all): (usize, usize), share: f64) {
     let count = list.len() + more;
     if count > list.capacity() {
         // Few parts do not tell.

@@ -249,7 +249,7 @@ impl<'a> Asker<'a> {
     }
 }
 
-/// The largest whole number that is not above a small one.
+/// The largest whole number that is not above a small one; `f32::floor` is a call where the processor may be an old one.
 fn floor(x: f32) -> i32 {
     let towards_zero = x as i32;
     towards_zero - i32::from(towards_zero as f32 > x)

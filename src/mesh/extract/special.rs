@@ -44,7 +44,7 @@ pub(super) struct Special {
 /// in the order that they are looked at in.
 #[derive(Default)]
 struct Lists {
-    /// Those with a single loop whose normals spread, or that have joined faces.
+    /// Those with a single loop whose normals spread and that are not round, or that have joined faces.
     candidates: Vec<Candidate>,
     /// By block, its candidates in the order of their numbers: each by its place among those of the block.
     order: Vec<u16>,

@@ -13,7 +13,8 @@
 //!
 //! * If the sides are joined by min or max, the normal next to c is that of one of them. It differs from the mean by
 //!   √((n − k)/k) standard deviations of the normals, where k of n vertices are on that side: by .41 at least, for up to
-//!   seven vertices.
+//!   seven vertices. From the mean's direction it differs by less if they are more than a right angle apart, but then the
+//!   height is off.
 //! * If they are joined by an R-function, the normal turns from the one to the other: it is the mean near the ridge alone,
 //!   where the surface is as high as the tangent planes are.
 
@@ -40,7 +41,7 @@ pub(super) struct Spreads {
     cells: Vec<(u16, Middle)>,
     /// Where that is: in cells from the block's first node.
     middles: Vec<Vec3A>,
-    /// The segments of all, those of a cell by those of another; and the places of their vertices.
+    /// The segments of all, cell after cell; and the places of their vertices.
     segments: Vec<Segment>,
     places: Vec<Vec3A>,
     /// The field in the middles.
@@ -79,7 +80,7 @@ impl Spreads {
         if cells.is_empty() {
             return;
         }
-        if !slopes(middles, found) {
+        if !slopes(middles, found) || found.len() != middles.len() {
             found.clear();
         }
         let (mut segments, mut places) = (&mut segments[..], &places[..]);

@@ -77,8 +77,7 @@ impl Level {
                 result => break result?,
             }
         };
-        run.check()?;
-        Ok(Piece::cut(&mesh, |p| self.side(outer, self.block_at(p))))
+        Ok(Piece::cut(&mesh, |p| self.side(outer, self.block_at(p)), run)?)
     }
 
     /// The block that a point is in, by its number along each axis. What is rounded to f32 is between planes that are, too.

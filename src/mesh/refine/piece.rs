@@ -6,6 +6,10 @@ use glam::{DVec3, Vec3};
 
 use super::level::Side;
 use crate::geom::{Mesh, MeshError};
+use crate::{Cancelled, Run};
+
+/// Triangles that are looked at before it is asked whether to go on.
+const AT_ONCE: usize = 1 << 14;
 
 /// A part of a mesh.
 #[derive(Default)]
@@ -40,9 +44,12 @@ impl Rim {
 
 impl Piece {
     /// What is left of a mesh without the triangles on other sides, told by their middles.
-    pub(super) fn cut(mesh: &Mesh, side: impl Fn(DVec3) -> Side) -> (Piece, Vec<Rim>) {
-        let sides: Vec<Side> =
-            mesh.triangles().iter().map(|&t| side(mesh.corners(t).into_iter().sum::<DVec3>() / 3.0)).collect();
+    pub(super) fn cut(mesh: &Mesh, side: impl Fn(DVec3) -> Side, run: &Run) -> Result<(Piece, Vec<Rim>), Cancelled> {
+        let mut sides = Vec::with_capacity(mesh.triangles().len());
+        for triangles in mesh.triangles().chunks(AT_ONCE) {
+            run.check()?;
+            sides.extend(triangles.iter().map(|&t| side(mesh.corners(t).into_iter().sum::<DVec3>() / 3.0)));
+        }
         let directed = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]];
         let mut gone: HashMap<[u32; 2], bool> = HashMap::new();
         for (&triangle, &side) in mesh.triangles().iter().zip(&sides) {
@@ -56,7 +63,13 @@ impl Piece {
         let given = mesh.corner_normals();
         let normals = mesh.normals().unwrap_or_default();
         let mut corners = Vec::new();
-        for (n, &triangle) in mesh.triangles().iter().enumerate().filter(|&(n, _)| sides[n] == Side::Own) {
+        for (n, &triangle) in mesh.triangles().iter().enumerate() {
+            if n % AT_ONCE == 0 {
+                run.check()?;
+            }
+            if sides[n] != Side::Own {
+                continue;
+            }
             let new = triangle.map(|vertex| {
                 let number = &mut numbers[vertex as usize];
                 if *number == u32::MAX {
@@ -76,7 +89,7 @@ impl Piece {
             corners.extend(given.map(|given| given[n]));
         }
         piece.corners = given.map(|_| corners);
-        (piece, rims)
+        Ok((piece, rims))
     }
 
     /// Adds another part, some of whose vertices are some of this: pairs of their number there and here. The numbers that
