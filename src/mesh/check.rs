@@ -87,7 +87,8 @@ pub struct MeshReport {
     pub unresolved_cells: Option<usize>,
     /// Vertices on edges of the lattice that are off the surface to keep clear of the nodes, by up to a thousandth of a cell,
     /// or by two steps of `f32` where these are more, far from the origin; or where the value jumps from one side to the
-    /// other, as distances that are searched may; and those between larger and smaller cells, see [`ThinFeatures::Refine`](crate::ThinFeatures::Refine). `None` if the mesh was not made from a solid.
+    /// other, as distances that are searched may; and those between larger and smaller cells, see
+    /// [`ThinFeatures::Refine`](crate::ThinFeatures::Refine). `None` if the mesh was not made from a solid.
     pub clamped_vertices: Option<usize>,
 }
 

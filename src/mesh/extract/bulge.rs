@@ -74,17 +74,17 @@ fn sum_and_variance<const N: usize>(normals: &[Vec3A; N]) -> (Vec3A, f32) {
     (sum, 1.0 - share * sum.length_squared())
 }
 
-/// Whether two of some normals may differ as those of a crease do, given their variance.
+/// Whether two of some normals differ as those of a crease do, given their variance.
 #[inline(always)]
-fn may_differ<const N: usize>(variance: f32) -> bool {
+fn are_unlike<const N: usize>(normals: &[Vec3A; N], variance: f32) -> bool {
     // The square of the distance of two is at most twice the sum of the squares of those from the mean.
-    2.0 * N as f32 * variance >= 2.0 - 2.0 * SMOOTH
+    2.0 * N as f32 * variance >= 2.0 - 2.0 * SMOOTH && differ(normals)
 }
 
 /// Whether two normals of a cell differ as those of a crease do.
 #[inline(always)]
 pub(super) fn is_strongly_curved<const N: usize>(normals: &[Vec3A; N]) -> bool {
-    may_differ::<N>(sum_and_variance(normals).1) && differ(normals)
+    are_unlike(normals, sum_and_variance(normals).1)
 }
 
 impl<const N: usize> Ring<N> {
@@ -103,7 +103,7 @@ impl<const N: usize> Ring<N> {
     /// Whether no two normals differ as those of a crease do.
     #[inline(always)]
     pub(super) fn is_smooth(&self) -> bool {
-        !(may_differ::<N>(self.variance) && differ(&self.normals))
+        !are_unlike(&self.normals, self.variance)
     }
 
     /// Whether a cell that is not smooth may be round all the same.
