@@ -370,24 +370,20 @@ struct Readme;
 #[macro_use]
 mod picture;
 
-mod bounds;
 mod eval;
-mod field;
 mod geom;
 pub mod idioms;
 mod io;
 mod mesh;
-mod num;
 mod raster;
 mod render;
-mod run;
 mod solid;
 mod space;
 mod surface;
 
-pub use bounds::Bounds;
 pub use eval::{Evaluator, Gradients, Hit, Owner, Palette, Program, Region, Tape};
-pub use field::{
+#[doc(inline)]
+pub use rvachev_field::{
     Blend, COORDINATE_LIMIT, Capsule, Circle, Cone, Cuboid, Cylinder, Ellipsoid, Field, Formula, FormulaError,
     GeneralisedSuperquadric, Gielis, Grading, HalfSpace, Kernel, Law, LawTable, LinearLaw, MinimalSurface,
     NetworkLattice, ParamError, Polygon, Prism, Pyramid, RFunction, Radius, Rectangle, RegularPolygon, RoundedCuboid,
@@ -406,7 +402,10 @@ pub use mesh::{
     AtBounds, CellSize, Features, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError, ThinFeatures, Volume,
     VolumeError, VolumeSettings,
 };
-pub use num::{Dual, Interval, Monotone, Monotone3, Norm, Real};
+#[doc(inline)]
+pub use rvachev_num::{
+    Bounds, CancelToken, Cancelled, Dual, Interval, Monotone, Monotone3, Norm, Progress, Real, Run,
+};
 pub use raster::{
     Buffers, ClosedMesh, Csg, CsgMethod, Facing, Fragments, LANES, LayerSource, MeshLayers, RasterError, RasterView,
     SurfaceId, Tile,
@@ -415,11 +414,13 @@ pub use render::{
     Background, GBuffer, Isolines, Layers, Lights, RenderError, RenderSettings, Scene, Slice, SliceSettings, Style,
     Surface, Transfer, Window,
 };
-pub use run::{CancelToken, Cancelled, Progress, Run};
 pub use solid::{Caps, Extrusion, Helix, Paint, PlaneBounds, Profile, Solid, SolidError};
 pub use surface::{
-    BinomialSeries, ControlGrid, ControlPoint, ControlPolygon, CurveSpread, ExactExplicit, Frame, LogTable,
-    ParametricCurve, ParametricSurface, PatchError, PatchSettings, PlaneSymmetry, PointError, PointMethod,
-    PointSettings, PowerTables, ProductTables, ProfileEnd, RawParametric, SeriesExplicit, Spacing, SubdivisionError,
-    SubdivisionRevolution, SurfacePoint, Symmetry, Tension, hyperbola_of_ellipse, reflect, reflect_plane,
+    ControlGrid, ControlPoint, ControlPolygon, Frame, ParametricCurve, ParametricSurface, PatchError, PatchSettings,
+    ProfileEnd, Spacing, SubdivisionError, SubdivisionRevolution, SurfacePoint, Tension, hyperbola_of_ellipse,
+};
+#[doc(inline)]
+pub use rvachev_field::{
+    BinomialSeries, CurveSpread, ExactExplicit, LogTable, PlaneSymmetry, PointError, PointMethod, PointSettings,
+    PowerTables, ProductTables, RawParametric, SeriesExplicit, Symmetry, reflect, reflect_plane,
 };

@@ -3,8 +3,9 @@
 //! A concave value is above 0 on one piece of any line, a convex one on all but one. Minima keep
 //! concave values concave and maxima convex ones convex; a negation exchanges the two.
 
-use super::program::{Edge, Kind, Node, Op, Program};
-use crate::field::Rule;
+use super::program::{Edge, Kind, Node, Program};
+use rvachev_field::Op;
+use rvachev_field::Rule;
 
 /// How the value bends along straight lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,10 +3,11 @@
 
 use glam::DVec3;
 
-use super::program::{Edge, Kind, Node, Op};
+use super::program::{Edge, Kind, Node};
+use rvachev_field::Op;
 use super::sides::Sides;
 use crate::Bounds;
-use crate::field::{RicciSide, Rule};
+use rvachev_field::{RicciSide, Rule};
 use crate::solid::Operation;
 
 /// What a node compiled to.

@@ -15,11 +15,12 @@ use super::context::{Contexts, Place, least_stretch};
 use super::edge::EdgeBlend;
 use super::extent::extent;
 use super::flatten::flatten;
-use super::program::{Edge, Kind, Op, Program};
+use super::program::{Edge, Kind, Program};
+use rvachev_field::Op;
 use super::scene::{Instance, Scene};
 use super::sides::Sides;
-use crate::bounds::column_times;
-use crate::field::{AnyField, AnyWarp, Placement, Rule};
+use rvachev_num::column_times;
+use rvachev_field::{AnyField, AnyWarp, Placement, Rule};
 use crate::solid::{self, Length, Operation};
 use crate::{Blend, Bounds, Norm, ParamError, Solid, SolidError};
 

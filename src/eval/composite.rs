@@ -7,9 +7,9 @@ use std::sync::OnceLock;
 use glam::{DAffine3, DVec3};
 
 use super::{Evaluator, Gradients, Program, Tape};
-use crate::field::{AnyField, Chunk, Placement, Way, Zone};
-use crate::num::kernel::CHUNK;
-use crate::num::symbol::Symbol;
+use rvachev_field::{AnyField, Chunk, Placement, Way, Zone};
+use rvachev_num::kernel::CHUNK;
+use rvachev_num::symbol::Symbol;
 use crate::{Bounds, Dual, Interval, ParamError};
 
 #[derive(Debug)]

@@ -12,7 +12,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DMat3};
 
 use super::scene::{Frame, Scene};
-use crate::field::{AnyField, AnyWarp, Distance, smallest_stretch};
+use rvachev_field::{AnyField, AnyWarp, Distance, smallest_stretch};
 use crate::solid::{Length, Node, Operation};
 use crate::{Blend, Solid};
 

@@ -13,7 +13,7 @@
 
 use super::point::Number;
 use super::program::{Kind, Program};
-use crate::field::Rule;
+use rvachev_field::Rule;
 use crate::{Bounds, Dual, Interval};
 
 impl Program {

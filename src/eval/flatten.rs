@@ -6,7 +6,7 @@ use super::code::Code;
 use super::hierarchy::Hierarchy;
 use super::program::{Edge, Kind, Node};
 use crate::Bounds;
-use crate::field::Rule;
+use rvachev_field::Rule;
 
 /// The program that `root` reaches, with every min or max that is used once and by one of its
 /// own kind (after De Morgan) merged into that one.

@@ -4,7 +4,7 @@ use fidget::context::Tree;
 
 use super::compiled;
 use super::program::Kind;
-use crate::num::symbol::Arena;
+use rvachev_num::symbol::Arena;
 use crate::{Solid, SolidError};
 
 impl Solid {

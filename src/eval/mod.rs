@@ -14,7 +14,6 @@ mod crossing;
 mod edge;
 mod extent;
 mod flatten;
-mod fold;
 mod hierarchy;
 mod lower;
 mod narrow;
@@ -41,10 +40,10 @@ pub use ray::Hit;
 pub use tape::{Evaluator, Gradients, Tape};
 
 /// To so many boxes a program is best narrowed in one go, if any of its leaves are dear.
-pub(crate) use crate::field::BOXES as BOXES_AT_ONCE;
+pub(crate) use rvachev_field::BOXES as BOXES_AT_ONCE;
 
 pub(crate) use bend::Bend;
 pub(crate) use compile::{Compiled, compiled};
 pub(crate) use parting::Parting;
-pub(crate) use program::Op;
+pub(crate) use rvachev_field::Op;
 pub(crate) use ray::{Care, first_hit};

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use super::pass::{Asked, Pass, Sign};
 use super::program::{Edge, Kind, Node, Program, Region};
 use super::scene::Instance;
-use crate::field::{AnyField, Pieces, Zone};
+use rvachev_field::{AnyField, Pieces, Zone};
 use crate::{Bounds, Interval};
 
 /// What a region holds of a solid, and the program for it if that is another.

@@ -9,8 +9,9 @@
 use glam::{DVec3, Vec3};
 
 use super::compiled;
-use super::program::{Kind, Op, Program};
-use crate::field::Rule;
+use super::program::{Kind, Program};
+use rvachev_field::Op;
+use rvachev_field::Rule;
 use crate::geom::{to_byte, to_linear};
 use crate::{Dual, Paint, Solid, SolidError};
 

@@ -14,7 +14,7 @@
 use super::pass::{Asked, Pass};
 use super::program::{Edge, Node, Program, Region};
 use crate::Bounds;
-use crate::field::{Pieces, Zone};
+use rvachev_field::{Pieces, Zone};
 
 /// A program in parts.
 pub(crate) struct Parting {

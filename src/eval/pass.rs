@@ -4,9 +4,10 @@
 use std::sync::Arc;
 
 use super::narrow::{hull_of, joined};
-use super::program::{Edge, Kind, Node, Op, Program};
+use super::program::{Edge, Kind, Node, Program};
+use rvachev_field::Op;
 use super::scene::Instance;
-use crate::field::{Pieces, Rule, Zone};
+use rvachev_field::{Pieces, Rule, Zone};
 use crate::{Bounds, Interval};
 
 /// What is known of a node over a region.

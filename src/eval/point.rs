@@ -2,63 +2,11 @@
 
 use glam::DVec3;
 
-use super::program::{Edge, Kind, Node, Op, Program};
-use crate::field::{AnyField, AnyWarp, COORDINATE_LIMIT, Placement, Rule, VALUE_LIMIT, saturate};
-use crate::num::symbol::Symbol;
-use crate::{Dual, Interval, Real};
+use super::program::{Edge, Kind, Node, Program};
+use rvachev_field::Op;
+use rvachev_field::{COORDINATE_LIMIT, Number, Placement, VALUE_LIMIT, saturate};
 
-/// A number that erased leaves and deformations take.
-pub(crate) trait Number: Real {
-    fn leaf(field: &dyn AnyField, p: [Self; 3]) -> Self;
-    fn warp(warp: &dyn AnyWarp, p: [Self; 3]) -> [Self; 3];
-}
-
-impl Number for f64 {
-    fn leaf(field: &dyn AnyField, p: [f64; 3]) -> f64 {
-        field.value(p)
-    }
-    fn warp(warp: &dyn AnyWarp, p: [f64; 3]) -> [f64; 3] {
-        warp.point(p)
-    }
-}
-
-impl Number for Dual<f64> {
-    fn leaf(field: &dyn AnyField, p: [Self; 3]) -> Self {
-        field.dual(p)
-    }
-    fn warp(warp: &dyn AnyWarp, p: [Self; 3]) -> [Self; 3] {
-        warp.duals(p)
-    }
-}
-
-impl Number for Dual<Interval> {
-    fn leaf(field: &dyn AnyField, p: [Self; 3]) -> Self {
-        field.dual_range(p)
-    }
-    fn warp(warp: &dyn AnyWarp, p: [Self; 3]) -> [Self; 3] {
-        warp.dual_ranges(p)
-    }
-}
-
-impl Number for Symbol<'_> {
-    fn leaf(field: &dyn AnyField, p: [Self; 3]) -> Self {
-        field.symbol(p)
-    }
-    fn warp(warp: &dyn AnyWarp, p: [Self; 3]) -> [Self; 3] {
-        warp.symbols(p)
-    }
-}
-
-impl Rule {
-    /// One step of a join.
-    #[inline(always)]
-    pub(crate) fn join<R: Real>(self, op: Op, x: R, y: R) -> R {
-        match op {
-            Op::And => self.and(x, y),
-            Op::Or => self.or(x, y),
-        }
-    }
-}
+use crate::Dual;
 
 impl Program {
     /// The value at a point given in any number; `frames` and `values` are scratch.

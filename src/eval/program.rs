@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::edge::EdgeBlend;
 use super::hierarchy::Hierarchy;
 use super::scene::{Instance, Scene};
-use crate::field::Rule;
+use rvachev_field::{Op, Rule};
 use crate::solid::Operation;
 
 /// A reference to a node's value, or to its negative.
@@ -36,27 +36,10 @@ impl Edge {
     }
 }
 
-/// Conjunction or disjunction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Op {
-    And,
-    Or,
-}
-
 impl Operation {
     /// How its operands are joined; those of a difference after the first are complemented.
     pub(crate) fn op(self) -> Op {
         if self == Operation::Union { Op::Or } else { Op::And }
-    }
-}
-
-impl Op {
-    /// What this is to operands and result that are all negated (De Morgan).
-    pub(crate) fn flip_if(self, negate: bool) -> Op {
-        match (self, negate) {
-            (Op::And, false) | (Op::Or, true) => Op::And,
-            (Op::Or, false) | (Op::And, true) => Op::Or,
-        }
     }
 }
 

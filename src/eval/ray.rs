@@ -8,7 +8,7 @@
 use glam::DVec3;
 
 use super::{Program, Region};
-use crate::field::Zone;
+use rvachev_field::Zone;
 use crate::{Bounds, Dual, Interval};
 
 /// Where a ray meets the surface.

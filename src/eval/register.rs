@@ -6,8 +6,9 @@
 //! every other is folded in as soon as it is known: a chain needs two registers whatever its
 //! length, a balanced tree as many as it is deep.
 
-use super::program::{Edge, Kind, Op, Program};
-use crate::field::Rule;
+use super::program::{Edge, Kind, Program};
+use rvachev_field::Op;
+use rvachev_field::Rule;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Step {

@@ -8,7 +8,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DAffine3, DQuat, DVec3};
 
-use crate::field::{AnyWarp, Cells, Comb, Sectors};
+use rvachev_field::{AnyWarp, Cells, Comb, Sectors};
 use crate::{Bounds, RFunction, Solid};
 
 /// More folds than this along one axis are not worth it: the copies overlap so much that each

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! A direction is guessed from the gradients in the middle of a region; that all leaves rise along it
-//! is shown of each [by itself](crate::field::AnyField::rises), as they see it: through a deformation it may be
+//! is shown of each [by itself](rvachev_field::AnyField::rises), as they see it: through a deformation it may be
 //! any within a cone.
 
 use glam::DVec3;
@@ -15,7 +15,7 @@ use glam::DVec3;
 use super::edge::EdgeBlend;
 use super::program::{Kind, Program};
 use super::scene::Instance;
-use crate::field::{AnyWarp, Pieces, Placement, Rule, Way, Zone, largest_stretch, steepest};
+use rvachev_field::{AnyWarp, Pieces, Placement, Rule, Way, Zone, largest_stretch, steepest};
 use crate::{Bounds, Dual, Interval};
 
 /// A leaf, and whether its complement counts.

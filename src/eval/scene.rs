@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
-use crate::field::{AnyField, AnyWarp, Placement, Zone};
+use rvachev_field::{AnyField, AnyWarp, Placement, Zone};
 use crate::solid::Trail;
 use crate::{Bounds, Interval};
 

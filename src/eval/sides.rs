@@ -1,8 +1,9 @@
 //! Boxes around what is inside and what is outside.
 
-use super::program::{Kind, Op, Program};
+use super::program::{Kind, Program};
+use rvachev_field::Op;
 use crate::Bounds;
-use crate::field::Rule;
+use rvachev_field::Rule;
 
 /// A box that holds what is inside, and one that holds what is outside.
 #[derive(Clone, Copy, Debug)]

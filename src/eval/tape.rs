@@ -13,12 +13,12 @@ use glam::{DAffine3, DVec3};
 
 use self::rivals::Rivals;
 use self::seen::Seen;
-use super::fold::join;
-use super::program::{Op, Program};
+use super::program::Program;
+use rvachev_field::Op;
 use super::register::{Step, schedule};
 use crate::Bounds;
-use crate::field::{AnyField, AnyWarp, COORDINATE_LIMIT, Chunk, Placement, Product, Pull, Rule, VALUE_LIMIT, Zone};
-use crate::num::kernel::{CHUNK, Element, run, widest, within};
+use rvachev_field::{AnyField, AnyWarp, COORDINATE_LIMIT, Chunk, Joinable, Placement, Rule, VALUE_LIMIT, Zone, product, pull};
+use rvachev_num::kernel::{CHUNK, Element};
 
 /// A program ready for bulk evaluation over a region: immutable, shared between threads;
 /// each thread brings its own [`Evaluator`].
@@ -280,7 +280,7 @@ impl Mode<1> for Values<f32> {
     }
 
     fn join(op: Op, rule: Rule, negate: bool, all: [&mut [f32]; 1], next: [&[f32]; 1]) {
-        join(op, rule, negate, all, next);
+        Joinable::join(op, rule, negate, all, next);
     }
 
     fn frame(frame: &FrameStep, points: Points<'_, f32>, _own: &mut [f32], out: &mut [f32]) {
@@ -298,7 +298,7 @@ impl Mode<1> for Values<f64> {
     }
 
     fn join(op: Op, rule: Rule, negate: bool, all: [&mut [f64]; 1], next: [&[f64]; 1]) {
-        join(op, rule, negate, all, next);
+        Joinable::join(op, rule, negate, all, next);
     }
 
     fn frame(frame: &FrameStep, points: Points<'_, f64>, _own: &mut [f64], out: &mut [f64]) {
@@ -321,11 +321,11 @@ impl Mode<4> for Slopes {
         let [v, x, y, z] = split(own, size);
         value.copy_from_slice(v);
         let [a, b, c, d, e, f, g, h, i] = split::<_, 9>(&slot[3 * CHUNK..], size);
-        run(&Pull, [a, b, c, d, e, f, g, h, i, x, y, z], [dx, dy, dz]);
+        pull([a, b, c, d, e, f, g, h, i, x, y, z], [dx, dy, dz]);
     }
 
     fn join(op: Op, rule: Rule, negate: bool, all: [&mut [f32]; 4], next: [&[f32]; 4]) {
-        join(op, rule, negate, all, next);
+        Joinable::join(op, rule, negate, all, next);
     }
 
     fn frame(frame: &FrameStep, points: Points<'_, f32>, own: &mut [f32], out: &mut [f32]) {
@@ -340,7 +340,7 @@ impl Mode<4> for Slopes {
         }
         let above = split::<_, 9>(&slot[3 * CHUNK..], size);
         let both = std::array::from_fn(|i| if i < 9 { local[i + 3] } else { above[i - 9] });
-        run(&Product, both, jacobian);
+        product(both, jacobian);
     }
 }
 
@@ -359,13 +359,13 @@ fn execute<M: Mode<N>, const N: usize>(
     memory.own.resize(memory.own.len().max(M::COORDINATES * CHUNK), zero);
     let Memory { registers, slots, padded, own } = memory;
     let limit = M::E::from_f64(COORDINATE_LIMIT);
-    let granule = if tape.short { widest::<M::E>() } else { CHUNK };
+    let granule = if tape.short { M::E::widest() } else { CHUNK };
     let mut at = 0;
     while at < count {
         let len = CHUNK.min(count - at);
         let size = len.next_multiple_of(granule);
         let mut world = points.map(|p| &p[at..at + len]);
-        let near = world.iter().all(|axis| within(axis, limit));
+        let near = world.iter().all(|axis| M::E::within(axis, limit));
         if len < size || !near {
             // The tail is padded with copies of its last point; coordinates are held.
             for (to, from) in split_mut::<_, 3>(padded, size).into_iter().zip(world) {

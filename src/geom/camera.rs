@@ -13,7 +13,7 @@
 
 use glam::DVec3;
 
-use crate::bounds::Bounds;
+use rvachev_num::Bounds;
 
 /// A camera: an eye, what it looks at, and how it projects.
 ///

@@ -23,7 +23,7 @@ use self::attributes::Attributes;
 pub(crate) use self::corner_normals::Apart;
 use self::corner_normals::CornerNormals;
 pub(crate) use self::late_count::LateCount;
-use crate::bounds::Bounds;
+use rvachev_num::Bounds;
 
 /// A triangle mesh: positions and triangles that index them, and perhaps normals per vertex
 /// and per corner, colours and texture coordinates per corner, owners per triangle.

@@ -27,7 +27,7 @@ use glam::{DMat3, DVec3};
 use self::fans::{Fans, repeats};
 use self::lists::{mapped, sorted};
 use self::overlap::Overlaps;
-use crate::bounds::Bounds;
+use rvachev_num::Bounds;
 use crate::geom::Mesh;
 use crate::{Cancelled, Run};
 

@@ -46,9 +46,10 @@ use super::lattice::Lattice;
 use super::loops::ambiguous_faces;
 use super::signs::{EdgeRef, NODES, Rows, Signs, for_each_cell, list_edges};
 use super::table::CaseTable;
-use crate::bounds::Bounds;
+use rvachev_num::Bounds;
 use crate::geom::{Mesh, MeshError};
-use crate::run::{Cancelled, Meter, Run};
+use crate::{Cancelled, Run};
+use rvachev_num::Meter;
 
 mod bulge;
 mod cells;

@@ -25,7 +25,7 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::bounds::Bounds;
+use rvachev_num::Bounds;
 
 /// The resolution of a mesh.
 ///

@@ -8,7 +8,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::eval::{Palette, compiled};
-use crate::run::Meter;
+use rvachev_num::Meter;
 use crate::{Cancelled, Mesh, Paint, Run, Solid, SolidError};
 
 impl Mesh {

@@ -21,7 +21,7 @@ use super::sampler::{Scratch, SolidSampler};
 use super::signs::{BLOCK, NODES, SIDE, Signs};
 use crate::eval::{Compiled, Narrowed, Program};
 use crate::geom::LateCount;
-use crate::run::Meter;
+use rvachev_num::Meter;
 use crate::{Bounds, Cancelled, Interval, Run};
 
 /// The cells of a block that the surface may come into and turn round in.

@@ -11,7 +11,7 @@ use super::refine::{Job, refined};
 use super::resolve::late_count;
 use super::settings::{AtBounds, Features, MeshSettings};
 use crate::eval::compiled;
-use crate::field::check::{LARGEST_LENGTH, SMALLEST_LENGTH};
+use rvachev_field::check::{LARGEST_LENGTH, SMALLEST_LENGTH};
 use crate::geom::{LateCount, Mesh};
 use crate::{Bounds, Cancelled, Paint, RFunction, Run, Solid, SolidError};
 

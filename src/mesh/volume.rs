@@ -28,7 +28,7 @@ use glam::DVec3;
 
 use self::rows::Rows;
 use crate::geom::{Mesh, MeshError};
-use crate::run::{Cancelled, Run};
+use crate::{Cancelled, Run};
 
 /// The largest coordinate, that of a solid's lattice.
 const MAX_COORDINATE: f64 = 1e37;

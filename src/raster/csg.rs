@@ -12,7 +12,7 @@ use super::stencil::Passes;
 use super::target::Target;
 use super::view::RasterView;
 use crate::Run;
-use crate::run::Meter;
+use rvachev_num::Meter;
 
 /// How the depth buffer of a tree is found.
 ///

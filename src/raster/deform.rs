@@ -20,7 +20,7 @@
 use glam::{DAffine3, DVec3, Vec3};
 
 use super::error::RasterError;
-use crate::field::{AnyWarp, Bend, Taper, Twist};
+use rvachev_field::{AnyWarp, Bend, Taper, Twist};
 use crate::{Mesh, ParamError};
 
 impl Mesh {

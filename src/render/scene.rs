@@ -14,7 +14,7 @@ use super::pixels::TILE;
 use super::settings::RenderError;
 use super::tile::{Tracer, View, divide_top};
 use crate::eval::{Program, compiled};
-use crate::run::Meter;
+use rvachev_num::Meter;
 use crate::{Bounds, Cancelled, Hit, Palette, Rays, Run, Solid};
 
 /// How far a ray from a hit starts off the surface, in proportion to the solid.

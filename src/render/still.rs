@@ -20,7 +20,7 @@ use super::pixels::{Pixels, Rectangle, TILE};
 use super::tile::View;
 use crate::Bounds;
 use crate::eval::{Evaluator, Parting, Region};
-use crate::num::signs::{STRIP, signs};
+use rvachev_num::signs::{STRIP, signs};
 
 /// The leaf and the rest.
 pub(super) struct Still {

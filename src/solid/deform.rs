@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::Solid;
 use crate::Law;
-use crate::field::{Elongate, TaperBy, TwistBy};
+use rvachev_field::{Elongate, TaperBy, TwistBy};
 
 impl Solid {
     /// Tapered along z by any [laws](crate::Law) of z: sections are scaled by `x_law` along x

@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 use glam::DAffine3;
 
 use super::Paint;
-use crate::field::{AnyField, AnyWarp, check};
+use rvachev_field::{AnyField, AnyWarp, check};
 use crate::{Blend, ParamError, RFunction};
 
 /// A solid: an immutable expression graph of leaves, maps and joins.

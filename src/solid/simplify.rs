@@ -16,7 +16,7 @@ use glam::DAffine3;
 use super::signature::{Numbering, in_order};
 use super::{Node, Operation, Solid};
 use crate::RFunction;
-use crate::field::smallest_stretch;
+use rvachev_field::smallest_stretch;
 
 impl Solid {
     /// An equal solid, with the same values everywhere but for rounding, made of at most as

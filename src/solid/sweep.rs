@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use super::{Node, Profile, Solid};
-use crate::field::{AnyWarp, HelixWarp, Opening, Revolution, Span, Turn, check};
+use rvachev_field::{AnyWarp, HelixWarp, Opening, Revolution, Span, Turn, check};
 use crate::{Blend, ParamError, Polygon, RFunction};
 
 /// How the edges of an end face are.

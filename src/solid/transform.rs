@@ -6,7 +6,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DQuat, DVec3};
 
 use super::{Node, Solid};
-use crate::field::{Bend, Taper, Twist};
+use rvachev_field::{Bend, Taper, Twist};
 
 impl Solid {
     pub(crate) fn affine_as(&self, label: &'static str, forward: DAffine3) -> Solid {
@@ -202,7 +202,7 @@ impl Solid {
         self.warp(Bend { curvature, angle })
     }
 
-    pub(crate) fn warp(&self, warp: impl crate::field::AnyWarp + 'static) -> Solid {
+    pub(crate) fn warp(&self, warp: impl rvachev_field::AnyWarp + 'static) -> Solid {
         Solid::from_node(Node::Warp { operand: self.clone(), warp: Arc::new(warp) })
     }
 }

@@ -9,7 +9,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::eval::{Narrowed, Program};
-use crate::run::Meter;
+use rvachev_num::Meter;
 use crate::{Bounds, Cancelled, Run};
 
 /// A regular grid of cubic blocks.

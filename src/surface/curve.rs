@@ -19,7 +19,7 @@ use std::f64::consts::PI;
 
 use glam::DVec2;
 
-use super::angle::{sign, signed_power, sin_cos};
+use rvachev_field::angle::{sign, signed_power, sin_cos};
 use crate::{Dual, Gielis, Norm, Radius, Real, Turns};
 
 /// A curve of unit size.

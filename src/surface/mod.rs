@@ -10,12 +10,10 @@
 //! | [`ControlPolygon`], [`SubdivisionRevolution`], [`ControlGrid`] | subdivision |
 
 mod adaptive;
-mod angle;
 mod curve;
 mod parametric;
 mod parametric_curve;
 mod patch;
-mod points;
 mod polar;
 mod sampling;
 mod spacing;
@@ -25,10 +23,6 @@ mod subdivision;
 pub use parametric::{Frame, ParametricSurface};
 pub use parametric_curve::ParametricCurve;
 pub use patch::{PatchError, PatchSettings, Spacing};
-pub use points::{
-    BinomialSeries, CurveSpread, ExactExplicit, LogTable, PlaneSymmetry, PointError, PointMethod, PointSettings,
-    PowerTables, ProductTables, RawParametric, SeriesExplicit, Symmetry, reflect, reflect_plane,
-};
 pub use sampling::SurfacePoint;
 pub use subdivision::{
     ControlGrid, ControlPoint, ControlPolygon, ProfileEnd, SubdivisionError, SubdivisionRevolution, Tension,

@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use super::curve::{By, Curve, Local};
-use crate::field::check;
+use rvachev_field::check;
 use crate::{Field, Gielis, ParamError, Radius, Superellipse, Superpolygon};
 
 /// A curve of the plane by a parameter t, with its exact normal.

@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 
-use super::angle::sin_cos;
+use rvachev_field::angle::sin_cos;
 use super::curve::Curve;
 use super::parametric::ParametricSurface;
 use super::patch::PatchError;

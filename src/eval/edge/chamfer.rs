@@ -16,7 +16,7 @@
 use glam::DVec3;
 
 use super::Sample;
-use crate::field::VALUE_LIMIT;
+use rvachev_field::VALUE_LIMIT;
 use crate::{Dual, Interval, Real};
 
 /// At edges sharper than this (16°) the face stays as it is there.

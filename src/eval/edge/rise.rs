@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{EdgeBlend, Shape};
-use crate::field::{AnyField, Way, Zone};
+use rvachev_field::{AnyField, Way, Zone};
 use crate::{Dual, Interval, Real};
 
 impl EdgeBlend {

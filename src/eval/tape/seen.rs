@@ -2,7 +2,7 @@
 
 use glam::DAffine3;
 
-use crate::field::{AnyField, AnyWarp, Zone};
+use rvachev_field::{AnyField, AnyWarp, Zone};
 
 /// How a region looks in a frame, and how far its points may be off in single precision.
 pub(super) struct Seen {

@@ -22,7 +22,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::geom::Mesh;
-use crate::run::Meter;
+use rvachev_num::Meter;
 use crate::{Cancelled, Run};
 
 /// The sine of the turn of a step, at least, as a part of the product of its sides.

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use crate::run::Meter;
+use rvachev_num::Meter;
 use crate::{Cancelled, Run};
 
 /// How many buckets there are.

@@ -18,7 +18,7 @@ use super::fans::{Fans, repeats};
 use super::lists::{mapped, sorted};
 use super::meet::{is_degenerate, meet, meet_beyond_edge, meet_beyond_vertex, surely_apart};
 use crate::geom::Mesh;
-use crate::run::Meter;
+use rvachev_num::Meter;
 use crate::{Cancelled, Run};
 
 /// How many pairs are listed.

@@ -13,7 +13,8 @@ use crate::mesh::bulk::Bulk;
 use crate::mesh::lattice::Lattice;
 use crate::mesh::signs::{BLOCK, NODES, SIDE, for_each_cell, is_mixed};
 use crate::mesh::table::CaseTable;
-use crate::run::{Cancelled, Meter, Run};
+use crate::{Cancelled, Run};
+use rvachev_num::Meter;
 
 /// Why no more triangles are listed.
 enum Stop {

@@ -38,7 +38,8 @@ use super::special::Special;
 use crate::mesh::feature::{CLOSE, Candidate, INSET, Segment, settle};
 use crate::mesh::loops::{CellLoop, LONGEST};
 use crate::mesh::qef::Planes;
-use crate::run::{Cancelled, Meter, Run};
+use crate::{Cancelled, Run};
+use rvachev_num::Meter;
 
 /// A cell asks for a region if its point is farther from the planes than this, in cells.
 const MISFIT: f32 = 0.02;

@@ -53,7 +53,8 @@ use crate::geom::Apart;
 use crate::mesh::bulk::Bulk;
 use crate::mesh::feature::{Candidate, Segment};
 use crate::mesh::signs::BLOCK;
-use crate::run::{Cancelled, Meter, Run};
+use crate::{Cancelled, Run};
+use rvachev_num::Meter;
 
 /// Fans that a thread looks at before it asks whether to go on.
 pub(super) const AT_ONCE: usize = 512;

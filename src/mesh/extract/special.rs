@@ -22,7 +22,8 @@ use crate::mesh::feature::{Candidate, Refiner, Segment, Slope};
 use crate::mesh::loops::{CellLoop, MOST};
 use crate::mesh::signs::for_each_cell;
 use crate::mesh::table::CaseTable;
-use crate::run::{Meter, Run};
+use crate::Run;
+use rvachev_num::Meter;
 
 /// Blocks that have their lists together.
 const AT_ONCE: usize = 64;

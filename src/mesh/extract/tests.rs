@@ -1,7 +1,7 @@
 //! The extractor on surfaces that are known in closed form, and on noise.
 
 use super::*;
-use crate::bounds::Bounds;
+use rvachev_num::Bounds;
 use crate::mesh::loops::CellLoop;
 use crate::mesh::signs::BLOCK;
 use crate::mesh::{CellSize, MeshReport};

@@ -23,7 +23,8 @@ use rayon::prelude::*;
 
 use super::samples::Samples;
 use crate::mesh::signs::BLOCK;
-use crate::run::{Cancelled, Meter, Run};
+use crate::{Cancelled, Run};
+use rvachev_num::Meter;
 
 /// How much the trend may change the normal within a cell, and how large the box may be of what a block's own normals have
 /// beside it; with those of neighbours it may be twice that. Two normals of a cell differ by less than those of a

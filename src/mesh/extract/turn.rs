@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use super::samples::{Samples, cell_number, split_cell};
 use super::sharp::{AT_ONCE, Fan, Fans};
 use crate::mesh::feature::{INSET, Segment};
-use crate::run::{Cancelled, Run};
+use crate::{Cancelled, Run};
 
 impl Fans {
     /// Finds out which edges between fans are turned, and to what.

@@ -15,7 +15,7 @@ use crate::mesh::lattice::Lattice;
 use crate::mesh::sampler::{Scratch, SolidSampler};
 use crate::mesh::settings::Features;
 use crate::mesh::signs::{BLOCK, EdgeRef, NODES, SIDE};
-use crate::run::Run;
+use crate::Run;
 
 pub(super) struct Level {
     pub(super) lattice: Lattice,

@@ -10,7 +10,8 @@ use super::{Volume, VolumeError, VolumeSettings};
 use crate::geom::Mesh;
 use crate::mesh::bulk::Bulk;
 use crate::mesh::table::{CaseTable, EDGE_CORNERS};
-use crate::run::{Cancelled, Meter, Run};
+use crate::{Cancelled, Run};
+use rvachev_num::Meter;
 
 /// The signs of all nodes, with a layer of outside nodes around them: node i of the array is
 /// number i + 1 here.

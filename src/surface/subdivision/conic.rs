@@ -15,7 +15,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use glam::DVec2;
 
 use super::{ControlPolygon, SubdivisionError, Tension, check_coordinates};
-use crate::surface::angle::sin_cos;
+use rvachev_field::angle::sin_cos;
 
 pub(super) fn length(parameter: &'static str, value: f64) -> Result<(), SubdivisionError> {
     if (1e-9..=1e9).contains(&value) {

@@ -19,7 +19,7 @@ use glam::{DVec2, DVec3};
 
 use super::conic::length;
 use super::{ControlPolygon, ProfileEnd, SubdivisionError, SubdivisionRevolution, Tension};
-use crate::surface::angle::sin_cos;
+use rvachev_field::angle::sin_cos;
 
 /// What a profile's points are moved by.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,0 +1,196 @@
+//! Blends: joins that read values, not signs alone.
+//!
+//! ```text
+//!     smooth        x∧y = min(x, y) − max(k − |x − y|, 0)²/(4k)
+//!     displacement  R(x, y) + a₀/(1 + (x/a₁)² + (y/a₂)²)
+//!     Ricci         G = ‖(G₁, G₂)‖_p for the intersection, 1/‖(1/G₁, 1/G₂)‖_p for the union
+//!     fillet        a ball of the given radius rolls along the edge
+//!     chamfer       a plane across the edge
+//! ```
+//!
+//! A smooth blend is the join of its operands wherever their values differ by more than k,
+//! so beside it the solid prunes as ever; a fillet and a chamfer live near the edge by
+//! themselves (see `edge`). A displacement reaches everywhere, if weakly; a Ricci blend too.
+//!
+//! Sources: A. A. Pasko and V. V. Savchenko, *Blending operations for the functionally based
+//! constructive geometry* (1994); A. Ricci, *A constructive geometry for computer graphics*
+//! (1973). The smooth blend is the parabola that meets both operands with their slopes; it
+//! rises with both operands and keeps their Lipschitz constant.
+
+use super::{ParamError, check};
+use crate::{Norm, Real};
+
+/// How two operands are joined with the transition between them shaped.
+///
+/// ```text
+/// Smooth         x∧y = min(x, y) − max(radius − |x − y|, 0)²/(4·radius)
+/// Fillet         |p − q| − radius, q the centre of the ball that rolls along the edge
+/// Chamfer        max(x, y, (x + y + width·√((1 − c)/2))/√(2 + 2c)), c the cosine between the
+///                operands' gradients: a plane across the edge that cuts a face of the width
+/// Displacement   x∧y = x + y − √(x² + y²) + height/(1 + (x/falloff₀)² + (y/falloff₁)²)
+/// Ricci          G = (G₁^p + G₂^p)^(1/p) for the intersection, (G₁^−p + G₂^−p)^(−1/p) for
+///                the union; the value is r·(1 − G)
+///
+/// x∨y = −(−x ∧ −y), but for the displacement, which is added to either
+/// ```
+///
+/// Operands are read as they are: where a leaf's value is a true distance, lengths hold;
+/// where it is a gauge they hold near its surface. A fillet reads true distances from every
+/// leaf; an operand that is a smooth blend or a chamfer itself is that of these distances then, away from
+/// the fillet as well. A chamfer reads values over their slopes. On round operands a chamfer's width is right to
+/// 1 % up to a quarter of their radius. Where an operand has an edge of its own across the joined
+/// one, fillets and chamfers go round it in a mitre. Operands with a gap narrower than a chamfer's
+/// width, or through which a fillet's ball does not fit, are bridged; of walls and gaps narrower than the
+/// ball a thin skin may remain where their sides are nearly parallel.
+///
+/// | blend | parameters | reach |
+/// |---|---|---|
+/// | `Smooth` | `radius`, length, 10⁻⁹ to 10⁹ | where the operands' values differ by less than `radius` |
+/// | `Fillet` | `radius`, length, 10⁻⁹ to 10⁹ | a rolling ball of that radius along the edge |
+/// | `Chamfer` | `width`, length, 10⁻⁹ to 10⁹ | a flat face of that width along the edge |
+/// | `Displacement` | `height`, length (adds material if positive); `falloff`, lengths, 10⁻⁹ to 10⁹ | everywhere, falling with the square of the values |
+/// | `Ricci` | `p`, 1.001 to 1000: larger is sharper | everywhere; operands must be gauges |
+///
+/// A smooth blend keeps the Lipschitz constant of its operands, a fillet that of distances where
+/// the ball fits, a chamfer where the operands are planes; where they bend it is a little steeper,
+/// and it jumps where a gradient does. A displacement and Ricci's blend promise none.
+///
+/// Sources: A. A. Pasko and V. V. Savchenko, *Blending operations for the functionally based
+/// constructive geometry* (1994); A. Ricci, *A constructive geometry for computer graphics*
+/// (1973); J. R. Rossignac and A. A. G. Requicha, *Constant-radius blending in solid modelling*
+/// (1984).
+///
+/// ```
+/// use rvachev::{Blend, Solid};
+/// use glam::DVec3;
+///
+/// let plate = Solid::cuboid(DVec3::new(6.0, 6.0, 1.0));
+/// let pin = Solid::cylinder(1.0, 4.0);
+/// let part = plate.union_with(&pin, Blend::Fillet { radius: 0.5 });
+/// // The ball of the fillet touches the plate at a distance of 0.5 from the pin.
+/// assert!(part.contains(DVec3::new(1.1, 0.0, 0.6))?);
+/// assert!(!part.contains(DVec3::new(1.5, 0.0, 0.6))?);
+/// # Ok::<(), rvachev::SolidError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Blend {
+    /// A smooth transition of compact support.
+    ///
+    #[doc = picture!(
+        "smooth_union" = "docs/gallery/smooth_union.png",
+        "smooth_intersection" = "docs/gallery/smooth_intersection.png",
+        "smooth_difference" = "docs/gallery/smooth_difference.png",
+    )]
+    Smooth {
+        /// Values that differ by less than this are blended; a union of equal values gains a
+        /// quarter of it.
+        radius: f64,
+    },
+    /// A rounding of constant radius along the edge where the operands meet.
+    ///
+    #[doc = picture!("fillet_union" = "docs/gallery/fillet_union.png")]
+    Fillet {
+        /// Radius of the ball.
+        radius: f64,
+    },
+    /// A flat face along the edge where the operands meet.
+    ///
+    #[doc = picture!("chamfer_union" = "docs/gallery/chamfer_union.png")]
+    Chamfer {
+        /// Width of the face.
+        width: f64,
+    },
+    /// Pasko and Savchenko's displacement of the R-function with p = 2.
+    ///
+    #[doc = picture!(
+        "displacement_union" = "docs/gallery/displacement_union.png",
+        "displacement_intersection" = "docs/gallery/displacement_intersection.png",
+        "displacement_difference" = "docs/gallery/displacement_difference.png",
+    )]
+    Displacement {
+        /// a₀: how far values are moved where both operands are 0.
+        height: f64,
+        /// a₁ and a₂: the operands' values at which the displacement has fallen to half.
+        falloff: [f64; 2],
+    },
+    /// Ricci's blend of gauges: spheres, superellipsoids, generalised superquadrics,
+    /// supershapes, superpolygons and Ricci blends of these, moved, stretched and deformed. (An [`Ellipsoid`](crate::Ellipsoid) is a
+    /// bound; a stretched sphere is a gauge.)
+    ///
+    #[doc = picture!(
+        "ricci_union" = "docs/gallery/ricci_union.png",
+        "ricci_intersection" = "docs/gallery/ricci_intersection.png",
+        "ricci_difference" = "docs/gallery/ricci_difference.png",
+    )]
+    Ricci {
+        /// The exponent.
+        p: f64,
+    },
+}
+
+impl Blend {
+    pub fn check(&self) -> Result<(), ParamError> {
+        match *self {
+            Blend::Smooth { radius } | Blend::Fillet { radius } => check::length("radius", radius),
+            Blend::Chamfer { width } => check::length("width", width),
+            Blend::Displacement { height, falloff } => {
+                check::finite("height", height)?;
+                check::length("falloff[0]", falloff[0])?;
+                check::length("falloff[1]", falloff[1])
+            }
+            Blend::Ricci { p } => check::within("p", p, 1.001, 1000.0),
+        }
+    }
+}
+
+/// Which set operation a Ricci blend is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RicciSide {
+    Union,
+    Intersection,
+    Difference,
+}
+
+/// Smooth minimum.
+#[inline(always)]
+pub(super) fn smooth<R: Real>(x: R, y: R, width: f64) -> R {
+    let overlap = (-(x - y).abs() + width).max(x.lift(0.0));
+    x.min(y) - overlap.square() * (0.25 / width)
+}
+
+/// Smooth minimum and its slopes.
+#[inline(always)]
+pub(super) fn smooth_parts<R: Real>(x: R, y: R, width: f64) -> (R, R, R) {
+    let one = x.lift(1.0);
+    let half = x.lift(0.5);
+    // From 1 where x is less by the width, through 1/2, to 0.
+    let dx = ((y - x) * (0.5 / width) + half).max(x.lift(0.0)).min(one);
+    (smooth(x, y, width), dx, one - dx)
+}
+
+/// Conjunction by R_p, p = 2, displaced.
+#[inline(always)]
+pub(super) fn displacement<R: Real>(x: R, y: R, height: f64, inverse: [f64; 2]) -> R {
+    let and = super::Rule::P(Norm::Euclid).and(x, y);
+    let fall = (x * inverse[0]).square() + (y * inverse[1]).square() + 1.0;
+    and + x.lift(height) / fall
+}
+
+/// A gauge is held above this, so that its inverse is finite.
+const LEAST_GAUGE: f64 = 1e-6;
+
+/// Ricci's blend of `x = r₁(1 − G₁)` and `y = r₂(1 − G₂)`.
+#[inline(always)]
+pub(super) fn ricci<R: Real>(x: R, y: R, p: f64, side: RicciSide, radii: [f64; 2], radius: f64) -> R {
+    let norm = Norm::new(p);
+    let one = x.lift(1.0);
+    let g = (x.scale_add(-1.0 / radii[0], one)).max(x.lift(LEAST_GAUGE));
+    let h = (y.scale_add(-1.0 / radii[1], one)).max(x.lift(LEAST_GAUGE));
+    let gauge = match side {
+        RicciSide::Intersection => g.norm(h, norm),
+        RicciSide::Difference => g.norm(one / h, norm),
+        RicciSide::Union => one / (one / g).norm(one / h, norm),
+    };
+    gauge.scale_add(-radius, x.lift(radius))
+}

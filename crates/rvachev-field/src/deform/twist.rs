@@ -1,0 +1,51 @@
+//! Twist about z in proportion to z.
+//!
+//! ```text
+//!     φ = ω z      rotation by φ about z
+//! ```
+//!
+//! Source: A. H. Barr, *Global and local deformations of solid primitives* (1984).
+
+#[cfg(test)]
+use glam::DVec3;
+
+use super::{Warp, turned_box};
+use crate::{ParamError, check};
+use crate::{Bounds, Interval, Real};
+
+/// Rotation about z in proportion to z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Twist {
+    /// Radians per length unit.
+    pub rate: f64,
+}
+
+impl Warp for Twist {
+    const NAME: &'static str = "twist";
+
+    #[inline(always)]
+    fn inverse<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
+        let (sin, cos) = (z * self.rate).sin_cos();
+        [x.mul_add(cos, y * sin), y.mul_add(cos, -(x * sin)), z]
+    }
+
+    #[cfg(test)]
+    fn forward(&self, p: DVec3) -> DVec3 {
+        let (sin, cos) = (p.z * self.rate).sin_cos();
+        DVec3::new(p.x * cos - p.y * sin, p.x * sin + p.y * cos, p.z)
+    }
+
+    fn bounds(&self, b: &Bounds) -> Bounds {
+        turned_box(b, Interval::new(b.min.z, b.max.z) * self.rate)
+    }
+
+    fn check(&self, _: &Bounds) -> Result<(), ParamError> {
+        check::finite("rate", self.rate)
+    }
+
+    fn roundoff(&self, reach: f64) -> f64 {
+        // The angle is rounded relative to itself; beyond some thousand radians the lanes'
+        // argument reduction adds its part.
+        5e-7 * reach * (1.0 + (self.rate * reach).abs())
+    }
+}

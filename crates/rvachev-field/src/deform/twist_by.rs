@@ -1,0 +1,72 @@
+//! Twist about z by a user's law of z.
+//!
+//! ```text
+//!     φ = angle(z)      rotation by φ about z
+//! ```
+
+#[cfg(test)]
+use glam::DVec3;
+
+use super::law::{Law, check_law, law_range, slices};
+use super::{Warp, turned_box};
+use crate::ParamError;
+use crate::{Bounds, Dual, Interval, Real};
+
+/// Rotation about z by an angle that is a function of z.
+#[derive(Clone, Debug)]
+pub struct TwistBy<A> {
+    pub angle: A,
+}
+
+/// Angles are held within this many radians: more is noise in single precision.
+const LARGEST: f64 = 1e4;
+
+impl<A: Law> TwistBy<A> {
+    #[inline(always)]
+    fn turn<R: Real>(&self, z: R) -> R {
+        self.angle.at(z).max(z.lift(-LARGEST)).min(z.lift(LARGEST))
+    }
+}
+
+impl<A: Law> Warp for TwistBy<A> {
+    const NAME: &'static str = "twist_by";
+
+    #[inline(always)]
+    fn inverse<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
+        let (sin, cos) = self.turn(z).sin_cos();
+        [x.mul_add(cos, y * sin), y.mul_add(cos, -(x * sin)), z]
+    }
+
+    #[cfg(test)]
+    fn forward(&self, p: DVec3) -> DVec3 {
+        let (sin, cos) = self.turn(p.z).sin_cos();
+        DVec3::new(p.x * cos - p.y * sin, p.x * sin + p.y * cos, p.z)
+    }
+
+    fn bounds(&self, b: &Bounds) -> Bounds {
+        let mut out = Bounds::EMPTY;
+        for slice in slices(b) {
+            let angle = law_range(|z| self.turn(z), Interval::new(slice.min.z, slice.max.z));
+            out = out.union(&turned_box(&slice, angle));
+        }
+        out
+    }
+
+    fn check(&self, b: &Bounds) -> Result<(), ParamError> {
+        self.angle.check()?;
+        check_law("angle", &self.angle, b, -LARGEST, LARGEST)
+    }
+
+    fn roundoff(&self, reach: f64) -> f64 {
+        self.roundoff_over([Interval::new(-reach, reach); 3])
+    }
+
+    fn roundoff_over(&self, [x, y, z]: [Interval; 3]) -> f64 {
+        let (across, reach) = (x.magnitude() + y.magnitude(), z.magnitude());
+        let angle = self.turn(Dual::variable(z, 2));
+        // The law is off by some rounding errors of itself and of what its slope makes of
+        // those of z.
+        let off = angle.value().magnitude() + angle.gradient()[2].magnitude() * reach;
+        5e-7 * across * (1.0 + off)
+    }
+}

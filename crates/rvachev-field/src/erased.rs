@@ -1,0 +1,489 @@
+//! Leaves and deformations behind one pointer, each with its own kernels.
+//!
+//! A formula is generic over the number and so cannot be called through a pointer; what is
+//! called is the list of evaluations that the engine runs, instantiated once per leaf. A
+//! kernel runs over a chunk of points, so the call through the pointer costs nothing.
+
+use std::any::Any;
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::deform::{Branches, Warp};
+use super::zone::{concave_range, concave_rise, mean_value_range};
+use super::{AnyWarp, Field, Kernel, ParamError, Way, Zone, bits, saturate, steepest};
+use rvachev_num::kernel::{Element, Formula, Visit, run};
+use rvachev_num::symbol::Symbol;
+use crate::{Bounds, Dual, Interval, Real};
+
+/// Where a leaf stands: the map from the points that it is given to its own frame, the factor
+/// of its value, and what is added after it.
+#[derive(Clone, Copy, Debug)]
+pub struct Placement {
+    /// Rows of the map: `[m_x, m_y, m_z, t]` each.
+    rows: [[f64; 4]; 3],
+    pub scale: f64,
+    /// The level or offset that the leaf is seen at.
+    pub shift: f64,
+}
+
+impl Placement {
+    /// Where nothing is moved.
+    pub const IDENTITY: Placement =
+        Placement { rows: [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]], scale: 1.0, shift: 0.0 };
+
+    pub fn new(map: &DAffine3, scale: f64, shift: f64) -> Placement {
+        let m = map.matrix3.transpose();
+        let row = |axis: usize| {
+            let r = m.col(axis);
+            [r.x, r.y, r.z, map.translation[axis]]
+        };
+        Placement { rows: [row(0), row(1), row(2)], scale, shift }
+    }
+
+    /// The leaf's value, as it counts outside of its frame.
+    #[inline(always)]
+    pub fn finish<R: Real>(&self, value: R) -> R {
+        saturate(value.scale_add(self.scale, value.lift(self.shift)))
+    }
+
+    /// The map.
+    pub fn map(&self) -> DAffine3 {
+        let [x, y, z] = self.rows.map(|[x, y, z, _]| DVec3::new(x, y, z));
+        let translation = DVec3::from_array(self.rows.map(|row| row[3]));
+        DAffine3::from_mat3_translation(DMat3::from_cols(x, y, z).transpose(), translation)
+    }
+
+    /// The point in the leaf's frame.
+    #[inline(always)]
+    pub fn apply<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
+        let r = &self.rows;
+        [
+            x.scale_add(r[0][0], y.scale_add(r[0][1], z.scale_add(r[0][2], z.lift(r[0][3])))),
+            x.scale_add(r[1][0], y.scale_add(r[1][1], z.scale_add(r[1][2], z.lift(r[1][3])))),
+            x.scale_add(r[2][0], y.scale_add(r[2][1], z.scale_add(r[2][2], z.lift(r[2][3])))),
+        ]
+    }
+
+    /// A gradient of the leaf's frame, in that of the points.
+    #[inline(always)]
+    pub fn pull<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
+        let r = &self.rows;
+        [
+            x.scale_add(r[0][0], y.scale_add(r[1][0], z * r[2][0])),
+            x.scale_add(r[0][1], y.scale_add(r[1][1], z * r[2][1])),
+            x.scale_add(r[0][2], y.scale_add(r[1][2], z * r[2][2])),
+        ]
+    }
+}
+
+/// A chunk of points to run a kernel over; all slices are of one length, a multiple of
+/// [`CHUNK`](rvachev_num::kernel::CHUNK), or of the widest vectors for a field that
+/// [takes short ones](AnyField::takes_short).
+pub struct Chunk<'a, E, const OUT: usize> {
+    pub points: [&'a [E]; 3],
+    pub placement: &'a Placement,
+    pub out: [&'a mut [E]; OUT],
+}
+
+/// A [`Field`], erased to the evaluations that the engine runs.
+pub trait AnyField: Any + Debug + Send + Sync {
+    fn name(&self) -> &'static str;
+    /// All that the value depends on, as text: leaves of one type with the same text are the
+    /// same.
+    fn signature(&self) -> String {
+        format!("{self:?}")
+    }
+    fn bounds_under(&self, map: &DAffine3) -> Bounds;
+    fn check(&self) -> Result<(), ParamError>;
+    fn roundoff(&self, reach: f64) -> f64;
+    fn value(&self, p: [f64; 3]) -> f64;
+    fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64>;
+    fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval>;
+    /// Whether the value is the true distance.
+    fn exact(&self) -> bool;
+    /// No radius of curvature of the surface is less.
+    fn least_radius(&self) -> f64 {
+        0.0
+    }
+    /// The radius of a leaf valued `radius·(1 − G)`.
+    fn gauge_radius(&self) -> Option<f64> {
+        None
+    }
+    /// How much the box of the points with a value above −c grows along each axis of the
+    /// leaf's frame, per unit of c; infinite where nothing is known.
+    fn growth(&self) -> DVec3 {
+        DVec3::INFINITY
+    }
+    /// Whether the value is concave, with slope at most 1.
+    fn convex(&self) -> bool;
+    /// A sound range over a zone of the leaf's frame.
+    fn range(&self, zone: &Zone) -> Interval;
+    /// The directions, of up to eight, along which the value is found to rise, or to stay, throughout a zone: by
+    /// their numbers, as bits.
+    fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
+        let slopes = self.dual_range(Dual::point(zone.hull())).d;
+        bits(ways, |way| way.is_rise(slopes))
+    }
+    /// The most that the value changes by per length unit over a zone.
+    fn steepest(&self, zone: &Zone) -> f64 {
+        steepest(self.dual_range(Dual::point(zone.hull())).d)
+    }
+    /// Which of the leaf's own axes the value may depend on.
+    fn axes(&self) -> [bool; 3] {
+        [true; 3]
+    }
+    /// Told which zones it will be asked about next; leaves that answer for many of them at once as
+    /// quickly as for one do so here.
+    fn foresee(&self, _zones: &[Zone]) {}
+    /// A leaf that is cheaper and has the same values over the zone, where there is one.
+    fn narrowed(&self, _zone: &Zone) -> Option<Arc<dyn AnyField>> {
+        None
+    }
+    fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a>;
+    fn lanes32(&self, chunk: Chunk<'_, f32, 1>);
+    fn lanes64(&self, chunk: Chunk<'_, f64, 1>);
+    /// Value and the three derivatives.
+    fn gradients(&self, chunk: Chunk<'_, f32, 4>);
+    /// Whether values change as the slopes of `dual_range` say: not those that come of a search.
+    fn is_steady(&self) -> bool {
+        true
+    }
+    /// Whether it goes on in another leaf, as the turns of a helix do in each other: by itself it jumps.
+    fn jumps(&self) -> bool {
+        false
+    }
+    /// Whether the lanes run over any multiple of the widest vectors, not over whole chunks only.
+    fn takes_short(&self) -> bool {
+        false
+    }
+    /// What a value takes, in those of an ordinary leaf.
+    fn cost(&self) -> usize {
+        1
+    }
+}
+
+/// The derivatives, along the variables of `p`, of a value that changes by at most `steepest` per
+/// length unit of p.
+pub fn steep_slopes(steepest: f64, p: [Dual<Interval>; 3]) -> [Interval; 3] {
+    [0, 1, 2].map(|axis| {
+        let [x, y, z] = p.map(|side| side.d[axis].magnitude());
+        let most = steepest * (1.0 + 1e-12) * (x * x + y * y + z * z).sqrt();
+        Interval::new(-most, most)
+    })
+}
+
+struct Value<'a, F>(&'a F, &'a Placement);
+
+impl<F: Field> Formula<3, 1> for Value<'_, F> {
+    #[inline(always)]
+    fn run<R: Real>(&self, p: [R; 3]) -> [R; 1] {
+        [self.1.finish(self.0.eval(self.1.apply(p)))]
+    }
+
+    #[inline(always)]
+    fn specialised<V: Visit<3, 1>>(&self, visit: V) {
+        self.0.specialised(Each { placement: self.1, visit });
+    }
+}
+
+/// Passes a leaf, its cases told apart, on as a formula.
+struct Each<'a, V> {
+    placement: &'a Placement,
+    visit: V,
+}
+
+impl<F: Field, V: Visit<3, 1>> Kernel<F> for Each<'_, V> {
+    #[inline(always)]
+    fn run(self, leaf: &F) {
+        self.visit.visit(&Value(leaf, self.placement));
+    }
+
+    #[inline(always)]
+    fn run_wide(self, leaf: &F) {
+        self.visit.visit_wide(&Value(leaf, self.placement));
+    }
+}
+
+struct Gradient<'a, F>(&'a F, &'a Placement);
+
+impl<F: Field> Formula<3, 4> for Gradient<'_, F> {
+    #[inline(always)]
+    fn run<R: Real>(&self, p: [R; 3]) -> [R; 4] {
+        let Dual { v, d } = self.0.eval(Dual::point(self.1.apply(p)));
+        let k = self.1.scale;
+        let [x, y, z] = self.1.pull([d[0] * k, d[1] * k, d[2] * k]);
+        [self.1.finish(v), x, y, z]
+    }
+
+    #[inline(always)]
+    fn specialised<V: Visit<3, 4>>(&self, visit: V) {
+        self.0.specialised(EachGradient { placement: self.1, visit });
+    }
+}
+
+/// The same for gradients.
+struct EachGradient<'a, V> {
+    placement: &'a Placement,
+    visit: V,
+}
+
+impl<F: Field, V: Visit<3, 4>> Kernel<F> for EachGradient<'_, V> {
+    #[inline(always)]
+    fn run(self, leaf: &F) {
+        self.visit.visit(&Gradient(leaf, self.placement));
+    }
+
+    #[inline(always)]
+    fn run_wide(self, leaf: &F) {
+        self.visit.visit_wide(&Gradient(leaf, self.placement));
+    }
+}
+
+impl<F: Field> AnyField for F {
+    fn name(&self) -> &'static str {
+        Field::name(self)
+    }
+
+    fn bounds_under(&self, map: &DAffine3) -> Bounds {
+        Field::bounds_under(self, map)
+    }
+
+    fn check(&self) -> Result<(), ParamError> {
+        Field::check(self)
+    }
+
+    fn roundoff(&self, reach: f64) -> f64 {
+        Field::roundoff(self, reach)
+    }
+
+    fn exact(&self) -> bool {
+        Field::exact(self)
+    }
+
+    fn convex(&self) -> bool {
+        Field::convex(self)
+    }
+
+    fn gauge_radius(&self) -> Option<f64> {
+        Field::gauge_radius(self)
+    }
+
+    fn growth(&self) -> DVec3 {
+        if Field::exact(self) {
+            return DVec3::ONE;
+        }
+        let bounds = Field::bounds(self);
+        if !bounds.is_finite() {
+            return DVec3::INFINITY;
+        }
+        if let Some(radius) = Field::gauge_radius(self) {
+            return bounds.min.abs().max(bounds.max.abs()) / radius;
+        }
+        // A concave function falls from its value at a point at least as fast beyond the
+        // surface as before it.
+        let top = self.eval(bounds.center().to_array());
+        if Field::convex(self) && top > 0.0 { bounds.half_extents() / top } else { DVec3::INFINITY }
+    }
+
+    fn value(&self, p: [f64; 3]) -> f64 {
+        self.eval(p)
+    }
+
+    fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64> {
+        self.eval(p)
+    }
+
+    fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
+        self.eval(p)
+    }
+
+    fn range(&self, zone: &Zone) -> Interval {
+        let coarse = Field::range(self, zone.hull());
+        if coarse.lo() > 0.0 || coarse.hi() < 0.0 || !zone.is_finite() {
+            return coarse;
+        }
+        if !Field::convex(self) {
+            // The leaf has said all about a box of its own frame; the hull of a zone at an
+            // angle to it holds much else.
+            if zone.is_aligned() {
+                return coarse;
+            }
+            let centre = self.eval(zone.centre.to_array().map(Interval::point));
+            return mean_value_range(zone, centre, self.slopes(zone.hull()), coarse);
+        }
+        let tangent = self.eval(Dual::point(zone.centre.to_array()));
+        concave_range(zone, tangent.v, DVec3::from_array(tangent.d), coarse, |p| self.eval(p.to_array()))
+    }
+
+    fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
+        let along = |p: [f64; 3]| self.eval(Dual::point(p));
+        let convex = Field::convex(self);
+        let found =
+            if convex { bits(ways, |way| concave_rise(zone, way, |p| self.eval(p.to_array()), along)) } else { 0 };
+        // Of boxes, seen through no deformation, that says all.
+        if found != 0 || convex && zone.slack.length() <= 1e-9 * zone.radius() {
+            return found;
+        }
+        let slopes = self.slopes(zone.hull());
+        bits(ways, |way| way.is_rise(slopes))
+    }
+
+    fn least_radius(&self) -> f64 {
+        Field::least_radius(self)
+    }
+
+    fn steepest(&self, zone: &Zone) -> f64 {
+        let least = Field::steepest(self);
+        if least.is_finite() { least } else { steepest(self.slopes(zone.hull())) }
+    }
+
+    fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
+        self.eval(p)
+    }
+
+    fn lanes32(&self, chunk: Chunk<'_, f32, 1>) {
+        lanes(self, chunk);
+    }
+
+    fn lanes64(&self, chunk: Chunk<'_, f64, 1>) {
+        lanes(self, chunk);
+    }
+
+    fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
+        run(&Gradient(self, chunk.placement), chunk.points, chunk.out);
+    }
+
+    fn takes_short(&self) -> bool {
+        true
+    }
+}
+
+#[inline]
+fn lanes<E: Element, F: Field>(field: &F, chunk: Chunk<'_, E, 1>) {
+    run(&Value(field, chunk.placement), chunk.points, chunk.out);
+}
+
+struct PreImage<'a, W>(&'a W, &'a Placement);
+
+impl<W: Warp> Formula<3, 3> for PreImage<'_, W> {
+    #[inline(always)]
+    fn run<R: Real>(&self, p: [R; 3]) -> [R; 3] {
+        self.0.inverse(self.1.apply(p))
+    }
+}
+
+struct Jacobian<'a, W>(&'a W, &'a Placement);
+
+impl<W: Warp> Formula<3, 12> for Jacobian<'_, W> {
+    #[inline(always)]
+    fn run<R: Real>(&self, p: [R; 3]) -> [R; 12] {
+        let [x, y, z] = self.0.inverse(self.1.apply(Dual::point(p)));
+        [x.v, y.v, z.v, x.d[0], x.d[1], x.d[2], y.d[0], y.d[1], y.d[2], z.d[0], z.d[1], z.d[2]]
+    }
+}
+
+impl<W: Warp> AnyWarp for W {
+    fn name(&self) -> &'static str {
+        W::NAME
+    }
+
+    fn point(&self, p: [f64; 3]) -> [f64; 3] {
+        self.inverse(p)
+    }
+
+    fn duals(&self, p: [Dual<f64>; 3]) -> [Dual<f64>; 3] {
+        self.inverse(p)
+    }
+
+    fn dual_ranges(&self, p: [Dual<Interval>; 3]) -> [Dual<Interval>; 3] {
+        self.slopes(p)
+    }
+
+    fn symbols<'a>(&self, p: [Symbol<'a>; 3]) -> [Symbol<'a>; 3] {
+        self.inverse(p)
+    }
+
+    fn lanes32(&self, chunk: Chunk<'_, f32, 3>) {
+        run(&PreImage(self, chunk.placement), chunk.points, chunk.out);
+    }
+
+    fn lanes64(&self, chunk: Chunk<'_, f64, 3>) {
+        run(&PreImage(self, chunk.placement), chunk.points, chunk.out);
+    }
+
+    fn jacobians(&self, chunk: Chunk<'_, f32, 12>) {
+        run(&Jacobian(self, chunk.placement), chunk.points, chunk.out);
+    }
+
+    fn bounds(&self, bounds: &Bounds) -> Bounds {
+        Warp::bounds(self, bounds)
+    }
+
+    fn check(&self, bounds: &Bounds) -> Result<(), ParamError> {
+        Warp::check(self, bounds)
+    }
+
+    fn roundoff_over(&self, hull: [Interval; 3]) -> f64 {
+        Warp::roundoff_over(self, hull)
+    }
+
+    fn stretch(&self, hull: [Interval; 3]) -> f64 {
+        Warp::stretch(self, hull)
+    }
+
+    fn branches(&self, hull: [Interval; 3]) -> Option<Branches> {
+        Warp::branches(self, hull)
+    }
+
+    fn sheets(&self, hull: [Interval; 3]) -> Option<[Box<dyn AnyWarp>; 2]> {
+        Warp::sheets(self, hull).map(|sheets| sheets.map(|sheet| Box::new(sheet) as Box<dyn AnyWarp>))
+    }
+
+    fn keeps_lengths(&self) -> bool {
+        Warp::keeps_lengths(self)
+    }
+}
+
+/// The smallest stretch of an affine map: its least singular value.
+pub fn smallest_stretch(m: &DMat3) -> f64 {
+    // The largest eigenvalue of A⁻¹A⁻ᵀ by Jacobi rotations: relative accuracy where it counts.
+    let inverse = m.inverse();
+    let mut s = inverse * inverse.transpose();
+    for _ in 0..12 {
+        for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+            let off = s.col(j)[i];
+            if off.abs() <= 1e-300 {
+                continue;
+            }
+            let theta = 0.5 * (s.col(j)[j] - s.col(i)[i]) / off;
+            let tangent = theta.signum() / (theta.abs() + (1.0 + theta * theta).sqrt());
+            let cos = 1.0 / (1.0 + tangent * tangent).sqrt();
+            let sin = tangent * cos;
+            let mut turn = DMat3::IDENTITY;
+            turn.col_mut(i)[i] = cos;
+            turn.col_mut(j)[j] = cos;
+            turn.col_mut(j)[i] = sin;
+            turn.col_mut(i)[j] = -sin;
+            s = turn.transpose() * s * turn;
+        }
+    }
+    1.0 / s.x_axis.x.max(s.y_axis.y).max(s.z_axis.z).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DQuat;
+
+    #[test]
+    fn the_smallest_stretch_is_the_least_singular_value() {
+        let turn = |angle: f64| DMat3::from_quat(DQuat::from_rotation_z(angle) * DQuat::from_rotation_x(0.7 * angle));
+        for scale in [DVec3::new(2.0, 3.0, 5.0), DVec3::new(1e-3, 1.0, 1e3), DVec3::ONE] {
+            let m = turn(0.4) * DMat3::from_diagonal(scale) * turn(1.9);
+            let found = smallest_stretch(&m);
+            assert!((found / scale.min_element() - 1.0).abs() < 1e-9, "{found} for {scale}");
+        }
+    }
+}

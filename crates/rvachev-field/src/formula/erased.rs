@@ -1,0 +1,118 @@
+//! A formula as a leaf of the engine.
+
+use std::cell::RefCell;
+use std::sync::Arc;
+
+use glam::DAffine3;
+
+use super::slope::Slope;
+use super::{Formula, bulk, gradients};
+use crate::{AnyField, Chunk, ParamError, VALUE_LIMIT, Zone};
+use rvachev_num::symbol::Symbol;
+use crate::{Bounds, Dual, Interval};
+
+thread_local! {
+    static REGISTERS: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
+}
+
+/// The value of the solid from that of the formula: what is undefined is outside.
+pub(super) fn turned(value: f64) -> f64 {
+    if value.is_nan() { -VALUE_LIMIT } else { (-value).clamp(-VALUE_LIMIT, VALUE_LIMIT) }
+}
+
+/// A derivative of the solid from that of the formula.
+fn turned_slope(slope: f64) -> f64 {
+    if slope.is_nan() { 0.0 } else { (-slope).clamp(-f64::from(STEEPEST), f64::from(STEEPEST)) }
+}
+
+/// Steeper derivatives are of no use as a direction, and their squares would overflow.
+pub(super) const STEEPEST: f32 = 1e15;
+
+impl AnyField for Formula {
+    fn signature(&self) -> String {
+        self.text()
+    }
+
+    fn name(&self) -> &'static str {
+        "formula"
+    }
+
+    fn bounds_under(&self, map: &DAffine3) -> Bounds {
+        self.bounds().transformed(map)
+    }
+
+    fn check(&self) -> Result<(), ParamError> {
+        Formula::check(self)
+    }
+
+    fn convex(&self) -> bool {
+        false
+    }
+
+    fn roundoff(&self, reach: f64) -> f64 {
+        self.roundoff_within(reach)
+    }
+
+    fn value(&self, p: [f64; 3]) -> f64 {
+        turned(REGISTERS.with_borrow_mut(|registers| self.0.code.plan().value(p, registers)))
+    }
+
+    fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64> {
+        let point = p.map(|c| Slope { v: c.value(), d: c.gradient() });
+        let value = self.0.code.plan().value(point, &mut Vec::new());
+        if value.v.is_nan() {
+            return Dual::constant(-VALUE_LIMIT);
+        }
+        Dual::new(turned(value.v), value.d.map(turned_slope))
+    }
+
+    fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
+        self.dual_range_of(p)
+    }
+
+    fn exact(&self) -> bool {
+        false
+    }
+
+    fn range(&self, zone: &Zone) -> Interval {
+        self.range_over(zone)
+    }
+
+    fn axes(&self) -> [bool; 3] {
+        self.0.code.axes
+    }
+
+    fn foresee(&self, zones: &[Zone]) {
+        self.survey(zones);
+    }
+
+    fn narrowed(&self, zone: &Zone) -> Option<Arc<dyn AnyField>> {
+        self.narrowed_to(zone).map(|formula| Arc::new(formula) as Arc<dyn AnyField>)
+    }
+
+    fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
+        let [x, y, z] = p.map(Symbol::tree);
+        p[0].of_tree(-self.tree().remap_xyz(x, y, z))
+    }
+
+    fn lanes32(&self, chunk: Chunk<'_, f32, 1>) {
+        bulk::single(self, chunk);
+    }
+
+    fn lanes64(&self, chunk: Chunk<'_, f64, 1>) {
+        bulk::double(self, chunk);
+    }
+
+    fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
+        gradients::gradients(self, chunk);
+    }
+
+    fn takes_short(&self) -> bool {
+        true
+    }
+
+    fn cost(&self) -> usize {
+        // So many operations are as much as a superquadric.
+        1 + self.len() / 8
+    }
+}

@@ -1,0 +1,107 @@
+//! The formulas: leaves, R-functions and deformations, each written once over
+//! [`Real`](crate::Real).
+//!
+//! A leaf is a type that implements [`Field`]; adding one is a file here and a line below. A
+//! deformation implements `Warp`. Both are erased (`AnyField`, `AnyWarp`) to the evaluations
+//! that the engine runs: point, gradient, range, lanes, expression tree.
+
+#[macro_use]
+mod picture;
+
+pub mod angle;
+mod blend;
+mod capsule;
+pub mod check;
+mod cone;
+mod cuboid;
+mod cylinder;
+mod deform;
+mod distance;
+mod ellipsoid;
+mod erased;
+mod faces;
+mod fold;
+mod formula;
+mod generalised;
+mod gielis;
+mod half_space;
+mod kaleidoscope;
+mod leaf;
+mod minimal_surface;
+mod network_lattice;
+mod number;
+mod outline;
+mod points;
+mod prism;
+mod profile;
+mod pull;
+mod pyramid;
+mod rfunction;
+mod rounded_cuboid;
+mod sheet_lattice;
+mod slab;
+mod slope;
+mod sphere;
+mod superellipsoid;
+mod superhyperboloid;
+mod supershape;
+mod supertoroid;
+mod sweep;
+mod zone;
+
+use rvachev_num::{Bounds, Dual, Interval, Monotone, Monotone3, Norm, Real};
+
+pub use blend::Blend;
+pub use blend::RicciSide;
+mod torus;
+mod wedge;
+pub use capsule::Capsule;
+pub use check::ParamError;
+pub use cone::Cone;
+pub use cuboid::Cuboid;
+pub use cylinder::Cylinder;
+pub use deform::{AnyWarp, Bend, Cells, Comb, Elongate, Sectors, Taper, TaperBy, Twist, TwistBy};
+pub use deform::{Law, LawTable, LinearLaw, SineWave, SmoothStep};
+pub use distance::Distance;
+pub use ellipsoid::Ellipsoid;
+pub use erased::{AnyField, Chunk, Placement, smallest_stretch, steep_slopes};
+pub use faces::concave_faces;
+pub use formula::BOXES;
+pub use formula::{Formula, FormulaError};
+pub use generalised::GeneralisedSuperquadric;
+pub use gielis::{Gielis, Radius, Turns};
+pub use fold::{Joinable, Op};
+pub use half_space::HalfSpace;
+pub use leaf::{Field, Kernel};
+pub use minimal_surface::{Grading, MinimalSurface};
+pub use network_lattice::NetworkLattice;
+pub use number::{Joined, Number};
+pub use points::{
+    BinomialSeries, CurveSpread, ExactExplicit, LogTable, PlaneSymmetry, PointError, PointMethod, PointSettings,
+    PowerTables, ProductTables, RawParametric, SeriesExplicit, Symmetry, reflect, reflect_plane,
+};
+pub use prism::Prism;
+pub use profile::{Circle, Polygon, Rectangle, RegularPolygon, Superellipse, Superpolygon};
+pub use pull::{product, pull};
+pub use pyramid::Pyramid;
+pub use rfunction::RFunction;
+pub use rfunction::{Rule, saturate};
+pub use rounded_cuboid::RoundedCuboid;
+pub use sheet_lattice::SheetLattice;
+pub use slab::Slab;
+pub use sphere::Sphere;
+pub use superellipsoid::Superellipsoid;
+pub use superhyperboloid::Superhyperboloid;
+pub use supershape::Supershape;
+pub use supertoroid::Supertoroid;
+pub use sweep::{HelixWarp, Opening, Revolution, Span, Turn};
+pub use torus::Torus;
+pub use wedge::Wedge;
+pub use zone::{Pieces, Way, Zone, bits, dot, largest_stretch, steepest};
+
+/// Coordinates beyond this many length units are evaluated as if they lay there, so that no
+/// intermediate result overflows single precision.
+pub const COORDINATE_LIMIT: f64 = 1e12;
+
+/// Values saturate at this many length units, so that no chain of R-functions overflows.
+pub const VALUE_LIMIT: f64 = 1e18;

@@ -1,0 +1,219 @@
+//! Polygons against going through all their edges.
+
+use super::*;
+use crate::Placement;
+use rvachev_num::kernel::CHUNK;
+
+/// Numbers that depend on the seed alone, from 0 to 1 (an additive and a multiplicative step).
+struct Numbers(u64);
+
+impl Numbers {
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn point(&mut self, half: f64) -> DVec2 {
+        half * (2.0 * DVec2::new(self.unit(), self.unit()) - 1.0)
+    }
+}
+
+/// A contour round `centre` with spikes, `n` points.
+fn star(numbers: &mut Numbers, centre: DVec2, n: usize, least: f64, most: f64) -> Vec<DVec2> {
+    let mut points: Vec<DVec2> = (0..n)
+        .map(|i| {
+            let angle = std::f64::consts::TAU * (i as f64 + 0.9 * numbers.unit()) / n as f64;
+            centre + (least + (most - least) * numbers.unit()) * DVec2::from_angle(angle)
+        })
+        .collect();
+    if numbers.unit() < 0.5 {
+        points.reverse();
+    }
+    points
+}
+
+/// A ring with an island in its hole.
+fn islands(numbers: &mut Numbers, n: usize) -> Vec<Vec<DVec2>> {
+    // So that few points make a contour that stays clear of the next, there is one of them.
+    let rings = [(2.4, 3.0), (1.6, 2.0), (0.5, 1.2)];
+    let rings = if n < 12 { &rings[..1] } else { &rings };
+    rings.iter().map(|(least, most)| star(numbers, DVec2::new(0.3, -0.2), n, *least, *most)).collect()
+}
+
+/// The distance by going through all edges, its sign by the number of crossings of a ray.
+fn direct(contours: &[Vec<DVec2>], p: DVec2) -> f64 {
+    let (mut least, mut inside) = (f64::INFINITY, false);
+    for points in contours {
+        for (i, &a) in points.iter().enumerate() {
+            let b = points[(i + 1) % points.len()];
+            let t = ((p - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
+            least = least.min((p - a - t * (b - a)).length());
+            if (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x) {
+                inside = !inside;
+            }
+        }
+    }
+    if inside { least } else { -least }
+}
+
+fn value(polygon: &Polygon, p: DVec2) -> f64 {
+    AnyField::value(polygon, [p.x, p.y, 7.0])
+}
+
+fn zone(centre: DVec2, half: DVec2) -> Zone {
+    Zone::of_bounds(&Bounds::from_center(centre.extend(0.5), half.extend(1.0)))
+}
+
+fn lanes(field: &dyn AnyField, points: &[DVec2]) -> Vec<f64> {
+    let placement = Placement::IDENTITY;
+    let mut values = Vec::new();
+    for part in points.chunks(CHUNK) {
+        let column = |axis: usize| {
+            let mut column = vec![0.0f32; CHUNK];
+            for (to, p) in column.iter_mut().zip(part) {
+                *to = p[axis] as f32;
+            }
+            column
+        };
+        let (x, y, z, mut out) = (column(0), column(1), vec![0.0; CHUNK], vec![0.0; CHUNK]);
+        field.lanes32(Chunk { points: [&x, &y, &z], placement: &placement, out: [&mut out] });
+        values.extend(out[..part.len()].iter().map(|v| f64::from(*v)));
+    }
+    values
+}
+
+#[test]
+fn values_are_distances() {
+    let mut numbers = Numbers(1);
+    for n in [3, 4, 7, 11, 40, 300] {
+        let contours = islands(&mut numbers, n);
+        let polygon = Polygon::of_points(&contours);
+        assert_eq!(polygon.check(), Ok(()));
+        let mut points: Vec<DVec2> = (0..400).map(|_| numbers.point(4.0)).collect();
+        // Near corners, where signs are hardest, and far away.
+        for (corner, i) in contours.iter().flatten().zip(0..300) {
+            let direction = DVec2::from_angle(f64::from(i));
+            points.extend([1e-3, 1e-6, 1e2].map(|d| *corner + d * direction));
+        }
+        let points: Vec<DVec2> = points.iter().map(|p| p.as_vec2().as_dvec2()).collect();
+        let on_lanes = lanes(&polygon, &points);
+        for (p, lane) in points.into_iter().zip(on_lanes) {
+            let want = direct(&contours, p);
+            let got = value(&polygon, p);
+            assert!((got - want).abs() < 1e-13 * (10.0 + want.abs()), "{n} at {p}: {got}, want {want}");
+            assert!((lane - want).abs() < 4e-6 * (3.0 + want.abs()), "{n} at {p}: {lane} on lanes, want {want}");
+        }
+    }
+}
+
+#[test]
+fn needles_keep_their_sign_on_lanes() {
+    for width in [1e-1, 1e-3, 1e-5] {
+        // A needle that points out, and one that points in.
+        let out = vec![DVec2::new(-1.0, -width), DVec2::new(2.0, 0.0), DVec2::new(-1.0, width)];
+        let inward = vec![
+            DVec2::new(-1.0, -1.0),
+            DVec2::new(1.0, -1.0),
+            DVec2::new(1.0, -width),
+            DVec2::new(-0.5, 0.0),
+            DVec2::new(1.0, width),
+            DVec2::new(1.0, 1.0),
+            DVec2::new(-1.0, 1.0),
+        ];
+        let mut numbers = Numbers(2);
+        for (contour, tip) in [(out, DVec2::new(2.0, 0.0)), (inward, DVec2::new(-0.5, 0.0))] {
+            let polygon = Polygon::of_points(std::slice::from_ref(&contour));
+            let points: Vec<DVec2> = (0..2000)
+                .map(|_| (tip + numbers.point(0.3)).as_vec2().as_dvec2())
+                .chain([tip - 0.1 * DVec2::Y])
+                .collect();
+            for (p, lane) in points.iter().zip(lanes(&polygon, &points)) {
+                let want = direct(std::slice::from_ref(&contour), *p);
+                assert!((value(&polygon, *p) - want).abs() < 1e-14, "{width} at {p}");
+                assert!((lane - want).abs() < 2e-6, "{width} at {p}: {lane}, want {want}");
+            }
+        }
+    }
+}
+
+#[test]
+fn narrowed_leaves_have_the_same_values_in_their_zone() {
+    let mut numbers = Numbers(3);
+    let (mut few, mut tried) = (0, 0);
+    for n in [4, 60, 1700] {
+        let polygon = Polygon::of_points(&islands(&mut numbers, n));
+        for i in 0..120 {
+            let centre = numbers.point(3.3);
+            let half = 10f64.powf(-3.0 * numbers.unit()) * DVec2::new(1.0, 0.2 + 0.8 * numbers.unit());
+            let region = zone(centre, half);
+            let range = AnyField::range(&polygon, &region);
+            let narrowed = AnyField::narrowed(&polygon, &region);
+            tried += 1;
+            few += usize::from(narrowed.is_some());
+            let own = narrowed.as_ref().map(|leaf| leaf.range(&region));
+            let part = zone(centre + 0.5 * half, 0.5 * half);
+            let again = narrowed.as_ref().and_then(|leaf| leaf.narrowed(&part));
+            for _ in 0..30 {
+                let p = centre + half * numbers.point(1.0);
+                let want = value(&polygon, p);
+                assert!(range.contains(want), "{n} {i}: {want} at {p} not in {range:?}");
+                if let (Some(leaf), Some(own)) = (&narrowed, own) {
+                    assert!((leaf.value([p.x, p.y, 0.0]) - want).abs() < 1e-14, "{n} {i} at {p}");
+                    assert!(own.contains(want), "{n} {i}: {want} at {p} not in {own:?}");
+                }
+                if let Some(leaf) = &again {
+                    let p = centre + 0.5 * half * (numbers.point(1.0) + 1.0);
+                    assert!((leaf.value([p.x, p.y, 0.0]) - value(&polygon, p)).abs() < 1e-14, "{n} {i} twice at {p}");
+                }
+            }
+        }
+    }
+    assert!(4 * few > tried, "{few} of {tried} zones are narrowed");
+}
+
+#[test]
+fn ranges_over_a_side_are_tight() {
+    let polygon = Polygon::new([[[0.0, 0.0], [10.0, 0.0], [10.0, 8.0], [0.0, 8.0]]]);
+    let range = AnyField::range(&polygon, &zone(DVec2::new(5.0, 0.3), DVec2::new(0.25, 0.25)));
+    assert!((range.lo() - 0.05).abs() < 1e-9 && range.hi() < 0.61, "{range:?}");
+}
+
+#[track_caller]
+fn error(contours: &[&[[f64; 2]]]) -> String {
+    let polygon = Polygon::new(contours.iter().map(|contour| contour.iter().copied()));
+    assert_eq!(value(&polygon, DVec2::ZERO), -VALUE_LIMIT);
+    assert_eq!(polygon.area(), 0.0);
+    polygon.check().expect_err("something is wrong").to_string()
+}
+
+#[test]
+fn what_is_wrong_is_said_with_its_place() {
+    let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
+    assert!(error(&[]).starts_with("number of contours is 0"));
+    assert_eq!(error(&[&square, &[[1.0, 1.0], [2.0, 2.0]]]), "number of points of contour 1 is 2, allowed: 3 or more");
+    let text = error(&[&[[0.0, 0.0], [f64::NAN, 1.0], [1.0, 0.0]]]);
+    assert!(text.starts_with("contour 0, point 1, x is NaN"), "{text}");
+    let text = error(&[&[[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 1.0]]]);
+    assert!(text.starts_with("length of edge 1 of contour 0, at (1, 0), is 0, allowed"), "{text}");
+    // A bow tie, a spike, a corner on an edge, contours that touch, cross, or are the same.
+    let text = error(&[&[[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]]]);
+    assert!(text.starts_with("where edge 0 of contour 0 meets edge 2 of contour 0, at (1, 1), the dist"), "{text}");
+    let text = error(&[&[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0], [1.0, 2.0]]]);
+    assert!(text.starts_with("where edge 0 of contour 0 meets edge 1 of contour 0"), "{text}");
+    let text = error(&[&[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [2.0, 0.0]]]);
+    assert!(text.contains("edge 0 of contour 0 meets edge 2 of contour 0, at (2, 0)"), "{text}");
+    let text = error(&[&square, &[[4.0, 1.0], [6.0, 2.0], [4.0, 3.0]]]);
+    assert!(text.contains("edge 1 of contour 0 meets edge 2 of contour 1, at (4, 3)"), "{text}");
+    let text = error(&[&square, &[[1.0, 1.0], [5.0, 2.0], [1.0, 3.0]]]);
+    assert!(text.contains("edge 1 of contour 0 meets edge 0 of contour 1, at (4, 1.75)"), "{text}");
+    assert!(error(&[&square, &square]).contains("contour 0 meets edge"));
+}
+
+#[test]
+fn corners_in_a_line_and_repeated_ends_are_no_error() {
+    let polygon = Polygon::new([[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [0.0, 0.0]]]);
+    assert_eq!(polygon.check(), Ok(()));
+    assert_eq!((polygon.edge_count(), polygon.area()), (5, 4.0));
+    assert_eq!(value(&polygon, DVec2::new(1.0, 0.5)), 0.5);
+    assert_eq!(value(&polygon, DVec2::new(1.0, -0.5)), -0.5);
+}

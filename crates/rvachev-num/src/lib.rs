@@ -1,0 +1,32 @@
+//! Numbers: the trait [`Real`] that every formula is written over, and its implementations.
+//!
+//! A leaf, an R-function or a deformation is written once, generic over [`Real`], and run on
+//!
+//! | number | gives |
+//! |---|---|
+//! | `f64` | the reference value |
+//! | [`Interval`] | a sound range over a box |
+//! | [`Dual`] over any of them | value and gradient |
+//! | SIMD lanes of `f32` and `f64` | values and gradients in bulk |
+//! | `Symbol` | an expression tree for fidget |
+
+mod bounds;
+mod dual;
+mod float;
+mod interval;
+pub mod kernel;
+pub mod lanes;
+mod monotone;
+mod norm;
+mod real;
+mod run;
+pub mod signs;
+pub mod symbol;
+
+pub use bounds::{Bounds, column_times};
+pub use dual::Dual;
+pub use interval::Interval;
+pub use monotone::{Monotone, Monotone3};
+pub use norm::Norm;
+pub use real::Real;
+pub use run::{CancelToken, Cancelled, Meter, Progress, Run};
