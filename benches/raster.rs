@@ -18,8 +18,8 @@ use std::time::Instant;
 
 use glam::{DAffine3, DVec3};
 use rvachev::{
-    Camera, ClosedMesh, Csg, CsgMethod, LayerSource, Mesh, PatchSettings, RFunction, RasterView, Run, Solid,
-    Superellipsoid, Window,
+    Camera, ClosedMesh, Csg, CsgMethod, LayerSource, Mesh, ParametricSurface, PatchSettings, RFunction, RasterView,
+    Run, Solid, Superellipsoid, Window,
 };
 
 /// Superellipsoids in their places, and a tree over them in both forms.
@@ -44,7 +44,10 @@ impl Model {
 
     fn meshes(&self, columns: u32) -> Result<Vec<Mesh>, Box<dyn Error>> {
         let settings = PatchSettings { rows: columns / 2, columns, ..PatchSettings::default() };
-        self.operands.iter().map(|(shape, place)| Ok(shape.surface()?.mesh(&settings)?.affine(*place)?)).collect()
+        self.operands
+            .iter()
+            .map(|(shape, place)| Ok(ParametricSurface::of(shape)?.mesh(&settings)?.affine(*place)?))
+            .collect()
     }
 }
 

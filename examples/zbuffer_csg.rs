@@ -15,8 +15,8 @@ use std::time::Instant;
 
 use glam::{DAffine3, DVec3};
 use rvachev::{
-    Bounds, Buffers, Camera, ClosedMesh, Csg, CsgMethod, Facing, Image, LayerSource, Mesh, MeshLayers, PatchSettings,
-    RasterView, Superellipsoid, Supertoroid,
+    Bounds, Buffers, Camera, ClosedMesh, Csg, CsgMethod, Facing, Image, LayerSource, Mesh, MeshLayers,
+    ParametricSurface, PatchSettings, RasterView, Superellipsoid, Supertoroid,
 };
 
 /// A picture is drawn this many times as large, and every square of pixels becomes one.
@@ -33,7 +33,7 @@ fn patch(rows: u32, columns: u32) -> PatchSettings {
 }
 
 fn superellipsoid(semi_axes: [f64; 3], e1: f64, e2: f64) -> Result<Mesh> {
-    Ok(Superellipsoid::new(semi_axes, e1, e2).surface()?.mesh(&patch(64, 128))?)
+    Ok(ParametricSurface::of(&Superellipsoid::new(semi_axes, e1, e2))?.mesh(&patch(64, 128))?)
 }
 
 fn moved(mesh: Mesh, x: f64, y: f64, z: f64) -> Result<Mesh> {
@@ -201,7 +201,7 @@ fn set(parts: &mut Parts) -> Result<Csg> {
     let outside = parts.add(moved(outside, -2.1, -0.3, 0.85)?, [92, 138, 178]);
     let inside = superellipsoid([0.62, 0.62, 0.85], 0.25, 1.0)?.taper(0.12, 0.12, 0.85)?;
     let inside = parts.add(moved(inside, -2.1, -0.3, 0.99)?, [226, 226, 220]);
-    let ring = Supertoroid::new([0.13, 0.13, 0.13], 3.2, 1.0, 1.0).surface()?.mesh(&patch(32, 96))?;
+    let ring = ParametricSurface::of(&Supertoroid::new([0.13, 0.13, 0.13], 3.2, 1.0, 1.0))?.mesh(&patch(32, 96))?;
     let ring = ring.affine(DAffine3::from_rotation_x(std::f64::consts::FRAC_PI_2))?;
     let ring = parts.add(moved(ring, -1.38, -0.3, 0.85)?, [92, 138, 178]);
     let mug = (outside | ring) - inside;
@@ -233,7 +233,7 @@ fn set(parts: &mut Parts) -> Result<Csg> {
 fn die(parts: &mut Parts, x: f64, y: f64, turn: f64, spots: [usize; 3]) -> Result<Csg> {
     let place = DAffine3::from_translation(DVec3::new(x, y, 0.32)) * DAffine3::from_rotation_z(turn);
     let mut die = parts.add(superellipsoid([0.32, 0.32, 0.32], 0.25, 0.25)?.affine(place)?, [232, 230, 224]);
-    let ball = Superellipsoid::new([0.062, 0.062, 0.062], 1.0, 1.0).surface()?.mesh(&patch(16, 32))?;
+    let ball = ParametricSurface::of(&Superellipsoid::new([0.062, 0.062, 0.062], 1.0, 1.0))?.mesh(&patch(16, 32))?;
     let all = [(0.0, 0.0), (0.15, 0.15), (-0.15, -0.15), (0.15, -0.15), (-0.15, 0.15), (0.15, 0.0), (-0.15, 0.0)];
     let places: [&[usize]; 6] = [&[0], &[1, 2], &[0, 1, 2], &[1, 2, 3, 4], &[0, 1, 2, 3, 4], &[1, 2, 3, 4, 5, 6]];
     let sides: [fn(f64, f64) -> DVec3; 3] =

@@ -283,10 +283,10 @@
 //!
 //! | | |
 //! |---|---|
-//! | [`Superellipsoid::surface`] and its like | a [`ParametricSurface`]: points, tangents, exact normals by two parameters |
+//! | [`ParametricSurface::of`] | of a leaf: points, tangents, exact normals by two parameters |
 //! | [`ParametricSurface::mesh`], [`quad_mesh`](ParametricSurface::quad_mesh) | closed triangles and quadrilaterals, by angles, by lengths or within a tolerance ([`Spacing`]) |
 //! | [`ParametricSurface::sample`] | points uniform by area |
-//! | [`Superellipse::curve`], [`Gielis::curve`], [`ParametricCurve`] | the same of plane curves |
+//! | [`ParametricCurve`] | the same of plane curves |
 //! | [`Superellipsoid::points`], [`Superellipse::points`] | points by Franklin and Barr's methods ([`PointMethod`]) |
 //! | [`ControlPolygon`], [`SubdivisionRevolution`], [`ControlGrid`] | subdivision: conics, quadrics, free forms |
 //!
@@ -382,14 +382,6 @@ mod space;
 mod surface;
 
 pub use eval::{Evaluator, Gradients, Hit, Owner, Palette, Program, Region, Tape};
-#[doc(inline)]
-pub use rvachev_field::{
-    Blend, COORDINATE_LIMIT, Capsule, Circle, Cone, Cuboid, Cylinder, Ellipsoid, Field, Formula, FormulaError,
-    GeneralisedSuperquadric, Gielis, Grading, HalfSpace, Kernel, Law, LawTable, LinearLaw, MinimalSurface,
-    NetworkLattice, ParamError, Polygon, Prism, Pyramid, RFunction, Radius, Rectangle, RegularPolygon, RoundedCuboid,
-    SheetLattice, SineWave, Slab, SmoothStep, Sphere, Superellipse, Superellipsoid, Superhyperboloid, Superpolygon,
-    Supershape, Supertoroid, Torus, Turns, VALUE_LIMIT, Wedge,
-};
 pub use geom::{
     Camera, CameraError, Coordinates, Corner, Image, ImageError, Intrinsics, Mesh, MeshError, Noise, Plane, PointCloud,
     PointCloudError, Polyline, Projection, QuadMesh, RangeImage, RangeImageError, Rays, View,
@@ -402,10 +394,6 @@ pub use mesh::{
     AtBounds, CellSize, Features, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError, ThinFeatures, Volume,
     VolumeError, VolumeSettings,
 };
-#[doc(inline)]
-pub use rvachev_num::{
-    Bounds, CancelToken, Cancelled, Dual, Interval, Monotone, Monotone3, Norm, Progress, Real, Run,
-};
 pub use raster::{
     Buffers, ClosedMesh, Csg, CsgMethod, Facing, Fragments, LANES, LayerSource, MeshLayers, RasterError, RasterView,
     SurfaceId, Tile,
@@ -414,13 +402,24 @@ pub use render::{
     Background, GBuffer, Isolines, Layers, Lights, RenderError, RenderSettings, Scene, Slice, SliceSettings, Style,
     Surface, Transfer, Window,
 };
-pub use solid::{Caps, Extrusion, Helix, Paint, PlaneBounds, Profile, Solid, SolidError};
-pub use surface::{
-    ControlGrid, ControlPoint, ControlPolygon, Frame, ParametricCurve, ParametricSurface, PatchError, PatchSettings,
-    ProfileEnd, Spacing, SubdivisionError, SubdivisionRevolution, SurfacePoint, Tension, hyperbola_of_ellipse,
-};
 #[doc(inline)]
 pub use rvachev_field::{
     BinomialSeries, CurveSpread, ExactExplicit, LogTable, PlaneSymmetry, PointError, PointMethod, PointSettings,
     PowerTables, ProductTables, RawParametric, SeriesExplicit, Symmetry, reflect, reflect_plane,
+};
+#[doc(inline)]
+pub use rvachev_field::{
+    Blend, COORDINATE_LIMIT, Capsule, Circle, Cone, Cuboid, Cylinder, Ellipsoid, Field, Formula, FormulaError,
+    GeneralisedSuperquadric, Gielis, Grading, HalfSpace, Kernel, Law, LawTable, LinearLaw, MinimalSurface,
+    NetworkLattice, ParamError, Polygon, Prism, Pyramid, RFunction, Radius, Rectangle, RegularPolygon, RoundedCuboid,
+    SheetLattice, SineWave, Slab, SmoothStep, Sphere, Superellipse, Superellipsoid, Superhyperboloid, Superpolygon,
+    Supershape, Supertoroid, Torus, Turns, VALUE_LIMIT, Wedge,
+};
+#[doc(inline)]
+pub use rvachev_num::{Bounds, CancelToken, Cancelled, Dual, Interval, Monotone, Monotone3, Norm, Progress, Real, Run};
+pub use solid::{Caps, Extrusion, Helix, Paint, PlaneBounds, Profile, Solid, SolidError};
+pub use surface::{
+    ControlGrid, ControlPoint, ControlPolygon, Frame, Parametric, ParametricCurve, ParametricSurface, PatchError,
+    PatchSettings, ProfileEnd, Spacing, SubdivisionError, SubdivisionRevolution, SurfacePoint, Tension,
+    hyperbola_of_ellipse,
 };

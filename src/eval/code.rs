@@ -4,11 +4,11 @@
 use glam::DVec3;
 
 use super::program::{Edge, Kind, Node};
-use rvachev_field::Op;
 use super::sides::Sides;
 use crate::Bounds;
-use rvachev_field::{RicciSide, Rule};
 use crate::solid::Operation;
+use rvachev_field::Op;
+use rvachev_field::{RicciSide, Rule};
 
 /// What a node compiled to.
 #[derive(Clone, Copy)]

@@ -16,13 +16,13 @@ use super::edge::EdgeBlend;
 use super::extent::extent;
 use super::flatten::flatten;
 use super::program::{Edge, Kind, Program};
-use rvachev_field::Op;
 use super::scene::{Instance, Scene};
 use super::sides::Sides;
-use rvachev_num::column_times;
-use rvachev_field::{AnyField, AnyWarp, Placement, Rule};
 use crate::solid::{self, Length, Operation};
 use crate::{Blend, Bounds, Norm, ParamError, Solid, SolidError};
+use rvachev_field::Op;
+use rvachev_field::{AnyField, AnyWarp, Placement, Rule};
+use rvachev_num::column_times;
 
 /// A solid's programs.
 pub(crate) struct Compiled {
@@ -340,7 +340,8 @@ impl Compiler {
                 let risen = self.risen(site, [first * beyond, second * beyond]);
                 Ok(self.code.ricci(operation, p, [first, second], frame, pair, risen))
             }
-            Blend::Fillet { .. } | Blend::Chamfer { .. } => {
+            // The others shape the edge: fillets and chamfers.
+            _ => {
                 // A ball is measured in lengths, a face across the edge by the slopes there.
                 let chamfer = matches!(blend, Blend::Chamfer { .. });
                 let [a, b] = if chamfer { operands } else { lengths };

@@ -7,10 +7,10 @@ use std::sync::OnceLock;
 use glam::{DAffine3, DVec3};
 
 use super::{Evaluator, Gradients, Program, Tape};
+use crate::{Bounds, Dual, Interval, ParamError};
 use rvachev_field::{AnyField, Chunk, Placement, Way, Zone};
 use rvachev_num::kernel::CHUNK;
 use rvachev_num::symbol::Symbol;
-use crate::{Bounds, Dual, Interval, ParamError};
 
 #[derive(Debug)]
 pub(super) struct Composite {

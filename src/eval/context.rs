@@ -12,9 +12,9 @@ use std::sync::Arc;
 use glam::{DAffine3, DMat3};
 
 use super::scene::{Frame, Scene};
-use rvachev_field::{AnyField, AnyWarp, Distance, smallest_stretch};
 use crate::solid::{Length, Node, Operation};
 use crate::{Blend, Solid};
+use rvachev_field::{AnyField, AnyWarp, Distance, smallest_stretch};
 
 /// What is above a node.
 #[derive(Clone, Copy)]

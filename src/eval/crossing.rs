@@ -11,10 +11,10 @@
 //!     | .-'   -     |
 //! ```
 
-use super::point::Number;
 use super::program::{Kind, Program};
-use rvachev_field::Rule;
 use crate::{Bounds, Dual, Interval};
+use rvachev_field::Number;
+use rvachev_field::Rule;
 
 impl Program {
     /// A range of the slopes that leaves have where they change their signs, along rays in a box

@@ -4,8 +4,8 @@ use fidget::context::Tree;
 
 use super::compiled;
 use super::program::Kind;
-use rvachev_num::symbol::Arena;
 use crate::{Solid, SolidError};
+use rvachev_num::symbol::Arena;
 
 impl Solid {
     /// The field as a fidget tree, with fidget's sign: negative inside.

@@ -45,5 +45,5 @@ pub(crate) use rvachev_field::BOXES as BOXES_AT_ONCE;
 pub(crate) use bend::Bend;
 pub(crate) use compile::{Compiled, compiled};
 pub(crate) use parting::Parting;
-pub(crate) use rvachev_field::Op;
 pub(crate) use ray::{Care, first_hit};
+pub(crate) use rvachev_field::Op;

@@ -11,8 +11,8 @@ use std::sync::Arc;
 use super::pass::{Asked, Pass, Sign};
 use super::program::{Edge, Kind, Node, Program, Region};
 use super::scene::Instance;
-use rvachev_field::{AnyField, Pieces, Zone};
 use crate::{Bounds, Interval};
+use rvachev_field::{AnyField, Pieces, Zone};
 
 /// What a region holds of a solid, and the program for it if that is another.
 pub(crate) enum Narrowed {

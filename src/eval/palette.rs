@@ -10,10 +10,10 @@ use glam::{DVec3, Vec3};
 
 use super::compiled;
 use super::program::{Kind, Program};
-use rvachev_field::Op;
-use rvachev_field::Rule;
 use crate::geom::{to_byte, to_linear};
 use crate::{Dual, Paint, Solid, SolidError};
+use rvachev_field::Op;
+use rvachev_field::Rule;
 
 /// The paint of a solid's parts.
 ///

@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use super::narrow::{hull_of, joined};
 use super::program::{Edge, Kind, Node, Program};
-use rvachev_field::Op;
 use super::scene::Instance;
-use rvachev_field::{Pieces, Rule, Zone};
 use crate::{Bounds, Interval};
+use rvachev_field::Op;
+use rvachev_field::{Pieces, Rule, Zone};
 
 /// What is known of a node over a region.
 #[derive(Clone, Copy)]

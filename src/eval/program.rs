@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::edge::EdgeBlend;
 use super::hierarchy::Hierarchy;
 use super::scene::{Instance, Scene};
-use rvachev_field::{Op, Rule};
 use crate::solid::Operation;
+use rvachev_field::{Op, Rule};
 
 /// A reference to a node's value, or to its negative.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]

@@ -8,8 +8,8 @@
 use glam::DVec3;
 
 use super::{Program, Region};
-use rvachev_field::Zone;
 use crate::{Bounds, Dual, Interval};
+use rvachev_field::Zone;
 
 /// Where a ray meets the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,8 +8,8 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DAffine3, DQuat, DVec3};
 
-use rvachev_field::{AnyWarp, Cells, Comb, Sectors};
 use crate::{Bounds, RFunction, Solid};
+use rvachev_field::{AnyWarp, Cells, Comb, Sectors};
 
 /// More folds than this along one axis are not worth it: the copies overlap so much that each
 /// is made on its own.

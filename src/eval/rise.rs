@@ -15,8 +15,8 @@ use glam::DVec3;
 use super::edge::EdgeBlend;
 use super::program::{Kind, Program};
 use super::scene::Instance;
-use rvachev_field::{AnyWarp, Pieces, Placement, Rule, Way, Zone, largest_stretch, steepest};
 use crate::{Bounds, Dual, Interval};
+use rvachev_field::{AnyWarp, Pieces, Placement, Rule, Way, Zone, largest_stretch, steepest};
 
 /// A leaf, and whether its complement counts.
 #[derive(Clone, Copy)]

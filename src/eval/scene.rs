@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
-use rvachev_field::{AnyField, AnyWarp, Placement, Zone};
 use crate::solid::Trail;
 use crate::{Bounds, Interval};
+use rvachev_field::{AnyField, AnyWarp, Placement, Zone};
 
 /// Leaves and frames of a compiled solid.
 ///

@@ -1,8 +1,8 @@
 //! Boxes around what is inside and what is outside.
 
 use super::program::{Kind, Program};
-use rvachev_field::Op;
 use crate::Bounds;
+use rvachev_field::Op;
 use rvachev_field::Rule;
 
 /// A box that holds what is inside, and one that holds what is outside.

@@ -14,10 +14,12 @@ use glam::{DAffine3, DVec3};
 use self::rivals::Rivals;
 use self::seen::Seen;
 use super::program::Program;
-use rvachev_field::Op;
 use super::register::{Step, schedule};
 use crate::Bounds;
-use rvachev_field::{AnyField, AnyWarp, COORDINATE_LIMIT, Chunk, Joinable, Placement, Rule, VALUE_LIMIT, Zone, product, pull};
+use rvachev_field::Op;
+use rvachev_field::{
+    AnyField, AnyWarp, COORDINATE_LIMIT, Chunk, Joinable, Placement, Rule, VALUE_LIMIT, Zone, product, pull,
+};
 use rvachev_num::kernel::{CHUNK, Element};
 
 /// A program ready for bulk evaluation over a region: immutable, shared between threads;

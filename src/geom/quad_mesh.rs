@@ -18,9 +18,9 @@ use super::{Mesh, MeshError};
 /// A mesh of quadrilaterals and triangles, in double precision.
 ///
 /// ```
-/// use rvachev::{PatchSettings, Superellipsoid};
+/// use rvachev::{ParametricSurface, PatchSettings, Superellipsoid};
 ///
-/// let surface = Superellipsoid::new([3.0, 2.0, 1.0], 0.5, 0.5).surface()?;
+/// let surface = ParametricSurface::of(&Superellipsoid::new([3.0, 2.0, 1.0], 0.5, 0.5))?;
 /// let quads = surface.quad_mesh(&PatchSettings { rows: 8, columns: 16, ..PatchSettings::default() })?;
 /// // Two rows of triangles at the poles, quadrilaterals between.
 /// assert_eq!((quads.quads().len(), quads.triangles().len()), (6 * 16, 2 * 16));

@@ -27,9 +27,9 @@ use glam::{DMat3, DVec3};
 use self::fans::{Fans, repeats};
 use self::lists::{mapped, sorted};
 use self::overlap::Overlaps;
-use rvachev_num::Bounds;
 use crate::geom::Mesh;
 use crate::{Cancelled, Run};
+use rvachev_num::Bounds;
 
 /// The findings of [`Mesh::check`].
 ///

@@ -46,9 +46,9 @@ use super::lattice::Lattice;
 use super::loops::ambiguous_faces;
 use super::signs::{EdgeRef, NODES, Rows, Signs, for_each_cell, list_edges};
 use super::table::CaseTable;
-use rvachev_num::Bounds;
 use crate::geom::{Mesh, MeshError};
 use crate::{Cancelled, Run};
+use rvachev_num::Bounds;
 use rvachev_num::Meter;
 
 mod bulge;

@@ -8,8 +8,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::eval::{Palette, compiled};
-use rvachev_num::Meter;
 use crate::{Cancelled, Mesh, Paint, Run, Solid, SolidError};
+use rvachev_num::Meter;
 
 impl Mesh {
     /// The same mesh with the [paint](Solid::paint) of the solid that it was made from: an owner

@@ -21,8 +21,8 @@ use super::sampler::{Scratch, SolidSampler};
 use super::signs::{BLOCK, NODES, SIDE, Signs};
 use crate::eval::{Compiled, Narrowed, Program};
 use crate::geom::LateCount;
-use rvachev_num::Meter;
 use crate::{Bounds, Cancelled, Interval, Run};
+use rvachev_num::Meter;
 
 /// The cells of a block that the surface may come into and turn round in.
 pub(super) struct Unresolved {

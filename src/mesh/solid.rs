@@ -11,9 +11,9 @@ use super::refine::{Job, refined};
 use super::resolve::late_count;
 use super::settings::{AtBounds, Features, MeshSettings};
 use crate::eval::compiled;
-use rvachev_field::check::{LARGEST_LENGTH, SMALLEST_LENGTH};
 use crate::geom::{LateCount, Mesh};
 use crate::{Bounds, Cancelled, Paint, RFunction, Run, Solid, SolidError};
+use rvachev_field::check::{LARGEST_LENGTH, SMALLEST_LENGTH};
 
 /// Why there is no mesh.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

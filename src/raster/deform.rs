@@ -20,8 +20,8 @@
 use glam::{DAffine3, DVec3, Vec3};
 
 use super::error::RasterError;
-use rvachev_field::{AnyWarp, Bend, Taper, Twist};
 use crate::{Mesh, ParamError};
+use rvachev_field::{AnyWarp, Bend, Erase, Taper, Twist};
 
 impl Mesh {
     /// The mesh moved by an affine map, with all that it carries. A map that mirrors turns the
@@ -29,9 +29,9 @@ impl Mesh {
     ///
     /// ```
     /// use glam::{DAffine3, DVec3};
-    /// use rvachev::{PatchSettings, Superellipsoid};
+    /// use rvachev::{ParametricSurface, PatchSettings, Superellipsoid};
     ///
-    /// let mesh = Superellipsoid::new([1.0, 1.0, 1.0], 1.0, 1.0).surface()?.mesh(&PatchSettings::default())?;
+    /// let mesh = ParametricSurface::of(&Superellipsoid::new([1.0, 1.0, 1.0], 1.0, 1.0))?.mesh(&PatchSettings::default())?;
     /// let flipped = mesh.affine(DAffine3::from_scale(DVec3::new(-2.0, 1.0, 1.0)))?;
     /// assert!((flipped.volume() / mesh.volume() - 2.0).abs() < 1e-6);
     /// assert!(flipped.corner_texture().is_some());
@@ -54,9 +54,9 @@ impl Mesh {
     /// The mesh tapered along z, with the parameters of [`Solid::taper`](crate::Solid::taper).
     ///
     /// ```
-    /// use rvachev::{ClosedMesh, PatchSettings, Superellipsoid};
+    /// use rvachev::{ParametricSurface, ClosedMesh, PatchSettings, Superellipsoid};
     ///
-    /// let bar = Superellipsoid::new([0.5, 0.5, 2.0], 0.3, 0.3).surface()?.mesh(&PatchSettings::default())?;
+    /// let bar = ParametricSurface::of(&Superellipsoid::new([0.5, 0.5, 2.0], 0.3, 0.3))?.mesh(&PatchSettings::default())?;
     /// let bent = bar.taper(0.4, 0.4, 2.0)?.twist(0.6)?.bend(0.3, 0.0)?;
     /// ClosedMesh::new(&bent)?;
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -66,7 +66,7 @@ impl Mesh {
     ///
     /// [`RasterError::Parameter`] for a parameter that a solid of this size would not take.
     pub fn taper(&self, kx: f64, ky: f64, half_height: f64) -> Result<Mesh, RasterError> {
-        deformed(self, &Taper { kx, ky, half_height }, |p, n| {
+        deformed(self, &*Taper { kx, ky, half_height }.erase(), |p, n| {
             let t = (p.z / half_height).clamp(-1.0, 1.0);
             let (sx, sy) = (1.0 + kx * t, 1.0 + ky * t);
             let across = DVec3::new(n.x / sx, n.y / sy, 0.0);
@@ -84,7 +84,7 @@ impl Mesh {
     ///
     /// [`RasterError::Parameter`].
     pub fn twist(&self, rate: f64) -> Result<Mesh, RasterError> {
-        deformed(self, &Twist { rate }, |p, n| {
+        deformed(self, &*Twist { rate }.erase(), |p, n| {
             let (sin, cos) = (rate * p.z).sin_cos();
             let turned = |v: DVec3| DVec3::new(v.x * cos - v.y * sin, v.x * sin + v.y * cos, v.z);
             (turned(p), turned(n) - DVec3::Z * (rate * (p.x * n.y - p.y * n.x)))
@@ -100,7 +100,7 @@ impl Mesh {
         let k = curvature;
         let (sin_angle, cos_angle) = angle.sin_cos();
         let along = DVec3::new(cos_angle, sin_angle, 0.0);
-        deformed(self, &Bend { curvature, angle }, |p, n| {
+        deformed(self, &*Bend { curvature, angle }.erase(), |p, n| {
             let r = p.dot(along);
             let left = 1.0 - k * r;
             let (sin, cos) = (k * p.z).sin_cos();

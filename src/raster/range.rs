@@ -11,11 +11,11 @@ impl Buffers {
     ///
     /// ```
     /// use glam::DVec3;
-    /// use rvachev::{
+    /// use rvachev::{ParametricSurface,
     ///     Buffers, Camera, ClosedMesh, Coordinates, Facing, Noise, PatchSettings, RasterView, Superellipsoid,
     /// };
     ///
-    /// let mesh = Superellipsoid::new([1.0, 1.0, 1.0], 1.0, 1.0).surface()?.mesh(&PatchSettings::default())?;
+    /// let mesh = ParametricSurface::of(&Superellipsoid::new([1.0, 1.0, 1.0], 1.0, 1.0))?.mesh(&PatchSettings::default())?;
     /// let camera = Camera::perspective([3.0, -4.0, 2.0], DVec3::ZERO, DVec3::Z, 30.0);
     /// let view = RasterView::new(&camera, 64, 48)?;
     /// let mut buffers = Buffers::new(&view);

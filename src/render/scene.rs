@@ -14,8 +14,8 @@ use super::pixels::TILE;
 use super::settings::RenderError;
 use super::tile::{Tracer, View, divide_top};
 use crate::eval::{Program, compiled};
-use rvachev_num::Meter;
 use crate::{Bounds, Cancelled, Hit, Palette, Rays, Run, Solid};
+use rvachev_num::Meter;
 
 /// How far a ray from a hit starts off the surface, in proportion to the solid.
 const HAIR: f64 = 1e-7;

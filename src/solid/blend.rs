@@ -91,13 +91,7 @@ pub(super) fn node(operation: Operation, operands: [Solid; 2], blend: Blend) -> 
 
 /// What errors call a blended operation.
 pub(super) fn name(blend: &Blend, operation: Operation) -> &'static str {
-    let names = match blend {
-        Blend::Smooth { .. } => ["smooth union", "smooth intersection", "smooth difference"],
-        Blend::Fillet { .. } => ["filleted union", "filleted intersection", "filleted difference"],
-        Blend::Chamfer { .. } => ["chamfered union", "chamfered intersection", "chamfered difference"],
-        Blend::Displacement { .. } => ["displaced union", "displaced intersection", "displaced difference"],
-        Blend::Ricci { .. } => ["Ricci union", "Ricci intersection", "Ricci difference"],
-    };
+    let names = blend.names();
     match operation {
         Operation::Union => names[0],
         Operation::Intersection | Operation::SymmetricDifference => names[1],

@@ -5,6 +5,8 @@ use std::sync::Arc;
 use fidget::context::Tree;
 use glam::DVec3;
 
+use rvachev_field::{AnyField, Erase};
+
 use super::{Node, Solid};
 use crate::{
     Bounds, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Field, Formula, GeneralisedSuperquadric, HalfSpace,
@@ -121,35 +123,44 @@ impl Solid {
     }
 }
 
-impl From<Formula> for Solid {
-    fn from(formula: Formula) -> Solid {
-        Solid::from_node(Node::Leaf(Arc::new(formula)))
+impl Solid {
+    /// A built-in leaf as a solid.
+    pub(crate) fn leaf(leaf: impl Erase<dyn AnyField>) -> Solid {
+        Solid::from_node(Node::Leaf(leaf.erase()))
     }
 }
 
-/// The built-in leaves as solids. Their kernels are compiled here once and not, as those of
-/// users' own leaves, where the solid is made.
+/// The built-in leaves as solids.
 macro_rules! leaves {
     ($($leaf:ty),* $(,)?) => {$(
         impl From<$leaf> for Solid {
-            #[inline(never)]
             fn from(leaf: $leaf) -> Solid {
-                Solid::new(leaf)
+                Solid::leaf(leaf)
             }
         }
     )*};
 }
 
 leaves!(
+    Capsule,
+    Cone,
     Cuboid,
     Cylinder,
+    Ellipsoid,
+    Formula,
     GeneralisedSuperquadric,
     HalfSpace,
+    NetworkLattice,
+    Prism,
+    Pyramid,
+    RoundedCuboid,
+    SheetLattice,
+    Slab,
     Sphere,
     Superellipsoid,
     Superhyperboloid,
     Supershape,
-    Supertoroid
+    Supertoroid,
+    Torus,
+    Wedge,
 );
-leaves!(Capsule, Cone, Ellipsoid, Prism, Pyramid, RoundedCuboid, Slab, Torus, Wedge);
-leaves!(NetworkLattice, SheetLattice);

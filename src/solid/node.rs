@@ -6,8 +6,8 @@ use std::sync::{Arc, OnceLock};
 use glam::DAffine3;
 
 use super::Paint;
-use rvachev_field::{AnyField, AnyWarp, check};
 use crate::{Blend, ParamError, RFunction};
+use rvachev_field::{AnyField, AnyWarp, check};
 
 /// A solid: an immutable expression graph of leaves, maps and joins.
 ///

@@ -289,7 +289,7 @@ macro_rules! plane_leaves {
         impl From<$leaf> for Profile {
             #[inline(never)]
             fn from(leaf: $leaf) -> Profile {
-                Profile(Solid::new(leaf))
+                Profile(Solid::leaf(leaf))
             }
         }
     )*};

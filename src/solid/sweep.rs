@@ -2,11 +2,10 @@
 
 use std::any::Any;
 use std::f64::consts::TAU;
-use std::sync::Arc;
 
 use super::{Node, Profile, Solid};
-use rvachev_field::{AnyWarp, HelixWarp, Opening, Revolution, Span, Turn, check};
 use crate::{Blend, ParamError, Polygon, RFunction};
+use rvachev_field::{HelixWarp, Opening, Revolution, Span, Turn, check};
 
 /// How the edges of an end face are.
 ///
@@ -200,7 +199,7 @@ impl Profile {
         let half_height = 0.5 * height;
         let error = extrusion.check().err();
         let caps = if error.is_some() { Caps::Flat } else { caps };
-        let slab = Solid::new(Span { verb: "extrude", half_height, error });
+        let slab = Solid::leaf(Span { verb: "extrude", half_height, error });
         let mut column = self.0.clone();
         if scale != 1.0 {
             // A taper is 1 in the middle; the lower end is to be the profile.
@@ -243,8 +242,8 @@ impl Profile {
             _ => None,
         };
         match across {
-            Some(polygon) => warped(&Profile::from(polygon).0, Revolution),
-            None => warped(&self.0, Revolution),
+            Some(polygon) => Profile::from(polygon).0.warp(Revolution),
+            None => self.0.warp(Revolution),
         }
     }
 
@@ -271,7 +270,7 @@ impl Profile {
         if angle == TAU {
             return self.revolve();
         }
-        Solid::new(Opening { angle }).intersection(self.revolve(), RFunction::MIN_MAX)
+        Solid::leaf(Opening { angle }).intersection(self.revolve(), RFunction::MIN_MAX)
     }
 
     /// Swept along a helix about the z axis: a thread, a spring.
@@ -313,7 +312,7 @@ impl Profile {
         let half_height = 0.5 * pitch * turns * stretch;
         let error = helix.check().err();
         let ends = if error.is_some() { Caps::Flat } else { ends };
-        let slab = Solid::new(Span { verb: "sweep_helix", half_height, error });
+        let slab = Solid::leaf(Span { verb: "sweep_helix", half_height, error });
         let straight = ends.cut(&self.0, &slab);
         // What is wrong with the profile is said when the solid is used.
         let (middle, height) = match self.bounds() {
@@ -322,14 +321,10 @@ impl Profile {
             }
             _ => (0.0, 0.0),
         };
-        let seen_from = |turn| warped(&straight, HelixWarp::new(radius, pitch, left_handed, middle, stretch, turn));
+        let seen_from = |turn| straight.warp(HelixWarp::new(radius, pitch, left_handed, middle, stretch, turn));
         if height <= 0.5 * pitch {
             return seen_from(Turn::Nearest);
         }
         Solid::union_all([Turn::Nearest, Turn::Above, Turn::Below].map(seen_from), RFunction::MIN_MAX)
     }
-}
-
-fn warped(operand: &Solid, warp: impl AnyWarp + 'static) -> Solid {
-    Solid::from_node(Node::Warp { operand: operand.clone(), warp: Arc::new(warp) })
 }

@@ -1,12 +1,10 @@
 //! Maps: affine ones, taper, twist and bend. (Those by laws are in `deform`, reflections in `mirror`,
 //! repetition, which asks for boxes, in `eval`.)
 
-use std::sync::Arc;
-
 use glam::{DAffine3, DQuat, DVec3};
 
 use super::{Node, Solid};
-use rvachev_field::{Bend, Taper, Twist};
+use rvachev_field::{AnyWarp, Bend, Erase, Taper, Twist};
 
 impl Solid {
     pub(crate) fn affine_as(&self, label: &'static str, forward: DAffine3) -> Solid {
@@ -202,7 +200,7 @@ impl Solid {
         self.warp(Bend { curvature, angle })
     }
 
-    pub(crate) fn warp(&self, warp: impl rvachev_field::AnyWarp + 'static) -> Solid {
-        Solid::from_node(Node::Warp { operand: self.clone(), warp: Arc::new(warp) })
+    pub(crate) fn warp(&self, warp: impl Erase<dyn AnyWarp>) -> Solid {
+        Solid::from_node(Node::Warp { operand: self.clone(), warp: warp.erase() })
     }
 }

@@ -9,8 +9,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::eval::{Narrowed, Program};
-use rvachev_num::Meter;
 use crate::{Bounds, Cancelled, Run};
+use rvachev_num::Meter;
 
 /// A regular grid of cubic blocks.
 #[derive(Clone, Copy, Debug)]

@@ -19,8 +19,8 @@ use std::f64::consts::PI;
 
 use glam::DVec2;
 
-use rvachev_field::angle::{sign, signed_power, sin_cos};
 use crate::{Dual, Gielis, Norm, Radius, Real, Turns};
+use rvachev_field::angle::{sign, signed_power, sin_cos};
 
 /// A curve of unit size.
 #[derive(Clone, Copy, Debug, PartialEq)]

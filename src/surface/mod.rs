@@ -6,7 +6,6 @@
 //! | [`ParametricCurve`] | the same of plane curves |
 //! | [`PatchSettings`] | its meshes: closed and manifold by construction |
 //! | [`ParametricSurface::sample`] | points uniform by area |
-//! | [`PointMethod`] | Franklin and Barr's six methods for points of superquadrics |
 //! | [`ControlPolygon`], [`SubdivisionRevolution`], [`ControlGrid`] | subdivision |
 
 mod adaptive;
@@ -20,7 +19,7 @@ mod spacing;
 mod stitch;
 mod subdivision;
 
-pub use parametric::{Frame, ParametricSurface};
+pub use parametric::{Frame, Parametric, ParametricSurface};
 pub use parametric_curve::ParametricCurve;
 pub use patch::{PatchError, PatchSettings, Spacing};
 pub use sampling::SurfacePoint;

@@ -22,11 +22,11 @@ use crate::{Field, ParamError, Superellipsoid, Superhyperboloid, Supershape, Sup
 
 /// A surface by two parameters: η along its meridians, ω about its axis.
 ///
-/// | of | η | ω | made by |
+/// | of | η | ω | of the leaf |
 /// |---|---|---|---|
-/// | superellipsoid, supershape | −π/2 to π/2, pole to pole | −π to π | [`Superellipsoid::surface`], [`Supershape::surface`] |
-/// | supertoroid | −π to π around the tube | −π to π | [`Supertoroid::surface`] |
-/// | hyperboloid of one sheet | between the clipped ends | −π to π | [`Superhyperboloid::surface`] |
+/// | superellipsoid, supershape | −π/2 to π/2, pole to pole | −π to π | [`Superellipsoid`], [`Supershape`] |
+/// | supertoroid | −π to π around the tube | −π to π | [`Supertoroid`] |
+/// | hyperboloid of one sheet | between the clipped ends | −π to π | [`Superhyperboloid`] |
 /// | of two sheets, z | 0 (apex) to the clipped end | −π to π | the same, one sheet at a time |
 /// | of two sheets, x | `x = ±a₁·sec^e₁ η·sec^e₂ ω`, within the clipped end | | the same |
 ///
@@ -38,9 +38,9 @@ use crate::{Field, ParamError, Superellipsoid, Superhyperboloid, Supershape, Sup
 /// ```
 /// use std::f64::consts::{FRAC_PI_2, PI};
 /// use glam::DVec3;
-/// use rvachev::Superellipsoid;
+/// use rvachev::{ParametricSurface, Superellipsoid};
 ///
-/// let surface = Superellipsoid::new([3.0, 2.0, 1.0], 0.1, 0.1).surface()?;
+/// let surface = ParametricSurface::of(&Superellipsoid::new([3.0, 2.0, 1.0], 0.1, 0.1))?;
 /// assert_eq!(surface.point(FRAC_PI_2, 0.3), DVec3::Z);
 /// assert_eq!(surface.point(0.0, PI), DVec3::new(-3.0, 0.0, 0.0));
 /// let frame = surface.frame(0.7, 0.2);
@@ -94,6 +94,29 @@ pub struct Frame {
 impl ParametricSurface {
     fn new(meridian: Curve, equator: Curve, shape: Shape, scale: DVec3) -> ParametricSurface {
         ParametricSurface { meridian, equator, shape, scale, along_x: false, lower: false }
+    }
+
+    /// The surface of a leaf.
+    ///
+    /// ```text
+    /// superellipsoid   (a₁·cos^e₁ η·cos^e₂ ω, a₂·cos^e₁ η·sin^e₂ ω, a₃·sin^e₁ η)        signed powers
+    /// supertoroid      (a₁·(ring + cos^e₁ η)·cos^e₂ ω, a₂·(ring + cos^e₁ η)·sin^e₂ ω, a₃·sin^e₁ η)
+    /// supershape       (a₁·r₁(ω)·r₂(η)·cos ω·cos η, a₂·r₁·r₂·sin ω·cos η, a₃·r₂·sin η)
+    /// superhyperboloid
+    ///   one sheet, z   (a₁·sec^e₁ η·cos^e₂ ω, a₂·sec^e₁ η·sin^e₂ ω, a₃·tan^e₁ η)
+    ///   one sheet, x   (a₁·tan^e₁ η, a₂·sec^e₁ η·cos^e₂ ω, a₃·sec^e₁ η·sin^e₂ ω)
+    ///   two sheets, z  (a₁·tan^e₁ η·cos^e₂ ω, a₂·tan^e₁ η·sin^e₂ ω, ±a₃·sec^e₁ η)
+    ///   two sheets, x  (±a₁·sec^e₁ η·sec^e₂ ω, a₂·sec^e₁ η·tan^e₂ ω, a₃·tan^e₁ η)
+    /// ```
+    ///
+    /// Of two sheets it is the one at the positive end of the axis;
+    /// [`other_sheet`](ParametricSurface::other_sheet) is the other. A supershape has the radius,
+    /// standard or rational, that the leaf has.
+    ///
+    /// # Errors
+    /// The first parameter that is out of its range.
+    pub fn of(leaf: &impl Parametric) -> Result<ParametricSurface, ParamError> {
+        leaf.surface()
     }
 
     /// The point at (η, ω), in length units.
@@ -225,16 +248,26 @@ impl ParametricSurface {
     }
 }
 
-impl Superellipsoid {
-    /// The surface by latitude η and longitude ω.
-    ///
-    /// ```text
-    /// (a₁·cos^e₁ η·cos^e₂ ω, a₂·cos^e₁ η·sin^e₂ ω, a₃·sin^e₁ η)        signed powers
-    /// ```
-    ///
-    /// # Errors
-    /// The first parameter that is out of its range.
-    pub fn surface(&self) -> Result<ParametricSurface, ParamError> {
+/// A leaf whose surface has parameters: [`Superellipsoid`], [`Supertoroid`], [`Superhyperboloid`]
+/// and [`Supershape`].
+pub trait Parametric: sealed::Sealed {
+    #[doc(hidden)]
+    fn surface(&self) -> Result<ParametricSurface, ParamError>;
+}
+
+mod sealed {
+    use crate::{Superellipsoid, Superhyperboloid, Supershape, Supertoroid};
+
+    pub trait Sealed {}
+
+    impl Sealed for Superellipsoid {}
+    impl Sealed for Superhyperboloid {}
+    impl Sealed for Supershape {}
+    impl Sealed for Supertoroid {}
+}
+
+impl Parametric for Superellipsoid {
+    fn surface(&self) -> Result<ParametricSurface, ParamError> {
         self.check()?;
         let [e1, e2] = self.exponents();
         let curve = |e: f64| Curve::Superellipse { e, ring: 0.0 };
@@ -242,16 +275,8 @@ impl Superellipsoid {
     }
 }
 
-impl Supertoroid {
-    /// The surface by the angles η around the tube and ω around the ring.
-    ///
-    /// ```text
-    /// (a₁·(ring + cos^e₁ η)·cos^e₂ ω, a₂·(ring + cos^e₁ η)·sin^e₂ ω, a₃·sin^e₁ η)
-    /// ```
-    ///
-    /// # Errors
-    /// The first parameter that is out of its range.
-    pub fn surface(&self) -> Result<ParametricSurface, ParamError> {
+impl Parametric for Supertoroid {
+    fn surface(&self) -> Result<ParametricSurface, ParamError> {
         self.check()?;
         let [e1, e2] = self.exponents();
         let (tube, ring) = (Curve::Superellipse { e: e1, ring: self.ring() }, Curve::Superellipse { e: e2, ring: 0.0 });
@@ -260,20 +285,8 @@ impl Supertoroid {
     }
 }
 
-impl Superhyperboloid {
-    /// The surface; of two sheets, the one at the positive end of the axis
-    /// ([`ParametricSurface::other_sheet`] is the other).
-    ///
-    /// ```text
-    /// one sheet, z     (a₁·sec^e₁ η·cos^e₂ ω, a₂·sec^e₁ η·sin^e₂ ω, a₃·tan^e₁ η)
-    /// one sheet, x     (a₁·tan^e₁ η, a₂·sec^e₁ η·cos^e₂ ω, a₃·sec^e₁ η·sin^e₂ ω)
-    /// two sheets, z    (a₁·tan^e₁ η·cos^e₂ ω, a₂·tan^e₁ η·sin^e₂ ω, ±a₃·sec^e₁ η)
-    /// two sheets, x    (±a₁·sec^e₁ η·sec^e₂ ω, a₂·sec^e₁ η·tan^e₂ ω, a₃·tan^e₁ η)
-    /// ```
-    ///
-    /// # Errors
-    /// The first parameter that is out of its range.
-    pub fn surface(&self) -> Result<ParametricSurface, ParamError> {
+impl Parametric for Superhyperboloid {
+    fn surface(&self) -> Result<ParametricSurface, ParamError> {
         self.check()?;
         let [e1, e2] = self.exponents();
         let a = self.semi_axes();
@@ -291,16 +304,8 @@ impl Superhyperboloid {
     }
 }
 
-impl Supershape {
-    /// The surface by latitude η and longitude ω, with the standard or the rational radius.
-    ///
-    /// ```text
-    /// (a₁·r₁(ω)·r₂(η)·cos ω·cos η, a₂·r₁·r₂·sin ω·cos η, a₃·r₂·sin η)
-    /// ```
-    ///
-    /// # Errors
-    /// The first parameter that is out of its range.
-    pub fn surface(&self) -> Result<ParametricSurface, ParamError> {
+impl Parametric for Supershape {
+    fn surface(&self) -> Result<ParametricSurface, ParamError> {
         self.check()?;
         let curve = |of| Curve::gielis(of, self.radius());
         Ok(ParametricSurface::new(curve(self.meridian()), curve(self.equator()), Shape::Ball, self.scale()))

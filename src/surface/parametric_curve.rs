@@ -3,15 +3,15 @@
 use glam::DVec2;
 
 use super::curve::{By, Curve, Local};
-use rvachev_field::check;
 use crate::{Field, Gielis, ParamError, Radius, Superellipse, Superpolygon};
+use rvachev_field::check;
 
 /// A curve of the plane by a parameter t, with its exact normal.
 ///
 /// | curve | point | t |
 /// |---|---|---|
-/// | [`Superellipse::curve`] | `(a·cos^e t, b·sin^e t)`, signed powers | −π to π |
-/// | [`Gielis::curve`] | `r(t)·(cos t, sin t)` | −π to π |
+/// | [`of`](ParametricCurve::of) a superellipse | `(a·cos^e t, b·sin^e t)`, signed powers | −π to π |
+/// | [`gielis`](ParametricCurve::gielis) | `r(t)·(cos t, sin t)` | −π to π |
 /// | [`ellipse`](ParametricCurve::ellipse) | `(a·cos t, b·sin t)` | −π to π |
 /// | [`hyperbola`](ParametricCurve::hyperbola) | `(a·sec t, b·tan t)` | between its ends |
 /// | [`parabola`](ParametricCurve::parabola) | `(2f·t, f·t²)` | between its ends |
@@ -23,7 +23,7 @@ use crate::{Field, Gielis, ParamError, Radius, Superellipse, Superpolygon};
 /// use glam::DVec2;
 /// use rvachev::{ParametricCurve, Superellipse};
 ///
-/// let curve = Superellipse::new([2.0, 1.0], 0.1).curve()?;
+/// let curve = ParametricCurve::of(&Superellipse::new([2.0, 1.0], 0.1))?;
 /// assert_eq!(curve.point(FRAC_PI_2), DVec2::Y);
 /// assert_eq!(curve.normal(FRAC_PI_2), DVec2::Y);
 /// let bow = ParametricCurve::hyperbola([2.0, 1.0], 3.0)?;
@@ -38,12 +38,38 @@ pub struct ParametricCurve {
 }
 
 impl ParametricCurve {
+    /// The curve of a superellipse, by its angle.
+    ///
+    /// # Errors
+    /// The first parameter that is out of its range.
+    pub fn of(superellipse: &Superellipse) -> Result<ParametricCurve, ParamError> {
+        superellipse.check()?;
+        let curve = Curve::Superellipse { e: superellipse.exponent(), ring: 0.0 };
+        Ok(ParametricCurve { curve, scale: superellipse.semi_axes() })
+    }
+
+    /// A Gielis curve by its polar angle, of unit size; of several turns that which counts.
+    ///
+    /// # Errors
+    /// The first parameter that is out of its range.
+    pub fn gielis(curve: &Gielis, radius: Radius) -> Result<ParametricCurve, ParamError> {
+        Superpolygon::new(*curve, 1.0).check()?;
+        if radius == Radius::Rational {
+            for (parameter, value) in [("curve.a", curve.a), ("curve.b", curve.b)] {
+                if value != 1.0 {
+                    return Err(ParamError::new(parameter, value, "1 for the rational radius"));
+                }
+            }
+        }
+        Ok(ParametricCurve { curve: Curve::gielis(*curve, radius), scale: DVec2::ONE })
+    }
+
     /// The ellipse with these semi-axes.
     ///
     /// # Errors
     /// A semi-axis out of its range.
     pub fn ellipse(semi_axes: impl Into<DVec2>) -> Result<ParametricCurve, ParamError> {
-        Superellipse::new(semi_axes, 1.0).curve()
+        ParametricCurve::of(&Superellipse::new(semi_axes, 1.0))
     }
 
     /// The branch of the hyperbola `x²/a² − y²/b² = 1` at x > 0, for |y| up to `reach`.
@@ -100,35 +126,5 @@ impl ParametricCurve {
     #[must_use]
     pub fn tangent(&self, t: f64) -> DVec2 {
         self.normal(t).perp()
-    }
-}
-
-impl Superellipse {
-    /// The curve by its angle.
-    ///
-    /// # Errors
-    /// The first parameter that is out of its range.
-    pub fn curve(&self) -> Result<ParametricCurve, ParamError> {
-        self.check()?;
-        let curve = Curve::Superellipse { e: self.exponent(), ring: 0.0 };
-        Ok(ParametricCurve { curve, scale: self.semi_axes() })
-    }
-}
-
-impl Gielis {
-    /// The curve by its polar angle, of unit size; of several turns that which counts.
-    ///
-    /// # Errors
-    /// The first parameter that is out of its range.
-    pub fn curve(&self, radius: Radius) -> Result<ParametricCurve, ParamError> {
-        Superpolygon::new(*self, 1.0).check()?;
-        if radius == Radius::Rational {
-            for (parameter, value) in [("curve.a", self.a), ("curve.b", self.b)] {
-                if value != 1.0 {
-                    return Err(ParamError::new(parameter, value, "1 for the rational radius"));
-                }
-            }
-        }
-        Ok(ParametricCurve { curve: Curve::gielis(*self, radius), scale: DVec2::ONE })
     }
 }

@@ -15,10 +15,10 @@ use crate::geom::{Mesh, MeshError, QuadMesh};
 /// How a parametric surface is meshed.
 ///
 /// ```
-/// use rvachev::{PatchSettings, Spacing, Superellipsoid};
+/// use rvachev::{ParametricSurface, PatchSettings, Spacing, Superellipsoid};
 ///
 /// // A rounded box: by angles most of the triangles are at its edges, and some too long.
-/// let surface = Superellipsoid::new([1.0, 1.5, 0.7], 0.2, 0.2).surface()?;
+/// let surface = ParametricSurface::of(&Superellipsoid::new([1.0, 1.5, 0.7], 0.2, 0.2))?;
 /// let by_angle = surface.mesh(&PatchSettings::default())?;
 /// let within = surface.mesh(&PatchSettings { spacing: Spacing::Chord(0.005), ..PatchSettings::default() })?;
 /// let even = surface.mesh(&PatchSettings { spacing: Spacing::EqualArc, ..PatchSettings::default() })?;
@@ -124,9 +124,9 @@ impl ParametricSurface {
     /// columns where the shape is smooth.
     ///
     /// ```
-    /// use rvachev::{PatchSettings, Supertoroid};
+    /// use rvachev::{ParametricSurface, PatchSettings, Supertoroid};
     ///
-    /// let ring = Supertoroid::new([1.2, 0.8, 0.6], 1.5, 0.3, 0.7).surface()?;
+    /// let ring = ParametricSurface::of(&Supertoroid::new([1.2, 0.8, 0.6], 1.5, 0.3, 0.7))?;
     /// let mesh = ring.mesh(&PatchSettings { rows: 48, columns: 96, ..PatchSettings::default() })?;
     /// let report = mesh.check();
     /// assert!(report.is_closed() && report.is_manifold());

@@ -14,12 +14,12 @@ use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 
-use rvachev_field::angle::sin_cos;
 use super::curve::Curve;
 use super::parametric::ParametricSurface;
 use super::patch::PatchError;
 use super::spacing::{Chain, equal_steps};
 use super::stitch::Knot;
+use rvachev_field::angle::sin_cos;
 
 /// How the logarithm of ξ is divided between the two secants, η's first: the logarithms of their
 /// shares, and the sides of the axes that the column is on.

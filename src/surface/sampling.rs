@@ -58,10 +58,10 @@ impl ParametricSurface {
     /// the area is measured; within a cell it follows the curvature to second order.
     ///
     /// ```
-    /// use rvachev::Superellipsoid;
+    /// use rvachev::{ParametricSurface, Superellipsoid};
     ///
     /// let shape = Superellipsoid::new([1.0, 2.0, 3.0], 0.3, 0.8);
-    /// let cloud = shape.surface()?.sample(1000, 7)?;
+    /// let cloud = ParametricSurface::of(&shape)?.sample(1000, 7)?;
     /// assert_eq!(cloud.len(), 1000);
     /// for s in &cloud {
     ///     assert!((shape.gauge(s.point) - 1.0).abs() < 1e-12);

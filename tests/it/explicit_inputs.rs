@@ -114,13 +114,13 @@ fn parametric_surfaces_take_anything() {
         let radius = if chance.below(2) == 0 { Radius::Standard } else { Radius::Rational };
         let supershape = Supershape::with(gielis(&mut chance), gielis(&mut chance), axes, radius);
         for (what, surface) in [
-            ("superellipsoid", Superellipsoid::new(axes, e1, e2).surface()),
-            ("supertoroid", Supertoroid::new(axes, ring, e1, e2).surface()),
-            ("one sheet", Superhyperboloid::one_sheet(axes, e1, e2, half).surface()),
-            ("one sheet x", Superhyperboloid::one_sheet_x(axes, e1, e2, half).surface()),
-            ("two sheets", Superhyperboloid::two_sheets(axes, e1, e2, half).surface()),
-            ("two sheets x", Superhyperboloid::two_sheets_x(axes, e1, e2, half).surface()),
-            ("supershape", supershape.surface()),
+            ("superellipsoid", ParametricSurface::of(&Superellipsoid::new(axes, e1, e2))),
+            ("supertoroid", ParametricSurface::of(&Supertoroid::new(axes, ring, e1, e2))),
+            ("one sheet", ParametricSurface::of(&Superhyperboloid::one_sheet(axes, e1, e2, half))),
+            ("one sheet x", ParametricSurface::of(&Superhyperboloid::one_sheet_x(axes, e1, e2, half))),
+            ("two sheets", ParametricSurface::of(&Superhyperboloid::two_sheets(axes, e1, e2, half))),
+            ("two sheets x", ParametricSurface::of(&Superhyperboloid::two_sheets_x(axes, e1, e2, half))),
+            ("supershape", ParametricSurface::of(&supershape)),
         ] {
             let what = format!("{what} {axes:?} {e1} {e2} {ring} {half} {supershape:?}");
             match surface {
@@ -138,12 +138,12 @@ fn curves_take_anything() {
         let [a, b, c, n1, n2, n3] = chance.numbers();
         let gielis = Gielis::new(c, n1, n2, n3);
         for curve in [
-            Superellipse::new([a, b], c).curve(),
+            ParametricCurve::of(&Superellipse::new([a, b], c)),
             ParametricCurve::ellipse([a, b]),
             ParametricCurve::hyperbola([a, b], c),
             ParametricCurve::parabola(a, b),
-            gielis.curve(Radius::Standard),
-            gielis.curve(Radius::Rational),
+            ParametricCurve::gielis(&gielis, Radius::Standard),
+            ParametricCurve::gielis(&gielis, Radius::Rational),
         ] {
             let Ok(curve) = curve else { continue };
             let [first, last] = curve.range();
@@ -310,7 +310,10 @@ fn subdivision_takes_anything() {
 }
 
 fn block() -> Mesh {
-    Superellipsoid::new([1.0, 0.8, 0.6], 0.5, 0.5).surface().unwrap().mesh(&PatchSettings::default()).unwrap()
+    ParametricSurface::of(&Superellipsoid::new([1.0, 0.8, 0.6], 0.5, 0.5))
+        .unwrap()
+        .mesh(&PatchSettings::default())
+        .unwrap()
 }
 
 #[test]

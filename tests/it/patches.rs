@@ -33,11 +33,11 @@ fn cases() -> Vec<Case> {
     let mut cases = vec![];
     for e in [[1.0, 1.0], [0.04, 0.04], [0.3, 1.5], [2.0, 2.0], [2.0, 0.1], [1.5, 2.5], [3.0, 0.5], [0.01, 1.0]] {
         let shape = Superellipsoid::new([1.0, 2.0, 3.0], e[0], e[1]);
-        cases.push(case(shape, shape.surface().unwrap(), 1, 0));
+        cases.push(case(shape, ParametricSurface::of(&shape).unwrap(), 1, 0));
     }
     for (ring, e1, e2) in [(1.5, 0.3, 0.7), (3.0, 1.0, 1.0), (2.0, 2.0, 0.1)] {
         let shape = Supertoroid::new([1.2, 0.8, 0.6], ring, e1, e2);
-        cases.push(case(shape, shape.surface().unwrap(), 1, 1));
+        cases.push(case(shape, ParametricSurface::of(&shape).unwrap(), 1, 1));
     }
     for e in [[0.4, 1.3], [1.0, 1.0], [0.05, 0.05], [2.0, 1.8]] {
         let a = [1.2, 0.8, 0.6];
@@ -48,7 +48,7 @@ fn cases() -> Vec<Case> {
             Superhyperboloid::two_sheets_x(a, e[0], e[1], 3.0),
         ] {
             let shells = if shape.has_two_sheets() { 2 } else { 1 };
-            cases.push(case(shape, shape.surface().unwrap(), shells, 0));
+            cases.push(case(shape, ParametricSurface::of(&shape).unwrap(), shells, 0));
         }
     }
     let (five, six) = (Gielis::new(5.0, 3.0, 2.0, 8.0), Gielis::new(6.0, 2.0, 7.0, 7.0));
@@ -57,10 +57,10 @@ fn cases() -> Vec<Case> {
         [(six, Gielis::new(4.0, 10.0, 10.0, 10.0)), (five, Gielis::new(3.0, 4.0, 4.0, 4.0)), (star, Gielis::circle())]
     {
         let shape = Supershape::with(equator, meridian, [1.0, 1.5, 0.8], Radius::Standard);
-        cases.push(case(shape.clone(), shape.surface().unwrap(), 1, 0));
+        cases.push(case(shape.clone(), ParametricSurface::of(&shape).unwrap(), 1, 0));
     }
     let rational = Supershape::with(six, Gielis::new(4.0, 4.0, 4.0, 4.0), [1.0, 1.5, 0.8], Radius::Rational);
-    cases.push(case(rational.clone(), rational.surface().unwrap(), 1, 0));
+    cases.push(case(rational.clone(), ParametricSurface::of(&rational).unwrap(), 1, 0));
     cases
 }
 
@@ -121,7 +121,7 @@ fn normals_are_gradients() {
 #[test]
 fn poles_and_seams_are_exact() {
     for e in [0.01, 0.1, 1.0, 2.0, 10.0] {
-        let surface = Superellipsoid::new([3.0, 2.0, 1.0], e, e).surface().unwrap();
+        let surface = ParametricSurface::of(&Superellipsoid::new([3.0, 2.0, 1.0], e, e)).unwrap();
         for omega in [0.1, PI, -2.0] {
             assert_eq!(surface.point(FRAC_PI_2, omega), DVec3::Z);
             assert_eq!(surface.point(-FRAC_PI_2, omega), DVec3::NEG_Z);
@@ -132,11 +132,11 @@ fn poles_and_seams_are_exact() {
         assert_eq!(surface.point(0.0, FRAC_PI_2), DVec3::new(0.0, 2.0, 0.0));
         assert_eq!(surface.normal(0.0, FRAC_PI_2), DVec3::Y);
     }
-    let ring = Supertoroid::new([1.2, 0.8, 0.6], 1.5, 0.01, 0.01).surface().unwrap();
+    let ring = ParametricSurface::of(&Supertoroid::new([1.2, 0.8, 0.6], 1.5, 0.01, 0.01)).unwrap();
     assert_eq!(ring.point(PI, FRAC_PI_2), DVec3::new(0.0, 0.4, 0.0));
     let shape = Supershape::new(Gielis::new(6.0, 2.0, 0.5, 7.0), Gielis::new(4.0, 10.0, 10.0, 10.0));
-    assert_eq!(shape.surface().unwrap().point(0.0, PI).y, 0.0);
-    assert_eq!(shape.surface().unwrap().point(FRAC_PI_2, 1.0), DVec3::Z);
+    assert_eq!(ParametricSurface::of(&shape).unwrap().point(0.0, PI).y, 0.0);
+    assert_eq!(ParametricSurface::of(&shape).unwrap().point(FRAC_PI_2, 1.0), DVec3::Z);
 }
 
 fn mesh_of(surface: &ParametricSurface, settings: &PatchSettings) -> Mesh {
@@ -167,7 +167,7 @@ fn meshes_are_closed_and_manifold() {
 #[test]
 fn meshes_carry_texture_and_normals_of_creases() {
     let settings = PatchSettings { rows: 8, columns: 12, ..PatchSettings::default() };
-    let smooth = mesh_of(&Superellipsoid::new([1.0, 2.0, 3.0], 0.5, 0.5).surface().unwrap(), &settings);
+    let smooth = mesh_of(&ParametricSurface::of(&Superellipsoid::new([1.0, 2.0, 3.0], 0.5, 0.5)).unwrap(), &settings);
     assert!(smooth.corner_normals().is_none());
     assert_eq!(smooth.corner_texture().unwrap().len(), smooth.triangles().len());
     // Both sides of the seam: 0 and 1 along the equator, never across.
@@ -177,7 +177,7 @@ fn meshes_carry_texture_and_normals_of_creases() {
     }
     // An octahedron: every corner has its face's normal.
     for spacing in [Spacing::UniformAngle, Spacing::Chord(0.01)] {
-        let surface = Superellipsoid::new([1.0, 1.0, 1.0], 2.0, 2.0).surface().unwrap();
+        let surface = ParametricSurface::of(&Superellipsoid::new([1.0, 1.0, 1.0], 2.0, 2.0)).unwrap();
         let mesh = mesh_of(&surface, &PatchSettings { spacing, ..settings });
         for (t, normals) in mesh.triangles().iter().zip(mesh.corner_normals().unwrap()) {
             let [a, b, c] = t.map(|i| mesh.positions()[i as usize]);
@@ -189,7 +189,7 @@ fn meshes_carry_texture_and_normals_of_creases() {
 
 #[test]
 fn a_horn_is_closed_where_it_touches_the_axis() {
-    let horn = Supertoroid::new([1.0, 1.0, 1.0], 1.0, 1.0, 1.0).surface().unwrap();
+    let horn = ParametricSurface::of(&Supertoroid::new([1.0, 1.0, 1.0], 1.0, 1.0, 1.0)).unwrap();
     let report = mesh_of(&horn, &PatchSettings { rows: 64, columns: 128, ..PatchSettings::default() }).check();
     assert!(report.is_closed() && report.is_manifold(), "{report:?}");
     assert!((report.volume / (2.0 * PI * PI) - 1.0).abs() < 5e-3);
@@ -201,9 +201,9 @@ fn volumes_converge_at_second_order() {
     let cushion = Superellipsoid::new([1.0, 2.0, 3.0], 0.3, 0.8);
     let ring = Supertoroid::new([1.2, 0.8, 0.6], 1.5, 0.3, 0.7);
     let cases = [
-        (ellipsoid.surface().unwrap(), 25.132_741_228_718),
-        (cushion.surface().unwrap(), 38.359_362_386_288),
-        (ring.surface().unwrap(), 23.439_946_622_042),
+        (ParametricSurface::of(&ellipsoid).unwrap(), 25.132_741_228_718),
+        (ParametricSurface::of(&cushion).unwrap(), 38.359_362_386_288),
+        (ParametricSurface::of(&ring).unwrap(), 23.439_946_622_042),
     ];
     for (surface, exact) in cases {
         let error = |n: u32| {
@@ -220,9 +220,9 @@ fn volumes_converge_at_second_order() {
 fn volumes_and_moments_are_those_of_the_closed_forms() {
     let even = PatchSettings { rows: 256, columns: 256, spacing: Spacing::EqualArc };
     let solid = |surface: Result<ParametricSurface, rvachev::ParamError>| mesh_of(&surface.unwrap(), &even);
-    let box_like = solid(Superellipsoid::new([1.0, 2.0, 3.0], 0.1, 0.1).surface());
+    let box_like = solid(ParametricSurface::of(&Superellipsoid::new([1.0, 2.0, 3.0], 0.1, 0.1)));
     assert!((box_like.volume() / 47.462_883_333_105 - 1.0).abs() < 1e-3, "{}", box_like.volume());
-    let octahedron = solid(Superellipsoid::new([1.0, 2.0, 3.0], 2.0, 2.0).surface());
+    let octahedron = solid(ParametricSurface::of(&Superellipsoid::new([1.0, 2.0, 3.0], 2.0, 2.0)));
     assert!((octahedron.volume() - 8.0).abs() < 1e-5, "{}", octahedron.volume());
     // Integrals of x², y² and z² from the moments of inertia.
     let squares = |mesh: &Mesh| {
@@ -231,8 +231,14 @@ fn volumes_and_moments_are_those_of_the_closed_forms() {
         [(y + z - x) / 2.0, (z + x - y) / 2.0, (x + y - z) / 2.0]
     };
     for (surface, moments) in [
-        (Superellipsoid::new([1.0, 2.0, 3.0], 0.3, 0.8).surface(), [9.924_580_49, 39.698_321_97, 105.264_587_86]),
-        (Supertoroid::new([1.2, 0.8, 0.6], 1.5, 0.3, 0.7).surface(), [60.482_274_92, 26.881_011_08, 2.681_779_93]),
+        (
+            ParametricSurface::of(&Superellipsoid::new([1.0, 2.0, 3.0], 0.3, 0.8)),
+            [9.924_580_49, 39.698_321_97, 105.264_587_86],
+        ),
+        (
+            ParametricSurface::of(&Supertoroid::new([1.2, 0.8, 0.6], 1.5, 0.3, 0.7)),
+            [60.482_274_92, 26.881_011_08, 2.681_779_93],
+        ),
     ] {
         for (found, exact) in squares(&solid(surface)).into_iter().zip(moments) {
             assert!((found / exact - 1.0).abs() < 1e-3, "{found} {exact}");
@@ -243,14 +249,14 @@ fn volumes_and_moments_are_those_of_the_closed_forms() {
 #[test]
 fn what_is_wrong_is_named() {
     let shape = Superellipsoid::new([1.0, -2.0, 3.0], 1.0, 1.0);
-    assert!(shape.surface().unwrap_err().to_string().starts_with("semi_axes.y is -2"));
-    let ball = Superellipsoid::new([1.0, 2.0, 3.0], 1.0, 1.0).surface().unwrap();
+    assert!(ParametricSurface::of(&shape).unwrap_err().to_string().starts_with("semi_axes.y is -2"));
+    let ball = ParametricSurface::of(&Superellipsoid::new([1.0, 2.0, 3.0], 1.0, 1.0)).unwrap();
     let settings = PatchSettings { columns: 2, ..PatchSettings::default() };
     assert_eq!(ball.mesh(&settings).unwrap_err().to_string(), "columns is 2, allowed: 3 to 100000");
     let settings = PatchSettings { rows: 100_000, columns: 100_000, spacing: Spacing::UniformAngle };
     assert!(ball.mesh(&settings).unwrap_err().to_string().starts_with("rows · columns is 10000000000"));
     // A tolerance that Barr's sheets do not reach is an error, with what they reach.
-    let bowls = Superhyperboloid::two_sheets_x([1.0, 1.0, 1.0], 0.01, 0.01, 3.0).surface().unwrap();
+    let bowls = ParametricSurface::of(&Superhyperboloid::two_sheets_x([1.0, 1.0, 1.0], 0.01, 0.01, 3.0)).unwrap();
     let settings = PatchSettings { spacing: Spacing::Chord(4e-6), ..PatchSettings::default() };
     match bowls.quad_mesh(&settings) {
         Err(PatchError::Tolerance { value, least, .. }) => assert!(value == 4e-6 && least > value),
@@ -260,10 +266,10 @@ fn what_is_wrong_is_named() {
 
 #[test]
 fn areas_converge_at_second_order() {
-    let prolate = Superellipsoid::new([1.0, 1.0, 2.0], 1.0, 1.0).surface().unwrap();
+    let prolate = ParametricSurface::of(&Superellipsoid::new([1.0, 1.0, 2.0], 1.0, 1.0)).unwrap();
     let eccentricity = 0.75f64.sqrt();
     let prolate_area = 2.0 * PI * (1.0 + 2.0 / eccentricity * eccentricity.asin());
-    let ring = Supertoroid::new([1.0, 1.0, 1.0], 3.0, 1.0, 1.0).surface().unwrap();
+    let ring = ParametricSurface::of(&Supertoroid::new([1.0, 1.0, 1.0], 3.0, 1.0, 1.0)).unwrap();
     for (surface, exact) in [(prolate, prolate_area), (ring, 12.0 * PI * PI)] {
         let error = |n: u32| {
             let settings = PatchSettings { rows: n, columns: 2 * n, ..PatchSettings::default() };
@@ -337,7 +343,7 @@ fn within_a_chord_tolerance() {
 fn near_the_fewest_triangles() {
     let tolerance = 1e-3;
     let settings = PatchSettings { spacing: Spacing::Chord(tolerance), ..PatchSettings::default() };
-    let ball = Superellipsoid::new(DVec3::ONE, 1.0, 1.0).surface().unwrap();
+    let ball = ParametricSurface::of(&Superellipsoid::new(DVec3::ONE, 1.0, 1.0)).unwrap();
     let mesh = mesh_of(&ball, &settings);
     // All vertices on the sphere: the farthest point of a triangle is its circumcentre.
     let sag = |t: &[u32; 3]| {
@@ -352,7 +358,7 @@ fn near_the_fewest_triangles() {
     assert!(ratio < 1.6, "{ratio}");
     // An ellipsoid: √K is h²/(abc), h the distance of the tangent plane from the middle.
     let a = DVec3::new(1.0, 2.0, 3.0);
-    let ellipsoid = Superellipsoid::new(a, 1.0, 1.0).surface().unwrap();
+    let ellipsoid = ParametricSurface::of(&Superellipsoid::new(a, 1.0, 1.0)).unwrap();
     let mesh = mesh_of(&ellipsoid, &settings);
     let cloud = ellipsoid.sample(20_000, 5).unwrap();
     let mean = cloud.iter().map(|s| s.point.dot(s.normal).powi(2)).sum::<f64>() / cloud.len() as f64;
@@ -362,7 +368,7 @@ fn near_the_fewest_triangles() {
     assert!(ratio < 2.0, "{ratio}");
     // A rounded box: far fewer than even rows and columns need.
     let shape = Superellipsoid::new([1.0, 1.5, 0.7], 0.2, 0.2);
-    let count = mesh_of(&shape.surface().unwrap(), &settings).triangles().len();
+    let count = mesh_of(&ParametricSurface::of(&shape).unwrap(), &settings).triangles().len();
     println!("{count} triangles of a rounded box");
     assert!(count < 4000, "{count}");
     let error = ball.mesh(&PatchSettings { spacing: Spacing::Chord(0.0), ..settings }).unwrap_err();
@@ -374,10 +380,10 @@ fn near_the_fewest_triangles() {
 fn curves_have_exact_normals() {
     let five = Gielis::new(5.0, 3.0, 4.0, 8.0);
     let curves = [
-        Superellipse::new([2.0, 1.0], 0.3).curve().unwrap(),
-        Superellipse::new([2.0, 1.0], 1.7).curve().unwrap(),
-        five.curve(Radius::Standard).unwrap(),
-        five.curve(Radius::Rational).unwrap(),
+        ParametricCurve::of(&Superellipse::new([2.0, 1.0], 0.3)).unwrap(),
+        ParametricCurve::of(&Superellipse::new([2.0, 1.0], 1.7)).unwrap(),
+        ParametricCurve::gielis(&five, Radius::Standard).unwrap(),
+        ParametricCurve::gielis(&five, Radius::Rational).unwrap(),
         ParametricCurve::ellipse([2.0, 1.0]).unwrap(),
         ParametricCurve::hyperbola([2.0, 1.0], 3.0).unwrap(),
         ParametricCurve::parabola(0.5, 3.0).unwrap(),
@@ -394,6 +400,6 @@ fn curves_have_exact_normals() {
             assert!((curve.point(first) - curve.point(last)).length() < 1e-14);
         }
     }
-    assert_eq!(Superellipse::new([2.0, 1.0], 0.01).curve().unwrap().point(PI), DVec2::new(-2.0, 0.0));
+    assert_eq!(ParametricCurve::of(&Superellipse::new([2.0, 1.0], 0.01)).unwrap().point(PI), DVec2::new(-2.0, 0.0));
     assert!(ParametricCurve::parabola(-1.0, 3.0).is_err() && ParametricCurve::hyperbola([1.0, 0.0], 3.0).is_err());
 }

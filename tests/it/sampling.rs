@@ -1,7 +1,7 @@
 //! Points on surfaces, uniform by area.
 
 use glam::DVec3;
-use rvachev::{Gielis, Superellipsoid, Superhyperboloid, Supershape, Supertoroid};
+use rvachev::{Gielis, ParametricSurface, Superellipsoid, Superhyperboloid, Supershape, Supertoroid};
 
 /// χ² of counts against what is expected of them.
 fn chi_square(counts: &[f64], expected: &[f64]) -> f64 {
@@ -10,7 +10,7 @@ fn chi_square(counts: &[f64], expected: &[f64]) -> f64 {
 
 #[test]
 fn a_sphere_is_uniform_by_archimedes() {
-    let ball = Superellipsoid::new(DVec3::splat(2.0), 1.0, 1.0).surface().unwrap();
+    let ball = ParametricSurface::of(&Superellipsoid::new(DVec3::splat(2.0), 1.0, 1.0)).unwrap();
     let n = 40_000;
     let cloud = ball.sample(n, 1).unwrap();
     let (bands, sectors) = (16, 16);
@@ -33,7 +33,7 @@ fn octants_and_faces_get_their_area() {
     let shape = Superellipsoid::new([1.0, 2.0, 3.0], 0.02, 0.02);
     let n = 30_000;
     let mut counts = [0.0; 6];
-    for s in shape.surface().unwrap().sample(n, 2).unwrap() {
+    for s in ParametricSurface::of(&shape).unwrap().sample(n, 2).unwrap() {
         assert!((shape.gauge(s.point) - 1.0).abs() < 1e-12);
         let axis = s.normal.abs().max_position();
         counts[2 * axis + usize::from(s.normal[axis] > 0.0)] += 1.0;
@@ -47,7 +47,7 @@ fn octants_and_faces_get_their_area() {
 
 #[test]
 fn a_torus_gets_more_outside() {
-    let ring = Supertoroid::new(DVec3::ONE, 2.0, 1.0, 1.0).surface().unwrap();
+    let ring = ParametricSurface::of(&Supertoroid::new(DVec3::ONE, 2.0, 1.0, 1.0)).unwrap();
     let n = 40_000;
     let mut counts = vec![0.0; 32];
     for s in ring.sample(n, 3).unwrap() {
@@ -69,13 +69,13 @@ fn a_torus_gets_more_outside() {
 #[test]
 fn samples_repeat_and_lie_on_the_surface() {
     let star = Supershape::new(Gielis::new(6.0, 2.0, 7.0, 7.0), Gielis::new(4.0, 10.0, 10.0, 10.0));
-    let surface = star.surface().unwrap();
+    let surface = ParametricSurface::of(&star).unwrap();
     let cloud = surface.sample(500, 9).unwrap();
     assert_eq!(cloud, surface.sample(500, 9).unwrap());
     assert_ne!(cloud, surface.sample(500, 10).unwrap());
     assert!(cloud.iter().all(|s| (star.gauge(s.point) - 1.0).abs() < 1e-12));
     assert!(cloud.iter().all(|s| (s.normal.length() - 1.0).abs() < 1e-12));
-    let bowls = Superhyperboloid::two_sheets_x([1.2, 0.8, 0.6], 0.4, 1.3, 3.0).surface().unwrap();
+    let bowls = ParametricSurface::of(&Superhyperboloid::two_sheets_x([1.2, 0.8, 0.6], 0.4, 1.3, 3.0)).unwrap();
     for s in bowls.sample(500, 4).unwrap() {
         assert!(s.point.x >= 1.2 && s.point.x <= 3.0, "{}", s.point);
     }

@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use rvachev::{
     Buffers, Camera, ClosedMesh, Coordinates, Csg, CsgMethod, Facing, Fragments, LayerSource, Mesh, MeshLayers,
-    PatchSettings, RFunction, RasterError, RasterView, Run, Solid, Superellipsoid, Tile,
+    ParametricSurface, PatchSettings, RFunction, RasterError, RasterView, Run, Solid, Superellipsoid, Tile,
 };
 
 /// The picture of the acceptance checks: 160 × 160 pixel middles over [−2, 2]², along +z.
@@ -573,7 +573,9 @@ fn superellipsoids_like_for_like_with_rays() {
     let meshes: Vec<Mesh> = shapes
         .iter()
         .zip(places)
-        .map(|(shape, place)| shape.surface().unwrap().mesh(&patch_settings()).unwrap().affine(place).unwrap())
+        .map(|(shape, place)| {
+            ParametricSurface::of(&shape).unwrap().mesh(&patch_settings()).unwrap().affine(place).unwrap()
+        })
         .collect();
     let solids: Vec<Solid> =
         shapes.iter().zip(places).map(|(shape, place)| Solid::from(*shape).affine(place)).collect();
@@ -600,7 +602,7 @@ fn superellipsoids_like_for_like_with_rays() {
 #[test]
 fn deformed_operands_like_for_like_with_rays() {
     let bar = Superellipsoid::new([0.5, 0.4, 1.2], 0.6, 0.6);
-    let mesh = bar.surface().unwrap().mesh(&patch_settings()).unwrap();
+    let mesh = ParametricSurface::of(&bar).unwrap().mesh(&patch_settings()).unwrap();
     let bar = Solid::from(bar);
     let ball_solid = Solid::sphere(0.5).translate([0.4, -0.5, 0.3]);
     let ball = ball_mesh(64, DVec3::splat(0.5), DVec3::new(0.4, -0.5, 0.3));
@@ -638,7 +640,7 @@ fn deformed_operands_like_for_like_with_rays() {
 
 #[test]
 fn moved_meshes_keep_what_they_carry() {
-    let octahedron = Superellipsoid::new([1.0, 1.0, 1.0], 2.0, 2.0).surface().unwrap();
+    let octahedron = ParametricSurface::of(&Superellipsoid::new([1.0, 1.0, 1.0], 2.0, 2.0)).unwrap();
     let mesh = octahedron.mesh(&PatchSettings { rows: 8, columns: 16, ..PatchSettings::default() }).unwrap();
     let count = mesh.triangles().len();
     let colors = (0..count).map(|t| [0, 1, 2].map(|k| [t as u8, k, 7, 255])).collect();

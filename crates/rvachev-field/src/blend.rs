@@ -130,6 +130,20 @@ pub enum Blend {
 }
 
 impl Blend {
+    /// What errors call a union, an intersection and a difference by this blend.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn names(&self) -> [&'static str; 3] {
+        match self {
+            Blend::Smooth { .. } => ["smooth union", "smooth intersection", "smooth difference"],
+            Blend::Fillet { .. } => ["filleted union", "filleted intersection", "filleted difference"],
+            Blend::Chamfer { .. } => ["chamfered union", "chamfered intersection", "chamfered difference"],
+            Blend::Displacement { .. } => ["displaced union", "displaced intersection", "displaced difference"],
+            Blend::Ricci { .. } => ["Ricci union", "Ricci intersection", "Ricci difference"],
+        }
+    }
+
+    #[doc(hidden)]
     pub fn check(&self) -> Result<(), ParamError> {
         match *self {
             Blend::Smooth { radius } | Blend::Fillet { radius } => check::length("radius", radius),

@@ -13,9 +13,9 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::deform::{Branches, Warp};
 use super::zone::{concave_range, concave_rise, mean_value_range};
 use super::{AnyWarp, Field, Kernel, ParamError, Way, Zone, bits, saturate, steepest};
+use crate::{Bounds, Dual, Interval, Real};
 use rvachev_num::kernel::{Element, Formula, Visit, run};
 use rvachev_num::symbol::Symbol;
-use crate::{Bounds, Dual, Interval, Real};
 
 /// Where a leaf stands: the map from the points that it is given to its own frame, the factor
 /// of its value, and what is added after it.

@@ -16,8 +16,8 @@
 use glam::DVec3;
 
 use super::Sample;
-use rvachev_field::VALUE_LIMIT;
 use crate::{Dual, Interval, Real};
+use rvachev_field::VALUE_LIMIT;
 
 /// At edges sharper than this (16°) the face stays as it is there.
 const SHARPEST: f64 = -0.96;

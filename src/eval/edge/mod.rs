@@ -31,11 +31,11 @@ use self::fillet::{FADES, Fillet, STEEPEST};
 use self::sides::{Side, join, sides};
 use super::Program;
 use super::composite::{Locals, Whole, finish, points64, roundoff, with_evaluator, write_gradients};
+use crate::solid::Operation;
+use crate::{Blend, Bounds, Dual, Interval, ParamError, Real};
 use rvachev_field::{AnyField, Chunk, Way, Zone, steep_slopes};
 use rvachev_num::kernel::CHUNK;
 use rvachev_num::symbol::Symbol;
-use crate::solid::Operation;
-use crate::{Blend, Bounds, Dual, Interval, ParamError, Real};
 
 /// The blend of two operands that are given as programs.
 #[derive(Clone, Debug)]

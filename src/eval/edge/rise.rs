@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::{EdgeBlend, Shape};
-use rvachev_field::{AnyField, Way, Zone};
 use crate::{Dual, Interval, Real};
+use rvachev_field::{AnyField, Way, Zone};
 
 impl EdgeBlend {
     /// The operands' gradients at a point, as they count in the blend.

@@ -17,8 +17,8 @@ use glam::DVec3;
 use super::super::Evaluator;
 use super::super::composite::{Locals, Slopes, Whole};
 use super::super::program::{Edge, Kind, Node, Program};
-use rvachev_field::Op;
 use super::Sample;
+use rvachev_field::Op;
 use rvachev_field::{Rule, concave_faces};
 
 /// Operands of more parts than these have together, in pairs, are taken as they are.

@@ -4,8 +4,8 @@
 use super::{LeafStep, Tape};
 use crate::Bounds;
 use crate::eval::program::{Edge, Kind, Program};
-use rvachev_field::Op;
 use crate::eval::register::Step;
+use rvachev_field::Op;
 use rvachev_field::Rule;
 
 /// What a plain min or max of leaves, in the order of their steps, is made of.

@@ -22,8 +22,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::geom::Mesh;
-use rvachev_num::Meter;
 use crate::{Cancelled, Run};
+use rvachev_num::Meter;
 
 /// The sine of the turn of a step, at least, as a part of the product of its sides.
 const TURN: f64 = 1e-8;

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use rvachev_num::Meter;
 use crate::{Cancelled, Run};
+use rvachev_num::Meter;
 
 /// How many buckets there are.
 const BUCKETS: usize = 1 << 12;

@@ -18,8 +18,8 @@ use super::fans::{Fans, repeats};
 use super::lists::{mapped, sorted};
 use super::meet::{is_degenerate, meet, meet_beyond_edge, meet_beyond_vertex, surely_apart};
 use crate::geom::Mesh;
-use rvachev_num::Meter;
 use crate::{Cancelled, Run};
+use rvachev_num::Meter;
 
 /// How many pairs are listed.
 pub(super) const LISTED: usize = 16;

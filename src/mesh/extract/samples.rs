@@ -5,10 +5,10 @@ use std::ops::Range;
 use glam::{Vec3, Vec3A};
 
 use super::join::Parts;
-use rvachev_num::Bounds;
 use crate::mesh::lattice::Lattice;
 use crate::mesh::signs::BLOCK;
 use crate::mesh::table::{EDGE_CORNERS, edge_axis};
+use rvachev_num::Bounds;
 
 /// What the first pass has found, by cell.
 pub(super) struct Samples<'a> {

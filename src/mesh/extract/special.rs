@@ -18,11 +18,11 @@ use super::samples::{Samples, cell_number, cell_of};
 use super::span::Span;
 use super::spread::{Spread, Spreads};
 use super::{ExtractError, Sampler};
+use crate::Run;
 use crate::mesh::feature::{Candidate, Refiner, Segment, Slope};
 use crate::mesh::loops::{CellLoop, MOST};
 use crate::mesh::signs::for_each_cell;
 use crate::mesh::table::CaseTable;
-use crate::Run;
 use rvachev_num::Meter;
 
 /// Blocks that have their lists together.

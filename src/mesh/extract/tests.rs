@@ -1,12 +1,12 @@
 //! The extractor on surfaces that are known in closed form, and on noise.
 
 use super::*;
-use rvachev_num::Bounds;
+use crate::Progress;
 use crate::mesh::loops::CellLoop;
 use crate::mesh::signs::BLOCK;
 use crate::mesh::{CellSize, MeshReport};
-use crate::run::Progress;
 use glam::DVec3;
+use rvachev_num::Bounds;
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};

@@ -7,6 +7,7 @@ use super::inset::Inset;
 use super::piece::{Piece, Rim};
 use super::seam::Seam;
 use crate::Bounds;
+use crate::Run;
 use crate::eval::Program;
 use crate::mesh::blocks::Blocks;
 use crate::mesh::extract::{ExtractError, Root, Sampler, extract};
@@ -15,7 +16,6 @@ use crate::mesh::lattice::Lattice;
 use crate::mesh::sampler::{Scratch, SolidSampler};
 use crate::mesh::settings::Features;
 use crate::mesh::signs::{BLOCK, EdgeRef, NODES, SIDE};
-use crate::Run;
 
 pub(super) struct Level {
     pub(super) lattice: Lattice,

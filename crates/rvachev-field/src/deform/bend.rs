@@ -12,8 +12,8 @@
 use glam::DVec3;
 
 use super::Warp;
-use crate::{ParamError, check};
 use crate::{Bounds, Interval, Real};
+use crate::{ParamError, check};
 
 /// Bend of the z axis to a circle, in the plane of z and (cos angle, sin angle).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -22,8 +22,8 @@
 use glam::{DAffine3, DVec3};
 
 use super::{Branches, Warp};
-use crate::{ParamError, check};
 use crate::{Bounds, Dual, Interval, Real};
+use crate::{ParamError, check};
 
 /// The fold of one class along one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -13,8 +13,8 @@
 use glam::DVec3;
 
 use super::Warp;
-use crate::{ParamError, check};
 use crate::{Bounds, Real};
+use crate::{ParamError, check};
 
 /// Half lengths of the pieces to insert.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,8 +8,8 @@
 
 use std::fmt::Debug;
 
-use crate::{COORDINATE_LIMIT, ParamError, check};
 use crate::{Bounds, Interval, Real};
+use crate::{COORDINATE_LIMIT, ParamError, check};
 
 /// A function of z, written once over [`Real`], that
 /// [`Solid::taper_by`](crate::Solid::taper_by) and

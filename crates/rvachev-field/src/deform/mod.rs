@@ -22,8 +22,8 @@ use std::fmt::Debug;
 use glam::{DAffine3, DVec3};
 
 use super::{Chunk, ParamError};
-use rvachev_num::symbol::Symbol;
 use crate::{Bounds, Dual, Interval, Norm, Real};
+use rvachev_num::symbol::Symbol;
 
 pub use bend::Bend;
 pub use cells::{Cells, Comb};

@@ -19,8 +19,8 @@ use std::f64::consts::TAU;
 use glam::{DAffine3, DVec3};
 
 use super::{Branches, Warp};
-use crate::{ParamError, check};
 use crate::{Bounds, Dual, Interval, Norm, Real};
+use crate::{ParamError, check};
 
 /// The fold of one class of a ring.
 #[derive(Clone, Copy, Debug)]

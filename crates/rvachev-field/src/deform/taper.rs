@@ -9,8 +9,8 @@
 use glam::DVec3;
 
 use super::Warp;
-use crate::{ParamError, check};
 use crate::{Bounds, Real};
+use crate::{ParamError, check};
 
 /// Linear taper along z.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -10,8 +10,8 @@
 use glam::DVec3;
 
 use super::{Warp, turned_box};
-use crate::{ParamError, check};
 use crate::{Bounds, Interval, Real};
+use crate::{ParamError, check};
 
 /// Rotation about z in proportion to z.
 #[derive(Clone, Copy, Debug, PartialEq)]

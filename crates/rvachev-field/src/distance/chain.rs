@@ -7,9 +7,9 @@ use glam::{DAffine3, DVec3};
 
 use super::super::pull::{product, pull};
 use super::super::{AnyField, AnyWarp, Chunk, Placement, Zone};
-use rvachev_num::kernel::{CHUNK, run};
-use rvachev_num::symbol::Symbol;
 use crate::{Dual, Interval};
+use rvachev_num::kernel::CHUNK;
+use rvachev_num::symbol::Symbol;
 
 /// The maps from the frame of the points to that of the leaf, and the leaf.
 #[derive(Clone, Debug)]

@@ -46,9 +46,9 @@ use self::feet::Feet;
 use self::follow::SURE;
 use self::step::Plane;
 use super::{AnyField, AnyWarp, Chunk, ParamError, VALUE_LIMIT, Way, Zone, smallest_stretch, steep_slopes};
+use crate::{Bounds, Dual, Interval};
 use rvachev_num::kernel::CHUNK;
 use rvachev_num::symbol::Symbol;
-use crate::{Bounds, Dual, Interval};
 
 /// By how much of itself what is found at a convex leaf may exceed the true distance, and by
 /// how much two values at one distance may differ.

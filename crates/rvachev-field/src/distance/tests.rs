@@ -7,8 +7,8 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::Distance;
 use crate::deform::Warp;
 use crate::{AnyField, AnyWarp, Bend, Chunk, Placement, Taper, Twist, Zone};
-use rvachev_num::kernel::CHUNK;
 use crate::{Bounds, Dual, Superellipsoid};
+use rvachev_num::kernel::CHUNK;
 
 /// A generator of numbers in [0, 1).
 struct Random(u64);

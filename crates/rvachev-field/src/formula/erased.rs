@@ -8,8 +8,8 @@ use glam::DAffine3;
 use super::slope::Slope;
 use super::{Formula, bulk, gradients};
 use crate::{AnyField, Chunk, ParamError, VALUE_LIMIT, Zone};
-use rvachev_num::symbol::Symbol;
 use crate::{Bounds, Dual, Interval};
+use rvachev_num::symbol::Symbol;
 
 thread_local! {
     static REGISTERS: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };

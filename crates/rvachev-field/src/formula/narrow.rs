@@ -18,8 +18,8 @@ use super::slope::Slope;
 use super::sure::Sure;
 use super::survey::Survey;
 use super::{Formula, Inner};
-use crate::{VALUE_LIMIT, Zone};
 use crate::{Dual, Interval};
+use crate::{VALUE_LIMIT, Zone};
 
 /// The last walk of a thread. The range over a zone is asked for before the narrowed formula
 /// is, and the walk serves both.

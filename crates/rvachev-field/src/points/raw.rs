@@ -3,8 +3,8 @@
 use super::explicit::over_slices;
 use super::{PointError, check_exponent};
 use crate::Real;
-use rvachev_num::kernel::Formula;
 use crate::angle::{signed_power, sin_cos};
+use rvachev_num::kernel::Formula;
 
 /// Points of a superellipsoid of unit size by their angles (method 1): four sines and cosines,
 /// four signed powers.

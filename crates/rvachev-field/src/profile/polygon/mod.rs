@@ -20,12 +20,12 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec2};
 
 use super::super::{AnyField, Chunk, ParamError, VALUE_LIMIT, Way, Zone};
-use rvachev_num::kernel::Element;
-use rvachev_num::symbol::Symbol;
 use crate::{Bounds, Dual, Interval, Real};
 use edge::Edge;
 use near::{NearEdges, Reference};
 use patch::Patch;
+use rvachev_num::kernel::Element;
+use rvachev_num::symbol::Symbol;
 use tree::Tree;
 
 /// A polygon in the plane, with holes and islands, by true distance (1-Lipschitz).

@@ -11,8 +11,8 @@ use glam::{DAffine3, DVec2};
 
 use super::super::super::{AnyField, Chunk, Field, ParamError, VALUE_LIMIT, Way, Zone, bits, steep_slopes};
 use super::{Edge, Patch};
-use rvachev_num::symbol::Symbol;
 use crate::{Bounds, Dual, Interval, Real};
+use rvachev_num::symbol::Symbol;
 
 /// The nearest of a list of edges, as a formula: what lanes run.
 #[derive(Clone, Debug)]
