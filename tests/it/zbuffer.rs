@@ -574,7 +574,7 @@ fn superellipsoids_like_for_like_with_rays() {
         .iter()
         .zip(places)
         .map(|(shape, place)| {
-            ParametricSurface::of(&shape).unwrap().mesh(&patch_settings()).unwrap().affine(place).unwrap()
+            ParametricSurface::of(shape).unwrap().mesh(&patch_settings()).unwrap().affine(place).unwrap()
         })
         .collect();
     let solids: Vec<Solid> =
