@@ -161,8 +161,11 @@ impl Blend {
 /// Which set operation a Ricci blend is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RicciSide {
+    /// The union.
     Union,
+    /// The intersection.
     Intersection,
+    /// The difference.
     Difference,
 }
 

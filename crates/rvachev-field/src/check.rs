@@ -25,6 +25,7 @@ impl ParamError {
 
 /// Lengths are between these bounds, far inside what the arithmetic can hold.
 pub const SMALLEST_LENGTH: f64 = 1e-9;
+/// The largest length.
 pub const LARGEST_LENGTH: f64 = 1e9;
 
 /// A length: positive, neither NaN nor extreme.

@@ -23,6 +23,7 @@ use rvachev_num::symbol::Symbol;
 pub struct Placement {
     /// Rows of the map: `[m_x, m_y, m_z, t]` each.
     rows: [[f64; 4]; 3],
+    /// The factor of the value.
     pub scale: f64,
     /// The level or offset that the leaf is seen at.
     pub shift: f64,
@@ -33,6 +34,7 @@ impl Placement {
     pub const IDENTITY: Placement =
         Placement { rows: [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]], scale: 1.0, shift: 0.0 };
 
+    /// A leaf behind a map, its value scaled, then shifted.
     pub fn new(map: &DAffine3, scale: f64, shift: f64) -> Placement {
         let m = map.matrix3.transpose();
         let row = |axis: usize| {
@@ -82,24 +84,34 @@ impl Placement {
 /// [`CHUNK`](rvachev_num::kernel::CHUNK), or of the widest vectors for a field that
 /// [takes short ones](AnyField::takes_short).
 pub struct Chunk<'a, E, const OUT: usize> {
+    /// Coordinates, in the frame that the placement maps from.
     pub points: [&'a [E]; 3],
+    /// Where the leaf stands.
     pub placement: &'a Placement,
+    /// Where results go.
     pub out: [&'a mut [E]; OUT],
 }
 
 /// A [`Field`], erased to the evaluations that the engine runs.
 pub trait AnyField: Any + Debug + Send + Sync {
+    /// What errors call it.
     fn name(&self) -> &'static str;
     /// All that the value depends on, as text: leaves of one type with the same text are the
     /// same.
     fn signature(&self) -> String {
         format!("{self:?}")
     }
+    /// The box of the shape after a map.
     fn bounds_under(&self, map: &DAffine3) -> Bounds;
+    /// Whether every parameter is in its range.
     fn check(&self) -> Result<(), ParamError>;
+    /// How far off single precision may be within `reach` of the origin.
     fn roundoff(&self, reach: f64) -> f64;
+    /// The value at a point of the leaf's frame.
     fn value(&self, p: [f64; 3]) -> f64;
+    /// Value and derivatives at a point.
     fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64>;
+    /// Ranges of value and derivatives over a box.
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval>;
     /// Whether the value is the true distance.
     fn exact(&self) -> bool;
@@ -141,8 +153,11 @@ pub trait AnyField: Any + Debug + Send + Sync {
     fn narrowed(&self, _zone: &Zone) -> Option<Arc<dyn AnyField>> {
         None
     }
+    /// The value as an expression tree.
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a>;
+    /// Values of a chunk, on lanes of `f32`.
     fn lanes32(&self, chunk: Chunk<'_, f32, 1>);
+    /// The same on lanes of `f64`.
     fn lanes64(&self, chunk: Chunk<'_, f64, 1>);
     /// Value and the three derivatives.
     fn gradients(&self, chunk: Chunk<'_, f32, 4>);

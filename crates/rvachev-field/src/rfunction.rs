@@ -125,6 +125,7 @@ impl RFunction {
         matches!(Rule::from(self), Rule::MinMax | Rule::Associative(_) | Rule::Distance)
     }
 
+    /// Whether the parameters are in their ranges.
     pub fn check(self) -> Result<(), ParamError> {
         let (parameter, value, lo) = match self {
             RFunction::Alpha(alpha) if alpha > -1.0 && alpha <= 1.0 => return Ok(()),
@@ -141,27 +142,37 @@ impl RFunction {
 /// An R-function with its special cases told apart, or a blend.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rule {
+    /// Min and max.
     MinMax,
+    /// R_α.
     Alpha(f64),
+    /// R_0^m, m at least 1.
     Zero(u32),
+    /// R_p.
     P(Norm),
+    /// N_p.
     Associative(Norm),
     /// Smooth minimum over this width of values.
     Smooth(f64),
     /// R_p with p = 2 and a term that moves the surface.
     Displacement {
+        /// a₀.
         height: f64,
         /// `1/a₁` and `1/a₂`.
         inverse: [f64; 2],
     },
     /// A norm of gauges.
     Ricci {
+        /// The exponent of the norm.
         p: f64,
+        /// Which set operation it is.
         side: RicciSide,
         /// Values are `radius·(1 − G)`: those of the operands and of the result.
         radii: [f64; 2],
+        /// The radius of the result.
         radius: f64,
     },
+    /// Min where both are inside, the Euclidean norm where they are outside.
     Distance,
 }
 

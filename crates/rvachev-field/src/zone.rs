@@ -23,9 +23,11 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// A parallelepiped with a remainder, cut by an axis-aligned hull.
 #[derive(Clone, Copy, Debug)]
 pub struct Zone {
+    /// The middle of the parallelepiped.
     pub centre: DVec3,
     /// The half-axes, as columns.
     pub axes: DMat3,
+    /// How far off it points may be, along each axis.
     pub slack: DVec3,
     hull: [Interval; 3],
 }
@@ -217,7 +219,9 @@ impl Pieces {
 /// Directions, of any length: all within a ball.
 #[derive(Clone, Copy, Debug)]
 pub struct Way {
+    /// The middle direction.
     pub middle: DVec3,
+    /// How far directions are from the middle one.
     pub sway: f64,
 }
 
@@ -248,6 +252,7 @@ impl Way {
         Way { middle, sway: (0.5 * (self.middle - other.middle).length() + self.sway.max(other.sway)) * (1.0 + 1e-12) }
     }
 
+    /// The opposite direction, if `flip`.
     pub fn flip_if(self, flip: bool) -> Way {
         if flip { Way { middle: -self.middle, ..self } } else { self }
     }

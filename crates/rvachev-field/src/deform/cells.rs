@@ -86,8 +86,11 @@ impl Comb {
 /// The fold of one class of copies.
 #[derive(Clone, Copy, Debug)]
 pub struct Cells {
+    /// How each axis is folded.
     pub axes: [Comb; 3],
+    /// Copies along each axis.
     pub counts: [u32; 3],
+    /// From copy to copy, in length units.
     pub spacing: DVec3,
     /// Whether the copies are too many to be made one by one, and have to.
     pub crowded: Option<f64>,

@@ -19,6 +19,7 @@ use crate::{ParamError, check};
 /// Half lengths of the pieces to insert.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Elongate {
+    /// Half of what is inserted along each axis, in length units.
     pub half: DVec3,
 }
 

@@ -95,20 +95,35 @@ pub type Branches = (DAffine3, Option<DAffine3>);
 
 /// A [`Warp`], erased to the evaluations that the engine runs.
 pub trait AnyWarp: Any + Debug + Send + Sync {
+    /// What errors call it.
     fn name(&self) -> &'static str;
+    /// The pre-image of a point.
     fn point(&self, p: [f64; 3]) -> [f64; 3];
+    /// The pre-image with derivatives.
     fn duals(&self, p: [Dual<f64>; 3]) -> [Dual<f64>; 3];
+    /// Ranges of the pre-image and of its derivatives.
     fn dual_ranges(&self, p: [Dual<Interval>; 3]) -> [Dual<Interval>; 3];
+    /// The pre-image as expression trees.
     fn symbols<'a>(&self, p: [Symbol<'a>; 3]) -> [Symbol<'a>; 3];
+    /// Pre-images of a chunk, on lanes of `f32`.
     fn lanes32(&self, chunk: Chunk<'_, f32, 3>);
+    /// The same on lanes of `f64`.
     fn lanes64(&self, chunk: Chunk<'_, f64, 3>);
+    /// Pre-images, and their derivatives row by row.
     fn jacobians(&self, chunk: Chunk<'_, f32, 12>);
+    /// A box that holds the images of what a box holds.
     fn bounds(&self, bounds: &Bounds) -> Bounds;
+    /// Whether the parameters allow to deform what a box holds.
     fn check(&self, bounds: &Bounds) -> Result<(), ParamError>;
+    /// How far single precision may move a pre-image, over a hull.
     fn roundoff_over(&self, hull: [Interval; 3]) -> f64;
+    /// The most that distances grow by, from images to pre-images, over a hull.
     fn stretch(&self, hull: [Interval; 3]) -> f64;
+    /// Where the deformation jumps over a hull, if it does.
     fn branches(&self, hull: [Interval; 3]) -> Option<Branches>;
+    /// The deformations on both sides of a jump within a hull.
     fn sheets(&self, hull: [Interval; 3]) -> Option<[Box<dyn AnyWarp>; 2]>;
+    /// Whether lengths stay what they are.
     fn keeps_lengths(&self) -> bool;
 }
 

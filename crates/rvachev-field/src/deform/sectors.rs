@@ -25,6 +25,7 @@ use crate::{ParamError, check};
 /// The fold of one class of a ring.
 #[derive(Clone, Copy, Debug)]
 pub struct Sectors {
+    /// Number of copies around the axis.
     pub count: u32,
     /// M, how many copies the class has.
     pub blocks: u32,

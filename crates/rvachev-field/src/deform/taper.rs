@@ -15,8 +15,11 @@ use crate::{ParamError, check};
 /// Linear taper along z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taper {
+    /// How much wider x is at the top.
     pub kx: f64,
+    /// How much wider y is at the top.
     pub ky: f64,
+    /// Half the height between bottom and top, in length units.
     pub half_height: f64,
 }
 

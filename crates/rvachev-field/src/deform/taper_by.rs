@@ -14,7 +14,9 @@ use crate::{Bounds, Dual, Interval, Real};
 /// Scaling across z by factors that are functions of z.
 #[derive(Clone, Debug)]
 pub struct TaperBy<X, Y> {
+    /// The factor of x, by z.
     pub x: X,
+    /// The factor of y, by z.
     pub y: Y,
 }
 

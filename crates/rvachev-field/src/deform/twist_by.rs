@@ -15,6 +15,7 @@ use crate::{Bounds, Dual, Interval, Real};
 /// Rotation about z by an angle that is a function of z.
 #[derive(Clone, Debug)]
 pub struct TwistBy<A> {
+    /// The angle in radians, by z.
     pub angle: A,
 }
 

@@ -17,6 +17,7 @@ use crate::{Bounds, Interval, Norm, Real};
 /// distance.
 #[derive(Clone, Debug)]
 pub struct Opening {
+    /// How far it is open, in radians.
     pub angle: f64,
 }
 

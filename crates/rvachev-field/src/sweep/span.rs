@@ -9,8 +9,11 @@ use crate::{Bounds, Interval, Real};
 /// that verb's parameters are its own.
 #[derive(Clone, Debug)]
 pub struct Span {
+    /// What errors call it: the verb that made it.
     pub verb: &'static str,
+    /// Half the height, in length units.
     pub half_height: f64,
+    /// What is wrong with the verb's parameters.
     pub error: Option<ParamError>,
 }
 
