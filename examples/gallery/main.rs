@@ -73,7 +73,7 @@ fn picture_of((name, make): &Entry, color: [u8; 3], manner: Manner, folder: &Pat
     let start = Instant::now();
     let told = |error: &dyn Error| format!("{name}: {error}");
     let picture = picture(&make(), color, manner).map_err(|error| told(&error))?;
-    let length = save(&picture, &folder.join(format!("{name}.png"))).map_err(|error| told(&*error))?;
+    let length = save(&picture, &place(folder, name)).map_err(|error| told(&*error))?;
     if manner.timed {
         println!("{:7.1} ms  {name}", 1e3 * start.elapsed().as_secs_f64());
     }
@@ -81,6 +81,13 @@ fn picture_of((name, make): &Entry, color: [u8; 3], manner: Manner, folder: &Pat
 }
 
 /// Writes a PNG file and returns its length.
+/// Where a picture goes: of what the inner crate documents, beside that crate's documentation.
+fn place(folder: &Path, name: &str) -> PathBuf {
+    let file = format!("{name}.png");
+    let inner = Path::new("crates/rvachev-field").join(folder).join(&file);
+    if inner.exists() { inner } else { folder.join(&file) }
+}
+
 fn save(picture: &RgbImage, path: &Path) -> Result<u64, Box<dyn Error>> {
     let file = BufWriter::new(File::create(path)?);
     picture.write_with_encoder(PngEncoder::new_with_quality(file, CompressionType::Best, FilterType::NoFilter))?;

@@ -11,11 +11,6 @@ impl Solid {
     /// What is in either solid, and what `blend` adds between them. The parameters and their
     /// ranges: [`Blend`].
     ///
-    #[doc = picture!(
-        "fillet_union" = "docs/gallery/fillet_union.png",
-        "chamfer_union" = "docs/gallery/chamfer_union.png",
-    )]
-    ///
     /// ```
     /// use rvachev::{Blend, Solid};
     ///
@@ -44,8 +39,6 @@ impl Solid {
     /// Union with a smooth transition where the operands' values differ by less than
     /// `radius`: [`Blend::Smooth`].
     ///
-    #[doc = picture!("smooth_union" = "docs/gallery/smooth_union.png")]
-    ///
     /// ```
     /// use rvachev::Solid;
     /// use glam::DVec3;
@@ -64,16 +57,12 @@ impl Solid {
     }
 
     /// Intersection with a smooth transition: [`Blend::Smooth`].
-    ///
-    #[doc = picture!("smooth_intersection" = "docs/gallery/smooth_intersection.png")]
     #[must_use]
     pub fn smooth_intersection(&self, other: impl Into<Solid>, radius: f64) -> Solid {
         self.intersection_with(other, Blend::Smooth { radius })
     }
 
     /// Difference with a smooth transition: [`Blend::Smooth`].
-    ///
-    #[doc = picture!("smooth_difference" = "docs/gallery/smooth_difference.png")]
     #[must_use]
     pub fn smooth_difference(&self, other: impl Into<Solid>, radius: f64) -> Solid {
         self.difference_with(other, Blend::Smooth { radius })

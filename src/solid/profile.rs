@@ -148,10 +148,7 @@ impl Profile {
     /// The shape with its border moved outwards by `distance` (inwards if negative): see
     /// [`Solid::offset`].
     ///
-    #[doc = picture!(
-        "profile_polygon" = "docs/gallery/profile_polygon.png",
-        "profile_offset" = "docs/gallery/profile_offset.png",
-    )]
+    #[doc = picture!("profile_offset" = "docs/gallery/profile_offset.png")]
     ///
     /// ```
     /// use rvachev::Profile;

@@ -21,7 +21,7 @@ use crate::{Bounds, Dual, Interval, Real};
 ///   most 1 per length unit;
 /// * its `Debug` text says everything that its value depends on, numbers to the last digit, as
 ///   a derived `Debug` does: leaves of one type with the same text are taken to be the same
-///   leaf when solids are compared, hashed and [simplified](crate::Solid::simplified). A leaf
+///   leaf when solids are compared, hashed and [simplified](../struct.Solid.html#method.simplified). A leaf
 ///   that holds what has no such text (a function, a table that is cut short) writes something
 ///   into it that no other leaf of its type has, such as a serial number.
 ///
@@ -57,7 +57,7 @@ use crate::{Bounds, Dual, Interval, Real};
 /// # Ok::<(), rvachev::SolidError>(())
 /// ```
 pub trait Field: Debug + Send + Sync + 'static {
-    /// What errors and [`owner`](crate::Solid::owner) call this leaf.
+    /// What errors and [`owner`](../struct.Solid.html#method.owner) call this leaf.
     fn name(&self) -> &'static str;
 
     /// The formula at a point of the leaf's own frame.

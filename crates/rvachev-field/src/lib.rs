@@ -1,5 +1,5 @@
 //! The formulas: leaves, R-functions and deformations, each written once over
-//! [`Real`](crate::Real).
+//! [`Real`].
 //!
 //! A leaf is a type that implements [`Field`]; adding one is a file here and a line below. A
 //! deformation implements `Warp`. Both are erased (`AnyField`, `AnyWarp`) to the evaluations

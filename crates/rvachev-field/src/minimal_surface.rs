@@ -167,7 +167,7 @@ impl MinimalSurface {
 )]
 ///
 /// A plain `f64` is the same everywhere. A grading of your own is compiled into the lattice's
-/// kernels; the solid is then made by [`Solid::new`](crate::Solid::new). Mark `at` and its
+/// kernels; the solid is then made by [`Solid::new`](struct.Solid.html#method.new). Mark `at` and its
 /// helpers `#[inline(always)]`. (The value of a [`Field`](crate::Field) can be called for it.)
 ///
 /// ```

@@ -93,7 +93,7 @@ pub trait Warp: Debug + Clone + Send + Sync + 'static {
 /// edge.
 pub type Branches = (DAffine3, Option<DAffine3>);
 
-/// A [`Warp`], erased to the evaluations that the engine runs.
+/// A `Warp`, erased to the evaluations that the engine runs.
 pub trait AnyWarp: Any + Debug + Send + Sync {
     /// What errors call it.
     fn name(&self) -> &'static str;

@@ -1,6 +1,6 @@
 //! Plane shapes: leaves that depend on x and y only, and so are unbounded along z.
 //!
-//! They are what a [`Profile`](crate::Profile) is made of. Each is a [`Field`](super::Field)
+//! They are what a `Profile` is made of. Each is a [`Field`](super::Field)
 //! like any other; its formula ignores z.
 
 mod circle;

@@ -2,7 +2,7 @@
 
 use crate::Real;
 
-/// A number whose p-norms are computed from logarithms (see [`norms`](super::norms)).
+/// A number whose p-norms are computed from logarithms (see `norms.rs`).
 ///
 /// Logarithms are taken relative to a power of two that is common to a point's coordinates,
 /// its largest coordinate rounded down. They are then near 0 where they matter, and rounding

@@ -22,7 +22,7 @@
 //! | `pow` | `exp2(p · log2)` |
 //! | `sin_cos` | π/2 subtracted in three pieces, polynomials on [−π/4, π/4] |
 //! | `atan2` | an odd polynomial of the smaller over the larger coordinate |
-//! | norms | logarithms, relative to the largest coordinate's power of two: [`norms`] |
+//! | norms | logarithms, relative to the largest coordinate's power of two: `norms.rs` |
 //!
 //! # Errors
 //!
