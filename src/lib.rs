@@ -386,10 +386,14 @@ pub use geom::{
     Camera, CameraError, Coordinates, Corner, Image, ImageError, Intrinsics, Mesh, MeshError, Noise, Plane, PointCloud,
     PointCloudError, Polyline, Projection, QuadMesh, RangeImage, RangeImageError, Rays, View,
 };
+#[cfg(feature = "threemf")]
+pub use io::write_3mf;
 pub use io::{
-    Colors, Floats, LengthUnit, Pixel, SaveError, SaveSettings, write_3mf, write_dxf, write_exr, write_gif, write_glb,
-    write_obj, write_ply, write_ply_points, write_png, write_stl, write_stl_ascii, write_svg,
+    Colors, LengthUnit, Pixel, SaveError, SaveSettings, write_dxf, write_gif, write_glb, write_obj, write_ply,
+    write_ply_points, write_png, write_stl, write_stl_ascii, write_svg,
 };
+#[cfg(feature = "exr")]
+pub use io::{Floats, write_exr};
 pub use mesh::{
     AtBounds, CellSize, Features, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError, ThinFeatures, Volume,
     VolumeError, VolumeSettings,
@@ -407,14 +411,21 @@ pub use rvachev_field::{
     BinomialSeries, CurveSpread, ExactExplicit, LogTable, PlaneSymmetry, PointError, PointMethod, PointSettings,
     PowerTables, ProductTables, RawParametric, SeriesExplicit, Symmetry, reflect, reflect_plane,
 };
+#[cfg(feature = "formula")]
+pub use fidget;
+pub use glam;
+
 #[doc(inline)]
 pub use rvachev_field::{
-    Blend, COORDINATE_LIMIT, Capsule, Circle, Cone, Cuboid, Cylinder, Ellipsoid, Field, Formula, FormulaError,
-    GeneralisedSuperquadric, Gielis, Grading, HalfSpace, Kernel, Law, LawTable, LinearLaw, MinimalSurface,
-    NetworkLattice, ParamError, Polygon, Prism, Pyramid, RFunction, Radius, Rectangle, RegularPolygon, RoundedCuboid,
-    SheetLattice, SineWave, Slab, SmoothStep, Sphere, Superellipse, Superellipsoid, Superhyperboloid, Superpolygon,
-    Supershape, Supertoroid, Torus, Turns, VALUE_LIMIT, Wedge,
+    Blend, COORDINATE_LIMIT, Capsule, Circle, Cone, Cuboid, Cylinder, Ellipsoid, Field, GeneralisedSuperquadric,
+    Gielis, Grading, HalfSpace, Kernel, Law, LawTable, LinearLaw, MinimalSurface, NetworkLattice, ParamError, Polygon,
+    Prism, Pyramid, RFunction, Radius, Rectangle, RegularPolygon, RoundedCuboid, SheetLattice, SineWave, Slab,
+    SmoothStep, Sphere, Superellipse, Superellipsoid, Superhyperboloid, Superpolygon, Supershape, Supertoroid, Torus,
+    Turns, VALUE_LIMIT, Wedge,
 };
+#[cfg(feature = "formula")]
+#[doc(inline)]
+pub use rvachev_field::{Formula, FormulaError};
 #[doc(inline)]
 pub use rvachev_num::{Bounds, CancelToken, Cancelled, Dual, Interval, Monotone, Monotone3, Norm, Progress, Real, Run};
 pub use solid::{Caps, Extrusion, Helix, Paint, PlaneBounds, Profile, Solid, SolidError};

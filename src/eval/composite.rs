@@ -10,6 +10,7 @@ use super::{Evaluator, Gradients, Program, Tape};
 use crate::{Bounds, Dual, Interval, ParamError};
 use rvachev_field::{AnyField, Chunk, Placement, Way, Zone};
 use rvachev_num::kernel::CHUNK;
+#[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
 #[derive(Debug)]
@@ -94,6 +95,7 @@ impl AnyField for Composite {
         self.program.rises(zone, ways)
     }
 
+    #[cfg(feature = "formula")]
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
         self.program.evaluate(p, &mut Vec::new())
     }

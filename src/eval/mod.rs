@@ -15,6 +15,7 @@ mod edge;
 mod extent;
 mod flatten;
 mod hierarchy;
+#[cfg(feature = "formula")]
 mod lower;
 mod narrow;
 mod nearest;

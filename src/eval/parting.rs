@@ -62,7 +62,7 @@ impl Program {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "formula"))]
 mod tests {
     use fidget::context::Tree;
     use glam::{DVec2, DVec3};

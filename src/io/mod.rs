@@ -17,7 +17,10 @@
 //! No writer joins vertices by their position, and only GLB splits them: where the corners of
 //! a vertex carry different normals, colours or texture coordinates.
 
+#[cfg(not(all(feature = "exr", feature = "threemf")))]
+mod absent;
 mod drawing;
+#[cfg(feature = "exr")]
 mod exr;
 mod file;
 mod gif;
@@ -31,12 +34,14 @@ mod save;
 mod split;
 mod stl;
 mod text;
+#[cfg(feature = "threemf")]
 mod threemf;
 mod unit;
 
 use std::io;
 
 pub use drawing::{write_dxf, write_svg};
+#[cfg(feature = "exr")]
 pub use exr::{Floats, write_exr};
 pub use gif::write_gif;
 pub use glb::write_glb;
@@ -47,6 +52,7 @@ pub use points::write_ply_points;
 pub(crate) use save::save_rows;
 pub use save::{Pixel, SaveError, SaveSettings};
 pub use stl::{write_stl, write_stl_ascii};
+#[cfg(feature = "threemf")]
 pub use threemf::write_3mf;
 pub use unit::LengthUnit;
 

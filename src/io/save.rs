@@ -7,11 +7,19 @@ use std::time::Duration;
 
 use glam::{DVec3, Vec3};
 
+#[cfg(not(feature = "threemf"))]
+use super::absent::write_3mf;
+#[cfg(not(feature = "exr"))]
+use super::absent::write_exr;
 use super::file::write_whole;
 use super::png::{Rows, write_png_rows};
+#[cfg(feature = "threemf")]
+use super::write_3mf;
+#[cfg(feature = "exr")]
+use super::write_exr;
 use super::{
-    LengthUnit, write_3mf, write_dxf, write_exr, write_gif, write_glb, write_obj, write_ply, write_ply_points,
-    write_png, write_stl, write_stl_ascii, write_svg,
+    LengthUnit, write_dxf, write_gif, write_glb, write_obj, write_ply, write_ply_points, write_png, write_stl,
+    write_stl_ascii, write_svg,
 };
 use crate::geom::{Image, Mesh, PointCloud, Polyline};
 

@@ -32,6 +32,7 @@ impl LengthUnit {
         }
     }
 
+    #[cfg(feature = "threemf")]
     /// The name that 3MF has for it.
     pub(super) fn name(self) -> &'static str {
         match self {

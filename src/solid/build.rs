@@ -2,16 +2,15 @@
 
 use std::sync::Arc;
 
-use fidget::context::Tree;
 use glam::DVec3;
 
 use rvachev_field::{AnyField, Erase};
 
 use super::{Node, Solid};
 use crate::{
-    Bounds, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Field, Formula, GeneralisedSuperquadric, HalfSpace,
-    NetworkLattice, Prism, Pyramid, RoundedCuboid, SheetLattice, Slab, Sphere, Superellipsoid, Superhyperboloid,
-    Supershape, Supertoroid, Torus, Wedge,
+    Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Field, GeneralisedSuperquadric, HalfSpace, NetworkLattice, Prism,
+    Pyramid, RoundedCuboid, SheetLattice, Slab, Sphere, Superellipsoid, Superhyperboloid, Supershape, Supertoroid,
+    Torus, Wedge,
 };
 
 impl Solid {
@@ -115,11 +114,13 @@ impl Solid {
     }
 }
 
+#[cfg(feature = "formula")]
 impl Solid {
-    /// The solid where `tree` is negative (fidget's sign); `bounds` must hold it. See [`Formula`].
+    /// The solid where `tree` is negative (fidget's sign); `bounds` must hold it. See
+    /// [`Formula`](crate::Formula).
     #[must_use]
-    pub fn formula(tree: &Tree, bounds: Bounds) -> Solid {
-        Formula::new(tree, bounds).into()
+    pub fn formula(tree: &fidget::context::Tree, bounds: crate::Bounds) -> Solid {
+        crate::Formula::new(tree, bounds).into()
     }
 }
 
@@ -147,7 +148,6 @@ leaves!(
     Cuboid,
     Cylinder,
     Ellipsoid,
-    Formula,
     GeneralisedSuperquadric,
     HalfSpace,
     NetworkLattice,
@@ -164,3 +164,5 @@ leaves!(
     Torus,
     Wedge,
 );
+#[cfg(feature = "formula")]
+leaves!(crate::Formula);

@@ -123,6 +123,7 @@ impl Profile {
         self.0.clone()
     }
 
+    #[cfg(feature = "formula")]
     /// The shape where `tree` is negative (fidget's sign), a function of x and y; `bounds`
     /// must hold it. See [`Formula`](crate::Formula).
     ///

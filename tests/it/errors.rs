@@ -25,6 +25,7 @@ fn refused(solid: &Solid, parts: &[&str]) -> ParamError {
     same(solid.gradient(DVec3::ZERO).map(drop));
     same(solid.raycast(DVec3::X, DVec3::X).map(drop));
     same(solid.field_program().map(drop));
+    #[cfg(feature = "formula")]
     same(solid.to_fidget().map(drop));
     let settings = MeshSettings { cell: CellSize::LongestSide(8), ..MeshSettings::default() };
     match solid.mesh(&settings) {

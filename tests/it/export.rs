@@ -2,13 +2,10 @@
 //! carry.
 
 use std::fs;
-use std::io::{Cursor, Read};
 use std::path::PathBuf;
 
 use glam::Vec3;
-use rvachev::{
-    LengthUnit, Mesh, SaveError, SaveSettings, write_3mf, write_glb, write_obj, write_ply, write_stl, write_stl_ascii,
-};
+use rvachev::{LengthUnit, Mesh, SaveError, SaveSettings, write_glb, write_obj, write_ply, write_stl, write_stl_ascii};
 
 /// A cube from 0 to `size`, its sides not parallel to anything, of 8 shared vertices.
 fn cube() -> Mesh {
@@ -237,10 +234,13 @@ fn glb_of_many_vertices_of_none_and_of_bad_normals() {
     assert_eq!(normals, [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]);
 }
 
+#[cfg(feature = "threemf")]
 /// The model inside a 3MF archive.
 fn read_3mf(mesh: &Mesh, unit: LengthUnit) -> String {
-    let bytes = written(|out| write_3mf(mesh, &SaveSettings { unit, ..SaveSettings::default() }, out));
-    let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).unwrap();
+    let bytes = written(|out| rvachev::write_3mf(mesh, &SaveSettings { unit, ..SaveSettings::default() }, out));
+    use std::io::Read;
+
+    let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).unwrap();
     let names: Vec<String> = archive.file_names().map(|name| name.unwrap().into_owned()).collect();
     assert_eq!(names, ["[Content_Types].xml", "_rels/.rels", "3D/3dmodel.model"]);
     let mut model = String::new();
@@ -248,12 +248,14 @@ fn read_3mf(mesh: &Mesh, unit: LengthUnit) -> String {
     model
 }
 
+#[cfg(feature = "threemf")]
 /// The value of an attribute of an XML element.
 fn attribute<'a>(element: &'a str, name: &str) -> Option<&'a str> {
     let from = element.find(&format!(" {name}=\""))? + name.len() + 3;
     element[from..].split('"').next()
 }
 
+#[cfg(feature = "threemf")]
 #[test]
 fn threemf_keeps_vertices_colours_and_unit() {
     for mesh in [cube(), painted(), smooth()] {
@@ -287,7 +289,7 @@ fn threemf_keeps_vertices_colours_and_unit() {
     assert_eq!(attribute(&read_3mf(&cube(), LengthUnit::default()), "unit"), Some("millimeter"));
     assert!(!read_3mf(&Mesh::default(), LengthUnit::Meter).contains("<object"));
     let repeated = Mesh::new(vec![Vec3::ZERO, Vec3::X], vec![[0, 1, 1]]).unwrap();
-    let error = write_3mf(&repeated, &SaveSettings::default(), Vec::new()).unwrap_err();
+    let error = rvachev::write_3mf(&repeated, &SaveSettings::default(), Vec::new()).unwrap_err();
     assert!(error.to_string().contains("triangle 0 has a repeated index"));
 }
 
@@ -297,7 +299,8 @@ fn saving_by_extension_and_the_same_bytes_again() {
     fs::create_dir_all(&folder).unwrap();
     let mesh = painted();
     let settings = SaveSettings { ascii: true, unit: LengthUnit::Meter, crease_normals: true };
-    for name in ["a.stl", "a.obj", "a.ply", "a.glb", "a.3mf", "A.GLB"] {
+    let names = ["a.stl", "a.obj", "a.ply", "a.glb", "a.3mf", "A.GLB"];
+    for name in names.into_iter().filter(|name| cfg!(feature = "threemf") || !name.ends_with("3mf")) {
         let path = folder.join(name);
         mesh.save(&path).unwrap();
         let plain = fs::read(&path).unwrap();
@@ -314,7 +317,19 @@ fn saving_by_extension_and_the_same_bytes_again() {
     // On a file system that tells upper from lower case there is one more.
     let left = fs::read_dir(&folder).unwrap().count();
     fs::remove_dir_all(&folder).unwrap();
-    assert!((5..=6).contains(&left), "no temporary file is left");
+    assert!((4..=6).contains(&left), "no temporary file is left");
+}
+
+#[cfg(not(feature = "threemf"))]
+#[test]
+fn a_format_that_is_left_out_names_its_feature() {
+    let path = std::env::temp_dir().join(format!("rvachev-left-out-{}.3mf", std::process::id()));
+    let error = cube().save(&path).unwrap_err();
+    assert!(
+        matches!(&error, SaveError::Write { .. }) && format!("{error:?}").contains("feature `threemf`"),
+        "{error:?}"
+    );
+    assert!(!path.exists());
 }
 
 #[cfg(target_os = "linux")]
@@ -328,7 +343,8 @@ fn a_full_disk_is_reported_by_every_writer() {
         write_obj(&mesh, &settings, full()),
         write_ply(&mesh, full()),
         write_glb(&mesh, &settings, full()),
-        write_3mf(&mesh, &settings, full()),
+        #[cfg(feature = "threemf")]
+        rvachev::write_3mf(&mesh, &settings, full()),
     ];
     for result in results {
         assert_eq!(result.unwrap_err().kind(), std::io::ErrorKind::StorageFull);

@@ -10,6 +10,7 @@ mod explicit_inputs;
 mod explicit_points;
 mod export;
 mod forms;
+#[cfg(feature = "formula")]
 mod formula;
 mod golden;
 mod lattices;

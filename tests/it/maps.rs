@@ -152,7 +152,8 @@ fn elongation_is_exact_where_the_leaf_is() {
     assert_eq!(wrong.to_string(), "elongate: half.y is -1, allowed: 0 to 1000000000");
 }
 
-/// Single and double precision lanes, gradients and fidget's tree against the point values.
+/// Single and double precision lanes, gradients, and with the feature `formula` fidget's tree, against the point
+/// values.
 fn forms_agree(random: &mut Random, solid: &Solid, tolerance: f64) {
     let program = solid.surface_program().unwrap();
     let frame = frame_of(solid);
@@ -186,14 +187,21 @@ fn forms_agree(random: &mut Random, solid: &Solid, tolerance: f64) {
         // Kinks are within a rounding error of a few.
         assert!(off <= 3, "{solid:?}: {off} gradients differ");
     }
+    #[cfg(feature = "formula")]
+    fidget_agrees(random, solid, &frame);
+}
+
+/// Fidget's tree against the point values.
+#[cfg(feature = "formula")]
+fn fidget_agrees(random: &mut Random, solid: &Solid, frame: &Bounds) {
     use fidget::shape::EzShape;
     let shape = fidget::vm::VmShape::from(solid.to_fidget().unwrap());
     let mut eval = fidget::vm::VmShape::new_point_eval();
     let tape = shape.ez_point_tape();
     for _ in 0..50 {
-        let p = random.point_in(&frame).as_vec3();
+        let p = random.point_in(frame).as_vec3();
         let (got, _) = eval.eval(&tape, p.x, p.y, p.z).unwrap();
-        near(-f64::from(got), value(solid, p.as_dvec3()), 1e-3 * size);
+        near(-f64::from(got), value(solid, p.as_dvec3()), 1e-3 * frame.longest_side());
     }
 }
 

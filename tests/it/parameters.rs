@@ -3,12 +3,11 @@
 
 use std::panic::catch_unwind;
 
-use fidget::context::Tree;
-use glam::{DAffine2, DAffine3, DMat2, DQuat, DVec2, DVec3};
+use glam::{DAffine2, DAffine3, DMat2, DQuat, DVec3};
 use rvachev::{
     Blend, Bounds, Caps, Extrusion, GeneralisedSuperquadric, Gielis, Helix, LawTable, LinearLaw, MinimalSurface,
-    NetworkLattice, PlaneBounds, Polygon, Prism, Profile, RFunction, RegularPolygon, SheetLattice, SineWave,
-    SmoothStep, Solid, Superhyperboloid, Supershape, Supertoroid,
+    NetworkLattice, Polygon, Prism, Profile, RFunction, RegularPolygon, SheetLattice, SineWave, SmoothStep, Solid,
+    Superhyperboloid, Supershape, Supertoroid,
 };
 
 /// A solid by one of its numbers.
@@ -35,8 +34,8 @@ fn table() -> Vec<(&'static str, &'static str, Make)> {
     all
 }
 
-fn leaves() -> [(&'static str, &'static str, Make); 58] {
-    [
+fn leaves() -> Vec<(&'static str, &'static str, Make)> {
+    vec![
         ("sphere", "radius", |v| Solid::sphere(v)),
         ("box", "size.x", |v| Solid::cuboid([v, 1.0, 1.0])),
         ("box", "size.y", |v| Solid::cuboid([1.0, v, 1.0])),
@@ -94,11 +93,19 @@ fn leaves() -> [(&'static str, &'static str, Make); 58] {
         ("network lattice", "fraction", |v| {
             NetworkLattice { surface: MinimalSurface::Gyroid, cell: 1.0, fraction: v }.into()
         }),
+        #[cfg(feature = "formula")]
         ("formula", "bounds.min.y", |v| {
-            Solid::formula(&Tree::x(), Bounds { min: DVec3::new(-1.0, v, -1.0), max: DVec3::splat(9e8) })
+            Solid::formula(
+                &fidget::context::Tree::x(),
+                Bounds { min: DVec3::new(-1.0, v, -1.0), max: DVec3::splat(9e8) },
+            )
         }),
+        #[cfg(feature = "formula")]
         ("formula", "bounds.max.z", |v| {
-            Solid::formula(&Tree::x(), Bounds { min: DVec3::splat(-9e8), max: DVec3::new(1.0, 1.0, v) })
+            Solid::formula(
+                &fidget::context::Tree::x(),
+                Bounds { min: DVec3::splat(-9e8), max: DVec3::new(1.0, 1.0, v) },
+            )
         }),
         ("supershape", "equator.a", |v| {
             Supershape::new(Gielis { a: v, ..Gielis::new(5.0, 3.0, 3.0, 3.0) }, Gielis::circle()).into()
@@ -110,8 +117,8 @@ fn leaves() -> [(&'static str, &'static str, Make); 58] {
     ]
 }
 
-fn profiles() -> [(&'static str, &'static str, Make); 38] {
-    [
+fn profiles() -> Vec<(&'static str, &'static str, Make)> {
+    vec![
         ("circle", "radius", |v| Profile::circle(v).extrude(1.0)),
         ("superellipse", "semi_axes.x", |v| Profile::superellipse([v, 1.0], 1.0).extrude(1.0)),
         ("superellipse", "exponent", |v| Profile::superellipse([1.0, 1.0], v).extrude(1.0)),
@@ -143,9 +150,10 @@ fn profiles() -> [(&'static str, &'static str, Make); 38] {
         ("affine", "", |v| disc().affine(DAffine2::from_mat2(DMat2::from_diagonal([v, 1.0].into()))).extrude(1.0)),
         ("union", "alpha", |v| disc().union(&disc(), RFunction::Alpha(v)).extrude(1.0)),
         ("difference", "p", |v| disc().difference(&disc(), RFunction::P(v)).extrude(1.0)),
+        #[cfg(feature = "formula")]
         ("formula", "bounds.min.x", |v| {
-            let bounds = PlaneBounds { min: DVec2::new(v, -1.0), max: DVec2::splat(9e8) };
-            Profile::formula(&Tree::x(), bounds).extrude(1.0)
+            let bounds = rvachev::PlaneBounds { min: [v, -1.0].into(), max: [9e8; 2].into() };
+            Profile::formula(&fidget::context::Tree::x(), bounds).extrude(1.0)
         }),
         ("circle", "radius", |v| Profile::circle(v).revolve()),
         ("circle", "radius", |v| Profile::circle(v).column()),

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3, Vec3};
 use rvachev::{
     Background, Blend, Bounds, Camera, Image, Lights, Paint, Projection, RenderSettings, Run, Solid, Style, Transfer,
-    View, write_exr,
+    View,
 };
 
 use crate::golden::{ascii, same_as_golden};
@@ -170,6 +170,7 @@ fn silhouette_and_leaves_in_ascii() {
     assert!(found.trim_matches('\n') == expected.trim_matches('\n'), "found:\n{found}");
 }
 
+#[cfg(feature = "exr")]
 #[test]
 fn files_of_every_kind() {
     let solid = Solid::sphere(1.0);
@@ -206,7 +207,7 @@ fn files_of_every_kind() {
     std::fs::remove_dir_all(folder).unwrap();
 
     let mut too_small = [0u8; 10];
-    assert!(write_exr(&depth, &mut too_small[..]).is_err());
+    assert!(rvachev::write_exr(&depth, &mut too_small[..]).is_err());
 }
 
 #[test]

@@ -4,9 +4,8 @@
 //! ranges: a piece of the ray whose box the program says is all inside or all outside has no
 //! crossing, any other is halved, the nearer half first, until it is short.
 
-use fidget::context::Tree;
-use glam::{DVec2, DVec3};
-use rvachev::{Bounds, Camera, PlaneBounds, Profile, Program, Region, Run, Scene, Solid, Surface, Window};
+use glam::DVec3;
+use rvachev::{Bounds, Camera, Program, Region, Run, Scene, Solid, Surface, Window};
 
 use crate::models;
 use crate::support::{Random, frame_of, near, random_leaf, random_solid};
@@ -277,9 +276,13 @@ fn pictures_see_what_single_rays_hit() {
 }
 
 /// Rings and bars of a formula that chooses a lot, as a plate with a hole.
+#[cfg(feature = "formula")]
 #[test]
 fn pictures_of_formulas_see_what_single_rays_hit() {
-    let (x, y, _) = Tree::axes();
+    use glam::DVec2;
+    use rvachev::{PlaneBounds, Profile};
+
+    let (x, y, _) = fidget::context::Tree::axes();
     let ring = |cx: f32, cy: f32, r: f32| {
         let distance = ((x.clone() - cx).square() + (y.clone() - cy).square()).sqrt();
         (distance.clone() - r).max(-distance + 0.7 * r)

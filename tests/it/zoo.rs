@@ -1,10 +1,9 @@
 //! Random solids of every kind: all leaves, profiles, blends, lengths, maps and repetitions.
 
-use fidget::context::Tree;
 use glam::{DVec2, DVec3};
 use rvachev::{
-    Blend, Bounds, Caps, Extrusion, GeneralisedSuperquadric, Helix, LinearLaw, Polygon, Profile, SineWave, SmoothStep,
-    Solid, Superhyperboloid, Supertoroid,
+    Blend, Caps, Extrusion, GeneralisedSuperquadric, Helix, LinearLaw, Polygon, Profile, SineWave, SmoothStep, Solid,
+    Superhyperboloid, Supertoroid,
 };
 
 use crate::support::Random;
@@ -25,8 +24,9 @@ fn superquadric(random: &mut Random) -> Solid {
 }
 
 /// A formula of fidget's, with its box.
+#[cfg(feature = "formula")]
 fn formula(random: &mut Random) -> Solid {
-    let (x, y, z) = Tree::axes();
+    let (x, y, z) = fidget::context::Tree::axes();
     let a = random.range(0.3, 0.7);
     let (a, r) = (f64::from(a as f32), a as f32);
     let (tree, half) = match random.below(4) {
@@ -40,7 +40,12 @@ fn formula(random: &mut Random) -> Solid {
             ((across.square() + z.square()).sqrt() - 0.4 * r, DVec3::new(1.41 * a, 1.41 * a, 0.41 * a))
         }
     };
-    Solid::formula(&tree, Bounds::from_center(DVec3::ZERO, half))
+    Solid::formula(&tree, rvachev::Bounds::from_center(DVec3::ZERO, half))
+}
+
+#[cfg(not(feature = "formula"))]
+fn formula(random: &mut Random) -> Solid {
+    Solid::torus(random.range(0.3, 0.6), 0.2)
 }
 
 /// A bounded plane shape within 1 of the origin.

@@ -10,7 +10,7 @@ use crate::deform::{Bend, Cells, Elongate, Sectors, Taper, TaperBy, Twist, Twist
 use crate::profile::{Circle, Rectangle, RegularPolygon, Superellipse, Superpolygon};
 use crate::sweep::{HelixWarp, Opening, Revolution, Span};
 use crate::{
-    AnyField, AnyWarp, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Formula, GeneralisedSuperquadric, HalfSpace, Law,
+    AnyField, AnyWarp, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, GeneralisedSuperquadric, HalfSpace, Law,
     NetworkLattice, Prism, Pyramid, RoundedCuboid, SheetLattice, Slab, Sphere, Superellipsoid, Superhyperboloid,
     Supershape, Supertoroid, Torus, Wedge,
 };
@@ -39,7 +39,6 @@ erase!(
     Cuboid,
     Cylinder,
     Ellipsoid,
-    Formula,
     GeneralisedSuperquadric,
     HalfSpace,
     NetworkLattice,
@@ -62,6 +61,8 @@ erase!(
     Torus,
     Wedge,
 );
+#[cfg(feature = "formula")]
+erase!(dyn AnyField: crate::Formula);
 erase!(dyn AnyWarp: Bend, Cells, Elongate, HelixWarp, Revolution, Sectors, Taper, Twist);
 
 impl<X: Law, Y: Law> Erase<dyn AnyWarp> for TaperBy<X, Y> {

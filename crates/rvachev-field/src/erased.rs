@@ -15,6 +15,7 @@ use super::zone::{concave_range, concave_rise, mean_value_range};
 use super::{AnyWarp, Field, Kernel, ParamError, Way, Zone, bits, saturate, steepest};
 use crate::{Bounds, Dual, Interval, Real};
 use rvachev_num::kernel::{Element, Formula, Visit, run};
+#[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
 /// Where a leaf stands: the map from the points that it is given to its own frame, the factor
@@ -153,6 +154,7 @@ pub trait AnyField: Any + Debug + Send + Sync {
     fn narrowed(&self, _zone: &Zone) -> Option<Arc<dyn AnyField>> {
         None
     }
+    #[cfg(feature = "formula")]
     /// The value as an expression tree.
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a>;
     /// Values of a chunk, on lanes of `f32`.
@@ -354,6 +356,7 @@ impl<F: Field> AnyField for F {
         if least.is_finite() { least } else { steepest(self.slopes(zone.hull())) }
     }
 
+    #[cfg(feature = "formula")]
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
         self.eval(p)
     }
@@ -416,6 +419,7 @@ impl<W: Warp> AnyWarp for W {
         self.slopes(p)
     }
 
+    #[cfg(feature = "formula")]
     fn symbols<'a>(&self, p: [Symbol<'a>; 3]) -> [Symbol<'a>; 3] {
         self.inverse(p)
     }

@@ -22,6 +22,7 @@ mod erase;
 mod erased;
 mod faces;
 mod fold;
+#[cfg(feature = "formula")]
 mod formula;
 mod generalised;
 mod gielis;
@@ -69,7 +70,7 @@ pub use erase::Erase;
 pub use erased::{AnyField, Chunk, Placement, smallest_stretch, steep_slopes};
 pub use faces::concave_faces;
 pub use fold::{Joinable, Op};
-pub use formula::BOXES;
+#[cfg(feature = "formula")]
 pub use formula::{Formula, FormulaError};
 pub use generalised::GeneralisedSuperquadric;
 pub use gielis::{Gielis, Radius, Turns};
@@ -104,6 +105,9 @@ pub use zone::{Pieces, Way, Zone, bits, dot, largest_stretch, steepest};
 /// Coordinates beyond this many length units are evaluated as if they lay there, so that no
 /// intermediate result overflows single precision.
 pub const COORDINATE_LIMIT: f64 = 1e12;
+
+/// How many boxes a leaf that answers for many at once is asked about.
+pub const BOXES: usize = 16;
 
 /// Values saturate at this many length units, so that no chain of R-functions overflows.
 pub const VALUE_LIMIT: f64 = 1e18;

@@ -3,6 +3,7 @@
 //! What evaluates a graph is generic over these; the formulas behind them are compiled here, once
 //! for each number.
 
+#[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
 use crate::{AnyField, AnyWarp, Dual, Interval, Op, Real, Rule};
@@ -27,7 +28,9 @@ macro_rules! joined {
     )*};
 }
 
-joined!(f64, Interval, Dual<f64>, Dual<Interval>, Symbol<'_>);
+joined!(f64, Interval, Dual<f64>, Dual<Interval>);
+#[cfg(feature = "formula")]
+joined!(Symbol<'_>);
 
 impl Rule {
     /// One step of a join.
@@ -76,6 +79,7 @@ impl Number for Dual<Interval> {
     }
 }
 
+#[cfg(feature = "formula")]
 impl Number for Symbol<'_> {
     fn leaf(field: &dyn AnyField, p: [Self; 3]) -> Self {
         field.symbol(p)

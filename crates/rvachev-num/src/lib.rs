@@ -21,6 +21,7 @@ mod norm;
 mod real;
 mod run;
 pub mod signs;
+#[cfg(feature = "formula")]
 pub mod symbol;
 
 pub use bounds::{Bounds, column_times};

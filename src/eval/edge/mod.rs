@@ -35,6 +35,7 @@ use crate::solid::Operation;
 use crate::{Blend, Bounds, Dual, Interval, ParamError, Real};
 use rvachev_field::{AnyField, Chunk, Way, Zone, steep_slopes};
 use rvachev_num::kernel::CHUNK;
+#[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
 /// The blend of two operands that are given as programs.
@@ -364,6 +365,7 @@ impl AnyField for EdgeBlend {
         self.steepest_in(zone)
     }
 
+    #[cfg(feature = "formula")]
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
         // Programs with a fillet are not lowered; its join stands in for it.
         let [a, b] = [0, 1].map(|i| self.operands[i].evaluate(p, &mut Vec::new()) * self.signs[i]);

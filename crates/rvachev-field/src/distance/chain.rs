@@ -9,6 +9,7 @@ use super::super::pull::{product, pull};
 use super::super::{AnyField, AnyWarp, Chunk, Placement, Zone};
 use crate::{Dual, Interval};
 use rvachev_num::kernel::CHUNK;
+#[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
 /// The maps from the frame of the points to that of the leaf, and the leaf.
@@ -43,6 +44,7 @@ impl Chain {
         self.leaf.value(Placement::new(&self.to_leaf, 1.0, 0.0).apply(local))
     }
 
+    #[cfg(feature = "formula")]
     pub(super) fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
         let mut local = p;
         for (map, warp) in &self.maps {

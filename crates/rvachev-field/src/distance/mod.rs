@@ -48,6 +48,7 @@ use self::step::Plane;
 use super::{AnyField, AnyWarp, Chunk, ParamError, VALUE_LIMIT, Way, Zone, smallest_stretch, steep_slopes};
 use crate::{Bounds, Dual, Interval};
 use rvachev_num::kernel::CHUNK;
+#[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
 /// By how much of itself what is found at a convex leaf may exceed the true distance, and by
@@ -240,6 +241,7 @@ impl AnyField for Distance {
     }
 
     /// To first order: the leaf's value by the length of its gradient. The search does not
+    #[cfg(feature = "formula")]
     /// fit an expression tree.
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
         Symbol::over_slope(p, |p| self.chain.symbol(p))

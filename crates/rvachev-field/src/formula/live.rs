@@ -12,8 +12,9 @@
 //! register is then held to the end.
 
 use super::code::Op;
-use super::many::{BOXES, Choice};
+use super::many::Choice;
 use super::plan::{Plan, Slot};
+use crate::BOXES;
 
 /// What narrowing leaves of the operations, in all boxes at once.
 pub(super) struct Live {

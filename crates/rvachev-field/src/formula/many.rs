@@ -10,10 +10,7 @@ use fidget::context::{BinaryOpcode, UnaryOpcode};
 
 use super::arithmetic::Arithmetic;
 use super::sure::Sure;
-use crate::Interval;
-
-/// So many boxes are walked at once.
-pub const BOXES: usize = 16;
+use crate::{BOXES, Interval};
 
 /// The ranges of one value in all boxes.
 #[derive(Clone, Copy)]

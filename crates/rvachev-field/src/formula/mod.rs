@@ -46,7 +46,6 @@ use std::sync::{Arc, OnceLock};
 use fidget::context::Tree;
 
 use self::code::{Code, Flaw};
-pub use self::many::BOXES;
 use self::native::Native;
 pub use self::text::FormulaError;
 use super::{ParamError, check};

@@ -18,10 +18,10 @@ use fidget::context::{BinaryOpcode, UnaryOpcode};
 use super::arithmetic::{each_binary, each_unary};
 use super::code::{Code, Op};
 use super::live::Live;
-use super::many::{BOXES, Choice, Doubt, Many, binary, unary};
+use super::many::{Choice, Doubt, Many, binary, unary};
 use super::plan::{Plan, Source, Step};
 use super::sure::Sure;
-use crate::Interval;
+use crate::{BOXES, Interval};
 use rvachev_num::kernel::{Task, dispatched};
 
 /// A walk over up to [`BOXES`] boxes: its ranges and choices.

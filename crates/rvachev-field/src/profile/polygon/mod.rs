@@ -25,6 +25,7 @@ use edge::Edge;
 use near::{NearEdges, Reference};
 use patch::Patch;
 use rvachev_num::kernel::Element;
+#[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 use tree::Tree;
 
@@ -354,6 +355,7 @@ impl AnyField for Polygon {
         Some(Arc::new(leaf))
     }
 
+    #[cfg(feature = "formula")]
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
         NearEdges::symbol_of(&self.0.edges, p)
     }
