@@ -74,7 +74,7 @@ fn program<'a>(name: &'static str, program: &Program, cube: &Bounds, points: &'a
     let mut evaluator = Evaluator::new();
     let mut out = vec![0.0; points.len()];
     let [x, y, z] = &points.single;
-    (name, Box::new(move || evaluator.values(&tape, x, y, z, black_box(&mut out))))
+    (name, Box::new(move || evaluator.values(&tape, x, y, z, black_box(&mut out)).unwrap()))
 }
 
 fn fidget_values<'a, F: MathFunction + Function + 'a>(
@@ -227,7 +227,7 @@ fn gradients() {
     let [x, y, z] = &points.single;
     let ours = move || {
         let [value, dx, dy, dz] = &mut out;
-        evaluator.gradients(&tape, x, y, z, Gradients { value, dx, dy, dz });
+        evaluator.gradients(&tape, x, y, z, Gradients { value, dx, dy, dz }).unwrap();
         black_box(&out);
     };
     let mut contestants: Vec<Contestant<'_>> = vec![("gradients", Box::new(ours))];

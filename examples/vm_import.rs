@@ -121,7 +121,7 @@ impl Slice {
         }
         let [mut value, mut dx, mut dy, mut dz] = [[0.0f32; COUNT]; 4];
         let out = Gradients { value: &mut value, dx: &mut dx, dy: &mut dy, dz: &mut dz };
-        self.evaluator.gradients(&tape, &x, &y, &[0.0; COUNT], out);
+        self.evaluator.gradients(&tape, &x, &y, &[0.0; COUNT], out).unwrap();
         let pixel = 2.0 * REACH / SLICE as f64;
         for (i, value) in value.iter().enumerate() {
             let slope = f64::from(dx[i].hypot(dy[i])).max(1e-3);

@@ -381,11 +381,14 @@ mod solid;
 mod space;
 mod surface;
 
-pub use eval::{Evaluator, Gradients, Hit, Owner, Palette, Program, Region, Tape};
+pub use eval::{Evaluator, Gradients, Hit, Owner, Palette, Program, Region, Tape, UnequalSlices};
+#[cfg(feature = "formula")]
+pub use fidget;
 pub use geom::{
     Camera, CameraError, Coordinates, Corner, Image, ImageError, Intrinsics, Mesh, MeshError, Noise, Plane, PointCloud,
     PointCloudError, Polyline, Projection, QuadMesh, RangeImage, RangeImageError, Rays, View,
 };
+pub use glam;
 #[cfg(feature = "threemf")]
 pub use io::write_3mf;
 pub use io::{
@@ -411,9 +414,6 @@ pub use rvachev_field::{
     BinomialSeries, CurveSpread, ExactExplicit, LogTable, PlaneSymmetry, PointError, PointMethod, PointSettings,
     PowerTables, ProductTables, RawParametric, SeriesExplicit, Symmetry, reflect, reflect_plane,
 };
-#[cfg(feature = "formula")]
-pub use fidget;
-pub use glam;
 
 #[doc(inline)]
 pub use rvachev_field::{

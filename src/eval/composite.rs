@@ -216,14 +216,14 @@ impl Locals {
 
     pub(super) fn values(&self, evaluator: &mut Evaluator, tape: &Tape, out: &mut [f32]) {
         let [x, y, z] = self.coordinates();
-        evaluator.values(tape, x, y, z, out);
+        evaluator.shortest_values(tape, [x, y, z], out);
     }
 
     pub(super) fn gradients(&self, evaluator: &mut Evaluator, tape: &Tape) -> Slopes {
         let mut slopes = Slopes::default();
         let Slopes { value, gradient: [dx, dy, dz] } = &mut slopes;
         let [x, y, z] = self.coordinates();
-        evaluator.gradients(tape, x, y, z, Gradients { value, dx, dy, dz });
+        evaluator.shortest_gradients(tape, [x, y, z], Gradients { value, dx, dy, dz });
         slopes
     }
 }

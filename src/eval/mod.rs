@@ -38,7 +38,7 @@ pub use palette::Palette;
 pub use program::{Program, Region};
 pub use query::Owner;
 pub use ray::Hit;
-pub use tape::{Evaluator, Gradients, Tape};
+pub use tape::{Evaluator, Gradients, Tape, UnequalSlices};
 
 /// To so many boxes a program is best narrowed in one go, if any of its leaves are dear.
 pub(crate) use rvachev_field::BOXES as BOXES_AT_ONCE;

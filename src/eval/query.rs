@@ -62,7 +62,7 @@ impl Solid {
         let axis = |axis: usize| -> Vec<f64> { points.iter().map(|p| limited(*p)[axis]).collect() };
         let (x, y, z) = (axis(0), axis(1), axis(2));
         let mut values = vec![0.0; points.len()];
-        Evaluator::new().values_f64(&tape, &x, &y, &z, &mut values);
+        Evaluator::new().shortest_values_f64(&tape, [&x, &y, &z], &mut values);
         Ok(values)
     }
 

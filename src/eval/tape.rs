@@ -6,6 +6,7 @@
 
 mod rivals;
 mod seen;
+mod slices;
 
 use std::sync::Arc;
 
@@ -13,6 +14,7 @@ use glam::{DAffine3, DVec3};
 
 use self::rivals::Rivals;
 use self::seen::Seen;
+pub use self::slices::UnequalSlices;
 use super::program::Program;
 use super::register::{Step, schedule};
 use crate::Bounds;
@@ -35,9 +37,9 @@ use rvachev_num::kernel::{CHUNK, Element};
 /// // Points are relative to the region's centre, here (1, 0, 0).
 /// let (x, zero) = ([0.0, 0.5, 2.0], [0.0; 3]);
 /// let mut values = [0.0; 3];
-/// Evaluator::new().values(&tape, &x, &zero, &zero, &mut values);
+/// Evaluator::new().values(&tape, &x, &zero, &zero, &mut values)?;
 /// assert_eq!(values, [1.0, 0.5, -1.0]);
-/// # Ok::<(), rvachev::SolidError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone)]
 pub struct Tape {
@@ -198,10 +200,26 @@ impl Evaluator {
         Evaluator::default()
     }
 
-    /// Values at points relative to the tape's origin. As many points are evaluated as the
-    /// shortest of the slices holds. Finite coordinates give finite values.
-    pub fn values(&mut self, tape: &Tape, x: &[f32], y: &[f32], z: &[f32], out: &mut [f32]) {
-        execute::<Values<f32>, 1>(tape, &mut self.single, &[], [x, y, z], [out]);
+    /// Values at points relative to the tape's origin. Finite coordinates give finite values.
+    ///
+    /// # Errors
+    /// [`UnequalSlices`] if the slices are not of one length; nothing is written then.
+    pub fn values(
+        &mut self,
+        tape: &Tape,
+        x: &[f32],
+        y: &[f32],
+        z: &[f32],
+        out: &mut [f32],
+    ) -> Result<(), UnequalSlices> {
+        UnequalSlices::check(x.len(), [("y", y.len()), ("z", z.len()), ("out", out.len())])?;
+        self.shortest_values(tape, [x, y, z], out);
+        Ok(())
+    }
+
+    /// Values of as many points as the shortest of the slices holds.
+    pub(crate) fn shortest_values(&mut self, tape: &Tape, points: [&[f32]; 3], out: &mut [f32]) {
+        execute::<Values<f32>, 1>(tape, &mut self.single, &[], points, [out]);
     }
 
     /// The same for points in `region`, which is not relative to the origin; leaves of a union that
@@ -213,14 +231,50 @@ impl Evaluator {
 
     /// [`values`](Evaluator::values) on lanes of `f64`: as accurate as
     /// [`Program::value`], to some 10⁻¹⁴ of the solid's size.
-    pub fn values_f64(&mut self, tape: &Tape, x: &[f64], y: &[f64], z: &[f64], out: &mut [f64]) {
-        execute::<Values<f64>, 1>(tape, &mut self.double, &[], [x, y, z], [out]);
+    ///
+    /// # Errors
+    /// [`UnequalSlices`] if the slices are not of one length; nothing is written then.
+    pub fn values_f64(
+        &mut self,
+        tape: &Tape,
+        x: &[f64],
+        y: &[f64],
+        z: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), UnequalSlices> {
+        UnequalSlices::check(x.len(), [("y", y.len()), ("z", z.len()), ("out", out.len())])?;
+        self.shortest_values_f64(tape, [x, y, z], out);
+        Ok(())
+    }
+
+    /// The same of as many points as the shortest of the slices holds.
+    pub(crate) fn shortest_values_f64(&mut self, tape: &Tape, points: [&[f64]; 3], out: &mut [f64]) {
+        execute::<Values<f64>, 1>(tape, &mut self.double, &[], points, [out]);
     }
 
     /// Values and gradients at points relative to the tape's origin.
-    pub fn gradients(&mut self, tape: &Tape, x: &[f32], y: &[f32], z: &[f32], out: Gradients<'_>) {
+    ///
+    /// # Errors
+    /// [`UnequalSlices`] if the slices are not of one length; nothing is written then.
+    pub fn gradients(
+        &mut self,
+        tape: &Tape,
+        x: &[f32],
+        y: &[f32],
+        z: &[f32],
+        out: Gradients<'_>,
+    ) -> Result<(), UnequalSlices> {
+        let Gradients { value, dx, dy, dz } = &out;
+        let lengths = [("y", y), ("z", z), ("value", &**value), ("dx", &**dx), ("dy", &**dy), ("dz", &**dz)];
+        UnequalSlices::check(x.len(), lengths.map(|(name, slice)| (name, slice.len())))?;
+        self.shortest_gradients(tape, [x, y, z], out);
+        Ok(())
+    }
+
+    /// The same of as many points as the shortest of the slices holds.
+    pub(crate) fn shortest_gradients(&mut self, tape: &Tape, points: [&[f32]; 3], out: Gradients<'_>) {
         let Gradients { value, dx, dy, dz } = out;
-        execute::<Slopes, 4>(tape, &mut self.single, &[], [x, y, z], [value, dx, dy, dz]);
+        execute::<Slopes, 4>(tape, &mut self.single, &[], points, [value, dx, dy, dz]);
     }
 }
 

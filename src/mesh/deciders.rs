@@ -170,7 +170,7 @@ impl Deciders {
     fn evaluate(&mut self, evaluator: &mut Evaluator, rival: &Tape) {
         let [x, y, z] = &self.points;
         self.value.resize(x.len(), 0.0);
-        evaluator.values(rival, x, y, z, &mut self.value);
+        evaluator.shortest_values(rival, [x, y, z], &mut self.value);
     }
 
     /// The roots of some of the edges in `places`.

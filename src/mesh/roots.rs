@@ -124,7 +124,7 @@ impl RootFinder {
             list.resize(count, 0.0);
         }
         let [value, dx, dy, dz] = &mut self.gradient;
-        evaluator.gradients(tape, x, y, z, Gradients { value, dx, dy, dz });
+        evaluator.shortest_gradients(tape, [x, y, z], Gradients { value, dx, dy, dz });
         self.slope.resize(count, 0.0);
         self.seen.clone_from(&self.t);
         let (value, dx, dy, dz) = (&value[..count], &dx[..count], &dy[..count], &dz[..count]);
@@ -264,7 +264,7 @@ impl RootFinder {
             }
         }
         self.exact.resize(edges.len(), 0.0);
-        evaluator.values_f64(tape, x, y, z, &mut self.exact);
+        evaluator.shortest_values_f64(tape, [x, y, z], &mut self.exact);
     }
 
     /// The values at the next points of the open edges, in their order.
@@ -290,7 +290,7 @@ impl RootFinder {
             }
             return;
         }
-        evaluator.values_f64(tape, x, y, z, &mut self.exact[..x.len()]);
+        evaluator.shortest_values_f64(tape, [x, y, z], &mut self.exact[..x.len()]);
     }
 
     /// New normals for the roots that have moved.
@@ -314,7 +314,7 @@ impl RootFinder {
         }
         let [x, y, z] = &self.single;
         let [value, dx, dy, dz] = &mut self.gradient;
-        evaluator.gradients(tape, x, y, z, Gradients { value, dx, dy, dz });
+        evaluator.shortest_gradients(tape, [x, y, z], Gradients { value, dx, dy, dz });
         for (at, &n) in self.open.iter().enumerate() {
             out[n as usize].normal = outward([dx[at], dy[at], dz[at]]);
         }

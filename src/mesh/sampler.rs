@@ -203,7 +203,7 @@ impl Sampler for SolidSampler<'_> {
         place(points.iter().map(|p| (*p - origin).as_vec3a()), single);
         values.resize(points.len(), 0.0);
         let [x, y, z] = &*single;
-        evaluator.values(tape, x, y, z, values);
+        evaluator.shortest_values(tape, [x, y, z], values);
         out.extend(values.iter().map(|value| *value > 0.0));
         true
     }
@@ -268,7 +268,7 @@ impl Sampler for SolidSampler<'_> {
         }
         let [x, y, z] = &scratch.single;
         let [value, dx, dy, dz] = &mut scratch.slopes;
-        scratch.evaluator.gradients(tape, x, y, z, Gradients { value, dx, dy, dz });
+        scratch.evaluator.shortest_gradients(tape, [x, y, z], Gradients { value, dx, dy, dz });
         let gradients = dx.iter().zip(dy).zip(dz).map(|((dx, dy), dz)| Vec3A::new(*dx, *dy, *dz));
         out.extend(value.iter().zip(gradients).map(|(&value, gradient)| Slope { value, gradient }));
         true

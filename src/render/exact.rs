@@ -96,7 +96,7 @@ impl Marcher {
         // The largest of all values decides a union, of all negatives an intersection.
         let sign = if op == Op::Or { 1.0 } else { -1.0 };
         for (number, rival) in rivals {
-            self.evaluator.values_f64(&rival, x, y, z, v);
+            self.evaluator.shortest_values_f64(&rival, [x, y, z], v);
             for (((ray, _), best), value) in self.unowned.iter().zip(&mut self.best).zip(&*v) {
                 if sign * value > *best {
                     *best = sign * value;
@@ -123,7 +123,7 @@ impl Marcher {
             z.push(p.z);
         }
         v.resize(found.len(), 0.0);
-        self.evaluator.values_f64(job.tape, x, y, z, v);
+        self.evaluator.shortest_values_f64(job.tape, [x, y, z], v);
     }
 
     fn surface(&mut self, job: &Job<'_>, found: &Found, surfaces: &mut [Surface]) {

@@ -251,7 +251,7 @@ impl Maker {
             kept => &mut kept.insert((program.clone(), Tape::new(program, bounds))).1,
         };
         self.values.resize(nodes[0].len(), 0.0);
-        self.evaluator.values(tape, &nodes[0], &nodes[1], &nodes[2], &mut self.values);
+        self.evaluator.shortest_values(tape, [&nodes[0], &nodes[1], &nodes[2]], &mut self.values);
         Block::new(&self.values)
     }
 }

@@ -162,10 +162,10 @@ impl Marcher {
             *z = lane.start[2] + lane.at * lane.direction[2];
         }
         if alone {
-            self.evaluator.values(job.tape, x, y, z, value);
+            self.evaluator.shortest_values(job.tape, [x, y, z], value);
             [dx, dy, dz].into_iter().for_each(|list| list.fill(f32::NAN));
         } else {
-            self.evaluator.gradients(job.tape, x, y, z, Gradients { value, dx, dy, dz });
+            self.evaluator.shortest_gradients(job.tape, [x, y, z], Gradients { value, dx, dy, dz });
         }
     }
 

@@ -130,7 +130,7 @@ impl Slice {
             let at = |axis: usize| -> Vec<f64> {
                 columns.iter().map(|u| self.plane.point(DVec2::new(*u, *v))[axis]).collect()
             };
-            evaluator.values_f64(&tape, &at(0), &at(1), &at(2), values);
+            evaluator.shortest_values_f64(&tape, [&at(0), &at(1), &at(2)], values);
         });
         values
     }

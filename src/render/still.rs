@@ -186,7 +186,7 @@ impl Pass<'_> {
         self.mask.place(&grid, tape.origin(), (top..bottom, left, width));
         let Mask { evaluator, points: [x, y, z], values } = &mut *self.mask;
         values.resize(count + STRIP, 0.0);
-        evaluator.values(tape, &x[..count], &y[..count], &z[..count], &mut values[..count]);
+        evaluator.shortest_values(tape, [&x[..count], &y[..count], &z[..count]], &mut values[..count]);
         let columns = self.columns(&cell.bounds, columns);
         let doubt = tape.roundoff() as f32;
         for (number, row) in (top..bottom).enumerate() {

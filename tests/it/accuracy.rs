@@ -60,7 +60,7 @@ impl Worst {
         let tape = Tape::new(&program, region);
         let (seen, [x, y, z]) = rounded(points, tape.origin());
         let mut values = vec![0.0f32; seen.len()];
-        Evaluator::new().values(&tape, &x, &y, &z, &mut values);
+        Evaluator::new().values(&tape, &x, &y, &z, &mut values).unwrap();
         for (p, got) in seen.into_iter().zip(values) {
             let want = program.value(p);
             assert!(want.is_finite() && got.is_finite(), "{solid:?} at {p}: {got}, want {want}");
@@ -271,7 +271,7 @@ fn lanes_of_f64_are_as_accurate_far_away() {
     for _ in 0..1000 {
         let p = random.vector(-2e-3, 2e-3);
         let mut value = [0.0];
-        Evaluator::new().values_f64(&tape, &[p.x], &[p.y], &[p.z], &mut value);
+        Evaluator::new().values_f64(&tape, &[p.x], &[p.y], &[p.z], &mut value).unwrap();
         // The origin of the region is that of the part but for its rounding.
         let want = part.value(p + (tape.origin() - far)).unwrap();
         assert!((value[0] - want).abs() < 1e-9 * 1e-3, "{} at {p}, want {want}", value[0]);

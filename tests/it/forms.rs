@@ -425,7 +425,7 @@ fn gradients_in_bulk_agree() {
         let (seen, [x, y, z]) = rounded(&points, tape.origin());
         let mut out: [Vec<f32>; 4] = std::array::from_fn(|_| vec![0.0; points.len()]);
         let [value, dx, dy, dz] = &mut out;
-        Evaluator::new().gradients(&tape, &x, &y, &z, Gradients { value, dx, dy, dz });
+        Evaluator::new().gradients(&tape, &x, &y, &z, Gradients { value, dx, dy, dz }).unwrap();
         let mut errors = Vec::new();
         for (i, &p) in seen.iter().enumerate() {
             let (value, want) = program.gradient(p);
@@ -495,7 +495,7 @@ fn finite_points_have_finite_values_and_gradients() {
         let (seen, [x, y, z]) = rounded(&single, tape.origin());
         let mut out: [Vec<f32>; 4] = std::array::from_fn(|_| vec![0.0; seen.len()]);
         let [value, dx, dy, dz] = &mut out;
-        Evaluator::new().gradients(&tape, &x, &y, &z, Gradients { value, dx, dy, dz });
+        Evaluator::new().gradients(&tape, &x, &y, &z, Gradients { value, dx, dy, dz }).unwrap();
         for (i, p) in seen.iter().enumerate() {
             let all = out.each_ref().map(|column| column[i]);
             assert!(all.iter().all(|v| v.is_finite()), "{} at {p}: {all:?} on lanes", case.name);
@@ -513,7 +513,7 @@ fn lanes_take_slices_of_any_length() {
     let mut evaluator = Evaluator::new();
     for count in [0, 1, 2, 7, 8, 15, 16, 17, 63, 64, 65, 255, 256, 257, 1000] {
         let mut values = vec![9.0; 1000];
-        evaluator.values_f64(&tape, &x[..count], &y, &z, &mut values);
+        evaluator.values_f64(&tape, &x[..count], &y, &z, &mut values).unwrap();
         for (i, v) in values.iter().enumerate() {
             let want = if i < count { solid.value(points[i]).unwrap() } else { 9.0 };
             assert!((v - want).abs() < 1e-12, "{i} of {count}: {v}, want {want}");

@@ -39,7 +39,7 @@ fn compare(name: &str, bounds: Bounds, half: f64) {
     let [x, y, z]: [Vec<f32>; 3] = [0, 1, 2].map(|axis| points.iter().map(|p| p[axis] as f32).collect());
     let lanes = Tape::new(&solid.field_program().unwrap(), &Bounds::new(DVec3::splat(-half), DVec3::splat(half)));
     let mut values = vec![0.0; points.len()];
-    Evaluator::new().values(&lanes, &x, &y, &z, &mut values);
+    Evaluator::new().values(&lanes, &x, &y, &z, &mut values).unwrap();
     println!("{name}: single precision is within {:e}", lanes.roundoff());
     assert!(lanes.roundoff() < 1e-4 * half.max(1.0).powi(4), "{:e}", lanes.roundoff());
     for (p, ours) in points.iter().zip(values) {

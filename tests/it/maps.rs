@@ -177,7 +177,7 @@ fn forms_agree(random: &mut Random, solid: &Solid, tolerance: f64) {
         let (seen, [x, y, z]) = rounded(&points, tape.origin());
         let mut out: [Vec<f32>; 4] = std::array::from_fn(|_| vec![0.0; points.len()]);
         let [value, dx, dy, dz] = &mut out;
-        Evaluator::new().gradients(&tape, &x, &y, &z, Gradients { value, dx, dy, dz });
+        Evaluator::new().gradients(&tape, &x, &y, &z, Gradients { value, dx, dy, dz }).unwrap();
         let mut off = 0;
         for (i, p) in seen.iter().enumerate() {
             let got = DVec3::new(f64::from(out[1][i]), f64::from(out[2][i]), f64::from(out[3][i]));

@@ -163,7 +163,7 @@ impl Walker<'_> {
         }
         let [x, y, z] = &local;
         let mut values = vec![0.0; x.len()];
-        self.evaluator.values_f64(&tape, x, y, z, &mut values);
+        self.evaluator.values_f64(&tape, x, y, z, &mut values).unwrap();
         let inside = values[0] > 0.0;
         values.iter().any(|v| (*v > 0.0) != inside)
     }

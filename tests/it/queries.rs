@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_4, PI};
 
 use glam::DVec3;
-use rvachev::{Bounds, RFunction, Solid, Superellipsoid};
+use rvachev::{Bounds, Evaluator, Gradients, RFunction, Solid, Superellipsoid, Tape};
 
 use crate::support::{Random, corpus, near, near_point, random_solid, value};
 
@@ -364,4 +364,18 @@ fn points_that_are_not_numbers_are_outside() {
         assert_eq!(solid.contains(p), Ok(false), "{p}");
         assert!(!value(&solid, p).is_nan(), "{p}");
     }
+}
+
+#[test]
+fn slices_of_unequal_length_are_refused() {
+    let program = Solid::sphere(2.0).field_program().unwrap();
+    let tape = Tape::new(&program, &Bounds::new(DVec3::splat(-1.0), DVec3::ONE));
+    let (x, short, mut out) = ([0.5; 3], [0.5; 2], [7.0; 3]);
+    let error = Evaluator::new().values(&tape, &x, &x, &short, &mut out).unwrap_err();
+    assert_eq!(error.to_string(), "z holds 2 numbers, but x 3: one for each point is allowed");
+    assert_eq!(out, [7.0; 3]);
+    let [mut value, mut dx, mut dy, mut dz] = [[0.0; 3], [0.0; 3], [0.0; 3], [0.0; 3]];
+    let gradients = Gradients { value: &mut value, dx: &mut dx, dy: &mut dy[..1], dz: &mut dz };
+    assert_eq!(Evaluator::new().gradients(&tape, &x, &x, &x, gradients).unwrap_err().name, "dy");
+    assert!(Evaluator::new().values_f64(&tape, &[0.0], &[0.0], &[], &mut [0.0]).is_err());
 }

@@ -458,7 +458,9 @@ fn random_parameters_give_finite_numbers_and_sound_ranges() {
         let [x, y, z] = [0, 1, 2].map(|axis| points.iter().map(|p| p[axis] as f32).collect::<Vec<f32>>());
         let mut out: [Vec<f32>; 4] = std::array::from_fn(|_| vec![0.0; points.len()]);
         let [value, dx, dy, dz] = &mut out;
-        Evaluator::new().gradients(&Tape::new(&program, &Bounds::ALL), &x, &y, &z, Gradients { value, dx, dy, dz });
+        Evaluator::new()
+            .gradients(&Tape::new(&program, &Bounds::ALL), &x, &y, &z, Gradients { value, dx, dy, dz })
+            .unwrap();
         for (i, p) in points.iter().enumerate() {
             let all = out.each_ref().map(|column| column[i]);
             assert!(all.iter().all(|v| v.is_finite()), "{solid:?} at {p}: {all:?} on lanes");

@@ -225,7 +225,7 @@ pub fn lanes32(program: &Program, region: &Bounds, points: &[DVec3]) -> (Vec<DVe
     let tape = Tape::new(program, region);
     let (seen, [x, y, z]) = rounded(points, tape.origin());
     let mut values = vec![0.0; points.len()];
-    Evaluator::new().values(&tape, &x, &y, &z, &mut values);
+    Evaluator::new().values(&tape, &x, &y, &z, &mut values).unwrap();
     (seen, values.into_iter().map(f64::from).collect())
 }
 
@@ -235,7 +235,7 @@ pub fn lanes64(program: &Program, region: &Bounds, points: &[DVec3]) -> Vec<f64>
     let local: Vec<DVec3> = points.iter().map(|p| *p - tape.origin()).collect();
     let [x, y, z] = columns(&local);
     let mut values = vec![0.0; points.len()];
-    Evaluator::new().values_f64(&tape, &x, &y, &z, &mut values);
+    Evaluator::new().values_f64(&tape, &x, &y, &z, &mut values).unwrap();
     values
 }
 
