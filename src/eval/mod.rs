@@ -25,6 +25,7 @@ mod pass;
 mod point;
 mod program;
 mod query;
+mod ranges;
 mod ray;
 mod register;
 mod repeat;

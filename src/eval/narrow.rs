@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use super::pass::{Asked, Pass, Sign};
 use super::program::{Edge, Kind, Node, Program, Region};
+use super::ranges::{hull_of, joined};
 use super::scene::Instance;
 use crate::{Bounds, Interval};
 use rvachev_field::{AnyField, Pieces, Zone};
@@ -282,24 +283,4 @@ impl Program {
         }
         Program::assemble(self.scene.clone(), kept, list, moved(&numbers, root), simpler)
     }
-}
-
-/// The range of a node from those of its operands.
-pub(super) fn joined(kind: &Kind, mut operands: impl Iterator<Item = Interval>) -> Interval {
-    let Some(first) = operands.next() else { return Interval::ALL };
-    match kind {
-        Kind::Shift(by) => first + *by,
-        Kind::Join { op, rule, .. } => operands.fold(first, |all, next| rule.join(*op, all, next)),
-        Kind::Leaf(_) | Kind::Edge { .. } => Interval::ALL,
-    }
-}
-
-/// The zone's hull as a box, a hair larger, so that what only touches it counts as met.
-pub(super) fn hull_of(zone: &Zone) -> Bounds {
-    let hull = zone.hull();
-    let low = glam::DVec3::from_array(hull.map(Interval::lo));
-    let high = glam::DVec3::from_array(hull.map(Interval::hi));
-    let margin = 1e-9 * (high - low).length() + 1e-13 * (low.abs() + high.abs()).element_sum();
-    let margin = if margin.is_finite() { margin } else { 0.0 };
-    Bounds::new(low - margin, high + margin)
 }

@@ -3,8 +3,8 @@
 
 use std::sync::Arc;
 
-use super::narrow::{hull_of, joined};
 use super::program::{Edge, Kind, Node, Program};
+use super::ranges::{hull_of, joined};
 use super::scene::Instance;
 use crate::{Bounds, Interval};
 use rvachev_field::Op;

@@ -17,7 +17,8 @@ use super::Distance;
 use super::chain::{Column, columns, columns_mut};
 use super::feet::Foot;
 use super::lanes::Lanes;
-use super::solve::{NONE, Prepared, joined, step_to};
+use super::lanes::NONE;
+use super::solve::{Prepared, joined, step_to};
 use super::step::{BEHIND, CutNear, Follow, Start};
 use rvachev_num::kernel::{CHUNK, Formula, run};
 

@@ -1,8 +1,9 @@
 //! Some of the points of a chunk, close together: work goes on only where it has to.
 
 use super::chain::{Column, columns};
-use super::solve::NONE;
 use rvachev_num::kernel::CHUNK;
+
+pub(super) const NONE: Column = [0.0; CHUNK];
 
 /// Lanes run over multiples of this many points.
 const GRANULE: usize = 64;

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DVec3};
 
 use super::chain::{Column, Placed, columns, columns_mut};
-use super::lanes::Lanes;
+use super::lanes::{Lanes, NONE};
 use super::step::{Back, Cut, Plane, Shift, Slide, Start};
 use super::{Distance, Shape, rows};
 use crate::Placement;
@@ -113,8 +113,6 @@ pub(super) struct Prepared<'a> {
     scale: f64,
     shift: f64,
 }
-
-pub(super) const NONE: Column = [0.0; CHUNK];
 
 impl Prepared<'_> {
     /// Distance and gradient, scaled, with respect to the points.

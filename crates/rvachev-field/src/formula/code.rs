@@ -8,16 +8,8 @@ use fidget::context::{self, BinaryOpcode, Context, Tree, TreeOp, UnaryOpcode};
 use fidget::var::Var;
 
 use super::arithmetic::Arithmetic;
+use super::op::Op;
 use super::plan::Plan;
-
-/// An operation; operands are named by their position in the list.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Op {
-    Axis(u8),
-    Const(f64),
-    Unary(UnaryOpcode, u32),
-    Binary(BinaryOpcode, u32, u32),
-}
 
 /// What makes a formula no solid.
 #[derive(Clone, Copy, Debug, PartialEq)]

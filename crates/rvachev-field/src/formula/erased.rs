@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::DAffine3;
 
+use super::gradients::STEEPEST;
 use super::slope::Slope;
 use super::{Formula, bulk, gradients};
 use crate::{AnyField, Chunk, ParamError, VALUE_LIMIT, Zone};
@@ -24,9 +25,6 @@ pub(super) fn turned(value: f64) -> f64 {
 fn turned_slope(slope: f64) -> f64 {
     if slope.is_nan() { 0.0 } else { (-slope).clamp(-f64::from(STEEPEST), f64::from(STEEPEST)) }
 }
-
-/// Steeper derivatives are of no use as a direction, and their squares would overflow.
-pub(super) const STEEPEST: f32 = 1e15;
 
 impl AnyField for Formula {
     fn signature(&self) -> String {

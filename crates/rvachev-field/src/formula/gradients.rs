@@ -10,12 +10,14 @@ use fidget::context::{BinaryOpcode, UnaryOpcode};
 use super::Formula;
 use super::arithmetic::{Arithmetic, Float, each_binary, each_unary};
 use super::bulk::{self, SINGLE};
-use super::erased::STEEPEST;
 use super::plan::{Plan, Source, Step};
 use super::slope::Slope;
 use crate::Real;
 use crate::{Chunk, Placement};
 use rvachev_num::kernel::{self, CHUNK, Task, dispatched};
+
+/// Steeper derivatives are of no use as a direction, and their squares would overflow.
+pub(super) const STEEPEST: f32 = 1e15;
 
 /// A value and its derivatives; only those along the axes of `moves`, a bit each, are not 0.
 #[derive(Default)]

@@ -11,8 +11,8 @@
 //! is met, unless the value also stands in for operations that are equal to it, which others need: its
 //! register is then held to the end.
 
-use super::code::Op;
 use super::many::Choice;
+use super::op::Op;
 use super::plan::{Plan, Slot};
 use crate::BOXES;
 

@@ -31,6 +31,7 @@ mod live;
 mod many;
 mod narrow;
 mod native;
+mod op;
 mod plan;
 mod roundoff;
 mod slope;

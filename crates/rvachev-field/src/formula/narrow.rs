@@ -12,8 +12,9 @@ use fidget::context::{BinaryOpcode, UnaryOpcode};
 use glam::DVec3;
 
 use super::arithmetic::Arithmetic;
-use super::code::{Code, Op, live};
+use super::code::{Code, live};
 use super::native::Native;
+use super::op::Op;
 use super::slope::Slope;
 use super::sure::Sure;
 use super::survey::Survey;

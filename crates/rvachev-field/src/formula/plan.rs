@@ -8,7 +8,7 @@ use std::cell::RefCell;
 use fidget::context::{BinaryOpcode, UnaryOpcode};
 
 use super::arithmetic::Arithmetic;
-use super::code::Op;
+use super::op::Op;
 
 /// Where an operand is.
 #[derive(Clone, Copy, Debug)]

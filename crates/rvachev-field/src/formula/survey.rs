@@ -16,9 +16,10 @@
 use fidget::context::{BinaryOpcode, UnaryOpcode};
 
 use super::arithmetic::{each_binary, each_unary};
-use super::code::{Code, Op};
+use super::code::Code;
 use super::live::Live;
 use super::many::{Choice, Doubt, Many, binary, unary};
+use super::op::Op;
 use super::plan::{Plan, Source, Step};
 use super::sure::Sure;
 use crate::{BOXES, Interval};
