@@ -379,6 +379,7 @@ mod raster;
 mod render;
 mod solid;
 mod space;
+pub mod subdivision;
 mod surface;
 
 pub use eval::{Evaluator, Gradients, Hit, Owner, Palette, Program, Region, Tape, UnequalSlices};
@@ -429,8 +430,10 @@ pub use rvachev_field::{Formula, FormulaError};
 #[doc(inline)]
 pub use rvachev_num::{Bounds, CancelToken, Cancelled, Dual, Interval, Monotone, Monotone3, Norm, Progress, Real, Run};
 pub use solid::{Caps, Extrusion, Helix, Paint, PlaneBounds, Profile, Solid, SolidError};
-pub use surface::{
-    ControlGrid, ControlPoint, ControlPolygon, Frame, Parametric, ParametricCurve, ParametricSurface, PatchError,
-    PatchSettings, ProfileEnd, Spacing, SubdivisionError, SubdivisionRevolution, SurfacePoint, Tension,
+pub use subdivision::{
+    ControlGrid, ControlPoint, ControlPolygon, ProfileEnd, SubdivisionError, SubdivisionRevolution, Tension,
     hyperbola_of_ellipse,
+};
+pub use surface::{
+    Frame, Parametric, ParametricCurve, ParametricSurface, PatchError, PatchSettings, Spacing, SurfacePoint,
 };

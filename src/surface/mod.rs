@@ -6,7 +6,6 @@
 //! | [`ParametricCurve`] | the same of plane curves |
 //! | [`PatchSettings`] | its meshes: closed and manifold by construction |
 //! | [`ParametricSurface::sample`] | points uniform by area |
-//! | [`ControlPolygon`], [`SubdivisionRevolution`], [`ControlGrid`] | subdivision |
 
 mod adaptive;
 mod curve;
@@ -16,14 +15,9 @@ mod patch;
 mod polar;
 mod sampling;
 mod spacing;
-mod stitch;
-mod subdivision;
+pub(crate) mod stitch;
 
 pub use parametric::{Frame, Parametric, ParametricSurface};
 pub use parametric_curve::ParametricCurve;
 pub use patch::{PatchError, PatchSettings, Spacing};
 pub use sampling::SurfacePoint;
-pub use subdivision::{
-    ControlGrid, ControlPoint, ControlPolygon, ProfileEnd, SubdivisionError, SubdivisionRevolution, Tension,
-    hyperbola_of_ellipse,
-};

@@ -16,24 +16,24 @@ use crate::geom::{Corner, QuadMesh};
 
 /// A vertex of a grid with the normals of its four sides.
 #[derive(Clone, Copy)]
-pub(super) struct Knot {
-    pub(super) point: DVec3,
-    pub(super) normal: DVec3,
+pub(crate) struct Knot {
+    pub(crate) point: DVec3,
+    pub(crate) normal: DVec3,
     /// `[before, after]` along the rows' direction, of `[before, after]` along the columns'.
-    pub(super) sides: [[DVec3; 2]; 2],
-    pub(super) texture: DVec2,
+    pub(crate) sides: [[DVec3; 2]; 2],
+    pub(crate) texture: DVec2,
 }
 
 impl Knot {
     /// A vertex of a smooth surface.
-    pub(super) fn smooth(point: DVec3, normal: DVec3, texture: DVec2) -> Knot {
+    pub(crate) fn smooth(point: DVec3, normal: DVec3, texture: DVec2) -> Knot {
         Knot { point, normal, sides: [[normal; 2]; 2], texture }
     }
 }
 
 /// How the first or last row closes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum End {
+pub(crate) enum End {
     /// The row is one point.
     Pole,
     /// A flat fan.
@@ -45,26 +45,26 @@ pub(super) enum End {
 /// Rows and columns of faces, `columns` along the first parameter, `rows` along the second;
 /// the cross product of their directions points outwards.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Layout {
-    pub(super) rows: u32,
-    pub(super) columns: u32,
+pub(crate) struct Layout {
+    pub(crate) rows: u32,
+    pub(crate) columns: u32,
     /// Of the first and last row; nothing where they join.
-    pub(super) ends: Option<[End; 2]>,
-    pub(super) columns_join: bool,
+    pub(crate) ends: Option<[End; 2]>,
+    pub(crate) columns_join: bool,
     /// Whether faces are the other way round.
-    pub(super) mirrored: bool,
+    pub(crate) mirrored: bool,
     /// The outward normal of a flat end behind the last row.
-    pub(super) axis: DVec3,
+    pub(crate) axis: DVec3,
 }
 
 /// Where vertices come from: rows 0 to `rows`, columns 0 to `columns`, both included; the last
 /// of joined ones differs from the first in texture and sides only.
-pub(super) trait Knots {
+pub(crate) trait Knots {
     fn knot(&self, row: u32, column: u32) -> Knot;
 }
 
 /// Appends the faces of a grid to a mesh.
-pub(super) fn stitch(knots: &impl Knots, layout: Layout, mesh: &mut QuadMesh) {
+pub(crate) fn stitch(knots: &impl Knots, layout: Layout, mesh: &mut QuadMesh) {
     let open = |end: usize| layout.ends.is_some_and(|ends| ends[end] != End::Pole);
     let (first, last) = match layout.ends {
         None => (0, layout.rows - 1),

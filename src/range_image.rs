@@ -1,0 +1,3 @@
+//! Range images: depths as a sensor sees them, with its noise, and back to points.
+
+pub use crate::geom::{Coordinates, Noise, RangeImage, RangeImageError};
