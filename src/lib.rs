@@ -84,9 +84,9 @@
 //! copies at the price of two.
 //!
 //! ```
-//! use rvachev::Solid;
+//! use rvachev::{Solid, deg};
 //!
-//! let drill = Solid::cuboid([2.0, 1.0, 10.0]).twist(0.5);
+//! let drill = Solid::cuboid([2.0, 1.0, 10.0]).twist(deg(30.0));
 //! assert!(drill.bounds()?.max.x < 1.2);
 //! let holes = Solid::cylinder(1.0, 9.0).translate([12.0, 0.0, 0.0]).repeat_polar(12);
 //! assert!(holes.contains([0.0, 12.0, 0.0])?);
@@ -143,10 +143,10 @@
 //! field on a plane, and its [contours](Slice::contours).
 //!
 //! ```
-//! use rvachev::{Camera, Coordinates, Plane, RenderSettings, Solid, Style};
+//! use rvachev::{Camera, Coordinates, Plane, RenderSettings, Solid, Style, deg};
 //!
 //! let part = Solid::cuboid([4.0, 3.0, 1.0]).paint([60, 100, 160]) - Solid::cylinder(1.0, 2.0).paint([220, 140, 40]);
-//! let camera = Camera::framing(&part.bounds()?).orbit(30.0, 10.0);
+//! let camera = Camera::framing(&part.bounds()?).orbit(deg(30.0), deg(10.0));
 //! let settings = RenderSettings { width: 40, height: 30, style: Style::Technical, ..RenderSettings::default() };
 //! let drawing = part.render(&camera, &settings)?;
 //! let cloud = part.layers(&camera, 40, 30)?.range_image().points(Coordinates::World)?;
@@ -270,7 +270,7 @@
 //!
 //! | map | |
 //! |---|---|
-//! | [`translate`](Solid::translate), [`rotate_z_degrees`](Solid::rotate_z_degrees) and its like, [`scale`](Solid::scale), [`affine`](Solid::affine) | affine ones |
+//! | [`translate`](Solid::translate), [`rotate_z`](Solid::rotate_z) and its like, [`scale`](Solid::scale), [`affine`](Solid::affine) | affine ones |
 //! | [`reflect`](Solid::reflect), [`mirrored`](Solid::mirrored) | the mirror image alone, and beside the solid |
 //! | [`repeat`](Solid::repeat), [`repeat_linear`](Solid::repeat_linear), [`repeat_polar`](Solid::repeat_polar) | grids, rows and rings of copies |
 //! | [`elongate`](Solid::elongate) | straight pieces inserted |
@@ -370,6 +370,7 @@ struct Readme;
 #[macro_use]
 mod picture;
 
+mod angle;
 mod bounds;
 mod eval;
 mod field;
@@ -385,6 +386,7 @@ mod solid;
 mod space;
 mod surface;
 
+pub use angle::{Angle, deg, rad, turns};
 pub use bounds::Bounds;
 pub use eval::{Evaluator, Gradients, Hit, Owner, Palette, Program, Region, Tape};
 pub use field::{

@@ -1,15 +1,13 @@
 //! A row per leaf, profile, join, blend and map: nanoseconds a point of the field program, as
 //! it is (not narrowed), over the solid's box.
 
-use std::f64::consts::PI;
-
 use glam::{DVec2, DVec3};
 use rvachev::{
     Blend, Bounds, Caps, Capsule, Circle, Cone, Cuboid, Cylinder, Ellipsoid, Extrusion, Field, GeneralisedSuperquadric,
     Gielis, Grading, HalfSpace, Helix, Interval, LawTable, MinimalSurface, NetworkLattice, ParamError, Polygon, Prism,
     Profile, Pyramid, RFunction, Radius, Real, Rectangle, RegularPolygon, RoundedCuboid, SheetLattice, SineWave, Slab,
     SmoothStep, Solid, Sphere, Superellipse, Superellipsoid, Superhyperboloid, Superpolygon, Supershape, Supertoroid,
-    Torus, Turns, Wedge,
+    Torus, Turns, Wedge, deg, rad,
 };
 
 use super::{Contestant, Points, program, race};
@@ -185,9 +183,9 @@ fn sweeps() -> Section {
         row("extruded", section.extrude(1.0)),
         row("extruded, chamfered", extruded(Extrusion { caps: Caps::Chamfered(0.1), ..upright })),
         row("extruded, rounded", extruded(Extrusion { caps: Caps::Rounded(0.1), ..upright })),
-        row("extruded, twisted and scaled", extruded(Extrusion { twist: 1.0, scale: 0.5, ..upright })),
+        row("extruded, twisted and scaled", extruded(Extrusion { twist: rad(1.0), scale: 0.5, ..upright })),
         row("revolved", off.revolve()),
-        row("revolved by half a turn", off.revolve_by(PI)),
+        row("revolved by half a turn", off.revolve_by(deg(180.0))),
         row("swept along a helix", off.sweep_helix(&Helix::new(2.0, 1.5, 3.0))),
         row("swept, turns meeting", off.sweep_helix(&Helix::new(2.0, 0.4, 8.0))),
     ];
@@ -255,18 +253,18 @@ fn maps() -> Section {
     let ball = Solid::sphere(1.0);
     let bar = Solid::cuboid(DVec3::new(1.0, 0.6, 2.0));
     let step = SmoothStep { from: (-1.0, 1.0), to: (1.0, 0.5) };
-    let swing = SineWave { mean: 0.0, amplitude: 0.5, wavelength: 4.0, phase: 0.0 };
+    let swing = SineWave { mean: 0.0, amplitude: 0.5, wavelength: 4.0, phase: deg(0.0) };
     let table = LawTable::new([(-1.0, 1.0), (-0.5, 0.7), (0.0, 0.9), (0.5, 0.6), (1.0, 0.8)]);
     let small = Solid::sphere(0.3);
     let rows = vec![
         row("none: a box", bar.clone()),
-        row("affine", bar.rotate_x(0.3).rotate_z(0.4).translate(DVec3::ONE)),
+        row("affine", bar.rotate_x(rad(0.3)).rotate_z(rad(0.4)).translate(DVec3::ONE)),
         row("taper", bar.taper(0.2, 0.3, 1.0)),
-        row("twist", bar.twist(0.5)),
-        row("bend", bar.bend(0.3, 0.5)),
+        row("twist", bar.twist(rad(0.5))),
+        row("bend", bar.bend(0.3, rad(0.5))),
         row("taper by a smooth step", bar.taper_by(step, 1.0)),
         row("taper by a table of 5", bar.taper_by(table, 1.0)),
-        row("twist by a sine wave", bar.twist_by(swing)),
+        row("twist by a sine wave", bar.twist_by(rad(1.0), swing)),
         row("elongate", ball.elongate(DVec3::new(0.0, 0.5, 1.0))),
         row("mirrored", bar.translate(DVec3::X).mirrored_x()),
         row("repeat, a row of 10", small.repeat([10, 1, 1], DVec3::ONE)),

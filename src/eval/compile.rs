@@ -443,7 +443,7 @@ fn check_affine(map: &DAffine3, label: &str) -> Result<(), ParamError> {
         "scale" => "factor",
         "scale_axes" => "factors",
         "rotate" => "rotation",
-        "rotate_about" | "rotate_about_degrees" => "axis or angle",
+        "rotate_about" => "axis or angle",
         label if label.starts_with("rotate_") => "angle",
         _ => "matrix",
     };

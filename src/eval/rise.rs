@@ -262,7 +262,7 @@ mod tests {
 
     use super::*;
     use crate::eval::compiled;
-    use crate::{Blend, Helix, MinimalSurface, Polygon, Profile, Region, SheetLattice, Solid};
+    use crate::{Blend, Helix, MinimalSurface, Polygon, Profile, Region, SheetLattice, Solid, rad};
 
     /// Once in the solid, a ray along the direction, or close to it, stays in it.
     #[test]
@@ -276,7 +276,7 @@ mod tests {
         let solids = [
             &cube - &rod,
             &cube | cushion.translate(DVec3::X * 0.4),
-            cushion.twist(0.9).bend(0.4, 0.3),
+            cushion.twist(rad(0.9)).bend(0.4, rad(0.3)),
             Solid::torus(0.6, 0.2) ^ &rod,
             Solid::from(gyroid),
             Profile::from(Polygon::new([star])).extrude(1.2),

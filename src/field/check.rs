@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::{Angle, deg};
+
 /// A parameter out of its range: its name, its value and what is allowed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{parameter} is {value}, allowed: {allowed}")]
@@ -55,6 +57,15 @@ pub(crate) fn finite(parameter: &str, value: f64) -> Result<(), ParamError> {
         Ok(())
     } else {
         Err(ParamError::new(parameter, value, format_args!("{} to {LARGEST_LENGTH}", -LARGEST_LENGTH)))
+    }
+}
+
+/// An angle from `lo` to `hi` degrees.
+pub(crate) fn angle(parameter: &str, value: Angle, lo: f64, hi: f64) -> Result<(), ParamError> {
+    if value >= deg(lo) && value <= deg(hi) {
+        Ok(())
+    } else {
+        Err(ParamError::new(parameter, value.degrees(), format_args!("{lo} to {hi} degrees")))
     }
 }
 

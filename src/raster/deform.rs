@@ -21,7 +21,7 @@ use glam::{DAffine3, DVec3, Vec3};
 
 use super::error::RasterError;
 use crate::field::{AnyWarp, Bend, Taper, Twist};
-use crate::{Mesh, ParamError};
+use crate::{Angle, Mesh, ParamError};
 
 impl Mesh {
     /// The mesh moved by an affine map, with all that it carries. A map that mirrors turns the
@@ -54,10 +54,10 @@ impl Mesh {
     /// The mesh tapered along z, with the parameters of [`Solid::taper`](crate::Solid::taper).
     ///
     /// ```
-    /// use rvachev::{ClosedMesh, PatchSettings, Superellipsoid};
+    /// use rvachev::{ClosedMesh, PatchSettings, Superellipsoid, deg, rad};
     ///
     /// let bar = Superellipsoid::new([0.5, 0.5, 2.0], 0.3, 0.3).surface()?.mesh(&PatchSettings::default())?;
-    /// let bent = bar.taper(0.4, 0.4, 2.0)?.twist(0.6)?.bend(0.3, 0.0)?;
+    /// let bent = bar.taper(0.4, 0.4, 2.0)?.twist(rad(0.6))?.bend(0.3, deg(0.0))?;
     /// ClosedMesh::new(&bent)?;
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -83,8 +83,10 @@ impl Mesh {
     /// # Errors
     ///
     /// [`RasterError::Parameter`].
-    pub fn twist(&self, rate: f64) -> Result<Mesh, RasterError> {
+    pub fn twist(&self, rate: impl Into<Angle>) -> Result<Mesh, RasterError> {
+        let rate = rate.into();
         deformed(self, &Twist { rate }, |p, n| {
+            let rate = rate.radians();
             let (sin, cos) = (rate * p.z).sin_cos();
             let turned = |v: DVec3| DVec3::new(v.x * cos - v.y * sin, v.x * sin + v.y * cos, v.z);
             (turned(p), turned(n) - DVec3::Z * (rate * (p.x * n.y - p.y * n.x)))
@@ -96,7 +98,8 @@ impl Mesh {
     /// # Errors
     ///
     /// [`RasterError::Parameter`].
-    pub fn bend(&self, curvature: f64, angle: f64) -> Result<Mesh, RasterError> {
+    pub fn bend(&self, curvature: f64, angle: impl Into<Angle>) -> Result<Mesh, RasterError> {
+        let angle = angle.into();
         let k = curvature;
         let (sin_angle, cos_angle) = angle.sin_cos();
         let along = DVec3::new(cos_angle, sin_angle, 0.0);

@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::Solid;
-use crate::Law;
 use crate::field::{Elongate, TaperBy, TwistBy};
+use crate::{Angle, Law};
 
 impl Solid {
     /// Tapered along z by any [laws](crate::Law) of z: sections are scaled by `x_law` along x
@@ -35,30 +35,33 @@ impl Solid {
     }
 
     /// Twisted about the z axis by any [law](crate::Law) of z: the section at z is turned by
-    /// `angle`, from x towards y.
+    /// `angle` times the law's value there, from x towards y. In proportion to z:
+    /// [`twist`](Solid::twist).
     ///
     #[doc = picture!("twist_by" = "docs/gallery/twist_by.png")]
     ///
     /// | parameter | unit | range |
     /// |---|---|---|
-    /// | `angle` | radians | ±10⁴ over the heights of the solid's box, which is checked; beyond these heights it is held in that range |
+    /// | `angle` | [`Angle`] | ±10⁹ degrees |
+    /// | `law` | none | `angle` times it is ±576 000 degrees over the heights of the solid's box, which is checked; beyond these heights it is held in that range |
     ///
     /// The field is the operand's at the pre-image, not rescaled: its slope grows with that of
     /// the law times the distance from the axis.
     ///
     /// ```
-    /// use rvachev::{Solid, SineWave};
+    /// use rvachev::{SineWave, Solid, deg};
     /// use glam::DVec3;
     ///
-    /// let swing = SineWave { mean: 0.0, amplitude: 0.5, wavelength: 4.0, phase: 0.0 };
-    /// let bar = Solid::cuboid(DVec3::new(2.0, 0.5, 8.0)).twist_by(swing);
-    /// let (sin, cos) = 0.5f64.sin_cos();
+    /// // To and fro by 30 degrees.
+    /// let swing = SineWave { mean: 0.0, amplitude: 1.0, wavelength: 4.0, phase: deg(0.0) };
+    /// let bar = Solid::cuboid(DVec3::new(2.0, 0.5, 8.0)).twist_by(deg(30.0), swing);
+    /// let (sin, cos) = deg(30.0).sin_cos();
     /// assert!(bar.contains(DVec3::new(0.9 * cos, 0.9 * sin, 1.0))?);
     /// # Ok::<(), rvachev::SolidError>(())
     /// ```
     #[must_use]
-    pub fn twist_by(&self, angle: impl Law) -> Solid {
-        self.warp(TwistBy { angle })
+    pub fn twist_by(&self, angle: impl Into<Angle>, law: impl Law) -> Solid {
+        self.warp(TwistBy { angle: angle.into(), law })
     }
 
     /// Elongated by straight pieces: the parts on either side of each coordinate plane move

@@ -7,7 +7,8 @@ use glam::{DAffine2, DAffine3, DMat3, DVec2, DVec3};
 
 use super::{Node, Solid};
 use crate::{
-    Bounds, Circle, Gielis, Polygon, RFunction, Rectangle, RegularPolygon, SolidError, Superellipse, Superpolygon,
+    Angle, Bounds, Circle, Gielis, Polygon, RFunction, Rectangle, RegularPolygon, SolidError, Superellipse,
+    Superpolygon,
 };
 
 /// A shape in the plane of x and y: what solids are extruded, revolved and swept from.
@@ -172,9 +173,9 @@ impl Profile {
         Profile(self.0.translate(offset.into().extend(0.0)))
     }
 
-    /// Turned about the origin by `angle` radians, from x towards y.
+    /// Turned about the origin by `angle`, from x towards y.
     #[must_use]
-    pub fn rotate(&self, angle: f64) -> Profile {
+    pub fn rotate(&self, angle: impl Into<Angle>) -> Profile {
         Profile(self.0.rotate_z(angle))
     }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::{Node, Profile, Solid};
 use crate::field::{AnyWarp, HelixWarp, Opening, Revolution, Span, Turn, check};
-use crate::{Blend, ParamError, Polygon, RFunction};
+use crate::{Angle, Blend, ParamError, Polygon, RFunction};
 
 /// How the edges of an end face are.
 ///
@@ -69,7 +69,7 @@ impl Caps {
 /// | parameter | unit | range |
 /// |---|---|---|
 /// | `height` | length | 10⁻⁹ to 10⁹: from z = −height/2 to height/2 |
-/// | `twist` | radian | −10⁶ to 10⁶: by how much the upper end is turned, from x towards y |
+/// | `twist` | [`Angle`] | ±10⁷ degrees: by how much the upper end is turned, from x towards y |
 /// | `scale` | none | 0.001 to 1000: the upper end's size relative to the lower |
 /// | `caps` | length | how the edges of both end faces are: see [`Caps`] |
 ///
@@ -85,8 +85,8 @@ impl Caps {
 pub struct Extrusion {
     /// Length along z.
     pub height: f64,
-    /// By how much the upper end is turned, in radians.
-    pub twist: f64,
+    /// By how much the upper end is turned.
+    pub twist: Angle,
     /// The size of the upper end relative to the lower.
     pub scale: f64,
     /// How the edges of the end faces are.
@@ -97,12 +97,12 @@ impl Extrusion {
     /// Straight up, the edges sharp.
     #[must_use]
     pub fn new(height: f64) -> Extrusion {
-        Extrusion { height, twist: 0.0, scale: 1.0, caps: Caps::Flat }
+        Extrusion { height, twist: Angle::ZERO, scale: 1.0, caps: Caps::Flat }
     }
 
     fn check(&self) -> Result<(), ParamError> {
         check::length("height", self.height)?;
-        check::within("twist", self.twist, -1e6, 1e6)?;
+        check::angle("twist", self.twist, -1e7, 1e7)?;
         check::within("scale", self.scale, 1e-3, 1e3)?;
         self.caps.check("caps")
     }
@@ -184,10 +184,10 @@ impl Profile {
     /// where sides are upright.
     ///
     /// ```
-    /// use rvachev::{Caps, Extrusion, Profile};
+    /// use rvachev::{Caps, Extrusion, Profile, deg};
     ///
     /// let column = Profile::regular_polygon(6, 3.0).extrude_with(&Extrusion {
-    ///     twist: 1.0,
+    ///     twist: deg(60.0),
     ///     caps: Caps::Rounded(0.3),
     ///     ..Extrusion::new(20.0)
     /// });
@@ -207,7 +207,7 @@ impl Profile {
             let (middle, k) = (0.5 * (1.0 + scale), (scale - 1.0) / (scale + 1.0));
             column = self.scale(middle).0.taper(k, k, half_height);
         }
-        if twist != 0.0 {
+        if twist != Angle::ZERO {
             column = column.rotate_z(0.5 * twist).twist(twist / height);
         }
         caps.cut(&column, &slab)
@@ -256,19 +256,20 @@ impl Profile {
     ///
     /// | parameter | unit | range |
     /// |---|---|---|
-    /// | `angle` | radians | 10⁻⁶ to 2π |
+    /// | `angle` | [`Angle`] | 10⁻⁴ to 360 degrees |
     ///
     /// ```
-    /// use rvachev::Profile;
+    /// use rvachev::{Profile, deg};
     ///
-    /// let quarter = Profile::rectangle([2.0, 2.0]).translate([3.0, 0.0]).revolve_by(std::f64::consts::FRAC_PI_2);
+    /// let quarter = Profile::rectangle([2.0, 2.0]).translate([3.0, 0.0]).revolve_by(deg(90.0));
     /// assert!(quarter.contains([2.0, 2.0, 0.0])?);
     /// assert!(!quarter.contains([-2.0, 2.0, 0.0])?);
     /// # Ok::<(), rvachev::SolidError>(())
     /// ```
     #[must_use]
-    pub fn revolve_by(&self, angle: f64) -> Solid {
-        if angle == TAU {
+    pub fn revolve_by(&self, angle: impl Into<Angle>) -> Solid {
+        let angle = angle.into();
+        if angle == Angle::FULL_TURN {
             return self.revolve();
         }
         Solid::new(Opening { angle }).intersection(self.revolve(), RFunction::MIN_MAX)

@@ -10,13 +10,13 @@
 //! | [`ControlPolygon`], [`SubdivisionRevolution`], [`ControlGrid`] | subdivision |
 
 mod adaptive;
-mod angle;
 mod curve;
 mod parametric;
 mod parametric_curve;
 mod patch;
 mod points;
 mod polar;
+mod power;
 mod sampling;
 mod spacing;
 mod stitch;

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use rvachev::{
     Blend, Bounds, CellSize, Features, Helix, Lattice, MeshSettings, Profile, Program, RFunction, Region, SmoothStep,
-    Solid, SolidError,
+    Solid, SolidError, deg, rad,
 };
 
 use crate::support::{Random, lanes32, lanes64, near, off_surface};
@@ -53,7 +53,7 @@ fn displacement_and_ricci_agree_with_the_reference() -> Result<(), SolidError> {
     let difference = (1.2f64.powi(4) + 0.9f64.powi(-4)).powf(0.25);
     near(1.0 - one.difference_with(&two, ricci).value(p)? / 2.0, difference, 1e-12);
     // Blends of blends are gauges; boxes are not.
-    let three = Solid::superellipsoid(DVec3::ONE, 0.5, 0.5).twist(0.3);
+    let three = Solid::superellipsoid(DVec3::ONE, 0.5, 0.5).twist(rad(0.3));
     assert!(one.union_with(&two, ricci).union_with(&three, ricci).contains(p)?);
     let error = one.union_with(Solid::cuboid(DVec3::ONE), ricci).value(p);
     let Err(SolidError::NoGauge { path, operand: 1 }) = error else { panic!("{error:?}") };
@@ -121,8 +121,8 @@ fn fillets_between_curved_operands_have_their_radius() -> Result<(), SolidError>
     // Two pipes that cross: the largest empty ball that touches both, anywhere along the
     // edge, has the radius.
     let pipe = Solid::cylinder(1.0, 20.0);
-    let cross = pipe.union_with(pipe.rotate_x(std::f64::consts::FRAC_PI_2), Blend::Fillet { radius });
-    let plain = pipe.union(pipe.rotate_x(std::f64::consts::FRAC_PI_2), RFunction::MIN_MAX);
+    let cross = pipe.union_with(pipe.rotate_x(deg(90.0)), Blend::Fillet { radius });
+    let plain = pipe.union(pipe.rotate_x(deg(90.0)), RFunction::MIN_MAX);
     let mut random = Random::new(72);
     let mut added = 0;
     for _ in 0..20_000 {
@@ -195,7 +195,7 @@ fn chamfers_of_round_solids_have_their_width() -> Result<(), SolidError> {
     let ball = Solid::sphere(1.0);
     let shifted = ball.translate(DVec3::X);
     let floor = Solid::half_space(DVec3::Z, 0.3);
-    let pipe = Solid::cylinder(1.0, 9.0).rotate_y(std::f64::consts::FRAC_PI_2);
+    let pipe = Solid::cylinder(1.0, 9.0).rotate_y(deg(90.0));
     let thin = Solid::cylinder(0.6, 9.0);
     let side = DVec3::new(0.6 * 0.6, 0.6 * 0.8, (1.0 - 0.48f64 * 0.48).sqrt());
     let pairs = [
@@ -226,8 +226,8 @@ fn chamfers_of_round_solids_have_their_width() -> Result<(), SolidError> {
 fn blended() -> Vec<(&'static str, Solid)> {
     let ball = Solid::sphere(0.8).translate(DVec3::new(0.5, 0.1, 0.3));
     let plate = Solid::cuboid(DVec3::new(2.0, 1.6, 0.5));
-    let rod = Solid::cylinder(0.3, 2.4).rotate_y(0.5);
-    let star = Solid::superellipsoid(DVec3::new(0.9, 0.7, 0.6), 0.4, 1.4).twist(0.6);
+    let rod = Solid::cylinder(0.3, 2.4).rotate_y(rad(0.5));
+    let star = Solid::superellipsoid(DVec3::new(0.9, 0.7, 0.6), 0.4, 1.4).twist(rad(0.6));
     let both = &plate | &rod;
     vec![
         ("smooth union", ball.smooth_union(&plate, 0.3)),
@@ -236,7 +236,7 @@ fn blended() -> Vec<(&'static str, Solid)> {
         ("fillet", plate.union_with(&rod, Blend::Fillet { radius: 0.2 })),
         ("fillet of a union", both.union_with(&ball, Blend::Fillet { radius: 0.1 })),
         ("fillet of a hole", plate.difference_with(&rod, Blend::Fillet { radius: 0.1 })),
-        ("fillet moved", plate.intersection_with(&ball, Blend::Fillet { radius: 0.1 }).scale(1.3).rotate_x(0.4)),
+        ("fillet moved", plate.intersection_with(&ball, Blend::Fillet { radius: 0.1 }).scale(1.3).rotate_x(rad(0.4))),
         ("fillet of a fillet", {
             let inner = plate.union_with(&rod, Blend::Fillet { radius: 0.15 });
             inner.union_with(&ball, Blend::Fillet { radius: 0.1 })
@@ -362,7 +362,7 @@ fn offsets_move_the_surface_by_a_length() -> Result<(), SolidError> {
     near(part.value(DVec3::new(1.05, 0.0, 0.0))?, 0.0, 1e-12);
     near(part.value(DVec3::new(0.15, 0.0, 0.0))?, 0.0, 1e-12);
     // Lengths through similarities, twice, and through complements.
-    let turned = (!brick.scale(2.0).rotate_z(0.3).offset(-0.1)).offset(0.3);
+    let turned = (!brick.scale(2.0).rotate_z(rad(0.3)).offset(-0.1)).offset(0.3);
     near((!turned).value(DVec3::Z * (1.0 - 0.4))?, 0.0, 1e-12);
     let scaled = brick.offset(0.1).scale(2.0).offset(0.1);
     near(scaled.value(DVec3::new(2.3, 0.0, 0.0))?, 0.0, 1e-12);
@@ -457,9 +457,9 @@ fn ricci_takes_the_gauges_that_it_names() {
 fn boxes_of_blends_above_maps_and_of_turned_columns_end() -> Result<(), SolidError> {
     let law = SmoothStep { from: (0.0, 1.0), to: (36.0, 0.66) };
     let lens = Solid::superellipsoid([27.0, 11.0, 90.0], 1.0, 1.0).taper_by(1.0, law);
-    let head = Profile::circle(10.0).column().rotate_x_degrees(90.0).intersection(&lens, RFunction::MIN_MAX);
+    let head = Profile::circle(10.0).column().rotate_x(deg(90.0)).intersection(&lens, RFunction::MIN_MAX);
     assert!(head.smooth_union(Solid::sphere(3.0), 2.5).bounds()?.size().max_element() < 200.0);
-    let disc = Profile::circle(1.0).extrude(0.5).rotate_x(std::f64::consts::FRAC_PI_2);
+    let disc = Profile::circle(1.0).extrude(0.5).rotate_x(deg(90.0));
     let size = disc.bounds()?.size();
     assert!(size.x < 2.2 && size.y < 0.7 && size.z < 2.2, "{size}");
     Ok(())
@@ -509,11 +509,11 @@ fn filleted_edges() -> Vec<(Solid, f64)> {
     let fillet = Blend::Fillet { radius: 0.1 };
     let floor = Solid::cuboid(DVec3::new(2.0, 2.0, 0.2));
     let block = |x: f64, y: f64| Solid::cuboid(DVec3::new(x, y, 1.0)).translate(0.4 * DVec3::Z);
-    let post = block(0.4, 0.4) & block(0.4, 0.4).rotate_z(0.6);
-    let star = block(0.8, 0.3) | block(0.8, 0.3).rotate_z(1.2);
+    let post = block(0.4, 0.4) & block(0.4, 0.4).rotate_z(rad(0.6));
+    let star = block(0.8, 0.3) | block(0.8, 0.3).rotate_z(rad(1.2));
     let cube = Solid::cuboid(DVec3::ONE);
     let bite = Solid::sphere(0.5).translate(DVec3::new(0.5, 0.3, 0.5));
-    let opened = Profile::circle(0.2).revolve_by(5.0).translate(0.1 * DVec3::X);
+    let opened = Profile::circle(0.2).revolve_by(rad(5.0)).translate(0.1 * DVec3::X);
     vec![
         (post.union_with(&floor, fillet), 0.1),
         (floor.union_with(star, fillet), 0.1),

@@ -8,7 +8,7 @@ use glam::{DAffine2, DAffine3, DMat2, DQuat, DVec2, DVec3};
 use rvachev::{
     Blend, Bounds, Caps, Extrusion, GeneralisedSuperquadric, Gielis, Helix, LawTable, LinearLaw, MinimalSurface,
     NetworkLattice, PlaneBounds, Polygon, Prism, Profile, RFunction, RegularPolygon, SheetLattice, SineWave,
-    SmoothStep, Solid, Superhyperboloid, Supershape, Supertoroid,
+    SmoothStep, Solid, Superhyperboloid, Supershape, Supertoroid, deg, rad,
 };
 
 /// A solid by one of its numbers.
@@ -125,18 +125,18 @@ fn profiles() -> [(&'static str, &'static str, Make); 38] {
         ("polygon", "1", |v| Profile::polygon([[0.0, 0.0], [v, 0.0], [0.0, 1.0]]).extrude(1.0)),
         ("polygon", "2", |v| Polygon::new([[[0.0, 0.0], [1.0, 0.0], [0.3, v]]]).extrude_(1.0)),
         ("extrude", "height", |v| disc().extrude(v)),
-        ("extrude", "twist", |v| disc().extrude_with(&Extrusion { twist: v, ..Extrusion::new(1.0) })),
+        ("extrude", "twist", |v| disc().extrude_with(&Extrusion { twist: rad(v), ..Extrusion::new(1.0) })),
         ("extrude", "scale", |v| disc().extrude_with(&Extrusion { scale: v, ..Extrusion::new(1.0) })),
         ("extrude", "caps", |v| disc().extrude_with(&Extrusion { caps: Caps::Rounded(v), ..Extrusion::new(1.0) })),
         ("extrude", "caps", |v| disc().extrude_with(&Extrusion { caps: Caps::Chamfered(v), ..Extrusion::new(1.0) })),
-        ("revolve_by", "angle", |v| disc().revolve_by(v)),
+        ("revolve_by", "angle", |v| disc().revolve_by(rad(v))),
         ("sweep_helix", "radius", |v| disc().sweep_helix(&Helix::new(v, 1.5, 2.0))),
         ("sweep_helix", "pitch", |v| disc().sweep_helix(&Helix::new(2.0, v, 2.0))),
         ("sweep_helix", "turns", |v| disc().sweep_helix(&Helix::new(2.0, 1.5, v))),
         ("sweep_helix", "ends", |v| disc().sweep_helix(&Helix { ends: Caps::Rounded(v), ..Helix::new(2.0, 1.5, 2.0) })),
         ("offset", "distance", |v| disc().offset(v).extrude(1.0)),
         ("translate", "translation.x", |v| disc().translate([v, 0.0]).extrude(1.0)),
-        ("rotate", "", |v| disc().rotate(v).extrude(1.0)),
+        ("rotate", "", |v| disc().rotate(rad(v)).extrude(1.0)),
         ("scale", "", |v| disc().scale(v).extrude(1.0)),
         ("scale_axes", "", |v| disc().scale_axes([1.0, v]).extrude(1.0)),
         ("affine", "matrix", |v| disc().mirror([v, 0.0]).extrude(1.0)),
@@ -150,7 +150,7 @@ fn profiles() -> [(&'static str, &'static str, Make); 38] {
         ("circle", "radius", |v| Profile::circle(v).revolve()),
         ("circle", "radius", |v| Profile::circle(v).column()),
         ("circle", "radius", |v| Profile::circle(v).sweep_helix(&Helix::new(2.0, 1.5, 2.0))),
-        ("superellipse", "semi_axes.y", |v| Profile::superellipse([1.0, v], 1.0).revolve_by(1.0)),
+        ("superellipse", "semi_axes.y", |v| Profile::superellipse([1.0, v], 1.0).revolve_by(rad(1.0))),
         ("superpolygon", "curve.n2", |v| Profile::superpolygon(Gielis::new(5.0, 3.0, v, 3.0), 1.0).column()),
         ("sweep_helix", "ends", |v| {
             disc().sweep_helix(&Helix { ends: Caps::Chamfered(v), ..Helix::new(2.0, 1.5, 2.0) })
@@ -169,7 +169,7 @@ impl Swept for Polygon {
     }
 }
 
-fn verbs() -> [(&'static str, &'static str, Make); 53] {
+fn verbs() -> [(&'static str, &'static str, Make); 54] {
     [
         ("union", "alpha", |v| ball().union(block(), RFunction::Alpha(v))),
         ("union", "p", |v| ball().union(block(), RFunction::P(v))),
@@ -196,15 +196,15 @@ fn verbs() -> [(&'static str, &'static str, Make); 53] {
         ("shell", "thickness", |v| block().shell(v)),
         ("translate", "translation.y", |v| ball().translate([0.0, v, 0.0])),
         ("rotate", "", |v| ball().rotate(DQuat::from_xyzw(v, 0.0, 0.0, 1.0))),
-        ("rotate_x", "angle", |v| ball().rotate_x(v)),
-        ("rotate_y", "angle", |v| ball().rotate_y(v)),
-        ("rotate_z", "angle", |v| ball().rotate_z(v)),
-        ("rotate_x_degrees", "angle", |v| ball().rotate_x_degrees(v)),
-        ("rotate_y_degrees", "angle", |v| ball().rotate_y_degrees(v)),
-        ("rotate_z_degrees", "angle", |v| ball().rotate_z_degrees(v)),
-        ("rotate_about", "axis or angle", |v| ball().rotate_about(DVec3::X, v)),
-        ("rotate_about", "axis or angle", |v| ball().rotate_about([v, 0.0, 0.0], 1.0)),
-        ("rotate_about_degrees", "axis or angle", |v| ball().rotate_about_degrees(DVec3::X, v)),
+        ("rotate_x", "angle", |v| ball().rotate_x(rad(v))),
+        ("rotate_y", "angle", |v| ball().rotate_y(rad(v))),
+        ("rotate_z", "angle", |v| ball().rotate_z(rad(v))),
+        ("rotate_x", "angle", |v| ball().rotate_x(deg(v))),
+        ("rotate_y", "angle", |v| ball().rotate_y(deg(v))),
+        ("rotate_z", "angle", |v| ball().rotate_z(deg(v))),
+        ("rotate_about", "axis or angle", |v| ball().rotate_about(DVec3::X, rad(v))),
+        ("rotate_about", "axis or angle", |v| ball().rotate_about([v, 0.0, 0.0], rad(1.0))),
+        ("rotate_about", "axis or angle", |v| ball().rotate_about(DVec3::X, deg(v))),
         ("scale", "factor", |v| ball().scale(v)),
         ("scale_axes", "factors", |v| ball().scale_axes([1.0, v, 1.0])),
         ("affine", "matrix", |v| ball().affine(DAffine3::from_scale([1.0, 1.0, v].into()))),
@@ -216,14 +216,17 @@ fn verbs() -> [(&'static str, &'static str, Make); 53] {
         ("taper", "kx", |v| ball().taper(v, 0.0, 1.0)),
         ("taper", "ky", |v| ball().taper(0.0, v, 1.0)),
         ("taper", "half_height", |v| ball().taper(0.1, 0.1, v)),
-        ("twist", "rate", |v| ball().twist(v)),
-        ("bend", "curvature", |v| ball().bend(v, 0.0)),
-        ("bend", "angle", |v| ball().bend(0.1, v)),
+        ("twist", "rate", |v| ball().twist(rad(v))),
+        ("bend", "curvature", |v| ball().bend(v, deg(0.0))),
+        ("bend", "angle", |v| ball().bend(0.1, rad(v))),
         ("taper_by", "", |v| ball().taper_by(v, 1.0)),
         ("taper_by", "", |v| ball().taper_by(LinearLaw { at_zero: 1.0, slope: v }, 1.0)),
-        ("taper_by", "", |v| ball().taper_by(SineWave { mean: 1.0, amplitude: 0.1, wavelength: v, phase: 0.0 }, 1.0)),
-        ("twist_by", "", |v| ball().twist_by(SmoothStep { from: (-1.0, 0.0), to: (v, 1.0) })),
-        ("twist_by", "", |v| ball().twist_by(LawTable::new([(0.0, 0.0), (1.0, v)]))),
+        ("taper_by", "", |v| {
+            ball().taper_by(SineWave { mean: 1.0, amplitude: 0.1, wavelength: v, phase: deg(0.0) }, 1.0)
+        }),
+        ("twist_by", "", |v| ball().twist_by(rad(1.0), SmoothStep { from: (-1.0, 0.0), to: (v, 1.0) })),
+        ("twist_by", "", |v| ball().twist_by(rad(1.0), LawTable::new([(0.0, 0.0), (1.0, v)]))),
+        ("twist_by", "angle", |v| ball().twist_by(rad(v), LinearLaw { at_zero: 0.0, slope: 1.0 })),
         ("elongate", "half.y", |v| ball().elongate([0.0, v, 0.0])),
         ("repeat", "spacing", |v| ball().repeat([3, 1, 1], [v, 1.0, 1.0])),
         // A step back starts with the last copy, where it is.

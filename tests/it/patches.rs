@@ -1,11 +1,11 @@
 //! Parameter patches: points, frames, closed meshes.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
 use rvachev::{
-    Field, Gielis, Mesh, ParametricCurve, ParametricSurface, PatchError, PatchSettings, Radius, Spacing, Superellipse,
-    Superellipsoid, Superhyperboloid, Supershape, Supertoroid,
+    Angle, Field, Gielis, Mesh, ParametricCurve, ParametricSurface, PatchError, PatchSettings, Radius, Spacing,
+    Superellipse, Superellipsoid, Superhyperboloid, Supershape, Supertoroid, deg, rad,
 };
 
 /// A surface with the field whose zero set it is, and the number of handles of each shell.
@@ -78,9 +78,9 @@ fn points_lie_on_the_zero_set_and_normals_along_its_gradient() {
     for case in cases() {
         for surface in sheets(&case.surface) {
             let (mut worst, mut skew) = (0.0f64, 0.0f64);
-            for eta in parameters(surface.eta_range()) {
-                for omega in parameters(surface.omega_range()) {
-                    let frame = surface.frame(eta, omega);
+            for eta in parameters(surface.eta_range().map(Angle::radians)) {
+                for omega in parameters(surface.omega_range().map(Angle::radians)) {
+                    let frame = surface.frame(rad(eta), rad(omega));
                     // Beyond the clipped ends the field is that of the slab.
                     let inside = frame.point * (1.0 - 1e-9);
                     if case.name.contains("Superhyperboloid") && (case.residual)(inside) < -1e-7 {
@@ -123,20 +123,20 @@ fn poles_and_seams_are_exact() {
     for e in [0.01, 0.1, 1.0, 2.0, 10.0] {
         let surface = Superellipsoid::new([3.0, 2.0, 1.0], e, e).surface().unwrap();
         for omega in [0.1, PI, -2.0] {
-            assert_eq!(surface.point(FRAC_PI_2, omega), DVec3::Z);
-            assert_eq!(surface.point(-FRAC_PI_2, omega), DVec3::NEG_Z);
-            assert_eq!(surface.normal(FRAC_PI_2, omega), DVec3::Z);
+            assert_eq!(surface.point(deg(90.0), rad(omega)), DVec3::Z);
+            assert_eq!(surface.point(deg(-90.0), rad(omega)), DVec3::NEG_Z);
+            assert_eq!(surface.normal(deg(90.0), rad(omega)), DVec3::Z);
         }
-        assert_eq!(surface.point(0.0, PI), DVec3::new(-3.0, 0.0, 0.0));
-        assert_eq!(surface.point(0.0, -PI), surface.point(0.0, PI));
-        assert_eq!(surface.point(0.0, FRAC_PI_2), DVec3::new(0.0, 2.0, 0.0));
-        assert_eq!(surface.normal(0.0, FRAC_PI_2), DVec3::Y);
+        assert_eq!(surface.point(rad(0.0), deg(180.0)), DVec3::new(-3.0, 0.0, 0.0));
+        assert_eq!(surface.point(rad(0.0), deg(-180.0)), surface.point(rad(0.0), deg(180.0)));
+        assert_eq!(surface.point(rad(0.0), deg(90.0)), DVec3::new(0.0, 2.0, 0.0));
+        assert_eq!(surface.normal(rad(0.0), deg(90.0)), DVec3::Y);
     }
     let ring = Supertoroid::new([1.2, 0.8, 0.6], 1.5, 0.01, 0.01).surface().unwrap();
-    assert_eq!(ring.point(PI, FRAC_PI_2), DVec3::new(0.0, 0.4, 0.0));
+    assert_eq!(ring.point(deg(180.0), deg(90.0)), DVec3::new(0.0, 0.4, 0.0));
     let shape = Supershape::new(Gielis::new(6.0, 2.0, 0.5, 7.0), Gielis::new(4.0, 10.0, 10.0, 10.0));
-    assert_eq!(shape.surface().unwrap().point(0.0, PI).y, 0.0);
-    assert_eq!(shape.surface().unwrap().point(FRAC_PI_2, 1.0), DVec3::Z);
+    assert_eq!(shape.surface().unwrap().point(rad(0.0), deg(180.0)).y, 0.0);
+    assert_eq!(shape.surface().unwrap().point(deg(90.0), rad(1.0)), DVec3::Z);
 }
 
 fn mesh_of(surface: &ParametricSurface, settings: &PatchSettings) -> Mesh {

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, PI, TAU};
 use glam::{DVec2, DVec3};
 use rvachev::{
     ControlGrid, ControlPolygon, ProfileEnd, QuadMesh, SubdivisionError, SubdivisionRevolution, Supertoroid, Tension,
-    hyperbola_of_ellipse,
+    deg, hyperbola_of_ellipse, rad,
 };
 
 fn square(size: f64) -> Vec<DVec2> {
@@ -13,7 +13,7 @@ fn square(size: f64) -> Vec<DVec2> {
 }
 
 fn right_angle() -> Tension {
-    Tension::trigonometric(FRAC_PI_2).unwrap()
+    Tension::trigonometric(deg(90.0)).unwrap()
 }
 
 #[test]
@@ -341,7 +341,7 @@ fn what_is_wrong_is_named() {
     assert!(matches!(error, SubdivisionError::Levels { levels: 60, allowed: 24, .. }), "{error}");
     assert!(polygon.subdivided(u32::MAX).is_err());
     for step in [0.0, -1.0, PI + 1e-9, f64::NAN] {
-        assert!(Tension::trigonometric(step).is_err());
+        assert!(Tension::trigonometric(rad(step)).is_err());
     }
     assert!(Tension::new(f64::NAN).is_err() && Tension::new(-1.1).is_err() && Tension::hyperbolic(1e3).is_err());
     assert!(SubdivisionRevolution::ellipsoid([1.0, 0.0, 1.0]).is_err());

@@ -4,7 +4,7 @@ use fidget::context::Tree;
 use glam::{DVec2, DVec3};
 use rvachev::{
     Blend, Bounds, Caps, Extrusion, GeneralisedSuperquadric, Helix, LinearLaw, Polygon, Profile, SineWave, SmoothStep,
-    Solid, Superhyperboloid, Supertoroid,
+    Solid, Superhyperboloid, Supertoroid, rad,
 };
 
 use crate::support::Random;
@@ -71,7 +71,7 @@ pub fn random_profile(random: &mut Random, depth: usize) -> Profile {
         0 => plain.union(&other, rule),
         1 => plain.difference(&other, rule),
         2 => plain.offset(random.range(-0.05, 0.1)),
-        _ => plain.intersection(&other, rule).rotate(random.range(-3.0, 3.0)),
+        _ => plain.intersection(&other, rule).rotate(rad(random.range(-3.0, 3.0))),
     }
 }
 
@@ -98,12 +98,12 @@ fn swept(random: &mut Random) -> Solid {
         }
         2 => profile.extrude_with(&Extrusion {
             height: random.range(0.4, 1.5),
-            twist: random.pick(&[0.0, 1.0, -0.7]),
+            twist: rad(random.pick(&[0.0, 1.0, -0.7])),
             scale: random.pick(&[1.0, 0.6, 1.5]),
             caps: Caps::Flat,
         }),
         3 => profile.translate(DVec2::X * random.range(0.0, 0.8)).revolve(),
-        4 => profile.translate(DVec2::X * random.range(0.0, 0.8)).revolve_by(random.range(0.3, 6.2)),
+        4 => profile.translate(DVec2::X * random.range(0.0, 0.8)).revolve_by(rad(random.range(0.3, 6.2))),
         _ => {
             let helix = Helix::new(random.range(0.5, 0.8), random.range(0.4, 0.9), random.range(0.4, 2.5));
             let helix = Helix { left_handed: random.chance(0.5), ..helix };
@@ -160,11 +160,11 @@ pub fn lengthened(random: &mut Random, solid: &Solid) -> Solid {
 
 /// A map that came with the catalogue.
 pub fn catalogue_map(random: &mut Random, solid: &Solid) -> Solid {
-    let wave = SineWave { mean: 1.0, amplitude: 0.3, wavelength: random.range(1.0, 3.0), phase: 0.4 };
+    let wave = SineWave { mean: 1.0, amplitude: 0.3, wavelength: random.range(1.0, 3.0), phase: rad(0.4) };
     match random.below(7) {
         0 => solid.taper_by(wave, 0.8),
-        1 => solid.twist_by(SmoothStep { from: (-0.5, 0.0), to: (0.5, 1.2) }),
-        2 => solid.twist_by(LinearLaw { at_zero: 0.3, slope: random.range(-1.0, 1.0) }),
+        1 => solid.twist_by(rad(1.0), SmoothStep { from: (-0.5, 0.0), to: (0.5, 1.2) }),
+        2 => solid.twist_by(rad(1.0), LinearLaw { at_zero: 0.3, slope: random.range(-1.0, 1.0) }),
         3 => solid.elongate(random.vector(0.0, 0.3)),
         4 => solid.mirrored(random.direction(), random.range(-0.3, 0.3)),
         5 => solid.repeat([2, 1 + random.below(3) as u32, 1], random.vector(0.4, 1.5)),

@@ -13,13 +13,13 @@
 //! Source: G. Wei, J. Feng, F. Chen; their final equation of the one-sheet hyperboloid has a
 //! factor of π/2 too much, and the ring of a torus takes the factor π/2 once only.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::FRAC_PI_2;
 
 use glam::{DVec2, DVec3};
 
 use super::conic::length;
 use super::{ControlPolygon, ProfileEnd, SubdivisionError, SubdivisionRevolution, Tension};
-use crate::surface::angle::sin_cos;
+use crate::{Angle, rad};
 
 /// What a profile's points are moved by.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,10 +58,10 @@ impl ProfileMap {
 fn arc(a: f64, c: f64, step: f64, first: i32, last: i32) -> Result<ControlPolygon<DVec2>, SubdivisionError> {
     let grown = step / step.sin();
     let at = |k: i32| {
-        let (sin, cos) = sin_cos(step * f64::from(k));
+        let (sin, cos) = rad(step * f64::from(k)).sin_cos();
         DVec2::new(a * cos, c * sin) * grown
     };
-    ControlPolygon::open(&(first - 1..=last + 1).map(at).collect::<Vec<_>>(), Tension::trigonometric(step)?)
+    ControlPolygon::open(&(first - 1..=last + 1).map(at).collect::<Vec<_>>(), Tension::trigonometric(rad(step))?)
 }
 
 fn lengths(semi_axes: DVec3) -> Result<(), SubdivisionError> {
@@ -172,7 +172,7 @@ impl SubdivisionRevolution {
         length("half_height", half_height)?;
         let path = ControlPolygon::ellipse(semi_axes)?;
         let ends = [DVec2::new(1.0, -half_height), DVec2::new(1.0, half_height)];
-        let profile = ControlPolygon::clamped(&ends, Tension::trigonometric(PI / 2.0)?)?;
+        let profile = ControlPolygon::clamped(&ends, Tension::trigonometric(Angle::QUARTER_TURN)?)?;
         Ok(SubdivisionRevolution::new(profile, path)?.with_ends(ProfileEnd::Flat, ProfileEnd::Flat))
     }
 }
