@@ -210,7 +210,9 @@ fn folds_of(width: f64, spacing: f64, count: u32) -> u32 {
 fn angles_of(bounds: &Bounds) -> (f64, f64) {
     let (low, high) = (bounds.min, bounds.max);
     let meets = low.x <= 0.0 && high.x >= 0.0 && low.y <= 0.0 && high.y >= 0.0;
-    if bounds.is_empty() || !bounds.is_finite() || meets {
+    // Along z it may be unbounded, as a column is.
+    let is_finite = low.truncate().is_finite() && high.truncate().is_finite();
+    if bounds.is_empty() || !is_finite || meets {
         return (0.0, PI);
     }
     // Seen from its centre's direction a box beside the axis lies within half a turn.

@@ -62,7 +62,7 @@ fn joins_and_maps_are_those_of_the_plane() {
         near(b.scale(-2.5).value(p).unwrap(), 2.5 * at(p / -2.5), 1e-14);
         near(b.scale_axes(DVec2::new(2.0, -0.5)).value(p).unwrap(), 0.5 * at(p / DVec2::new(2.0, -0.5)), 1e-14);
         let line = DVec2::from_angle(angle);
-        near(b.mirror(line).value(p).unwrap(), at(p - 2.0 * p.dot(line) * line), 1e-14);
+        near(b.reflect(line, 0.0).value(p).unwrap(), at(p - 2.0 * p.dot(line) * line), 1e-14);
         let stretch = at(map.inverse().transform_point2(p)) / b.affine(map).value(p).unwrap();
         let least = b.affine(map).value(p).unwrap() / at(map.inverse().transform_point2(p));
         assert!(stretch > 0.0 && (0.78..0.99).contains(&least), "{least}");
