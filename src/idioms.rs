@@ -132,7 +132,7 @@
 //! let plate = Solid::cuboid([60.0, 40.0, 6.0]);
 //! let post = Solid::cylinder(8.0, 20.0).translate([0.0, 0.0, 10.0]);
 //! let filleted = plate.union_with(&post, Blend::Fillet { radius: 3.0 });
-//! let chamfered = plate.union_with(&post, Blend::Chamfer { width: 3.0 });
+//! let chamfered = plate.union_with(&post, Blend::Chamfer { leg: 3.0 });
 //! // In the corner between post and plate:
 //! let corner = [8.5, 0.0, 3.5];
 //! assert!(filleted.contains(corner)? && chamfered.contains(corner)?);

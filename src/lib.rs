@@ -253,7 +253,7 @@
 //! | blend | |
 //! |---|---|
 //! | [`Blend::Fillet`] | a rounding of constant radius, a length |
-//! | [`Blend::Chamfer`] | a flat face of constant width, a length |
+//! | [`Blend::Chamfer`] | a flat face; its leg, how far from the edge it begins on either operand, is a length |
 //! | [`Blend::Smooth`] | a smooth transition of compact support; also [`smooth_union`](Solid::smooth_union) and its like |
 //! | [`Blend::Displacement`] | Pasko and Savchenko's blend, which reaches everywhere |
 //! | [`Blend::Ricci`] | Ricci's blend of gauges |

@@ -218,7 +218,7 @@ fn joins() -> Section {
     .map(|(name, rule)| row(name, a.union(&b, rule)))
     .collect();
     let blended = |blend: Blend| a.union_with(&b, blend);
-    let (fillet, chamfer) = (Blend::Fillet { radius: 0.1 }, Blend::Chamfer { width: 0.1 });
+    let (fillet, chamfer) = (Blend::Fillet { radius: 0.1 }, Blend::Chamfer { leg: 0.07 });
     rows.extend([
         row("displacement", blended(Blend::Displacement { height: 0.1, falloff: [0.3, 0.3] })),
         row("Ricci", blended(Blend::Ricci { p: 3.0 })),

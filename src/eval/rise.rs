@@ -281,7 +281,7 @@ mod tests {
             Solid::from(gyroid),
             Profile::from(Polygon::new([star])).extrude(1.2),
             Profile::circle(0.12).sweep_helix(&Helix::new(0.4, 0.4, 2.0)) | &rod,
-            cube.union_with(&rod, Blend::Chamfer { width: 0.15 }),
+            cube.union_with(&rod, Blend::Chamfer { leg: 0.15 }),
             cushion.offset(0.05),
             cube.shell(0.1),
         ];

@@ -27,7 +27,8 @@ pub enum Caps {
     /// Sharp.
     #[default]
     Flat,
-    /// Bevelled at 45°; the number is the width that is taken off each face, a length.
+    /// Chamfered; the number is the leg, a length: how far from the edge the bevel begins, on the
+    /// end face and on the sides.
     Chamfered(f64),
     /// Rounded; the number is the radius, a length.
     Rounded(f64),
@@ -37,7 +38,7 @@ impl Caps {
     fn check(self, name: &str) -> Result<(), ParamError> {
         match self {
             Caps::Flat => Ok(()),
-            Caps::Chamfered(width) => check::length(&format!("{name} (width)"), width),
+            Caps::Chamfered(leg) => check::length(&format!("{name} (leg)"), leg),
             Caps::Rounded(radius) => check::length(&format!("{name} (radius)"), radius),
         }
     }
@@ -47,9 +48,7 @@ impl Caps {
         match self {
             // The slab first: it says what is wrong with the parameters.
             Caps::Flat => slab.intersection(column, RFunction::Distance),
-            Caps::Chamfered(width) => {
-                slab.intersection_with(column, Blend::Chamfer { width: width * std::f64::consts::SQRT_2 })
-            }
+            Caps::Chamfered(leg) => slab.intersection_with(column, Blend::Chamfer { leg }),
             Caps::Rounded(radius) => slab.intersection_with(column, Blend::Fillet { radius }),
         }
     }

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use rvachev::{
-    Blend, Bounds, CellSize, Features, Helix, Lattice, MeshSettings, Profile, Program, RFunction, Region, SmoothStep,
+    Blend, Bounds, Caps, CellSize, Extrusion, Features, Helix, Lattice, MeshSettings, Profile, Program, RFunction, Region, SmoothStep,
     Solid, SolidError, deg, rad,
 };
 
@@ -147,17 +147,16 @@ fn fillets_between_curved_operands_have_their_radius() -> Result<(), SolidError>
 }
 
 #[test]
-fn chamfers_have_their_width_at_any_angle() -> Result<(), SolidError> {
-    let width = 0.4;
+fn chamfers_have_their_leg_at_any_angle() -> Result<(), SolidError> {
+    let leg = 0.4;
     for degrees in [60.0, 90.0, 120.0, 150.0] {
         let angle = f64::to_radians(degrees);
         let floor = Solid::half_space(DVec3::Z, 0.0);
         let wall = Solid::half_space(DVec3::new(angle.sin(), 0.0, -angle.cos()), 0.0);
-        let part = floor.union_with(&wall, Blend::Chamfer { width });
-        // The face meets both planes at the same distance from the edge.
-        let leg = 0.5 * width / (0.5 * angle).sin();
+        let part = floor.union_with(&wall, Blend::Chamfer { leg });
+        // The face meets both planes at the leg from the edge.
         let (on_floor, on_wall) = (DVec3::X * leg, DVec3::new(angle.cos(), 0.0, angle.sin()) * leg);
-        near(on_floor.distance(on_wall), width, 1e-12);
+        near(on_floor.distance(on_wall), 2.0 * leg * (0.5 * angle).sin(), 1e-12);
         for i in 0..=10 {
             let on = on_floor.lerp(on_wall, f64::from(i) / 10.0);
             near(part.value(on)?, 0.0, 1e-9);
@@ -165,15 +164,44 @@ fn chamfers_have_their_width_at_any_angle() -> Result<(), SolidError> {
     }
     // An inner edge: a box less a slot, its rim broken.
     let block = Solid::cuboid(DVec3::new(4.0, 4.0, 2.0));
-    let part = block.difference_with(Solid::cylinder(1.0, 3.0), Blend::Chamfer { width: 0.2 });
-    let leg = 0.2 / 2f64.sqrt();
-    let face = DVec3::new(1.0 + 0.5 * leg, 0.0, 1.0 - 0.5 * leg);
-    assert!(part.value(face)?.abs() < 1e-3, "{}", part.value(face)?);
+    let part = block.difference_with(Solid::cylinder(1.0, 3.0), Blend::Chamfer { leg: 0.2 });
+    for share in [0.0, 0.25, 0.5, 1.0] {
+        let face = DVec3::new(1.0 + 0.2 * share, 0.0, 0.8 + 0.2 * share);
+        assert!(part.value(face)?.abs() < 1e-9, "{}", part.value(face)?);
+    }
+    Ok(())
+}
+
+#[test]
+fn a_chamfer_takes_its_leg_off_both_faces() -> Result<(), SolidError> {
+    // The edge of a box at a right angle, by each of the ways to chamfer it.
+    let leg = 0.3;
+    let chamfer = Blend::Chamfer { leg };
+    let (column, slab) = (Solid::cuboid([4.0, 9.0, 9.0]), Solid::cuboid([9.0, 9.0, 2.0]));
+    let caps = Extrusion { caps: Caps::Chamfered(leg), ..Extrusion::new(2.0) };
+    for bar in [
+        column.intersection_with(&slab, chamfer),
+        column.difference_with(!&slab, chamfer),
+        !(!&column).union_with(!&slab, chamfer),
+        Profile::rectangle([4.0, 9.0]).extrude_with(&caps),
+        Profile::rectangle([4.0, 9.0])
+            .intersection_with(Profile::rectangle([9.0, 2.0]), chamfer)
+            .extrude(9.0)
+            .rotate_x(deg(90.0)),
+    ] {
+        // Where the face begins and ends, and its middle.
+        for (x, z) in [(2.0 - leg, 1.0), (2.0, 1.0 - leg), (2.0 - 0.5 * leg, 1.0 - 0.5 * leg)] {
+            near(bar.value([x, 0.0, z])?, 0.0, 1e-9);
+        }
+        // Nothing is taken off beyond.
+        assert!(bar.value([2.0 - 1.01 * leg, 0.0, 0.9999])? > 0.0 && bar.value([1.9999, 0.0, 1.0 - 1.01 * leg])? > 0.0);
+        assert!(bar.value([2.0 - 0.99 * leg, 0.0, 0.9999])? < 0.0 && bar.value([1.9999, 0.0, 1.0 - 0.99 * leg])? < 0.0);
+    }
     Ok(())
 }
 
 /// The rim of a face on the surface of `on`, in the plane across the edge through `q`.
-fn rim(part: &Solid, on: &Solid, q: DVec3, edge: DVec3, away: DVec3, width: f64) -> Result<DVec3, SolidError> {
+fn rim(part: &Solid, on: &Solid, q: DVec3, edge: DVec3, away: DVec3, leg: f64) -> Result<DVec3, SolidError> {
     let on_surface = |s: f64| -> Result<DVec3, SolidError> {
         let mut p = q + s * away;
         for _ in 0..20 {
@@ -182,7 +210,7 @@ fn rim(part: &Solid, on: &Solid, q: DVec3, edge: DVec3, away: DVec3, width: f64)
         }
         Ok(p)
     };
-    let (mut covered, mut free) = (0.0, 4.0 * width);
+    let (mut covered, mut free) = (0.0, 4.0 * leg);
     for _ in 0..50 {
         let middle = 0.5 * (covered + free);
         if part.value(on_surface(middle)?)?.abs() > 1e-9 { covered = middle } else { free = middle }
@@ -191,7 +219,7 @@ fn rim(part: &Solid, on: &Solid, q: DVec3, edge: DVec3, away: DVec3, width: f64)
 }
 
 #[test]
-fn chamfers_of_round_solids_have_their_width() -> Result<(), SolidError> {
+fn chamfers_of_round_solids_have_their_legs() -> Result<(), SolidError> {
     let ball = Solid::sphere(1.0);
     let shifted = ball.translate(DVec3::X);
     let floor = Solid::half_space(DVec3::Z, 0.3);
@@ -206,17 +234,19 @@ fn chamfers_of_round_solids_have_their_width() -> Result<(), SolidError> {
         (&pipe, &thin, side),
     ];
     for (a, b, q) in pairs {
-        for (width, union) in [(0.05, true), (0.15, true), (0.05, false), (0.15, false)] {
-            let blend = Blend::Chamfer { width };
+        for (leg, union) in [(0.05, true), (0.15, true), (0.05, false), (0.15, false)] {
+            let blend = Blend::Chamfer { leg };
             let part = if union { a.union_with(b, blend) } else { a.difference_with(b, blend) };
             let [n, o] = [if union { 1.0 } else { -1.0 } * a.gradient(q)?.normalize(), b.gradient(q)?.normalize()];
             let edge = n.cross(o).normalize();
             // Along either surface, away from the other operand or from its complement.
             let rims = [
-                rim(&part, a, q, edge, -o.reject_from(n).normalize(), width)?,
-                rim(&part, b, q, edge, -n.reject_from(o).normalize(), width)?,
+                rim(&part, a, q, edge, -o.reject_from(n).normalize(), leg)?,
+                rim(&part, b, q, edge, -n.reject_from(o).normalize(), leg)?,
             ];
-            near(rims[0].distance(rims[1]) / width, 1.0, 0.01);
+            for rim in rims {
+                near(rim.distance(q) / leg, 1.0, 0.02);
+            }
         }
     }
     Ok(())
@@ -241,7 +271,7 @@ fn blended() -> Vec<(&'static str, Solid)> {
             let inner = plate.union_with(&rod, Blend::Fillet { radius: 0.15 });
             inner.union_with(&ball, Blend::Fillet { radius: 0.1 })
         }),
-        ("chamfer", plate.union_with(&rod, Blend::Chamfer { width: 0.2 })),
+        ("chamfer", plate.union_with(&rod, Blend::Chamfer { leg: 0.15 })),
         ("displacement", plate.union_with(&ball, Blend::Displacement { height: 0.1, falloff: [0.2, 0.3] })),
         (
             "displaced difference",
@@ -337,7 +367,7 @@ fn gradients_of_blends_are_differences() -> Result<(), SolidError> {
 fn beside_a_blend_the_solid_prunes() -> Result<(), SolidError> {
     // A long bar of a hundred balls, two of them blended: far from those, one leaf is left.
     let ball = |i: i32| Solid::sphere(0.6).translate(DVec3::X * f64::from(i));
-    for blend in [Blend::Smooth { radius: 0.2 }, Blend::Fillet { radius: 0.1 }, Blend::Chamfer { width: 0.1 }] {
+    for blend in [Blend::Smooth { radius: 0.2 }, Blend::Fillet { radius: 0.1 }, Blend::Chamfer { leg: 0.1 }] {
         let pair = ball(0).union_with(ball(1), blend);
         let bar = Solid::union_all((2..100).map(ball).chain([pair]), RFunction::MIN_MAX);
         let program = bar.surface_program()?;

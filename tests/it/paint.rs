@@ -63,7 +63,7 @@ fn paint_survives_maps_copies_and_lengths() {
 fn blends_mix() {
     let foot = Solid::half_space(DVec3::Z, 0.0).paint(RED);
     let wall = Solid::half_space(DVec3::X, 0.0).paint(BLUE);
-    for blend in [Blend::Smooth { radius: 1.0 }, Blend::Fillet { radius: 1.0 }, Blend::Chamfer { width: 1.0 }] {
+    for blend in [Blend::Smooth { radius: 1.0 }, Blend::Fillet { radius: 1.0 }, Blend::Chamfer { leg: 1.0 }] {
         let both = foot.union_with(&wall, blend);
         // Along a line from one operand to the other, red falls and blue rises.
         let at = |t: f64| {

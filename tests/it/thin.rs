@@ -116,7 +116,7 @@ fn bodies_without_thin_parts_have_no_unresolved_cells() {
     let bored = &cube - Solid::cylinder(0.5, 3.0);
     let (m2, m6) = (models::m2(), models::m6());
     let boss = cube.union_with(Solid::cylinder(0.6, 4.0), Blend::Fillet { radius: 0.2 });
-    let chamfered = cube.union_with(Solid::cylinder(0.6, 4.0), Blend::Chamfer { width: 0.2 });
+    let chamfered = cube.union_with(Solid::cylinder(0.6, 4.0), Blend::Chamfer { leg: 0.14 });
     let thread = Profile::circle(0.08).sweep_helix(&Helix::new(0.3, 0.25, 2.5)) | Solid::cylinder(0.25, 1.4);
     let star = (0..10).map(|n| DVec2::from_angle(f64::from(n) * 0.2 * PI + 0.1) * if n % 2 == 0 { 1.0 } else { 0.5 });
     let room = thread.finite_bounds().unwrap();

@@ -129,7 +129,7 @@ pub fn blended(random: &mut Random, a: &Solid, b: &Solid) -> Solid {
         0 | 1 => Blend::Smooth { radius: size },
         // Of leaves that have their true distance; of others it is found only nearly.
         2 | 3 => return exact[0].union_with(&exact[1], Blend::Fillet { radius: 0.5 * size }),
-        4 => return exact[0].difference_with(&exact[1], Blend::Chamfer { width: 0.5 * size }),
+        4 => return exact[0].difference_with(&exact[1], Blend::Chamfer { leg: 0.5 * size }),
         5 => Blend::Displacement { height: random.range(-0.2, 0.2), falloff: [size, 0.3] },
         _ => Blend::Ricci { p: random.range(1.5, 8.0) },
     };
