@@ -94,7 +94,7 @@ fn king() -> Solid {
     let turned = pedestal(19.0, 62.0) | crown | lid;
 
     // Arms of a cross that widen outwards: superellipsoids tapered from the middle.
-    let arm = Solid::superellipsoid([2.2, 1.6, 3.2], 0.2, 0.2).taper(0.42, 0.0, 3.2).translate([0.0, 0.0, 2.9]);
+    let arm = Solid::superellipsoid([2.2, 1.6, 3.2], 0.2, 0.2).taper(0.42, 0.0, 6.4).translate([0.0, 0.0, 2.9]);
     let quarters = (0..4).map(|i| arm.rotate_y(deg(90.0 * f64::from(i))));
     let cross = Solid::union_all(quarters, RFunction::default()).translate([0.0, 0.0, 90.0]);
     turned.revolve() | cross

@@ -44,7 +44,7 @@ fn column(curve: Gielis, sharpness: f64, radius: f64, low: f64, high: f64) -> So
 /// top, between a round foot and a collar.
 fn tower(radius: f64, height: f64) -> Solid {
     let lobes = Gielis::new(6.0, 10.0, 3.0, 3.0);
-    let shaft = column(lobes, 30.0, 0.9 * radius, -8.0, height).taper(-0.08, -0.08, height);
+    let shaft = column(lobes, 30.0, 0.9 * radius, -8.0, height).taper(-0.08, -0.08, 2.0 * height);
     let collar = column(Gielis::circle(), 10.0, radius, 0.52 * height, 0.66 * height);
     shaft | collar
 }

@@ -185,9 +185,9 @@ fn surfaces() -> Result<Vec<Surface>, Box<dyn Error>> {
         equation: None,
     };
     // Without their flat ends one sees into them.
-    let one_sheet = SubdivisionRevolution::one_sheet([0.8, 0.6, 0.8], 1.2)?;
+    let one_sheet = SubdivisionRevolution::one_sheet([0.8, 0.6, 0.8], 2.4)?;
     let one_sheet = one_sheet.with_ends(ProfileEnd::Open, ProfileEnd::Open);
-    let two_sheets = SubdivisionRevolution::two_sheets([0.6, 0.5, 0.5], 1.0)?;
+    let two_sheets = SubdivisionRevolution::two_sheets([0.6, 0.5, 0.5], 2.0)?;
     let two_sheets = two_sheets.with_ends(ProfileEnd::Pole, ProfileEnd::Open);
     Ok(vec![
         revolution(
@@ -221,7 +221,7 @@ fn surfaces() -> Result<Vec<Surface>, Box<dyn Error>> {
         )?,
         revolution(
             "elliptic_cylinder",
-            &SubdivisionRevolution::elliptic_cylinder([1.2, 0.8], 0.9)?,
+            &SubdivisionRevolution::elliptic_cylinder([1.2, 0.8], 1.8)?,
             Some(|p| {
                 let a = (p.x / 1.2).powi(2) + (p.y / 0.8).powi(2);
                 if a < 1e-20 { 0.0 } else { a - 1.0 }

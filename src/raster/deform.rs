@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! affine X = A x + b
-//! taper  t = clamp(z/h, −1, 1), s = 1 + K t          X = s_x x,  Y = s_y y,  Z = z
+//! taper  t = clamp(2z/h, −1, 1), s = 1 + K t         X = s_x x,  Y = s_y y,  Z = z
 //! twist  φ = ω z                                     (X, Y) = (x, y) turned by φ,  Z = z
 //! bend   r = along u = (cos α, sin α), γ = κ z       R = r + (1 − κr) z sin(γ/2) sinc(γ/2)
 //!                                                    Z = (1 − κr) z sinc γ
@@ -57,7 +57,7 @@ impl Mesh {
     /// use rvachev::{ClosedMesh, PatchSettings, Superellipsoid, deg, rad};
     ///
     /// let bar = Superellipsoid::new([0.5, 0.5, 2.0], 0.3, 0.3).surface()?.mesh(&PatchSettings::default())?;
-    /// let bent = bar.taper(0.4, 0.4, 2.0)?.twist(rad(0.6))?.bend(0.3, deg(0.0))?;
+    /// let bent = bar.taper(0.4, 0.4, 4.0)?.twist(rad(0.6))?.bend(0.3, deg(0.0))?;
     /// ClosedMesh::new(&bent)?;
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -65,8 +65,9 @@ impl Mesh {
     /// # Errors
     ///
     /// [`RasterError::Parameter`] for a parameter that a solid of this size would not take.
-    pub fn taper(&self, kx: f64, ky: f64, half_height: f64) -> Result<Mesh, RasterError> {
-        deformed(self, &Taper { kx, ky, half_height }, |p, n| {
+    pub fn taper(&self, kx: f64, ky: f64, height: f64) -> Result<Mesh, RasterError> {
+        let half_height = 0.5 * height;
+        deformed(self, &Taper { kx, ky, height }, |p, n| {
             let t = (p.z / half_height).clamp(-1.0, 1.0);
             let (sx, sy) = (1.0 + kx * t, 1.0 + ky * t);
             let across = DVec3::new(n.x / sx, n.y / sy, 0.0);

@@ -39,8 +39,8 @@ pub struct RenderSettings {
     pub lights: Lights,
     /// Whether the key light casts shadows. Default: true.
     pub shadows: bool,
-    /// Half the angle that the key light appears under, 0 to 45 degrees: shadows are the softer
-    /// the larger it is, and have hard edges at 0. Default: 7 degrees.
+    /// The angle that the key light appears under, 0 to 90 degrees: shadows are the softer the
+    /// larger it is, and have hard edges at 0. Default: 14 degrees.
     pub softness: Angle,
     /// Whether parts hide the sky from each other, which darkens corners and hollows.
     /// Default: true.
@@ -64,7 +64,7 @@ impl Default for RenderSettings {
             paint: Paint::default(),
             lights: Lights::default(),
             shadows: true,
-            softness: deg(7.0),
+            softness: deg(14.0),
             occlusion: true,
             ground: true,
             transfer: Transfer::default(),
@@ -228,8 +228,8 @@ impl RenderSettings {
         if !(0.0..=1.0).contains(&self.paint.roughness) {
             return Err(setting("paint.roughness", self.paint.roughness, "0 to 1"));
         }
-        if !(Angle::ZERO..=deg(45.0)).contains(&self.softness) {
-            return Err(setting("softness", self.softness, "0° to 45°"));
+        if !(Angle::ZERO..=deg(90.0)).contains(&self.softness) {
+            return Err(setting("softness", self.softness, "0° to 90°"));
         }
         let Lights { key, fill, rim, sky } = self.lights;
         for (name, light) in [("lights.key", key), ("lights.fill", fill), ("lights.rim", rim), ("lights.sky", sky)] {

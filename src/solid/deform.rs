@@ -64,15 +64,15 @@ impl Solid {
         self.warp(TwistBy { angle: angle.into(), law })
     }
 
-    /// Elongated by straight pieces: the parts on either side of each coordinate plane move
-    /// outward by `half`, and the section in the plane is drawn out between them:
-    /// `f(p) = solid(p − clamp(p, −half, half))`.
+    /// Elongated by straight pieces of these `lengths`: the parts on either side of each
+    /// coordinate plane move apart by the length across it, and the section in the plane is drawn
+    /// out between them: `f(p) = solid(p − clamp(p, −lengths/2, lengths/2))`.
     ///
     #[doc = picture!("elongate" = "docs/gallery/elongate.png")]
     ///
     /// | parameter | unit | range |
     /// |---|---|---|
-    /// | `half` | length | 0 to 10⁹ along each axis; the solid grows by twice that |
+    /// | `lengths` | length | 0 to 10⁹ along each axis: by how much the solid grows |
     ///
     /// 1-Lipschitz if the operand is, and outside the true distance if the operand has it.
     ///
@@ -80,13 +80,13 @@ impl Solid {
     /// use rvachev::Solid;
     /// use glam::DVec3;
     ///
-    /// let capsule = Solid::sphere(1.0).elongate(DVec3::new(0.0, 0.0, 2.0));
+    /// let capsule = Solid::sphere(1.0).elongate(DVec3::new(0.0, 0.0, 4.0));
     /// assert!((capsule.bounds()?.size() - DVec3::new(2.0, 2.0, 6.0)).length() < 1e-12);
     /// assert_eq!(capsule.value(DVec3::new(3.0, 0.0, 1.5))?, -2.0);
     /// # Ok::<(), rvachev::SolidError>(())
     /// ```
     #[must_use]
-    pub fn elongate(&self, half: impl Into<DVec3>) -> Solid {
-        self.warp(Elongate { half: half.into() })
+    pub fn elongate(&self, lengths: impl Into<DVec3>) -> Solid {
+        self.warp(Elongate { lengths: lengths.into() })
     }
 }

@@ -66,10 +66,10 @@ impl Profile {
         Superellipse::new(semi_axes, exponent).into()
     }
 
-    /// A [`Superpolygon`]: what is within the curve, scaled by `size`.
+    /// A [`Superpolygon`]: what is within the curve, `radius` being what its radius of 1 becomes.
     #[must_use]
-    pub fn superpolygon(curve: Gielis, size: f64) -> Profile {
-        Superpolygon::new(curve, size).into()
+    pub fn superpolygon(curve: Gielis, radius: f64) -> Profile {
+        Superpolygon::new(curve, radius).into()
     }
 
     /// A [`Rectangle`] about the origin, `size` being the lengths of its sides.

@@ -204,7 +204,7 @@ impl Profile {
         if scale != 1.0 {
             // A taper is 1 in the middle; the lower end is to be the profile.
             let (middle, k) = (0.5 * (1.0 + scale), (scale - 1.0) / (scale + 1.0));
-            column = self.scale(middle).0.taper(k, k, half_height);
+            column = self.scale(middle).0.taper(k, k, height);
         }
         if twist != Angle::ZERO {
             column = column.rotate_z(0.5 * twist).twist(twist / height);

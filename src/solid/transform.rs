@@ -75,14 +75,14 @@ impl Solid {
     }
 
     /// Tapered along z: sections are scaled by `1 + kx·t` along x and `1 + ky·t` along y,
-    /// `t = z/half_height` held to [−1, 1]. By any other law of z: [`taper_by`](Solid::taper_by).
+    /// `t = 2z/height` held to [−1, 1]: from z = −height/2 to height/2. By any other law of z: [`taper_by`](Solid::taper_by).
     ///
     #[doc = picture!("taper" = "docs/gallery/taper.png")]
     ///
     /// | parameter | unit | range |
     /// |---|---|---|
     /// | `kx`, `ky` | none | −0.999 to 0.999 |
-    /// | `half_height` | length | 10⁻⁹ to 10⁹ |
+    /// | `height` | length | 10⁻⁹ to 10⁹ |
     ///
     /// The field is the operand's at the pre-image, not rescaled: not Lipschitz in general.
     ///
@@ -92,14 +92,14 @@ impl Solid {
     /// use rvachev::Solid;
     ///
     /// // 3 wide at the bottom, 1 at the top.
-    /// let post = Solid::cuboid([2.0, 2.0, 4.0]).taper(-0.5, -0.5, 2.0);
+    /// let post = Solid::cuboid([2.0, 2.0, 4.0]).taper(-0.5, -0.5, 4.0);
     /// assert!(post.contains([1.4, 0.0, -1.9])?);
     /// assert!(!post.contains([0.6, 0.0, 1.9])?);
     /// # Ok::<(), rvachev::SolidError>(())
     /// ```
     #[must_use]
-    pub fn taper(&self, kx: f64, ky: f64, half_height: f64) -> Solid {
-        self.warp(Taper { kx, ky, half_height })
+    pub fn taper(&self, kx: f64, ky: f64, height: f64) -> Solid {
+        self.warp(Taper { kx, ky, height })
     }
 
     /// Twisted about the z axis: the section at z is turned by `rate·z`, from x towards y. By any

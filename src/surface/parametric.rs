@@ -277,7 +277,7 @@ impl Superhyperboloid {
         let [e1, e2] = self.exponents();
         let a = self.semi_axes();
         let (two, along_x) = (self.has_two_sheets(), self.is_along_x());
-        let end = self.half_length() / if along_x { a.x } else { a.z };
+        let end = 0.5 * self.length() / if along_x { a.x } else { a.z };
         if two && along_x {
             let [meridian, equator] = [e1, e2].map(|e| Curve::Hyperbola { e, end: height_of(end, e) });
             return Ok(ParametricSurface::new(meridian, equator, Shape::BarrBowl { end, e1, e2 }, a));

@@ -127,9 +127,9 @@ fn superquadric(random: &mut Random, kind: usize) -> (Solid, DVec3) {
     let longer = random.log_range(1.01, 5.0);
     let solid: Solid = match kind {
         0 => Supertoroid::new(axes, random.log_range(1.0, 10.0), e1, e2).into(),
-        1 => Superhyperboloid::one_sheet(axes, e1, e2, axes.z * random.log_range(0.1, 5.0)).into(),
-        2 => Superhyperboloid::two_sheets(axes, e1, e2, axes.z * longer).into(),
-        3 => Superhyperboloid::two_sheets_x(axes, e1, e2, axes.x * longer).into(),
+        1 => Superhyperboloid::one_sheet(axes, e1, e2, 2.0 * axes.z * random.log_range(0.1, 5.0)).into(),
+        2 => Superhyperboloid::two_sheets(axes, e1, e2, 2.0 * axes.z * longer).into(),
+        3 => Superhyperboloid::two_sheets_x(axes, e1, e2, 2.0 * axes.x * longer).into(),
         _ => {
             let n = [0; 3].map(|_| {
                 if random.chance(0.2) { random.pick(&[0.5, 1.0, 2.0, 60.0]) } else { random.log_range(0.5, 60.0) }

@@ -2,8 +2,8 @@
 
 use glam::{DVec2, DVec3};
 use rvachev::{
-    Blend, Bounds, Caps, CellSize, Extrusion, Features, Helix, Lattice, MeshSettings, Profile, Program, RFunction, Region, SmoothStep,
-    Solid, SolidError, deg, rad,
+    Blend, Bounds, Caps, CellSize, Extrusion, Features, Helix, Lattice, MeshSettings, Profile, Program, RFunction,
+    Region, SmoothStep, Solid, SolidError, deg, rad,
 };
 
 use crate::support::{Random, lanes32, lanes64, near, off_surface};
@@ -625,7 +625,7 @@ fn rays_meet_chains_of_fillets() -> Result<(), SolidError> {
 #[test]
 fn fillets_of_smooth_unions_are_of_one_surface() -> Result<(), SolidError> {
     const CELL: f64 = 0.05;
-    let wedge = Solid::cuboid((0.5, 0.7, 0.9)).taper(0.36, 0.8, 0.5).translate((0.1, 0.3, -0.1));
+    let wedge = Solid::cuboid((0.5, 0.7, 0.9)).taper(0.36, 0.8, 1.0).translate((0.1, 0.3, -0.1));
     let smooth = wedge.smooth_union(Solid::cylinder(0.33, 0.7), 0.1);
     let knob = Solid::ellipsoid((0.13, 0.18, 0.37)).offset(0.035).translate((0.35, -0.25, 0.0));
     let solid = smooth.union_with(&knob, Blend::Fillet { radius: 0.05 });

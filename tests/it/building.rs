@@ -203,7 +203,7 @@ fn solids_are_written_as_trees() {
             arm.rotate_z(deg(120.0)),
             arm.rotate_about([1.0, 1.0, 0.0], rad(0.5)),
             ball.affine(DAffine3::from_mat3_translation(DMat3::from_diagonal(DVec3::new(1.0, 2.0, 1.0)), DVec3::X)),
-            !ball.twist(rad(0.5)).taper(0.1, 0.2, 2.0).bend(0.25, deg(0.0)),
+            !ball.twist(rad(0.5)).taper(0.1, 0.2, 4.0).bend(0.25, deg(0.0)),
             Superellipsoid::new([1.0, 2.0, 3.0], 0.5, 1.5).into(),
             Solid::new(Ball(2.0)),
         ],
@@ -226,7 +226,7 @@ toy: union by Alpha(1.0)
     sphere { radius: 1.0 }
   complement
     bend { curvature: 0.25, angle: 0.0 rad }
-      taper { kx: 0.1, ky: 0.2, half_height: 2.0 }
+      taper { kx: 0.1, ky: 0.2, height: 4.0 }
         twist { rate: 0.5 rad }
           sphere { radius: 1.0 }
   superellipsoid { semi_axes: DVec3(1.0, 2.0, 3.0), e1: 0.5, e2: 1.5 }
@@ -245,7 +245,7 @@ toy: union by Alpha(1.0)
     let want = "\
 union by P(2.0)
   union by P(2.0)
-    part 1, left: part 2, twist { rate: 1.0 }
+    part 1, left: part 2, twist { rate: 1.0 rad }
       sphere { radius: 1.0 }
     right: part 2 again
   part 1 again";
@@ -311,7 +311,7 @@ fn equality_is_by_structure() {
             ball.translate(DVec3::Y),
             ball.twist(rad(1.0)),
             ball.twist(rad(1.5)),
-            ball.taper(0.1, 0.2, 3.0),
+            ball.taper(0.1, 0.2, 6.0),
             !ball,
             !!ball,
             ball.named("a"),
@@ -476,7 +476,7 @@ fn cluttered(random: &mut Random, leaves: &[Solid], depth: usize) -> Solid {
         12 => first.scale_axes(random.vector(0.7, 1.4)).scale(random.range(0.5, 1.5)),
         13 => first.rotate_z(deg(90.0)).rotate_z(deg(-90.0)),
         14 => first.twist(rad(random.range(-1.0, 1.0))),
-        _ => first.taper(random.range(-0.4, 0.4), random.range(-0.4, 0.4), random.range(0.5, 1.0)),
+        _ => first.taper(random.range(-0.4, 0.4), random.range(-0.4, 0.4), random.range(1.0, 2.0)),
     }
 }
 

@@ -112,7 +112,7 @@ fn a_chain_of_all_three() {
     let p = DVec3::new(0.4, 0.5, 1.2);
     let image = bend(twist(taper(p, 0.5, -0.4, 2.0), 0.6), 0.3, 0.5);
     near_point(image, DVec3::new(0.304009419006, 0.717961296813, 1.024693146673), 1e-12);
-    let deform = |s: Solid| s.taper(0.5, -0.4, 2.0).twist(rad(0.6)).bend(0.3, rad(0.5));
+    let deform = |s: Solid| s.taper(0.5, -0.4, 4.0).twist(rad(0.6)).bend(0.3, rad(0.5));
     near_point(pre_image(&deform, image), p, 2e-14);
 
     let leaf = Superellipsoid::new(DVec3::new(0.5, 0.7, 2.0), 0.4, 0.6);
@@ -126,7 +126,7 @@ fn the_taper_is_held_beyond_its_ends() {
     let mut random = Random::new(32);
     for _ in 0..200 {
         let p = DVec3::new(random.range(-1.0, 1.0), random.range(-1.0, 1.0), random.range(-4.0, 4.0));
-        near_point(pre_image(&|s| s.taper(0.9, -0.99, 1.5), taper(p, 0.9, -0.99, 1.5)), p, 1e-13);
+        near_point(pre_image(&|s| s.taper(0.9, -0.99, 3.0), taper(p, 0.9, -0.99, 1.5)), p, 1e-13);
         near_point(pre_image(&|s| s.twist(rad(-2.5)), twist(p, -2.5)), p, 1e-13);
     }
 }
@@ -138,7 +138,7 @@ fn values_move_with_the_points() {
     for _ in 0..500 {
         let p = DVec3::new(random.range(-0.7, 0.7), random.range(-0.7, 0.7), random.range(-1.2, 1.2));
         let want = value(&solid, p);
-        near(value(&solid.taper(0.4, -0.6, 1.0), taper(p, 0.4, -0.6, 1.0)), want, 1e-13);
+        near(value(&solid.taper(0.4, -0.6, 2.0), taper(p, 0.4, -0.6, 1.0)), want, 1e-13);
         near(value(&solid.twist(rad(1.7)), twist(p, 1.7)), want, 1e-13);
         near(value(&solid.bend(0.7, rad(2.0)), bend(p, 0.7, 2.0)), want, 1e-13);
     }
@@ -156,7 +156,7 @@ fn twist_and_centred_bend_keep_the_volume() {
     const TAPERED: f64 = 4.335761223258;
     let solid = Solid::superellipsoid(DVec3::new(0.5, 0.7, 2.0), 0.4, 0.6);
     near(volume(&solid), VOLUME, 1e-3 * VOLUME);
-    near(volume(&solid.taper(0.5, -0.4, 2.0)), TAPERED, 1e-3 * TAPERED);
+    near(volume(&solid.taper(0.5, -0.4, 4.0)), TAPERED, 1e-3 * TAPERED);
     near(volume(&solid.twist(rad(0.6))), VOLUME, 1e-3 * VOLUME);
     near(volume(&solid.bend(0.3, rad(0.5))), VOLUME, 1e-3 * VOLUME);
 }
@@ -168,7 +168,7 @@ fn stretches_are_those_of_the_table() {
         let p = DVec3::new(random.range(-0.5, 0.5), random.range(-0.7, 0.7), random.range(-1.4, 1.4));
 
         let (kx, ky, height) = (0.5, -0.4, 2.0);
-        let j = inverse_jacobian(&|s| s.taper(kx, ky, height), taper(p, kx, ky, height));
+        let j = inverse_jacobian(&|s| s.taper(kx, ky, 2.0 * height), taper(p, kx, ky, height));
         let (sx, sy) = (1.0 + kx * p.z / height, 1.0 + ky * p.z / height);
         near(j.determinant() * sx * sy, 1.0, 1e-8);
         let bound = (1.0 / sx).max(1.0 / sy).max(1.0) + (kx / height * p.x / sx).hypot(ky / height * p.y / sy);
@@ -195,7 +195,7 @@ fn stretches_are_those_of_the_table() {
 fn gradients_are_pulled_back() {
     let mut random = Random::new(61);
     let solid = Solid::superellipsoid(DVec3::new(0.5, 0.7, 2.0), 0.4, 0.6);
-    let deform = |s: Solid| s.taper(0.5, -0.4, 2.0).twist(rad(0.6)).bend(0.3, rad(0.5));
+    let deform = |s: Solid| s.taper(0.5, -0.4, 4.0).twist(rad(0.6)).bend(0.3, rad(0.5));
     let deformed = deform(solid.clone());
     for _ in 0..40 {
         let p = DVec3::new(random.range(-0.5, 0.5), random.range(-0.7, 0.7), random.range(-1.9, 1.9));

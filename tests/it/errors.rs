@@ -71,9 +71,9 @@ fn numbers_of_maps_that_are_not_finite() {
         refused(&ball.scale_axes(DVec3::new(1.0, bad, 1.0)), &["scale_axes: "]);
         refused(&ball.affine(DAffine3::from_scale(DVec3::splat(bad))), &["affine: "]);
         refused(&ball.rotate(DQuat::from_xyzw(bad, 0.0, 0.0, 1.0)), &["rotate: "]);
-        refused(&ball.taper(bad, 0.0, 1.0), &["taper: kx is ", "-0.999 to 0.999"]);
-        refused(&ball.taper(0.0, bad, 1.0), &["taper: ky is ", "-0.999 to 0.999"]);
-        refused(&ball.taper(0.0, 0.0, bad), &["taper: half_height is "]);
+        refused(&ball.taper(bad, 0.0, 2.0), &["taper: kx is ", "-0.999 to 0.999"]);
+        refused(&ball.taper(0.0, bad, 2.0), &["taper: ky is ", "-0.999 to 0.999"]);
+        refused(&ball.taper(0.0, 0.0, bad), &["taper: height is "]);
         refused(&ball.twist(rad(bad)), &["twist: rate is "]);
         refused(&ball.bend(bad, deg(0.0)), &["bend: curvature is "]);
         refused(&ball.bend(0.1, rad(bad)), &["bend: angle is "]);
@@ -91,7 +91,7 @@ fn sizes_that_are_not_positive() {
         refused(&Solid::superellipsoid(DVec3::new(bad, 1.0, 1.0), 1.0, 1.0), &["superellipsoid: semi_axes.x is "]);
         let shape = Supershape::new(Gielis::circle(), Gielis::circle()).scaled(DVec3::new(1.0, bad, 1.0));
         refused(&shape.into(), &["supershape: scale.y is "]);
-        refused(&Solid::sphere(1.0).taper(0.1, 0.1, bad), &["taper: half_height is "]);
+        refused(&Solid::sphere(1.0).taper(0.1, 0.1, bad), &["taper: height is "]);
     }
     refused(&Solid::half_space(DVec3::ZERO, 0.0), &["half-space: normal is 0", "other than zero"]);
 }
@@ -179,10 +179,10 @@ fn a_taper_that_inverts() {
     let ball = Solid::sphere(1.0);
     for bad in [1.0, -1.0, 1.5, -3.0] {
         let text = format!("is {bad}, allowed: -0.999 to 0.999");
-        refused(&ball.taper(bad, 0.0, 1.0), &["taper: kx ", &text]);
-        refused(&ball.taper(0.0, bad, 1.0), &["taper: ky ", &text]);
+        refused(&ball.taper(bad, 0.0, 2.0), &["taper: kx ", &text]);
+        refused(&ball.taper(0.0, bad, 2.0), &["taper: ky ", &text]);
     }
-    assert!(ball.taper(0.999, -0.999, 1.0).value(DVec3::ZERO).is_ok());
+    assert!(ball.taper(0.999, -0.999, 2.0).value(DVec3::ZERO).is_ok());
 }
 
 #[test]

@@ -119,10 +119,10 @@ fn parametric_surfaces_take_anything() {
         for (what, surface) in [
             ("superellipsoid", Superellipsoid::new(axes, e1, e2).surface()),
             ("supertoroid", Supertoroid::new(axes, ring, e1, e2).surface()),
-            ("one sheet", Superhyperboloid::one_sheet(axes, e1, e2, half).surface()),
-            ("one sheet x", Superhyperboloid::one_sheet_x(axes, e1, e2, half).surface()),
-            ("two sheets", Superhyperboloid::two_sheets(axes, e1, e2, half).surface()),
-            ("two sheets x", Superhyperboloid::two_sheets_x(axes, e1, e2, half).surface()),
+            ("one sheet", Superhyperboloid::one_sheet(axes, e1, e2, 2.0 * half).surface()),
+            ("one sheet x", Superhyperboloid::one_sheet_x(axes, e1, e2, 2.0 * half).surface()),
+            ("two sheets", Superhyperboloid::two_sheets(axes, e1, e2, 2.0 * half).surface()),
+            ("two sheets x", Superhyperboloid::two_sheets_x(axes, e1, e2, 2.0 * half).surface()),
             ("supershape", supershape.surface()),
         ] {
             let what = format!("{what} {axes:?} {e1} {e2} {ring} {half} {supershape:?}");
@@ -292,8 +292,8 @@ fn subdivision_takes_anything() {
         }
         for revolution in [
             SubdivisionRevolution::ellipsoid([a, b, c]),
-            SubdivisionRevolution::one_sheet([a, b, c], d),
-            SubdivisionRevolution::two_sheets([a, b, c], d),
+            SubdivisionRevolution::one_sheet([a, b, c], 2.0 * d),
+            SubdivisionRevolution::two_sheets([a, b, c], 2.0 * d),
             SubdivisionRevolution::elliptic_torus([a, b], c, d),
             SubdivisionRevolution::elliptic_cylinder([a, b], c),
         ] {

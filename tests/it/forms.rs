@@ -141,10 +141,10 @@ fn superquadrics(axes: DVec3) -> Vec<Case> {
     }
     for [e1, e2] in [[1.0, 1.0], [0.05, 1.6], [2.5, 0.8], [0.8, 2.5]] {
         for (name, leaf) in [
-            ("one sheet", Superhyperboloid::one_sheet(axes, e1, e2, 0.9)),
-            ("one sheet along x", Superhyperboloid::one_sheet_x(axes, e1, e2, 0.9)),
-            ("two sheets", Superhyperboloid::two_sheets(axes, e1, e2, 1.1)),
-            ("two sheets along x", Superhyperboloid::two_sheets_x(axes, e1, e2, 1.6)),
+            ("one sheet", Superhyperboloid::one_sheet(axes, e1, e2, 1.8)),
+            ("one sheet along x", Superhyperboloid::one_sheet_x(axes, e1, e2, 1.8)),
+            ("two sheets", Superhyperboloid::two_sheets(axes, e1, e2, 2.2)),
+            ("two sheets along x", Superhyperboloid::two_sheets_x(axes, e1, e2, 3.2)),
         ] {
             let size = Solid::from(leaf).bounds().unwrap().half_extents().max_element();
             cases.push(case(format!("{name} {e1} {e2}"), leaf, size));
@@ -175,19 +175,19 @@ fn maps() -> Vec<Case> {
         case("affine", base().affine(shear), 2.0),
     ];
     for (name, solid) in [
-        ("taper", base().taper(0.5, -0.4, 0.6)),
+        ("taper", base().taper(0.5, -0.4, 1.2)),
         ("twist", base().twist(rad(1.3))),
         (
             "taper by laws",
             base().taper_by(SineWave { mean: 1.0, amplitude: 0.3, wavelength: 2.0, phase: rad(0.4) }, 0.8),
         ),
         ("twist by a law", base().twist_by(rad(1.0), SmoothStep { from: (-0.5, 0.0), to: (0.5, 1.2) })),
-        ("elongate", base().elongate(DVec3::new(0.2, 0.0, 0.5))),
+        ("elongate", base().elongate(DVec3::new(0.4, 0.0, 1.0))),
         ("bend", base().bend(0.5, rad(0.7))),
         ("bend the other way", base().bend(-0.6, deg(0.0))),
         ("a hair of a bend", base().bend(1e-9, rad(0.3))),
-        ("all three", base().taper(0.25, 0.25, 0.6).twist(rad(0.8)).bend(0.5, deg(0.0))),
-        ("deformed and moved", base().twist(rad(0.8)).rotate_x(rad(0.5)).taper(0.3, 0.1, 1.0).translate(DVec3::X)),
+        ("all three", base().taper(0.25, 0.25, 1.2).twist(rad(0.8)).bend(0.5, deg(0.0))),
+        ("deformed and moved", base().twist(rad(0.8)).rotate_x(rad(0.5)).taper(0.3, 0.1, 2.0).translate(DVec3::X)),
     ] {
         // The chain's largest stretch near the solid is below this.
         cases.push(Case { condition: 6.0, deformed: true, ..case(name, solid, 1.5) });

@@ -136,7 +136,7 @@ proptest! {
     fn a_deformed_solid_stays_in_its_bounds(solid in solids(), seed: u64) {
         let mut random = Random::new(seed);
         let all = [
-            solid.taper(random.range(-0.9, 0.9), random.range(-0.9, 0.9), random.range(0.2, 1.0)),
+            solid.taper(random.range(-0.9, 0.9), random.range(-0.9, 0.9), random.range(0.4, 2.0)),
             solid.twist(rad(random.range(-4.0, 4.0))),
             solid.bend(random.range(-0.6, 0.6), rad(random.range(-3.0, 3.0))),
         ];

@@ -12,7 +12,7 @@ fn operand(random: &mut Random) -> Solid {
     for _ in 0..random.below(3) {
         let moved = match random.below(7) {
             0 => solid.affine(random.affine()),
-            1 => solid.taper(random.range(-0.6, 0.6), random.range(-0.6, 0.6), random.range(0.3, 1.0)),
+            1 => solid.taper(random.range(-0.6, 0.6), random.range(-0.6, 0.6), random.range(0.6, 2.0)),
             2 | 3 => solid.twist(rad(random.range(-2.0, 2.0))),
             4 => solid.bend(random.range(-0.5, 0.5), rad(random.range(-3.0, 3.0))),
             _ => zoo::catalogue_map(random, &solid),

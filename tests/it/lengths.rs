@@ -82,7 +82,7 @@ fn walls_keep_their_thickness_under_maps() -> Result<(), SolidError> {
         ("turned and scaled", pill.scale(1.5).rotate_x(rad(0.4))),
         ("stretched", pill.scale_axes(DVec3::new(1.0, 1.4, 0.8))),
         ("twisted", pill.twist(rad(0.5))),
-        ("tapered", pill.taper(0.3, -0.2, 0.5)),
+        ("tapered", pill.taper(0.3, -0.2, 1.0)),
         ("bent", pill.bend(0.4, rad(0.3))),
         ("box, stretched", Solid::cuboid(DVec3::ONE).scale_axes(DVec3::new(1.0, 2.0, 1.5))),
     ] {
@@ -126,7 +126,7 @@ fn offsets_of_leaves_that_are_not_convex_keep_their_sign_when_narrowed() -> Resu
     let cases = [
         ("pinched", Solid::superellipsoid([0.5165, 0.5505, 0.2221], 2.435, 0.164)),
         ("star", star.into()),
-        ("one sheet", Superhyperboloid::one_sheet([0.4, 0.3, 0.5], 0.7, 1.2, 0.8).into()),
+        ("one sheet", Superhyperboloid::one_sheet([0.4, 0.3, 0.5], 0.7, 1.2, 1.6).into()),
     ];
     for (name, solid) in cases {
         for by in [0.13, -0.05] {

@@ -137,7 +137,7 @@ fn mirrors() {
 #[test]
 fn elongation_is_exact_where_the_leaf_is() {
     let half = DVec3::new(0.5, 0.0, 1.5);
-    let solid = Solid::sphere(0.75).elongate(half);
+    let solid = Solid::sphere(0.75).elongate(2.0 * half);
     near_point(solid.bounds().unwrap().max, half + 0.75, 1e-12);
     near_point(solid.bounds().unwrap().min, -half - 0.75, 1e-12);
     let mut random = Random::new(402);
@@ -145,11 +145,11 @@ fn elongation_is_exact_where_the_leaf_is() {
         let p = random.vector(-4.0, 4.0);
         near(value(&solid, p), 0.75 - (p - p.clamp(-half, half)).length(), 1e-13);
     }
-    let halves = block().translate(DVec3::Y * 3.0).elongate(DVec3::ONE);
+    let halves = block().translate(DVec3::Y * 3.0).elongate(DVec3::splat(2.0));
     check_narrowing(&mut random, &halves, 40);
     assert!(value(&halves, DVec3::new(0.9, 4.0, 0.9)) > 0.0 && value(&halves, DVec3::Y * 3.0) < 0.0);
     let wrong = Solid::sphere(1.0).elongate(DVec3::new(0.0, -1.0, 0.0)).bounds().unwrap_err();
-    assert_eq!(wrong.to_string(), "elongate: half.y is -1, allowed: 0 to 1000000000");
+    assert_eq!(wrong.to_string(), "elongate: lengths.y is -1, allowed: 0 to 1000000000");
 }
 
 /// Single and double precision lanes, gradients and fidget's tree against the point values.

@@ -120,7 +120,7 @@ pub fn m5() -> Model {
 
 pub fn m6() -> Model {
     let solid = Solid::superellipsoid(DVec3::new(1.0, 0.8, 0.6), 0.3, 0.7);
-    Model { name: "M6", half: 1.5, solid: solid.taper(0.25, 0.25, 0.6).twist(rad(0.8)).bend(0.5, deg(0.0)) }
+    Model { name: "M6", half: 1.5, solid: solid.taper(0.25, 0.25, 1.2).twist(rad(0.8)).bend(0.5, deg(0.0)) }
 }
 
 /// All six, in order.

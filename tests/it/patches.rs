@@ -42,10 +42,10 @@ fn cases() -> Vec<Case> {
     for e in [[0.4, 1.3], [1.0, 1.0], [0.05, 0.05], [2.0, 1.8]] {
         let a = [1.2, 0.8, 0.6];
         for shape in [
-            Superhyperboloid::one_sheet(a, e[0], e[1], 1.5),
-            Superhyperboloid::one_sheet_x(a, e[0], e[1], 1.5),
-            Superhyperboloid::two_sheets(a, e[0], e[1], 1.5),
-            Superhyperboloid::two_sheets_x(a, e[0], e[1], 3.0),
+            Superhyperboloid::one_sheet(a, e[0], e[1], 3.0),
+            Superhyperboloid::one_sheet_x(a, e[0], e[1], 3.0),
+            Superhyperboloid::two_sheets(a, e[0], e[1], 3.0),
+            Superhyperboloid::two_sheets_x(a, e[0], e[1], 6.0),
         ] {
             let shells = if shape.has_two_sheets() { 2 } else { 1 };
             cases.push(case(shape, shape.surface().unwrap(), shells, 0));
@@ -250,7 +250,7 @@ fn what_is_wrong_is_named() {
     let settings = PatchSettings { rows: 100_000, columns: 100_000, spacing: Spacing::UniformAngle };
     assert!(ball.mesh(&settings).unwrap_err().to_string().starts_with("rows · columns is 10000000000"));
     // A tolerance that Barr's sheets do not reach is an error, with what they reach.
-    let bowls = Superhyperboloid::two_sheets_x([1.0, 1.0, 1.0], 0.01, 0.01, 3.0).surface().unwrap();
+    let bowls = Superhyperboloid::two_sheets_x([1.0, 1.0, 1.0], 0.01, 0.01, 6.0).surface().unwrap();
     let settings = PatchSettings { spacing: Spacing::Chord(4e-6), ..PatchSettings::default() };
     match bowls.quad_mesh(&settings) {
         Err(PatchError::Tolerance { value, least, .. }) => assert!(value == 4e-6 && least > value),

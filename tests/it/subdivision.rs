@@ -208,8 +208,8 @@ fn quadrics() {
     let [a, b, c] = [2.0, 1.0, 0.7f64];
     let squares = |p: DVec3| [(p.x / a).powi(2), (p.y / b).powi(2), (p.z / c).powi(2)];
     let ellipsoid = SubdivisionRevolution::ellipsoid([a, b, c]).unwrap();
-    let one = SubdivisionRevolution::one_sheet([a, b, c], 1.5).unwrap();
-    let two = SubdivisionRevolution::two_sheets([a, b, c], 2.0).unwrap();
+    let one = SubdivisionRevolution::one_sheet([a, b, c], 3.0).unwrap();
+    let two = SubdivisionRevolution::two_sheets([a, b, c], 4.0).unwrap();
     let on_ellipsoid = |p: DVec3| squares(p).iter().sum::<f64>() - 1.0;
     // The middles of flat ends are not on the surface.
     let on_one = |p: DVec3| {
@@ -253,7 +253,7 @@ fn elliptic_torus_and_cylinder() {
     assert!(residual < 1e-13, "{residual}");
     assert_solid(&mesh, 1, 1);
 
-    let cylinder = SubdivisionRevolution::elliptic_cylinder([2.0, 1.0], 1.5).unwrap();
+    let cylinder = SubdivisionRevolution::elliptic_cylinder([2.0, 1.0], 3.0).unwrap();
     for levels in [[0, 4], [3, 4]] {
         let mesh = cylinder.limit_mesh(levels).unwrap();
         assert_solid(&mesh, 1, 0);
@@ -345,7 +345,7 @@ fn what_is_wrong_is_named() {
     }
     assert!(Tension::new(f64::NAN).is_err() && Tension::new(-1.1).is_err() && Tension::hyperbolic(1e3).is_err());
     assert!(SubdivisionRevolution::ellipsoid([1.0, 0.0, 1.0]).is_err());
-    assert!(SubdivisionRevolution::two_sheets([1.0, 1.0, 1.0], 0.9).is_err());
+    assert!(SubdivisionRevolution::two_sheets([1.0, 1.0, 1.0], 1.8).is_err());
     assert!(SubdivisionRevolution::elliptic_torus([0.5, 0.4], 0.4, 1.0).is_err());
     let open = ControlPolygon::cosine_graph(3).unwrap();
     assert!(SubdivisionRevolution::new(open.clone(), open).is_err());

@@ -172,7 +172,7 @@ fn mapped(random: &mut Random, solid: Solid) -> Solid {
             0 | 1 => solid.translate(random.vector(-0.6, 0.6)),
             2 => solid.rotate(random.rotation()),
             3 => solid.affine(random.affine()),
-            4 => solid.taper(random.range(-0.6, 0.6), random.range(-0.6, 0.6), random.range(0.3, 1.0)),
+            4 => solid.taper(random.range(-0.6, 0.6), random.range(-0.6, 0.6), random.range(0.6, 2.0)),
             5 => solid.twist(rad(random.range(-2.0, 2.0))),
             _ => solid.bend(random.range(-0.5, 0.5), rad(random.range(-3.0, 3.0))),
         };

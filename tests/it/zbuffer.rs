@@ -607,13 +607,13 @@ fn deformed_operands_like_for_like_with_rays() {
     let [a, b] = operands();
     let tree = a - b;
     for (mesh, solid) in [
-        (mesh.taper(0.4, -0.3, 1.2).unwrap(), bar.taper(0.4, -0.3, 1.2)),
+        (mesh.taper(0.4, -0.3, 2.4).unwrap(), bar.taper(0.4, -0.3, 2.4)),
         (mesh.twist(rad(0.8)).unwrap(), bar.twist(rad(0.8))),
         (mesh.bend(0.5, rad(0.7)).unwrap(), bar.bend(0.5, rad(0.7))),
         (mesh.bend(-0.4, rad(0.2)).unwrap(), bar.bend(-0.4, rad(0.2))),
         (
-            mesh.taper(0.3, 0.3, 1.2).unwrap().twist(rad(0.6)).unwrap().bend(0.3, rad(0.5)).unwrap(),
-            bar.taper(0.3, 0.3, 1.2).twist(rad(0.6)).bend(0.3, rad(0.5)),
+            mesh.taper(0.3, 0.3, 2.4).unwrap().twist(rad(0.6)).unwrap().bend(0.3, rad(0.5)).unwrap(),
+            bar.taper(0.3, 0.3, 2.4).twist(rad(0.6)).bend(0.3, rad(0.5)),
         ),
     ] {
         ClosedMesh::new(&mesh).unwrap();
@@ -625,7 +625,7 @@ fn deformed_operands_like_for_like_with_rays() {
         assert!(compared > 150 && silhouettes < compared / 3, "{compared} {silhouettes}");
     }
     let parameter = |result: Result<Mesh, RasterError>| result.unwrap_err().to_string();
-    assert!(parameter(mesh.taper(1.5, 0.0, 1.0)).starts_with("kx is 1.5, allowed: -0.999 to 0.999"));
+    assert!(parameter(mesh.taper(1.5, 0.0, 2.0)).starts_with("kx is 1.5, allowed: -0.999 to 0.999"));
     assert!(parameter(mesh.twist(rad(f64::NAN))).starts_with("rate is NaN"));
     assert!(parameter(mesh.bend(5.0, deg(0.0))).starts_with("curvature is 5"));
     let flat = DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0));

@@ -16,10 +16,10 @@ fn superquadric(random: &mut Random) -> Solid {
     let half = random.range(0.3, 0.8);
     match random.below(6) {
         0 => Supertoroid::new(0.5 * axes, random.range(1.0, 3.0), e1.min(2.0), e2).into(),
-        1 => Superhyperboloid::one_sheet(axes, e1, e2, half).into(),
-        2 => Superhyperboloid::one_sheet_x(axes, e1, e2, half).into(),
-        3 => Superhyperboloid::two_sheets(axes, e1, e2, axes.z + half).into(),
-        4 => Superhyperboloid::two_sheets_x(axes, e1, e2, axes.x + half).into(),
+        1 => Superhyperboloid::one_sheet(axes, e1, e2, 2.0 * half).into(),
+        2 => Superhyperboloid::one_sheet_x(axes, e1, e2, 2.0 * half).into(),
+        3 => Superhyperboloid::two_sheets(axes, e1, e2, 2.0 * (axes.z + half)).into(),
+        4 => Superhyperboloid::two_sheets_x(axes, e1, e2, 2.0 * (axes.x + half)).into(),
         _ => GeneralisedSuperquadric::new(axes, [0; 3].map(|_| random.log_range(0.6, 30.0))).into(),
     }
 }
@@ -165,7 +165,7 @@ pub fn catalogue_map(random: &mut Random, solid: &Solid) -> Solid {
         0 => solid.taper_by(wave, 0.8),
         1 => solid.twist_by(rad(1.0), SmoothStep { from: (-0.5, 0.0), to: (0.5, 1.2) }),
         2 => solid.twist_by(rad(1.0), LinearLaw { at_zero: 0.3, slope: random.range(-1.0, 1.0) }),
-        3 => solid.elongate(random.vector(0.0, 0.3)),
+        3 => solid.elongate(random.vector(0.0, 0.6)),
         4 => solid.mirrored(random.direction(), random.range(-0.3, 0.3)),
         5 => solid.repeat([2, 1 + random.below(3) as u32, 1], random.vector(0.4, 1.5)),
         _ => solid.translate(DVec3::X * 0.9).repeat_polar(2 + random.below(5) as u32),

@@ -72,7 +72,7 @@ fn blade() -> Solid {
 
 pub const MAPS: &[Entry] = &[
     ("affine", sheared),
-    ("taper", || Solid::rounded_cuboid([1.6, 1.6, 2.0], 0.1).taper(0.5, -0.5, 1.0)),
+    ("taper", || Solid::rounded_cuboid([1.6, 1.6, 2.0], 0.1).taper(0.5, -0.5, 2.0)),
     ("twist", || bar().twist(turns(0.4) / 2.4)),
     ("bend", || bar().bend(0.8, deg(0.0))),
     ("taper_by", tapered_by),
@@ -82,5 +82,5 @@ pub const MAPS: &[Entry] = &[
     ("repeat", || knob().repeat([3, 3, 2], [0.8, 0.8, 0.8])),
     ("repeat_linear", || Solid::cuboid([1.4, 0.4, 0.25]).repeat_linear(6, [0.0, 0.3, 0.22])),
     ("repeat_polar", || blade().repeat_polar(9) | Solid::cylinder(0.35, 0.7)),
-    ("elongate", || Solid::torus(0.5, 0.22).elongate([0.6, 0.0, 0.25])),
+    ("elongate", || Solid::torus(0.5, 0.22).elongate([1.2, 0.0, 0.5])),
 ];

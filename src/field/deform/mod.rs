@@ -165,7 +165,7 @@ mod tests {
     #[test]
     fn a_chain_agrees_with_the_reference() {
         let p = DVec3::new(0.4, 0.5, 1.2);
-        let taper = Taper { kx: 0.5, ky: -0.4, half_height: 2.0 };
+        let taper = Taper { kx: 0.5, ky: -0.4, height: 4.0 };
         let (twist, bend) = (Twist { rate: rad(0.6) }, Bend { curvature: 0.3, angle: rad(0.5) });
         let image = bend.forward(twist.forward(taper.forward(p)));
         assert!((image - DVec3::new(0.304009419006, 0.717961296813, 1.024693146673)).length() < 1e-11);
@@ -217,13 +217,13 @@ mod tests {
             Cells { axes: [comb, Comb::ONE, comb], counts: [8, 1, 8], spacing: DVec3::splat(0.7), crowded: None };
         let wave = SineWave { mean: 1.0, amplitude: 0.6, wavelength: 2.0, phase: rad(0.3) };
         let warps: [(&str, &dyn AnyWarp); 9] = [
-            ("elongate", &Elongate { half: DVec3::new(0.3, 0.0, 1.0) }),
+            ("elongate", &Elongate { lengths: DVec3::new(0.3, 0.0, 1.0) }),
             ("repeat", &cells),
             ("repeat_polar", &Sectors { count: 8, blocks: 4, class: 1, middle: 0.3 }),
             ("repeat_polar, uneven", &Sectors { count: 11, blocks: 3, class: 2, middle: -2.0 }),
             ("taper_by", &TaperBy { x: wave, y: 0.5 }),
             ("twist_by", &TwistBy { angle: rad(1.0), law: wave }),
-            ("taper", &Taper { kx: 0.5, ky: -0.4, half_height: 2.0 }),
+            ("taper", &Taper { kx: 0.5, ky: -0.4, height: 4.0 }),
             ("twist", &Twist { rate: rad(1.3) }),
             ("bend", &Bend { curvature: -0.6, angle: rad(0.4) }),
         ];

@@ -198,7 +198,7 @@ fn walls_behind_deformations_are_as_thick_as_asked_for() {
     let mut worst = 0.0f64;
     for e in [0.1, 0.5, 1.0, 1.5] {
         let shape = Superellipsoid::new(DVec3::new(1.0, 1.5, 3.0), e, e);
-        let taper = bent_errors(Taper { kx: 0.4, ky: -0.3, half_height: 3.0 }, shape, 0.1);
+        let taper = bent_errors(Taper { kx: 0.4, ky: -0.3, height: 6.0 }, shape, 0.1);
         let twist = bent_errors(Twist { rate: rad(0.3) }, shape, 0.1);
         let bend = bent_errors(Bend { curvature: 0.2, angle: rad(0.4) }, shape, 0.1);
         println!("{e}: taper {taper:.4?} twist {twist:.4?} bend {bend:.4?}");
