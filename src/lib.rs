@@ -216,8 +216,8 @@
 //!
 //! ## Profiles
 //!
-//! Shapes of the plane, joined, moved and offset by the verbs of [`Profile`], which are those of
-//! solids.
+//! Shapes of the plane. [`Profile`] has the verbs of [`Solid`] by the same names: joins and their
+//! operators, blends, maps, mirrors, repeats, offsets and shells, names.
 //!
 //! | profile | | value |
 //! |---|---|---|
@@ -270,12 +270,12 @@
 //!
 //! | map | |
 //! |---|---|
-//! | [`translate`](Solid::translate), [`rotate_z`](Solid::rotate_z) and its like, [`scale`](Solid::scale), [`affine`](Solid::affine) | affine ones |
+//! | [`translate`](Solid::translate), [`rotate_z`](Solid::rotate_z) and its like by an [`Angle`], [`scale`](Solid::scale), [`affine`](Solid::affine) | affine ones |
 //! | [`reflect`](Solid::reflect), [`mirrored`](Solid::mirrored) | the mirror image alone, and beside the solid |
 //! | [`repeat`](Solid::repeat), [`repeat_linear`](Solid::repeat_linear), [`repeat_polar`](Solid::repeat_polar) | grids, rows and rings of copies |
 //! | [`elongate`](Solid::elongate) | straight pieces inserted |
 //! | [`taper`](Solid::taper), [`twist`](Solid::twist), [`bend`](Solid::bend) | Barr's deformations |
-//! | [`taper_by`](Solid::taper_by), [`twist_by`](Solid::twist_by) | by any [`Law`] of z: [`LinearLaw`], [`SmoothStep`], [`SineWave`], [`LawTable`], a number, your own |
+//! | [`taper_by`](Solid::taper_by), [`twist_by`](Solid::twist_by) | by any [`Law`] of z, of a factor and of what an angle is multiplied by: [`LinearLaw`], [`SmoothStep`], [`SineWave`], [`LawTable`], a number, your own |
 //!
 //! ## Explicit surfaces
 //!
@@ -315,6 +315,35 @@
 //! | [`paint`](Solid::paint) | its colour, in pictures and meshes |
 //! | [`==`](Solid#impl-PartialEq-for-Solid), `Hash` | by structure: solids may be keys of a map |
 //! | [`simplified`](Solid::simplified) | the same values from fewer nodes |
+//!
+//! # Lengths and angles
+//!
+//! Lengths are in one unit, which is yours. One rule holds for full and half lengths:
+//!
+//! * What has two ends has its **full size**: edges, heights, lengths, widths, thicknesses,
+//!   spacings, the pieces that [`elongate`](Solid::elongate) inserts, the height that
+//!   [`taper`](Solid::taper) works over.
+//! * What is drawn about a centre has its **radii**: radius, tube, semi-axes, the reach of a conic
+//!   from its axis, the half extents of [`Bounds::from_center`].
+//!
+//! A chamfer is given by its **leg**: how far from the edge it begins, along either face; a fillet
+//! by its radius.
+//!
+//! Angles have their unit in the type [`Angle`]: [`deg(30.0)`](deg), [`rad(0.5)`](rad),
+//! [`turns(0.25)`](turns). A bare number is no angle and does not compile. Ranges are stated in
+//! degrees, and so are the values in errors.
+//!
+//! ```
+//! use rvachev::{Blend, Solid, deg};
+//!
+//! // 10 wide, from x = −5 to 5; the bevel takes 1 off the top and 1 off the sides.
+//! let block = Solid::cuboid([10.0, 10.0, 9.0]);
+//! let bevelled = block.intersection_with(Solid::slab([0.0, 0.0, 1.0], 4.0), Blend::Chamfer { leg: 1.0 });
+//! assert!(bevelled.value([4.0, 0.0, 2.0])?.abs() < 1e-9 && bevelled.value([5.0, 0.0, 1.0])?.abs() < 1e-9);
+//! let rod = Solid::cylinder(1.0, 8.0).rotate_x(deg(90.0));
+//! assert!(rod.contains([0.0, 3.9, 0.0])? && !rod.contains([0.0, 4.1, 0.0])?);
+//! # Ok::<(), rvachev::SolidError>(())
+//! ```
 //!
 //! # What values mean
 //!

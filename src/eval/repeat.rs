@@ -154,11 +154,11 @@ impl Solid {
     /// | `count` | copies | 1 to 1000 |
     ///
     /// ```
-    /// use rvachev::Solid;
+    /// use rvachev::{Solid, deg};
     /// use glam::DVec3;
     ///
     /// let bolts = Solid::cylinder(0.2, 1.0).translate(DVec3::X * 3.0).repeat_polar(24);
-    /// let (sin, cos) = 15f64.to_radians().sin_cos();
+    /// let (sin, cos) = deg(15.0).sin_cos();
     /// assert!(bolts.contains(DVec3::new(3.0 * cos, 3.0 * sin, 0.0))?);
     /// assert_eq!(bolts.surface_program()?.leaf_count(), 2);
     /// # Ok::<(), rvachev::SolidError>(())

@@ -19,7 +19,7 @@ pub(crate) struct TwistBy<L> {
     pub(crate) law: L,
 }
 
-/// Angles are held within this many degrees, 1600 turns: more is noise in single precision.
+/// Angles are held within 1600 turns, here in degrees: more is noise in single precision.
 const LARGEST: f64 = 576e3;
 
 /// A law times a number.

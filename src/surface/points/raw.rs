@@ -50,9 +50,9 @@ impl RawParametric {
         [across * power(cos_w), across * power(sin_w), signed_power(sin_h, self.e1)]
     }
 
-    /// x, y and z of many points of the first octant, on SIMD lanes of `f32`: angles in
-    /// radians, from 0 to π/2. To 3·10⁻⁶ where both exponents are 0.5 or more; a small exponent magnifies the
-    /// rounding of angles near quarter turns.
+    /// x, y and z of many points of the first octant, on SIMD lanes of `f32`: angles in radians,
+    /// from 0 to π/2. To 3·10⁻⁶ where both exponents are 0.5 or more; a small exponent magnifies
+    /// the rounding of angles near quarter turns.
     ///
     /// # Panics
     /// If the slices differ in length.

@@ -112,8 +112,8 @@ impl Tension {
         }
     }
 
-    /// The step at a level, in radians or as a hyperbolic angle; 0 for the cubic one. Levels above 900 count as 900 here and below:
-    /// steps are still above 0 there.
+    /// The step at a level, in radians or as a hyperbolic angle; 0 for the cubic one. Levels above
+    /// 900 count as 900 here and below: steps are still above 0 there.
     #[must_use]
     pub fn step(&self, level: u32) -> f64 {
         self.step * 0.5f64.powi(level.min(DEEPEST) as i32)
