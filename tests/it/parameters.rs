@@ -139,7 +139,7 @@ fn profiles() -> [(&'static str, &'static str, Make); 38] {
         ("rotate", "", |v| disc().rotate(rad(v)).extrude(1.0)),
         ("scale", "", |v| disc().scale(v).extrude(1.0)),
         ("scale_axes", "", |v| disc().scale_axes([1.0, v]).extrude(1.0)),
-        ("reflect", "matrix", |v| disc().reflect([v, 0.0], 0.0).extrude(1.0)),
+        ("reflect", "", |v| disc().reflect([v, 0.0], 0.0).extrude(1.0)),
         ("affine", "", |v| disc().affine(DAffine2::from_mat2(DMat2::from_diagonal([v, 1.0].into()))).extrude(1.0)),
         ("union", "alpha", |v| disc().union(disc(), RFunction::Alpha(v)).extrude(1.0)),
         ("difference", "p", |v| disc().difference(disc(), RFunction::P(v)).extrude(1.0)),
