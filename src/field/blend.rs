@@ -36,13 +36,17 @@ use crate::{Norm, Real};
 ///
 /// Operands are read as they are: where a leaf's value is a true distance, lengths hold;
 /// where it is a gauge they hold near its surface. A fillet reads true distances from every
-/// leaf; an operand that is a smooth blend or a chamfer itself is that of these distances then, away from
-/// the fillet as well. A chamfer reads values over their slopes. Its legs are exact on planes and wherever
-/// the angle between the operands stays the same away from the edge, as on caps; elsewhere on round operands they
-/// are right to 2 % up to a twelfth of the radius and to 7 % up to a quarter. Where an operand has an edge of its own across the joined
-/// one, fillets and chamfers go round it in a mitre. Operands with a gap narrower than 0.28 of a
-/// chamfer's leg, or through which a fillet's ball does not fit, are bridged; of walls and gaps narrower than the
-/// ball a thin skin may remain where their sides are nearly parallel.
+/// leaf; an operand that is a smooth blend or a chamfer itself is that of these distances then,
+/// away from the fillet as well.
+///
+/// A chamfer reads values over their slopes. Its legs are exact on planes, and wherever the angle
+/// between the operands stays the same away from the edge, as on caps; elsewhere on round operands
+/// they are right to 2 % up to a twelfth of the radius and to 7 % up to a quarter.
+///
+/// Where an operand has an edge of its own across the joined one, fillets and chamfers go round it
+/// in a mitre. Operands with a gap narrower than 0.28 of a chamfer's leg, or through which a
+/// fillet's ball does not fit, are bridged; of walls and gaps narrower than the ball a thin skin
+/// may remain where their sides are nearly parallel.
 ///
 /// | blend | parameters | reach |
 /// |---|---|---|

@@ -19,7 +19,7 @@ impl Solid {
     /// use rvachev::{Solid, deg};
     ///
     /// let rod = Solid::cylinder(1.0, 10.0).rotate_x(deg(90.0));
-    /// assert_eq!(rod.bounds()?.max.y, 5.0);
+    /// assert!((rod.bounds()?.max.y - 5.0).abs() < 1e-9);
     /// # Ok::<(), rvachev::SolidError>(())
     /// ```
     #[must_use]
