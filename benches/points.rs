@@ -18,7 +18,7 @@ use std::time::Instant;
 use glam::{DVec2, DVec3};
 use rvachev::{
     ControlPolygon, ExactExplicit, LogTable, PointMethod, PointSettings, PowerTables, ProductTables, RawParametric,
-    SeriesExplicit, Superellipsoid, Tension,
+    SeriesExplicit, Superellipsoid, Tension, deg, rad,
 };
 
 /// Points that times are given for. (Method 5 makes 101 × 101 at a time.)
@@ -105,7 +105,7 @@ fn contestants(n: f64, tolerance: f64, wedge: &Wedge) -> Vec<Contestant<'_>> {
     let run = move || {
         let [x, y, z] = &mut xyz;
         for i in 0..POINTS {
-            [x[i], y[i], z[i]] = raw.point(wedge.eta[i], wedge.omega[i]);
+            [x[i], y[i], z[i]] = raw.point(rad(wedge.eta[i]), rad(wedge.omega[i]));
         }
         black_box(&xyz);
     };
@@ -289,7 +289,7 @@ fn whole_surfaces() {
                 }
                 let start = Instant::now();
                 for (to, (&eta, &omega)) in xyz.iter_mut().zip(wedge.eta.iter().zip(&wedge.omega)) {
-                    *to = raw.point(eta, omega);
+                    *to = raw.point(rad(eta), rad(omega));
                 }
                 black_box(&xyz);
                 times[6] = times[6].min(start.elapsed().as_secs_f64() / POINTS as f64);
@@ -313,7 +313,7 @@ fn whole_surfaces() {
 }
 
 fn subdivision() {
-    let tension = Tension::trigonometric(FRAC_PI_2).expect("a right angle");
+    let tension = Tension::trigonometric(deg(90.0)).expect("a right angle");
     let flat: Vec<DVec2> = (0..64).map(|i| DVec2::from_angle(f64::from(i))).collect();
     let deep: Vec<DVec3> = flat.iter().map(|p| p.extend(p.x * p.y)).collect();
     let flat = ControlPolygon::closed(&flat, tension).expect("64 points");

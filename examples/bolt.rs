@@ -15,11 +15,10 @@
 //! M10 × 1.5.
 
 use std::error::Error;
-use std::f64::consts::TAU;
 use std::time::Instant;
 
 use glam::DVec3;
-use rvachev::{Camera, CellSize, Gielis, MeshSettings, RenderSettings, Solid, Supershape};
+use rvachev::{Camera, CellSize, Gielis, MeshSettings, RenderSettings, Solid, Supershape, turns};
 
 /// Height of the head, and its width across flats.
 const HEAD: f64 = 6.4;
@@ -63,7 +62,7 @@ fn bolt() -> Solid {
     // in a pitch, and rises and falls by the offset.
     let (low, high) = (-SHAFT - 1.0, -SHANK + 0.8);
     let offset = 0.52;
-    let helix = rod(0.5 * (CREST + CORE), low, high).translate(DVec3::X * offset).twist(TAU / PITCH);
+    let helix = rod(0.5 * (CREST + CORE), low, high).translate(DVec3::X * offset).twist(turns(1.0 / PITCH));
     let thread = helix & rod(CREST, low, high) | rod(CORE, low, high);
     let shank = rod(RADIUS, -SHANK, 0.1) & cone(0.1, 1.0, CORE, -SHANK);
     let shaft = (thread | shank) & cone(0.1, 1.0, CORE - 0.3, -SHAFT) & rod(2.0 * RADIUS, -SHAFT, 0.1);

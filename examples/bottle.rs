@@ -19,6 +19,7 @@ use std::time::Instant;
 use glam::DVec3;
 use rvachev::{
     Bounds, Camera, CellSize, Gielis, Helix, MeshSettings, Paint, Profile, RenderSettings, SineWave, Solid, Supershape,
+    rad, turns,
 };
 
 const WALL: f64 = 1.8;
@@ -38,9 +39,9 @@ fn shape() -> Solid {
     let rounded_box = Gielis::new(4.0, 6.0, 6.0, 6.0);
     let body = Supershape::new(lobes, rounded_box).scaled(DVec3::new(RADIUS, RADIUS, HALF));
     // A waist where the hand holds it.
-    let law = SineWave { mean: 0.9, amplitude: 0.09, wavelength: 110.0, phase: -1.9 };
+    let law = SineWave { mean: 0.9, amplitude: 0.09, wavelength: 110.0, phase: rad(-1.9) };
     // A fifth of a turn from bottom to top.
-    let body = Solid::from(body).taper_by(law, law).twist(0.2 * TAU / (2.0 * HALF)).named("body");
+    let body = Solid::from(body).taper_by(law, law).twist(turns(0.2) / (2.0 * HALF)).named("body");
 
     let neck = Solid::cylinder(NECK, TOP).translate([0.0, 0.0, 0.5 * TOP]).named("neck");
     let punt = Solid::ellipsoid(DVec3::new(20.0, 20.0, 9.0)).translate([0.0, 0.0, -HALF]).named("punt");

@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use glam::{DVec2, DVec3};
-use rvachev::{Camera, CellSize, LinearLaw, MeshSettings, Profile, RFunction, RenderSettings, SmoothStep, Solid};
+use rvachev::{Camera, CellSize, LinearLaw, MeshSettings, Profile, RFunction, RenderSettings, SmoothStep, Solid, deg};
 
 /// Edge of a square of the board.
 const SQUARE: f64 = 48.0;
@@ -75,7 +75,7 @@ fn bishop() -> Solid {
     // The arc of a circle beyond the axis makes a pointed arch.
     let mitre = Profile::circle(14.5).translate([-5.5, 58.0]);
     let turned = pedestal(16.0, 48.0) | mitre | bulge(2.7, 2.7, 73.0);
-    let cut = Solid::cuboid([16.0, 30.0, 1.8]).rotate_y_degrees(-58.0).translate([9.5, 0.0, 64.5]);
+    let cut = Solid::cuboid([16.0, 30.0, 1.8]).rotate_y(deg(-58.0)).translate([9.5, 0.0, 64.5]);
     turned.revolve() - cut
 }
 
@@ -84,7 +84,7 @@ fn queen() -> Solid {
     let well = Profile::superellipse([9.6, 5.0], 1.0).translate([0.0, 73.0]);
     let turned = (pedestal(18.0, 56.0) | crown) - well;
     let dome = (bulge(8.2, 5.0, 70.0) | bulge(3.1, 3.1, 77.0)).revolve();
-    let scallop = Solid::capsule(2.6, 20.0).rotate_y_degrees(90.0).translate([11.5, 0.0, 73.2]);
+    let scallop = Solid::capsule(2.6, 20.0).rotate_y(deg(90.0)).translate([11.5, 0.0, 73.2]);
     (turned.revolve() - scallop.repeat_polar(9)) | dome
 }
 
@@ -94,8 +94,8 @@ fn king() -> Solid {
     let turned = pedestal(19.0, 62.0) | crown | lid;
 
     // Arms of a cross that widen outwards: superellipsoids tapered from the middle.
-    let arm = Solid::superellipsoid([2.2, 1.6, 3.2], 0.2, 0.2).taper(0.42, 0.0, 3.2).translate([0.0, 0.0, 2.9]);
-    let quarters = (0..4).map(|i| arm.rotate_y_degrees(90.0 * f64::from(i)));
+    let arm = Solid::superellipsoid([2.2, 1.6, 3.2], 0.2, 0.2).taper(0.42, 0.0, 6.4).translate([0.0, 0.0, 2.9]);
+    let quarters = (0..4).map(|i| arm.rotate_y(deg(90.0 * f64::from(i))));
     let cross = Solid::union_all(quarters, RFunction::default()).translate([0.0, 0.0, 90.0]);
     turned.revolve() | cross
 }
@@ -140,7 +140,7 @@ fn knight() -> Solid {
     let locks = [(-3.6, 39.8), (-8.4, 35.6), (-11.3, 30.0), (-12.2, 24.0), (-12.0, 17.8), (-11.3, 11.6)];
     let locks = locks.map(|at| Profile::circle(1.3).translate(at));
     let outline = Profile::polygon(contour).difference_all(locks, RFunction::MIN_MAX);
-    let column = outline.column().rotate_x_degrees(90.0);
+    let column = outline.column().rotate_x(deg(90.0));
 
     // A lens across it: thinner towards the muzzle, and towards the top.
     let thinner = SmoothStep { from: (0.0, 1.0), to: (36.0, 0.66) };
@@ -150,9 +150,9 @@ fn knight() -> Solid {
 
     // One side's features, and their mirror images.
     let cheek = Solid::ellipsoid([6.0, 2.6, 5.6]).translate([6.2, 5.4, 25.6]).mirrored_y();
-    let eye = Solid::ellipsoid([2.0, 1.5, 1.4]).rotate_y_degrees(35.0).translate([10.0, 5.6, 31.2]).mirrored_y();
+    let eye = Solid::ellipsoid([2.0, 1.5, 1.4]).rotate_y(deg(35.0)).translate([10.0, 5.6, 31.2]).mirrored_y();
     let nostril = Solid::sphere(1.3).translate([18.6, 4.6, 21.4]).mirrored_y();
-    let mouth = Solid::cuboid([9.0, 30.0, 1.1]).rotate_y_degrees(32.0).translate([18.6, 0.0, 17.6]);
+    let mouth = Solid::cuboid([9.0, 30.0, 1.1]).rotate_y(deg(32.0)).translate([18.6, 0.0, 17.6]);
     let parting = Solid::superellipsoid([30.0, 2.6, 8.5], 2.0, 0.05).translate([4.0, 0.0, 48.0]);
 
     let carved = (head.smooth_union(cheek, 2.5) | eye) - nostril - mouth - parting;
@@ -215,7 +215,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         paint: [226, 205, 166].into(),
         ..RenderSettings::default()
     };
-    let view = Camera::perspective([50.0, -300.0, 105.0], DVec3::ZERO, DVec3::Z, 24.0);
+    let view = Camera::perspective([50.0, -300.0, 105.0], DVec3::ZERO, DVec3::Z, deg(24.0));
     let camera = view.fitted(&scene.bounds()?.inflate(-8.0), f64::from(settings.width) / f64::from(settings.height));
     let path = folder.join("chess_set.png");
     scene.render(&camera, &settings)?.save(&path)?;

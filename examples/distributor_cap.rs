@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use glam::DVec3;
-use rvachev::{Camera, CellSize, Gielis, MeshSettings, Paint, RenderSettings, Solid, Supershape};
+use rvachev::{Camera, CellSize, Gielis, MeshSettings, Paint, RenderSettings, Solid, Supershape, deg};
 
 /// The ring of towers: how many, and its radius.
 const LEADS: u32 = 6;
@@ -44,7 +44,7 @@ fn column(curve: Gielis, sharpness: f64, radius: f64, low: f64, high: f64) -> So
 /// top, between a round foot and a collar.
 fn tower(radius: f64, height: f64) -> Solid {
     let lobes = Gielis::new(6.0, 10.0, 3.0, 3.0);
-    let shaft = column(lobes, 30.0, 0.9 * radius, -8.0, height).taper(-0.08, -0.08, height);
+    let shaft = column(lobes, 30.0, 0.9 * radius, -8.0, height).taper(-0.08, -0.08, 2.0 * height);
     let collar = column(Gielis::circle(), 10.0, radius, 0.52 * height, 0.66 * height);
     shaft | collar
 }
@@ -74,7 +74,7 @@ fn cap() -> Solid {
 
     // Two lugs: rounded triangles that point outwards, each with a screw's hole and its seat.
     let lug = Solid::from(Supershape::new(Gielis::new(3.0, 5.0, 8.0, 8.0), square(30.0)).scaled([9.5, 9.5, 3.5]));
-    let lug = lug.rotate_z_degrees(180.0).translate([37.0, 0.0, 3.5]);
+    let lug = lug.rotate_z(deg(180.0)).translate([37.0, 0.0, 3.5]);
     let screw = column(Gielis::circle(), 60.0, 2.4, -10.0, 20.0) | column(Gielis::circle(), 60.0, 4.6, 5.6, 20.0);
     let screw = screw.translate([43.0, 0.0, 0.0]);
 
@@ -116,7 +116,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     wrote(&path, start, &facts)?;
 
     let start = Instant::now();
-    let scene = cap.rotate_z_degrees(20.0);
+    let scene = cap.rotate_z(deg(20.0));
     let settings = RenderSettings {
         width: 420,
         height: 315,
@@ -124,7 +124,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         paint: Paint { color: [158, 74, 48], roughness: 0.4 },
         ..RenderSettings::default()
     };
-    let view = Camera::perspective([40.0, -260.0, 190.0], DVec3::ZERO, DVec3::Z, 24.0);
+    let view = Camera::perspective([40.0, -260.0, 190.0], DVec3::ZERO, DVec3::Z, deg(24.0));
     let camera = view.fitted(&scene.bounds()?.inflate(-9.0), f64::from(settings.width) / f64::from(settings.height));
     let path = folder.join("distributor_cap.png");
     scene.render(&camera, &settings)?.save(&path)?;

@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use glam::DVec3;
-use rvachev::{Bounds, Camera, CellSize, MeshSettings, Profile, RFunction, Region, RenderSettings, Solid};
+use rvachev::{Bounds, Camera, CellSize, MeshSettings, Profile, RFunction, Region, RenderSettings, Solid, deg, rad};
 
 /// Pitch diameter over the number of teeth.
 const MODULE: f64 = 2.5;
@@ -61,7 +61,8 @@ impl Gear {
         let half_tooth = (0.25 * PI * MODULE - 0.25 * BACKLASH) / pitch_radius;
         let base_radius = pitch_radius * PRESSURE_ANGLE.cos();
         let flank = Profile::circle(pitch_radius * PRESSURE_ANGLE.sin()).translate([base_radius, 0.0]);
-        let (right, left) = (flank.rotate(PRESSURE_ANGLE - half_tooth), flank.rotate(half_tooth - PRESSURE_ANGLE));
+        let (right, left) =
+            (flank.rotate(rad(PRESSURE_ANGLE - half_tooth)), flank.rotate(rad(half_tooth - PRESSURE_ANGLE)));
         // Joins by min and max keep the arcs' true distances.
         let tooth = right.intersection(&left, RFunction::MIN_MAX).column().named("tooth");
         let tips = Profile::circle(self.tip_radius()).column();
@@ -114,7 +115,7 @@ fn in_mesh(gears: [&Gear; 2], parts: [Solid; 2], angle: f64) -> [Solid; 2] {
     let phase = if wheel.teeth % 2 == 0 { half_pitch } else { 0.0 };
     let ratio = f64::from(pinion.teeth) / f64::from(wheel.teeth);
     let distance = pinion.pitch_radius() + wheel.pitch_radius();
-    [parts[0].rotate_z(angle), parts[1].rotate_z(phase - ratio * angle).translate([distance, 0.0, 0.0])]
+    [parts[0].rotate_z(rad(angle)), parts[1].rotate_z(rad(phase - ratio * angle)).translate([distance, 0.0, 0.0])]
 }
 
 /// The narrowest gap between the teeth over a whole pitch, by sampling the plane where they
@@ -181,7 +182,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let settings =
         RenderSettings { width: 800, height: 520, samples: 2, paint: [190, 154, 84].into(), ..Default::default() };
     let eye = DVec3::new(0.5, -1.7, 2.4);
-    let camera = Camera::perspective(eye, DVec3::ZERO, DVec3::Z, 28.0);
+    let camera = Camera::perspective(eye, DVec3::ZERO, DVec3::Z, deg(28.0));
     // Gears leave the corners of their box empty.
     let frame = Bounds::from_center(bounds.center(), 0.84 * bounds.half_extents());
     let camera = camera.fitted(&frame, f64::from(settings.width) / f64::from(settings.height));

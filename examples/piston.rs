@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use glam::DVec3;
-use rvachev::{Camera, CellSize, Gielis, MeshSettings, Paint, RenderSettings, Solid, Supershape};
+use rvachev::{Camera, CellSize, Gielis, MeshSettings, Paint, RenderSettings, Solid, Supershape, deg};
 
 /// Radius of the piston, and the height of its crown above the skirt's lower edge.
 const RADIUS: f64 = 40.0;
@@ -51,7 +51,7 @@ fn disc(radius: f64, low: f64, high: f64) -> Solid {
 
 /// A rod along y through the pin's axis.
 fn pin(radius: f64, length: f64) -> Solid {
-    disc(radius, -0.5 * length, 0.5 * length).rotate_x_degrees(90.0).translate([0.0, 0.0, PIN_HEIGHT])
+    disc(radius, -0.5 * length, 0.5 * length).rotate_x(deg(90.0)).translate([0.0, 0.0, PIN_HEIGHT])
 }
 
 /// What a ring takes off: all that is farther than `depth` below the surface at its height.
@@ -79,16 +79,16 @@ fn piston() -> Solid {
 
     // Rings.
     let compression = groove(59.5, 2.0, 4.0) | groove(53.5, 2.0, 4.0);
-    let drains = disc(1.3, 0.0, 14.0).rotate_y_degrees(90.0).translate([28.0, 0.0, 46.0]).repeat_polar(16);
+    let drains = disc(1.3, 0.0, 14.0).rotate_y(deg(90.0)).translate([28.0, 0.0, 46.0]).repeat_polar(16);
     let grooves = (compression | groove(47.8, 3.6, 4.0)).named("ring grooves") | drains;
 
     // The pin's bore, and a groove for a circlip near each of its ends.
-    let circlip = disc(PIN + 0.9, 24.2, 25.6).rotate_x_degrees(90.0).translate([0.0, 0.0, PIN_HEIGHT]);
+    let circlip = disc(PIN + 0.9, 24.2, 25.6).rotate_x(deg(90.0)).translate([0.0, 0.0, PIN_HEIGHT]);
     let bore = (pin(PIN, 100.0) | circlip.mirrored_y()).named("pin bore");
 
     // Valve pockets, tilted like the valves, two large ones and two small ones; and a bowl.
     let pocket = |radius: f64, x: f64, y: f64| {
-        disc(radius, 0.0, 12.0).rotate_y_degrees(x.signum() * -12.0).translate([x, y, HEIGHT - 3.2]).mirrored_y()
+        disc(radius, 0.0, 12.0).rotate_y(deg(x.signum() * -12.0)).translate([x, y, HEIGHT - 3.2]).mirrored_y()
     };
     let pockets = (pocket(14.5, 17.5, 16.0) | pocket(12.5, -18.0, 15.0)).named("valve pockets");
     let bowl = part(Gielis::circle(), square(2.0), [13.0, 13.0, 5.0], [0.0, 0.0, HEIGHT + 0.4]).named("bowl");
@@ -125,7 +125,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // A quarter cut out shows the bosses.
     let start = Instant::now();
     let quarter = Solid::cuboid(DVec3::splat(200.0)).translate([100.0, -100.0, 0.0]);
-    let scene = (&piston - quarter).rotate_z_degrees(-12.0);
+    let scene = (&piston - quarter).rotate_z(deg(-12.0));
     let settings = RenderSettings {
         width: 420,
         height: 360,
@@ -133,7 +133,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         paint: Paint { color: [176, 182, 190], roughness: 0.35 },
         ..RenderSettings::default()
     };
-    let view = Camera::perspective([60.0, -260.0, 150.0], DVec3::ZERO, DVec3::Z, 24.0);
+    let view = Camera::perspective([60.0, -260.0, 150.0], DVec3::ZERO, DVec3::Z, deg(24.0));
     let camera = view.fitted(&scene.bounds()?.inflate(-5.0), f64::from(settings.width) / f64::from(settings.height));
     let path = folder.join("piston.png");
     scene.render(&camera, &settings)?.save(&path)?;

@@ -10,7 +10,7 @@ use std::io::{Write, stderr};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use rvachev::{Background, Camera, Image, Paint, Progress, RenderSettings, Run, Scene, Solid, View};
+use rvachev::{Background, Camera, Image, Paint, Progress, RenderSettings, Run, Scene, Solid, View, deg, turns};
 
 const FRAMES: u32 = 12;
 const WIDTH: u32 = 200;
@@ -21,18 +21,18 @@ fn valve() -> Solid {
     let iron = Paint { color: [52, 84, 120], roughness: 0.45 };
     let brass = Paint { color: [214, 164, 72], roughness: 0.25 };
     let red = Paint { color: [186, 44, 36], roughness: 0.35 };
-    let barrel = Solid::cylinder(7.0, 36.0).rotate_y_degrees(90.0);
+    let barrel = Solid::cylinder(7.0, 36.0).rotate_y(deg(90.0));
     let flange = |x: f64| {
         let holes = Solid::cylinder(1.3, 8.0).translate([9.0, 0.0, 0.0]).repeat_polar(6);
-        (Solid::cylinder(12.0, 4.0) - holes).rotate_y_degrees(90.0).translate([x, 0.0, 0.0])
+        (Solid::cylinder(12.0, 4.0) - holes).rotate_y(deg(90.0)).translate([x, 0.0, 0.0])
     };
     let body = Solid::sphere(10.5).smooth_union(barrel, 3.0).paint(iron);
     let flanges = (flange(-18.0) | flange(18.0)).paint(iron);
     let bonnet = Solid::cone(7.5, 4.0, 12.0).translate([0.0, 0.0, 11.0]).paint(brass);
     let stem = Solid::cylinder(1.6, 12.0).translate([0.0, 0.0, 20.0]).paint(brass);
-    let spokes = Solid::capsule(0.8, 8.0).rotate_y_degrees(90.0).translate([4.0, 0.0, 0.0]).repeat_polar(5);
+    let spokes = Solid::capsule(0.8, 8.0).rotate_y(deg(90.0)).translate([4.0, 0.0, 0.0]).repeat_polar(5);
     let wheel = (Solid::torus(8.5, 1.3) | spokes | Solid::cylinder(2.2, 3.0)).translate([0.0, 0.0, 25.0]).paint(red);
-    let bore = Solid::cylinder(4.6, 60.0).rotate_y_degrees(90.0).paint(brass);
+    let bore = Solid::cylinder(4.6, 60.0).rotate_y(deg(90.0)).paint(brass);
     ((body.smooth_union(bonnet, 3.0) | flanges) - bore) | stem | wheel
 }
 
@@ -47,7 +47,7 @@ fn frame(scene: &Scene, camera: &Camera, settings: &RenderSettings, number: u32)
     let (from, to) = (part(number), part(number + 1));
     // Each frame reports its own progress; the bar shows that of all.
     let run = Run { progress: Some(Progress::new(move |f| bar(from + (to - from) * f))), ..Run::default() };
-    let turned = camera.orbit(360.0 * from, 0.0);
+    let turned = camera.orbit(turns(from), deg(0.0));
     Ok(scene.render_with(&turned, settings, &run)?)
 }
 
@@ -60,13 +60,14 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let scene = valve().scene()?;
     let aspect = f64::from(WIDTH) / f64::from(HEIGHT);
-    let camera = Camera::framing_view(&scene.bounds(), View::Front).orbit(0.0, 24.0).fitted(&scene.bounds(), aspect);
+    let camera =
+        Camera::framing_view(&scene.bounds(), View::Front).orbit(deg(0.0), deg(24.0)).fitted(&scene.bounds(), aspect);
     let settings = RenderSettings {
         width: WIDTH,
         height: HEIGHT,
         samples: 2,
         // One ray to the light a pixel, none to the sky.
-        softness: 0.0,
+        softness: deg(0.0),
         occlusion: false,
         background: Background::Plain([244, 244, 245]),
         ..RenderSettings::default()

@@ -20,7 +20,7 @@ use std::time::Instant;
 use glam::DVec3;
 use rvachev::{
     Bounds, Camera, CellSize, Evaluator, Formula, Gradients, Image, MeshSettings, Program, Region, RenderSettings,
-    Solid, Tape,
+    Solid, Tape, deg,
 };
 
 /// A cube with round windows, and a ball in it.
@@ -178,7 +178,7 @@ fn import(name: &str, text: &str, folder: &Path) -> Result<(), Box<dyn Error>> {
         ..RenderSettings::default()
     };
     let eye = if flat { DVec3::new(0.5, -2.0, 4.0) } else { DVec3::new(2.0, -3.0, 2.0) };
-    let camera = Camera::perspective(eye, DVec3::ZERO, DVec3::Z, 30.0);
+    let camera = Camera::perspective(eye, DVec3::ZERO, DVec3::Z, deg(30.0));
     let camera = camera.fitted(&report.bounds, f64::from(settings.width) / f64::from(settings.height));
     let path = folder.join(format!("vm_{name}.png"));
     model.render(&camera, &settings)?.save(&path)?;

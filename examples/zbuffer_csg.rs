@@ -16,7 +16,7 @@ use std::time::Instant;
 use glam::{DAffine3, DVec3};
 use rvachev::{
     Bounds, Buffers, Camera, ClosedMesh, Csg, CsgMethod, Facing, Image, LayerSource, Mesh, MeshLayers,
-    ParametricSurface, PatchSettings, RasterView, Superellipsoid, Supertoroid,
+    ParametricSurface, PatchSettings, RasterView, Superellipsoid, Supertoroid, deg, rad,
 };
 
 /// A picture is drawn this many times as large, and every square of pixels becomes one.
@@ -197,9 +197,9 @@ impl Parts {
 fn set(parts: &mut Parts) -> Result<Csg> {
     let table = parts.add(moved(superellipsoid([3.6, 2.3, 0.12], 0.1, 0.2)?, 0.0, 0.0, -0.12)?, [150, 128, 104]);
 
-    let outside = superellipsoid([0.72, 0.72, 0.85], 0.2, 1.0)?.taper(0.12, 0.12, 0.85)?;
+    let outside = superellipsoid([0.72, 0.72, 0.85], 0.2, 1.0)?.taper(0.12, 0.12, 1.7)?;
     let outside = parts.add(moved(outside, -2.1, -0.3, 0.85)?, [92, 138, 178]);
-    let inside = superellipsoid([0.62, 0.62, 0.85], 0.25, 1.0)?.taper(0.12, 0.12, 0.85)?;
+    let inside = superellipsoid([0.62, 0.62, 0.85], 0.25, 1.0)?.taper(0.12, 0.12, 1.7)?;
     let inside = parts.add(moved(inside, -2.1, -0.3, 0.99)?, [226, 226, 220]);
     let ring = ParametricSurface::of(&Supertoroid::new([0.13, 0.13, 0.13], 3.2, 1.0, 1.0))?.mesh(&patch(32, 96))?;
     let ring = ring.affine(DAffine3::from_rotation_x(std::f64::consts::FRAC_PI_2))?;
@@ -212,11 +212,11 @@ fn set(parts: &mut Parts) -> Result<Csg> {
     let foot = parts.add(moved(superellipsoid([0.5, 0.5, 0.1], 0.1, 1.0)?, 0.1, 0.75, 0.1)?, [126, 166, 108]);
     let bowl = ((ball | foot) - hollow) - above;
     let fruit = parts.add(moved(superellipsoid([0.34, 0.34, 0.3], 0.8, 1.0)?, 0.0, 0.62, 0.6)?, [206, 92, 66]);
-    let banana = superellipsoid([0.13, 0.13, 0.75], 0.8, 0.7)?.taper(-0.15, -0.15, 0.75)?.bend(1.1, 0.0)?;
+    let banana = superellipsoid([0.13, 0.13, 0.75], 0.8, 0.7)?.taper(-0.15, -0.15, 1.5)?.bend(1.1, deg(0.0))?;
     let banana = banana.affine(DAffine3::from_rotation_y(-0.5) * DAffine3::from_rotation_z(0.4))?;
     let banana = parts.add(moved(banana, 0.42, 0.8, 0.95)?, [226, 192, 84]);
 
-    let candle = superellipsoid([0.24, 0.24, 0.95], 0.15, 0.25)?.twist(1.9)?.taper(-0.25, -0.25, 0.95)?;
+    let candle = superellipsoid([0.24, 0.24, 0.95], 0.15, 0.25)?.twist(rad(1.9))?.taper(-0.25, -0.25, 1.9)?;
     let candle = parts.add(moved(candle, 2.2, 0.4, 1.15)?, [236, 222, 190]);
     let plate = parts.add(moved(superellipsoid([0.75, 0.75, 0.2], 0.6, 1.0)?, 2.2, 0.4, 0.2)?, [140, 130, 176]);
     let dish = parts.add(moved(superellipsoid([0.62, 0.62, 0.18], 0.6, 1.0)?, 2.2, 0.4, 0.36)?, [190, 184, 208]);
@@ -271,7 +271,8 @@ fn main() -> Result<()> {
     let mut parts = Parts::default();
     let tree = set(&mut parts)?;
     let bounds = parts.meshes.iter().map(Mesh::bounds).reduce(|a, b| a.union(&b)).unwrap_or(Bounds::EMPTY);
-    let camera = Camera::perspective([2.5, -7.0, 4.6], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0], 30.0).fitted(&bounds, 1.5);
+    let camera =
+        Camera::perspective([2.5, -7.0, 4.6], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0], deg(30.0)).fitted(&bounds, 1.5);
     let view = RasterView::new(&camera, 1080 * FINER, 660 * FINER)?;
     let layers: std::result::Result<Vec<MeshLayers>, _> =
         parts.meshes.iter().map(|mesh| Ok::<_, rvachev::RasterError>(view.layers(ClosedMesh::new(mesh)?))).collect();

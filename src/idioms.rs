@@ -31,16 +31,16 @@
 //! [`owner`](crate::Solid::owner), and where the solid is written out as a tree.
 //!
 //! ```
-//! use rvachev::Solid;
+//! use rvachev::{Solid, deg};
 //!
 //! let head = Solid::cylinder(8.0, 6.0).named("head");
-//! let socket = Solid::cuboid([5.0, 5.0, 8.0]).rotate_z_degrees(45.0).named("socket");
+//! let socket = Solid::cuboid([5.0, 5.0, 8.0]).rotate_z(deg(45.0)).named("socket");
 //! let screw = head - socket;
-//! assert_eq!(screw.owner([3.0, 0.0, 0.0])?.path, "difference[1] / socket: rotate_z_degrees / box");
+//! assert_eq!(screw.owner([3.0, 0.0, 0.0])?.path, "difference[1] / socket: rotate_z / box");
 //! assert_eq!(screw.to_string(), "\
 //! difference by P(2.0)
 //!   head: cylinder { radius: 8.0, height: 6.0 }
-//!   socket: rotate_z_degrees 45° about (0, 0, 1)
+//!   socket: rotate_z 45° about (0, 0, 1)
 //!     box { size: DVec3(5.0, 5.0, 8.0) }");
 //! # Ok::<(), rvachev::SolidError>(())
 //! ```
@@ -77,7 +77,7 @@
 //! tidies.
 //!
 //! ```
-//! use rvachev::{RFunction, Solid};
+//! use rvachev::{RFunction, Solid, deg};
 //!
 //! let hole = Solid::cylinder(3.0, 20.0).translate([25.0, 0.0, 0.0]);
 //! let flange = Solid::cylinder(35.0, 10.0) - hole.repeat_polar(8);
@@ -88,7 +88,7 @@
 //! // Holes that grow from one to the next.
 //! let holes = (0..8).map(|i| {
 //!     let hole = Solid::cylinder(1.0 + 0.3 * f64::from(i), 20.0).translate([25.0, 0.0, 0.0]);
-//!     hole.rotate_z_degrees(45.0 * f64::from(i))
+//!     hole.rotate_z(deg(45.0 * f64::from(i)))
 //! });
 //! let dial = Solid::cylinder(35.0, 10.0).difference_all(holes, RFunction::MIN_MAX);
 //! assert!(dial.contains([25.0, 2.0, 0.0])? && !flange.contains([25.0, 2.0, 0.0])?);
@@ -102,14 +102,14 @@
 //! are made of.
 //!
 //! ```
-//! use rvachev::Solid;
+//! use rvachev::{Solid, deg};
 //!
 //! /// A knob with `lobes` grips, for a shaft of the given radius.
 //! fn knob(radius: f64, lobes: u32, shaft: f64) -> Solid {
 //!     let mut knob = Solid::superellipsoid([radius, radius, 0.4 * radius], 0.3, 1.0);
 //!     for i in 0..lobes {
 //!         let grip = Solid::cylinder(0.25 * radius, radius).translate([1.1 * radius, 0.0, 0.0]);
-//!         knob -= grip.rotate_z_degrees(360.0 * f64::from(i) / f64::from(lobes));
+//!         knob -= grip.rotate_z(deg(360.0 * f64::from(i) / f64::from(lobes)));
 //!     }
 //!     (knob - Solid::cylinder(shaft, radius)).named(format!("knob of {lobes} lobes"))
 //! }
@@ -127,12 +127,12 @@
 //! are, for they read true distances, and a smooth blend reads the operands' own values.
 //!
 //! ```
-//! use rvachev::{Blend, Solid};
+//! use rvachev::{Blend, Solid, deg};
 //!
 //! let plate = Solid::cuboid([60.0, 40.0, 6.0]);
 //! let post = Solid::cylinder(8.0, 20.0).translate([0.0, 0.0, 10.0]);
 //! let filleted = plate.union_with(&post, Blend::Fillet { radius: 3.0 });
-//! let chamfered = plate.union_with(&post, Blend::Chamfer { width: 3.0 });
+//! let chamfered = plate.union_with(&post, Blend::Chamfer { leg: 3.0 });
 //! // In the corner between post and plate:
 //! let corner = [8.5, 0.0, 3.5];
 //! assert!(filleted.contains(corner)? && chamfered.contains(corner)?);
@@ -145,7 +145,7 @@
 //!
 //! // Two limbs that flow into one another.
 //! let limb = Solid::capsule(5.0, 40.0);
-//! let branch = limb.rotate_y_degrees(50.0).translate([15.3, 0.0, 12.9]);
+//! let branch = limb.rotate_y(deg(50.0)).translate([15.3, 0.0, 12.9]);
 //! let coral = limb.smooth_union(&branch, 4.0);
 //! assert!(coral.contains([5.2, 0.0, 11.2])? && !(limb | branch).contains([5.2, 0.0, 11.2])?);
 //! # Ok::<(), rvachev::SolidError>(())
@@ -294,7 +294,7 @@
 //! # 12. A picture
 //!
 //! ```
-//! use rvachev::{Background, Camera, RenderSettings, Solid};
+//! use rvachev::{Background, Camera, RenderSettings, Solid, deg};
 //!
 //! let ring = Solid::cylinder(5.0, 3.0) - Solid::cylinder(3.5, 4.0);
 //! let settings = RenderSettings {
@@ -305,7 +305,7 @@
 //!     ground: false,
 //!     ..RenderSettings::default()
 //! };
-//! let from_above = Camera::perspective([0.0, -12.0, 14.0], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0], 35.0);
+//! let from_above = Camera::perspective([0.0, -12.0, 14.0], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0], deg(35.0));
 //! let image = ring.render(&from_above, &settings)?;
 //! // One looks through the hole.
 //! assert_eq!(image.pixel(32, 24).map(|p| p[3]), Some(0));

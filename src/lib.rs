@@ -84,9 +84,9 @@
 //! copies at the price of two.
 //!
 //! ```
-//! use rvachev::Solid;
+//! use rvachev::{Solid, deg};
 //!
-//! let drill = Solid::cuboid([2.0, 1.0, 10.0]).twist(0.5);
+//! let drill = Solid::cuboid([2.0, 1.0, 10.0]).twist(deg(30.0));
 //! assert!(drill.bounds()?.max.x < 1.2);
 //! let holes = Solid::cylinder(1.0, 9.0).translate([12.0, 0.0, 0.0]).repeat_polar(12);
 //! assert!(holes.contains([0.0, 12.0, 0.0])?);
@@ -143,10 +143,10 @@
 //! field on a plane, and its [contours](Slice::contours).
 //!
 //! ```
-//! use rvachev::{Camera, Coordinates, Plane, RenderSettings, Solid, Style};
+//! use rvachev::{Camera, Coordinates, Plane, RenderSettings, Solid, Style, deg};
 //!
 //! let part = Solid::cuboid([4.0, 3.0, 1.0]).paint([60, 100, 160]) - Solid::cylinder(1.0, 2.0).paint([220, 140, 40]);
-//! let camera = Camera::framing(&part.bounds()?).orbit(30.0, 10.0);
+//! let camera = Camera::framing(&part.bounds()?).orbit(deg(30.0), deg(10.0));
 //! let settings = RenderSettings { width: 40, height: 30, style: Style::Technical, ..RenderSettings::default() };
 //! let drawing = part.render(&camera, &settings)?;
 //! let cloud = part.layers(&camera, 40, 30)?.range_image().points(Coordinates::World)?;
@@ -216,8 +216,8 @@
 //!
 //! ## Profiles
 //!
-//! Shapes of the plane, joined, moved and offset by the verbs of [`Profile`], which are those of
-//! solids.
+//! Shapes of the plane. [`Profile`] has the verbs of [`Solid`] by the same names: joins and their
+//! operators, blends, maps, mirrors, repeats, offsets and shells, names.
 //!
 //! | profile | | value |
 //! |---|---|---|
@@ -253,7 +253,7 @@
 //! | blend | |
 //! |---|---|
 //! | [`Blend::Fillet`] | a rounding of constant radius, a length |
-//! | [`Blend::Chamfer`] | a flat face of constant width, a length |
+//! | [`Blend::Chamfer`] | a flat face; its leg, how far from the edge it begins on either operand, is a length |
 //! | [`Blend::Smooth`] | a smooth transition of compact support; also [`smooth_union`](Solid::smooth_union) and its like |
 //! | [`Blend::Displacement`] | Pasko and Savchenko's blend, which reaches everywhere |
 //! | [`Blend::Ricci`] | Ricci's blend of gauges |
@@ -270,12 +270,12 @@
 //!
 //! | map | |
 //! |---|---|
-//! | [`translate`](Solid::translate), [`rotate_z_degrees`](Solid::rotate_z_degrees) and its like, [`scale`](Solid::scale), [`affine`](Solid::affine) | affine ones |
+//! | [`translate`](Solid::translate), [`rotate_z`](Solid::rotate_z) and its like by an [`Angle`], [`scale`](Solid::scale), [`affine`](Solid::affine) | affine ones |
 //! | [`reflect`](Solid::reflect), [`mirrored`](Solid::mirrored) | the mirror image alone, and beside the solid |
 //! | [`repeat`](Solid::repeat), [`repeat_linear`](Solid::repeat_linear), [`repeat_polar`](Solid::repeat_polar) | grids, rows and rings of copies |
 //! | [`elongate`](Solid::elongate) | straight pieces inserted |
 //! | [`taper`](Solid::taper), [`twist`](Solid::twist), [`bend`](Solid::bend) | Barr's deformations |
-//! | [`taper_by`](Solid::taper_by), [`twist_by`](Solid::twist_by) | by any [`Law`] of z: [`LinearLaw`], [`SmoothStep`], [`SineWave`], [`LawTable`], a number, your own |
+//! | [`taper_by`](Solid::taper_by), [`twist_by`](Solid::twist_by) | by any [`Law`] of z, of a factor and of what an angle is multiplied by: [`LinearLaw`], [`SmoothStep`], [`SineWave`], [`LawTable`], a number, your own |
 //!
 //! ## Explicit surfaces
 //!
@@ -315,6 +315,35 @@
 //! | [`paint`](Solid::paint) | its colour, in pictures and meshes |
 //! | [`==`](Solid#impl-PartialEq-for-Solid), `Hash` | by structure: solids may be keys of a map |
 //! | [`simplified`](Solid::simplified) | the same values from fewer nodes |
+//!
+//! # Lengths and angles
+//!
+//! Lengths are in one unit, which is yours. One rule holds for full and half lengths:
+//!
+//! * What has two ends has its **full size**: edges, heights, lengths, widths, thicknesses,
+//!   spacings, the pieces that [`elongate`](Solid::elongate) inserts, the height that
+//!   [`taper`](Solid::taper) works over.
+//! * What is drawn about a centre has its **radii**: radius, tube, semi-axes, the reach of a conic
+//!   from its axis, the half extents of [`Bounds::from_center`].
+//!
+//! A chamfer is given by its **leg**: how far from the edge it begins, along either face; a fillet
+//! by its radius.
+//!
+//! Angles have their unit in the type [`Angle`]: [`deg(30.0)`](deg), [`rad(0.5)`](rad),
+//! [`turns(0.25)`](turns). A bare number is no angle and does not compile. Ranges are stated in
+//! degrees, and so are the values in errors.
+//!
+//! ```
+//! use rvachev::{Blend, Solid, deg};
+//!
+//! // 10 wide, from x = −5 to 5; the bevel takes 1 off the top and 1 off the sides.
+//! let block = Solid::cuboid([10.0, 10.0, 9.0]);
+//! let bevelled = block.intersection_with(Solid::slab([0.0, 0.0, 1.0], 4.0), Blend::Chamfer { leg: 1.0 });
+//! assert!(bevelled.value([4.0, 0.0, 2.0])?.abs() < 1e-9 && bevelled.value([5.0, 0.0, 1.0])?.abs() < 1e-9);
+//! let rod = Solid::cylinder(1.0, 8.0).rotate_x(deg(90.0));
+//! assert!(rod.contains([0.0, 3.9, 0.0])? && !rod.contains([0.0, 4.1, 0.0])?);
+//! # Ok::<(), rvachev::SolidError>(())
+//! ```
 //!
 //! # What values mean
 //!
@@ -428,7 +457,10 @@ pub use rvachev_field::{
 #[doc(inline)]
 pub use rvachev_field::{Formula, FormulaError};
 #[doc(inline)]
-pub use rvachev_num::{Bounds, CancelToken, Cancelled, Dual, Interval, Monotone, Monotone3, Norm, Progress, Real, Run};
+pub use rvachev_num::{
+    Angle, Bounds, CancelToken, Cancelled, Dual, Interval, Monotone, Monotone3, Norm, Progress, Real, Run, deg, rad,
+    turns,
+};
 pub use solid::{Caps, Extrusion, Helix, Paint, PlaneBounds, Profile, Solid, SolidError};
 pub use subdivision::{
     ControlGrid, ControlPoint, ControlPolygon, ProfileEnd, SubdivisionError, SubdivisionRevolution, Tension,

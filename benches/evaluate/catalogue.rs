@@ -1,15 +1,13 @@
 //! A row per leaf, profile, join, blend and map: nanoseconds a point of the field program, as
 //! it is (not narrowed), over the solid's box.
 
-use std::f64::consts::PI;
-
 use glam::{DVec2, DVec3};
 use rvachev::{
     Blend, Bounds, Caps, Capsule, Circle, Cone, Cuboid, Cylinder, Ellipsoid, Extrusion, Field, GeneralisedSuperquadric,
     Gielis, Grading, HalfSpace, Helix, Interval, LawTable, MinimalSurface, NetworkLattice, ParamError, Polygon, Prism,
     Profile, Pyramid, RFunction, Radius, Real, Rectangle, RegularPolygon, RoundedCuboid, SheetLattice, SineWave, Slab,
     SmoothStep, Solid, Sphere, Superellipse, Superellipsoid, Superhyperboloid, Superpolygon, Supershape, Supertoroid,
-    Torus, Turns, Wedge,
+    Torus, Turns, Wedge, deg, rad,
 };
 
 use super::{Contestant, Points, program, race};
@@ -103,10 +101,10 @@ fn leaves() -> Section {
         common("superellipsoid, pinched", Superellipsoid::new(a, 0.5, 2.5).into()),
         common("superellipsoid, an ellipsoid", Superellipsoid::new(a, 1.0, 1.0).into()),
         common("supertoroid", Supertoroid::new(a, 2.0, 0.4, 0.6).into()),
-        common("superhyperboloid, 1 sheet", Superhyperboloid::one_sheet(a, 0.7, 0.5, 1.2).into()),
-        common("superhyperboloid, 1 sheet, x", Superhyperboloid::one_sheet_x(a, 0.7, 0.5, 2.0).into()),
-        common("superhyperboloid, 2 sheets", Superhyperboloid::two_sheets(a, 0.7, 0.5, 1.2).into()),
-        common("superhyperboloid, 2 sheets, x", Superhyperboloid::two_sheets_x(a, 0.7, 0.5, 2.0).into()),
+        common("superhyperboloid, 1 sheet", Superhyperboloid::one_sheet(a, 0.7, 0.5, 2.4).into()),
+        common("superhyperboloid, 1 sheet, x", Superhyperboloid::one_sheet_x(a, 0.7, 0.5, 4.0).into()),
+        common("superhyperboloid, 2 sheets", Superhyperboloid::two_sheets(a, 0.7, 0.5, 2.4).into()),
+        common("superhyperboloid, 2 sheets, x", Superhyperboloid::two_sheets_x(a, 0.7, 0.5, 4.0).into()),
         row("generalised superquadric", GeneralisedSuperquadric::new(a, [5.0, 3.0, 1.5])),
     ];
     let star = Supershape::new(Gielis::new(6.0, 2.0, 7.0, 7.0), Gielis::new(4.0, 10.0, 10.0, 10.0));
@@ -185,9 +183,9 @@ fn sweeps() -> Section {
         row("extruded", section.extrude(1.0)),
         row("extruded, chamfered", extruded(Extrusion { caps: Caps::Chamfered(0.1), ..upright })),
         row("extruded, rounded", extruded(Extrusion { caps: Caps::Rounded(0.1), ..upright })),
-        row("extruded, twisted and scaled", extruded(Extrusion { twist: 1.0, scale: 0.5, ..upright })),
+        row("extruded, twisted and scaled", extruded(Extrusion { twist: rad(1.0), scale: 0.5, ..upright })),
         row("revolved", off.revolve()),
-        row("revolved by half a turn", off.revolve_by(PI)),
+        row("revolved by half a turn", off.revolve_by(deg(180.0))),
         row("swept along a helix", off.sweep_helix(&Helix::new(2.0, 1.5, 3.0))),
         row("swept, turns meeting", off.sweep_helix(&Helix::new(2.0, 0.4, 8.0))),
     ];
@@ -220,7 +218,7 @@ fn joins() -> Section {
     .map(|(name, rule)| row(name, a.union(&b, rule)))
     .collect();
     let blended = |blend: Blend| a.union_with(&b, blend);
-    let (fillet, chamfer) = (Blend::Fillet { radius: 0.1 }, Blend::Chamfer { width: 0.1 });
+    let (fillet, chamfer) = (Blend::Fillet { radius: 0.1 }, Blend::Chamfer { leg: 0.07 });
     rows.extend([
         row("displacement", blended(Blend::Displacement { height: 0.1, falloff: [0.3, 0.3] })),
         row("Ricci", blended(Blend::Ricci { p: 3.0 })),
@@ -243,7 +241,7 @@ fn lengths() -> Section {
         row("level, superellipsoid", shape.level(0.05)),
         row("offset, superellipsoid", shape.offset(0.05)),
         row("shell, superellipsoid", shape.shell(0.05)),
-        row("offset, tapered superellipsoid", shape.taper(0.2, 0.2, 0.6).offset(0.05)),
+        row("offset, tapered superellipsoid", shape.taper(0.2, 0.2, 1.2).offset(0.05)),
         row("offset, supershape", star.offset(0.05)),
         row("offset, torus", torus.offset(0.05)),
         row("shell, torus", torus.shell(0.05)),
@@ -255,19 +253,19 @@ fn maps() -> Section {
     let ball = Solid::sphere(1.0);
     let bar = Solid::cuboid(DVec3::new(1.0, 0.6, 2.0));
     let step = SmoothStep { from: (-1.0, 1.0), to: (1.0, 0.5) };
-    let swing = SineWave { mean: 0.0, amplitude: 0.5, wavelength: 4.0, phase: 0.0 };
+    let swing = SineWave { mean: 0.0, amplitude: 0.5, wavelength: 4.0, phase: deg(0.0) };
     let table = LawTable::new([(-1.0, 1.0), (-0.5, 0.7), (0.0, 0.9), (0.5, 0.6), (1.0, 0.8)]);
     let small = Solid::sphere(0.3);
     let rows = vec![
         row("none: a box", bar.clone()),
-        row("affine", bar.rotate_x(0.3).rotate_z(0.4).translate(DVec3::ONE)),
-        row("taper", bar.taper(0.2, 0.3, 1.0)),
-        row("twist", bar.twist(0.5)),
-        row("bend", bar.bend(0.3, 0.5)),
+        row("affine", bar.rotate_x(rad(0.3)).rotate_z(rad(0.4)).translate(DVec3::ONE)),
+        row("taper", bar.taper(0.2, 0.3, 2.0)),
+        row("twist", bar.twist(rad(0.5))),
+        row("bend", bar.bend(0.3, rad(0.5))),
         row("taper by a smooth step", bar.taper_by(step, 1.0)),
         row("taper by a table of 5", bar.taper_by(table, 1.0)),
-        row("twist by a sine wave", bar.twist_by(swing)),
-        row("elongate", ball.elongate(DVec3::new(0.0, 0.5, 1.0))),
+        row("twist by a sine wave", bar.twist_by(rad(1.0), swing)),
+        row("elongate", ball.elongate(DVec3::new(0.0, 1.0, 2.0))),
         row("mirrored", bar.translate(DVec3::X).mirrored_x()),
         row("repeat, a row of 10", small.repeat([10, 1, 1], DVec3::ONE)),
         row("repeat, a grid of 1000", small.repeat([10, 10, 10], DVec3::ONE)),

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use glam::DVec3;
 use rvachev::{
     AtBounds, Bounds, CellSize, MeshSettings, MinimalSurface, Progress, RFunction, Run, SheetLattice, Solid,
-    ThinFeatures,
+    ThinFeatures, rad,
 };
 
 /// The moments of a run when it is cancelled, and those that progress is compared at, as parts of its time.
@@ -18,8 +18,8 @@ pub fn rows(threads: usize) {
     let gyroid = SheetLattice { surface: MinimalSurface::Gyroid, cell: 0.25, thickness: 0.03 };
     let ball = Solid::new(gyroid).intersection(Solid::sphere(1.0), RFunction::MIN_MAX);
     let settings = |cells| MeshSettings { cell: CellSize::LongestSide(cells), ..MeshSettings::default() };
-    let turned = Solid::cuboid(DVec3::ONE).rotate_x(0.3);
-    let fin = Solid::cuboid([0.02, 0.8, 1.6]).rotate_z(0.4);
+    let turned = Solid::cuboid(DVec3::ONE).rotate_x(rad(0.3));
+    let fin = Solid::cuboid([0.02, 0.8, 1.6]).rotate_z(rad(0.4));
     let refine = MeshSettings { thin: ThinFeatures::Refine { halvings: 2 }, ..settings(256) };
     // Its faces are in those of the bounds: all vertices are looked at.
     let bounds = Some(Bounds::from_center(DVec3::ZERO, DVec3::splat(0.5)));

@@ -18,7 +18,7 @@ use std::time::Instant;
 use glam::{DVec2, DVec3};
 use painter::{Canvas, View};
 use rvachev::{
-    ControlGrid, ControlPolygon, ProfileEnd, QuadMesh, SubdivisionError, SubdivisionRevolution, Tension,
+    ControlGrid, ControlPolygon, ProfileEnd, QuadMesh, SubdivisionError, SubdivisionRevolution, Tension, deg,
     hyperbola_of_ellipse,
 };
 
@@ -87,7 +87,7 @@ fn curves() -> Result<Vec<Curve>, Box<dyn Error>> {
         },
         Curve {
             name: "free_polygon",
-            polygon: ControlPolygon::closed(&free, Tension::trigonometric(std::f64::consts::FRAC_PI_3)?)?,
+            polygon: ControlPolygon::closed(&free, Tension::trigonometric(deg(60.0))?)?,
             by_map: None,
             equation: None,
         },
@@ -157,12 +157,12 @@ fn surfaces() -> Result<Vec<Surface>, Box<dyn Error>> {
     let star: Vec<DVec2> = (0..10)
         .map(|k| DVec2::from_angle(f64::from(k) * 0.2 * std::f64::consts::PI) * [1.25, 0.8][k as usize % 2])
         .collect();
-    let star = ControlPolygon::closed(&star, Tension::trigonometric(std::f64::consts::PI / 5.0)?)?;
+    let star = ControlPolygon::closed(&star, Tension::trigonometric(deg(36.0))?)?;
     let vase = [(0.0, -1.2), (0.8, -1.2), (1.1, -0.5), (0.5, 0.5), (0.45, 1.0), (0.75, 1.4)];
     let vase = ControlPolygon::clamped(&vase.map(|(x, y)| DVec2::new(x, y)), Tension::CUBIC)?;
     let vase = SubdivisionRevolution::new(vase, star)?.with_ends(ProfileEnd::Pole, ProfileEnd::Open);
     let profile = [(1.6, -0.5), (2.6, -0.5), (2.2, 0.6), (1.4, 0.3)].map(|(x, y)| DVec2::new(x, y));
-    let right_angle = Tension::trigonometric(std::f64::consts::FRAC_PI_2)?;
+    let right_angle = Tension::trigonometric(deg(90.0))?;
     let path = [(1.0, 0.0), (0.3, 1.2), (-1.0, 0.4), (-0.6, -0.9)].map(|(x, y)| DVec2::new(x, y) * 1.4);
     let ring = SubdivisionRevolution::new(
         ControlPolygon::closed(&profile, right_angle)?,
@@ -185,9 +185,9 @@ fn surfaces() -> Result<Vec<Surface>, Box<dyn Error>> {
         equation: None,
     };
     // Without their flat ends one sees into them.
-    let one_sheet = SubdivisionRevolution::one_sheet([0.8, 0.6, 0.8], 1.2)?;
+    let one_sheet = SubdivisionRevolution::one_sheet([0.8, 0.6, 0.8], 2.4)?;
     let one_sheet = one_sheet.with_ends(ProfileEnd::Open, ProfileEnd::Open);
-    let two_sheets = SubdivisionRevolution::two_sheets([0.6, 0.5, 0.5], 1.0)?;
+    let two_sheets = SubdivisionRevolution::two_sheets([0.6, 0.5, 0.5], 2.0)?;
     let two_sheets = two_sheets.with_ends(ProfileEnd::Pole, ProfileEnd::Open);
     Ok(vec![
         revolution(
@@ -221,7 +221,7 @@ fn surfaces() -> Result<Vec<Surface>, Box<dyn Error>> {
         )?,
         revolution(
             "elliptic_cylinder",
-            &SubdivisionRevolution::elliptic_cylinder([1.2, 0.8], 0.9)?,
+            &SubdivisionRevolution::elliptic_cylinder([1.2, 0.8], 1.8)?,
             Some(|p| {
                 let a = (p.x / 1.2).powi(2) + (p.y / 0.8).powi(2);
                 if a < 1e-20 { 0.0 } else { a - 1.0 }

@@ -348,9 +348,9 @@ impl Compiler {
                 let [a, b] = [self.alone(site, a)?, self.alone(site, b)?];
                 let mut pair = pair;
                 let steepest = [&a.surface, &b.surface].map(steepest);
-                if let (Blend::Chamfer { width }, Operation::Union) = (blend, operation) {
-                    // The face is where one operand is nearer than half the width.
-                    let near = steepest.map(|steepest| 0.5 * width * scale * steepest);
+                if let (Blend::Chamfer { leg }, Operation::Union) = (blend, operation) {
+                    // Where the face is, one operand is nearer than half the leg.
+                    let near = steepest.map(|steepest| 0.5 * leg * scale * steepest);
                     for (built, risen) in pair.iter_mut().zip(self.risen(site, near)) {
                         built.sides.inside = risen;
                     }
@@ -445,7 +445,7 @@ fn check_affine(map: &DAffine3, label: &str) -> Result<(), ParamError> {
         "scale" => "factor",
         "scale_axes" => "factors",
         "rotate" => "rotation",
-        "rotate_about" | "rotate_about_degrees" => "axis or angle",
+        "rotate_about" => "axis or angle",
         label if label.starts_with("rotate_") => "angle",
         _ => "matrix",
     };

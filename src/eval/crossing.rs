@@ -88,12 +88,12 @@ const PARTS: u32 = 1;
 mod tests {
     use glam::DVec3;
 
-    use crate::{Bounds, Interval, Region, Solid};
+    use crate::{Bounds, Interval, Region, Solid, rad};
 
     #[test]
     fn rays_cross_the_way_the_leaves_do() {
         let plate = Solid::cuboid([2.0, 2.0, 0.2]) - Solid::sphere(0.4).translate([0.3, 0.2, 0.0]);
-        let solid = plate | Solid::cylinder(0.2, 1.0).rotate_x(70.0).translate([-0.5, 0.0, 0.1]);
+        let solid = plate | Solid::cylinder(0.2, 1.0).rotate_x(rad(70.0)).translate([-0.5, 0.0, 0.1]);
         let program = solid.surface_program().expect("the solid is valid");
         let random = |n: u32| {
             f64::from(n.wrapping_mul(2_654_435_769).rotate_left(11).wrapping_mul(2_246_822_519)) / 2f64.powi(32)

@@ -67,7 +67,7 @@ mod tests {
     use fidget::context::Tree;
     use glam::{DVec2, DVec3};
 
-    use crate::{Bounds, PlaneBounds, Profile, Region, Solid};
+    use crate::{Bounds, PlaneBounds, Profile, Region, Solid, rad};
 
     #[test]
     fn each_side_has_the_sign_of_the_whole() {
@@ -77,7 +77,7 @@ mod tests {
         let profile = Profile::formula(&long, PlaneBounds { min: DVec2::NEG_ONE, max: DVec2::ONE });
         let plate = profile.extrude(0.4);
         let ball = Solid::sphere(0.6).translate([0.3, 0.2, 0.1]);
-        let turned = plate.rotate_z(0.3).translate([0.1, 0.0, 0.0]);
+        let turned = plate.rotate_z(rad(0.3)).translate([0.1, 0.0, 0.0]);
         let bounds = Bounds::from_center(DVec3::ZERO, DVec3::splat(2.0));
         let random = |n: u32| {
             f64::from(n.wrapping_mul(2_654_435_769).rotate_left(11).wrapping_mul(2_246_822_519)) / 2f64.powi(32)

@@ -154,11 +154,11 @@ impl Solid {
     /// | `count` | copies | 1 to 1000 |
     ///
     /// ```
-    /// use rvachev::Solid;
+    /// use rvachev::{Solid, deg};
     /// use glam::DVec3;
     ///
     /// let bolts = Solid::cylinder(0.2, 1.0).translate(DVec3::X * 3.0).repeat_polar(24);
-    /// let (sin, cos) = 15f64.to_radians().sin_cos();
+    /// let (sin, cos) = deg(15.0).sin_cos();
     /// assert!(bolts.contains(DVec3::new(3.0 * cos, 3.0 * sin, 0.0))?);
     /// assert_eq!(bolts.surface_program()?.leaf_count(), 2);
     /// # Ok::<(), rvachev::SolidError>(())
@@ -210,7 +210,9 @@ fn folds_of(width: f64, spacing: f64, count: u32) -> u32 {
 fn angles_of(bounds: &Bounds) -> (f64, f64) {
     let (low, high) = (bounds.min, bounds.max);
     let meets = low.x <= 0.0 && high.x >= 0.0 && low.y <= 0.0 && high.y >= 0.0;
-    if bounds.is_empty() || !bounds.is_finite() || meets {
+    // Along z it may be unbounded, as a column is.
+    let is_finite = low.truncate().is_finite() && high.truncate().is_finite();
+    if bounds.is_empty() || !is_finite || meets {
         return (0.0, PI);
     }
     // Seen from its centre's direction a box beside the axis lies within half a turn.

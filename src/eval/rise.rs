@@ -262,7 +262,7 @@ mod tests {
 
     use super::*;
     use crate::eval::compiled;
-    use crate::{Blend, Helix, MinimalSurface, Polygon, Profile, Region, SheetLattice, Solid};
+    use crate::{Blend, Helix, MinimalSurface, Polygon, Profile, Region, SheetLattice, Solid, rad};
 
     /// Once in the solid, a ray along the direction, or close to it, stays in it.
     #[test]
@@ -276,12 +276,12 @@ mod tests {
         let solids = [
             &cube - &rod,
             &cube | cushion.translate(DVec3::X * 0.4),
-            cushion.twist(0.9).bend(0.4, 0.3),
+            cushion.twist(rad(0.9)).bend(0.4, rad(0.3)),
             Solid::torus(0.6, 0.2) ^ &rod,
             Solid::from(gyroid),
             Profile::from(Polygon::new([star])).extrude(1.2),
             Profile::circle(0.12).sweep_helix(&Helix::new(0.4, 0.4, 2.0)) | &rod,
-            cube.union_with(&rod, Blend::Chamfer { width: 0.15 }),
+            cube.union_with(&rod, Blend::Chamfer { leg: 0.15 }),
             cushion.offset(0.05),
             cube.shell(0.1),
         ];

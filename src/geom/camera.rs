@@ -13,7 +13,8 @@
 
 use glam::DVec3;
 
-use rvachev_num::Bounds;
+use crate::Bounds;
+use crate::{Angle, deg};
 
 /// A camera: an eye, what it looks at, and how it projects.
 ///
@@ -51,8 +52,8 @@ pub struct Camera {
 pub enum Projection {
     /// Rays meet in the eye.
     Perspective {
-        /// Angle from the bottom to the top of the picture, in degrees, above 0 and below 180.
-        fov: f64,
+        /// Angle from the bottom to the top of the picture, above 0 and below 180 degrees.
+        fov: Angle,
     },
     /// Rays are parallel to the view, and start in the plane through the eye.
     Orthographic {
@@ -74,9 +75,9 @@ pub struct CameraError {
     pub allowed: &'static str,
 }
 
-/// The vertical field of view of [`Camera::framing`], in degrees: about that of a portrait
-/// lens, which keeps parallel edges nearly parallel.
-pub(super) const FRAMING_FOV: f64 = 30.0;
+/// The vertical field of view of [`Camera::framing`]: about that of a portrait lens, which keeps
+/// parallel edges nearly parallel.
+pub(super) const FRAMING_FOV: Angle = deg(30.0);
 
 /// The direction from the box to the eye of the default view: 34° to the right of the front
 /// and 29° above it, so that no face of a box is seen edge-on or hides another.
@@ -86,10 +87,16 @@ const FRAMING_DIRECTION: DVec3 = DVec3::new(2.0, -3.0, 2.0);
 pub(super) const FRAMING_MARGIN: f64 = 1.06;
 
 impl Camera {
-    /// A perspective camera; `fov` is the vertical field of view in degrees, in (0, 180).
+    /// A perspective camera; `fov` is the vertical field of view, above 0 and below 180 degrees.
     #[must_use]
-    pub fn perspective(eye: impl Into<DVec3>, target: impl Into<DVec3>, up: impl Into<DVec3>, fov: f64) -> Camera {
-        Camera { eye: eye.into(), target: target.into(), up: up.into(), projection: Projection::Perspective { fov } }
+    pub fn perspective(
+        eye: impl Into<DVec3>,
+        target: impl Into<DVec3>,
+        up: impl Into<DVec3>,
+        fov: impl Into<Angle>,
+    ) -> Camera {
+        let projection = Projection::Perspective { fov: fov.into() };
+        Camera { eye: eye.into(), target: target.into(), up: up.into(), projection }
     }
 
     /// An orthographic camera; `height` is what the picture spans from bottom to top, in
@@ -149,7 +156,7 @@ impl Camera {
         let distance = match &mut self.projection {
             Projection::Perspective { fov } => {
                 // A corner at depth z is in view if |y| ≤ (distance + z)·slope.
-                let slope = (fov.to_radians() / 2.0).tan() / FRAMING_MARGIN;
+                let slope = (fov.radians() / 2.0).tan() / FRAMING_MARGIN;
                 let needed = seen.map(|p| p.x.max(p.y) / slope - p.z);
                 needed.into_iter().fold(0.01 * radius, f64::max)
             }
@@ -181,7 +188,7 @@ impl Camera {
         let (width, height) = (f64::from(width), f64::from(height));
         let [right, up, forward] = self.axes();
         let (half_height, parallel) = match self.projection {
-            Projection::Perspective { fov } => ((fov.to_radians() / 2.0).tan(), false),
+            Projection::Perspective { fov } => ((fov.radians() / 2.0).tan(), false),
             Projection::Orthographic { height } => (height / 2.0, true),
         };
         let pixel = 2.0 * half_height / height;
@@ -203,8 +210,8 @@ impl Camera {
     ///
     /// [`CameraError`] names the parameter, its value and what is allowed: points and vectors
     /// must be finite, the eye must not be the target, `up` must be neither 0 nor along the
-    /// view, the field of view must be in (0, 180) degrees, the height of the view finite and
-    /// above 0.
+    /// view, the field of view must be above 0 and below 180 degrees, the height of the view
+    /// finite and above 0.
     pub fn check(&self) -> Result<(), CameraError> {
         let error = |parameter, value: &dyn std::fmt::Display, allowed| {
             Err(CameraError { parameter, value: value.to_string(), allowed })
@@ -227,8 +234,8 @@ impl Camera {
             return error("up", &self.up, "it must not be parallel to the view");
         }
         match self.projection {
-            Projection::Perspective { fov } if !(fov > 0.0 && fov < 180.0) => {
-                error("field of view", &fov, "it must be above 0 and below 180 degrees")
+            Projection::Perspective { fov } if !(fov > Angle::ZERO && fov < Angle::HALF_TURN) => {
+                error("field of view", &fov, "it must be above 0° and below 180°")
             }
             Projection::Orthographic { height } if !(height > 0.0 && height.is_finite()) => {
                 error("height of the view", &height, "it must be finite and above 0")
@@ -345,7 +352,7 @@ mod tests {
         let [right, up, forward] = camera.axes();
         let q = p - camera.eye;
         let half = match camera.projection {
-            Projection::Perspective { fov } => (fov.to_radians() / 2.0).tan() * q.dot(forward),
+            Projection::Perspective { fov } => (fov.radians() / 2.0).tan() * q.dot(forward),
             Projection::Orthographic { height } => height / 2.0,
         };
         let scale = height / (2.0 * half);
@@ -355,9 +362,10 @@ mod tests {
     #[test]
     fn rays_pass_through_what_they_show() {
         let eye = DVec3::new(3.0, -4.0, 5.0);
-        for camera in
-            [Camera::perspective(eye, DVec3::ONE, DVec3::Z, 50.0), Camera::orthographic(eye, DVec3::ONE, DVec3::Z, 7.0)]
-        {
+        for camera in [
+            Camera::perspective(eye, DVec3::ONE, DVec3::Z, deg(50.0)),
+            Camera::orthographic(eye, DVec3::ONE, DVec3::Z, 7.0),
+        ] {
             for p in [DVec3::ZERO, DVec3::new(0.5, 1.0, -2.0)] {
                 let (x, y) = project(&camera, p, 640.0, 480.0);
                 let (o, d) = camera.ray(x, y, 640, 480);
@@ -377,8 +385,10 @@ mod tests {
         let (mut nowhere, mut partly) = (0, 0);
         for n in 0..2000 {
             let (eye, target) = (vector(4 * n), vector(4 * n + 1));
-            let cameras =
-                [Camera::perspective(eye, target, DVec3::Z, 70.0), Camera::orthographic(eye, target, DVec3::Z, 3.0)];
+            let cameras = [
+                Camera::perspective(eye, target, DVec3::Z, deg(70.0)),
+                Camera::orthographic(eye, target, DVec3::Z, 3.0),
+            ];
             for camera in cameras {
                 let rays = camera.rays(64, 48);
                 let bounds = Bounds::from_center(vector(4 * n + 2), vector(4 * n + 3).abs());
@@ -424,7 +434,7 @@ mod tests {
         // The angle between the middles of the top and bottom edges is the field of view.
         let (_, top) = camera.ray(50.0, 0.0, 100, 100);
         let (_, bottom) = camera.ray(50.0, 100.0, 100, 100);
-        assert!((top.angle_between(bottom).to_degrees() - FRAMING_FOV).abs() < 1e-9);
+        assert!((top.angle_between(bottom) - FRAMING_FOV.radians()).abs() < 1e-9);
     }
 
     #[test]
@@ -458,7 +468,7 @@ mod tests {
 
     #[test]
     fn errors_name_the_parameter() {
-        let good = Camera::perspective(DVec3::ONE, DVec3::ZERO, DVec3::Z, 40.0);
+        let good = Camera::perspective(DVec3::ONE, DVec3::ZERO, DVec3::Z, deg(40.0));
         good.check().unwrap();
         let parameter = |camera: Camera| camera.check().unwrap_err().parameter;
         let nan = DVec3::new(0.0, f64::NAN, 0.0);
@@ -469,7 +479,7 @@ mod tests {
         assert_eq!(parameter(Camera { up, ..good }), "up");
         let up = DVec3::splat(-3.0);
         assert_eq!(parameter(Camera { up, ..good }), "up");
-        for fov in [0.0, 180.0, -1.0, f64::NAN, f64::INFINITY] {
+        for fov in [0.0, 180.0, -1.0, f64::NAN, f64::INFINITY].map(deg) {
             let projection = Projection::Perspective { fov };
             assert_eq!(parameter(Camera { projection, ..good }), "field of view");
         }
@@ -478,10 +488,10 @@ mod tests {
             let camera = Camera { projection, ..good };
             assert_eq!(parameter(camera), "height of the view");
         }
-        let bad = Camera { projection: Projection::Perspective { fov: 200.0 }, ..good };
+        let bad = Camera { projection: Projection::Perspective { fov: deg(200.0) }, ..good };
         assert_eq!(
             bad.check().unwrap_err().to_string(),
-            "camera: field of view is 200; it must be above 0 and below 180 degrees"
+            "camera: field of view is 200°; it must be above 0° and below 180°"
         );
     }
 }

@@ -17,7 +17,7 @@
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 
 use super::camera::{Camera, FRAMING_FOV, FRAMING_MARGIN, Projection};
-use crate::Bounds;
+use crate::{Angle, Bounds, deg};
 
 /// From where a solid is looked at. The world has +z up, and its front is towards −y.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -163,28 +163,29 @@ impl Camera {
     #[must_use]
     pub fn parallel(mut self) -> Camera {
         if let Projection::Perspective { fov } = self.projection {
-            let height = 2.0 * self.eye.distance(self.target) * (fov.to_radians() / 2.0).tan();
+            let height = 2.0 * self.eye.distance(self.target) * (fov.radians() / 2.0).tan();
             self.projection = Projection::Orthographic { height };
         }
         self
     }
 
-    /// The camera moved about its target, in degrees: by `azimuth` about `up`, anticlockwise
-    /// seen from above, and by `elevation` towards `up`, but no nearer to it than 0.1°.
+    /// The camera moved about its target: by `azimuth` about `up`, anticlockwise seen from
+    /// above, and by `elevation` towards `up`, but no nearer to it than 0.1°.
     ///
     /// A camera that does not pass [`Camera::check`], and an angle that is not finite, leave it
     /// where it is.
     ///
     /// ```
-    /// use rvachev::Camera;
+    /// use rvachev::{Camera, deg};
     /// use glam::DVec3;
     ///
     /// let camera = Camera::look_at([0.0, -4.0, 0.0], [0.0, 0.0, 0.0]);
-    /// assert!(camera.orbit(90.0, 0.0).eye.distance(DVec3::X * 4.0) < 1e-12);
-    /// assert!(camera.orbit(0.0, 30.0).eye.distance(DVec3::new(0.0, -12f64.sqrt(), 2.0)) < 1e-12);
+    /// assert!(camera.orbit(deg(90.0), deg(0.0)).eye.distance(DVec3::X * 4.0) < 1e-12);
+    /// assert!(camera.orbit(deg(0.0), deg(30.0)).eye.distance(DVec3::new(0.0, -12f64.sqrt(), 2.0)) < 1e-12);
     /// ```
     #[must_use]
-    pub fn orbit(mut self, azimuth: f64, elevation: f64) -> Camera {
+    pub fn orbit(mut self, azimuth: impl Into<Angle>, elevation: impl Into<Angle>) -> Camera {
+        let (azimuth, elevation) = (azimuth.into(), elevation.into());
         if self.check().is_err() || !azimuth.is_finite() || !elevation.is_finite() {
             return self;
         }
@@ -195,8 +196,8 @@ impl Camera {
         let level = right.cross(up);
         let distance = self.eye.distance(self.target);
         let risen = ((self.eye - self.target) / distance).dot(up).clamp(-1.0, 1.0).asin();
-        let elevation = (risen + elevation.to_radians()).clamp(-STEEPEST.to_radians(), STEEPEST.to_radians());
-        let (sin, cos) = azimuth.to_radians().sin_cos();
+        let elevation = (risen + elevation.radians()).clamp(-STEEPEST.radians(), STEEPEST.radians());
+        let (sin, cos) = azimuth.sin_cos();
         let level = cos * level + sin * right;
         self.eye = self.target + distance * (elevation.cos() * level + elevation.sin() * up);
         self
@@ -225,7 +226,7 @@ impl Camera {
                 // A point is within the picture's sides if |x − eye.x| ≤ (z − eye.z)·slope: the
                 // extreme points of each pair of sides tell how far back the eye must be, and
                 // how far to the side.
-                let slope = (fov.to_radians() / 2.0).tan() / FRAMING_MARGIN;
+                let slope = (fov.radians() / 2.0).tan() / FRAMING_MARGIN;
                 let across = slope * aspect;
                 let (a, b) = (most(&|p| p.x - across * p.z), most(&|p| -p.x - across * p.z));
                 let (c, d) = (most(&|p| p.y - slope * p.z), most(&|p| -p.y - slope * p.z));
@@ -257,12 +258,12 @@ impl Camera {
     pub fn intrinsics(&self, width: u32, height: u32) -> Intrinsics {
         let (w, h) = (f64::from(width), f64::from(height));
         let (f, parallel) = match self.projection {
-            Projection::Perspective { fov } => (h / (2.0 * (fov.to_radians() / 2.0).tan()), false),
+            Projection::Perspective { fov } => (h / (2.0 * (fov.radians() / 2.0).tan()), false),
             Projection::Orthographic { height } => (h / height, true),
         };
         Intrinsics { width, height, fx: f, fy: f, cx: w / 2.0, cy: h / 2.0, parallel }
     }
 }
 
-/// An orbit comes no nearer to the pole than this, in degrees of elevation.
-const STEEPEST: f64 = 89.9;
+/// An orbit rises no higher than this.
+const STEEPEST: Angle = deg(89.9);

@@ -91,13 +91,13 @@ impl RasterView {
     ///
     /// ```
     /// use glam::DVec3;
-    /// use rvachev::{Camera, CellSize, ClosedMesh, Csg, CsgMethod, MeshSettings, RasterView, Solid};
+    /// use rvachev::{Camera, CellSize, ClosedMesh, Csg, CsgMethod, MeshSettings, RasterView, Solid, deg};
     ///
     /// let settings = MeshSettings { cell: CellSize::LongestSide(24), ..MeshSettings::default() };
     /// let block = Solid::cuboid([2.0, 2.0, 2.0]).mesh(&settings)?;
     /// let hole = Solid::cylinder(0.5, 3.0).mesh(&settings)?;
     ///
-    /// let camera = Camera::perspective(DVec3::new(0.0, 0.0, 6.0), DVec3::ZERO, DVec3::Y, 40.0);
+    /// let camera = Camera::perspective(DVec3::new(0.0, 0.0, 6.0), DVec3::ZERO, DVec3::Y, deg(40.0));
     /// let view = RasterView::new(&camera, 80, 60)?;
     /// let block = view.layers(ClosedMesh::new(&block)?);
     /// let hole = view.layers(ClosedMesh::new(&hole)?);

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! affine X = A x + b
-//! taper  t = clamp(z/h, −1, 1), s = 1 + K t          X = s_x x,  Y = s_y y,  Z = z
+//! taper  t = clamp(2z/h, −1, 1), s = 1 + K t         X = s_x x,  Y = s_y y,  Z = z
 //! twist  φ = ω z                                     (X, Y) = (x, y) turned by φ,  Z = z
 //! bend   r = along u = (cos α, sin α), γ = κ z       R = r + (1 − κr) z sin(γ/2) sinc(γ/2)
 //!                                                    Z = (1 − κr) z sinc γ
@@ -20,7 +20,7 @@
 use glam::{DAffine3, DVec3, Vec3};
 
 use super::error::RasterError;
-use crate::{Mesh, ParamError};
+use crate::{Angle, Mesh, ParamError};
 use rvachev_field::{AnyWarp, Bend, Erase, Taper, Twist};
 
 impl Mesh {
@@ -54,10 +54,10 @@ impl Mesh {
     /// The mesh tapered along z, with the parameters of [`Solid::taper`](crate::Solid::taper).
     ///
     /// ```
-    /// use rvachev::{ParametricSurface, ClosedMesh, PatchSettings, Superellipsoid};
+    /// use rvachev::{ClosedMesh, PatchSettings, Superellipsoid, deg, rad};
     ///
     /// let bar = ParametricSurface::of(&Superellipsoid::new([0.5, 0.5, 2.0], 0.3, 0.3))?.mesh(&PatchSettings::default())?;
-    /// let bent = bar.taper(0.4, 0.4, 2.0)?.twist(0.6)?.bend(0.3, 0.0)?;
+    /// let bent = bar.taper(0.4, 0.4, 4.0)?.twist(rad(0.6))?.bend(0.3, deg(0.0))?;
     /// ClosedMesh::new(&bent)?;
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -65,8 +65,9 @@ impl Mesh {
     /// # Errors
     ///
     /// [`RasterError::Parameter`] for a parameter that a solid of this size would not take.
-    pub fn taper(&self, kx: f64, ky: f64, half_height: f64) -> Result<Mesh, RasterError> {
-        deformed(self, &*Taper { kx, ky, half_height }.erase(), |p, n| {
+    pub fn taper(&self, kx: f64, ky: f64, height: f64) -> Result<Mesh, RasterError> {
+        let half_height = 0.5 * height;
+        deformed(self, &*Taper { kx, ky, height }.erase(), |p, n| {
             let t = (p.z / half_height).clamp(-1.0, 1.0);
             let (sx, sy) = (1.0 + kx * t, 1.0 + ky * t);
             let across = DVec3::new(n.x / sx, n.y / sy, 0.0);
@@ -83,8 +84,10 @@ impl Mesh {
     /// # Errors
     ///
     /// [`RasterError::Parameter`].
-    pub fn twist(&self, rate: f64) -> Result<Mesh, RasterError> {
+    pub fn twist(&self, rate: impl Into<Angle>) -> Result<Mesh, RasterError> {
+        let rate = rate.into();
         deformed(self, &*Twist { rate }.erase(), |p, n| {
+            let rate = rate.radians();
             let (sin, cos) = (rate * p.z).sin_cos();
             let turned = |v: DVec3| DVec3::new(v.x * cos - v.y * sin, v.x * sin + v.y * cos, v.z);
             (turned(p), turned(n) - DVec3::Z * (rate * (p.x * n.y - p.y * n.x)))
@@ -96,7 +99,8 @@ impl Mesh {
     /// # Errors
     ///
     /// [`RasterError::Parameter`].
-    pub fn bend(&self, curvature: f64, angle: f64) -> Result<Mesh, RasterError> {
+    pub fn bend(&self, curvature: f64, angle: impl Into<Angle>) -> Result<Mesh, RasterError> {
+        let angle = angle.into();
         let k = curvature;
         let (sin_angle, cos_angle) = angle.sin_cos();
         let along = DVec3::new(cos_angle, sin_angle, 0.0);

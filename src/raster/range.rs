@@ -11,12 +11,12 @@ impl Buffers {
     ///
     /// ```
     /// use glam::DVec3;
-    /// use rvachev::{ParametricSurface,
-    ///     Buffers, Camera, ClosedMesh, Coordinates, Facing, Noise, PatchSettings, RasterView, Superellipsoid,
+    /// use rvachev::{
+    ///     Buffers, Camera, ClosedMesh, Coordinates, Facing, Noise, PatchSettings, RasterView, Superellipsoid, deg,
     /// };
     ///
     /// let mesh = ParametricSurface::of(&Superellipsoid::new([1.0, 1.0, 1.0], 1.0, 1.0))?.mesh(&PatchSettings::default())?;
-    /// let camera = Camera::perspective([3.0, -4.0, 2.0], DVec3::ZERO, DVec3::Z, 30.0);
+    /// let camera = Camera::perspective([3.0, -4.0, 2.0], DVec3::ZERO, DVec3::Z, deg(30.0));
     /// let view = RasterView::new(&camera, 64, 48)?;
     /// let mut buffers = Buffers::new(&view);
     /// buffers.draw(&view.layers(ClosedMesh::new(&mesh)?), 0, Facing::Front)?;

@@ -92,7 +92,7 @@ impl RasterView {
             }
         }
         let (scale, parallel) = match camera.projection {
-            Projection::Perspective { fov } => (f64::from(height) / (2.0 * (fov.to_radians() / 2.0).tan()), false),
+            Projection::Perspective { fov } => (f64::from(height) / (2.0 * (fov.radians() / 2.0).tan()), false),
             Projection::Orthographic { height: length } => (f64::from(height) / length, true),
         };
         if !(1.0 / HUGE..=HUGE).contains(&scale) {

@@ -259,7 +259,7 @@ impl Maker {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Solid;
+    use crate::{Solid, rad};
 
     fn facets(solid: &Solid, cells: u32) -> Facets {
         let program = solid.surface_program().unwrap();
@@ -274,7 +274,8 @@ mod tests {
 
     #[test]
     fn rays_meet_the_facets_where_they_meet_the_solid() {
-        let solid = (Solid::cuboid(DVec3::new(2.0, 1.4, 1.0)).rotate_x(0.4) - Solid::sphere(0.5)) | Solid::sphere(0.3);
+        let solid =
+            (Solid::cuboid(DVec3::new(2.0, 1.4, 1.0)).rotate_x(rad(0.4)) - Solid::sphere(0.5)) | Solid::sphere(0.3);
         let facets = facets(&solid, 100);
         let mut hits = 0;
         for i in 1..3000 {
@@ -324,7 +325,7 @@ mod tests {
     #[test]
     fn nothing_is_leapt_over() {
         let solid =
-            Solid::superellipsoid(DVec3::new(1.0, 0.8, 0.6), 0.3, 0.7) - Solid::cylinder(0.3, 3.0).rotate_x(0.4);
+            Solid::superellipsoid(DVec3::new(1.0, 0.8, 0.6), 0.3, 0.7) - Solid::cylinder(0.3, 3.0).rotate_x(rad(0.4));
         let solid = solid | Solid::torus(1.2, 0.08);
         let facets = facets(&solid, 90);
         let cells: Vec<(DVec3, DVec3, f64)> = (0..facets.numbers.len())

@@ -83,7 +83,7 @@ impl<'a> Obstacles<'a> {
             let radius = at(0.754_877_666_246_693).sqrt();
             DVec2::from_angle(std::f64::consts::TAU * at(0.569_840_290_998_053)) * radius
         };
-        let spread = softness.to_radians().tan();
+        let spread = (0.5 * softness).radians().tan();
         let (t, b) = key.any_orthonormal_pair();
         let to_light = |i: usize| {
             let d = spread * disc(i);

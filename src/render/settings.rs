@@ -1,6 +1,6 @@
 //! What a picture shall be, and why there is none.
 
-use crate::{CameraError, Cancelled, ImageError, Paint, SaveError, SolidError};
+use crate::{Angle, CameraError, Cancelled, ImageError, Paint, SaveError, SolidError, deg};
 
 /// What to render.
 ///
@@ -39,9 +39,9 @@ pub struct RenderSettings {
     pub lights: Lights,
     /// Whether the key light casts shadows. Default: true.
     pub shadows: bool,
-    /// Half the angle that the key light appears under, in degrees, 0 to 45: shadows are the
-    /// softer the larger it is, and have hard edges at 0. Default: 7.
-    pub softness: f64,
+    /// The angle that the key light appears under, 0 to 90 degrees: shadows are the softer the
+    /// larger it is, and have hard edges at 0. Default: 14 degrees.
+    pub softness: Angle,
     /// Whether parts hide the sky from each other, which darkens corners and hollows.
     /// Default: true.
     pub occlusion: bool,
@@ -64,7 +64,7 @@ impl Default for RenderSettings {
             paint: Paint::default(),
             lights: Lights::default(),
             shadows: true,
-            softness: 7.0,
+            softness: deg(14.0),
             occlusion: true,
             ground: true,
             transfer: Transfer::default(),
@@ -228,8 +228,8 @@ impl RenderSettings {
         if !(0.0..=1.0).contains(&self.paint.roughness) {
             return Err(setting("paint.roughness", self.paint.roughness, "0 to 1"));
         }
-        if !(0.0..=45.0).contains(&self.softness) {
-            return Err(setting("softness", self.softness, "0 to 45 degrees"));
+        if !(Angle::ZERO..=deg(90.0)).contains(&self.softness) {
+            return Err(setting("softness", self.softness, "0° to 90°"));
         }
         let Lights { key, fill, rim, sky } = self.lights;
         for (name, light) in [("lights.key", key), ("lights.fill", fill), ("lights.rim", rim), ("lights.sky", sky)] {
@@ -253,7 +253,7 @@ mod tests {
         assert_eq!(message(RenderSettings { width: 0, ..good.clone() }), "width is 0; allowed: 1 to 65 535 pixels");
         assert!(message(RenderSettings { height: 70_000, ..good.clone() }).starts_with("height is 70000"));
         assert!(message(RenderSettings { samples: 9, ..good.clone() }).starts_with("samples is 9"));
-        assert!(message(RenderSettings { softness: f64::NAN, ..good.clone() }).starts_with("softness is NaN"));
+        assert!(message(RenderSettings { softness: deg(f64::NAN), ..good.clone() }).starts_with("softness is NaN"));
         let lights = Lights { rim: -1.0, ..Lights::default() };
         assert!(message(RenderSettings { lights, ..good.clone() }).starts_with("lights.rim is -1"));
         let paint = Paint { roughness: f64::NAN, ..Paint::default() };

@@ -277,10 +277,11 @@ fn filmic(light: Vec3A) -> Vec3A {
 mod tests {
     use super::super::gbuffer::Surface;
     use super::*;
+    use crate::deg;
 
     #[test]
     fn lit_surfaces_are_brighter_and_none_is_cut_off() {
-        let camera = Camera::perspective(DVec3::new(2.0, -3.0, 2.0), DVec3::ZERO, DVec3::Z, 30.0);
+        let camera = Camera::perspective(DVec3::new(2.0, -3.0, 2.0), DVec3::ZERO, DVec3::Z, deg(30.0));
         let studio = Studio::new(&camera, &RenderSettings::default());
         let n = camera.eye.normalize();
         // On a ball, seen from the camera.
@@ -299,7 +300,7 @@ mod tests {
 
     #[test]
     fn the_ground_is_the_background_where_nothing_hides_the_light() {
-        let camera = Camera::perspective(DVec3::new(2.0, -3.0, 2.0), DVec3::ZERO, DVec3::Z, 30.0);
+        let camera = Camera::perspective(DVec3::new(2.0, -3.0, 2.0), DVec3::ZERO, DVec3::Z, deg(30.0));
         let studio = Studio::new(&camera, &RenderSettings::default());
         let background = studio.background(0.7);
         assert_eq!(studio.ground(background, Openness::FULL), background);

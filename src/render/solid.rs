@@ -217,7 +217,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::{Background, CameraError, Cancelled, Projection, RFunction, SolidError};
+    use crate::{Background, CameraError, Cancelled, Projection, RFunction, SolidError, deg, rad};
 
     /// A camera on the −y side that sees `height` length units.
     fn front(height: f64) -> Camera {
@@ -278,7 +278,7 @@ mod tests {
     fn silhouette_of_a_sphere() {
         let image = Solid::sphere(1.0).render(&front(2.4), &transparent(24, 12)).unwrap();
         same(&image, SPHERE);
-        let camera = Camera::perspective(DVec3::new(0.0, -100.0, 0.0), DVec3::ZERO, DVec3::Z, 1.375);
+        let camera = Camera::perspective(DVec3::new(0.0, -100.0, 0.0), DVec3::ZERO, DVec3::Z, deg(1.375));
         let image = Solid::sphere(1.0).render(&camera, &transparent(24, 12)).unwrap();
         same(&image, SPHERE);
     }
@@ -303,8 +303,8 @@ mod tests {
 
     #[test]
     fn every_ray_hits_what_a_single_raycast_hits() {
-        let part = (Solid::cuboid(DVec3::ONE) | Solid::sphere(0.4).translate(DVec3::X * 0.6)).rotate_x(0.7)
-            - Solid::cylinder(0.2, 4.0).twist(1.0);
+        let part = (Solid::cuboid(DVec3::ONE) | Solid::sphere(0.4).translate(DVec3::X * 0.6)).rotate_x(rad(0.7))
+            - Solid::cylinder(0.2, 4.0).twist(rad(1.0));
         let bounds = part.bounds().unwrap();
         let settings = RenderSettings { samples: 1, ..transparent(40, 30) };
         for camera in [Camera::framing(&bounds), Camera::framing_orthographic(&bounds)] {
@@ -351,7 +351,7 @@ mod tests {
 
     #[test]
     fn from_inside_the_walls_are_seen() {
-        let camera = Camera::perspective(DVec3::ZERO, DVec3::X, DVec3::Z, 90.0);
+        let camera = Camera::perspective(DVec3::ZERO, DVec3::X, DVec3::Z, deg(90.0));
         let image = Solid::cuboid(DVec3::splat(2.0)).render(&camera, &transparent(20, 20)).unwrap();
         assert!(image.pixels().iter().all(|p| p[3] == 255 && p[0] > 30));
     }

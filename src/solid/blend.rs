@@ -15,7 +15,7 @@ impl Solid {
     /// use rvachev::{Blend, Solid};
     ///
     /// let plate = Solid::cuboid([20.0, 20.0, 2.0]);
-    /// let post = plate.union_with(Solid::cylinder(3.0, 12.0), Blend::Chamfer { width: 1.0 });
+    /// let post = plate.union_with(Solid::cylinder(3.0, 12.0), Blend::Chamfer { leg: 1.0 });
     /// assert!(post.contains([3.2, 0.0, 1.2])? && !post.contains([3.6, 0.0, 1.6])?);
     /// # Ok::<(), rvachev::SolidError>(())
     /// ```

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::Solid;
-use crate::Law;
+use crate::{Angle, Law};
 use rvachev_field::{Elongate, TaperBy, TwistBy};
 
 impl Solid {
@@ -35,41 +35,44 @@ impl Solid {
     }
 
     /// Twisted about the z axis by any [law](crate::Law) of z: the section at z is turned by
-    /// `angle`, from x towards y.
+    /// `angle` times the law's value there, from x towards y. In proportion to z:
+    /// [`twist`](Solid::twist).
     ///
     #[doc = picture!("twist_by" = "docs/gallery/twist_by.png")]
     ///
     /// | parameter | unit | range |
     /// |---|---|---|
-    /// | `angle` | radians | ±10⁴ over the heights of the solid's box, which is checked; beyond these heights it is held in that range |
+    /// | `angle` | [`Angle`] | ±10⁹ degrees |
+    /// | `law` | none | `angle` times it is ±576 000 degrees over the heights of the solid's box, which is checked; beyond these heights it is held in that range |
     ///
     /// The field is the operand's at the pre-image, not rescaled: its slope grows with that of
     /// the law times the distance from the axis.
     ///
     /// ```
-    /// use rvachev::{Solid, SineWave};
+    /// use rvachev::{SineWave, Solid, deg};
     /// use glam::DVec3;
     ///
-    /// let swing = SineWave { mean: 0.0, amplitude: 0.5, wavelength: 4.0, phase: 0.0 };
-    /// let bar = Solid::cuboid(DVec3::new(2.0, 0.5, 8.0)).twist_by(swing);
-    /// let (sin, cos) = 0.5f64.sin_cos();
+    /// // To and fro by 30 degrees.
+    /// let swing = SineWave { mean: 0.0, amplitude: 1.0, wavelength: 4.0, phase: deg(0.0) };
+    /// let bar = Solid::cuboid(DVec3::new(2.0, 0.5, 8.0)).twist_by(deg(30.0), swing);
+    /// let (sin, cos) = deg(30.0).sin_cos();
     /// assert!(bar.contains(DVec3::new(0.9 * cos, 0.9 * sin, 1.0))?);
     /// # Ok::<(), rvachev::SolidError>(())
     /// ```
     #[must_use]
-    pub fn twist_by(&self, angle: impl Law) -> Solid {
-        self.warp(TwistBy { angle })
+    pub fn twist_by(&self, angle: impl Into<Angle>, law: impl Law) -> Solid {
+        self.warp(TwistBy { angle: angle.into(), law })
     }
 
-    /// Elongated by straight pieces: the parts on either side of each coordinate plane move
-    /// outward by `half`, and the section in the plane is drawn out between them:
-    /// `f(p) = solid(p − clamp(p, −half, half))`.
+    /// Elongated by straight pieces of these `lengths`: the parts on either side of each
+    /// coordinate plane move apart by the length across it, and the section in the plane is drawn
+    /// out between them: `f(p) = solid(p − clamp(p, −lengths/2, lengths/2))`.
     ///
     #[doc = picture!("elongate" = "docs/gallery/elongate.png")]
     ///
     /// | parameter | unit | range |
     /// |---|---|---|
-    /// | `half` | length | 0 to 10⁹ along each axis; the solid grows by twice that |
+    /// | `lengths` | length | 0 to 10⁹ along each axis: by how much the solid grows |
     ///
     /// 1-Lipschitz if the operand is, and outside the true distance if the operand has it.
     ///
@@ -77,13 +80,13 @@ impl Solid {
     /// use rvachev::Solid;
     /// use glam::DVec3;
     ///
-    /// let capsule = Solid::sphere(1.0).elongate(DVec3::new(0.0, 0.0, 2.0));
+    /// let capsule = Solid::sphere(1.0).elongate(DVec3::new(0.0, 0.0, 4.0));
     /// assert!((capsule.bounds()?.size() - DVec3::new(2.0, 2.0, 6.0)).length() < 1e-12);
     /// assert_eq!(capsule.value(DVec3::new(3.0, 0.0, 1.5))?, -2.0);
     /// # Ok::<(), rvachev::SolidError>(())
     /// ```
     #[must_use]
-    pub fn elongate(&self, half: impl Into<DVec3>) -> Solid {
-        self.warp(Elongate { half: half.into() })
+    pub fn elongate(&self, lengths: impl Into<DVec3>) -> Solid {
+        self.warp(Elongate { lengths: lengths.into() })
     }
 }

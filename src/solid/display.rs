@@ -25,17 +25,17 @@ const DEEPEST: usize = 24;
 /// parameters too.
 ///
 /// ```
-/// use rvachev::Solid;
+/// use rvachev::{Solid, deg};
 ///
 /// let hole = Solid::cylinder(0.5, 2.0).named("hole");
-/// let plate = Solid::cuboid([4.0, 4.0, 1.0]) - hole.translate([1.0, 0.0, 0.0]) - hole.rotate_x_degrees(90.0);
+/// let plate = Solid::cuboid([4.0, 4.0, 1.0]) - hole.translate([1.0, 0.0, 0.0]) - hole.rotate_x(deg(90.0));
 /// assert_eq!(plate.to_string(), "\
 /// difference by P(2.0)
 ///   difference by P(2.0)
 ///     box { size: DVec3(4.0, 4.0, 1.0) }
 ///     translate (1, 0, 0)
 ///       part 1, hole: cylinder { radius: 0.5, height: 2.0 }
-///   rotate_x_degrees 90° about (1, 0, 0)
+///   rotate_x 90° about (1, 0, 0)
 ///     part 1 again");
 /// assert_eq!(format!("{plate:.1}"), "difference by P(2.0)\n... and 6 more lines");
 /// ```

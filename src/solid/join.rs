@@ -1,9 +1,7 @@
-//! Joins: set operations by R-functions, as operators and as named methods.
+//! Joins: set operations by R-functions. (The operators are in `operators`.)
 //!
 //! Whatever becomes a solid may stand where a solid is taken: a solid, a reference to one, a
 //! leaf.
-
-use std::ops::{BitAnd, BitAndAssign, BitOr, BitOrAssign, BitXor, BitXorAssign, Not, Sub, SubAssign};
 
 use super::{Node, Operation, Solid};
 use crate::RFunction;
@@ -136,59 +134,5 @@ impl From<&Solid> for Solid {
     /// The same solid; a reference count.
     fn from(solid: &Solid) -> Solid {
         solid.clone()
-    }
-}
-
-/// Implements an operator for a solid or a reference to one on the left and anything that
-/// becomes a solid on the right, and its assigning form.
-macro_rules! operator {
-    ($trait:ident, $method:ident, $assign:ident, $assign_method:ident, $named:ident, $doc:literal) => {
-        impl<T: Into<Solid>> $trait<T> for Solid {
-            type Output = Solid;
-
-            #[doc = $doc]
-            fn $method(self, other: T) -> Solid {
-                self.$named(other, RFunction::default())
-            }
-        }
-
-        impl<T: Into<Solid>> $trait<T> for &Solid {
-            type Output = Solid;
-
-            #[doc = $doc]
-            fn $method(self, other: T) -> Solid {
-                self.$named(other, RFunction::default())
-            }
-        }
-
-        impl<T: Into<Solid>> $assign<T> for Solid {
-            #[doc = $doc]
-            fn $assign_method(&mut self, other: T) {
-                *self = self.$named(other, RFunction::default());
-            }
-        }
-    };
-}
-
-operator!(BitOr, bitor, BitOrAssign, bitor_assign, union, "Union by R_p, p = 2.");
-operator!(BitAnd, bitand, BitAndAssign, bitand_assign, intersection, "Intersection by R_p, p = 2.");
-operator!(Sub, sub, SubAssign, sub_assign, difference, "Difference by R_p, p = 2.");
-operator!(BitXor, bitxor, BitXorAssign, bitxor_assign, symmetric_difference, "Symmetric difference by R_p, p = 2.");
-
-impl Not for Solid {
-    type Output = Solid;
-
-    /// Everything outside.
-    fn not(self) -> Solid {
-        self.complement()
-    }
-}
-
-impl Not for &Solid {
-    type Output = Solid;
-
-    /// Everything outside.
-    fn not(self) -> Solid {
-        self.complement()
     }
 }

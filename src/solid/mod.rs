@@ -12,6 +12,7 @@ mod length;
 mod mirror;
 mod name;
 mod node;
+mod operators;
 mod paint;
 mod profile;
 mod rotate;

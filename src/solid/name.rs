@@ -10,9 +10,9 @@ impl Solid {
     /// Control characters in the name, line breaks among them, become spaces.
     ///
     /// ```
-    /// use rvachev::Solid;
+    /// use rvachev::{Solid, rad};
     ///
-    /// let socket = Solid::superellipsoid([3.0, 3.0, -2.0], 0.2, 1.0).twist(0.1).named("socket");
+    /// let socket = Solid::superellipsoid([3.0, 3.0, -2.0], 0.2, 1.0).twist(rad(0.1)).named("socket");
     /// let head = Solid::cylinder(5.0, 4.0).named("head") - socket;
     /// let error = head.bounds().unwrap_err().to_string();
     /// assert!(error.starts_with("difference[1] / socket: twist / superellipsoid: semi_axes.z is -2"));

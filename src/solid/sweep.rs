@@ -4,7 +4,7 @@ use std::any::Any;
 use std::f64::consts::TAU;
 
 use super::{Node, Profile, Solid};
-use crate::{Blend, ParamError, Polygon, RFunction};
+use crate::{Angle, Blend, ParamError, Polygon, RFunction};
 use rvachev_field::{HelixWarp, Opening, Revolution, Span, Turn, check};
 
 /// How the edges of an end face are.
@@ -26,7 +26,8 @@ pub enum Caps {
     /// Sharp.
     #[default]
     Flat,
-    /// Bevelled at 45°; the number is the width that is taken off each face, a length.
+    /// Chamfered; the number is the leg, a length: how far from the edge the bevel begins, on the
+    /// end face and on the sides.
     Chamfered(f64),
     /// Rounded; the number is the radius, a length.
     Rounded(f64),
@@ -36,7 +37,7 @@ impl Caps {
     fn check(self, name: &str) -> Result<(), ParamError> {
         match self {
             Caps::Flat => Ok(()),
-            Caps::Chamfered(width) => check::length(&format!("{name} (width)"), width),
+            Caps::Chamfered(leg) => check::length(&format!("{name} (leg)"), leg),
             Caps::Rounded(radius) => check::length(&format!("{name} (radius)"), radius),
         }
     }
@@ -46,9 +47,7 @@ impl Caps {
         match self {
             // The slab first: it says what is wrong with the parameters.
             Caps::Flat => slab.intersection(column, RFunction::Distance),
-            Caps::Chamfered(width) => {
-                slab.intersection_with(column, Blend::Chamfer { width: width * std::f64::consts::SQRT_2 })
-            }
+            Caps::Chamfered(leg) => slab.intersection_with(column, Blend::Chamfer { leg }),
             Caps::Rounded(radius) => slab.intersection_with(column, Blend::Fillet { radius }),
         }
     }
@@ -68,7 +67,7 @@ impl Caps {
 /// | parameter | unit | range |
 /// |---|---|---|
 /// | `height` | length | 10⁻⁹ to 10⁹: from z = −height/2 to height/2 |
-/// | `twist` | radian | −10⁶ to 10⁶: by how much the upper end is turned, from x towards y |
+/// | `twist` | [`Angle`] | ±10⁷ degrees: by how much the upper end is turned, from x towards y |
 /// | `scale` | none | 0.001 to 1000: the upper end's size relative to the lower |
 /// | `caps` | length | how the edges of both end faces are: see [`Caps`] |
 ///
@@ -84,8 +83,8 @@ impl Caps {
 pub struct Extrusion {
     /// Length along z.
     pub height: f64,
-    /// By how much the upper end is turned, in radians.
-    pub twist: f64,
+    /// By how much the upper end is turned.
+    pub twist: Angle,
     /// The size of the upper end relative to the lower.
     pub scale: f64,
     /// How the edges of the end faces are.
@@ -96,12 +95,12 @@ impl Extrusion {
     /// Straight up, the edges sharp.
     #[must_use]
     pub fn new(height: f64) -> Extrusion {
-        Extrusion { height, twist: 0.0, scale: 1.0, caps: Caps::Flat }
+        Extrusion { height, twist: Angle::ZERO, scale: 1.0, caps: Caps::Flat }
     }
 
     fn check(&self) -> Result<(), ParamError> {
         check::length("height", self.height)?;
-        check::within("twist", self.twist, -1e6, 1e6)?;
+        check::angle("twist", self.twist, -1e7, 1e7)?;
         check::within("scale", self.scale, 1e-3, 1e3)?;
         self.caps.check("caps")
     }
@@ -183,10 +182,10 @@ impl Profile {
     /// where sides are upright.
     ///
     /// ```
-    /// use rvachev::{Caps, Extrusion, Profile};
+    /// use rvachev::{Caps, Extrusion, Profile, deg};
     ///
     /// let column = Profile::regular_polygon(6, 3.0).extrude_with(&Extrusion {
-    ///     twist: 1.0,
+    ///     twist: deg(60.0),
     ///     caps: Caps::Rounded(0.3),
     ///     ..Extrusion::new(20.0)
     /// });
@@ -204,9 +203,9 @@ impl Profile {
         if scale != 1.0 {
             // A taper is 1 in the middle; the lower end is to be the profile.
             let (middle, k) = (0.5 * (1.0 + scale), (scale - 1.0) / (scale + 1.0));
-            column = self.scale(middle).0.taper(k, k, half_height);
+            column = self.scale(middle).0.taper(k, k, height);
         }
-        if twist != 0.0 {
+        if twist != Angle::ZERO {
             column = column.rotate_z(0.5 * twist).twist(twist / height);
         }
         caps.cut(&column, &slab)
@@ -255,19 +254,20 @@ impl Profile {
     ///
     /// | parameter | unit | range |
     /// |---|---|---|
-    /// | `angle` | radians | 10⁻⁶ to 2π |
+    /// | `angle` | [`Angle`] | 10⁻⁴ to 360 degrees |
     ///
     /// ```
-    /// use rvachev::Profile;
+    /// use rvachev::{Profile, deg};
     ///
-    /// let quarter = Profile::rectangle([2.0, 2.0]).translate([3.0, 0.0]).revolve_by(std::f64::consts::FRAC_PI_2);
+    /// let quarter = Profile::rectangle([2.0, 2.0]).translate([3.0, 0.0]).revolve_by(deg(90.0));
     /// assert!(quarter.contains([2.0, 2.0, 0.0])?);
     /// assert!(!quarter.contains([-2.0, 2.0, 0.0])?);
     /// # Ok::<(), rvachev::SolidError>(())
     /// ```
     #[must_use]
-    pub fn revolve_by(&self, angle: f64) -> Solid {
-        if angle == TAU {
+    pub fn revolve_by(&self, angle: impl Into<Angle>) -> Solid {
+        let angle = angle.into();
+        if angle == Angle::FULL_TURN {
             return self.revolve();
         }
         Solid::leaf(Opening { angle }).intersection(self.revolve(), RFunction::MIN_MAX)

@@ -1,9 +1,10 @@
-//! Maps: affine ones, taper, twist and bend. (Those by laws are in `deform`, reflections in `mirror`,
-//! repetition, which asks for boxes, in `eval`.)
+//! Maps: affine ones, taper, twist and bend. (Rotations are in `rotate`, maps by laws in `deform`,
+//! reflections in `mirror`, repetition, which asks for boxes, in `eval`.)
 
-use glam::{DAffine3, DQuat, DVec3};
+use glam::{DAffine3, DVec3};
 
 use super::{Node, Solid};
+use crate::Angle;
 use rvachev_field::{AnyWarp, Bend, Erase, Taper, Twist};
 
 impl Solid {
@@ -24,38 +25,6 @@ impl Solid {
     #[must_use]
     pub fn translate(&self, offset: impl Into<DVec3>) -> Solid {
         self.affine_as("translate", DAffine3::from_translation(offset.into()))
-    }
-
-    /// Turned about the origin.
-    #[must_use]
-    pub fn rotate(&self, rotation: DQuat) -> Solid {
-        self.affine_as("rotate", DAffine3::from_quat(rotation))
-    }
-
-    /// Turned about the x axis by `angle` radians, from y towards z.
-    ///
-    /// ```
-    /// use rvachev::Solid;
-    ///
-    /// let rod = Solid::cylinder(1.0, 10.0).rotate_x(std::f64::consts::FRAC_PI_2);
-    /// assert!(rod.contains([0.0, 4.9, 0.0])?);
-    /// # Ok::<(), rvachev::SolidError>(())
-    /// ```
-    #[must_use]
-    pub fn rotate_x(&self, angle: f64) -> Solid {
-        self.affine_as("rotate_x", DAffine3::from_rotation_x(angle))
-    }
-
-    /// Turned about the y axis by `angle` radians, from z towards x.
-    #[must_use]
-    pub fn rotate_y(&self, angle: f64) -> Solid {
-        self.affine_as("rotate_y", DAffine3::from_rotation_y(angle))
-    }
-
-    /// Turned about the z axis by `angle` radians, from x towards y.
-    #[must_use]
-    pub fn rotate_z(&self, angle: f64) -> Solid {
-        self.affine_as("rotate_z", DAffine3::from_rotation_z(angle))
     }
 
     /// Scaled about the origin by the same `factor` along all axes (not 0; a negative one
@@ -104,14 +73,14 @@ impl Solid {
     }
 
     /// Tapered along z: sections are scaled by `1 + kx·t` along x and `1 + ky·t` along y,
-    /// `t = z/half_height` held to [−1, 1]. By any other law of z: [`taper_by`](Solid::taper_by).
+    /// `t = 2z/height` held to [−1, 1]: from z = −height/2 to height/2. By any other law of z: [`taper_by`](Solid::taper_by).
     ///
     #[doc = picture!("taper" = "docs/gallery/taper.png")]
     ///
     /// | parameter | unit | range |
     /// |---|---|---|
     /// | `kx`, `ky` | none | −0.999 to 0.999 |
-    /// | `half_height` | length | 10⁻⁹ to 10⁹ |
+    /// | `height` | length | 10⁻⁹ to 10⁹ |
     ///
     /// The field is the operand's at the pre-image, not rescaled: not Lipschitz in general.
     ///
@@ -121,14 +90,14 @@ impl Solid {
     /// use rvachev::Solid;
     ///
     /// // 3 wide at the bottom, 1 at the top.
-    /// let post = Solid::cuboid([2.0, 2.0, 4.0]).taper(-0.5, -0.5, 2.0);
+    /// let post = Solid::cuboid([2.0, 2.0, 4.0]).taper(-0.5, -0.5, 4.0);
     /// assert!(post.contains([1.4, 0.0, -1.9])?);
     /// assert!(!post.contains([0.6, 0.0, 1.9])?);
     /// # Ok::<(), rvachev::SolidError>(())
     /// ```
     #[must_use]
-    pub fn taper(&self, kx: f64, ky: f64, half_height: f64) -> Solid {
-        self.warp(Taper { kx, ky, half_height })
+    pub fn taper(&self, kx: f64, ky: f64, height: f64) -> Solid {
+        self.warp(Taper { kx, ky, height })
     }
 
     /// Twisted about the z axis: the section at z is turned by `rate·z`, from x towards y. By any
@@ -138,7 +107,7 @@ impl Solid {
     ///
     /// | parameter | unit | range |
     /// |---|---|---|
-    /// | `rate` | radians per length | ±10⁹ |
+    /// | `rate` | [`Angle`] per unit of length | ±10⁹ degrees |
     ///
     /// The field is the operand's at the pre-image, not rescaled: its slope grows with
     /// `rate` times the distance from the axis.
@@ -146,21 +115,21 @@ impl Solid {
     /// Source: A. H. Barr, *Global and local deformations of solid primitives* (1984).
     ///
     /// ```
-    /// use rvachev::Solid;
+    /// use rvachev::{Solid, deg};
     ///
     /// // A quarter turn between the middle and the top.
-    /// let bar = Solid::cuboid([2.0, 0.5, 8.0]).twist(std::f64::consts::PI / 8.0);
+    /// let bar = Solid::cuboid([2.0, 0.5, 8.0]).twist(deg(90.0) / 4.0);
     /// assert!(bar.contains([0.9, 0.0, 0.0])? && !bar.contains([0.9, 0.0, 3.9])?);
     /// assert!(bar.contains([0.0, 0.9, 3.9])?);
     /// # Ok::<(), rvachev::SolidError>(())
     /// ```
     #[must_use]
-    pub fn twist(&self, rate: f64) -> Solid {
-        self.warp(Twist { rate })
+    pub fn twist(&self, rate: impl Into<Angle>) -> Solid {
+        self.warp(Twist { rate: rate.into() })
     }
 
     /// Bent so that the z axis becomes a circle of radius `1/curvature` through the origin,
-    /// with its centre in the direction `angle` (radians from the x axis, in the xy plane).
+    /// with its centre in the direction `angle`, counted from the x axis towards y.
     ///
     #[doc = picture!("bend" = "docs/gallery/bend.png")]
     ///
@@ -173,7 +142,7 @@ impl Solid {
     /// | parameter | unit | range |
     /// |---|---|---|
     /// | `curvature` | 1 / length | within ±π/h and ±1/r for a solid that reaches h from the plane z = 0 and r towards the centre |
-    /// | `angle` | radians | ±10⁹ |
+    /// | `angle` | [`Angle`] | ±10⁹ degrees |
     ///
     /// The solid must stay on this side of the centre of curvature and within half a turn to
     /// each side; both are checked on the operand's box, which is conservative.
@@ -186,18 +155,18 @@ impl Solid {
     /// right for negative, strong and vanishing curvatures.
     ///
     /// ```
-    /// use rvachev::Solid;
+    /// use rvachev::{Solid, deg};
     ///
     /// // A rod 10 long becomes two radians of a circle of radius 5.
-    /// let hook = Solid::cylinder(0.5, 10.0).bend(0.2, 0.0);
+    /// let hook = Solid::cylinder(0.5, 10.0).bend(0.2, deg(0.0));
     /// let (sin, cos) = 0.98f64.sin_cos();
     /// assert!(hook.contains([5.0 - 5.0 * cos, 0.0, 5.0 * sin])?);
     /// assert!(!hook.contains([0.0, 0.0, 4.9])?);
     /// # Ok::<(), rvachev::SolidError>(())
     /// ```
     #[must_use]
-    pub fn bend(&self, curvature: f64, angle: f64) -> Solid {
-        self.warp(Bend { curvature, angle })
+    pub fn bend(&self, curvature: f64, angle: impl Into<Angle>) -> Solid {
+        self.warp(Bend { curvature, angle: angle.into() })
     }
 
     pub(crate) fn warp(&self, warp: impl Erase<dyn AnyWarp>) -> Solid {

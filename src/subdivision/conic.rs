@@ -15,7 +15,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use glam::DVec2;
 
 use super::{ControlPolygon, SubdivisionError, Tension, check_coordinates};
-use rvachev_field::angle::sin_cos;
+use crate::{Angle, rad, turns};
 
 pub(super) fn length(parameter: &'static str, value: f64) -> Result<(), SubdivisionError> {
     if (1e-9..=1e9).contains(&value) {
@@ -51,11 +51,11 @@ impl ControlPolygon<DVec2> {
             });
         }
         let step = TAU / f64::from(sides);
-        let tension = Tension::trigonometric(step)?;
+        let tension = Tension::trigonometric(rad(step))?;
         let grown = step / step.sin();
         let points: Vec<DVec2> = (0..sides)
             .map(|k| {
-                let (sin, cos) = sin_cos(TAU * f64::from(k) / f64::from(sides));
+                let (sin, cos) = turns(f64::from(k) / f64::from(sides)).sin_cos();
                 semi_axes * DVec2::new(cos, sin) * grown
             })
             .collect();
@@ -144,10 +144,10 @@ fn graph(quarters: u32, phase: f64) -> Result<ControlPolygon<DVec2>, Subdivision
     let points: Vec<DVec2> = (-1..=quarters as i32 + 1)
         .map(|k| {
             let x = FRAC_PI_2 * f64::from(k);
-            DVec2::new(x, FRAC_PI_2 * sin_cos(x + phase).1)
+            DVec2::new(x, FRAC_PI_2 * rad(x + phase).sin_cos().1)
         })
         .collect();
-    ControlPolygon::open(&points, Tension::trigonometric(FRAC_PI_2)?)
+    ControlPolygon::open(&points, Tension::trigonometric(Angle::QUARTER_TURN)?)
 }
 
 /// The points of an ellipse `(a cos θ, b sin θ)` with |θ| < π/2 moved to the hyperbola

@@ -13,13 +13,13 @@
 //! Source: G. Wei, J. Feng, F. Chen; their final equation of the one-sheet hyperboloid has a
 //! factor of π/2 too much, and the ring of a torus takes the factor π/2 once only.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::FRAC_PI_2;
 
 use glam::{DVec2, DVec3};
 
 use super::conic::length;
 use super::{ControlPolygon, ProfileEnd, SubdivisionError, SubdivisionRevolution, Tension};
-use rvachev_field::angle::sin_cos;
+use crate::{Angle, rad};
 
 /// What a profile's points are moved by.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,10 +58,10 @@ impl ProfileMap {
 fn arc(a: f64, c: f64, step: f64, first: i32, last: i32) -> Result<ControlPolygon<DVec2>, SubdivisionError> {
     let grown = step / step.sin();
     let at = |k: i32| {
-        let (sin, cos) = sin_cos(step * f64::from(k));
+        let (sin, cos) = rad(step * f64::from(k)).sin_cos();
         DVec2::new(a * cos, c * sin) * grown
     };
-    ControlPolygon::open(&(first - 1..=last + 1).map(at).collect::<Vec<_>>(), Tension::trigonometric(step)?)
+    ControlPolygon::open(&(first - 1..=last + 1).map(at).collect::<Vec<_>>(), Tension::trigonometric(rad(step))?)
 }
 
 fn lengths(semi_axes: DVec3) -> Result<(), SubdivisionError> {
@@ -70,17 +70,17 @@ fn lengths(semi_axes: DVec3) -> Result<(), SubdivisionError> {
     length("semi_axes.z", semi_axes.z)
 }
 
-/// Half the length of a hyperboloid, at least and at most so many times its semi-axis.
+/// The length of a hyperboloid, at least and at most so many times its semi-axis.
 const SHORTEST: f64 = 1e-6;
-const LONGEST: f64 = 1000.0;
+const LONGEST: f64 = 2000.0;
 
-fn half_length(value: f64, above: f64, semi_axis: f64) -> Result<(), SubdivisionError> {
+fn check_length(value: f64, above: f64, semi_axis: f64) -> Result<(), SubdivisionError> {
     if value > above * semi_axis && value >= SHORTEST * semi_axis && value <= LONGEST * semi_axis {
         return Ok(());
     }
     let allowed =
-        if above > 0.0 { "above semi_axes.z, up to 1000 times it" } else { "0.000001 to 1000 times semi_axes.z" };
-    Err(SubdivisionError::Parameter { parameter: "half_length", value, allowed })
+        if above > 0.0 { "above twice semi_axes.z, up to 2000 times it" } else { "0.000001 to 2000 times semi_axes.z" };
+    Err(SubdivisionError::Parameter { parameter: "length", value, allowed })
 }
 
 impl SubdivisionRevolution {
@@ -97,35 +97,32 @@ impl SubdivisionRevolution {
         Ok(SubdivisionRevolution::new(profile, path)?.with_ends(ProfileEnd::Pole, ProfileEnd::Pole))
     }
 
-    /// The hyperboloid of one sheet `x²/a₁² + y²/a₂² − z²/a₃² = 1` for |z| up to `half_length`, by
+    /// The hyperboloid of one sheet `x²/a₁² + y²/a₂² − z²/a₃² = 1` for |z| up to `length/2`, by
     /// the secant and tangent of an ellipsoid's meridian; flat at its ends.
     ///
     /// # Errors
-    /// A semi-axis out of its range, a length below 10⁻⁶ or above 1000 semi-axes.
-    pub fn one_sheet(semi_axes: impl Into<DVec3>, half_length: f64) -> Result<SubdivisionRevolution, SubdivisionError> {
+    /// A semi-axis out of its range, a length below 10⁻⁶ or above 2000 semi-axes.
+    pub fn one_sheet(semi_axes: impl Into<DVec3>, length: f64) -> Result<SubdivisionRevolution, SubdivisionError> {
         let a = semi_axes.into();
         lengths(a)?;
-        self::half_length(half_length, 0.0, a.z)?;
-        let profile = arc(a.x, a.z, (half_length / a.z).atan(), -1, 1)?;
+        check_length(length, 0.0, a.z)?;
+        let profile = arc(a.x, a.z, (0.5 * length / a.z).atan(), -1, 1)?;
         let path = ControlPolygon::ellipse(DVec2::new(1.0, a.y / a.x))?;
         let revolution = SubdivisionRevolution::new(profile, path)?.with_ends(ProfileEnd::Flat, ProfileEnd::Flat);
         Ok(revolution.mapped(ProfileMap::Secant(a.x), false))
     }
 
-    /// The hyperboloid of two sheets `z²/a₃² − x²/a₁² − y²/a₂² = 1` for |z| up to `half_length`,
+    /// The hyperboloid of two sheets `z²/a₃² − x²/a₁² − y²/a₂² = 1` for |z| up to `length/2`,
     /// both bowls, flat at their ends.
     ///
     /// # Errors
-    /// A semi-axis out of its range, a length of a semi-axis or less or of more than 1000.
-    pub fn two_sheets(
-        semi_axes: impl Into<DVec3>,
-        half_length: f64,
-    ) -> Result<SubdivisionRevolution, SubdivisionError> {
+    /// A semi-axis out of its range, a length of two semi-axes or less or of more than 2000.
+    pub fn two_sheets(semi_axes: impl Into<DVec3>, length: f64) -> Result<SubdivisionRevolution, SubdivisionError> {
         let a = semi_axes.into();
         lengths(a)?;
-        self::half_length(half_length, 1.0, a.z)?;
+        check_length(length, 2.0, a.z)?;
         // From the apex at θ = 0 of (a₁ sin θ, a₃ cos θ).
-        let turned = arc(a.z, a.x, 0.5 * (a.z / half_length).acos(), 0, 2)?;
+        let turned = arc(a.z, a.x, 0.5 * (2.0 * a.z / length).acos(), 0, 2)?;
         let points: Vec<DVec2> = turned.points().iter().map(|p| DVec2::new(p.y, p.x)).collect();
         let profile = ControlPolygon::open(&points, turned.tension())?;
         let path = ControlPolygon::ellipse(DVec2::new(1.0, a.y / a.x))?;
@@ -160,19 +157,19 @@ impl SubdivisionRevolution {
         SubdivisionRevolution::new(profile, ControlPolygon::ellipse(DVec2::new(1.0, ratio))?)
     }
 
-    /// The cylinder on the ellipse with these semi-axes, from −`half_height` to `half_height`, flat
-    /// at its ends. Straight lines need no levels: 0 along the profile will do.
+    /// The cylinder on the ellipse with these semi-axes, `height` along z, flat at its ends. Straight lines need no levels: 0 along the profile will do.
     ///
     /// # Errors
     /// A length out of its range.
     pub fn elliptic_cylinder(
         semi_axes: impl Into<DVec2>,
-        half_height: f64,
+        height: f64,
     ) -> Result<SubdivisionRevolution, SubdivisionError> {
-        length("half_height", half_height)?;
+        length("height", height)?;
+        let half_height = 0.5 * height;
         let path = ControlPolygon::ellipse(semi_axes)?;
         let ends = [DVec2::new(1.0, -half_height), DVec2::new(1.0, half_height)];
-        let profile = ControlPolygon::clamped(&ends, Tension::trigonometric(PI / 2.0)?)?;
+        let profile = ControlPolygon::clamped(&ends, Tension::trigonometric(Angle::QUARTER_TURN)?)?;
         Ok(SubdivisionRevolution::new(profile, path)?.with_ends(ProfileEnd::Flat, ProfileEnd::Flat))
     }
 }

@@ -19,6 +19,7 @@
 //! (2001); the limit stencil is derived here.
 
 use super::SubdivisionError;
+use crate::{Angle, deg, rad};
 
 /// The tension of a control polygon: which functions its limit curve reproduces besides lines.
 ///
@@ -29,11 +30,11 @@ use super::SubdivisionError;
 /// | hyperbolic, step β | cosh β > 1 | cosh and sinh: hyperbolas |
 ///
 /// ```
-/// use std::f64::consts::{FRAC_PI_2, PI};
-/// use rvachev::Tension;
+/// use std::f64::consts::PI;
+/// use rvachev::{Tension, deg};
 ///
 /// // A square stands for steps of a right angle.
-/// let square = Tension::trigonometric(FRAC_PI_2)?;
+/// let square = Tension::trigonometric(deg(90.0))?;
 /// assert!(square.alpha(0).abs() < 1e-15);
 /// let [neighbour, own] = square.limit_weights(0);
 /// assert!((neighbour - (0.5 - 1.0 / PI)).abs() < 1e-15 && (own - 2.0 / PI).abs() < 1e-15);
@@ -57,7 +58,7 @@ enum Kind {
 /// The largest hyperbolic step: cosh 30 is 5·10¹².
 const LARGEST_STEP: f64 = 30.0;
 
-/// The smallest step: its cosine has long been 1 in double precision.
+/// The smallest hyperbolic step: its cosh has long been 1 in double precision.
 const SMALLEST_STEP: f64 = 1e-10;
 
 /// The level whose step is that of all above it.
@@ -67,17 +68,18 @@ impl Tension {
     /// The cubic B-spline.
     pub const CUBIC: Tension = Tension { kind: Kind::Cubic, step: 0.0 };
 
-    /// The tension for points at steps of `step` radians about a centre, 10⁻¹⁰ to π: 2π/m for a
-    /// polygon of m sides.
+    /// The tension for points at steps of `step` about a centre, 10⁻⁸ to 180 degrees: a whole
+    /// turn over m for a polygon of m sides.
     ///
     /// # Errors
     /// [`SubdivisionError::Tension`] for another step.
-    pub fn trigonometric(step: f64) -> Result<Tension, SubdivisionError> {
-        let allowed = "10⁻¹⁰ to π";
-        if (SMALLEST_STEP..=std::f64::consts::PI).contains(&step) {
-            Ok(Tension { kind: Kind::Trigonometric, step })
+    pub fn trigonometric(step: impl Into<Angle>) -> Result<Tension, SubdivisionError> {
+        let step = step.into();
+        let allowed = "10⁻⁸ to 180 degrees";
+        if (deg(1e-8)..=Angle::HALF_TURN).contains(&step) {
+            Ok(Tension { kind: Kind::Trigonometric, step: step.radians() })
         } else {
-            Err(SubdivisionError::Tension { parameter: "step", value: step, allowed })
+            Err(SubdivisionError::Tension { parameter: "step", value: step.degrees(), allowed })
         }
     }
 
@@ -102,7 +104,7 @@ impl Tension {
         if alpha == 1.0 {
             Ok(Tension::CUBIC)
         } else if (-1.0..1.0).contains(&alpha) {
-            Tension::trigonometric(alpha.acos())
+            Tension::trigonometric(rad(alpha.acos()))
         } else if alpha > 1.0 && alpha <= LARGEST_STEP.cosh() {
             Tension::hyperbolic(alpha.acosh())
         } else {
@@ -110,8 +112,8 @@ impl Tension {
         }
     }
 
-    /// The step at a level; 0 for the cubic one. Levels above 900 count as 900 here and below:
-    /// steps are still above 0 there.
+    /// The step at a level, in radians or as a hyperbolic angle; 0 for the cubic one. Levels above
+    /// 900 count as 900 here and below: steps are still above 0 there.
     #[must_use]
     pub fn step(&self, level: u32) -> f64 {
         self.step * 0.5f64.powi(level.min(DEEPEST) as i32)

@@ -19,8 +19,8 @@ use std::f64::consts::PI;
 
 use glam::DVec2;
 
-use crate::{Dual, Gielis, Norm, Radius, Real, Turns};
-use rvachev_field::angle::{sign, signed_power, sin_cos};
+use crate::{Dual, Gielis, Norm, Radius, Real, Turns, rad};
+use rvachev_field::power::{sign, signed_power};
 
 /// A curve of unit size.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,7 +82,7 @@ impl Curve {
     pub(super) fn at(&self, t: f64, by: By) -> Local {
         match *self {
             Curve::Superellipse { e, ring } => {
-                let (sin, cos) = sin_cos(t);
+                let (sin, cos) = rad(t).sin_cos();
                 let local = if by == By::Even && e < 1.0 { radial(e, sin, cos) } else { raw(e, sin, cos) };
                 Local { point: local.point + DVec2::new(ring, 0.0), ..local }
             }
@@ -199,7 +199,7 @@ fn gielis(curve: &Gielis, radius: Radius, turns: u32, theta: f64) -> Local {
     // What is so large has no digits left for the angle, and its multiples may overflow.
     let theta = if theta.abs() > 1e15 { theta % (2.0 * PI) } else { theta };
     let of_turn = |turn: u32| {
-        let (sin, cos) = sin_cos(quarter * (theta + f64::from(turn) * 2.0 * PI));
+        let (sin, cos) = rad(quarter * (theta + f64::from(turn) * 2.0 * PI)).sin_cos();
         let sin = Dual::new(sin, [quarter * cos, 0.0, 0.0]);
         let cos = Dual::new(cos, [-quarter * sin.value(), 0.0, 0.0]);
         let r = curve.radius_of_phase(sin, cos, radius);
@@ -213,7 +213,7 @@ fn gielis(curve: &Gielis, radius: Radius, turns: u32, theta: f64) -> Local {
         }
     }
     let (r, slope) = best;
-    let (sin, cos) = sin_cos(theta);
+    let (sin, cos) = rad(theta).sin_cos();
     let radial = DVec2::new(cos, sin);
     let bent = slope / r;
     let normal = (radial - bent * radial.perp()) / (1.0 + bent.abs());

@@ -18,7 +18,7 @@ use std::f64::consts::FRAC_PI_2;
 use glam::{DVec2, DVec3};
 
 use super::curve::{By, Curve, Local, height_of};
-use crate::{Field, ParamError, Superellipsoid, Superhyperboloid, Supershape, Supertoroid};
+use crate::{Angle, Field, ParamError, Superellipsoid, Superhyperboloid, Supershape, Supertoroid, rad};
 
 /// A surface by two parameters: η along its meridians, ω about its axis.
 ///
@@ -30,20 +30,18 @@ use crate::{Field, ParamError, Superellipsoid, Superhyperboloid, Supershape, Sup
 /// | of two sheets, z | 0 (apex) to the clipped end | −π to π | the same, one sheet at a time |
 /// | of two sheets, x | `x = ±a₁·sec^e₁ η·sec^e₂ ω`, within the clipped end | | the same |
 ///
-/// Angles are in radians. Those within some units in the last place of a quarter turn count as that
-/// quarter turn: poles and seams are exact, whatever the exponents. Any finite angles give a
+/// Angles within some units in the last place of a quarter turn count as that quarter turn: poles and seams are exact, whatever the exponents. Any finite angles give a
 /// finite frame; beyond the ranges they go on around the surface, or stay at a clipped end. Of
 /// angles that are not finite the coordinates are NaN.
 ///
 /// ```
-/// use std::f64::consts::{FRAC_PI_2, PI};
 /// use glam::DVec3;
-/// use rvachev::{ParametricSurface, Superellipsoid};
+/// use rvachev::{Superellipsoid, deg, rad};
 ///
-/// let surface = ParametricSurface::of(&Superellipsoid::new([3.0, 2.0, 1.0], 0.1, 0.1))?;
-/// assert_eq!(surface.point(FRAC_PI_2, 0.3), DVec3::Z);
-/// assert_eq!(surface.point(0.0, PI), DVec3::new(-3.0, 0.0, 0.0));
-/// let frame = surface.frame(0.7, 0.2);
+/// let surface = Superellipsoid::new([3.0, 2.0, 1.0], 0.1, 0.1).surface()?;
+/// assert_eq!(surface.point(deg(90.0), rad(0.3)), DVec3::Z);
+/// assert_eq!(surface.point(deg(0.0), deg(180.0)), DVec3::new(-3.0, 0.0, 0.0));
+/// let frame = surface.frame(rad(0.7), rad(0.2));
 /// assert!(frame.normal.dot(frame.along_eta).abs() < 1e-15);
 /// # Ok::<(), rvachev::ParamError>(())
 /// ```
@@ -121,21 +119,21 @@ impl ParametricSurface {
 
     /// The point at (η, ω), in length units.
     #[must_use]
-    pub fn point(&self, eta: f64, omega: f64) -> DVec3 {
+    pub fn point(&self, eta: impl Into<Angle>, omega: impl Into<Angle>) -> DVec3 {
         let (m, e) = self.curves_at(eta, omega);
         self.point_of(m.point, e.point)
     }
 
     /// The exact outward unit normal at (η, ω).
     #[must_use]
-    pub fn normal(&self, eta: f64, omega: f64) -> DVec3 {
+    pub fn normal(&self, eta: impl Into<Angle>, omega: impl Into<Angle>) -> DVec3 {
         let (m, e) = self.curves_at(eta, omega);
         self.normal_of(m.normal, e.normal, e.point)
     }
 
     /// Point, tangents and normal at (η, ω).
     #[must_use]
-    pub fn frame(&self, eta: f64, omega: f64) -> Frame {
+    pub fn frame(&self, eta: impl Into<Angle>, omega: impl Into<Angle>) -> Frame {
         let (m, e) = self.curves_at(eta, omega);
         let scale = self.scale;
         // With the outward normal to the right, a curve runs towards rising parameters.
@@ -153,14 +151,14 @@ impl ParametricSurface {
 
     /// First and last η.
     #[must_use]
-    pub fn eta_range(&self) -> [f64; 2] {
-        self.meridian_range(By::Angle)
+    pub fn eta_range(&self) -> [Angle; 2] {
+        self.meridian_range(By::Angle).map(rad)
     }
 
     /// First and last ω; the ends meet where the surface closes about its axis.
     #[must_use]
-    pub fn omega_range(&self) -> [f64; 2] {
-        self.equator.range(By::Angle)
+    pub fn omega_range(&self) -> [Angle; 2] {
+        self.equator.range(By::Angle).map(rad)
     }
 
     /// The range of the meridian in a parameter.
@@ -180,7 +178,8 @@ impl ParametricSurface {
         two.then_some(ParametricSurface { lower: !self.lower, ..*self })
     }
 
-    fn curves_at(&self, eta: f64, omega: f64) -> (Local, Local) {
+    fn curves_at(&self, eta: impl Into<Angle>, omega: impl Into<Angle>) -> (Local, Local) {
+        let (eta, omega) = (eta.into().radians(), omega.into().radians());
         (self.meridian.at(eta, By::Angle), self.equator.at(omega, By::Angle))
     }
 
@@ -236,7 +235,7 @@ impl ParametricSurface {
         let mut most = 0.0f64;
         for i in 0..=64 {
             for j in 0..=64 {
-                most = most.max(self.point(share([m0, m1], i), share([e0, e1], j)).abs().max_element());
+                most = most.max(self.point(rad(share([m0, m1], i)), rad(share([e0, e1], j))).abs().max_element());
             }
         }
         most
@@ -291,7 +290,7 @@ impl Parametric for Superhyperboloid {
         let [e1, e2] = self.exponents();
         let a = self.semi_axes();
         let (two, along_x) = (self.has_two_sheets(), self.is_along_x());
-        let end = self.half_length() / if along_x { a.x } else { a.z };
+        let end = 0.5 * self.length() / if along_x { a.x } else { a.z };
         if two && along_x {
             let [meridian, equator] = [e1, e2].map(|e| Curve::Hyperbola { e, end: height_of(end, e) });
             return Ok(ParametricSurface::new(meridian, equator, Shape::BarrBowl { end, e1, e2 }, a));

@@ -16,7 +16,8 @@ use rvachev_field::check;
 /// | [`hyperbola`](ParametricCurve::hyperbola) | `(a·sec t, b·tan t)` | between its ends |
 /// | [`parabola`](ParametricCurve::parabola) | `(2f·t, f·t²)` | between its ends |
 ///
-/// Quarter turns are exact, whatever the exponents.
+/// The parameter is a plain number, as a parabola's is no angle; where t is an angle it is in
+/// radians. Quarter turns are exact, whatever the exponents.
 ///
 /// ```
 /// use std::f64::consts::FRAC_PI_2;

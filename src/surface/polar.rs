@@ -19,7 +19,7 @@ use super::parametric::ParametricSurface;
 use super::patch::PatchError;
 use super::spacing::{Chain, equal_steps};
 use super::stitch::Knot;
-use rvachev_field::angle::sin_cos;
+use crate::rad;
 
 /// How the logarithm of ξ is divided between the two secants, η's first: the logarithms of their
 /// shares, and the sides of the axes that the column is on.
@@ -34,7 +34,7 @@ pub(super) struct Column {
 impl Column {
     /// By the angle, anticlockwise about the apex seen from outside.
     fn at_angle(around: f64) -> Column {
-        let (sin, cos) = sin_cos((2.0 * around - 1.0) * PI);
+        let (sin, cos) = rad((2.0 * around - 1.0) * PI).sin_cos();
         Column { shares: [sin, cos].map(|c| 2.0 * c.abs().ln()), sides: [sin, cos], texture: around }
     }
 

@@ -6,7 +6,7 @@
 use glam::DVec3;
 use rvachev::{
     Bounds, Cuboid, Cylinder, Evaluator, GeneralisedSuperquadric, Gielis, Solid, Sphere, Superellipsoid,
-    Superhyperboloid, Supershape, Supertoroid, Tape, Turns,
+    Superhyperboloid, Supershape, Supertoroid, Tape, Turns, rad,
 };
 
 use crate::support::{Random, rounded};
@@ -127,9 +127,9 @@ fn superquadric(random: &mut Random, kind: usize) -> (Solid, DVec3) {
     let longer = random.log_range(1.01, 5.0);
     let solid: Solid = match kind {
         0 => Supertoroid::new(axes, random.log_range(1.0, 10.0), e1, e2).into(),
-        1 => Superhyperboloid::one_sheet(axes, e1, e2, axes.z * random.log_range(0.1, 5.0)).into(),
-        2 => Superhyperboloid::two_sheets(axes, e1, e2, axes.z * longer).into(),
-        3 => Superhyperboloid::two_sheets_x(axes, e1, e2, axes.x * longer).into(),
+        1 => Superhyperboloid::one_sheet(axes, e1, e2, 2.0 * axes.z * random.log_range(0.1, 5.0)).into(),
+        2 => Superhyperboloid::two_sheets(axes, e1, e2, 2.0 * axes.z * longer).into(),
+        3 => Superhyperboloid::two_sheets_x(axes, e1, e2, 2.0 * axes.x * longer).into(),
         _ => {
             let n = [0; 3].map(|_| {
                 if random.chance(0.2) { random.pick(&[0.5, 1.0, 2.0, 60.0]) } else { random.log_range(0.5, 60.0) }
@@ -247,7 +247,7 @@ fn a_small_solid_far_away_is_as_accurate_as_at_the_origin() {
             Superellipsoid::new(SIZE * random.vector(0.3, 1.0), random.range(0.05, 2.5), random.range(0.05, 2.5));
         let turned = Solid::from(leaf).rotate(random.rotation());
         // A part of several leaves and maps, so that maps are chained.
-        let part = (turned - Solid::cylinder(0.2 * SIZE, 4.0 * SIZE).rotate_x(0.7)).scale(0.5).rotate_z(1.0);
+        let part = (turned - Solid::cylinder(0.2 * SIZE, 4.0 * SIZE).rotate_x(rad(0.7))).scale(0.5).rotate_z(rad(1.0));
         let far = 1e3 * random.direction();
         for (solid, at, worst) in [(part.clone(), DVec3::ZERO, &mut here), (part.translate(far), far, &mut there)] {
             let region = Bounds::from_center(at, DVec3::splat(2.0 * SIZE));
@@ -264,7 +264,7 @@ fn a_small_solid_far_away_is_as_accurate_as_at_the_origin() {
 #[test]
 fn lanes_of_f64_are_as_accurate_far_away() {
     let mut random = Random::new(18);
-    let part = (Solid::superellipsoid(DVec3::splat(1e-3), 0.3, 0.7) - Solid::sphere(8e-4)).rotate_x(0.4);
+    let part = (Solid::superellipsoid(DVec3::splat(1e-3), 0.3, 0.7) - Solid::sphere(8e-4)).rotate_x(rad(0.4));
     let far = 1e3 * random.direction();
     let program = part.translate(far).field_program().unwrap();
     let tape = Tape::new(&program, &Bounds::from_center(far, DVec3::splat(2e-3)));

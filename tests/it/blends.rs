@@ -2,8 +2,8 @@
 
 use glam::{DVec2, DVec3};
 use rvachev::{
-    Blend, Bounds, CellSize, Features, Helix, Lattice, MeshSettings, Profile, Program, RFunction, Region, SmoothStep,
-    Solid, SolidError,
+    Blend, Bounds, Caps, CellSize, Extrusion, Features, Helix, Lattice, MeshSettings, Profile, Program, RFunction,
+    Region, SmoothStep, Solid, SolidError, deg, rad,
 };
 
 use crate::support::{Random, lanes32, lanes64, near, off_surface};
@@ -53,7 +53,7 @@ fn displacement_and_ricci_agree_with_the_reference() -> Result<(), SolidError> {
     let difference = (1.2f64.powi(4) + 0.9f64.powi(-4)).powf(0.25);
     near(1.0 - one.difference_with(&two, ricci).value(p)? / 2.0, difference, 1e-12);
     // Blends of blends are gauges; boxes are not.
-    let three = Solid::superellipsoid(DVec3::ONE, 0.5, 0.5).twist(0.3);
+    let three = Solid::superellipsoid(DVec3::ONE, 0.5, 0.5).twist(rad(0.3));
     assert!(one.union_with(&two, ricci).union_with(&three, ricci).contains(p)?);
     let error = one.union_with(Solid::cuboid(DVec3::ONE), ricci).value(p);
     let Err(SolidError::NoGauge { path, operand: 1 }) = error else { panic!("{error:?}") };
@@ -121,8 +121,8 @@ fn fillets_between_curved_operands_have_their_radius() -> Result<(), SolidError>
     // Two pipes that cross: the largest empty ball that touches both, anywhere along the
     // edge, has the radius.
     let pipe = Solid::cylinder(1.0, 20.0);
-    let cross = pipe.union_with(pipe.rotate_x(std::f64::consts::FRAC_PI_2), Blend::Fillet { radius });
-    let plain = pipe.union(pipe.rotate_x(std::f64::consts::FRAC_PI_2), RFunction::MIN_MAX);
+    let cross = pipe.union_with(pipe.rotate_x(deg(90.0)), Blend::Fillet { radius });
+    let plain = pipe.union(pipe.rotate_x(deg(90.0)), RFunction::MIN_MAX);
     let mut random = Random::new(72);
     let mut added = 0;
     for _ in 0..20_000 {
@@ -147,17 +147,16 @@ fn fillets_between_curved_operands_have_their_radius() -> Result<(), SolidError>
 }
 
 #[test]
-fn chamfers_have_their_width_at_any_angle() -> Result<(), SolidError> {
-    let width = 0.4;
+fn chamfers_have_their_leg_at_any_angle() -> Result<(), SolidError> {
+    let leg = 0.4;
     for degrees in [60.0, 90.0, 120.0, 150.0] {
         let angle = f64::to_radians(degrees);
         let floor = Solid::half_space(DVec3::Z, 0.0);
         let wall = Solid::half_space(DVec3::new(angle.sin(), 0.0, -angle.cos()), 0.0);
-        let part = floor.union_with(&wall, Blend::Chamfer { width });
-        // The face meets both planes at the same distance from the edge.
-        let leg = 0.5 * width / (0.5 * angle).sin();
+        let part = floor.union_with(&wall, Blend::Chamfer { leg });
+        // The face meets both planes at the leg from the edge.
         let (on_floor, on_wall) = (DVec3::X * leg, DVec3::new(angle.cos(), 0.0, angle.sin()) * leg);
-        near(on_floor.distance(on_wall), width, 1e-12);
+        near(on_floor.distance(on_wall), 2.0 * leg * (0.5 * angle).sin(), 1e-12);
         for i in 0..=10 {
             let on = on_floor.lerp(on_wall, f64::from(i) / 10.0);
             near(part.value(on)?, 0.0, 1e-9);
@@ -165,15 +164,44 @@ fn chamfers_have_their_width_at_any_angle() -> Result<(), SolidError> {
     }
     // An inner edge: a box less a slot, its rim broken.
     let block = Solid::cuboid(DVec3::new(4.0, 4.0, 2.0));
-    let part = block.difference_with(Solid::cylinder(1.0, 3.0), Blend::Chamfer { width: 0.2 });
-    let leg = 0.2 / 2f64.sqrt();
-    let face = DVec3::new(1.0 + 0.5 * leg, 0.0, 1.0 - 0.5 * leg);
-    assert!(part.value(face)?.abs() < 1e-3, "{}", part.value(face)?);
+    let part = block.difference_with(Solid::cylinder(1.0, 3.0), Blend::Chamfer { leg: 0.2 });
+    for share in [0.0, 0.25, 0.5, 1.0] {
+        let face = DVec3::new(1.0 + 0.2 * share, 0.0, 0.8 + 0.2 * share);
+        assert!(part.value(face)?.abs() < 1e-9, "{}", part.value(face)?);
+    }
+    Ok(())
+}
+
+#[test]
+fn a_chamfer_takes_its_leg_off_both_faces() -> Result<(), SolidError> {
+    // The edge of a box at a right angle, by each of the ways to chamfer it.
+    let leg = 0.3;
+    let chamfer = Blend::Chamfer { leg };
+    let (column, slab) = (Solid::cuboid([4.0, 9.0, 9.0]), Solid::cuboid([9.0, 9.0, 2.0]));
+    let caps = Extrusion { caps: Caps::Chamfered(leg), ..Extrusion::new(2.0) };
+    for bar in [
+        column.intersection_with(&slab, chamfer),
+        column.difference_with(!&slab, chamfer),
+        !(!&column).union_with(!&slab, chamfer),
+        Profile::rectangle([4.0, 9.0]).extrude_with(&caps),
+        Profile::rectangle([4.0, 9.0])
+            .intersection_with(Profile::rectangle([9.0, 2.0]), chamfer)
+            .extrude(9.0)
+            .rotate_x(deg(90.0)),
+    ] {
+        // Where the face begins and ends, and its middle.
+        for (x, z) in [(2.0 - leg, 1.0), (2.0, 1.0 - leg), (2.0 - 0.5 * leg, 1.0 - 0.5 * leg)] {
+            near(bar.value([x, 0.0, z])?, 0.0, 1e-9);
+        }
+        // Nothing is taken off beyond.
+        assert!(bar.value([2.0 - 1.01 * leg, 0.0, 0.9999])? > 0.0 && bar.value([1.9999, 0.0, 1.0 - 1.01 * leg])? > 0.0);
+        assert!(bar.value([2.0 - 0.99 * leg, 0.0, 0.9999])? < 0.0 && bar.value([1.9999, 0.0, 1.0 - 0.99 * leg])? < 0.0);
+    }
     Ok(())
 }
 
 /// The rim of a face on the surface of `on`, in the plane across the edge through `q`.
-fn rim(part: &Solid, on: &Solid, q: DVec3, edge: DVec3, away: DVec3, width: f64) -> Result<DVec3, SolidError> {
+fn rim(part: &Solid, on: &Solid, q: DVec3, edge: DVec3, away: DVec3, leg: f64) -> Result<DVec3, SolidError> {
     let on_surface = |s: f64| -> Result<DVec3, SolidError> {
         let mut p = q + s * away;
         for _ in 0..20 {
@@ -182,7 +210,7 @@ fn rim(part: &Solid, on: &Solid, q: DVec3, edge: DVec3, away: DVec3, width: f64)
         }
         Ok(p)
     };
-    let (mut covered, mut free) = (0.0, 4.0 * width);
+    let (mut covered, mut free) = (0.0, 4.0 * leg);
     for _ in 0..50 {
         let middle = 0.5 * (covered + free);
         if part.value(on_surface(middle)?)?.abs() > 1e-9 { covered = middle } else { free = middle }
@@ -191,32 +219,35 @@ fn rim(part: &Solid, on: &Solid, q: DVec3, edge: DVec3, away: DVec3, width: f64)
 }
 
 #[test]
-fn chamfers_of_round_solids_have_their_width() -> Result<(), SolidError> {
+fn chamfers_of_round_solids_have_their_legs() -> Result<(), SolidError> {
     let ball = Solid::sphere(1.0);
     let shifted = ball.translate(DVec3::X);
     let floor = Solid::half_space(DVec3::Z, 0.3);
-    let pipe = Solid::cylinder(1.0, 9.0).rotate_y(std::f64::consts::FRAC_PI_2);
+    let pipe = Solid::cylinder(1.0, 9.0).rotate_y(deg(90.0));
     let thin = Solid::cylinder(0.6, 9.0);
     let side = DVec3::new(0.6 * 0.6, 0.6 * 0.8, (1.0 - 0.48f64 * 0.48).sqrt());
     let pairs = [
-        (&ball, &shifted, DVec3::new(0.5, 0.75f64.sqrt(), 0.0)),
-        (&ball, &floor, DVec3::new(0.91f64.sqrt(), 0.0, 0.3)),
-        (&pipe, &thin, DVec3::new(0.0, 0.6, 0.8)),
-        (&pipe, &thin, DVec3::new(0.6, 0.0, 1.0)),
-        (&pipe, &thin, side),
+        (&ball, &shifted, DVec3::new(0.5, 0.75f64.sqrt(), 0.0), 1.0),
+        (&ball, &floor, DVec3::new(0.91f64.sqrt(), 0.0, 0.3), 1.0),
+        (&pipe, &thin, DVec3::new(0.0, 0.6, 0.8), 0.6),
+        (&pipe, &thin, DVec3::new(0.6, 0.0, 1.0), f64::INFINITY),
+        (&pipe, &thin, side, 0.6),
     ];
-    for (a, b, q) in pairs {
-        for (width, union) in [(0.05, true), (0.15, true), (0.05, false), (0.15, false)] {
-            let blend = Blend::Chamfer { width };
+    // The last is the radius that the angle between the operands changes with: none at a right angle.
+    for (a, b, q, radius) in pairs {
+        for (leg, union) in [(0.05, true), (0.15, true), (0.05, false), (0.15, false)] {
+            let blend = Blend::Chamfer { leg };
             let part = if union { a.union_with(b, blend) } else { a.difference_with(b, blend) };
             let [n, o] = [if union { 1.0 } else { -1.0 } * a.gradient(q)?.normalize(), b.gradient(q)?.normalize()];
             let edge = n.cross(o).normalize();
             // Along either surface, away from the other operand or from its complement.
             let rims = [
-                rim(&part, a, q, edge, -o.reject_from(n).normalize(), width)?,
-                rim(&part, b, q, edge, -n.reject_from(o).normalize(), width)?,
+                rim(&part, a, q, edge, -o.reject_from(n).normalize(), leg)?,
+                rim(&part, b, q, edge, -n.reject_from(o).normalize(), leg)?,
             ];
-            near(rims[0].distance(rims[1]) / width, 1.0, 0.01);
+            for rim in rims {
+                near(rim.distance(q) / leg, 1.0, 0.26 * leg / radius + 1e-4);
+            }
         }
     }
     Ok(())
@@ -226,8 +257,8 @@ fn chamfers_of_round_solids_have_their_width() -> Result<(), SolidError> {
 fn blended() -> Vec<(&'static str, Solid)> {
     let ball = Solid::sphere(0.8).translate(DVec3::new(0.5, 0.1, 0.3));
     let plate = Solid::cuboid(DVec3::new(2.0, 1.6, 0.5));
-    let rod = Solid::cylinder(0.3, 2.4).rotate_y(0.5);
-    let star = Solid::superellipsoid(DVec3::new(0.9, 0.7, 0.6), 0.4, 1.4).twist(0.6);
+    let rod = Solid::cylinder(0.3, 2.4).rotate_y(rad(0.5));
+    let star = Solid::superellipsoid(DVec3::new(0.9, 0.7, 0.6), 0.4, 1.4).twist(rad(0.6));
     let both = &plate | &rod;
     vec![
         ("smooth union", ball.smooth_union(&plate, 0.3)),
@@ -236,12 +267,12 @@ fn blended() -> Vec<(&'static str, Solid)> {
         ("fillet", plate.union_with(&rod, Blend::Fillet { radius: 0.2 })),
         ("fillet of a union", both.union_with(&ball, Blend::Fillet { radius: 0.1 })),
         ("fillet of a hole", plate.difference_with(&rod, Blend::Fillet { radius: 0.1 })),
-        ("fillet moved", plate.intersection_with(&ball, Blend::Fillet { radius: 0.1 }).scale(1.3).rotate_x(0.4)),
+        ("fillet moved", plate.intersection_with(&ball, Blend::Fillet { radius: 0.1 }).scale(1.3).rotate_x(rad(0.4))),
         ("fillet of a fillet", {
             let inner = plate.union_with(&rod, Blend::Fillet { radius: 0.15 });
             inner.union_with(&ball, Blend::Fillet { radius: 0.1 })
         }),
-        ("chamfer", plate.union_with(&rod, Blend::Chamfer { width: 0.2 })),
+        ("chamfer", plate.union_with(&rod, Blend::Chamfer { leg: 0.15 })),
         ("displacement", plate.union_with(&ball, Blend::Displacement { height: 0.1, falloff: [0.2, 0.3] })),
         (
             "displaced difference",
@@ -337,7 +368,7 @@ fn gradients_of_blends_are_differences() -> Result<(), SolidError> {
 fn beside_a_blend_the_solid_prunes() -> Result<(), SolidError> {
     // A long bar of a hundred balls, two of them blended: far from those, one leaf is left.
     let ball = |i: i32| Solid::sphere(0.6).translate(DVec3::X * f64::from(i));
-    for blend in [Blend::Smooth { radius: 0.2 }, Blend::Fillet { radius: 0.1 }, Blend::Chamfer { width: 0.1 }] {
+    for blend in [Blend::Smooth { radius: 0.2 }, Blend::Fillet { radius: 0.1 }, Blend::Chamfer { leg: 0.1 }] {
         let pair = ball(0).union_with(ball(1), blend);
         let bar = Solid::union_all((2..100).map(ball).chain([pair]), RFunction::MIN_MAX);
         let program = bar.surface_program()?;
@@ -362,7 +393,7 @@ fn offsets_move_the_surface_by_a_length() -> Result<(), SolidError> {
     near(part.value(DVec3::new(1.05, 0.0, 0.0))?, 0.0, 1e-12);
     near(part.value(DVec3::new(0.15, 0.0, 0.0))?, 0.0, 1e-12);
     // Lengths through similarities, twice, and through complements.
-    let turned = (!brick.scale(2.0).rotate_z(0.3).offset(-0.1)).offset(0.3);
+    let turned = (!brick.scale(2.0).rotate_z(rad(0.3)).offset(-0.1)).offset(0.3);
     near((!turned).value(DVec3::Z * (1.0 - 0.4))?, 0.0, 1e-12);
     let scaled = brick.offset(0.1).scale(2.0).offset(0.1);
     near(scaled.value(DVec3::new(2.3, 0.0, 0.0))?, 0.0, 1e-12);
@@ -457,9 +488,9 @@ fn ricci_takes_the_gauges_that_it_names() {
 fn boxes_of_blends_above_maps_and_of_turned_columns_end() -> Result<(), SolidError> {
     let law = SmoothStep { from: (0.0, 1.0), to: (36.0, 0.66) };
     let lens = Solid::superellipsoid([27.0, 11.0, 90.0], 1.0, 1.0).taper_by(1.0, law);
-    let head = Profile::circle(10.0).column().rotate_x_degrees(90.0).intersection(&lens, RFunction::MIN_MAX);
+    let head = Profile::circle(10.0).column().rotate_x(deg(90.0)).intersection(&lens, RFunction::MIN_MAX);
     assert!(head.smooth_union(Solid::sphere(3.0), 2.5).bounds()?.size().max_element() < 200.0);
-    let disc = Profile::circle(1.0).extrude(0.5).rotate_x(std::f64::consts::FRAC_PI_2);
+    let disc = Profile::circle(1.0).extrude(0.5).rotate_x(deg(90.0));
     let size = disc.bounds()?.size();
     assert!(size.x < 2.2 && size.y < 0.7 && size.z < 2.2, "{size}");
     Ok(())
@@ -509,11 +540,11 @@ fn filleted_edges() -> Vec<(Solid, f64)> {
     let fillet = Blend::Fillet { radius: 0.1 };
     let floor = Solid::cuboid(DVec3::new(2.0, 2.0, 0.2));
     let block = |x: f64, y: f64| Solid::cuboid(DVec3::new(x, y, 1.0)).translate(0.4 * DVec3::Z);
-    let post = block(0.4, 0.4) & block(0.4, 0.4).rotate_z(0.6);
-    let star = block(0.8, 0.3) | block(0.8, 0.3).rotate_z(1.2);
+    let post = block(0.4, 0.4) & block(0.4, 0.4).rotate_z(rad(0.6));
+    let star = block(0.8, 0.3) | block(0.8, 0.3).rotate_z(rad(1.2));
     let cube = Solid::cuboid(DVec3::ONE);
     let bite = Solid::sphere(0.5).translate(DVec3::new(0.5, 0.3, 0.5));
-    let opened = Profile::circle(0.2).revolve_by(5.0).translate(0.1 * DVec3::X);
+    let opened = Profile::circle(0.2).revolve_by(rad(5.0)).translate(0.1 * DVec3::X);
     vec![
         (post.union_with(&floor, fillet), 0.1),
         (floor.union_with(star, fillet), 0.1),
@@ -595,7 +626,7 @@ fn rays_meet_chains_of_fillets() -> Result<(), SolidError> {
 #[test]
 fn fillets_of_smooth_unions_are_of_one_surface() -> Result<(), SolidError> {
     const CELL: f64 = 0.05;
-    let wedge = Solid::cuboid((0.5, 0.7, 0.9)).taper(0.36, 0.8, 0.5).translate((0.1, 0.3, -0.1));
+    let wedge = Solid::cuboid((0.5, 0.7, 0.9)).taper(0.36, 0.8, 1.0).translate((0.1, 0.3, -0.1));
     let smooth = wedge.smooth_union(Solid::cylinder(0.33, 0.7), 0.1);
     let knob = Solid::ellipsoid((0.13, 0.18, 0.37)).offset(0.035).translate((0.35, -0.25, 0.0));
     let solid = smooth.union_with(&knob, Blend::Fillet { radius: 0.05 });

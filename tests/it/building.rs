@@ -8,6 +8,7 @@ use std::hash::{Hash, Hasher};
 use glam::{DAffine3, DMat3, DQuat, DVec3, IVec3, UVec3, Vec3};
 use rvachev::{
     Bounds, Camera, Cuboid, Cylinder, Field, HalfSpace, ParamError, RFunction, Real, Solid, Sphere, Superellipsoid,
+    deg, rad,
 };
 
 use crate::support::{Random, frame_of, near_point, random_leaf, random_solid, samples, value};
@@ -101,9 +102,12 @@ fn whatever_glam_converts_is_a_vector() {
     assert_eq!(Bounds::from_points([[0.0; 3], p]), Bounds::new(DVec3::ZERO, v));
     assert_eq!(Bounds::from_corners(p, [0.0; 3]), Bounds::from_points([DVec3::ZERO, v]));
     assert_eq!(Bounds::from_center([0.0; 3], [1.0; 3]).distance_squared([2.0, 0.0, 0.0]), 1.0);
-    let camera = Camera::perspective([3.0, 0.0, 0.0], DVec3::ZERO, (0.0, 0.0, 1.0), 40.0);
-    assert_eq!(camera, Camera::perspective(DVec3::X * 3.0, [0.0; 3], DVec3::Z, 40.0));
-    assert_eq!(want.translate(p).rotate_about([0.0, 0.0, 2.0], 0.5), want.translate(v).rotate_about(DVec3::Z, 0.5));
+    let camera = Camera::perspective([3.0, 0.0, 0.0], DVec3::ZERO, (0.0, 0.0, 1.0), deg(40.0));
+    assert_eq!(camera, Camera::perspective(DVec3::X * 3.0, [0.0; 3], DVec3::Z, deg(40.0)));
+    assert_eq!(
+        want.translate(p).rotate_about([0.0, 0.0, 2.0], rad(0.5)),
+        want.translate(v).rotate_about(DVec3::Z, rad(0.5))
+    );
     assert_eq!(Superellipsoid::new([1.0, 2.0, 3.0], 1.0, 1.0).gauge([1.0, 0.0, 0.0]), 1.0);
 }
 
@@ -113,12 +117,12 @@ fn rotations_agree() {
     for degrees in [30.0, -75.0, 90.0, 180.0, 400.0] {
         let angle = f64::to_radians(degrees);
         for (axis, a, b) in [
-            (DVec3::X, solid.rotate_x(angle), solid.rotate_x_degrees(degrees)),
-            (DVec3::Y, solid.rotate_y(angle), solid.rotate_y_degrees(degrees)),
-            (DVec3::Z, solid.rotate_z(angle), solid.rotate_z_degrees(degrees)),
+            (DVec3::X, solid.rotate_x(rad(angle)), solid.rotate_x(deg(degrees))),
+            (DVec3::Y, solid.rotate_y(rad(angle)), solid.rotate_y(deg(degrees))),
+            (DVec3::Z, solid.rotate_z(rad(angle)), solid.rotate_z(deg(degrees))),
         ] {
-            let c = solid.rotate_about(axis * 7.0, angle);
-            let d = solid.rotate_about_degrees(axis * 1e-200, degrees);
+            let c = solid.rotate_about(axis * 7.0, rad(angle));
+            let d = solid.rotate_about(axis * 1e-200, deg(degrees));
             let e = solid.rotate(DQuat::from_axis_angle(axis, angle));
             let want = a.bounds().unwrap();
             for other in [b, c, d, e] {
@@ -132,12 +136,12 @@ fn rotations_agree() {
         }
     }
     // A whole turn is none.
-    assert_eq!(solid.rotate_z_degrees(360.0).simplified(), solid.simplified());
+    assert_eq!(solid.rotate_z(deg(360.0)).simplified(), solid.simplified());
     for (wrong, text) in [
-        (solid.rotate_about(DVec3::ZERO, 1.0), "rotate_about: axis or angle (an entry of the matrix) is NaN"),
-        (solid.rotate_about(DVec3::X, f64::NAN), "rotate_about: axis or angle"),
-        (solid.rotate_about_degrees(DVec3::NAN, 1.0), "rotate_about_degrees: axis or angle"),
-        (solid.rotate_x_degrees(f64::INFINITY), "rotate_x_degrees: angle"),
+        (solid.rotate_about(DVec3::ZERO, rad(1.0)), "rotate_about: axis or angle (an entry of the matrix) is NaN"),
+        (solid.rotate_about(DVec3::X, rad(f64::NAN)), "rotate_about: axis or angle"),
+        (solid.rotate_about(DVec3::NAN, deg(1.0)), "rotate_about: axis or angle"),
+        (solid.rotate_x(deg(f64::INFINITY)), "rotate_x: angle"),
     ] {
         let error = wrong.bounds().unwrap_err().to_string();
         assert!(error.starts_with(text), "{error}");
@@ -146,7 +150,7 @@ fn rotations_agree() {
 
 #[test]
 fn names_are_in_paths() {
-    let socket = |axes: DVec3| Solid::superellipsoid(axes, 0.2, 1.0).twist(0.1).named("socket");
+    let socket = |axes: DVec3| Solid::superellipsoid(axes, 0.2, 1.0).twist(rad(0.1)).named("socket");
     let head = Solid::cylinder(5.0, 4.0).named("head");
     let error = (&head - socket(DVec3::NEG_ONE)).bounds().unwrap_err().to_string();
     assert!(error.starts_with("difference[1] / socket: twist / superellipsoid: semi_axes.x is -1"), "{error}");
@@ -160,7 +164,7 @@ fn names_are_in_paths() {
     let nothing: [Solid; 0] = [];
     let empty = Solid::union_all(nothing, RFunction::MIN_MAX).named("rest");
     assert!((&head | empty).bounds().unwrap_err().to_string().starts_with("union[1] / rest: union: has 0 operands"));
-    let ground = Solid::half_space([0.0, 1.0, 1.0], 0.0).named("ground").rotate_x(0.1).named("all");
+    let ground = Solid::half_space([0.0, 1.0, 1.0], 0.0).named("ground").rotate_x(rad(0.1)).named("all");
     let error = (head | ground).finite_bounds().unwrap_err().to_string();
     assert!(error.starts_with("union[1] / all: rotate_x / ground: half-space: unbounded"), "{error}");
 
@@ -197,10 +201,10 @@ fn solids_are_written_as_trees() {
             ball.scale(2.0),
             ball.scale_axes([1.0, 2.0, 1e-3]),
             arm.clone(),
-            arm.rotate_z_degrees(120.0),
-            arm.rotate_about([1.0, 1.0, 0.0], 0.5),
+            arm.rotate_z(deg(120.0)),
+            arm.rotate_about([1.0, 1.0, 0.0], rad(0.5)),
             ball.affine(DAffine3::from_mat3_translation(DMat3::from_diagonal(DVec3::new(1.0, 2.0, 1.0)), DVec3::X)),
-            !ball.twist(0.5).taper(0.1, 0.2, 2.0).bend(0.25, 0.0),
+            !ball.twist(rad(0.5)).taper(0.1, 0.2, 4.0).bend(0.25, deg(0.0)),
             Superellipsoid::new([1.0, 2.0, 3.0], 0.5, 1.5).into(),
             Solid::new(Ball(2.0)),
         ],
@@ -215,16 +219,16 @@ toy: union by Alpha(1.0)
     sphere { radius: 1.0 }
   part 1, arm: translate (2, 0, 0.25)
     box { size: DVec3(4.0, 1.0, 1.0) }
-  rotate_z_degrees 120° about (0, 0, 1)
+  rotate_z 120° about (0, 0, 1)
     part 1 again
   rotate_about 28.6478898° about (0.707106781, 0.707106781, 0)
     part 1 again
   affine x to (1, 0, 0), y to (0, 2, 0), z to (0, 0, 1), origin to (1, 0, 0)
     sphere { radius: 1.0 }
   complement
-    bend { curvature: 0.25, angle: 0.0 }
-      taper { kx: 0.1, ky: 0.2, half_height: 2.0 }
-        twist { rate: 0.5 }
+    bend { curvature: 0.25, angle: 0.0 rad }
+      taper { kx: 0.1, ky: 0.2, height: 4.0 }
+        twist { rate: 0.5 rad }
           sphere { radius: 1.0 }
   superellipsoid { semi_axes: DVec3(1.0, 2.0, 3.0), e1: 0.5, e2: 1.5 }
   ball(2.0)";
@@ -236,13 +240,13 @@ toy: union by Alpha(1.0)
     assert_eq!(format!("{whole:.0}"), "... and 20 more lines");
 
     // A name that is shared apart from what it names.
-    let both = ball.twist(1.0);
+    let both = ball.twist(rad(1.0));
     let (left, right) = (both.named("left"), both.named("right"));
     let pair = &left | &right | &left;
     let want = "\
 union by P(2.0)
   union by P(2.0)
-    part 1, left: part 2, twist { rate: 1.0 }
+    part 1, left: part 2, twist { rate: 1.0 rad }
       sphere { radius: 1.0 }
     right: part 2 again
   part 1 again";
@@ -274,7 +278,7 @@ fn deep_chains_need_no_stack() {
                 0 => solid.translate([last, 0.0, 0.0]),
                 1 => !solid,
                 2 => solid.named("link"),
-                3 => solid.twist(1e-6),
+                3 => solid.twist(rad(1e-6)),
                 _ => solid.union(Sphere { radius: last }, RFunction::MIN_MAX),
             };
         }
@@ -306,9 +310,9 @@ fn equality_is_by_structure() {
             ball.clone(),
             ball.translate(DVec3::X),
             ball.translate(DVec3::Y),
-            ball.twist(1.0),
-            ball.twist(1.5),
-            ball.taper(0.1, 0.2, 3.0),
+            ball.twist(rad(1.0)),
+            ball.twist(rad(1.5)),
+            ball.taper(0.1, 0.2, 6.0),
             !ball,
             !!ball,
             ball.named("a"),
@@ -345,7 +349,7 @@ fn numbers_are_compared_exactly() {
     let ball = Solid::sphere(1.0);
     assert_eq!(ball.translate([f64::NAN, 0.0, 0.0]), ball.translate([f64::NAN, 0.0, 0.0]));
     assert_ne!(ball.translate([0.0, 0.0, 0.0]), ball.translate([-0.0, 0.0, 0.0]));
-    assert_ne!(ball.twist(0.0), ball.twist(-0.0));
+    assert_ne!(ball.twist(deg(0.0)), ball.twist(rad(-0.0)));
     assert_eq!(Solid::sphere(f64::NAN), Solid::sphere(f64::NAN));
     // However a map is spelt, it is the map.
     assert_eq!(ball.translate(DVec3::X), ball.affine(DAffine3::from_translation(DVec3::X)));
@@ -443,7 +447,7 @@ fn simplified_does_what_it_says() {
         assert_eq!(kept.simplified(), kept);
     }
     // Equal parts are stored once.
-    let twice = Solid::sphere(1.0).twist(1.0) | Solid::sphere(1.0).twist(1.0).translate(DVec3::X);
+    let twice = Solid::sphere(1.0).twist(rad(1.0)) | Solid::sphere(1.0).twist(rad(1.0)).translate(DVec3::X);
     assert_eq!((twice.node_count(), twice.simplified().node_count()), (6, 4));
     assert_eq!(twice.simplified(), twice);
 }
@@ -471,9 +475,9 @@ fn cluttered(random: &mut Random, leaves: &[Solid], depth: usize) -> Solid {
         10 => first.translate(random.vector(-0.5, 0.5)).rotate(random.rotation()),
         11 => first.affine(random.affine()).translate(DVec3::ZERO),
         12 => first.scale_axes(random.vector(0.7, 1.4)).scale(random.range(0.5, 1.5)),
-        13 => first.rotate_z_degrees(90.0).rotate_z_degrees(-90.0),
-        14 => first.twist(random.range(-1.0, 1.0)),
-        _ => first.taper(random.range(-0.4, 0.4), random.range(-0.4, 0.4), random.range(0.5, 1.0)),
+        13 => first.rotate_z(deg(90.0)).rotate_z(deg(-90.0)),
+        14 => first.twist(rad(random.range(-1.0, 1.0))),
+        _ => first.taper(random.range(-0.4, 0.4), random.range(-0.4, 0.4), random.range(1.0, 2.0)),
     }
 }
 

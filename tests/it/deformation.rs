@@ -1,7 +1,7 @@
 //! Taper, twist and bend against the forward maps, written out here on their own.
 
 use glam::{DMat3, DVec3};
-use rvachev::{CellSize, MeshSettings, Solid, Superellipsoid};
+use rvachev::{CellSize, MeshSettings, Solid, Superellipsoid, rad};
 
 use crate::support::{Random, near, near_point, value};
 
@@ -72,7 +72,7 @@ fn a_bend_at_known_points() {
     ] {
         near_point(bend(p, k, 0.87), image, 1e-12);
         let exact = bend(p, k, 0.87);
-        near_point(pre_image(&|s| s.bend(k, 0.87), exact), p, 2e-14);
+        near_point(pre_image(&|s| s.bend(k, rad(0.87)), exact), p, 2e-14);
     }
 }
 
@@ -81,7 +81,7 @@ fn a_bend_by_more_than_a_quarter_turn() {
     let p = DVec3::new(0.3, -0.2, 4.0);
     let image = bend(p, 0.6, 0.87);
     near_point(image, DVec3::new(2.121731058144, 1.959343112000, 1.098360201393), 1e-12);
-    near_point(pre_image(&|s| s.bend(0.6, 0.87), image), p, 1e-13);
+    near_point(pre_image(&|s| s.bend(0.6, rad(0.87)), image), p, 1e-13);
 }
 
 #[test]
@@ -91,7 +91,7 @@ fn bends_of_any_curvature_round_trip() {
         for _ in 0..200 {
             let p = DVec3::new(random.range(-0.5, 0.5), random.range(-0.7, 0.7), random.range(-2.0, 2.0));
             let angle = random.range(-3.0, 3.0);
-            near_point(pre_image(&|s| s.bend(k, angle), bend(p, k, angle)), p, 3e-14);
+            near_point(pre_image(&|s| s.bend(k, rad(angle)), bend(p, k, angle)), p, 3e-14);
         }
     }
 }
@@ -99,7 +99,7 @@ fn bends_of_any_curvature_round_trip() {
 #[test]
 fn a_bend_the_other_way_round_is_the_same() {
     let solid = Solid::superellipsoid(DVec3::new(0.5, 0.7, 2.0), 0.4, 0.6);
-    let (one, other) = (solid.bend(0.3, 0.5), solid.bend(-0.3, 0.5 + std::f64::consts::PI));
+    let (one, other) = (solid.bend(0.3, rad(0.5)), solid.bend(-0.3, rad(0.5 + std::f64::consts::PI)));
     let mut random = Random::new(31);
     for _ in 0..500 {
         let p = random.vector(-2.0, 2.0);
@@ -112,7 +112,7 @@ fn a_chain_of_all_three() {
     let p = DVec3::new(0.4, 0.5, 1.2);
     let image = bend(twist(taper(p, 0.5, -0.4, 2.0), 0.6), 0.3, 0.5);
     near_point(image, DVec3::new(0.304009419006, 0.717961296813, 1.024693146673), 1e-12);
-    let deform = |s: Solid| s.taper(0.5, -0.4, 2.0).twist(0.6).bend(0.3, 0.5);
+    let deform = |s: Solid| s.taper(0.5, -0.4, 4.0).twist(rad(0.6)).bend(0.3, rad(0.5));
     near_point(pre_image(&deform, image), p, 2e-14);
 
     let leaf = Superellipsoid::new(DVec3::new(0.5, 0.7, 2.0), 0.4, 0.6);
@@ -126,8 +126,8 @@ fn the_taper_is_held_beyond_its_ends() {
     let mut random = Random::new(32);
     for _ in 0..200 {
         let p = DVec3::new(random.range(-1.0, 1.0), random.range(-1.0, 1.0), random.range(-4.0, 4.0));
-        near_point(pre_image(&|s| s.taper(0.9, -0.99, 1.5), taper(p, 0.9, -0.99, 1.5)), p, 1e-13);
-        near_point(pre_image(&|s| s.twist(-2.5), twist(p, -2.5)), p, 1e-13);
+        near_point(pre_image(&|s| s.taper(0.9, -0.99, 3.0), taper(p, 0.9, -0.99, 1.5)), p, 1e-13);
+        near_point(pre_image(&|s| s.twist(rad(-2.5)), twist(p, -2.5)), p, 1e-13);
     }
 }
 
@@ -138,9 +138,9 @@ fn values_move_with_the_points() {
     for _ in 0..500 {
         let p = DVec3::new(random.range(-0.7, 0.7), random.range(-0.7, 0.7), random.range(-1.2, 1.2));
         let want = value(&solid, p);
-        near(value(&solid.taper(0.4, -0.6, 1.0), taper(p, 0.4, -0.6, 1.0)), want, 1e-13);
-        near(value(&solid.twist(1.7), twist(p, 1.7)), want, 1e-13);
-        near(value(&solid.bend(0.7, 2.0), bend(p, 0.7, 2.0)), want, 1e-13);
+        near(value(&solid.taper(0.4, -0.6, 2.0), taper(p, 0.4, -0.6, 1.0)), want, 1e-13);
+        near(value(&solid.twist(rad(1.7)), twist(p, 1.7)), want, 1e-13);
+        near(value(&solid.bend(0.7, rad(2.0)), bend(p, 0.7, 2.0)), want, 1e-13);
     }
 }
 
@@ -156,9 +156,9 @@ fn twist_and_centred_bend_keep_the_volume() {
     const TAPERED: f64 = 4.335761223258;
     let solid = Solid::superellipsoid(DVec3::new(0.5, 0.7, 2.0), 0.4, 0.6);
     near(volume(&solid), VOLUME, 1e-3 * VOLUME);
-    near(volume(&solid.taper(0.5, -0.4, 2.0)), TAPERED, 1e-3 * TAPERED);
-    near(volume(&solid.twist(0.6)), VOLUME, 1e-3 * VOLUME);
-    near(volume(&solid.bend(0.3, 0.5)), VOLUME, 1e-3 * VOLUME);
+    near(volume(&solid.taper(0.5, -0.4, 4.0)), TAPERED, 1e-3 * TAPERED);
+    near(volume(&solid.twist(rad(0.6))), VOLUME, 1e-3 * VOLUME);
+    near(volume(&solid.bend(0.3, rad(0.5))), VOLUME, 1e-3 * VOLUME);
 }
 
 #[test]
@@ -168,20 +168,20 @@ fn stretches_are_those_of_the_table() {
         let p = DVec3::new(random.range(-0.5, 0.5), random.range(-0.7, 0.7), random.range(-1.4, 1.4));
 
         let (kx, ky, height) = (0.5, -0.4, 2.0);
-        let j = inverse_jacobian(&|s| s.taper(kx, ky, height), taper(p, kx, ky, height));
+        let j = inverse_jacobian(&|s| s.taper(kx, ky, 2.0 * height), taper(p, kx, ky, height));
         let (sx, sy) = (1.0 + kx * p.z / height, 1.0 + ky * p.z / height);
         near(j.determinant() * sx * sy, 1.0, 1e-8);
         let bound = (1.0 / sx).max(1.0 / sy).max(1.0) + (kx / height * p.x / sx).hypot(ky / height * p.y / sy);
         assert!(largest_stretch(&j) <= bound + 1e-8);
 
         let rate = 1.3;
-        let j = inverse_jacobian(&|s| s.twist(rate), twist(p, rate));
+        let j = inverse_jacobian(&|s| s.twist(rad(rate)), twist(p, rate));
         near(j.determinant(), 1.0, 1e-8);
         let s = rate * p.truncate().length();
         near(largest_stretch(&j), 0.5 * (s + (s * s + 4.0).sqrt()), 1e-8);
 
         let (k, angle) = (0.6, 0.87f64);
-        let j = inverse_jacobian(&|s| s.bend(k, angle), bend(p, k, angle));
+        let j = inverse_jacobian(&|s| s.bend(k, rad(angle)), bend(p, k, angle));
         let h = 1.0 - k * (p.x * angle.cos() + p.y * angle.sin());
         near(j.determinant() * h, 1.0, 1e-8);
         near(largest_stretch(&j), (1.0 / h).max(1.0), 1e-8);
@@ -195,7 +195,7 @@ fn stretches_are_those_of_the_table() {
 fn gradients_are_pulled_back() {
     let mut random = Random::new(61);
     let solid = Solid::superellipsoid(DVec3::new(0.5, 0.7, 2.0), 0.4, 0.6);
-    let deform = |s: Solid| s.taper(0.5, -0.4, 2.0).twist(0.6).bend(0.3, 0.5);
+    let deform = |s: Solid| s.taper(0.5, -0.4, 4.0).twist(rad(0.6)).bend(0.3, rad(0.5));
     let deformed = deform(solid.clone());
     for _ in 0..40 {
         let p = DVec3::new(random.range(-0.5, 0.5), random.range(-0.7, 0.7), random.range(-1.9, 1.9));

@@ -5,7 +5,7 @@ use std::panic::catch_unwind;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rvachev::{
     Bounds, CellSize, Gielis, MeshSettings, MeshingError, ParamError, RFunction, Radius, Solid, SolidError, Supershape,
-    Turns,
+    Turns, deg, rad,
 };
 
 /// Checks that the solid is refused everywhere, with a text that has all of `parts`, and
@@ -33,7 +33,7 @@ fn refused(solid: &Solid, parts: &[&str]) -> ParamError {
         other => panic!("meshing says {other:?}"),
     }
     // And it is found below other nodes too.
-    let part = Solid::cuboid(DVec3::ONE).difference(solid.twist(0.1), RFunction::default());
+    let part = Solid::cuboid(DVec3::ONE).difference(solid.twist(rad(0.1)), RFunction::default());
     let below = part.value(DVec3::ZERO).expect_err("an operand is not valid").to_string();
     assert!(below.starts_with("difference[1] / twist / "), "{below}");
     match error {
@@ -65,19 +65,19 @@ fn numbers_of_maps_that_are_not_finite() {
     let ball = Solid::sphere(1.0);
     for bad in NOT_NUMBERS {
         refused(&ball.translate(DVec3::new(0.0, 0.0, bad)), &["translate: translation.z is "]);
-        refused(&ball.rotate_x(bad), &["rotate_x: "]);
-        refused(&ball.rotate_y(bad), &["rotate_y: "]);
-        refused(&ball.rotate_z(bad), &["rotate_z: "]);
+        refused(&ball.rotate_x(rad(bad)), &["rotate_x: "]);
+        refused(&ball.rotate_y(rad(bad)), &["rotate_y: "]);
+        refused(&ball.rotate_z(rad(bad)), &["rotate_z: "]);
         refused(&ball.scale(bad), &["scale: "]);
         refused(&ball.scale_axes(DVec3::new(1.0, bad, 1.0)), &["scale_axes: "]);
         refused(&ball.affine(DAffine3::from_scale(DVec3::splat(bad))), &["affine: "]);
         refused(&ball.rotate(DQuat::from_xyzw(bad, 0.0, 0.0, 1.0)), &["rotate: "]);
-        refused(&ball.taper(bad, 0.0, 1.0), &["taper: kx is ", "-0.999 to 0.999"]);
-        refused(&ball.taper(0.0, bad, 1.0), &["taper: ky is ", "-0.999 to 0.999"]);
-        refused(&ball.taper(0.0, 0.0, bad), &["taper: half_height is "]);
-        refused(&ball.twist(bad), &["twist: rate is "]);
-        refused(&ball.bend(bad, 0.0), &["bend: curvature is "]);
-        refused(&ball.bend(0.1, bad), &["bend: angle is "]);
+        refused(&ball.taper(bad, 0.0, 2.0), &["taper: kx is ", "-0.999 to 0.999"]);
+        refused(&ball.taper(0.0, bad, 2.0), &["taper: ky is ", "-0.999 to 0.999"]);
+        refused(&ball.taper(0.0, 0.0, bad), &["taper: height is "]);
+        refused(&ball.twist(rad(bad)), &["twist: rate is "]);
+        refused(&ball.bend(bad, deg(0.0)), &["bend: curvature is "]);
+        refused(&ball.bend(0.1, rad(bad)), &["bend: angle is "]);
     }
 }
 
@@ -92,7 +92,7 @@ fn sizes_that_are_not_positive() {
         refused(&Solid::superellipsoid(DVec3::new(bad, 1.0, 1.0), 1.0, 1.0), &["superellipsoid: semi_axes.x is "]);
         let shape = Supershape::new(Gielis::circle(), Gielis::circle()).scaled(DVec3::new(1.0, bad, 1.0));
         refused(&shape.into(), &["supershape: scale.y is "]);
-        refused(&Solid::sphere(1.0).taper(0.1, 0.1, bad), &["taper: half_height is "]);
+        refused(&Solid::sphere(1.0).taper(0.1, 0.1, bad), &["taper: height is "]);
     }
     refused(&Solid::half_space(DVec3::ZERO, 0.0), &["half-space: normal is 0", "other than zero"]);
 }
@@ -149,7 +149,7 @@ fn joins_of_nothing() {
         for solid in [Solid::union_all(nothing, rule), Solid::intersection_all(nothing, rule)] {
             let error = solid.value(DVec3::ZERO).unwrap_err();
             assert!(matches!(error, SolidError::EmptyJoin { .. }), "{error}");
-            let text = (Solid::sphere(1.0) - solid.rotate_x(1.0)).value(DVec3::ZERO).unwrap_err().to_string();
+            let text = (Solid::sphere(1.0) - solid.rotate_x(rad(1.0))).value(DVec3::ZERO).unwrap_err().to_string();
             assert!(text.starts_with("difference[1] / rotate_x / "), "{text}");
             assert!(text.contains("0 operands") && text.contains("1 or more"), "{text}");
         }
@@ -180,28 +180,28 @@ fn a_taper_that_inverts() {
     let ball = Solid::sphere(1.0);
     for bad in [1.0, -1.0, 1.5, -3.0] {
         let text = format!("is {bad}, allowed: -0.999 to 0.999");
-        refused(&ball.taper(bad, 0.0, 1.0), &["taper: kx ", &text]);
-        refused(&ball.taper(0.0, bad, 1.0), &["taper: ky ", &text]);
+        refused(&ball.taper(bad, 0.0, 2.0), &["taper: kx ", &text]);
+        refused(&ball.taper(0.0, bad, 2.0), &["taper: ky ", &text]);
     }
-    assert!(ball.taper(0.999, -0.999, 1.0).value(DVec3::ZERO).is_ok());
+    assert!(ball.taper(0.999, -0.999, 2.0).value(DVec3::ZERO).is_ok());
 }
 
 #[test]
 fn a_bend_that_folds() {
     // Towards the centre of curvature the box reaches 1: its radius must be beyond.
     let block = Solid::cuboid(DVec3::new(2.0, 1.0, 3.0));
-    assert!(block.bend(0.99, 0.0).value(DVec3::ZERO).is_ok());
-    let error = refused(&block.bend(1.01, 0.0), &["bend: curvature is 1.01, allowed: ", "1.0"]);
+    assert!(block.bend(0.99, deg(0.0)).value(DVec3::ZERO).is_ok());
+    let error = refused(&block.bend(1.01, deg(0.0)), &["bend: curvature is 1.01, allowed: ", "1.0"]);
     assert_eq!(error.value, 1.01);
     // Half a turn at most: π/1.5 is 2.094.
     let rod = Solid::cylinder(0.01, 3.0);
-    assert!(rod.bend(2.09, 0.0).value(DVec3::ZERO).is_ok());
-    refused(&rod.bend(2.1, 0.0), &["bend: curvature is 2.1", "2.094"]);
+    assert!(rod.bend(2.09, deg(0.0)).value(DVec3::ZERO).is_ok());
+    refused(&rod.bend(2.1, deg(0.0)), &["bend: curvature is 2.1", "2.094"]);
     // The solid's own box counts, wherever it has been moved.
-    refused(&block.translate(DVec3::X * 9.0).bend(0.11, 0.0), &["bend: curvature is 0.11"]);
-    assert!(block.translate(DVec3::X * 9.0).bend(-0.11, 0.0).value(DVec3::ZERO).is_ok());
+    refused(&block.translate(DVec3::X * 9.0).bend(0.11, deg(0.0)), &["bend: curvature is 0.11"]);
+    assert!(block.translate(DVec3::X * 9.0).bend(-0.11, deg(0.0)).value(DVec3::ZERO).is_ok());
     // An unbounded solid folds at any curvature.
-    refused(&Solid::half_space(DVec3::Z, 0.0).bend(1e-3, 0.0), &["bend: curvature is 0.001"]);
+    refused(&Solid::half_space(DVec3::Z, 0.0).bend(1e-3, deg(0.0)), &["bend: curvature is 0.001"]);
 }
 
 #[test]
@@ -226,10 +226,10 @@ fn the_unbounded_node_is_named() {
         other => panic!("meshed without bounds: {other:?}"),
     };
     assert_eq!(path(&ground), "half-space");
-    assert_eq!(path(&(Solid::sphere(1.0) | ground.rotate_x(0.3))), "union[1] / rotate_x / half-space");
+    assert_eq!(path(&(Solid::sphere(1.0) | ground.rotate_x(rad(0.3)))), "union[1] / rotate_x / half-space");
     assert_eq!(path(&!Solid::sphere(1.0)), "complement");
     assert_eq!(path(&(&ground - Solid::sphere(1.0))), "difference");
-    assert_eq!(path(&ground.twist(1.0)), "twist / half-space");
+    assert_eq!(path(&ground.twist(rad(1.0))), "twist / half-space");
     let text = (Solid::sphere(1.0) | ground.clone()).mesh(&settings).unwrap_err().to_string();
     assert!(text.contains("union[1] / half-space") && text.contains("bounds"), "{text}");
 
@@ -280,13 +280,13 @@ fn building_never_panics() {
                     [
                         s.translate(DVec3::new(a, b, 0.0)),
                         s.rotate(DQuat::from_xyzw(a, b, a, b)),
-                        s.rotate_x(a).rotate_y(b).rotate_z(a),
+                        s.rotate_x(rad(a)).rotate_y(rad(b)).rotate_z(rad(a)),
                         s.scale(a),
                         s.scale_axes(DVec3::new(a, b, 1.0)),
                         s.affine(DAffine3::from_cols(DVec3::splat(a), DVec3::splat(b), DVec3::ONE, DVec3::ZERO)),
                         s.taper(a, b, a),
-                        s.twist(a),
-                        s.bend(a, b),
+                        s.twist(rad(a)),
+                        s.bend(a, rad(b)),
                     ]
                 };
                 let mut all: Vec<Solid> = leaves.to_vec();

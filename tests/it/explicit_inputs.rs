@@ -6,7 +6,7 @@ use rvachev::{
     ExactExplicit, Facing, GeneralisedSuperquadric, Gielis, LayerSource, LogTable, Mesh, ParametricCurve,
     ParametricSurface, PatchSettings, PointMethod, PointSettings, PowerTables, ProductTables, QuadMesh, Radius,
     RasterView, RawParametric, SeriesExplicit, Spacing, SubdivisionRevolution, Superellipse, Superellipsoid,
-    Superhyperboloid, Supershape, Supertoroid, Tension, hyperbola_of_ellipse,
+    Superhyperboloid, Supershape, Supertoroid, Tension, deg, hyperbola_of_ellipse, rad,
 };
 
 /// Numbers that break things.
@@ -78,17 +78,20 @@ fn sound(what: &str, mesh: &QuadMesh) {
 
 fn try_surface(what: &str, surface: &ParametricSurface, chance: &mut Chance) {
     // Never a point that is none, and looks like one.
-    assert!(surface.point(0.3, f64::NAN).is_nan() && surface.point(f64::NAN, 0.3).is_nan(), "{what}");
+    assert!(
+        surface.point(rad(0.3), rad(f64::NAN)).is_nan() && surface.point(rad(f64::NAN), rad(0.3)).is_nan(),
+        "{what}"
+    );
     for eta in angles() {
         let omega = GOOD[chance.below(GOOD.len())];
-        for frame in [surface.frame(eta, omega), surface.frame(omega, eta)] {
+        for frame in [surface.frame(rad(eta), rad(omega)), surface.frame(rad(omega), rad(eta))] {
             finite(what, [frame.point, frame.normal, frame.along_eta, frame.along_omega]);
         }
     }
     for eta in surface.eta_range().into_iter().chain(surface.omega_range()) {
         assert!(eta.is_finite(), "{what}");
     }
-    let size = surface.point(0.1, 0.1).abs().max_element();
+    let size = surface.point(rad(0.1), rad(0.1)).abs().max_element();
     let tolerance = [f64::NAN, -1.0, 0.0, 0.02 * size, 0.2 * size, 1e300][chance.below(6)];
     for spacing in [Spacing::UniformAngle, Spacing::EqualArc, Spacing::Chord(tolerance)] {
         let settings = PatchSettings { rows: chance.count(), columns: chance.count(), spacing };
@@ -116,10 +119,10 @@ fn parametric_surfaces_take_anything() {
         for (what, surface) in [
             ("superellipsoid", ParametricSurface::of(&Superellipsoid::new(axes, e1, e2))),
             ("supertoroid", ParametricSurface::of(&Supertoroid::new(axes, ring, e1, e2))),
-            ("one sheet", ParametricSurface::of(&Superhyperboloid::one_sheet(axes, e1, e2, half))),
-            ("one sheet x", ParametricSurface::of(&Superhyperboloid::one_sheet_x(axes, e1, e2, half))),
-            ("two sheets", ParametricSurface::of(&Superhyperboloid::two_sheets(axes, e1, e2, half))),
-            ("two sheets x", ParametricSurface::of(&Superhyperboloid::two_sheets_x(axes, e1, e2, half))),
+            ("one sheet", ParametricSurface::of(&Superhyperboloid::one_sheet(axes, e1, e2, 2.0 * half))),
+            ("one sheet x", ParametricSurface::of(&Superhyperboloid::one_sheet_x(axes, e1, e2, 2.0 * half))),
+            ("two sheets", ParametricSurface::of(&Superhyperboloid::two_sheets(axes, e1, e2, 2.0 * half))),
+            ("two sheets x", ParametricSurface::of(&Superhyperboloid::two_sheets_x(axes, e1, e2, 2.0 * half))),
             ("supershape", ParametricSurface::of(&supershape)),
         ] {
             let what = format!("{what} {axes:?} {e1} {e2} {ring} {half} {supershape:?}");
@@ -230,7 +233,7 @@ fn points_take_anything() {
         }
         if let Ok(raw) = RawParametric::new(n, e2) {
             for angle in angles() {
-                finite("raw", [raw.point(angle, 0.3).into(), raw.point(0.3, angle).into()]);
+                finite("raw", [raw.point(rad(angle), rad(0.3)).into(), raw.point(rad(0.3), rad(angle)).into()]);
             }
         }
     }
@@ -241,7 +244,7 @@ fn subdivision_takes_anything() {
     let mut chance = Chance(4);
     let tension = |chance: &mut Chance| {
         let t = chance.number();
-        [Tension::new(t), Tension::trigonometric(t), Tension::hyperbolic(t)][chance.below(3)].clone()
+        [Tension::new(t), Tension::trigonometric(rad(t)), Tension::hyperbolic(t)][chance.below(3)].clone()
     };
     for _ in 0..300 {
         if let Ok(tension) = tension(&mut chance) {
@@ -289,8 +292,8 @@ fn subdivision_takes_anything() {
         }
         for revolution in [
             SubdivisionRevolution::ellipsoid([a, b, c]),
-            SubdivisionRevolution::one_sheet([a, b, c], d),
-            SubdivisionRevolution::two_sheets([a, b, c], d),
+            SubdivisionRevolution::one_sheet([a, b, c], 2.0 * d),
+            SubdivisionRevolution::two_sheets([a, b, c], 2.0 * d),
             SubdivisionRevolution::elliptic_torus([a, b], c, d),
             SubdivisionRevolution::elliptic_cylinder([a, b], c),
         ] {
@@ -325,7 +328,7 @@ fn depth_buffers_take_anything() {
     for _ in 0..400 {
         let [a, b, c, d, e, f] = chance.numbers();
         let camera = match chance.below(2) {
-            0 => Camera::perspective(DVec3::new(a, b, c), DVec3::new(d, e, f), DVec3::Z, 50.0 * chance.number()),
+            0 => Camera::perspective(DVec3::new(a, b, c), DVec3::new(d, e, f), DVec3::Z, deg(50.0 * chance.number())),
             _ => Camera::orthographic(DVec3::new(a, b, c), DVec3::new(d, e, f), DVec3::Z, chance.number()),
         };
         let Ok(view) = RasterView::new(&camera, size(&mut chance), size(&mut chance)) else { continue };
@@ -362,7 +365,7 @@ fn deformations_of_meshes_take_anything() {
         let [a, b, c] = chance.numbers();
         let matrix = DMat3::from_cols_array(&chance.numbers());
         let map = DAffine3::from_mat3_translation(matrix, chance.numbers().into());
-        for result in [mesh.taper(a, b, c), mesh.twist(a), mesh.bend(a, b), mesh.affine(map)] {
+        for result in [mesh.taper(a, b, c), mesh.twist(rad(a)), mesh.bend(a, rad(b)), mesh.affine(map)] {
             match result {
                 Ok(mesh) => {
                     let normals = mesh.normals().unwrap_or(&[]);

@@ -6,7 +6,7 @@ use std::f64::consts::FRAC_PI_2;
 use glam::{DVec2, DVec3};
 use rvachev::{
     BinomialSeries, CurveSpread, ExactExplicit, GeneralisedSuperquadric, LogTable, PointMethod, PointSettings,
-    PowerTables, ProductTables, RawParametric, SeriesExplicit, Superellipse, Superellipsoid, Symmetry, reflect,
+    PowerTables, ProductTables, RawParametric, SeriesExplicit, Superellipse, Superellipsoid, Symmetry, rad, reflect,
 };
 
 /// The wedge 0 ≤ x ≤ y ≤ z on nodes i/size, with exact heights.
@@ -143,7 +143,7 @@ fn look_up_fails_outside_the_wedge() {
 fn the_printed_table_of_the_parametric_form() {
     let printed = [(5.0, [0.9998, 0.9070]), (25.0, [0.9961, 0.9661]), (45.0, [0.9862, 0.9862])];
     for (degrees, [cos, sin]) in printed {
-        let [x, _, z] = RawParametric::new(0.04, 1.0).unwrap().point(f64::to_radians(degrees), 0.0);
+        let [x, _, z] = RawParametric::new(0.04, 1.0).unwrap().point(rad(f64::to_radians(degrees)), rad(0.0));
         assert!((x - cos).abs() < 6e-5 && (z - sin).abs() < 6e-5, "{degrees}: {x} {z}");
     }
     let angles: Vec<f32> = (0..300).map(|i| i as f32 * (FRAC_PI_2 as f32 / 299.0)).collect();
@@ -152,7 +152,7 @@ fn the_printed_table_of_the_parametric_form() {
     let raw = RawParametric::new(0.5, 1.5).unwrap();
     raw.octant_single(&angles, &turned, out.each_mut().map(|v| v.as_mut_slice()));
     for i in 1..299 {
-        let exact = raw.point(f64::from(angles[i]), f64::from(turned[i]));
+        let exact = raw.point(rad(f64::from(angles[i])), rad(f64::from(turned[i])));
         for (o, e) in out.iter().zip(exact) {
             assert!((f64::from(o[i]) - e).abs() < 3e-6, "{i}: {} {e}", o[i]);
         }

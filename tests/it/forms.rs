@@ -5,7 +5,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3};
 use rvachev::{
     Bounds, Cuboid, Cylinder, Evaluator, Extrusion, Field, GeneralisedSuperquadric, Gielis, Gradients, HalfSpace,
     Helix, ParamError, Polygon, Profile, RFunction, Real, SineWave, SmoothStep, Solid, Sphere, Superellipsoid,
-    Superhyperboloid, Supershape, Supertoroid, Tape, Turns,
+    Superhyperboloid, Supershape, Supertoroid, Tape, Turns, deg, rad,
 };
 
 use crate::lattices::lattices;
@@ -123,9 +123,9 @@ fn profiles() -> Vec<Case> {
             cases.push(Case { deformed: true, condition: 2.0, ..case(format!("{name}, revolved"), ring, 1.0) });
         }
     }
-    let twisted = Extrusion { twist: 0.8, scale: 0.7, ..Extrusion::new(1.0) };
+    let twisted = Extrusion { twist: rad(0.8), scale: 0.7, ..Extrusion::new(1.0) };
     let bar = Profile::rectangle(DVec2::new(1.0, 0.5)).extrude_with(&twisted);
-    let part = Profile::circle(0.3).translate(DVec2::new(0.6, 0.0)).revolve_by(4.0);
+    let part = Profile::circle(0.3).translate(DVec2::new(0.6, 0.0)).revolve_by(rad(4.0));
     // On the axis itself the angle about it is anything: no sample is to lie there.
     let spring = Profile::circle(0.2).sweep_helix(&Helix::new(0.7, 0.9, 1.4)).translate(DVec3::new(0.03, 0.02, 0.0));
     for (name, solid) in [("twisted bar", bar), ("part of a ring", part), ("spring", spring)] {
@@ -144,10 +144,10 @@ fn superquadrics(axes: DVec3) -> Vec<Case> {
     }
     for [e1, e2] in [[1.0, 1.0], [0.05, 1.6], [2.5, 0.8], [0.8, 2.5]] {
         for (name, leaf) in [
-            ("one sheet", Superhyperboloid::one_sheet(axes, e1, e2, 0.9)),
-            ("one sheet along x", Superhyperboloid::one_sheet_x(axes, e1, e2, 0.9)),
-            ("two sheets", Superhyperboloid::two_sheets(axes, e1, e2, 1.1)),
-            ("two sheets along x", Superhyperboloid::two_sheets_x(axes, e1, e2, 1.6)),
+            ("one sheet", Superhyperboloid::one_sheet(axes, e1, e2, 1.8)),
+            ("one sheet along x", Superhyperboloid::one_sheet_x(axes, e1, e2, 1.8)),
+            ("two sheets", Superhyperboloid::two_sheets(axes, e1, e2, 2.2)),
+            ("two sheets along x", Superhyperboloid::two_sheets_x(axes, e1, e2, 3.2)),
         ] {
             let size = Solid::from(leaf).bounds().unwrap().half_extents().max_element();
             cases.push(case(format!("{name} {e1} {e2}"), leaf, size));
@@ -171,23 +171,26 @@ fn maps() -> Vec<Case> {
     let mut cases = vec![
         case("translate", base().translate(DVec3::new(0.4, -0.2, 0.1)), 1.5),
         case("rotate", base().rotate(DQuat::from_scaled_axis(DVec3::new(0.4, -0.7, 1.1))), 1.2),
-        case("rotate about axes", base().rotate_x(0.4).rotate_y(-1.0).rotate_z(2.0), 1.2),
+        case("rotate about axes", base().rotate_x(rad(0.4)).rotate_y(rad(-1.0)).rotate_z(rad(2.0)), 1.2),
         case("scale", base().scale(0.01), 0.01),
         case("mirror", base().scale(-2.0), 2.0),
         case("scale_axes", base().scale_axes(DVec3::new(2.0, 0.5, 1.0)), 2.0),
         case("affine", base().affine(shear), 2.0),
     ];
     for (name, solid) in [
-        ("taper", base().taper(0.5, -0.4, 0.6)),
-        ("twist", base().twist(1.3)),
-        ("taper by laws", base().taper_by(SineWave { mean: 1.0, amplitude: 0.3, wavelength: 2.0, phase: 0.4 }, 0.8)),
-        ("twist by a law", base().twist_by(SmoothStep { from: (-0.5, 0.0), to: (0.5, 1.2) })),
-        ("elongate", base().elongate(DVec3::new(0.2, 0.0, 0.5))),
-        ("bend", base().bend(0.5, 0.7)),
-        ("bend the other way", base().bend(-0.6, 0.0)),
-        ("a hair of a bend", base().bend(1e-9, 0.3)),
-        ("all three", base().taper(0.25, 0.25, 0.6).twist(0.8).bend(0.5, 0.0)),
-        ("deformed and moved", base().twist(0.8).rotate_x(0.5).taper(0.3, 0.1, 1.0).translate(DVec3::X)),
+        ("taper", base().taper(0.5, -0.4, 1.2)),
+        ("twist", base().twist(rad(1.3))),
+        (
+            "taper by laws",
+            base().taper_by(SineWave { mean: 1.0, amplitude: 0.3, wavelength: 2.0, phase: rad(0.4) }, 0.8),
+        ),
+        ("twist by a law", base().twist_by(rad(1.0), SmoothStep { from: (-0.5, 0.0), to: (0.5, 1.2) })),
+        ("elongate", base().elongate(DVec3::new(0.4, 0.0, 1.0))),
+        ("bend", base().bend(0.5, rad(0.7))),
+        ("bend the other way", base().bend(-0.6, deg(0.0))),
+        ("a hair of a bend", base().bend(1e-9, rad(0.3))),
+        ("all three", base().taper(0.25, 0.25, 1.2).twist(rad(0.8)).bend(0.5, deg(0.0))),
+        ("deformed and moved", base().twist(rad(0.8)).rotate_x(rad(0.5)).taper(0.3, 0.1, 2.0).translate(DVec3::X)),
     ] {
         // The chain's largest stretch near the solid is below this.
         cases.push(Case { condition: 6.0, deformed: true, ..case(name, solid, 1.5) });
@@ -208,7 +211,7 @@ fn condition_of(rule: RFunction) -> f64 {
 
 fn joins() -> Vec<Case> {
     let a = Solid::superellipsoid(DVec3::new(1.0, 0.8, 0.6), 0.3, 0.7);
-    let b = Solid::cylinder(0.4, 3.0).rotate_x(0.5).translate(DVec3::new(0.2, 0.1, 0.0));
+    let b = Solid::cylinder(0.4, 3.0).rotate_x(rad(0.5)).translate(DVec3::new(0.2, 0.1, 0.0));
     let mut cases = Vec::new();
     for rule in RULES {
         let condition = condition_of(rule);
@@ -551,7 +554,7 @@ impl Field for Wave {
 #[test]
 fn a_leaf_of_a_user_has_all_forms() {
     let mut random = Random::new(9);
-    let solid = Solid::new(Wave { height: 0.5 }).rotate_x(0.3).twist(0.4) - Solid::sphere(0.3);
+    let solid = Solid::new(Wave { height: 0.5 }).rotate_x(rad(0.3)).twist(rad(0.4)) - Solid::sphere(0.3);
     let case = Case { deformed: true, condition: 8.0, ..case("wave", solid, 1.5) };
     let program = case.solid.field_program().unwrap();
     let points = points(&case, &mut random, 400, 2.0);

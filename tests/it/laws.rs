@@ -5,7 +5,7 @@
 use glam::{DAffine3, DVec3};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use rvachev::{RFunction, Solid};
+use rvachev::{RFunction, Solid, rad};
 
 use crate::support::{RULES, Random, extra_seed, frame_of, random_solid, value};
 
@@ -136,9 +136,9 @@ proptest! {
     fn a_deformed_solid_stays_in_its_bounds(solid in solids(), seed: u64) {
         let mut random = Random::new(seed);
         let all = [
-            solid.taper(random.range(-0.9, 0.9), random.range(-0.9, 0.9), random.range(0.2, 1.0)),
-            solid.twist(random.range(-4.0, 4.0)),
-            solid.bend(random.range(-0.6, 0.6), random.range(-3.0, 3.0)),
+            solid.taper(random.range(-0.9, 0.9), random.range(-0.9, 0.9), random.range(0.4, 2.0)),
+            solid.twist(rad(random.range(-4.0, 4.0))),
+            solid.bend(random.range(-0.6, 0.6), rad(random.range(-3.0, 3.0))),
         ];
         for deformed in all.iter().filter(|s| s.bounds().is_ok()) {
             let bounds = deformed.bounds().unwrap();

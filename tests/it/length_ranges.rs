@@ -1,7 +1,7 @@
 //! Ranges of offsets and shells: they hold every value, of points and of lanes, near and far.
 
 use glam::DVec3;
-use rvachev::{Bounds, Program, Solid, Tape};
+use rvachev::{Bounds, Program, Solid, Tape, rad};
 
 use crate::support::{Random, frame_of, lanes32, lanes64, random_leaf, samples};
 use crate::zoo;
@@ -12,9 +12,9 @@ fn operand(random: &mut Random) -> Solid {
     for _ in 0..random.below(3) {
         let moved = match random.below(7) {
             0 => solid.affine(random.affine()),
-            1 => solid.taper(random.range(-0.6, 0.6), random.range(-0.6, 0.6), random.range(0.3, 1.0)),
-            2 | 3 => solid.twist(random.range(-2.0, 2.0)),
-            4 => solid.bend(random.range(-0.5, 0.5), random.range(-3.0, 3.0)),
+            1 => solid.taper(random.range(-0.6, 0.6), random.range(-0.6, 0.6), random.range(0.6, 2.0)),
+            2 | 3 => solid.twist(rad(random.range(-2.0, 2.0))),
+            4 => solid.bend(random.range(-0.5, 0.5), rad(random.range(-3.0, 3.0))),
             _ => zoo::catalogue_map(random, &solid),
         };
         if moved.bounds().is_ok() {

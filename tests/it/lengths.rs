@@ -4,7 +4,7 @@ use glam::DVec3;
 use rvachev::{
     Capsule, CellSize, Cone, Cuboid, Cylinder, Ellipsoid, Features, GeneralisedSuperquadric, Gielis, MeshSettings,
     MinimalSurface, Prism, Pyramid, RFunction, Region, RoundedCuboid, SheetLattice, SineWave, Solid, SolidError,
-    Sphere, Superellipsoid, Superhyperboloid, Supershape, Wedge,
+    Sphere, Superellipsoid, Superhyperboloid, Supershape, Wedge, rad,
 };
 
 use crate::support::{Random, lanes32, off_surface};
@@ -79,11 +79,11 @@ fn walls_of_convex_leaves_have_their_thickness() -> Result<(), SolidError> {
 fn walls_keep_their_thickness_under_maps() -> Result<(), SolidError> {
     let pill = Solid::superellipsoid(DVec3::new(1.0, 0.7, 0.5), 0.3, 0.7);
     for (name, solid) in [
-        ("turned and scaled", pill.scale(1.5).rotate_x(0.4)),
+        ("turned and scaled", pill.scale(1.5).rotate_x(rad(0.4))),
         ("stretched", pill.scale_axes(DVec3::new(1.0, 1.4, 0.8))),
-        ("twisted", pill.twist(0.5)),
-        ("tapered", pill.taper(0.3, -0.2, 0.5)),
-        ("bent", pill.bend(0.4, 0.3)),
+        ("twisted", pill.twist(rad(0.5))),
+        ("tapered", pill.taper(0.3, -0.2, 1.0)),
+        ("bent", pill.bend(0.4, rad(0.3))),
         ("box, stretched", Solid::cuboid(DVec3::ONE).scale_axes(DVec3::new(1.0, 2.0, 1.5))),
     ] {
         let half = solid.bounds()?.half_extents().min_element();
@@ -126,7 +126,7 @@ fn offsets_of_leaves_that_are_not_convex_keep_their_sign_when_narrowed() -> Resu
     let cases = [
         ("pinched", Solid::superellipsoid([0.5165, 0.5505, 0.2221], 2.435, 0.164)),
         ("star", star.into()),
-        ("one sheet", Superhyperboloid::one_sheet([0.4, 0.3, 0.5], 0.7, 1.2, 0.8).into()),
+        ("one sheet", Superhyperboloid::one_sheet([0.4, 0.3, 0.5], 0.7, 1.2, 1.6).into()),
     ];
     for (name, solid) in cases {
         for by in [0.13, -0.05] {
@@ -154,8 +154,8 @@ fn offsets_of_leaves_that_are_not_convex_keep_their_sign_when_narrowed() -> Resu
 /// A supershape of five lobes, twisted and with a waist: not convex, and curved both ways.
 fn lobed() -> Solid {
     let body = Supershape::new(Gielis::new(5.0, 14.0, 6.0, 6.0), Gielis::new(4.0, 6.0, 6.0, 6.0));
-    let law = SineWave { mean: 0.9, amplitude: 0.1, wavelength: 3.5, phase: -1.9 };
-    Solid::from(body.scaled(DVec3::new(1.0, 1.0, 1.8))).taper_by(law, law).twist(0.4)
+    let law = SineWave { mean: 0.9, amplitude: 0.1, wavelength: 3.5, phase: rad(-1.9) };
+    Solid::from(body.scaled(DVec3::new(1.0, 1.0, 1.8))).taper_by(law, law).twist(rad(0.4))
 }
 
 #[test]

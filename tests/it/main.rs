@@ -28,6 +28,7 @@ mod patches;
 mod pictures;
 mod primitives;
 mod profile;
+mod profile_verbs;
 mod queries;
 mod random_fields;
 mod range_images;

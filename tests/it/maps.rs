@@ -5,13 +5,13 @@ use std::f64::consts::TAU;
 use glam::{DAffine3, DQuat, DVec3};
 use rvachev::{
     Bounds, CellSize, Dual, Evaluator, Field, Gradients, Interval, Law, LawTable, LinearLaw, MeshSettings, Norm,
-    ParamError, Program, RFunction, Real, Region, SineWave, SmoothStep, Solid, SolidError, Superellipsoid, Tape,
+    ParamError, Program, RFunction, Real, Region, SineWave, SmoothStep, Solid, SolidError, Superellipsoid, Tape, rad,
 };
 
 use crate::narrow::check_narrowing;
 use crate::support::{Random, frame_of, lanes32, lanes64, near, near_point, random_solid, rounded, value};
 
-const WAVE: SineWave = SineWave { mean: 1.1, amplitude: 0.4, wavelength: 2.5, phase: 0.7 };
+const WAVE: SineWave = SineWave { mean: 1.1, amplitude: 0.4, wavelength: 2.5, phase: rad(0.7) };
 const STEP: SmoothStep = SmoothStep { from: (-0.6, 0.5), to: (0.9, 1.5) };
 
 fn table() -> LawTable {
@@ -55,7 +55,7 @@ fn laws_are_what_their_formulas_say() {
 fn by_laws(x: &impl Law, y: &impl Law, angle: &impl Law) {
     let mut random = Random::new(400);
     let solid = block();
-    let (tapered, twisted) = (solid.taper_by(x.clone(), y.clone()), solid.twist_by(angle.clone()));
+    let (tapered, twisted) = (solid.taper_by(x.clone(), y.clone()), solid.twist_by(rad(1.0), angle.clone()));
     for _ in 0..200 {
         let p = DVec3::new(random.range(-0.8, 0.8), random.range(-0.8, 0.8), random.range(-1.2, 1.2));
         let want = value(&solid, p);
@@ -92,12 +92,12 @@ fn a_law_that_is_wrong_says_where() {
     // A dip between the ends is found.
     let dip = LawTable::new([(-2.0, 1.0), (0.7, 1.0), (0.71, -1.0), (0.72, 1.0)]);
     assert!(text(rod.taper_by(dip, 1.0)).starts_with("taper_by: x_law at z = 0.7"));
-    assert_eq!(text(rod.twist_by(f64::NAN)), "twist_by: law is NaN, allowed: -1000000000 to 1000000000");
-    assert!(text(rod.twist_by(LinearLaw { at_zero: 0.0, slope: 1e8 })).contains("angle at z = -2"));
+    assert_eq!(text(rod.twist_by(rad(1.0), f64::NAN)), "twist_by: law is NaN, allowed: -1000000000 to 1000000000");
+    assert!(text(rod.twist_by(rad(1.0), LinearLaw { at_zero: 0.0, slope: 1e8 })).contains("angle (degrees) at z = -2"));
     assert!(text(rod.taper_by(SineWave { wavelength: 0.0, ..WAVE }, 1.0)).contains("law.wavelength is 0"));
     assert!(text(rod.taper_by(LawTable::new([(0.0, 1.0), (0.0, 2.0)]), 1.0)).contains("law.points[1] (z above"));
-    assert!(text(rod.twist_by(LawTable::new([]))).contains("law.points (how many) is 0"));
-    assert!(text(rod.twist_by(SmoothStep { to: STEP.from, ..STEP })).contains("z above"));
+    assert!(text(rod.twist_by(rad(1.0), LawTable::new([]))).contains("law.points (how many) is 0"));
+    assert!(text(rod.twist_by(rad(1.0), SmoothStep { to: STEP.from, ..STEP })).contains("z above"));
     // Where it is out of range beside the solid nothing is wrong, and nothing is NaN.
     let fine = rod.taper_by(LinearLaw { at_zero: 1.0, slope: 0.4 }, 1.0);
     for z in [-1e12, -3.0, -2.5, 0.0, 1e12] {
@@ -137,7 +137,7 @@ fn mirrors() {
 #[test]
 fn elongation_is_exact_where_the_leaf_is() {
     let half = DVec3::new(0.5, 0.0, 1.5);
-    let solid = Solid::sphere(0.75).elongate(half);
+    let solid = Solid::sphere(0.75).elongate(2.0 * half);
     near_point(solid.bounds().unwrap().max, half + 0.75, 1e-12);
     near_point(solid.bounds().unwrap().min, -half - 0.75, 1e-12);
     let mut random = Random::new(402);
@@ -145,11 +145,11 @@ fn elongation_is_exact_where_the_leaf_is() {
         let p = random.vector(-4.0, 4.0);
         near(value(&solid, p), 0.75 - (p - p.clamp(-half, half)).length(), 1e-13);
     }
-    let halves = block().translate(DVec3::Y * 3.0).elongate(DVec3::ONE);
+    let halves = block().translate(DVec3::Y * 3.0).elongate(DVec3::splat(2.0));
     check_narrowing(&mut random, &halves, 40);
     assert!(value(&halves, DVec3::new(0.9, 4.0, 0.9)) > 0.0 && value(&halves, DVec3::Y * 3.0) < 0.0);
     let wrong = Solid::sphere(1.0).elongate(DVec3::new(0.0, -1.0, 0.0)).bounds().unwrap_err();
-    assert_eq!(wrong.to_string(), "elongate: half.y is -1, allowed: 0 to 1000000000");
+    assert_eq!(wrong.to_string(), "elongate: lengths.y is -1, allowed: 0 to 1000000000");
 }
 
 /// Single and double precision lanes, gradients, and with the feature `formula` fidget's tree, against the point
@@ -286,7 +286,7 @@ fn rings_are_their_copies() {
         let away = random.rotation() * DVec3::X * random.range(0.1, 4.0);
         let solid = solid.translate(away);
         let folded = solid.repeat_polar(count);
-        let turned = |i: u32| solid.rotate_z(TAU * f64::from(i) / f64::from(count));
+        let turned = |i: u32| solid.rotate_z(rad(TAU * f64::from(i) / f64::from(count)));
         check_repetition(&mut random, &folded, &union((0..count).map(turned)), exact);
         if round % 5 == 0 {
             check_narrowing(&mut random, &folded, 10);
@@ -301,7 +301,8 @@ fn repetition_in_all_forms() {
     let grid = ball.repeat([6, 5, 3], DVec3::new(1.03, 1.1, 0.77));
     let ring = ball.translate(DVec3::X * 3.0).repeat_polar(14);
     let uneven = ball.translate(DVec3::X * 3.0).repeat_polar(13);
-    for solid in [&grid, &ring, &uneven, &grid.rotate(random.rotation()).twist(0.2), &ring.repeat([1, 1, 9], DVec3::Z)]
+    for solid in
+        [&grid, &ring, &uneven, &grid.rotate(random.rotation()).twist(rad(0.2)), &ring.repeat([1, 1, 9], DVec3::Z)]
     {
         forms_agree(&mut random, solid, 3e-5);
         check_narrowing(&mut random, solid, 40);
@@ -406,12 +407,12 @@ fn kept(program: &Program, bounds: &Bounds, depth: usize) -> usize {
 #[test]
 fn folds_prune_as_copies_do() {
     let ball = Solid::sphere(0.4).translate(DVec3::new(0.1, 0.2, 0.0));
-    let pill = Solid::superellipsoid(DVec3::new(0.6, 0.3, 0.2), 0.5, 1.0).rotate_z(0.5).translate(DVec3::X * 3.0);
+    let pill = Solid::superellipsoid(DVec3::new(0.6, 0.3, 0.2), 0.5, 1.0).rotate_z(rad(0.5)).translate(DVec3::X * 3.0);
     let grid = |i: u32| ball.translate(DVec3::new(f64::from(i % 4), f64::from(i / 4), 0.0));
     for (folded, copies) in [
         (ball.repeat([4, 4, 1], DVec3::ONE), union((0..16).map(grid))),
-        (pill.repeat_polar(12), union((0..12).map(|i| pill.rotate_z(TAU * f64::from(i) / 12.0)))),
-        (pill.repeat_polar(11), union((0..11).map(|i| pill.rotate_z(TAU * f64::from(i) / 11.0)))),
+        (pill.repeat_polar(12), union((0..12).map(|i| pill.rotate_z(rad(TAU * f64::from(i) / 12.0))))),
+        (pill.repeat_polar(11), union((0..11).map(|i| pill.rotate_z(rad(TAU * f64::from(i) / 11.0))))),
         (
             pill.repeat([5, 1, 1], DVec3::X * 0.7),
             union((0..5).map(|i| pill.translate(DVec3::X * (0.7 * f64::from(i))))),
@@ -509,7 +510,7 @@ fn users_own_leaves_prune_as_built_in_ones() {
         (Solid::new(Own(leaf)), Solid::from(leaf)),
         (Solid::new(OwnSphere(0.7)), Solid::sphere(0.7)),
         (turn(Solid::new(Own(leaf))), turn(leaf.into())),
-        (Solid::new(Own(leaf)).twist(0.8), Solid::from(leaf).twist(0.8)),
+        (Solid::new(Own(leaf)).twist(rad(0.8)), Solid::from(leaf).twist(rad(0.8))),
     ] {
         let cube = Bounds::from_center(DVec3::splat(0.0123), DVec3::splat(1.3));
         let count = |solid: &Solid| kept(&solid.surface_program().unwrap(), &cube, 6);

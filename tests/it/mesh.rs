@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use glam::{DQuat, DVec3, Vec3};
 use rvachev::{
     Blend, Bounds, CellSize, Features, Helix, Mesh, MeshReport, MeshSettings, MeshingError, Profile, Progress,
-    RFunction, Run, Solid, write_stl,
+    RFunction, Run, Solid, rad, write_stl,
 };
 
 use crate::models;
@@ -192,7 +192,7 @@ fn flush_faces_leave_neither_skin_nor_dust() {
 
 #[test]
 fn a_solid_without_itself_is_nothing() {
-    for solid in [Solid::cuboid(DVec3::splat(2.0)), Solid::superellipsoid(DVec3::ONE, 0.3, 0.7).rotate_x(0.4)] {
+    for solid in [Solid::cuboid(DVec3::splat(2.0)), Solid::superellipsoid(DVec3::ONE, 0.3, 0.7).rotate_x(rad(0.4))] {
         let mesh = (&solid - &solid).mesh(&cells(24)).unwrap();
         assert_eq!(mesh.triangles().len(), 0, "{solid:?}");
         let twice = (&solid | &solid).mesh(&cells(24)).unwrap();
@@ -367,11 +367,13 @@ fn surfaces_of_fields_that_jump_are_closed() {
     let fillet = Blend::Fillet { radius: 0.05 };
     let on_core = |solid: &Solid| solid.union_with(Solid::cylinder(0.25, 1.4), fillet);
     let on_cube = |solid: &Solid| solid.union_with(Solid::cuboid(DVec3::splat(0.5)), fillet);
-    let ring = |angle: f64| Profile::circle(0.2).revolve_by(angle);
+    let ring = |angle: f64| Profile::circle(0.2).revolve_by(rad(angle));
     let on_block = |solid: &Solid| solid.union_with(Solid::cuboid(DVec3::splat(0.3)).translate(DVec3::X * 0.1), fillet);
     let mut solids = vec![(on_core(&thread), 64), (on_core(&thread), 96)];
     solids.extend([4.9, 5.0, 5.1].map(|angle| (on_block(&ring(angle)), 40)));
-    solids.extend((0..5).map(|n| (on_cube(&thread.rotate_x(0.5 * f64::from(n)).rotate_z(0.3 * f64::from(n))), 24)));
+    solids.extend(
+        (0..5).map(|n| (on_cube(&thread.rotate_x(rad(0.5 * f64::from(n))).rotate_z(rad(0.3 * f64::from(n)))), 24)),
+    );
     for (nth, (solid, longest)) in solids.iter().enumerate() {
         for features in [Features::Smooth, Features::Sharp] {
             let mesh = solid.mesh(&MeshSettings { features, ..cells(*longest) });
@@ -383,7 +385,7 @@ fn surfaces_of_fields_that_jump_are_closed() {
 
 #[test]
 fn thin_walls_have_normals() {
-    let shell = Solid::cuboid((0.64, 0.53, 0.85)).rotate_x(0.3).rotate_y(0.5).shell(0.025);
+    let shell = Solid::cuboid((0.64, 0.53, 0.85)).rotate_x(rad(0.3)).rotate_y(rad(0.5)).shell(0.025);
     for features in [Features::Smooth, Features::Sharp] {
         let mesh =
             shell.mesh(&MeshSettings { cell: CellSize::Length(0.05), features, ..MeshSettings::default() }).unwrap();

@@ -7,7 +7,7 @@
 #![allow(dead_code)]
 
 use glam::{DAffine3, DMat3, DVec3};
-use rvachev::{Bounds, RFunction, Solid};
+use rvachev::{Bounds, RFunction, Solid, deg, rad};
 
 /// Numbers of the superellipsoids; the file says what they are.
 const NUMBERS: &str = include_str!("../models/superellipsoids.txt");
@@ -120,7 +120,7 @@ pub fn m5() -> Model {
 
 pub fn m6() -> Model {
     let solid = Solid::superellipsoid(DVec3::new(1.0, 0.8, 0.6), 0.3, 0.7);
-    Model { name: "M6", half: 1.5, solid: solid.taper(0.25, 0.25, 0.6).twist(0.8).bend(0.5, 0.0) }
+    Model { name: "M6", half: 1.5, solid: solid.taper(0.25, 0.25, 1.2).twist(rad(0.8)).bend(0.5, deg(0.0)) }
 }
 
 /// All six, in order.

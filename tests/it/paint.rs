@@ -1,7 +1,7 @@
 //! Paint: on leaves, through joins and blends.
 
 use glam::DVec3;
-use rvachev::{Blend, CellSize, MeshSettings, Paint, RFunction, Solid, SolidError};
+use rvachev::{Blend, CellSize, MeshSettings, Paint, RFunction, Solid, SolidError, deg, rad};
 
 const RED: [u8; 3] = [200, 0, 0];
 const BLUE: [u8; 3] = [0, 0, 200];
@@ -49,13 +49,13 @@ fn one_part_in_two_paints() {
 #[test]
 fn paint_survives_maps_copies_and_lengths() {
     let part = (Solid::cuboid([2.0, 2.0, 2.0]).paint(RED) - Solid::cylinder(0.5, 3.0).paint(BLUE))
-        .rotate_z_degrees(45.0)
+        .rotate_z(deg(45.0))
         .translate([3.0, 0.0, 0.0])
         .repeat_polar(6);
     assert_eq!(color(&part, [-3.5, 0.0, 0.0]), Some(BLUE));
     let shell = Solid::sphere(2.0).paint(GREEN).shell(0.2);
     assert_eq!(color(&shell, [1.8, 0.0, 0.0]), Some(GREEN));
-    let twisted = Solid::cuboid([2.0, 1.0, 4.0]).paint(RED).twist(0.3);
+    let twisted = Solid::cuboid([2.0, 1.0, 4.0]).paint(RED).twist(rad(0.3));
     assert_eq!(color(&twisted, [0.0, 0.0, 2.0]), Some(RED));
 }
 
@@ -63,7 +63,7 @@ fn paint_survives_maps_copies_and_lengths() {
 fn blends_mix() {
     let foot = Solid::half_space(DVec3::Z, 0.0).paint(RED);
     let wall = Solid::half_space(DVec3::X, 0.0).paint(BLUE);
-    for blend in [Blend::Smooth { radius: 1.0 }, Blend::Fillet { radius: 1.0 }, Blend::Chamfer { width: 1.0 }] {
+    for blend in [Blend::Smooth { radius: 1.0 }, Blend::Fillet { radius: 1.0 }, Blend::Chamfer { leg: 1.0 }] {
         let both = foot.union_with(&wall, blend);
         // Along a line from one operand to the other, red falls and blue rises.
         let at = |t: f64| {

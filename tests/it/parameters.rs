@@ -7,7 +7,7 @@ use glam::{DAffine2, DAffine3, DMat2, DQuat, DVec3};
 use rvachev::{
     Blend, Bounds, Caps, Extrusion, GeneralisedSuperquadric, Gielis, Helix, LawTable, LinearLaw, MinimalSurface,
     NetworkLattice, Polygon, Prism, Profile, RFunction, RegularPolygon, SheetLattice, SineWave, SmoothStep, Solid,
-    Superhyperboloid, Supershape, Supertoroid,
+    Superhyperboloid, Supershape, Supertoroid, deg, rad,
 };
 
 /// A solid by one of its numbers.
@@ -71,12 +71,12 @@ fn leaves() -> Vec<(&'static str, &'static str, Make)> {
         ("supertoroid", "ring", |v| Solid::supertoroid(DVec3::ONE, v, 1.0, 1.0)),
         ("supertoroid", "e1", |v| Supertoroid::new(DVec3::ONE, 2.0, v, 1.0).into()),
         ("supertoroid", "e2", |v| Supertoroid::new(DVec3::ONE, 2.0, 1.0, v).into()),
-        ("superhyperboloid", "semi_axes.x", |v| Superhyperboloid::one_sheet([v, 1.0, 1.0], 1.0, 1.0, 1.0).into()),
-        ("superhyperboloid", "e1", |v| Superhyperboloid::one_sheet(DVec3::ONE, v, 1.0, 1.0).into()),
-        ("superhyperboloid", "e2", |v| Superhyperboloid::one_sheet_x(DVec3::ONE, 1.0, v, 1.0).into()),
-        ("superhyperboloid", "half_length", |v| Superhyperboloid::one_sheet(DVec3::ONE, 1.0, 1.0, v).into()),
-        ("superhyperboloid", "half_length", |v| Superhyperboloid::two_sheets(DVec3::ONE, 1.0, 1.0, v).into()),
-        ("superhyperboloid", "half_length", |v| Superhyperboloid::two_sheets_x(DVec3::ONE, 1.0, 1.0, v).into()),
+        ("superhyperboloid", "semi_axes.x", |v| Superhyperboloid::one_sheet([v, 1.0, 1.0], 1.0, 1.0, 2.0).into()),
+        ("superhyperboloid", "e1", |v| Superhyperboloid::one_sheet(DVec3::ONE, v, 1.0, 2.0).into()),
+        ("superhyperboloid", "e2", |v| Superhyperboloid::one_sheet_x(DVec3::ONE, 1.0, v, 2.0).into()),
+        ("superhyperboloid", "length", |v| Superhyperboloid::one_sheet(DVec3::ONE, 1.0, 1.0, v).into()),
+        ("superhyperboloid", "length", |v| Superhyperboloid::two_sheets(DVec3::ONE, 1.0, 1.0, v).into()),
+        ("superhyperboloid", "length", |v| Superhyperboloid::two_sheets_x(DVec3::ONE, 1.0, 1.0, v).into()),
         ("generalised superquadric", "semi_axes.x", |v| GeneralisedSuperquadric::new([v, 1.0, 1.0], [2.0; 3]).into()),
         ("generalised superquadric", "exponents", |v| GeneralisedSuperquadric::new(DVec3::ONE, [2.0, v, 2.0]).into()),
         ("supershape", "equator.m", |v| Supershape::new(Gielis::new(v, 3.0, 3.0, 3.0), Gielis::circle()).into()),
@@ -122,7 +122,7 @@ fn profiles() -> Vec<(&'static str, &'static str, Make)> {
         ("circle", "radius", |v| Profile::circle(v).extrude(1.0)),
         ("superellipse", "semi_axes.x", |v| Profile::superellipse([v, 1.0], 1.0).extrude(1.0)),
         ("superellipse", "exponent", |v| Profile::superellipse([1.0, 1.0], v).extrude(1.0)),
-        ("superpolygon", "size", |v| Profile::superpolygon(Gielis::polygon(5, 10.0), v).extrude(1.0)),
+        ("superpolygon", "radius", |v| Profile::superpolygon(Gielis::polygon(5, 10.0), v).extrude(1.0)),
         ("superpolygon", "curve.n1", |v| Profile::superpolygon(Gielis::new(5.0, v, 3.0, 3.0), 1.0).extrude(1.0)),
         ("superpolygon", "curve.m", |v| Profile::superpolygon(Gielis::new(v, 3.0, 3.0, 3.0), 1.0).extrude(1.0)),
         ("rectangle", "size.y", |v| Profile::rectangle([1.0, v]).extrude(1.0)),
@@ -132,25 +132,24 @@ fn profiles() -> Vec<(&'static str, &'static str, Make)> {
         ("polygon", "1", |v| Profile::polygon([[0.0, 0.0], [v, 0.0], [0.0, 1.0]]).extrude(1.0)),
         ("polygon", "2", |v| Polygon::new([[[0.0, 0.0], [1.0, 0.0], [0.3, v]]]).extrude_(1.0)),
         ("extrude", "height", |v| disc().extrude(v)),
-        ("extrude", "twist", |v| disc().extrude_with(&Extrusion { twist: v, ..Extrusion::new(1.0) })),
+        ("extrude", "twist", |v| disc().extrude_with(&Extrusion { twist: rad(v), ..Extrusion::new(1.0) })),
         ("extrude", "scale", |v| disc().extrude_with(&Extrusion { scale: v, ..Extrusion::new(1.0) })),
         ("extrude", "caps", |v| disc().extrude_with(&Extrusion { caps: Caps::Rounded(v), ..Extrusion::new(1.0) })),
         ("extrude", "caps", |v| disc().extrude_with(&Extrusion { caps: Caps::Chamfered(v), ..Extrusion::new(1.0) })),
-        ("revolve_by", "angle", |v| disc().revolve_by(v)),
+        ("revolve_by", "angle", |v| disc().revolve_by(rad(v))),
         ("sweep_helix", "radius", |v| disc().sweep_helix(&Helix::new(v, 1.5, 2.0))),
         ("sweep_helix", "pitch", |v| disc().sweep_helix(&Helix::new(2.0, v, 2.0))),
         ("sweep_helix", "turns", |v| disc().sweep_helix(&Helix::new(2.0, 1.5, v))),
         ("sweep_helix", "ends", |v| disc().sweep_helix(&Helix { ends: Caps::Rounded(v), ..Helix::new(2.0, 1.5, 2.0) })),
         ("offset", "distance", |v| disc().offset(v).extrude(1.0)),
         ("translate", "translation.x", |v| disc().translate([v, 0.0]).extrude(1.0)),
-        ("rotate", "", |v| disc().rotate(v).extrude(1.0)),
+        ("rotate", "", |v| disc().rotate(rad(v)).extrude(1.0)),
         ("scale", "", |v| disc().scale(v).extrude(1.0)),
         ("scale_axes", "", |v| disc().scale_axes([1.0, v]).extrude(1.0)),
-        ("affine", "matrix", |v| disc().mirror([v, 0.0]).extrude(1.0)),
+        ("reflect", "", |v| disc().reflect([v, 0.0], 0.0).extrude(1.0)),
         ("affine", "", |v| disc().affine(DAffine2::from_mat2(DMat2::from_diagonal([v, 1.0].into()))).extrude(1.0)),
-        ("union", "alpha", |v| disc().union(&disc(), RFunction::Alpha(v)).extrude(1.0)),
-        ("difference", "p", |v| disc().difference(&disc(), RFunction::P(v)).extrude(1.0)),
-        #[cfg(feature = "formula")]
+        ("union", "alpha", |v| disc().union(disc(), RFunction::Alpha(v)).extrude(1.0)),
+        ("difference", "p", |v| disc().difference(disc(), RFunction::P(v)).extrude(1.0)),
         ("formula", "bounds.min.x", |v| {
             let bounds = rvachev::PlaneBounds { min: [v, -1.0].into(), max: [9e8; 2].into() };
             Profile::formula(&fidget::context::Tree::x(), bounds).extrude(1.0)
@@ -158,7 +157,7 @@ fn profiles() -> Vec<(&'static str, &'static str, Make)> {
         ("circle", "radius", |v| Profile::circle(v).revolve()),
         ("circle", "radius", |v| Profile::circle(v).column()),
         ("circle", "radius", |v| Profile::circle(v).sweep_helix(&Helix::new(2.0, 1.5, 2.0))),
-        ("superellipse", "semi_axes.y", |v| Profile::superellipse([1.0, v], 1.0).revolve_by(1.0)),
+        ("superellipse", "semi_axes.y", |v| Profile::superellipse([1.0, v], 1.0).revolve_by(rad(1.0))),
         ("superpolygon", "curve.n2", |v| Profile::superpolygon(Gielis::new(5.0, 3.0, v, 3.0), 1.0).column()),
         ("sweep_helix", "ends", |v| {
             disc().sweep_helix(&Helix { ends: Caps::Chamfered(v), ..Helix::new(2.0, 1.5, 2.0) })
@@ -177,7 +176,7 @@ impl Swept for Polygon {
     }
 }
 
-fn verbs() -> [(&'static str, &'static str, Make); 53] {
+fn verbs() -> [(&'static str, &'static str, Make); 54] {
     [
         ("union", "alpha", |v| ball().union(block(), RFunction::Alpha(v))),
         ("union", "p", |v| ball().union(block(), RFunction::P(v))),
@@ -187,7 +186,7 @@ fn verbs() -> [(&'static str, &'static str, Make); 53] {
         ("smooth intersection", "radius", |v| ball().smooth_intersection(block(), v)),
         ("smooth difference", "radius", |v| ball().smooth_difference(block(), v)),
         ("filleted union", "radius", |v| ball().union_with(block(), Blend::Fillet { radius: v })),
-        ("chamfered difference", "width", |v| ball().difference_with(block(), Blend::Chamfer { width: v })),
+        ("chamfered difference", "leg", |v| ball().difference_with(block(), Blend::Chamfer { leg: v })),
         ("displaced union", "height", |v| {
             ball().union_with(block(), Blend::Displacement { height: v, falloff: [1.0, 1.0] })
         }),
@@ -204,15 +203,15 @@ fn verbs() -> [(&'static str, &'static str, Make); 53] {
         ("shell", "thickness", |v| block().shell(v)),
         ("translate", "translation.y", |v| ball().translate([0.0, v, 0.0])),
         ("rotate", "", |v| ball().rotate(DQuat::from_xyzw(v, 0.0, 0.0, 1.0))),
-        ("rotate_x", "angle", |v| ball().rotate_x(v)),
-        ("rotate_y", "angle", |v| ball().rotate_y(v)),
-        ("rotate_z", "angle", |v| ball().rotate_z(v)),
-        ("rotate_x_degrees", "angle", |v| ball().rotate_x_degrees(v)),
-        ("rotate_y_degrees", "angle", |v| ball().rotate_y_degrees(v)),
-        ("rotate_z_degrees", "angle", |v| ball().rotate_z_degrees(v)),
-        ("rotate_about", "axis or angle", |v| ball().rotate_about(DVec3::X, v)),
-        ("rotate_about", "axis or angle", |v| ball().rotate_about([v, 0.0, 0.0], 1.0)),
-        ("rotate_about_degrees", "axis or angle", |v| ball().rotate_about_degrees(DVec3::X, v)),
+        ("rotate_x", "angle", |v| ball().rotate_x(rad(v))),
+        ("rotate_y", "angle", |v| ball().rotate_y(rad(v))),
+        ("rotate_z", "angle", |v| ball().rotate_z(rad(v))),
+        ("rotate_x", "angle", |v| ball().rotate_x(deg(v))),
+        ("rotate_y", "angle", |v| ball().rotate_y(deg(v))),
+        ("rotate_z", "angle", |v| ball().rotate_z(deg(v))),
+        ("rotate_about", "axis or angle", |v| ball().rotate_about(DVec3::X, rad(v))),
+        ("rotate_about", "axis or angle", |v| ball().rotate_about([v, 0.0, 0.0], rad(1.0))),
+        ("rotate_about", "axis or angle", |v| ball().rotate_about(DVec3::X, deg(v))),
         ("scale", "factor", |v| ball().scale(v)),
         ("scale_axes", "factors", |v| ball().scale_axes([1.0, v, 1.0])),
         ("affine", "matrix", |v| ball().affine(DAffine3::from_scale([1.0, 1.0, v].into()))),
@@ -221,18 +220,21 @@ fn verbs() -> [(&'static str, &'static str, Make); 53] {
         ("reflect", "", |v| ball().reflect(DVec3::X, v)),
         ("reflect", "", |v| ball().mirrored([0.0, v, 0.0], 0.0)),
         ("reflect", "", |v| ball().mirrored(DVec3::X, v)),
-        ("taper", "kx", |v| ball().taper(v, 0.0, 1.0)),
-        ("taper", "ky", |v| ball().taper(0.0, v, 1.0)),
-        ("taper", "half_height", |v| ball().taper(0.1, 0.1, v)),
-        ("twist", "rate", |v| ball().twist(v)),
-        ("bend", "curvature", |v| ball().bend(v, 0.0)),
-        ("bend", "angle", |v| ball().bend(0.1, v)),
+        ("taper", "kx", |v| ball().taper(v, 0.0, 2.0)),
+        ("taper", "ky", |v| ball().taper(0.0, v, 2.0)),
+        ("taper", "height", |v| ball().taper(0.1, 0.1, v)),
+        ("twist", "rate", |v| ball().twist(rad(v))),
+        ("bend", "curvature", |v| ball().bend(v, deg(0.0))),
+        ("bend", "angle", |v| ball().bend(0.1, rad(v))),
         ("taper_by", "", |v| ball().taper_by(v, 1.0)),
         ("taper_by", "", |v| ball().taper_by(LinearLaw { at_zero: 1.0, slope: v }, 1.0)),
-        ("taper_by", "", |v| ball().taper_by(SineWave { mean: 1.0, amplitude: 0.1, wavelength: v, phase: 0.0 }, 1.0)),
-        ("twist_by", "", |v| ball().twist_by(SmoothStep { from: (-1.0, 0.0), to: (v, 1.0) })),
-        ("twist_by", "", |v| ball().twist_by(LawTable::new([(0.0, 0.0), (1.0, v)]))),
-        ("elongate", "half.y", |v| ball().elongate([0.0, v, 0.0])),
+        ("taper_by", "", |v| {
+            ball().taper_by(SineWave { mean: 1.0, amplitude: 0.1, wavelength: v, phase: deg(0.0) }, 1.0)
+        }),
+        ("twist_by", "", |v| ball().twist_by(rad(1.0), SmoothStep { from: (-1.0, 0.0), to: (v, 1.0) })),
+        ("twist_by", "", |v| ball().twist_by(rad(1.0), LawTable::new([(0.0, 0.0), (1.0, v)]))),
+        ("twist_by", "angle", |v| ball().twist_by(rad(v), LinearLaw { at_zero: 0.0, slope: 1.0 })),
+        ("elongate", "lengths.y", |v| ball().elongate([0.0, v, 0.0])),
         ("repeat", "spacing", |v| ball().repeat([3, 1, 1], [v, 1.0, 1.0])),
         // A step back starts with the last copy, where it is.
         ("repeat", "", |v| ball().repeat_linear(3, [0.0, v, 0.0])),

@@ -1,11 +1,11 @@
 //! Parameter patches: points, frames, closed meshes.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
 use rvachev::{
-    Field, Gielis, Mesh, ParametricCurve, ParametricSurface, PatchError, PatchSettings, Radius, Spacing, Superellipse,
-    Superellipsoid, Superhyperboloid, Supershape, Supertoroid,
+    Angle, Field, Gielis, Mesh, ParametricCurve, ParametricSurface, PatchError, PatchSettings, Radius, Spacing,
+    Superellipse, Superellipsoid, Superhyperboloid, Supershape, Supertoroid, deg, rad,
 };
 
 /// A surface with the field whose zero set it is, and the number of handles of each shell.
@@ -42,10 +42,10 @@ fn cases() -> Vec<Case> {
     for e in [[0.4, 1.3], [1.0, 1.0], [0.05, 0.05], [2.0, 1.8]] {
         let a = [1.2, 0.8, 0.6];
         for shape in [
-            Superhyperboloid::one_sheet(a, e[0], e[1], 1.5),
-            Superhyperboloid::one_sheet_x(a, e[0], e[1], 1.5),
-            Superhyperboloid::two_sheets(a, e[0], e[1], 1.5),
-            Superhyperboloid::two_sheets_x(a, e[0], e[1], 3.0),
+            Superhyperboloid::one_sheet(a, e[0], e[1], 3.0),
+            Superhyperboloid::one_sheet_x(a, e[0], e[1], 3.0),
+            Superhyperboloid::two_sheets(a, e[0], e[1], 3.0),
+            Superhyperboloid::two_sheets_x(a, e[0], e[1], 6.0),
         ] {
             let shells = if shape.has_two_sheets() { 2 } else { 1 };
             cases.push(case(shape, ParametricSurface::of(&shape).unwrap(), shells, 0));
@@ -78,9 +78,9 @@ fn points_lie_on_the_zero_set_and_normals_along_its_gradient() {
     for case in cases() {
         for surface in sheets(&case.surface) {
             let (mut worst, mut skew) = (0.0f64, 0.0f64);
-            for eta in parameters(surface.eta_range()) {
-                for omega in parameters(surface.omega_range()) {
-                    let frame = surface.frame(eta, omega);
+            for eta in parameters(surface.eta_range().map(Angle::radians)) {
+                for omega in parameters(surface.omega_range().map(Angle::radians)) {
+                    let frame = surface.frame(rad(eta), rad(omega));
                     // Beyond the clipped ends the field is that of the slab.
                     let inside = frame.point * (1.0 - 1e-9);
                     if case.name.contains("Superhyperboloid") && (case.residual)(inside) < -1e-7 {
@@ -123,20 +123,20 @@ fn poles_and_seams_are_exact() {
     for e in [0.01, 0.1, 1.0, 2.0, 10.0] {
         let surface = ParametricSurface::of(&Superellipsoid::new([3.0, 2.0, 1.0], e, e)).unwrap();
         for omega in [0.1, PI, -2.0] {
-            assert_eq!(surface.point(FRAC_PI_2, omega), DVec3::Z);
-            assert_eq!(surface.point(-FRAC_PI_2, omega), DVec3::NEG_Z);
-            assert_eq!(surface.normal(FRAC_PI_2, omega), DVec3::Z);
+            assert_eq!(surface.point(deg(90.0), rad(omega)), DVec3::Z);
+            assert_eq!(surface.point(deg(-90.0), rad(omega)), DVec3::NEG_Z);
+            assert_eq!(surface.normal(deg(90.0), rad(omega)), DVec3::Z);
         }
-        assert_eq!(surface.point(0.0, PI), DVec3::new(-3.0, 0.0, 0.0));
-        assert_eq!(surface.point(0.0, -PI), surface.point(0.0, PI));
-        assert_eq!(surface.point(0.0, FRAC_PI_2), DVec3::new(0.0, 2.0, 0.0));
-        assert_eq!(surface.normal(0.0, FRAC_PI_2), DVec3::Y);
+        assert_eq!(surface.point(rad(0.0), deg(180.0)), DVec3::new(-3.0, 0.0, 0.0));
+        assert_eq!(surface.point(rad(0.0), deg(-180.0)), surface.point(rad(0.0), deg(180.0)));
+        assert_eq!(surface.point(rad(0.0), deg(90.0)), DVec3::new(0.0, 2.0, 0.0));
+        assert_eq!(surface.normal(rad(0.0), deg(90.0)), DVec3::Y);
     }
     let ring = ParametricSurface::of(&Supertoroid::new([1.2, 0.8, 0.6], 1.5, 0.01, 0.01)).unwrap();
-    assert_eq!(ring.point(PI, FRAC_PI_2), DVec3::new(0.0, 0.4, 0.0));
+    assert_eq!(ring.point(deg(180.0), deg(90.0)), DVec3::new(0.0, 0.4, 0.0));
     let shape = Supershape::new(Gielis::new(6.0, 2.0, 0.5, 7.0), Gielis::new(4.0, 10.0, 10.0, 10.0));
-    assert_eq!(ParametricSurface::of(&shape).unwrap().point(0.0, PI).y, 0.0);
-    assert_eq!(ParametricSurface::of(&shape).unwrap().point(FRAC_PI_2, 1.0), DVec3::Z);
+    assert_eq!(ParametricSurface::of(&shape).unwrap().point(rad(0.0), deg(180.0)).y, 0.0);
+    assert_eq!(ParametricSurface::of(&shape).unwrap().point(deg(90.0), rad(1.0)), DVec3::Z);
 }
 
 fn mesh_of(surface: &ParametricSurface, settings: &PatchSettings) -> Mesh {
@@ -256,7 +256,7 @@ fn what_is_wrong_is_named() {
     let settings = PatchSettings { rows: 100_000, columns: 100_000, spacing: Spacing::UniformAngle };
     assert!(ball.mesh(&settings).unwrap_err().to_string().starts_with("rows · columns is 10000000000"));
     // A tolerance that Barr's sheets do not reach is an error, with what they reach.
-    let bowls = ParametricSurface::of(&Superhyperboloid::two_sheets_x([1.0, 1.0, 1.0], 0.01, 0.01, 3.0)).unwrap();
+    let bowls = ParametricSurface::of(&Superhyperboloid::two_sheets_x([1.0, 1.0, 1.0], 0.01, 0.01, 6.0)).unwrap();
     let settings = PatchSettings { spacing: Spacing::Chord(4e-6), ..PatchSettings::default() };
     match bowls.quad_mesh(&settings) {
         Err(PatchError::Tolerance { value, least, .. }) => assert!(value == 4e-6 && least > value),

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3, Vec3};
 use rvachev::{
     Background, Blend, Bounds, Camera, Image, Lights, Paint, Projection, RenderSettings, Run, Solid, Style, Transfer,
-    View,
+    View, deg, rad,
 };
 
 use crate::golden::{ascii, same_as_golden};
@@ -44,14 +44,14 @@ fn switches() {
         ..small(Style::Studio)
     };
     same_as_golden("plain", &scene.render(&camera, &settings).unwrap());
-    let hard = RenderSettings { softness: 0.0, background: Background::Transparent, ..small(Style::Studio) };
+    let hard = RenderSettings { softness: deg(0.0), background: Background::Transparent, ..small(Style::Studio) };
     same_as_golden("hard_shadows", &scene.render(&camera, &hard).unwrap());
     // Every switch does something.
     let base = small(Style::Studio);
     let lights = Lights::default();
     let others = [
         RenderSettings { shadows: false, ..base.clone() },
-        RenderSettings { softness: 0.0, ..base.clone() },
+        RenderSettings { softness: deg(0.0), ..base.clone() },
         RenderSettings { occlusion: false, ..base.clone() },
         RenderSettings { ground: false, ..base.clone() },
         RenderSettings { transfer: Transfer::Srgb, ..base.clone() },
@@ -151,7 +151,7 @@ fn layers() {
 fn silhouette_and_leaves_in_ascii() {
     let solid = Solid::sphere(1.0) - Solid::cuboid([0.7, 4.0, 0.7]);
     let camera = Camera::orthographic([0.0, -9.0, 0.0], DVec3::ZERO, DVec3::Z, 2.4);
-    let slanted = camera.orbit(0.0, 12.0);
+    let slanted = camera.orbit(deg(0.0), deg(12.0));
     let owner = solid.layers(&slanted, 26, 13).unwrap().owner();
     let found = ascii(&owner, |o| o.map_or(' ', |o| ['o', 'x'][o as usize]));
     let expected = "
@@ -226,13 +226,13 @@ fn views_and_orbits() {
         assert!((a.fx / camera.eye.distance(camera.target) - b.fx).abs() < 1e-9 * b.fx);
     }
     let start = Camera::framing_view(&bounds, View::Front);
-    let whole = (0..8).fold(start, |camera, _| camera.orbit(45.0, 0.0));
+    let whole = (0..8).fold(start, |camera, _| camera.orbit(deg(45.0), deg(0.0)));
     assert!(whole.eye.distance(start.eye) < 1e-12);
-    assert!(start.orbit(90.0, 0.0).eye.x > 1.0 && start.orbit(90.0, 0.0).eye.y.abs() < 1e-9);
-    let above = start.orbit(0.0, 500.0);
+    assert!(start.orbit(deg(90.0), deg(0.0)).eye.x > 1.0 && start.orbit(deg(90.0), deg(0.0)).eye.y.abs() < 1e-9);
+    let above = start.orbit(deg(0.0), deg(500.0));
     above.check().unwrap();
     assert!(above.eye.z > start.eye.distance(start.target) * 0.99);
-    assert_eq!(start.orbit(f64::NAN, 0.0), start);
+    assert_eq!(start.orbit(deg(f64::NAN), deg(0.0)), start);
     assert_eq!(Camera::look_at([0.0, 0.0, 5.0], [0.0, 0.0, 0.0]).up, DVec3::Y);
 }
 
@@ -245,7 +245,7 @@ fn fitted_cameras_hold_every_point_tightly() {
         })
         .collect();
     for view in View::ALL {
-        let perspective = Camera::perspective(view.direction(), DVec3::ZERO, view.up(), 40.0);
+        let perspective = Camera::perspective(view.direction(), DVec3::ZERO, view.up(), deg(40.0));
         for camera in [perspective, perspective.parallel()] {
             for aspect in [0.5, 1.0, 2.0] {
                 let camera = camera.fitted_to(&points, aspect);
@@ -288,9 +288,9 @@ fn a_scene_is_framed_tighter_than_its_box() {
 fn the_ground_lies_under_the_lowest_point() {
     for (solid, low) in [
         (Solid::sphere(1.0), -1.0),
-        (Solid::cuboid([2.0, 2.0, 2.0]).rotate_x_degrees(45.0), -(2f64.sqrt())),
+        (Solid::cuboid([2.0, 2.0, 2.0]).rotate_x(deg(45.0)), -(2f64.sqrt())),
         (Solid::sphere(1.0) & Solid::half_space([0.0, 0.0, -1.0], 0.3), -0.3),
-        (Solid::superellipsoid([3.0, 2.0, 1.0], 0.3, 0.3).twist(0.2).translate([0.0, 0.0, 50.0]), 49.0),
+        (Solid::superellipsoid([3.0, 2.0, 1.0], 0.3, 0.3).twist(rad(0.2)).translate([0.0, 0.0, 50.0]), 49.0),
     ] {
         let found = solid.scene().unwrap().lowest();
         let height = solid.bounds().unwrap().size().z;

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use glam::{DAffine2, DMat2, DVec2, DVec3};
 use rvachev::{
     Caps, CellSize, Extrusion, Gielis, Helix, Mesh, MeshSettings, Polygon, Profile, RFunction, Radius, Region, Solid,
-    Superpolygon,
+    Superpolygon, deg, rad,
 };
 
 use crate::support::{Random, near, near_point, value};
@@ -58,16 +58,16 @@ fn joins_and_maps_are_those_of_the_plane() {
         assert_eq!(inside(!&a), !in_a);
         let at = |p: DVec2| b.value(p).unwrap();
         near(b.translate(DVec2::X).value(p).unwrap(), at(p - DVec2::X), 1e-14);
-        near(b.rotate(angle).value(p).unwrap(), at(DVec2::from_angle(-angle).rotate(p)), 1e-14);
+        near(b.rotate(rad(angle)).value(p).unwrap(), at(DVec2::from_angle(-angle).rotate(p)), 1e-14);
         near(b.scale(-2.5).value(p).unwrap(), 2.5 * at(p / -2.5), 1e-14);
         near(b.scale_axes(DVec2::new(2.0, -0.5)).value(p).unwrap(), 0.5 * at(p / DVec2::new(2.0, -0.5)), 1e-14);
         let line = DVec2::from_angle(angle);
-        near(b.mirror(line).value(p).unwrap(), at(p - 2.0 * p.dot(line) * line), 1e-14);
+        near(b.reflect(line, 0.0).value(p).unwrap(), at(p - 2.0 * p.dot(line) * line), 1e-14);
         let stretch = at(map.inverse().transform_point2(p)) / b.affine(map).value(p).unwrap();
         let least = b.affine(map).value(p).unwrap() / at(map.inverse().transform_point2(p));
         assert!(stretch > 0.0 && (0.78..0.99).contains(&least), "{least}");
     }
-    let bounds = b.rotate(PI / 2.0).translate(DVec2::new(3.0, 4.0)).bounds().unwrap();
+    let bounds = b.rotate(deg(90.0)).translate(DVec2::new(3.0, 4.0)).bounds().unwrap();
     near_point((bounds.min - DVec2::new(2.6, 3.25)).extend(0.0), DVec3::ZERO, 1e-12);
     near_point((bounds.max - DVec2::new(3.4, 4.75)).extend(0.0), DVec3::ZERO, 1e-12);
 }
@@ -97,7 +97,7 @@ fn unbounded_profiles_make_bounded_solids() {
     near_box(&strip.extrude(3.0), DVec3::new(-1.0, -0.5, -1.5), DVec3::new(1.0, 0.5, 1.5));
     let ring = strip.translate(DVec2::new(4.0, 1.0));
     near_box(&ring.revolve(), DVec3::new(-5.0, -5.0, 0.5), DVec3::new(5.0, 5.0, 1.5));
-    near_box(&ring.revolve_by(1.0), DVec3::new(0.0, 0.0, 0.5), DVec3::new(5.0, 5.0, 1.5));
+    near_box(&ring.revolve_by(rad(1.0)), DVec3::new(0.0, 0.0, 0.5), DVec3::new(5.0, 5.0, 1.5));
     near_box(&strip.sweep_helix(&Helix::new(4.0, 3.0, 2.0)), DVec3::new(-5.0, -5.0, -3.5), DVec3::new(5.0, 5.0, 3.5));
     assert!(strip.translate(DVec2::new(-4.0, 0.0)).revolve().bounds().unwrap().is_empty());
     assert!(strip.column().mesh(&MeshSettings::default()).is_err());
@@ -108,13 +108,13 @@ fn extrusions_have_their_volume() {
     let hexagon = Profile::regular_polygon(6, 1.0);
     let area = 1.5 * 3f64.sqrt();
     has_volume(&hexagon.extrude(2.0), 40, 2.0 * area, 6e-3);
-    let twisted = Extrusion { twist: 1.2, ..Extrusion::new(2.0) };
+    let twisted = Extrusion { twist: rad(1.2), ..Extrusion::new(2.0) };
     has_volume(&hexagon.extrude_with(&twisted), 40, 2.0 * area, 8e-3);
     // A frustum.
     let tapered = Extrusion { scale: 0.4, ..Extrusion::new(2.0) };
     let frustum = 2.0 * area * (1.0 + 0.4 + 0.16) / 3.0;
     has_volume(&hexagon.extrude_with(&tapered), 40, frustum, 8e-3);
-    has_volume(&hexagon.extrude_with(&Extrusion { twist: -0.8, ..tapered }), 40, frustum, 1e-2);
+    has_volume(&hexagon.extrude_with(&Extrusion { twist: rad(-0.8), ..tapered }), 40, frustum, 1e-2);
     let polygon = Polygon::new([comb(8)]);
     let area = polygon.area();
     near(area, 8.0 + 8.0 * 0.55, 1e-12);
@@ -126,7 +126,7 @@ fn twisted_and_scaled_sections_are_where_they_ought_to_be() {
     let mut random = Random::new(303);
     let profile = Profile::polygon([[0.0, 0.0], [2.0, 0.3], [1.0, 1.5]]);
     let (twist, scale, height) = (1.1, 0.6, 4.0);
-    let solid = profile.extrude_with(&Extrusion { twist, scale, caps: Caps::Flat, height });
+    let solid = profile.extrude_with(&Extrusion { twist: rad(twist), scale, caps: Caps::Flat, height });
     for _ in 0..500 {
         let (p, z) = (plane(&mut random, 2.5), random.range(-1.99, 1.99));
         let up = z / height + 0.5;
@@ -147,12 +147,12 @@ fn revolved_solids_have_their_volume() {
     let area = mesh(&slice, 48).volume();
     has_volume(&section.revolve(), 64, area * TAU * 2.0, 1.5e-2);
     for angle in [0.5, PI, 5.5] {
-        has_volume(&section.revolve_by(angle), 48, area * angle * 2.0, 2e-2);
+        has_volume(&section.revolve_by(rad(angle)), 48, area * angle * 2.0, 2e-2);
     }
     // The part beyond the axis is left out.
     let disc = Profile::circle(1.0);
     has_volume(&disc.revolve(), 40, 4.0 / 3.0 * PI, 6e-3);
-    let sector = disc.revolve_by(TAU / 3.0);
+    let sector = disc.revolve_by(rad(TAU / 3.0));
     has_volume(&sector, 40, 4.0 / 9.0 * PI, 8e-3);
     assert!(sector.contains(DVec3::new(0.5, 0.1, 0.0)).unwrap());
     assert!(!sector.contains(DVec3::new(0.5, -0.1, 0.0)).unwrap());
@@ -244,7 +244,7 @@ fn superpolygons_follow_their_curve() {
         let profile = Profile::from(shape.clone());
         for i in 0..64 {
             let angle = TAU * f64::from(i) / 64.0 - PI;
-            let p = 2.5 * curve.radius(angle, Radius::Standard) * DVec2::from_angle(angle);
+            let p = 2.5 * curve.radius(rad(angle), Radius::Standard) * DVec2::from_angle(angle);
             near(shape.gauge(p), 1.0, 1e-12);
             near(profile.value(p).unwrap(), 0.0, 1e-11);
             let bounds = profile.bounds().unwrap();
@@ -283,9 +283,12 @@ fn what_is_wrong_is_said() {
     );
     assert!(text(disc.extrude(0.0)).starts_with("intersection[0] / extrude: height is 0, allowed"));
     assert!(text(disc.extrude_with(&Extrusion { scale: 0.0, ..Extrusion::new(1.0) })).contains("extrude: scale is 0"));
-    assert!(text(disc.extrude_with(&Extrusion { twist: f64::NAN, ..Extrusion::new(1.0) })).contains("twist is NaN"));
-    assert!(text(disc.revolve_by(-1.0)).contains("revolve_by: angle is -1, allowed"));
-    assert!(text(disc.revolve_by(7.0)).contains("revolve_by: angle is 7, allowed"));
+    assert!(
+        text(disc.extrude_with(&Extrusion { twist: rad(f64::NAN), ..Extrusion::new(1.0) })).contains("twist is NaN")
+    );
+    assert!(text(disc.revolve_by(deg(-1.0))).contains("revolve_by: angle is -1, allowed"));
+    let error = text(disc.revolve_by(deg(400.0)));
+    assert!(error.contains("revolve_by: angle is 400, allowed: 0.0001 to 360 degrees"), "{error}");
     let helix = Helix::new(3.0, 2.0, 2.0);
     assert!(text(disc.sweep_helix(&Helix { turns: 0.0, ..helix })).contains("sweep_helix: turns is 0"));
     assert!(text(disc.sweep_helix(&Helix { radius: 0.9, ..helix })).contains("radius is 0.9, allowed: above 1"));

@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_4, PI};
 
 use glam::DVec3;
-use rvachev::{Bounds, Evaluator, Gradients, RFunction, Solid, Superellipsoid, Tape};
+use rvachev::{Bounds, Evaluator, Gradients, RFunction, Solid, Superellipsoid, Tape, deg, rad};
 
 use crate::support::{Random, corpus, near, near_point, random_solid, value};
 
@@ -260,7 +260,7 @@ fn owners_are_the_leaves_that_decide() {
     assert_eq!(hit.owner, side.index);
 
     let nested =
-        Solid::sphere(0.5).twist(1.0) | (Solid::cuboid(DVec3::ONE) & Solid::sphere(0.6)).translate(DVec3::X * 3.0);
+        Solid::sphere(0.5).twist(rad(1.0)) | (Solid::cuboid(DVec3::ONE) & Solid::sphere(0.6)).translate(DVec3::X * 3.0);
     assert_eq!(nested.owner(DVec3::X * 0.5).unwrap().path, "union[0] / twist / sphere");
     let far = nested.owner(DVec3::new(3.45, 0.0, 0.0)).unwrap();
     assert_eq!(far.path, "union[1] / translate / intersection[0] / box");
@@ -279,16 +279,16 @@ fn owners_are_the_leaves_that_decide() {
 fn bounds_of_moved_leaves_are_tight() {
     let cases = [
         (Solid::sphere(1.0).translate(DVec3::X * 2.0), DVec3::X * 2.0, DVec3::ONE),
-        (Solid::cuboid(DVec3::new(2.0, 1.0, 1.0)).rotate_z(FRAC_PI_4), DVec3::ZERO, {
+        (Solid::cuboid(DVec3::new(2.0, 1.0, 1.0)).rotate_z(rad(FRAC_PI_4)), DVec3::ZERO, {
             let side = 1.5 / 2f64.sqrt();
             DVec3::new(side, side, 0.5)
         }),
-        (Solid::cylinder(1.0, 4.0).rotate_x(0.5 * PI), DVec3::ZERO, DVec3::new(1.0, 2.0, 1.0)),
-        (Solid::cylinder(1.0, 2.0).rotate_x(0.3), DVec3::ZERO, {
+        (Solid::cylinder(1.0, 4.0).rotate_x(deg(90.0)), DVec3::ZERO, DVec3::new(1.0, 2.0, 1.0)),
+        (Solid::cylinder(1.0, 2.0).rotate_x(rad(0.3)), DVec3::ZERO, {
             let (sin, cos) = 0.3f64.sin_cos();
             DVec3::new(1.0, cos + sin, cos + sin)
         }),
-        (Solid::sphere(1.0).scale_axes(DVec3::new(1.0, 2.0, 3.0)).rotate_z(FRAC_PI_4), DVec3::ZERO, {
+        (Solid::sphere(1.0).scale_axes(DVec3::new(1.0, 2.0, 3.0)).rotate_z(rad(FRAC_PI_4)), DVec3::ZERO, {
             let side = 2.5f64.sqrt();
             DVec3::new(side, side, 3.0)
         }),

@@ -1,7 +1,7 @@
 //! The rasteriser: which pixels triangles cover, how deep, and what the near plane leaves.
 
 use glam::{DVec3, Vec3};
-use rvachev::{Buffers, Camera, CameraError, Facing, Fragments, LayerSource, Mesh, RasterError, RasterView, Tile};
+use rvachev::{Buffers, Camera, CameraError, Facing, Fragments, LayerSource, Mesh, RasterError, RasterView, Tile, deg};
 
 fn front(height: f64, pixels: u32) -> RasterView {
     let camera = Camera::orthographic(DVec3::new(0.0, -10.0, 0.0), DVec3::ZERO, DVec3::Z, height);
@@ -93,9 +93,10 @@ fn depths_are_those_of_the_plane() {
     let mesh = Mesh::new(corners.to_vec(), vec![[0, 1, 2]]).unwrap();
     let [a, b, c] = corners.map(|p| p.as_dvec3());
     let normal = (b - a).cross(c - a);
-    for camera in
-        [Camera::perspective(eye, DVec3::ZERO, DVec3::Z, 40.0), Camera::orthographic(eye, DVec3::ZERO, DVec3::Z, 5.0)]
-    {
+    for camera in [
+        Camera::perspective(eye, DVec3::ZERO, DVec3::Z, deg(40.0)),
+        Camera::orthographic(eye, DVec3::ZERO, DVec3::Z, 5.0),
+    ] {
         let view = RasterView::new(&camera, 90, 70).unwrap();
         let mut buffers = Buffers::new(&view);
         buffers.draw(&view.surface(&mesh), 3, Facing::Front).unwrap();
@@ -133,7 +134,7 @@ fn what_reaches_behind_the_eye_is_cut_at_the_near_plane() {
         Vec3::new(-far, far, -1.0),
     ];
     let floor = Mesh::new(corners, vec![[0, 1, 2], [0, 2, 3]]).unwrap();
-    let camera = Camera::perspective(DVec3::ZERO, DVec3::Y, DVec3::Z, 90.0);
+    let camera = Camera::perspective(DVec3::ZERO, DVec3::Y, DVec3::Z, deg(90.0));
     for near in [1e-3, 0.5, 3.0] {
         let view = RasterView::new(&camera, 101, 101).unwrap().with_near(near).unwrap();
         let mut buffers = Buffers::new(&view);
@@ -172,9 +173,10 @@ fn triangles_of_any_size_and_place() {
 #[test]
 fn a_depth_and_a_pixel_make_a_point() {
     let eye = DVec3::new(3.0, -4.0, 5.0);
-    for camera in
-        [Camera::perspective(eye, DVec3::ONE, DVec3::Z, 50.0), Camera::orthographic(eye, DVec3::ONE, DVec3::Z, 7.0)]
-    {
+    for camera in [
+        Camera::perspective(eye, DVec3::ONE, DVec3::Z, deg(50.0)),
+        Camera::orthographic(eye, DVec3::ONE, DVec3::Z, 7.0),
+    ] {
         let view = RasterView::new(&camera, 640, 480).unwrap();
         for p in [DVec3::ZERO, DVec3::new(0.5, 1.0, -2.0)] {
             let [x, y, depth] = view.project(p);
@@ -189,7 +191,7 @@ fn a_depth_and_a_pixel_make_a_point() {
 
 #[test]
 fn errors() {
-    let camera = Camera::perspective(DVec3::ONE, DVec3::ZERO, DVec3::Z, 40.0);
+    let camera = Camera::perspective(DVec3::ONE, DVec3::ZERO, DVec3::Z, deg(40.0));
     let text = |result: Result<RasterView, RasterError>| result.unwrap_err().to_string();
     assert_eq!(text(RasterView::new(&camera, 0, 10)), "width is 0; allowed: 1 to 16384 pixels");
     assert_eq!(text(RasterView::new(&camera, 10, 16385)), "height is 16385; allowed: 1 to 16384 pixels");

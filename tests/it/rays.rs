@@ -5,7 +5,7 @@
 //! crossing, any other is halved, the nearer half first, until it is short.
 
 use glam::DVec3;
-use rvachev::{Bounds, Camera, Program, Region, Run, Scene, Solid, Surface, Window};
+use rvachev::{Bounds, Camera, Program, Region, Run, Scene, Solid, Surface, Window, deg, rad};
 
 use crate::models;
 use crate::support::{Random, frame_of, near, random_leaf, random_solid};
@@ -296,17 +296,17 @@ fn pictures_of_formulas_see_what_single_rays_hit() {
     let plate = profile.extrude(0.1) - Solid::sphere(0.3).translate([0.2, 0.1, 0.0]);
     compare_with_single_rays("plate", &plate);
     // Seen along z, what is outside of the text is seen as well, and the text stands askew.
-    let letters = profile.extrude(0.1).rotate_z(0.4).translate([0.1, 0.0, 0.06]);
+    let letters = profile.extrude(0.1).rotate_z(rad(0.4)).translate([0.1, 0.0, 0.06]);
     let base = Solid::cuboid([0.8, 0.9, 0.05]) | Solid::sphere(0.2).translate([-0.4, 0.1, 0.0]);
     compare_with_single_rays("letters on a base", &(&base | &letters));
     compare_with_single_rays("letters cut into a base", &(&base - &letters));
     // With a second text across it.
-    compare_with_single_rays("two texts", &(&plate | profile.extrude(0.2).rotate_x_degrees(90.0)));
+    compare_with_single_rays("two texts", &(&plate | profile.extrude(0.2).rotate_x(deg(90.0))));
 }
 
 fn compare_with_single_rays(name: &str, solid: &Solid) {
     let bounds = solid.bounds().unwrap();
-    let inside = Camera::perspective(bounds.center(), bounds.max, DVec3::Z, 100.0);
+    let inside = Camera::perspective(bounds.center(), bounds.max, DVec3::Z, deg(100.0));
     let above = Camera::orthographic(bounds.center() + DVec3::Z * 9.0, bounds.center(), DVec3::Y, bounds.size().y);
     let within = Camera::orthographic(bounds.center(), bounds.center() - DVec3::Z, DVec3::Y, 0.7 * bounds.size().y);
     let below = Camera::orthographic(bounds.min - DVec3::Z, bounds.min, DVec3::new(0.3, 1.0, 0.0), 4.0);

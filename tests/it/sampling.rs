@@ -75,7 +75,7 @@ fn samples_repeat_and_lie_on_the_surface() {
     assert_ne!(cloud, surface.sample(500, 10).unwrap());
     assert!(cloud.iter().all(|s| (star.gauge(s.point) - 1.0).abs() < 1e-12));
     assert!(cloud.iter().all(|s| (s.normal.length() - 1.0).abs() < 1e-12));
-    let bowls = ParametricSurface::of(&Superhyperboloid::two_sheets_x([1.2, 0.8, 0.6], 0.4, 1.3, 3.0)).unwrap();
+    let bowls = ParametricSurface::of(&Superhyperboloid::two_sheets_x([1.2, 0.8, 0.6], 0.4, 1.3, 6.0)).unwrap();
     for s in bowls.sample(500, 4).unwrap() {
         assert!(s.point.x >= 1.2 && s.point.x <= 3.0, "{}", s.point);
     }

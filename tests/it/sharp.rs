@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use glam::{DQuat, DVec3};
 use rvachev::{
     AtBounds, Bounds, CellSize, Features, Field, Mesh, MeshSettings, MeshingError, ParamError, RFunction, Real, Solid,
+    rad,
 };
 
 use crate::models;
@@ -254,7 +255,7 @@ fn a_smooth_solid_is_the_same_in_both_modes() {
         (Solid::torus(1.0, 0.4), 0.1),
         // Radii of two cells and a little.
         (Solid::torus(1.0, 0.4), 0.18),
-        (Solid::sphere(0.5).rotate_x(0.3), 0.23),
+        (Solid::sphere(0.5).rotate_x(rad(0.3)), 0.23),
         (Solid::superellipsoid(DVec3::ONE, 1.0, 0.8), 0.05),
         (Solid::ellipsoid(DVec3::new(1.0, 0.7, 0.4)), 0.05),
         (Solid::cuboid(DVec3::ONE).offset(0.3), 0.06),
@@ -328,7 +329,7 @@ fn apexes_are_kept() {
 
 #[test]
 fn normals_at_creases_are_those_of_the_faces() {
-    let mesh = mesh(&Solid::cuboid(DVec3::splat(2.0)).rotate_x(0.3).rotate_z(0.5), 0.11, Features::Sharp);
+    let mesh = mesh(&Solid::cuboid(DVec3::splat(2.0)).rotate_x(rad(0.3)).rotate_z(rad(0.5)), 0.11, Features::Sharp);
     let corners = mesh.corner_normals().expect("a cube has creases");
     let mut astray = 0;
     for (triangle, normals) in mesh.triangles().iter().zip(corners) {

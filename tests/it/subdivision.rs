@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, PI, TAU};
 use glam::{DVec2, DVec3};
 use rvachev::{
     ControlGrid, ControlPolygon, ProfileEnd, QuadMesh, SubdivisionError, SubdivisionRevolution, Supertoroid, Tension,
-    hyperbola_of_ellipse,
+    deg, hyperbola_of_ellipse, rad,
 };
 
 fn square(size: f64) -> Vec<DVec2> {
@@ -13,7 +13,7 @@ fn square(size: f64) -> Vec<DVec2> {
 }
 
 fn right_angle() -> Tension {
-    Tension::trigonometric(FRAC_PI_2).unwrap()
+    Tension::trigonometric(deg(90.0)).unwrap()
 }
 
 #[test]
@@ -208,8 +208,8 @@ fn quadrics() {
     let [a, b, c] = [2.0, 1.0, 0.7f64];
     let squares = |p: DVec3| [(p.x / a).powi(2), (p.y / b).powi(2), (p.z / c).powi(2)];
     let ellipsoid = SubdivisionRevolution::ellipsoid([a, b, c]).unwrap();
-    let one = SubdivisionRevolution::one_sheet([a, b, c], 1.5).unwrap();
-    let two = SubdivisionRevolution::two_sheets([a, b, c], 2.0).unwrap();
+    let one = SubdivisionRevolution::one_sheet([a, b, c], 3.0).unwrap();
+    let two = SubdivisionRevolution::two_sheets([a, b, c], 4.0).unwrap();
     let on_ellipsoid = |p: DVec3| squares(p).iter().sum::<f64>() - 1.0;
     // The middles of flat ends are not on the surface.
     let on_one = |p: DVec3| {
@@ -253,7 +253,7 @@ fn elliptic_torus_and_cylinder() {
     assert!(residual < 1e-13, "{residual}");
     assert_solid(&mesh, 1, 1);
 
-    let cylinder = SubdivisionRevolution::elliptic_cylinder([2.0, 1.0], 1.5).unwrap();
+    let cylinder = SubdivisionRevolution::elliptic_cylinder([2.0, 1.0], 3.0).unwrap();
     for levels in [[0, 4], [3, 4]] {
         let mesh = cylinder.limit_mesh(levels).unwrap();
         assert_solid(&mesh, 1, 0);
@@ -341,11 +341,11 @@ fn what_is_wrong_is_named() {
     assert!(matches!(error, SubdivisionError::Levels { levels: 60, allowed: 24, .. }), "{error}");
     assert!(polygon.subdivided(u32::MAX).is_err());
     for step in [0.0, -1.0, PI + 1e-9, f64::NAN] {
-        assert!(Tension::trigonometric(step).is_err());
+        assert!(Tension::trigonometric(rad(step)).is_err());
     }
     assert!(Tension::new(f64::NAN).is_err() && Tension::new(-1.1).is_err() && Tension::hyperbolic(1e3).is_err());
     assert!(SubdivisionRevolution::ellipsoid([1.0, 0.0, 1.0]).is_err());
-    assert!(SubdivisionRevolution::two_sheets([1.0, 1.0, 1.0], 0.9).is_err());
+    assert!(SubdivisionRevolution::two_sheets([1.0, 1.0, 1.0], 1.8).is_err());
     assert!(SubdivisionRevolution::elliptic_torus([0.5, 0.4], 0.4, 1.0).is_err());
     let open = ControlPolygon::cosine_graph(3).unwrap();
     assert!(SubdivisionRevolution::new(open.clone(), open).is_err());

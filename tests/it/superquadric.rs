@@ -93,10 +93,10 @@ fn hyperboloids(random: &mut Random, e1: f64, e2: f64) -> [Superhyperboloid; 4] 
     let mut longer = |axis: f64| axis * random.range(1.1, 2.0);
     let a = DVec3::new(0.9, 0.7, 0.5);
     [
-        Superhyperboloid::one_sheet(a, e1, e2, longer(a.z)),
-        Superhyperboloid::one_sheet_x(a, e1, e2, longer(a.x)),
-        Superhyperboloid::two_sheets(a, e1, e2, longer(a.z)),
-        Superhyperboloid::two_sheets_x(a, e1, e2, longer(a.x)),
+        Superhyperboloid::one_sheet(a, e1, e2, 2.0 * longer(a.z)),
+        Superhyperboloid::one_sheet_x(a, e1, e2, 2.0 * longer(a.x)),
+        Superhyperboloid::two_sheets(a, e1, e2, 2.0 * longer(a.z)),
+        Superhyperboloid::two_sheets_x(a, e1, e2, 2.0 * longer(a.x)),
     ]
 }
 
@@ -133,12 +133,12 @@ fn parametric_points_are_on_the_supertoroid() {
 #[test]
 fn known_superhyperboloids() {
     let (a, p) = (DVec3::new(1.2, 0.8, 0.6), DVec3::new(1.0, 0.5, 0.7));
-    near(Superhyperboloid::one_sheet(a, 0.4, 1.3, 2.0).unclipped(p), 0.108385205645, 1e-12);
-    near(Superhyperboloid::two_sheets(a, 0.4, 1.3, 2.0).unclipped(p), -0.080346339887, 1e-12);
+    near(Superhyperboloid::one_sheet(a, 0.4, 1.3, 4.0).unclipped(p), 0.108385205645, 1e-12);
+    near(Superhyperboloid::two_sheets(a, 0.4, 1.3, 4.0).unclipped(p), -0.080346339887, 1e-12);
     let p = DVec3::new(2.0, 0.5, 0.7);
-    near(Superhyperboloid::two_sheets_x(a, 0.4, 1.3, 2.0).unclipped(p), 0.143644190814, 1e-12);
+    near(Superhyperboloid::two_sheets_x(a, 0.4, 1.3, 4.0).unclipped(p), 0.143644190814, 1e-12);
     // The form along x is the other with its axes renamed.
-    let turned = Superhyperboloid::one_sheet_x(DVec3::new(a.z, a.x, a.y), 0.4, 1.3, 2.0);
+    let turned = Superhyperboloid::one_sheet_x(DVec3::new(a.z, a.x, a.y), 0.4, 1.3, 4.0);
     near(turned.unclipped(DVec3::new(0.7, 1.0, 0.5)), 0.108385205645, 1e-12);
 }
 
@@ -146,9 +146,9 @@ fn known_superhyperboloids() {
 fn parametric_points_are_on_the_superhyperboloids() {
     let (a, spow) = (DVec3::new(1.2, 0.8, 0.6), |x: f64, e: f64| x.abs().powf(e).copysign(x));
     for [e1, e2] in [[0.1, 0.4], [0.4, 1.3], [1.0, 1.0], [2.0, 1.5], [2.5, 3.0]] {
-        let one = Superhyperboloid::one_sheet(a, e1, e2, 5.0);
-        let two = Superhyperboloid::two_sheets(a, e1, e2, 5.0);
-        let two_x = Superhyperboloid::two_sheets_x(a, e1, e2, 5.0);
+        let one = Superhyperboloid::one_sheet(a, e1, e2, 10.0);
+        let two = Superhyperboloid::two_sheets(a, e1, e2, 10.0);
+        let two_x = Superhyperboloid::two_sheets_x(a, e1, e2, 10.0);
         for i in 0..300 {
             let h = 1.2 * ((0.618_033_988_7 * f64::from(i)).fract() * 2.0 - 1.0);
             let w = 0.754_877_666_2 * TAU * f64::from(i);
@@ -177,15 +177,15 @@ fn volumes_of_superhyperboloids() {
         };
         let one = sections(&|z| (1.0 + z.powf(p)).powf(1.0 / p));
         let two = sections(&|z| (z.powf(p) - 1.0).max(0.0).powf(1.0 / p));
-        let got = counted_volume(&Superhyperboloid::one_sheet(a, e1, e2, half).into(), 15_000);
+        let got = counted_volume(&Superhyperboloid::one_sheet(a, e1, e2, 2.0 * half).into(), 15_000);
         near(got / one, 1.0, 0.01);
-        let got = counted_volume(&Superhyperboloid::two_sheets(a, e1, e2, half).into(), 15_000);
+        let got = counted_volume(&Superhyperboloid::two_sheets(a, e1, e2, 2.0 * half).into(), 15_000);
         near(got / two, 1.0, 0.01);
     }
     // Quadrics: 2π(t³/3 − t + 2/3) in units of the semi-axes.
     let t: f64 = 2.0 / a.x;
     let want = TAU * (t.powi(3) / 3.0 - t + 2.0 / 3.0) * a.element_product();
-    let got = counted_volume(&Superhyperboloid::two_sheets_x(a, 1.0, 1.0, 2.0).into(), 15_000);
+    let got = counted_volume(&Superhyperboloid::two_sheets_x(a, 1.0, 1.0, 4.0).into(), 15_000);
     near(got / want, 1.0, 0.01);
     // Barr's form with p = 1 in its profile along z: |x| ≥ ‖(y, 1 + |z|)‖.
     let (p, steps) = (2.0 / 0.7, 400);
@@ -198,7 +198,7 @@ fn volumes_of_superhyperboloids() {
             sum += width * (x - 1.0) * (t - 1.0) / f64::from(steps * steps);
         }
     }
-    let got = counted_volume(&Superhyperboloid::two_sheets_x(a, 2.0, 0.7, 2.0).into(), 15_000);
+    let got = counted_volume(&Superhyperboloid::two_sheets_x(a, 2.0, 0.7, 4.0).into(), 15_000);
     near(got / (8.0 * sum * a.element_product()), 1.0, 0.015);
 }
 
@@ -370,7 +370,7 @@ fn ranges_are_exact() {
 #[test]
 fn a_box_beyond_the_rim_is_outside() {
     // h is positive in a part of the box, the slab in another: together nowhere.
-    let leaf = Superhyperboloid::one_sheet(DVec3::ONE, 1.0, 1.0, 1.0);
+    let leaf = Superhyperboloid::one_sheet(DVec3::ONE, 1.0, 1.0, 2.0);
     let region = [Interval::new(1.42, 1.5), Interval::point(0.0), Interval::new(0.9, 1.2)];
     assert!(leaf.range(region).hi() <= 1e-12, "{:?}", leaf.range(region));
 }
@@ -421,10 +421,10 @@ fn wild(random: &mut Random) -> Solid {
     let longer = random.log_range(1.000_001, 900.0);
     match random.below(6) {
         0 => Supertoroid::new(axes, random.log_range(1.0, 1000.0), e1, e2).into(),
-        1 => Superhyperboloid::one_sheet(axes, e1, e2, (axes.z * longer * 1e-3).clamp(1e-9, 1e9)).into(),
-        2 => Superhyperboloid::one_sheet_x(axes, e1, e2, (axes.x * longer).min(1e9)).into(),
-        3 => Superhyperboloid::two_sheets(axes, e1, e2, (axes.z * longer).min(1e9)).into(),
-        4 => Superhyperboloid::two_sheets_x(axes, e1, e2, (axes.x * longer).min(1e9)).into(),
+        1 => Superhyperboloid::one_sheet(axes, e1, e2, (2.0 * axes.z * longer * 1e-3).clamp(1e-9, 1e9)).into(),
+        2 => Superhyperboloid::one_sheet_x(axes, e1, e2, (2.0 * axes.x * longer).min(1e9)).into(),
+        3 => Superhyperboloid::two_sheets(axes, e1, e2, (2.0 * axes.z * longer).min(1e9)).into(),
+        4 => Superhyperboloid::two_sheets_x(axes, e1, e2, (2.0 * axes.x * longer).min(1e9)).into(),
         _ => {
             let n = [0; 3]
                 .map(|_| if random.chance(0.3) { random.pick(&[0.2, 1.0, 60.0]) } else { random.log_range(0.2, 60.0) });
@@ -484,12 +484,10 @@ fn wrong_parameters_are_named() {
         assert!(text(Solid::supertoroid(one, bad, 1.0, 1.0)).starts_with("supertoroid: ring is "));
     }
     assert!(text(Solid::supertoroid(one, 2.0, f64::NAN, 1.0)).contains("e1 is NaN"));
-    assert!(text(Superhyperboloid::one_sheet(one, 1.0, 20.0, 1.0).into()).contains("e2 is 20"));
-    assert!(text(Superhyperboloid::one_sheet(one, 1.0, 1.0, f64::NAN).into()).contains("half_length is NaN"));
-    assert!(
-        text(Superhyperboloid::two_sheets(one, 1.0, 1.0, 1.0).into()).contains("half_length is 1, allowed: above 1")
-    );
-    assert!(text(Superhyperboloid::two_sheets_x(one, 1.0, 1.0, 2e3).into()).contains("up to 1000 times"));
+    assert!(text(Superhyperboloid::one_sheet(one, 1.0, 20.0, 2.0).into()).contains("e2 is 20"));
+    assert!(text(Superhyperboloid::one_sheet(one, 1.0, 1.0, f64::NAN).into()).contains("length is NaN"));
+    assert!(text(Superhyperboloid::two_sheets(one, 1.0, 1.0, 2.0).into()).contains("length is 2, allowed: above 2"));
+    assert!(text(Superhyperboloid::two_sheets_x(one, 1.0, 1.0, 4e3).into()).contains("up to 2000 times"));
     for bad in [f64::NAN, f64::INFINITY, 0.0, 0.1, 61.0, -2.0] {
         let solid = Solid::from(GeneralisedSuperquadric::new(one, [1.0, bad, 1.0]));
         assert!(text(solid).starts_with("generalised superquadric: exponents.n2 is "));

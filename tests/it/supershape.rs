@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use glam::DVec3;
-use rvachev::{Gielis, Radius, Solid, Supershape, Turns};
+use rvachev::{Gielis, Radius, Solid, Supershape, Turns, deg, rad};
 
 use crate::support::{Random, near, near_point, value};
 
@@ -19,7 +19,7 @@ fn second() -> Supershape {
 
 /// The point of the surface at the angles `theta` and `phi`.
 fn surface_point(shape: &Supershape, scale: DVec3, radius: Radius, theta: f64, phi: f64) -> DVec3 {
-    let (r1, r2) = (shape.equator().radius(theta, radius), shape.meridian().radius(phi, radius));
+    let (r1, r2) = (shape.equator().radius(rad(theta), radius), shape.meridian().radius(rad(phi), radius));
     scale * DVec3::new(r1 * theta.cos() * phi.cos(), r1 * theta.sin() * phi.cos(), phi.sin()) * r2
 }
 
@@ -28,7 +28,7 @@ fn a_known_point_of_a_hexagonal_shape() {
     let shape = first();
     let theta = X.y.atan2(X.x);
     near(theta, -0.540419500270584, 1e-15);
-    let r1 = shape.equator().radius(theta, Radius::Standard);
+    let r1 = shape.equator().radius(rad(theta), Radius::Standard);
     near(r1, 2.365284372813926, 1e-12);
     near((X.z * r1).atan2(X.truncate().length()), 1.271876789684869, 1e-12);
     near(shape.gauge(X), 0.800000617660, 1e-12);
@@ -45,17 +45,17 @@ fn a_known_point_of_a_hexagonal_shape() {
 fn a_known_point_of_a_five_fold_shape() {
     near(second().gauge(X), 0.794078226827, 1e-12);
     let curve = second().equator();
-    let (r, slope) = curve.radius_slope(0.3, Radius::Standard);
+    let (r, slope) = curve.radius_slope(rad(0.3), Radius::Standard);
     near(r, 1.0490573465444, 1e-12);
     near(slope, 0.3406631537204, 1e-12);
-    near(curve.radius(0.3, Radius::Standard), r, 0.0);
+    near(curve.radius(rad(0.3), Radius::Standard), r, 0.0);
     let uneven = Gielis { a: 1.5, b: 0.7, ..curve };
-    near(uneven.radius(0.3, Radius::Standard), 1.3681983753907, 1e-12);
+    near(uneven.radius(rad(0.3), Radius::Standard), 1.3681983753907, 1e-12);
 }
 
 #[test]
 fn odd_curves_with_uneven_exponents_crease_at_the_seam() {
-    let slope = |curve: Gielis, theta: f64| curve.radius_slope(theta, Radius::Standard).1;
+    let slope = |curve: Gielis, theta: f64| curve.radius_slope(rad(theta), Radius::Standard).1;
     let odd = Gielis::new(5.0, 3.0, 7.0, 4.0);
     near(slope(odd, PI - 1e-4), -0.67273, 1e-4);
     near(slope(odd, -PI + 1e-4), 0.67273, 1e-4);
@@ -64,14 +64,14 @@ fn odd_curves_with_uneven_exponents_crease_at_the_seam() {
     assert!(slope(even, -PI + 1e-4).abs() < 6e-4);
     // The radius itself closes in both.
     for curve in [odd, even] {
-        near(curve.radius(PI, Radius::Standard), curve.radius(-PI, Radius::Standard), 1e-14);
+        near(curve.radius(deg(180.0), Radius::Standard), curve.radius(deg(-180.0), Radius::Standard), 1e-14);
     }
 }
 
 #[test]
 fn the_rational_radius_at_a_known_angle() {
     let curve = Gielis::new(5.0, 3.0, 2.0, 8.0);
-    near(curve.radius(0.3, Radius::Rational), 1.093588728810, 1e-12);
+    near(curve.radius(rad(0.3), Radius::Rational), 1.093588728810, 1e-12);
 }
 
 #[test]
@@ -90,7 +90,7 @@ fn the_rational_radius_is_as_far_off_as_stated() {
         let curve = Gielis::new(4.0, n, n, n);
         let off = (0..=ANGLES).map(|i| {
             let theta = -PI + 2.0 * PI * f64::from(i) / f64::from(ANGLES);
-            (curve.radius(theta, Radius::Rational) / curve.radius(theta, Radius::Standard) - 1.0).abs()
+            (curve.radius(rad(theta), Radius::Rational) / curve.radius(rad(theta), Radius::Standard) - 1.0).abs()
         });
         near(off.fold(0.0, f64::max), want, 1e-3);
     }
@@ -103,7 +103,7 @@ fn a_sharp_hexagon_is_nearly_regular() {
         let theta = -PI + 2.0 * PI * f64::from(i) / 40_000.0;
         // The middles of the sides are at radius 1, one of them at the angle 0.
         let from_middle = theta.rem_euclid(PI / 3.0).min((-theta).rem_euclid(PI / 3.0));
-        (curve.radius(theta, Radius::Standard) * from_middle.cos() - 1.0).abs()
+        (curve.radius(rad(theta), Radius::Standard) * from_middle.cos() - 1.0).abs()
     });
     near(off.fold(0.0, f64::max), 0.00258, 1e-4);
 }
@@ -168,7 +168,7 @@ fn the_gauge_is_homogeneous_and_its_gradient_says_so() {
 #[test]
 fn the_pole_and_the_centre_have_values() {
     let shape = first();
-    let top = shape.meridian().radius(0.5 * PI, Radius::Standard);
+    let top = shape.meridian().radius(deg(90.0), Radius::Standard);
     near(shape.gauge(DVec3::Z), 1.0 / top, 1e-15);
     near(shape.gauge(-DVec3::Z), 1.0 / top, 1e-15);
     assert_eq!(shape.gauge(DVec3::ZERO), 0.0);
@@ -203,9 +203,9 @@ fn four_fold_curves_with_equal_exponents_are_superellipses() {
     for i in 0..100 {
         let theta = f64::from(i) * 0.0628;
         let want = (theta.cos().abs().powi(5) + theta.sin().abs().powi(5)).powf(-0.2);
-        near(curve.radius(theta, Radius::Standard), want, 1e-14);
+        near(curve.radius(rad(theta), Radius::Standard), want, 1e-14);
     }
-    near(Gielis::circle().radius(1.234, Radius::Standard), 1.0, 1e-15);
+    near(Gielis::circle().radius(rad(1.234), Radius::Standard), 1.0, 1e-15);
 }
 
 #[test]
@@ -218,7 +218,7 @@ fn curves_close_after_the_stated_turns() {
             assert_eq!(curve.closing_turns(), Some(want), "{p}/{q}, n3 = {n3}");
             let turn = |k: u32, theta: f64| {
                 let first = curve.with_turns(Turns::Principal);
-                first.radius(theta + 2.0 * PI * f64::from(k), Radius::Standard)
+                first.radius(rad(theta + 2.0 * PI * f64::from(k)), Radius::Standard)
             };
             for theta in [-3.0, -1.234, 0.4, 2.0] {
                 // It closes then, and not before.
@@ -230,8 +230,8 @@ fn curves_close_after_the_stated_turns() {
                 let (least, most) = (0..want)
                     .map(|k| turn(k, theta))
                     .fold((f64::INFINITY, 0.0f64), |(least, most), r| (least.min(r), most.max(r)));
-                near(curve.radius(theta, Radius::Standard), most, 1e-12);
-                near(curve.with_turns(Turns::Inner).radius(theta, Radius::Standard), least, 1e-12);
+                near(curve.radius(rad(theta), Radius::Standard), most, 1e-12);
+                near(curve.with_turns(Turns::Inner).radius(rad(theta), Radius::Standard), least, 1e-12);
             }
         }
     }
@@ -246,12 +246,12 @@ fn turns_have_known_radii() {
         let curve = Gielis::rational(p, q, 3.0, 7.0, 7.0);
         let first = curve.with_turns(Turns::Principal);
         for (k, want) in (0u32..).zip(want) {
-            near(first.radius(0.4 + 2.0 * PI * f64::from(k), Radius::Standard), *want, 5e-8);
+            near(first.radius(rad(0.4 + 2.0 * PI * f64::from(k)), Radius::Standard), *want, 5e-8);
         }
         let most = want.iter().copied().fold(0.0, f64::max);
-        near(curve.radius(0.4, Radius::Standard), most, 5e-8);
+        near(curve.radius(rad(0.4), Radius::Standard), most, 5e-8);
         let least = want.iter().copied().fold(f64::INFINITY, f64::min);
-        near(curve.with_turns(Turns::Inner).radius(0.4, Radius::Standard), least, 5e-8);
+        near(curve.with_turns(Turns::Inner).radius(rad(0.4), Radius::Standard), least, 5e-8);
     }
 }
 
@@ -268,9 +268,9 @@ fn envelopes_of_solids_hold_what_their_turns_hold() {
             let point = random.vector(-1.6, 1.6);
             let theta = point.y.atan2(point.x);
             let turns = (0..outer.closing_turns().unwrap()).map(|k| {
-                let r1 = first.radius(theta + 2.0 * PI * f64::from(k), Radius::Standard);
+                let r1 = first.radius(rad(theta + 2.0 * PI * f64::from(k)), Radius::Standard);
                 let (u, z) = (point.truncate().length() / r1, point.z);
-                1.0 - u.hypot(z) / meridian.radius(z.atan2(u), Radius::Standard)
+                1.0 - u.hypot(z) / meridian.radius(rad(z.atan2(u)), Radius::Standard)
             });
             let turns: Vec<f64> = turns.collect();
             near(shapes[0].f2(point), turns.iter().copied().fold(f64::NEG_INFINITY, f64::max), 1e-12);

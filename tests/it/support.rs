@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rvachev::{
-    Bounds, Cuboid, Cylinder, Evaluator, Gielis, Mesh, Program, RFunction, Solid, Sphere, Supershape, Tape, Turns,
+    Bounds, Cuboid, Cylinder, Evaluator, Gielis, Mesh, Program, RFunction, Solid, Sphere, Supershape, Tape, Turns, rad,
 };
 
 /// A random source (splitmix64) whose numbers depend on the seed alone.
@@ -172,9 +172,9 @@ fn mapped(random: &mut Random, solid: Solid) -> Solid {
             0 | 1 => solid.translate(random.vector(-0.6, 0.6)),
             2 => solid.rotate(random.rotation()),
             3 => solid.affine(random.affine()),
-            4 => solid.taper(random.range(-0.6, 0.6), random.range(-0.6, 0.6), random.range(0.3, 1.0)),
-            5 => solid.twist(random.range(-2.0, 2.0)),
-            _ => solid.bend(random.range(-0.5, 0.5), random.range(-3.0, 3.0)),
+            4 => solid.taper(random.range(-0.6, 0.6), random.range(-0.6, 0.6), random.range(0.6, 2.0)),
+            5 => solid.twist(rad(random.range(-2.0, 2.0))),
+            _ => solid.bend(random.range(-0.5, 0.5), rad(random.range(-3.0, 3.0))),
         };
         if moved.bounds().is_ok() {
             solid = moved;

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::{DQuat, DVec2, DVec3};
 use rvachev::{
     Blend, Bounds, CellSize, Features, Helix, MeshSettings, MinimalSurface, Polygon, Profile, SheetLattice, Solid,
-    ThinFeatures,
+    ThinFeatures, deg,
 };
 
 use super::models;
@@ -70,7 +70,7 @@ fn whatever_hides_between_nodes_is_counted() {
     let thin = [
         ("a shell", block.shell(0.01)),
         ("a slit", &block - &slit),
-        ("a slit in a bent body", (&block - &slit).bend(0.3, 0.0)),
+        ("a slit in a bent body", (&block - &slit).bend(0.3, deg(0.0))),
         ("a needle", Solid::cone(0.01, 0.005, 1.0).rotate(turn)),
         ("a lattice", Solid::from(gyroid) & Solid::cuboid(DVec3::ONE)),
         ("a wire", Profile::circle(0.01).sweep_helix(&Helix::new(0.5, 0.3, 2.0))),
@@ -99,7 +99,7 @@ fn fins_and_slots_with_a_draft_are_counted() {
     let plate = Solid::cuboid((2.0, 2.0, 0.5)).translate(DVec3::Z * -0.25);
     for degrees in [0.0_f64, 0.1, 0.5, 1.0] {
         let fin = (drafted(degrees.to_radians()) & Solid::cuboid((2.0, 1.4, 2.0))).translate(DVec3::X * 0.003);
-        for (name, solid) in [("fin", &plate | &fin), ("slot", &plate - fin.rotate_x(PI))] {
+        for (name, solid) in [("fin", &plate | &fin), ("slot", &plate - fin.rotate_x(deg(180.0)))] {
             let count = unresolved(&solid, CellSize::Length(1.0 / 16.0), None);
             assert!(count > 100, "a {name} of {degrees} degrees: {count}");
         }
@@ -116,7 +116,7 @@ fn bodies_without_thin_parts_have_no_unresolved_cells() {
     let bored = &cube - Solid::cylinder(0.5, 3.0);
     let (m2, m6) = (models::m2(), models::m6());
     let boss = cube.union_with(Solid::cylinder(0.6, 4.0), Blend::Fillet { radius: 0.2 });
-    let chamfered = cube.union_with(Solid::cylinder(0.6, 4.0), Blend::Chamfer { width: 0.2 });
+    let chamfered = cube.union_with(Solid::cylinder(0.6, 4.0), Blend::Chamfer { leg: 0.14 });
     let thread = Profile::circle(0.08).sweep_helix(&Helix::new(0.3, 0.25, 2.5)) | Solid::cylinder(0.25, 1.4);
     let star = (0..10).map(|n| DVec2::from_angle(f64::from(n) * 0.2 * PI + 0.1) * if n % 2 == 0 { 1.0 } else { 0.5 });
     let room = thread.finite_bounds().unwrap();

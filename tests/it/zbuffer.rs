@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use rvachev::{
     Buffers, Camera, ClosedMesh, Coordinates, Csg, CsgMethod, Facing, Fragments, LayerSource, Mesh, MeshLayers,
-    ParametricSurface, PatchSettings, RFunction, RasterError, RasterView, Run, Solid, Superellipsoid, Tile,
+    ParametricSurface, PatchSettings, RFunction, RasterError, RasterView, Run, Solid, Superellipsoid, Tile, deg, rad,
 };
 
 /// The picture of the acceptance checks: 160 × 160 pixel middles over [−2, 2]², along +z.
@@ -393,7 +393,7 @@ fn different(a: &[f64], b: &[f64], tolerance: f64) -> usize {
 fn cameras() -> [Camera; 2] {
     let eye = DVec3::new(2.1, -3.3, 2.2);
     [
-        Camera::perspective(eye, DVec3::new(0.03, 0.01, 0.02), DVec3::Z, 42.0),
+        Camera::perspective(eye, DVec3::new(0.03, 0.01, 0.02), DVec3::Z, deg(42.0)),
         Camera::orthographic(eye, DVec3::new(0.03, 0.01, 0.02), DVec3::Z, 3.4),
     ]
 }
@@ -444,7 +444,7 @@ fn any_tree_over_meshes() {
 fn an_eye_inside_sees_walls_from_behind() {
     let room = ball_mesh(48, DVec3::splat(2.0), DVec3::ZERO);
     let pillar = ball_mesh(32, DVec3::new(0.3, 0.3, 0.9), DVec3::new(1.0, 0.1, 0.0));
-    let camera = Camera::perspective(DVec3::new(0.05, 0.02, 0.03), DVec3::X, DVec3::Z, 80.0);
+    let camera = Camera::perspective(DVec3::new(0.05, 0.02, 0.03), DVec3::X, DVec3::Z, deg(80.0));
     let view = RasterView::new(&camera, 64, 48).unwrap();
     let [room_layers, pillar_layers] = [&room, &pillar].map(|mesh| view.layers(ClosedMesh::new(mesh).unwrap()));
     let all: [&dyn LayerSource; 2] = [&room_layers, &pillar_layers];
@@ -609,13 +609,13 @@ fn deformed_operands_like_for_like_with_rays() {
     let [a, b] = operands();
     let tree = a - b;
     for (mesh, solid) in [
-        (mesh.taper(0.4, -0.3, 1.2).unwrap(), bar.taper(0.4, -0.3, 1.2)),
-        (mesh.twist(0.8).unwrap(), bar.twist(0.8)),
-        (mesh.bend(0.5, 0.7).unwrap(), bar.bend(0.5, 0.7)),
-        (mesh.bend(-0.4, 0.2).unwrap(), bar.bend(-0.4, 0.2)),
+        (mesh.taper(0.4, -0.3, 2.4).unwrap(), bar.taper(0.4, -0.3, 2.4)),
+        (mesh.twist(rad(0.8)).unwrap(), bar.twist(rad(0.8))),
+        (mesh.bend(0.5, rad(0.7)).unwrap(), bar.bend(0.5, rad(0.7))),
+        (mesh.bend(-0.4, rad(0.2)).unwrap(), bar.bend(-0.4, rad(0.2))),
         (
-            mesh.taper(0.3, 0.3, 1.2).unwrap().twist(0.6).unwrap().bend(0.3, 0.5).unwrap(),
-            bar.taper(0.3, 0.3, 1.2).twist(0.6).bend(0.3, 0.5),
+            mesh.taper(0.3, 0.3, 2.4).unwrap().twist(rad(0.6)).unwrap().bend(0.3, rad(0.5)).unwrap(),
+            bar.taper(0.3, 0.3, 2.4).twist(rad(0.6)).bend(0.3, rad(0.5)),
         ),
     ] {
         ClosedMesh::new(&mesh).unwrap();
@@ -627,9 +627,9 @@ fn deformed_operands_like_for_like_with_rays() {
         assert!(compared > 150 && silhouettes < compared / 3, "{compared} {silhouettes}");
     }
     let parameter = |result: Result<Mesh, RasterError>| result.unwrap_err().to_string();
-    assert!(parameter(mesh.taper(1.5, 0.0, 1.0)).starts_with("kx is 1.5, allowed: -0.999 to 0.999"));
-    assert!(parameter(mesh.twist(f64::NAN)).starts_with("rate is NaN"));
-    assert!(parameter(mesh.bend(5.0, 0.0)).starts_with("curvature is 5"));
+    assert!(parameter(mesh.taper(1.5, 0.0, 2.0)).starts_with("kx is 1.5, allowed: -0.999 to 0.999"));
+    assert!(parameter(mesh.twist(rad(f64::NAN))).starts_with("rate is NaN"));
+    assert!(parameter(mesh.bend(5.0, deg(0.0))).starts_with("curvature is 5"));
     let flat = DAffine3::from_scale(DVec3::new(1.0, 0.0, 1.0));
     assert!(parameter(mesh.affine(flat)).starts_with("determinant of the map is 0"));
     // A mirror image still faces outward.
@@ -660,7 +660,7 @@ fn moved_meshes_keep_what_they_carry() {
             assert!(moved.corner_normals().unwrap()[t].iter().all(|n| n.distance(face) < 1e-4));
         }
     }
-    let twisted = mesh.twist(0.3).unwrap();
+    let twisted = mesh.twist(rad(0.3)).unwrap();
     assert!(twisted.corner_normals().is_some() && twisted.corner_texture() == mesh.corner_texture());
 }
 

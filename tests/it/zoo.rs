@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use rvachev::{
     Blend, Caps, Extrusion, GeneralisedSuperquadric, Helix, LinearLaw, Polygon, Profile, SineWave, SmoothStep, Solid,
-    Superhyperboloid, Supertoroid,
+    Superhyperboloid, Supertoroid, rad,
 };
 
 use crate::support::Random;
@@ -15,10 +15,10 @@ fn superquadric(random: &mut Random) -> Solid {
     let half = random.range(0.3, 0.8);
     match random.below(6) {
         0 => Supertoroid::new(0.5 * axes, random.range(1.0, 3.0), e1.min(2.0), e2).into(),
-        1 => Superhyperboloid::one_sheet(axes, e1, e2, half).into(),
-        2 => Superhyperboloid::one_sheet_x(axes, e1, e2, half).into(),
-        3 => Superhyperboloid::two_sheets(axes, e1, e2, axes.z + half).into(),
-        4 => Superhyperboloid::two_sheets_x(axes, e1, e2, axes.x + half).into(),
+        1 => Superhyperboloid::one_sheet(axes, e1, e2, 2.0 * half).into(),
+        2 => Superhyperboloid::one_sheet_x(axes, e1, e2, 2.0 * half).into(),
+        3 => Superhyperboloid::two_sheets(axes, e1, e2, 2.0 * (axes.z + half)).into(),
+        4 => Superhyperboloid::two_sheets_x(axes, e1, e2, 2.0 * (axes.x + half)).into(),
         _ => GeneralisedSuperquadric::new(axes, [0; 3].map(|_| random.log_range(0.6, 30.0))).into(),
     }
 }
@@ -76,7 +76,7 @@ pub fn random_profile(random: &mut Random, depth: usize) -> Profile {
         0 => plain.union(&other, rule),
         1 => plain.difference(&other, rule),
         2 => plain.offset(random.range(-0.05, 0.1)),
-        _ => plain.intersection(&other, rule).rotate(random.range(-3.0, 3.0)),
+        _ => plain.intersection(&other, rule).rotate(rad(random.range(-3.0, 3.0))),
     }
 }
 
@@ -103,12 +103,12 @@ fn swept(random: &mut Random) -> Solid {
         }
         2 => profile.extrude_with(&Extrusion {
             height: random.range(0.4, 1.5),
-            twist: random.pick(&[0.0, 1.0, -0.7]),
+            twist: rad(random.pick(&[0.0, 1.0, -0.7])),
             scale: random.pick(&[1.0, 0.6, 1.5]),
             caps: Caps::Flat,
         }),
         3 => profile.translate(DVec2::X * random.range(0.0, 0.8)).revolve(),
-        4 => profile.translate(DVec2::X * random.range(0.0, 0.8)).revolve_by(random.range(0.3, 6.2)),
+        4 => profile.translate(DVec2::X * random.range(0.0, 0.8)).revolve_by(rad(random.range(0.3, 6.2))),
         _ => {
             let helix = Helix::new(random.range(0.5, 0.8), random.range(0.4, 0.9), random.range(0.4, 2.5));
             let helix = Helix { left_handed: random.chance(0.5), ..helix };
@@ -134,7 +134,7 @@ pub fn blended(random: &mut Random, a: &Solid, b: &Solid) -> Solid {
         0 | 1 => Blend::Smooth { radius: size },
         // Of leaves that have their true distance; of others it is found only nearly.
         2 | 3 => return exact[0].union_with(&exact[1], Blend::Fillet { radius: 0.5 * size }),
-        4 => return exact[0].difference_with(&exact[1], Blend::Chamfer { width: 0.5 * size }),
+        4 => return exact[0].difference_with(&exact[1], Blend::Chamfer { leg: 0.5 * size }),
         5 => Blend::Displacement { height: random.range(-0.2, 0.2), falloff: [size, 0.3] },
         _ => Blend::Ricci { p: random.range(1.5, 8.0) },
     };
@@ -165,12 +165,12 @@ pub fn lengthened(random: &mut Random, solid: &Solid) -> Solid {
 
 /// A map that came with the catalogue.
 pub fn catalogue_map(random: &mut Random, solid: &Solid) -> Solid {
-    let wave = SineWave { mean: 1.0, amplitude: 0.3, wavelength: random.range(1.0, 3.0), phase: 0.4 };
+    let wave = SineWave { mean: 1.0, amplitude: 0.3, wavelength: random.range(1.0, 3.0), phase: rad(0.4) };
     match random.below(7) {
         0 => solid.taper_by(wave, 0.8),
-        1 => solid.twist_by(SmoothStep { from: (-0.5, 0.0), to: (0.5, 1.2) }),
-        2 => solid.twist_by(LinearLaw { at_zero: 0.3, slope: random.range(-1.0, 1.0) }),
-        3 => solid.elongate(random.vector(0.0, 0.3)),
+        1 => solid.twist_by(rad(1.0), SmoothStep { from: (-0.5, 0.0), to: (0.5, 1.2) }),
+        2 => solid.twist_by(rad(1.0), LinearLaw { at_zero: 0.3, slope: random.range(-1.0, 1.0) }),
+        3 => solid.elongate(random.vector(0.0, 0.6)),
         4 => solid.mirrored(random.direction(), random.range(-0.3, 0.3)),
         5 => solid.repeat([2, 1 + random.below(3) as u32, 1], random.vector(0.4, 1.5)),
         _ => solid.translate(DVec3::X * 0.9).repeat_polar(2 + random.below(5) as u32),

@@ -25,8 +25,8 @@ use crate::{Norm, Real};
 /// ```text
 /// Smooth         x∧y = min(x, y) − max(radius − |x − y|, 0)²/(4·radius)
 /// Fillet         |p − q| − radius, q the centre of the ball that rolls along the edge
-/// Chamfer        max(x, y, (x + y + width·√((1 − c)/2))/√(2 + 2c)), c the cosine between the
-///                operands' gradients: a plane across the edge that cuts a face of the width
+/// Chamfer        max(x, y, (x + y)/√(2 + 2c) + leg·√((1 − c)/2)), c the cosine between the
+///                operands' gradients: a plane that meets both surfaces at the leg from the edge
 /// Displacement   x∧y = x + y − √(x² + y²) + height/(1 + (x/falloff₀)² + (y/falloff₁)²)
 /// Ricci          G = (G₁^p + G₂^p)^(1/p) for the intersection, (G₁^−p + G₂^−p)^(−1/p) for
 ///                the union; the value is r·(1 − G)
@@ -36,18 +36,23 @@ use crate::{Norm, Real};
 ///
 /// Operands are read as they are: where a leaf's value is a true distance, lengths hold;
 /// where it is a gauge they hold near its surface. A fillet reads true distances from every
-/// leaf; an operand that is a smooth blend or a chamfer itself is that of these distances then, away from
-/// the fillet as well. A chamfer reads values over their slopes. On round operands a chamfer's width is right to
-/// 1 % up to a quarter of their radius. Where an operand has an edge of its own across the joined
-/// one, fillets and chamfers go round it in a mitre. Operands with a gap narrower than a chamfer's
-/// width, or through which a fillet's ball does not fit, are bridged; of walls and gaps narrower than the
-/// ball a thin skin may remain where their sides are nearly parallel.
+/// leaf; an operand that is a smooth blend or a chamfer itself is that of these distances then,
+/// away from the fillet as well.
+///
+/// A chamfer reads values over their slopes. Its legs are exact on planes, and wherever the angle
+/// between the operands stays the same away from the edge, as on caps; elsewhere on round operands
+/// they are right to 2 % up to a twelfth of the radius and to 7 % up to a quarter.
+///
+/// Where an operand has an edge of its own across the joined one, fillets and chamfers go round it
+/// in a mitre. Operands with a gap narrower than 0.28 of a chamfer's leg, or through which a
+/// fillet's ball does not fit, are bridged; of walls and gaps narrower than the ball a thin skin
+/// may remain where their sides are nearly parallel.
 ///
 /// | blend | parameters | reach |
 /// |---|---|---|
 /// | `Smooth` | `radius`, length, 10⁻⁹ to 10⁹ | where the operands' values differ by less than `radius` |
 /// | `Fillet` | `radius`, length, 10⁻⁹ to 10⁹ | a rolling ball of that radius along the edge |
-/// | `Chamfer` | `width`, length, 10⁻⁹ to 10⁹ | a flat face of that width along the edge |
+/// | `Chamfer` | `leg`, length, 10⁻⁹ to 10⁹ | a flat face that begins that far from the edge on either operand; at a right angle it is `leg·√2` wide |
 /// | `Displacement` | `height`, length (adds material if positive); `falloff`, lengths, 10⁻⁹ to 10⁹ | everywhere, falling with the square of the values |
 /// | `Ricci` | `p`, 1.001 to 1000: larger is sharper | everywhere; operands must be gauges |
 ///
@@ -98,8 +103,9 @@ pub enum Blend {
     ///
     #[doc = picture!("chamfer_union" = "docs/gallery/chamfer_union.png")]
     Chamfer {
-        /// Width of the face.
-        width: f64,
+        /// How far from the edge the face begins, along the surface of either operand: what a
+        /// drawing calls a 2 × 45° chamfer at a right angle is one of leg 2.
+        leg: f64,
     },
     /// Pasko and Savchenko's displacement of the R-function with p = 2.
     ///
@@ -147,7 +153,7 @@ impl Blend {
     pub fn check(&self) -> Result<(), ParamError> {
         match *self {
             Blend::Smooth { radius } | Blend::Fillet { radius } => check::length("radius", radius),
-            Blend::Chamfer { width } => check::length("width", width),
+            Blend::Chamfer { leg } => check::length("leg", leg),
             Blend::Displacement { height, falloff } => {
                 check::finite("height", height)?;
                 check::length("falloff[0]", falloff[0])?;

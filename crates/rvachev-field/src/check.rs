@@ -2,6 +2,10 @@
 
 use std::fmt;
 
+use rvachev_num::deg;
+
+use crate::Angle;
+
 /// A parameter out of its range: its name, its value and what is allowed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{parameter} is {value}, allowed: {allowed}")]
@@ -59,8 +63,17 @@ pub fn finite(parameter: &str, value: f64) -> Result<(), ParamError> {
     }
 }
 
+/// An angle from `lo` to `hi` degrees.
+pub fn angle(parameter: &str, value: Angle, lo: f64, hi: f64) -> Result<(), ParamError> {
+    if value >= deg(lo) && value <= deg(hi) {
+        Ok(())
+    } else {
+        Err(ParamError::new(parameter, value.degrees(), format_args!("{lo} to {hi} degrees")))
+    }
+}
+
 /// A direction: a finite vector other than zero.
-pub(super) fn direction(parameter: &str, value: glam::DVec3) -> Result<(), ParamError> {
+pub fn direction(parameter: &str, value: glam::DVec3) -> Result<(), ParamError> {
     let length = value.length();
     if length.is_finite() && length > 0.0 {
         Ok(())

@@ -1,12 +1,13 @@
 //! The faces of leaves: smooth leaves that they are joined from.
 
 use std::any::Any;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
 use super::{AnyField, Circle, Cuboid, Cylinder, HalfSpace, Opening, Prism, RegularPolygon};
+use crate::Angle;
 
 /// Leaves of more faces than this are left as they are.
 const MOST: u32 = 64;
@@ -28,12 +29,12 @@ pub fn concave_faces(leaf: &dyn AnyField, complement: bool) -> Option<Faces> {
     let mut add = |normal: DVec3, offset: f64| leaves.push(Arc::new(HalfSpace { normal, offset }));
     let mut is_union = false;
     if let Some(opening) = any.downcast_ref::<Opening>() {
-        is_union = opening.angle > PI;
+        is_union = opening.angle > Angle::HALF_TURN;
         if is_union == complement {
             return None;
         }
         add(-DVec3::Y, 0.0);
-        add(DVec2::from_angle(opening.angle).perp().extend(0.0), 0.0);
+        add(DVec2::from_angle(opening.angle.radians()).perp().extend(0.0), 0.0);
         return Some(Faces { is_union, leaves });
     }
     if !complement {
@@ -69,6 +70,7 @@ fn sides(count: u32, first: f64, inscribed: f64, add: &mut impl FnMut(DVec3, f64
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rvachev_num::rad;
 
     fn check(leaf: &dyn AnyField, complement: bool) {
         let faces = concave_faces(leaf, complement).expect("faces");
@@ -96,7 +98,7 @@ mod tests {
         check(&Cylinder { radius: 0.7, height: 1.6 }, true);
         check(&Prism::new(5, 1.0, 1.2), true);
         check(&RegularPolygon::new(6, 1.0), true);
-        check(&Opening { angle: 5.0 }, false);
-        check(&Opening { angle: 2.0 }, true);
+        check(&Opening { angle: rad(5.0) }, false);
+        check(&Opening { angle: rad(2.0) }, true);
     }
 }

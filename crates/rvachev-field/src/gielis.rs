@@ -35,7 +35,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::{ParamError, check};
-use crate::{Dual, Real};
+use crate::{Angle, Dual, Real};
 
 /// Envelopes are taken of curves that close within this many turns.
 const MOST_TURNS: u32 = 16;
@@ -120,17 +120,17 @@ pub enum Turns {
 /// *Potential fields of self-intersecting Gielis curves* (2009).
 ///
 /// ```
-/// use rvachev::{Gielis, Radius, Turns};
+/// use rvachev::{Gielis, Radius, Turns, rad};
 ///
 /// let curve = Gielis::new(5.0, 3.0, 2.0, 8.0);
-/// assert!((curve.radius(0.3, Radius::Standard) - 1.0490573465444).abs() < 1e-12);
+/// assert!((curve.radius(rad(0.3), Radius::Standard) - 1.0490573465444).abs() < 1e-12);
 ///
 /// // m = 5/2 closes after two turns: a star whose arms cross, and the pentagon in its middle.
 /// let star = Gielis::rational(5, 2, 3.0, 7.0, 7.0);
 /// assert_eq!(star.closing_turns(), Some(2));
-/// assert!((star.radius(0.4, Radius::Standard) - 1.4095026).abs() < 1e-7);
+/// assert!((star.radius(rad(0.4), Radius::Standard) - 1.4095026).abs() < 1e-7);
 /// let core = star.with_turns(Turns::Inner);
-/// assert!((core.radius(0.4, Radius::Standard) - 1.0764467).abs() < 1e-7);
+/// assert!((core.radius(rad(0.4), Radius::Standard) - 1.0764467).abs() < 1e-7);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gielis {
@@ -225,17 +225,17 @@ impl Gielis {
         Gielis::new(sides, sharpness, kappa * sharpness, kappa * sharpness)
     }
 
-    /// The radius at the angle `theta` (radians). Of a curve whose first turn counts, angles
-    /// beyond ±π are its further turns.
+    /// The radius at the polar angle `theta`. Of a curve whose first turn counts, angles beyond
+    /// half a turn either way are its further turns.
     #[must_use]
-    pub fn radius(&self, theta: f64, radius: Radius) -> f64 {
-        self.radius_at(theta, radius, self.winding())
+    pub fn radius(&self, theta: impl Into<Angle>, radius: Radius) -> f64 {
+        self.radius_at(theta.into().radians(), radius, self.winding())
     }
 
-    /// The radius and its derivative with respect to the angle.
+    /// The radius at the polar angle `theta`, and its derivative per radian.
     #[must_use]
-    pub fn radius_slope(&self, theta: f64, radius: Radius) -> (f64, f64) {
-        let r = self.radius_at(Dual::variable(theta, 0), radius, self.winding());
+    pub fn radius_slope(&self, theta: impl Into<Angle>, radius: Radius) -> (f64, f64) {
+        let r = self.radius_at(Dual::variable(theta.into().radians(), 0), radius, self.winding());
         (r.value(), r.gradient()[0])
     }
 

@@ -8,7 +8,6 @@
 #[macro_use]
 mod picture;
 
-pub mod angle;
 mod blend;
 mod capsule;
 pub mod check;
@@ -34,6 +33,7 @@ mod network_lattice;
 mod number;
 mod outline;
 mod points;
+pub mod power;
 mod prism;
 mod profile;
 mod pull;
@@ -51,7 +51,7 @@ mod supertoroid;
 mod sweep;
 mod zone;
 
-use rvachev_num::{Bounds, Dual, Interval, Monotone, Monotone3, Norm, Real};
+use rvachev_num::{Angle, Bounds, Dual, Interval, Monotone, Monotone3, Norm, Real};
 
 pub use blend::Blend;
 pub use blend::RicciSide;

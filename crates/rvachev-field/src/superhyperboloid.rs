@@ -6,7 +6,7 @@
 //!     two sheets, z     h = |z/a₃| − ‖(1, ‖(x/a₁, y/a₂)‖₂)‖₁          ╱   ╲         __
 //!     two sheets, x     h = |x/a₁| − ‖(y/a₂, ‖(1, z/a₃)‖₁)‖₂        one sheet      ╱  ╲
 //!                                                                                two sheets
-//!     f = min( s·h, half_length − |z| )        |x| in the forms along x
+//!     f = min( s·h, length/2 − |z| )          |x| in the forms along x
 //! ```
 //!
 //! with `‖·‖_i` the norm of exponent 2/e_i. The algebraic forms (`ρ^p − |z|^p = 1`) have the
@@ -27,7 +27,7 @@ use super::{Field, Kernel, ParamError, check};
 use crate::{Bounds, Interval, Norm, Real};
 
 /// The solid is at most this many times as long as its semi-axis.
-const LONGEST: f64 = 1000.0;
+const LONGEST: f64 = 2000.0;
 
 /// What the boxes are widened by, for rounding.
 const ROUNDING: f64 = 1e-13;
@@ -39,8 +39,8 @@ enum Sheets {
     Two,
 }
 
-/// A superhyperboloid about an axis through the origin, clipped at `±half_length` along it,
-/// valued `f = min(s·h, half_length − |z|)` in length units (|x| in the forms along x), where
+/// A superhyperboloid about an axis through the origin, clipped at `±length/2` along it,
+/// valued `f = min(s·h, length/2 − |z|)` in length units (|x| in the forms along x), where
 /// `1/s` is the largest slope of h.
 ///
 #[doc = picture!(
@@ -67,7 +67,7 @@ enum Sheets {
 /// | `semi_axes` | length | 10⁻⁹ to 10⁹ each |
 /// | `e1` | none | 0.01 to 10: shapes the profile along the axis (0 straight, then a cone; 1 hyperbola; 2 two cones) |
 /// | `e2` | none | 0.01 to 10: shapes the sections across it (0 square, 1 round, 2 bevelled) |
-/// | `half_length` | length | 10⁻⁹ to 10⁹, at most 1000 times the semi-axis along the axis; for two sheets above that semi-axis |
+/// | `length` | length | 10⁻⁹ to 10⁹, from end to end along the axis, at most 2000 times the semi-axis along it; for two sheets above twice that semi-axis |
 ///
 /// Single-precision lanes keep within `4·10⁻⁶·(size + |f|)` of the true value for exponents
 /// of 0.05 to 2.5, `size` being the largest half-extent of the solid.
@@ -79,7 +79,7 @@ enum Sheets {
 /// use rvachev::{Solid, Superhyperboloid};
 /// use glam::DVec3;
 ///
-/// let tower = Superhyperboloid::one_sheet(DVec3::new(2.0, 2.0, 3.0), 1.0, 1.0, 4.0);
+/// let tower = Superhyperboloid::one_sheet(DVec3::new(2.0, 2.0, 3.0), 1.0, 1.0, 8.0);
 /// // At the waist its radius is 2, at the top 2·√(1 + (4/3)²).
 /// let bounds = Solid::from(tower).bounds()?;
 /// assert!((bounds.max - DVec3::new(10.0 / 3.0, 10.0 / 3.0, 4.0)).length() < 1e-9);
@@ -90,7 +90,7 @@ pub struct Superhyperboloid {
     semi_axes: DVec3,
     e1: f64,
     e2: f64,
-    half_length: f64,
+    length: f64,
     sheets: Sheets,
     along_x: bool,
     inverse: DVec3,
@@ -103,38 +103,38 @@ impl Superhyperboloid {
     /// One sheet about the z axis: `h = ‖(1, z/a₃)‖ − ‖(x/a₁, y/a₂)‖`, a waist with semi-axes
     /// a₁ and a₂. Parameters are checked when the solid is compiled.
     #[must_use]
-    pub fn one_sheet(semi_axes: impl Into<DVec3>, e1: f64, e2: f64, half_length: f64) -> Superhyperboloid {
-        Superhyperboloid::new(semi_axes.into(), [e1, e2], half_length, Sheets::One, false)
+    pub fn one_sheet(semi_axes: impl Into<DVec3>, e1: f64, e2: f64, length: f64) -> Superhyperboloid {
+        Superhyperboloid::new(semi_axes.into(), [e1, e2], length, Sheets::One, false)
     }
 
     /// One sheet about the x axis: `h = ‖(1, x/a₁)‖ − ‖(y/a₂, z/a₃)‖`.
     #[must_use]
-    pub fn one_sheet_x(semi_axes: impl Into<DVec3>, e1: f64, e2: f64, half_length: f64) -> Superhyperboloid {
-        Superhyperboloid::new(semi_axes.into(), [e1, e2], half_length, Sheets::One, true)
+    pub fn one_sheet_x(semi_axes: impl Into<DVec3>, e1: f64, e2: f64, length: f64) -> Superhyperboloid {
+        Superhyperboloid::new(semi_axes.into(), [e1, e2], length, Sheets::One, true)
     }
 
     /// Two sheets about the z axis: `h = |z/a₃| − ‖(1, ‖(x/a₁, y/a₂)‖)‖`, two bowls whose
     /// bottoms are at z = ±a₃.
     #[must_use]
-    pub fn two_sheets(semi_axes: impl Into<DVec3>, e1: f64, e2: f64, half_length: f64) -> Superhyperboloid {
-        Superhyperboloid::new(semi_axes.into(), [e1, e2], half_length, Sheets::Two, false)
+    pub fn two_sheets(semi_axes: impl Into<DVec3>, e1: f64, e2: f64, length: f64) -> Superhyperboloid {
+        Superhyperboloid::new(semi_axes.into(), [e1, e2], length, Sheets::Two, false)
     }
 
     /// Two sheets about the x axis in Barr's form: `h = |x/a₁| − ‖(y/a₂, ‖(1, z/a₃)‖)‖`, where
     /// e1 shapes the profile in the x–z plane and e2 that in the x–y plane.
     #[must_use]
-    pub fn two_sheets_x(semi_axes: impl Into<DVec3>, e1: f64, e2: f64, half_length: f64) -> Superhyperboloid {
-        Superhyperboloid::new(semi_axes.into(), [e1, e2], half_length, Sheets::Two, true)
+    pub fn two_sheets_x(semi_axes: impl Into<DVec3>, e1: f64, e2: f64, length: f64) -> Superhyperboloid {
+        Superhyperboloid::new(semi_axes.into(), [e1, e2], length, Sheets::Two, true)
     }
 
-    fn new(semi_axes: DVec3, [e1, e2]: [f64; 2], half_length: f64, sheets: Sheets, along_x: bool) -> Superhyperboloid {
+    fn new(semi_axes: DVec3, [e1, e2]: [f64; 2], length: f64, sheets: Sheets, along_x: bool) -> Superhyperboloid {
         let inverse = semi_axes.recip();
         let [a, b, along] = if along_x { [inverse.y, inverse.z, inverse.x] } else { inverse.to_array() };
         Superhyperboloid {
             semi_axes,
             e1,
             e2,
-            half_length,
+            length,
             sheets,
             along_x,
             inverse,
@@ -158,10 +158,15 @@ impl Superhyperboloid {
         [self.e1, self.e2]
     }
 
-    /// Half the length along the axis.
+    /// The length along the axis, from end to end.
     #[must_use]
-    pub fn half_length(&self) -> f64 {
-        self.half_length
+    pub fn length(&self) -> f64 {
+        self.length
+    }
+
+    #[inline(always)]
+    fn half_length(&self) -> f64 {
+        0.5 * self.length
     }
 
     /// Whether there are two sheets.
@@ -204,7 +209,7 @@ impl Superhyperboloid {
     #[inline(always)]
     fn slab<R: Real>(&self, [x, _, z]: [R; 3]) -> R {
         let along = if self.along_x { x } else { z };
-        -along.abs() + self.half_length
+        -along.abs() + self.half_length()
     }
 
     /// The semi-axis along the axis.
@@ -215,23 +220,21 @@ impl Superhyperboloid {
     /// The largest section, across the axis, at the clipped ends.
     fn half_extents(&self) -> DVec3 {
         let a = self.semi_axes;
-        let end = self.half_length / self.semi_axis();
+        let end = self.half_length() / self.semi_axis();
         let extents = match (self.sheets, self.along_x) {
             (Sheets::One, false) => {
                 let radius = 1.0.norm(end, self.profile);
-                DVec3::new(a.x * radius, a.y * radius, self.half_length)
+                DVec3::new(a.x * radius, a.y * radius, self.half_length())
             }
             (Sheets::One, true) => {
                 let radius = 1.0.norm(end, self.profile);
-                DVec3::new(self.half_length, a.y * radius, a.z * radius)
+                DVec3::new(self.length, a.y * radius, a.z * radius)
             }
             (Sheets::Two, false) => {
                 let radius = leg(end, self.profile);
-                DVec3::new(a.x * radius, a.y * radius, self.half_length)
+                DVec3::new(a.x * radius, a.y * radius, self.half_length())
             }
-            (Sheets::Two, true) => {
-                DVec3::new(self.half_length, a.y * leg(end, self.across), a.z * leg(end, self.profile))
-            }
+            (Sheets::Two, true) => DVec3::new(self.length, a.y * leg(end, self.across), a.z * leg(end, self.profile)),
         };
         extents * (1.0 + ROUNDING)
     }
@@ -240,7 +243,7 @@ impl Superhyperboloid {
     /// above, by steps along its edge.
     fn section_support(&self, y: f64, z: f64) -> f64 {
         const STEPS: u32 = 96;
-        let end = self.half_length / self.semi_axis();
+        let end = self.half_length() / self.semi_axis();
         let mut most = 0.0f64;
         let mut width = leg(end, self.across);
         for step in 1..=STEPS {
@@ -282,14 +285,14 @@ impl Field for Superhyperboloid {
         check::lengths("semi_axes", self.semi_axes)?;
         check::within("e1", self.e1, 0.01, 10.0)?;
         check::within("e2", self.e2, 0.01, 10.0)?;
-        check::length("half_length", self.half_length)?;
+        check::length("length", self.length)?;
         let axis = self.semi_axis();
-        let least = if self.sheets == Sheets::Two { axis } else { 0.0 };
-        if self.half_length > least && self.half_length <= LONGEST * axis {
+        let least = if self.sheets == Sheets::Two { 2.0 * axis } else { 0.0 };
+        if self.length > least && self.length <= LONGEST * axis {
             return Ok(());
         }
         let allowed = format!("above {least}, up to {LONGEST} times the semi-axis of {axis}");
-        Err(ParamError::new("half_length", self.half_length, allowed))
+        Err(ParamError::new("length", self.length, allowed))
     }
 
     fn range(&self, region: [Interval; 3]) -> Interval {
@@ -309,7 +312,7 @@ impl Field for Superhyperboloid {
         };
         let (mut rising, mut falling) = (at(hi).0, at(lo).1);
         for step in 0..5 {
-            let middle = if step == 0 { self.half_length } else { 0.5 * (lo + hi) };
+            let middle = if step == 0 { self.half_length() } else { 0.5 * (lo + hi) };
             if !(lo < middle && middle < hi) {
                 continue;
             }
@@ -326,12 +329,12 @@ impl Field for Superhyperboloid {
     fn support(&self, direction: DVec3) -> f64 {
         // The hull of a hyperboloid is that of its two end sections: none between is larger.
         let d = direction.abs();
-        let ends = if self.along_x { d.x } else { d.z } * self.half_length;
+        let ends = if self.along_x { d.x } else { d.z } * self.half_length();
         let scaled = d * self.semi_axes;
         let section = match (self.sheets, self.along_x) {
             (Sheets::Two, true) => self.section_support(scaled.y, scaled.z),
             (sheets, along_x) => {
-                let end = self.half_length / self.semi_axis();
+                let end = self.half_length() / self.semi_axis();
                 let radius = if sheets == Sheets::One { 1.0.norm(end, self.profile) } else { leg(end, self.profile) };
                 let [a, b] = if along_x { [scaled.y, scaled.z] } else { [scaled.x, scaled.y] };
                 radius * a.norm(b, support_norm(self.e2))

@@ -10,6 +10,7 @@
 //! | SIMD lanes of `f32` and `f64` | values and gradients in bulk |
 //! | `Symbol` | an expression tree for fidget |
 
+mod angle;
 mod bounds;
 mod dual;
 mod float;
@@ -24,6 +25,7 @@ pub mod signs;
 #[cfg(feature = "formula")]
 pub mod symbol;
 
+pub use angle::{Angle, deg, rad, turns};
 pub use bounds::{Bounds, column_times};
 pub use dual::Dual;
 pub use interval::Interval;

@@ -75,7 +75,7 @@ fn subtracted(blend: Blend) -> Solid {
 
 const SMOOTH: Blend = Blend::Smooth { radius: 0.5 };
 const FILLET: Blend = Blend::Fillet { radius: 0.15 };
-const CHAMFER: Blend = Blend::Chamfer { width: 0.2 };
+const CHAMFER: Blend = Blend::Chamfer { leg: 0.14 };
 const ADDED: Blend = Blend::Displacement { height: 0.15, falloff: [0.3, 0.3] };
 const TAKEN_OFF: Blend = Blend::Displacement { height: -0.15, falloff: [0.3, 0.3] };
 

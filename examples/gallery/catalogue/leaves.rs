@@ -23,10 +23,10 @@ pub const SUPERQUADRICS: &[Entry] = &[
     ("supertoroid", || Solid::supertoroid([0.35, 0.35, 0.35], 2.0, 1.0, 1.0)),
     ("supertoroid_frame", || Solid::supertoroid([0.3, 0.3, 0.45], 2.2, 0.2, 0.3)),
     ("supertoroid_bevelled", || Solid::supertoroid([0.4, 0.4, 0.4], 1.8, 2.0, 0.6)),
-    ("superhyperboloid_one_sheet", || Superhyperboloid::one_sheet([0.5, 0.5, 0.6], 1.0, 1.0, 1.0).into()),
-    ("superhyperboloid_one_sheet_x", || Superhyperboloid::one_sheet_x([0.6, 0.5, 0.5], 1.0, 0.4, 1.0).into()),
-    ("superhyperboloid_two_sheets", || Superhyperboloid::two_sheets([0.35, 0.35, 0.3], 1.0, 1.0, 1.0).into()),
-    ("superhyperboloid_two_sheets_x", || Superhyperboloid::two_sheets_x([0.3, 0.35, 0.35], 1.0, 0.6, 1.0).into()),
+    ("superhyperboloid_one_sheet", || Superhyperboloid::one_sheet([0.5, 0.5, 0.6], 1.0, 1.0, 2.0).into()),
+    ("superhyperboloid_one_sheet_x", || Superhyperboloid::one_sheet_x([0.6, 0.5, 0.5], 1.0, 0.4, 2.0).into()),
+    ("superhyperboloid_two_sheets", || Superhyperboloid::two_sheets([0.35, 0.35, 0.3], 1.0, 1.0, 2.0).into()),
+    ("superhyperboloid_two_sheets_x", || Superhyperboloid::two_sheets_x([0.3, 0.35, 0.35], 1.0, 0.6, 2.0).into()),
 ];
 
 /// A star with five arms that cross: its curve closes after two turns.

@@ -1,9 +1,7 @@
 //! Levels, offsets and shells, and maps.
 
-use std::f64::consts::{PI, TAU};
-
 use glam::{DAffine3, DMat3, DVec3};
-use rvachev::{LawTable, SineWave, SmoothStep, Solid};
+use rvachev::{LawTable, SineWave, SmoothStep, Solid, deg, rad, turns};
 
 use super::Entry;
 
@@ -46,37 +44,37 @@ fn tapered_by() -> Solid {
 }
 
 fn tapered_by_wave() -> Solid {
-    let wave = SineWave { mean: 1.0, amplitude: 0.2, wavelength: 0.8, phase: 0.0 };
+    let wave = SineWave { mean: 1.0, amplitude: 0.2, wavelength: 0.8, phase: deg(0.0) };
     Solid::cylinder(0.7, 2.4).taper_by(wave, wave)
 }
 
 /// Straight at both ends, a half turn in between.
 fn twisted_by() -> Solid {
-    bar().twist_by(SmoothStep { from: (-0.8, 0.0), to: (0.8, PI) })
+    bar().twist_by(deg(180.0), SmoothStep { from: (-0.8, 0.0), to: (0.8, 1.0) })
 }
 
 /// A hook on the right of the plane x = 0.
 fn hook() -> Solid {
     let arm = Solid::cuboid([0.9, 0.5, 0.4]).translate([0.45, 0.0, 0.0]);
-    let ring = Solid::torus(0.4, 0.18).rotate_x(0.5 * PI).translate([1.1, 0.0, 0.35]);
+    let ring = Solid::torus(0.4, 0.18).rotate_x(deg(90.0)).translate([1.1, 0.0, 0.35]);
     arm | ring
 }
 
 /// Balls and rods, as a molecule: each copy touches the next.
 fn knob() -> Solid {
-    Solid::sphere(0.3) | Solid::cylinder(0.1, 1.0) | Solid::cylinder(0.1, 1.0).rotate_x(0.5 * PI)
+    Solid::sphere(0.3) | Solid::cylinder(0.1, 1.0) | Solid::cylinder(0.1, 1.0).rotate_x(deg(90.0))
 }
 
 /// A step of a winding stair.
 fn blade() -> Solid {
-    Solid::superellipsoid([0.5, 0.12, 0.35], 0.5, 1.0).rotate_x(0.6).translate([0.75, 0.0, 0.0])
+    Solid::superellipsoid([0.5, 0.12, 0.35], 0.5, 1.0).rotate_x(rad(0.6)).translate([0.75, 0.0, 0.0])
 }
 
 pub const MAPS: &[Entry] = &[
     ("affine", sheared),
-    ("taper", || Solid::rounded_cuboid([1.6, 1.6, 2.0], 0.1).taper(0.5, -0.5, 1.0)),
-    ("twist", || bar().twist(0.4 * TAU / 2.4)),
-    ("bend", || bar().bend(0.8, 0.0)),
+    ("taper", || Solid::rounded_cuboid([1.6, 1.6, 2.0], 0.1).taper(0.5, -0.5, 2.0)),
+    ("twist", || bar().twist(turns(0.4) / 2.4)),
+    ("bend", || bar().bend(0.8, deg(0.0))),
     ("taper_by", tapered_by),
     ("taper_by_wave", tapered_by_wave),
     ("twist_by", twisted_by),
@@ -84,5 +82,5 @@ pub const MAPS: &[Entry] = &[
     ("repeat", || knob().repeat([3, 3, 2], [0.8, 0.8, 0.8])),
     ("repeat_linear", || Solid::cuboid([1.4, 0.4, 0.25]).repeat_linear(6, [0.0, 0.3, 0.22])),
     ("repeat_polar", || blade().repeat_polar(9) | Solid::cylinder(0.35, 0.7)),
-    ("elongate", || Solid::torus(0.5, 0.22).elongate([0.6, 0.0, 0.25])),
+    ("elongate", || Solid::torus(0.5, 0.22).elongate([1.2, 0.0, 0.5])),
 ];

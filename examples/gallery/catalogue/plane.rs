@@ -1,15 +1,15 @@
 //! Profiles, and the solids that are made of them.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use glam::DVec2;
-use rvachev::{Caps, Extrusion, Gielis, Helix, Polygon, Profile, Solid};
+use rvachev::{Caps, Extrusion, Gielis, Helix, Polygon, Profile, Solid, deg, turns};
 
 use super::Entry;
 
 /// A plate of this profile, upright.
 fn plate(profile: impl Into<Profile>) -> Solid {
-    profile.into().extrude(0.5).rotate_x(0.5 * PI)
+    profile.into().extrude(0.5).rotate_x(deg(90.0))
 }
 
 fn arrow() -> Profile {
@@ -36,14 +36,14 @@ fn polygon_with_holes() -> Polygon {
 /// A washer with three notches.
 fn joined() -> Profile {
     let notch = Profile::rounded_rectangle([0.5, 0.5], 0.15).translate([1.0, 0.0]);
-    let notches = (0..3).map(|i| notch.rotate(TAU * (0.25 + f64::from(i) / 3.0)));
+    let notches = (0..3).map(|i| notch.rotate(turns(0.25 + f64::from(i) / 3.0)));
     (Profile::circle(1.0) - Profile::circle(0.4)) - Profile::union_all(notches, Default::default())
 }
 
 pub const PROFILES: &[Entry] = &[
     ("profile_circle", || plate(Profile::circle(1.0))),
     ("profile_superellipse", || plate(Profile::superellipse([1.2, 0.8], 0.5))),
-    ("profile_superpolygon", || plate(Profile::superpolygon(Gielis::new(5.0, 3.0, 6.0, 6.0), 1.0).rotate(0.5 * PI))),
+    ("profile_superpolygon", || plate(Profile::superpolygon(Gielis::new(5.0, 3.0, 6.0, 6.0), 1.0).rotate(deg(90.0)))),
     ("profile_rectangle", || plate(Profile::rectangle([2.0, 1.4]))),
     ("profile_rounded_rectangle", || plate(Profile::rounded_rectangle([2.0, 1.4], 0.35))),
     ("profile_regular_polygon", || plate(Profile::regular_polygon(7, 1.0))),
@@ -56,7 +56,7 @@ pub const PROFILES: &[Entry] = &[
 /// A cross with rounded arms.
 fn cross() -> Profile {
     let arm = Profile::rounded_rectangle([1.8, 0.8], 0.15);
-    arm.rotate(0.5 * PI) | arm
+    arm.rotate(deg(90.0)) | arm
 }
 
 fn extruded(extrusion: Extrusion) -> Solid {
@@ -85,12 +85,12 @@ fn wound(helix: Helix) -> Solid {
 
 pub const SWEEPS: &[Entry] = &[
     ("extrude", || extruded(Extrusion::new(1.6))),
-    ("extrude_twisted", || extruded(Extrusion { twist: 0.5 * PI, ..Extrusion::new(1.8) })),
+    ("extrude_twisted", || extruded(Extrusion { twist: deg(90.0), ..Extrusion::new(1.8) })),
     ("extrude_scaled", || extruded(Extrusion { scale: 0.4, ..Extrusion::new(1.6) })),
     ("extrude_chamfered", || extruded(Extrusion { caps: Caps::Chamfered(0.15), ..Extrusion::new(1.6) })),
     ("extrude_rounded", || extruded(Extrusion { caps: Caps::Rounded(0.2), ..Extrusion::new(1.6) })),
     ("revolve", || bowl().revolve()),
-    ("revolve_by", || bowl().revolve_by(1.4 * PI)),
+    ("revolve_by", || bowl().revolve_by(deg(252.0))),
     ("sweep_helix", || wound(Helix::new(0.8, 0.75, 2.0))),
     ("sweep_helix_left_handed", || wound(Helix { left_handed: true, ..Helix::new(0.8, 0.75, 2.0) })),
 ];

@@ -78,7 +78,7 @@ impl EdgeBlend {
         if faces.is_empty() || !steep {
             return;
         }
-        let by = TURN_OF_LANES * chamfer.width;
+        let by = TURN_OF_LANES * chamfer.leg;
         let beside = [0, 1].map(|side| {
             let mut at = Locals { ..*local };
             for &i in &faces {

@@ -5,7 +5,7 @@
 //! ```text
 //!     fillet    a ball of radius r rolls outside along both operands; where it is between them
 //!               its surface takes the place of max(x, y)
-//!     chamfer   max(x, y, T), where T = 0 is a plane that cuts a face of width w
+//!     chamfer   max(x, y, T), where T = 0 is a plane that meets both surfaces at a leg from the edge
 //! ```
 //!
 //! The other operations are those of complements (De Morgan). Both forms exceed max(x, y).
@@ -65,7 +65,7 @@ impl Shape {
     }
 }
 
-/// Differences of gradients are taken over this part of the width, point by point and in lanes.
+/// Differences of gradients are taken over this part of the leg, point by point and in lanes.
 const TURN: f64 = 1e-4;
 const TURN_OF_LANES: f64 = 1e-2;
 
@@ -81,7 +81,7 @@ impl EdgeBlend {
             Operation::Intersection | Operation::SymmetricDifference => (-1.0, [-1.0, -1.0]),
         };
         let shape = match blend {
-            Blend::Chamfer { width } => Shape::Chamfer(Chamfer { width, steepest: steepest[0].max(steepest[1]) }),
+            Blend::Chamfer { leg } => Shape::Chamfer(Chamfer { leg, steepest: steepest[0].max(steepest[1]) }),
             Blend::Fillet { radius } => Shape::filleted(Fillet { radius }, operands.each_ref(), signs),
             _ => Shape::filleted(Fillet { radius: 0.0 }, operands.each_ref(), signs),
         };
@@ -100,11 +100,11 @@ impl EdgeBlend {
         self.leaves
     }
 
-    /// The radius or width.
+    /// The radius or leg.
     pub(super) fn size(&self) -> f64 {
         match &self.shape {
             Shape::Fillet(fillet, _) => fillet.radius,
-            Shape::Chamfer(chamfer) => chamfer.width,
+            Shape::Chamfer(chamfer) => chamfer.leg,
         }
     }
 
@@ -165,7 +165,7 @@ impl EdgeBlend {
         // Operands are asked for at most this far from the point.
         let near = zone.inflated(match &self.shape {
             Shape::Fillet(fillet, _) => fillet.farthest(),
-            Shape::Chamfer(chamfer) => 2.0 * TURN_OF_LANES * chamfer.width,
+            Shape::Chamfer(chamfer) => 2.0 * TURN_OF_LANES * chamfer.leg,
         });
         let operands = [0, 1].map(|i| self.operands[i].reduced(&near));
         let simpler = operands.iter().map(Program::evaluated_leaves).sum::<usize>() < self.leaves;
@@ -205,7 +205,7 @@ impl EdgeBlend {
         if !(self.near(here.map(|(value, _)| value)) && height > join.0) {
             return join;
         }
-        let by = TURN * chamfer.width;
+        let by = TURN * chamfer.leg;
         let beside = chamfer.normals(here).map(|normal| self.samples(p + by * normal));
         let turn = |i: usize, j: usize| (beside[j][i].1 - here[i].1) / by;
         (height, chamfer.slope(here, [0, 1].map(|i| [turn(i, 0), turn(i, 1)])))

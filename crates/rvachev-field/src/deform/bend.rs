@@ -12,7 +12,7 @@
 use glam::DVec3;
 
 use super::Warp;
-use crate::{Bounds, Interval, Real};
+use crate::{Angle, Bounds, Interval, Real};
 use crate::{ParamError, check};
 
 /// Bend of the z axis to a circle, in the plane of z and (cos angle, sin angle).
@@ -20,8 +20,8 @@ use crate::{ParamError, check};
 pub struct Bend {
     /// Curvature of the bent axis, per length unit.
     pub curvature: f64,
-    /// Direction towards the centre of curvature, radians from the x axis.
-    pub angle: f64,
+    /// Direction towards the centre of curvature, from the x axis towards y.
+    pub angle: Angle,
 }
 
 impl Bend {
@@ -38,7 +38,7 @@ impl Warp for Bend {
         if k.abs() < Bend::FLAT {
             return [x, y, z];
         }
-        let (sin, cos) = self.angle.sin_cos();
+        let (sin, cos) = self.angle.radians().sin_cos();
         let big_r = x.scale_add(cos, y * sin);
         let opposite = z * k;
         let adjacent = big_r.scale_add(-k, z.lift(1.0));
@@ -52,7 +52,7 @@ impl Warp for Bend {
     #[cfg(test)]
     fn forward(&self, p: DVec3) -> DVec3 {
         let k = self.curvature;
-        let (sin, cos) = self.angle.sin_cos();
+        let (sin, cos) = self.angle.radians().sin_cos();
         let r = p.x * cos + p.y * sin;
         let gamma = k * p.z;
         let shift = (1.0 - k * r) * p.z * (0.5 * gamma).sin() * sinc(0.5 * gamma);
@@ -64,7 +64,7 @@ impl Warp for Bend {
             return Bounds::ALL;
         }
         let k = self.curvature;
-        let (sin, cos) = self.angle.sin_cos();
+        let (sin, cos) = self.angle.radians().sin_cos();
         let (x, y) = (Interval::new(b.min.x, b.max.x), Interval::new(b.min.y, b.max.y));
         let r = x * cos + y * sin;
         let across = (y * cos - x * sin).inflate(0.0);
@@ -88,13 +88,13 @@ impl Warp for Bend {
 
     fn check(&self, b: &Bounds) -> Result<(), ParamError> {
         check::finite("curvature", self.curvature)?;
-        check::finite("angle", self.angle)?;
+        check::angle("angle", self.angle, -1e9, 1e9)?;
         if self.curvature.abs() < Bend::FLAT {
             return Ok(());
         }
         // Conservative: the box of the solid, rather than the solid, must stay on this side
         // of the centre of curvature and within half a turn.
-        let (sin, cos) = self.angle.sin_cos();
+        let (sin, cos) = self.angle.radians().sin_cos();
         let inward = self.curvature.signum() * DVec3::new(cos, sin, 0.0);
         let reach = b.corners().into_iter().map(|c| c.dot(inward)).fold(f64::NEG_INFINITY, f64::max);
         let reach = if reach.is_nan() { f64::INFINITY } else { reach };

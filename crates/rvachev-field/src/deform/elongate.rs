@@ -1,7 +1,7 @@
 //! Elongation: a straight piece inserted at each coordinate plane.
 //!
 //! ```text
-//!     x ↦ x − clamp(x, −h, h) = max(x − h, 0) + min(x + h, 0)
+//!     x ↦ x − clamp(x, −h, h) = max(x − h, 0) + min(x + h, 0)        h half the length
 //!
 //!         ___          ______
 //!        /   \   →    /      \      each half moves outward by h, what lies in the
@@ -16,11 +16,18 @@ use super::Warp;
 use crate::{Bounds, Real};
 use crate::{ParamError, check};
 
-/// Half lengths of the pieces to insert.
+/// Lengths of the pieces to insert.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Elongate {
-    /// Half of what is inserted along each axis, in length units.
-    pub half: DVec3,
+    /// What is inserted along each axis, in length units.
+    pub lengths: DVec3,
+}
+
+impl Elongate {
+    #[inline(always)]
+    fn half(&self) -> DVec3 {
+        0.5 * self.lengths
+    }
 }
 
 #[inline(always)]
@@ -34,24 +41,25 @@ impl Warp for Elongate {
 
     #[inline(always)]
     fn inverse<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
-        [closed(x, self.half.x), closed(y, self.half.y), closed(z, self.half.z)]
+        let half = self.half();
+        [closed(x, half.x), closed(y, half.y), closed(z, half.z)]
     }
 
     #[cfg(test)]
     fn forward(&self, p: DVec3) -> DVec3 {
-        p + DVec3::select(p.cmpge(DVec3::ZERO), self.half, -self.half)
+        p + DVec3::select(p.cmpge(DVec3::ZERO), self.half(), -self.half())
     }
 
     fn bounds(&self, b: &Bounds) -> Bounds {
         // A plane at 0 is drawn out to both sides.
-        let min = b.min + DVec3::select(b.min.cmpgt(DVec3::ZERO), self.half, -self.half);
-        let max = b.max + DVec3::select(b.max.cmplt(DVec3::ZERO), -self.half, self.half);
+        let min = b.min + DVec3::select(b.min.cmpgt(DVec3::ZERO), self.half(), -self.half());
+        let max = b.max + DVec3::select(b.max.cmplt(DVec3::ZERO), -self.half(), self.half());
         Bounds::new(min, max)
     }
 
     fn check(&self, _: &Bounds) -> Result<(), ParamError> {
-        for (axis, half) in ["x", "y", "z"].into_iter().zip(self.half.to_array()) {
-            check::within(&format!("half.{axis}"), half, 0.0, 1e9)?;
+        for (axis, length) in ["x", "y", "z"].into_iter().zip(self.lengths.to_array()) {
+            check::within(&format!("lengths.{axis}"), length, 0.0, 1e9)?;
         }
         Ok(())
     }

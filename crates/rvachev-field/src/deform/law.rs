@@ -8,12 +8,13 @@
 
 use std::fmt::Debug;
 
-use crate::{Bounds, Interval, Real};
+use crate::{Angle, Bounds, Interval, Real};
 use crate::{COORDINATE_LIMIT, ParamError, check};
 
 /// A function of z, written once over [`Real`], that
-/// [`Solid::taper_by`](struct.Solid.html#method.taper_by) and
-/// [`Solid::twist_by`](struct.Solid.html#method.twist_by) follow. An `f64` is the constant law;
+/// [`Solid::taper_by`](crate::Solid::taper_by) and
+/// [`Solid::twist_by`](crate::Solid::twist_by) follow: the factor that a section is scaled by, the
+/// number that an angle is multiplied by. An `f64` is the constant law;
 /// [`LinearLaw`], [`SmoothStep`], [`SineWave`] and [`LawTable`] are ready made.
 ///
 /// Mark `at` and every helper in it `#[inline(always)]`.
@@ -144,13 +145,13 @@ impl Law for SmoothStep {
 /// |---|---|---|
 /// | `mean`, `amplitude` | that of the value | ±10⁹ |
 /// | `wavelength` | length | 10⁻⁹ to 10⁹ |
-/// | `phase` | radians | ±10⁹ |
+/// | `phase` | [`Angle`] | ±10⁹ degrees |
 ///
 /// ```
-/// use rvachev::{Solid, SineWave};
+/// use rvachev::{SineWave, Solid, deg};
 /// use glam::DVec3;
 ///
-/// let wave = SineWave { mean: 1.0, amplitude: 0.2, wavelength: 2.0, phase: 0.0 };
+/// let wave = SineWave { mean: 1.0, amplitude: 0.2, wavelength: 2.0, phase: deg(0.0) };
 /// let bellows = Solid::cylinder(1.0, 8.0).taper_by(wave, wave);
 /// assert!(bellows.contains(DVec3::new(1.15, 0.0, 0.5))?);
 /// assert!(!bellows.contains(DVec3::new(0.85, 0.0, 1.5))?);
@@ -164,14 +165,14 @@ pub struct SineWave {
     pub amplitude: f64,
     /// Length of a period along z, in length units.
     pub wavelength: f64,
-    /// Phase at z = 0, in radians.
-    pub phase: f64,
+    /// Phase at z = 0.
+    pub phase: Angle,
 }
 
 impl Law for SineWave {
     #[inline(always)]
     fn at<R: Real>(&self, z: R) -> R {
-        let angle = z.scale_add(std::f64::consts::TAU / self.wavelength, z.lift(self.phase));
+        let angle = z.scale_add(std::f64::consts::TAU / self.wavelength, z.lift(self.phase.radians()));
         angle.sin_cos().0.scale_add(self.amplitude, z.lift(self.mean))
     }
 
@@ -179,7 +180,7 @@ impl Law for SineWave {
         check::finite("law.mean", self.mean)?;
         check::finite("law.amplitude", self.amplitude)?;
         check::length("law.wavelength", self.wavelength)?;
-        check::finite("law.phase", self.phase)
+        check::angle("law.phase", self.phase, -1e9, 1e9)
     }
 }
 

@@ -143,6 +143,7 @@ fn turned_box(b: &Bounds, angle: Interval) -> Bounds {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rvachev_num::rad;
 
     fn round_trip(warp: &impl Warp, p: DVec3) -> f64 {
         let back = warp.inverse(warp.forward(p).to_array());
@@ -156,11 +157,11 @@ mod tests {
             (0.6, DVec3::new(0.696758009844, 0.270287132591, 1.273755738266)),
             (-0.6, DVec3::new(-0.116561782390, -0.693761036518, 1.337333960492)),
         ] {
-            let bend = Bend { curvature, angle: 0.87 };
+            let bend = Bend { curvature, angle: rad(0.87) };
             assert!((bend.forward(p) - image).length() < 1e-11);
             assert!(round_trip(&bend, p) < 1e-14);
         }
-        let far = Bend { curvature: 0.6, angle: 0.87 };
+        let far = Bend { curvature: 0.6, angle: rad(0.87) };
         let image = far.forward(DVec3::new(0.3, -0.2, 4.0));
         assert!((image - DVec3::new(2.121731058144, 1.959343112000, 1.098360201393)).length() < 1e-11);
         assert!(round_trip(&far, DVec3::new(0.3, -0.2, 4.0)) < 1e-13);
@@ -169,7 +170,7 @@ mod tests {
     #[test]
     fn bends_of_any_curvature_invert() {
         for curvature in [0.6, -0.6, 1e-3, 1e-9, -1e-12, 0.0] {
-            let bend = Bend { curvature, angle: 0.3 };
+            let bend = Bend { curvature, angle: rad(0.3) };
             for i in 0..1000 {
                 let t = |k: f64| ((f64::from(i) * k).fract() - 0.5) * 2.0;
                 let p = DVec3::new(0.5 * t(0.618), 0.7 * t(0.414), 2.0 * t(0.732));
@@ -181,8 +182,8 @@ mod tests {
     #[test]
     fn a_chain_agrees_with_the_reference() {
         let p = DVec3::new(0.4, 0.5, 1.2);
-        let taper = Taper { kx: 0.5, ky: -0.4, half_height: 2.0 };
-        let (twist, bend) = (Twist { rate: 0.6 }, Bend { curvature: 0.3, angle: 0.5 });
+        let taper = Taper { kx: 0.5, ky: -0.4, height: 4.0 };
+        let (twist, bend) = (Twist { rate: rad(0.6) }, Bend { curvature: 0.3, angle: rad(0.5) });
         let image = bend.forward(twist.forward(taper.forward(p)));
         assert!((image - DVec3::new(0.304009419006, 0.717961296813, 1.024693146673)).length() < 1e-11);
         assert!(round_trip(&taper, p) < 1e-15 && round_trip(&twist, p) < 1e-15);
@@ -231,17 +232,17 @@ mod tests {
         let comb = Comb { offset: 0.7, pitch: 1.4, last: 3.0, centre: 0.05 };
         let cells =
             Cells { axes: [comb, Comb::ONE, comb], counts: [8, 1, 8], spacing: DVec3::splat(0.7), crowded: None };
-        let wave = SineWave { mean: 1.0, amplitude: 0.6, wavelength: 2.0, phase: 0.3 };
+        let wave = SineWave { mean: 1.0, amplitude: 0.6, wavelength: 2.0, phase: rad(0.3) };
         let warps: [(&str, &dyn AnyWarp); 9] = [
-            ("elongate", &Elongate { half: DVec3::new(0.3, 0.0, 1.0) }),
+            ("elongate", &Elongate { lengths: DVec3::new(0.3, 0.0, 1.0) }),
             ("repeat", &cells),
             ("repeat_polar", &Sectors { count: 8, blocks: 4, class: 1, middle: 0.3 }),
             ("repeat_polar, uneven", &Sectors { count: 11, blocks: 3, class: 2, middle: -2.0 }),
             ("taper_by", &TaperBy { x: wave, y: 0.5 }),
-            ("twist_by", &TwistBy { angle: wave }),
-            ("taper", &Taper { kx: 0.5, ky: -0.4, half_height: 2.0 }),
-            ("twist", &Twist { rate: 1.3 }),
-            ("bend", &Bend { curvature: -0.6, angle: 0.4 }),
+            ("twist_by", &TwistBy { angle: rad(1.0), law: wave }),
+            ("taper", &Taper { kx: 0.5, ky: -0.4, height: 4.0 }),
+            ("twist", &Twist { rate: rad(1.3) }),
+            ("bend", &Bend { curvature: -0.6, angle: rad(0.4) }),
         ];
         for (name, warp) in warps {
             let image = warp.bounds(&bounds);

@@ -1,7 +1,7 @@
 //! Linear taper along z.
 //!
 //! ```text
-//!     t = clamp(z/h, −1, 1),  s = 1 + K t      X = s_x x, Y = s_y y, Z = z
+//!     t = clamp(2z/h, −1, 1),  s = 1 + K t     X = s_x x, Y = s_y y, Z = z
 //! ```
 //!
 //! Source: A. H. Barr, *Global and local deformations of solid primitives* (1984).
@@ -15,12 +15,12 @@ use crate::{ParamError, check};
 /// Linear taper along z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taper {
-    /// How much wider x is at the top.
+    /// How much wider x is at the top, and narrower at the bottom.
     pub kx: f64,
-    /// How much wider y is at the top.
+    /// The same for y.
     pub ky: f64,
-    /// Half the height between bottom and top, in length units.
-    pub half_height: f64,
+    /// From where t is −1 to where it is 1.
+    pub height: f64,
 }
 
 impl Warp for Taper {
@@ -29,19 +29,19 @@ impl Warp for Taper {
     #[inline(always)]
     fn inverse<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
         let one = z.lift(1.0);
-        let t = (z * (1.0 / self.half_height)).min(one).max(-one);
+        let t = (z * (2.0 / self.height)).min(one).max(-one);
         [x / t.scale_add(self.kx, one), y / t.scale_add(self.ky, one), z]
     }
 
     #[cfg(test)]
     fn forward(&self, p: DVec3) -> DVec3 {
-        let t = (p.z / self.half_height).clamp(-1.0, 1.0);
+        let t = (2.0 * p.z / self.height).clamp(-1.0, 1.0);
         DVec3::new(p.x * (1.0 + self.kx * t), p.y * (1.0 + self.ky * t), p.z)
     }
 
     fn bounds(&self, b: &Bounds) -> Bounds {
         // Linear in t for fixed (x, y): extremes are at the ends of t's range.
-        let t = [b.min.z, b.max.z].map(|z| (z / self.half_height).clamp(-1.0, 1.0));
+        let t = [b.min.z, b.max.z].map(|z| (2.0 * z / self.height).clamp(-1.0, 1.0));
         let mut out = Bounds::new(DVec3::INFINITY, DVec3::NEG_INFINITY);
         for t in t {
             let s = DVec3::new(1.0 + self.kx * t, 1.0 + self.ky * t, 1.0);
@@ -51,7 +51,7 @@ impl Warp for Taper {
     }
 
     fn check(&self, _: &Bounds) -> Result<(), ParamError> {
-        check::length("half_height", self.half_height)?;
+        check::length("height", self.height)?;
         for (name, k) in [("kx", self.kx), ("ky", self.ky)] {
             if k.is_nan() || k.abs() > 0.999 {
                 return Err(ParamError::new(

@@ -1,7 +1,7 @@
 //! Twist about z by a user's law of z.
 //!
 //! ```text
-//!     φ = angle(z)      rotation by φ about z
+//!     φ = angle · law(z)      rotation by φ about z
 //! ```
 
 #[cfg(test)]
@@ -9,27 +9,41 @@ use glam::DVec3;
 
 use super::law::{Law, check_law, law_range, slices};
 use super::{Warp, turned_box};
-use crate::ParamError;
-use crate::{Bounds, Dual, Interval, Real};
+use crate::{Angle, Bounds, Dual, Interval, Real};
+use crate::{ParamError, check};
 
 /// Rotation about z by an angle that is a function of z.
 #[derive(Clone, Debug)]
-pub struct TwistBy<A> {
-    /// The angle in radians, by z.
-    pub angle: A,
+pub struct TwistBy<L> {
+    /// The angle that the law is multiplied by.
+    pub angle: Angle,
+    /// The law, of z.
+    pub law: L,
 }
 
-/// Angles are held within this many radians: more is noise in single precision.
-const LARGEST: f64 = 1e4;
+/// Angles are held within 1600 turns, here in degrees: more is noise in single precision.
+const LARGEST: f64 = 576e3;
 
-impl<A: Law> TwistBy<A> {
+/// A law times a number.
+#[derive(Clone, Debug)]
+struct Times<L>(L, f64);
+
+impl<L: Law> Law for Times<L> {
     #[inline(always)]
-    fn turn<R: Real>(&self, z: R) -> R {
-        self.angle.at(z).max(z.lift(-LARGEST)).min(z.lift(LARGEST))
+    fn at<R: Real>(&self, z: R) -> R {
+        self.0.at(z) * self.1
     }
 }
 
-impl<A: Law> Warp for TwistBy<A> {
+impl<L: Law> TwistBy<L> {
+    #[inline(always)]
+    fn turn<R: Real>(&self, z: R) -> R {
+        let most = LARGEST.to_radians();
+        (self.law.at(z) * self.angle.radians()).max(z.lift(-most)).min(z.lift(most))
+    }
+}
+
+impl<L: Law> Warp for TwistBy<L> {
     const NAME: &'static str = "twist_by";
 
     #[inline(always)]
@@ -54,8 +68,9 @@ impl<A: Law> Warp for TwistBy<A> {
     }
 
     fn check(&self, b: &Bounds) -> Result<(), ParamError> {
-        self.angle.check()?;
-        check_law("angle", &self.angle, b, -LARGEST, LARGEST)
+        self.law.check()?;
+        check::angle("angle", self.angle, -1e9, 1e9)?;
+        check_law("angle (degrees)", &Times(self.law.clone(), self.angle.degrees()), b, -LARGEST, LARGEST)
     }
 
     fn roundoff(&self, reach: f64) -> f64 {

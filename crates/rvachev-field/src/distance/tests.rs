@@ -9,6 +9,7 @@ use crate::deform::Warp;
 use crate::{AnyField, AnyWarp, Bend, Chunk, Placement, Taper, Twist, Zone};
 use crate::{Bounds, Dual, Superellipsoid};
 use rvachev_num::kernel::CHUNK;
+use rvachev_num::rad;
 
 /// A generator of numbers in [0, 1).
 struct Random(u64);
@@ -158,8 +159,8 @@ fn lanes_agree_with_points() {
     for (e, axes) in [(1.0, DVec3::new(1.0, 2.0, 1.5)), (0.1, DVec3::ONE), (1.5, DVec3::new(1.0, 1.0, 2.0))] {
         let shape = Arc::new(Superellipsoid::new(axes, e, e));
         lanes_and_points(&Distance::new(Vec::new(), DAffine3::IDENTITY, shape.clone(), 0.0), axes);
-        let twist: Arc<dyn AnyWarp> = Arc::new(Twist { rate: 0.3 });
-        let bend: Arc<dyn AnyWarp> = Arc::new(Bend { curvature: 0.1, angle: 0.5 });
+        let twist: Arc<dyn AnyWarp> = Arc::new(Twist { rate: rad(0.3) });
+        let bend: Arc<dyn AnyWarp> = Arc::new(Bend { curvature: 0.1, angle: rad(0.5) });
         let chain = vec![(DAffine3::IDENTITY, bend), (DAffine3::from_scale(DVec3::new(1.1, 1.0, 0.9)), twist)];
         lanes_and_points(&Distance::new(chain, DAffine3::IDENTITY, shape, 0.0), axes);
     }
@@ -198,9 +199,9 @@ fn walls_behind_deformations_are_as_thick_as_asked_for() {
     let mut worst = 0.0f64;
     for e in [0.1, 0.5, 1.0, 1.5] {
         let shape = Superellipsoid::new(DVec3::new(1.0, 1.5, 3.0), e, e);
-        let taper = bent_errors(Taper { kx: 0.4, ky: -0.3, half_height: 3.0 }, shape, 0.1);
-        let twist = bent_errors(Twist { rate: 0.3 }, shape, 0.1);
-        let bend = bent_errors(Bend { curvature: 0.2, angle: 0.4 }, shape, 0.1);
+        let taper = bent_errors(Taper { kx: 0.4, ky: -0.3, height: 6.0 }, shape, 0.1);
+        let twist = bent_errors(Twist { rate: rad(0.3) }, shape, 0.1);
+        let bend = bent_errors(Bend { curvature: 0.2, angle: rad(0.4) }, shape, 0.1);
         println!("{e}: taper {taper:.4?} twist {twist:.4?} bend {bend:.4?}");
         worst = [taper, twist, bend].into_iter().flatten().fold(worst, f64::max);
     }
@@ -213,7 +214,7 @@ fn ranges_hold_what_is_found() {
     let mut random = Random(5);
     for (e, axes) in [(1.0, DVec3::new(1.0, 2.0, 1.5)), (0.1, DVec3::ONE), (1.5, DVec3::new(1.0, 3.0, 2.0))] {
         let shape = Arc::new(Superellipsoid::new(axes, e, e));
-        let twist: Arc<dyn AnyWarp> = Arc::new(Twist { rate: 0.3 });
+        let twist: Arc<dyn AnyWarp> = Arc::new(Twist { rate: rad(0.3) });
         for chain in [Vec::new(), vec![(DAffine3::IDENTITY, twist)]] {
             let distance = Distance::new(chain, DAffine3::IDENTITY, shape.clone(), 0.1);
             for _ in 0..60 {

@@ -2,8 +2,8 @@
 
 use super::explicit::over_slices;
 use super::{PointError, check_exponent};
-use crate::Real;
-use crate::angle::{signed_power, sin_cos};
+use crate::power::signed_power;
+use crate::{Angle, Real};
 use rvachev_num::kernel::Formula;
 
 /// Points of a superellipsoid of unit size by their angles (method 1): four sines and cosines,
@@ -17,9 +17,9 @@ use rvachev_num::kernel::Formula;
 /// shape (e below 0.5) crowd at its edges.
 ///
 /// ```
-/// use rvachev::RawParametric;
+/// use rvachev::{RawParametric, rad};
 ///
-/// let [x, y, z] = RawParametric::new(0.5, 0.5)?.point(0.3, 0.4);
+/// let [x, y, z] = RawParametric::new(0.5, 0.5)?.point(rad(0.3), rad(0.4));
 /// assert!((x.powi(4) + y.powi(4) + z.powi(4) - 1.0).abs() < 1e-15);
 /// # Ok::<(), rvachev::PointError>(())
 /// ```
@@ -41,18 +41,18 @@ impl RawParametric {
         Ok(RawParametric { e1, e2 })
     }
 
-    /// The point at the latitude η and the longitude ω, in radians.
+    /// The point at the latitude η and the longitude ω.
     #[must_use]
-    pub fn point(&self, eta: f64, omega: f64) -> [f64; 3] {
-        let ((sin_h, cos_h), (sin_w, cos_w)) = (sin_cos(eta), sin_cos(omega));
+    pub fn point(&self, eta: impl Into<Angle>, omega: impl Into<Angle>) -> [f64; 3] {
+        let ((sin_h, cos_h), (sin_w, cos_w)) = (eta.into().sin_cos(), omega.into().sin_cos());
         let across = signed_power(cos_h, self.e1);
         let power = |w| signed_power(w, self.e2);
         [across * power(cos_w), across * power(sin_w), signed_power(sin_h, self.e1)]
     }
 
-    /// x, y and z of many points of the first octant, on SIMD lanes of `f32`: angles from 0 to
-    /// π/2. To 3·10⁻⁶ where both exponents are 0.5 or more; a small exponent magnifies the
-    /// rounding of angles near quarter turns.
+    /// x, y and z of many points of the first octant, on SIMD lanes of `f32`: angles in radians,
+    /// from 0 to π/2. To 3·10⁻⁶ where both exponents are 0.5 or more; a small exponent magnifies
+    /// the rounding of angles near quarter turns.
     ///
     /// # Panics
     /// If the slices differ in length.

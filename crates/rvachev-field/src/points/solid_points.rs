@@ -17,7 +17,7 @@ use super::explicit::{ExactExplicit, SeriesExplicit};
 use super::raw::RawParametric;
 use super::tables::{LogTable, PowerTables};
 use super::wedge::{Symmetry, reflect};
-use crate::{Field, GeneralisedSuperquadric, Superellipsoid};
+use crate::{Angle, Field, GeneralisedSuperquadric, Superellipsoid};
 
 /// How the points of a superellipsoid are computed: Franklin and Barr's six methods.
 ///
@@ -192,7 +192,7 @@ fn on_nodes(n: f64, k: u32, size: u32, height: impl Fn(f64, f64) -> f64) -> Vec<
 /// Equal angles over the octant, reflected.
 fn raw(parametric: &RawParametric, eighth: u32) -> Vec<DVec3> {
     let quarter = 2 * eighth;
-    let angle = |i: u32| std::f64::consts::FRAC_PI_2 * f64::from(i) / f64::from(quarter);
+    let angle = |i: u32| Angle::QUARTER_TURN * f64::from(i) / f64::from(quarter);
     let mut points = vec![DVec3::Z];
     for i in 0..quarter {
         points.extend((0..=quarter).map(|j| DVec3::from(parametric.point(angle(i), angle(j)))));

@@ -4,7 +4,7 @@
 //!     G = √(x² + y²) / r(θ),  θ = atan2(y, x)        f = r_in·(1 − G)
 //! ```
 //!
-//! after scaling by `size`; r is the radius of the [`Gielis`] curve.
+//! after scaling by `radius`; r is the radius of the [`Gielis`] curve.
 //!
 //! Source: J. Gielis, *A generic geometric transformation* (2003).
 
@@ -20,7 +20,7 @@ use super::super::{Field, Gielis, Kernel, ParamError, Radius, check};
 use crate::{Bounds, Interval, Norm, Real};
 
 /// What is within a [`Gielis`] curve, valued `f = r_in·(1 − G)` in length units: the gauge is
-/// `G = √(x² + y²)/(size·r(θ))` and `r_in` the radius of a circle about the origin inside.
+/// `G = √(x² + y²)/(radius·r(θ))` and `r_in` the radius of a circle about the origin inside.
 ///
 #[doc = picture!("profile_superpolygon" = "docs/gallery/profile_superpolygon.png")]
 ///
@@ -29,7 +29,7 @@ use crate::{Bounds, Interval, Norm, Real};
 /// | parameter | unit | range |
 /// |---|---|---|
 /// | `curve` | none | see [`Gielis`]; its standard radius |
-/// | `size` | length | 10⁻⁹ to 10⁹: what the curve's radius of 1 becomes |
+/// | `radius` | length | 10⁻⁹ to 10⁹: what the curve's radius of 1 becomes |
 ///
 /// Source: J. Gielis, *A generic geometric transformation that unifies a wide range of natural
 /// and abstract shapes* (2003).
@@ -46,7 +46,7 @@ use crate::{Bounds, Interval, Norm, Real};
 #[derive(Clone, PartialEq)]
 pub struct Superpolygon {
     curve: Gielis,
-    size: f64,
+    radius: f64,
     winding: Winding,
     inverse: f64,
     inscribed: f64,
@@ -56,28 +56,28 @@ pub struct Superpolygon {
 
 impl fmt::Debug for Superpolygon {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Superpolygon").field("curve", &self.curve).field("size", &self.size).finish()
+        f.debug_struct("Superpolygon").field("curve", &self.curve).field("radius", &self.radius).finish()
     }
 }
 
 impl Superpolygon {
-    /// The shape within `curve`, scaled by `size`; both are checked when the profile is
+    /// The shape within `curve`, scaled by `radius`; both are checked when the profile is
     /// compiled.
     #[must_use]
-    pub fn new(curve: Gielis, size: f64) -> Superpolygon {
+    pub fn new(curve: Gielis, radius: f64) -> Superpolygon {
         let mut shape = Superpolygon {
             curve,
-            size,
+            radius,
             winding: curve.winding(),
-            inverse: 1.0 / size,
+            inverse: 1.0 / radius,
             inscribed: f64::NAN,
             bounds: Bounds::ALL,
             outline: None,
         };
         if shape.check().is_ok() {
             let outline = Outline::new(curve, Radius::Standard, PI);
-            shape.inscribed = size * outline.radius().lo();
-            let (x, y) = (outline.x() * size, outline.y() * size);
+            shape.inscribed = radius * outline.radius().lo();
+            let (x, y) = (outline.x() * radius, outline.y() * radius);
             let side = y.hi() * (1.0 + 1e-14);
             shape.bounds =
                 Bounds::new(DVec3::new(x.lo(), -side, f64::NEG_INFINITY), DVec3::new(x.hi(), side, f64::INFINITY));
@@ -94,8 +94,8 @@ impl Superpolygon {
 
     /// What the curve's radius of 1 becomes.
     #[must_use]
-    pub fn size(&self) -> f64 {
-        self.size
+    pub fn radius(&self) -> f64 {
+        self.radius
     }
 
     /// The gauge G: below 1 inside, 1 on the curve; `p / G(p)` lies on the curve.
@@ -127,7 +127,7 @@ impl Field for Superpolygon {
 
     fn check(&self) -> Result<(), ParamError> {
         self.curve.check("curve", Radius::Standard)?;
-        check::length("size", self.size)
+        check::length("radius", self.radius)
     }
 
     fn gauge_radius(&self) -> Option<f64> {

@@ -6,19 +6,19 @@
 //!     f = s where t ≥ 0, else ∓√(s² + t²): the axis is nearest
 //! ```
 
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::FRAC_PI_2;
 
 use glam::DVec2;
 
-use super::super::{Field, ParamError};
-use crate::{Bounds, Interval, Norm, Real};
+use super::super::{Field, ParamError, check};
+use crate::{Angle, Bounds, Interval, Norm, Real};
 
 /// The points whose angle about z, counted from the x axis, is between 0 and `angle`; by true
 /// distance.
 #[derive(Clone, Debug)]
 pub struct Opening {
-    /// How far it is open, in radians.
-    pub angle: f64,
+    /// How far it is open.
+    pub angle: Angle,
 }
 
 impl Field for Opening {
@@ -28,7 +28,7 @@ impl Field for Opening {
 
     #[inline(always)]
     fn eval<R: Real>(&self, [x, y, _]: [R; 3]) -> R {
-        let half = 0.5 * self.angle;
+        let half = 0.5 * self.angle.radians();
         let (sin, cos) = half.sin_cos();
         let (x, y) = (x.scale_add(cos, y * sin), x.scale_add(-sin, y * cos).abs());
         let s = x.scale_add(sin, y * -cos);
@@ -40,25 +40,21 @@ impl Field for Opening {
 
     fn bounds(&self) -> Bounds {
         let mut bounds = Bounds::ALL;
-        if self.angle <= PI {
+        if self.angle <= Angle::HALF_TURN {
             bounds.min.y = 0.0;
         }
-        if self.angle <= FRAC_PI_2 {
+        if self.angle <= Angle::QUARTER_TURN {
             bounds.min.x = 0.0;
         }
         bounds
     }
 
     fn check(&self) -> Result<(), ParamError> {
-        if self.angle >= 1e-6 && self.angle <= TAU {
-            Ok(())
-        } else {
-            Err(ParamError::new("angle", self.angle, format_args!("0.000001 to {TAU} (a full turn), in radians")))
-        }
+        check::angle("angle", self.angle, 1e-4, 360.0)
     }
 
     fn convex(&self) -> bool {
-        self.angle <= PI
+        self.angle <= Angle::HALF_TURN
     }
 
     fn exact(&self) -> bool {
