@@ -1,0 +1,35 @@
+//! The catalogue of what is built in: every leaf, plane shape and deformation, with its
+//! parameters.
+//!
+//! ```text
+//!     built_in!  ──►  Erase        behind a pointer, its kernels compiled in this crate
+//!                ──►  Parameters   names, kinds, ranges, values; made of values
+//!                ──►  a list       for whoever knows no types: text, tools, fitting
+//!                ──►  a macro      the list of types, for crates above: conversions
+//! ```
+//!
+//! A leaf that is added is declared once, in `leaves`, `profiles` or `deformations`.
+
+mod built_in;
+mod curves;
+mod deformations;
+mod kind;
+mod leaves;
+mod parameter;
+mod parameters;
+mod profiles;
+mod range;
+mod slot;
+mod value;
+
+pub use built_in::BuiltIn;
+pub use curves::CURVES;
+pub use deformations::{DEFORMATIONS, LAW_DEFORMATIONS, taper_by, twist_by};
+pub use kind::{Kind, Unit};
+pub use leaves::LEAVES;
+pub use parameter::Parameter;
+pub use parameters::{Arguments, Parameters, ValueError};
+pub use profiles::PLANE_LEAVES;
+pub use range::Range;
+pub use slot::{Direction, Slot};
+pub use value::Value;
