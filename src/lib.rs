@@ -409,15 +409,20 @@ pub use rvachev_field::{
 };
 #[doc(inline)]
 pub use rvachev_field::{
-    Blend, COORDINATE_LIMIT, Capsule, Circle, Cone, Cuboid, Cylinder, Ellipsoid, Field, Formula, FormulaError,
+    Blend, BuiltInLaw, COORDINATE_LIMIT, Caps, Capsule, Circle, Cone, Cuboid, Cylinder, Ellipsoid, Field, Formula, FormulaError,
     GeneralisedSuperquadric, Gielis, Grading, HalfSpace, Kernel, Law, LawTable, LinearLaw, MinimalSurface,
     NetworkLattice, ParamError, Polygon, Prism, Pyramid, RFunction, Radius, Rectangle, RegularPolygon, RoundedCuboid,
     SheetLattice, SineWave, Slab, SmoothStep, Sphere, Superellipse, Superellipsoid, Superhyperboloid, Superpolygon,
     Supershape, Supertoroid, Torus, Turns, VALUE_LIMIT, Wedge,
 };
 #[doc(inline)]
+pub use rvachev_field::catalogue::{Kind, Parameter, Range, Unit, Value, ValueError};
+#[doc(inline)]
 pub use rvachev_num::{Bounds, CancelToken, Cancelled, Dual, Interval, Monotone, Monotone3, Norm, Progress, Real, Run};
-pub use solid::{Caps, Extrusion, Helix, Paint, PlaneBounds, Profile, Solid, SolidError};
+pub use solid::{
+    DeformationForm, Extrusion, Form, Helix, LeafForm, Length, Operation, Paint, PlaneBounds, Profile, Repetition, Solid,
+    SolidError,
+};
 pub use surface::{
     ControlGrid, ControlPoint, ControlPolygon, Frame, Parametric, ParametricCurve, ParametricSurface, PatchError,
     PatchSettings, ProfileEnd, Spacing, SubdivisionError, SubdivisionRevolution, SurfacePoint, Tension,

@@ -9,9 +9,8 @@ use rvachev_field::{AnyField, Erase};
 
 use super::{Node, Solid};
 use crate::{
-    Bounds, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Field, Formula, GeneralisedSuperquadric, HalfSpace,
-    NetworkLattice, Prism, Pyramid, RoundedCuboid, SheetLattice, Slab, Sphere, Superellipsoid, Superhyperboloid,
-    Supershape, Supertoroid, Torus, Wedge,
+    Bounds, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Field, Formula, HalfSpace, Prism, Pyramid, RoundedCuboid, Slab,
+    Sphere, Superellipsoid, Supertoroid, Torus, Wedge,
 };
 
 impl Solid {
@@ -141,26 +140,4 @@ macro_rules! leaves {
     )*};
 }
 
-leaves!(
-    Capsule,
-    Cone,
-    Cuboid,
-    Cylinder,
-    Ellipsoid,
-    Formula,
-    GeneralisedSuperquadric,
-    HalfSpace,
-    NetworkLattice,
-    Prism,
-    Pyramid,
-    RoundedCuboid,
-    SheetLattice,
-    Slab,
-    Sphere,
-    Superellipsoid,
-    Superhyperboloid,
-    Supershape,
-    Supertoroid,
-    Torus,
-    Wedge,
-);
+rvachev_field::solid_leaves!(leaves);

@@ -5,7 +5,8 @@ use std::ops::{BitAnd, BitOr, BitXor, Not, Sub};
 
 use glam::{DAffine2, DAffine3, DMat3, DVec2, DVec3};
 
-use super::{Node, Solid};
+use super::composed::Sweep;
+use super::Solid;
 use crate::{
     Bounds, Circle, Gielis, Polygon, RFunction, Rectangle, RegularPolygon, SolidError, Superellipse, Superpolygon,
 };
@@ -120,7 +121,7 @@ impl Profile {
     /// The column over the profile: the solid that is this profile at every z. It is unbounded.
     #[must_use]
     pub fn column(&self) -> Solid {
-        self.0.clone()
+        Sweep::Column.of(self, self.0.clone())
     }
 
     /// The shape where `tree` is negative (fidget's sign), a function of x and y; `bounds`
@@ -277,12 +278,6 @@ impl fmt::Debug for Profile {
     }
 }
 
-impl From<Polygon> for Profile {
-    fn from(polygon: Polygon) -> Profile {
-        Profile(Solid::from_node(Node::Leaf(polygon.leaf())))
-    }
-}
-
 /// The built-in plane shapes as profiles; their kernels are compiled here once.
 macro_rules! plane_leaves {
     ($($leaf:ty),* $(,)?) => {$(
@@ -295,7 +290,7 @@ macro_rules! plane_leaves {
     )*};
 }
 
-plane_leaves!(Circle, Rectangle, RegularPolygon, Superellipse, Superpolygon);
+rvachev_field::plane_leaves!(plane_leaves);
 
 /// Implements an operator for all four combinations of values and references.
 macro_rules! operator {
