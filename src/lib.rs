@@ -315,6 +315,9 @@
 //! | [`paint`](Solid::paint) | its colour, in pictures and meshes |
 //! | [`==`](Solid#impl-PartialEq-for-Solid), `Hash` | by structure: solids may be keys of a map |
 //! | [`simplified`](Solid::simplified) | the same values from fewer nodes |
+//! | [`form`](Solid::form) | what it is at its root, with parameters and operands ([`Form`]) |
+//! | [`call`](Solid::call) | the same as an entry of the catalogue with values, which makes it again ([`Call`]) |
+//! | [`catalogue`](catalogue()) | all that solids are made of, with parameters and their ranges ([`Entry`], [`Parameter`]) |
 //!
 //! # What values mean
 //!
@@ -370,6 +373,7 @@ struct Readme;
 #[macro_use]
 mod picture;
 
+mod catalogue;
 mod eval;
 mod geom;
 pub mod idioms;
@@ -381,6 +385,7 @@ mod solid;
 mod space;
 mod surface;
 
+pub use catalogue::{Call, Entry, Group, Operands, Part, catalogue};
 pub use eval::{Evaluator, Gradients, Hit, Owner, Palette, Program, Region, Tape};
 pub use geom::{
     Camera, CameraError, Coordinates, Corner, Image, ImageError, Intrinsics, Mesh, MeshError, Noise, Plane, PointCloud,
@@ -403,25 +408,25 @@ pub use render::{
     Surface, Transfer, Window,
 };
 #[doc(inline)]
+pub use rvachev_field::catalogue::{Kind, Parameter, Range, Unit, Value, ValueError};
+#[doc(inline)]
 pub use rvachev_field::{
     BinomialSeries, CurveSpread, ExactExplicit, LogTable, PlaneSymmetry, PointError, PointMethod, PointSettings,
     PowerTables, ProductTables, RawParametric, SeriesExplicit, Symmetry, reflect, reflect_plane,
 };
 #[doc(inline)]
 pub use rvachev_field::{
-    Blend, BuiltInLaw, COORDINATE_LIMIT, Caps, Capsule, Circle, Cone, Cuboid, Cylinder, Ellipsoid, Field, Formula, FormulaError,
-    GeneralisedSuperquadric, Gielis, Grading, HalfSpace, Kernel, Law, LawTable, LinearLaw, MinimalSurface,
-    NetworkLattice, ParamError, Polygon, Prism, Pyramid, RFunction, Radius, Rectangle, RegularPolygon, RoundedCuboid,
-    SheetLattice, SineWave, Slab, SmoothStep, Sphere, Superellipse, Superellipsoid, Superhyperboloid, Superpolygon,
-    Supershape, Supertoroid, Torus, Turns, VALUE_LIMIT, Wedge,
+    Blend, BuiltInLaw, COORDINATE_LIMIT, Caps, Capsule, Circle, Cone, Cuboid, Cylinder, Ellipsoid, Field, Formula,
+    FormulaError, GeneralisedSuperquadric, Gielis, Grading, HalfSpace, Kernel, Law, LawTable, LinearLaw,
+    MinimalSurface, NetworkLattice, ParamError, Polygon, Prism, Pyramid, RFunction, Radius, Rectangle, RegularPolygon,
+    RoundedCuboid, SheetLattice, SineWave, Slab, SmoothStep, Sphere, Superellipse, Superellipsoid, Superhyperboloid,
+    Superpolygon, Supershape, Supertoroid, Torus, Turns, VALUE_LIMIT, Wedge,
 };
-#[doc(inline)]
-pub use rvachev_field::catalogue::{Kind, Parameter, Range, Unit, Value, ValueError};
 #[doc(inline)]
 pub use rvachev_num::{Bounds, CancelToken, Cancelled, Dual, Interval, Monotone, Monotone3, Norm, Progress, Real, Run};
 pub use solid::{
-    DeformationForm, Extrusion, Form, Helix, LeafForm, Length, Operation, Paint, PlaneBounds, Profile, Repetition, Solid,
-    SolidError,
+    DeformationForm, Extrusion, Form, Helix, LeafForm, Length, Operation, Paint, PlaneBounds, Profile, Repetition,
+    Solid, SolidError,
 };
 pub use surface::{
     ControlGrid, ControlPoint, ControlPolygon, Frame, Parametric, ParametricCurve, ParametricSurface, PatchError,

@@ -81,7 +81,8 @@ impl Sweep {
     pub(crate) fn name(self) -> &'static str {
         match self {
             Sweep::Extrude(_) => "extrude",
-            Sweep::Revolve(_) => "revolve",
+            Sweep::Revolve(TAU) => "revolve",
+            Sweep::Revolve(_) => "revolve_by",
             Sweep::Helix(_) => "sweep_helix",
             Sweep::Column => "column",
         }

@@ -169,7 +169,6 @@ impl<'a> Form<'a> {
 pub struct LeafForm<'a> {
     field: &'a dyn AnyField,
     built_in: Option<&'static BuiltIn<dyn AnyField>>,
-    values: fn(&dyn Any) -> Option<Vec<Value>>,
     is_plane: bool,
 }
 
@@ -179,12 +178,7 @@ impl<'a> LeafForm<'a> {
         let of = |list: &'static [BuiltIn<dyn AnyField>]| list.iter().find(|leaf| (leaf.values)(any).is_some());
         let in_space = of(LEAVES);
         let built_in = in_space.or_else(|| of(PLANE_LEAVES));
-        LeafForm {
-            field,
-            built_in,
-            values: built_in.map_or(|_| None, |leaf| leaf.values),
-            is_plane: in_space.is_none() && built_in.is_some(),
-        }
+        LeafForm { field, built_in, is_plane: in_space.is_none() && built_in.is_some() }
     }
 
     /// The name in the [catalogue](crate::catalogue()); of a user's own leaf what it calls
@@ -203,7 +197,7 @@ impl<'a> LeafForm<'a> {
     /// The values of the parameters, in order; `None` of a user's own leaf.
     #[must_use]
     pub fn values(&self) -> Option<Vec<Value>> {
-        (self.values)(self.field)
+        self.built_in.and_then(|leaf| (leaf.values)(self.field))
     }
 
     /// Whether it is a shape of the plane, which profiles are made of.
@@ -302,12 +296,8 @@ impl Solid {
                 if leaf.built_in.is_some() { Form::Leaf(leaf) } else { Form::Custom(leaf) }
             }
             Node::Affine { operand, forward, label } => Form::Affine { operand, map: *forward, verb: label },
-            Node::Warp { operand, warp } => {
-                Form::Deformation { operand, deformation: DeformationForm::new(&**warp) }
-            }
-            Node::Join { operation, rule, operands } => {
-                Form::Join { operation: *operation, function: *rule, operands }
-            }
+            Node::Warp { operand, warp } => Form::Deformation { operand, deformation: DeformationForm::new(&**warp) },
+            Node::Join { operation, rule, operands } => Form::Join { operation: *operation, function: *rule, operands },
             Node::Complement(operand) => Form::Complement { operand },
             Node::Named { operand, name } => Form::Name { operand, name },
             Node::Painted { operand, paint } => Form::Paint { operand, paint: *paint },

@@ -23,7 +23,6 @@ mod sweep;
 mod transform;
 
 pub use composed::Repetition;
-pub(crate) use composed::Sweep;
 pub use error::SolidError;
 pub(crate) use error::Trail;
 pub use form::{DeformationForm, Form, LeafForm};

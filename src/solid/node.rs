@@ -199,7 +199,7 @@ impl Node {
 }
 
 impl Solid {
-    pub(super) fn from_node(node: Node) -> Solid {
+    pub(crate) fn from_node(node: Node) -> Solid {
         Solid(Arc::new(Inner { node, compiled: OnceLock::new() }))
     }
 

@@ -5,8 +5,8 @@ use std::ops::{BitAnd, BitOr, BitXor, Not, Sub};
 
 use glam::{DAffine2, DAffine3, DMat3, DVec2, DVec3};
 
-use super::composed::Sweep;
 use super::Solid;
+use super::composed::Sweep;
 use crate::{
     Bounds, Circle, Gielis, Polygon, RFunction, Rectangle, RegularPolygon, SolidError, Superellipse, Superpolygon,
 };
@@ -36,8 +36,8 @@ use crate::{
 /// assert!((part.bounds()?.size() - glam::DVec3::new(40.0, 20.0, 5.0)).length() < 1e-9);
 /// # Ok::<(), rvachev::SolidError>(())
 /// ```
-#[derive(Clone)]
-pub struct Profile(pub(super) Solid);
+#[derive(Clone, PartialEq, Eq, Hash)]
+pub struct Profile(pub(crate) Solid);
 
 /// A rectangle along the axes of the plane: what a profile is within.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,7 +9,9 @@ use glam::DVec3;
 
 use super::built_in::built_in;
 use super::{BuiltIn, Range};
-use crate::{AnyWarp, Bend, BuiltInLaw, Elongate, Erase, LinearLaw, SineWave, SmoothStep, Taper, TaperBy, Twist, TwistBy};
+use crate::{
+    AnyWarp, Bend, BuiltInLaw, Elongate, Erase, LinearLaw, SineWave, SmoothStep, Taper, TaperBy, Twist, TwistBy,
+};
 
 /// Tapers by more would shrink the section to a point or turn it inside out.
 const TAPER: Range = Range::new(-0.999, 0.999);

@@ -23,7 +23,7 @@ mod slot;
 mod value;
 
 pub use built_in::BuiltIn;
-pub use curves::CURVES;
+pub use curves::{CURVES, Curve};
 pub use deformations::{DEFORMATIONS, LAW_DEFORMATIONS, taper_by, twist_by};
 pub use kind::{Kind, Unit};
 pub use leaves::LEAVES;
