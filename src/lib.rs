@@ -315,6 +315,9 @@
 //! | [`paint`](Solid::paint) | its colour, in pictures and meshes |
 //! | [`==`](Solid#impl-PartialEq-for-Solid), `Hash` | by structure: solids may be keys of a map |
 //! | [`simplified`](Solid::simplified) | the same values from fewer nodes |
+//! | [`form`](Solid::form) | what it is at its root, with parameters and operands ([`Form`]) |
+//! | [`call`](Solid::call) | the same as an entry of the catalogue with values, which makes it again ([`Call`]) |
+//! | [`catalogue`](catalogue()) | all that solids are made of, with parameters and their ranges ([`Entry`], [`Parameter`]) |
 //!
 //! # Lengths and angles
 //!
@@ -399,6 +402,7 @@ struct Readme;
 #[macro_use]
 mod picture;
 
+mod catalogue;
 mod eval;
 mod geom;
 pub mod idioms;
@@ -411,6 +415,7 @@ mod space;
 pub mod subdivision;
 mod surface;
 
+pub use catalogue::{Call, Entry, Group, Operands, Part, catalogue};
 pub use eval::{Evaluator, Gradients, Hit, Owner, Palette, Program, Region, Tape, UnequalSlices};
 #[cfg(feature = "formula")]
 pub use fidget;
@@ -440,6 +445,8 @@ pub use render::{
     Surface, Transfer, Window,
 };
 #[doc(inline)]
+pub use rvachev_field::catalogue::{Kind, Parameter, Range, Unit, Value, ValueError};
+#[doc(inline)]
 pub use rvachev_field::{
     BinomialSeries, CurveSpread, ExactExplicit, LogTable, PlaneSymmetry, PointError, PointMethod, PointSettings,
     PowerTables, ProductTables, RawParametric, SeriesExplicit, Symmetry, reflect, reflect_plane,
@@ -447,11 +454,11 @@ pub use rvachev_field::{
 
 #[doc(inline)]
 pub use rvachev_field::{
-    Blend, COORDINATE_LIMIT, Capsule, Circle, Cone, Cuboid, Cylinder, Ellipsoid, Field, GeneralisedSuperquadric,
-    Gielis, Grading, HalfSpace, Kernel, Law, LawTable, LinearLaw, MinimalSurface, NetworkLattice, ParamError, Polygon,
-    Prism, Pyramid, RFunction, Radius, Rectangle, RegularPolygon, RoundedCuboid, SheetLattice, SineWave, Slab,
-    SmoothStep, Sphere, Superellipse, Superellipsoid, Superhyperboloid, Superpolygon, Supershape, Supertoroid, Torus,
-    Turns, VALUE_LIMIT, Wedge,
+    Blend, BuiltInLaw, COORDINATE_LIMIT, Caps, Capsule, Circle, Cone, Cuboid, Cylinder, Ellipsoid, Field,
+    GeneralisedSuperquadric, Gielis, Grading, HalfSpace, Kernel, Law, LawTable, LinearLaw, MinimalSurface,
+    NetworkLattice, ParamError, Polygon, Prism, Pyramid, RFunction, Radius, Rectangle, RegularPolygon, RoundedCuboid,
+    SheetLattice, SineWave, Slab, SmoothStep, Sphere, Superellipse, Superellipsoid, Superhyperboloid, Superpolygon,
+    Supershape, Supertoroid, Torus, Turns, VALUE_LIMIT, Wedge,
 };
 #[cfg(feature = "formula")]
 #[doc(inline)]
@@ -461,7 +468,10 @@ pub use rvachev_num::{
     Angle, Bounds, CancelToken, Cancelled, Dual, Interval, Monotone, Monotone3, Norm, Progress, Real, Run, deg, rad,
     turns,
 };
-pub use solid::{Caps, Extrusion, Helix, Paint, PlaneBounds, Profile, Solid, SolidError};
+pub use solid::{
+    DeformationForm, Extrusion, Form, Helix, LeafForm, Length, Operation, Paint, PlaneBounds, Profile, Repetition,
+    Solid, SolidError,
+};
 pub use subdivision::{
     ControlGrid, ControlPoint, ControlPolygon, ProfileEnd, SubdivisionError, SubdivisionRevolution, Tension,
     hyperbola_of_ellipse,

@@ -121,6 +121,8 @@ impl Compiler {
                 solid::Node::Affine { .. }
                 | solid::Node::Warp { .. }
                 | solid::Node::Named { .. }
+                | solid::Node::Repeated { .. }
+                | solid::Node::Swept { .. }
                 | solid::Node::Painted { .. } => below.collect(),
                 solid::Node::Join { operation: Operation::Union, operands, .. } => {
                     below.filter(|&(operand, inner)| open(self, &operands[operand], inner)).collect()
@@ -128,7 +130,7 @@ impl Compiler {
                 _ => Vec::new(),
             };
             let Some(&(operand, inner)) = down.first() else { return self.scene.trail.path(step) };
-            let next = solid.node().operands()[operand].clone();
+            let next = solid.node().parts()[operand].clone();
             step = self.scene.trail.push(&next, Some((step, &solid, operand)));
             (solid, context) = (next, inner);
         }
@@ -152,7 +154,7 @@ impl Compiler {
         }
         self.built.insert(key, None);
         check(site.solid.node()).map_err(|e| self.parameter(site, e))?;
-        let operands = site.solid.node().operands();
+        let operands = site.solid.node().parts();
         if let (solid::Node::Join { .. }, []) = (site.solid.node(), operands) {
             return Err(SolidError::EmptyJoin { path: self.scene.trail.path(site.step) });
         }
@@ -195,10 +197,14 @@ impl Compiler {
         }
         let node = solid.node();
         let below = self.contexts.below(solid, context);
-        let mut inner = below.iter().map(|&(at, inner)| (&node.operands()[at], inner));
+        let mut inner = below.iter().map(|&(at, inner)| (&node.parts()[at], inner));
         let mut first = |c: f64| inner.next().map_or(Bounds::ALL, |(s, inner)| self.above(s, inner, c, depth - 1));
         match node {
-            solid::Node::Affine { .. } | solid::Node::Named { .. } | solid::Node::Painted { .. } => first(c),
+            solid::Node::Affine { .. }
+            | solid::Node::Named { .. }
+            | solid::Node::Repeated { .. }
+            | solid::Node::Swept { .. }
+            | solid::Node::Painted { .. } => first(c),
             solid::Node::Warp { warp, .. } if self.contexts.get(context).anchor.is_none() => {
                 let inside = first(c);
                 if inside.is_empty() {
@@ -241,11 +247,15 @@ impl Compiler {
             .contexts
             .below(site.solid, site.context)
             .iter()
-            .map(|&(position, inner)| self.of(&node.operands()[position], inner))
+            .map(|&(position, inner)| self.of(&node.parts()[position], inner))
             .collect();
         match node {
             solid::Node::Leaf(field) => Ok(self.leaf(field, site)),
-            solid::Node::Affine { .. } | solid::Node::Named { .. } | solid::Node::Painted { .. } => Ok(below[0]),
+            solid::Node::Affine { .. }
+            | solid::Node::Named { .. }
+            | solid::Node::Repeated { .. }
+            | solid::Node::Swept { .. }
+            | solid::Node::Painted { .. } => Ok(below[0]),
             solid::Node::Warp { operand, warp } => self.warped(site, operand, warp, below[0]),
             solid::Node::Complement(_) => Ok(below[0].complement()),
             solid::Node::Join { operation, rule, .. } => {
@@ -429,8 +439,12 @@ fn check(node: &solid::Node) -> Result<(), ParamError> {
         solid::Node::Blend { blend, .. } => blend.check(),
         solid::Node::Length { length, .. } => length.check(),
         solid::Node::Painted { paint, .. } => paint.check(),
-        // A deformation is checked against what it deforms.
-        solid::Node::Warp { .. } | solid::Node::Complement(_) | solid::Node::Named { .. } => Ok(()),
+        // A deformation is checked against what it deforms, a verb's parameters where it is built.
+        solid::Node::Warp { .. }
+        | solid::Node::Complement(_)
+        | solid::Node::Named { .. }
+        | solid::Node::Repeated { .. }
+        | solid::Node::Swept { .. } => Ok(()),
     }
 }
 

@@ -87,7 +87,7 @@ impl Contexts {
         let above = *self.get(context);
         let list = match solid.node() {
             Node::Leaf(_) => Vec::new(),
-            Node::Named { .. } => vec![(0, context)],
+            Node::Named { .. } | Node::Repeated { .. } | Node::Swept { .. } => vec![(0, context)],
             // What is painted is apart from the same parts without paint.
             Node::Painted { .. } => {
                 let inner = *self.get(context);
@@ -255,7 +255,7 @@ fn differs_in_lengths(solid: &Solid) -> bool {
             Node::Blend { blend: Blend::Smooth { .. } | Blend::Chamfer { .. }, .. } => return true,
             // These have their lengths in any case, or are leaves.
             Node::Blend { .. } | Node::Length { length: Length::Offset(_) | Length::Level(_), .. } => {}
-            node => pending.extend(node.operands()),
+            node => pending.extend(node.parts()),
         }
     }
     false

@@ -8,7 +8,7 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DAffine3, DQuat, DVec3};
 
-use crate::{Bounds, RFunction, Solid};
+use crate::{Bounds, RFunction, Repetition, Solid};
 use rvachev_field::{AnyWarp, Cells, Comb, Sectors};
 
 /// More folds than this along one axis are not worth it: the copies overlap so much that each
@@ -58,6 +58,11 @@ impl Solid {
     #[must_use]
     pub fn repeat(&self, counts: [u32; 3], spacing: impl Into<DVec3>) -> Solid {
         let spacing = spacing.into();
+        Repetition::Grid { counts, spacing }.of(self, self.grid(counts, spacing))
+    }
+
+    /// What a grid is made of.
+    fn grid(&self, counts: [u32; 3], spacing: DVec3) -> Solid {
         let mut fold = Cells { axes: [Comb::ONE; 3], counts, spacing, crowded: None };
         if fold.check(&Bounds::ALL).is_err() {
             // The fault is told when the solid is compiled, and so is one of the operand.
@@ -117,11 +122,16 @@ impl Solid {
     #[must_use]
     pub fn repeat_linear(&self, count: u32, step: impl Into<DVec3>) -> Solid {
         let step = step.into();
+        Repetition::Row { count, step }.of(self, self.row(count, step))
+    }
+
+    /// What a row is made of.
+    fn row(&self, count: u32, step: DVec3) -> Solid {
         let length = step.length();
         let along = |axis: usize, from: &Solid, spacing: f64| {
             let mut counts = [1; 3];
             counts[axis] = count;
-            from.repeat(counts, DVec3::AXES[axis] * spacing)
+            from.grid(counts, DVec3::AXES[axis] * spacing)
         };
         // Along an axis nothing needs turning. (What is no direction is told as a spacing.)
         let alone = (0..3).find(|&axis| step[axis].abs() == length);
@@ -165,6 +175,11 @@ impl Solid {
     /// ```
     #[must_use]
     pub fn repeat_polar(&self, count: u32) -> Solid {
+        Repetition::Ring { count }.of(self, self.ring(count))
+    }
+
+    /// What a ring is made of.
+    fn ring(&self, count: u32) -> Solid {
         let fold = Sectors { count, blocks: 1, class: 0, middle: 0.0 };
         if fold.check(&Bounds::ALL).is_err() {
             return self.warp(fold);

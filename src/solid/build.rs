@@ -8,9 +8,8 @@ use rvachev_field::{AnyField, Erase};
 
 use super::{Node, Solid};
 use crate::{
-    Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Field, GeneralisedSuperquadric, HalfSpace, NetworkLattice, Prism,
-    Pyramid, RoundedCuboid, SheetLattice, Slab, Sphere, Superellipsoid, Superhyperboloid, Supershape, Supertoroid,
-    Torus, Wedge,
+    Capsule, Cone, Cuboid, Cylinder, Ellipsoid, Field, HalfSpace, Prism, Pyramid, RoundedCuboid, Slab, Sphere,
+    Superellipsoid, Supertoroid, Torus, Wedge,
 };
 
 impl Solid {
@@ -142,27 +141,6 @@ macro_rules! leaves {
     )*};
 }
 
-leaves!(
-    Capsule,
-    Cone,
-    Cuboid,
-    Cylinder,
-    Ellipsoid,
-    GeneralisedSuperquadric,
-    HalfSpace,
-    NetworkLattice,
-    Prism,
-    Pyramid,
-    RoundedCuboid,
-    SheetLattice,
-    Slab,
-    Sphere,
-    Superellipsoid,
-    Superhyperboloid,
-    Supershape,
-    Supertoroid,
-    Torus,
-    Wedge,
-);
+rvachev_field::solid_leaves!(leaves);
 #[cfg(feature = "formula")]
-leaves!(crate::Formula);
+rvachev_field::formula_leaves!(leaves);

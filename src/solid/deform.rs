@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::Solid;
-use crate::{Angle, Law};
-use rvachev_field::{Elongate, TaperBy, TwistBy};
+use crate::{Angle, BuiltInLaw, Law};
+use rvachev_field::{Elongate, TaperBy, TwistBy, catalogue};
 
 impl Solid {
     /// Tapered along z by any [laws](crate::Law) of z: sections are scaled by `x_law` along x
@@ -31,7 +31,11 @@ impl Solid {
     /// ```
     #[must_use]
     pub fn taper_by(&self, x_law: impl Law, y_law: impl Law) -> Solid {
-        self.warp(TaperBy { x: x_law, y: y_law })
+        // The laws that are built in share their kernels.
+        match (BuiltInLaw::of(&x_law), BuiltInLaw::of(&y_law)) {
+            (Some(x), Some(y)) => self.warped(catalogue::taper_by(x, y)),
+            _ => self.warp(TaperBy { x: x_law, y: y_law }),
+        }
     }
 
     /// Twisted about the z axis by any [law](crate::Law) of z: the section at z is turned by
@@ -61,7 +65,11 @@ impl Solid {
     /// ```
     #[must_use]
     pub fn twist_by(&self, angle: impl Into<Angle>, law: impl Law) -> Solid {
-        self.warp(TwistBy { angle: angle.into(), law })
+        let angle = angle.into();
+        match BuiltInLaw::of(&law) {
+            Some(law) => self.warped(catalogue::twist_by(angle, law)),
+            None => self.warp(TwistBy { angle, law }),
+        }
     }
 
     /// Elongated by straight pieces of these `lengths`: the parts on either side of each

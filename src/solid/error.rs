@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Node, Paint, Solid};
+use super::{Node, Paint, Profile, Solid};
 use crate::ParamError;
 
 /// Why a solid cannot be evaluated. `path` leads from the root to the node:
@@ -88,6 +88,8 @@ struct Step {
     /// Position among the parent's operands, where it has several.
     position: Option<usize>,
     paint: Option<Paint>,
+    /// Within what a verb is composed of: the address of the verb's operand.
+    inside: Option<usize>,
 }
 
 /// What a step is called.
@@ -113,7 +115,12 @@ impl Trail {
             Node::Painted { paint, .. } => Some(*paint),
             _ => None,
         };
-        self.0.push(Step { parent: parent.map(|(step, ..)| step), label, position, paint });
+        let inside = parent.and_then(|(step, up, _)| match up.node() {
+            Node::Repeated { operand: own, .. } | Node::Swept { profile: Profile(own), .. } => Some(own.address()),
+            _ => self.0[step as usize].inside,
+        });
+        let inside = inside.filter(|operand| *operand != solid.address());
+        self.0.push(Step { parent: parent.map(|(step, ..)| step), label, position, paint, inside });
         (self.0.len() - 1) as u32
     }
 
@@ -130,7 +137,13 @@ impl Trail {
         let mut position: Option<usize> = None;
         let mut next = Some(step);
         while let Some(step) = next {
-            let Step { parent, label, position: own, .. } = &self.0[step as usize];
+            let Step { parent, label, position: own, inside, .. } = &self.0[step as usize];
+            next = *parent;
+            if inside.is_some() {
+                // The verb says it all.
+                position = None;
+                continue;
+            }
             match (label, position) {
                 (Label::Kind(kind), Some(operand)) => names.push(format!("{kind}[{operand}]")),
                 (Label::Kind(kind), None) => names.push((*kind).to_string()),
@@ -141,7 +154,6 @@ impl Trail {
                 },
             }
             position = *own;
-            next = *parent;
         }
         names.reverse();
         if names.len() > SHOWN {

@@ -2,11 +2,13 @@
 
 mod blend;
 mod build;
+mod composed;
 mod debug;
 mod deform;
 mod display;
 mod equality;
 mod error;
+mod form;
 mod join;
 mod length;
 mod mirror;
@@ -21,10 +23,12 @@ mod simplify;
 mod sweep;
 mod transform;
 
+pub use composed::Repetition;
 pub use error::SolidError;
 pub(crate) use error::Trail;
-pub use node::Solid;
-pub(crate) use node::{Length, Node, Operation};
+pub use form::{DeformationForm, Form, LeafForm};
+pub(crate) use node::Node;
+pub use node::{Length, Operation, Solid};
 pub use paint::Paint;
 pub use profile::{PlaneBounds, Profile};
-pub use sweep::{Caps, Extrusion, Helix};
+pub use sweep::{Extrusion, Helix};

@@ -5,7 +5,8 @@ use std::sync::{Arc, OnceLock};
 
 use glam::DAffine3;
 
-use super::Paint;
+use super::composed::{Repetition, Sweep};
+use super::{Paint, Profile};
 use crate::{Blend, ParamError, RFunction};
 use rvachev_field::{AnyField, AnyWarp, check};
 
@@ -78,11 +79,25 @@ pub(crate) enum Node {
         operand: Solid,
         length: Length,
     },
+    /// What a verb makes of a solid out of several nodes: `built`.
+    Repeated {
+        operand: Solid,
+        repetition: Repetition,
+        built: Solid,
+    },
+    /// What a verb makes of a profile out of several nodes: `built`.
+    Swept {
+        profile: Profile,
+        sweep: Sweep,
+        built: Solid,
+    },
 }
 
-/// How a solid is moved in or out.
+/// How a solid is moved in or out: [`Solid::level`], [`offset`](Solid::offset),
+/// [`shell`](Solid::shell). What a [`Form`](crate::Form) tells of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Length {
+#[non_exhaustive]
+pub enum Length {
     /// Values are moved by this much.
     Level(f64),
     /// The surface is moved outwards by this much.
@@ -116,13 +131,16 @@ impl Length {
     }
 }
 
-/// A set operation on one or more operands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Operation {
+/// A set operation on one or more operands: what a [`Form`](crate::Form) tells of a join.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Operation {
+    /// What is in any operand.
     Union,
+    /// What is in all operands.
     Intersection,
     /// The first operand without the others.
     Difference,
+    /// Of two operands, what is in exactly one.
     SymmetricDifference,
 }
 
@@ -149,10 +167,12 @@ impl Node {
             Node::Length { length, .. } => length.name(),
             Node::Named { .. } => "named",
             Node::Painted { .. } => "paint",
+            Node::Repeated { repetition, .. } => repetition.name(),
+            Node::Swept { sweep, .. } => sweep.name(),
         }
     }
 
-    /// The operands, in order.
+    /// The operands that the user gave, in order.
     pub(crate) fn operands(&self) -> &[Solid] {
         match self {
             Node::Leaf(_) => &[],
@@ -161,15 +181,25 @@ impl Node {
             | Node::Length { operand, .. }
             | Node::Named { operand, .. }
             | Node::Painted { operand, .. }
+            | Node::Repeated { operand, .. }
             | Node::Complement(operand) => std::slice::from_ref(operand),
+            Node::Swept { profile, .. } => std::slice::from_ref(&profile.0),
             Node::Blend { operands, .. } => operands,
             Node::Join { operands, .. } => operands,
+        }
+    }
+
+    /// What the node is compiled from, in order: its operands, or what its verb made of them.
+    pub(crate) fn parts(&self) -> &[Solid] {
+        match self {
+            Node::Repeated { built, .. } | Node::Swept { built, .. } => std::slice::from_ref(built),
+            node => node.operands(),
         }
     }
 }
 
 impl Solid {
-    pub(super) fn from_node(node: Node) -> Solid {
+    pub(crate) fn from_node(node: Node) -> Solid {
         Solid(Arc::new(Inner { node, compiled: OnceLock::new() }))
     }
 
@@ -214,6 +244,9 @@ fn take_operands(node: &mut Node, pending: &mut Vec<Solid>) {
         | Node::Named { operand, .. }
         | Node::Painted { operand, .. }
         | Node::Complement(operand) => pending.push(operand),
+        Node::Repeated { operand: solid, built, .. } | Node::Swept { profile: Profile(solid), built, .. } => {
+            pending.extend([solid, built]);
+        }
         Node::Blend { operands, lengths, .. } => {
             pending.extend(operands);
             pending.extend(lengths);

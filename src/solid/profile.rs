@@ -10,8 +10,9 @@ mod query;
 
 use glam::DVec2;
 
-use super::{Node, Solid};
-use crate::{Bounds, Circle, Gielis, Polygon, Rectangle, RegularPolygon, Superellipse, Superpolygon};
+use super::Solid;
+use super::composed::Sweep;
+use crate::{Circle, Gielis, Polygon, Rectangle, RegularPolygon, Superellipse, Superpolygon};
 
 /// A shape in the plane of x and y: what solids are extruded, revolved and swept from.
 ///
@@ -42,7 +43,7 @@ use crate::{Bounds, Circle, Gielis, Polygon, Rectangle, RegularPolygon, Superell
 /// # Ok::<(), rvachev::SolidError>(())
 /// ```
 #[derive(Clone, PartialEq, Eq, Hash)]
-pub struct Profile(pub(super) Solid);
+pub struct Profile(pub(crate) Solid);
 
 /// A rectangle along the axes of the plane: what a profile is within.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,7 +101,7 @@ impl Profile {
     /// The column over the profile: the solid that is this profile at every z. It is unbounded.
     #[must_use]
     pub fn column(&self) -> Solid {
-        self.0.clone()
+        Sweep::Column.of(self, self.0.clone())
     }
 
     #[cfg(feature = "formula")]
@@ -123,7 +124,7 @@ impl Profile {
     #[must_use]
     pub fn formula(tree: &fidget::context::Tree, bounds: PlaneBounds) -> Profile {
         let (min, max) = (bounds.min.extend(f64::NEG_INFINITY), bounds.max.extend(f64::INFINITY));
-        Profile(Solid::formula(tree, Bounds::new(min, max)))
+        Profile(Solid::formula(tree, crate::Bounds::new(min, max)))
     }
 }
 
@@ -131,12 +132,6 @@ impl From<&Profile> for Profile {
     /// The same profile; a reference count.
     fn from(profile: &Profile) -> Profile {
         profile.clone()
-    }
-}
-
-impl From<Polygon> for Profile {
-    fn from(polygon: Polygon) -> Profile {
-        Profile(Solid::from_node(Node::Leaf(polygon.leaf())))
     }
 }
 
@@ -152,4 +147,4 @@ macro_rules! plane_leaves {
     )*};
 }
 
-plane_leaves!(Circle, Rectangle, RegularPolygon, Superellipse, Superpolygon);
+rvachev_field::plane_leaves!(plane_leaves);

@@ -24,6 +24,8 @@ impl Node {
             }
             Node::Blend { blend, .. } => format!("by {blend:?}"),
             Node::Length { length, .. } => format!("by {:?}", length.amount()),
+            Node::Repeated { repetition, .. } => repetition.to_string(),
+            Node::Swept { sweep, .. } => sweep.to_string(),
         }
     }
 
@@ -38,6 +40,8 @@ impl Node {
             | Node::Named { .. }
             | Node::Painted { .. }
             | Node::Blend { .. }
+            | Node::Repeated { .. }
+            | Node::Swept { .. }
             | Node::Length { .. } => return None,
         };
         Some(any.type_id())
@@ -49,6 +53,9 @@ impl Node {
             return super::blend::node(*operation, [first.clone(), second.clone()], *blend);
         }
         let mut node = self.clone();
+        if let (Node::Repeated { built, .. } | Node::Swept { built, .. }, [new]) = (&mut node, &operands[..]) {
+            *built = super::composed::replaced(built, &self.operands()[0], new);
+        }
         let places = match &mut node {
             Node::Leaf(_) => &mut [],
             Node::Affine { operand, .. }
@@ -56,7 +63,9 @@ impl Node {
             | Node::Complement(operand)
             | Node::Length { operand, .. }
             | Node::Named { operand, .. }
+            | Node::Repeated { operand, .. }
             | Node::Painted { operand, .. } => std::slice::from_mut(operand),
+            Node::Swept { profile, .. } => std::slice::from_mut(&mut profile.0),
             Node::Blend { operands, .. } => operands,
             Node::Join { operands, .. } => &mut operands[..],
         };

@@ -3,53 +3,18 @@
 use std::any::Any;
 use std::f64::consts::TAU;
 
+use super::composed::Sweep;
 use super::{Node, Profile, Solid};
 use crate::{Angle, Blend, ParamError, Polygon, RFunction};
-use rvachev_field::{HelixWarp, Opening, Revolution, Span, Turn, check};
+use rvachev_field::{Caps, HelixWarp, Opening, Revolution, Span, Turn, check};
 
-/// How the edges of an end face are.
-///
-/// Lengths are 10⁻⁹ to 10⁹, and meant to be below half the height and half the section's width.
-///
-/// ```
-/// use rvachev::{Caps, Extrusion, Profile};
-///
-/// let bar = |caps| Profile::rectangle([10.0, 6.0]).extrude_with(&Extrusion { caps, ..Extrusion::new(4.0) });
-/// let near_the_edge = [4.9, 0.0, 1.9];
-/// assert!(bar(Caps::Flat).contains(near_the_edge)?);
-/// assert!(!bar(Caps::Rounded(1.0)).contains(near_the_edge)?);
-/// assert!(!bar(Caps::Chamfered(1.0)).contains(near_the_edge)?);
-/// # Ok::<(), rvachev::SolidError>(())
-/// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Caps {
-    /// Sharp.
-    #[default]
-    Flat,
-    /// Chamfered; the number is the leg, a length: how far from the edge the bevel begins, on the
-    /// end face and on the sides.
-    Chamfered(f64),
-    /// Rounded; the number is the radius, a length.
-    Rounded(f64),
-}
-
-impl Caps {
-    fn check(self, name: &str) -> Result<(), ParamError> {
-        match self {
-            Caps::Flat => Ok(()),
-            Caps::Chamfered(leg) => check::length(&format!("{name} (leg)"), leg),
-            Caps::Rounded(radius) => check::length(&format!("{name} (radius)"), radius),
-        }
-    }
-
-    /// A column cut off by a slab.
-    fn cut(self, column: &Solid, slab: &Solid) -> Solid {
-        match self {
-            // The slab first: it says what is wrong with the parameters.
-            Caps::Flat => slab.intersection(column, RFunction::Distance),
-            Caps::Chamfered(leg) => slab.intersection_with(column, Blend::Chamfer { leg }),
-            Caps::Rounded(radius) => slab.intersection_with(column, Blend::Fillet { radius }),
-        }
+/// A column cut off by a slab.
+fn cut(caps: Caps, column: &Solid, slab: &Solid) -> Solid {
+    match caps {
+        // The slab first: it says what is wrong with the parameters.
+        Caps::Flat => slab.intersection(column, RFunction::Distance),
+        Caps::Chamfered(leg) => slab.intersection_with(column, Blend::Chamfer { leg }),
+        Caps::Rounded(radius) => slab.intersection_with(column, Blend::Fillet { radius }),
     }
 }
 
@@ -208,7 +173,7 @@ impl Profile {
         if twist != Angle::ZERO {
             column = column.rotate_z(0.5 * twist).twist(twist / height);
         }
-        caps.cut(&column, &slab)
+        Sweep::Extrude(*extrusion).of(self, cut(caps, &column, &slab))
     }
 
     /// Revolved about the z axis: the profile's x is the distance from the axis and its y
@@ -233,6 +198,11 @@ impl Profile {
     /// ```
     #[must_use]
     pub fn revolve(&self) -> Solid {
+        Sweep::Revolve(Angle::FULL_TURN).of(self, self.revolved())
+    }
+
+    /// All the way round.
+    fn revolved(&self) -> Solid {
         let across = match self.0.node() {
             Node::Leaf(field) => {
                 let any: &dyn Any = &**field;
@@ -270,7 +240,8 @@ impl Profile {
         if angle == Angle::FULL_TURN {
             return self.revolve();
         }
-        Solid::leaf(Opening { angle }).intersection(self.revolve(), RFunction::MIN_MAX)
+        let part = Solid::leaf(Opening { angle }).intersection(self.revolved(), RFunction::MIN_MAX);
+        Sweep::Revolve(angle).of(self, part)
     }
 
     /// Swept along a helix about the z axis: a thread, a spring.
@@ -313,7 +284,7 @@ impl Profile {
         let error = helix.check().err();
         let ends = if error.is_some() { Caps::Flat } else { ends };
         let slab = Solid::leaf(Span { verb: "sweep_helix", half_height, error });
-        let straight = ends.cut(&self.0, &slab);
+        let straight = cut(ends, &self.0, &slab);
         // What is wrong with the profile is said when the solid is used.
         let (middle, height) = match self.bounds() {
             Ok(bounds) if bounds.min.is_finite() && bounds.max.is_finite() => {
@@ -322,9 +293,11 @@ impl Profile {
             _ => (0.0, 0.0),
         };
         let seen_from = |turn| straight.warp(HelixWarp::new(radius, pitch, left_handed, middle, stretch, turn));
-        if height <= 0.5 * pitch {
-            return seen_from(Turn::Nearest);
-        }
-        Solid::union_all([Turn::Nearest, Turn::Above, Turn::Below].map(seen_from), RFunction::MIN_MAX)
+        let swept = if height <= 0.5 * pitch {
+            seen_from(Turn::Nearest)
+        } else {
+            Solid::union_all([Turn::Nearest, Turn::Above, Turn::Below].map(seen_from), RFunction::MIN_MAX)
+        };
+        Sweep::Helix(*helix).of(self, swept)
     }
 }

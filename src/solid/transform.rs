@@ -1,6 +1,8 @@
 //! Maps: affine ones, taper, twist and bend. (Rotations are in `rotate`, maps by laws in `deform`,
 //! reflections in `mirror`, repetition, which asks for boxes, in `eval`.)
 
+use std::sync::Arc;
+
 use glam::{DAffine3, DVec3};
 
 use super::{Node, Solid};
@@ -170,6 +172,10 @@ impl Solid {
     }
 
     pub(crate) fn warp(&self, warp: impl Erase<dyn AnyWarp>) -> Solid {
-        Solid::from_node(Node::Warp { operand: self.clone(), warp: warp.erase() })
+        self.warped(warp.erase())
+    }
+
+    pub(crate) fn warped(&self, warp: Arc<dyn AnyWarp>) -> Solid {
+        Solid::from_node(Node::Warp { operand: self.clone(), warp })
     }
 }

@@ -9,6 +9,7 @@ mod errors;
 mod explicit_inputs;
 mod explicit_points;
 mod export;
+mod form;
 mod forms;
 #[cfg(feature = "formula")]
 mod formula;

@@ -150,6 +150,7 @@ fn profiles() -> Vec<(&'static str, &'static str, Make)> {
         ("affine", "", |v| disc().affine(DAffine2::from_mat2(DMat2::from_diagonal([v, 1.0].into()))).extrude(1.0)),
         ("union", "alpha", |v| disc().union(disc(), RFunction::Alpha(v)).extrude(1.0)),
         ("difference", "p", |v| disc().difference(disc(), RFunction::P(v)).extrude(1.0)),
+        #[cfg(feature = "formula")]
         ("formula", "bounds.min.x", |v| {
             let bounds = rvachev::PlaneBounds { min: [v, -1.0].into(), max: [9e8; 2].into() };
             Profile::formula(&fidget::context::Tree::x(), bounds).extrude(1.0)

@@ -279,9 +279,9 @@ fn what_is_wrong_is_said() {
     let disc = Profile::circle(1.0);
     assert_eq!(
         text(Profile::circle(-1.0).extrude(1.0)),
-        "intersection[1] / circle: radius is -1, allowed: 0.000000001 to 1000000000"
+        "extrude / circle: radius is -1, allowed: 0.000000001 to 1000000000"
     );
-    assert!(text(disc.extrude(0.0)).starts_with("intersection[0] / extrude: height is 0, allowed"));
+    assert!(text(disc.extrude(0.0)).starts_with("extrude: height is 0, allowed"));
     assert!(text(disc.extrude_with(&Extrusion { scale: 0.0, ..Extrusion::new(1.0) })).contains("extrude: scale is 0"));
     assert!(
         text(disc.extrude_with(&Extrusion { twist: rad(f64::NAN), ..Extrusion::new(1.0) })).contains("twist is NaN")

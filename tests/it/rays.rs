@@ -5,7 +5,7 @@
 //! crossing, any other is halved, the nearer half first, until it is short.
 
 use glam::DVec3;
-use rvachev::{Bounds, Camera, Program, Region, Run, Scene, Solid, Surface, Window, deg, rad};
+use rvachev::{Bounds, Camera, Program, Region, Run, Scene, Solid, Surface, Window, deg};
 
 use crate::models;
 use crate::support::{Random, frame_of, near, random_leaf, random_solid};
@@ -280,7 +280,7 @@ fn pictures_see_what_single_rays_hit() {
 #[test]
 fn pictures_of_formulas_see_what_single_rays_hit() {
     use glam::DVec2;
-    use rvachev::{PlaneBounds, Profile};
+    use rvachev::{PlaneBounds, Profile, rad};
 
     let (x, y, _) = fidget::context::Tree::axes();
     let ring = |cx: f32, cy: f32, r: f32| {

@@ -1,8 +1,8 @@
 //! The formulas: leaves, R-functions and deformations, each written once over
 //! [`Real`].
 //!
-//! A leaf is a type that implements [`Field`]; adding one is a file here and a line below. A
-//! deformation implements `Warp`. Both are erased (`AnyField`, `AnyWarp`) to the evaluations
+//! A leaf is a type that implements [`Field`]; adding one is a file here, a line below and its
+//! declaration in the [`catalogue`]. A deformation implements `Warp`. Both are erased (`AnyField`, `AnyWarp`) to the evaluations
 //! that the engine runs: point, gradient, range, lanes, expression tree.
 
 #[macro_use]
@@ -10,6 +10,7 @@ mod picture;
 
 mod blend;
 mod capsule;
+pub mod catalogue;
 pub mod check;
 mod cone;
 mod cuboid;
@@ -62,7 +63,7 @@ pub use check::ParamError;
 pub use cone::Cone;
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
-pub use deform::{AnyWarp, Bend, Cells, Comb, Elongate, Sectors, Taper, TaperBy, Twist, TwistBy};
+pub use deform::{AnyWarp, Bend, BuiltInLaw, Cells, Comb, Elongate, Sectors, Taper, TaperBy, Twist, TwistBy};
 pub use deform::{Law, LawTable, LinearLaw, SineWave, SmoothStep};
 pub use distance::Distance;
 pub use ellipsoid::Ellipsoid;
@@ -97,7 +98,7 @@ pub use superellipsoid::Superellipsoid;
 pub use superhyperboloid::Superhyperboloid;
 pub use supershape::Supershape;
 pub use supertoroid::Supertoroid;
-pub use sweep::{HelixWarp, Opening, Revolution, Span, Turn};
+pub use sweep::{Caps, HelixWarp, Opening, Revolution, Span, Turn};
 pub use torus::Torus;
 pub use wedge::Wedge;
 pub use zone::{Pieces, Way, Zone, bits, dot, largest_stretch, steepest};

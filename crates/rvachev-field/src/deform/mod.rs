@@ -7,6 +7,7 @@
 //! stretching and keep whatever bound the solid has.
 
 mod bend;
+mod built_in_law;
 mod cells;
 mod elongate;
 mod law;
@@ -27,6 +28,7 @@ use crate::{Bounds, Dual, Interval, Norm, Real};
 use rvachev_num::symbol::Symbol;
 
 pub use bend::Bend;
+pub use built_in_law::BuiltInLaw;
 pub use cells::{Cells, Comb};
 pub use elongate::Elongate;
 pub use law::{Law, LawTable, LinearLaw, SineWave, SmoothStep};

@@ -40,6 +40,7 @@ mod survey;
 #[cfg(test)]
 mod tests;
 mod text;
+mod write;
 
 use std::fmt;
 use std::sync::{Arc, OnceLock};

@@ -117,6 +117,12 @@ impl Polygon {
         Polygon(Arc::new(shape))
     }
 
+    /// The contours as they were given, but for last points that repeat the first.
+    #[must_use]
+    pub fn contours(&self) -> &[Vec<DVec2>] {
+        &self.0.contours
+    }
+
     /// The number of edges; 0 if there is something wrong with the contours.
     #[must_use]
     pub fn edge_count(&self) -> usize {

@@ -1,0 +1,102 @@
+//! Set operations, and lengths.
+
+use rvachev_field::catalogue::ValueError;
+
+use super::part::{Either, Many, Take};
+use super::verb::verbs;
+use crate::{Blend, Profile, RFunction, Range, Solid};
+
+/// The first operand, and the others.
+fn first<T: Clone>(entry: &'static str, operands: &[T]) -> Result<(T, Vec<T>), ValueError> {
+    let (first, others) = operands.split_first().ok_or_else(|| ValueError::Operands {
+        entry,
+        expected: <Many as Take>::OPERANDS.words(),
+        found: "nothing".to_string(),
+    })?;
+    Ok((first.clone(), others.to_vec()))
+}
+
+verbs! {
+    /// What is in any operand.
+    Join union {
+        /// What combines the values.
+        function: RFunction = None, Range::ANY, example RFunction::P(2.0);
+    } => |operands: Many| match operands {
+        Many::Solids(solids) => super::Part::from(Solid::union_all(solids, function)),
+        Many::Profiles(profiles) => Profile::union_all(profiles, function).into(),
+    };
+
+    /// What is in all operands.
+    Join intersection {
+        /// What combines the values.
+        function: RFunction = None, Range::ANY, example RFunction::Associative(3.0);
+    } => |operands: Many| match operands {
+        Many::Solids(solids) => super::Part::from(Solid::intersection_all(solids, function)),
+        Many::Profiles(profiles) => Profile::intersection_all(profiles, function).into(),
+    };
+
+    /// The first operand without the others.
+    Join difference {
+        /// What combines the values.
+        function: RFunction = None, Range::ANY, example RFunction::MIN_MAX;
+    } => |operands: Many| match operands {
+        Many::Solids(solids) => {
+            let (first, others) = first("difference", &solids)?;
+            super::Part::from(first.difference_all(others, function))
+        }
+        Many::Profiles(profiles) => {
+            let (first, others) = first("difference", &profiles)?;
+            first.difference_all(others, function).into()
+        }
+    };
+
+    /// What is in exactly one of two operands.
+    Join symmetric_difference {
+        /// What combines the values.
+        function: RFunction = None, Range::ANY, example RFunction::Alpha(0.5);
+    } => |operands: [Either; 2]| match operands {
+        [Either::Solid(a), Either::Solid(b)] => super::Part::from(a.symmetric_difference(b, function)),
+        [Either::Profile(a), Either::Profile(b)] => a.symmetric_difference(&b, function).into(),
+        _ => unreachable!("both are of one sort"),
+    };
+
+    /// Everything outside.
+    Join complement {
+    } => |operand: Either| operand.map(|solid| solid.complement(), |profile| profile.complement());
+
+    /// What is in either solid, and what the blend adds between them.
+    BlendedJoin union_with {
+        /// The transition.
+        blend: Blend = None, Range::ANY, example Blend::Fillet { radius: 0.25 };
+    } => |[a, b]: [Solid; 2]| a.union_with(b, blend);
+
+    /// What is in both solids, less what the blend takes off.
+    BlendedJoin intersection_with {
+        /// The transition.
+        blend: Blend = None, Range::ANY, example Blend::Chamfer { leg: 0.25 };
+    } => |[a, b]: [Solid; 2]| a.intersection_with(b, blend);
+
+    /// What is in the first solid and not in the second, less what the blend takes off.
+    BlendedJoin difference_with {
+        /// The transition.
+        blend: Blend = None, Range::ANY, example Blend::Smooth { radius: 0.5 };
+    } => |[a, b]: [Solid; 2]| a.difference_with(b, blend);
+
+    /// The solid whose value is larger by a number.
+    Length level {
+        /// What is added.
+        value: f64 = Length, Range::FINITE, example 0.25;
+    } => |solid: Solid| solid.level(value);
+
+    /// The surface moved outwards.
+    Length offset {
+        /// How far; inwards if negative.
+        distance: f64 = Length, Range::FINITE, example 0.25;
+    } => |operand: Either| operand.map(|solid| solid.offset(distance), |profile| profile.offset(distance));
+
+    /// A wall of even thickness inside the surface.
+    Length shell {
+        /// How thick.
+        thickness: f64 = Length, Range::LENGTH, example 0.125;
+    } => |solid: Solid| solid.shell(thickness);
+}
