@@ -396,7 +396,7 @@ pub use field::{
 };
 pub use geom::{
     Camera, CameraError, Coordinates, Corner, Image, ImageError, Intrinsics, Mesh, MeshError, Noise, Plane, PointCloud,
-    PointCloudError, Polyline, Projection, QuadMesh, RangeImage, RangeImageError, Rays, View,
+    PointCloudError, Polyline, Projection, QuadMesh, RangeImage, RangeImageError, Rays, ThinPlace, ThinReport, View,
 };
 pub use io::{
     Colors, Floats, LengthUnit, Pixel, SaveError, SaveSettings, write_3mf, write_dxf, write_exr, write_gif, write_glb,

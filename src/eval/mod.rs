@@ -32,6 +32,7 @@ mod rise;
 mod scene;
 mod sides;
 mod tape;
+mod thin;
 
 pub(crate) use narrow::Narrowed;
 pub use palette::Palette;
@@ -44,7 +45,7 @@ pub use tape::{Evaluator, Gradients, Tape};
 pub(crate) use crate::field::BOXES as BOXES_AT_ONCE;
 
 pub(crate) use bend::Bend;
-pub(crate) use compile::{Compiled, compiled};
+pub(crate) use compile::compiled;
 pub(crate) use parting::Parting;
 pub(crate) use program::Op;
 pub(crate) use ray::{Care, first_hit};

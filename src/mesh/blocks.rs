@@ -34,6 +34,11 @@ pub(super) struct Programs {
 }
 
 impl Programs {
+    /// One of them, if there is any.
+    pub(super) fn first(&self) -> Option<&Program> {
+        self.all.first()
+    }
+
     pub(super) fn of(&self, block: usize) -> &Program {
         &self.all[self.numbers[block] as usize]
     }

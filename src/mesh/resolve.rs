@@ -9,18 +9,15 @@
 //! Blocks are halved until the ranges show that a part has no surface, or until there is a direction along which
 //! it is only entered, or no cell in it is one that is looked for, or until it is a cell.
 
-use std::sync::Arc;
-
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::blocks::Blocks;
-use super::extract::Sampler;
+use super::extract::{CellRows, Sampler};
 use super::lattice::Lattice;
 use super::sampler::{Scratch, SolidSampler};
 use super::signs::{BLOCK, NODES, SIDE, Signs};
-use crate::eval::{Compiled, Narrowed, Program};
-use crate::geom::LateCount;
+use crate::eval::{Narrowed, Program};
 use crate::run::Meter;
 use crate::{Bounds, Cancelled, Interval, Run};
 
@@ -73,18 +70,42 @@ pub(super) fn unresolved_cells(
     found.filter_map(Result::transpose).collect()
 }
 
-/// How many cells they are.
-pub(super) fn count(unresolved: &[Unresolved]) -> usize {
-    unresolved.iter().map(|block| block.cells.len()).sum()
-}
-
-/// Their count, to be made when it is asked for.
-pub(super) fn late_count(programs: Arc<Compiled>, (lattice, limits): (Lattice, Bounds)) -> LateCount {
-    LateCount::new(move |run| {
-        let [to_find, to_look] = run.stages([0.1, 1.0]);
-        let blocks = Blocks::find(&programs.surface, &lattice, &to_find)?;
-        Ok(count(&unresolved_cells(&blocks, (&lattice, limits), Among::OneSided, &to_look)?))
-    })
+/// Whether a feature may hide in some cells of a block, all of whose nodes have one sign: whether one of them has a
+/// surface by its range and may be left where it is entered. So many ranges may be taken; it may if they do not suffice.
+pub(super) fn may_hide(
+    program: &Program,
+    (lattice, block): (&Lattice, [u32; 3]),
+    cells: &CellRows,
+    mut ranges: usize,
+) -> bool {
+    /// What finding out whether a cell is entered once takes, in ranges.
+    const ONCE: usize = 8;
+    let mut open = vec![([0; 3], BLOCK, program.clone())];
+    while let Some((first, size, program)) = open.pop() {
+        let half = size / 2;
+        let mut shared = None;
+        for n in 0..8 {
+            let first: [usize; 3] = std::array::from_fn(|axis| first[axis] + (n >> axis & 1) * half);
+            if !cells.has_any(first, half) {
+                continue;
+            }
+            let region = lattice.region(std::array::from_fn(|axis| block[axis] + first[axis] as u32), half);
+            let cost = if half == 1 { 1 + ONCE } else { 1 };
+            let Some(left) = ranges.checked_sub(cost) else { return true };
+            ranges = left;
+            let simpler = match program.narrowed(&region) {
+                Narrowed::Inside | Narrowed::Outside => continue,
+                Narrowed::Same => shared.get_or_insert_with(|| program.clone()).clone(),
+                Narrowed::Simpler(simpler) => simpler,
+            };
+            if half > 1 {
+                open.push((first, half, simpler));
+            } else if !simpler.is_entered_once(&[region]) && !simpler.is_entered_once(&octants(&region)) {
+                return true;
+            }
+        }
+    }
+    false
 }
 
 /// The eight parts of a box.

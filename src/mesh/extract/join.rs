@@ -3,11 +3,13 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
+use super::corners::Vertices;
+use super::lost::Suspect;
 use super::neighbours::Neighbours;
 use super::samples::Samples;
 use super::sharp::{self, Found};
 use super::{BATCH, Batch, ExtractError, Part, Rift, Sampler};
-use crate::geom::Mesh;
+use crate::geom::{Findings, Mesh};
 use crate::mesh::Features;
 use crate::mesh::bulk::Bulk;
 use crate::mesh::lattice::Lattice;
@@ -70,6 +72,10 @@ pub(super) struct Parts<'a> {
     room: f64,
     /// How many of the vertices are moved to keep clear of nodes.
     clamped: usize,
+    /// Blocks that may have lost a feature, in their order; how many have, and the first of them.
+    pub(super) suspects: Vec<Suspect>,
+    lost: usize,
+    first_lost: Option<[u32; 3]>,
 }
 
 impl<'a> Parts<'a> {
@@ -80,12 +86,23 @@ impl<'a> Parts<'a> {
             Features::Smooth => 1.1,
             Features::Sharp => 1.8,
         };
-        Parts { blocks, neighbours, parts, positions, normals, room, clamped: 0 }
+        Parts {
+            blocks,
+            neighbours,
+            parts,
+            positions,
+            normals,
+            room,
+            clamped: 0,
+            suspects: Vec::new(),
+            lost: 0,
+            first_lost: None,
+        }
     }
 
     /// Adds what the first pass leaves of the next blocks, and numbers their vertices.
     pub(super) fn add(&mut self, batch: Batch) -> Result<(), ExtractError> {
-        let Batch { mut parts, positions, normals, clamped } = batch;
+        let Batch { mut parts, positions, normals, clamped, suspects } = batch;
         let start = self.positions.len();
         let count = start as u64 + positions.len() as u64;
         if count > u64::from(u32::MAX) {
@@ -101,6 +118,7 @@ impl<'a> Parts<'a> {
         self.positions.extend_from_slice(&positions);
         self.normals.extend_from_slice(&normals);
         self.clamped += clamped;
+        self.suspects.extend(suspects);
         Ok(())
     }
 
@@ -157,6 +175,25 @@ impl<'a> Parts<'a> {
         [std::mem::take(&mut self.positions), std::mem::take(&mut self.normals)]
     }
 
+    /// Counts the blocks that may have lost a feature.
+    pub(super) fn note_lost<S: Sampler>(&mut self, sampler: &S, run: &Run) -> Result<(), Cancelled> {
+        let lost = self.lost(sampler, run)?;
+        self.lost = lost.len();
+        self.first_lost = lost.first().map(|&n| self.blocks[n]);
+        Ok(())
+    }
+
+    /// What the first pass found besides the vertices.
+    fn findings(&self, lattice: &Lattice) -> Findings {
+        Findings {
+            cell: lattice.step(),
+            clamped_vertices: Some(self.clamped),
+            possibly_lost: self.lost,
+            first_lost: self.first_lost.map(|block| lattice.region(block, BLOCK).center()),
+            thin: None,
+        }
+    }
+
     /// The mesh.
     pub(super) fn join<S: Sampler>(
         mut self,
@@ -166,6 +203,7 @@ impl<'a> Parts<'a> {
         run: &Run,
     ) -> Result<Mesh, ExtractError> {
         let [mut positions, mut normals] = self.take_vertices();
+        let findings = self.findings(lattice);
         let found = match features {
             Features::Smooth => Found::Table(self.triangles_unless(|| (), run)?.unwrap_or_default()),
             Features::Sharp => {
@@ -181,7 +219,7 @@ impl<'a> Parts<'a> {
                 normals.shrink_to_fit();
                 return Ok(Mesh::new(positions.into_vec(), triangles.into_vec())?
                     .with_normals(normals.into_vec())?
-                    .with_clamped_vertices(self.clamped));
+                    .with_findings(findings));
             }
         };
         let count = positions.len() as u64 + fans.count() as u64;
@@ -190,7 +228,8 @@ impl<'a> Parts<'a> {
         }
         fans.add_vertices(&mut positions, &mut normals);
         let unused = fans.unused().to_vec();
-        let (mut triangles, sides) = fans.triangles(&run.stage(0.95, 1.0))?;
+        let vertices = Vertices { positions: &positions, normals: &normals };
+        let (mut triangles, corners) = fans.triangles(vertices, &run.stage(0.95, 1.0))?;
         if !unused.is_empty() {
             let used = used(positions.len(), &unused);
             let number = |n: u32| used[n as usize];
@@ -210,9 +249,9 @@ impl<'a> Parts<'a> {
         normals.shrink_to_fit();
         let mesh = Mesh::new(positions.into_vec(), triangles.into_vec())?
             .with_normals(normals.into_vec())?
-            .with_clamped_vertices(self.clamped);
-        Ok(match sides {
-            Some(sides) => mesh.with_normals_apart(sides)?,
+            .with_findings(findings);
+        Ok(match corners {
+            Some(corners) => mesh.with_corner_normals(corners.into_vec())?,
             None => mesh,
         })
     }
