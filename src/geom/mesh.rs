@@ -30,7 +30,8 @@ use crate::bounds::Bounds;
 /// extraction found: [`possibly_lost`](Mesh::possibly_lost), [`warnings`](Mesh::warnings).
 ///
 /// A mesh is plain data: lists and numbers, without functions or references to the solid that it
-/// was made from. Two meshes are equal if all of it is.
+/// was made from. Two meshes are equal if positions, triangles and attributes are; what the extraction
+/// found is not compared.
 ///
 /// ```
 /// use glam::Vec3;
@@ -42,12 +43,18 @@ use crate::bounds::Bounds;
 /// assert!((tetrahedron.volume() - 1.0 / 6.0).abs() < 1e-15);
 /// # Ok::<(), rvachev::MeshError>(())
 /// ```
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default)]
 pub struct Mesh {
     positions: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
     attributes: Attributes,
     findings: Findings,
+}
+
+impl PartialEq for Mesh {
+    fn eq(&self, other: &Mesh) -> bool {
+        self.positions == other.positions && self.triangles == other.triangles && self.attributes == other.attributes
+    }
 }
 
 /// Why a mesh cannot be built from the given parts.

@@ -71,7 +71,7 @@ pub(super) fn unresolved_cells(
 }
 
 /// Whether a feature may hide in some cells of a block, all of whose nodes have one sign: whether one of them has a
-/// surface by its range and may be left where it is entered. So many ranges may be taken; it may if they do not suffice.
+/// surface by its range, which may be left where it is entered. So many ranges may be taken; it may if they do not suffice.
 pub(super) fn may_hide(
     program: &Program,
     (lattice, block): (&Lattice, [u32; 3]),

@@ -93,6 +93,8 @@ impl Solid {
 /// A cell of the lattice that the surface may turn round in.
 struct Thin<'a> {
     cell: [u32; 3],
+    /// Whether its nodes are on both sides.
+    is_mixed: bool,
     program: &'a Program,
 }
 
@@ -115,14 +117,18 @@ pub(super) fn thin_report(
         let hidden = hidden.get(&found.block).copied().unwrap_or_default();
         let thin = |within: &[usize; 3]| {
             let cell = std::array::from_fn(|axis| found.block[axis] + within[axis] as u32);
-            let counts = hidden.contains(within) || gap(program, &lattice.region(cell, 1), lattice.step()).is_some();
-            counts.then_some(Thin { cell, program })
+            let is_mixed = !hidden.contains(within);
+            let counts = !is_mixed || gap(program, &lattice.region(cell, 1), lattice.step()).is_some();
+            counts.then_some(Thin { cell, is_mixed, program })
         };
         Ok(found.cells.iter().filter_map(thin).collect::<Vec<_>>())
     };
     let cells: Result<Vec<Vec<Thin<'_>>>, Cancelled> = all.par_iter().map(of_block).collect();
     let cells: Vec<Thin<'_>> = cells?.into_iter().flatten().collect();
     let mut places = grouped(&cells, run)?;
+    // The surface turns round in the cell of a sharp corner, too.
+    places.retain(|place| place.len() > 1 || !cells[place[0]].is_mixed);
+    let count = places.iter().map(Vec::len).sum();
     // The largest first; of as many cells, that which is found first.
     places.sort_by_key(|place| (usize::MAX - place.len(), place[0]));
     let listed = &places[..places.len().min(ThinReport::LISTED)];
@@ -132,7 +138,7 @@ pub(super) fn thin_report(
     };
     let listed: Result<Vec<ThinPlace>, Cancelled> = listed.par_iter().map(measured).collect();
     run.report(1.0);
-    Ok(ThinReport { cell: lattice.step(), cells: cells.len(), count: places.len(), places: listed? })
+    Ok(ThinReport { cell: lattice.step(), cells: count, count: places.len(), places: listed? })
 }
 
 /// The places: the numbers of cells that touch, each list in ascending order.

@@ -33,10 +33,12 @@ use super::join::Parts;
 use super::{Part, Sampler};
 use crate::mesh::lattice::Lattice;
 use crate::mesh::signs::{BLOCK, NODES, SIDE, Signs};
-use crate::run::{Cancelled, Run};
+use crate::run::{Cancelled, Meter, Run};
 
 /// No point of a cell is farther from the nearest of its nodes, in cells, with room for rounding: half of the diagonal.
 const REACH: f64 = 0.867;
+/// Where no Lipschitz bound is known, the value is taken to be steeper than between any two nodes of the block, by this factor.
+const STEEPER: f64 = 1.5;
 /// Two sides that are closer together, in cells, are those of a wall that may be torn.
 const WALL: f32 = 1.1;
 /// The cosine from which on normals are opposite.
@@ -53,7 +55,9 @@ const TIP: usize = 2;
 /// For how many blocks there is one narrowing, and how many more there are: intervals are to take no more than 3 % of
 /// the time.
 const BLOCKS_PER_INTERVAL: usize = 12;
-const INTERVALS: usize = 64;
+const INTERVALS: usize = 256;
+/// What a block has at least.
+const LEAST: usize = 16;
 
 /// Cells of a block, a bit each: bit `i` of row `8 k + j`.
 #[derive(Clone, Debug, PartialEq)]
@@ -130,11 +134,23 @@ pub(super) fn suspected<S: Sampler>(
     (number, block): (usize, [u32; 3]),
     (signs, values): (&Signs, &[f32; NODES]),
 ) -> Option<Suspicion> {
-    if !signs.is_mixed() {
-        let least = REACH * lattice.step() * sampler.lipschitz_bound(number);
-        return CellRows::near(values, least as f32).map(|cells| Suspicion::Hidden(Box::new(cells)));
+    if signs.is_mixed() {
+        return sampler.is_bored(number, block).then_some(Suspicion::Bored);
     }
-    sampler.is_bored(number, block).then_some(Suspicion::Bored)
+    let bound = sampler.lipschitz_bound(number);
+    let slope = if bound.is_finite() { bound * lattice.step() } else { STEEPER * f64::from(steepest(values)) };
+    CellRows::near(values, (REACH * slope) as f32).map(|cells| Suspicion::Hidden(Box::new(cells)))
+}
+
+/// The most that the value changes by from node to node along an axis.
+fn steepest(values: &[f32; NODES]) -> f32 {
+    let most = |stride: usize, is_inner: &dyn Fn(usize) -> bool| {
+        let rises = values.iter().zip(&values[stride..]).enumerate().filter(|(n, _)| is_inner(*n));
+        rises.fold(0.0f32, |most, (_, (low, high))| most.max((high - low).abs()))
+    };
+    let x = most(1, &|n| n % SIDE != SIDE - 1);
+    let y = most(SIDE, &|n| n / SIDE % SIDE != SIDE - 1);
+    x.max(y).max(most(SIDE * SIDE, &|_| true))
 }
 
 /// How many nodes of a block there are between opposite sides of a wall, given the vertices of the batch.
@@ -229,14 +245,28 @@ impl Parts<'_> {
                 Suspicion::Bored => lost.push(*number),
             }
         }
+        let before = (lost.len(), suspects.iter().filter(|s| matches!(s.why, Suspicion::Bored)).count());
         // Each has the same share, whatever the order.
         let share = (self.blocks.len() / BLOCKS_PER_INTERVAL + INTERVALS) / open.len().max(1);
+        let share = share.max(LEAST);
+        let meter = Meter::new(run, open.len());
         let is_lost = |(number, cells): &(usize, CellRows)| {
-            run.check()?;
+            meter.step()?;
             Ok(sampler.may_hide(*number, self.blocks[*number], cells, share).then_some(*number))
         };
         let hidden: Result<Vec<Option<usize>>, Cancelled> = open.par_iter().map(is_lost).collect();
         lost.extend(hidden?.into_iter().flatten());
+        if std::env::var_os("LOST").is_some() {
+            let h = suspects.iter().filter(|s| matches!(s.why, Suspicion::Hidden(_))).count();
+            eprintln!(
+                "LOST blocks {} torn {} bored {} hidden suspects {h} open {} share {share} lost hidden {}",
+                self.blocks.len(),
+                before.0 - before.1,
+                before.1,
+                open.len(),
+                lost.len() - before.0
+            );
+        }
         lost.sort_unstable();
         Ok(lost)
     }
