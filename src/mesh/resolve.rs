@@ -78,8 +78,8 @@ pub(super) fn may_hide(
     cells: &CellRows,
     mut ranges: usize,
 ) -> bool {
-    /// What finding out whether a cell is entered once takes, in ranges.
-    const ONCE: usize = 8;
+    /// What finding out whether a cell is entered once takes, in ranges, with those of its eight parts.
+    const ONCE: usize = 16;
     let mut open = vec![([0; 3], BLOCK, program.clone())];
     while let Some((first, size, program)) = open.pop() {
         let half = size / 2;
@@ -90,9 +90,10 @@ pub(super) fn may_hide(
                 continue;
             }
             let region = lattice.region(std::array::from_fn(|axis| block[axis] + first[axis] as u32), half);
-            let cost = if half == 1 { 1 + ONCE } else { 1 };
-            let Some(left) = ranges.checked_sub(cost) else { return true };
-            ranges = left;
+            if ranges == 0 {
+                return true;
+            }
+            ranges -= 1;
             let simpler = match program.narrowed(&region) {
                 Narrowed::Inside | Narrowed::Outside => continue,
                 Narrowed::Same => shared.get_or_insert_with(|| program.clone()).clone(),
@@ -100,9 +101,14 @@ pub(super) fn may_hide(
             };
             if half > 1 {
                 open.push((first, half, simpler));
-            } else if !simpler.is_entered_once(&[region]) && !simpler.is_entered_once(&octants(&region)) {
+                continue;
+            }
+            let is_open = |part: &Bounds| !matches!(simpler.narrowed(part), Narrowed::Inside | Narrowed::Outside);
+            let parts = octants(&region);
+            if parts.iter().any(is_open) && !simpler.is_entered_once(&[region]) && !simpler.is_entered_once(&parts) {
                 return true;
             }
+            ranges = ranges.saturating_sub(ONCE);
         }
     }
     false

@@ -51,13 +51,13 @@ const BESIDE: usize = 8;
 /// A convex leaf that is thinner may pass between nodes, in cells.
 pub(in crate::mesh) const BORE: f64 = 1.0;
 /// The farthest that the tip of what is seen goes into a block without a crossing, in cells.
-const TIP: usize = 2;
+const TIP: usize = 3;
 /// For how many blocks there is one narrowing, and how many more there are: intervals are to take no more than 3 % of
 /// the time.
 const BLOCKS_PER_INTERVAL: usize = 12;
 const INTERVALS: usize = 256;
 /// What a block has at least.
-const LEAST: usize = 16;
+const LEAST: usize = 160;
 
 /// Cells of a block, a bit each: bit `i` of row `8 k + j`.
 #[derive(Clone, Debug, PartialEq)]
@@ -245,7 +245,6 @@ impl Parts<'_> {
                 Suspicion::Bored => lost.push(*number),
             }
         }
-        let before = (lost.len(), suspects.iter().filter(|s| matches!(s.why, Suspicion::Bored)).count());
         // Each has the same share, whatever the order.
         let share = (self.blocks.len() / BLOCKS_PER_INTERVAL + INTERVALS) / open.len().max(1);
         let share = share.max(LEAST);
@@ -256,17 +255,6 @@ impl Parts<'_> {
         };
         let hidden: Result<Vec<Option<usize>>, Cancelled> = open.par_iter().map(is_lost).collect();
         lost.extend(hidden?.into_iter().flatten());
-        if std::env::var_os("LOST").is_some() {
-            let h = suspects.iter().filter(|s| matches!(s.why, Suspicion::Hidden(_))).count();
-            eprintln!(
-                "LOST blocks {} torn {} bored {} hidden suspects {h} open {} share {share} lost hidden {}",
-                self.blocks.len(),
-                before.0 - before.1,
-                before.1,
-                open.len(),
-                lost.len() - before.0
-            );
-        }
         lost.sort_unstable();
         Ok(lost)
     }
