@@ -21,6 +21,7 @@ mod level;
 mod piece;
 mod place;
 mod seam;
+mod side;
 
 use self::inset::Inset;
 use self::level::Level;

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::{DVec3, Vec3};
 
-use super::level::Side;
+use super::side::Side;
 use crate::geom::{Findings, Mesh, MeshError};
 use crate::{Cancelled, Run};
 
