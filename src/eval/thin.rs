@@ -1,4 +1,5 @@
-//! What is known of a program's leaves before any region is looked at: how steep and how thin they are.
+//! What is known of a program's leaves before any region is looked at: how steep and how thin they
+//! are.
 
 use glam::DAffine3;
 
@@ -8,7 +9,8 @@ use crate::Bounds;
 use crate::field::Rule;
 
 impl Program {
-    /// Whether the value changes by at most 1 per length unit: its leaves do, and so does what joins them.
+    /// Whether the value changes by at most 1 per length unit: its leaves do, and so does what
+    /// joins them.
     pub(crate) fn is_gentle(&self) -> bool {
         self.nodes.iter().all(|node| match &node.kind {
             Kind::Leaf(leaf) => {
@@ -21,8 +23,8 @@ impl Program {
         })
     }
 
-    /// Which leaves of the solid, by their numbers, are convex and thinner than this, in length units: holes and
-    /// rods of that size may pass between samples without a change of sign.
+    /// Which leaves of the solid, by their numbers, are convex and thinner than this, in length
+    /// units: holes and rods of that size may pass between samples without a change of sign.
     pub(crate) fn thin_leaves(&self, thickness: f64) -> Vec<bool> {
         let is_thin = |leaf: &Instance| {
             let size = leaf.field.bounds_under(&DAffine3::IDENTITY).size().min_element();

@@ -17,8 +17,8 @@ pub struct ThinReport {
     pub cells: usize,
     /// How many places there are; [`places`](ThinReport::places) lists the first.
     pub count: usize,
-    /// The places of most cells, at most [`LISTED`](ThinReport::LISTED), in descending order of their
-    /// numbers of cells.
+    /// The places of most cells, at most [`LISTED`](ThinReport::LISTED), in descending order of
+    /// their numbers of cells.
     pub places: Vec<ThinPlace>,
 }
 
@@ -30,8 +30,8 @@ pub struct ThinPlace {
     pub position: DVec3,
     /// The size of the box of its cells, in length units.
     pub size: DVec3,
-    /// The estimated least thickness of a wall, or width of a gap, in length units; `None` if none was
-    /// found, for ranges are wider than what they hold.
+    /// The estimated least thickness of a wall, or width of a gap, in length units; `None` if none
+    /// was found, for ranges are wider than what they hold.
     pub thickness: Option<f64>,
     /// How many cells it is in.
     pub cells: usize,

@@ -28,8 +28,8 @@ pub enum MeshingError {
     /// The solid leaves the bounds, and the settings do not want it cut.
     #[error("the solid goes on beyond the bounds at {at}; allowed: a solid within them, or `AtBounds::Cap`")]
     LeavesBounds {
-        /// A point of the boundary of the bounds that is inside the solid; if there is none, one of the solid
-        /// outside of the bounds.
+        /// A point of the boundary of the bounds that is inside the solid; if there is none, one
+        /// of the solid outside of the bounds.
         at: DVec3,
     },
     /// The extraction contradicts itself: a defect of this crate.

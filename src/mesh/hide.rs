@@ -8,15 +8,17 @@ use super::signs::BLOCK;
 use crate::Bounds;
 use crate::eval::{Narrowed, Program};
 
-/// Whether a feature may hide in some cells of a block, all of whose nodes have one sign: whether one of them has a
-/// surface by its range, which may be left where it is entered. So many ranges may be taken; it may if they do not suffice.
+/// Whether a feature may hide in some cells of a block, all of whose nodes have one sign: whether
+/// one of them has a surface by its range, which may be left where it is entered. So many ranges
+/// may be taken; it may if they do not suffice.
 pub(super) fn may_hide(
     program: &Program,
     (lattice, block): (&Lattice, [u32; 3]),
     cells: &CellRows,
     mut ranges: usize,
 ) -> bool {
-    /// What finding out whether a cell is entered once takes, in ranges, with those of its eight parts.
+    /// What finding out whether a cell is entered once takes, in ranges, with those of its eight
+    /// parts.
     const ONCE: usize = 16;
     let mut open = vec![([0; 3], BLOCK, program.clone())];
     while let Some((first, size, program)) = open.pop() {

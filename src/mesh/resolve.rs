@@ -6,8 +6,9 @@
 //!     o-------o       along it, and all close to it, the solid is entered in the cell and not left.
 //! ```
 //!
-//! Blocks are halved until the ranges show that a part has no surface, or until there is a direction along which
-//! it is only entered, or no cell in it is one that is looked for, or until it is a cell.
+//! Blocks are halved until the ranges show that a part has no surface, or until there is a
+//! direction along which it is only entered, or no cell in it is one that is looked for, or until
+//! it is a cell.
 
 use rayon::prelude::*;
 
@@ -139,8 +140,8 @@ impl Search<'_> {
         }
     }
 
-    /// By how much the value may exceed those at the nodes of a cell, either way: along an axis it rises and falls
-    /// no faster than its slopes say.
+    /// By how much the value may exceed those at the nodes of a cell, either way: along an axis it
+    /// rises and falls no faster than its slopes say.
     fn bulge(&self, program: &Program, cell: &Bounds) -> f64 {
         let along = |slope: Interval| match (slope.hi(), -slope.lo()) {
             (up, down) if up > 0.0 && down > 0.0 => 1.0 / (1.0 / up + 1.0 / down),
@@ -153,8 +154,8 @@ impl Search<'_> {
         matches!(self.signs.case(cell), 0 | 255)
     }
 
-    /// Whether a cube of cells has one to be looked at: one whose nodes are all on one side has the least of their values
-    /// this near to 0.
+    /// Whether a cube of cells has one to be looked at: one whose nodes are all on one side has
+    /// the least of their values this near to 0.
     fn has_near(&self, [i, j, k]: [usize; 3], size: usize, near: f64) -> bool {
         let is_near = |n: usize| {
             let cell = [i + n % size, j + n / size % size, k + n / (size * size)];

@@ -42,21 +42,22 @@ pub struct MeshSettings {
 pub enum Features {
     /// They are cut off, by a fraction of a cell: marching cubes.
     Smooth,
-    /// They are kept: where the normals in a cell differ by more than 26°, and a value of the field in its middle does not
-    /// tell that it is round all the same, the cell has a vertex on the crease or in the corner, and the mesh has edges
-    /// along the crease.
+    /// They are kept: where the normals in a cell differ by more than 26°, and a value of the
+    /// field in its middle does not tell that it is round all the same, the cell has a vertex on
+    /// the crease or in the corner, and the mesh has edges along the crease.
     ///
-    /// A solid without creases, and with radii of four cells or more, has the mesh of [`Smooth`](Features::Smooth): there are
-    /// no such normals in any cell. Of a single [leaf that tells its least radius](crate::Field::least_radius), as
-    /// spheres, ellipsoids, tori, capsules and rounded boxes do, two cells are enough. One that has any is meshed more closely also
-    /// where it is smooth: where it curves so much, with radii below some 35 cells, that it is
-    /// off the triangles in a cell by more than some 0.01 or 0.02 cells in their middle, two triangles have the diagonal
-    /// that bends less; and where that is not enough, the cell has a vertex above the surface, as far as the triangles
-    /// around it are below.
+    /// A solid without creases, and with radii of four cells or more, has the mesh of
+    /// [`Smooth`](Features::Smooth): there are no such normals in any cell. Of a single [leaf that
+    /// tells its least radius](crate::Field::least_radius), as spheres, ellipsoids, tori, capsules
+    /// and rounded boxes do, two cells are enough. One that has any is meshed more closely also
+    /// where it is smooth: where it curves so much, with radii below some 35 cells, that it is off
+    /// the triangles in a cell by more than some 0.01 or 0.02 cells in their middle, two triangles
+    /// have the diagonal that bends less; and where that is not enough, the cell has a vertex
+    /// above the surface, as far as the triangles around it are below.
     ///
-    /// Where a crease passes cells that have no surface of their own (all their corners are on the same
-    /// side), the cells around, up to four along each axis, share a vertex on it, if their surface is a
-    /// disc; else the crease is cut off there by a part of a cell.
+    /// Where a crease passes cells that have no surface of their own (all their corners are on the
+    /// same side), the cells around, up to four along each axis, share a vertex on it, if their
+    /// surface is a disc; else the crease is cut off there by a part of a cell.
     #[default]
     Sharp,
 }
@@ -68,16 +69,17 @@ pub enum AtBounds {
     /// [`Features::Sharp`].
     #[default]
     Cap,
-    /// It is an error, [`MeshingError::LeavesBounds`](crate::MeshingError::LeavesBounds), which says
-    /// where, also of parts that are wholly outside. A hundredth of a cell is let pass, and of corners and thin
-    /// parts what does not show in cells of the size. It takes up to twice as long.
+    /// It is an error, [`MeshingError::LeavesBounds`](crate::MeshingError::LeavesBounds), which
+    /// says where, also of parts that are wholly outside. A hundredth of a cell is let pass, and
+    /// of corners and thin parts what does not show in cells of the size. It takes up to twice as
+    /// long.
     Refuse,
 }
 
 /// What becomes of features that may be thinner than a cell.
 ///
-/// Whatever is chosen, the mesh tells whether any may be lost: [`Mesh::possibly_lost`](crate::Mesh::possibly_lost),
-/// [`Mesh::warnings`](crate::Mesh::warnings).
+/// Whatever is chosen, the mesh tells whether any may be lost:
+/// [`Mesh::possibly_lost`](crate::Mesh::possibly_lost), [`Mesh::warnings`](crate::Mesh::warnings).
 ///
 /// ```
 /// use rvachev::{CellSize, MeshSettings, Solid, ThinFeatures};
@@ -98,17 +100,21 @@ pub enum ThinFeatures {
     /// They are not searched for.
     #[default]
     Ignore,
-    /// They are searched for once the mesh is made: [`Mesh::thin_features`](crate::Mesh::thin_features) holds what
-    /// [`Solid::thin_features`](crate::Solid::thin_features) finds, which also says how long that takes.
+    /// They are searched for once the mesh is made:
+    /// [`Mesh::thin_features`](crate::Mesh::thin_features) holds what
+    /// [`Solid::thin_features`](crate::Solid::thin_features) finds, which also says how long that
+    /// takes.
     Count,
-    /// Blocks of cells that have any, and those close to them, are meshed in cells of half the size, and blocks of
-    /// these again, at most so many times, as far as f32 allows; [`Mesh::possibly_lost`](crate::Mesh::possibly_lost)
-    /// counts the blocks that still have some then.
+    /// Blocks of cells that have any, and those close to them, are meshed in cells of half the
+    /// size, and blocks of these again, at most so many times, as far as f32 allows;
+    /// [`Mesh::possibly_lost`](crate::Mesh::possibly_lost) counts the blocks that still have some
+    /// then.
     ///
-    /// The mesh keeps all that is said of meshes; where a crease passes from larger cells to smaller ones in a cell
-    /// that has no surface of its own, it is cut off by a fraction of a cell. Where larger and smaller cells do not
-    /// fit, as it may be where a field jumps, they are halved fewer times. [`AtBounds::Refuse`] and
-    /// [`owners`](MeshSettings::owners) go by the cells that were asked for.
+    /// The mesh keeps all that is said of meshes; where a crease passes from larger cells to
+    /// smaller ones in a cell that has no surface of its own, it is cut off by a fraction of a
+    /// cell. Where larger and smaller cells do not fit, as it may be where a field jumps, they are
+    /// halved fewer times. [`AtBounds::Refuse`] and [`owners`](MeshSettings::owners) go by the
+    /// cells that were asked for.
     Refine {
         /// The most times that the cell size is halved.
         halvings: u32,

@@ -7,7 +7,8 @@
 //!     +---+---+---+---+
 //! ```
 //!
-//! Limits: those of ranges, which are wider than what they hold. A place without a thickness may be nothing.
+//! Limits: those of ranges, which are wider than what they hold. A place without a thickness may
+//! be nothing.
 
 use std::collections::HashMap;
 
@@ -28,7 +29,8 @@ const ASKED: usize = 8;
 /// Newton steps to the surface, and how far, in cells, they may lead.
 const STEPS: usize = 8;
 const FARTHEST: f64 = 2.0;
-/// The other side is sought at this part of the farthest distance and at its powers, so many of them.
+/// The other side is sought at this part of the farthest distance and at its powers, so many of
+/// them.
 const NEARER: f64 = 0.8;
 const POWERS: i32 = 72;
 /// Halvings that find a change of sign.
@@ -37,12 +39,14 @@ const HALVINGS: usize = 40;
 const AT_ONCE: usize = 1 << 12;
 
 impl Solid {
-    /// Searches for features that are thinner than cells show: walls, gaps, needles and holes, with their places and
-    /// estimated sizes. `settings` are those that the solid is to be meshed with: its cell size and bounds count.
+    /// Searches for features that are thinner than cells show: walls, gaps, needles and holes,
+    /// with their places and estimated sizes. `settings` are those that the solid is to be meshed
+    /// with: its cell size and bounds count.
     ///
-    /// It costs a tenth to a half of the time of a mesh for simple parts; up to six times as much as the mesh for
-    /// blends, lattices and walls of a few cells; up to twelve times for parts seen through several deformations.
-    /// [`Mesh::possibly_lost`](crate::Mesh::possibly_lost) is always there, and tells whether it is worth while.
+    /// It costs a tenth to a half of the time of a mesh for simple parts; up to six times as much
+    /// as the mesh for blends, lattices and walls of a few cells; up to twelve times for parts
+    /// seen through several deformations. [`Mesh::possibly_lost`](crate::Mesh::possibly_lost) is
+    /// always there, and tells whether it is worth while.
     ///
     /// ```
     /// use rvachev::{CellSize, MeshSettings, Run, Solid};
@@ -60,17 +64,20 @@ impl Solid {
     ///
     /// # Details
     ///
-    /// A cell counts if the range of the value over it contains 0, and no direction is found such that along it, and
-    /// along all directions within 8° of it, the solid is entered, and not left, throughout the cell: the surface may
-    /// come into it and turn round, as at a thin wall, a narrow slot, or a fin with a draft of less than that. Of cells
-    /// with corners on both sides those count whose surface is found to turn round: a flat wall that is thicker than the
-    /// diagonal of a cell, 1.74 times its side, is whole. What may be lost in other cells is the tip of something
-    /// blunter, up to six cells of it. A fillet or chamfer is taken to have no features of its own that are thinner than
-    /// its size. Ranges are wider than what they hold: edges of acute angles, lattices of few cells a period, and radii
-    /// of two or three cells may give places where there is nothing, without a thickness.
+    /// A cell counts if the range of the value over it contains 0, and no direction is found such
+    /// that along it, and along all directions within 8° of it, the solid is entered, and not
+    /// left, throughout the cell: the surface may come into it and turn round, as at a thin wall,
+    /// a narrow slot, or a fin with a draft of less than that. Of cells with corners on both sides
+    /// those count whose surface is found to turn round: a flat wall that is thicker than the
+    /// diagonal of a cell, 1.74 times its side, is whole. What may be lost in other cells is the
+    /// tip of something blunter, up to six cells of it. A fillet or chamfer is taken to have no
+    /// features of its own that are thinner than its size. Ranges are wider than what they hold:
+    /// edges of acute angles, lattices of few cells a period, and radii of two or three cells may
+    /// give places where there is nothing, without a thickness.
     ///
     /// # Errors
-    /// As for [`mesh`](Solid::mesh): what is wrong with the solid or the settings, or that the work was cancelled.
+    /// As for [`mesh`](Solid::mesh): what is wrong with the solid or the settings, or that the
+    /// work was cancelled.
     pub fn thin_features(&self, settings: &MeshSettings, run: &Run) -> Result<ThinReport, MeshingError> {
         let (solid, bounds) = self.cut_to(settings.bounds.as_ref())?;
         let run = run.stage(0.0, 1.0);
@@ -185,8 +192,8 @@ fn measured(cells: Vec<&Thin<'_>>, lattice: &Lattice) -> ThinPlace {
     ThinPlace { position, size: bounds.size(), thickness: least.map(|(_, width)| width), cells: cells.len() }
 }
 
-/// The middle and the width of the narrowest wall or gap that is found across the surface near the middle of a cell, if it is
-/// narrower than the cell's diagonal.
+/// The middle and the width of the narrowest wall or gap that is found across the surface near the
+/// middle of a cell, if it is narrower than the cell's diagonal.
 fn gap(program: &Program, cell: &Bounds, step: f64) -> Option<(DVec3, f64)> {
     let start = cell.center();
     let (mut p, mut normal) = (start, DVec3::ZERO);

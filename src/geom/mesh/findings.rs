@@ -52,13 +52,12 @@ impl Mesh {
     }
 
     /// How many blocks of 8³ cells may have lost a feature thinner than a cell when the mesh was
-    /// extracted from a solid. It is conservative: 0 if every part of the surface is known to be in
-    /// the mesh; above 0 if a feature was lost, or if intervals did not tell. 0 if the mesh was not
-    /// made from a solid.
+    /// extracted from a solid; 0 if it was not made from a solid. Within the limits below it is
+    /// conservative: a block counts unless it is shown to have lost nothing.
     ///
-    /// It is counted in every extraction, in a few hundredths of its time.
-    /// [`Solid::thin_features`](crate::Solid::thin_features) searches for the places and their sizes,
-    /// which takes longer.
+    /// It is counted in every extraction, in a small part of its time.
+    /// [`Solid::thin_features`](crate::Solid::thin_features) searches for the places and their
+    /// sizes, which takes longer.
     ///
     /// ```
     /// use rvachev::{CellSize, MeshSettings, Solid};
@@ -86,9 +85,10 @@ impl Mesh {
         self.findings.thin.as_ref()
     }
 
-    /// What may be wrong with the mesh as a picture of its solid, in words, and what to do about it:
-    /// one sentence or two each, empty if all is well. It repeats [`possibly_lost`](Mesh::possibly_lost),
-    /// and [`thin_features`](Mesh::thin_features) where they were searched for; nothing is computed.
+    /// What may be wrong with the mesh as a picture of its solid, in words, and what to do about
+    /// it: one sentence or two each, empty if all is well. It repeats
+    /// [`possibly_lost`](Mesh::possibly_lost), and [`thin_features`](Mesh::thin_features) where
+    /// they were searched for; nothing is computed.
     ///
     /// ```
     /// use rvachev::{CellSize, MeshSettings, Solid};

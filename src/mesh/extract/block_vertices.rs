@@ -21,7 +21,8 @@ impl Corners {
         self.ids[place] = vertex;
     }
 
-    /// The vertices on the edges of a cell, and four numbers without meaning: an index of 4 bits is in range.
+    /// The vertices on the edges of a cell, and four numbers without meaning: an index of 4 bits
+    /// is in range.
     #[inline(always)]
     pub(super) fn of_cell(&self, cell: [usize; 3]) -> [u32; 16] {
         // Along each axis, from the lower corners of the edges.
@@ -69,7 +70,8 @@ impl Corners {
     }
 }
 
-/// Tells the vertices of a row `from` of `part`, those along some axes, and their places in row `to`.
+/// Tells the vertices of a row `from` of `part`, those along some axes, and their places in row
+/// `to`.
 pub(super) fn note_row(
     part: &Part,
     axes: [bool; 3],

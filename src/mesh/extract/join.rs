@@ -1,4 +1,5 @@
-//! The second pass: the blocks' vertices in one list, and triangles between them, by the case table or with fans.
+//! The second pass: the blocks' vertices in one list, and triangles between them, by the case
+//! table or with fans.
 
 use rayon::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Lists that are cut into pieces, and lists with holes.
 
-/// Fills holes in a list, in ascending order, with the last of it, as far as they follow after `start`; what is left of
-/// the holes is closed.
+/// Fills holes in a list, in ascending order, with the last of it, as far as they follow after
+/// `start`; what is left of the holes is closed.
 pub(super) fn fill<T: Copy>(list: &mut Vec<T>, start: usize, holes: &[usize]) {
     let (filled, left) = holes.split_at(holes.len().min(list.len() - start));
     let end = list.len() - filled.len();

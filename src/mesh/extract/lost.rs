@@ -10,21 +10,24 @@
 //!
 //! Extraction itself sees one sign at a time. Three tests cost next to nothing beside it:
 //!
-//! 1. *Hidden*: a block without a crossing, whose interval contained 0 all the same when the octree was
-//!    divided. The Lipschitz bound of the value clears most cells of it by their samples alone (sphere
-//!    tracing's argument). What is left is divided and narrowed by intervals until it has no surface, or until it
-//!    is a cell: that one is lost, unless it is entered once along a cone of directions, as a blunt tip is.
-//! 2. *Torn*: a block with many nodes that have a root on either side along an axis, with opposite normals, less
-//!    than [`WALL`] cells apart; or one of some, beside others. The edge of an acute wedge has such nodes in a line,
-//!    a torn wall all over.
+//! 1. *Hidden*: a block without a crossing, whose interval contained 0 all the same when the
+//!    octree was divided. The Lipschitz bound of the value clears most cells of it by their
+//!    samples alone (sphere tracing's argument). What is left is divided and narrowed by intervals
+//!    until it has no surface, or until it is a cell: that one is lost, unless it is entered once
+//!    along a cone of directions, as a blunt tip is.
+//! 2. *Torn*: a block with many nodes that have a root on either side along an axis, with opposite
+//!    normals, less than [`WALL`] cells apart; or one of some, beside others. The edge of an acute
+//!    wedge has such nodes in a line, a torn wall all over.
 //! 3. *Bored*: a block with a crossing that holds a convex leaf thinner than [`BORE`] cells.
 //!
-//! Intervals are budgeted: a block that is not decided in its share of them is counted. So the count is conservative
-//! and its time bounded; it is the same for any number of threads.
+//! Intervals are budgeted: a block that is not decided in its share of them is counted. So hidden
+//! features are counted if ranges do not tell, and few intervals are taken; the count is the same
+//! for any number of threads.
 //!
-//! Limits: what ends within [`TIP`](super::suspect::TIP) cells of a crossed block is taken for the tip of what is seen there; notches of
-//! one leaf that is not convex (a slot in a polygon), and thin gaps between leaves that are thicker than cells, are not
-//! told where the block has a crossing elsewhere and no node falls into them.
+//! Limits: what ends within [`TIP`](super::suspect::TIP) cells of a crossed block is taken for the
+//! tip of what is seen there; notches of one leaf that is not convex (a slot in a polygon), and
+//! thin gaps between leaves that are thicker than cells, are not told where the block has a
+//! crossing elsewhere and no node falls into them.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -36,9 +39,11 @@ use crate::mesh::lattice::Lattice;
 use crate::mesh::signs::{BLOCK, NODES, SIDE, Signs};
 use crate::run::{Cancelled, Meter, Run};
 
-/// No point of a cell is farther from the nearest of its nodes, in cells, with room for rounding: half of the diagonal.
+/// No point of a cell is farther from the nearest of its nodes, in cells, with room for rounding:
+/// half of the diagonal.
 const REACH: f64 = 0.867;
-/// Where no Lipschitz bound is known, the value is taken to be steeper than between any two nodes of the block, by this factor.
+/// Where no Lipschitz bound is known, the value is taken to be steeper than between any two nodes
+/// of the block, by this factor.
 const STEEPER: f64 = 1.5;
 /// Two sides that are closer together, in cells, are those of a wall that may be torn.
 const WALL: f32 = 1.1;
@@ -51,8 +56,8 @@ const FEW: u32 = 4;
 const BESIDE: usize = 8;
 /// A convex leaf that is thinner may pass between nodes, in cells.
 pub(in crate::mesh) const BORE: f64 = 1.0;
-/// For how many blocks there is one narrowing, and how many more there are: intervals are to take no more than 3 % of
-/// the time.
+/// For how many blocks there is one narrowing, and how many more there are: intervals are to take
+/// no more than 3 % of the time.
 const BLOCKS_PER_INTERVAL: usize = 12;
 const INTERVALS: usize = 256;
 /// What a block has at least.
@@ -83,7 +88,8 @@ fn steepest(values: &[f32; NODES]) -> f32 {
     x.max(y).max(most(SIDE * SIDE, &|_| true))
 }
 
-/// How many nodes of a block there are between opposite sides of a wall, given the vertices of the batch.
+/// How many nodes of a block there are between opposite sides of a wall, given the vertices of the
+/// batch.
 pub(super) fn torn_nodes(part: &Part, [positions, normals]: [&[Vec3]; 2], step: f64) -> u32 {
     let signs = &part.signs;
     let mut count = 0;

@@ -172,8 +172,8 @@ impl<'a> Parts<'a> {
         [std::mem::take(&mut self.positions), std::mem::take(&mut self.normals)]
     }
 
-    /// The triangles of all cells by the case table, in the order of the blocks; nothing if what watches tells that
-    /// they will not do.
+    /// The triangles of all cells by the case table, in the order of the blocks; nothing if what
+    /// watches tells that they will not do.
     pub(super) fn triangles_unless<W: Watch>(
         &self,
         watch: impl Fn() -> W + Sync + Send,
@@ -196,7 +196,8 @@ impl<'a> Parts<'a> {
             Ok(())
         };
         let worker = || (Corners::new(), watch());
-        // Most often the first batch tells that triangles will not do: room for those of others is made after it.
+        // Most often the first batch tells that triangles will not do: room for those of others is
+        // made after it.
         let all = counts.len();
         let first = if W::STOPS { all.min(1) } else { all };
         for batches in [0..first, first..all].into_iter().filter(|batches| !batches.is_empty()) {
@@ -213,8 +214,8 @@ impl<'a> Parts<'a> {
         Ok(Some(triangles))
     }
 
-    /// Lists the triangles of the cells of block `n` by the case table, in the order of the cells. There is room for
-    /// so many.
+    /// Lists the triangles of the cells of block `n` by the case table, in the order of the cells.
+    /// There is room for so many.
     pub(super) fn list_triangles(
         &self,
         n: usize,
@@ -238,8 +239,8 @@ impl<'a> Parts<'a> {
         Ok(())
     }
 
-    /// Tells `note` the vertices on all edges of the cells of block `n`, and the places of these among its
-    /// [`Corners`]; an error if the owner of one is not there.
+    /// Tells `note` the vertices on all edges of the cells of block `n`, and the places of these
+    /// among its [`Corners`]; an error if the owner of one is not there.
     ///
     /// Edges that start in an upper face belong to the neighbour there: those along the two
     /// other axes, in its first row or column.
@@ -293,8 +294,8 @@ impl<'a> Parts<'a> {
     }
 }
 
-/// Makes room for more in a list, and for what is to come by what it has when `done` parts of `all` are added, times
-/// `share`: moving much is slow.
+/// Makes room for more in a list, and for what is to come by what it has when `done` parts of
+/// `all` are added, times `share`: moving much is slow.
 fn reserve<T>(list: &mut Vec<T>, more: usize, (done, all): (usize, usize), share: f64) {
     let count = list.len() + more;
     if count > list.capacity() {
