@@ -105,6 +105,9 @@ pub(super) struct Fans {
     free: Vec<u32>,
 }
 
+/// All triangles, and the normals at their corners if there are fans.
+type Listed = (Bulk<[u32; 3]>, Option<Bulk<[Vec3; 3]>>);
+
 /// What a mesh with sharp features is made of.
 pub(super) enum Found {
     /// The triangles of the case table: there are no creases.
@@ -267,11 +270,7 @@ impl Fans {
     }
 
     /// All triangles, and the normals at their corners if there are fans; given the vertices.
-    pub(super) fn triangles(
-        mut self,
-        vertices: Vertices<'_>,
-        run: &Run,
-    ) -> Result<(Bulk<[u32; 3]>, Option<Bulk<[Vec3; 3]>>), Cancelled> {
+    pub(super) fn triangles(mut self, vertices: Vertices<'_>, run: &Run) -> Result<Listed, Cancelled> {
         let mut triangles = std::mem::take(&mut self.plain.triangles);
         let (start, count) = (triangles.len(), self.counts.iter().sum::<usize>());
         let mut corners = match self.fans.is_empty() {
