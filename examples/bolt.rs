@@ -86,6 +86,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let start = Instant::now();
     let cells = 200;
     let mesh = bolt.mesh(&MeshSettings { cell: CellSize::LongestSide(cells), ..MeshSettings::default() })?;
+    for warning in mesh.warnings() {
+        println!("warning: {warning}");
+    }
     mesh.save("out/bolt.stl")?;
     println!("out/bolt.stl: {cells} cells along the longest side, {:.1} s", start.elapsed().as_secs_f64());
 

@@ -116,6 +116,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let start = Instant::now();
     let mesh = bottle.mesh(&MeshSettings { cell: CellSize::LongestSide(160), ..MeshSettings::default() })?;
+    for warning in mesh.warnings() {
+        println!("warning: {warning}");
+    }
     let path = folder.join("bottle.stl");
     mesh.save(&path)?;
     written(&path, start)?;

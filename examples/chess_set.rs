@@ -190,6 +190,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (name, piece) in &pieces {
         let start = Instant::now();
         let mesh = piece.mesh(&MeshSettings { cell: CellSize::Length(0.9), ..MeshSettings::default() })?;
+        for warning in mesh.warnings() {
+            println!("warning: {warning}");
+        }
         let path = folder.join(format!("chess_{name}.stl"));
         mesh.save(&path)?;
         let report = mesh.check();

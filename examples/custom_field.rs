@@ -196,6 +196,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let start = Instant::now();
     let cells = 100;
     let mesh = ornament.mesh(&MeshSettings { cell: CellSize::LongestSide(cells), ..MeshSettings::default() })?;
+    for warning in mesh.warnings() {
+        println!("warning: {warning}");
+    }
     mesh.save("out/custom_field.stl")?;
     let seconds = start.elapsed().as_secs_f64();
     println!("out/custom_field.stl: {cells} cells along the longest side, {seconds:.1} s");

@@ -106,6 +106,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let start = Instant::now();
     let mesh = cap.mesh(&MeshSettings { cell: CellSize::Length(1.0), ..MeshSettings::default() })?;
+    for warning in mesh.warnings() {
+        println!("warning: {warning}");
+    }
     let path = folder.join("distributor_cap.stl");
     mesh.save(&path)?;
     let report = mesh.check();

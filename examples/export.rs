@@ -41,6 +41,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let start = Instant::now();
     let settings = MeshSettings { cell: CellSize::LongestSide(120), ..MeshSettings::default() };
     let mesh = painted(flange().mesh(&settings)?)?;
+    for warning in mesh.warnings() {
+        println!("warning: {warning}");
+    }
     println!("A flange, meshed in {:.2} s.\n{}\n", start.elapsed().as_secs_f64(), mesh.check());
 
     let folder = Path::new("target/export");

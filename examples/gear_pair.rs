@@ -194,6 +194,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (name, gear) in [("pinion", &pinion), ("wheel", &wheel)] {
         let start = Instant::now();
         let mesh = gear.solid().mesh(&MeshSettings { cell: CellSize::Length(0.6), ..MeshSettings::default() })?;
+        for warning in mesh.warnings() {
+            println!("warning: {warning}");
+        }
         let path = folder.join(format!("gear_pair_{name}.stl"));
         mesh.save(&path)?;
         written(&path, start)?;

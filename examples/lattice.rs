@@ -90,6 +90,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let start = Instant::now();
     let mesh = light.mesh(&MeshSettings { cell: CellSize::Length(0.5), ..MeshSettings::default() })?;
+    for warning in mesh.warnings() {
+        println!("warning: {warning}");
+    }
     let path = folder.join("lattice.stl");
     mesh.save(&path)?;
     written(&path, start)?;

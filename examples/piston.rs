@@ -113,6 +113,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let start = Instant::now();
     let mesh = piston.mesh(&MeshSettings { cell: CellSize::Length(1.0), ..MeshSettings::default() })?;
+    for warning in mesh.warnings() {
+        println!("warning: {warning}");
+    }
     let path = folder.join("piston.stl");
     mesh.save(&path)?;
     let report = mesh.check();

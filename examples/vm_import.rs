@@ -161,6 +161,9 @@ fn import(name: &str, text: &str, folder: &Path) -> Result<(), Box<dyn Error>> {
 
     let start = Instant::now();
     let mesh = model.mesh(&MeshSettings { cell: CellSize::LongestSide(160), ..MeshSettings::default() })?;
+    for warning in mesh.warnings() {
+        println!("warning: {warning}");
+    }
     let path = folder.join(format!("vm_{name}.stl"));
     mesh.save(&path)?;
     let report = mesh.check();

@@ -421,7 +421,7 @@ pub use eval::{Evaluator, Gradients, Hit, Owner, Palette, Program, Region, Tape,
 pub use fidget;
 pub use geom::{
     Camera, CameraError, Coordinates, Corner, Image, ImageError, Intrinsics, Mesh, MeshError, Noise, Plane, PointCloud,
-    PointCloudError, Polyline, Projection, QuadMesh, RangeImage, RangeImageError, Rays, View,
+    PointCloudError, Polyline, Projection, QuadMesh, RangeImage, RangeImageError, Rays, ThinPlace, ThinReport, View,
 };
 pub use glam;
 #[cfg(feature = "threemf")]

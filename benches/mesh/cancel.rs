@@ -32,26 +32,20 @@ pub fn rows(threads: usize) {
         ("cube, refused", Solid::cuboid(DVec3::ONE), 1024, refuse),
     ];
     for (name, solid, cells, settings) in solids {
-        row(name, cells, threads, || (), |_, run| solid.mesh_with(&settings, run).is_ok());
+        row(name, cells, threads, |run| solid.mesh_with(&settings, run).is_ok());
     }
-    // What may be thinner than cells is counted once a mesh: each is a new one.
-    for (name, solid, cells) in [("sphere, check", Solid::sphere(1.0), 1024), ("gyroid, check", ball, 256)] {
-        let made = solid.mesh(&settings(cells)).expect("a mesh");
-        println!("{} triangles", made.triangles().len());
-        row(
-            name,
-            cells,
-            threads,
-            || solid.mesh(&settings(cells)).expect("a mesh"),
-            |mesh, run| mesh.check_with(run).is_ok(),
-        );
+    for (name, solid, cells) in [("sphere, check", Solid::sphere(1.0), 1024), ("gyroid, check", ball.clone(), 256)] {
+        let mesh = solid.mesh(&settings(cells)).expect("a mesh");
+        println!("{} triangles", mesh.triangles().len());
+        row(name, cells, threads, |run| mesh.check_with(run).is_ok());
     }
+    row("gyroid, thin", 256, threads, |run| ball.thin_features(&settings(256), run).is_ok());
 }
 
-/// Prints the row of a job, which tells whether it was done, given what is made for each and given up after it.
-fn row<T>(name: &str, cells: u32, threads: usize, make: impl Fn() -> T, job: impl Fn(&T, &Run) -> bool) {
-    let (whole, off) = run_whole(threads, &make(), &job);
-    let late = |moment: u32| cancelled(threads, whole * moment / MOMENTS, &make(), &job);
+/// Prints the row of a job, which tells whether it was done.
+fn row(name: &str, cells: u32, threads: usize, job: impl Fn(&Run) -> bool) {
+    let (whole, off) = run_whole(threads, &job);
+    let late = |moment: u32| cancelled(threads, whole * moment / MOMENTS, &job);
     let mut late: Vec<f64> = (1..MOMENTS).filter_map(late).collect();
     late.sort_by(f64::total_cmp);
     println!(
@@ -66,12 +60,12 @@ fn row<T>(name: &str, cells: u32, threads: usize, make: impl Fn() -> T, job: imp
 }
 
 /// How long a run takes, and how far its progress is from the part of that time that has passed, at most.
-fn run_whole<T>(threads: usize, made: &T, job: impl Fn(&T, &Run) -> bool) -> (Duration, f64) {
+fn run_whole(threads: usize, job: impl Fn(&Run) -> bool) -> (Duration, f64) {
     let reports = Arc::new(Mutex::new(Vec::new()));
     let (sink, start) = (reports.clone(), Instant::now());
     let report = move |fraction| sink.lock().expect("no panic").push((start.elapsed(), fraction));
     let run = Run { threads, progress: Some(Progress::new(report)), ..Run::default() };
-    assert!(job(made, &run), "nobody cancels");
+    assert!(job(&run), "nobody cancels");
     let whole = start.elapsed();
     let reports = reports.lock().expect("no panic");
     let off = |moment: u32| {
@@ -82,7 +76,7 @@ fn run_whole<T>(threads: usize, made: &T, job: impl Fn(&T, &Run) -> bool) -> (Du
 }
 
 /// How many seconds after its token is cancelled a run returns; `None` if it is done before.
-fn cancelled<T>(threads: usize, after: Duration, made: &T, job: impl Fn(&T, &Run) -> bool) -> Option<f64> {
+fn cancelled(threads: usize, after: Duration, job: impl Fn(&Run) -> bool) -> Option<f64> {
     let run = Run { threads, ..Run::default() };
     let token = run.cancel.clone();
     let canceller = thread::spawn(move || {
@@ -90,7 +84,7 @@ fn cancelled<T>(threads: usize, after: Duration, made: &T, job: impl Fn(&T, &Run
         token.cancel();
         Instant::now()
     });
-    let is_done = job(made, &run);
+    let is_done = job(&run);
     let end = Instant::now();
     let start = canceller.join().expect("no panic");
     (!is_done).then(|| end.saturating_duration_since(start).as_secs_f64())

@@ -33,6 +33,7 @@ mod rise;
 mod scene;
 mod sides;
 mod tape;
+mod thin;
 
 pub(crate) use narrow::Narrowed;
 pub use palette::Palette;
@@ -45,7 +46,7 @@ pub use tape::{Evaluator, Gradients, Tape, UnequalSlices};
 pub(crate) use rvachev_field::BOXES as BOXES_AT_ONCE;
 
 pub(crate) use bend::Bend;
-pub(crate) use compile::{Compiled, compiled};
+pub(crate) use compile::compiled;
 pub(crate) use parting::Parting;
 pub(crate) use ray::{Care, first_hit};
 pub(crate) use rvachev_field::Op;

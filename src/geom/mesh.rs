@@ -12,24 +12,26 @@
 //! ```
 
 mod attributes;
-mod corner_normals;
-mod late_count;
+mod findings;
 mod measure;
 
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use self::attributes::Attributes;
-pub(crate) use self::corner_normals::Apart;
-use self::corner_normals::CornerNormals;
-pub(crate) use self::late_count::LateCount;
-use rvachev_num::Bounds;
+pub(crate) use self::findings::Findings;
+use crate::Bounds;
 
 /// A triangle mesh: positions and triangles that index them, and perhaps normals per vertex
 /// and per corner, colours and texture coordinates per corner, owners per triangle.
 ///
 /// Every index is in range and every position finite; nothing else is promised.
-/// [`Mesh::check`] tells the rest.
+/// [`Mesh::check`] tells the rest. A mesh that was extracted from a solid also says what the
+/// extraction found: [`possibly_lost`](Mesh::possibly_lost), [`warnings`](Mesh::warnings).
+///
+/// A mesh is plain data: lists and numbers, without functions or references to the solid that it
+/// was made from. Two meshes are equal if positions, triangles and attributes are; what the extraction
+/// found is not compared.
 ///
 /// ```
 /// use glam::Vec3;
@@ -46,15 +48,12 @@ pub struct Mesh {
     positions: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
     attributes: Attributes,
-    corner_normals: Option<CornerNormals>,
+    findings: Findings,
 }
 
 impl PartialEq for Mesh {
     fn eq(&self, other: &Mesh) -> bool {
-        self.positions == other.positions
-            && self.triangles == other.triangles
-            && self.attributes == other.attributes
-            && self.corner_normals() == other.corner_normals()
+        self.positions == other.positions && self.triangles == other.triangles && self.attributes == other.attributes
     }
 }
 
@@ -137,7 +136,7 @@ impl Mesh {
             let index = [a, b, c].into_iter().find(|&i| i as usize >= vertices).unwrap_or(c);
             return Err(MeshError::Index { triangle, index, vertices });
         }
-        Ok(Mesh { positions, triangles, attributes: Attributes::default(), corner_normals: None })
+        Ok(Mesh { positions, triangles, attributes: Attributes::default(), findings: Findings::default() })
     }
 
     /// The positions of the vertices, in length units.

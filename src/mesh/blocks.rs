@@ -5,11 +5,9 @@ use std::collections::{HashMap, HashSet};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::extract::{ExtractError, Rift, extract};
+use super::extract::Rift;
 use super::lattice::Lattice;
 use super::paint::each_triangle;
-use super::sampler::SolidSampler;
-use super::settings::Features;
 use super::signs::{BLOCK, NODES, SIDE, Signs, is_mixed};
 use crate::eval::{Narrowed, Program};
 use crate::geom::Mesh;
@@ -34,6 +32,11 @@ pub(super) struct Programs {
 }
 
 impl Programs {
+    /// One of them, if there is any.
+    pub(super) fn first(&self) -> Option<&Program> {
+        self.all.first()
+    }
+
     pub(super) fn of(&self, block: usize) -> &Program {
         &self.all[self.numbers[block] as usize]
     }
@@ -84,26 +87,6 @@ impl Blocks {
         let number = push(&mut self.programs.all, whole.clone());
         self.cells.extend(blocks.filter(|block| !known.contains(block)));
         self.programs.numbers.resize(self.cells.len(), number);
-    }
-
-    /// The surface in the blocks, and in others where it goes on.
-    pub(super) fn extract(
-        &mut self,
-        whole: &Program,
-        (lattice, limits): (&Lattice, Bounds),
-        features: Features,
-        run: &Run,
-    ) -> Result<Mesh, ExtractError> {
-        loop {
-            let mut sampler = SolidSampler::new(lattice, self, limits);
-            if features == Features::Sharp {
-                sampler.keep_tapes();
-            }
-            match extract(&sampler, lattice, &self.cells, features, run) {
-                Err(ExtractError::Rifts(rifts)) if self.mend(&rifts, whole, (lattice, &limits), |_| true, run)? => {}
-                result => return result,
-            }
-        }
     }
 
     /// Makes blocks exact on both sides of rifts; and so, wherever the surface goes on from those in a block that is not

@@ -81,10 +81,6 @@ pub struct MeshReport {
     pub inertia: Option<DMat3>,
     /// The smallest box that holds all vertices.
     pub bounds: Bounds,
-    /// Cells of one sign in which a feature thinner than a cell may have been lost when the mesh was made. `None`
-    /// if it was not made from a solid, or with [`ThinFeatures::Ignore`](crate::ThinFeatures::Ignore). Counting them is
-    /// a part of the report's time: how long it takes is told [there](crate::ThinFeatures::Count).
-    pub unresolved_cells: Option<usize>,
     /// Vertices on edges of the lattice that are off the surface to keep clear of the nodes, by up to a thousandth of a cell,
     /// or by two steps of `f32` where these are more, far from the origin; or where the value jumps from one side to the
     /// other, as distances that are searched may; and those between larger and smaller cells, see
@@ -155,7 +151,6 @@ impl fmt::Display for MeshReport {
             (self.duplicate_triangles, "duplicate triangles"),
             (self.unused_vertices, "unused vertices"),
             (self.self_intersections, "pairs of triangles that intersect"),
-            (self.unresolved_cells.unwrap_or(0), "cells that may hide a thinner feature"),
         ];
         for (count, what) in defects.into_iter().filter(|d| d.0 > 0) {
             write!(f, "\n{count} {what}")?;
@@ -212,9 +207,8 @@ impl Mesh {
     }
 
     fn examined(&self, run: &Run) -> Result<MeshReport, Cancelled> {
-        // How long each stage takes, more or less; nobody knows how long the cells take.
-        let cells = if self.has_late_count() { 0.5 } else { 0.0 };
-        let [to_turn, to_compare, to_sort, to_count] = run.stages([0.4, 0.5, 0.1, cells]);
+        // How long each stage takes, more or less.
+        let [to_turn, to_compare, to_sort] = run.stages([0.4, 0.5, 0.1]);
         let (fans, measure) = rayon::join(|| Fans::new(self, &to_turn), || self.measure_with(run));
         let (fans, measure) = (fans?, measure?);
         let overlaps = Overlaps::find(self, &fans, &to_compare)?;
@@ -242,7 +236,6 @@ impl Mesh {
             centroid: measure.centroid,
             inertia: measure.inertia,
             bounds: self.bounds(),
-            unresolved_cells: self.unresolved_cells_with(&to_count)?,
             clamped_vertices: self.clamped_vertices(),
         };
         if report.is_closed() && report.is_manifold() {

@@ -37,9 +37,13 @@ use std::sync::{Mutex, PoisonError};
 use glam::{DVec3, Vec3, Vec3A};
 use rayon::prelude::*;
 
-use self::join::Parts;
 use self::joined::{UPPER, proposals};
+pub(super) use self::lost::BORE;
+use self::lost::{suspected, torn_nodes};
 use self::neighbours::Neighbours;
+use self::parts::Parts;
+pub(crate) use self::suspect::CellRows;
+use self::suspect::{Suspect, Suspicion};
 use super::Features;
 use super::feature::Slope;
 use super::lattice::Lattice;
@@ -51,13 +55,18 @@ use crate::{Cancelled, Run};
 use rvachev_num::Bounds;
 use rvachev_num::Meter;
 
+mod block_vertices;
 mod bulge;
 mod cells;
+mod corners;
 mod crease;
 mod join;
 mod joined;
+mod lists;
+mod lost;
 mod nearby;
 mod neighbours;
+mod parts;
 mod patches;
 mod plain;
 mod region;
@@ -66,6 +75,7 @@ mod sharp;
 mod span;
 mod special;
 mod spread;
+mod suspect;
 mod trend;
 mod turn;
 
@@ -100,6 +110,28 @@ pub(crate) trait Sampler: Sync {
         _out: &mut Vec<bool>,
     ) -> bool {
         false
+    }
+
+    /// Whether blocks that may have lost a feature thinner than a cell are to be counted: by what the next three tell.
+    /// By default they are not.
+    fn watches(&self) -> bool {
+        false
+    }
+
+    /// The most that the value changes by per length unit in a block. The default knows of no bound.
+    fn lipschitz_bound(&self, _number: usize) -> f64 {
+        f64::INFINITY
+    }
+
+    /// Whether a block, given by its first cell, may hold a leaf that passes between nodes. By default none does.
+    fn is_bored(&self, _number: usize, _block: [u32; 3]) -> bool {
+        false
+    }
+
+    /// Whether a feature may hide in some cells of a block, all of whose nodes have one sign; so many intervals may be
+    /// taken to decide that, and it may if they do not suffice. By default it may.
+    fn may_hide(&self, _number: usize, _block: [u32; 3], _cells: &CellRows, _intervals: usize) -> bool {
+        true
     }
 
     /// A box that the surface is in: features are held in it, where it cuts the cell of one. The default is all
@@ -203,8 +235,9 @@ pub(crate) fn extract<S: Sampler>(
             Features::Sharp => [56.0, 2.0, 42.0],
         };
         let [to_sample, to_check, to_join] = run.stages(times);
-        let parts = sample_all(sampler, lattice, (blocks, neighbours), features, &to_sample)?;
-        parts.check_faces(&to_check)?;
+        let mut parts = sample_all(sampler, lattice, (blocks, neighbours), features, &to_sample)?;
+        parts.check_faces(&to_check.stage(0.0, 0.5))?;
+        parts.note_lost(sampler, &to_check.stage(0.5, 1.0))?;
         let mesh = parts.join(sampler, lattice, features, &to_join)?;
         run.report(1.0);
         Ok(mesh)
@@ -222,6 +255,15 @@ struct Part {
     joins: Vec<(u16, u8)>,
 }
 
+impl Part {
+    /// The vertex on an owned edge that is crossed, given by its lower node.
+    fn vertex(&self, [i, j, k]: [usize; 3], axis: usize) -> u32 {
+        let crossed = self.signs.crossed(j, k);
+        let before = crossed[..axis].iter().map(|bits| bits.count_ones()).sum::<u32>();
+        self.first + self.rows.start(j, k) + before + (crossed[axis] & ((1 << i) - 1)).count_ones()
+    }
+}
+
 /// What it leaves of consecutive blocks.
 struct Batch {
     parts: Vec<Part>,
@@ -229,6 +271,8 @@ struct Batch {
     normals: Vec<Vec3>,
     /// How many of them are moved to keep clear of nodes, or off the surface.
     clamped: usize,
+    /// Blocks that may have lost a feature, in their order.
+    suspects: Vec<Suspect>,
 }
 
 /// Takes batches as they come, and adds them in their order. No thread waits for another that adds.
@@ -304,7 +348,8 @@ impl<'a, S: Sampler> Worker<'a, S> {
     fn sample(&mut self, start: usize, blocks: &[[u32; 3]], meter: &Meter<'_>) -> Result<Batch, Cancelled> {
         let (table, faces) = (CaseTable::get(), ambiguous_faces());
         self.edges.clear();
-        let mut parts = Vec::with_capacity(blocks.len());
+        let watches = self.sampler.watches();
+        let (mut parts, mut why) = (Vec::with_capacity(blocks.len()), Vec::with_capacity(blocks.len()));
         for (number, &block) in (start..).zip(blocks) {
             meter.step()?;
             self.sampler.nodes(&mut self.scratch, number, block, &mut self.values);
@@ -321,6 +366,11 @@ impl<'a, S: Sampler> Worker<'a, S> {
             } else {
                 Vec::new()
             };
+            why.push(if watches {
+                suspected((self.sampler, self.lattice), (number, block), (&signs, &self.values))
+            } else {
+                None
+            });
             parts.push(Part { signs, rows, first, triangles, joins });
         }
         self.roots.clear();
@@ -339,7 +389,17 @@ impl<'a, S: Sampler> Worker<'a, S> {
                 *normal = given;
             }
         }
-        Ok(Batch { parts, positions, normals, clamped })
+        let step = self.lattice.step();
+        let of_block = |(n, (part, why)): (usize, (&Part, Option<Suspicion>))| {
+            let torn = || match torn_nodes(part, [&positions, &normals], step) {
+                0 => None,
+                count => Some(Suspicion::Torn(count)),
+            };
+            let why = why.or_else(|| if watches { torn() } else { None });
+            why.map(|why| Suspect { number: start + n, why })
+        };
+        let suspects = parts.iter().zip(why).enumerate().filter_map(of_block).collect();
+        Ok(Batch { parts, positions, normals, clamped, suspects })
     }
 }
 

@@ -21,20 +21,21 @@ mod level;
 mod piece;
 mod place;
 mod seam;
+mod side;
 
 use self::inset::Inset;
 use self::level::Level;
 use self::piece::Piece;
 use self::seam::Seam;
 use super::blocks::Blocks;
+use super::error::MeshingError;
 use super::extract::ExtractError;
 use super::lattice::Lattice;
-use super::resolve::{Among, Unresolved, count, unresolved_cells};
+use super::resolve::{Among, unresolved_cells};
 use super::settings::Features;
 use super::signs::BLOCK;
-use super::solid::MeshingError;
 use crate::eval::Program;
-use crate::geom::Mesh;
+use crate::geom::{Findings, Mesh};
 use crate::{Bounds, Run};
 
 /// A solid to be meshed, and how.
@@ -47,25 +48,25 @@ pub(super) struct Job<'a> {
 }
 
 /// The mesh on a lattice whose cells are halved where they are unresolved, at most so many times and as long as f32 has
-/// room for them, and how many are left.
+/// room for them. It says how many blocks have some left.
 pub(super) fn refined(
     job: Job<'_>,
     (lattice, blocks): (Lattice, Blocks),
     halvings: u32,
     run: &Run,
-) -> Result<(Mesh, usize), MeshingError> {
+) -> Result<Mesh, MeshingError> {
     let [to_find, to_mesh, to_count] = run.stages([0.5, 0.4, 0.1]);
     let unresolved =
         |level: &Level, among, run: &Run| unresolved_cells(&level.blocks, (&level.lattice, job.limits), among, run);
     let mut levels = vec![Level::new(lattice, blocks)];
-    let mut left = None;
+    let mut is_done = false;
     for halving in 0..halvings {
         let [done, next] = [0.0, 1.0].map(|by| (f64::from(halving) + by) / f64::from(halvings));
         let last = levels.len() - 1;
         // What turns round in cells with nodes on both sides may be torn: they are halved, too.
         let found = unresolved(&levels[last], Among::All, &to_find.stage(done, next))?;
         if found.is_empty() {
-            left = Some(0);
+            is_done = true;
             break;
         }
         levels[last].inset = Inset::around(&levels[last].lattice, &found);
@@ -79,23 +80,24 @@ pub(super) fn refined(
     loop {
         match meshed(job, &mut levels, &to_mesh)? {
             Ok(mesh) => {
-                let left = match (left, &levels[..]) {
-                    (Some(left), _) => left,
-                    (None, [.., outer, last]) => {
-                        let is_own =
-                            |found: &&Unresolved| outer.inset.has_half(found.block.map(|at| at / BLOCK as u32));
-                        let found = unresolved(last, Among::OneSided, &to_count)?;
-                        found.iter().filter(is_own).map(|found| found.cells.len()).sum()
-                    }
-                    (None, levels) => count(&unresolved(&levels[0], Among::OneSided, &to_count)?),
+                // What is left in the last level, in blocks that are not of the one around it.
+                let last = &levels[levels.len() - 1];
+                let mut found = if is_done { Vec::new() } else { unresolved(last, Among::OneSided, &to_count)? };
+                if let [.., outer, _] = &levels[..] {
+                    found.retain(|found| outer.inset.has_half(found.block.map(|at| at / BLOCK as u32)));
+                }
+                let findings = Findings {
+                    possibly_lost: found.len(),
+                    first_lost: found.first().map(|found| last.lattice.region(found.block, BLOCK).center()),
+                    ..mesh.findings().clone()
                 };
-                return Ok((mesh, left));
+                return Ok(mesh.with_findings(findings));
             }
             // Without the level that does not fit.
             Err(misfit) => {
                 levels.truncate(misfit);
                 levels[misfit - 1].inset = Inset::default();
-                left = None;
+                is_done = false;
             }
         }
     }

@@ -6,21 +6,19 @@
 //!     o-------o       along it, and all close to it, the solid is entered in the cell and not left.
 //! ```
 //!
-//! Blocks are halved until the ranges show that a part has no surface, or until there is a direction along which
-//! it is only entered, or no cell in it is one that is looked for, or until it is a cell.
+//! Blocks are halved until the ranges show that a part has no surface, or until there is a
+//! direction along which it is only entered, or no cell in it is one that is looked for, or until
+//! it is a cell.
 
-use std::sync::Arc;
-
-use glam::DVec3;
 use rayon::prelude::*;
 
 use super::blocks::Blocks;
 use super::extract::Sampler;
+use super::hide::octants;
 use super::lattice::Lattice;
 use super::sampler::{Scratch, SolidSampler};
 use super::signs::{BLOCK, NODES, SIDE, Signs};
-use crate::eval::{Compiled, Narrowed, Program};
-use crate::geom::LateCount;
+use crate::eval::{Narrowed, Program};
 use crate::{Bounds, Cancelled, Interval, Run};
 use rvachev_num::Meter;
 
@@ -71,29 +69,6 @@ pub(super) fn unresolved_cells(
     };
     let found = blocks.cells.par_iter().enumerate().map_init(|| sampler.scratch(), of_block);
     found.filter_map(Result::transpose).collect()
-}
-
-/// How many cells they are.
-pub(super) fn count(unresolved: &[Unresolved]) -> usize {
-    unresolved.iter().map(|block| block.cells.len()).sum()
-}
-
-/// Their count, to be made when it is asked for.
-pub(super) fn late_count(programs: Arc<Compiled>, (lattice, limits): (Lattice, Bounds)) -> LateCount {
-    LateCount::new(move |run| {
-        let [to_find, to_look] = run.stages([0.1, 1.0]);
-        let blocks = Blocks::find(&programs.surface, &lattice, &to_find)?;
-        Ok(count(&unresolved_cells(&blocks, (&lattice, limits), Among::OneSided, &to_look)?))
-    })
-}
-
-/// The eight parts of a box.
-fn octants(region: &Bounds) -> [Bounds; 8] {
-    let half = region.half_extents();
-    std::array::from_fn(|n| {
-        let low = region.min + half * DVec3::from_array([0, 1, 2].map(|axis| (n >> axis & 1) as f64));
-        Bounds::new(low, low + half)
-    })
 }
 
 /// A block in which cells are sought.
@@ -165,8 +140,8 @@ impl Search<'_> {
         }
     }
 
-    /// By how much the value may exceed those at the nodes of a cell, either way: along an axis it rises and falls
-    /// no faster than its slopes say.
+    /// By how much the value may exceed those at the nodes of a cell, either way: along an axis it
+    /// rises and falls no faster than its slopes say.
     fn bulge(&self, program: &Program, cell: &Bounds) -> f64 {
         let along = |slope: Interval| match (slope.hi(), -slope.lo()) {
             (up, down) if up > 0.0 && down > 0.0 => 1.0 / (1.0 / up + 1.0 / down),
@@ -179,8 +154,8 @@ impl Search<'_> {
         matches!(self.signs.case(cell), 0 | 255)
     }
 
-    /// Whether a cube of cells has one to be looked at: one whose nodes are all on one side has the least of their values
-    /// this near to 0.
+    /// Whether a cube of cells has one to be looked at: one whose nodes are all on one side has
+    /// the least of their values this near to 0.
     fn has_near(&self, [i, j, k]: [usize; 3], size: usize, near: f64) -> bool {
         let is_near = |n: usize| {
             let cell = [i + n % size, j + n / size % size, k + n / (size * size)];

@@ -7,8 +7,9 @@ use rayon::prelude::*;
 
 use super::blocks::{Blocks, Programs, exact_nodes};
 use super::deciders::Deciders;
-use super::extract::{BATCH, Root, Sampler};
+use super::extract::{BATCH, BORE, CellRows, Root, Sampler};
 use super::feature::Slope;
+use super::hide::may_hide;
 use super::lattice::Lattice;
 use super::signs::{BLOCK, EdgeRef, NODES, SIDE};
 use crate::Bounds;
@@ -29,6 +30,8 @@ pub(super) struct SolidSampler<'a> {
     limits: Bounds,
     /// The nodes of a block, relative to the first, x fastest.
     pattern: [Vec<f32>; 3],
+    /// Which leaves of the solid pass between nodes, if any do.
+    thin: Vec<bool>,
     /// By batch, the tapes of its groups once its roots are found; empty if they are not to be kept.
     kept: Vec<OnceLock<Vec<(u32, Tape)>>>,
 }
@@ -82,7 +85,11 @@ impl SolidSampler<'_> {
         });
         let at = |node: usize, stride: usize| (node / stride % SIDE) as f64 * lattice.step();
         let pattern = [1, SIDE, SIDE * SIDE].map(|stride| (0..NODES).map(|n| at(n, stride) as f32).collect());
-        SolidSampler { lattice, blocks, programs, exact, groups, limits, pattern, kept: Vec::new() }
+        let mut thin = programs.first().map_or(Vec::new(), |program| program.thin_leaves(BORE * lattice.step()));
+        if !thin.contains(&true) {
+            thin.clear();
+        }
+        SolidSampler { lattice, blocks, programs, exact, groups, limits, pattern, thin, kept: Vec::new() }
     }
 
     /// The tape of a group, made if it is not among those at hand.
@@ -152,6 +159,22 @@ impl Sampler for SolidSampler<'_> {
 
     fn limits(&self) -> Bounds {
         self.limits
+    }
+
+    fn watches(&self) -> bool {
+        true
+    }
+
+    fn lipschitz_bound(&self, number: usize) -> f64 {
+        if self.programs.of(number).is_gentle() { 1.0 } else { f64::INFINITY }
+    }
+
+    fn is_bored(&self, number: usize, block: [u32; 3]) -> bool {
+        !self.thin.is_empty() && self.programs.of(number).has_leaf_of(&self.thin, &self.lattice.region(block, BLOCK))
+    }
+
+    fn may_hide(&self, number: usize, block: [u32; 3], cells: &CellRows, intervals: usize) -> bool {
+        may_hide(self.programs.of(number), (self.lattice, block), cells, intervals)
     }
 
     fn nodes(&self, scratch: &mut Scratch, number: usize, block: [u32; 3], out: &mut [f32; NODES]) {

@@ -24,7 +24,7 @@ pub struct MeshSettings {
     pub at_bounds: AtBounds,
     /// Whether creases and corners are kept. Default: [`Features::Sharp`].
     pub features: Features,
-    /// What becomes of features that may be thinner than a cell. Default: [`ThinFeatures::Count`].
+    /// What becomes of features that may be thinner than a cell. Default: [`ThinFeatures::Ignore`].
     pub thin: ThinFeatures,
     /// Whether the mesh says which leaf each triangle is of: [`Mesh::owners`](crate::Mesh::owners).
     /// The numbers are those of [`Solid::owner`](crate::Solid::owner); that of a cap is one
@@ -42,21 +42,22 @@ pub struct MeshSettings {
 pub enum Features {
     /// They are cut off, by a fraction of a cell: marching cubes.
     Smooth,
-    /// They are kept: where the normals in a cell differ by more than 26°, and a value of the field in its middle does not
-    /// tell that it is round all the same, the cell has a vertex on the crease or in the corner, and the mesh has edges
-    /// along the crease.
+    /// They are kept: where the normals in a cell differ by more than 26°, and a value of the
+    /// field in its middle does not tell that it is round all the same, the cell has a vertex on
+    /// the crease or in the corner, and the mesh has edges along the crease.
     ///
-    /// A solid without creases, and with radii of four cells or more, has the mesh of [`Smooth`](Features::Smooth): there are
-    /// no such normals in any cell. Of a single [leaf that tells its least radius](crate::Field::least_radius), as
-    /// spheres, ellipsoids, tori, capsules and rounded boxes do, two cells are enough. One that has any is meshed more closely also
-    /// where it is smooth: where it curves so much, with radii below some 35 cells, that it is
-    /// off the triangles in a cell by more than some 0.01 or 0.02 cells in their middle, two triangles have the diagonal
-    /// that bends less; and where that is not enough, the cell has a vertex above the surface, as far as the triangles
-    /// around it are below.
+    /// A solid without creases, and with radii of four cells or more, has the mesh of
+    /// [`Smooth`](Features::Smooth): there are no such normals in any cell. Of a single [leaf that
+    /// tells its least radius](crate::Field::least_radius), as spheres, ellipsoids, tori, capsules
+    /// and rounded boxes do, two cells are enough. One that has any is meshed more closely also
+    /// where it is smooth: where it curves so much, with radii below some 35 cells, that it is off
+    /// the triangles in a cell by more than some 0.01 or 0.02 cells in their middle, two triangles
+    /// have the diagonal that bends less; and where that is not enough, the cell has a vertex
+    /// above the surface, as far as the triangles around it are below.
     ///
-    /// Where a crease passes cells that have no surface of their own (all their corners are on the same
-    /// side), the cells around, up to four along each axis, share a vertex on it, if their surface is a
-    /// disc; else the crease is cut off there by a part of a cell.
+    /// Where a crease passes cells that have no surface of their own (all their corners are on the
+    /// same side), the cells around, up to four along each axis, share a vertex on it, if their
+    /// surface is a disc; else the crease is cut off there by a part of a cell.
     #[default]
     Sharp,
 }
@@ -68,25 +69,17 @@ pub enum AtBounds {
     /// [`Features::Sharp`].
     #[default]
     Cap,
-    /// It is an error, [`MeshingError::LeavesBounds`](crate::MeshingError::LeavesBounds), which says
-    /// where, also of parts that are wholly outside. A hundredth of a cell is let pass, and of corners and thin
-    /// parts what does not show in cells of the size. It takes up to twice as long.
+    /// It is an error, [`MeshingError::LeavesBounds`](crate::MeshingError::LeavesBounds), which
+    /// says where, also of parts that are wholly outside. A hundredth of a cell is let pass, and
+    /// of corners and thin parts what does not show in cells of the size. It takes up to twice as
+    /// long.
     Refuse,
 }
 
 /// What becomes of features that may be thinner than a cell.
 ///
-/// A cell is unresolved if all its corners are on the same side, the range of the value over it contains 0, and no
-/// direction is found such that along it, and along all directions within 8° of it, the solid is entered, and not left,
-/// throughout the cell: the surface may come into it and turn round, as at a thin wall, a narrow slot, or a fin with a draft of
-/// less than that. What is lost in resolved cells that all have corners on the same side is the tip of something blunter, up to
-/// six cells of it.
-///
-/// Ranges are wider than what they hold, so there may be nothing in an unresolved cell, as at edges of acute angles, where
-/// lattices have few cells for a period, and at radii of two or three cells. A wall that is not much thicker than a cell
-/// may still have holes, in cells with corners on both sides: a flat one is whole for certain if it is thicker than the
-/// diagonal of a cell, 1.74 times its side. A fillet or chamfer is taken to have no features of its own that are thinner
-/// than its size.
+/// Whatever is chosen, the mesh tells whether any may be lost:
+/// [`Mesh::possibly_lost`](crate::Mesh::possibly_lost), [`Mesh::warnings`](crate::Mesh::warnings).
 ///
 /// ```
 /// use rvachev::{CellSize, MeshSettings, Solid, ThinFeatures};
@@ -94,32 +87,34 @@ pub enum AtBounds {
 /// let fin = Solid::cuboid([0.03, 0.8, 0.8]).translate([0.0, 0.0, 1.3]);
 /// let part = Solid::cuboid([2.0, 2.0, 2.0]) | fin;
 /// let settings = MeshSettings { cell: CellSize::LongestSide(32), ..MeshSettings::default() };
-/// // The fin passes between the nodes, and the report says that something may.
-/// let report = part.mesh(&settings)?.check();
-/// assert!(report.unresolved_cells > Some(0) && report.bounds.max.z < 1.01);
+/// // The fin passes between the nodes, and the mesh says that something may.
+/// let mesh = part.mesh(&settings)?;
+/// assert!(mesh.possibly_lost() > 0 && mesh.bounds().max.z < 1.01);
 /// let settings = MeshSettings { thin: ThinFeatures::Refine { halvings: 2 }, ..settings };
-/// let report = part.mesh(&settings)?.check();
-/// assert!(report.unresolved_cells == Some(0) && report.bounds.max.z > 1.69);
+/// let mesh = part.mesh(&settings)?;
+/// assert!(mesh.possibly_lost() == 0 && mesh.bounds().max.z > 1.69);
 /// # Ok::<(), rvachev::MeshingError>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ThinFeatures {
-    /// The mesh says nothing of them.
-    Ignore,
-    /// Unresolved cells are counted for the report of the mesh, when [it](crate::Mesh::check) is asked for:
-    /// [`MeshReport::unresolved_cells`](crate::MeshReport::unresolved_cells). Of simple parts this takes
-    /// a tenth to a half of the time that the mesh takes; of blends, lattices, and walls of a few cells up to six times as
-    /// long as the mesh; of parts seen through several deformations up to twelve times. It can be
-    /// [cancelled](crate::Mesh::check_with), and done later.
+    /// They are not searched for.
     #[default]
+    Ignore,
+    /// They are searched for once the mesh is made:
+    /// [`Mesh::thin_features`](crate::Mesh::thin_features) holds what
+    /// [`Solid::thin_features`](crate::Solid::thin_features) finds, which also says how long that
+    /// takes.
     Count,
-    /// Blocks of cells that have any, and those close to them, are meshed in cells of half the size, and blocks of these
-    /// again, at most so many times, as far as f32 allows; those that are left are counted. Cells with corners on both
-    /// sides that a wall may be torn in are halved as well, as long as there is a halving left; they do not count. The
-    /// mesh keeps all that is said of meshes; where a crease passes from larger cells to smaller ones in a cell that has
-    /// no surface of its own, it is cut off by a fraction of a cell. Where larger and smaller cells do not fit, as it may
-    /// be where a field jumps, they are halved fewer times. [`AtBounds::Refuse`] and [`owners`](MeshSettings::owners) go
-    /// by the cells that were asked for.
+    /// Blocks of cells that have any, and those close to them, are meshed in cells of half the
+    /// size, and blocks of these again, at most so many times, as far as f32 allows;
+    /// [`Mesh::possibly_lost`](crate::Mesh::possibly_lost) counts the blocks that still have some
+    /// then.
+    ///
+    /// The mesh keeps all that is said of meshes; where a crease passes from larger cells to
+    /// smaller ones in a cell that has no surface of its own, it is cut off by a fraction of a
+    /// cell. Where larger and smaller cells do not fit, as it may be where a field jumps, they are
+    /// halved fewer times. [`AtBounds::Refuse`] and [`owners`](MeshSettings::owners) go by the
+    /// cells that were asked for.
     Refine {
         /// The most times that the cell size is halved.
         halvings: u32,
@@ -127,11 +122,6 @@ pub enum ThinFeatures {
 }
 
 impl ThinFeatures {
-    /// Whether unresolved cells are counted.
-    pub(super) fn counts(self) -> bool {
-        self != ThinFeatures::Ignore
-    }
-
     /// How often the cells may be halved.
     pub(super) fn halvings(self) -> u32 {
         match self {

@@ -70,6 +70,26 @@ impl Signs {
         case([self.row(j, k), self.row(j + 1, k), self.row(j, k + 1), self.row(j + 1, k + 1)], i)
     }
 
+    /// Whether nodes of both signs are among them.
+    pub(super) fn is_mixed(&self) -> bool {
+        const ALL: u16 = (1 << SIDE) - 1;
+        let (any, all) = self.0.iter().fold((0, ALL), |(any, all), &row| (any | row, all & row));
+        any != 0 && all != ALL
+    }
+
+    /// The nodes of a row that differ in sign from both their neighbours along x, y and z, as bits: of those whose two
+    /// edges there the block owns.
+    #[inline(always)]
+    pub(super) fn single(&self, j: usize, k: usize) -> [u16; 3] {
+        let row = self.row(j, k);
+        let x = (row ^ row << 1) & (row ^ row >> 1) & (OWNED_BITS - 1);
+        let along =
+            |below: Option<u16>, above: u16| below.map_or(0, |below| (row ^ below) & (row ^ above) & OWNED_BITS);
+        let y = along((j > 0).then(|| self.row(j - 1, k)), self.row(j + 1, k));
+        let z = along((k > 0).then(|| self.row(j, k - 1)), self.row(j, k + 1));
+        [x, y, z]
+    }
+
     /// The signs in the lower or upper face of an axis, nine rows of nine.
     pub(super) fn face(&self, axis: usize, upper: bool) -> [u16; SIDE] {
         let at = if upper { BLOCK } else { 0 };

@@ -4,50 +4,17 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::blocks::Blocks;
+use super::error::MeshingError;
 use super::extract::ExtractError;
-use super::lattice::{CellSize, Lattice, LatticeError};
+use super::lattice::{CellSize, Lattice};
 use super::paint::corner_colors;
 use super::refine::{Job, refined};
-use super::resolve::late_count;
-use super::settings::{AtBounds, Features, MeshSettings};
+use super::settings::{AtBounds, Features, MeshSettings, ThinFeatures};
+use super::thin::thin_report;
 use crate::eval::compiled;
-use crate::geom::{LateCount, Mesh};
-use crate::{Bounds, Cancelled, Paint, RFunction, Run, Solid, SolidError};
+use crate::geom::{Findings, Mesh, ThinReport};
+use crate::{Bounds, Paint, RFunction, Run, Solid, SolidError};
 use rvachev_field::check::{LARGEST_LENGTH, SMALLEST_LENGTH};
-
-/// Why there is no mesh.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum MeshingError {
-    /// The solid is at fault, or unbounded while no bounds are given.
-    #[error(transparent)]
-    Solid(#[from] SolidError),
-    /// The resolution does not suit the bounds.
-    #[error(transparent)]
-    Lattice(#[from] LatticeError),
-    /// The work was cancelled.
-    #[error(transparent)]
-    Cancelled(#[from] Cancelled),
-    /// There are more vertices than 32-bit indices count.
-    #[error("{vertices} vertices, allowed: at most {}", u32::MAX)]
-    TooLarge {
-        /// How many vertices the mesh would have.
-        vertices: u64,
-    },
-    /// The solid leaves the bounds, and the settings do not want it cut.
-    #[error("the solid goes on beyond the bounds at {at}; allowed: a solid within them, or `AtBounds::Cap`")]
-    LeavesBounds {
-        /// A point of the boundary of the bounds that is inside the solid; if there is none, one of the solid
-        /// outside of the bounds.
-        at: DVec3,
-    },
-    /// The extraction contradicts itself: a defect of this crate.
-    #[error("internal error, please report it: {what}")]
-    Internal {
-        /// What was found.
-        what: String,
-    },
-}
 
 /// What leaves the bounds by less, in cells, is let pass: vertices may be off by a thousandth.
 const SLACK: f64 = 0.01;
@@ -57,16 +24,6 @@ const AT_ONCE: usize = 1 << 14;
 
 /// A surface with radii of so many cells is known to have no creases.
 const ROUND: f64 = 2.0;
-
-impl From<ExtractError> for MeshingError {
-    fn from(error: ExtractError) -> MeshingError {
-        match error {
-            ExtractError::Cancelled(cancelled) => MeshingError::Cancelled(cancelled),
-            ExtractError::TooLarge { count } => MeshingError::TooLarge { vertices: count },
-            other => MeshingError::Internal { what: other.to_string() },
-        }
-    }
-}
 
 impl Solid {
     /// The surface as triangles: closed, manifold and oriented outward, with a normal at each
@@ -94,8 +51,12 @@ impl Solid {
                 run.install(|| self.refuse_beyond(given, Lattice::new(given, settings.cell)?.step(), &run))?;
             }
             run.report(1.0);
-            let mesh = Mesh::default();
-            return Ok(if settings.thin.counts() { mesh.with_unresolved_cells(LateCount::known(0)) } else { mesh });
+            let thin = (settings.thin == ThinFeatures::Count).then(ThinReport::default);
+            return Ok(Mesh::default().with_findings(Findings {
+                clamped_vertices: Some(0),
+                thin,
+                ..Findings::default()
+            }));
         }
         let programs = compiled(&solid)?;
         // A mesh has the paint of its solid, if there is any, by the owners of its triangles.
@@ -108,19 +69,18 @@ impl Solid {
             let most = settings.thin.halvings();
             let [own, paint] = [if_done(owned, 0.8), if_done(painted, 0.2)];
             let [refine, extract] = [if_done(most > 0, 3.0), if_done(most == 0, 0.85)];
-            let times = [0.15, refine, extract, if_done(whole.is_some(), 1.0), own, paint];
-            let [to_find, to_refine, to_extract, to_refuse, to_own, to_paint] = run.stages(times);
+            let search = if_done(settings.thin == ThinFeatures::Count, 1.0);
+            let times = [0.15, refine, extract, if_done(whole.is_some(), 1.0), own, paint, search];
+            let [to_find, to_refine, to_extract, to_refuse, to_own, to_paint, to_search] = run.stages(times);
             let lattice = Lattice::new(&bounds, settings.cell)?;
             let mut blocks = Blocks::find(&programs.surface, &lattice, &to_find)?;
             let is_round = programs.surface.least_radius() >= ROUND * lattice.step();
             let features = if is_round { Features::Smooth } else { settings.features };
             let job = Job { program: &programs.surface, limits: bounds, features };
-            let (mut mesh, count) = if most > 0 {
-                let (mesh, left) = refined(job, (lattice, blocks.clone()), most, &to_refine)?;
-                (mesh, LateCount::known(left))
+            let mut mesh = if most > 0 {
+                refined(job, (lattice, blocks.clone()), most, &to_refine)?
             } else {
-                let mesh = blocks.extract(&programs.surface, (&lattice, bounds), features, &to_extract)?;
-                (mesh, late_count(programs.clone(), (lattice, bounds)))
+                blocks.extract(&programs.surface, (&lattice, bounds), features, &to_extract)?
             };
             if let Some(given) = whole {
                 self.refuse_caps(&mesh, given, lattice.step(), &to_refuse)?;
@@ -134,10 +94,12 @@ impl Solid {
                 }
                 mesh = mesh.with_owners(owners).map_err(ExtractError::from)?;
             }
-            run.report(1.0);
-            if settings.thin.counts() {
-                mesh = mesh.with_unresolved_cells(count);
+            if settings.thin == ThinFeatures::Count {
+                let thin = Some(thin_report(&blocks, (&lattice, bounds), &to_search)?);
+                let findings = Findings { thin, ..mesh.findings().clone() };
+                mesh = mesh.with_findings(findings);
             }
+            run.report(1.0);
             Ok(mesh)
         })
     }
@@ -184,7 +146,7 @@ impl Solid {
 
     /// The solid cut to a box, if there is one and the solid leaves it, and the box that
     /// holds what is left.
-    fn cut_to(&self, bounds: Option<&Bounds>) -> Result<(Solid, Bounds), SolidError> {
+    pub(super) fn cut_to(&self, bounds: Option<&Bounds>) -> Result<(Solid, Bounds), SolidError> {
         let Some(given) = bounds else { return Ok((self.clone(), self.finite_bounds()?)) };
         let wrong = || SolidError::Bounds { bounds: format!("{} to {}", given.min, given.max) };
         if given.is_empty() || !given.is_finite() || given.size().min_element() < SMALLEST_LENGTH {

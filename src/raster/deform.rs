@@ -159,7 +159,7 @@ fn moved(mesh: &Mesh, mirrors: bool, map: impl Fn(DVec3, DVec3) -> (DVec3, DVec3
     if let Some(owners) = mesh.owners() {
         moved = moved.with_owners(owners.to_vec())?;
     }
-    Ok(moved.with_unresolved_cells(mesh.late_unresolved_cells()))
+    Ok(moved.with_counts_of(mesh))
 }
 
 /// What triangles have at their corners, the last two exchanged if they are to be turned round.

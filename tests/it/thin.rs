@@ -4,16 +4,19 @@ use std::f64::consts::PI;
 
 use glam::{DQuat, DVec2, DVec3};
 use rvachev::{
-    Blend, Bounds, CellSize, Features, Helix, MeshSettings, MinimalSurface, Polygon, Profile, SheetLattice, Solid,
-    ThinFeatures, deg,
+    Blend, Bounds, CancelToken, Cancelled, CellSize, Features, Helix, MeshSettings, MeshingError, MinimalSurface,
+    Polygon, Profile, Run, SheetLattice, Solid, ThinFeatures, ThinReport, deg,
 };
 
 use super::models;
 
 fn unresolved(solid: &Solid, cell: CellSize, bounds: Option<Bounds>) -> usize {
     let settings = MeshSettings { cell, bounds, ..MeshSettings::default() };
-    let count = solid.mesh(&settings).unwrap().check().unresolved_cells;
-    count.expect("they are counted unless they are ignored")
+    solid.thin_features(&settings, &Run::default()).unwrap().cells
+}
+
+fn lost(solid: &Solid, cell: CellSize, bounds: Option<Bounds>) -> usize {
+    solid.mesh(&MeshSettings { cell, bounds, ..MeshSettings::default() }).unwrap().possibly_lost()
 }
 
 #[test]
@@ -22,11 +25,18 @@ fn thin_walls_are_counted_and_refined() {
     // A wall of a third of a cell, between the nodes.
     let wall = Solid::cuboid((1.0, 1.0, 0.04)).translate(DVec3::Z * 0.1);
     let settings = |thin| MeshSettings { cell: CellSize::Length(CELL), thin, ..MeshSettings::default() };
-    let report = |thin| wall.mesh(&settings(thin)).unwrap().check();
-    assert_eq!(report(ThinFeatures::Ignore).unresolved_cells, None);
-    assert!(report(ThinFeatures::Count).unresolved_cells.unwrap() > 0);
-    let fine = report(ThinFeatures::Refine { halvings: 4 });
-    assert_eq!((fine.unresolved_cells, fine.shells), (Some(0), 1));
+    let mesh = |thin| wall.mesh(&settings(thin)).unwrap();
+    let ignored = mesh(ThinFeatures::Ignore);
+    assert!(ignored.thin_features().is_none() && ignored.possibly_lost() > 0 && ignored.warnings().len() == 1);
+    let counted = mesh(ThinFeatures::Count);
+    let thin = counted.thin_features().expect("they were searched for");
+    assert_eq!(thin, &wall.thin_features(&settings(ThinFeatures::Ignore), &Run::default()).unwrap());
+    assert!(thin.cells > 0 && thin.count == 1 && counted.warnings().len() == 2);
+    assert!((thin.places[0].thickness.unwrap() - 0.04).abs() < 1e-6, "{thin}");
+    let fine = mesh(ThinFeatures::Refine { halvings: 4 });
+    assert!(fine.possibly_lost() == 0 && fine.warnings().is_empty());
+    let fine = fine.check();
+    assert_eq!(fine.shells, 1);
     assert!((fine.volume / 0.04 - 1.0).abs() < 0.02, "{}", fine.volume);
 }
 
@@ -82,6 +92,8 @@ fn whatever_hides_between_nodes_is_counted() {
     for (name, solid) in thin {
         let count = unresolved(&solid, cell, None);
         assert!(count > 0, "{name}: {count}");
+        // The film is in blocks with crossings, and no node falls into it.
+        assert!(lost(&solid, cell, None) > 0 || name == "a film between holes", "{name}");
     }
 }
 
@@ -134,6 +146,7 @@ fn bodies_without_thin_parts_have_no_unresolved_cells() {
     for (name, solid, cells, bounds) in bodies {
         let count = unresolved(&solid, CellSize::LongestSide(cells), bounds);
         assert_eq!(count, 0, "{name}");
+        assert_eq!(lost(&solid, CellSize::LongestSide(cells), bounds), 0, "{name}");
     }
     // Where edges are sharp, and radii are of few cells, some cells count that hide nothing.
     for (name, solid, cells, bounds) in [
@@ -144,7 +157,83 @@ fn bodies_without_thin_parts_have_no_unresolved_cells() {
         let settings =
             MeshSettings { cell: CellSize::LongestSide(cells), bounds: Some(bounds), ..MeshSettings::default() };
         let mesh = solid.mesh(&settings).unwrap();
-        let count = mesh.unresolved_cells().unwrap();
+        let count = solid.thin_features(&settings, &Run::default()).unwrap().cells;
         assert!(60 * count < mesh.triangles().len(), "{name}: {count} of {} triangles", mesh.triangles().len());
     }
+}
+
+/// Extraction tells by itself that something may be lost, and keeps quiet where nothing is.
+#[test]
+fn extraction_tells_what_it_may_have_lost() {
+    // A plate of little more than a cell, whose bores are smaller than one: most of them are lost.
+    let bores = Solid::cylinder(2.5, 50.0).repeat([20, 20, 1], [15.0, 15.0, 1.0]).translate([-142.5, -142.5, 0.0]);
+    let plate = Solid::cuboid([320.0, 320.0, 8.0]) - bores;
+    let mesh = plate.mesh(&MeshSettings { cell: CellSize::Length(7.8), ..MeshSettings::default() }).unwrap();
+    assert!(mesh.check().genus.unwrap_or(0) < 400);
+    assert!(mesh.possibly_lost() > 0);
+    assert!(mesh.warnings()[0].contains("features thinner than a cell (7.8"), "{:?}", mesh.warnings());
+    // A plate of several cells hides none, if only its bores are thin.
+    let thick = Solid::cuboid([32.0, 32.0, 8.0]);
+    let bored = &thick - Solid::cylinder(0.2, 50.0).translate([0.3, 0.4, 0.0]);
+    for cell in [0.5, 1.0, 2.0] {
+        assert_eq!(lost(&thick, CellSize::Length(cell), None), 0, "{cell}");
+        assert!(lost(&bored, CellSize::Length(cell), None) > 0, "{cell}");
+    }
+    assert_eq!(lost(&bored, CellSize::Length(0.1), None), 0);
+    // A needle that is cut off, and a sheet that is not there at all.
+    let needle = Solid::cone(0.5, 0.0, 100.0);
+    let sheet = Solid::cuboid([1.0, 1.0, 0.0025]);
+    for (solid, has_mesh) in [(&needle, true), (&sheet, false)] {
+        let mesh = solid.mesh(&MeshSettings::default()).unwrap();
+        assert_eq!(!mesh.triangles().is_empty(), has_mesh);
+        assert!(mesh.possibly_lost() > 0);
+        assert_eq!(mesh.warnings()[0].starts_with("the mesh is empty"), !has_mesh);
+    }
+    // Walls that are torn to pieces have crossings in all blocks.
+    for thickness in [0.1, 0.3, 0.6] {
+        let wall = Solid::sphere(1.0) - Solid::sphere(1.0 - thickness / 32.0);
+        assert!(lost(&wall, CellSize::Length(1.0 / 32.0), None) > 0, "{thickness}");
+        let gyroid = SheetLattice { surface: MinimalSurface::Gyroid, cell: 0.5, thickness: thickness / 32.0 };
+        let block = Solid::from(gyroid) & Solid::cuboid(DVec3::ONE);
+        assert!(lost(&block, CellSize::Length(1.0 / 32.0), None) > 0, "{thickness}");
+    }
+}
+
+#[test]
+fn well_resolved_models_have_lost_nothing() {
+    for model in models::all() {
+        for cells in [40, 64, 100] {
+            let cell = CellSize::Length(2.0 * model.half / f64::from(cells));
+            assert_eq!(lost(&model.solid, cell, Some(model.cube())), 0, "{} at {cells}", model.name);
+        }
+    }
+}
+
+#[test]
+fn thin_places_are_told_with_their_sizes() {
+    let turn = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), 0.7);
+    let block = Solid::cuboid(DVec3::splat(2.0));
+    let slit = Solid::cuboid((0.01, 3.0, 1.0));
+    let pin = Solid::cylinder(0.008, 0.5).translate([0.5, 0.5, 1.2]);
+    let solid = ((block - slit) | pin).rotate(turn);
+    let settings = MeshSettings { cell: CellSize::Length(1.0 / 32.0), ..MeshSettings::default() };
+    let report = solid.thin_features(&settings, &Run::default()).unwrap();
+    assert_eq!((report.count, report.places.len()), (2, 2), "{report}");
+    assert_eq!(report.cells, report.places.iter().map(|place| place.cells).sum::<usize>());
+    for (place, thickness, at) in [(&report.places[0], 0.01, 0.0), (&report.places[1], 0.016, 0.5)] {
+        let found = place.thickness.unwrap();
+        assert!((0.5 * thickness..1.01 * thickness).contains(&found), "{report}");
+        assert!(((turn.inverse() * place.position).x - at).abs() < 0.02, "{report}");
+    }
+    // The same for any number of threads; it can be cancelled.
+    let run = Run { threads: 1, ..Run::default() };
+    assert_eq!(solid.thin_features(&settings, &run).unwrap(), report);
+    let cancel = CancelToken::new();
+    cancel.cancel();
+    let cancelled = solid.thin_features(&settings, &Run { cancel, ..Run::default() });
+    assert_eq!(cancelled, Err(MeshingError::Cancelled(Cancelled)));
+    // Nothing within the bounds.
+    let bounds = Some(Bounds::new(DVec3::splat(50.0), DVec3::splat(60.0)));
+    let none = solid.thin_features(&MeshSettings { bounds, ..settings }, &Run::default()).unwrap();
+    assert!(none.is_empty() && none == ThinReport::default());
 }

@@ -17,19 +17,16 @@
 
 use glam::Vec3;
 
-use super::corner_normals::CornerNormals;
-use super::{LateCount, Mesh, MeshError};
-use crate::{Cancelled, Run};
+use super::{Mesh, MeshError, first};
 
 /// What a mesh carries besides positions and triangles; `None` where it has no such values.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Attributes {
     normals: Option<Vec<Vec3>>,
+    corner_normals: Option<Vec<[Vec3; 3]>>,
     corner_colors: Option<Vec<[[u8; 4]; 3]>>,
     corner_texture: Option<Vec<[[f32; 2]; 3]>>,
     owners: Option<Vec<u32>>,
-    unresolved_cells: LateCount,
-    clamped_vertices: Option<usize>,
 }
 
 impl Mesh {
@@ -43,8 +40,6 @@ impl Mesh {
         if normals.len() != self.positions.len() {
             return Err(MeshError::Normals { normals: normals.len(), vertices: self.positions.len() });
         }
-        // Those of the corners may be kept by what differs from the ones that go.
-        let _ = self.corner_normals();
         self.attributes.normals = Some(normals);
         Ok(self)
     }
@@ -70,7 +65,7 @@ impl Mesh {
     pub fn with_corner_normals(mut self, normals: Vec<[Vec3; 3]>) -> Result<Mesh, MeshError> {
         self.fits_triangles("normals of corners", normals.len())?;
         finite("normal", &normals, |n| n.is_finite())?;
-        self.corner_normals = Some(CornerNormals::given(normals));
+        self.attributes.corner_normals = Some(normals);
         Ok(self)
     }
 
@@ -112,22 +107,16 @@ impl Mesh {
         Ok(self)
     }
 
-    /// Notes what counts the cells that may have lost a feature thinner than a cell.
-    #[must_use]
-    pub(crate) fn with_unresolved_cells(mut self, count: LateCount) -> Mesh {
-        self.attributes.unresolved_cells = count;
-        self
-    }
-
-    /// What was noted.
-    pub(crate) fn late_unresolved_cells(&self) -> LateCount {
-        self.attributes.unresolved_cells.clone()
-    }
-
     /// The unit normals of the vertices, if the mesh has them.
     #[must_use]
     pub fn normals(&self) -> Option<&[Vec3]> {
         self.attributes.normals.as_deref()
+    }
+
+    /// The unit normals of the corners, if the mesh has them: three for each triangle.
+    #[must_use]
+    pub fn corner_normals(&self) -> Option<&[[Vec3; 3]]> {
+        self.attributes.corner_normals.as_deref()
     }
 
     /// The colours of the corners, if the mesh has them: three for each triangle, each red,
@@ -150,57 +139,24 @@ impl Mesh {
         self.attributes.owners.as_deref()
     }
 
-    /// How many cells may have lost a feature thinner than a cell; `None` if the mesh was not
-    /// made from a solid, or its settings [ignore](crate::ThinFeatures::Ignore) them. They are counted when this, or
-    /// the [report](Mesh::check), is first asked for, by the threads of the current rayon pool.
-    #[must_use]
-    pub fn unresolved_cells(&self) -> Option<usize> {
-        // A run that nobody else holds is not cancelled.
-        self.unresolved_cells_with(&Run::default()).unwrap_or_default()
-    }
-
-    /// [`unresolved_cells`](Mesh::unresolved_cells) with a choice of threads, a cancel token and a progress sink.
-    ///
-    /// # Errors
-    /// [`Cancelled`] if the token was, before all were counted; they can be counted again.
-    pub fn unresolved_cells_with(&self, run: &Run) -> Result<Option<usize>, Cancelled> {
-        let run = run.stage(0.0, 1.0);
-        let count = run.install(|| self.attributes.unresolved_cells.get(&run))?;
-        run.report(1.0);
-        Ok(count)
-    }
-
-    /// Whether they have yet to be counted.
-    pub(crate) fn has_late_count(&self) -> bool {
-        self.attributes.unresolved_cells.is_open()
-    }
-
-    pub(crate) fn with_clamped_vertices(mut self, count: usize) -> Mesh {
-        self.attributes.clamped_vertices = Some(count);
-        self
-    }
-
-    /// How many vertices keep clear of a node that the surface is closer to, or are off it for another reason; `None` if the mesh was not
-    /// made from a solid. See [`MeshReport`](crate::MeshReport).
-    #[must_use]
-    pub fn clamped_vertices(&self) -> Option<usize> {
-        self.attributes.clamped_vertices
-    }
-
-    pub(super) fn fits_triangles(&self, what: &'static str, given: usize) -> Result<(), MeshError> {
+    fn fits_triangles(&self, what: &'static str, given: usize) -> Result<(), MeshError> {
         let triangles = self.triangles.len();
         if given == triangles { Ok(()) } else { Err(MeshError::Corners { what, given, triangles }) }
     }
 }
 
-pub(super) fn finite<T: Copy>(
+fn finite<T: Copy + Sync>(
     what: &'static str,
     values: &[[T; 3]],
-    is_finite: impl Fn(T) -> bool,
+    is_finite: impl Fn(T) -> bool + Sync,
 ) -> Result<(), MeshError> {
-    match values.as_flattened().iter().position(|&value| !is_finite(value)) {
+    let is_bad = |value: &T| !is_finite(*value);
+    match first(values, |corners| corners.iter().any(is_bad)) {
         None => Ok(()),
-        Some(at) => Err(MeshError::NotFinite { what, triangle: at / 3, corner: at % 3 }),
+        Some(triangle) => {
+            let corner = values[triangle].iter().position(is_bad).unwrap_or_default();
+            Err(MeshError::NotFinite { what, triangle, corner })
+        }
     }
 }
 
@@ -216,20 +172,22 @@ mod tests {
     fn what_is_given_comes_back() {
         let plain = triangle();
         assert_eq!((plain.normals(), plain.corner_normals(), plain.owners()), (None, None, None));
-        assert_eq!((plain.corner_colors(), plain.corner_texture(), plain.unresolved_cells()), (None, None, None));
+        assert_eq!((plain.corner_colors(), plain.corner_texture()), (None, None));
         let colors = [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 128]];
         let texture = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
         let mesh = plain.with_normals(vec![Vec3::Z; 3]).unwrap();
         let mesh = mesh.with_corner_normals(vec![[Vec3::Z, Vec3::X, Vec3::Y]]).unwrap();
         let mesh = mesh.with_corner_colors(vec![colors]).unwrap().with_corner_texture(vec![texture]).unwrap();
-        let mesh = mesh.with_owners(vec![7]).unwrap().with_clamped_vertices(4);
-        let mesh = mesh.with_unresolved_cells(LateCount::known(3));
+        let mesh = mesh.with_owners(vec![7]).unwrap();
         assert_eq!(mesh.normals().unwrap().len(), 3);
         assert_eq!(mesh.corner_normals().unwrap()[0][1], Vec3::X);
         assert_eq!(mesh.corner_colors(), Some(&[colors][..]));
         assert_eq!(mesh.corner_texture(), Some(&[texture][..]));
-        assert_eq!((mesh.owners(), mesh.unresolved_cells()), (Some(&[7][..]), Some(3)));
-        assert_eq!((triangle().clamped_vertices(), mesh.clamped_vertices()), (None, Some(4)));
+        assert_eq!(mesh.owners(), Some(&[7][..]));
+        // Normals of the corners do not follow other normals of the vertices.
+        let turned = mesh.clone().with_normals(vec![Vec3::X; 3]).unwrap();
+        assert_eq!(turned.corner_normals(), mesh.corner_normals());
+        assert_ne!(turned, mesh);
     }
 
     #[test]

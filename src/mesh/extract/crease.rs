@@ -9,8 +9,9 @@
 
 use glam::Vec3A;
 
+use super::block_vertices::Corners;
 use super::bulge::is_strongly_curved;
-use super::join::{Corners, Watch};
+use super::parts::Watch;
 use super::samples::Samples;
 use crate::mesh::feature::SMOOTH;
 use crate::mesh::loops::CellLoop;

@@ -3,7 +3,7 @@
 use glam::{Vec3, Vec3A};
 
 use super::ExtractError;
-use super::join::Corners;
+use super::block_vertices::Corners;
 use super::samples::Samples;
 use crate::mesh::signs::SIDE;
 

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::{Vec3, Vec3A};
 
-use super::join::Parts;
+use super::parts::Parts;
 use crate::mesh::lattice::Lattice;
 use crate::mesh::signs::BLOCK;
 use crate::mesh::table::{EDGE_CORNERS, edge_axis};

@@ -39,9 +39,10 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::cells::{CellOrder, CellSet};
+use super::corners::Vertices;
 use super::crease::Creases;
-use super::join::{fill, split};
 use super::joined::Joined;
+use super::lists::{fill, split};
 use super::plain::Plain;
 use super::region::{Region, regions};
 use super::samples::{Samples, cell_number, cell_of, split_cell};
@@ -49,7 +50,6 @@ use super::span::Span;
 use super::special::{Special, list_of};
 use super::trend::even_blocks;
 use super::{ExtractError, Sampler};
-use crate::geom::Apart;
 use crate::mesh::bulk::Bulk;
 use crate::mesh::feature::{Candidate, Segment};
 use crate::mesh::signs::BLOCK;
@@ -105,6 +105,9 @@ pub(super) struct Fans {
     /// Those of them that no triangle has any more: where the first of those that are added go. Ascending.
     free: Vec<u32>,
 }
+
+/// All triangles, and the normals at their corners if there are fans.
+type Listed = (Bulk<[u32; 3]>, Option<Bulk<[Vec3; 3]>>);
 
 /// What a mesh with sharp features is made of.
 pub(super) enum Found {
@@ -267,50 +270,65 @@ impl Fans {
         self.points.iter().for_each(|&(at, normal)| add(at, normal));
     }
 
-    /// All triangles, and what tells the normals of those of fans, if there are any.
-    pub(super) fn triangles(mut self, run: &Run) -> Result<(Bulk<[u32; 3]>, Option<Sides>), Cancelled> {
+    /// All triangles, and the normals at their corners if there are fans; given the vertices.
+    pub(super) fn triangles(mut self, vertices: Vertices<'_>, run: &Run) -> Result<Listed, Cancelled> {
         let mut triangles = std::mem::take(&mut self.plain.triangles);
         let (start, count) = (triangles.len(), self.counts.iter().sum::<usize>());
+        let mut corners = match self.fans.is_empty() {
+            true => Bulk::default(),
+            false => Bulk::from(vertices.corners(&triangles, count, run)?),
+        };
         triangles.reserve_exact(count);
         triangles.resize(start + count, [0; 3]);
+        let all = corners.len() + count;
+        corners.resize(all, [Vec3::ZERO; 3]);
         let pieces = split(&mut triangles[start..], self.counts.iter().copied());
+        let corner_pieces = split(corners.get_mut(start..).unwrap_or_default(), self.counts.iter().copied());
         let meter = Meter::new(run, self.counts.len());
-        pieces.into_par_iter().enumerate().try_for_each(|(chunk, piece)| {
+        pieces.into_par_iter().zip(corner_pieces).enumerate().try_for_each(|(chunk, (piece, corners))| {
             meter.step()?;
-            let mut slots = piece.iter_mut();
+            let mut slots = piece.iter_mut().zip(corners);
             for fan in (chunk * AT_ONCE..self.fans.len()).take(AT_ONCE) {
-                self.list(fan, |triangle| {
-                    if let Some(slot) = slots.next() {
+                self.list(fan, |triangle, normals| {
+                    if let Some((slot, corners)) = slots.next() {
                         *slot = triangle;
+                        *corners = vertices.straightened(triangle, normals);
                     }
                 });
             }
             Ok(())
         })?;
         fill(&mut triangles, start, &self.holes);
-        self.holes.truncate(count);
-        let Fans { fans, segments, holes, .. } = self;
-        let following = start..start + count - holes.len();
-        let sides = (!fans.is_empty()).then_some(Sides { fans, segments, following, holes });
-        Ok((triangles, sides))
+        if self.fans.is_empty() {
+            return Ok((triangles, None));
+        }
+        fill(&mut corners, start, &self.holes);
+        Ok((triangles, Some(corners)))
     }
 
-    /// The triangles of a fan.
-    fn list(&self, nth: usize, mut each: impl FnMut([u32; 3])) {
-        let (segments, centre, fans) = (self.of(nth), self.number(nth as u32), self.fans.len() as u32);
-        let mut to = segments[0].from;
+    /// The triangles of a fan, with the normals of their sides at their corners: at feature points
+    /// the normal is that of the triangle's side. It is 0 at corners on one side, which have that of
+    /// their vertex.
+    fn list(&self, nth: usize, mut each: impl FnMut([u32; 3], [Vec3; 3])) {
+        const OWN: Vec3 = Vec3::ZERO;
+        let (segments, centre) = (self.of(nth), self.number(nth as u32));
+        let first = &segments[0];
+        let (mut to, mut beside) = (first.from, first.normal);
         for segment in segments.iter().rev() {
-            let from = segment.from;
-            match segment.across() {
-                None => each([centre, from, to]),
-                Some(other) if other < fans => each([centre, from, self.number(other)]),
-                Some(point) => {
+            let (from, near) = (segment.from, segment.normal);
+            match segment.across().map(|other| (other, self.fans.get(other as usize))) {
+                None => each([centre, from, to], [(near + beside).normalize_or(near), OWN, OWN]),
+                Some((other, Some(fan))) => {
+                    let end = fan.of(&self.segments).iter().find(|other| other.from == from);
+                    each([centre, from, self.number(other)], [near, OWN, end.map_or(OWN, |end| end.normal)]);
+                }
+                Some((point, None)) => {
                     let point = self.number(point);
-                    each([centre, from, point]);
-                    each([centre, point, to]);
+                    each([centre, from, point], [near, OWN, near]);
+                    each([centre, point, to], [beside, beside, OWN]);
                 }
             }
-            to = from;
+            (to, beside) = (from, near);
         }
     }
 
@@ -319,44 +337,5 @@ impl Fans {
     pub(super) fn of_cell(&self, block: usize, number: u16) -> Option<u32> {
         let (start, order) = &self.blocks[block];
         Some(self.cells[start + order.place(number)?])
-    }
-}
-
-/// The sides that the triangles of fans are on: what tells the normals at their corners.
-#[derive(Debug)]
-pub(super) struct Sides {
-    fans: Vec<Fan>,
-    segments: Vec<Vec<Segment>>,
-    /// Where the triangles of fans are: those that follow the others, and the last ones.
-    following: Range<usize>,
-    holes: Vec<usize>,
-}
-
-impl Apart for Sides {
-    /// At feature points the normal is that of the triangle's side; other vertices lie on one side. The order is that of
-    /// [`Fans::triangles`].
-    fn tell(&self, each: &mut dyn FnMut(usize, [Vec3; 3])) {
-        const OWN: Vec3 = Vec3::ZERO;
-        let mut numbers = self.following.clone().chain(self.holes.iter().copied());
-        let mut each = |normals| numbers.next().into_iter().for_each(|triangle| each(triangle, normals));
-        for fan in &self.fans {
-            let segments = fan.of(&self.segments);
-            let mut beside = segments[0].normal;
-            for segment in segments.iter().rev() {
-                let near = segment.normal;
-                match segment.across().map(|other| self.fans.get(other as usize)) {
-                    None => each([(near + beside).normalize_or(near), OWN, OWN]),
-                    Some(Some(other)) => {
-                        let end = other.of(&self.segments).iter().find(|other| other.from == segment.from);
-                        each([near, OWN, end.map_or(OWN, |end| end.normal)]);
-                    }
-                    Some(None) => {
-                        each([near, OWN, near]);
-                        each([beside, beside, OWN]);
-                    }
-                }
-                beside = near;
-            }
-        }
     }
 }

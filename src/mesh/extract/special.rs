@@ -8,9 +8,9 @@ use std::sync::{Mutex, PoisonError};
 use glam::Vec3A;
 use rayon::prelude::*;
 
+use super::block_vertices::Corners;
 use super::bulge::{Cover, Ring};
 use super::cells::{CellOrder, CellSet};
-use super::join::Corners;
 use super::joined::Joined;
 use super::nearby::Nearby;
 use super::plain::Plain;

@@ -6,6 +6,7 @@ use super::Job;
 use super::inset::Inset;
 use super::piece::{Piece, Rim};
 use super::seam::Seam;
+use super::side::Side;
 use crate::Bounds;
 use crate::Run;
 use crate::eval::Program;
@@ -23,14 +24,6 @@ pub(super) struct Level {
     pub(super) blocks: Blocks,
     /// Those that the next level meshes.
     pub(super) inset: Inset,
-}
-
-/// Whose a block is: that of a level, one beyond its seam, or one of its inset.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Side {
-    Own,
-    Around,
-    Within,
 }
 
 impl Level {

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use glam::{DVec3, Vec3};
 
-use super::level::Side;
-use crate::geom::{Mesh, MeshError};
+use super::side::Side;
+use crate::geom::{Findings, Mesh, MeshError};
 use crate::{Cancelled, Run};
 
 /// Triangles that are looked at before it is asked whether to go on.
@@ -20,6 +20,8 @@ pub(super) struct Piece {
     /// The normals at the corners of the triangles, if they are not those of their vertices.
     corners: Option<Vec<[Vec3; 3]>>,
     clamped: usize,
+    /// The side of a cell of the first part.
+    cell: f64,
 }
 
 /// An edge of a single triangle, at the border of a part.
@@ -60,6 +62,7 @@ impl Piece {
         let mut numbers = vec![u32::MAX; mesh.positions().len()];
         let (mut piece, mut rims) = (Piece::default(), Vec::new());
         piece.clamped = mesh.clamped_vertices().unwrap_or(0);
+        piece.cell = mesh.findings().cell;
         let given = mesh.corner_normals();
         let normals = mesh.normals().unwrap_or_default();
         let mut corners = Vec::new();
@@ -108,6 +111,8 @@ impl Piece {
         }
         self.triangles.extend(other.triangles.into_iter().map(|t| t.map(|vertex| numbers[vertex as usize])));
         self.clamped += other.clamped;
+        // Parts come from larger cells to smaller ones.
+        self.cell = self.cell.max(other.cell);
         Some(numbers)
     }
 
@@ -145,7 +150,8 @@ impl Piece {
 
     pub(super) fn into_mesh(self) -> Result<Mesh, MeshError> {
         let mesh = Mesh::new(self.positions, self.triangles)?.with_normals(self.normals)?;
-        let mesh = mesh.with_clamped_vertices(self.clamped);
+        let clamped_vertices = Some(self.clamped);
+        let mesh = mesh.with_findings(Findings { cell: self.cell, clamped_vertices, ..Findings::default() });
         match self.corners {
             Some(corners) => mesh.with_corner_normals(corners),
             None => Ok(mesh),

@@ -1,0 +1,45 @@
+//! What is known of a program's leaves before any region is looked at: how steep and how thin they
+//! are.
+
+use glam::DAffine3;
+
+use super::program::{Kind, Node, Program};
+use super::scene::Instance;
+use crate::Bounds;
+use rvachev_field::Rule;
+
+impl Program {
+    /// Whether the value changes by at most 1 per length unit: its leaves do, and so does what
+    /// joins them.
+    pub(crate) fn is_gentle(&self) -> bool {
+        self.nodes.iter().all(|node| match &node.kind {
+            Kind::Leaf(leaf) => {
+                let field = &self.instance(*leaf).field;
+                field.convex() || field.exact()
+            }
+            Kind::Join { rule, .. } => matches!(rule, Rule::MinMax | Rule::Smooth(_)),
+            Kind::Shift(_) => true,
+            Kind::Edge { .. } => false,
+        })
+    }
+
+    /// Which leaves of the solid, by their numbers, are convex and thinner than this, in length
+    /// units: holes and rods of that size may pass between samples without a change of sign.
+    pub(crate) fn thin_leaves(&self, thickness: f64) -> Vec<bool> {
+        let is_thin = |leaf: &Instance| {
+            let size = leaf.field.bounds_under(&DAffine3::IDENTITY).size().min_element();
+            leaf.field.convex() && leaf.placement.scale * size + 2.0 * leaf.placement.shift < thickness
+        };
+        self.scene.leaves.iter().map(is_thin).collect()
+    }
+
+    /// Whether a region may hold one of these leaves of the solid.
+    pub(crate) fn has_leaf_of(&self, leaves: &[bool], region: &Bounds) -> bool {
+        self.nodes.iter().filter_map(Node::valued_by).any(|leaf| {
+            let leaf = self.instance(leaf);
+            let is_one = leaves.get(leaf.number as usize) == Some(&true);
+            // Boxes in frames are not those of the world.
+            is_one && (leaf.frame != 0 || !leaf.bounds.intersection(region).is_empty())
+        })
+    }
+}

@@ -1,0 +1,199 @@
+//! Blocks that may have lost a feature thinner than a cell.
+//!
+//! ```text
+//!     o   o   o   o       o   o   o   o       *   *   *   *       Dots are nodes outside, stars
+//!     ===========         \ o_* / o \ */      * _ * _ * _ *       nodes inside.
+//!     o   o   o   o       o   o   o   o       *|_|*|_|*|_|*
+//!     hidden: no node     torn: some nodes    bored: a hole
+//!     is in the wall      are in the wall     between nodes
+//! ```
+//!
+//! Extraction itself sees one sign at a time. Three tests cost next to nothing beside it:
+//!
+//! 1. *Hidden*: a block without a crossing, whose interval contained 0 all the same when the
+//!    octree was divided. The Lipschitz bound of the value clears most cells of it by their
+//!    samples alone (sphere tracing's argument). What is left is divided and narrowed by intervals
+//!    until it has no surface, or until it is a cell: that one is lost, unless it is entered once
+//!    along a cone of directions, as a blunt tip is.
+//! 2. *Torn*: a block with many nodes that have a root on either side along an axis, with opposite
+//!    normals, less than [`WALL`] cells apart; or one of some, beside others. The edge of an acute
+//!    wedge has such nodes in a line, a torn wall all over.
+//! 3. *Bored*: a block with a crossing that holds a convex leaf thinner than [`BORE`] cells.
+//!
+//! Intervals are budgeted: a block that is not decided in its share of them is counted. So hidden
+//! features are counted if ranges do not tell, and few intervals are taken; the count is the same
+//! for any number of threads.
+//!
+//! Limits: what ends within [`TIP`](super::suspect::TIP) cells of a crossed block is taken for the
+//! tip of what is seen there; notches of one leaf that is not convex (a slot in a polygon), and
+//! thin gaps between leaves that are thicker than cells, are not told where the block has a
+//! crossing elsewhere and no node falls into them.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use super::parts::Parts;
+use super::suspect::{CellRows, Suspect, Suspicion};
+use super::{Part, Sampler};
+use crate::mesh::lattice::Lattice;
+use crate::mesh::signs::{BLOCK, NODES, SIDE, Signs};
+use rvachev_num::Meter;
+
+use crate::{Cancelled, Run};
+
+/// No point of a cell is farther from the nearest of its nodes, in cells, with room for rounding:
+/// half of the diagonal.
+const REACH: f64 = 0.867;
+/// Where no Lipschitz bound is known, the value is taken to be steeper than between any two nodes
+/// of the block, by this factor.
+const STEEPER: f64 = 1.5;
+/// Two sides that are closer together, in cells, are those of a wall that may be torn.
+const WALL: f32 = 1.1;
+/// The cosine from which on normals are opposite.
+const OPPOSITE: f32 = -0.8;
+/// So many nodes between opposite sides tell of a torn wall in a block.
+const TORN: u32 = 32;
+/// So many do in one that has [`BESIDE`] others of the kind next to it.
+const FEW: u32 = 4;
+const BESIDE: usize = 8;
+/// A convex leaf that is thinner may pass between nodes, in cells.
+pub(in crate::mesh) const BORE: f64 = 1.0;
+/// For how many blocks there is one narrowing, and how many more there are: intervals are to take
+/// no more than 3 % of the time.
+const BLOCKS_PER_INTERVAL: usize = 12;
+const INTERVALS: usize = 256;
+/// What a block has at least.
+const LEAST: usize = 160;
+
+/// Whether a block without a crossing, or a bored one, is looked at again, given its samples.
+pub(super) fn suspected<S: Sampler>(
+    (sampler, lattice): (&S, &Lattice),
+    (number, block): (usize, [u32; 3]),
+    (signs, values): (&Signs, &[f32; NODES]),
+) -> Option<Suspicion> {
+    if signs.is_mixed() {
+        return sampler.is_bored(number, block).then_some(Suspicion::Bored);
+    }
+    let bound = sampler.lipschitz_bound(number);
+    let slope = if bound.is_finite() { bound * lattice.step() } else { STEEPER * f64::from(steepest(values)) };
+    CellRows::near(values, (REACH * slope) as f32).map(|cells| Suspicion::Hidden(Box::new(cells)))
+}
+
+/// The most that the value changes by from node to node along an axis.
+fn steepest(values: &[f32; NODES]) -> f32 {
+    let most = |stride: usize, is_inner: &dyn Fn(usize) -> bool| {
+        let rises = values.iter().zip(&values[stride..]).enumerate().filter(|(n, _)| is_inner(*n));
+        rises.fold(0.0f32, |most, (_, (low, high))| most.max((high - low).abs()))
+    };
+    let x = most(1, &|n| n % SIDE != SIDE - 1);
+    let y = most(SIDE, &|n| n / SIDE % SIDE != SIDE - 1);
+    x.max(y).max(most(SIDE * SIDE, &|_| true))
+}
+
+/// How many nodes of a block there are between opposite sides of a wall, given the vertices of the
+/// batch.
+pub(super) fn torn_nodes(part: &Part, [positions, normals]: [&[Vec3]; 2], step: f64) -> u32 {
+    let signs = &part.signs;
+    let mut count = 0;
+    for k in 0..BLOCK {
+        for j in 0..BLOCK {
+            let single = signs.single(j, k);
+            let mut bits = single[0] | single[1] | single[2];
+            while bits != 0 {
+                let i = bits.trailing_zeros() as usize;
+                bits &= bits - 1;
+                let is_thin = |axis: usize| {
+                    if single[axis] >> i & 1 == 0 {
+                        return false;
+                    }
+                    let mut below = [i, j, k];
+                    below[axis] -= 1;
+                    let [a, b] = [below, [i, j, k]].map(|node| part.vertex(node, axis) as usize);
+                    let (m, n) = (normals[a], normals[b]);
+                    let across = (n - m).normalize_or_zero();
+                    m.dot(n) < OPPOSITE && (positions[b] - positions[a]).dot(across).abs() < WALL * step as f32
+                };
+                count += u32::from((0..3).any(is_thin));
+            }
+        }
+    }
+    count
+}
+
+/// All directions but none.
+fn directions() -> impl Iterator<Item = [i32; 3]> {
+    (0..27).filter(|&n| n != 13).map(|n| [n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1])
+}
+
+impl Parts<'_> {
+    /// The block next to one in a direction.
+    fn beside(&self, n: usize, step: [i32; 3]) -> Option<usize> {
+        let faces = step.iter().filter(|&&by| by != 0).count();
+        match step.iter().position(|&by| by != 0) {
+            Some(axis) if faces == 1 && step[axis] < 0 => self.neighbours.lower(n, axis),
+            Some(axis) if faces == 1 => self.neighbours.upper(n, 1 << axis),
+            _ => {
+                let mut other = self.blocks[n];
+                for axis in 0..3 {
+                    other[axis] = other[axis].checked_add_signed(step[axis] * BLOCK as i32)?;
+                }
+                self.neighbours.find(other)
+            }
+        }
+    }
+
+    /// The numbers of the blocks that may have lost a feature, in ascending order.
+    pub(super) fn lost<S: Sampler>(&self, sampler: &S, run: &Run) -> Result<Vec<usize>, Cancelled> {
+        let suspects = &self.suspects;
+        let torn = |n: usize| match suspects.binary_search_by_key(&n, |suspect| suspect.number) {
+            Ok(at) => matches!(suspects[at].why, Suspicion::Torn(count) if count >= FEW),
+            Err(_) => false,
+        };
+        let is_torn = |n: usize, count: u32| {
+            let others = || directions().filter_map(|step| self.beside(n, step)).filter(|&other| torn(other)).count();
+            count >= TORN || count >= FEW && others() >= BESIDE
+        };
+        // The cells of a hidden block that are far from all that is seen.
+        let far = |n: usize, cells: &CellRows| {
+            let mut left = cells.clone();
+            // Faces first: most blocks need no more, and their neighbours are at hand.
+            let (faces, others): (Vec<_>, Vec<_>) =
+                directions().partition(|step| step.iter().filter(|&&by| by != 0).count() == 1);
+            for step in faces.into_iter().chain(others) {
+                if left.is_empty() {
+                    break;
+                }
+                if self.beside(n, step).is_some_and(|other| self.part(other).signs.is_mixed()) {
+                    left.clear_near(step);
+                }
+            }
+            left
+        };
+        let (mut lost, mut open) = (Vec::new(), Vec::new());
+        for Suspect { number, why } in suspects {
+            match why {
+                Suspicion::Hidden(cells) => {
+                    let left = far(*number, cells);
+                    if !left.is_empty() {
+                        open.push((*number, left));
+                    }
+                }
+                Suspicion::Torn(count) if is_torn(*number, *count) => lost.push(*number),
+                Suspicion::Torn(_) => {}
+                Suspicion::Bored => lost.push(*number),
+            }
+        }
+        // Each has the same share, whatever the order.
+        let share = (self.blocks.len() / BLOCKS_PER_INTERVAL + INTERVALS) / open.len().max(1);
+        let share = share.max(LEAST);
+        let meter = Meter::new(run, open.len());
+        let is_lost = |(number, cells): &(usize, CellRows)| {
+            meter.step()?;
+            Ok(sampler.may_hide(*number, self.blocks[*number], cells, share).then_some(*number))
+        };
+        let hidden: Result<Vec<Option<usize>>, Cancelled> = open.par_iter().map(is_lost).collect();
+        lost.extend(hidden?.into_iter().flatten());
+        lost.sort_unstable();
+        Ok(lost)
+    }
+}
