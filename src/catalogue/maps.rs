@@ -99,7 +99,7 @@ verbs! {
     /// A grid of copies along the axes.
     Repetition repeat {
         /// How many along x, y and z.
-        counts: [u32; 3] = None, Range::new(1.0, 1e6), example [4, 2, 4];
+        counts: [u32; 3] = None, Range::new(1.0, 1e6), example [4, 4, 4];
         /// How far neighbours are apart along x, y and z; 10⁹ divided by how many there are at most.
         spacing: DVec3 = Length, Range::LENGTH, given |values| spacing(values), example DVec3::new(3.0, 4.0, 5.0);
     } => |solid: Solid| solid.repeat(counts, spacing);
