@@ -32,7 +32,10 @@ use fidget::shape::{EzShape, Shape};
 use fidget::types::Grad;
 use fidget::vm::VmFunction;
 use glam::DVec3;
-use rvachev::{Bounds, Evaluator, Formula, Gradients, Program, Solid, Tape};
+use rvachev::{
+    Bounds, Formula, Solid,
+    program::{Evaluator, Gradients, Program, Tape},
+};
 
 use lean::lean;
 

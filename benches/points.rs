@@ -17,8 +17,12 @@ use std::time::Instant;
 
 use glam::{DVec2, DVec3};
 use rvachev::{
-    ControlPolygon, ExactExplicit, LogTable, PointMethod, PointSettings, PowerTables, ProductTables, RawParametric,
-    SeriesExplicit, Superellipsoid, Tension, deg, rad,
+    Superellipsoid, deg,
+    points::{
+        ExactExplicit, LogTable, PointMethod, PointSettings, PowerTables, ProductTables, RawParametric, SeriesExplicit,
+    },
+    rad,
+    subdivision::{ControlPolygon, Tension},
 };
 
 /// Points that times are given for. (Method 5 makes 101 × 101 at a time.)

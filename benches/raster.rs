@@ -18,8 +18,10 @@ use std::time::Instant;
 
 use glam::{DAffine3, DVec3};
 use rvachev::{
-    Camera, ClosedMesh, Csg, CsgMethod, LayerSource, Mesh, ParametricSurface, PatchSettings, RFunction, RasterView,
-    Run, Solid, Superellipsoid, Window,
+    Camera, Mesh, RFunction, Run, Solid, Superellipsoid,
+    camera::Window,
+    raster::{ClosedMesh, Csg, CsgMethod, LayerSource, RasterView},
+    surface::{ParametricSurface, PatchSettings},
 };
 
 /// Superellipsoids in their places, and a tree over them in both forms.

@@ -31,7 +31,9 @@ use fidget::shape::{BoundShape, Shape};
 use fidget::vm::VmFunction;
 use fidget_raster::{pixel, voxel};
 use glam::{DAffine3, DQuat, DVec2, DVec3};
-use rvachev::{Camera, GBuffer, PlaneBounds, Profile, RFunction, RenderSettings, Run, Scene, Solid, Window};
+use rvachev::{
+    Camera, PlaneBounds, Profile, RFunction, RenderSettings, Run, Scene, Solid, camera::Window, layers::GBuffer,
+};
 
 use lean::lean;
 use models::Model;

@@ -18,8 +18,8 @@ use std::time::Instant;
 
 use glam::DVec3;
 use rvachev::{
-    Bounds, Camera, CellSize, Gielis, Helix, MeshSettings, Paint, Profile, RenderSettings, SineWave, Solid, Supershape,
-    rad, turns,
+    Bounds, Camera, CellSize, Gielis, Helix, MeshSettings, Paint, Profile, RenderSettings, Solid, Supershape,
+    law::SineWave, rad, turns,
 };
 
 const WALL: f64 = 1.8;

@@ -21,7 +21,10 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use glam::{DVec2, DVec3};
-use rvachev::{Camera, CellSize, LinearLaw, MeshSettings, Profile, RFunction, RenderSettings, SmoothStep, Solid, deg};
+use rvachev::{
+    Camera, CellSize, MeshSettings, Profile, RFunction, RenderSettings, Solid, deg,
+    law::{LinearLaw, SmoothStep},
+};
 
 /// Edge of a square of the board.
 const SQUARE: f64 = 48.0;

@@ -23,8 +23,9 @@ use std::time::Instant;
 
 use glam::DVec3;
 use rvachev::{
-    Bounds, Camera, CellSize, Dual, Field, Interval, MeshSettings, Norm, ParamError, Program, Real, Region,
-    RenderSettings, Solid,
+    Bounds, Camera, CellSize, Interval, MeshSettings, ParamError, RenderSettings, Solid,
+    field::{Dual, Field, Norm, Real},
+    program::{Program, Region},
 };
 
 /// Lengths in millimetres.

@@ -21,7 +21,9 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use glam::DVec3;
-use rvachev::{Bounds, Camera, CellSize, MeshSettings, Profile, RFunction, Region, RenderSettings, Solid, deg, rad};
+use rvachev::{
+    Bounds, Camera, CellSize, MeshSettings, Profile, RFunction, RenderSettings, Solid, deg, program::Region, rad,
+};
 
 /// Pitch diameter over the number of teeth.
 const MODULE: f64 = 2.5;

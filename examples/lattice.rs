@@ -18,7 +18,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 use rvachev::{
-    Camera, CellSize, Grading, Interval, MeshSettings, MinimalSurface, Real, RenderSettings, SheetLattice, Solid,
+    Camera, CellSize, Grading, Interval, MeshSettings, MinimalSurface, RenderSettings, SheetLattice, Solid, field::Real,
 };
 
 const SEMI_AXES: DVec3 = DVec3::new(30.0, 22.0, 20.0);

@@ -14,7 +14,7 @@ use std::path::PathBuf;
 
 use glam::{DVec2, DVec3};
 use image::{Rgb, RgbImage};
-use rvachev::{Isolines, Plane, PlaneBounds, RFunction, SliceSettings, Solid};
+use rvachev::{Plane, PlaneBounds, RFunction, SliceSettings, Solid, layers::Isolines};
 
 #[path = "gallery/font.rs"]
 #[allow(dead_code, reason = "only the sheet of the gallery needs all of it")]

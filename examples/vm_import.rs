@@ -19,8 +19,8 @@ use std::time::Instant;
 
 use glam::DVec3;
 use rvachev::{
-    Bounds, Camera, CellSize, Evaluator, Formula, Gradients, Image, MeshSettings, Program, Region, RenderSettings,
-    Solid, Tape, deg,
+    Bounds, Camera, CellSize, Formula, Image, MeshSettings, RenderSettings, Solid, deg,
+    program::{Evaluator, Gradients, Program, Region, Tape},
 };
 
 /// A cube with round windows, and a ball in it.

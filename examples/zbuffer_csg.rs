@@ -15,8 +15,9 @@ use std::time::Instant;
 
 use glam::{DAffine3, DVec3};
 use rvachev::{
-    Bounds, Buffers, Camera, ClosedMesh, Csg, CsgMethod, Facing, Image, LayerSource, Mesh, MeshLayers,
-    ParametricSurface, PatchSettings, RasterView, Superellipsoid, Supertoroid, deg, rad,
+    Bounds, Camera, Image, Mesh, Superellipsoid, Supertoroid, deg, rad,
+    raster::{Buffers, ClosedMesh, Csg, CsgMethod, Facing, LayerSource, MeshLayers, RasterView},
+    surface::{ParametricSurface, PatchSettings},
 };
 
 /// A picture is drawn this many times as large, and every square of pixels becomes one.
@@ -274,8 +275,11 @@ fn main() -> Result<()> {
     let camera =
         Camera::perspective([2.5, -7.0, 4.6], [0.0, 0.0, 0.0], [0.0, 0.0, 1.0], deg(30.0)).fitted(&bounds, 1.5);
     let view = RasterView::new(&camera, 1080 * FINER, 660 * FINER)?;
-    let layers: std::result::Result<Vec<MeshLayers>, _> =
-        parts.meshes.iter().map(|mesh| Ok::<_, rvachev::RasterError>(view.layers(ClosedMesh::new(mesh)?))).collect();
+    let layers: std::result::Result<Vec<MeshLayers>, _> = parts
+        .meshes
+        .iter()
+        .map(|mesh| Ok::<_, rvachev::raster::RasterError>(view.layers(ClosedMesh::new(mesh)?)))
+        .collect();
     let layers = layers?;
     let operands: Vec<&dyn LayerSource> = layers.iter().map(|l| l as &dyn LayerSource).collect();
     let triangles: usize = parts.meshes.iter().map(|mesh| mesh.triangles().len()).sum();

@@ -31,7 +31,7 @@
 //! [`owner`](crate::Solid::owner), and where the solid is written out as a tree.
 //!
 //! ```
-//! use rvachev::{Solid, deg};
+//! use rvachev::{deg, Solid};
 //!
 //! let head = Solid::cylinder(8.0, 6.0).named("head");
 //! let socket = Solid::cuboid([5.0, 5.0, 8.0]).rotate_z(deg(45.0)).named("socket");
@@ -77,7 +77,7 @@
 //! tidies.
 //!
 //! ```
-//! use rvachev::{RFunction, Solid, deg};
+//! use rvachev::{deg, RFunction, Solid};
 //!
 //! let hole = Solid::cylinder(3.0, 20.0).translate([25.0, 0.0, 0.0]);
 //! let flange = Solid::cylinder(35.0, 10.0) - hole.repeat_polar(8);
@@ -102,7 +102,7 @@
 //! are made of.
 //!
 //! ```
-//! use rvachev::{Solid, deg};
+//! use rvachev::{deg, Solid};
 //!
 //! /// A knob with `lobes` grips, for a shaft of the given radius.
 //! fn knob(radius: f64, lobes: u32, shaft: f64) -> Solid {
@@ -127,7 +127,7 @@
 //! are, for they read true distances, and a smooth blend reads the operands' own values.
 //!
 //! ```
-//! use rvachev::{Blend, Solid, deg};
+//! use rvachev::{deg, Blend, Solid};
 //!
 //! let plate = Solid::cuboid([60.0, 40.0, 6.0]);
 //! let post = Solid::cylinder(8.0, 20.0).translate([0.0, 0.0, 10.0]);
@@ -209,7 +209,7 @@
 //!
 //! ```
 //! use glam::DVec3;
-//! use rvachev::{Bounds, Field, ParamError, Real, Solid};
+//! use rvachev::{field::{Field, Real}, Bounds, ParamError, Solid};
 //!
 //! /// What two balls have in common, their centres at ±`offset` along z.
 //! #[derive(Debug)]
@@ -294,7 +294,7 @@
 //! # 12. A picture
 //!
 //! ```
-//! use rvachev::{Background, Camera, RenderSettings, Solid, deg};
+//! use rvachev::{deg, Background, Camera, RenderSettings, Solid};
 //!
 //! let ring = Solid::cylinder(5.0, 3.0) - Solid::cylinder(3.5, 4.0);
 //! let settings = RenderSettings {

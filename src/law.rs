@@ -2,4 +2,4 @@
 //! [`Solid::twist_by`](crate::Solid::twist_by) follow.
 
 #[doc(inline)]
-pub use rvachev_field::{Law, LawTable, LinearLaw, SineWave, SmoothStep};
+pub use rvachev_field::{BuiltInLaw, Law, LawTable, LinearLaw, SineWave, SmoothStep};

@@ -84,7 +84,7 @@
 //! copies at the price of two.
 //!
 //! ```
-//! use rvachev::{Solid, deg};
+//! use rvachev::{deg, Solid};
 //!
 //! let drill = Solid::cuboid([2.0, 1.0, 10.0]).twist(deg(30.0));
 //! assert!(drill.bounds()?.max.x < 1.2);
@@ -143,7 +143,7 @@
 //! field on a plane, and its [contours](Slice::contours).
 //!
 //! ```
-//! use rvachev::{Camera, Coordinates, Plane, RenderSettings, Solid, Style, deg};
+//! use rvachev::{deg, range_image::Coordinates, Camera, Plane, RenderSettings, Solid, Style};
 //!
 //! let part = Solid::cuboid([4.0, 3.0, 1.0]).paint([60, 100, 160]) - Solid::cylinder(1.0, 2.0).paint([220, 140, 40]);
 //! let camera = Camera::framing(&part.bounds()?).orbit(deg(30.0), deg(10.0));
@@ -337,7 +337,7 @@
 //! degrees, and so are the values in errors.
 //!
 //! ```
-//! use rvachev::{Blend, Solid, deg};
+//! use rvachev::{deg, Blend, Solid};
 //!
 //! // 10 wide, from x = −5 to 5; the bevel takes 1 off the top and 1 off the sides.
 //! let block = Solid::cuboid([10.0, 10.0, 9.0]);
@@ -402,80 +402,68 @@ struct Readme;
 #[macro_use]
 mod picture;
 
-mod catalogue;
+pub mod camera;
+pub mod catalogue;
+pub mod error;
 mod eval;
+pub mod field;
+pub mod form;
 mod geom;
 pub mod idioms;
-mod io;
+pub mod io;
+pub mod law;
+pub mod layers;
 mod mesh;
-mod raster;
+pub mod points;
+pub mod program;
+pub mod range_image;
+pub mod raster;
 mod render;
 mod solid;
 mod space;
 pub mod subdivision;
-mod surface;
+pub mod surface;
+pub mod volume;
 
-pub use catalogue::{Call, Entry, Group, Operands, Part, catalogue};
-pub use eval::{Evaluator, Gradients, Hit, Owner, Palette, Program, Region, Tape, UnequalSlices};
 #[cfg(feature = "formula")]
 pub use fidget;
-pub use geom::{
-    Camera, CameraError, Coordinates, Corner, Image, ImageError, Intrinsics, Mesh, MeshError, Noise, Plane, PointCloud,
-    PointCloudError, Polyline, Projection, QuadMesh, RangeImage, RangeImageError, Rays, ThinPlace, ThinReport, View,
-};
 pub use glam;
-#[cfg(feature = "threemf")]
-pub use io::write_3mf;
-pub use io::{
-    Colors, LengthUnit, Pixel, SaveError, SaveSettings, write_dxf, write_gif, write_glb, write_obj, write_ply,
-    write_ply_points, write_png, write_stl, write_stl_ascii, write_svg,
-};
-#[cfg(feature = "exr")]
-pub use io::{Floats, write_exr};
-pub use mesh::{
-    AtBounds, CellSize, Features, Lattice, LatticeError, MeshReport, MeshSettings, MeshingError, ThinFeatures, Volume,
-    VolumeError, VolumeSettings,
-};
-pub use raster::{
-    Buffers, ClosedMesh, Csg, CsgMethod, Facing, Fragments, LANES, LayerSource, MeshLayers, RasterError, RasterView,
-    SurfaceId, Tile,
-};
-pub use render::{
-    Background, GBuffer, Isolines, Layers, Lights, RenderError, RenderSettings, Scene, Slice, SliceSettings, Style,
-    Surface, Transfer, Window,
-};
-#[doc(inline)]
-pub use rvachev_field::catalogue::{Kind, Parameter, Range, Unit, Value, ValueError};
-#[doc(inline)]
-pub use rvachev_field::{
-    BinomialSeries, CurveSpread, ExactExplicit, LogTable, PlaneSymmetry, PointError, PointMethod, PointSettings,
-    PowerTables, ProductTables, RawParametric, SeriesExplicit, Symmetry, reflect, reflect_plane,
-};
 
-#[doc(inline)]
-pub use rvachev_field::{
-    Blend, BuiltInLaw, COORDINATE_LIMIT, Caps, Capsule, Circle, Cone, Cuboid, Cylinder, Ellipsoid, Field,
-    GeneralisedSuperquadric, Gielis, Grading, HalfSpace, Kernel, Law, LawTable, LinearLaw, MinimalSurface,
-    NetworkLattice, ParamError, Polygon, Prism, Pyramid, RFunction, Radius, Rectangle, RegularPolygon, RoundedCuboid,
-    SheetLattice, SineWave, Slab, SmoothStep, Sphere, Superellipse, Superellipsoid, Superhyperboloid, Superpolygon,
-    Supershape, Supertoroid, Torus, Turns, VALUE_LIMIT, Wedge,
-};
+pub use catalogue::catalogue;
+pub use eval::{Hit, Owner};
+pub use geom::{Camera, Image, Mesh, Plane, PointCloud, Polyline, ThinPlace, ThinReport, View};
+pub use io::save::SaveSettings;
+pub use io::unit::LengthUnit;
+pub use mesh::{AtBounds, CellSize, Features, MeshReport, MeshSettings, ThinFeatures};
+pub use render::{Background, Lights, RenderSettings, Scene, Slice, SliceSettings, Style};
 #[cfg(feature = "formula")]
 #[doc(inline)]
-pub use rvachev_field::{Formula, FormulaError};
+pub use rvachev_field::Formula;
 #[doc(inline)]
-pub use rvachev_num::{
-    Angle, Bounds, CancelToken, Cancelled, Dual, Interval, Monotone, Monotone3, Norm, Progress, Real, Run, deg, rad,
-    turns,
+pub use rvachev_field::{
+    Blend, Caps, Capsule, Circle, Cone, Cuboid, Cylinder, Ellipsoid, GeneralisedSuperquadric, Gielis, Grading,
+    HalfSpace, MinimalSurface, NetworkLattice, ParamError, Polygon, Prism, Pyramid, RFunction, Radius, Rectangle,
+    RegularPolygon, RoundedCuboid, SheetLattice, Slab, Sphere, Superellipse, Superellipsoid, Superhyperboloid,
+    Superpolygon, Supershape, Supertoroid, Torus, Turns, Wedge,
 };
-pub use solid::{
-    DeformationForm, Extrusion, Form, Helix, LeafForm, Length, Operation, Paint, PlaneBounds, Profile, Repetition,
-    Solid, SolidError,
-};
-pub use subdivision::{
-    ControlGrid, ControlPoint, ControlPolygon, ProfileEnd, SubdivisionError, SubdivisionRevolution, Tension,
-    hyperbola_of_ellipse,
-};
-pub use surface::{
-    Frame, Parametric, ParametricCurve, ParametricSurface, PatchError, PatchSettings, Spacing, SurfacePoint,
+#[doc(inline)]
+pub use rvachev_num::{Angle, Bounds, CancelToken, Cancelled, Interval, Progress, Run, deg, rad, turns};
+pub use solid::{Extrusion, Helix, Paint, PlaneBounds, Profile, Solid, SolidError};
+
+// What the modules and the tour call by its name alone.
+use {
+    catalogue::{Call, Entry, Kind, Parameter, Range, Unit, Value, ValueError},
+    error::{CameraError, ImageError, MeshError, MeshingError, PointCloudError, RenderError, SaveError},
+    eval::{Evaluator, Gradients, Palette, Program, Region, Tape, UnequalSlices},
+    field::{COORDINATE_LIMIT, Dual, Field, Kernel, Monotone, Monotone3, Norm, Real, VALUE_LIMIT},
+    form::{Form, Length, Operation, Repetition},
+    geom::{Coordinates, Corner, Intrinsics, Noise, Projection, QuadMesh, RangeImage, RangeImageError, Rays},
+    law::{BuiltInLaw, Law, LawTable, LinearLaw, SineWave, SmoothStep},
+    layers::{GBuffer, Isolines, Layers, Surface, Transfer},
+    mesh::{Lattice, LatticeError, Volume, VolumeError, VolumeSettings},
+    points::{PointError, PointMethod, PointSettings},
+    raster::{Buffers, ClosedMesh, Csg, CsgMethod, LayerSource, RasterView},
+    render::Window,
+    subdivision::{ControlGrid, ControlPolygon, SubdivisionError, SubdivisionRevolution},
+    surface::{ParametricCurve, ParametricSurface, PatchError, PatchSettings, Spacing, SurfacePoint},
 };

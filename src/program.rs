@@ -4,4 +4,4 @@
 //! surface. [`Program::narrow`] leaves out what does not matter in a box. A [`Tape`] is a program
 //! made ready for points of a region; an [`Evaluator`] runs it.
 
-pub use crate::eval::{Evaluator, Gradients, Program, Region, Tape, UnequalSlices};
+pub use crate::eval::{Evaluator, Gradients, Palette, Program, Region, Tape, UnequalSlices};

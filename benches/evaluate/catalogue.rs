@@ -3,11 +3,13 @@
 
 use glam::{DVec2, DVec3};
 use rvachev::{
-    Blend, Bounds, Caps, Capsule, Circle, Cone, Cuboid, Cylinder, Ellipsoid, Extrusion, Field, GeneralisedSuperquadric,
-    Gielis, Grading, HalfSpace, Helix, Interval, LawTable, MinimalSurface, NetworkLattice, ParamError, Polygon, Prism,
-    Profile, Pyramid, RFunction, Radius, Real, Rectangle, RegularPolygon, RoundedCuboid, SheetLattice, SineWave, Slab,
-    SmoothStep, Solid, Sphere, Superellipse, Superellipsoid, Superhyperboloid, Superpolygon, Supershape, Supertoroid,
-    Torus, Turns, Wedge, deg, rad,
+    Blend, Bounds, Caps, Capsule, Circle, Cone, Cuboid, Cylinder, Ellipsoid, Extrusion, GeneralisedSuperquadric,
+    Gielis, Grading, HalfSpace, Helix, Interval, MinimalSurface, NetworkLattice, ParamError, Polygon, Prism, Profile,
+    Pyramid, RFunction, Radius, Rectangle, RegularPolygon, RoundedCuboid, SheetLattice, Slab, Solid, Sphere,
+    Superellipse, Superellipsoid, Superhyperboloid, Superpolygon, Supershape, Supertoroid, Torus, Turns, Wedge, deg,
+    field::{Field, Real},
+    law::{LawTable, SineWave, SmoothStep},
+    rad,
 };
 
 use super::{Contestant, Points, program, race};

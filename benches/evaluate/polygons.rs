@@ -5,7 +5,10 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use glam::{DVec2, DVec3};
-use rvachev::{Bounds, Polygon, Profile, Program, Region};
+use rvachev::{
+    Bounds, Polygon, Profile,
+    program::{Program, Region},
+};
 
 use super::{Contestant, Points, ROUNDS, median, program, race};
 

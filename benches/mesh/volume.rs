@@ -1,7 +1,10 @@
 //! Extraction alone: samples given as an array.
 
 use glam::DVec3;
-use rvachev::{Run, Volume, VolumeSettings};
+use rvachev::{
+    Run,
+    volume::{Volume, VolumeSettings},
+};
 
 use crate::measure::measured;
 

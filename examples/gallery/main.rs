@@ -22,7 +22,7 @@ use std::time::Instant;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{Rgb, RgbImage};
 use rayon::prelude::*;
-use rvachev::{Background, Camera, RenderError, RenderSettings, Run, Solid};
+use rvachev::{Background, Camera, RenderSettings, Run, Solid, error::RenderError};
 
 use catalogue::{Entry, FAMILIES};
 

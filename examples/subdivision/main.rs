@@ -18,8 +18,11 @@ use std::time::Instant;
 use glam::{DVec2, DVec3};
 use painter::{Canvas, View};
 use rvachev::{
-    ControlGrid, ControlPolygon, ProfileEnd, QuadMesh, SubdivisionError, SubdivisionRevolution, Tension, deg,
-    hyperbola_of_ellipse,
+    deg,
+    subdivision::{
+        ControlGrid, ControlPolygon, ProfileEnd, SubdivisionError, SubdivisionRevolution, Tension, hyperbola_of_ellipse,
+    },
+    surface::QuadMesh,
 };
 
 const WIDTH: u32 = 1080;

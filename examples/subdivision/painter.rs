@@ -6,7 +6,7 @@
 //! ```
 
 use glam::{DMat3, DVec2, DVec3};
-use rvachev::{Image, ImageError, QuadMesh};
+use rvachev::{Image, error::ImageError, surface::QuadMesh};
 
 /// Pixels of the canvas to a pixel of the picture, each way.
 const FINE: u32 = 2;

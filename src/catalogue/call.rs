@@ -16,7 +16,7 @@ use crate::{
 /// there is.
 ///
 /// ```
-/// use rvachev::{Call, Solid, Value};
+/// use rvachev::{catalogue::{Call, Value}, Solid};
 ///
 /// let part = Solid::cylinder(1.0, 4.0).translate([0.0, 0.0, 2.0]);
 /// let mut call = part.call().expect("all of it is built in");
@@ -25,7 +25,7 @@ use crate::{
 ///
 /// call.values = vec![Value::Vector([0.0, 0.0, 3.0].into())];
 /// assert_eq!(call.make()?.into_solid(), Some(Solid::cylinder(1.0, 4.0).translate([0.0, 0.0, 3.0])));
-/// # Ok::<(), rvachev::ValueError>(())
+/// # Ok::<(), rvachev::catalogue::ValueError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Call {
@@ -74,7 +74,7 @@ impl Profile {
     /// The call that makes the profile, at its root.
     ///
     /// ```
-    /// use rvachev::{Part, Profile, Value};
+    /// use rvachev::{catalogue::{Part, Value}, Profile};
     ///
     /// let plate = Profile::circle(2.0).offset(0.5);
     /// let call = plate.call().expect("all of it is built in");

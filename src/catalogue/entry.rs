@@ -95,7 +95,7 @@ enum Maker {
 /// made.
 ///
 /// ```
-/// use rvachev::{Group, catalogue};
+/// use rvachev::{catalogue, catalogue::Group};
 ///
 /// for entry in catalogue().iter().filter(|entry| entry.group() == Group::Leaf) {
 ///     let solid = entry.example().into_solid().expect("leaves are solids");

@@ -20,6 +20,8 @@ use std::sync::OnceLock;
 pub use call::Call;
 pub use entry::{Entry, Group, Operands};
 pub use part::Part;
+#[doc(inline)]
+pub use rvachev_field::catalogue::{Kind, Parameter, Range, Unit, Value, ValueError};
 
 use rvachev_field::catalogue::{CURVES, DEFORMATIONS, LAW_DEFORMATIONS, PLANE_LEAVES, leaves};
 
@@ -29,7 +31,7 @@ use rvachev_field::catalogue::{CURVES, DEFORMATIONS, LAW_DEFORMATIONS, PLANE_LEA
 /// Names are those of the Rust methods. A name stands for one entry.
 ///
 /// ```
-/// use rvachev::{Part, Solid, Value, catalogue};
+/// use rvachev::{catalogue, catalogue::{Part, Value}, Solid};
 ///
 /// let find = |name: &str| catalogue().iter().find(|entry| entry.name() == name).expect("it is there");
 /// let ball = find("sphere").make(&[], &[Value::Number(2.0)])?;
@@ -39,7 +41,7 @@ use rvachev_field::catalogue::{CURVES, DEFORMATIONS, LAW_DEFORMATIONS, PLANE_LEA
 /// assert_eq!(offset.parameters()[0].name(), "distance");
 /// let larger = offset.make(&[ball], &[Value::Number(0.5)])?;
 /// assert_eq!(larger.into_solid(), Some(Solid::sphere(2.0).offset(0.5)));
-/// # Ok::<(), rvachev::ValueError>(())
+/// # Ok::<(), rvachev::catalogue::ValueError>(())
 /// ```
 #[must_use]
 pub fn catalogue() -> &'static [Entry] {

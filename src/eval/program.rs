@@ -100,7 +100,7 @@ impl Node {
 /// through a [`Tape`](crate::Tape).
 ///
 /// ```
-/// use rvachev::{Bounds, Region, Solid};
+/// use rvachev::{program::Region, Bounds, Solid};
 /// use glam::DVec3;
 ///
 /// let pair = Solid::sphere(1.0) | Solid::sphere(1.0).translate(DVec3::X * 5.0);

@@ -164,7 +164,7 @@ impl Solid {
     /// | `count` | copies | 1 to 1000 |
     ///
     /// ```
-    /// use rvachev::{Solid, deg};
+    /// use rvachev::{deg, Solid};
     /// use glam::DVec3;
     ///
     /// let bolts = Solid::cylinder(0.2, 1.0).translate(DVec3::X * 3.0).repeat_polar(24);

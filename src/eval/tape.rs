@@ -28,7 +28,7 @@ use rvachev_num::kernel::{CHUNK, Element};
 /// each thread brings its own [`Evaluator`].
 ///
 /// ```
-/// use rvachev::{Bounds, Evaluator, Solid, Tape};
+/// use rvachev::{program::{Evaluator, Tape}, Bounds, Solid};
 /// use glam::DVec3;
 ///
 /// let program = Solid::sphere(2.0).field_program()?;

@@ -29,7 +29,7 @@ use crate::{Angle, deg};
 /// // The middle of the picture looks at the middle of the box.
 /// let (origin, direction) = camera.ray(320.0, 240.0, 640, 480);
 /// assert!(origin.cross(direction).length() < 1e-12);
-/// # Ok::<(), rvachev::CameraError>(())
+/// # Ok::<(), rvachev::error::CameraError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {

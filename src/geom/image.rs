@@ -30,7 +30,7 @@ use super::transfer::{from_linear, to_byte};
 /// let image = Image::new(2, 1, vec![[255, 0, 0, 255], [0, 0, 255, 255]])?;
 /// assert_eq!(image.pixel(1, 0), Some([0, 0, 255, 255]));
 /// assert_eq!(image.pixel(2, 0), None);
-/// # Ok::<(), rvachev::ImageError>(())
+/// # Ok::<(), rvachev::error::ImageError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image<P = [u8; 4]> {

@@ -41,7 +41,7 @@ use crate::Bounds;
 /// let triangles = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 /// let tetrahedron = Mesh::new(positions, triangles)?;
 /// assert!((tetrahedron.volume() - 1.0 / 6.0).abs() < 1e-15);
-/// # Ok::<(), rvachev::MeshError>(())
+/// # Ok::<(), rvachev::error::MeshError>(())
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {

@@ -10,7 +10,7 @@ use glam::{DVec3, Vec3};
 ///
 /// let cloud = PointCloud::new(vec![DVec3::X, DVec3::Y])?.with_normals(vec![Vec3::X, Vec3::Y])?;
 /// assert_eq!(cloud.len(), 2);
-/// # Ok::<(), rvachev::PointCloudError>(())
+/// # Ok::<(), rvachev::error::PointCloudError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct PointCloud {

@@ -18,7 +18,7 @@ use super::{Image, Intrinsics, PointCloud, PointCloudError};
 /// A depth image of a camera whose geometry is known.
 ///
 /// ```
-/// use rvachev::{Camera, Coordinates, Noise, Solid};
+/// use rvachev::{range_image::{Coordinates, Noise}, Camera, Solid};
 ///
 /// let ball = Solid::sphere(1.0);
 /// let camera = Camera::framing(&ball.bounds()?);

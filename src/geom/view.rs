@@ -176,7 +176,7 @@ impl Camera {
     /// where it is.
     ///
     /// ```
-    /// use rvachev::{Camera, deg};
+    /// use rvachev::{deg, Camera};
     /// use glam::DVec3;
     ///
     /// let camera = Camera::look_at([0.0, -4.0, 0.0], [0.0, 0.0, 0.0]);

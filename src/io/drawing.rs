@@ -16,7 +16,7 @@ use crate::geom::Polyline;
 ///
 /// ```
 /// use glam::DVec2;
-/// use rvachev::{Polyline, write_svg};
+/// use rvachev::{io::write_svg, Polyline};
 ///
 /// let triangle = Polyline::closed(vec![DVec2::ZERO, DVec2::X, DVec2::Y]);
 /// let mut file = Vec::new();

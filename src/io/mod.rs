@@ -30,13 +30,13 @@ mod obj;
 mod ply;
 mod png;
 mod points;
-mod save;
+pub(crate) mod save;
 mod split;
 mod stl;
 mod text;
 #[cfg(feature = "threemf")]
 mod threemf;
-mod unit;
+pub(crate) mod unit;
 
 use std::io;
 
@@ -49,12 +49,12 @@ pub use obj::write_obj;
 pub use ply::write_ply;
 pub use png::{Colors, write_png};
 pub use points::write_ply_points;
-pub(crate) use save::save_rows;
-pub use save::{Pixel, SaveError, SaveSettings};
+pub use save::Pixel;
+pub(crate) use save::{SaveError, SaveSettings, save_rows};
 pub use stl::{write_stl, write_stl_ascii};
 #[cfg(feature = "threemf")]
 pub use threemf::write_3mf;
-pub use unit::LengthUnit;
+pub(crate) use unit::LengthUnit;
 
 /// The error for a mesh that is too large for a format.
 fn too_many(format: &str) -> io::Error {

@@ -13,7 +13,7 @@ use crate::geom::PointCloud;
 ///
 /// ```
 /// use glam::DVec3;
-/// use rvachev::{PointCloud, write_ply_points};
+/// use rvachev::{io::write_ply_points, PointCloud};
 ///
 /// let mut file = Vec::new();
 /// write_ply_points(&PointCloud::new(vec![DVec3::X])?, &mut file)?;

@@ -121,7 +121,7 @@ impl MeshReport {
 ///
 /// let report = Solid::sphere(1.0).mesh(&MeshSettings::default())?.check();
 /// println!("{report}");
-/// # Ok::<(), rvachev::MeshingError>(())
+/// # Ok::<(), rvachev::error::MeshingError>(())
 /// ```
 impl fmt::Display for MeshReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -176,7 +176,7 @@ impl Mesh {
     /// let report = Mesh::new(positions, triangles)?.check();
     /// assert!(report.is_sound());
     /// assert_eq!((report.shells, report.genus), (1, Some(0)));
-    /// # Ok::<(), rvachev::MeshError>(())
+    /// # Ok::<(), rvachev::error::MeshError>(())
     /// ```
     #[must_use]
     pub fn check(&self) -> MeshReport {

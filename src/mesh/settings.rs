@@ -11,7 +11,7 @@ use crate::Bounds;
 /// let settings = MeshSettings { cell: CellSize::LongestSide(32), ..MeshSettings::default() };
 /// let mesh = Solid::sphere(1.0).mesh(&settings)?;
 /// assert!(mesh.check().is_closed());
-/// # Ok::<(), rvachev::MeshingError>(())
+/// # Ok::<(), rvachev::error::MeshingError>(())
 /// ```
 #[derive(Clone, Debug, Default)]
 pub struct MeshSettings {
@@ -93,7 +93,7 @@ pub enum AtBounds {
 /// let settings = MeshSettings { thin: ThinFeatures::Refine { halvings: 2 }, ..settings };
 /// let mesh = part.mesh(&settings)?;
 /// assert!(mesh.possibly_lost() == 0 && mesh.bounds().max.z > 1.69);
-/// # Ok::<(), rvachev::MeshingError>(())
+/// # Ok::<(), rvachev::error::MeshingError>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ThinFeatures {

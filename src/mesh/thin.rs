@@ -59,7 +59,7 @@ impl Solid {
     /// let fin = &report.places[0];
     /// assert!((fin.thickness.unwrap() - 0.03).abs() < 1e-6 && fin.position.x.abs() < 0.015);
     /// assert!(fin.size.y > 0.7 && fin.position.z > 1.0);
-    /// # Ok::<(), rvachev::MeshingError>(())
+    /// # Ok::<(), rvachev::error::MeshingError>(())
     /// ```
     ///
     /// # Details

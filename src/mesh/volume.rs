@@ -37,7 +37,7 @@ const MAX_COORDINATE: f64 = 1e37;
 ///
 /// ```
 /// use glam::DVec3;
-/// use rvachev::{Volume, VolumeSettings};
+/// use rvachev::volume::{Volume, VolumeSettings};
 ///
 /// let size = [20; 3];
 /// let at = |n: usize| DVec3::new((n % 20) as f64, (n / 20 % 20) as f64, (n / 400) as f64) - 9.5;
@@ -47,7 +47,7 @@ const MAX_COORDINATE: f64 = 1e37;
 /// let report = mesh.check();
 /// assert!(report.is_closed() && report.is_manifold());
 /// assert!((report.volume / 2144.66 - 1.0).abs() < 0.01);
-/// # Ok::<(), rvachev::VolumeError>(())
+/// # Ok::<(), rvachev::volume::VolumeError>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Volume<'a> {

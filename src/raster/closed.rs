@@ -14,7 +14,7 @@ use crate::Mesh;
 /// welded.
 ///
 /// ```
-/// use rvachev::{CellSize, ClosedMesh, MeshSettings, Solid};
+/// use rvachev::{raster::ClosedMesh, CellSize, MeshSettings, Solid};
 ///
 /// let settings = MeshSettings { cell: CellSize::LongestSide(16), ..MeshSettings::default() };
 /// let mesh = Solid::sphere(1.0).mesh(&settings)?;

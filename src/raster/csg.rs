@@ -91,7 +91,7 @@ impl RasterView {
     ///
     /// ```
     /// use glam::DVec3;
-    /// use rvachev::{Camera, CellSize, ClosedMesh, Csg, CsgMethod, MeshSettings, RasterView, Solid, deg};
+    /// use rvachev::{deg, raster::{ClosedMesh, Csg, CsgMethod, RasterView}, Camera, CellSize, MeshSettings, Solid};
     ///
     /// let settings = MeshSettings { cell: CellSize::LongestSide(24), ..MeshSettings::default() };
     /// let block = Solid::cuboid([2.0, 2.0, 2.0]).mesh(&settings)?;

@@ -15,7 +15,7 @@ use super::error::RasterError;
 /// A tree of set operations over operands that are given by number.
 ///
 /// ```
-/// use rvachev::Csg;
+/// use rvachev::raster::Csg;
 ///
 /// let [a, b, c] = [0, 1, 2].map(Csg::operand);
 /// let tree = (a | b) - c;

@@ -91,7 +91,7 @@ impl Fragments {
 /// A surface, seen in a picture as layers.
 ///
 /// ```
-/// use rvachev::{Camera, Csg, CsgMethod, Facing, Fragments, LayerSource, RasterView, Tile};
+/// use rvachev::{raster::{Csg, CsgMethod, Facing, Fragments, LayerSource, RasterView, Tile}, Camera};
 /// use glam::DVec3;
 ///
 /// /// A sphere about the origin, seen from −y without perspective.
@@ -123,7 +123,7 @@ impl Fragments {
 /// let buffers = view.csg(&[&ball, &core], &shell, CsgMethod::Intervals)?;
 /// assert_eq!(buffers.depth(20, 20), Some(3.5));
 /// assert_eq!(buffers.depth(0, 0), None);
-/// # Ok::<(), rvachev::RasterError>(())
+/// # Ok::<(), rvachev::raster::RasterError>(())
 /// ```
 pub trait LayerSource: Sync {
     /// Width and height of the picture that the layers are made for, in pixels.

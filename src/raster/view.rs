@@ -25,14 +25,14 @@ use crate::{Camera, Projection};
 ///
 /// ```
 /// use glam::DVec3;
-/// use rvachev::{Camera, RasterView};
+/// use rvachev::{raster::RasterView, Camera};
 ///
 /// let camera = Camera::orthographic(DVec3::new(0.0, -5.0, 0.0), DVec3::ZERO, DVec3::Z, 4.0);
 /// let view = RasterView::new(&camera, 100, 100)?;
 /// let [x, y, depth] = view.project(DVec3::new(1.0, 0.0, 2.0));
 /// assert_eq!([x, y, depth], [75.0, 0.0, 5.0]);
 /// assert_eq!(view.point(x, y, depth), DVec3::new(1.0, 0.0, 2.0));
-/// # Ok::<(), rvachev::RasterError>(())
+/// # Ok::<(), rvachev::raster::RasterError>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct RasterView {

@@ -34,13 +34,13 @@ thread_local! {
 /// camera moves.
 ///
 /// ```
-/// use rvachev::{Camera, Solid, Window};
+/// use rvachev::{camera::Window, Camera, Solid};
 ///
 /// let scene = Solid::sphere(1.0).scene()?;
 /// let camera = Camera::framing(&scene.bounds());
 /// let seen = scene.surfaces(&camera.rays(64, 64), Window::whole(64, 64));
 /// assert!(seen.at(32, 32).is_hit() && !seen.at(0, 0).is_hit());
-/// # Ok::<(), rvachev::RenderError>(())
+/// # Ok::<(), rvachev::error::RenderError>(())
 /// ```
 pub struct Scene {
     bounds: Bounds,

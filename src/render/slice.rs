@@ -35,7 +35,7 @@ const MARGIN: f64 = 0.08;
 /// assert_eq!(contours.len(), 2);
 /// let area: f64 = contours.iter().map(|contour| contour.area()).sum();
 /// assert!((area - (12.0 - std::f64::consts::PI)).abs() < 0.01);
-/// # Ok::<(), rvachev::RenderError>(())
+/// # Ok::<(), rvachev::error::RenderError>(())
 /// ```
 #[derive(Clone, Debug)]
 pub struct Slice {

@@ -19,7 +19,7 @@ impl Solid {
     /// The field is the operand's at the pre-image, not rescaled: not Lipschitz in general.
     ///
     /// ```
-    /// use rvachev::{SmoothStep, Solid};
+    /// use rvachev::{law::SmoothStep, Solid};
     /// use glam::DVec3;
     ///
     /// // Half as wide along x at the top, as deep along y as ever.
@@ -53,7 +53,7 @@ impl Solid {
     /// the law times the distance from the axis.
     ///
     /// ```
-    /// use rvachev::{SineWave, Solid, deg};
+    /// use rvachev::{deg, law::SineWave, Solid};
     /// use glam::DVec3;
     ///
     /// // To and fro by 30 degrees.

@@ -25,7 +25,7 @@ const DEEPEST: usize = 24;
 /// parameters too.
 ///
 /// ```
-/// use rvachev::{Solid, deg};
+/// use rvachev::{deg, Solid};
 ///
 /// let hole = Solid::cylinder(0.5, 2.0).named("hole");
 /// let plate = Solid::cuboid([4.0, 4.0, 1.0]) - hole.translate([1.0, 0.0, 0.0]) - hole.rotate_x(deg(90.0));

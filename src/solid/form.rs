@@ -17,7 +17,7 @@ use rvachev_field::{AnyField, AnyWarp};
 /// Lengths are in length units.
 ///
 /// ```
-/// use rvachev::{Form, Solid, Sphere};
+/// use rvachev::{form::Form, Solid, Sphere};
 ///
 /// /// The radii of all spheres of a solid.
 /// fn radii(solid: &Solid) -> Vec<f64> {
@@ -209,7 +209,7 @@ impl<'a> LeafForm<'a> {
     /// The leaf, if it is of this type.
     ///
     /// ```
-    /// use rvachev::{Cuboid, Form, Solid, Sphere};
+    /// use rvachev::{form::Form, Cuboid, Solid, Sphere};
     ///
     /// let brick = Solid::cuboid([4.0, 2.0, 1.0]);
     /// let Form::Leaf(leaf) = brick.form() else { unreachable!("a box is a leaf") };
@@ -258,7 +258,7 @@ impl<'a> DeformationForm<'a> {
     /// The values of the parameters, in order; `None` of what follows a user's own law.
     ///
     /// ```
-    /// use rvachev::{Form, Solid, Value};
+    /// use rvachev::{catalogue::Value, form::Form, Solid};
     ///
     /// let bar = Solid::cuboid([2.0, 2.0, 8.0]).twist(0.25);
     /// let Form::Deformation { deformation, .. } = bar.form() else { unreachable!("it is twisted") };
@@ -281,7 +281,7 @@ impl Solid {
     /// may be deep, so walk long ones by a loop.
     ///
     /// ```
-    /// use rvachev::{Form, Profile, RFunction, Solid};
+    /// use rvachev::{form::Form, Profile, RFunction, Solid};
     ///
     /// let beam = Profile::rectangle([4.0, 2.0]).extrude(10.0);
     /// assert!(matches!(beam.form(), Form::Extrude { extrusion, .. } if extrusion.height == 10.0));
@@ -322,7 +322,7 @@ impl Profile {
     /// profiles, without saying so.
     ///
     /// ```
-    /// use rvachev::{Form, Profile, Value};
+    /// use rvachev::{catalogue::Value, form::Form, Profile};
     ///
     /// let disc = Profile::circle(2.0);
     /// let Form::Leaf(leaf) = disc.form() else { unreachable!("a circle is a leaf") };

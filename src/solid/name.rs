@@ -10,7 +10,7 @@ impl Solid {
     /// Control characters in the name, line breaks among them, become spaces.
     ///
     /// ```
-    /// use rvachev::{Solid, rad};
+    /// use rvachev::{rad, Solid};
     ///
     /// let socket = Solid::superellipsoid([3.0, 3.0, -2.0], 0.2, 1.0).twist(rad(0.1)).named("socket");
     /// let head = Solid::cylinder(5.0, 4.0).named("head") - socket;

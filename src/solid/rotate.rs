@@ -16,7 +16,7 @@ impl Solid {
     /// about the other axes.
     ///
     /// ```
-    /// use rvachev::{Solid, deg};
+    /// use rvachev::{deg, Solid};
     ///
     /// let rod = Solid::cylinder(1.0, 10.0).rotate_x(deg(90.0));
     /// assert!((rod.bounds()?.max.y - 5.0).abs() < 1e-9);
@@ -46,7 +46,7 @@ impl Solid {
     /// but 0; anticlockwise seen from where it points.
     ///
     /// ```
-    /// use rvachev::{Solid, deg};
+    /// use rvachev::{deg, Solid};
     ///
     /// // A third of a turn about the diagonal takes z to x.
     /// let rod = Solid::cylinder(1.0, 10.0).rotate_about([1.0, 1.0, 1.0], deg(120.0));

@@ -147,7 +147,7 @@ impl Profile {
     /// where sides are upright.
     ///
     /// ```
-    /// use rvachev::{Caps, Extrusion, Profile, deg};
+    /// use rvachev::{deg, Caps, Extrusion, Profile};
     ///
     /// let column = Profile::regular_polygon(6, 3.0).extrude_with(&Extrusion {
     ///     twist: deg(60.0),
@@ -227,7 +227,7 @@ impl Profile {
     /// | `angle` | [`Angle`] | 10⁻⁴ to 360 degrees |
     ///
     /// ```
-    /// use rvachev::{Profile, deg};
+    /// use rvachev::{deg, Profile};
     ///
     /// let quarter = Profile::rectangle([2.0, 2.0]).translate([3.0, 0.0]).revolve_by(deg(90.0));
     /// assert!(quarter.contains([2.0, 2.0, 0.0])?);

@@ -117,7 +117,7 @@ impl Solid {
     /// Source: A. H. Barr, *Global and local deformations of solid primitives* (1984).
     ///
     /// ```
-    /// use rvachev::{Solid, deg};
+    /// use rvachev::{deg, Solid};
     ///
     /// // A quarter turn between the middle and the top.
     /// let bar = Solid::cuboid([2.0, 0.5, 8.0]).twist(deg(90.0) / 4.0);
@@ -157,7 +157,7 @@ impl Solid {
     /// right for negative, strong and vanishing curvatures.
     ///
     /// ```
-    /// use rvachev::{Solid, deg};
+    /// use rvachev::{deg, Solid};
     ///
     /// // A rod 10 long becomes two radians of a circle of radius 5.
     /// let hook = Solid::cylinder(0.5, 10.0).bend(0.2, deg(0.0));

@@ -158,14 +158,14 @@ fn graph(quarters: u32, phase: f64) -> Result<ControlPolygon<DVec2>, Subdivision
 ///
 /// ```
 /// use glam::DVec2;
-/// use rvachev::{ControlPolygon, hyperbola_of_ellipse};
+/// use rvachev::subdivision::{ControlPolygon, hyperbola_of_ellipse};
 ///
 /// let ellipse = ControlPolygon::ellipse(DVec2::new(2.0, 1.0))?;
 /// for p in hyperbola_of_ellipse(&ellipse.limit(4)?, 2.0)? {
 ///     let (x, y) = (p.x / 2.0, p.y);
 ///     assert!((x * x - y * y - 1.0).abs() < 1e-12 * x * x);
 /// }
-/// # Ok::<(), rvachev::SubdivisionError>(())
+/// # Ok::<(), rvachev::subdivision::SubdivisionError>(())
 /// ```
 ///
 /// # Errors

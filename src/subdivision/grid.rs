@@ -17,7 +17,7 @@ use crate::surface::stitch::{End, Knot, Knots, Layout, stitch};
 ///
 /// ```
 /// use glam::DVec3;
-/// use rvachev::{ControlGrid, Tension};
+/// use rvachev::subdivision::{ControlGrid, Tension};
 ///
 /// // A wavy sheet of 5 × 6 points, open both ways.
 /// let at = |i: i32, j: i32| DVec3::new(f64::from(j), f64::from(i), f64::from((i * j) % 2));
@@ -25,7 +25,7 @@ use crate::surface::stitch::{End, Knot, Knots, Layout, stitch};
 /// let sheet = ControlGrid::new(&points, [5, 6], [false, false], [Tension::CUBIC; 2])?;
 /// let mesh = sheet.limit_mesh(3)?;
 /// assert_eq!(mesh.quads().len(), (2 * 8) * (3 * 8));
-/// # Ok::<(), rvachev::SubdivisionError>(())
+/// # Ok::<(), rvachev::subdivision::SubdivisionError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ControlGrid {

@@ -85,14 +85,14 @@ use sealed::Rows;
 ///
 /// ```
 /// use glam::DVec2;
-/// use rvachev::ControlPolygon;
+/// use rvachev::subdivision::ControlPolygon;
 ///
 /// // The ellipse that touches the sides of a rectangle of 6 × 3.
 /// let ellipse = ControlPolygon::ellipse(DVec2::new(3.0, 1.5))?;
 /// for p in ellipse.limit(5)? {
 ///     assert!(((p.x / 3.0).powi(2) + (p.y / 1.5).powi(2) - 1.0).abs() < 1e-14);
 /// }
-/// # Ok::<(), rvachev::SubdivisionError>(())
+/// # Ok::<(), rvachev::subdivision::SubdivisionError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ControlPolygon<P: ControlPoint> {
@@ -174,7 +174,7 @@ impl<P: ControlPoint> ControlPolygon<P> {
     /// system may cost several times what the arithmetic does.
     ///
     /// ```
-    /// use rvachev::ControlPolygon;
+    /// use rvachev::subdivision::ControlPolygon;
     ///
     /// let mut fine = ControlPolygon::ellipse([1.0, 1.0])?;
     /// for width in [1.0, 2.0, 3.0] {
@@ -182,7 +182,7 @@ impl<P: ControlPoint> ControlPolygon<P> {
     ///     assert_eq!(fine.len(), 4 << 8);
     ///     assert!((fine.limit_points()[0].x - width).abs() < 1e-14);
     /// }
-    /// # Ok::<(), rvachev::SubdivisionError>(())
+    /// # Ok::<(), rvachev::subdivision::SubdivisionError>(())
     /// ```
     ///
     /// # Errors

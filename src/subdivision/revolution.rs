@@ -35,7 +35,7 @@ pub enum ProfileEnd {
 /// polygons that run the other way are taken for what they bound.)
 ///
 /// ```
-/// use rvachev::SubdivisionRevolution;
+/// use rvachev::subdivision::SubdivisionRevolution;
 ///
 /// // The ellipsoid that touches the six sides of a box of 4 × 2 × 1.4.
 /// let ellipsoid = SubdivisionRevolution::ellipsoid([2.0, 1.0, 0.7])?;

@@ -31,7 +31,7 @@ use crate::{Angle, deg, rad};
 ///
 /// ```
 /// use std::f64::consts::PI;
-/// use rvachev::{Tension, deg};
+/// use rvachev::{deg, subdivision::Tension};
 ///
 /// // A square stands for steps of a right angle.
 /// let square = Tension::trigonometric(deg(90.0))?;
@@ -39,7 +39,7 @@ use crate::{Angle, deg, rad};
 /// let [neighbour, own] = square.limit_weights(0);
 /// assert!((neighbour - (0.5 - 1.0 / PI)).abs() < 1e-15 && (own - 2.0 / PI).abs() < 1e-15);
 /// assert!(Tension::new(-1.5).is_err());
-/// # Ok::<(), rvachev::SubdivisionError>(())
+/// # Ok::<(), rvachev::subdivision::SubdivisionError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tension {

@@ -21,3 +21,5 @@ pub use parametric::{Frame, Parametric, ParametricSurface};
 pub use parametric_curve::ParametricCurve;
 pub use patch::{PatchError, PatchSettings, Spacing};
 pub use sampling::SurfacePoint;
+
+pub use crate::geom::QuadMesh;

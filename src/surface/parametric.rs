@@ -36,7 +36,7 @@ use crate::{Angle, Field, ParamError, Superellipsoid, Superhyperboloid, Supersha
 ///
 /// ```
 /// use glam::DVec3;
-/// use rvachev::{Superellipsoid, deg, rad};
+/// use rvachev::{deg, rad, Superellipsoid};
 ///
 /// let surface = Superellipsoid::new([3.0, 2.0, 1.0], 0.1, 0.1).surface()?;
 /// assert_eq!(surface.point(deg(90.0), rad(0.3)), DVec3::Z);

@@ -58,7 +58,7 @@ impl ParametricSurface {
     /// the area is measured; within a cell it follows the curvature to second order.
     ///
     /// ```
-    /// use rvachev::{ParametricSurface, Superellipsoid};
+    /// use rvachev::{surface::ParametricSurface, Superellipsoid};
     ///
     /// let shape = Superellipsoid::new([1.0, 2.0, 3.0], 0.3, 0.8);
     /// let cloud = ParametricSurface::of(&shape)?.sample(1000, 7)?;

@@ -5,8 +5,10 @@
 
 use glam::DVec3;
 use rvachev::{
-    Bounds, Cuboid, Cylinder, Evaluator, GeneralisedSuperquadric, Gielis, Solid, Sphere, Superellipsoid,
-    Superhyperboloid, Supershape, Supertoroid, Tape, Turns, rad,
+    Bounds, Cuboid, Cylinder, GeneralisedSuperquadric, Gielis, Solid, Sphere, Superellipsoid, Superhyperboloid,
+    Supershape, Supertoroid, Turns,
+    program::{Evaluator, Tape},
+    rad,
 };
 
 use crate::support::{Random, rounded};

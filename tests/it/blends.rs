@@ -2,8 +2,12 @@
 
 use glam::{DVec2, DVec3};
 use rvachev::{
-    Blend, Bounds, Caps, CellSize, Extrusion, Features, Helix, Lattice, MeshSettings, Profile, Program, RFunction,
-    Region, SmoothStep, Solid, SolidError, deg, rad,
+    Blend, Bounds, Caps, CellSize, Extrusion, Features, Helix, MeshSettings, Profile, RFunction, Solid, SolidError,
+    deg,
+    law::SmoothStep,
+    program::{Program, Region},
+    rad,
+    volume::Lattice,
 };
 
 use crate::support::{Random, lanes32, lanes64, near, off_surface};

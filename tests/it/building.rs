@@ -7,8 +7,9 @@ use std::hash::{Hash, Hasher};
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, IVec3, UVec3, Vec3};
 use rvachev::{
-    Bounds, Camera, Cuboid, Cylinder, Field, HalfSpace, ParamError, RFunction, Real, Solid, Sphere, Superellipsoid,
-    deg, rad,
+    Bounds, Camera, Cuboid, Cylinder, HalfSpace, ParamError, RFunction, Solid, Sphere, Superellipsoid, deg,
+    field::{Field, Real},
+    rad,
 };
 
 use crate::support::{Random, frame_of, near_point, random_leaf, random_solid, samples, value};

@@ -4,8 +4,8 @@ use std::panic::catch_unwind;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rvachev::{
-    Bounds, CellSize, Gielis, MeshSettings, MeshingError, ParamError, RFunction, Radius, Solid, SolidError, Supershape,
-    Turns, deg, rad,
+    Bounds, CellSize, Gielis, MeshSettings, ParamError, RFunction, Radius, Solid, SolidError, Supershape, Turns, deg,
+    error::MeshingError, rad,
 };
 
 /// Checks that the solid is refused everywhere, with a text that has all of `parts`, and

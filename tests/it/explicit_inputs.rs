@@ -2,11 +2,16 @@
 
 use glam::{DAffine3, DMat3, DVec2, DVec3, Vec3};
 use rvachev::{
-    BinomialSeries, Buffers, Camera, ClosedMesh, ControlGrid, ControlPolygon, Csg, CsgMethod, CurveSpread,
-    ExactExplicit, Facing, GeneralisedSuperquadric, Gielis, LayerSource, LogTable, Mesh, ParametricCurve,
-    ParametricSurface, PatchSettings, PointMethod, PointSettings, PowerTables, ProductTables, QuadMesh, Radius,
-    RasterView, RawParametric, SeriesExplicit, Spacing, SubdivisionRevolution, Superellipse, Superellipsoid,
-    Superhyperboloid, Supershape, Supertoroid, Tension, deg, hyperbola_of_ellipse, rad,
+    Camera, GeneralisedSuperquadric, Gielis, Mesh, Radius, Superellipse, Superellipsoid, Superhyperboloid, Supershape,
+    Supertoroid, deg,
+    points::{
+        BinomialSeries, CurveSpread, ExactExplicit, LogTable, PointMethod, PointSettings, PowerTables, ProductTables,
+        RawParametric, SeriesExplicit,
+    },
+    rad,
+    raster::{Buffers, ClosedMesh, Csg, CsgMethod, Facing, LayerSource, RasterView},
+    subdivision::{ControlGrid, ControlPolygon, SubdivisionRevolution, Tension, hyperbola_of_ellipse},
+    surface::{ParametricCurve, ParametricSurface, PatchSettings, QuadMesh, Spacing},
 };
 
 /// Numbers that break things.
@@ -347,7 +352,10 @@ fn depth_buffers_take_anything() {
             buffers.picture(&operands, &[[200; 3]]).unwrap();
             buffers.depth_picture().unwrap();
             if let Ok(image) = buffers.range_image() {
-                finite("range image", image.points(rvachev::Coordinates::World).unwrap().positions().iter().copied());
+                finite(
+                    "range image",
+                    image.points(rvachev::range_image::Coordinates::World).unwrap().positions().iter().copied(),
+                );
             }
         }
         let mut buffers = Buffers::new(&view);

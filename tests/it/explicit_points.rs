@@ -5,8 +5,12 @@ use std::f64::consts::FRAC_PI_2;
 
 use glam::{DVec2, DVec3};
 use rvachev::{
-    BinomialSeries, CurveSpread, ExactExplicit, GeneralisedSuperquadric, LogTable, PointMethod, PointSettings,
-    PowerTables, ProductTables, RawParametric, SeriesExplicit, Superellipse, Superellipsoid, Symmetry, rad, reflect,
+    GeneralisedSuperquadric, Superellipse, Superellipsoid,
+    points::{
+        BinomialSeries, CurveSpread, ExactExplicit, LogTable, PointMethod, PointSettings, PowerTables, ProductTables,
+        RawParametric, SeriesExplicit, Symmetry, reflect,
+    },
+    rad,
 };
 
 /// The wedge 0 ≤ x ≤ y ≤ z on nodes i/size, with exact heights.

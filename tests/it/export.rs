@@ -5,7 +5,11 @@ use std::fs;
 use std::path::PathBuf;
 
 use glam::Vec3;
-use rvachev::{LengthUnit, Mesh, SaveError, SaveSettings, write_glb, write_obj, write_ply, write_stl, write_stl_ascii};
+use rvachev::{
+    LengthUnit, Mesh, SaveSettings,
+    error::SaveError,
+    io::{write_glb, write_obj, write_ply, write_stl, write_stl_ascii},
+};
 
 /// A cube from 0 to `size`, its sides not parallel to anything, of 8 shared vertices.
 fn cube() -> Mesh {
@@ -237,7 +241,7 @@ fn glb_of_many_vertices_of_none_and_of_bad_normals() {
 #[cfg(feature = "threemf")]
 /// The model inside a 3MF archive.
 fn read_3mf(mesh: &Mesh, unit: LengthUnit) -> String {
-    let bytes = written(|out| rvachev::write_3mf(mesh, &SaveSettings { unit, ..SaveSettings::default() }, out));
+    let bytes = written(|out| rvachev::io::write_3mf(mesh, &SaveSettings { unit, ..SaveSettings::default() }, out));
     use std::io::Read;
 
     let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).unwrap();
@@ -289,7 +293,7 @@ fn threemf_keeps_vertices_colours_and_unit() {
     assert_eq!(attribute(&read_3mf(&cube(), LengthUnit::default()), "unit"), Some("millimeter"));
     assert!(!read_3mf(&Mesh::default(), LengthUnit::Meter).contains("<object"));
     let repeated = Mesh::new(vec![Vec3::ZERO, Vec3::X], vec![[0, 1, 1]]).unwrap();
-    let error = rvachev::write_3mf(&repeated, &SaveSettings::default(), Vec::new()).unwrap_err();
+    let error = rvachev::io::write_3mf(&repeated, &SaveSettings::default(), Vec::new()).unwrap_err();
     assert!(error.to_string().contains("triangle 0 has a repeated index"));
 }
 
@@ -344,7 +348,7 @@ fn a_full_disk_is_reported_by_every_writer() {
         write_ply(&mesh, full()),
         write_glb(&mesh, &settings, full()),
         #[cfg(feature = "threemf")]
-        rvachev::write_3mf(&mesh, &settings, full()),
+        rvachev::io::write_3mf(&mesh, &settings, full()),
     ];
     for result in results {
         assert_eq!(result.unwrap_err().kind(), std::io::ErrorKind::StorageFull);

@@ -4,8 +4,13 @@ use std::collections::HashSet;
 
 use glam::{DQuat, DVec2, DVec3};
 use rvachev::{
-    Angle, Blend, Bounds, BuiltInLaw, Call, Caps, Entry, Extrusion, Field, Form, Group, Helix, Kind, Law, LinearLaw,
-    ParamError, Part, Polygon, Profile, RFunction, Range, Real, Repetition, Solid, SolidError, Value, catalogue, deg,
+    Angle, Blend, Bounds, Caps, Extrusion, Helix, ParamError, Polygon, Profile, RFunction, Solid, SolidError,
+    catalogue,
+    catalogue::{Call, Entry, Group, Kind, Part, Range, Value},
+    deg,
+    field::{Field, Real},
+    form::{Form, Repetition},
+    law::{BuiltInLaw, Law, LinearLaw},
     rad,
 };
 

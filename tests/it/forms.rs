@@ -3,9 +3,12 @@
 
 use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3};
 use rvachev::{
-    Bounds, Cuboid, Cylinder, Evaluator, Extrusion, Field, GeneralisedSuperquadric, Gielis, Gradients, HalfSpace,
-    Helix, ParamError, Polygon, Profile, RFunction, Real, SineWave, SmoothStep, Solid, Sphere, Superellipsoid,
-    Superhyperboloid, Supershape, Supertoroid, Tape, Turns, deg, rad,
+    Bounds, Cuboid, Cylinder, Extrusion, GeneralisedSuperquadric, Gielis, HalfSpace, Helix, ParamError, Polygon,
+    Profile, RFunction, Solid, Sphere, Superellipsoid, Superhyperboloid, Supershape, Supertoroid, Turns, deg,
+    field::{Field, Real},
+    law::{SineWave, SmoothStep},
+    program::{Evaluator, Gradients, Tape},
+    rad,
 };
 
 use crate::lattices::lattices;

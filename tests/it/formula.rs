@@ -6,7 +6,11 @@ use fidget::context::{Context, Tree};
 use fidget::shape::{EzShape, Shape};
 use fidget::vm::{VmFunction, VmShape};
 use glam::{DQuat, DVec3};
-use rvachev::{Bounds, CellSize, Evaluator, Formula, FormulaError, MeshSettings, Region, Solid, SolidError, Tape};
+use rvachev::{
+    Bounds, CellSize, Formula, MeshSettings, Solid, SolidError,
+    error::FormulaError,
+    program::{Evaluator, Region, Tape},
+};
 
 use crate::support::{Random, near};
 

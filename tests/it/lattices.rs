@@ -1,7 +1,10 @@
 //! Lattices: measured walls, measured volumes, slopes, gradings.
 
 use glam::DVec3;
-use rvachev::{Bounds, Field, Grading, Interval, MinimalSurface, NetworkLattice, Real, SheetLattice, Solid};
+use rvachev::{
+    Bounds, Grading, Interval, MinimalSurface, NetworkLattice, SheetLattice, Solid,
+    field::{Field, Real},
+};
 
 use crate::support::{Random, near, random_box, samples, value};
 

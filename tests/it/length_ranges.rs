@@ -1,7 +1,11 @@
 //! Ranges of offsets and shells: they hold every value, of points and of lanes, near and far.
 
 use glam::DVec3;
-use rvachev::{Bounds, Program, Solid, Tape, rad};
+use rvachev::{
+    Bounds, Solid,
+    program::{Program, Tape},
+    rad,
+};
 
 use crate::support::{Random, frame_of, lanes32, lanes64, random_leaf, samples};
 use crate::zoo;

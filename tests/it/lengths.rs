@@ -3,8 +3,8 @@
 use glam::DVec3;
 use rvachev::{
     Capsule, CellSize, Cone, Cuboid, Cylinder, Ellipsoid, Features, GeneralisedSuperquadric, Gielis, MeshSettings,
-    MinimalSurface, Prism, Pyramid, RFunction, Region, RoundedCuboid, SheetLattice, SineWave, Solid, SolidError,
-    Sphere, Superellipsoid, Superhyperboloid, Supershape, Wedge, rad,
+    MinimalSurface, Prism, Pyramid, RFunction, RoundedCuboid, SheetLattice, Solid, SolidError, Sphere, Superellipsoid,
+    Superhyperboloid, Supershape, Wedge, law::SineWave, program::Region, rad,
 };
 
 use crate::support::{Random, lanes32, off_surface};

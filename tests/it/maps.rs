@@ -4,8 +4,11 @@ use std::f64::consts::TAU;
 
 use glam::{DAffine3, DQuat, DVec3};
 use rvachev::{
-    Bounds, CellSize, Dual, Evaluator, Field, Gradients, Interval, Law, LawTable, LinearLaw, MeshSettings, Norm,
-    ParamError, Program, RFunction, Real, Region, SineWave, SmoothStep, Solid, SolidError, Superellipsoid, Tape, rad,
+    Bounds, CellSize, Interval, MeshSettings, ParamError, RFunction, Solid, SolidError, Superellipsoid,
+    field::{Dual, Field, Norm, Real},
+    law::{Law, LawTable, LinearLaw, SineWave, SmoothStep},
+    program::{Evaluator, Gradients, Program, Region, Tape},
+    rad,
 };
 
 use crate::narrow::check_narrowing;

@@ -6,8 +6,8 @@ use std::path::PathBuf;
 
 use glam::{DQuat, DVec3, Vec3};
 use rvachev::{
-    Blend, Bounds, CellSize, Features, Helix, Mesh, MeshReport, MeshSettings, MeshingError, Profile, Progress,
-    RFunction, Run, Solid, rad, write_stl,
+    Blend, Bounds, CellSize, Features, Helix, Mesh, MeshReport, MeshSettings, Profile, Progress, RFunction, Run, Solid,
+    error::MeshingError, io::write_stl, rad,
 };
 
 use crate::models;

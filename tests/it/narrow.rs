@@ -1,7 +1,10 @@
 //! Narrowing: sound over random solids and boxes, and tight on the shared models.
 
 use glam::DVec3;
-use rvachev::{Bounds, Evaluator, Program, Region, Solid, Tape};
+use rvachev::{
+    Bounds, Solid,
+    program::{Evaluator, Program, Region, Tape},
+};
 
 use crate::models::{self, Model};
 use crate::support::{Random, frame_of, random_box, random_leaf, random_solid, samples};

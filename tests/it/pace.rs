@@ -5,8 +5,11 @@ use std::sync::{Arc, Mutex};
 
 use glam::{DQuat, DVec3};
 use rvachev::{
-    Bounds, CancelToken, CellSize, Features, Field, Lattice, Mesh, MeshSettings, MeshingError, ParamError, Progress,
-    RFunction, Real, Run, Solid, Superellipsoid, ThinFeatures,
+    Bounds, CancelToken, CellSize, Features, Mesh, MeshSettings, ParamError, Progress, RFunction, Run, Solid,
+    Superellipsoid, ThinFeatures,
+    error::MeshingError,
+    field::{Field, Real},
+    volume::Lattice,
 };
 
 use crate::models;

@@ -5,9 +5,10 @@ use std::panic::catch_unwind;
 
 use glam::{DAffine2, DAffine3, DMat2, DQuat, DVec3};
 use rvachev::{
-    Blend, Bounds, Caps, Extrusion, GeneralisedSuperquadric, Gielis, Helix, LawTable, LinearLaw, MinimalSurface,
-    NetworkLattice, Polygon, Prism, Profile, RFunction, RegularPolygon, SheetLattice, SineWave, SmoothStep, Solid,
-    Superhyperboloid, Supershape, Supertoroid, deg, rad,
+    Blend, Bounds, Caps, Extrusion, GeneralisedSuperquadric, Gielis, Helix, MinimalSurface, NetworkLattice, Polygon,
+    Prism, Profile, RFunction, RegularPolygon, SheetLattice, Solid, Superhyperboloid, Supershape, Supertoroid, deg,
+    law::{LawTable, LinearLaw, SineWave, SmoothStep},
+    rad,
 };
 
 /// A solid by one of its numbers.

@@ -4,8 +4,10 @@ use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
 use rvachev::{
-    Angle, Field, Gielis, Mesh, ParametricCurve, ParametricSurface, PatchError, PatchSettings, Radius, Spacing,
-    Superellipse, Superellipsoid, Superhyperboloid, Supershape, Supertoroid, deg, rad,
+    Angle, Gielis, Mesh, Radius, Superellipse, Superellipsoid, Superhyperboloid, Supershape, Supertoroid, deg,
+    field::Field,
+    rad,
+    surface::{ParametricCurve, ParametricSurface, PatchError, PatchSettings, Spacing},
 };
 
 /// A surface with the field whose zero set it is, and the number of handles of each shell.
@@ -25,7 +27,7 @@ fn case<F: Field>(field: F, surface: ParametricSurface, shells: usize, genus: i6
     let other = field.clone();
     let size = field.bounds().half_extents().length();
     let value = move |p: DVec3| field.eval(p.to_array()) / size;
-    let gradient = move |p: DVec3| -DVec3::from(other.eval(rvachev::Dual::point(p.to_array())).gradient());
+    let gradient = move |p: DVec3| -DVec3::from(other.eval(rvachev::field::Dual::point(p.to_array())).gradient());
     Case { name, surface, residual: Box::new(value), gradient: Box::new(gradient), shells, genus }
 }
 

@@ -2,8 +2,8 @@
 
 use glam::{DVec2, DVec3, Vec3};
 use rvachev::{
-    Background, Blend, Bounds, Camera, Image, Lights, Paint, Projection, RenderSettings, Run, Solid, Style, Transfer,
-    View, deg, rad,
+    Background, Blend, Bounds, Camera, Image, Lights, Paint, RenderSettings, Run, Solid, Style, View,
+    camera::Projection, deg, layers::Transfer, rad,
 };
 
 use crate::golden::{ascii, same_as_golden};
@@ -207,7 +207,7 @@ fn files_of_every_kind() {
     std::fs::remove_dir_all(folder).unwrap();
 
     let mut too_small = [0u8; 10];
-    assert!(rvachev::write_exr(&depth, &mut too_small[..]).is_err());
+    assert!(rvachev::io::write_exr(&depth, &mut too_small[..]).is_err());
 }
 
 #[test]

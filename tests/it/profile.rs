@@ -4,8 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DAffine2, DMat2, DVec2, DVec3};
 use rvachev::{
-    Caps, CellSize, Extrusion, Gielis, Helix, Mesh, MeshSettings, Polygon, Profile, RFunction, Radius, Region, Solid,
-    Superpolygon, deg, rad,
+    Caps, CellSize, Extrusion, Gielis, Helix, Mesh, MeshSettings, Polygon, Profile, RFunction, Radius, Solid,
+    Superpolygon, deg, program::Region, rad,
 };
 
 use crate::support::{Random, near, near_point, value};

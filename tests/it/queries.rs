@@ -3,7 +3,11 @@
 use std::f64::consts::{FRAC_PI_4, PI};
 
 use glam::DVec3;
-use rvachev::{Bounds, Evaluator, Gradients, RFunction, Solid, Superellipsoid, Tape, deg, rad};
+use rvachev::{
+    Bounds, RFunction, Solid, Superellipsoid, deg,
+    program::{Evaluator, Gradients, Tape},
+    rad,
+};
 
 use crate::support::{Random, corpus, near, near_point, random_solid, value};
 

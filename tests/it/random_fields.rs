@@ -2,7 +2,8 @@
 
 use glam::{DQuat, DVec3};
 use rvachev::{
-    Bounds, CellSize, Features, Field, Interval, MeshSettings, ParamError, RFunction, Real, Run, Solid, ThinFeatures,
+    Bounds, CellSize, Features, Interval, MeshSettings, ParamError, RFunction, Run, Solid, ThinFeatures,
+    field::{Field, Real},
 };
 
 use crate::support::{Random, random_leaf, random_solid};

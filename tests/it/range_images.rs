@@ -1,7 +1,11 @@
 //! Range images and the clouds made of them.
 
 use glam::{DAffine3, DVec3};
-use rvachev::{Camera, Coordinates, Image, Noise, RangeImage, Solid, write_ply_points};
+use rvachev::{
+    Camera, Image, Solid,
+    io::write_ply_points,
+    range_image::{Coordinates, Noise, RangeImage},
+};
 
 fn ball() -> (Camera, RangeImage) {
     let ball = Solid::sphere(1.0).translate([3.0, -2.0, 1.0]);
@@ -103,6 +107,6 @@ fn errors() {
     let good = RangeImage::new(depth.clone(), lens, DAffine3::IDENTITY).unwrap();
     assert_eq!(good.points(Coordinates::World).unwrap().len(), 1);
     assert!(RangeImage::new(depth.clone(), camera.intrinsics(3, 1), DAffine3::IDENTITY).is_err());
-    let blind = rvachev::Intrinsics { fx: 0.0, ..lens };
+    let blind = rvachev::camera::Intrinsics { fx: 0.0, ..lens };
     assert!(RangeImage::new(depth, blind, DAffine3::IDENTITY).unwrap_err().to_string().starts_with("focal length"));
 }

@@ -1,7 +1,11 @@
 //! The rasteriser: which pixels triangles cover, how deep, and what the near plane leaves.
 
 use glam::{DVec3, Vec3};
-use rvachev::{Buffers, Camera, CameraError, Facing, Fragments, LayerSource, Mesh, RasterError, RasterView, Tile, deg};
+use rvachev::{
+    Camera, Mesh, deg,
+    error::CameraError,
+    raster::{Buffers, Facing, Fragments, LayerSource, RasterError, RasterView, Tile},
+};
 
 fn front(height: f64, pixels: u32) -> RasterView {
     let camera = Camera::orthographic(DVec3::new(0.0, -10.0, 0.0), DVec3::ZERO, DVec3::Z, height);

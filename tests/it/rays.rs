@@ -5,7 +5,13 @@
 //! crossing, any other is halved, the nearer half first, until it is short.
 
 use glam::DVec3;
-use rvachev::{Bounds, Camera, Program, Region, Run, Scene, Solid, Surface, Window, deg};
+use rvachev::{
+    Bounds, Camera, Run, Scene, Solid,
+    camera::Window,
+    deg,
+    layers::Surface,
+    program::{Program, Region},
+};
 
 use crate::models;
 use crate::support::{Random, frame_of, near, random_leaf, random_solid};

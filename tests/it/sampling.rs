@@ -1,7 +1,7 @@
 //! Points on surfaces, uniform by area.
 
 use glam::DVec3;
-use rvachev::{Gielis, ParametricSurface, Superellipsoid, Superhyperboloid, Supershape, Supertoroid};
+use rvachev::{Gielis, Superellipsoid, Superhyperboloid, Supershape, Supertoroid, surface::ParametricSurface};
 
 /// χ² of counts against what is expected of them.
 fn chi_square(counts: &[f64], expected: &[f64]) -> f64 {

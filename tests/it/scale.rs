@@ -1,7 +1,7 @@
 //! Solids of very many nodes: deep chains, shared parts, long joins.
 
 use glam::DVec3;
-use rvachev::{Bounds, CellSize, MeshSettings, RFunction, Region, Solid, Superellipsoid};
+use rvachev::{Bounds, CellSize, MeshSettings, RFunction, Solid, Superellipsoid, program::Region};
 
 use crate::support::{RULES, Random, lanes32, value};
 

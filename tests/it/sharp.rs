@@ -4,7 +4,9 @@ use std::collections::HashMap;
 
 use glam::{DQuat, DVec3};
 use rvachev::{
-    AtBounds, Bounds, CellSize, Features, Field, Mesh, MeshSettings, MeshingError, ParamError, RFunction, Real, Solid,
+    AtBounds, Bounds, CellSize, Features, Mesh, MeshSettings, ParamError, RFunction, Solid,
+    error::MeshingError,
+    field::{Field, Real},
     rad,
 };
 

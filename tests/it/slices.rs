@@ -3,7 +3,11 @@
 use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
-use rvachev::{Isolines, Plane, PlaneBounds, Polyline, RFunction, SliceSettings, Solid, write_dxf, write_svg};
+use rvachev::{
+    Plane, PlaneBounds, Polyline, RFunction, SliceSettings, Solid,
+    io::{write_dxf, write_svg},
+    layers::Isolines,
+};
 
 use crate::golden::{ascii, same_as_golden};
 
@@ -96,7 +100,7 @@ fn drawings() {
 fn errors() {
     let ball = Solid::sphere(1.0);
     let slice = ball.slice(&Plane::xy(0.0)).unwrap();
-    let message = |e: rvachev::RenderError| e.to_string();
+    let message = |e: rvachev::error::RenderError| e.to_string();
     assert!(message(slice.contours(0.0).unwrap_err()).starts_with("tolerance is 0"));
     assert!(message(slice.values(0).unwrap_err()).starts_with("width is 0"));
     let settings = SliceSettings { isolines: Isolines::Every(-1.0), ..SliceSettings::default() };

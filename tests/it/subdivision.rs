@@ -4,8 +4,11 @@ use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, PI, TAU};
 
 use glam::{DVec2, DVec3};
 use rvachev::{
-    ControlGrid, ControlPolygon, ProfileEnd, QuadMesh, SubdivisionError, SubdivisionRevolution, Supertoroid, Tension,
-    deg, hyperbola_of_ellipse, rad,
+    Supertoroid, deg, rad,
+    subdivision::{
+        ControlGrid, ControlPolygon, ProfileEnd, SubdivisionError, SubdivisionRevolution, Tension, hyperbola_of_ellipse,
+    },
+    surface::QuadMesh,
 };
 
 fn square(size: f64) -> Vec<DVec2> {

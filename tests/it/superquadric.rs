@@ -5,7 +5,9 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 use rvachev::{
-    Bounds, Evaluator, Field, GeneralisedSuperquadric, Gradients, Interval, Solid, Superhyperboloid, Supertoroid, Tape,
+    Bounds, GeneralisedSuperquadric, Interval, Solid, Superhyperboloid, Supertoroid,
+    field::Field,
+    program::{Evaluator, Gradients, Tape},
 };
 
 use crate::support::{Random, lanes32, lanes64, near, samples, value};

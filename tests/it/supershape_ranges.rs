@@ -2,7 +2,11 @@
 //! enough elsewhere that few cells without surface are kept.
 
 use glam::{DQuat, DVec3};
-use rvachev::{Bounds, Field, Gielis, Program, Region, Solid, Supershape, Turns};
+use rvachev::{
+    Bounds, Gielis, Solid, Supershape, Turns,
+    field::Field,
+    program::{Program, Region},
+};
 
 use crate::support::{Random, lanes32, random_box, samples, value};
 

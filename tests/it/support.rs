@@ -2,7 +2,9 @@
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rvachev::{
-    Bounds, Cuboid, Cylinder, Evaluator, Gielis, Mesh, Program, RFunction, Solid, Sphere, Supershape, Tape, Turns, rad,
+    Bounds, Cuboid, Cylinder, Gielis, Mesh, RFunction, Solid, Sphere, Supershape, Turns,
+    program::{Evaluator, Program, Tape},
+    rad,
 };
 
 /// A random source (splitmix64) whose numbers depend on the seed alone.

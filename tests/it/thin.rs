@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use glam::{DQuat, DVec2, DVec3};
 use rvachev::{
-    Blend, Bounds, CancelToken, Cancelled, CellSize, Features, Helix, MeshSettings, MeshingError, MinimalSurface,
-    Polygon, Profile, Run, SheetLattice, Solid, ThinFeatures, ThinReport, deg,
+    Blend, Bounds, CancelToken, Cancelled, CellSize, Features, Helix, MeshSettings, MinimalSurface, Polygon, Profile,
+    Run, SheetLattice, Solid, ThinFeatures, ThinReport, deg, error::MeshingError,
 };
 
 use super::models;

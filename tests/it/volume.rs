@@ -3,7 +3,10 @@
 use std::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
-use rvachev::{Cancelled, Mesh, MeshReport, Progress, Run, Volume, VolumeError, VolumeSettings};
+use rvachev::{
+    Cancelled, Mesh, MeshReport, Progress, Run,
+    volume::{Volume, VolumeError, VolumeSettings},
+};
 
 use crate::support::{Random, near};
 

@@ -5,8 +5,12 @@ use std::f64::consts::{PI, TAU};
 
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 use rvachev::{
-    Buffers, Camera, ClosedMesh, Coordinates, Csg, CsgMethod, Facing, Fragments, LayerSource, Mesh, MeshLayers,
-    ParametricSurface, PatchSettings, RFunction, RasterError, RasterView, Run, Solid, Superellipsoid, Tile, deg, rad,
+    Camera, Mesh, RFunction, Run, Solid, Superellipsoid, deg, rad,
+    range_image::Coordinates,
+    raster::{
+        Buffers, ClosedMesh, Csg, CsgMethod, Facing, Fragments, LayerSource, MeshLayers, RasterError, RasterView, Tile,
+    },
+    surface::{ParametricSurface, PatchSettings},
 };
 
 /// The picture of the acceptance checks: 160 × 160 pixel middles over [−2, 2]², along +z.
@@ -542,7 +546,7 @@ fn like_for_like(view: &RasterView, meshes: &[&Mesh], tree: &Csg, solid: &Solid,
                 // An edge of the result may pass between the two.
                 let next = |dx: i32, dy: i32| buffers.id(x.wrapping_add_signed(dx), y.wrapping_add_signed(dy));
                 let around = [next(1, 0), next(-1, 0), next(0, 1), next(0, -1)];
-                let same = |other: &Option<rvachev::SurfaceId>| {
+                let same = |other: &Option<rvachev::raster::SurfaceId>| {
                     other.is_some_and(|o| (o.operand, o.facing) == (id.operand, id.facing))
                 };
                 assert!(!around.iter().all(same), "({x}, {y}): {off:e}, {tolerance:e} allowed");

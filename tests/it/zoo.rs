@@ -2,8 +2,9 @@
 
 use glam::{DVec2, DVec3};
 use rvachev::{
-    Blend, Caps, Extrusion, GeneralisedSuperquadric, Helix, LinearLaw, Polygon, Profile, SineWave, SmoothStep, Solid,
-    Superhyperboloid, Supertoroid, rad,
+    Blend, Caps, Extrusion, GeneralisedSuperquadric, Helix, Polygon, Profile, Solid, Superhyperboloid, Supertoroid,
+    law::{LinearLaw, SineWave, SmoothStep},
+    rad,
 };
 
 use crate::support::Random;

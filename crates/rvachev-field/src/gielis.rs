@@ -120,7 +120,7 @@ pub enum Turns {
 /// *Potential fields of self-intersecting Gielis curves* (2009).
 ///
 /// ```
-/// use rvachev::{Gielis, Radius, Turns, rad};
+/// use rvachev::{rad, Gielis, Radius, Turns};
 ///
 /// let curve = Gielis::new(5.0, 3.0, 2.0, 8.0);
 /// assert!((curve.radius(rad(0.3), Radius::Standard) - 1.0490573465444).abs() < 1e-12);

@@ -28,7 +28,7 @@ use crate::{Bounds, Dual, Interval, Real};
 /// Mark `eval` and every helper in it `#[inline(always)]`, or lanes run 18 times slower.
 ///
 /// ```
-/// use rvachev::{Bounds, Field, ParamError, Real, Solid};
+/// use rvachev::{field::{Field, Real}, Bounds, ParamError, Solid};
 /// use glam::DVec3;
 ///
 /// /// A heart-shaped section, two units thick.

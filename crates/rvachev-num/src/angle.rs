@@ -22,7 +22,7 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 /// degrees.
 ///
 /// ```
-/// use rvachev::{Solid, deg, rad, turns};
+/// use rvachev::{deg, rad, turns, Solid};
 ///
 /// let bar = Solid::cuboid([8.0, 1.0, 1.0]);
 /// assert!(bar.rotate_z(deg(90.0)).contains([0.0, 3.9, 0.0])?);

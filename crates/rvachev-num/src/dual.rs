@@ -13,7 +13,7 @@ use super::{Monotone, Monotone3, Norm, Real};
 /// A value and its derivatives with respect to three variables.
 ///
 /// ```
-/// use rvachev::{Dual, Real};
+/// use rvachev::field::{Dual, Real};
 ///
 /// let (x, y) = (Dual::variable(3.0, 0), Dual::variable(4.0, 1));
 /// let length = (x.square() + y.square()).sqrt();

@@ -15,7 +15,7 @@ use super::{Monotone, Monotone3, Norm};
 /// `#[inline(always)]`, or a closure bound by `let`, costs a factor of about 18.
 ///
 /// ```
-/// use rvachev::{Dual, Interval, Real};
+/// use rvachev::{field::{Dual, Real}, Interval};
 ///
 /// #[inline(always)]
 /// fn circle<R: Real>(x: R, y: R) -> R {

@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use fidget::context::Tree;
 use glam::DVec3;
 use rvachev::{
-    Bounds, Formula, GeneralisedSuperquadric, Gielis, Grading, Interval, MinimalSurface, NetworkLattice, Real,
-    SheetLattice, Solid, Superhyperboloid, Supershape, Turns,
+    Bounds, Formula, GeneralisedSuperquadric, Gielis, Grading, Interval, MinimalSurface, NetworkLattice, SheetLattice,
+    Solid, Superhyperboloid, Supershape, Turns, field::Real,
 };
 
 use super::Entry;

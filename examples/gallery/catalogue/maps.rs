@@ -1,7 +1,11 @@
 //! Levels, offsets and shells, and maps.
 
 use glam::{DAffine3, DMat3, DVec3};
-use rvachev::{LawTable, SineWave, SmoothStep, Solid, deg, rad, turns};
+use rvachev::{
+    Solid, deg,
+    law::{LawTable, SineWave, SmoothStep},
+    rad, turns,
+};
 
 use super::Entry;
 

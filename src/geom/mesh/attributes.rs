@@ -55,7 +55,7 @@ impl Mesh {
     /// let mesh = Mesh::new(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2]])?;
     /// let mesh = mesh.with_corner_normals(vec![[Vec3::Z; 3]])?;
     /// assert_eq!(mesh.corner_normals(), Some(&[[Vec3::Z; 3]][..]));
-    /// # Ok::<(), rvachev::MeshError>(())
+    /// # Ok::<(), rvachev::error::MeshError>(())
     /// ```
     ///
     /// # Errors

@@ -67,7 +67,7 @@ impl Mesh {
     /// // A sheet of a fortieth of a cell passes between the samples: the mesh is empty.
     /// let sheet = Solid::cuboid([1.0, 1.0, 0.0025]).mesh(&settings)?;
     /// assert!(sheet.triangles().is_empty() && sheet.possibly_lost() > 0);
-    /// # Ok::<(), rvachev::MeshingError>(())
+    /// # Ok::<(), rvachev::error::MeshingError>(())
     /// ```
     ///
     /// # Details
@@ -99,7 +99,7 @@ impl Mesh {
     ///     eprintln!("warning: {warning}");
     /// }
     /// assert!(mesh.warnings()[0].starts_with("the mesh is empty"));
-    /// # Ok::<(), rvachev::MeshingError>(())
+    /// # Ok::<(), rvachev::error::MeshingError>(())
     /// ```
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {

@@ -54,7 +54,7 @@ impl Mesh {
     /// let inertia = Mesh::new(positions, triangles)?.inertia().unwrap();
     /// assert!((inertia.x_axis.x - 1.0 / 80.0).abs() < 1e-15);
     /// assert!((inertia.x_axis.y - 1.0 / 480.0).abs() < 1e-15);
-    /// # Ok::<(), rvachev::MeshError>(())
+    /// # Ok::<(), rvachev::error::MeshError>(())
     /// ```
     #[must_use]
     pub fn inertia(&self) -> Option<DMat3> {

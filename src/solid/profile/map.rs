@@ -15,7 +15,7 @@ impl Profile {
     /// Turned about the origin by `angle`, from x towards y; quarter turns are exact.
     ///
     /// ```
-    /// use rvachev::{Profile, deg};
+    /// use rvachev::{deg, Profile};
     ///
     /// let upright = Profile::rectangle([6.0, 2.0]).rotate(deg(90.0));
     /// assert_eq!(upright.value([0.0, 2.5])?, 0.5);
@@ -136,7 +136,7 @@ impl Profile {
     /// is the profile where it is: see [`Solid::repeat_polar`](crate::Solid::repeat_polar).
     ///
     /// ```
-    /// use rvachev::{Profile, deg};
+    /// use rvachev::{deg, Profile};
     ///
     /// let holes = Profile::circle(1.0).translate([12.0, 0.0]).repeat_polar(5);
     /// let flange = Profile::circle(16.0) - holes;

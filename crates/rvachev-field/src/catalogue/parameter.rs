@@ -5,7 +5,7 @@ use super::{Kind, Range, Unit, Value};
 /// One parameter of what the catalogue lists: its name, kind, unit and range, and what it is.
 ///
 /// ```
-/// use rvachev::{Kind, Unit, Value, catalogue};
+/// use rvachev::{catalogue, catalogue::{Kind, Unit, Value}};
 ///
 /// let ring = catalogue().iter().find(|entry| entry.name() == "torus").expect("a torus");
 /// let [radius, tube] = ring.parameters() else { unreachable!("two parameters") };

@@ -9,7 +9,7 @@ use crate::{Angle, Blend, Bounds, BuiltInLaw, Caps, Gielis, RFunction};
 /// Units are those of the [`Parameter`](crate::Parameter): lengths, radians, none.
 ///
 /// ```
-/// use rvachev::{Form, Solid, Value};
+/// use rvachev::{catalogue::Value, form::Form, Solid};
 ///
 /// let rod = Solid::cylinder(1.0, 10.0);
 /// let Form::Leaf(leaf) = rod.form() else { unreachable!("a cylinder is a leaf") };

@@ -12,7 +12,7 @@ use crate::{ParamError, Real};
 /// A [`Law`] that is built in: what a [`Form`](crate::Form) tells of a taper or a twist.
 ///
 /// ```
-/// use rvachev::{BuiltInLaw, Law, LinearLaw, Solid};
+/// use rvachev::{law::{BuiltInLaw, Law, LinearLaw}, Solid};
 ///
 /// let line = LinearLaw { at_zero: 1.0, slope: -0.25 };
 /// let law = BuiltInLaw::Linear(line);

@@ -20,7 +20,7 @@ use crate::{COORDINATE_LIMIT, ParamError, check};
 /// Mark `at` and every helper in it `#[inline(always)]`.
 ///
 /// ```
-/// use rvachev::{Law, Real, Solid};
+/// use rvachev::{field::Real, law::Law, Solid};
 /// use glam::DVec3;
 ///
 /// /// A waist: 1 far away, `waist` at z = 0.
@@ -74,7 +74,7 @@ impl Law for f64 {
 /// | `slope` | value per length | ±10⁹ |
 ///
 /// ```
-/// use rvachev::{Law, LinearLaw};
+/// use rvachev::law::{Law, LinearLaw};
 ///
 /// assert_eq!(LinearLaw { at_zero: 1.0, slope: -0.25 }.at(2.0), 0.5);
 /// ```
@@ -106,7 +106,7 @@ impl Law for LinearLaw {
 /// | `from`, `to` | (z, value): length, that of the value | z of `to` above that of `from` by 10⁻⁹ or more; ±10⁹ |
 ///
 /// ```
-/// use rvachev::{Law, SmoothStep};
+/// use rvachev::law::{Law, SmoothStep};
 ///
 /// let step = SmoothStep { from: (-1.0, 1.0), to: (1.0, 3.0) };
 /// assert_eq!([step.at(-5.0), step.at(0.0), step.at(1.0)], [1.0, 2.0, 3.0]);
@@ -148,7 +148,7 @@ impl Law for SmoothStep {
 /// | `phase` | [`Angle`] | ±10⁹ degrees |
 ///
 /// ```
-/// use rvachev::{SineWave, Solid, deg};
+/// use rvachev::{deg, law::SineWave, Solid};
 /// use glam::DVec3;
 ///
 /// let wave = SineWave { mean: 1.0, amplitude: 0.2, wavelength: 2.0, phase: deg(0.0) };
@@ -192,7 +192,7 @@ impl Law for SineWave {
 /// | `points` | (z, value): length, that of the value | 1 to 1000 points, z rising by 10⁻⁹ or more; ±10⁹ |
 ///
 /// ```
-/// use rvachev::{Law, LawTable};
+/// use rvachev::law::{Law, LawTable};
 ///
 /// let table = LawTable::new([(0.0, 1.0), (2.0, 2.0), (3.0, 0.5)]);
 /// assert_eq!([table.at(-1.0), table.at(1.0), table.at(2.5), table.at(9.0)], [1.0, 1.5, 1.25, 0.5]);

@@ -18,7 +18,7 @@ impl Formula {
     /// let bounds = Bounds::new(-DVec3::ONE, DVec3::ONE);
     /// let bowl = Formula::from_vm("x var-x\nxx square x\nhalf const 0.5\nout sub xx half", bounds)?;
     /// assert_eq!(bowl.to_vm(), "_0 var-x\n_1 square _0\n_2 const 0.5\n_3 sub _1 _2\n");
-    /// # Ok::<(), rvachev::FormulaError>(())
+    /// # Ok::<(), rvachev::error::FormulaError>(())
     /// ```
     #[must_use]
     pub fn to_vm(&self) -> String {

@@ -68,13 +68,13 @@ impl Superellipse {
     /// (`Explicit`), 0.032 (`Radial`) and 0.85 (`UniformAngle`).
     ///
     /// ```
-    /// use rvachev::{CurveSpread, Superellipse};
+    /// use rvachev::{points::CurveSpread, Superellipse};
     ///
     /// let points = Superellipse::new([1.0, 1.0], 0.04).points(45, CurveSpread::Explicit)?;
     /// assert_eq!(points.len(), 360);
     /// let gap = points.windows(2).map(|w| w[0].distance(w[1])).fold(0.0, f64::max);
     /// assert!(gap < 0.025);
-    /// # Ok::<(), rvachev::PointError>(())
+    /// # Ok::<(), rvachev::points::PointError>(())
     /// ```
     ///
     /// # Errors

@@ -11,11 +11,11 @@ use rvachev_num::kernel::{CHUNK, Element, Formula, Visit, run};
 /// Heights `z = (1 − |x|ⁿ − |y|ⁿ)^(1/n)` (method 2): three powers in place of four and no sine.
 ///
 /// ```
-/// use rvachev::ExactExplicit;
+/// use rvachev::points::ExactExplicit;
 ///
 /// let explicit = ExactExplicit::new(5.0)?;
 /// assert!((explicit.height(0.5, 0.0) - 0.993670377332229).abs() < 1e-15);
-/// # Ok::<(), rvachev::PointError>(())
+/// # Ok::<(), rvachev::points::PointError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExactExplicit {
@@ -132,13 +132,13 @@ fn product<R: Real>(x: R, n: u32) -> R {
 /// Heights by the binomial series (method 3): two powers and a polynomial.
 ///
 /// ```
-/// use rvachev::SeriesExplicit;
+/// use rvachev::points::SeriesExplicit;
 ///
 /// let series = SeriesExplicit::new(5.0, 1e-3)?;
 /// assert_eq!(series.series().terms(), 8);
 /// let exact = (1.0 - 0.5f64.powi(5) - 0.7f64.powi(5)).powf(0.2);
 /// assert!((series.height(0.5, 0.7) - exact).abs() < 1e-3);
-/// # Ok::<(), rvachev::PointError>(())
+/// # Ok::<(), rvachev::points::PointError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct SeriesExplicit {

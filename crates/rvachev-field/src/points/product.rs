@@ -17,7 +17,7 @@ use rvachev_num::kernel::{Task, dispatched};
 /// The tables are sampled evenly by the explicit form, not by angles.
 ///
 /// ```
-/// use rvachev::ProductTables;
+/// use rvachev::points::ProductTables;
 ///
 /// let tables = ProductTables::new(0.5, 0.5, 45)?;
 /// let mut out = [vec![0.0; 91 * 91], vec![0.0; 91 * 91], vec![0.0; 91 * 91]];
@@ -25,7 +25,7 @@ use rvachev_num::kernel::{Task, dispatched};
 /// for ((x, y), z) in out[0].iter().zip(&out[1]).zip(&out[2]) {
 ///     assert!((x.powi(4) + y.powi(4) + z.powi(4) - 1.0).abs() < 1e-6);
 /// }
-/// # Ok::<(), rvachev::PointError>(())
+/// # Ok::<(), rvachev::points::PointError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProductTables {

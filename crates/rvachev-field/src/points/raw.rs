@@ -17,11 +17,11 @@ use rvachev_num::kernel::Formula;
 /// shape (e below 0.5) crowd at its edges.
 ///
 /// ```
-/// use rvachev::{RawParametric, rad};
+/// use rvachev::{points::RawParametric, rad};
 ///
 /// let [x, y, z] = RawParametric::new(0.5, 0.5)?.point(rad(0.3), rad(0.4));
 /// assert!((x.powi(4) + y.powi(4) + z.powi(4) - 1.0).abs() < 1e-15);
-/// # Ok::<(), rvachev::PointError>(())
+/// # Ok::<(), rvachev::points::PointError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RawParametric {

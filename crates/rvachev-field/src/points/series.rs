@@ -18,14 +18,14 @@ const MOST_TERMS: u32 = 100;
 /// The binomial series of `(1 − u)^(1/n)`, n > 1.
 ///
 /// ```
-/// use rvachev::BinomialSeries;
+/// use rvachev::points::BinomialSeries;
 ///
 /// // Terms for 10⁻⁶ wherever the height is the largest of three coordinates.
 /// let series = BinomialSeries::for_tolerance(5.0, 2.0 / 3.0, 1e-6)?;
 /// assert_eq!(series.terms(), 23);
 /// let exact = (1.0f64 - 0.5).powf(0.2);
 /// assert!((series.value(0.5) - exact).abs() < 1e-6);
-/// # Ok::<(), rvachev::PointError>(())
+/// # Ok::<(), rvachev::points::PointError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct BinomialSeries {

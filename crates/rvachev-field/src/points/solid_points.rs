@@ -103,13 +103,13 @@ impl Superellipsoid {
     /// reflected 8-fold, and a meridian.
     ///
     /// ```
-    /// use rvachev::{PointSettings, Superellipsoid};
+    /// use rvachev::{points::PointSettings, Superellipsoid};
     ///
     /// let shape = Superellipsoid::new([1.0, 2.0, 3.0], 0.3, 0.3);
     /// let points = shape.points(&PointSettings::default())?;
     /// assert!(points.len() > 5000);
     /// assert!(points.iter().all(|&p| (shape.gauge(p) - 1.0).abs() < 1e-6));
-    /// # Ok::<(), rvachev::PointError>(())
+    /// # Ok::<(), rvachev::points::PointError>(())
     /// ```
     ///
     /// # Errors
@@ -233,13 +233,13 @@ impl GeneralisedSuperquadric {
     /// exponents are equal or not, then scaled.
     ///
     /// ```
-    /// use rvachev::{Field, GeneralisedSuperquadric};
+    /// use rvachev::{field::Field, GeneralisedSuperquadric};
     ///
     /// let shape = GeneralisedSuperquadric::new([1.0, 2.0, 3.0], [5.0, 3.0, 1.5]);
     /// let points = shape.points(8)?;
     /// assert_eq!(points.len(), 6 * 16 * 16 + 2);
     /// assert!(points.iter().all(|p| shape.eval(p.to_array()).abs() < 1e-12));
-    /// # Ok::<(), rvachev::PointError>(())
+    /// # Ok::<(), rvachev::points::PointError>(())
     /// ```
     ///
     /// # Errors

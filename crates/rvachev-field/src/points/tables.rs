@@ -15,12 +15,12 @@ use super::{PointError, check_exponent};
 /// size for n = 5 and 0.85 for n = 50 as z goes to 0.
 ///
 /// ```
-/// use rvachev::PowerTables;
+/// use rvachev::points::PowerTables;
 ///
 /// let tables = PowerTables::new(5.0, 1000)?;
 /// let exact = (1.0 - 0.5f64.powi(5) - 0.7f64.powi(5)).powf(0.2);
 /// assert!((tables.height(0.5, 0.7) - exact).abs() <= tables.error_bound());
-/// # Ok::<(), rvachev::PointError>(())
+/// # Ok::<(), rvachev::points::PointError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct PowerTables {
@@ -93,12 +93,12 @@ impl PowerTables {
 /// On nodes x = i/N, y = j/N the error is that of the [`BinomialSeries`].
 ///
 /// ```
-/// use rvachev::LogTable;
+/// use rvachev::points::LogTable;
 ///
 /// let table = LogTable::new(5.0, 1000, 1e-3)?;
 /// let exact = (1.0 - 0.5f64.powi(5) - 0.7f64.powi(5)).powf(0.2);
 /// assert!((table.height(0.5, 0.7) - exact).abs() <= table.error_bound());
-/// # Ok::<(), rvachev::PointError>(())
+/// # Ok::<(), rvachev::points::PointError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct LogTable {

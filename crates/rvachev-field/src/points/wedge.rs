@@ -36,7 +36,7 @@ pub enum Symmetry {
 ///
 /// ```
 /// use glam::DVec2;
-/// use rvachev::{PlaneSymmetry, reflect_plane};
+/// use rvachev::points::{PlaneSymmetry, reflect_plane};
 ///
 /// assert_eq!(reflect_plane(&[DVec2::new(0.9, 0.2)], PlaneSymmetry::Square).len(), 8);
 /// assert_eq!(reflect_plane(&[DVec2::new(1.0, 0.0)], PlaneSymmetry::Square).len(), 4);
@@ -60,7 +60,7 @@ pub fn reflect_plane(wedge: &[DVec2], symmetry: PlaneSymmetry) -> Vec<DVec2> {
 ///
 /// ```
 /// use glam::DVec3;
-/// use rvachev::{Symmetry, reflect};
+/// use rvachev::points::{Symmetry, reflect};
 ///
 /// let inside = DVec3::new(0.2, 0.5, 0.9);
 /// assert_eq!(reflect(&[inside], Symmetry::Cube).len(), 48);

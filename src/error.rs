@@ -1,0 +1,10 @@
+//! Errors of single entry points. Those of solids and of their parameters stand at the root:
+//! [`SolidError`](crate::SolidError), [`ParamError`](crate::ParamError).
+
+pub use crate::geom::{CameraError, ImageError, MeshError, PointCloudError};
+pub use crate::io::save::SaveError;
+pub use crate::mesh::MeshingError;
+pub use crate::render::RenderError;
+#[cfg(feature = "formula")]
+#[doc(inline)]
+pub use rvachev_field::FormulaError;
