@@ -284,7 +284,7 @@
 //! | | |
 //! |---|---|
 //! | [`ParametricSurface::of`] | of a leaf: points, tangents, exact normals by two parameters |
-//! | [`ParametricSurface::mesh`], [`quad_mesh`](ParametricSurface::quad_mesh) | closed triangles and quadrilaterals, by angles, by lengths or within a tolerance ([`Spacing`]) |
+//! | [`ParametricSurface::mesh`], [`quad_mesh`](surface::ParametricSurface::quad_mesh) | closed triangles and quadrilaterals, by angles, by lengths or within a tolerance ([`Spacing`]) |
 //! | [`ParametricSurface::sample`] | points uniform by area |
 //! | [`ParametricCurve`] | the same of plane curves |
 //! | [`Superellipsoid::points`], [`Superellipse::points`] | points by Franklin and Barr's methods ([`PointMethod`]) |
@@ -301,9 +301,9 @@
 //! | | |
 //! |---|---|
 //! | [`ClosedMesh`] | a mesh that encloses a solid; [`Mesh::affine`], [`taper`](Mesh::taper), [`twist`](Mesh::twist) and [`bend`](Mesh::bend) move and deform it |
-//! | [`RasterView`] | a camera and its picture; the [`layers`](RasterView::layers) of a mesh in it |
+//! | [`RasterView`] | a camera and its picture; the [`layers`](raster::RasterView::layers) of a mesh in it |
 //! | [`RasterView::csg`] | the depth buffer of a tree of operands ([`Csg`]) by one of three methods ([`CsgMethod`] says which, and when rays are better) |
-//! | [`Buffers`] | depth, stencil and ids; passes to go step by step; [`picture`](Buffers::picture), [`range_image`](Buffers::range_image) |
+//! | [`Buffers`] | depth, stencil and ids; passes to go step by step; [`picture`](raster::Buffers::picture), [`range_image`](raster::Buffers::range_image) |
 //! | [`LayerSource`] | operands that are no meshes |
 //!
 //! ## Solids as values
@@ -394,6 +394,37 @@
 //! Under the verbs are the compiled [`Program`]s: narrowed to a region
 //! ([`Program::narrow`]), run in bulk ([`Tape`], [`Evaluator`]). Your own leaf is a type that
 //! implements [`Field`]; a solid can be handed to fidget with [`Solid::to_fidget`].
+//!
+//! [`Buffers`]: raster::Buffers
+//! [`Call`]: catalogue::Call
+//! [`ClosedMesh`]: raster::ClosedMesh
+//! [`ControlGrid`]: subdivision::ControlGrid
+//! [`ControlPolygon`]: subdivision::ControlPolygon
+//! [`Csg`]: raster::Csg
+//! [`CsgMethod`]: raster::CsgMethod
+//! [`Entry`]: catalogue::Entry
+//! [`Evaluator`]: program::Evaluator
+//! [`Field`]: field::Field
+//! [`Form`]: form::Form
+//! [`Law`]: law::Law
+//! [`LawTable`]: law::LawTable
+//! [`LayerSource`]: raster::LayerSource
+//! [`LinearLaw`]: law::LinearLaw
+//! [`Parameter`]: catalogue::Parameter
+//! [`ParametricCurve`]: surface::ParametricCurve
+//! [`ParametricSurface::mesh`]: surface::ParametricSurface::mesh
+//! [`ParametricSurface::of`]: surface::ParametricSurface::of
+//! [`ParametricSurface::sample`]: surface::ParametricSurface::sample
+//! [`PointMethod`]: points::PointMethod
+//! [`Program`]: program::Program
+//! [`Program::narrow`]: program::Program::narrow
+//! [`RasterView`]: raster::RasterView
+//! [`RasterView::csg`]: raster::RasterView::csg
+//! [`SineWave`]: law::SineWave
+//! [`SmoothStep`]: law::SmoothStep
+//! [`Spacing`]: surface::Spacing
+//! [`SubdivisionRevolution`]: subdivision::SubdivisionRevolution
+//! [`Tape`]: program::Tape
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
@@ -450,20 +481,13 @@ pub use rvachev_field::{
 pub use rvachev_num::{Angle, Bounds, CancelToken, Cancelled, Interval, Progress, Run, deg, rad, turns};
 pub use solid::{Extrusion, Helix, Paint, PlaneBounds, Profile, Solid, SolidError};
 
-// What the modules and the tour call by its name alone.
+// What the modules below call by its name alone.
 use {
-    catalogue::{Call, Entry, Kind, Parameter, Range, Unit, Value, ValueError},
-    error::{CameraError, ImageError, MeshError, MeshingError, PointCloudError, RenderError, SaveError},
-    eval::{Evaluator, Gradients, Palette, Program, Region, Tape, UnequalSlices},
-    field::{COORDINATE_LIMIT, Dual, Field, Kernel, Monotone, Monotone3, Norm, Real, VALUE_LIMIT},
+    catalogue::{Parameter, Range, Unit, Value, ValueError},
+    error::{CameraError, ImageError, MeshError, SaveError},
+    eval::Palette,
+    field::{COORDINATE_LIMIT, Dual, Field, Norm, Real},
     form::{Form, Length, Operation, Repetition},
-    geom::{Coordinates, Corner, Intrinsics, Noise, Projection, QuadMesh, RangeImage, RangeImageError, Rays},
+    geom::{Projection, RangeImage, RangeImageError, Rays},
     law::{BuiltInLaw, Law, LawTable, LinearLaw, SineWave, SmoothStep},
-    layers::{GBuffer, Isolines, Layers, Surface, Transfer},
-    mesh::{Lattice, LatticeError, Volume, VolumeError, VolumeSettings},
-    points::{PointError, PointMethod, PointSettings},
-    raster::{Buffers, ClosedMesh, Csg, CsgMethod, LayerSource, RasterView},
-    render::Window,
-    subdivision::{ControlGrid, ControlPolygon, SubdivisionError, SubdivisionRevolution},
-    surface::{ParametricCurve, ParametricSurface, PatchError, PatchSettings, Spacing, SurfacePoint},
 };

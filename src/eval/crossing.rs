@@ -88,7 +88,8 @@ const PARTS: u32 = 1;
 mod tests {
     use glam::DVec3;
 
-    use crate::{Bounds, Interval, Region, Solid, rad};
+    use crate::eval::Region;
+    use crate::{Bounds, Interval, Solid, rad};
 
     #[test]
     fn rays_cross_the_way_the_leaves_do() {

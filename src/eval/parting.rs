@@ -67,7 +67,8 @@ mod tests {
     use fidget::context::Tree;
     use glam::{DVec2, DVec3};
 
-    use crate::{Bounds, PlaneBounds, Profile, Region, Solid, rad};
+    use crate::eval::Region;
+    use crate::{Bounds, PlaneBounds, Profile, Solid, rad};
 
     #[test]
     fn each_side_has_the_sign_of_the_whole() {

@@ -261,8 +261,9 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
+    use crate::eval::Region;
     use crate::eval::compiled;
-    use crate::{Blend, Helix, MinimalSurface, Polygon, Profile, Region, SheetLattice, Solid, rad};
+    use crate::{Blend, Helix, MinimalSurface, Polygon, Profile, SheetLattice, Solid, rad};
 
     /// Once in the solid, a ray along the direction, or close to it, stays in it.
     #[test]

@@ -74,7 +74,8 @@ impl Program {
 mod tests {
     use glam::DVec3;
 
-    use crate::{Bounds, Region, Solid};
+    use crate::eval::Region;
+    use crate::{Bounds, Solid};
 
     #[test]
     fn what_is_inside_is_within_reach() {

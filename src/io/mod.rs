@@ -50,7 +50,7 @@ pub use ply::write_ply;
 pub use png::{Colors, write_png};
 pub use points::write_ply_points;
 pub use save::Pixel;
-pub(crate) use save::{SaveError, SaveSettings, save_rows};
+pub(crate) use save::{SaveSettings, save_rows};
 pub use stl::{write_stl, write_stl_ascii};
 #[cfg(feature = "threemf")]
 pub use threemf::write_3mf;

@@ -6,7 +6,7 @@ use crate::{Angle, Blend, Bounds, BuiltInLaw, Caps, Gielis, RFunction};
 
 /// The value of a parameter of what the catalogue lists.
 ///
-/// Units are those of the [`Parameter`](crate::Parameter): lengths, radians, none.
+/// Units are those of the [`Parameter`](super::Parameter): lengths, radians, none.
 ///
 /// ```
 /// use rvachev::{catalogue::Value, form::Form, Solid};
@@ -26,7 +26,7 @@ pub enum Value {
     Count(u32),
     /// Yes or no.
     Switch(bool),
-    /// One of the words of [`Kind::Choice`](crate::Kind::Choice).
+    /// One of the words of [`Kind::Choice`](super::Kind::Choice).
     Choice(&'static str),
     /// Three numbers.
     Vector(DVec3),

@@ -9,7 +9,7 @@ use std::fmt;
 use super::{Law, LawTable, LinearLaw, SineWave, SmoothStep};
 use crate::{ParamError, Real};
 
-/// A [`Law`] that is built in: what a [`Form`](crate::Form) tells of a taper or a twist.
+/// A [`Law`] that is built in: what a [`Form`](../form/enum.Form.html) tells of a taper or a twist.
 ///
 /// ```
 /// use rvachev::{law::{BuiltInLaw, Law, LinearLaw}, Solid};

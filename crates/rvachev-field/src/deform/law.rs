@@ -12,8 +12,8 @@ use crate::{Angle, Bounds, Interval, Real};
 use crate::{COORDINATE_LIMIT, ParamError, check};
 
 /// A function of z, written once over [`Real`], that
-/// [`Solid::taper_by`](crate::Solid::taper_by) and
-/// [`Solid::twist_by`](crate::Solid::twist_by) follow: the factor that a section is scaled by, the
+/// [`Solid::taper_by`](../struct.Solid.html#method.taper_by) and
+/// [`Solid::twist_by`](../struct.Solid.html#method.twist_by) follow: the factor that a section is scaled by, the
 /// number that an angle is multiplied by. An `f64` is the constant law;
 /// [`LinearLaw`], [`SmoothStep`], [`SineWave`] and [`LawTable`] are ready made.
 ///
