@@ -177,7 +177,6 @@ impl Profile {
     /// [`Solid::offset`](crate::Solid::offset).
     ///
     #[doc = picture!(
-        "profile_polygon" = "docs/gallery/profile_polygon.png",
         "profile_offset" = "docs/gallery/profile_offset.png",
     )]
     ///
