@@ -97,7 +97,7 @@ impl Node {
 /// and max, for work that asks about the surface;
 /// [`Solid::field_program`](crate::Solid::field_program) one of true values. Points go
 /// through [`value`](Program::value) and [`gradient`](Program::gradient), many points
-/// through a [`Tape`](crate::Tape).
+/// through a [`Tape`](crate::program::Tape).
 ///
 /// ```
 /// use rvachev::{program::Region, Bounds, Solid};

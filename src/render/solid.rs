@@ -93,7 +93,7 @@ impl Scene {
     }
 
     /// The same as linear light, weighted by alpha, before it becomes bytes: with
-    /// [`Transfer::Srgb`](crate::Transfer::Srgb) the radiances themselves, else what the
+    /// [`Transfer::Srgb`](crate::layers::Transfer::Srgb) the radiances themselves, else what the
     /// transfer makes of them. Saved as EXR, or as PNG of 8 or 16 bits.
     ///
     /// ```

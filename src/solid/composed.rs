@@ -12,7 +12,7 @@ use glam::DVec3;
 use super::{Extrusion, Helix, Node, Profile, Solid};
 use crate::Angle;
 
-/// How copies of a solid are arranged: what a [`Form`](crate::Form) tells of
+/// How copies of a solid are arranged: what a [`Form`](crate::form::Form) tells of
 /// [`Solid::repeat`], [`repeat_linear`](Solid::repeat_linear) and
 /// [`repeat_polar`](Solid::repeat_polar).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,7 +7,7 @@ use crate::{Angle, BuiltInLaw, Law};
 use rvachev_field::{Elongate, TaperBy, TwistBy, catalogue};
 
 impl Solid {
-    /// Tapered along z by any [laws](crate::Law) of z: sections are scaled by `x_law` along x
+    /// Tapered along z by any [laws](crate::law::Law) of z: sections are scaled by `x_law` along x
     /// and by `y_law` along y.
     ///
     #[doc = picture!("taper_by" = "docs/gallery/taper_by.png", "taper_by_wave" = "docs/gallery/taper_by_wave.png")]
@@ -38,7 +38,7 @@ impl Solid {
         }
     }
 
-    /// Twisted about the z axis by any [law](crate::Law) of z: the section at z is turned by
+    /// Twisted about the z axis by any [law](crate::law::Law) of z: the section at z is turned by
     /// `angle` times the law's value there, from x towards y. In proportion to z:
     /// [`twist`](Solid::twist).
     ///

@@ -15,7 +15,7 @@ use super::signature::{Numbering, Signature, in_order};
 /// * Whether equal parts are stored once or several times makes no difference, nor does the
 ///   method that made an affine map: `translate` equals `affine` with the same map.
 /// * Parameters are compared by their `Debug` text, which gives numbers exactly: 0 and −0
-///   differ, NaN equals NaN. For users' leaves see [`Field`](crate::Field).
+///   differ, NaN equals NaN. For users' leaves see [`Field`](crate::field::Field).
 ///
 /// The work is proportional to the number of nodes; parts that are stored once are compared
 /// once.

@@ -94,7 +94,7 @@ pub(crate) enum Node {
 }
 
 /// How a solid is moved in or out: [`Solid::level`], [`offset`](Solid::offset),
-/// [`shell`](Solid::shell). What a [`Form`](crate::Form) tells of it.
+/// [`shell`](Solid::shell). What a [`Form`](crate::form::Form) tells of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Length {
@@ -131,7 +131,7 @@ impl Length {
     }
 }
 
-/// A set operation on one or more operands: what a [`Form`](crate::Form) tells of a join.
+/// A set operation on one or more operands: what a [`Form`](crate::form::Form) tells of a join.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Operation {
     /// What is in any operand.
