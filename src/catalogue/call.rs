@@ -200,6 +200,7 @@ fn of_value(value: &Value) -> Option<Call> {
             RFunction::P(p) => ("p", number(p)),
             RFunction::Associative(p) => ("associative", number(p)),
             RFunction::Distance => ("distance", Vec::new()),
+            _ => return None,
         },
         Value::Blend(blend) => match *blend {
             Blend::Smooth { radius } => ("smooth", number(radius)),
@@ -228,6 +229,7 @@ fn of_value(value: &Value) -> Option<Call> {
             Caps::Flat => ("flat", Vec::new()),
             Caps::Chamfered(leg) => ("chamfered", number(leg)),
             Caps::Rounded(radius) => ("rounded", number(radius)),
+            _ => return None,
         },
         _ => return None,
     };

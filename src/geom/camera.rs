@@ -32,6 +32,7 @@ use crate::{Angle, deg};
 /// # Ok::<(), rvachev::error::CameraError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Camera {
     /// The position of the eye, in length units.
     pub eye: DVec3,
@@ -49,6 +50,8 @@ pub struct Camera {
 /// How much it takes in from left to right follows from the picture's aspect ratio: pixels
 /// are square.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Projection {
     /// Rays meet in the eye.
     Perspective {

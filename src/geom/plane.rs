@@ -21,6 +21,7 @@ use glam::{DVec2, DVec3};
 /// assert_eq!(plane.normal(), -DVec3::Y);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Plane {
     origin: DVec3,
     u: DVec3,

@@ -38,6 +38,8 @@ pub struct RangeImage {
 
 /// What the coordinates of points refer to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Coordinates {
     /// The camera: x right, y down, z along the view, the eye at 0.
     Camera,
@@ -47,6 +49,7 @@ pub enum Coordinates {
 
 /// How a range finder errs.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Noise {
     /// Standard deviation of the error along the ray, in length units, at least 0. Default: 0.
     pub deviation: f64,

@@ -10,6 +10,7 @@ use glam::DVec3;
 /// solid without any.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ThinReport {
     /// The side of the cells that were searched, in length units.
     pub cell: f64,
@@ -25,6 +26,7 @@ pub struct ThinReport {
 /// A place where a solid, or what is around it, may be thinner than cells show: cells that touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ThinPlace {
     /// A point on the feature if its thickness is known, or else in one of its cells.
     pub position: DVec3,

@@ -21,6 +21,8 @@ use crate::{Angle, Bounds, deg};
 
 /// From where a solid is looked at. The world has +z up, and its front is towards −y.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum View {
     /// From the front, right and above: no face of a box is seen edge-on or hides another.
     #[default]
@@ -88,6 +90,7 @@ impl View {
 /// assert!(lens.unproject(pixel, p.z).distance(p) < 1e-12);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Intrinsics {
     /// Width of the picture in pixels.
     pub width: u32,

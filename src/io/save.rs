@@ -78,6 +78,7 @@ fn unknown(extension: &str) -> String {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct SaveSettings {
     /// What a length of 1 means. Default: a millimetre. For `.3mf` and `.glb`; the other
     /// formats have no units.

@@ -2,6 +2,8 @@
 
 /// What a length of 1 means, in a file that says so: 3MF names the unit, GLB is in metres.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum LengthUnit {
     /// A thousandth of a millimetre.
     Micron,

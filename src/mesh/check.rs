@@ -36,6 +36,7 @@ use rvachev_num::Bounds;
 /// The default is that of a mesh without triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MeshReport {
     /// Number of triangles.
     pub triangles: usize,

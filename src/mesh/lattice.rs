@@ -32,6 +32,8 @@ use rvachev_num::Bounds;
 /// The cell size that is used is the one asked for, rounded up to 8 significant bits: by less
 /// than 0.8 %.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum CellSize {
     /// The side of a cubic cell in length units, finite and above 0.
     Length(f64),

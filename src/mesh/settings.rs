@@ -14,6 +14,7 @@ use crate::Bounds;
 /// # Ok::<(), rvachev::error::MeshingError>(())
 /// ```
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct MeshSettings {
     /// The resolution. Default: 128 cells along the longest side of the bounds.
     pub cell: CellSize,
@@ -39,6 +40,8 @@ pub struct MeshSettings {
 #[doc = picture!("sharp" = "docs/sharp.png")]
 ///
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Features {
     /// They are cut off, by a fraction of a cell: marching cubes.
     Smooth,
@@ -64,6 +67,8 @@ pub enum Features {
 
 /// What becomes of a solid that leaves the bounds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum AtBounds {
     /// It is cut: the mesh has caps in the faces of the bounds, their edges sharp with
     /// [`Features::Sharp`].
@@ -96,6 +101,8 @@ pub enum AtBounds {
 /// # Ok::<(), rvachev::error::MeshingError>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum ThinFeatures {
     /// They are not searched for.
     #[default]

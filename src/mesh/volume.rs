@@ -61,6 +61,7 @@ pub struct Volume<'a> {
 
 /// How to mesh a [`Volume`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct VolumeSettings {
     /// Samples above this value are inside; in the samples' unit, not NaN. Default: 0.
     pub level: f32,

@@ -57,6 +57,7 @@ use rvachev_num::Meter;
 /// thousand, scans and other meshes that have no field: rasterise. A single view, blends, fillets,
 /// offsets, lattices and formulas, close-ups, shadows, and whatever must be exact: cast rays.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum CsgMethod {
     /// The sorted layers of each pixel.
     #[default]

@@ -42,6 +42,7 @@ impl Default for Surface {
 
 /// A rectangle of pixels of a picture, and where in each pixel the ray passes.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Window {
     /// The first column.
     pub left: u32,

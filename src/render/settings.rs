@@ -20,6 +20,7 @@ use crate::{Angle, CameraError, Cancelled, ImageError, Paint, SaveError, SolidEr
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct RenderSettings {
     /// Width of the picture in pixels, 1 to 65 535. Default: 800.
     pub width: u32,
@@ -75,6 +76,8 @@ impl Default for RenderSettings {
 
 /// How a solid is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Style {
     /// In its paint, under the lights of a studio, on a ground.
     #[default]
@@ -100,6 +103,7 @@ impl Style {
 
 /// The strengths of the lights: 1 is the default, 0 turns a light off, 10 is the most.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Lights {
     /// The main light, from the upper left.
     pub key: f64,
@@ -119,6 +123,8 @@ impl Default for Lights {
 
 /// How light becomes colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Transfer {
     /// As it is, in sRGB; what is brighter than white is cut off.
     Srgb,
@@ -130,6 +136,8 @@ pub enum Transfer {
 
 /// What is behind the solid. Colours are red, green, blue in sRGB.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Background {
     /// Nothing: alpha is 0 there, and in between at the outline and in shadows on the ground.
     Transparent,

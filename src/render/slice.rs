@@ -47,6 +47,7 @@ pub struct Slice {
 
 /// How a slice is drawn.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct SliceSettings {
     /// Width of the picture in pixels, 1 to 65 535; its height follows from the region. Default: 800.
     pub width: u32,
@@ -66,6 +67,8 @@ impl Default for SliceSettings {
 
 /// Where isolines are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Isolines {
     /// At multiples of a round number.
     #[default]

@@ -133,6 +133,7 @@ impl Length {
 
 /// A set operation on one or more operands: what a [`Form`](crate::form::Form) tells of a join.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Operation {
     /// What is in any operand.
     Union,

@@ -5,6 +5,7 @@ use crate::ParamError;
 
 /// What a surface looks like: its colour, and how rough it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct Paint {
     /// Red, green, blue in sRGB.
     pub color: [u8; 3],

@@ -47,6 +47,7 @@ pub struct Profile(pub(crate) Solid);
 
 /// A rectangle along the axes of the plane: what a profile is within.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PlaneBounds {
     /// The corner with the smallest coordinates.
     pub min: DVec2,

@@ -5,16 +5,15 @@ use std::f64::consts::TAU;
 
 use super::composed::Sweep;
 use super::{Node, Profile, Solid};
-use crate::{Angle, Blend, ParamError, Polygon, RFunction};
+use crate::{Angle, ParamError, Polygon, RFunction};
 use rvachev_field::{Caps, HelixWarp, Opening, Revolution, Span, Turn, check};
 
 /// A column cut off by a slab.
 fn cut(caps: Caps, column: &Solid, slab: &Solid) -> Solid {
-    match caps {
-        // The slab first: it says what is wrong with the parameters.
-        Caps::Flat => slab.intersection(column, RFunction::Distance),
-        Caps::Chamfered(leg) => slab.intersection_with(column, Blend::Chamfer { leg }),
-        Caps::Rounded(radius) => slab.intersection_with(column, Blend::Fillet { radius }),
+    // The slab first: it says what is wrong with the parameters.
+    match caps.blend() {
+        None => slab.intersection(column, RFunction::Distance),
+        Some(blend) => slab.intersection_with(column, blend),
     }
 }
 
@@ -45,6 +44,7 @@ fn cut(caps: Caps, column: &Solid, slab: &Solid) -> Solid {
 /// # Ok::<(), rvachev::SolidError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Extrusion {
     /// Length along z.
     pub height: f64,
@@ -87,6 +87,7 @@ impl Extrusion {
 ///
 /// See [`Profile::sweep_helix`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Helix {
     /// Distance of the profile's origin from the axis.
     pub radius: f64,

@@ -19,6 +19,7 @@ use crate::surface::stitch::{End, Knot, Knots, Layout, stitch};
 
 /// How an end of an open profile is closed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ProfileEnd {
     /// The profile ends on the axis: the radius there is 0.
     Pole,

@@ -27,6 +27,7 @@ use crate::geom::{Mesh, MeshError, QuadMesh};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct PatchSettings {
     /// Rows of faces along the meridian, 2 to 100 000 (3 around a tube). Default: 32.
     pub rows: u32,
@@ -39,6 +40,7 @@ pub struct PatchSettings {
 /// Where the rows and columns of a patch mesh lie.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Spacing {
     /// At equal angles η and ω, as the papers do. Squarish shapes (e below 0.5) leave large
     /// gaps on their sides: at e = 0.04, 0.85 of the size with 91 samples a quarter.

@@ -19,6 +19,7 @@ use super::patch::{PatchError, count};
 
 /// A point of a surface with its outward unit normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SurfacePoint {
     /// The point, in length units.
     pub point: DVec3,

@@ -209,6 +209,7 @@ fn condition_of(rule: RFunction) -> f64 {
         RFunction::P(p) => 2.0 + 2f64.powf(1.0 / p),
         RFunction::Associative(p) => 2f64.powf(1.0 / p),
         RFunction::Distance => 1.5,
+        _ => unreachable!("not one of the rules"),
     }
 }
 

@@ -38,6 +38,8 @@ mod rays;
 mod rfunction;
 mod sampling;
 mod scale;
+#[cfg(feature = "serde")]
+mod serde;
 mod sharp;
 mod slices;
 mod subdivision;

@@ -59,6 +59,7 @@ const MOST_TURNS: u32 = 16;
 /// Source of the rational radius: Y. D. Fougerolle et al., *Rational supershapes for surface
 /// reconstruction*, with its constants put right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum Radius {
     /// Real powers.
     #[default]
@@ -81,6 +82,7 @@ pub enum Radius {
 /// Inner       min over k of r(θ + 2πk)
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[non_exhaustive]
 pub enum Turns {
     /// The first one, angles in [−π, π]: for any m.
     #[default]

@@ -74,6 +74,7 @@ use crate::{Monotone, Norm, Real};
 /// # Ok::<(), rvachev::SolidError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum RFunction {
     /// R_α with −1 < α ≤ 1.
     Alpha(f64),

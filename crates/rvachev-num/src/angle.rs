@@ -37,6 +37,7 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 /// let bar = rvachev::Solid::cuboid([8.0, 1.0, 1.0]).rotate_z(90.0);
 /// ```
 #[derive(Clone, Copy, Default, PartialEq, PartialOrd)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Angle {
     radians: f64,
 }

@@ -40,6 +40,7 @@ use glam::{DAffine3, DVec3};
 /// assert!((turned.min - DVec3::new(-1.0, 0.0, 0.0)).length() < 1e-15);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Bounds {
     /// The corner with the smallest coordinates.
     pub min: DVec3,

@@ -31,6 +31,8 @@ use crate::{Angle, Field, GeneralisedSuperquadric, Superellipsoid};
 /// | `PowerTables` | e1 = e2 | the tolerance, at least 10⁻⁶ |
 /// | `Auto` | any | rounding |
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum PointMethod {
     /// Method 1: signed powers of sines and cosines at equal angles.
     RawParametric,
@@ -60,6 +62,7 @@ pub enum PointMethod {
 
 /// What points are asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct PointSettings {
     /// Samples from the middle of a side to the corner, 1 to 2000. Default: 16.
     pub eighth: u32,

@@ -1,6 +1,6 @@
 //! The edges of the end faces of extruded and swept solids.
 
-use crate::{ParamError, check};
+use crate::{Blend, ParamError, check};
 
 /// How the edges of an end face are.
 ///
@@ -17,6 +17,8 @@ use crate::{ParamError, check};
 /// # Ok::<(), rvachev::SolidError>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Caps {
     /// Sharp.
     #[default]
@@ -29,6 +31,17 @@ pub enum Caps {
 }
 
 impl Caps {
+    /// The blend of the end face with the sides; none of sharp edges.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn blend(self) -> Option<Blend> {
+        match self {
+            Caps::Flat => None,
+            Caps::Chamfered(leg) => Some(Blend::Chamfer { leg }),
+            Caps::Rounded(radius) => Some(Blend::Fillet { radius }),
+        }
+    }
+
     /// Whether the length is in its range.
     #[doc(hidden)]
     pub fn check(self, name: &str) -> Result<(), ParamError> {
