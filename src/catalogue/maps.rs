@@ -108,7 +108,7 @@ verbs! {
     Repetition repeat_linear {
         /// How many.
         count: u32 = None, Range::new(1.0, 1e6), example 4;
-        /// From each to the next.
+        /// From each to the next; no longer than 10⁹ divided by how many there are.
         step: DVec3 = Length, Range::FINITE, example DVec3::new(3.0, 0.0, 4.0);
     } => |solid: Solid| solid.repeat_linear(count, step);
 

@@ -170,8 +170,12 @@ fn fault(part: Part) -> Option<ParamError> {
 
 /// Whether an error speaks of a parameter.
 fn names(error: &ParamError, parameter: &str) -> bool {
-    // What errors call it: a constant law has no name of its own.
-    let parameter = if parameter == "value" && error.parameter == "law" { "law" } else { parameter };
+    // What errors call it: a constant law has no name of its own, a row is a grid.
+    let parameter = match (parameter, error.parameter.as_str()) {
+        ("value", "law") => "law",
+        ("count", "counts.x") => "counts",
+        _ => parameter,
+    };
     error.parameter.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == parameter)
 }
 
@@ -234,7 +238,8 @@ fn ranges_are_those_that_are_checked() {
                 }
                 for number in outside {
                     let Some(error) = with(number) else { continue };
-                    let of_matrix = matches!(entry.group(), Group::Affine);
+                    // A map, or a row that is made of maps, is judged as a whole.
+                    let of_matrix = matches!(entry.group(), Group::Affine) || parameter.name() == "step";
                     let told = error.as_ref().is_some_and(|error| of_matrix || names(error, parameter.name()));
                     assert!(told, "{at} = {number} is not in {range}: {error:?}");
                     probed += 1;
