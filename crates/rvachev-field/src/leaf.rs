@@ -5,6 +5,7 @@ use std::fmt::Debug;
 use glam::{DAffine3, DVec3};
 
 use super::ParamError;
+use super::outlined::Outlined;
 use crate::{Bounds, Dual, Interval, Real};
 
 /// A leaf: a formula that is positive inside a shape, zero on its surface and negative
@@ -107,14 +108,14 @@ pub trait Field: Debug + Send + Sync + 'static {
     /// The range of the formula over a box of the leaf's own frame. The default runs the
     /// formula on intervals; a leaf whose structure gives a tighter one overrides it.
     fn range(&self, region: [Interval; 3]) -> Interval {
-        self.eval(region)
+        self.over(region)
     }
 
     /// Ranges of the formula's three derivatives over a box of the leaf's own frame. They make
     /// the value's range over boxes that stand at an angle to that frame, and over segments.
     /// The default runs the formula on dual numbers of intervals.
     fn slopes(&self, region: [Interval; 3]) -> [Interval; 3] {
-        self.eval(Dual::point(region)).gradient()
+        self.dual_over(Dual::point(region)).gradient()
     }
 
     /// Support function of the shape's convex hull: the largest `direction · p` over its
@@ -134,14 +135,7 @@ pub trait Field: Debug + Send + Sync + 'static {
 
     /// The box of the shape after `map`.
     fn bounds_under(&self, map: &DAffine3) -> Bounds {
-        let rows = map.matrix3.transpose();
-        let mut bounds = Bounds::new(map.translation, map.translation);
-        for axis in 0..3 {
-            let row = rows.col(axis);
-            bounds.max[axis] += self.support(row);
-            bounds.min[axis] -= self.support(-row);
-        }
-        bounds
+        bounds_by_support(&|direction| self.support(direction), map)
     }
 
     /// Calls `kernel` with this leaf, its parameters' special cases told apart: an override
@@ -173,13 +167,24 @@ pub trait Kernel<F> {
     fn run_wide(self, leaf: &F);
 }
 
+/// The box of a shape after `map`, by its support function.
+fn bounds_by_support(support: &dyn Fn(DVec3) -> f64, map: &DAffine3) -> Bounds {
+    let rows = map.matrix3.transpose();
+    let mut bounds = Bounds::new(map.translation, map.translation);
+    for axis in 0..3 {
+        let row = rows.col(axis);
+        bounds.max[axis] += support(row);
+        bounds.min[axis] -= support(-row);
+    }
+    bounds
+}
+
 /// Range of a formula that falls as any of `|x|`, `|y|`, `|z|` rises: two evaluations, exact
 /// but for rounding.
-#[inline(always)]
-pub(super) fn falling_range(leaf: &impl Field, region: [Interval; 3]) -> Interval {
+pub(super) fn falling_range(leaf: &dyn Outlined, region: [Interval; 3]) -> Interval {
     let [x, y, z] = region.map(Real::abs);
-    let near = leaf.eval([x.lo(), y.lo(), z.lo()]);
-    let far = leaf.eval([x.hi(), y.hi(), z.hi()]);
+    let near = leaf.at([x.lo(), y.lo(), z.lo()]);
+    let far = leaf.at([x.hi(), y.hi(), z.hi()]);
     // Slope at most about 1: rounding is relative to the coordinates.
     let size = |x: f64, y: f64, z: f64, v: f64| 1e-14 * (x + y + z + v.abs());
     let lo = far - size(x.hi(), y.hi(), z.hi(), far);

@@ -32,6 +32,7 @@ mod minimal_surface;
 mod network_lattice;
 mod number;
 mod outline;
+mod outlined;
 mod points;
 mod prism;
 mod profile;

@@ -21,7 +21,7 @@
 
 use super::blend::{self, RicciSide};
 use super::{ParamError, VALUE_LIMIT};
-use crate::{Monotone, Norm, Real};
+use crate::{Joined, Monotone, Norm, Op, Real};
 
 /// How set operations combine values. All rules give the same solid; they differ in the
 /// field around and inside it.
@@ -110,13 +110,13 @@ impl RFunction {
     /// ```
     #[must_use]
     pub fn and(self, x: f64, y: f64) -> f64 {
-        Rule::from(self).and(x, y)
+        f64::joined(Rule::from(self), Op::And, x, y)
     }
 
     /// `x ∨ y`: positive where either is.
     #[must_use]
     pub fn or(self, x: f64, y: f64) -> f64 {
-        Rule::from(self).or(x, y)
+        f64::joined(Rule::from(self), Op::Or, x, y)
     }
 
     /// Whether the order in which many operands are joined does not matter.

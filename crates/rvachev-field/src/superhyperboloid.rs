@@ -22,6 +22,7 @@
 
 use glam::DVec3;
 
+use super::outlined::Outlined;
 use super::superellipsoid::{slope_norm, support_norm};
 use super::{Field, Kernel, ParamError, check};
 use crate::{Bounds, Interval, Norm, Real};
@@ -293,7 +294,7 @@ impl Field for Superhyperboloid {
     }
 
     fn range(&self, region: [Interval; 3]) -> Interval {
-        let direct = self.eval(region);
+        let direct = self.over(region);
         if direct.lo() > 0.0 || direct.hi() < 0.0 {
             return direct;
         }

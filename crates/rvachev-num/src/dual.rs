@@ -81,16 +81,13 @@ impl<T: Real> Dual<T> {
     /// Value `v`, derivatives `a` times those of `self`.
     #[inline(always)]
     fn chain(self, v: T, a: T) -> Self {
-        Dual { v, d: [self.d[0] * a, self.d[1] * a, self.d[2] * a] }
+        Dual { v, d: T::chain(self.d, a) }
     }
 
     /// Value `v`, derivatives `a` times those of `self` plus `b` times those of `o`.
     #[inline(always)]
     fn chain2(self, o: Self, v: T, a: T, b: T) -> Self {
-        Dual {
-            v,
-            d: [self.d[0].mul_add(a, o.d[0] * b), self.d[1].mul_add(a, o.d[1] * b), self.d[2].mul_add(a, o.d[2] * b)],
-        }
+        Dual { v, d: T::chain2(self.d, a, o.d, b) }
     }
 
     /// Value `v`, derivatives `a` times those of `self` plus `b` and `c` times those of `y`
@@ -107,10 +104,7 @@ impl<T: Real> Dual<T> {
     /// Component-wise choice by the sign of `by`.
     #[inline(always)]
     fn choose(by: T, nonneg: Self, neg: Self) -> Self {
-        Dual {
-            v: by.select(nonneg.v, neg.v),
-            d: [by.select(nonneg.d[0], neg.d[0]), by.select(nonneg.d[1], neg.d[1]), by.select(nonneg.d[2], neg.d[2])],
-        }
+        Dual { v: by.select(nonneg.v, neg.v), d: by.choose(nonneg.d, neg.d) }
     }
 }
 

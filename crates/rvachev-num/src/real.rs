@@ -132,6 +132,27 @@ pub trait Real:
         (value, [value_rho * rho_x, value_rho * rho_y, value_z])
     }
 
+    /// Derivatives `d`, each times `a`: the chain rule of [`Dual`](crate::Dual) numbers over these.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn chain(d: [Self; 3], a: Self) -> [Self; 3] {
+        [d[0] * a, d[1] * a, d[2] * a]
+    }
+
+    /// The same of two arguments: `a` times `d` plus `b` times `e`.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn chain2(d: [Self; 3], a: Self, e: [Self; 3], b: Self) -> [Self; 3] {
+        [d[0].mul_add(a, e[0] * b), d[1].mul_add(a, e[1] * b), d[2].mul_add(a, e[2] * b)]
+    }
+
+    /// [`select`](Real::select) of derivatives.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn choose(self, nonneg: [Self; 3], neg: [Self; 3]) -> [Self; 3] {
+        [self.select(nonneg[0], neg[0]), self.select(nonneg[1], neg[1]), self.select(nonneg[2], neg[2])]
+    }
+
     /// A function that rises with both of its arguments: an interval needs its endpoints
     /// only, a dual number its two slopes.
     #[inline(always)]

@@ -69,7 +69,7 @@ pub trait Warp: Debug + Clone + Send + Sync + 'static {
     /// By how much an error of a coordinate may grow over a box, however small it is.
     fn stretch(&self, hull: [Interval; 3]) -> f64 {
         let row = |side: &Dual<Interval>| side.gradient().iter().map(|slope| slope.magnitude()).sum::<f64>();
-        self.slopes(Dual::point(hull)).iter().map(row).fold(0.0, f64::max)
+        self.dual_ranges(Dual::point(hull)).iter().map(row).fold(0.0, f64::max)
     }
 
     /// Of a fold, a map that is affine piece by piece: the one or two maps that points of a

@@ -10,6 +10,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::DVec2;
 
+use super::super::outlined::Outlined;
 use super::super::{Field, ParamError};
 use crate::{Bounds, Interval, Norm, Real};
 
@@ -69,11 +70,11 @@ impl Field for Opening {
         let [x, y, _] = region;
         let radius = DVec2::new(0.5 * x.width(), 0.5 * y.width()).length();
         let reach = x.magnitude() + y.magnitude();
-        let direct = self.eval(region);
+        let direct = self.over(region);
         if !radius.is_finite() {
             return direct;
         }
-        let middle = self.eval([x.mid(), y.mid(), 0.0]);
+        let middle = self.at([x.mid(), y.mid(), 0.0]);
         direct.narrowed_by(Interval::around(middle, radius + 1e-14 * reach))
     }
 
