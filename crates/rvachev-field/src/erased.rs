@@ -12,7 +12,7 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use super::deform::{Branches, Warp};
 use super::outlined::{Outlined, zone_range, zone_rises};
-use super::{AnyWarp, Field, Kernel, ParamError, Way, Zone, bits, saturate, steepest};
+use super::{AnyWarp, Case, Field, Kernel, ParamError, Way, Zone, bits, saturate, steepest};
 use crate::{Bounds, Dual, Interval, Real};
 use rvachev_num::kernel::{Element, Formula, Visit, run};
 use rvachev_num::symbol::Symbol;
@@ -178,12 +178,29 @@ pub fn steep_slopes(steepest: f64, p: [Dual<Interval>; 3]) -> [Interval; 3] {
     })
 }
 
+/// A leaf, or a case of it, where it stands: its value, or that and the three derivatives.
+struct Placed<'a, C>(&'a C, &'a Placement);
+
+impl<C: Case> Formula<3, 1> for Placed<'_, C> {
+    #[inline(always)]
+    fn run<R: Real>(&self, p: [R; 3]) -> [R; 1] {
+        [self.1.finish(self.0.value(self.1.apply(p)))]
+    }
+}
+
+impl<C: Case> Formula<3, 4> for Placed<'_, C> {
+    #[inline(always)]
+    fn run<R: Real>(&self, p: [R; 3]) -> [R; 4] {
+        placed(self.1, self.0.value(Dual::point(self.1.apply(p))))
+    }
+}
+
 struct Value<'a, F>(&'a F, &'a Placement);
 
 impl<F: Field> Formula<3, 1> for Value<'_, F> {
     #[inline(always)]
     fn run<R: Real>(&self, p: [R; 3]) -> [R; 1] {
-        [self.1.finish(self.0.eval(self.1.apply(p)))]
+        Placed(self.0, self.1).run(p)
     }
 
     #[inline(always)]
@@ -205,12 +222,22 @@ struct Each<'a, V> {
 impl<F: Field, V: Visit<3, 1>> Kernel<F> for Each<'_, V> {
     #[inline(always)]
     fn run(self, leaf: &F) {
-        self.visit.visit(&Value(leaf, self.placement));
+        Kernel::<F>::run_case(self, leaf);
     }
 
     #[inline(always)]
     fn run_wide(self, leaf: &F) {
-        self.visit.visit_wide(&Value(leaf, self.placement));
+        Kernel::<F>::run_case_wide(self, leaf);
+    }
+
+    #[inline(always)]
+    fn run_case<C: Case>(self, case: &C) {
+        self.visit.visit(&Placed(case, self.placement));
+    }
+
+    #[inline(always)]
+    fn run_case_wide<C: Case>(self, case: &C) {
+        self.visit.visit_wide(&Placed(case, self.placement));
     }
 }
 
@@ -219,7 +246,7 @@ struct Gradient<'a, F>(&'a F, &'a Placement);
 impl<F: Field> Formula<3, 4> for Gradient<'_, F> {
     #[inline(always)]
     fn run<R: Real>(&self, p: [R; 3]) -> [R; 4] {
-        placed(self.1, self.0.eval(Dual::point(self.1.apply(p))))
+        Placed(self.0, self.1).run(p)
     }
 
     #[inline(always)]
@@ -249,12 +276,22 @@ struct EachGradient<'a, V> {
 impl<F: Field, V: Visit<3, 4>> Kernel<F> for EachGradient<'_, V> {
     #[inline(always)]
     fn run(self, leaf: &F) {
-        self.visit.visit(&Gradient(leaf, self.placement));
+        Kernel::<F>::run_case(self, leaf);
     }
 
     #[inline(always)]
     fn run_wide(self, leaf: &F) {
-        self.visit.visit_wide(&Gradient(leaf, self.placement));
+        Kernel::<F>::run_case_wide(self, leaf);
+    }
+
+    #[inline(always)]
+    fn run_case<C: Case>(self, case: &C) {
+        self.visit.visit(&Placed(case, self.placement));
+    }
+
+    #[inline(always)]
+    fn run_case_wide<C: Case>(self, case: &C) {
+        self.visit.visit_wide(&Placed(case, self.placement));
     }
 }
 

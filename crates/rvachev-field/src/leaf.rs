@@ -165,6 +165,28 @@ pub trait Kernel<F> {
     /// Does the work several vectors at a time: faster where the formula is one long chain of
     /// operations, and four times slower to compile.
     fn run_wide(self, leaf: &F);
+
+    /// Does the work with a case of the leaf whose kind is a type.
+    #[doc(hidden)]
+    fn run_case<C: Case>(self, case: &C);
+
+    /// The same, several vectors at a time.
+    #[doc(hidden)]
+    fn run_case_wide<C: Case>(self, case: &C);
+}
+
+/// A leaf's formula, or one case of it. Where cases are types, a kernel is compiled with the code of one of them.
+#[doc(hidden)]
+pub trait Case {
+    /// The formula.
+    fn value<R: Real>(&self, p: [R; 3]) -> R;
+}
+
+impl<F: Field> Case for F {
+    #[inline(always)]
+    fn value<R: Real>(&self, p: [R; 3]) -> R {
+        self.eval(p)
+    }
 }
 
 /// The box of a shape after `map`, by its support function.

@@ -51,7 +51,7 @@ mod supertoroid;
 mod sweep;
 mod zone;
 
-use rvachev_num::{Bounds, Dual, Interval, Monotone, Monotone3, Norm, Real};
+use rvachev_num::{Bounds, Dual, Euclid, Interval, Monotone, Monotone3, Norm, NormKind, OfOne, Powers, Real};
 
 pub use blend::Blend;
 pub use blend::RicciSide;
@@ -75,7 +75,7 @@ pub use formula::{Formula, FormulaError};
 pub use generalised::GeneralisedSuperquadric;
 pub use gielis::{Gielis, Radius, Turns};
 pub use half_space::HalfSpace;
-pub use leaf::{Field, Kernel};
+pub use leaf::{Case, Field, Kernel};
 pub use minimal_surface::{Grading, MinimalSurface};
 pub use network_lattice::NetworkLattice;
 pub use number::{Joined, Number};

@@ -10,6 +10,7 @@
 //! | SIMD lanes of `f32` and `f64` | values and gradients in bulk |
 //! | `Symbol` | an expression tree for fidget |
 
+mod along;
 mod bounds;
 mod dual;
 mod float;
@@ -26,7 +27,7 @@ pub mod symbol;
 pub use bounds::{Bounds, column_times};
 pub use dual::Dual;
 pub use interval::Interval;
-pub use monotone::{Monotone, Monotone3};
-pub use norm::Norm;
+pub use monotone::{Monotone, Monotone3, OfOne};
+pub use norm::{Euclid, Norm, NormKind, Powers};
 pub use real::Real;
 pub use run::{CancelToken, Cancelled, Meter, Progress, Run};

@@ -22,7 +22,7 @@ use std::fmt::Debug;
 use glam::{DAffine3, DVec3};
 
 use super::{Chunk, ParamError};
-use crate::{Bounds, Dual, Interval, Norm, Real};
+use crate::{Bounds, Dual, Euclid, Interval, Real};
 use rvachev_num::symbol::Symbol;
 
 pub use bend::Bend;
@@ -117,7 +117,7 @@ fn turned_box(b: &Bounds, angle: Interval) -> Bounds {
     let (sin, cos) = angle.sin_cos();
     let (x, y) = (Interval::new(b.min.x, b.max.x), Interval::new(b.min.y, b.max.y));
     // The circle of the farthest corner holds every turn of the section.
-    let reach = x.norm(y, Norm::Euclid).hi();
+    let reach = x.norm_as(y, Euclid).hi();
     let disc = Interval::new(-reach, reach);
     let (x, y) = ((x * cos - y * sin).narrowed_by(disc), (x * sin + y * cos).narrowed_by(disc));
     Bounds::new(DVec3::new(x.lo(), y.lo(), b.min.z), DVec3::new(x.hi(), y.hi(), b.max.z))

@@ -12,7 +12,7 @@ use glam::DVec2;
 
 use super::super::outlined::Outlined;
 use super::super::{Field, ParamError};
-use crate::{Bounds, Interval, Norm, Real};
+use crate::{Bounds, Euclid, Interval, Real};
 
 /// The points whose angle about z, counted from the x axis, is between 0 and `angle`; by true
 /// distance.
@@ -34,7 +34,7 @@ impl Field for Opening {
         let s = x.scale_add(sin, y * -cos);
         let t = x.scale_add(cos, y * sin);
         let beyond = t.min(x.lift(0.0));
-        let distance = s.norm(beyond, Norm::Euclid);
+        let distance = s.norm_as(beyond, Euclid);
         t.select(s, if half <= FRAC_PI_2 { -distance } else { distance })
     }
 
