@@ -1,7 +1,7 @@
 //! Network lattice: one side of a minimal surface.
 
-use super::outlined::Outlined;
 use super::minimal_surface::{graded, roundoff};
+use super::outlined::Outlined;
 use super::slope::{half_diagonal, mean_value_range};
 use super::{Field, Grading, MinimalSurface, ParamError, check};
 use crate::{Bounds, Dual, Interval, Real};

@@ -371,7 +371,11 @@ impl Field for Superhyperboloid {
 
     #[inline(always)]
     fn specialised<K: Kernel<Self>>(&self, kernel: K) {
-        kernel.run_case(&ByPowers { of: *self, across: Powers::steep(self.across), profile: Powers::steep(self.profile) });
+        kernel.run_case(&ByPowers {
+            of: *self,
+            across: Powers::steep(self.across),
+            profile: Powers::steep(self.profile),
+        });
     }
 
     fn roundoff(&self, reach: f64) -> f64 {

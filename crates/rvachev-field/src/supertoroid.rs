@@ -191,7 +191,12 @@ impl Field for Supertoroid {
     #[inline(always)]
     fn specialised<K: Kernel<Self>>(&self, kernel: K) {
         let Supertoroid { inverse, ring, scale, .. } = *self;
-        kernel.run_case(&ByPowers { inverse, ring, scale, norms: [Powers::steep(self.inner), Powers::steep(self.outer)] });
+        kernel.run_case(&ByPowers {
+            inverse,
+            ring,
+            scale,
+            norms: [Powers::steep(self.inner), Powers::steep(self.outer)],
+        });
     }
 
     fn roundoff(&self, reach: f64) -> f64 {

@@ -58,8 +58,7 @@ impl Field for Wedge {
         let past_left = (z.abs() - half.z).max(zero);
         let past_low = (x.abs() - half.x).max(zero);
         let deepest = off.max(left).max(low);
-        let nearest =
-            off.norm_as(past, Euclid).min(left.norm_as(past_left, Euclid)).min(low.norm_as(past_low, Euclid));
+        let nearest = off.norm_as(past, Euclid).min(left.norm_as(past_left, Euclid)).min(low.norm_as(past_low, Euclid));
         let flank = y.abs() - half.y;
         let inside = -deepest.max(flank);
         let out = deepest.select(nearest, zero).norm_as(flank.max(zero), Euclid);

@@ -179,7 +179,11 @@ impl Field for Superpolygon {
         let Superpolygon { curve, winding, inverse, inscribed, .. } = *self;
         match winding {
             Winding::Once => {
-                kernel.run_case(&Section { inverse, inscribed, radius: Polar::<false, false, true> { curve, winding } });
+                kernel.run_case(&Section {
+                    inverse,
+                    inscribed,
+                    radius: Polar::<false, false, true> { curve, winding },
+                });
             }
             Winding::Many { .. } => {
                 kernel.run_case(&Section { inverse, inscribed, radius: Polar::<false, true, true> { curve, winding } });

@@ -53,9 +53,7 @@ pub(crate) fn norm_parts<T: LogSpace>(a: T, b: T, norm: Norm) -> (T, T, T) {
             let db = b.above(a).vanish_with(b);
             (value, da.copysign(x), db.copysign(y))
         }
-        Norm::Euclid => {
-            euclid_pair_parts(x, y)
-        }
+        Norm::Euclid => euclid_pair_parts(x, y),
         Norm::Steep { p, inv } => pair_parts::<T, true>(x, y, p, inv),
         Norm::P { p, inv } => pair_parts::<T, false>(x, y, p, inv),
     }
@@ -80,9 +78,7 @@ pub(crate) fn nested_parts<T: LogSpace>(x: T, y: T, z: T, inner: Norm, outer: No
         (Norm::Steep { p, inv }, Norm::Steep { p: q, inv: q_inv }) => {
             triple_parts::<T, true>([x, y, z], [p, inv, q, q_inv])
         }
-        (Norm::Euclid, Norm::Euclid) => {
-            euclid_triple_parts([x, y, z])
-        }
+        (Norm::Euclid, Norm::Euclid) => euclid_triple_parts([x, y, z]),
         _ => {
             let (rho, rho_x, rho_y) = norm_parts(x, y, inner);
             let (value, value_rho, value_z) = norm_parts(rho, z, outer);
@@ -126,7 +122,10 @@ pub(crate) fn triple<T: LogSpace, const STEEP: bool>([x, y, z]: [T; 3], [p, p_in
 
 /// [`triple`] and its derivatives.
 #[inline(always)]
-pub(crate) fn triple_parts<T: LogSpace, const STEEP: bool>([x, y, z]: [T; 3], [p, p_inv, q, q_inv]: [f64; 4]) -> (T, [T; 3]) {
+pub(crate) fn triple_parts<T: LogSpace, const STEEP: bool>(
+    [x, y, z]: [T; 3],
+    [p, p_inv, q, q_inv]: [f64; 4],
+) -> (T, [T; 3]) {
     let (a, b, c) = (x.abs(), y.abs(), z.abs());
     let power = a.max(b).max(c).power_below();
     let la = log2::<T, STEEP>(a, power);
