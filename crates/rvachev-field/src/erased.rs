@@ -344,7 +344,11 @@ impl<F: Field> AnyField for F {
     }
 
     fn range(&self, zone: &Zone) -> Interval {
-        zone_range(self, zone)
+        let coarse = Field::range(self, zone.hull());
+        if coarse.lo() > 0.0 || coarse.hi() < 0.0 || !zone.is_finite() {
+            return coarse;
+        }
+        zone_range(self, zone, coarse)
     }
 
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {

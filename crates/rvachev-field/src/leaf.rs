@@ -203,10 +203,11 @@ fn bounds_by_support(support: &dyn Fn(DVec3) -> f64, map: &DAffine3) -> Bounds {
 
 /// Range of a formula that falls as any of `|x|`, `|y|`, `|z|` rises: two evaluations, exact
 /// but for rounding.
-pub(super) fn falling_range(leaf: &dyn Outlined, region: [Interval; 3]) -> Interval {
+#[inline(always)]
+pub(super) fn falling_range(leaf: &impl Field, region: [Interval; 3]) -> Interval {
     let [x, y, z] = region.map(Real::abs);
-    let near = leaf.at([x.lo(), y.lo(), z.lo()]);
-    let far = leaf.at([x.hi(), y.hi(), z.hi()]);
+    let near = leaf.eval([x.lo(), y.lo(), z.lo()]);
+    let far = leaf.eval([x.hi(), y.hi(), z.hi()]);
     // Slope at most about 1: rounding is relative to the coordinates.
     let size = |x: f64, y: f64, z: f64, v: f64| 1e-14 * (x + y + z + v.abs());
     let lo = far - size(x.hi(), y.hi(), z.hi(), far);

@@ -21,9 +21,7 @@ pub trait Outlined {
     fn over(&self, p: [Interval; 3]) -> Interval;
     /// With its derivatives.
     fn dual_over(&self, p: [Dual<Interval>; 3]) -> Dual<Interval>;
-    /// What the leaf says of a box of its frame.
-    fn box_range(&self, region: [Interval; 3]) -> Interval;
-    /// The same of its derivatives.
+    /// What the leaf says of its derivatives over a box of its frame.
     fn box_slopes(&self, region: [Interval; 3]) -> [Interval; 3];
     /// Whether it is concave, with slope at most 1.
     fn is_concave(&self) -> bool;
@@ -50,10 +48,6 @@ impl<F: Field + ?Sized> Outlined for F {
         self.eval(p)
     }
 
-    fn box_range(&self, region: [Interval; 3]) -> Interval {
-        Field::range(self, region)
-    }
-
     fn box_slopes(&self, region: [Interval; 3]) -> [Interval; 3] {
         Field::slopes(self, region)
     }
@@ -63,12 +57,8 @@ impl<F: Field + ?Sized> Outlined for F {
     }
 }
 
-/// A sound range over a zone.
-pub(super) fn zone_range(leaf: &dyn Outlined, zone: &Zone) -> Interval {
-    let coarse = leaf.box_range(zone.hull());
-    if coarse.lo() > 0.0 || coarse.hi() < 0.0 || !zone.is_finite() {
-        return coarse;
-    }
+/// A sound range over a zone, where that of its hull is `coarse`.
+pub(super) fn zone_range(leaf: &dyn Outlined, zone: &Zone, coarse: Interval) -> Interval {
     if !leaf.is_concave() {
         // The leaf has said all about a box of its own frame; the hull of a zone at an
         // angle to it holds much else.
