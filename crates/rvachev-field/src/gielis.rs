@@ -297,10 +297,14 @@ impl Gielis {
     fn polar<R: Real, const INVERSE: bool>(&self, theta: R, radius: Radius, winding: Winding) -> R {
         let curve = *self;
         match (radius, winding) {
-            (Radius::Standard, Winding::Once) => theta.of_one(&Polar::<false, false, INVERSE> { curve, winding }),
-            (Radius::Standard, _) => theta.of_one(&Polar::<false, true, INVERSE> { curve, winding }),
-            (Radius::Rational, Winding::Once) => theta.of_one(&Polar::<true, false, INVERSE> { curve, winding }),
-            (Radius::Rational, _) => theta.of_one(&Polar::<true, true, INVERSE> { curve, winding }),
+            (Radius::Standard, Winding::Once) => {
+                theta.of_one(&Polar::<false, false, INVERSE> { curve, winding, seam: false })
+            }
+            (Radius::Standard, _) => theta.of_one(&Polar::<false, true, INVERSE> { curve, winding, seam: false }),
+            (Radius::Rational, Winding::Once) => {
+                theta.of_one(&Polar::<true, false, INVERSE> { curve, winding, seam: false })
+            }
+            (Radius::Rational, _) => theta.of_one(&Polar::<true, true, INVERSE> { curve, winding, seam: false }),
         }
     }
 
@@ -344,6 +348,10 @@ impl Gielis {
 pub(super) struct Polar<const RATIONAL: bool, const MANY: bool, const INVERSE: bool> {
     pub(super) curve: Gielis,
     pub(super) winding: Winding,
+    /// Never true. Where the compiler does not know that, the branch on it parts what would be one block of some two
+    /// thousand instructions, in which the compiler's scheduler puts the chains of several vectors one after the other
+    /// to save registers: 2.4 times slower than side by side.
+    pub(super) seam: bool,
 }
 
 impl<const RATIONAL: bool, const MANY: bool, const INVERSE: bool> Polar<RATIONAL, MANY, INVERSE> {
@@ -363,6 +371,9 @@ impl<const RATIONAL: bool, const MANY: bool, const INVERSE: bool> Polar<RATIONAL
                 (c, s) = (c * step_cos - s * step_sin, s * step_cos + c * step_sin);
             }
             sum = sum * sign;
+        }
+        if self.seam {
+            sum = -sum;
         }
         sum
     }

@@ -223,8 +223,9 @@ impl Supershape {
     fn case<const RATIONAL: bool, const MANY: bool>(&self) -> Curves<RATIONAL, MANY> {
         let Supershape { inverse, inscribed, .. } = *self;
         let winding = if MANY { self.winding.by_turns() } else { Winding::Once };
-        let equator = Polar { curve: self.equator, winding };
-        let meridian = Polar { curve: self.meridian, winding: Winding::Once };
+        let seam = !MANY && std::hint::black_box(false);
+        let equator = Polar { curve: self.equator, winding, seam };
+        let meridian = Polar { curve: self.meridian, winding: Winding::Once, seam };
         Curves { inverse, inscribed, equator, meridian }
     }
 

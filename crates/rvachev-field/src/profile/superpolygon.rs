@@ -182,11 +182,15 @@ impl Field for Superpolygon {
                 kernel.run_case(&Section {
                     inverse,
                     inscribed,
-                    radius: Polar::<false, false, true> { curve, winding },
+                    radius: Polar::<false, false, true> { curve, winding, seam: false },
                 });
             }
             Winding::Many { .. } => {
-                kernel.run_case(&Section { inverse, inscribed, radius: Polar::<false, true, true> { curve, winding } });
+                kernel.run_case(&Section {
+                    inverse,
+                    inscribed,
+                    radius: Polar::<false, true, true> { curve, winding, seam: false },
+                });
             }
         }
     }
