@@ -17,8 +17,9 @@
 //! (1973). The smooth blend is the parabola that meets both operands with their slopes; it
 //! rises with both operands and keeps their Lipschitz constant.
 
+use super::rfunction::{PAnd, saturate};
 use super::{ParamError, check};
-use crate::{Norm, Real};
+use crate::{Euclid, NormKind, Real};
 
 /// How two operands are joined with the transition between them shaped.
 ///
@@ -195,7 +196,7 @@ pub(super) fn smooth_parts<R: Real>(x: R, y: R, width: f64) -> (R, R, R) {
 /// Conjunction by R_p, p = 2, displaced.
 #[inline(always)]
 pub(super) fn displacement<R: Real>(x: R, y: R, height: f64, inverse: [f64; 2]) -> R {
-    let and = super::Rule::P(Norm::Euclid).and(x, y);
+    let and = saturate(x.monotone(y, &PAnd(Euclid)));
     let fall = (x * inverse[0]).square() + (y * inverse[1]).square() + 1.0;
     and + x.lift(height) / fall
 }
@@ -205,15 +206,14 @@ const LEAST_GAUGE: f64 = 1e-6;
 
 /// Ricci's blend of `x = r₁(1 − G₁)` and `y = r₂(1 − G₂)`.
 #[inline(always)]
-pub(super) fn ricci<R: Real>(x: R, y: R, p: f64, side: RicciSide, radii: [f64; 2], radius: f64) -> R {
-    let norm = Norm::new(p);
+pub(super) fn ricci<R: Real, N: NormKind>(x: R, y: R, norm: N, side: RicciSide, radii: [f64; 2], radius: f64) -> R {
     let one = x.lift(1.0);
     let g = (x.scale_add(-1.0 / radii[0], one)).max(x.lift(LEAST_GAUGE));
     let h = (y.scale_add(-1.0 / radii[1], one)).max(x.lift(LEAST_GAUGE));
     let gauge = match side {
-        RicciSide::Intersection => g.norm(h, norm),
-        RicciSide::Difference => g.norm(one / h, norm),
-        RicciSide::Union => one / (one / g).norm(one / h, norm),
+        RicciSide::Intersection => g.norm_as(h, norm),
+        RicciSide::Difference => g.norm_as(one / h, norm),
+        RicciSide::Union => one / (one / g).norm_as(one / h, norm),
     };
     gauge.scale_add(-radius, x.lift(radius))
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Field, ParamError, check, leaf::falling_range};
-use crate::{Bounds, Interval, Norm, Real};
+use crate::{Bounds, Euclid, Interval, Real};
 
 /// A cylinder with hemispherical ends along the z axis, centred at the origin, by true
 /// distance (1-Lipschitz): all points within `radius` of a segment.
@@ -50,7 +50,7 @@ impl Field for Capsule {
     #[inline(always)]
     fn eval<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
         let beyond = (z.abs() - self.half()).max(z.lift(0.0));
-        -x.nested(y, beyond, Norm::Euclid, Norm::Euclid) + self.radius
+        -x.nested_as(y, beyond, Euclid, Euclid) + self.radius
     }
 
     fn bounds(&self) -> Bounds {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Field, ParamError, check, slope::lipschitz_range};
-use crate::{Bounds, Interval, Norm, Real};
+use crate::{Bounds, Euclid, Interval, Real};
 
 /// A circular cone about the z axis, pointed or truncated, centred at the origin (the base is
 /// at z = −height/2), by true distance (1-Lipschitz).
@@ -48,16 +48,16 @@ impl Field for Cone {
         let narrowing = self.bottom_radius - self.top_radius;
         let slant = (narrowing * narrowing + self.height * self.height).sqrt();
         let (rise, run) = (self.height / slant, narrowing / slant);
-        let r = x.norm(y, Norm::Euclid);
+        let r = x.norm_as(y, Euclid);
         // Off the slanted edge, and along it from its middle.
         let from_middle = r - 0.5 * (self.bottom_radius + self.top_radius);
         let off = from_middle.scale_add(rise, z * run);
         let along = from_middle.scale_add(-run, z * rise);
         let cap = z.abs() - 0.5 * self.height;
-        let side = off.norm((along.abs() - 0.5 * slant).max(zero), Norm::Euclid);
+        let side = off.norm_as((along.abs() - 0.5 * slant).max(zero), Euclid);
         // Of the caps only the nearer one can be met before the side is.
         let radius = z.select(z.lift(self.top_radius), z.lift(self.bottom_radius));
-        let end = cap.norm((r - radius).max(zero), Norm::Euclid);
+        let end = cap.norm_as((r - radius).max(zero), Euclid);
         let inside = -off.max(cap);
         inside.select(inside, -side.min(end))
     }

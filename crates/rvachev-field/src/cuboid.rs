@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Field, ParamError, check, leaf::falling_range};
-use crate::{Bounds, Interval, Norm, Real};
+use crate::{Bounds, Euclid, Interval, Real};
 
 /// A box about the origin with edges along the axes, by true distance (1-Lipschitz).
 ///
@@ -41,7 +41,7 @@ impl Field for Cuboid {
         let qz = z.abs() - 0.5 * self.size.z;
         let zero = x.lift(0.0);
         let (ox, oy, oz) = (qx.max(zero), qy.max(zero), qz.max(zero));
-        let outside = ox.nested(oy, oz, Norm::Euclid, Norm::Euclid);
+        let outside = ox.nested_as(oy, oz, Euclid, Euclid);
         -(outside + qx.max(qy).max(qz).min(zero))
     }
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Field, ParamError, check, leaf::falling_range};
-use crate::{Bounds, Interval, Norm, Real};
+use crate::{Bounds, Euclid, Interval, Real};
 
 /// A cylinder about the z axis, centred at the origin, by true distance (1-Lipschitz).
 ///
@@ -39,11 +39,11 @@ impl Field for Cylinder {
 
     #[inline(always)]
     fn eval<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
-        let side = x.norm(y, Norm::Euclid) - self.radius;
+        let side = x.norm_as(y, Euclid) - self.radius;
         let cap = z.abs() - 0.5 * self.height;
         let zero = x.lift(0.0);
         let (os, oc) = (side.max(zero), cap.max(zero));
-        -(os.norm(oc, Norm::Euclid) + side.max(cap).min(zero))
+        -(os.norm_as(oc, Euclid) + side.max(cap).min(zero))
     }
 
     fn bounds(&self) -> Bounds {

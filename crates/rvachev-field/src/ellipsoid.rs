@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Cuboid, Field, ParamError, check, leaf::falling_range};
-use crate::{Bounds, Interval, Norm, Real};
+use crate::{Bounds, Euclid, Interval, Real};
 
 /// An ellipsoid about the origin with its axes along x, y and z. The value is a bound: it
 /// has the sign of the distance and is never larger (1-Lipschitz).
@@ -46,7 +46,7 @@ impl Field for Ellipsoid {
     fn eval<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
         let a = self.semi_axes;
         let s = a.x.min(a.y).min(a.z);
-        let gauge = (x * (s / a.x)).nested(y * (s / a.y), z * (s / a.z), Norm::Euclid, Norm::Euclid);
+        let gauge = (x * (s / a.x)).nested_as(y * (s / a.y), z * (s / a.z), Euclid, Euclid);
         let hull = Cuboid { size: 2.0 * a };
         (-gauge + s).min(hull.eval([x, y, z]))
     }

@@ -11,8 +11,8 @@ use std::sync::Arc;
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::deform::{Branches, Warp};
-use super::zone::{concave_range, concave_rise, mean_value_range};
-use super::{AnyWarp, Field, Kernel, ParamError, Way, Zone, bits, saturate, steepest};
+use super::outlined::{Outlined, zone_range, zone_rises};
+use super::{AnyWarp, Case, Field, Kernel, ParamError, Way, Zone, bits, saturate, steepest};
 use crate::{Bounds, Dual, Interval, Real};
 use rvachev_num::kernel::{Element, Formula, Visit, run};
 #[cfg(feature = "formula")]
@@ -100,7 +100,7 @@ pub trait AnyField: Any + Debug + Send + Sync {
     /// All that the value depends on, as text: leaves of one type with the same text are the
     /// same.
     fn signature(&self) -> String {
-        format!("{self:?}")
+        text(&self)
     }
     /// The box of the shape after a map.
     fn bounds_under(&self, map: &DAffine3) -> Bounds;
@@ -181,6 +181,10 @@ pub trait AnyField: Any + Debug + Send + Sync {
     }
 }
 
+fn text(of: &dyn Debug) -> String {
+    format!("{of:?}")
+}
+
 /// The derivatives, along the variables of `p`, of a value that changes by at most `steepest` per
 /// length unit of p.
 pub fn steep_slopes(steepest: f64, p: [Dual<Interval>; 3]) -> [Interval; 3] {
@@ -191,17 +195,38 @@ pub fn steep_slopes(steepest: f64, p: [Dual<Interval>; 3]) -> [Interval; 3] {
     })
 }
 
+/// A leaf, or a case of it, where it stands: its value, or that and the three derivatives.
+struct Placed<'a, C>(&'a C, &'a Placement);
+
+impl<C: Case> Formula<3, 1> for Placed<'_, C> {
+    #[inline(always)]
+    fn run<R: Real>(&self, p: [R; 3]) -> [R; 1] {
+        [self.1.finish(self.0.value(self.1.apply(p)))]
+    }
+}
+
+impl<C: Case> Formula<3, 4> for Placed<'_, C> {
+    #[inline(always)]
+    fn run<R: Real>(&self, p: [R; 3]) -> [R; 4] {
+        placed(self.1, self.0.value(Dual::point(self.1.apply(p))))
+    }
+}
+
 struct Value<'a, F>(&'a F, &'a Placement);
 
 impl<F: Field> Formula<3, 1> for Value<'_, F> {
     #[inline(always)]
     fn run<R: Real>(&self, p: [R; 3]) -> [R; 1] {
-        [self.1.finish(self.0.eval(self.1.apply(p)))]
+        Placed(self.0, self.1).run(p)
     }
 
     #[inline(always)]
     fn specialised<V: Visit<3, 1>>(&self, visit: V) {
         self.0.specialised(Each { placement: self.1, visit });
+    }
+
+    fn point(&self, p: [f64; 3]) -> [f64; 1] {
+        [self.1.finish(self.0.at(self.1.apply(p)))]
     }
 }
 
@@ -214,12 +239,22 @@ struct Each<'a, V> {
 impl<F: Field, V: Visit<3, 1>> Kernel<F> for Each<'_, V> {
     #[inline(always)]
     fn run(self, leaf: &F) {
-        self.visit.visit(&Value(leaf, self.placement));
+        Kernel::<F>::run_case(self, leaf);
     }
 
     #[inline(always)]
     fn run_wide(self, leaf: &F) {
-        self.visit.visit_wide(&Value(leaf, self.placement));
+        Kernel::<F>::run_case_wide(self, leaf);
+    }
+
+    #[inline(always)]
+    fn run_case<C: Case>(self, case: &C) {
+        self.visit.visit(&Placed(case, self.placement));
+    }
+
+    #[inline(always)]
+    fn run_case_wide<C: Case>(self, case: &C) {
+        self.visit.visit_wide(&Placed(case, self.placement));
     }
 }
 
@@ -228,16 +263,25 @@ struct Gradient<'a, F>(&'a F, &'a Placement);
 impl<F: Field> Formula<3, 4> for Gradient<'_, F> {
     #[inline(always)]
     fn run<R: Real>(&self, p: [R; 3]) -> [R; 4] {
-        let Dual { v, d } = self.0.eval(Dual::point(self.1.apply(p)));
-        let k = self.1.scale;
-        let [x, y, z] = self.1.pull([d[0] * k, d[1] * k, d[2] * k]);
-        [self.1.finish(v), x, y, z]
+        Placed(self.0, self.1).run(p)
     }
 
     #[inline(always)]
     fn specialised<V: Visit<3, 4>>(&self, visit: V) {
         self.0.specialised(EachGradient { placement: self.1, visit });
     }
+
+    fn point(&self, p: [f64; 3]) -> [f64; 4] {
+        placed(self.1, self.0.dual_at(Dual::point(self.1.apply(p))))
+    }
+}
+
+/// Value and derivatives of the leaf's frame, as they count outside of it.
+#[inline(always)]
+fn placed<R: Real>(placement: &Placement, Dual { v, d }: Dual<R>) -> [R; 4] {
+    let k = placement.scale;
+    let [x, y, z] = placement.pull([d[0] * k, d[1] * k, d[2] * k]);
+    [placement.finish(v), x, y, z]
 }
 
 /// The same for gradients.
@@ -249,12 +293,22 @@ struct EachGradient<'a, V> {
 impl<F: Field, V: Visit<3, 4>> Kernel<F> for EachGradient<'_, V> {
     #[inline(always)]
     fn run(self, leaf: &F) {
-        self.visit.visit(&Gradient(leaf, self.placement));
+        Kernel::<F>::run_case(self, leaf);
     }
 
     #[inline(always)]
     fn run_wide(self, leaf: &F) {
-        self.visit.visit_wide(&Gradient(leaf, self.placement));
+        Kernel::<F>::run_case_wide(self, leaf);
+    }
+
+    #[inline(always)]
+    fn run_case<C: Case>(self, case: &C) {
+        self.visit.visit(&Placed(case, self.placement));
+    }
+
+    #[inline(always)]
+    fn run_case_wide<C: Case>(self, case: &C) {
+        self.visit.visit_wide(&Placed(case, self.placement));
     }
 }
 
@@ -291,29 +345,19 @@ impl<F: Field> AnyField for F {
         if Field::exact(self) {
             return DVec3::ONE;
         }
-        let bounds = Field::bounds(self);
-        if !bounds.is_finite() {
-            return DVec3::INFINITY;
-        }
-        if let Some(radius) = Field::gauge_radius(self) {
-            return bounds.min.abs().max(bounds.max.abs()) / radius;
-        }
-        // A concave function falls from its value at a point at least as fast beyond the
-        // surface as before it.
-        let top = self.eval(bounds.center().to_array());
-        if Field::convex(self) && top > 0.0 { bounds.half_extents() / top } else { DVec3::INFINITY }
+        growth(self, &Field::bounds(self), Field::gauge_radius(self))
     }
 
     fn value(&self, p: [f64; 3]) -> f64 {
-        self.eval(p)
+        self.at(p)
     }
 
     fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64> {
-        self.eval(p)
+        self.dual_at(p)
     }
 
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
-        self.eval(p)
+        self.dual_over(p)
     }
 
     fn range(&self, zone: &Zone) -> Interval {
@@ -321,30 +365,11 @@ impl<F: Field> AnyField for F {
         if coarse.lo() > 0.0 || coarse.hi() < 0.0 || !zone.is_finite() {
             return coarse;
         }
-        if !Field::convex(self) {
-            // The leaf has said all about a box of its own frame; the hull of a zone at an
-            // angle to it holds much else.
-            if zone.is_aligned() {
-                return coarse;
-            }
-            let centre = self.eval(zone.centre.to_array().map(Interval::point));
-            return mean_value_range(zone, centre, self.slopes(zone.hull()), coarse);
-        }
-        let tangent = self.eval(Dual::point(zone.centre.to_array()));
-        concave_range(zone, tangent.v, DVec3::from_array(tangent.d), coarse, |p| self.eval(p.to_array()))
+        zone_range(self, zone, coarse)
     }
 
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
-        let along = |p: [f64; 3]| self.eval(Dual::point(p));
-        let convex = Field::convex(self);
-        let found =
-            if convex { bits(ways, |way| concave_rise(zone, way, |p| self.eval(p.to_array()), along)) } else { 0 };
-        // Of boxes, seen through no deformation, that says all.
-        if found != 0 || convex && zone.slack.length() <= 1e-9 * zone.radius() {
-            return found;
-        }
-        let slopes = self.slopes(zone.hull());
-        bits(ways, |way| way.is_rise(slopes))
+        zone_rises(self, zone, ways)
     }
 
     fn least_radius(&self) -> f64 {
@@ -353,7 +378,7 @@ impl<F: Field> AnyField for F {
 
     fn steepest(&self, zone: &Zone) -> f64 {
         let least = Field::steepest(self);
-        if least.is_finite() { least } else { steepest(self.slopes(zone.hull())) }
+        if least.is_finite() { least } else { steepest(self.box_slopes(zone.hull())) }
     }
 
     #[cfg(feature = "formula")]
@@ -378,6 +403,20 @@ impl<F: Field> AnyField for F {
     }
 }
 
+/// [`AnyField::growth`] of a leaf that is not exact.
+fn growth(leaf: &dyn Outlined, bounds: &Bounds, gauge_radius: Option<f64>) -> DVec3 {
+    if !bounds.is_finite() {
+        return DVec3::INFINITY;
+    }
+    if let Some(radius) = gauge_radius {
+        return bounds.min.abs().max(bounds.max.abs()) / radius;
+    }
+    // A concave function falls from its value at a point at least as fast beyond the
+    // surface as before it.
+    let top = leaf.at(bounds.center().to_array());
+    if leaf.is_concave() && top > 0.0 { bounds.half_extents() / top } else { DVec3::INFINITY }
+}
+
 #[inline]
 fn lanes<E: Element, F: Field>(field: &F, chunk: Chunk<'_, E, 1>) {
     run(&Value(field, chunk.placement), chunk.points, chunk.out);
@@ -390,6 +429,10 @@ impl<W: Warp> Formula<3, 3> for PreImage<'_, W> {
     fn run<R: Real>(&self, p: [R; 3]) -> [R; 3] {
         self.0.inverse(self.1.apply(p))
     }
+
+    fn point(&self, p: [f64; 3]) -> [f64; 3] {
+        AnyWarp::point(self.0, self.1.apply(p))
+    }
 }
 
 struct Jacobian<'a, W>(&'a W, &'a Placement);
@@ -397,9 +440,18 @@ struct Jacobian<'a, W>(&'a W, &'a Placement);
 impl<W: Warp> Formula<3, 12> for Jacobian<'_, W> {
     #[inline(always)]
     fn run<R: Real>(&self, p: [R; 3]) -> [R; 12] {
-        let [x, y, z] = self.0.inverse(self.1.apply(Dual::point(p)));
-        [x.v, y.v, z.v, x.d[0], x.d[1], x.d[2], y.d[0], y.d[1], y.d[2], z.d[0], z.d[1], z.d[2]]
+        flat(self.0.inverse(self.1.apply(Dual::point(p))))
     }
+
+    fn point(&self, p: [f64; 3]) -> [f64; 12] {
+        flat(AnyWarp::duals(self.0, self.1.apply(Dual::point(p))))
+    }
+}
+
+/// Coordinates, then the rows of their derivatives.
+#[inline(always)]
+fn flat<R: Real>([x, y, z]: [Dual<R>; 3]) -> [R; 12] {
+    [x.v, y.v, z.v, x.d[0], x.d[1], x.d[2], y.d[0], y.d[1], y.d[2], z.d[0], z.d[1], z.d[2]]
 }
 
 impl<W: Warp> AnyWarp for W {
@@ -407,14 +459,17 @@ impl<W: Warp> AnyWarp for W {
         W::NAME
     }
 
+    #[inline(never)]
     fn point(&self, p: [f64; 3]) -> [f64; 3] {
         self.inverse(p)
     }
 
+    #[inline(never)]
     fn duals(&self, p: [Dual<f64>; 3]) -> [Dual<f64>; 3] {
         self.inverse(p)
     }
 
+    #[inline(never)]
     fn dual_ranges(&self, p: [Dual<Interval>; 3]) -> [Dual<Interval>; 3] {
         self.slopes(p)
     }

@@ -2,7 +2,9 @@
 
 use rvachev_num::kernel::{Element, Fold, fold};
 
-use crate::{Dual, Norm, Real, RicciSide, Rule};
+use crate::blend;
+use crate::rfunction::{AlphaAnd, AssociativeAnd, DistanceAnd, PAnd, SmoothAnd, zero_and};
+use crate::{Dual, Euclid, Monotone, Norm, NormKind, Powers, Real, RicciSide, Rule, saturate};
 
 /// Conjunction or disjunction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,62 +38,56 @@ struct Join<C> {
 
 /// A conjunction whose rule is known when the kernel is compiled.
 trait Conjunction {
-    fn rule(&self) -> Rule;
+    fn and<R: Real>(&self, x: R, y: R) -> R;
 }
 
-struct Alpha(f64);
+/// By a rule that rises with both operands.
+struct Rising<M>(M);
 struct Zero(u32);
-struct Distance;
-struct Euclid;
-struct P {
-    p: f64,
-    inv: f64,
-}
-struct Associative {
-    p: f64,
-    inv: f64,
-}
-
-struct Smooth(f64);
 struct Displacement {
     height: f64,
+    /// `1/a₁` and `1/a₂`.
     inverse: [f64; 2],
 }
-struct Ricci {
-    p: f64,
+struct Ricci<N> {
+    norm: N,
     side: RicciSide,
     radii: [f64; 2],
     radius: f64,
 }
 
-/// Says which rule a conjunction is.
-macro_rules! conjunction {
-    ($($name:ty: $self:ident => $rule:expr;)*) => {$(
-        impl Conjunction for $name {
-            #[inline(always)]
-            fn rule(&$self) -> Rule {
-                $rule
-            }
-        }
-    )*};
+impl<M: Monotone> Conjunction for Rising<M> {
+    #[inline(always)]
+    fn and<R: Real>(&self, x: R, y: R) -> R {
+        saturate(x.monotone(y, &self.0))
+    }
 }
 
-conjunction! {
-    Alpha: self => Rule::Alpha(self.0);
-    Zero: self => Rule::Zero(self.0);
-    Distance: self => Rule::Distance;
-    Euclid: self => Rule::P(Norm::Euclid);
-    P: self => Rule::P(Norm::P { p: self.p, inv: self.inv });
-    Associative: self => Rule::Associative(Norm::P { p: self.p, inv: self.inv });
-    Smooth: self => Rule::Smooth(self.0);
-    Displacement: self => Rule::Displacement { height: self.height, inverse: self.inverse };
-    Ricci: self => Rule::Ricci { p: self.p, side: self.side, radii: self.radii, radius: self.radius };
+impl Conjunction for Zero {
+    #[inline(always)]
+    fn and<R: Real>(&self, x: R, y: R) -> R {
+        saturate(zero_and(x, y, self.0))
+    }
+}
+
+impl Conjunction for Displacement {
+    #[inline(always)]
+    fn and<R: Real>(&self, x: R, y: R) -> R {
+        saturate(blend::displacement(x, y, self.height, self.inverse))
+    }
+}
+
+impl<N: NormKind> Conjunction for Ricci<N> {
+    #[inline(always)]
+    fn and<R: Real>(&self, x: R, y: R) -> R {
+        saturate(blend::ricci(x, y, self.norm, self.side, self.radii, self.radius))
+    }
 }
 
 impl<C: Conjunction> Fold<1> for Join<C> {
     #[inline(always)]
     fn fold<R: Real>(&self, [all]: [R; 1], [next]: [R; 1]) -> [R; 1] {
-        [self.conjunction.rule().and(all * self.sign, next * self.sign_next) * self.sign]
+        [self.conjunction.and(all * self.sign, next * self.sign_next) * self.sign]
     }
 }
 
@@ -100,7 +96,7 @@ impl<C: Conjunction> Fold<4> for Join<C> {
     fn fold<R: Real>(&self, all: [R; 4], next: [R; 4]) -> [R; 4] {
         let all = Dual::new(all[0], [all[1], all[2], all[3]]) * self.sign;
         let next = Dual::new(next[0], [next[1], next[2], next[3]]) * self.sign_next;
-        let joined = self.conjunction.rule().and(all, next) * self.sign;
+        let joined = self.conjunction.and(all, next) * self.sign;
         [joined.v, joined.d[0], joined.d[1], joined.d[2]]
     }
 }
@@ -160,36 +156,36 @@ joinable! {
 fn fold_by_rule<E: Element, const N: usize>(op: Op, rule: Rule, negate: bool, all: [&mut [E]; N], next: [&[E]; N])
 where
     Least: Fold<N>,
-    Join<Alpha>: Fold<N>,
+    Join<Rising<AlphaAnd>>: Fold<N>,
+    Join<Rising<DistanceAnd>>: Fold<N>,
+    Join<Rising<PAnd<Euclid>>>: Fold<N>,
+    Join<Rising<PAnd<Powers<false>>>>: Fold<N>,
+    Join<Rising<AssociativeAnd<Powers<false>>>>: Fold<N>,
+    Join<Rising<SmoothAnd>>: Fold<N>,
     Join<Zero>: Fold<N>,
-    Join<Distance>: Fold<N>,
-    Join<Euclid>: Fold<N>,
-    Join<P>: Fold<N>,
-    Join<Associative>: Fold<N>,
-    Join<Smooth>: Fold<N>,
     Join<Displacement>: Fold<N>,
-    Join<Ricci>: Fold<N>,
+    Join<Ricci<Euclid>>: Fold<N>,
+    Join<Ricci<Powers<false>>>: Fold<N>,
 {
     let sign = if op == Op::And { 1.0 } else { -1.0 };
     let sign_next = if negate { -sign } else { sign };
+    let powers = |norm: Norm| Powers::<false> { p: norm.p(), inv: 1.0 / norm.p() };
+    macro_rules! by {
+        ($conjunction:expr) => {
+            fold(&Join { conjunction: $conjunction, sign, sign_next }, all, next)
+        };
+    }
     match rule {
         Rule::MinMax => fold(&Least { sign, sign_next }, all, next),
-        Rule::Alpha(alpha) => fold(&Join { conjunction: Alpha(alpha), sign, sign_next }, all, next),
-        Rule::Zero(m) => fold(&Join { conjunction: Zero(m), sign, sign_next }, all, next),
-        Rule::Distance => fold(&Join { conjunction: Distance, sign, sign_next }, all, next),
-        Rule::P(Norm::Euclid) => fold(&Join { conjunction: Euclid, sign, sign_next }, all, next),
-        Rule::P(norm) => {
-            fold(&Join { conjunction: P { p: norm.p(), inv: 1.0 / norm.p() }, sign, sign_next }, all, next)
-        }
-        Rule::Associative(norm) => {
-            fold(&Join { conjunction: Associative { p: norm.p(), inv: 1.0 / norm.p() }, sign, sign_next }, all, next)
-        }
-        Rule::Smooth(width) => fold(&Join { conjunction: Smooth(width), sign, sign_next }, all, next),
-        Rule::Displacement { height, inverse } => {
-            fold(&Join { conjunction: Displacement { height, inverse }, sign, sign_next }, all, next)
-        }
-        Rule::Ricci { p, side, radii, radius } => {
-            fold(&Join { conjunction: Ricci { p, side, radii, radius }, sign, sign_next }, all, next)
-        }
+        Rule::Alpha(alpha) => by!(Rising(AlphaAnd(alpha))),
+        Rule::Distance => by!(Rising(DistanceAnd)),
+        Rule::P(Norm::Euclid) => by!(Rising(PAnd(Euclid))),
+        Rule::P(norm) => by!(Rising(PAnd(powers(norm)))),
+        Rule::Associative(norm) => by!(Rising(AssociativeAnd(powers(norm)))),
+        Rule::Smooth(width) => by!(Rising(SmoothAnd(width))),
+        Rule::Zero(m) => by!(Zero(m)),
+        Rule::Displacement { height, inverse } => by!(Displacement { height, inverse }),
+        Rule::Ricci { p: 2.0, side, radii, radius } => by!(Ricci { norm: Euclid, side, radii, radius }),
+        Rule::Ricci { p, side, radii, radius } => by!(Ricci { norm: powers(Norm::new(p)), side, radii, radius }),
     }
 }

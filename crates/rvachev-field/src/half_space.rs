@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::outlined::Outlined;
 use super::{Field, ParamError, check};
 use crate::{Bounds, Interval, Real};
 
@@ -79,7 +80,7 @@ impl Field for HalfSpace {
     }
 
     fn range(&self, region: [Interval; 3]) -> Interval {
-        self.eval(region)
+        self.over(region)
     }
 
     fn roundoff(&self, reach: f64) -> f64 {

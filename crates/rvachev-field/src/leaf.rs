@@ -5,6 +5,7 @@ use std::fmt::Debug;
 use glam::{DAffine3, DVec3};
 
 use super::ParamError;
+use super::outlined::Outlined;
 use crate::{Bounds, Dual, Interval, Real};
 
 /// A leaf: a formula that is positive inside a shape, zero on its surface and negative
@@ -107,14 +108,14 @@ pub trait Field: Debug + Send + Sync + 'static {
     /// The range of the formula over a box of the leaf's own frame. The default runs the
     /// formula on intervals; a leaf whose structure gives a tighter one overrides it.
     fn range(&self, region: [Interval; 3]) -> Interval {
-        self.eval(region)
+        self.over(region)
     }
 
     /// Ranges of the formula's three derivatives over a box of the leaf's own frame. They make
     /// the value's range over boxes that stand at an angle to that frame, and over segments.
     /// The default runs the formula on dual numbers of intervals.
     fn slopes(&self, region: [Interval; 3]) -> [Interval; 3] {
-        self.eval(Dual::point(region)).gradient()
+        self.dual_over(Dual::point(region)).gradient()
     }
 
     /// Support function of the shape's convex hull: the largest `direction · p` over its
@@ -134,14 +135,7 @@ pub trait Field: Debug + Send + Sync + 'static {
 
     /// The box of the shape after `map`.
     fn bounds_under(&self, map: &DAffine3) -> Bounds {
-        let rows = map.matrix3.transpose();
-        let mut bounds = Bounds::new(map.translation, map.translation);
-        for axis in 0..3 {
-            let row = rows.col(axis);
-            bounds.max[axis] += self.support(row);
-            bounds.min[axis] -= self.support(-row);
-        }
-        bounds
+        bounds_by_support(&|direction| self.support(direction), map)
     }
 
     /// Calls `kernel` with this leaf, its parameters' special cases told apart: an override
@@ -171,6 +165,40 @@ pub trait Kernel<F> {
     /// Does the work several vectors at a time: faster where the formula is one long chain of
     /// operations, and four times slower to compile.
     fn run_wide(self, leaf: &F);
+
+    /// Does the work with a case of the leaf whose kind is a type.
+    #[doc(hidden)]
+    fn run_case<C: Case>(self, case: &C);
+
+    /// The same, several vectors at a time.
+    #[doc(hidden)]
+    fn run_case_wide<C: Case>(self, case: &C);
+}
+
+/// A leaf's formula, or one case of it. Where cases are types, a kernel is compiled with the code of one of them.
+#[doc(hidden)]
+pub trait Case {
+    /// The formula.
+    fn value<R: Real>(&self, p: [R; 3]) -> R;
+}
+
+impl<F: Field> Case for F {
+    #[inline(always)]
+    fn value<R: Real>(&self, p: [R; 3]) -> R {
+        self.eval(p)
+    }
+}
+
+/// The box of a shape after `map`, by its support function.
+fn bounds_by_support(support: &dyn Fn(DVec3) -> f64, map: &DAffine3) -> Bounds {
+    let rows = map.matrix3.transpose();
+    let mut bounds = Bounds::new(map.translation, map.translation);
+    for axis in 0..3 {
+        let row = rows.col(axis);
+        bounds.max[axis] += support(row);
+        bounds.min[axis] -= support(-row);
+    }
+    bounds
 }
 
 /// Range of a formula that falls as any of `|x|`, `|y|`, `|z|` rises: two evaluations, exact

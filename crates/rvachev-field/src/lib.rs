@@ -33,6 +33,7 @@ mod minimal_surface;
 mod network_lattice;
 mod number;
 mod outline;
+mod outlined;
 mod points;
 pub mod power;
 mod prism;
@@ -52,7 +53,7 @@ mod supertoroid;
 mod sweep;
 mod zone;
 
-use rvachev_num::{Angle, Bounds, Dual, Interval, Monotone, Monotone3, Norm, Real};
+use rvachev_num::{Angle, Bounds, Dual, Euclid, Interval, Monotone, Monotone3, Norm, NormKind, OfOne, Powers, Real};
 
 pub use blend::Blend;
 pub use blend::RicciSide;
@@ -76,7 +77,7 @@ pub use formula::{Formula, FormulaError};
 pub use generalised::GeneralisedSuperquadric;
 pub use gielis::{Gielis, Radius, Turns};
 pub use half_space::HalfSpace;
-pub use leaf::{Field, Kernel};
+pub use leaf::{Case, Field, Kernel};
 pub use minimal_surface::{Grading, MinimalSurface};
 pub use network_lattice::NetworkLattice;
 pub use number::{Joined, Number};

@@ -1,6 +1,7 @@
 //! Network lattice: one side of a minimal surface.
 
 use super::minimal_surface::{graded, roundoff};
+use super::outlined::Outlined;
 use super::slope::{half_diagonal, mean_value_range};
 use super::{Field, Grading, MinimalSurface, ParamError, check};
 use crate::{Bounds, Dual, Interval, Real};
@@ -102,7 +103,7 @@ impl<G: Grading> Field for NetworkLattice<G> {
     fn range(&self, region: [Interval; 3]) -> Interval {
         let diagonal = half_diagonal(region);
         if !diagonal.is_finite() {
-            return self.eval(region);
+            return self.over(region);
         }
         let [here, slope_here] = self.parts(region.map(|side| Interval::point(side.mid())));
         let coarse = (here / slope_here).inflate(self.steepest() * diagonal);

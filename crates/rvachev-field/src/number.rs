@@ -14,14 +14,21 @@ pub trait Joined: Real {
     fn joined(rule: Rule, op: Op, x: Self, y: Self) -> Self;
 }
 
+#[inline(never)]
+fn and<R: Real>(rule: Rule, x: R, y: R) -> R {
+    rule.and(x, y)
+}
+
 macro_rules! joined {
     ($($number:ty),*) => {$(
         impl Joined for $number {
             #[inline(never)]
             fn joined(rule: Rule, op: Op, x: Self, y: Self) -> Self {
-                match op {
-                    Op::And => rule.and(x, y),
-                    Op::Or => rule.or(x, y),
+                // By De Morgan, so that conjunctions are compiled once.
+                match (rule, op) {
+                    (Rule::MinMax, Op::Or) => x.max(y),
+                    (_, Op::Or) => -and(rule, -x, -y),
+                    (_, Op::And) => and(rule, x, y),
                 }
             }
         }

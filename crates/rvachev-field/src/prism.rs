@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::kaleidoscope::RegularPolygon;
 use super::{Field, ParamError, check, slope::lipschitz_range};
-use crate::{Bounds, Interval, Norm, Real};
+use crate::{Bounds, Euclid, Interval, Real};
 
 /// A prism on a regular polygon, along the z axis and centred at the origin, with a corner on
 /// the positive x axis, by true distance (1-Lipschitz).
@@ -89,7 +89,7 @@ impl Field for Prism {
         let cap = z.abs() - 0.5 * self.height;
         // Inside the polygon v is within the edge: it counts outside only.
         let past = (v - self.base.half_edge).max(zero);
-        let outside = side.max(zero).nested(past, cap.max(zero), Norm::Euclid, Norm::Euclid);
+        let outside = side.max(zero).nested_as(past, cap.max(zero), Euclid, Euclid);
         -(outside + side.max(cap).min(zero))
     }
 

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::kaleidoscope::RegularPolygon;
 use super::{Field, ParamError, check, slope::lipschitz_range};
-use crate::{Bounds, Interval, Norm, Real};
+use crate::{Bounds, Euclid, Interval, Real};
 
 /// A pyramid on a regular polygon, along the z axis and centred at the origin (base at
 /// z = −height/2, apex at z = height/2), with a corner on the side of positive x, by true
@@ -87,10 +87,10 @@ impl Field for Pyramid {
         let (steep, flat) = (slant / edge, half_edge / edge);
         let beside = up.scale_add(flat, past * steep);
         let along = (up - 0.5 * slant).scale_add(steep, (past + 0.5 * half_edge) * -flat);
-        let to_edge = beside.norm((along.abs() - 0.5 * edge).max(zero), Norm::Euclid);
+        let to_edge = beside.norm_as((along.abs() - 0.5 * edge).max(zero), Euclid);
         // Below the face's lower edge the base is nearer than anything of the face.
-        let to_face = off.norm(up.min(-beside).select(zero, to_edge), Norm::Euclid);
-        let to_base = side.max(zero).nested(past.max(zero), floor, Norm::Euclid, Norm::Euclid);
+        let to_face = off.norm_as(up.min(-beside).select(zero, to_edge), Euclid);
+        let to_base = side.max(zero).nested_as(past.max(zero), floor, Euclid, Euclid);
         let inside = -off.max(floor);
         inside.select(inside, -to_face.min(to_base))
     }

@@ -21,7 +21,7 @@
 
 use super::blend::{self, RicciSide};
 use super::{ParamError, VALUE_LIMIT};
-use crate::{Monotone, Norm, Real};
+use crate::{Euclid, Joined, Monotone, Norm, NormKind, Op, Powers, Real};
 
 /// How set operations combine values. All rules give the same solid; they differ in the
 /// field around and inside it.
@@ -111,13 +111,13 @@ impl RFunction {
     /// ```
     #[must_use]
     pub fn and(self, x: f64, y: f64) -> f64 {
-        Rule::from(self).and(x, y)
+        f64::joined(Rule::from(self), Op::And, x, y)
     }
 
     /// `x ∨ y`: positive where either is.
     #[must_use]
     pub fn or(self, x: f64, y: f64) -> f64 {
-        Rule::from(self).or(x, y)
+        f64::joined(Rule::from(self), Op::Or, x, y)
     }
 
     /// Whether the order in which many operands are joined does not matter.
@@ -209,8 +209,12 @@ impl Rule {
             Rule::MinMax => x.min(y),
             Rule::Zero(m) => saturate(zero_and(x, y, m)),
             Rule::Displacement { height, inverse } => saturate(blend::displacement(x, y, height, inverse)),
-            Rule::Ricci { p, side, radii, radius } => saturate(blend::ricci(x, y, p, side, radii, radius)),
-            rule => saturate(x.monotone(y, &And(rule))),
+            Rule::Ricci { p, side, radii, radius } => saturate(blend::ricci(x, y, Norm::new(p), side, radii, radius)),
+            Rule::Alpha(alpha) => saturate(x.monotone(y, &AlphaAnd(alpha))),
+            Rule::Smooth(width) => saturate(x.monotone(y, &SmoothAnd(width))),
+            Rule::Distance => saturate(x.monotone(y, &DistanceAnd)),
+            Rule::P(norm) => saturate(x.monotone(y, &PAnd(norm))),
+            Rule::Associative(norm) => saturate(x.monotone(y, &AssociativeAnd(norm))),
         }
     }
 
@@ -230,81 +234,116 @@ pub fn saturate<R: Real>(x: R) -> R {
     x.max(x.lift(-VALUE_LIMIT)).min(x.lift(VALUE_LIMIT))
 }
 
-/// Conjunction by a rule that rises with both arguments.
+/// Conjunction by a rule that rises with both arguments. Each is a type, so that lanes are compiled with one rule each.
 #[derive(Clone, Copy)]
-struct And(Rule);
+pub(super) struct AlphaAnd(pub f64);
+
+/// R_p.
+#[derive(Clone, Copy)]
+pub(super) struct PAnd<N>(pub N);
+
+/// The associative R-function of exponent p.
+#[derive(Clone, Copy)]
+pub(super) struct AssociativeAnd<N>(pub N);
+
+/// Smooth minimum.
+#[derive(Clone, Copy)]
+pub(super) struct SmoothAnd(pub f64);
+
+/// What distances are joined by.
+#[derive(Clone, Copy)]
+pub(super) struct DistanceAnd;
 
 /// A denominator is held above this.
 const TINY: f64 = 1e-37;
 
-impl Monotone for And {
+impl Monotone for AlphaAnd {
     #[inline(always)]
     fn value<R: Real>(&self, x: R, y: R) -> R {
-        match self.0 {
-            Rule::Alpha(alpha) => alpha_and(x, y, alpha).0,
-            Rule::Smooth(width) => blend::smooth(x, y, width),
-            Rule::P(norm) => {
-                let zero = x.lift(0.0);
-                x.min(y) + (x + y).min(zero) - norm_excess(x, y, norm)
-            }
-            Rule::Associative(norm) => {
-                let zero = x.lift(0.0);
-                let (px, py) = (x.max(zero), y.max(zero));
-                let both = px * (py / px.norm(py, norm).max(x.lift(TINY)));
-                both - x.min(zero).norm(y.min(zero), norm)
-            }
-            Rule::Distance => {
-                let zero = x.lift(0.0);
-                x.min(y).max(zero) - x.min(zero).norm(y.min(zero), Norm::Euclid)
-            }
-            _ => x.min(y),
-        }
+        alpha_and(x, y, self.0).0
+    }
+
+    #[inline(always)]
+    fn parts<R: Real>(&self, x: R, y: R) -> (R, R, R) {
+        let (one, alpha) = (x.lift(1.0), self.0);
+        let (value, d) = alpha_and(x, y, alpha);
+        let floor = d.max(x.lift(TINY));
+        let scale = 1.0 / (1.0 + alpha);
+        let dx = (one - (x - y * alpha) / floor) * scale;
+        let dy = (one - (y - x * alpha) / floor) * scale;
+        (value, dx, dy)
+    }
+}
+
+impl<N: ExcessKind> Monotone for PAnd<N> {
+    #[inline(always)]
+    fn value<R: Real>(&self, x: R, y: R) -> R {
+        let zero = x.lift(0.0);
+        x.min(y) + (x + y).min(zero) - self.0.excess(x, y)
+    }
+
+    #[inline(always)]
+    fn parts<R: Real>(&self, x: R, y: R) -> (R, R, R) {
+        let one = x.lift(1.0);
+        let (_, dx, dy) = x.norm_parts_as(y, self.0);
+        (self.value(x, y), one - dx, one - dy)
+    }
+}
+
+impl<N: NormKind> Monotone for AssociativeAnd<N> {
+    #[inline(always)]
+    fn value<R: Real>(&self, x: R, y: R) -> R {
+        let zero = x.lift(0.0);
+        let (px, py) = (x.max(zero), y.max(zero));
+        let both = px * (py / px.norm_as(py, self.0).max(x.lift(TINY)));
+        both - x.min(zero).norm_as(y.min(zero), self.0)
     }
 
     #[inline(always)]
     fn parts<R: Real>(&self, x: R, y: R) -> (R, R, R) {
         let zero = x.lift(0.0);
-        let one = x.lift(1.0);
-        match self.0 {
-            Rule::Smooth(width) => blend::smooth_parts(x, y, width),
-            Rule::Alpha(alpha) => {
-                let (value, d) = alpha_and(x, y, alpha);
-                let floor = d.max(x.lift(TINY));
-                let scale = 1.0 / (1.0 + alpha);
-                let dx = (one - (x - y * alpha) / floor) * scale;
-                let dy = (one - (y - x * alpha) / floor) * scale;
-                (value, dx, dy)
-            }
-            Rule::P(norm) => {
-                let (_, dx, dy) = x.norm_parts(y, norm);
-                (self.value(x, y), one - dx, one - dy)
-            }
-            Rule::Associative(norm) => {
-                let (px, py) = (x.max(zero), y.max(zero));
-                let (n, nx, ny) = px.norm_parts(py, norm);
-                let floor = n.max(x.lift(TINY));
-                let (rx, ry) = (px / floor, py / floor);
-                let (_, mx, my) = x.min(zero).norm_parts(y.min(zero), norm);
-                // Where both are positive (v/x)^(p+1) with v/x = y/‖·‖; else the slope of
-                // the norm of the negative parts. On either side the other term is 0.
-                let both = x.min(y);
-                let dx = both.select(ny * ry * ry, -mx);
-                let dy = both.select(nx * rx * rx, -my);
-                (self.value(x, y), dx, dy)
-            }
-            Rule::Distance => {
-                let first = (y - x).select(one, zero);
-                let (_, nx, ny) = x.min(zero).norm_parts(y.min(zero), Norm::Euclid);
-                // The slopes of a norm are those of the negative parts, which are negative; at
-                // the corner itself the norm has none.
-                let least = x.min(y);
-                (self.value(x, y), least.select(first, -nx), least.select(one - first, -ny))
-            }
-            _ => {
-                let first = (y - x).select(one, zero);
-                (x.min(y), first, one - first)
-            }
-        }
+        let (px, py) = (x.max(zero), y.max(zero));
+        let (n, nx, ny) = px.norm_parts_as(py, self.0);
+        let floor = n.max(x.lift(TINY));
+        let (rx, ry) = (px / floor, py / floor);
+        let (_, mx, my) = x.min(zero).norm_parts_as(y.min(zero), self.0);
+        // Where both are positive (v/x)^(p+1) with v/x = y/‖·‖; else the slope of
+        // the norm of the negative parts. On either side the other term is 0.
+        let both = x.min(y);
+        let dx = both.select(ny * ry * ry, -mx);
+        let dy = both.select(nx * rx * rx, -my);
+        (self.value(x, y), dx, dy)
+    }
+}
+
+impl Monotone for SmoothAnd {
+    #[inline(always)]
+    fn value<R: Real>(&self, x: R, y: R) -> R {
+        blend::smooth(x, y, self.0)
+    }
+
+    #[inline(always)]
+    fn parts<R: Real>(&self, x: R, y: R) -> (R, R, R) {
+        blend::smooth_parts(x, y, self.0)
+    }
+}
+
+impl Monotone for DistanceAnd {
+    #[inline(always)]
+    fn value<R: Real>(&self, x: R, y: R) -> R {
+        let zero = x.lift(0.0);
+        x.min(y).max(zero) - x.min(zero).norm_as(y.min(zero), Euclid)
+    }
+
+    #[inline(always)]
+    fn parts<R: Real>(&self, x: R, y: R) -> (R, R, R) {
+        let (zero, one) = (x.lift(0.0), x.lift(1.0));
+        let first = (y - x).select(one, zero);
+        let (_, nx, ny) = x.min(zero).norm_parts_as(y.min(zero), Euclid);
+        // The slopes of a norm are those of the negative parts, which are negative; at
+        // the corner itself the norm has none.
+        let least = x.min(y);
+        (self.value(x, y), least.select(first, -nx), least.select(one - first, -ny))
     }
 }
 
@@ -321,30 +360,50 @@ fn alpha_and<R: Real>(x: R, y: R, alpha: f64) -> (R, R) {
     (s.min(zero) * (2.0 / (1.0 + alpha)) + product, d)
 }
 
-/// `‖(x, y)‖ − max(|x|, |y|)`, to full relative precision.
-#[inline(always)]
-fn norm_excess<R: Real>(x: R, y: R, norm: Norm) -> R {
-    let (a, b) = (x.abs(), y.abs());
-    let (hi, lo) = (a.max(b), a.min(b));
-    match norm {
-        Norm::Sum => lo,
-        Norm::Max => x.lift(0.0),
-        Norm::Euclid => {
-            let length = hi.mul_add(hi, lo.square()).sqrt();
-            lo * (lo / (hi + length).max(x.lift(TINY)))
+/// A norm of which it is known how much it is above the larger coordinate.
+pub(super) trait ExcessKind: NormKind {
+    /// `‖(x, y)‖ − max(|x|, |y|)`, to full relative precision.
+    fn excess<R: Real>(self, x: R, y: R) -> R;
+}
+
+impl ExcessKind for Euclid {
+    #[inline(always)]
+    fn excess<R: Real>(self, x: R, y: R) -> R {
+        let (a, b) = (x.abs(), y.abs());
+        let (hi, lo) = (a.max(b), a.min(b));
+        let length = hi.mul_add(hi, lo.square()).sqrt();
+        lo * (lo / (hi + length).max(x.lift(TINY)))
+    }
+}
+
+impl<const STEEP: bool> ExcessKind for Powers<STEEP> {
+    #[inline(always)]
+    fn excess<R: Real>(self, x: R, y: R) -> R {
+        let (a, b) = (x.abs(), y.abs());
+        let (hi, lo) = (a.max(b), a.min(b));
+        let Powers { p, inv } = self;
+        let u = (lo / hi.max(x.lift(TINY))).pow(p);
+        // (1 + u)^(1/p) − 1: the binomial series where u is small.
+        const TERMS: u32 = 8;
+        let mut series = x.lift(0.0);
+        for k in (1..=TERMS).rev() {
+            let k = f64::from(k);
+            // s_k = u·(1/p − k + 1)/k·(1 + s_{k+1})
+            series = (series + 1.0) * u * ((inv - k + 1.0) / k);
         }
-        Norm::P { p, inv } | Norm::Steep { p, inv } => {
-            let u = (lo / hi.max(x.lift(TINY))).pow(p);
-            // (1 + u)^(1/p) − 1: the binomial series where u is small.
-            const TERMS: u32 = 8;
-            let mut series = x.lift(0.0);
-            for k in (1..=TERMS).rev() {
-                let k = f64::from(k);
-                // s_k = u·(1/p − k + 1)/k·(1 + s_{k+1})
-                series = (series + 1.0) * u * ((inv - k + 1.0) / k);
-            }
-            let direct = ((u + 1.0).log2() * inv).exp2() - 1.0;
-            hi * (u - 1.0 / 64.0).select(direct, series)
+        let direct = ((u + 1.0).log2() * inv).exp2() - 1.0;
+        hi * (u - 1.0 / 64.0).select(direct, series)
+    }
+}
+
+impl ExcessKind for Norm {
+    #[inline(always)]
+    fn excess<R: Real>(self, x: R, y: R) -> R {
+        match self {
+            Norm::Sum => x.abs().min(y.abs()),
+            Norm::Max => x.lift(0.0),
+            Norm::Euclid => Euclid.excess(x, y),
+            Norm::P { p, inv } | Norm::Steep { p, inv } => Powers::<true> { p, inv }.excess(x, y),
         }
     }
 }
@@ -352,9 +411,9 @@ fn norm_excess<R: Real>(x: R, y: R, norm: Norm) -> R {
 /// R_0^m conjunction: that of R_p with p = 2, times a power of the norm that flattens the
 /// corner.
 #[inline(always)]
-fn zero_and<R: Real>(x: R, y: R, m: u32) -> R {
-    let and = saturate(x.monotone(y, &And(Rule::P(Norm::Euclid))));
-    let norm = x.norm(y, Norm::Euclid);
+pub(super) fn zero_and<R: Real>(x: R, y: R, m: u32) -> R {
+    let and = saturate(x.monotone(y, &PAnd(Euclid)));
+    let norm = x.norm_as(y, Euclid);
     let mut power = norm.lift(1.0);
     for _ in 0..m {
         power = saturate(power * norm);

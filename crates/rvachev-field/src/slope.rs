@@ -1,14 +1,14 @@
 //! Ranges that follow from slopes: by a Lipschitz bound, and by the mean-value form.
 
-use super::Field;
+use super::outlined::Outlined;
 use crate::{Dual, Interval};
 
 /// Range of a formula with slope at most 1: the value at the centre give or take half the
 /// diagonal, or the range by intervals where that is narrower.
-pub(super) fn lipschitz_range(leaf: &impl Field, region: [Interval; 3]) -> Interval {
-    let wide = leaf.eval(region);
+pub(super) fn lipschitz_range(leaf: &dyn Outlined, region: [Interval; 3]) -> Interval {
+    let wide = leaf.over(region);
     let centre = region.map(Interval::mid);
-    let value = leaf.eval(centre);
+    let value = leaf.at(centre);
     // Slope at most about 1: rounding is relative to the coordinates.
     let size = centre.iter().fold(value.abs(), |sum, c| sum + c.abs());
     wide.narrowed_by(Interval::around(value, half_diagonal(region) + 1e-14 * size))

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Field, ParamError, check, leaf::falling_range};
-use crate::{Bounds, Interval, Norm, Real};
+use crate::{Bounds, Euclid, Interval, Real};
 
 /// A sphere about the origin: `f = r − |p|`, the true distance (1-Lipschitz).
 ///
@@ -34,7 +34,7 @@ impl Field for Sphere {
 
     #[inline(always)]
     fn eval<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
-        -x.nested(y, z, Norm::Euclid, Norm::Euclid) + self.radius
+        -x.nested_as(y, z, Euclid, Euclid) + self.radius
     }
 
     fn bounds(&self) -> Bounds {

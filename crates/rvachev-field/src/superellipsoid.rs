@@ -15,8 +15,8 @@ use std::fmt;
 
 use glam::DVec3;
 
-use super::{Field, Kernel, ParamError, check, leaf::falling_range};
-use crate::{Bounds, Interval, Norm, Real};
+use super::{Case, Field, Kernel, ParamError, check, leaf::falling_range};
+use crate::{Bounds, Euclid, Interval, Norm, NormKind, Powers, Real};
 
 /// A superellipsoid about the origin, valued `f = r_in·(1 − G)` in length units, where
 /// `r_in` is the radius of its largest inscribed sphere and G the gauge.
@@ -185,6 +185,23 @@ impl fmt::Debug for Superellipsoid {
     }
 }
 
+/// A superellipsoid by the kind of its norms.
+struct Exponents<N> {
+    inverse: DVec3,
+    inscribed: f64,
+    inner: N,
+    outer: N,
+}
+
+impl<N: NormKind> Case for Exponents<N> {
+    #[inline(always)]
+    fn value<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
+        let i = self.inverse;
+        let gauge = (x * i.x).nested_as(y * i.y, z * i.z, self.inner, self.outer);
+        gauge.scale_add(-self.inscribed, x.lift(self.inscribed))
+    }
+}
+
 impl Field for Superellipsoid {
     fn name(&self) -> &'static str {
         "superellipsoid"
@@ -225,17 +242,18 @@ impl Field for Superellipsoid {
     #[inline(always)]
     fn specialised<K: Kernel<Self>>(&self, kernel: K) {
         // Two loops cover all exponents, and a third that of ellipsoids, a single root.
-        let with = |inner: Norm, outer: Norm| Superellipsoid { inner, outer, ..*self };
+        let Superellipsoid { inverse, inscribed, .. } = *self;
         match (self.inner.by_powers(), self.outer.by_powers()) {
             _ if self.inner == Norm::Euclid && self.outer == Norm::Euclid => {
-                kernel.run(&with(Norm::Euclid, Norm::Euclid));
+                kernel.run_case(&Exponents { inverse, inscribed, inner: Euclid, outer: Euclid });
             }
             (Norm::P { p, inv }, Norm::P { p: q, inv: q_inv }) => {
-                kernel.run_wide(&with(Norm::P { p, inv }, Norm::P { p: q, inv: q_inv }));
+                let (inner, outer) = (Powers::<false> { p, inv }, Powers { p: q, inv: q_inv });
+                kernel.run_case_wide(&Exponents { inverse, inscribed, inner, outer });
             }
             (inner, outer) => {
-                let (p, q) = (inner.p(), outer.p());
-                kernel.run(&with(Norm::Steep { p, inv: 1.0 / p }, Norm::Steep { p: q, inv: 1.0 / q }));
+                let (inner, outer) = (Powers::steep(inner), Powers::steep(outer));
+                kernel.run_case(&Exponents { inverse, inscribed, inner, outer });
             }
         }
     }

@@ -22,9 +22,10 @@
 
 use glam::DVec3;
 
+use super::outlined::Outlined;
 use super::superellipsoid::{slope_norm, support_norm};
-use super::{Field, Kernel, ParamError, check};
-use crate::{Bounds, Interval, Norm, Real};
+use super::{Case, Field, Kernel, ParamError, check};
+use crate::{Bounds, Interval, Norm, Powers, Real};
 
 /// The solid is at most this many times as long as its semi-axis.
 const LONGEST: f64 = 2000.0;
@@ -266,6 +267,34 @@ fn leg(hypotenuse: f64, norm: Norm) -> f64 {
     if rest > 0.0 { hypotenuse * rest.powf(1.0 / p) } else { 0.0 }
 }
 
+/// A superhyperboloid on lanes, whatever its exponents are.
+struct ByPowers {
+    of: Superhyperboloid,
+    across: Powers<true>,
+    profile: Powers<true>,
+}
+
+impl Case for ByPowers {
+    #[inline(always)]
+    fn value<R: Real>(&self, p: [R; 3]) -> R {
+        let Superhyperboloid { inverse: i, along_x, sheets, scale, .. } = self.of;
+        let (x, y, z) = (p[0] * i.x, p[1] * i.y, p[2] * i.z);
+        let one = x.lift(1.0);
+        let height = match sheets {
+            Sheets::One => {
+                let (a, b, along) = if along_x { (y, z, x) } else { (x, y, z) };
+                one.norm_as(along, self.profile) - a.norm_as(b, self.across)
+            }
+            Sheets::Two => {
+                let (a, b, c, along) = if along_x { (one, z, y, x) } else { (x, y, one, z) };
+                let (inner, outer) = if along_x { (self.profile, self.across) } else { (self.across, self.profile) };
+                along.abs() - a.nested_as(b, c, inner, outer)
+            }
+        };
+        (height * scale).min(self.of.slab(p))
+    }
+}
+
 impl Field for Superhyperboloid {
     fn name(&self) -> &'static str {
         "superhyperboloid"
@@ -296,7 +325,7 @@ impl Field for Superhyperboloid {
     }
 
     fn range(&self, region: [Interval; 3]) -> Interval {
-        let direct = self.eval(region);
+        let direct = self.over(region);
         if direct.lo() > 0.0 || direct.hi() < 0.0 {
             return direct;
         }
@@ -345,7 +374,11 @@ impl Field for Superhyperboloid {
 
     #[inline(always)]
     fn specialised<K: Kernel<Self>>(&self, kernel: K) {
-        kernel.run(&Superhyperboloid { across: self.across.as_steep(), profile: self.profile.as_steep(), ..*self });
+        kernel.run_case(&ByPowers {
+            of: *self,
+            across: Powers::steep(self.across),
+            profile: Powers::steep(self.profile),
+        });
     }
 
     fn roundoff(&self, reach: f64) -> f64 {

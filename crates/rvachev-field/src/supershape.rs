@@ -31,10 +31,10 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::gielis::Winding;
+use super::gielis::{Polar, Winding};
 use super::outline::Outline;
-use super::{Field, Gielis, Kernel, ParamError, Radius, Turns, check};
-use crate::{Bounds, Interval, Norm, Real};
+use super::{Case, Field, Gielis, Kernel, ParamError, Radius, Turns, check};
+use crate::{Bounds, Euclid, Interval, Real};
 
 /// A supershape about the origin, valued `f = r_in·(1 − G)` in length units, where `r_in` is
 /// the radius of a sphere about the origin inside it.
@@ -214,9 +214,19 @@ impl Supershape {
     #[inline(always)]
     fn gauge_of<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
         let (x, y, z) = (x * self.inverse.x, y * self.inverse.y, z * self.inverse.z);
-        let rho = x.norm(y, Norm::Euclid);
+        let rho = x.norm_as(y, Euclid);
         let u = rho * self.equator.inverse_radius_at(y.atan2(x), self.radius, self.winding);
-        u.norm(z, Norm::Euclid) * self.meridian.inverse_radius_at(z.atan2(u), self.radius, Winding::Once)
+        u.norm_as(z, Euclid) * self.meridian.inverse_radius_at(z.atan2(u), self.radius, Winding::Once)
+    }
+
+    #[inline(always)]
+    fn case<const RATIONAL: bool, const MANY: bool>(&self) -> Curves<RATIONAL, MANY> {
+        let Supershape { inverse, inscribed, .. } = *self;
+        let winding = if MANY { self.winding.by_turns() } else { Winding::Once };
+        let seam = !MANY && std::hint::black_box(false);
+        let equator = Polar { curve: self.equator, winding, seam };
+        let meridian = Polar { curve: self.meridian, winding: Winding::Once, seam };
+        Curves { inverse, inscribed, equator, meridian }
     }
 
     /// The region in units of the semi-axes.
@@ -233,6 +243,25 @@ impl fmt::Debug for Supershape {
         let mut text = f.debug_struct("Supershape");
         text.field("equator", equator).field("meridian", meridian).field("scale", scale);
         text.field("radius", radius).finish()
+    }
+}
+
+/// A supershape on lanes, by the kind of its curves.
+struct Curves<const RATIONAL: bool, const MANY: bool> {
+    inverse: DVec3,
+    inscribed: f64,
+    equator: Polar<RATIONAL, MANY, true>,
+    meridian: Polar<RATIONAL, false, true>,
+}
+
+impl<const RATIONAL: bool, const MANY: bool> Case for Curves<RATIONAL, MANY> {
+    #[inline(always)]
+    fn value<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
+        let (x, y, z) = (x * self.inverse.x, y * self.inverse.y, z * self.inverse.z);
+        let rho = x.norm_as(y, Euclid);
+        let u = rho * y.atan2(x).of_one(&self.equator);
+        let gauge = u.norm_as(z, Euclid) * z.atan2(u).of_one(&self.meridian);
+        gauge.scale_add(-self.inscribed, x.lift(self.inscribed))
     }
 }
 
@@ -295,11 +324,10 @@ impl Field for Supershape {
     fn specialised<K: Kernel<Self>>(&self, kernel: K) {
         // Lanes need no outlines; one loop for a single turn, whose chain of operations is so long
         // that it takes half the time on several vectors at once, and one for several turns.
-        let with = |radius: Radius, winding: Winding| Supershape { radius, winding, outlines: None, ..*self };
         match (self.radius, self.winding) {
-            (Radius::Standard, Winding::Once) => kernel.run_wide(&with(Radius::Standard, Winding::Once)),
-            (Radius::Standard, many) => kernel.run(&with(Radius::Standard, many.by_turns())),
-            (Radius::Rational, any) => kernel.run(&with(Radius::Rational, any.by_turns())),
+            (Radius::Standard, Winding::Once) => kernel.run_case_wide(&self.case::<false, false>()),
+            (Radius::Standard, _) => kernel.run_case(&self.case::<false, true>()),
+            (Radius::Rational, _) => kernel.run_case(&self.case::<true, true>()),
         }
     }
 

@@ -24,8 +24,8 @@
 use glam::DVec3;
 
 use super::superellipsoid::{slope_norm, support_norm};
-use super::{Field, Kernel, ParamError, check};
-use crate::{Bounds, Norm, Real};
+use super::{Case, Field, Kernel, ParamError, check};
+use crate::{Bounds, Norm, Powers, Real};
 
 /// The ring is at most this many tube radii: beyond, single precision has no digits left for
 /// the tube.
@@ -144,6 +144,23 @@ impl Supertoroid {
     }
 }
 
+/// A supertoroid on lanes, whatever its exponents are.
+struct ByPowers {
+    inverse: DVec3,
+    ring: f64,
+    scale: f64,
+    norms: [Powers<true>; 2],
+}
+
+impl Case for ByPowers {
+    #[inline(always)]
+    fn value<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
+        let (i, [inner, outer]) = (self.inverse, self.norms);
+        let rho = (x * i.x).norm_as(y * i.y, inner);
+        (rho - self.ring).norm_as(z * i.z, outer).scale_add(-self.scale, x.lift(self.scale))
+    }
+}
+
 impl Field for Supertoroid {
     fn name(&self) -> &'static str {
         "supertoroid"
@@ -173,7 +190,13 @@ impl Field for Supertoroid {
 
     #[inline(always)]
     fn specialised<K: Kernel<Self>>(&self, kernel: K) {
-        kernel.run(&Supertoroid { inner: self.inner.as_steep(), outer: self.outer.as_steep(), ..*self });
+        let Supertoroid { inverse, ring, scale, .. } = *self;
+        kernel.run_case(&ByPowers {
+            inverse,
+            ring,
+            scale,
+            norms: [Powers::steep(self.inner), Powers::steep(self.outer)],
+        });
     }
 
     fn roundoff(&self, reach: f64) -> f64 {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Field, ParamError, check};
-use crate::{Bounds, Norm, Real};
+use crate::{Bounds, Euclid, Real};
 
 /// A ring about the z axis, centred at the origin, by true distance (1-Lipschitz): all points
 /// within `tube` of a circle in the plane z = 0.
@@ -44,8 +44,8 @@ impl Field for Torus {
     // Every coordinate occurs once, so that the range by intervals is exact.
     #[inline(always)]
     fn eval<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
-        let off = x.norm(y, Norm::Euclid) - self.radius;
-        -off.norm(z, Norm::Euclid) + self.tube
+        let off = x.norm_as(y, Euclid) - self.radius;
+        -off.norm_as(z, Euclid) + self.tube
     }
 
     fn bounds(&self) -> Bounds {

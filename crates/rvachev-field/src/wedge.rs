@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{Field, ParamError, check, slope::lipschitz_range};
-use crate::{Bounds, Interval, Norm, Real};
+use crate::{Bounds, Euclid, Interval, Real};
 
 /// A ramp: the half of a box about the origin that lies below the plane through two of its
 /// edges along y, by true distance (1-Lipschitz).
@@ -58,11 +58,10 @@ impl Field for Wedge {
         let past_left = (z.abs() - half.z).max(zero);
         let past_low = (x.abs() - half.x).max(zero);
         let deepest = off.max(left).max(low);
-        let nearest =
-            off.norm(past, Norm::Euclid).min(left.norm(past_left, Norm::Euclid)).min(low.norm(past_low, Norm::Euclid));
+        let nearest = off.norm_as(past, Euclid).min(left.norm_as(past_left, Euclid)).min(low.norm_as(past_low, Euclid));
         let flank = y.abs() - half.y;
         let inside = -deepest.max(flank);
-        let out = deepest.select(nearest, zero).norm(flank.max(zero), Norm::Euclid);
+        let out = deepest.select(nearest, zero).norm_as(flank.max(zero), Euclid);
         inside.select(inside, -out)
     }
 

@@ -9,6 +9,9 @@
 //! Where a value is undefined (∞ − ∞, 0 · ∞, division by an interval that holds 0) the result
 //! is the whole line, never NaN.
 //!
+//! What takes more than a few operations is not inlined: a call costs little beside it, and formulas on
+//! intervals and on their dual numbers are as many as the leaves.
+//!
 //! Source: R. E. Moore, *Interval Analysis* (1966).
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -137,7 +140,7 @@ impl Interval {
     /// `[lo, hi]`, each end moved to the next float outward.
     #[inline(always)]
     fn outward(lo: f64, hi: f64) -> Interval {
-        if lo <= hi { Interval { lo: lo.next_down(), hi: hi.next_up() } } else { Interval::ALL }
+        if lo <= hi { Interval { lo: -next_up(-lo), hi: next_up(hi) } } else { Interval::ALL }
     }
 
     /// `[lo, hi]` as a library function returned them, with its error on each side.
@@ -153,6 +156,16 @@ impl Interval {
         let wide = Interval::library(lo, hi);
         Interval { lo: wide.lo.max(min), hi: wide.hi.min(max) }
     }
+}
+
+/// `f64::next_up` of a number that is not NaN, without its branches: most of what an interval
+/// operation takes, and most of what it is compiled to.
+#[inline(always)]
+fn next_up(x: f64) -> f64 {
+    // −0 becomes 0. The bits of a float are its place among those of its sign.
+    let bits = (x + 0.0).to_bits();
+    let step = ((bits as i64) >> 63) as u64 | 1;
+    f64::from_bits(bits.wrapping_add(step)).min(f64::INFINITY)
 }
 
 impl Neg for Interval {
@@ -193,7 +206,7 @@ impl Mul for Interval {
 
 impl Div for Interval {
     type Output = Interval;
-    #[inline(always)]
+    #[inline(never)]
     fn div(self, o: Interval) -> Interval {
         if o.lo <= 0.0 && o.hi >= 0.0 {
             // One-sided divisors keep what they can say: [0, b] of a positive divisor.
@@ -281,17 +294,17 @@ impl Real for Interval {
         Interval { lo: root.lo.max(0.0), hi: root.hi }
     }
 
-    #[inline(always)]
+    #[inline(never)]
     fn exp2(self) -> Interval {
         Interval::library_within(self.lo.exp2(), self.hi.exp2(), 0.0, f64::INFINITY)
     }
 
-    #[inline(always)]
+    #[inline(never)]
     fn log2(self) -> Interval {
         Interval::library(Real::log2(self.lo.max(0.0)), Real::log2(self.hi.max(0.0)))
     }
 
-    #[inline(always)]
+    #[inline(never)]
     fn pow(self, p: f64) -> Interval {
         let a = self.abs();
         Interval::library_within(a.lo.powf(p), a.hi.powf(p), 0.0, f64::INFINITY)
@@ -337,13 +350,13 @@ impl Real for Interval {
         }
     }
 
-    #[inline(always)]
+    #[inline(never)]
     fn log2_sum_exp2(self, o: Interval) -> Interval {
         // It rises with both arguments.
         Interval::library(Real::log2_sum_exp2(self.lo, o.lo), Real::log2_sum_exp2(self.hi, o.hi)).inflate(1e-15)
     }
 
-    #[inline(always)]
+    #[inline(never)]
     fn norm(self, other: Interval, norm: Norm) -> Interval {
         // It rises with |a| and |b|: two evaluations are the exact range. A norm by powers
         // and logarithms takes three library calls.
@@ -358,6 +371,21 @@ impl Real for Interval {
     fn norm_parts(self, other: Interval, norm: Norm) -> (Interval, Interval, Interval) {
         let value = self.norm(other, norm);
         (value, slope(self, other, norm), slope(other, self, norm))
+    }
+
+    #[inline(never)]
+    fn chain(d: [Interval; 3], a: Interval) -> [Interval; 3] {
+        [d[0] * a, d[1] * a, d[2] * a]
+    }
+
+    #[inline(never)]
+    fn chain2(d: [Interval; 3], a: Interval, e: [Interval; 3], b: Interval) -> [Interval; 3] {
+        [d[0] * a + e[0] * b, d[1] * a + e[1] * b, d[2] * a + e[2] * b]
+    }
+
+    #[inline(never)]
+    fn choose(self, nonneg: [Interval; 3], neg: [Interval; 3]) -> [Interval; 3] {
+        [self.select(nonneg[0], neg[0]), self.select(nonneg[1], neg[1]), self.select(nonneg[2], neg[2])]
     }
 
     #[inline(always)]
@@ -388,7 +416,7 @@ impl Real for Interval {
 
 /// Range of the derivative of `‖(a, b)‖` with respect to `a`: `sign(a)·(|a|/‖(a, b)‖)^(p−1)`,
 /// which rises with a and, on either side of a = 0, moves towards 0 (p > 1) as |b| grows.
-#[inline(always)]
+#[inline(never)]
 fn slope(a: Interval, b: Interval, norm: Norm) -> Interval {
     let p = norm.p();
     if p < 1.0 {
@@ -441,4 +469,22 @@ fn cosine(x: Interval) -> Interval {
     let (a, b) = (x.lo.cos(), x.hi.cos());
     let wide = Interval::library_within(a.min(b), a.max(b), -1.0, 1.0);
     Interval { lo: if holds(PI) { -1.0 } else { wide.lo }, hi: if holds(0.0) { 1.0 } else { wide.hi } }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_next_number_is_that_of_the_library() {
+        let mut numbers = vec![0.0, f64::MIN_POSITIVE, f64::MAX, f64::INFINITY, 1.0, 1.5, f64::EPSILON, 5e-324, 1e-323];
+        numbers.extend((0..2000u64).map(|n| f64::from_bits(n.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 1)));
+        numbers.retain(|number| !number.is_nan());
+        for number in numbers {
+            for number in [number, -number] {
+                assert_eq!(next_up(number).to_bits(), number.next_up().to_bits(), "{number:e}");
+                assert_eq!((-next_up(-number)).to_bits(), number.next_down().to_bits(), "{number:e}");
+            }
+        }
+    }
 }

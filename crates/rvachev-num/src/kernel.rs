@@ -45,6 +45,23 @@ pub trait Formula<const I: usize, const O: usize>: Sized {
     fn specialised<V: Visit<I, O>>(&self, visit: V) {
         visit.visit(self);
     }
+
+    /// The formula of one point, where there are no lanes: what has it compiled elsewhere calls that.
+    fn point(&self, x: [f64; I]) -> [f64; O] {
+        self.run(x)
+    }
+}
+
+/// A formula behind a pointer, for the loop over points that is compiled once.
+trait ByPoint<const I: usize, const O: usize> {
+    fn point(&self, x: [f64; I]) -> [f64; O];
+}
+
+impl<const I: usize, const O: usize, F: Formula<I, O>> ByPoint<I, O> for F {
+    #[inline]
+    fn point(&self, x: [f64; I]) -> [f64; O] {
+        Formula::point(self, x)
+    }
 }
 
 /// What is done with a formula once its cases are told apart.
@@ -60,6 +77,17 @@ pub trait Visit<const I: usize, const O: usize> {
 pub trait Fold<const N: usize> {
     /// `next` joined to `all`.
     fn fold<R: Real>(&self, all: [R; N], next: [R; N]) -> [R; N];
+}
+
+/// A join behind a pointer.
+trait FoldByPoint<const N: usize> {
+    fn join(&self, all: [f64; N], next: [f64; N]) -> [f64; N];
+}
+
+impl<const N: usize, F: Fold<N>> FoldByPoint<N> for F {
+    fn join(&self, all: [f64; N], next: [f64; N]) -> [f64; N] {
+        self.fold(all, next)
+    }
 }
 
 /// An element of a slice, and the lanes that suit it.
@@ -233,14 +261,19 @@ fn sweep<L: Lanes, const I: usize, const O: usize, F: Formula<I, O>>(
 }
 
 /// The same point by point, in double precision.
-#[inline]
+#[cold]
+#[inline(never)]
 fn run_by_point<E: Element, const I: usize, const O: usize>(
-    formula: &impl Formula<I, O>,
+    formula: &dyn ByPoint<I, O>,
     inputs: [&[E]; I],
     outputs: [&mut [E]; O],
 ) {
     for at in 0..inputs[0].len() {
-        let y = formula.run(inputs.map(|input| input[at].to_f64()));
+        let mut x = [0.0; I];
+        for i in 0..I {
+            x[i] = inputs[i][at].to_f64();
+        }
+        let y = formula.point(x);
         for o in 0..O {
             outputs[o][at] = E::from_f64(y[o]);
         }
@@ -256,7 +289,14 @@ pub trait Task {
 /// Runs a task compiled for the machine's SIMD level.
 #[inline]
 pub fn dispatched(task: impl Task) {
-    on_level!(simd => dispatched_on(simd, task), else task.run())
+    on_level!(simd => dispatched_on(simd, task), else plain(task))
+}
+
+/// What runs on machines of before 2013: `cold` has it compiled in the least time.
+#[cold]
+#[inline(never)]
+fn plain(task: impl Task) {
+    task.run();
 }
 
 #[inline(always)]
@@ -294,11 +334,16 @@ fn fold_on<S: Simd, E: Element, const N: usize, F: Fold<N>>(simd: S, formula: &F
     }
 }
 
-#[inline]
-fn fold_by_point<E: Element, const N: usize>(formula: &impl Fold<N>, all: [&mut [E]; N], next: [&[E]; N]) {
+#[cold]
+#[inline(never)]
+fn fold_by_point<E: Element, const N: usize>(formula: &dyn FoldByPoint<N>, all: [&mut [E]; N], next: [&[E]; N]) {
     for at in 0..next[0].len() {
-        let x = std::array::from_fn(|i| all[i][at].to_f64());
-        let joined = formula.fold(x, next.map(|next| next[at].to_f64()));
+        let (mut x, mut y) = ([0.0; N], [0.0; N]);
+        for i in 0..N {
+            x[i] = all[i][at].to_f64();
+            y[i] = next[i][at].to_f64();
+        }
+        let joined = formula.join(x, y);
         for i in 0..N {
             all[i][at] = E::from_f64(joined[i]);
         }

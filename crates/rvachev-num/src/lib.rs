@@ -10,6 +10,7 @@
 //! | SIMD lanes of `f32` and `f64` | values and gradients in bulk |
 //! | `Symbol` | an expression tree for fidget |
 
+mod along;
 mod angle;
 mod bounds;
 mod dual;
@@ -29,7 +30,7 @@ pub use angle::{Angle, deg, rad, turns};
 pub use bounds::{Bounds, column_times};
 pub use dual::Dual;
 pub use interval::Interval;
-pub use monotone::{Monotone, Monotone3};
-pub use norm::Norm;
+pub use monotone::{Monotone, Monotone3, OfOne};
+pub use norm::{Euclid, Norm, NormKind, Powers};
 pub use real::Real;
 pub use run::{CancelToken, Cancelled, Meter, Progress, Run};

@@ -1,4 +1,4 @@
-//! Functions of two and of three arguments that rise with each of them.
+//! Functions of two and of three arguments that rise with each of them, and functions of one.
 
 use super::Real;
 
@@ -27,4 +27,11 @@ pub trait Monotone3 {
 
     /// The value and the slopes with respect to `x`, `y` and `z`.
     fn parts<R: Real>(&self, x: R, y: R, z: R) -> (R, [R; 3]);
+}
+
+/// A function of one number, of several operations: a gradient is its value and its slope, found together on
+/// numbers with a single derivative, and the chain rule.
+pub trait OfOne {
+    /// The function's value.
+    fn value<R: Real>(&self, x: R) -> R;
 }

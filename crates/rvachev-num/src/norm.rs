@@ -1,4 +1,7 @@
-//! p-norms of a pair, their kind decided once.
+//! p-norms of a pair, their kind decided once: when a shape is built ([`Norm`]) or when a loop is
+//! compiled ([`NormKind`]).
+
+use super::lanes::{LogSpace, norms};
 
 /// A p-norm of a pair of numbers, `(|a|^p + |b|^p)^(1/p)`, with its special cases told apart
 /// when a shape is built rather than at every point.
@@ -80,5 +83,129 @@ impl Norm {
             Norm::Max => f64::INFINITY,
             Norm::P { p, .. } | Norm::Steep { p, .. } => p,
         }
+    }
+}
+
+/// A norm whose kind is a type. A formula by [`Norm`] is compiled with all kinds in it, one by a type with one:
+/// on lanes that are several times less.
+pub trait NormKind: Copy {
+    /// The same as a value.
+    fn norm(self) -> Norm;
+
+    /// The norm of a pair of lanes.
+    fn of_pair<T: LogSpace>(self, a: T, b: T) -> T;
+
+    /// And its derivatives.
+    fn parts_of_pair<T: LogSpace>(self, a: T, b: T) -> (T, T, T);
+
+    /// `‖(‖(x, y)‖_inner, z)‖_outer` of lanes; `self` is the inner norm.
+    fn of_triple<T: LogSpace>(self, outer: Self, p: [T; 3]) -> T;
+
+    /// And its derivatives.
+    fn parts_of_triple<T: LogSpace>(self, outer: Self, p: [T; 3]) -> (T, [T; 3]);
+}
+
+/// p = 2.
+#[derive(Clone, Copy, Debug)]
+pub struct Euclid;
+
+/// Any p ≥ 1, or with `STEEP` any p > 0.
+#[derive(Clone, Copy, Debug)]
+pub struct Powers<const STEEP: bool> {
+    /// The exponent.
+    pub p: f64,
+    /// `1 / p`.
+    pub inv: f64,
+}
+
+impl Powers<true> {
+    /// A norm of any kind by powers.
+    #[must_use]
+    pub fn steep(norm: Norm) -> Self {
+        let p = norm.p();
+        Powers { p, inv: 1.0 / p }
+    }
+}
+
+impl NormKind for Euclid {
+    #[inline(always)]
+    fn norm(self) -> Norm {
+        Norm::Euclid
+    }
+
+    #[inline(always)]
+    fn of_pair<T: LogSpace>(self, a: T, b: T) -> T {
+        norms::euclid(a.abs(), b.abs())
+    }
+
+    #[inline(always)]
+    fn parts_of_pair<T: LogSpace>(self, a: T, b: T) -> (T, T, T) {
+        norms::euclid_pair_parts(a, b)
+    }
+
+    #[inline(always)]
+    fn of_triple<T: LogSpace>(self, _: Euclid, [x, y, z]: [T; 3]) -> T {
+        norms::euclid3([x.abs(), y.abs(), z.abs()])
+    }
+
+    #[inline(always)]
+    fn parts_of_triple<T: LogSpace>(self, _: Euclid, p: [T; 3]) -> (T, [T; 3]) {
+        norms::euclid_triple_parts(p)
+    }
+}
+
+impl<const STEEP: bool> NormKind for Powers<STEEP> {
+    #[inline(always)]
+    fn norm(self) -> Norm {
+        let Powers { p, inv } = self;
+        if STEEP { Norm::Steep { p, inv } } else { Norm::P { p, inv } }
+    }
+
+    #[inline(always)]
+    fn of_pair<T: LogSpace>(self, a: T, b: T) -> T {
+        norms::pair::<T, STEEP>(a.abs(), b.abs(), self.p, self.inv)
+    }
+
+    #[inline(always)]
+    fn parts_of_pair<T: LogSpace>(self, a: T, b: T) -> (T, T, T) {
+        norms::pair_parts::<T, STEEP>(a, b, self.p, self.inv)
+    }
+
+    #[inline(always)]
+    fn of_triple<T: LogSpace>(self, outer: Self, p: [T; 3]) -> T {
+        norms::triple::<T, STEEP>(p, [self.p, self.inv, outer.p, outer.inv])
+    }
+
+    #[inline(always)]
+    fn parts_of_triple<T: LogSpace>(self, outer: Self, p: [T; 3]) -> (T, [T; 3]) {
+        norms::triple_parts::<T, STEEP>(p, [self.p, self.inv, outer.p, outer.inv])
+    }
+}
+
+/// The kind is told apart each time.
+impl NormKind for Norm {
+    #[inline(always)]
+    fn norm(self) -> Norm {
+        self
+    }
+
+    #[inline(always)]
+    fn of_pair<T: LogSpace>(self, a: T, b: T) -> T {
+        norms::norm(a, b, self)
+    }
+
+    #[inline(always)]
+    fn parts_of_pair<T: LogSpace>(self, a: T, b: T) -> (T, T, T) {
+        norms::norm_parts(a, b, self)
+    }
+
+    #[inline(always)]
+    fn of_triple<T: LogSpace>(self, outer: Self, [x, y, z]: [T; 3]) -> T {
+        norms::nested(x, y, z, self, outer)
+    }
+
+    #[inline(always)]
+    fn parts_of_triple<T: LogSpace>(self, outer: Self, [x, y, z]: [T; 3]) -> (T, [T; 3]) {
+        norms::nested_parts(x, y, z, self, outer)
     }
 }

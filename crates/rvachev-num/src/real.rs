@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::{Monotone, Monotone3, Norm};
+use super::{Monotone, Monotone3, Norm, NormKind, OfOne};
 
 /// A number that a formula can be evaluated on.
 ///
@@ -130,6 +130,62 @@ pub trait Real:
         let (rho, rho_x, rho_y) = self.norm_parts(y, inner);
         let (value, value_rho, value_z) = rho.norm_parts(z, outer);
         (value, [value_rho * rho_x, value_rho * rho_y, value_z])
+    }
+
+    /// [`norm`](Real::norm) by a kind that is known when the formula is compiled.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn norm_as<N: NormKind>(self, other: Self, norm: N) -> Self {
+        self.norm(other, norm.norm())
+    }
+
+    /// The same of [`norm_parts`](Real::norm_parts).
+    #[doc(hidden)]
+    #[inline(always)]
+    fn norm_parts_as<N: NormKind>(self, other: Self, norm: N) -> (Self, Self, Self) {
+        self.norm_parts(other, norm.norm())
+    }
+
+    /// The same of [`nested`](Real::nested).
+    #[doc(hidden)]
+    #[inline(always)]
+    fn nested_as<N: NormKind>(self, y: Self, z: Self, inner: N, outer: N) -> Self {
+        self.nested(y, z, inner.norm(), outer.norm())
+    }
+
+    /// The same of [`nested_parts`](Real::nested_parts).
+    #[doc(hidden)]
+    #[inline(always)]
+    fn nested_parts_as<N: NormKind>(self, y: Self, z: Self, inner: N, outer: N) -> (Self, [Self; 3]) {
+        self.nested_parts(y, z, inner.norm(), outer.norm())
+    }
+
+    /// A function of this number alone: gradients need its slope once, not for each variable.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn of_one<F: OfOne>(self, function: &F) -> Self {
+        function.value(self)
+    }
+
+    /// Derivatives `d`, each times `a`: the chain rule of [`Dual`](crate::Dual) numbers over these.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn chain(d: [Self; 3], a: Self) -> [Self; 3] {
+        [d[0] * a, d[1] * a, d[2] * a]
+    }
+
+    /// The same of two arguments: `a` times `d` plus `b` times `e`.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn chain2(d: [Self; 3], a: Self, e: [Self; 3], b: Self) -> [Self; 3] {
+        [d[0].mul_add(a, e[0] * b), d[1].mul_add(a, e[1] * b), d[2].mul_add(a, e[2] * b)]
+    }
+
+    /// [`select`](Real::select) of derivatives.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn choose(self, nonneg: [Self; 3], neg: [Self; 3]) -> [Self; 3] {
+        [self.select(nonneg[0], neg[0]), self.select(nonneg[1], neg[1]), self.select(nonneg[2], neg[2])]
     }
 
     /// A function that rises with both of its arguments: an interval needs its endpoints

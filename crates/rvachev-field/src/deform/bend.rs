@@ -12,7 +12,7 @@
 use glam::DVec3;
 
 use super::Warp;
-use crate::{Angle, Bounds, Interval, Real};
+use crate::{Angle, Bounds, Euclid, Interval, Real};
 use crate::{ParamError, check};
 
 /// Bend of the z axis to a circle, in the plane of z and (cos angle, sin angle).
@@ -42,7 +42,7 @@ impl Warp for Bend {
         let big_r = x.scale_add(cos, y * sin);
         let opposite = z * k;
         let adjacent = big_r.scale_add(-k, z.lift(1.0));
-        let h = adjacent.norm(opposite, crate::Norm::Euclid);
+        let h = adjacent.norm_as(opposite, Euclid);
         let bow = big_r.mul_add(big_r, z.square());
         let r = (big_r * 2.0 - bow * k) / (h + 1.0);
         let shift = r - big_r;

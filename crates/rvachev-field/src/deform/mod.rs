@@ -23,7 +23,7 @@ use std::fmt::Debug;
 use glam::{DAffine3, DVec3};
 
 use super::{Chunk, ParamError};
-use crate::{Bounds, Dual, Interval, Norm, Real};
+use crate::{Bounds, Dual, Euclid, Interval, Real};
 #[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
@@ -72,7 +72,7 @@ pub trait Warp: Debug + Clone + Send + Sync + 'static {
     /// By how much an error of a coordinate may grow over a box, however small it is.
     fn stretch(&self, hull: [Interval; 3]) -> f64 {
         let row = |side: &Dual<Interval>| side.gradient().iter().map(|slope| slope.magnitude()).sum::<f64>();
-        self.slopes(Dual::point(hull)).iter().map(row).fold(0.0, f64::max)
+        self.dual_ranges(Dual::point(hull)).iter().map(row).fold(0.0, f64::max)
     }
 
     /// Of a fold, a map that is affine piece by piece: the one or two maps that points of a
@@ -136,7 +136,7 @@ fn turned_box(b: &Bounds, angle: Interval) -> Bounds {
     let (sin, cos) = angle.sin_cos();
     let (x, y) = (Interval::new(b.min.x, b.max.x), Interval::new(b.min.y, b.max.y));
     // The circle of the farthest corner holds every turn of the section.
-    let reach = x.norm(y, Norm::Euclid).hi();
+    let reach = x.norm_as(y, Euclid).hi();
     let disc = Interval::new(-reach, reach);
     let (x, y) = ((x * cos - y * sin).narrowed_by(disc), (x * sin + y * cos).narrowed_by(disc));
     Bounds::new(DVec3::new(x.lo(), y.lo(), b.min.z), DVec3::new(x.hi(), y.hi(), b.max.z))

@@ -19,7 +19,7 @@ use std::f64::consts::TAU;
 use glam::{DAffine3, DVec3};
 
 use super::{Branches, Warp};
-use crate::{Bounds, Dual, Interval, Norm, Real};
+use crate::{Bounds, Dual, Euclid, Interval, Real};
 use crate::{ParamError, check};
 
 /// The fold of one class of a ring.
@@ -111,7 +111,7 @@ impl Warp for Sectors {
 
     fn bounds(&self, b: &Bounds) -> Bounds {
         let (x, y) = (Interval::new(b.min.x, b.max.x), Interval::new(b.min.y, b.max.y));
-        let reach = x.norm(y, Norm::Euclid).hi();
+        let reach = x.norm_as(y, Euclid).hi();
         let mut out = Bounds::EMPTY;
         for block in 0..self.blocks {
             out = out.union(&b.transformed(&self.turned(f64::from(block)).inverse()));
@@ -141,7 +141,7 @@ impl Warp for Sectors {
                 [wide(x * cos + y * sin), wide(y * cos - x * sin), z]
             }
             _ => {
-                let reach = rx.norm(ry, Norm::Euclid).hi() * (1.0 + 1e-14);
+                let reach = rx.norm_as(ry, Euclid).hi() * (1.0 + 1e-14);
                 let anything = Dual::new(Interval::new(-reach, reach), [Interval::ALL; 3]);
                 [anything, anything, z]
             }

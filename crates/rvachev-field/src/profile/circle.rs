@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::super::{Field, ParamError, check, leaf::falling_range};
 use super::{column, flattened};
-use crate::{Bounds, Interval, Norm, Real};
+use crate::{Bounds, Euclid, Interval, Real};
 
 /// A disc about the origin of the plane: `f = radius − √(x² + y²)`, the true distance
 /// (1-Lipschitz).
@@ -36,7 +36,7 @@ impl Field for Circle {
 
     #[inline(always)]
     fn eval<R: Real>(&self, [x, y, _]: [R; 3]) -> R {
-        -x.norm(y, Norm::Euclid) + self.radius
+        -x.norm_as(y, Euclid) + self.radius
     }
 
     fn bounds(&self) -> Bounds {

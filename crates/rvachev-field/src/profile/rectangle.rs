@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::super::{Field, ParamError, check, leaf::falling_range};
 use super::{column, flattened};
-use crate::{Bounds, Interval, Norm, Real};
+use crate::{Bounds, Euclid, Interval, Real};
 
 /// A rectangle about the origin of the plane, by true distance (1-Lipschitz);
 /// `radius` rounds its corners.
@@ -49,7 +49,7 @@ impl Field for Rectangle {
         let zero = x.lift(0.0);
         let a = x.abs() - (0.5 * self.size.x - self.radius);
         let b = y.abs() - (0.5 * self.size.y - self.radius);
-        let outside = a.max(zero).norm(b.max(zero), Norm::Euclid);
+        let outside = a.max(zero).norm_as(b.max(zero), Euclid);
         -(outside + a.max(b).min(zero)) + self.radius
     }
 

@@ -15,7 +15,7 @@ use glam::{DVec2, DVec3};
 
 use super::super::{Field, ParamError, check};
 use super::column;
-use crate::{Bounds, Interval, Norm, Real};
+use crate::{Bounds, Euclid, Interval, Real};
 
 /// The largest number of sides, and the reflections that it takes.
 const MOST_SIDES: u32 = 1024;
@@ -121,7 +121,7 @@ impl Field for RegularPolygon {
         }
         let out = x - self.inscribed;
         let along = (y - self.half_side).max(zero);
-        -(out.max(zero).norm(along, Norm::Euclid) + out.min(zero))
+        -(out.max(zero).norm_as(along, Euclid) + out.min(zero))
     }
 
     fn bounds(&self) -> Bounds {
@@ -146,7 +146,7 @@ impl Field for RegularPolygon {
 
     fn range(&self, [x, y, _]: [Interval; 3]) -> Interval {
         // Between the inscribed and the circumscribed circle; the tangent does the rest.
-        let distance = x.norm(y, Norm::Euclid);
+        let distance = x.norm_as(y, Euclid);
         Interval::new((-distance + self.inscribed).lo(), (-distance + self.radius).hi().min(self.inscribed))
             .inflate(1e-14 * self.radius)
     }

@@ -9,9 +9,9 @@
 
 use glam::{DVec2, DVec3};
 
-use super::super::{Field, Kernel, ParamError, check, leaf::falling_range};
+use super::super::{Case, Field, Kernel, ParamError, check, leaf::falling_range};
 use super::{column, flattened};
-use crate::{Bounds, Interval, Norm, Real};
+use crate::{Bounds, Euclid, Interval, Norm, NormKind, Powers, Real};
 
 /// A superellipse (Lamé curve) about the origin of the plane, valued `f = r_in·(1 − G)` in
 /// length units: `G = (|x/a|^(2/e) + |y/b|^(2/e))^(e/2)` is the gauge and `r_in` the radius of
@@ -86,6 +86,21 @@ impl Superellipse {
     }
 }
 
+/// A superellipse by the kind of its norm.
+struct OfKind<N> {
+    inverse: DVec2,
+    inscribed: f64,
+    norm: N,
+}
+
+impl<N: NormKind> Case for OfKind<N> {
+    #[inline(always)]
+    fn value<R: Real>(&self, [x, y, _]: [R; 3]) -> R {
+        let gauge = (x * self.inverse.x).norm_as(y * self.inverse.y, self.norm);
+        gauge.scale_add(-self.inscribed, x.lift(self.inscribed))
+    }
+}
+
 impl Field for Superellipse {
     fn name(&self) -> &'static str {
         "superellipse"
@@ -125,13 +140,11 @@ impl Field for Superellipse {
 
     #[inline(always)]
     fn specialised<K: Kernel<Self>>(&self, kernel: K) {
+        let Superellipse { inverse, inscribed, .. } = *self;
         match self.norm {
-            Norm::Euclid => kernel.run(&Superellipse { norm: Norm::Euclid, ..*self }),
-            Norm::P { p, inv } => kernel.run(&Superellipse { norm: Norm::P { p, inv }, ..*self }),
-            other => {
-                let p = other.p();
-                kernel.run(&Superellipse { norm: Norm::Steep { p, inv: 1.0 / p }, ..*self });
-            }
+            Norm::Euclid => kernel.run_case(&OfKind { inverse, inscribed, norm: Euclid }),
+            Norm::P { p, inv } => kernel.run_case(&OfKind { inverse, inscribed, norm: Powers::<false> { p, inv } }),
+            other => kernel.run_case(&OfKind { inverse, inscribed, norm: Powers::steep(other) }),
         }
     }
 

@@ -14,10 +14,10 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
-use super::super::gielis::Winding;
+use super::super::gielis::{Polar, Winding};
 use super::super::outline::Outline;
-use super::super::{Field, Gielis, Kernel, ParamError, Radius, check};
-use crate::{Bounds, Interval, Norm, Real};
+use super::super::{Case, Field, Gielis, Kernel, ParamError, Radius, check};
+use crate::{Bounds, Euclid, Interval, OfOne, Real};
 
 /// What is within a [`Gielis`] curve, valued `f = r_in·(1 − G)` in length units: the gauge is
 /// `G = √(x² + y²)/(radius·r(θ))` and `r_in` the radius of a circle about the origin inside.
@@ -107,7 +107,22 @@ impl Superpolygon {
     #[inline(always)]
     fn gauge_of<R: Real>(&self, x: R, y: R) -> R {
         let inverse = self.curve.inverse_radius_at(y.atan2(x), Radius::Standard, self.winding);
-        x.norm(y, Norm::Euclid) * self.inverse * inverse
+        x.norm_as(y, Euclid) * self.inverse * inverse
+    }
+}
+
+/// A superpolygon on lanes, by the kind of its curve.
+struct Section<P> {
+    inverse: f64,
+    inscribed: f64,
+    radius: P,
+}
+
+impl<P: OfOne> Case for Section<P> {
+    #[inline(always)]
+    fn value<R: Real>(&self, [x, y, _]: [R; 3]) -> R {
+        let gauge = x.norm_as(y, Euclid) * self.inverse * y.atan2(x).of_one(&self.radius);
+        gauge.scale_add(-self.inscribed, x.lift(self.inscribed))
     }
 }
 
@@ -161,9 +176,22 @@ impl Field for Superpolygon {
     #[inline(always)]
     fn specialised<K: Kernel<Self>>(&self, kernel: K) {
         // One turn needs no loop over turns.
-        match self.winding {
-            Winding::Once => kernel.run(&Superpolygon { winding: Winding::Once, outline: None, ..*self }),
-            many => kernel.run(&Superpolygon { winding: many, outline: None, ..*self }),
+        let Superpolygon { curve, winding, inverse, inscribed, .. } = *self;
+        match winding {
+            Winding::Once => {
+                kernel.run_case(&Section {
+                    inverse,
+                    inscribed,
+                    radius: Polar::<false, false, true> { curve, winding, seam: false },
+                });
+            }
+            Winding::Many { .. } => {
+                kernel.run_case(&Section {
+                    inverse,
+                    inscribed,
+                    radius: Polar::<false, true, true> { curve, winding, seam: false },
+                });
+            }
         }
     }
 

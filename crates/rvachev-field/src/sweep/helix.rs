@@ -19,7 +19,7 @@ use glam::DVec3;
 use super::super::ParamError;
 use super::super::deform::Warp;
 use super::super::dot;
-use crate::{Bounds, Dual, Interval, Norm, Real};
+use crate::{Bounds, Dual, Euclid, Interval, Real};
 
 /// Which turn of the helix a point is seen from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,7 +111,7 @@ impl Warp for HelixWarp {
             Turn::Below => self.pitch,
         };
         let y = self.fold(p) + (self.middle + offset);
-        [p[0].norm(p[1], Norm::Euclid) - self.radius, y, (p[2] - y) * self.stretch]
+        [p[0].norm_as(p[1], Euclid) - self.radius, y, (p[2] - y) * self.stretch]
     }
 
     #[cfg(test)]
@@ -176,7 +176,7 @@ impl Warp for HelixWarp {
             [[a, b, level[0]], [a * -self.stretch, b * -self.stretch, level[1]]]
         };
         let chain = |row: [Interval; 3]| [0, 1, 2].map(|i| dot(row, p.map(|side| side.gradient()[i])));
-        let across = p[0].norm(p[1], Norm::Euclid) - self.radius;
+        let across = p[0].norm_as(p[1], Euclid) - self.radius;
         [across, Dual::new(y, chain(y_slopes)), Dual::new(along, chain(along_slopes))]
     }
 

@@ -10,8 +10,9 @@ use std::f64::consts::FRAC_PI_2;
 
 use glam::DVec2;
 
+use super::super::outlined::Outlined;
 use super::super::{Field, ParamError, check};
-use crate::{Angle, Bounds, Interval, Norm, Real};
+use crate::{Angle, Bounds, Euclid, Interval, Real};
 
 /// The points whose angle about z, counted from the x axis, is between 0 and `angle`; by true
 /// distance.
@@ -34,7 +35,7 @@ impl Field for Opening {
         let s = x.scale_add(sin, y * -cos);
         let t = x.scale_add(cos, y * sin);
         let beyond = t.min(x.lift(0.0));
-        let distance = s.norm(beyond, Norm::Euclid);
+        let distance = s.norm_as(beyond, Euclid);
         t.select(s, if half <= FRAC_PI_2 { -distance } else { distance })
     }
 
@@ -66,11 +67,11 @@ impl Field for Opening {
         let [x, y, _] = region;
         let radius = DVec2::new(0.5 * x.width(), 0.5 * y.width()).length();
         let reach = x.magnitude() + y.magnitude();
-        let direct = self.eval(region);
+        let direct = self.over(region);
         if !radius.is_finite() {
             return direct;
         }
-        let middle = self.eval([x.mid(), y.mid(), 0.0]);
+        let middle = self.at([x.mid(), y.mid(), 0.0]);
         direct.narrowed_by(Interval::around(middle, radius + 1e-14 * reach))
     }
 

@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::super::ParamError;
 use super::super::deform::Warp;
-use crate::{Bounds, Norm, Real};
+use crate::{Bounds, Euclid, Real};
 
 /// The map from space to the half-plane of a profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +21,7 @@ impl Warp for Revolution {
 
     #[inline(always)]
     fn inverse<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
-        [x.norm(y, Norm::Euclid), z, z.lift(0.0)]
+        [x.norm_as(y, Euclid), z, z.lift(0.0)]
     }
 
     #[cfg(test)]

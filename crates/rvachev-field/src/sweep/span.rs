@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::super::outlined::Outlined;
 use super::super::{Field, ParamError};
 use crate::{Bounds, Interval, Real};
 
@@ -45,7 +46,7 @@ impl Field for Span {
     }
 
     fn range(&self, region: [Interval; 3]) -> Interval {
-        self.eval(region)
+        self.over(region)
     }
 
     fn roundoff(&self, reach: f64) -> f64 {

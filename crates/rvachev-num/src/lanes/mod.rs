@@ -76,7 +76,7 @@ mod function_tests;
 mod log_space;
 #[cfg(test)]
 mod norm_tests;
-mod norms;
+pub(crate) mod norms;
 mod ops;
 mod single;
 #[cfg(test)]

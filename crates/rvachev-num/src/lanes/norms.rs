@@ -25,7 +25,7 @@ const STEEPEST: f64 = 100.0;
 
 /// The norm of a pair.
 #[inline(always)]
-pub(super) fn norm<T: LogSpace>(a: T, b: T, norm: Norm) -> T {
+pub(crate) fn norm<T: LogSpace>(a: T, b: T, norm: Norm) -> T {
     let (a, b) = (a.abs(), b.abs());
     match norm {
         Norm::Sum => (a + b).finite(),
@@ -38,7 +38,7 @@ pub(super) fn norm<T: LogSpace>(a: T, b: T, norm: Norm) -> T {
 
 /// The norm of a pair and its derivatives.
 #[inline(always)]
-pub(super) fn norm_parts<T: LogSpace>(a: T, b: T, norm: Norm) -> (T, T, T) {
+pub(crate) fn norm_parts<T: LogSpace>(a: T, b: T, norm: Norm) -> (T, T, T) {
     let (x, y) = (a, b);
     let (a, b) = (a.abs(), b.abs());
     match norm {
@@ -53,10 +53,7 @@ pub(super) fn norm_parts<T: LogSpace>(a: T, b: T, norm: Norm) -> (T, T, T) {
             let db = b.above(a).vanish_with(b);
             (value, da.copysign(x), db.copysign(y))
         }
-        Norm::Euclid => {
-            let (value, [da, db, _]) = euclid_parts([a, b, a.lift(0.0)]);
-            (value, da.copysign(x), db.copysign(y))
-        }
+        Norm::Euclid => euclid_pair_parts(x, y),
         Norm::Steep { p, inv } => pair_parts::<T, true>(x, y, p, inv),
         Norm::P { p, inv } => pair_parts::<T, false>(x, y, p, inv),
     }
@@ -64,7 +61,7 @@ pub(super) fn norm_parts<T: LogSpace>(a: T, b: T, norm: Norm) -> (T, T, T) {
 
 /// `‖(‖(x, y)‖_inner, z)‖_outer`.
 #[inline(always)]
-pub(super) fn nested<T: LogSpace>(x: T, y: T, z: T, inner: Norm, outer: Norm) -> T {
+pub(crate) fn nested<T: LogSpace>(x: T, y: T, z: T, inner: Norm, outer: Norm) -> T {
     match (inner, outer) {
         (Norm::P { p, inv }, Norm::P { p: q, inv: q_inv }) => triple::<T, false>([x, y, z], [p, inv, q, q_inv]),
         (Norm::Steep { p, inv }, Norm::Steep { p: q, inv: q_inv }) => triple::<T, true>([x, y, z], [p, inv, q, q_inv]),
@@ -75,16 +72,13 @@ pub(super) fn nested<T: LogSpace>(x: T, y: T, z: T, inner: Norm, outer: Norm) ->
 
 /// [`nested`] and its derivatives.
 #[inline(always)]
-pub(super) fn nested_parts<T: LogSpace>(x: T, y: T, z: T, inner: Norm, outer: Norm) -> (T, [T; 3]) {
+pub(crate) fn nested_parts<T: LogSpace>(x: T, y: T, z: T, inner: Norm, outer: Norm) -> (T, [T; 3]) {
     match (inner, outer) {
         (Norm::P { p, inv }, Norm::P { p: q, inv: q_inv }) => triple_parts::<T, false>([x, y, z], [p, inv, q, q_inv]),
         (Norm::Steep { p, inv }, Norm::Steep { p: q, inv: q_inv }) => {
             triple_parts::<T, true>([x, y, z], [p, inv, q, q_inv])
         }
-        (Norm::Euclid, Norm::Euclid) => {
-            let (value, [da, db, dc]) = euclid_parts([x.abs(), y.abs(), z.abs()]);
-            (value, [da.copysign(x), db.copysign(y), dc.copysign(z)])
-        }
+        (Norm::Euclid, Norm::Euclid) => euclid_triple_parts([x, y, z]),
         _ => {
             let (rho, rho_x, rho_y) = norm_parts(x, y, inner);
             let (value, value_rho, value_z) = norm_parts(rho, z, outer);
@@ -95,7 +89,7 @@ pub(super) fn nested_parts<T: LogSpace>(x: T, y: T, z: T, inner: Norm, outer: No
 
 /// The p-norm of two numbers ≥ 0. `STEEP`: p < 1.
 #[inline(always)]
-fn pair<T: LogSpace, const STEEP: bool>(a: T, b: T, p: f64, inv: f64) -> T {
+pub(crate) fn pair<T: LogSpace, const STEEP: bool>(a: T, b: T, p: f64, inv: f64) -> T {
     let power = a.max(b).power_below();
     let la = log2::<T, STEEP>(a, power);
     let lb = log2::<T, STEEP>(b, power);
@@ -104,7 +98,7 @@ fn pair<T: LogSpace, const STEEP: bool>(a: T, b: T, p: f64, inv: f64) -> T {
 
 /// The p-norm of two numbers and its derivatives.
 #[inline(always)]
-fn pair_parts<T: LogSpace, const STEEP: bool>(x: T, y: T, p: f64, inv: f64) -> (T, T, T) {
+pub(crate) fn pair_parts<T: LogSpace, const STEEP: bool>(x: T, y: T, p: f64, inv: f64) -> (T, T, T) {
     let (a, b) = (x.abs(), y.abs());
     let power = a.max(b).power_below();
     let la = log2::<T, STEEP>(a, power);
@@ -117,7 +111,7 @@ fn pair_parts<T: LogSpace, const STEEP: bool>(x: T, y: T, p: f64, inv: f64) -> (
 
 /// The nested norm with exponents p and q, given as `[p, 1/p, q, 1/q]`.
 #[inline(always)]
-fn triple<T: LogSpace, const STEEP: bool>([x, y, z]: [T; 3], [p, p_inv, q, q_inv]: [f64; 4]) -> T {
+pub(crate) fn triple<T: LogSpace, const STEEP: bool>([x, y, z]: [T; 3], [p, p_inv, q, q_inv]: [f64; 4]) -> T {
     let (a, b, c) = (x.abs(), y.abs(), z.abs());
     let power = a.max(b).max(c).power_below();
     let la = log2::<T, STEEP>(a, power);
@@ -128,7 +122,10 @@ fn triple<T: LogSpace, const STEEP: bool>([x, y, z]: [T; 3], [p, p_inv, q, q_inv
 
 /// [`triple`] and its derivatives.
 #[inline(always)]
-fn triple_parts<T: LogSpace, const STEEP: bool>([x, y, z]: [T; 3], [p, p_inv, q, q_inv]: [f64; 4]) -> (T, [T; 3]) {
+pub(crate) fn triple_parts<T: LogSpace, const STEEP: bool>(
+    [x, y, z]: [T; 3],
+    [p, p_inv, q, q_inv]: [f64; 4],
+) -> (T, [T; 3]) {
     let (a, b, c) = (x.abs(), y.abs(), z.abs());
     let power = a.max(b).max(c).power_below();
     let la = log2::<T, STEEP>(a, power);
@@ -177,7 +174,7 @@ fn near_one<T: LogSpace>(c: [T; 3]) -> ([T; 3], T) {
 
 /// `√(a² + b²)`.
 #[inline(always)]
-fn euclid<T: LogSpace>(a: T, b: T) -> T {
+pub(crate) fn euclid<T: LogSpace>(a: T, b: T) -> T {
     let power = a.max(b).power_below();
     let recip = power.power_recip();
     let (a, b) = (a * recip, b * recip);
@@ -186,7 +183,7 @@ fn euclid<T: LogSpace>(a: T, b: T) -> T {
 
 /// `√(a² + b² + c²)`.
 #[inline(always)]
-fn euclid3<T: LogSpace>(c: [T; 3]) -> T {
+pub(crate) fn euclid3<T: LogSpace>(c: [T; 3]) -> T {
     let ([a, b, c], power) = near_one(c);
     (a.mul_add(a, b.mul_add(b, c * c)).sqrt() * power).finite()
 }
@@ -201,4 +198,18 @@ fn euclid_parts<T: LogSpace>(c: [T; 3]) -> (T, [T; 3]) {
     let recip = root.lift(1.0) / root;
     let gradient = [(x * recip).vanish_with(c[0]), (y * recip).vanish_with(c[1]), (z * recip).vanish_with(c[2])];
     ((root * power).finite(), gradient)
+}
+
+/// `√(x² + y²)` and its derivatives.
+#[inline(always)]
+pub(crate) fn euclid_pair_parts<T: LogSpace>(x: T, y: T) -> (T, T, T) {
+    let (value, [da, db, _]) = euclid_parts([x.abs(), y.abs(), x.lift(0.0)]);
+    (value, da.copysign(x), db.copysign(y))
+}
+
+/// `√(x² + y² + z²)` and its derivatives.
+#[inline(always)]
+pub(crate) fn euclid_triple_parts<T: LogSpace>([x, y, z]: [T; 3]) -> (T, [T; 3]) {
+    let (value, [da, db, dc]) = euclid_parts([x.abs(), y.abs(), z.abs()]);
+    (value, [da.copysign(x), db.copysign(y), dc.copysign(z)])
 }

@@ -150,6 +150,26 @@ macro_rules! norm_methods {
         fn nested_parts(self, y: Self, z: Self, inner: Norm, outer: Norm) -> (Self, [Self; 3]) {
             norms::nested_parts(self, y, z, inner, outer)
         }
+
+        #[inline(always)]
+        fn norm_as<N: NormKind>(self, other: Self, norm: N) -> Self {
+            norm.of_pair(self, other)
+        }
+
+        #[inline(always)]
+        fn norm_parts_as<N: NormKind>(self, other: Self, norm: N) -> (Self, Self, Self) {
+            norm.parts_of_pair(self, other)
+        }
+
+        #[inline(always)]
+        fn nested_as<N: NormKind>(self, y: Self, z: Self, inner: N, outer: N) -> Self {
+            inner.of_triple(outer, [self, y, z])
+        }
+
+        #[inline(always)]
+        fn nested_parts_as<N: NormKind>(self, y: Self, z: Self, inner: N, outer: N) -> (Self, [Self; 3]) {
+            inner.parts_of_triple(outer, [self, y, z])
+        }
     };
 }
 

@@ -6,7 +6,7 @@ use fearless_simd::prelude::*;
 
 use super::ops::{native_methods, norm_methods, operators, polynomial, polynomial_of};
 use super::{Lanes, LogSpace, angle, norms};
-use crate::{Norm, Real};
+use crate::{Norm, NormKind, Real};
 
 /// A native vector of `f32` on the SIMD level `S`.
 #[derive(Clone, Copy, Debug)]

@@ -4,7 +4,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::ops::norm_methods;
 use super::{Lanes, LogSpace, norms};
-use crate::{Norm, Real};
+use crate::{Norm, NormKind, Real};
 
 /// Two numbers of one kind, every operation done on both: a formula has two chains of
 /// dependent instructions instead of one, and the processor's pipelines stay full.

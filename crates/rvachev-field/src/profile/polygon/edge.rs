@@ -7,7 +7,7 @@
 
 use glam::DVec2;
 
-use crate::{Norm, Real};
+use crate::{Euclid, Real};
 
 /// A segment with its direction; the inside of the polygon is on its left.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,7 +32,7 @@ impl Edge {
         let s = dx.scale_add(-self.along.y, dy * self.along.x);
         let e = (t - self.length).max(zero) - t.min(zero);
         // Where the foot is on the edge, s itself: its slope is known even on the edge.
-        ((-e).select(s.abs(), s.norm(e, Norm::Euclid)), s)
+        ((-e).select(s.abs(), s.norm_as(e, Euclid)), s)
     }
 
     /// The point of the edge that is nearest to `p`.
