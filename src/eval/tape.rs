@@ -4,6 +4,7 @@
 //! are rebased to that origin in double precision, so a small solid far from the origin of
 //! coordinates is evaluated as accurately as one at it.
 
+mod evaluator;
 mod rivals;
 mod seen;
 mod slices;
@@ -12,6 +13,8 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
+use self::evaluator::Memory;
+pub use self::evaluator::{Evaluator, Gradients};
 use self::rivals::Rivals;
 use self::seen::Seen;
 pub use self::slices::UnequalSlices;
@@ -160,121 +163,6 @@ impl Tape {
     #[must_use]
     pub fn roundoff(&self) -> f64 {
         self.roundoff
-    }
-}
-
-/// Scratch memory for bulk evaluation, one per thread; it grows to what the largest tape
-/// needs and is reused.
-#[derive(Default)]
-pub struct Evaluator {
-    single: Memory<f32>,
-    double: Memory<f64>,
-    far: Vec<bool>,
-}
-
-#[derive(Default)]
-struct Memory<E> {
-    registers: Vec<E>,
-    slots: Vec<E>,
-    padded: Vec<E>,
-    /// What a leaf or a deformation makes in its own coordinates.
-    own: Vec<E>,
-}
-
-/// Value and gradient at many points, as slices of one length.
-pub struct Gradients<'a> {
-    /// Values.
-    pub value: &'a mut [f32],
-    /// Derivatives along x.
-    pub dx: &'a mut [f32],
-    /// Derivatives along y.
-    pub dy: &'a mut [f32],
-    /// Derivatives along z.
-    pub dz: &'a mut [f32],
-}
-
-impl Evaluator {
-    /// An evaluator without memory yet.
-    #[must_use]
-    pub fn new() -> Evaluator {
-        Evaluator::default()
-    }
-
-    /// Values at points relative to the tape's origin. Finite coordinates give finite values.
-    ///
-    /// # Errors
-    /// [`UnequalSlices`] if the slices are not of one length; nothing is written then.
-    pub fn values(
-        &mut self,
-        tape: &Tape,
-        x: &[f32],
-        y: &[f32],
-        z: &[f32],
-        out: &mut [f32],
-    ) -> Result<(), UnequalSlices> {
-        UnequalSlices::check(x.len(), [("y", y.len()), ("z", z.len()), ("out", out.len())])?;
-        self.shortest_values(tape, [x, y, z], out);
-        Ok(())
-    }
-
-    /// Values of as many points as the shortest of the slices holds.
-    pub(crate) fn shortest_values(&mut self, tape: &Tape, points: [&[f32]; 3], out: &mut [f32]) {
-        execute::<Values<f32>, 1>(tape, &mut self.single, &[], points, [out]);
-    }
-
-    /// The same for points in `region`, which is not relative to the origin; leaves of a union that
-    /// it is outside of are left out: what is outside of all of them has any value below 0.
-    pub(crate) fn values_in(&mut self, (tape, region): (&Tape, &Bounds), [x, y, z]: [&[f32]; 3], out: &mut [f32]) {
-        tape.mark_far(region, &mut self.far);
-        execute::<Values<f32>, 1>(tape, &mut self.single, &self.far, [x, y, z], [out]);
-    }
-
-    /// [`values`](Evaluator::values) on lanes of `f64`: as accurate as
-    /// [`Program::value`], to some 10⁻¹⁴ of the solid's size.
-    ///
-    /// # Errors
-    /// [`UnequalSlices`] if the slices are not of one length; nothing is written then.
-    pub fn values_f64(
-        &mut self,
-        tape: &Tape,
-        x: &[f64],
-        y: &[f64],
-        z: &[f64],
-        out: &mut [f64],
-    ) -> Result<(), UnequalSlices> {
-        UnequalSlices::check(x.len(), [("y", y.len()), ("z", z.len()), ("out", out.len())])?;
-        self.shortest_values_f64(tape, [x, y, z], out);
-        Ok(())
-    }
-
-    /// The same of as many points as the shortest of the slices holds.
-    pub(crate) fn shortest_values_f64(&mut self, tape: &Tape, points: [&[f64]; 3], out: &mut [f64]) {
-        execute::<Values<f64>, 1>(tape, &mut self.double, &[], points, [out]);
-    }
-
-    /// Values and gradients at points relative to the tape's origin.
-    ///
-    /// # Errors
-    /// [`UnequalSlices`] if the slices are not of one length; nothing is written then.
-    pub fn gradients(
-        &mut self,
-        tape: &Tape,
-        x: &[f32],
-        y: &[f32],
-        z: &[f32],
-        out: Gradients<'_>,
-    ) -> Result<(), UnequalSlices> {
-        let Gradients { value, dx, dy, dz } = &out;
-        let lengths = [("y", y), ("z", z), ("value", &**value), ("dx", &**dx), ("dy", &**dy), ("dz", &**dz)];
-        UnequalSlices::check(x.len(), lengths.map(|(name, slice)| (name, slice.len())))?;
-        self.shortest_gradients(tape, [x, y, z], out);
-        Ok(())
-    }
-
-    /// The same of as many points as the shortest of the slices holds.
-    pub(crate) fn shortest_gradients(&mut self, tape: &Tape, points: [&[f32]; 3], out: Gradients<'_>) {
-        let Gradients { value, dx, dy, dz } = out;
-        execute::<Slopes, 4>(tape, &mut self.single, &[], points, [value, dx, dy, dz]);
     }
 }
 
