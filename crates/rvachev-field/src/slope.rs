@@ -5,7 +5,7 @@ use crate::{Dual, Interval};
 
 /// Range of a formula with slope at most 1: the value at the centre give or take half the
 /// diagonal, or the range by intervals where that is narrower.
-pub(super) fn lipschitz_range(leaf: &dyn Outlined, region: [Interval; 3]) -> Interval {
+pub(super) fn lipschitz_range(leaf: &impl Outlined, region: [Interval; 3]) -> Interval {
     let wide = leaf.over(region);
     let centre = region.map(Interval::mid);
     let value = leaf.at(centre);
