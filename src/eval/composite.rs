@@ -8,8 +8,8 @@ use glam::{DAffine3, DVec3};
 
 use super::{Evaluator, Gradients, Program, Tape};
 use crate::{Bounds, Dual, Interval, ParamError};
+use rvachev_field::kernel::CHUNK;
 use rvachev_field::{AnyField, Chunk, Placement, Way, Zone};
-use rvachev_num::kernel::CHUNK;
 #[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 

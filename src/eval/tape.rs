@@ -22,10 +22,10 @@ use super::program::Program;
 use super::register::{Step, schedule};
 use crate::Bounds;
 use rvachev_field::Op;
+use rvachev_field::kernel::{CHUNK, Element};
 use rvachev_field::{
     AnyField, AnyWarp, COORDINATE_LIMIT, Chunk, Joinable, Placement, Rule, VALUE_LIMIT, Zone, product, pull,
 };
-use rvachev_num::kernel::{CHUNK, Element};
 
 /// A program ready for bulk evaluation over a region: immutable, shared between threads;
 /// each thread brings its own [`Evaluator`].

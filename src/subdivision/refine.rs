@@ -12,7 +12,7 @@
 //! So there is one row, of its final length from the beginning: fresh memory costs more than
 //! the arithmetic.
 
-use rvachev_num::kernel::{Task, dispatched};
+use rvachev_field::kernel::{Task, dispatched};
 
 /// Points of a row after a level.
 pub(super) fn refined_len(count: usize, closed: bool) -> usize {

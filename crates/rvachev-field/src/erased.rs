@@ -13,8 +13,8 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::deform::{Branches, Warp};
 use super::outlined::{Outlined, zone_range, zone_rises};
 use super::{AnyWarp, Case, Field, Kernel, ParamError, Way, Zone, bits, saturate, steepest};
+use crate::kernel::{Element, Formula, Visit, run};
 use crate::{Bounds, Dual, Interval, Real};
-use rvachev_num::kernel::{Element, Formula, Visit, run};
 #[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
@@ -82,7 +82,7 @@ impl Placement {
 }
 
 /// A chunk of points to run a kernel over; all slices are of one length, a multiple of
-/// [`CHUNK`](rvachev_num::kernel::CHUNK), or of the widest vectors for a field that
+/// [`CHUNK`](crate::kernel::CHUNK), or of the widest vectors for a field that
 /// [takes short ones](AnyField::takes_short).
 pub struct Chunk<'a, E, const OUT: usize> {
     /// Coordinates, in the frame that the placement maps from.

@@ -1,6 +1,6 @@
 //! Joins in bulk: registers folded into registers, one loop per rule.
 
-use rvachev_num::kernel::{Element, Fold, fold};
+use crate::kernel::{Element, Fold, fold};
 
 use crate::blend;
 use crate::rfunction::{AlphaAnd, AssociativeAnd, DistanceAnd, PAnd, SmoothAnd, zero_and};

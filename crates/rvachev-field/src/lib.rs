@@ -28,6 +28,7 @@ mod generalised;
 mod gielis;
 mod half_space;
 mod kaleidoscope;
+pub mod kernel;
 mod leaf;
 mod minimal_surface;
 mod network_lattice;

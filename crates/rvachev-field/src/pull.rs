@@ -1,6 +1,6 @@
 //! Derivatives through a chain of maps, on lanes: the chain rule as two kernels.
 
-use rvachev_num::kernel::{Formula, run};
+use crate::kernel::{Formula, run};
 
 use crate::Real;
 

@@ -16,7 +16,6 @@ mod bounds;
 mod dual;
 mod float;
 mod interval;
-pub mod kernel;
 pub mod lanes;
 mod monotone;
 mod norm;

@@ -33,8 +33,8 @@ use super::Program;
 use super::composite::{Locals, Whole, finish, points64, roundoff, with_evaluator, write_gradients};
 use crate::solid::Operation;
 use crate::{Blend, Bounds, Dual, Interval, ParamError, Real};
+use rvachev_field::kernel::CHUNK;
 use rvachev_field::{AnyField, Chunk, Way, Zone, steep_slopes};
-use rvachev_num::kernel::CHUNK;
 #[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 

@@ -7,8 +7,8 @@ use glam::{DAffine3, DVec3};
 
 use super::super::pull::{product, pull};
 use super::super::{AnyField, AnyWarp, Chunk, Placement, Zone};
+use crate::kernel::CHUNK;
 use crate::{Dual, Interval};
-use rvachev_num::kernel::CHUNK;
 #[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 

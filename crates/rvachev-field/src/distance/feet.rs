@@ -20,8 +20,8 @@ use glam::DVec3;
 
 use super::chain::{Chain, Column};
 use crate::Placement;
+use crate::kernel::CHUNK;
 use crate::{Bounds, Interval};
-use rvachev_num::kernel::CHUNK;
 
 /// Cells along the longest side of the leaf's box, and along the shortest at least.
 const CELLS: f64 = 30.0;

@@ -20,7 +20,7 @@ use super::lanes::Lanes;
 use super::lanes::NONE;
 use super::solve::{Prepared, joined, step_to};
 use super::step::{BEHIND, CutNear, Follow, Start};
-use rvachev_num::kernel::{CHUNK, Formula, run};
+use crate::kernel::{CHUNK, Formula, run};
 
 /// Steps along the surface from each start, at most.
 const SLIDES: usize = 6;

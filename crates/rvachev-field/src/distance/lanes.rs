@@ -1,7 +1,7 @@
 //! Some of the points of a chunk, close together: work goes on only where it has to.
 
 use super::chain::{Column, columns};
-use rvachev_num::kernel::CHUNK;
+use crate::kernel::CHUNK;
 
 pub(super) const NONE: Column = [0.0; CHUNK];
 

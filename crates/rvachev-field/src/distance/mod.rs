@@ -46,8 +46,8 @@ use self::feet::Feet;
 use self::follow::SURE;
 use self::step::Plane;
 use super::{AnyField, AnyWarp, Chunk, ParamError, VALUE_LIMIT, Way, Zone, smallest_stretch, steep_slopes};
+use crate::kernel::CHUNK;
 use crate::{Bounds, Dual, Interval};
-use rvachev_num::kernel::CHUNK;
 #[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 

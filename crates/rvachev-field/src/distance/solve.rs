@@ -7,7 +7,7 @@ use super::lanes::{Lanes, NONE};
 use super::step::{Back, Cut, Plane, Shift, Slide, Start};
 use super::{Distance, Shape, rows};
 use crate::Placement;
-use rvachev_num::kernel::{CHUNK, Formula, run};
+use crate::kernel::{CHUNK, Formula, run};
 
 /// Evaluations of the leaf after that at the point itself.
 const STEPS: usize = 12;

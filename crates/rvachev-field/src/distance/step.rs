@@ -6,7 +6,7 @@
 //! planes all support the body, so the distance of a convex body is the least height.
 
 use crate::Real;
-use rvachev_num::kernel::Formula;
+use crate::kernel::Formula;
 
 /// Planes known beforehand, in the frame of the points: `[n_x, n_y, n_z, o]`, the height at
 /// p being `o − n·p`.

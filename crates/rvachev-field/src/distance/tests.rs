@@ -6,9 +6,9 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use super::Distance;
 use crate::deform::Warp;
+use crate::kernel::CHUNK;
 use crate::{AnyField, AnyWarp, Bend, Chunk, Placement, Taper, Twist, Zone};
 use crate::{Bounds, Dual, Superellipsoid};
-use rvachev_num::kernel::CHUNK;
 use rvachev_num::rad;
 
 /// A generator of numbers in [0, 1).

@@ -11,8 +11,8 @@ use super::Formula;
 use super::arithmetic::{Float, each_binary, each_unary};
 use super::plan::{Plan, Source, Step};
 use crate::Real;
+use crate::kernel::{self, Element, Task, dispatched};
 use crate::{Chunk, Placement, VALUE_LIMIT};
-use rvachev_num::kernel::{self, Element, Task, dispatched};
 
 /// What a thread needs for chunks of one precision.
 pub(super) struct Scratch<E> {

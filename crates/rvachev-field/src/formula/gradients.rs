@@ -13,8 +13,8 @@ use super::bulk::{self, SINGLE};
 use super::plan::{Plan, Source, Step};
 use super::slope::Slope;
 use crate::Real;
+use crate::kernel::{self, CHUNK, Task, dispatched};
 use crate::{Chunk, Placement};
-use rvachev_num::kernel::{self, CHUNK, Task, dispatched};
 
 /// Steeper derivatives are of no use as a direction, and their squares would overflow.
 pub(super) const STEEPEST: f32 = 1e15;

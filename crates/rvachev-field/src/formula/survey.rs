@@ -22,8 +22,8 @@ use super::many::{Choice, Doubt, Many, binary, unary};
 use super::op::Op;
 use super::plan::{Plan, Source, Step};
 use super::sure::Sure;
+use crate::kernel::{Task, dispatched};
 use crate::{BOXES, Interval};
-use rvachev_num::kernel::{Task, dispatched};
 
 /// A walk over up to [`BOXES`] boxes: its ranges and choices.
 pub(super) struct Survey {

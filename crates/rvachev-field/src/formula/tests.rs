@@ -7,9 +7,9 @@ use glam::DVec3;
 
 use super::Formula;
 use super::code::Builder;
+use crate::kernel::CHUNK;
 use crate::{AnyField, Chunk, Placement, VALUE_LIMIT, Zone};
 use crate::{Bounds, Dual, Interval};
-use rvachev_num::kernel::CHUNK;
 
 /// splitmix64.
 struct Random(u64);

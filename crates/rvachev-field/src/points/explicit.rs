@@ -6,7 +6,7 @@
 use super::series::BinomialSeries;
 use super::{PointError, check_exponent};
 use crate::Real;
-use rvachev_num::kernel::{CHUNK, Element, Formula, Visit, run};
+use crate::kernel::{CHUNK, Element, Formula, Visit, run};
 
 /// Heights `z = (1 − |x|ⁿ − |y|ⁿ)^(1/n)` (method 2): three powers in place of four and no sine.
 ///

@@ -5,7 +5,7 @@ use std::ops::Mul;
 use glam::DVec2;
 
 use super::{PointError, curve_points};
-use rvachev_num::kernel::{Task, dispatched};
+use crate::kernel::{Task, dispatched};
 
 /// Two quarters of superellipses in tables; their products are the points of an octant (method
 /// 5): three loads and two multiplications a point, as exact as the tables.

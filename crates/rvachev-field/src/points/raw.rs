@@ -2,9 +2,9 @@
 
 use super::explicit::over_slices;
 use super::{PointError, check_exponent};
+use crate::kernel::Formula;
 use crate::power::signed_power;
 use crate::{Angle, Real};
-use rvachev_num::kernel::Formula;
 
 /// Points of a superellipsoid of unit size by their angles (method 1): four sines and cosines,
 /// four signed powers.

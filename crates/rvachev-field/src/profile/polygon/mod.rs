@@ -20,11 +20,11 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec2};
 
 use super::super::{AnyField, Chunk, ParamError, VALUE_LIMIT, Way, Zone};
+use crate::kernel::Element;
 use crate::{Bounds, Dual, Interval, Real};
 use edge::Edge;
 use near::{NearEdges, Reference};
 use patch::Patch;
-use rvachev_num::kernel::Element;
 #[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 use tree::Tree;

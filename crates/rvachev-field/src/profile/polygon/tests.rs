@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::Placement;
-use rvachev_num::kernel::CHUNK;
+use crate::kernel::CHUNK;
 
 /// Numbers that depend on the seed alone, from 0 to 1 (an additive and a multiplicative step).
 struct Numbers(u64);

@@ -6,8 +6,8 @@
 
 use fearless_simd::{Level, Simd};
 
-use super::Real;
-use super::lanes::{F32, F64, Lanes, Twice};
+use rvachev_num::Real;
+use rvachev_num::lanes::{F32, F64, Lanes, Twice};
 
 /// Calls a function with the token of the machine's SIMD level, or does without. On x86-64 the
 /// levels are AVX2 and AVX-512, and machines that have neither (from before 2013) compute point
