@@ -520,7 +520,7 @@ fn lanes_take_slices_of_any_length() {
     let mut evaluator = Evaluator::new();
     for count in [0, 1, 2, 7, 8, 15, 16, 17, 63, 64, 65, 255, 256, 257, 1000] {
         let mut values = vec![9.0; 1000];
-        evaluator.values_f64(&tape, &x[..count], &y, &z, &mut values).unwrap();
+        evaluator.values_f64(&tape, &x[..count], &y[..count], &z[..count], &mut values[..count]).unwrap();
         for (i, v) in values.iter().enumerate() {
             let want = if i < count { solid.value(points[i]).unwrap() } else { 9.0 };
             assert!((v - want).abs() < 1e-12, "{i} of {count}: {v}, want {want}");

@@ -74,7 +74,7 @@ crate::parameters!(
     "Twisted about the z axis by a law of z."
     twist_by: LawTwist as warp {
         /// What the law is multiplied by.
-        angle: Angle = warp.angle, Angle, Range::ANY, example rad(0.5);
+        angle: Angle = warp.angle, Angle, Range::FINITE, example rad(0.5);
         /// The angle at each height, by what it is multiplied by.
         law: BuiltInLaw = warp.law.clone(), None, Range::ANY,
             example BuiltInLaw::Linear(LinearLaw { at_zero: 0.5, slope: 1.0 });
