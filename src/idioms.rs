@@ -209,7 +209,8 @@
 //!
 //! ```
 //! use glam::DVec3;
-//! use rvachev::{field::{Field, Real}, Bounds, ParamError, Solid};
+//! use rvachev::field::{Field, Real};
+//! use rvachev::{Bounds, ParamError, Solid};
 //!
 //! /// What two balls have in common, their centres at ±`offset` along z.
 //! #[derive(Debug)]

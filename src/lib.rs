@@ -143,7 +143,8 @@
 //! field on a plane, and its [contours](Slice::contours).
 //!
 //! ```
-//! use rvachev::{deg, range_image::Coordinates, Camera, Plane, RenderSettings, Solid, Style};
+//! use rvachev::range_image::Coordinates;
+//! use rvachev::{Camera, Plane, RenderSettings, Solid, Style, deg};
 //!
 //! let part = Solid::cuboid([4.0, 3.0, 1.0]).paint([60, 100, 160]) - Solid::cylinder(1.0, 2.0).paint([220, 140, 40]);
 //! let camera = Camera::framing(&part.bounds()?).orbit(deg(30.0), deg(10.0));

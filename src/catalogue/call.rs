@@ -16,7 +16,8 @@ use crate::{
 /// there is.
 ///
 /// ```
-/// use rvachev::{catalogue::{Call, Value}, Solid};
+/// use rvachev::catalogue::{Call, Value};
+/// use rvachev::Solid;
 ///
 /// let part = Solid::cylinder(1.0, 4.0).translate([0.0, 0.0, 2.0]);
 /// let mut call = part.call().expect("all of it is built in");
@@ -74,7 +75,8 @@ impl Profile {
     /// The call that makes the profile, at its root.
     ///
     /// ```
-    /// use rvachev::{catalogue::{Part, Value}, Profile};
+    /// use rvachev::catalogue::{Part, Value};
+    /// use rvachev::Profile;
     ///
     /// let plate = Profile::circle(2.0).offset(0.5);
     /// let call = plate.call().expect("all of it is built in");

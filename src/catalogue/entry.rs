@@ -95,7 +95,8 @@ enum Maker {
 /// made.
 ///
 /// ```
-/// use rvachev::{catalogue, catalogue::Group};
+/// use rvachev::catalogue::Group;
+/// use rvachev::catalogue;
 ///
 /// for entry in catalogue().iter().filter(|entry| entry.group() == Group::Leaf) {
 ///     let solid = entry.example().into_solid().expect("leaves are solids");

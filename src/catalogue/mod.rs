@@ -31,7 +31,8 @@ use rvachev_field::catalogue::{CURVES, DEFORMATIONS, LAW_DEFORMATIONS, PLANE_LEA
 /// Names are those of the Rust methods. A name stands for one entry.
 ///
 /// ```
-/// use rvachev::{catalogue, catalogue::{Part, Value}, Solid};
+/// use rvachev::catalogue::{Part, Value};
+/// use rvachev::{Solid, catalogue};
 ///
 /// let find = |name: &str| catalogue().iter().find(|entry| entry.name() == name).expect("it is there");
 /// let ball = find("sphere").make(&[], &[Value::Number(2.0)])?;

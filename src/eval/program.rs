@@ -100,7 +100,8 @@ impl Node {
 /// through a [`Tape`](crate::program::Tape).
 ///
 /// ```
-/// use rvachev::{program::Region, Bounds, Solid};
+/// use rvachev::program::Region;
+/// use rvachev::{Bounds, Solid};
 /// use glam::DVec3;
 ///
 /// let pair = Solid::sphere(1.0) | Solid::sphere(1.0).translate(DVec3::X * 5.0);

@@ -31,7 +31,8 @@ use rvachev_field::{
 /// each thread brings its own [`Evaluator`].
 ///
 /// ```
-/// use rvachev::{program::{Evaluator, Tape}, Bounds, Solid};
+/// use rvachev::program::{Evaluator, Tape};
+/// use rvachev::{Bounds, Solid};
 /// use glam::DVec3;
 ///
 /// let program = Solid::sphere(2.0).field_program()?;

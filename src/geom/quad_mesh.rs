@@ -18,7 +18,8 @@ use super::{Mesh, MeshError};
 /// A mesh of quadrilaterals and triangles, in double precision.
 ///
 /// ```
-/// use rvachev::{surface::{ParametricSurface, PatchSettings}, Superellipsoid};
+/// use rvachev::surface::{ParametricSurface, PatchSettings};
+/// use rvachev::Superellipsoid;
 ///
 /// let surface = ParametricSurface::of(&Superellipsoid::new([3.0, 2.0, 1.0], 0.5, 0.5))?;
 /// let quads = surface.quad_mesh(&PatchSettings { rows: 8, columns: 16, ..PatchSettings::default() })?;

@@ -18,7 +18,8 @@ use super::{Image, Intrinsics, PointCloud, PointCloudError};
 /// A depth image of a camera whose geometry is known.
 ///
 /// ```
-/// use rvachev::{range_image::{Coordinates, Noise}, Camera, Solid};
+/// use rvachev::range_image::{Coordinates, Noise};
+/// use rvachev::{Camera, Solid};
 ///
 /// let ball = Solid::sphere(1.0);
 /// let camera = Camera::framing(&ball.bounds()?);

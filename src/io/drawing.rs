@@ -16,7 +16,8 @@ use crate::geom::Polyline;
 ///
 /// ```
 /// use glam::DVec2;
-/// use rvachev::{io::write_svg, Polyline};
+/// use rvachev::io::write_svg;
+/// use rvachev::Polyline;
 ///
 /// let triangle = Polyline::closed(vec![DVec2::ZERO, DVec2::X, DVec2::Y]);
 /// let mut file = Vec::new();

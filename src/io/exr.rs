@@ -58,7 +58,8 @@ impl sealed::Floats for DVec3 {
 /// Infinity stays what it is.
 ///
 /// ```
-/// use rvachev::{io::write_exr, Image};
+/// use rvachev::io::write_exr;
+/// use rvachev::Image;
 ///
 /// let depth = Image::new(2, 1, vec![1.5, f64::INFINITY])?;
 /// let mut file = Vec::new();

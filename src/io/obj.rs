@@ -30,7 +30,8 @@ use crate::geom::Mesh;
 ///
 /// ```
 /// use glam::Vec3;
-/// use rvachev::{io::write_obj, Mesh, SaveSettings};
+/// use rvachev::io::write_obj;
+/// use rvachev::{Mesh, SaveSettings};
 ///
 /// let mesh = Mesh::new(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2]])?;
 /// let mut text = Vec::new();

@@ -28,7 +28,8 @@ use crate::geom::Mesh;
 ///
 /// ```
 /// use glam::Vec3;
-/// use rvachev::{io::write_ply, Mesh};
+/// use rvachev::io::write_ply;
+/// use rvachev::Mesh;
 ///
 /// let mesh = Mesh::new(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2]])?;
 /// let mut bytes = Vec::new();

@@ -13,7 +13,8 @@ use crate::geom::PointCloud;
 ///
 /// ```
 /// use glam::DVec3;
-/// use rvachev::{io::write_ply_points, PointCloud};
+/// use rvachev::io::write_ply_points;
+/// use rvachev::PointCloud;
 ///
 /// let mut file = Vec::new();
 /// write_ply_points(&PointCloud::new(vec![DVec3::X])?, &mut file)?;

@@ -38,7 +38,8 @@ const CHUNK: usize = 1024;
 ///
 /// ```
 /// use glam::Vec3;
-/// use rvachev::{io::write_stl, Mesh};
+/// use rvachev::io::write_stl;
+/// use rvachev::Mesh;
 ///
 /// let mesh = Mesh::new(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2]])?;
 /// let mut bytes = Vec::new();

@@ -43,7 +43,8 @@ const LARGE: usize = 1 << 31;
 /// [`Mesh::check`]. A mesh without triangles gives a file without objects.
 ///
 /// ```
-/// use rvachev::{io::write_3mf, MeshSettings, SaveSettings, Solid};
+/// use rvachev::io::write_3mf;
+/// use rvachev::{MeshSettings, SaveSettings, Solid};
 ///
 /// let mesh = Solid::sphere(10.0).mesh(&MeshSettings::default())?;
 /// let mut bytes = Vec::new();

@@ -27,7 +27,8 @@ pub struct SurfaceId {
 ///
 /// ```
 /// use glam::DVec3;
-/// use rvachev::{raster::{Buffers, ClosedMesh, Facing, RasterView}, Camera, CellSize, MeshSettings, Solid};
+/// use rvachev::raster::{Buffers, ClosedMesh, Facing, RasterView};
+/// use rvachev::{Camera, CellSize, MeshSettings, Solid};
 ///
 /// let settings = MeshSettings { cell: CellSize::LongestSide(24), ..MeshSettings::default() };
 /// let mesh_a = Solid::sphere(1.0).mesh(&settings)?;

@@ -14,7 +14,8 @@ use crate::Mesh;
 /// welded.
 ///
 /// ```
-/// use rvachev::{raster::ClosedMesh, CellSize, MeshSettings, Solid};
+/// use rvachev::raster::ClosedMesh;
+/// use rvachev::{CellSize, MeshSettings, Solid};
 ///
 /// let settings = MeshSettings { cell: CellSize::LongestSide(16), ..MeshSettings::default() };
 /// let mesh = Solid::sphere(1.0).mesh(&settings)?;

@@ -92,7 +92,8 @@ impl RasterView {
     ///
     /// ```
     /// use glam::DVec3;
-    /// use rvachev::{deg, raster::{ClosedMesh, Csg, CsgMethod, RasterView}, Camera, CellSize, MeshSettings, Solid};
+    /// use rvachev::raster::{ClosedMesh, Csg, CsgMethod, RasterView};
+    /// use rvachev::{Camera, CellSize, MeshSettings, Solid, deg};
     ///
     /// let settings = MeshSettings { cell: CellSize::LongestSide(24), ..MeshSettings::default() };
     /// let block = Solid::cuboid([2.0, 2.0, 2.0]).mesh(&settings)?;

@@ -29,7 +29,8 @@ impl Mesh {
     ///
     /// ```
     /// use glam::{DAffine3, DVec3};
-    /// use rvachev::{surface::{ParametricSurface, PatchSettings}, Superellipsoid};
+    /// use rvachev::surface::{ParametricSurface, PatchSettings};
+    /// use rvachev::Superellipsoid;
     ///
     /// let mesh = ParametricSurface::of(&Superellipsoid::new([1.0, 1.0, 1.0], 1.0, 1.0))?.mesh(&PatchSettings::default())?;
     /// let flipped = mesh.affine(DAffine3::from_scale(DVec3::new(-2.0, 1.0, 1.0)))?;
@@ -54,7 +55,9 @@ impl Mesh {
     /// The mesh tapered along z, with the parameters of [`Solid::taper`](crate::Solid::taper).
     ///
     /// ```
-    /// use rvachev::{deg, rad, raster::ClosedMesh, surface::PatchSettings, Superellipsoid};
+    /// use rvachev::raster::ClosedMesh;
+    /// use rvachev::surface::{ParametricSurface, PatchSettings};
+    /// use rvachev::{Superellipsoid, deg, rad};
     ///
     /// let bar = ParametricSurface::of(&Superellipsoid::new([0.5, 0.5, 2.0], 0.3, 0.3))?.mesh(&PatchSettings::default())?;
     /// let bent = bar.taper(0.4, 0.4, 4.0)?.twist(rad(0.6))?.bend(0.3, deg(0.0))?;

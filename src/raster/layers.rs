@@ -91,7 +91,8 @@ impl Fragments {
 /// A surface, seen in a picture as layers.
 ///
 /// ```
-/// use rvachev::{raster::{Csg, CsgMethod, Facing, Fragments, LayerSource, RasterView, Tile}, Camera};
+/// use rvachev::raster::{Csg, CsgMethod, Facing, Fragments, LayerSource, RasterView, Tile};
+/// use rvachev::Camera;
 /// use glam::DVec3;
 ///
 /// /// A sphere about the origin, seen from −y without perspective.

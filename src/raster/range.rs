@@ -11,7 +11,10 @@ impl Buffers {
     ///
     /// ```
     /// use glam::DVec3;
-    /// use rvachev::{deg, range_image::{Coordinates, Noise}, raster::{Buffers, ClosedMesh, Facing, RasterView}, surface::PatchSettings, Camera, Superellipsoid};
+    /// use rvachev::range_image::{Coordinates, Noise};
+    /// use rvachev::raster::{Buffers, ClosedMesh, Facing, RasterView};
+    /// use rvachev::surface::{ParametricSurface, PatchSettings};
+    /// use rvachev::{Camera, Superellipsoid, deg};
     ///
     /// let mesh = ParametricSurface::of(&Superellipsoid::new([1.0, 1.0, 1.0], 1.0, 1.0))?.mesh(&PatchSettings::default())?;
     /// let camera = Camera::perspective([3.0, -4.0, 2.0], DVec3::ZERO, DVec3::Z, deg(30.0));

@@ -25,7 +25,8 @@ use crate::{Camera, Projection};
 ///
 /// ```
 /// use glam::DVec3;
-/// use rvachev::{raster::RasterView, Camera};
+/// use rvachev::raster::RasterView;
+/// use rvachev::Camera;
 ///
 /// let camera = Camera::orthographic(DVec3::new(0.0, -5.0, 0.0), DVec3::ZERO, DVec3::Z, 4.0);
 /// let view = RasterView::new(&camera, 100, 100)?;

@@ -34,7 +34,8 @@ thread_local! {
 /// camera moves.
 ///
 /// ```
-/// use rvachev::{camera::Window, Camera, Solid};
+/// use rvachev::camera::Window;
+/// use rvachev::{Camera, Solid};
 ///
 /// let scene = Solid::sphere(1.0).scene()?;
 /// let camera = Camera::framing(&scene.bounds());

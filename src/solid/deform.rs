@@ -19,7 +19,8 @@ impl Solid {
     /// The field is the operand's at the pre-image, not rescaled: not Lipschitz in general.
     ///
     /// ```
-    /// use rvachev::{law::SmoothStep, Solid};
+    /// use rvachev::law::SmoothStep;
+    /// use rvachev::Solid;
     /// use glam::DVec3;
     ///
     /// // Half as wide along x at the top, as deep along y as ever.
@@ -53,7 +54,8 @@ impl Solid {
     /// the law times the distance from the axis.
     ///
     /// ```
-    /// use rvachev::{deg, law::SineWave, Solid};
+    /// use rvachev::law::SineWave;
+    /// use rvachev::{Solid, deg};
     /// use glam::DVec3;
     ///
     /// // To and fro by 30 degrees.

@@ -17,7 +17,8 @@ use rvachev_field::{AnyField, AnyWarp};
 /// Lengths are in length units.
 ///
 /// ```
-/// use rvachev::{form::Form, Solid, Sphere};
+/// use rvachev::form::Form;
+/// use rvachev::{Solid, Sphere};
 ///
 /// /// The radii of all spheres of a solid.
 /// fn radii(solid: &Solid) -> Vec<f64> {
@@ -209,7 +210,8 @@ impl<'a> LeafForm<'a> {
     /// The leaf, if it is of this type.
     ///
     /// ```
-    /// use rvachev::{form::Form, Cuboid, Solid, Sphere};
+    /// use rvachev::form::Form;
+    /// use rvachev::{Cuboid, Solid, Sphere};
     ///
     /// let brick = Solid::cuboid([4.0, 2.0, 1.0]);
     /// let Form::Leaf(leaf) = brick.form() else { unreachable!("a box is a leaf") };
@@ -258,11 +260,13 @@ impl<'a> DeformationForm<'a> {
     /// The values of the parameters, in order; `None` of what follows a user's own law.
     ///
     /// ```
-    /// use rvachev::{catalogue::Value, form::Form, Solid};
+    /// use rvachev::catalogue::Value;
+    /// use rvachev::form::Form;
+    /// use rvachev::{Solid, rad};
     ///
-    /// let bar = Solid::cuboid([2.0, 2.0, 8.0]).twist(0.25);
+    /// let bar = Solid::cuboid([2.0, 2.0, 8.0]).twist(rad(0.25));
     /// let Form::Deformation { deformation, .. } = bar.form() else { unreachable!("it is twisted") };
-    /// assert_eq!(deformation.values(), Some(vec![Value::Number(0.25)]));
+    /// assert_eq!(deformation.values(), Some(vec![Value::Angle(rad(0.25))]));
     /// ```
     #[must_use]
     pub fn values(&self) -> Option<Vec<Value>> {
@@ -281,7 +285,8 @@ impl Solid {
     /// may be deep, so walk long ones by a loop.
     ///
     /// ```
-    /// use rvachev::{form::Form, Profile, RFunction, Solid};
+    /// use rvachev::form::Form;
+    /// use rvachev::{Profile, RFunction, Solid};
     ///
     /// let beam = Profile::rectangle([4.0, 2.0]).extrude(10.0);
     /// assert!(matches!(beam.form(), Form::Extrude { extrusion, .. } if extrusion.height == 10.0));
@@ -322,7 +327,9 @@ impl Profile {
     /// profiles, without saying so.
     ///
     /// ```
-    /// use rvachev::{catalogue::Value, form::Form, Profile};
+    /// use rvachev::catalogue::Value;
+    /// use rvachev::form::Form;
+    /// use rvachev::Profile;
     ///
     /// let disc = Profile::circle(2.0);
     /// let Form::Leaf(leaf) = disc.form() else { unreachable!("a circle is a leaf") };

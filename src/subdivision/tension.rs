@@ -31,7 +31,8 @@ use crate::{Angle, deg, rad};
 ///
 /// ```
 /// use std::f64::consts::PI;
-/// use rvachev::{deg, subdivision::Tension};
+/// use rvachev::subdivision::Tension;
+/// use rvachev::deg;
 ///
 /// // A square stands for steps of a right angle.
 /// let square = Tension::trigonometric(deg(90.0))?;

@@ -36,9 +36,10 @@ use crate::{Angle, Field, ParamError, Superellipsoid, Superhyperboloid, Supersha
 ///
 /// ```
 /// use glam::DVec3;
-/// use rvachev::{deg, rad, Superellipsoid};
+/// use rvachev::surface::ParametricSurface;
+/// use rvachev::{Superellipsoid, deg, rad};
 ///
-/// let surface = Superellipsoid::new([3.0, 2.0, 1.0], 0.1, 0.1).surface()?;
+/// let surface = ParametricSurface::of(&Superellipsoid::new([3.0, 2.0, 1.0], 0.1, 0.1))?;
 /// assert_eq!(surface.point(deg(90.0), rad(0.3)), DVec3::Z);
 /// assert_eq!(surface.point(deg(0.0), deg(180.0)), DVec3::new(-3.0, 0.0, 0.0));
 /// let frame = surface.frame(rad(0.7), rad(0.2));

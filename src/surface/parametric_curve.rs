@@ -22,7 +22,8 @@ use rvachev_field::check;
 /// ```
 /// use std::f64::consts::FRAC_PI_2;
 /// use glam::DVec2;
-/// use rvachev::{surface::ParametricCurve, Superellipse};
+/// use rvachev::surface::ParametricCurve;
+/// use rvachev::Superellipse;
 ///
 /// let curve = ParametricCurve::of(&Superellipse::new([2.0, 1.0], 0.1))?;
 /// assert_eq!(curve.point(FRAC_PI_2), DVec2::Y);

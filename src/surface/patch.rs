@@ -15,7 +15,8 @@ use crate::geom::{Mesh, MeshError, QuadMesh};
 /// How a parametric surface is meshed.
 ///
 /// ```
-/// use rvachev::{surface::{ParametricSurface, PatchSettings, Spacing}, Superellipsoid};
+/// use rvachev::surface::{ParametricSurface, PatchSettings, Spacing};
+/// use rvachev::Superellipsoid;
 ///
 /// // A rounded box: by angles most of the triangles are at its edges, and some too long.
 /// let surface = ParametricSurface::of(&Superellipsoid::new([1.0, 1.5, 0.7], 0.2, 0.2))?;
@@ -126,7 +127,8 @@ impl ParametricSurface {
     /// columns where the shape is smooth.
     ///
     /// ```
-    /// use rvachev::{surface::{ParametricSurface, PatchSettings}, Supertoroid};
+    /// use rvachev::surface::{ParametricSurface, PatchSettings};
+    /// use rvachev::Supertoroid;
     ///
     /// let ring = ParametricSurface::of(&Supertoroid::new([1.2, 0.8, 0.6], 1.5, 0.3, 0.7))?;
     /// let mesh = ring.mesh(&PatchSettings { rows: 48, columns: 96, ..PatchSettings::default() })?;

@@ -59,7 +59,8 @@ impl ParametricSurface {
     /// the area is measured; within a cell it follows the curvature to second order.
     ///
     /// ```
-    /// use rvachev::{surface::ParametricSurface, Superellipsoid};
+    /// use rvachev::surface::ParametricSurface;
+    /// use rvachev::Superellipsoid;
     ///
     /// let shape = Superellipsoid::new([1.0, 2.0, 3.0], 0.3, 0.8);
     /// let cloud = ParametricSurface::of(&shape)?.sample(1000, 7)?;

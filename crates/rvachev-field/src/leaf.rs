@@ -29,7 +29,8 @@ use crate::{Bounds, Dual, Interval, Real};
 /// Mark `eval` and every helper in it `#[inline(always)]`, or lanes run 18 times slower.
 ///
 /// ```
-/// use rvachev::{field::{Field, Real}, Bounds, ParamError, Solid};
+/// use rvachev::field::{Field, Real};
+/// use rvachev::{Bounds, ParamError, Solid};
 /// use glam::DVec3;
 ///
 /// /// A heart-shaped section, two units thick.

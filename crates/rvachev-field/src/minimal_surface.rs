@@ -172,7 +172,8 @@ impl MinimalSurface {
 ///
 /// ```
 /// use glam::DVec3;
-/// use rvachev::{field::Real, Grading, Interval, MinimalSurface, SheetLattice, Solid};
+/// use rvachev::field::Real;
+/// use rvachev::{Grading, Interval, MinimalSurface, SheetLattice, Solid};
 ///
 /// /// Thicker towards the bottom: 0.6 at z = 0, 0.2 from z = 10 up.
 /// #[derive(Debug)]

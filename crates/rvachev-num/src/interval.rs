@@ -21,7 +21,8 @@ use super::{Monotone, Monotone3, Norm, Real};
 /// A closed interval of real numbers, `lo ≤ hi`; either end may be infinite.
 ///
 /// ```
-/// use rvachev::{field::Real, Interval};
+/// use rvachev::field::Real;
+/// use rvachev::Interval;
 ///
 /// let x = Interval::new(-1.0, 2.0);
 /// assert_eq!(x.square().lo(), 0.0);

@@ -15,7 +15,8 @@ use super::{Monotone, Monotone3, Norm, NormKind, OfOne};
 /// `#[inline(always)]`, or a closure bound by `let`, costs a factor of about 18.
 ///
 /// ```
-/// use rvachev::{field::{Dual, Real}, Interval};
+/// use rvachev::field::{Dual, Real};
+/// use rvachev::Interval;
 ///
 /// #[inline(always)]
 /// fn circle<R: Real>(x: R, y: R) -> R {

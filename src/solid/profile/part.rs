@@ -15,7 +15,7 @@ impl Profile {
     ///
     /// let slot = Profile::rectangle([-2.0, 9.0]).named("slot");
     /// let error = (Profile::circle(5.0) - slot).extrude(3.0).bounds().unwrap_err().to_string();
-    /// assert!(error.starts_with("intersection[1] / difference[1] / slot: rectangle: size.x is -2"));
+    /// assert!(error.starts_with("extrude / difference[1] / slot: rectangle: size.x is -2"));
     /// ```
     #[must_use]
     pub fn named(&self, name: impl AsRef<str>) -> Profile {

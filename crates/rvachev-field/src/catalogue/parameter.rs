@@ -5,7 +5,8 @@ use super::{Kind, Range, Unit, Value};
 /// One parameter of what the catalogue lists: its name, kind, unit and range, and what it is.
 ///
 /// ```
-/// use rvachev::{catalogue, catalogue::{Kind, Unit, Value}};
+/// use rvachev::catalogue::{Kind, Unit, Value};
+/// use rvachev::catalogue;
 ///
 /// let ring = catalogue().iter().find(|entry| entry.name() == "torus").expect("a torus");
 /// let [radius, tube] = ring.parameters() else { unreachable!("two parameters") };

@@ -9,7 +9,9 @@ use crate::{Angle, Blend, Bounds, BuiltInLaw, Caps, Gielis, RFunction};
 /// Units are those of the [`Parameter`](super::Parameter): lengths, radians, none.
 ///
 /// ```
-/// use rvachev::{catalogue::Value, form::Form, Solid};
+/// use rvachev::catalogue::Value;
+/// use rvachev::form::Form;
+/// use rvachev::Solid;
 ///
 /// let rod = Solid::cylinder(1.0, 10.0);
 /// let Form::Leaf(leaf) = rod.form() else { unreachable!("a cylinder is a leaf") };

@@ -12,13 +12,14 @@ use crate::{ParamError, Real};
 /// A [`Law`] that is built in: what a [`Form`](../form/enum.Form.html) tells of a taper or a twist.
 ///
 /// ```
-/// use rvachev::{law::{BuiltInLaw, Law, LinearLaw}, Solid};
+/// use rvachev::law::{BuiltInLaw, Law, LinearLaw};
+/// use rvachev::{Solid, rad};
 ///
 /// let line = LinearLaw { at_zero: 1.0, slope: -0.25 };
 /// let law = BuiltInLaw::Linear(line);
 /// assert_eq!(law.at(2.0), 0.5);
 /// let rod = Solid::cylinder(1.0, 2.0);
-/// assert_eq!(rod.twist_by(law), rod.twist_by(line));
+/// assert_eq!(rod.twist_by(rad(1.0), law), rod.twist_by(rad(1.0), line));
 /// ```
 #[derive(Clone, PartialEq)]
 #[non_exhaustive]

@@ -20,7 +20,9 @@ use crate::{COORDINATE_LIMIT, ParamError, check};
 /// Mark `at` and every helper in it `#[inline(always)]`.
 ///
 /// ```
-/// use rvachev::{field::Real, law::Law, Solid};
+/// use rvachev::field::Real;
+/// use rvachev::law::Law;
+/// use rvachev::Solid;
 /// use glam::DVec3;
 ///
 /// /// A waist: 1 far away, `waist` at z = 0.
@@ -148,7 +150,8 @@ impl Law for SmoothStep {
 /// | `phase` | [`Angle`] | ±10⁹ degrees |
 ///
 /// ```
-/// use rvachev::{deg, law::SineWave, Solid};
+/// use rvachev::law::SineWave;
+/// use rvachev::{Solid, deg};
 /// use glam::DVec3;
 ///
 /// let wave = SineWave { mean: 1.0, amplitude: 0.2, wavelength: 2.0, phase: deg(0.0) };

@@ -69,7 +69,8 @@ impl Superellipse {
     /// (`Explicit`), 0.032 (`Radial`) and 0.85 (`UniformAngle`).
     ///
     /// ```
-    /// use rvachev::{points::CurveSpread, Superellipse};
+    /// use rvachev::points::CurveSpread;
+    /// use rvachev::Superellipse;
     ///
     /// let points = Superellipse::new([1.0, 1.0], 0.04).points(45, CurveSpread::Explicit)?;
     /// assert_eq!(points.len(), 360);

@@ -17,7 +17,8 @@ use crate::{Angle, Real};
 /// shape (e below 0.5) crowd at its edges.
 ///
 /// ```
-/// use rvachev::{points::RawParametric, rad};
+/// use rvachev::points::RawParametric;
+/// use rvachev::rad;
 ///
 /// let [x, y, z] = RawParametric::new(0.5, 0.5)?.point(rad(0.3), rad(0.4));
 /// assert!((x.powi(4) + y.powi(4) + z.powi(4) - 1.0).abs() < 1e-15);

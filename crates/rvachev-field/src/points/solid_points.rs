@@ -106,7 +106,8 @@ impl Superellipsoid {
     /// reflected 8-fold, and a meridian.
     ///
     /// ```
-    /// use rvachev::{points::PointSettings, Superellipsoid};
+    /// use rvachev::points::PointSettings;
+    /// use rvachev::Superellipsoid;
     ///
     /// let shape = Superellipsoid::new([1.0, 2.0, 3.0], 0.3, 0.3);
     /// let points = shape.points(&PointSettings::default())?;
@@ -236,7 +237,8 @@ impl GeneralisedSuperquadric {
     /// exponents are equal or not, then scaled.
     ///
     /// ```
-    /// use rvachev::{field::Field, GeneralisedSuperquadric};
+    /// use rvachev::field::Field;
+    /// use rvachev::GeneralisedSuperquadric;
     ///
     /// let shape = GeneralisedSuperquadric::new([1.0, 2.0, 3.0], [5.0, 3.0, 1.5]);
     /// let points = shape.points(8)?;
