@@ -50,8 +50,8 @@
 //! ```
 //!
 //! A [`Blend`] shapes the transition: a fillet or a chamfer of a given size, a smooth one.
-//! [`offset`](Solid::offset) and [`shell`](Solid::shell) are lengths too, whatever the field is
-//! like.
+//! [`offset`](Solid::offset) and [`shell`](Solid::shell) are lengths too, found by a search where
+//! the operand's value is no distance; of a join they are right where one operand decides.
 //!
 //! ```
 //! use rvachev::{Blend, Solid};
