@@ -12,6 +12,7 @@
 //! ```
 
 mod attributes;
+mod corner_normals;
 mod findings;
 mod measure;
 
@@ -19,6 +20,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use self::attributes::Attributes;
+use self::corner_normals::CornerNormals;
 pub(crate) use self::findings::Findings;
 use crate::Bounds;
 
@@ -48,12 +50,16 @@ pub struct Mesh {
     positions: Vec<Vec3>,
     triangles: Vec<[u32; 3]>,
     attributes: Attributes,
+    corner_normals: Option<CornerNormals>,
     findings: Findings,
 }
 
 impl PartialEq for Mesh {
     fn eq(&self, other: &Mesh) -> bool {
-        self.positions == other.positions && self.triangles == other.triangles && self.attributes == other.attributes
+        self.positions == other.positions
+            && self.triangles == other.triangles
+            && self.attributes == other.attributes
+            && self.corner_normals() == other.corner_normals()
     }
 }
 
@@ -136,7 +142,13 @@ impl Mesh {
             let index = [a, b, c].into_iter().find(|&i| i as usize >= vertices).unwrap_or(c);
             return Err(MeshError::Index { triangle, index, vertices });
         }
-        Ok(Mesh { positions, triangles, attributes: Attributes::default(), findings: Findings::default() })
+        Ok(Mesh {
+            positions,
+            triangles,
+            attributes: Attributes::default(),
+            corner_normals: None,
+            findings: Findings::default(),
+        })
     }
 
     /// The positions of the vertices, in length units.

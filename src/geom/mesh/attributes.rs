@@ -17,13 +17,13 @@
 
 use glam::Vec3;
 
+use super::corner_normals::CornerNormals;
 use super::{Mesh, MeshError, first};
 
 /// What a mesh carries besides positions and triangles; `None` where it has no such values.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Attributes {
     normals: Option<Vec<Vec3>>,
-    corner_normals: Option<Vec<[Vec3; 3]>>,
     corner_colors: Option<Vec<[[u8; 4]; 3]>>,
     corner_texture: Option<Vec<[[f32; 2]; 3]>>,
     owners: Option<Vec<u32>>,
@@ -40,6 +40,8 @@ impl Mesh {
         if normals.len() != self.positions.len() {
             return Err(MeshError::Normals { normals: normals.len(), vertices: self.positions.len() });
         }
+        // Corners keep the normals that they have.
+        let _ = self.corner_normals();
         self.attributes.normals = Some(normals);
         Ok(self)
     }
@@ -65,7 +67,7 @@ impl Mesh {
     pub fn with_corner_normals(mut self, normals: Vec<[Vec3; 3]>) -> Result<Mesh, MeshError> {
         self.fits_triangles("normals of corners", normals.len())?;
         finite("normal", &normals, |n| n.is_finite())?;
-        self.attributes.corner_normals = Some(normals);
+        self.corner_normals = Some(CornerNormals::given(normals));
         Ok(self)
     }
 
@@ -111,12 +113,6 @@ impl Mesh {
     #[must_use]
     pub fn normals(&self) -> Option<&[Vec3]> {
         self.attributes.normals.as_deref()
-    }
-
-    /// The unit normals of the corners, if the mesh has them: three for each triangle.
-    #[must_use]
-    pub fn corner_normals(&self) -> Option<&[[Vec3; 3]]> {
-        self.attributes.corner_normals.as_deref()
     }
 
     /// The colours of the corners, if the mesh has them: three for each triangle, each red,

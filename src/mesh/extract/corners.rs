@@ -4,15 +4,9 @@
 //! the normals of their sides; all other corners have those of their vertices.
 
 use glam::Vec3;
-use rayon::prelude::*;
-
-use crate::{Cancelled, Run};
 
 /// The cosine of the angle from which on a normal is taken to belong to another side: 45°.
 const ASTRAY: f32 = 0.7;
-
-/// Triangles that are worked on before the run is asked whether to go on.
-const AT_ONCE: usize = 1 << 18;
 
 /// Vertices that triangles are between.
 #[derive(Clone, Copy)]
@@ -26,17 +20,6 @@ impl Vertices<'_> {
     #[inline(always)]
     fn normals_of(&self, [a, b, c]: [u32; 3]) -> [Vec3; 3] {
         [self.normals[a as usize], self.normals[b as usize], self.normals[c as usize]]
-    }
-
-    /// The normals at the corners of triangles that have those of their vertices, with room for
-    /// `more`.
-    pub(super) fn corners(&self, triangles: &[[u32; 3]], more: usize, run: &Run) -> Result<Vec<[Vec3; 3]>, Cancelled> {
-        let mut corners = Vec::with_capacity(triangles.len() + more);
-        for triangles in triangles.chunks(AT_ONCE) {
-            run.check()?;
-            corners.par_extend(triangles.par_iter().map(|&triangle| self.normals_of(triangle)));
-        }
-        Ok(corners)
     }
 
     /// The normals at the corners of a triangle whose sides give it others; 0 at a corner that has
@@ -66,8 +49,6 @@ mod tests {
             positions: &[Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z],
             normals: &[up, Vec3::Y, Vec3::Z, Vec3::NEG_X],
         };
-        let corners = vertices.corners(&[[0, 1, 2], [1, 3, 2]], 1, &Run::default()).unwrap();
-        assert_eq!(corners, [[up, Vec3::Y, Vec3::Z], [Vec3::Y, Vec3::NEG_X, Vec3::Z]]);
         // The vertex of the second has a normal that is astray, and what is given to the last is.
         assert_eq!(vertices.straightened([0, 1, 2], [Vec3::ZERO, up, Vec3::NEG_Z]), [up, up, Vec3::Z]);
         assert_eq!(vertices.straightened([0, 1, 2], [Vec3::NAN, Vec3::ZERO, up]), [Vec3::Z, Vec3::Z, up]);

@@ -91,10 +91,7 @@ impl Parts<'_> {
         let mesh = Mesh::new(positions.into_vec(), triangles.into_vec())?
             .with_normals(normals.into_vec())?
             .with_findings(findings);
-        Ok(match corners {
-            Some(corners) => mesh.with_corner_normals(corners.into_vec())?,
-            None => mesh,
-        })
+        Ok(if corners.is_empty() { mesh } else { mesh.with_corner_normals_apart(corners)? })
     }
 }
 

@@ -12,6 +12,15 @@ pub(super) fn fill<T: Copy>(list: &mut Vec<T>, start: usize, holes: &[usize]) {
     keep(list, left);
 }
 
+/// Where [`fill`] leaves the `count` items that follow after `start`.
+pub(super) fn filled_numbers(start: usize, count: usize, holes: &[usize]) -> impl Iterator<Item = u32> {
+    let (filled, left) = holes.split_at(holes.len().min(count));
+    let stay = start..start + count - filled.len();
+    // Holes that are left are closed: all items have gone into others, which come before them.
+    debug_assert!(left.is_empty() || stay.is_empty());
+    stay.chain(filled.iter().copied()).map(|number| number as u32)
+}
+
 /// Takes the ones that are not used, in ascending order, out of a list.
 pub(super) fn keep<T: Copy>(list: &mut Vec<T>, unused: &[usize]) {
     let ends = unused.iter().skip(1).copied().chain([list.len()]);
@@ -41,7 +50,12 @@ mod tests {
     fn holes_are_filled_or_closed() {
         let filled = |start: usize, holes: &[usize]| {
             let mut list: Vec<u8> = (0..8).collect();
+            let numbers: Vec<u32> = filled_numbers(start, list.len() - start, holes).collect();
+            let items = list[start..].to_vec();
             fill(&mut list, start, holes);
+            for (number, item) in numbers.into_iter().zip(items) {
+                assert_eq!(list[number as usize], item);
+            }
             list
         };
         assert_eq!(filled(6, &[]), [0, 1, 2, 3, 4, 5, 6, 7]);

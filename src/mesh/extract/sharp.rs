@@ -42,7 +42,7 @@ use super::cells::{CellOrder, CellSet};
 use super::corners::Vertices;
 use super::crease::Creases;
 use super::joined::Joined;
-use super::lists::{fill, split};
+use super::lists::{fill, filled_numbers, split};
 use super::plain::Plain;
 use super::region::{Region, regions};
 use super::samples::{Samples, cell_number, cell_of, split_cell};
@@ -107,7 +107,7 @@ pub(super) struct Fans {
 }
 
 /// All triangles, and the normals at their corners if there are fans.
-type Listed = (Bulk<[u32; 3]>, Option<Bulk<[Vec3; 3]>>);
+type Listed = (Bulk<[u32; 3]>, Vec<(u32, [Vec3; 3])>);
 
 /// What a mesh with sharp features is made of.
 pub(super) enum Found {
@@ -270,20 +270,17 @@ impl Fans {
         self.points.iter().for_each(|&(at, normal)| add(at, normal));
     }
 
-    /// All triangles, and the normals at their corners if there are fans; given the vertices.
+    /// All triangles, and the normals at the corners of those of fans, by the triangle's number; given
+    /// the vertices.
     pub(super) fn triangles(mut self, vertices: Vertices<'_>, run: &Run) -> Result<Listed, Cancelled> {
         let mut triangles = std::mem::take(&mut self.plain.triangles);
         let (start, count) = (triangles.len(), self.counts.iter().sum::<usize>());
-        let mut corners = match self.fans.is_empty() {
-            true => Bulk::default(),
-            false => Bulk::from(vertices.corners(&triangles, count, run)?),
-        };
         triangles.reserve_exact(count);
         triangles.resize(start + count, [0; 3]);
-        let all = corners.len() + count;
-        corners.resize(all, [Vec3::ZERO; 3]);
+        let numbers = filled_numbers(start, count, &self.holes);
+        let mut corners: Vec<(u32, [Vec3; 3])> = numbers.map(|number| (number, [Vec3::ZERO; 3])).collect();
         let pieces = split(&mut triangles[start..], self.counts.iter().copied());
-        let corner_pieces = split(corners.get_mut(start..).unwrap_or_default(), self.counts.iter().copied());
+        let corner_pieces = split(&mut corners, self.counts.iter().copied());
         let meter = Meter::new(run, self.counts.len());
         pieces.into_par_iter().zip(corner_pieces).enumerate().try_for_each(|(chunk, (piece, corners))| {
             meter.step()?;
@@ -292,18 +289,14 @@ impl Fans {
                 self.list(fan, |triangle, normals| {
                     if let Some((slot, corners)) = slots.next() {
                         *slot = triangle;
-                        *corners = vertices.straightened(triangle, normals);
+                        corners.1 = vertices.straightened(triangle, normals);
                     }
                 });
             }
             Ok(())
         })?;
         fill(&mut triangles, start, &self.holes);
-        if self.fans.is_empty() {
-            return Ok((triangles, None));
-        }
-        fill(&mut corners, start, &self.holes);
-        Ok((triangles, Some(corners)))
+        Ok((triangles, corners))
     }
 
     /// The triangles of a fan, with the normals of their sides at their corners: at feature points
