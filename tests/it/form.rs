@@ -198,6 +198,7 @@ fn ranges_are_those_that_are_checked() {
     // What the operand limits further, or another coordinate of the same vector.
     let limited = [
         ("bend", "curvature"),
+        ("twist_by", "angle"),
         ("sweep_helix", "radius"),
         ("sweep_helix", "pitch"),
         ("smooth_step", "from"),
