@@ -63,7 +63,7 @@ pub(in crate::mesh) const BORE: f64 = 1.0;
 const BLOCKS_PER_INTERVAL: usize = 12;
 const INTERVALS: usize = 256;
 /// What a block has at least.
-const LEAST: usize = 160;
+const LEAST: usize = 640;
 
 /// Whether a block without a crossing, or a bored one, is looked at again, given its samples.
 pub(super) fn suspected<S: Sampler>(
