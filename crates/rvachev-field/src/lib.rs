@@ -20,6 +20,7 @@ mod distance;
 mod ellipsoid;
 mod erase;
 mod erased;
+mod erased_warp;
 mod faces;
 mod fold;
 #[cfg(feature = "formula")]
@@ -35,6 +36,7 @@ mod network_lattice;
 mod number;
 mod outline;
 mod outlined;
+mod placement;
 mod points;
 pub mod power;
 mod prism;
@@ -70,7 +72,7 @@ pub use deform::{Law, LawTable, LinearLaw, SineWave, SmoothStep};
 pub use distance::Distance;
 pub use ellipsoid::Ellipsoid;
 pub use erase::Erase;
-pub use erased::{AnyField, Chunk, Placement, smallest_stretch, steep_slopes};
+pub use erased::{AnyField, Chunk, steep_slopes};
 pub use faces::concave_faces;
 pub use fold::{Joinable, Op};
 #[cfg(feature = "formula")]
@@ -82,6 +84,7 @@ pub use leaf::{Case, Field, Kernel};
 pub use minimal_surface::{Grading, MinimalSurface};
 pub use network_lattice::NetworkLattice;
 pub use number::{Joined, Number};
+pub use placement::{Placement, smallest_stretch};
 pub use points::{
     BinomialSeries, CurveSpread, ExactExplicit, LogTable, PlaneSymmetry, PointError, PointMethod, PointSettings,
     PowerTables, ProductTables, RawParametric, SeriesExplicit, Symmetry, reflect, reflect_plane,
