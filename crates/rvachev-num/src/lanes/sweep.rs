@@ -1,7 +1,7 @@
-//! Test support: runs a function of lanes over many arguments, on every SIMD level that the
-//! machine has.
+//! Test support: runs a function of lanes over many arguments, on every SIMD level that kernels
+//! run at on the machine.
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::{Level, Simd};
 
 use super::{F32, F64, Lanes, Twice};
 use crate::Norm;
@@ -20,9 +20,9 @@ pub(super) trait Function {
 pub(super) fn sweep32(function: &impl Function, at: &[[f64; 3]], error: impl Fn([f64; 3], [f64; 4]) -> f64) -> Worst {
     let at: Vec<[f32; 3]> = at.iter().map(|p| p.map(|c| c as f32)).collect();
     let mut worst = Worst::new();
-    for level in levels() {
+    for results in run_f32(function, &at) {
         let mut here = Worst::new();
-        for (p, r) in at.iter().zip(run_f32(level, function, &at)) {
+        for (p, r) in at.iter().zip(results) {
             let (p, r) = (p.map(f64::from), r.map(f64::from));
             let finite = r.iter().all(|v| v.is_finite());
             here.add(if finite { error(p, r) } else { f64::NAN }, p);
@@ -35,9 +35,9 @@ pub(super) fn sweep32(function: &impl Function, at: &[[f64; 3]], error: impl Fn(
 /// The same for `f64` lanes.
 pub(super) fn sweep64(function: &impl Function, at: &[[f64; 3]], error: impl Fn([f64; 3], [f64; 4]) -> f64) -> Worst {
     let mut worst = Worst::new();
-    for level in levels() {
+    for results in run_f64(function, at) {
         let mut here = Worst::new();
-        for (p, r) in at.iter().zip(run_f64(level, function, at)) {
+        for (p, r) in at.iter().zip(results) {
             let finite = r.iter().all(|v| v.is_finite());
             here.add(if finite { error(*p, r) } else { f64::NAN }, *p);
         }
@@ -52,26 +52,29 @@ pub(super) fn line(n: usize, lo: f64, hi: f64, map: impl Fn(f64) -> f64) -> Vec<
     (0..=n).map(|i| [map(lo + step * i as f64), 0.0, 0.0]).collect()
 }
 
-/// The SIMD levels of this machine.
-fn levels() -> Vec<Level> {
-    let best = Level::new();
-    let mut levels = vec![best, Level::baseline()];
-    #[cfg(target_arch = "x86_64")]
-    {
-        levels.extend(best.as_avx2().map(Level::Avx2));
-        levels.extend(best.as_sse4_2().map(Level::Sse4_2));
-    }
-    levels
+/// Calls with the token of each SIMD level that kernels run at on this machine, and collects what comes.
+macro_rules! on_levels {
+    ($simd:ident => $call:expr) => {{
+        #[cfg(not(target_arch = "x86_64"))]
+        let all = vec![fearless_simd::dispatch!(Level::new(), $simd => $call)];
+        #[cfg(target_arch = "x86_64")]
+        let all = {
+            let wide = Level::new().as_avx512().map(|$simd| Simd::vectorize($simd, #[inline(always)] || $call));
+            let plain = Level::new().as_avx2().map(|$simd| Simd::vectorize($simd, #[inline(always)] || $call));
+            [wide, plain].into_iter().flatten().collect::<Vec<_>>()
+        };
+        all
+    }};
 }
 
 /// Runs `function` on lanes of `f32`, two vectors at a time.
-fn run_f32(level: Level, function: &impl Function, at: &[[f32; 3]]) -> Vec<[f32; 4]> {
-    dispatch!(level, simd => run::<_, Twice<F32<_>>>(simd, function, at))
+fn run_f32(function: &impl Function, at: &[[f32; 3]]) -> Vec<Vec<[f32; 4]>> {
+    on_levels!(simd => run::<_, Twice<F32<_>>>(simd, function, at))
 }
 
 /// Runs `function` on lanes of `f64`.
-fn run_f64(level: Level, function: &impl Function, at: &[[f64; 3]]) -> Vec<[f64; 4]> {
-    dispatch!(level, simd => run::<_, F64<_>>(simd, function, at))
+fn run_f64(function: &impl Function, at: &[[f64; 3]]) -> Vec<Vec<[f64; 4]>> {
+    on_levels!(simd => run::<_, F64<_>>(simd, function, at))
 }
 
 #[inline(always)]
