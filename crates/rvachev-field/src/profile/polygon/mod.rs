@@ -40,7 +40,7 @@ use tree::Tree;
 /// of boxes: thousands of edges are no burden.
 ///
 /// It is given by its contours, each a list of points in either sense, closed by itself (a
-/// last point that repeats the first is left out). A point is inside if an odd number of
+/// point that repeats the one before it is left out, as is a last one that repeats the first). A point is inside if an odd number of
 /// contours go round it: a contour within another is a hole, one within the hole an island.
 ///
 /// Contours neither cross nor touch themselves or one another; coordinates are within ±10⁹
@@ -91,6 +91,7 @@ impl Polygon {
     {
         let closed = |contour: C| {
             let mut points: Vec<DVec2> = contour.into_iter().map(Into::into).collect();
+            points.dedup();
             if points.len() > 1 && points.first() == points.last() {
                 points.pop();
             }
@@ -117,7 +118,8 @@ impl Polygon {
         Polygon(Arc::new(shape))
     }
 
-    /// The contours as they were given, but for last points that repeat the first.
+    /// The contours as they were given, but for points that repeat the one before them, and last ones that repeat
+    /// the first.
     #[must_use]
     pub fn contours(&self) -> &[Vec<DVec2>] {
         &self.0.contours

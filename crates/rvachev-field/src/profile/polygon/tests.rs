@@ -217,3 +217,11 @@ fn corners_in_a_line_and_repeated_ends_are_no_error() {
     assert_eq!(value(&polygon, DVec2::new(1.0, 0.5)), 0.5);
     assert_eq!(value(&polygon, DVec2::new(1.0, -0.5)), -0.5);
 }
+
+#[test]
+fn points_that_repeat_the_one_before_are_left_out() {
+    let drawn = [[0.0, 0.0], [0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [2.0, 2.0], [2.0, 2.0], [0.0, 0.0], [0.0, 0.0]];
+    let polygon = Polygon::new([drawn]);
+    assert_eq!(polygon.check(), Ok(()));
+    assert_eq!((polygon.edge_count(), polygon.area()), (3, 2.0));
+}
