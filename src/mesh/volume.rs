@@ -92,6 +92,12 @@ pub enum VolumeError {
         /// How many there have to be.
         expected: u128,
     },
+    /// The origin is not a point.
+    #[error("origin is {value}; it must be finite along every axis")]
+    Origin {
+        /// The origin, in length units.
+        value: DVec3,
+    },
     /// The spacing is not a positive length along every axis.
     #[error("spacing is {value}; it must be finite and above 0 along every axis")]
     Spacing {
@@ -143,6 +149,9 @@ impl<'a> Volume<'a> {
         let expected = size.iter().map(|&n| n as u128).fold(1u128, u128::saturating_mul);
         if expected != samples.len() as u128 {
             return Err(VolumeError::Samples { given: samples.len(), size, expected });
+        }
+        if !origin.is_finite() {
+            return Err(VolumeError::Origin { value: origin });
         }
         if !(spacing.is_finite() && spacing.min_element() > 0.0) {
             return Err(VolumeError::Spacing { value: spacing });
