@@ -14,7 +14,8 @@
 use glam::DVec3;
 
 use crate::Bounds;
-use crate::{Angle, deg};
+use crate::{Angle, deg, rad};
+use rvachev_field::check::SMALLEST_LENGTH;
 
 /// A camera: an eye, what it looks at, and how it projects.
 ///
@@ -55,12 +56,12 @@ pub struct Camera {
 pub enum Projection {
     /// Rays meet in the eye.
     Perspective {
-        /// Angle from the bottom to the top of the picture, above 0 and below 180 degrees.
+        /// Angle from the bottom to the top of the picture, at least 10⁻⁹ radians and below 180 degrees.
         fov: Angle,
     },
     /// Rays are parallel to the view, and start in the plane through the eye.
     Orthographic {
-        /// Length from the bottom to the top of the picture, in length units, above 0.
+        /// Length from the bottom to the top of the picture, in length units, at least 10⁻⁹.
         height: f64,
     },
 }
@@ -89,8 +90,12 @@ const FRAMING_DIRECTION: DVec3 = DVec3::new(2.0, -3.0, 2.0);
 /// How much larger than the box the view is when it is fitted.
 pub(super) const FRAMING_MARGIN: f64 = 1.06;
 
+/// The narrowest field of view: focal lengths of pictures stay finite.
+const NARROWEST: Angle = rad(1e-9);
+
 impl Camera {
-    /// A perspective camera; `fov` is the vertical field of view, above 0 and below 180 degrees.
+    /// A perspective camera; `fov` is the vertical field of view, at least 10⁻⁹ radians and below 180
+    /// degrees.
     #[must_use]
     pub fn perspective(
         eye: impl Into<DVec3>,
@@ -103,7 +108,7 @@ impl Camera {
     }
 
     /// An orthographic camera; `height` is what the picture spans from bottom to top, in
-    /// length units.
+    /// length units, at least 10⁻⁹.
     #[must_use]
     pub fn orthographic(eye: impl Into<DVec3>, target: impl Into<DVec3>, up: impl Into<DVec3>, height: f64) -> Camera {
         Camera {
@@ -213,8 +218,8 @@ impl Camera {
     ///
     /// [`CameraError`] names the parameter, its value and what is allowed: points and vectors
     /// must be finite, the eye must not be the target, `up` must be neither 0 nor along the
-    /// view, the field of view must be above 0 and below 180 degrees, the height of the view
-    /// finite and above 0.
+    /// view, the field of view must be at least 10⁻⁹ radians and below 180 degrees, the height of the view
+    /// finite and at least 10⁻⁹.
     pub fn check(&self) -> Result<(), CameraError> {
         let error = |parameter, value: &dyn std::fmt::Display, allowed| {
             Err(CameraError { parameter, value: value.to_string(), allowed })
@@ -237,11 +242,11 @@ impl Camera {
             return error("up", &self.up, "it must not be parallel to the view");
         }
         match self.projection {
-            Projection::Perspective { fov } if !(fov > Angle::ZERO && fov < Angle::HALF_TURN) => {
-                error("field of view", &fov, "it must be above 0° and below 180°")
+            Projection::Perspective { fov } if !(fov >= NARROWEST && fov < Angle::HALF_TURN) => {
+                error("field of view", &fov, "it must be at least 1e-9 radians and below 180°")
             }
-            Projection::Orthographic { height } if !(height > 0.0 && height.is_finite()) => {
-                error("height of the view", &height, "it must be finite and above 0")
+            Projection::Orthographic { height } if !(height >= SMALLEST_LENGTH && height.is_finite()) => {
+                error("height of the view", &height, "it must be finite and at least 1e-9")
             }
             _ => Ok(()),
         }
@@ -482,11 +487,11 @@ mod tests {
         assert_eq!(parameter(Camera { up, ..good }), "up");
         let up = DVec3::splat(-3.0);
         assert_eq!(parameter(Camera { up, ..good }), "up");
-        for fov in [0.0, 180.0, -1.0, f64::NAN, f64::INFINITY].map(deg) {
+        for fov in [0.0, 5e-324, 1e-8, 180.0, -1.0, f64::NAN, f64::INFINITY].map(deg) {
             let projection = Projection::Perspective { fov };
             assert_eq!(parameter(Camera { projection, ..good }), "field of view");
         }
-        for height in [0.0, f64::NAN, f64::INFINITY] {
+        for height in [0.0, 5e-324, 1e-10, f64::NAN, f64::INFINITY] {
             let projection = Projection::Orthographic { height };
             let camera = Camera { projection, ..good };
             assert_eq!(parameter(camera), "height of the view");
@@ -494,7 +499,7 @@ mod tests {
         let bad = Camera { projection: Projection::Perspective { fov: deg(200.0) }, ..good };
         assert_eq!(
             bad.check().unwrap_err().to_string(),
-            "camera: field of view is 200°; it must be above 0° and below 180°"
+            "camera: field of view is 200°; it must be at least 1e-9 radians and below 180°"
         );
     }
 }

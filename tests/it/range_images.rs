@@ -4,6 +4,7 @@ use glam::{DAffine3, DVec3};
 use rvachev::{
     Camera, Image, Solid,
     io::write_ply_points,
+    rad,
     range_image::{Coordinates, Noise, RangeImage},
 };
 
@@ -109,4 +110,19 @@ fn errors() {
     assert!(RangeImage::new(depth.clone(), camera.intrinsics(3, 1), DAffine3::IDENTITY).is_err());
     let blind = rvachev::camera::Intrinsics { fx: 0.0, ..lens };
     assert!(RangeImage::new(depth, blind, DAffine3::IDENTITY).unwrap_err().to_string().starts_with("focal length"));
+}
+
+#[test]
+fn layers_of_extreme_cameras_are_errors_or_have_a_range_image() {
+    let ball = Solid::sphere(1.0);
+    let eye = DVec3::new(3.0, -4.0, 2.0);
+    for size in [5e-324, 1e-300, 1e-9, 1e-8, 1e9, 1e300] {
+        let cameras = [
+            Camera::perspective(eye, DVec3::ZERO, DVec3::Z, rad(size)),
+            Camera::orthographic(eye, DVec3::ZERO, DVec3::Z, size),
+        ];
+        for layers in cameras.iter().filter_map(|camera| ball.layers(camera, 4, 3).ok()) {
+            assert_eq!(layers.range_image().depth().width(), 4);
+        }
+    }
 }
