@@ -28,9 +28,11 @@ use crate::geom::Polyline;
 ///
 /// # Errors
 ///
-/// Those of the writer.
+/// Those of the writer; [`InvalidInput`](io::ErrorKind::InvalidInput), before anything is written, for a coordinate
+/// that is not finite.
 pub fn write_svg(lines: &[Polyline], mut out: impl Write) -> io::Result<()> {
-    let points = || lines.iter().flat_map(|line| line.points()).filter(|p| p.is_finite());
+    check(lines)?;
+    let points = || lines.iter().flat_map(|line| line.points());
     let min = points().copied().reduce(DVec2::min).unwrap_or(DVec2::ZERO);
     let max = points().copied().reduce(DVec2::max).unwrap_or(DVec2::ONE);
     // A drawing without width or height still has an outline to show.
@@ -69,8 +71,10 @@ pub fn write_svg(lines: &[Polyline], mut out: impl Write) -> io::Result<()> {
 ///
 /// # Errors
 ///
-/// Those of the writer.
+/// Those of the writer; [`InvalidInput`](io::ErrorKind::InvalidInput), before anything is written, for a coordinate
+/// that is not finite.
 pub fn write_dxf(lines: &[Polyline], mut out: impl Write) -> io::Result<()> {
+    check(lines)?;
     let mut pair = |code: u32, value: &dyn std::fmt::Display| write!(out, "{code}\n{value}\n");
     pair(0, &"SECTION")?;
     pair(2, &"HEADER")?;
@@ -99,4 +103,16 @@ pub fn write_dxf(lines: &[Polyline], mut out: impl Write) -> io::Result<()> {
     }
     pair(0, &"ENDSEC")?;
     pair(0, &"EOF")
+}
+
+/// An error if a point is no point: no reader takes one.
+fn check(lines: &[Polyline]) -> io::Result<()> {
+    for (number, line) in lines.iter().enumerate() {
+        if let Some(i) = line.points().iter().position(|p| !p.is_finite()) {
+            let (x, y) = line.points()[i].into();
+            let wrong = format!("polyline {number}: point {i} is ({x}, {y}); both coordinates must be finite");
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, wrong));
+        }
+    }
+    Ok(())
 }

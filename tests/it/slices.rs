@@ -112,3 +112,16 @@ fn errors() {
     let nothing = ball.slice(&Plane::xy(5.0)).unwrap();
     assert!(nothing.contours(1e-3).unwrap().is_empty());
 }
+
+#[test]
+fn drawings_of_points_that_are_not_finite_are_errors() {
+    let lines =
+        [Polyline::open(vec![DVec2::ZERO, DVec2::X]), Polyline::open(vec![DVec2::ONE, DVec2::new(2.0, f64::NAN)])];
+    let (mut svg, mut dxf) = (Vec::new(), Vec::new());
+    let errors = [write_svg(&lines, &mut svg), write_dxf(&lines, &mut dxf)];
+    for error in errors {
+        let text = error.unwrap_err().to_string();
+        assert_eq!(text, "polyline 1: point 1 is (2, NaN); both coordinates must be finite");
+    }
+    assert!(svg.is_empty() && dxf.is_empty());
+}
