@@ -15,8 +15,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 /// Writes a file through `content`; a symbolic link is followed, and an existing file keeps
 /// its permissions.
 pub(super) fn write_whole(path: &Path, content: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> io::Result<()> {
-    // A link stays a link: what it points to is replaced.
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+    let target = followed(path)?;
     let existing = fs::metadata(&target).ok();
     if let Some(existing) = &existing {
         if existing.is_dir() {
@@ -44,6 +43,18 @@ pub(super) fn write_whole(path: &Path, content: impl FnOnce(&mut BufWriter<File>
     }
     drop(file);
     temporary.rename(&target)
+}
+
+/// What a path stands for: a link stays a link, and what it points to is replaced, or made if there is nothing.
+fn followed(path: &Path) -> io::Result<PathBuf> {
+    // As many as Linux follows.
+    const LINKS: u32 = 40;
+    let mut target = path.to_path_buf();
+    for _ in 0..LINKS {
+        let Ok(link) = fs::read_link(&target) else { return Ok(target) };
+        target = target.with_file_name("").join(link);
+    }
+    Err(io::Error::other("too many symbolic links, one to another"))
 }
 
 /// A file that is removed when it goes out of scope, unless it was renamed.

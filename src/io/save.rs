@@ -412,4 +412,22 @@ mod tests {
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
         assert_eq!(fs::read(&file).unwrap().len(), 134);
     }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_to_what_is_not_there_yet_are_followed() {
+        let folder = Folder::new("dangling");
+        let (file, link, further) =
+            (folder.0.join("real.stl"), folder.0.join("link.stl"), folder.0.join("further.stl"));
+        std::os::unix::fs::symlink("real.stl", &link).unwrap();
+        std::os::unix::fs::symlink(&link, &further).unwrap();
+        triangle().save(&further).unwrap();
+        assert!([&link, &further].iter().all(|link| fs::symlink_metadata(link).unwrap().is_symlink()));
+        assert_eq!(fs::read(&file).unwrap().len(), 134);
+        let (one, other) = (folder.0.join("one.stl"), folder.0.join("other.stl"));
+        std::os::unix::fs::symlink(&one, &other).unwrap();
+        std::os::unix::fs::symlink(&other, &one).unwrap();
+        assert!(triangle().save(&one).unwrap_err().to_string().contains("one.stl"));
+        assert_eq!(folder.entries(), 5);
+    }
 }
