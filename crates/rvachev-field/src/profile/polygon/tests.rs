@@ -193,8 +193,8 @@ fn what_is_wrong_is_said_with_its_place() {
     assert_eq!(error(&[&square, &[[1.0, 1.0], [2.0, 2.0]]]), "number of points of contour 1 is 2, allowed: 3 or more");
     let text = error(&[&[[0.0, 0.0], [f64::NAN, 1.0], [1.0, 0.0]]]);
     assert!(text.starts_with("contour 0, point 1, x is NaN"), "{text}");
-    let text = error(&[&[[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 1.0]]]);
-    assert!(text.starts_with("length of edge 1 of contour 0, at (1, 0), is 0, allowed"), "{text}");
+    let text = error(&[&[[0.0, 0.0], [1.0, 0.0], [1.0, 1e-10], [0.0, 1.0]]]);
+    assert!(text.starts_with("length of edge 1 of contour 0, at (1, 0), is 0.0000000001, allowed"), "{text}");
     // A bow tie, a spike, a corner on an edge, contours that touch, cross, or are the same.
     let text = error(&[&[[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]]]);
     assert!(text.starts_with("where edge 0 of contour 0 meets edge 2 of contour 0, at (1, 1), the dist"), "{text}");
