@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec3, IVec3};
 use rvachev::{
     AtBounds, Bounds, CellSize, Features, Mesh, MeshSettings, ParamError, RFunction, Solid,
     error::MeshingError,
@@ -40,11 +40,16 @@ impl<'a> Nearness<'a> {
 
     /// In cells; anything beyond a cell is a cell.
     fn distance(&self, p: DVec3) -> f64 {
-        let at = (p / self.cell).floor().as_ivec3();
+        let at = (p / self.cell).floor();
         let mut best = self.cell * self.cell;
-        for n in 0..27 {
-            let key = [at.x + n % 3 - 1, at.y + n / 3 % 3 - 1, at.z + n / 9 - 1];
-            for &t in self.buckets.get(&key).into_iter().flatten() {
+        // The middle one first: what is found there rules out most of those around it.
+        for n in (13..27).chain(0..13) {
+            let bucket = at + DVec3::from_array([n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1].map(f64::from));
+            let low = bucket * self.cell;
+            if (p - p.clamp(low, low + self.cell)).length_squared() > best {
+                continue;
+            }
+            for &t in self.buckets.get(&bucket.as_ivec3().to_array()).into_iter().flatten() {
                 let corners = self.mesh.triangles()[t as usize].map(|i| self.mesh.positions()[i as usize].as_dvec3());
                 best = best.min((nearest_on(corners, p) - p).length_squared());
             }
@@ -228,6 +233,17 @@ fn edges_of_a_body() {
     assert!(edges[0].median < edges[1].median && edges[0].part90 < edges[1].part90);
     assert!(edges[0].rms < 0.03 * edges[1].rms && edges[0].max < 0.15 * edges[1].max);
     // Where no edge is near, what the rounded parts of the body leave to triangles on lattice edges alone is more.
+    let bucket = |p: DVec3| (p / (2.0 * cell)).floor().as_ivec3();
+    let mut buckets: HashMap<IVec3, Vec<DVec3>> = HashMap::new();
+    for p in &points {
+        buckets.entry(bucket(*p)).or_default().push(*p);
+    }
+    let is_far = |p: DVec3| {
+        (0..27).all(|n| {
+            let around = bucket(p) + IVec3::new(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+            buckets.get(&around).into_iter().flatten().all(|q| (*q - p).length_squared() > 4.0 * cell * cell)
+        })
+    };
     let normals = smooth.normals().expect("a mesh of a solid has them");
     let far: Vec<f64> = surface_errors(&smooth, &model.solid, cell)
         .into_iter()
@@ -235,8 +251,7 @@ fn edges_of_a_body() {
         .filter(|(_, t)| {
             let [a, b, c] = t.map(|i| normals[i as usize]);
             let centroid = t.iter().map(|&i| smooth.positions()[i as usize].as_dvec3()).sum::<DVec3>() / 3.0;
-            a.dot(b).min(b.dot(c)).min(c.dot(a)) > 0.9
-                && points.iter().all(|p| (*p - centroid).length_squared() > 4.0 * cell * cell)
+            a.dot(b).min(b.dot(c)).min(c.dot(a)) > 0.9 && is_far(centroid)
         })
         .map(|(error, _)| error)
         .collect();
