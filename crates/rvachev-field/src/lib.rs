@@ -36,6 +36,7 @@ mod network_lattice;
 mod number;
 mod outline;
 mod outlined;
+mod patches;
 mod placement;
 mod points;
 pub mod power;
@@ -84,6 +85,7 @@ pub use leaf::{Case, Field, Kernel};
 pub use minimal_surface::{Grading, MinimalSurface};
 pub use network_lattice::NetworkLattice;
 pub use number::{Joined, Number};
+pub use patches::{Foot, Patch, Patches, SurfaceDistance};
 pub use placement::{Placement, smallest_stretch};
 pub use points::{
     BinomialSeries, CurveSpread, ExactExplicit, LogTable, PlaneSymmetry, PointError, PointMethod, PointSettings,

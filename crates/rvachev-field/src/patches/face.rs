@@ -1,0 +1,123 @@
+//! Patches as they are stored: in single precision, in a frame about their middle.
+//!
+//! With the coordinates s = b₁ and t = b₂ a patch is a polynomial,
+//!
+//! ```text
+//!     P = a + s (e + C) + t (f + D) − s² C − t² D + s t E
+//!     e, f the sides from corner 0,   C = 4 u₀,   D = 4 u₂,   E = 4 (u₁ − u₀ − u₂)
+//! ```
+
+use glam::DVec3;
+
+use super::Patch;
+use crate::Bounds;
+
+/// How much boxes are grown, in units of the frame, so that no rounding leaves a part of a patch
+/// outside: some twenty times what single precision does to a coordinate.
+const SLACK: f64 = 16.0 * f32::EPSILON as f64;
+
+/// The frame of the stored numbers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame {
+    pub(super) centre: DVec3,
+    /// How long its unit is: a power of two, so that it costs no rounding.
+    pub(super) unit: f64,
+}
+
+impl Frame {
+    pub(super) fn new(bounds: &Bounds) -> Frame {
+        let half = 0.5 * bounds.longest_side();
+        let exponent = if half.is_normal() { half.log2().ceil() } else { 0.0 };
+        let centre = if bounds.is_empty() { DVec3::ZERO } else { bounds.center() };
+        Frame { centre, unit: exponent.clamp(-900.0, 900.0).exp2() }
+    }
+
+    pub(super) fn into_local(self, p: DVec3) -> DVec3 {
+        (p - self.centre) / self.unit
+    }
+
+    pub(super) fn from_local(self, p: DVec3) -> DVec3 {
+        p * self.unit + self.centre
+    }
+
+    /// The box of a patch as it is stored, low and high corner.
+    pub(super) fn boxed(self, patch: &Patch) -> [[f32; 3]; 2] {
+        let bounds = patch.bounds();
+        [self.into_local(bounds.min) - SLACK, self.into_local(bounds.max) + SLACK].map(single)
+    }
+}
+
+fn single(v: DVec3) -> [f32; 3] {
+    v.as_vec3().to_array()
+}
+
+pub(super) fn double(v: [f32; 3]) -> DVec3 {
+    DVec3::from_array(v.map(f64::from))
+}
+
+/// The flat triangle of a patch.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Face {
+    /// Corner 0.
+    pub(super) a: [f32; 3],
+    /// The sides from there to corners 1 and 2.
+    pub(super) e: [f32; 3],
+    pub(super) f: [f32; 3],
+    /// No point of the patch is farther than this from the point of the triangle at the same
+    /// coordinates; 0 if it is flat.
+    pub(super) sag: f32,
+}
+
+impl Face {
+    pub(super) fn new(patch: &Patch, frame: &Frame) -> Face {
+        let [a, b, c] = patch.corners.map(|corner| frame.into_local(corner));
+        // 4 Σ bᵢbⱼ |uₖ| is at most 4/3 of the largest.
+        let bulge = patch.bulges.iter().fold(0.0, |most, bulge| bulge.length().max(most)) / frame.unit;
+        let sag = if patch.is_flat() { 0.0 } else { 4.0 / 3.0 * bulge + SLACK };
+        Face { a: single(a), e: single(b - a), f: single(c - a), sag: sag as f32 }
+    }
+
+    /// Point and derivatives by both coordinates.
+    pub(super) fn jet(&self, s: f64, t: f64) -> [DVec3; 3] {
+        let [a, e, f] = [self.a, self.e, self.f].map(double);
+        [a + s * e + t * f, e, f]
+    }
+}
+
+/// What bends a face.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bulge {
+    /// The coefficients C, D and E.
+    pub(super) c: [f32; 3],
+    pub(super) d: [f32; 3],
+    pub(super) e: [f32; 3],
+}
+
+impl Bulge {
+    pub(super) fn new(patch: &Patch, frame: &Frame) -> Bulge {
+        let [u, v, w] = patch.bulges.map(|bulge| 4.0 * bulge / frame.unit);
+        Bulge { c: single(u), d: single(w), e: single(v - u - w) }
+    }
+
+    /// Point and derivatives by both coordinates.
+    pub(super) fn jet(&self, face: &Face, s: f64, t: f64) -> [DVec3; 3] {
+        let [flat, e, f] = face.jet(s, t);
+        let [c, d, mixed] = [self.c, self.d, self.e].map(double);
+        [
+            flat + s * (1.0 - s) * c + t * (1.0 - t) * d + s * t * mixed,
+            e + (1.0 - 2.0 * s) * c + t * mixed,
+            f + (1.0 - 2.0 * t) * d + s * mixed,
+        ]
+    }
+}
+
+/// A number that tells surfaces apart (FNV-1a over the stored numbers).
+pub(super) fn hash(frame: &Frame, faces: &[Face], bulges: &[Bulge]) -> u64 {
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    let mut add = |bits: u64| hash = (hash ^ bits).wrapping_mul(0x0100_0000_01b3);
+    frame.centre.to_array().into_iter().chain([frame.unit]).for_each(|v| add(v.to_bits()));
+    let faces = faces.iter().flat_map(|face| [face.a, face.e, face.f]);
+    let bulges = bulges.iter().flat_map(|bulge| [bulge.c, bulge.d, bulge.e]);
+    faces.chain(bulges).flatten().for_each(|v| add(u64::from(v.to_bits())));
+    hash
+}

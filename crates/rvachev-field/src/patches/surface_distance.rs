@@ -1,0 +1,235 @@
+//! Signed distance to a surface as a leaf.
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use super::{Foot, Patches};
+use crate::{AnyField, Bounds, Chunk, Dual, Interval, ParamError, VALUE_LIMIT, Zone, steep_slopes};
+#[cfg(feature = "formula")]
+use rvachev_num::symbol::Symbol;
+
+/// Nearer than this part of the surface's size, the direction to the foot is rounding, and the
+/// gradient is the normal there.
+const AT_SURFACE: f64 = 1e-7;
+
+/// Signed distance to a surface: its size by [`Patches`], its sign by another field.
+///
+/// ```text
+///     value(x) = sign f(x) · |x − y|,     y the nearest point of the patches
+/// ```
+///
+/// Patches and field describe one surface to within an error, so the value jumps by up to twice
+/// the error where the field's sign changes, and has slope 1 elsewhere.
+#[derive(Debug)]
+pub struct SurfaceDistance {
+    pub(super) patches: Arc<Patches>,
+    pub(super) sign: Arc<dyn AnyField>,
+    error: f64,
+    pub(super) flat: Option<usize>,
+    bounds: Bounds,
+}
+
+impl SurfaceDistance {
+    /// The distance to `patches`, positive where `sign`, a field of the same frame, is.
+    ///
+    /// `error` says how far the patches may be off the surface; ranges are grown by it. If `flat`
+    /// is an axis, the surface is a cylinder along it, the patches are those where its coordinate
+    /// is 0, and points are moved there. `bounds` holds the points with a positive sign.
+    pub fn new(
+        patches: Arc<Patches>,
+        sign: Arc<dyn AnyField>,
+        error: f64,
+        flat: Option<usize>,
+        bounds: Bounds,
+    ) -> SurfaceDistance {
+        SurfaceDistance { patches, sign, error, flat: flat.filter(|axis| *axis < 3), bounds }
+    }
+
+    /// The surface.
+    pub fn patches(&self) -> &Arc<Patches> {
+        &self.patches
+    }
+
+    /// How far the patches may be off the surface.
+    pub fn error(&self) -> f64 {
+        self.error
+    }
+
+    /// The nearest point of the surface; of a cylinder, its point where the coordinate along the
+    /// axis is that of p.
+    pub fn nearest(&self, p: DVec3) -> Option<Foot> {
+        let mut foot = self.patches.nearest(self.flattened(p))?;
+        if let Some(axis) = self.flat {
+            foot.point[axis] = p[axis];
+        }
+        Some(foot)
+    }
+
+    /// The point moved to 0 along the axis of a cylinder.
+    fn flattened(&self, mut p: DVec3) -> DVec3 {
+        if let Some(axis) = self.flat {
+            p[axis] = 0.0;
+        }
+        p
+    }
+
+    /// The value at a point with a sign.
+    pub(super) fn signed(&self, p: [f64; 3], sign: f64) -> f64 {
+        let p = self.flattened(DVec3::from_array(p));
+        with_sign(self.patches.distance(p).unwrap_or(VALUE_LIMIT), sign)
+    }
+
+    /// The same and the derivatives.
+    pub(super) fn signed_with_slope(&self, p: [f64; 3], sign: f64) -> (f64, [f64; 3]) {
+        let p = self.flattened(DVec3::from_array(p));
+        let Some(foot) = self.patches.nearest(p) else {
+            return (with_sign(VALUE_LIMIT, sign), [0.0; 3]);
+        };
+        let mut slope = if foot.distance < AT_SURFACE * self.patches.unit() {
+            -foot.normal
+        } else {
+            // Positive inside: it rises away from the surface there, and towards it outside.
+            (p - foot.point) / if sign < 0.0 { -foot.distance } else { foot.distance }
+        };
+        if let Some(axis) = self.flat {
+            slope[axis] = 0.0;
+        }
+        (with_sign(foot.distance, sign), slope.to_array())
+    }
+
+    /// What is certain of the sign over a zone.
+    fn side(&self, zone: &Zone) -> Interval {
+        let sign = self.sign.range(zone);
+        if sign.lo() >= 0.0 {
+            Interval::new(0.0, f64::INFINITY)
+        } else if sign.hi() <= 0.0 {
+            Interval::new(f64::NEG_INFINITY, 0.0)
+        } else {
+            Interval::ALL
+        }
+    }
+
+    /// How far points of a zone are from its centre, across the axis of a cylinder.
+    fn radius(&self, zone: &Zone) -> f64 {
+        let Some(axis) = self.flat else { return zone.radius() };
+        let mut across = DVec3::ONE;
+        across[axis] = 0.0;
+        zone.mapped(&DAffine3::from_mat3(DMat3::from_diagonal(across))).radius()
+    }
+}
+
+/// A distance on the side that a field's value says; 0 where that is 0.
+fn with_sign(distance: f64, sign: f64) -> f64 {
+    let distance = distance.min(VALUE_LIMIT);
+    if sign > 0.0 {
+        distance
+    } else if sign < 0.0 {
+        -distance
+    } else {
+        0.0
+    }
+}
+
+impl AnyField for SurfaceDistance {
+    fn name(&self) -> &'static str {
+        "distance"
+    }
+
+    fn signature(&self) -> String {
+        let (count, hash) = (self.patches.len(), self.patches.hash);
+        format!("SurfaceDistance({count}, {hash:016x}, {:?}, {:?}, {})", self.error, self.flat, self.sign.signature())
+    }
+
+    fn bounds_under(&self, map: &DAffine3) -> Bounds {
+        self.bounds.transformed(map)
+    }
+
+    fn check(&self) -> Result<(), ParamError> {
+        self.sign.check()
+    }
+
+    /// By single precision: of the coordinates, which the map and the move into the surface's
+    /// frame round three times each, and of the way from a patch to the point, some six roundings
+    /// of numbers of the size of a patch and of the distance, both at most the reach and twice the
+    /// surface's size. The sign's own error is no part of it: it counts where the distance is near
+    /// 0 only, and there no more than the distance itself.
+    fn roundoff(&self, reach: f64) -> f64 {
+        5e-7 * (reach + self.patches.unit())
+    }
+
+    fn value(&self, p: [f64; 3]) -> f64 {
+        self.signed(p, self.sign.value(p))
+    }
+
+    fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64> {
+        let at = p.map(Dual::value);
+        let (value, slope) = self.signed_with_slope(at, self.sign.value(at));
+        let along = |axis: usize| (0..3).map(|i| slope[i] * p[i].d[axis]).sum();
+        Dual::new(value, [along(0), along(1), along(2)])
+    }
+
+    fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
+        let zone = Zone::of_sides(p.map(Dual::value));
+        Dual::new(self.range(&zone), steep_slopes(1.0, p))
+    }
+
+    fn exact(&self) -> bool {
+        true
+    }
+
+    fn convex(&self) -> bool {
+        false
+    }
+
+    fn is_steady(&self) -> bool {
+        false
+    }
+
+    fn growth(&self) -> DVec3 {
+        DVec3::ONE
+    }
+
+    /// The value at the centre and the farthest that a point may be from there, on the side that
+    /// the sign field is certain of.
+    fn range(&self, zone: &Zone) -> Interval {
+        let side = self.side(zone);
+        if !zone.is_finite() {
+            return side;
+        }
+        let centre = self.value(zone.centre.to_array());
+        let slack = 2.0 * (self.error + self.patches.rounding()) + 1e-12 * (zone.reach() + centre.abs());
+        Interval::around(centre, self.radius(zone) + slack).narrowed_by(side)
+    }
+
+    fn axes(&self) -> [bool; 3] {
+        let sign = self.sign.axes();
+        [0, 1, 2].map(|axis| self.flat != Some(axis) || sign[axis])
+    }
+
+    /// To first order: the sign field's value by the length of its gradient. The search does not
+    /// fit an expression tree.
+    #[cfg(feature = "formula")]
+    fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
+        Symbol::over_slope(p, |p| self.sign.symbol(p))
+    }
+
+    fn lanes32(&self, chunk: Chunk<'_, f32, 1>) {
+        let signs = self.signs32(chunk.points, chunk.placement);
+        self.values_by_point(chunk, &signs);
+    }
+
+    fn lanes64(&self, chunk: Chunk<'_, f64, 1>) {
+        let signs = self.signs64(chunk.points, chunk.placement);
+        self.values_by_point(chunk, &signs);
+    }
+
+    fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
+        let signs = self.signs32(chunk.points, chunk.placement);
+        self.gradients_by_point(chunk, &signs);
+    }
+
+    fn takes_short(&self) -> bool {
+        self.sign.takes_short()
+    }
+}
