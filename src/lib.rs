@@ -436,6 +436,7 @@ mod picture;
 
 pub mod camera;
 pub mod catalogue;
+mod distance;
 pub mod error;
 mod eval;
 pub mod field;
@@ -448,6 +449,7 @@ pub mod layers;
 mod mesh;
 pub mod points;
 pub mod program;
+mod query;
 pub mod range_image;
 pub mod raster;
 mod render;

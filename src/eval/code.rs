@@ -89,22 +89,13 @@ impl Code {
         self.balanced(operands.to_vec(), |code, a, b| code.join(op, rule, frame, &[a, b]))
     }
 
-    /// Exactly one of two; folded over more, an odd number of them. Each operand is given as
-    /// it is and as its complement.
-    fn either_all(&mut self, rule: Rule, frame: u32, operands: Vec<[Operand; 2]>) -> Operand {
-        let both = self.balanced(operands, |code, [a, not_a], [b, not_b]| {
-            let first = code.join(Op::And, rule, frame, &[a, not_b]);
-            let second = code.join(Op::And, rule, frame, &[not_a, b]);
-            let either = code.join(Op::Or, rule, frame, &[first, second]);
-            if a.edge.node() == not_a.edge.node() && b.edge.node() == not_b.edge.node() {
-                return [either, either.flip_if(true)];
-            }
-            // What is not in exactly one is in both or in none.
-            let first = code.join(Op::And, rule, frame, &[a, b]);
-            let second = code.join(Op::And, rule, frame, &[not_a, not_b]);
-            [either, code.join(Op::Or, rule, frame, &[first, second])]
-        });
-        both[0]
+    /// Exactly one of two; folded over more, an odd number of them.
+    fn either_all(&mut self, rule: Rule, frame: u32, operands: Vec<Operand>) -> Operand {
+        self.balanced(operands, |code, a, b| {
+            let first = code.join(Op::And, rule, frame, &[a, b.flip_if(true)]);
+            let second = code.join(Op::And, rule, frame, &[a.flip_if(true), b]);
+            code.join(Op::Or, rule, frame, &[first, second])
+        })
     }
 
     fn balanced<T: Copy>(&mut self, operands: Vec<T>, mut join: impl FnMut(&mut Code, T, T) -> T) -> T {
@@ -116,10 +107,10 @@ impl Code {
         level[0]
     }
 
-    /// What is in exactly one of the operands, each given as it is and as its complement.
-    pub(super) fn either(&mut self, rule: Rule, frame: u32, pairs: &[[Built; 2]]) -> Built {
-        let pick = |edge: fn(&Built) -> Edge| -> Vec<[Operand; 2]> {
-            pairs.iter().map(|pair| pair.map(|b| Operand { edge: edge(&b), sides: b.sides })).collect()
+    /// What is in exactly one of the operands.
+    pub(super) fn either(&mut self, rule: Rule, frame: u32, built: &[Built]) -> Built {
+        let pick = |edge: fn(&Built) -> Edge| -> Vec<Operand> {
+            built.iter().map(|b| Operand { edge: edge(b), sides: b.sides }).collect()
         };
         let (field, surface) = (pick(|b| b.field), pick(|b| b.surface));
         let (field, surface) = (self.either_all(rule, frame, field), self.either_all(Rule::MinMax, frame, surface));
@@ -158,7 +149,7 @@ impl Code {
         let mut sides = operand.sides;
         if by > 0.0 {
             sides.inside = grow(&sides.inside, operand.growth * by);
-        } else {
+        } else if by < 0.0 {
             sides.outside = Bounds::ALL;
         }
         Built { field: edge, surface: edge, sides, growth: operand.growth, gauge: None }

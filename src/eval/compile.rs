@@ -10,16 +10,19 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3};
 
 use super::code::{Built, Code, bounded, conjoined, disjoined, grow, snug};
-use super::composite::{Composite, Whole};
-use super::context::{Contexts, Place, least_stretch};
+use super::context::{Contexts, is_similarity, least_stretch};
 use super::edge::EdgeBlend;
+use super::exact::Exactness;
 use super::extent::extent;
 use super::flatten::flatten;
 use super::program::{Edge, Kind, Program};
 use super::scene::{Instance, Scene};
 use super::sides::Sides;
 use crate::solid::{self, Length, Operation};
-use crate::{Blend, Bounds, Norm, ParamError, Solid, SolidError};
+use super::apart::{Work, measure, measured, works};
+use super::nothing::Nothing;
+use super::source::{CompileError, DistanceSource, Measured};
+use crate::{Blend, Bounds, Cancelled, Norm, ParamError, Run, Solid, SolidError};
 use rvachev_field::Op;
 use rvachev_field::{AnyField, AnyWarp, Placement, Rule};
 use rvachev_num::column_times;
@@ -29,8 +32,6 @@ pub(crate) struct Compiled {
     pub(crate) field: Program,
     pub(crate) surface: Program,
     pub(crate) bounds: Bounds,
-    /// How deep operands that are compiled by themselves are nested.
-    nesting: u32,
     /// The path to the node that makes the bounds infinite, if they are.
     pub(crate) unbounded: String,
 }
@@ -38,18 +39,32 @@ pub(crate) struct Compiled {
 /// More nodes than this are not compiled.
 const LIMIT: usize = 1 << 23;
 
-/// Operands that are compiled by themselves are nested no deeper than this.
-const DEPTH: u32 = 40;
-
-/// The programs of `solid`, compiled on first use and kept with it.
-pub(crate) fn compiled(solid: &Solid) -> Result<Arc<Compiled>, SolidError> {
-    let kept = solid.compiled();
-    if let Some(kept) = kept.get().and_then(|any| any.clone().downcast::<Compiled>().ok()) {
+/// The programs of `solid`, compiled on first use and kept with it. Surfaces that lengths and fillets
+/// are measured from are made by `source`, and kept with their nodes.
+pub(crate) fn compile(solid: &Solid, source: &dyn DistanceSource, run: &Run) -> Result<Arc<Compiled>, CompileError> {
+    if let Some(kept) = kept(solid) {
         return Ok(kept);
     }
-    let fresh = Arc::new(Compiler::default().compile(solid)?);
-    let _ = kept.set(fresh.clone());
-    Ok(fresh)
+    let mut exact = Exactness::default();
+    exact.add(solid);
+    // What is compiled by itself comes before what it is part of, however deep it is.
+    for work in works(solid, &exact) {
+        run.check()?;
+        match work {
+            Work::Measure(node) => measure(node, &exact, source, run)?,
+            Work::Compile(part) if kept(part).is_some() => {}
+            Work::Compile(part) => {
+                let compiled = Compiler::new(&exact).compile(part)?;
+                let _ = part.compiled().set(Arc::new(compiled));
+            }
+        }
+    }
+    kept(solid).ok_or(CompileError::Cancelled(Cancelled))
+}
+
+/// The programs that were compiled before.
+pub(super) fn kept(solid: &Solid) -> Option<Arc<Compiled>> {
+    solid.compiled().get().and_then(|any| any.clone().downcast::<Compiled>().ok())
 }
 
 enum Task<'a> {
@@ -64,16 +79,25 @@ struct Site<'a> {
     step: u32,
 }
 
-#[derive(Default)]
-struct Compiler {
-    nesting: u32,
+struct Compiler<'e> {
+    exact: &'e Exactness,
     scene: Scene,
     contexts: Contexts,
     built: HashMap<(u32, usize), Option<Built>>,
     code: Code,
 }
 
-impl Compiler {
+impl<'e> Compiler<'e> {
+    fn new(exact: &'e Exactness) -> Compiler<'e> {
+        Compiler {
+            exact,
+            scene: Scene::default(),
+            contexts: Contexts::new(),
+            built: HashMap::new(),
+            code: Code::default(),
+        }
+    }
+
     fn compile(mut self, root: &Solid) -> Result<Compiled, SolidError> {
         let step = self.scene.trail.push(root, None);
         let site = Site { solid: root, context: 0, step };
@@ -89,7 +113,7 @@ impl Compiler {
         }
         let built = self.of(root, 0);
         let unbounded = self.unbounded(root, step);
-        let Compiler { scene, code, nesting, .. } = self;
+        let Compiler { scene, code, .. } = self;
         let scene = Arc::new(scene);
         let program = |root: Edge| {
             let (nodes, operands, root) = flatten(&code, root);
@@ -101,7 +125,7 @@ impl Compiler {
             bounds = extent(&surface, &bounds);
         }
         let unbounded = if bounds.is_finite() { String::new() } else { unbounded };
-        Ok(Compiled { field, surface, bounds, nesting, unbounded })
+        Ok(Compiled { field, surface, bounds, unbounded })
     }
 
     /// The path to the node that makes the solid unbounded: down through unions to the
@@ -158,7 +182,7 @@ impl Compiler {
         if let (solid::Node::Join { .. }, []) = (site.solid.node(), operands) {
             return Err(SolidError::EmptyJoin { path: self.scene.trail.path(site.step) });
         }
-        self.contexts.open(site.solid, site.context, &mut self.scene);
+        self.contexts.open(site.solid, site.context, self.exact, &mut self.scene);
         tasks.push(Task::Finish(site));
         for &(position, inner) in self.contexts.below(site.solid, site.context).iter().rev() {
             let operand = &operands[position];
@@ -176,13 +200,8 @@ impl Compiler {
     }
 
     /// An operand's programs by themselves, in its own coordinates.
-    fn alone(&mut self, site: Site<'_>, operand: &Solid) -> Result<Arc<Compiled>, SolidError> {
-        let alone = compiled(operand)?;
-        self.nesting = self.nesting.max(alone.nesting + 1);
-        if self.nesting > DEPTH {
-            return Err(SolidError::TooDeep { path: self.scene.trail.path(site.step), limit: DEPTH });
-        }
-        Ok(alone)
+    fn alone(&self, site: Site<'_>, operand: &Solid) -> Result<Arc<Compiled>, SolidError> {
+        kept(operand).ok_or_else(|| SolidError::EmptyJoin { path: self.scene.trail.path(site.step) })
     }
 
     /// A box, in the frame of `context`, of where a solid's true value is above −c.
@@ -205,7 +224,7 @@ impl Compiler {
             | solid::Node::Repeated { .. }
             | solid::Node::Swept { .. }
             | solid::Node::Painted { .. } => first(c),
-            solid::Node::Warp { warp, .. } if self.contexts.get(context).anchor.is_none() => {
+            solid::Node::Warp { warp, .. } => {
                 let inside = first(c);
                 if inside.is_empty() {
                     inside
@@ -256,34 +275,38 @@ impl Compiler {
             | solid::Node::Repeated { .. }
             | solid::Node::Swept { .. }
             | solid::Node::Painted { .. } => Ok(below[0]),
-            solid::Node::Warp { operand, warp } => self.warped(site, operand, warp, below[0]),
+            solid::Node::Warp { warp, .. } => self.warped(site, warp, below[0]),
             solid::Node::Complement(_) => Ok(below[0].complement()),
             solid::Node::Join { operation, rule, .. } => {
-                let rule = if context.anchor.is_some() { Rule::MinMax } else { Rule::from(*rule) };
-                if *operation != Operation::SymmetricDifference {
-                    return Ok(self.code.operation(*operation, rule, context.frame, &below));
-                }
-                // Below a length the complements have been compiled after the operands.
-                let count = node.operands().len();
-                let complements = &below[below.len() - count..];
-                let pairs: Vec<[Built; 2]> = below.iter().zip(complements).map(|(a, b)| [*a, b.complement()]).collect();
-                Ok(self.code.either(rule, context.frame, &pairs))
+                let rule = Rule::from(*rule);
+                Ok(match (context.shift, operation) {
+                    (_, Operation::SymmetricDifference) => self.code.either(rule, context.frame, &below),
+                    (None, _) => self.code.operation(*operation, rule, context.frame, &below),
+                    // Its operands are not shifted: it is no min or max.
+                    (Some(shift), _) if rule == Rule::Distance => {
+                        let joined = self.code.operation(*operation, rule, context.frame, &below);
+                        self.code.level(shift, joined)
+                    }
+                    (Some(_), _) => self.code.operation(*operation, Rule::MinMax, context.frame, &below),
+                })
             }
-            // Below a length, what reads values counts as one leaf.
-            solid::Node::Length { .. } | solid::Node::Blend { .. } if below.is_empty() => {
-                let alone = self.alone(site, site.solid)?;
-                let leaf: Arc<dyn AnyField> =
-                    Arc::new(Composite { program: Whole::new(alone.surface.clone()), bounds: alone.bounds });
-                Ok(self.leaf(&leaf, site))
-            }
-            solid::Node::Length { length, .. } => Ok(match *length {
-                Length::Level(c) => self.code.level(c * context.scale, below[0]),
-                Length::Offset(_) => below[0],
-                Length::Shell(_) => {
-                    let wall = [below[0], below[1].complement()];
-                    self.code.operation(Operation::Intersection, Rule::MinMax, context.frame, &wall)
+            solid::Node::Length { length, .. } => {
+                let by = match *length {
+                    Length::Level(c) => return Ok(self.code.level(c * context.scale, below[0])),
+                    Length::Offset(d) => d,
+                    Length::Shell(t) => -t,
+                };
+                let is_shell = matches!(length, Length::Shell(_));
+                let moved = match below.get(usize::from(is_shell)) {
+                    Some(closed) => *closed,
+                    None => self.measured(site, by),
+                };
+                if !is_shell {
+                    return Ok(moved);
                 }
-            }),
+                let wall = [below[0], moved.complement()];
+                Ok(self.code.operation(Operation::Intersection, Rule::MinMax, context.frame, &wall))
+            }
             solid::Node::Blend { operation, blend, operands, lengths } => {
                 self.blended(site, *operation, *blend, [operands, lengths], [below[0], below[1]])
             }
@@ -293,18 +316,10 @@ impl Compiler {
     fn warped(
         &mut self,
         site: Site<'_>,
-        operand: &Solid,
         warp: &Arc<dyn AnyWarp>,
         inner: Built,
     ) -> Result<Built, SolidError> {
         let context = *self.contexts.get(site.context);
-        let (_, below) = self.contexts.below(site.solid, site.context)[0];
-        if self.contexts.get(below).frame == context.frame {
-            // Leaves below have told their boxes in the frame in which lengths are asked for.
-            let alone = self.alone(site, operand)?;
-            warp.check(&alone.bounds).map_err(|e| self.parameter(site, e))?;
-            return Ok(inner);
-        }
         warp.check(&inner.sides.inside).map_err(|e| self.parameter(site, e))?;
         let outward = |b: &Bounds| {
             if b.is_empty() { *b } else { snug(warp.bounds(b).transformed(&context.forward)) }
@@ -367,7 +382,7 @@ impl Compiler {
                 }
                 let edge = Arc::new(EdgeBlend::new(operation, blend, [a.surface.clone(), b.surface.clone()], steepest));
                 let field: Arc<dyn AnyField> = edge.clone();
-                let (leaf, _) = self.place(&field, site);
+                let (leaf, _) = self.place(&field, site, 0.0);
                 let kind = Kind::Edge { op, leaf, edge };
                 let built = self.code.edge(operation, kind, pair);
                 // The material of a fillet is in the hull of its operands, hence in their box; that of
@@ -390,7 +405,25 @@ impl Compiler {
     }
 
     fn leaf(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>) -> Built {
-        let (leaf, growth) = self.place(field, site);
+        let shift = self.contexts.get(site.context).shift.unwrap_or(0.0);
+        self.shifted(field, site, shift)
+    }
+
+    /// The surface of a length's operand as a leaf, its distance moved by `by`.
+    fn measured(&mut self, site: Site<'_>, by: f64) -> Built {
+        let context = self.contexts.get(site.context);
+        let shift = context.shift.unwrap_or(0.0) + by * context.scale;
+        match measured(site.solid) {
+            Some(Measured { field, is_gone: false, .. }) => self.shifted(&field, site, shift),
+            _ => {
+                let nothing: Arc<dyn AnyField> = Arc::new(Nothing);
+                self.shifted(&nothing, site, 0.0)
+            }
+        }
+    }
+
+    fn shifted(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>, shift: f64) -> Built {
+        let (leaf, growth) = self.place(field, site, shift);
         let context = self.contexts.get(site.context);
         let edge = self.code.push(Kind::Leaf(leaf), &[]);
         Built {
@@ -398,23 +431,24 @@ impl Compiler {
             surface: edge,
             sides: Sides { inside: self.scene.leaves[leaf as usize].bounds, outside: Bounds::ALL },
             growth,
-            gauge: field.gauge_radius().filter(|_| context.anchor.is_none()).map(|radius| radius * context.scale),
+            gauge: field.gauge_radius().filter(|_| context.shift.is_none()).map(|radius| radius * context.scale),
         }
     }
 
     /// Adds a leaf to the scene: its number, and how much its box grows per unit of value.
-    fn place(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>) -> (u32, DVec3) {
-        let Place { field, context, shift } = self.contexts.place(field, site.context);
+    fn place(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>, shift: f64) -> (u32, DVec3) {
+        let context = *self.contexts.get(site.context);
         let (axes, unit) = (context.forward.matrix3.abs(), field.growth());
         let growth = (0..3).map(|axis| column_times(axes.col(axis), unit[axis])).sum::<DVec3>() / context.scale;
         let mut bounds = snug(field.bounds_under(&context.forward));
-        if shift > 0.0 {
+        // A distance is no larger than that to the sides of the box.
+        if shift > 0.0 || shift < 0.0 && field.exact() && is_similarity(&context.forward.matrix3) {
             bounds = grow(&bounds, growth * shift);
         }
         let number = self.scene.leaves.len() as u32;
         self.scene.leaves.push(Instance {
             number,
-            field,
+            field: field.clone(),
             frame: context.frame,
             to_local: context.to_local,
             placement: Placement::new(&context.to_local, context.scale, shift),

@@ -5,26 +5,27 @@
 //! R-functions, which is the same solid with the same surface and normals, and which can be
 //! narrowed to a region.
 
+mod apart;
 mod bend;
 mod code;
 mod compile;
 mod composite;
 mod context;
 mod crossing;
+mod depth;
 mod edge;
+mod exact;
 mod extent;
 mod flatten;
 mod hierarchy;
-#[cfg(feature = "formula")]
-mod lower;
 mod narrow;
-mod nearest;
+mod nothing;
+mod owner;
 mod palette;
 mod parting;
 mod pass;
 mod point;
 mod program;
-mod query;
 mod ranges;
 mod ray;
 mod register;
@@ -32,13 +33,14 @@ mod repeat;
 mod rise;
 mod scene;
 mod sides;
+mod source;
 mod tape;
 mod thin;
 
 pub(crate) use narrow::Narrowed;
 pub use palette::Palette;
 pub use program::{Program, Region};
-pub use query::Owner;
+pub use owner::Owner;
 pub use ray::Hit;
 pub use tape::{Evaluator, Gradients, Tape, UnequalSlices};
 
@@ -46,7 +48,11 @@ pub use tape::{Evaluator, Gradients, Tape, UnequalSlices};
 pub(crate) use rvachev_field::BOXES as BOXES_AT_ONCE;
 
 pub(crate) use bend::Bend;
-pub(crate) use compile::compiled;
+pub(crate) use compile::{Compiled, compile};
+pub(crate) use source::{CompileError, DistanceSource, Surface};
 pub(crate) use parting::Parting;
 pub(crate) use ray::{Care, first_hit};
+pub(crate) use point::limited;
+#[cfg(feature = "formula")]
+pub(crate) use program::Kind;
 pub(crate) use rvachev_field::Op;

@@ -12,7 +12,7 @@ use super::pass::{Asked, Pass, Sign};
 use super::program::{Edge, Kind, Node, Program, Region};
 use super::ranges::{hull_of, joined};
 use super::scene::Instance;
-use crate::{Bounds, Interval};
+use crate::{Bounds, Dual, Interval};
 use rvachev_field::{AnyField, Pieces, Zone};
 
 /// What a region holds of a solid, and the program for it if that is another.
@@ -80,6 +80,12 @@ impl Program {
         let leaves = self.nodes.iter().filter_map(Node::valued_by);
         let dear = leaves.filter(|&leaf| self.instance(leaf).field.cost() > dear);
         dear.map(|leaf| self.axes_of(leaf)).reduce(|a, b| [0, 1, 2].map(|axis| a[axis] || b[axis]))
+    }
+
+    /// Whether the value is found to be the same all along an axis, over a box.
+    pub(crate) fn is_even_along(&self, axis: usize, region: &Bounds) -> bool {
+        let over = self.evaluate(Dual::point(Zone::of_bounds(region).hull()), &mut Vec::new());
+        over.gradient()[axis].magnitude() < f64::MIN_POSITIVE
     }
 
     /// The axes of the world that a leaf depends on.

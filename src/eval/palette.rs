@@ -8,10 +8,9 @@
 
 use glam::{DVec3, Vec3};
 
-use super::compiled;
 use super::program::{Kind, Program};
 use crate::geom::{to_byte, to_linear};
-use crate::{Dual, Paint, Solid, SolidError};
+use crate::{Dual, Paint};
 use rvachev_field::Op;
 use rvachev_field::Rule;
 
@@ -29,7 +28,7 @@ use rvachev_field::Rule;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Palette {
-    program: Program,
+    pub(crate) program: Program,
     /// By leaf.
     paints: Vec<Option<Paint>>,
     /// The leaves that a blend mixes with others of another paint.
@@ -54,27 +53,8 @@ impl Below {
     }
 }
 
-impl Solid {
-    /// The paint of the solid's parts, by the numbers of their [owners](Solid::owner).
-    ///
-    /// # Errors
-    /// What is wrong with the solid: see [`SolidError`].
-    pub fn palette(&self) -> Result<Palette, SolidError> {
-        Ok(Palette::new(compiled(self)?.surface.clone()))
-    }
-
-    /// The [paint](Solid::paint) of the surface at a point of it; `None` where there is none.
-    ///
-    /// # Errors
-    /// What is wrong with the solid: see [`SolidError`].
-    pub fn paint_at(&self, p: impl Into<DVec3>) -> Result<Option<Paint>, SolidError> {
-        let (palette, p) = (self.palette()?, p.into());
-        Ok(palette.at(palette.program.deciding_leaf(p), p))
-    }
-}
-
 impl Palette {
-    fn new(program: Program) -> Palette {
+    pub(crate) fn new(program: Program) -> Palette {
         let scene = program.scene.clone();
         let mut paints: Vec<Option<Paint>> = scene.leaves.iter().map(|leaf| scene.trail.paint(leaf.step)).collect();
         let mut mixed = vec![false; paints.len()];

@@ -1,7 +1,5 @@
 //! Whether a feature thinner than a cell may hide in cells of one sign.
 
-use glam::DVec3;
-
 use super::extract::CellRows;
 use super::lattice::Lattice;
 use super::signs::BLOCK;
@@ -44,7 +42,7 @@ pub(super) fn may_hide(
                 continue;
             }
             let is_open = |part: &Bounds| !matches!(simpler.narrowed(part), Narrowed::Inside | Narrowed::Outside);
-            let parts = octants(&region);
+            let parts = region.octants();
             if parts.iter().any(is_open) && !simpler.is_entered_once(&[region]) && !simpler.is_entered_once(&parts) {
                 return true;
             }
@@ -52,13 +50,4 @@ pub(super) fn may_hide(
         }
     }
     false
-}
-
-/// The eight parts of a box.
-pub(super) fn octants(region: &Bounds) -> [Bounds; 8] {
-    let half = region.half_extents();
-    std::array::from_fn(|n| {
-        let low = region.min + half * DVec3::from_array([0, 1, 2].map(|axis| (n >> axis & 1) as f64));
-        Bounds::new(low, low + half)
-    })
 }

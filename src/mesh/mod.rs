@@ -19,7 +19,7 @@ mod roots;
 mod sampler;
 mod settings;
 mod signs;
-mod solid;
+mod subject;
 mod table;
 mod thin;
 mod volume;
@@ -29,3 +29,7 @@ pub use error::MeshingError;
 pub use lattice::{CellSize, Lattice, LatticeError};
 pub use settings::{AtBounds, Features, MeshSettings, ThinFeatures};
 pub use volume::{Volume, VolumeError, VolumeSettings};
+
+pub(crate) use paint::{corner_colors, each_triangle};
+pub(crate) use subject::{Subject, Whole};
+pub(crate) use thin::thin_features_of;

@@ -14,7 +14,6 @@ use rayon::prelude::*;
 
 use super::blocks::Blocks;
 use super::extract::Sampler;
-use super::hide::octants;
 use super::lattice::Lattice;
 use super::sampler::{Scratch, SolidSampler};
 use super::signs::{BLOCK, NODES, SIDE, Signs};
@@ -134,7 +133,7 @@ impl Search<'_> {
             self.parts_of(first, size, program);
         } else if !program.is_entered_once(&[region])
             && (!self.is_one_sided(first) || self.least(first) <= self.bulge(program, &region))
-            && !program.is_entered_once(&octants(&region))
+            && !program.is_entered_once(&region.octants())
         {
             self.found.push(first);
         }

@@ -17,12 +17,11 @@ use rayon::prelude::*;
 
 use super::blocks::Blocks;
 use super::error::MeshingError;
-use super::lattice::Lattice;
+use super::lattice::{CellSize, Lattice};
 use super::resolve::{Among, Unresolved, unresolved_cells};
-use super::settings::MeshSettings;
-use crate::eval::{Program, compiled};
+use crate::eval::Program;
 use crate::geom::{ThinPlace, ThinReport};
-use crate::{Bounds, Cancelled, Run, Solid};
+use crate::{Bounds, Cancelled, Run};
 
 /// Cells of a place that its thickness is sought in.
 const ASKED: usize = 8;
@@ -38,63 +37,17 @@ const HALVINGS: usize = 40;
 /// Cells that are looked at before it is asked whether to go on.
 const AT_ONCE: usize = 1 << 12;
 
-impl Solid {
-    /// Searches for features that are thinner than cells show: walls, gaps, needles and holes,
-    /// with their places and estimated sizes. `settings` are those that the solid is to be meshed
-    /// with: its cell size and bounds count.
-    ///
-    /// It costs a tenth to a half of the time of a mesh for simple parts; up to six times as much
-    /// as the mesh for blends, lattices and walls of a few cells; up to twelve times for parts
-    /// seen through several deformations. [`Mesh::possibly_lost`](crate::Mesh::possibly_lost) is
-    /// always there, and tells whether it is worth while.
-    ///
-    /// ```
-    /// use rvachev::{CellSize, MeshSettings, Run, Solid};
-    ///
-    /// let fin = Solid::cuboid([0.03, 0.8, 0.8]).translate([0.0, 0.0, 1.3]);
-    /// let part = Solid::cuboid([2.0, 2.0, 2.0]) | fin;
-    /// let settings = MeshSettings { cell: CellSize::LongestSide(32), ..MeshSettings::default() };
-    /// let report = part.thin_features(&settings, &Run::default())?;
-    /// assert_eq!(report.count, 1);
-    /// let fin = &report.places[0];
-    /// assert!((fin.thickness.unwrap() - 0.03).abs() < 1e-6 && fin.position.x.abs() < 0.015);
-    /// assert!(fin.size.y > 0.7 && fin.position.z > 1.0);
-    /// # Ok::<(), rvachev::error::MeshingError>(())
-    /// ```
-    ///
-    /// # Details
-    ///
-    /// A cell counts if the range of the value over it contains 0, and no direction is found such
-    /// that along it, and along all directions within 8° of it, the solid is entered, and not
-    /// left, throughout the cell: the surface may come into it and turn round, as at a thin wall,
-    /// a narrow slot, or a fin with a draft of less than that. Of cells with corners on both sides
-    /// those count whose surface is found to turn round: a flat wall that is thicker than the
-    /// diagonal of a cell, 1.74 times its side, is whole. What may be lost in other cells is the
-    /// tip of something blunter, up to six cells of it. A fillet or chamfer is taken to have no
-    /// features of its own that are thinner than its size. Ranges are wider than what they hold:
-    /// edges of acute angles, lattices of few cells a period, and radii of two or three cells may
-    /// give places where there is nothing, without a thickness.
-    ///
-    /// # Errors
-    /// As for [`mesh`](Solid::mesh): what is wrong with the solid or the settings, or that the
-    /// work was cancelled.
-    pub fn thin_features(&self, settings: &MeshSettings, run: &Run) -> Result<ThinReport, MeshingError> {
-        let (solid, bounds) = self.cut_to(settings.bounds.as_ref())?;
-        let run = run.stage(0.0, 1.0);
-        if bounds.is_empty() {
-            run.report(1.0);
-            return Ok(ThinReport::default());
-        }
-        let programs = compiled(&solid)?;
-        let report = run.install(|| {
-            let [to_find, to_search] = run.stages([0.1, 1.0]);
-            let lattice = Lattice::new(&bounds, settings.cell)?;
-            let blocks = Blocks::find(&programs.surface, &lattice, &to_find)?;
-            Ok::<_, MeshingError>(thin_report(&blocks, (&lattice, bounds), &to_search)?)
-        })?;
-        run.report(1.0);
-        Ok(report)
-    }
+/// The features of a program that are thinner than cells of a size show.
+pub(crate) fn thin_features_of(
+    program: &Program,
+    bounds: Bounds,
+    cell: CellSize,
+    run: &Run,
+) -> Result<ThinReport, MeshingError> {
+    let [to_find, to_search] = run.stages([0.1, 1.0]);
+    let lattice = Lattice::new(&bounds, cell)?;
+    let blocks = Blocks::find(program, &lattice, &to_find)?;
+    Ok(thin_report(&blocks, (&lattice, bounds), &to_search)?)
 }
 
 /// A cell of the lattice that the surface may turn round in.

@@ -72,7 +72,7 @@ pub(super) fn lowest(program: &Program, bounds: &Bounds) -> f64 {
         if halvings == HALVINGS || met > MOST {
             return bounds.min.z;
         }
-        for bounds in octants(&bounds) {
+        for bounds in bounds.octants() {
             let program = match program.narrow(&bounds) {
                 Region::Outside => continue,
                 // Nothing to narrow: all of its halves are inside as well.
@@ -89,7 +89,7 @@ pub(super) fn lowest(program: &Program, bounds: &Bounds) -> f64 {
 pub(super) fn corners(program: &Program, bounds: &Bounds) -> Vec<DVec3> {
     let mut boxes = vec![(*bounds, program.clone())];
     for _ in 0..4 {
-        let halved = boxes.iter().flat_map(|(bounds, program)| octants(bounds).map(|part| (part, program)));
+        let halved = boxes.iter().flat_map(|(bounds, program)| bounds.octants().map(|part| (part, program)));
         let kept = halved.filter_map(|(part, program)| match program.narrow(&part) {
             Region::Surface(narrowed) => Some((part, narrowed)),
             // What is all inside lies between boxes that the surface crosses.
@@ -98,15 +98,4 @@ pub(super) fn corners(program: &Program, bounds: &Bounds) -> Vec<DVec3> {
         boxes = kept.collect();
     }
     boxes.iter().flat_map(|(bounds, _)| bounds.corners()).collect()
-}
-
-/// The eight halves of a box.
-fn octants(bounds: &Bounds) -> [Bounds; 8] {
-    let (min, middle, max) = (bounds.min, bounds.center(), bounds.max);
-    [0, 1, 2, 3, 4, 5, 6, 7].map(|corner: u32| {
-        let pick = |axis: u32, low: f64, high: f64| if corner >> axis & 1 == 1 { high } else { low };
-        let low = DVec3::new(pick(0, min.x, middle.x), pick(1, min.y, middle.y), pick(2, min.z, middle.z));
-        let high = DVec3::new(pick(0, middle.x, max.x), pick(1, middle.y, max.y), pick(2, middle.z, max.z));
-        Bounds::new(low, high)
-    })
 }

@@ -13,7 +13,8 @@ use super::gbuffer::{GBuffer, Surface, Window};
 use super::pixels::TILE;
 use super::settings::RenderError;
 use super::tile::{Tracer, View, divide_top};
-use crate::eval::{Program, compiled};
+use crate::distance::compiled_with;
+use crate::eval::Program;
 use crate::{Bounds, Cancelled, Hit, Palette, Rays, Run, Solid};
 use rvachev_num::Meter;
 
@@ -68,8 +69,8 @@ impl Solid {
     /// # Errors
     /// What is wrong with the solid, or that the work was cancelled.
     pub fn scene_with(&self, run: &Run) -> Result<Scene, RenderError> {
+        let programs = compiled_with(self, run)?;
         let bounds = self.finite_bounds()?;
-        let programs = compiled(self)?;
         let run = run.stage(0.0, 1.0);
         run.install(|| {
             run.check()?;

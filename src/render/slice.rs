@@ -15,7 +15,8 @@ use glam::{DVec2, Vec3};
 use rayon::prelude::*;
 
 use super::settings::{RenderError, check_memory, check_size, setting};
-use crate::eval::{Evaluator, Program, Tape, compiled};
+use crate::distance::compiled;
+use crate::eval::{Evaluator, Program, Tape};
 use crate::geom::{to_byte, to_linear};
 use crate::{Bounds, Image, Plane, PlaneBounds, Solid};
 

@@ -51,6 +51,12 @@ pub enum SolidError {
         /// Where the node is.
         path: String,
     },
+    /// No surface was found that a length could be measured from.
+    #[error("no surface to measure lengths from: {reason}")]
+    Surface {
+        /// Why not.
+        reason: String,
+    },
     /// The solid does not end, and no bounds were given to cut it.
     #[error("{path}: unbounded; give explicit bounds, or intersect it with something bounded")]
     Unbounded {

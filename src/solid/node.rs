@@ -34,6 +34,8 @@ pub(super) struct Inner {
     pub(super) node: Node,
     /// What the evaluator keeps between queries; it knows its type.
     pub(super) compiled: OnceLock<Arc<dyn Any + Send + Sync>>,
+    /// What it has measured of a length's operand.
+    measured: OnceLock<Arc<dyn Any + Send + Sync>>,
 }
 
 /// A node of the graph.
@@ -201,7 +203,7 @@ impl Node {
 
 impl Solid {
     pub(crate) fn from_node(node: Node) -> Solid {
-        Solid(Arc::new(Inner { node, compiled: OnceLock::new() }))
+        Solid(Arc::new(Inner { node, compiled: OnceLock::new(), measured: OnceLock::new() }))
     }
 
     pub(crate) fn node(&self) -> &Node {
@@ -211,6 +213,11 @@ impl Solid {
     /// The evaluator's cache of this node.
     pub(crate) fn compiled(&self) -> &OnceLock<Arc<dyn Any + Send + Sync>> {
         &self.0.compiled
+    }
+
+    /// What was measured of a length's operand, or of a fillet's.
+    pub(crate) fn measured(&self) -> &OnceLock<Arc<dyn Any + Send + Sync>> {
+        &self.0.measured
     }
 
     /// What tells this node from others.

@@ -207,6 +207,14 @@ impl Bounds {
         })
     }
 
+    /// The eight halves of the box along all axes, in the order of the [`corners`](Bounds::corners)
+    /// that they hold.
+    #[must_use]
+    pub fn octants(&self) -> [Bounds; 8] {
+        let center = self.center();
+        self.corners().map(|corner| Bounds::new(corner.min(center), corner.max(center)))
+    }
+
     /// The smallest box that holds the image of this box under an affine map. An unbounded
     /// side stays unbounded along every axis that it reaches, and does not spread to others;
     /// the empty box stays empty.

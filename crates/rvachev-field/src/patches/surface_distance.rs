@@ -171,7 +171,11 @@ impl AnyField for SurfaceDistance {
 
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
         let zone = Zone::of_sides(p.map(Dual::value));
-        Dual::new(self.range(&zone), steep_slopes(1.0, p))
+        let mut across = p;
+        if let Some(axis) = self.flat {
+            across[axis].d = [Interval::point(0.0); 3];
+        }
+        Dual::new(self.range(&zone), steep_slopes(1.0, across))
     }
 
     fn exact(&self) -> bool {

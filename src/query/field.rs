@@ -3,20 +3,9 @@
 use glam::DVec3;
 
 use super::nearest::nearest;
-use super::point::limited;
-use super::tape::{Evaluator, Tape};
-use super::{Care, Hit, Program, Region, compiled, first_hit};
+use crate::distance::compiled;
+use crate::eval::{Care, Evaluator, Hit, Owner, Program, Region, Tape, first_hit, limited};
 use crate::{Bounds, Interval, Solid, SolidError};
-
-/// A leaf of a solid, as an answer: which leaf decides here?
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub struct Owner {
-    /// The leaf's number, in the order of compiling; stable for one solid.
-    pub index: u32,
-    /// The path from the root: `difference[1] / twist / superellipsoid`, with the names that
-    /// parts [have](Solid::named): `difference[1] / socket: twist / superellipsoid`.
-    pub path: String,
-}
 
 impl Solid {
     /// The program of true values.
@@ -246,18 +235,5 @@ impl Solid {
     /// What is wrong with the solid: see [`SolidError`].
     pub fn owners(&self, points: &[DVec3]) -> Result<Vec<Owner>, SolidError> {
         points.iter().map(|p| self.owner(*p)).collect()
-    }
-}
-
-impl Program {
-    /// The leaf that decides at a point.
-    #[must_use]
-    pub fn owner(&self, p: impl Into<DVec3>) -> Owner {
-        self.owner_of(self.deciding_leaf(p.into()))
-    }
-
-    pub(crate) fn owner_of(&self, leaf: u32) -> Owner {
-        let step = self.scene.leaves[leaf as usize].step;
-        Owner { index: leaf, path: self.scene.trail.path(step) }
     }
 }

@@ -2,8 +2,8 @@
 
 use fidget::context::Tree;
 
-use super::compiled;
-use super::program::Kind;
+use crate::distance::compiled;
+use crate::eval::Kind;
 use crate::{Solid, SolidError};
 use rvachev_num::symbol::Arena;
 

@@ -9,7 +9,7 @@ use std::collections::BinaryHeap;
 
 use glam::DVec3;
 
-use super::{Program, Region};
+use crate::eval::{Program, Region};
 use crate::Bounds;
 
 struct Candidate {
@@ -71,7 +71,7 @@ pub(super) fn nearest(program: &Program, bounds: &Bounds, p: DVec3) -> Option<DV
         if small {
             continue;
         }
-        for octant in octants(&candidate.bounds) {
+        for octant in candidate.bounds.octants() {
             let distance = octant.distance_squared(p).sqrt();
             if best.is_none_or(|(least, _)| distance < least) {
                 heap.push(Candidate { distance, bounds: octant, program: narrowed.clone() });
@@ -79,11 +79,6 @@ pub(super) fn nearest(program: &Program, bounds: &Bounds, p: DVec3) -> Option<DV
         }
     }
     best.map(|(_, point)| point)
-}
-
-fn octants(bounds: &Bounds) -> impl Iterator<Item = Bounds> {
-    let (corners, centre) = (bounds.corners(), bounds.center());
-    corners.into_iter().map(move |corner| Bounds::new(corner.min(centre), corner.max(centre)))
 }
 
 /// A locally nearest point, from `start`.

@@ -1,0 +1,150 @@
+//! Triangles near a surface, and their vertices on it.
+
+use glam::DVec3;
+
+use super::crease::{Plane, meet};
+use super::slopes::{Slope, Slopes};
+use crate::{Cancelled, Mesh, Run};
+
+/// A vertex whose corners have normals that differ by more, in radians, is on a crease.
+pub(super) const CREASE: f64 = 0.15;
+
+/// How far from a crease its sides are looked at, in parts of the way to a triangle's middle: less
+/// each time that the vertex is nearer.
+const ASIDE: [f64; 3] = [0.2, 0.05, 0.01];
+
+/// No vertex is moved farther than this in all, in parts of its shortest side.
+const STRIDE: f64 = 0.4;
+
+/// Triangles, each corner with its normal.
+#[derive(Debug, Default)]
+pub(super) struct Facets {
+    pub(super) positions: Vec<DVec3>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) normals: Vec<[DVec3; 3]>,
+}
+
+impl Facets {
+    /// Those triangles of a mesh that are to be kept.
+    pub(super) fn new(mesh: &Mesh, keep: impl Fn(&[DVec3; 3]) -> bool) -> Facets {
+        let of_vertices = mesh.normals().unwrap_or_default();
+        let of_corners = mesh.corner_normals();
+        let mut facets =
+            Facets { positions: mesh.positions().iter().map(|p| p.as_dvec3()).collect(), ..Facets::default() };
+        for (number, triangle) in mesh.triangles().iter().enumerate() {
+            if !keep(&mesh.corners(*triangle)) {
+                continue;
+            }
+            let normals = match of_corners {
+                Some(corners) => corners[number],
+                None => triangle.map(|v| of_vertices.get(v as usize).copied().unwrap_or_default()),
+            };
+            facets.triangles.push(*triangle);
+            facets.normals.push(normals.map(|n| n.as_dvec3()));
+        }
+        facets
+    }
+
+    /// Moves the vertices onto the surface, and takes its normals.
+    pub(super) fn polish(&mut self, slopes: &Slopes<'_>, run: &Run) -> Result<(), Cancelled> {
+        let creased = self.creased();
+        let start = self.positions.clone();
+        let limits = self.shortest_sides();
+        let held = |at: usize, to: DVec3| start[at] + (to - start[at]).clamp_length_max(STRIDE * limits[at]);
+        for round in 0..2 {
+            let found = slopes.at(&self.positions, run)?;
+            for (at, slope) in found.iter().enumerate().filter(|(at, _)| !creased[*at]) {
+                self.positions[at] = held(at, self.positions[at] + slope.newton());
+            }
+            if round == 1 {
+                self.take_normals(&found, &creased);
+            }
+        }
+        self.polish_creases(slopes, &creased, held, run)
+    }
+
+    /// The corners where a vertex is on a crease: their numbers, triangle by triangle.
+    fn corners_at(&self, creased: &[bool]) -> Vec<(usize, usize)> {
+        let corners = (0..self.triangles.len()).flat_map(|t| [(t, 0), (t, 1), (t, 2)]);
+        corners.filter(|(t, k)| creased[self.triangles[*t][*k] as usize]).collect()
+    }
+
+    fn polish_creases(
+        &mut self,
+        slopes: &Slopes<'_>,
+        creased: &[bool],
+        held: impl Fn(usize, DVec3) -> DVec3,
+        run: &Run,
+    ) -> Result<(), Cancelled> {
+        let corners = self.corners_at(creased);
+        // The corners by their vertices.
+        let mut order: Vec<usize> = (0..corners.len()).collect();
+        let vertices: Vec<usize> = corners.iter().map(|(t, k)| self.triangles[*t][*k] as usize).collect();
+        order.sort_by_key(|n| vertices[*n]);
+        for aside in ASIDE {
+            let beside = |&(t, k): &(usize, usize)| {
+                let triangle = self.triangles[t].map(|v| self.positions[v as usize]);
+                let middle = triangle.iter().sum::<DVec3>() / 3.0;
+                triangle[k].lerp(middle, aside)
+            };
+            let points: Vec<DVec3> = corners.iter().map(beside).collect();
+            let found = slopes.at(&points, run)?;
+            for (&(t, k), slope) in corners.iter().zip(&found) {
+                let normal = slope.normal();
+                if normal != DVec3::ZERO {
+                    self.normals[t][k] = normal;
+                }
+            }
+            for group in order.chunk_by(|a, b| vertices[*a] == vertices[*b]) {
+                let at = vertices[group[0]];
+                let planes: Vec<Plane> = group.iter().filter_map(|n| Plane::of(points[*n], &found[*n])).collect();
+                self.positions[at] = held(at, meet(&planes, self.positions[at]));
+            }
+        }
+        Ok(())
+    }
+
+    fn take_normals(&mut self, found: &[Slope], creased: &[bool]) {
+        for (triangle, normals) in self.triangles.iter().zip(&mut self.normals) {
+            for (v, normal) in triangle.iter().zip(normals) {
+                let slope = &found[*v as usize];
+                if !creased[*v as usize] && slope.normal() != DVec3::ZERO {
+                    *normal = slope.normal();
+                }
+            }
+        }
+    }
+
+    /// Which vertices have corners whose normals differ.
+    fn creased(&self) -> Vec<bool> {
+        let mut first = vec![DVec3::ZERO; self.positions.len()];
+        let mut creased = vec![false; self.positions.len()];
+        for (triangle, normals) in self.triangles.iter().zip(&self.normals) {
+            for (v, normal) in triangle.iter().zip(normals) {
+                let known = &mut first[*v as usize];
+                if *known == DVec3::ZERO {
+                    *known = *normal;
+                } else if known.distance(*normal) > CREASE {
+                    creased[*v as usize] = true;
+                }
+            }
+        }
+        creased
+    }
+
+    fn shortest_sides(&self) -> Vec<f64> {
+        let mut shortest = vec![f64::INFINITY; self.positions.len()];
+        for triangle in &self.triangles {
+            for k in 0..3 {
+                let [a, b] = [triangle[k] as usize, triangle[(k + 1) % 3] as usize];
+                let length = self.positions[a].distance(self.positions[b]);
+                shortest[a] = shortest[a].min(length);
+                shortest[b] = shortest[b].min(length);
+            }
+        }
+        // Of slivers the shortest side says nothing of how far off a vertex may be; of points
+        // without triangles nothing is asked.
+        let typical = shortest.iter().filter(|length| length.is_finite()).sum::<f64>() / shortest.len().max(1) as f64;
+        shortest.iter().map(|length| if length.is_finite() { length.max(0.5 * typical) } else { 0.0 }).collect()
+    }
+}

@@ -1,0 +1,58 @@
+//! True distance to the surface of any solid.
+//!
+//! ```text
+//!     program --mesh--> triangles --polish--> vertices on the surface, in double precision
+//!                                 --measure-> curved patches, split where they are off the surface
+//!                                             |x − y|, y the nearest point of the patches, with the
+//!                                             program's sign: a leaf like any other
+//! ```
+//!
+//! A length that its operand's own value does not tell, an offset, the inner face of a shell, the
+//! ball of a fillet, is measured from the operand's surface. The surface is found once, when the
+//! solid is compiled, and kept with the node.
+
+mod crease;
+mod facets;
+mod quilt;
+mod seam;
+mod slopes;
+mod surface;
+
+use std::sync::Arc;
+
+use self::surface::FromMeshes;
+use crate::error::{MeshingError, RenderError};
+use crate::eval::{CompileError, Compiled, compile};
+use crate::{Run, Solid, SolidError};
+
+/// The programs of a solid, compiled on first use and kept with it.
+pub(crate) fn compiled(solid: &Solid) -> Result<Arc<Compiled>, SolidError> {
+    match compiled_with(solid, &Run::default()) {
+        Ok(programs) => Ok(programs),
+        Err(CompileError::Solid(error)) => Err(error),
+        Err(CompileError::Cancelled(_)) => unreachable!("nobody has the token"),
+    }
+}
+
+/// The same on the threads of a run, which may be cancelled.
+pub(crate) fn compiled_with(solid: &Solid, run: &Run) -> Result<Arc<Compiled>, CompileError> {
+    compile(solid, &FromMeshes, run)
+}
+
+impl From<CompileError> for MeshingError {
+    fn from(error: CompileError) -> MeshingError {
+        match error {
+            CompileError::Solid(error) => error.into(),
+            CompileError::Cancelled(cancelled) => cancelled.into(),
+        }
+    }
+}
+
+impl From<CompileError> for RenderError {
+    fn from(error: CompileError) -> RenderError {
+        match error {
+            CompileError::Solid(error) => error.into(),
+            CompileError::Cancelled(cancelled) => cancelled.into(),
+        }
+    }
+}

@@ -1,0 +1,267 @@
+//! Triangles with curved sides that are on the surface to within a tolerance.
+//!
+//! ```text
+//!         /\            A patch that is off the surface, or turned from it, is split into four, at
+//!        /__\           the middles of its sides, which are on the surface. Its neighbours stay as
+//!       /\  /\          they are: what gapes is less than the tolerance, and the sign does not come
+//!      /__\/__\         from patches.
+//! ```
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+use super::facets::{CREASE, Facets};
+use super::seam::{Hem, Seams};
+use super::slopes::Slopes;
+use crate::{Cancelled, Run};
+use rvachev_field::Patch;
+
+/// How often a patch is split at most.
+const DEPTH: u32 = 4;
+
+/// A patch is split where its normal is off by more, in radians.
+const TURN: f64 = 0.2;
+
+/// Where a patch is compared with the surface.
+const PROBES: [[f64; 3]; 4] = [
+    [1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0],
+    [0.6, 0.2, 0.2],
+    [0.2, 0.6, 0.2],
+    [0.2, 0.2, 0.6],
+];
+
+/// Between the probes patches may be off by so much more than at them.
+const BETWEEN: f64 = 1.5;
+
+/// The patches, and how far they may be off.
+pub(super) struct Quilt {
+    pub(super) patches: Vec<Patch>,
+    pub(super) error: f64,
+}
+
+/// A triangle: its corners, their normals, and its sides from each corner to the next.
+struct Piece {
+    corners: [u32; 3],
+    normals: [DVec3; 3],
+    hems: [Hem; 3],
+}
+
+impl Quilt {
+    /// Patches of triangles near the surface.
+    pub(super) fn new(
+        mut facets: Facets,
+        slopes: &Slopes<'_>,
+        tolerance: f64,
+        run: &Run,
+    ) -> Result<Quilt, Cancelled> {
+        facets.polish(slopes, run)?;
+        let mut seams = Seams::default();
+        let mut pieces = first(&facets, &mut seams);
+        let mut positions = facets.positions;
+        let mut quilt = Quilt { patches: Vec::new(), error: 0.0 };
+        for depth in 0..=DEPTH {
+            let guesses = guesses(&pieces, &seams);
+            seams.find(&positions, &guesses, slopes, run)?;
+            let patches: Vec<Patch> = pieces.iter().map(|piece| piece.patch(&positions, &seams, tolerance)).collect();
+            let errors = errors(&patches, slopes, run)?;
+            let fails = |(off, turn): (f64, f64)| off > tolerance || turn > TURN && off > 0.05 * tolerance;
+            if depth < DEPTH {
+                let failing = pieces.iter().zip(&errors).filter(|(_, error)| fails(**error)).map(|(piece, _)| piece);
+                cross(failing, &positions, &mut seams, slopes, run)?;
+            }
+            let mut next = Vec::new();
+            for ((piece, patch), (off, turn)) in pieces.iter().zip(patches).zip(errors) {
+                if depth < DEPTH && fails((off, turn)) {
+                    piece.split(&mut positions, &mut seams, &mut next);
+                } else {
+                    quilt.error = quilt.error.max(BETWEEN * off);
+                    quilt.patches.push(patch);
+                }
+            }
+            pieces = next;
+        }
+        Ok(quilt)
+    }
+}
+
+/// The triangles as pieces, and their sides.
+fn first(facets: &Facets, seams: &mut Seams) -> Vec<Piece> {
+    let mut pieces: Vec<Piece> = Vec::with_capacity(facets.triangles.len());
+    // The normals at the ends of each side, as seen from one of its triangles.
+    let mut seen: Vec<Option<[DVec3; 2]>> = Vec::new();
+    for (corners, normals) in facets.triangles.iter().zip(&facets.normals) {
+        let hems = [0, 1, 2].map(|k| {
+            let (next, last) = ((k + 1) % 3, (k + 2) % 3);
+            let hem = seams.hem([corners[k], corners[next]], facets.positions[corners[last] as usize]);
+            // In the order of the side's ends.
+            let mut ends = [normals[k], normals[next]];
+            if hem.side == 1 {
+                ends.reverse();
+            }
+            seen.resize(seen.len().max(seams.list.len()), None);
+            match seen[hem.seam as usize] {
+                None => seen[hem.seam as usize] = Some(ends),
+                Some(other) => {
+                    seams.crease(hem, ends[0].distance(other[0]).max(ends[1].distance(other[1])));
+                }
+            }
+            hem
+        });
+        pieces.push(Piece { corners: *corners, normals: *normals, hems });
+    }
+    pieces
+}
+
+/// The normals at the ends of sides, as one of their triangles has them.
+fn guesses(pieces: &[Piece], seams: &Seams) -> HashMap<u32, [DVec3; 2]> {
+    let mut guesses = HashMap::with_capacity(2 * pieces.len());
+    for piece in pieces {
+        for (k, hem) in piece.hems.iter().enumerate() {
+            if !seams.of(*hem).is_crease {
+                let mut ends = [piece.normals[k], piece.normals[(k + 1) % 3]];
+                if hem.side == 1 {
+                    ends.reverse();
+                }
+                guesses.entry(hem.seam).or_insert(ends);
+            }
+        }
+    }
+    guesses
+}
+
+/// Finds the sides of pieces that pass over a crease from one face to another.
+fn cross<'a>(
+    pieces: impl Iterator<Item = &'a Piece>,
+    positions: &[DVec3],
+    seams: &mut Seams,
+    slopes: &Slopes<'_>,
+    run: &Run,
+) -> Result<(), Cancelled> {
+    let mut asked = HashMap::new();
+    for piece in pieces {
+        for (k, hem) in piece.hems.iter().enumerate() {
+            let ends = [piece.normals[k], piece.normals[(k + 1) % 3]];
+            let is_open = !seams.of(*hem).is_crease && ends[0].distance(ends[1]) > 2.0 * CREASE;
+            if is_open && !asked.contains_key(&hem.seam) {
+                asked.insert(hem.seam, if hem.side == 1 { [ends[1], ends[0]] } else { ends });
+            }
+        }
+    }
+    let mut asked: Vec<(u32, [DVec3; 2])> = asked.into_iter().collect();
+    asked.sort_by_key(|(seam, _)| *seam);
+    seams.cross(&asked, positions, slopes, run)
+}
+
+/// How far patches are off the surface, and how far turned from it.
+fn errors(patches: &[Patch], slopes: &Slopes<'_>, run: &Run) -> Result<Vec<(f64, f64)>, Cancelled> {
+    let points: Vec<DVec3> = patches.iter().flat_map(|patch| PROBES.map(|b| patch.point(b))).collect();
+    let found = slopes.at(&points, run)?;
+    let of_patch = |(patch, found): (&Patch, &[super::slopes::Slope])| {
+        let off = found.iter().map(super::slopes::Slope::distance).fold(0.0, f64::max);
+        let turn = PROBES.iter().zip(found).map(|(b, slope)| patch.normal(*b).angle_between(slope.normal()));
+        (off, turn.filter(|turn| turn.is_finite()).fold(0.0, f64::max))
+    };
+    Ok(patches.iter().zip(found.chunks(PROBES.len())).map(of_patch).collect())
+}
+
+impl Piece {
+    fn patch(&self, positions: &[DVec3], seams: &Seams, tolerance: f64) -> Patch {
+        let corners = self.corners.map(|v| positions[v as usize]);
+        let bulges = self.hems.map(|hem| seams.of(hem).bend(positions));
+        // What is bent by less counts as flat.
+        if bulges.iter().all(|bend| bend.length() < 1e-2 * tolerance) {
+            return Patch::flat(corners);
+        }
+        Patch { corners, bulges }
+    }
+
+    /// Its parts: those on either side of a crease that passes through it, else four.
+    fn split(&self, positions: &mut Vec<DVec3>, seams: &mut Seams, parts: &mut Vec<Piece>) {
+        let crossed: Vec<usize> = (0..3).filter(|k| seams.of(self.hems[*k]).crossing.is_some()).collect();
+        match crossed[..] {
+            [at] => self.split_from(at, positions, seams, parts),
+            [first, second] => {
+                // The corner that both sides start from is alone on its side of the crease.
+                let alone = if (first + 1) % 3 == second { second } else { first };
+                self.split_off(alone, positions, seams, parts);
+            }
+            _ => self.split_in_four(positions, seams, parts),
+        }
+    }
+
+    /// A side is crossed: two parts, from there to the opposite corner.
+    fn split_from(&self, at: usize, positions: &mut Vec<DVec3>, seams: &mut Seams, parts: &mut Vec<Piece>) {
+        let (next, last) = ((at + 1) % 3, (at + 2) % 3);
+        let [a, b, c] = [at, next, last].map(|k| self.corners[k]);
+        let (m, [of_a, of_b]) = seams.crossing(self.hems[at], positions);
+        let crease = seams.ridge([m, c], [a, b].map(|v| positions[v as usize]));
+        // The opposite corner is on the crease, and has the normal of either side.
+        let normals = |own: DVec3, other: DVec3| [own, other, nearer(self.normals[last], other)];
+        let (left, right) = (seams.hem([a, m], positions[c as usize]), seams.hem([m, b], positions[c as usize]));
+        parts.push(Piece {
+            corners: [a, m, c],
+            normals: normals(self.normals[at], of_a),
+            hems: [left, crease, self.hems[last]],
+        });
+        let [n_b, n_m, n_c] = normals(self.normals[next], of_b);
+        parts.push(Piece {
+            corners: [m, b, c],
+            normals: [n_m, n_b, n_c],
+            hems: [right, self.hems[next], crease.other()],
+        });
+    }
+
+    /// Both sides at a corner are crossed: the corner's part, and two beyond the crease.
+    fn split_off(&self, at: usize, positions: &mut Vec<DVec3>, seams: &mut Seams, parts: &mut Vec<Piece>) {
+        let (next, last) = ((at + 1) % 3, (at + 2) % 3);
+        let [a, b, c] = [at, next, last].map(|k| self.corners[k]);
+        let (m, [m_a, m_b]) = seams.crossing(self.hems[at], positions);
+        let (k, [k_c, k_a]) = seams.crossing(self.hems[last], positions);
+        let crease = seams.ridge([m, k], [a, b].map(|v| positions[v as usize]));
+        let p = |v: u32| positions[v as usize];
+        let (am, mb) = (seams.hem([a, m], p(k)), seams.hem([m, b], p(c)));
+        let (ck, ka) = (seams.hem([c, k], p(b)), seams.hem([k, a], p(m)));
+        parts.push(Piece { corners: [a, m, k], normals: [self.normals[at], m_a, k_a], hems: [am, crease, ka] });
+        let diagonal = seams.hem([k, b], p(m));
+        parts.push(Piece {
+            corners: [m, b, k],
+            normals: [m_b, self.normals[next], k_c],
+            hems: [mb, diagonal.other(), crease.other()],
+        });
+        parts.push(Piece {
+            corners: [k, b, c],
+            normals: [k_c, self.normals[next], self.normals[last]],
+            hems: [diagonal, self.hems[next], ck],
+        });
+    }
+
+    /// Four parts, at the middles of the sides.
+    fn split_in_four(&self, positions: &mut Vec<DVec3>, seams: &mut Seams, parts: &mut Vec<Piece>) {
+        let middles = self.hems.map(|hem| seams.vertex(hem, positions));
+        let between = self.hems.map(|hem| seams.normal(hem));
+        let [ab, bc, ca] = middles;
+        let outer = |seams: &mut Seams, at: usize| {
+            let last = (at + 2) % 3;
+            let (corner, to, from) = (self.corners[at], middles[at], middles[last]);
+            let inner = seams.hem([to, from], positions[corner as usize]);
+            Piece {
+                corners: [corner, to, from],
+                normals: [self.normals[at], between[at], between[last]],
+                hems: [seams.part([corner, to], self.hems[at]), inner, seams.part([from, corner], self.hems[last])],
+            }
+        };
+        parts.extend([0, 1, 2].map(|at| outer(seams, at)));
+        let hems = [
+            seams.hem([ab, bc], positions[ca as usize]),
+            seams.hem([bc, ca], positions[ab as usize]),
+            seams.hem([ca, ab], positions[bc as usize]),
+        ];
+        parts.push(Piece { corners: middles, normals: between, hems });
+    }
+}
+
+/// A corner's own normal, if that is on the same side of a crease as another one.
+fn nearer(own: DVec3, other: DVec3) -> DVec3 {
+    if own.distance(other) < CREASE { own } else { other }
+}

@@ -1,0 +1,281 @@
+//! The sides of triangles, bent onto the surface.
+//!
+//! A side's middle goes to where the surface is: along the gradient from where a curve with the
+//! normals of both ends has its middle, or, on a crease, to where the tangent planes of both sides
+//! meet.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+
+use super::crease::{Plane, meet};
+use super::facets::CREASE;
+use super::slopes::Slopes;
+use crate::{Cancelled, Run};
+
+/// How far from a crease its sides are looked at, in parts of the side's length: from farther off
+/// first.
+const ASIDE: [f64; 2] = [0.05, 0.01];
+
+/// The middle is moved by this part of the side's length at most.
+const STRIDE: f64 = 0.3;
+
+/// A side of triangles.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seam {
+    pub(super) ends: [u32; 2],
+    /// Points that the triangles on both sides reach to; the same twice at a border.
+    pub(super) toward: [DVec3; 2],
+    pub(super) is_crease: bool,
+    /// Where it passes over a crease from one face to another, and the normals on the way.
+    pub(super) crossing: Option<(DVec3, [DVec3; 2])>,
+    /// The vertex where it was split, once it is.
+    vertex: Option<u32>,
+    /// Where its middle is.
+    pub(super) middle: DVec3,
+    /// The normals there, of both sides.
+    pub(super) normals: [DVec3; 2],
+}
+
+/// The sides of all triangles so far, by their ends.
+#[derive(Default)]
+pub(super) struct Seams {
+    numbers: HashMap<[u32; 2], u32>,
+    pub(super) list: Vec<Seam>,
+    /// From here on their middles are not known yet.
+    fresh: usize,
+}
+
+/// A triangle's side, and on which side of it the triangle is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hem {
+    pub(super) seam: u32,
+    pub(super) side: usize,
+}
+
+impl Seams {
+    /// The side between two vertices, seen from a triangle that reaches to a point.
+    pub(super) fn hem(&mut self, [a, b]: [u32; 2], toward: DVec3) -> Hem {
+        let ends = [a.min(b), a.max(b)];
+        let next = self.list.len() as u32;
+        let number = *self.numbers.entry(ends).or_insert(next);
+        if number == next {
+            let normals = [DVec3::ZERO; 2];
+            self.list.push(Seam {
+                ends,
+                toward: [toward; 2],
+                is_crease: false,
+                crossing: None,
+                vertex: None,
+                middle: DVec3::ZERO,
+                normals,
+            });
+        }
+        let side = usize::from(a > b);
+        self.list[number as usize].toward[side] = toward;
+        Hem { seam: number, side }
+    }
+
+    /// The same side, which is part of a larger one.
+    pub(super) fn part(&mut self, ends: [u32; 2], whole: Hem) -> Hem {
+        let Seam { toward, is_crease, .. } = self.list[whole.seam as usize];
+        let known = self.list.len();
+        let hem = self.hem(ends, toward[whole.side]);
+        let seam = &mut self.list[hem.seam as usize];
+        if hem.seam as usize == known {
+            // Seen from the other side the ends are the other way round.
+            (seam.toward[hem.side], seam.toward[1 - hem.side]) = (toward[whole.side], toward[1 - whole.side]);
+            seam.is_crease = is_crease;
+        }
+        hem
+    }
+
+    /// A side along a crease, seen from a triangle that has its ends in this order; the surface on both
+    /// sides of it is towards two points, that of the triangle first.
+    pub(super) fn ridge(&mut self, ends: [u32; 2], toward: [DVec3; 2]) -> Hem {
+        let hem = self.hem(ends, toward[0]);
+        let seam = &mut self.list[hem.seam as usize];
+        (seam.toward[hem.side], seam.toward[1 - hem.side]) = (toward[0], toward[1]);
+        seam.is_crease = true;
+        hem
+    }
+
+    /// The vertex where a side crosses a crease, and the normals on both sides of it, in the order of
+    /// the triangle.
+    pub(super) fn crossing(&mut self, hem: Hem, positions: &mut Vec<DVec3>) -> (u32, [DVec3; 2]) {
+        let seam = &mut self.list[hem.seam as usize];
+        let (at, mut normals) = seam.crossing.unwrap_or((seam.middle, seam.normals));
+        if hem.side == 1 {
+            normals.reverse();
+        }
+        let vertex = *seam.vertex.get_or_insert_with(|| {
+            positions.push(at);
+            (positions.len() - 1) as u32
+        });
+        (vertex, normals)
+    }
+
+    /// Tells of sides, given the normals at their ends, whether they pass over a crease.
+    pub(super) fn cross(
+        &mut self,
+        asked: &[(u32, [DVec3; 2])],
+        positions: &[DVec3],
+        slopes: &Slopes<'_>,
+        run: &Run,
+    ) -> Result<(), Cancelled> {
+        let ends = |seams: &Seams, n: u32| seams.list[n as usize].ends.map(|v| positions[v as usize]);
+        let mut at: Vec<DVec3> = Vec::with_capacity(asked.len());
+        for (number, normals) in asked {
+            let [a, b] = ends(self, *number);
+            let planes = [(a, normals[0]), (b, normals[1])].map(|(p, normal)| Plane { normal, d: normal.dot(p) });
+            at.push(held(meet(&planes, 0.5 * (a + b)), [a, b]));
+        }
+        let mut normals = vec![[DVec3::ZERO; 2]; asked.len()];
+        for aside in ASIDE {
+            let beside = |((number, _), at): (&(u32, [DVec3; 2]), &DVec3)| ends(self, *number).map(|end| at.lerp(end, 2.0 * aside));
+            let points: Vec<DVec3> = asked.iter().zip(&at).flat_map(beside).collect();
+            let found = slopes.at(&points, run)?;
+            for (i, (number, _)) in asked.iter().enumerate() {
+                let pair = 2 * i..2 * i + 2;
+                let planes: Vec<Plane> =
+                    points[pair.clone()].iter().zip(&found[pair.clone()]).filter_map(|(p, s)| Plane::of(*p, s)).collect();
+                at[i] = held(meet(&planes, at[i]), ends(self, *number));
+                normals[i] = [found[2 * i].normal(), found[2 * i + 1].normal()];
+            }
+        }
+        for (((number, at_ends), at), near) in asked.iter().zip(at).zip(normals) {
+            // A turn in a point, or one all along the side?
+            if near[0].distance(near[1]) > 0.5 * at_ends[0].distance(at_ends[1]) {
+                self.list[*number as usize].crossing = Some((at, near));
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn of(&self, hem: Hem) -> &Seam {
+        &self.list[hem.seam as usize]
+    }
+
+    /// The vertex at the middle of a side.
+    pub(super) fn vertex(&mut self, hem: Hem, positions: &mut Vec<DVec3>) -> u32 {
+        let seam = &mut self.list[hem.seam as usize];
+        *seam.vertex.get_or_insert_with(|| {
+            positions.push(seam.middle);
+            (positions.len() - 1) as u32
+        })
+    }
+
+    pub(super) fn normal(&self, hem: Hem) -> DVec3 {
+        self.of(hem).normals[hem.side]
+    }
+
+    /// Marks a side as a crease if the normals of its two sides differ.
+    pub(super) fn crease(&mut self, hem: Hem, differ: f64) {
+        self.list[hem.seam as usize].is_crease |= differ > CREASE;
+    }
+
+    /// Finds the middles that are not known yet; `normals` are those at the ends of a smooth side.
+    pub(super) fn find(
+        &mut self,
+        positions: &[DVec3],
+        guesses: &HashMap<u32, [DVec3; 2]>,
+        slopes: &Slopes<'_>,
+        run: &Run,
+    ) -> Result<(), Cancelled> {
+        let fresh = self.fresh..self.list.len();
+        self.fresh = self.list.len();
+        for number in fresh.clone() {
+            let seam = &mut self.list[number];
+            let [a, b] = seam.ends.map(|v| positions[v as usize]);
+            let straight = 0.5 * (a + b);
+            let bend = guesses.get(&(number as u32)).map_or(DVec3::ZERO, |normals| {
+                let height = |n: DVec3, p: DVec3| n * n.dot(p - straight);
+                0.25 * (height(normals[0], a) + height(normals[1], b))
+            });
+            seam.middle = straight + bend.clamp_length_max(STRIDE * a.distance(b));
+        }
+        let (creases, smooth): (Vec<usize>, Vec<usize>) = fresh.partition(|n| self.list[*n].is_crease);
+        self.slide(&smooth, positions, slopes, run)?;
+        self.meet(&creases, positions, slopes, run)
+    }
+
+    /// Newton steps along the gradient.
+    fn slide(
+        &mut self,
+        numbers: &[usize],
+        positions: &[DVec3],
+        slopes: &Slopes<'_>,
+        run: &Run,
+    ) -> Result<(), Cancelled> {
+        for _ in 0..2 {
+            let points: Vec<DVec3> = numbers.iter().map(|n| self.list[*n].middle).collect();
+            for (number, slope) in numbers.iter().zip(slopes.at(&points, run)?) {
+                let seam = &mut self.list[*number];
+                seam.moved(seam.middle + slope.newton(), positions);
+                seam.normals = [slope.normal(); 2];
+            }
+        }
+        Ok(())
+    }
+
+    /// Steps to where the planes of both sides meet.
+    fn meet(
+        &mut self,
+        numbers: &[usize],
+        positions: &[DVec3],
+        slopes: &Slopes<'_>,
+        run: &Run,
+    ) -> Result<(), Cancelled> {
+        for aside in ASIDE {
+            let beside = |n: &usize| {
+                let seam = &self.list[*n];
+                let [a, b] = seam.ends.map(|v| positions[v as usize]);
+                let along = (b - a).normalize_or_zero();
+                seam.toward.map(|toward| {
+                    let across = toward - seam.middle;
+                    let across = (across - across.dot(along) * along).normalize_or_zero();
+                    seam.middle + aside * a.distance(b) * across
+                })
+            };
+            let points: Vec<DVec3> = numbers.iter().flat_map(beside).collect();
+            let found = slopes.at(&points, run)?;
+            for (i, number) in numbers.iter().enumerate() {
+                let pair = 2 * i..2 * i + 2;
+                let planes: Vec<Plane> =
+                    points[pair.clone()].iter().zip(&found[pair.clone()]).filter_map(|(p, s)| Plane::of(*p, s)).collect();
+                let seam = &mut self.list[*number];
+                seam.moved(meet(&planes, seam.middle), positions);
+                seam.normals = [found[2 * i].normal(), found[2 * i + 1].normal()];
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Hem {
+    /// The same side, seen from the triangle beyond.
+    pub(super) fn other(self) -> Hem {
+        Hem { side: 1 - self.side, ..self }
+    }
+}
+
+/// A point held near the straight line between two ends.
+fn held(p: DVec3, [a, b]: [DVec3; 2]) -> DVec3 {
+    let middle = 0.5 * (a + b);
+    middle + (p - middle).clamp_length_max(0.6 * a.distance(b))
+}
+
+impl Seam {
+    /// Moves the middle, no farther than a part of the side's length from its straight middle.
+    fn moved(&mut self, to: DVec3, positions: &[DVec3]) {
+        let [a, b] = self.ends.map(|v| positions[v as usize]);
+        let straight = 0.5 * (a + b);
+        self.middle = straight + (to - straight).clamp_length_max(STRIDE * a.distance(b));
+    }
+
+    /// How far the middle is off that of the straight side.
+    pub(super) fn bend(&self, positions: &[DVec3]) -> DVec3 {
+        let [a, b] = self.ends.map(|v| positions[v as usize]);
+        self.middle - 0.5 * (a + b)
+    }
+}

@@ -1,0 +1,139 @@
+//! Values and gradients of a program at many points that lie about.
+//!
+//! Points are sorted into boxes, each with the program narrowed to it, until few are left or the
+//! program is short; each box is a task of its own.
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use crate::eval::{Evaluator, Gradients, Program, Region, Tape};
+use crate::{Bounds, Cancelled, Run};
+
+/// So few points are not sorted any further.
+const FEW: usize = 256;
+
+/// Programs of so few leaves are not narrowed any further.
+const SHORT: usize = 2;
+
+/// Values and gradients of `program`, to `precision` where single precision reaches it, else in
+/// double precision.
+pub(super) struct Slopes<'a> {
+    pub(super) program: &'a Program,
+    pub(super) precision: f64,
+}
+
+/// A value and its gradient.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Slope {
+    pub(super) value: f64,
+    pub(super) gradient: DVec3,
+}
+
+impl Slope {
+    /// The step to where a linear function of this value and gradient is 0.
+    pub(super) fn newton(&self) -> DVec3 {
+        let square = self.gradient.length_squared();
+        if square > 1e-24 { -self.value / square * self.gradient } else { DVec3::ZERO }
+    }
+
+    /// How far that is.
+    pub(super) fn distance(&self) -> f64 {
+        self.newton().length()
+    }
+
+    /// The outward unit normal; 0 where there is no gradient.
+    pub(super) fn normal(&self) -> DVec3 {
+        -self.gradient.normalize_or_zero()
+    }
+}
+
+/// Points of a box, by number, and the program there.
+struct Task {
+    numbers: Vec<u32>,
+    bounds: Bounds,
+    program: Program,
+}
+
+impl Slopes<'_> {
+    /// The slopes at points, in their order.
+    pub(super) fn at(&self, points: &[DVec3], run: &Run) -> Result<Vec<Slope>, Cancelled> {
+        let tasks = self.tasks(points);
+        let found: Result<Vec<Vec<Slope>>, Cancelled> = tasks
+            .par_iter()
+            .map(|task| {
+                run.check()?;
+                Ok(self.of_task(task, points))
+            })
+            .collect();
+        let mut all = vec![Slope::default(); points.len()];
+        for (task, found) in tasks.iter().zip(found?) {
+            for (number, slope) in task.numbers.iter().zip(found) {
+                all[*number as usize] = slope;
+            }
+        }
+        Ok(all)
+    }
+
+    fn tasks(&self, points: &[DVec3]) -> Vec<Task> {
+        let numbers: Vec<u32> = (0..points.len() as u32).collect();
+        let mut tasks = Vec::new();
+        let mut pending = vec![(numbers, self.program.clone())];
+        while let Some((numbers, program)) = pending.pop() {
+            let bounds = numbers.iter().fold(Bounds::EMPTY, |all, n| {
+                let p = points[*n as usize];
+                all.union(&Bounds::new(p, p))
+            });
+            if numbers.len() <= FEW || (program.leaf_count() <= SHORT && numbers.len() <= 64 * FEW) {
+                tasks.push(Task { numbers, bounds, program });
+                continue;
+            }
+            let centre = bounds.center();
+            let mut parts: [Vec<u32>; 8] = Default::default();
+            for number in numbers {
+                let above = points[number as usize].cmpgt(centre);
+                parts[above.bitmask() as usize].push(number);
+            }
+            // All at one place.
+            if bounds.longest_side() == 0.0 {
+                let numbers = parts.into_iter().flatten().collect();
+                tasks.push(Task { numbers, bounds, program });
+                continue;
+            }
+            for part in parts.into_iter().filter(|part| !part.is_empty()) {
+                let hull = part.iter().fold(Bounds::EMPTY, |all, n| {
+                    let p = points[*n as usize];
+                    all.union(&Bounds::new(p, p))
+                });
+                let program = match program.narrow(&hull.inflate(1e-6 * bounds.longest_side())) {
+                    Region::Surface(narrowed) => narrowed,
+                    Region::Inside | Region::Outside => program.clone(),
+                };
+                pending.push((part, program));
+            }
+        }
+        tasks
+    }
+
+    fn of_task(&self, task: &Task, points: &[DVec3]) -> Vec<Slope> {
+        let tape = Tape::new(&task.program, &task.bounds);
+        if tape.roundoff() > self.precision {
+            let exact = |number: &u32| {
+                let (value, gradient) = task.program.gradient(points[*number as usize]);
+                Slope { value, gradient }
+            };
+            return task.numbers.iter().map(exact).collect();
+        }
+        let axis = |axis: usize| -> Vec<f32> {
+            task.numbers.iter().map(|n| (points[*n as usize] - tape.origin())[axis] as f32).collect()
+        };
+        let (x, y, z) = (axis(0), axis(1), axis(2));
+        let mut out = [(); 4].map(|()| vec![0.0f32; x.len()]);
+        let [value, dx, dy, dz] = &mut out;
+        Evaluator::new().shortest_gradients(&tape, [&x, &y, &z], Gradients { value, dx, dy, dz });
+        let slope = |i: usize| Slope {
+            value: f64::from(out[0][i]),
+            gradient: DVec3::new(f64::from(out[1][i]), f64::from(out[2][i]), f64::from(out[3][i])),
+        };
+        (0..x.len()).map(slope).collect()
+    }
+}

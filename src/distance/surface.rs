@@ -1,0 +1,106 @@
+//! The surface of a solid as patches.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use super::compiled_with;
+use super::facets::Facets;
+use super::quilt::Quilt;
+use super::slopes::Slopes;
+use crate::error::MeshingError;
+use crate::eval::{CompileError, Compiled, DistanceSource, Program, Surface};
+use crate::mesh::Subject;
+use crate::{Bounds, CellSize, Features, Mesh, MeshSettings, RFunction, Run, Solid, SolidError, ThinFeatures};
+use rvachev_field::Patches;
+
+/// The surfaces of solids by their meshes.
+pub(super) struct FromMeshes;
+
+/// Patches are off the surface by this part of the length at most, as far as they can be.
+const TOLERANCE: f64 = 1e-3;
+
+/// Cells along the longest side: at least, and at most where the length is short.
+const COARSEST: f64 = 24.0;
+const FINEST: f64 = 64.0;
+
+/// How often cells are halved where features are thinner.
+const HALVINGS: u32 = 2;
+
+impl DistanceSource for FromMeshes {
+    fn surface(&self, solid: &Solid, programs: &Compiled, length: f64, run: &Run) -> Result<Surface, CompileError> {
+        let bounds = programs.bounds;
+        let flat = flat_axis(&programs.surface, &bounds);
+        let size = (0..3).filter(|axis| Some(*axis) != flat).map(|axis| bounds.size()[axis]).fold(0.0, f64::max);
+        if bounds.is_empty() || size == 0.0 {
+            let patches = Arc::new(Patches::new(&[], run)?);
+            return Ok(Surface { patches, error: 0.0, flat });
+        }
+        if !size.is_finite() {
+            eprintln!("bounds {bounds:?} flat {flat:?} {:?}", programs.surface.evaluate(crate::Dual::point([crate::Interval::new(-10.0,10.0);3]), &mut Vec::new()));
+            return Err(SolidError::Unbounded { path: programs.unbounded.clone() }.into());
+        }
+        let cell = (size / COARSEST).min(length).max(size / FINEST);
+        let tolerance = (TOLERANCE * length).max(1e-6 * size);
+        let [to_mesh, to_sew] = run.stages([0.7, 0.3]);
+        let t0 = std::time::Instant::now();
+        let facets = match flat {
+            None => Facets::new(&mesh(&programs.surface, bounds, cell, &to_mesh)?, |_| true),
+            Some(axis) => wall(solid, bounds, axis, cell, &to_mesh)?,
+        };
+        let t1 = std::time::Instant::now();
+        let nf = facets.triangles.len();
+        let slopes = Slopes { program: &programs.surface, precision: 0.25 * tolerance };
+        let quilt = Quilt::new(facets, &slopes, tolerance, &to_sew)?;
+        let patches = Arc::new(Patches::new(&quilt.patches, &to_sew)?);
+        eprintln!("   mesh {:?} facets {nf} cell {cell:.4} size {size:.3} sew+bvh {:?} patches {} flat {} error {:.2e} tol {tolerance:.2e} bytes {}", t1-t0, t1.elapsed(), patches.len(), quilt.patches.iter().filter(|p| p.is_flat()).count(), quilt.error, patches.bytes());
+        Ok(Surface { patches, error: quilt.error, flat })
+    }
+}
+
+/// The axis along which a solid is a column without end: the one axis that its box is infinite
+/// along, where its value does not depend on it.
+fn flat_axis(program: &Program, bounds: &Bounds) -> Option<usize> {
+    if bounds.is_empty() || bounds.is_finite() {
+        return None;
+    }
+    let is_open = |axis: &usize| bounds.size()[*axis] == f64::INFINITY;
+    let mut open = (0..3).filter(is_open);
+    let axis = open.next().filter(|_| open.next().is_none())?;
+    let mut part = *bounds;
+    let reach = (0..3).filter(|other| *other != axis).map(|other| bounds.size()[other]).fold(0.0, f64::max);
+    (part.min[axis], part.max[axis]) = (-reach, reach);
+    program.is_even_along(axis, &part).then_some(axis)
+}
+
+/// The mesh of a program, its creases sharp.
+fn mesh(program: &Program, bounds: Bounds, cell: f64, run: &Run) -> Result<Mesh, CompileError> {
+    let settings = MeshSettings {
+        cell: CellSize::Length(cell),
+        features: Features::Sharp,
+        thin: ThinFeatures::Refine { halvings: HALVINGS },
+        ..MeshSettings::default()
+    };
+    let subject = Subject { program, bounds, palette: None, whole: None };
+    match run.install(|| subject.mesh(&settings, run)) {
+        Ok(mesh) => Ok(mesh),
+        Err(MeshingError::Solid(error)) => Err(error.into()),
+        Err(MeshingError::Cancelled(cancelled)) => Err(cancelled.into()),
+        Err(other) => Err(SolidError::Surface { reason: other.to_string() }.into()),
+    }
+}
+
+/// The wall of a column where the coordinate along it is near 0.
+fn wall(solid: &Solid, mut bounds: Bounds, axis: usize, cell: f64, run: &Run) -> Result<Facets, CompileError> {
+    let half = 1.5 * cell;
+    (bounds.min[axis], bounds.max[axis]) = (-half, half);
+    let mut size = bounds.size() + 2.0 * cell;
+    size[axis] -= 2.0 * cell;
+    let part = solid.intersection(Solid::cuboid(size).translate(bounds.center()), RFunction::MIN_MAX);
+    let mesh = mesh(&compiled_with(&part, run)?.surface, bounds, cell, run)?;
+    let is_cap = |corners: &[DVec3; 3]| {
+        let on_side = |side: f64| corners.iter().all(|p| (p[axis] - side).abs() < 1e-3 * cell);
+        on_side(half) || on_side(-half)
+    };
+    Ok(Facets::new(&mesh, |corners| !is_cap(corners)))
+}

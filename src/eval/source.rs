@@ -1,0 +1,61 @@
+//! What compiling asks of those who measure distances.
+//!
+//! A length that its operand's values do not tell is measured from the operand's surface. Finding
+//! that surface takes a mesh, and meshes stand above programs: so compiling is given a
+//! [`DistanceSource`], and who compiles passes one in.
+
+use std::sync::Arc;
+
+use super::compile::Compiled;
+use crate::{Cancelled, Solid, SolidError};
+use rvachev_field::{AnyField, Patches};
+use rvachev_num::Run;
+
+/// Finds the surfaces that lengths are measured from.
+pub(crate) trait DistanceSource: Sync {
+    /// The surface of a solid, which has been compiled, for lengths of about `length`.
+    ///
+    /// # Errors
+    /// That the run was cancelled, or that the solid has no end.
+    fn surface(&self, solid: &Solid, programs: &Compiled, length: f64, run: &Run) -> Result<Surface, CompileError>;
+}
+
+/// A surface to measure from.
+pub(crate) struct Surface {
+    pub(crate) patches: Arc<Patches>,
+    /// How far the patches may be off the surface.
+    pub(crate) error: f64,
+    /// The axis along which it is a cylinder, if it is: the patches are those where its coordinate
+    /// is 0.
+    pub(crate) flat: Option<usize>,
+}
+
+/// A distance that was measured, kept with its node.
+#[derive(Clone)]
+pub(crate) struct Measured {
+    /// The signed distance to the operand's surface, in the operand's coordinates.
+    pub(crate) field: Arc<dyn AnyField>,
+    /// How far it may be off.
+    pub(crate) error: f64,
+    /// Whether nothing is left where the length is taken away.
+    pub(crate) is_gone: bool,
+}
+
+/// Why a solid does not compile.
+#[derive(Clone, Debug)]
+pub(crate) enum CompileError {
+    Solid(SolidError),
+    Cancelled(Cancelled),
+}
+
+impl From<SolidError> for CompileError {
+    fn from(error: SolidError) -> CompileError {
+        CompileError::Solid(error)
+    }
+}
+
+impl From<Cancelled> for CompileError {
+    fn from(cancelled: Cancelled) -> CompileError {
+        CompileError::Cancelled(cancelled)
+    }
+}

@@ -1,0 +1,133 @@
+//! From a program to a mesh: the stages, one after the other.
+
+use std::sync::Arc;
+
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+use super::blocks::Blocks;
+use super::error::MeshingError;
+use super::extract::ExtractError;
+use super::lattice::{CellSize, Lattice};
+use super::paint::corner_colors;
+use super::refine::{Job, refined};
+use super::settings::{Features, MeshSettings, ThinFeatures};
+use super::thin::thin_report;
+use crate::eval::{Compiled, Palette, Program};
+use crate::geom::{Findings, Mesh};
+use crate::{Bounds, Paint, Run};
+
+/// What leaves the bounds by less, in cells, is let pass: vertices may be off by a thousandth.
+const SLACK: f64 = 0.01;
+
+/// Vertices that are looked at before it is asked whether to go on.
+const AT_ONCE: usize = 1 << 14;
+
+/// A surface with radii of so many cells is known to have no creases.
+const ROUND: f64 = 2.0;
+
+/// What is to be meshed.
+#[derive(Clone, Copy)]
+pub(crate) struct Subject<'a> {
+    pub(crate) program: &'a Program,
+    /// The box that the surface is in.
+    pub(crate) bounds: Bounds,
+    /// The paint of the program's leaves; nothing where it does not matter.
+    pub(crate) palette: Option<&'a Palette>,
+    /// The whole of which it is the part within bounds, if it must not leave them.
+    pub(crate) whole: Option<&'a Whole>,
+}
+
+/// A solid that must not leave its bounds.
+pub(crate) struct Whole {
+    pub(crate) programs: Arc<Compiled>,
+    pub(crate) given: Bounds,
+}
+
+impl Subject<'_> {
+    /// The mesh, on the threads of the pool that it is called in.
+    pub(crate) fn mesh(&self, settings: &MeshSettings, run: &Run) -> Result<Mesh, MeshingError> {
+        let &Subject { program, bounds, palette, whole } = self;
+        let palette = palette.filter(|palette| palette.is_painted());
+        let owned = settings.owners || palette.is_some();
+        // How long each stage takes, more or less.
+        let if_done = |is_done: bool, time: f64| if is_done { time } else { 0.0 };
+        let most = settings.thin.halvings();
+        let [own, paint] = [if_done(owned, 0.8), if_done(palette.is_some(), 0.2)];
+        let [refine, extract] = [if_done(most > 0, 3.0), if_done(most == 0, 0.85)];
+        let search = if_done(settings.thin == ThinFeatures::Count, 1.0);
+        let times = [0.15, refine, extract, if_done(whole.is_some(), 1.0), own, paint, search];
+        let [to_find, to_refine, to_extract, to_refuse, to_own, to_paint, to_search] = run.stages(times);
+        let lattice = Lattice::new(&bounds, settings.cell)?;
+        let mut blocks = Blocks::find(program, &lattice, &to_find)?;
+        let is_round = program.least_radius() >= ROUND * lattice.step();
+        let features = if is_round { Features::Smooth } else { settings.features };
+        let job = Job { program, limits: bounds, features };
+        let mut mesh = if most > 0 {
+            refined(job, (lattice, blocks.clone()), most, &to_refine)?
+        } else {
+            blocks.extract(program, (&lattice, bounds), features, &to_extract)?
+        };
+        if let Some(whole) = whole {
+            whole.refuse_caps(&mesh, lattice.step(), &to_refuse)?;
+            whole.refuse_beyond(CellSize::Length(lattice.step()), &to_refuse)?;
+        }
+        if owned {
+            let owners = blocks.owners(&lattice, &mesh, program, &to_own)?;
+            if let Some(palette) = palette {
+                let colors = corner_colors(&mesh, palette, &owners, Paint::default(), &to_paint)?;
+                mesh = mesh.with_corner_colors(colors).map_err(ExtractError::from)?;
+            }
+            mesh = mesh.with_owners(owners).map_err(ExtractError::from)?;
+        }
+        if settings.thin == ThinFeatures::Count {
+            let thin = Some(thin_report(&blocks, (&lattice, bounds), &to_search)?);
+            let findings = Findings { thin, ..mesh.findings().clone() };
+            mesh = mesh.with_findings(findings);
+        }
+        Ok(mesh)
+    }
+}
+
+impl Whole {
+    /// An error if a vertex on a face of the bounds is inside the solid.
+    fn refuse_caps(&self, mesh: &Mesh, step: f64, run: &Run) -> Result<(), MeshingError> {
+        let slack = SLACK * step;
+        let program = &self.programs.surface;
+        let inner = self.given.inflate(-slack);
+        // Values are no lengths; by the slope they tell how far it is to the surface.
+        let is_inside = |p: DVec3| {
+            let (value, slope) = program.gradient(p);
+            value > slack * slope.length()
+        };
+        let beyond = |p: &&Vec3| !inner.contains(p.as_dvec3()) && is_inside(p.as_dvec3());
+        for positions in mesh.positions().chunks(AT_ONCE) {
+            run.check()?;
+            if let Some(at) = positions.par_iter().find_first(beyond) {
+                return Err(MeshingError::LeavesBounds { at: at.as_dvec3() });
+            }
+        }
+        Ok(())
+    }
+
+    /// An error if there is a part of the solid beyond the bounds, of a size that cells of this size show; where
+    /// they would be too many, cells of a thousandth of the solid's box.
+    pub(crate) fn refuse_beyond(&self, cell: CellSize, run: &Run) -> Result<(), MeshingError> {
+        let (own, given) = (self.programs.bounds, self.given);
+        let step = Lattice::new(&given, cell)?.step();
+        if given.contains_bounds(&own) || !own.is_finite() {
+            return Ok(());
+        }
+        let lattice =
+            Lattice::new(&own, CellSize::Length(step)).or_else(|_| Lattice::new(&own, CellSize::LongestSide(1000)))?;
+        let program = &self.programs.surface;
+        let [to_find, to_extract] = run.stages([0.15, 0.85]);
+        let mut blocks = Blocks::find(program, &lattice, &to_find)?;
+        let mesh = blocks.extract(program, (&lattice, own), Features::Smooth, &to_extract)?;
+        let within = given.inflate(SLACK * lattice.step());
+        match mesh.positions().iter().find(|p| !within.contains(p.as_dvec3())) {
+            Some(at) => Err(MeshingError::LeavesBounds { at: at.as_dvec3() }),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,11 @@
+//! What solids are asked: values, points, rays, meshes, paint.
+//!
+//! Here, above programs, meshes and distances, because an answer may need a solid's surface.
+
+mod field;
+#[cfg(feature = "formula")]
+mod lower;
+mod mesh;
+mod nearest;
+mod painted;
+mod palette;
