@@ -55,16 +55,15 @@ impl Quilt {
         tolerance: f64,
         run: &Run,
     ) -> Result<Quilt, Cancelled> {
-        facets.polish(slopes, run)?;
+        let t0=std::time::Instant::now(); facets.polish(slopes, run)?; eprintln!("      polish {:?}", t0.elapsed());
         let mut seams = Seams::default();
         let mut pieces = first(&facets, &mut seams);
         let mut positions = facets.positions;
         let mut quilt = Quilt { patches: Vec::new(), error: 0.0 };
         for depth in 0..=DEPTH {
-            let guesses = guesses(&pieces, &seams);
-            seams.find(&positions, &guesses, slopes, run)?;
+            let t1=std::time::Instant::now(); seams.find(&positions, slopes, run)?; let t2=std::time::Instant::now();
             let patches: Vec<Patch> = pieces.iter().map(|piece| piece.patch(&positions, &seams, tolerance)).collect();
-            let errors = errors(&patches, slopes, run)?;
+            let t3=std::time::Instant::now(); let errors = errors(&patches, slopes, run)?; eprintln!("      {depth} find {:?} patches {:?} errors {:?}", t2-t1, t3-t2, t3.elapsed());
             let fails = |(off, turn): (f64, f64)| off > tolerance || turn > TURN && off > 0.05 * tolerance;
             if depth < DEPTH {
                 let failing = pieces.iter().zip(&errors).filter(|(_, error)| fails(**error)).map(|(piece, _)| piece);
@@ -87,47 +86,15 @@ impl Quilt {
 
 /// The triangles as pieces, and their sides.
 fn first(facets: &Facets, seams: &mut Seams) -> Vec<Piece> {
-    let mut pieces: Vec<Piece> = Vec::with_capacity(facets.triangles.len());
-    // The normals at the ends of each side, as seen from one of its triangles.
-    let mut seen: Vec<Option<[DVec3; 2]>> = Vec::new();
-    for (corners, normals) in facets.triangles.iter().zip(&facets.normals) {
+    let piece = |(corners, normals): (&[u32; 3], &[DVec3; 3])| {
         let hems = [0, 1, 2].map(|k| {
             let (next, last) = ((k + 1) % 3, (k + 2) % 3);
-            let hem = seams.hem([corners[k], corners[next]], facets.positions[corners[last] as usize]);
-            // In the order of the side's ends.
-            let mut ends = [normals[k], normals[next]];
-            if hem.side == 1 {
-                ends.reverse();
-            }
-            seen.resize(seen.len().max(seams.list.len()), None);
-            match seen[hem.seam as usize] {
-                None => seen[hem.seam as usize] = Some(ends),
-                Some(other) => {
-                    seams.crease(hem, ends[0].distance(other[0]).max(ends[1].distance(other[1])));
-                }
-            }
-            hem
+            let toward = facets.positions[corners[last] as usize];
+            seams.hem([corners[k], corners[next]], toward, [normals[k], normals[next]])
         });
-        pieces.push(Piece { corners: *corners, normals: *normals, hems });
-    }
-    pieces
-}
-
-/// The normals at the ends of sides, as one of their triangles has them.
-fn guesses(pieces: &[Piece], seams: &Seams) -> HashMap<u32, [DVec3; 2]> {
-    let mut guesses = HashMap::with_capacity(2 * pieces.len());
-    for piece in pieces {
-        for (k, hem) in piece.hems.iter().enumerate() {
-            if !seams.of(*hem).is_crease {
-                let mut ends = [piece.normals[k], piece.normals[(k + 1) % 3]];
-                if hem.side == 1 {
-                    ends.reverse();
-                }
-                guesses.entry(hem.seam).or_insert(ends);
-            }
-        }
-    }
-    guesses
+        Piece { corners: *corners, normals: *normals, hems }
+    };
+    facets.triangles.iter().zip(&facets.normals).map(piece).collect()
 }
 
 /// Finds the sides of pieces that pass over a crease from one face to another.
@@ -198,7 +165,9 @@ impl Piece {
         let crease = seams.ridge([m, c], [a, b].map(|v| positions[v as usize]));
         // The opposite corner is on the crease, and has the normal of either side.
         let normals = |own: DVec3, other: DVec3| [own, other, nearer(self.normals[last], other)];
-        let (left, right) = (seams.hem([a, m], positions[c as usize]), seams.hem([m, b], positions[c as usize]));
+        let (n_a, n_b) = (self.normals[at], self.normals[next]);
+        let left = seams.hem([a, m], positions[c as usize], [n_a, of_a]);
+        let right = seams.hem([m, b], positions[c as usize], [of_b, n_b]);
         parts.push(Piece {
             corners: [a, m, c],
             normals: normals(self.normals[at], of_a),
@@ -220,10 +189,11 @@ impl Piece {
         let (k, [k_c, k_a]) = seams.crossing(self.hems[last], positions);
         let crease = seams.ridge([m, k], [a, b].map(|v| positions[v as usize]));
         let p = |v: u32| positions[v as usize];
-        let (am, mb) = (seams.hem([a, m], p(k)), seams.hem([m, b], p(c)));
-        let (ck, ka) = (seams.hem([c, k], p(b)), seams.hem([k, a], p(m)));
+        let [n_a, n_b, n_c] = [at, next, last].map(|k| self.normals[k]);
+        let (am, mb) = (seams.hem([a, m], p(k), [n_a, m_a]), seams.hem([m, b], p(c), [m_b, n_b]));
+        let (ck, ka) = (seams.hem([c, k], p(b), [n_c, k_c]), seams.hem([k, a], p(m), [k_a, n_a]));
         parts.push(Piece { corners: [a, m, k], normals: [self.normals[at], m_a, k_a], hems: [am, crease, ka] });
-        let diagonal = seams.hem([k, b], p(m));
+        let diagonal = seams.hem([k, b], p(m), [k_c, n_b]);
         parts.push(Piece {
             corners: [m, b, k],
             normals: [m_b, self.normals[next], k_c],
@@ -244,18 +214,17 @@ impl Piece {
         let outer = |seams: &mut Seams, at: usize| {
             let last = (at + 2) % 3;
             let (corner, to, from) = (self.corners[at], middles[at], middles[last]);
-            let inner = seams.hem([to, from], positions[corner as usize]);
-            Piece {
-                corners: [corner, to, from],
-                normals: [self.normals[at], between[at], between[last]],
-                hems: [seams.part([corner, to], self.hems[at]), inner, seams.part([from, corner], self.hems[last])],
-            }
+            let normals = [self.normals[at], between[at], between[last]];
+            let inner = seams.hem([to, from], positions[corner as usize], [normals[1], normals[2]]);
+            let first = seams.part([corner, to], self.hems[at], [normals[0], normals[1]]);
+            let second = seams.part([from, corner], self.hems[last], [normals[2], normals[0]]);
+            Piece { corners: [corner, to, from], normals, hems: [first, inner, second] }
         };
         parts.extend([0, 1, 2].map(|at| outer(seams, at)));
         let hems = [
-            seams.hem([ab, bc], positions[ca as usize]),
-            seams.hem([bc, ca], positions[ab as usize]),
-            seams.hem([ca, ab], positions[bc as usize]),
+            seams.hem([ab, bc], positions[ca as usize], [between[0], between[1]]),
+            seams.hem([bc, ca], positions[ab as usize], [between[1], between[2]]),
+            seams.hem([ca, ab], positions[bc as usize], [between[2], between[0]]),
         ];
         parts.push(Piece { corners: middles, normals: between, hems });
     }

@@ -4,8 +4,6 @@
 //! normals of both ends has its middle, or, on a crease, to where the tangent planes of both sides
 //! meet.
 
-use std::collections::HashMap;
-
 use glam::DVec3;
 
 use super::crease::{Plane, meet};
@@ -17,8 +15,14 @@ use crate::{Cancelled, Run};
 /// first.
 const ASIDE: [f64; 2] = [0.05, 0.01];
 
+/// A crease that is cut off passes a side this far off at most, in parts of the side's length.
+const ASTRAY: f64 = 2.0;
+
 /// The middle is moved by this part of the side's length at most.
 const STRIDE: f64 = 0.3;
+
+/// No side.
+const NONE: u32 = u32::MAX;
 
 /// A side of triangles.
 #[derive(Clone, Copy, Debug)]
@@ -33,14 +37,17 @@ pub(super) struct Seam {
     vertex: Option<u32>,
     /// Where its middle is.
     pub(super) middle: DVec3,
-    /// The normals there, of both sides.
+    /// The normals there, of both sides; before it is known, those at both ends.
     pub(super) normals: [DVec3; 2],
+    /// The next side that starts at the same vertex.
+    next: u32,
 }
 
 /// The sides of all triangles so far, by their ends.
 #[derive(Default)]
 pub(super) struct Seams {
-    numbers: HashMap<[u32; 2], u32>,
+    /// By vertex, the first of the sides that start there.
+    starts: Vec<u32>,
     pub(super) list: Vec<Seam>,
     /// From here on their middles are not known yet.
     fresh: usize,
@@ -54,13 +61,23 @@ pub(super) struct Hem {
 }
 
 impl Seams {
-    /// The side between two vertices, seen from a triangle that reaches to a point.
-    pub(super) fn hem(&mut self, [a, b]: [u32; 2], toward: DVec3) -> Hem {
-        let ends = [a.min(b), a.max(b)];
-        let next = self.list.len() as u32;
-        let number = *self.numbers.entry(ends).or_insert(next);
-        if number == next {
-            let normals = [DVec3::ZERO; 2];
+    /// The side between two vertices, seen from a triangle that reaches to a point and has these
+    /// normals there.
+    pub(super) fn hem(&mut self, ends: [u32; 2], toward: DVec3, normals: [DVec3; 2]) -> Hem {
+        let side = usize::from(ends[0] > ends[1]);
+        let (mut ends, mut normals) = (ends, normals);
+        if side == 1 {
+            ends.reverse();
+            normals.reverse();
+        }
+        let first = ends[0] as usize;
+        self.starts.resize(self.starts.len().max(first + 1), NONE);
+        let mut at = self.starts[first];
+        while at != NONE && self.list[at as usize].ends[1] != ends[1] {
+            at = self.list[at as usize].next;
+        }
+        if at == NONE {
+            at = self.list.len() as u32;
             self.list.push(Seam {
                 ends,
                 toward: [toward; 2],
@@ -69,18 +86,26 @@ impl Seams {
                 vertex: None,
                 middle: DVec3::ZERO,
                 normals,
+                next: self.starts[first],
             });
+            self.starts[first] = at;
+        } else {
+            let seam = &mut self.list[at as usize];
+            let differ = [0, 1].map(|i| seam.normals[i].distance(normals[i]));
+            // Known middles are of sides that are not new.
+            if at as usize >= self.fresh {
+                seam.is_crease |= differ[0].max(differ[1]) > CREASE;
+            }
         }
-        let side = usize::from(a > b);
-        self.list[number as usize].toward[side] = toward;
-        Hem { seam: number, side }
+        self.list[at as usize].toward[side] = toward;
+        Hem { seam: at, side }
     }
 
     /// The same side, which is part of a larger one.
-    pub(super) fn part(&mut self, ends: [u32; 2], whole: Hem) -> Hem {
+    pub(super) fn part(&mut self, ends: [u32; 2], whole: Hem, normals: [DVec3; 2]) -> Hem {
         let Seam { toward, is_crease, .. } = self.list[whole.seam as usize];
         let known = self.list.len();
-        let hem = self.hem(ends, toward[whole.side]);
+        let hem = self.hem(ends, toward[whole.side], normals);
         let seam = &mut self.list[hem.seam as usize];
         if hem.seam as usize == known {
             // Seen from the other side the ends are the other way round.
@@ -93,7 +118,7 @@ impl Seams {
     /// A side along a crease, seen from a triangle that has its ends in this order; the surface on both
     /// sides of it is towards two points, that of the triangle first.
     pub(super) fn ridge(&mut self, ends: [u32; 2], toward: [DVec3; 2]) -> Hem {
-        let hem = self.hem(ends, toward[0]);
+        let hem = self.hem(ends, toward[0], [DVec3::ZERO; 2]);
         let seam = &mut self.list[hem.seam as usize];
         (seam.toward[hem.side], seam.toward[1 - hem.side]) = (toward[0], toward[1]);
         seam.is_crease = true;
@@ -169,30 +194,19 @@ impl Seams {
         self.of(hem).normals[hem.side]
     }
 
-    /// Marks a side as a crease if the normals of its two sides differ.
-    pub(super) fn crease(&mut self, hem: Hem, differ: f64) {
-        self.list[hem.seam as usize].is_crease |= differ > CREASE;
-    }
-
-    /// Finds the middles that are not known yet; `normals` are those at the ends of a smooth side.
-    pub(super) fn find(
-        &mut self,
-        positions: &[DVec3],
-        guesses: &HashMap<u32, [DVec3; 2]>,
-        slopes: &Slopes<'_>,
-        run: &Run,
-    ) -> Result<(), Cancelled> {
+    /// Finds the middles that are not known yet.
+    pub(super) fn find(&mut self, positions: &[DVec3], slopes: &Slopes<'_>, run: &Run) -> Result<(), Cancelled> {
         let fresh = self.fresh..self.list.len();
         self.fresh = self.list.len();
         for number in fresh.clone() {
             let seam = &mut self.list[number];
             let [a, b] = seam.ends.map(|v| positions[v as usize]);
-            let straight = 0.5 * (a + b);
-            let bend = guesses.get(&(number as u32)).map_or(DVec3::ZERO, |normals| {
-                let height = |n: DVec3, p: DVec3| n * n.dot(p - straight);
-                0.25 * (height(normals[0], a) + height(normals[1], b))
-            });
-            seam.middle = straight + bend.clamp_length_max(STRIDE * a.distance(b));
+            seam.middle = 0.5 * (a + b);
+            if !seam.is_crease {
+                let height = |n: DVec3, p: DVec3| n * n.dot(p - seam.middle);
+                let bend = 0.25 * (height(seam.normals[0], a) + height(seam.normals[1], b));
+                seam.middle += bend.clamp_length_max(STRIDE * a.distance(b));
+            }
         }
         let (creases, smooth): (Vec<usize>, Vec<usize>) = fresh.partition(|n| self.list[*n].is_crease);
         self.slide(&smooth, positions, slopes, run)?;
@@ -262,7 +276,7 @@ impl Hem {
 /// A point held near the straight line between two ends.
 fn held(p: DVec3, [a, b]: [DVec3; 2]) -> DVec3 {
     let middle = 0.5 * (a + b);
-    middle + (p - middle).clamp_length_max(0.6 * a.distance(b))
+    middle + (p - middle).clamp_length_max(ASTRAY * a.distance(b))
 }
 
 impl Seam {

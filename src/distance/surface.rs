@@ -25,7 +25,7 @@ const COARSEST: f64 = 24.0;
 const FINEST: f64 = 64.0;
 
 /// How often cells are halved where features are thinner.
-const HALVINGS: u32 = 2;
+const HALVINGS: u32 = 0;
 
 impl DistanceSource for FromMeshes {
     fn surface(&self, solid: &Solid, programs: &Compiled, length: f64, run: &Run) -> Result<Surface, CompileError> {
@@ -50,9 +50,9 @@ impl DistanceSource for FromMeshes {
         };
         let t1 = std::time::Instant::now();
         let nf = facets.triangles.len();
-        let slopes = Slopes { program: &programs.surface, precision: 0.25 * tolerance };
+        let slopes = Slopes { program: &programs.surface, precision: tolerance };
         let quilt = Quilt::new(facets, &slopes, tolerance, &to_sew)?;
-        let patches = Arc::new(Patches::new(&quilt.patches, &to_sew)?);
+        let t4=std::time::Instant::now(); let patches = Arc::new(Patches::new(&quilt.patches, &to_sew)?); eprintln!("     bvh {:?}", t4.elapsed());
         eprintln!("   mesh {:?} facets {nf} cell {cell:.4} size {size:.3} sew+bvh {:?} patches {} flat {} error {:.2e} tol {tolerance:.2e} bytes {}", t1-t0, t1.elapsed(), patches.len(), quilt.patches.iter().filter(|p| p.is_flat()).count(), quilt.error, patches.bytes());
         Ok(Surface { patches, error: quilt.error, flat })
     }
