@@ -96,8 +96,11 @@ impl Packets<'_> {
     pub(super) fn slope<R: Packet>(&self, best: &Best<R>, sign: R) -> [R; 3] {
         let per_distance = sign.lift(self.placement.scale) / best.square.sqrt().max(sign.lift(1e-30));
         let k = sign.select(per_distance, -per_distance);
-        let along = |axis: usize| if self.leaf.flat == Some(axis) { sign.lift(0.0) } else { best.from[axis] * k };
-        self.placement.pull([along(0), along(1), along(2)])
+        let mut along = [best.from[0] * k, best.from[1] * k, best.from[2] * k];
+        if let Some(axis) = self.leaf.flat {
+            along[axis] = sign.lift(0.0);
+        }
+        self.placement.pull(along)
     }
 
     /// Whether some of the points need [`one`](Packets::one).
