@@ -1,9 +1,13 @@
 //! Distances of whole chunks of points: packets on SIMD lanes.
 
+use std::ops::Range;
+
 use fearless_simd::{Level, Simd};
 use rvachev_num::lanes::{F32, F64, Lanes};
 
 use super::SurfaceDistance;
+use super::block::{BLOCK, Block};
+use super::closest::dot;
 use super::packet::Packet;
 use super::packets::{Packets, Seeds};
 use super::search::Stack;
@@ -49,24 +53,66 @@ fn unscaled(placement: &Placement) -> Placement {
     unscaled
 }
 
-/// Values, packet by packet; `out` holds the signs before.
+/// Loads a vector of each column.
 #[inline(always)]
-fn values_on<L: Lanes + Packet>(
+fn load<L: Lanes>(simd: L::Token, [x, y, z]: [&[L::Element]; 3], here: Range<usize>) -> [L; 3] {
+    [L::load(simd, &x[here.clone()]), L::load(simd, &y[here.clone()]), L::load(simd, &z[here])]
+}
+
+/// Fills a block with points of the surface's frame, sorted.
+#[inline(always)]
+fn fill<L: Lanes<Element: Element>>(
     simd: L::Token,
     packets: &Packets<'_>,
-    [x, y, z]: [&[L::Element]; 3],
+    points: [&[L::Element]; 3],
+    from: usize,
+    len: usize,
+    block: &mut Block<L::Element>,
+) {
+    let mut at = 0;
+    while at < len {
+        let [x, y, z] = packets.local(load::<L>(simd, points, from + at..from + at + L::WIDTH));
+        x.store(&mut block.columns[0][at..at + L::WIDTH]);
+        y.store(&mut block.columns[1][at..at + L::WIDTH]);
+        z.store(&mut block.columns[2][at..at + L::WIDTH]);
+        at += L::WIDTH;
+    }
+    block.sort(len);
+}
+
+/// Values, packet by packet; `out` holds the signs before.
+#[inline(always)]
+fn values_on<L: Lanes<Element: Element> + Packet>(
+    simd: L::Token,
+    packets: &Packets<'_>,
+    points: [&[L::Element]; 3],
     out: &mut [L::Element],
 ) {
     let mut stack = Stack::new(L::splat(simd, 0.0));
     let mut seeds = Seeds::default();
-    let mut at = 0;
-    while at + L::WIDTH <= out.len() {
-        let here = at..at + L::WIDTH;
-        let p = [L::load(simd, &x[here.clone()]), L::load(simd, &y[here.clone()]), L::load(simd, &z[here.clone()])];
-        let best = packets.search(p, &mut seeds, &mut stack);
-        let sign = L::load(simd, &out[here.clone()]);
-        packets.value(&best, sign).store(&mut out[here]);
-        at += L::WIDTH;
+    let mut block = Block::new();
+    let mut squares = [L::Element::default(); BLOCK];
+    let mut from = 0;
+    while from < out.len() {
+        let len = BLOCK.min(out.len() - from);
+        fill::<L>(simd, packets, points, from, len, &mut block);
+        let mut at = 0;
+        while at < len {
+            let here = at..at + L::WIDTH;
+            let [x, y, z, _] = &block.columns;
+            let best = packets.search(load::<L>(simd, [x, y, z], here.clone()), &mut seeds, &mut stack);
+            best.square.store(&mut block.columns[0][here]);
+            at += L::WIDTH;
+        }
+        block.unsorted(0, &mut squares[..len]);
+        let mut at = 0;
+        while at < len {
+            let out = &mut out[from + at..from + at + L::WIDTH];
+            let square = L::load(simd, &squares[at..at + L::WIDTH]);
+            packets.value(square, L::load(simd, out)).store(out);
+            at += L::WIDTH;
+        }
+        from += len;
     }
 }
 
@@ -77,8 +123,9 @@ fn values_by_point<E: Element>(packets: &Packets<'_>, [x, y, z]: [&[E]; 3], out:
     let mut stack = Stack::new(0.0);
     let mut seeds = Seeds::default();
     for at in 0..out.len() {
-        let best = packets.search([x[at], y[at], z[at]].map(E::to_f64), &mut seeds, &mut stack);
-        out[at] = E::from_f64(packets.value(&best, out[at].to_f64()));
+        let local = packets.local([x[at], y[at], z[at]].map(E::to_f64));
+        let best = packets.search(local, &mut seeds, &mut stack);
+        out[at] = E::from_f64(packets.value(best.square, out[at].to_f64()));
     }
 }
 
@@ -90,44 +137,67 @@ fn slopes_on<L: Lanes<Element = f32> + Packet>(
     points: [&[f32]; 3],
     out: &mut [&mut [f32]; 4],
 ) {
-    let [x, y, z] = points;
     let mut stack = Stack::new(L::splat(simd, 0.0));
     let mut seeds = Seeds::default();
-    let mut at = 0;
-    while at + L::WIDTH <= out[0].len() {
-        let here = at..at + L::WIDTH;
-        let p = [L::load(simd, &x[here.clone()]), L::load(simd, &y[here.clone()]), L::load(simd, &z[here.clone()])];
-        let best = packets.search(p, &mut seeds, &mut stack);
-        let sign = L::load(simd, &out[0][here.clone()]);
-        let slope = packets.slope(&best, sign);
-        packets.value(&best, sign).store(&mut out[0][here.clone()]);
-        slope[0].store(&mut out[1][here.clone()]);
-        slope[1].store(&mut out[2][here.clone()]);
-        slope[2].store(&mut out[3][here]);
-        if packets.are_close(&best) {
-            let mut parts = [[0.0; WIDEST]; 3];
-            best.square.store(&mut parts[0][..L::WIDTH]);
-            best.which.store(&mut parts[1][..L::WIDTH]);
-            sign.store(&mut parts[2][..L::WIDTH]);
-            refine(packets, &parts, points.map(|column| &column[at..at + L::WIDTH]), out, at);
+    let mut block = Block::new();
+    let mut from = 0;
+    while from < out[0].len() {
+        let len = BLOCK.min(out[0].len() - from);
+        fill::<L>(simd, packets, points, from, len, &mut block);
+        let mut at = 0;
+        while at < len {
+            let here = at..at + L::WIDTH;
+            let [x, y, z, _] = &block.columns;
+            let best = packets.search(load::<L>(simd, [x, y, z], here.clone()), &mut seeds, &mut stack);
+            best.from[0].store(&mut block.columns[0][here.clone()]);
+            best.from[1].store(&mut block.columns[1][here.clone()]);
+            best.from[2].store(&mut block.columns[2][here.clone()]);
+            best.which.store(&mut block.columns[3][here]);
+            at += L::WIDTH;
         }
-        at += L::WIDTH;
+        let mut found = [[0.0; BLOCK]; 4];
+        block.unsorted(0, &mut found[0][..len]);
+        block.unsorted(1, &mut found[1][..len]);
+        block.unsorted(2, &mut found[2][..len]);
+        block.unsorted(3, &mut found[3][..len]);
+        let mut at = 0;
+        while at < len {
+            let to = from + at..from + at + L::WIDTH;
+            let [x, y, z, which] = &found;
+            let way = load::<L>(simd, [x, y, z], at..at + L::WIDTH);
+            let square = dot(way, way);
+            let sign = L::load(simd, &out[0][to.clone()]);
+            packets.value(square, sign).store(&mut out[0][to.clone()]);
+            let slope = packets.slope(way, square, sign);
+            slope[0].store(&mut out[1][to.clone()]);
+            slope[1].store(&mut out[2][to.clone()]);
+            slope[2].store(&mut out[3][to.clone()]);
+            if Packets::are_close(square) {
+                let mut parts = [[0.0; WIDEST]; 2];
+                square.store(&mut parts[0][..L::WIDTH]);
+                sign.store(&mut parts[1][..L::WIDTH]);
+                refine(packets, &parts, &which[at..at + L::WIDTH], points, out, to.start);
+            }
+            at += L::WIDTH;
+        }
+        from += len;
     }
 }
 
-/// Computes what is close to the surface again, in double precision. `parts` are the squares of
-/// the distances, the patches and the signs of a packet.
+/// Computes what is close to the surface again, in double precision: the squares of the distances,
+/// the signs and the patches of a packet that starts at `at`.
 #[inline(never)]
 fn refine(
     packets: &Packets<'_>,
-    [squares, patches, signs]: &[[f32; WIDEST]; 3],
+    [squares, signs]: &[[f32; WIDEST]; 2],
+    patches: &[f32],
     [x, y, z]: [&[f32]; 3],
     out: &mut [&mut [f32]; 4],
     at: usize,
 ) {
-    for i in 0..x.len() {
+    for (i, patch) in patches.iter().enumerate() {
         if Packets::is_close(squares[i]) {
-            let jet = packets.one([x[i], y[i], z[i]], patches[i], signs[i]);
+            let jet = packets.one([x[at + i], y[at + i], z[at + i]], *patch, signs[i]);
             for (column, part) in out.iter_mut().zip(jet) {
                 column[at + i] = part;
             }
@@ -143,7 +213,7 @@ fn slopes_by_point(packets: &Packets<'_>, [x, y, z]: [&[f32]; 3], out: &mut [&mu
     let mut seeds = Seeds::default();
     for at in 0..x.len() {
         let p = [x[at], y[at], z[at]];
-        let best = packets.search(p.map(f64::from), &mut seeds, &mut stack);
+        let best = packets.search(packets.local(p.map(f64::from)), &mut seeds, &mut stack);
         let jet = packets.one(p, best.which as f32, out[0][at]);
         for (column, part) in out.iter_mut().zip(jet) {
             column[at] = part;

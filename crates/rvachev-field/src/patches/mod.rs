@@ -20,6 +20,7 @@
 //! Sources: C. Ericson, *Real-Time Collision Detection* (2005), for the nearest point of a
 //! triangle; I. Wald, *On fast Construction of SAH-based Bounding Volume Hierarchies* (2007).
 
+mod block;
 mod chunks;
 mod closest;
 mod curved;

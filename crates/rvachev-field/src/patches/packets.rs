@@ -73,30 +73,36 @@ impl SurfaceDistance {
 }
 
 impl Packets<'_> {
-    /// Finds the nearest points to a packet.
+    /// A packet in the surface's frame.
     #[inline(always)]
-    pub(super) fn search<R: Packet>(&self, p: [R; 3], seeds: &mut Seeds, stack: &mut Stack<R>) -> Best<R> {
+    pub(super) fn local<R: Real>(&self, p: [R; 3]) -> [R; 3] {
         let [x, y, z] = self.local.apply(p);
-        let mut best = Best::none(x);
-        self.patches.search([held(x), held(y), held(z)], seeds.known(), &mut best, stack);
+        [held(x), held(y), held(z)]
+    }
+
+    /// Finds the nearest points to a packet of the surface's frame.
+    #[inline(always)]
+    pub(super) fn search<R: Packet>(&self, local: [R; 3], seeds: &mut Seeds, stack: &mut Stack<R>) -> Best<R> {
+        let mut best = Best::none(local[0]);
+        self.patches.search(local, seeds.known(), &mut best, stack);
         seeds.take(best.which);
         best
     }
 
     /// The signed distances, as they count outside.
     #[inline(always)]
-    pub(super) fn value<R: Packet>(&self, best: &Best<R>, sign: R) -> R {
-        let distance = best.square.sqrt().min(sign.lift(self.farthest));
+    pub(super) fn value<R: Real>(&self, square: R, sign: R) -> R {
+        let distance = square.sqrt().min(sign.lift(self.farthest));
         let signed = sign.select(distance, -distance);
         self.local.finish((-sign.abs()).select(sign.lift(0.0), signed))
     }
 
     /// The gradients: away from the feet where the value is positive, else towards them.
     #[inline(always)]
-    pub(super) fn slope<R: Packet>(&self, best: &Best<R>, sign: R) -> [R; 3] {
-        let per_distance = sign.lift(self.placement.scale) / best.square.sqrt().max(sign.lift(1e-30));
+    pub(super) fn slope<R: Real>(&self, from: [R; 3], square: R, sign: R) -> [R; 3] {
+        let per_distance = sign.lift(self.placement.scale) / square.sqrt().max(sign.lift(1e-30));
         let k = sign.select(per_distance, -per_distance);
-        let mut along = [best.from[0] * k, best.from[1] * k, best.from[2] * k];
+        let mut along = [from[0] * k, from[1] * k, from[2] * k];
         if let Some(axis) = self.leaf.flat {
             along[axis] = sign.lift(0.0);
         }
@@ -105,8 +111,8 @@ impl Packets<'_> {
 
     /// Whether some of the points need [`one`](Packets::one).
     #[inline(always)]
-    pub(super) fn are_close<R: Packet>(&self, best: &Best<R>) -> bool {
-        best.square.any_below(best.square.lift(CLOSE * CLOSE))
+    pub(super) fn are_close<R: Packet>(square: R) -> bool {
+        square.any_below(square.lift(CLOSE * CLOSE))
     }
 
     /// Value and gradient of a point whose nearest patch is known, in double precision.
