@@ -32,6 +32,8 @@ macro_rules! on_level {
     }};
 }
 
+pub(crate) use on_level;
+
 /// Slices are multiples of this many elements.
 pub const CHUNK: usize = 256;
 

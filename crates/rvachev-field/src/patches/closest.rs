@@ -24,13 +24,12 @@ impl<R: Real> Closest<R> {
     /// This one where `key ≥ 0`, else the other.
     #[inline(always)]
     pub(super) fn select(self, key: R, other: Closest<R>) -> Closest<R> {
-        let pick = |a: R, b: R| key.select(a, b);
         let [[x, y, z], [u, v, w]] = [self.from, other.from];
         let [[s, t], [q, r]] = [self.coordinates, other.coordinates];
         Closest {
-            square: pick(self.square, other.square),
-            from: [pick(x, u), pick(y, v), pick(z, w)],
-            coordinates: [pick(s, q), pick(t, r)],
+            square: key.select(self.square, other.square),
+            from: [key.select(x, u), key.select(y, v), key.select(z, w)],
+            coordinates: [key.select(s, q), key.select(t, r)],
         }
     }
 
@@ -102,13 +101,18 @@ pub(super) fn on_face<R: Real>(face: &Face, p: [R; 3]) -> Flat<R> {
     let s = re.scale_add(metric.inverse[0], rf * metric.inverse[1]);
     let t = re.scale_add(metric.inverse[1], rf * metric.inverse[2]);
     let zero = s.lift(0.0);
-    let at = |s: R, t: R| Closest::new(minus(minus(r, s, e), t, f), [s, t]);
-    let first = at(sides[0], zero);
-    let second = at(-sides[1] + 1.0, sides[1]);
-    let third = at(zero, sides[2]);
+    let first = at(face, r, sides[0], zero);
+    let second = at(face, r, -sides[1] + 1.0, sides[1]);
+    let third = at(face, r, zero, sides[2]);
     let inside = s.min(t).min(-(s + t) + metric.has_inside);
-    let closest = at(s, t).select(inside, first.nearer(second).nearer(third));
+    let closest = at(face, r, s, t).select(inside, first.nearer(second).nearer(third));
     Flat { closest, from_corner: r, sides }
+}
+
+/// The point of a face at coordinates; `r` is from corner 0 to the point that is asked about.
+#[inline(always)]
+fn at<R: Real>(face: &Face, r: [R; 3], s: R, t: R) -> Closest<R> {
+    Closest::new(minus(minus(r, s, face.e), t, face.f), [s, t])
 }
 
 /// `v − k w`.

@@ -121,10 +121,8 @@ impl<R: Real> Around<'_, R> {
     #[inline(always)]
     fn tangent(&self, side: [f32; 3], k: R, bulge: [f32; 3], other: R) -> [R; 3] {
         let mixed = self.bulge.e;
-        let part = |i: usize| {
-            k.scale_add(f64::from(bulge[i]), other.scale_add(f64::from(mixed[i]), other.lift(f64::from(side[i]))))
-        };
-        [part(0), part(1), part(2)]
+        let plain = plus(lifted(k, side), other, mixed);
+        plus(plain, k, bulge)
     }
 
     /// The nearest point of the side `q chord + q (1 − q) bend`, from a start.
@@ -135,8 +133,7 @@ impl<R: Real> Around<'_, R> {
         while step < STEPS {
             let from = minus(minus(r, q, chord), q * (-q + 1.0), bend);
             let k = -(q + q) + 1.0;
-            let part = |i: usize| k.scale_add(f64::from(bend[i]), k.lift(f64::from(chord[i])));
-            let tangent = [part(0), part(1), part(2)];
+            let tangent = plus(lifted(k, chord), k, bend);
             let square = dot(tangent, tangent);
             let bent = dot_stored(from, bend);
             let full = square + bent + bent;
@@ -146,6 +143,18 @@ impl<R: Real> Around<'_, R> {
         }
         q
     }
+}
+
+/// A stored vector as a packet's, `like` any number of it.
+#[inline(always)]
+fn lifted<R: Real>(like: R, v: [f32; 3]) -> [R; 3] {
+    [like.lift(f64::from(v[0])), like.lift(f64::from(v[1])), like.lift(f64::from(v[2]))]
+}
+
+/// `v + k w`.
+#[inline(always)]
+fn plus<R: Real>(v: [R; 3], k: R, w: [f32; 3]) -> [R; 3] {
+    [k.scale_add(f64::from(w[0]), v[0]), k.scale_add(f64::from(w[1]), v[1]), k.scale_add(f64::from(w[2]), v[2])]
 }
 
 /// A step, cut to the longest.

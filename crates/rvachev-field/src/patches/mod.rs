@@ -20,12 +20,14 @@
 //! Sources: C. Ericson, *Real-Time Collision Detection* (2005), for the nearest point of a
 //! triangle; I. Wald, *On fast Construction of SAH-based Bounding Volume Hierarchies* (2007).
 
+mod block;
 mod chunks;
 mod closest;
 mod curved;
 mod face;
 mod hierarchy;
 mod packet;
+mod packets;
 mod patch;
 mod search;
 mod surface_distance;
@@ -100,19 +102,21 @@ impl Patches {
 
     /// The nearest point; nothing if there are no patches.
     pub fn nearest(&self, p: DVec3) -> Option<Foot> {
-        if self.is_empty() {
-            return None;
-        }
-        let local = self.frame.into_local(p).to_array();
-        let best = self.search_one(local);
-        let at = (best.which as usize).min(self.len() - 1);
-        let [s, t] = self.closest(at, local).coordinates;
+        let best = self.search_one(self.frame.into_local(p).to_array());
+        self.foot_on(best.which as usize, p)
+    }
+
+    /// The nearest point of one patch, counted as the hierarchy sorts them.
+    fn foot_on(&self, at: usize, p: DVec3) -> Option<Foot> {
+        let number = *self.numbers.get(at)?;
+        let closest = self.closest(at, self.frame.into_local(p).to_array());
+        let [s, t] = closest.coordinates;
         let (point, normal) = self.point_and_normal(at, s, t);
         Some(Foot {
-            distance: best.square.sqrt() * self.frame.unit,
+            distance: closest.square.sqrt() * self.frame.unit,
             point: self.frame.from_local(point),
             normal,
-            patch: self.numbers[at],
+            patch: number,
         })
     }
 

@@ -11,6 +11,9 @@ pub(super) trait Packet: Real {
 
     /// The number of one of the points.
     fn one(self) -> f32;
+
+    /// The numbers of some of the points, from the first to the last.
+    fn few(self) -> [f32; 4];
 }
 
 impl Packet for f64 {
@@ -23,6 +26,11 @@ impl Packet for f64 {
     fn one(self) -> f32 {
         self as f32
     }
+
+    #[inline(always)]
+    fn few(self) -> [f32; 4] {
+        [self as f32; 4]
+    }
 }
 
 impl<S: Simd> Packet for F32<S> {
@@ -33,7 +41,14 @@ impl<S: Simd> Packet for F32<S> {
 
     #[inline(always)]
     fn one(self) -> f32 {
-        self.0.as_slice()[0]
+        self.0.as_slice()[S::f32s::LEN / 2]
+    }
+
+    #[inline(always)]
+    fn few(self) -> [f32; 4] {
+        let all = self.0.as_slice();
+        let last = S::f32s::LEN - 1;
+        [all[0], all[last / 3], all[2 * last / 3], all[last]]
     }
 }
 
@@ -45,7 +60,14 @@ impl<S: Simd> Packet for F64<S> {
 
     #[inline(always)]
     fn one(self) -> f32 {
-        self.0.as_slice()[0] as f32
+        self.0.as_slice()[S::f64s::LEN / 2] as f32
+    }
+
+    #[inline(always)]
+    fn few(self) -> [f32; 4] {
+        let all = self.0.as_slice();
+        let last = S::f64s::LEN - 1;
+        [all[0] as f32, all[last / 3] as f32, all[2 * last / 3] as f32, all[last] as f32]
     }
 }
 
@@ -58,5 +80,11 @@ impl<T: Packet + LogSpace> Packet for Twice<T> {
     #[inline(always)]
     fn one(self) -> f32 {
         self.1.one()
+    }
+
+    #[inline(always)]
+    fn few(self) -> [f32; 4] {
+        let ([a, _, _, b], [c, _, _, d]) = (self.0.few(), self.1.few());
+        [a, b, c, d]
     }
 }

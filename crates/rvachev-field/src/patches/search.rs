@@ -120,10 +120,14 @@ impl Patches {
 /// The square of how far points are from a box, at least.
 #[inline(always)]
 fn gap<R: Real>(node: &Node, p: [R; 3]) -> R {
-    let part = |i: usize| {
-        let (below, above) = (-p[i] + f64::from(node.low[i]), p[i] - f64::from(node.high[i]));
-        below.max(above).max(p[i].lift(0.0))
-    };
-    let [x, y, z] = [part(0), part(1), part(2)];
+    let x = beyond(p[0], node.low[0], node.high[0]);
+    let y = beyond(p[1], node.low[1], node.high[1]);
+    let z = beyond(p[2], node.low[2], node.high[2]);
     x.mul_add(x, y.mul_add(y, z * z)) * SURE
+}
+
+/// How far numbers are from a range.
+#[inline(always)]
+fn beyond<R: Real>(x: R, low: f32, high: f32) -> R {
+    (-x + f64::from(low)).max(x - f64::from(high)).max(x.lift(0.0))
 }

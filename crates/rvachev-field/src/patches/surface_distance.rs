@@ -67,7 +67,7 @@ impl SurfaceDistance {
     }
 
     /// The point moved to 0 along the axis of a cylinder.
-    fn flattened(&self, mut p: DVec3) -> DVec3 {
+    pub(super) fn flattened(&self, mut p: DVec3) -> DVec3 {
         if let Some(axis) = self.flat {
             p[axis] = 0.0;
         }
@@ -82,10 +82,15 @@ impl SurfaceDistance {
 
     /// The same and the derivatives.
     pub(super) fn signed_with_slope(&self, p: [f64; 3], sign: f64) -> (f64, [f64; 3]) {
-        let p = self.flattened(DVec3::from_array(p));
-        let Some(foot) = self.patches.nearest(p) else {
+        self.towards(p, self.patches.nearest(self.flattened(DVec3::from_array(p))), sign)
+    }
+
+    /// The same by the foot, where there is one.
+    pub(super) fn towards(&self, p: [f64; 3], foot: Option<Foot>, sign: f64) -> (f64, [f64; 3]) {
+        let Some(foot) = foot else {
             return (with_sign(VALUE_LIMIT, sign), [0.0; 3]);
         };
+        let p = self.flattened(DVec3::from_array(p));
         let mut slope = if foot.distance < AT_SURFACE * self.patches.unit() {
             -foot.normal
         } else {
@@ -219,18 +224,15 @@ impl AnyField for SurfaceDistance {
     }
 
     fn lanes32(&self, chunk: Chunk<'_, f32, 1>) {
-        let signs = self.signs32(chunk.points, chunk.placement);
-        self.values_by_point(chunk, &signs);
+        self.values32(chunk);
     }
 
     fn lanes64(&self, chunk: Chunk<'_, f64, 1>) {
-        let signs = self.signs64(chunk.points, chunk.placement);
-        self.values_by_point(chunk, &signs);
+        self.values64(chunk);
     }
 
     fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
-        let signs = self.signs32(chunk.points, chunk.placement);
-        self.gradients_by_point(chunk, &signs);
+        self.slopes(chunk);
     }
 
     fn takes_short(&self) -> bool {

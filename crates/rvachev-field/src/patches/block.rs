@@ -1,0 +1,99 @@
+//! Blocks of points, sorted so that those of a packet are near each other.
+//!
+//! ```text
+//!     as they come            sorted: cells of the block's box, in the order of a Z curve
+//!     0 1 2 3 4 5 6 7         0 1 4 5 ...
+//!     8 9 ...                 2 3 6 7
+//! ```
+//!
+//! A packet looks at every patch that is near to any of its points: a row of sixteen points of a
+//! grid looks at twice as many as a brick of 4 × 2 × 2.
+
+use crate::kernel::Element;
+
+/// How many points are sorted at a time.
+pub(super) const BLOCK: usize = 512;
+
+/// How many cells there are along an axis.
+const CELLS: usize = 8;
+
+/// The bits of a cell's number, two bits apart.
+const SPREAD: [u16; CELLS] = [0, 1, 8, 9, 64, 65, 72, 73];
+
+/// Points of the surface's frame, or what is found of them.
+pub(super) struct Block<E> {
+    pub(super) columns: [[E; BLOCK]; 4],
+    /// Where the points stood before.
+    order: [u16; BLOCK],
+}
+
+impl<E: Element> Block<E> {
+    #[inline(always)]
+    pub(super) fn new() -> Block<E> {
+        Block { columns: [[E::default(); BLOCK]; 4], order: [0; BLOCK] }
+    }
+
+    /// Sorts the points of the first three columns, of which `len` are in use.
+    #[inline(always)]
+    pub(super) fn sort(&mut self, len: usize) {
+        let [x, y, z, _] = &mut self.columns;
+        let (x, y, z) = (&mut x[..len], &mut y[..len], &mut z[..len]);
+        let ((low_x, width_x), (low_y, width_y), (low_z, width_z)) = (span(x), span(y), span(z));
+        let width = width_x.max(width_y).max(width_z);
+        let per_cell = if width > 0.0 { (CELLS as f32 * (1.0 - 1e-6)) / width } else { 0.0 };
+        let mut cells = [0; BLOCK];
+        for i in 0..len {
+            let x = cell(x[i], low_x, per_cell);
+            let y = cell(y[i], low_y, per_cell);
+            let z = cell(z[i], low_z, per_cell);
+            cells[i] = x | y << 1 | z << 2;
+        }
+        let mut starts = [0u16; CELLS * CELLS * CELLS];
+        for cell in &cells[..len] {
+            starts[usize::from(*cell)] += 1;
+        }
+        let mut sum = 0;
+        for start in &mut starts {
+            sum += std::mem::replace(start, sum);
+        }
+        for (i, cell) in (0..).zip(&cells[..len]) {
+            let to = &mut starts[usize::from(*cell)];
+            self.order[usize::from(*to) % BLOCK] = i;
+            *to += 1;
+        }
+        for column in [x, y, z] {
+            let mut before = [E::default(); BLOCK];
+            before[..len].copy_from_slice(column);
+            for (to, from) in column.iter_mut().zip(&self.order) {
+                *to = before[usize::from(*from) % BLOCK];
+            }
+        }
+    }
+
+    /// What a column holds, in the order of before.
+    #[inline(always)]
+    pub(super) fn unsorted(&self, column: usize, out: &mut [E]) {
+        for (from, to) in self.columns[column].iter().zip(&self.order[..out.len()]) {
+            out[usize::from(*to)] = *from;
+        }
+    }
+}
+
+/// The least of some numbers, and how much larger the largest is.
+#[inline(always)]
+fn span<E: Element>(column: &[E]) -> (f32, f32) {
+    let (mut low, mut high) = (f32::INFINITY, f32::NEG_INFINITY);
+    for v in column {
+        let v = v.to_f64() as f32;
+        low = low.min(v);
+        high = high.max(v);
+    }
+    (low, high - low)
+}
+
+/// The bits of the cell that a coordinate is in.
+#[inline(always)]
+fn cell<E: Element>(v: E, low: f32, per_cell: f32) -> u16 {
+    let cell = ((v.to_f64() as f32 - low) * per_cell) as usize;
+    SPREAD[cell.min(CELLS - 1)]
+}

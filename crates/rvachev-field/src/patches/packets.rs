@@ -1,0 +1,137 @@
+//! Packets of points: into the surface's frame, through the search, and back as values and
+//! gradients.
+
+use glam::{DAffine3, DMat3, DVec3};
+use rvachev_num::Real;
+
+use super::packet::Packet;
+use super::search::{Best, Stack};
+use super::{Patches, SurfaceDistance};
+use crate::{Placement, VALUE_LIMIT};
+
+/// Points farther out than this, in units of the surface's frame, are moved there: no square
+/// overflows single precision.
+const FARTHEST: f64 = 1e15;
+
+/// How near, in units of the surface's frame, single precision leaves too little of the direction
+/// to the foot.
+const CLOSE: f64 = 1e-4;
+
+/// Patches that were nearest to the packet before, none of them twice.
+#[derive(Default)]
+pub(super) struct Seeds {
+    patches: [u32; 4],
+    count: usize,
+}
+
+impl Seeds {
+    #[inline(always)]
+    fn known(&self) -> &[u32] {
+        &self.patches[..self.count]
+    }
+
+    #[inline(always)]
+    fn take<R: Packet>(&mut self, which: R) {
+        let few = which.few();
+        self.count = 0;
+        let mut i = 0;
+        while i < few.len() {
+            let patch = few[i] as u32;
+            if i == 0 || patch != self.patches[self.count - 1] {
+                self.patches[self.count] = patch;
+                self.count += 1;
+            }
+            i += 1;
+        }
+    }
+}
+
+/// A chunk's way into the surface's frame and back.
+pub(super) struct Packets<'a> {
+    leaf: &'a SurfaceDistance,
+    patches: &'a Patches,
+    placement: &'a Placement,
+    /// Into the surface's frame; a value there is scaled and shifted to one outside.
+    local: Placement,
+    farthest: f64,
+}
+
+impl SurfaceDistance {
+    /// The way of a chunk.
+    pub(super) fn packets<'a>(&'a self, placement: &'a Placement) -> Packets<'a> {
+        let frame = &self.patches.frame;
+        let mut across = DVec3::ONE;
+        if let Some(axis) = self.flat {
+            across[axis] = 0.0;
+        }
+        let flattened = DAffine3::from_mat3(DMat3::from_diagonal(across)) * placement.map();
+        let mut map = DAffine3::from_mat3(flattened.matrix3 * (1.0 / frame.unit));
+        map.translation = frame.into_local(flattened.translation);
+        let local = Placement::new(&map, placement.scale * frame.unit, placement.shift);
+        Packets { leaf: self, patches: &self.patches, placement, local, farthest: VALUE_LIMIT / frame.unit }
+    }
+}
+
+impl Packets<'_> {
+    /// A packet in the surface's frame.
+    #[inline(always)]
+    pub(super) fn local<R: Real>(&self, p: [R; 3]) -> [R; 3] {
+        let [x, y, z] = self.local.apply(p);
+        [held(x), held(y), held(z)]
+    }
+
+    /// Finds the nearest points to a packet of the surface's frame.
+    #[inline(always)]
+    pub(super) fn search<R: Packet>(&self, local: [R; 3], seeds: &mut Seeds, stack: &mut Stack<R>) -> Best<R> {
+        let mut best = Best::none(local[0]);
+        self.patches.search(local, seeds.known(), &mut best, stack);
+        seeds.take(best.which);
+        best
+    }
+
+    /// The signed distances, as they count outside.
+    #[inline(always)]
+    pub(super) fn value<R: Real>(&self, square: R, sign: R) -> R {
+        let distance = square.sqrt().min(sign.lift(self.farthest));
+        let signed = sign.select(distance, -distance);
+        self.local.finish((-sign.abs()).select(sign.lift(0.0), signed))
+    }
+
+    /// The gradients: away from the feet where the value is positive, else towards them.
+    #[inline(always)]
+    pub(super) fn slope<R: Real>(&self, from: [R; 3], square: R, sign: R) -> [R; 3] {
+        let per_distance = sign.lift(self.placement.scale) / square.sqrt().max(sign.lift(1e-30));
+        let k = sign.select(per_distance, -per_distance);
+        let mut along = [from[0] * k, from[1] * k, from[2] * k];
+        if let Some(axis) = self.leaf.flat {
+            along[axis] = sign.lift(0.0);
+        }
+        self.placement.pull(along)
+    }
+
+    /// Whether some of the points need [`one`](Packets::one).
+    #[inline(always)]
+    pub(super) fn are_close<R: Packet>(square: R) -> bool {
+        square.any_below(square.lift(CLOSE * CLOSE))
+    }
+
+    /// Value and gradient of a point whose nearest patch is known, in double precision.
+    pub(super) fn one(&self, p: [f32; 3], patch: f32, sign: f32) -> [f32; 4] {
+        let p = self.placement.apply(p.map(f64::from));
+        let foot = self.patches.foot_on(patch as usize, self.leaf.flattened(DVec3::from_array(p)));
+        let (value, slope) = self.leaf.towards(p, foot, f64::from(sign));
+        let [x, y, z] = self.placement.pull(slope.map(|part| part * self.placement.scale));
+        [self.placement.finish(value), x, y, z].map(|v| v as f32)
+    }
+
+    /// Whether a distance found in single precision needs [`one`](Packets::one).
+    pub(super) fn is_close(square: f32) -> bool {
+        f64::from(square) < CLOSE * CLOSE
+    }
+}
+
+/// A coordinate, held where its square does not overflow.
+#[inline(always)]
+fn held<R: Real>(x: R) -> R {
+    x.max(x.lift(-FARTHEST)).min(x.lift(FARTHEST))
+}
