@@ -40,6 +40,33 @@ fn main() {
         ("twist offset", Solid::cuboid([2.0,2.0,4.0]).twist(rvachev::rad(1.0)).offset(0.1)),
         ("flush l fillet 1504.292", Solid::cuboid([10.0,10.0,5.0]).translate([5.0,5.0,0.0]).union_with(Solid::cuboid([10.0,20.0,5.0]).translate([15.0,10.0,0.0]), f)),
     ];
+    let fr = |radius| Blend::Fillet{radius};
+    let rim = Profile::circle(20.0).column().intersection_with(Solid::slab([0.0,0.0,1.0],30.0), f).difference_with(Solid::sphere(14.0).translate([20.0,0.0,0.0]), f);
+    let plate = Solid::cuboid([60.0,40.0,4.0]); let post = Solid::cylinder(6.0,30.0).translate([0.0,0.0,15.0]); let rib = Solid::cuboid([40.0,4.0,20.0]).translate([10.0,0.0,10.0]);
+    let three = plate.union_with(&post, fr(3.0)).union_with(&rib, fr(2.0));
+    let mut chain = Solid::cuboid([32.2,2.0,1.0]).translate([15.6,0.0,0.0]);
+    for i in 0..39 { chain = chain.union_with(Solid::cylinder(0.3,2.0).translate([i as f64*0.8,0.0,0.5]), fr(0.1)); }
+    let flush_c = |b| Solid::cuboid([10.0,10.0,10.0]).translate([5.0,5.0,0.0]).union_with(Solid::cylinder(5.0,10.0), b);
+    let pins = |n: usize| { let k = (n as f64).sqrt().ceil() as usize; let w=0.4*k as f64; let mut all = vec![Solid::cuboid([w,w,0.4])]; for i in 0..n { let (x,y)=((i%k) as f64, (i/k) as f64); all.push(Solid::cylinder(0.1+0.05*((i*7)%10) as f64/10.0,1.0).translate([-0.5*w+0.4*(x+0.5),-0.5*w+0.4*(y+0.5),0.5])); } Solid::union_all_with(all, fr(0.05)) };
+    let gear = || { let n=96; Profile::polygon((0..n).map(|i| { let a = i as f64/n as f64*std::f64::consts::TAU; let r = if (i/3)%2==0 {10.0} else {8.5}; [r*a.cos(), r*a.sin()] })) };
+    let mut cases = cases;
+    cases.extend([
+        ("flush c fillet top 5", flush_c(f)),
+        ("flush c chamfer top 5", flush_c(Blend::Chamfer{leg:2.0})),
+        ("flush c smooth", flush_c(Blend::Smooth{radius:2.0})),
+        ("cube rounded 2 907.705", c.rounded(2.0)),
+        ("L filleted 2 64.858*10", l.filleted(2.0).extrude(10.0)),
+        ("two filleted 2000", two.filleted(2.0)),
+        ("rim", rim),
+        ("three", three.clone()),
+        ("chain", chain),
+        ("pins 10", pins(10)),
+        ("pins 100", pins(100)),
+        ("pins 1000", pins(1000)),
+        ("gear rounded", gear().extrude(5.0).rounded(0.5)),
+        ("se rounded", se.rounded(1.0)),
+        ("bracket filleted", l.extrude(5.0).filleted(2.0).rounded(1.0)),
+    ]);
     for (name, s) in &cases { if name.contains(&arg) { show(name, s, n); } }
     println!("bottle open at [0,0,20]: {:?}", bottle.shell(1.5).contains([0.0,0.0,20.0]));
 }

@@ -490,7 +490,7 @@ use {
     error::{CameraError, ImageError, MeshError, SaveError},
     eval::Palette,
     field::{COORDINATE_LIMIT, Dual, Field, Norm, Real},
-    form::{Form, Length, Operation, Repetition},
+    form::{Form, Operation, Repetition},
     geom::{Projection, RangeImage, RangeImageError, Rays},
     law::{BuiltInLaw, Law, LawTable, LinearLaw, SineWave, SmoothStep},
 };

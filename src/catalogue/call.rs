@@ -5,7 +5,7 @@ use glam::{DAffine3, DVec2, DVec3};
 use super::{Entry, Operands, Part, entry};
 use crate::solid::Node;
 use crate::{
-    Angle, Blend, BuiltInLaw, Caps, Extrusion, Form, Length, Operation, Profile, RFunction, Repetition, Solid, Value,
+    Angle, Blend, BuiltInLaw, Caps, Extrusion, Form, Operation, Profile, RFunction, Repetition, Solid, Value,
     ValueError, deg, rad,
 };
 
@@ -95,7 +95,7 @@ pub(super) fn example_operands(operands: Operands) -> Vec<Part> {
     match operands {
         Operands::None => Vec::new(),
         Operands::Solid | Operands::Either => vec![Solid::cuboid([1.0, 1.5, 2.0]).into()],
-        Operands::TwoSolids | Operands::Two | Operands::Many => solids().map(Part::from).to_vec(),
+        Operands::Two | Operands::Many => solids().map(Part::from).to_vec(),
         Operands::Profile => vec![Profile::rectangle([2.0, 1.0]).translate([2.0, 0.0]).into()],
     }
 }
@@ -156,10 +156,7 @@ fn of_graph(solid: &Solid, part: impl Fn(&Solid) -> Part) -> Option<Call> {
             call(name, vec![Value::Blend(blend)])
         }
         Form::Complement { .. } => call("complement", Vec::new()),
-        Form::Length { length, .. } => {
-            let (Length::Level(by) | Length::Offset(by) | Length::Shell(by)) = length;
-            call(length.name(), vec![Value::Number(by)])
-        }
+        Form::Length { length, .. } => call(length.name(), vec![Value::Number(length.amount())]),
         Form::Paint { paint, .. } => call("paint", vec![Value::Color(paint.color), Value::Number(paint.roughness)]),
         Form::Name { name, .. } => call("named", vec![Value::Text(name.to_string())]),
         // Equal is what is written alike: a twist of −0 is none of 0.

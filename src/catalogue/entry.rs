@@ -24,7 +24,7 @@ pub enum Group {
     Join,
     /// A set operation with the transition shaped.
     BlendedJoin,
-    /// A level, an offset or a shell.
+    /// A level, an offset, a shell, a rounding.
     Length,
     /// An affine map.
     Affine,
@@ -54,8 +54,6 @@ pub enum Operands {
     None,
     /// A solid.
     Solid,
-    /// Two solids.
-    TwoSolids,
     /// A profile.
     Profile,
     /// A solid or a profile.
@@ -72,7 +70,6 @@ impl Operands {
         match self {
             Operands::None => "no operands",
             Operands::Solid => "a solid",
-            Operands::TwoSolids => "two solids",
             Operands::Profile => "a profile",
             Operands::Either => "a solid or a profile",
             Operands::Two => "two solids or two profiles",

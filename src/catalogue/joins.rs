@@ -68,19 +68,34 @@ verbs! {
     BlendedJoin union_with {
         /// The transition.
         blend: Blend = None, Range::ANY, example Blend::Fillet { radius: 0.25 };
-    } => |[a, b]: [Solid; 2]| a.union_with(b, blend);
+    } => |operands: Many| match operands {
+        Many::Solids(solids) => super::Part::from(Solid::union_all_with(solids, blend)),
+        Many::Profiles(profiles) => Profile::union_all_with(profiles, blend).into(),
+    };
 
     /// What is in both solids, less what the blend takes off.
     BlendedJoin intersection_with {
         /// The transition.
         blend: Blend = None, Range::ANY, example Blend::Chamfer { leg: 0.25 };
-    } => |[a, b]: [Solid; 2]| a.intersection_with(b, blend);
+    } => |operands: Many| match operands {
+        Many::Solids(solids) => super::Part::from(Solid::intersection_all_with(solids, blend)),
+        Many::Profiles(profiles) => Profile::intersection_all_with(profiles, blend).into(),
+    };
 
     /// What is in the first solid and not in the second, less what the blend takes off.
     BlendedJoin difference_with {
         /// The transition.
         blend: Blend = None, Range::ANY, example Blend::Smooth { radius: 0.5 };
-    } => |[a, b]: [Solid; 2]| a.difference_with(b, blend);
+    } => |operands: Many| match operands {
+        Many::Solids(solids) => {
+            let (first, others) = first("difference_with", &solids)?;
+            super::Part::from(first.difference_all_with(others, blend))
+        }
+        Many::Profiles(profiles) => {
+            let (first, others) = first("difference_with", &profiles)?;
+            first.difference_all_with(others, blend).into()
+        }
+    };
 
     /// The solid whose value is larger by a number.
     Length level {
@@ -98,5 +113,17 @@ verbs! {
     Length shell {
         /// How thick.
         thickness: f64 = Length, Range::LENGTH, example 0.125;
-    } => |solid: Solid| solid.shell(thickness);
+    } => |operand: Either| operand.map(|solid| solid.shell(thickness), |profile| profile.shell(thickness));
+
+    /// Convex edges rounded: what balls fill that are inside.
+    Length rounded {
+        /// Of the ball.
+        radius: f64 = Length, Range::LENGTH, example 0.125;
+    } => |operand: Either| operand.map(|solid| solid.rounded(radius), |profile| profile.rounded(radius));
+
+    /// Concave edges filled: all that balls do not reach from outside.
+    Length filleted {
+        /// Of the ball.
+        radius: f64 = Length, Range::LENGTH, example 0.125;
+    } => |operand: Either| operand.map(|solid| solid.filleted(radius), |profile| profile.filleted(radius));
 }

@@ -144,17 +144,6 @@ impl Take for Solid {
     }
 }
 
-impl Take for [Solid; 2] {
-    const OPERANDS: Operands = Operands::TwoSolids;
-
-    fn of(parts: &[Part]) -> Option<[Solid; 2]> {
-        match parts {
-            [Part::Solid(a), Part::Solid(b)] => Some([a.clone(), b.clone()]),
-            _ => None,
-        }
-    }
-}
-
 impl Take for Profile {
     const OPERANDS: Operands = Operands::Profile;
 

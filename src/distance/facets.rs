@@ -7,7 +7,7 @@ use super::slopes::{Slope, Slopes};
 use crate::{Cancelled, Mesh, Run};
 
 /// A vertex whose corners have normals that differ by more, in radians, is on a crease.
-pub(super) const CREASE: f64 = 0.15;
+pub(super) const CREASE: f64 = 0.05;
 
 /// How far from a crease its sides are looked at, in parts of the way to a triangle's middle: less
 /// each time that the vertex is nearer.

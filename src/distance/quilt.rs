@@ -18,7 +18,7 @@ use crate::{Cancelled, Run};
 use rvachev_field::Patch;
 
 /// How often a patch is split at most.
-const DEPTH: u32 = 4;
+const DEPTH: u32 = 6;
 
 /// A patch is split where its normal is off by more, in radians.
 const TURN: f64 = 0.2;

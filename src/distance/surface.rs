@@ -22,14 +22,27 @@ const TOLERANCE: f64 = 1e-3;
 
 /// Cells along the longest side: at least, and at most where the length is short.
 const COARSEST: f64 = 24.0;
-const FINEST: f64 = 64.0;
+const FINEST: f64 = 128.0;
+
+/// Meshes whose surfaces are closer than this on average, in cells, are the same.
+const SAME: f64 = 0.02;
+
+/// Distances are asked up to so many lengths from a region.
+const REACH: f64 = 2.0;
 
 /// How often cells are halved where features are thinner.
-const HALVINGS: u32 = 0;
+const HALVINGS: u32 = 2;
 
 impl DistanceSource for FromMeshes {
-    fn surface(&self, solid: &Solid, programs: &Compiled, length: f64, run: &Run) -> Result<Surface, CompileError> {
-        let bounds = programs.bounds;
+    fn surface(
+        &self,
+        solid: &Solid,
+        programs: &Compiled,
+        (length, region): (f64, &Bounds),
+        run: &Run,
+    ) -> Result<Surface, CompileError> {
+        let whole = programs.bounds;
+        let bounds = whole.intersection(&region.inflate(REACH * length));
         let flat = flat_axis(&programs.surface, &bounds);
         let size = (0..3).filter(|axis| Some(*axis) != flat).map(|axis| bounds.size()[axis]).fold(0.0, f64::max);
         if bounds.is_empty() || size == 0.0 {
@@ -45,8 +58,13 @@ impl DistanceSource for FromMeshes {
         let [to_mesh, to_sew] = run.stages([0.7, 0.3]);
         let t0 = std::time::Instant::now();
         let facets = match flat {
-            None => Facets::new(&mesh(&programs.surface, bounds, cell, &to_mesh)?, |_| true),
-            Some(axis) => wall(solid, bounds, axis, cell, &to_mesh)?,
+            None if bounds.contains_bounds(&whole) => Facets::new(&mesh(&programs.surface, bounds, cell, &to_mesh)?, |_| true),
+            None => part(solid, bounds, whole, cell, &to_mesh)?,
+            Some(axis) => {
+                let mut wall = bounds;
+                (wall.min[axis], wall.max[axis]) = (-1.5 * cell, 1.5 * cell);
+                part(solid, wall, whole, cell, &to_mesh)?
+            }
         };
         let t1 = std::time::Instant::now();
         let nf = facets.triangles.len();
@@ -73,14 +91,29 @@ fn flat_axis(program: &Program, bounds: &Bounds) -> Option<usize> {
     program.is_even_along(axis, &part).then_some(axis)
 }
 
-/// The mesh of a program, its creases sharp.
+/// The mesh of a program, its creases sharp, in smaller cells where that shows more.
 fn mesh(program: &Program, bounds: Bounds, cell: f64, run: &Run) -> Result<Mesh, CompileError> {
-    let settings = MeshSettings {
-        cell: CellSize::Length(cell),
-        features: Features::Sharp,
-        thin: ThinFeatures::Refine { halvings: HALVINGS },
-        ..MeshSettings::default()
-    };
+    let mesh = mesh_in(program, bounds, cell, ThinFeatures::Ignore, run)?;
+    if mesh.possibly_lost() == 0 {
+        return Ok(mesh);
+    }
+    // Most often nothing is: flush faces and acute edges are suspect as well.
+    let finer = mesh_in(program, bounds, cell, ThinFeatures::Refine { halvings: HALVINGS }, run)?;
+    let [known, found] = [&mesh, &finer].map(Mesh::check);
+    let is_same = (known.shells, known.euler_characteristic) == (found.shells, found.euler_characteristic)
+        && (mesh.volume() - finer.volume()).abs() <= SAME * cell * mesh.area();
+    Ok(if is_same { mesh } else { finer })
+}
+
+fn mesh_in(
+    program: &Program,
+    bounds: Bounds,
+    cell: f64,
+    thin: ThinFeatures,
+    run: &Run,
+) -> Result<Mesh, CompileError> {
+    let settings =
+        MeshSettings { cell: CellSize::Length(cell), features: Features::Sharp, thin, ..MeshSettings::default() };
     let subject = Subject { program, bounds, palette: None, whole: None };
     match run.install(|| subject.mesh(&settings, run)) {
         Ok(mesh) => Ok(mesh),
@@ -90,17 +123,19 @@ fn mesh(program: &Program, bounds: Bounds, cell: f64, run: &Run) -> Result<Mesh,
     }
 }
 
-/// The wall of a column where the coordinate along it is near 0.
-fn wall(solid: &Solid, mut bounds: Bounds, axis: usize, cell: f64, run: &Run) -> Result<Facets, CompileError> {
-    let half = 1.5 * cell;
-    (bounds.min[axis], bounds.max[axis]) = (-half, half);
-    let mut size = bounds.size() + 2.0 * cell;
-    size[axis] -= 2.0 * cell;
-    let part = solid.intersection(Solid::cuboid(size).translate(bounds.center()), RFunction::MIN_MAX);
-    let mesh = mesh(&compiled_with(&part, run)?.surface, bounds, cell, run)?;
+/// The surface of a solid within a box, without the faces of the box.
+fn part(solid: &Solid, clip: Bounds, whole: Bounds, cell: f64, run: &Run) -> Result<Facets, CompileError> {
+    let knife = Solid::cuboid(clip.size()).translate(clip.center());
+    let part = solid.intersection(knife, RFunction::MIN_MAX);
+    let programs = compiled_with(&part, run)?;
+    let bounds = programs.bounds.intersection(&clip);
+    let mesh = if bounds.is_empty() { Mesh::default() } else { mesh(&programs.surface, bounds, cell, run)? };
     let is_cap = |corners: &[DVec3; 3]| {
-        let on_side = |side: f64| corners.iter().all(|p| (p[axis] - side).abs() < 1e-3 * cell);
-        on_side(half) || on_side(-half)
+        let on = |axis: usize, side: f64| corners.iter().all(|p| (p[axis] - side).abs() < 1e-3 * cell);
+        (0..3).any(|axis| {
+            clip.min[axis] > whole.min[axis] && on(axis, clip.min[axis])
+                || clip.max[axis] < whole.max[axis] && on(axis, clip.max[axis])
+        })
     };
     Ok(Facets::new(&mesh, |corners| !is_cap(corners)))
 }

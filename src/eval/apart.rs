@@ -6,14 +6,17 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
+use super::bend::Bend;
 use super::compile::{Compiled, kept};
 use super::composite::{Composite, Whole};
 use super::depth::is_deeper;
 use super::exact::Exactness;
+use super::fill::FARTHEST;
+use super::nothing::Nothing;
 use super::source::{CompileError, DistanceSource, Measured, Surface};
-use crate::solid::{Length, Node};
-use crate::{Blend, Run, Solid};
-use rvachev_field::SurfaceDistance;
+use crate::solid::{BALL_OF_LEGS, Length, Node, Operation};
+use crate::{Blend, Bounds, Run, Solid};
+use rvachev_field::{AnyField, SurfaceDistance};
 
 /// What is done for a solid, one after the other.
 pub(super) enum Work<'a> {
@@ -30,67 +33,153 @@ pub(super) fn works<'a>(root: &'a Solid, exact: &Exactness) -> Vec<Work<'a>> {
     while let Some((solid, is_done)) = pending.pop() {
         if is_done {
             let alone = alone(solid, exact);
-            works.extend(alone.iter().map(Work::Compile));
-            works.extend((!alone.is_empty()).then_some(Work::Measure(solid)));
+            let is_measured = !alone.is_empty();
+            works.extend(alone.into_iter().map(Work::Compile));
+            works.extend(is_measured.then_some(Work::Measure(solid)));
         } else if met.insert(solid.address()) && kept(solid).is_none() {
             // What was compiled before has its parts.
             pending.push((solid, true));
-            pending.extend(solid.node().parts().iter().map(|part| (part, false)));
+            pending.extend(solid.node().parts().iter().chain(solid.node().ball()).map(|part| (part, false)));
         }
     }
     works.push(Work::Compile(root));
     works
 }
 
-/// The operands of a node that are compiled by themselves.
-fn alone<'a>(solid: &'a Solid, exact: &Exactness) -> &'a [Solid] {
+/// What of a node is compiled by itself.
+fn alone<'a>(solid: &'a Solid, exact: &Exactness) -> Vec<&'a Solid> {
     match solid.node() {
-        Node::Length { length: Length::Level(_), .. } => &[],
-        Node::Length { operand, .. } if !exact.is_closed(solid) => std::slice::from_ref(operand),
-        Node::Blend { blend: Blend::Fillet { .. } | Blend::Chamfer { .. }, operands, .. } => operands,
-        _ => &[],
+        Node::Length { length: Length::Level(_), .. } => Vec::new(),
+        Node::Length { operand, ball, .. } if !exact.is_closed(solid) => [operand].into_iter().chain(ball).collect(),
+        Node::Blend { operands, ball: Some(ball), .. } => operands.iter().chain([ball]).collect(),
+        _ => Vec::new(),
     }
 }
 
-/// Measures the distance that a solid's length is about, if it has one that its operand does not
-/// tell. What was measured before is kept.
+/// Measures the distances that a node is about, if it is about any that its operands do not tell. What was
+/// measured before is kept.
 pub(super) fn measure(
     solid: &Solid,
     exact: &Exactness,
     source: &dyn DistanceSource,
     run: &Run,
 ) -> Result<(), CompileError> {
-    let Node::Length { operand, length } = solid.node() else { return Ok(()) };
-    if matches!(length, Length::Level(_)) || exact.is_closed(solid) || measured(solid).is_some() {
+    if measured(solid).is_some() {
         return Ok(());
     }
-    let by = match *length {
-        Length::Shell(t) => -t,
-        other => other.amount(),
+    let found = match solid.node() {
+        Node::Length { ball: Some(ball), length, .. } => {
+            let (field, error) = distance(ball, length.amount(), &Bounds::ALL, source, run)?;
+            Measured { field, error, is_gone: false, sides: Vec::new() }
+        }
+        Node::Length { operand, length, .. } => {
+            let by = if let Length::Shell(t) = *length { -t } else { length.amount() };
+            let (field, error) = distance(operand, by.abs(), &Bounds::ALL, source, run)?;
+            let bounds = kept(operand).map_or(Bounds::EMPTY, |programs| programs.bounds);
+            let is_gone = by < 0.0 && bounds.is_finite() && !is_deeper(&*field, &bounds, error - by, run)?;
+            Measured { field, error, is_gone, sides: Vec::new() }
+        }
+        Node::Blend { operation, blend, operands, ball: Some(ball) } => {
+            let near = Near::of(*operation, *blend, operands);
+            let region = near.boxes.iter().fold(Bounds::EMPTY, |all, own| all.union(own));
+            let (field, error) = distance(ball, near.radius, &region, source, run)?;
+            let mut sides = Vec::new();
+            // Between convex operands nothing fades.
+            let is_convex = |operand: &Solid| {
+                kept(operand).is_some_and(|programs| programs.surface.bend() == Some(Bend::Concave))
+            };
+            let fades = !(*operation == Operation::Union && operands.iter().all(is_convex));
+            if matches!(blend, Blend::Fillet { .. }) && fades {
+                for (number, operand) in operands.iter().enumerate() {
+                    let is_outside = *operation == Operation::Union || *operation == Operation::Difference && number > 0;
+                    let own = exact.of(operand);
+                    let known = if is_outside { own.outside } else { own.inside };
+                    sides.push(match kept(operand).filter(|_| known) {
+                        Some(programs) => sign(&programs),
+                        None => distance(operand, near.radius, &region, source, run)?.0,
+                    });
+                }
+            }
+            Measured { field, error, is_gone: false, sides }
+        }
+        _ => return Ok(()),
     };
-    let Some(programs) = kept(operand) else { return Ok(()) };
-    let distance = distance(operand, &programs, by.abs(), source, run)?;
-    let is_gone = by < 0.0 && !is_deeper(&*distance.field, &programs.bounds, distance.error - by, run)?;
-    let _ = solid.measured().set(Arc::new(Measured { is_gone, ..distance }));
+    let _ = solid.measured().set(Arc::new(found));
     Ok(())
 }
 
-/// The distance to the surface of a solid.
-fn distance(
-    solid: &Solid,
-    programs: &Arc<Compiled>,
-    length: f64,
-    source: &dyn DistanceSource,
-    run: &Run,
-) -> Result<Measured, CompileError> {
-    let Surface { patches, error, flat } = source.surface(solid, programs, length, run)?;
-    let sign = Composite { program: Whole::new(programs.surface.clone()), bounds: programs.bounds };
-    let field = SurfaceDistance::new(patches, Arc::new(sign), error, flat, programs.bounds);
-    Ok(Measured { field: Arc::new(field), error, is_gone: false })
+/// A solid's programs as a leaf.
+fn sign(programs: &Compiled) -> Arc<dyn AnyField> {
+    Arc::new(Composite { program: Whole::new(programs.surface.clone()), bounds: programs.bounds })
 }
 
-/// What was measured of a solid.
+/// The distance to the surface of a solid, and how far it may be off; a region is where it will be asked.
+fn distance(
+    solid: &Solid,
+    length: f64,
+    region: &Bounds,
+    source: &dyn DistanceSource,
+    run: &Run,
+) -> Result<(Arc<dyn AnyField>, f64), CompileError> {
+    let Some(programs) = kept(solid) else { return Ok((Arc::new(Nothing), 0.0)) };
+    let Surface { patches, error, flat } = source.surface(solid, &programs, (length, region), run)?;
+    let field = SurfaceDistance::new(patches, sign(&programs), error, flat, programs.bounds);
+    Ok((Arc::new(field), error))
+}
+
+/// What was measured of a node.
 pub(super) fn measured(solid: &Solid) -> Option<Measured> {
     let kept = solid.measured().get()?;
     kept.downcast_ref::<Measured>().cloned()
+}
+
+/// Where the operands of a fillet or chamfer are so near to each other that there may be something
+/// between them.
+pub(super) struct Near {
+    /// That of the ball.
+    pub(super) radius: f64,
+    /// Boxes of what may be between two operands.
+    pub(super) boxes: Vec<Bounds>,
+    /// By operand, a box beyond which it is far.
+    pub(super) around: Vec<Bounds>,
+}
+
+impl Near {
+    pub(super) fn of(operation: Operation, blend: Blend, operands: &[Solid]) -> Near {
+        let (radius, reach) = match blend {
+            Blend::Chamfer { leg } => (BALL_OF_LEGS * leg, BALL_OF_LEGS * leg),
+            Blend::Fillet { radius } => (radius, FARTHEST * radius),
+            _ => (0.0, 0.0),
+        };
+        let boxes: Vec<Bounds> =
+            operands.iter().map(|operand| kept(operand).map_or(Bounds::EMPTY, |programs| programs.bounds)).collect();
+        let inside = match operation {
+            Operation::Union => boxes.iter().fold(Bounds::EMPTY, |all, own| all.union(own)),
+            Operation::Difference => boxes.first().copied().unwrap_or(Bounds::EMPTY),
+            _ => boxes.iter().fold(Bounds::ALL, |all, own| all.intersection(own)),
+        };
+        // Of complements nothing is known but that they are near what is inside.
+        let around: Vec<Bounds> = boxes
+            .iter()
+            .enumerate()
+            .map(|(number, own)| match operation {
+                Operation::Difference if number == 0 => Bounds::ALL,
+                Operation::Union | Operation::Difference => own.inflate(reach),
+                _ => Bounds::ALL,
+            })
+            .collect();
+        let mut between = Vec::new();
+        // From left to right, each with those that begin before it ends.
+        let mut order: Vec<usize> = (0..boxes.len()).collect();
+        order.sort_by(|a, b| around[*a].min.x.total_cmp(&around[*b].min.x));
+        for (at, &first) in order.iter().enumerate() {
+            for &second in order[at + 1..].iter().take_while(|other| around[**other].min.x <= around[first].max.x) {
+                let bounds = around[first].intersection(&around[second]).intersection(&inside.inflate(1e-9 * radius));
+                if !bounds.is_empty() {
+                    between.push(bounds);
+                }
+            }
+        }
+        Near { radius, boxes: between, around }
+    }
 }

@@ -47,7 +47,7 @@ impl Program {
                     let bend = if *op == Op::And { Bend::Concave } else { Bend::Convex };
                     operands.all(|operand| operand == Some(bend)).then_some(bend)
                 }
-                Kind::Join { .. } | Kind::Edge { .. } => None,
+                Kind::Join { .. } => None,
             };
             bends.push(bend);
         }

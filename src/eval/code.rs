@@ -233,20 +233,6 @@ impl Code {
         let sides = Sides { inside, outside: Bounds::ALL };
         Built { field: edge, surface: edge, sides, growth: DVec3::INFINITY, gauge: Some(radius) }
     }
-
-    /// A fillet or chamfer, which is a leaf with two operands.
-    pub(super) fn edge(&mut self, operation: Operation, kind: Kind, pair: [Built; 2]) -> Built {
-        let negate = operation == Operation::Difference;
-        let [a, b] = [pair[0], pair[1].flip_if(negate)];
-        let sides = a.sides.join(operation.op(), b.sides);
-        let list = |a: Edge, b: Edge| [(a, Bounds::ALL), (b, Bounds::ALL)];
-        let surface = self.push(kind.clone(), &list(a.surface, b.surface));
-        let mut growth = bounded(a).max(bounded(b));
-        if sides.inside.is_empty() {
-            growth = DVec3::INFINITY;
-        }
-        Built { field: surface, surface, sides, growth, gauge: None }
-    }
 }
 
 /// Where a disjunction of `count` is above −c, one of them is above −c times this.

@@ -11,7 +11,7 @@ use glam::{DAffine3, DVec3};
 
 use super::code::{Built, Code, bounded, conjoined, disjoined, grow, snug};
 use super::context::{Contexts, is_similarity, least_stretch};
-use super::edge::EdgeBlend;
+use super::fill::{Fill, Side, Signed};
 use super::exact::Exactness;
 use super::extent::extent;
 use super::flatten::flatten;
@@ -19,7 +19,9 @@ use super::program::{Edge, Kind, Program};
 use super::scene::{Instance, Scene};
 use super::sides::Sides;
 use crate::solid::{self, Length, Operation};
-use super::apart::{Work, measure, measured, works};
+use super::apart::{Near, Work, measure, measured, works};
+use super::bevel::Bevel;
+use super::chamfer::Chamfer;
 use super::nothing::Nothing;
 use super::source::{CompileError, DistanceSource, Measured};
 use crate::{Blend, Bounds, Cancelled, Norm, ParamError, Run, Solid, SolidError};
@@ -35,6 +37,11 @@ pub(crate) struct Compiled {
     /// The path to the node that makes the bounds infinite, if they are.
     pub(crate) unbounded: String,
 }
+
+/// Fillets are this much smaller, in radii, so that flush faces stay as they are; and no smaller than that
+/// for what measuring may be off.
+const FLUSH: f64 = 1e-5;
+const LARGEST_MARGIN: f64 = 1e-3;
 
 /// More nodes than this are not compiled.
 const LIMIT: usize = 1 << 23;
@@ -179,7 +186,7 @@ impl<'e> Compiler<'e> {
         self.built.insert(key, None);
         check(site.solid.node()).map_err(|e| self.parameter(site, e))?;
         let operands = site.solid.node().parts();
-        if let (solid::Node::Join { .. }, []) = (site.solid.node(), operands) {
+        if let (solid::Node::Join { .. } | solid::Node::Blend { .. }, []) = (site.solid.node(), operands) {
             return Err(SolidError::EmptyJoin { path: self.scene.trail.path(site.step) });
         }
         self.contexts.open(site.solid, site.context, self.exact, &mut self.scene);
@@ -295,6 +302,14 @@ impl<'e> Compiler<'e> {
                     Length::Level(c) => return Ok(self.code.level(c * context.scale, below[0])),
                     Length::Offset(d) => d,
                     Length::Shell(t) => -t,
+                    Length::Rounded(radius) => {
+                        let fills = self.fills(site, Operation::Intersection, radius);
+                        return Ok(self.filled(site, Operation::Intersection, &below, &fills));
+                    }
+                    Length::Filleted(radius) => {
+                        let fills = self.fills(site, Operation::Union, radius);
+                        return Ok(self.filled(site, Operation::Union, &below, &fills));
+                    }
                 };
                 let is_shell = matches!(length, Length::Shell(_));
                 let moved = match below.get(usize::from(is_shell)) {
@@ -307,9 +322,7 @@ impl<'e> Compiler<'e> {
                 let wall = [below[0], moved.complement()];
                 Ok(self.code.operation(Operation::Intersection, Rule::MinMax, context.frame, &wall))
             }
-            solid::Node::Blend { operation, blend, operands, lengths } => {
-                self.blended(site, *operation, *blend, [operands, lengths], [below[0], below[1]])
-            }
+            solid::Node::Blend { operation, blend, .. } => self.blended(site, *operation, *blend, &below),
         }
     }
 
@@ -335,12 +348,19 @@ impl<'e> Compiler<'e> {
         site: Site<'_>,
         operation: Operation,
         blend: Blend,
-        [operands, lengths]: [&[Solid; 2]; 2],
-        pair: [Built; 2],
+        below: &[Built],
     ) -> Result<Built, SolidError> {
         let context = *self.contexts.get(site.context);
         let (scale, frame) = (context.scale, context.frame);
         let op = operation.op();
+        if let Blend::Fillet { radius } = blend {
+            let fills = self.fills(site, operation, radius);
+            return Ok(self.filled(site, operation, below, &fills));
+        }
+        let &[first, second] = below else {
+            return Err(SolidError::EmptyJoin { path: self.scene.trail.path(site.step) });
+        };
+        let pair = [first, second];
         match blend {
             Blend::Smooth { radius } => {
                 let width = radius * scale;
@@ -365,32 +385,69 @@ impl<'e> Compiler<'e> {
                 let risen = self.risen(site, [first * beyond, second * beyond]);
                 Ok(self.code.ricci(operation, p, [first, second], frame, pair, risen))
             }
-            // The others shape the edge: fillets and chamfers.
-            _ => {
-                // A ball is measured in lengths, a face across the edge by the slopes there.
-                let chamfer = matches!(blend, Blend::Chamfer { .. });
-                let [a, b] = if chamfer { operands } else { lengths };
-                let [a, b] = [self.alone(site, a)?, self.alone(site, b)?];
-                let mut pair = pair;
-                let steepest = [&a.surface, &b.surface].map(steepest);
-                if let (Blend::Chamfer { leg }, Operation::Union) = (blend, operation) {
-                    // Where the face is, one operand is nearer than half the leg.
-                    let near = steepest.map(|steepest| 0.5 * leg * scale * steepest);
-                    for (built, risen) in pair.iter_mut().zip(self.risen(site, near)) {
-                        built.sides.inside = risen;
-                    }
-                }
-                let edge = Arc::new(EdgeBlend::new(operation, blend, [a.surface.clone(), b.surface.clone()], steepest));
-                let field: Arc<dyn AnyField> = edge.clone();
-                let (leaf, _) = self.place(&field, site, 0.0);
-                let kind = Kind::Edge { op, leaf, edge };
-                let built = self.code.edge(operation, kind, pair);
-                // The material of a fillet is in the hull of its operands, hence in their box; that of
-                // a chamfer is close to them.
-                self.scene.leaves[leaf as usize].bounds = built.sides.decisive(op);
-                Ok(built)
+            Blend::Chamfer { leg } => {
+                let face = self.chamfered(site, operation, leg)?;
+                Ok(self.filled(site, operation, below, &face))
             }
+            _ => Ok(self.code.operation(operation, Rule::MinMax, frame, below)),
         }
+    }
+
+    /// What a fillet adds between the operands of a node, or of a complement's.
+    fn fills(&mut self, site: Site<'_>, operation: Operation, radius: f64) -> Vec<Built> {
+        let Some(measured) = measured(site.solid) else { return Vec::new() };
+        let is_union = operation == Operation::Union;
+        let ball = Signed { field: measured.field, sign: if is_union { 1.0 } else { -1.0 } };
+        let margin = (measured.error + FLUSH * radius).min(LARGEST_MARGIN * radius);
+        let fill = Fill { radius, ball, sides: Vec::new(), margin, boxes: vec![Bounds::ALL] };
+        let solid::Node::Blend { blend, operands, .. } = site.solid.node() else {
+            let bounds = kept(&site.solid.node().operands()[0]).map_or(Bounds::EMPTY, |programs| programs.bounds);
+            return vec![self.leaf(&(Arc::new(Fill { boxes: vec![bounds], ..fill }) as Arc<dyn AnyField>), site)];
+        };
+        let near = Near::of(operation, *blend, operands);
+        if near.boxes.is_empty() {
+            return Vec::new();
+        }
+        let Near { boxes, around, .. } = near;
+        let side = |(number, field): (usize, &Arc<dyn AnyField>)| {
+            let is_outside = is_union || operation == Operation::Difference && number > 0;
+            let sign = if is_outside { -1.0 } else { 1.0 };
+            Side { distance: Signed { field: field.clone(), sign }, bounds: around[number] }
+        };
+        let sides = measured.sides.iter().enumerate().map(side).collect();
+        vec![self.leaf(&(Arc::new(Fill { sides, boxes, ..fill }) as Arc<dyn AnyField>), site)]
+    }
+
+    /// The face of a chamfer, cut off where a ball reaches that rolls along the operands.
+    fn chamfered(&mut self, site: Site<'_>, operation: Operation, leg: f64) -> Result<Vec<Built>, SolidError> {
+        let solid::Node::Blend { blend, operands, .. } = site.solid.node() else { return Ok(Vec::new()) };
+        let [a, b] = [self.alone(site, &operands[0])?, self.alone(site, &operands[1])?];
+        let signs = match operation {
+            Operation::Union => [1.0, 1.0],
+            Operation::Difference => [-1.0, 1.0],
+            _ => [-1.0, -1.0],
+        };
+        let Some(measured) = measured(site.solid) else { return Ok(Vec::new()) };
+        let steepest = [&a.surface, &b.surface].map(steepest);
+        let chamfer = Chamfer { leg, steepest: steepest[0].max(steepest[1]) };
+        let frame = self.contexts.get(site.context).frame;
+        let near = Near::of(operation, *blend, operands);
+        let Some(bounds) = near.boxes.first().copied() else { return Ok(Vec::new()) };
+        let bevel: Arc<dyn AnyField> = Arc::new(Bevel::new([a.surface.clone(), b.surface.clone()], signs, chamfer, bounds));
+        let ball = Signed { field: measured.field.clone(), sign: if operation == Operation::Union { 1.0 } else { -1.0 } };
+        let margin = (measured.error + FLUSH * near.radius).min(LARGEST_MARGIN * near.radius);
+        let fill: Arc<dyn AnyField> = Arc::new(Fill { radius: near.radius, ball, sides: Vec::new(), margin, boxes: near.boxes });
+        let both = [self.leaf(&bevel, site), self.leaf(&fill, site)];
+        Ok(vec![self.code.operation(Operation::Intersection, Rule::MinMax, frame, &both)])
+    }
+
+    /// A join of operands with what is added to it, or, for intersections and differences, taken away.
+    fn filled(&mut self, site: Site<'_>, operation: Operation, below: &[Built], fills: &[Built]) -> Built {
+        let frame = self.contexts.get(site.context).frame;
+        let join = self.code.operation(operation, Rule::MinMax, frame, below);
+        let all: Vec<Built> = [join].into_iter().chain(fills.iter().copied()).collect();
+        let operation = if operation == Operation::Union { operation } else { Operation::Difference };
+        self.code.operation(operation, Rule::MinMax, frame, &all)
     }
 
     /// The boxes of a blend's operands where they are above −c, each with its own c.

@@ -1,8 +1,8 @@
-//! A program as a leaf: what a length is read from when it cannot be read leaf by leaf.
+//! A program as a leaf: the sign of a measured distance, or a distance that needs no measuring.
 
 use std::cell::RefCell;
 use std::ops::Deref;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use glam::{DAffine3, DVec3};
 
@@ -117,8 +117,22 @@ impl AnyField for Composite {
         write_gradients(chunk.placement, &slopes, chunk.out);
     }
 
+    #[cfg(feature = "formula")]
+    fn is_formula(&self) -> bool {
+        self.program.unlowered().is_none()
+    }
+
     fn is_steady(&self) -> bool {
         self.program.is_steady()
+    }
+
+    fn narrowed(&self, zone: &Zone) -> Option<Arc<dyn AnyField>> {
+        if self.program.leaf_count() < 2 {
+            return None;
+        }
+        let program = self.program.reduced(zone);
+        (program.leaf_count() < self.program.leaf_count())
+            .then(|| Arc::new(Composite { program: Whole::new(program), bounds: self.bounds }) as Arc<dyn AnyField>)
     }
 
     fn jumps(&self) -> bool {
@@ -253,4 +267,11 @@ pub(super) fn points64(field: &dyn AnyField, chunk: Chunk<'_, f64, 1>) {
         let p = chunk.placement.apply([0, 1, 2].map(|axis| chunk.points[axis][i]));
         *out = chunk.placement.finish(field.value(p));
     }
+}
+
+/// The same place, the value as it is.
+pub(super) fn unscaled(placement: &Placement) -> Placement {
+    let mut unscaled = *placement;
+    (unscaled.scale, unscaled.shift) = (1.0, 0.0);
+    unscaled
 }

@@ -86,9 +86,10 @@ impl Contexts {
                 let difference = *operation == Operation::Difference;
                 (0..operands.len()).map(|i| (i, self.flip_if(context, difference && i > 0))).collect()
             }
-            Node::Blend { operation, .. } => vec![(0, context), (1, self.flip_if(context, *operation == Operation::Difference))],
+            // Never below a length that is closed.
+            Node::Blend { operands, .. } => (0..operands.len()).map(|i| (i, context)).collect(),
             Node::Length { length, .. } => match *length {
-                Length::Level(_) => vec![(0, context)],
+                Length::Level(_) | Length::Rounded(_) | Length::Filleted(_) => vec![(0, context)],
                 _ if !exact.is_closed(solid) => match length {
                     // The outer side of a wall is the surface itself.
                     Length::Shell(_) => vec![(0, context)],

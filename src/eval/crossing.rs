@@ -31,11 +31,11 @@ impl Program {
         let mut slopes: Option<Interval> = None;
         for (at, node) in self.nodes.iter().enumerate().rev() {
             let [plain, negated] = ways[at];
-            if !(plain || negated) || self.idle.as_deref().is_some_and(|idle| idle[at]) {
+            if !(plain || negated) {
                 continue;
             }
             match &node.kind {
-                Kind::Leaf(leaf) | Kind::Edge { leaf, .. } => {
+                Kind::Leaf(leaf) => {
                     let Some(slope) = self.crossing(*leaf, bounds, along, PARTS) else { continue };
                     for slope in [plain.then_some(slope), negated.then_some(-slope)].into_iter().flatten() {
                         slopes = Some(slopes.map_or(slope, |slopes| slopes.hull(slope)));

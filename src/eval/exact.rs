@@ -52,7 +52,7 @@ impl Exactness {
                 self.0.insert(solid.address(), found);
             } else {
                 pending.push((solid, true));
-                pending.extend(solid.node().parts().iter().map(|part| (part, false)));
+                pending.extend(solid.node().parts().iter().chain(solid.node().ball()).map(|part| (part, false)));
             }
         }
     }
@@ -64,12 +64,13 @@ impl Exactness {
 
     /// Whether a length is a matter of its operand's own value.
     pub(super) fn is_closed(&self, solid: &Solid) -> bool {
-        let Node::Length { operand, length } = solid.node() else { return false };
+        let Node::Length { operand, length, .. } = solid.node() else { return false };
         let exact = self.of(operand);
         match *length {
             Length::Level(_) => true,
             Length::Offset(d) => d == 0.0 || if d > 0.0 { exact.outside } else { exact.inside },
             Length::Shell(_) => exact.inside,
+            Length::Rounded(_) | Length::Filleted(_) => false,
         }
     }
 

@@ -7,15 +7,17 @@
 
 mod apart;
 mod bend;
+mod bevel;
+mod chamfer;
 mod code;
 mod compile;
 mod composite;
 mod context;
 mod crossing;
 mod depth;
-mod edge;
 mod exact;
 mod extent;
+mod fill;
 mod flatten;
 mod hierarchy;
 mod narrow;
@@ -53,6 +55,4 @@ pub(crate) use source::{CompileError, DistanceSource, Surface};
 pub(crate) use parting::Parting;
 pub(crate) use ray::{Care, first_hit};
 pub(crate) use point::limited;
-#[cfg(feature = "formula")]
-pub(crate) use program::Kind;
 pub(crate) use rvachev_field::Op;

@@ -133,10 +133,9 @@ impl Program {
         let world = &Pieces::one(*world);
         let zones = self.zones(world);
         let mut ranges: Vec<Interval> = Vec::with_capacity(self.nodes.len());
-        for (at, node) in self.nodes.iter().enumerate() {
+        for node in &self.nodes[..] {
             let range = match &node.kind {
-                _ if self.is_idle(at) => Interval::ALL,
-                Kind::Leaf(leaf) | Kind::Edge { leaf, .. } => self.leaf_range(*leaf, &zones, world),
+                Kind::Leaf(leaf) => self.leaf_range(*leaf, &zones, world),
                 kind => {
                     let operand = |edge: &Edge| {
                         let range = ranges[edge.node()];
@@ -182,9 +181,7 @@ impl Program {
     /// Whether nothing was left out on the way to these nodes, each of which came of one of
     /// the program's.
     fn has_all(&self, nodes: &[Node], list: &[Edge]) -> bool {
-        // A fillet may have become a plain join.
-        let edges = |nodes: &[Node]| nodes.iter().filter(|node| matches!(node.kind, Kind::Edge { .. })).count();
-        nodes.len() == self.nodes.len() && list.len() == self.operands.len() && edges(nodes) == edges(&self.nodes)
+        nodes.len() == self.nodes.len() && list.len() == self.operands.len()
     }
 
     /// The answer for a program of one leaf, what most regions come down to: it needs no tables, and
@@ -235,29 +232,6 @@ impl Program {
             Some((_, root)) => self.trimmed(nodes, list, simpler, root),
             None => self.clone(),
         }
-    }
-
-    /// The program of a leaf, or of another in its place.
-    pub(super) fn of_leaf(&self, leaf: u32, other: Option<Arc<dyn AnyField>>) -> Program {
-        let (mut number, mut simpler) = (leaf, self.simpler.to_vec());
-        if let Some(field) = other {
-            number = (self.scene.leaves.len() + simpler.len()) as u32;
-            simpler.push(Instance { field, bounds: Bounds::ALL, ..self.instance(leaf).clone() });
-        }
-        Program::assemble(self.scene.clone(), vec![Node::leaf(number)], Vec::new(), Edge::new(0), simpler)
-    }
-
-    /// The program of a node, or of its join if it is one of these operands alone.
-    pub(super) fn of_node(&self, node: usize, operands: Option<&[Edge]>) -> Program {
-        let (mut nodes, mut list) = (self.nodes[..=node].to_vec(), self.operands.to_vec());
-        if let Some(operands) = operands {
-            (nodes[node].first, nodes[node].len) = (list.len() as u32, operands.len() as u32);
-            list.extend_from_slice(operands);
-            if let Kind::Join { hierarchy, .. } = &mut nodes[node].kind {
-                *hierarchy = None;
-            }
-        }
-        self.trimmed(nodes, list, self.simpler.to_vec(), Edge::new(node))
     }
 
     /// A program of the nodes that `root` reaches.

@@ -56,22 +56,13 @@ impl Below {
 impl Palette {
     pub(crate) fn new(program: Program) -> Palette {
         let scene = program.scene.clone();
-        let mut paints: Vec<Option<Paint>> = scene.leaves.iter().map(|leaf| scene.trail.paint(leaf.step)).collect();
+        let paints: Vec<Option<Paint>> = scene.leaves.iter().map(|leaf| scene.trail.paint(leaf.step)).collect();
         let mut mixed = vec![false; paints.len()];
         let mut below: Vec<Below> = Vec::with_capacity(program.nodes.len());
         for node in &program.nodes[..] {
             let operands = program.list(node).iter().fold(Below::Nothing, |all, edge| all.with(below[edge.node()]));
             let all = match &node.kind {
                 Kind::Leaf(leaf) => Below::One(paints[program.instance(*leaf).number as usize]),
-                Kind::Edge { leaf, .. } => {
-                    // What is between two parts of one paint has that paint.
-                    let number = program.instance(*leaf).number as usize;
-                    if let Below::One(paint) = operands {
-                        paints[number] = paint;
-                    }
-                    mixed[number] = operands == Below::Various;
-                    operands
-                }
                 Kind::Join { .. } | Kind::Shift(_) => operands,
             };
             below.push(all);
@@ -81,7 +72,6 @@ impl Palette {
         for (at, node) in program.nodes.iter().enumerate().rev() {
             let blends = match &node.kind {
                 Kind::Join { rule, .. } => *rule != Rule::MinMax,
-                Kind::Edge { .. } => true,
                 Kind::Leaf(_) | Kind::Shift(_) => false,
             };
             blended[at] |= blends && below[at] == Below::Various;
@@ -173,15 +163,6 @@ impl Program {
                     continue;
                 }
                 Kind::Shift(_) => vec![1.0],
-                Kind::Edge { op, leaf, edge } => {
-                    let margin = 1e-6 * edge.size() * self.instance(*leaf).placement.scale;
-                    let away: Vec<f64> = (0..operands.len()).map(|i| (values[at] - value(i)).abs()).collect();
-                    if away.iter().all(|away| *away > margin) {
-                        away.iter().map(|away| 1.0 / away).collect()
-                    } else {
-                        chosen(*op, operands.len(), value)
-                    }
-                }
                 Kind::Join { op, rule: Rule::MinMax, .. } => chosen(*op, operands.len(), value),
                 Kind::Join { op, rule, .. } => slopes(*op, *rule, operands.len(), value),
             };

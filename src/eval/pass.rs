@@ -47,9 +47,6 @@ impl Sign {
 pub(super) struct Asked {
     pub(super) sign: bool,
     pub(super) value: bool,
-    /// Whether it is to be there: where the value of a fillet is read, that is its own, and its operands
-    /// stay as they are.
-    pub(super) stay: bool,
 }
 
 /// What is kept of most programs: lists have room for as many from the start.
@@ -112,19 +109,13 @@ impl<'a> Pass<'a> {
         let program = self.program;
         self.asked[program.root.node()] = root;
         for (at, node) in program.nodes.iter().enumerate().rev() {
-            let Asked { sign, value, stay } = self.asked[at];
+            let Asked { sign, value } = self.asked[at];
             let operands = program.list(node);
             if !sign && !value {
-                operands.iter().filter(|_| stay).for_each(|edge| self.asked[edge.node()].stay = true);
                 continue;
             }
             let values = match &node.kind {
                 Kind::Leaf(_) => continue,
-                Kind::Edge { .. } if value => {
-                    operands.iter().for_each(|edge| self.asked[edge.node()].stay = true);
-                    continue;
-                }
-                Kind::Edge { .. } => false,
                 Kind::Shift(_) => true,
                 Kind::Join { rule, .. } => value || rule.reads_values(),
             };
@@ -153,12 +144,9 @@ impl<'a> Pass<'a> {
 
     /// Up: what is known of a node, and the narrowed program of what stays open.
     fn answer(&mut self, at: usize) {
-        let Asked { sign, value, stay } = self.asked[at];
+        let Asked { sign, value } = self.asked[at];
         if sign || value {
             self.find(at, value);
-        }
-        if stay && self.values[at].is_none() {
-            self.keep_as_it_is(at);
         }
     }
 
@@ -172,7 +160,6 @@ impl<'a> Pass<'a> {
                 }
                 _ => self.leaf(at, *leaf),
             },
-            Kind::Edge { .. } => self.edge(at),
             Kind::Join { rule, .. } if !value && !rule.reads_values() => {
                 let near = self.near[at].take();
                 self.signs[at] = self.sign_of_join(node, near.as_deref());
@@ -215,17 +202,6 @@ impl<'a> Pass<'a> {
         self.list.extend(operands);
         self.nodes.push(Node { kind, first, len });
         Edge::new(self.nodes.len() - 1)
-    }
-
-    fn keep_as_it_is(&mut self, at: usize) {
-        let node = &self.program.nodes[at];
-        let operands = self.program.list(node).iter().filter_map(|e| self.value(*e)).map(|(_, edge)| edge).collect();
-        let mut kind = node.kind.clone();
-        if let Kind::Leaf(leaf) | Kind::Edge { leaf, .. } = &mut kind {
-            *leaf = self.simplest(*leaf, None);
-        }
-        let edge = self.push(&kind, operands);
-        self.values[at] = Some((Interval::ALL, edge));
     }
 
     fn know(&mut self, at: usize, range: Interval, edge: Edge) {
@@ -275,65 +251,6 @@ impl<'a> Pass<'a> {
             simpler.field = field;
         }
         self.keep(simpler)
-    }
-
-    /// A fillet or chamfer is its operands' join where it does not reach.
-    fn edge(&mut self, at: usize) {
-        let program = self.program;
-        let node = &program.nodes[at];
-        let Kind::Edge { op, leaf, edge } = &node.kind else { return };
-        let instance = program.instance(*leaf);
-        let pieces = program.zone_in(self.zones, instance.frame, self.world);
-        let whole = pieces.only().map(|zone| zone.mapped(&instance.to_local));
-        // Seen through a deformation, the blend is part of a leaf of its own kind.
-        let plain = std::ptr::addr_eq(Arc::as_ptr(&instance.field), Arc::as_ptr(edge));
-        let shift = instance.placement.shift / instance.placement.scale;
-        let (range, reaches) = match whole.filter(|_| plain) {
-            Some(zone) => {
-                let (range, reaches) = edge.survey(&zone, shift);
-                (instance.placed(range), reaches)
-            }
-            None => (pieces.range(&instance.to_local, |zone| instance.placed_range(zone)), true),
-        };
-        let mut operands = Vec::new();
-        if self.asked[at].value {
-            operands.extend(program.list(node).iter().filter_map(|e| self.value(*e)).map(|(_, edge)| edge));
-        } else {
-            if range.lo() > 0.0 || range.hi() < 0.0 {
-                self.signs[at] = Sign::of(range, || Edge::new(0));
-                return;
-            }
-            if !reaches {
-                let join = Kind::Join { op: *op, rule: Rule::MinMax, frame: instance.frame, hierarchy: None };
-                let node = Node { kind: join, first: node.first, len: node.len };
-                self.signs[at] = self.sign_of_join(&node, None);
-                return;
-            }
-            // An operand that decides the join decides the blend, whatever the blend's range (the
-            // operand's box may have told its sign); one decided otherwise is left out.
-            for edge in program.list(node) {
-                match (self.signs[edge.node()].flip_if(edge.negated()), op) {
-                    (sign @ Sign::Positive, Op::Or) | (sign @ Sign::Negative, Op::And) => {
-                        self.signs[at] = sign;
-                        return;
-                    }
-                    (Sign::Open(edge), _) => operands.push(edge),
-                    _ => {}
-                }
-            }
-        }
-        let reduced = whole.filter(|_| plain).and_then(|zone| edge.reduced(&zone)).map(Arc::new);
-        let kind = if reduced.is_none() && (*leaf as usize) < program.scene.leaves.len() {
-            node.kind.clone()
-        } else {
-            let mut simpler = instance.clone();
-            if let Some(reduced) = &reduced {
-                simpler.field = reduced.clone();
-            }
-            Kind::Edge { op: *op, leaf: self.keep(simpler), edge: reduced.unwrap_or_else(|| edge.clone()) }
-        };
-        let edge = self.push(&kind, operands);
-        self.know(at, range, edge);
     }
 
     /// The number, in the narrowed program, of a leaf made simpler.

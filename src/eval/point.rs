@@ -11,30 +11,26 @@ use crate::Dual;
 impl Program {
     /// The value at a point given in any number; `frames` and `values` are scratch.
     pub(crate) fn evaluate<N: Number>(&self, p: [N; 3], values: &mut Vec<N>) -> N {
-        self.evaluate_nodes(p, values, self.idle.as_deref())
-    }
-
-    /// The same, leaving out the nodes in `idle`.
-    fn evaluate_nodes<N: Number>(&self, p: [N; 3], values: &mut Vec<N>, idle: Option<&[bool]>) -> N {
         // A single leaf in the world, what most regions narrow to, needs no tables.
         if let ([Node { kind: Kind::Leaf(leaf), .. }], []) = (&self.nodes[..], &self.frames[..]) {
             let value = self.leaf(*leaf, p);
             return if self.root.negated() { -value } else { value };
         }
+        self.evaluate_all(p, values)
+    }
+
+    /// The same, with the values of all nodes.
+    fn evaluate_all<N: Number>(&self, p: [N; 3], values: &mut Vec<N>) -> N {
         let frames = self.frame_points(p);
         values.clear();
-        for (at, node) in self.nodes.iter().enumerate() {
-            if idle.is_some_and(|idle| idle[at]) {
-                values.push(p[0]);
-                continue;
-            }
+        for node in &self.nodes[..] {
             let signed = |edge: &Edge| {
                 let value = values[edge.node()];
                 if edge.negated() { -value } else { value }
             };
             let mut operands = self.list(node).iter().map(signed);
             let value = match &node.kind {
-                Kind::Leaf(leaf) | Kind::Edge { leaf, .. } => {
+                Kind::Leaf(leaf) => {
                     self.leaf(*leaf, self.in_frame(&frames, self.instance(*leaf).frame, p))
                 }
                 Kind::Join { op, rule, .. } => {
@@ -106,20 +102,20 @@ impl Program {
     /// The values of all nodes at a point.
     pub(super) fn node_values(&self, p: DVec3) -> Vec<f64> {
         let mut values = Vec::new();
-        self.evaluate_nodes(limited(p), &mut values, None);
+        self.evaluate_all(limited(p), &mut values);
         values
     }
 
     /// The number of the leaf whose value decides at a point.
     pub(crate) fn deciding_leaf(&self, p: DVec3) -> u32 {
         let mut values = Vec::new();
-        self.evaluate_nodes(limited(p), &mut values, None);
+        self.evaluate_all(limited(p), &mut values);
         let mut at = self.root.node();
         loop {
             let node = &self.nodes[at];
             let op = match &node.kind {
                 Kind::Leaf(leaf) => return self.instance(*leaf).number,
-                Kind::Join { op, .. } | Kind::Edge { op, .. } => *op,
+                Kind::Join { op, .. } => *op,
                 Kind::Shift(_) => Op::Or,
             };
             let signed = |edge: &Edge| {
@@ -127,15 +123,6 @@ impl Program {
                 if edge.negated() { -value } else { value }
             };
             let operands = self.list(node);
-            if let Kind::Edge { leaf, edge, .. } = &node.kind {
-                let leaf = *leaf;
-                // What is neither operand's is the fillet's own.
-                let margin = 1e-6 * edge.size() * self.instance(leaf).placement.scale;
-                let own = operands.iter().all(|operand| (values[at] - signed(operand)).abs() > margin);
-                if own {
-                    return self.instance(leaf).number;
-                }
-            }
             let mut chosen = operands[0];
             for edge in &operands[1..] {
                 let better = match op {

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::edge::EdgeBlend;
 use super::hierarchy::Hierarchy;
 use super::scene::{Instance, Scene};
 use crate::solid::Operation;
@@ -66,9 +65,6 @@ pub(crate) enum Kind {
     },
     /// Its operand plus a number.
     Shift(f64),
-    /// A fillet or chamfer: a leaf of its own near the edge where the two operands meet, and
-    /// their join elsewhere.
-    Edge { op: Op, leaf: u32, edge: Arc<EdgeBlend> },
 }
 
 impl Node {
@@ -85,7 +81,7 @@ impl Node {
     /// The leaf that gives its value, if one does.
     pub(crate) fn valued_by(&self) -> Option<u32> {
         match self.kind {
-            Kind::Leaf(leaf) | Kind::Edge { leaf, .. } => Some(leaf),
+            Kind::Leaf(leaf) => Some(leaf),
             Kind::Join { .. } | Kind::Shift(_) => None,
         }
     }
@@ -122,9 +118,6 @@ pub struct Program {
     pub(crate) root: Edge,
     /// Leaves that narrowing has made simpler; their numbers go on from the scene's.
     pub(crate) simpler: Arc<[Instance]>,
-    /// Which nodes only tell where a fillet or chamfer ends, if any does: its value needs none of
-    /// its operands.
-    pub(crate) idle: Option<Arc<[bool]>>,
     /// Frames that its leaves stand in and their ancestors, parents first, without the world.
     pub(crate) frames: Arc<[u32]>,
 }
@@ -161,31 +154,14 @@ impl Program {
             }
         }
         let frames = (1..live.len()).filter(|&f| live[f]).map(|f| f as u32).collect();
-        let idle = idle(&nodes, &operands, root);
         let (nodes, operands, simpler) = (nodes.into(), operands.into(), simpler.into());
-        Program { scene, nodes, operands, root, simpler, idle, frames }
+        Program { scene, nodes, operands, root, simpler, frames }
     }
 
     /// How many leaves it evaluates; a leaf that is used in several places counts once.
     #[must_use]
     pub fn leaf_count(&self) -> usize {
         self.nodes.iter().filter(|node| matches!(node.kind, Kind::Leaf(_))).count()
-    }
-
-    /// Whether a node only tells where a fillet or chamfer ends.
-    pub(super) fn is_idle(&self, node: usize) -> bool {
-        self.idle.as_ref().is_some_and(|idle| idle[node])
-    }
-
-    /// How many leaves a value takes, with those of the operands of fillets and chamfers.
-    pub(crate) fn evaluated_leaves(&self) -> usize {
-        let leaves = |(at, node): (usize, &Node)| match &node.kind {
-            _ if self.is_idle(at) => 0,
-            Kind::Leaf(_) => 1,
-            Kind::Edge { edge, .. } => edge.leaves(),
-            Kind::Join { .. } | Kind::Shift(_) => 0,
-        };
-        self.nodes.iter().enumerate().map(leaves).sum()
     }
 
     /// What a value takes, in those of ordinary leaves.
@@ -242,26 +218,17 @@ impl Program {
         instance.frame != 0 || instance.field.jumps()
     }
 
+    /// The first leaf that is no formula, if there is one.
+    #[cfg(feature = "formula")]
+    pub(crate) fn unlowered(&self) -> Option<&Instance> {
+        let leaves = self.nodes.iter().filter_map(Node::valued_by).map(|leaf| self.instance(leaf));
+        leaves.into_iter().find(|leaf| !leaf.field.is_formula())
+    }
+
     /// The leaf with this number.
     pub(crate) fn instance(&self, leaf: u32) -> &Instance {
         instance(&self.scene, &self.simpler, leaf)
     }
-}
-
-fn idle(nodes: &[Node], operands: &[Edge], root: Edge) -> Option<Arc<[bool]>> {
-    if !nodes.iter().any(|node| matches!(node.kind, Kind::Edge { .. })) {
-        return None;
-    }
-    let mut idle = vec![true; nodes.len()];
-    idle[root.node()] = false;
-    for (at, node) in nodes.iter().enumerate().rev() {
-        if !idle[at] && node.valued_by().is_none() {
-            for edge in &operands[node.range()] {
-                idle[edge.node()] = false;
-            }
-        }
-    }
-    Some(idle.into())
 }
 
 fn instance<'a>(scene: &'a Scene, simpler: &'a [Instance], leaf: u32) -> &'a Instance {

@@ -12,7 +12,7 @@ pub(super) fn joined(kind: &Kind, mut operands: impl Iterator<Item = Interval>) 
     match kind {
         Kind::Shift(by) => first + *by,
         Kind::Join { op, rule, .. } => operands.fold(first, |all, next| rule.join(*op, all, next)),
-        Kind::Leaf(_) | Kind::Edge { .. } => Interval::ALL,
+        Kind::Leaf(_) => Interval::ALL,
     }
 }
 

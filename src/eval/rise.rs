@@ -12,22 +12,19 @@
 
 use glam::DVec3;
 
-use super::edge::EdgeBlend;
 use super::program::{Kind, Program};
 use super::scene::Instance;
 use crate::{Bounds, Dual, Interval};
-use rvachev_field::{AnyWarp, Pieces, Placement, Rule, Way, Zone, largest_stretch, steepest};
+use rvachev_field::{AnyWarp, Pieces, Rule, Way, Zone, largest_stretch, steepest};
 
 /// A leaf, and whether its complement counts.
 #[derive(Clone, Copy)]
-struct Part<'a> {
+struct Part {
     leaf: u32,
     negated: bool,
-    /// The fillet or chamfer that it is.
-    edge: Option<&'a EdgeBlend>,
 }
 
-impl Part<'_> {
+impl Part {
     /// What is said of the leaf, as what is said of what counts.
     fn turned(self, way: DVec3) -> DVec3 {
         if self.negated { -way } else { way }
@@ -83,21 +80,14 @@ impl Program {
     }
 
     /// Unit vectors along the gradients of parts at a point.
-    fn slopes_at(&self, parts: &[Part<'_>], p: DVec3) -> Vec<DVec3> {
+    fn slopes_at(&self, parts: &[Part], p: DVec3) -> Vec<DVec3> {
         let p = Dual::point(p.to_array());
         let frames = self.frame_points(p);
         let mut slopes = Vec::with_capacity(parts.len());
         for part in parts {
-            let Instance { frame, to_local, .. } = self.instance(part.leaf);
-            let seen = self.in_frame(&frames, *frame, p);
-            let mut add = |slope: DVec3| slopes.push(part.turned(slope).normalize_or_zero());
-            if let Some(edge) = part.edge {
-                // Where it rises both operands do.
-                let local = Placement::new(to_local, 1.0, 0.0).apply(seen);
-                edge.operand_slopes(local).into_iter().for_each(add);
-            } else {
-                add(DVec3::from_array(self.leaf(part.leaf, seen).d));
-            }
+            let seen = self.in_frame(&frames, self.instance(part.leaf).frame, p);
+            let slope = DVec3::from_array(self.leaf(part.leaf, seen).d);
+            slopes.push(part.turned(slope).normalize_or_zero());
         }
         slopes
     }
@@ -120,7 +110,7 @@ impl Program {
         };
         let p = Dual::point(zone.hull());
         let frames = self.frame_points(p);
-        let of_part = |part: &Part<'_>| {
+        let of_part = |part: &Part| {
             let Instance { field, frame, to_local, placement, .. } = self.instance(part.leaf);
             if *frame == 0 {
                 return placement.scale * largest_stretch(&to_local.matrix3) * field.steepest(&zone.mapped(to_local));
@@ -150,7 +140,7 @@ impl Program {
 
     /// The leaves that values come from; `None` if one of them counts both as it is and as its complement, or if
     /// they are joined in a way that need not rise with them.
-    fn parts(&self) -> Option<Vec<Part<'_>>> {
+    fn parts(&self) -> Option<Vec<Part>> {
         let mut met = vec![[false; 2]; self.nodes.len()];
         met[self.root.node()][usize::from(self.root.negated())] = true;
         let mut parts = Vec::new();
@@ -163,8 +153,7 @@ impl Program {
                 continue;
             }
             match &node.kind {
-                Kind::Leaf(leaf) => parts.push(Part { leaf: *leaf, negated, edge: None }),
-                Kind::Edge { leaf, edge, .. } => parts.push(Part { leaf: *leaf, negated, edge: Some(edge) }),
+                Kind::Leaf(leaf) => parts.push(Part { leaf: *leaf, negated }),
                 Kind::Join { rule, .. } if !rule.rises() => return None,
                 Kind::Join { .. } | Kind::Shift(_) => {
                     for edge in self.list(node) {
@@ -178,11 +167,11 @@ impl Program {
 
     /// Directions that may do: by the gradients at a point, then those of them along an axis, and with the ways to
     /// the middles of leaves in place of the gradients.
-    fn guesses(&self, parts: &[Part<'_>], from: DVec3) -> Vec<DVec3> {
+    fn guesses(&self, parts: &[Part], from: DVec3) -> Vec<DVec3> {
         let slopes = self.slopes_at(parts, from);
-        let inwards = |part: &Part<'_>| {
+        let inwards = |part: &Part| {
             let Instance { frame, bounds, .. } = self.instance(part.leaf);
-            let is_known = *frame == 0 && bounds.is_finite() && part.edge.is_none();
+            let is_known = *frame == 0 && bounds.is_finite();
             is_known.then(|| part.turned(bounds.center() - from).normalize_or_zero())
         };
         let known: Vec<DVec3> = parts.iter().filter_map(inwards).collect();
@@ -200,7 +189,7 @@ impl Program {
     }
 
     /// The directions of the world along which all parts rise, throughout its zone and those of the frames.
-    fn all_rise(&self, parts: &[Part<'_>], (zones, world): (&[Pieces], &Pieces), ways: &[Way]) -> u8 {
+    fn all_rise(&self, parts: &[Part], (zones, world): (&[Pieces], &Pieces), ways: &[Way]) -> u8 {
         // The directions as the frames see them.
         let mut seen: Vec<Vec<Way>> = Vec::with_capacity(self.frames.len());
         for &number in &self.frames[..] {
@@ -262,7 +251,7 @@ mod tests {
 
     use super::*;
     use crate::eval::Region;
-    use crate::eval::compiled;
+    use crate::distance::compiled;
     use crate::{Blend, Helix, MinimalSurface, Polygon, Profile, SheetLattice, Solid, rad};
 
     /// Once in the solid, a ray along the direction, or close to it, stays in it.

@@ -62,7 +62,7 @@ impl Program {
                 Kind::Join { op, rule: Rule::MinMax, .. } => {
                     operands.reduce(|all, next| all.join(*op, next)).unwrap_or_default()
                 }
-                Kind::Join { .. } | Kind::Edge { .. } | Kind::Shift(_) => Sides::default(),
+                Kind::Join { .. } | Kind::Shift(_) => Sides::default(),
             };
             sides.push(found);
         }

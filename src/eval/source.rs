@@ -7,17 +7,23 @@
 use std::sync::Arc;
 
 use super::compile::Compiled;
-use crate::{Cancelled, Solid, SolidError};
+use crate::{Bounds, Cancelled, Solid, SolidError};
 use rvachev_field::{AnyField, Patches};
 use rvachev_num::Run;
 
 /// Finds the surfaces that lengths are measured from.
 pub(crate) trait DistanceSource: Sync {
-    /// The surface of a solid, which has been compiled, for lengths of about `length`.
+    /// The surface of a solid, which has been compiled, for lengths of about `length` within a region.
     ///
     /// # Errors
     /// That the run was cancelled, or that the solid has no end.
-    fn surface(&self, solid: &Solid, programs: &Compiled, length: f64, run: &Run) -> Result<Surface, CompileError>;
+    fn surface(
+        &self,
+        solid: &Solid,
+        programs: &Compiled,
+        lengths: (f64, &Bounds),
+        run: &Run,
+    ) -> Result<Surface, CompileError>;
 }
 
 /// A surface to measure from.
@@ -33,12 +39,15 @@ pub(crate) struct Surface {
 /// A distance that was measured, kept with its node.
 #[derive(Clone)]
 pub(crate) struct Measured {
-    /// The signed distance to the operand's surface, in the operand's coordinates.
+    /// The signed distance to a surface, in the node's own coordinates: that of a length's operand, or
+    /// of where a ball's centre may be.
     pub(crate) field: Arc<dyn AnyField>,
     /// How far it may be off.
     pub(crate) error: f64,
     /// Whether nothing is left where the length is taken away.
     pub(crate) is_gone: bool,
+    /// For a fillet, the distances to its operands, on the side where the ball is.
+    pub(crate) sides: Vec<Arc<dyn AnyField>>,
 }
 
 /// Why a solid does not compile.

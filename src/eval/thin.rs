@@ -19,7 +19,6 @@ impl Program {
             }
             Kind::Join { rule, .. } => matches!(rule, Rule::MinMax | Rule::Smooth(_)),
             Kind::Shift(_) => true,
-            Kind::Edge { .. } => false,
         })
     }
 

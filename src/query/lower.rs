@@ -3,7 +3,6 @@
 use fidget::context::Tree;
 
 use crate::distance::compiled;
-use crate::eval::Kind;
 use crate::{Solid, SolidError};
 use rvachev_num::symbol::Arena;
 
@@ -26,10 +25,8 @@ impl Solid {
     pub fn to_fidget(&self) -> Result<Tree, SolidError> {
         let programs = compiled(self)?;
         let field = &programs.field;
-        if let Some(Kind::Edge { leaf, .. }) =
-            field.nodes.iter().map(|node| &node.kind).find(|kind| matches!(kind, Kind::Edge { .. }))
-        {
-            return Err(SolidError::NotLowered { path: field.scene.trail.path(field.instance(*leaf).step) });
+        if let Some(leaf) = field.unlowered() {
+            return Err(SolidError::NotLowered { path: field.scene.trail.path(leaf.step) });
         }
         let arena = Arena::default();
         let (x, y, z) = Tree::axes();

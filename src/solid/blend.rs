@@ -1,11 +1,63 @@
 //! Blended joins.
 
 use super::{Node, Operation, Solid};
-use crate::Blend;
+use crate::{Blend, RFunction};
 
 impl Solid {
+    /// Joined one after the other, or at once: fillets join any number, and a chain of them is one.
+    fn blended_all(operation: Operation, operands: impl IntoIterator<Item = Solid>, blend: Blend) -> Solid {
+        let mut operands = operands.into_iter();
+        let Some(first) = operands.next() else {
+            return Solid::from_node(Node::Join { operation, rule: RFunction::MIN_MAX, operands: Vec::new() });
+        };
+        if !matches!(blend, Blend::Fillet { .. }) {
+            return operands.fold(first, |all, next| Solid::from_node(node(operation, vec![all, next], blend)));
+        }
+        let mut all = match first.node() {
+            Node::Blend { operation: own, blend: of, operands, .. } if (*own, *of) == (operation, blend) => {
+                operands.clone()
+            }
+            _ => vec![first],
+        };
+        all.extend(operands);
+        Solid::from_node(node(operation, all, blend))
+    }
+
     fn blended(&self, operation: Operation, other: impl Into<Solid>, blend: Blend) -> Solid {
-        Solid::from_node(node(operation, [self.clone(), other.into()], blend))
+        Solid::blended_all(operation, [self.clone(), other.into()], blend)
+    }
+
+    /// What is in any of many solids, and what `blend` adds between them: fillets between any two that
+    /// are close; other blends join one after the other. No operand at all is an error when the solid is
+    /// compiled.
+    ///
+    /// ```
+    /// use rvachev::{Blend, Solid};
+    ///
+    /// let plate = Solid::cuboid([60.0, 12.0, 4.0]);
+    /// let pins = (0..5).map(|n| Solid::cylinder(2.0, 12.0).translate([f64::from(n) * 12.0 - 24.0, 0.0, 4.0]));
+    /// let comb = Solid::union_all_with([plate].into_iter().chain(pins), Blend::Fillet { radius: 1.5 });
+    /// assert!(comb.contains([2.2, 0.0, 2.2])? && !comb.contains([3.2, 0.0, 3.2])?);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
+    #[must_use]
+    pub fn union_all_with<T: Into<Solid>>(solids: impl IntoIterator<Item = T>, blend: Blend) -> Solid {
+        Solid::blended_all(Operation::Union, solids.into_iter().map(Into::into), blend)
+    }
+
+    /// What is in all of many solids, less what `blend` takes off, as
+    /// [`union_all_with`](Solid::union_all_with).
+    #[must_use]
+    pub fn intersection_all_with<T: Into<Solid>>(solids: impl IntoIterator<Item = T>, blend: Blend) -> Solid {
+        Solid::blended_all(Operation::Intersection, solids.into_iter().map(Into::into), blend)
+    }
+
+    /// This solid without all of `solids`, less what `blend` takes off, as
+    /// [`union_all_with`](Solid::union_all_with).
+    #[must_use]
+    pub fn difference_all_with<T: Into<Solid>>(&self, solids: impl IntoIterator<Item = T>, blend: Blend) -> Solid {
+        let all = [self.clone()].into_iter().chain(solids.into_iter().map(Into::into));
+        Solid::blended_all(Operation::Difference, all, blend)
     }
 
     /// What is in either solid, and what `blend` adds between them. The parameters and their
@@ -69,13 +121,21 @@ impl Solid {
     }
 }
 
-/// A blend of two operands.
-pub(super) fn node(operation: Operation, operands: [Solid; 2], blend: Blend) -> Node {
-    let lengths = match blend {
-        Blend::Fillet { .. } => operands.each_ref().map(|solid| solid.offset(0.0)),
-        _ => operands.clone(),
+/// The ball that holds the face of a chamfer off flush faces has so many legs for a radius.
+pub(crate) const BALL_OF_LEGS: f64 = 4.0;
+
+/// A blend of operands.
+pub(super) fn node(operation: Operation, operands: Vec<Solid>, blend: Blend) -> Node {
+    let radius = match blend {
+        Blend::Fillet { radius } => Some(radius),
+        Blend::Chamfer { leg } => Some(BALL_OF_LEGS * leg),
+        _ => None,
     };
-    Node::Blend { operation, blend, operands, lengths }
+    let ball = radius.map(|radius| {
+        let join = Node::Join { operation, rule: RFunction::MIN_MAX, operands: operands.clone() };
+        Solid::from_node(join).offset(if operation == Operation::Union { radius } else { -radius })
+    });
+    Node::Blend { operation, blend, operands, ball }
 }
 
 /// What errors call a blended operation.

@@ -70,14 +70,14 @@ pub enum Form<'a> {
         /// What is joined: any number.
         operands: &'a [Solid],
     },
-    /// Two operands joined with the transition between them shaped.
+    /// Operands joined with the transitions between them shaped: any number for a fillet, else two.
     Blend {
         /// The set operation.
         operation: Operation,
         /// The transition.
         blend: Blend,
         /// What is joined.
-        operands: &'a [Solid; 2],
+        operands: &'a [Solid],
     },
     /// Everything outside the operand.
     Complement {
@@ -155,8 +155,7 @@ impl<'a> Form<'a> {
             | Form::Length { operand, .. }
             | Form::Paint { operand, .. }
             | Form::Name { operand, .. } => std::slice::from_ref(*operand),
-            Form::Join { operands, .. } => operands,
-            Form::Blend { operands, .. } => &operands[..],
+            Form::Join { operands, .. } | Form::Blend { operands, .. } => operands,
             Form::Extrude { profile, .. }
             | Form::Revolve { profile, .. }
             | Form::SweepHelix { profile, .. }
@@ -309,7 +308,7 @@ impl Solid {
             Node::Blend { operation, blend, operands, .. } => {
                 Form::Blend { operation: *operation, blend: *blend, operands }
             }
-            Node::Length { operand, length } => Form::Length { operand, length: *length },
+            Node::Length { operand, length, .. } => Form::Length { operand, length: *length },
             Node::Repeated { operand, repetition, .. } => Form::Repetition { operand, repetition: *repetition },
             Node::Swept { profile, sweep, .. } => match *sweep {
                 Sweep::Extrude(extrusion) => Form::Extrude { profile, extrusion },

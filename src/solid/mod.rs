@@ -23,6 +23,7 @@ mod simplify;
 mod sweep;
 mod transform;
 
+pub(crate) use blend::BALL_OF_LEGS;
 pub use composed::Repetition;
 pub use error::SolidError;
 pub(crate) use error::Trail;

@@ -69,17 +69,20 @@ pub(crate) enum Node {
         operand: Solid,
         paint: Paint,
     },
-    /// Two operands joined with the transition between them shaped.
+    /// Operands joined with the transitions between them shaped: any number for a fillet, else two.
     Blend {
         operation: Operation,
         blend: Blend,
-        operands: [Solid; 2],
-        /// The operands valued by true distance.
-        lengths: [Solid; 2],
+        operands: Vec<Solid>,
+        /// For a fillet or chamfer: where the centre of the ball that rolls along the operands may
+        /// not be, or, for intersections and differences, where it may.
+        ball: Option<Solid>,
     },
     Length {
         operand: Solid,
         length: Length,
+        /// The same for a length that is a ball's radius.
+        ball: Option<Solid>,
     },
     /// What a verb makes of a solid out of several nodes: `built`.
     Repeated {
@@ -95,8 +98,8 @@ pub(crate) enum Node {
     },
 }
 
-/// How a solid is moved in or out: [`Solid::level`], [`offset`](Solid::offset),
-/// [`shell`](Solid::shell). What a [`Form`](crate::form::Form) tells of it.
+/// How a solid is moved in or out, or smoothed by a ball: [`Solid::level`], [`offset`](Solid::offset),
+/// [`shell`](Solid::shell), [`rounded`](Solid::rounded), [`filleted`](Solid::filleted). What a [`Form`](crate::form::Form) tells of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Length {
@@ -106,13 +109,21 @@ pub enum Length {
     Offset(f64),
     /// A wall of this thickness inside the surface.
     Shell(f64),
+    /// Convex edges rounded to this radius.
+    Rounded(f64),
+    /// Concave edges filled to this radius.
+    Filleted(f64),
 }
 
 impl Length {
     /// By how much, in length units.
     pub(crate) fn amount(self) -> f64 {
         match self {
-            Length::Level(by) | Length::Offset(by) | Length::Shell(by) => by,
+            Length::Level(by)
+            | Length::Offset(by)
+            | Length::Shell(by)
+            | Length::Rounded(by)
+            | Length::Filleted(by) => by,
         }
     }
 
@@ -121,6 +132,8 @@ impl Length {
             Length::Level(_) => "level",
             Length::Offset(_) => "offset",
             Length::Shell(_) => "shell",
+            Length::Rounded(_) => "rounded",
+            Length::Filleted(_) => "filleted",
         }
     }
 
@@ -129,6 +142,7 @@ impl Length {
             Length::Level(c) => check::finite("value", c),
             Length::Offset(d) => check::finite("distance", d),
             Length::Shell(t) => check::length("thickness", t),
+            Length::Rounded(r) | Length::Filleted(r) => check::length("radius", r),
         }
     }
 }
@@ -192,6 +206,14 @@ impl Node {
         }
     }
 
+    /// What a ball that rolls along the node's operands is told by.
+    pub(crate) fn ball(&self) -> Option<&Solid> {
+        match self {
+            Node::Blend { ball, .. } | Node::Length { ball, .. } => ball.as_ref(),
+            _ => None,
+        }
+    }
+
     /// What the node is compiled from, in order: its operands, or what its verb made of them.
     pub(crate) fn parts(&self) -> &[Solid] {
         match self {
@@ -248,16 +270,19 @@ fn take_operands(node: &mut Node, pending: &mut Vec<Solid>) {
         Node::Leaf(_) => {}
         Node::Affine { operand, .. }
         | Node::Warp { operand, .. }
-        | Node::Length { operand, .. }
         | Node::Named { operand, .. }
         | Node::Painted { operand, .. }
         | Node::Complement(operand) => pending.push(operand),
+        Node::Length { operand, ball, .. } => {
+            pending.push(operand);
+            pending.extend(ball);
+        }
         Node::Repeated { operand: solid, built, .. } | Node::Swept { profile: Profile(solid), built, .. } => {
             pending.extend([solid, built]);
         }
-        Node::Blend { operands, lengths, .. } => {
+        Node::Blend { operands, ball, .. } => {
             pending.extend(operands);
-            pending.extend(lengths);
+            pending.extend(ball);
         }
         Node::Join { operands, .. } => pending.extend(operands),
     }

@@ -49,8 +49,14 @@ impl Node {
 
     /// This node with other operands, as many as it has.
     pub(super) fn with_operands(&self, operands: Vec<Solid>) -> Node {
-        if let (Node::Blend { operation, blend, .. }, [first, second]) = (self, &operands[..]) {
-            return super::blend::node(*operation, [first.clone(), second.clone()], *blend);
+        match self {
+            Node::Blend { operation, blend, .. } => return super::blend::node(*operation, operands, *blend),
+            Node::Length { length, .. } => {
+                if let [operand] = &operands[..] {
+                    return super::length::node(operand, *length);
+                }
+            }
+            _ => {}
         }
         let mut node = self.clone();
         if let (Node::Repeated { built, .. } | Node::Swept { built, .. }, [new]) = (&mut node, &operands[..]) {
@@ -66,7 +72,7 @@ impl Node {
             | Node::Repeated { operand, .. }
             | Node::Painted { operand, .. } => std::slice::from_mut(operand),
             Node::Swept { profile, .. } => std::slice::from_mut(&mut profile.0),
-            Node::Blend { operands, .. } => operands,
+            Node::Blend { operands, .. } => &mut operands[..],
             Node::Join { operands, .. } => &mut operands[..],
         };
         for (place, operand) in places.iter_mut().zip(operands) {

@@ -79,6 +79,10 @@ pub trait AnyField: Any + Debug + Send + Sync {
     fn steepest(&self, zone: &Zone) -> f64 {
         steepest(self.dual_range(Dual::point(zone.hull())).d)
     }
+    /// Whether it is a formula of the coordinates: what is searched for is none.
+    fn is_formula(&self) -> bool {
+        true
+    }
     /// Which of the leaf's own axes the value may depend on.
     fn axes(&self) -> [bool; 3] {
         [true; 3]

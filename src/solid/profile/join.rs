@@ -94,6 +94,27 @@ impl Profile {
         Profile(self.0.difference_with(other.into().0, blend))
     }
 
+    /// What is in any of many profiles, and what `blend` adds between them: see
+    /// [`Solid::union_all_with`](crate::Solid::union_all_with).
+    #[must_use]
+    pub fn union_all_with<T: Into<Profile>>(profiles: impl IntoIterator<Item = T>, blend: Blend) -> Profile {
+        Profile(Solid::union_all_with(columns(profiles), blend))
+    }
+
+    /// What is in all of many profiles, less what `blend` takes off: see
+    /// [`Solid::union_all_with`](crate::Solid::union_all_with).
+    #[must_use]
+    pub fn intersection_all_with<T: Into<Profile>>(profiles: impl IntoIterator<Item = T>, blend: Blend) -> Profile {
+        Profile(Solid::intersection_all_with(columns(profiles), blend))
+    }
+
+    /// This profile without all of `profiles`, less what `blend` takes off: see
+    /// [`Solid::union_all_with`](crate::Solid::union_all_with).
+    #[must_use]
+    pub fn difference_all_with<T: Into<Profile>>(&self, profiles: impl IntoIterator<Item = T>, blend: Blend) -> Profile {
+        Profile(self.0.difference_all_with(columns(profiles), blend))
+    }
+
     /// Union with a smooth transition where the operands' values differ by less than `radius`:
     /// [`Blend::Smooth`].
     ///

@@ -207,4 +207,24 @@ impl Profile {
     pub fn shell(&self, thickness: f64) -> Profile {
         Profile(self.0.shell(thickness))
     }
+
+    /// The shape with its convex corners rounded: see [`Solid::rounded`](crate::Solid::rounded).
+    ///
+    /// ```
+    /// use rvachev::Profile;
+    ///
+    /// let plate = Profile::rectangle([20.0, 10.0]).rounded(2.0);
+    /// assert!(plate.contains([9.3, 4.3])? && !plate.contains([9.6, 4.6])?);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
+    #[must_use]
+    pub fn rounded(&self, radius: f64) -> Profile {
+        Profile(self.0.rounded(radius))
+    }
+
+    /// The shape with its concave corners filled: see [`Solid::filleted`](crate::Solid::filleted).
+    #[must_use]
+    pub fn filleted(&self, radius: f64) -> Profile {
+        Profile(self.0.filleted(radius))
+    }
 }

@@ -191,6 +191,10 @@ impl AnyField for SurfaceDistance {
         false
     }
 
+    fn is_formula(&self) -> bool {
+        false
+    }
+
     fn is_steady(&self) -> bool {
         false
     }

@@ -25,7 +25,7 @@
 
 use glam::DVec3;
 
-use super::Sample;
+use super::bevel::Sample;
 use crate::{Dual, Interval, Real};
 use rvachev_field::VALUE_LIMIT;
 

@@ -1,0 +1,384 @@
+//! What a rolling ball leaves out: the material of a fillet.
+//!
+//! ```text
+//!     U       the union of all open balls of the radius r outside of the operands
+//!     D(x)    how far x is from U; 0 within it
+//!     a, b    how far x is from the two nearest operands
+//!     fill    min(D, r/2) − max(0, a + b − 2r)/4 − δ > 0
+//! ```
+//!
+//! The complement of U is the closing of the operands' union by the ball, so nothing is filled that the
+//! ball reaches, and flush faces stay as they are. Between convex operands the second term is 0 all over
+//! the fill, which is the closing then: let x be outside of both, a + b ≥ 2r and b < r. With n the
+//! normal at the foot of x on B, x' = x + (r − b) n is r from B and, since a ≥ 2r − b, no nearer to A;
+//! so it is the centre of a ball of U that holds x. An edge that an operand has by itself is filled
+//! beside the other operand only, and less and less so away from it.
+//!
+//! Intersections are the unions of complements, and so are differences. δ is how far the measured
+//! distance may be off.
+
+use std::sync::Arc;
+
+use glam::{DAffine3, DVec3};
+
+use super::composite::{finish, points64, unscaled};
+use crate::{Bounds, Dual, Interval, ParamError, Real};
+#[cfg(feature = "formula")]
+use rvachev_field::VALUE_LIMIT;
+use rvachev_field::{AnyField, Chunk, Zone, steep_slopes};
+#[cfg(feature = "formula")]
+use rvachev_num::symbol::Symbol;
+
+/// D counts up to this part of the radius.
+const MOST: f64 = 0.5;
+
+/// How fast a fillet fades away from the joint.
+const FADE: f64 = 0.25;
+
+/// Nothing is filled that is farther than this from an operand, in radii.
+pub(super) const FARTHEST: f64 = 2.0 + MOST / FADE;
+
+/// A value that is a distance, on one side.
+#[derive(Clone, Debug)]
+pub(super) struct Signed {
+    pub(super) field: Arc<dyn AnyField>,
+    /// 1 where its value counts as it is, −1 where its negative does.
+    pub(super) sign: f64,
+}
+
+impl Signed {
+    fn value(&self, p: DVec3) -> f64 {
+        self.sign * self.field.value(p.to_array())
+    }
+
+    fn range(&self, zone: &Zone) -> Interval {
+        self.field.range(zone) * Interval::point(self.sign)
+    }
+
+    fn slope(&self, p: DVec3) -> DVec3 {
+        self.sign * DVec3::from_array(self.field.dual(Dual::point(p.to_array())).gradient())
+    }
+}
+
+/// An operand: how far outside of it points are, and a box beyond which it is far.
+#[derive(Clone, Debug)]
+pub(super) struct Side {
+    pub(super) distance: Signed,
+    pub(super) bounds: Bounds,
+}
+
+/// The material between operands, or that of all concave edges of one.
+#[derive(Clone, Debug)]
+pub(super) struct Fill {
+    pub(super) radius: f64,
+    /// The distance to where the ball's centre may be, positive where it may not.
+    pub(super) ball: Signed,
+    /// The operands; none where it is of no account how far they are.
+    pub(super) sides: Vec<Side>,
+    /// How much is left out for the sake of flush faces.
+    pub(super) margin: f64,
+    /// Where there may be any.
+    pub(super) boxes: Vec<Bounds>,
+}
+
+/// The distances to the two nearest operands, held at the farthest, and which these are.
+#[derive(Clone, Copy)]
+struct Two {
+    distances: [f64; 2],
+    sides: [usize; 2],
+}
+
+impl Two {
+    fn new(farthest: f64) -> Two {
+        Two { distances: [farthest; 2], sides: [usize::MAX; 2] }
+    }
+
+    fn add(&mut self, side: usize, distance: f64) {
+        if distance < self.distances[0] {
+            self.distances = [distance, self.distances[0]];
+            self.sides = [side, self.sides[0]];
+        } else if distance < self.distances[1] {
+            self.distances[1] = distance;
+            self.sides[1] = side;
+        }
+    }
+}
+
+impl Fill {
+    fn farthest(&self) -> f64 {
+        FARTHEST * self.radius
+    }
+
+    fn two(&self, p: DVec3) -> Option<Two> {
+        self.two_of(p, |number| self.sides[number].distance.field.value(p.to_array()))
+    }
+
+    fn height(&self, ball: f64, two: Option<Two>) -> f64 {
+        let most = (ball - self.radius).min(MOST * self.radius);
+        let beyond = two.map_or(0.0, |Two { distances: [a, b], .. }| (a + b - 2.0 * self.radius).max(0.0));
+        most - FADE * beyond - self.margin
+    }
+
+    /// The gradient of the height, from those of what it is made of.
+    fn slope(&self, ball: f64, slope: DVec3, two: Option<Two>, side: impl Fn(usize) -> DVec3) -> DVec3 {
+        let mut all = if ball - self.radius < MOST * self.radius { slope } else { DVec3::ZERO };
+        if let Some(Two { distances: [a, b], sides }) = two
+            && a + b > 2.0 * self.radius
+        {
+            for number in sides.into_iter().filter(|number| *number < self.sides.len()) {
+                all -= FADE * side(number);
+            }
+        }
+        all
+    }
+
+    /// How deep inside of the boxes a point is, and along which axis that grows.
+    fn depth(&self, p: DVec3) -> (f64, DVec3) {
+        let mut most = (f64::NEG_INFINITY, DVec3::ZERO);
+        for bounds in &self.boxes {
+            let mut least = (f64::INFINITY, DVec3::ZERO);
+            for axis in 0..3 {
+                let (low, high) = (p[axis] - bounds.min[axis], bounds.max[axis] - p[axis]);
+                for (depth, way) in [(low, 1.0), (high, -1.0)] {
+                    if depth < least.0 {
+                        least = (depth, way * DVec3::AXES[axis]);
+                    }
+                }
+            }
+            if least.0 > most.0 {
+                most = least;
+            }
+        }
+        most
+    }
+
+    /// The steepest that it is.
+    fn steepness(&self) -> f64 {
+        if self.sides.is_empty() { 1.0 } else { 1.0 + 2.0 * FADE }
+    }
+}
+
+/// Whether a zone meets a box.
+fn meets(zone: &Zone, bounds: &Bounds) -> bool {
+    let hull = zone.hull();
+    (0..3).all(|axis| hull[axis].hi() >= bounds.min[axis] && hull[axis].lo() <= bounds.max[axis])
+}
+
+impl AnyField for Fill {
+    fn name(&self) -> &'static str {
+        "fillet"
+    }
+
+    fn bounds_under(&self, map: &DAffine3) -> Bounds {
+        self.boxes.iter().fold(Bounds::EMPTY, |all, own| all.union(own)).transformed(map)
+    }
+
+    fn check(&self) -> Result<(), ParamError> {
+        Ok(())
+    }
+
+    fn roundoff(&self, reach: f64) -> f64 {
+        let sides = self.sides.iter().map(|side| 2.0 * FADE * side.distance.field.roundoff(reach)).fold(0.0, f64::max);
+        self.ball.field.roundoff(reach) + sides + 1e-6 * (self.radius + reach)
+    }
+
+    fn value(&self, p: [f64; 3]) -> f64 {
+        let p = DVec3::from_array(p);
+        let depth = self.depth(p).0;
+        if depth < 0.0 { depth } else { self.height(self.ball.value(p), self.two(p)).min(depth) }
+    }
+
+    fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64> {
+        let at = DVec3::from_array(p.map(Dual::value));
+        let (ball, two, (depth, way)) = (self.ball.value(at), self.two(at), self.depth(at));
+        let height = self.height(ball, two);
+        let (value, slope) = if depth < height {
+            (depth, way)
+        } else {
+            (height, self.slope(ball, self.ball.slope(at), two, |number| self.sides[number].distance.slope(at)))
+        };
+        let along = |axis: usize| (0..3).map(|i| slope[i] * p[i].d[axis]).sum();
+        Dual::new(value, [along(0), along(1), along(2)])
+    }
+
+    fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
+        Dual::new(self.range(&Zone::of_sides(p.map(Dual::value))), steep_slopes(self.steepness(), p))
+    }
+
+    fn exact(&self) -> bool {
+        false
+    }
+
+    fn convex(&self) -> bool {
+        false
+    }
+
+    fn is_steady(&self) -> bool {
+        false
+    }
+
+    fn range(&self, zone: &Zone) -> Interval {
+        let point = Interval::point;
+        let mut depth = Interval::point(f64::NEG_INFINITY);
+        for bounds in &self.boxes {
+            let mut own = Interval::ALL;
+            for (axis, side) in zone.hull().into_iter().enumerate() {
+                own = own.min(side - point(bounds.min[axis])).min(point(bounds.max[axis]) - side);
+            }
+            depth = depth.max(own);
+        }
+        if depth.hi() < 0.0 {
+            return depth;
+        }
+        let most = (self.ball.range(zone) - point(self.radius)).min(point(MOST * self.radius));
+        let fade = if self.sides.is_empty() {
+            point(0.0)
+        } else {
+            let farthest = point(self.farthest());
+            let (mut low, mut high) = (Two::new(self.farthest()), Two::new(self.farthest()));
+            for (number, side) in self.sides.iter().enumerate().filter(|(_, side)| meets(zone, &side.bounds)) {
+                let range = side.distance.range(zone).min(farthest);
+                low.add(number, range.lo());
+                high.add(number, range.hi());
+            }
+            let sum = Interval::new(low.distances.iter().sum(), high.distances.iter().sum());
+            (sum - point(2.0 * self.radius)).max(point(0.0)) * point(FADE)
+        };
+        (most - fade - point(self.margin)).min(depth)
+    }
+
+    fn steepest(&self, _zone: &Zone) -> f64 {
+        self.steepness()
+    }
+
+    fn narrowed(&self, zone: &Zone) -> Option<Arc<dyn AnyField>> {
+        let mut simpler = self.clone();
+        simpler.boxes.retain(|bounds| meets(zone, bounds));
+        let mut is_simpler = simpler.boxes.len() < self.boxes.len() && !simpler.boxes.is_empty();
+        if simpler.boxes.is_empty() {
+            simpler.boxes.clone_from(&self.boxes);
+        }
+        if let Some(field) = self.ball.field.narrowed(zone) {
+            (simpler.ball.field, is_simpler) = (field, true);
+        }
+        // Beyond the second of the least upper ends no operand is one of the two nearest.
+        let mut high = Two::new(self.farthest());
+        let ranges: Vec<Interval> = self
+            .sides
+            .iter()
+            .enumerate()
+            .map(|(number, side)| {
+                let is_near = meets(zone, &side.bounds);
+                let range = if is_near { side.distance.range(zone) } else { Interval::point(f64::INFINITY) };
+                high.add(number, range.hi());
+                range
+            })
+            .collect();
+        let [first, second] = high.distances;
+        if !self.sides.is_empty() && first + second <= 2.0 * self.radius {
+            (simpler.sides, is_simpler) = (Vec::new(), true);
+        } else if !self.sides.is_empty() {
+            let mut near = Vec::new();
+            for (side, range) in self.sides.iter().zip(&ranges) {
+                if range.lo() <= second {
+                    let field = side.distance.field.narrowed(zone);
+                    is_simpler |= field.is_some();
+                    let field = field.unwrap_or_else(|| side.distance.field.clone());
+                    near.push(Side { distance: Signed { field, ..side.distance }, bounds: side.bounds });
+                }
+            }
+            // One that stands for all that are far keeps the others from counting as none.
+            if near.is_empty() {
+                near.extend(self.sides.first().cloned());
+            }
+            is_simpler |= near.len() < self.sides.len();
+            simpler.sides = near;
+        }
+        is_simpler.then(|| Arc::new(simpler) as Arc<dyn AnyField>)
+    }
+
+    fn is_formula(&self) -> bool {
+        false
+    }
+
+    #[cfg(feature = "formula")]
+    fn symbol<'a>(&self, [x, _, _]: [Symbol<'a>; 3]) -> Symbol<'a> {
+        // Programs with a fillet are not lowered.
+        rvachev_num::Real::lift(x, -VALUE_LIMIT)
+    }
+
+    fn lanes32(&self, chunk: Chunk<'_, f32, 1>) {
+        let Chunk { points, placement, out: [out] } = chunk;
+        let own = unscaled(placement);
+        let values = |side: &Signed| {
+            let mut values = vec![0.0f32; out.len()];
+            side.field.lanes32(Chunk { points, placement: &own, out: [&mut values] });
+            values
+        };
+        let ball = values(&self.ball);
+        let sides: Vec<Vec<f32>> = self.sides.iter().map(|side| values(&side.distance)).collect();
+        for (i, out) in out.iter_mut().enumerate() {
+            let local = DVec3::from_array(placement.apply([0, 1, 2].map(|axis| f64::from(points[axis][i]))));
+            let two = self.two_of(local, |number| f64::from(sides[number][i]));
+            let value = self.height(self.ball.sign * f64::from(ball[i]), two);
+            *out = value.min(self.depth(local).0) as f32;
+        }
+        finish(placement, out);
+    }
+
+    fn lanes64(&self, chunk: Chunk<'_, f64, 1>) {
+        points64(self, chunk);
+    }
+
+    fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
+        let Chunk { points, placement, out } = chunk;
+        let own = unscaled(placement);
+        let count = points[0].len();
+        let slopes = |side: &Signed| {
+            let mut out = [(); 4].map(|()| vec![0.0f32; count]);
+            let [value, x, y, z] = &mut out;
+            side.field.gradients(Chunk { points, placement: &own, out: [value, x, y, z] });
+            out
+        };
+        let of = |list: &[Vec<f32>; 4], sign: f64, i: usize| {
+            let [x, y, z] = [1, 2, 3].map(|k| sign * f64::from(list[k][i]));
+            DVec3::new(x, y, z)
+        };
+        let ball = slopes(&self.ball);
+        let sides: Vec<[Vec<f32>; 4]> = self.sides.iter().map(|side| slopes(&side.distance)).collect();
+        let [value, dx, dy, dz] = out;
+        for i in 0..count {
+            let local = DVec3::from_array(placement.apply([0, 1, 2].map(|axis| f64::from(points[axis][i]))));
+            let two = self.two_of(local, |number| f64::from(sides[number][0][i]));
+            let (v, (depth, way)) = (self.ball.sign * f64::from(ball[0][i]), self.depth(local));
+            let height = self.height(v, two);
+            // The slopes of parts are those of the frame that the points are in.
+            let (v, slope) = if depth < height {
+                (depth, DVec3::from_array(placement.pull(way.to_array())))
+            } else {
+                let side = |number: usize| of(&sides[number], self.sides[number].distance.sign, i);
+                (height, self.slope(v, of(&ball, self.ball.sign, i), two, side))
+            };
+            value[i] = placement.finish(v) as f32;
+            let scaled = slope * placement.scale;
+            (dx[i], dy[i], dz[i]) = (scaled.x as f32, scaled.y as f32, scaled.z as f32);
+        }
+    }
+
+    fn takes_short(&self) -> bool {
+        self.ball.field.takes_short() && self.sides.iter().all(|side| side.distance.field.takes_short())
+    }
+}
+
+impl Fill {
+    /// The two nearest operands, by values that are known.
+    fn two_of(&self, p: DVec3, value: impl Fn(usize) -> f64) -> Option<Two> {
+        let mut two = Two::new(self.farthest());
+        for (number, side) in self.sides.iter().enumerate() {
+            if side.bounds.contains(p) {
+                two.add(number, side.distance.sign * value(number));
+            }
+        }
+        (!self.sides.is_empty()).then_some(two)
+    }
+}
