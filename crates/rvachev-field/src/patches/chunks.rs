@@ -8,14 +8,11 @@ use rvachev_num::lanes::{F32, F64, Lanes};
 use super::SurfaceDistance;
 use super::block::{BLOCK, Block};
 use super::closest::dot;
-use super::packet::Packet;
+use super::packet::{Packet, WIDEST};
 use super::packets::{Packets, Seeds};
 use super::search::Stack;
 use crate::kernel::{Element, on_level};
 use crate::{Chunk, Placement};
-
-/// The most points of a packet of `f32`.
-const WIDEST: usize = 16;
 
 impl SurfaceDistance {
     /// Values on lanes of `f32`.
@@ -148,10 +145,12 @@ fn slopes_on<L: Lanes<Element = f32> + Packet>(
         while at < len {
             let here = at..at + L::WIDTH;
             let [x, y, z, _] = &block.columns;
-            let best = packets.search(load::<L>(simd, [x, y, z], here.clone()), &mut seeds, &mut stack);
-            best.from[0].store(&mut block.columns[0][here.clone()]);
-            best.from[1].store(&mut block.columns[1][here.clone()]);
-            best.from[2].store(&mut block.columns[2][here.clone()]);
+            let p = load::<L>(simd, [x, y, z], here.clone());
+            let best = packets.search(p, &mut seeds, &mut stack);
+            let way = packets.ways(p, &best);
+            way[0].store(&mut block.columns[0][here.clone()]);
+            way[1].store(&mut block.columns[1][here.clone()]);
+            way[2].store(&mut block.columns[2][here.clone()]);
             best.which.store(&mut block.columns[3][here]);
             at += L::WIDTH;
         }

@@ -2,7 +2,7 @@
 
 use rvachev_num::Real;
 
-use super::face::Face;
+use super::face::{Face, Sides};
 
 /// A point of a patch and how far it is.
 #[derive(Clone, Copy, Debug)]
@@ -65,8 +65,7 @@ struct Metric {
 
 impl Metric {
     #[inline(always)]
-    fn of(face: &Face) -> Metric {
-        let [e, f] = [face.e, face.f].map(|side| side.map(f64::from));
+    fn of([e, f]: [[f64; 3]; 2]) -> Metric {
         let [ee, ef, ff] = [dot(e, e), dot(e, f), dot(f, f)];
         let det = ee * ff - ef * ef;
         // Slimmer than single precision tells, it has no inside.
@@ -81,6 +80,7 @@ impl Metric {
     }
 }
 
+/// One over the square of a length, 0 of none.
 #[inline(always)]
 fn reciprocal(square: f64) -> f64 {
     if square > 1e-30 { 1.0 / square } else { 0.0 }
@@ -88,9 +88,9 @@ fn reciprocal(square: f64) -> f64 {
 
 /// The nearest point of a face: below the point if that is inside, else on one of the sides.
 #[inline(always)]
-pub(super) fn on_face<R: Real>(face: &Face, p: [R; 3]) -> Flat<R> {
-    let metric = Metric::of(face);
-    let (e, f) = (face.e, face.f);
+pub(super) fn on_face<R: Real>(face: &Face, sides: &Sides, p: [R; 3]) -> Flat<R> {
+    let [e, f] = [sides.e.map(f64::from), sides.f.map(f64::from)];
+    let metric = Metric::of([e, f]);
     let r = [p[0] - f64::from(face.a[0]), p[1] - f64::from(face.a[1]), p[2] - f64::from(face.a[2])];
     let (re, rf) = (dot_stored(r, e), dot_stored(r, f));
     let sides = [
@@ -101,30 +101,35 @@ pub(super) fn on_face<R: Real>(face: &Face, p: [R; 3]) -> Flat<R> {
     let s = re.scale_add(metric.inverse[0], rf * metric.inverse[1]);
     let t = re.scale_add(metric.inverse[1], rf * metric.inverse[2]);
     let zero = s.lift(0.0);
-    let first = at(face, r, sides[0], zero);
-    let second = at(face, r, -sides[1] + 1.0, sides[1]);
-    let third = at(face, r, zero, sides[2]);
+    let first = at([e, f], r, sides[0], zero);
+    let second = at([e, f], r, -sides[1] + 1.0, sides[1]);
+    let third = at([e, f], r, zero, sides[2]);
     let inside = s.min(t).min(-(s + t) + metric.has_inside);
-    let closest = at(face, r, s, t).select(inside, first.nearer(second).nearer(third));
+    let closest = at([e, f], r, s, t).select(inside, first.nearer(second).nearer(third));
     Flat { closest, from_corner: r, sides }
 }
 
 /// The point of a face at coordinates; `r` is from corner 0 to the point that is asked about.
 #[inline(always)]
-fn at<R: Real>(face: &Face, r: [R; 3], s: R, t: R) -> Closest<R> {
-    Closest::new(minus(minus(r, s, face.e), t, face.f), [s, t])
+fn at<R: Real>([e, f]: [[f64; 3]; 2], r: [R; 3], s: R, t: R) -> Closest<R> {
+    Closest::new(minus(minus(r, s, e), t, f), [s, t])
 }
 
 /// `v − k w`.
 #[inline(always)]
-pub(super) fn minus<R: Real>(v: [R; 3], k: R, w: [f32; 3]) -> [R; 3] {
-    let k = -k;
-    [k.scale_add(f64::from(w[0]), v[0]), k.scale_add(f64::from(w[1]), v[1]), k.scale_add(f64::from(w[2]), v[2])]
+pub(super) fn minus<R: Real>(v: [R; 3], k: R, w: [f64; 3]) -> [R; 3] {
+    plus(v, -k, w)
+}
+
+/// `v + k w`.
+#[inline(always)]
+pub(super) fn plus<R: Real>(v: [R; 3], k: R, w: [f64; 3]) -> [R; 3] {
+    [k.scale_add(w[0], v[0]), k.scale_add(w[1], v[1]), k.scale_add(w[2], v[2])]
 }
 
 #[inline(always)]
-pub(super) fn dot_stored<R: Real>(v: [R; 3], w: [f32; 3]) -> R {
-    v[0].scale_add(f64::from(w[0]), v[1].scale_add(f64::from(w[1]), v[2] * f64::from(w[2])))
+pub(super) fn dot_stored<R: Real>(v: [R; 3], w: [f64; 3]) -> R {
+    v[0].scale_add(w[0], v[1].scale_add(w[1], v[2] * w[2]))
 }
 
 #[inline(always)]

@@ -9,7 +9,7 @@ pub(super) type Box3 = [[f32; 3]; 2];
 const EMPTY: Box3 = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
 
 /// How many patches a box without children holds at most.
-const LEAF: usize = 4;
+pub(super) const LEAF: usize = 4;
 
 /// Into how many slices a box is cut to find the best split.
 const BINS: usize = 16;
@@ -17,8 +17,8 @@ const BINS: usize = 16;
 /// From this depth on boxes are split in halves, which ends after 32 more levels.
 const SKEWED: u32 = 48;
 
-/// How many boxes a search may have to come back to.
-pub(super) const DEEPEST: usize = SKEWED as usize + 33;
+/// How many boxes a search may have to come back to, and one more.
+pub(super) const DEEPEST: usize = SKEWED as usize + 34;
 
 /// A box with two children, or with patches.
 #[derive(Clone, Copy, Debug)]

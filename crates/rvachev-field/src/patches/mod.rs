@@ -29,6 +29,7 @@ mod hierarchy;
 mod packet;
 mod packets;
 mod patch;
+mod plane;
 mod search;
 mod surface_distance;
 #[cfg(test)]
@@ -40,7 +41,7 @@ use glam::DVec3;
 use rvachev_num::{Cancelled, Run};
 
 use self::closest::Closest;
-use self::face::{Bulge, Face, Frame};
+use self::face::{Bulge, Face, Frame, Sides};
 use self::hierarchy::{Node, Tree};
 use self::search::{Best, Stack};
 use crate::Bounds;
@@ -69,6 +70,7 @@ pub struct Patches {
     nodes: Vec<Node>,
     /// The flat triangles, in the order of the hierarchy.
     faces: Vec<Face>,
+    sides: Vec<Sides>,
     /// What makes them curved; empty if none is.
     bulges: Vec<Bulge>,
     /// The numbers of the patches, as they were given.
@@ -94,10 +96,11 @@ impl Patches {
         let numbers: Vec<u32> = order.iter().map(|i| kept[*i as usize]).collect();
         let sorted = || numbers.iter().map(|i| &patches[*i as usize]);
         let faces: Vec<Face> = sorted().map(|patch| Face::new(patch, &frame)).collect();
+        let sides: Vec<Sides> = sorted().map(|patch| Sides::new(patch, &frame)).collect();
         let is_flat = chosen().all(Patch::is_flat);
         let bulges = if is_flat { Vec::new() } else { sorted().map(|patch| Bulge::new(patch, &frame)).collect() };
-        let hash = face::hash(&frame, &faces, &bulges);
-        Ok(Patches { frame, bounds, nodes, faces, bulges, numbers, hash })
+        let hash = face::hash(&frame, &faces, &sides, &bulges);
+        Ok(Patches { frame, bounds, nodes, faces, sides, bulges, numbers, hash })
     }
 
     /// The nearest point; nothing if there are no patches.
@@ -133,29 +136,23 @@ impl Patches {
 
     /// The nearest patch to one point of the surface's frame.
     fn search_one(&self, local: [f64; 3]) -> Best<f64> {
-        let mut best = Best::none(0.0);
-        self.search(local, &[], &mut best, &mut Stack::new(0.0));
-        best
+        self.search(local, &[], &mut Stack::new(0.0))
     }
 
     /// The nearest point of one patch.
     fn closest(&self, at: usize, local: [f64; 3]) -> Closest<f64> {
-        let face = &self.faces[at];
-        let flat = closest::on_face(face, local);
+        let (face, sides) = (&self.faces[at], &self.sides[at]);
+        let flat = closest::on_face(face, sides, local);
         match self.bulge(at) {
-            Some(bulge) => curved::on_patch(face, bulge, &flat),
+            Some(bulge) => curved::on_patch(sides, bulge, &flat, 1.0),
             None => flat.closest,
         }
     }
 
     /// A point of a patch, in the surface's frame, and the unit normal there.
     fn point_and_normal(&self, at: usize, s: f64, t: f64) -> (DVec3, DVec3) {
-        let face = &self.faces[at];
-        let [point, along_s, along_t] = match self.bulge(at) {
-            Some(bulge) => bulge.jet(face, s, t),
-            None => face.jet(s, t),
-        };
-        let [_, e, f] = face.jet(0.0, 0.0);
+        let flat @ [_, e, f] = self.sides[at].jet(&self.faces[at], s, t);
+        let [point, along_s, along_t] = self.bulge(at).map_or(flat, |bulge| bulge.jet(flat, s, t));
         let normal = along_s.cross(along_t);
         let normal = normal.try_normalize().or_else(|| e.cross(f).try_normalize()).unwrap_or(DVec3::Z);
         (point, normal)
@@ -182,7 +179,11 @@ impl Patches {
 
     /// The memory that they take.
     pub fn bytes(&self) -> usize {
-        size_of_val(&*self.nodes) + size_of_val(&*self.faces) + size_of_val(&*self.bulges) + size_of_val(&*self.numbers)
+        size_of_val(&*self.nodes)
+            + size_of_val(&*self.faces)
+            + size_of_val(&*self.sides)
+            + size_of_val(&*self.bulges)
+            + size_of_val(&*self.numbers)
     }
 
     /// How far a stored patch may be off the one that was given.

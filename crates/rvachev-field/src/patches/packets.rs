@@ -4,6 +4,7 @@
 use glam::{DAffine3, DMat3, DVec3};
 use rvachev_num::Real;
 
+use super::closest::on_face;
 use super::packet::Packet;
 use super::search::{Best, Stack};
 use super::{Patches, SurfaceDistance};
@@ -32,12 +33,12 @@ impl Seeds {
 
     #[inline(always)]
     fn take<R: Packet>(&mut self, which: R) {
-        let few = which.few();
+        let (all, count) = which.all();
         self.count = 0;
         let mut i = 0;
-        while i < few.len() {
-            let patch = few[i] as u32;
-            if i == 0 || patch != self.patches[self.count - 1] {
+        while i < count && self.count < self.patches.len() {
+            let patch = all[i] as u32;
+            if !self.known().contains(&patch) {
                 self.patches[self.count] = patch;
                 self.count += 1;
             }
@@ -83,10 +84,31 @@ impl Packets<'_> {
     /// Finds the nearest points to a packet of the surface's frame.
     #[inline(always)]
     pub(super) fn search<R: Packet>(&self, local: [R; 3], seeds: &mut Seeds, stack: &mut Stack<R>) -> Best<R> {
-        let mut best = Best::none(local[0]);
-        self.patches.search(local, seeds.known(), &mut best, stack);
+        let best = self.patches.search(local, seeds.known(), stack);
         seeds.take(best.which);
         best
+    }
+
+    /// The ways from the nearest points to those of a packet.
+    #[inline(always)]
+    pub(super) fn ways<R: Packet>(&self, local: [R; 3], best: &Best<R>) -> [R; 3] {
+        if !self.patches.bulges.is_empty() {
+            return best.from;
+        }
+        let (all, count) = best.which.all();
+        let mut ways = best.from;
+        let mut i = 0;
+        while i < count {
+            if !all[..i].contains(&all[i])
+                && let Some((face, sides)) = self.patches.at(all[i] as usize)
+            {
+                let other = -(best.which - f64::from(all[i])).abs();
+                let [x, y, z] = on_face(face, sides, local).closest.from;
+                ways = [other.select(x, ways[0]), other.select(y, ways[1]), other.select(z, ways[2])];
+            }
+            i += 1;
+        }
+        ways
     }
 
     /// The signed distances, as they count outside.
