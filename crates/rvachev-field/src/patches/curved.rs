@@ -12,8 +12,7 @@
 
 use rvachev_num::Real;
 
-use super::closest::{Closest, Flat, dot, dot_stored, minus, plus, within};
-use super::face::{Bulge, Sides};
+use super::closest::{Closest, dot, on_face, plus, within};
 use super::packet::Packet;
 
 /// Each step squares the error, which is some hundredths of the patch at the start: two or three
@@ -23,49 +22,15 @@ const STEPS: usize = 10;
 /// No step is longer than this, in coordinates.
 const STRIDE: f64 = 0.5;
 
-/// A patch about one point: its coefficients, and where the point is from corner 0.
-struct Around<R> {
-    e: [f64; 3],
-    f: [f64; 3],
-    c: [f64; 3],
-    d: [f64; 3],
-    mixed: [f64; 3],
-    r: [R; 3],
-    /// Negative where no better than a point of the patch is wanted.
-    wanted: R,
-}
-
-/// The nearest point of a patch, given that of its triangle. Where `wanted` is negative it may be
-/// any point of the patch.
-#[inline(always)]
-pub(super) fn on_patch<R: Packet>(sides: &Sides, bulge: &Bulge, flat: &Flat<R>, wanted: R) -> Closest<R> {
-    let [e, f] = [sides.e.map(f64::from), sides.f.map(f64::from)];
-    let [c, d, mixed] = [bulge.c.map(f64::from), bulge.d.map(f64::from), bulge.e.map(f64::from)];
-    let around = Around { e, f, c, d, mixed, r: flat.from_corner, wanted };
-    let start = flat.closest.coordinates;
-    let mut best = around.at(start);
-    let [s, t] = around.descend(start);
-    let zero = s.lift(0.0);
-    let one = s.lift(1.0);
-    let lowest = s.min(t).min(-(s + t) + 1.0);
-    let inner = around.at([lowest.select(s, start[0]), lowest.select(t, start[1])]);
-    best = best.nearer(inner);
-    let outside = [wanted.select(t, one), wanted.select(s, one), wanted.select(-(s + t) + 1.0, one)];
-    if outside[0].any_below(zero) {
-        let q = around.along(flat.sides[0], around.r, e, c, outside[0]);
-        best = outside[0].choose_nearer(best, around.at([q, zero]));
-    }
-    if outside[1].any_below(zero) {
-        let q = around.along(flat.sides[2], around.r, f, d, outside[1]);
-        best = outside[1].choose_nearer(best, around.at([zero, q]));
-    }
-    if outside[2].any_below(zero) {
-        let chord = sum(f, e, -1.0);
-        let bend = sum(sum(c, d, 1.0), mixed, 1.0);
-        let q = around.along(flat.sides[1], minus(around.r, one, e), chord, bend, outside[2]);
-        best = outside[2].choose_nearer(best, around.at([-q + 1.0, q]));
-    }
-    best
+/// A patch as a polynomial, seen from a point.
+pub(super) struct Around<R> {
+    /// From corner 0 to the point.
+    pub(super) r: [R; 3],
+    pub(super) e: [R; 3],
+    pub(super) f: [R; 3],
+    pub(super) c: [R; 3],
+    pub(super) d: [R; 3],
+    pub(super) mixed: [R; 3],
 }
 
 /// Takes what lies on a side only where that side was crossed.
@@ -79,11 +44,40 @@ trait Crossed: Real {
 impl<R: Real> Crossed for R {}
 
 #[inline(always)]
-fn sum(v: [f64; 3], w: [f64; 3], k: f64) -> [f64; 3] {
-    [v[0] + k * w[0], v[1] + k * w[1], v[2] + k * w[2]]
+fn sum<R: Real>(v: [R; 3], w: [R; 3]) -> [R; 3] {
+    [v[0] + w[0], v[1] + w[1], v[2] + w[2]]
 }
 
 impl<R: Packet> Around<R> {
+    /// The nearest point of the patch.
+    #[inline(always)]
+    pub(super) fn closest(&self) -> Closest<R> {
+        let flat = on_face([self.e, self.f], self.r);
+        let start = flat.closest.coordinates;
+        let mut best = self.at(start);
+        let [s, t] = self.descend(start);
+        let zero = s.lift(0.0);
+        let lowest = s.min(t).min(-(s + t) + 1.0);
+        let inner = self.at([lowest.select(s, start[0]), lowest.select(t, start[1])]);
+        best = best.nearer(inner);
+        let outside = [t, s, -(s + t) + 1.0];
+        if outside[0].any_below(zero) {
+            let q = self.along(flat.sides[0], self.r, self.e, self.c, outside[0]);
+            best = outside[0].choose_nearer(best, self.at([q, zero]));
+        }
+        if outside[1].any_below(zero) {
+            let q = self.along(flat.sides[2], self.r, self.f, self.d, outside[1]);
+            best = outside[1].choose_nearer(best, self.at([zero, q]));
+        }
+        if outside[2].any_below(zero) {
+            let chord = plus(self.f, s.lift(-1.0), self.e);
+            let bend = sum(sum(self.c, self.d), self.mixed);
+            let q = self.along(flat.sides[1], plus(self.r, s.lift(-1.0), self.e), chord, bend, outside[2]);
+            best = outside[2].choose_nearer(best, self.at([-q + 1.0, q]));
+        }
+        best
+    }
+
     /// The point of the patch at coordinates.
     #[inline(always)]
     fn at(&self, [s, t]: [R; 2]) -> Closest<R> {
@@ -93,16 +87,16 @@ impl<R: Packet> Around<R> {
     /// From the point of the patch at coordinates to the one asked about.
     #[inline(always)]
     fn remainder(&self, s: R, t: R) -> [R; 3] {
-        let flat = minus(minus(self.r, s, self.e), t, self.f);
-        let bent = minus(minus(flat, s * (-s + 1.0), self.c), t * (-t + 1.0), self.d);
-        minus(bent, s * t, self.mixed)
+        let flat = plus(plus(self.r, -s, self.e), -t, self.f);
+        let bent = plus(plus(flat, s * (s - 1.0), self.c), t * (t - 1.0), self.d);
+        plus(bent, -(s * t), self.mixed)
     }
 
     /// Newton's steps, which may end outside of the triangle.
     #[inline(always)]
     fn descend(&self, [mut s, mut t]: [R; 2]) -> [R; 2] {
         let still = s.lift(-R::STILL);
-        let mut moving = self.wanted;
+        let mut moving = s.lift(1.0);
         let mut step = 0;
         while step < STEPS {
             let from = self.remainder(s, t);
@@ -111,8 +105,8 @@ impl<R: Packet> Around<R> {
             let along_t = self.tangent(self.f, kt, self.d, s);
             let (gs, gt) = (dot(from, along_s), dot(from, along_t));
             let [ss, st, tt] = [dot(along_s, along_s), dot(along_s, along_t), dot(along_t, along_t)];
-            let (bend_s, bend_t) = (dot_stored(from, self.c), dot_stored(from, self.d));
-            let full = [ss + bend_s + bend_s, st - dot_stored(from, self.mixed), tt + bend_t + bend_t];
+            let (bend_s, bend_t) = (dot(from, self.c), dot(from, self.d));
+            let full = [ss + bend_s + bend_s, st - dot(from, self.mixed), tt + bend_t + bend_t];
             let least = ss * tt * 1e-3;
             let det = full[0] * full[2] - full[1] * full[1];
             let key = (det - least).min(full[0]);
@@ -134,25 +128,24 @@ impl<R: Packet> Around<R> {
 
     /// `side + k bulge + other E`.
     #[inline(always)]
-    fn tangent(&self, side: [f64; 3], k: R, bulge: [f64; 3], other: R) -> [R; 3] {
-        let plain = plus(lifted(k, side), other, self.mixed);
-        plus(plain, k, bulge)
+    fn tangent(&self, side: [R; 3], k: R, bulge: [R; 3], other: R) -> [R; 3] {
+        plus(plus(side, other, self.mixed), k, bulge)
     }
 
     /// The nearest point of the side `q chord + q (1 − q) bend`, from a start, where `outside` is
     /// negative.
     #[inline(always)]
-    fn along(&self, start: R, r: [R; 3], chord: [f64; 3], bend: [f64; 3], outside: R) -> R {
+    fn along(&self, start: R, r: [R; 3], chord: [R; 3], bend: [R; 3], outside: R) -> R {
         let mut q = start;
         let still = q.lift(-R::STILL);
         let mut moving = outside.select(q.lift(-1.0), q.lift(1.0));
         let mut step = 0;
         while step < STEPS {
-            let from = minus(minus(r, q, chord), q * (-q + 1.0), bend);
+            let from = plus(plus(r, -q, chord), q * (q - 1.0), bend);
             let k = -(q + q) + 1.0;
-            let tangent = plus(lifted(k, chord), k, bend);
+            let tangent = plus(chord, k, bend);
             let square = dot(tangent, tangent);
-            let bent = dot_stored(from, bend);
+            let bent = dot(from, bend);
             let full = square + bent + bent;
             let curvature = (full - square * 1e-2).select(full, square).max(square.lift(1e-30));
             let next = within(q + cut(dot(from, tangent) / curvature));
@@ -166,12 +159,6 @@ impl<R: Packet> Around<R> {
         }
         q
     }
-}
-
-/// A stored vector as a packet's, `like` any number of it.
-#[inline(always)]
-fn lifted<R: Real>(like: R, v: [f64; 3]) -> [R; 3] {
-    [like.lift(v[0]), like.lift(v[1]), like.lift(v[2])]
 }
 
 /// A step, cut to the longest.

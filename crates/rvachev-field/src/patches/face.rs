@@ -104,6 +104,14 @@ impl Face {
     }
 }
 
+impl Face {
+    /// From corner 0 to a point.
+    #[inline(always)]
+    pub(super) fn seen_from(&self, p: [f64; 3]) -> [f64; 3] {
+        [p[0] - f64::from(self.a[0]), p[1] - f64::from(self.a[1]), p[2] - f64::from(self.a[2])]
+    }
+}
+
 /// The sides of a face from corner 0 to corners 1 and 2. The face's own vectors are rounded; these
 /// are those of the patch, to the last bit where that has few.
 #[derive(Clone, Copy, Debug)]
@@ -116,6 +124,12 @@ impl Sides {
     pub(super) fn new(patch: &Patch, frame: &Frame) -> Sides {
         let [a, b, c] = patch.corners.map(|corner| frame.into_local(corner));
         Sides { e: single(b - a), f: single(c - a) }
+    }
+
+    /// As they go into formulas.
+    #[inline(always)]
+    pub(super) fn wide(&self) -> [[f64; 3]; 2] {
+        [self.e.map(f64::from), self.f.map(f64::from)]
     }
 
     /// Point and derivatives by both coordinates.

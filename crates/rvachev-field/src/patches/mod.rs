@@ -24,10 +24,12 @@ mod block;
 mod chunks;
 mod closest;
 mod curved;
+mod double;
 mod face;
 mod hierarchy;
 mod packet;
 mod packets;
+mod pairs;
 mod patch;
 mod plane;
 mod search;
@@ -41,9 +43,10 @@ use glam::DVec3;
 use rvachev_num::{Cancelled, Run};
 
 use self::closest::Closest;
+use self::curved::Around;
 use self::face::{Bulge, Face, Frame, Sides};
 use self::hierarchy::{Node, Tree};
-use self::search::{Best, Stack};
+use self::search::{Best, Keep, Stack};
 use crate::Bounds;
 
 pub use self::patch::Patch;
@@ -136,30 +139,31 @@ impl Patches {
 
     /// The nearest patch to one point of the surface's frame.
     fn search_one(&self, local: [f64; 3]) -> Best<f64> {
-        self.search(local, &[], &mut Stack::new(0.0))
+        let mut curved = One { patches: self, local, best: Best::none(0.0) };
+        let best = self.search(local, &[], &mut Stack::new(0.0), &mut curved);
+        if self.bulges.is_empty() { best } else { curved.best }
     }
 
     /// The nearest point of one patch.
     fn closest(&self, at: usize, local: [f64; 3]) -> Closest<f64> {
-        let (face, sides) = (&self.faces[at], &self.sides[at]);
-        let flat = closest::on_face(face, sides, local);
-        match self.bulge(at) {
-            Some(bulge) => curved::on_patch(sides, bulge, &flat, 1.0),
-            None => flat.closest,
+        let r = self.faces[at].seen_from(local);
+        let [e, f] = self.sides[at].wide();
+        match self.bulges.get(at) {
+            Some(bulge) => {
+                let [c, d, mixed] = [bulge.c, bulge.d, bulge.e].map(|v| v.map(f64::from));
+                Around { r, e, f, c, d, mixed }.closest()
+            }
+            None => closest::on_face([e, f], r).closest,
         }
     }
 
     /// A point of a patch, in the surface's frame, and the unit normal there.
     fn point_and_normal(&self, at: usize, s: f64, t: f64) -> (DVec3, DVec3) {
         let flat @ [_, e, f] = self.sides[at].jet(&self.faces[at], s, t);
-        let [point, along_s, along_t] = self.bulge(at).map_or(flat, |bulge| bulge.jet(flat, s, t));
+        let [point, along_s, along_t] = self.bulges.get(at).map_or(flat, |bulge| bulge.jet(flat, s, t));
         let normal = along_s.cross(along_t);
         let normal = normal.try_normalize().or_else(|| e.cross(f).try_normalize()).unwrap_or(DVec3::Z);
         (point, normal)
-    }
-
-    fn bulge(&self, at: usize) -> Option<&Bulge> {
-        self.bulges.get(at).filter(|_| self.faces[at].sag > 0.0)
     }
 
     /// How many patches there are.
@@ -190,6 +194,22 @@ impl Patches {
     fn rounding(&self) -> f64 {
         // A corner is a sum of two stored numbers of at most 2 units.
         4.0 * f64::from(f32::EPSILON) * self.frame.unit
+    }
+}
+
+/// The curved patches of a search for one point, asked at once.
+struct One<'a> {
+    patches: &'a Patches,
+    local: [f64; 3],
+    best: Best<f64>,
+}
+
+impl Keep<f64> for One<'_> {
+    #[inline(always)]
+    fn keep(&mut self, at: u32, least: f64, most: f64) {
+        if least < most.min(self.best.square) {
+            self.best.take(self.patches.closest(at as usize, self.local).square, at);
+        }
     }
 }
 

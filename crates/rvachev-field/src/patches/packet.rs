@@ -5,8 +5,9 @@ use rvachev_num::Real;
 use rvachev_num::lanes::{F32, F64};
 
 use super::closest::on_face;
+use super::double;
 use super::face::{Face, Sides};
-use super::plane;
+use super::plane::Plane;
 
 /// The most points of a packet.
 pub(super) const WIDEST: usize = 16;
@@ -16,6 +17,12 @@ pub(super) trait Packet: Real {
     /// The last of Newton's steps is at most this long, in coordinates of a patch: the error that
     /// is left goes with its square, and that of the distance with its fourth power.
     const STILL: f64;
+
+    /// A triangle whose sides from a corner have a sine whose square is less has no inside.
+    const SLIM: f64;
+
+    /// Which numbers are below their counterparts, as bits.
+    fn below(self, other: Self) -> u64;
 
     /// Whether any number is below its counterpart.
     fn any_below(self, other: Self) -> bool;
@@ -32,6 +39,12 @@ pub(super) trait Packet: Real {
 
 impl Packet for f64 {
     const STILL: f64 = 1e-4;
+    const SLIM: f64 = 1e-12;
+
+    #[inline(always)]
+    fn below(self, other: f64) -> u64 {
+        u64::from(self < other)
+    }
 
     #[inline(always)]
     fn any_below(self, other: f64) -> bool {
@@ -50,12 +63,18 @@ impl Packet for f64 {
 
     #[inline(always)]
     fn from_face(p: [f64; 3], face: &Face, sides: &Sides) -> f64 {
-        on_face(face, sides, p).closest.square
+        on_face(sides.wide(), face.seen_from(p)).closest.square
     }
 }
 
 impl<S: Simd> Packet for F32<S> {
     const STILL: f64 = 2e-3;
+    const SLIM: f64 = 1e-6;
+
+    #[inline(always)]
+    fn below(self, other: Self) -> u64 {
+        self.0.simd_lt(other.0).to_bitmask()
+    }
 
     #[inline(always)]
     fn any_below(self, other: Self) -> bool {
@@ -75,13 +94,19 @@ impl<S: Simd> Packet for F32<S> {
     }
 
     #[inline(always)]
-    fn from_face(p: [Self; 3], face: &Face, _sides: &Sides) -> Self {
-        plane::square(face, p)
+    fn from_face(p: [Self; 3], face: &Face, _: &Sides) -> Self {
+        Plane::single(face).square(p)
     }
 }
 
 impl<S: Simd> Packet for F64<S> {
     const STILL: f64 = 1e-4;
+    const SLIM: f64 = 1e-12;
+
+    #[inline(always)]
+    fn below(self, other: Self) -> u64 {
+        self.0.simd_lt(other.0).to_bitmask()
+    }
 
     #[inline(always)]
     fn any_below(self, other: Self) -> bool {
@@ -104,6 +129,6 @@ impl<S: Simd> Packet for F64<S> {
 
     #[inline(always)]
     fn from_face(p: [Self; 3], face: &Face, sides: &Sides) -> Self {
-        on_face(face, sides, p).closest.square
+        double::square(face, sides, p, Self::SLIM)
     }
 }

@@ -4,9 +4,9 @@
 use glam::{DAffine3, DMat3, DVec3};
 use rvachev_num::Real;
 
-use super::closest::on_face;
 use super::packet::Packet;
-use super::search::{Best, Stack};
+use super::plane::Plane;
+
 use super::{Patches, SurfaceDistance};
 use crate::{Placement, VALUE_LIMIT};
 
@@ -27,12 +27,12 @@ pub(super) struct Seeds {
 
 impl Seeds {
     #[inline(always)]
-    fn known(&self) -> &[u32] {
+    pub(super) fn known(&self) -> &[u32] {
         &self.patches[..self.count]
     }
 
     #[inline(always)]
-    fn take<R: Packet>(&mut self, which: R) {
+    pub(super) fn take<R: Packet>(&mut self, which: R) {
         let (all, count) = which.all();
         self.count = 0;
         let mut i = 0;
@@ -50,7 +50,7 @@ impl Seeds {
 /// A chunk's way into the surface's frame and back.
 pub(super) struct Packets<'a> {
     leaf: &'a SurfaceDistance,
-    patches: &'a Patches,
+    pub(super) patches: &'a Patches,
     placement: &'a Placement,
     /// Into the surface's frame; a value there is scaled and shifted to one outside.
     local: Placement,
@@ -81,29 +81,18 @@ impl Packets<'_> {
         [held(x), held(y), held(z)]
     }
 
-    /// Finds the nearest points to a packet of the surface's frame.
+    /// The ways from the nearest points of flat patches to those of a packet.
     #[inline(always)]
-    pub(super) fn search<R: Packet>(&self, local: [R; 3], seeds: &mut Seeds, stack: &mut Stack<R>) -> Best<R> {
-        let best = self.patches.search(local, seeds.known(), stack);
-        seeds.take(best.which);
-        best
-    }
-
-    /// The ways from the nearest points to those of a packet.
-    #[inline(always)]
-    pub(super) fn ways<R: Packet>(&self, local: [R; 3], best: &Best<R>) -> [R; 3] {
-        if !self.patches.bulges.is_empty() {
-            return best.from;
-        }
-        let (all, count) = best.which.all();
-        let mut ways = best.from;
+    pub(super) fn ways<R: Packet>(&self, local: [R; 3], which: R) -> [R; 3] {
+        let (all, count) = which.all();
+        let mut ways = [which.lift(0.0); 3];
         let mut i = 0;
         while i < count {
             if !all[..i].contains(&all[i])
-                && let Some((face, sides)) = self.patches.at(all[i] as usize)
+                && let Some((face, _)) = self.patches.at(all[i] as usize)
             {
-                let other = -(best.which - f64::from(all[i])).abs();
-                let [x, y, z] = on_face(face, sides, local).closest.from;
+                let other = -(which - f64::from(all[i])).abs();
+                let [x, y, z] = Plane::single(face).way(local);
                 ways = [other.select(x, ways[0]), other.select(y, ways[1]), other.select(z, ways[2])];
             }
             i += 1;
@@ -138,7 +127,7 @@ impl Packets<'_> {
     }
 
     /// Value and gradient of a point whose nearest patch is known, in double precision.
-    pub(super) fn one(&self, p: [f32; 3], patch: f32, sign: f32) -> [f32; 4] {
+    pub(super) fn one(&self, p: [f32; 3], patch: u32, sign: f32) -> [f32; 4] {
         let p = self.placement.apply(p.map(f64::from));
         let foot = self.patches.foot_on(patch as usize, self.leaf.flattened(DVec3::from_array(p)));
         let (value, slope) = self.leaf.towards(p, foot, f64::from(sign));

@@ -2,14 +2,12 @@
 //! that are farther than what is known.
 //!
 //! A flat patch is as far as its triangle. A curved one is as far as that to within its sag, which
-//! is enough to leave most of them out: the few that are left are kept until the boxes are done,
-//! and then asked for their nearest points.
+//! is enough to leave most of them out: the few that are left are asked for their nearest points
+//! once the boxes are done.
 
 use rvachev_num::Real;
 
 use super::Patches;
-use super::closest::{Closest, on_face};
-use super::curved::on_patch;
 use super::face::{Face, Sides};
 use super::hierarchy::{DEEPEST, LEAF, Node};
 use super::packet::Packet;
@@ -18,17 +16,14 @@ use super::packet::Packet;
 /// place, that of a patch by as much.
 const SURE: f64 = 1.0 - 16.0 * f32::EPSILON as f64;
 
-/// How many curved patches are kept.
-const KEPT: usize = 64;
+/// The same of an upper bound.
+const SURELY: f64 = 2.0 - SURE;
 
-/// The nearest points that are known so far.
+/// What is known so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Best<R> {
-    /// Squares of the distances.
+    /// Squares of the distances, of a surface with curved patches: what they are at most.
     pub(super) square: R,
-    /// From the points of the surface to those asked about; not found on surfaces without curved
-    /// patches.
-    pub(super) from: [R; 3],
     /// Where the patches are, as the hierarchy sorts them.
     pub(super) which: R,
 }
@@ -36,58 +31,57 @@ pub(super) struct Best<R> {
 impl<R: Packet> Best<R> {
     /// Nothing is known.
     #[inline(always)]
-    fn none(like: R) -> Best<R> {
-        let zero = like.lift(0.0);
-        Best { square: like.lift(f64::from(f32::MAX)), from: [zero; 3], which: zero }
+    pub(super) fn none(like: R) -> Best<R> {
+        Best { square: like.lift(f64::from(f32::MAX)), which: like.lift(0.0) }
     }
 
     /// Takes a patch where it is nearer than what is known; of two that are equally near the one
-    /// that comes first. Not negative where it was taken.
+    /// that comes first.
     #[inline(always)]
-    fn take(&mut self, square: R, at: u32) -> R {
+    pub(super) fn take(&mut self, square: R, at: u32) {
         let which = square.lift(f64::from(at));
         let tie = (self.square - square).select(self.which - which, which.lift(-1.0));
         let loses = (square - self.square).select(-tie, which.lift(-1.0));
         self.square = loses.select(self.square, square);
         self.which = loses.select(self.which, which);
-        loses
-    }
-
-    /// The same with the points.
-    #[inline(always)]
-    fn take_point(&mut self, found: &Closest<R>, at: u32) {
-        let loses = self.take(found.square, at);
-        self.from = [
-            loses.select(self.from[0], found.from[0]),
-            loses.select(self.from[1], found.from[1]),
-            loses.select(self.from[2], found.from[2]),
-        ];
     }
 }
 
-/// What a search has still to look into, and how far that is at least.
-pub(super) struct Stack<R> {
-    boxes: [(u32, R); DEEPEST],
-    patches: [(u32, R); KEPT],
-}
+/// Boxes that are still to be looked into, and how far they are at least.
+pub(super) struct Stack<R>([(u32, R); DEEPEST]);
 
 impl<R: Real> Stack<R> {
     #[inline(always)]
     pub(super) fn new(like: R) -> Stack<R> {
-        let none = (0, like.lift(0.0));
-        Stack { boxes: [none; DEEPEST], patches: [none; KEPT] }
+        Stack([(0, like.lift(0.0)); DEEPEST])
     }
 }
 
+/// Takes the curved patches that may be nearest.
+pub(super) trait Keep<R> {
+    /// Takes a patch, the square of how far it is at least, and that of what is known.
+    fn keep(&mut self, at: u32, least: R, most: R);
+}
+
+/// Curved patches of a search that is not at its end.
+const KEPT: usize = 32;
+
 impl Patches {
-    /// Finds the nearest patches to points of the surface's frame. `seeds` are patches that are
-    /// likely to be near.
+    /// Finds the nearest patches to points of the surface's frame, of curved patches all that may
+    /// be. `seeds` are patches that are likely to be near.
     #[inline(always)]
-    pub(super) fn search<R: Packet>(&self, p: [R; 3], seeds: &[u32], stack: &mut Stack<R>) -> Best<R> {
+    pub(super) fn search<R: Packet>(
+        &self,
+        p: [R; 3],
+        seeds: &[u32],
+        stack: &mut Stack<R>,
+        curved: &mut impl Keep<R>,
+    ) -> Best<R> {
         let mut best = Best::none(p[0]);
         if self.nodes.is_empty() {
             return best;
         }
+        let is_flat = self.bulges.is_empty();
         // No point is farther than this.
         let mut most = best.square;
         for seed in seeds {
@@ -96,13 +90,14 @@ impl Patches {
             }
         }
         let middle = [p[0].one(), p[1].one(), p[2].one()];
-        stack.boxes[0] = (0, p[0].lift(0.0));
+        let mut kept = [(0, most); KEPT];
+        stack.0[0] = (0, p[0].lift(0.0));
         let mut height = 1;
         while height > 0 {
-            let mut kept = 0;
-            while height > 0 && kept + LEAF <= KEPT {
+            let mut count = 0;
+            while height > 0 && count + LEAF <= KEPT {
                 height -= 1;
-                let (at, least) = stack.boxes[height];
+                let (at, least) = stack.0[height];
                 if !least.any_below(most) {
                     continue;
                 }
@@ -113,43 +108,32 @@ impl Patches {
                     let b_first = u32::from(apart(b, middle) < apart(a, middle));
                     let [near, far] = [node.first + b_first, node.first + 1 - b_first];
                     let least = gap(&self.nodes[far as usize], p);
-                    stack.boxes[height] = (far, least);
+                    stack.0[height] = (far, least);
                     height += usize::from(least.any_below(most));
                     let least = gap(&self.nodes[near as usize], p);
-                    stack.boxes[height] = (near, least);
+                    stack.0[height] = (near, least);
                     height += usize::from(least.any_below(most));
                     continue;
                 }
                 for at in node.first..node.first + node.count {
                     let Some((face, sides)) = self.at(at as usize) else { continue };
                     let square = R::from_face(p, face, sides);
-                    if self.bulges.is_empty() {
+                    if is_flat {
                         best.take(square, at);
                         most = most.min(best.square);
                         continue;
                     }
-                    let least = (square.sqrt() * SURE - f64::from(face.sag)).max(square.lift(0.0));
+                    let distance = square.sqrt();
+                    let least = (distance * SURE - f64::from(face.sag)).max(square.lift(0.0));
                     let least = least.square() * SURE;
-                    if least.any_below(most) {
-                        most = most.min(farthest(square, face.sag));
-                        stack.patches[kept] = (at, least);
-                        kept += 1;
-                    }
+                    kept[count] = (at, least);
+                    count += usize::from(least.any_below(most));
+                    best.take((distance + f64::from(face.sag)).square() * SURELY + f64::from(f32::MIN_POSITIVE), at);
+                    most = most.min(best.square);
                 }
             }
-            for (at, least) in &stack.patches[..kept] {
-                if !least.any_below(most) {
-                    continue;
-                }
-                let Some((face, sides)) = self.at(*at as usize) else { continue };
-                let flat = on_face(face, sides, p);
-                let mut found = flat.closest;
-                if face.sag > 0.0 {
-                    let wanted = (*least - most).select(most.lift(-1.0), most.lift(1.0));
-                    found = on_patch(sides, &self.bulges[*at as usize], &flat, wanted);
-                }
-                best.take_point(&found, *at);
-                most = most.min(best.square);
+            for (at, least) in &kept[..count] {
+                curved.keep(*at, *least, most);
             }
         }
         best
@@ -175,7 +159,7 @@ fn apart(node: &Node, p: [f32; 3]) -> f32 {
 /// the far side.
 #[inline(always)]
 fn farthest<R: Real>(square: R, sag: f32) -> R {
-    (square.sqrt() + f64::from(sag)).square() * (2.0 - SURE) + f64::from(f32::MIN_POSITIVE)
+    (square.sqrt() + f64::from(sag)).square() * SURELY + f64::from(f32::MIN_POSITIVE)
 }
 
 /// The square of how far points are from a box, at least.
