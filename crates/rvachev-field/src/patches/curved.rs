@@ -111,7 +111,10 @@ impl<R: Packet> Around<R> {
             let det = full[0] * full[2] - full[1] * full[1];
             let key = (det - least).min(full[0]);
             let [hss, hst, htt] = [key.select(full[0], ss), key.select(full[1], st), key.select(full[2], tt)];
-            let det = (hss * htt - hst * hst).max(least).max(least.lift(1e-30));
+            // A little more keeps the steps along patches that are curves.
+            let more = (ss + tt) * 1e-7;
+            let (hss, htt) = (hss + more, htt + more);
+            let det = (hss * htt - hst * hst).max(least).max(least.lift(1e-36));
             let per_det = det.lift(1.0) / det;
             let by_s = cut((htt * gs - hst * gt) * per_det);
             let by_t = cut((hss * gt - hst * gs) * per_det);
