@@ -19,7 +19,10 @@ impl SurfaceDistance {
     /// Values on lanes of `f32`.
     pub(super) fn values32(&self, chunk: Chunk<'_, f32, 1>) {
         let Chunk { points, placement, out: [out] } = chunk;
-        self.sign.lanes32(Chunk { points, placement: &unscaled(placement), out: [&mut *out] });
+        match self.side {
+            Some(side) => out.fill(side as f32),
+            None => self.sign.lanes32(Chunk { points, placement: &unscaled(placement), out: [&mut *out] }),
+        }
         let packets = self.packets(placement);
         on_level!(simd => values_on::<F32<_>>(simd, &packets, points, out), else values_by_point(&packets, points, out))
     }
@@ -27,7 +30,10 @@ impl SurfaceDistance {
     /// The same on lanes of `f64`.
     pub(super) fn values64(&self, chunk: Chunk<'_, f64, 1>) {
         let Chunk { points, placement, out: [out] } = chunk;
-        self.sign.lanes64(Chunk { points, placement: &unscaled(placement), out: [&mut *out] });
+        match self.side {
+            Some(side) => out.fill(side),
+            None => self.sign.lanes64(Chunk { points, placement: &unscaled(placement), out: [&mut *out] }),
+        }
         let packets = self.packets(placement);
         on_level!(simd => values_on::<F64<_>>(simd, &packets, points, out), else values_by_point(&packets, points, out))
     }
@@ -35,7 +41,10 @@ impl SurfaceDistance {
     /// Values and gradients.
     pub(super) fn slopes(&self, chunk: Chunk<'_, f32, 4>) {
         let Chunk { points, placement, mut out } = chunk;
-        self.sign.lanes32(Chunk { points, placement: &unscaled(placement), out: [&mut *out[0]] });
+        match self.side {
+            Some(side) => out[0].fill(side as f32),
+            None => self.sign.lanes32(Chunk { points, placement: &unscaled(placement), out: [&mut *out[0]] }),
+        }
         let packets = self.packets(placement);
         on_level!(
             simd => slopes_on::<F32<_>>(simd, &packets, points, &mut out),

@@ -27,6 +27,7 @@ mod curved;
 mod double;
 mod face;
 mod hierarchy;
+mod narrow;
 mod packet;
 mod packets;
 mod pairs;
