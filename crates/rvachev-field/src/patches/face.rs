@@ -36,7 +36,7 @@ impl Frame {
         (p - self.centre) / self.unit
     }
 
-    pub(super) fn from_local(self, p: DVec3) -> DVec3 {
+    pub(super) fn outward(self, p: DVec3) -> DVec3 {
         p * self.unit + self.centre
     }
 

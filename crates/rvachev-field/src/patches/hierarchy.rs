@@ -11,6 +11,9 @@ const EMPTY: Box3 = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
 /// How many patches a box without children holds at most.
 pub(super) const LEAF: usize = 4;
 
+/// So few patches are not worth the slices: they are halved.
+const FEW: usize = 32;
+
 /// Into how many slices a box is cut to find the best split.
 const BINS: usize = 16;
 
@@ -79,8 +82,9 @@ impl Tree {
 fn union([a, b]: Box3, [c, d]: Box3) -> Box3 {
     let mut all = [a, b];
     for i in 0..3 {
-        all[0][i] = a[i].min(c[i]);
-        all[1][i] = b[i].max(d[i]);
+        // One instruction each, as these are numbers.
+        all[0][i] = if c[i] < a[i] { c[i] } else { a[i] };
+        all[1][i] = if d[i] > b[i] { d[i] } else { b[i] };
     }
     all
 }
@@ -99,6 +103,9 @@ fn middle([low, high]: Box3) -> [f32; 3] {
 /// Sorts patches into two parts and says where the second starts.
 fn split(items: &mut [(u32, Box3)]) -> usize {
     let span = items.iter().fold(EMPTY, |span, (_, own)| union(span, [middle(*own); 2]));
+    if items.len() <= FEW {
+        return halve(items, span);
+    }
     let bins = Bins::new(span);
     let Some((axis, cut)) = bins.filled(items).best() else {
         return items.len() / 2;
@@ -111,6 +118,15 @@ fn split(items: &mut [(u32, Box3)]) -> usize {
         }
     }
     count
+}
+
+/// Sorts patches into two halves along the longest side of the box of their middles.
+fn halve(items: &mut [(u32, Box3)], [low, high]: Box3) -> usize {
+    let size = [0, 1, 2].map(|axis| high[axis] - low[axis]);
+    let longest = if size[0] >= size[1] && size[0] >= size[2] { 0 } else { 1 + usize::from(size[2] > size[1]) };
+    let half = items.len() / 2;
+    items.select_nth_unstable_by(half, |(_, a), (_, b)| middle(*a)[longest].total_cmp(&middle(*b)[longest]));
+    half
 }
 
 /// Slices of a box along the three axes: how many patches have their middles there, and their box.
@@ -138,8 +154,8 @@ impl Bins {
         let mut filled = Bins { bins: self.bins, ..*self };
         for (_, own) in items {
             let middle = middle(*own);
-            for axis in 0..3 {
-                let (count, all) = &mut filled.bins[axis][self.of(axis, middle[axis])];
+            for (axis, middle) in middle.into_iter().enumerate() {
+                let (count, all) = &mut filled.bins[axis][self.of(axis, middle)];
                 *count += 1;
                 *all = union(*all, *own);
             }

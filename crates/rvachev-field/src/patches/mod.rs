@@ -121,7 +121,7 @@ impl Patches {
         let (point, normal) = self.point_and_normal(at, s, t);
         Some(Foot {
             distance: closest.square.sqrt() * self.frame.unit,
-            point: self.frame.from_local(point),
+            point: self.frame.outward(point),
             normal,
             patch: number,
         })
