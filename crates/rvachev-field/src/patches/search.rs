@@ -9,7 +9,7 @@ use rvachev_num::Real;
 
 use super::Patches;
 use super::face::{Face, Sides};
-use super::hierarchy::{DEEPEST, LEAF, Node};
+use super::hierarchy::{DEEPEST, LEAF, Node, PARENT};
 use super::packet::Packet;
 
 /// What is left of a lower bound after rounding: that of a box is off by a few units in the last
@@ -102,10 +102,11 @@ impl Patches {
                     continue;
                 }
                 let node = &self.nodes[at as usize];
-                if node.count == 0 {
+                if node.count >= PARENT {
                     let [a, b] = [&self.nodes[node.first as usize], &self.nodes[node.first as usize + 1]];
                     // Without branches: which way they go is all but chance.
-                    let b_first = u32::from(apart(b, middle) < apart(a, middle));
+                    let axis = (node.count - PARENT) as usize % 3;
+                    let b_first = u32::from(2.0 * middle[axis] > a.high[axis] + b.low[axis]);
                     let [near, far] = [node.first + b_first, node.first + 1 - b_first];
                     let least = gap(&self.nodes[far as usize], p);
                     stack.0[height] = (far, least);
@@ -146,15 +147,6 @@ impl Patches {
     }
 }
 
-/// Twice how far a point is from the middle of a box, along the axes.
-#[inline(always)]
-fn apart(node: &Node, p: [f32; 3]) -> f32 {
-    let x = node.low[0] + node.high[0] - 2.0 * p[0];
-    let y = node.low[1] + node.high[1] - 2.0 * p[1];
-    let z = node.low[2] + node.high[2] - 2.0 * p[2];
-    x.abs() + y.abs() + z.abs()
-}
-
 /// The square of how far a patch is at most, by that of its triangle and its sag; rounding is on
 /// the far side.
 #[inline(always)]
@@ -174,5 +166,5 @@ fn gap<R: Real>(node: &Node, p: [R; 3]) -> R {
 /// How far numbers are from a range.
 #[inline(always)]
 fn beyond<R: Real>(x: R, low: f32, high: f32) -> R {
-    (-x + f64::from(low)).max(x - f64::from(high)).max(x.lift(0.0))
+    x - x.max(x.lift(f64::from(low))).min(x.lift(f64::from(high)))
 }
