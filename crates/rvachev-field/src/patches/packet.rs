@@ -14,6 +14,9 @@ pub(super) const WIDEST: usize = 16;
 
 /// One point's number, or those of a packet of points.
 pub(super) trait Packet: Real {
+    /// Whether it is one point: the order of boxes then tells more than the seeds do.
+    const ALONE: bool = false;
+
     /// The last of Newton's steps is at most this long, in coordinates of a patch: the error that
     /// is left goes with its square, and that of the distance with its fourth power.
     const STILL: f64;
@@ -38,6 +41,7 @@ pub(super) trait Packet: Real {
 }
 
 impl Packet for f64 {
+    const ALONE: bool = true;
     const STILL: f64 = 1e-4;
     const SLIM: f64 = 1e-12;
 

@@ -104,9 +104,14 @@ impl Patches {
                 let node = &self.nodes[at as usize];
                 if node.count >= PARENT {
                     let [a, b] = [&self.nodes[node.first as usize], &self.nodes[node.first as usize + 1]];
-                    // Without branches: which way they go is all but chance.
                     let axis = (node.count - PARENT) as usize % 3;
-                    let b_first = u32::from(2.0 * middle[axis] > a.high[axis] + b.low[axis]);
+                    let mut b_first = 2.0 * middle[axis] > a.high[axis] + b.low[axis];
+                    if R::ALONE {
+                        let (gap_a, gap_b) = (gap(a, p).one(), gap(b, p).one());
+                        b_first = (gap_b < gap_a) | ((gap_b == gap_a) & b_first);
+                    }
+                    // Without branches: which way they go is all but chance.
+                    let b_first = u32::from(b_first);
                     let [near, far] = [node.first + b_first, node.first + 1 - b_first];
                     let least = gap(&self.nodes[far as usize], p);
                     stack.0[height] = (far, least);
