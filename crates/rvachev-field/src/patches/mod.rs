@@ -13,6 +13,10 @@
 //! What is found of a patch is a function of the point and the patch alone, and the distance is
 //! the least of all, so neither the order of the search nor where it starts shows in the result.
 //!
+//! Chunks of points are sorted into compact packets, and all points of a packet go through the
+//! hierarchy at once, on SIMD lanes. What is left to do of curved patches is done in vectors of
+//! pairs of a point and a patch.
+//!
 //! The geometry is kept in single precision, as lengths of a frame about the surface's middle
 //! whose unit is a power of two near half the surface's size. Searches in `f32` and in `f64` run
 //! over the same numbers and differ by rounding only.
@@ -27,6 +31,8 @@ mod curved;
 mod double;
 mod face;
 mod hierarchy;
+#[cfg(test)]
+mod leaf_tests;
 mod narrow;
 mod packet;
 mod packets;
