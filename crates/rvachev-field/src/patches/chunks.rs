@@ -108,8 +108,8 @@ impl<L: Lanes<Element: Element> + Packet> Work<L> {
         }
     }
 
-    /// Finds the nearest points to `len` points from `from` on, and where they are if `ways` are
-    /// wanted.
+    /// Finds how far the points of a block are, where in the chunk `here` is; and if `ways` are
+    /// wanted, from where.
     #[inline(always)]
     fn find(
         &mut self,
