@@ -8,8 +8,9 @@ pub(super) type Box3 = [[f32; 3]; 2];
 
 const EMPTY: Box3 = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
 
-/// How many patches a box without children holds at most.
-pub(super) const LEAF: usize = 4;
+/// How many patches a box without children holds at most: to look at a patch takes little more than
+/// to look at a box, and can be done without waiting for what the last one gave.
+pub(super) const LEAF: usize = 8;
 
 /// So few patches are not worth the slices: they are halved.
 const FEW: usize = 32;
