@@ -20,9 +20,9 @@ const CELLS: usize = 8;
 /// The bits of a cell's number, two bits apart.
 const SPREAD: [u16; CELLS] = [0, 1, 8, 9, 64, 65, 72, 73];
 
-/// Points of the surface's frame, or what is found of them.
+/// Points of the surface's frame.
 pub(super) struct Block<E> {
-    pub(super) columns: [[E; BLOCK]; 4],
+    pub(super) columns: [[E; BLOCK]; 3],
     /// Where the points stood before.
     order: [u16; BLOCK],
 }
@@ -30,13 +30,13 @@ pub(super) struct Block<E> {
 impl<E: Element> Block<E> {
     #[inline(always)]
     pub(super) fn new() -> Block<E> {
-        Block { columns: [[E::default(); BLOCK]; 4], order: [0; BLOCK] }
+        Block { columns: [[E::default(); BLOCK]; 3], order: [0; BLOCK] }
     }
 
     /// Sorts the points of the first three columns, of which `len` are in use.
     #[inline(always)]
     pub(super) fn sort(&mut self, len: usize) {
-        let [x, y, z, _] = &mut self.columns;
+        let [x, y, z] = &mut self.columns;
         let (x, y, z) = (&mut x[..len], &mut y[..len], &mut z[..len]);
         let ((low_x, width_x), (low_y, width_y), (low_z, width_z)) = (span(x), span(y), span(z));
         let width = width_x.max(width_y).max(width_z);
@@ -70,10 +70,17 @@ impl<E: Element> Block<E> {
         }
     }
 
-    /// What a column holds, in the order of before.
+    /// One of the points.
     #[inline(always)]
-    pub(super) fn unsorted(&self, column: usize, out: &mut [E]) {
-        for (from, to) in self.columns[column].iter().zip(&self.order[..out.len()]) {
+    pub(super) fn point(&self, at: usize) -> [E; 3] {
+        let [x, y, z] = &self.columns;
+        [x[at % BLOCK], y[at % BLOCK], z[at % BLOCK]]
+    }
+
+    /// What is found of the points, in the order of before.
+    #[inline(always)]
+    pub(super) fn unsorted<T: Copy>(&self, sorted: &[T; BLOCK], out: &mut [T]) {
+        for (from, to) in sorted.iter().zip(&self.order[..out.len()]) {
             out[usize::from(*to)] = *from;
         }
     }

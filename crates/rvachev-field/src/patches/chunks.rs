@@ -8,20 +8,21 @@ use rvachev_num::lanes::{F32, F64, Lanes};
 use super::SurfaceDistance;
 use super::block::{BLOCK, Block};
 use super::closest::dot;
-use super::packet::Packet;
+use super::packet::{Packet, WIDEST};
 use super::packets::{Packets, Seeds};
+use super::pairs::{Found, Pairs};
 use super::search::Stack;
 use crate::kernel::{Element, on_level};
 use crate::{Chunk, Placement};
-
-/// The most points of a packet of `f32`.
-const WIDEST: usize = 16;
 
 impl SurfaceDistance {
     /// Values on lanes of `f32`.
     pub(super) fn values32(&self, chunk: Chunk<'_, f32, 1>) {
         let Chunk { points, placement, out: [out] } = chunk;
-        self.sign.lanes32(Chunk { points, placement: &unscaled(placement), out: [&mut *out] });
+        match self.side {
+            Some(side) => out.fill(side as f32),
+            None => self.sign.lanes32(Chunk { points, placement: &unscaled(placement), out: [&mut *out] }),
+        }
         let packets = self.packets(placement);
         on_level!(simd => values_on::<F32<_>>(simd, &packets, points, out), else values_by_point(&packets, points, out))
     }
@@ -29,7 +30,10 @@ impl SurfaceDistance {
     /// The same on lanes of `f64`.
     pub(super) fn values64(&self, chunk: Chunk<'_, f64, 1>) {
         let Chunk { points, placement, out: [out] } = chunk;
-        self.sign.lanes64(Chunk { points, placement: &unscaled(placement), out: [&mut *out] });
+        match self.side {
+            Some(side) => out.fill(side),
+            None => self.sign.lanes64(Chunk { points, placement: &unscaled(placement), out: [&mut *out] }),
+        }
         let packets = self.packets(placement);
         on_level!(simd => values_on::<F64<_>>(simd, &packets, points, out), else values_by_point(&packets, points, out))
     }
@@ -37,7 +41,10 @@ impl SurfaceDistance {
     /// Values and gradients.
     pub(super) fn slopes(&self, chunk: Chunk<'_, f32, 4>) {
         let Chunk { points, placement, mut out } = chunk;
-        self.sign.lanes32(Chunk { points, placement: &unscaled(placement), out: [&mut *out[0]] });
+        match self.side {
+            Some(side) => out[0].fill(side as f32),
+            None => self.sign.lanes32(Chunk { points, placement: &unscaled(placement), out: [&mut *out[0]] }),
+        }
         let packets = self.packets(placement);
         on_level!(
             simd => slopes_on::<F32<_>>(simd, &packets, points, &mut out),
@@ -65,22 +72,88 @@ fn fill<L: Lanes<Element: Element>>(
     simd: L::Token,
     packets: &Packets<'_>,
     points: [&[L::Element]; 3],
-    from: usize,
-    len: usize,
+    here: Range<usize>,
     block: &mut Block<L::Element>,
 ) {
     let mut at = 0;
-    while at < len {
-        let [x, y, z] = packets.local(load::<L>(simd, points, from + at..from + at + L::WIDTH));
+    while at < here.len() {
+        let from = here.start + at;
+        let [x, y, z] = packets.local(load::<L>(simd, points, from..from + L::WIDTH));
         x.store(&mut block.columns[0][at..at + L::WIDTH]);
         y.store(&mut block.columns[1][at..at + L::WIDTH]);
         z.store(&mut block.columns[2][at..at + L::WIDTH]);
         at += L::WIDTH;
     }
-    block.sort(len);
+    block.sort(here.len());
 }
 
-/// Values, packet by packet; `out` holds the signs before.
+/// What a loop over blocks needs besides points and results.
+struct Work<L: Lanes> {
+    stack: Stack<L>,
+    seeds: Seeds,
+    pairs: Pairs<L>,
+    block: Block<L::Element>,
+    found: Found<L::Element>,
+}
+
+impl<L: Lanes<Element: Element> + Packet> Work<L> {
+    #[inline(always)]
+    fn new(simd: L::Token) -> Work<L> {
+        Work {
+            stack: Stack::new(L::splat(simd, 0.0)),
+            seeds: Seeds::default(),
+            pairs: Pairs::new(),
+            block: Block::new(),
+            found: Found::none(),
+        }
+    }
+
+    /// Finds how far the points of a block are, where in the chunk `here` is; and if `ways` are
+    /// wanted, from where.
+    #[inline(always)]
+    fn find(
+        &mut self,
+        simd: L::Token,
+        packets: &Packets<'_>,
+        points: [&[L::Element]; 3],
+        here: Range<usize>,
+        ways: bool,
+    ) {
+        let patches = packets.patches;
+        let is_flat = patches.bulges.is_empty();
+        let len = here.len();
+        fill::<L>(simd, packets, points, here.clone(), &mut self.block);
+        self.found = Found::none();
+        let mut at = 0;
+        while at < len {
+            let here = at..at + L::WIDTH;
+            let [x, y, z] = &self.block.columns;
+            let p = load::<L>(simd, [x, y, z], here.clone());
+            self.pairs.first = at as u32;
+            let best = patches.search(p, self.seeds.known(), &mut self.stack, &mut self.pairs);
+            self.seeds.take(best.which);
+            let (all, _) = best.which.all();
+            for (to, which) in self.found.patches[here.clone()].iter_mut().zip(all) {
+                *to = which as u32;
+            }
+            if is_flat {
+                best.square.store(&mut self.found.squares[here.clone()]);
+            }
+            if is_flat && ways {
+                let way = packets.ways(p, best.which);
+                way[0].store(&mut self.found.ways[0][here.clone()]);
+                way[1].store(&mut self.found.ways[1][here.clone()]);
+                way[2].store(&mut self.found.ways[2][here]);
+            }
+            at += L::WIDTH;
+        }
+        if !is_flat {
+            self.pairs.settle(simd, patches, &self.block, &mut self.found, len);
+        }
+    }
+}
+
+/// Values, block by block; `out` holds the signs before.
 #[inline(always)]
 fn values_on<L: Lanes<Element: Element> + Packet>(
     simd: L::Token,
@@ -88,23 +161,13 @@ fn values_on<L: Lanes<Element: Element> + Packet>(
     points: [&[L::Element]; 3],
     out: &mut [L::Element],
 ) {
-    let mut stack = Stack::new(L::splat(simd, 0.0));
-    let mut seeds = Seeds::default();
-    let mut block = Block::new();
+    let mut work = Work::<L>::new(simd);
     let mut squares = [L::Element::default(); BLOCK];
     let mut from = 0;
     while from < out.len() {
         let len = BLOCK.min(out.len() - from);
-        fill::<L>(simd, packets, points, from, len, &mut block);
-        let mut at = 0;
-        while at < len {
-            let here = at..at + L::WIDTH;
-            let [x, y, z, _] = &block.columns;
-            let best = packets.search(load::<L>(simd, [x, y, z], here.clone()), &mut seeds, &mut stack);
-            best.square.store(&mut block.columns[0][here]);
-            at += L::WIDTH;
-        }
-        block.unsorted(0, &mut squares[..len]);
+        work.find(simd, packets, points, from..from + len, false);
+        work.block.unsorted(&work.found.squares, &mut squares[..len]);
         let mut at = 0;
         while at < len {
             let out = &mut out[from + at..from + at + L::WIDTH];
@@ -120,16 +183,13 @@ fn values_on<L: Lanes<Element: Element> + Packet>(
 #[cold]
 #[inline(never)]
 fn values_by_point<E: Element>(packets: &Packets<'_>, [x, y, z]: [&[E]; 3], out: &mut [E]) {
-    let mut stack = Stack::new(0.0);
-    let mut seeds = Seeds::default();
     for at in 0..out.len() {
-        let local = packets.local([x[at], y[at], z[at]].map(E::to_f64));
-        let best = packets.search(local, &mut seeds, &mut stack);
+        let best = packets.patches.search_one(packets.local([x[at], y[at], z[at]].map(E::to_f64)));
         out[at] = E::from_f64(packets.value(best.square, out[at].to_f64()));
     }
 }
 
-/// Values and gradients, packet by packet; the first of `out` holds the signs before.
+/// Values and gradients, block by block; the first of `out` holds the signs before.
 #[inline(always)]
 fn slopes_on<L: Lanes<Element = f32> + Packet>(
     simd: L::Token,
@@ -137,34 +197,21 @@ fn slopes_on<L: Lanes<Element = f32> + Packet>(
     points: [&[f32]; 3],
     out: &mut [&mut [f32]; 4],
 ) {
-    let mut stack = Stack::new(L::splat(simd, 0.0));
-    let mut seeds = Seeds::default();
-    let mut block = Block::new();
+    let mut work = Work::<L>::new(simd);
+    let mut ways = [[0.0; BLOCK]; 3];
+    let mut patches = [0; BLOCK];
     let mut from = 0;
     while from < out[0].len() {
         let len = BLOCK.min(out[0].len() - from);
-        fill::<L>(simd, packets, points, from, len, &mut block);
-        let mut at = 0;
-        while at < len {
-            let here = at..at + L::WIDTH;
-            let [x, y, z, _] = &block.columns;
-            let best = packets.search(load::<L>(simd, [x, y, z], here.clone()), &mut seeds, &mut stack);
-            best.from[0].store(&mut block.columns[0][here.clone()]);
-            best.from[1].store(&mut block.columns[1][here.clone()]);
-            best.from[2].store(&mut block.columns[2][here.clone()]);
-            best.which.store(&mut block.columns[3][here]);
-            at += L::WIDTH;
+        work.find(simd, packets, points, from..from + len, true);
+        for (way, sorted) in ways.iter_mut().zip(&work.found.ways) {
+            work.block.unsorted(sorted, &mut way[..len]);
         }
-        let mut found = [[0.0; BLOCK]; 4];
-        block.unsorted(0, &mut found[0][..len]);
-        block.unsorted(1, &mut found[1][..len]);
-        block.unsorted(2, &mut found[2][..len]);
-        block.unsorted(3, &mut found[3][..len]);
+        work.block.unsorted(&work.found.patches, &mut patches[..len]);
         let mut at = 0;
         while at < len {
             let to = from + at..from + at + L::WIDTH;
-            let [x, y, z, which] = &found;
-            let way = load::<L>(simd, [x, y, z], at..at + L::WIDTH);
+            let way = load::<L>(simd, ways.each_ref().map(|way| &way[..]), at..at + L::WIDTH);
             let square = dot(way, way);
             let sign = L::load(simd, &out[0][to.clone()]);
             packets.value(square, sign).store(&mut out[0][to.clone()]);
@@ -173,10 +220,8 @@ fn slopes_on<L: Lanes<Element = f32> + Packet>(
             slope[1].store(&mut out[2][to.clone()]);
             slope[2].store(&mut out[3][to.clone()]);
             if Packets::are_close(square) {
-                let mut parts = [[0.0; WIDEST]; 2];
-                square.store(&mut parts[0][..L::WIDTH]);
-                sign.store(&mut parts[1][..L::WIDTH]);
-                refine(packets, &parts, &which[at..at + L::WIDTH], points, out, to.start);
+                let (squares, signs) = (square.all().0, sign.all().0);
+                refine(packets, [squares, signs], &patches[at..at + L::WIDTH], points, out, to.start);
             }
             at += L::WIDTH;
         }
@@ -189,8 +234,8 @@ fn slopes_on<L: Lanes<Element = f32> + Packet>(
 #[inline(never)]
 fn refine(
     packets: &Packets<'_>,
-    [squares, signs]: &[[f32; WIDEST]; 2],
-    patches: &[f32],
+    [squares, signs]: [[f32; WIDEST]; 2],
+    patches: &[u32],
     [x, y, z]: [&[f32]; 3],
     out: &mut [&mut [f32]; 4],
     at: usize,
@@ -209,12 +254,10 @@ fn refine(
 #[cold]
 #[inline(never)]
 fn slopes_by_point(packets: &Packets<'_>, [x, y, z]: [&[f32]; 3], out: &mut [&mut [f32]; 4]) {
-    let mut stack = Stack::new(0.0);
-    let mut seeds = Seeds::default();
     for at in 0..x.len() {
         let p = [x[at], y[at], z[at]];
-        let best = packets.search(packets.local(p.map(f64::from)), &mut seeds, &mut stack);
-        let jet = packets.one(p, best.which as f32, out[0][at]);
+        let best = packets.patches.search_one(packets.local(p.map(f64::from)));
+        let jet = packets.one(p, best.which as u32, out[0][at]);
         for (column, part) in out.iter_mut().zip(jet) {
             column[at] = part;
         }

@@ -2,7 +2,7 @@
 
 use rvachev_num::Real;
 
-use super::face::Face;
+use super::packet::Packet;
 
 /// A point of a patch and how far it is.
 #[derive(Clone, Copy, Debug)]
@@ -44,87 +44,54 @@ impl<R: Real> Closest<R> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Flat<R> {
     pub(super) closest: Closest<R>,
-    /// From corner 0 to the point.
-    pub(super) from_corner: [R; 3],
     /// Where the nearest points of the three sides are, 0 to 1 from one end to the other:
     /// corner 0 to 1, 1 to 2, 0 to 2.
     pub(super) sides: [R; 3],
 }
 
-/// Scalars of a triangle that do not depend on the point.
-struct Metric {
-    ee: f64,
-    ef: f64,
-    /// One over the squares of the sides' lengths, 0 for a side without length.
-    per_side: [f64; 3],
-    /// The inverse of the matrix of the dot products of e and f, 0 if there is none.
-    inverse: [f64; 3],
-    /// 1 if there is, else −1: then no point is inside.
-    has_inside: f64,
-}
-
-impl Metric {
-    #[inline(always)]
-    fn of(face: &Face) -> Metric {
-        let [e, f] = [face.e, face.f].map(|side| side.map(f64::from));
-        let [ee, ef, ff] = [dot(e, e), dot(e, f), dot(f, f)];
-        let det = ee * ff - ef * ef;
-        // Slimmer than single precision tells, it has no inside.
-        let (scale, has_inside) = if det > 1e-12 * ee * ff { (1.0 / det, 1.0) } else { (0.0, -1.0) };
-        Metric {
-            ee,
-            ef,
-            per_side: [reciprocal(ee), reciprocal(ee + ff - 2.0 * ef), reciprocal(ff)],
-            inverse: [scale * ff, -scale * ef, scale * ee],
-            has_inside,
-        }
-    }
-}
-
+/// The nearest point of a triangle: below the point if that is inside, else on one of the sides.
+/// e and f are the sides from corner 0, and r is from there to the point.
 #[inline(always)]
-fn reciprocal(square: f64) -> f64 {
-    if square > 1e-30 { 1.0 / square } else { 0.0 }
-}
-
-/// The nearest point of a face: below the point if that is inside, else on one of the sides.
-#[inline(always)]
-pub(super) fn on_face<R: Real>(face: &Face, p: [R; 3]) -> Flat<R> {
-    let metric = Metric::of(face);
-    let (e, f) = (face.e, face.f);
-    let r = [p[0] - f64::from(face.a[0]), p[1] - f64::from(face.a[1]), p[2] - f64::from(face.a[2])];
-    let (re, rf) = (dot_stored(r, e), dot_stored(r, f));
+pub(super) fn on_face<R: Packet>([e, f]: [[R; 3]; 2], r: [R; 3]) -> Flat<R> {
+    let [ee, ef, ff] = [dot(e, e), dot(e, f), dot(f, f)];
+    let (re, rf) = (dot(r, e), dot(r, f));
     let sides = [
-        within(re * metric.per_side[0]),
-        within((rf - re + (metric.ee - metric.ef)) * metric.per_side[1]),
-        within(rf * metric.per_side[2]),
+        within(re * reciprocal(ee)),
+        within((rf - re + (ee - ef)) * reciprocal(ee + ff - (ef + ef))),
+        within(rf * reciprocal(ff)),
     ];
-    let s = re.scale_add(metric.inverse[0], rf * metric.inverse[1]);
-    let t = re.scale_add(metric.inverse[1], rf * metric.inverse[2]);
-    let zero = s.lift(0.0);
-    let first = at(face, r, sides[0], zero);
-    let second = at(face, r, -sides[1] + 1.0, sides[1]);
-    let third = at(face, r, zero, sides[2]);
-    let inside = s.min(t).min(-(s + t) + metric.has_inside);
-    let closest = at(face, r, s, t).select(inside, first.nearer(second).nearer(third));
-    Flat { closest, from_corner: r, sides }
+    let zero = re.lift(0.0);
+    let one = re.lift(1.0);
+    let det = ee * ff - ef * ef;
+    // Slimmer than the numbers tell, it has no inside.
+    let slim = ee * ff * R::SLIM - det;
+    let scale = one / slim.select(one, det);
+    let s = (re * ff - rf * ef) * scale;
+    let t = (rf * ee - re * ef) * scale;
+    let inside = slim.select(-one, s.min(t).min(-(s + t) + 1.0));
+    let first = at([e, f], r, sides[0], zero);
+    let second = at([e, f], r, -sides[1] + 1.0, sides[1]);
+    let third = at([e, f], r, zero, sides[2]);
+    let closest = at([e, f], r, s, t).select(inside, first.nearer(second).nearer(third));
+    Flat { closest, sides }
 }
 
-/// The point of a face at coordinates; `r` is from corner 0 to the point that is asked about.
+/// One over the square of a length, 0 of none.
 #[inline(always)]
-fn at<R: Real>(face: &Face, r: [R; 3], s: R, t: R) -> Closest<R> {
-    Closest::new(minus(minus(r, s, face.e), t, face.f), [s, t])
+fn reciprocal<R: Real>(square: R) -> R {
+    (square - 1e-30).select(square.lift(1.0) / square, square.lift(0.0))
 }
 
-/// `v − k w`.
+/// The point of a face at coordinates.
 #[inline(always)]
-pub(super) fn minus<R: Real>(v: [R; 3], k: R, w: [f32; 3]) -> [R; 3] {
-    let k = -k;
-    [k.scale_add(f64::from(w[0]), v[0]), k.scale_add(f64::from(w[1]), v[1]), k.scale_add(f64::from(w[2]), v[2])]
+fn at<R: Real>([e, f]: [[R; 3]; 2], r: [R; 3], s: R, t: R) -> Closest<R> {
+    Closest::new(plus(plus(r, -s, e), -t, f), [s, t])
 }
 
+/// `v + k w`.
 #[inline(always)]
-pub(super) fn dot_stored<R: Real>(v: [R; 3], w: [f32; 3]) -> R {
-    v[0].scale_add(f64::from(w[0]), v[1].scale_add(f64::from(w[1]), v[2] * f64::from(w[2])))
+pub(super) fn plus<R: Real>(v: [R; 3], k: R, w: [R; 3]) -> [R; 3] {
+    [k.mul_add(w[0], v[0]), k.mul_add(w[1], v[1]), k.mul_add(w[2], v[2])]
 }
 
 #[inline(always)]

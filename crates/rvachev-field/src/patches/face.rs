@@ -36,7 +36,7 @@ impl Frame {
         (p - self.centre) / self.unit
     }
 
-    pub(super) fn from_local(self, p: DVec3) -> DVec3 {
+    pub(super) fn outward(self, p: DVec3) -> DVec3 {
         p * self.unit + self.centre
     }
 
@@ -55,14 +55,26 @@ pub(super) fn double(v: [f32; 3]) -> DVec3 {
     DVec3::from_array(v.map(f64::from))
 }
 
-/// The flat triangle of a patch.
+/// The flat triangle of a patch, in its own plane.
+///
+/// ```text
+///          v ↑    corner 2 = (apex₀, apex₁)
+///            |     /  \
+///            |   /      \
+///            | /          \
+///    corner 0 ----------- corner 1 = (length, 0)   → u
+/// ```
 #[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
 pub(super) struct Face {
     /// Corner 0.
     pub(super) a: [f32; 3],
-    /// The sides from there to corners 1 and 2.
-    pub(super) e: [f32; 3],
-    pub(super) f: [f32; 3],
+    /// Along side 0, across it in the plane, and across the plane: unit vectors.
+    pub(super) u: [f32; 3],
+    pub(super) v: [f32; 3],
+    pub(super) n: [f32; 3],
+    pub(super) length: f32,
+    pub(super) apex: [f32; 2],
     /// No point of the patch is farther than this from the point of the triangle at the same
     /// coordinates; 0 if it is flat.
     pub(super) sag: f32,
@@ -71,15 +83,58 @@ pub(super) struct Face {
 impl Face {
     pub(super) fn new(patch: &Patch, frame: &Frame) -> Face {
         let [a, b, c] = patch.corners.map(|corner| frame.into_local(corner));
+        let (e, f) = (b - a, c - a);
+        let u = e.try_normalize().or_else(|| f.try_normalize()).unwrap_or(DVec3::X);
+        let across = f - f.dot(u) * u;
+        // What is less is rounding, and may point anywhere.
+        let v = if across.length() > 1e-12 * f.length() { across } else { u.any_orthonormal_vector() };
+        let v = (v - v.dot(u) * u).normalize_or(u.any_orthonormal_vector());
         // 4 Σ bᵢbⱼ |uₖ| is at most 4/3 of the largest.
         let bulge = patch.bulges.iter().fold(0.0, |most, bulge| bulge.length().max(most)) / frame.unit;
         let sag = if patch.is_flat() { 0.0 } else { 4.0 / 3.0 * bulge + SLACK };
-        Face { a: single(a), e: single(b - a), f: single(c - a), sag: sag as f32 }
+        Face {
+            a: single(a),
+            u: single(u),
+            v: single(v),
+            n: single(u.cross(v)),
+            length: e.dot(u) as f32,
+            apex: [f.dot(u) as f32, f.dot(v) as f32],
+            sag: sag as f32,
+        }
+    }
+}
+
+impl Face {
+    /// From corner 0 to a point.
+    #[inline(always)]
+    pub(super) fn seen_from(&self, p: [f64; 3]) -> [f64; 3] {
+        [p[0] - f64::from(self.a[0]), p[1] - f64::from(self.a[1]), p[2] - f64::from(self.a[2])]
+    }
+}
+
+/// The sides of a face from corner 0 to corners 1 and 2. The face's own vectors are rounded; these
+/// are those of the patch, to the last bit where that has few.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sides {
+    pub(super) e: [f32; 3],
+    pub(super) f: [f32; 3],
+}
+
+impl Sides {
+    pub(super) fn new(patch: &Patch, frame: &Frame) -> Sides {
+        let [a, b, c] = patch.corners.map(|corner| frame.into_local(corner));
+        Sides { e: single(b - a), f: single(c - a) }
+    }
+
+    /// As they go into formulas.
+    #[inline(always)]
+    pub(super) fn wide(&self) -> [[f64; 3]; 2] {
+        [self.e.map(f64::from), self.f.map(f64::from)]
     }
 
     /// Point and derivatives by both coordinates.
-    pub(super) fn jet(&self, s: f64, t: f64) -> [DVec3; 3] {
-        let [a, e, f] = [self.a, self.e, self.f].map(double);
+    pub(super) fn jet(&self, face: &Face, s: f64, t: f64) -> [DVec3; 3] {
+        let [a, e, f] = [face.a, self.e, self.f].map(double);
         [a + s * e + t * f, e, f]
     }
 }
@@ -100,8 +155,7 @@ impl Bulge {
     }
 
     /// Point and derivatives by both coordinates.
-    pub(super) fn jet(&self, face: &Face, s: f64, t: f64) -> [DVec3; 3] {
-        let [flat, e, f] = face.jet(s, t);
+    pub(super) fn jet(&self, [flat, e, f]: [DVec3; 3], s: f64, t: f64) -> [DVec3; 3] {
         let [c, d, mixed] = [self.c, self.d, self.e].map(double);
         [
             flat + s * (1.0 - s) * c + t * (1.0 - t) * d + s * t * mixed,
@@ -112,12 +166,12 @@ impl Bulge {
 }
 
 /// A number that tells surfaces apart (FNV-1a over the stored numbers).
-pub(super) fn hash(frame: &Frame, faces: &[Face], bulges: &[Bulge]) -> u64 {
+pub(super) fn hash(frame: &Frame, faces: &[Face], sides: &[Sides], bulges: &[Bulge]) -> u64 {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     let mut add = |bits: u64| hash = (hash ^ bits).wrapping_mul(0x0100_0000_01b3);
     frame.centre.to_array().into_iter().chain([frame.unit]).for_each(|v| add(v.to_bits()));
-    let faces = faces.iter().flat_map(|face| [face.a, face.e, face.f]);
+    let sides = sides.iter().flat_map(|sides| [sides.e, sides.f]);
     let bulges = bulges.iter().flat_map(|bulge| [bulge.c, bulge.d, bulge.e]);
-    faces.chain(bulges).flatten().for_each(|v| add(u64::from(v.to_bits())));
+    faces.iter().map(|face| face.a).chain(sides).chain(bulges).flatten().for_each(|v| add(u64::from(v.to_bits())));
     hash
 }

@@ -8,8 +8,12 @@ pub(super) type Box3 = [[f32; 3]; 2];
 
 const EMPTY: Box3 = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
 
-/// How many patches a box without children holds at most.
-const LEAF: usize = 4;
+/// How many patches a box without children holds at most: to look at a patch takes little more than
+/// to look at a box, and can be done without waiting for what the last one gave.
+pub(super) const LEAF: usize = 8;
+
+/// So few patches are not worth the slices: they are halved.
+const FEW: usize = 32;
 
 /// Into how many slices a box is cut to find the best split.
 const BINS: usize = 16;
@@ -17,8 +21,8 @@ const BINS: usize = 16;
 /// From this depth on boxes are split in halves, which ends after 32 more levels.
 const SKEWED: u32 = 48;
 
-/// How many boxes a search may have to come back to.
-pub(super) const DEEPEST: usize = SKEWED as usize + 33;
+/// How many boxes a search may have to come back to, and one more.
+pub(super) const DEEPEST: usize = SKEWED as usize + 34;
 
 /// A box with two children, or with patches.
 #[derive(Clone, Copy, Debug)]
@@ -27,9 +31,13 @@ pub(super) struct Node {
     pub(super) high: [f32; 3],
     /// The first of its patches, or the first of its children, which stand side by side.
     pub(super) first: u32,
-    /// How many patches it holds; 0 if it has children.
+    /// How many patches it holds; if it has children, [`PARENT`] and the axis along which the first
+    /// of them is below the other.
     pub(super) count: u32,
 }
+
+/// The count of a box with children, less the axis.
+pub(super) const PARENT: u32 = 256;
 
 /// The hierarchy, and the order in which its boxes hold the patches.
 pub(super) struct Tree {
@@ -65,9 +73,9 @@ impl Tree {
                 nodes[node] = Node { low, high, first: from as u32, count: (to - from) as u32 };
                 continue;
             }
-            let middle = if depth < SKEWED { split(part) } else { part.len() / 2 };
+            let (axis, middle) = if depth < SKEWED { split(part) } else { (0, part.len() / 2) };
             let first = nodes.len();
-            nodes[node] = Node { low, high, first: first as u32, count: 0 };
+            nodes[node] = Node { low, high, first: first as u32, count: PARENT + axis as u32 };
             nodes.extend([nodes[node]; 2]);
             tasks.push(Task { node: first, from, to: from + middle, depth: depth + 1 });
             tasks.push(Task { node: first + 1, from: from + middle, to, depth: depth + 1 });
@@ -79,8 +87,9 @@ impl Tree {
 fn union([a, b]: Box3, [c, d]: Box3) -> Box3 {
     let mut all = [a, b];
     for i in 0..3 {
-        all[0][i] = a[i].min(c[i]);
-        all[1][i] = b[i].max(d[i]);
+        // One instruction each, as these are numbers.
+        all[0][i] = if c[i] < a[i] { c[i] } else { a[i] };
+        all[1][i] = if d[i] > b[i] { d[i] } else { b[i] };
     }
     all
 }
@@ -96,12 +105,15 @@ fn middle([low, high]: Box3) -> [f32; 3] {
     [low[0] + high[0], low[1] + high[1], low[2] + high[2]]
 }
 
-/// Sorts patches into two parts and says where the second starts.
-fn split(items: &mut [(u32, Box3)]) -> usize {
+/// Sorts patches into two parts, and says along which axis and where the second starts.
+fn split(items: &mut [(u32, Box3)]) -> (usize, usize) {
     let span = items.iter().fold(EMPTY, |span, (_, own)| union(span, [middle(*own); 2]));
+    if items.len() <= FEW {
+        return halve(items, span);
+    }
     let bins = Bins::new(span);
     let Some((axis, cut)) = bins.filled(items).best() else {
-        return items.len() / 2;
+        return (0, items.len() / 2);
     };
     let mut count = 0;
     for i in 0..items.len() {
@@ -110,7 +122,16 @@ fn split(items: &mut [(u32, Box3)]) -> usize {
             count += 1;
         }
     }
-    count
+    (axis, count)
+}
+
+/// Sorts patches into two halves along the longest side of the box of their middles.
+fn halve(items: &mut [(u32, Box3)], [low, high]: Box3) -> (usize, usize) {
+    let size = [0, 1, 2].map(|axis| high[axis] - low[axis]);
+    let longest = if size[0] >= size[1] && size[0] >= size[2] { 0 } else { 1 + usize::from(size[2] > size[1]) };
+    let half = items.len() / 2;
+    items.select_nth_unstable_by(half, |(_, a), (_, b)| middle(*a)[longest].total_cmp(&middle(*b)[longest]));
+    (longest, half)
 }
 
 /// Slices of a box along the three axes: how many patches have their middles there, and their box.
@@ -138,8 +159,8 @@ impl Bins {
         let mut filled = Bins { bins: self.bins, ..*self };
         for (_, own) in items {
             let middle = middle(*own);
-            for axis in 0..3 {
-                let (count, all) = &mut filled.bins[axis][self.of(axis, middle[axis])];
+            for (axis, middle) in middle.into_iter().enumerate() {
+                let (count, all) = &mut filled.bins[axis][self.of(axis, middle)];
                 *count += 1;
                 *all = union(*all, *own);
             }

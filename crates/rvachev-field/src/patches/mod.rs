@@ -13,6 +13,10 @@
 //! What is found of a patch is a function of the point and the patch alone, and the distance is
 //! the least of all, so neither the order of the search nor where it starts shows in the result.
 //!
+//! Chunks of points are sorted into compact packets, and all points of a packet go through the
+//! hierarchy at once, on SIMD lanes. What is left to do of curved patches is done in vectors of
+//! pairs of a point and a patch.
+//!
 //! The geometry is kept in single precision, as lengths of a frame about the surface's middle
 //! whose unit is a power of two near half the surface's size. Searches in `f32` and in `f64` run
 //! over the same numbers and differ by rounding only.
@@ -24,11 +28,17 @@ mod block;
 mod chunks;
 mod closest;
 mod curved;
+mod double;
 mod face;
 mod hierarchy;
+#[cfg(test)]
+mod leaf_tests;
+mod narrow;
 mod packet;
 mod packets;
+mod pairs;
 mod patch;
+mod plane;
 mod search;
 mod surface_distance;
 #[cfg(test)]
@@ -40,9 +50,10 @@ use glam::DVec3;
 use rvachev_num::{Cancelled, Run};
 
 use self::closest::Closest;
-use self::face::{Bulge, Face, Frame};
+use self::curved::Around;
+use self::face::{Bulge, Face, Frame, Sides};
 use self::hierarchy::{Node, Tree};
-use self::search::{Best, Stack};
+use self::search::{Best, Keep, Stack};
 use crate::Bounds;
 
 pub use self::patch::Patch;
@@ -69,6 +80,7 @@ pub struct Patches {
     nodes: Vec<Node>,
     /// The flat triangles, in the order of the hierarchy.
     faces: Vec<Face>,
+    sides: Vec<Sides>,
     /// What makes them curved; empty if none is.
     bulges: Vec<Bulge>,
     /// The numbers of the patches, as they were given.
@@ -94,10 +106,11 @@ impl Patches {
         let numbers: Vec<u32> = order.iter().map(|i| kept[*i as usize]).collect();
         let sorted = || numbers.iter().map(|i| &patches[*i as usize]);
         let faces: Vec<Face> = sorted().map(|patch| Face::new(patch, &frame)).collect();
+        let sides: Vec<Sides> = sorted().map(|patch| Sides::new(patch, &frame)).collect();
         let is_flat = chosen().all(Patch::is_flat);
         let bulges = if is_flat { Vec::new() } else { sorted().map(|patch| Bulge::new(patch, &frame)).collect() };
-        let hash = face::hash(&frame, &faces, &bulges);
-        Ok(Patches { frame, bounds, nodes, faces, bulges, numbers, hash })
+        let hash = face::hash(&frame, &faces, &sides, &bulges);
+        Ok(Patches { frame, bounds, nodes, faces, sides, bulges, numbers, hash })
     }
 
     /// The nearest point; nothing if there are no patches.
@@ -114,7 +127,7 @@ impl Patches {
         let (point, normal) = self.point_and_normal(at, s, t);
         Some(Foot {
             distance: closest.square.sqrt() * self.frame.unit,
-            point: self.frame.from_local(point),
+            point: self.frame.outward(point),
             normal,
             patch: number,
         })
@@ -133,36 +146,31 @@ impl Patches {
 
     /// The nearest patch to one point of the surface's frame.
     fn search_one(&self, local: [f64; 3]) -> Best<f64> {
-        let mut best = Best::none(0.0);
-        self.search(local, &[], &mut best, &mut Stack::new(0.0));
-        best
+        let mut curved = One { patches: self, local, best: Best::none(0.0) };
+        let best = self.search(local, &[], &mut Stack::new(0.0), &mut curved);
+        if self.bulges.is_empty() { best } else { curved.best }
     }
 
     /// The nearest point of one patch.
     fn closest(&self, at: usize, local: [f64; 3]) -> Closest<f64> {
-        let face = &self.faces[at];
-        let flat = closest::on_face(face, local);
-        match self.bulge(at) {
-            Some(bulge) => curved::on_patch(face, bulge, &flat),
-            None => flat.closest,
+        let r = self.faces[at].seen_from(local);
+        let [e, f] = self.sides[at].wide();
+        match self.bulges.get(at) {
+            Some(bulge) => {
+                let [c, d, mixed] = [bulge.c, bulge.d, bulge.e].map(|v| v.map(f64::from));
+                Around { r, e, f, c, d, mixed }.closest()
+            }
+            None => closest::on_face([e, f], r).closest,
         }
     }
 
     /// A point of a patch, in the surface's frame, and the unit normal there.
     fn point_and_normal(&self, at: usize, s: f64, t: f64) -> (DVec3, DVec3) {
-        let face = &self.faces[at];
-        let [point, along_s, along_t] = match self.bulge(at) {
-            Some(bulge) => bulge.jet(face, s, t),
-            None => face.jet(s, t),
-        };
-        let [_, e, f] = face.jet(0.0, 0.0);
+        let flat @ [_, e, f] = self.sides[at].jet(&self.faces[at], s, t);
+        let [point, along_s, along_t] = self.bulges.get(at).map_or(flat, |bulge| bulge.jet(flat, s, t));
         let normal = along_s.cross(along_t);
         let normal = normal.try_normalize().or_else(|| e.cross(f).try_normalize()).unwrap_or(DVec3::Z);
         (point, normal)
-    }
-
-    fn bulge(&self, at: usize) -> Option<&Bulge> {
-        self.bulges.get(at).filter(|_| self.faces[at].sag > 0.0)
     }
 
     /// How many patches there are.
@@ -182,13 +190,33 @@ impl Patches {
 
     /// The memory that they take.
     pub fn bytes(&self) -> usize {
-        size_of_val(&*self.nodes) + size_of_val(&*self.faces) + size_of_val(&*self.bulges) + size_of_val(&*self.numbers)
+        size_of_val(&*self.nodes)
+            + size_of_val(&*self.faces)
+            + size_of_val(&*self.sides)
+            + size_of_val(&*self.bulges)
+            + size_of_val(&*self.numbers)
     }
 
     /// How far a stored patch may be off the one that was given.
     fn rounding(&self) -> f64 {
         // A corner is a sum of two stored numbers of at most 2 units.
         4.0 * f64::from(f32::EPSILON) * self.frame.unit
+    }
+}
+
+/// The curved patches of a search for one point, asked at once.
+struct One<'a> {
+    patches: &'a Patches,
+    local: [f64; 3],
+    best: Best<f64>,
+}
+
+impl Keep<f64> for One<'_> {
+    #[inline(always)]
+    fn keep(&mut self, at: u32, least: f64, most: f64) {
+        if least < most.min(self.best.square) {
+            self.best.take(self.patches.closest(at as usize, self.local).square, at);
+        }
     }
 }
 

@@ -2,21 +2,54 @@
 
 use fearless_simd::prelude::*;
 use rvachev_num::Real;
-use rvachev_num::lanes::{F32, F64, LogSpace, Twice};
+use rvachev_num::lanes::{F32, F64};
+
+use super::closest::on_face;
+use super::double;
+use super::face::{Face, Sides};
+use super::plane::Plane;
+
+/// The most points of a packet.
+pub(super) const WIDEST: usize = 16;
 
 /// One point's number, or those of a packet of points.
 pub(super) trait Packet: Real {
+    /// Whether it is one point: the order of boxes then tells more than the seeds do.
+    const ALONE: bool = false;
+
+    /// The last of Newton's steps is at most this long, in coordinates of a patch: the error that
+    /// is left goes with its square, and that of the distance with its fourth power.
+    const STILL: f64;
+
+    /// A triangle whose sides from a corner have a sine whose square is less has no inside.
+    const SLIM: f64;
+
+    /// Which numbers are below their counterparts, as bits.
+    fn below(self, other: Self) -> u64;
+
     /// Whether any number is below its counterpart.
     fn any_below(self, other: Self) -> bool;
 
     /// The number of one of the points.
     fn one(self) -> f32;
 
-    /// The numbers of some of the points, from the first to the last.
-    fn few(self) -> [f32; 4];
+    /// The numbers of all points, and how many they are.
+    fn all(self) -> ([f32; WIDEST], usize);
+
+    /// The squares of the distances from a face.
+    fn from_face(p: [Self; 3], face: &Face, sides: &Sides) -> Self;
 }
 
 impl Packet for f64 {
+    const ALONE: bool = true;
+    const STILL: f64 = 1e-4;
+    const SLIM: f64 = 1e-12;
+
+    #[inline(always)]
+    fn below(self, other: f64) -> u64 {
+        u64::from(self < other)
+    }
+
     #[inline(always)]
     fn any_below(self, other: f64) -> bool {
         self < other
@@ -28,12 +61,25 @@ impl Packet for f64 {
     }
 
     #[inline(always)]
-    fn few(self) -> [f32; 4] {
-        [self as f32; 4]
+    fn all(self) -> ([f32; WIDEST], usize) {
+        ([self as f32; WIDEST], 1)
+    }
+
+    #[inline(always)]
+    fn from_face(p: [f64; 3], face: &Face, sides: &Sides) -> f64 {
+        on_face(sides.wide(), face.seen_from(p)).closest.square
     }
 }
 
 impl<S: Simd> Packet for F32<S> {
+    const STILL: f64 = 2e-3;
+    const SLIM: f64 = 1e-6;
+
+    #[inline(always)]
+    fn below(self, other: Self) -> u64 {
+        self.0.simd_lt(other.0).to_bitmask()
+    }
+
     #[inline(always)]
     fn any_below(self, other: Self) -> bool {
         self.0.simd_lt(other.0).any_true()
@@ -45,14 +91,27 @@ impl<S: Simd> Packet for F32<S> {
     }
 
     #[inline(always)]
-    fn few(self) -> [f32; 4] {
-        let all = self.0.as_slice();
-        let last = S::f32s::LEN - 1;
-        [all[0], all[last / 3], all[2 * last / 3], all[last]]
+    fn all(self) -> ([f32; WIDEST], usize) {
+        let mut all = [0.0; WIDEST];
+        self.0.store_slice(&mut all[..S::f32s::LEN]);
+        (all, S::f32s::LEN)
+    }
+
+    #[inline(always)]
+    fn from_face(p: [Self; 3], face: &Face, _: &Sides) -> Self {
+        Plane::single(face).square(p)
     }
 }
 
 impl<S: Simd> Packet for F64<S> {
+    const STILL: f64 = 1e-4;
+    const SLIM: f64 = 1e-12;
+
+    #[inline(always)]
+    fn below(self, other: Self) -> u64 {
+        self.0.simd_lt(other.0).to_bitmask()
+    }
+
     #[inline(always)]
     fn any_below(self, other: Self) -> bool {
         self.0.simd_lt(other.0).any_true()
@@ -64,27 +123,16 @@ impl<S: Simd> Packet for F64<S> {
     }
 
     #[inline(always)]
-    fn few(self) -> [f32; 4] {
-        let all = self.0.as_slice();
-        let last = S::f64s::LEN - 1;
-        [all[0] as f32, all[last / 3] as f32, all[2 * last / 3] as f32, all[last] as f32]
-    }
-}
-
-impl<T: Packet + LogSpace> Packet for Twice<T> {
-    #[inline(always)]
-    fn any_below(self, other: Self) -> bool {
-        self.0.any_below(other.0) | self.1.any_below(other.1)
+    fn all(self) -> ([f32; WIDEST], usize) {
+        let mut all = [0.0; WIDEST];
+        for (to, from) in all.iter_mut().zip(self.0.as_slice()) {
+            *to = *from as f32;
+        }
+        (all, S::f64s::LEN)
     }
 
     #[inline(always)]
-    fn one(self) -> f32 {
-        self.1.one()
-    }
-
-    #[inline(always)]
-    fn few(self) -> [f32; 4] {
-        let ([a, _, _, b], [c, _, _, d]) = (self.0.few(), self.1.few());
-        [a, b, c, d]
+    fn from_face(p: [Self; 3], face: &Face, sides: &Sides) -> Self {
+        double::square(face, sides, p, Self::SLIM)
     }
 }

@@ -5,7 +5,8 @@ use glam::{DAffine3, DMat3, DVec3};
 use rvachev_num::Real;
 
 use super::packet::Packet;
-use super::search::{Best, Stack};
+use super::plane::Plane;
+
 use super::{Patches, SurfaceDistance};
 use crate::{Placement, VALUE_LIMIT};
 
@@ -26,18 +27,18 @@ pub(super) struct Seeds {
 
 impl Seeds {
     #[inline(always)]
-    fn known(&self) -> &[u32] {
+    pub(super) fn known(&self) -> &[u32] {
         &self.patches[..self.count]
     }
 
     #[inline(always)]
-    fn take<R: Packet>(&mut self, which: R) {
-        let few = which.few();
+    pub(super) fn take<R: Packet>(&mut self, which: R) {
+        let (all, count) = which.all();
         self.count = 0;
         let mut i = 0;
-        while i < few.len() {
-            let patch = few[i] as u32;
-            if i == 0 || patch != self.patches[self.count - 1] {
+        while i < count && self.count < self.patches.len() {
+            let patch = all[i] as u32;
+            if !self.known().contains(&patch) {
                 self.patches[self.count] = patch;
                 self.count += 1;
             }
@@ -49,7 +50,7 @@ impl Seeds {
 /// A chunk's way into the surface's frame and back.
 pub(super) struct Packets<'a> {
     leaf: &'a SurfaceDistance,
-    patches: &'a Patches,
+    pub(super) patches: &'a Patches,
     placement: &'a Placement,
     /// Into the surface's frame; a value there is scaled and shifted to one outside.
     local: Placement,
@@ -80,13 +81,23 @@ impl Packets<'_> {
         [held(x), held(y), held(z)]
     }
 
-    /// Finds the nearest points to a packet of the surface's frame.
+    /// The ways from the nearest points of flat patches to those of a packet.
     #[inline(always)]
-    pub(super) fn search<R: Packet>(&self, local: [R; 3], seeds: &mut Seeds, stack: &mut Stack<R>) -> Best<R> {
-        let mut best = Best::none(local[0]);
-        self.patches.search(local, seeds.known(), &mut best, stack);
-        seeds.take(best.which);
-        best
+    pub(super) fn ways<R: Packet>(&self, local: [R; 3], which: R) -> [R; 3] {
+        let (all, count) = which.all();
+        let mut ways = [which.lift(0.0); 3];
+        let mut i = 0;
+        while i < count {
+            if !all[..i].contains(&all[i])
+                && let Some((face, _)) = self.patches.at(all[i] as usize)
+            {
+                let other = -(which - f64::from(all[i])).abs();
+                let [x, y, z] = Plane::single(face).way(local);
+                ways = [other.select(x, ways[0]), other.select(y, ways[1]), other.select(z, ways[2])];
+            }
+            i += 1;
+        }
+        ways
     }
 
     /// The signed distances, as they count outside.
@@ -116,7 +127,7 @@ impl Packets<'_> {
     }
 
     /// Value and gradient of a point whose nearest patch is known, in double precision.
-    pub(super) fn one(&self, p: [f32; 3], patch: f32, sign: f32) -> [f32; 4] {
+    pub(super) fn one(&self, p: [f32; 3], patch: u32, sign: f32) -> [f32; 4] {
         let p = self.placement.apply(p.map(f64::from));
         let foot = self.patches.foot_on(patch as usize, self.leaf.flattened(DVec3::from_array(p)));
         let (value, slope) = self.leaf.towards(p, foot, f64::from(sign));

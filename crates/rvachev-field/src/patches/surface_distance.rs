@@ -21,13 +21,15 @@ const AT_SURFACE: f64 = 1e-7;
 ///
 /// Patches and field describe one surface to within an error, so the value jumps by up to twice
 /// the error where the field's sign changes, and has slope 1 elsewhere.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct SurfaceDistance {
     pub(super) patches: Arc<Patches>,
     pub(super) sign: Arc<dyn AnyField>,
     error: f64,
     pub(super) flat: Option<usize>,
     bounds: Bounds,
+    /// The sign, where it is the same all over a zone.
+    pub(super) side: Option<f64>,
 }
 
 impl SurfaceDistance {
@@ -43,7 +45,7 @@ impl SurfaceDistance {
         flat: Option<usize>,
         bounds: Bounds,
     ) -> SurfaceDistance {
-        SurfaceDistance { patches, sign, error, flat: flat.filter(|axis| *axis < 3), bounds }
+        SurfaceDistance { patches, sign, error, flat: flat.filter(|axis| *axis < 3), bounds, side: None }
     }
 
     /// The surface.
@@ -82,7 +84,8 @@ impl SurfaceDistance {
 
     /// The same and the derivatives.
     pub(super) fn signed_with_slope(&self, p: [f64; 3], sign: f64) -> (f64, [f64; 3]) {
-        self.towards(p, self.patches.nearest(self.flattened(DVec3::from_array(p))), sign)
+        let foot = self.patches.nearest(self.flattened(DVec3::from_array(p)));
+        self.towards(p, foot, sign)
     }
 
     /// The same by the foot, where there is one.
@@ -103,25 +106,43 @@ impl SurfaceDistance {
         (with_sign(foot.distance, sign), slope.to_array())
     }
 
+    /// The sign at a point, as a number that has it.
+    fn sign(&self, p: [f64; 3]) -> f64 {
+        self.side.unwrap_or_else(|| self.sign.value(p))
+    }
+
+    /// How far a range over a zone may be off, given the distance from its centre.
+    pub(super) fn slack(&self, zone: &Zone, distance: f64) -> f64 {
+        2.0 * (self.error + self.patches.rounding()) + 1e-12 * (zone.reach() + distance)
+    }
+
     /// What is certain of the sign over a zone.
     fn side(&self, zone: &Zone) -> Interval {
+        if let Some(side) = self.side {
+            return with_side(side);
+        }
         let sign = self.sign.range(zone);
         if sign.lo() >= 0.0 {
-            Interval::new(0.0, f64::INFINITY)
+            with_side(1.0)
         } else if sign.hi() <= 0.0 {
-            Interval::new(f64::NEG_INFINITY, 0.0)
+            with_side(-1.0)
         } else {
             Interval::ALL
         }
     }
 
     /// How far points of a zone are from its centre, across the axis of a cylinder.
-    fn radius(&self, zone: &Zone) -> f64 {
+    pub(super) fn radius(&self, zone: &Zone) -> f64 {
         let Some(axis) = self.flat else { return zone.radius() };
         let mut across = DVec3::ONE;
         across[axis] = 0.0;
         zone.mapped(&DAffine3::from_mat3(DMat3::from_diagonal(across))).radius()
     }
+}
+
+/// All numbers of a sign.
+fn with_side(side: f64) -> Interval {
+    if side > 0.0 { Interval::new(0.0, f64::INFINITY) } else { Interval::new(f64::NEG_INFINITY, 0.0) }
 }
 
 /// A distance on the side that a field's value says; 0 where that is 0.
@@ -143,7 +164,8 @@ impl AnyField for SurfaceDistance {
 
     fn signature(&self) -> String {
         let (count, hash) = (self.patches.len(), self.patches.hash);
-        format!("SurfaceDistance({count}, {hash:016x}, {:?}, {:?}, {})", self.error, self.flat, self.sign.signature())
+        let (sign, side) = (self.sign.signature(), self.side);
+        format!("SurfaceDistance({count}, {hash:016x}, {:?}, {:?}, {sign}, {side:?})", self.error, self.flat)
     }
 
     fn bounds_under(&self, map: &DAffine3) -> Bounds {
@@ -164,12 +186,12 @@ impl AnyField for SurfaceDistance {
     }
 
     fn value(&self, p: [f64; 3]) -> f64 {
-        self.signed(p, self.sign.value(p))
+        self.signed(p, self.sign(p))
     }
 
     fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64> {
         let at = p.map(Dual::value);
-        let (value, slope) = self.signed_with_slope(at, self.sign.value(at));
+        let (value, slope) = self.signed_with_slope(at, self.sign(at));
         let along = |axis: usize| (0..3).map(|i| slope[i] * p[i].d[axis]).sum();
         Dual::new(value, [along(0), along(1), along(2)])
     }
@@ -206,13 +228,17 @@ impl AnyField for SurfaceDistance {
     /// The value at the centre and the farthest that a point may be from there, on the side that
     /// the sign field is certain of.
     fn range(&self, zone: &Zone) -> Interval {
-        let side = self.side(zone);
         if !zone.is_finite() {
-            return side;
+            return self.side(zone);
         }
         let centre = self.value(zone.centre.to_array());
-        let slack = 2.0 * (self.error + self.patches.rounding()) + 1e-12 * (zone.reach() + centre.abs());
-        Interval::around(centre, self.radius(zone) + slack).narrowed_by(side)
+        let range = Interval::around(centre, self.radius(zone) + self.slack(zone, centre.abs()));
+        // Where the surface is out of reach, so is a change of the sign.
+        if range.lo() > 0.0 || range.hi() < 0.0 { range } else { range.narrowed_by(self.side(zone)) }
+    }
+
+    fn narrowed(&self, zone: &Zone) -> Option<Arc<dyn AnyField>> {
+        self.narrowed_to(zone).map(|leaf| Arc::new(leaf) as Arc<dyn AnyField>)
     }
 
     fn axes(&self) -> [bool; 3] {

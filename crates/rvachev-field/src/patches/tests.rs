@@ -2,30 +2,28 @@
 
 use std::sync::Arc;
 
-use glam::{DAffine3, DVec3};
+use glam::DVec3;
 use rvachev_num::{CancelToken, Run};
 
-use super::{Foot, Patch, Patches, SurfaceDistance};
-use crate::kernel::CHUNK;
-use crate::{AnyField, Bounds, Chunk, Cuboid, Dual, Placement, Sphere, VALUE_LIMIT, Zone};
+use super::{Foot, Patch, Patches};
 
 /// A generator of numbers in [0, 1).
-struct Random(u64);
+pub(super) struct Random(pub(super) u64);
 
 impl Random {
-    fn next(&mut self) -> f64 {
+    pub(super) fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
     /// A point of the cube from −size to size.
-    fn point(&mut self, size: f64) -> DVec3 {
+    pub(super) fn point(&mut self, size: f64) -> DVec3 {
         (DVec3::new(self.next(), self.next(), self.next()) * 2.0 - 1.0) * size
     }
 }
 
 /// An octahedron's faces cut into `n²` triangles each, blown up to the unit sphere.
-fn sphere(n: usize, curved: bool) -> Vec<Patch> {
+pub(super) fn sphere(n: usize, curved: bool) -> Vec<Patch> {
     let mut patches = Vec::new();
     for octant in 0..8u32 {
         let sign = |bit: u32| if octant >> bit & 1 == 0 { 1.0 } else { -1.0 };
@@ -58,7 +56,7 @@ fn sphere(n: usize, curved: bool) -> Vec<Patch> {
 }
 
 /// The twelve triangles of a box about the origin.
-fn cuboid(half: DVec3) -> Vec<Patch> {
+pub(super) fn cuboid(half: DVec3) -> Vec<Patch> {
     let mut patches = Vec::new();
     for axis in 0..3 {
         for side in [1.0, -1.0] {
@@ -74,19 +72,8 @@ fn cuboid(half: DVec3) -> Vec<Patch> {
     patches
 }
 
-fn built(patches: &[Patch]) -> Arc<Patches> {
+pub(super) fn built(patches: &[Patch]) -> Arc<Patches> {
     Arc::new(Patches::new(patches, &Run::default()).unwrap())
-}
-
-/// A unit sphere of patches as a leaf.
-fn ball(n: usize) -> SurfaceDistance {
-    let sign: Arc<dyn AnyField> = Arc::new(Sphere { radius: 1.0 });
-    SurfaceDistance::new(built(&sphere(n, true)), sign, 2e-4, None, Bounds::new(DVec3::NEG_ONE, DVec3::ONE))
-}
-
-fn slab(half: DVec3) -> SurfaceDistance {
-    let sign: Arc<dyn AnyField> = Arc::new(Cuboid { size: 2.0 * half });
-    SurfaceDistance::new(built(&cuboid(half)), sign, 0.0, None, Bounds::new(-half, half))
 }
 
 /// The largest error of the distance to a unit sphere, within half a radius of it.
@@ -206,19 +193,6 @@ fn the_normal_is_that_of_the_patch() {
 }
 
 #[test]
-fn an_empty_surface_is_far_away() {
-    let patches = built(&[]);
-    assert!(patches.is_empty() && patches.nearest(DVec3::ONE).is_none() && patches.bounds().is_empty());
-    let sign: Arc<dyn AnyField> = Arc::new(Sphere { radius: 1.0 });
-    let empty = SurfaceDistance::new(patches, sign, 0.0, None, Bounds::EMPTY);
-    assert_eq!(AnyField::value(&empty, [0.0; 3]), VALUE_LIMIT);
-    assert_eq!(AnyField::value(&empty, [2.0; 3]), -VALUE_LIMIT);
-    assert_eq!(AnyField::dual(&empty, Dual::point([2.0; 3])).v, -VALUE_LIMIT);
-    let columns = [vec![2.0f32; CHUNK], vec![0.0; CHUNK], vec![0.0; CHUNK]];
-    assert!(values(&empty, &columns, &Placement::IDENTITY).iter().all(|v| *v == -VALUE_LIMIT as f32));
-}
-
-#[test]
 fn what_is_not_finite_is_left_out() {
     let mut patches = cuboid(DVec3::ONE);
     patches.insert(0, Patch::flat([DVec3::NAN, DVec3::ONE, DVec3::ZERO]));
@@ -229,102 +203,8 @@ fn what_is_not_finite_is_left_out() {
 }
 
 #[test]
-fn points_far_away_have_finite_values() {
-    for field in [ball(4), slab(DVec3::ONE)] {
-        for far in [1e6, 1e12, 1e15] {
-            let value = AnyField::value(&field, [far, 0.5, 0.25]);
-            assert!((value + far - 1.0).abs() < 1e-3 + 1e-9 * far, "{value} at {far}");
-            let columns = [vec![far as f32; CHUNK], vec![0.5; CHUNK], vec![0.25; CHUNK]];
-            let lanes = f64::from(values(&field, &columns, &Placement::IDENTITY)[0]);
-            assert!((lanes - value).abs() <= 1e-6 * far, "{lanes} at {far}");
-        }
-    }
-}
-
-#[test]
 fn a_cancelled_run_builds_nothing() {
     let cancel = CancelToken::default();
     cancel.cancel();
     assert!(Patches::new(&sphere(20, true), &Run { cancel, ..Run::default() }).is_err());
-}
-
-/// Values of a chunk on lanes.
-fn values(field: &dyn AnyField, columns: &[Vec<f32>; 3], placement: &Placement) -> Vec<f32> {
-    let mut out = vec![0.0; columns[0].len()];
-    let points = columns.each_ref().map(|column| &**column);
-    field.lanes32(Chunk { points, placement, out: [&mut out] });
-    out
-}
-
-/// Random points as columns.
-fn columns(random: &mut Random, size: f64, count: usize) -> [Vec<f32>; 3] {
-    let points: Vec<DVec3> = (0..count).map(|_| random.point(size)).collect();
-    [0, 1, 2].map(|axis| points.iter().map(|p| p[axis] as f32).collect())
-}
-
-#[test]
-fn lanes_are_the_values_of_single_points() {
-    let mut random = Random(6);
-    let map = DAffine3::from_scale_rotation_translation(
-        DVec3::splat(0.5),
-        glam::DQuat::from_rotation_x(0.7),
-        DVec3::new(0.1, -0.2, 0.3),
-    );
-    let placement = Placement::new(&map, 2.0, -0.25);
-    for field in [ball(5), slab(DVec3::new(0.5, 0.25, 0.75))] {
-        let columns = columns(&mut random, 3.0, 2 * CHUNK);
-        let roundoff = 2.0 * field.roundoff(3.0);
-        let lanes = values(&field, &columns, &placement);
-        let doubles = columns.each_ref().map(|column| column.iter().map(|v| f64::from(*v)).collect::<Vec<f64>>());
-        let mut wide = vec![0.0; lanes.len()];
-        let points = doubles.each_ref().map(|column| &**column);
-        field.lanes64(Chunk { points, placement: &placement, out: [&mut wide] });
-        let mut slopes = [const { Vec::new() }; 4].map(|_: Vec<f32>| vec![0.0; lanes.len()]);
-        let points = columns.each_ref().map(|column| &**column);
-        field.gradients(Chunk { points, placement: &placement, out: slopes.each_mut().map(|column| &mut **column) });
-        for i in 0..lanes.len() {
-            let local = placement.apply([doubles[0][i], doubles[1][i], doubles[2][i]]);
-            let dual = AnyField::dual(&field, Dual::point(local));
-            let value = placement.finish(dual.v);
-            assert!((wide[i] - value).abs() <= 1e-13 * 3.0, "{} against {value}", wide[i]);
-            assert!((f64::from(lanes[i]) - value).abs() <= roundoff, "{} against {value}", lanes[i]);
-            assert!((f64::from(slopes[0][i]) - value).abs() <= roundoff);
-            let slope = DVec3::from_array(placement.pull(dual.d.map(|part| part * placement.scale)));
-            let found = DVec3::from_array([1, 2, 3].map(|axis| f64::from(slopes[axis][i])));
-            assert!((found.length() - 1.0).abs() < 1e-3, "{found}");
-            // Two feet may be equally near; else the gradients agree.
-            let near = slope.dot(found) > 0.99;
-            assert!(near || value > 0.2, "{found} against {slope} where the value is {value}");
-        }
-    }
-}
-
-#[test]
-fn ranges_hold_samples() {
-    let mut random = Random(7);
-    for field in [ball(4), slab(DVec3::new(0.5, 0.25, 0.75))] {
-        for _ in 0..300 {
-            let (centre, size) = (random.point(1.5), 0.3 * random.next());
-            let bounds = Bounds::from_center(centre, DVec3::splat(size));
-            let range = field.range(&Zone::of_bounds(&bounds));
-            for _ in 0..20 {
-                let value = AnyField::value(&field, (centre + random.point(size)).to_array());
-                assert!(range.contains(value), "{value} not in {range:?}");
-            }
-        }
-    }
-}
-
-#[test]
-fn a_cylinder_has_no_slope_along_its_axis() {
-    let patches = built(&cuboid(DVec3::new(1.0, 2.0, 0.5)));
-    let sign: Arc<dyn AnyField> = Arc::new(Cuboid { size: DVec3::new(2.0, 4.0, 1e6) });
-    let all = Bounds::new(DVec3::new(-1.0, -2.0, f64::NEG_INFINITY), DVec3::new(1.0, 2.0, f64::INFINITY));
-    let prism = SurfaceDistance::new(patches, sign, 0.0, Some(2), all);
-    let dual = AnyField::dual(&prism, Dual::point([3.0, 0.3, 70.0]));
-    assert!(dual.v == -2.0 && dual.d[0] == -1.0 && dual.d[1].abs() < 1e-14 && dual.d[2] == 0.0, "{dual:?}");
-    let foot = prism.nearest(DVec3::new(3.0, 0.3, 70.0)).unwrap();
-    assert!(foot.point.distance(DVec3::new(1.0, 0.3, 70.0)) < 1e-14);
-    let slab = Bounds::new(DVec3::new(3.0, 0.0, -100.0), DVec3::new(3.5, 0.5, 100.0));
-    assert!(prism.range(&Zone::of_bounds(&slab)).hi() < -1.0);
 }
