@@ -23,6 +23,12 @@ const DEPTH: u32 = 6;
 /// A patch is split where its normal is off by more, in radians.
 const TURN: f64 = 0.2;
 
+/// Splitting goes on where it leaves less than this part of the error.
+const GAIN: f64 = 0.8;
+
+/// Patches that are farther off than this part of their width are left out.
+const ASTRAY: f64 = 0.4;
+
 /// Where a patch is compared with the surface.
 const PROBES: [[f64; 3]; 4] = [
     [1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0],
@@ -45,6 +51,8 @@ struct Piece {
     corners: [u32; 3],
     normals: [DVec3; 3],
     hems: [Hem; 3],
+    /// How far off the patch was that it is a part of.
+    before: f64,
 }
 
 impl Quilt {
@@ -64,15 +72,26 @@ impl Quilt {
             let t1=std::time::Instant::now(); seams.find(&positions, slopes, run)?; let t2=std::time::Instant::now();
             let patches: Vec<Patch> = pieces.iter().map(|piece| piece.patch(&positions, &seams, tolerance)).collect();
             let t3=std::time::Instant::now(); let errors = errors(&patches, slopes, run)?; eprintln!("      {depth} find {:?} patches {:?} errors {:?}", t2-t1, t3-t2, t3.elapsed());
-            let fails = |(off, turn): (f64, f64)| off > tolerance || turn > TURN && off > 0.05 * tolerance;
-            if depth < DEPTH {
-                let failing = pieces.iter().zip(&errors).filter(|(_, error)| fails(**error)).map(|(piece, _)| piece);
-                cross(failing, &positions, &mut seams, slopes, run)?;
-            }
+            let fails = |piece: &Piece, (off, turn): (f64, f64)| {
+                let is_off = off > tolerance || turn > TURN && off > 0.05 * tolerance;
+                // Where splitting does not help, more of it does not either.
+                depth < DEPTH && is_off && (depth < 2 || off < GAIN * piece.before)
+            };
+            let failing = pieces.iter().zip(&errors).filter(|(piece, error)| fails(piece, **error));
+            cross(failing.map(|(piece, _)| piece), &positions, &mut seams, slopes, run)?;
             let mut next = Vec::new();
-            for ((piece, patch), (off, turn)) in pieces.iter().zip(patches).zip(errors) {
-                if depth < DEPTH && fails((off, turn)) {
+            for ((piece, patch), error) in pieces.iter().zip(patches).zip(errors) {
+                let off = error.0;
+                if fails(piece, error) {
+                    let from = next.len();
                     piece.split(&mut positions, &mut seams, &mut next);
+                    next[from..].iter_mut().for_each(|part| part.before = off);
+                    continue;
+                }
+                // A patch that is farther off than it is wide tells nothing of the surface.
+                let width = patch.corners[0].distance(patch.corners[1]).max(patch.corners[1].distance(patch.corners[2]));
+                if off > ASTRAY * width {
+                    quilt.error = quilt.error.max(width);
                 } else {
                     quilt.error = quilt.error.max(BETWEEN * off);
                     quilt.patches.push(patch);
@@ -92,7 +111,7 @@ fn first(facets: &Facets, seams: &mut Seams) -> Vec<Piece> {
             let toward = facets.positions[corners[last] as usize];
             seams.hem([corners[k], corners[next]], toward, [normals[k], normals[next]])
         });
-        Piece { corners: *corners, normals: *normals, hems }
+        Piece { corners: *corners, normals: *normals, hems, before: f64::INFINITY }
     };
     facets.triangles.iter().zip(&facets.normals).map(piece).collect()
 }
@@ -172,12 +191,14 @@ impl Piece {
             corners: [a, m, c],
             normals: normals(self.normals[at], of_a),
             hems: [left, crease, self.hems[last]],
+            before: f64::INFINITY,
         });
         let [n_b, n_m, n_c] = normals(self.normals[next], of_b);
         parts.push(Piece {
             corners: [m, b, c],
             normals: [n_m, n_b, n_c],
             hems: [right, self.hems[next], crease.other()],
+            before: f64::INFINITY,
         });
     }
 
@@ -192,17 +213,19 @@ impl Piece {
         let [n_a, n_b, n_c] = [at, next, last].map(|k| self.normals[k]);
         let (am, mb) = (seams.hem([a, m], p(k), [n_a, m_a]), seams.hem([m, b], p(c), [m_b, n_b]));
         let (ck, ka) = (seams.hem([c, k], p(b), [n_c, k_c]), seams.hem([k, a], p(m), [k_a, n_a]));
-        parts.push(Piece { corners: [a, m, k], normals: [self.normals[at], m_a, k_a], hems: [am, crease, ka] });
+        parts.push(Piece { corners: [a, m, k], normals: [self.normals[at], m_a, k_a], hems: [am, crease, ka], before: f64::INFINITY });
         let diagonal = seams.hem([k, b], p(m), [k_c, n_b]);
         parts.push(Piece {
             corners: [m, b, k],
             normals: [m_b, self.normals[next], k_c],
             hems: [mb, diagonal.other(), crease.other()],
+            before: f64::INFINITY,
         });
         parts.push(Piece {
             corners: [k, b, c],
             normals: [k_c, self.normals[next], self.normals[last]],
             hems: [diagonal, self.hems[next], ck],
+            before: f64::INFINITY,
         });
     }
 
@@ -218,7 +241,7 @@ impl Piece {
             let inner = seams.hem([to, from], positions[corner as usize], [normals[1], normals[2]]);
             let first = seams.part([corner, to], self.hems[at], [normals[0], normals[1]]);
             let second = seams.part([from, corner], self.hems[last], [normals[2], normals[0]]);
-            Piece { corners: [corner, to, from], normals, hems: [first, inner, second] }
+            Piece { corners: [corner, to, from], normals, hems: [first, inner, second], before: f64::INFINITY }
         };
         parts.extend([0, 1, 2].map(|at| outer(seams, at)));
         let hems = [
@@ -226,7 +249,7 @@ impl Piece {
             seams.hem([bc, ca], positions[ab as usize], [between[1], between[2]]),
             seams.hem([ca, ab], positions[bc as usize], [between[2], between[0]]),
         ];
-        parts.push(Piece { corners: middles, normals: between, hems });
+        parts.push(Piece { corners: middles, normals: between, hems, before: f64::INFINITY });
     }
 }
 

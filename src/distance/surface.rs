@@ -22,7 +22,7 @@ const TOLERANCE: f64 = 1e-3;
 
 /// Cells along the longest side: at least, and at most where the length is short.
 const COARSEST: f64 = 24.0;
-const FINEST: f64 = 128.0;
+const FINEST: f64 = 256.0;
 
 /// Meshes whose surfaces are closer than this on average, in cells, are the same.
 const SAME: f64 = 0.02;
