@@ -11,7 +11,7 @@ use crate::support::{Random, frame_of, lanes32, lanes64, random_leaf, samples};
 use crate::zoo;
 
 /// A leaf, some deformed, once or twice.
-fn operand(random: &mut Random) -> Solid {
+pub fn operand(random: &mut Random) -> Solid {
     let mut solid = random_leaf(random);
     for _ in 0..random.below(3) {
         let moved = match random.below(7) {
@@ -29,7 +29,7 @@ fn operand(random: &mut Random) -> Solid {
 }
 
 /// A box near the frame, or up to thirty times as far away, of any size.
-fn place(random: &mut Random, frame: &Bounds) -> Bounds {
+pub fn place(random: &mut Random, frame: &Bounds) -> Bounds {
     let size = frame.longest_side();
     let centre = match random.below(4) {
         0 => frame.center() + size * random.log_range(1.0, 30.0) * random.direction(),
@@ -40,7 +40,7 @@ fn place(random: &mut Random, frame: &Bounds) -> Bounds {
 }
 
 /// What a range leaves out.
-fn missed(random: &mut Random, program: &Program, region: &Bounds) -> Option<String> {
+pub fn missed(random: &mut Random, program: &Program, region: &Bounds) -> Option<String> {
     let points = samples(random, region, 40);
     let range = program.range(region);
     let doubt = Tape::new(program, region).roundoff();

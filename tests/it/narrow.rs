@@ -10,7 +10,7 @@ use crate::models::{self, Model};
 use crate::support::{Random, frame_of, random_box, random_leaf, random_solid, samples};
 
 /// Checks `region` of a program against samples; the text is what contradicts it.
-fn contradiction(full: &Program, bounds: &Bounds, region: &Region, points: &[DVec3]) -> Option<String> {
+pub fn contradiction(full: &Program, bounds: &Bounds, region: &Region, points: &[DVec3]) -> Option<String> {
     for &p in points {
         let value = full.value(p);
         let wrong = match region {

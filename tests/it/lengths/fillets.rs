@@ -1,0 +1,349 @@
+//! Laws of filleted unions, in the plane and in space: what a rolling ball adds, and no more.
+
+use std::f64::consts::PI;
+
+use glam::{DVec2, DVec3};
+use rvachev::{Blend, Plane, PlaneBounds, Profile, Solid, rad};
+
+use super::laws::bounded;
+use super::{Outcome, TOLERANCE, at, fillet, layer, measures, report, sag};
+use crate::primitives::random_primitive;
+use crate::support::Random;
+
+/// A convex shape of the plane.
+fn convex_profile(random: &mut Random) -> Profile {
+    let [a, b] = [0; 2].map(|_| random.range(0.3, 0.9));
+    let plain = match random.below(4) {
+        0 => Profile::circle(a),
+        1 => Profile::rectangle([2.0 * a, 2.0 * b]),
+        2 => Profile::regular_polygon(3 + random.below(6) as u32, a),
+        _ => Profile::superellipse([a, b], random.range(0.3, 1.5)),
+    };
+    plain.rotate(rad(random.range(-3.0, 3.0))).translate([random.range(-0.6, 0.6), random.range(-0.6, 0.6)])
+}
+
+fn points_in_plane(random: &mut Random, within: &PlaneBounds, count: usize) -> Vec<DVec2> {
+    let size = within.max - within.min;
+    (0..count).map(|_| within.min + DVec2::new(random.unit(), random.unit()) * size).collect()
+}
+
+/// Fails unless a filleted union holds its operands and is held by the closing of their union.
+fn is_between(a: &Profile, b: &Profile, radius: f64, random: &mut Random) -> Outcome {
+    let (plain, filleted) = (a | b, a.union_with(b, fillet(radius)));
+    let closed = plain.filleted(radius);
+    let points = points_in_plane(random, &plain.bounds()?, 400);
+    let (plain, filleted, closing) =
+        (plain.contains_all(&points)?, filleted.contains_all(&points)?, closed.values(&points)?);
+    for (i, p) in points.iter().enumerate() {
+        assert!(filleted[i] || !plain[i], "{a:?}, {b:?}, {radius}: {p} is lost");
+        // Values beside the level are distances.
+        let held = closing[i] > -3.0 * TOLERANCE * radius;
+        assert!(held || !filleted[i], "{a:?}, {b:?}, {radius}: {p} is added beyond the closing");
+    }
+    Ok(())
+}
+
+#[test]
+fn filleted_unions_of_profiles_are_between_the_union_and_its_closing() -> Outcome {
+    let mut random = Random::new(1210);
+    for _ in 0..16 {
+        let [depth, other] = [0; 2].map(|_| random.below(2));
+        let a = crate::zoo::random_profile(&mut random, depth);
+        let b = crate::zoo::random_profile(&mut random, other).translate([random.range(-0.8, 0.8), 0.3]);
+        let radius = random.log_range(0.03, 0.4);
+        is_between(&a, &b, radius, &mut random)?;
+    }
+    Ok(())
+}
+
+#[test]
+fn filleted_unions_of_convex_profiles_are_the_closing() -> Outcome {
+    let mut random = Random::new(1211);
+    for _ in 0..16 {
+        let (a, b) = (convex_profile(&mut random), convex_profile(&mut random));
+        let radius = random.log_range(0.03, 0.4);
+        let (filleted, closed) = (a.union_with(&b, fillet(radius)), (&a | &b).filleted(radius));
+        let points = points_in_plane(&mut random, &closed.bounds()?, 400);
+        let (got, want) = (filleted.values(&points)?, closed.values(&points)?);
+        let clear = 3.0 * TOLERANCE * radius;
+        for ((p, got), want) in points.iter().zip(got).zip(want) {
+            let same = (got > 0.0) == (want > 0.0);
+            assert!(same || got.abs().min(want.abs()) < clear, "{a:?}, {b:?}, {radius} at {p}: {got}, not {want}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn filleted_unions_of_convex_solids_are_the_closing() -> Outcome {
+    let mut random = Random::new(1212);
+    for _ in 0..6 {
+        let [a, b] = [0; 2].map(|_| {
+            loop {
+                // A torus is not convex, a slab does not end.
+                let solid = random_primitive(&mut random).0.translate(random.vector(-0.4, 0.4));
+                let is_torus = format!("{solid:?}").contains("torus");
+                if !is_torus && solid.bounds().is_ok_and(|bounds| bounds.is_finite()) {
+                    break solid;
+                }
+            }
+        });
+        let radius = random.log_range(0.05, 0.3);
+        let (filleted, closed) = (a.union_with(&b, fillet(radius)), (&a | &b).filleted(radius));
+        let bounds = closed.bounds()?;
+        let points: Vec<DVec3> = (0..400).map(|_| random.point_in(&bounds)).collect();
+        let (got, want) = (filleted.values(&points)?, closed.values(&points)?);
+        let clear = 3.0 * TOLERANCE * radius;
+        for ((p, got), want) in points.iter().zip(got).zip(want) {
+            let same = (got > 0.0) == (want > 0.0);
+            assert!(same || got.abs().min(want.abs()) < clear, "{a:?}, {b:?}, {radius} at {p}: {got}, not {want}");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn filleted_unions_of_solids_hold_their_operands() -> Outcome {
+    let mut random = Random::new(1213);
+    for _ in 0..6 {
+        let [a, b] = [0; 2].map(|_| bounded(&mut random, 1));
+        let size = a.bounds()?.size().min_element().max(0.1);
+        let radius = size * random.log_range(0.02, 0.2);
+        let plain = &a | &b;
+        let (filleted, closed) = (a.union_with(&b, fillet(radius)), plain.filleted(radius));
+        let bounds = plain.bounds()?;
+        let points: Vec<DVec3> = (0..300).map(|_| random.point_in(&bounds)).collect();
+        let (plain, filleted, closing) =
+            (plain.contains_all(&points)?, filleted.contains_all(&points)?, closed.values(&points)?);
+        for (i, p) in points.iter().enumerate() {
+            assert!(filleted[i] || !plain[i], "{a:?}, {b:?}, {radius}: {p} is lost");
+            let held = closing[i] > -3.0 * TOLERANCE * radius;
+            assert!(held || !filleted[i], "{a:?}, {b:?}, {radius}: {p} is added beyond the closing");
+        }
+    }
+    Ok(())
+}
+
+/// Differences and intersections are unions of complements.
+#[test]
+fn fillets_of_differences_are_those_of_complements() -> Outcome {
+    let mut random = Random::new(1214);
+    let block = Solid::cuboid([4.0, 3.0, 2.0]);
+    let ball = at(Solid::sphere(1.2), [1.0, 0.5, 0.9]);
+    let blend = fillet(0.4);
+    let pairs = [
+        (block.difference_with(&ball, blend), !(!&block).union_with(&ball, blend)),
+        (block.intersection_with(&ball, blend), !(!&block).union_with(!&ball, blend)),
+    ];
+    for (got, want) in pairs {
+        for _ in 0..200 {
+            let p = random.vector(-2.2, 2.2);
+            assert_eq!(got.contains(p)?, want.contains(p)?, "{p}");
+            assert!(block.contains(p)? || !got.contains(p)?, "{p} is added");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn nothing_is_added_where_operands_end_flush() -> Outcome {
+    let block = |size: [f64; 3], place: [f64; 3]| at(Solid::cuboid(size), place);
+    let pairs = [
+        // Side by side, one within the other, one higher than the other by nothing but rounding.
+        (block([10.0; 3], [-5.0, 0.0, 0.0]), block([10.0; 3], [5.0, 0.0, 0.0])),
+        (block([10.0; 3], [0.0; 3]), block([4.0, 4.0, 10.0], [1.0, 0.0, 0.0])),
+        (block([10.0; 3], [-4.0, 0.0, 0.0]), block([10.0, 10.0, 10.0 + 1e-13], [4.0, 0.0, 0.0])),
+        (Solid::cylinder(5.0, 8.0), Solid::cylinder(3.0, 8.0)),
+        (Solid::cylinder(5.0, 8.0), at(Solid::cylinder(5.0, 8.0), [0.0, 0.0, 6.0])),
+        (Solid::cylinder(5.0, 8.0).rotate_x(rad(0.3)), Solid::cylinder(4.0, 8.0).rotate_x(rad(0.3))),
+    ];
+    let mut random = Random::new(1215);
+    for (a, b) in pairs {
+        let (plain, filleted) = (&a | &b, a.union_with(&b, fillet(2.0)));
+        let many = Solid::union_all_with([&a, &b], fillet(2.0));
+        let bounds = plain.bounds()?;
+        for _ in 0..60 {
+            // Just below and above the surface.
+            let Some(q) = plain.closest_surface_point(random.point_in(&bounds.inflate(1.0)))? else { continue };
+            let out = -plain.gradient(q)?.normalize();
+            for by in [1e-6, 1e-2, 0.5] {
+                let p = q + by * out;
+                if !plain.contains(p)? {
+                    assert!(!filleted.contains(p)? && !many.contains(p)?, "{a:?}, {b:?}: {p}, {by} above");
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// An L whose inner edge is 12 from where the other block stands.
+#[test]
+fn concave_edges_of_an_operand_stay_away_from_the_joint() -> Outcome {
+    let l =
+        at(Solid::cuboid([30.0, 10.0, 4.0]), [15.0, 0.0, 2.0]) | at(Solid::cuboid([4.0, 10.0, 20.0]), [2.0, 0.0, 10.0]);
+    let post = at(Solid::cylinder(3.0, 12.0), [19.0, 0.0, 8.0]);
+    let part = l.union_with(&post, fillet(2.0));
+    // In the corner of the L, next to its inner edge.
+    for p in [[4.001, 0.0, 4.001], [4.1, 3.0, 4.3], [4.5, -4.0, 4.5]] {
+        assert!(!part.contains(p)?, "{p:?}");
+    }
+    // At the foot of the post there is the fillet.
+    let (ball, towards) = (DVec3::new(14.0, 0.0, 6.0), DVec3::new(1.0, 0.0, -1.0).normalize());
+    assert!(part.contains(ball + 2.01 * towards)? && !part.contains(ball + 1.99 * towards)?);
+    Ok(())
+}
+
+/// An L and a bar over its inner edge, with a gap narrower than the ball.
+fn l_and_bar() -> [Profile; 3] {
+    let block = |low: [f64; 2], high: [f64; 2]| {
+        let (low, high) = (DVec2::from(low), DVec2::from(high));
+        Profile::rectangle(high - low).translate(0.5 * (low + high))
+    };
+    [
+        block([0.0, 0.0], [10.0, 4.0]) | block([0.0, 0.0], [4.0, 10.0]),
+        block([3.0, 5.0], [8.0, 7.0]),
+        block([4.0, 4.0], [8.0, 5.0]),
+    ]
+}
+
+#[test]
+fn a_gap_narrower_than_the_ball_is_no_sealed_void() -> Outcome {
+    let [l, bar, gap] = l_and_bar();
+    let blend = fillet(2.0);
+    let joined = l.union_with(&bar, blend);
+    let contours = joined.extrude(1.0).slice(&Plane::xy(0.0))?.contours(1e-3)?;
+    assert_eq!(contours.len(), 1, "a void in the plane");
+    is_between(&l, &bar, 2.0, &mut Random::new(1216))?;
+    // In space: as columns cut to a slab, and with the bar shorter than the L.
+    let column = l.column().union_with(bar.column(), blend) & Solid::slab([0.0, 0.0, 1.0], 3.0);
+    let found = report(&column, 60)?;
+    assert_eq!((found.shells, found.genus), (1, Some(0)), "{found}");
+    let shorter = l.extrude(20.0).union_with(bar.extrude(8.0), blend);
+    let found = report(&shorter, 60)?;
+    assert_eq!(found.shells, 1, "{found}");
+    // Wherever a point of the gap is left out, it is open to the outside along the gap.
+    let mut random = Random::new(1217);
+    let within = gap.bounds()?;
+    for p in points_in_plane(&mut random, &within, 200) {
+        if !joined.contains(p)? {
+            let steps = (0..60).map(|i| p + DVec2::X * f64::from(i) * (12.0 - p.x) / 60.0);
+            let blocked = joined.contains_all(&steps.collect::<Vec<_>>())?.into_iter().any(|inside| inside);
+            assert!(!blocked, "{p} is sealed in");
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn many_operands_are_filleted_at_once() -> Outcome {
+    // Three bars that meet at right angles: no order of theirs is another solid.
+    let bar = Solid::cuboid([12.0, 3.0, 3.0]);
+    let bars = [bar.clone(), bar.rotate_z(rad(PI / 2.0)), bar.rotate_y(rad(PI / 2.0))];
+    let all = Solid::union_all_with(&bars, fillet(1.0));
+    let back = Solid::union_all_with(bars.iter().rev(), fillet(1.0));
+    let closed = Solid::union_all(&bars, rvachev::RFunction::MIN_MAX).filleted(1.0);
+    let mut random = Random::new(1218);
+    for _ in 0..400 {
+        let p = random.vector(-3.5, 3.5);
+        let [one, other, want] = [&all, &back, &closed].map(|solid| crate::support::value(solid, p));
+        let clear = 3.0 * TOLERANCE;
+        assert!((one > 0.0) == (other > 0.0) || one.abs().min(other.abs()) < clear, "{p}: {one} and {other}");
+        assert!((one > 0.0) == (want > 0.0) || one.abs().min(want.abs()) < clear, "{p}: {one}, not {want}");
+    }
+    assert_eq!(report(&all, 60)?.shells, 1);
+    Ok(())
+}
+
+/// A plate with rows of pins through it, 7/10 apart, and their radii and places.
+fn pins(rows: [u32; 2]) -> (Solid, Vec<(DVec3, f64)>) {
+    let pitch = 0.7;
+    let size = DVec2::new(f64::from(rows[0]), f64::from(rows[1])) * pitch;
+    let plate = Solid::cuboid([size.x, size.y, 0.4]);
+    let places = (0..rows[0]).flat_map(|i| (0..rows[1]).map(move |j| (i, j))).map(|(i, j)| {
+        let middle = DVec2::new(f64::from(i) + 0.5, f64::from(j) + 0.5) * pitch - 0.5 * size;
+        (middle.extend(0.0), 0.1 + 0.05 * f64::from((7 * i + 3 * j) % 10) / 9.0)
+    });
+    (plate, places.collect())
+}
+
+fn pin((place, radius): (DVec3, f64)) -> Solid {
+    Solid::cylinder(radius, 1.0).translate(place)
+}
+
+/// Fails unless each pin has its fillet, by the ball on all four sides of it, above and below.
+fn have_fillets(solid: &Solid, pins: &[(DVec3, f64)], radius: f64) -> Outcome {
+    for &(place, of_pin) in pins {
+        for (side, up) in [(DVec3::X, 1.0), (DVec3::Y, -1.0), (-DVec3::X, 1.0), (-DVec3::Y, 1.0)] {
+            let ball = place + (of_pin + radius) * side + up * (0.2 + radius) * DVec3::Z;
+            let towards = (-side - up * DVec3::Z).normalize();
+            let [inside, outside] =
+                [1.0 + 5.0 * TOLERANCE, 1.0 - 5.0 * TOLERANCE].map(|by| ball + by * radius * towards);
+            assert!(solid.contains(inside)? && !solid.contains(outside)?, "the pin at {place}");
+        }
+    }
+    Ok(())
+}
+
+/// The volume of a fillet of radius `r` around a pin of radius `a`: its area times the way of its
+/// centroid.
+fn ring(a: f64, r: f64) -> f64 {
+    let from_corner = (10.0 - 3.0 * PI) / (3.0 * (4.0 - PI));
+    2.0 * PI * (a + from_corner * r) * super::CORNER * r * r
+}
+
+#[test]
+fn thirty_pins_have_their_fillets() -> Outcome {
+    const RADIUS: f64 = 0.05;
+    let (plate, places) = pins([6, 5]);
+    let all = || std::iter::once(plate.clone()).chain(places.iter().copied().map(pin));
+    let chain = all().skip(1).fold(plate.clone(), |all, pin| all.union_with(pin, fillet(RADIUS)));
+    let bare: f64 = places.iter().map(|(_, a)| PI * a * a * 0.6).sum();
+    let filled: f64 = places.iter().map(|&(_, a)| 2.0 * ring(a, RADIUS)).sum();
+    let plain = 4.2 * 3.5 * 0.4 + bare;
+    let cell = 4.2 / 210.0;
+    let tolerance = layer(20.0, RADIUS) + sag(15.0, 0.125, cell) + sag(4.2, RADIUS, cell);
+    assert!(tolerance < 0.5 * filled, "a mesh that tells whether fillets are there");
+    for solid in [Solid::union_all_with(all(), fillet(RADIUS)), chain] {
+        have_fillets(&solid, &places, RADIUS)?;
+        measures(&report(&solid, 210)?, plain + filled, tolerance, 1);
+    }
+    Ok(())
+}
+
+#[test]
+#[ignore = "takes minutes on one core"]
+fn a_thousand_pins_have_their_fillets() -> Outcome {
+    let (plate, places) = pins([40, 25]);
+    let all = std::iter::once(plate).chain(places.iter().copied().map(pin));
+    let solid = Solid::union_all_with(all, fillet(0.05));
+    have_fillets(&solid, &places, 0.05)?;
+    let found = report(&solid, 512)?;
+    assert_eq!((found.shells, found.genus), (1, Some(0)), "{found}");
+    Ok(())
+}
+
+#[test]
+fn chamfers_stay_below_flush_faces_and_within_their_legs() -> Outcome {
+    let leg = 2.0;
+    let blend = Blend::Chamfer { leg };
+    let mut random = Random::new(1219);
+    for [a, b] in [super::flush_blocks(), super::flush_round()] {
+        let (solid, plain) = (a.union_with(&b, blend), &a | &b);
+        let bounds = solid.bounds()?;
+        assert!(bounds.max.z <= plain.bounds()?.max.z + 1e-9, "{bounds:?}");
+        let around = bounds.inflate(1.0);
+        for _ in 0..400 {
+            let p = random.point_in(&around);
+            assert!(solid.contains(p)? || !plain.contains(p)?, "{p} is lost");
+        }
+    }
+    // Of the two blocks, the face goes from (8, 10) to (10, 12).
+    let [a, b] = super::flush_blocks();
+    let solid = a.union_with(b, blend);
+    for p in [[9.0, 11.0, 0.0], [8.3, 10.3, 2.4], [9.7, 11.7, -2.4]] {
+        let (p, out) = (DVec3::from(p), DVec3::new(-0.05, 0.05, 0.0));
+        assert!(solid.contains(p - out)? && !solid.contains(p + out)?, "{p}");
+    }
+    Ok(())
+}

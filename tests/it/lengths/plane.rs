@@ -1,0 +1,89 @@
+//! Lengths of profiles: areas of offset polygons by closed forms, corners by points.
+
+use std::f64::consts::PI;
+
+use glam::DVec2;
+use rvachev::{Plane, Profile};
+
+use super::{CORNER, Outcome, TOLERANCE, fillet, l_profile};
+use crate::support::near;
+
+/// How far contours may be off.
+const CONTOUR: f64 = 1e-4;
+
+/// The area of a profile, and how many contours it has: holes count as negative.
+fn area(profile: &Profile) -> Result<(f64, usize), Box<dyn std::error::Error>> {
+    let contours = profile.extrude(1.0).slice(&Plane::xy(0.0))?.contours(CONTOUR)?;
+    Ok((contours.iter().map(rvachev::Polyline::area).sum(), contours.len()))
+}
+
+/// Fails unless a profile has an area, its border being so long, by a length.
+fn has_area(name: &str, profile: &Profile, want: f64, border: f64, length: f64, contours: usize) -> Outcome {
+    let (got, count) = area(profile)?;
+    println!("{name}: {got:.4}, want {want:.4}; {count} contours");
+    near(got, want, (CONTOUR + TOLERANCE * length) * border);
+    assert_eq!(count, contours, "{name}");
+    Ok(())
+}
+
+#[test]
+fn offset_polygons_have_their_areas() -> Outcome {
+    let l = l_profile();
+    // Five convex corners, each with a quarter circle; the strips overlap in the concave one.
+    has_area("L, larger", &l.offset(1.0), 64.0 + 40.0 + 1.25 * PI - 1.0, 48.0, 1.0, 1)?;
+    // Smaller, the concave corner becomes a quarter circle.
+    has_area("L, smaller", &l.offset(-1.0), 64.0 - 40.0 + 5.0 - PI / 4.0, 40.0, 1.0, 1)?;
+    let triangle = Profile::polygon([[0.0, 0.0], [4.0, 0.0], [0.0, 3.0]]);
+    has_area("triangle, larger", &triangle.offset(0.5), 6.0 + 6.0 + 0.25 * PI, 16.0, 0.5, 1)?;
+    // The inner circle has radius 1.
+    has_area("triangle, smaller", &triangle.offset(-0.5), 6.0 * 0.25, 6.0, 0.5, 1)?;
+    has_area("triangle, opened", &triangle.rounded(0.5), 1.5 + 3.0 + 0.25 * PI, 12.0, 0.5, 1)?;
+    // Two squares side by side are one rectangle.
+    let square = Profile::rectangle([10.0; 2]);
+    let both = square.translate([-5.0, 0.0]) | square.translate([5.0, 0.0]);
+    has_area("two squares, smaller", &both.offset(-1.0), 18.0 * 8.0, 52.0, 1.0, 1)?;
+    has_area("two squares, hollow", &both.shell(1.0), 200.0 - 144.0, 112.0, 1.0, 2)?;
+    // A hole.
+    let frame = Profile::rectangle([20.0, 10.0]) - Profile::rectangle([10.0, 4.0]);
+    let larger = 200.0 + 60.0 + PI - 8.0 * 2.0;
+    has_area("frame, larger", &frame.offset(1.0), larger, 90.0, 1.0, 2)?;
+    has_area("frame, hole closed", &frame.filleted(2.5), 200.0, 60.0, 2.5, 1)?;
+    Ok(())
+}
+
+#[test]
+fn corners_of_profiles_are_rounded_and_filled() -> Outcome {
+    let l = l_profile();
+    let (filled, rounded) = (l.filleted(2.0), l.rounded(1.5));
+    let concave = |by: f64| DVec2::splat(6.0) - by * DVec2::ONE.normalize();
+    assert!(filled.contains(concave(2.005))? && !filled.contains(concave(1.995))?);
+    let convex = |by: f64| DVec2::new(8.5, 1.5) + by * DVec2::new(1.0, -1.0).normalize();
+    assert!(rounded.contains(convex(1.495))? && !rounded.contains(convex(1.505))?);
+    // Convex corners stay when concave ones are filled, and the other way round, to the bit.
+    assert!(filled.contains([1e-9, 1e-9])? && !filled.contains([-1e-9, 5.0])?);
+    assert!(!rounded.contains([4.0 + 1e-9, 4.0 + 1e-9])? && rounded.contains([4.0 - 1e-9, 4.0 - 1e-9])?);
+    // Both at once.
+    let both = l.filleted(2.0).rounded(1.5);
+    let want = 64.0 + 4.0 * CORNER - 5.0 * 2.25 * CORNER;
+    has_area("L, both", &both, want, 40.0, 2.0, 1)
+}
+
+#[test]
+fn profiles_that_are_eroded_away_are_empty() -> Outcome {
+    for nothing in [l_profile().offset(-2.5), l_profile().rounded(2.5), Profile::circle(1.0).offset(-1.5).offset(1.5)] {
+        assert!(nothing.extrude(1.0).bounds()?.is_empty(), "{nothing:?}");
+        assert!(!nothing.contains([2.0, 2.0])?);
+        assert!((&nothing | Profile::circle(1.0)).contains([0.5, 0.0])?);
+        assert!(nothing.revolve().bounds()?.is_empty());
+    }
+    Ok(())
+}
+
+#[test]
+fn a_filleted_union_in_the_plane_is_flush() -> Outcome {
+    let low = Profile::rectangle([10.0; 2]).translate([5.0, 5.0]);
+    let both = low.union_with(Profile::rectangle([10.0, 20.0]).translate([15.0, 10.0]), fillet(2.0));
+    has_area("flush blocks", &both, 300.0 + 4.0 * CORNER, 80.0, 2.0, 1)?;
+    assert!(!both.contains([10.0, -1e-9])? && both.contains([10.0, 1e-9])?);
+    Ok(())
+}
