@@ -600,24 +600,81 @@ fn a_wall_thinner_than_cells_is_found_or_told() -> Outcome {
     })
 }
 
-/// Fails unless signs about the offset of a solid are those of distances by brute force.
-fn offset_is_at(solid: &Solid, by: f64, cells: u32, count: usize) -> Outcome {
+/// Fails unless signs about the offsets of a solid are those of distances by brute force.
+fn offsets_are_at(solid: &Solid, lengths: [f64; 2], cells: u32, count: usize) -> Outcome {
     let surface = Surface::new(solid, cells)?.expect("it has a surface");
-    let moved = solid.offset(by);
     let mut random = Random::new(1206);
-    let mut decided = 0;
-    for _ in 0..count {
-        let from = surface.point(random.below(surface.len()), [random.unit(), random.unit()]);
-        let p = from + by.abs() * random.range(0.0, 2.0) * random.direction();
-        let [least, most] = surface.distance(p);
-        let [least, most] = if solid.contains(p)? { [least, most] } else { [-most, -least] };
-        let tolerance = 3.0 * TOLERANCE * by.abs();
-        let inside = moved.contains(p)?;
-        assert!(least <= -by + tolerance || inside, "{solid:?} by {by} at {p}: outside, distance {least} to {most}");
-        assert!(most >= -by - tolerance || !inside, "{solid:?} by {by} at {p}: inside, distance {least} to {most}");
-        decided += usize::from(least > -by + tolerance || most < -by - tolerance);
+    for by in lengths {
+        let moved = solid.offset(by);
+        let mut decided = 0;
+        for _ in 0..count {
+            let from = surface.point(random.below(surface.len()), [random.unit(), random.unit()]);
+            let p = from + by.abs() * random.range(0.0, 2.0) * random.direction();
+            let [least, most] = surface.distance(p);
+            let [least, most] = if solid.contains(p)? { [least, most] } else { [-most, -least] };
+            let tolerance = 3.0 * TOLERANCE * by.abs();
+            let inside = moved.contains(p)?;
+            let (within, beyond) = (least > -by + tolerance, most < -by - tolerance);
+            assert!(!within || inside, "{solid:?} by {by} at {p}: outside, distance {least} to {most}");
+            assert!(!beyond || !inside, "{solid:?} by {by} at {p}: inside, distance {least} to {most}");
+            decided += usize::from(within || beyond);
+        }
+        assert!(2 * decided > count, "{solid:?} by {by}: {decided} of {count} points tell anything");
     }
-    assert!(2 * decided > count, "{solid:?} by {by}: {decided} of {count} points tell anything");
+    Ok(())
+}
+
+/// Fails unless the inner face of a shell is as deep as asked for: by brute force, and along normals
+/// where a ball that touches the foot of the normal is larger than the wall.
+fn has_wall(solid: &Solid, thickness: f64) -> Outcome {
+    let surface = Surface::new(solid, 64)?.expect("it has a surface");
+    let shell = solid.shell(thickness);
+    // Vertices of this mesh are on the surface; others may stand off it, for the sake of its triangles.
+    let cell = solid.bounds()?.longest_side() / 48.0;
+    let settings =
+        MeshSettings { cell: CellSize::Length(cell), features: rvachev::Features::Smooth, ..MeshSettings::default() };
+    let mesh = shell.mesh(&settings)?;
+    let doubt = 3.0 * TOLERANCE * thickness + 2e-3 * cell;
+    let mut inner = 0;
+    for p in mesh.positions().iter().step_by(mesh.positions().len().div_ceil(300)).map(|p| p.as_dvec3()) {
+        let [least, most] = surface.distance(p);
+        if most > 0.5 * thickness {
+            inner += 1;
+            let is_there = least <= thickness + doubt && most >= thickness - doubt;
+            assert!(is_there, "{solid:?}: the inner face is {least} to {most} deep at {p}, not {thickness}");
+        }
+    }
+    assert!(inner > 50, "{solid:?}: {inner} vertices of the inner face");
+    let mut random = Random::new(1208);
+    let bounds = solid.bounds()?;
+    let (centre, reach) = (bounds.center(), bounds.longest_side());
+    let mut measured = 0;
+    for _ in 0..100 {
+        let direction = random.direction();
+        let Some(hit) = solid.raycast(centre - reach * direction + random.vector(-0.2, 0.2) * reach, direction)? else {
+            continue;
+        };
+        let inwards = -hit.normal;
+        let [least, _] = surface.distance(hit.point + 1.5 * thickness * inwards);
+        if least < 1.4 * thickness {
+            continue;
+        }
+        measured += 1;
+        let start = 1e-3 * thickness;
+        let wall = shell.raycast(hit.point + start * inwards, inwards)?.expect("an inner face").distance + start;
+        near(wall, thickness, 3.0 * TOLERANCE * thickness);
+    }
+    assert!(measured > 20, "{solid:?}: {measured} rays");
+    Ok(())
+}
+
+#[test]
+fn walls_of_shells_are_as_thick_as_asked_for() -> Outcome {
+    let plate = Solid::cuboid([20.0, 14.0, 6.0]) - at(Solid::cylinder(2.5, 10.0), [4.0, 0.0, 0.0]);
+    let pill = Solid::superellipsoid([6.0, 4.0, 2.0], 0.3, 0.4);
+    for solid in [two_cubes(), plate, pill.clone(), pill.twist(rad(0.1)), l_profile().extrude(6.0)] {
+        has_wall(&solid, 0.5)?;
+    }
     Ok(())
 }
 
@@ -626,24 +683,16 @@ fn offsets_of_cusped_lobes_are_at_their_distance() -> Outcome {
     let star = Supershape::new(Gielis::new(5.0, 0.3, 0.3, 0.3), Gielis::new(4.0, 2.0, 2.0, 2.0));
     let lobes = Supershape::new(Gielis::new(7.0, 9.0, 8.0, 8.0), Gielis::new(4.0, 30.0, 30.0, 30.0));
     let vase = Solid::from(lobes.scaled([3.4, 3.4, 6.0])).twist(rad(0.087));
-    for (solid, by) in [(Solid::from(star), 0.1), (vase, 0.16)] {
-        for by in [by, -0.5 * by] {
-            offset_is_at(&solid, by, 96, 150)?;
-        }
-    }
-    Ok(())
+    offsets_are_at(&Solid::from(star), [0.1, -0.05], 80, 150)?;
+    offsets_are_at(&vase, [0.16, -0.08], 80, 150)
 }
 
 #[test]
 fn offsets_over_jumps_of_curvature_are_at_their_distance() -> Outcome {
     let pebble = Solid::rounded_cuboid([4.0, 3.0, 2.0], 0.5).twist(rad(0.2));
     let pill = Profile::rounded_rectangle([4.0, 2.0], 0.9).extrude(2.0).bend(0.2, rad(0.3));
-    for solid in [pebble, pill] {
-        for by in [0.3, -0.3] {
-            offset_is_at(&solid, by, 80, 150)?;
-        }
-    }
-    Ok(())
+    offsets_are_at(&pebble, [0.3, -0.3], 64, 150)?;
+    offsets_are_at(&pill, [0.3, -0.3], 64, 150)
 }
 
 #[test]

@@ -98,6 +98,10 @@ fn filleted_unions_of_convex_solids_are_the_closing() -> Outcome {
             let same = (got > 0.0) == (want > 0.0);
             assert!(same || got.abs().min(want.abs()) < clear, "{a:?}, {b:?}, {radius} at {p}: {got}, not {want}");
         }
+        // No more shells and no more voids than without: of two convex solids, one or two.
+        let most = report(&(&a | &b), 48)?.shells;
+        let found = report(&filleted, 48)?;
+        assert!(found.shells <= most, "{a:?}, {b:?}, {radius}: {found}");
     }
     Ok(())
 }
