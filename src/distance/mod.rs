@@ -22,8 +22,9 @@ use std::sync::Arc;
 
 use self::surface::FromMeshes;
 use crate::error::{MeshingError, RenderError};
-use crate::eval::{CompileError, Compiled, compile};
-use crate::{Run, Solid, SolidError};
+use crate::eval::{CompileError, Compiled, DistanceSource, compile};
+use crate::{Bounds, Run, Solid, SolidError};
+use rvachev_field::Patches;
 
 /// The programs of a solid, compiled on first use and kept with it.
 pub(crate) fn compiled(solid: &Solid) -> Result<Arc<Compiled>, SolidError> {
@@ -37,6 +38,24 @@ pub(crate) fn compiled(solid: &Solid) -> Result<Arc<Compiled>, SolidError> {
 /// The same on the threads of a run, which may be cancelled.
 pub(crate) fn compiled_with(solid: &Solid, run: &Run) -> Result<Arc<Compiled>, CompileError> {
     compile(solid, &FromMeshes, run)
+}
+
+/// The surface of a bounded solid as patches, found on first use and kept with it.
+pub(crate) fn surface_of(solid: &Solid) -> Result<Arc<Patches>, SolidError> {
+    if let Some(kept) = solid.surface().get().and_then(|any| any.clone().downcast::<Patches>().ok()) {
+        return Ok(kept);
+    }
+    let programs = compiled(solid)?;
+    // Feet are refined on the field itself: a thousandth of the solid does.
+    let length = 1e-2 * programs.bounds.longest_side();
+    let found = FromMeshes.surface(solid, &programs, (length, &Bounds::ALL), &Run::default());
+    let patches = match found {
+        Ok(surface) => surface.patches,
+        Err(CompileError::Solid(error)) => return Err(error),
+        Err(CompileError::Cancelled(_)) => unreachable!("nobody has the token"),
+    };
+    let _ = solid.surface().set(patches.clone());
+    Ok(patches)
 }
 
 impl From<CompileError> for MeshingError {

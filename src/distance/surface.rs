@@ -43,7 +43,7 @@ impl DistanceSource for FromMeshes {
     ) -> Result<Surface, CompileError> {
         let whole = programs.bounds;
         let bounds = whole.intersection(&region.inflate(REACH * length));
-        let flat = flat_axis(&programs.surface, &bounds);
+        let flat = programs.flat_axis();
         let size = (0..3).filter(|axis| Some(*axis) != flat).map(|axis| bounds.size()[axis]).fold(0.0, f64::max);
         if bounds.is_empty() || size == 0.0 {
             let patches = Arc::new(Patches::new(&[], run)?);
@@ -74,21 +74,6 @@ impl DistanceSource for FromMeshes {
         eprintln!("   mesh {:?} facets {nf} cell {cell:.4} size {size:.3} sew+bvh {:?} patches {} flat {} error {:.2e} tol {tolerance:.2e} bytes {}", t1-t0, t1.elapsed(), patches.len(), quilt.patches.iter().filter(|p| p.is_flat()).count(), quilt.error, patches.bytes());
         Ok(Surface { patches, error: quilt.error, flat })
     }
-}
-
-/// The axis along which a solid is a column without end: the one axis that its box is infinite
-/// along, where its value does not depend on it.
-fn flat_axis(program: &Program, bounds: &Bounds) -> Option<usize> {
-    if bounds.is_empty() || bounds.is_finite() {
-        return None;
-    }
-    let is_open = |axis: &usize| bounds.size()[*axis] == f64::INFINITY;
-    let mut open = (0..3).filter(is_open);
-    let axis = open.next().filter(|_| open.next().is_none())?;
-    let mut part = *bounds;
-    let reach = (0..3).filter(|other| *other != axis).map(|other| bounds.size()[other]).fold(0.0, f64::max);
-    (part.min[axis], part.max[axis]) = (-reach, reach);
-    program.is_even_along(axis, &part).then_some(axis)
 }
 
 /// The mesh of a program, its creases sharp, in smaller cells where that shows more.

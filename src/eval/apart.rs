@@ -14,6 +14,7 @@ use super::exact::Exactness;
 use super::fill::FARTHEST;
 use super::nothing::Nothing;
 use super::source::{CompileError, DistanceSource, Measured, Surface};
+use super::tiles::Tiles;
 use crate::solid::{BALL_OF_LEGS, Length, Node, Operation};
 use crate::{Blend, Bounds, Run, Solid};
 use rvachev_field::{AnyField, SurfaceDistance};
@@ -61,7 +62,7 @@ fn alone<'a>(solid: &'a Solid, exact: &Exactness) -> Vec<&'a Solid> {
 pub(super) fn measure(
     solid: &Solid,
     exact: &Exactness,
-    source: &dyn DistanceSource,
+    source: &'static dyn DistanceSource,
     run: &Run,
 ) -> Result<(), CompileError> {
     if measured(solid).is_some() {
@@ -118,10 +119,14 @@ fn distance(
     solid: &Solid,
     length: f64,
     region: &Bounds,
-    source: &dyn DistanceSource,
+    source: &'static dyn DistanceSource,
     run: &Run,
 ) -> Result<(Arc<dyn AnyField>, f64), CompileError> {
     let Some(programs) = kept(solid) else { return Ok((Arc::new(Nothing), 0.0)) };
+    if !programs.bounds.intersection(region).is_finite() && programs.flat_axis().is_none() && !programs.bounds.is_empty() {
+        let tiles = Tiles::new(solid.clone(), (sign(&programs), programs.bounds), length, source);
+        return Ok((Arc::new(tiles), 0.0));
+    }
     let Surface { patches, error, flat } = source.surface(solid, &programs, (length, region), run)?;
     let field = SurfaceDistance::new(patches, sign(&programs), error, flat, programs.bounds);
     Ok((Arc::new(field), error))

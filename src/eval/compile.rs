@@ -43,12 +43,29 @@ pub(crate) struct Compiled {
 const FLUSH: f64 = 1e-5;
 const LARGEST_MARGIN: f64 = 1e-3;
 
+impl Compiled {
+    /// The axis along which the solid is a column without end: the one axis that its box is infinite
+    /// along, where its value does not depend on it.
+    pub(crate) fn flat_axis(&self) -> Option<usize> {
+        if self.bounds.is_empty() || self.bounds.is_finite() {
+            return None;
+        }
+        let size = self.bounds.size();
+        let mut open = (0..3).filter(|axis| size[*axis] == f64::INFINITY);
+        let axis = open.next().filter(|_| open.next().is_none())?;
+        let mut part = self.bounds;
+        let reach = (0..3).filter(|other| *other != axis).map(|other| size[other]).fold(0.0, f64::max);
+        (part.min[axis], part.max[axis]) = (-reach, reach);
+        self.surface.is_even_along(axis, &part).then_some(axis)
+    }
+}
+
 /// More nodes than this are not compiled.
 const LIMIT: usize = 1 << 23;
 
 /// The programs of `solid`, compiled on first use and kept with it. Surfaces that lengths and fillets
 /// are measured from are made by `source`, and kept with their nodes.
-pub(crate) fn compile(solid: &Solid, source: &dyn DistanceSource, run: &Run) -> Result<Arc<Compiled>, CompileError> {
+pub(crate) fn compile(solid: &Solid, source: &'static dyn DistanceSource, run: &Run) -> Result<Arc<Compiled>, CompileError> {
     if let Some(kept) = kept(solid) {
         return Ok(kept);
     }

@@ -38,6 +38,7 @@ mod sides;
 mod source;
 mod tape;
 mod thin;
+mod tiles;
 
 pub(crate) use narrow::Narrowed;
 pub use palette::Palette;

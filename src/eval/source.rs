@@ -12,7 +12,7 @@ use rvachev_field::{AnyField, Patches};
 use rvachev_num::Run;
 
 /// Finds the surfaces that lengths are measured from.
-pub(crate) trait DistanceSource: Sync {
+pub(crate) trait DistanceSource: Send + Sync {
     /// The surface of a solid, which has been compiled, for lengths of about `length` within a region.
     ///
     /// # Errors

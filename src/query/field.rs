@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::nearest::nearest;
-use crate::distance::compiled;
+use crate::distance::{compiled, surface_of};
 use crate::eval::{Care, Evaluator, Hit, Owner, Program, Region, Tape, first_hit, limited};
 use crate::{Bounds, Interval, Solid, SolidError};
 
@@ -182,7 +182,7 @@ impl Solid {
         if bounds.is_empty() || !p.is_finite() {
             return Ok(None);
         }
-        Ok(nearest(&programs.surface, &bounds, p))
+        Ok(nearest(&programs.surface, &*surface_of(self)?, p))
     }
 
     /// The leaf that decides at a point: the one whose value the point has after min and max.

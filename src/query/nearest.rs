@@ -1,84 +1,18 @@
-//! The nearest point of the surface, by branch and bound.
+//! The nearest point of the surface: on the patches of the surface first, then on the field itself.
 //!
-//! Boxes are opened nearest first. A box without surface is dropped, one that is farther than
-//! the best point found is too. From each small box a point is refined: slide along the
-//! tangent plane towards the query, step back to the surface, repeat.
-
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
+//! From the foot on the patches: slide along the tangent plane towards the query, step back to the
+//! surface, repeat.
 
 use glam::DVec3;
 
-use crate::eval::{Program, Region};
-use crate::Bounds;
+use crate::eval::Program;
+use rvachev_field::Patches;
 
-struct Candidate {
-    distance: f64,
-    bounds: Bounds,
-    program: Program,
-}
-
-impl PartialEq for Candidate {
-    fn eq(&self, other: &Candidate) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Candidate {}
-
-impl PartialOrd for Candidate {
-    fn partial_cmp(&self, other: &Candidate) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Candidate {
-    /// The heap gives its greatest: the nearest.
-    fn cmp(&self, other: &Candidate) -> Ordering {
-        other.distance.total_cmp(&self.distance)
-    }
-}
-
-/// Boxes smaller than this times the size are not opened: a point is refined from each.
-const SMALLEST: f64 = 2e-3;
-
-/// No more boxes than this are opened; the best point found by then is the answer.
-const PATIENCE: usize = 100_000;
-
-/// The point of the surface of `program` within `bounds` that is nearest to `p`.
-pub(super) fn nearest(program: &Program, bounds: &Bounds, p: DVec3) -> Option<DVec3> {
-    let size = bounds.size().length();
-    let bounds = bounds.inflate(1e-6 * size);
-    let mut heap = BinaryHeap::new();
-    heap.push(Candidate { distance: 0.0, bounds, program: program.clone() });
-    let mut best: Option<(f64, DVec3)> = None;
-    for _ in 0..PATIENCE {
-        let Some(candidate) = heap.pop() else { break };
-        if best.is_some_and(|(least, _)| candidate.distance >= least) {
-            break;
-        }
-        let Region::Surface(narrowed) = candidate.program.narrow(&candidate.bounds) else { continue };
-        let small = candidate.bounds.longest_side() < SMALLEST * size;
-        if small || best.is_none() {
-            let start = candidate.bounds.center();
-            if let Some(found) = refine(program, start, p, size) {
-                let distance = found.distance(p);
-                if best.is_none_or(|(least, _)| distance < least) {
-                    best = Some((distance, found));
-                }
-            }
-        }
-        if small {
-            continue;
-        }
-        for octant in candidate.bounds.octants() {
-            let distance = octant.distance_squared(p).sqrt();
-            if best.is_none_or(|(least, _)| distance < least) {
-                heap.push(Candidate { distance, bounds: octant, program: narrowed.clone() });
-            }
-        }
-    }
-    best.map(|(_, point)| point)
+/// The point of the surface of `program` that is nearest to `p`; none if there are no patches.
+pub(super) fn nearest(program: &Program, patches: &Patches, p: DVec3) -> Option<DVec3> {
+    let size = patches.bounds().size().length();
+    let foot = patches.nearest(p)?.point;
+    Some(refine(program, foot, p, size).filter(|found| found.distance(foot) < 0.1 * size).unwrap_or(foot))
 }
 
 /// A locally nearest point, from `start`.

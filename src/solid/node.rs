@@ -36,6 +36,8 @@ pub(super) struct Inner {
     pub(super) compiled: OnceLock<Arc<dyn Any + Send + Sync>>,
     /// What it has measured of a length's operand.
     measured: OnceLock<Arc<dyn Any + Send + Sync>>,
+    /// The solid's own surface.
+    surface: OnceLock<Arc<dyn Any + Send + Sync>>,
 }
 
 /// A node of the graph.
@@ -225,7 +227,7 @@ impl Node {
 
 impl Solid {
     pub(crate) fn from_node(node: Node) -> Solid {
-        Solid(Arc::new(Inner { node, compiled: OnceLock::new(), measured: OnceLock::new() }))
+        Solid(Arc::new(Inner { node, compiled: OnceLock::new(), measured: OnceLock::new(), surface: OnceLock::new() }))
     }
 
     pub(crate) fn node(&self) -> &Node {
@@ -240,6 +242,11 @@ impl Solid {
     /// What was measured of a length's operand, or of a fillet's.
     pub(crate) fn measured(&self) -> &OnceLock<Arc<dyn Any + Send + Sync>> {
         &self.0.measured
+    }
+
+    /// The solid's surface, for questions of what is nearest.
+    pub(crate) fn surface(&self) -> &OnceLock<Arc<dyn Any + Send + Sync>> {
+        &self.0.surface
     }
 
     /// What tells this node from others.

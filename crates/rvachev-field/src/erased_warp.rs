@@ -98,8 +98,4 @@ impl<W: Warp> AnyWarp for W {
     fn sheets(&self, hull: [Interval; 3]) -> Option<[Box<dyn AnyWarp>; 2]> {
         Warp::sheets(self, hull).map(|sheets| sheets.map(|sheet| Box::new(sheet) as Box<dyn AnyWarp>))
     }
-
-    fn keeps_lengths(&self) -> bool {
-        Warp::keeps_lengths(self)
-    }
 }

@@ -16,12 +16,10 @@ mod cone;
 mod cuboid;
 mod cylinder;
 mod deform;
-mod distance;
 mod ellipsoid;
 mod erase;
 mod erased;
 mod erased_warp;
-mod faces;
 mod fold;
 #[cfg(feature = "formula")]
 mod formula;
@@ -70,11 +68,9 @@ pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
 pub use deform::{AnyWarp, Bend, BuiltInLaw, Cells, Comb, Elongate, Sectors, Taper, TaperBy, Twist, TwistBy};
 pub use deform::{Law, LawTable, LinearLaw, SineWave, SmoothStep};
-pub use distance::Distance;
 pub use ellipsoid::Ellipsoid;
 pub use erase::Erase;
 pub use erased::{AnyField, Chunk, steep_slopes};
-pub use faces::concave_faces;
 pub use fold::{Joinable, Op};
 #[cfg(feature = "formula")]
 pub use formula::{Formula, FormulaError};

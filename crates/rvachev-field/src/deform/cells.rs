@@ -155,10 +155,6 @@ impl Warp for Cells {
         1.0
     }
 
-    fn keeps_lengths(&self) -> bool {
-        true
-    }
-
     fn branches(&self, hull: [Interval; 3]) -> Option<Branches> {
         let mut first = DVec3::ZERO;
         let mut second = DVec3::ZERO;

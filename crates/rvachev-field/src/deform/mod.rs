@@ -85,11 +85,6 @@ pub trait Warp: Debug + Clone + Send + Sync + 'static {
     fn sheets(&self, _hull: [Interval; 3]) -> Option<[Self; 2]> {
         None
     }
-
-    /// Whether true distances are true distances after the map, as those of folds are.
-    fn keeps_lengths(&self) -> bool {
-        false
-    }
 }
 
 /// The affine map of a fold over a region, and a second one if the region lies across an
@@ -127,8 +122,6 @@ pub trait AnyWarp: Any + Debug + Send + Sync {
     fn branches(&self, hull: [Interval; 3]) -> Option<Branches>;
     /// The deformations on both sides of a jump within a hull.
     fn sheets(&self, hull: [Interval; 3]) -> Option<[Box<dyn AnyWarp>; 2]>;
-    /// Whether lengths stay what they are.
-    fn keeps_lengths(&self) -> bool;
 }
 
 /// A box that holds the parts of `b` that have turned about z by angles in `angle`.

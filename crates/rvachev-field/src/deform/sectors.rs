@@ -152,10 +152,6 @@ impl Warp for Sectors {
         std::f64::consts::SQRT_2
     }
 
-    fn keeps_lengths(&self) -> bool {
-        true
-    }
-
     fn branches(&self, [x, y, _]: [Interval; 3]) -> Option<Branches> {
         let (first, last) = self.blocks_of(x, y)?;
         let other = (last > first).then(|| self.turned(last));

@@ -43,8 +43,4 @@ impl Warp for Revolution {
     fn roundoff(&self, reach: f64) -> f64 {
         5e-7 * reach
     }
-
-    fn keeps_lengths(&self) -> bool {
-        true
-    }
 }
