@@ -184,8 +184,7 @@ impl AnyField for Fill {
 
     fn value(&self, p: [f64; 3]) -> f64 {
         let p = DVec3::from_array(p);
-        let depth = self.depth(p).0;
-        if depth < 0.0 { depth } else { self.height(self.ball.value(p), self.two(p)).min(depth) }
+        self.height(self.ball.value(p), self.two(p)).min(self.depth(p).0)
     }
 
     fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64> {
@@ -228,7 +227,7 @@ impl AnyField for Fill {
             depth = depth.max(own);
         }
         if depth.hi() < 0.0 {
-            return depth;
+            return Interval::new(f64::NEG_INFINITY, depth.hi());
         }
         let most = (self.ball.range(zone) - point(self.radius)).min(point(MOST * self.radius));
         let fade = if self.sides.is_empty() {

@@ -18,7 +18,7 @@ use rvachev_field::{AnyField, Chunk, Patches, SurfaceDistance, VALUE_LIMIT, Zone
 use rvachev_num::symbol::Symbol;
 
 /// How long a tile's side is, in lengths.
-const SIDE: f64 = 64.0;
+const SIDE: f64 = 16.0;
 
 /// Ranges over more tiles than this are not told.
 const MANY: usize = 8;
