@@ -30,12 +30,7 @@ const GAIN: f64 = 0.8;
 const ASTRAY: f64 = 0.4;
 
 /// Where a patch is compared with the surface.
-const PROBES: [[f64; 3]; 4] = [
-    [1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0],
-    [0.6, 0.2, 0.2],
-    [0.2, 0.6, 0.2],
-    [0.2, 0.2, 0.6],
-];
+const PROBES: [[f64; 3]; 4] = [[1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0], [0.6, 0.2, 0.2], [0.2, 0.6, 0.2], [0.2, 0.2, 0.6]];
 
 /// Between the probes patches may be off by so much more than at them.
 const BETWEEN: f64 = 1.5;
@@ -57,21 +52,16 @@ struct Piece {
 
 impl Quilt {
     /// Patches of triangles near the surface.
-    pub(super) fn new(
-        mut facets: Facets,
-        slopes: &Slopes<'_>,
-        tolerance: f64,
-        run: &Run,
-    ) -> Result<Quilt, Cancelled> {
-        let t0=std::time::Instant::now(); facets.polish(slopes, run)?; eprintln!("      polish {:?}", t0.elapsed());
+    pub(super) fn new(mut facets: Facets, slopes: &Slopes<'_>, tolerance: f64, run: &Run) -> Result<Quilt, Cancelled> {
+        facets.polish(slopes, run)?;
         let mut seams = Seams::default();
         let mut pieces = first(&facets, &mut seams);
         let mut positions = facets.positions;
         let mut quilt = Quilt { patches: Vec::new(), error: 0.0 };
         for depth in 0..=DEPTH {
-            let t1=std::time::Instant::now(); seams.find(&positions, slopes, run)?; let t2=std::time::Instant::now();
+            seams.find(&positions, slopes, run)?;
             let patches: Vec<Patch> = pieces.iter().map(|piece| piece.patch(&positions, &seams, tolerance)).collect();
-            let t3=std::time::Instant::now(); let errors = errors(&patches, slopes, run)?; eprintln!("      {depth} find {:?} patches {:?} errors {:?}", t2-t1, t3-t2, t3.elapsed());
+            let errors = errors(&patches, slopes, run)?;
             let fails = |piece: &Piece, (off, turn): (f64, f64)| {
                 let is_off = off > tolerance || turn > TURN && off > 0.05 * tolerance;
                 // Where splitting does not help, more of it does not either.
@@ -89,7 +79,8 @@ impl Quilt {
                     continue;
                 }
                 // A patch that is farther off than it is wide tells nothing of the surface.
-                let width = patch.corners[0].distance(patch.corners[1]).max(patch.corners[1].distance(patch.corners[2]));
+                let width =
+                    patch.corners[0].distance(patch.corners[1]).max(patch.corners[1].distance(patch.corners[2]));
                 if off > ASTRAY * width {
                     quilt.error = quilt.error.max(width);
                 } else {
@@ -213,7 +204,12 @@ impl Piece {
         let [n_a, n_b, n_c] = [at, next, last].map(|k| self.normals[k]);
         let (am, mb) = (seams.hem([a, m], p(k), [n_a, m_a]), seams.hem([m, b], p(c), [m_b, n_b]));
         let (ck, ka) = (seams.hem([c, k], p(b), [n_c, k_c]), seams.hem([k, a], p(m), [k_a, n_a]));
-        parts.push(Piece { corners: [a, m, k], normals: [self.normals[at], m_a, k_a], hems: [am, crease, ka], before: f64::INFINITY });
+        parts.push(Piece {
+            corners: [a, m, k],
+            normals: [self.normals[at], m_a, k_a],
+            hems: [am, crease, ka],
+            before: f64::INFINITY,
+        });
         let diagonal = seams.hem([k, b], p(m), [k_c, n_b]);
         parts.push(Piece {
             corners: [m, b, k],

@@ -157,13 +157,18 @@ impl Seams {
         }
         let mut normals = vec![[DVec3::ZERO; 2]; asked.len()];
         for aside in ASIDE {
-            let beside = |((number, _), at): (&(u32, [DVec3; 2]), &DVec3)| ends(self, *number).map(|end| at.lerp(end, 2.0 * aside));
+            let beside = |((number, _), at): (&(u32, [DVec3; 2]), &DVec3)| {
+                ends(self, *number).map(|end| at.lerp(end, 2.0 * aside))
+            };
             let points: Vec<DVec3> = asked.iter().zip(&at).flat_map(beside).collect();
             let found = slopes.at(&points, run)?;
             for (i, (number, _)) in asked.iter().enumerate() {
                 let pair = 2 * i..2 * i + 2;
-                let planes: Vec<Plane> =
-                    points[pair.clone()].iter().zip(&found[pair.clone()]).filter_map(|(p, s)| Plane::of(*p, s)).collect();
+                let planes: Vec<Plane> = points[pair.clone()]
+                    .iter()
+                    .zip(&found[pair.clone()])
+                    .filter_map(|(p, s)| Plane::of(*p, s))
+                    .collect();
                 at[i] = held(meet(&planes, at[i]), ends(self, *number));
                 normals[i] = [found[2 * i].normal(), found[2 * i + 1].normal()];
             }
@@ -255,8 +260,11 @@ impl Seams {
             let found = slopes.at(&points, run)?;
             for (i, number) in numbers.iter().enumerate() {
                 let pair = 2 * i..2 * i + 2;
-                let planes: Vec<Plane> =
-                    points[pair.clone()].iter().zip(&found[pair.clone()]).filter_map(|(p, s)| Plane::of(*p, s)).collect();
+                let planes: Vec<Plane> = points[pair.clone()]
+                    .iter()
+                    .zip(&found[pair.clone()])
+                    .filter_map(|(p, s)| Plane::of(*p, s))
+                    .collect();
                 let seam = &mut self.list[*number];
                 seam.moved(meet(&planes, seam.middle), positions);
                 seam.normals = [found[2 * i].normal(), found[2 * i + 1].normal()];

@@ -50,15 +50,15 @@ impl DistanceSource for FromMeshes {
             return Ok(Surface { patches, error: 0.0, flat });
         }
         if !size.is_finite() {
-            eprintln!("bounds {bounds:?} flat {flat:?} {:?}", programs.surface.evaluate(crate::Dual::point([crate::Interval::new(-10.0,10.0);3]), &mut Vec::new()));
             return Err(SolidError::Unbounded { path: programs.unbounded.clone() }.into());
         }
         let cell = (size / COARSEST).min(length).max(size / FINEST);
         let tolerance = (TOLERANCE * length).max(1e-6 * size);
         let [to_mesh, to_sew] = run.stages([0.7, 0.3]);
-        let t0 = std::time::Instant::now();
         let facets = match flat {
-            None if bounds.contains_bounds(&whole) => Facets::new(&mesh(&programs.surface, bounds, cell, &to_mesh)?, |_| true),
+            None if bounds.contains_bounds(&whole) => {
+                Facets::new(&mesh(&programs.surface, bounds, cell, &to_mesh)?, |_| true)
+            }
             None => part(solid, bounds, whole, cell, &to_mesh)?,
             Some(axis) => {
                 let mut wall = bounds;
@@ -66,12 +66,9 @@ impl DistanceSource for FromMeshes {
                 part(solid, wall, whole, cell, &to_mesh)?
             }
         };
-        let t1 = std::time::Instant::now();
-        let nf = facets.triangles.len();
         let slopes = Slopes { program: &programs.surface, precision: tolerance };
         let quilt = Quilt::new(facets, &slopes, tolerance, &to_sew)?;
-        let t4=std::time::Instant::now(); let patches = Arc::new(Patches::new(&quilt.patches, &to_sew)?); eprintln!("     bvh {:?}", t4.elapsed());
-        eprintln!("   mesh {:?} facets {nf} cell {cell:.4} size {size:.3} sew+bvh {:?} patches {} flat {} error {:.2e} tol {tolerance:.2e} bytes {}", t1-t0, t1.elapsed(), patches.len(), quilt.patches.iter().filter(|p| p.is_flat()).count(), quilt.error, patches.bytes());
+        let patches = Arc::new(Patches::new(&quilt.patches, &to_sew)?);
         Ok(Surface { patches, error: quilt.error, flat })
     }
 }
@@ -90,13 +87,7 @@ fn mesh(program: &Program, bounds: Bounds, cell: f64, run: &Run) -> Result<Mesh,
     Ok(if is_same { mesh } else { finer })
 }
 
-fn mesh_in(
-    program: &Program,
-    bounds: Bounds,
-    cell: f64,
-    thin: ThinFeatures,
-    run: &Run,
-) -> Result<Mesh, CompileError> {
+fn mesh_in(program: &Program, bounds: Bounds, cell: f64, thin: ThinFeatures, run: &Run) -> Result<Mesh, CompileError> {
     let settings =
         MeshSettings { cell: CellSize::Length(cell), features: Features::Sharp, thin, ..MeshSettings::default() };
     let subject = Subject { program, bounds, palette: None, whole: None };

@@ -86,13 +86,13 @@ pub(super) fn measure(
             let (field, error) = distance(ball, near.radius, &region, source, run)?;
             let mut sides = Vec::new();
             // Between convex operands nothing fades.
-            let is_convex = |operand: &Solid| {
-                kept(operand).is_some_and(|programs| programs.surface.bend() == Some(Bend::Concave))
-            };
+            let is_convex =
+                |operand: &Solid| kept(operand).is_some_and(|programs| programs.surface.bend() == Some(Bend::Concave));
             let fades = !(*operation == Operation::Union && operands.iter().all(is_convex));
             if matches!(blend, Blend::Fillet { .. }) && fades {
                 for (number, operand) in operands.iter().enumerate() {
-                    let is_outside = *operation == Operation::Union || *operation == Operation::Difference && number > 0;
+                    let is_outside =
+                        *operation == Operation::Union || *operation == Operation::Difference && number > 0;
                     let own = exact.of(operand);
                     let known = if is_outside { own.outside } else { own.inside };
                     sides.push(match kept(operand).filter(|_| known) {
@@ -123,7 +123,10 @@ fn distance(
     run: &Run,
 ) -> Result<(Arc<dyn AnyField>, f64), CompileError> {
     let Some(programs) = kept(solid) else { return Ok((Arc::new(Nothing), 0.0)) };
-    if !programs.bounds.intersection(region).is_finite() && programs.flat_axis().is_none() && !programs.bounds.is_empty() {
+    if !programs.bounds.intersection(region).is_finite()
+        && programs.flat_axis().is_none()
+        && !programs.bounds.is_empty()
+    {
         let tiles = Tiles::new(solid.clone(), (sign(&programs), programs.bounds), length, source);
         return Ok((Arc::new(tiles), 0.0));
     }

@@ -91,8 +91,7 @@ impl Bevel {
     fn chunk(&self, local: &Locals, is_steep: bool) -> Slopes {
         let tapes: [&Tape; 2] = self.operands.each_ref().map(Whole::tape);
         with_evaluator(|evaluator| {
-            let mut sample =
-                |at: &Locals| [0, 1].map(|i| at.gradients(evaluator, tapes[i]).times(self.signs[i]));
+            let mut sample = |at: &Locals| [0, 1].map(|i| at.gradients(evaluator, tapes[i]).times(self.signs[i]));
             let here = sample(local);
             let (mut out, mut faces) = (Slopes::default(), Vec::new());
             for i in 0..local.count {

@@ -9,21 +9,21 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
-use super::code::{Built, Code, bounded, conjoined, disjoined, grow, snug};
-use super::context::{Contexts, is_similarity, least_stretch};
-use super::fill::{Fill, Side, Signed};
-use super::exact::Exactness;
-use super::extent::extent;
-use super::flatten::flatten;
-use super::program::{Edge, Kind, Program};
-use super::scene::{Instance, Scene};
-use super::sides::Sides;
-use crate::solid::{self, Length, Operation};
 use super::apart::{Near, Work, measure, measured, works};
 use super::bevel::Bevel;
 use super::chamfer::Chamfer;
+use super::code::{Built, Code, bounded, conjoined, disjoined, grow, snug};
+use super::context::{Contexts, is_similarity, least_stretch};
+use super::exact::Exactness;
+use super::extent::extent;
+use super::fill::{Fill, Side, Signed};
+use super::flatten::flatten;
 use super::nothing::Nothing;
+use super::program::{Edge, Kind, Program};
+use super::scene::{Instance, Scene};
+use super::sides::Sides;
 use super::source::{CompileError, DistanceSource, Measured};
+use crate::solid::{self, Length, Operation};
 use crate::{Blend, Bounds, Cancelled, Norm, ParamError, Run, Solid, SolidError};
 use rvachev_field::Op;
 use rvachev_field::{AnyField, AnyWarp, Placement, Rule};
@@ -65,7 +65,11 @@ const LIMIT: usize = 1 << 23;
 
 /// The programs of `solid`, compiled on first use and kept with it. Surfaces that lengths and fillets
 /// are measured from are made by `source`, and kept with their nodes.
-pub(crate) fn compile(solid: &Solid, source: &'static dyn DistanceSource, run: &Run) -> Result<Arc<Compiled>, CompileError> {
+pub(crate) fn compile(
+    solid: &Solid,
+    source: &'static dyn DistanceSource,
+    run: &Run,
+) -> Result<Arc<Compiled>, CompileError> {
     if let Some(kept) = kept(solid) {
         return Ok(kept);
     }
@@ -343,12 +347,7 @@ impl<'e> Compiler<'e> {
         }
     }
 
-    fn warped(
-        &mut self,
-        site: Site<'_>,
-        warp: &Arc<dyn AnyWarp>,
-        inner: Built,
-    ) -> Result<Built, SolidError> {
+    fn warped(&mut self, site: Site<'_>, warp: &Arc<dyn AnyWarp>, inner: Built) -> Result<Built, SolidError> {
         let context = *self.contexts.get(site.context);
         warp.check(&inner.sides.inside).map_err(|e| self.parameter(site, e))?;
         let outward = |b: &Bounds| {
@@ -450,10 +449,13 @@ impl<'e> Compiler<'e> {
         let frame = self.contexts.get(site.context).frame;
         let near = Near::of(operation, *blend, operands);
         let Some(bounds) = near.boxes.first().copied() else { return Ok(Vec::new()) };
-        let bevel: Arc<dyn AnyField> = Arc::new(Bevel::new([a.surface.clone(), b.surface.clone()], signs, chamfer, bounds));
-        let ball = Signed { field: measured.field.clone(), sign: if operation == Operation::Union { 1.0 } else { -1.0 } };
+        let bevel: Arc<dyn AnyField> =
+            Arc::new(Bevel::new([a.surface.clone(), b.surface.clone()], signs, chamfer, bounds));
+        let ball =
+            Signed { field: measured.field.clone(), sign: if operation == Operation::Union { 1.0 } else { -1.0 } };
         let margin = (measured.error + FLUSH * near.radius).min(LARGEST_MARGIN * near.radius);
-        let fill: Arc<dyn AnyField> = Arc::new(Fill { radius: near.radius, ball, sides: Vec::new(), margin, boxes: near.boxes });
+        let fill: Arc<dyn AnyField> =
+            Arc::new(Fill { radius: near.radius, ball, sides: Vec::new(), margin, boxes: near.boxes });
         let both = [self.leaf(&bevel, site), self.leaf(&fill, site)];
         Ok(vec![self.code.operation(Operation::Intersection, Rule::MinMax, frame, &both)])
     }

@@ -13,8 +13,8 @@ use glam::{DAffine3, DMat3};
 
 use super::exact::Exactness;
 use super::scene::{Frame, Scene};
-use crate::{RFunction, Solid};
 use crate::solid::{Length, Node, Operation};
+use crate::{RFunction, Solid};
 use rvachev_field::{AnyWarp, smallest_stretch};
 
 /// What is above a node.

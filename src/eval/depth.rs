@@ -39,12 +39,7 @@ impl Ord for Candidate {
 
 /// Whether a distance may be above `than` somewhere in a box: it is, unless it is certain that it
 /// is not.
-pub(super) fn is_deeper(
-    distance: &dyn AnyField,
-    bounds: &Bounds,
-    than: f64,
-    run: &Run,
-) -> Result<bool, Cancelled> {
+pub(super) fn is_deeper(distance: &dyn AnyField, bounds: &Bounds, than: f64, run: &Run) -> Result<bool, Cancelled> {
     let mut heap = BinaryHeap::new();
     if !bounds.is_empty() {
         heap.push(Candidate { most: f64::INFINITY, bounds: *bounds });

@@ -79,7 +79,11 @@ impl Exactness {
         let mut operands = node.parts().iter().map(|part| self.of(part));
         match node {
             Node::Leaf(field) => {
-                if field.exact() && !field.jumps() { Exact::BOTH } else { Exact::default() }
+                if field.exact() && !field.jumps() {
+                    Exact::BOTH
+                } else {
+                    Exact::default()
+                }
             }
             Node::Affine { forward, .. } if !is_similarity(&forward.matrix3) => Exact::default(),
             Node::Affine { .. }

@@ -41,9 +41,9 @@ mod thin;
 mod tiles;
 
 pub(crate) use narrow::Narrowed;
+pub use owner::Owner;
 pub use palette::Palette;
 pub use program::{Program, Region};
-pub use owner::Owner;
 pub use ray::Hit;
 pub use tape::{Evaluator, Gradients, Tape, UnequalSlices};
 
@@ -52,8 +52,8 @@ pub(crate) use rvachev_field::BOXES as BOXES_AT_ONCE;
 
 pub(crate) use bend::Bend;
 pub(crate) use compile::{Compiled, compile};
-pub(crate) use source::{CompileError, DistanceSource, Surface};
 pub(crate) use parting::Parting;
-pub(crate) use ray::{Care, first_hit};
 pub(crate) use point::limited;
+pub(crate) use ray::{Care, first_hit};
 pub(crate) use rvachev_field::Op;
+pub(crate) use source::{CompileError, DistanceSource, Surface};

@@ -30,9 +30,7 @@ impl Program {
             };
             let mut operands = self.list(node).iter().map(signed);
             let value = match &node.kind {
-                Kind::Leaf(leaf) => {
-                    self.leaf(*leaf, self.in_frame(&frames, self.instance(*leaf).frame, p))
-                }
+                Kind::Leaf(leaf) => self.leaf(*leaf, self.in_frame(&frames, self.instance(*leaf).frame, p)),
                 Kind::Join { op, rule, .. } => {
                     let Some(start) = operands.next() else { continue };
                     operands.fold(start, |all, next| rule.join(*op, all, next))

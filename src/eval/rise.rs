@@ -250,8 +250,8 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
-    use crate::eval::Region;
     use crate::distance::compiled;
+    use crate::eval::Region;
     use crate::{Blend, Helix, MinimalSurface, Polygon, Profile, SheetLattice, Solid, rad};
 
     /// Once in the solid, a ray along the direction, or close to it, stays in it.

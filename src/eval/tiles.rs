@@ -66,8 +66,9 @@ impl Tiles {
         }
         let low = DVec3::from_array(key.map(|c| c as f64)) * self.side();
         let region = Bounds::new(low, low + self.side());
-        let found = super::compile::kept(&self.solid)
-            .and_then(|programs| self.source.surface(&self.solid, &programs, (self.length, &region), &Run::default()).ok());
+        let found = super::compile::kept(&self.solid).and_then(|programs| {
+            self.source.surface(&self.solid, &programs, (self.length, &region), &Run::default()).ok()
+        });
         let (patches, error) = match found {
             Some(surface) => (surface.patches, surface.error),
             None => match Patches::new(&[], &Run::default()) {
@@ -95,7 +96,8 @@ impl Tiles {
         if from == to {
             return Some(vec![(self.tile(from), *zone)]);
         }
-        let count = (0..3).map(|axis| to[axis].saturating_sub(from[axis]).saturating_add(1)).try_fold(1i64, i64::checked_mul);
+        let count =
+            (0..3).map(|axis| to[axis].saturating_sub(from[axis]).saturating_add(1)).try_fold(1i64, i64::checked_mul);
         if count.is_none_or(|count| count > MANY as i64) {
             return None;
         }

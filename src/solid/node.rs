@@ -121,11 +121,9 @@ impl Length {
     /// By how much, in length units.
     pub(crate) fn amount(self) -> f64 {
         match self {
-            Length::Level(by)
-            | Length::Offset(by)
-            | Length::Shell(by)
-            | Length::Rounded(by)
-            | Length::Filleted(by) => by,
+            Length::Level(by) | Length::Offset(by) | Length::Shell(by) | Length::Rounded(by) | Length::Filleted(by) => {
+                by
+            }
         }
     }
 

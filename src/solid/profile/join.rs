@@ -111,7 +111,11 @@ impl Profile {
     /// This profile without all of `profiles`, less what `blend` takes off: see
     /// [`Solid::union_all_with`](crate::Solid::union_all_with).
     #[must_use]
-    pub fn difference_all_with<T: Into<Profile>>(&self, profiles: impl IntoIterator<Item = T>, blend: Blend) -> Profile {
+    pub fn difference_all_with<T: Into<Profile>>(
+        &self,
+        profiles: impl IntoIterator<Item = T>,
+        blend: Blend,
+    ) -> Profile {
         Profile(self.0.difference_all_with(columns(profiles), blend))
     }
 
