@@ -182,7 +182,7 @@ impl Near {
         order.sort_by(|a, b| around[*a].min.x.total_cmp(&around[*b].min.x));
         for (at, &first) in order.iter().enumerate() {
             for &second in order[at + 1..].iter().take_while(|other| around[**other].min.x <= around[first].max.x) {
-                let bounds = around[first].intersection(&around[second]).intersection(&inside.inflate(1e-9 * radius));
+                let bounds = around[first].intersection(&around[second]).intersection(&inside);
                 if !bounds.is_empty() {
                     between.push(bounds);
                 }
