@@ -76,7 +76,12 @@ pub(super) fn measure(
         Node::Length { operand, length, .. } => {
             let by = if let Length::Shell(t) = *length { -t } else { length.amount() };
             let (field, error) = distance(operand, by.abs(), &Bounds::ALL, source, run)?;
-            let bounds = kept(operand).map_or(Bounds::EMPTY, |programs| programs.bounds);
+            let programs = kept(operand);
+            let mut bounds = programs.as_ref().map_or(Bounds::EMPTY, |programs| programs.bounds);
+            // Of a column a section does.
+            if let Some(axis) = programs.and_then(|programs| programs.flat_axis()) {
+                (bounds.min[axis], bounds.max[axis]) = (0.0, 0.0);
+            }
             let is_gone = by < 0.0 && bounds.is_finite() && !is_deeper(&*field, &bounds, error - by, run)?;
             Measured { field, error, is_gone, sides: Vec::new() }
         }
