@@ -54,6 +54,16 @@ struct Task {
     program: Program,
 }
 
+/// The box of some points.
+fn hull(numbers: &[u32], points: &[DVec3]) -> Bounds {
+    let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for number in numbers {
+        let p = points[*number as usize];
+        (min, max) = (min.min(p), max.max(p));
+    }
+    Bounds::new(min, max)
+}
+
 impl Slopes<'_> {
     /// The slopes at points, in their order.
     pub(super) fn at(&self, points: &[DVec3], run: &Run) -> Result<Vec<Slope>, Cancelled> {
@@ -79,10 +89,7 @@ impl Slopes<'_> {
         let mut tasks = Vec::new();
         let mut pending = vec![(numbers, self.program.clone())];
         while let Some((numbers, program)) = pending.pop() {
-            let bounds = numbers.iter().fold(Bounds::EMPTY, |all, n| {
-                let p = points[*n as usize];
-                all.union(&Bounds::new(p, p))
-            });
+            let bounds = hull(&numbers, points);
             if numbers.len() <= FEW || (program.leaf_count() <= SHORT && numbers.len() <= 64 * FEW) {
                 tasks.push(Task { numbers, bounds, program });
                 continue;
@@ -100,11 +107,7 @@ impl Slopes<'_> {
                 continue;
             }
             for part in parts.into_iter().filter(|part| !part.is_empty()) {
-                let hull = part.iter().fold(Bounds::EMPTY, |all, n| {
-                    let p = points[*n as usize];
-                    all.union(&Bounds::new(p, p))
-                });
-                let program = match program.narrow(&hull.inflate(1e-6 * bounds.longest_side())) {
+                let program = match program.narrow(&hull(&part, points).inflate(1e-6 * bounds.longest_side())) {
                     Region::Surface(narrowed) => narrowed,
                     Region::Inside | Region::Outside => program.clone(),
                 };

@@ -9,7 +9,7 @@ use super::facets::Facets;
 use super::quilt::Quilt;
 use super::slopes::Slopes;
 use crate::error::MeshingError;
-use crate::eval::{CompileError, Compiled, DistanceSource, Program, Surface};
+use crate::eval::{Asked, CompileError, Compiled, DistanceSource, Program, Surface};
 use crate::mesh::Subject;
 use crate::{Bounds, CellSize, Features, Mesh, MeshSettings, RFunction, Run, Solid, SolidError, ThinFeatures};
 use rvachev_field::Patches;
@@ -20,12 +20,13 @@ pub(super) struct FromMeshes;
 /// Patches are off the surface by this part of the length at most, as far as they can be.
 const TOLERANCE: f64 = 1e-3;
 
-/// Cells along the longest side: at least, and at most where the length is short.
+/// Cells along the longest side: at least, and at most.
 const COARSEST: f64 = 24.0;
-const FINEST: f64 = 256.0;
+const FINEST: f64 = 4096.0;
 
-/// Meshes whose surfaces are closer than this on average, in cells, are the same.
-const SAME: f64 = 0.02;
+/// So many cells may be on the surface, and so many more for each leaf.
+const CELLS: f64 = 4e4;
+const CELLS_A_LEAF: f64 = 500.0;
 
 /// Distances are asked up to so many lengths from a region.
 const REACH: f64 = 2.0;
@@ -38,9 +39,10 @@ impl DistanceSource for FromMeshes {
         &self,
         solid: &Solid,
         programs: &Compiled,
-        (length, region): (f64, &Bounds),
+        &Asked { length, region, detail }: &Asked,
         run: &Run,
     ) -> Result<Surface, CompileError> {
+        let t0 = std::time::Instant::now();
         let whole = programs.bounds;
         let bounds = whole.intersection(&region.inflate(REACH * length));
         let flat = programs.flat_axis();
@@ -52,7 +54,7 @@ impl DistanceSource for FromMeshes {
         if !size.is_finite() {
             return Err(SolidError::Unbounded { path: programs.unbounded.clone() }.into());
         }
-        let cell = (size / COARSEST).min(length).max(size / FINEST);
+        let cell = cell(&programs.surface, bounds, (size, detail), run)?;
         let tolerance = (TOLERANCE * length).max(1e-6 * size);
         let [to_mesh, to_sew] = run.stages([0.7, 0.3]);
         let facets = match flat {
@@ -66,11 +68,29 @@ impl DistanceSource for FromMeshes {
                 part(solid, wall, whole, cell, &to_mesh)?
             }
         };
+        if std::env::var("RVT").is_ok() { eprintln!("mesh cell {cell} facets {} leaves {} t {:?}", facets.triangles.len(), programs.surface.leaf_count(), t0.elapsed()); }
         let slopes = Slopes { program: &programs.surface, precision: tolerance };
         let quilt = Quilt::new(facets, &slopes, tolerance, &to_sew)?;
+        if std::env::var("RVT").is_ok() { eprintln!("quilt patches {} error {} tol {tolerance} t {:?}", quilt.patches.len(), quilt.error, t0.elapsed()); }
         let patches = Arc::new(Patches::new(&quilt.patches, &to_sew)?);
+        if std::env::var("RVT").is_ok() { eprintln!("bvh t {:?}", t0.elapsed()); }
         Ok(Surface { patches, error: quilt.error, flat })
     }
+}
+
+/// The size of cells that show details of a size, as far as they are not too many.
+fn cell(program: &Program, bounds: Bounds, (size, detail): (f64, f64), run: &Run) -> Result<f64, CompileError> {
+    let (least, most) = (size / FINEST, size / COARSEST);
+    if detail >= most {
+        return Ok(most);
+    }
+    // Of what has no end, as much as is large.
+    let bounds = bounds.intersection(&Bounds::from_center(bounds.center(), DVec3::splat(size)));
+    let subject = Subject { program, bounds, palette: None, whole: None };
+    let wanted = detail.max(least);
+    let cells = run.install(|| subject.cells(CellSize::Length(wanted), run)).map_err(compile_error)? as f64;
+    let enough = CELLS + CELLS_A_LEAF * program.leaf_count() as f64;
+    Ok((wanted * (cells / enough).sqrt().max(1.0)).min(most))
 }
 
 /// The mesh of a program, its creases sharp, in smaller cells where that shows more.
@@ -80,22 +100,26 @@ fn mesh(program: &Program, bounds: Bounds, cell: f64, run: &Run) -> Result<Mesh,
         return Ok(mesh);
     }
     // Most often nothing is: flush faces and acute edges are suspect as well.
-    let finer = mesh_in(program, bounds, cell, ThinFeatures::Refine { halvings: HALVINGS }, run)?;
-    let [known, found] = [&mesh, &finer].map(Mesh::check);
-    let is_same = (known.shells, known.euler_characteristic) == (found.shells, found.euler_characteristic)
-        && (mesh.volume() - finer.volume()).abs() <= SAME * cell * mesh.area();
-    Ok(if is_same { mesh } else { finer })
+    let subject = Subject { program, bounds, palette: None, whole: None };
+    let shows = || subject.shows_more(CellSize::Length(cell), 1 << HALVINGS, run);
+    if run.install(shows).map_err(compile_error)? {
+        return mesh_in(program, bounds, cell, ThinFeatures::Refine { halvings: HALVINGS }, run);
+    }
+    Ok(mesh)
 }
 
 fn mesh_in(program: &Program, bounds: Bounds, cell: f64, thin: ThinFeatures, run: &Run) -> Result<Mesh, CompileError> {
     let settings =
         MeshSettings { cell: CellSize::Length(cell), features: Features::Sharp, thin, ..MeshSettings::default() };
     let subject = Subject { program, bounds, palette: None, whole: None };
-    match run.install(|| subject.mesh(&settings, run)) {
-        Ok(mesh) => Ok(mesh),
-        Err(MeshingError::Solid(error)) => Err(error.into()),
-        Err(MeshingError::Cancelled(cancelled)) => Err(cancelled.into()),
-        Err(other) => Err(SolidError::Surface { reason: other.to_string() }.into()),
+    run.install(|| subject.mesh(&settings, run)).map_err(compile_error)
+}
+
+fn compile_error(error: MeshingError) -> CompileError {
+    match error {
+        MeshingError::Solid(error) => error.into(),
+        MeshingError::Cancelled(cancelled) => cancelled.into(),
+        other => SolidError::Surface { reason: other.to_string() }.into(),
     }
 }
 

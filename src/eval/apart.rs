@@ -13,7 +13,7 @@ use super::depth::is_deeper;
 use super::exact::Exactness;
 use super::fill::FARTHEST;
 use super::nothing::Nothing;
-use super::source::{CompileError, DistanceSource, Measured, Surface};
+use super::source::{Asked, CompileError, DistanceSource, Measured, Surface};
 use super::tiles::Tiles;
 use crate::solid::{BALL_OF_LEGS, Length, Node, Operation};
 use crate::{Blend, Bounds, Run, Solid};
@@ -70,12 +70,12 @@ pub(super) fn measure(
     }
     let found = match solid.node() {
         Node::Length { ball: Some(ball), length, .. } => {
-            let (field, error) = distance(ball, length.amount(), &Bounds::ALL, source, run)?;
+            let (field, error) = distance(ball, rolling(length.amount(), Bounds::ALL), source, run)?;
             Measured { field, error, is_gone: false, sides: Vec::new() }
         }
         Node::Length { operand, length, .. } => {
             let by = if let Length::Shell(t) = *length { -t } else { length.amount() };
-            let (field, error) = distance(operand, by.abs(), &Bounds::ALL, source, run)?;
+            let (field, error) = distance(operand, Asked { length: by.abs(), region: Bounds::ALL, detail: by.abs() }, source, run)?;
             let programs = kept(operand);
             let mut bounds = programs.as_ref().map_or(Bounds::EMPTY, |programs| programs.bounds);
             // Of a column a section does.
@@ -88,7 +88,7 @@ pub(super) fn measure(
         Node::Blend { operation, blend, operands, ball: Some(ball) } => {
             let near = Near::of(*operation, *blend, operands);
             let region = near.boxes.iter().fold(Bounds::EMPTY, |all, own| all.union(own));
-            let (field, error) = distance(ball, near.radius, &region, source, run)?;
+            let (field, error) = distance(ball, rolling(near.radius, region), source, run)?;
             let mut sides = Vec::new();
             // Between convex operands nothing fades.
             let is_convex =
@@ -102,7 +102,10 @@ pub(super) fn measure(
                     let known = if is_outside { own.outside } else { own.inside };
                     sides.push(match kept(operand).filter(|_| known) {
                         Some(programs) => sign(&programs),
-                        None => distance(operand, near.radius, &region, source, run)?.0,
+                        None => {
+                            let asked = Asked { length: near.radius, region, detail: near.radius };
+                            distance(operand, asked, source, run)?.0
+                        },
                     });
                 }
             }
@@ -114,28 +117,33 @@ pub(super) fn measure(
     Ok(())
 }
 
+/// The distance to where the centre of a ball may be is asked for: round edges there have the radius of the ball, and
+/// what rolls between two of them is smaller.
+fn rolling(radius: f64, region: Bounds) -> Asked {
+    Asked { length: radius, region, detail: 0.5 * radius }
+}
+
 /// A solid's programs as a leaf.
 fn sign(programs: &Compiled) -> Arc<dyn AnyField> {
     Arc::new(Composite { program: Whole::new(programs.surface.clone()), bounds: programs.bounds })
 }
 
-/// The distance to the surface of a solid, and how far it may be off; a region is where it will be asked.
+/// The distance to the surface of a solid, and how far it may be off.
 fn distance(
     solid: &Solid,
-    length: f64,
-    region: &Bounds,
+    asked: Asked,
     source: &'static dyn DistanceSource,
     run: &Run,
 ) -> Result<(Arc<dyn AnyField>, f64), CompileError> {
     let Some(programs) = kept(solid) else { return Ok((Arc::new(Nothing), 0.0)) };
-    if !programs.bounds.intersection(region).is_finite()
+    if !programs.bounds.intersection(&asked.region).is_finite()
         && programs.flat_axis().is_none()
         && !programs.bounds.is_empty()
     {
-        let tiles = Tiles::new(solid.clone(), (sign(&programs), programs.bounds), length, source);
+        let tiles = Tiles::new(solid.clone(), (sign(&programs), programs.bounds), asked.length, source);
         return Ok((Arc::new(tiles), 0.0));
     }
-    let Surface { patches, error, flat } = source.surface(solid, &programs, (length, region), run)?;
+    let Surface { patches, error, flat } = source.surface(solid, &programs, &asked, run)?;
     let field = SurfaceDistance::new(patches, sign(&programs), error, flat, programs.bounds);
     Ok((Arc::new(field), error))
 }

@@ -18,6 +18,7 @@ mod resolve;
 mod roots;
 mod sampler;
 mod settings;
+mod shown;
 mod signs;
 mod subject;
 mod table;
