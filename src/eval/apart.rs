@@ -51,7 +51,10 @@ pub(super) fn works<'a>(root: &'a Solid, exact: &Exactness) -> Vec<Work<'a>> {
 fn alone<'a>(solid: &'a Solid, exact: &Exactness) -> Vec<&'a Solid> {
     match solid.node() {
         Node::Length { length: Length::Level(_), .. } => Vec::new(),
-        Node::Length { operand, ball, .. } if !exact.is_closed(solid) => [operand].into_iter().chain(ball).collect(),
+        Node::Length { .. } if exact.is_gone(solid) => Vec::new(),
+        Node::Length { operand, length, ball } if !exact.is_closed(solid) || length.inwards() > 0.0 => {
+            [operand].into_iter().chain(ball).collect()
+        }
         Node::Blend { operands, ball: Some(ball), .. } => operands.iter().chain([ball]).collect(),
         _ => Vec::new(),
     }
@@ -71,18 +74,23 @@ pub(super) fn measure(
     let found = match solid.node() {
         Node::Length { ball: Some(ball), length, .. } => {
             let (field, error) = distance(ball, rolling(length.amount(), Bounds::ALL), source, run)?;
-            Measured { field, error, is_gone: false, sides: Vec::new() }
+            let is_gone = length.inwards() > 0.0 && kept(ball).is_none_or(|programs| programs.bounds.is_empty());
+            Measured { field, error, is_gone, sides: Vec::new() }
         }
         Node::Length { operand, length, .. } => {
-            let by = if let Length::Shell(t) = *length { -t } else { length.amount() };
-            let (field, error) = distance(operand, Asked { length: by.abs(), region: Bounds::ALL, detail: by.abs() }, source, run)?;
-            let programs = kept(operand);
-            let mut bounds = programs.as_ref().map_or(Bounds::EMPTY, |programs| programs.bounds);
+            let inwards = length.inwards();
+            let asked = Asked { length: inwards.abs(), region: Bounds::ALL, detail: inwards.abs() };
+            let Some(programs) = kept(operand) else { return Ok(()) };
+            let (field, error) = match exact.is_closed(solid) {
+                true => (sign(&programs), 0.0),
+                false => distance(operand, asked, source, run)?,
+            };
+            let mut bounds = programs.bounds;
             // Of a column a section does.
-            if let Some(axis) = programs.and_then(|programs| programs.flat_axis()) {
+            if let Some(axis) = programs.flat_axis() {
                 (bounds.min[axis], bounds.max[axis]) = (0.0, 0.0);
             }
-            let is_gone = by < 0.0 && bounds.is_finite() && !is_deeper(&*field, &bounds, error - by, run)?;
+            let is_gone = inwards > 0.0 && bounds.is_finite() && !is_deeper(&*field, &bounds, error + inwards, run)?;
             Measured { field, error, is_gone, sides: Vec::new() }
         }
         Node::Blend { operation, blend, operands, ball: Some(ball) } => {
@@ -90,11 +98,7 @@ pub(super) fn measure(
             let region = near.boxes.iter().fold(Bounds::EMPTY, |all, own| all.union(own));
             let (field, error) = distance(ball, rolling(near.radius, region), source, run)?;
             let mut sides = Vec::new();
-            // Between convex operands nothing fades.
-            let is_convex =
-                |operand: &Solid| kept(operand).is_some_and(|programs| programs.surface.bend() == Some(Bend::Concave));
-            let fades = !(*operation == Operation::Union && operands.iter().all(is_convex));
-            if matches!(blend, Blend::Fillet { .. }) && fades {
+            if near.fades {
                 for (number, operand) in operands.iter().enumerate() {
                     let is_outside =
                         *operation == Operation::Union || *operation == Operation::Difference && number > 0;
@@ -159,6 +163,8 @@ pub(super) fn measured(solid: &Solid) -> Option<Measured> {
 pub(super) struct Near {
     /// That of the ball.
     pub(super) radius: f64,
+    /// Whether what is between operands fades away from them: between convex ones it need not.
+    pub(super) fades: bool,
     /// Boxes of what may be between two operands.
     pub(super) boxes: Vec<Bounds>,
     /// By operand, a box beyond which it is far.
@@ -167,9 +173,15 @@ pub(super) struct Near {
 
 impl Near {
     pub(super) fn of(operation: Operation, blend: Blend, operands: &[Solid]) -> Near {
+        let is_convex =
+            |operand: &Solid| kept(operand).is_some_and(|programs| programs.surface.bend() == Some(Bend::Concave));
+        let fades = matches!(blend, Blend::Fillet { .. })
+            && !(operation == Operation::Union && operands.iter().all(is_convex));
         let (radius, reach) = match blend {
             Blend::Chamfer { leg } => (BALL_OF_LEGS * leg, BALL_OF_LEGS * leg),
-            Blend::Fillet { radius } => (radius, FARTHEST * radius),
+            Blend::Fillet { radius } if fades => (radius, FARTHEST * radius),
+            // The sum of the distances is below twice the radius.
+            Blend::Fillet { radius } => (radius, 2.0 * radius),
             _ => (0.0, 0.0),
         };
         let boxes: Vec<Bounds> =
@@ -201,6 +213,6 @@ impl Near {
                 }
             }
         }
-        Near { radius, boxes: between, around }
+        Near { radius, fades, boxes: between, around }
     }
 }

@@ -319,6 +319,10 @@ impl<'e> Compiler<'e> {
                 })
             }
             solid::Node::Length { length, .. } => {
+                if self.exact.is_gone(site.solid) || measured(site.solid).is_some_and(|found| found.is_gone) {
+                    // Of what is nowhere thicker than a wall, all is.
+                    return Ok(if matches!(length, Length::Shell(_)) { below[0] } else { self.nothing(site) });
+                }
                 let by = match *length {
                     Length::Level(c) => return Ok(self.code.level(c * context.scale, below[0])),
                     Length::Offset(d) => d,
@@ -490,12 +494,14 @@ impl<'e> Compiler<'e> {
         let context = self.contexts.get(site.context);
         let shift = context.shift.unwrap_or(0.0) + by * context.scale;
         match measured(site.solid) {
-            Some(Measured { field, is_gone: false, .. }) => self.shifted(&field, site, shift),
-            _ => {
-                let nothing: Arc<dyn AnyField> = Arc::new(Nothing);
-                self.shifted(&nothing, site, 0.0)
-            }
+            Some(Measured { field, .. }) => self.shifted(&field, site, shift),
+            None => self.nothing(site),
         }
+    }
+
+    fn nothing(&mut self, site: Site<'_>) -> Built {
+        let nothing: Arc<dyn AnyField> = Arc::new(Nothing);
+        self.shifted(&nothing, site, 0.0)
     }
 
     fn shifted(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>, shift: f64) -> Built {

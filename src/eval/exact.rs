@@ -11,27 +11,37 @@
 //!     offset inwards           always                no
 //! ```
 //!
+//! How deep a solid can be at most is told the same way: half of a leaf's box, a wall's thickness.
+//!
 //! R-functions count as min and max, which is what lengths make of them. Of all else nothing is
 //! known: deformations, blends, repetitions in a deformed space.
 
 use std::collections::HashMap;
+
+use glam::DAffine3;
 
 use super::context::is_similarity;
 use crate::Solid;
 use crate::solid::{Length, Node, Operation};
 
 /// On which side a value is the true distance.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Exact {
     pub(super) inside: bool,
     pub(super) outside: bool,
+    /// No point is farther inside than this.
+    deepest: f64,
 }
 
 impl Exact {
-    const BOTH: Exact = Exact { inside: true, outside: true };
+    const NEITHER: Exact = Exact { inside: false, outside: false, deepest: f64::INFINITY };
 
     fn complement(self) -> Exact {
-        Exact { inside: self.outside, outside: self.inside }
+        Exact { inside: self.outside, outside: self.inside, deepest: f64::INFINITY }
+    }
+
+    fn deep(self, deepest: f64) -> Exact {
+        Exact { deepest, ..self }
     }
 }
 
@@ -59,7 +69,7 @@ impl Exactness {
 
     /// Where the value of a solid is a distance.
     pub(super) fn of(&self, solid: &Solid) -> Exact {
-        self.0.get(&solid.address()).copied().unwrap_or_default()
+        self.0.get(&solid.address()).copied().unwrap_or(Exact::NEITHER)
     }
 
     /// Whether a length is a matter of its operand's own value.
@@ -74,40 +84,53 @@ impl Exactness {
         }
     }
 
+    /// Whether it is known before anything is measured that nothing is left of a length's operand where the
+    /// length is taken away.
+    pub(super) fn is_gone(&self, solid: &Solid) -> bool {
+        let Node::Length { operand, length, .. } = solid.node() else { return false };
+        self.of(operand).deepest <= length.inwards()
+    }
+
     fn found(&self, solid: &Solid) -> Exact {
         let node = solid.node();
         let mut operands = node.parts().iter().map(|part| self.of(part));
+        let first = node.parts().first().map_or(Exact::NEITHER, |part| self.of(part));
         match node {
             Node::Leaf(field) => {
-                if field.exact() && !field.jumps() {
-                    Exact::BOTH
-                } else {
-                    Exact::default()
-                }
+                let is_exact = field.exact() && !field.jumps();
+                let deepest = 0.5 * field.bounds_under(&DAffine3::IDENTITY).size().min_element().max(0.0);
+                Exact { inside: is_exact, outside: is_exact, deepest }
             }
-            Node::Affine { forward, .. } if !is_similarity(&forward.matrix3) => Exact::default(),
-            Node::Affine { .. }
-            | Node::Named { .. }
-            | Node::Painted { .. }
-            | Node::Repeated { .. }
-            | Node::Swept { .. } => operands.next().unwrap_or_default(),
-            Node::Complement(_) => operands.next().unwrap_or_default().complement(),
+            Node::Affine { forward, .. } if !is_similarity(&forward.matrix3) => Exact::NEITHER,
+            Node::Affine { forward, .. } => first.deep(first.deepest * forward.matrix3.x_axis.length()),
+            Node::Named { .. } | Node::Painted { .. } => first,
+            Node::Repeated { .. } | Node::Swept { .. } => first,
+            Node::Complement(_) => first.complement(),
             Node::Join { operation: Operation::Union, .. } => {
-                Exact { inside: false, outside: operands.all(|exact| exact.outside) }
+                Exact { outside: operands.all(|exact| exact.outside), ..Exact::NEITHER }
             }
             Node::Join { operation: Operation::Intersection, .. } => {
-                Exact { inside: operands.all(|exact| exact.inside), outside: false }
+                let deepest = operands.clone().map(|exact| exact.deepest).fold(f64::INFINITY, f64::min);
+                Exact { inside: operands.all(|exact| exact.inside), outside: false, deepest }
             }
             Node::Join { operation: Operation::Difference, .. } => {
-                let first = operands.next().unwrap_or_default();
-                Exact { inside: first.inside && operands.all(|exact| exact.outside), outside: false }
+                let is_exact = first.inside && operands.skip(1).all(|exact| exact.outside);
+                Exact { inside: is_exact, outside: false, deepest: first.deepest }
             }
-            Node::Length { length: Length::Offset(d), .. } => match *d {
-                d if d > 0.0 => Exact { inside: false, outside: true },
-                d if d < 0.0 => Exact { inside: true, outside: false },
-                _ => operands.next().unwrap_or_default(),
+            Node::Length { length, .. } => match *length {
+                Length::Offset(d) if d > 0.0 => Exact { outside: true, ..Exact::NEITHER },
+                Length::Offset(d) if d < 0.0 => {
+                    Exact { inside: true, outside: false, deepest: (first.deepest + d).max(0.0) }
+                }
+                Length::Offset(_) => first,
+                Length::Shell(t) => Exact::NEITHER.deep(first.deepest.min(t)),
+                Length::Rounded(_) => Exact::NEITHER.deep(first.deepest),
+                Length::Level(_) | Length::Filleted(_) => Exact::NEITHER,
             },
-            Node::Warp { .. } | Node::Join { .. } | Node::Blend { .. } | Node::Length { .. } => Exact::default(),
+            Node::Blend { operation: Operation::Intersection | Operation::Difference, .. } => {
+                Exact::NEITHER.deep(first.deepest)
+            }
+            Node::Warp { .. } | Node::Join { .. } | Node::Blend { .. } => Exact::NEITHER,
         }
     }
 }

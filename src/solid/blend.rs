@@ -131,7 +131,8 @@ pub(super) fn node(operation: Operation, operands: Vec<Solid>, blend: Blend) -> 
         Blend::Chamfer { leg } => Some(BALL_OF_LEGS * leg),
         _ => None,
     };
-    let ball = radius.map(|radius| {
+    // What is no radius is said of the blend.
+    let ball = radius.filter(|_| blend.check().is_ok()).map(|radius| {
         let join = Node::Join { operation, rule: RFunction::MIN_MAX, operands: operands.clone() };
         Solid::from_node(join).offset(if operation == Operation::Union { radius } else { -radius })
     });

@@ -143,6 +143,8 @@ impl Solid {
 /// A length of an operand.
 pub(super) fn node(operand: &Solid, length: Length) -> Node {
     let ball = match length {
+        // It is said of the length itself.
+        _ if length.check().is_err() => None,
         Length::Rounded(radius) => Some(operand.offset(-radius)),
         Length::Filleted(radius) => Some(operand.offset(radius)),
         _ => None,

@@ -127,6 +127,15 @@ impl Length {
         }
     }
 
+    /// How deep inside points are that it takes away.
+    pub(crate) fn inwards(self) -> f64 {
+        match self {
+            Length::Offset(by) => -by,
+            Length::Shell(by) | Length::Rounded(by) => by,
+            Length::Level(_) | Length::Filleted(_) => f64::NEG_INFINITY,
+        }
+    }
+
     pub(crate) fn name(self) -> &'static str {
         match self {
             Length::Level(_) => "level",

@@ -23,6 +23,7 @@ impl SurfaceDistance {
             Some(side) => out.fill(side as f32),
             None => self.sign.lanes32(Chunk { points, placement: &unscaled(placement), out: [&mut *out] }),
         }
+        self.take_sides(points, placement, out);
         let packets = self.packets(placement);
         on_level!(simd => values_on::<F32<_>>(simd, &packets, points, out), else values_by_point(&packets, points, out))
     }
@@ -34,6 +35,7 @@ impl SurfaceDistance {
             Some(side) => out.fill(side),
             None => self.sign.lanes64(Chunk { points, placement: &unscaled(placement), out: [&mut *out] }),
         }
+        self.take_sides(points, placement, out);
         let packets = self.packets(placement);
         on_level!(simd => values_on::<F64<_>>(simd, &packets, points, out), else values_by_point(&packets, points, out))
     }
@@ -45,11 +47,19 @@ impl SurfaceDistance {
             Some(side) => out[0].fill(side as f32),
             None => self.sign.lanes32(Chunk { points, placement: &unscaled(placement), out: [&mut *out[0]] }),
         }
+        self.take_sides(points, placement, out[0]);
         let packets = self.packets(placement);
         on_level!(
             simd => slopes_on::<F32<_>>(simd, &packets, points, &mut out),
             else slopes_by_point(&packets, points, &mut out)
         );
+    }
+
+    /// Signs where the sign field has none.
+    fn take_sides<E: Element>(&self, [x, y, z]: [&[E]; 3], placement: &Placement, signs: &mut [E]) {
+        for (i, sign) in signs.iter_mut().enumerate().filter(|(_, sign)| sign.to_f64() == 0.0) {
+            *sign = E::from_f64(self.sign_by_normal(placement.apply([x[i], y[i], z[i]].map(E::to_f64))));
+        }
     }
 }
 

@@ -108,7 +108,19 @@ impl SurfaceDistance {
 
     /// The sign at a point, as a number that has it.
     fn sign(&self, p: [f64; 3]) -> f64 {
-        self.side.unwrap_or_else(|| self.sign.value(p))
+        let sign = self.side.unwrap_or_else(|| self.sign.value(p));
+        if sign == 0.0 { self.sign_by_normal(p) } else { sign }
+    }
+
+    /// The sign by the normal at the foot. Fields are 0 where parts of a solid meet face to face, though
+    /// the surface is elsewhere.
+    pub(super) fn sign_by_normal(&self, p: [f64; 3]) -> f64 {
+        match self.nearest(DVec3::from_array(p)) {
+            Some(foot) if foot.distance > AT_SURFACE * self.patches.unit() => {
+                (foot.point - DVec3::from_array(p)).dot(foot.normal)
+            }
+            _ => 0.0,
+        }
     }
 
     /// How far a range over a zone may be off, given the distance from its centre.
