@@ -20,6 +20,9 @@ use rvachev_field::Patch;
 /// How often a patch is split at most.
 const DEPTH: u32 = 6;
 
+/// After so many times it is seen whether splitting helps.
+const SOON: u32 = 3;
+
 /// A patch is split where its normal is off by more, in radians.
 const TURN: f64 = 0.2;
 
@@ -39,6 +42,8 @@ const BETWEEN: f64 = 1.5;
 pub(super) struct Quilt {
     pub(super) patches: Vec<Patch>,
     pub(super) error: f64,
+    /// The part of them, by area, that is farther off than the tolerance.
+    pub(super) off: f64,
 }
 
 /// A triangle: its corners, their normals, and its sides from each corner to the next.
@@ -51,13 +56,20 @@ struct Piece {
 }
 
 impl Quilt {
-    /// Patches of triangles near the surface.
-    pub(super) fn new(mut facets: Facets, slopes: &Slopes<'_>, tolerance: f64, run: &Run) -> Result<Quilt, Cancelled> {
+    /// Patches of triangles near the surface; `None` if more than this part of them is far off and splitting does
+    /// not mend it: triangles are too large for what they are to show.
+    pub(super) fn new(
+        mut facets: Facets,
+        slopes: &Slopes<'_>,
+        (tolerance, patience): (f64, f64),
+        run: &Run,
+    ) -> Result<Option<Quilt>, Cancelled> {
         facets.polish(slopes, run)?;
         let mut seams = Seams::default();
         let mut pieces = first(&facets, &mut seams);
         let mut positions = facets.positions;
-        let mut quilt = Quilt { patches: Vec::new(), error: 0.0 };
+        let mut quilt = Quilt { patches: Vec::new(), error: 0.0, off: 0.0 };
+        let mut area = 0.0;
         for depth in 0..=DEPTH {
             seams.find(&positions, slopes, run)?;
             let patches: Vec<Patch> = pieces.iter().map(|piece| piece.patch(&positions, &seams, tolerance)).collect();
@@ -69,6 +81,14 @@ impl Quilt {
             };
             let failing = pieces.iter().zip(&errors).filter(|(piece, error)| fails(piece, **error));
             cross(failing.map(|(piece, _)| piece), &positions, &mut seams, slopes, run)?;
+            if depth == SOON {
+                let areas = || patches.iter().map(area_of);
+                let split = pieces.iter().zip(&errors).zip(areas());
+                let failing: f64 = split.filter(|((piece, error), _)| fails(piece, **error)).map(|(_, own)| own).sum();
+                if failing > patience * (area + areas().sum::<f64>()) {
+                    return Ok(None);
+                }
+            }
             let mut next = Vec::new();
             for ((piece, patch), error) in pieces.iter().zip(patches).zip(errors) {
                 let off = error.0;
@@ -79,6 +99,9 @@ impl Quilt {
                     continue;
                 }
                 // A patch that is farther off than it is wide tells nothing of the surface.
+                let own = area_of(&patch);
+                area += own;
+                quilt.off += if off > tolerance { own } else { 0.0 };
                 let width =
                     patch.corners[0].distance(patch.corners[1]).max(patch.corners[1].distance(patch.corners[2]));
                 if off > ASTRAY * width {
@@ -90,8 +113,15 @@ impl Quilt {
             }
             pieces = next;
         }
-        Ok(quilt)
+        quilt.off /= f64::max(area, f64::MIN_POSITIVE);
+        Ok(Some(quilt))
     }
+}
+
+/// The area of a patch's triangle.
+fn area_of(patch: &Patch) -> f64 {
+    let [a, b, c] = patch.corners;
+    0.5 * (b - a).cross(c - a).length()
 }
 
 /// The triangles as pieces, and their sides.

@@ -9,7 +9,7 @@ use super::facets::Facets;
 use super::quilt::Quilt;
 use super::slopes::Slopes;
 use crate::error::MeshingError;
-use crate::eval::{Asked, CompileError, Compiled, DistanceSource, Program, Surface};
+use crate::eval::{CompileError, Compiled, DistanceSource, Program, Surface};
 use crate::mesh::Subject;
 use crate::{Bounds, CellSize, Features, Mesh, MeshSettings, RFunction, Run, Solid, SolidError, ThinFeatures};
 use rvachev_field::Patches;
@@ -20,13 +20,19 @@ pub(super) struct FromMeshes;
 /// Patches are off the surface by this part of the length at most, as far as they can be.
 const TOLERANCE: f64 = 1e-3;
 
-/// Cells along the longest side: at least, and at most.
-const COARSEST: f64 = 24.0;
-const FINEST: f64 = 4096.0;
+/// Cells along the longest side, and along the thinnest leaf, at least.
+const ALONG_SIZE: f64 = 24.0;
+const ALONG_LEAF: f64 = 2.0;
 
 /// So many cells may be on the surface, and so many more for each leaf.
 const CELLS: f64 = 4e4;
 const CELLS_A_LEAF: f64 = 500.0;
+
+/// Cells are halved while patches of more than this part of the surface are off.
+const FEW: f64 = 1e-3;
+
+/// And at once where splitting leaves more than this part.
+const PATIENCE: f64 = 5e-3;
 
 /// Distances are asked up to so many lengths from a region.
 const REACH: f64 = 2.0;
@@ -39,10 +45,9 @@ impl DistanceSource for FromMeshes {
         &self,
         solid: &Solid,
         programs: &Compiled,
-        &Asked { length, region, detail }: &Asked,
+        (length, region): (f64, &Bounds),
         run: &Run,
     ) -> Result<Surface, CompileError> {
-        let t0 = std::time::Instant::now();
         let whole = programs.bounds;
         let bounds = whole.intersection(&region.inflate(REACH * length));
         let flat = programs.flat_axis();
@@ -54,42 +59,48 @@ impl DistanceSource for FromMeshes {
         if !size.is_finite() {
             return Err(SolidError::Unbounded { path: programs.unbounded.clone() }.into());
         }
-        let cell = cell(&programs.surface, bounds, (size, detail), run)?;
         let tolerance = (TOLERANCE * length).max(1e-6 * size);
-        let [to_mesh, to_sew] = run.stages([0.7, 0.3]);
-        let facets = match flat {
-            None if bounds.contains_bounds(&whole) => {
-                Facets::new(&mesh(&programs.surface, bounds, cell, &to_mesh)?, |_| true)
-            }
-            None => part(solid, bounds, whole, cell, &to_mesh)?,
-            Some(axis) => {
-                let mut wall = bounds;
-                (wall.min[axis], wall.max[axis]) = (-1.5 * cell, 1.5 * cell);
-                part(solid, wall, whole, cell, &to_mesh)?
-            }
-        };
-        if std::env::var("RVT").is_ok() { eprintln!("mesh cell {cell} facets {} leaves {} t {:?}", facets.triangles.len(), programs.surface.leaf_count(), t0.elapsed()); }
         let slopes = Slopes { program: &programs.surface, precision: tolerance };
-        let quilt = Quilt::new(facets, &slopes, tolerance, &to_sew)?;
-        if std::env::var("RVT").is_ok() { eprintln!("quilt patches {} error {} tol {tolerance} t {:?}", quilt.patches.len(), quilt.error, t0.elapsed()); }
-        let patches = Arc::new(Patches::new(&quilt.patches, &to_sew)?);
-        if std::env::var("RVT").is_ok() { eprintln!("bvh t {:?}", t0.elapsed()); }
-        Ok(Surface { patches, error: quilt.error, flat })
+        let enough = CELLS + CELLS_A_LEAF * programs.surface.leaf_count() as f64;
+        let mut cell = first_cell(&programs.surface, bounds, size, enough, run)?;
+        loop {
+            let [to_mesh, to_sew] = run.stages([0.7, 0.3]);
+            let facets = match flat {
+                None if bounds.contains_bounds(&whole) => {
+                    Facets::new(&mesh(&programs.surface, bounds, cell, &to_mesh)?, |_| true)
+                }
+                None => part(solid, bounds, whole, cell, &to_mesh)?,
+                Some(axis) => {
+                    let mut wall = bounds;
+                    (wall.min[axis], wall.max[axis]) = (-1.5 * cell, 1.5 * cell);
+                    part(solid, wall, whole, cell, &to_mesh)?
+                }
+            };
+            // Two triangles a cell.
+            let count = 0.5 * facets.triangles.len() as f64;
+            let is_last = 4.0 * count > enough;
+            let patience = if is_last { f64::INFINITY } else { PATIENCE };
+            let quilt = Quilt::new(facets, &slopes, (tolerance, patience), &to_sew)?;
+            if let Some(quilt) = quilt.filter(|quilt| is_last || quilt.off <= FEW) {
+                let patches = Arc::new(Patches::new(&quilt.patches, &to_sew)?);
+                return Ok(Surface { patches, error: quilt.error, flat });
+            }
+            cell *= 0.5;
+        }
     }
 }
 
-/// The size of cells that show details of a size, as far as they are not too many.
-fn cell(program: &Program, bounds: Bounds, (size, detail): (f64, f64), run: &Run) -> Result<f64, CompileError> {
-    let (least, most) = (size / FINEST, size / COARSEST);
-    if detail >= most {
+/// The size of cells that show all leaves, as far as these are not too many.
+fn first_cell(program: &Program, bounds: Bounds, size: f64, enough: f64, run: &Run) -> Result<f64, CompileError> {
+    let (most, wanted) = (size / ALONG_SIZE, program.thinnest_leaf() / ALONG_LEAF);
+    if wanted >= most {
         return Ok(most);
     }
     // Of what has no end, as much as is large.
     let bounds = bounds.intersection(&Bounds::from_center(bounds.center(), DVec3::splat(size)));
     let subject = Subject { program, bounds, palette: None, whole: None };
-    let wanted = detail.max(least);
+    let wanted = wanted.max(most / enough.sqrt());
     let cells = run.install(|| subject.cells(CellSize::Length(wanted), run)).map_err(compile_error)? as f64;
-    let enough = CELLS + CELLS_A_LEAF * program.leaf_count() as f64;
     Ok((wanted * (cells / enough).sqrt().max(1.0)).min(most))
 }
 

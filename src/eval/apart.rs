@@ -13,7 +13,7 @@ use super::depth::is_deeper;
 use super::exact::Exactness;
 use super::fill::FARTHEST;
 use super::nothing::Nothing;
-use super::source::{Asked, CompileError, DistanceSource, Measured, Surface};
+use super::source::{CompileError, DistanceSource, Measured, Surface};
 use super::tiles::Tiles;
 use crate::solid::{BALL_OF_LEGS, Length, Node, Operation};
 use crate::{Blend, Bounds, Run, Solid};
@@ -73,17 +73,16 @@ pub(super) fn measure(
     }
     let found = match solid.node() {
         Node::Length { ball: Some(ball), length, .. } => {
-            let (field, error) = distance(ball, rolling(length.amount(), Bounds::ALL), source, run)?;
+            let (field, error) = distance(ball, length.amount(), &Bounds::ALL, source, run)?;
             let is_gone = length.inwards() > 0.0 && kept(ball).is_none_or(|programs| programs.bounds.is_empty());
             Measured { field, error, is_gone, sides: Vec::new() }
         }
         Node::Length { operand, length, .. } => {
             let inwards = length.inwards();
-            let asked = Asked { length: inwards.abs(), region: Bounds::ALL, detail: inwards.abs() };
             let Some(programs) = kept(operand) else { return Ok(()) };
             let (field, error) = match exact.is_closed(solid) {
                 true => (sign(&programs), 0.0),
-                false => distance(operand, asked, source, run)?,
+                false => distance(operand, inwards.abs(), &Bounds::ALL, source, run)?,
             };
             let mut bounds = programs.bounds;
             // Of a column a section does.
@@ -96,7 +95,7 @@ pub(super) fn measure(
         Node::Blend { operation, blend, operands, ball: Some(ball) } => {
             let near = Near::of(*operation, *blend, operands);
             let region = near.boxes.iter().fold(Bounds::EMPTY, |all, own| all.union(own));
-            let (field, error) = distance(ball, rolling(near.radius, region), source, run)?;
+            let (field, error) = distance(ball, near.radius, &region, source, run)?;
             let mut sides = Vec::new();
             if near.fades {
                 for (number, operand) in operands.iter().enumerate() {
@@ -106,10 +105,7 @@ pub(super) fn measure(
                     let known = if is_outside { own.outside } else { own.inside };
                     sides.push(match kept(operand).filter(|_| known) {
                         Some(programs) => sign(&programs),
-                        None => {
-                            let asked = Asked { length: near.radius, region, detail: near.radius };
-                            distance(operand, asked, source, run)?.0
-                        },
+                        None => distance(operand, near.radius, &region, source, run)?.0,
                     });
                 }
             }
@@ -121,33 +117,28 @@ pub(super) fn measure(
     Ok(())
 }
 
-/// The distance to where the centre of a ball may be is asked for: round edges there have the radius of the ball, and
-/// what rolls between two of them is smaller.
-fn rolling(radius: f64, region: Bounds) -> Asked {
-    Asked { length: radius, region, detail: 0.5 * radius }
-}
-
 /// A solid's programs as a leaf.
 fn sign(programs: &Compiled) -> Arc<dyn AnyField> {
     Arc::new(Composite { program: Whole::new(programs.surface.clone()), bounds: programs.bounds })
 }
 
-/// The distance to the surface of a solid, and how far it may be off.
+/// The distance to the surface of a solid, and how far it may be off; a region is where it will be asked.
 fn distance(
     solid: &Solid,
-    asked: Asked,
+    length: f64,
+    region: &Bounds,
     source: &'static dyn DistanceSource,
     run: &Run,
 ) -> Result<(Arc<dyn AnyField>, f64), CompileError> {
     let Some(programs) = kept(solid) else { return Ok((Arc::new(Nothing), 0.0)) };
-    if !programs.bounds.intersection(&asked.region).is_finite()
+    if !programs.bounds.intersection(region).is_finite()
         && programs.flat_axis().is_none()
         && !programs.bounds.is_empty()
     {
-        let tiles = Tiles::new(solid.clone(), (sign(&programs), programs.bounds), asked.length, source);
+        let tiles = Tiles::new(solid.clone(), (sign(&programs), programs.bounds), length, source);
         return Ok((Arc::new(tiles), 0.0));
     }
-    let Surface { patches, error, flat } = source.surface(solid, &programs, &asked, run)?;
+    let Surface { patches, error, flat } = source.surface(solid, &programs, (length, region), run)?;
     let field = SurfaceDistance::new(patches, sign(&programs), error, flat, programs.bounds);
     Ok((Arc::new(field), error))
 }

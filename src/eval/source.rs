@@ -13,7 +13,7 @@ use rvachev_num::Run;
 
 /// Finds the surfaces that lengths are measured from.
 pub(crate) trait DistanceSource: Send + Sync {
-    /// The surface of a solid, which has been compiled, for what is asked of it.
+    /// The surface of a solid, which has been compiled, for lengths of about `length` within a region.
     ///
     /// # Errors
     /// That the run was cancelled, or that the solid has no end.
@@ -21,20 +21,9 @@ pub(crate) trait DistanceSource: Send + Sync {
         &self,
         solid: &Solid,
         programs: &Compiled,
-        asked: &Asked,
+        lengths: (f64, &Bounds),
         run: &Run,
     ) -> Result<Surface, CompileError>;
-}
-
-/// What is to be measured.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Asked {
-    /// About how far points are from the surface.
-    pub(crate) length: f64,
-    /// Where they are.
-    pub(crate) region: Bounds,
-    /// How small the surface's features are, if that is known.
-    pub(crate) detail: f64,
 }
 
 /// A surface to measure from.

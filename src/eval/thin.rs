@@ -32,6 +32,15 @@ impl Program {
         self.scene.leaves.iter().map(is_thin).collect()
     }
 
+    /// The least side of a leaf's box: no leaf is thinner; infinite where none is bounded.
+    pub(crate) fn thinnest_leaf(&self) -> f64 {
+        let side = |leaf: u32| {
+            let size = self.instance(leaf).bounds.size();
+            size.to_array().into_iter().filter(|side| *side > 0.0).fold(f64::INFINITY, f64::min)
+        };
+        self.nodes.iter().filter_map(Node::valued_by).map(side).fold(f64::INFINITY, f64::min)
+    }
+
     /// Whether a region may hold one of these leaves of the solid.
     pub(crate) fn has_leaf_of(&self, leaves: &[bool], region: &Bounds) -> bool {
         self.nodes.iter().filter_map(Node::valued_by).any(|leaf| {

@@ -11,7 +11,7 @@ use std::sync::{Arc, PoisonError, RwLock};
 use glam::{DAffine3, DVec3};
 
 use super::composite::points64;
-use super::source::{Asked, DistanceSource};
+use super::source::DistanceSource;
 use crate::{Bounds, Dual, Interval, ParamError, Real, Run, Solid};
 use rvachev_field::{AnyField, Chunk, Patches, SurfaceDistance, VALUE_LIMIT, Zone, steep_slopes};
 #[cfg(feature = "formula")]
@@ -67,8 +67,7 @@ impl Tiles {
         let low = DVec3::from_array(key.map(|c| c as f64)) * self.side();
         let region = Bounds::new(low, low + self.side());
         let found = super::compile::kept(&self.solid).and_then(|programs| {
-            let asked = Asked { length: self.length, region, detail: self.length };
-            self.source.surface(&self.solid, &programs, &asked, &Run::default()).ok()
+            self.source.surface(&self.solid, &programs, (self.length, &region), &Run::default()).ok()
         });
         let (patches, error) = match found {
             Some(surface) => (surface.patches, surface.error),
