@@ -1,15 +1,15 @@
 use glam::DVec3;
-use rvachev::Solid;
+use rvachev::{deg, Blend, Solid, RFunction};
 fn main() {
-    let two =
-        Solid::cuboid([10.0; 3]).translate([-5.0, 0.0, 0.0]) | Solid::cuboid([10.0; 3]).translate([5.0, 0.0, 0.0]);
-    for d in [DVec3::X, DVec3::Z, DVec3::new(1.0, 0.3, 0.1).normalize()] {
-        println!("{:?}", two.raycast(-20.0 * d + DVec3::new(1.0, 0.2, 0.1), d));
-    }
-    let t = std::time::Instant::now();
-    let mut s = Solid::sphere(1.0);
-    for i in 0..6 {
-        s = s.shell(0.01);
-        println!("{i} {:?} {:?}", s.value([0.2, 0.1, 0.3]), t.elapsed());
+    let pipe = Solid::cylinder(1.0, 9.0).rotate_y(deg(90.0));
+    let thin = Solid::cylinder(0.6, 9.0);
+    for leg in [0.02, 0.024, 0.03, 0.05, 0.1] {
+        let part = pipe.difference_with(&thin, Blend::Chamfer { leg });
+        let plain = pipe.difference(&thin, RFunction::MIN_MAX);
+        let ball = plain.offset(-16.0 * leg);
+        println!("{leg}: {:?}", ball.bounds());
+        for q in [DVec3::new(0.61, 0.0, 0.99), DVec3::new(0.62, 0.0, 0.99), DVec3::new(0.605, 0.0, 0.995)] {
+            println!("{:?} {:?} {:?}", part.value(q), plain.value(q), ball.value(q));
+        }
     }
 }

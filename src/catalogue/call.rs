@@ -225,9 +225,9 @@ fn of_value(value: &Value) -> Option<Call> {
             _ => return None,
         },
         Value::Caps(caps) => match *caps {
-            Caps::Flat => ("flat", Vec::new()),
-            Caps::Chamfered(leg) => ("chamfered", number(leg)),
-            Caps::Rounded(radius) => ("rounded", number(radius)),
+            Caps::Flat => ("flat_caps", Vec::new()),
+            Caps::Chamfered(leg) => ("chamfered_caps", number(leg)),
+            Caps::Rounded(radius) => ("rounded_caps", number(radius)),
             _ => return None,
         },
         _ => return None,

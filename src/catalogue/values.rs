@@ -115,17 +115,17 @@ verbs! {
     } => |(): ()| Value::Law(BuiltInLaw::Table(LawTable::new(points.into_iter().map(Into::into))));
 
     /// Sharp edges.
-    Caps flat {
+    Caps flat_caps {
     } => |(): ()| Value::Caps(Caps::Flat);
 
     /// Edges bevelled at 45°.
-    Caps chamfered {
+    Caps chamfered_caps {
         /// How far from the edge the bevel begins, on either face.
         leg: f64 = Length, Range::LENGTH, example 0.25;
     } => |(): ()| Value::Caps(Caps::Chamfered(leg));
 
     /// Rounded edges.
-    Caps rounded {
+    Caps rounded_caps {
         /// The radius.
         radius: f64 = Length, Range::LENGTH, example 0.25;
     } => |(): ()| Value::Caps(Caps::Rounded(radius));

@@ -122,7 +122,7 @@ impl Solid {
 }
 
 /// The ball that holds the face of a chamfer off flush faces has so many legs for a radius.
-pub(crate) const BALL_OF_LEGS: f64 = 4.0;
+pub(crate) const BALL_OF_LEGS: f64 = 16.0;
 
 /// A blend of operands.
 pub(super) fn node(operation: Operation, operands: Vec<Solid>, blend: Blend) -> Node {

@@ -97,7 +97,7 @@ fn fillets_of_planes_have_their_radius_at_any_angle() -> Result<(), SolidError> 
             let found = crossing(&part, centre, centre + 1.2 * radius / (0.5 * angle).sin() * out)?;
             near(found.distance(centre), radius, 1e-3 * radius);
             let gradient = part.gradient(found)?;
-            assert!((gradient - out).length() < 1e-3, "{degrees} {i} {gradient} {out}");
+            assert!((gradient - out).length() < 5e-3, "{degrees} {i} {gradient} {out}");
         }
         // Beyond the tangent lines nothing is changed.
         let far = DVec3::new(3.0 * radius / (0.5 * angle).tan(), 0.4, 0.05);
