@@ -118,7 +118,7 @@ pub(super) fn measure(
 }
 
 /// A solid's programs as a leaf.
-fn sign(programs: &Compiled) -> Arc<dyn AnyField> {
+pub(super) fn sign(programs: &Compiled) -> Arc<dyn AnyField> {
     Arc::new(Composite { program: Whole::new(programs.surface.clone()), bounds: programs.bounds })
 }
 

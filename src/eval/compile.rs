@@ -12,6 +12,7 @@ use glam::{DAffine3, DVec3};
 use super::apart::{Near, Work, measure, measured, works};
 use super::bevel::Bevel;
 use super::chamfer::Chamfer;
+use super::coat::Coat;
 use super::code::{Built, Code, bounded, conjoined, disjoined, grow, snug};
 use super::context::{Contexts, is_similarity, least_stretch};
 use super::exact::Exactness;
@@ -19,6 +20,7 @@ use super::extent::extent;
 use super::fill::{Fill, Side, Signed};
 use super::flatten::flatten;
 use super::nothing::Nothing;
+use super::palette::Palette;
 use super::program::{Edge, Kind, Program};
 use super::scene::{Instance, Scene};
 use super::sides::Sides;
@@ -33,6 +35,7 @@ use rvachev_num::column_times;
 pub(crate) struct Compiled {
     pub(crate) field: Program,
     pub(crate) surface: Program,
+    pub(crate) palette: Palette,
     pub(crate) bounds: Bounds,
     /// The path to the node that makes the bounds infinite, if they are.
     pub(crate) unbounded: String,
@@ -111,6 +114,8 @@ struct Compiler<'e> {
     exact: &'e Exactness,
     scene: Scene,
     contexts: Contexts,
+    /// Of leaves that are made of parts.
+    coats: HashMap<u32, Coat>,
     built: HashMap<(u32, usize), Option<Built>>,
     code: Code,
 }
@@ -121,6 +126,7 @@ impl<'e> Compiler<'e> {
             exact,
             scene: Scene::default(),
             contexts: Contexts::new(),
+            coats: HashMap::new(),
             built: HashMap::new(),
             code: Code::default(),
         }
@@ -141,7 +147,7 @@ impl<'e> Compiler<'e> {
         }
         let built = self.of(root, 0);
         let unbounded = self.unbounded(root, step);
-        let Compiler { scene, code, .. } = self;
+        let Compiler { scene, code, coats, .. } = self;
         let scene = Arc::new(scene);
         let program = |root: Edge| {
             let (nodes, operands, root) = flatten(&code, root);
@@ -153,7 +159,8 @@ impl<'e> Compiler<'e> {
             bounds = extent(&surface, &bounds);
         }
         let unbounded = if bounds.is_finite() { String::new() } else { unbounded };
-        Ok(Compiled { field, surface, bounds, unbounded })
+        let palette = Palette::new(surface.clone(), coats);
+        Ok(Compiled { field, surface, palette, bounds, unbounded })
     }
 
     /// The path to the node that makes the solid unbounded: down through unions to the
@@ -422,7 +429,7 @@ impl<'e> Compiler<'e> {
         let fill = Fill { radius, ball, sides: Vec::new(), margin, boxes: vec![Bounds::ALL] };
         let solid::Node::Blend { blend, operands, .. } = site.solid.node() else {
             let bounds = kept(&site.solid.node().operands()[0]).map_or(Bounds::EMPTY, |programs| programs.bounds);
-            return vec![self.leaf(&(Arc::new(Fill { boxes: vec![bounds], ..fill }) as Arc<dyn AnyField>), site)];
+            return vec![self.made(&(Arc::new(Fill { boxes: vec![bounds], ..fill }) as Arc<dyn AnyField>), site, 0.0)];
         };
         let near = Near::of(operation, *blend, operands);
         if near.boxes.is_empty() {
@@ -435,7 +442,7 @@ impl<'e> Compiler<'e> {
             Side { distance: Signed { field: field.clone(), sign }, bounds: around[number] }
         };
         let sides = measured.sides.iter().enumerate().map(side).collect();
-        vec![self.leaf(&(Arc::new(Fill { sides, boxes, ..fill }) as Arc<dyn AnyField>), site)]
+        vec![self.made(&(Arc::new(Fill { sides, boxes, ..fill }) as Arc<dyn AnyField>), site, 0.0)]
     }
 
     /// The face of a chamfer, cut off where a ball reaches that rolls along the operands.
@@ -460,7 +467,7 @@ impl<'e> Compiler<'e> {
         let margin = (measured.error + FLUSH * near.radius).min(LARGEST_MARGIN * near.radius);
         let fill: Arc<dyn AnyField> =
             Arc::new(Fill { radius: near.radius, ball, sides: Vec::new(), margin, boxes: near.boxes });
-        let both = [self.leaf(&bevel, site), self.leaf(&fill, site)];
+        let both = [self.made(&bevel, site, 0.0), self.made(&fill, site, 0.0)];
         Ok(vec![self.code.operation(Operation::Intersection, Rule::MinMax, frame, &both)])
     }
 
@@ -491,10 +498,8 @@ impl<'e> Compiler<'e> {
 
     /// The surface of a length's operand as a leaf, its distance moved by `by`.
     fn measured(&mut self, site: Site<'_>, by: f64) -> Built {
-        let context = self.contexts.get(site.context);
-        let shift = context.shift.unwrap_or(0.0) + by * context.scale;
         match measured(site.solid) {
-            Some(Measured { field, .. }) => self.shifted(&field, site, shift),
+            Some(Measured { field, .. }) => self.made(&field, site, by),
             None => self.nothing(site),
         }
     }
@@ -502,6 +507,14 @@ impl<'e> Compiler<'e> {
     fn nothing(&mut self, site: Site<'_>) -> Built {
         let nothing: Arc<dyn AnyField> = Arc::new(Nothing);
         self.shifted(&nothing, site, 0.0)
+    }
+
+    /// A leaf that is made of a node's operands and has their paint, its value moved by `by`.
+    fn made(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>, by: f64) -> Built {
+        self.coats.insert(self.scene.leaves.len() as u32, Coat::of(site.solid));
+        let context = self.contexts.get(site.context);
+        let shift = context.shift.unwrap_or(0.0) + by * context.scale;
+        self.shifted(field, site, shift)
     }
 
     fn shifted(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>, shift: f64) -> Built {

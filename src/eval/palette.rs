@@ -3,15 +3,20 @@
 //! Where min and max decide, a point has the paint of the leaf that decides. A blend mixes: its
 //! value changes with those of its operands, h = f(a, b), and ∂f/∂a and ∂f/∂b are the shares of
 //! their gradients in its normal. They are the shares of their colours as well, in linear
-//! light. On a fillet, which is a surface of its own, the shares go by the distances to the two
-//! operands.
+//! light. What leaves have that are made of painted parts themselves: [`Coat`].
+
+use std::collections::HashMap;
+use std::fmt;
+use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
 
+use super::coat::{Below, Coat, feet};
 use super::program::{Kind, Program};
+use super::scene::Instance;
+use super::shares::LEAST;
+use crate::Paint;
 use crate::geom::{to_byte, to_linear};
-use crate::{Dual, Paint};
-use rvachev_field::Op;
 use rvachev_field::Rule;
 
 /// The paint of a solid's parts.
@@ -26,43 +31,33 @@ use rvachev_field::Rule;
 /// assert_eq!(palette.of(part.owner([0.5, 0.0, 0.0])?.index), None);
 /// # Ok::<(), rvachev::SolidError>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Palette {
     pub(crate) program: Program,
     /// By leaf.
-    paints: Vec<Option<Paint>>,
+    coats: Arc<[Coat]>,
     /// The leaves that a blend mixes with others of another paint.
-    mixed: Vec<bool>,
-}
-
-/// The paint of all that is below a node.
-#[derive(Clone, Copy, PartialEq)]
-enum Below {
-    Nothing,
-    One(Option<Paint>),
-    Various,
-}
-
-impl Below {
-    fn with(self, other: Below) -> Below {
-        match (self, other) {
-            (Below::Nothing, one) | (one, Below::Nothing) => one,
-            (a, b) if a == b => a,
-            _ => Below::Various,
-        }
-    }
+    blended: Arc<[bool]>,
+    /// All of it.
+    below: Below,
 }
 
 impl Palette {
-    pub(crate) fn new(program: Program) -> Palette {
+    /// That of a program; `coats` are those of leaves that are made of other parts.
+    pub(super) fn new(program: Program, mut coats: HashMap<u32, Coat>) -> Palette {
         let scene = program.scene.clone();
-        let paints: Vec<Option<Paint>> = scene.leaves.iter().map(|leaf| scene.trail.paint(leaf.step)).collect();
-        let mut mixed = vec![false; paints.len()];
+        let paints = scene.trail.paints();
+        let coat = |leaf: &Instance| match paints.get(leaf.step as usize).copied().flatten() {
+            Some(paint) => Coat::One(Some(paint)),
+            None => coats.remove(&leaf.number).unwrap_or(Coat::One(None)),
+        };
+        let coats: Vec<Coat> = scene.leaves.iter().map(coat).collect();
+        let mut mixed = vec![false; coats.len()];
         let mut below: Vec<Below> = Vec::with_capacity(program.nodes.len());
         for node in &program.nodes[..] {
             let operands = program.list(node).iter().fold(Below::Nothing, |all, edge| all.with(below[edge.node()]));
             let all = match &node.kind {
-                Kind::Leaf(leaf) => Below::One(paints[program.instance(*leaf).number as usize]),
+                Kind::Leaf(leaf) => coats[program.instance(*leaf).number as usize].below(),
                 Kind::Join { .. } | Kind::Shift(_) => operands,
             };
             below.push(all);
@@ -84,33 +79,49 @@ impl Palette {
                 }
             }
         }
-        Palette { program, paints, mixed }
+        let below = below.get(program.root.node()).copied().unwrap_or(Below::Nothing);
+        Palette { program, coats: coats.into(), blended: mixed.into(), below }
+    }
+
+    /// The paint of all parts.
+    pub(super) fn below(&self) -> Below {
+        self.below
     }
 
     /// Whether any part is painted.
     #[must_use]
     pub fn is_painted(&self) -> bool {
-        self.paints.iter().any(Option::is_some)
+        self.coats.iter().any(|coat| !matches!(coat, Coat::One(None)))
     }
 
-    /// The paint of a leaf, by its number; `None` if it has none.
+    /// The paint of a leaf, by its number; `None` if it has none, or more than one: an
+    /// [offset](crate::Solid::offset) or a fillet of parts of various paint, whose paint
+    /// changes [along its surface](Palette::at).
     #[must_use]
     pub fn of(&self, owner: u32) -> Option<Paint> {
-        self.paints.get(owner as usize).copied().flatten()
+        match self.coats.get(owner as usize) {
+            Some(Coat::One(paint)) => *paint,
+            Some(Coat::Operands(_)) | None => None,
+        }
     }
 
     /// How many leaves the solid has.
     pub(crate) fn leaves(&self) -> u32 {
-        self.paints.len() as u32
+        self.coats.len() as u32
     }
 
     /// Whether the paint of a leaf changes along its surface.
     pub(crate) fn is_mixed(&self, owner: u32) -> bool {
-        self.mixed.get(owner as usize).is_some_and(|mixed| *mixed)
+        self.is_blended(owner) || matches!(self.coats.get(owner as usize), Some(Coat::Operands(_)))
+    }
+
+    /// Whether a blend mixes the paint of a leaf with that of others.
+    fn is_blended(&self, owner: u32) -> bool {
+        self.blended.get(owner as usize).is_some_and(|blended| *blended)
     }
 
     /// The paint at a point of the surface that the leaf `owner` decides: a mixture where a
-    /// blend is made of parts of different paint, those without paint counted as
+    /// blend or a fillet is made of parts of different paint, those without paint counted as
     /// [`Paint::default`].
     #[must_use]
     pub fn at(&self, owner: u32, p: impl Into<DVec3>) -> Option<Paint> {
@@ -124,8 +135,7 @@ impl Palette {
         }
         let (mut color, mut roughness, mut sum) = (Vec3::ZERO, 0.0, 0.0);
         let mut any = false;
-        for (leaf, share) in self.program.shares(p) {
-            let own = self.of(leaf);
+        for (own, share) in self.pigments(owner, p) {
             any |= own.is_some();
             let paint = own.unwrap_or(unpainted);
             color += share as f32 * Vec3::from_array(paint.color.map(|c| to_linear(f32::from(c) / 255.0)));
@@ -137,71 +147,35 @@ impl Palette {
         }
         Some(Paint { color: (color / sum as f32).to_array().map(to_byte), roughness: roughness / sum })
     }
-}
 
-impl Program {
-    /// The leaves that a point's value is made of, with their shares.
-    fn shares(&self, p: DVec3) -> Vec<(u32, f64)> {
-        /// Smaller shares cannot be seen.
-        const LEAST: f64 = 1e-3;
-        let values = self.node_values(p);
-        let mut shares = Vec::new();
-        let mut pending = vec![(self.root.node(), 1.0)];
-        while let Some((at, share)) = pending.pop() {
-            if share < LEAST {
-                continue;
-            }
-            let node = &self.nodes[at];
-            let operands = self.list(node);
-            let value = |i: usize| {
-                let edge = operands[i];
-                if edge.negated() { -values[edge.node()] } else { values[edge.node()] }
-            };
-            let weights: Vec<f64> = match &node.kind {
-                Kind::Leaf(leaf) => {
-                    shares.push((self.instance(*leaf).number, share));
-                    continue;
+    /// The paints at a point of the surface that a leaf decides, with their shares: down through
+    /// what the leaf is made of, however deep it is.
+    fn pigments(&self, owner: u32, p: DVec3) -> Vec<(Option<Paint>, f64)> {
+        let mut found = Vec::new();
+        let mut pending = vec![(self, owner, p, 1.0)];
+        while let Some((palette, owner, p, share)) = pending.pop() {
+            let leaves = if palette.is_blended(owner) { palette.program.shares(p) } else { vec![(owner, 1.0)] };
+            for (leaf, part) in leaves {
+                match palette.coats.get(leaf as usize) {
+                    _ if share * part < LEAST => {}
+                    None => {}
+                    Some(Coat::One(paint)) => found.push((*paint, share * part)),
+                    Some(Coat::Operands(operands)) => {
+                        for foot in feet(operands, palette.program.local(leaf, p)) {
+                            let below = foot.palette.program.deciding_leaf(foot.point);
+                            pending.push((foot.palette, below, foot.point, share * part * foot.share));
+                        }
+                    }
                 }
-                Kind::Shift(_) => vec![1.0],
-                Kind::Join { op, rule: Rule::MinMax, .. } => chosen(*op, operands.len(), value),
-                Kind::Join { op, rule, .. } => slopes(*op, *rule, operands.len(), value),
-            };
-            let sum: f64 = weights.iter().sum();
-            if sum > 0.0 && sum.is_finite() {
-                pending.extend(operands.iter().zip(weights).map(|(edge, w)| (edge.node(), share * w / sum)));
             }
         }
-        shares
+        found
     }
 }
 
-/// 1 for the operand that decides, 0 for the others.
-fn chosen(op: Op, count: usize, value: impl Fn(usize) -> f64) -> Vec<f64> {
-    let mut best = 0;
-    for i in 1..count {
-        let better = match op {
-            Op::Or => value(i) > value(best),
-            Op::And => value(i) < value(best),
-        };
-        if better {
-            best = i;
-        }
+impl fmt::Debug for Palette {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let painted = self.coats.iter().filter(|coat| !matches!(coat, Coat::One(None))).count();
+        write!(f, "Palette({painted} of {} leaves painted)", self.coats.len())
     }
-    (0..count).map(|i| f64::from(u8::from(i == best))).collect()
-}
-
-/// How a join's value changes with those of its operands, as far as it rises with them.
-fn slopes(op: Op, rule: Rule, count: usize, value: impl Fn(usize) -> f64) -> Vec<f64> {
-    let mut weights = vec![1.0];
-    let mut all = value(0);
-    for i in 1..count {
-        let joined = rule.join(op, Dual::new(all, [1.0, 0.0, 0.0]), Dual::new(value(i), [0.0, 1.0, 0.0]));
-        let [of_all, of_next, _] = joined.d;
-        for weight in &mut weights {
-            *weight *= of_all.max(0.0);
-        }
-        weights.push(of_next.max(0.0));
-        all = joined.v;
-    }
-    weights
 }

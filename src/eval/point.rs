@@ -104,6 +104,13 @@ impl Program {
         values
     }
 
+    /// A point in a leaf's own coordinates.
+    pub(super) fn local(&self, leaf: u32, p: DVec3) -> DVec3 {
+        let (instance, p) = (self.instance(leaf), limited(p));
+        let in_frame = self.in_frame(&self.frame_points(p), instance.frame, p);
+        DVec3::from_array(instance.placement.apply(in_frame))
+    }
+
     /// The number of the leaf whose value decides at a point.
     pub(crate) fn deciding_leaf(&self, p: DVec3) -> u32 {
         let mut values = Vec::new();

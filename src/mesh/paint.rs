@@ -1,9 +1,10 @@
 //! The colours of a mesh: each triangle that of the part that it belongs to.
 //!
 //! The owner of a triangle is the leaf that decides at its centroid. Its corners have the paint
-//! of that leaf, so that two colours meet at an edge without running into each other; where a
-//! blend mixes, each corner has the mixture at its own place.
+//! of that leaf, so that two colours meet at an edge without running into each other; where the
+//! paint of a leaf changes, each corner has the mixture at its own place.
 
+use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::eval::Palette;
@@ -18,9 +19,15 @@ pub(crate) fn corner_colors(
     unpainted: Paint,
     run: &Run,
 ) -> Result<Vec<[[u8; 4]; 3]>, Cancelled> {
+    /// A corner is looked at by this part of the way to the middle of its triangle: on its own side of
+    /// an edge where the paint changes.
+    const INTO: f64 = 0.01;
     each_triangle(mesh, run, |nth, triangle| {
-        mesh.corners(triangle).map(|p| {
-            let [red, green, blue] = palette.mixture(owners[nth], p, unpainted).unwrap_or(unpainted).color;
+        let corners = mesh.corners(triangle);
+        let middle = corners.into_iter().sum::<DVec3>() / 3.0;
+        corners.map(|p| {
+            let at = p.lerp(middle, INTO);
+            let [red, green, blue] = palette.mixture(owners[nth], at, unpainted).unwrap_or(unpainted).color;
             [red, green, blue, 255]
         })
     })

@@ -2,7 +2,6 @@
 
 use crate::distance::compiled_with;
 use crate::error::MeshingError;
-use crate::eval::Palette;
 use crate::geom::{Findings, Mesh, ThinReport};
 use crate::mesh::{AtBounds, Subject, ThinFeatures, Whole, thin_features_of};
 use crate::{Bounds, MeshSettings, RFunction, Run, Solid, SolidError};
@@ -48,8 +47,8 @@ impl Solid {
         }
         let programs = compiled_with(&solid, &to_compile)?;
         // A mesh has the paint of its solid, if there is any, by the owners of its triangles.
-        let palette = Palette::new(programs.surface.clone());
-        let subject = Subject { program: &programs.surface, bounds, palette: Some(&palette), whole: whole.as_ref() };
+        let subject =
+            Subject { program: &programs.surface, bounds, palette: Some(&programs.palette), whole: whole.as_ref() };
         let mesh = run.install(|| subject.mesh(settings, &to_mesh))?;
         run.report(1.0);
         Ok(mesh)

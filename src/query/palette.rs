@@ -12,7 +12,7 @@ impl Solid {
     /// # Errors
     /// What is wrong with the solid: see [`SolidError`].
     pub fn palette(&self) -> Result<Palette, SolidError> {
-        Ok(Palette::new(compiled(self)?.surface.clone()))
+        Ok(compiled(self)?.palette.clone())
     }
 
     /// The [paint](Solid::paint) of the surface at a point of it; `None` where there is none.

@@ -130,10 +130,15 @@ impl Trail {
         (self.0.len() - 1) as u32
     }
 
-    /// The outermost paint on a node.
-    pub(crate) fn paint(&self, step: u32) -> Option<Paint> {
-        let above = std::iter::successors(Some(step), |step| self.0[*step as usize].parent);
-        above.filter_map(|step| self.0[step as usize].paint).last()
+    /// The outermost paint on each node, by steps.
+    pub(crate) fn paints(&self) -> Vec<Option<Paint>> {
+        let mut paints: Vec<Option<Paint>> = Vec::with_capacity(self.0.len());
+        for step in &self.0 {
+            // Steps lead down: what is above came before.
+            let above = step.parent.and_then(|parent| paints[parent as usize]);
+            paints.push(above.or(step.paint));
+        }
+        paints
     }
 
     /// The path to a node: at most eight steps, the middle of a longer one left out.

@@ -43,6 +43,12 @@ impl Solid {
     /// mixes their normals. What is painted again has the outermost paint. What is not painted
     /// has the colour that the picture's or the mesh's settings say.
     ///
+    /// A point of an [offset](Solid::offset), or of the inner face of a [shell](Solid::shell), has
+    /// the paint of the nearest point of the solid that it was made from. So has an edge that was
+    /// [rounded](Solid::rounded) or [filleted](Solid::filleted). A fillet or a chamfer between
+    /// solids mixes their paints by the distances to them: each is pure where the fillet meets its
+    /// solid.
+    ///
     /// ```
     /// use rvachev::{Paint, Solid};
     ///
@@ -51,6 +57,8 @@ impl Solid {
     /// let part = body - bore;
     /// assert_eq!(part.paint_at([1.5, 0.0, 1.0])?.map(|p| p.color), Some([40, 90, 160]));
     /// assert_eq!(part.paint_at([1.0, 0.0, 0.0])?.map(|p| p.color), Some([230, 140, 30]));
+    /// let hollow = part.shell(0.2);
+    /// assert_eq!(hollow.paint_at([1.2, 0.0, 0.0])?.map(|p| p.color), Some([230, 140, 30]));
     /// # Ok::<(), rvachev::SolidError>(())
     /// ```
     #[must_use]

@@ -1,5 +1,7 @@
 //! Paint: on leaves, through joins and blends.
 
+mod lengths;
+
 use glam::DVec3;
 use rvachev::{Blend, CellSize, MeshSettings, Paint, RFunction, Solid, SolidError, deg, rad};
 

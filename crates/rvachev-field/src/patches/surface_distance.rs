@@ -181,7 +181,8 @@ impl AnyField for SurfaceDistance {
     }
 
     fn bounds_under(&self, map: &DAffine3) -> Bounds {
-        self.bounds.transformed(map)
+        // The surface that is measured from may be off the solid's own.
+        self.bounds.inflate(self.error + self.patches.rounding()).transformed(map)
     }
 
     fn check(&self) -> Result<(), ParamError> {
