@@ -1,15 +1,14 @@
-use glam::DVec3;
-use rvachev::{deg, Blend, Solid, RFunction};
+use rvachev::{deg, Solid};
 fn main() {
-    let pipe = Solid::cylinder(1.0, 9.0).rotate_y(deg(90.0));
-    let thin = Solid::cylinder(0.6, 9.0);
-    for leg in [0.02, 0.024, 0.03, 0.05, 0.1] {
-        let part = pipe.difference_with(&thin, Blend::Chamfer { leg });
-        let plain = pipe.difference(&thin, RFunction::MIN_MAX);
-        let ball = plain.offset(-16.0 * leg);
-        println!("{leg}: {:?}", ball.bounds());
-        for q in [DVec3::new(0.61, 0.0, 0.99), DVec3::new(0.62, 0.0, 0.99), DVec3::new(0.605, 0.0, 0.995)] {
-            println!("{:?} {:?} {:?}", part.value(q), plain.value(q), ball.value(q));
-        }
-    }
+    let two = Solid::cuboid([2.0; 3]).translate([-1.0, 0.0, 0.0]) | Solid::cuboid([2.0; 3]).translate([1.0, 0.0, 0.0]);
+    let t = std::time::Instant::now();
+    let r = two.rounded(0.2).rotate_z(deg(20.0)).scale(2.5);
+    println!("{:?} {:?}", r.bounds(), t.elapsed());
+    let r = r.offset(0.05);
+    println!("{:?} {:?}", r.bounds(), t.elapsed());
+    // lattice
+    let lattice = rvachev::NetworkLattice { surface: rvachev::MinimalSurface::SchwarzP, cell: 0.3, fraction: 0.7 };
+    let s = Solid::new(lattice).shell(0.02);
+    println!("{:?} {:?}", s.value([0.1, 0.2, 0.3]), t.elapsed());
+    println!("{:?} {:?}", s.value([5.1, 0.2, 0.3]), t.elapsed());
 }

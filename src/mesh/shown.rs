@@ -13,11 +13,17 @@ use super::error::MeshingError;
 use super::lattice::{CellSize, Lattice};
 use super::resolve::{Among, Unresolved, unresolved_cells};
 use super::subject::Subject;
-use crate::Run;
 use crate::eval::Program;
+use crate::{Bounds, Run};
 
 /// Cells of a block that the surface is in, as a rule.
 const OF_BLOCK: usize = 110;
+
+/// What is deeper than this, in cells, or has no other side near, is no bulge of a surface that the cells show.
+const DEEP: f64 = 0.15;
+
+/// Nearer to the surface than this part of the size, points may be on either side by rounding errors.
+const ROUNDING: f64 = 1e-9;
 
 impl Subject<'_> {
     /// About how many cells of a size the surface is in.
@@ -37,18 +43,32 @@ impl Subject<'_> {
             blocks.cells.iter().enumerate().map(|(n, &block)| (block, blocks.programs.of(n))).collect();
         let shows = |suspect: &Unresolved| {
             let Some(program) = programs.get(&suspect.block) else { return false };
-            suspect.cells.iter().any(|within| {
+            let shows = |within: &[usize; 3]| {
                 let cell = [0, 1, 2].map(|axis| suspect.block[axis] + within[axis] as u32);
-                let region = lattice.region(cell, 1);
-                let is_inside = |p: DVec3| program.value(p) > 0.0;
-                let first = is_inside(region.min);
-                let node = |n: u32| {
-                    let at = [n % (times + 1), n / (times + 1) % (times + 1), n / (times + 1).pow(2)];
-                    region.min + region.size() * DVec3::from_array(at.map(f64::from)) / f64::from(times)
-                };
-                (0..(times + 1).pow(3)).any(|n| is_inside(node(n)) != first)
-            })
+                self.has_inner(&lattice.region(cell, 1), program, times)
+            };
+            suspect.cells.iter().any(shows)
         };
         Ok(suspects.par_iter().any(shows))
     }
+
+    /// Whether a cell with all its nodes on one side has something of the other.
+    fn has_inner(&self, cell: &Bounds, program: &Program, times: u32) -> bool {
+        let step = cell.longest_side();
+        let is_inside = program.value(cell.min) > 0.0;
+        // How far points are on the other side.
+        let depth = |p: &DVec3| {
+            let (value, slope) = program.gradient(*p);
+            if (value > 0.0) == is_inside { 0.0 } else { value.abs() / slope.length().max(f64::MIN_POSITIVE) }
+        };
+        let most = nodes(cell, times).map(|p| depth(&p)).fold(0.0, f64::max);
+        let is_alone = || nodes(&cell.inflate(step), 3).all(|p| (self.program.value(p) > 0.0) == is_inside);
+        most > ROUNDING * self.bounds.longest_side() && (most > DEEP * step || is_alone())
+    }
+}
+
+/// The nodes of so many cells along each side of a box.
+fn nodes(bounds: &Bounds, count: u32) -> impl Iterator<Item = DVec3> {
+    let (min, step, side) = (bounds.min, bounds.size() / f64::from(count), count + 1);
+    (0..side.pow(3)).map(move |n| min + step * DVec3::from_array([n % side, n / side % side, n / (side * side)].map(f64::from)))
 }
