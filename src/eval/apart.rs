@@ -53,6 +53,7 @@ fn alone<'a>(solid: &'a Solid, exact: &Exactness) -> Vec<&'a Solid> {
         Node::Length { length: Length::Level(_), .. } => Vec::new(),
         Node::Length { operand, ball, .. } if !exact.is_closed(solid) => [operand].into_iter().chain(ball).collect(),
         Node::Blend { operands, ball: Some(ball), .. } => operands.iter().chain([ball]).collect(),
+        Node::Swept { profile, ball: Some(_), .. } => vec![&profile.0],
         _ => Vec::new(),
     }
 }
@@ -115,7 +116,7 @@ pub(super) fn measure(
 }
 
 /// A solid's programs as a leaf.
-fn sign(programs: &Compiled) -> Arc<dyn AnyField> {
+pub(super) fn sign(programs: &Compiled) -> Arc<dyn AnyField> {
     Arc::new(Composite { program: Whole::new(programs.surface.clone()), bounds: programs.bounds })
 }
 

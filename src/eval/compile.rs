@@ -17,6 +17,7 @@ use super::context::{Contexts, is_similarity, least_stretch};
 use super::exact::Exactness;
 use super::extent::extent;
 use super::fill::{Fill, Side, Signed};
+use super::fit::fit;
 use super::flatten::flatten;
 use super::nothing::Nothing;
 use super::program::{Edge, Kind, Program};
@@ -298,11 +299,21 @@ impl<'e> Compiler<'e> {
             .collect();
         match node {
             solid::Node::Leaf(field) => Ok(self.leaf(field, site)),
+            solid::Node::Swept { .. } => {
+                fit(site.solid).map_err(|e| self.parameter(site, e))?;
+                Ok(below[0])
+            }
             solid::Node::Affine { .. }
             | solid::Node::Named { .. }
             | solid::Node::Repeated { .. }
-            | solid::Node::Swept { .. }
             | solid::Node::Painted { .. } => Ok(below[0]),
+            solid::Node::Rim { caps, .. } => {
+                let (&[slab, column], Some(size)) = (&below[..], caps.size()) else {
+                    return Err(SolidError::EmptyJoin { path: self.scene.trail.path(site.step) });
+                };
+                let rule = caps.times(context.scale).rule();
+                Ok(self.code.rim(rule, size * context.scale, context.frame, [slab, column]))
+            }
             solid::Node::Warp { warp, .. } => self.warped(site, warp, below[0]),
             solid::Node::Complement(_) => Ok(below[0].complement()),
             solid::Node::Join { operation, rule, .. } => {
@@ -554,7 +565,8 @@ fn check(node: &solid::Node) -> Result<(), ParamError> {
         | solid::Node::Complement(_)
         | solid::Node::Named { .. }
         | solid::Node::Repeated { .. }
-        | solid::Node::Swept { .. } => Ok(()),
+        | solid::Node::Swept { .. }
+        | solid::Node::Rim { .. } => Ok(()),
     }
 }
 

@@ -107,7 +107,9 @@ impl Exactness {
                 d if d < 0.0 => Exact { inside: true, outside: false },
                 _ => operands.next().unwrap_or_default(),
             },
-            Node::Warp { .. } | Node::Join { .. } | Node::Blend { .. } | Node::Length { .. } => Exact::default(),
+            Node::Warp { .. } | Node::Join { .. } | Node::Blend { .. } | Node::Length { .. } | Node::Rim { .. } => {
+                Exact::default()
+            }
         }
     }
 }
