@@ -83,12 +83,20 @@ pub(crate) fn compile(
             Work::Measure(node) => measure(node, &exact, source, run)?,
             Work::Compile(part) if kept(part).is_some() => {}
             Work::Compile(part) => {
-                let compiled = Compiler::new(&exact).compile(part)?;
+                let compiled = Compiler::new(&exact).compile(part).map_err(|error| of_whole(solid, &exact, error))?;
                 let _ = part.compiled().set(Arc::new(compiled));
             }
         }
     }
     kept(solid).ok_or(CompileError::Cancelled(Cancelled))
+}
+
+/// What is wrong with a part as the solid tells it, by the path to it, where it does.
+fn of_whole(solid: &Solid, exact: &Exactness, error: SolidError) -> SolidError {
+    match Compiler::new(exact).compile(solid) {
+        Err(whole @ SolidError::Parameter { .. }) => whole,
+        _ => error,
+    }
 }
 
 /// The programs that were compiled before.

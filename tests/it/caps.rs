@@ -7,9 +7,11 @@ use std::error::Error;
 use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
-use rvachev::{Caps, CellSize, Extrusion, Helix, MeshSettings, Profile, Solid, deg};
+use rvachev::{Bounds, Caps, CellSize, Extrusion, Helix, MeshSettings, Profile, Solid, deg, program::Tape, rad};
 
-use crate::support::{Random, near};
+use crate::narrow::check_narrowing;
+use crate::support::{Random, lanes32, near, near_point};
+use crate::zoo::random_profile;
 
 type Outcome = Result<(), Box<dyn Error>>;
 
@@ -206,6 +208,13 @@ fn caps_that_leave_nothing_of_the_section_are_refused() {
 }
 
 #[test]
+fn what_is_wrong_with_the_profile_is_told_by_its_path() {
+    let slot = Profile::rectangle([-2.0, 9.0]).named("slot");
+    let error = refusal(&with(&(Profile::circle(5.0) - slot), Caps::Rounded(1.0)));
+    assert!(error.starts_with("extrude / difference[1] / slot: rectangle: size.x is -2"), "{error}");
+}
+
+#[test]
 fn a_section_without_end_has_caps() -> Outcome {
     let plate = (!Profile::circle(3.0)).extrude_with(&Extrusion { caps: Caps::Rounded(1.0), ..Extrusion::new(4.0) });
     assert!(plate.contains([9.0, 0.0, 1.99])? && !plate.contains([3.1, 0.0, 1.9])?);
@@ -219,6 +228,87 @@ fn a_simplified_solid_has_its_rims() -> Outcome {
     let simple = solid.simplified();
     for p in [[-3.9, 0.0, 2.9], [-3.6, 0.0, 2.6], [5.9, 0.0, 2.9], [0.0, 0.0, 2.9]].map(DVec3::from_array) {
         assert_eq!(solid.contains(p)?, simple.contains(p)?);
+    }
+    Ok(())
+}
+
+/// Extrusions with rims of random profiles.
+fn rimmed(random: &mut Random) -> Solid {
+    let depth = random.below(2);
+    let profile = random_profile(random, depth);
+    let size = random.range(0.01, 0.2);
+    profile.extrude_with(&Extrusion {
+        height: random.range(0.4, 1.5),
+        twist: rad(random.pick(&[0.0, 0.0, 1.0, -0.7])),
+        scale: random.pick(&[1.0, 1.0, 0.6, 1.5]),
+        caps: random.pick(&[Caps::Rounded(size), Caps::Chamfered(size)]),
+    })
+}
+
+#[test]
+fn rims_narrow_soundly() -> Outcome {
+    let mut random = Random::new(4111);
+    let mut count = 0;
+    while count < 40 {
+        let solid = rimmed(&mut random);
+        // What does not fit is refused.
+        if solid.bounds().is_err() {
+            continue;
+        }
+        count += 1;
+        check_narrowing(&mut random, &solid, 12);
+        let blended = solid.smooth_union(Solid::sphere(0.3).translate([0.6, 0.0, 0.3]), 0.2);
+        check_narrowing(&mut random, &blended, 6);
+    }
+    Ok(())
+}
+
+#[test]
+fn lanes_of_rims_have_the_sign_of_their_values() -> Outcome {
+    let mut random = Random::new(4112);
+    for (name, profile, _) in profiles() {
+        for caps in both() {
+            let program = with(&profile, caps).surface_program()?;
+            let region = Bounds::from_center(DVec3::ZERO, DVec3::new(22.0, 22.0, 7.0));
+            let points: Vec<DVec3> = (0..4096).map(|_| random.point_in(&region)).collect();
+            let (seen, values) = lanes32(&program, &region, &points);
+            let roundoff = Tape::new(&program, &region).roundoff();
+            for (p, value) in seen.into_iter().zip(values) {
+                let want = program.value(p);
+                assert!((value - want).abs() <= roundoff, "{name}, {caps:?} at {p}: {value}, want {want}");
+            }
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn gradients_of_rims_are_those_of_their_values() -> Outcome {
+    const STEP: f64 = 1e-5;
+    let mut random = Random::new(4113);
+    for (name, profile, _) in profiles() {
+        for caps in both() {
+            let solid = with(&profile, caps);
+            let mut smooth = 0;
+            for _ in 0..400 {
+                let p = random.vector(-1.0, 1.0) * DVec3::new(11.0, 11.0, 4.0);
+                let value = |axis: DVec3| solid.value(p + axis);
+                let [forward, back] = [1.0, -1.0].map(|sign| DVec3::AXES.map(|axis| value(sign * STEP * axis)));
+                let mut change = DVec3::ZERO;
+                let mut bend = 0.0f64;
+                let here = solid.value(p)?;
+                for (axis, (up, down)) in forward.into_iter().zip(back).enumerate() {
+                    let (up, down) = (up?, down?);
+                    change[axis] = (up - down) / (2.0 * STEP);
+                    bend = bend.max((up - 2.0 * here + down).abs() / STEP);
+                }
+                if bend < 1e-3 {
+                    smooth += 1;
+                    near_point(solid.gradient(p)?, change, 5e-3);
+                }
+            }
+            assert!(smooth > 300, "{name}, {caps:?}: {smooth}");
+        }
     }
     Ok(())
 }
