@@ -37,8 +37,8 @@ use crate::{ParamError, Rule, check};
 /// where sides slope, an edge is rounded by an arc of an ellipse, or cut off at an angle other than 45°. In a
 /// scaled extrusion the size must fit into the smaller end. Along a helix t is measured at its radius.
 ///
-/// The value is d or t where the other is further than the size, or else that of the formula: 1-Lipschitz
-/// if the extrusion is straight.
+/// The value is that of the formula: `r − √((r − min(d, r))² + (r − min(t, r))²)`, or `min(d, t)` where both
+/// are above r, and `min(d, t, (d + t − l)/√2)`. It is 1-Lipschitz if the extrusion is straight.
 ///
 /// ```
 /// use rvachev::{Caps, Extrusion, Profile};
