@@ -42,7 +42,8 @@ fn volume(area: impl Fn(f64) -> f64, caps: Caps) -> f64 {
     area(0.0) * (HEIGHT - 2.0 * SIZE) + 2.0 * rims
 }
 
-/// The area of what is further inside than s of a smooth convex outline, or of another that was brought here.
+/// The area of what is further than s within an outline: `corners` is π for a smooth convex one, 1 for every right
+/// angle, −π/4 for an inner one.
 fn steiner(area: f64, perimeter: f64, corners: f64) -> impl Fn(f64) -> f64 {
     move |s| area - perimeter * s + corners * s * s
 }
@@ -66,8 +67,11 @@ fn l_profile() -> Profile {
     Profile::polygon([[0.0, 0.0], [10.0, 0.0], [10.0, 4.0], [4.0, 4.0], [4.0, 10.0], [0.0, 10.0]])
 }
 
-/// Profiles and their areas within.
-fn profiles() -> Vec<(&'static str, Profile, Box<dyn Fn(f64) -> f64>)> {
+/// The area of what is further than this within a profile.
+type Area = Box<dyn Fn(f64) -> f64>;
+
+/// Profiles, and what is further within.
+fn profiles() -> Vec<(&'static str, Profile, Area)> {
     let l_area = || Box::new(steiner(64.0, 40.0, 5.0 - PI / 4.0));
     let (oval, round) = (DVec2::new(8.0, 6.0), DVec2::new(8.0, 5.0));
     let ((area, length), (round_area, round_length)) =
