@@ -56,6 +56,7 @@ fn alone<'a>(solid: &'a Solid, exact: &Exactness) -> Vec<&'a Solid> {
             [operand].into_iter().chain(ball).collect()
         }
         Node::Blend { operands, ball: Some(ball), .. } => operands.iter().chain([ball]).collect(),
+        Node::Swept { profile, ball: Some(_), .. } => vec![&profile.0],
         _ => Vec::new(),
     }
 }

@@ -155,6 +155,16 @@ impl Code {
         Built { field: edge, surface: edge, sides, growth: operand.growth, gauge: None }
     }
 
+    /// The end face and the sides of an extrusion, both moved in by `size`, joined by a rule that moves
+    /// them back.
+    pub(super) fn rim(&mut self, rule: Rule, size: f64, frame: u32, pair: [Built; 2]) -> Built {
+        let edge = self.pair(Operation::Intersection, rule, frame, pair);
+        let whole = pair.map(|b| snug(grow(&b.sides.inside, b.growth * size)));
+        let sides = Sides { inside: whole[0].intersection(&whole[1]), outside: Bounds::ALL };
+        let growth = if sides.inside.is_empty() { DVec3::INFINITY } else { bounded(pair[0]).max(bounded(pair[1])) };
+        Built { field: edge, surface: edge, sides, growth, gauge: None }
+    }
+
     /// A node that joins two values, the second complemented for a difference.
     fn pair(&mut self, operation: Operation, rule: Rule, frame: u32, pair: [Built; 2]) -> Edge {
         let negate = operation == Operation::Difference && !matches!(rule, Rule::Ricci { .. });

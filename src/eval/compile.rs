@@ -18,6 +18,7 @@ use super::context::{Contexts, is_similarity, least_stretch};
 use super::exact::Exactness;
 use super::extent::extent;
 use super::fill::{Fill, Side, Signed};
+use super::fit::fit;
 use super::flatten::flatten;
 use super::nothing::Nothing;
 use super::palette::Palette;
@@ -85,12 +86,20 @@ pub(crate) fn compile(
             Work::Measure(node) => measure(node, &exact, source, run)?,
             Work::Compile(part) if kept(part).is_some() => {}
             Work::Compile(part) => {
-                let compiled = Compiler::new(&exact).compile(part)?;
+                let compiled = Compiler::new(&exact).compile(part).map_err(|error| of_whole(solid, &exact, error))?;
                 let _ = part.compiled().set(Arc::new(compiled));
             }
         }
     }
     kept(solid).ok_or(CompileError::Cancelled(Cancelled))
+}
+
+/// What is wrong with a part as the solid tells it, by the path to it, where it does.
+fn of_whole(solid: &Solid, exact: &Exactness, error: SolidError) -> SolidError {
+    match Compiler::new(exact).compile(solid) {
+        Err(whole @ SolidError::Parameter { .. }) => whole,
+        _ => error,
+    }
 }
 
 /// The programs that were compiled before.
@@ -305,11 +314,21 @@ impl<'e> Compiler<'e> {
             .collect();
         match node {
             solid::Node::Leaf(field) => Ok(self.leaf(field, site)),
+            solid::Node::Swept { .. } => {
+                fit(site.solid).map_err(|e| self.parameter(site, e))?;
+                Ok(below[0])
+            }
             solid::Node::Affine { .. }
             | solid::Node::Named { .. }
             | solid::Node::Repeated { .. }
-            | solid::Node::Swept { .. }
             | solid::Node::Painted { .. } => Ok(below[0]),
+            solid::Node::Rim { caps, .. } => {
+                let (&[slab, column], Some(size)) = (&below[..], caps.size()) else {
+                    return Err(SolidError::EmptyJoin { path: self.scene.trail.path(site.step) });
+                };
+                let rule = caps.times(context.scale).rule();
+                Ok(self.code.rim(rule, size * context.scale, context.frame, [slab, column]))
+            }
             solid::Node::Warp { warp, .. } => self.warped(site, warp, below[0]),
             solid::Node::Complement(_) => Ok(below[0].complement()),
             solid::Node::Join { operation, rule, .. } => {
@@ -573,7 +592,8 @@ fn check(node: &solid::Node) -> Result<(), ParamError> {
         | solid::Node::Complement(_)
         | solid::Node::Named { .. }
         | solid::Node::Repeated { .. }
-        | solid::Node::Swept { .. } => Ok(()),
+        | solid::Node::Swept { .. }
+        | solid::Node::Rim { .. } => Ok(()),
     }
 }
 

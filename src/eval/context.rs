@@ -87,7 +87,9 @@ impl Contexts {
                 (0..operands.len()).map(|i| (i, self.flip_if(context, difference && i > 0))).collect()
             }
             // Never below a length that is closed.
-            Node::Blend { operands, .. } => (0..operands.len()).map(|i| (i, context)).collect(),
+            Node::Blend { operands, .. } | Node::Rim { operands, .. } => {
+                (0..operands.len()).map(|i| (i, context)).collect()
+            }
             Node::Length { length, .. } => match *length {
                 Length::Level(_) | Length::Rounded(_) | Length::Filleted(_) => vec![(0, context)],
                 _ if !exact.is_closed(solid) => match length {

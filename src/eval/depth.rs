@@ -49,7 +49,7 @@ pub(super) fn is_deeper(distance: &dyn AnyField, bounds: &Bounds, than: f64, run
             run.check()?;
         }
         let Some(Candidate { bounds, .. }) = heap.pop() else { return Ok(false) };
-        for part in bounds.octants() {
+        for part in parts(&bounds) {
             let centre = distance.value(part.center().to_array());
             let most = centre + part.half_extents().length();
             if centre > than {
@@ -61,4 +61,36 @@ pub(super) fn is_deeper(distance: &dyn AnyField, bounds: &Bounds, than: f64, run
         }
     }
     Ok(true)
+}
+
+/// The greatest distance that is found in a box: one above `enough` if there is one, else the greatest but for
+/// a ten-thousandth.
+pub(super) fn deepest(distance: &dyn AnyField, bounds: &Bounds, enough: f64) -> f64 {
+    const CLOSE: f64 = 1.0 + 1e-4;
+    let at = |bounds: &Bounds| distance.value(bounds.center().to_array());
+    let mut best = at(bounds);
+    let mut heap = BinaryHeap::from([Candidate { most: f64::INFINITY, bounds: *bounds }]);
+    for _ in 0..PATIENCE {
+        let Some(Candidate { most, bounds }) = heap.pop() else { break };
+        if best > enough || most <= best * CLOSE {
+            break;
+        }
+        for part in parts(&bounds) {
+            let centre = at(&part);
+            best = best.max(centre);
+            heap.push(Candidate { most: centre + part.half_extents().length(), bounds: part });
+        }
+    }
+    best.max(0.0)
+}
+
+/// The halves of a box along every axis that it has an extent along.
+fn parts(bounds: &Bounds) -> Vec<Bounds> {
+    let mut parts: Vec<Bounds> = Vec::with_capacity(8);
+    for part in bounds.octants() {
+        if !parts.contains(&part) {
+            parts.push(part);
+        }
+    }
+    parts
 }

@@ -130,7 +130,7 @@ impl Exactness {
             Node::Blend { operation: Operation::Intersection | Operation::Difference, .. } => {
                 Exact::NEITHER.deep(first.deepest)
             }
-            Node::Warp { .. } | Node::Join { .. } | Node::Blend { .. } => Exact::NEITHER,
+            Node::Warp { .. } | Node::Join { .. } | Node::Blend { .. } | Node::Rim { .. } => Exact::NEITHER,
         }
     }
 }

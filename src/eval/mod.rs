@@ -19,6 +19,7 @@ mod depth;
 mod exact;
 mod extent;
 mod fill;
+mod fit;
 mod flatten;
 mod hierarchy;
 mod narrow;

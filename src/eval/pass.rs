@@ -1,6 +1,7 @@
 //! One narrowing: down, what is asked of the nodes of a program; up, what is known of them over a
 //! region, and the program of what stays open.
 
+use std::f64::consts::SQRT_2;
 use std::sync::Arc;
 
 use super::program::{Edge, Kind, Node, Program};
@@ -170,6 +171,16 @@ impl<'a> Pass<'a> {
                 let range = joined(kind, operands.iter().map(|(range, _)| *range));
                 let edge = match (kind, deciding(kind, &operands)) {
                     (_, Some(only)) => only,
+                    (Kind::Join { rule: Rule::Rounded(size), .. }, None)
+                        if let Some(face) = alone(&operands, |_| 0.0) =>
+                    {
+                        self.push(&Kind::Shift(*size), vec![face])
+                    }
+                    (Kind::Join { rule: Rule::Chamfered(leg), .. }, None)
+                        if let Some(face) = alone(&operands, |x| (SQRT_2 - 1.0) * (x + leg)) =>
+                    {
+                        self.push(&Kind::Shift(*leg), vec![face])
+                    }
                     (Kind::Join { op, rule: Rule::MinMax, .. }, None) => {
                         let contenders = contenders(*op, &operands);
                         self.push(kind, contenders)
@@ -331,6 +342,20 @@ fn deciding(kind: &Kind, operands: &[(Interval, Edge)]) -> Option<Edge> {
         Some(*first)
     } else if y.lo() - x.hi() >= *width {
         Some(*second)
+    } else {
+        None
+    }
+}
+
+/// The face of a rim's two that decides alone over the region: the other is further than it, than the rim, and
+/// than what `reach` makes of the first.
+fn alone(operands: &[(Interval, Edge)], reach: impl Fn(f64) -> f64) -> Option<Edge> {
+    let &[(x, first), (y, second)] = operands else { return None };
+    let is_far = |other: Interval, face: Interval| other.lo() >= face.hi().max(0.0).max(reach(face.hi()));
+    if is_far(y, x) {
+        Some(first)
+    } else if is_far(x, y) {
+        Some(second)
     } else {
         None
     }

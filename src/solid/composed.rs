@@ -10,7 +10,7 @@ use std::fmt;
 use glam::DVec3;
 
 use super::{Extrusion, Helix, Node, Profile, Solid};
-use crate::Angle;
+use crate::{Angle, Caps};
 
 /// How copies of a solid are arranged: what a [`Form`](crate::form::Form) tells of
 /// [`Solid::repeat`], [`repeat_linear`](Solid::repeat_linear) and
@@ -88,9 +88,19 @@ impl Sweep {
         }
     }
 
-    /// The swept profile, which `built` is.
-    pub(super) fn of(self, profile: &Profile, built: Solid) -> Solid {
-        Solid::from_node(Node::Swept { profile: profile.clone(), sweep: self, built })
+    /// The swept profile, which `built` is; `ball` is what rounded and chamfered edges leave of it.
+    pub(super) fn of(self, profile: &Profile, built: Solid, ball: Option<Solid>) -> Solid {
+        Solid::from_node(Node::Swept { profile: profile.clone(), sweep: self, built, ball })
+    }
+
+    /// What the verb calls the edges of its end faces, how they are, and the size of the smallest section relative to
+    /// the profile.
+    pub(crate) fn rim(self) -> (&'static str, Caps, f64) {
+        match self {
+            Sweep::Extrude(extrusion) => ("caps", extrusion.caps, extrusion.scale.min(1.0)),
+            Sweep::Helix(helix) => ("ends", helix.ends, 1.0),
+            Sweep::Revolve(_) | Sweep::Column => ("", Caps::Flat, 1.0),
+        }
     }
 }
 
@@ -108,9 +118,15 @@ impl fmt::Display for Sweep {
     }
 }
 
-/// What was built of `old`, built of `new`, which has the same values.
-pub(super) fn replaced(built: &Solid, old: &Solid, new: &Solid) -> Solid {
+/// What was built of `old`, built of `new`, which has the same values; parts that they share stay shared.
+pub(super) fn replace<'a>(built: impl IntoIterator<Item = &'a mut Solid>, old: &Solid, new: &Solid) {
     let mut made: HashMap<usize, Solid> = HashMap::from([(old.address(), new.clone())]);
+    for solid in built {
+        *solid = replaced(solid, &mut made);
+    }
+}
+
+fn replaced(built: &Solid, made: &mut HashMap<usize, Solid>) -> Solid {
     let mut pending = vec![(built, false)];
     while let Some((solid, is_ready)) = pending.pop() {
         if made.contains_key(&solid.address()) {

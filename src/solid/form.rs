@@ -308,6 +308,10 @@ impl Solid {
             Node::Blend { operation, blend, operands, .. } => {
                 Form::Blend { operation: *operation, blend: *blend, operands }
             }
+            // Within what a sweep makes of a profile.
+            Node::Rim { operands, .. } => {
+                Form::Join { operation: Operation::Intersection, function: RFunction::Distance, operands }
+            }
             Node::Length { operand, length, .. } => Form::Length { operand, length: *length },
             Node::Repeated { operand, repetition, .. } => Form::Repetition { operand, repetition: *repetition },
             Node::Swept { profile, sweep, .. } => match *sweep {

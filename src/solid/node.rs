@@ -7,7 +7,7 @@ use glam::DAffine3;
 
 use super::composed::{Repetition, Sweep};
 use super::{Paint, Profile};
-use crate::{Blend, ParamError, RFunction};
+use crate::{Blend, Caps, ParamError, RFunction};
 use rvachev_field::{AnyField, AnyWarp, check};
 
 /// A solid: an immutable expression graph of leaves, maps and joins.
@@ -97,6 +97,15 @@ pub(crate) enum Node {
         profile: Profile,
         sweep: Sweep,
         built: Solid,
+        /// Of rounded and chamfered edges: what is left of the profile further inside than they are
+        /// wide, which must be something.
+        ball: Option<Solid>,
+    },
+    /// The edge between an end face and the sides, rounded or chamfered: the slab and the column, both
+    /// moved in by the size.
+    Rim {
+        caps: Caps,
+        operands: Vec<Solid>,
     },
 }
 
@@ -195,6 +204,7 @@ impl Node {
             Node::Painted { .. } => "paint",
             Node::Repeated { repetition, .. } => repetition.name(),
             Node::Swept { sweep, .. } => sweep.name(),
+            Node::Rim { .. } => "rim",
         }
     }
 
@@ -210,15 +220,14 @@ impl Node {
             | Node::Repeated { operand, .. }
             | Node::Complement(operand) => std::slice::from_ref(operand),
             Node::Swept { profile, .. } => std::slice::from_ref(&profile.0),
-            Node::Blend { operands, .. } => operands,
-            Node::Join { operands, .. } => operands,
+            Node::Blend { operands, .. } | Node::Join { operands, .. } | Node::Rim { operands, .. } => operands,
         }
     }
 
-    /// What a ball that rolls along the node's operands is told by.
+    /// What a ball that rolls along the node's operands is told by, or an edge of a profile.
     pub(crate) fn ball(&self) -> Option<&Solid> {
         match self {
-            Node::Blend { ball, .. } | Node::Length { ball, .. } => ball.as_ref(),
+            Node::Blend { ball, .. } | Node::Length { ball, .. } | Node::Swept { ball, .. } => ball.as_ref(),
             _ => None,
         }
     }
@@ -291,13 +300,15 @@ fn take_operands(node: &mut Node, pending: &mut Vec<Solid>) {
             pending.push(operand);
             pending.extend(ball);
         }
-        Node::Repeated { operand: solid, built, .. } | Node::Swept { profile: Profile(solid), built, .. } => {
+        Node::Repeated { operand: solid, built, .. } => pending.extend([solid, built]),
+        Node::Swept { profile: Profile(solid), built, ball, .. } => {
             pending.extend([solid, built]);
+            pending.extend(ball);
         }
         Node::Blend { operands, ball, .. } => {
             pending.extend(operands);
             pending.extend(ball);
         }
-        Node::Join { operands, .. } => pending.extend(operands),
+        Node::Join { operands, .. } | Node::Rim { operands, .. } => pending.extend(operands),
     }
 }

@@ -102,7 +102,7 @@ impl Profile {
     /// The column over the profile: the solid that is this profile at every z. It is unbounded.
     #[must_use]
     pub fn column(&self) -> Solid {
-        Sweep::Column.of(self, self.0.clone())
+        Sweep::Column.of(self, self.0.clone(), None)
     }
 
     #[cfg(feature = "formula")]

@@ -5,6 +5,7 @@ use std::any::{Any, TypeId};
 use std::collections::{HashMap, HashSet};
 use std::mem::{Discriminant, discriminant};
 
+use super::composed::replace;
 use super::{Node, Solid};
 
 impl Node {
@@ -26,6 +27,7 @@ impl Node {
             Node::Length { length, .. } => format!("by {:?}", length.amount()),
             Node::Repeated { repetition, .. } => repetition.to_string(),
             Node::Swept { sweep, .. } => sweep.to_string(),
+            Node::Rim { caps, .. } => format!("{caps:?}"),
         }
     }
 
@@ -42,6 +44,7 @@ impl Node {
             | Node::Blend { .. }
             | Node::Repeated { .. }
             | Node::Swept { .. }
+            | Node::Rim { .. }
             | Node::Length { .. } => return None,
         };
         Some(any.type_id())
@@ -59,8 +62,12 @@ impl Node {
             _ => {}
         }
         let mut node = self.clone();
-        if let (Node::Repeated { built, .. } | Node::Swept { built, .. }, [new]) = (&mut node, &operands[..]) {
-            *built = super::composed::replaced(built, &self.operands()[0], new);
+        match (&mut node, &operands[..]) {
+            (Node::Repeated { built, .. }, [new]) => replace([built], &self.operands()[0], new),
+            (Node::Swept { built, ball, .. }, [new]) => {
+                replace([built].into_iter().chain(ball), &self.operands()[0], new)
+            }
+            _ => {}
         }
         let places = match &mut node {
             Node::Leaf(_) => &mut [],
@@ -72,8 +79,9 @@ impl Node {
             | Node::Repeated { operand, .. }
             | Node::Painted { operand, .. } => std::slice::from_mut(operand),
             Node::Swept { profile, .. } => std::slice::from_mut(&mut profile.0),
-            Node::Blend { operands, .. } => &mut operands[..],
-            Node::Join { operands, .. } => &mut operands[..],
+            Node::Blend { operands, .. } | Node::Join { operands, .. } | Node::Rim { operands, .. } => {
+                &mut operands[..]
+            }
         };
         for (place, operand) in places.iter_mut().zip(operands) {
             *place = operand;

@@ -3,18 +3,23 @@
 use std::any::Any;
 use std::f64::consts::TAU;
 
+use glam::DVec3;
+
 use super::composed::Sweep;
 use super::{Node, Profile, Solid};
 use crate::{Angle, ParamError, Polygon, RFunction};
 use rvachev_field::{Caps, HelixWarp, Opening, Revolution, Span, Turn, check};
 
 /// A column cut off by a slab.
-fn cut(caps: Caps, column: &Solid, slab: &Solid) -> Solid {
+fn cut(column: &Solid, slab: &Solid) -> Solid {
     // The slab first: it says what is wrong with the parameters.
-    match caps.blend() {
-        None => slab.intersection(column, RFunction::Distance),
-        Some(blend) => slab.intersection_with(column, blend),
-    }
+    slab.intersection(column, RFunction::Distance)
+}
+
+/// The same, the edges not sharp; `ball` is the column moved in by their size.
+fn rimmed(caps: Caps, ball: &Solid, slab: &Solid) -> Solid {
+    let size = caps.size().unwrap_or_default();
+    Solid::from_node(Node::Rim { caps, operands: vec![slab.offset(-size), ball.clone()] })
 }
 
 /// What a profile is extruded to.
@@ -33,7 +38,7 @@ fn cut(caps: Caps, column: &Solid, slab: &Solid) -> Solid {
 /// | `height` | length | 10⁻⁹ to 10⁹: from z = −height/2 to height/2 |
 /// | `twist` | [`Angle`] | ±10⁷ degrees: by how much the upper end is turned, from x towards y |
 /// | `scale` | none | 0.001 to 1000: the upper end's size relative to the lower |
-/// | `caps` | length | how the edges of both end faces are: see [`Caps`] |
+/// | `caps` | length | how the edges of both end faces are: see [`Caps`]; what does not fit is refused |
 ///
 /// ```
 /// use rvachev::{Extrusion, Profile};
@@ -67,7 +72,7 @@ impl Extrusion {
         check::length("height", self.height)?;
         check::angle("twist", self.twist, -1e7, 1e7)?;
         check::within("scale", self.scale, 1e-3, 1e3)?;
-        self.caps.check("caps")
+        self.caps.check("caps", 0.5 * self.height, "height")
     }
 }
 
@@ -83,7 +88,7 @@ impl Extrusion {
 /// | `radius` | length | 10⁻⁹ to 10⁹, and more than the profile reaches towards the axis |
 /// | `pitch` | length | 10⁻⁹ to 10⁹: rise in a turn; at least half the profile's height |
 /// | `turns` | none | 10⁻⁶ to 10⁶: from z = −pitch·turns/2 to pitch·turns/2 |
-/// | `ends` | length | how the edges of the two end faces are: see [`Caps`] |
+/// | `ends` | length | how the edges of the two end faces are: see [`Caps`]; what does not fit is refused |
 ///
 /// See [`Profile::sweep_helix`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,11 +113,21 @@ impl Helix {
         Helix { radius, pitch, turns, left_handed: false, ends: Caps::Flat }
     }
 
+    /// How much longer the helix is than it is high.
+    fn stretch(&self) -> f64 {
+        (TAU * self.radius / self.pitch).hypot(1.0)
+    }
+
+    /// The length of the helix.
+    fn length(&self) -> f64 {
+        self.pitch * self.turns * self.stretch()
+    }
+
     fn check(&self) -> Result<(), ParamError> {
         check::length("radius", self.radius)?;
         check::length("pitch", self.pitch)?;
         check::within("turns", self.turns, 1e-6, 1e6)?;
-        self.ends.check("ends")
+        self.ends.check("ends", 0.5 * self.length(), "length of the helix")
     }
 }
 
@@ -144,8 +159,7 @@ impl Profile {
     )]
     ///
     /// Twisted and scaled ones have the profile's value at the pre-image, not rescaled: no
-    /// Lipschitz constant is promised, and chamfers and roundings are of the size asked for
-    /// where sides are upright.
+    /// Lipschitz constant is promised. What chamfers and roundings are there: see [`Caps`].
     ///
     /// ```
     /// use rvachev::{deg, Caps, Extrusion, Profile};
@@ -165,16 +179,32 @@ impl Profile {
         let error = extrusion.check().err();
         let caps = if error.is_some() { Caps::Flat } else { caps };
         let slab = Solid::leaf(Span { verb: "extrude", half_height, error });
-        let mut column = self.0.clone();
-        if scale != 1.0 {
-            // A taper is 1 in the middle; the lower end is to be the profile.
-            let (middle, k) = (0.5 * (1.0 + scale), (scale - 1.0) / (scale + 1.0));
-            column = self.scale(middle).0.taper(k, k, height);
+        // A taper is 1 in the middle; the lower end is to be the profile.
+        let middle = 0.5 * (1.0 + scale);
+        let section = if scale == 1.0 { self.clone() } else { self.scale(middle) };
+        let shaped = |straight: Solid| {
+            let k = (scale - 1.0) / (scale + 1.0);
+            let tapered = if scale == 1.0 { straight } else { straight.taper(k, k, height) };
+            if twist == Angle::ZERO { tapered } else { tapered.rotate_z(0.5 * twist).twist(twist / height) }
+        };
+        let sweep = Sweep::Extrude(*extrusion);
+        let Some(size) = caps.size() else {
+            return sweep.of(self, cut(&shaped(section.0), &slab), None);
+        };
+        // In the smallest section there is the least room.
+        let ball = self.0.offset(-size / scale.min(1.0));
+        if scale == 1.0 {
+            let built = shaped(rimmed(caps, &ball, &slab));
+            return sweep.of(self, built, Some(ball));
         }
-        if twist != Angle::ZERO {
-            column = column.rotate_z(0.5 * twist).twist(twist / height);
-        }
-        Sweep::Extrude(*extrusion).of(self, cut(caps, &column, &slab))
+        // Each end is cut off where lengths are as many times what they are as the section is at that end.
+        let ends = [(-DVec3::Z, 1.0), (DVec3::Z, scale)].map(|(up, end)| {
+            let times = middle / end;
+            let caps = caps.times(times);
+            let ball = section.0.offset(-size * times);
+            rimmed(caps, &ball, &Solid::half_space(up, half_height * times)).scale_axes([1.0, 1.0, 1.0 / times])
+        });
+        sweep.of(self, shaped(Solid::intersection_all(ends, RFunction::MIN_MAX)), Some(ball))
     }
 
     /// Revolved about the z axis: the profile's x is the distance from the axis and its y
@@ -199,7 +229,7 @@ impl Profile {
     /// ```
     #[must_use]
     pub fn revolve(&self) -> Solid {
-        Sweep::Revolve(Angle::FULL_TURN).of(self, self.revolved())
+        Sweep::Revolve(Angle::FULL_TURN).of(self, self.revolved(), None)
     }
 
     /// All the way round.
@@ -242,7 +272,7 @@ impl Profile {
             return self.revolve();
         }
         let part = Solid::leaf(Opening { angle }).intersection(self.revolved(), RFunction::MIN_MAX);
-        Sweep::Revolve(angle).of(self, part)
+        Sweep::Revolve(angle).of(self, part, None)
     }
 
     /// Swept along a helix about the z axis: a thread, a spring.
@@ -280,12 +310,16 @@ impl Profile {
     pub fn sweep_helix(&self, helix: &Helix) -> Solid {
         let Helix { radius, pitch, turns, left_handed, ends } = *helix;
         // Sizes of rounded and chamfered ends are measured along the helix.
-        let stretch = if ends == Caps::Flat { 1.0 } else { (TAU * radius / pitch).hypot(1.0) };
+        let stretch = if ends == Caps::Flat { 1.0 } else { helix.stretch() };
         let half_height = 0.5 * pitch * turns * stretch;
         let error = helix.check().err();
         let ends = if error.is_some() { Caps::Flat } else { ends };
         let slab = Solid::leaf(Span { verb: "sweep_helix", half_height, error });
-        let straight = cut(ends, &self.0, &slab);
+        let ball = ends.size().map(|size| self.0.offset(-size));
+        let straight = match &ball {
+            Some(ball) => rimmed(ends, ball, &slab),
+            None => cut(&self.0, &slab),
+        };
         // What is wrong with the profile is said when the solid is used.
         let (middle, height) = match self.bounds() {
             Ok(bounds) if bounds.min.is_finite() && bounds.max.is_finite() => {
@@ -299,6 +333,6 @@ impl Profile {
         } else {
             Solid::union_all([Turn::Nearest, Turn::Above, Turn::Below].map(seen_from), RFunction::MIN_MAX)
         };
-        Sweep::Helix(*helix).of(self, swept)
+        Sweep::Helix(*helix).of(self, swept, ball)
     }
 }

@@ -3,6 +3,7 @@
 mod accuracy;
 mod blends;
 mod building;
+mod caps;
 mod check;
 mod deformation;
 mod errors;

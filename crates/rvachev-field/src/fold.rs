@@ -3,7 +3,7 @@
 use crate::kernel::{Element, Fold, fold};
 
 use crate::blend;
-use crate::rfunction::{AlphaAnd, AssociativeAnd, DistanceAnd, PAnd, SmoothAnd, zero_and};
+use crate::rfunction::{AlphaAnd, AssociativeAnd, ChamferedAnd, DistanceAnd, PAnd, RoundedAnd, SmoothAnd, zero_and};
 use crate::{Dual, Euclid, Monotone, Norm, NormKind, Powers, Real, RicciSide, Rule, saturate};
 
 /// Conjunction or disjunction.
@@ -158,6 +158,8 @@ where
     Least: Fold<N>,
     Join<Rising<AlphaAnd>>: Fold<N>,
     Join<Rising<DistanceAnd>>: Fold<N>,
+    Join<Rising<RoundedAnd>>: Fold<N>,
+    Join<Rising<ChamferedAnd>>: Fold<N>,
     Join<Rising<PAnd<Euclid>>>: Fold<N>,
     Join<Rising<PAnd<Powers<false>>>>: Fold<N>,
     Join<Rising<AssociativeAnd<Powers<false>>>>: Fold<N>,
@@ -179,6 +181,8 @@ where
         Rule::MinMax => fold(&Least { sign, sign_next }, all, next),
         Rule::Alpha(alpha) => by!(Rising(AlphaAnd(alpha))),
         Rule::Distance => by!(Rising(DistanceAnd)),
+        Rule::Rounded(radius) => by!(Rising(RoundedAnd(radius))),
+        Rule::Chamfered(leg) => by!(Rising(ChamferedAnd(leg))),
         Rule::P(Norm::Euclid) => by!(Rising(PAnd(Euclid))),
         Rule::P(norm) => by!(Rising(PAnd(powers(norm)))),
         Rule::Associative(norm) => by!(Rising(AssociativeAnd(powers(norm)))),

@@ -13,11 +13,21 @@
 //! lose no digits: R_α as `2 min(s,0)/(1+α) + 2xy/(|s| + D)` with `s = x + y`, R_p as
 //! `min(x,y) + min(0,s) − q` with `q = ‖(x,y)‖_p − max(|x|,|y|)`.
 //!
-//! The sign, and so the solid, is that of min and max for every rule. All but R_0^m rise with
+//! The rims of extrusions are joined by two rules that move the surface: with u = x − s and v = y − s,
+//! x and y the distances to the two faces and s the size,
+//!
+//! ```text
+//!     rounded      u∧v = s + D(u, v)
+//!     chamfered    u∧v = min(x, y, (x + y − s)/√2)
+//! ```
+//!
+//! The sign, and so the solid, is that of min and max for every rule of the table. All but R_0^m rise with
 //! both arguments.
 //!
 //! Sources: V. L. Rvachev (1982); V. Shapiro, *Semi-analytic geometry with R-functions*
 //! (2007); Y. D. Fougerolle et al.
+
+use std::f64::consts::FRAC_1_SQRT_2;
 
 use super::blend::{self, RicciSide};
 use super::{ParamError, VALUE_LIMIT};
@@ -175,6 +185,10 @@ pub enum Rule {
     },
     /// Min where both are inside, the Euclidean norm where they are outside.
     Distance,
+    /// The edge between two faces rounded to this radius; operands are moved in by it.
+    Rounded(f64),
+    /// The edge between two faces cut at 45°, this leg from it; operands are moved in by it.
+    Chamfered(f64),
 }
 
 impl From<RFunction> for Rule {
@@ -194,7 +208,10 @@ impl From<RFunction> for Rule {
 impl Rule {
     /// Whether the surface depends on the operands' values and not on their signs alone.
     pub fn reads_values(self) -> bool {
-        matches!(self, Rule::Smooth(_) | Rule::Displacement { .. } | Rule::Ricci { .. })
+        matches!(
+            self,
+            Rule::Smooth(_) | Rule::Displacement { .. } | Rule::Ricci { .. } | Rule::Rounded(_) | Rule::Chamfered(_)
+        )
     }
 
     /// Whether the value rises with those of the operands, or stays.
@@ -213,6 +230,8 @@ impl Rule {
             Rule::Alpha(alpha) => saturate(x.monotone(y, &AlphaAnd(alpha))),
             Rule::Smooth(width) => saturate(x.monotone(y, &SmoothAnd(width))),
             Rule::Distance => saturate(x.monotone(y, &DistanceAnd)),
+            Rule::Rounded(radius) => saturate(x.monotone(y, &RoundedAnd(radius))),
+            Rule::Chamfered(leg) => saturate(x.monotone(y, &ChamferedAnd(leg))),
             Rule::P(norm) => saturate(x.monotone(y, &PAnd(norm))),
             Rule::Associative(norm) => saturate(x.monotone(y, &AssociativeAnd(norm))),
         }
@@ -253,6 +272,14 @@ pub(super) struct SmoothAnd(pub f64);
 /// What distances are joined by.
 #[derive(Clone, Copy)]
 pub(super) struct DistanceAnd;
+
+/// Distances to two faces, each less the radius, to that of both with the edge rounded.
+#[derive(Clone, Copy)]
+pub(super) struct RoundedAnd(pub f64);
+
+/// The same with the edge cut off, for a leg.
+#[derive(Clone, Copy)]
+pub(super) struct ChamferedAnd(pub f64);
 
 /// A denominator is held above this.
 const TINY: f64 = 1e-37;
@@ -344,6 +371,35 @@ impl Monotone for DistanceAnd {
         // the corner itself the norm has none.
         let least = x.min(y);
         (self.value(x, y), least.select(first, -nx), least.select(one - first, -ny))
+    }
+}
+
+impl Monotone for RoundedAnd {
+    #[inline(always)]
+    fn value<R: Real>(&self, x: R, y: R) -> R {
+        DistanceAnd.value(x, y) + self.0
+    }
+
+    #[inline(always)]
+    fn parts<R: Real>(&self, x: R, y: R) -> (R, R, R) {
+        let (value, dx, dy) = DistanceAnd.parts(x, y);
+        (value + self.0, dx, dy)
+    }
+}
+
+impl Monotone for ChamferedAnd {
+    #[inline(always)]
+    fn value<R: Real>(&self, x: R, y: R) -> R {
+        (x.min(y) + self.0).min((x + y + self.0) * FRAC_1_SQRT_2)
+    }
+
+    #[inline(always)]
+    fn parts<R: Real>(&self, x: R, y: R) -> (R, R, R) {
+        let (zero, one, half) = (x.lift(0.0), x.lift(1.0), x.lift(FRAC_1_SQRT_2));
+        let (least, face) = (x.min(y) + self.0, (x + y + self.0) * FRAC_1_SQRT_2);
+        let first = (y - x).select(one, zero);
+        let above = face - least;
+        (least.min(face), above.select(first, half), above.select(one - first, half))
     }
 }
 
