@@ -464,7 +464,7 @@ pub use fidget;
 pub use glam;
 
 pub use catalogue::catalogue;
-pub use eval::{Hit, Owner};
+pub use eval::{Accuracy, Hit, Owner};
 pub use geom::{Camera, Image, Mesh, Plane, PointCloud, Polyline, ThinPlace, ThinReport, View};
 pub use io::save::SaveSettings;
 pub use io::unit::LengthUnit;

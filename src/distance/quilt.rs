@@ -77,7 +77,7 @@ impl Quilt {
             let fails = |piece: &Piece, (off, turn): (f64, f64)| {
                 let is_off = off > tolerance || turn > TURN && off > 0.05 * tolerance;
                 // Where splitting does not help, more of it does not either.
-                depth < DEPTH && is_off && (depth < 2 || off < GAIN * piece.before)
+                depth < DEPTH && is_off && (depth < 4 || off < GAIN * piece.before)
             };
             let failing = pieces.iter().zip(&errors).filter(|(piece, error)| fails(piece, **error));
             cross(failing.map(|(piece, _)| piece), &positions, &mut seams, slopes, run)?;

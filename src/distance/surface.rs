@@ -9,7 +9,7 @@ use super::facets::Facets;
 use super::quilt::Quilt;
 use super::slopes::Slopes;
 use crate::error::MeshingError;
-use crate::eval::{CompileError, Compiled, DistanceSource, Program, Surface};
+use crate::eval::{Accuracy, CompileError, Compiled, DistanceSource, Program, Surface};
 use crate::mesh::Subject;
 use crate::{Bounds, CellSize, Features, Mesh, MeshSettings, RFunction, Run, Solid, SolidError, ThinFeatures};
 use rvachev_field::Patches;
@@ -54,12 +54,13 @@ impl DistanceSource for FromMeshes {
         let size = (0..3).filter(|axis| Some(*axis) != flat).map(|axis| bounds.size()[axis]).fold(0.0, f64::max);
         if bounds.is_empty() || size == 0.0 {
             let patches = Arc::new(Patches::new(&[], run)?);
-            return Ok(Surface { patches, error: 0.0, flat });
+            return Ok(Surface { patches, accuracy: Accuracy::default(), flat });
         }
         if !size.is_finite() {
             return Err(SolidError::Unbounded { path: programs.unbounded.clone() }.into());
         }
-        let tolerance = (TOLERANCE * length).max(1e-6 * size);
+        // A surface that is measured itself is no smoother than that.
+        let tolerance = (TOLERANCE * length).max(1e-6 * size).max(programs.accuracy.tolerance);
         let slopes = Slopes { program: &programs.surface, precision: tolerance };
         let enough = CELLS + CELLS_A_LEAF * programs.surface.leaf_count() as f64;
         let mut cell = first_cell(&programs.surface, bounds, size, enough, run)?;
@@ -83,7 +84,7 @@ impl DistanceSource for FromMeshes {
             let quilt = Quilt::new(facets, &slopes, (tolerance, patience), &to_sew)?;
             if let Some(quilt) = quilt.filter(|quilt| is_last || quilt.off <= FEW) {
                 let patches = Arc::new(Patches::new(&quilt.patches, &to_sew)?);
-                return Ok(Surface { patches, error: quilt.error, flat });
+                return Ok(Surface { patches, accuracy: Accuracy { tolerance, error: quilt.error }, flat });
             }
             cell *= 0.5;
         }

@@ -6,6 +6,7 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
+use super::accuracy::Accuracy;
 use super::bend::Bend;
 use super::compile::{Compiled, kept};
 use super::composite::{Composite, Whole};
@@ -74,15 +75,15 @@ pub(super) fn measure(
     }
     let found = match solid.node() {
         Node::Length { ball: Some(ball), length, .. } => {
-            let (field, error) = distance(ball, length.amount(), &Bounds::ALL, source, run)?;
+            let (field, accuracy) = distance(ball, length.amount(), &Bounds::ALL, source, run)?;
             let is_gone = length.inwards() > 0.0 && kept(ball).is_none_or(|programs| programs.bounds.is_empty());
-            Measured { field, error, is_gone, sides: Vec::new() }
+            Measured { field, accuracy, is_gone, sides: Vec::new() }
         }
         Node::Length { operand, length, .. } => {
             let inwards = length.inwards();
             let Some(programs) = kept(operand) else { return Ok(()) };
-            let (field, error) = match exact.is_closed(solid) {
-                true => (sign(&programs), 0.0),
+            let (field, accuracy) = match exact.is_closed(solid) {
+                true => (sign(&programs), Accuracy::default()),
                 false => distance(operand, inwards.abs(), &Bounds::ALL, source, run)?,
             };
             let mut bounds = programs.bounds;
@@ -90,13 +91,13 @@ pub(super) fn measure(
             if let Some(axis) = programs.flat_axis() {
                 (bounds.min[axis], bounds.max[axis]) = (0.0, 0.0);
             }
-            let is_gone = inwards > 0.0 && bounds.is_finite() && !is_deeper(&*field, &bounds, error + inwards, run)?;
-            Measured { field, error, is_gone, sides: Vec::new() }
+            let is_gone = inwards > 0.0 && bounds.is_finite() && !is_deeper(&*field, &bounds, accuracy.tolerance + inwards, run)?;
+            Measured { field, accuracy, is_gone, sides: Vec::new() }
         }
         Node::Blend { operation, blend, operands, ball: Some(ball) } => {
             let near = Near::of(*operation, *blend, operands);
             let region = near.boxes.iter().fold(Bounds::EMPTY, |all, own| all.union(own));
-            let (field, error) = distance(ball, near.radius, &region, source, run)?;
+            let (field, accuracy) = distance(ball, near.radius, &region, source, run)?;
             let mut sides = Vec::new();
             if near.fades {
                 for (number, operand) in operands.iter().enumerate() {
@@ -110,7 +111,7 @@ pub(super) fn measure(
                     });
                 }
             }
-            Measured { field, error, is_gone: false, sides }
+            Measured { field, accuracy, is_gone: false, sides }
         }
         _ => return Ok(()),
     };
@@ -130,18 +131,18 @@ fn distance(
     region: &Bounds,
     source: &'static dyn DistanceSource,
     run: &Run,
-) -> Result<(Arc<dyn AnyField>, f64), CompileError> {
-    let Some(programs) = kept(solid) else { return Ok((Arc::new(Nothing), 0.0)) };
+) -> Result<(Arc<dyn AnyField>, Accuracy), CompileError> {
+    let Some(programs) = kept(solid) else { return Ok((Arc::new(Nothing), Accuracy::default())) };
     if !programs.bounds.intersection(region).is_finite()
         && programs.flat_axis().is_none()
         && !programs.bounds.is_empty()
     {
         let tiles = Tiles::new(solid.clone(), (sign(&programs), programs.bounds), length, source);
-        return Ok((Arc::new(tiles), 0.0));
+        return Ok((Arc::new(tiles), Accuracy::default()));
     }
-    let Surface { patches, error, flat } = source.surface(solid, &programs, (length, region), run)?;
-    let field = SurfaceDistance::new(patches, sign(&programs), error, flat, programs.bounds);
-    Ok((Arc::new(field), error))
+    let Surface { patches, accuracy, flat } = source.surface(solid, &programs, (length, region), run)?;
+    let field = SurfaceDistance::new(patches, sign(&programs), accuracy.error, flat, programs.bounds);
+    Ok((Arc::new(field), accuracy.plus(programs.accuracy)))
 }
 
 /// What was measured of a node.

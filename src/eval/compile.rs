@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
+use super::accuracy::Accuracy;
 use super::apart::{Near, Work, measure, measured, works};
 use super::bevel::Bevel;
 use super::chamfer::Chamfer;
@@ -29,7 +30,7 @@ use super::source::{CompileError, DistanceSource, Measured};
 use crate::solid::{self, Length, Operation};
 use crate::{Blend, Bounds, Cancelled, Norm, ParamError, Run, Solid, SolidError};
 use rvachev_field::Op;
-use rvachev_field::{AnyField, AnyWarp, Placement, Rule};
+use rvachev_field::{AnyField, AnyWarp, Placement, Rule, largest_stretch};
 use rvachev_num::column_times;
 
 /// A solid's programs.
@@ -40,6 +41,7 @@ pub(crate) struct Compiled {
     pub(crate) bounds: Bounds,
     /// The path to the node that makes the bounds infinite, if they are.
     pub(crate) unbounded: String,
+    pub(crate) accuracy: Accuracy,
 }
 
 /// Fillets are this much smaller, in radii, so that flush faces stay as they are; and no smaller than that
@@ -127,6 +129,7 @@ struct Compiler<'e> {
     coats: HashMap<u32, Coat>,
     built: HashMap<(u32, usize), Option<Built>>,
     code: Code,
+    accuracy: Accuracy,
 }
 
 impl<'e> Compiler<'e> {
@@ -138,6 +141,7 @@ impl<'e> Compiler<'e> {
             coats: HashMap::new(),
             built: HashMap::new(),
             code: Code::default(),
+            accuracy: Accuracy::default(),
         }
     }
 
@@ -156,7 +160,7 @@ impl<'e> Compiler<'e> {
         }
         let built = self.of(root, 0);
         let unbounded = self.unbounded(root, step);
-        let Compiler { scene, code, coats, .. } = self;
+        let Compiler { scene, code, coats, accuracy, .. } = self;
         let scene = Arc::new(scene);
         let program = |root: Edge| {
             let (nodes, operands, root) = flatten(&code, root);
@@ -169,7 +173,7 @@ impl<'e> Compiler<'e> {
         }
         let unbounded = if bounds.is_finite() { String::new() } else { unbounded };
         let palette = Palette::new(surface.clone(), coats);
-        Ok(Compiled { field, surface, palette, bounds, unbounded })
+        Ok(Compiled { field, surface, palette, bounds, unbounded, accuracy })
     }
 
     /// The path to the node that makes the solid unbounded: down through unions to the
@@ -444,7 +448,7 @@ impl<'e> Compiler<'e> {
         let Some(measured) = measured(site.solid) else { return Vec::new() };
         let is_union = operation == Operation::Union;
         let ball = Signed { field: measured.field, sign: if is_union { 1.0 } else { -1.0 } };
-        let margin = (measured.error + FLUSH * radius).min(LARGEST_MARGIN * radius);
+        let margin = (measured.accuracy.error + FLUSH * radius).min(LARGEST_MARGIN * radius);
         let fill = Fill { radius, ball, sides: Vec::new(), margin, boxes: vec![Bounds::ALL] };
         let solid::Node::Blend { blend, operands, .. } = site.solid.node() else {
             let bounds = kept(&site.solid.node().operands()[0]).map_or(Bounds::EMPTY, |programs| programs.bounds);
@@ -483,7 +487,7 @@ impl<'e> Compiler<'e> {
             Arc::new(Bevel::new([a.surface.clone(), b.surface.clone()], signs, chamfer, bounds));
         let ball =
             Signed { field: measured.field.clone(), sign: if operation == Operation::Union { 1.0 } else { -1.0 } };
-        let margin = (measured.error + FLUSH * near.radius).min(LARGEST_MARGIN * near.radius);
+        let margin = (measured.accuracy.error + FLUSH * near.radius).min(LARGEST_MARGIN * near.radius);
         let fill: Arc<dyn AnyField> =
             Arc::new(Fill { radius: near.radius, ball, sides: Vec::new(), margin, boxes: near.boxes });
         let both = [self.made(&bevel, site, 0.0), self.made(&fill, site, 0.0)];
@@ -531,6 +535,10 @@ impl<'e> Compiler<'e> {
     /// A leaf that is made of a node's operands and has their paint, its value moved by `by`.
     fn made(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>, by: f64) -> Built {
         self.coats.insert(self.scene.leaves.len() as u32, Coat::of(site.solid));
+        let stretch = largest_stretch(&self.contexts.get(site.context).forward.matrix3);
+        if let Some(measured) = measured(site.solid) {
+            self.accuracy = self.accuracy.max(measured.accuracy.times(stretch));
+        }
         let context = self.contexts.get(site.context);
         let shift = context.shift.unwrap_or(0.0) + by * context.scale;
         self.shifted(field, site, shift)

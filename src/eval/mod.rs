@@ -5,6 +5,7 @@
 //! R-functions, which is the same solid with the same surface and normals, and which can be
 //! narrowed to a region.
 
+mod accuracy;
 mod apart;
 mod bend;
 mod bevel;
@@ -44,6 +45,7 @@ mod thin;
 mod tiles;
 
 pub(crate) use narrow::Narrowed;
+pub use accuracy::Accuracy;
 pub use owner::Owner;
 pub use palette::Palette;
 pub use program::{Program, Region};

@@ -6,6 +6,7 @@
 
 use std::sync::Arc;
 
+use super::accuracy::Accuracy;
 use super::compile::Compiled;
 use crate::{Bounds, Cancelled, Solid, SolidError};
 use rvachev_field::{AnyField, Patches};
@@ -30,7 +31,7 @@ pub(crate) trait DistanceSource: Send + Sync {
 pub(crate) struct Surface {
     pub(crate) patches: Arc<Patches>,
     /// How far the patches may be off the surface.
-    pub(crate) error: f64,
+    pub(crate) accuracy: Accuracy,
     /// The axis along which it is a cylinder, if it is: the patches are those where its coordinate
     /// is 0.
     pub(crate) flat: Option<usize>,
@@ -43,7 +44,7 @@ pub(crate) struct Measured {
     /// of where a ball's centre may be.
     pub(crate) field: Arc<dyn AnyField>,
     /// How far it may be off.
-    pub(crate) error: f64,
+    pub(crate) accuracy: Accuracy,
     /// Whether nothing is left where the length is taken away.
     pub(crate) is_gone: bool,
     /// For a fillet, the distances to its operands, on the side where the ball is.

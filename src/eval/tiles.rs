@@ -70,7 +70,7 @@ impl Tiles {
             self.source.surface(&self.solid, &programs, (self.length, &region), &Run::default()).ok()
         });
         let (patches, error) = match found {
-            Some(surface) => (surface.patches, surface.error),
+            Some(surface) => (surface.patches, surface.accuracy.error),
             None => match Patches::new(&[], &Run::default()) {
                 Ok(none) => (Arc::new(none), 0.0),
                 Err(_) => unreachable!("nobody has the token"),
