@@ -29,7 +29,7 @@ const CELLS: f64 = 4e4;
 const CELLS_A_LEAF: f64 = 500.0;
 
 /// Cells are halved while patches of more than this part of the surface are off.
-const FEW: f64 = 1e-3;
+const FEW: f64 = 5e-5;
 
 /// And at once where splitting leaves more than this part.
 const PATIENCE: f64 = 5e-3;

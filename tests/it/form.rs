@@ -203,8 +203,8 @@ fn ranges_are_those_that_are_checked() {
         ("sweep_helix", "pitch"),
         ("smooth_step", "from"),
         ("smooth_step", "to"),
-        ("chamfered", "leg"),
-        ("rounded", "radius"),
+        ("chamfered_caps", "leg"),
+        ("rounded_caps", "radius"),
         ("repeat_linear", "step"),
         ("scale_axes", "factors"),
     ];
