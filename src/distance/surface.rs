@@ -28,8 +28,9 @@ const ALONG_LEAF: f64 = 2.0;
 const CELLS: f64 = 4e4;
 const CELLS_A_LEAF: f64 = 500.0;
 
-/// Cells are halved while patches of more than this part of the surface are off.
-const FEW: f64 = 5e-5;
+/// Cells are halved while more than this part of the surface is off, or a patch by so many tolerances.
+const FEW: f64 = 1e-4;
+const FAR: f64 = 8.0;
 
 /// And at once where splitting leaves more than this part.
 const PATIENCE: f64 = 5e-3;
@@ -82,7 +83,7 @@ impl DistanceSource for FromMeshes {
             let is_last = 4.0 * count > enough;
             let patience = if is_last { f64::INFINITY } else { PATIENCE };
             let quilt = Quilt::new(facets, &slopes, (tolerance, patience), &to_sew)?;
-            if let Some(quilt) = quilt.filter(|quilt| is_last || quilt.off <= FEW) {
+            if let Some(quilt) = quilt.filter(|quilt| is_last || quilt.off <= FEW && quilt.error <= FAR * tolerance) {
                 let patches = Arc::new(Patches::new(&quilt.patches, &to_sew)?);
                 return Ok(Surface { patches, accuracy: Accuracy { tolerance, error: quilt.error }, flat });
             }

@@ -631,7 +631,7 @@ fn offsets_are_at(solid: &Solid, lengths: [f64; 2], cells: u32, count: usize) ->
 /// Fails unless the inner face of a shell is as deep as asked for: by brute force, and along normals
 /// where a ball that touches the foot of the normal is larger than the wall.
 fn has_wall(solid: &Solid, thickness: f64) -> Outcome {
-    let surface = Surface::new(solid, 64)?.expect("it has a surface");
+    let surface = Surface::new(solid, 64)?.expect("it has a surface").known_whole();
     let shell = solid.shell(thickness);
     // Vertices of this mesh are on the surface; others may stand off it, for the sake of its triangles.
     let cell = solid.bounds()?.longest_side() / 48.0;

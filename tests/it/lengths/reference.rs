@@ -35,6 +35,12 @@ impl Surface {
         Ok((!surface.triangles.is_empty()).then_some(surface))
     }
 
+    /// The same of a solid that is known to have no features that its mesh may lose: faces that meet are suspect
+    /// as well.
+    pub fn known_whole(self) -> Surface {
+        Surface { is_whole: true, ..self }
+    }
+
     /// Whether the mesh has lost nothing.
     pub fn is_whole(&self) -> bool {
         self.is_whole
