@@ -25,7 +25,7 @@ use super::composite::{finish, points64, unscaled};
 use crate::{Bounds, Dual, Interval, ParamError, Real};
 #[cfg(feature = "formula")]
 use rvachev_field::VALUE_LIMIT;
-use rvachev_field::{AnyField, Chunk, Zone, steep_slopes};
+use rvachev_field::{AnyField, Chunk, Way, Zone, steep_slopes};
 #[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
@@ -152,6 +152,18 @@ impl Fill {
         most
     }
 
+    /// How deep inside of the boxes points of a zone are.
+    fn box_depth(&self, zone: &Zone) -> Interval {
+        let point = Interval::point;
+        let of_box = |bounds: &Bounds| {
+            let sides = zone.hull().into_iter().enumerate();
+            sides.fold(Interval::ALL, |own, (axis, side)| {
+                own.min(side - point(bounds.min[axis])).min(point(bounds.max[axis]) - side)
+            })
+        };
+        self.boxes.iter().map(of_box).fold(point(f64::NEG_INFINITY), Interval::max)
+    }
+
     /// The steepest that it is.
     fn steepness(&self) -> f64 {
         if self.sides.is_empty() { 1.0 } else { 1.0 + 2.0 * FADE }
@@ -218,14 +230,7 @@ impl AnyField for Fill {
 
     fn range(&self, zone: &Zone) -> Interval {
         let point = Interval::point;
-        let mut depth = Interval::point(f64::NEG_INFINITY);
-        for bounds in &self.boxes {
-            let mut own = Interval::ALL;
-            for (axis, side) in zone.hull().into_iter().enumerate() {
-                own = own.min(side - point(bounds.min[axis])).min(point(bounds.max[axis]) - side);
-            }
-            depth = depth.max(own);
-        }
+        let depth = self.box_depth(zone);
         if depth.hi() < 0.0 {
             return Interval::new(f64::NEG_INFINITY, depth.hi());
         }
@@ -244,6 +249,18 @@ impl AnyField for Fill {
             (sum - point(2.0 * self.radius)).max(point(0.0)) * point(FADE)
         };
         (most - fade - point(self.margin)).min(depth)
+    }
+
+    /// Towards the joint the ball is farther off and the operands are nearer. At the sides of the boxes nothing is
+    /// told.
+    fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
+        if self.box_depth(zone).lo() < MOST * self.radius {
+            return 0;
+        }
+        let turned = |sign: f64| -> Vec<Way> { ways.iter().map(|way| way.flip_if(sign < 0.0)).collect() };
+        let near = self.sides.iter().filter(|side| meets(zone, &side.bounds)).map(|side| &side.distance);
+        let by_sides = near.map(|side| side.field.rises(zone, &turned(-side.sign)));
+        by_sides.fold(self.ball.field.rises(zone, &turned(self.ball.sign)), |all, own| all & own)
     }
 
     fn steepest(&self, _zone: &Zone) -> f64 {

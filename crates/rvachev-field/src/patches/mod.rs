@@ -34,6 +34,7 @@ mod hierarchy;
 #[cfg(test)]
 mod leaf_tests;
 mod narrow;
+mod normals;
 mod packet;
 mod packets;
 mod pairs;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::{Foot, Patches};
-use crate::{AnyField, Bounds, Chunk, Dual, Interval, ParamError, VALUE_LIMIT, Zone, steep_slopes};
+use crate::{AnyField, Bounds, Chunk, Dual, Interval, ParamError, VALUE_LIMIT, Way, Zone, steep_slopes};
 #[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
@@ -248,6 +248,10 @@ impl AnyField for SurfaceDistance {
         let range = Interval::around(centre, self.radius(zone) + self.slack(zone, centre.abs()));
         // Where the surface is out of reach, so is a change of the sign.
         if range.lo() > 0.0 || range.hi() < 0.0 { range } else { range.narrowed_by(self.side(zone)) }
+    }
+
+    fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
+        self.rising(zone, ways)
     }
 
     fn narrowed(&self, zone: &Zone) -> Option<Arc<dyn AnyField>> {
