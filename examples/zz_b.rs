@@ -11,6 +11,7 @@ fn main() {
     let b = Bounds::new(r.places[0].position - 0.01, r.places[0].position + 0.01);
     let c = b.center();
     let h = 4.0 / 128.0;
+    for h in [0.0001, 0.001, 0.01, 0.02, 0.03] { let reg = Bounds::new(c - h, c + h); println!("{h} {:?}", program.range(&reg)); }
     for q in [c, b.min + h, DVec3::new(0.74, 0.0, 1.03), DVec3::new(0.62, 0.0, 1.15), DVec3::new(0.66, 0.0, 1.06)] {
         let reg = Bounds::new(q - h, q + h);
         println!("{q} {:?} leaves {} {:?}", program.range(&reg), match program.narrow(&reg) { rvachev::program::Region::Surface(p) => p.leaf_count() as i32, _ => -1 }, program.value(q));

@@ -184,8 +184,6 @@ impl Near {
             Operation::Difference => boxes.first().copied().unwrap_or(Bounds::EMPTY),
             _ => boxes.iter().fold(Bounds::ALL, |all, own| all.intersection(own)),
         };
-        // What is taken away from the faces of a box has values there as well.
-        let inside = if operation == Operation::Union || inside.is_empty() { inside } else { inside.inflate(radius) };
         // Of complements nothing is known but that they are near what is inside.
         let around: Vec<Bounds> = boxes
             .iter()

@@ -132,10 +132,12 @@ impl Fill {
         all
     }
 
-    /// How deep inside of the boxes a point is, and along which axis that grows.
+    /// How deep inside of the boxes a point is, these made larger, and along which axis that grows: in the boxes it
+    /// is of no account, and a little beyond them there is nothing anyway.
     fn depth(&self, p: DVec3) -> (f64, DVec3) {
         let mut most = (f64::NEG_INFINITY, DVec3::ZERO);
         for bounds in &self.boxes {
+            let bounds = bounds.inflate(MOST * self.radius);
             let mut least = (f64::INFINITY, DVec3::ZERO);
             for axis in 0..3 {
                 let (low, high) = (p[axis] - bounds.min[axis], bounds.max[axis] - p[axis]);
@@ -156,8 +158,9 @@ impl Fill {
     fn box_depth(&self, zone: &Zone) -> Interval {
         let point = Interval::point;
         let of_box = |bounds: &Bounds| {
+            let bounds = bounds.inflate(MOST * self.radius);
             let sides = zone.hull().into_iter().enumerate();
-            sides.fold(Interval::ALL, |own, (axis, side)| {
+            sides.fold(point(f64::INFINITY), |own, (axis, side)| {
                 own.min(side - point(bounds.min[axis])).min(point(bounds.max[axis]) - side)
             })
         };
@@ -251,10 +254,9 @@ impl AnyField for Fill {
         (most - fade - point(self.margin)).min(depth)
     }
 
-    /// Towards the joint the ball is farther off and the operands are nearer. At the sides of the boxes nothing is
-    /// told.
+    /// Towards the joint the ball is farther off and the operands are nearer. Outside of the boxes nothing is told.
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
-        if self.box_depth(zone).lo() < MOST * self.radius {
+        if self.box_depth(zone).lo() < 0.0 {
             return 0;
         }
         let turned = |sign: f64| -> Vec<Way> { ways.iter().map(|way| way.flip_if(sign < 0.0)).collect() };
@@ -269,7 +271,7 @@ impl AnyField for Fill {
 
     fn narrowed(&self, zone: &Zone) -> Option<Arc<dyn AnyField>> {
         let mut simpler = self.clone();
-        simpler.boxes.retain(|bounds| meets(zone, bounds));
+        simpler.boxes.retain(|bounds| meets(zone, &bounds.inflate(MOST * self.radius)));
         let mut is_simpler = simpler.boxes.len() < self.boxes.len() && !simpler.boxes.is_empty();
         if simpler.boxes.is_empty() {
             simpler.boxes.clone_from(&self.boxes);
