@@ -151,6 +151,9 @@ pub(super) fn measured(solid: &Solid) -> Option<Measured> {
     kept.downcast_ref::<Measured>().cloned()
 }
 
+/// Faces of chamfers are no farther from an operand than so many legs.
+const NEAR_LEGS: f64 = 4.0;
+
 /// Where the operands of a fillet or chamfer are so near to each other that there may be something
 /// between them.
 pub(super) struct Near {
@@ -160,6 +163,8 @@ pub(super) struct Near {
     pub(super) fades: bool,
     /// Boxes of what may be between two operands.
     pub(super) boxes: Vec<Bounds>,
+    /// What is between operands is not beyond this box.
+    pub(super) hull: Bounds,
     /// By operand, a box beyond which it is far.
     pub(super) around: Vec<Bounds>,
 }
@@ -171,7 +176,7 @@ impl Near {
         let fades = matches!(blend, Blend::Fillet { .. })
             && !(operation == Operation::Union && operands.iter().all(is_convex));
         let (radius, reach) = match blend {
-            Blend::Chamfer { leg } => (BALL_OF_LEGS * leg, BALL_OF_LEGS * leg),
+            Blend::Chamfer { leg } => (BALL_OF_LEGS * leg, NEAR_LEGS * leg),
             Blend::Fillet { radius } if fades => (radius, FARTHEST * radius),
             // The sum of the distances is below twice the radius.
             Blend::Fillet { radius } => (radius, 2.0 * radius),
@@ -206,6 +211,7 @@ impl Near {
                 }
             }
         }
-        Near { radius, fades, boxes: between, around }
+        let hull = if operation == Operation::Union { inside } else { Bounds::ALL };
+        Near { radius, fades, boxes: between, hull, around }
     }
 }

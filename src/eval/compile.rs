@@ -449,23 +449,23 @@ impl<'e> Compiler<'e> {
         let is_union = operation == Operation::Union;
         let ball = Signed { field: measured.field, sign: if is_union { 1.0 } else { -1.0 } };
         let margin = (measured.accuracy.error + FLUSH * radius).min(LARGEST_MARGIN * radius);
-        let fill = Fill { radius, ball, sides: Vec::new(), margin, boxes: vec![Bounds::ALL] };
+        let fill = Fill { radius, ball, sides: Vec::new(), margin, boxes: vec![Bounds::ALL], hull: Bounds::ALL };
         let solid::Node::Blend { blend, operands, .. } = site.solid.node() else {
             let bounds = kept(&site.solid.node().operands()[0]).map_or(Bounds::EMPTY, |programs| programs.bounds);
-            return vec![self.made(&(Arc::new(Fill { boxes: vec![bounds], ..fill }) as Arc<dyn AnyField>), site, 0.0)];
+            return vec![self.made(&(Arc::new(Fill { boxes: vec![bounds], hull: bounds, ..fill }) as Arc<dyn AnyField>), site, 0.0)];
         };
         let near = Near::of(operation, *blend, operands);
         if near.boxes.is_empty() {
             return Vec::new();
         }
-        let Near { boxes, around, .. } = near;
+        let Near { boxes, hull, around, .. } = near;
         let side = |(number, field): (usize, &Arc<dyn AnyField>)| {
             let is_outside = is_union || operation == Operation::Difference && number > 0;
             let sign = if is_outside { -1.0 } else { 1.0 };
             Side { distance: Signed { field: field.clone(), sign }, bounds: around[number] }
         };
         let sides = measured.sides.iter().enumerate().map(side).collect();
-        vec![self.made(&(Arc::new(Fill { sides, boxes, ..fill }) as Arc<dyn AnyField>), site, 0.0)]
+        vec![self.made(&(Arc::new(Fill { sides, boxes, hull, ..fill }) as Arc<dyn AnyField>), site, 0.0)]
     }
 
     /// The face of a chamfer, cut off where a ball reaches that rolls along the operands.
@@ -489,7 +489,7 @@ impl<'e> Compiler<'e> {
             Signed { field: measured.field.clone(), sign: if operation == Operation::Union { 1.0 } else { -1.0 } };
         let margin = (measured.accuracy.error + FLUSH * near.radius).min(LARGEST_MARGIN * near.radius);
         let fill: Arc<dyn AnyField> =
-            Arc::new(Fill { radius: near.radius, ball, sides: Vec::new(), margin, boxes: near.boxes });
+            Arc::new(Fill { radius: near.radius, ball, sides: Vec::new(), margin, boxes: near.boxes, hull: near.hull });
         let both = [self.made(&bevel, site, 0.0), self.made(&fill, site, 0.0)];
         Ok(vec![self.code.operation(Operation::Intersection, Rule::MinMax, frame, &both)])
     }

@@ -25,7 +25,7 @@ use super::composite::{finish, points64, unscaled};
 use crate::{Bounds, Dual, Interval, ParamError, Real};
 #[cfg(feature = "formula")]
 use rvachev_field::VALUE_LIMIT;
-use rvachev_field::{AnyField, Chunk, Way, Zone, steep_slopes};
+use rvachev_field::{AnyField, Chunk, Way, Zone, bits, steep_slopes};
 #[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
@@ -79,6 +79,8 @@ pub(super) struct Fill {
     pub(super) margin: f64,
     /// Where there may be any.
     pub(super) boxes: Vec<Bounds>,
+    /// There is none beyond this box.
+    pub(super) hull: Bounds,
 }
 
 /// The distances to the two nearest operands, held at the farthest, and which these are.
@@ -132,12 +134,16 @@ impl Fill {
         all
     }
 
-    /// How deep inside of the boxes a point is, these made larger, and along which axis that grows: in the boxes it
-    /// is of no account, and a little beyond them there is nothing anyway.
+    /// The boxes that it is held to: those of joints, a little larger, for there is nothing about their sides, and the
+    /// hull as it is.
+    fn held(&self) -> impl Iterator<Item = Bounds> {
+        self.boxes.iter().map(|bounds| bounds.inflate(MOST * self.radius).intersection(&self.hull))
+    }
+
+    /// How deep inside of the boxes a point is, and along which axis that grows.
     fn depth(&self, p: DVec3) -> (f64, DVec3) {
         let mut most = (f64::NEG_INFINITY, DVec3::ZERO);
-        for bounds in &self.boxes {
-            let bounds = bounds.inflate(MOST * self.radius);
+        for bounds in self.held() {
             let mut least = (f64::INFINITY, DVec3::ZERO);
             for axis in 0..3 {
                 let (low, high) = (p[axis] - bounds.min[axis], bounds.max[axis] - p[axis]);
@@ -157,14 +163,29 @@ impl Fill {
     /// How deep inside of the boxes points of a zone are.
     fn box_depth(&self, zone: &Zone) -> Interval {
         let point = Interval::point;
-        let of_box = |bounds: &Bounds| {
-            let bounds = bounds.inflate(MOST * self.radius);
+        let of_box = |bounds: Bounds| {
             let sides = zone.hull().into_iter().enumerate();
             sides.fold(point(f64::INFINITY), |own, (axis, side)| {
                 own.min(side - point(bounds.min[axis])).min(point(bounds.max[axis]) - side)
             })
         };
-        self.boxes.iter().map(of_box).fold(point(f64::NEG_INFINITY), Interval::max)
+        self.held().map(of_box).fold(point(f64::NEG_INFINITY), Interval::max)
+    }
+
+    /// The directions that lead away from the sides of the hull, as far as these are near.
+    fn off_hull(&self, zone: &Zone, ways: &[Way]) -> u8 {
+        let mut all = u8::MAX;
+        for (axis, side) in zone.hull().into_iter().enumerate() {
+            let is_near = [side.lo() - self.hull.min[axis], self.hull.max[axis] - side.hi()];
+            for (room, way) in is_near.into_iter().zip([1.0, -1.0]) {
+                if room < MOST * self.radius {
+                    let mut slopes = [Interval::point(0.0); 3];
+                    slopes[axis] = Interval::point(way);
+                    all &= bits(ways, |way| way.is_rise(slopes));
+                }
+            }
+        }
+        all
     }
 
     /// The steepest that it is.
@@ -256,13 +277,16 @@ impl AnyField for Fill {
 
     /// Towards the joint the ball is farther off and the operands are nearer. Outside of the boxes nothing is told.
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
-        if self.box_depth(zone).lo() < 0.0 {
+        let [low, high] = [Interval::lo, Interval::hi].map(|end| DVec3::from_array(zone.hull().map(end)));
+        let hull = Bounds::new(low, high);
+        if !self.boxes.iter().any(|bounds| bounds.inflate(MOST * self.radius).contains_bounds(&hull)) {
             return 0;
         }
         let turned = |sign: f64| -> Vec<Way> { ways.iter().map(|way| way.flip_if(sign < 0.0)).collect() };
         let near = self.sides.iter().filter(|side| meets(zone, &side.bounds)).map(|side| &side.distance);
         let by_sides = near.map(|side| side.field.rises(zone, &turned(-side.sign)));
-        by_sides.fold(self.ball.field.rises(zone, &turned(self.ball.sign)), |all, own| all & own)
+        let by_ball = self.ball.field.rises(zone, &turned(self.ball.sign));
+        by_sides.fold(by_ball & self.off_hull(zone, ways), |all, own| all & own)
     }
 
     fn steepest(&self, _zone: &Zone) -> f64 {

@@ -128,6 +128,15 @@ impl SurfaceDistance {
         2.0 * (self.error + self.patches.rounding()) + 1e-12 * (zone.reach() + distance)
     }
 
+    /// How far a point of the surface is from points of a zone at most.
+    fn farthest(&self, zone: &Zone, point: DVec3) -> f64 {
+        let way = |axis: usize| {
+            let side = zone.hull()[axis];
+            if self.flat == Some(axis) { 0.0 } else { (side.hi() - point[axis]).max(point[axis] - side.lo()) }
+        };
+        DVec3::new(way(0), way(1), way(2)).length()
+    }
+
     /// What is certain of the sign over a zone.
     fn side(&self, zone: &Zone) -> Interval {
         if let Some(side) = self.side {
@@ -244,8 +253,15 @@ impl AnyField for SurfaceDistance {
         if !zone.is_finite() {
             return self.side(zone);
         }
-        let centre = self.value(zone.centre.to_array());
-        let range = Interval::around(centre, self.radius(zone) + self.slack(zone, centre.abs()));
+        let at = zone.centre.to_array();
+        let Some(foot) = self.patches.nearest(self.flattened(zone.centre)) else {
+            return Interval::point(self.value(at));
+        };
+        let (sign, slack) = (self.sign(at), self.slack(zone, foot.distance));
+        let [near, far] = [-1.0, 1.0].map(|side| foot.distance + side * self.radius(zone));
+        // No point is farther from the surface than from that one point of it.
+        let range = Interval::new(near, far.min(self.farthest(zone, foot.point))).inflate(slack);
+        let range = if sign < 0.0 { -range } else { range };
         // Where the surface is out of reach, so is a change of the sign.
         if range.lo() > 0.0 || range.hi() < 0.0 { range } else { range.narrowed_by(self.side(zone)) }
     }
