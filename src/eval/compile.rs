@@ -452,7 +452,11 @@ impl<'e> Compiler<'e> {
         let fill = Fill { radius, ball, sides: Vec::new(), margin, boxes: vec![Bounds::ALL], hull: Bounds::ALL };
         let solid::Node::Blend { blend, operands, .. } = site.solid.node() else {
             let bounds = kept(&site.solid.node().operands()[0]).map_or(Bounds::EMPTY, |programs| programs.bounds);
-            return vec![self.made(&(Arc::new(Fill { boxes: vec![bounds], hull: bounds, ..fill }) as Arc<dyn AnyField>), site, 0.0)];
+            return vec![self.made(
+                &(Arc::new(Fill { boxes: vec![bounds], hull: bounds, ..fill }) as Arc<dyn AnyField>),
+                site,
+                0.0,
+            )];
         };
         let near = Near::of(operation, *blend, operands);
         if near.boxes.is_empty() {

@@ -18,7 +18,7 @@ use rvachev_field::{AnyField, Chunk, Patches, SurfaceDistance, VALUE_LIMIT, Zone
 use rvachev_num::symbol::Symbol;
 
 /// How long a tile's side is, in lengths.
-const SIDE: f64 = 16.0;
+const SIDE: f64 = 8.0;
 
 /// Ranges over more tiles than this are not told.
 const MANY: usize = 8;
@@ -56,7 +56,12 @@ impl Tiles {
     }
 
     fn key(&self, p: DVec3) -> [i64; 3] {
-        (p / self.side()).floor().to_array().map(|c| c as i64)
+        (p / self.side()).round().to_array().map(|c| c as i64)
+    }
+
+    /// The box of a tile; that of the first is about the origin.
+    fn region(&self, key: [i64; 3]) -> Bounds {
+        Bounds::from_center(DVec3::from_array(key.map(|c| c as f64)) * self.side(), DVec3::splat(0.5 * self.side()))
     }
 
     /// The tile with a number.
@@ -64,8 +69,7 @@ impl Tiles {
         if let Some(tile) = self.made.read().unwrap_or_else(PoisonError::into_inner).get(&key) {
             return tile.clone();
         }
-        let low = DVec3::from_array(key.map(|c| c as f64)) * self.side();
-        let region = Bounds::new(low, low + self.side());
+        let region = self.region(key);
         let found = super::compile::kept(&self.solid).and_then(|programs| {
             self.source.surface(&self.solid, &programs, (self.length, &region), &Run::default()).ok()
         });
@@ -105,8 +109,8 @@ impl Tiles {
         for x in from[0]..=to[0] {
             for y in from[1]..=to[1] {
                 for z in from[2]..=to[2] {
-                    let corner = DVec3::new(x as f64, y as f64, z as f64) * self.side();
-                    let part = Bounds::new(corner.max(low), (corner + self.side()).min(high));
+                    let tile = self.region([x, y, z]);
+                    let part = Bounds::new(tile.min.max(low), tile.max.min(high));
                     parts.push((self.tile([x, y, z]), Zone::of_bounds(&part)));
                 }
             }

@@ -19,8 +19,8 @@ use crate::{Bounds, Run};
 /// Cells of a block that the surface is in, as a rule.
 const OF_BLOCK: usize = 110;
 
-/// What is deeper than this, in cells, or has no other side near, is no bulge of a surface that the cells show.
-const DEEP: f64 = 0.15;
+/// What is deeper than this, in cells, or has no other side near, is no bulge or edge of a surface that the cells show.
+const DEEP: f64 = 0.3;
 
 /// Nearer to the surface than this part of the size, points may be on either side by rounding errors.
 const ROUNDING: f64 = 1e-9;
@@ -70,5 +70,6 @@ impl Subject<'_> {
 /// The nodes of so many cells along each side of a box.
 fn nodes(bounds: &Bounds, count: u32) -> impl Iterator<Item = DVec3> {
     let (min, step, side) = (bounds.min, bounds.size() / f64::from(count), count + 1);
-    (0..side.pow(3)).map(move |n| min + step * DVec3::from_array([n % side, n / side % side, n / (side * side)].map(f64::from)))
+    (0..side.pow(3))
+        .map(move |n| min + step * DVec3::from_array([n % side, n / side % side, n / (side * side)].map(f64::from)))
 }
