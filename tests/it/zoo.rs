@@ -76,7 +76,7 @@ pub fn random_profile(random: &mut Random, depth: usize) -> Profile {
     match random.below(4) {
         0 => plain.union(&other, rule),
         1 => plain.difference(&other, rule),
-        2 if random.chance(0.2) => plain.offset(random.range(-0.05, 0.1)),
+        2 => plain.offset(random.range(-0.05, 0.1)),
         _ => plain.intersection(&other, rule).rotate(rad(random.range(-3.0, 3.0))),
     }
 }
@@ -132,11 +132,11 @@ pub fn blended(random: &mut Random, a: &Solid, b: &Solid) -> Solid {
     let size = random.range(0.03, 0.3);
     let exact = [0; 2].map(|_| crate::primitives::random_primitive(random).0.translate(random.vector(-0.3, 0.3)));
     // What is measured takes a while: there is little of it.
-    let blend = match random.below(28) {
-        0 => return exact[0].union_with(&exact[1], Blend::Fillet { radius: 0.5 * size }),
-        1 => return exact[0].difference_with(&exact[1], Blend::Chamfer { leg: 0.5 * size }),
-        2..12 => Blend::Smooth { radius: size },
-        12..20 => Blend::Displacement { height: random.range(-0.2, 0.2), falloff: [size, 0.3] },
+    let blend = match random.below(7) {
+        2 | 3 if random.chance(0.1) => return exact[0].union_with(&exact[1], Blend::Fillet { radius: 0.5 * size }),
+        4 if random.chance(0.1) => return exact[0].difference_with(&exact[1], Blend::Chamfer { leg: 0.5 * size }),
+        0..5 => Blend::Smooth { radius: size },
+        5 => Blend::Displacement { height: random.range(-0.2, 0.2), falloff: [size, 0.3] },
         _ => Blend::Ricci { p: random.range(1.5, 8.0) },
     };
     let join = |a: &Solid, b: &Solid, blend| match blend_side(b) {

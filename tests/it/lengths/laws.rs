@@ -383,9 +383,9 @@ fn none() -> Vec<Tally> {
     LAWS.iter().map(|_| Tally::default()).collect()
 }
 
-fn subject(seed: u64) -> Subject {
+fn subject(seed: u64, depth: usize) -> Subject {
     let mut random = Random::new(seed);
-    let solid = bounded(&mut random, 2);
+    let solid = bounded(&mut random, depth);
     Subject::new(solid, &mut random)
 }
 
@@ -393,7 +393,7 @@ fn subject(seed: u64) -> Subject {
 fn laws_hold_for_a_dozen_solids() {
     let mut tallies = none();
     for seed in 0..12 {
-        let subject = subject(7000 + seed);
+        let subject = subject(7000 + seed, 1);
         // Every law comes up twice or more, with different solids.
         for turn in [seed, 3 * seed + 5] {
             let law = turn as usize % LAWS.len();
@@ -416,7 +416,7 @@ fn seeds() -> std::ops::Range<u64> {
 fn laws_hold_for_thousands_of_solids() {
     let mut tallies = none();
     for seed in seeds() {
-        let subject = subject(seed);
+        let subject = subject(seed, 2);
         let before: usize = tallies.iter().map(|tally| tally.failures.len()).sum();
         for ((_, law), tally) in LAWS.iter().zip(&mut tallies) {
             attempt(*law, &subject, seed, tally);
