@@ -85,14 +85,14 @@ fn main() {
         |b| Solid::cuboid([10.0, 10.0, 10.0]).translate([5.0, 5.0, 0.0]).union_with(Solid::cylinder(5.0, 10.0), b);
     let pins = |n: usize| {
         let k = (n as f64).sqrt().ceil() as usize;
-        let w = 0.4 * k as f64;
+        let w = 0.6 * k as f64;
         let mut all = vec![Solid::cuboid([w, w, 0.4])];
         for i in 0..n {
             let (x, y) = ((i % k) as f64, (i / k) as f64);
             all.push(Solid::cylinder(0.1 + 0.05 * ((i * 7) % 10) as f64 / 10.0, 1.0).translate([
-                -0.5 * w + 0.4 * (x + 0.5),
-                -0.5 * w + 0.4 * (y + 0.5),
-                0.5,
+                -0.5 * w + 0.6 * (x + 0.5),
+                -0.5 * w + 0.6 * (y + 0.5),
+                0.0,
             ]));
         }
         Solid::union_all_with(all, fr(0.05))

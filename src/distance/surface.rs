@@ -114,7 +114,7 @@ fn mesh(program: &Program, bounds: Bounds, cell: f64, run: &Run) -> Result<Mesh,
     }
     // Most often nothing is: flush faces and acute edges are suspect as well.
     let subject = Subject { program, bounds, palette: None, whole: None };
-    let shows = || subject.shows_more(CellSize::Length(cell), 1 << HALVINGS, run);
+    let shows = || subject.shows_more(&mesh, 1 << HALVINGS, run);
     if run.install(shows).map_err(compile_error)? {
         return mesh_in(program, bounds, cell, ThinFeatures::Refine { halvings: HALVINGS }, run);
     }

@@ -88,7 +88,7 @@ pub(super) fn refined(
                 }
                 let findings = Findings {
                     possibly_lost: found.len(),
-                    first_lost: found.first().map(|found| last.lattice.region(found.block, BLOCK).center()),
+                    lost_at: found.iter().map(|found| last.lattice.region(found.block, BLOCK).center()).collect(),
                     ..mesh.findings().clone()
                 };
                 return Ok(mesh.with_findings(findings));

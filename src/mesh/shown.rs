@@ -13,7 +13,9 @@ use super::error::MeshingError;
 use super::lattice::{CellSize, Lattice};
 use super::resolve::{Among, Unresolved, unresolved_cells};
 use super::subject::Subject;
+use super::signs::BLOCK;
 use crate::eval::Program;
+use crate::geom::{Findings, Mesh};
 use crate::{Bounds, Run};
 
 /// Cells of a block that the surface is in, as a rule.
@@ -32,12 +34,14 @@ impl Subject<'_> {
         Ok(OF_BLOCK * Blocks::find(self.program, &lattice, run)?.cells.len())
     }
 
-    /// Whether there is a cell, of a size, that has all its nodes on one side and nodes of cells that are so many
-    /// times smaller on the other.
-    pub(crate) fn shows_more(&self, cell: CellSize, times: u32, run: &Run) -> Result<bool, MeshingError> {
-        let lattice = Lattice::new(&self.bounds, cell)?;
+    /// Whether a cell of a mesh of this in blocks that may have lost something has all its nodes on one side, and nodes
+    /// of cells that are so many times smaller on the other.
+    pub(crate) fn shows_more(&self, mesh: &Mesh, times: u32, run: &Run) -> Result<bool, MeshingError> {
+        let Findings { cell, lost_at, .. } = mesh.findings();
+        let lattice = Lattice::new(&self.bounds, CellSize::Length(*cell))?;
         let [to_find, to_search] = run.stages([0.2, 0.8]);
-        let blocks = Blocks::find(self.program, &lattice, &to_find)?;
+        let is_lost = |block| lost_at.contains(&lattice.region(block, BLOCK).center());
+        let blocks = Blocks::find(self.program, &lattice, &to_find)?.only(is_lost);
         let suspects = unresolved_cells(&blocks, (&lattice, self.bounds), Among::OneSided, &to_search)?;
         let programs: HashMap<[u32; 3], &Program> =
             blocks.cells.iter().enumerate().map(|(n, &block)| (block, blocks.programs.of(n))).collect();

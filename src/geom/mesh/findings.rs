@@ -14,8 +14,8 @@ pub(crate) struct Findings {
     pub(crate) clamped_vertices: Option<usize>,
     /// See [`Mesh::possibly_lost`].
     pub(crate) possibly_lost: usize,
-    /// The middle of the first of the blocks that are counted, unless the mesh was moved since.
-    pub(crate) first_lost: Option<DVec3>,
+    /// The middles of the blocks that are counted, unless the mesh was moved since.
+    pub(crate) lost_at: Vec<DVec3>,
     /// See [`Mesh::thin_features`].
     pub(crate) thin: Option<ThinReport>,
 }
@@ -23,7 +23,7 @@ pub(crate) struct Findings {
 impl Findings {
     /// Those of a mesh that is moved or deformed: counts hold, places and sizes do not.
     fn without_places(&self) -> Findings {
-        Findings { cell: 0.0, first_lost: None, thin: None, ..self.clone() }
+        Findings { cell: 0.0, lost_at: Vec::new(), thin: None, ..self.clone() }
     }
 }
 
@@ -103,7 +103,7 @@ impl Mesh {
     /// ```
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
-        let Findings { cell, clamped_vertices, possibly_lost, first_lost, thin } = &self.findings;
+        let Findings { cell, clamped_vertices, possibly_lost, lost_at, thin } = &self.findings;
         let mut warnings = Vec::new();
         let is_extracted = clamped_vertices.is_some();
         let is_empty = is_extracted && self.triangles.is_empty();
@@ -113,7 +113,7 @@ impl Mesh {
         if *possibly_lost > 0 {
             let empty = if is_empty { "the mesh is empty, and " } else { "" };
             let blocks = if *possibly_lost == 1 { "block" } else { "blocks" };
-            let place = first_lost.map_or(String::new(), |at| {
+            let place = lost_at.first().map_or(String::new(), |at| {
                 format!(", the first of them near ({:.4}, {:.4}, {:.4})", at.x, at.y, at.z)
             });
             let than = if *cell > 0.0 { format!(" ({cell:.4})") } else { String::new() };
@@ -148,7 +148,7 @@ mod tests {
         let found = Findings { cell: 0.5, clamped_vertices: Some(0), ..Findings::default() };
         let warnings = |findings: Findings| Mesh::default().with_findings(findings).warnings();
         assert_eq!(warnings(found.clone()), ["the mesh is empty: the solid has no points within the bounds"]);
-        let lost = Findings { possibly_lost: 3, first_lost: Some(DVec3::new(1.0, 2.0, -0.5)), ..found };
+        let lost = Findings { possibly_lost: 3, lost_at: vec![DVec3::new(1.0, 2.0, -0.5)], ..found };
         let said = warnings(lost.clone());
         assert!(said[0].starts_with("the mesh is empty, and features thinner than a cell (0.5000)"), "{said:?}");
         assert!(said[0].contains("3 blocks of cells, the first of them near (1.0000, 2.0000, -0.5000)"), "{said:?}");

@@ -18,9 +18,7 @@ use crate::{Cancelled, Run};
 impl Parts<'_> {
     /// Counts the blocks that may have lost a feature.
     pub(super) fn note_lost<S: Sampler>(&mut self, sampler: &S, run: &Run) -> Result<(), Cancelled> {
-        let lost = self.lost(sampler, run)?;
-        self.lost = lost.len();
-        self.first_lost = lost.first().map(|&n| self.blocks[n]);
+        self.lost = self.lost(sampler, run)?.into_iter().map(|n| self.blocks[n]).collect();
         Ok(())
     }
 
@@ -29,8 +27,8 @@ impl Parts<'_> {
         Findings {
             cell: lattice.step(),
             clamped_vertices: Some(self.clamped),
-            possibly_lost: self.lost,
-            first_lost: self.first_lost.map(|block| lattice.region(block, BLOCK).center()),
+            possibly_lost: self.lost.len(),
+            lost_at: self.lost.iter().map(|block| lattice.region(*block, BLOCK).center()).collect(),
             thin: None,
         }
     }

@@ -71,10 +71,9 @@ pub(super) struct Parts<'a> {
     room: f64,
     /// How many of the vertices are moved to keep clear of nodes.
     pub(super) clamped: usize,
-    /// Blocks that may have lost a feature, in their order; how many have, and the first of them.
+    /// Blocks that may have lost a feature, in their order; and of those that still may, the first cells.
     pub(super) suspects: Vec<Suspect>,
-    pub(super) lost: usize,
-    pub(super) first_lost: Option<[u32; 3]>,
+    pub(super) lost: Vec<[u32; 3]>,
 }
 
 impl<'a> Parts<'a> {
@@ -94,8 +93,7 @@ impl<'a> Parts<'a> {
             room,
             clamped: 0,
             suspects: Vec::new(),
-            lost: 0,
-            first_lost: None,
+            lost: Vec::new(),
         }
     }
 
