@@ -38,8 +38,9 @@ const PATIENCE: f64 = 5e-3;
 /// Distances are asked up to so many lengths from a region.
 const REACH: f64 = 2.0;
 
-/// How often cells are halved where features are thinner.
-const HALVINGS: u32 = 2;
+/// So many times as small are the cells that would show what is hidden, and so many more cells there may be then.
+const SMALLER: u32 = 4;
+const HIDDEN: f64 = 8.0;
 
 impl DistanceSource for FromMeshes {
     fn surface(
@@ -67,9 +68,10 @@ impl DistanceSource for FromMeshes {
         let mut cell = first_cell(&programs.surface, bounds, size, enough, run)?;
         loop {
             let [to_mesh, to_sew] = run.stages([0.7, 0.3]);
-            let facets = match flat {
+            let (facets, hides) = match flat {
                 None if bounds.contains_bounds(&whole) => {
-                    Facets::new(&mesh(&programs.surface, bounds, cell, &to_mesh)?, |_| true)
+                    let Shown { mesh, hides } = shown(&programs.surface, bounds, cell, &to_mesh)?;
+                    (Facets::new(&mesh, |_| true), hides)
                 }
                 None => part(solid, bounds, whole, cell, &to_mesh)?,
                 Some(axis) => {
@@ -80,12 +82,16 @@ impl DistanceSource for FromMeshes {
             };
             // Two triangles a cell.
             let count = 0.5 * facets.triangles.len() as f64;
-            let is_last = 4.0 * count > enough;
-            let patience = if is_last { f64::INFINITY } else { PATIENCE };
-            let quilt = Quilt::new(facets, &slopes, (tolerance, patience), &to_sew)?;
-            if let Some(quilt) = quilt.filter(|quilt| is_last || quilt.off <= FEW && quilt.error <= FAR * tolerance) {
-                let patches = Arc::new(Patches::new(&quilt.patches, &to_sew)?);
-                return Ok(Surface { patches, accuracy: Accuracy { tolerance, error: quilt.error }, flat });
+            let is_last = 4.0 * count > if hides { HIDDEN * enough } else { enough };
+            if !hides || is_last {
+                let patience = if is_last { f64::INFINITY } else { PATIENCE };
+                let quilt = Quilt::new(facets, &slopes, (tolerance, patience), &to_sew)?;
+                let is_near = |quilt: &Quilt| quilt.off <= FEW && quilt.error <= FAR * tolerance;
+                if let Some(quilt) = quilt.filter(|quilt| is_last || is_near(quilt)) {
+                    let patches = Arc::new(Patches::new(&quilt.patches, &to_sew)?);
+                    let error = if hides { quilt.error.max(cell) } else { quilt.error };
+                    return Ok(Surface { patches, accuracy: Accuracy { tolerance, error }, flat });
+                }
             }
             cell *= 0.5;
         }
@@ -106,26 +112,25 @@ fn first_cell(program: &Program, bounds: Bounds, size: f64, enough: f64, run: &R
     Ok((wanted * (cells / enough).sqrt().max(1.0)).min(most))
 }
 
-/// The mesh of a program, its creases sharp, in smaller cells where that shows more.
-fn mesh(program: &Program, bounds: Bounds, cell: f64, run: &Run) -> Result<Mesh, CompileError> {
-    let mesh = mesh_in(program, bounds, cell, ThinFeatures::Ignore, run)?;
-    if mesh.possibly_lost() == 0 {
-        return Ok(mesh);
-    }
-    // Most often nothing is: flush faces and acute edges are suspect as well.
-    let subject = Subject { program, bounds, palette: None, whole: None };
-    let shows = || subject.shows_more(&mesh, 1 << HALVINGS, run);
-    if run.install(shows).map_err(compile_error)? {
-        return mesh_in(program, bounds, cell, ThinFeatures::Refine { halvings: HALVINGS }, run);
-    }
-    Ok(mesh)
+/// A mesh, its creases sharp, and whether smaller cells would show more.
+struct Shown {
+    mesh: Mesh,
+    hides: bool,
 }
 
-fn mesh_in(program: &Program, bounds: Bounds, cell: f64, thin: ThinFeatures, run: &Run) -> Result<Mesh, CompileError> {
-    let settings =
-        MeshSettings { cell: CellSize::Length(cell), features: Features::Sharp, thin, ..MeshSettings::default() };
+fn shown(program: &Program, bounds: Bounds, cell: f64, run: &Run) -> Result<Shown, CompileError> {
+    let settings = MeshSettings {
+        cell: CellSize::Length(cell),
+        features: Features::Sharp,
+        thin: ThinFeatures::Ignore,
+        ..MeshSettings::default()
+    };
     let subject = Subject { program, bounds, palette: None, whole: None };
-    run.install(|| subject.mesh(&settings, run)).map_err(compile_error)
+    let mesh = run.install(|| subject.mesh(&settings, run)).map_err(compile_error)?;
+    // Most often nothing is lost: flush faces and acute edges are suspect as well.
+    let hides = mesh.possibly_lost() > 0
+        && run.install(|| subject.shows_more(&mesh, SMALLER, run)).map_err(compile_error)?;
+    Ok(Shown { mesh, hides })
 }
 
 fn compile_error(error: MeshingError) -> CompileError {
@@ -136,13 +141,16 @@ fn compile_error(error: MeshingError) -> CompileError {
     }
 }
 
-/// The surface of a solid within a box, without the faces of the box.
-fn part(solid: &Solid, clip: Bounds, whole: Bounds, cell: f64, run: &Run) -> Result<Facets, CompileError> {
+/// The surface of a solid within a box, without the faces of the box, and whether smaller cells would show more.
+fn part(solid: &Solid, clip: Bounds, whole: Bounds, cell: f64, run: &Run) -> Result<(Facets, bool), CompileError> {
     let knife = Solid::cuboid(clip.size()).translate(clip.center());
     let part = solid.intersection(knife, RFunction::MIN_MAX);
     let programs = compiled_with(&part, run)?;
     let bounds = programs.bounds.intersection(&clip);
-    let mesh = if bounds.is_empty() { Mesh::default() } else { mesh(&programs.surface, bounds, cell, run)? };
+    if bounds.is_empty() {
+        return Ok((Facets::default(), false));
+    }
+    let Shown { mesh, hides } = shown(&programs.surface, bounds, cell, run)?;
     let is_cap = |corners: &[DVec3; 3]| {
         let on = |axis: usize, side: f64| corners.iter().all(|p| (p[axis] - side).abs() < 1e-3 * cell);
         (0..3).any(|axis| {
@@ -150,5 +158,5 @@ fn part(solid: &Solid, clip: Bounds, whole: Bounds, cell: f64, run: &Run) -> Res
                 || clip.max[axis] < whole.max[axis] && on(axis, clip.max[axis])
         })
     };
-    Ok(Facets::new(&mesh, |corners| !is_cap(corners)))
+    Ok((Facets::new(&mesh, |corners| !is_cap(corners)), hides))
 }
