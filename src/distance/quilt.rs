@@ -72,7 +72,11 @@ impl Quilt {
         let mut area = 0.0;
         for depth in 0..=DEPTH {
             seams.find(&positions, slopes, run)?;
-            let patches: Vec<Patch> = pieces.iter().map(|piece| piece.patch(&positions, &seams, tolerance)).collect();
+            let patch = |(number, piece): (usize, &Piece)| {
+                often(number, run)?;
+                Ok(piece.patch(&positions, &seams, tolerance))
+            };
+            let patches = pieces.iter().enumerate().map(patch).collect::<Result<Vec<Patch>, Cancelled>>()?;
             let errors = errors(&patches, slopes, run)?;
             let fails = |piece: &Piece, (off, turn): (f64, f64)| {
                 let is_off = off > tolerance || turn > TURN && off > 0.05 * tolerance;
@@ -90,7 +94,8 @@ impl Quilt {
                 }
             }
             let mut next = Vec::new();
-            for ((piece, patch), error) in pieces.iter().zip(patches).zip(errors) {
+            for (number, ((piece, patch), error)) in pieces.iter().zip(patches).zip(errors).enumerate() {
+                often(number, run)?;
                 let off = error.0;
                 if fails(piece, error) {
                     let from = next.len();
@@ -112,10 +117,16 @@ impl Quilt {
                 }
             }
             pieces = next;
+            run.report(f64::from(depth + 1) / f64::from(DEPTH + 1));
         }
         quilt.off /= f64::max(area, f64::MIN_POSITIVE);
         Ok(Some(quilt))
     }
+}
+
+/// Sees every now and then whether the work may go on.
+fn often(number: usize, run: &Run) -> Result<(), Cancelled> {
+    if number.is_multiple_of(4096) { run.check() } else { Ok(()) }
 }
 
 /// The area of a patch's triangle.

@@ -2,6 +2,7 @@
 
 /// How near the surface of a solid is to what its lengths ask for: see [`Solid::accuracy`](crate::Solid::accuracy).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Accuracy {
     /// All but a few points of the surface are off by no more than this, in length units.

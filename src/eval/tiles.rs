@@ -10,8 +10,11 @@ use std::sync::{Arc, PoisonError, RwLock};
 
 use glam::{DAffine3, DVec3};
 
+use super::accuracy::Accuracy;
+use super::apart::sign;
+use super::compile::Compiled;
 use super::composite::points64;
-use super::source::DistanceSource;
+use super::source::{DistanceSource, Wanted};
 use crate::{Bounds, Dual, Interval, ParamError, Real, Run, Solid};
 use rvachev_field::{AnyField, Chunk, Patches, SurfaceDistance, VALUE_LIMIT, Zone, steep_slopes};
 #[cfg(feature = "formula")]
@@ -31,6 +34,7 @@ pub(super) struct Tiles {
     pub(super) sign: Arc<dyn AnyField>,
     pub(super) bounds: Bounds,
     pub(super) length: f64,
+    tolerance: Option<f64>,
     pub(super) source: &'static dyn DistanceSource,
     made: RwLock<HashMap<[i64; 3], Tile>>,
 }
@@ -44,11 +48,31 @@ impl fmt::Debug for Tiles {
 impl Tiles {
     pub(super) fn new(
         solid: Solid,
-        (sign, bounds): (Arc<dyn AnyField>, Bounds),
-        length: f64,
+        programs: &Compiled,
+        wanted: &Wanted<'_>,
         source: &'static dyn DistanceSource,
     ) -> Tiles {
-        Tiles { solid, sign, bounds, length, source, made: RwLock::default() }
+        let Wanted { length, tolerance, .. } = *wanted;
+        let (sign, bounds) = (sign(programs), programs.bounds);
+        Tiles { solid, sign, bounds, length, tolerance, source, made: RwLock::default() }
+    }
+
+    /// How far the surface of any tile may be off. No tile has been looked at: the error is taken to be no
+    /// larger than the tolerance.
+    pub(super) fn accuracy(&self, programs: &Compiled) -> Accuracy {
+        let region = self.region([0; 3]);
+        let tolerance = self.source.tolerance(programs, &self.wanted(&region));
+        Accuracy { tolerance, error: tolerance }
+    }
+
+    fn wanted<'a>(&self, region: &'a Bounds) -> Wanted<'a> {
+        Wanted { length: self.length, tolerance: self.tolerance, region }
+    }
+
+    /// The box of the tile with a number.
+    fn region(&self, key: [i64; 3]) -> Bounds {
+        let low = DVec3::from_array(key.map(|c| c as f64)) * self.side();
+        Bounds::new(low, low + self.side())
     }
 
     fn side(&self) -> f64 {
@@ -64,10 +88,9 @@ impl Tiles {
         if let Some(tile) = self.made.read().unwrap_or_else(PoisonError::into_inner).get(&key) {
             return tile.clone();
         }
-        let low = DVec3::from_array(key.map(|c| c as f64)) * self.side();
-        let region = Bounds::new(low, low + self.side());
+        let region = self.region(key);
         let found = super::compile::kept(&self.solid).and_then(|programs| {
-            self.source.surface(&self.solid, &programs, (self.length, &region), &Run::default()).ok()
+            self.source.surface(&self.solid, &programs, &self.wanted(&region), &Run::default()).ok()
         });
         let (patches, error) = match found {
             Some(surface) => (surface.patches, surface.accuracy.error),
