@@ -92,9 +92,17 @@ impl DistanceSource for FromMeshes {
             let is_last = 4.0 * count > enough;
             let patience = if is_last { f64::INFINITY } else { PATIENCE };
             let quilt = Quilt::new(facets, &slopes, (tolerance, patience), &to_sew)?;
-            if let Some(quilt) = quilt.filter(|quilt| is_last || quilt.off <= FEW) {
-                let patches = Arc::new(Patches::new(&quilt.patches, &to_sew)?);
-                return Ok(Surface { patches, accuracy: Accuracy { tolerance, error: quilt.error }, flat });
+            if let Some(quilt) = quilt {
+                let reached = quilt.tolerance(FEW, tolerance);
+                if is_last || reached <= tolerance {
+                    let patches = Arc::new(Patches::new(&quilt.patches, &to_sew)?);
+                    run.report(1.0);
+                    return Ok(Surface {
+                        patches,
+                        accuracy: Accuracy { tolerance: reached, error: quilt.error },
+                        flat,
+                    });
+                }
             }
             cell *= 0.5;
         }

@@ -83,11 +83,7 @@ pub(crate) fn compile(
 }
 
 /// Compiles a solid, and before it what is compiled by itself, however deep it is.
-fn compile_anew(
-    solid: &Solid,
-    source: &'static dyn DistanceSource,
-    run: &Run,
-) -> Result<Arc<Compiled>, CompileError> {
+fn compile_anew(solid: &Solid, source: &'static dyn DistanceSource, run: &Run) -> Result<Arc<Compiled>, CompileError> {
     let mut exact = Exactness::default();
     exact.add(solid);
     let works = works(solid, &exact);
@@ -556,7 +552,9 @@ impl<'e> Compiler<'e> {
     /// A leaf that is made of a node's operands and has their paint, its value moved by `by`.
     fn made(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>, by: f64) -> Built {
         self.coats.insert(self.scene.leaves.len() as u32, Coat::of(site.solid));
-        let stretch = largest_stretch(&self.contexts.get(site.context).forward.matrix3);
+        let matrix = &self.contexts.get(site.context).forward.matrix3;
+        // The largest of a map that stretches all directions alike is known to the last bit.
+        let stretch = if is_similarity(matrix) { least_stretch(matrix) } else { largest_stretch(matrix) };
         if let Some(measured) = measured(site.solid) {
             self.accuracy = self.accuracy.max(measured.accuracy.times(stretch));
         }

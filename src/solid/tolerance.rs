@@ -55,9 +55,7 @@ pub(super) fn node(operand: &Solid, tolerance: f64) -> Node {
     let built = match operand.node() {
         // What is wrong is said of the tolerance itself.
         _ if check(operand, tolerance).is_err() => operand.clone(),
-        Node::Length { operand: moved, length, .. } => {
-            Solid::from_node(length::node(moved, *length, Some(tolerance)))
-        }
+        Node::Length { operand: moved, length, .. } => Solid::from_node(length::node(moved, *length, Some(tolerance))),
         Node::Blend { operation, blend, operands, .. } => {
             Solid::from_node(blend::node(*operation, operands.clone(), *blend, Some(tolerance)))
         }
