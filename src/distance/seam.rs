@@ -15,6 +15,9 @@ use crate::{Cancelled, Run};
 /// first.
 const ASIDE: [f64; 2] = [0.05, 0.01];
 
+/// The same where a side is known to be along a crease: as near as values tell the faces apart.
+const NEAR: [f64; 3] = [0.05, 0.01, 0.002];
+
 /// A crease that is cut off passes a side this far off at most, in parts of the side's length.
 const ASTRAY: f64 = 2.0;
 
@@ -253,7 +256,9 @@ impl Seams {
         slopes: &Slopes<'_>,
         run: &Run,
     ) -> Result<(), Cancelled> {
-        for aside in ASIDE {
+        for aside in NEAR {
+            let tells = |n: &usize| aside >= self.list[*n].nearest(slopes, positions);
+            let numbers: Vec<usize> = numbers.iter().copied().filter(tells).collect();
             let beside = |n: &usize| {
                 let seam = &self.list[*n];
                 seam.beside(seam.middle, aside, positions)
@@ -283,10 +288,10 @@ impl Seams {
         slopes: &Slopes<'_>,
         run: &Run,
     ) -> Result<(), Cancelled> {
-        let [_, aside] = ASIDE;
         for along in PROBES {
             let beside = |n: &usize| {
                 let seam = &self.list[*n];
+                let aside = seam.nearest(slopes, positions);
                 seam.beside(seam.at(along, positions), aside, positions)
             };
             let points: Vec<DVec3> = numbers.iter().flat_map(beside).collect();
@@ -334,6 +339,14 @@ impl Seam {
     fn at(&self, along: f64, positions: &[DVec3]) -> DVec3 {
         let [a, b] = self.ends.map(|v| positions[v as usize]);
         a.lerp(b, along) + 4.0 * along * (1.0 - along) * self.bend(positions)
+    }
+
+    /// The least part of its length that the faces on both sides are told apart at: farther away than values may be off.
+    fn nearest(&self, slopes: &Slopes<'_>, positions: &[DVec3]) -> f64 {
+        let [a, b] = self.ends.map(|v| positions[v as usize]);
+        let tells = |aside: &f64| aside * a.distance(b) > slopes.precision;
+        let [first, rest @ ..] = NEAR;
+        rest.into_iter().rev().find(tells).unwrap_or(first)
     }
 
     /// Points on both sides of one on a crease, so far from it in parts of the side's length.

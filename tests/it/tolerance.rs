@@ -114,7 +114,6 @@ fn a_rounding_is_as_exact_as_its_ball() -> Outcome {
     // Without a closed form for what the ball's centre may be.
     let grown = Solid::cylinder(5.0, 10.0).elongate([0.0; 3]);
     for (name, solid) in [("rod", rod), ("elongated", grown)] {
-        let mut before = f64::INFINITY;
         for tolerance in [2e-2, 2e-4, 2e-5] {
             let solid = solid.rounded(2.0).with_tolerance(tolerance);
             let told = solid.accuracy()?;
@@ -128,8 +127,7 @@ fn a_rounding_is_as_exact_as_its_ball() -> Outcome {
             }
             println!("{name}: asked {tolerance:.1e}, told {told:?}, found {worst:.1e}");
             // Fillets are smaller by what they may be off, and by a hundred-thousandth of the radius.
-            assert!(told.tolerance <= tolerance && worst <= 3.0 * tolerance + 2e-5 && worst <= before, "{worst}");
-            before = worst;
+            assert!(told.tolerance <= tolerance && worst <= 1.5 * tolerance + 2e-5, "{worst}");
         }
     }
     Ok(())
