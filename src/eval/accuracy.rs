@@ -7,7 +7,8 @@
 pub struct Accuracy {
     /// All but a few points of the surface are off by no more than this, in length units.
     pub tolerance: f64,
-    /// The farthest that was found, in length units: where creases meet it may be more than the tolerance.
+    /// The farthest that was found, in length units: where creases meet it may be more than the tolerance. 0 of
+    /// operands without end, which are measured piece by piece later on.
     pub error: f64,
 }
 

