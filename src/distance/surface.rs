@@ -43,6 +43,9 @@ const PATIENCE: f64 = 5e-3;
 /// Distances are asked up to so many lengths from a region.
 const REACH: f64 = 2.0;
 
+/// The part of the work that finding the size of cells is.
+const LOOKING: f64 = 0.05;
+
 /// The part of what is left to do that is taken to be done with cells of one size.
 const ATTEMPT: f64 = 0.7;
 
@@ -69,8 +72,8 @@ impl DistanceSource for FromMeshes {
         let tolerance = self.tolerance(programs, wanted);
         let slopes = Slopes { program: &programs.surface, precision: tolerance };
         let enough = CELLS + CELLS_A_LEAF * programs.surface.leaf_count() as f64;
-        let mut cell = first_cell(&programs.surface, bounds, size, enough, run)?;
-        let mut done = 0.0;
+        let mut done = LOOKING;
+        let mut cell = first_cell(&programs.surface, bounds, size, enough, &run.stage(0.0, done))?;
         loop {
             // What is left is for smaller cells.
             let end = done + ATTEMPT * (1.0 - done);

@@ -347,3 +347,16 @@ fn a_scene_goes_on_after_its_solid_is_measured() -> Outcome {
     assert!(told.windows(2).all(|pair| pair[0] < pair[1]) && told.last() == Some(&1.0), "{told:?}");
     Ok(())
 }
+
+#[test]
+fn the_finest_tolerance_is_told() -> Outcome {
+    let solid = dome().offset(0.5).with_tolerance(1e-9);
+    let start = Instant::now();
+    let told = solid.accuracy()?;
+    let off = worst(&solid, 0.5)?;
+    println!("{told:?}, found {off:.1e} in {:?}", start.elapsed());
+    // Patches are kept in single precision.
+    let finest = 2e-7 * 2.0 * SEMI_AXES.x;
+    assert!(told.tolerance <= 1.01 * finest && off <= 2.0 * finest, "{told:?}, {off}");
+    Ok(())
+}
