@@ -229,12 +229,11 @@ impl AnyField for Tiles {
     fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
         let Chunk { points, placement, out } = chunk;
         let local = |i: usize| placement.apply([0, 1, 2].map(|axis| f64::from(points[axis][i])));
-        let count = points[0].len();
-        if let Some(tile) = self.only((0..count).map(local)) {
+        if let Some(tile) = self.only((0..points[0].len()).map(local)) {
             return tile.gradients(Chunk { points, placement, out });
         }
-        for i in 0..count {
-            let dual = self.dual(Dual::point(local(i)));
+        for (i, p) in (0..points[0].len()).map(local).enumerate() {
+            let dual = self.dual(Dual::point(p));
             let slope = placement.pull(dual.gradient().map(|part| part * placement.scale));
             out[0][i] = placement.finish(dual.value()) as f32;
             for axis in 0..3 {

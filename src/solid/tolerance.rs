@@ -18,7 +18,8 @@ impl Solid {
     /// and memory, a coarser one less. Where nothing is measured the tolerance has no effect.
     ///
     /// The tolerance is that of one operation: of the offset, not of what it is an offset of. It is in
-    /// the units of the solid as it is here: if the solid is scaled afterwards, so is the tolerance.
+    /// the units of the solid as it is here: if the solid is scaled afterwards, so is the tolerance. Of a
+    /// chamfer, the ball is measured that says where its face ends; the face itself is not.
     ///
     /// # Limits
     ///
