@@ -4,6 +4,7 @@
 pub use crate::geom::{CameraError, ImageError, MeshError, PointCloudError};
 pub use crate::io::save::SaveError;
 pub use crate::mesh::MeshingError;
+pub use crate::query::PrepareError;
 pub use crate::render::RenderError;
 #[cfg(feature = "formula")]
 #[doc(inline)]

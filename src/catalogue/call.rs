@@ -95,6 +95,7 @@ pub(super) fn example_operands(operands: Operands) -> Vec<Part> {
     match operands {
         Operands::None => Vec::new(),
         Operands::Solid | Operands::Either => vec![Solid::cuboid([1.0, 1.5, 2.0]).into()],
+        Operands::Length => vec![Solid::cuboid([1.0, 1.5, 2.0]).offset(0.25).into()],
         Operands::Two | Operands::Many => solids().map(Part::from).to_vec(),
         Operands::Profile => vec![Profile::rectangle([2.0, 1.0]).translate([2.0, 0.0]).into()],
     }
@@ -157,6 +158,7 @@ fn of_graph(solid: &Solid, part: impl Fn(&Solid) -> Part) -> Option<Call> {
         }
         Form::Complement { .. } => call("complement", Vec::new()),
         Form::Length { length, .. } => call(length.name(), vec![Value::Number(length.amount())]),
+        Form::Tolerance { tolerance, .. } => call("with_tolerance", vec![Value::Number(tolerance)]),
         Form::Paint { paint, .. } => call("paint", vec![Value::Color(paint.color), Value::Number(paint.roughness)]),
         Form::Name { name, .. } => call("named", vec![Value::Text(name.to_string())]),
         // Equal is what is written alike: a twist of −0 is none of 0.

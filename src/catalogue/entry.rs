@@ -58,6 +58,8 @@ pub enum Operands {
     Profile,
     /// A solid or a profile.
     Either,
+    /// A solid or a profile that is a length or a blend by fillet or chamfer.
+    Length,
     /// Two solids, or two profiles.
     Two,
     /// Any number of solids, or of profiles.
@@ -72,6 +74,7 @@ impl Operands {
             Operands::Solid => "a solid",
             Operands::Profile => "a profile",
             Operands::Either => "a solid or a profile",
+            Operands::Length => "a length or a blend, a solid or a profile",
             Operands::Two => "two solids or two profiles",
             Operands::Many => "solids or profiles",
         }

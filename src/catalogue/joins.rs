@@ -2,7 +2,7 @@
 
 use rvachev_field::catalogue::ValueError;
 
-use super::part::{Either, Many, Take};
+use super::part::{Either, Many, Take, Toleranced};
 use super::verb::verbs;
 use crate::{Blend, Profile, RFunction, Range, Solid};
 
@@ -126,4 +126,13 @@ verbs! {
         /// Of the ball.
         radius: f64 = Length, Range::LENGTH, example 0.125;
     } => |operand: Either| operand.map(|solid| solid.filleted(radius), |profile| profile.filleted(radius));
+
+    /// A length or a blend by fillet or chamfer, measured to a tolerance.
+    Length with_tolerance {
+        /// How far the surface may be off.
+        tolerance: f64 = Length, Range::LENGTH, example 0.001;
+    } => |operand: Toleranced| operand.0.map(
+        |solid| solid.with_tolerance(tolerance),
+        |profile| profile.with_tolerance(tolerance),
+    );
 }

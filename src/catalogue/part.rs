@@ -119,6 +119,9 @@ impl Either {
     }
 }
 
+/// A solid or a profile that is a length or a blend: what it is made of is seen when it is first used.
+pub(super) struct Toleranced(pub(super) Either);
+
 /// Solids or profiles, any number.
 pub(super) enum Many {
     Solids(Vec<Solid>),
@@ -164,6 +167,14 @@ impl Take for Either {
             [Part::Profile(profile)] => Some(Either::Profile(profile.clone())),
             _ => None,
         }
+    }
+}
+
+impl Take for Toleranced {
+    const OPERANDS: Operands = Operands::Length;
+
+    fn of(parts: &[Part]) -> Option<Toleranced> {
+        Either::of(parts).map(Toleranced)
     }
 }
 

@@ -11,7 +11,10 @@ pub(super) const CREASE: f64 = 0.05;
 
 /// How far from a crease its sides are looked at, in parts of the way to a triangle's middle: less
 /// each time that the vertex is nearer.
-const ASIDE: [f64; 3] = [0.2, 0.05, 0.01];
+const ASIDE: [f64; 4] = [0.2, 0.05, 0.01, 0.002];
+
+/// The last of them only where it is farther than values may be off.
+const LAST: f64 = ASIDE[3];
 
 /// No vertex is moved farther than this in all, in parts of its shortest side.
 const STRIDE: f64 = 0.4;
@@ -60,7 +63,7 @@ impl Facets {
                 self.take_normals(&found, &creased);
             }
         }
-        self.polish_creases(slopes, &creased, held, run)
+        self.polish_creases(slopes, (&creased, &limits), held, run)
     }
 
     /// The corners where a vertex is on a crease: their numbers, triangle by triangle.
@@ -72,7 +75,7 @@ impl Facets {
     fn polish_creases(
         &mut self,
         slopes: &Slopes<'_>,
-        creased: &[bool],
+        (creased, limits): (&[bool], &[f64]),
         held: impl Fn(usize, DVec3) -> DVec3,
         run: &Run,
     ) -> Result<(), Cancelled> {
@@ -89,14 +92,18 @@ impl Facets {
             };
             let points: Vec<DVec3> = corners.iter().map(beside).collect();
             let found = slopes.at(&points, run)?;
+            let tells = |vertex: usize| aside > LAST || aside * limits[vertex] > slopes.precision;
             for (&(t, k), slope) in corners.iter().zip(&found) {
                 let normal = slope.normal();
-                if normal != DVec3::ZERO {
+                if normal != DVec3::ZERO && tells(self.triangles[t][k] as usize) {
                     self.normals[t][k] = normal;
                 }
             }
             for group in order.chunk_by(|a, b| vertices[*a] == vertices[*b]) {
                 let at = vertices[group[0]];
+                if !tells(at) {
+                    continue;
+                }
                 let planes: Vec<Plane> = group.iter().filter_map(|n| Plane::of(points[*n], &found[*n])).collect();
                 self.positions[at] = held(at, meet(&planes, self.positions[at]));
             }

@@ -22,7 +22,7 @@ use std::sync::Arc;
 
 use self::surface::FromMeshes;
 use crate::error::{MeshingError, RenderError};
-use crate::eval::{CompileError, Compiled, DistanceSource, compile};
+use crate::eval::{CompileError, Compiled, DistanceSource, Wanted, compile};
 use crate::{Bounds, Run, Solid, SolidError};
 use rvachev_field::Patches;
 
@@ -48,7 +48,8 @@ pub(crate) fn surface_of(solid: &Solid) -> Result<Arc<Patches>, SolidError> {
     let programs = compiled(solid)?;
     // Feet are refined on the field itself: a thousandth of the solid does.
     let length = 1e-2 * programs.bounds.longest_side();
-    let found = FromMeshes.surface(solid, &programs, (length, &Bounds::ALL), &Run::default());
+    let wanted = Wanted { length, tolerance: None, region: &Bounds::ALL };
+    let found = FromMeshes.surface(solid, &programs, &wanted, &Run::default());
     let patches = match found {
         Ok(surface) => surface.patches,
         Err(CompileError::Solid(error)) => return Err(error),

@@ -42,8 +42,8 @@ const BETWEEN: f64 = 1.5;
 pub(super) struct Quilt {
     pub(super) patches: Vec<Patch>,
     pub(super) error: f64,
-    /// The part of them, by area, that is farther off than the tolerance.
-    pub(super) off: f64,
+    /// How far each is off, and its area.
+    measures: Vec<[f64; 2]>,
 }
 
 /// A triangle: its corners, their normals, and its sides from each corner to the next.
@@ -53,6 +53,23 @@ struct Piece {
     hems: [Hem; 3],
     /// How far off the patch was that it is a part of.
     before: f64,
+}
+
+/// How far a patch is off.
+#[derive(Clone, Copy)]
+struct Misfit {
+    /// Off the surface, between the probes too.
+    off: f64,
+    /// Turned from it, in radians.
+    turn: f64,
+    /// Off the creases that its sides follow.
+    rim: f64,
+}
+
+impl Misfit {
+    fn all(self) -> f64 {
+        self.off.max(self.rim)
+    }
 }
 
 impl Quilt {
@@ -68,16 +85,22 @@ impl Quilt {
         let mut seams = Seams::default();
         let mut pieces = first(&facets, &mut seams);
         let mut positions = facets.positions;
-        let mut quilt = Quilt { patches: Vec::new(), error: 0.0, off: 0.0 };
-        let mut area = 0.0;
+        let mut quilt = Quilt { patches: Vec::new(), error: 0.0, measures: Vec::new() };
         for depth in 0..=DEPTH {
             seams.find(&positions, slopes, run)?;
-            let patches: Vec<Patch> = pieces.iter().map(|piece| piece.patch(&positions, &seams, tolerance)).collect();
-            let errors = errors(&patches, slopes, run)?;
-            let fails = |piece: &Piece, (off, turn): (f64, f64)| {
-                let is_off = off > tolerance || turn > TURN && off > 0.05 * tolerance;
+            let patch = |(number, piece): (usize, &Piece)| {
+                often(number, run)?;
+                Ok(piece.patch(&positions, &seams, tolerance))
+            };
+            let patches = pieces.iter().enumerate().map(patch).collect::<Result<Vec<Patch>, Cancelled>>()?;
+            let mut errors = errors(&patches, slopes, run)?;
+            for (piece, error) in pieces.iter().zip(&mut errors) {
+                error.rim = piece.hems.iter().map(|hem| seams.of(*hem).off).fold(0.0, f64::max);
+            }
+            let fails = |piece: &Piece, error: Misfit| {
+                let is_off = error.all() > tolerance || error.turn > TURN && error.off > 0.05 * tolerance;
                 // Where splitting does not help, more of it does not either.
-                depth < DEPTH && is_off && (depth < 4 || off < GAIN * piece.before)
+                depth < DEPTH && is_off && (depth < 4 || error.all() < GAIN * piece.before)
             };
             let failing = pieces.iter().zip(&errors).filter(|(piece, error)| fails(piece, **error));
             cross(failing.map(|(piece, _)| piece), &positions, &mut seams, slopes, run)?;
@@ -85,13 +108,14 @@ impl Quilt {
                 let areas = || patches.iter().map(area_of);
                 let split = pieces.iter().zip(&errors).zip(areas());
                 let failing: f64 = split.filter(|((piece, error), _)| fails(piece, **error)).map(|(_, own)| own).sum();
-                if failing > patience * (area + areas().sum::<f64>()) {
+                if failing > patience * (quilt.area() + areas().sum::<f64>()) {
                     return Ok(None);
                 }
             }
             let mut next = Vec::new();
-            for ((piece, patch), error) in pieces.iter().zip(patches).zip(errors) {
-                let off = error.0;
+            for (number, ((piece, patch), error)) in pieces.iter().zip(patches).zip(errors).enumerate() {
+                often(number, run)?;
+                let off = error.all();
                 if fails(piece, error) {
                     let from = next.len();
                     piece.split(&mut positions, &mut seams, &mut next);
@@ -99,23 +123,45 @@ impl Quilt {
                     continue;
                 }
                 // A patch that is farther off than it is wide tells nothing of the surface.
-                let own = area_of(&patch);
-                area += own;
-                quilt.off += if off > tolerance { own } else { 0.0 };
+                quilt.measures.push([off, area_of(&patch)]);
                 let width =
                     patch.corners[0].distance(patch.corners[1]).max(patch.corners[1].distance(patch.corners[2]));
-                if off > ASTRAY * width {
+                if error.off > ASTRAY * width {
                     quilt.error = quilt.error.max(width);
                 } else {
-                    quilt.error = quilt.error.max(BETWEEN * off);
+                    quilt.error = quilt.error.max(off);
                     quilt.patches.push(patch);
                 }
             }
             pieces = next;
+            run.report(f64::from(depth + 1) / f64::from(DEPTH + 1));
         }
-        quilt.off /= f64::max(area, f64::MIN_POSITIVE);
         Ok(Some(quilt))
     }
+
+    /// The area of all patches, those that were left out included.
+    fn area(&self) -> f64 {
+        self.measures.iter().map(|[_, area]| area).sum()
+    }
+
+    /// No more than this part of them, by area, is farther off than the result, which is `least` or more.
+    pub(super) fn tolerance(&self, part: f64, least: f64) -> f64 {
+        let mut far: Vec<[f64; 2]> = self.measures.iter().filter(|[off, _]| *off > least).copied().collect();
+        far.sort_by(|a, b| b[0].total_cmp(&a[0]));
+        let mut left = part * self.area();
+        for [off, area] in far {
+            left -= area;
+            if left < 0.0 {
+                return off;
+            }
+        }
+        least
+    }
+}
+
+/// Sees every now and then whether the work may go on.
+fn often(number: usize, run: &Run) -> Result<(), Cancelled> {
+    if number.is_multiple_of(4096) { run.check() } else { Ok(()) }
 }
 
 /// The area of a patch's triangle.
@@ -161,13 +207,14 @@ fn cross<'a>(
 }
 
 /// How far patches are off the surface, and how far turned from it.
-fn errors(patches: &[Patch], slopes: &Slopes<'_>, run: &Run) -> Result<Vec<(f64, f64)>, Cancelled> {
+fn errors(patches: &[Patch], slopes: &Slopes<'_>, run: &Run) -> Result<Vec<Misfit>, Cancelled> {
     let points: Vec<DVec3> = patches.iter().flat_map(|patch| PROBES.map(|b| patch.point(b))).collect();
     let found = slopes.at(&points, run)?;
     let of_patch = |(patch, found): (&Patch, &[super::slopes::Slope])| {
         let off = found.iter().map(super::slopes::Slope::distance).fold(0.0, f64::max);
         let turn = PROBES.iter().zip(found).map(|(b, slope)| patch.normal(*b).angle_between(slope.normal()));
-        (off, turn.filter(|turn| turn.is_finite()).fold(0.0, f64::max))
+        let turn = turn.filter(|turn| turn.is_finite()).fold(0.0, f64::max);
+        Misfit { off: BETWEEN * off, turn, rim: 0.0 }
     };
     Ok(patches.iter().zip(found.chunks(PROBES.len())).map(of_patch).collect())
 }

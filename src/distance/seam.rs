@@ -15,8 +15,15 @@ use crate::{Cancelled, Run};
 /// first.
 const ASIDE: [f64; 2] = [0.05, 0.01];
 
+/// The same where a side is known to be along a crease: as near as values tell the faces apart.
+const NEAR: [f64; 3] = [0.05, 0.01, 0.002];
+
 /// A crease that is cut off passes a side this far off at most, in parts of the side's length.
 const ASTRAY: f64 = 2.0;
+
+/// Where a side along a crease is compared with the crease, in parts of its length: a curve through both ends and the
+/// middle is farthest off about there.
+const PROBES: [f64; 2] = [0.25, 0.75];
 
 /// The middle is moved by this part of the side's length at most.
 const STRIDE: f64 = 0.3;
@@ -39,6 +46,8 @@ pub(super) struct Seam {
     pub(super) middle: DVec3,
     /// The normals there, of both sides; before it is known, those at both ends.
     pub(super) normals: [DVec3; 2],
+    /// How far the side is off the crease that it is to follow; 0 on a smooth surface.
+    pub(super) off: f64,
     /// The next side that starts at the same vertex.
     next: u32,
 }
@@ -86,6 +95,7 @@ impl Seams {
                 vertex: None,
                 middle: DVec3::ZERO,
                 normals,
+                off: 0.0,
                 next: self.starts[first],
             });
             self.starts[first] = at;
@@ -215,7 +225,8 @@ impl Seams {
         }
         let (creases, smooth): (Vec<usize>, Vec<usize>) = fresh.partition(|n| self.list[*n].is_crease);
         self.slide(&smooth, positions, slopes, run)?;
-        self.meet(&creases, positions, slopes, run)
+        self.meet(&creases, positions, slopes, run)?;
+        self.compare(&creases, positions, slopes, run)
     }
 
     /// Newton steps along the gradient.
@@ -245,16 +256,12 @@ impl Seams {
         slopes: &Slopes<'_>,
         run: &Run,
     ) -> Result<(), Cancelled> {
-        for aside in ASIDE {
+        for aside in NEAR {
+            let tells = |n: &usize| aside >= self.list[*n].nearest(slopes, positions);
+            let numbers: Vec<usize> = numbers.iter().copied().filter(tells).collect();
             let beside = |n: &usize| {
                 let seam = &self.list[*n];
-                let [a, b] = seam.ends.map(|v| positions[v as usize]);
-                let along = (b - a).normalize_or_zero();
-                seam.toward.map(|toward| {
-                    let across = toward - seam.middle;
-                    let across = (across - across.dot(along) * along).normalize_or_zero();
-                    seam.middle + aside * a.distance(b) * across
-                })
+                seam.beside(seam.middle, aside, positions)
             };
             let points: Vec<DVec3> = numbers.iter().flat_map(beside).collect();
             let found = slopes.at(&points, run)?;
@@ -268,6 +275,39 @@ impl Seams {
                 let seam = &mut self.list[*number];
                 seam.moved(meet(&planes, seam.middle), positions);
                 seam.normals = [found[2 * i].normal(), found[2 * i + 1].normal()];
+            }
+        }
+        Ok(())
+    }
+
+    /// Sees how far sides are off the creases that they follow: off where the planes of both faces meet.
+    fn compare(
+        &mut self,
+        numbers: &[usize],
+        positions: &[DVec3],
+        slopes: &Slopes<'_>,
+        run: &Run,
+    ) -> Result<(), Cancelled> {
+        for along in PROBES {
+            let beside = |n: &usize| {
+                let seam = &self.list[*n];
+                let aside = seam.nearest(slopes, positions);
+                seam.beside(seam.at(along, positions), aside, positions)
+            };
+            let points: Vec<DVec3> = numbers.iter().flat_map(beside).collect();
+            let found = slopes.at(&points, run)?;
+            for ((number, points), found) in numbers.iter().zip(points.chunks(2)).zip(found.chunks(2)) {
+                let planes: Vec<Plane> = points.iter().zip(found).filter_map(|(p, s)| Plane::of(*p, s)).collect();
+                let seam = &mut self.list[*number];
+                // Where both faces are one, nothing tells where the crease is.
+                if let [a, b] = &planes[..]
+                    && a.normal.distance(b.normal) > CREASE
+                {
+                    let at = seam.at(along, positions);
+                    let [from, to] = seam.ends.map(|v| positions[v as usize]);
+                    let off = meet(&planes, at).distance(at).min(STRIDE * from.distance(to));
+                    seam.off = seam.off.max(off);
+                }
             }
         }
         Ok(())
@@ -293,6 +333,31 @@ impl Seam {
         let [a, b] = self.ends.map(|v| positions[v as usize]);
         let straight = 0.5 * (a + b);
         self.middle = straight + (to - straight).clamp_length_max(STRIDE * a.distance(b));
+    }
+
+    /// A point of the side, in parts of its length.
+    fn at(&self, along: f64, positions: &[DVec3]) -> DVec3 {
+        let [a, b] = self.ends.map(|v| positions[v as usize]);
+        a.lerp(b, along) + 4.0 * along * (1.0 - along) * self.bend(positions)
+    }
+
+    /// The least part of its length that the faces on both sides are told apart at: farther away than values may be off.
+    fn nearest(&self, slopes: &Slopes<'_>, positions: &[DVec3]) -> f64 {
+        let [a, b] = self.ends.map(|v| positions[v as usize]);
+        let tells = |aside: &f64| aside * a.distance(b) > slopes.precision;
+        let [first, rest @ ..] = NEAR;
+        rest.into_iter().rev().find(tells).unwrap_or(first)
+    }
+
+    /// Points on both sides of one on a crease, so far from it in parts of the side's length.
+    fn beside(&self, point: DVec3, aside: f64, positions: &[DVec3]) -> [DVec3; 2] {
+        let [a, b] = self.ends.map(|v| positions[v as usize]);
+        let along = (b - a).normalize_or_zero();
+        self.toward.map(|toward| {
+            let across = toward - point;
+            let across = (across - across.dot(along) * along).normalize_or_zero();
+            point + aside * a.distance(b) * across
+        })
     }
 
     /// How far the middle is off that of the straight side.

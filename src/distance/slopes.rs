@@ -9,6 +9,9 @@ use rayon::prelude::*;
 use crate::eval::{Evaluator, Gradients, Program, Region, Tape};
 use crate::{Bounds, Cancelled, Run};
 
+/// After so many points it is seen whether the work may go on, where each takes long.
+const OFTEN: usize = 64;
+
 /// So few points are not sorted any further.
 const FEW: usize = 256;
 
@@ -67,12 +70,12 @@ fn hull(numbers: &[u32], points: &[DVec3]) -> Bounds {
 impl Slopes<'_> {
     /// The slopes at points, in their order.
     pub(super) fn at(&self, points: &[DVec3], run: &Run) -> Result<Vec<Slope>, Cancelled> {
-        let tasks = self.tasks(points);
+        let tasks = self.tasks(points, run)?;
         let found: Result<Vec<Vec<Slope>>, Cancelled> = tasks
             .par_iter()
             .map(|task| {
                 run.check()?;
-                Ok(self.of_task(task, points))
+                self.of_task(task, points, run)
             })
             .collect();
         let mut all = vec![Slope::default(); points.len()];
@@ -84,11 +87,12 @@ impl Slopes<'_> {
         Ok(all)
     }
 
-    fn tasks(&self, points: &[DVec3]) -> Vec<Task> {
+    fn tasks(&self, points: &[DVec3], run: &Run) -> Result<Vec<Task>, Cancelled> {
         let numbers: Vec<u32> = (0..points.len() as u32).collect();
         let mut tasks = Vec::new();
         let mut pending = vec![(numbers, self.program.clone())];
         while let Some((numbers, program)) = pending.pop() {
+            run.check()?;
             let bounds = hull(&numbers, points);
             if numbers.len() <= FEW || (program.leaf_count() <= SHORT && numbers.len() <= 64 * FEW) {
                 tasks.push(Task { numbers, bounds, program });
@@ -114,17 +118,20 @@ impl Slopes<'_> {
                 pending.push((part, program));
             }
         }
-        tasks
+        Ok(tasks)
     }
 
-    fn of_task(&self, task: &Task, points: &[DVec3]) -> Vec<Slope> {
+    fn of_task(&self, task: &Task, points: &[DVec3], run: &Run) -> Result<Vec<Slope>, Cancelled> {
         let tape = Tape::new(&task.program, &task.bounds);
         if tape.roundoff() > self.precision {
-            let exact = |number: &u32| {
+            let exact = |(i, number): (usize, &u32)| {
+                if i.is_multiple_of(OFTEN) {
+                    run.check()?;
+                }
                 let (value, gradient) = task.program.gradient(points[*number as usize]);
-                Slope { value, gradient }
+                Ok(Slope { value, gradient })
             };
-            return task.numbers.iter().map(exact).collect();
+            return task.numbers.iter().enumerate().map(exact).collect();
         }
         let axis = |axis: usize| -> Vec<f32> {
             task.numbers.iter().map(|n| (points[*n as usize] - tape.origin())[axis] as f32).collect()
@@ -137,6 +144,6 @@ impl Slopes<'_> {
             value: f64::from(out[0][i]),
             gradient: DVec3::new(f64::from(out[1][i]), f64::from(out[2][i]), f64::from(out[3][i])),
         };
-        (0..x.len()).map(slope).collect()
+        Ok((0..x.len()).map(slope).collect())
     }
 }

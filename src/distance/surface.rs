@@ -9,7 +9,7 @@ use super::facets::Facets;
 use super::quilt::Quilt;
 use super::slopes::Slopes;
 use crate::error::MeshingError;
-use crate::eval::{Accuracy, CompileError, Compiled, DistanceSource, Program, Surface};
+use crate::eval::{Accuracy, CompileError, Compiled, DistanceSource, Program, Surface, Wanted};
 use crate::mesh::Subject;
 use crate::{Bounds, CellSize, Features, Mesh, MeshSettings, RFunction, Run, Solid, SolidError, ThinFeatures};
 use rvachev_field::Patches;
@@ -17,8 +17,14 @@ use rvachev_field::Patches;
 /// The surfaces of solids by their meshes.
 pub(super) struct FromMeshes;
 
-/// Patches are off the surface by this part of the length at most, as far as they can be.
+/// Patches are off the surface by this part of the length at most, if nobody has said how far they may be.
 const TOLERANCE: f64 = 1e-3;
+
+/// They need not be nearer than this part of the size.
+const SMALL: f64 = 1e-6;
+
+/// They cannot be nearer than this part of the size: they are kept in single precision.
+const FINEST: f64 = 2e-7;
 
 /// Cells along the longest side, and along the thinnest leaf, at least.
 const ALONG_SIZE: f64 = 24.0;
@@ -38,6 +44,12 @@ const PATIENCE: f64 = 5e-3;
 /// Distances are asked up to so many lengths from a region.
 const REACH: f64 = 2.0;
 
+/// The part of the work that finding the size of cells is.
+const LOOKING: f64 = 0.05;
+
+/// The part of what is left to do that is taken to be done with cells of one size.
+const ATTEMPT: f64 = 0.7;
+
 /// So many times as small are the cells that would show what is hidden, and so many more cells there may be then.
 const SMALLER: u32 = 4;
 const HIDDEN: f64 = 8.0;
@@ -47,13 +59,11 @@ impl DistanceSource for FromMeshes {
         &self,
         solid: &Solid,
         programs: &Compiled,
-        (length, region): (f64, &Bounds),
+        wanted: &Wanted<'_>,
         run: &Run,
     ) -> Result<Surface, CompileError> {
         let whole = programs.bounds;
-        let bounds = whole.intersection(&region.inflate(REACH * length));
-        let flat = programs.flat_axis();
-        let size = (0..3).filter(|axis| Some(*axis) != flat).map(|axis| bounds.size()[axis]).fold(0.0, f64::max);
+        let (bounds, flat, size) = extent(programs, wanted);
         if bounds.is_empty() || size == 0.0 {
             let patches = Arc::new(Patches::new(&[], run)?);
             return Ok(Surface { patches, accuracy: Accuracy::default(), flat });
@@ -61,13 +71,16 @@ impl DistanceSource for FromMeshes {
         if !size.is_finite() {
             return Err(SolidError::Unbounded { path: programs.unbounded.clone() }.into());
         }
-        // A surface that is measured itself is no smoother than that.
-        let tolerance = (TOLERANCE * length).max(1e-6 * size).max(programs.accuracy.tolerance);
+        let tolerance = self.tolerance(programs, wanted);
         let slopes = Slopes { program: &programs.surface, precision: tolerance };
         let enough = CELLS + CELLS_A_LEAF * programs.surface.leaf_count() as f64;
-        let mut cell = first_cell(&programs.surface, bounds, size, enough, run)?;
+        let mut done = LOOKING;
+        let mut cell = first_cell(&programs.surface, bounds, size, enough, &run.stage(0.0, done))?;
         loop {
-            let [to_mesh, to_sew] = run.stages([0.7, 0.3]);
+            // What is left is for smaller cells.
+            let end = done + ATTEMPT * (1.0 - done);
+            let [to_mesh, to_sew] = run.stage(done, end).stages([0.5, 0.5]);
+            done = end;
             let (facets, hides) = match flat {
                 None if bounds.contains_bounds(&whole) => {
                     let Shown { mesh, hides } = shown(&programs.surface, bounds, cell, &to_mesh)?;
@@ -86,16 +99,37 @@ impl DistanceSource for FromMeshes {
             if !hides || is_last {
                 let patience = if is_last { f64::INFINITY } else { PATIENCE };
                 let quilt = Quilt::new(facets, &slopes, (tolerance, patience), &to_sew)?;
-                let is_near = |quilt: &Quilt| quilt.off <= FEW && quilt.error <= FAR * tolerance;
+                let reached = quilt.as_ref().map_or(f64::INFINITY, |quilt| quilt.tolerance(FEW, tolerance));
+                let is_near = |quilt: &Quilt| reached <= tolerance && quilt.error <= FAR * tolerance;
                 if let Some(quilt) = quilt.filter(|quilt| is_last || is_near(quilt)) {
                     let patches = Arc::new(Patches::new(&quilt.patches, &to_sew)?);
+                    run.report(1.0);
                     let error = if hides { quilt.error.max(cell) } else { quilt.error };
-                    return Ok(Surface { patches, accuracy: Accuracy { tolerance, error }, flat });
+                    return Ok(Surface { patches, accuracy: Accuracy { tolerance: reached, error }, flat });
                 }
             }
             cell *= 0.5;
         }
     }
+
+    fn tolerance(&self, programs: &Compiled, wanted: &Wanted<'_>) -> f64 {
+        let (_, _, size) = extent(programs, wanted);
+        // A surface that is measured itself is no smoother than that, and has had its part.
+        let own = programs.accuracy.tolerance;
+        let least = match wanted.tolerance {
+            Some(tolerance) => (tolerance - own).max(FINEST * size),
+            None => (TOLERANCE * wanted.length).max(SMALL * size),
+        };
+        least.max(own)
+    }
+}
+
+/// What of a solid is to be measured: its box, the axis along which it is a cylinder, and its size across that.
+fn extent(programs: &Compiled, wanted: &Wanted<'_>) -> (Bounds, Option<usize>, f64) {
+    let bounds = programs.bounds.intersection(&wanted.region.inflate(REACH * wanted.length));
+    let flat = programs.flat_axis();
+    let size = (0..3).filter(|axis| Some(*axis) != flat).map(|axis| bounds.size()[axis]).fold(0.0, f64::max);
+    (bounds, flat, size)
 }
 
 /// The size of cells that show all leaves, as far as these are not too many.
@@ -126,10 +160,11 @@ fn shown(program: &Program, bounds: Bounds, cell: f64, run: &Run) -> Result<Show
         ..MeshSettings::default()
     };
     let subject = Subject { program, bounds, palette: None, whole: None };
-    let mesh = run.install(|| subject.mesh(&settings, run)).map_err(compile_error)?;
+    let [to_mesh, to_look] = run.stages([0.7, 0.3]);
+    let mesh = run.install(|| subject.mesh(&settings, &to_mesh)).map_err(compile_error)?;
     // Most often nothing is lost: flush faces and acute edges are suspect as well.
     let hides = mesh.possibly_lost() > 0
-        && run.install(|| subject.shows_more(&mesh, SMALLER, run)).map_err(compile_error)?;
+        && run.install(|| subject.shows_more(&mesh, SMALLER, &to_look)).map_err(compile_error)?;
     Ok(Shown { mesh, hides })
 }
 
@@ -145,7 +180,8 @@ fn compile_error(error: MeshingError) -> CompileError {
 fn part(solid: &Solid, clip: Bounds, whole: Bounds, cell: f64, run: &Run) -> Result<(Facets, bool), CompileError> {
     let knife = Solid::cuboid(clip.size()).translate(clip.center());
     let part = solid.intersection(knife, RFunction::MIN_MAX);
-    let programs = compiled_with(&part, run)?;
+    let [to_compile, run] = &run.stages([0.1, 0.9]);
+    let programs = compiled_with(&part, to_compile)?;
     let bounds = programs.bounds.intersection(&clip);
     if bounds.is_empty() {
         return Ok((Facets::default(), false));

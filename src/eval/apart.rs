@@ -14,7 +14,7 @@ use super::depth::is_deeper;
 use super::exact::Exactness;
 use super::fill::FARTHEST;
 use super::nothing::Nothing;
-use super::source::{CompileError, DistanceSource, Measured, Surface};
+use super::source::{CompileError, DistanceSource, Measured, Surface, Wanted};
 use super::tiles::Tiles;
 use crate::solid::{BALL_OF_LEGS, Length, Node, Operation};
 use crate::{Blend, Bounds, Run, Solid};
@@ -26,6 +26,21 @@ pub(super) enum Work<'a> {
     Compile(&'a Solid),
     /// The distance that a node is about is measured, from operands that have been compiled.
     Measure(&'a Solid),
+}
+
+impl Work<'_> {
+    /// About how long it takes, in surfaces.
+    pub(super) fn effort(&self) -> f64 {
+        /// Compiling takes a small part of the time.
+        const COMPILING: f64 = 0.02;
+        match self {
+            Work::Compile(_) => COMPILING,
+            Work::Measure(solid) => match solid.node() {
+                Node::Blend { blend: Blend::Fillet { .. }, operands, .. } => 1.0 + operands.len() as f64,
+                _ => 1.0,
+            },
+        }
+    }
 }
 
 /// What is to be done for a solid, operands first, its own compilation last.
@@ -53,7 +68,7 @@ fn alone<'a>(solid: &'a Solid, exact: &Exactness) -> Vec<&'a Solid> {
     match solid.node() {
         Node::Length { length: Length::Level(_), .. } => Vec::new(),
         Node::Length { .. } if exact.is_gone(solid) => Vec::new(),
-        Node::Length { operand, length, ball } if !exact.is_closed(solid) || length.inwards() > 0.0 => {
+        Node::Length { operand, length, ball, .. } if !exact.is_closed(solid) || length.inwards() > 0.0 => {
             [operand].into_iter().chain(ball).collect()
         }
         Node::Blend { operands, ball: Some(ball), .. } => operands.iter().chain([ball]).collect(),
@@ -73,9 +88,11 @@ pub(super) fn measure(
     if measured(solid).is_some() {
         return Ok(());
     }
+    let tolerance = solid.node().tolerance();
     let found = match solid.node() {
         Node::Length { ball: Some(ball), length, .. } => {
-            let (field, accuracy) = distance(ball, length.amount(), &Bounds::ALL, source, run)?;
+            let wanted = Wanted { length: length.amount(), tolerance, region: &Bounds::ALL };
+            let (field, accuracy) = distance(ball, &wanted, source, run)?;
             let is_gone = length.inwards() > 0.0 && kept(ball).is_none_or(|programs| programs.bounds.is_empty());
             Measured { field, accuracy, is_gone, sides: Vec::new() }
         }
@@ -84,7 +101,10 @@ pub(super) fn measure(
             let Some(programs) = kept(operand) else { return Ok(()) };
             let (field, accuracy) = match exact.is_closed(solid) {
                 true => (sign(&programs), Accuracy::default()),
-                false => distance(operand, inwards.abs(), &Bounds::ALL, source, run)?,
+                false => {
+                    let wanted = Wanted { length: inwards.abs(), tolerance, region: &Bounds::ALL };
+                    distance(operand, &wanted, source, run)?
+                }
             };
             let mut bounds = programs.bounds;
             // Of a column a section does.
@@ -95,10 +115,14 @@ pub(super) fn measure(
                 inwards > 0.0 && bounds.is_finite() && !is_deeper(&*field, &bounds, accuracy.tolerance + inwards, run)?;
             Measured { field, accuracy, is_gone, sides: Vec::new() }
         }
-        Node::Blend { operation, blend, operands, ball: Some(ball) } => {
+        Node::Blend { operation, blend, operands, ball: Some(ball), .. } => {
             let near = Near::of(*operation, *blend, operands);
             let region = near.boxes.iter().fold(Bounds::EMPTY, |all, own| all.union(own));
-            let (field, accuracy) = distance(ball, near.radius, &region, source, run)?;
+            let wanted = Wanted { length: near.radius, tolerance, region: &region };
+            // The ball's distance, and those of the operands.
+            let count = if near.fades { 1 + operands.len() } else { 1 };
+            let stage = |number: usize| run.stage(number as f64 / count as f64, (number + 1) as f64 / count as f64);
+            let (field, accuracy) = distance(ball, &wanted, source, &stage(0))?;
             let mut sides = Vec::new();
             if near.fades {
                 for (number, operand) in operands.iter().enumerate() {
@@ -108,7 +132,7 @@ pub(super) fn measure(
                     let known = if is_outside { own.outside } else { own.inside };
                     sides.push(match kept(operand).filter(|_| known) {
                         Some(programs) => sign(&programs),
-                        None => distance(operand, near.radius, &region, source, run)?.0,
+                        None => distance(operand, &wanted, source, &stage(1 + number))?.0,
                     });
                 }
             }
@@ -125,23 +149,23 @@ pub(super) fn sign(programs: &Compiled) -> Arc<dyn AnyField> {
     Arc::new(Composite { program: Whole::new(programs.surface.clone()), bounds: programs.bounds })
 }
 
-/// The distance to the surface of a solid, and how far it may be off; a region is where it will be asked.
+/// The distance to the surface of a solid, and how far it may be off.
 fn distance(
     solid: &Solid,
-    length: f64,
-    region: &Bounds,
+    wanted: &Wanted<'_>,
     source: &'static dyn DistanceSource,
     run: &Run,
 ) -> Result<(Arc<dyn AnyField>, Accuracy), CompileError> {
     let Some(programs) = kept(solid) else { return Ok((Arc::new(Nothing), Accuracy::default())) };
-    if !programs.bounds.intersection(region).is_finite()
+    if !programs.bounds.intersection(wanted.region).is_finite()
         && programs.flat_axis().is_none()
         && !programs.bounds.is_empty()
     {
-        let tiles = Tiles::new(solid.clone(), (sign(&programs), programs.bounds), length, source);
-        return Ok((Arc::new(tiles), Accuracy::default()));
+        let tiles = Tiles::new(solid.clone(), &programs, wanted, source);
+        let accuracy = tiles.accuracy(&programs).plus(programs.accuracy);
+        return Ok((Arc::new(tiles), accuracy));
     }
-    let Surface { patches, accuracy, flat } = source.surface(solid, &programs, (length, region), run)?;
+    let Surface { patches, accuracy, flat } = source.surface(solid, &programs, wanted, run)?;
     let field = SurfaceDistance::new(patches, sign(&programs), accuracy.error, flat, programs.bounds);
     Ok((Arc::new(field), accuracy.plus(programs.accuracy)))
 }

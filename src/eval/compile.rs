@@ -76,30 +76,41 @@ pub(crate) fn compile(
     source: &'static dyn DistanceSource,
     run: &Run,
 ) -> Result<Arc<Compiled>, CompileError> {
-    if let Some(kept) = kept(solid) {
-        return Ok(kept);
+    match kept(solid) {
+        Some(kept) => Ok(kept),
+        None => run.install(|| compile_anew(solid, source, run)),
     }
+}
+
+/// Compiles a solid, and before it what is compiled by itself, however deep it is.
+fn compile_anew(solid: &Solid, source: &'static dyn DistanceSource, run: &Run) -> Result<Arc<Compiled>, CompileError> {
     let mut exact = Exactness::default();
     exact.add(solid);
-    // What is compiled by itself comes before what it is part of, however deep it is.
-    for work in works(solid, &exact) {
+    let works = works(solid, &exact);
+    let all: f64 = works.iter().map(Work::effort).sum();
+    let mut done = 0.0;
+    for work in works {
         run.check()?;
+        let end = done + work.effort();
         match work {
-            Work::Measure(node) => measure(node, &exact, source, run)?,
+            Work::Measure(node) => measure(node, &exact, source, &run.stage(done / all, end / all))?,
             Work::Compile(part) if kept(part).is_some() => {}
             Work::Compile(part) => {
-                let compiled = Compiler::new(&exact).compile(part).map_err(|error| of_whole(solid, &exact, error))?;
+                let compiled =
+                    Compiler::new(&exact, run).compile(part).map_err(|error| of_whole(solid, &exact, run, error))?;
                 let _ = part.compiled().set(Arc::new(compiled));
             }
         }
+        done = end;
+        run.report(done / all);
     }
     kept(solid).ok_or(CompileError::Cancelled(Cancelled))
 }
 
 /// What is wrong with a part as the solid tells it, by the path to it, where it does.
-fn of_whole(solid: &Solid, exact: &Exactness, error: SolidError) -> SolidError {
-    match Compiler::new(exact).compile(solid) {
-        Err(whole @ SolidError::Parameter { .. }) => whole,
+fn of_whole(solid: &Solid, exact: &Exactness, run: &Run, error: CompileError) -> CompileError {
+    match Compiler::new(exact, run).compile(solid) {
+        Err(whole @ CompileError::Solid(SolidError::Parameter { .. })) => whole,
         _ => error,
     }
 }
@@ -123,6 +134,7 @@ struct Site<'a> {
 
 struct Compiler<'e> {
     exact: &'e Exactness,
+    run: &'e Run,
     scene: Scene,
     contexts: Contexts,
     /// Of leaves that are made of parts.
@@ -133,9 +145,10 @@ struct Compiler<'e> {
 }
 
 impl<'e> Compiler<'e> {
-    fn new(exact: &'e Exactness) -> Compiler<'e> {
+    fn new(exact: &'e Exactness, run: &'e Run) -> Compiler<'e> {
         Compiler {
             exact,
+            run,
             scene: Scene::default(),
             contexts: Contexts::new(),
             coats: HashMap::new(),
@@ -145,11 +158,12 @@ impl<'e> Compiler<'e> {
         }
     }
 
-    fn compile(mut self, root: &Solid) -> Result<Compiled, SolidError> {
+    fn compile(mut self, root: &Solid) -> Result<Compiled, CompileError> {
         let step = self.scene.trail.push(root, None);
         let site = Site { solid: root, context: 0, step };
         let mut tasks = vec![Task::Visit(site)];
         while let Some(task) = tasks.pop() {
+            self.run.check()?;
             match task {
                 Task::Visit(site) => self.visit(site, &mut tasks)?,
                 Task::Finish(site) => {
@@ -194,6 +208,7 @@ impl<'e> Compiler<'e> {
                 | solid::Node::Warp { .. }
                 | solid::Node::Named { .. }
                 | solid::Node::Repeated { .. }
+                | solid::Node::Toleranced { .. }
                 | solid::Node::Swept { .. }
                 | solid::Node::Painted { .. } => below.collect(),
                 solid::Node::Join { operation: Operation::Union, operands, .. } => {
@@ -270,6 +285,7 @@ impl<'e> Compiler<'e> {
             solid::Node::Affine { .. }
             | solid::Node::Named { .. }
             | solid::Node::Repeated { .. }
+            | solid::Node::Toleranced { .. }
             | solid::Node::Swept { .. }
             | solid::Node::Painted { .. } => first(c),
             solid::Node::Warp { warp, .. } => {
@@ -307,7 +323,7 @@ impl<'e> Compiler<'e> {
         }
     }
 
-    fn finish(&mut self, site: Site<'_>) -> Result<Built, SolidError> {
+    fn finish(&mut self, site: Site<'_>) -> Result<Built, CompileError> {
         let context = *self.contexts.get(site.context);
         let node = site.solid.node();
         let below: Vec<Built> = self
@@ -319,21 +335,22 @@ impl<'e> Compiler<'e> {
         match node {
             solid::Node::Leaf(field) => Ok(self.leaf(field, site)),
             solid::Node::Swept { .. } => {
-                fit(site.solid).map_err(|e| self.parameter(site, e))?;
+                fit(site.solid, self.run)?.map_err(|e| self.parameter(site, e))?;
                 Ok(below[0])
             }
             solid::Node::Affine { .. }
             | solid::Node::Named { .. }
             | solid::Node::Repeated { .. }
+            | solid::Node::Toleranced { .. }
             | solid::Node::Painted { .. } => Ok(below[0]),
             solid::Node::Rim { caps, .. } => {
                 let (&[slab, column], Some(size)) = (&below[..], caps.size()) else {
-                    return Err(SolidError::EmptyJoin { path: self.scene.trail.path(site.step) });
+                    return Err(SolidError::EmptyJoin { path: self.scene.trail.path(site.step) }.into());
                 };
                 let rule = caps.times(context.scale).rule();
                 Ok(self.code.rim(rule, size * context.scale, context.frame, [slab, column]))
             }
-            solid::Node::Warp { warp, .. } => self.warped(site, warp, below[0]),
+            solid::Node::Warp { warp, .. } => Ok(self.warped(site, warp, below[0])?),
             solid::Node::Complement(_) => Ok(below[0].complement()),
             solid::Node::Join { operation, rule, .. } => {
                 let rule = Rule::from(*rule);
@@ -377,7 +394,7 @@ impl<'e> Compiler<'e> {
                 let wall = [below[0], moved.complement()];
                 Ok(self.code.operation(Operation::Intersection, Rule::MinMax, context.frame, &wall))
             }
-            solid::Node::Blend { operation, blend, .. } => self.blended(site, *operation, *blend, &below),
+            solid::Node::Blend { operation, blend, .. } => Ok(self.blended(site, *operation, *blend, &below)?),
         }
     }
 
@@ -447,8 +464,8 @@ impl<'e> Compiler<'e> {
     fn fills(&mut self, site: Site<'_>, operation: Operation, radius: f64) -> Vec<Built> {
         let Some(measured) = measured(site.solid) else { return Vec::new() };
         let is_union = operation == Operation::Union;
+        let margin = margin(site.solid, &measured, radius);
         let ball = Signed { field: measured.field, sign: if is_union { 1.0 } else { -1.0 } };
-        let margin = (measured.accuracy.error + FLUSH * radius).min(LARGEST_MARGIN * radius);
         let fill = Fill { radius, ball, sides: Vec::new(), margin, boxes: vec![Bounds::ALL], hull: Bounds::ALL };
         let solid::Node::Blend { blend, operands, .. } = site.solid.node() else {
             let bounds = kept(&site.solid.node().operands()[0]).map_or(Bounds::EMPTY, |programs| programs.bounds);
@@ -491,7 +508,7 @@ impl<'e> Compiler<'e> {
             Arc::new(Bevel::new([a.surface.clone(), b.surface.clone()], signs, chamfer, bounds));
         let ball =
             Signed { field: measured.field.clone(), sign: if operation == Operation::Union { 1.0 } else { -1.0 } };
-        let margin = (measured.accuracy.error + FLUSH * near.radius).min(LARGEST_MARGIN * near.radius);
+        let margin = margin(site.solid, &measured, near.radius);
         let fill: Arc<dyn AnyField> =
             Arc::new(Fill { radius: near.radius, ball, sides: Vec::new(), margin, boxes: near.boxes, hull: near.hull });
         let both = [self.made(&bevel, site, 0.0), self.made(&fill, site, 0.0)];
@@ -539,7 +556,9 @@ impl<'e> Compiler<'e> {
     /// A leaf that is made of a node's operands and has their paint, its value moved by `by`.
     fn made(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>, by: f64) -> Built {
         self.coats.insert(self.scene.leaves.len() as u32, Coat::of(site.solid));
-        let stretch = largest_stretch(&self.contexts.get(site.context).forward.matrix3);
+        let matrix = &self.contexts.get(site.context).forward.matrix3;
+        // The largest of a map that stretches all directions alike is known to the last bit.
+        let stretch = if is_similarity(matrix) { least_stretch(matrix) } else { largest_stretch(matrix) };
         if let Some(measured) = measured(site.solid) {
             self.accuracy = self.accuracy.max(measured.accuracy.times(stretch));
         }
@@ -585,6 +604,12 @@ impl<'e> Compiler<'e> {
     }
 }
 
+/// How much smaller a fillet of a radius is.
+fn margin(solid: &Solid, measured: &Measured, radius: f64) -> f64 {
+    let largest = solid.node().tolerance().unwrap_or(0.0).max(LARGEST_MARGIN * radius);
+    (measured.accuracy.error + FLUSH * radius).min(largest)
+}
+
 /// How steep the values of a solid are taken to be.
 fn steepest(program: &Program) -> f64 {
     if program.scene.leaves.iter().all(|leaf| leaf.field.exact() && leaf.frame == 0) { 1.0 } else { 4.0 }
@@ -599,6 +624,7 @@ fn check(node: &solid::Node) -> Result<(), ParamError> {
         solid::Node::Blend { blend, .. } => blend.check(),
         solid::Node::Length { length, .. } => length.check(),
         solid::Node::Painted { paint, .. } => paint.check(),
+        solid::Node::Toleranced { operand, tolerance, .. } => solid::check_tolerance(operand, *tolerance),
         // A deformation is checked against what it deforms, a verb's parameters where it is built.
         solid::Node::Warp { .. }
         | solid::Node::Complement(_)

@@ -63,7 +63,9 @@ impl Contexts {
         let above = *self.get(context);
         let list = match solid.node() {
             Node::Leaf(_) => Vec::new(),
-            Node::Named { .. } | Node::Repeated { .. } | Node::Swept { .. } => vec![(0, context)],
+            Node::Named { .. } | Node::Repeated { .. } | Node::Toleranced { .. } | Node::Swept { .. } => {
+                vec![(0, context)]
+            }
             // What is painted is apart from the same parts without paint.
             Node::Painted { .. } => vec![(0, self.push(above))],
             Node::Affine { forward, .. } => {

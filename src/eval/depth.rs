@@ -12,6 +12,9 @@ use rvachev_field::AnyField;
 /// No more boxes than this are opened; what is not known by then may be.
 const PATIENCE: usize = 20_000;
 
+/// After so many it is seen whether the work may go on: distances may cost a tenth of a millisecond each.
+const OFTEN: usize = 16;
+
 struct Candidate {
     most: f64,
     bounds: Bounds,
@@ -45,7 +48,7 @@ pub(super) fn is_deeper(distance: &dyn AnyField, bounds: &Bounds, than: f64, run
         heap.push(Candidate { most: f64::INFINITY, bounds: *bounds });
     }
     for opened in 0..PATIENCE {
-        if opened % 256 == 0 {
+        if opened % OFTEN == 0 {
             run.check()?;
         }
         let Some(Candidate { bounds, .. }) = heap.pop() else { return Ok(false) };
@@ -65,12 +68,18 @@ pub(super) fn is_deeper(distance: &dyn AnyField, bounds: &Bounds, than: f64, run
 
 /// The greatest distance that is found in a box: one above `enough` if there is one, else the greatest but for
 /// a ten-thousandth.
-pub(super) fn deepest(distance: &dyn AnyField, bounds: &Bounds, enough: f64) -> f64 {
+///
+/// # Errors
+/// That the run was cancelled.
+pub(super) fn deepest(distance: &dyn AnyField, bounds: &Bounds, enough: f64, run: &Run) -> Result<f64, Cancelled> {
     const CLOSE: f64 = 1.0 + 1e-4;
     let at = |bounds: &Bounds| distance.value(bounds.center().to_array());
     let mut best = at(bounds);
     let mut heap = BinaryHeap::from([Candidate { most: f64::INFINITY, bounds: *bounds }]);
-    for _ in 0..PATIENCE {
+    for opened in 0..PATIENCE {
+        if opened % OFTEN == 0 {
+            run.check()?;
+        }
         let Some(Candidate { most, bounds }) = heap.pop() else { break };
         if best > enough || most <= best * CLOSE {
             break;
@@ -81,7 +90,7 @@ pub(super) fn deepest(distance: &dyn AnyField, bounds: &Bounds, enough: f64) -> 
             heap.push(Candidate { most: centre + part.half_extents().length(), bounds: part });
         }
     }
-    best.max(0.0)
+    Ok(best.max(0.0))
 }
 
 /// The halves of a box along every axis that it has an extent along.

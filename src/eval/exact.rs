@@ -104,7 +104,7 @@ impl Exactness {
             Node::Affine { forward, .. } if !is_similarity(&forward.matrix3) => Exact::NEITHER,
             Node::Affine { forward, .. } => first.deep(first.deepest * forward.matrix3.x_axis.length()),
             Node::Named { .. } | Node::Painted { .. } => first,
-            Node::Repeated { .. } | Node::Swept { .. } => first,
+            Node::Repeated { .. } | Node::Toleranced { .. } | Node::Swept { .. } => first,
             Node::Complement(_) => first.complement(),
             Node::Join { operation: Operation::Union, .. } => {
                 Exact { outside: operands.all(|exact| exact.outside), ..Exact::NEITHER }

@@ -61,4 +61,4 @@ pub(crate) use parting::Parting;
 pub(crate) use point::limited;
 pub(crate) use ray::{Care, first_hit};
 pub(crate) use rvachev_field::Op;
-pub(crate) use source::{CompileError, DistanceSource, Surface};
+pub(crate) use source::{CompileError, DistanceSource, Surface, Wanted};

@@ -14,7 +14,7 @@ use rvachev_num::Run;
 
 /// Finds the surfaces that lengths are measured from.
 pub(crate) trait DistanceSource: Send + Sync {
-    /// The surface of a solid, which has been compiled, for lengths of about `length` within a region.
+    /// The surface of a solid, which has been compiled.
     ///
     /// # Errors
     /// That the run was cancelled, or that the solid has no end.
@@ -22,9 +22,23 @@ pub(crate) trait DistanceSource: Send + Sync {
         &self,
         solid: &Solid,
         programs: &Compiled,
-        lengths: (f64, &Bounds),
+        wanted: &Wanted<'_>,
         run: &Run,
     ) -> Result<Surface, CompileError>;
+
+    /// How far that surface may be off, which is known before it is found.
+    fn tolerance(&self, programs: &Compiled, wanted: &Wanted<'_>) -> f64;
+}
+
+/// What is asked of a surface.
+#[derive(Clone, Copy)]
+pub(crate) struct Wanted<'a> {
+    /// About how long the lengths are that are measured from it.
+    pub(crate) length: f64,
+    /// How far they may be off in all, if the user has said so.
+    pub(crate) tolerance: Option<f64>,
+    /// Where they are asked for.
+    pub(crate) region: &'a Bounds,
 }
 
 /// A surface to measure from.

@@ -10,8 +10,11 @@ use std::sync::{Arc, PoisonError, RwLock};
 
 use glam::{DAffine3, DVec3};
 
+use super::accuracy::Accuracy;
+use super::apart::sign;
+use super::compile::Compiled;
 use super::composite::points64;
-use super::source::DistanceSource;
+use super::source::{DistanceSource, Wanted};
 use crate::{Bounds, Dual, Interval, ParamError, Real, Run, Solid};
 use rvachev_field::{AnyField, Chunk, Patches, SurfaceDistance, VALUE_LIMIT, Zone, steep_slopes};
 #[cfg(feature = "formula")]
@@ -31,6 +34,7 @@ pub(super) struct Tiles {
     pub(super) sign: Arc<dyn AnyField>,
     pub(super) bounds: Bounds,
     pub(super) length: f64,
+    tolerance: Option<f64>,
     pub(super) source: &'static dyn DistanceSource,
     made: RwLock<HashMap<[i64; 3], Tile>>,
 }
@@ -44,11 +48,24 @@ impl fmt::Debug for Tiles {
 impl Tiles {
     pub(super) fn new(
         solid: Solid,
-        (sign, bounds): (Arc<dyn AnyField>, Bounds),
-        length: f64,
+        programs: &Compiled,
+        wanted: &Wanted<'_>,
         source: &'static dyn DistanceSource,
     ) -> Tiles {
-        Tiles { solid, sign, bounds, length, source, made: RwLock::default() }
+        let Wanted { length, tolerance, .. } = *wanted;
+        let (sign, bounds) = (sign(programs), programs.bounds);
+        Tiles { solid, sign, bounds, length, tolerance, source, made: RwLock::default() }
+    }
+
+    /// How far the surface of any tile may be off. No tile has been looked at, and no error found.
+    pub(super) fn accuracy(&self, programs: &Compiled) -> Accuracy {
+        let region = self.region([0; 3]);
+        let tolerance = self.source.tolerance(programs, &self.wanted(&region));
+        Accuracy { tolerance, error: 0.0 }
+    }
+
+    fn wanted<'a>(&self, region: &'a Bounds) -> Wanted<'a> {
+        Wanted { length: self.length, tolerance: self.tolerance, region }
     }
 
     fn side(&self) -> f64 {
@@ -71,7 +88,7 @@ impl Tiles {
         }
         let region = self.region(key);
         let found = super::compile::kept(&self.solid).and_then(|programs| {
-            self.source.surface(&self.solid, &programs, (self.length, &region), &Run::default()).ok()
+            self.source.surface(&self.solid, &programs, &self.wanted(&region), &Run::default()).ok()
         });
         let (patches, error) = match found {
             Some(surface) => (surface.patches, surface.accuracy.error),
@@ -211,12 +228,11 @@ impl AnyField for Tiles {
     fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
         let Chunk { points, placement, out } = chunk;
         let local = |i: usize| placement.apply([0, 1, 2].map(|axis| f64::from(points[axis][i])));
-        let count = points[0].len();
-        if let Some(tile) = self.only((0..count).map(local)) {
+        if let Some(tile) = self.only((0..points[0].len()).map(local)) {
             return tile.gradients(Chunk { points, placement, out });
         }
-        for i in 0..count {
-            let dual = self.dual(Dual::point(local(i)));
+        for (i, p) in (0..points[0].len()).map(local).enumerate() {
+            let dual = self.dual(Dual::point(p));
             let slope = placement.pull(dual.gradient().map(|part| part * placement.scale));
             out[0][i] = placement.finish(dual.value()) as f32;
             for axis in 0..3 {

@@ -9,3 +9,6 @@ mod mesh;
 mod nearest;
 mod painted;
 mod palette;
+mod prepare;
+
+pub use prepare::PrepareError;

@@ -69,9 +69,10 @@ impl Solid {
     /// # Errors
     /// What is wrong with the solid, or that the work was cancelled.
     pub fn scene_with(&self, run: &Run) -> Result<Scene, RenderError> {
-        let programs = compiled_with(self, run)?;
-        let bounds = self.finite_bounds()?;
         let run = run.stage(0.0, 1.0);
+        // Cells are found in no time, beside what a solid may have to measure.
+        let programs = compiled_with(self, &run.stage(0.0, 0.9))?;
+        let bounds = self.finite_bounds()?;
         run.install(|| {
             run.check()?;
             // A box without extent holds nothing that could be seen.

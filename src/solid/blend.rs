@@ -11,7 +11,7 @@ impl Solid {
             return Solid::from_node(Node::Join { operation, rule: RFunction::MIN_MAX, operands: Vec::new() });
         };
         if !matches!(blend, Blend::Fillet { .. }) {
-            return operands.fold(first, |all, next| Solid::from_node(node(operation, vec![all, next], blend)));
+            return operands.fold(first, |all, next| Solid::from_node(node(operation, vec![all, next], blend, None)));
         }
         let mut all = match first.node() {
             Node::Blend { operation: own, blend: of, operands, .. } if (*own, *of) == (operation, blend) => {
@@ -20,7 +20,7 @@ impl Solid {
             _ => vec![first],
         };
         all.extend(operands);
-        Solid::from_node(node(operation, all, blend))
+        Solid::from_node(node(operation, all, blend, None))
     }
 
     fn blended(&self, operation: Operation, other: impl Into<Solid>, blend: Blend) -> Solid {
@@ -124,8 +124,8 @@ impl Solid {
 /// The ball that holds the face of a chamfer off flush faces has so many legs for a radius.
 pub(crate) const BALL_OF_LEGS: f64 = 16.0;
 
-/// A blend of operands.
-pub(super) fn node(operation: Operation, operands: Vec<Solid>, blend: Blend) -> Node {
+/// A blend of operands, measured to a tolerance if one is given.
+pub(super) fn node(operation: Operation, operands: Vec<Solid>, blend: Blend, tolerance: Option<f64>) -> Node {
     let radius = match blend {
         Blend::Fillet { radius } => Some(radius),
         Blend::Chamfer { leg } => Some(BALL_OF_LEGS * leg),
@@ -134,9 +134,10 @@ pub(super) fn node(operation: Operation, operands: Vec<Solid>, blend: Blend) -> 
     // What is no radius is said of the blend.
     let ball = radius.filter(|_| blend.check().is_ok()).map(|radius| {
         let join = Node::Join { operation, rule: RFunction::MIN_MAX, operands: operands.clone() };
-        Solid::from_node(join).offset(if operation == Operation::Union { radius } else { -radius })
+        let distance = if operation == Operation::Union { radius } else { -radius };
+        super::length::ball(&Solid::from_node(join), distance, tolerance)
     });
-    Node::Blend { operation, blend, operands, ball }
+    Node::Blend { operation, blend, operands, tolerance, ball }
 }
 
 /// What errors call a blended operation.

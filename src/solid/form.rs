@@ -91,6 +91,13 @@ pub enum Form<'a> {
         /// How, and how far.
         length: Length,
     },
+    /// A length or a blend, measured to a tolerance.
+    Tolerance {
+        /// What is measured.
+        operand: &'a Solid,
+        /// How far it may be off.
+        tolerance: f64,
+    },
     /// The operand painted.
     Paint {
         /// What is painted.
@@ -153,6 +160,7 @@ impl<'a> Form<'a> {
             | Form::Repetition { operand, .. }
             | Form::Complement { operand }
             | Form::Length { operand, .. }
+            | Form::Tolerance { operand, .. }
             | Form::Paint { operand, .. }
             | Form::Name { operand, .. } => std::slice::from_ref(*operand),
             Form::Join { operands, .. } | Form::Blend { operands, .. } => operands,
@@ -313,6 +321,7 @@ impl Solid {
                 Form::Join { operation: Operation::Intersection, function: RFunction::Distance, operands }
             }
             Node::Length { operand, length, .. } => Form::Length { operand, length: *length },
+            Node::Toleranced { operand, tolerance, .. } => Form::Tolerance { operand, tolerance: *tolerance },
             Node::Repeated { operand, repetition, .. } => Form::Repetition { operand, repetition: *repetition },
             Node::Swept { profile, sweep, .. } => match *sweep {
                 Sweep::Extrude(extrusion) => Form::Extrude { profile, extrusion },

@@ -4,7 +4,7 @@ use super::{Length, Node, Solid};
 
 impl Solid {
     fn moved(&self, length: Length) -> Solid {
-        Solid::from_node(node(self, length))
+        Solid::from_node(node(self, length, None))
     }
 
     /// The solid whose value is this one's plus `value` (in length units): what is inside this
@@ -50,7 +50,8 @@ impl Solid {
     /// Exact where the solid's own value is the distance on that side: leaves by distance, outside of
     /// their unions, inside of their intersections, moved and scaled evenly. Of all else the surface is
     /// [measured](crate::idioms) when the solid is compiled, to a thousandth of the distance or a
-    /// millionth of the solid's size.
+    /// millionth of the solid's size, or to what [`with_tolerance`](Solid::with_tolerance) says.
+    /// [`accuracy`](Solid::accuracy) tells what was reached.
     ///
     /// ```
     /// use rvachev::Solid;
@@ -140,14 +141,20 @@ impl Solid {
     }
 }
 
-/// A length of an operand.
-pub(super) fn node(operand: &Solid, length: Length) -> Node {
+/// A length of an operand, measured to a tolerance if one is given.
+pub(super) fn node(operand: &Solid, length: Length, tolerance: Option<f64>) -> Node {
     let ball = match length {
         // It is said of the length itself.
         _ if length.check().is_err() => None,
-        Length::Rounded(radius) => Some(operand.offset(-radius)),
-        Length::Filleted(radius) => Some(operand.offset(radius)),
+        Length::Rounded(radius) => Some(ball(operand, -radius, tolerance)),
+        Length::Filleted(radius) => Some(ball(operand, radius, tolerance)),
         _ => None,
     };
-    Node::Length { operand: operand.clone(), length, ball }
+    Node::Length { operand: operand.clone(), length, tolerance, ball }
+}
+
+/// Where the centre of a ball may be that rolls along a solid. It is measured from in its turn: half of the
+/// tolerance is for either.
+pub(super) fn ball(operand: &Solid, distance: f64, tolerance: Option<f64>) -> Solid {
+    Solid::from_node(node(operand, Length::Offset(distance), tolerance.map(|tolerance| 0.5 * tolerance)))
 }

@@ -21,6 +21,7 @@ mod rotate;
 mod signature;
 mod simplify;
 mod sweep;
+mod tolerance;
 mod transform;
 
 pub(crate) use blend::BALL_OF_LEGS;
@@ -33,3 +34,4 @@ pub use node::{Length, Operation, Solid};
 pub use paint::Paint;
 pub use profile::{PlaneBounds, Profile};
 pub use sweep::{Extrusion, Helix};
+pub(crate) use tolerance::check as check_tolerance;

@@ -76,6 +76,8 @@ pub(crate) enum Node {
         operation: Operation,
         blend: Blend,
         operands: Vec<Solid>,
+        /// How far it may be off where it is measured, if the user has said so.
+        tolerance: Option<f64>,
         /// For a fillet or chamfer: where the centre of the ball that rolls along the operands may
         /// not be, or, for intersections and differences, where it may.
         ball: Option<Solid>,
@@ -83,6 +85,8 @@ pub(crate) enum Node {
     Length {
         operand: Solid,
         length: Length,
+        /// How far it may be off where it is measured, if the user has said so.
+        tolerance: Option<f64>,
         /// The same for a length that is a ball's radius.
         ball: Option<Solid>,
     },
@@ -90,6 +94,12 @@ pub(crate) enum Node {
     Repeated {
         operand: Solid,
         repetition: Repetition,
+        built: Solid,
+    },
+    /// A length or a blend, and the same measured to a tolerance: `built`.
+    Toleranced {
+        operand: Solid,
+        tolerance: f64,
         built: Solid,
     },
     /// What a verb makes of a profile out of several nodes: `built`.
@@ -203,6 +213,7 @@ impl Node {
             Node::Named { .. } => "named",
             Node::Painted { .. } => "paint",
             Node::Repeated { repetition, .. } => repetition.name(),
+            Node::Toleranced { .. } => "with_tolerance",
             Node::Swept { sweep, .. } => sweep.name(),
             Node::Rim { .. } => "rim",
         }
@@ -218,6 +229,7 @@ impl Node {
             | Node::Named { operand, .. }
             | Node::Painted { operand, .. }
             | Node::Repeated { operand, .. }
+            | Node::Toleranced { operand, .. }
             | Node::Complement(operand) => std::slice::from_ref(operand),
             Node::Swept { profile, .. } => std::slice::from_ref(&profile.0),
             Node::Blend { operands, .. } | Node::Join { operands, .. } | Node::Rim { operands, .. } => operands,
@@ -232,10 +244,20 @@ impl Node {
         }
     }
 
+    /// How far what is measured for the node may be off, if the user has said so.
+    pub(crate) fn tolerance(&self) -> Option<f64> {
+        match self {
+            Node::Blend { tolerance, .. } | Node::Length { tolerance, .. } => *tolerance,
+            _ => None,
+        }
+    }
+
     /// What the node is compiled from, in order: its operands, or what its verb made of them.
     pub(crate) fn parts(&self) -> &[Solid] {
         match self {
-            Node::Repeated { built, .. } | Node::Swept { built, .. } => std::slice::from_ref(built),
+            Node::Repeated { built, .. } | Node::Toleranced { built, .. } | Node::Swept { built, .. } => {
+                std::slice::from_ref(built)
+            }
             node => node.operands(),
         }
     }
@@ -300,7 +322,9 @@ fn take_operands(node: &mut Node, pending: &mut Vec<Solid>) {
             pending.push(operand);
             pending.extend(ball);
         }
-        Node::Repeated { operand: solid, built, .. } => pending.extend([solid, built]),
+        Node::Repeated { operand: solid, built, .. } | Node::Toleranced { operand: solid, built, .. } => {
+            pending.extend([solid, built]);
+        }
         Node::Swept { profile: Profile(solid), built, ball, .. } => {
             pending.extend([solid, built]);
             pending.extend(ball);

@@ -26,6 +26,7 @@ impl Node {
             Node::Blend { blend, .. } => format!("by {blend:?}"),
             Node::Length { length, .. } => format!("by {:?}", length.amount()),
             Node::Repeated { repetition, .. } => repetition.to_string(),
+            Node::Toleranced { tolerance, .. } => format!("{tolerance:?}"),
             Node::Swept { sweep, .. } => sweep.to_string(),
             Node::Rim { caps, .. } => format!("{caps:?}"),
         }
@@ -43,6 +44,7 @@ impl Node {
             | Node::Painted { .. }
             | Node::Blend { .. }
             | Node::Repeated { .. }
+            | Node::Toleranced { .. }
             | Node::Swept { .. }
             | Node::Rim { .. }
             | Node::Length { .. } => return None,
@@ -53,10 +55,17 @@ impl Node {
     /// This node with other operands, as many as it has.
     pub(super) fn with_operands(&self, operands: Vec<Solid>) -> Node {
         match self {
-            Node::Blend { operation, blend, .. } => return super::blend::node(*operation, operands, *blend),
-            Node::Length { length, .. } => {
+            Node::Blend { operation, blend, tolerance, .. } => {
+                return super::blend::node(*operation, operands, *blend, *tolerance);
+            }
+            Node::Length { length, tolerance, .. } => {
                 if let [operand] = &operands[..] {
-                    return super::length::node(operand, *length);
+                    return super::length::node(operand, *length, *tolerance);
+                }
+            }
+            Node::Toleranced { tolerance, .. } => {
+                if let [operand] = &operands[..] {
+                    return super::tolerance::node(operand, *tolerance);
                 }
             }
             _ => {}
@@ -77,6 +86,7 @@ impl Node {
             | Node::Length { operand, .. }
             | Node::Named { operand, .. }
             | Node::Repeated { operand, .. }
+            | Node::Toleranced { operand, .. }
             | Node::Painted { operand, .. } => std::slice::from_mut(operand),
             Node::Swept { profile, .. } => std::slice::from_mut(&mut profile.0),
             Node::Blend { operands, .. } | Node::Join { operands, .. } | Node::Rim { operands, .. } => {

@@ -50,6 +50,7 @@ mod supershape;
 mod supershape_ranges;
 mod support;
 mod thin;
+mod tolerance;
 mod volume;
 mod zbuffer;
 mod zoo;

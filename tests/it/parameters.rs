@@ -178,7 +178,7 @@ impl Swept for Polygon {
     }
 }
 
-fn verbs() -> [(&'static str, &'static str, Make); 54] {
+fn verbs() -> [(&'static str, &'static str, Make); 56] {
     [
         ("union", "alpha", |v| ball().union(block(), RFunction::Alpha(v))),
         ("union", "p", |v| ball().union(block(), RFunction::P(v))),
@@ -187,6 +187,13 @@ fn verbs() -> [(&'static str, &'static str, Make); 54] {
         ("smooth union", "radius", |v| ball().smooth_union(block(), v)),
         ("smooth intersection", "radius", |v| ball().smooth_intersection(block(), v)),
         ("smooth difference", "radius", |v| ball().smooth_difference(block(), v)),
+        ("with_tolerance", "tolerance", |v| block().offset(0.1).with_tolerance(v)),
+        ("with_tolerance", "tolerance", |v| {
+            disc()
+                .union_with(Profile::rectangle([2.0, 0.2]), Blend::Fillet { radius: 0.1 })
+                .with_tolerance(v)
+                .extrude(1.0)
+        }),
         ("filleted union", "radius", |v| ball().union_with(block(), Blend::Fillet { radius: v })),
         ("chamfered difference", "leg", |v| ball().difference_with(block(), Blend::Chamfer { leg: v })),
         ("displaced union", "height", |v| {

@@ -227,4 +227,20 @@ impl Profile {
     pub fn filleted(&self, radius: f64) -> Profile {
         Profile(self.0.filleted(radius))
     }
+
+    /// The same shape, its border measured to `tolerance` (10⁻⁹ to 10⁹, in length units): right behind
+    /// `offset`, `shell`, `rounded`, `filleted`, or a blend by fillet or chamfer. See
+    /// [`Solid::with_tolerance`](crate::Solid::with_tolerance).
+    ///
+    /// ```
+    /// use rvachev::Profile;
+    ///
+    /// let egg = Profile::superellipse([3.0, 2.0], 0.8).offset(0.5).with_tolerance(1e-5);
+    /// assert!(egg.accuracy()?.tolerance <= 1e-5);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
+    #[must_use]
+    pub fn with_tolerance(&self, tolerance: f64) -> Profile {
+        Profile(self.0.with_tolerance(tolerance))
+    }
 }

@@ -3,7 +3,8 @@
 use glam::DVec2;
 
 use super::{PlaneBounds, Profile};
-use crate::{Bounds, Owner, Paint, SolidError};
+use crate::error::PrepareError;
+use crate::{Accuracy, Bounds, Owner, Paint, Run, SolidError};
 
 /// Questions about points of the plane. What is wrong with the profile is told by all of them.
 impl Profile {
@@ -97,5 +98,31 @@ impl Profile {
     pub fn bounds(&self) -> Result<PlaneBounds, SolidError> {
         let Bounds { min, max } = self.0.bounds()?;
         Ok(PlaneBounds { min: min.truncate(), max: max.truncate() })
+    }
+
+    /// How far the border may be off what offsets, shells, roundings, fillets and chamfers ask for, in length
+    /// units: see [`Solid::accuracy`](crate::Solid::accuracy).
+    ///
+    /// ```
+    /// use rvachev::Profile;
+    ///
+    /// let egg = Profile::superellipse([3.0, 2.0], 0.8).offset(0.5);
+    /// assert_eq!(egg.accuracy()?.tolerance, 5e-4);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// What is wrong with the profile: see [`SolidError`].
+    pub fn accuracy(&self) -> Result<Accuracy, SolidError> {
+        self.0.accuracy()
+    }
+
+    /// Compiles the profile and measures the borders that it needs: see
+    /// [`Solid::prepare`](crate::Solid::prepare). Solids that are made of it need not measure them again.
+    ///
+    /// # Errors
+    /// What is wrong with the profile, or that the work was cancelled: see [`PrepareError`].
+    pub fn prepare(&self, run: &Run) -> Result<Accuracy, PrepareError> {
+        self.0.prepare(run)
     }
 }
