@@ -91,7 +91,8 @@ pub(super) fn measure(
             if let Some(axis) = programs.flat_axis() {
                 (bounds.min[axis], bounds.max[axis]) = (0.0, 0.0);
             }
-            let is_gone = inwards > 0.0 && bounds.is_finite() && !is_deeper(&*field, &bounds, accuracy.tolerance + inwards, run)?;
+            let is_gone =
+                inwards > 0.0 && bounds.is_finite() && !is_deeper(&*field, &bounds, accuracy.tolerance + inwards, run)?;
             Measured { field, accuracy, is_gone, sides: Vec::new() }
         }
         Node::Blend { operation, blend, operands, ball: Some(ball) } => {
@@ -168,8 +169,8 @@ impl Near {
     pub(super) fn of(operation: Operation, blend: Blend, operands: &[Solid]) -> Near {
         let is_convex =
             |operand: &Solid| kept(operand).is_some_and(|programs| programs.surface.bend() == Some(Bend::Concave));
-        let fades = matches!(blend, Blend::Fillet { .. })
-            && !(operation == Operation::Union && operands.iter().all(is_convex));
+        let fades =
+            matches!(blend, Blend::Fillet { .. }) && !(operation == Operation::Union && operands.iter().all(is_convex));
         let (radius, reach) = match blend {
             Blend::Chamfer { leg } => (BALL_OF_LEGS * leg, BALL_OF_LEGS * leg),
             Blend::Fillet { radius } if fades => (radius, FARTHEST * radius),

@@ -44,8 +44,8 @@ mod tape;
 mod thin;
 mod tiles;
 
-pub(crate) use narrow::Narrowed;
 pub use accuracy::Accuracy;
+pub(crate) use narrow::Narrowed;
 pub use owner::Owner;
 pub use palette::Palette;
 pub use program::{Program, Region};

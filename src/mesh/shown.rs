@@ -70,5 +70,6 @@ impl Subject<'_> {
 /// The nodes of so many cells along each side of a box.
 fn nodes(bounds: &Bounds, count: u32) -> impl Iterator<Item = DVec3> {
     let (min, step, side) = (bounds.min, bounds.size() / f64::from(count), count + 1);
-    (0..side.pow(3)).map(move |n| min + step * DVec3::from_array([n % side, n / side % side, n / (side * side)].map(f64::from)))
+    (0..side.pow(3))
+        .map(move |n| min + step * DVec3::from_array([n % side, n / side % side, n / (side * side)].map(f64::from)))
 }

@@ -31,10 +31,7 @@ impl Solid {
     /// are close; other blends join one after the other. No operand at all is an error when the solid is
     /// compiled.
     ///
-    #[doc = picture!(
-        "fillet_union_all" = "docs/gallery/fillet_union_all.png",
-        "chamfer_union_all" = "docs/gallery/chamfer_union_all.png",
-    )]
+    #[doc = picture!("fillet_union_all" = "docs/gallery/fillet_union_all.png")]
     ///
     /// ```
     /// use rvachev::{Blend, Solid};
