@@ -9,8 +9,8 @@
 //! ```
 //!
 //! A smooth blend is the join of its operands wherever their values differ by more than k,
-//! so beside it the solid prunes as ever; a fillet and a chamfer live near the edge by
-//! themselves (see `edge`). A displacement reaches everywhere, if weakly; a Ricci blend too.
+//! so beside it the solid prunes as ever; a fillet and a chamfer, which read distances, are made
+//! where solids are compiled. A displacement reaches everywhere, if weakly; a Ricci blend too.
 //!
 //! Sources: A. A. Pasko and V. V. Savchenko, *Blending operations for the functionally based
 //! constructive geometry* (1994); A. Ricci, *A constructive geometry for computer graphics*
@@ -62,9 +62,10 @@ use crate::{Euclid, NormKind, Real};
 /// | `Displacement` | `height`, length (adds material if positive); `falloff`, lengths, 10⁻⁹ to 10⁹ | everywhere, falling with the square of the values |
 /// | `Ricci` | `p`, 1.001 to 1000: larger is sharper | everywhere; operands must be gauges |
 ///
-/// A smooth blend keeps the Lipschitz constant of its operands, and so does a fillet, what it adds having one
-/// of 1. A chamfer does where the operands are planes; where they bend it is a little steeper, and
-/// it jumps where a gradient does. A displacement and Ricci's blend promise none.
+/// A smooth blend keeps the Lipschitz constant of its operands. What a fillet adds has one of 1 between convex
+/// operands, of at most 1.5 elsewhere. A chamfer has that of the operands where they are planes; where
+/// they bend it is a little steeper, and it jumps where a gradient does. A displacement and Ricci's blend
+/// promise none.
 ///
 /// Sources: A. A. Pasko and V. V. Savchenko, *Blending operations for the functionally based
 /// constructive geometry* (1994); A. Ricci, *A constructive geometry for computer graphics*
