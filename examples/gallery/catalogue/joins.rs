@@ -84,7 +84,7 @@ fn many(blend: Blend) -> Solid {
 fn many_cut(blend: Blend) -> Solid {
     let holes = [(-0.65, 0.24), (0.05, 0.18), (0.65, 0.24)];
     let holes = holes.map(|(x, radius)| Solid::cylinder(radius, 2.0).translate([x, 0.0, 0.0]));
-    Solid::cuboid([2.2, 1.2, 0.5]).difference_all_with(holes, blend)
+    Solid::cuboid([2.4, 1.3, 0.5]).difference_all_with(holes, blend)
 }
 
 const SMOOTH: Blend = Blend::Smooth { radius: 0.5 };
