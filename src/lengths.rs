@@ -118,6 +118,8 @@
 //!   radius. The ball rests on the rim of the gap, and a shallow groove is left there.
 //! * An opening takes off what the ball does not get into: walls thinner than its diameter, pins of a
 //!   smaller radius, and parts that hang on these.
+//! * What the ball only just fits into, with less than a fifth of its radius to spare, may count as what it does not
+//!   fit into: the channel that is left for its centre is thin beside the cells it is measured with.
 //! * Where nothing is left, the solid is empty. That is no error: its [`bounds`](Solid::bounds) are
 //!   [empty](crate::Bounds::is_empty), nothing is in it, its mesh has no triangles.
 //!
