@@ -16,7 +16,7 @@ use std::error::Error;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use rvachev::{Camera, CellSize, MeshReport, MeshSettings, RFunction, RenderSettings, Solid, deg};
+use rvachev::{Camera, CellSize, MeshReport, MeshSettings, Paint, RFunction, RenderSettings, Solid, deg};
 
 /// Sizes along x, y and z: of the plate, and of the wall above it.
 const PLATE: [f64; 3] = [60.0, 44.0, 8.0];
@@ -76,9 +76,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("  {:.1} x {:.1} x {:.1} mm", bounds.size().x, bounds.size().y, bounds.size().z);
 
     let start = Instant::now();
-    let settings = RenderSettings { width: 800, height: 600, samples: 2, ..RenderSettings::default() };
-    // From the side of the rib.
-    let camera = Camera::framing(&bounds).fitted(&bounds, f64::from(settings.width) / f64::from(settings.height));
+    // The picture for the docs is finer.
+    let (width, height, samples) = if folder.ends_with("docs") { (720, 540, 3) } else { (480, 360, 2) };
+    let paint = Paint { color: [128, 156, 184], roughness: 0.4 };
+    let settings = RenderSettings { width, height, samples, paint, ..RenderSettings::default() };
+    // From the side of the rib, so that the wall is in the light.
+    let camera = Camera::framing(&bounds)
+        .orbit(deg(16.0), deg(0.0))
+        .fitted(&bounds, f64::from(settings.width) / f64::from(settings.height));
     let path = folder.join("bracket.png");
     bracket.render(&camera, &settings)?.save(&path)?;
     let seconds = start.elapsed().as_secs_f64();

@@ -1,32 +1,20 @@
-use glam::DVec3;
-use rvachev::{Blend, Bounds, CellSize, MeshSettings, Run, Solid};
+//! Scratch.
+use rvachev::{CellSize, MeshSettings, Solid};
 fn main() {
-    let cube = Solid::cuboid(DVec3::splat(2.0));
-    let boss = cube.union_with(Solid::cylinder(0.6, 4.0), Blend::Fillet { radius: 0.2 });
-    let settings = MeshSettings { cell: CellSize::LongestSide(64), ..MeshSettings::default() };
-    let r = boss.thin_features(&settings, &Run::default()).unwrap();
-    println!("{} {}", r.cells, r.count);
-    for p in r.places.iter().take(6) {
-        println!("{p:?}");
+    for r in [1.52, 1.55, 1.6, 1.7, 1.8, 1.9] {
+        let t = std::time::Instant::now();
+        let s = (Solid::cuboid([14.0, 9.0, 4.0]) - Solid::cylinder(r, 20.0)).filleted(1.5);
+        let c = s.contains([r - 0.03, 0.0, 0.0]);
+        let t1 = t.elapsed();
+        let m = s.mesh(&MeshSettings { cell: CellSize::LongestSide(100), ..MeshSettings::default() }).unwrap();
+        println!("{r}: {c:?} {t1:?} volume {} of {}", m.volume(), 14.0 * 9.0 * 4.0 - 4.0 * std::f64::consts::PI * r * r);
     }
-    let program = boss.surface_program().unwrap();
-    let b = Bounds::new(r.places[0].position - 0.01, r.places[0].position + 0.01);
-    let c = b.center();
-    let h = 4.0 / 128.0;
-    for h in [0.0001, 0.001, 0.01, 0.02, 0.03] {
-        let reg = Bounds::new(c - h, c + h);
-        println!("{h} {:?}", program.range(&reg));
-    }
-    for q in [c, b.min + h, DVec3::new(0.74, 0.0, 1.03), DVec3::new(0.62, 0.0, 1.15), DVec3::new(0.66, 0.0, 1.06)] {
-        let reg = Bounds::new(q - h, q + h);
-        println!(
-            "{q} {:?} leaves {} {:?}",
-            program.range(&reg),
-            match program.narrow(&reg) {
-                rvachev::program::Region::Surface(p) => p.leaf_count() as i32,
-                _ => -1,
-            },
-            program.value(q)
-        );
+    for w in [3.05, 3.1, 4.0] {
+        let t = std::time::Instant::now();
+        let s = (Solid::cuboid([20.0; 3]) | Solid::cuboid([w, 40.0, 10.0])).rounded(1.5);
+        println!("{w} {:?} {:?}", s.contains([1.495, 15.0, 0.0]), t.elapsed());
+        let t = std::time::Instant::now();
+        let s = (Solid::cuboid([14.0, 9.0, 4.0]) - Solid::cuboid([w, 20.0, 20.0])).filleted(1.5);
+        println!("{w} {:?} {:?}", s.contains([0.5 * w - 0.01, 0.0, 0.0]), t.elapsed());
     }
 }

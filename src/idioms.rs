@@ -122,9 +122,11 @@
 //!
 //! # 6. Fillets, chamfers and smooth blends
 //!
-//! A [`Blend`](crate::Blend) shapes the transition between two operands. `Fillet`, `Chamfer`
-//! and `Smooth` take a length; a fillet and a chamfer are of that size whatever the operands
-//! are, for they read true distances, and a smooth blend reads the operands' own values.
+//! A [`Blend`](crate::Blend) shapes the transition between operands. `Fillet`, `Chamfer`
+//! and `Smooth` take a length. A fillet and a chamfer are of that size whatever the operands
+//! are, and stay below flush faces. A smooth blend reads the operands' own values, and rises
+//! above flush faces. [`rounded`](crate::Solid::rounded) and [`filleted`](crate::Solid::filleted) treat all edges
+//! of a solid at once: see [`lengths`](crate::lengths).
 //!
 //! ```
 //! use rvachev::{deg, Blend, Solid};
@@ -143,6 +145,10 @@
 //! let bored = filleted.difference_with(hole, Blend::Fillet { radius: 1.0 });
 //! assert!(!bored.contains([4.2, 0.0, 19.9])? && bored.contains([4.2, 0.0, 15.0])?);
 //!
+//! // All edges: inner ones filled, outer ones rounded.
+//! let cast = (&plate | &post).filleted(3.0).rounded(1.0);
+//! assert!(cast.contains(corner)? && !cast.contains([29.9, 19.9, 0.0])?);
+//!
 //! // Two limbs that flow into one another.
 //! let limb = Solid::capsule(5.0, 40.0);
 //! let branch = limb.rotate_y(deg(50.0)).translate([15.3, 0.0, 12.9]);
@@ -154,9 +160,8 @@
 //! # 7. Shells and offsets
 //!
 //! [`shell`](crate::Solid::shell) leaves a wall, [`offset`](crate::Solid::offset) moves the
-//! surface; both are lengths along the normal, whatever the field is below. Joins below them
-//! act as min and max: values near the surface are distances, which those of R-functions are
-//! not.
+//! surface; both are by the true distance to the surface, whatever the field is below. Where parts
+//! are joined there is no surface, and no wall.
 //!
 //! ```
 //! use rvachev::Solid;

@@ -50,8 +50,9 @@
 //! ```
 //!
 //! A [`Blend`] shapes the transition: a fillet or a chamfer of a given size, a smooth one.
-//! [`offset`](Solid::offset) and [`shell`](Solid::shell) are lengths too, found by a search where
-//! the operand's value is no distance; of a join they are right where one operand decides.
+//! [`offset`](Solid::offset) and [`shell`](Solid::shell) are lengths too,
+//! [`rounded`](Solid::rounded) rounds all convex edges, [`filleted`](Solid::filleted) fills all concave
+//! ones. All go by the true distance to the surface, whatever the solid is made of: see [`lengths`].
 //!
 //! ```
 //! use rvachev::{Blend, Solid};
@@ -63,6 +64,8 @@
 //!
 //! let hollow = Solid::superellipsoid([20.0, 12.0, 8.0], 0.3, 0.5).shell(1.5);
 //! assert!(hollow.contains([19.0, 0.0, 0.0])? && !hollow.contains([18.0, 0.0, 0.0])?);
+//! let smooth = stand.rounded(1.0);
+//! assert!(stand.contains([14.9, 9.9, 0.0])? && !smooth.contains([14.9, 9.9, 0.0])?);
 //! # Ok::<(), rvachev::SolidError>(())
 //! ```
 //!
@@ -158,7 +161,7 @@
 //! ```
 //!
 //! [Twelve idioms](idioms) show how things are commonly built: plates with holes, named parts,
-//! rings of parts, leaves of one's own.
+//! rings of parts, leaves of one's own. [Lengths](lengths) are explained with pictures.
 //!
 //! # The catalogue
 //!
@@ -249,7 +252,8 @@
 //!
 //! The methods take an [`RFunction`]: `MIN_MAX`, `Alpha`, `Zero`, `P`, `Associative`, `Distance`.
 //! [`union_with`](Solid::union_with), [`intersection_with`](Solid::intersection_with) and
-//! [`difference_with`](Solid::difference_with) take a [`Blend`]:
+//! [`difference_with`](Solid::difference_with) take a [`Blend`], and so do
+//! [`union_all_with`](Solid::union_all_with) and its like, of many operands:
 //!
 //! | blend | |
 //! |---|---|
@@ -266,6 +270,10 @@
 //! | [`level`](Solid::level) | values moved by a number |
 //! | [`offset`](Solid::offset) | the surface moved outwards or inwards by a distance |
 //! | [`shell`](Solid::shell) | a wall of even thickness inside the surface |
+//! | [`rounded`](Solid::rounded) | convex edges rounded by a ball |
+//! | [`filleted`](Solid::filleted) | concave edges filled by a ball |
+//!
+//! What they are, how exact, and what becomes of a ball that does not fit: [`lengths`].
 //!
 //! ## Maps
 //!
@@ -446,6 +454,7 @@ pub mod idioms;
 pub mod io;
 pub mod law;
 pub mod layers;
+pub mod lengths;
 mod mesh;
 pub mod points;
 pub mod program;

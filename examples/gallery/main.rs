@@ -7,7 +7,7 @@
 //! cargo run --example gallery times       # entry by entry on one thread, and how long each takes
 //! ```
 //!
-//! What is shown, and how each is written, is in `catalogue.rs`.
+//! What is shown, and how each is written, is in `catalogue`.
 
 mod catalogue;
 mod font;

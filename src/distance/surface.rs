@@ -162,9 +162,7 @@ fn shown(program: &Program, bounds: Bounds, cell: f64, run: &Run) -> Result<Show
     let subject = Subject { program, bounds, palette: None, whole: None };
     let [to_mesh, to_look] = run.stages([0.7, 0.3]);
     let mesh = run.install(|| subject.mesh(&settings, &to_mesh)).map_err(compile_error)?;
-    // Most often nothing is lost: flush faces and acute edges are suspect as well.
-    let hides = mesh.possibly_lost() > 0
-        && run.install(|| subject.shows_more(&mesh, SMALLER, &to_look)).map_err(compile_error)?;
+    let hides = run.install(|| subject.shows_more(&mesh, SMALLER, &to_look)).map_err(compile_error)?;
     Ok(Shown { mesh, hides })
 }
 

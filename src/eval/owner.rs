@@ -10,7 +10,7 @@ pub struct Owner {
     /// The leaf's number, in the order of compiling; stable for one solid.
     pub index: u32,
     /// The path from the root: `difference[1] / twist / superellipsoid`, with the names that
-    /// parts [have](Solid::named): `difference[1] / socket: twist / superellipsoid`.
+    /// parts [have](crate::Solid::named): `difference[1] / socket: twist / superellipsoid`.
     pub path: String,
 }
 

@@ -11,12 +11,14 @@ use rayon::prelude::*;
 use super::blocks::Blocks;
 use super::error::MeshingError;
 use super::lattice::{CellSize, Lattice};
+use super::extract::Sampler;
 use super::resolve::{Among, Unresolved, unresolved_cells};
 use super::subject::Subject;
-use super::signs::BLOCK;
+use super::sampler::{Scratch, SolidSampler};
+use super::signs::{BLOCK, NODES, SIDE, Signs};
 use crate::eval::Program;
 use crate::geom::{Findings, Mesh};
-use crate::{Bounds, Run};
+use crate::{Bounds, Cancelled, Run};
 
 /// Cells of a block that the surface is in, as a rule.
 const OF_BLOCK: usize = 110;
@@ -34,26 +36,87 @@ impl Subject<'_> {
         Ok(OF_BLOCK * Blocks::find(self.program, &lattice, run)?.cells.len())
     }
 
-    /// Whether a cell of a mesh of this in blocks that may have lost something has all its nodes on one side, and nodes
-    /// of cells that are so many times smaller on the other.
+    /// Whether there is a cell of a mesh of this with all its nodes on one side, and the surface in it, as smaller cells
+    /// would show, so many times as small.
     pub(crate) fn shows_more(&self, mesh: &Mesh, times: u32, run: &Run) -> Result<bool, MeshingError> {
         let Findings { cell, lost_at, .. } = mesh.findings();
+        if *cell == 0.0 || lost_at.is_empty() && !self.program.is_gentle() {
+            return Ok(false);
+        }
         let lattice = Lattice::new(&self.bounds, CellSize::Length(*cell))?;
         let [to_find, to_search] = run.stages([0.2, 0.8]);
-        let is_lost = |block| lost_at.contains(&lattice.region(block, BLOCK).center());
-        let blocks = Blocks::find(self.program, &lattice, &to_find)?.only(is_lost);
+        let blocks = Blocks::find(self.program, &lattice, &to_find)?;
+        if self.program.is_gentle() {
+            return Ok(self.has_lone_surface(&blocks, &lattice, &to_search)?);
+        }
+        let blocks = blocks.only(|block| lost_at.contains(&lattice.region(block, BLOCK).center()));
         let suspects = unresolved_cells(&blocks, (&lattice, self.bounds), Among::OneSided, &to_search)?;
         let programs: HashMap<[u32; 3], &Program> =
             blocks.cells.iter().enumerate().map(|(n, &block)| (block, blocks.programs.of(n))).collect();
         let shows = |suspect: &Unresolved| {
-            let Some(program) = programs.get(&suspect.block) else { return false };
-            let shows = |within: &[usize; 3]| {
+            let Some(program) = programs.get(&suspect.block) else { return Ok(false) };
+            for within in &suspect.cells {
+                run.check()?;
                 let cell = [0, 1, 2].map(|axis| suspect.block[axis] + within[axis] as u32);
-                self.has_inner(&lattice.region(cell, 1), program, times)
-            };
-            suspect.cells.iter().any(shows)
+                if self.has_inner(&lattice.region(cell, 1), program, times) {
+                    return Ok(true);
+                }
+            }
+            Ok(false)
         };
-        Ok(suspects.par_iter().any(shows))
+        Ok(any(suspects.par_iter().map(shows))?)
+    }
+
+    /// Whether the surface is in a cell that has no other side near: of values that change no faster than points move,
+    /// those at the nodes tell where to look, and lead there.
+    fn has_lone_surface(&self, blocks: &Blocks, lattice: &Lattice, run: &Run) -> Result<bool, Cancelled> {
+        let sampler = SolidSampler::new(lattice, blocks, self.bounds);
+        // No point of a cell is farther from its nearest node than half of its diagonal.
+        let near = 0.867 * lattice.step();
+        let of_block = |scratch: &mut Scratch, (number, &block): (usize, &[u32; 3])| {
+            run.check()?;
+            let mut values = [0.0; NODES];
+            scratch.forget();
+            sampler.nodes(scratch, number, block, &mut values);
+            let signs = Signs::new(&values);
+            for [x, y, z] in (0..BLOCK.pow(3)).map(|n| [n % BLOCK, n / BLOCK % BLOCK, n / (BLOCK * BLOCK)]) {
+                let node = |n: usize| (x + (n & 1)) + SIDE * (y + (n >> 1 & 1)) + SIDE * SIDE * (z + (n >> 2));
+                let is_near = (0..8).any(|n| f64::from(values[node(n)].abs()) <= near);
+                if !is_near || is_mixed_about(&signs, [x, y, z]) {
+                    continue;
+                }
+                let cell = [0, 1, 2].map(|axis| block[axis] + [x, y, z][axis] as u32);
+                let region = lattice.region(cell, 1);
+                if self.is_alone(&region) && self.is_crossed(&region) {
+                    return Ok(true);
+                }
+            }
+            Ok(false)
+        };
+        let found = blocks.cells.par_iter().enumerate().map_init(|| sampler.scratch(), of_block);
+        any(found)
+    }
+
+    /// Whether all nodes of a cell and of those about it are on one side.
+    fn is_alone(&self, cell: &Bounds) -> bool {
+        let is_inside = self.program.value(cell.min) > 0.0;
+        nodes(&cell.inflate(cell.longest_side()), 3).all(|p| (self.program.value(p) > 0.0) == is_inside)
+    }
+
+    /// Whether steps along the gradient lead from the middle of a cell to the surface in it.
+    fn is_crossed(&self, cell: &Bounds) -> bool {
+        const STEPS: usize = 3;
+        let mut p = cell.center();
+        for _ in 0..STEPS {
+            let (value, slope) = self.program.gradient(p);
+            let step = value / slope.length_squared() * slope;
+            if !step.is_finite() {
+                return false;
+            }
+            p -= step;
+        }
+        let rest = self.program.value(p).abs();
+        cell.inflate(0.01 * cell.longest_side()).contains(p) && rest < 0.01 * cell.longest_side()
     }
 
     /// Whether a cell with all its nodes on one side has something of the other.
@@ -66,9 +129,24 @@ impl Subject<'_> {
             if (value > 0.0) == is_inside { 0.0 } else { value.abs() / slope.length().max(f64::MIN_POSITIVE) }
         };
         let most = nodes(cell, times).map(|p| depth(&p)).fold(0.0, f64::max);
-        let is_alone = || nodes(&cell.inflate(step), 3).all(|p| (self.program.value(p) > 0.0) == is_inside);
-        most > ROUNDING * self.bounds.longest_side() && (most > DEEP * step || is_alone())
+        most > ROUNDING * self.bounds.longest_side() && (most > DEEP * step || self.is_alone(cell))
     }
+}
+
+/// Whether a cell of a block, or one beside it in the block, has nodes on both sides.
+fn is_mixed_about(signs: &Signs, cell: [usize; 3]) -> bool {
+    let mixed = |n: usize| {
+        let at: [usize; 3] = std::array::from_fn(|axis| cell[axis] + n / 3usize.pow(axis as u32) % 3);
+        // The one beside it below is one less.
+        at.iter().all(|c| (1..=BLOCK).contains(c)) && !matches!(signs.case(at.map(|c| c - 1)), 0 | 255)
+    };
+    (0..27).any(mixed)
+}
+
+/// Whether one of the answers is yes.
+fn any(answers: impl ParallelIterator<Item = Result<bool, Cancelled>>) -> Result<bool, Cancelled> {
+    // The first that is not no.
+    answers.find_any(|answer| !matches!(answer, Ok(false))).unwrap_or(Ok(false))
 }
 
 /// The nodes of so many cells along each side of a box.

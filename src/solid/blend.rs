@@ -31,6 +31,8 @@ impl Solid {
     /// are close; other blends join one after the other. No operand at all is an error when the solid is
     /// compiled.
     ///
+    #[doc = picture!("fillet_union_all" = "docs/gallery/fillet_union_all.png")]
+    ///
     /// ```
     /// use rvachev::{Blend, Solid};
     ///
@@ -54,6 +56,18 @@ impl Solid {
 
     /// This solid without all of `solids`, less what `blend` takes off, as
     /// [`union_all_with`](Solid::union_all_with).
+    ///
+    #[doc = picture!("fillet_difference_all" = "docs/gallery/fillet_difference_all.png")]
+    ///
+    /// ```
+    /// use rvachev::{Blend, Solid};
+    ///
+    /// let holes = [-15.0, 0.0, 15.0].map(|x| Solid::cylinder(4.0, 10.0).translate([x, 0.0, 0.0]));
+    /// let plate = Solid::cuboid([50.0, 20.0, 6.0]).difference_all_with(holes, Blend::Fillet { radius: 1.0 });
+    /// // The rims are round.
+    /// assert!(!plate.contains([4.2, 0.0, 2.9])? && plate.contains([4.2, 0.0, 0.0])?);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
     #[must_use]
     pub fn difference_all_with<T: Into<Solid>>(&self, solids: impl IntoIterator<Item = T>, blend: Blend) -> Solid {
         let all = [self.clone()].into_iter().chain(solids.into_iter().map(Into::into));
@@ -61,7 +75,7 @@ impl Solid {
     }
 
     /// What is in either solid, and what `blend` adds between them. The parameters and their
-    /// ranges: [`Blend`].
+    /// ranges: [`Blend`]; what fillets and chamfers are: [`lengths`](crate::lengths#fillets-between-operands).
     ///
     /// ```
     /// use rvachev::{Blend, Solid};
@@ -89,7 +103,8 @@ impl Solid {
     }
 
     /// Union with a smooth transition where the operands' values differ by less than
-    /// `radius`: [`Blend::Smooth`].
+    /// `radius`: [`Blend::Smooth`]. Where faces of the operands are flush it rises above them, by up to a
+    /// quarter of the radius; a [`Blend::Fillet`] does not.
     ///
     /// ```
     /// use rvachev::Solid;

@@ -49,7 +49,7 @@ impl Solid {
     ///
     /// Exact where the solid's own value is the distance on that side: leaves by distance, outside of
     /// their unions, inside of their intersections, moved and scaled evenly. Of all else the surface is
-    /// [measured](crate::idioms) when the solid is compiled, to a thousandth of the distance or a
+    /// [measured](crate::lengths#exact-or-measured) when the solid is compiled, to a thousandth of the distance or a
     /// millionth of the solid's size, or to what [`with_tolerance`](Solid::with_tolerance) says.
     /// [`accuracy`](Solid::accuracy) tells what was reached.
     ///
@@ -97,6 +97,8 @@ impl Solid {
     /// The solid with its convex edges rounded: what balls of this radius fill that are inside of it (its
     /// opening by the ball). What is thinner than the ball is gone.
     ///
+    #[doc = picture!("rounded" = "docs/gallery/rounded.png")]
+    ///
     /// | parameter | unit | range |
     /// |---|---|---|
     /// | `radius` | length | 10⁻⁹ to 10⁹ |
@@ -119,6 +121,8 @@ impl Solid {
 
     /// The solid with its concave edges filled: all that balls of this radius do not reach from outside
     /// (its closing by the ball). Gaps and holes that the ball does not fit into are filled.
+    ///
+    #[doc = picture!("filleted" = "docs/gallery/filleted.png")]
     ///
     /// | parameter | unit | range |
     /// |---|---|---|

@@ -9,8 +9,8 @@
 //! ```
 //!
 //! A smooth blend is the join of its operands wherever their values differ by more than k,
-//! so beside it the solid prunes as ever; a fillet and a chamfer live near the edge by
-//! themselves (see `edge`). A displacement reaches everywhere, if weakly; a Ricci blend too.
+//! so beside it the solid prunes as ever; a fillet and a chamfer, which read distances, are made
+//! where solids are compiled. A displacement reaches everywhere, if weakly; a Ricci blend too.
 //!
 //! Sources: A. A. Pasko and V. V. Savchenko, *Blending operations for the functionally based
 //! constructive geometry* (1994); A. Ricci, *A constructive geometry for computer graphics*
@@ -21,13 +21,13 @@ use super::rfunction::{PAnd, saturate};
 use super::{ParamError, check};
 use crate::{Euclid, NormKind, Real};
 
-/// How two operands are joined with the transition between them shaped.
+/// How operands are joined with the transition between them shaped.
 ///
 /// ```text
-/// Smooth         x∧y = min(x, y) − max(radius − |x − y|, 0)²/(4·radius)
-/// Fillet         |p − q| − radius, q the centre of the ball that rolls along the edge
+/// Fillet         what a ball of this radius does not reach between the operands
 /// Chamfer        max(x, y, (x + y)/√(2 + 2c) + leg·√((1 − c)/2)), c the cosine between the
 ///                operands' gradients: a plane that meets both surfaces at the leg from the edge
+/// Smooth         x∧y = min(x, y) − max(radius − |x − y|, 0)²/(4·radius)
 /// Displacement   x∧y = x + y − √(x² + y²) + height/(1 + (x/falloff₀)² + (y/falloff₁)²)
 /// Ricci          G = (G₁^p + G₂^p)^(1/p) for the intersection, (G₁^−p + G₂^−p)^(−1/p) for
 ///                the union; the value is r·(1 − G)
@@ -35,31 +35,37 @@ use crate::{Euclid, NormKind, Real};
 /// x∨y = −(−x ∧ −y), but for the displacement, which is added to either
 /// ```
 ///
-/// Operands are read as they are: where a leaf's value is a true distance, lengths hold;
-/// where it is a gauge they hold near its surface. A fillet reads true distances from every
-/// leaf; an operand that is a smooth blend or a chamfer itself is that of these distances then,
-/// away from the fillet as well.
+/// Fillets and chamfers are lengths: they are of that size whatever the operands are, and never rise above
+/// flush faces, between which there is no edge. The other blends read the operands' values as they
+/// are, which may be no distances. The page `lengths` of `rvachev` explains them with pictures.
 ///
-/// A chamfer reads values over their slopes. Its legs are exact on planes, and wherever the angle
-/// between the operands stays the same away from the edge, as on caps; elsewhere on round operands
-/// they are right to 2 % up to a twelfth of the radius and to 7 % up to a quarter.
+/// A fillet of a union is between the plain union and its closing by the ball, and is the closing where the
+/// operands are convex. An operand's own concave edges stay as they are away from the joint. What the
+/// ball does not fit into is filled. Those of intersections and differences are the same of
+/// complements: convex edges are rounded, and what is thinner than the ball is gone.
 ///
-/// Where an operand has an edge of its own across the joined one, fillets and chamfers go round it
-/// in a mitre. Operands with a gap narrower than 0.28 of a chamfer's leg, or through which a
-/// fillet's ball does not fit, are bridged; of walls and gaps narrower than the ball a thin skin
-/// may remain where their sides are nearly parallel.
+/// A chamfer reads values over their slopes, and stays within the closing by a ball of 16 legs. Its legs are
+/// exact on planes, and wherever the angle between the operands stays the same away from the edge, as on
+/// caps; elsewhere on round operands they are right to 2 % up to a twelfth of the radius and to 7 % up to
+/// a quarter. Where an operand has an edge of its own across the joined one, it goes round it in a mitre.
+/// Operands with a gap narrower than 0.28 of the leg are bridged.
+///
+/// A smooth blend adds wherever the operands' values differ by less than its radius. On flush faces both values
+/// are the same, so that a union rises above them, by up to a quarter of the radius, and an
+/// intersection or a difference sinks below.
 ///
 /// | blend | parameters | reach |
 /// |---|---|---|
-/// | `Smooth` | `radius`, length, 10⁻⁹ to 10⁹ | where the operands' values differ by less than `radius` |
-/// | `Fillet` | `radius`, length, 10⁻⁹ to 10⁹ | a rolling ball of that radius along the edge |
+/// | `Smooth` | `radius`, length, 10⁻⁹ to 10⁹ | where the operands' values differ by less than `radius`, flush faces included |
+/// | `Fillet` | `radius`, length, 10⁻⁹ to 10⁹ | between the operands, where a ball of that radius does not reach |
 /// | `Chamfer` | `leg`, length, 10⁻⁹ to 10⁹ | a flat face that begins that far from the edge on either operand; at a right angle it is `leg·√2` wide |
 /// | `Displacement` | `height`, length (adds material if positive); `falloff`, lengths, 10⁻⁹ to 10⁹ | everywhere, falling with the square of the values |
 /// | `Ricci` | `p`, 1.001 to 1000: larger is sharper | everywhere; operands must be gauges |
 ///
-/// A smooth blend keeps the Lipschitz constant of its operands, a fillet that of distances where
-/// the ball fits, a chamfer where the operands are planes; where they bend it is a little steeper,
-/// and it jumps where a gradient does. A displacement and Ricci's blend promise none.
+/// A smooth blend keeps the Lipschitz constant of its operands. What a fillet adds has one of 1 between convex
+/// operands, of at most 1.5 elsewhere. A chamfer has that of the operands where they are planes; where
+/// they bend it is a little steeper, and it jumps where a gradient does. A displacement and Ricci's blend
+/// promise none.
 ///
 /// Sources: A. A. Pasko and V. V. Savchenko, *Blending operations for the functionally based
 /// constructive geometry* (1994); A. Ricci, *A constructive geometry for computer graphics*
@@ -90,10 +96,10 @@ pub enum Blend {
     )]
     Smooth {
         /// Values that differ by less than this are blended; a union of equal values gains a
-        /// quarter of it.
+        /// quarter of it, as where faces of the operands are flush.
         radius: f64,
     },
-    /// A rounding of constant radius along the edge where the operands meet.
+    /// A rounding of constant radius along the edge where the operands meet, as a rolling ball leaves it.
     ///
     #[doc = picture!("fillet_union" = "docs/gallery/fillet_union.png")]
     Fillet {

@@ -73,6 +73,20 @@ fn subtracted(blend: Blend) -> Solid {
     a.difference_with(b, blend)
 }
 
+/// Three pins on a plate, joined at once.
+fn many(blend: Blend) -> Solid {
+    let pins = [(-0.65, 0.6), (0.1, 0.9), (0.75, 0.45)]
+        .map(|(x, height)| Solid::cylinder(0.2, height).translate([x, 0.4 - 0.4 * height, 0.5 * height]));
+    Solid::union_all_with([Solid::cuboid([2.2, 1.2, 0.4])].into_iter().chain(pins), blend)
+}
+
+/// A plate with three holes, cut at once.
+fn many_cut(blend: Blend) -> Solid {
+    let holes = [(-0.65, 0.24), (0.05, 0.18), (0.65, 0.24)];
+    let holes = holes.map(|(x, radius)| Solid::cylinder(radius, 2.0).translate([x, 0.0, 0.0]));
+    Solid::cuboid([2.4, 1.3, 0.5]).difference_all_with(holes, blend)
+}
+
 const SMOOTH: Blend = Blend::Smooth { radius: 0.5 };
 const FILLET: Blend = Blend::Fillet { radius: 0.15 };
 const CHAMFER: Blend = Blend::Chamfer { leg: 0.14 };
@@ -109,6 +123,8 @@ pub const BLENDS: &[Entry] = &[
     ("fillet_union", || united(FILLET)),
     ("fillet_intersection", || intersected(FILLET)),
     ("fillet_difference", || subtracted(FILLET)),
+    ("fillet_union_all", || many(FILLET)),
+    ("fillet_difference_all", || many_cut(Blend::Fillet { radius: 0.08 })),
     ("chamfer_union", || united(CHAMFER)),
     ("chamfer_intersection", || intersected(CHAMFER)),
     ("chamfer_difference", || subtracted(CHAMFER)),

@@ -19,6 +19,11 @@ fn block() -> Solid {
     Solid::cuboid([2.0, 1.4, 1.0]) - Solid::cylinder(0.4, 2.0)
 }
 
+/// A step: convex edges, and a concave one.
+fn step() -> Solid {
+    Solid::cuboid([2.0, 1.4, 0.6]) | Solid::cuboid([0.8, 1.4, 0.8]).translate([-0.6, 0.0, 0.6])
+}
+
 /// A box with rounded edges and a neck.
 fn flask() -> Solid {
     Solid::rounded_cuboid([2.0, 1.4, 1.2], 0.3) | Solid::cylinder(0.4, 1.2).translate([0.0, 0.0, 0.4])
@@ -29,6 +34,8 @@ pub const LENGTHS: &[Entry] = &[
     ("offset", || block().offset(0.2)),
     ("offset_inwards", || block().offset(-0.15)),
     ("shell", || cut_open(flask().shell(0.12))),
+    ("rounded", || step().rounded(0.2)),
+    ("filleted", || step().filleted(0.35)),
 ];
 
 /// A flat bar along z.

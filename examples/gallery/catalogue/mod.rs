@@ -30,6 +30,6 @@ pub const FAMILIES: &[Family] = &[
     Family { title: "joins", color: [146, 130, 184], entries: joins::JOINS },
     Family { title: "rules seen at a level", color: [124, 128, 190], entries: joins::RULES },
     Family { title: "blends", color: [190, 122, 156], entries: joins::BLENDS },
-    Family { title: "levels offsets shells", color: [132, 146, 160], entries: maps::LENGTHS },
+    Family { title: "levels and lengths", color: [132, 146, 160], entries: maps::LENGTHS },
     Family { title: "maps", color: [196, 164, 124], entries: maps::MAPS },
 ];

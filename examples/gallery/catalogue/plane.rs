@@ -51,6 +51,8 @@ pub const PROFILES: &[Entry] = &[
     ("profile_polygon_with_holes", || plate(polygon_with_holes())),
     ("profile_joined", || plate(joined())),
     ("profile_offset", || plate(arrow().offset(0.2))),
+    ("profile_rounded", || plate(arrow().rounded(0.12))),
+    ("profile_filleted", || plate(arrow().filleted(0.35))),
 ];
 
 /// A cross with rounded arms.

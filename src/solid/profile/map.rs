@@ -210,6 +210,8 @@ impl Profile {
 
     /// The shape with its convex corners rounded: see [`Solid::rounded`](crate::Solid::rounded).
     ///
+    #[doc = picture!("profile_rounded" = "docs/gallery/profile_rounded.png")]
+    ///
     /// ```
     /// use rvachev::Profile;
     ///
@@ -223,6 +225,17 @@ impl Profile {
     }
 
     /// The shape with its concave corners filled: see [`Solid::filleted`](crate::Solid::filleted).
+    ///
+    #[doc = picture!("profile_filleted" = "docs/gallery/profile_filleted.png")]
+    ///
+    /// ```
+    /// use rvachev::Profile;
+    ///
+    /// let corner = [[0.0, 0.0], [10.0, 0.0], [10.0, 4.0], [4.0, 4.0], [4.0, 10.0], [0.0, 10.0]];
+    /// let filled = Profile::polygon(corner).filleted(2.0);
+    /// assert!(filled.contains([4.5, 4.5])? && !filled.contains([4.7, 4.7])?);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
     #[must_use]
     pub fn filleted(&self, radius: f64) -> Profile {
         Profile(self.0.filleted(radius))
