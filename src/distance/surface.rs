@@ -52,7 +52,7 @@ const ATTEMPT: f64 = 0.7;
 
 /// So many times as small are the cells that would show what is hidden, and so many more cells there may be then.
 const SMALLER: u32 = 4;
-const HIDDEN: f64 = 8.0;
+const HIDDEN: f64 = 12.0;
 
 impl DistanceSource for FromMeshes {
     fn surface(
