@@ -20,10 +20,10 @@ pub(super) struct FromMeshes;
 /// Patches are off the surface by this part of the length at most, if nobody has said how far they may be.
 const TOLERANCE: f64 = 1e-3;
 
-/// They need not be nearer than this part of the size.
+/// They need not be nearer than this part of the size, or of how far the surface is from the origin.
 const SMALL: f64 = 1e-6;
 
-/// They cannot be nearer than this part of the size: they are kept in single precision.
+/// They cannot be nearer than this part of it: they are kept in single precision.
 const FINEST: f64 = 2e-7;
 
 /// Cells along the longest side, and along the thinnest leaf, at least.
@@ -113,12 +113,15 @@ impl DistanceSource for FromMeshes {
     }
 
     fn tolerance(&self, programs: &Compiled, wanted: &Wanted<'_>) -> f64 {
-        let (_, _, size) = extent(programs, wanted);
+        let (bounds, _, size) = extent(programs, wanted);
+        // Vertices of meshes are in single precision.
+        let farthest = [bounds.min, bounds.max].map(|corner| corner.abs().max_element());
+        let far = farthest.into_iter().filter(|far| far.is_finite()).fold(size, f64::max);
         // A surface that is measured itself is no smoother than that, and has had its part.
         let own = programs.accuracy.tolerance;
         let least = match wanted.tolerance {
-            Some(tolerance) => (tolerance - own).max(FINEST * size),
-            None => (TOLERANCE * wanted.length).max(SMALL * size),
+            Some(tolerance) => (tolerance - own).max(FINEST * far),
+            None => (TOLERANCE * wanted.length).max(SMALL * far),
         };
         least.max(own)
     }
