@@ -23,6 +23,9 @@ const DEPTH: u32 = 6;
 /// After so many times it is seen whether splitting helps.
 const SOON: u32 = 3;
 
+/// Nor is any if there would be more than so many.
+const MANY: usize = 1 << 21;
+
 /// A patch is split where its normal is off by more, in radians.
 const TURN: f64 = 0.2;
 
@@ -97,10 +100,11 @@ impl Quilt {
             for (piece, error) in pieces.iter().zip(&mut errors) {
                 error.rim = piece.hems.iter().map(|hem| seams.of(*hem).off).fold(0.0, f64::max);
             }
+            let is_enough = quilt.patches.len() + 4 * pieces.len() > MANY;
             let fails = |piece: &Piece, error: Misfit| {
                 let is_off = error.all() > tolerance || error.turn > TURN && error.off > 0.05 * tolerance;
                 // Where splitting does not help, more of it does not either.
-                depth < DEPTH && is_off && (depth < 4 || error.all() < GAIN * piece.before)
+                depth < DEPTH && is_off && !is_enough && (depth < 4 || error.all() < GAIN * piece.before)
             };
             let failing = pieces.iter().zip(&errors).filter(|(piece, error)| fails(piece, **error));
             cross(failing.map(|(piece, _)| piece), &positions, &mut seams, slopes, run)?;

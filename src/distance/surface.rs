@@ -74,6 +74,8 @@ impl DistanceSource for FromMeshes {
         let tolerance = self.tolerance(programs, wanted);
         let slopes = Slopes { program: &programs.surface, precision: tolerance };
         let enough = CELLS + CELLS_A_LEAF * programs.surface.leaf_count() as f64;
+        // Of others, tips and cusps hide something in cells of any size.
+        let is_gentle = programs.surface.is_gentle();
         let mut done = LOOKING;
         let mut cell = first_cell(&programs.surface, bounds, size, enough, &run.stage(0.0, done))?;
         loop {
@@ -95,7 +97,7 @@ impl DistanceSource for FromMeshes {
             };
             // Two triangles a cell.
             let count = 0.5 * facets.triangles.len() as f64;
-            let is_last = 4.0 * count > if hides { HIDDEN * enough } else { enough };
+            let is_last = 4.0 * count > if hides && is_gentle { HIDDEN * enough } else { enough };
             if !hides || is_last {
                 let patience = if is_last { f64::INFINITY } else { PATIENCE };
                 let quilt = Quilt::new(facets, &slopes, (tolerance, patience), &to_sew)?;
