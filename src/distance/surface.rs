@@ -192,9 +192,8 @@ fn part(solid: &Solid, clip: Bounds, whole: Bounds, cell: f64, run: &Run) -> Res
     let Shown { mesh, hides } = shown(&programs.surface, bounds, cell, run)?;
     let is_cap = |corners: &[DVec3; 3]| {
         // Vertices of meshes are in single precision.
-        let on = |axis: usize, side: f64| {
-            corners.iter().all(|p| (p[axis] - side).abs() < 1e-3 * cell + SMALL * side.abs())
-        };
+        let on =
+            |axis: usize, side: f64| corners.iter().all(|p| (p[axis] - side).abs() < 1e-3 * cell + SMALL * side.abs());
         (0..3).any(|axis| {
             clip.min[axis] > whole.min[axis] && on(axis, clip.min[axis])
                 || clip.max[axis] < whole.max[axis] && on(axis, clip.max[axis])

@@ -84,8 +84,11 @@ impl Program {
 
     /// Whether the value is found to be the same all along an axis, over a box.
     pub(crate) fn is_even_along(&self, axis: usize, region: &Bounds) -> bool {
-        let over = self.evaluate(Dual::point(Zone::of_bounds(region).hull()), &mut Vec::new());
-        over.gradient()[axis].magnitude() < f64::MIN_POSITIVE
+        let by_slope = || {
+            let over = self.evaluate(Dual::point(Zone::of_bounds(region).hull()), &mut Vec::new());
+            over.gradient()[axis].magnitude() < f64::MIN_POSITIVE
+        };
+        self.nodes.iter().filter_map(Node::valued_by).all(|leaf| !self.axes_of(leaf)[axis]) || by_slope()
     }
 
     /// The axes of the world that a leaf depends on.

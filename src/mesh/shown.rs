@@ -10,12 +10,12 @@ use rayon::prelude::*;
 
 use super::blocks::Blocks;
 use super::error::MeshingError;
-use super::lattice::{CellSize, Lattice};
 use super::extract::Sampler;
+use super::lattice::{CellSize, Lattice};
 use super::resolve::{Among, Unresolved, unresolved_cells};
-use super::subject::Subject;
 use super::sampler::{Scratch, SolidSampler};
 use super::signs::{BLOCK, NODES, SIDE, Signs};
+use super::subject::Subject;
 use crate::eval::Program;
 use crate::geom::{Findings, Mesh};
 use crate::{Bounds, Cancelled, Run};
