@@ -175,6 +175,7 @@ pub fn print_rows(is_chosen: impl Fn(&str) -> bool, is_quick: bool) {
             println!("{name}: no surface");
             continue;
         };
+        let surface = surface.known_whole();
         let moved = operand().offset(-depth);
         let inside = surface.point(0, [0.3, 0.3]);
         let (build, _) = timed(|| moved.value(inside));
