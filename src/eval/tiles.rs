@@ -15,7 +15,7 @@ use super::apart::sign;
 use super::compile::Compiled;
 use super::composite::points64;
 use super::source::{DistanceSource, Wanted};
-use crate::{Bounds, Dual, Interval, ParamError, Real, Run, Solid};
+use crate::{Bounds, Dual, Interval, ParamError, Run, Solid};
 use rvachev_field::{AnyField, Chunk, Patches, SurfaceDistance, VALUE_LIMIT, Zone, steep_slopes};
 #[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
@@ -207,7 +207,7 @@ impl AnyField for Tiles {
     #[cfg(feature = "formula")]
     fn symbol<'a>(&self, [x, _, _]: [Symbol<'a>; 3]) -> Symbol<'a> {
         // Programs with measured distances are not lowered.
-        x.lift(-VALUE_LIMIT)
+        rvachev_num::Real::lift(x, -VALUE_LIMIT)
     }
 
     fn lanes32(&self, chunk: Chunk<'_, f32, 1>) {
