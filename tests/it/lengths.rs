@@ -471,13 +471,13 @@ fn caps_that_do_not_fit_are_refused() {
 fn lanes_of_a_shelled_network_have_the_sign_of_its_values() -> Outcome {
     let network = NetworkLattice { surface: MinimalSurface::SchwarzP, cell: 0.3, fraction: 0.7 };
     // The wall is thicker than the network in places: the shell is most of it.
-    for thickness in [0.2, 0.03] {
-        let solid = Solid::new(network).shell(thickness) & Solid::cuboid([1.2; 3]);
+    for thickness in [0.2, 0.1] {
+        let solid = Solid::new(network).shell(thickness) & Solid::cuboid([0.7; 3]);
         let program = solid.surface_program()?;
         let mut random = Random::new(1204);
         let (mut wrong, mut tried) = (0, 0);
         for _ in 0..60 {
-            let region = Bounds::from_center(random.vector(-0.6, 0.6), DVec3::splat(random.log_range(0.01, 0.2)));
+            let region = Bounds::from_center(random.vector(-0.35, 0.35), DVec3::splat(random.log_range(0.01, 0.1)));
             let doubt = Tape::new(&program, &region).roundoff();
             let (seen, lanes) = lanes32(&program, &region, &samples(&mut random, &region, 100));
             for (p, lane) in seen.into_iter().zip(lanes).filter(|(_, lane)| lane.abs() > doubt) {
@@ -728,12 +728,12 @@ fn what_does_not_end_has_its_lengths_where_it_is_cut() -> Outcome {
 fn an_offset_lattice_is_at_its_distance_where_it_is_cut() -> Outcome {
     let lattice = Solid::new(SheetLattice { surface: MinimalSurface::Gyroid, cell: 0.8, thickness: 0.1 });
     // Of a larger piece, whose own faces are too far away to matter.
-    let surface = Surface::new(&(&lattice & Solid::cuboid([2.0; 3])), 80)?.expect("it has a surface");
+    let surface = Surface::new(&(&lattice & Solid::cuboid([1.2; 3])), 64)?.expect("it has a surface");
     let by = 0.08;
-    let moved = lattice.offset(by) & Solid::cuboid([1.6; 3]);
+    let moved = lattice.offset(by) & Solid::cuboid([0.6; 3]);
     let mut random = Random::new(1207);
     for _ in 0..150 {
-        let p = random.vector(-0.79, 0.79);
+        let p = random.vector(-0.29, 0.29);
         let [least, most] = surface.distance(p);
         let [least, most] = if lattice.contains(p)? { [least, most] } else { [-most, -least] };
         let inside = moved.contains(p)?;
