@@ -305,7 +305,7 @@ mod tests {
                     }
                 }
             }
-            assert!(told > 60 && crossed > 60, "{number}: {told} {crossed}");
+            assert!(told > 30 && crossed > 60, "{number}: {told} {crossed}");
         }
     }
 }
