@@ -44,6 +44,9 @@ const PATIENCE: f64 = 5e-3;
 /// Distances are asked up to so many lengths from a region.
 const REACH: f64 = 2.0;
 
+/// What is cut off beside a surface is cut off at no less than this part of its size from it.
+const BESIDE: f64 = 0.05;
+
 /// The part of the work that finding the size of cells is.
 const LOOKING: f64 = 0.05;
 
@@ -131,7 +134,9 @@ impl DistanceSource for FromMeshes {
 
 /// What of a solid is to be measured: its box, the axis along which it is a cylinder, and its size across that.
 fn extent(programs: &Compiled, wanted: &Wanted<'_>) -> (Bounds, Option<usize>, f64) {
-    let bounds = programs.bounds.intersection(&wanted.region.inflate(REACH * wanted.length));
+    let beside = if programs.bounds.is_finite() { BESIDE * programs.bounds.longest_side() } else { 0.0 };
+    let reach = beside.max(REACH * wanted.length);
+    let bounds = programs.bounds.intersection(&wanted.region.inflate(reach));
     let flat = programs.flat_axis();
     let size = (0..3).filter(|axis| Some(*axis) != flat).map(|axis| bounds.size()[axis]).fold(0.0, f64::max);
     (bounds, flat, size)
