@@ -103,20 +103,28 @@ impl Subject<'_> {
         nodes(&cell.inflate(cell.longest_side()), 3).all(|p| (self.program.value(p) > 0.0) == is_inside)
     }
 
-    /// Whether steps along the gradient lead from the middle of a cell to the surface in it.
+    /// Whether steps along the gradient lead from the middle of a cell to the surface in it, and to its other side:
+    /// where parts meet face to face values are 0, and inside on both sides.
     fn is_crossed(&self, cell: &Bounds) -> bool {
         const STEPS: usize = 3;
-        let mut p = cell.center();
+        let (step, size) = (cell.longest_side(), self.bounds.longest_side());
+        let is_inside = self.program.value(cell.center()) > 0.0;
+        let (mut p, mut way) = (cell.center(), DVec3::ZERO);
         for _ in 0..STEPS {
             let (value, slope) = self.program.gradient(p);
-            let step = value / slope.length_squared() * slope;
-            if !step.is_finite() {
+            let on = value / slope.length_squared() * slope;
+            if !on.is_finite() {
                 return false;
             }
-            p -= step;
+            way = if is_inside { -slope } else { slope }.normalize_or_zero();
+            p -= on;
         }
-        let rest = self.program.value(p).abs();
-        cell.inflate(0.01 * cell.longest_side()).contains(p) && rest < 0.01 * cell.longest_side()
+        let is_beyond = |part: f64| {
+            let value = self.program.value(p + part * step * way);
+            value.abs() > ROUNDING * size && (value > 0.0) != is_inside
+        };
+        let near = self.program.value(p).abs() < 0.01 * step && cell.inflate(0.01 * step).contains(p);
+        near && [1e-2, 1e-3, 1e-4, 1e-5].into_iter().any(is_beyond)
     }
 
     /// Whether a cell with all its nodes on one side has something of the other.
