@@ -67,6 +67,10 @@ impl DistanceSource for FromMeshes {
     ) -> Result<Surface, CompileError> {
         let whole = programs.bounds;
         let (bounds, flat, size) = extent(programs, wanted);
+        let mut near = wanted.region.inflate(REACH * wanted.length);
+        if let Some(axis) = flat {
+            (near.min[axis], near.max[axis]) = (f64::NEG_INFINITY, f64::INFINITY);
+        }
         if bounds.is_empty() || size == 0.0 {
             let patches = Arc::new(Patches::new(&[], run)?);
             return Ok(Surface { patches, accuracy: Accuracy::default(), flat });
@@ -89,13 +93,13 @@ impl DistanceSource for FromMeshes {
             let (facets, hides) = match flat {
                 None if bounds.contains_bounds(&whole) => {
                     let Shown { mesh, hides } = shown(&programs.surface, bounds, cell, &to_mesh)?;
-                    (Facets::new(&mesh, |_| true), hides)
+                    (Facets::new(&mesh, |corners| meets(corners, &near)), hides)
                 }
-                None => part(solid, bounds, whole, cell, &to_mesh)?,
+                None => part(solid, bounds, [whole, near], cell, &to_mesh)?,
                 Some(axis) => {
                     let mut wall = bounds;
                     (wall.min[axis], wall.max[axis]) = (-1.5 * cell, 1.5 * cell);
-                    part(solid, wall, whole, cell, &to_mesh)?
+                    part(solid, wall, [whole, near], cell, &to_mesh)?
                 }
             };
             // Two triangles a cell.
@@ -184,8 +188,21 @@ fn compile_error(error: MeshingError) -> CompileError {
     }
 }
 
-/// The surface of a solid within a box, without the faces of the box, and whether smaller cells would show more.
-fn part(solid: &Solid, clip: Bounds, whole: Bounds, cell: f64, run: &Run) -> Result<(Facets, bool), CompileError> {
+/// Whether a triangle is not all beyond a side of a box.
+fn meets(corners: &[DVec3; 3], bounds: &Bounds) -> bool {
+    let own = corners.iter().fold(Bounds::EMPTY, |all, corner| all.union(&Bounds::new(*corner, *corner)));
+    (0..3).all(|axis| own.max[axis] >= bounds.min[axis] && own.min[axis] <= bounds.max[axis])
+}
+
+/// The surface of a solid within a box, without the faces of the box and what is not near, and whether smaller
+/// cells would show more.
+fn part(
+    solid: &Solid,
+    clip: Bounds,
+    [whole, near]: [Bounds; 2],
+    cell: f64,
+    run: &Run,
+) -> Result<(Facets, bool), CompileError> {
     let knife = Solid::cuboid(clip.size()).translate(clip.center());
     let part = solid.intersection(knife, RFunction::MIN_MAX);
     let [to_compile, run] = &run.stages([0.1, 0.9]);
@@ -204,5 +221,5 @@ fn part(solid: &Solid, clip: Bounds, whole: Bounds, cell: f64, run: &Run) -> Res
                 || clip.max[axis] < whole.max[axis] && on(axis, clip.max[axis])
         })
     };
-    Ok((Facets::new(&mesh, |corners| !is_cap(corners)), hides))
+    Ok((Facets::new(&mesh, |corners| !is_cap(corners) && meets(corners, &near)), hides))
 }
