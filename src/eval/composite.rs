@@ -101,9 +101,15 @@ impl AnyField for Composite {
     }
 
     fn lanes32(&self, chunk: Chunk<'_, f32, 1>) {
+        self.lanes32_within(chunk, f64::INFINITY);
+    }
+
+    fn lanes32_within(&self, chunk: Chunk<'_, f32, 1>, band: f64) {
         let local = Locals::of(&chunk.points, chunk.placement);
         let [out] = chunk.out;
-        with_evaluator(|evaluator| local.values(evaluator, self.program.tape(), out));
+        // Where values are shifted, others decide.
+        let band = if chunk.placement.shift == 0.0 { band / chunk.placement.scale } else { f64::INFINITY };
+        with_evaluator(|evaluator| local.values(evaluator, self.program.tape(), band, out));
         finish(chunk.placement, out);
     }
 
@@ -228,9 +234,9 @@ impl Locals {
         }
     }
 
-    pub(super) fn values(&self, evaluator: &mut Evaluator, tape: &Tape, out: &mut [f32]) {
+    fn values(&self, evaluator: &mut Evaluator, tape: &Tape, band: f64, out: &mut [f32]) {
         let [x, y, z] = self.coordinates();
-        evaluator.shortest_values(tape, [x, y, z], out);
+        evaluator.values_within(tape, band, [x, y, z], out);
     }
 
     pub(super) fn gradients(&self, evaluator: &mut Evaluator, tape: &Tape) -> Slopes {

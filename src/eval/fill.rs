@@ -25,7 +25,8 @@ use super::composite::{finish, points64, unscaled};
 use crate::{Bounds, Dual, Interval, ParamError, Real};
 #[cfg(feature = "formula")]
 use rvachev_field::VALUE_LIMIT;
-use rvachev_field::{AnyField, Chunk, Way, Zone, bits, steep_slopes};
+use rvachev_field::kernel::{CHUNK, Element};
+use rvachev_field::{AnyField, Chunk, Placement, Way, Zone, bits, steep_slopes};
 #[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
@@ -112,7 +113,7 @@ impl Fill {
     }
 
     fn two(&self, p: DVec3) -> Option<Two> {
-        self.two_of(p, |number| self.sides[number].distance.field.value(p.to_array()))
+        self.two_of(p, |number| self.sides[number].distance.value(p))
     }
 
     fn height(&self, ball: f64, two: Option<Two>) -> f64 {
@@ -350,20 +351,31 @@ impl AnyField for Fill {
     }
 
     fn lanes32(&self, chunk: Chunk<'_, f32, 1>) {
+        self.lanes32_within(chunk, f64::INFINITY);
+    }
+
+    /// What is outside of the boxes or reached by the ball by more than the band is not looked into.
+    fn lanes32_within(&self, chunk: Chunk<'_, f32, 1>, band: f64) {
         let Chunk { points, placement, out: [out] } = chunk;
+        let band = if placement.shift == 0.0 { band / placement.scale } else { f64::INFINITY };
+        let local = |i: usize| DVec3::from_array(placement.apply([0, 1, 2].map(|axis| f64::from(points[axis][i]))));
+        let depths: Vec<f64> = (0..out.len()).map(|i| self.depth(local(i)).0).collect();
+        out.iter_mut().zip(&depths).for_each(|(out, depth)| *out = *depth as f32);
+        let mut open = Few::of((0..out.len()).filter(|i| depths[*i] > -band), points);
         let own = unscaled(placement);
-        let values = |side: &Signed| {
-            let mut values = vec![0.0f32; out.len()];
-            side.field.lanes32(Chunk { points, placement: &own, out: [&mut values] });
-            values
-        };
-        let ball = values(&self.ball);
-        let sides: Vec<Vec<f32>> = self.sides.iter().map(|side| values(&side.distance)).collect();
-        for (i, out) in out.iter_mut().enumerate() {
-            let local = DVec3::from_array(placement.apply([0, 1, 2].map(|axis| f64::from(points[axis][i]))));
-            let two = self.two_of(local, |number| f64::from(sides[number][i]));
-            let value = self.height(self.ball.sign * f64::from(ball[i]), two);
-            *out = value.min(self.depth(local).0) as f32;
+        let most = (MOST * self.radius).max(band + self.margin);
+        let balls = open.values(&self.ball, &own, (self.radius, most));
+        open.retain(&balls, |ball, i| {
+            let height = ball - self.radius - self.margin;
+            out[i] = height.min(depths[i]) as f32;
+            height > -band
+        });
+        let sides: Vec<Vec<f64>> = (self.sides.iter())
+            .map(|side| open.values(&side.distance, &own, (2.0 * self.radius, self.farthest() + band)))
+            .collect();
+        for (n, (&i, &ball)) in open.places.iter().zip(&open.known).enumerate() {
+            let two = self.two_of(local(i), |number| sides[number][n]);
+            out[i] = self.height(ball, two).min(depths[i]) as f32;
         }
         finish(placement, out);
     }
@@ -391,7 +403,7 @@ impl AnyField for Fill {
         let [value, dx, dy, dz] = out;
         for i in 0..count {
             let local = DVec3::from_array(placement.apply([0, 1, 2].map(|axis| f64::from(points[axis][i]))));
-            let two = self.two_of(local, |number| f64::from(sides[number][0][i]));
+            let two = self.two_of(local, |number| self.sides[number].distance.sign * f64::from(sides[number][0][i]));
             let (v, (depth, way)) = (self.ball.sign * f64::from(ball[0][i]), self.depth(local));
             let height = self.height(v, two);
             // The slopes of parts are those of the frame that the points are in.
@@ -418,9 +430,53 @@ impl Fill {
         let mut two = Two::new(self.farthest());
         for (number, side) in self.sides.iter().enumerate() {
             if side.bounds.contains(p) {
-                two.add(number, side.distance.sign * value(number));
+                two.add(number, value(number));
             }
         }
         (!self.sides.is_empty()).then_some(two)
+    }
+}
+
+/// Some points of a chunk.
+struct Few {
+    points: [Vec<f32>; 3],
+    /// Where they are in the chunk.
+    places: Vec<usize>,
+    /// What is known of each.
+    known: Vec<f64>,
+}
+
+impl Few {
+    fn of(places: impl Iterator<Item = usize>, points: [&[f32]; 3]) -> Few {
+        let places: Vec<usize> = places.collect();
+        let points = points.map(|axis| places.iter().map(|i| axis[*i]).collect());
+        Few { points, places, known: Vec::new() }
+    }
+
+    /// Values at the points, told apart up to so far from a level.
+    fn values(&self, of: &Signed, placement: &Placement, (level, band): (f64, f64)) -> Vec<f64> {
+        let count = self.places.len();
+        let granule = if of.field.takes_short() { f32::widest() } else { CHUNK };
+        let mut points = self.points.clone();
+        let last = points.each_ref().map(|axis| axis.last().copied().unwrap_or_default());
+        for (axis, last) in points.iter_mut().zip(last) {
+            axis.resize(count.next_multiple_of(granule), last);
+        }
+        let mut values = vec![0.0; points[0].len()];
+        let shift = if band == f64::INFINITY { 0.0 } else { of.sign * level };
+        let mut placement = *placement;
+        placement.shift = -shift;
+        let [x, y, z] = &points;
+        of.field.lanes32_within(Chunk { points: [x, y, z], placement: &placement, out: [&mut values] }, band);
+        values.truncate(count);
+        values.into_iter().map(|value| of.sign * (f64::from(value) + shift)).collect()
+    }
+
+    /// Keeps those that are chosen by what is known of them and where they are.
+    fn retain(&mut self, known: &[f64], mut keep: impl FnMut(f64, usize) -> bool) {
+        let kept: Vec<usize> = (0..known.len()).filter(|n| keep(known[*n], self.places[*n])).collect();
+        self.points = self.points.each_ref().map(|axis| kept.iter().map(|n| axis[*n]).collect());
+        self.known = kept.iter().map(|n| known[*n]).collect();
+        self.places = kept.iter().map(|n| self.places[*n]).collect();
     }
 }

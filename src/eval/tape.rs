@@ -57,6 +57,8 @@ pub struct Tape {
     /// Whether every leaf takes short chunks; deformations and joins do.
     short: bool,
     rivals: Option<Rivals>,
+    /// Whether the value is a min or max of those of leaves, negated or not: nothing else is done to them.
+    is_choice: bool,
 }
 
 /// A deformation to run: from the points in slot `from` to those in the next slot.
@@ -120,7 +122,11 @@ impl Tape {
         }
         let short = leaves.iter().all(|leaf| leaf.field.takes_short());
         let rivals = Rivals::of(program, leaves.len());
-        Tape { frames, leaves, steps, registers: plan.registers, result: plan.result, origin, roundoff, short, rivals }
+        let is_choice = !steps.iter().any(|step| {
+            matches!(step, Step::Shift { .. }) || matches!(step, Step::Fold { rule, .. } if *rule != Rule::MinMax)
+        });
+        let (registers, result) = (plan.registers, plan.result);
+        Tape { frames, leaves, steps, registers, result, origin, roundoff, short, rivals, is_choice }
     }
 
     /// Whether few points are as quick as they are few: lanes are not padded to a whole chunk.
@@ -172,7 +178,8 @@ impl Tape {
 trait Mode<const N: usize> {
     type E: Element;
     const COORDINATES: usize;
-    fn leaf(leaf: &LeafStep, points: Points<'_, Self::E>, own: &mut [Self::E], out: [&mut [Self::E]; N]);
+    /// Values beyond the band may be nearer to 0, not nearer than the band.
+    fn leaf(leaf: &LeafStep, band: f64, points: Points<'_, Self::E>, own: &mut [Self::E], out: [&mut [Self::E]; N]);
     fn frame(frame: &FrameStep, points: Points<'_, Self::E>, own: &mut [Self::E], out: &mut [Self::E]);
     fn join(op: Op, rule: Rule, negate: bool, all: [&mut [Self::E]; N], next: [&[Self::E]; N]);
 }
@@ -220,8 +227,9 @@ impl Mode<1> for Values<f32> {
     type E = f32;
     const COORDINATES: usize = 3;
 
-    fn leaf(leaf: &LeafStep, points: Points<'_, f32>, _own: &mut [f32], out: [&mut [f32]; 1]) {
-        leaf.field.lanes32(Chunk { points: points.coordinates(), placement: &leaf.placement, out });
+    fn leaf(leaf: &LeafStep, band: f64, points: Points<'_, f32>, _own: &mut [f32], out: [&mut [f32]; 1]) {
+        let chunk = Chunk { points: points.coordinates(), placement: &leaf.placement, out };
+        if band == f64::INFINITY { leaf.field.lanes32(chunk) } else { leaf.field.lanes32_within(chunk, band) }
     }
 
     fn join(op: Op, rule: Rule, negate: bool, all: [&mut [f32]; 1], next: [&[f32]; 1]) {
@@ -238,7 +246,7 @@ impl Mode<1> for Values<f64> {
     type E = f64;
     const COORDINATES: usize = 3;
 
-    fn leaf(leaf: &LeafStep, points: Points<'_, f64>, _own: &mut [f64], out: [&mut [f64]; 1]) {
+    fn leaf(leaf: &LeafStep, _band: f64, points: Points<'_, f64>, _own: &mut [f64], out: [&mut [f64]; 1]) {
         leaf.field.lanes64(Chunk { points: points.coordinates(), placement: &leaf.placement, out });
     }
 
@@ -258,7 +266,7 @@ impl Mode<4> for Slopes {
     type E = f32;
     const COORDINATES: usize = 12;
 
-    fn leaf(leaf: &LeafStep, points: Points<'_, f32>, own: &mut [f32], out: [&mut [f32]; 4]) {
+    fn leaf(leaf: &LeafStep, _band: f64, points: Points<'_, f32>, own: &mut [f32], out: [&mut [f32]; 4]) {
         let chunk = Chunk { points: points.coordinates(), placement: &leaf.placement, out };
         let Points::Slot(slot, size) = points else { return leaf.field.gradients(chunk) };
         let [value, dx, dy, dz] = chunk.out;
@@ -292,10 +300,11 @@ impl Mode<4> for Slopes {
 fn execute<M: Mode<N>, const N: usize>(
     tape: &Tape,
     memory: &mut Memory<M::E>,
-    far: &[bool],
+    (far, band): (&[bool], f64),
     points: [&[M::E]; 3],
     mut out: [&mut [M::E]; N],
 ) {
+    let band = if tape.is_choice { band } else { f64::INFINITY };
     let count = points.iter().map(|p| p.len()).chain(out.iter().map(|o| o.len())).min().unwrap_or(0);
     let zero = M::E::default();
     memory.registers.resize(memory.registers.len().max(tape.registers * N * CHUNK), zero);
@@ -323,7 +332,7 @@ fn execute<M: Mode<N>, const N: usize>(
             }
             world = split::<_, 3>(padded, size);
         }
-        chunk::<M, N>((tape, far), world, registers, slots, own);
+        chunk::<M, N>((tape, far, band), world, registers, slots, own);
         let result = &registers[tape.result as usize * N * CHUNK..][..N * CHUNK];
         for (to, from) in out.iter_mut().zip(split::<_, N>(result, len)) {
             to[at..at + len].copy_from_slice(from);
@@ -333,7 +342,7 @@ fn execute<M: Mode<N>, const N: usize>(
 }
 
 fn chunk<M: Mode<N>, const N: usize>(
-    (tape, far): (&Tape, &[bool]),
+    (tape, far, band): (&Tape, &[bool], f64),
     world: [&[M::E]; 3],
     registers: &mut [M::E],
     slots: &mut [M::E],
@@ -361,7 +370,7 @@ fn chunk<M: Mode<N>, const N: usize>(
                     0 => Points::World(world),
                     slot => Points::Slot(&slots[(slot - 1) * coordinates..slot * coordinates], size),
                 };
-                M::leaf(leaf, points, own, split_mut(&mut registers[to as usize * width..][..width], size));
+                M::leaf(leaf, band, points, own, split_mut(&mut registers[to as usize * width..][..width], size));
             }
             Step::Fold { op, rule, negate, from, to } => {
                 let (all, next) = two(registers, to as usize * width, from as usize * width, width);

@@ -3,7 +3,7 @@
 use super::blocks::Blocks;
 use super::extract::{ExtractError, extract};
 use super::lattice::Lattice;
-use super::sampler::SolidSampler;
+use super::sampler::{BESIDE, SolidSampler};
 use super::settings::Features;
 use crate::eval::Program;
 use crate::geom::Mesh;
@@ -19,7 +19,7 @@ impl Blocks {
         run: &Run,
     ) -> Result<Mesh, ExtractError> {
         loop {
-            let mut sampler = SolidSampler::new(lattice, self, limits);
+            let mut sampler = SolidSampler::new(lattice, self, limits, BESIDE);
             if features == Features::Sharp {
                 sampler.keep_tapes();
             }

@@ -46,7 +46,7 @@ pub(super) fn unresolved_cells(
     run: &Run,
 ) -> Result<Vec<Unresolved>, Cancelled> {
     let meter = Meter::new(run, blocks.cells.len());
-    let sampler = SolidSampler::new(lattice, blocks, limits);
+    let sampler = SolidSampler::new(lattice, blocks, limits, f64::INFINITY);
     let of_block = |scratch: &mut Scratch, (number, &block): (usize, &[u32; 3])| {
         meter.step()?;
         let program = blocks.programs.of(number);

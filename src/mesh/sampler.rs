@@ -32,9 +32,15 @@ pub(super) struct SolidSampler<'a> {
     pattern: [Vec<f32>; 3],
     /// Which leaves of the solid pass between nodes, if any do.
     thin: Vec<bool>,
+    /// Values of nodes count up to this; beyond, their signs do.
+    band: f64,
     /// By batch, the tapes of its groups once its roots are found; empty if they are not to be kept.
     kept: Vec<OnceLock<Vec<(u32, Tape)>>>,
 }
+
+/// The ends of edges that the surface crosses are no farther from it than this, in cells, nor are the nearest corners of
+/// a cell that it is in.
+pub(super) const BESIDE: f64 = 1.0;
 
 /// Roots that are found at once; a multiple of the points that lanes are run on.
 const AT_ONCE: usize = 2048;
@@ -69,7 +75,9 @@ impl Scratch {
 }
 
 impl SolidSampler<'_> {
-    pub(super) fn new<'a>(lattice: &'a Lattice, blocks: &'a Blocks, limits: Bounds) -> SolidSampler<'a> {
+    /// Values of nodes are right up to so many cells from the surface, by distances; beyond, their signs are.
+    pub(super) fn new<'a>(lattice: &'a Lattice, blocks: &'a Blocks, limits: Bounds, cells: f64) -> SolidSampler<'a> {
+        let band = cells * lattice.step();
         let Blocks { cells: blocks, programs, exact } = blocks;
         let mut groups = vec![0; blocks.len()];
         groups.par_chunks_mut(BATCH).enumerate().for_each(|(batch, groups)| {
@@ -89,7 +97,7 @@ impl SolidSampler<'_> {
         if !thin.contains(&true) {
             thin.clear();
         }
-        SolidSampler { lattice, blocks, programs, exact, groups, limits, pattern, thin, kept: Vec::new() }
+        SolidSampler { lattice, blocks, programs, exact, groups, limits, pattern, thin, band, kept: Vec::new() }
     }
 
     /// The tape of a group, made if it is not among those at hand.
@@ -194,7 +202,7 @@ impl Sampler for SolidSampler<'_> {
             let last = first + out.len() / (SIDE * SIDE) - 1;
             let high = self.lattice.node(x + BLOCK as u32, y + BLOCK as u32, z + last as u32);
             let region = Bounds::new(low, high).inflate(1.01 * self.lattice.step());
-            scratch.evaluator.values_in((tape, &region), points, out);
+            scratch.evaluator.values_in((tape, &region), self.band, points, out);
         }
         // A sign that rounding may have turned is settled in double precision.
         let doubt = tape.roundoff() as f32;

@@ -13,7 +13,7 @@ use super::error::MeshingError;
 use super::extract::Sampler;
 use super::lattice::{CellSize, Lattice};
 use super::resolve::{Among, Unresolved, unresolved_cells};
-use super::sampler::{Scratch, SolidSampler};
+use super::sampler::{BESIDE, Scratch, SolidSampler};
 use super::signs::{BLOCK, NODES, SIDE, Signs};
 use super::subject::Subject;
 use crate::eval::Program;
@@ -70,7 +70,7 @@ impl Subject<'_> {
     /// Whether the surface is in a cell that has no other side near: of values that change no faster than points move,
     /// those at the nodes tell where to look, and lead there.
     fn has_lone_surface(&self, blocks: &Blocks, lattice: &Lattice, run: &Run) -> Result<bool, Cancelled> {
-        let sampler = SolidSampler::new(lattice, blocks, self.bounds);
+        let sampler = SolidSampler::new(lattice, blocks, self.bounds, BESIDE);
         // No point of a cell is farther from its nearest node than half of its diagonal.
         let near = 0.867 * lattice.step();
         let of_block = |scratch: &mut Scratch, (number, &block): (usize, &[u32; 3])| {

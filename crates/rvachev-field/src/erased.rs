@@ -99,7 +99,12 @@ pub trait AnyField: Any + Debug + Send + Sync {
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a>;
     /// Values of a chunk, on lanes of `f32`.
     fn lanes32(&self, chunk: Chunk<'_, f32, 1>);
-    /// The same on lanes of `f64`.
+    /// The same for who asks about the sign: values that are farther than `band` from 0 may come nearer to it, as
+    /// far as the band and no farther.
+    fn lanes32_within(&self, chunk: Chunk<'_, f32, 1>, _band: f64) {
+        self.lanes32(chunk);
+    }
+    /// Values on lanes of `f64`.
     fn lanes64(&self, chunk: Chunk<'_, f64, 1>);
     /// Value and the three derivatives.
     fn gradients(&self, chunk: Chunk<'_, f32, 4>);

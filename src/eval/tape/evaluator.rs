@@ -59,14 +59,26 @@ impl Evaluator {
 
     /// Values of as many points as the shortest of the slices holds.
     pub(crate) fn shortest_values(&mut self, tape: &Tape, points: [&[f32]; 3], out: &mut [f32]) {
-        execute::<Values<f32>, 1>(tape, &mut self.single, &[], points, [out]);
+        execute::<Values<f32>, 1>(tape, &mut self.single, (&[], f64::INFINITY), points, [out]);
     }
 
     /// The same for points in `region`, which is not relative to the origin; leaves of a union that
     /// it is outside of are left out: what is outside of all of them has any value below 0.
-    pub(crate) fn values_in(&mut self, (tape, region): (&Tape, &Bounds), [x, y, z]: [&[f32]; 3], out: &mut [f32]) {
+    /// Values beyond the band may be nearer to 0, not nearer than the band.
+    pub(crate) fn values_in(
+        &mut self,
+        (tape, region): (&Tape, &Bounds),
+        band: f64,
+        points: [&[f32]; 3],
+        out: &mut [f32],
+    ) {
         tape.mark_far(region, &mut self.far);
-        execute::<Values<f32>, 1>(tape, &mut self.single, &self.far, [x, y, z], [out]);
+        execute::<Values<f32>, 1>(tape, &mut self.single, (&self.far, band), points, [out]);
+    }
+
+    /// The same in any region.
+    pub(crate) fn values_within(&mut self, tape: &Tape, band: f64, points: [&[f32]; 3], out: &mut [f32]) {
+        execute::<Values<f32>, 1>(tape, &mut self.single, (&[], band), points, [out]);
     }
 
     /// [`values`](Evaluator::values) on lanes of `f64`: as accurate as
@@ -89,7 +101,7 @@ impl Evaluator {
 
     /// The same of as many points as the shortest of the slices holds.
     pub(crate) fn shortest_values_f64(&mut self, tape: &Tape, points: [&[f64]; 3], out: &mut [f64]) {
-        execute::<Values<f64>, 1>(tape, &mut self.double, &[], points, [out]);
+        execute::<Values<f64>, 1>(tape, &mut self.double, (&[], f64::INFINITY), points, [out]);
     }
 
     /// Values and gradients at points relative to the tape's origin.
@@ -114,6 +126,6 @@ impl Evaluator {
     /// The same of as many points as the shortest of the slices holds.
     pub(crate) fn shortest_gradients(&mut self, tape: &Tape, points: [&[f32]; 3], out: Gradients<'_>) {
         let Gradients { value, dx, dy, dz } = out;
-        execute::<Slopes, 4>(tape, &mut self.single, &[], points, [value, dx, dy, dz]);
+        execute::<Slopes, 4>(tape, &mut self.single, (&[], f64::INFINITY), points, [value, dx, dy, dz]);
     }
 }

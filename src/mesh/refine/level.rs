@@ -14,7 +14,7 @@ use crate::mesh::blocks::Blocks;
 use crate::mesh::extract::{ExtractError, Root, Sampler, extract};
 use crate::mesh::feature::Slope;
 use crate::mesh::lattice::Lattice;
-use crate::mesh::sampler::{Scratch, SolidSampler};
+use crate::mesh::sampler::{BESIDE, Scratch, SolidSampler};
 use crate::mesh::settings::Features;
 use crate::mesh::signs::{BLOCK, EdgeRef, NODES, SIDE};
 
@@ -59,7 +59,7 @@ impl Level {
         }
         let has = |block| outer.is_none_or(|seam| seam.inset.has_half(numbered(block)));
         let mesh = loop {
-            let mut inner = SolidSampler::new(&self.lattice, &self.blocks, job.limits);
+            let mut inner = SolidSampler::new(&self.lattice, &self.blocks, job.limits, BESIDE);
             if job.features == Features::Sharp {
                 inner.keep_tapes();
             }

@@ -13,7 +13,7 @@ use super::piece::{Between, Piece, Rim};
 use super::place::{Edge, Face, edge_of, face_of, is_fan};
 use crate::mesh::extract::Sampler;
 use crate::mesh::lattice::Lattice;
-use crate::mesh::sampler::{Scratch, SolidSampler};
+use crate::mesh::sampler::{BESIDE, Scratch, SolidSampler};
 use crate::mesh::signs::{BLOCK, NODES, SIDE};
 
 pub(super) struct Seam {
@@ -165,7 +165,7 @@ struct NodeSigns<'a> {
 
 impl<'a> NodeSigns<'a> {
     fn new(job: Job<'a>, level: &'a Level) -> NodeSigns<'a> {
-        let sampler = SolidSampler::new(&level.lattice, &level.blocks, job.limits);
+        let sampler = SolidSampler::new(&level.lattice, &level.blocks, job.limits, BESIDE);
         let (numbers, scratch) = (level.blocks.cells.iter().copied().zip(0..).collect(), sampler.scratch());
         NodeSigns { job, level, sampler, numbers, scratch, values: Box::new([0.0; NODES]) }
     }

@@ -23,6 +23,8 @@ const SPREAD: [u16; CELLS] = [0, 1, 8, 9, 64, 65, 72, 73];
 /// Points of the surface's frame.
 pub(super) struct Block<E> {
     pub(super) columns: [[E; BLOCK]; 3],
+    /// Numbers that have their signs, where these matter.
+    pub(super) signs: [E; BLOCK],
     /// Where the points stood before.
     order: [u16; BLOCK],
 }
@@ -30,10 +32,10 @@ pub(super) struct Block<E> {
 impl<E: Element> Block<E> {
     #[inline(always)]
     pub(super) fn new() -> Block<E> {
-        Block { columns: [[E::default(); BLOCK]; 3], order: [0; BLOCK] }
+        Block { columns: [[E::default(); BLOCK]; 3], signs: [E::default(); BLOCK], order: [0; BLOCK] }
     }
 
-    /// Sorts the points of the first three columns, of which `len` are in use.
+    /// Sorts the points, of which `len` are in use, and the signs.
     #[inline(always)]
     pub(super) fn sort(&mut self, len: usize) {
         let [x, y, z] = &mut self.columns;
@@ -61,7 +63,7 @@ impl<E: Element> Block<E> {
             self.order[usize::from(*to) % BLOCK] = i;
             *to += 1;
         }
-        for column in [x, y, z] {
+        for column in [x, y, z, &mut self.signs[..len]] {
             let mut before = [E::default(); BLOCK];
             before[..len].copy_from_slice(column);
             for (to, from) in column.iter_mut().zip(&self.order) {

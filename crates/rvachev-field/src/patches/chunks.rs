@@ -1,6 +1,6 @@
 //! Distances of whole chunks of points: packets on SIMD lanes.
 
-use std::ops::Range;
+use std::ops;
 
 use fearless_simd::{Level, Simd};
 use rvachev_num::lanes::{F32, F64, Lanes};
@@ -17,14 +17,10 @@ use crate::{Chunk, Placement};
 
 impl SurfaceDistance {
     /// Values on lanes of `f32`.
-    pub(super) fn values32(&self, chunk: Chunk<'_, f32, 1>) {
+    pub(super) fn values32(&self, chunk: Chunk<'_, f32, 1>, band: f64) {
         let Chunk { points, placement, out: [out] } = chunk;
-        match self.side {
-            Some(side) => out.fill(side as f32),
-            None => self.sign.lanes32(Chunk { points, placement: &unscaled(placement), out: [&mut *out] }),
-        }
-        self.take_sides(points, placement, out);
-        let packets = self.packets(placement);
+        self.signs32(points, placement, out);
+        let packets = self.packets(placement, band);
         on_level!(simd => values_on::<F32<_>>(simd, &packets, points, out), else values_by_point(&packets, points, out))
     }
 
@@ -36,23 +32,29 @@ impl SurfaceDistance {
             None => self.sign.lanes64(Chunk { points, placement: &unscaled(placement), out: [&mut *out] }),
         }
         self.take_sides(points, placement, out);
-        let packets = self.packets(placement);
+        let packets = self.packets(placement, f64::INFINITY);
         on_level!(simd => values_on::<F64<_>>(simd, &packets, points, out), else values_by_point(&packets, points, out))
     }
 
     /// Values and gradients.
     pub(super) fn slopes(&self, chunk: Chunk<'_, f32, 4>) {
         let Chunk { points, placement, mut out } = chunk;
-        match self.side {
-            Some(side) => out[0].fill(side as f32),
-            None => self.sign.lanes32(Chunk { points, placement: &unscaled(placement), out: [&mut *out[0]] }),
-        }
-        self.take_sides(points, placement, out[0]);
-        let packets = self.packets(placement);
+        self.signs32(points, placement, out[0]);
+        let packets = self.packets(placement, f64::INFINITY);
         on_level!(
             simd => slopes_on::<F32<_>>(simd, &packets, points, &mut out),
             else slopes_by_point(&packets, points, &mut out)
         );
+    }
+
+    /// Numbers with the signs.
+    fn signs32(&self, points: [&[f32]; 3], placement: &Placement, out: &mut [f32]) {
+        let unscaled = unscaled(placement);
+        match self.side {
+            Some(side) => out.fill(side as f32),
+            None => self.sign.lanes32_within(Chunk { points, placement: &unscaled, out: [&mut *out] }, 0.0),
+        }
+        self.take_sides(points, placement, out);
     }
 
     /// Signs where the sign field has none.
@@ -72,7 +74,7 @@ fn unscaled(placement: &Placement) -> Placement {
 
 /// Loads a vector of each column.
 #[inline(always)]
-fn load<L: Lanes>(simd: L::Token, [x, y, z]: [&[L::Element]; 3], here: Range<usize>) -> [L; 3] {
+fn load<L: Lanes>(simd: L::Token, [x, y, z]: [&[L::Element]; 3], here: ops::Range<usize>) -> [L; 3] {
     [L::load(simd, &x[here.clone()]), L::load(simd, &y[here.clone()]), L::load(simd, &z[here])]
 }
 
@@ -82,9 +84,11 @@ fn fill<L: Lanes<Element: Element>>(
     simd: L::Token,
     packets: &Packets<'_>,
     points: [&[L::Element]; 3],
-    here: Range<usize>,
+    signs: &[L::Element],
+    here: ops::Range<usize>,
     block: &mut Block<L::Element>,
 ) {
+    block.signs[..here.len()].copy_from_slice(&signs[here.clone()]);
     let mut at = 0;
     while at < here.len() {
         let from = here.start + at;
@@ -126,13 +130,14 @@ impl<L: Lanes<Element: Element> + Packet> Work<L> {
         simd: L::Token,
         packets: &Packets<'_>,
         points: [&[L::Element]; 3],
-        here: Range<usize>,
+        signs: &[L::Element],
+        here: ops::Range<usize>,
         ways: bool,
     ) {
         let patches = packets.patches;
         let is_flat = patches.bulges.is_empty();
         let len = here.len();
-        fill::<L>(simd, packets, points, here.clone(), &mut self.block);
+        fill::<L>(simd, packets, points, signs, here, &mut self.block);
         self.found = Found::none();
         let mut at = 0;
         while at < len {
@@ -140,14 +145,20 @@ impl<L: Lanes<Element: Element> + Packet> Work<L> {
             let [x, y, z] = &self.block.columns;
             let p = load::<L>(simd, [x, y, z], here.clone());
             self.pairs.first = at as u32;
-            let best = patches.search(p, self.seeds.known(), &mut self.stack, &mut self.pairs);
+            let range = packets.range(L::load(simd, &self.block.signs[here.clone()]));
+            let best = patches.search(p, self.seeds.known(), range, &mut self.stack, &mut self.pairs);
             self.seeds.take(best.which);
             let (all, _) = best.which.all();
             for (to, which) in self.found.patches[here.clone()].iter_mut().zip(all) {
                 *to = which as u32;
             }
-            if is_flat {
-                best.square.store(&mut self.found.squares[here.clone()]);
+            best.square.store(&mut self.found.squares[here.clone()]);
+            if !is_flat {
+                let (near, told) = (best.square.below(range.low), best.square.below(range.high));
+                for lane in 0..L::WIDTH {
+                    self.found.is_near[at + lane] = near >> lane & 1 == 1;
+                    self.found.is_far[at + lane] = told >> lane & 1 == 0;
+                }
             }
             if is_flat && ways {
                 let way = packets.ways(p, best.which);
@@ -176,7 +187,7 @@ fn values_on<L: Lanes<Element: Element> + Packet>(
     let mut from = 0;
     while from < out.len() {
         let len = BLOCK.min(out.len() - from);
-        work.find(simd, packets, points, from..from + len, false);
+        work.find(simd, packets, points, out, from..from + len, false);
         work.block.unsorted(&work.found.squares, &mut squares[..len]);
         let mut at = 0;
         while at < len {
@@ -213,7 +224,7 @@ fn slopes_on<L: Lanes<Element = f32> + Packet>(
     let mut from = 0;
     while from < out[0].len() {
         let len = BLOCK.min(out[0].len() - from);
-        work.find(simd, packets, points, from..from + len, true);
+        work.find(simd, packets, points, &*out[0], from..from + len, true);
         for (way, sorted) in ways.iter_mut().zip(&work.found.ways) {
             work.block.unsorted(sorted, &mut way[..len]);
         }

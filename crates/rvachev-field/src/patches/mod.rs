@@ -54,7 +54,7 @@ use self::closest::Closest;
 use self::curved::Around;
 use self::face::{Bulge, Face, Frame, Sides};
 use self::hierarchy::{Node, Tree};
-use self::search::{Best, Keep, Stack};
+use self::search::{Best, Keep, Range, Stack};
 use crate::Bounds;
 
 pub use self::patch::Patch;
@@ -148,7 +148,7 @@ impl Patches {
     /// The nearest patch to one point of the surface's frame.
     fn search_one(&self, local: [f64; 3]) -> Best<f64> {
         let mut curved = One { patches: self, local, best: Best::none(0.0) };
-        let best = self.search(local, &[], &mut Stack::new(0.0), &mut curved);
+        let best = self.search(local, &[], Range::all(0.0), &mut Stack::new(0.0), &mut curved);
         if self.bulges.is_empty() { best } else { curved.best }
     }
 

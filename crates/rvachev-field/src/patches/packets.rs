@@ -6,6 +6,7 @@ use rvachev_num::Real;
 
 use super::packet::Packet;
 use super::plane::Plane;
+use super::search::Range;
 
 use super::{Patches, SurfaceDistance};
 use crate::{Placement, VALUE_LIMIT};
@@ -17,6 +18,9 @@ const FARTHEST: f64 = 1e15;
 /// How near, in units of the surface's frame, single precision leaves too little of the direction
 /// to the foot.
 const CLOSE: f64 = 1e-4;
+
+/// Distances that are so near to the level that rounding may turn their signs are told apart, in units of the frame.
+const LEAST: f64 = 1e-5;
 
 /// Patches that were nearest to the packet before, none of them twice.
 #[derive(Default)]
@@ -55,11 +59,14 @@ pub(super) struct Packets<'a> {
     /// Into the surface's frame; a value there is scaled and shifted to one outside.
     local: Placement,
     farthest: f64,
+    /// The distance on the positive side where values are 0, and how far from it distances are told apart.
+    level: f64,
+    band: f64,
 }
 
 impl SurfaceDistance {
     /// The way of a chunk.
-    pub(super) fn packets<'a>(&'a self, placement: &'a Placement) -> Packets<'a> {
+    pub(super) fn packets<'a>(&'a self, placement: &'a Placement, band: f64) -> Packets<'a> {
         let frame = &self.patches.frame;
         let mut across = DVec3::ONE;
         if let Some(axis) = self.flat {
@@ -69,7 +76,17 @@ impl SurfaceDistance {
         let mut map = DAffine3::from_mat3(flattened.matrix3 * (1.0 / frame.unit));
         map.translation = frame.into_local(flattened.translation);
         let local = Placement::new(&map, placement.scale * frame.unit, placement.shift);
-        Packets { leaf: self, patches: &self.patches, placement, local, farthest: VALUE_LIMIT / frame.unit }
+        let level = -placement.shift / local.scale;
+        let farthest = VALUE_LIMIT / frame.unit;
+        Packets {
+            leaf: self,
+            patches: &self.patches,
+            placement,
+            local,
+            farthest,
+            level,
+            band: (band / local.scale.abs()).max(LEAST),
+        }
     }
 }
 
@@ -98,6 +115,18 @@ impl Packets<'_> {
             i += 1;
         }
         ways
+    }
+
+    /// The squares of the distances to be told apart, given signs.
+    #[inline(always)]
+    pub(super) fn range<R: Packet>(&self, sign: R) -> Range<R> {
+        let zero = sign.lift(0.0);
+        if self.band == f64::INFINITY {
+            return Range::all(sign);
+        }
+        let level = sign.select(sign.lift(self.level), sign.lift(-self.level));
+        let (low, high) = ((level - self.band).max(zero), (level + self.band).max(zero));
+        Range { low: low.square(), high: high.square() }
     }
 
     /// The signed distances, as they count outside.

@@ -48,14 +48,29 @@ pub(super) struct Found<E> {
     /// From the nearest points.
     pub(super) ways: [[E; BLOCK]; 3],
     pub(super) patches: [u32; BLOCK],
+    /// Whether no more is asked, though it may be nearer than the square says.
+    pub(super) is_near: [bool; BLOCK],
+    /// Whether it is not known to be nearer than the farthest that is asked for.
+    pub(super) is_far: [bool; BLOCK],
 }
 
 impl<E: Element> Found<E> {
+    /// The square of what is not known.
+    #[inline(always)]
+    fn farthest() -> E {
+        E::from_f64(f64::from(f32::MAX))
+    }
+
     /// Nothing is known.
     #[inline(always)]
     pub(super) fn none() -> Found<E> {
-        let farthest = E::from_f64(f64::from(f32::MAX));
-        Found { squares: [farthest; BLOCK], ways: [[E::default(); BLOCK]; 3], patches: [0; BLOCK] }
+        Found {
+            squares: [Found::<E>::farthest(); BLOCK],
+            ways: [[E::default(); BLOCK]; 3],
+            patches: [0; BLOCK],
+            is_near: [false; BLOCK],
+            is_far: [false; BLOCK],
+        }
     }
 }
 
@@ -77,7 +92,12 @@ impl<L: Lanes<Element: Element> + Packet> Pairs<L> {
         len: usize,
     ) {
         self.pairs.clear();
-        self.pairs.extend((0..).zip(&found.patches[..len]).map(|(point, at)| (point, *at)));
+        for point in 0..len {
+            if !found.is_near[point] && !found.is_far[point] {
+                found.squares[point] = Found::<L::Element>::farthest();
+                self.pairs.push((point as u32, found.patches[point]));
+            }
+        }
         let mut round = 0;
         while round < 2 {
             self.solve(simd, patches, block, found);
@@ -98,7 +118,8 @@ impl<L: Lanes<Element: Element> + Packet> Pairs<L> {
             let mut points = least.below(known);
             while points != 0 {
                 let point = first + points.trailing_zeros();
-                if found.patches[point as usize % BLOCK] != *at {
+                let place = point as usize % BLOCK;
+                if !found.is_near[place] && (found.is_far[place] || found.patches[place] != *at) {
                     self.pairs.push((point, *at));
                 }
                 points &= points - 1;

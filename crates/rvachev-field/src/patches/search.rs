@@ -35,6 +35,12 @@ impl<R: Packet> Best<R> {
         Best { square: like.lift(f64::from(f32::MAX)), which: like.lift(0.0) }
     }
 
+    /// It is no farther than this.
+    #[inline(always)]
+    fn within(self, farthest: R) -> Best<R> {
+        Best { square: self.square.min(farthest), ..self }
+    }
+
     /// Takes a patch where it is nearer than what is known; of two that are equally near the one
     /// that comes first.
     #[inline(always)]
@@ -63,21 +69,38 @@ pub(super) trait Keep<R> {
     fn keep(&mut self, at: u32, least: R, most: R);
 }
 
+/// Which distances a search is to find: squares of those that are near enough to be told apart, and far enough.
+#[derive(Clone, Copy)]
+pub(super) struct Range<R> {
+    pub(super) low: R,
+    pub(super) high: R,
+}
+
+impl<R: Packet> Range<R> {
+    /// All of them.
+    #[inline(always)]
+    pub(super) fn all(like: R) -> Range<R> {
+        Range { low: like.lift(-1.0), high: like.lift(f64::from(f32::MAX)) }
+    }
+}
+
 /// Curved patches of a search that is not at its end.
 const KEPT: usize = 32;
 
 impl Patches {
     /// Finds the nearest patches to points of the surface's frame, of curved patches all that may
-    /// be. `seeds` are patches that are likely to be near.
+    /// be. `seeds` are patches that are likely to be near. What is found below the range is a bound of the distance, and
+    /// what is beyond is held at its end.
     #[inline(always)]
     pub(super) fn search<R: Packet>(
         &self,
         p: [R; 3],
         seeds: &[u32],
+        range: Range<R>,
         stack: &mut Stack<R>,
         curved: &mut impl Keep<R>,
     ) -> Best<R> {
-        let mut best = Best::none(p[0]);
+        let mut best = Best::none(p[0]).within(range.high);
         if self.nodes.is_empty() {
             return best;
         }
@@ -86,9 +109,15 @@ impl Patches {
         let mut most = best.square;
         for seed in seeds {
             if let Some((face, sides)) = self.at(*seed as usize) {
-                most = most.min(farthest(R::from_face(p, face, sides), face.sag));
+                let square = farthest(R::from_face(p, face, sides), face.sag);
+                best.which = (square - most).select(best.which, square.lift(f64::from(*seed)));
+                most = most.min(square);
             }
         }
+        let known = most;
+        // Of what is below the range no more is asked.
+        let open = |most: R| (range.low - most).select(most.lift(0.0), most);
+        most = open(most);
         let middle = [p[0].one(), p[1].one(), p[2].one()];
         let mut kept = [(0, most); KEPT];
         stack.0[0] = (0, p[0].lift(0.0));
@@ -126,7 +155,7 @@ impl Patches {
                     let square = R::from_face(p, face, sides);
                     if is_flat {
                         best.take(square, at);
-                        most = most.min(best.square);
+                        most = open(most.min(best.square));
                         continue;
                     }
                     let distance = square.sqrt();
@@ -135,14 +164,14 @@ impl Patches {
                     kept[count] = (at, least);
                     count += usize::from(least.any_below(most));
                     best.take((distance + f64::from(face.sag)).square() * SURELY + f64::from(f32::MIN_POSITIVE), at);
-                    most = most.min(best.square);
+                    most = open(most.min(best.square));
                 }
             }
             for (at, least) in &kept[..count] {
                 curved.keep(*at, *least, most);
             }
         }
-        best
+        best.within(known)
     }
 
     /// A patch's triangle.

@@ -287,7 +287,11 @@ impl AnyField for SurfaceDistance {
     }
 
     fn lanes32(&self, chunk: Chunk<'_, f32, 1>) {
-        self.values32(chunk);
+        self.values32(chunk, f64::INFINITY);
+    }
+
+    fn lanes32_within(&self, chunk: Chunk<'_, f32, 1>, band: f64) {
+        self.values32(chunk, band);
     }
 
     fn lanes64(&self, chunk: Chunk<'_, f64, 1>) {
