@@ -468,12 +468,11 @@ impl<'e> Compiler<'e> {
         let ball = Signed { field: measured.field, sign: if is_union { 1.0 } else { -1.0 } };
         let fill = Fill { radius, ball, sides: Vec::new(), margin, boxes: vec![Bounds::ALL], hull: Bounds::ALL };
         let solid::Node::Blend { blend, operands, .. } = site.solid.node() else {
-            let bounds = kept(&site.solid.node().operands()[0]).map_or(Bounds::EMPTY, |programs| programs.bounds);
-            return vec![self.made(
-                &(Arc::new(Fill { boxes: vec![bounds], hull: bounds, ..fill }) as Arc<dyn AnyField>),
-                site,
-                0.0,
-            )];
+            let whole = kept(&site.solid.node().operands()[0]).map_or(Bounds::EMPTY, |programs| programs.bounds);
+            // What is taken away goes on beyond the surface: values are 0 where the new one is, and nowhere else.
+            let (bounds, hull) = if is_union { (whole, whole) } else { (whole.inflate(radius), Bounds::ALL) };
+            let fill: Arc<dyn AnyField> = Arc::new(Fill { boxes: vec![bounds], hull, ..fill });
+            return vec![self.made(&fill, site, 0.0)];
         };
         let near = Near::of(operation, *blend, operands);
         if near.boxes.is_empty() {
