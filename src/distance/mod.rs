@@ -13,6 +13,7 @@
 
 mod crease;
 mod facets;
+mod mend;
 mod quilt;
 mod seam;
 mod slopes;

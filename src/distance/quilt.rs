@@ -32,6 +32,9 @@ const TURN: f64 = 0.2;
 /// Splitting goes on where it leaves less than this part of the error.
 const GAIN: f64 = 0.8;
 
+/// Patches that are farther off than so many tolerances are to be mended.
+const FAR: f64 = 3.0;
+
 /// Patches that are farther off than this part of their width are left out.
 const ASTRAY: f64 = 0.4;
 
@@ -46,7 +49,15 @@ pub(super) struct Quilt {
     pub(super) patches: Vec<Patch>,
     pub(super) error: f64,
     /// How far each is off, and its area.
-    measures: Vec<[f64; 2]>,
+    pub(super) measures: Vec<[f64; 2]>,
+    /// Patches that are far off.
+    pub(super) spots: Vec<Spot>,
+}
+
+/// A patch that is far off, and how far.
+pub(super) struct Spot {
+    pub(super) patch: Patch,
+    pub(super) off: f64,
 }
 
 /// A triangle: its corners, their normals, and its sides from each corner to the next.
@@ -88,7 +99,7 @@ impl Quilt {
         let mut seams = Seams::default();
         let mut pieces = first(&facets, &mut seams);
         let mut positions = facets.positions;
-        let mut quilt = Quilt { patches: Vec::new(), error: 0.0, measures: Vec::new() };
+        let mut quilt = Quilt { patches: Vec::new(), error: 0.0, measures: Vec::new(), spots: Vec::new() };
         for depth in 0..=DEPTH {
             seams.find(&positions, slopes, run)?;
             let patch = |(number, piece): (usize, &Piece)| {
@@ -126,15 +137,10 @@ impl Quilt {
                     next[from..].iter_mut().for_each(|part| part.before = off);
                     continue;
                 }
-                // A patch that is farther off than it is wide tells nothing of the surface.
-                quilt.measures.push([off, area_of(&patch)]);
-                let width =
-                    patch.corners[0].distance(patch.corners[1]).max(patch.corners[1].distance(patch.corners[2]));
-                if error.off > ASTRAY * width {
-                    quilt.error = quilt.error.max(width);
+                if off > FAR * tolerance {
+                    quilt.spots.push(Spot { patch, off });
                 } else {
-                    quilt.error = quilt.error.max(off);
-                    quilt.patches.push(patch);
+                    quilt.take(patch, off);
                 }
             }
             pieces = next;
@@ -143,9 +149,37 @@ impl Quilt {
         Ok(Some(quilt))
     }
 
+    /// Takes a patch that is so far off.
+    fn take(&mut self, patch: Patch, off: f64) {
+        self.measures.push([off, area_of(&patch)]);
+        let [a, b, c] = patch.corners;
+        let width = a.distance(b).max(b.distance(c));
+        // One that is farther off than it is wide tells nothing of the surface.
+        if off > ASTRAY * width {
+            self.error = self.error.max(width);
+        } else {
+            self.error = self.error.max(off);
+            self.patches.push(patch);
+        }
+    }
+
+    /// Takes patches as they are, however far off.
+    pub(super) fn take_spots(&mut self, spots: Vec<Spot>) {
+        spots.into_iter().for_each(|spot| self.take(spot.patch, spot.off));
+    }
+
+    /// Takes all patches of another one.
+    pub(super) fn take_all(&mut self, other: Quilt) {
+        self.error = self.error.max(other.error);
+        self.patches.extend(other.patches);
+        self.measures.extend(other.measures);
+        self.spots.extend(other.spots);
+    }
+
     /// The area of all patches, those that were left out included.
     fn area(&self) -> f64 {
-        self.measures.iter().map(|[_, area]| area).sum()
+        let taken: f64 = self.measures.iter().map(|[_, area]| area).sum();
+        taken + self.spots.iter().map(|spot| area_of(&spot.patch)).sum::<f64>()
     }
 
     /// No more than this part of them, by area, is farther off than the result, which is `least` or more.

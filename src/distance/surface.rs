@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::compiled_with;
 use super::facets::Facets;
+use super::mend::mend;
 use super::quilt::Quilt;
 use super::slopes::Slopes;
 use crate::error::MeshingError;
@@ -107,7 +108,10 @@ impl DistanceSource for FromMeshes {
             let is_last = 4.0 * count > if hides && is_gentle { HIDDEN * enough } else { enough };
             if !hides || is_last {
                 let patience = if is_last { f64::INFINITY } else { PATIENCE };
-                let quilt = Quilt::new(facets, &slopes, (tolerance, patience), &to_sew)?;
+                let mut quilt = Quilt::new(facets, &slopes, (tolerance, patience), &to_sew)?;
+                if let Some(quilt) = &mut quilt {
+                    mend(quilt, &slopes, tolerance, &to_sew)?;
+                }
                 let reached = quilt.as_ref().map_or(f64::INFINITY, |quilt| quilt.tolerance(FEW, tolerance));
                 let is_near = |quilt: &Quilt| reached <= tolerance && quilt.error <= FAR * tolerance;
                 if let Some(quilt) = quilt.filter(|quilt| is_last || is_near(quilt)) {

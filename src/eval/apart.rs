@@ -9,7 +9,7 @@ use std::sync::Arc;
 use super::accuracy::Accuracy;
 use super::bend::Bend;
 use super::compile::{Compiled, kept};
-use super::composite::{Composite, Whole};
+use super::composite::as_leaf;
 use super::depth::is_deeper;
 use super::exact::Exactness;
 use super::fill::FARTHEST;
@@ -146,7 +146,7 @@ pub(super) fn measure(
 
 /// A solid's programs as a leaf.
 pub(super) fn sign(programs: &Compiled) -> Arc<dyn AnyField> {
-    Arc::new(Composite { program: Whole::new(programs.surface.clone()), bounds: programs.bounds })
+    as_leaf(programs.surface.clone(), programs.bounds)
 }
 
 /// The distance to the surface of a solid, and how far it may be off.

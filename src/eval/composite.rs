@@ -14,9 +14,14 @@ use rvachev_field::{AnyField, Chunk, Placement, Way, Zone};
 use rvachev_num::symbol::Symbol;
 
 #[derive(Debug)]
-pub(super) struct Composite {
-    pub(super) program: Whole,
-    pub(super) bounds: Bounds,
+struct Composite {
+    program: Whole,
+    bounds: Bounds,
+}
+
+/// A program as a leaf, which is within the bounds.
+pub(crate) fn as_leaf(program: Program, bounds: Bounds) -> Arc<dyn AnyField> {
+    Arc::new(Composite { program: Whole::new(program), bounds })
 }
 
 /// A program with its tape over all of space, which is made when lanes first ask for it.
@@ -137,8 +142,7 @@ impl AnyField for Composite {
             return None;
         }
         let program = self.program.reduced(zone);
-        (program.leaf_count() < self.program.leaf_count())
-            .then(|| Arc::new(Composite { program: Whole::new(program), bounds: self.bounds }) as Arc<dyn AnyField>)
+        (program.leaf_count() < self.program.leaf_count()).then(|| as_leaf(program, self.bounds))
     }
 
     fn jumps(&self) -> bool {

@@ -57,6 +57,7 @@ pub(crate) use rvachev_field::BOXES as BOXES_AT_ONCE;
 
 pub(crate) use bend::Bend;
 pub(crate) use compile::{Compiled, compile};
+pub(crate) use composite::as_leaf;
 pub(crate) use parting::Parting;
 pub(crate) use point::limited;
 pub(crate) use ray::{Care, first_hit};

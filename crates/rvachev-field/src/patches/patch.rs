@@ -53,7 +53,7 @@ impl Patch {
     }
 
     /// A box that holds it: that of the control points of its Bézier form.
-    pub(super) fn bounds(&self) -> Bounds {
+    pub fn bounds(&self) -> Bounds {
         let middles = [0, 1, 2].map(|i| 0.5 * (self.corners[i] + self.corners[(i + 1) % 3]) + 2.0 * self.bulges[i]);
         Bounds::from_points(self.corners.into_iter().chain(middles))
     }

@@ -1,0 +1,129 @@
+//! Spots where patches are far off the surface: meshed anew, in small cells.
+//!
+//! ```text
+//!     ________            Cells of a mesh cut some creases off, and tips and cusps as they turn out. A box
+//!     \     +-|-+         about such a spot is meshed by itself, and what is found is added: patches that
+//!      \____|_/ |         lie on the surface may overlap, for the least of all distances counts.
+//!           +---+
+//! ```
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::compiled_with;
+use super::facets::Facets;
+use super::quilt::{Quilt, Spot};
+use super::slopes::Slopes;
+use crate::eval::{Region, as_leaf};
+use crate::mesh::Subject;
+use crate::solid::Node;
+use crate::{Bounds, Cancelled, CellSize, Features, MeshSettings, RFunction, Run, Solid, ThinFeatures};
+
+/// So many boxes are meshed, and boxes in these.
+const BOXES: usize = 512;
+const DEEPEST: u32 = 3;
+
+/// Cells along a box.
+const CELLS: f64 = 12.0;
+
+/// What is within a box, in parts of its longest side, is mended.
+const MARGIN: f64 = 0.3;
+
+/// Meshes the spots of a quilt anew. Those that it does not mend are taken as they are.
+pub(super) fn mend(quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64, run: &Run) -> Result<(), Cancelled> {
+    mend_to(quilt, slopes, tolerance, DEEPEST, run)
+}
+
+fn mend_to(quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64, depth: u32, run: &Run) -> Result<(), Cancelled> {
+    let spots = std::mem::take(&mut quilt.spots);
+    let groups = if depth == 0 { Vec::new() } else { groups(&spots, tolerance) };
+    if groups.is_empty() || groups.len() > BOXES {
+        quilt.take_spots(spots);
+        return Ok(());
+    }
+    let mended = |(bounds, _): &(Bounds, Vec<usize>)| {
+        run.check()?;
+        let Some(mut part) = anew(slopes, bounds, tolerance, run)? else { return Ok(None) };
+        mend_to(&mut part, slopes, tolerance, depth - 1, run)?;
+        Ok(Some(part))
+    };
+    let found = groups.par_iter().map(mended).collect::<Result<Vec<Option<Quilt>>, Cancelled>>()?;
+    if std::env::var("RVT").is_ok() {
+        eprintln!(
+            "mend depth {depth}: {} spots {} boxes worst {:?} -> {:?}",
+            spots.len(),
+            groups.len(),
+            spots.iter().map(|s| s.off).fold(0.0, f64::max),
+            found.iter().map(|q| q.as_ref().map(|q| (q.error, q.patches.len()))).collect::<Vec<_>>()
+        );
+    }
+    let mut spots: Vec<Option<Spot>> = spots.into_iter().map(Some).collect();
+    for ((_, numbers), part) in groups.iter().zip(found) {
+        let worst = numbers.iter().filter_map(|n| spots[*n].as_ref()).map(|spot| spot.off).fold(0.0, f64::max);
+        match part {
+            Some(part) if part.error < worst => quilt.take_all(part),
+            _ => quilt.take_spots(numbers.iter().filter_map(|n| spots[*n].take()).collect()),
+        }
+    }
+    Ok(())
+}
+
+/// Boxes about spots, apart from each other, and the numbers of the spots in each.
+fn groups(spots: &[Spot], tolerance: f64) -> Vec<(Bounds, Vec<usize>)> {
+    let around = |spot: &Spot| {
+        let bounds = spot.patch.bounds();
+        bounds.inflate(MARGIN * bounds.longest_side() + 2.0 * spot.off + 8.0 * tolerance)
+    };
+    let mut groups: Vec<(Bounds, Vec<usize>)> = Vec::new();
+    for (number, spot) in spots.iter().enumerate() {
+        let (mut bounds, mut numbers) = (around(spot), vec![number]);
+        while let Some(at) = groups.iter().position(|(other, _)| other.intersects(&bounds)) {
+            let (other, others) = groups.swap_remove(at);
+            bounds = bounds.union(&other);
+            numbers.extend(others);
+        }
+        groups.push((bounds, numbers));
+        if groups.len() > BOXES {
+            break;
+        }
+    }
+    groups
+}
+
+/// The surface in a box.
+fn anew(slopes: &Slopes<'_>, bounds: &Bounds, tolerance: f64, run: &Run) -> Result<Option<Quilt>, Cancelled> {
+    let cell = bounds.longest_side() / CELLS;
+    let program = match slopes.program.narrow(&bounds.inflate(cell)) {
+        Region::Surface(program) => program,
+        Region::Inside | Region::Outside => return Ok(None),
+    };
+    let knife = Solid::cuboid(bounds.size()).translate(bounds.center());
+    let part = Solid::from_node(Node::Leaf(as_leaf(program.clone(), *bounds))).intersection(knife, RFunction::MIN_MAX);
+    let alone = Run { progress: None, ..run.clone() };
+    let Some(mesh) = meshed(&part, bounds, cell, &alone)? else { return Ok(None) };
+    let is_cut = |corners: &[DVec3; 3]| {
+        let on = |axis: usize, side: f64| corners.iter().all(|p| (p[axis] - side).abs() < 1e-3 * cell);
+        (0..3).any(|axis| on(axis, bounds.min[axis]) || on(axis, bounds.max[axis]))
+    };
+    let facets = Facets::new(&mesh, |corners| !is_cut(corners));
+    let slopes = Slopes { program: &program, precision: slopes.precision };
+    Quilt::new(facets, &slopes, (tolerance, f64::INFINITY), &alone)
+}
+
+/// A mesh, if it can be made.
+fn meshed(part: &Solid, bounds: &Bounds, cell: f64, run: &Run) -> Result<Option<crate::Mesh>, Cancelled> {
+    let Ok(programs) = compiled_with(part, run) else {
+        run.check()?;
+        return Ok(None);
+    };
+    let settings = MeshSettings {
+        cell: CellSize::Length(cell),
+        features: Features::Sharp,
+        thin: ThinFeatures::Ignore,
+        ..MeshSettings::default()
+    };
+    let subject = Subject { program: &programs.surface, bounds: *bounds, palette: None, whole: None };
+    let mesh = subject.mesh(&settings, run);
+    run.check()?;
+    Ok(mesh.ok())
+}
