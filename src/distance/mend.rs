@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use super::compiled_with;
 use super::facets::Facets;
-use super::quilt::{Quilt, Spot};
+use super::quilt::{Care, Quilt, Spot};
 use super::slopes::Slopes;
 use crate::eval::{Region, as_leaf};
 use crate::mesh::Subject;
@@ -23,8 +23,9 @@ use crate::{Bounds, Cancelled, CellSize, Features, MeshSettings, RFunction, Run,
 const BOXES: usize = 512;
 const DEEPEST: u32 = 3;
 
-/// Cells along a box.
-const CELLS: f64 = 12.0;
+/// Cells along a box, and how often their patches are split.
+const CELLS: f64 = 8.0;
+const SPLITS: u32 = 4;
 
 /// What is within a box, in parts of its longest side, is mended.
 const MARGIN: f64 = 0.3;
@@ -48,15 +49,6 @@ fn mend_to(quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64, depth: u32, r
         Ok(Some(part))
     };
     let found = groups.par_iter().map(mended).collect::<Result<Vec<Option<Quilt>>, Cancelled>>()?;
-    if std::env::var("RVT").is_ok() {
-        eprintln!(
-            "mend depth {depth}: {} spots {} boxes worst {:?} -> {:?}",
-            spots.len(),
-            groups.len(),
-            spots.iter().map(|s| s.off).fold(0.0, f64::max),
-            found.iter().map(|q| q.as_ref().map(|q| (q.error, q.patches.len()))).collect::<Vec<_>>()
-        );
-    }
     let mut spots: Vec<Option<Spot>> = spots.into_iter().map(Some).collect();
     for ((_, numbers), part) in groups.iter().zip(found) {
         let worst = numbers.iter().filter_map(|n| spots[*n].as_ref()).map(|spot| spot.off).fold(0.0, f64::max);
@@ -107,7 +99,7 @@ fn anew(slopes: &Slopes<'_>, bounds: &Bounds, tolerance: f64, run: &Run) -> Resu
     };
     let facets = Facets::new(&mesh, |corners| !is_cut(corners));
     let slopes = Slopes { program: &program, precision: slopes.precision };
-    Quilt::new(facets, &slopes, (tolerance, f64::INFINITY), &alone)
+    Quilt::new(facets, &slopes, Care { depth: SPLITS, ..Care::new(tolerance) }, &alone)
 }
 
 /// A mesh, if it can be made.

@@ -17,8 +17,23 @@ use super::slopes::Slopes;
 use crate::{Cancelled, Run};
 use rvachev_field::Patch;
 
-/// How often a patch is split at most.
-const DEPTH: u32 = 6;
+/// What is done for patches.
+#[derive(Clone, Copy)]
+pub(super) struct Care {
+    /// How far they may be off.
+    pub(super) tolerance: f64,
+    /// The part of the surface that may be off when it is seen whether splitting helps.
+    pub(super) patience: f64,
+    /// How often a patch is split at most.
+    pub(super) depth: u32,
+}
+
+impl Care {
+    /// As much as is done for all of a surface.
+    pub(super) fn new(tolerance: f64) -> Care {
+        Care { tolerance, patience: f64::INFINITY, depth: 6 }
+    }
+}
 
 /// After so many times it is seen whether splitting helps.
 const SOON: u32 = 3;
@@ -92,15 +107,16 @@ impl Quilt {
     pub(super) fn new(
         mut facets: Facets,
         slopes: &Slopes<'_>,
-        (tolerance, patience): (f64, f64),
+        care: Care,
         run: &Run,
     ) -> Result<Option<Quilt>, Cancelled> {
+        let Care { tolerance, patience, depth: last } = care;
         facets.polish(slopes, run)?;
         let mut seams = Seams::default();
         let mut pieces = first(&facets, &mut seams);
         let mut positions = facets.positions;
         let mut quilt = Quilt { patches: Vec::new(), error: 0.0, measures: Vec::new(), spots: Vec::new() };
-        for depth in 0..=DEPTH {
+        for depth in 0..=last {
             seams.find(&positions, slopes, run)?;
             let patch = |(number, piece): (usize, &Piece)| {
                 often(number, run)?;
@@ -115,7 +131,7 @@ impl Quilt {
             let fails = |piece: &Piece, error: Misfit| {
                 let is_off = error.all() > tolerance || error.turn > TURN && error.off > 0.05 * tolerance;
                 // Where splitting does not help, more of it does not either.
-                depth < DEPTH && is_off && !is_enough && (depth < 4 || error.all() < GAIN * piece.before)
+                depth < last && is_off && !is_enough && (depth < 4 || error.all() < GAIN * piece.before)
             };
             let failing = pieces.iter().zip(&errors).filter(|(piece, error)| fails(piece, **error));
             cross(failing.map(|(piece, _)| piece), &positions, &mut seams, slopes, run)?;
@@ -144,7 +160,7 @@ impl Quilt {
                 }
             }
             pieces = next;
-            run.report(f64::from(depth + 1) / f64::from(DEPTH + 1));
+            run.report(f64::from(depth + 1) / f64::from(last + 1));
         }
         Ok(Some(quilt))
     }

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::compiled_with;
 use super::facets::Facets;
 use super::mend::mend;
-use super::quilt::Quilt;
+use super::quilt::{Care, Quilt};
 use super::slopes::Slopes;
 use crate::error::MeshingError;
 use crate::eval::{Accuracy, CompileError, Compiled, DistanceSource, Program, Surface, Wanted};
@@ -84,7 +84,7 @@ impl DistanceSource for FromMeshes {
         let enough = CELLS + CELLS_A_LEAF * programs.surface.leaf_count() as f64;
         // Of others, tips and cusps hide something in cells of any size.
         let is_gentle = programs.surface.is_gentle();
-        let mut done = LOOKING;
+        let (mut done, mut best) = (LOOKING, None);
         let mut cell = first_cell(&programs.surface, bounds, size, enough, &run.stage(0.0, done))?;
         loop {
             // What is left is for smaller cells.
@@ -106,20 +106,33 @@ impl DistanceSource for FromMeshes {
             // Two triangles a cell.
             let count = 0.5 * facets.triangles.len() as f64;
             let is_last = 4.0 * count > if hides && is_gentle { HIDDEN * enough } else { enough };
+            if hides {
+                // What larger cells have shown is not all.
+                best = None;
+            }
             if !hides || is_last {
-                let patience = if is_last { f64::INFINITY } else { PATIENCE };
-                let mut quilt = Quilt::new(facets, &slopes, (tolerance, patience), &to_sew)?;
-                if let Some(quilt) = &mut quilt {
-                    mend(quilt, &slopes, tolerance, &to_sew)?;
+                let mut care = Care::new(tolerance);
+                if !is_last && best.is_none() {
+                    care.patience = PATIENCE;
                 }
-                let reached = quilt.as_ref().map_or(f64::INFINITY, |quilt| quilt.tolerance(FEW, tolerance));
-                let is_near = |quilt: &Quilt| reached <= tolerance && quilt.error <= FAR * tolerance;
-                if let Some(quilt) = quilt.filter(|quilt| is_last || is_near(quilt)) {
-                    let patches = Arc::new(Patches::new(&quilt.patches, &to_sew)?);
-                    run.report(1.0);
-                    let error = if hides { quilt.error.max(cell) } else { quilt.error };
-                    return Ok(Surface { patches, accuracy: Accuracy { tolerance: reached, error }, flat });
+                if let Some(mut quilt) = Quilt::new(facets, &slopes, care, &to_sew)? {
+                    mend(&mut quilt, &slopes, tolerance, &to_sew)?;
+                    if hides {
+                        quilt.error = quilt.error.max(cell);
+                    }
+                    let found = (quilt.tolerance(FEW, tolerance), quilt);
+                    // Smaller cells do not always tell more.
+                    let is_better = |(reached, quilt): &(f64, Quilt)| {
+                        *reached < found.0 || *reached == found.0 && quilt.error < found.1.error
+                    };
+                    best = best.filter(is_better).or(Some(found));
                 }
+            }
+            let is_near = |(reached, quilt): &(f64, Quilt)| *reached <= tolerance && quilt.error <= FAR * tolerance;
+            if let Some((reached, quilt)) = best.take_if(|best| is_last || is_near(best)) {
+                let patches = Arc::new(Patches::new(&quilt.patches, &run.stage(done, 1.0))?);
+                run.report(1.0);
+                return Ok(Surface { patches, accuracy: Accuracy { tolerance: reached, error: quilt.error }, flat });
             }
             cell *= 0.5;
         }
