@@ -21,7 +21,7 @@ use crate::{Bounds, Cancelled, CellSize, Features, MeshSettings, RFunction, Run,
 
 /// So many boxes are meshed, and boxes in these.
 const BOXES: usize = 512;
-const DEEPEST: u32 = 3;
+const DEEPEST: u32 = 2;
 
 /// Cells along a box, and how often their patches are split.
 const CELLS: f64 = 8.0;
