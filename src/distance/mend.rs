@@ -93,11 +93,12 @@ fn anew(slopes: &Slopes<'_>, bounds: &Bounds, tolerance: f64, run: &Run) -> Resu
     let part = Solid::from_node(Node::Leaf(as_leaf(program.clone(), *bounds))).intersection(knife, RFunction::MIN_MAX);
     let alone = Run { progress: None, ..run.clone() };
     let Some(mesh) = meshed(&part, bounds, cell, &alone)? else { return Ok(None) };
-    let is_cut = |corners: &[DVec3; 3]| {
-        let on = |axis: usize, side: f64| corners.iter().all(|p| (p[axis] - side).abs() < 1e-3 * cell);
-        (0..3).any(|axis| on(axis, bounds.min[axis]) || on(axis, bounds.max[axis]))
+    // Where two sides of the box meet, triangles are on both.
+    let is_on = |p: &DVec3| {
+        let at = |axis: usize, side: f64| (p[axis] - side).abs() < 1e-3 * cell;
+        (0..3).any(|axis| at(axis, bounds.min[axis]) || at(axis, bounds.max[axis]))
     };
-    let facets = Facets::new(&mesh, |corners| !is_cut(corners));
+    let facets = Facets::new(&mesh, |corners| !corners.iter().all(is_on));
     let slopes = Slopes { program: &program, precision: slopes.precision };
     Quilt::new(facets, &slopes, Care { depth: SPLITS, ..Care::new(tolerance) }, &alone)
 }

@@ -91,7 +91,7 @@ struct Misfit {
     off: f64,
     /// Turned from it, in radians.
     turn: f64,
-    /// Off the creases that its sides follow.
+    /// Of its sides, off creases and off the surface.
     rim: f64,
 }
 

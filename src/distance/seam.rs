@@ -46,7 +46,7 @@ pub(super) struct Seam {
     pub(super) middle: DVec3,
     /// The normals there, of both sides; before it is known, those at both ends.
     pub(super) normals: [DVec3; 2],
-    /// How far the side is off the crease that it is to follow; 0 on a smooth surface.
+    /// How far the side is off the crease that it is to follow, or off the surface.
     pub(super) off: f64,
     /// The next side that starts at the same vertex.
     next: u32,
@@ -224,25 +224,47 @@ impl Seams {
             }
         }
         let (creases, smooth): (Vec<usize>, Vec<usize>) = fresh.partition(|n| self.list[*n].is_crease);
-        self.slide(&smooth, positions, slopes, run)?;
+        let moved = self.slide(&smooth, positions, slopes, run)?;
+        self.probe(&moved, positions, slopes, run)?;
         self.meet(&creases, positions, slopes, run)?;
         self.compare(&creases, positions, slopes, run)
     }
 
-    /// Newton steps along the gradient.
+    /// Newton steps along the gradient. Gives the sides whose middles were not where their ends tell.
     fn slide(
         &mut self,
         numbers: &[usize],
         positions: &[DVec3],
         slopes: &Slopes<'_>,
         run: &Run,
-    ) -> Result<(), Cancelled> {
+    ) -> Result<Vec<usize>, Cancelled> {
+        let before: Vec<DVec3> = numbers.iter().map(|n| self.list[*n].middle).collect();
         for _ in 0..2 {
             let points: Vec<DVec3> = numbers.iter().map(|n| self.list[*n].middle).collect();
             for (number, slope) in numbers.iter().zip(slopes.at(&points, run)?) {
                 let seam = &mut self.list[*number];
                 seam.moved(seam.middle + slope.newton(), positions);
                 seam.normals = [slope.normal(); 2];
+            }
+        }
+        let is_moved = |(n, before): &(&usize, &DVec3)| self.list[**n].middle.distance(**before) > slopes.precision;
+        Ok(numbers.iter().zip(&before).filter(is_moved).map(|(n, _)| *n).collect())
+    }
+
+    /// Sees how far sides are off the surface between their ends and middles: one that starts from a crease may pass over
+    /// it and come back.
+    fn probe(
+        &mut self,
+        numbers: &[usize],
+        positions: &[DVec3],
+        slopes: &Slopes<'_>,
+        run: &Run,
+    ) -> Result<(), Cancelled> {
+        for along in PROBES {
+            let points: Vec<DVec3> = numbers.iter().map(|n| self.list[*n].at(along, positions)).collect();
+            for (number, slope) in numbers.iter().zip(slopes.at(&points, run)?) {
+                let seam = &mut self.list[*number];
+                seam.off = seam.off.max(slope.distance());
             }
         }
         Ok(())
