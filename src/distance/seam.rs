@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::crease::{Plane, meet};
 use super::facets::CREASE;
-use super::slopes::Slopes;
+use super::slopes::{Slope, Slopes};
 use crate::{Cancelled, Run};
 
 /// How far from a crease its sides are looked at, in parts of the side's length: from farther off
@@ -321,15 +321,16 @@ impl Seams {
             for ((number, points), found) in numbers.iter().zip(points.chunks(2)).zip(found.chunks(2)) {
                 let planes: Vec<Plane> = points.iter().zip(found).filter_map(|(p, s)| Plane::of(*p, s)).collect();
                 let seam = &mut self.list[*number];
-                // Where both faces are one, nothing tells where the crease is.
-                if let [a, b] = &planes[..]
-                    && a.normal.distance(b.normal) > CREASE
-                {
-                    let at = seam.at(along, positions);
-                    let [from, to] = seam.ends.map(|v| positions[v as usize]);
-                    let off = meet(&planes, at).distance(at).min(STRIDE * from.distance(to));
-                    seam.off = seam.off.max(off);
-                }
+                let off = match &planes[..] {
+                    [a, b] if a.normal.distance(b.normal) > CREASE => {
+                        let at = seam.at(along, positions);
+                        let [from, to] = seam.ends.map(|v| positions[v as usize]);
+                        meet(&planes, at).distance(at).min(STRIDE * from.distance(to))
+                    }
+                    // Where both faces are one, nothing tells where the crease is, but that it is on the surface.
+                    _ => found.iter().map(Slope::distance).fold(f64::INFINITY, f64::min),
+                };
+                seam.off = seam.off.max(off);
             }
         }
         Ok(())
