@@ -466,13 +466,12 @@ impl<'e> Compiler<'e> {
         let is_union = operation == Operation::Union;
         let margin = margin(site.solid, &measured, radius);
         let ball = Signed { field: measured.field, sign: if is_union { 1.0 } else { -1.0 } };
-        let fill = Fill { radius, ball, sides: Vec::new(), margin, boxes: vec![Bounds::ALL], hull: Bounds::ALL };
         let solid::Node::Blend { blend, operands, .. } = site.solid.node() else {
             let whole = kept(&site.solid.node().operands()[0]).map_or(Bounds::EMPTY, |programs| programs.bounds);
             // What is taken away goes on beyond the surface: values are 0 where the new one is, and nowhere else.
             let (bounds, hull) = if is_union { (whole, whole) } else { (whole.inflate(radius), Bounds::ALL) };
-            let fill: Arc<dyn AnyField> = Arc::new(Fill { boxes: vec![bounds], hull, ..fill });
-            return vec![self.made(&fill, site, 0.0)];
+            let fill = Fill::new(radius, ball, Vec::new(), margin).within(vec![bounds], hull);
+            return vec![self.made(&(Arc::new(fill) as Arc<dyn AnyField>), site, 0.0)];
         };
         let near = Near::of(operation, *blend, operands);
         if near.boxes.is_empty() {
@@ -485,7 +484,8 @@ impl<'e> Compiler<'e> {
             Side { distance: Signed { field: field.clone(), sign }, bounds: around[number] }
         };
         let sides = measured.sides.iter().enumerate().map(side).collect();
-        vec![self.made(&(Arc::new(Fill { sides, boxes, hull, ..fill }) as Arc<dyn AnyField>), site, 0.0)]
+        let fill = Fill::new(radius, ball, sides, margin).within(boxes, hull);
+        vec![self.made(&(Arc::new(fill) as Arc<dyn AnyField>), site, 0.0)]
     }
 
     /// The face of a chamfer, cut off where a ball reaches that rolls along the operands.
@@ -509,7 +509,7 @@ impl<'e> Compiler<'e> {
             Signed { field: measured.field.clone(), sign: if operation == Operation::Union { 1.0 } else { -1.0 } };
         let margin = margin(site.solid, &measured, near.radius);
         let fill: Arc<dyn AnyField> =
-            Arc::new(Fill { radius: near.radius, ball, sides: Vec::new(), margin, boxes: near.boxes, hull: near.hull });
+            Arc::new(Fill::new(near.radius, ball, Vec::new(), margin).within(near.boxes, near.hull));
         let both = [self.made(&bevel, site, 0.0), self.made(&fill, site, 0.0)];
         Ok(vec![self.code.operation(Operation::Intersection, Rule::MinMax, frame, &both)])
     }

@@ -119,7 +119,15 @@ impl AnyField for Composite {
     }
 
     fn lanes64(&self, chunk: Chunk<'_, f64, 1>) {
-        points64(self, chunk);
+        let Chunk { points, placement, out: [out] } = chunk;
+        let mut local = [(); 3].map(|()| [0.0; CHUNK]);
+        for i in 0..out.len() {
+            let p = placement.apply([0, 1, 2].map(|axis| points[axis][i]));
+            (local[0][i], local[1][i], local[2][i]) = (p[0], p[1], p[2]);
+        }
+        let [x, y, z] = local.each_ref().map(|axis| &axis[..out.len()]);
+        with_evaluator(|evaluator| evaluator.shortest_values_f64(self.program.tape(), [x, y, z], out));
+        out.iter_mut().for_each(|value| *value = placement.finish(*value));
     }
 
     fn gradients(&self, chunk: Chunk<'_, f32, 4>) {

@@ -21,7 +21,7 @@ use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
 
-use super::composite::{finish, points64, unscaled};
+use super::composite::unscaled;
 use crate::{Bounds, Dual, Interval, ParamError, Real};
 #[cfg(feature = "formula")]
 use rvachev_field::VALUE_LIMIT;
@@ -79,9 +79,12 @@ pub(super) struct Fill {
     /// How much is left out for the sake of flush faces.
     pub(super) margin: f64,
     /// Where there may be any.
-    pub(super) boxes: Vec<Bounds>,
+    boxes: Vec<Bounds>,
     /// There is none beyond this box.
-    pub(super) hull: Bounds,
+    hull: Bounds,
+    /// The boxes that it is held to: those of joints, a little larger, for there is nothing about their sides, and the
+    /// hull as it is.
+    held: Vec<Bounds>,
 }
 
 /// The distances to the two nearest operands, held at the farthest, and which these are.
@@ -108,6 +111,18 @@ impl Two {
 }
 
 impl Fill {
+    /// All over space.
+    pub(super) fn new(radius: f64, ball: Signed, sides: Vec<Side>, margin: f64) -> Fill {
+        Fill { radius, ball, sides, margin, boxes: Vec::new(), hull: Bounds::ALL, held: vec![Bounds::ALL] }
+    }
+
+    /// In boxes alone, and not beyond the hull.
+    pub(super) fn within(mut self, boxes: Vec<Bounds>, hull: Bounds) -> Fill {
+        self.held = boxes.iter().map(|own| own.inflate(MOST * self.radius).intersection(&hull)).collect();
+        (self.boxes, self.hull) = (boxes, hull);
+        self
+    }
+
     fn farthest(&self) -> f64 {
         FARTHEST * self.radius
     }
@@ -135,16 +150,10 @@ impl Fill {
         all
     }
 
-    /// The boxes that it is held to: those of joints, a little larger, for there is nothing about their sides, and the
-    /// hull as it is.
-    fn held(&self) -> impl Iterator<Item = Bounds> {
-        self.boxes.iter().map(|bounds| bounds.inflate(MOST * self.radius).intersection(&self.hull))
-    }
-
     /// How deep inside of the boxes a point is, and along which axis that grows.
     fn depth(&self, p: DVec3) -> (f64, DVec3) {
         let mut most = (f64::NEG_INFINITY, DVec3::ZERO);
-        for bounds in self.held() {
+        for bounds in &self.held {
             let mut least = (f64::INFINITY, DVec3::ZERO);
             for axis in 0..3 {
                 let (low, high) = (p[axis] - bounds.min[axis], bounds.max[axis] - p[axis]);
@@ -164,13 +173,13 @@ impl Fill {
     /// How deep inside of the boxes points of a zone are.
     fn box_depth(&self, zone: &Zone) -> Interval {
         let point = Interval::point;
-        let of_box = |bounds: Bounds| {
+        let of_box = |bounds: &Bounds| {
             let sides = zone.hull().into_iter().enumerate();
             sides.fold(point(f64::INFINITY), |own, (axis, side)| {
                 own.min(side - point(bounds.min[axis])).min(point(bounds.max[axis]) - side)
             })
         };
-        self.held().map(of_box).fold(point(f64::NEG_INFINITY), Interval::max)
+        self.held.iter().map(of_box).fold(point(f64::NEG_INFINITY), Interval::max)
     }
 
     /// The directions that lead away from the sides of the hull, as far as these are near.
@@ -296,10 +305,11 @@ impl AnyField for Fill {
 
     fn narrowed(&self, zone: &Zone) -> Option<Arc<dyn AnyField>> {
         let mut simpler = self.clone();
-        simpler.boxes.retain(|bounds| meets(zone, &bounds.inflate(MOST * self.radius)));
-        let mut is_simpler = simpler.boxes.len() < self.boxes.len() && !simpler.boxes.is_empty();
-        if simpler.boxes.is_empty() {
-            simpler.boxes.clone_from(&self.boxes);
+        let near: Vec<Bounds> =
+            self.boxes.iter().filter(|own| meets(zone, &own.inflate(MOST * self.radius))).copied().collect();
+        let mut is_simpler = near.len() < self.boxes.len() && !near.is_empty();
+        if is_simpler {
+            simpler = simpler.within(near, self.hull);
         }
         if let Some(field) = self.ball.field.narrowed(zone) {
             (simpler.ball.field, is_simpler) = (field, true);
@@ -354,34 +364,12 @@ impl AnyField for Fill {
         self.lanes32_within(chunk, f64::INFINITY);
     }
 
-    /// What is outside of the boxes or reached by the ball by more than the band is not looked into.
     fn lanes32_within(&self, chunk: Chunk<'_, f32, 1>, band: f64) {
-        let Chunk { points, placement, out: [out] } = chunk;
-        let band = if placement.shift == 0.0 { band / placement.scale } else { f64::INFINITY };
-        let local = |i: usize| DVec3::from_array(placement.apply([0, 1, 2].map(|axis| f64::from(points[axis][i]))));
-        let depths: Vec<f64> = (0..out.len()).map(|i| self.depth(local(i)).0).collect();
-        out.iter_mut().zip(&depths).for_each(|(out, depth)| *out = *depth as f32);
-        let mut open = Few::of((0..out.len()).filter(|i| depths[*i] > -band), points);
-        let own = unscaled(placement);
-        let most = (MOST * self.radius).max(band + self.margin);
-        let balls = open.values(&self.ball, &own, (self.radius, most));
-        open.retain(&balls, |ball, i| {
-            let height = ball - self.radius - self.margin;
-            out[i] = height.min(depths[i]) as f32;
-            height > -band
-        });
-        let sides: Vec<Vec<f64>> = (self.sides.iter())
-            .map(|side| open.values(&side.distance, &own, (2.0 * self.radius, self.farthest() + band)))
-            .collect();
-        for (n, (&i, &ball)) in open.places.iter().zip(&open.known).enumerate() {
-            let two = self.two_of(local(i), |number| sides[number][n]);
-            out[i] = self.height(ball, two).min(depths[i]) as f32;
-        }
-        finish(placement, out);
+        self.values(chunk, band);
     }
 
     fn lanes64(&self, chunk: Chunk<'_, f64, 1>) {
-        points64(self, chunk);
+        self.values(chunk, f64::INFINITY);
     }
 
     fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
@@ -425,6 +413,34 @@ impl AnyField for Fill {
 }
 
 impl Fill {
+    /// Values of a chunk. What is outside of the boxes or reached by the ball by more than the band is not looked into.
+    fn values<E: Lane>(&self, chunk: Chunk<'_, E, 1>, band: f64) {
+        let Chunk { points, placement, out: [out] } = chunk;
+        let band = if placement.shift == 0.0 { band / placement.scale } else { f64::INFINITY };
+        let local = |i: usize| DVec3::from_array(placement.apply([0, 1, 2].map(|axis| points[axis][i].to_f64())));
+        let depths: Vec<f64> = (0..out.len()).map(|i| self.depth(local(i)).0).collect();
+        let mut all = depths.clone();
+        let mut open = Few::of((0..out.len()).filter(|i| depths[*i] > -band), points);
+        let own = unscaled(placement);
+        let most = (MOST * self.radius).max(band + self.margin);
+        let balls = open.values(&self.ball, &own, (self.radius, most));
+        open.retain(&balls, |ball, i| {
+            let height = ball - self.radius - self.margin;
+            all[i] = height.min(depths[i]);
+            height > -band
+        });
+        let sides: Vec<Vec<f64>> = (self.sides.iter())
+            .map(|side| open.values(&side.distance, &own, (2.0 * self.radius, self.farthest() + band)))
+            .collect();
+        for (n, (&i, &ball)) in open.places.iter().zip(&open.known).enumerate() {
+            let two = self.two_of(local(i), |number| sides[number][n]);
+            all[i] = self.height(ball, two).min(depths[i]);
+        }
+        for (out, value) in out.iter_mut().zip(all) {
+            *out = E::from_f64(placement.finish(value));
+        }
+    }
+
     /// The two nearest operands, by values that are known.
     fn two_of(&self, p: DVec3, value: impl Fn(usize) -> f64) -> Option<Two> {
         let mut two = Two::new(self.farthest());
@@ -437,17 +453,34 @@ impl Fill {
     }
 }
 
+/// Numbers that values are asked for in.
+trait Lane: Element {
+    fn values(field: &dyn AnyField, chunk: Chunk<'_, Self, 1>, band: f64);
+}
+
+impl Lane for f32 {
+    fn values(field: &dyn AnyField, chunk: Chunk<'_, f32, 1>, band: f64) {
+        field.lanes32_within(chunk, band);
+    }
+}
+
+impl Lane for f64 {
+    fn values(field: &dyn AnyField, chunk: Chunk<'_, f64, 1>, _band: f64) {
+        field.lanes64(chunk);
+    }
+}
+
 /// Some points of a chunk.
-struct Few {
-    points: [Vec<f32>; 3],
+struct Few<E> {
+    points: [Vec<E>; 3],
     /// Where they are in the chunk.
     places: Vec<usize>,
     /// What is known of each.
     known: Vec<f64>,
 }
 
-impl Few {
-    fn of(places: impl Iterator<Item = usize>, points: [&[f32]; 3]) -> Few {
+impl<E: Lane> Few<E> {
+    fn of(places: impl Iterator<Item = usize>, points: [&[E]; 3]) -> Few<E> {
         let places: Vec<usize> = places.collect();
         let points = points.map(|axis| places.iter().map(|i| axis[*i]).collect());
         Few { points, places, known: Vec::new() }
@@ -456,20 +489,20 @@ impl Few {
     /// Values at the points, told apart up to so far from a level.
     fn values(&self, of: &Signed, placement: &Placement, (level, band): (f64, f64)) -> Vec<f64> {
         let count = self.places.len();
-        let granule = if of.field.takes_short() { f32::widest() } else { CHUNK };
+        let granule = if of.field.takes_short() { E::widest() } else { CHUNK };
         let mut points = self.points.clone();
         let last = points.each_ref().map(|axis| axis.last().copied().unwrap_or_default());
         for (axis, last) in points.iter_mut().zip(last) {
             axis.resize(count.next_multiple_of(granule), last);
         }
-        let mut values = vec![0.0; points[0].len()];
+        let mut values = vec![E::default(); points[0].len()];
         let shift = if band == f64::INFINITY { 0.0 } else { of.sign * level };
         let mut placement = *placement;
         placement.shift = -shift;
         let [x, y, z] = &points;
-        of.field.lanes32_within(Chunk { points: [x, y, z], placement: &placement, out: [&mut values] }, band);
+        E::values(&*of.field, Chunk { points: [x, y, z], placement: &placement, out: [&mut values] }, band);
         values.truncate(count);
-        values.into_iter().map(|value| of.sign * (f64::from(value) + shift)).collect()
+        values.into_iter().map(|value| of.sign * (value.to_f64() + shift)).collect()
     }
 
     /// Keeps those that are chosen by what is known of them and where they are.

@@ -9,10 +9,10 @@
 //! A packet looks at every patch that is near to any of its points: a row of sixteen points of a
 //! grid looks at twice as many as a brick of 4 × 2 × 2.
 
-use crate::kernel::Element;
+use crate::kernel::{CHUNK, Element};
 
 /// How many points are sorted at a time.
-pub(super) const BLOCK: usize = 512;
+pub(super) const BLOCK: usize = CHUNK;
 
 /// How many cells there are along an axis.
 const CELLS: usize = 8;
@@ -27,12 +27,23 @@ pub(super) struct Block<E> {
     pub(super) signs: [E; BLOCK],
     /// Where the points stood before.
     order: [u16; BLOCK],
+    /// The cells that they are in, and where the points of each begin.
+    cells: [u16; BLOCK],
+    starts: [u16; CELLS * CELLS * CELLS],
+    before: [E; BLOCK],
 }
 
 impl<E: Element> Block<E> {
     #[inline(always)]
     pub(super) fn new() -> Block<E> {
-        Block { columns: [[E::default(); BLOCK]; 3], signs: [E::default(); BLOCK], order: [0; BLOCK] }
+        Block {
+            columns: [[E::default(); BLOCK]; 3],
+            signs: [E::default(); BLOCK],
+            order: [0; BLOCK],
+            cells: [0; BLOCK],
+            starts: [0; CELLS * CELLS * CELLS],
+            before: [E::default(); BLOCK],
+        }
     }
 
     /// Sorts the points, of which `len` are in use, and the signs.
@@ -43,19 +54,19 @@ impl<E: Element> Block<E> {
         let ((low_x, width_x), (low_y, width_y), (low_z, width_z)) = (span(x), span(y), span(z));
         let width = width_x.max(width_y).max(width_z);
         let per_cell = if width > 0.0 { (CELLS as f32 * (1.0 - 1e-6)) / width } else { 0.0 };
-        let mut cells = [0; BLOCK];
+        let (cells, starts, before) = (&mut self.cells, &mut self.starts, &mut self.before);
         for i in 0..len {
             let x = cell(x[i], low_x, per_cell);
             let y = cell(y[i], low_y, per_cell);
             let z = cell(z[i], low_z, per_cell);
             cells[i] = x | y << 1 | z << 2;
         }
-        let mut starts = [0u16; CELLS * CELLS * CELLS];
+        starts.fill(0);
         for cell in &cells[..len] {
             starts[usize::from(*cell)] += 1;
         }
         let mut sum = 0;
-        for start in &mut starts {
+        for start in &mut *starts {
             sum += std::mem::replace(start, sum);
         }
         for (i, cell) in (0..).zip(&cells[..len]) {
@@ -64,7 +75,6 @@ impl<E: Element> Block<E> {
             *to += 1;
         }
         for column in [x, y, z, &mut self.signs[..len]] {
-            let mut before = [E::default(); BLOCK];
             before[..len].copy_from_slice(column);
             for (to, from) in column.iter_mut().zip(&self.order) {
                 *to = before[usize::from(*from) % BLOCK];

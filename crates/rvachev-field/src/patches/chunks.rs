@@ -138,7 +138,6 @@ impl<L: Lanes<Element: Element> + Packet> Work<L> {
         let is_flat = patches.bulges.is_empty();
         let len = here.len();
         fill::<L>(simd, packets, points, signs, here, &mut self.block);
-        self.found = Found::none();
         let mut at = 0;
         while at < len {
             let here = at..at + L::WIDTH;
