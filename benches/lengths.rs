@@ -5,7 +5,7 @@
 //!
 //! * meshes of 128 cells along the longest side, and what is allowed: so many times the plain solid's, or
 //!   so many seconds more;
-//! * studio pictures of 400 × 300, one ray a pixel, the first and the second of the same solid, in times
+//! * studio pictures of 400 × 300, one ray a pixel, the first and the second of the same scene, in times
 //!   of the plain solid's first;
 //! * 10, 30, 100 and 1000 pins filleted to a plate, at once and one after the other, and how that grows;
 //! * how far distances are from brute force, and nanoseconds a point;
@@ -32,7 +32,7 @@ mod solids;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use rvachev::{Camera, CancelToken, CellSize, MeshSettings, RenderSettings, Run, Solid, ThinFeatures};
+use rvachev::{Camera, CancelToken, CellSize, MeshSettings, RenderSettings, Run, Scene, Solid, ThinFeatures};
 
 use race::{Budget, Job, Took, race, timed};
 use solids::Row;
@@ -81,17 +81,19 @@ fn meshing<'a>(build: impl Fn() -> Solid + 'a) -> Job<'a> {
     })
 }
 
-/// Two pictures of a solid that is built anew.
+/// Two pictures of a scene of a solid that is built anew.
 fn picturing<'a>(build: impl Fn() -> Solid + 'a) -> Job<'a> {
     Box::new(move || {
         let solid = build();
         let settings = RenderSettings { width: 400, height: 300, samples: 1, ..RenderSettings::default() };
-        let picture = || {
-            let camera = Camera::framing(&solid.bounds().map_err(|error| error.to_string())?);
-            solid.render_with(&camera, &settings, &one_thread()).map_err(|error| error.to_string())
-        };
-        let [(first, one), (second, other)] = [timed(picture), timed(picture)];
-        one.and(other).map(|_| vec![first, second])
+        let picture = |scene: &Scene| scene.render_with(&Camera::framing(&scene.bounds()), &settings, &one_thread());
+        let (first, scene) = timed(|| {
+            let scene = solid.scene_with(&one_thread())?;
+            picture(&scene).map(|_| scene)
+        });
+        let scene = scene.map_err(|error| error.to_string())?;
+        let (second, other) = timed(|| picture(&scene));
+        other.map(|_| vec![first, second]).map_err(|error| error.to_string())
     })
 }
 

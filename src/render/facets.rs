@@ -61,6 +61,9 @@ struct Top {
     height: f32,
 }
 
+/// The corners of a cell that the surface is in are no farther from it than this, in cells.
+const BESIDE: f64 = 1.75;
+
 /// What a thread keeps from block to block.
 #[derive(Default)]
 struct Maker {
@@ -86,7 +89,7 @@ impl Facets {
         let make = |maker: &mut Maker, at: usize| {
             let (program, index) = (&programs[found[at].program as usize], found[at].index);
             let next = [0, 1, 2].map(|axis| index[axis] + 1);
-            maker.block(program, &grid.bounds(index, next), &nodes)
+            maker.block(program, &grid.bounds(index, next), cell, &nodes)
         };
         let made = found.par_chunks(TOGETHER).enumerate().map(|(chunk, blocks)| {
             run.check()?;
@@ -242,7 +245,7 @@ fn whole(v: Vec4) -> Vec4 {
 }
 
 impl Maker {
-    fn block(&mut self, program: &Program, bounds: &Bounds, nodes: &[Vec<f32>; 3]) -> Block {
+    fn block(&mut self, program: &Program, bounds: &Bounds, cell: f64, nodes: &[Vec<f32>; 3]) -> Block {
         let tape = match &mut self.tape {
             Some((last, tape)) if last.is_same(program) => {
                 tape.recentre(bounds.center());
@@ -251,7 +254,7 @@ impl Maker {
             kept => &mut kept.insert((program.clone(), Tape::new(program, bounds))).1,
         };
         self.values.resize(nodes[0].len(), 0.0);
-        self.evaluator.shortest_values(tape, [&nodes[0], &nodes[1], &nodes[2]], &mut self.values);
+        self.evaluator.values_within(tape, BESIDE * cell, [&nodes[0], &nodes[1], &nodes[2]], &mut self.values);
         Block::new(&self.values)
     }
 }

@@ -15,6 +15,8 @@
 //! effectiveness of quasirandom sequences* (2018), for the directions; R. Cook, L. Porter,
 //! L. Carpenter, *Distributed ray tracing* (1984).
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3, Vec4};
 use rayon::prelude::*;
 
@@ -50,7 +52,7 @@ const MOST: u32 = 256;
 /// What hides the key light and the sky.
 pub(super) struct Obstacles<'a> {
     scene: &'a Scene,
-    facets: Facets,
+    facets: Arc<Facets>,
     key: DVec3,
     /// Directions to points of the key light, by pattern: a lane a ray. None if it casts no shadow, or
     /// has no extent.

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use glam::DVec3;
 use rayon::prelude::*;
-use std::sync::OnceLock;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::cells::Cells;
 use super::extent::{corners, lowest};
@@ -50,6 +50,8 @@ pub struct Scene {
     cells: Option<Cells>,
     palette: Palette,
     program: Program,
+    /// What hides light, and how fine it is, once somebody has asked for it.
+    facets: Mutex<Option<(u32, Arc<Facets>)>>,
     /// The height of the lowest point, once somebody has asked for it.
     lowest: OnceLock<f64>,
 }
@@ -80,7 +82,7 @@ impl Solid {
             let cells = visible.then(|| Cells::new(&programs.surface, &bounds));
             run.report(1.0);
             let (palette, program) = (self.palette()?, programs.surface.clone());
-            Ok(Scene { bounds, cells, palette, program, lowest: OnceLock::new() })
+            Ok(Scene { bounds, cells, palette, program, facets: Mutex::new(None), lowest: OnceLock::new() })
         })
     }
 }
@@ -112,8 +114,21 @@ impl Scene {
 
     /// The facets that hide light, about so many along the longest side; none if there is nothing
     /// to see.
-    pub(super) fn facets(&self, cells: u32, run: &Run) -> Result<Option<Facets>, Cancelled> {
-        self.cells.as_ref().map(|_| Facets::new(&self.program, &self.bounds, cells, run)).transpose()
+    ///
+    /// Those last asked for are kept: the next picture is likely to be of the same size.
+    pub(super) fn facets(&self, cells: u32, run: &Run) -> Result<Option<Arc<Facets>>, Cancelled> {
+        if self.cells.is_none() {
+            return Ok(None);
+        }
+        let kept = || self.facets.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((count, facets)) = &*kept()
+            && *count == cells
+        {
+            return Ok(Some(facets.clone()));
+        }
+        let facets = Arc::new(Facets::new(&self.program, &self.bounds, cells, run)?);
+        *kept() = Some((cells, facets.clone()));
+        Ok(Some(facets))
     }
 
     /// A length that is small for the solid, and large for the rounding of its points: rays
