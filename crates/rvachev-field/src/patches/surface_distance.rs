@@ -302,6 +302,10 @@ impl AnyField for SurfaceDistance {
         self.slopes(chunk);
     }
 
+    fn cost(&self) -> usize {
+        4
+    }
+
     fn takes_short(&self) -> bool {
         self.sign.takes_short()
     }
