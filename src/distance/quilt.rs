@@ -42,7 +42,7 @@ const SOON: u32 = 3;
 const MANY: usize = 1 << 21;
 
 /// A patch is split where its normal is off by more, in radians.
-const TURN: f64 = 0.2;
+const TURN: f64 = 0.03;
 
 /// Splitting goes on where it leaves less than this part of the error.
 const GAIN: f64 = 0.8;
