@@ -47,8 +47,8 @@ pub(crate) fn surface_of(solid: &Solid) -> Result<Arc<Patches>, SolidError> {
         return Ok(kept);
     }
     let programs = compiled(solid)?;
-    // Feet are refined on the field itself: a thousandth of the solid does.
-    let length = 1e-2 * programs.bounds.longest_side();
+    // Feet are refined on the field itself: a ten thousandth of the solid does.
+    let length = 1e-1 * programs.bounds.longest_side();
     let wanted = Wanted { length, tolerance: None, region: &Bounds::ALL };
     let found = FromMeshes.surface(solid, &programs, &wanted, &Run::default());
     let patches = match found {
