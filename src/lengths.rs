@@ -250,8 +250,8 @@
 //! the offset outwards of a union of cylinders are exact.
 //!
 //! Of everything else (superquadrics, what is deformed or blended, a union from inside) the surface is
-//! **measured**: it is meshed once, its cells are halved until their curved patches are on the surface,
-//! and the distance is that to the nearest patch. Whether a point is inside is still told by the solid's own
+//! **measured**: it is meshed once, its cells are halved until their curved patches are on the surface, all but
+//! a few spots, which are meshed by themselves, and the distance is that to the nearest patch. Whether a point is inside is still told by the solid's own
 //! value. Openings and closings measure twice: the solid, and where the centre of the ball may be.
 //!
 //! # Accuracy

@@ -19,6 +19,7 @@ mod crossing;
 mod depth;
 mod exact;
 mod extent;
+mod few;
 mod fill;
 mod fit;
 mod flatten;
