@@ -28,6 +28,9 @@ const PROBES: [f64; 2] = [0.25, 0.75];
 /// The middle is moved by this part of the side's length at most.
 const STRIDE: f64 = 0.3;
 
+/// A step that is shorter than this part of what values may be off is the last one.
+const SETTLED: f64 = 0.3;
+
 /// No side.
 const NONE: u32 = u32::MAX;
 
@@ -239,13 +242,17 @@ impl Seams {
         run: &Run,
     ) -> Result<Vec<usize>, Cancelled> {
         let before: Vec<DVec3> = numbers.iter().map(|n| self.list[*n].middle).collect();
+        let mut open = numbers.to_vec();
         for _ in 0..2 {
-            let points: Vec<DVec3> = numbers.iter().map(|n| self.list[*n].middle).collect();
-            for (number, slope) in numbers.iter().zip(slopes.at(&points, run)?) {
-                let seam = &mut self.list[*number];
+            let points: Vec<DVec3> = open.iter().map(|n| self.list[*n].middle).collect();
+            let mut found = slopes.at(&points, run)?.into_iter();
+            open.retain(|number| {
+                let (seam, slope) = (&mut self.list[*number], found.next().unwrap_or_default());
                 seam.moved(seam.middle + slope.newton(), positions);
                 seam.normals = [slope.normal(); 2];
-            }
+                // What is left of a step goes with its square.
+                slope.distance() > SETTLED * slopes.precision
+            });
         }
         let is_moved = |(n, before): &(&usize, &DVec3)| self.list[**n].middle.distance(**before) > slopes.precision;
         Ok(numbers.iter().zip(&before).filter(is_moved).map(|(n, _)| *n).collect())

@@ -138,8 +138,12 @@ impl Marcher {
                 at: 0.0,
                 probe: false,
             };
+            let known = job.known(&lane);
             if job.bends(&lane) == Some(Bend::Concave) {
                 self.near.push(lane);
+            } else if job.bend.is_none() && !known.rises && !known.falls {
+                // Whatever its far end tells, it is searched from the near one.
+                self.search.push(lane);
             } else {
                 lane.at = len;
                 self.far.push(lane);
@@ -275,12 +279,11 @@ impl Marcher {
                 g = if crossed { f32::MIN_POSITIVE } else { -f32::MIN_POSITIVE };
             }
             (lane.g_right, lane.s_right) = (g, s);
-            let Slopes { rises, falls, .. } = job.known(lane);
-            let one = rises || job.bend.is_some();
-            if g > 0.0 && one {
+            let Slopes { rises, .. } = job.known(lane);
+            if g > 0.0 && (rises || job.bend.is_some()) {
                 lane.aim(lane.right - g / s);
                 lists.unique.push(*lane);
-            } else if g > 0.0 || !(one || falls) {
+            } else if g > 0.0 {
                 lane.at = 0.0;
                 lists.search.push(*lane);
             }
