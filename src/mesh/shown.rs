@@ -87,7 +87,7 @@ impl Subject<'_> {
                 }
                 let cell = [0, 1, 2].map(|axis| block[axis] + [x, y, z][axis] as u32);
                 let region = lattice.region(cell, 1);
-                if self.is_alone(&region) && self.is_crossed(&region) {
+                if self.is_crossed(&region) && self.is_alone(&region) {
                     return Ok(true);
                 }
             }

@@ -427,6 +427,12 @@ const TIE: f64 = 1e-7;
 /// No cell is divided below this part of the whole.
 const FINEST: f64 = 1.0 / 4096.0;
 
+/// More rays than this, times leaves, are better off in the halves of a cell; of leaves that search for their values,
+/// which many points together take less of, if the values are no steeper than this: halves would have little else to tell.
+const RAYS: usize = 64;
+const SEARCHED: usize = 512;
+const STEEP: f64 = 4.0;
+
 /// Whether `count` rays are better off in the halves of a cell, where `slopes` are what they may
 /// find.
 fn divides(cell: &Cell, count: usize, slopes: Slopes) -> bool {
@@ -442,7 +448,8 @@ fn divides(cell: &Cell, count: usize, slopes: Slopes) -> bool {
         return share > FINEST;
     }
     let one_way = bent || slopes.rises || slopes.falls;
-    let much = if one_way { cost > 1 && !cell.is_stale() && count * cost > 8192 } else { count * leaves > 64 };
+    let most = if cost > leaves && slopes.value.magnitude() < STEEP { SEARCHED } else { RAYS };
+    let much = if one_way { cost > 1 && !cell.is_stale() && count * cost > 8192 } else { count * leaves > most };
     share > FINEST && much
 }
 
