@@ -19,6 +19,9 @@ mod seam;
 mod slopes;
 mod surface;
 
+#[cfg(test)]
+mod tests;
+
 use std::sync::Arc;
 
 use self::surface::FromMeshes;

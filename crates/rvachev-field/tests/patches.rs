@@ -252,3 +252,32 @@ fn narrowed_leaves_have_the_same_values() {
     }
     assert!(simpler > 100, "{simpler} of 200 zones are narrowed");
 }
+
+#[test]
+fn values_are_right_within_a_band_and_on_the_right_side_beyond() {
+    let mut random = Random(7);
+    for curved in [false, true] {
+        let field = leaf(&torus(12, curved), None);
+        for (level, band) in [(0.0, 0.1), (0.15, 0.05), (-0.2, 0.1), (0.3, 0.0), (-5.0, 0.1)] {
+            let placement = Placement::new(&DAffine3::IDENTITY, 1.0, -level);
+            let points = rounded(&(0..CHUNK).map(|_| random.point(1.6)).collect::<Vec<DVec3>>());
+            let exact = lanes(&field, &points, &placement).single;
+            let columns = [0, 1, 2].map(|axis| points.iter().map(|p| p[axis] as f32).collect::<Vec<f32>>());
+            let mut found = vec![0.0; CHUNK];
+            let points = columns.each_ref().map(|column| &**column);
+            field.lanes32_within(Chunk { points, placement: &placement, out: [&mut found] }, band);
+            let rounding = 1e-5;
+            let mut nearer = 0;
+            for (found, exact) in found.into_iter().zip(exact).map(|(a, b)| (f64::from(a), f64::from(b))) {
+                if exact.abs() <= band {
+                    assert!((found - exact).abs() <= rounding, "{found} for {exact} within {band}");
+                } else {
+                    let is_between = found.abs() >= band - rounding && found.abs() <= exact.abs() + rounding;
+                    assert!(is_between && (found * exact > 0.0 || exact.abs() < rounding), "{found} for {exact}");
+                    nearer += usize::from(found.abs() < 0.9 * exact.abs());
+                }
+            }
+            assert!(nearer > CHUNK / 10, "{nearer} searches end early");
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! Surfaces as patches: how many there are, and how far off.
+
+use glam::DVec3;
+
+use super::{compiled, surface_of};
+use crate::{Blend, Solid, deg};
+
+/// Two cubes side by side.
+fn block() -> Solid {
+    let cube = Solid::cuboid([10.0; 3]);
+    cube.translate([-5.0, 0.0, 0.0]) | cube.translate([5.0, 0.0, 0.0])
+}
+
+/// A plate with counterbored holes, and a wedge on it.
+fn holed() -> Solid {
+    let plate = Solid::cuboid([60.0, 40.0, 6.0]) | Solid::wedge([30.0, 5.0, 30.0]).translate([0.0, 0.0, 18.0]);
+    let hole = Solid::cylinder(3.0, 30.0) | Solid::cylinder(6.0, 10.0).translate([0.0, 0.0, 5.0]);
+    plate - hole.translate([16.0, -12.0, 1.0]) - hole.rotate_y(deg(20.0)).translate([-16.0, 12.0, 1.0])
+}
+
+#[test]
+fn a_joint_face_to_face_hides_nothing() {
+    let patches = surface_of(&block()).unwrap();
+    assert!(patches.len() < 10_000, "{} patches of flat faces", patches.len());
+}
+
+#[test]
+fn rims_of_holes_are_on_the_surface() {
+    let shell = holed().shell(1.0);
+    let accuracy = compiled(&shell).unwrap().accuracy;
+    assert!(accuracy.error <= 8.0 * accuracy.tolerance, "{accuracy:?}");
+}
+
+#[test]
+fn no_patch_passes_over_a_concave_crease() {
+    const RADIUS: f64 = 0.05;
+    let pin = Solid::cylinder(0.1, 1.0);
+    let both = Solid::cuboid([4.2, 3.5, 0.4]).union_with(pin, Blend::Fillet { radius: RADIUS });
+    // On the fillet, as the ball leaves it that rolls round the pin.
+    for i in 0..500 {
+        let side = DVec3::X.rotate_z(f64::from(i));
+        let ball = (0.1 + RADIUS) * side + (0.2 + RADIUS) * DVec3::Z;
+        let towards = (-side - DVec3::Z).normalize();
+        let value = both.value(ball + RADIUS * towards).unwrap();
+        assert!(value.abs() < 3e-3 * RADIUS, "{value} at {side}");
+    }
+}
