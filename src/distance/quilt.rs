@@ -13,7 +13,7 @@ use glam::DVec3;
 
 use super::facets::{CREASE, Facets};
 use super::seam::{Hem, Seams};
-use super::slopes::Slopes;
+use super::slopes::{Slope, Slopes};
 use crate::{Cancelled, Run};
 use rvachev_field::Patch;
 
@@ -55,6 +55,9 @@ const ASTRAY: f64 = 0.4;
 
 /// Where a patch is compared with the surface.
 const PROBES: [[f64; 3]; 4] = [[1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0], [0.6, 0.2, 0.2], [0.2, 0.6, 0.2], [0.2, 0.2, 0.6]];
+
+/// So many patches are compared at a time: their probes take more memory than they do.
+const AT_ONCE: usize = 1 << 16;
 
 /// Between the probes patches may be off by so much more than at them.
 const BETWEEN: f64 = 1.5;
@@ -262,15 +265,19 @@ fn cross<'a>(
 
 /// How far patches are off the surface, and how far turned from it.
 fn errors(patches: &[Patch], slopes: &Slopes<'_>, run: &Run) -> Result<Vec<Misfit>, Cancelled> {
-    let points: Vec<DVec3> = patches.iter().flat_map(|patch| PROBES.map(|b| patch.point(b))).collect();
-    let found = slopes.at(&points, run)?;
-    let of_patch = |(patch, found): (&Patch, &[super::slopes::Slope])| {
-        let off = found.iter().map(super::slopes::Slope::distance).fold(0.0, f64::max);
+    let of_patch = |(patch, found): (&Patch, &[Slope])| {
+        let off = found.iter().map(Slope::distance).fold(0.0, f64::max);
         let turn = PROBES.iter().zip(found).map(|(b, slope)| patch.normal(*b).angle_between(slope.normal()));
         let turn = turn.filter(|turn| turn.is_finite()).fold(0.0, f64::max);
         Misfit { off: BETWEEN * off, turn, rim: 0.0 }
     };
-    Ok(patches.iter().zip(found.chunks(PROBES.len())).map(of_patch).collect())
+    let mut errors = Vec::with_capacity(patches.len());
+    for patches in patches.chunks(AT_ONCE) {
+        let points: Vec<DVec3> = patches.iter().flat_map(|patch| PROBES.map(|b| patch.point(b))).collect();
+        let found = slopes.at(&points, run)?;
+        errors.extend(patches.iter().zip(found.chunks(PROBES.len())).map(of_patch));
+    }
+    Ok(errors)
 }
 
 impl Piece {

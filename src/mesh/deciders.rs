@@ -21,6 +21,7 @@ use std::ops::Range;
 use super::extract::Root;
 use super::lattice::Lattice;
 use super::roots::{RootFinder, beside, on_chord};
+use super::sampler::BESIDE;
 use super::signs::EdgeRef;
 use crate::eval::{Evaluator, Op, Program, Tape};
 
@@ -100,7 +101,7 @@ impl Deciders {
         self.leaf.clear();
         self.leaf.resize(edges.len(), 0);
         for (number, rival) in (0..).zip(rivals) {
-            self.evaluate(evaluator, rival);
+            self.evaluate(evaluator, rival, BESIDE * lattice.step());
             let known = self.best.iter_mut().zip(&mut self.second).zip(&mut self.leaf);
             for (((best, second), leaf), &value) in known.zip(&self.value) {
                 let value = sign * value;
@@ -153,7 +154,7 @@ impl Deciders {
         self.second.clear();
         self.second.resize(self.places.len(), f32::NEG_INFINITY);
         for (number, rival) in (0..).zip(rivals) {
-            self.evaluate(evaluator, rival);
+            self.evaluate(evaluator, rival, BESIDE * lattice.step());
             for ((second, &n), &value) in self.second.iter_mut().zip(&self.places).zip(&self.value) {
                 let value = if self.leaf[n as usize] == number { f32::NEG_INFINITY } else { sign * value };
                 *second = second.max(value);
@@ -166,11 +167,11 @@ impl Deciders {
         });
     }
 
-    /// The values of a leaf at the points.
-    fn evaluate(&mut self, evaluator: &mut Evaluator, rival: &Tape) {
+    /// The values of a leaf at the points, right within the band: who decides is near the surface.
+    fn evaluate(&mut self, evaluator: &mut Evaluator, rival: &Tape, band: f64) {
         let [x, y, z] = &self.points;
         self.value.resize(x.len(), 0.0);
-        evaluator.shortest_values(rival, [x, y, z], &mut self.value);
+        evaluator.values_within(rival, band, [x, y, z], &mut self.value);
     }
 
     /// The roots of some of the edges in `places`.
