@@ -4,7 +4,10 @@ use glam::DVec3;
 
 use super::crease::{Plane, meet};
 use super::slopes::{Slope, Slopes};
-use crate::{Cancelled, Mesh, Run};
+use crate::error::MeshingError;
+use crate::eval::Program;
+use crate::mesh::Subject;
+use crate::{Bounds, Cancelled, CellSize, Features, Mesh, MeshSettings, Run, ThinFeatures};
 
 /// A vertex whose corners have normals that differ by more, in radians, is on a crease.
 pub(super) const CREASE: f64 = 0.05;
@@ -18,6 +21,17 @@ const LAST: f64 = ASIDE[3];
 
 /// No vertex is moved farther than this in all, in parts of its shortest side.
 const STRIDE: f64 = 0.4;
+
+/// A mesh of what of a program is in a box, its creases sharp.
+pub(super) fn sharp(program: &Program, bounds: Bounds, cell: f64, run: &Run) -> Result<Mesh, MeshingError> {
+    let settings = MeshSettings {
+        cell: CellSize::Length(cell),
+        features: Features::Sharp,
+        thin: ThinFeatures::Ignore,
+        ..MeshSettings::default()
+    };
+    Subject { program, bounds, palette: None, whole: None }.mesh(&settings, run)
+}
 
 /// Triangles, each corner with its normal.
 #[derive(Debug, Default)]

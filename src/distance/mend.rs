@@ -1,4 +1,4 @@
-//! Spots where patches are far off the surface: meshed anew, in small cells.
+//! Spots where patches are far off the surface: meshed anew, in small cells (local remeshing).
 //!
 //! ```text
 //!     ________            Cells of a mesh cut some creases off, and tips and cusps as they turn out. A box
@@ -11,13 +11,12 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::compiled_with;
-use super::facets::Facets;
+use super::facets::{Facets, sharp};
 use super::quilt::{Care, Quilt, Spot};
 use super::slopes::Slopes;
 use crate::eval::{Region, as_leaf};
-use crate::mesh::Subject;
 use crate::solid::Node;
-use crate::{Bounds, Cancelled, CellSize, Features, MeshSettings, RFunction, Run, Solid, ThinFeatures};
+use crate::{Bounds, Cancelled, Mesh, RFunction, Run, Solid};
 
 /// So many boxes are meshed, and boxes in these.
 const BOXES: usize = 512;
@@ -26,6 +25,9 @@ const DEEPEST: u32 = 2;
 /// Cells along a box, and how often their patches are split.
 const CELLS: f64 = 8.0;
 const SPLITS: u32 = 4;
+
+/// Patches in cells of that size are no larger than this, in cells.
+const NEAR: f64 = 2.0;
 
 /// What is within a box, in parts of its longest side, is mended.
 const MARGIN: f64 = 0.3;
@@ -42,11 +44,12 @@ fn mend_to(quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64, depth: u32, r
         quilt.take_spots(spots);
         return Ok(());
     }
-    let mended = |(bounds, _): &(Bounds, Vec<usize>)| {
+    let mended = |(bounds, numbers): &(Bounds, Vec<usize>)| {
         run.check()?;
         let Some(mut part) = anew(slopes, bounds, tolerance, run)? else { return Ok(None) };
         mend_to(&mut part, slopes, tolerance, depth - 1, run)?;
-        Ok(Some(part))
+        let own: Vec<&Spot> = numbers.iter().map(|n| &spots[*n]).collect();
+        Ok(covers(&part, &own, slopes, NEAR * bounds.longest_side() / CELLS, run)?.then_some(part))
     };
     let found = groups.par_iter().map(mended).collect::<Result<Vec<Option<Quilt>>, Cancelled>>()?;
     let mut spots: Vec<Option<Spot>> = spots.into_iter().map(Some).collect();
@@ -82,6 +85,16 @@ fn groups(spots: &[Spot], tolerance: f64) -> Vec<(Bounds, Vec<usize>)> {
     groups
 }
 
+/// Whether there are patches wherever spots are on the surface: what small cells do not show either is not to be lost.
+fn covers(part: &Quilt, spots: &[&Spot], slopes: &Slopes<'_>, near: f64, run: &Run) -> Result<bool, Cancelled> {
+    let corners: Vec<DVec3> = spots.iter().flat_map(|spot| spot.patch.corners).collect();
+    let found = slopes.at(&corners, run)?;
+    // What is no corner of the surface at all tells nothing.
+    let mut feet = corners.iter().zip(found).filter(|(_, slope)| slope.distance() < near).map(|(p, s)| *p + s.newton());
+    let is_near = |foot: DVec3| part.patches.iter().any(|patch| patch.corners.iter().any(|p| p.distance(foot) < near));
+    Ok(!part.patches.is_empty() && feet.all(is_near))
+}
+
 /// The surface in a box.
 fn anew(slopes: &Slopes<'_>, bounds: &Bounds, tolerance: f64, run: &Run) -> Result<Option<Quilt>, Cancelled> {
     let cell = bounds.longest_side() / CELLS;
@@ -104,19 +117,12 @@ fn anew(slopes: &Slopes<'_>, bounds: &Bounds, tolerance: f64, run: &Run) -> Resu
 }
 
 /// A mesh, if it can be made.
-fn meshed(part: &Solid, bounds: &Bounds, cell: f64, run: &Run) -> Result<Option<crate::Mesh>, Cancelled> {
+fn meshed(part: &Solid, bounds: &Bounds, cell: f64, run: &Run) -> Result<Option<Mesh>, Cancelled> {
     let Ok(programs) = compiled_with(part, run) else {
         run.check()?;
         return Ok(None);
     };
-    let settings = MeshSettings {
-        cell: CellSize::Length(cell),
-        features: Features::Sharp,
-        thin: ThinFeatures::Ignore,
-        ..MeshSettings::default()
-    };
-    let subject = Subject { program: &programs.surface, bounds: *bounds, palette: None, whole: None };
-    let mesh = subject.mesh(&settings, run);
+    let mesh = sharp(&programs.surface, *bounds, cell, run);
     run.check()?;
     Ok(mesh.ok())
 }

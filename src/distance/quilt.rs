@@ -105,6 +105,11 @@ impl Misfit {
 }
 
 impl Quilt {
+    /// One that has these spots and nothing else.
+    pub(super) fn of(spots: Vec<Spot>) -> Quilt {
+        Quilt { patches: Vec::new(), error: 0.0, measures: Vec::new(), spots }
+    }
+
     /// Patches of triangles near the surface; `None` if more than this part of them is far off and splitting does
     /// not mend it: triangles are too large for what they are to show.
     pub(super) fn new(
@@ -118,7 +123,7 @@ impl Quilt {
         let mut seams = Seams::default();
         let mut pieces = first(&facets, &mut seams);
         let mut positions = facets.positions;
-        let mut quilt = Quilt { patches: Vec::new(), error: 0.0, measures: Vec::new(), spots: Vec::new() };
+        let mut quilt = Quilt::of(Vec::new());
         for depth in 0..=last {
             seams.find(&positions, slopes, run)?;
             let patch = |(number, piece): (usize, &Piece)| {

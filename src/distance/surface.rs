@@ -5,14 +5,14 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use super::compiled_with;
-use super::facets::Facets;
+use super::facets::{Facets, sharp};
 use super::mend::mend;
 use super::quilt::{Care, Quilt};
 use super::slopes::Slopes;
 use crate::error::MeshingError;
 use crate::eval::{Accuracy, CompileError, Compiled, DistanceSource, Program, Surface, Wanted};
 use crate::mesh::Subject;
-use crate::{Bounds, CellSize, Features, Mesh, MeshSettings, RFunction, Run, Solid, SolidError, ThinFeatures};
+use crate::{Bounds, CellSize, Mesh, RFunction, Run, Solid, SolidError};
 use rvachev_field::Patches;
 
 /// The surfaces of solids by their meshes.
@@ -184,15 +184,9 @@ struct Shown {
 }
 
 fn shown(program: &Program, bounds: Bounds, cell: f64, run: &Run) -> Result<Shown, CompileError> {
-    let settings = MeshSettings {
-        cell: CellSize::Length(cell),
-        features: Features::Sharp,
-        thin: ThinFeatures::Ignore,
-        ..MeshSettings::default()
-    };
     let subject = Subject { program, bounds, palette: None, whole: None };
     let [to_mesh, to_look] = run.stages([0.7, 0.3]);
-    let mesh = run.install(|| subject.mesh(&settings, &to_mesh)).map_err(compile_error)?;
+    let mesh = run.install(|| sharp(program, bounds, cell, &to_mesh)).map_err(compile_error)?;
     let hides = run.install(|| subject.shows_more(&mesh, SMALLER, &to_look)).map_err(compile_error)?;
     Ok(Shown { mesh, hides })
 }

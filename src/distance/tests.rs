@@ -2,8 +2,12 @@
 
 use glam::DVec3;
 
+use super::mend::mend;
+use super::quilt::{Quilt, Spot};
+use super::slopes::Slopes;
 use super::{compiled, surface_of};
-use crate::{Blend, Solid, deg};
+use crate::{Blend, Run, Solid, deg};
+use rvachev_field::Patch;
 
 /// Two cubes side by side.
 fn block() -> Solid {
@@ -44,4 +48,16 @@ fn no_patch_passes_over_a_concave_crease() {
         let value = both.value(ball + RADIUS * towards).unwrap();
         assert!(value.abs() < 3e-3 * RADIUS, "{value} at {side}");
     }
+}
+
+#[test]
+fn spots_that_small_cells_do_not_show_are_kept_and_told() {
+    const OFF: f64 = 0.5;
+    let sheet = Solid::cuboid([10.0, 10.0, 0.01]);
+    let programs = compiled(&sheet).unwrap();
+    let patch = Patch::flat([DVec3::ZERO, 4.0 * DVec3::X, 4.0 * DVec3::Y].map(|p| p + 0.005 * DVec3::Z));
+    let mut quilt = Quilt::of(vec![Spot { patch, off: OFF }]);
+    let slopes = Slopes { program: &programs.surface, precision: 1e-3 };
+    mend(&mut quilt, &slopes, 1e-3, &Run::default()).unwrap();
+    assert!(!quilt.patches.is_empty() && quilt.error >= OFF, "{} patches, {}", quilt.patches.len(), quilt.error);
 }
