@@ -14,10 +14,11 @@
 //! Where g bends downwards, Newton's method from the near end never passes a crossing, and what
 //! takes it long is bounded by the tangents from both ends. Where g may turn, its far end is not
 //! asked. What is open is looked at from the near end in steps as long as the bounds on the slope
-//! allow, or in leaps that the bounds from both of their ends cover. A bracketed Newton iteration in single precision and
-//! steps in double precision (`exact`) find the crossing. Signs of values within the rounding error
-//! of single precision are looked up in double precision; a ray that takes too many steps, or of
-//! whose slopes nothing is known, is divided by intervals (`eval::first_hit`).
+//! allow, or in leaps that the bounds from both of their ends cover. A bracketed Newton iteration
+//! in single precision and steps in double precision (`exact`) find the crossing. Signs of values
+//! within the rounding error of single precision are looked up in double precision; a ray that
+//! takes too many steps, or of whose slopes nothing is known, is divided by intervals
+//! (`eval::first_hit`).
 
 use glam::{DVec3, Vec3};
 

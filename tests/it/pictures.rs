@@ -2,8 +2,14 @@
 
 use glam::{DVec2, DVec3, Vec3};
 use rvachev::{
-    Background, Blend, Bounds, Camera, Image, Lights, Paint, RenderSettings, Run, Solid, Style, View,
-    camera::Projection, deg, layers::Transfer, rad,
+    Background, Blend, Bounds, Camera, Caps, Extrusion, Image, Lights, Paint, Profile, RenderSettings, Run, Scene,
+    Solid, Style, View,
+    camera::{Projection, Window},
+    catalogue,
+    catalogue::{Entry, Part},
+    deg,
+    layers::Transfer,
+    rad,
 };
 
 use crate::golden::{ascii, same_as_golden};
@@ -307,4 +313,60 @@ fn paint_shows() {
     assert!(red[0] > 120 && red[1] < 90 && red[2] < 90, "{red:?}");
     let clay = ball.render(&camera, &RenderSettings { style: Style::Clay, ..settings }).unwrap().pixel(60, 45).unwrap();
     assert!(clay[0].abs_diff(clay[1]) < 30, "{clay:?}");
+}
+
+/// Rays through small pictures of every entry of the catalogue, and of blocks with holes, shelled, moved and capped: where
+/// a pixel is unlike those about it, another way to follow the ray says the same.
+#[test]
+fn no_pixel_is_lost() {
+    let part = |entry: &Entry| match entry.example() {
+        Part::Solid(solid) => Some(solid),
+        Part::Profile(profile) => Some(profile.extrude(1.0)),
+        _ => None,
+    };
+    let block = Solid::cuboid([2.0, 1.4, 1.0]) - Solid::cylinder(0.4, 2.0);
+    let star = Profile::rectangle([1.8, 0.6]) | Profile::rectangle([0.6, 1.8]);
+    let capped = |caps| star.extrude_with(&Extrusion { caps, ..Extrusion::new(1.6) });
+    let more = [block.offset(-0.12), block.offset(0.12), block.shell(0.1), block.rounded(0.2)];
+    let capped = [Caps::Flat, Caps::Rounded(0.2), Caps::Chamfered(0.2)].map(capped);
+    let (mut asked, mut lost) = (0, Vec::new());
+    for solid in catalogue().iter().filter_map(part).chain(more).chain(capped) {
+        let (Ok(scene), Ok(bounds)) = (solid.scene(), solid.bounds()) else { continue };
+        for size in [[88, 66], [101, 77], [64, 64]] {
+            asked += odd_pixels(&scene, &bounds, size, |pixel, ray, seen| {
+                let want = solid.raycast(ray.0, ray.1).unwrap().map(|hit| hit.distance);
+                let is_same = match (want, seen.is_finite()) {
+                    (Some(want), true) => (want - seen).abs() < 1e-3 * bounds.longest_side(),
+                    (want, is_hit) => want.is_some() == is_hit,
+                };
+                if !is_same {
+                    lost.push(format!("{pixel:?} of {size:?}: {seen}, not {want:?}, of\n{solid}"));
+                }
+            });
+        }
+    }
+    assert!(asked > 10 && lost.is_empty(), "{} of {asked}: {lost:#?}", lost.len());
+}
+
+/// Visits the pixels that are deeper than all about them, or less deep: with their rays and depths.
+fn odd_pixels(
+    scene: &Scene,
+    bounds: &Bounds,
+    [width, height]: [u32; 2],
+    mut visit: impl FnMut([u32; 2], (DVec3, DVec3), f64),
+) -> usize {
+    let camera = Camera::framing(bounds).fitted(bounds, f64::from(width) / f64::from(height));
+    let rays = camera.rays(width, height);
+    let seen = scene.surfaces(&rays, Window::whole(width, height));
+    let far = 0.05 * bounds.longest_side();
+    let depth = |x: u32, y: u32| seen.at(x, y).distance.min(1e6);
+    let mut count = 0;
+    for (x, y) in (1..height - 1).flat_map(|y| (1..width - 1).map(move |x| (x, y))) {
+        let about = [depth(x - 1, y), depth(x + 1, y), depth(x, y - 1), depth(x, y + 1)];
+        if about.into_iter().all(|other| (other - depth(x, y)).abs() > far) {
+            count += 1;
+            visit([x, y], rays.ray(f64::from(x) + 0.5, f64::from(y) + 0.5), seen.at(x, y).distance);
+        }
+    }
+    count
 }

@@ -32,7 +32,7 @@ fn flask() -> Solid {
 pub const LENGTHS: &[Entry] = &[
     ("level", || block().level(0.2)),
     ("offset", || block().offset(0.2)),
-    ("offset_inwards", || block().offset(-0.15)),
+    ("offset_inwards", || block().offset(-0.12)),
     ("shell", || cut_open(flask().shell(0.12))),
     ("rounded", || step().rounded(0.2)),
     ("filleted", || step().filleted(0.35)),
