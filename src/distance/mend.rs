@@ -17,6 +17,7 @@ use super::slopes::Slopes;
 use crate::eval::{Region, as_leaf};
 use crate::solid::Node;
 use crate::{Bounds, Cancelled, Mesh, RFunction, Run, Solid};
+use rvachev_field::Patches;
 
 /// So many boxes are meshed, and boxes in these.
 const BOXES: usize = 512;
@@ -26,8 +27,8 @@ const DEEPEST: u32 = 2;
 const CELLS: f64 = 8.0;
 const SPLITS: u32 = 4;
 
-/// Patches in cells of that size are no larger than this, in cells.
-const NEAR: f64 = 2.0;
+/// Where the surface is there is a patch that is nearer than this, in cells.
+const NEAR: f64 = 1.0;
 
 /// What is within a box, in parts of its longest side, is mended.
 const MARGIN: f64 = 0.3;
@@ -87,12 +88,12 @@ fn groups(spots: &[Spot], tolerance: f64) -> Vec<(Bounds, Vec<usize>)> {
 
 /// Whether there are patches wherever spots are on the surface: what small cells do not show either is not to be lost.
 fn covers(part: &Quilt, spots: &[&Spot], slopes: &Slopes<'_>, near: f64, run: &Run) -> Result<bool, Cancelled> {
+    let patches = Patches::new(&part.patches, &Run { progress: None, ..run.clone() })?;
     let corners: Vec<DVec3> = spots.iter().flat_map(|spot| spot.patch.corners).collect();
     let found = slopes.at(&corners, run)?;
     // What is no corner of the surface at all tells nothing.
     let mut feet = corners.iter().zip(found).filter(|(_, slope)| slope.distance() < near).map(|(p, s)| *p + s.newton());
-    let is_near = |foot: DVec3| part.patches.iter().any(|patch| patch.corners.iter().any(|p| p.distance(foot) < near));
-    Ok(!part.patches.is_empty() && feet.all(is_near))
+    Ok(!patches.is_empty() && feet.all(|foot| patches.nearest(foot).is_some_and(|own| own.distance < near)))
 }
 
 /// The surface in a box.
