@@ -33,12 +33,27 @@ const NEAR: f64 = 1.0;
 /// What is within a box, in parts of its longest side, is mended.
 const MARGIN: f64 = 0.3;
 
-/// Meshes the spots of a quilt anew. Those that it does not mend are taken as they are.
-pub(super) fn mend(quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64, run: &Run) -> Result<(), Cancelled> {
-    mend_to(quilt, slopes, tolerance, DEEPEST, run)
+/// A mesh that patches were made of: the size of its cells, and how often its spots may be meshed anew.
+#[derive(Clone, Copy)]
+struct Cells {
+    size: f64,
+    depth: u32,
 }
 
-fn mend_to(quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64, depth: u32, run: &Run) -> Result<(), Cancelled> {
+/// Meshes the spots of a quilt anew that a mesh in such cells has left. Those that it does not mend are taken as they
+/// are.
+pub(super) fn mend(
+    quilt: &mut Quilt,
+    slopes: &Slopes<'_>,
+    cell: f64,
+    tolerance: f64,
+    run: &Run,
+) -> Result<(), Cancelled> {
+    mend_of(Cells { size: cell, depth: DEEPEST }, quilt, slopes, tolerance, run)
+}
+
+fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64, run: &Run) -> Result<(), Cancelled> {
+    let Cells { size, depth } = cells;
     let spots = std::mem::take(&mut quilt.spots);
     let groups = if depth == 0 { Vec::new() } else { groups(&spots, tolerance) };
     if groups.is_empty() || groups.len() > BOXES {
@@ -47,10 +62,15 @@ fn mend_to(quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64, depth: u32, r
     }
     let mended = |(bounds, numbers): &(Bounds, Vec<usize>)| {
         run.check()?;
+        // In cells that are no smaller nothing would be seen that was not.
+        let cell = bounds.longest_side() / CELLS;
+        if cell > size {
+            return Ok(None);
+        }
         let Some(mut part) = anew(slopes, bounds, tolerance, run)? else { return Ok(None) };
-        mend_to(&mut part, slopes, tolerance, depth - 1, run)?;
+        mend_of(Cells { size: cell, depth: depth - 1 }, &mut part, slopes, tolerance, run)?;
         let own: Vec<&Spot> = numbers.iter().map(|n| &spots[*n]).collect();
-        Ok(covers(&part, &own, slopes, NEAR * bounds.longest_side() / CELLS, run)?.then_some(part))
+        Ok(covers(&part, &own, slopes, NEAR * cell, run)?.then_some(part))
     };
     let found = groups.par_iter().map(mended).collect::<Result<Vec<Option<Quilt>>, Cancelled>>()?;
     let mut spots: Vec<Option<Spot>> = spots.into_iter().map(Some).collect();
@@ -74,9 +94,13 @@ fn groups(spots: &[Spot], tolerance: f64) -> Vec<(Bounds, Vec<usize>)> {
     for (number, spot) in spots.iter().enumerate() {
         let (mut bounds, mut numbers) = (around(spot), vec![number]);
         while let Some(at) = groups.iter().position(|(other, _)| other.intersects(&bounds)) {
-            let (other, others) = groups.swap_remove(at);
+            let (other, mut others) = groups.swap_remove(at);
             bounds = bounds.union(&other);
-            numbers.extend(others);
+            // The longer list stays where it is, or a large group would be copied for each of its spots.
+            if others.len() > numbers.len() {
+                std::mem::swap(&mut others, &mut numbers);
+            }
+            numbers.append(&mut others);
         }
         groups.push((bounds, numbers));
         if groups.len() > BOXES {

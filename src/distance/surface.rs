@@ -116,7 +116,7 @@ impl DistanceSource for FromMeshes {
                     care.patience = PATIENCE;
                 }
                 if let Some(mut quilt) = Quilt::new(facets, &slopes, care, &to_sew)? {
-                    mend(&mut quilt, &slopes, tolerance, &to_sew)?;
+                    mend(&mut quilt, &slopes, cell, tolerance, &to_sew)?;
                     if hides {
                         quilt.error = quilt.error.max(cell);
                     }
