@@ -474,11 +474,11 @@ pub use glam;
 
 pub use catalogue::catalogue;
 pub use eval::{Accuracy, Hit, Owner};
-pub use geom::{Camera, Image, Mesh, Plane, PointCloud, Polyline, ThinPlace, ThinReport, View};
+pub use geom::{Camera, Contours, Image, Mesh, Outline, Plane, PointCloud, Polyline, ThinPlace, ThinReport, View};
 pub use io::save::SaveSettings;
 pub use io::unit::LengthUnit;
 pub use mesh::{AtBounds, CellSize, Features, MeshReport, MeshSettings, ThinFeatures};
-pub use render::{Background, Lights, RenderSettings, Scene, Slice, SliceSettings, Style};
+pub use render::{Background, ContourSettings, Lights, RenderSettings, Scene, Side, Slice, SliceSettings, Style};
 #[cfg(feature = "formula")]
 #[doc(inline)]
 pub use rvachev_field::Formula;

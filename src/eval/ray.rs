@@ -228,21 +228,26 @@ fn slope_along(program: &Program, origin: DVec3, direction: DVec3, t0: f64, t1: 
 
 /// The crossing between `t0` and `t1`: the false position method with halving (Illinois), which
 /// never leaves the bracket. Where rounding has the same sign at both ends it is at one of them.
-fn bracket(value: &impl Fn(f64) -> f64, [mut t0, mut t1]: [f64; 2], precision: f64) -> f64 {
+pub(crate) fn bracket(value: &impl Fn(f64) -> f64, [mut t0, mut t1]: [f64; 2], precision: f64) -> f64 {
     let (mut f0, mut f1) = (value(t0), value(t1));
     let inside0 = f0 > 0.0;
     if inside0 == (f1 > 0.0) {
         return if f0.abs() < f1.abs() { t0 } else { t1 };
     }
     let mut kept = 0i32;
+    let (mut halvings, mut more) = (0, 1);
     for _ in 0..80 {
         let width = t1 - t0;
         if width <= precision.max(4.0 * f64::EPSILON * t1.abs().max(f64::MIN_POSITIVE)) {
             break;
         }
         let secant = t0 + width * (f0 / (f0 - f1));
-        // Three sides in a row mean slow progress: halve. (In a face the value is level.)
-        let stuck = kept.abs() >= 3 || !(secant > t0 && secant < t1);
+        // Three sides in a row mean slow progress: halve, each time more often. (In a face the value is level.)
+        if kept.abs() >= 3 {
+            (halvings, more) = (more, 2 * more);
+        }
+        let stuck = halvings > 0 || !(secant > t0 && secant < t1);
+        halvings -= halvings.min(1);
         let t = if stuck { 0.5 * (t0 + t1) } else { secant };
         let f = value(t);
         if (f > 0.0) == inside0 {

@@ -15,7 +15,7 @@ use glam::DVec3;
 use super::program::{Kind, Program};
 use super::scene::Instance;
 use crate::{Bounds, Dual, Interval};
-use rvachev_field::{AnyWarp, Pieces, Rule, Way, Zone, largest_stretch, steepest};
+use rvachev_field::{AnyField, AnyWarp, Pieces, Rule, Way, Zone, bits, largest_stretch, steepest};
 
 /// A leaf, and whether its complement counts.
 #[derive(Clone, Copy)]
@@ -40,6 +40,12 @@ impl Part {
 ///        |\    w
 /// ```
 const CONE: f64 = 0.15;
+
+/// A slope within a plane that is less is that of a face beside it.
+const FLAT: f64 = 1e-6;
+
+/// How far beyond a zone it is seen whether a convex leaf is entered, in radii of the zone.
+const BEYOND: [f64; 3] = [1.2, 3.0, 8.0];
 
 /// How often a direction is turned towards the part that rises least along it.
 const TURNS: usize = 16;
@@ -90,6 +96,46 @@ impl Program {
             slopes.push(part.turned(slope).normalize_or_zero());
         }
         slopes
+    }
+
+    /// A unit vector within a plane, of these axes, along which the solid is entered, and not left, throughout a zone.
+    pub(crate) fn way_in_plane(&self, zone: &Zone, axes: [DVec3; 2]) -> Option<DVec3> {
+        let parts = self.parts()?;
+        // A face that lies beside the plane has no slope in it, and tells nothing there.
+        let within = |slope: DVec3| {
+            let slope = axes.map(|axis| slope.dot(axis) * axis).into_iter().sum::<DVec3>();
+            (slope.length() > FLAT).then(|| slope.normalize())
+        };
+        let at = |p: DVec3| self.slopes_at(&parts, p).into_iter().filter_map(within);
+        let world = Pieces::one(*zone);
+        let zones = self.zones(&world);
+        let entered = |slopes: Vec<DVec3>| {
+            let middle = common(&slopes).and_then(within)?;
+            let ways = [Way { middle, sway: 0.0 }];
+            (self.all_enter(&parts, (&zones, &world), &ways) != 0).then_some(middle)
+        };
+        // Edges that pass beside the middle show at the corners.
+        let corner = |x: f64, y: f64| zone.centre + x * zone.axes.x_axis + y * zone.axes.y_axis;
+        let corners = || [corner(-1.0, -1.0), corner(1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0)];
+        entered(at(zone.centre).collect()).or_else(|| entered(corners().into_iter().flat_map(at).collect()))
+    }
+
+    /// The directions, of up to eight, along which the solid is found to be entered, and not left, throughout a zone.
+    pub(crate) fn enters(&self, zone: &Zone, ways: &[Way]) -> u8 {
+        let world = Pieces::one(*zone);
+        self.parts().map_or(0, |parts| self.all_enter(&parts, (&self.zones(&world), &world), ways))
+    }
+
+    /// The same of these parts.
+    fn all_enter(&self, parts: &[Part], seen: (&[Pieces], &Pieces), ways: &[Way]) -> u8 {
+        // Joins of other rules ask more of a part than its sign.
+        let is_sign = |kind: &Kind| !matches!(kind, Kind::Join { rule, .. } if *rule != Rule::MinMax);
+        let by_sign = self.nodes.iter().all(|node| is_sign(&node.kind));
+        self.all_along(parts, seen, ways, |instance, zone, ways| {
+            let found = instance.field.rises(zone, ways);
+            let is_convex = by_sign && instance.field.convex() && instance.placement.shift == 0.0;
+            if is_convex { found | bits(ways, |way| is_entered(&*instance.field, zone, way)) } else { found }
+        })
     }
 
     /// The directions, of up to eight, along which the value is found to rise, or to stay, throughout a zone.
@@ -189,7 +235,18 @@ impl Program {
     }
 
     /// The directions of the world along which all parts rise, throughout its zone and those of the frames.
-    fn all_rise(&self, parts: &[Part], (zones, world): (&[Pieces], &Pieces), ways: &[Way]) -> u8 {
+    fn all_rise(&self, parts: &[Part], seen: (&[Pieces], &Pieces), ways: &[Way]) -> u8 {
+        self.all_along(parts, seen, ways, |instance, zone, ways| instance.field.rises(zone, ways))
+    }
+
+    /// The directions along which something is true of all parts, as they see them.
+    fn all_along(
+        &self,
+        parts: &[Part],
+        (zones, world): (&[Pieces], &Pieces),
+        ways: &[Way],
+        holds: impl Fn(&Instance, &Zone, &[Way]) -> u8,
+    ) -> u8 {
         // The directions as the frames see them.
         let mut seen: Vec<Vec<Way>> = Vec::with_capacity(self.frames.len());
         for &number in &self.frames[..] {
@@ -220,13 +277,32 @@ impl Program {
             if left == 0 {
                 break;
             }
-            let Instance { field, frame, to_local, .. } = self.instance(part.leaf);
+            let instance = self.instance(part.leaf);
+            let Instance { frame, to_local, .. } = instance;
             let ways = self.frames.binary_search(frame).map_or(ways, |slot| &seen[slot]);
             let own: Vec<Way> = ways.iter().map(|way| way.mapped(&to_local.matrix3).flip_if(part.negated)).collect();
-            self.zone_in(zones, *frame, world).each(|zone| left &= field.rises(&zone.mapped(to_local), &own));
+            self.zone_in(zones, *frame, world).each(|zone| left &= holds(instance, &zone.mapped(to_local), &own));
         }
         left
     }
+}
+
+/// Whether a convex leaf is entered along these directions, and not left, throughout a zone: what is beyond is all
+/// inside. (A complement is left by them, so its directions are turned.)
+fn is_entered(field: &dyn AnyField, zone: &Zone, Way { middle, sway }: Way) -> bool {
+    let scale = zone.radius() / middle.length();
+    BEYOND.iter().any(|by| {
+        let by = by * scale;
+        let slack = zone.slack + by * sway;
+        let spread = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| slack.dot(axis) * axis);
+        let steps = [zone.axes.x_axis, zone.axes.y_axis, zone.axes.z_axis].into_iter().chain(spread);
+        let steps: Vec<DVec3> = steps.filter(|step| *step != DVec3::ZERO).collect();
+        (0..1u32 << steps.len()).all(|corner| {
+            let signed = |(bit, step): (usize, &DVec3)| if corner >> bit & 1 == 0 { -*step } else { *step };
+            let from = steps.iter().enumerate().map(signed).sum::<DVec3>();
+            field.value((zone.centre + by * middle + from).to_array()) > 0.0
+        })
+    })
 }
 
 /// A direction at less than a right angle to all of these, if one is found.

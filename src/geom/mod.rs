@@ -5,6 +5,7 @@
 //! least be written down ([`Camera`], checked by [`Camera::check`]).
 
 mod camera;
+mod contours;
 mod image;
 mod mesh;
 mod plane;
@@ -17,6 +18,7 @@ mod transfer;
 mod view;
 
 pub use camera::{Camera, CameraError, Projection, Rays};
+pub use contours::{Contours, Outline};
 pub(crate) use image::to_8bit;
 pub use image::{Image, ImageError};
 pub(crate) use mesh::Findings;

@@ -91,6 +91,11 @@ impl Plane {
         DVec2::new(p.dot(self.u), p.dot(self.v))
     }
 
+    /// The plane moved along its normal.
+    pub(crate) fn moved_by(&self, by: f64) -> Plane {
+        Plane { origin: self.origin + by * self.normal(), ..*self }
+    }
+
     /// Whether its numbers are finite.
     pub(crate) fn is_finite(&self) -> bool {
         self.origin.is_finite() && self.u.is_finite() && self.v.is_finite()

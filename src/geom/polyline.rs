@@ -61,4 +61,18 @@ impl Polyline {
         // About the first point, so that a far origin costs no digits.
         self.edges().map(|[a, b]| (a - first).perp_dot(b - first)).sum::<f64>() / 2.0
     }
+
+    /// Whether a point is within it, by the even-odd rule. An open one is closed first.
+    pub(crate) fn winds_about(&self, p: DVec2) -> bool {
+        let Some(&last) = self.points.last() else { return false };
+        let mut inside = false;
+        let mut a = last;
+        for &b in &self.points {
+            if (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x) {
+                inside = !inside;
+            }
+            a = b;
+        }
+        inside
+    }
 }

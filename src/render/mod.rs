@@ -30,6 +30,7 @@ mod spot;
 mod still;
 mod tile;
 
+pub use contour::{ContourSettings, Side};
 pub use gbuffer::{GBuffer, Surface, Window};
 pub use layers::Layers;
 pub use scene::Scene;

@@ -88,12 +88,7 @@ impl Solid {
     /// [`slice_within`](Solid::slice_within).
     pub fn slice(&self, plane: &Plane) -> Result<Slice, RenderError> {
         let bounds = self.finite_bounds()?;
-        let bounds = if bounds.is_empty() { Bounds::from_center(plane.origin(), glam::DVec3::ONE) } else { bounds };
-        let corners = bounds.corners().map(|corner| plane.coordinates(corner));
-        let min = corners.into_iter().fold(DVec2::INFINITY, DVec2::min);
-        let max = corners.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max);
-        let margin = MARGIN * (max - min).max_element();
-        self.slice_within(plane, PlaneBounds { min: min - margin, max: max + margin })
+        self.slice_within(plane, seen(&bounds, plane))
     }
 
     /// The solid cut by a plane, within a rectangle of the plane's coordinates.
@@ -218,6 +213,16 @@ impl Slice {
             .collect();
         Ok(Image::new(values.width(), values.height(), pixels)?)
     }
+}
+
+/// The rectangle of a plane that a box is seen in, with a small margin.
+pub(super) fn seen(bounds: &Bounds, plane: &Plane) -> PlaneBounds {
+    let bounds = if bounds.is_empty() { Bounds::from_center(plane.origin(), glam::DVec3::ONE) } else { *bounds };
+    let corners = bounds.corners().map(|corner| plane.coordinates(corner));
+    let min = corners.into_iter().fold(DVec2::INFINITY, DVec2::min);
+    let max = corners.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max);
+    let margin = MARGIN * (max - min).max_element();
+    PlaneBounds { min: min - margin, max: max + margin }
 }
 
 /// From the least to the greatest value, but no more than what a distance changes by.

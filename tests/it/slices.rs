@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 use rvachev::{
-    Plane, PlaneBounds, Polyline, RFunction, SliceSettings, Solid,
+    ContourSettings, Contours, Plane, PlaneBounds, Polyline, Profile, RFunction, Run, Side, SliceSettings, Solid,
     io::{write_dxf, write_svg},
     layers::Isolines,
 };
@@ -124,4 +124,103 @@ fn drawings_of_points_that_are_not_finite_are_errors() {
         assert_eq!(text, "polyline 1: point 1 is (2, NaN); both coordinates must be finite");
     }
     assert!(svg.is_empty() && dxf.is_empty());
+}
+
+/// Contours on a plane at a height.
+fn cut(solid: &Solid, z: f64, tolerance: f64) -> Contours {
+    solid.slice(&Plane::xy(z)).unwrap().contours(tolerance).unwrap()
+}
+
+#[test]
+fn all_holes_of_a_perforated_plate_are_found() {
+    let holes = Solid::cylinder(1.5, 20.0).repeat([58, 38, 1], [10.0, 10.0, 1.0]).translate([-285.0, -185.0, 0.0]);
+    let plate = Solid::cuboid([600.0, 400.0, 2.0]) - holes;
+    let contours = cut(&plate, 0.0, 0.01);
+    assert_eq!((contours.len(), contours.unresolved()), (1 + 58 * 38, 0));
+    let want = 600.0 * 400.0 - 2204.0 * PI * 2.25;
+    assert!((contours.area() - want).abs() < 0.01 * 2204.0 * 3.0 * PI, "{} of {want}", contours.area());
+    let outlines = contours.outlines();
+    assert_eq!((outlines.len(), outlines[0].holes.len()), (1, 2204));
+}
+
+#[test]
+fn a_hole_is_found_wherever_it_is() {
+    for i in 0..40 {
+        let at = [f64::from(i) * 7.123 - 140.0, f64::from(i) * 3.777 - 75.0, 0.0];
+        let plate = Solid::cuboid([600.0, 400.0, 2.0]) - Solid::cylinder(1.5, 20.0).translate(at);
+        assert_eq!(cut(&plate, 0.0, 0.01).len(), 2, "{i}");
+    }
+}
+
+#[test]
+fn a_turned_slot_is_one_hole() {
+    let slot = Profile::rectangle([600.0, 400.0]) - Profile::rectangle([500.0, 1.5]).rotate(rvachev::rad(0.3));
+    let contours = cut(&slot.extrude(1.0), 0.0, 0.01);
+    assert_eq!((contours.len(), contours.unresolved()), (2, 0));
+    assert!((contours.area() - (240_000.0 - 750.0)).abs() < 1.0, "{}", contours.area());
+    // Straight sides and sharp corners need no points but those at the corners.
+    assert!(contours.iter().all(|line| line.points().len() == 4), "{contours:?}");
+}
+
+#[test]
+fn what_is_above_a_joint_counts_or_what_is_below() {
+    let tower = Solid::cuboid([20.0, 20.0, 10.0]) | Solid::cuboid([20.0, 20.0, 10.0]).translate([0.0, 0.0, 10.0]);
+    let contours = cut(&tower, 5.0, 1e-3);
+    assert_eq!((contours.len(), contours.unresolved()), (1, 0));
+    assert!((contours.area() - 400.0).abs() < 1e-6, "{}", contours.area());
+    let plate = Solid::cuboid([40.0, 30.0, 4.0]) | Solid::cylinder(5.0, 20.0).translate([0.0, 0.0, 12.0]);
+    let slice = plate.slice(&Plane::xy(2.0)).unwrap();
+    let of = |side| {
+        let settings = ContourSettings { side, ..ContourSettings::default() };
+        slice.contours_with(&settings, &Run::default()).unwrap().area()
+    };
+    assert!((of(Side::Above) - 25.0 * PI).abs() < 0.05, "{}", of(Side::Above));
+    assert!((of(Side::Below) - 1200.0).abs() < 1e-6, "{}", of(Side::Below));
+}
+
+#[test]
+fn parts_that_touch_have_one_contour_about_them() {
+    let c = Solid::cuboid([10.0; 3]);
+    let beside = |by: [f64; 3]| c.clone() | c.translate(by);
+    for turn in [0.0, 0.3, 1.1] {
+        let turned = |solid: Solid| cut(&solid.rotate_z(rvachev::rad(turn)), 1.0, 1e-3);
+        let two = turned(beside([10.0, 0.0, 0.0]));
+        assert_eq!((two.len(), two.unresolved()), (1, 0), "{turn}");
+        assert!((two.area() - 200.0).abs() < 1e-2, "{turn}: {}", two.area());
+        let aside = turned(beside([10.0, 4.0, 0.0]));
+        assert_eq!((aside.len(), aside.unresolved()), (1, 0), "{turn}");
+        assert!((aside.area() - 200.0).abs() < 1e-2, "{turn}: {}", aside.area());
+    }
+    // What is plugged with what was cut out of it is whole.
+    let plug = Solid::cylinder(3.0, 10.0);
+    let plugged = (c.clone() - plug.clone()) | plug;
+    let contours = cut(&plugged, 1.0, 1e-3);
+    assert_eq!(contours.len(), 1);
+    assert!((contours.area() - 100.0).abs() < 1e-2, "{}", contours.area());
+}
+
+#[test]
+fn a_stack_of_slices_is_the_slices() {
+    let part = (Solid::cuboid([20.0, 14.0, 8.0]) - Solid::sphere(5.0).translate([4.0, 2.0, 3.0]))
+        | Solid::cone(4.0, 1.0, 9.0).translate([-5.0, 0.0, 6.0]);
+    let heights: Vec<f64> = (0..37).rev().map(|layer| -4.5 + 0.41 * f64::from(layer)).collect();
+    let stack = part.slices(&heights, &ContourSettings::default(), &Run::default()).unwrap();
+    for (height, layer) in heights.iter().zip(&stack) {
+        let alone = cut(&part, *height, 1e-3);
+        assert_eq!((layer.len(), layer.unresolved()), (alone.len(), alone.unresolved()), "{height}");
+        assert!((layer.area() - alone.area()).abs() < 0.1, "{height}: {} {}", layer.area(), alone.area());
+    }
+    let wrong = part.slices(&[0.0, f64::NAN], &ContourSettings::default(), &Run::default());
+    assert_eq!(wrong.unwrap_err().to_string(), "heights is NaN; allowed: finite");
+    let run = Run::default();
+    run.cancel.cancel();
+    assert!(part.slices(&heights, &ContourSettings::default(), &run).is_err());
+}
+
+#[test]
+fn slices_of_lengths_have_all_contours() {
+    let shell = (Solid::cuboid([20.0, 14.0, 8.0]) | Solid::cylinder(5.0, 14.0)).shell(1.0);
+    let contours = cut(&shell, 0.5, 1e-2);
+    assert_eq!(contours.outlines().len(), 1);
+    assert_eq!(contours.len(), 2);
 }

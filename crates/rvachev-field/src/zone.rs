@@ -61,6 +61,11 @@ impl Zone {
         Zone::new(0.5 * (a + b), DMat3::from_cols(0.5 * (b - a), DVec3::ZERO, DVec3::ZERO), DVec3::ZERO)
     }
 
+    /// The parallelepiped about `centre` with these half-axes, as columns.
+    pub fn of_frame(centre: DVec3, axes: DMat3) -> Zone {
+        Zone::new(centre, axes, DVec3::ZERO)
+    }
+
     fn new(centre: DVec3, axes: DMat3, slack: DVec3) -> Zone {
         let radius = Zone::extent_of(&axes, slack) + ROUNDING * centre.abs();
         let hull = [0, 1, 2].map(|i| Interval::around(centre[i], radius[i]));

@@ -1,0 +1,68 @@
+//! Operands that begin where others end.
+//!
+//! ```text
+//!     +-------+-------+      Two boxes side by side: the value is 0 on the face that they share, and above 0
+//!     |   a   |   b   |      on either side. No range tells, for a and b by themselves have either sign there.
+//!     +-------+-------+      But where one leaf is left by the way that another is entered by, and both change
+//!                            sign at the same points, they share a face.
+//! ```
+//!
+//! That is seen along some lines, the first and the last on either side of the rectangle: what two convex leaves
+//! share is convex.
+
+use glam::DVec3;
+
+use super::program::{Edge, Kind, Program};
+use super::ray::bracket;
+use rvachev_field::{Op, Rule, Way, Zone};
+
+/// Of more operands pairs are not looked at.
+const MANY: usize = 8;
+
+/// Where lines across a face are taken, from one side of a rectangle to the other.
+const LINES: [f64; 5] = [-1.0, -0.41, 0.03, 0.52, 1.0];
+
+/// How far along them a face is looked for.
+const REACH: f64 = 3.0;
+
+impl Program {
+    /// Whether a rectangle is all inside, because a leaf of a union begins there where another ends, or all outside,
+    /// of an intersection; to within `doubt`. `None` where nothing is flush.
+    pub(crate) fn flush(&self, zone: &Zone, axes: [DVec3; 2], doubt: f64) -> Option<bool> {
+        let node = &self.nodes[self.root.node()];
+        let Kind::Join { op, rule: Rule::MinMax, .. } = &node.kind else { return None };
+        let operands = self.list(node);
+        if !(2..=MANY).contains(&operands.len()) {
+            return None;
+        }
+        let leaf = |edge: &Edge| {
+            let program = self.trimmed(self.nodes.to_vec(), self.operands.to_vec(), self.simpler.to_vec(), *edge);
+            (program.leaf_count() == 1).then_some(program)
+        };
+        let leaves: Vec<Program> = operands.iter().filter_map(leaf).collect();
+        let is_flush = |a: &Program, b: &Program| are_flush([a, b], zone, axes, doubt);
+        let any = (0..leaves.len()).any(|i| (0..i).any(|j| is_flush(&leaves[i], &leaves[j])));
+        any.then_some((*op == Op::Or) != self.root.negated())
+    }
+}
+
+/// Whether one of two is left where the other is entered, as far as the first is in a rectangle.
+fn are_flush([a, b]: [&Program; 2], zone: &Zone, axes: [DVec3; 2], doubt: f64) -> bool {
+    let Some(way) = a.way_in_plane(zone, axes) else { return false };
+    if b.enters(zone, &[Way { middle: -way, sway: 0.0 }]) == 0 {
+        return false;
+    }
+    let across = way.cross(axes[0].cross(axes[1]));
+    // Between the first and the last line is all of the rectangle.
+    let half = zone.axes.x_axis.dot(across).abs() + zone.axes.y_axis.dot(across).abs();
+    LINES.into_iter().all(|line| {
+        let start = zone.centre + line * half * across;
+        let at = |t: f64| start + t * way;
+        let reach = REACH * half;
+        if a.value(at(-reach)) > 0.0 || a.value(at(reach)) <= 0.0 {
+            return false;
+        }
+        let t = bracket(&|t| a.value(at(t)), [-reach, reach], 0.0);
+        b.value(at(t - doubt)) > 0.0 && b.value(at(t + doubt)) <= 0.0
+    })
+}

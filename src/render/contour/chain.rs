@@ -1,0 +1,243 @@
+//! From squares to closed chains of points.
+//!
+//! Going round a square anticlockwise, a piece of a contour begins where the walk leaves the inside and ends where it
+//! enters it again. A side has the corners of its smaller neighbours on it, so that both sides of it see the same
+//! crossings, and every crossing has one way in and one way out.
+
+use std::collections::{HashMap, HashSet};
+
+use glam::DVec2;
+
+use super::section::Section;
+use super::square::{Node, Root, Square};
+use super::tree::{Found, Leaf};
+use crate::eval::bracket;
+use crate::{Cancelled, Polyline, Run};
+
+/// A chord is halved at most this many times.
+const DEEPEST: u32 = 14;
+
+/// Contours that turn by less than an angle with this sine, between two points, have no corner there.
+const TURN: f64 = 0.05;
+
+/// What corners may be off, in proportion to the tolerance.
+const SHARP: f64 = 0.1;
+
+/// A part of the tolerance that points are left out for.
+const THIN: f64 = 0.02;
+
+/// A crossing: the two corners of squares that it is between, the lower one first.
+type Crossing = [Node; 2];
+
+/// From one crossing to the next, through a square.
+struct Piece {
+    to: Crossing,
+    leaf: usize,
+}
+
+/// What a plane is made into contours with.
+pub(super) struct Chains<'a> {
+    pub(super) section: &'a Section,
+    pub(super) root: &'a Root,
+    pub(super) found: &'a Found,
+    pub(super) tolerance: f64,
+}
+
+impl Chains<'_> {
+    /// The contours, and how many squares were left undecided.
+    pub(super) fn contours(&self, run: &Run) -> Result<(Vec<Polyline>, usize), Cancelled> {
+        let (mut undecided, mut met) = (Vec::new(), HashSet::new());
+        let mut next: HashMap<Crossing, Piece> = HashMap::new();
+        let mut starts = Vec::new();
+        for (number, leaf) in self.found.leaves.iter().enumerate() {
+            if number.is_multiple_of(1024) {
+                run.check()?;
+            }
+            let pieces = self.pieces(leaf);
+            let Square { node, size, .. } = leaf.square;
+            match (leaf.way, pieces.len()) {
+                (Some(_), _) => {}
+                (None, 1) => drop(met.insert((node, size))),
+                (None, _) => undecided.push((node, size)),
+            }
+            for [from, to] in pieces {
+                next.insert(from, Piece { to, leaf: number });
+                starts.push(from);
+            }
+        }
+        let mut contours = Vec::new();
+        for start in starts {
+            let mut points: Vec<DVec2> = Vec::new();
+            let mut at = start;
+            while let Some(Piece { to, leaf }) = next.remove(&at) {
+                if points.len().is_multiple_of(1024) {
+                    run.check()?;
+                }
+                let leaf = &self.found.leaves[leaf];
+                let ends = [self.crossing(leaf, at), self.crossing(leaf, to)];
+                points.push(ends[0]);
+                match leaf.way {
+                    Some(way) => self.refine(leaf, ends, way, &mut points),
+                    None => {
+                        // The inside is to the left.
+                        let way = (ends[1] - ends[0]).perp().try_normalize();
+                        points.extend(way.and_then(|way| self.corner(leaf, ends, way)));
+                    }
+                }
+                at = to;
+            }
+            let kept = thinned(&points, THIN * self.tolerance);
+            if kept.len() > 2 {
+                contours.push(Polyline::closed(kept));
+            }
+        }
+        // What is beside a contour is no farther from it than the tolerance.
+        undecided.retain(|(node, size)| !beside(*node, *size).any(|node| met.contains(&(node, *size))));
+        Ok((contours, undecided.len()))
+    }
+
+    /// The pieces of contours in a square, the inside to the left.
+    fn pieces(&self, leaf: &Leaf) -> Vec<[Crossing; 2]> {
+        let corners = leaf.square.corners();
+        let (mut leaves, mut enters): (Vec<(usize, Crossing)>, Vec<(usize, Crossing)>) = Default::default();
+        let mut place = 0;
+        for k in 0..4 {
+            let mut pending = vec![[corners[k], corners[(k + 1) % 4]]];
+            while let Some([from, to]) = pending.pop() {
+                let middle = [0, 1].map(|axis| from[axis] / 2 + to[axis] / 2);
+                if from.iter().zip(to).any(|(a, b)| a.abs_diff(b) > 1) && self.found.inside.contains_key(&middle) {
+                    pending.push([middle, to]);
+                    pending.push([from, middle]);
+                    continue;
+                }
+                place += 1;
+                match [self.is_inside(from), self.is_inside(to)] {
+                    [true, false] => leaves.push((place, [from.min(to), from.max(to)])),
+                    [false, true] => enters.push((place, [from.min(to), from.max(to)])),
+                    _ => {}
+                }
+            }
+        }
+        let turn = match leaves.len() {
+            // Two corners inside across from each other: joined through the middle, or apart.
+            2.. if self.section.is_inside(&leaf.filling, leaf.square.centre()) => 1,
+            _ => 0,
+        };
+        // Leaving and entering take turns.
+        let first =
+            enters.iter().position(|(place, _)| leaves.first().is_some_and(|(own, _)| place > own)).unwrap_or(0);
+        let count = enters.len();
+        let end = |out: usize| enters[(first + out + count - turn) % count].1;
+        leaves.iter().enumerate().map(|(out, (_, from))| [*from, end(out)]).collect()
+    }
+
+    fn is_inside(&self, node: Node) -> bool {
+        self.found.inside.get(&node).copied().unwrap_or(false)
+    }
+
+    /// Where the contour is between two corners.
+    fn crossing(&self, leaf: &Leaf, [a, b]: Crossing) -> DVec2 {
+        let [from, to] = [a, b].map(|node| self.root.point(node));
+        let value = |t: f64| self.section.value(&leaf.filling, from.lerp(to, t));
+        from.lerp(to, bracket(&value, [0.0, 1.0], 0.0))
+    }
+
+    /// Points between two, such that chords deviate by less than the tolerance.
+    fn refine(&self, leaf: &Leaf, [a, b]: [DVec2; 2], way: DVec2, points: &mut Vec<DVec2>) {
+        let end = b;
+        let mut pending = vec![(a, b, 0)];
+        while let Some((a, b, depth)) = pending.pop() {
+            let is_short = depth >= DEEPEST || a.distance(b) <= 0.5 * self.tolerance;
+            // An S has its middle on the chord: halved once, it has not.
+            if !is_short && (depth == 0 || !self.is_on(leaf, a.midpoint(b), 0.5 * self.tolerance * way)) {
+                if let Some(corner) = self.corner(leaf, [a, b], way) {
+                    points.push(corner);
+                } else if let Some(p) = self.across(leaf, [a, b], way) {
+                    pending.extend([(p, b, depth + 1), (a, p, depth + 1)]);
+                    continue;
+                }
+            }
+            if b != end {
+                points.push(b);
+            }
+        }
+    }
+
+    /// Whether the solid is entered within a step before or after a point.
+    fn is_on(&self, leaf: &Leaf, p: DVec2, step: DVec2) -> bool {
+        self.section.is_inside(&leaf.filling, p + step) && !self.section.is_inside(&leaf.filling, p - step)
+    }
+
+    /// The point of the contour across from the middle of a chord, along a way that the solid is entered by.
+    fn across(&self, leaf: &Leaf, [a, b]: [DVec2; 2], way: DVec2) -> Option<DVec2> {
+        let middle = a.midpoint(b);
+        let value = |t: f64| self.section.value(&leaf.filling, middle + t * way);
+        let inside = value(0.0) > 0.0;
+        let (outwards, most) = (if inside { -1.0 } else { 1.0 }, a.distance(b));
+        let mut reach = 0.02 * most;
+        while (value(outwards * reach) > 0.0) == inside {
+            if reach >= most {
+                return None;
+            }
+            reach = (3.0 * reach).min(most);
+        }
+        let there = outwards * reach;
+        Some(middle + bracket(&value, [there.min(0.0), there.max(0.0)], 1e-6 * self.tolerance) * way)
+    }
+
+    /// The corner between two points of a contour, if its tangents there meet in one and are all of it.
+    fn corner(&self, leaf: &Leaf, [a, b]: [DVec2; 2], way: DVec2) -> Option<DVec2> {
+        let precision = SHARP * self.tolerance * way;
+        // A little outside: inside, a face beside the plane may be nearer.
+        let tangent = |p: DVec2| self.section.gradient(&leaf.filling, p - 0.1 * precision).normalize_or_zero();
+        let [of_a, of_b] = [a, b].map(tangent);
+        if of_a.perp_dot(of_b).abs() < TURN {
+            return None;
+        }
+        // of_a · (x − a) = 0 and of_b · (x − b) = 0.
+        let (p, q) = (of_a.dot(a), of_b.dot(b));
+        let meet = DVec2::new(p * of_b.y - q * of_a.y, of_a.x * q - of_b.x * p) / of_a.perp_dot(of_b);
+        let is_near = meet.distance(a.midpoint(b)) < 4.0 * leaf.square.side;
+        let is_on = |p: DVec2| self.is_on(leaf, p, precision);
+        (is_near && [meet, a.midpoint(meet), b.midpoint(meet)].into_iter().all(is_on)).then_some(meet)
+    }
+}
+
+/// The squares of the same size about one.
+fn beside([x, y]: Node, size: u32) -> impl Iterator<Item = Node> {
+    let around = move |at: u32| [at.checked_sub(size), Some(at), at.checked_add(size)].into_iter().flatten();
+    around(x).flat_map(move |x| around(y).map(move |y| [x, y]))
+}
+
+/// The closed chain without the points that its neighbours' chord passes within `tolerance` of.
+fn thinned(points: &[DVec2], tolerance: f64) -> Vec<DVec2> {
+    let mut kept: Vec<DVec2> = Vec::with_capacity(points.len());
+    // What has been left out since the last point that was kept.
+    let mut skipped: Vec<DVec2> = Vec::new();
+    for (i, &p) in points.iter().enumerate() {
+        let Some(&last) = kept.last() else {
+            kept.push(p);
+            continue;
+        };
+        let next = points[(i + 1) % points.len()];
+        skipped.push(p);
+        let chord = next - last;
+        let length = chord.length();
+        let off = |q: &DVec2| {
+            if length == 0.0 { q.distance(last) } else { chord.perp_dot(*q - last).abs() / length }
+        };
+        if skipped.iter().all(|q| off(q) <= tolerance && (q - last).dot(chord) >= 0.0) {
+            continue;
+        }
+        kept.push(p);
+        skipped.clear();
+    }
+    // The first is a point like any other.
+    if let [first, second, .., last] = kept[..]
+        && (second - last).perp_dot(first - last).abs() <= tolerance * second.distance(last)
+        && (second - last).dot(first - last) >= 0.0
+    {
+        kept.remove(0);
+    }
+    kept
+}

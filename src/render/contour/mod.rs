@@ -1,0 +1,157 @@
+//! Contours of slices: closed, oriented, on the surface, as complete as ranges can tell.
+//!
+//! A plane is divided into squares (`tree`), each with the program of what matters there, as far as the contour is
+//! not told by the signs at their corners. From square to square the pieces of contours are joined, and refined until
+//! chords deviate by less than the tolerance (`chain`). Planes of a stack are divided together while squares are
+//! larger than what is between the planes.
+//!
+//! What lies beyond the region counts as outside, so that every contour is closed.
+
+mod chain;
+mod section;
+mod square;
+mod tree;
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use self::chain::Chains;
+use self::section::Section;
+pub use self::section::Side;
+use self::square::Root;
+use self::tree::Tree;
+use super::settings::{RenderError, setting};
+use super::slice::{Slice, seen};
+use crate::distance::compiled_with;
+use crate::eval::Program;
+use crate::geom::Contours;
+use crate::{Cancelled, Plane, PlaneBounds, Run, Solid};
+
+/// How far the first square goes beyond the region. Corners of squares keep off the round coordinates that faces are
+/// fond of.
+const MARGIN: f64 = 0.013;
+const ASIDE: f64 = 0.4876;
+
+/// Squares are not smaller than this part of the first.
+const SMALLEST: f64 = 1e-8;
+
+/// What contours shall be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
+pub struct ContourSettings {
+    /// How far contours may deviate from the surface, in length units, above 0. Default: 0.001.
+    pub tolerance: f64,
+    /// What counts where a face of the solid lies in the plane. Default: [`Side::Above`].
+    pub side: Side,
+}
+
+impl Default for ContourSettings {
+    fn default() -> ContourSettings {
+        ContourSettings { tolerance: 1e-3, side: Side::default() }
+    }
+}
+
+impl Slice {
+    /// The contours of the solid on the plane: closed polylines with the inside to the left, so
+    /// that outlines run anticlockwise and holes clockwise. Points are on the surface to within
+    /// rounding; in between, and at corners, contours deviate by no more than about `tolerance`.
+    ///
+    /// Where the solid goes on beyond the region, its contour follows the region's border. Where a
+    /// face lies in the plane, what is just above it counts (on the side that the plane's normal
+    /// points to); [`contours_with`](Slice::contours_with) can choose. Parts that touch each other
+    /// have one contour about them.
+    ///
+    /// Nothing that is wider than the tolerance is missed, and what is narrower is told
+    /// ([`Contours::unresolved`]).
+    ///
+    /// # Errors
+    /// If the tolerance is not above 0.
+    pub fn contours(&self, tolerance: f64) -> Result<Contours, RenderError> {
+        self.contours_with(&ContourSettings { tolerance, ..ContourSettings::default() }, &Run::default())
+    }
+
+    /// [`contours`](Slice::contours) with a choice of sides, threads, a cancel token and a progress sink.
+    ///
+    /// # Errors
+    /// If a setting is out of its range, or the work was cancelled.
+    pub fn contours_with(&self, settings: &ContourSettings, run: &Run) -> Result<Contours, RenderError> {
+        let run = run.stage(0.0, 1.0);
+        let mut stack = stack(&self.surface, &self.plane, &[0.0], self.region, settings, &run)?;
+        run.report(1.0);
+        Ok(stack.pop().unwrap_or_default())
+    }
+}
+
+impl Solid {
+    /// The contours of the solid on planes of many heights z, in their order, as a printer or a laser wants them.
+    /// Planes that are near each other share the work. Turn the solid first to cut it along another axis.
+    ///
+    /// ```
+    /// use rvachev::{ContourSettings, Run, Solid};
+    ///
+    /// let cone = Solid::cone(2.0, 0.0, 4.0);
+    /// let heights: Vec<f64> = (0..20).map(|layer| -1.9 + 0.2 * f64::from(layer)).collect();
+    /// let layers = cone.slices(&heights, &ContourSettings::default(), &Run::default())?;
+    /// assert_eq!(layers.len(), 20);
+    /// let volume: f64 = layers.iter().map(|layer| 0.2 * layer.area()).sum();
+    /// assert!((volume - 16.755).abs() < 0.05);
+    /// # Ok::<(), rvachev::error::RenderError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// What is wrong with the solid, a setting or a height, or that the work was cancelled; an unbounded solid is to be
+    /// cut to a box first.
+    pub fn slices(&self, heights: &[f64], settings: &ContourSettings, run: &Run) -> Result<Vec<Contours>, RenderError> {
+        let run = run.stage(0.0, 1.0);
+        let [to_compile, to_slice] = run.stages([0.1, 0.9]);
+        if let Some(height) = heights.iter().find(|height| !height.is_finite()) {
+            return Err(setting("heights", height, "finite"));
+        }
+        let programs = compiled_with(self, &to_compile)?;
+        let (low, region) = match heights.iter().copied().reduce(f64::min) {
+            Some(low) => (low, seen(&self.finite_bounds()?, &Plane::xy(low))),
+            None => return Ok(Vec::new()),
+        };
+        let mut order: Vec<usize> = (0..heights.len()).collect();
+        order.sort_by(|a, b| heights[*a].total_cmp(&heights[*b]));
+        let sorted: Vec<f64> = order.iter().map(|number| heights[*number] - low).collect();
+        let found = stack(&programs.surface, &Plane::xy(low), &sorted, region, settings, &to_slice)?;
+        let mut contours = vec![Contours::default(); heights.len()];
+        for (number, own) in order.into_iter().zip(found) {
+            contours[number] = own;
+        }
+        run.report(1.0);
+        Ok(contours)
+    }
+}
+
+/// The contours on planes at heights, in order, above a plane.
+fn stack(
+    program: &Program,
+    plane: &Plane,
+    heights: &[f64],
+    region: PlaneBounds,
+    settings: &ContourSettings,
+    run: &Run,
+) -> Result<Vec<Contours>, RenderError> {
+    let ContourSettings { tolerance, side } = *settings;
+    if !(tolerance > 0.0 && tolerance.is_finite()) {
+        return Err(setting("tolerance", tolerance, "finite and above 0"));
+    }
+    let size = (region.max - region.min).max_element();
+    let root = Root { low: region.min - DVec2::splat(MARGIN * ASIDE * size), side: (1.0 + MARGIN) * size };
+    let sections: Vec<Section> =
+        heights.iter().map(|height| Section::new(&plane.moved_by(*height), side, region)).collect();
+    let finest = tolerance.max(SMALLEST * root.side);
+    let [to_divide, to_join] = run.stages([0.7, 0.3]);
+    let made: Result<Vec<Contours>, Cancelled> = run.install(|| {
+        let found = Tree::new(&sections, heights, root, finest, &to_divide).found(program)?;
+        let contours = |(section, found)| {
+            let chains = Chains { section, root: &root, found, tolerance };
+            let (lines, unresolved) = chains.contours(&to_join)?;
+            Ok(Contours::new(lines, unresolved))
+        };
+        sections.par_iter().zip(&found).map(contours).collect()
+    });
+    Ok(made?)
+}

@@ -1,0 +1,161 @@
+//! The squares of a plane that the surface crosses, as large as they can be.
+//!
+//! ```text
+//!     +-------+---+---+      A square is left alone where ranges show one sign. It is small enough where slopes
+//!     |       |  _|.-'|      show that the contour is the graph of a function in it, and crosses each side once
+//!     |       +-'-+---+      or not at all: then the signs at its corners tell all. At corners of a contour, and
+//!     |     .'|   |   |      where two come close, squares are halved until they are as small as the tolerance.
+//!     +-------+---+---+
+//! ```
+
+use std::collections::HashMap;
+use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use glam::DVec2;
+use rayon::prelude::*;
+
+use super::section::{Filling, Section};
+use super::square::{Node, Root, Square};
+use crate::eval::Program;
+use crate::{Cancelled, Run};
+
+/// So many squares are divided at most: with slopes that do not tell, contours of a fine tolerance would have no end.
+const MOST: usize = 1 << 22;
+
+/// So many squares are looked at by one thread after the other, before all go on with what is left.
+const TASKS: usize = 256;
+
+/// A square that the surface may cross.
+pub(super) struct Leaf {
+    pub(super) square: Square,
+    pub(super) filling: Filling,
+    /// Where the solid is entered, and not left, all over it, if there is such a direction.
+    pub(super) way: Option<DVec2>,
+}
+
+/// What is found of one plane.
+#[derive(Default)]
+pub(super) struct Found {
+    pub(super) leaves: Vec<Leaf>,
+    /// Which corners are inside.
+    pub(super) inside: HashMap<Node, bool>,
+}
+
+/// The planes, from the lowest, and what is asked of them.
+pub(super) struct Tree<'a> {
+    pub(super) sections: &'a [Section],
+    /// Their heights above the first.
+    pub(super) heights: &'a [f64],
+    pub(super) root: Root,
+    /// Squares are not halved below this side.
+    pub(super) finest: f64,
+    pub(super) run: &'a Run,
+    divided: AtomicUsize,
+}
+
+/// A square of some of the planes.
+struct Task {
+    square: Square,
+    planes: Range<usize>,
+    filling: Filling,
+}
+
+/// What comes of looking at a task.
+enum Next {
+    Nothing,
+    Leaf(Leaf),
+    Tasks(Vec<Task>),
+}
+
+type Part = HashMap<usize, Found>;
+
+impl<'a> Tree<'a> {
+    pub(super) fn new(sections: &'a [Section], heights: &'a [f64], root: Root, finest: f64, run: &'a Run) -> Tree<'a> {
+        Tree { sections, heights, root, finest, run, divided: AtomicUsize::new(0) }
+    }
+
+    /// What is found of each plane.
+    pub(super) fn found(&self, program: &Program) -> Result<Vec<Found>, Cancelled> {
+        let planes = 0..self.sections.len();
+        let (mut first, square) = (Part::new(), self.root.square());
+        let filling = Filling::Program(program.clone());
+        for plane in planes.clone() {
+            self.note(&mut first, plane, &filling, square.corners());
+        }
+        let mut tasks = vec![Task { square, planes, filling }];
+        while !tasks.is_empty() && tasks.len() < TASKS {
+            let mut after = Vec::new();
+            for task in tasks {
+                self.run.check()?;
+                let planes = task.planes.clone();
+                match self.look(task, &mut first) {
+                    Next::Nothing => {}
+                    Next::Leaf(leaf) => first.entry(planes.start).or_default().leaves.push(leaf),
+                    Next::Tasks(tasks) => after.extend(tasks),
+                }
+            }
+            tasks = after;
+        }
+        let parts: Vec<Part> = tasks.into_par_iter().map(|task| self.all_of(task)).collect::<Result<_, Cancelled>>()?;
+        let mut found: Vec<Found> = Vec::new();
+        found.resize_with(self.sections.len(), Found::default);
+        for part in std::iter::once(first).chain(parts) {
+            for (plane, own) in part {
+                found[plane].leaves.extend(own.leaves);
+                found[plane].inside.extend(own.inside);
+            }
+        }
+        Ok(found)
+    }
+
+    /// All that comes of a task.
+    fn all_of(&self, task: Task) -> Result<Part, Cancelled> {
+        let mut part = Part::new();
+        let mut pending = vec![task];
+        while let Some(task) = pending.pop() {
+            self.run.check()?;
+            let plane = task.planes.start;
+            match self.look(task, &mut part) {
+                Next::Nothing => {}
+                Next::Leaf(leaf) => part.entry(plane).or_default().leaves.push(leaf),
+                Next::Tasks(tasks) => pending.extend(tasks.into_iter().rev()),
+            }
+        }
+        Ok(part)
+    }
+
+    fn look(&self, task: Task, part: &mut Part) -> Next {
+        let Task { square, planes, filling } = task;
+        let section = &self.sections[planes.start];
+        let height = self.heights[planes.end - 1] - self.heights[planes.start];
+        let Some(filling) = section.filling(&filling, &square, [0.0, height]) else { return Next::Nothing };
+        // Planes that are far from each other part before squares do.
+        if planes.len() > 1 && height > 0.5 * square.side {
+            let middle = planes.start + planes.len() / 2;
+            let halves = [planes.start..middle, middle..planes.end];
+            let task = |planes| Task { square, planes, filling: filling.clone() };
+            return Next::Tasks(halves.map(task).into());
+        }
+        if planes.len() == 1 {
+            let way = section.way_in(&filling, &square);
+            let is_last = square.side <= self.finest || square.size <= 1;
+            if way.is_some() || is_last || self.divided.fetch_add(1, Ordering::Relaxed) >= MOST {
+                return Next::Leaf(Leaf { square, filling, way });
+            }
+        }
+        for plane in planes.clone() {
+            self.note(part, plane, &filling, square.added());
+        }
+        let task = |square| Task { square, planes: planes.clone(), filling: filling.clone() };
+        Next::Tasks(square.quarters(&self.root).map(task).into())
+    }
+
+    /// Notes which corners are inside on a plane.
+    fn note<const N: usize>(&self, part: &mut Part, plane: usize, filling: &Filling, nodes: [Node; N]) {
+        let inside = &mut part.entry(plane).or_default().inside;
+        for node in nodes {
+            inside.entry(node).or_insert_with(|| self.sections[plane].is_inside(filling, self.root.point(node)));
+        }
+    }
+}
