@@ -45,6 +45,7 @@ mod source;
 mod tape;
 mod thin;
 mod tiles;
+mod unfold;
 
 pub use accuracy::Accuracy;
 pub(crate) use narrow::Narrowed;

@@ -111,8 +111,7 @@ impl Program {
         let zones = self.zones(&world);
         let entered = |slopes: Vec<DVec3>| {
             let middle = common(&slopes).and_then(within)?;
-            let ways = [Way { middle, sway: 0.0 }];
-            (self.all_enter(&parts, (&zones, &world), &ways) != 0).then_some(middle)
+            (self.all_enter(&parts, (&zones, &world), &[Way { middle, sway: 0.0 }]) != 0).then_some(middle)
         };
         // Edges that pass beside the middle show at the corners.
         let corner = |x: f64, y: f64| zone.centre + x * zone.axes.x_axis + y * zone.axes.y_axis;
@@ -132,9 +131,9 @@ impl Program {
         let is_sign = |kind: &Kind| !matches!(kind, Kind::Join { rule, .. } if *rule != Rule::MinMax);
         let by_sign = self.nodes.iter().all(|node| is_sign(&node.kind));
         self.all_along(parts, seen, ways, |instance, zone, ways| {
-            let found = instance.field.rises(zone, ways);
             let is_convex = by_sign && instance.field.convex() && instance.placement.shift == 0.0;
-            if is_convex { found | bits(ways, |way| is_entered(&*instance.field, zone, way)) } else { found }
+            let found = if is_convex { bits(ways, |way| is_entered(&*instance.field, zone, way)) } else { 0 };
+            if found == 0 { instance.field.rises(zone, ways) } else { found }
         })
     }
 
@@ -291,17 +290,14 @@ impl Program {
 /// inside. (A complement is left by them, so its directions are turned.)
 fn is_entered(field: &dyn AnyField, zone: &Zone, Way { middle, sway }: Way) -> bool {
     let scale = zone.radius() / middle.length();
+    let [a, b, c] = [zone.axes.x_axis, zone.axes.y_axis, zone.axes.z_axis];
     BEYOND.iter().any(|by| {
-        let by = by * scale;
-        let slack = zone.slack + by * sway;
-        let spread = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| slack.dot(axis) * axis);
-        let steps = [zone.axes.x_axis, zone.axes.y_axis, zone.axes.z_axis].into_iter().chain(spread);
-        let steps: Vec<DVec3> = steps.filter(|step| *step != DVec3::ZERO).collect();
-        (0..1u32 << steps.len()).all(|corner| {
-            let signed = |(bit, step): (usize, &DVec3)| if corner >> bit & 1 == 0 { -*step } else { *step };
-            let from = steps.iter().enumerate().map(signed).sum::<DVec3>();
-            field.value((zone.centre + by * middle + from).to_array()) > 0.0
-        })
+        let centre = zone.centre + by * scale * middle;
+        // The value of a convex leaf changes by no more than 1 per length unit.
+        let least = zone.slack.length() + by * scale * sway;
+        let is_inside = |p: DVec3| field.value(p.to_array()) > least;
+        let layer = |c: DVec3| [a + b, a - b, -a + b, -a - b].into_iter().all(|side| is_inside(centre + side + c));
+        if c == DVec3::ZERO { layer(c) } else { layer(c) && layer(-c) }
     })
 }
 

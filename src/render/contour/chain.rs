@@ -17,11 +17,20 @@ use crate::{Cancelled, Polyline, Run};
 /// A chord is halved at most this many times.
 const DEEPEST: u32 = 14;
 
+/// A chord is halved if its middle is off by more, in proportion to the tolerance.
+const CHORD: f64 = 0.7;
+
+/// Corners are looked for between points of chords that were halved so often.
+const SMOOTH: u32 = 3;
+
 /// Contours that turn by less than an angle with this sine, between two points, have no corner there.
 const TURN: f64 = 0.05;
 
 /// What corners may be off, in proportion to the tolerance.
 const SHARP: f64 = 0.1;
+
+/// Points are found to this part of the tolerance.
+const PRECISE: f64 = 1e-6;
 
 /// A part of the tolerance that points are left out for.
 const THIN: f64 = 0.02;
@@ -68,21 +77,19 @@ impl Chains<'_> {
         let mut contours = Vec::new();
         for start in starts {
             let mut points: Vec<DVec2> = Vec::new();
-            let mut at = start;
+            let (mut at, mut last) = (start, None);
             while let Some(Piece { to, leaf }) = next.remove(&at) {
                 if points.len().is_multiple_of(1024) {
                     run.check()?;
                 }
                 let leaf = &self.found.leaves[leaf];
-                let ends = [self.crossing(leaf, at), self.crossing(leaf, to)];
-                points.push(ends[0]);
+                let from = last.unwrap_or_else(|| self.crossing(leaf, at));
+                let ends = [from, self.crossing(leaf, to)];
+                points.push(from);
+                last = Some(ends[1]);
                 match leaf.way {
-                    Some(way) => self.refine(leaf, ends, way, &mut points),
-                    None => {
-                        // The inside is to the left.
-                        let way = (ends[1] - ends[0]).perp().try_normalize();
-                        points.extend(way.and_then(|way| self.corner(leaf, ends, way)));
-                    }
+                    Some(_) => self.refine(leaf, ends, &mut points),
+                    None => points.extend(self.corner(leaf, ends)),
                 }
                 at = to;
             }
@@ -105,7 +112,7 @@ impl Chains<'_> {
             let mut pending = vec![[corners[k], corners[(k + 1) % 4]]];
             while let Some([from, to]) = pending.pop() {
                 let middle = [0, 1].map(|axis| from[axis] / 2 + to[axis] / 2);
-                if from.iter().zip(to).any(|(a, b)| a.abs_diff(b) > 1) && self.found.inside.contains_key(&middle) {
+                if from.iter().zip(to).any(|(a, b)| a.abs_diff(b) > 1) && self.found.is_inside(middle).is_some() {
                     pending.push([middle, to]);
                     pending.push([from, middle]);
                     continue;
@@ -118,41 +125,54 @@ impl Chains<'_> {
                 }
             }
         }
-        let turn = match leaves.len() {
-            // Two corners inside across from each other: joined through the middle, or apart.
-            2.. if self.section.is_inside(&leaf.filling, leaf.square.centre()) => 1,
-            _ => 0,
-        };
-        // Leaving and entering take turns.
-        let first =
-            enters.iter().position(|(place, _)| leaves.first().is_some_and(|(own, _)| place > own)).unwrap_or(0);
         let count = enters.len();
+        if count < 2 {
+            return leaves.iter().zip(&enters).map(|((_, from), (_, to))| [*from, *to]).collect();
+        }
+        if let Some(way) = leaf.way {
+            // A graph: from each crossing to the next along it.
+            let along = |crossing: &Crossing| way.perp_dot(self.crossing(leaf, *crossing));
+            let mut ends = [leaves, enters].map(|ends| {
+                let mut ends: Vec<Crossing> = ends.into_iter().map(|(_, crossing)| crossing).collect();
+                ends.sort_by(|a, b| along(b).total_cmp(&along(a)));
+                ends
+            });
+            let [from, to] = &mut ends;
+            return from.iter().zip(to).map(|(from, to)| [*from, *to]).collect();
+        }
+        // Two corners inside across from each other: joined through the middle, or apart.
+        let turn = usize::from(self.section.is_inside(&leaf.filling, leaf.square.centre()));
+        // Leaving and entering take turns.
+        let first = enters.iter().position(|(place, _)| *place > leaves[0].0).unwrap_or(0);
         let end = |out: usize| enters[(first + out + count - turn) % count].1;
         leaves.iter().enumerate().map(|(out, (_, from))| [*from, end(out)]).collect()
     }
 
     fn is_inside(&self, node: Node) -> bool {
-        self.found.inside.get(&node).copied().unwrap_or(false)
+        self.found.is_inside(node).unwrap_or(false)
     }
 
     /// Where the contour is between two corners.
     fn crossing(&self, leaf: &Leaf, [a, b]: Crossing) -> DVec2 {
         let [from, to] = [a, b].map(|node| self.root.point(node));
         let value = |t: f64| self.section.value(&leaf.filling, from.lerp(to, t));
-        from.lerp(to, bracket(&value, [0.0, 1.0], 0.0))
+        from.lerp(to, bracket(&value, [0.0, 1.0], PRECISE * self.tolerance / from.distance(to)))
     }
 
     /// Points between two, such that chords deviate by less than the tolerance.
-    fn refine(&self, leaf: &Leaf, [a, b]: [DVec2; 2], way: DVec2, points: &mut Vec<DVec2>) {
+    fn refine(&self, leaf: &Leaf, [a, b]: [DVec2; 2], points: &mut Vec<DVec2>) {
         let end = b;
         let mut pending = vec![(a, b, 0)];
         while let Some((a, b, depth)) = pending.pop() {
             let is_short = depth >= DEEPEST || a.distance(b) <= 0.5 * self.tolerance;
-            // An S has its middle on the chord: halved once, it has not.
-            if !is_short && (depth == 0 || !self.is_on(leaf, a.midpoint(b), 0.5 * self.tolerance * way)) {
-                if let Some(corner) = self.corner(leaf, [a, b], way) {
+            let is_on = |t: f64| self.is_on(leaf, [a, b], a.lerp(b, t), CHORD);
+            // An S has its middle on the chord.
+            if !is_short && !(is_on(0.5) && (depth > 0 || is_on(0.25) && is_on(0.75))) {
+                // What is curved has come nearer by now.
+                let corner = if depth < SMOOTH { None } else { self.corner(leaf, [a, b]) };
+                if let Some(corner) = corner {
                     points.push(corner);
-                } else if let Some(p) = self.across(leaf, [a, b], way) {
+                } else if let Some(p) = self.across(leaf, [a, b]) {
                     pending.extend([(p, b, depth + 1), (a, p, depth + 1)]);
                     continue;
                 }
@@ -163,15 +183,18 @@ impl Chains<'_> {
         }
     }
 
-    /// Whether the solid is entered within a step before or after a point.
-    fn is_on(&self, leaf: &Leaf, p: DVec2, step: DVec2) -> bool {
-        self.section.is_inside(&leaf.filling, p + step) && !self.section.is_inside(&leaf.filling, p - step)
+    /// Whether a contour that goes the way of a chord passes a point nearer than a part of the tolerance.
+    fn is_on(&self, leaf: &Leaf, [a, b]: [DVec2; 2], p: DVec2, part: f64) -> bool {
+        // The inside is to the left.
+        let left = part * self.tolerance * (b - a).perp().normalize_or_zero();
+        self.section.is_inside(&leaf.filling, p + left) && !self.section.is_inside(&leaf.filling, p - left)
     }
 
-    /// The point of the contour across from the middle of a chord, along a way that the solid is entered by.
-    fn across(&self, leaf: &Leaf, [a, b]: [DVec2; 2], way: DVec2) -> Option<DVec2> {
+    /// The point of the contour across from the middle of a chord.
+    fn across(&self, leaf: &Leaf, [a, b]: [DVec2; 2]) -> Option<DVec2> {
         let middle = a.midpoint(b);
-        let value = |t: f64| self.section.value(&leaf.filling, middle + t * way);
+        let left = (b - a).perp().try_normalize()?;
+        let value = |t: f64| self.section.value(&leaf.filling, middle + t * left);
         let inside = value(0.0) > 0.0;
         let (outwards, most) = (if inside { -1.0 } else { 1.0 }, a.distance(b));
         let mut reach = 0.02 * most;
@@ -182,15 +205,15 @@ impl Chains<'_> {
             reach = (3.0 * reach).min(most);
         }
         let there = outwards * reach;
-        Some(middle + bracket(&value, [there.min(0.0), there.max(0.0)], 1e-6 * self.tolerance) * way)
+        Some(middle + bracket(&value, [there.min(0.0), there.max(0.0)], PRECISE * self.tolerance) * left)
     }
 
     /// The corner between two points of a contour, if its tangents there meet in one and are all of it.
-    fn corner(&self, leaf: &Leaf, [a, b]: [DVec2; 2], way: DVec2) -> Option<DVec2> {
-        let precision = SHARP * self.tolerance * way;
+    fn corner(&self, leaf: &Leaf, [a, b]: [DVec2; 2]) -> Option<DVec2> {
+        let left = (b - a).perp().try_normalize()?;
         // A little outside: inside, a face beside the plane may be nearer.
-        let tangent = |p: DVec2| self.section.gradient(&leaf.filling, p - 0.1 * precision).normalize_or_zero();
-        let [of_a, of_b] = [a, b].map(tangent);
+        let aside = 0.1 * SHARP * self.tolerance * left;
+        let [of_a, of_b] = [a, b].map(|p| self.section.gradient(&leaf.filling, p - aside).normalize_or_zero());
         if of_a.perp_dot(of_b).abs() < TURN {
             return None;
         }
@@ -198,7 +221,7 @@ impl Chains<'_> {
         let (p, q) = (of_a.dot(a), of_b.dot(b));
         let meet = DVec2::new(p * of_b.y - q * of_a.y, of_a.x * q - of_b.x * p) / of_a.perp_dot(of_b);
         let is_near = meet.distance(a.midpoint(b)) < 4.0 * leaf.square.side;
-        let is_on = |p: DVec2| self.is_on(leaf, p, precision);
+        let is_on = |p: DVec2| self.is_on(leaf, [a, b], p, SHARP);
         (is_near && [meet, a.midpoint(meet), b.midpoint(meet)].into_iter().all(is_on)).then_some(meet)
     }
 }

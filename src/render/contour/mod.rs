@@ -62,7 +62,8 @@ impl Slice {
     /// have one contour about them.
     ///
     /// Nothing that is wider than the tolerance is missed, and what is narrower is told
-    /// ([`Contours::unresolved`]).
+    /// ([`Contours::unresolved`]); of lengths (offsets, shells, fillets) nothing that is wider than a
+    /// 256th of the region.
     ///
     /// # Errors
     /// If the tolerance is not above 0.

@@ -5,13 +5,21 @@
 
 use glam::{DMat3, DVec2};
 
-use super::square::Square;
+use super::square::{DEEPEST, Square};
 use crate::eval::{Program, Region};
-use crate::{Interval, Plane, PlaneBounds};
-use rvachev_field::{Way, Zone};
+use crate::{Plane, PlaneBounds};
+use rvachev_field::Zone;
 
 /// How far aside, in proportion to the size: rounding is less, and the plane that is meant is as near.
 const HAIR: f64 = 1.0 / (1u64 << 37) as f64;
+
+/// Squares that are no larger, in the smallest squares, are looked at by samples where ranges of slopes tell little: a
+/// 256th of the first.
+const SAMPLED: u32 = 1 << (DEEPEST - 8);
+
+/// Where, in a square, and the least cosine of the angle between a slope there and their mean.
+const SAMPLES: [[f64; 2]; 5] = [[0.5, 0.5], [0.02, 0.03], [0.97, 0.02], [0.98, 0.97], [0.03, 0.98]];
+const STRAIGHT: f64 = 0.8;
 
 /// Which side of a plane counts where a face lies in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -96,22 +104,19 @@ impl Section {
         if high.cmple(self.border.min).any() || low.cmpge(self.border.max).any() {
             return None;
         }
-        let border = || (self.crossed(low, high).next().is_some()).then_some(Filling::Solid);
+        let border = || (!self.holds(square)).then_some(Filling::Solid);
         let Filling::Program(program) = filling else { return border() };
         let zone = self.zone(low, high, heights);
         match program.narrow_zone(&zone) {
-            Region::Surface(program) => {
-                let flush =
-                    if heights[0] == heights[1] { program.flush(&zone, self.plane.axes(), self.hair) } else { None };
-                match flush {
-                    None => Some(Filling::Program(program)),
-                    Some(true) => border(),
-                    Some(false) => None,
-                }
-            }
+            Region::Surface(program) => Some(Filling::Program(program.unfolded(&zone).unwrap_or(program))),
             Region::Inside => border(),
             Region::Outside => None,
         }
+    }
+
+    /// Whether a square is all within the border.
+    pub(super) fn holds(&self, square: &Square) -> bool {
+        self.crossed(square.low, square.low + square.side).next().is_none()
     }
 
     /// A rectangle of the plane, from a height above it to another.
@@ -129,51 +134,36 @@ impl Section {
         (0..4).filter(move |side| near[*side].min(far[*side]) <= 0.0).map(|side| INWARDS[side])
     }
 
-    /// A direction along which the solid is entered, and not left, throughout a square, if each side of the square
-    /// is crossed once or not at all: then the signs at its corners tell all.
+    /// A direction along which the solid is entered, and not left, throughout a square: the contour is the graph of a
+    /// function there.
     pub(super) fn way_in(&self, filling: &Filling, square: &Square) -> Option<DVec2> {
         let (low, high) = (square.low, square.low + square.side);
         let axes = self.plane.axes();
-        let zone = self.zone(low, high, [0.0; 2]);
         let way = match filling {
             Filling::Solid => self.crossed(low, high).sum::<DVec2>().try_normalize()?,
+            Filling::Program(program) if !program.is_steady() && square.size <= SAMPLED && self.holds(square) => {
+                self.sampled_way(filling, square)?
+            }
             Filling::Program(program) => {
-                let way = program.way_in_plane(&zone, axes)?;
+                let way = program.way_in_plane(&self.zone(low, high, [0.0; 2]), axes)?;
                 DVec2::new(way.dot(axes[0]), way.dot(axes[1]))
             }
         };
-        if self.crossed(low, high).any(|inward| inward.dot(way) < 0.1) {
-            return None;
-        }
-        // Along the sides: to the right or to the left, up or down.
-        let along = [axes[0], -axes[0], axes[1], -axes[1]];
-        let program_rises = match filling {
-            Filling::Solid => u8::MAX,
-            Filling::Program(program) => program.enters(&zone, &along.map(|middle| Way { middle, sway: 0.0 })),
-        };
-        let one_way = |axis: usize| {
-            (2 * axis..2 * axis + 2).any(|way| {
-                program_rises >> way & 1 == 1 && self.crossed(low, high).all(|inward| inward.dot(INWARDS[way]) >= 0.0)
-            })
-        };
-        let (right, left) = (DVec2::new(high.x, low.y), DVec2::new(low.x, high.y));
-        let told = |axis: usize, ends: [[DVec2; 2]; 2]| {
-            one_way(axis) || ends.into_iter().all(|[from, to]| self.misses(filling, from, to))
-        };
-        (told(0, [[low, right], [left, high]]) && told(1, [[low, left], [right, high]])).then_some(way)
+        self.crossed(low, high).all(|inward| inward.dot(way) > 0.1).then_some(way)
     }
 
-    /// Whether the surface is found to miss a side of a square.
-    fn misses(&self, filling: &Filling, from: DVec2, to: DVec2) -> bool {
-        let own = match filling {
-            Filling::Solid => Interval::new(f64::MAX, f64::MAX),
-            Filling::Program(program) => {
-                program.range_zone(&Zone::of_segment(self.plane.point(from), self.plane.point(to)))
-            }
-        };
-        let (near, far) = (self.depths(from), self.depths(to));
-        let low = (0..4).map(|side| near[side].min(far[side])).fold(own.lo(), f64::min);
-        let high = (0..4).map(|side| near[side].max(far[side])).fold(own.hi(), f64::min);
-        low > 0.0 || high < 0.0
+    /// The same as it looks at some points: of values that are searched for, ranges of slopes tell little.
+    fn sampled_way(&self, filling: &Filling, square: &Square) -> Option<DVec2> {
+        let at = |[x, y]: [f64; 2]| square.low + square.side * DVec2::new(x, y);
+        let slopes = SAMPLES.map(|sample| self.gradient(filling, at(sample)).normalize_or_zero());
+        let way = slopes.iter().sum::<DVec2>().try_normalize()?;
+        slopes.iter().all(|slope| slope.dot(way) > STRAIGHT).then_some(way)
+    }
+
+    /// Whether a square is all inside, or all outside, because what begins there ends there too.
+    pub(super) fn flush(&self, filling: &Filling, square: &Square) -> Option<bool> {
+        let Filling::Program(program) = filling else { return None };
+        let zone = self.zone(square.low, square.low + square.side, [0.0; 2]);
+        program.flush(&zone, self.plane.axes(), self.hair)
     }
 }

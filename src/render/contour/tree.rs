@@ -1,12 +1,16 @@
 //! The squares of a plane that the surface crosses, as large as they can be.
 //!
 //! ```text
-//!     +-------+---+---+      A square is left alone where ranges show one sign. It is small enough where slopes
-//!     |       |  _|.-'|      show that the contour is the graph of a function in it, and crosses each side once
-//!     |       +-'-+---+      or not at all: then the signs at its corners tell all. At corners of a contour, and
-//!     |     .'|   |   |      where two come close, squares are halved until they are as small as the tolerance.
+//!     +-------+---+---+      A square is left alone where ranges show one sign. It is small enough where the solid
+//!     |       |  _|.-'|      is entered, and not left, all along one direction: the contour is a graph over the
+//!     |       +-'-+---+      other one. At corners of a contour, and where two come close, squares are halved until
+//!     |     .'|   |   |      they are as small as the tolerance.
 //!     +-------+---+---+
 //! ```
+//!
+//! No contour is missed between squares that are small enough. One that crosses no side so that it shows at a corner
+//! would be in two squares that share a side; its normals are at less than a right angle to one direction in the one
+//! and to another in the other, which leaves out at least two directions, but those of a closed curve leave out none.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -39,7 +43,14 @@ pub(super) struct Leaf {
 pub(super) struct Found {
     pub(super) leaves: Vec<Leaf>,
     /// Which corners are inside.
-    pub(super) inside: HashMap<Node, bool>,
+    inside: Vec<(Node, bool)>,
+}
+
+impl Found {
+    /// Whether a corner is inside; `None` of what is no corner.
+    pub(super) fn is_inside(&self, node: Node) -> Option<bool> {
+        self.inside.binary_search_by_key(&node, |(node, _)| *node).ok().map(|at| self.inside[at].1)
+    }
 }
 
 /// The planes, from the lowest, and what is asked of them.
@@ -106,6 +117,10 @@ impl<'a> Tree<'a> {
                 found[plane].inside.extend(own.inside);
             }
         }
+        found.par_iter_mut().for_each(|found| {
+            found.inside.par_sort_by_key(|(node, _)| *node);
+            found.inside.dedup_by_key(|(node, _)| *node);
+        });
         Ok(found)
     }
 
@@ -137,8 +152,17 @@ impl<'a> Tree<'a> {
             let task = |planes| Task { square, planes, filling: filling.clone() };
             return Next::Tasks(halves.map(task).into());
         }
+        let mut filling = filling;
         if planes.len() == 1 {
             let way = section.way_in(&filling, &square);
+            if way.is_none()
+                && let Some(inside) = section.flush(&filling, &square)
+            {
+                if !inside || section.holds(&square) {
+                    return Next::Nothing;
+                }
+                filling = Filling::Solid;
+            }
             let is_last = square.side <= self.finest || square.size <= 1;
             if way.is_some() || is_last || self.divided.fetch_add(1, Ordering::Relaxed) >= MOST {
                 return Next::Leaf(Leaf { square, filling, way });
@@ -153,9 +177,7 @@ impl<'a> Tree<'a> {
 
     /// Notes which corners are inside on a plane.
     fn note<const N: usize>(&self, part: &mut Part, plane: usize, filling: &Filling, nodes: [Node; N]) {
-        let inside = &mut part.entry(plane).or_default().inside;
-        for node in nodes {
-            inside.entry(node).or_insert_with(|| self.sections[plane].is_inside(filling, self.root.point(node)));
-        }
+        let is_inside = |node| (node, self.sections[plane].is_inside(filling, self.root.point(node)));
+        part.entry(plane).or_default().inside.extend(nodes.map(is_inside));
     }
 }
