@@ -44,6 +44,9 @@ const CONE: f64 = 0.15;
 /// A slope within a plane that is less is that of a face beside it.
 const FLAT: f64 = 1e-6;
 
+/// The tangent of 30°.
+const LEAN: f64 = 0.577;
+
 /// How far beyond a zone it is seen whether a convex leaf is entered, in radii of the zone.
 const BEYOND: [f64; 3] = [1.2, 3.0, 8.0];
 
@@ -98,7 +101,8 @@ impl Program {
         slopes
     }
 
-    /// A unit vector within a plane, of these axes, along which the solid is entered, and not left, throughout a zone.
+    /// A unit vector within a plane, of these axes, such that along all directions within 30° of it the solid is entered,
+    /// and not left, throughout a zone.
     pub(crate) fn way_in_plane(&self, zone: &Zone, axes: [DVec3; 2]) -> Option<DVec3> {
         let parts = self.parts()?;
         // A face that lies beside the plane has no slope in it, and tells nothing there.
@@ -111,7 +115,10 @@ impl Program {
         let zones = self.zones(&world);
         let entered = |slopes: Vec<DVec3>| {
             let middle = common(&slopes).and_then(within)?;
-            (self.all_enter(&parts, (&zones, &world), &[Way { middle, sway: 0.0 }]) != 0).then_some(middle)
+            // What rises along two directions does so along all between them.
+            let across = middle.cross(axes[0].cross(axes[1]));
+            let ways = [-LEAN, LEAN].map(|lean| Way { middle: middle + lean * across, sway: 0.0 });
+            (self.all_enter(&parts, (&zones, &world), &ways) == 3).then_some(middle)
         };
         // Edges that pass beside the middle show at the corners.
         let corner = |x: f64, y: f64| zone.centre + x * zone.axes.x_axis + y * zone.axes.y_axis;
@@ -133,7 +140,7 @@ impl Program {
         self.all_along(parts, seen, ways, |instance, zone, ways| {
             let is_convex = by_sign && instance.field.convex() && instance.placement.shift == 0.0;
             let found = if is_convex { bits(ways, |way| is_entered(&*instance.field, zone, way)) } else { 0 };
-            if found == 0 { instance.field.rises(zone, ways) } else { found }
+            if found.count_ones() as usize == ways.len() { found } else { found | instance.field.rises(zone, ways) }
         })
     }
 

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::inside::is_inside;
 use super::nearest::nearest;
 use crate::distance::{compiled, surface_of};
 use crate::eval::{Care, Evaluator, Hit, Owner, Program, Region, Tape, first_hit, limited};
@@ -55,12 +56,21 @@ impl Solid {
         Ok(values)
     }
 
-    /// Whether a point is inside: the value is positive.
+    /// Whether a point is inside: the value is positive, or inside is all around, as on a face that two parts share.
+    ///
+    /// ```
+    /// use rvachev::Solid;
+    ///
+    /// let brick = Solid::cuboid([20.0, 20.0, 10.0]);
+    /// let tower = brick.clone() | brick.translate([0.0, 0.0, 10.0]);
+    /// assert!(tower.contains([0.0, 0.0, 5.0])? && !tower.contains([10.0, 0.0, 5.0])?);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
     ///
     /// # Errors
     /// What is wrong with the solid: see [`SolidError`].
     pub fn contains(&self, p: impl Into<DVec3>) -> Result<bool, SolidError> {
-        Ok(compiled(self)?.surface.value(p) > 0.0)
+        Ok(is_inside(&*compiled(self)?, p.into()))
     }
 
     /// [`contains`](Solid::contains) at many points.
@@ -69,7 +79,7 @@ impl Solid {
     /// What is wrong with the solid: see [`SolidError`].
     pub fn contains_all(&self, points: &[DVec3]) -> Result<Vec<bool>, SolidError> {
         let programs = compiled(self)?;
-        Ok(points.iter().map(|p| programs.surface.value(*p) > 0.0).collect())
+        Ok(points.iter().map(|p| is_inside(&programs, *p)).collect())
     }
 
     /// The field's gradient at a point; it points inward. At kinks, that of one side.

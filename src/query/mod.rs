@@ -3,6 +3,7 @@
 //! Here, above programs, meshes and distances, because an answer may need a solid's surface.
 
 mod field;
+mod inside;
 #[cfg(feature = "formula")]
 mod lower;
 mod mesh;

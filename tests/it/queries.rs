@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_4, PI};
 
 use glam::DVec3;
 use rvachev::{
-    Bounds, RFunction, Solid, Superellipsoid, deg,
+    Bounds, Profile, RFunction, Solid, Superellipsoid, deg,
     program::{Evaluator, Gradients, Tape},
     rad,
 };
@@ -382,4 +382,38 @@ fn slices_of_unequal_length_are_refused() {
     let gradients = Gradients { value: &mut value, dx: &mut dx, dy: &mut dy[..1], dz: &mut dz };
     assert_eq!(Evaluator::new().gradients(&tape, &x, &x, &x, gradients).unwrap_err().name, "dy");
     assert!(Evaluator::new().values_f64(&tape, &[0.0], &[0.0], &[], &mut [0.0]).is_err());
+}
+
+#[test]
+fn a_joint_is_inside_and_no_surface() {
+    let brick = Solid::cuboid([20.0, 20.0, 10.0]);
+    for turn in [0.0, 0.7] {
+        let turned = |p: [f64; 3]| DVec3::from_array(p).rotate_z(turn);
+        let tower = (brick.clone() | brick.translate([0.0, 0.0, 10.0])).rotate_z(rad(turn));
+        assert!(tower.contains(turned([0.0, 0.0, 5.0])).unwrap(), "{turn}");
+        assert!(tower.contains(turned([9.0, -3.0, 5.0])).unwrap(), "{turn}");
+        // At the ends of the joint, on a side and on an edge, and on the sides.
+        for p in [[10.0, 0.0, 5.0], [10.0, 10.0, 5.0], [-10.0, 3.0, 2.0], [0.0, 0.0, -5.0]] {
+            assert!(!tower.contains(turned(p)).unwrap(), "{turn} {p:?}");
+        }
+        let near = tower.closest_surface_point(turned([1.0, 2.0, 7.0])).unwrap().unwrap();
+        assert!((near.distance(turned([1.0, 2.0, 7.0])) - 8.0).abs() < 1e-6, "{turn}: {near}");
+        let hit = tower.raycast(turned([1.0, 2.0, -3.0]), DVec3::Z).unwrap().unwrap();
+        assert!((hit.distance - 18.0).abs() < 1e-9, "{turn}: {hit:?}");
+    }
+    // Three of four blocks about an edge: the edge is on the surface, with all four it is inside.
+    let block = |x: f64, y: f64| Solid::cuboid([2.0, 2.0, 2.0]).translate([x, y, 0.0]);
+    let three = block(1.0, 1.0) | block(-1.0, 1.0) | block(-1.0, -1.0);
+    assert!(!three.contains([0.0, 0.0, 0.0]).unwrap());
+    assert!((three | block(1.0, -1.0)).contains([0.0, 0.0, 0.0]).unwrap());
+    // A wedge of 3 degrees is open between two that meet at its edge.
+    let half = |turn: f64| Solid::half_space(DVec3::Y.rotate_z(turn), 0.0) & Solid::sphere(3.0);
+    let wedge = half(0.0) | half(std::f64::consts::PI - 0.05);
+    assert!(!wedge.contains([0.0, 0.0, 1.0]).unwrap());
+    // Plugged with what was cut out.
+    let plug = Solid::cylinder(3.0, 10.0);
+    let plugged = (Solid::cuboid([10.0; 3]) - plug.clone()) | plug;
+    assert!(plugged.contains([3.0, 0.0, 1.0]).unwrap() && !plugged.contains([3.0, 0.0, 5.0]).unwrap());
+    let profile = Profile::rectangle([4.0, 4.0]) | Profile::rectangle([4.0, 4.0]).translate([4.0, 0.0]);
+    assert!(profile.extrude(2.0).contains([2.0, 0.5, 0.3]).unwrap());
 }

@@ -8,7 +8,7 @@ use std::collections::{HashMap, HashSet};
 
 use glam::DVec2;
 
-use super::section::Section;
+use super::section::{Filling, Section};
 use super::square::{Node, Root, Square};
 use super::tree::{Found, Leaf};
 use crate::eval::bracket;
@@ -24,7 +24,7 @@ const CHORD: f64 = 0.7;
 const SMOOTH: u32 = 3;
 
 /// Contours that turn by less than an angle with this sine, between two points, have no corner there.
-const TURN: f64 = 0.05;
+const TURN: f64 = 0.2;
 
 /// What corners may be off, in proportion to the tolerance.
 const SHARP: f64 = 0.1;
@@ -49,6 +49,8 @@ pub(super) struct Chains<'a> {
     pub(super) section: &'a Section,
     pub(super) root: &'a Root,
     pub(super) found: &'a Found,
+    /// What decides about points beyond their square.
+    pub(super) whole: &'a Filling,
     pub(super) tolerance: f64,
 }
 
@@ -88,7 +90,7 @@ impl Chains<'_> {
                 points.push(from);
                 last = Some(ends[1]);
                 match leaf.way {
-                    Some(_) => self.refine(leaf, ends, &mut points),
+                    Some(way) => self.refine(leaf, ends, way, &mut points),
                     None => points.extend(self.corner(leaf, ends)),
                 }
                 at = to;
@@ -98,9 +100,13 @@ impl Chains<'_> {
                 contours.push(Polyline::closed(kept));
             }
         }
+        // The ends of narrow gaps and tips are cut off where they are thinner than the tolerance.
+        let all = contours.len();
+        contours.retain(|line| 2.0 * line.area().abs() > self.tolerance * line.length());
+        let thin = all - contours.len();
         // What is beside a contour is no farther from it than the tolerance.
         undecided.retain(|(node, size)| !beside(*node, *size).any(|node| met.contains(&(node, *size))));
-        Ok((contours, undecided.len()))
+        Ok((contours, undecided.len() + thin))
     }
 
     /// The pieces of contours in a square, the inside to the left.
@@ -160,21 +166,24 @@ impl Chains<'_> {
     }
 
     /// Points between two, such that chords deviate by less than the tolerance.
-    fn refine(&self, leaf: &Leaf, [a, b]: [DVec2; 2], points: &mut Vec<DVec2>) {
+    fn refine(&self, leaf: &Leaf, [a, b]: [DVec2; 2], way: DVec2, points: &mut Vec<DVec2>) {
         let end = b;
         let mut pending = vec![(a, b, 0)];
         while let Some((a, b, depth)) = pending.pop() {
             let is_short = depth >= DEEPEST || a.distance(b) <= 0.5 * self.tolerance;
             let is_on = |t: f64| self.is_on(leaf, [a, b], a.lerp(b, t), CHORD);
             // An S has its middle on the chord.
-            if !is_short && !(is_on(0.5) && (depth > 0 || is_on(0.25) && is_on(0.75))) {
-                // What is curved has come nearer by now.
-                let corner = if depth < SMOOTH { None } else { self.corner(leaf, [a, b]) };
-                if let Some(corner) = corner {
-                    points.push(corner);
-                } else if let Some(p) = self.across(leaf, [a, b]) {
-                    pending.extend([(p, b, depth + 1), (a, p, depth + 1)]);
-                    continue;
+            let is_straight = is_short || is_on(0.5) && (depth > 0 || is_on(0.25) && is_on(0.75));
+            // What is curved has come nearer by now.
+            let corner = if is_straight || depth >= SMOOTH { self.corner(leaf, [a, b]) } else { None };
+            match corner {
+                Some(corner) => points.push(corner),
+                None if is_straight => {}
+                None => {
+                    if let Some(p) = self.across(leaf, [a, b], way) {
+                        pending.extend([(p, b, depth + 1), (a, p, depth + 1)]);
+                        continue;
+                    }
                 }
             }
             if b != end {
@@ -183,18 +192,24 @@ impl Chains<'_> {
         }
     }
 
+    /// The value at a point that is in a square, or beside it: there the contour may go on for a while.
+    fn value(&self, leaf: &Leaf, p: DVec2) -> f64 {
+        let from_low = p - leaf.square.low;
+        let is_in = from_low.min_element() >= 0.0 && from_low.max_element() <= leaf.square.side;
+        self.section.value(if is_in { &leaf.filling } else { self.whole }, p)
+    }
+
     /// Whether a contour that goes the way of a chord passes a point nearer than a part of the tolerance.
     fn is_on(&self, leaf: &Leaf, [a, b]: [DVec2; 2], p: DVec2, part: f64) -> bool {
         // The inside is to the left.
         let left = part * self.tolerance * (b - a).perp().normalize_or_zero();
-        self.section.is_inside(&leaf.filling, p + left) && !self.section.is_inside(&leaf.filling, p - left)
+        self.value(leaf, p + left) > 0.0 && self.value(leaf, p - left) <= 0.0
     }
 
-    /// The point of the contour across from the middle of a chord.
-    fn across(&self, leaf: &Leaf, [a, b]: [DVec2; 2]) -> Option<DVec2> {
+    /// The point of the contour beside the middle of a chord, along a way that the solid is entered by.
+    fn across(&self, leaf: &Leaf, [a, b]: [DVec2; 2], way: DVec2) -> Option<DVec2> {
         let middle = a.midpoint(b);
-        let left = (b - a).perp().try_normalize()?;
-        let value = |t: f64| self.section.value(&leaf.filling, middle + t * left);
+        let value = |t: f64| self.value(leaf, middle + t * way);
         let inside = value(0.0) > 0.0;
         let (outwards, most) = (if inside { -1.0 } else { 1.0 }, a.distance(b));
         let mut reach = 0.02 * most;
@@ -205,7 +220,7 @@ impl Chains<'_> {
             reach = (3.0 * reach).min(most);
         }
         let there = outwards * reach;
-        Some(middle + bracket(&value, [there.min(0.0), there.max(0.0)], PRECISE * self.tolerance) * left)
+        Some(middle + bracket(&value, [there.min(0.0), there.max(0.0)], PRECISE * self.tolerance) * way)
     }
 
     /// The corner between two points of a contour, if its tangents there meet in one and are all of it.

@@ -16,8 +16,8 @@ use glam::DVec2;
 use rayon::prelude::*;
 
 use self::chain::Chains;
-use self::section::Section;
 pub use self::section::Side;
+use self::section::{Filling, Section};
 use self::square::Root;
 use self::tree::Tree;
 use super::settings::{RenderError, setting};
@@ -145,10 +145,11 @@ fn stack(
         heights.iter().map(|height| Section::new(&plane.moved_by(*height), side, region)).collect();
     let finest = tolerance.max(SMALLEST * root.side);
     let [to_divide, to_join] = run.stages([0.7, 0.3]);
+    let whole = Filling::Program(program.clone());
     let made: Result<Vec<Contours>, Cancelled> = run.install(|| {
         let found = Tree::new(&sections, heights, root, finest, &to_divide).found(program)?;
         let contours = |(section, found)| {
-            let chains = Chains { section, root: &root, found, tolerance };
+            let chains = Chains { section, root: &root, found, whole: &whole, tolerance };
             let (lines, unresolved) = chains.contours(&to_join)?;
             Ok(Contours::new(lines, unresolved))
         };

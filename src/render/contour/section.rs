@@ -7,7 +7,7 @@ use glam::{DMat3, DVec2};
 
 use super::square::{DEEPEST, Square};
 use crate::eval::{Program, Region};
-use crate::{Plane, PlaneBounds};
+use crate::{Bounds, Plane, PlaneBounds};
 use rvachev_field::Zone;
 
 /// How far aside, in proportion to the size: rounding is less, and the plane that is meant is as near.
@@ -19,7 +19,7 @@ const SAMPLED: u32 = 1 << (DEEPEST - 8);
 
 /// Where, in a square, and the least cosine of the angle between a slope there and their mean.
 const SAMPLES: [[f64; 2]; 5] = [[0.5, 0.5], [0.02, 0.03], [0.97, 0.02], [0.98, 0.97], [0.03, 0.98]];
-const STRAIGHT: f64 = 0.8;
+const STRAIGHT: f64 = 0.5;
 
 /// Which side of a plane counts where a face lies in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -134,14 +134,16 @@ impl Section {
         (0..4).filter(move |side| near[*side].min(far[*side]) <= 0.0).map(|side| INWARDS[side])
     }
 
-    /// A direction along which the solid is entered, and not left, throughout a square: the contour is the graph of a
-    /// function there.
+    /// A direction along which the solid is entered, and not left, throughout a square, and so along all directions
+    /// within 30° of it: the contour is the graph of a function there that is no steeper than 60°.
     pub(super) fn way_in(&self, filling: &Filling, square: &Square) -> Option<DVec2> {
         let (low, high) = (square.low, square.low + square.side);
         let axes = self.plane.axes();
         let way = match filling {
             Filling::Solid => self.crossed(low, high).sum::<DVec2>().try_normalize()?,
-            Filling::Program(program) if !program.is_steady() && square.size <= SAMPLED && self.holds(square) => {
+            Filling::Program(program)
+                if square.size <= SAMPLED && self.holds(square) && !self.is_told(program, square) =>
+            {
                 self.sampled_way(filling, square)?
             }
             Filling::Program(program) => {
@@ -149,7 +151,13 @@ impl Section {
                 DVec2::new(way.dot(axes[0]), way.dot(axes[1]))
             }
         };
-        self.crossed(low, high).all(|inward| inward.dot(way) > 0.1).then_some(way)
+        self.crossed(low, high).all(|inward| inward.dot(way) > STRAIGHT).then_some(way)
+    }
+
+    /// Whether ranges of slopes tell something.
+    fn is_told(&self, program: &Program, square: &Square) -> bool {
+        let [low, high] = [square.low, square.low + square.side].map(|p| self.plane.point(p));
+        program.is_steady() && program.steepest(&Bounds::new(low.min(high), low.max(high))).is_finite()
     }
 
     /// The same as it looks at some points: of values that are searched for, ranges of slopes tell little.

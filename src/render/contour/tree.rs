@@ -9,8 +9,8 @@
 //! ```
 //!
 //! No contour is missed between squares that are small enough. One that crosses no side so that it shows at a corner
-//! would be in two squares that share a side; its normals are at less than a right angle to one direction in the one
-//! and to another in the other, which leaves out at least two directions, but those of a closed curve leave out none.
+//! would be in two squares that share a side; its normals are within 60° of one direction in the one and of another in
+//! the other, but those of a closed curve are all there are.
 
 use std::collections::HashMap;
 use std::ops::Range;

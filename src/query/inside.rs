@@ -1,0 +1,71 @@
+//! Whether a point is inside where the value is 0.
+//!
+//! ```text
+//!     +-------+-------+      On the face that two boxes share the value is 0, and inside is all around: such a
+//!     |       o       |      point is inside. One on the surface has some outside beside it: along a normal, or,
+//!     +-------+-------+      on an edge, where two faces are left, or three at a corner.
+//! ```
+
+use glam::DVec3;
+
+use crate::eval::{Compiled, Program};
+
+/// Values of less than this, in proportion to lengths about the solid, are rounding.
+const ROUNDING: f64 = 1e-13;
+
+/// How far beside a point it is looked, in proportion to the same.
+const BESIDE: f64 = 1e-10;
+
+/// Normals that differ by less are one.
+const SAME: f64 = 1e-4;
+
+/// Directions first looked along: along no axis, as faces are.
+const AROUND: [[f64; 3]; 14] = [
+    [0.97, 0.21, 0.12],
+    [-0.94, 0.17, -0.29],
+    [0.24, 0.95, -0.19],
+    [0.15, -0.96, 0.23],
+    [-0.11, 0.28, 0.95],
+    [0.27, -0.13, -0.95],
+    [0.51, 0.66, 0.55],
+    [-0.62, 0.49, 0.61],
+    [0.57, -0.64, 0.52],
+    [0.63, 0.52, -0.57],
+    [-0.49, -0.55, 0.67],
+    [-0.61, 0.58, -0.54],
+    [0.48, -0.53, -0.70],
+    [-0.66, -0.54, -0.52],
+];
+
+/// Whether a point is inside, or inside is all around it.
+pub(super) fn is_inside(programs: &Compiled, p: DVec3) -> bool {
+    let program = &programs.surface;
+    let value = program.value(p);
+    if value > 0.0 || !p.is_finite() {
+        return value > 0.0;
+    }
+    let size = if programs.bounds.is_finite() { programs.bounds.longest_side() } else { 1.0 };
+    let scale = size + p.abs().max_element();
+    value > -ROUNDING * scale && is_surrounded(program, p, scale)
+}
+
+/// Whether inside is all around a point on the surface of the program's operands.
+fn is_surrounded(program: &Program, p: DVec3, scale: f64) -> bool {
+    let by = BESIDE * scale;
+    let mut normals: Vec<DVec3> = Vec::new();
+    for direction in AROUND {
+        let (value, slope) = program.gradient(p + by * DVec3::from_array(direction));
+        if value <= -ROUNDING * scale {
+            return false;
+        }
+        let normal = slope.normalize_or_zero();
+        if normal != DVec3::ZERO && normals.iter().all(|other| other.distance(normal) > SAME) {
+            normals.push(normal);
+        }
+    }
+    let is_inside = |out: DVec3| out.try_normalize().is_none_or(|out| program.value(p - by * out) > -ROUNDING * scale);
+    let n = &normals;
+    (0..n.len()).all(|i| {
+        is_inside(n[i]) && (0..i).all(|j| is_inside(n[i] + n[j]) && (0..j).all(|k| is_inside(n[i] + n[j] + n[k])))
+    })
+}
