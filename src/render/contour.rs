@@ -26,6 +26,9 @@ use crate::{PlaneBounds, Polyline};
 /// Cells along the longer side of the region.
 const CELLS: f64 = 256.0;
 
+/// The finest tolerance, in longer sides of the region: a circle has some 10⁵ points then.
+const FINEST: f64 = 1e-9;
+
 /// A chord is halved at most this many times.
 const DEEPEST: u32 = 14;
 
@@ -35,7 +38,8 @@ type Crossing = (u32, u32, bool);
 impl Slice {
     /// The contours of the solid on the plane: closed polylines with the inside to the left, so
     /// that outlines run anticlockwise and holes clockwise. Points are on the surface to within
-    /// rounding; in between, and at corners, contours deviate by no more than about `tolerance`.
+    /// rounding; in between, and at corners, contours deviate by no more than about `tolerance`. One below 10⁻⁹ of
+    /// the region's longer side counts as that.
     ///
     /// Where the solid goes on beyond the region, its contour follows the region's border. A
     /// face that lies in the plane counts as outside.
@@ -46,6 +50,7 @@ impl Slice {
         if !(tolerance > 0.0 && tolerance.is_finite()) {
             return Err(setting("tolerance", tolerance, "finite and above 0"));
         }
+        let tolerance = tolerance.max(FINEST * (self.region.max - self.region.min).max_element());
         let grid = Nodes::new(self);
         let mut next: HashMap<Crossing, Crossing> = HashMap::new();
         let mut starts: Vec<Crossing> = Vec::new();

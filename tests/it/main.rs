@@ -5,6 +5,7 @@ mod blends;
 mod building;
 mod caps;
 mod check;
+mod compiling;
 mod deformation;
 mod errors;
 mod explicit_inputs;
@@ -15,6 +16,7 @@ mod forms;
 #[cfg(feature = "formula")]
 mod formula;
 mod golden;
+mod inputs;
 mod lattices;
 mod laws;
 mod length_ranges;
