@@ -45,6 +45,7 @@ mod scale;
 mod serde;
 mod sharp;
 mod slices;
+mod spicy;
 mod subdivision;
 mod superellipsoid;
 mod superquadric;
