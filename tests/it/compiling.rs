@@ -33,7 +33,7 @@ fn pile(count: u32) -> Solid {
 
 /// A star whose rays are long and thin.
 fn star(count: usize) -> Profile {
-    let radius = |i: usize| if i % 2 == 0 { 1.0 } else { 900.0 + (i % 101) as f64 };
+    let radius = |i: usize| if i.is_multiple_of(2) { 1.0 } else { 900.0 + (i % 101) as f64 };
     Profile::polygon((0..count).map(|i| radius(i) * DVec2::from_angle(std::f64::consts::TAU * i as f64 / count as f64)))
 }
 

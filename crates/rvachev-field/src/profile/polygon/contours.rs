@@ -25,7 +25,7 @@ pub(super) fn edges(contours: &[Vec<DVec2>], run: &Run) -> Result<Result<Vec<Edg
             return Ok(Err(error));
         }
     }
-    let given = Given::new(contours);
+    let given = Given::new(contours, run)?;
     Ok(match sweep(&given.corners, given.pieces(), run)? {
         Swept::Pieces(pieces) => given.parted(pieces),
         Swept::Cross(edges) => Err(given.crossing(edges)),
@@ -64,11 +64,13 @@ struct Given<'a> {
 }
 
 impl<'a> Given<'a> {
-    fn new(contours: &'a [Vec<DVec2>]) -> Given<'a> {
+    fn new(contours: &'a [Vec<DVec2>], run: &Run) -> Result<Given<'a>, Cancelled> {
         let near_zero = |v: f64| if v.abs() < NOTHING { 0.0 } else { v };
         let points = contours.iter().flatten().map(|p| DVec2::new(near_zero(p.x), near_zero(p.y)));
         let mut order: Vec<(DVec2, u32)> = points.zip(0..).collect();
+        run.check()?;
         order.sort_unstable_by(|a, b| from_left(&a.0, &b.0).then(a.1.cmp(&b.1)));
+        run.check()?;
         let mut corners: Vec<DVec2> = Vec::with_capacity(order.len());
         let mut corner_of = vec![0; order.len()];
         for (point, at) in order {
@@ -84,7 +86,8 @@ impl<'a> Given<'a> {
             ends.extend(of_one.iter().zip(of_one.iter().cycle().skip(1)).map(|(from, to)| [*from, *to]));
             rest = others;
         }
-        Given { contours, corners, ends }
+        run.check()?;
+        Ok(Given { contours, corners, ends })
     }
 
     fn pieces(&self) -> Vec<Piece> {

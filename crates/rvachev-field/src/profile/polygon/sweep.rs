@@ -128,7 +128,7 @@ pub(super) fn sweep(corners: &[DVec2], pieces: Vec<Piece>, run: &Run) -> Result<
     let mut found = Vec::new();
     let (mut on, mut from_here) = (Vec::new(), Vec::new());
     for (at, &corner) in (0u32..).zip(corners) {
-        if at as usize % OFTEN == 0 {
+        if (at as usize).is_multiple_of(OFTEN) {
             run.check()?;
             run.report(f64::from(at) / corners.len() as f64);
         }

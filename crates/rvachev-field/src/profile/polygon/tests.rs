@@ -298,7 +298,7 @@ fn long_edges_side_by_side_are_swept() {
     // Boxes of the edges all overlap.
     let count = 20_000;
     let spike = |i: usize| {
-        let radius = if i % 2 == 0 { 1.0 } else { 1000.0 };
+        let radius = if i.is_multiple_of(2) { 1.0 } else { 1000.0 };
         radius * DVec2::from_angle(std::f64::consts::TAU * i as f64 / count as f64)
     };
     let polygon = Polygon::new([(0..count).map(spike)]);
