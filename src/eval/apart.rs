@@ -17,7 +17,7 @@ use super::nothing::Nothing;
 use super::source::{CompileError, DistanceSource, Measured, Surface, Wanted};
 use super::tiles::Tiles;
 use crate::solid::{BALL_OF_LEGS, Length, Node, Operation};
-use crate::{Blend, Bounds, Run, Solid};
+use crate::{Blend, Bounds, Cancelled, Run, Solid};
 use rvachev_field::{AnyField, SurfaceDistance};
 
 /// What is done for a solid, one after the other.
@@ -44,10 +44,11 @@ impl Work<'_> {
 }
 
 /// What is to be done for a solid, operands first, its own compilation last.
-pub(super) fn works<'a>(root: &'a Solid, exact: &Exactness) -> Vec<Work<'a>> {
+pub(super) fn works<'a>(root: &'a Solid, exact: &Exactness, run: &Run) -> Result<Vec<Work<'a>>, Cancelled> {
     let (mut works, mut met) = (Vec::new(), HashSet::new());
     let mut pending = vec![(root, false)];
     while let Some((solid, is_done)) = pending.pop() {
+        run.check()?;
         if is_done {
             let alone = alone(solid, exact);
             let is_measured = !alone.is_empty();
@@ -60,7 +61,7 @@ pub(super) fn works<'a>(root: &'a Solid, exact: &Exactness) -> Vec<Work<'a>> {
         }
     }
     works.push(Work::Compile(root));
-    works
+    Ok(works)
 }
 
 /// What of a node is compiled by itself.

@@ -66,6 +66,12 @@ impl Compiled {
     }
 }
 
+/// The share of the time that the walk before compiling takes: of most solids it is less.
+const PREPARING: f64 = 0.05;
+
+/// Of the time of a compilation, what the walk through the graph takes.
+const WALK: f64 = 0.6;
+
 /// More nodes than this are not compiled.
 const LIMIT: usize = 1 << 23;
 
@@ -85,8 +91,9 @@ pub(crate) fn compile(
 /// Compiles a solid, and before it what is compiled by itself, however deep it is.
 fn compile_anew(solid: &Solid, source: &'static dyn DistanceSource, run: &Run) -> Result<Arc<Compiled>, CompileError> {
     let mut exact = Exactness::default();
-    exact.add(solid);
-    let works = works(solid, &exact);
+    exact.add(solid, &run.stage(0.0, PREPARING))?;
+    let run = &run.stage(PREPARING, 1.0);
+    let works = works(solid, &exact, run)?;
     let all: f64 = works.iter().map(Work::effort).sum();
     let mut done = 0.0;
     for work in works {
@@ -96,8 +103,9 @@ fn compile_anew(solid: &Solid, source: &'static dyn DistanceSource, run: &Run) -
             Work::Measure(node) => measure(node, &exact, source, &run.stage(done / all, end / all))?,
             Work::Compile(part) if kept(part).is_some() => {}
             Work::Compile(part) => {
-                let compiled =
-                    Compiler::new(&exact, run).compile(part).map_err(|error| of_whole(solid, &exact, run, error))?;
+                let compiled = Compiler::new(&exact, &run.stage(done / all, end / all))
+                    .compile(part)
+                    .map_err(|error| of_whole(solid, &exact, run, error))?;
                 let _ = part.compiled().set(Arc::new(compiled));
             }
         }
@@ -162,6 +170,7 @@ impl<'e> Compiler<'e> {
         let step = self.scene.trail.push(root, None);
         let site = Site { solid: root, context: 0, step };
         let mut tasks = vec![Task::Visit(site)];
+        let mut finished = 0.0;
         while let Some(task) = tasks.pop() {
             self.run.check()?;
             match task {
@@ -169,21 +178,24 @@ impl<'e> Compiler<'e> {
                 Task::Finish(site) => {
                     let built = self.finish(site)?;
                     self.built.insert((site.context, site.solid.address()), Some(built));
+                    // Of a part that is reached in several places there is more than one.
+                    finished += 1.0;
+                    self.run.report(WALK * (finished / self.exact.len() as f64).min(1.0));
                 }
             }
         }
         let built = self.of(root, 0);
         let unbounded = self.unbounded(root, step);
-        let Compiler { scene, code, coats, accuracy, .. } = self;
+        let Compiler { scene, code, coats, accuracy, run, .. } = self;
         let scene = Arc::new(scene);
         let program = |root: Edge| {
-            let (nodes, operands, root) = flatten(&code, root);
-            Program::assemble(scene.clone(), nodes, operands, root, Vec::new())
+            let (nodes, operands, root) = flatten(&code, root, run)?;
+            Ok::<_, Cancelled>(Program::assemble(scene.clone(), nodes, operands, root, Vec::new()))
         };
-        let (field, surface) = (program(built.field), program(built.surface));
+        let (field, surface) = (program(built.field)?, program(built.surface)?);
         let mut bounds = if built.sides.inside.is_empty() { Bounds::EMPTY } else { built.sides.inside };
         if !bounds.is_finite() {
-            bounds = extent(&surface, &bounds);
+            bounds = extent(&surface, &bounds, run)?;
         }
         let unbounded = if bounds.is_finite() { String::new() } else { unbounded };
         let palette = Palette::new(surface.clone(), coats);

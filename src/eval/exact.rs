@@ -21,8 +21,8 @@ use std::collections::HashMap;
 use glam::DAffine3;
 
 use super::context::is_similarity;
-use crate::Solid;
 use crate::solid::{Length, Node, Operation};
+use crate::{Cancelled, Run, Solid};
 
 /// On which side a value is the true distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,14 +50,18 @@ impl Exact {
 pub(super) struct Exactness(HashMap<usize, Exact>);
 
 impl Exactness {
-    /// Finds it out for a solid and all that it is made of, operands first.
-    pub(super) fn add(&mut self, root: &Solid) {
+    /// Finds it out for a solid and all that it is made of, operands first. Leaves are prepared on the way.
+    pub(super) fn add(&mut self, root: &Solid, run: &Run) -> Result<(), Cancelled> {
         let mut pending = vec![(root, false)];
         while let Some((solid, is_open)) = pending.pop() {
+            run.check()?;
             if self.0.contains_key(&solid.address()) {
                 continue;
             }
             if is_open {
+                if let Node::Leaf(field) = solid.node() {
+                    field.prepare(run)?;
+                }
                 let found = self.found(solid);
                 self.0.insert(solid.address(), found);
             } else {
@@ -65,6 +69,12 @@ impl Exactness {
                 pending.extend(solid.node().parts().iter().chain(solid.node().ball()).map(|part| (part, false)));
             }
         }
+        Ok(())
+    }
+
+    /// The number of nodes.
+    pub(super) fn len(&self) -> usize {
+        self.0.len()
     }
 
     /// Where the value of a solid is a distance.

@@ -5,7 +5,7 @@
 use glam::DVec3;
 
 use super::{Program, Region};
-use crate::Bounds;
+use crate::{Bounds, Cancelled, Run};
 
 /// Boxes are halved until they are this small, in proportion to what is found.
 const FINEST: f64 = 1.0 / 64.0;
@@ -21,16 +21,17 @@ const IMPATIENCE: usize = 200;
 const LARGEST: f64 = 1e9;
 
 /// A box that holds the inside of `program`; `known` is one along the axes where it is finite.
-pub(super) fn extent(program: &Program, known: &Bounds) -> Bounds {
+pub(super) fn extent(program: &Program, known: &Bounds, run: &Run) -> Result<Bounds, Cancelled> {
     let limit = DVec3::splat(LARGEST);
     let start = known.intersection(&Bounds::new(-limit, limit));
     // All boxes that may hold some of it, of different sizes: only those that the hull rests on
     // are halved.
     let mut boxes: Vec<(Bounds, Program)> = narrowed(start, program).into_iter().collect();
     loop {
+        run.check()?;
         let hull = boxes.iter().fold(Bounds::EMPTY, |hull, (bounds, _)| hull.union(bounds));
         if hull.is_empty() {
-            return Bounds::EMPTY;
+            return Ok(Bounds::EMPTY);
         }
         // What reaches the limit does not end.
         let ends = (0..3).all(|axis| {
@@ -41,7 +42,7 @@ pub(super) fn extent(program: &Program, known: &Bounds) -> Bounds {
         let halved = |bounds: &Bounds| rests(&hull, bounds) && bounds.longest_side() > finest;
         let count = boxes.iter().filter(|(bounds, _)| halved(bounds)).count();
         if count == 0 || boxes.len() > if ends { PATIENCE } else { IMPATIENCE } {
-            return if ends { hull.intersection(known) } else { *known };
+            return Ok(if ends { hull.intersection(known) } else { *known });
         }
         let mut next = Vec::with_capacity(boxes.len() + count);
         for (bounds, program) in boxes {

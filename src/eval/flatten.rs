@@ -5,12 +5,12 @@ use std::sync::Arc;
 use super::code::Code;
 use super::hierarchy::Hierarchy;
 use super::program::{Edge, Kind, Node};
-use crate::Bounds;
+use crate::{Bounds, Cancelled, Run};
 use rvachev_field::Rule;
 
 /// The program that `root` reaches, with every min or max that is used once and by one of its
 /// own kind (after De Morgan) merged into that one.
-pub(super) fn flatten(code: &Code, root: Edge) -> (Vec<Node>, Vec<Edge>, Edge) {
+pub(super) fn flatten(code: &Code, root: Edge, run: &Run) -> Result<(Vec<Node>, Vec<Edge>, Edge), Cancelled> {
     let count = code.nodes.len();
     let mut uses = vec![0u32; count];
     let mut merged = vec![false; count];
@@ -38,6 +38,7 @@ pub(super) fn flatten(code: &Code, root: Edge) -> (Vec<Node>, Vec<Edge>, Edge) {
     let mut list: Vec<Edge> = Vec::new();
     let mut moved = vec![0usize; count];
     for at in 0..count {
+        run.check()?;
         if uses[at] == 0 || merged[at] {
             continue;
         }
@@ -45,7 +46,9 @@ pub(super) fn flatten(code: &Code, root: Edge) -> (Vec<Node>, Vec<Edge>, Edge) {
         let first = list.len() as u32;
         if let Kind::Join { rule: Rule::MinMax, hierarchy, .. } = &mut node.kind {
             let mut operands = gather(code, &merged, at);
+            run.check()?;
             Hierarchy::sort(&mut operands);
+            run.check()?;
             list.extend(operands.iter().map(|(edge, _)| edge.to(moved[edge.node()])));
             let boxes: Vec<Bounds> = operands.iter().map(|(_, bounds)| *bounds).collect();
             *hierarchy = Hierarchy::new(boxes).map(Arc::new);
@@ -57,7 +60,7 @@ pub(super) fn flatten(code: &Code, root: Edge) -> (Vec<Node>, Vec<Edge>, Edge) {
         nodes.push(node);
     }
     let root = root.to(moved[root.node()]);
-    (nodes, list, root)
+    Ok((nodes, list, root))
 }
 
 /// The operands of a join and of all that is merged into it, from left to right.

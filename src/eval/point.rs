@@ -94,7 +94,9 @@ impl Program {
 
     fn gradient_at(&self, p: DVec3) -> (f64, DVec3) {
         let dual = self.evaluate(Dual::point(limited(p)), &mut Vec::new());
-        (saturate(dual.v), DVec3::from_array(dual.d))
+        // Where there is no point there is no slope.
+        let slopes = if p.is_nan() { [0.0; 3] } else { dual.d };
+        (saturate(dual.v), DVec3::from_array(slopes))
     }
 
     /// The values of all nodes at a point.

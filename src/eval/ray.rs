@@ -64,6 +64,9 @@ impl Care {
     }
 }
 
+/// A ray from farther away is taken to miss: lengths along it would be beyond what numbers hold.
+const FARTHEST_ORIGIN: f64 = 1e100;
+
 /// A piece is narrowed when it is shorter than this part of the one narrowed before: halves that
 /// differ little from the whole tell little more.
 const ASK: f64 = 0.2;
@@ -103,6 +106,9 @@ pub(crate) fn first_hit(
     [near, far]: [f64; 2],
     care: Care,
 ) -> Option<Hit> {
+    if origin.abs().max_element() > FARTHEST_ORIGIN {
+        return None;
+    }
     let (enter, leave) = clip(bounds, origin, direction)?;
     let (near, far) = (near.max(enter), far.min(leave));
     if near > far {

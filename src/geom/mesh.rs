@@ -103,6 +103,12 @@ pub enum MeshError {
         /// Number of triangles.
         triangles: usize,
     },
+    /// A normal of a vertex is NaN or infinite.
+    #[error("the normal of vertex {vertex} is not finite")]
+    Normal {
+        /// The vertex, counted from 0.
+        vertex: usize,
+    },
     /// A value at a corner is NaN or infinite.
     #[error("the {what} at corner {corner} of triangle {triangle} is not finite")]
     NotFinite {

@@ -31,6 +31,12 @@ pub enum PointCloudError {
         /// Where it is.
         position: DVec3,
     },
+    /// A normal has a component that is NaN or infinite.
+    #[error("the normal of point {point} is not finite")]
+    Normal {
+        /// The point, counted from 0.
+        point: usize,
+    },
     /// There are not as many of an attribute as of points.
     #[error("{given} {attribute} for {points} points; one a point is needed")]
     Count {
@@ -65,9 +71,13 @@ impl PointCloud {
     ///
     /// # Errors
     ///
-    /// [`PointCloudError::Count`] if their number is not that of the points.
+    /// [`PointCloudError::Count`] if their number is not that of the points, and
+    /// [`PointCloudError::Normal`] if one of them is NaN or infinite.
     pub fn with_normals(mut self, normals: Vec<Vec3>) -> Result<PointCloud, PointCloudError> {
         self.counted("normals", normals.len())?;
+        if let Some(point) = normals.iter().position(|normal| !normal.is_finite()) {
+            return Err(PointCloudError::Normal { point });
+        }
         self.normals = Some(normals);
         Ok(self)
     }

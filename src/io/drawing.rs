@@ -29,7 +29,7 @@ use crate::geom::Polyline;
 /// # Errors
 ///
 /// Those of the writer; [`InvalidInput`](io::ErrorKind::InvalidInput), before anything is written, for a coordinate
-/// that is not finite.
+/// that is not finite, or not within ±10³⁰⁰.
 pub fn write_svg(lines: &[Polyline], mut out: impl Write) -> io::Result<()> {
     check(lines)?;
     let points = || lines.iter().flat_map(|line| line.points());
@@ -72,7 +72,7 @@ pub fn write_svg(lines: &[Polyline], mut out: impl Write) -> io::Result<()> {
 /// # Errors
 ///
 /// Those of the writer; [`InvalidInput`](io::ErrorKind::InvalidInput), before anything is written, for a coordinate
-/// that is not finite.
+/// that is not finite, or not within ±10³⁰⁰.
 pub fn write_dxf(lines: &[Polyline], mut out: impl Write) -> io::Result<()> {
     check(lines)?;
     let mut pair = |code: u32, value: &dyn std::fmt::Display| write!(out, "{code}\n{value}\n");
@@ -105,12 +105,18 @@ pub fn write_dxf(lines: &[Polyline], mut out: impl Write) -> io::Result<()> {
     pair(0, &"EOF")
 }
 
+/// Beyond, sizes of drawings are no numbers any more.
+const FARTHEST: f64 = 1e300;
+
 /// An error if a point is no point: no reader takes one.
 fn check(lines: &[Polyline]) -> io::Result<()> {
+    let fits = |p: &DVec2| p.is_finite() && p.abs().max_element() <= FARTHEST;
     for (number, line) in lines.iter().enumerate() {
-        if let Some(i) = line.points().iter().position(|p| !p.is_finite()) {
+        if let Some(i) = line.points().iter().position(|p| !fits(p)) {
             let (x, y) = line.points()[i].into();
-            let wrong = format!("polyline {number}: point {i} is ({x}, {y}); both coordinates must be finite");
+            let wrong = format!(
+                "polyline {number}: point {i} is ({x}, {y}); both coordinates must be finite, and within ±1e300"
+            );
             return Err(io::Error::new(io::ErrorKind::InvalidInput, wrong));
         }
     }

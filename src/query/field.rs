@@ -82,7 +82,8 @@ impl Solid {
         Ok(points.iter().map(|p| is_inside(&programs, *p)).collect())
     }
 
-    /// The field's gradient at a point; it points inward. At kinks, that of one side.
+    /// The field's gradient at a point; it points inward. At kinks, that of one side; 0 at a point
+    /// with a coordinate that is NaN.
     ///
     /// # Errors
     /// What is wrong with the solid: see [`SolidError`].
@@ -171,7 +172,8 @@ impl Solid {
     }
 
     /// The point of the surface nearest to `p`, to about 10⁻⁹ of the solid's size where the
-    /// surface is smooth there; `None` if the solid is empty or fills its bounds.
+    /// surface is smooth there; `None` if the solid is empty or fills its bounds. A point that is more than a million
+    /// sizes away counts as one at that distance, in the same direction.
     ///
     /// # Errors
     /// What is wrong with the solid; [`SolidError::Unbounded`] if it has no finite box.

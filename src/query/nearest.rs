@@ -8,9 +8,16 @@ use glam::DVec3;
 use crate::eval::Program;
 use rvachev_field::Patches;
 
+/// From farther away than this, in sizes of the solid, distances to all of its parts are alike to the last digits.
+const FARTHEST: f64 = 1e6;
+
 /// The point of the surface of `program` that is nearest to `p`; none if there are no patches.
 pub(super) fn nearest(program: &Program, patches: &Patches, p: DVec3) -> Option<DVec3> {
-    let size = patches.bounds().size().length();
+    let (size, centre) = (patches.bounds().size().length(), patches.bounds().center());
+    // A point that is far away is replaced by one on the straight way to it.
+    let away = (p - centre) / (p - centre).abs().max_element().max(f64::MIN_POSITIVE);
+    let nearer = centre + away.normalize_or_zero() * FARTHEST * size;
+    let p = if (p - centre).abs().max_element() > FARTHEST * size { nearer } else { p };
     let foot = patches.nearest(p)?.point;
     Some(refine(program, foot, p, size).filter(|found| found.distance(foot) < 0.1 * size).unwrap_or(foot))
 }

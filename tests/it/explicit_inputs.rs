@@ -39,20 +39,20 @@ const EVIL: [f64; 18] = [
 /// Numbers that are mostly right.
 const GOOD: [f64; 8] = [0.01, 0.3, 0.7, 1.0, 1.5, 2.0, 3.0, 10.0];
 
-struct Chance(u64);
+pub(super) struct Chance(pub(super) u64);
 
 impl Chance {
-    fn below(&mut self, n: usize) -> usize {
+    pub(super) fn below(&mut self, n: usize) -> usize {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         ((self.0 >> 33) % n as u64) as usize
     }
 
     /// Good three times of four.
-    fn number(&mut self) -> f64 {
+    pub(super) fn number(&mut self) -> f64 {
         if self.below(4) > 0 { GOOD[self.below(GOOD.len())] } else { EVIL[self.below(EVIL.len())] }
     }
 
-    fn numbers<const N: usize>(&mut self) -> [f64; N] {
+    pub(super) fn numbers<const N: usize>(&mut self) -> [f64; N] {
         std::array::from_fn(|_| self.number())
     }
 

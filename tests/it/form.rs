@@ -32,7 +32,7 @@ fn rebuilt(part: &Part) -> Part {
 }
 
 /// A solid by which a part shows.
-fn shown(part: Part) -> Solid {
+pub(super) fn shown(part: Part) -> Solid {
     let ball = Solid::sphere(1.0);
     match part {
         Part::Solid(solid) => solid,

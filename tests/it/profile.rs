@@ -299,7 +299,7 @@ fn what_is_wrong_is_said() {
         text(Profile::rounded_rectangle(DVec2::ONE, 0.6).extrude(1.0)).contains("radius is 0.6, allowed: 0 to 0.5")
     );
     let bow = Profile::polygon([[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]]);
-    assert!(text(bow.revolve()).contains("polygon: where edge 0 of contour 0 meets edge 2 of contour 0, at (1, 1)"));
+    assert!(text(bow.revolve()).contains("polygon: where edge 0 of contour 0 crosses edge 2 of contour 0, at (1, 1)"));
 }
 
 /// The slope of a cut through the edge of an end face: where the surface is along rays from

@@ -9,7 +9,7 @@ use rvachev::{
     rad,
 };
 
-use crate::support::{Random, corpus, near, near_point, random_solid, value};
+use crate::support::{Random, corpus, frame_of, near, near_point, random_solid, value};
 
 /// The distances at which a ray enters and leaves a sphere about the origin.
 fn sphere_hits(origin: DVec3, direction: DVec3, radius: f64) -> Option<(f64, f64)> {
@@ -416,4 +416,65 @@ fn a_joint_is_inside_and_no_surface() {
     assert!(plugged.contains([3.0, 0.0, 1.0]).unwrap() && !plugged.contains([3.0, 0.0, 5.0]).unwrap());
     let profile = Profile::rectangle([4.0, 4.0]) | Profile::rectangle([4.0, 4.0]).translate([4.0, 0.0]);
     assert!(profile.extrude(2.0).contains([2.0, 0.5, 0.3]).unwrap());
+}
+
+/// Solids of every kind, and lengths of them.
+fn whole_catalogue() -> Vec<(String, Solid)> {
+    let mut all = Vec::new();
+    for entry in rvachev::catalogue() {
+        let solid = crate::form::shown(entry.example());
+        let cut = Solid::cuboid([4.0, 4.0, 4.0]);
+        let Ok(bounds) = solid.bounds() else { continue };
+        let solid = if bounds.is_finite() { solid } else { solid & cut };
+        let size = solid.bounds().unwrap().longest_side();
+        if !(1e-2..1e3).contains(&size) {
+            continue;
+        }
+        all.push((format!("{} moved out", entry.name()), solid.offset(0.05 * size)));
+        all.push((format!("shell of {}", entry.name()), solid.shell(0.02 * size)));
+        all.push((entry.name().to_owned(), solid));
+    }
+    all
+}
+
+#[test]
+fn gradients_are_slopes_of_values_and_many_values_are_those_of_one() {
+    let mut random = Random::new(11);
+    let (mut smooth, mut wrong) = (0, Vec::new());
+    for (name, solid) in whole_catalogue() {
+        let frame = frame_of(&solid);
+        let size = frame.longest_side();
+        let around = Bounds::from_center(frame.center(), 0.8 * frame.size() + 0.2 * size);
+        // Corners of boxes are where creases meet.
+        let points: Vec<DVec3> = (0..60).map(|_| random.point_in(&around)).collect();
+        let (values, gradients) = (solid.values(&points).unwrap(), solid.gradients(&points).unwrap());
+        let simple = solid.simplified();
+        for ((p, many), gradient) in points.iter().zip(values).zip(gradients) {
+            let value = solid.value(*p).unwrap();
+            let slack = 1e-9 * (size + value.abs()) * (1.0 + gradient.length().min(1e3));
+            if (many - value).abs() > slack {
+                wrong.push(format!("{name} at {p}: {value}, among others {many}"));
+            }
+            let simpler = simple.value(*p).unwrap();
+            if (simpler - value).abs() > slack {
+                wrong.push(format!("{name} at {p}: {value}, simplified {simpler}"));
+            }
+            let slopes = |h: f64| {
+                DVec3::from_array([DVec3::X, DVec3::Y, DVec3::Z].map(|axis| {
+                    let [above, below] = [h, -h].map(|h| solid.value(*p + h * axis).unwrap());
+                    (above - below) / (2.0 * h)
+                }))
+            };
+            let (near, far) = (slopes(2e-5 * size), slopes(5e-5 * size));
+            // Where these differ there is a kink.
+            if near.distance(far) < 1e-3 * (1.0 + near.length()) {
+                smooth += 1;
+                if gradient.distance(near) > 1e-2 * (1.0 + near.length()) {
+                    wrong.push(format!("{name} at {p}: slopes {near}, told {gradient}"));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{} wrong of {smooth}:\n{}", wrong.len(), wrong[..wrong.len().min(40)].join("\n"));
+    assert!(smooth > 10_000, "{smooth}");
 }

@@ -239,3 +239,24 @@ fn thin_places_are_told_with_their_sizes() {
     let none = solid.thin_features(&MeshSettings { bounds, ..settings }, &Run::default()).unwrap();
     assert!(none.is_empty() && none == ThinReport::default());
 }
+
+#[test]
+fn what_is_cut_off_or_empty_is_told_with_the_remedy() {
+    let needle = Solid::superellipsoid([0.5, 0.5, 50.0], 1.0, 1.0);
+    let mesh = needle.mesh(&MeshSettings::default()).unwrap();
+    assert!(mesh.bounds().max.z < 45.0);
+    let warnings = mesh.warnings();
+    let told = |warnings: &[String]| {
+        let first = warnings.first().map_or("", |text| text);
+        first.contains("thinner than a cell (0.") && first.contains("mesh with smaller cells or `ThinFeatures::Refine`")
+    };
+    assert!(told(&warnings), "{warnings:?}");
+    let mesh = Solid::cuboid([10.0, 10.0, 0.0025]).mesh(&MeshSettings::default()).unwrap();
+    let warnings = mesh.warnings();
+    assert!(mesh.triangles().is_empty() && told(&warnings), "{warnings:?}");
+    assert!(warnings[0].starts_with("the mesh is empty"), "{warnings:?}");
+    // A report of what is lost names the size of the cells.
+    let settings = MeshSettings { thin: ThinFeatures::Count, ..MeshSettings::default() };
+    let warnings = Solid::cuboid([10.0, 10.0, 0.05]).mesh(&settings).unwrap().warnings();
+    assert!(warnings.iter().any(|text| text.contains("cells of half the thickness show it")), "{warnings:?}");
+}

@@ -16,6 +16,7 @@ use crate::kernel::{Element, Formula, Visit, run};
 use crate::{Bounds, Dual, Interval, Real};
 #[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
+use rvachev_num::{Cancelled, Run};
 
 /// A chunk of points to run a kernel over; all slices are of one length, a multiple of
 /// [`CHUNK`](crate::kernel::CHUNK), or of the widest vectors for a field that
@@ -37,6 +38,10 @@ pub trait AnyField: Any + Debug + Send + Sync {
     /// same.
     fn signature(&self) -> String {
         text(&self)
+    }
+    /// Works out what takes long, before the first question.
+    fn prepare(&self, _run: &Run) -> Result<(), Cancelled> {
+        Ok(())
     }
     /// The box of the shape after a map.
     fn bounds_under(&self, map: &DAffine3) -> Bounds;
@@ -260,6 +265,10 @@ impl<F: Field, V: Visit<3, 4>> Kernel<F> for EachGradient<'_, V> {
 impl<F: Field> AnyField for F {
     fn name(&self) -> &'static str {
         Field::name(self)
+    }
+
+    fn prepare(&self, run: &Run) -> Result<(), Cancelled> {
+        Field::prepare(self, run)
     }
 
     fn bounds_under(&self, map: &DAffine3) -> Bounds {

@@ -7,6 +7,7 @@ use glam::{DAffine3, DVec3};
 use super::ParamError;
 use super::outlined::Outlined;
 use crate::{Bounds, Dual, Interval, Real};
+use rvachev_num::{Cancelled, Run};
 
 /// A leaf: a formula that is positive inside a shape, zero on its surface and negative
 /// outside.
@@ -61,6 +62,16 @@ use crate::{Bounds, Dual, Interval, Real};
 pub trait Field: Debug + Send + Sync + 'static {
     /// What errors and [`owner`](../struct.Solid.html#method.owner) call this leaf.
     fn name(&self) -> &'static str;
+
+    /// Works out what takes long, and keeps it with the leaf: called once when a solid is compiled, before all else. What
+    /// takes more than a tenth of a second asks `run` now and then whether to go on, and tells it how far it has come.
+    /// Whoever asks the leaf itself may do so without. Default: there is nothing to work out.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `run` was.
+    fn prepare(&self, _run: &Run) -> Result<(), Cancelled> {
+        Ok(())
+    }
 
     /// The formula at a point of the leaf's own frame.
     fn eval<R: Real>(&self, p: [R; 3]) -> R;

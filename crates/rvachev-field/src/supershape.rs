@@ -27,7 +27,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 
@@ -35,6 +35,7 @@ use super::gielis::{Polar, Winding};
 use super::outline::Outline;
 use super::{Case, Field, Gielis, Kernel, ParamError, Radius, Turns, check};
 use crate::{Bounds, Euclid, Interval, Real};
+use rvachev_num::{Cancelled, Run};
 
 /// A supershape about the origin, valued `f = r_in·(1 − G)` in length units, where `r_in` is
 /// the radius of a sphere about the origin inside it.
@@ -93,7 +94,7 @@ use crate::{Bounds, Euclid, Interval, Real};
 /// assert!(star.gauge(p) < 1.0 && core.gauge(p) > 1.0);
 /// # Ok::<(), rvachev::SolidError>(())
 /// ```
-#[derive(Clone, PartialEq)]
+#[derive(Clone)]
 pub struct Supershape {
     equator: Gielis,
     meridian: Gielis,
@@ -101,10 +102,9 @@ pub struct Supershape {
     radius: Radius,
     winding: Winding,
     inverse: DVec3,
-    inscribed: f64,
-    bounds: Bounds,
-    /// Those of the equator and of the meridian; none if a parameter is out of its range.
-    outlines: Option<Arc<[Outline; 2]>>,
+    /// Those of the equator and of the meridian, when they are first asked for; none if a parameter is out of its
+    /// range.
+    outlines: Arc<OnceLock<Option<[Outline; 2]>>>,
 }
 
 impl Supershape {
@@ -118,40 +118,40 @@ impl Supershape {
     /// The same with semi-axes `scale` and a choice of radius.
     #[must_use]
     pub fn with(equator: Gielis, meridian: Gielis, scale: impl Into<DVec3>, radius: Radius) -> Supershape {
-        let mut shape = Supershape {
-            equator,
-            meridian,
-            scale: DVec3::ONE,
-            radius,
-            winding: equator.winding(),
-            inverse: DVec3::ONE,
-            inscribed: f64::NAN,
-            bounds: Bounds::ALL,
-            outlines: None,
-        };
-        if shape.check().is_ok() {
-            let outlines = [Outline::new(equator, radius, PI), Outline::new(meridian, radius, FRAC_PI_2)];
-            shape.outlines = Some(Arc::new(outlines));
-        }
-        shape.scaled(scale)
+        let scale = scale.into();
+        let (winding, outlines) = (equator.winding(), Arc::default());
+        Supershape { equator, meridian, scale, radius, winding, inverse: scale.recip(), outlines }
     }
 
     /// The supershape with semi-axes `scale` in place of 1.
     #[must_use]
     pub fn scaled(&self, scale: impl Into<DVec3>) -> Supershape {
         let scale = scale.into();
-        let mut shape = Supershape { scale, inverse: scale.recip(), ..self.clone() };
-        if let Some([equator, meridian]) = self.outlines.as_deref() {
-            // The meridian reaches farthest from the axis and along it at different angles.
-            let (across, along) = (meridian.x().hi(), meridian.y().hi());
-            let high = DVec3::new(equator.x().hi() * across, equator.y().hi() * across, along);
-            let low = DVec3::new(equator.x().lo() * across, -high.y, -high.z);
-            let ends = (scale * low, scale * high);
-            let rounding = 1e-14 * (ends.1 - ends.0);
-            shape.bounds = Bounds::new(ends.0 - rounding, ends.1 + rounding);
-            shape.inscribed = scale.min_element() * meridian.radius().lo() * equator.radius().lo().min(1.0);
+        Supershape { scale, inverse: scale.recip(), ..self.clone() }
+    }
+
+    /// Outlines take milliseconds, so that they wait until the shape is used.
+    fn outlines(&self) -> Option<&[Outline; 2]> {
+        let Supershape { equator, meridian, radius, .. } = *self;
+        let both = || [Outline::new(equator, radius, PI), Outline::new(meridian, radius, FRAC_PI_2)];
+        self.outlines.get_or_init(|| self.check_curves().is_ok().then(both)).as_ref()
+    }
+
+    /// The radius of a sphere about the origin inside the shape.
+    fn inscribed(&self) -> f64 {
+        self.outlines().map_or(f64::NAN, |[equator, meridian]| {
+            self.scale.min_element() * meridian.radius().lo() * equator.radius().lo().min(1.0)
+        })
+    }
+
+    fn check_curves(&self) -> Result<(), ParamError> {
+        self.equator.check("equator", self.radius)?;
+        self.meridian.check("meridian", self.radius)?;
+        if self.meridian.turns != Turns::Principal {
+            let turns = f64::from(self.meridian.closing_turns().unwrap_or(1));
+            return Err(ParamError::new("meridian.turns", turns, "1: a meridian is a part of the first turn"));
         }
-        shape
+        Ok(())
     }
 
     /// The supershape with the rational radius.
@@ -208,7 +208,7 @@ impl Supershape {
     pub fn radial_distance(&self, p: impl Into<DVec3>) -> f64 {
         let p = p.into();
         let gauge = self.gauge(p);
-        if gauge == 0.0 { -self.inscribed } else { p.length() * (1.0 - 1.0 / gauge) }
+        if gauge == 0.0 { -self.inscribed() } else { p.length() * (1.0 - 1.0 / gauge) }
     }
 
     #[inline(always)]
@@ -221,7 +221,7 @@ impl Supershape {
 
     #[inline(always)]
     fn case<const RATIONAL: bool, const MANY: bool>(&self) -> Curves<RATIONAL, MANY> {
-        let Supershape { inverse, inscribed, .. } = *self;
+        let (inverse, inscribed) = (self.inverse, self.inscribed());
         let winding = if MANY { self.winding.by_turns() } else { Winding::Once };
         let seam = !MANY && std::hint::black_box(false);
         let equator = Polar { curve: self.equator, winding, seam };
@@ -233,6 +233,13 @@ impl Supershape {
     fn scaled_down(&self, region: [Interval; 3]) -> [Interval; 3] {
         let [x, y, z] = region;
         [x * self.inverse.x, y * self.inverse.y, z * self.inverse.z]
+    }
+}
+
+impl PartialEq for Supershape {
+    fn eq(&self, other: &Supershape) -> bool {
+        let parameters = |shape: &Supershape| (shape.equator, shape.meridian, shape.scale, shape.radius);
+        parameters(self) == parameters(other)
     }
 }
 
@@ -272,41 +279,50 @@ impl Field for Supershape {
 
     #[inline(always)]
     fn eval<R: Real>(&self, p: [R; 3]) -> R {
-        self.gauge_of(p).scale_add(-self.inscribed, p[0].lift(self.inscribed))
+        let inscribed = self.inscribed();
+        self.gauge_of(p).scale_add(-inscribed, p[0].lift(inscribed))
+    }
+
+    fn prepare(&self, run: &Run) -> Result<(), Cancelled> {
+        run.check()?;
+        self.outlines();
+        Ok(())
     }
 
     fn bounds(&self) -> Bounds {
-        self.bounds
+        let Some([equator, meridian]) = self.outlines() else { return Bounds::ALL };
+        // The meridian reaches farthest from the axis and along it at different angles.
+        let (across, along) = (meridian.x().hi(), meridian.y().hi());
+        let high = DVec3::new(equator.x().hi() * across, equator.y().hi() * across, along);
+        let low = DVec3::new(equator.x().lo() * across, -high.y, -high.z);
+        let ends = (self.scale * low, self.scale * high);
+        let rounding = 1e-14 * (ends.1 - ends.0);
+        Bounds::new(ends.0 - rounding, ends.1 + rounding)
     }
 
     fn check(&self) -> Result<(), ParamError> {
-        self.equator.check("equator", self.radius)?;
-        self.meridian.check("meridian", self.radius)?;
-        if self.meridian.turns != Turns::Principal {
-            let turns = f64::from(self.meridian.closing_turns().unwrap_or(1));
-            return Err(ParamError::new("meridian.turns", turns, "1: a meridian is a part of the first turn"));
-        }
+        self.check_curves()?;
         check::lengths("scale", self.scale)
     }
 
     fn gauge_radius(&self) -> Option<f64> {
-        Some(self.inscribed)
+        Some(self.inscribed())
     }
 
     fn range(&self, region: [Interval; 3]) -> Interval {
         let [x, y, z] = self.scaled_down(region);
-        let Some([equator, meridian]) = self.outlines.as_deref() else { return Interval::ALL };
+        let Some([equator, meridian]) = self.outlines() else { return Interval::ALL };
         if !(x.magnitude() + y.magnitude() + z.magnitude()).is_finite() {
             return Interval::ALL;
         }
         let u = equator.gauge(x, y.abs());
         let gauge = meridian.gauge(u, z.abs());
-        -gauge * self.inscribed + self.inscribed
+        -gauge * self.inscribed() + self.inscribed()
     }
 
     fn slopes(&self, region: [Interval; 3]) -> [Interval; 3] {
         let [x, y, z] = self.scaled_down(region);
-        let Some([equator, meridian]) = self.outlines.as_deref() else { return [Interval::ALL; 3] };
+        let Some([equator, meridian]) = self.outlines() else { return [Interval::ALL; 3] };
         if !(x.magnitude() + y.magnitude() + z.magnitude()).is_finite() {
             return [Interval::ALL; 3];
         }
@@ -316,7 +332,7 @@ impl Field for Supershape {
         let mirrored = |slope: Interval, of: Interval| {
             if of.contains(0.0) { slope.hull(-slope) } else { of.select(slope, -slope) }
         };
-        let scale = self.inverse * -self.inscribed;
+        let scale = self.inverse * -self.inscribed();
         [by_u * by_x * scale.x, by_u * mirrored(by_y, y) * scale.y, mirrored(by_z, z) * scale.z]
     }
 
@@ -333,6 +349,7 @@ impl Field for Supershape {
 
     fn roundoff(&self, reach: f64) -> f64 {
         let relative = self.equator.roundoff() + self.meridian.roundoff();
-        relative * self.bounds.min.abs().max(self.bounds.max).length().min(reach)
+        let bounds = Field::bounds(self);
+        relative * bounds.min.abs().max(bounds.max).length().min(reach)
     }
 }

@@ -35,10 +35,14 @@ impl Mesh {
     ///
     /// # Errors
     ///
-    /// [`MeshError::Normals`] if their number is not that of the vertices.
+    /// [`MeshError::Normals`] if their number is not that of the vertices, and [`MeshError::Normal`] if one of
+    /// them is NaN or infinite.
     pub fn with_normals(mut self, normals: Vec<Vec3>) -> Result<Mesh, MeshError> {
         if normals.len() != self.positions.len() {
             return Err(MeshError::Normals { normals: normals.len(), vertices: self.positions.len() });
+        }
+        if let Some(vertex) = normals.iter().position(|normal| !normal.is_finite()) {
+            return Err(MeshError::Normal { vertex });
         }
         // Corners keep the normals that they have.
         let _ = self.corner_normals();
@@ -204,5 +208,7 @@ mod tests {
         assert_eq!(error.to_string(), "the texture coordinate at corner 1 of triangle 0 is not finite");
         let error = triangle().with_corner_normals(vec![[Vec3::Z, Vec3::Z, Vec3::INFINITY]]).unwrap_err();
         assert_eq!(error, MeshError::NotFinite { what: "normal", triangle: 0, corner: 2 });
+        let error = triangle().with_normals(vec![Vec3::Z, Vec3::NAN, Vec3::Z]).unwrap_err();
+        assert_eq!(error.to_string(), "the normal of vertex 1 is not finite");
     }
 }

@@ -32,14 +32,15 @@ use crate::{Cancelled, Plane, PlaneBounds, Run, Solid};
 const MARGIN: f64 = 0.013;
 const ASIDE: f64 = 0.4876;
 
-/// Squares are not smaller than this part of the first.
-const SMALLEST: f64 = 1e-8;
+/// The finest tolerance, in longer sides of the region.
+const FINEST: f64 = 1e-8;
 
 /// What contours shall be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct ContourSettings {
-    /// How far contours may deviate from the surface, in length units, above 0. Default: 0.001.
+    /// How far contours may deviate from the surface, in length units, above 0. One below 10⁻⁸ of the longer side of
+    /// the region counts as that. Default: 0.001.
     pub tolerance: f64,
     /// What counts where a face of the solid lies in the plane. Default: [`Side::Above`].
     pub side: Side,
@@ -140,14 +141,14 @@ fn stack(
         return Err(setting("tolerance", tolerance, "finite and above 0"));
     }
     let size = (region.max - region.min).max_element();
+    let tolerance = tolerance.max(FINEST * size);
     let root = Root { low: region.min - DVec2::splat(MARGIN * ASIDE * size), side: (1.0 + MARGIN) * size };
     let sections: Vec<Section> =
         heights.iter().map(|height| Section::new(&plane.moved_by(*height), side, region)).collect();
-    let finest = tolerance.max(SMALLEST * root.side);
     let [to_divide, to_join] = run.stages([0.7, 0.3]);
     let whole = Filling::Program(program.clone());
     let made: Result<Vec<Contours>, Cancelled> = run.install(|| {
-        let found = Tree::new(&sections, heights, root, finest, &to_divide).found(program)?;
+        let found = Tree::new(&sections, heights, root, tolerance, &to_divide).found(program)?;
         let contours = |(section, found)| {
             let chains = Chains { section, root: &root, found, whole: &whole, tolerance };
             let (lines, unresolved) = chains.contours(&to_join)?;

@@ -34,7 +34,7 @@ built_in!(
 
     /// A polygon with holes and islands, by its contours.
     polygon: Polygon as leaf {
-        /// Lists of points, each closed by itself; they neither cross nor touch.
+        /// Lists of points, each closed by itself; edges do not cross.
         contours: Vec<Vec<DVec2>> = leaf.contours().to_vec(), Length, Range::FINITE, example vec![
             vec![DVec2::ZERO, DVec2::new(4.0, 0.0), DVec2::new(4.0, 3.0), DVec2::new(0.0, 3.0)],
             vec![DVec2::ONE, DVec2::new(3.0, 1.0), DVec2::new(2.0, 2.0)],

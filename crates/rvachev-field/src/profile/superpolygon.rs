@@ -10,7 +10,7 @@
 
 use std::f64::consts::PI;
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::{DVec2, DVec3};
 
@@ -18,6 +18,7 @@ use super::super::gielis::{Polar, Winding};
 use super::super::outline::Outline;
 use super::super::{Case, Field, Gielis, Kernel, ParamError, Radius, check};
 use crate::{Bounds, Euclid, Interval, OfOne, Real};
+use rvachev_num::{Cancelled, Run};
 
 /// What is within a [`Gielis`] curve, valued `f = r_in·(1 − G)` in length units: the gauge is
 /// `G = √(x² + y²)/(radius·r(θ))` and `r_in` the radius of a circle about the origin inside.
@@ -43,15 +44,20 @@ use crate::{Bounds, Euclid, Interval, OfOne, Real};
 /// assert!(!star.contains(DVec2::new(-2.9, 0.0))?);
 /// # Ok::<(), rvachev::SolidError>(())
 /// ```
-#[derive(Clone, PartialEq)]
+#[derive(Clone)]
 pub struct Superpolygon {
     curve: Gielis,
     radius: f64,
     winding: Winding,
     inverse: f64,
-    inscribed: f64,
-    bounds: Bounds,
-    outline: Option<Arc<Outline>>,
+    /// When it is first asked for; none if a parameter is out of its range.
+    outline: Arc<OnceLock<Option<Outline>>>,
+}
+
+impl PartialEq for Superpolygon {
+    fn eq(&self, other: &Superpolygon) -> bool {
+        (self.curve, self.radius) == (other.curve, other.radius)
+    }
 }
 
 impl fmt::Debug for Superpolygon {
@@ -65,25 +71,18 @@ impl Superpolygon {
     /// compiled.
     #[must_use]
     pub fn new(curve: Gielis, radius: f64) -> Superpolygon {
-        let mut shape = Superpolygon {
-            curve,
-            radius,
-            winding: curve.winding(),
-            inverse: 1.0 / radius,
-            inscribed: f64::NAN,
-            bounds: Bounds::ALL,
-            outline: None,
-        };
-        if shape.check().is_ok() {
-            let outline = Outline::new(curve, Radius::Standard, PI);
-            shape.inscribed = radius * outline.radius().lo();
-            let (x, y) = (outline.x() * radius, outline.y() * radius);
-            let side = y.hi() * (1.0 + 1e-14);
-            shape.bounds =
-                Bounds::new(DVec3::new(x.lo(), -side, f64::NEG_INFINITY), DVec3::new(x.hi(), side, f64::INFINITY));
-            shape.outline = Some(Arc::new(outline));
-        }
-        shape
+        Superpolygon { curve, radius, winding: curve.winding(), inverse: 1.0 / radius, outline: Arc::default() }
+    }
+
+    /// The outline takes milliseconds, so that it waits until the shape is used.
+    fn outline(&self) -> Option<&Outline> {
+        let outline = || Outline::new(self.curve, Radius::Standard, PI);
+        self.outline.get_or_init(|| self.curve.check("curve", Radius::Standard).is_ok().then(outline)).as_ref()
+    }
+
+    /// The radius of a circle about the origin inside the shape.
+    fn inscribed(&self) -> f64 {
+        self.outline().map_or(f64::NAN, |outline| self.radius * outline.radius().lo())
     }
 
     /// The curve.
@@ -133,11 +132,21 @@ impl Field for Superpolygon {
 
     #[inline(always)]
     fn eval<R: Real>(&self, [x, y, _]: [R; 3]) -> R {
-        self.gauge_of(x, y).scale_add(-self.inscribed, x.lift(self.inscribed))
+        let inscribed = self.inscribed();
+        self.gauge_of(x, y).scale_add(-inscribed, x.lift(inscribed))
+    }
+
+    fn prepare(&self, run: &Run) -> Result<(), Cancelled> {
+        run.check()?;
+        self.outline();
+        Ok(())
     }
 
     fn bounds(&self) -> Bounds {
-        self.bounds
+        let Some(outline) = self.outline() else { return Bounds::ALL };
+        let (x, y) = (outline.x() * self.radius, outline.y() * self.radius);
+        let side = y.hi() * (1.0 + 1e-14);
+        Bounds::new(DVec3::new(x.lo(), -side, f64::NEG_INFINITY), DVec3::new(x.hi(), side, f64::INFINITY))
     }
 
     fn check(&self) -> Result<(), ParamError> {
@@ -146,14 +155,14 @@ impl Field for Superpolygon {
     }
 
     fn gauge_radius(&self) -> Option<f64> {
-        Some(self.inscribed)
+        Some(self.inscribed())
     }
 
     fn range(&self, [x, y, _]: [Interval; 3]) -> Interval {
         let (x, y) = (x * self.inverse, y * self.inverse);
-        match self.outline.as_deref() {
+        match self.outline() {
             Some(outline) if (x.magnitude() + y.magnitude()).is_finite() => {
-                -outline.gauge(x, y.abs()) * self.inscribed + self.inscribed
+                -outline.gauge(x, y.abs()) * self.inscribed() + self.inscribed()
             }
             _ => Interval::ALL,
         }
@@ -161,12 +170,12 @@ impl Field for Superpolygon {
 
     fn slopes(&self, [x, y, _]: [Interval; 3]) -> [Interval; 3] {
         let (x, y) = (x * self.inverse, y * self.inverse);
-        match self.outline.as_deref() {
+        match self.outline() {
             Some(outline) if (x.magnitude() + y.magnitude()).is_finite() => {
                 let [by_x, by_y] = outline.gradient(x, y.abs());
                 // The outline knows one half of the plane, the other is its mirror image.
                 let by_y = if y.contains(0.0) { by_y.hull(-by_y) } else { y.select(by_y, -by_y) };
-                let scale = -self.inverse * self.inscribed;
+                let scale = -self.inverse * self.inscribed();
                 [by_x * scale, by_y * scale, Interval::point(0.0)]
             }
             _ => [Interval::ALL; 3],
@@ -176,7 +185,8 @@ impl Field for Superpolygon {
     #[inline(always)]
     fn specialised<K: Kernel<Self>>(&self, kernel: K) {
         // One turn needs no loop over turns.
-        let Superpolygon { curve, winding, inverse, inscribed, .. } = *self;
+        let Superpolygon { curve, winding, inverse, .. } = *self;
+        let inscribed = self.inscribed();
         match winding {
             Winding::Once => {
                 kernel.run_case(&Section {
@@ -196,7 +206,7 @@ impl Field for Superpolygon {
     }
 
     fn roundoff(&self, reach: f64) -> f64 {
-        let half = self.bounds.half_extents();
+        let half = Field::bounds(self).half_extents();
         self.curve.roundoff() * half.truncate().length().min(reach)
     }
 }

@@ -12,10 +12,11 @@ mod contours;
 mod edge;
 mod near;
 mod patch;
+mod sweep;
 mod tree;
 
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::{DAffine3, DVec2};
 
@@ -27,6 +28,7 @@ use near::{NearEdges, Reference};
 use patch::Patch;
 #[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
+use rvachev_num::{Cancelled, Run};
 use tree::Tree;
 
 /// A polygon in the plane, with holes and islands, by true distance (1-Lipschitz).
@@ -43,9 +45,11 @@ use tree::Tree;
 /// point that repeats the one before it is left out, as is a last one that repeats the first). A point is inside if an odd number of
 /// contours go round it: a contour within another is a hole, one within the hole an island.
 ///
-/// Contours neither cross nor touch themselves or one another; coordinates are within ±10⁹
-/// and edges at least 10⁻⁹ long. What is wrong is found here, by exact arithmetic, and said
-/// when the profile is compiled: with the contour, the edge and the point.
+/// Contours may touch themselves and one another, at corners or along edges: what two of them have in common
+/// is no border, as between two squares side by side, or on the two ways of a bridge that leads to a hole.
+/// Edges do not cross; coordinates are within ±10⁹ and edges at least 10⁻⁹ long. What is wrong is found by
+/// exact arithmetic and said when the profile is compiled: with the contour, the edge and the point. Until
+/// then nothing is computed; n edges take some n log n steps.
 ///
 /// ```
 /// use rvachev::{Polygon, Profile};
@@ -65,6 +69,12 @@ pub struct Polygon(Arc<Shape>);
 
 struct Shape {
     contours: Vec<Vec<DVec2>>,
+    /// Worked out when it is first asked for.
+    border: OnceLock<Border>,
+}
+
+/// The edges that the even-odd rule makes of the contours; none if there is something wrong with these.
+struct Border {
     /// In the order of the tree.
     edges: Vec<Edge>,
     tree: Tree,
@@ -101,21 +111,14 @@ impl Polygon {
     }
 
     fn of_points(contours: &[Vec<DVec2>]) -> Polygon {
-        let (mut edges, error) = match contours::edges(contours) {
-            Ok(edges) => (edges, None),
-            Err(error) => (Vec::new(), Some(error)),
-        };
-        let tree = Tree::build(&mut edges, |edge| [edge.start, edge.end]);
-        let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-        for edge in &edges {
-            min = min.min(edge.start);
-            max = max.max(edge.start);
-        }
-        let mut shape = Shape { contours: contours.to_vec(), edges, tree, min, max, list: None, error };
-        if (1..=FEW_EDGES).contains(&shape.edges.len()) {
-            shape.list = Some(NearEdges::new(&shape.edges, Reference::Infinity, shape.reach()));
-        }
-        Polygon(Arc::new(shape))
+        Polygon(Arc::new(Shape { contours: contours.to_vec(), border: OnceLock::new() }))
+    }
+
+    fn border(&self) -> &Border {
+        self.0.border.get_or_init(|| {
+            let border = Border::new(&self.0.contours, &Run::default());
+            border.unwrap_or_else(|Cancelled| unreachable!("nobody has the token"))
+        })
     }
 
     /// The contours as they were given, but for points that repeat the one before them, and last ones that repeat
@@ -125,17 +128,19 @@ impl Polygon {
         &self.0.contours
     }
 
-    /// The number of edges; 0 if there is something wrong with the contours.
+    /// The number of edges of the border: those of the contours, without what two of them have in common, and parted
+    /// where corners are on them; 0 if there is something wrong with the contours.
     #[must_use]
     pub fn edge_count(&self) -> usize {
-        self.0.edges.len()
+        self.border().edges.len()
     }
 
     /// The area, holes left out; 0 if there is something wrong with the contours.
     #[must_use]
     pub fn area(&self) -> f64 {
-        let centre = 0.5 * (self.0.min + self.0.max);
-        let twice: f64 = self.0.edges.iter().map(|e| (e.start - centre).perp_dot(e.end - centre)).sum();
+        let Border { edges, min, max, .. } = self.border();
+        let centre = 0.5 * (*min + *max);
+        let twice: f64 = edges.iter().map(|e| (e.start - centre).perp_dot(e.end - centre)).sum();
         0.5 * twice
     }
 
@@ -143,19 +148,21 @@ impl Polygon {
     ///
     /// # Errors
     /// A contour with fewer than 3 points, a coordinate that is not a number, an edge that is
-    /// too short, or a place where edges cross or touch.
+    /// too short, a place where edges cross, or contours of which the even-odd rule leaves nothing.
     pub fn check(&self) -> Result<(), ParamError> {
-        self.0.error.clone().map_or(Ok(()), Err)
+        self.border().error.clone().map_or(Ok(()), Err)
     }
 
     /// Of a polygon with x ≥ 0 and edges on x = 0, one that goes on beyond those edges: the
     /// same to its right, with no border on the axis. (From there no distance is shorter than
     /// before: what is added begins at ends of other edges and leads away.)
     pub fn across_axis(&self) -> Option<Polygon> {
-        let beyond = -self.0.max.x;
-        if self.0.min.x != 0.0 || self.0.error.is_some() {
+        let of_points =
+            |pick: fn(f64, f64) -> f64, from| self.0.contours.iter().flatten().map(|p| p.x).fold(from, pick);
+        if of_points(f64::min, f64::INFINITY) != 0.0 {
             return None;
         }
+        let beyond = -of_points(f64::max, 0.0);
         let mut found = false;
         let extended = self.0.contours.iter().map(|contour| {
             let count = contour.len();
@@ -175,7 +182,7 @@ impl Polygon {
             points
         });
         let extended: Vec<Vec<DVec2>> = extended.collect();
-        found.then(|| Polygon::of_points(&extended))
+        (found && self.check().is_ok()).then(|| Polygon::of_points(&extended))
     }
 
     /// The leaf for a solid.
@@ -186,11 +193,31 @@ impl Polygon {
 
 impl fmt::Debug for Polygon {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Polygon({} contours, {} edges)", self.0.contours.len(), self.0.edges.len())
+        let points: usize = self.0.contours.iter().map(Vec::len).sum();
+        write!(f, "Polygon({} contours, {points} points)", self.0.contours.len())
     }
 }
 
-impl Shape {
+impl Border {
+    fn new(contours: &[Vec<DVec2>], run: &Run) -> Result<Border, Cancelled> {
+        let (mut edges, error) = match contours::edges(contours, run)? {
+            Ok(edges) => (edges, None),
+            Err(error) => (Vec::new(), Some(error)),
+        };
+        run.check()?;
+        let tree = Tree::build(&mut edges, |edge| [edge.start, edge.end]);
+        let (mut min, mut max) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for edge in &edges {
+            min = min.min(edge.start);
+            max = max.max(edge.start);
+        }
+        let mut border = Border { edges, tree, min, max, list: None, error };
+        if (1..=FEW_EDGES).contains(&border.edges.len()) {
+            border.list = Some(NearEdges::new(&border.edges, Reference::Infinity, border.reach()));
+        }
+        Ok(border)
+    }
+
     /// The largest coordinate.
     fn reach(&self) -> f64 {
         self.min.abs().max(self.max.abs()).max_element()
@@ -299,7 +326,7 @@ impl AnyField for Polygon {
     fn bounds_under(&self, map: &DAffine3) -> Bounds {
         let m = map.matrix3;
         let mut bounds = Bounds::EMPTY;
-        for edge in &self.0.edges {
+        for edge in &self.border().edges {
             let p = map.transform_point3(edge.start.extend(0.0));
             bounds = bounds.union(&Bounds::new(p, p));
         }
@@ -312,24 +339,31 @@ impl AnyField for Polygon {
         bounds
     }
 
+    fn prepare(&self, run: &Run) -> Result<(), Cancelled> {
+        if self.0.border.get().is_none() {
+            let _ = self.0.border.set(Border::new(&self.0.contours, run)?);
+        }
+        Ok(())
+    }
+
     fn check(&self) -> Result<(), ParamError> {
         Polygon::check(self)
     }
 
     fn roundoff(&self, reach: f64) -> f64 {
-        4e-6 * self.0.reach().min(reach)
+        4e-6 * self.border().reach().min(reach)
     }
 
     fn value(&self, [x, y, _]: [f64; 3]) -> f64 {
-        self.0.value(DVec2::new(x, y))
+        self.border().value(DVec2::new(x, y))
     }
 
     fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64> {
-        self.0.dual(p, &mut 0)
+        self.border().dual(p, &mut 0)
     }
 
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
-        near::unit_slopes(self.0.over(Patch::of_box(p[0].value(), p[1].value())), p)
+        near::unit_slopes(self.border().over(Patch::of_box(p[0].value(), p[1].value())), p)
     }
 
     fn exact(&self) -> bool {
@@ -345,50 +379,50 @@ impl AnyField for Polygon {
     }
 
     fn range(&self, zone: &Zone) -> Interval {
-        self.0.over(Patch::of_zone(zone))
+        self.border().over(Patch::of_zone(zone))
     }
 
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
-        let near = Patch::of_zone(zone).and_then(|patch| self.0.near(&patch));
+        let near = Patch::of_zone(zone).and_then(|patch| self.border().near(&patch));
         near.map_or(0, |edges| near::rises(&edges, ways))
     }
 
     fn narrowed(&self, zone: &Zone) -> Option<Arc<dyn AnyField>> {
         let patch = Patch::of_zone(zone)?;
-        let edges = self.0.near(&patch)?;
-        if edges.is_empty() || edges.len() > FEW_EDGES || edges.len() == self.0.edges.len() {
+        let edges = self.border().near(&patch)?;
+        if edges.is_empty() || edges.len() > FEW_EDGES || edges.len() == self.border().edges.len() {
             return None;
         }
-        let leaf = NearEdges::over_patch(&patch, &edges, self.0.reach(), |p| self.0.value(p))?;
+        let leaf = NearEdges::over_patch(&patch, &edges, self.border().reach(), |p| self.border().value(p))?;
         Some(Arc::new(leaf))
     }
 
     #[cfg(feature = "formula")]
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a> {
-        NearEdges::symbol_of(&self.0.edges, p)
+        NearEdges::symbol_of(&self.border().edges, p)
     }
 
     fn lanes32(&self, chunk: Chunk<'_, f32, 1>) {
-        match &self.0.list {
+        match &self.border().list {
             Some(list) => list.lanes32(chunk),
-            None => self.0.values(chunk),
+            None => self.border().values(chunk),
         }
     }
 
     fn lanes64(&self, chunk: Chunk<'_, f64, 1>) {
-        match &self.0.list {
+        match &self.border().list {
             Some(list) => list.lanes64(chunk),
-            None => self.0.values(chunk),
+            None => self.border().values(chunk),
         }
     }
 
     fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
-        if let Some(list) = &self.0.list {
+        if let Some(list) = &self.border().list {
             return list.gradients(chunk);
         }
         let placement = *chunk.placement;
-        self.0.each(chunk, |p, guess| {
-            let value = self.0.dual(placement.apply(Dual::point(p)), guess);
+        self.border().each(chunk, |p, guess| {
+            let value = self.border().dual(placement.apply(Dual::point(p)), guess);
             let [x, y, z] = value.gradient().map(|slope| slope * placement.scale);
             [placement.finish(value.value()), x, y, z]
         });

@@ -195,18 +195,144 @@ fn what_is_wrong_is_said_with_its_place() {
     assert!(text.starts_with("contour 0, point 1, x is NaN"), "{text}");
     let text = error(&[&[[0.0, 0.0], [1.0, 0.0], [1.0, 1e-10], [0.0, 1.0]]]);
     assert!(text.starts_with("length of edge 1 of contour 0, at (1, 0), is 0.0000000001, allowed"), "{text}");
-    // A bow tie, a spike, a corner on an edge, contours that touch, cross, or are the same.
+    // A bow tie, contours that cross, and such as leave nothing.
     let text = error(&[&[[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]]]);
-    assert!(text.starts_with("where edge 0 of contour 0 meets edge 2 of contour 0, at (1, 1), the dist"), "{text}");
-    let text = error(&[&[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0], [1.0, 2.0]]]);
-    assert!(text.starts_with("where edge 0 of contour 0 meets edge 1 of contour 0"), "{text}");
-    let text = error(&[&[[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [2.0, 0.0]]]);
-    assert!(text.contains("edge 0 of contour 0 meets edge 2 of contour 0, at (2, 0)"), "{text}");
-    let text = error(&[&square, &[[4.0, 1.0], [6.0, 2.0], [4.0, 3.0]]]);
-    assert!(text.contains("edge 1 of contour 0 meets edge 2 of contour 1, at (4, 3)"), "{text}");
+    assert!(text.starts_with("where edge 0 of contour 0 crosses edge 2 of contour 0, at (1, 1), the dist"), "{text}");
     let text = error(&[&square, &[[1.0, 1.0], [5.0, 2.0], [1.0, 3.0]]]);
-    assert!(text.contains("edge 1 of contour 0 meets edge 0 of contour 1, at (4, 1.75)"), "{text}");
-    assert!(error(&[&square, &square]).contains("contour 0 meets edge"));
+    assert!(text.contains("edge 1 of contour 0 crosses edge 0 of contour 1, at (4, 1.75)"), "{text}");
+    let text = error(&[&square, &square]);
+    assert!(text.starts_with("area is 0, allowed: more than 0: every edge lies on another one"), "{text}");
+    let text = error(&[&square, &[[4.0, 4.0 - 1e-10], [6.0, 3.0], [6.0, 3.5]]]);
+    assert!(text.starts_with("length of a part of edge 1 of contour 0, which a corner parts at (4, 3.99"), "{text}");
+}
+
+/// The area, and how many edges there are, of contours that touch.
+#[track_caller]
+fn touching(contours: &[&[[f64; 2]]]) -> (f64, usize) {
+    let polygon = Polygon::new(contours.iter().map(|contour| contour.iter().copied()));
+    assert_eq!(polygon.check(), Ok(()));
+    (polygon.area(), polygon.edge_count())
+}
+
+#[test]
+fn contours_may_touch() {
+    let square = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]];
+    // At a corner; a corner on an edge; a hole that touches the outline; two loops in one contour.
+    assert_eq!(touching(&[&square, &[[4.0, 4.0], [6.0, 4.0], [6.0, 6.0]]]), (18.0, 7));
+    assert_eq!(touching(&[&square, &[[4.0, 2.0], [6.0, 1.0], [6.0, 3.0]]]), (18.0, 8));
+    assert_eq!(touching(&[&square, &[[0.0, 0.0], [2.0, 1.0], [1.0, 2.0]]]), (14.5, 7));
+    let loops = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [4.0, 2.0], [4.0, 4.0], [2.0, 4.0], [2.0, 2.0], [0.0, 2.0]];
+    assert_eq!(touching(&[&loops]), (8.0, 8));
+    // Side by side, along a whole side, and along a part of one.
+    assert_eq!(touching(&[&square, &[[4.0, 0.0], [6.0, 0.0], [6.0, 4.0], [4.0, 4.0]]]), (24.0, 6));
+    assert_eq!(touching(&[&square, &[[4.0, 1.0], [6.0, 2.0], [4.0, 3.0]]]), (18.0, 7));
+    // A spike without width, and a bridge to a hole.
+    assert_eq!(touching(&[&[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0], [1.0, 2.0]]]), (1.0, 3));
+    let mut bridged = square.to_vec();
+    bridged.extend([[0.0, 0.0], [1.0, 1.0], [1.0, 3.0], [3.0, 3.0], [3.0, 1.0], [1.0, 1.0]]);
+    assert_eq!(touching(&[&bridged]), (12.0, 8));
+    let bridged = Polygon::new([bridged]);
+    // What is left of the bridge is nothing.
+    assert_eq!(value(&bridged, DVec2::new(0.5, 0.5)), 0.5);
+    assert_eq!(value(&bridged, DVec2::new(2.0, 2.5)), -0.5);
+}
+
+/// Whether two edges cross between their ends; of whole numbers, without rounding.
+fn cross([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
+    let turn = |a: DVec2, b: DVec2, c: DVec2| (b - a).perp_dot(c - a);
+    turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0
+}
+
+#[test]
+fn random_contours_on_a_grid_are_even_odd() {
+    let mut numbers = Numbers(5);
+    let (mut good, mut bad) = (0, 0);
+    for _ in 0..40_000 {
+        let grid = 3.0 + 4.0 * numbers.unit();
+        let count = 3 + (7.0 * numbers.unit()) as usize;
+        let mut contours = vec![Vec::new(); 1 + (2.0 * numbers.unit()) as usize];
+        for contour in &mut contours {
+            *contour = (0..count).map(|_| DVec2::new(grid * numbers.unit(), grid * numbers.unit()).floor()).collect();
+        }
+        let polygon = Polygon::new(contours.iter().map(|contour| contour.iter().copied()));
+        let contours = polygon.contours();
+        if contours.iter().any(|contour| contour.len() < 3) {
+            continue;
+        }
+        let edges: Vec<[DVec2; 2]> = (contours.iter())
+            .flat_map(|points| (0..points.len()).map(|i| [points[i], points[(i + 1) % points.len()]]))
+            .collect();
+        let crosses = edges.iter().any(|one| edges.iter().any(|other| cross(*one, *other)));
+        match polygon.check() {
+            Err(error) if error.parameter == "area" => {}
+            Err(_) => {
+                assert!(crosses, "{contours:?}");
+                bad += 1;
+            }
+            Ok(()) => {
+                good += 1;
+                for _ in 0..10 {
+                    let p = grid * DVec2::new(numbers.unit(), numbers.unit()) - 0.1;
+                    let (want, got) = (direct(contours, p), value(&polygon, p));
+                    assert_eq!(want > 0.0, got > 0.0, "{contours:?} at {p}");
+                    // Of the contours some edges are no border.
+                    assert!(got.abs() >= want.abs() - 1e-12, "{contours:?} at {p}: {got}, {want}");
+                }
+                // What is on the left of an edge is inside; edges cross only where they are no border.
+                let edges = &polygon.border().edges;
+                let ends = |edge: &Edge| [edge.start, edge.end];
+                assert!(!edges.iter().any(|one| edges.iter().any(|other| cross(ends(one), ends(other)))));
+                for edge in edges {
+                    let on_it = edge.start.lerp(edge.end, 0.4317);
+                    let [inner, outer] = [1e-4, -1e-4].map(|by| direct(contours, on_it + by * edge.along.perp()));
+                    assert!(inner > 0.0 && outer < 0.0, "{contours:?}: {edge:?}");
+                }
+            }
+        }
+    }
+    assert!(good > 2000 && bad > 2000, "{good} good, {bad} bad");
+}
+
+#[test]
+fn long_edges_side_by_side_are_swept() {
+    // Boxes of the edges all overlap.
+    let count = 20_000;
+    let spike = |i: usize| {
+        let radius = if i.is_multiple_of(2) { 1.0 } else { 1000.0 };
+        radius * DVec2::from_angle(std::f64::consts::TAU * i as f64 / count as f64)
+    };
+    let polygon = Polygon::new([(0..count).map(spike)]);
+    assert_eq!((polygon.check(), polygon.edge_count()), (Ok(()), count));
+    let crossed = Polygon::new([(0..count).map(|i| if i == 777 { spike(i + 4) } else { spike(i) })]);
+    assert!(crossed.check().is_err());
+}
+
+#[test]
+fn sweeping_is_cancelled_and_tells_how_far_it_is() {
+    use std::sync::{Arc, Mutex};
+    let mut numbers = Numbers(6);
+    let contour = star(&mut numbers, DVec2::ZERO, 30_000, 1.0, 9.0);
+    let polygon = Polygon::of_points(&[contour]);
+    let run = Run::default();
+    run.cancel.cancel();
+    assert_eq!(AnyField::prepare(&polygon, &run), Err(Cancelled));
+    let seen = Arc::new(Mutex::new(Vec::new()));
+    let sink = seen.clone();
+    let token = rvachev_num::CancelToken::new();
+    let (cancel, stop) = (token.clone(), token);
+    let progress = rvachev_num::Progress::new(move |fraction| {
+        sink.lock().unwrap().push(fraction);
+        if fraction > 0.5 {
+            stop.cancel();
+        }
+    });
+    assert_eq!(
+        AnyField::prepare(&polygon, &Run { cancel, progress: Some(progress), ..Run::default() }),
+        Err(Cancelled)
+    );
+    let seen = seen.lock().unwrap();
+    assert!(seen.len() > 10 && seen.last().is_some_and(|last| (0.5..0.6).contains(last)), "{seen:?}");
+    assert_eq!((polygon.check(), polygon.edge_count()), (Ok(()), 30_000));
 }
 
 #[test]
