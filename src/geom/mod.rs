@@ -5,6 +5,7 @@
 //! least be written down ([`Camera`], checked by [`Camera::check`]).
 
 mod camera;
+pub(crate) mod figures;
 mod image;
 mod mesh;
 mod plane;
