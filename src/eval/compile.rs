@@ -14,21 +14,24 @@ use super::apart::{Near, Work, measure, measured, works};
 use super::bevel::Bevel;
 use super::chamfer::Chamfer;
 use super::coat::Coat;
-use super::code::{Built, Code, bounded, conjoined, disjoined, grow, snug};
+use super::code::{Built, Code, grow, snug};
 use super::context::{Contexts, is_similarity, least_stretch};
 use super::exact::Exactness;
 use super::extent::extent;
 use super::fill::{Fill, Side, Signed};
 use super::fit::fit;
 use super::flatten::flatten;
+use super::moved_in::is_loose;
 use super::nothing::Nothing;
 use super::palette::Palette;
 use super::program::{Edge, Kind, Program};
 use super::scene::{Instance, Scene};
 use super::sides::Sides;
 use super::source::{CompileError, DistanceSource, Measured};
+use super::support::box_under;
+use super::swell::Swell;
 use crate::solid::{self, Length, Operation};
-use crate::{Blend, Bounds, Cancelled, Norm, ParamError, Run, Solid, SolidError};
+use crate::{Blend, Bounds, Cancelled, ParamError, Run, Solid, SolidError};
 use rvachev_field::Op;
 use rvachev_field::{AnyField, AnyWarp, Placement, Rule, largest_stretch};
 use rvachev_num::column_times;
@@ -65,6 +68,9 @@ impl Compiled {
         self.surface.is_even_along(axis, &part).then_some(axis)
     }
 }
+
+/// Boxes of nested nodes about which little is known are looked for no deeper than this.
+const DEEPEST: u32 = 64;
 
 /// More nodes than this are not compiled.
 const LIMIT: usize = 1 << 23;
@@ -182,7 +188,7 @@ impl<'e> Compiler<'e> {
         };
         let (field, surface) = (program(built.field), program(built.surface));
         let mut bounds = if built.sides.inside.is_empty() { Bounds::EMPTY } else { built.sides.inside };
-        if !bounds.is_finite() {
+        if !bounds.is_empty() && (!bounds.is_finite() || is_loose(&surface)) {
             bounds = extent(&surface, &bounds);
         }
         let unbounded = if bounds.is_finite() { String::new() } else { unbounded };
@@ -267,76 +273,86 @@ impl<'e> Compiler<'e> {
         kept(operand).ok_or_else(|| SolidError::EmptyJoin { path: self.scene.trail.path(site.step) })
     }
 
-    /// A box, in the frame of `context`, of where a solid's true value is above −c.
-    fn above(&self, solid: &Solid, context: u32, c: f64, depth: u32) -> Bounds {
-        let built = self.of(solid, context);
-        let by = bounded(built) * c;
-        if by.is_finite() {
-            return grow(&built.sides.inside, by);
+    /// A box, in the frame of `context`, of where a solid's true value is above −c < 0.
+    fn above(&self, solid: &Solid, context: u32, c: f64) -> Bounds {
+        self.members(solid, context, self.of(solid, context).swell.reach(c), DEEPEST)
+    }
+
+    /// The same of where the value of some member is above `-reach`.
+    fn members(&self, solid: &Solid, context: u32, reach: f64, depth: u32) -> Bounds {
+        if let Some(bounds) = self.of(solid, context).swell.members(reach) {
+            return bounds;
         }
-        if depth == 0 {
+        if depth == 0 || !reach.is_finite() {
             return Bounds::ALL;
         }
         let node = solid.node();
         let below = self.contexts.below(solid, context);
-        let mut inner = below.iter().map(|&(at, inner)| (&node.parts()[at], inner));
-        let mut first = |c: f64| inner.next().map_or(Bounds::ALL, |(s, inner)| self.above(s, inner, c, depth - 1));
+        let mut inner = below.iter().map(|&(at, inner)| self.members(&node.parts()[at], inner, reach, depth - 1));
+        let is = |operation| match node {
+            solid::Node::Join { operation: own, .. }
+            | solid::Node::Blend { operation: own, blend: Blend::Smooth { .. }, .. } => *own == operation,
+            _ => false,
+        };
         match node {
             solid::Node::Affine { .. }
             | solid::Node::Named { .. }
             | solid::Node::Repeated { .. }
             | solid::Node::Toleranced { .. }
             | solid::Node::Swept { .. }
-            | solid::Node::Painted { .. } => first(c),
+            | solid::Node::Length { length: Length::Level(_), .. }
+            | solid::Node::Painted { .. } => inner.next().unwrap_or(Bounds::ALL),
             solid::Node::Warp { warp, .. } => {
-                let inside = first(c);
-                if inside.is_empty() {
-                    inside
-                } else {
-                    snug(warp.bounds(&inside).transformed(&self.contexts.get(context).forward))
-                }
+                let inside = inner.next().unwrap_or(Bounds::ALL);
+                self.image(warp, context, &inside)
             }
-            solid::Node::Join { operation: Operation::Difference, rule, .. } => {
-                let c = c * conjoined(Rule::from(*rule));
-                if c.is_finite() { first(c) } else { Bounds::ALL }
-            }
-            solid::Node::Blend { operation: Operation::Difference, blend: Blend::Smooth { .. }, .. } => first(c),
-            solid::Node::Join { operation: Operation::Intersection, .. }
-            | solid::Node::Blend { operation: Operation::Intersection, blend: Blend::Smooth { .. }, .. } => {
-                inner.fold(Bounds::ALL, |all, (s, inner)| all.intersection(&self.above(s, inner, c, depth - 1)))
-            }
-            solid::Node::Blend { operation: Operation::Union, blend: Blend::Smooth { radius }, .. } => {
-                let c = c + 0.25 * radius * self.contexts.get(context).scale;
-                inner.fold(Bounds::EMPTY, |all, (s, inner)| all.union(&self.above(s, inner, c, depth - 1)))
-            }
-            solid::Node::Length { length: Length::Level(by), .. } => {
-                first((c + by * self.contexts.get(context).scale).max(0.0))
-            }
-            solid::Node::Join { operation: Operation::Union, rule, operands } => {
-                let c = c * disjoined(Rule::from(*rule), operands.len());
-                if !c.is_finite() {
-                    return Bounds::ALL;
-                }
-                inner.fold(Bounds::EMPTY, |all, (s, inner)| all.union(&self.above(s, inner, c, depth - 1)))
-            }
+            _ if is(Operation::Difference) => inner.next().unwrap_or(Bounds::ALL),
+            _ if is(Operation::Intersection) => inner.fold(Bounds::ALL, |all, own| all.intersection(&own)),
+            _ if is(Operation::Union) => inner.fold(Bounds::EMPTY, |all, own| all.union(&own)),
             _ => Bounds::ALL,
         }
+    }
+
+    /// What of a box is no farther than the node at `site` reaches along the axes of its frame.
+    fn cut_to_support(&self, site: Site<'_>, bounds: Bounds) -> Bounds {
+        let context = self.contexts.get(site.context);
+        if bounds.is_empty() || context.shift.is_some() {
+            return bounds;
+        }
+        bounds.intersection(&snug(box_under(site.solid, &context.forward)))
+    }
+
+    /// The box, in the frame of `context`, of what a deformation makes of what a box holds.
+    fn image(&self, warp: &Arc<dyn AnyWarp>, context: u32, bounds: &Bounds) -> Bounds {
+        if bounds.is_empty() {
+            return *bounds;
+        }
+        snug(warp.bounds(bounds).transformed(&self.contexts.get(context).forward))
     }
 
     fn finish(&mut self, site: Site<'_>) -> Result<Built, CompileError> {
         let context = *self.contexts.get(site.context);
         let node = site.solid.node();
-        let below: Vec<Built> = self
-            .contexts
-            .below(site.solid, site.context)
-            .iter()
-            .map(|&(position, inner)| self.of(&node.parts()[position], inner))
-            .collect();
+        let is_measured = measured(site.solid).is_some();
+        let operand = |&(position, inner): &(usize, u32)| {
+            let operand = &node.parts()[position];
+            let mut built = self.of(operand, inner);
+            // What is compiled by itself knows its box better.
+            let context = self.contexts.get(inner);
+            if let Some(programs) = kept(operand).filter(|_| is_measured && context.shift.is_none()) {
+                let known = snug(programs.bounds.transformed(&context.forward));
+                built.sides.inside = built.sides.inside.intersection(&known);
+            }
+            built
+        };
+        let below: Vec<Built> = self.contexts.below(site.solid, site.context).iter().map(operand).collect();
         match node {
             solid::Node::Leaf(field) => Ok(self.leaf(field, site)),
             solid::Node::Swept { .. } => {
                 fit(site.solid, self.run)?.map_err(|e| self.parameter(site, e))?;
-                Ok(below[0])
+                let mut swept = below[0];
+                swept.sides.inside = self.cut_to_support(site, swept.sides.inside);
+                Ok(swept)
             }
             solid::Node::Affine { .. }
             | solid::Node::Named { .. }
@@ -398,16 +414,14 @@ impl<'e> Compiler<'e> {
         }
     }
 
-    fn warped(&mut self, site: Site<'_>, warp: &Arc<dyn AnyWarp>, inner: Built) -> Result<Built, SolidError> {
-        let context = *self.contexts.get(site.context);
+    fn warped(&self, site: Site<'_>, warp: &Arc<dyn AnyWarp>, inner: Built) -> Result<Built, SolidError> {
         warp.check(&inner.sides.inside).map_err(|e| self.parameter(site, e))?;
-        let outward = |b: &Bounds| {
-            if b.is_empty() { *b } else { snug(warp.bounds(b).transformed(&context.forward)) }
-        };
+        let outward = |b: &Bounds| self.image(warp, site.context, b);
+        let inside = self.cut_to_support(site, outward(&inner.sides.inside));
         // A deformation of an infinite region is not followed.
         let outside = if inner.sides.outside.is_finite() { outward(&inner.sides.outside) } else { Bounds::ALL };
-        let sides = Sides { inside: outward(&inner.sides.inside), outside };
-        Ok(Built { sides, growth: DVec3::INFINITY, ..inner })
+        let sides = Sides { inside, outside };
+        Ok(Built { sides, swell: inner.swell.mapped(outward), ..inner })
     }
 
     fn blended(
@@ -431,14 +445,14 @@ impl<'e> Compiler<'e> {
         match blend {
             Blend::Smooth { radius } => {
                 let width = radius * scale;
-                // Equal values rise by a quarter of the width.
-                let risen = self.risen(site, [0.25 * width; 2]);
-                Ok(self.code.smooth(operation, width, frame, pair, risen))
+                let inside = if op == Op::Or { self.smooth_union(site, width, pair) } else { Bounds::ALL };
+                Ok(self.code.smooth(operation, width, frame, pair, inside))
             }
             Blend::Displacement { height, falloff } => {
                 let inverse = falloff.map(|f| 1.0 / (f * scale));
                 let height = height * scale;
-                let rise = if op == Op::Or { height * disjoined(Rule::P(Norm::Euclid), 2) } else { height };
+                // The disjunction of equal values −c is −(2 − √2) c.
+                let rise = if op == Op::Or { height / (2.0 - std::f64::consts::SQRT_2) } else { height };
                 let risen = self.risen(site, [rise; 2]);
                 Ok(self.code.displacement(operation, height, inverse, frame, pair, risen))
             }
@@ -525,13 +539,34 @@ impl<'e> Compiler<'e> {
 
     /// The boxes of a blend's operands where they are above −c, each with its own c.
     fn risen(&self, site: Site<'_>, c: [f64; 2]) -> [Bounds; 2] {
-        const DEEPEST: u32 = 64;
-        let below = self.contexts.below(site.solid, site.context);
-        let mut risen = [Bounds::ALL; 2];
-        for (i, &(at, inner)) in below.iter().take(2).enumerate() {
-            risen[i] = self.above(&site.solid.node().operands()[at], inner, c[i].max(0.0), DEEPEST);
+        self.each(site, |operand, inner, i| self.above(operand, inner, c[i].max(0.0)))
+    }
+
+    /// A box of each of two operands, told by the operand, its context and its number.
+    fn each(&self, site: Site<'_>, bounds: impl Fn(&Solid, u32, usize) -> Bounds) -> [Bounds; 2] {
+        let mut boxes = [Bounds::ALL; 2];
+        for (i, &(at, inner)) in self.contexts.below(site.solid, site.context).iter().take(2).enumerate() {
+            boxes[i] = bounds(&site.solid.node().operands()[at], inner, i);
         }
-        risen
+        boxes
+    }
+
+    /// A box of the smooth union of two operands.
+    ///
+    /// ```text
+    ///     x ≤ 0 and y ≤ 0, but x∨y > 0:   one of them is above −k/4, the other above −k
+    /// ```
+    ///
+    /// So it is in an operand's box, or in those of both that have grown; nor is it farther from the
+    /// members than it rises.
+    fn smooth_union(&self, site: Site<'_>, width: f64, pair: [Built; 2]) -> Bounds {
+        let swell = Swell::joined(Op::Or, Rule::Smooth(width), pair.map(|b| b.swell).to_vec());
+        let risen = self.each(site, |operand, inner, _| self.members(operand, inner, swell.reach(0.0), DEEPEST));
+        let near = self.risen(site, [0.25 * width; 2]);
+        let far = self.risen(site, [width; 2]);
+        let between = near[0].intersection(&far[1]).union(&far[0].intersection(&near[1]));
+        let apart = pair[0].sides.inside.union(&pair[1].sides.inside);
+        apart.union(&between).intersection(&risen[0].union(&risen[1]))
     }
 
     fn leaf(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>) -> Built {
@@ -568,13 +603,14 @@ impl<'e> Compiler<'e> {
 
     fn shifted(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>, shift: f64) -> Built {
         let (leaf, growth) = self.place(field, site, shift);
+        let inside = self.scene.leaves[leaf as usize].bounds;
         let context = self.contexts.get(site.context);
         let edge = self.code.push(Kind::Leaf(leaf), &[]);
         Built {
             field: edge,
             surface: edge,
-            sides: Sides { inside: self.scene.leaves[leaf as usize].bounds, outside: Bounds::ALL },
-            growth,
+            sides: Sides { inside, outside: Bounds::ALL },
+            swell: Swell::of(inside, growth),
             gauge: field.gauge_radius().filter(|_| context.shift.is_none()).map(|radius| radius * context.scale),
         }
     }

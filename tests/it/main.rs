@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod blends;
+mod bounds;
 mod building;
 mod caps;
 mod check;
@@ -50,6 +51,7 @@ mod supershape;
 mod supershape_ranges;
 mod support;
 mod thin;
+mod tight;
 mod tolerance;
 mod volume;
 mod zbuffer;
