@@ -24,6 +24,7 @@ mod maps;
 mod mesh;
 mod models;
 mod narrow;
+mod on_surface;
 mod pace;
 mod paint;
 mod parameters;
