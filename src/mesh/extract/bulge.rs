@@ -154,7 +154,7 @@ impl<const N: usize> Ring<N> {
 #[inline(always)]
 fn raised(count: usize, height: f32) -> f32 {
     let above = (RAISED[count.clamp(3, 7) - 3] - 1.0) * height;
-    height + above.min(RISEN).max(-RISEN)
+    height + above.clamp(-RISEN, RISEN)
 }
 
 /// What a smooth cell has.
