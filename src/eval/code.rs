@@ -5,6 +5,7 @@ use glam::DVec3;
 
 use super::program::{Edge, Kind, Node};
 use super::sides::Sides;
+use super::swell::Swell;
 use crate::Bounds;
 use crate::solid::Operation;
 use rvachev_field::Op;
@@ -19,9 +20,8 @@ pub(super) struct Built {
     pub(super) surface: Edge,
     /// In the frame of the node's context.
     pub(super) sides: Sides,
-    /// How much the box of the points with a true value above −c grows along each axis, per
-    /// unit of c; infinite where nothing is known.
-    pub(super) growth: DVec3,
+    /// Where the true value is above −c.
+    pub(super) swell: Swell,
     /// The radius of a value `radius·(1 − G)`, where it is one.
     pub(super) gauge: Option<f64>,
 }
@@ -32,7 +32,7 @@ impl Built {
             field: self.field.flip_if(true),
             surface: self.surface.flip_if(true),
             sides: self.sides.flip_if(true),
-            growth: DVec3::INFINITY,
+            swell: Swell::unknown(self.sides.outside),
             gauge: None,
         }
     }
@@ -114,8 +114,8 @@ impl Code {
         };
         let (field, surface) = (pick(|b| b.field), pick(|b| b.surface));
         let (field, surface) = (self.either_all(rule, frame, field), self.either_all(Rule::MinMax, frame, surface));
-        let (sides, growth) = (surface.sides, DVec3::INFINITY);
-        Built { field: field.edge, surface: surface.edge, sides, growth, gauge: None }
+        let (sides, swell) = (surface.sides, Swell::unknown(surface.sides.inside));
+        Built { field: field.edge, surface: surface.edge, sides, swell, gauge: None }
     }
 
     /// A union, an intersection or a difference by an R-function.
@@ -129,18 +129,9 @@ impl Code {
         let (field, surface) = (pick(|b| b.field), pick(|b| b.surface));
         let op = operation.op();
         let (field, surface) = (self.join_all(op, rule, frame, &field), self.join(op, Rule::MinMax, frame, &surface));
-        let factor = if op == Op::Or { disjoined(rule, built.len()) } else { conjoined(rule) };
-        let inside = surface.sides.inside;
-        let mut growth = DVec3::ZERO;
-        for (i, b) in built.iter().enumerate() {
-            // An operand without an end along an axis needs none there, however flat the rule.
-            let own = bounded(b.flip_if(negated(i))).to_array();
-            growth = growth.max(DVec3::from_array(own.map(|g| if g == 0.0 { 0.0 } else { g * factor })));
-        }
-        if inside.is_empty() {
-            growth = DVec3::INFINITY;
-        }
-        Built { field: field.edge, surface: surface.edge, sides: surface.sides, growth, gauge: None }
+        let swells = built.iter().enumerate().map(|(i, b)| b.flip_if(negated(i)).swell).collect();
+        let swell = Swell::joined(op, rule, swells);
+        Built { field: field.edge, surface: surface.edge, sides: surface.sides, swell, gauge: None }
     }
 
     /// Values moved by `by`.
@@ -148,21 +139,21 @@ impl Code {
         let edge = self.push(Kind::Shift(by), &[(operand.field, Bounds::ALL)]);
         let mut sides = operand.sides;
         if by > 0.0 {
-            sides.inside = grow(&sides.inside, operand.growth * by);
+            sides.inside = operand.swell.above(by).unwrap_or(Bounds::ALL);
         } else if by < 0.0 {
             sides.outside = Bounds::ALL;
         }
-        Built { field: edge, surface: edge, sides, growth: operand.growth, gauge: None }
+        Built { field: edge, surface: edge, sides, swell: operand.swell.level(by), gauge: None }
     }
 
     /// The end face and the sides of an extrusion, both moved in by `size`, joined by a rule that moves
     /// them back.
     pub(super) fn rim(&mut self, rule: Rule, size: f64, frame: u32, pair: [Built; 2]) -> Built {
         let edge = self.pair(Operation::Intersection, rule, frame, pair);
-        let whole = pair.map(|b| snug(grow(&b.sides.inside, b.growth * size)));
+        let whole = pair.map(|b| b.swell.above(size).map_or(Bounds::ALL, snug));
         let sides = Sides { inside: whole[0].intersection(&whole[1]), outside: Bounds::ALL };
-        let growth = if sides.inside.is_empty() { DVec3::INFINITY } else { bounded(pair[0]).max(bounded(pair[1])) };
-        Built { field: edge, surface: edge, sides, growth, gauge: None }
+        let swell = Swell::rim(sides.inside, pair.map(|b| b.swell));
+        Built { field: edge, surface: edge, sides, swell, gauge: None }
     }
 
     /// A node that joins two values, the second complemented for a difference.
@@ -173,27 +164,24 @@ impl Code {
         self.push(Kind::Join { op, rule, frame, hierarchy: None }, &operands)
     }
 
-    /// A smooth join; `risen` are the operands' boxes where they are above what it adds.
+    /// A smooth join; `inside` holds a union.
     pub(super) fn smooth(
         &mut self,
         operation: Operation,
         width: f64,
         frame: u32,
         pair: [Built; 2],
-        risen: [Bounds; 2],
+        inside: Bounds,
     ) -> Built {
         let edge = self.pair(operation, Rule::Smooth(width), frame, pair);
         let [a, b] = [pair[0], pair[1].flip_if(operation == Operation::Difference)];
         let mut sides = a.sides.join(operation.op(), b.sides);
-        let mut growth = bounded(a).max(bounded(b));
         match operation.op() {
-            Op::Or => sides.inside = risen[0].union(&risen[1]),
+            Op::Or => sides.inside = inside,
             Op::And => sides.outside = Bounds::ALL,
         }
-        if sides.inside.is_empty() {
-            growth = DVec3::INFINITY;
-        }
-        Built { field: edge, surface: edge, sides, growth, gauge: None }
+        let swell = Swell::joined(operation.op(), Rule::Smooth(width), vec![a.swell, b.swell]);
+        Built { field: edge, surface: edge, sides, swell, gauge: None }
     }
 
     pub(super) fn displacement(
@@ -216,7 +204,7 @@ impl Code {
             _ => risen[0].intersection(&risen[1]),
         };
         let sides = Sides { inside, outside: Bounds::ALL };
-        Built { field: edge, surface: edge, sides, growth: DVec3::INFINITY, gauge: None }
+        Built { field: edge, surface: edge, sides, swell: Swell::unknown(inside), gauge: None }
     }
 
     pub(super) fn ricci(
@@ -241,40 +229,7 @@ impl Code {
             RicciSide::Difference => pair[0].sides.inside,
         };
         let sides = Sides { inside, outside: Bounds::ALL };
-        Built { field: edge, surface: edge, sides, growth: DVec3::INFINITY, gauge: Some(radius) }
-    }
-}
-
-/// Where a disjunction of `count` is above −c, one of them is above −c times this.
-pub(super) fn disjoined(rule: Rule, count: usize) -> f64 {
-    spread(rule).powi(count.next_power_of_two().trailing_zeros() as i32)
-}
-
-/// Where a conjunction is above −c, each operand is above −c times this. (No conjunction exceeds
-/// its least operand, but those that are flattened near 0.)
-pub(super) fn conjoined(rule: Rule) -> f64 {
-    if matches!(rule, Rule::Zero(_)) { f64::INFINITY } else { 1.0 }
-}
-
-/// The growth of an operand along the axes where it is bounded.
-pub(super) fn bounded(b: Built) -> DVec3 {
-    let mut growth = b.growth;
-    for axis in 0..3 {
-        if b.sides.inside.min[axis] == f64::NEG_INFINITY && b.sides.inside.max[axis] == f64::INFINITY {
-            growth[axis] = 0.0;
-        }
-    }
-    growth
-}
-
-/// Where a disjunction of two is above −c, one of them is above −c times this.
-fn spread(rule: Rule) -> f64 {
-    match rule {
-        Rule::Alpha(alpha) => (1.0 + alpha) / (2.0 - (2.0 - 2.0 * alpha).sqrt()),
-        Rule::P(norm) => 1.0 / (2.0 - (1.0 / norm.p()).exp2()),
-        Rule::Associative(norm) => (1.0 / norm.p()).exp2(),
-        Rule::MinMax | Rule::Distance => 1.0,
-        _ => f64::INFINITY,
+        Built { field: edge, surface: edge, sides, swell: Swell::unknown(inside), gauge: Some(radius) }
     }
 }
 

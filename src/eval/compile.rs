@@ -4,6 +4,8 @@
 //! compiled once. Parameters are checked on the way, and boxes are put together from the
 //! leaves up.
 
+mod boxes;
+
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -14,21 +16,23 @@ use super::apart::{Near, Work, measure, measured, works};
 use super::bevel::Bevel;
 use super::chamfer::Chamfer;
 use super::coat::Coat;
-use super::code::{Built, Code, bounded, conjoined, disjoined, grow, snug};
+use super::code::{Built, Code, grow, snug};
 use super::context::{Contexts, is_similarity, least_stretch};
 use super::exact::Exactness;
 use super::extent::extent;
 use super::fill::{Fill, Side, Signed};
 use super::fit::fit;
 use super::flatten::flatten;
+use super::moved_in::is_loose;
 use super::nothing::Nothing;
 use super::palette::Palette;
 use super::program::{Edge, Kind, Program};
 use super::scene::{Instance, Scene};
 use super::sides::Sides;
 use super::source::{CompileError, DistanceSource, Measured};
+use super::swell::Swell;
 use crate::solid::{self, Length, Operation};
-use crate::{Blend, Bounds, Cancelled, Norm, ParamError, Run, Solid, SolidError};
+use crate::{Blend, Bounds, Cancelled, ParamError, Run, Solid, SolidError};
 use rvachev_field::Op;
 use rvachev_field::{AnyField, AnyWarp, Placement, Rule, largest_stretch};
 use rvachev_num::column_times;
@@ -194,7 +198,7 @@ impl<'e> Compiler<'e> {
         };
         let (field, surface) = (program(built.field)?, program(built.surface)?);
         let mut bounds = if built.sides.inside.is_empty() { Bounds::EMPTY } else { built.sides.inside };
-        if !bounds.is_finite() {
+        if !bounds.is_empty() && (!bounds.is_finite() || is_loose(&surface)) {
             bounds = extent(&surface, &bounds, run)?;
         }
         let unbounded = if bounds.is_finite() { String::new() } else { unbounded };
@@ -279,76 +283,29 @@ impl<'e> Compiler<'e> {
         kept(operand).ok_or_else(|| SolidError::EmptyJoin { path: self.scene.trail.path(site.step) })
     }
 
-    /// A box, in the frame of `context`, of where a solid's true value is above −c.
-    fn above(&self, solid: &Solid, context: u32, c: f64, depth: u32) -> Bounds {
-        let built = self.of(solid, context);
-        let by = bounded(built) * c;
-        if by.is_finite() {
-            return grow(&built.sides.inside, by);
-        }
-        if depth == 0 {
-            return Bounds::ALL;
-        }
-        let node = solid.node();
-        let below = self.contexts.below(solid, context);
-        let mut inner = below.iter().map(|&(at, inner)| (&node.parts()[at], inner));
-        let mut first = |c: f64| inner.next().map_or(Bounds::ALL, |(s, inner)| self.above(s, inner, c, depth - 1));
-        match node {
-            solid::Node::Affine { .. }
-            | solid::Node::Named { .. }
-            | solid::Node::Repeated { .. }
-            | solid::Node::Toleranced { .. }
-            | solid::Node::Swept { .. }
-            | solid::Node::Painted { .. } => first(c),
-            solid::Node::Warp { warp, .. } => {
-                let inside = first(c);
-                if inside.is_empty() {
-                    inside
-                } else {
-                    snug(warp.bounds(&inside).transformed(&self.contexts.get(context).forward))
-                }
-            }
-            solid::Node::Join { operation: Operation::Difference, rule, .. } => {
-                let c = c * conjoined(Rule::from(*rule));
-                if c.is_finite() { first(c) } else { Bounds::ALL }
-            }
-            solid::Node::Blend { operation: Operation::Difference, blend: Blend::Smooth { .. }, .. } => first(c),
-            solid::Node::Join { operation: Operation::Intersection, .. }
-            | solid::Node::Blend { operation: Operation::Intersection, blend: Blend::Smooth { .. }, .. } => {
-                inner.fold(Bounds::ALL, |all, (s, inner)| all.intersection(&self.above(s, inner, c, depth - 1)))
-            }
-            solid::Node::Blend { operation: Operation::Union, blend: Blend::Smooth { radius }, .. } => {
-                let c = c + 0.25 * radius * self.contexts.get(context).scale;
-                inner.fold(Bounds::EMPTY, |all, (s, inner)| all.union(&self.above(s, inner, c, depth - 1)))
-            }
-            solid::Node::Length { length: Length::Level(by), .. } => {
-                first((c + by * self.contexts.get(context).scale).max(0.0))
-            }
-            solid::Node::Join { operation: Operation::Union, rule, operands } => {
-                let c = c * disjoined(Rule::from(*rule), operands.len());
-                if !c.is_finite() {
-                    return Bounds::ALL;
-                }
-                inner.fold(Bounds::EMPTY, |all, (s, inner)| all.union(&self.above(s, inner, c, depth - 1)))
-            }
-            _ => Bounds::ALL,
-        }
-    }
-
     fn finish(&mut self, site: Site<'_>) -> Result<Built, CompileError> {
         let context = *self.contexts.get(site.context);
         let node = site.solid.node();
-        let below: Vec<Built> = self
-            .contexts
-            .below(site.solid, site.context)
-            .iter()
-            .map(|&(position, inner)| self.of(&node.parts()[position], inner))
-            .collect();
+        let is_measured = measured(site.solid).is_some();
+        let operand = |&(position, inner): &(usize, u32)| {
+            let operand = &node.parts()[position];
+            let mut built = self.of(operand, inner);
+            // What is compiled by itself knows its box better.
+            let context = self.contexts.get(inner);
+            if let Some(programs) = kept(operand).filter(|_| is_measured && context.shift.is_none()) {
+                let known = snug(programs.bounds.transformed(&context.forward));
+                built.sides.inside = built.sides.inside.intersection(&known);
+            }
+            built
+        };
+        let below: Vec<Built> = self.contexts.below(site.solid, site.context).iter().map(operand).collect();
         match node {
             solid::Node::Leaf(field) => Ok(self.leaf(field, site)),
             solid::Node::Swept { .. } => {
                 fit(site.solid, self.run)?.map_err(|e| self.parameter(site, e))?;
-                Ok(below[0])
+                let mut swept = below[0];
+                swept.sides.inside = self.cut_to_support(site, swept.sides.inside);
+                Ok(swept)
             }
             solid::Node::Affine { .. }
             | solid::Node::Named { .. }
@@ -410,16 +367,14 @@ impl<'e> Compiler<'e> {
         }
     }
 
-    fn warped(&mut self, site: Site<'_>, warp: &Arc<dyn AnyWarp>, inner: Built) -> Result<Built, SolidError> {
-        let context = *self.contexts.get(site.context);
+    fn warped(&self, site: Site<'_>, warp: &Arc<dyn AnyWarp>, inner: Built) -> Result<Built, SolidError> {
         warp.check(&inner.sides.inside).map_err(|e| self.parameter(site, e))?;
-        let outward = |b: &Bounds| {
-            if b.is_empty() { *b } else { snug(warp.bounds(b).transformed(&context.forward)) }
-        };
+        let outward = |b: &Bounds| self.image(warp, site.context, b);
+        let inside = self.cut_to_support(site, outward(&inner.sides.inside));
         // A deformation of an infinite region is not followed.
         let outside = if inner.sides.outside.is_finite() { outward(&inner.sides.outside) } else { Bounds::ALL };
-        let sides = Sides { inside: outward(&inner.sides.inside), outside };
-        Ok(Built { sides, growth: DVec3::INFINITY, ..inner })
+        let sides = Sides { inside, outside };
+        Ok(Built { sides, swell: inner.swell.mapped(outward), ..inner })
     }
 
     fn blended(
@@ -443,14 +398,14 @@ impl<'e> Compiler<'e> {
         match blend {
             Blend::Smooth { radius } => {
                 let width = radius * scale;
-                // Equal values rise by a quarter of the width.
-                let risen = self.risen(site, [0.25 * width; 2]);
-                Ok(self.code.smooth(operation, width, frame, pair, risen))
+                let inside = if op == Op::Or { self.smooth_union(site, width, pair) } else { Bounds::ALL };
+                Ok(self.code.smooth(operation, width, frame, pair, inside))
             }
             Blend::Displacement { height, falloff } => {
                 let inverse = falloff.map(|f| 1.0 / (f * scale));
                 let height = height * scale;
-                let rise = if op == Op::Or { height * disjoined(Rule::P(Norm::Euclid), 2) } else { height };
+                // The disjunction of equal values −c is −(2 − √2) c.
+                let rise = if op == Op::Or { height / (2.0 - std::f64::consts::SQRT_2) } else { height };
                 let risen = self.risen(site, [rise; 2]);
                 Ok(self.code.displacement(operation, height, inverse, frame, pair, risen))
             }
@@ -535,17 +490,6 @@ impl<'e> Compiler<'e> {
         self.code.operation(operation, Rule::MinMax, frame, &all)
     }
 
-    /// The boxes of a blend's operands where they are above −c, each with its own c.
-    fn risen(&self, site: Site<'_>, c: [f64; 2]) -> [Bounds; 2] {
-        const DEEPEST: u32 = 64;
-        let below = self.contexts.below(site.solid, site.context);
-        let mut risen = [Bounds::ALL; 2];
-        for (i, &(at, inner)) in below.iter().take(2).enumerate() {
-            risen[i] = self.above(&site.solid.node().operands()[at], inner, c[i].max(0.0), DEEPEST);
-        }
-        risen
-    }
-
     fn leaf(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>) -> Built {
         let shift = self.contexts.get(site.context).shift.unwrap_or(0.0);
         self.shifted(field, site, shift)
@@ -580,13 +524,14 @@ impl<'e> Compiler<'e> {
 
     fn shifted(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>, shift: f64) -> Built {
         let (leaf, growth) = self.place(field, site, shift);
+        let inside = self.scene.leaves[leaf as usize].bounds;
         let context = self.contexts.get(site.context);
         let edge = self.code.push(Kind::Leaf(leaf), &[]);
         Built {
             field: edge,
             surface: edge,
-            sides: Sides { inside: self.scene.leaves[leaf as usize].bounds, outside: Bounds::ALL },
-            growth,
+            sides: Sides { inside, outside: Bounds::ALL },
+            swell: Swell::of(inside, growth),
             gauge: field.gauge_radius().filter(|_| context.shift.is_none()).map(|radius| radius * context.scale),
         }
     }

@@ -1,10 +1,12 @@
 //! The box of a solid that its parts do not tell: found by narrowing.
 //!
-//! From a box of all that can be evaluated, half by half, what holds no surface is left out.
+//! From a box of all that can be evaluated, half by half, what holds no surface is left out. The sides of
+//! what is left are then [moved in](super::moved_in).
 
 use glam::DVec3;
 
-use super::{Program, Region};
+use super::Program;
+use super::moved_in::{Part, halves, moved_in, narrowed};
 use crate::{Bounds, Cancelled, Run};
 
 /// Boxes are halved until they are this small, in proportion to what is found.
@@ -20,16 +22,20 @@ const IMPATIENCE: usize = 200;
 /// Solids larger than this count as unbounded.
 const LARGEST: f64 = 1e9;
 
-/// A box that holds the inside of `program`; `known` is one along the axes where it is finite.
+/// A box that holds the inside of `program`, its sides moved in where they are told by values; `known` is
+/// one along the axes where it is finite.
 pub(super) fn extent(program: &Program, known: &Bounds, run: &Run) -> Result<Bounds, Cancelled> {
     let limit = DVec3::splat(LARGEST);
     let start = known.intersection(&Bounds::new(-limit, limit));
     // All boxes that may hold some of it, of different sizes: only those that the hull rests on
     // are halved.
-    let mut boxes: Vec<(Bounds, Program)> = narrowed(start, program).into_iter().collect();
+    let mut boxes: Vec<Part> = narrowed(start, program).into_iter().collect();
+    if known.is_finite() {
+        return moved_in(program, boxes, run);
+    }
     loop {
         run.check()?;
-        let hull = boxes.iter().fold(Bounds::EMPTY, |hull, (bounds, _)| hull.union(bounds));
+        let hull = boxes.iter().fold(Bounds::EMPTY, |hull, part| hull.union(&part.bounds));
         if hull.is_empty() {
             return Ok(Bounds::EMPTY);
         }
@@ -40,48 +46,27 @@ pub(super) fn extent(program: &Program, known: &Bounds, run: &Run) -> Result<Bou
         });
         let finest = if ends { FINEST * hull.longest_side() } else { 1e-3 * LARGEST };
         let halved = |bounds: &Bounds| rests(&hull, bounds) && bounds.longest_side() > finest;
-        let count = boxes.iter().filter(|(bounds, _)| halved(bounds)).count();
+        let count = boxes.iter().filter(|part| halved(&part.bounds)).count();
         if count == 0 || boxes.len() > if ends { PATIENCE } else { IMPATIENCE } {
-            return Ok(if ends { hull.intersection(known) } else { *known });
+            return if ends { Ok(moved_in(program, boxes, run)?.intersection(known)) } else { Ok(*known) };
         }
         let mut next = Vec::with_capacity(boxes.len() + count);
-        for (bounds, program) in boxes {
-            if halved(&bounds) {
-                next.extend(halves(&bounds).into_iter().filter_map(|half| narrowed(half, &program)));
+        for part in boxes {
+            if halved(&part.bounds) {
+                next.extend(
+                    halves(&part.bounds, part.bounds.size().max_position())
+                        .into_iter()
+                        .filter_map(|half| narrowed(half, &part.program)),
+                );
             } else {
-                next.push((bounds, program));
+                next.push(part);
             }
         }
         boxes = next;
     }
 }
 
-/// The box with the program narrowed to it, if it may hold some of the inside.
-fn narrowed(bounds: Bounds, program: &Program) -> Option<(Bounds, Program)> {
-    match program.narrow(&bounds) {
-        Region::Outside => None,
-        Region::Inside => Some((bounds, program.clone())),
-        Region::Surface(narrowed) => Some((bounds, narrowed)),
-    }
-}
-
 /// Whether a side of the hull is one of the box.
 fn rests(hull: &Bounds, bounds: &Bounds) -> bool {
     bounds.min.cmple(hull.min).any() || bounds.max.cmpge(hull.max).any()
-}
-
-fn halves(bounds: &Bounds) -> [Bounds; 2] {
-    let size = bounds.size();
-    let axis = if size.x >= size.y && size.x >= size.z {
-        0
-    } else if size.y >= size.z {
-        1
-    } else {
-        2
-    };
-    let middle = bounds.center()[axis];
-    let (mut low, mut high) = (*bounds, *bounds);
-    low.max[axis] = middle;
-    high.min[axis] = middle;
-    [low, high]
 }

@@ -6,6 +6,7 @@
 
 mod camera;
 mod contours;
+pub(crate) mod figures;
 mod image;
 mod mesh;
 mod plane;

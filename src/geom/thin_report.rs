@@ -4,6 +4,9 @@ use std::fmt;
 
 use glam::DVec3;
 
+use super::figures::{point, size};
+use rvachev_num::figures;
+
 /// Thin features of a solid: walls, gaps, needles and holes that cells of a size may not show.
 ///
 /// It is what [`Solid::thin_features`](crate::Solid::thin_features) finds. The default is that of a
@@ -53,12 +56,11 @@ impl ThinReport {
 /// As lines of text: a summary, then the places.
 impl fmt::Display for ThinReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} thin places in {} cells of {:.4}", self.count, self.cells, self.cell)?;
+        write!(f, "{} thin places in {} cells of {}", self.count, self.cells, figures(self.cell, 5))?;
         for place in &self.places {
-            let (at, size) = (place.position, place.size);
-            write!(f, "\n({:.4}, {:.4}, {:.4}), {:.4} x {:.4} x {:.4}", at.x, at.y, at.z, size.x, size.y, size.z)?;
+            write!(f, "\n{}, {}", point(place.position, self.cell), size(place.size))?;
             match place.thickness {
-                Some(thickness) => write!(f, ", about {thickness:.4} thick")?,
+                Some(thickness) => write!(f, ", about {} thick", figures(thickness, 4))?,
                 None => f.write_str(", thickness unknown")?,
             }
         }

@@ -28,8 +28,10 @@ use self::fans::{Fans, repeats};
 use self::lists::{mapped, sorted};
 use self::overlap::Overlaps;
 use crate::geom::Mesh;
+use crate::geom::figures::{point, size};
 use crate::{Cancelled, Run};
 use rvachev_num::Bounds;
+use rvachev_num::figures;
 
 /// The findings of [`Mesh::check`].
 ///
@@ -134,13 +136,12 @@ impl fmt::Display for MeshReport {
         if let Some(genus) = self.genus {
             write!(f, ", genus {genus}")?;
         }
-        write!(f, "\nvolume {:.6}, area {:.6}", self.volume, self.area)?;
+        write!(f, "\nvolume {}, area {}", figures(self.volume, 7), figures(self.area, 7))?;
         if let Some(c) = self.centroid {
-            write!(f, ", centroid ({:.4}, {:.4}, {:.4})", c.x, c.y, c.z)?;
+            write!(f, ", centroid {}", point(c, self.bounds.longest_side()))?;
         }
         if !self.bounds.is_empty() {
-            let size = self.bounds.size();
-            write!(f, "\n{:.4} x {:.4} x {:.4}", size.x, size.y, size.z)?;
+            write!(f, "\n{}", size(self.bounds.size()))?;
         }
         let defects = [
             (self.boundary_edges, "boundary edges"),

@@ -60,6 +60,7 @@ mod bulge;
 mod cells;
 mod corners;
 mod crease;
+mod hold;
 mod join;
 mod joined;
 mod lists;

@@ -26,6 +26,7 @@ mod transform;
 
 pub(crate) use blend::BALL_OF_LEGS;
 pub use composed::Repetition;
+pub(crate) use composed::Sweep;
 pub use error::SolidError;
 pub(crate) use error::Trail;
 pub use form::{DeformationForm, Form, LeafForm};

@@ -461,3 +461,31 @@ fn closed_meshes_with_displaced_vertices_agree_with_whole_number_arithmetic() {
     }
     assert!((15..45).contains(&sound), "{sound} of 60");
 }
+
+#[test]
+fn reports_have_the_same_figures_at_any_size() {
+    let ball = Solid::superellipsoid([1.0, 0.8, 0.6], 1.0, 1.0);
+    let settings = MeshSettings { cell: CellSize::LongestSide(24), ..MeshSettings::default() };
+    let lines = |scale: f64| {
+        let mesh = ball.scale(scale).mesh(&settings).expect("the solid is valid");
+        mesh.check().to_string()
+    };
+    let plain = lines(1.0);
+    assert!(plain.contains("\n1.99642 x 1.59751 x 1.19873"), "{plain}");
+    for scale in [1e-6, 1e-3, 1e3] {
+        let report = lines(scale);
+        // All that is told of a small part are its figures, never 0.000000.
+        let numbers = |text: &str| -> Vec<f64> {
+            let words = text.split([' ', ',', '(', ')', '\n']);
+            words.filter_map(|word| word.parse().ok()).collect()
+        };
+        let (own, plain) = (numbers(&report), numbers(&plain));
+        assert_eq!(own.len(), plain.len(), "{report}");
+        let ratio = |n: usize, power: i32| own[n] / (plain[n] * scale.powi(power));
+        // Triangles, vertices, shells and the genus; volume and area; the centroid; the sides.
+        assert!((ratio(4, 3) - 1.0).abs() < 1e-3 && (ratio(5, 2) - 1.0).abs() < 1e-3, "{report}");
+        for n in 9..12 {
+            assert!((ratio(n, 1) - 1.0).abs() < 1e-3, "{report}");
+        }
+    }
+}

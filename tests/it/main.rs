@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod blends;
+mod bounds;
 mod building;
 mod caps;
 mod check;
@@ -25,6 +26,7 @@ mod maps;
 mod mesh;
 mod models;
 mod narrow;
+mod on_surface;
 mod pace;
 mod paint;
 mod parameters;
@@ -53,6 +55,7 @@ mod supershape;
 mod supershape_ranges;
 mod support;
 mod thin;
+mod tight;
 mod tolerance;
 mod volume;
 mod zbuffer;

@@ -1,5 +1,7 @@
 //! Deformations behind one pointer, each with its own kernels, as leaves are in `erased`.
 
+use glam::DVec3;
+
 use crate::deform::{Branches, Warp};
 use crate::kernel::{Formula, run};
 use crate::{AnyWarp, Bounds, Chunk, Dual, Interval, ParamError, Placement, Real};
@@ -77,6 +79,14 @@ impl<W: Warp> AnyWarp for W {
 
     fn bounds(&self, bounds: &Bounds) -> Bounds {
         Warp::bounds(self, bounds)
+    }
+
+    fn folds(&self) -> bool {
+        W::FOLDS
+    }
+
+    fn support(&self, own: &dyn Fn(DVec3) -> f64, direction: DVec3) -> f64 {
+        Warp::support(self, own, direction)
     }
 
     fn check(&self, bounds: &Bounds) -> Result<(), ParamError> {

@@ -19,7 +19,11 @@
 //! [`Bounds::inflate`] are exact to a few units in the last place of their largest term, not
 //! outward. Whoever needs a guarantee adds a margin.
 
+use std::fmt;
+
 use glam::{DAffine3, DVec3};
+
+use crate::figures_beside;
 
 /// An axis-aligned box in f64, in the length units of the model.
 ///
@@ -52,6 +56,30 @@ pub struct Bounds {
 impl Default for Bounds {
     fn default() -> Bounds {
         Bounds::EMPTY
+    }
+}
+
+/// The two corners, to nine figures of the largest coordinate.
+///
+/// ```
+/// use rvachev::{Bounds, Solid};
+///
+/// let ball = Solid::sphere(1.0).translate([0.1, 0.2, 0.3]);
+/// assert_eq!(ball.bounds()?.to_string(), "(-0.9, -0.8, -0.7) to (1.1, 1.2, 1.3)");
+/// assert_eq!(Bounds::EMPTY.to_string(), "empty");
+/// # Ok::<(), rvachev::SolidError>(())
+/// ```
+impl fmt::Display for Bounds {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        const COUNT: usize = 9;
+        if self.is_empty() {
+            return f.write_str("empty");
+        }
+        let corners = [self.min, self.max].map(|corner| corner.to_array());
+        let finite = corners.iter().flatten().filter(|side| side.is_finite());
+        let largest = finite.fold(0.0f64, |largest, side| largest.max(side.abs()));
+        let [low, high] = corners.map(|corner| corner.map(|side| figures_beside(side, largest, COUNT)).join(", "));
+        write!(f, "({low}) to ({high})")
     }
 }
 

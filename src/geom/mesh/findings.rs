@@ -4,6 +4,8 @@ use glam::DVec3;
 
 use super::Mesh;
 use crate::geom::ThinReport;
+use crate::geom::figures::point;
+use rvachev_num::figures;
 
 /// What was found when a mesh was extracted from a solid.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -113,10 +115,9 @@ impl Mesh {
         if *possibly_lost > 0 {
             let empty = if is_empty { "the mesh is empty, and " } else { "" };
             let blocks = if *possibly_lost == 1 { "block" } else { "blocks" };
-            let place = lost_at.first().map_or(String::new(), |at| {
-                format!(", the first of them near ({:.4}, {:.4}, {:.4})", at.x, at.y, at.z)
-            });
-            let than = if *cell > 0.0 { format!(" ({cell:.4})") } else { String::new() };
+            let place =
+                lost_at.first().map_or(String::new(), |at| format!(", the first of them near {}", point(*at, *cell)));
+            let than = if *cell > 0.0 { format!(" ({})", figures(*cell, 5)) } else { String::new() };
             warnings.push(format!(
                 "{empty}features thinner than a cell{than} may be lost in {possibly_lost} {blocks} of cells{place}; \
                  mesh with smaller cells or `ThinFeatures::Refine`, or ask `Solid::thin_features` where they are"
@@ -124,13 +125,13 @@ impl Mesh {
         }
         if let Some(first) = thin.as_ref().and_then(|thin| thin.places.first().map(|place| (thin, place))) {
             let (thin, place) = first;
-            let at = place.position;
             let places = if thin.count == 1 { "1 place is" } else { &format!("{} places are", thin.count) };
-            let size = place.thickness.map_or("of unknown thickness".to_owned(), |t| format!("about {t:.3} thick"));
+            let size =
+                place.thickness.map_or("of unknown thickness".to_owned(), |t| format!("about {} thick", figures(t, 4)));
             warnings.push(format!(
-                "{places} thinner than cells show, the largest near ({:.4}, {:.4}, {:.4}), {size}; \
+                "{places} thinner than cells show, the largest near {}, {size}; \
                  cells of half the thickness show it",
-                at.x, at.y, at.z
+                point(place.position, thin.cell)
             ));
         }
         warnings
@@ -150,8 +151,8 @@ mod tests {
         assert_eq!(warnings(found.clone()), ["the mesh is empty: the solid has no points within the bounds"]);
         let lost = Findings { possibly_lost: 3, lost_at: vec![DVec3::new(1.0, 2.0, -0.5)], ..found };
         let said = warnings(lost.clone());
-        assert!(said[0].starts_with("the mesh is empty, and features thinner than a cell (0.5000)"), "{said:?}");
-        assert!(said[0].contains("3 blocks of cells, the first of them near (1.0000, 2.0000, -0.5000)"), "{said:?}");
+        assert!(said[0].starts_with("the mesh is empty, and features thinner than a cell (0.5)"), "{said:?}");
+        assert!(said[0].contains("3 blocks of cells, the first of them near (1, 2, -0.5)"), "{said:?}");
         let place = ThinPlace { position: DVec3::X, size: DVec3::ONE, thickness: Some(0.125), cells: 7 };
         let thin = Some(ThinReport { cell: 0.5, cells: 7, count: 1, places: vec![place] });
         let said = warnings(Findings { thin, ..lost.clone() });

@@ -12,8 +12,9 @@
 use glam::DVec3;
 
 use super::Warp;
-use crate::{Angle, Bounds, Euclid, Interval, Real};
+use crate::{Angle, Bounds, Euclid, Real};
 use crate::{ParamError, check};
+use rvachev_num::figures;
 
 /// Bend of the z axis to a circle, in the plane of z and (cos angle, sin angle).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +28,24 @@ pub struct Bend {
 impl Bend {
     /// Below this curvature a bend moves nothing that could be seen.
     const FLAT: f64 = 1e-30;
+
+    /// The ranges of (1 − cos κz)/κ and of sin κz/κ over one of z.
+    fn turned(&self, z: [f64; 2]) -> ([f64; 2], [f64; 2]) {
+        use std::f64::consts::{FRAC_PI_2, PI};
+        let k = self.curvature;
+        let bow = |z: f64| z * (0.5 * k * z).sin() * sinc(0.5 * k * z);
+        let along = |z: f64| z * sinc(k * z);
+        let (near, far) =
+            (if z[0] <= 0.0 && z[1] >= 0.0 { 0.0 } else { z[0].abs().min(z[1].abs()) }, z[0].abs().max(z[1].abs()));
+        let (q, s) = ([bow(near), bow(far)], [along(z[0]), along(z[1])]);
+        let holds = |turn: f64| (z[0].min(z[1]) * k.abs()..=z[0].max(z[1]) * k.abs()).contains(&turn);
+        if far * k.abs() > PI {
+            return ([0.0, 2.0 / k], [-1.0 / k.abs(), 1.0 / k.abs()]);
+        }
+        let low = if holds(-FRAC_PI_2) { -1.0 / k.abs() } else { s[0].min(s[1]) };
+        let high = if holds(FRAC_PI_2) { 1.0 / k.abs() } else { s[0].max(s[1]) };
+        (q, [low, high])
+    }
 }
 
 impl Warp for Bend {
@@ -63,27 +82,20 @@ impl Warp for Bend {
         if !b.is_finite() {
             return Bounds::ALL;
         }
+        // With q = (1 − cos γ)/κ and s = sin γ/κ a point goes to r + q (1 − κ r) and (1 − κ r) s: linear in each
+        // coordinate across, in q and in s, so that the corners of their ranges tell the box.
         let k = self.curvature;
         let (sin, cos) = self.angle.radians().sin_cos();
-        let (x, y) = (Interval::new(b.min.x, b.max.x), Interval::new(b.min.y, b.max.y));
-        let r = x * cos + y * sin;
-        let across = (y * cos - x * sin).inflate(0.0);
-        // Slices of z keep the dependence of sine and cosine on z small.
-        const SLICES: u32 = 64;
+        let (bow, along) = self.turned([b.min.z, b.max.z]);
         let mut bounds = Bounds::EMPTY;
-        for slice in 0..SLICES {
-            let at = |i: u32| b.min.z + (b.max.z - b.min.z) * f64::from(i) / f64::from(SLICES);
-            let z = Interval::new(at(slice), at(slice + 1)).inflate(1e-12 * b.max.z.abs());
-            let left = (-r * k) + 1.0;
-            let half_turn = z * (0.5 * k);
-            let big_r = r + left * z * half_turn.sin_cos().0 * sinc_range(half_turn);
-            let big_z = left * z * sinc_range(z * k);
-            let x = big_r * cos - across * sin;
-            let y = big_r * sin + across * cos;
-            bounds = bounds
-                .union(&Bounds::new(DVec3::new(x.lo(), y.lo(), big_z.lo()), DVec3::new(x.hi(), y.hi(), big_z.hi())));
+        for corner in b.corners() {
+            let left = 1.0 - k * (corner.x * cos + corner.y * sin);
+            for (q, s) in bow.into_iter().zip(along) {
+                let image = DVec3::new(corner.x + cos * q * left, corner.y + sin * q * left, left * s);
+                bounds = bounds.union(&Bounds::new(image, image));
+            }
         }
-        bounds
+        bounds.inflate(1e-14 * (b.min.abs().max(b.max.abs()).max_element() + bounds.longest_side()))
     }
 
     fn check(&self, b: &Bounds) -> Result<(), ParamError> {
@@ -108,8 +120,11 @@ impl Warp for Bend {
             "curvature",
             self.curvature,
             format_args!(
-                "below {limit:.6} in absolute value: the box of the bent solid reaches {reach:.6} towards the \
-                 centre of curvature (1/curvature must be beyond) and {height:.6} along z (a half turn at most)"
+                "below {} in absolute value: the box of the bent solid reaches {} towards the \
+                 centre of curvature (1/curvature must be beyond) and {} along z (a half turn at most)",
+                figures(limit, 6),
+                figures(reach, 6),
+                figures(height, 6)
             ),
         ))
     }
@@ -117,14 +132,6 @@ impl Warp for Bend {
     fn roundoff(&self, reach: f64) -> f64 {
         1e-6 * reach * (1.0 + (self.curvature * reach).abs())
     }
-}
-
-/// Range of `sin(x)/x`, which falls from 1 at 0 to 0 at ±π.
-fn sinc_range(x: Interval) -> Interval {
-    let a = x.abs();
-    let lo = if a.hi() < std::f64::consts::PI { sinc(a.hi()) } else { -0.25 };
-    let hi = if a.lo() < std::f64::consts::PI { sinc(a.lo()) } else { 0.25 };
-    Interval::new(lo, hi).inflate(1e-15)
 }
 
 /// `sin(x)/x`.

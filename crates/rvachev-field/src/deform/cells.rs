@@ -101,6 +101,7 @@ const MOST: f64 = 1e6;
 
 impl Warp for Cells {
     const NAME: &'static str = "repeat";
+    const FOLDS: bool = true;
 
     #[inline(always)]
     fn inverse<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
@@ -116,6 +117,12 @@ impl Warp for Cells {
         let first = DVec3::from_array(self.axes.map(|axis| -axis.shift(0.0)));
         let last = DVec3::from_array(self.axes.map(|axis| -axis.shift(axis.last)));
         Bounds::new(b.min + first, b.max + last)
+    }
+
+    fn support(&self, own: &dyn Fn(DVec3) -> f64, direction: DVec3) -> f64 {
+        let first = DVec3::from_array(self.axes.map(|axis| -axis.shift(0.0)));
+        let last = DVec3::from_array(self.axes.map(|axis| -axis.shift(axis.last)));
+        own(direction) + (direction * first).max(direction * last).element_sum()
     }
 
     fn check(&self, _: &Bounds) -> Result<(), ParamError> {

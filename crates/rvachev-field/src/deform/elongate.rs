@@ -57,6 +57,10 @@ impl Warp for Elongate {
         Bounds::new(min, max)
     }
 
+    fn support(&self, own: &dyn Fn(DVec3) -> f64, direction: DVec3) -> f64 {
+        own(direction) + direction.abs().dot(self.half())
+    }
+
     fn check(&self, _: &Bounds) -> Result<(), ParamError> {
         for (axis, length) in ["x", "y", "z"].into_iter().zip(self.lengths.to_array()) {
             check::within(&format!("lengths.{axis}"), length, 0.0, 1e9)?;

@@ -42,6 +42,9 @@ pub use twist_by::TwistBy;
 pub trait Warp: Debug + Clone + Send + Sync + 'static {
     const NAME: &'static str;
 
+    /// Whether it folds space onto one of many copies.
+    const FOLDS: bool = false;
+
     /// The pre-image of a point.
     fn inverse<R: Real>(&self, p: [R; 3]) -> [R; 3];
 
@@ -51,6 +54,12 @@ pub trait Warp: Debug + Clone + Send + Sync + 'static {
 
     /// A box that holds the image of a box.
     fn bounds(&self, bounds: &Bounds) -> Bounds;
+
+    /// The most that the scalar product with a direction, of any length, is over the image of a set, at
+    /// least, given the same of the set itself. Infinite where it is not known.
+    fn support(&self, _own: &dyn Fn(DVec3) -> f64, _direction: DVec3) -> f64 {
+        f64::INFINITY
+    }
 
     /// Whether the parameters are in range for a solid within `bounds`.
     fn check(&self, bounds: &Bounds) -> Result<(), ParamError>;
@@ -112,6 +121,10 @@ pub trait AnyWarp: Any + Debug + Send + Sync {
     fn jacobians(&self, chunk: Chunk<'_, f32, 12>);
     /// A box that holds the images of what a box holds.
     fn bounds(&self, bounds: &Bounds) -> Bounds;
+    /// Whether it folds space onto one of many copies.
+    fn folds(&self) -> bool;
+    /// How far the image of a set reaches along a direction, given the same of the set.
+    fn support(&self, own: &dyn Fn(DVec3) -> f64, direction: DVec3) -> f64;
     /// Whether the parameters allow to deform what a box holds.
     fn check(&self, bounds: &Bounds) -> Result<(), ParamError>;
     /// How far single precision may move a pre-image, over a hull.
@@ -133,6 +146,22 @@ fn turned_box(b: &Bounds, angle: Interval) -> Bounds {
     let disc = Interval::new(-reach, reach);
     let (x, y) = ((x * cos - y * sin).narrowed_by(disc), (x * sin + y * cos).narrowed_by(disc));
     Bounds::new(DVec3::new(x.lo(), y.lo(), b.min.z), DVec3::new(x.hi(), y.hi(), b.max.z))
+}
+
+/// How far a set reaches along a direction, turned about z by any angles, part by part.
+///
+/// ```text
+///     |(x, y)| cos(π/n) ≤ (x, y)·u       u the nearest of n unit vectors all round
+/// ```
+fn turned_support(own: &dyn Fn(DVec3) -> f64, direction: DVec3) -> f64 {
+    const COUNT: u32 = 64;
+    let step = std::f64::consts::TAU / f64::from(COUNT);
+    let across = direction.truncate().length() / (0.5 * step).cos();
+    if across == 0.0 {
+        return own(direction);
+    }
+    let along = |n: u32| own((across * glam::DVec2::from_angle(step * f64::from(n))).extend(direction.z));
+    (0..COUNT).map(along).fold(f64::NEG_INFINITY, f64::max)
 }
 
 #[cfg(test)]

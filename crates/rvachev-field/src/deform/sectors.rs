@@ -18,7 +18,7 @@ use std::f64::consts::TAU;
 
 use glam::{DAffine3, DVec3};
 
-use super::{Branches, Warp};
+use super::{Branches, Warp, turned_support};
 use crate::{Bounds, Dual, Euclid, Interval, Real};
 use crate::{ParamError, check};
 
@@ -97,6 +97,7 @@ impl Sectors {
 
 impl Warp for Sectors {
     const NAME: &'static str = "repeat_polar";
+    const FOLDS: bool = true;
 
     #[inline(always)]
     fn inverse<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
@@ -118,6 +119,16 @@ impl Warp for Sectors {
         }
         let disc = DVec3::new(reach, reach, f64::INFINITY);
         out.intersection(&Bounds::new(-disc, disc))
+    }
+
+    fn support(&self, own: &dyn Fn(DVec3) -> f64, direction: DVec3) -> f64 {
+        /// More copies than this reach about as far all round.
+        const MANY: u32 = 64;
+        if self.blocks > MANY {
+            return turned_support(own, direction);
+        }
+        let along = |block: u32| own(self.turned(f64::from(block)).transform_vector3(direction));
+        (0..self.blocks).map(along).fold(f64::NEG_INFINITY, f64::max)
     }
 
     fn check(&self, _: &Bounds) -> Result<(), ParamError> {

@@ -50,6 +50,13 @@ impl Warp for Taper {
         out
     }
 
+    fn support(&self, own: &dyn Fn(DVec3) -> f64, direction: DVec3) -> f64 {
+        // The direction as the sections see it is linear in t, the support function convex.
+        let t = [-own(-DVec3::Z), own(DVec3::Z)].map(|z| (2.0 * z / self.height).clamp(-1.0, 1.0));
+        let along = |t: f64| own(direction * DVec3::new(1.0 + self.kx * t, 1.0 + self.ky * t, 1.0));
+        along(t[0]).max(along(t[1]))
+    }
+
     fn check(&self, _: &Bounds) -> Result<(), ParamError> {
         check::length("height", self.height)?;
         for (name, k) in [("kx", self.kx), ("ky", self.ky)] {

@@ -6,10 +6,9 @@
 //!
 //! Source: A. H. Barr, *Global and local deformations of solid primitives* (1984).
 
-#[cfg(test)]
 use glam::DVec3;
 
-use super::{Warp, turned_box};
+use super::{Warp, turned_box, turned_support};
 use crate::{Angle, Bounds, Interval, Real};
 use crate::{ParamError, check};
 
@@ -37,6 +36,10 @@ impl Warp for Twist {
 
     fn bounds(&self, b: &Bounds) -> Bounds {
         turned_box(b, Interval::new(b.min.z, b.max.z) * self.rate.radians())
+    }
+
+    fn support(&self, own: &dyn Fn(DVec3) -> f64, direction: DVec3) -> f64 {
+        turned_support(own, direction)
     }
 
     fn check(&self, _: &Bounds) -> Result<(), ParamError> {

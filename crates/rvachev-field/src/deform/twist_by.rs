@@ -4,11 +4,10 @@
 //!     φ = angle · law(z)      rotation by φ about z
 //! ```
 
-#[cfg(test)]
 use glam::DVec3;
 
 use super::law::{Law, check_law, law_range, slices};
-use super::{Warp, turned_box};
+use super::{Warp, turned_box, turned_support};
 use crate::{Angle, Bounds, Dual, Interval, Real};
 use crate::{ParamError, check};
 
@@ -65,6 +64,10 @@ impl<L: Law> Warp for TwistBy<L> {
             out = out.union(&turned_box(&slice, angle));
         }
         out
+    }
+
+    fn support(&self, own: &dyn Fn(DVec3) -> f64, direction: DVec3) -> f64 {
+        turned_support(own, direction)
     }
 
     fn check(&self, b: &Bounds) -> Result<(), ParamError> {

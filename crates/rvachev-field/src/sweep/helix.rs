@@ -128,6 +128,12 @@ impl Warp for HelixWarp {
         Bounds::new(DVec3::new(-reach, -reach, along[0] + b.min.y), DVec3::new(reach, reach, along[1] + b.max.y))
     }
 
+    fn support(&self, own: &dyn Fn(DVec3) -> f64, direction: DVec3) -> f64 {
+        // The same all round, however little of a turn there is.
+        let across = direction.truncate().length();
+        across * self.radius + own(DVec3::new(across, direction.z, direction.z / self.stretch))
+    }
+
     fn check(&self, b: &Bounds) -> Result<(), ParamError> {
         if b.is_empty() {
             return Ok(());

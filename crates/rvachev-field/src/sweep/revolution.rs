@@ -36,6 +36,10 @@ impl Warp for Revolution {
         Bounds::new(DVec3::new(-b.max.x, -b.max.x, b.min.y), DVec3::new(b.max.x, b.max.x, b.max.y))
     }
 
+    fn support(&self, own: &dyn Fn(DVec3) -> f64, direction: DVec3) -> f64 {
+        own(DVec3::new(direction.truncate().length(), direction.z, 0.0))
+    }
+
     fn check(&self, _: &Bounds) -> Result<(), ParamError> {
         Ok(())
     }
