@@ -23,7 +23,7 @@ use crate::mesh::feature::{INSET, Segment, Slope};
 use crate::{Cancelled, Run};
 
 /// How far from the surface a feature point may be, in cells.
-const FAR: f32 = 1.0 / 32.0;
+const FAR: f32 = 1.0 / 16.0;
 
 /// How often a point goes along the gradient.
 const STEPS: usize = 4;
@@ -161,6 +161,18 @@ impl<'a, S: Sampler> Holder<'a, S> {
             .map(|segment| self.in_cells(self.samples.position(segment.from), node).clamp(low, high))
             .collect();
         let middle = around.iter().sum::<Vec3A>() / around.len() as f32;
+        // Where the field has a cusp the value over the gradient says little: the sign does.
+        let slope = self.slope(fan.block, &span, own);
+        if let Some(slope) = slope {
+            let normals = [Vec3A::from(fan.normal), slope.gradient.normalize_or_zero()];
+            let ways = normals.into_iter().flat_map(|normal| [FAR, -FAR].map(|by| by * normal));
+            for at in ways.map(|way| (own + way).clamp(low, high)) {
+                let beside = self.slope(fan.block, &span, at);
+                if beside.is_some_and(|beside| (beside.value > 0.0) != (slope.value > 0.0)) {
+                    return fan.at;
+                }
+            }
+        }
         let mut place = self.along_gradient((fan.block, &span), own, [low, high]);
         place = place.or_else(|| self.along_gradient((fan.block, &span), middle, [low, high]));
         place = place.or_else(|| self.between((fan.block, &span), own, middle));
