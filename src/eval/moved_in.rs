@@ -17,6 +17,7 @@ use glam::DVec3;
 use super::program::{Kind, Node};
 use super::{Program, Region};
 use crate::{Bounds, Cancelled, Dual, Interval, Run};
+use rvachev_field::Rule;
 
 /// A side is near enough to the solid at this part of the width.
 const NEAR: f64 = 1.0 / 1024.0;
@@ -66,16 +67,16 @@ fn is_outside(bounds: &Bounds, program: &Program) -> bool {
     program.value(bounds.center()) + rise * (1.0 + MARGIN) + MARGIN * size < 0.0
 }
 
-/// Whether the box of a solid that its parts tell may be too large: where it is deformed, or its operands
-/// are blended.
+/// Whether the box of a solid that its parts tell may be too large: where it is deformed, or edges of end faces
+/// are rounded off. Copies are bounded as one of them is, and sweeps by what their profiles reach.
 pub(super) fn is_loose(program: &Program) -> bool {
-    let blends = |kind: &Kind| matches!(kind, Kind::Join { rule, .. } if rule.reads_values());
-    let folds = |&frame: &u32| program.scene.frame(frame).is_some_and(|frame| frame.warp.folds());
-    if program.frames.iter().any(folds) {
-        // Copies are bounded as one of them is, and as the same copies made one by one are at least.
-        return false;
-    }
-    !program.frames.is_empty() || program.nodes.iter().any(|node| blends(&node.kind))
+    let frames = || program.frames.iter().filter_map(|&frame| program.scene.frame(frame));
+    // Some values are searched for, which is no quick answer.
+    let is_formula = |node: &Node| node.valued_by().is_none_or(|leaf| program.instance(leaf).field.is_formula());
+    let is_rim = |node: &Node| matches!(node.kind, Kind::Join { rule: Rule::Rounded(_) | Rule::Chamfered(_), .. });
+    (frames().any(|frame| !frame.warp.sweeps()) || program.nodes.iter().any(is_rim))
+        && !frames().any(|frame| frame.warp.folds())
+        && program.nodes.iter().all(is_formula)
 }
 
 /// The box of what is inside in any of the parts.

@@ -60,7 +60,6 @@ mod bulge;
 mod cells;
 mod corners;
 mod crease;
-mod hold;
 mod join;
 mod joined;
 mod lists;

@@ -26,7 +26,6 @@ mod maps;
 mod mesh;
 mod models;
 mod narrow;
-mod on_surface;
 mod pace;
 mod paint;
 mod parameters;

@@ -119,23 +119,17 @@ fn sines(random: &mut Random) -> Solid {
     Solid::new(Sines(std::array::from_fn(|_| wave())))
 }
 
-/// The field of a number, and the source of what else is random.
-pub fn random_field(seed: u64) -> (Solid, Random) {
-    let mut random = Random::new(seed.wrapping_mul(0x9e37_79b9) + 3);
-    let solid = match seed % 5 {
-        0 => sines(&mut random),
-        1 | 2 => csg(&mut random),
-        3 => touching(&mut random),
-        // Under maps, with blends, offsets and shells.
-        _ => random_solid(&mut random, 2),
-    };
-    (solid, random)
-}
-
 fn fields(seeds: std::ops::Range<u64>, cell: f64, thin: ThinFeatures) {
     let (mut triangles, mut cut, mut empty, mut beyond) = (0, 0, 0, 0.0f64);
     for seed in seeds {
-        let (solid, mut random) = random_field(seed);
+        let mut random = Random::new(seed.wrapping_mul(0x9e37_79b9) + 3);
+        let solid = match seed % 5 {
+            0 => sines(&mut random),
+            1 | 2 => csg(&mut random),
+            3 => touching(&mut random),
+            // Under maps, with blends, offsets and shells.
+            _ => random_solid(&mut random, 2),
+        };
         // Not so large that cells are without number.
         let bounded = solid.bounds().unwrap().longest_side() < 100.0 * CELL;
         let part = random.chance(0.3) || !bounded;

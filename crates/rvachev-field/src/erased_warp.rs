@@ -85,6 +85,10 @@ impl<W: Warp> AnyWarp for W {
         W::FOLDS
     }
 
+    fn sweeps(&self) -> bool {
+        W::SWEEPS
+    }
+
     fn support(&self, own: &dyn Fn(DVec3) -> f64, direction: DVec3) -> f64 {
         Warp::support(self, own, direction)
     }

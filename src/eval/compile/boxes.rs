@@ -85,21 +85,10 @@ impl Compiler<'_> {
         boxes
     }
 
-    /// A box of the smooth union of two operands.
-    ///
-    /// ```text
-    ///     x ≤ 0 and y ≤ 0, but x∨y > 0:   one of them is above −k/4, the other above −k
-    /// ```
-    ///
-    /// So it is in an operand's box, or in those of both that have grown; nor is it farther from the
-    /// members than it rises.
+    /// A box of the smooth union of two operands: no farther from its members than it rises.
     pub(super) fn smooth_union(&self, site: Site<'_>, width: f64, pair: [Built; 2]) -> Bounds {
         let swell = Swell::joined(Op::Or, Rule::Smooth(width), pair.map(|b| b.swell).to_vec());
         let risen = self.each(site, |operand, inner, _| self.members(operand, inner, swell.reach(0.0), DEEPEST));
-        let near = self.risen(site, [0.25 * width; 2]);
-        let far = self.risen(site, [width; 2]);
-        let between = near[0].intersection(&far[1]).union(&far[0].intersection(&near[1]));
-        let apart = pair[0].sides.inside.union(&pair[1].sides.inside);
-        apart.union(&between).intersection(&risen[0].union(&risen[1]))
+        risen[0].union(&risen[1])
     }
 }

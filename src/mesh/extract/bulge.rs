@@ -43,10 +43,6 @@ const HIGH: f32 = 0.0125;
 /// How high the vertex is above the middle of a loop, as a part of how high the surface is: of three to seven vertices.
 const RAISED: [f32; 5] = [1.75, 1.5, 1.345, 1.25, 1.188];
 
-/// The most that a vertex is above the surface, in cells: where that is not enough, the surface is hardly wider than
-/// the cell.
-const RISEN: f32 = 1.0 / 16.0;
-
 /// Cells whose normals have a larger variance are hardly ever round: with half of them on each side of a right angle it is
 /// 1/2.
 const WIDE: f32 = 0.35;
@@ -146,15 +142,14 @@ impl<const N: usize> Ring<N> {
             return Cover::Table;
         }
         let normal = self.sum.normalize_or_zero();
-        Cover::Top { at: middle + raised(N, height) * normal, normal }
+        Cover::Top { at: middle + raised(N) * height * normal, normal }
     }
 }
 
-/// How high the vertex is above the middle of so many, given how high the surface is.
+/// How high the vertex is above the middle of so many, as a part of how high the surface is.
 #[inline(always)]
-fn raised(count: usize, height: f32) -> f32 {
-    let above = (RAISED[count.clamp(3, 7) - 3] - 1.0) * height;
-    height + above.clamp(-RISEN, RISEN)
+fn raised(count: usize) -> f32 {
+    RAISED[count.clamp(3, 7) - 3]
 }
 
 /// What a smooth cell has.
@@ -185,7 +180,7 @@ impl Middle {
         let (normal, depth) = slope.surface(step)?;
         let is_near = (depth - self.height).abs() <= OFF * self.far;
         let is_round = is_near && (normal - self.normal).length_squared() <= ASKEW * self.variance;
-        is_round.then(|| (self.at + raised(self.count, depth) * normal, normal))
+        is_round.then(|| (self.at + raised(self.count) * depth * normal, normal))
     }
 }
 

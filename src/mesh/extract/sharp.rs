@@ -32,8 +32,6 @@
 //! Limits: cells with several loops stay as the table has them, or as that of the opposite case
 //! (see [`joined`](super::joined)). Where a crease passes an empty cell and no region comes about, it is
 //! cut off by what it goes into that cell, up to half a cell or more.
-//!
-//! At last feature points that are off the surface are [held](super::hold) to it.
 
 use std::ops::Range;
 
@@ -43,7 +41,6 @@ use rayon::prelude::*;
 use super::cells::{CellOrder, CellSet};
 use super::corners::Vertices;
 use super::crease::Creases;
-use super::hold::hold;
 use super::joined::Joined;
 use super::lists::{fill, filled_numbers, split};
 use super::plain::Plain;
@@ -80,7 +77,7 @@ pub(super) struct Fan {
 
 impl Fan {
     /// Its segments, of those of all fans.
-    pub(super) fn of<'a>(&self, segments: &'a [Vec<Segment>]) -> &'a [Segment] {
+    fn of<'a>(&self, segments: &'a [Vec<Segment>]) -> &'a [Segment] {
         &segments[self.list as usize][self.segments.start as usize..self.segments.end as usize]
     }
 }
@@ -136,7 +133,7 @@ pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) ->
     let joined = Joined::new(samples, proposed.collect());
     let special = Special::find(samples, sampler, (&even, &joined), &to_find)?;
     let regions = regions(samples, &special, &joined, &to_merge)?;
-    Ok(Found::Fans(Box::new(Fans::new((samples, sampler), special, regions, &to_fan)?)))
+    Ok(Found::Fans(Box::new(Fans::new(samples, special, regions, &to_fan)?)))
 }
 
 /// The upper ambiguous faces of a block's cells that would rather be joined, but those of plain blocks.
@@ -154,12 +151,7 @@ fn joins(samples: &Samples<'_>, n: usize) -> Vec<(u16, u8)> {
 }
 
 impl Fans {
-    fn new<S: Sampler>(
-        (samples, sampler): (&Samples<'_>, &S),
-        mut special: Special,
-        regions: Vec<Region>,
-        run: &Run,
-    ) -> Result<Fans, Cancelled> {
+    fn new(samples: &Samples<'_>, mut special: Special, regions: Vec<Region>, run: &Run) -> Result<Fans, Cancelled> {
         let mut all = Fans::default();
         all.blocks.reserve_exact(samples.blocks().len());
         all.fans.reserve_exact(regions.len() + special.count());
@@ -222,8 +214,7 @@ impl Fans {
         all.vertices = samples.vertices().wrapping_add(all.plain.tops[0].len() as u32);
         let triangles = |fans: &[Fan]| fans.iter().map(|fan| fan.segments.len()).sum();
         all.counts = all.fans.chunks(AT_ONCE).map(triangles).collect();
-        hold(samples, sampler, (&mut all.fans, &all.segments), run)?;
-        all.turn((samples, sampler), run)?;
+        all.turn(samples, run)?;
         Ok(all)
     }
 

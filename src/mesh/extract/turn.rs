@@ -17,8 +17,6 @@
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
-use super::Sampler;
-use super::hold::Holder;
 use super::samples::{Samples, cell_number, split_cell};
 use super::sharp::{AT_ONCE, Fan, Fans};
 use crate::mesh::feature::{INSET, Segment};
@@ -26,13 +24,9 @@ use crate::{Cancelled, Run};
 
 impl Fans {
     /// Finds out which edges between fans are turned, and to what.
-    pub(super) fn turn<S: Sampler>(
-        &mut self,
-        (samples, sampler): (&Samples<'_>, &S),
-        run: &Run,
-    ) -> Result<(), Cancelled> {
+    pub(super) fn turn(&mut self, samples: &Samples<'_>, run: &Run) -> Result<(), Cancelled> {
         let all = &*self;
-        let of_fans = |holder: &mut Holder<'_, S>, (n, fans): (usize, &[Fan])| {
+        let of_fans = |(n, fans): (usize, &[Fan])| {
             run.check()?;
             let mut found = Vec::with_capacity(fans.len());
             for (low, fan) in (n * AT_ONCE..).zip(fans) {
@@ -40,14 +34,12 @@ impl Fans {
                 // Of two fans the lower one sees to it.
                 let turns = |&nth: &usize| ring[nth].turns & (ring[nth].face % 2 == 1);
                 let turned = |nth| all.turned(samples, (low, fan), ring, nth);
-                // A way by a point that is off the surface is not worth it.
-                let is_near = |turned: &Turned| turned.at.as_ref().is_none_or(|at| holder.is_near(fan, **at));
-                found.extend((0..ring.len()).filter(turns).filter_map(turned).filter(is_near));
+                found.extend((0..ring.len()).filter(turns).filter_map(turned));
             }
             Ok(found)
         };
         let found: Result<Vec<Vec<Turned>>, Cancelled> =
-            all.fans.par_chunks(AT_ONCE).enumerate().map_init(|| Holder::new(samples, sampler), of_fans).collect();
+            all.fans.par_chunks(AT_ONCE).enumerate().map(of_fans).collect();
         let fans = self.fans.len() as u32;
         for Turned { fans: [low, high], segments, at } in found?.into_iter().flatten() {
             let places = [(low, segments[0]), (high, segments[1])].map(|(fan, nth)| {

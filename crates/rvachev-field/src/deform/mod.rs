@@ -45,6 +45,9 @@ pub trait Warp: Debug + Clone + Send + Sync + 'static {
     /// Whether it folds space onto one of many copies.
     const FOLDS: bool = false;
 
+    /// Whether it carries a profile along a curve.
+    const SWEEPS: bool = false;
+
     /// The pre-image of a point.
     fn inverse<R: Real>(&self, p: [R; 3]) -> [R; 3];
 
@@ -123,6 +126,8 @@ pub trait AnyWarp: Any + Debug + Send + Sync {
     fn bounds(&self, bounds: &Bounds) -> Bounds;
     /// Whether it folds space onto one of many copies.
     fn folds(&self) -> bool;
+    /// Whether it carries a profile along a curve.
+    fn sweeps(&self) -> bool;
     /// How far the image of a set reaches along a direction, given the same of the set.
     fn support(&self, own: &dyn Fn(DVec3) -> f64, direction: DVec3) -> f64;
     /// Whether the parameters allow to deform what a box holds.

@@ -102,6 +102,7 @@ impl HelixWarp {
 
 impl Warp for HelixWarp {
     const NAME: &'static str = "sweep_helix";
+    const SWEEPS: bool = true;
 
     #[inline(always)]
     fn inverse<R: Real>(&self, p: [R; 3]) -> [R; 3] {

@@ -18,6 +18,7 @@ pub struct Revolution;
 
 impl Warp for Revolution {
     const NAME: &'static str = "revolve";
+    const SWEEPS: bool = true;
 
     #[inline(always)]
     fn inverse<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
