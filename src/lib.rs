@@ -477,7 +477,7 @@ pub use eval::{Accuracy, Hit, Owner};
 pub use geom::{Camera, Image, Mesh, Plane, PointCloud, Polyline, ThinPlace, ThinReport, View};
 pub use io::save::SaveSettings;
 pub use io::unit::LengthUnit;
-pub use mesh::{AtBounds, CellSize, Features, MeshReport, MeshSettings, ThinFeatures};
+pub use mesh::{AtBounds, CellSize, Component, Features, MeshReport, MeshSettings, ThinFeatures};
 pub use render::{Background, Lights, RenderSettings, Scene, Slice, SliceSettings, Style};
 #[cfg(feature = "formula")]
 #[doc(inline)]

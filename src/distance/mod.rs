@@ -16,7 +16,6 @@ mod facets;
 mod mend;
 mod quilt;
 mod seam;
-mod slopes;
 mod surface;
 
 #[cfg(test)]

@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::mend::mend;
 use super::quilt::{Quilt, Spot};
-use super::slopes::Slopes;
 use super::{compiled, surface_of};
+use crate::mesh::Slopes;
 use crate::{Blend, Run, Solid, deg};
 use rvachev_field::Patch;
 
@@ -58,6 +58,6 @@ fn spots_that_small_cells_do_not_show_are_kept_and_told() {
     let patch = Patch::flat([DVec3::ZERO, 4.0 * DVec3::X, 4.0 * DVec3::Y].map(|p| p + 0.005 * DVec3::Z));
     let mut quilt = Quilt::of(vec![Spot { patch, off: OFF }]);
     let slopes = Slopes { program: &programs.surface, precision: 1e-3 };
-    mend(&mut quilt, &slopes, 1e-3, &Run::default()).unwrap();
+    mend(&mut quilt, &slopes, 1e-3, 1e-3, &Run::default()).unwrap();
     assert!(!quilt.patches.is_empty() && quilt.error >= OFF, "{} patches, {}", quilt.patches.len(), quilt.error);
 }
