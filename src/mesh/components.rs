@@ -100,7 +100,7 @@ impl Mesh {
         let mut parts = vec![u32::MAX; self.positions().len()];
         let mut lists: Vec<Vec<u32>> = Vec::new();
         for (number, triangle) in (0u32..).zip(self.triangles()) {
-            if number as usize % AT_ONCE == 0 {
+            if (number as usize).is_multiple_of(AT_ONCE) {
                 run.check()?;
             }
             let part = &mut parts[roots.of(triangle[0]) as usize];

@@ -141,7 +141,7 @@ impl Collapse {
         let (mut steps, mut left) = (0, vertices);
         while let Some(Reverse((_, vertex, version))) = self.heap.pop() {
             steps += 1;
-            if steps % AT_ONCE == 0 {
+            if usize::is_multiple_of(steps, AT_ONCE) {
                 run.check()?;
                 run.report(1.0 - left as f64 / vertices as f64);
             }
