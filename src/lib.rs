@@ -98,7 +98,7 @@
 //!
 //! Questions are answered in double precision: [value](Solid::value),
 //! [gradient](Solid::gradient), [range](Solid::range) over a box,
-//! [raycast](Solid::raycast), [closest point](Solid::closest_surface_point),
+//! [raycast](Solid::raycast), [closest point](Solid::closest_surface_point), [clearance](Solid::clearance),
 //! [owner](Solid::owner).
 //!
 //! ```
