@@ -6,10 +6,10 @@
 //! ```
 
 use std::error::Error;
-use std::io::{Write, stderr};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
+use indicatif::{ProgressBar, ProgressStyle};
 use rvachev::{Background, Camera, Image, Paint, Progress, RenderSettings, Run, Scene, Solid, View, deg, turns};
 
 const FRAMES: u32 = 12;
@@ -36,17 +36,21 @@ fn valve() -> Solid {
     ((body.smooth_union(bonnet, 3.0) | flanges) - bore) | stem | wheel
 }
 
-/// Draws a bar over the last one.
-fn bar(done: f64) {
-    let full = (30.0 * done).round() as usize;
-    let _ = write!(stderr(), "\r[{}{}] {:3.0} %", "#".repeat(full), " ".repeat(30 - full), 100.0 * done);
-}
+/// Steps of the bar.
+const STEPS: u64 = 1000;
 
-fn frame(scene: &Scene, camera: &Camera, settings: &RenderSettings, number: u32) -> Result<Image, Box<dyn Error>> {
+fn frame(
+    scene: &Scene,
+    camera: &Camera,
+    settings: &RenderSettings,
+    (number, bar): (u32, &ProgressBar),
+) -> Result<Image, Box<dyn Error>> {
     let part = |frame: u32| f64::from(frame) / f64::from(FRAMES);
     let (from, to) = (part(number), part(number + 1));
     // Each frame reports its own progress; the bar shows that of all.
-    let run = Run { progress: Some(Progress::new(move |f| bar(from + (to - from) * f))), ..Run::default() };
+    let bar = bar.clone();
+    let report = move |f: f64| bar.set_position((STEPS as f64 * (from + (to - from) * f)) as u64);
+    let run = Run { progress: Some(Progress::new(report)), ..Run::default() };
     let turned = camera.orbit(turns(from), deg(0.0));
     Ok(scene.render_with(&turned, settings, &run)?)
 }
@@ -72,9 +76,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         background: Background::Plain([244, 244, 245]),
         ..RenderSettings::default()
     };
-    let frames: Result<Vec<Image>, _> = (0..FRAMES).map(|number| frame(&scene, &camera, &settings, number)).collect();
+    // Drawn on a terminal only.
+    let bar = ProgressBar::new(STEPS).with_style(ProgressStyle::with_template("[{bar:30}] {percent:3} %, {eta} left")?);
+    let frames: Result<Vec<Image>, _> =
+        (0..FRAMES).map(|number| frame(&scene, &camera, &settings, (number, &bar))).collect();
     let frames = frames?;
-    let _ = writeln!(stderr());
+    bar.finish_and_clear();
     if all {
         for (number, frame) in frames.iter().enumerate() {
             frame.save(folder.join(format!("turntable_{number:02}.png")))?;

@@ -98,7 +98,7 @@
 //!
 //! Questions are answered in double precision: [value](Solid::value),
 //! [gradient](Solid::gradient), [range](Solid::range) over a box,
-//! [raycast](Solid::raycast), [closest point](Solid::closest_surface_point),
+//! [raycast](Solid::raycast), [closest point](Solid::closest_surface_point), [clearance](Solid::clearance),
 //! [owner](Solid::owner).
 //!
 //! ```
@@ -235,7 +235,7 @@
 //!
 //! | becomes a solid by | |
 //! |---|---|
-//! | [`extrude`](Profile::extrude), [`extrude_with`](Profile::extrude_with) | along z; with an [`Extrusion`] twisted, scaled, its edges sharp, chamfered or rounded ([`Caps`]) |
+//! | [`extrude`](Profile::extrude), [`extrude_up`](Profile::extrude_up), [`extrude_with`](Profile::extrude_with) | along z, about z = 0 or from there up; with an [`Extrusion`] twisted, scaled, its edges sharp, chamfered or rounded ([`Caps`]) |
 //! | [`revolve`](Profile::revolve), [`revolve_by`](Profile::revolve_by) | about z, all the way or by an angle |
 //! | [`sweep_helix`](Profile::sweep_helix) | along a [`Helix`]: threads and springs |
 //! | [`column`](Profile::column) | the unbounded column over it |
@@ -280,8 +280,9 @@
 //! | map | |
 //! |---|---|
 //! | [`translate`](Solid::translate), [`rotate_z`](Solid::rotate_z) and its like by an [`Angle`], [`scale`](Solid::scale), [`affine`](Solid::affine) | affine ones |
+//! | [`on_ground`](Solid::on_ground), [`centered`](Solid::centered), [`aligned`](Solid::aligned), [`rotate_around`](Solid::rotate_around) | placing by boxes and points |
 //! | [`reflect`](Solid::reflect), [`mirrored`](Solid::mirrored) | the mirror image alone, and beside the solid |
-//! | [`repeat`](Solid::repeat), [`repeat_linear`](Solid::repeat_linear), [`repeat_polar`](Solid::repeat_polar) | grids, rows and rings of copies |
+//! | [`repeat`](Solid::repeat), [`repeat_linear`](Solid::repeat_linear), [`repeat_polar`](Solid::repeat_polar) | grids, rows and rings of copies; [`repeat_centered`](Solid::repeat_centered) about the solid's own place |
 //! | [`elongate`](Solid::elongate) | straight pieces inserted |
 //! | [`taper`](Solid::taper), [`twist`](Solid::twist), [`bend`](Solid::bend) | Barr's deformations |
 //! | [`taper_by`](Solid::taper_by), [`twist_by`](Solid::twist_by) | by any [`Law`] of z, of a factor and of what an angle is multiplied by: [`LinearLaw`], [`SmoothStep`], [`SineWave`], [`LawTable`], a number, your own |
@@ -477,7 +478,8 @@ pub use eval::{Accuracy, Hit, Owner};
 pub use geom::{Camera, Contours, Image, Mesh, Outline, Plane, PointCloud, Polyline, ThinPlace, ThinReport, View};
 pub use io::save::SaveSettings;
 pub use io::unit::LengthUnit;
-pub use mesh::{AtBounds, CellSize, Features, MeshReport, MeshSettings, ThinFeatures};
+pub use mesh::{AtBounds, CellSize, Component, Features, MeshReport, MeshSettings, ThinFeatures};
+pub use query::{Clearance, Face};
 pub use render::{Background, ContourSettings, Lights, RenderSettings, Scene, Side, Slice, SliceSettings, Style};
 #[cfg(feature = "formula")]
 #[doc(inline)]

@@ -10,7 +10,7 @@
 use glam::{DMat3, DVec3};
 
 use super::facets::CREASE;
-use super::slopes::Slope;
+use crate::mesh::Slope;
 
 /// The weight of where the point is.
 const DAMPING: f64 = 1e-4;

@@ -3,10 +3,10 @@
 use glam::DVec3;
 
 use super::crease::{Plane, meet};
-use super::slopes::{Slope, Slopes};
 use crate::error::MeshingError;
 use crate::eval::Program;
 use crate::mesh::Subject;
+use crate::mesh::{Slope, Slopes};
 use crate::{Bounds, Cancelled, CellSize, Features, Mesh, MeshSettings, Run, ThinFeatures};
 
 /// A vertex whose corners have normals that differ by more, in radians, is on a crease.

@@ -16,7 +16,6 @@ mod facets;
 mod mend;
 mod quilt;
 mod seam;
-mod slopes;
 mod surface;
 
 #[cfg(test)]
@@ -26,9 +25,8 @@ use std::sync::Arc;
 
 use self::surface::FromMeshes;
 use crate::error::{MeshingError, RenderError};
-use crate::eval::{CompileError, Compiled, DistanceSource, Wanted, compile};
+use crate::eval::{CompileError, Compiled, DistanceSource, Surface, Wanted, compile};
 use crate::{Bounds, Run, Solid, SolidError};
-use rvachev_field::Patches;
 
 /// The programs of a solid, compiled on first use and kept with it.
 pub(crate) fn compiled(solid: &Solid) -> Result<Arc<Compiled>, SolidError> {
@@ -45,22 +43,26 @@ pub(crate) fn compiled_with(solid: &Solid, run: &Run) -> Result<Arc<Compiled>, C
 }
 
 /// The surface of a bounded solid as patches, found on first use and kept with it.
-pub(crate) fn surface_of(solid: &Solid) -> Result<Arc<Patches>, SolidError> {
-    if let Some(kept) = solid.surface().get().and_then(|any| any.clone().downcast::<Patches>().ok()) {
+pub(crate) fn surface_of(solid: &Solid) -> Result<Arc<Surface>, SolidError> {
+    match surface_with(solid, &Run::default()) {
+        Ok(surface) => Ok(surface),
+        Err(CompileError::Solid(error)) => Err(error),
+        Err(CompileError::Cancelled(_)) => unreachable!("nobody has the token"),
+    }
+}
+
+/// The same on the threads of a run, which may be cancelled.
+pub(crate) fn surface_with(solid: &Solid, run: &Run) -> Result<Arc<Surface>, CompileError> {
+    if let Some(kept) = solid.surface().get().and_then(|any| any.clone().downcast::<Surface>().ok()) {
         return Ok(kept);
     }
-    let programs = compiled(solid)?;
+    let programs = compiled_with(solid, run)?;
     // Feet are refined on the field itself: a ten thousandth of the solid does.
     let length = 1e-1 * programs.bounds.longest_side();
     let wanted = Wanted { length, tolerance: None, region: &Bounds::ALL };
-    let found = FromMeshes.surface(solid, &programs, &wanted, &Run::default());
-    let patches = match found {
-        Ok(surface) => surface.patches,
-        Err(CompileError::Solid(error)) => return Err(error),
-        Err(CompileError::Cancelled(_)) => unreachable!("nobody has the token"),
-    };
-    let _ = solid.surface().set(patches.clone());
-    Ok(patches)
+    let surface = Arc::new(FromMeshes.surface(solid, &programs, &wanted, run)?);
+    let _ = solid.surface().set(surface.clone());
+    Ok(surface)
 }
 
 impl From<CompileError> for MeshingError {

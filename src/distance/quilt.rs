@@ -13,7 +13,7 @@ use glam::DVec3;
 
 use super::facets::{CREASE, Facets};
 use super::seam::{Hem, Seams};
-use super::slopes::{Slope, Slopes};
+use crate::mesh::{Slope, Slopes};
 use crate::{Cancelled, Run};
 use rvachev_field::Patch;
 

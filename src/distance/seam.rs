@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::crease::{Plane, meet};
 use super::facets::CREASE;
-use super::slopes::{Slope, Slopes};
+use crate::mesh::{Slope, Slopes};
 use crate::{Cancelled, Run};
 
 /// How far from a crease its sides are looked at, in parts of the side's length: from farther off

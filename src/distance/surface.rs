@@ -8,11 +8,11 @@ use super::compiled_with;
 use super::facets::{Facets, sharp};
 use super::mend::mend;
 use super::quilt::{Care, Quilt};
-use super::slopes::Slopes;
 use crate::error::MeshingError;
 use crate::eval::{Accuracy, CompileError, Compiled, DistanceSource, Program, Surface, Wanted};
+use crate::mesh::Slopes;
 use crate::mesh::Subject;
-use crate::{Bounds, CellSize, Mesh, RFunction, Run, Solid, SolidError};
+use crate::{Bounds, Mesh, RFunction, Run, Solid, SolidError};
 use rvachev_field::Patches;
 
 /// The surfaces of solids by their meshes.
@@ -27,9 +27,8 @@ const SMALL: f64 = 1e-6;
 /// They cannot be nearer than this part of it: they are kept in single precision.
 const FINEST: f64 = 2e-7;
 
-/// Cells along the longest side, and along the thinnest leaf, at least.
+/// Cells along the longest side at least.
 const ALONG_SIZE: f64 = 24.0;
-const ALONG_LEAF: f64 = 2.0;
 
 /// So many cells may be on the surface, and so many more for each leaf.
 const CELLS: f64 = 4e4;
@@ -85,7 +84,10 @@ impl DistanceSource for FromMeshes {
         // Of others, tips and cusps hide something in cells of any size.
         let is_gentle = programs.surface.is_gentle();
         let (mut done, mut best) = (LOOKING, None);
-        let mut cell = first_cell(&programs.surface, bounds, size, enough, &run.stage(0.0, done))?;
+        let subject = Subject { program: &programs.surface, bounds, palette: None, whole: None };
+        let look = run.stage(0.0, done);
+        let mut cell =
+            run.install(|| subject.first_cell(size, size / ALONG_SIZE, enough, &look)).map_err(compile_error)?;
         loop {
             // What is left is for smaller cells.
             let end = done + ATTEMPT * (1.0 - done);
@@ -161,20 +163,6 @@ fn extent(programs: &Compiled, wanted: &Wanted<'_>) -> (Bounds, Option<usize>, f
     let flat = programs.flat_axis();
     let size = (0..3).filter(|axis| Some(*axis) != flat).map(|axis| bounds.size()[axis]).fold(0.0, f64::max);
     (bounds, flat, size)
-}
-
-/// The size of cells that show all leaves, as far as these are not too many.
-fn first_cell(program: &Program, bounds: Bounds, size: f64, enough: f64, run: &Run) -> Result<f64, CompileError> {
-    let (most, wanted) = (size / ALONG_SIZE, program.thinnest_leaf() / ALONG_LEAF);
-    if wanted >= most {
-        return Ok(most);
-    }
-    // Of what has no end, as much as is large.
-    let bounds = bounds.intersection(&Bounds::from_center(bounds.center(), DVec3::splat(size)));
-    let subject = Subject { program, bounds, palette: None, whole: None };
-    let wanted = wanted.max(most / enough.sqrt());
-    let cells = run.install(|| subject.cells(CellSize::Length(wanted), run)).map_err(compile_error)? as f64;
-    Ok((wanted * (cells / enough).sqrt().max(1.0)).min(most))
 }
 
 /// A mesh, its creases sharp, and whether smaller cells would show more.

@@ -595,7 +595,12 @@ fn check_affine(map: &DAffine3, label: &str) -> Result<(), ParamError> {
     const LARGEST: f64 = 1e9;
     for (axis, offset) in ["x", "y", "z"].into_iter().zip(map.translation.to_array()) {
         if offset.is_nan() || offset.abs() > LARGEST {
-            return Err(ParamError::new(format_args!("translation.{axis}"), offset, "-1e9 to 1e9"));
+            let allowed = match label {
+                "on_ground" | "centered" => "-1e9 to 1e9, by a solid with a finite box",
+                "aligned" => "-1e9 to 1e9, by faces across the same axis of two solids with finite boxes",
+                _ => "-1e9 to 1e9",
+            };
+            return Err(ParamError::new(format_args!("translation.{axis}"), offset, allowed));
         }
     }
     let name = match label {

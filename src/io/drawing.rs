@@ -1,7 +1,7 @@
 //! Drawings of polylines: SVG and DXF.
 //!
 //! SVG has y down, so that the drawing is turned over in it; DXF has y up, as the plane has.
-//! One length unit is a millimetre in both.
+//! One length unit is a millimetre in both, and both say so: the size of an SVG is in mm, a DXF has `$INSUNITS`.
 //!
 //! Sources: W3C, *Scalable Vector Graphics 1.1*; Autodesk, *DXF Reference*, Release 12, which
 //! every reader knows.
@@ -12,7 +12,14 @@ use glam::DVec2;
 
 use crate::geom::Polyline;
 
-/// Writes polylines as SVG: closed ones filled, holes left open, and all of them outlined.
+/// Outlines are this part of the longest side wide.
+const STROKE: f64 = 1e-3;
+
+/// Coordinates are written to this part of the longest side, or finer: a tenth of what a laser cutter resolves of a metre.
+const RESOLUTION: f64 = 1e-6;
+
+/// Writes polylines as SVG: closed ones filled, holes left open, and all of them outlined. One length unit is a
+/// millimetre; coordinates are written to a millionth of the longest side.
 ///
 /// ```
 /// use glam::DVec2;
@@ -38,13 +45,16 @@ pub fn write_svg(lines: &[Polyline], mut out: impl Write) -> io::Result<()> {
     // A drawing without width or height still has an outline to show.
     let longest = (max - min).max_element();
     let longest = if longest > 0.0 { longest } else { 1.0 };
-    let (margin, stroke) = (0.04 * longest, 0.004 * longest);
+    let places = (-(RESOLUTION * longest).log10()).ceil().clamp(0.0, 300.0) as usize;
+    let short = |x: f64| short(x, places);
+    let margin = 0.04 * longest;
     let size = max - min + 2.0 * margin;
-    let (left, top) = (min.x - margin, -max.y - margin);
+    let [left, top] = [min.x - margin, -max.y - margin].map(short);
+    let [width, height, stroke] = [size.x, size.y, STROKE * longest].map(short);
     writeln!(
         out,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"{left} {top} {} {}\">",
-        size.x, size.y, size.x, size.y
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}mm\" height=\"{height}mm\" \
+         viewBox=\"{left} {top} {width} {height}\">"
     )?;
     let style = format!("stroke=\"#1d2b38\" stroke-width=\"{stroke}\" stroke-linejoin=\"round\"");
     for (closed, fill) in [(true, "fill=\"#e8d5b5\" fill-rule=\"evenodd\""), (false, "fill=\"none\"")] {
@@ -56,7 +66,7 @@ pub fn write_svg(lines: &[Polyline], mut out: impl Write) -> io::Result<()> {
         write!(out, "<path {fill} {style} d=\"")?;
         for line in chosen {
             for (i, p) in line.points().iter().enumerate() {
-                write!(out, "{}{} {}", if i == 0 { "M" } else { "L" }, p.x, -p.y)?;
+                write!(out, "{}{} {}", if i == 0 { "M" } else { "L" }, short(p.x), short(-p.y))?;
             }
             if closed {
                 write!(out, "Z")?;
@@ -67,7 +77,15 @@ pub fn write_svg(lines: &[Polyline], mut out: impl Write) -> io::Result<()> {
     writeln!(out, "</svg>")
 }
 
-/// Writes polylines as DXF (Release 12): entities POLYLINE on the layer `0`, closed or open.
+/// A number to so many decimal places, without zeros at the end.
+fn short(x: f64, places: usize) -> String {
+    let text = format!("{x:.places$}");
+    let text = if places > 0 { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+/// Writes polylines as DXF (Release 12): entities POLYLINE on the layer `0`, closed or open. One length unit is a
+/// millimetre: `$INSUNITS` is 4, and `$MEASUREMENT` 1, metric.
 ///
 /// # Errors
 ///
@@ -80,6 +98,10 @@ pub fn write_dxf(lines: &[Polyline], mut out: impl Write) -> io::Result<()> {
     pair(2, &"HEADER")?;
     pair(9, &"$ACADVER")?;
     pair(1, &"AC1009")?;
+    for (name, value) in [("$INSUNITS", 4), ("$MEASUREMENT", 1)] {
+        pair(9, &name)?;
+        pair(70, &value)?;
+    }
     pair(0, &"ENDSEC")?;
     pair(0, &"SECTION")?;
     pair(2, &"ENTITIES")?;
@@ -121,4 +143,27 @@ fn check(lines: &[Polyline]) -> io::Result<()> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short_and_units_are_said() {
+        let third = 1.0 / 3.0;
+        let points = vec![DVec2::new(-0.0, 0.0), DVec2::new(100.0 * third, third), DVec2::new(100.0, 1e-9)];
+        let lines = [Polyline::closed(points)];
+        let mut svg = Vec::new();
+        write_svg(&lines, &mut svg).unwrap();
+        let svg = String::from_utf8(svg).unwrap();
+        assert!(svg.contains("d=\"M0 0L33.3333 -0.3333L100 0Z\""), "{svg}");
+        assert!(svg.contains("width=\"108mm\" height=\"8.3333mm\" viewBox=\"-4 -4.3333 108 8.3333\""), "{svg}");
+        assert!(svg.contains("stroke-width=\"0.1\""), "{svg}");
+        let mut dxf = Vec::new();
+        write_dxf(&lines, &mut dxf).unwrap();
+        let dxf = String::from_utf8(dxf).unwrap();
+        assert!(dxf.contains("9\n$INSUNITS\n70\n4\n") && dxf.contains("9\n$MEASUREMENT\n70\n1\n"));
+        assert_eq!([short(1e9, 0), short(-1e-9, 3), short(0.125, 6)], ["1000000000", "0", "0.125"]);
+    }
 }

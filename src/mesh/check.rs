@@ -26,7 +26,8 @@ use glam::{DMat3, DVec3};
 
 use self::fans::{Fans, repeats};
 use self::lists::{mapped, sorted};
-use self::overlap::Overlaps;
+use self::meet::is_degenerate;
+use self::overlap::{LISTED, Overlaps};
 use crate::geom::Mesh;
 use crate::geom::figures::{point, size};
 use crate::{Cancelled, Run};
@@ -213,7 +214,7 @@ impl Mesh {
         let [to_turn, to_compare, to_sort] = run.stages([0.4, 0.5, 0.1]);
         let (fans, measure) = rayon::join(|| Fans::new(self, &to_turn), || self.measure_with(run));
         let (fans, measure) = (fans?, measure?);
-        let overlaps = Overlaps::find(self, &fans, &to_compare)?;
+        let overlaps = Overlaps::find(self, &fans, LISTED, &to_compare)?;
         let duplicate_vertices = duplicate_vertices(self, &to_sort)?;
         let repeated_indices = self.triangles().iter().filter(|&&t| repeats(t)).count();
         let faces = self.triangles().len() - repeated_indices;
@@ -245,6 +246,20 @@ impl Mesh {
         }
         Ok(report)
     }
+}
+
+/// Triangles that are degenerate, or have a point in common with another one that they do not share by index; not more
+/// than so many pairs.
+pub(super) fn intersecting(mesh: &Mesh, run: &Run) -> Result<Vec<[u32; 3]>, Cancelled> {
+    const MOST: usize = 1 << 12;
+    let [to_turn, to_compare] = run.stages([0.45, 0.55]);
+    let overlaps = Overlaps::find(mesh, &Fans::new(mesh, &to_turn)?, MOST, &to_compare)?;
+    let mut found: Vec<[u32; 3]> =
+        overlaps.pairs.iter().flatten().map(|number| mesh.triangles()[*number as usize]).collect();
+    if overlaps.degenerate > 0 {
+        found.extend(mesh.triangles().iter().filter(|&&t| repeats(t) || is_degenerate(mesh.corners(t))));
+    }
+    Ok(found)
 }
 
 fn duplicate_vertices(mesh: &Mesh, run: &Run) -> Result<usize, Cancelled> {

@@ -40,6 +40,32 @@ pub enum CellSize {
     /// The number of cells along the longest side of the bounds, at least 1; of a solid that is cut,
     /// of the part of its box within them. The default: 128.
     LongestSide(u32),
+    /// How far triangles and surface may be apart, in length units, finite and above 0: cells are as
+    /// small as the surface's curvature asks, each where it does, and then as many triangles are
+    /// taken away as the tolerance allows. Flat faces have few: a plain box has a dozen, some hundred where it is
+    /// turned out of the axes, a sphere of radius r about 12 r / tolerance.
+    ///
+    /// The mesh is closed, manifold and free of self-intersection as all others are, edges and corners
+    /// stay sharp, and what is thinner than the cells that it begins with may be lost as in any mesh:
+    /// those are as large as half of the thinnest leaf, and a twenty-fourth of the longest side at most. Where the
+    /// tolerance is not reached, [`Mesh::warnings`](crate::Mesh::warnings) says so, and
+    /// [`Mesh::deviation`](crate::Mesh::deviation) how far off the mesh is. It takes several times as
+    /// long as one mesh in cells of the smallest size.
+    ///
+    /// Where only a cell size is asked for, as by [`Solid::thin_features`](crate::Solid::thin_features), it
+    /// stands for a twenty-fourth of the longest side.
+    ///
+    /// ```
+    /// use rvachev::{CellSize, MeshSettings, Solid};
+    ///
+    /// let plate = Solid::cuboid([60.0, 40.0, 5.0]) - Solid::cylinder(8.0, 20.0);
+    /// let settings = MeshSettings { cell: CellSize::Tolerance(0.02), ..MeshSettings::default() };
+    /// let mesh = plate.mesh(&settings)?;
+    /// assert!(mesh.check().is_sound() && mesh.warnings().is_empty());
+    /// assert!(mesh.deviation().unwrap() < 0.02 && mesh.triangles().len() < 1000);
+    /// # Ok::<(), rvachev::error::MeshingError>(())
+    /// ```
+    Tolerance(f64),
 }
 
 impl Default for CellSize {
@@ -63,6 +89,12 @@ pub enum LatticeError {
     LongestSide {
         /// The number of cells.
         value: u32,
+    },
+    /// The tolerance is not a positive length.
+    #[error("tolerance is {value}; it must be finite, above {MIN_STEP:e} and below {MAX_STEP:e}")]
+    Tolerance {
+        /// The tolerance, in length units.
+        value: f64,
     },
     /// The bounds are empty, infinite, a single point where the cell size is relative to
     /// them, or out of the range of f32.
@@ -118,6 +150,8 @@ const MAX_CELLS_ALONG_AXIS: f64 = 2_147_483_648.0;
 /// The largest number of cells in all, 2⁴⁴: a mesh of a smooth solid has about the 2/3rd power
 /// of it in triangles, which is at the end of 32-bit indices.
 const MAX_CELLS: f64 = 17_592_186_044_416.0;
+/// Cells along the longest side that a mesh within a tolerance begins with.
+const AT_FIRST: u32 = 24;
 /// Where nodes are within a step, see the module.
 const SHIFT: f64 = 11.0 / 32.0;
 /// How far vertices stay from nodes, in cells, where f32 allows it.
@@ -146,16 +180,16 @@ impl Lattice {
         if bounds.is_empty() || reach > MAX_COORDINATE {
             return Err(LatticeError::Bounds { value: *bounds });
         }
+        let along = |cells: u32| match bounds.longest_side() {
+            0.0 => Err(LatticeError::Bounds { value: *bounds }),
+            longest => Ok(longest / f64::from(cells)),
+        };
         let wanted = match cell {
             CellSize::Length(length) => length,
             CellSize::LongestSide(0) => return Err(LatticeError::LongestSide { value: 0 }),
-            CellSize::LongestSide(cells) => {
-                let longest = bounds.longest_side();
-                if longest == 0.0 {
-                    return Err(LatticeError::Bounds { value: *bounds });
-                }
-                longest / f64::from(cells)
-            }
+            CellSize::LongestSide(cells) => along(cells)?,
+            CellSize::Tolerance(value) if value > MIN_STEP && value < MAX_STEP => along(AT_FIRST)?,
+            CellSize::Tolerance(value) => return Err(LatticeError::Tolerance { value }),
         };
         // Written such that NaN fails as well.
         if !(wanted > MIN_STEP && wanted < MAX_STEP) {

@@ -3,7 +3,9 @@
 mod blocks;
 mod bulk;
 mod check;
+mod components;
 mod deciders;
+mod deviation;
 mod error;
 mod extract;
 mod extract_blocks;
@@ -20,17 +22,21 @@ mod sampler;
 mod settings;
 mod shown;
 mod signs;
+mod simplify;
+mod slopes;
 mod subject;
 mod table;
 mod thin;
 mod volume;
 
 pub use check::MeshReport;
+pub use components::Component;
 pub use error::MeshingError;
 pub use lattice::{CellSize, Lattice, LatticeError};
 pub use settings::{AtBounds, Features, MeshSettings, ThinFeatures};
 pub use volume::{Volume, VolumeError, VolumeSettings};
 
 pub(crate) use paint::{corner_colors, each_triangle};
+pub(crate) use slopes::{Slope, Slopes};
 pub(crate) use subject::{Subject, Whole};
 pub(crate) use thin::thin_features_of;

@@ -22,21 +22,23 @@ mod piece;
 mod place;
 mod seam;
 mod side;
+mod tolerance;
 
 use self::inset::Inset;
 use self::level::Level;
 use self::piece::Piece;
 use self::seam::Seam;
+pub(super) use self::tolerance::within;
 use super::blocks::Blocks;
 use super::error::MeshingError;
 use super::extract::ExtractError;
 use super::lattice::Lattice;
-use super::resolve::{Among, unresolved_cells};
+use super::resolve::{Among, Unresolved, unresolved_cells};
 use super::settings::Features;
 use super::signs::BLOCK;
 use crate::eval::Program;
 use crate::geom::{Findings, Mesh};
-use crate::{Bounds, Run};
+use crate::{Bounds, Cancelled, Run};
 
 /// A solid to be meshed, and how.
 #[derive(Clone, Copy)]
@@ -56,33 +58,14 @@ pub(super) fn refined(
     run: &Run,
 ) -> Result<Mesh, MeshingError> {
     let [to_find, to_mesh, to_count] = run.stages([0.5, 0.4, 0.1]);
-    let unresolved =
-        |level: &Level, among, run: &Run| unresolved_cells(&level.blocks, (&level.lattice, job.limits), among, run);
-    let mut levels = vec![Level::new(lattice, blocks)];
-    let mut is_done = false;
-    for halving in 0..halvings {
-        let [done, next] = [0.0, 1.0].map(|by| (f64::from(halving) + by) / f64::from(halvings));
-        let last = levels.len() - 1;
-        // What turns round in cells with nodes on both sides may be torn: they are halved, too.
-        let found = unresolved(&levels[last], Among::All, &to_find.stage(done, next))?;
-        if found.is_empty() {
-            is_done = true;
-            break;
-        }
-        levels[last].inset = Inset::around(&levels[last].lattice, &found);
-        let Some(halved) = levels[last].halved() else {
-            levels[last].inset = Inset::default();
-            break;
-        };
-        levels.push(halved);
-    }
+    let (mut levels, mut is_done) = divided(job, (lattice, blocks), halvings, &to_find)?;
     grade(&mut levels);
     loop {
         match meshed(job, &mut levels, &to_mesh)? {
             Ok(mesh) => {
                 // What is left in the last level, in blocks that are not of the one around it.
                 let last = &levels[levels.len() - 1];
-                let mut found = if is_done { Vec::new() } else { unresolved(last, Among::OneSided, &to_count)? };
+                let mut found = if is_done { Vec::new() } else { unresolved(job, last, Among::OneSided, &to_count)? };
                 if let [.., outer, _] = &levels[..] {
                     found.retain(|found| outer.inset.has_half(found.block.map(|at| at / BLOCK as u32)));
                 }
@@ -96,11 +79,41 @@ pub(super) fn refined(
             // Without the level that does not fit.
             Err(misfit) => {
                 levels.truncate(misfit);
-                levels[misfit - 1].inset = Inset::default();
+                levels[misfit - 1].forget();
                 is_done = false;
             }
         }
     }
+}
+
+/// The levels of cells that are halved where they are unresolved, at most so many times, and whether none are in the last.
+fn divided(
+    job: Job<'_>,
+    (lattice, blocks): (Lattice, Blocks),
+    halvings: u32,
+    run: &Run,
+) -> Result<(Vec<Level>, bool), MeshingError> {
+    let mut levels = vec![Level::new(lattice, blocks)];
+    for halving in 0..halvings {
+        let [done, next] = [0.0, 1.0].map(|by| (f64::from(halving) + by) / f64::from(halvings));
+        let last = levels.len() - 1;
+        // What turns round in cells with nodes on both sides may be torn: they are halved, too.
+        let found = unresolved(job, &levels[last], Among::All, &run.stage(done, next))?;
+        if found.is_empty() {
+            return Ok((levels, true));
+        }
+        levels[last].inset = Inset::around(&levels[last].lattice, &found);
+        let Some(halved) = levels[last].halved() else {
+            levels[last].forget();
+            break;
+        };
+        levels.push(halved);
+    }
+    Ok((levels, false))
+}
+
+fn unresolved(job: Job<'_>, level: &Level, among: Among, run: &Run) -> Result<Vec<Unresolved>, Cancelled> {
+    unresolved_cells(&level.blocks, (&level.lattice, job.limits), among, run)
 }
 
 /// The mesh of all levels together, or the number of one whose sides of the seam do not fit, as it may be where the field
@@ -145,9 +158,6 @@ fn meshed(job: Job<'_>, levels: &mut [Level], run: &Run) -> Result<Result<Mesh, 
 
 /// Makes each inset so large that the next one is surrounded by blocks of its own level.
 fn grade(levels: &mut [Level]) {
-    if levels.len() < 3 {
-        return;
-    }
     for n in (1..levels.len()).rev() {
         let around: Vec<[u32; 3]> = levels[n].inset.around_all().collect();
         around.into_iter().for_each(|block| levels[n - 1].inset.add(block.map(|at| at / 2)));

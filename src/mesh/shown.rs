@@ -29,7 +29,24 @@ const DEEP: f64 = 0.3;
 /// Nearer to the surface than this part of the size, points may be on either side by rounding errors.
 const ROUNDING: f64 = 1e-9;
 
+/// Cells along the thinnest leaf, at least.
+const ALONG_LEAF: f64 = 2.0;
+
 impl Subject<'_> {
+    /// The size of cells that show all leaves, `most` at most, as far as these are not more than enough; `size` is how
+    /// large the surface is.
+    pub(crate) fn first_cell(&self, size: f64, most: f64, enough: f64, run: &Run) -> Result<f64, MeshingError> {
+        let wanted = self.program.thinnest_leaf() / ALONG_LEAF;
+        if wanted >= most {
+            return Ok(most);
+        }
+        // Of what has no end, as much as is large.
+        let bounds = self.bounds.intersection(&Bounds::from_center(self.bounds.center(), DVec3::splat(size)));
+        let wanted = wanted.max(most / enough.sqrt());
+        let cells = Subject { bounds, ..*self }.cells(CellSize::Length(wanted), run)? as f64;
+        Ok((wanted * (cells / enough).sqrt().max(1.0)).min(most))
+    }
+
     /// About how many cells of a size the surface is in.
     pub(crate) fn cells(&self, cell: CellSize, run: &Run) -> Result<usize, MeshingError> {
         let lattice = Lattice::new(&self.bounds, cell)?;

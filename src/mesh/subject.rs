@@ -6,12 +6,14 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::blocks::Blocks;
+use super::deviation::Probe;
 use super::error::MeshingError;
 use super::extract::ExtractError;
 use super::lattice::{CellSize, Lattice};
 use super::paint::corner_colors;
-use super::refine::{Job, refined};
+use super::refine::{Job, refined, within};
 use super::settings::{Features, MeshSettings, ThinFeatures};
+use super::simplify::{SHARE, simplified};
 use super::thin::thin_report;
 use crate::eval::{Compiled, Palette, Program};
 use crate::geom::{Findings, Mesh};
@@ -25,6 +27,10 @@ const AT_ONCE: usize = 1 << 14;
 
 /// A surface with radii of so many cells is known to have no creases.
 const ROUND: f64 = 2.0;
+
+/// A mesh within a tolerance begins with so many cells on the surface at most, and so many more for each leaf.
+const ENOUGH: f64 = 1e5;
+const ENOUGH_A_LEAF: f64 = 500.0;
 
 /// What is to be meshed.
 #[derive(Clone, Copy)]
@@ -50,23 +56,39 @@ impl Subject<'_> {
         let &Subject { program, bounds, palette, whole } = self;
         let palette = palette.filter(|palette| palette.is_painted());
         let owned = settings.owners || palette.is_some();
+        let tolerance = match settings.cell {
+            CellSize::Tolerance(tolerance) => Some(tolerance),
+            _ => None,
+        };
         // How long each stage takes, more or less.
         let if_done = |is_done: bool, time: f64| if is_done { time } else { 0.0 };
         let most = settings.thin.halvings();
         let [own, paint] = [if_done(owned, 0.8), if_done(palette.is_some(), 0.2)];
-        let [refine, extract] = [if_done(most > 0, 3.0), if_done(most == 0, 0.85)];
+        let extract = if most > 0 || tolerance.is_some() { 3.0 } else { 0.85 };
         let search = if_done(settings.thin == ThinFeatures::Count, 1.0);
-        let times = [0.15, refine, extract, if_done(whole.is_some(), 1.0), own, paint, search];
-        let [to_find, to_refine, to_extract, to_refuse, to_own, to_paint, to_search] = run.stages(times);
-        let lattice = Lattice::new(&bounds, settings.cell)?;
+        let simplify = if_done(tolerance.is_some(), 3.0);
+        let times = [0.15, extract, if_done(whole.is_some(), 1.0), own, simplify, paint, search];
+        let [to_find, to_extract, to_refuse, to_own, to_simplify, to_paint, to_search] = run.stages(times);
+        let mut lattice = Lattice::new(&bounds, settings.cell)?;
+        if tolerance.is_some() {
+            let enough = ENOUGH + ENOUGH_A_LEAF * program.leaf_count() as f64;
+            let first = self.first_cell(bounds.longest_side(), lattice.step(), enough, &to_find)?;
+            lattice = Lattice::new(&bounds, CellSize::Length(first))?;
+        }
         let mut blocks = Blocks::find(program, &lattice, &to_find)?;
         let is_round = program.least_radius() >= ROUND * lattice.step();
         let features = if is_round { Features::Smooth } else { settings.features };
         let job = Job { program, limits: bounds, features };
-        let mut mesh = if most > 0 {
-            refined(job, (lattice, blocks.clone()), most, &to_refine)?
-        } else {
-            blocks.extract(program, (&lattice, bounds), features, &to_extract)?
+        let mut near: Vec<Probe> = Vec::new();
+        let mut mesh = match tolerance {
+            Some(tolerance) => {
+                let start = (lattice, blocks);
+                let found = within(job, start, most, SHARE * tolerance, &to_extract)?;
+                (lattice, blocks, near) = (found.lattice, found.blocks, found.probes);
+                found.mesh
+            }
+            None if most > 0 => refined(job, (lattice, blocks.clone()), most, &to_extract)?,
+            None => blocks.extract(program, (&lattice, bounds), features, &to_extract)?,
         };
         if let Some(whole) = whole {
             whole.refuse_caps(&mesh, lattice.step(), &to_refuse)?;
@@ -74,11 +96,14 @@ impl Subject<'_> {
         }
         if owned {
             let owners = blocks.owners(&lattice, &mesh, program, &to_own)?;
-            if let Some(palette) = palette {
-                let colors = corner_colors(&mesh, palette, &owners, Paint::default(), &to_paint)?;
-                mesh = mesh.with_corner_colors(colors).map_err(ExtractError::from)?;
-            }
             mesh = mesh.with_owners(owners).map_err(ExtractError::from)?;
+        }
+        if let Some(tolerance) = tolerance {
+            mesh = simplified(mesh, &near, (program, tolerance), &to_simplify)?;
+        }
+        if let (Some(palette), Some(owners)) = (palette, mesh.owners()) {
+            let colors = corner_colors(&mesh, palette, owners, Paint::default(), &to_paint)?;
+            mesh = mesh.with_corner_colors(colors).map_err(ExtractError::from)?;
         }
         if settings.thin == ThinFeatures::Count {
             let thin = Some(thin_report(&blocks, (&lattice, bounds), &to_search)?);

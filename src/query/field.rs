@@ -194,7 +194,7 @@ impl Solid {
         if bounds.is_empty() || !p.is_finite() {
             return Ok(None);
         }
-        Ok(nearest(&programs.surface, &*surface_of(self)?, p))
+        Ok(nearest(&programs.surface, &surface_of(self)?.patches, p))
     }
 
     /// The leaf that decides at a point: the one whose value the point has after min and max.

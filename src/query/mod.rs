@@ -2,6 +2,7 @@
 //!
 //! Here, above programs, meshes and distances, because an answer may need a solid's surface.
 
+mod clearance;
 mod field;
 mod inside;
 #[cfg(feature = "formula")]
@@ -10,6 +11,9 @@ mod mesh;
 mod nearest;
 mod painted;
 mod palette;
+mod place;
 mod prepare;
 
+pub use clearance::Clearance;
+pub use place::Face;
 pub use prepare::PrepareError;

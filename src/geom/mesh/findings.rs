@@ -18,6 +18,8 @@ pub(crate) struct Findings {
     pub(crate) possibly_lost: usize,
     /// The middles of the blocks that are counted, unless the mesh was moved since.
     pub(crate) lost_at: Vec<DVec3>,
+    /// How far the mesh may be off its surface, and how far was asked for, in length units.
+    pub(crate) deviation: Option<[f64; 2]>,
     /// See [`Mesh::thin_features`].
     pub(crate) thin: Option<ThinReport>,
 }
@@ -25,7 +27,7 @@ pub(crate) struct Findings {
 impl Findings {
     /// Those of a mesh that is moved or deformed: counts hold, places and sizes do not.
     fn without_places(&self) -> Findings {
-        Findings { cell: 0.0, lost_at: Vec::new(), thin: None, ..self.clone() }
+        Findings { cell: 0.0, lost_at: Vec::new(), deviation: None, thin: None, ..self.clone() }
     }
 }
 
@@ -80,6 +82,14 @@ impl Mesh {
         self.findings.possibly_lost
     }
 
+    /// How far triangles and surface are apart, in length units, where a mesh was made
+    /// [within a tolerance](crate::CellSize::Tolerance); `None` if it was not. It is what was found at the vertices and in
+    /// the middles of triangles and sides.
+    #[must_use]
+    pub fn deviation(&self) -> Option<f64> {
+        self.findings.deviation.map(|[found, _]| found)
+    }
+
     /// The thin features that were searched for when the mesh was made, with
     /// [`ThinFeatures::Count`](crate::ThinFeatures::Count); `None` if they were not.
     #[must_use]
@@ -105,7 +115,7 @@ impl Mesh {
     /// ```
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
-        let Findings { cell, clamped_vertices, possibly_lost, lost_at, thin } = &self.findings;
+        let Findings { cell, clamped_vertices, possibly_lost, lost_at, deviation, thin } = &self.findings;
         let mut warnings = Vec::new();
         let is_extracted = clamped_vertices.is_some();
         let is_empty = is_extracted && self.triangles.is_empty();
@@ -121,6 +131,12 @@ impl Mesh {
             warnings.push(format!(
                 "{empty}features thinner than a cell{than} may be lost in {possibly_lost} {blocks} of cells{place}; \
                  mesh with smaller cells or `ThinFeatures::Refine`, or ask `Solid::thin_features` where they are"
+            ));
+        }
+        if let Some([found, wanted]) = deviation.filter(|[found, wanted]| found > wanted) {
+            warnings.push(format!(
+                "triangles are up to {found:.3e} off the surface, {wanted:.3e} was asked for; a larger \
+                 `CellSize::Tolerance` is reached, and where creases are cut off `Features::Sharp` keeps them"
             ));
         }
         if let Some(first) = thin.as_ref().and_then(|thin| thin.places.first().map(|place| (thin, place))) {

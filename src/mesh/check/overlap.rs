@@ -34,14 +34,15 @@ const CHUNK: usize = 1 << 10;
 #[derive(Default)]
 pub(super) struct Overlaps {
     pub count: usize,
-    /// The first of them, in order, at most [`LISTED`].
+    /// The first of them, in order, at most so many.
     pub pairs: Vec<[u32; 2]>,
+    most: usize,
     /// Triangles that are left out, as they are degenerate.
     pub degenerate: usize,
 }
 
 impl Overlaps {
-    pub(super) fn find(mesh: &Mesh, fans: &Fans, run: &Run) -> Result<Overlaps, Cancelled> {
+    pub(super) fn find(mesh: &Mesh, fans: &Fans, most: usize, run: &Run) -> Result<Overlaps, Cancelled> {
         // How long each stage takes, more or less.
         let [to_sort, to_search] = run.stages([0.3, 0.7]);
         let order = along_curve(mesh, &to_sort)?;
@@ -53,14 +54,14 @@ impl Overlaps {
             .into_par_iter()
             .map(|chunk| {
                 meter.step()?;
-                let mut found = Overlaps::default();
+                let mut found = Overlaps { most, ..Overlaps::default() };
                 for group in chunk * CHUNK..groups.min((chunk + 1) * CHUNK) {
                     search.group(group, &mut found);
                 }
                 Ok(found)
             })
             .collect();
-        let mut all = Overlaps { degenerate, ..Overlaps::default() };
+        let mut all = Overlaps { degenerate, most, ..Overlaps::default() };
         for found in chunks? {
             all.count += found.count;
             all.pairs.extend(found.pairs);
@@ -72,14 +73,14 @@ impl Overlaps {
     fn add(&mut self, a: u32, b: u32) {
         self.count += 1;
         self.pairs.push([a.min(b), a.max(b)]);
-        if self.pairs.len() >= 64 * LISTED {
+        if self.pairs.len() >= 64 * self.most {
             self.trim();
         }
     }
 
     fn trim(&mut self) {
         self.pairs.sort_unstable();
-        self.pairs.truncate(LISTED);
+        self.pairs.truncate(self.most);
     }
 }
 

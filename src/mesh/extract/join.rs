@@ -29,6 +29,7 @@ impl Parts<'_> {
             clamped_vertices: Some(self.clamped),
             possibly_lost: self.lost.len(),
             lost_at: self.lost.iter().map(|block| lattice.region(*block, BLOCK).center()).collect(),
+            deviation: None,
             thin: None,
         }
     }

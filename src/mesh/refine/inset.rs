@@ -18,19 +18,31 @@ pub(super) struct Inset {
 }
 
 impl Inset {
+    /// No blocks of a lattice.
+    pub(super) fn none(lattice: &Lattice) -> Inset {
+        let counts = lattice.cells().map(|cells| cells.div_ceil(BLOCK as u32));
+        Inset { blocks: BTreeSet::new(), counts }
+    }
+
     /// The blocks that have unresolved cells, or are close to one.
     pub(super) fn around(lattice: &Lattice, unresolved: &[Unresolved]) -> Inset {
-        let counts = lattice.cells().map(|cells| cells.div_ceil(BLOCK as u32));
-        let mut inset = Inset { blocks: BTreeSet::new(), counts };
+        let mut inset = Inset::none(lattice);
         for found in unresolved {
             let block = found.block.map(|cell| cell / BLOCK as u32);
-            for cell in &found.cells {
-                let near = cell.map(|at| [at < MARGIN, true, at + MARGIN >= BLOCK]);
-                let is_near = |step: &[usize; 3]| (0..3).all(|axis| near[axis][step[axis]]);
-                inset.blocks.extend(steps().filter(is_near).filter_map(|step| stepped(block, step, counts)));
-            }
+            found.cells.iter().for_each(|cell| inset.add_near(block, *cell));
         }
         inset
+    }
+
+    /// Adds a block for a cell of it, and the blocks that this is close to.
+    pub(super) fn add_near(&mut self, block: [u32; 3], cell: [usize; 3]) {
+        let near = cell.map(|at| [at < MARGIN, true, at + MARGIN >= BLOCK]);
+        let is_near = |step: &[usize; 3]| (0..3).all(|axis| near[axis][step[axis]]);
+        self.blocks.extend(steps().filter(is_near).filter_map(|step| stepped(block, step, self.counts)));
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.blocks.len()
     }
 
     pub(super) fn is_empty(&self) -> bool {

@@ -28,7 +28,18 @@ pub(super) struct Level {
 
 impl Level {
     pub(super) fn new(lattice: Lattice, blocks: Blocks) -> Level {
-        Level { lattice, blocks, inset: Inset::default() }
+        let inset = Inset::none(&lattice);
+        Level { lattice, blocks, inset }
+    }
+
+    /// Leaves nothing to the next level.
+    pub(super) fn forget(&mut self) {
+        self.inset = Inset::none(&self.lattice);
+    }
+
+    /// How many blocks are left to the next level.
+    pub(super) fn inset_len(&self) -> usize {
+        self.inset.len()
     }
 
     /// The inset in halved cells; `None` if there can be none so small.
@@ -71,6 +82,20 @@ impl Level {
             }
         };
         Ok(Piece::cut(&mesh, |p| self.side(outer, self.block_at(p)), run)?)
+    }
+
+    /// Adds to the inset the block that a point is in, and those that its cell is close to.
+    pub(super) fn add(&mut self, p: DVec3) {
+        let block = self.block_at(p);
+        let first = block.map(|at| at * BLOCK as u32);
+        let within = (p - self.lattice.node(first[0], first[1], first[2])) / self.lattice.step();
+        let cell = within.to_array().map(|at| (at.max(0.0) as usize).min(BLOCK - 1));
+        self.inset.add_near(block, cell);
+    }
+
+    /// Whether the next level meshes where a point is.
+    pub(super) fn has(&self, p: DVec3) -> bool {
+        self.inset.has(self.block_at(p))
     }
 
     /// The block that a point is in, by its number along each axis. What is rounded to f32 is between planes that are, too.

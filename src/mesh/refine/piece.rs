@@ -22,6 +22,8 @@ pub(super) struct Piece {
     clamped: usize,
     /// The side of a cell of the first part.
     cell: f64,
+    /// The middles of blocks that may have lost something.
+    lost_at: Vec<DVec3>,
 }
 
 /// An edge of a single triangle, at the border of a part.
@@ -63,6 +65,7 @@ impl Piece {
         let (mut piece, mut rims) = (Piece::default(), Vec::new());
         piece.clamped = mesh.clamped_vertices().unwrap_or(0);
         piece.cell = mesh.findings().cell;
+        piece.lost_at = mesh.findings().lost_at.iter().copied().filter(|p| side(*p) == Side::Own).collect();
         let given = mesh.corner_normals();
         let normals = mesh.normals().unwrap_or_default();
         let mut corners = Vec::new();
@@ -111,6 +114,7 @@ impl Piece {
         }
         self.triangles.extend(other.triangles.into_iter().map(|t| t.map(|vertex| numbers[vertex as usize])));
         self.clamped += other.clamped;
+        self.lost_at.extend(other.lost_at);
         // Parts come from larger cells to smaller ones.
         self.cell = self.cell.max(other.cell);
         Some(numbers)
@@ -150,8 +154,10 @@ impl Piece {
 
     pub(super) fn into_mesh(self) -> Result<Mesh, MeshError> {
         let mesh = Mesh::new(self.positions, self.triangles)?.with_normals(self.normals)?;
-        let clamped_vertices = Some(self.clamped);
-        let mesh = mesh.with_findings(Findings { cell: self.cell, clamped_vertices, ..Findings::default() });
+        let (clamped_vertices, possibly_lost) = (Some(self.clamped), self.lost_at.len());
+        let found =
+            Findings { cell: self.cell, clamped_vertices, possibly_lost, lost_at: self.lost_at, ..Findings::default() };
+        let mesh = mesh.with_findings(found);
         match self.corners {
             Some(corners) => mesh.with_corner_normals(corners),
             None => Ok(mesh),

@@ -174,6 +174,12 @@ impl Patches {
         (point, normal)
     }
 
+    /// A point of a patch, counted as the hierarchy sorts them, by its coordinates: (0, 0), (1, 0) and (0, 1) are the
+    /// corners.
+    pub fn point(&self, at: usize, [s, t]: [f64; 2]) -> DVec3 {
+        self.frame.outward(self.point_and_normal(at, s, t).0)
+    }
+
     /// How many patches there are.
     pub fn len(&self) -> usize {
         self.faces.len()

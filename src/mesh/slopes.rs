@@ -20,32 +20,32 @@ const SHORT: usize = 2;
 
 /// Values and gradients of `program`, to `precision` where single precision reaches it, else in
 /// double precision.
-pub(super) struct Slopes<'a> {
-    pub(super) program: &'a Program,
-    pub(super) precision: f64,
+pub(crate) struct Slopes<'a> {
+    pub(crate) program: &'a Program,
+    pub(crate) precision: f64,
 }
 
 /// A value and its gradient.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Slope {
-    pub(super) value: f64,
-    pub(super) gradient: DVec3,
+pub(crate) struct Slope {
+    pub(crate) value: f64,
+    pub(crate) gradient: DVec3,
 }
 
 impl Slope {
     /// The step to where a linear function of this value and gradient is 0.
-    pub(super) fn newton(&self) -> DVec3 {
+    pub(crate) fn newton(&self) -> DVec3 {
         let square = self.gradient.length_squared();
         if square > 1e-24 { -self.value / square * self.gradient } else { DVec3::ZERO }
     }
 
     /// How far that is.
-    pub(super) fn distance(&self) -> f64 {
+    pub(crate) fn distance(&self) -> f64 {
         self.newton().length()
     }
 
     /// The outward unit normal; 0 where there is no gradient.
-    pub(super) fn normal(&self) -> DVec3 {
+    pub(crate) fn normal(&self) -> DVec3 {
         -self.gradient.normalize_or_zero()
     }
 }
@@ -69,7 +69,7 @@ fn hull(numbers: &[u32], points: &[DVec3]) -> Bounds {
 
 impl Slopes<'_> {
     /// The slopes at points, in their order.
-    pub(super) fn at(&self, points: &[DVec3], run: &Run) -> Result<Vec<Slope>, Cancelled> {
+    pub(crate) fn at(&self, points: &[DVec3], run: &Run) -> Result<Vec<Slope>, Cancelled> {
         let tasks = self.tasks(points, run)?;
         let found: Result<Vec<Vec<Slope>>, Cancelled> = tasks
             .par_iter()

@@ -1,0 +1,202 @@
+//! The parts of a mesh: triangles that hang together by shared vertices.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use crate::geom::{Findings, Mesh};
+use crate::{Bounds, Cancelled, Run};
+
+/// Triangles that are looked at before it is asked whether to go on.
+const AT_ONCE: usize = 1 << 16;
+
+/// A part of a mesh: triangles that hang together by shared vertices, and none besides.
+///
+/// See [`Mesh::components`].
+#[derive(Clone, Debug)]
+pub struct Component {
+    mesh: Arc<Mesh>,
+    /// The numbers of its triangles, in order.
+    triangles: Vec<u32>,
+    volume: f64,
+    area: f64,
+    bounds: Bounds,
+}
+
+impl Component {
+    /// The enclosed volume in cubic length units, as [`Mesh::volume`] has it: negative for the wall of a
+    /// cavity, whose triangles face inwards.
+    #[must_use]
+    pub fn volume(&self) -> f64 {
+        self.volume
+    }
+
+    /// The area, in square length units.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        self.area
+    }
+
+    /// The smallest box that holds it.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    /// The numbers of its triangles in the mesh that it is a part of, in increasing order.
+    #[must_use]
+    pub fn triangles(&self) -> &[u32] {
+        &self.triangles
+    }
+
+    /// The part alone, with the normals, colours, texture coordinates and owners that it has in the whole.
+    #[must_use]
+    pub fn mesh(&self) -> Mesh {
+        self.mesh.only(&self.triangles)
+    }
+}
+
+impl Mesh {
+    /// The parts that do not hang together, in the order of their first triangles. Each has its volume, area and box,
+    /// and can be had as a mesh. A hollow ball has two: its outside, and its cavity with a negative volume.
+    ///
+    /// Triangles that share a vertex hang together; those that only touch, each with a vertex of its own there, do not.
+    /// Vertices that no triangle uses are of no part. The time grows with the mesh, whatever the number of parts.
+    ///
+    /// ```
+    /// use rvachev::{MeshSettings, Solid};
+    ///
+    /// let pair = Solid::sphere(1.0) | Solid::cuboid([2.0, 2.0, 2.0]).translate([5.0, 0.0, 0.0]);
+    /// let parts = pair.mesh(&MeshSettings::default())?.components();
+    /// assert_eq!(parts.len(), 2);
+    /// let largest = parts.iter().max_by(|a, b| a.volume().total_cmp(&b.volume())).unwrap();
+    /// assert!((largest.volume() - 8.0).abs() < 1e-3 && largest.bounds().min.x > 3.9);
+    /// assert!(largest.mesh().check().is_sound());
+    /// # Ok::<(), rvachev::error::MeshingError>(())
+    /// ```
+    #[must_use]
+    pub fn components(&self) -> Vec<Component> {
+        // A run that nobody else holds is not cancelled.
+        self.components_with(&Run::default()).unwrap_or_else(|Cancelled| Vec::new())
+    }
+
+    /// [`components`](Mesh::components) with a cancel token and a progress sink.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if the token was.
+    pub fn components_with(&self, run: &Run) -> Result<Vec<Component>, Cancelled> {
+        let run = run.stage(0.0, 1.0);
+        let mut roots = Roots::new(self.positions().len());
+        for triangles in self.triangles().chunks(AT_ONCE) {
+            run.check()?;
+            triangles.iter().for_each(|&[a, b, c]| {
+                roots.join(a, b);
+                roots.join(b, c);
+            });
+        }
+        run.report(0.5);
+        // The part that the vertices of a root are of.
+        let mut parts = vec![u32::MAX; self.positions().len()];
+        let mut lists: Vec<Vec<u32>> = Vec::new();
+        for (number, triangle) in (0u32..).zip(self.triangles()) {
+            if (number as usize).is_multiple_of(AT_ONCE) {
+                run.check()?;
+            }
+            let part = &mut parts[roots.of(triangle[0]) as usize];
+            if *part == u32::MAX {
+                *part = lists.len() as u32;
+                lists.push(Vec::new());
+            }
+            lists[*part as usize].push(number);
+        }
+        run.report(0.7);
+        let mesh = Arc::new(self.clone());
+        let component = |triangles: Vec<u32>| {
+            run.check()?;
+            let (mut area, mut volume, mut min, mut max) = (0.0, 0.0, Vec3::INFINITY, Vec3::NEG_INFINITY);
+            // From a point of the part the volumes of far ones do not cancel.
+            let origin = mesh.corners(mesh.triangles()[triangles[0] as usize])[0];
+            for number in &triangles {
+                let triangle = mesh.triangles()[*number as usize];
+                let [a, b, c] = mesh.corners(triangle).map(|p| p - origin);
+                area += 0.5 * (b - a).cross(c - a).length();
+                volume += a.dot(b.cross(c)) / 6.0;
+                for p in triangle.map(|v| mesh.positions()[v as usize]) {
+                    (min, max) = (min.min(p), max.max(p));
+                }
+            }
+            let bounds = Bounds::new(min.as_dvec3(), max.as_dvec3());
+            Ok(Component { mesh: mesh.clone(), triangles, volume, area, bounds })
+        };
+        let found = lists.into_iter().map(component).collect::<Result<Vec<Component>, Cancelled>>()?;
+        run.report(1.0);
+        Ok(found)
+    }
+
+    /// Some triangles alone, with their vertices and all that they carry.
+    fn only(&self, chosen: &[u32]) -> Mesh {
+        let mut numbers = HashMap::with_capacity(chosen.len());
+        let mut vertices: Vec<usize> = Vec::new();
+        let mut triangles = Vec::with_capacity(chosen.len());
+        for number in chosen {
+            triangles.push(self.triangles()[*number as usize].map(|vertex| {
+                *numbers.entry(vertex).or_insert_with(|| {
+                    vertices.push(vertex as usize);
+                    vertices.len() as u32 - 1
+                })
+            }));
+        }
+        let positions = vertices.iter().map(|v| self.positions()[*v]).collect();
+        let part = |mesh: Mesh| {
+            let mut part = mesh.with_findings(Findings { cell: self.findings().cell, ..Findings::default() });
+            if let Some(normals) = self.normals() {
+                part = part.with_normals(vertices.iter().map(|v| normals[*v]).collect())?;
+            }
+            if let Some(normals) = self.corner_normals() {
+                part = part.with_corner_normals(of(chosen, normals))?;
+            }
+            if let Some(colors) = self.corner_colors() {
+                part = part.with_corner_colors(of(chosen, colors))?;
+            }
+            if let Some(texture) = self.corner_texture() {
+                part = part.with_corner_texture(of(chosen, texture))?;
+            }
+            match self.owners() {
+                Some(owners) => part.with_owners(of(chosen, owners)),
+                None => Ok(part),
+            }
+        };
+        // What is of a mesh is right for a part of it.
+        Mesh::new(positions, triangles).and_then(part).unwrap_or_default()
+    }
+}
+
+/// What belongs to some triangles.
+fn of<T: Copy>(chosen: &[u32], all: &[T]) -> Vec<T> {
+    chosen.iter().map(|number| all[*number as usize]).collect()
+}
+
+/// Which vertices hang together: each points at another one of its part, or is its root.
+struct Roots(Vec<u32>);
+
+impl Roots {
+    fn new(vertices: usize) -> Roots {
+        Roots((0..vertices as u32).collect())
+    }
+
+    fn of(&mut self, mut vertex: u32) -> u32 {
+        while self.0[vertex as usize] != vertex {
+            let next = self.0[self.0[vertex as usize] as usize];
+            self.0[vertex as usize] = next;
+            vertex = next;
+        }
+        vertex
+    }
+
+    fn join(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.of(a), self.of(b));
+        // The lower number is the root.
+        self.0[a.max(b) as usize] = a.min(b);
+    }
+}

@@ -1,0 +1,80 @@
+//! Fewer triangles within a tolerance.
+//!
+//! ```text
+//!      +--+--+--+--+            Vertices are drawn into neighbours, the least error first, as long
+//!      |\ |\ |\ |\ |            as all points of the surface that the triangles stand for are within
+//!      | \| \| \| \|   ---->    the tolerance of those that take their place. Flat faces come to few
+//!      +--+--+--+--+            triangles; creases are drawn together along themselves only.
+//! ```
+//!
+//! What is left are vertices of the mesh that there was, at their places. A mesh that cuts itself is not
+//! handed out: where triangles meet, or are too far off all the same, it is done again with less tolerance there.
+//!
+//! Sources: M. Garland and P. S. Heckbert, Surface simplification using quadric error metrics (1997), for
+//! the order; J. Cohen et al., Simplification envelopes (1996), for a bound on all that is left out.
+
+mod collapse;
+mod near;
+mod quadric;
+mod start;
+
+use self::collapse::Collapse;
+use super::check::intersecting;
+use super::deviation::{self, Probe};
+use super::error::MeshingError;
+use super::extract::ExtractError;
+use crate::eval::Program;
+use crate::geom::{Findings, Mesh};
+use crate::{Bounds, Run};
+
+/// The part of a tolerance that a mesh may be off before triangles are taken away.
+pub(super) const SHARE: f64 = 0.3;
+
+/// Where something is wrong, this part of the tolerance is left for the next time.
+const LESS: f64 = 0.35;
+
+/// How often it is tried without triangles that meet or are too far off.
+const ATTEMPTS: usize = 5;
+
+/// The middle of a side depends on which end comes first, by rounding.
+const ROUNDING: f64 = 1.001;
+
+/// A mesh of fewer triangles, within a tolerance of the surface as the probes of it tell.
+pub(super) fn simplified(
+    mesh: Mesh,
+    probes: &[Probe],
+    (program, tolerance): (&Program, f64),
+    run: &Run,
+) -> Result<Mesh, MeshingError> {
+    // What is farther off already does not come nearer.
+    let most = tolerance.max(ROUNDING * deviation::largest(probes));
+    let mut parts = vec![1.0; mesh.positions().len()];
+    for attempt in 0..ATTEMPTS {
+        let [from, to] = [attempt, attempt + 1].map(|n| 1.0 - 0.25f64.powi(n as i32));
+        let [to_draw, to_check, to_compare] = run.stage(from, to).stages([0.8, 0.1, 0.1]);
+        let mut collapse = Collapse::new(&mesh, probes, (1.0 - SHARE) * tolerance, &parts);
+        collapse.run(&to_draw)?;
+        let fewer = collapse.into_mesh(&mesh).map_err(ExtractError::from)?;
+        let mut wrong = intersecting(&fewer, &to_check)?;
+        // Between the points that were compared a surface may come out on the other side.
+        let found = deviation::probes(&fewer, program, tolerance, &to_compare)?;
+        let far = found.iter().filter(|probe| probe.off > most);
+        wrong.extend(far.map(|probe| fewer.triangles()[probe.triangle as usize]));
+        if wrong.is_empty() {
+            return Ok(told(fewer, &found, tolerance));
+        }
+        for triangle in wrong {
+            let around = Bounds::from_points(fewer.corners(triangle)).inflate(tolerance);
+            let near = parts.iter_mut().zip(mesh.positions()).filter(|(_, p)| around.contains(p.as_dvec3()));
+            near.for_each(|(part, _)| *part *= LESS);
+        }
+    }
+    Ok(told(mesh, probes, tolerance))
+}
+
+/// The mesh, which says how far it is off.
+fn told(mesh: Mesh, probes: &[Probe], tolerance: f64) -> Mesh {
+    let deviation = Some([deviation::largest(probes), tolerance]);
+    let findings = Findings { deviation, ..mesh.findings().clone() };
+    mesh.with_findings(findings)
+}

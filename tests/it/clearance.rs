@@ -1,0 +1,93 @@
+//! The clearance of two solids.
+
+use std::time::Instant;
+
+use glam::DVec3;
+use rvachev::{CellSize, Clearance, MeshSettings, Run, Solid, deg, error::PrepareError};
+
+fn clearance(a: &Solid, b: &Solid) -> Clearance {
+    let now = Instant::now();
+    let found = a.clearance(b, &Run::default()).unwrap().unwrap();
+    println!("{found:?} in {:?}", now.elapsed());
+    // The points are of the surfaces, and as far apart as is said, whichever is asked.
+    for (solid, p) in [a, b].into_iter().zip(found.points).filter(|_| !found.overlaps) {
+        assert!(solid.value(p).unwrap().abs() < 1e-6 * solid.bounds().unwrap().longest_side(), "{p}");
+    }
+    assert!((found.points[0].distance(found.points[1]) - found.distance).abs() < 1e-12);
+    if found.overlaps {
+        assert!(a.contains(found.points[0]).unwrap() && b.contains(found.points[0]).unwrap());
+    }
+    let back = b.clearance(a, &Run::default()).unwrap().unwrap();
+    assert!((back.distance - found.distance).abs() <= found.tolerance + back.tolerance);
+    assert_eq!(back.overlaps, found.overlaps);
+    found
+}
+
+fn right(found: &Clearance, exact: f64) {
+    assert!(!found.overlaps && found.distance >= exact - 1e-9, "{found:?}, {exact}");
+    assert!(found.distance - exact <= found.tolerance && found.tolerance < 0.002 * exact + 0.02, "{found:?}, {exact}");
+}
+
+#[test]
+fn spheres_and_boxes() {
+    let ball = Solid::sphere(2.0);
+    right(&clearance(&ball, &Solid::sphere(1.0).translate([2.0, 3.0, 6.0])), 4.0);
+    right(&clearance(&ball, &Solid::cuboid([2.0, 2.0, 2.0]).translate([5.0, 0.0, 0.0])), 2.0);
+    // A corner towards an edge.
+    let tip = Solid::cuboid([2.0; 3]).rotate_z(deg(45.0)).translate([4.0, 0.0, 0.0]);
+    let turned = Solid::cuboid([2.0; 3]).rotate_y(deg(45.0));
+    right(&clearance(&tip, &turned), 4.0 - 2.0 * 2f64.sqrt());
+}
+
+#[test]
+fn a_peg_in_a_hole_has_its_gap_all_round() {
+    let plate = Solid::cuboid([30.0, 30.0, 5.0]) - Solid::cylinder(5.1, 10.0);
+    let found = clearance(&Solid::cylinder(5.0, 20.0), &plate);
+    right(&found, 0.1);
+    assert!((found.points[0].truncate().length() - 5.0).abs() < 1e-6);
+    let aside = clearance(&Solid::cylinder(5.0, 20.0).translate([0.05, 0.0, 0.0]), &plate);
+    right(&aside, 0.05);
+    assert!(aside.points[0].x > 4.9);
+    assert!(clearance(&Solid::cylinder(5.0, 20.0).translate([0.2, 0.0, 0.0]), &plate).overlaps);
+    // In a cavity, and in the material.
+    let hollow = Solid::sphere(10.0).shell(1.0);
+    right(&clearance(&Solid::sphere(3.0).translate([4.0, 0.0, 0.0]), &hollow), 2.0);
+    let found = clearance(&Solid::sphere(3.0), &Solid::sphere(10.0));
+    assert!(found.overlaps && found.distance == 0.0);
+}
+
+#[test]
+fn what_touches_does_not_overlap_and_what_is_the_same_does() {
+    let block = Solid::cuboid([4.0, 4.0, 2.0]);
+    let found = clearance(&block, &block.translate([1.0, 0.0, 2.0]));
+    assert!(!found.overlaps && found.distance <= found.tolerance);
+    assert!(clearance(&block, &block).overlaps);
+    assert!(clearance(&block, &block.translate([1.0, 1.0, 0.0])).overlaps);
+}
+
+#[test]
+fn twisted_ones_are_as_far_apart_as_dense_points_say() {
+    let twisted = Solid::superellipsoid([3.0, 1.5, 6.0], 0.3, 0.5).twist(deg(10.0));
+    let other = twisted.rotate_y(deg(70.0)).translate([0.5, 5.5, 1.0]);
+    let found = clearance(&twisted, &other);
+    let mesh = twisted.mesh(&MeshSettings { cell: CellSize::Length(0.15), ..MeshSettings::default() }).unwrap();
+    let points: Vec<DVec3> = mesh.positions().iter().map(|p| p.as_dvec3()).collect();
+    let feet = other.closest_surface_points(&points).unwrap();
+    let dense = points.iter().zip(feet).map(|(p, foot)| p.distance(foot.unwrap())).fold(f64::INFINITY, f64::min);
+    // Vertices of the mesh are off the surface where it curves, by a small part of a cell.
+    assert!(!found.overlaps && (found.distance - dense).abs() < 0.005, "{found:?}, {dense}");
+    assert!(found.tolerance < 0.01, "{found:?}");
+}
+
+#[test]
+fn nothing_has_no_clearance_and_faults_are_told() {
+    let ball = Solid::sphere(1.0);
+    let empty = ball.clone() & ball.translate([5.0, 0.0, 0.0]);
+    assert_eq!(ball.clearance(&empty, &Run::default()).unwrap(), None);
+    let endless = Solid::half_space([0.0, 0.0, 1.0], -5.0);
+    assert!(matches!(ball.clearance(&endless, &Run::default()), Err(PrepareError::Solid(_))));
+    let run = Run::default();
+    run.cancel.cancel();
+    let fresh = Solid::sphere(1.5).twist(deg(1.0));
+    assert!(matches!(fresh.clearance(&ball, &run), Err(PrepareError::Cancelled(_))));
+}
