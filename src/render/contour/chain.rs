@@ -112,46 +112,39 @@ impl Chains<'_> {
     /// The pieces of contours in a square, the inside to the left.
     fn pieces(&self, leaf: &Leaf) -> Vec<[Crossing; 2]> {
         let corners = leaf.square.corners();
-        let (mut leaves, mut enters): (Vec<(usize, Crossing)>, Vec<(usize, Crossing)>) = Default::default();
-        let mut place = 0;
+        // The crossings on the way round: those by which the inside is left and those by which it is entered take turns.
+        let mut met: Vec<(Crossing, bool)> = Vec::new();
         for k in 0..4 {
             let mut pending = vec![[corners[k], corners[(k + 1) % 4]]];
             while let Some([from, to]) = pending.pop() {
                 let middle = [0, 1].map(|axis| from[axis] / 2 + to[axis] / 2);
                 if from.iter().zip(to).any(|(a, b)| a.abs_diff(b) > 1) && self.found.is_inside(middle).is_some() {
-                    pending.push([middle, to]);
-                    pending.push([from, middle]);
+                    pending.extend([[middle, to], [from, middle]]);
                     continue;
                 }
-                place += 1;
-                match [self.is_inside(from), self.is_inside(to)] {
-                    [true, false] => leaves.push((place, [from.min(to), from.max(to)])),
-                    [false, true] => enters.push((place, [from.min(to), from.max(to)])),
-                    _ => {}
+                let leaves = self.is_inside(from);
+                if leaves != self.is_inside(to) {
+                    met.push(([from.min(to), from.max(to)], leaves));
                 }
             }
         }
-        let count = enters.len();
-        if count < 2 {
-            return leaves.iter().zip(&enters).map(|((_, from), (_, to))| [*from, *to]).collect();
-        }
-        if let Some(way) = leaf.way {
+        let count = met.len();
+        if let (Some(way), 4..) = (leaf.way, count) {
             // A graph: from each crossing to the next along it.
             let along = |crossing: &Crossing| way.perp_dot(self.crossing(leaf, *crossing));
-            let mut ends = [leaves, enters].map(|ends| {
-                let mut ends: Vec<Crossing> = ends.into_iter().map(|(_, crossing)| crossing).collect();
+            let ends = |leaving: bool| {
+                let ends = met.iter().filter(|(_, leaves)| *leaves == leaving);
+                let mut ends: Vec<Crossing> = ends.map(|(crossing, _)| *crossing).collect();
                 ends.sort_by(|a, b| along(b).total_cmp(&along(a)));
                 ends
-            });
-            let [from, to] = &mut ends;
-            return from.iter().zip(to).map(|(from, to)| [*from, *to]).collect();
+            };
+            return ends(true).into_iter().zip(ends(false)).map(|(from, to)| [from, to]).collect();
         }
         // Two corners inside across from each other: joined through the middle, or apart.
-        let turn = usize::from(self.section.is_inside(&leaf.filling, leaf.square.centre()));
-        // Leaving and entering take turns.
-        let first = enters.iter().position(|(place, _)| *place > leaves[0].0).unwrap_or(0);
-        let end = |out: usize| enters[(first + out + count - turn) % count].1;
-        leaves.iter().enumerate().map(|(out, (_, from))| [*from, end(out)]).collect()
+        let is_joined = count > 2 && self.section.is_inside(&leaf.filling, leaf.square.centre());
+        let other = |at: usize| met[(at + if is_joined { count - 1 } else { 1 }) % count].0;
+        let leaving = (0..count).filter(|at| met[*at].1);
+        leaving.map(|at| [met[at].0, other(at)]).collect()
     }
 
     fn is_inside(&self, node: Node) -> bool {
