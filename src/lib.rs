@@ -143,7 +143,8 @@
 //!
 //! Parts have [paint](Solid::paint), pictures have [styles](Style); behind a picture are its
 //! [layers](Solid::layers): depth, normals, positions, leaves. A [slice](Solid::slice) shows the
-//! field on a plane, and its [contours](Slice::contours).
+//! field on a plane, and its [contours](Slice::contours), nested and within a tolerance; a stack of
+//! planes is cut at once ([`Solid::slices`]).
 //!
 //! ```
 //! use rvachev::range_image::Coordinates;

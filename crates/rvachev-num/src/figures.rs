@@ -84,7 +84,7 @@ mod tests {
         assert_eq!(figures(123_456_789.0, 6), "123457000");
         assert_eq!(figures(1e9, 6), "1e9");
         assert_eq!(figures_beside(-0.4e-5, 1.0, 6), "0");
-        assert_eq!(figures_beside(-0.6e-5, 1.0, 6), "-0.000006");
+        assert_eq!(figures_beside(-0.6e-5, 1.0, 6), "-6e-6");
         assert_eq!(figures_beside(1.0, f64::INFINITY, 6), "1");
     }
 }
