@@ -145,8 +145,8 @@ impl<'a> Tree<'a> {
         let section = &self.sections[planes.start];
         let height = self.heights[planes.end - 1] - self.heights[planes.start];
         let Some(filling) = section.filling(&filling, &square, [0.0, height]) else { return Next::Nothing };
-        // Planes that are far from each other part before squares do.
-        if planes.len() > 1 && height > 0.5 * square.side {
+        // Planes that are far from each other part before squares do, and those whose squares are small enough.
+        if planes.len() > 1 && (height > 0.5 * square.side || section.way_in(&filling, &square).is_some()) {
             let middle = planes.start + planes.len() / 2;
             let halves = [planes.start..middle, middle..planes.end];
             let task = |planes| Task { square, planes, filling: filling.clone() };
