@@ -7,8 +7,8 @@
 //!                            sign at the same points, they share a face.
 //! ```
 //!
-//! That is seen along some lines, the first and the last on either side of the rectangle: what two convex leaves
-//! share is convex.
+//! That is seen along some lines across the face. Between them neither leaf can be left by more than the tolerance,
+//! for their normals are found to be within an angle of one direction that is small enough for that.
 
 use glam::DVec3;
 
@@ -22,13 +22,17 @@ const MANY: usize = 8;
 /// Where lines across a face are taken, from one side of a rectangle to the other.
 const LINES: [f64; 5] = [-1.0, -0.41, 0.03, 0.52, 1.0];
 
+/// The most that is between two of them, in half widths.
+const APART: f64 = 0.6;
+
 /// How far along them a face is looked for.
 const REACH: f64 = 3.0;
 
 impl Program {
     /// Whether a rectangle is all inside, because a leaf of a union begins there where another ends, or all outside,
-    /// of an intersection; to within `doubt`. `None` where nothing is flush.
-    pub(crate) fn flush(&self, zone: &Zone, axes: [DVec3; 2], doubt: f64) -> Option<bool> {
+    /// of an intersection: to within `doubt` at some points, and to within the tolerance between them. `None` where
+    /// nothing is flush.
+    pub(crate) fn flush(&self, zone: &Zone, axes: [DVec3; 2], [doubt, tolerance]: [f64; 2]) -> Option<bool> {
         let node = &self.nodes[self.root.node()];
         let Kind::Join { op, rule: Rule::MinMax, .. } = &node.kind else { return None };
         let operands = self.list(node);
@@ -40,21 +44,24 @@ impl Program {
             (program.leaf_count() == 1).then_some(program)
         };
         let leaves: Vec<Program> = operands.iter().filter_map(leaf).collect();
-        let is_flush = |a: &Program, b: &Program| are_flush([a, b], zone, axes, doubt);
+        let is_flush = |a: &Program, b: &Program| are_flush([a, b], zone, axes, [doubt, tolerance]);
         let any = (0..leaves.len()).any(|i| (0..i).any(|j| is_flush(&leaves[i], &leaves[j])));
         any.then_some((*op == Op::Or) != self.root.negated())
     }
 }
 
 /// Whether one of two is left where the other is entered, as far as the first is in a rectangle.
-fn are_flush([a, b]: [&Program; 2], zone: &Zone, axes: [DVec3; 2], doubt: f64) -> bool {
+fn are_flush([a, b]: [&Program; 2], zone: &Zone, axes: [DVec3; 2], [doubt, tolerance]: [f64; 2]) -> bool {
     let Some(way) = a.way_in_plane(zone, axes) else { return false };
-    if b.enters(zone, &[Way { middle: -way, sway: 0.0 }]) == 0 {
-        return false;
-    }
     let across = way.cross(axes[0].cross(axes[1]));
     // Between the first and the last line is all of the rectangle.
     let half = zone.axes.x_axis.dot(across).abs() + zone.axes.y_axis.dot(across).abs();
+    // What rises along both of these is no steeper than the tolerance from one line to the next.
+    let lean = APART * half / tolerance * across;
+    let ways = |way: DVec3| [way - lean, way + lean].map(|middle| Way { middle, sway: 0.0 });
+    if a.enters(zone, &ways(way)) != 3 || b.enters(zone, &ways(-way)) != 3 {
+        return false;
+    }
     LINES.into_iter().all(|line| {
         let start = zone.centre + line * half * across;
         let at = |t: f64| start + t * way;

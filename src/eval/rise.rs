@@ -15,7 +15,7 @@ use glam::DVec3;
 use super::program::{Kind, Program};
 use super::scene::Instance;
 use crate::{Bounds, Dual, Interval};
-use rvachev_field::{AnyField, AnyWarp, Pieces, Rule, Way, Zone, bits, largest_stretch, steepest};
+use rvachev_field::{AnyField, AnyWarp, Pieces, Rule, Way, Zone, bits, dot, largest_stretch, steepest};
 
 /// A leaf, and whether its complement counts.
 #[derive(Clone, Copy)]
@@ -46,6 +46,9 @@ const FLAT: f64 = 1e-6;
 
 /// The tangent of 30°.
 const LEAN: f64 = 0.577;
+
+/// A slope that is less is rounding.
+const LEVEL: f64 = 1e-12;
 
 /// How far beyond a zone it is seen whether a convex leaf is entered, in radii of the zone.
 const BEYOND: [f64; 3] = [1.2, 3.0, 8.0];
@@ -140,7 +143,18 @@ impl Program {
         self.all_along(parts, seen, ways, |instance, zone, ways| {
             let is_convex = by_sign && instance.field.convex() && instance.placement.shift == 0.0;
             let found = if is_convex { bits(ways, |way| is_entered(&*instance.field, zone, way)) } else { 0 };
-            if found.count_ones() as usize == ways.len() { found } else { found | instance.field.rises(zone, ways) }
+            let is_all = |found: u8| found.count_ones() as usize == ways.len();
+            let found = if is_all(found) { found } else { found | instance.field.rises(zone, ways) };
+            if is_all(found) {
+                return found;
+            }
+            // What a value does not depend on neither enters nor leaves.
+            let slopes = instance.field.dual_range(Dual::point(zone.hull())).d;
+            let is_level = |way: Way| {
+                let along = dot(slopes, way.middle.to_array().map(Interval::point)).magnitude();
+                along <= LEVEL * way.middle.length() && way.sway == 0.0
+            };
+            found | bits(ways, is_level)
         })
     }
 

@@ -49,8 +49,9 @@ impl Contours {
         &self.lines
     }
 
-    /// In so many places, each no wider than the tolerance, it was left undecided what is there: a sheet or a hole
-    /// that is thinner than that, or a point where two contours touch.
+    /// In so many places it was left undecided what is there: a sheet or a hole that is thinner than the tolerance, no
+    /// nearer to a contour than that, the thin end of a gap or a tip, a point where two contours touch; or, at a
+    /// tolerance that is very fine for its solid, a contour that was not followed any further.
     #[must_use]
     pub fn unresolved(&self) -> usize {
         self.unresolved

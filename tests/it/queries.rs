@@ -419,7 +419,7 @@ fn a_joint_is_inside_and_no_surface() {
 }
 
 /// Solids of every kind, and lengths of them.
-fn whole_catalogue() -> Vec<(String, Solid)> {
+pub fn whole_catalogue() -> Vec<(String, Solid)> {
     let mut all = Vec::new();
     for entry in rvachev::catalogue() {
         let solid = crate::form::shown(entry.example());

@@ -224,3 +224,121 @@ fn slices_of_lengths_have_all_contours() {
     assert_eq!(contours.outlines().len(), 1);
     assert_eq!(contours.len(), 2);
 }
+
+/// Whether a point is within contours, by the even-odd rule.
+fn is_within(contours: &Contours, p: DVec2) -> bool {
+    let crosses =
+        |[a, b]: [DVec2; 2]| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x);
+    contours.iter().flat_map(Polyline::edges).filter(|edge| crosses(*edge)).count() % 2 == 1
+}
+
+/// What is wrong with the contours of a solid on a plane: points of a grid that are on another side than the field
+/// says, although it says so all around, as far as contours may be off.
+fn wrong(solid: &Solid, plane: &Plane, part: f64) -> Option<String> {
+    const POINTS: u32 = 40;
+    let slice = solid.slice(plane).unwrap();
+    let PlaneBounds { min, max } = slice.region();
+    let tolerance = part * (max - min).max_element();
+    let contours = slice.contours(tolerance).unwrap();
+    let inside = |p: DVec2| solid.contains(plane.point(p)).unwrap();
+    let mut off = 0;
+    let mut first = None;
+    for i in 0..POINTS {
+        for j in 0..POINTS {
+            let p = min + (max - min) * (DVec2::new(f64::from(i), f64::from(j)) + 0.37) / f64::from(POINTS);
+            let here = inside(p);
+            if here == is_within(&contours, p) {
+                continue;
+            }
+            let around = |k: u32| inside(p + 1.5 * tolerance * DVec2::from_angle(f64::from(k) * 0.785));
+            if (0..8).all(|k| around(k) == here) {
+                off += 1;
+                first = first.or(Some(p));
+            }
+        }
+    }
+    // Points are on the surface: both signs are near, be it in a tip that is thin.
+    let astray = |p: &DVec2| {
+        let beside = |k: u32| f64::from(k % 12 + 1) / 12.0 * DVec2::from_angle(f64::from(k) * 0.1);
+        let (low, high) = (min + 2.0 * tolerance, max - 2.0 * tolerance);
+        let within = p.cmpgt(low).all() && p.cmplt(high).all();
+        let mut all = (0..756).map(|k| inside(*p + 1.5 * tolerance * beside(k)));
+        let first = inside(*p);
+        within && all.all(|other| other == first)
+    };
+    let astray = contours.iter().flat_map(|line| line.points()).filter(|p| astray(p)).count();
+    let text = || format!("{off} points, first {first:?}; {astray} astray; {} undecided", contours.unresolved());
+    (off > 0 || astray > 0).then(text)
+}
+
+#[test]
+fn contours_of_every_kind_are_where_the_sign_changes() {
+    let mut failures = Vec::new();
+    for (name, solid) in crate::queries::whole_catalogue() {
+        let bounds = solid.bounds().unwrap();
+        for (what, plane) in [
+            ("across", Plane::new(bounds.center() + 0.013 * bounds.size(), [0.02, -0.03, 1.0])),
+            ("level", Plane::xy(bounds.center().z + 0.21 * bounds.size().z)),
+            ("upright", Plane::xz(bounds.center().y + 0.05 * bounds.size().y)),
+        ] {
+            if let Some(text) = wrong(&solid, &plane, 1e-3) {
+                failures.push(format!("{name}, {what}: {text}"));
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{}:\n{}", failures.len(), failures.join("\n"));
+}
+
+#[test]
+fn grooves_in_a_joint_are_found() {
+    let left = Solid::cuboid([10.0, 10.0, 4.0]);
+    for i in 0..30 {
+        let (y, w) = (-4.3 + 0.277 * f64::from(i), 0.3);
+        let right = Profile::polygon([
+            [5.0, -5.0],
+            [15.0, -5.0],
+            [15.0, 5.0],
+            [5.0, 5.0],
+            [5.0, y + w],
+            [5.0 + 0.4 * w, y + 0.5 * w],
+            [5.0, y],
+        ]);
+        let contours = cut(&(left.clone() | right.extrude(4.0)), 0.5, 1e-3);
+        assert_eq!(contours.len(), 2, "{i}");
+    }
+}
+
+#[test]
+fn what_is_wider_than_the_tolerance_is_found() {
+    let hole = |i: u32| {
+        let at = [f64::from(i) * 0.173 - 3.0, f64::from(i) * 0.119 - 2.0, 0.0];
+        Solid::cuboid([10.0, 10.0, 2.0]) - Solid::cylinder(0.0055, 3.0).translate(at)
+    };
+    for i in 0..30 {
+        assert_eq!(cut(&hole(i), 0.1, 0.01).len(), 2, "{i}");
+    }
+}
+
+#[test]
+fn stacks_of_many_contours_are_whole() {
+    let holes = Solid::cylinder(0.3, 9.0).repeat([40, 40, 1], [1.0, 1.0, 1.0]).translate([-19.5, -19.5, 0.0]);
+    let plate = Solid::cuboid([40.0, 40.0, 4.0]) - holes;
+    let heights: Vec<f64> = (0..30).map(|layer| -1.9 + 0.12 * f64::from(layer)).collect();
+    let layers = plate.slices(&heights, &ContourSettings { tolerance: 0.01, ..Default::default() }, &Run::default());
+    for (height, layer) in heights.iter().zip(layers.unwrap()) {
+        assert_eq!((layer.len(), layer.unresolved()), (1601, 0), "{height}");
+    }
+}
+
+#[test]
+fn slices_tell_how_far_they_are() {
+    let told = std::sync::Arc::new(std::sync::Mutex::new(Vec::new()));
+    let to = told.clone();
+    let progress = rvachev::Progress::new(move |part| to.lock().unwrap().push(part));
+    let run = Run { threads: 1, progress: Some(progress), ..Run::default() };
+    let holes = Solid::cylinder(0.3, 9.0).repeat([20, 20, 1], [1.0, 1.0, 1.0]);
+    let plate = Solid::cuboid([40.0, 40.0, 4.0]) - holes;
+    plate.slice(&Plane::xy(0.0)).unwrap().contours_with(&ContourSettings::default(), &run).unwrap();
+    let told = told.lock().unwrap();
+    assert!(told.len() > 10 && told.windows(2).all(|pair| pair[0] <= pair[1]) && told.last() == Some(&1.0), "{told:?}");
+}

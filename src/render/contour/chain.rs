@@ -32,6 +32,10 @@ const SHARP: f64 = 0.1;
 /// Points are found to this part of the tolerance.
 const PRECISE: f64 = 1e-6;
 
+/// The width of what is convex is at most this times its area, by the length around it: so much that of a triangle with
+/// equal sides is.
+const WIDE: f64 = 6.0;
+
 /// A part of the tolerance that points are left out for.
 const THIN: f64 = 0.02;
 
@@ -57,7 +61,7 @@ pub(super) struct Chains<'a> {
 impl Chains<'_> {
     /// The contours, and how many squares were left undecided.
     pub(super) fn contours(&self, run: &Run) -> Result<(Vec<Polyline>, usize), Cancelled> {
-        let (mut undecided, mut met) = (Vec::new(), HashSet::new());
+        let (mut unresolved, mut undecided, mut met) = (0, Vec::new(), HashSet::new());
         let mut next: HashMap<Crossing, Piece> = HashMap::new();
         let mut starts = Vec::new();
         for (number, leaf) in self.found.leaves.iter().enumerate() {
@@ -65,9 +69,11 @@ impl Chains<'_> {
                 run.check()?;
             }
             let pieces = self.pieces(leaf);
-            let Square { node, size, .. } = leaf.square;
+            let Square { node, size, side, .. } = leaf.square;
             match (leaf.way, pieces.len()) {
                 (Some(_), _) => {}
+                // One that was not divided any more.
+                (None, _) if side > self.tolerance => unresolved += 1,
                 (None, 1) => drop(met.insert((node, size))),
                 (None, _) => undecided.push((node, size)),
             }
@@ -90,23 +96,23 @@ impl Chains<'_> {
                 points.push(from);
                 last = Some(ends[1]);
                 match leaf.way {
-                    Some(way) => self.refine(leaf, ends, way, &mut points),
+                    Some(way) => unresolved += self.refine(leaf, ends, way, &mut points),
                     None => points.extend(self.corner(leaf, ends)),
                 }
                 at = to;
             }
             let kept = thinned(&points, THIN * self.tolerance);
-            if kept.len() > 2 {
-                contours.push(Polyline::closed(kept));
+            // The ends of narrow gaps and tips are cut off where they are thinner than the tolerance.
+            let line = Polyline::closed(kept);
+            if WIDE * line.area().abs() > self.tolerance * line.length() {
+                contours.push(line);
+            } else if !points.is_empty() {
+                unresolved += 1;
             }
         }
-        // The ends of narrow gaps and tips are cut off where they are thinner than the tolerance.
-        let all = contours.len();
-        contours.retain(|line| 2.0 * line.area().abs() > self.tolerance * line.length());
-        let thin = all - contours.len();
         // What is beside a contour is no farther from it than the tolerance.
         undecided.retain(|(node, size)| !beside(*node, *size).any(|node| met.contains(&(node, *size))));
-        Ok((contours, undecided.len() + thin))
+        Ok((contours, unresolved + undecided.len()))
     }
 
     /// The pieces of contours in a square, the inside to the left.
@@ -158,9 +164,9 @@ impl Chains<'_> {
         from.lerp(to, bracket(&value, [0.0, 1.0], PRECISE * self.tolerance / from.distance(to)))
     }
 
-    /// Points between two, such that chords deviate by less than the tolerance.
-    fn refine(&self, leaf: &Leaf, [a, b]: [DVec2; 2], way: DVec2, points: &mut Vec<DVec2>) {
-        let end = b;
+    /// Points between two, such that chords deviate by less than the tolerance; and how many chords do not.
+    fn refine(&self, leaf: &Leaf, [a, b]: [DVec2; 2], way: DVec2, points: &mut Vec<DVec2>) -> usize {
+        let (end, mut far) = (b, 0);
         let mut pending = vec![(a, b, 0)];
         while let Some((a, b, depth)) = pending.pop() {
             let is_short = depth >= DEEPEST || a.distance(b) <= 0.5 * self.tolerance;
@@ -177,12 +183,14 @@ impl Chains<'_> {
                         pending.extend([(p, b, depth + 1), (a, p, depth + 1)]);
                         continue;
                     }
+                    far += 1;
                 }
             }
             if b != end {
                 points.push(b);
             }
         }
+        far
     }
 
     /// The value at a point that is in a square, or beside it: there the contour may go on for a while.

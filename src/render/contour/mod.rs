@@ -12,8 +12,11 @@ mod section;
 mod square;
 mod tree;
 
+use std::f64::consts::FRAC_1_SQRT_2;
+
 use glam::DVec2;
 use rayon::prelude::*;
+use rvachev_num::Meter;
 
 use self::chain::Chains;
 pub use self::section::Side;
@@ -136,22 +139,24 @@ fn stack(
     settings: &ContourSettings,
     run: &Run,
 ) -> Result<Vec<Contours>, RenderError> {
-    let ContourSettings { tolerance, side } = *settings;
+    let tolerance = settings.tolerance;
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         return Err(setting("tolerance", tolerance, "finite and above 0"));
     }
     let size = (region.max - region.min).max_element();
     let tolerance = tolerance.max(FINEST * size);
     let root = Root { low: region.min - DVec2::splat(MARGIN * ASIDE * size), side: (1.0 + MARGIN) * size };
-    let sections: Vec<Section> =
-        heights.iter().map(|height| Section::new(&plane.moved_by(*height), side, region)).collect();
+    let sections = Section::stack(plane, heights, &ContourSettings { tolerance, ..*settings }, region);
     let [to_divide, to_join] = run.stages([0.7, 0.3]);
     let whole = Filling::Program(program.clone());
     let made: Result<Vec<Contours>, Cancelled> = run.install(|| {
-        let found = Tree::new(&sections, heights, root, tolerance, &to_divide).found(program)?;
+        let found = Tree { sections: &sections, heights, root, finest: FRAC_1_SQRT_2 * tolerance, run: &to_divide }
+            .found(program)?;
+        let joined = Meter::new(&to_join, heights.len());
         let contours = |(section, found)| {
             let chains = Chains { section, root: &root, found, whole: &whole, tolerance };
             let (lines, unresolved) = chains.contours(&to_join)?;
+            joined.add(1);
             Ok(Contours::new(lines, unresolved))
         };
         sections.par_iter().zip(&found).map(contours).collect()

@@ -5,6 +5,7 @@
 
 use glam::{DMat3, DVec2};
 
+use super::ContourSettings;
 use super::square::{DEEPEST, Square};
 use crate::eval::{Program, Region};
 use crate::{Bounds, Plane, PlaneBounds};
@@ -48,20 +49,32 @@ pub(super) struct Section {
     border: PlaneBounds,
     /// How far aside of where it is asked for the plane is.
     hair: f64,
+    /// How far contours may be off.
+    tolerance: f64,
 }
 
 /// Into the border, from each of its sides.
 const INWARDS: [DVec2; 4] = [DVec2::X, DVec2::NEG_X, DVec2::Y, DVec2::NEG_Y];
 
 impl Section {
-    pub(super) fn new(plane: &Plane, side: Side, border: PlaneBounds) -> Section {
+    /// Planes at heights above one.
+    pub(super) fn stack(
+        plane: &Plane,
+        heights: &[f64],
+        settings: &ContourSettings,
+        border: PlaneBounds,
+    ) -> Vec<Section> {
         let size = (border.max - border.min).max_element();
-        let hair = HAIR * (size + plane.origin().abs().max_element());
-        let aside = match side {
+        let farthest = heights.iter().fold(0.0, |farthest: f64, height| farthest.max(height.abs()));
+        // One for all: the planes of a stack stay as far apart as they are.
+        let hair = HAIR * (size + plane.origin().abs().max_element() + farthest);
+        let aside = match settings.side {
             Side::Above => hair,
             Side::Below => -hair,
         };
-        Section { plane: plane.moved_by(aside), border, hair }
+        let tolerance = settings.tolerance;
+        let section = |height: &f64| Section { plane: plane.moved_by(height + aside), border, hair, tolerance };
+        heights.iter().map(section).collect()
     }
 
     /// The value at a point: positive in the solid and within the border.
@@ -172,6 +185,6 @@ impl Section {
     pub(super) fn flush(&self, filling: &Filling, square: &Square) -> Option<bool> {
         let Filling::Program(program) = filling else { return None };
         let zone = self.zone(square.low, square.low + square.side, [0.0; 2]);
-        program.flush(&zone, self.plane.axes(), self.hair)
+        program.flush(&zone, self.plane.axes(), [self.hair, self.tolerance])
     }
 }

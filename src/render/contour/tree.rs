@@ -14,18 +14,19 @@
 
 use std::collections::HashMap;
 use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::DVec2;
 use rayon::prelude::*;
+use rvachev_num::Meter;
 
 use super::section::{Filling, Section};
 use super::square::{Node, Root, Square};
 use crate::eval::Program;
 use crate::{Cancelled, Run};
 
-/// So many squares are divided at most: with slopes that do not tell, contours of a fine tolerance would have no end.
-const MOST: usize = 1 << 22;
+/// So many squares of a plane are divided in a task at most: with slopes that do not tell, contours of a fine tolerance
+/// would have no end.
+const MOST: usize = 1 << 16;
 
 /// So many squares are looked at by one thread after the other, before all go on with what is left.
 const TASKS: usize = 256;
@@ -44,6 +45,8 @@ pub(super) struct Found {
     pub(super) leaves: Vec<Leaf>,
     /// Which corners are inside.
     inside: Vec<(Node, bool)>,
+    /// How many squares were divided.
+    divided: usize,
 }
 
 impl Found {
@@ -62,7 +65,6 @@ pub(super) struct Tree<'a> {
     /// Squares are not halved below this side.
     pub(super) finest: f64,
     pub(super) run: &'a Run,
-    divided: AtomicUsize,
 }
 
 /// A square of some of the planes.
@@ -81,11 +83,7 @@ enum Next {
 
 type Part = HashMap<usize, Found>;
 
-impl<'a> Tree<'a> {
-    pub(super) fn new(sections: &'a [Section], heights: &'a [f64], root: Root, finest: f64, run: &'a Run) -> Tree<'a> {
-        Tree { sections, heights, root, finest, run, divided: AtomicUsize::new(0) }
-    }
-
+impl Tree<'_> {
     /// What is found of each plane.
     pub(super) fn found(&self, program: &Program) -> Result<Vec<Found>, Cancelled> {
         let planes = 0..self.sections.len();
@@ -108,7 +106,13 @@ impl<'a> Tree<'a> {
             }
             tasks = after;
         }
-        let parts: Vec<Part> = tasks.into_par_iter().map(|task| self.all_of(task)).collect::<Result<_, Cancelled>>()?;
+        let meter = Meter::new(self.run, tasks.len());
+        let all_of = |task| {
+            let part = self.all_of(task)?;
+            meter.add(1);
+            Ok(part)
+        };
+        let parts: Vec<Part> = tasks.into_par_iter().map(all_of).collect::<Result<_, Cancelled>>()?;
         let mut found: Vec<Found> = Vec::new();
         found.resize_with(self.sections.len(), Found::default);
         for part in std::iter::once(first).chain(parts) {
@@ -164,11 +168,13 @@ impl<'a> Tree<'a> {
                 filling = Filling::Solid;
             }
             let is_last = square.side <= self.finest || square.size <= 1;
-            if way.is_some() || is_last || self.divided.fetch_add(1, Ordering::Relaxed) >= MOST {
+            let divided = part.get(&planes.start).map_or(0, |found| found.divided);
+            if way.is_some() || is_last || divided >= MOST {
                 return Next::Leaf(Leaf { square, filling, way });
             }
         }
         for plane in planes.clone() {
+            part.entry(plane).or_default().divided += 1;
             self.note(part, plane, &filling, square.added());
         }
         let task = |square| Task { square, planes: planes.clone(), filling: filling.clone() };
