@@ -26,7 +26,7 @@ const LARGEST: f64 = 1e9;
 /// one along the axes where it is finite.
 pub(super) fn extent(program: &Program, known: &Bounds, run: &Run) -> Result<Bounds, Cancelled> {
     let limit = DVec3::splat(LARGEST);
-    let start = known.intersection(&Bounds::new(-limit, limit));
+    let start = if known.is_finite() { *known } else { known.intersection(&Bounds::new(-limit, limit)) };
     // All boxes that may hold some of it, of different sizes: only those that the hull rests on
     // are halved.
     let mut boxes: Vec<Part> = narrowed(start, program).into_iter().collect();

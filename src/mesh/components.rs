@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use super::groups::Groups;
 use crate::geom::{Findings, Mesh};
 use crate::{Bounds, Cancelled, Run};
 
@@ -87,12 +88,12 @@ impl Mesh {
     /// [`Cancelled`] if the token was.
     pub fn components_with(&self, run: &Run) -> Result<Vec<Component>, Cancelled> {
         let run = run.stage(0.0, 1.0);
-        let mut roots = Roots::new(self.positions().len());
+        let mut groups = Groups::new(self.positions().len());
         for triangles in self.triangles().chunks(AT_ONCE) {
             run.check()?;
             triangles.iter().for_each(|&[a, b, c]| {
-                roots.join(a, b);
-                roots.join(b, c);
+                groups.join(a, b);
+                groups.join(b, c);
             });
         }
         run.report(0.5);
@@ -103,7 +104,7 @@ impl Mesh {
             if (number as usize).is_multiple_of(AT_ONCE) {
                 run.check()?;
             }
-            let part = &mut parts[roots.of(triangle[0]) as usize];
+            let part = &mut parts[groups.root(triangle[0]) as usize];
             if *part == u32::MAX {
                 *part = lists.len() as u32;
                 lists.push(Vec::new());
@@ -175,28 +176,4 @@ impl Mesh {
 /// What belongs to some triangles.
 fn of<T: Copy>(chosen: &[u32], all: &[T]) -> Vec<T> {
     chosen.iter().map(|number| all[*number as usize]).collect()
-}
-
-/// Which vertices hang together: each points at another one of its part, or is its root.
-struct Roots(Vec<u32>);
-
-impl Roots {
-    fn new(vertices: usize) -> Roots {
-        Roots((0..vertices as u32).collect())
-    }
-
-    fn of(&mut self, mut vertex: u32) -> u32 {
-        while self.0[vertex as usize] != vertex {
-            let next = self.0[self.0[vertex as usize] as usize];
-            self.0[vertex as usize] = next;
-            vertex = next;
-        }
-        vertex
-    }
-
-    fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.of(a), self.of(b));
-        // The lower number is the root.
-        self.0[a.max(b) as usize] = a.min(b);
-    }
 }

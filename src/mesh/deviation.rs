@@ -76,7 +76,11 @@ pub(super) fn probes(
 /// A step to the surface, no longer than that: where the slope is of no use, what is told is far.
 fn stepped(slope: &Slope, reach: f64) -> DVec3 {
     let step = slope.newton();
-    if step.is_finite() { step.clamp_length_max(reach) } else { DVec3::ZERO }
+    match slope.value {
+        0.0 => DVec3::ZERO,
+        _ if step.is_finite() && step != DVec3::ZERO => step.clamp_length_max(reach),
+        _ => reach * DVec3::X,
+    }
 }
 
 /// The largest distance of the probes.

@@ -10,6 +10,7 @@ mod error;
 mod extract;
 mod extract_blocks;
 mod feature;
+mod groups;
 mod hide;
 mod lattice;
 mod loops;

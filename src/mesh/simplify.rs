@@ -1,4 +1,4 @@
-//! Fewer triangles within a tolerance.
+//! Fewer triangles within a tolerance: simplification (decimation) by edge collapse.
 //!
 //! ```text
 //!      +--+--+--+--+            Vertices are drawn into neighbours, the least error first, as long
@@ -49,10 +49,16 @@ pub(super) fn simplified(
     // What is farther off already does not come nearer.
     let most = tolerance.max(ROUNDING * deviation::largest(probes));
     let mut parts = vec![1.0; mesh.positions().len()];
+    let mut along_x: Vec<u32> = (0..parts.len() as u32).collect();
+    along_x.sort_unstable_by(|a, b| {
+        let [a, b] = [a, b].map(|n| mesh.positions()[*n as usize].x);
+        a.total_cmp(&b)
+    });
     for attempt in 0..ATTEMPTS {
         let [from, to] = [attempt, attempt + 1].map(|n| 1.0 - 0.25f64.powi(n as i32));
         let [to_draw, to_check, to_compare] = run.stage(from, to).stages([0.8, 0.1, 0.1]);
         let mut collapse = Collapse::new(&mesh, probes, (1.0 - SHARE) * tolerance, &parts);
+        run.check()?;
         collapse.run(&to_draw)?;
         let fewer = collapse.into_mesh(&mesh).map_err(ExtractError::from)?;
         let mut wrong = intersecting(&fewer, &to_check)?;
@@ -64,9 +70,12 @@ pub(super) fn simplified(
             return Ok(told(fewer, &found, tolerance));
         }
         for triangle in wrong {
+            run.check()?;
             let around = Bounds::from_points(fewer.corners(triangle)).inflate(tolerance);
-            let near = parts.iter_mut().zip(mesh.positions()).filter(|(_, p)| around.contains(p.as_dvec3()));
-            near.for_each(|(part, _)| *part *= LESS);
+            let place = |n: &u32| mesh.positions()[*n as usize].as_dvec3();
+            let first = along_x.partition_point(|n| place(n).x < around.min.x);
+            let near = along_x[first..].iter().take_while(|n| place(n).x <= around.max.x);
+            near.filter(|n| around.contains(place(n))).for_each(|n| parts[*n as usize] *= LESS);
         }
     }
     Ok(told(mesh, probes, tolerance))

@@ -72,7 +72,8 @@ impl Subject<'_> {
         let mut lattice = Lattice::new(&bounds, settings.cell)?;
         if tolerance.is_some() {
             let enough = ENOUGH + ENOUGH_A_LEAF * program.leaf_count() as f64;
-            let first = self.first_cell(bounds.longest_side(), lattice.step(), enough, &to_find)?;
+            let first =
+                self.first_cell(bounds.longest_side(), lattice.step(), enough, &Run { progress: None, ..run.clone() })?;
             lattice = Lattice::new(&bounds, CellSize::Length(first))?;
         }
         let mut blocks = Blocks::find(program, &lattice, &to_find)?;

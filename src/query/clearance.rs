@@ -96,7 +96,8 @@ impl Solid {
         if own_box.is_empty() || other_box.is_empty() {
             return Ok(None);
         }
-        let programs = [compiled_with(self, &to_own)?, compiled_with(other, &to_other)?];
+        let quiet = Run { progress: None, ..run.clone() };
+        let programs = [compiled_with(self, &quiet)?, compiled_with(other, &quiet)?];
         let surfaces = [surface_with(self, &to_own)?, surface_with(other, &to_other)?];
         let sides = [0, 1].map(|n| Side { program: &programs[n].surface, surface: &surfaces[n] });
         if sides.iter().any(|side| side.surface.patches.is_empty()) {
@@ -162,12 +163,13 @@ impl Side<'_> {
         self.surface.accuracy.tolerance.max(self.surface.accuracy.error)
     }
 
-    /// A point inside both solids, just below the surface of this one, if there is any below a corner of a patch.
+    /// A point inside both solids, just below the surface of this one, if there is any below a corner or the middle of a
+    /// patch.
     fn common(&self, other: &Side<'_>, slack: f64, run: &Run) -> Result<Option<DVec3>, PrepareError> {
         let patches = &self.surface.patches;
         let bounds = other.surface.patches.bounds().inflate(slack);
-        let below = |n: usize| {
-            let p = patches.point(n, [1.0 / 3.0; 2]);
+        let below_at = |n: usize, at: [f64; 2]| {
+            let p = patches.point(n, at);
             if !bounds.contains(p) {
                 return None;
             }
@@ -177,6 +179,8 @@ impl Side<'_> {
             // Nearer to the other surface than that, they may as well touch.
             is_common.then_some(inner).filter(|p| distance(&other.surface.patches, *p) > slack)
         };
+        let places = [[1.0 / 3.0; 2], [0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+        let below = |n: usize| places.into_iter().find_map(|at| below_at(n, at));
         for chunk in chunks(patches.len()) {
             run.check()?;
             if let Some(found) = chunk.into_par_iter().find_map_first(below) {

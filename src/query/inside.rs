@@ -8,7 +8,7 @@
 
 use glam::DVec3;
 
-use crate::eval::{Compiled, Program};
+use crate::eval::{Compiled, Program, limited};
 
 /// Values of less than this, in proportion to lengths about the solid, are rounding.
 const ROUNDING: f64 = 1e-13;
@@ -41,9 +41,11 @@ const AROUND: [[f64; 3]; 14] = [
 pub(super) fn is_inside(programs: &Compiled, p: DVec3) -> bool {
     let program = &programs.surface;
     let value = program.value(p);
-    if value > 0.0 || !p.is_finite() {
+    if value > 0.0 || p.is_nan() {
         return value > 0.0;
     }
+    // Where its value is taken.
+    let p = DVec3::from(limited(p));
     let size = if programs.bounds.is_finite() { programs.bounds.longest_side() } else { 1.0 };
     let scale = size + p.abs().max_element();
     value > -ROUNDING * scale && is_surrounded(program, p, scale)

@@ -80,7 +80,8 @@ impl Solid {
 
     /// Moved along an axis so that a face of its box lies in the plane of a face of another solid's box. Both faces
     /// are across the same axis: two that are not are refused when the result is first used, as
-    /// solids [without a box](Solid::on_ground) are.
+    /// solids [without a box](Solid::on_ground) are. What is wrong with the other solid is told as a box that it has
+    /// not; an empty solid stays empty, whatever it is aligned with.
     ///
     /// ```
     /// use rvachev::{Face, Solid};

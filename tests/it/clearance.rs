@@ -91,3 +91,21 @@ fn nothing_has_no_clearance_and_faults_are_told() {
     let fresh = Solid::sphere(1.5).twist(deg(1.0));
     assert!(matches!(fresh.clearance(&ball, &run), Err(PrepareError::Cancelled(_))));
 }
+
+#[test]
+fn a_corner_that_is_dipped_into_a_face_overlaps() {
+    let block = Solid::cuboid([20.0, 20.0, 10.0]);
+    // A cube on its corner: half its diagonal below its middle.
+    let turn = glam::DQuat::from_rotation_arc(glam::DVec3::ONE.normalize(), -glam::DVec3::Z);
+    let reach = 5.0 * 3f64.sqrt();
+    for (dip, overlaps) in [(0.1, true), (0.5, true), (-0.1, false)] {
+        for at in [[0.0, 0.0], [1.37, -2.11], [3.3, 4.7]] {
+            let cube = Solid::cuboid([10.0; 3]).rotate(turn).translate([at[0], at[1], 5.0 + reach - dip]);
+            let found = cube.clearance(&block, &Run::default()).unwrap().unwrap();
+            assert_eq!(found.overlaps, overlaps, "{dip} at {at:?}: {found:?}");
+            if !overlaps {
+                assert!((found.distance + dip).abs() <= found.tolerance + 1e-9, "{found:?}");
+            }
+        }
+    }
+}

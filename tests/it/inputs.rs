@@ -171,6 +171,7 @@ fn meshing_takes_any_cells_and_bounds() {
     all(300, |chance| {
         let cell = match chance.below(3) {
             0 => CellSize::LongestSide([0, 1, 2, 9, u32::MAX][chance.below(5)]),
+            1 => CellSize::Tolerance([0.0, -1.0, f64::NAN, 1e-300, 0.1, 1e300][chance.below(6)]),
             _ => CellSize::Length(chance.number()),
         };
         let bounds = (chance.below(3) > 0).then(|| chance.box_());

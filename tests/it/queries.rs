@@ -478,3 +478,15 @@ fn gradients_are_slopes_of_values_and_many_values_are_those_of_one() {
     assert!(wrong.is_empty(), "{} wrong of {smooth}:\n{}", wrong.len(), wrong[..wrong.len().min(40)].join("\n"));
     assert!(smooth > 10_000, "{smooth}");
 }
+
+#[test]
+fn points_beyond_all_numbers_are_outside() {
+    let solids = [Solid::sphere(1.0), Solid::cuboid([1.0; 3]) | Solid::cuboid([1.0; 3]).translate([1.0, 0.0, 0.0])];
+    for solid in solids {
+        for far in [1e10, 1e13, 1e25, 1e30, 1e300, f64::INFINITY] {
+            for p in [[far, 0.0, 0.0], [0.0, -far, 0.3], [far, far, -far]] {
+                assert_eq!(solid.contains(p), Ok(false), "{p:?}");
+            }
+        }
+    }
+}

@@ -131,3 +131,13 @@ fn nothing_is_outside_of_boxes_that_were_moved_in() {
         }
     }
 }
+
+#[test]
+fn boxes_far_from_the_origin_are_not_lost() {
+    let twisted = Solid::cuboid([1.0; 3]).twist(rvachev::rad(0.1));
+    let far = twisted.translate([9e8, 0.0, 0.0]).translate([9e8, 0.0, 0.0]);
+    let bounds = far.bounds().unwrap();
+    assert!(!bounds.is_empty() && bounds.contains(glam::DVec3::new(1.8e9, 0.0, 0.0)), "{bounds:?}");
+    let across = Solid::cuboid([1e9, 1e3, 1e3]).twist(rvachev::rad(1e-9)).translate([7e8, 0.0, 0.0]);
+    assert!(across.bounds().unwrap().max.x > 1.19e9, "{:?}", across.bounds());
+}

@@ -22,6 +22,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::geom::Mesh;
+use crate::mesh::groups::Groups;
 use crate::{Cancelled, Run};
 use rvachev_num::Meter;
 
@@ -354,30 +355,4 @@ fn shells(mesh: &Mesh, starts: &[u64], steps: &[Step], run: &Run) -> Result<usiz
         }
     }
     Ok(count)
-}
-
-/// Disjoint sets of triangles.
-struct Groups(Vec<u32>);
-
-impl Groups {
-    fn new(count: usize) -> Groups {
-        Groups((0..count as u32).collect())
-    }
-
-    fn root(&mut self, mut i: u32) -> u32 {
-        while self.0[i as usize] != i {
-            // Halving the path keeps later walks short.
-            let above = self.0[self.0[i as usize] as usize];
-            self.0[i as usize] = above;
-            i = above;
-        }
-        i
-    }
-
-    /// Joins the sets of two triangles; whether they were different.
-    fn join(&mut self, a: u32, b: u32) -> bool {
-        let (a, b) = (self.root(a), self.root(b));
-        self.0[a.max(b) as usize] = a.min(b);
-        a != b
-    }
 }

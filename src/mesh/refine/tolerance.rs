@@ -90,7 +90,7 @@ pub(in crate::mesh) fn within(
         let smaller = match alone {
             _ if is_done => None,
             Some(alone) if is_worse(&alone) => match alone.0.halved() {
-                Some(lattice) => Some(Level::new(lattice, Blocks::find(job.program, &lattice, run)?)),
+                Some(lattice) => Some(Level::new(lattice, Blocks::find(job.program, &lattice, &quiet(run))?)),
                 None => None,
             },
             _ => smaller(job, &levels, &mesh, &probes, tolerance, run)?,
@@ -110,6 +110,11 @@ pub(in crate::mesh) fn within(
         }
     }
     unreachable!("the last round returns")
+}
+
+/// The same run, told nothing: what is done again and again is a part of a round.
+fn quiet(run: &Run) -> Run {
+    Run { progress: None, ..run.clone() }
 }
 
 fn middle(mesh: &Mesh, probe: &Probe) -> DVec3 {
@@ -154,7 +159,7 @@ fn smaller(
     let smaller = CellSize::Length(part * level.lattice.step());
     let lattice = Lattice::new(&job.limits, smaller).ok().filter(|_| count < ENOUGH as f64);
     let Some(lattice) = lattice else { return Ok(None) };
-    let blocks = Blocks::find(job.program, &lattice, run)?;
+    let blocks = Blocks::find(job.program, &lattice, &quiet(run))?;
     Ok(Some(Level::new(lattice, blocks)))
 }
 

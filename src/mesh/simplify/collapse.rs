@@ -1,4 +1,4 @@
-//! Vertices drawn into neighbours, one after the other.
+//! Vertices drawn into neighbours, one after the other (half-edge collapse).
 //!
 //! ```text
 //!        l                     l            v takes the place of u: the two triangles at the side u–v are
@@ -137,7 +137,12 @@ impl Collapse {
     /// Draws vertices together until none can be.
     pub(super) fn run(&mut self, run: &Run) -> Result<(), Cancelled> {
         let vertices = self.positions.len();
-        (0..vertices as u32).for_each(|vertex| self.push(vertex));
+        for vertex in 0..vertices as u32 {
+            if (vertex as usize).is_multiple_of(AT_ONCE) {
+                run.check()?;
+            }
+            self.push(vertex);
+        }
         let (mut steps, mut left) = (0, vertices);
         while let Some(Reverse((_, vertex, version))) = self.heap.pop() {
             steps += 1;

@@ -14,7 +14,7 @@ mod tree;
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use rvachev_num::Meter;
 
@@ -28,7 +28,7 @@ use super::slice::{Slice, seen};
 use crate::distance::compiled_with;
 use crate::eval::Program;
 use crate::geom::Contours;
-use crate::{Cancelled, Plane, PlaneBounds, Run, Solid};
+use crate::{COORDINATE_LIMIT, Cancelled, Plane, PlaneBounds, Run, Solid};
 
 /// How far the first square goes beyond the region. Corners of squares keep off the round coordinates that faces are
 /// fond of.
@@ -142,6 +142,13 @@ fn stack(
     let tolerance = settings.tolerance;
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         return Err(setting("tolerance", tolerance, "finite and above 0"));
+    }
+    // Nothing is beyond the coordinate limit.
+    let (middle, reach) = (plane.coordinates(DVec3::ZERO), 2.0 * COORDINATE_LIMIT);
+    let region = PlaneBounds { min: region.min.max(middle - reach), max: region.max.min(middle + reach) };
+    let is_near = plane.origin().dot(plane.normal()).abs() < reach;
+    if !(is_near && region.min.cmplt(region.max).all()) {
+        return Ok(vec![Contours::default(); heights.len()]);
     }
     let size = (region.max - region.min).max_element();
     let tolerance = tolerance.max(FINEST * size);

@@ -49,7 +49,7 @@ use tree::Tree;
 /// is no border, as between two squares side by side, or on the two ways of a bridge that leads to a hole.
 /// Edges do not cross; coordinates are within ±10⁹ and edges at least 10⁻⁹ long. What is wrong is found by
 /// exact arithmetic and said when the profile is compiled: with the contour, the edge and the point. Until
-/// then nothing is computed; n edges take some n log n steps.
+/// then nothing is computed; n edges take some n log n steps, and one more for each pair that lies on one another.
 ///
 /// ```
 /// use rvachev::{Polygon, Profile};
