@@ -3,6 +3,7 @@
 
 use glam::DVec3;
 
+use super::hierarchy::Reach;
 use super::program::{Edge, Kind, Node};
 use super::sides::Sides;
 use super::swell::Swell;
@@ -46,8 +47,8 @@ impl Built {
 pub(super) struct Code {
     pub(super) nodes: Vec<Node>,
     pub(super) operands: Vec<Edge>,
-    /// Where each operand decides anything, in the frame of its join.
-    pub(super) decisive: Vec<Bounds>,
+    /// Where each operand matters to its join, in the frame of that.
+    pub(super) reaches: Vec<Reach>,
 }
 
 /// An operand of a join, and where it is.
@@ -64,10 +65,10 @@ impl Operand {
 }
 
 impl Code {
-    pub(super) fn push(&mut self, kind: Kind, operands: &[(Edge, Bounds)]) -> Edge {
+    pub(super) fn push(&mut self, kind: Kind, operands: &[(Edge, Reach)]) -> Edge {
         let first = self.operands.len() as u32;
         self.operands.extend(operands.iter().map(|(edge, _)| *edge));
-        self.decisive.extend(operands.iter().map(|(_, bounds)| *bounds));
+        self.reaches.extend(operands.iter().map(|(_, reach)| *reach));
         self.nodes.push(Node { kind, first, len: operands.len() as u32 });
         Edge::new(self.nodes.len() - 1)
     }
@@ -76,7 +77,7 @@ impl Code {
         if let [only] = operands {
             return *only;
         }
-        let list: Vec<(Edge, Bounds)> = operands.iter().map(|o| (o.edge, o.sides.decisive(op))).collect();
+        let list: Vec<(Edge, Reach)> = operands.iter().map(|o| (o.edge, Reach::fixed(o.sides.decisive(op)))).collect();
         let sides = operands.iter().map(|o| o.sides).reduce(|a, b| a.join(op, b)).unwrap_or_default();
         Operand { edge: self.push(Kind::Join { op, rule, frame, hierarchy: None }, &list), sides }
     }
@@ -136,7 +137,7 @@ impl Code {
 
     /// Values moved by `by`.
     pub(super) fn level(&mut self, by: f64, operand: Built) -> Built {
-        let edge = self.push(Kind::Shift(by), &[(operand.field, Bounds::ALL)]);
+        let edge = self.push(Kind::Shift(by), &[(operand.field, Reach::fixed(Bounds::ALL))]);
         let mut sides = operand.sides;
         if by > 0.0 {
             sides.inside = operand.swell.above(by).unwrap_or(Bounds::ALL);
@@ -160,8 +161,12 @@ impl Code {
     fn pair(&mut self, operation: Operation, rule: Rule, frame: u32, pair: [Built; 2]) -> Edge {
         let negate = operation == Operation::Difference && !matches!(rule, Rule::Ricci { .. });
         let op = if matches!(rule, Rule::Ricci { .. }) { Op::And } else { operation.op() };
-        let operands = [(pair[0].field, Bounds::ALL), (pair[1].field.flip_if(negate), Bounds::ALL)];
-        self.push(Kind::Join { op, rule, frame, hierarchy: None }, &operands)
+        // What x ∧ ¬y reads of its operands is what ¬x ∨ y does.
+        let operand = |built: Built, negate: bool| {
+            let swell = if negate == (op == Op::And) { built.swell } else { built.complement().swell };
+            (built.field.flip_if(negate), swell.reaching())
+        };
+        self.push(Kind::Join { op, rule, frame, hierarchy: None }, &[operand(pair[0], false), operand(pair[1], negate)])
     }
 
     /// A smooth join; `inside` holds a union.

@@ -1,9 +1,12 @@
 //! Flattening: nested joins of one kind become one, its operands ordered in space.
+//!
+//! Those of min and max have no order; a chain of smooth joins is one join whose operands stay in the
+//! order of the chain.
 
 use std::sync::Arc;
 
 use super::code::Code;
-use super::hierarchy::Hierarchy;
+use super::hierarchy::{Hierarchy, Reach};
 use super::program::{Edge, Kind, Node};
 use crate::{Bounds, Cancelled, Run};
 use rvachev_field::Rule;
@@ -24,13 +27,18 @@ pub(super) fn flatten(code: &Code, root: Edge, run: &Run) -> Result<(Vec<Node>, 
         }
     }
     for at in 0..count {
-        let Kind::Join { op, rule: Rule::MinMax, frame, .. } = &code.nodes[at].kind else { continue };
-        if uses[at] == 0 {
+        let Kind::Join { op, rule, frame, .. } = &code.nodes[at].kind else { continue };
+        if uses[at] == 0 || !matches!(rule, Rule::MinMax | Rule::Smooth(_)) {
             continue;
         }
         for edge in &code.operands[code.nodes[at].range()] {
-            if let Kind::Join { op: below, rule: Rule::MinMax, frame: inner, .. } = &code.nodes[edge.node()].kind {
-                merged[edge.node()] = uses[edge.node()] == 1 && inner == frame && below.flip_if(edge.negated()) == *op;
+            if let Kind::Join { op: below, rule: own, frame: inner, .. } = &code.nodes[edge.node()].kind {
+                let is_like = (rule, frame) == (own, inner) && below.flip_if(edge.negated()) == *op;
+                merged[edge.node()] = is_like && uses[edge.node()] == 1;
+            }
+            if merged[edge.node()] && *rule != Rule::MinMax {
+                // A chain goes on in one operand.
+                break;
             }
         }
     }
@@ -44,16 +52,27 @@ pub(super) fn flatten(code: &Code, root: Edge, run: &Run) -> Result<(Vec<Node>, 
         }
         let mut node = code.nodes[at].clone();
         let first = list.len() as u32;
-        if let Kind::Join { rule: Rule::MinMax, hierarchy, .. } = &mut node.kind {
-            let mut operands = gather(code, &merged, at);
-            run.check()?;
-            Hierarchy::sort(&mut operands);
-            run.check()?;
-            list.extend(operands.iter().map(|(edge, _)| edge.to(moved[edge.node()])));
-            let boxes: Vec<Bounds> = operands.iter().map(|(_, bounds)| *bounds).collect();
-            *hierarchy = Hierarchy::new(boxes).map(Arc::new);
-        } else {
-            list.extend(code.operands[node.range()].iter().map(|edge| edge.to(moved[edge.node()])));
+        match &mut node.kind {
+            Kind::Join { rule: Rule::MinMax, hierarchy, .. } => {
+                let mut operands = gather(code, &merged, at);
+                run.check()?;
+                Hierarchy::sort(&mut operands);
+                run.check()?;
+                list.extend(operands.iter().map(|(edge, _)| edge.to(moved[edge.node()])));
+                let reaches = operands.iter().map(|(_, reach)| *reach).collect();
+                *hierarchy = Hierarchy::new(reaches, Vec::new()).map(Arc::new);
+            }
+            Kind::Join { rule: Rule::Smooth(_), hierarchy, .. } => {
+                let operands = gather(code, &merged, at);
+                list.extend(operands.iter().map(|(edge, _)| edge.to(moved[edge.node()])));
+                run.check()?;
+                let mut numbered: Vec<(u32, Reach)> = (0..).zip(operands.iter().map(|(_, reach)| *reach)).collect();
+                Hierarchy::sort(&mut numbered);
+                run.check()?;
+                let (numbers, reaches) = numbered.into_iter().unzip();
+                *hierarchy = Hierarchy::new(reaches, numbers).map(Arc::new);
+            }
+            _ => list.extend(code.operands[node.range()].iter().map(|edge| edge.to(moved[edge.node()]))),
         }
         (node.first, node.len) = (first, list.len() as u32 - first);
         moved[at] = nodes.len();
@@ -63,19 +82,21 @@ pub(super) fn flatten(code: &Code, root: Edge, run: &Run) -> Result<(Vec<Node>, 
     Ok((nodes, list, root))
 }
 
-/// The operands of a join and of all that is merged into it, from left to right.
-fn gather(code: &Code, merged: &[bool], join: usize) -> Vec<(Edge, Bounds)> {
+/// The operands of a join and of all that is merged into it, from left to right; of a chain from its first link on.
+fn gather(code: &Code, merged: &[bool], join: usize) -> Vec<(Edge, Reach)> {
     let mut operands = Vec::new();
-    let mut pending = vec![(Edge::new(join), Bounds::ALL)];
-    while let Some((edge, bounds)) = pending.pop() {
+    let mut pending = vec![(Edge::new(join), Reach::fixed(Bounds::ALL))];
+    while let Some((edge, reach)) = pending.pop() {
         if edge.node() == join || merged[edge.node()] {
-            for i in code.nodes[edge.node()].range().rev() {
-                // A merged join is of the kind that its parent is, so where its operands
-                // decide is told for that kind.
-                pending.push((code.operands[i].flip_if(edge.negated()), code.decisive[i]));
-            }
+            // A merged join is of the kind that its parent is, so where its operands
+            // matter is told for that kind.
+            let below =
+                code.nodes[edge.node()].range().map(|i| (code.operands[i].flip_if(edge.negated()), code.reaches[i]));
+            let (on, own): (Vec<_>, Vec<_>) = below.partition(|(edge, _)| merged[edge.node()]);
+            pending.extend(own.into_iter().rev());
+            pending.extend(on.into_iter().rev());
         } else {
-            operands.push((edge, bounds));
+            operands.push((edge, reach));
         }
     }
     operands

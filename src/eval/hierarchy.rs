@@ -1,10 +1,12 @@
 //! A bounding-volume hierarchy over the operands of a long join.
 //!
 //! Operands are ordered in space by median splits; the hierarchy is a list of boxes in
-//! depth-first order, each with the place to go on at when the box is missed.
+//! depth-first order, each with the place to go on at when the box is missed. Of operands whose values
+//! are read, the boxes grow with how far below 0 a value still matters.
 
 use glam::DVec3;
 
+use super::code::grow;
 use crate::Bounds;
 
 /// Joins of fewer operands are scanned.
@@ -13,13 +15,38 @@ const SCANNED: usize = 8;
 /// Operands in a leaf of the hierarchy.
 const BUCKET: usize = 4;
 
+/// Where an operand matters: its value is above −c within `bounds`, grown by `growth · c`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reach {
+    pub(crate) bounds: Bounds,
+    pub(crate) growth: DVec3,
+}
+
+impl Reach {
+    /// Of an operand that matters in a box, whatever is asked.
+    pub(crate) fn fixed(bounds: Bounds) -> Reach {
+        Reach { bounds, growth: DVec3::ZERO }
+    }
+
+    fn union(&self, other: &Reach) -> Reach {
+        Reach { bounds: self.bounds.union(&other.bounds), growth: self.growth.max(other.growth) }
+    }
+
+    fn meets(&self, region: &Bounds, c: f64) -> bool {
+        self.bounds.intersects(&if c > 0.0 { grow(region, c * self.growth) } else { *region })
+    }
+}
+
 pub(crate) struct Hierarchy {
     boxes: Vec<Item>,
-    operands: Vec<Bounds>,
+    /// In the order of the boxes.
+    operands: Vec<Reach>,
+    /// The numbers of the operands in their join, if they are in another order there.
+    numbers: Vec<u32>,
 }
 
 struct Item {
-    bounds: Bounds,
+    reach: Reach,
     /// Where to go on if the box is missed.
     skip: u32,
     /// The operands of a bucket; empty for inner boxes.
@@ -27,8 +54,8 @@ struct Item {
 }
 
 impl Hierarchy {
-    /// Sorts `operands`, each with the box in which it decides anything, in space.
-    pub(crate) fn sort<T: Copy>(operands: &mut [(T, Bounds)]) {
+    /// Sorts `operands` in space.
+    pub(crate) fn sort<T: Copy>(operands: &mut [(T, Reach)]) {
         if operands.len() < SCANNED {
             return;
         }
@@ -39,8 +66,8 @@ impl Hierarchy {
             }
             let slice = &mut operands[from..to];
             let mut centres = Bounds::EMPTY;
-            for (_, bounds) in slice.iter() {
-                let c = centre(bounds);
+            for (_, reach) in slice.iter() {
+                let c = centre(reach);
                 centres = centres.union(&Bounds::new(c, c));
             }
             let size = centres.size();
@@ -63,28 +90,35 @@ impl Hierarchy {
         if operands.len() < SCANNED {
             return None;
         }
-        Hierarchy::new(operands.iter().map(|&i| self.operands[i as usize]).collect())
+        if self.numbers.is_empty() {
+            return Hierarchy::new(operands.iter().map(|&i| self.operands[i as usize]).collect(), Vec::new());
+        }
+        let kept = self.numbers.iter().zip(&self.operands);
+        let kept = kept.filter_map(|(number, reach)| Some((operands.binary_search(number).ok()? as u32, *reach)));
+        let (numbers, reaches): (Vec<u32>, Vec<Reach>) = kept.unzip();
+        Hierarchy::new(reaches, numbers)
     }
 
-    /// The hierarchy over boxes that [`sort`](Hierarchy::sort) has ordered; none for few.
-    pub(crate) fn new(bounds: Vec<Bounds>) -> Option<Hierarchy> {
-        if bounds.len() < SCANNED {
+    /// The hierarchy over operands that [`sort`](Hierarchy::sort) has ordered; none for few.
+    pub(crate) fn new(operands: Vec<Reach>, numbers: Vec<u32>) -> Option<Hierarchy> {
+        if operands.len() < SCANNED {
             return None;
         }
         enum Task {
             Open(usize, usize),
             Close(usize),
         }
-        let mut boxes: Vec<Item> = Vec::with_capacity(4 * bounds.len().div_ceil(BUCKET));
-        let mut tasks = vec![Task::Open(0, bounds.len())];
+        let mut boxes: Vec<Item> = Vec::with_capacity(4 * operands.len().div_ceil(BUCKET));
+        let mut tasks = vec![Task::Open(0, operands.len())];
         while let Some(task) = tasks.pop() {
             match task {
                 Task::Open(from, to) => {
-                    let all = bounds[from..to].iter().fold(Bounds::EMPTY, |all, b| all.union(b));
+                    let nowhere = Reach::fixed(Bounds::EMPTY);
+                    let reach = operands[from..to].iter().fold(nowhere, |all, own| all.union(own));
                     let at = boxes.len();
                     let bucket = to - from <= BUCKET;
                     let operands = if bucket { from as u32..to as u32 } else { 0..0 };
-                    boxes.push(Item { bounds: all, skip: 0, operands });
+                    boxes.push(Item { reach, skip: 0, operands });
                     tasks.push(Task::Close(at));
                     if !bucket {
                         let middle = from + (to - from) / 2;
@@ -95,15 +129,15 @@ impl Hierarchy {
                 Task::Close(at) => boxes[at].skip = boxes.len() as u32,
             }
         }
-        Some(Hierarchy { boxes, operands: bounds })
+        Some(Hierarchy { boxes, operands, numbers })
     }
 
-    /// Calls `visit` with every operand whose bucket meets `region`.
-    pub(crate) fn visit(&self, region: &Bounds, mut visit: impl FnMut(usize)) {
+    /// Calls `visit` with every operand whose bucket may matter in `region` down to −c.
+    pub(crate) fn visit(&self, region: &Bounds, c: f64, mut visit: impl FnMut(usize)) {
         let mut at = 0;
         while at < self.boxes.len() {
             let item = &self.boxes[at];
-            if item.bounds.intersects(region) {
+            if item.reach.meets(region, c) {
                 item.operands.clone().for_each(|operand| visit(operand as usize));
                 at += 1;
             } else {
@@ -111,8 +145,20 @@ impl Hierarchy {
             }
         }
     }
+
+    /// The operands that may matter in `region` down to −c, in the order of their join.
+    pub(crate) fn near(&self, region: &Bounds, c: f64) -> Vec<u32> {
+        let mut near = Vec::new();
+        self.visit(region, c, |operand| {
+            if self.operands[operand].meets(region, c) {
+                near.push(self.numbers.get(operand).copied().unwrap_or(operand as u32));
+            }
+        });
+        near.sort_unstable();
+        near
+    }
 }
 
-fn centre(bounds: &Bounds) -> DVec3 {
-    if bounds.is_finite() { bounds.center() } else { DVec3::ZERO }
+fn centre(reach: &Reach) -> DVec3 {
+    if reach.bounds.is_finite() { reach.bounds.center() } else { DVec3::ZERO }
 }

@@ -9,6 +9,7 @@ mod accuracy;
 mod apart;
 mod bend;
 mod bevel;
+mod chain;
 mod chamfer;
 mod coat;
 mod code;

@@ -126,7 +126,7 @@ impl Program {
         self.frames.binary_search(&frame).map_or(world, |slot| &zones[slot])
     }
 
-    fn leaf_range(&self, leaf: u32, zones: &[Pieces], world: &Pieces) -> Interval {
+    pub(super) fn leaf_range(&self, leaf: u32, zones: &[Pieces], world: &Pieces) -> Interval {
         let instance = self.instance(leaf);
         let zone = self.zone_in(zones, instance.frame, world);
         zone.range(&instance.to_local, |zone| instance.placed_range(zone))

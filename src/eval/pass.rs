@@ -55,9 +55,9 @@ const FEW: usize = 32;
 
 /// One narrowing under way.
 pub(super) struct Pass<'a> {
-    program: &'a Program,
-    zones: &'a [Pieces],
-    world: &'a Pieces,
+    pub(super) program: &'a Program,
+    pub(super) zones: &'a [Pieces],
+    pub(super) world: &'a Pieces,
     /// Whether a leaf that is not far by its box is open, whatever its range.
     pub(super) by_boxes: bool,
     /// A leaf whose sign is known beforehand, by its node.
@@ -69,6 +69,8 @@ pub(super) struct Pass<'a> {
     /// The range of a node whose value is asked for, and the narrowed program's node of the
     /// same value.
     values: Vec<Option<(Interval, Edge)>>,
+    /// Ranges that were taken on the way down; none at first.
+    pub(super) ranges: Vec<Option<Interval>>,
     pub(super) nodes: Vec<Node>,
     pub(super) list: Vec<Edge>,
     pub(super) simpler: Vec<Instance>,
@@ -87,6 +89,7 @@ impl<'a> Pass<'a> {
             near: vec![None; count],
             signs: vec![Sign::Unknown; count],
             values: vec![None; count],
+            ranges: Vec::new(),
             nodes: Vec::with_capacity(count.min(FEW)),
             list: Vec::with_capacity(program.operands.len().min(FEW)),
             simpler: Vec::new(),
@@ -120,33 +123,42 @@ impl<'a> Pass<'a> {
                 Kind::Shift(_) => true,
                 Kind::Join { rule, .. } => value || rule.reads_values(),
             };
-            if values {
-                for edge in operands {
-                    self.asked[edge.node()].value = true;
-                }
+            let asked = Asked { sign: !values, value: values };
+            let Kind::Join { rule, frame, hierarchy: Some(hierarchy), .. } = &node.kind else {
+                operands.iter().for_each(|edge| self.ask_for(*edge, asked));
                 continue;
-            }
-            if let Kind::Join { frame, hierarchy: Some(hierarchy), .. } = &node.kind {
-                let mut region = Bounds::EMPTY;
-                program.zone_in(self.zones, *frame, self.world).each(|zone| region = region.union(&hull_of(zone)));
-                let mut near = Vec::with_capacity(operands.len().min(FEW));
-                hierarchy.visit(&region, |operand| near.push(operand as u32));
-                for &operand in &near {
-                    self.asked[operands[operand as usize].node()].sign = true;
+            };
+            let mut region = Bounds::EMPTY;
+            program.zone_in(self.zones, *frame, self.world).each(|zone| region = region.union(&hull_of(zone)));
+            let near = match rule {
+                Rule::MinMax if values => {
+                    operands.iter().for_each(|edge| self.ask_for(*edge, asked));
+                    continue;
                 }
-                self.near[at] = Some(near);
-            } else {
-                for edge in operands {
-                    self.asked[edge.node()].sign = true;
+                Rule::MinMax => {
+                    let mut near = Vec::with_capacity(operands.len().min(FEW));
+                    hierarchy.visit(&region, 0.0, |operand| near.push(operand as u32));
+                    near
                 }
-            }
+                _ => match self.links(at, hierarchy, &region, value) {
+                    Some(links) => links,
+                    None => continue,
+                },
+            };
+            near.iter().for_each(|&operand| self.ask_for(operands[operand as usize], asked));
+            self.near[at] = Some(near);
         }
+    }
+
+    fn ask_for(&mut self, edge: Edge, asked: Asked) {
+        let all = &mut self.asked[edge.node()];
+        *all = Asked { sign: all.sign || asked.sign, value: all.value || asked.value };
     }
 
     /// Up: what is known of a node, and the narrowed program of what stays open.
     fn answer(&mut self, at: usize) {
         let Asked { sign, value } = self.asked[at];
-        if sign || value {
+        if (sign || value) && matches!(self.signs[at], Sign::Unknown) {
             self.find(at, value);
         }
     }
@@ -165,23 +177,24 @@ impl<'a> Pass<'a> {
                 let near = self.near[at].take();
                 self.signs[at] = self.sign_of_join(node, near.as_deref());
             }
+            Kind::Join { rule: Rule::Smooth(_), .. } => {
+                let near = self.near[at].take();
+                self.chain(at, near.as_deref(), value);
+            }
             kind => {
                 let operands: Vec<(Interval, Edge)> =
                     program.list(node).iter().filter_map(|e| self.value(*e)).collect();
                 let range = joined(kind, operands.iter().map(|(range, _)| *range));
-                let edge = match (kind, deciding(kind, &operands)) {
-                    (_, Some(only)) => only,
-                    (Kind::Join { rule: Rule::Rounded(size), .. }, None)
-                        if let Some(face) = alone(&operands, |_| 0.0) =>
-                    {
+                let edge = match kind {
+                    Kind::Join { rule: Rule::Rounded(size), .. } if let Some(face) = alone(&operands, |_| 0.0) => {
                         self.push(&Kind::Shift(*size), vec![face])
                     }
-                    (Kind::Join { rule: Rule::Chamfered(leg), .. }, None)
+                    Kind::Join { rule: Rule::Chamfered(leg), .. }
                         if let Some(face) = alone(&operands, |x| (SQRT_2 - 1.0) * (x + leg)) =>
                     {
                         self.push(&Kind::Shift(*leg), vec![face])
                     }
-                    (Kind::Join { op, rule: Rule::MinMax, .. }, None) => {
+                    Kind::Join { op, rule: Rule::MinMax, .. } => {
                         let contenders = contenders(*op, &operands);
                         self.push(kind, contenders)
                     }
@@ -199,12 +212,12 @@ impl<'a> Pass<'a> {
     }
 
     /// A node of the narrowed program that joins all of its operands.
-    fn push(&mut self, kind: &Kind, operands: Vec<Edge>) -> Edge {
+    pub(super) fn push(&mut self, kind: &Kind, operands: Vec<Edge>) -> Edge {
         if let ([only], Kind::Join { .. }) = (&operands[..], kind) {
             return *only;
         }
         let mut kind = kind.clone();
-        if let Kind::Join { hierarchy, .. } = &mut kind {
+        if let Kind::Join { rule: Rule::MinMax, hierarchy, .. } = &mut kind {
             // Its boxes tell signs, and their order is that of all the operands.
             *hierarchy = None;
         }
@@ -215,7 +228,7 @@ impl<'a> Pass<'a> {
         Edge::new(self.nodes.len() - 1)
     }
 
-    fn know(&mut self, at: usize, range: Interval, edge: Edge) {
+    pub(super) fn know(&mut self, at: usize, range: Interval, edge: Edge) {
         self.values[at] = Some((range, edge));
         self.signs[at] = Sign::of(range, || edge);
     }
@@ -235,7 +248,8 @@ impl<'a> Pass<'a> {
             return;
         }
         if value || !zone.only().is_some_and(|zone| instance.is_crossed(zone)) {
-            let range = zone.range(&instance.to_local, |zone| instance.placed_range(zone));
+            let known = self.ranges.get(at).copied().flatten();
+            let range = known.unwrap_or_else(|| program.leaf_range(leaf, self.zones, self.world));
             if !value && (range.lo() > 0.0 || range.hi() < 0.0) {
                 self.signs[at] = Sign::of(range, || Edge::new(0));
                 return;
@@ -326,24 +340,6 @@ impl<'a> Pass<'a> {
                 Sign::Open(Edge::new(self.nodes.len() - 1))
             }
         }
-    }
-}
-
-/// The operand that a value-reading node is equal to over the region, if it is to one.
-fn deciding(kind: &Kind, operands: &[(Interval, Edge)]) -> Option<Edge> {
-    let (Kind::Join { op, rule: Rule::Smooth(width), .. }, [(x, first), (y, second)]) = (kind, operands) else {
-        return None;
-    };
-    let (x, y) = match op {
-        Op::Or => (*x, *y),
-        Op::And => (-*x, -*y),
-    };
-    if x.lo() - y.hi() >= *width {
-        Some(*first)
-    } else if y.lo() - x.hi() >= *width {
-        Some(*second)
-    } else {
-        None
     }
 }
 

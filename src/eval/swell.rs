@@ -17,7 +17,8 @@
 
 use glam::DVec3;
 
-use super::code::grow;
+use super::code::{grow, snug};
+use super::hierarchy::Reach;
 use crate::Bounds;
 use rvachev_field::{Op, Rule};
 
@@ -93,6 +94,15 @@ impl Swell {
     /// The box of where the value is above −c < 0, if it is known.
     pub(super) fn above(&self, c: f64) -> Option<Bounds> {
         self.members(self.reach(c))
+    }
+
+    /// Where the value is above −c, for every c.
+    pub(super) fn reaching(&self) -> Reach {
+        let (bounds, growth) = (self.members(self.rise).map(snug), self.grown(self.spread));
+        match bounds {
+            Some(bounds) if growth.is_finite() => Reach { bounds, growth },
+            _ => Reach::fixed(Bounds::ALL),
+        }
     }
 
     fn grown(&self, reach: f64) -> DVec3 {

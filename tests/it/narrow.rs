@@ -275,3 +275,65 @@ fn only_what_is_near_is_left() {
     }
     assert_eq!(solid.region(&near).map(|r| matches!(r, Region::Surface(_))), Ok(true));
 }
+
+/// A chain of smooth joins of one kind, its operands small balls and blocks here and there.
+fn chain(random: &mut Random, union: bool, links: usize, width: f64) -> Solid {
+    let leaf = |random: &mut Random| {
+        let size = random.range(0.1, 0.5);
+        let own = if random.below(3) == 0 { Solid::cuboid(DVec3::splat(size)) } else { Solid::sphere(size) };
+        own.translate(random.vector(-1.0, 1.0))
+    };
+    let first = if union { leaf(random) } else { Solid::cuboid([2.5; 3]) };
+    (0..links).fold(first, |all, _| {
+        let next = leaf(random);
+        match (union, random.below(4)) {
+            // The chain may go on in either operand.
+            (true, 0) => next.smooth_union(&all, width),
+            (true, _) => all.smooth_union(&next, width),
+            (false, _) => all.smooth_difference(&next, width),
+        }
+    })
+}
+
+#[test]
+fn chains_of_smooth_joins_keep_their_signs_to_the_bit() {
+    let mut random = Random::new(106);
+    let (mut surface, mut left, mut compared) = (0, 0, 0);
+    for round in 0..60 {
+        let (links, width) = ([3, 12, 60][round % 3], [0.02, 0.1, 0.4, 1.0][round % 4]);
+        let union = random.below(2) == 0;
+        let solid = chain(&mut random, union, links, width);
+        let full = solid.surface_program().unwrap();
+        assert_eq!(full.leaf_count(), links + 1);
+        for _ in 0..30 {
+            let half = [0.5, 0.1, 0.02][random.below(3) as usize];
+            let bounds = Bounds::from_center(random.vector(-1.2, 1.2), DVec3::splat(half));
+            let region = full.narrow(&bounds);
+            let mut points = samples(&mut random, &bounds, 20);
+            // And points beside the surface: between one inside and one outside.
+            for pair in 0..points.len() - 1 {
+                let (mut inside, mut outside) = (points[pair], points[pair + 1]);
+                if full.value(inside) > 0.0 && full.value(outside) <= 0.0 {
+                    for _ in 0..50 {
+                        let middle = inside.midpoint(outside);
+                        *if full.value(middle) > 0.0 { &mut inside } else { &mut outside } = middle;
+                    }
+                    points.extend([inside, outside]);
+                }
+            }
+            if let Some(text) = contradiction(&full, &bounds, &region, &points) {
+                panic!("round {round}, width {width}: {text}");
+            }
+            let Region::Surface(narrowed) = &region else { continue };
+            (surface, left) = (surface + links + 1, left + narrowed.leaf_count());
+            for &p in &points {
+                // Where the value of a union may be 0 or more, it is the same.
+                let (value, own) = (full.value(p), narrowed.value(p));
+                let same = if union { value >= 0.0 } else { value <= 0.0 };
+                assert!(!same || value == own, "round {round}, width {width}: {value:e} became {own:e} at {p}");
+                compared += u32::from(same);
+            }
+        }
+    }
+    assert!(compared > 3000 && 20 * left < 11 * surface, "{compared} points, {left} of {surface} leaves");
+}
