@@ -44,10 +44,7 @@ pub fn rows(threads: usize) {
         let pictures = in_turn(threads, [picture(hard()), picture(smooth())]);
         println!(
             "{count} balls in a chain, smooth over {radius}: mesh 128³ {:.3} s, {:.2} times the union; picture 256² {:.3} s, {:.2} times",
-            meshes.seconds[1],
-            meshes.ratio,
-            pictures.seconds[1],
-            pictures.ratio,
+            meshes.seconds[1], meshes.ratio, pictures.seconds[1], pictures.ratio,
         );
     }
 }

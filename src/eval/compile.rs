@@ -525,11 +525,17 @@ impl<'e> Compiler<'e> {
     fn shifted(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>, shift: f64) -> Built {
         let (leaf, growth) = self.place(field, site, shift);
         let inside = self.scene.leaves[leaf as usize].bounds;
-        let context = self.contexts.get(site.context);
         let edge = self.code.push(Kind::Leaf(leaf), &[]);
+        // Another level of the values is another surface.
+        let of_surface = if shift == 0.0 { field.of_surface() } else { None };
+        let surface = of_surface.map_or(edge, |field| {
+            let (leaf, _) = self.place(&field, site, shift);
+            self.code.push(Kind::Leaf(leaf), &[])
+        });
+        let context = self.contexts.get(site.context);
         Built {
             field: edge,
-            surface: edge,
+            surface,
             sides: Sides { inside, outside: Bounds::ALL },
             swell: Swell::of(inside, growth),
             gauge: field.gauge_radius().filter(|_| context.shift.is_none()).map(|radius| radius * context.scale),

@@ -7,7 +7,7 @@ use fidget::shape::{EzShape, Shape};
 use fidget::vm::{VmFunction, VmShape};
 use glam::{DQuat, DVec3};
 use rvachev::{
-    Bounds, CellSize, Formula, MeshSettings, Solid, SolidError,
+    Bounds, CellSize, Formula, MeshSettings, RFunction, Solid, SolidError,
     error::FormulaError,
     program::{Evaluator, Region, Tape},
 };
@@ -219,4 +219,56 @@ fn prospero_reads_the_same() {
     }
     println!("prospero: {ink} pixels of ink, {decided} tiles decided, {uniform} uniform");
     assert!(ink > 300 && 2 * decided > uniform);
+}
+
+/// A pawn of five parts: each as a formula, negative inside.
+fn pawn_parts() -> Vec<Tree> {
+    let (x, y, z) = Tree::axes();
+    let ball = |at: f32, r: f32| (x.square() + y.square() + (z.clone() - at).square()).sqrt() - r;
+    let disc = |at: f32, r: f32, h: f32| ((x.square() + y.square()).sqrt() - r).max((z.clone() - at).abs() - h);
+    let neck = (x.square() + y.square()).sqrt() - (z.clone() * -0.15 + 0.35);
+    vec![disc(-0.9, 0.6, 0.1), ball(-0.7, 0.5), neck.max(z.abs() - 0.8), disc(0.45, 0.32, 0.05), ball(0.75, 0.3)]
+}
+
+#[test]
+fn r_functions_in_a_formula_narrow_like_joins() {
+    let bounds = Bounds::from_center(DVec3::ZERO, DVec3::new(0.7, 0.7, 1.2));
+    // Inside is negative: the union is the R-conjunction.
+    let or = |a: Tree, b: Tree| a.clone() + b.clone() - (a.square() + b.square()).sqrt();
+    let whole = pawn_parts().into_iter().reduce(or).expect("there are some");
+    let whole = Solid::formula(&whole, bounds);
+    let joined =
+        Solid::union_all(pawn_parts().iter().map(|part| Solid::formula(part, bounds)), RFunction::Zero { m: 0 });
+    let values = whole.field_program().unwrap();
+    let [surface, of_joined] = [&whole, &joined].map(|solid| solid.surface_program().unwrap());
+    let mut random = Random::new(2_026);
+    let mut decided = [0, 0];
+    for _ in 0..2000 {
+        let part = Bounds::from_center(
+            random.vector(-1.0, 1.0) * bounds.half_extents(),
+            DVec3::splat(random.range(0.01, 0.1)),
+        );
+        let regions = [surface.narrow(&part), of_joined.narrow(&part)];
+        for (count, region) in decided.iter_mut().zip(&regions) {
+            *count += u32::from(!matches!(region, Region::Surface(_)));
+        }
+        for _ in 0..8 {
+            let p = part.min + random.vector(0.0, 1.0) * part.size();
+            let value = values.value(p);
+            if value.abs() < 1e-12 || !bounds.contains(p) {
+                continue;
+            }
+            let inside = match &regions[0] {
+                Region::Inside => true,
+                Region::Outside => false,
+                Region::Surface(narrowed) => narrowed.value(p) > 0.0,
+            };
+            assert_eq!(inside, value > 0.0, "{value:e} at {p} of {part:?}");
+        }
+    }
+    assert!(10 * decided[0] > 9 * decided[1], "{decided:?}");
+    // The value that a user sees is that of the formula.
+    let p = DVec3::new(0.3, 0.2, 0.1);
+    let own = values.value(p);
+    assert!((whole.value(p).unwrap() - own).abs() < 1e-15 && (own - surface.value(p)).abs() > 1e-3);
 }

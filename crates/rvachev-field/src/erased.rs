@@ -88,6 +88,11 @@ pub trait AnyField: Any + Debug + Send + Sync {
     fn is_formula(&self) -> bool {
         true
     }
+    /// A leaf of the same inside, the same surface and the same normals there that is told apart more easily, where
+    /// there is one.
+    fn of_surface(&self) -> Option<Arc<dyn AnyField>> {
+        None
+    }
     /// Which of the leaf's own axes the value may depend on.
     fn axes(&self) -> [bool; 3] {
         [true; 3]

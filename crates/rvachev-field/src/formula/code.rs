@@ -49,6 +49,11 @@ impl Builder {
         Builder { ops: Vec::with_capacity(len), axes: [None; 3] }
     }
 
+    /// Goes on from a list.
+    pub(super) fn of(ops: &[Op]) -> Builder {
+        Builder { ops: ops.to_vec(), axes: [None; 3] }
+    }
+
     fn push(&mut self, op: Op) -> u32 {
         self.ops.push(op);
         (self.ops.len() - 1) as u32

@@ -76,6 +76,10 @@ impl AnyField for Formula {
         self.range_over(zone)
     }
 
+    fn of_surface(&self) -> Option<Arc<dyn AnyField>> {
+        self.taken_apart().map(|formula| Arc::new(formula) as Arc<dyn AnyField>)
+    }
+
     fn axes(&self) -> [bool; 3] {
         self.0.code.axes
     }

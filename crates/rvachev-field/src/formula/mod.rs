@@ -2,6 +2,7 @@
 //!
 //! ```text
 //!     Tree or text ──► Code: a list of operations, operands first
+//!                       ├── for the surface alone: the list with minima and maxima for R-functions
 //!                       ├── points, ranges, gradients: one walk each, on the numbers concerned
 //!                       ├── lanes: loops over chunks, operation by operation, in f32 and f64
 //!                       ├── after some chunks of f32: fidget's JIT, where every operation is an instruction
@@ -27,6 +28,7 @@ mod bulk;
 mod code;
 mod erased;
 mod gradients;
+mod joints;
 mod live;
 mod many;
 mod narrow;
@@ -175,6 +177,12 @@ impl Formula {
     #[must_use]
     pub fn tree(&self) -> Tree {
         self.0.code.tree()
+    }
+
+    /// The formula with minima and maxima for its R-functions: of the same sign and the same surface.
+    fn taken_apart(&self) -> Option<Formula> {
+        let code = joints::taken_apart(&self.0.code)?;
+        Some(Formula::of_code(code, self.0.bounds))
     }
 
     fn check(&self) -> Result<(), ParamError> {
