@@ -278,9 +278,18 @@ impl Gielis {
     /// 10⁻⁷ per quarter turn.
     pub(super) fn roundoff(&self) -> f64 {
         let smallest = self.n2.min(self.n3);
-        let angle = 3e-7 * (1.0 + 0.25 * self.m) / self.a.min(self.b).min(1.0);
-        let steep = if smallest < 1.0 { 2.0 * angle.powf(smallest) / self.n1 } else { 0.0 };
-        (4e-6 * self.condition().max(1.0) * (1.0 + self.m / 12.0)).max(steep)
+        let steep = if smallest < 1.0 { 2.0 * self.phase_error().powf(smallest) / self.n1 } else { 0.0 };
+        self.steady_roundoff().max(steep)
+    }
+
+    /// The same where slopes are not steep.
+    pub(super) fn steady_roundoff(&self) -> f64 {
+        4e-6 * self.condition().max(1.0) * (1.0 + self.m / 12.0)
+    }
+
+    /// How far off the phase mθ/4 may be on lanes of `f32`, in units of the scales of its sine and cosine.
+    pub(super) fn phase_error(&self) -> f64 {
+        3e-7 * (1.0 + 0.25 * self.m) / self.a.min(self.b).min(1.0)
     }
 
     /// The radius of an angle in [−π, π]. Lanes take [`Polar`].
