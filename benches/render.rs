@@ -194,11 +194,23 @@ fn compare(choice: &Choice, model: &Model, size: u32, threads: usize) {
         let lowered = model.solid.to_fidget().expect("the model is valid");
         let trees = if smooth { vec![lean(model)] } else { vec![Some(lowered), lean(model)] };
         for tree in trees.into_iter().flatten() {
-            ours.push(voxels::<VmFunction>("VM", &tree, DAffine3::from_scale(DVec3::splat(model.half)), size, pool.as_ref()));
+            ours.push(voxels::<VmFunction>(
+                "VM",
+                &tree,
+                DAffine3::from_scale(DVec3::splat(model.half)),
+                size,
+                pool.as_ref(),
+            ));
             // The JIT is slower than the VM on every one of these, and compiles M4 for minutes.
             #[cfg(feature = "jit")]
             if !(choice.has("vm") || matches!(model.name, "M3" | "M4" | "M5")) || choice.has("all") {
-                ours.push(voxels::<fidget::jit::JitFunction>("JIT", &tree, DAffine3::from_scale(DVec3::splat(model.half)), size, pool.as_ref()));
+                ours.push(voxels::<fidget::jit::JitFunction>(
+                    "JIT",
+                    &tree,
+                    DAffine3::from_scale(DVec3::splat(model.half)),
+                    size,
+                    pool.as_ref(),
+                ));
             }
         }
     }

@@ -98,6 +98,29 @@ struct Piece {
     known: f64,
 }
 
+impl Piece {
+    /// The piece between two distances, with the values there.
+    fn new(program: &Program, start: (f64, f64), end: (f64, f64), is_inside: impl Fn(f64) -> bool) -> Piece {
+        let (ends, values) = ([start.0, end.0], [start.1, end.1]);
+        let (inside, program) = (values.map(is_inside), program.clone());
+        Piece { program, ends, values, inside, slopes: Interval::ALL, known: f64::INFINITY }
+    }
+}
+
+/// Where a ray is cut: a little before and behind the planes at which slopes have no bound. Between
+/// them they have one, and at those planes most often signs that differ from side to side.
+fn cuts(program: &Program, (origin, direction): (DVec3, DVec3), [near, far]: [f64; 2], gap: f64) -> Vec<f64> {
+    let mut crossed = program.creases(origin, direction);
+    crossed.sort_by(f64::total_cmp);
+    let mut cuts: Vec<f64> = Vec::with_capacity(2 * crossed.len());
+    for end in crossed.into_iter().flat_map(|t| [t - gap, t + gap]) {
+        if end > cuts.last().copied().unwrap_or(near) && end < far {
+            cuts.push(end);
+        }
+    }
+    cuts
+}
+
 /// The first crossing on `origin + t·direction` (a unit vector) with `near ≤ t ≤ far`.
 pub(crate) fn first_hit(
     program: &Program,
@@ -127,9 +150,16 @@ pub(crate) fn first_hit(
     let level = LEVEL * (scale / size).min(1.0);
     let one_signed = |slope: Interval| slope.lo() > -level || slope.hi() < level;
     let is_inside = |value: f64| value > doubt;
-    let (inside, slopes) = (values.map(is_inside), Interval::ALL);
-    let known = f64::INFINITY;
-    let mut pieces = vec![Piece { program: program.clone(), ends: [near, far], values, inside, slopes, known }];
+    let inside = values.map(is_inside);
+    let mut pieces = Vec::new();
+    let mut start = (near, values[0]);
+    for end in cuts(program, (origin, direction), [near, far], 0.25 * shortest) {
+        let end = (end, program.value(at(end)));
+        pieces.push(Piece::new(program, start, end, is_inside));
+        start = end;
+    }
+    pieces.push(Piece::new(program, start, (far, values[1]), is_inside));
+    pieces.reverse();
     let mut count = 0;
     while let Some(mut piece) = pieces.pop() {
         count += 1;

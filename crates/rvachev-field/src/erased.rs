@@ -76,6 +76,10 @@ pub trait AnyField: Any + Debug + Send + Sync {
     }
     /// Whether the value is concave, with slope at most 1.
     fn convex(&self) -> bool;
+    /// Normals of the planes through the frame's origin at which slopes are without bound.
+    fn creases(&self) -> Vec<DVec3> {
+        Vec::new()
+    }
     /// A sound range over a zone of the leaf's frame.
     fn range(&self, zone: &Zone) -> Interval;
     /// The directions, of up to eight, along which the value is found to rise, or to stay, throughout a zone: by
@@ -350,6 +354,10 @@ impl<F: Field> AnyField for F {
 
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
         zone_rises(self, zone, ways)
+    }
+
+    fn creases(&self) -> Vec<DVec3> {
+        Field::creases(self)
     }
 
     fn least_radius(&self) -> f64 {

@@ -267,6 +267,16 @@ impl Gielis {
         }
     }
 
+    /// The angles, from 0 to π, at which the radius or its mirror image has a cusp; those of the
+    /// first turn.
+    pub(super) fn cusps(&self) -> impl Iterator<Item = f64> + use<> {
+        let Gielis { m, n2, n3, .. } = *self;
+        // The phase mθ/4 is a multiple of a quarter turn: the cosine is 0 at the odd ones.
+        let is_cusp = move |k: &u32| if k % 2 == 1 { n2 < 1.0 } else { n3 < 1.0 };
+        let last = if m > 0.0 { (0.5 * m).floor() as u32 } else { 0 };
+        (0..=last).filter(move |k| m > 0.0 && is_cusp(k)).map(move |k| f64::from(k) * std::f64::consts::TAU / m)
+    }
+
     /// How much the radius magnifies relative errors: `max(n2, n3)/n1`.
     pub(super) fn condition(&self) -> f64 {
         self.n2.max(self.n3) / self.n1

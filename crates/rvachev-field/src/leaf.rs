@@ -141,6 +141,13 @@ pub trait Field: Debug + Send + Sync + 'static {
         self.dual_over(p)
     }
 
+    /// Normals of the planes through the origin of the leaf's frame at which slopes are without
+    /// bound: rays are cut there, and between the cuts slopes tell something. There are none by
+    /// default; what is left out costs time, nothing else.
+    fn creases(&self) -> Vec<DVec3> {
+        Vec::new()
+    }
+
     /// Support function of the shape's convex hull: the largest `direction · p` over its
     /// points p. Boxes of rotated leaves are as tight as it is. The default is that of
     /// [`bounds`](Field::bounds).

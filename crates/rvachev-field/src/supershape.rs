@@ -31,9 +31,9 @@ use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 
+use super::erased::reach;
 use super::gielis::{Polar, Winding};
 use super::outline::Outline;
-use super::erased::reach;
 use super::{Case, Field, Gielis, Kernel, ParamError, Radius, Turns, chained, check};
 use crate::{Bounds, Dual, Euclid, Interval, Real};
 use rvachev_num::{Cancelled, Run};
@@ -348,6 +348,13 @@ impl Field for Supershape {
         }
         let u = equator.gauge(x, y.abs());
         self.height(meridian.gauge(u, z.abs()))
+    }
+
+    fn creases(&self) -> Vec<DVec3> {
+        let upright = self.equator.cusps().map(|angle| DVec3::new(-angle.sin(), angle.cos(), 0.0) * self.inverse);
+        // Of the meridian's cusps, that at the equator is in a plane.
+        let level = self.meridian.cusps().any(|angle| angle == 0.0).then_some(DVec3::Z);
+        upright.chain(level).collect()
     }
 
     fn slopes(&self, region: [Interval; 3]) -> [Interval; 3] {

@@ -168,6 +168,10 @@ impl Field for Superpolygon {
         }
     }
 
+    fn creases(&self) -> Vec<DVec3> {
+        self.curve.cusps().map(|angle| DVec3::new(-angle.sin(), angle.cos(), 0.0)).collect()
+    }
+
     fn slopes(&self, [x, y, _]: [Interval; 3]) -> [Interval; 3] {
         let (x, y) = (x * self.inverse, y * self.inverse);
         match self.outline() {
