@@ -157,12 +157,14 @@ pub fn steep_slopes(steepest: f64, p: [Dual<Interval>; 3]) -> [Interval; 3] {
 /// A value with its derivatives along the variables of `p`, by its slopes along the axes of p.
 ///
 /// ```
-/// use rvachev_field::{Dual, Interval, chained};
+/// use rvachev_field::chained;
+/// use rvachev_num::{Dual, Interval};
 ///
 /// // x + 2y along a line with the direction (0.6, 0.8, 0).
-/// let along = |slope: f64| Dual::new(Interval::new(0.0, 1.0), [Interval::point(slope), Interval::point(0.0), Interval::point(0.0)]);
+/// let zero = Interval::point(0.0);
+/// let side = |slope: f64| Dual::new(Interval::new(0.0, 1.0), [Interval::point(slope), zero, zero]);
 /// let slopes = [1.0, 2.0, 0.0].map(Interval::point);
-/// let value = chained(Interval::new(0.0, 3.0), slopes, [along(0.6), along(0.8), along(0.0)]);
+/// let value = chained(Interval::new(0.0, 3.0), slopes, [side(0.6), side(0.8), side(0.0)]);
 /// assert!((value.gradient()[0].lo() - 2.2).abs() < 1e-12);
 /// ```
 #[must_use]
