@@ -12,28 +12,33 @@
 //! operations as it takes; the faster counts. M3 and M5 take it minutes, so that it draws them
 //! once, at 512² only in the lean form; `all` after `--` draws them at every size.
 //!
-//! Words after `--` choose: `normals`, `shaded`, `prospero`, `many`, names of models, `512`,
-//! `1024`, `two` (threads), `quick` (fewer rounds), `ours` (without fidget), `vm` (without its JIT).
+//! Rows are single pictures, seen as by [`Camera::framing_orthographic`], of what was once slow to draw, and of every
+//! entry of the catalogue, beside fidget's VM on the same formula seen the same way, where there is one.
+//!
+//! Words after `--` choose: `normals`, `shaded`, `prospero`, `many`, `rows`, `catalogue`, names of models, `512`,
+//! `1024`, `two` (threads), `quick` (fewer rounds), `ours` (without fidget), `vm` (without its JIT), and after `=` a part
+//! of the names of rows.
 
 #[path = "evaluate/lean.rs"]
 mod lean;
 #[path = "../tests/it/models.rs"]
 mod models;
+#[path = "render/rows.rs"]
+mod rows;
 
 use std::hint::black_box;
-use std::sync::LazyLock;
 use std::time::Instant;
 
+use cpu_time::ProcessTime;
 use fidget::context::Tree;
 use fidget::eval::{Function, MathFunction};
 use fidget::render::{RenderHints, ThreadPool};
 use fidget::shape::{BoundShape, Shape};
 use fidget::vm::VmFunction;
 use fidget_raster::{pixel, voxel};
-use glam::{DAffine3, DQuat, DVec2, DVec3};
-use rvachev::{
-    Camera, PlaneBounds, Profile, RFunction, RenderSettings, Run, Scene, Solid, camera::Window, layers::GBuffer,
-};
+use glam::{DAffine3, DMat3, DQuat, DVec2, DVec3};
+use rvachev::camera::{Projection, Window};
+use rvachev::{Camera, PlaneBounds, Profile, RFunction, RenderSettings, Run, Scene, Solid, layers::GBuffer};
 
 use lean::lean;
 use models::Model;
@@ -64,7 +69,7 @@ impl Choice {
     }
 }
 
-const PARTS: [&str; 4] = ["normals", "shaded", "prospero", "many"];
+const PARTS: [&str; 6] = ["normals", "shaded", "prospero", "many", "rows", "catalogue"];
 const NAMES: [&str; 6] = ["M1", "M2", "M3", "M4", "M5", "M6"];
 
 fn main() {
@@ -81,37 +86,30 @@ fn main() {
     if choice.wants("many", &PARTS) {
         many(&choice);
     }
+    if choice.wants("rows", &PARTS) {
+        print_rows(&choice, rows::named());
+    }
+    if choice.wants("catalogue", &PARTS) {
+        print_rows(&choice, rows::catalogued());
+    }
 }
 
 /// One contestant.
 type Contestant<'a> = (&'static str, Box<dyn FnMut() + 'a>);
 
-/// The median milliseconds of each.
-fn race(rounds: usize, contestants: &mut [Contestant<'_>]) -> Vec<f64> {
+/// The median milliseconds of each: of processor time with one thread (other processes do not count then), else of the
+/// clock.
+fn race(rounds: usize, threads: usize, contestants: &mut [Contestant<'_>]) -> Vec<f64> {
     let mut times = vec![Vec::new(); contestants.len()];
     for _ in 0..rounds {
         for ((_, run), times) in contestants.iter_mut().zip(&mut times) {
-            let start = clock();
+            let (clock, processor) = (Instant::now(), ProcessTime::now());
             run();
-            times.push((clock() - start) * 1e3);
+            let spent = if threads > 1 { clock.elapsed() } else { processor.elapsed() };
+            times.push(spent.as_secs_f64() * 1e3);
         }
     }
     times.into_iter().map(|mut times| median(&mut times)).collect()
-}
-
-/// Seconds: of processor time, summed over threads, with one thread where the system tells it
-/// (other processes do not count then), else of the clock.
-fn clock() -> f64 {
-    static START: LazyLock<Instant> = LazyLock::new(Instant::now);
-    let elapsed = START.elapsed().as_secs_f64();
-    if rayon::current_num_threads() > 1 {
-        return elapsed;
-    }
-    let Ok(tasks) = std::fs::read_dir("/proc/self/task") else { return elapsed };
-    let nanoseconds = |task: std::fs::DirEntry| -> Option<f64> {
-        std::fs::read_to_string(task.path().join("schedstat")).ok()?.split(' ').next()?.parse().ok()
-    };
-    tasks.flatten().filter_map(nanoseconds).sum::<f64>() * 1e-9
 }
 
 fn median(times: &mut [f64]) -> f64 {
@@ -145,14 +143,16 @@ fn pool(threads: usize) -> Option<ThreadPool> {
 fn voxels<'a, F: MathFunction + Function + RenderHints + 'a>(
     name: &'static str,
     tree: &Tree,
-    half: f64,
+    view: DAffine3,
     size: u32,
     threads: Option<&'a ThreadPool>,
 ) -> Contestant<'a> {
     let shape = BoundShape::try_from(Shape::<F>::from(tree.clone())).expect("the model has no variables");
     let mut config = voxel::RenderConfig::from_size(size.into());
-    for axis in 0..3 {
-        config.world_to_model[(axis, axis)] = half as f32;
+    for (column, axis) in view.matrix3.to_cols_array_2d().into_iter().chain([view.translation.to_array()]).enumerate() {
+        for (row, number) in axis.into_iter().enumerate() {
+            config.world_to_model[(row, column)] = number as f32;
+        }
     }
     let eval = voxel::EvalConfig { threads, ..voxel::EvalConfig::default() };
     let run = move || {
@@ -194,16 +194,28 @@ fn compare(choice: &Choice, model: &Model, size: u32, threads: usize) {
         let lowered = model.solid.to_fidget().expect("the model is valid");
         let trees = if smooth { vec![lean(model)] } else { vec![Some(lowered), lean(model)] };
         for tree in trees.into_iter().flatten() {
-            ours.push(voxels::<VmFunction>("VM", &tree, model.half, size, pool.as_ref()));
+            ours.push(voxels::<VmFunction>(
+                "VM",
+                &tree,
+                DAffine3::from_scale(DVec3::splat(model.half)),
+                size,
+                pool.as_ref(),
+            ));
             // The JIT is slower than the VM on every one of these, and compiles M4 for minutes.
             #[cfg(feature = "jit")]
             if !(choice.has("vm") || matches!(model.name, "M3" | "M4" | "M5")) || choice.has("all") {
-                ours.push(voxels::<fidget::jit::JitFunction>("JIT", &tree, model.half, size, pool.as_ref()));
+                ours.push(voxels::<fidget::jit::JitFunction>(
+                    "JIT",
+                    &tree,
+                    DAffine3::from_scale(DVec3::splat(model.half)),
+                    size,
+                    pool.as_ref(),
+                ));
             }
         }
     }
     let rounds = if smooth && ours.len() > 2 { 1 } else { choice.rounds() };
-    let times = race(rounds, &mut ours);
+    let times = race(rounds, threads, &mut ours);
     let (vm, jit) = (least(&ours, &times, "VM"), least(&ours, &times, "JIT"));
     println!(
         "{:5} {size:4} {threads:7} {:8.1} {:8.1} {:6.3} {vm:10.1} {jit:11.1} {:7.1}",
@@ -233,7 +245,7 @@ fn shaded(choice: &Choice) {
                     ("next", Box::new(|| drop(black_box(kept.render_with(&camera, &plain, &run))))),
                     ("full", Box::new(|| drop(black_box(model.solid.render_with(&camera, &full, &run))))),
                 ];
-                let times = race(choice.rounds().min(5), &mut all);
+                let times = race(choice.rounds().min(5), threads, &mut all);
                 println!("{:5} {size:4} {threads:7} {:6.1} {:12.1} {:11.1}", model.name, times[0], times[1], times[2]);
             }
         }
@@ -272,7 +284,7 @@ fn prospero(choice: &Choice) {
             if !(choice.has("vm") || choice.has("ours")) {
                 all.push(pixels::<fidget::jit::JitFunction>("JIT", &tree, size, pool.as_ref()));
             }
-            let times = race(choice.rounds(), &mut all);
+            let times = race(choice.rounds(), threads, &mut all);
             let (vm, jit) = (least(&all, &times, "VM"), least(&all, &times, "JIT"));
             println!(
                 "{size:4} {threads:7} {:8.1} {:8.1} {:5.3} {vm:10.1} {jit:11.1} {:7.2}",
@@ -338,13 +350,58 @@ fn many(choice: &Choice) {
             ("first", Box::new(|| drop(black_box(picture(&scene(&cloud, &run), &camera, 1024, &run))))),
             ("next", Box::new(|| drop(black_box(picture(&kept, &camera, 1024, &run))))),
         ];
-        let times = race(choice.rounds().min(5), &mut all);
+        let times = race(choice.rounds().min(5), 1, &mut all);
         println!(
             "{count:5} {compile:8.1} {:8.1} {:8.1} {:6.3}",
             times[0],
             times[1],
             hits as f64 / f64::from(1u32 << 20)
         );
+    }
+    println!();
+}
+
+/// From fidget's cube, seen along −z with y up, to what an orthographic camera sees.
+fn view(camera: &Camera) -> DAffine3 {
+    let Projection::Orthographic { height } = camera.projection else { unreachable!("the camera is orthographic") };
+    let back = (camera.eye - camera.target).normalize();
+    let right = camera.up.cross(back).normalize();
+    let axes = DMat3::from_cols(right, back.cross(right), back);
+    DAffine3::from_mat3_translation(0.5 * height * axes, camera.target)
+}
+
+fn print_rows(choice: &Choice, rows: Vec<rows::Row>) {
+    println!("normal images of single solids, one thread, milliseconds; ratio of fidget's VM to our first\n");
+    println!("{:28} size    first     next   hits  fidget VM   ratio", "solid");
+    let run = Run { threads: 1, ..Run::default() };
+    let parts: Vec<&str> = choice.0.iter().filter_map(|word| word.strip_prefix('=')).collect();
+    for rows::Row { name, size, solid, has_peer } in rows {
+        if !(parts.is_empty() || parts.iter().any(|part| name.contains(part))) {
+            continue;
+        }
+        let camera = Camera::framing_orthographic(&solid.bounds().expect("the solid is valid"));
+        let kept = scene(&solid, &run);
+        let start = Instant::now();
+        let seen = picture(&kept, &camera, size, &run);
+        let is_slow = start.elapsed().as_secs_f64() > 0.5;
+        let hits = seen.surfaces().iter().filter(|s| s.is_hit()).count();
+        let mut all: Vec<Contestant<'_>> = vec![
+            ("first", Box::new(|| drop(black_box(picture(&scene(&solid, &run), &camera, size, &run))))),
+            ("next", Box::new(|| drop(black_box(picture(&kept, &camera, size, &run))))),
+        ];
+        if has_peer
+            && !choice.has("ours")
+            && let Ok(tree) = solid.to_fidget()
+        {
+            all.push(voxels::<VmFunction>("VM", &tree, view(&camera), size, None));
+        }
+        let times = race(if is_slow { 1 } else { choice.rounds() }, 1, &mut all);
+        let share = hits as f64 / f64::from(size * size);
+        print!("{name:28} {size:4} {:8.1} {:8.1} {share:6.3}", times[0], times[1]);
+        match times.get(2) {
+            Some(vm) => println!(" {vm:10.1} {:7.2}", vm / times[0]),
+            None => println!("          –"),
+        }
     }
     println!();
 }

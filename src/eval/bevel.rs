@@ -246,8 +246,4 @@ impl AnyField for Bevel {
     fn jumps(&self) -> bool {
         self.operands.iter().any(|operand| operand.jumps())
     }
-
-    fn takes_short(&self) -> bool {
-        true
-    }
 }

@@ -156,10 +156,6 @@ impl AnyField for Composite {
     fn jumps(&self) -> bool {
         self.program.jumps()
     }
-
-    fn takes_short(&self) -> bool {
-        true
-    }
 }
 
 /// How far lanes of a program may be off within `reach` of the origin.

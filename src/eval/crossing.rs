@@ -11,7 +11,9 @@
 //!     | .-'   -     |
 //! ```
 
-use super::program::{Kind, Program};
+use glam::DVec3;
+
+use super::program::{Kind, Node, Program};
 use crate::{Bounds, Dual, Interval};
 use rvachev_field::Number;
 use rvachev_field::Rule;
@@ -54,6 +56,30 @@ impl Program {
         Some(slopes.unwrap_or(Interval::point(0.0)))
     }
 
+    /// The distances along a ray at which it crosses planes where slopes of a leaf have no bound; of
+    /// leaves that are not deformed, and of none where there are many.
+    pub(super) fn creases(&self, origin: DVec3, direction: DVec3) -> Vec<f64> {
+        let mut found = Vec::new();
+        if self.nodes.len() > FEW {
+            return found;
+        }
+        for leaf in self.nodes.iter().filter_map(Node::valued_by) {
+            let instance = self.instance(leaf);
+            if instance.frame != 0 {
+                continue;
+            }
+            let normals = instance.field.creases();
+            if normals.is_empty() {
+                continue;
+            }
+            let from = instance.to_local.transform_point3(origin);
+            let along = instance.to_local.transform_vector3(direction);
+            let distances = normals.into_iter().map(|normal| -normal.dot(from) / normal.dot(along));
+            found.extend(distances.filter(|t| t.is_finite()));
+        }
+        found
+    }
+
     /// The slopes of a leaf where it is 0; those in the parts of the box that it crosses, one
     /// behind the other, if they are not of one sign (and the leaf costs little).
     fn crossing(&self, leaf: u32, bounds: &Bounds, along: [Interval; 3], parts: u32) -> Option<Interval> {
@@ -83,6 +109,9 @@ impl Program {
 
 /// How many times a box is halved.
 const PARTS: u32 = 1;
+
+/// Programs of more nodes are not asked for planes.
+const FEW: usize = 8;
 
 #[cfg(test)]
 mod tests {

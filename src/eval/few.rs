@@ -1,7 +1,7 @@
 //! Some points of a chunk, and values there: what is not told by less is asked of few.
 
 use super::fill::Signed;
-use rvachev_field::kernel::{CHUNK, Element};
+use rvachev_field::kernel::Element;
 use rvachev_field::{AnyField, Chunk, Placement};
 
 /// Numbers that values are asked for in.
@@ -40,11 +40,10 @@ impl<E: Lane> Few<E> {
     /// Values at the points, told apart up to so far from a level.
     pub(super) fn values(&self, of: &Signed, placement: &Placement, (level, band): (f64, f64)) -> Vec<f64> {
         let count = self.places.len();
-        let granule = if of.field.takes_short() { E::widest() } else { CHUNK };
         let mut points = self.points.clone();
         let last = points.each_ref().map(|axis| axis.last().copied().unwrap_or_default());
         for (axis, last) in points.iter_mut().zip(last) {
-            axis.resize(count.next_multiple_of(granule), last);
+            axis.resize(count.next_multiple_of(E::widest()), last);
         }
         let mut values = vec![E::default(); points[0].len()];
         let shift = if band == f64::INFINITY { 0.0 } else { of.sign * level };

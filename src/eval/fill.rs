@@ -410,10 +410,6 @@ impl AnyField for Fill {
     fn cost(&self) -> usize {
         4
     }
-
-    fn takes_short(&self) -> bool {
-        self.ball.field.takes_short() && self.sides.iter().all(|side| side.distance.field.takes_short())
-    }
 }
 
 impl Fill {

@@ -157,6 +157,21 @@ impl Program {
         self.region(self.narrow_pass(world, false))
     }
 
+    /// A program of one leaf with a simpler one in its place, where there is one; nothing is asked about signs.
+    pub(super) fn simplified(&self, world: &Zone) -> Region {
+        let [Node { kind: Kind::Leaf(leaf), .. }] = self.nodes[..] else { return Region::Surface(self.clone()) };
+        let world = &Pieces::one(*world);
+        let simpler = self.simpler_leaf(leaf, &self.zones(world), world);
+        Region::Surface(simpler.unwrap_or_else(|| self.clone()))
+    }
+
+    fn simpler_leaf(&self, leaf: u32, zones: &[Pieces], world: &Pieces) -> Option<Program> {
+        let instance = self.instance(leaf);
+        let zone = self.zone_in(zones, instance.frame, world).only()?;
+        let field = instance.field.narrowed(&zone.mapped(&instance.to_local))?;
+        Some(self.of_simpler(leaf, field))
+    }
+
     fn narrow_pass(&self, world: &Zone, by_boxes: bool) -> Narrowed {
         let world = &Pieces::one(*world);
         let zones = self.zones(world);
@@ -193,10 +208,7 @@ impl Program {
         let [Node { kind: Kind::Leaf(leaf), .. }] = self.nodes[..] else { return None };
         let instance = self.instance(leaf);
         let zone = self.zone_in(zones, instance.frame, world);
-        let open = || {
-            let simpler = zone.only().and_then(|zone| instance.field.narrowed(&zone.mapped(&instance.to_local)));
-            Some(simpler.map_or(Narrowed::Same, |field| Narrowed::Simpler(self.of_simpler(leaf, field))))
-        };
+        let open = || Some(self.simpler_leaf(leaf, zones, world).map_or(Narrowed::Same, Narrowed::Simpler));
         if zone.only().is_some_and(|zone| instance.is_crossed(zone)) {
             return open();
         }

@@ -80,8 +80,4 @@ impl AnyField for Nothing {
         value.fill(-VALUE_LIMIT as f32);
         slopes.into_iter().for_each(|slope| slope.fill(0.0));
     }
-
-    fn takes_short(&self) -> bool {
-        true
-    }
 }

@@ -98,6 +98,29 @@ struct Piece {
     known: f64,
 }
 
+impl Piece {
+    /// The piece between two distances, with the values there.
+    fn new(program: &Program, start: (f64, f64), end: (f64, f64), is_inside: impl Fn(f64) -> bool) -> Piece {
+        let (ends, values) = ([start.0, end.0], [start.1, end.1]);
+        let (inside, program) = (values.map(is_inside), program.clone());
+        Piece { program, ends, values, inside, slopes: Interval::ALL, known: f64::INFINITY }
+    }
+}
+
+/// Where a ray is cut: a little before and behind the planes at which slopes have no bound. Between
+/// them they have one, and at those planes most often signs that differ from side to side.
+fn cuts(program: &Program, (origin, direction): (DVec3, DVec3), [near, far]: [f64; 2], gap: f64) -> Vec<f64> {
+    let mut crossed = program.creases(origin, direction);
+    crossed.sort_by(f64::total_cmp);
+    let mut cuts: Vec<f64> = Vec::with_capacity(2 * crossed.len());
+    for end in crossed.into_iter().flat_map(|t| [t - gap, t + gap]) {
+        if end > cuts.last().copied().unwrap_or(near) && end < far {
+            cuts.push(end);
+        }
+    }
+    cuts
+}
+
 /// The first crossing on `origin + t·direction` (a unit vector) with `near ≤ t ≤ far`.
 pub(crate) fn first_hit(
     program: &Program,
@@ -127,9 +150,16 @@ pub(crate) fn first_hit(
     let level = LEVEL * (scale / size).min(1.0);
     let one_signed = |slope: Interval| slope.lo() > -level || slope.hi() < level;
     let is_inside = |value: f64| value > doubt;
-    let (inside, slopes) = (values.map(is_inside), Interval::ALL);
-    let known = f64::INFINITY;
-    let mut pieces = vec![Piece { program: program.clone(), ends: [near, far], values, inside, slopes, known }];
+    let inside = values.map(is_inside);
+    let mut pieces = Vec::new();
+    let mut start = (near, values[0]);
+    for end in cuts(program, (origin, direction), [near, far], 0.25 * shortest) {
+        let end = (end, program.value(at(end)));
+        pieces.push(Piece::new(program, start, end, is_inside));
+        start = end;
+    }
+    pieces.push(Piece::new(program, start, (far, values[1]), is_inside));
+    pieces.reverse();
     let mut count = 0;
     while let Some(mut piece) = pieces.pop() {
         count += 1;
@@ -153,16 +183,25 @@ pub(crate) fn first_hit(
             continue;
         }
         if t1 - t0 < ASK * piece.known {
-            let slopes = |program: &Program| match program.leaf_count() <= FEW && care.trusts(program) {
-                true => slope_along(program, origin, direction, t0, t1),
-                false => Interval::ALL,
+            let along = |program: &Program| match program.leaf_count() <= FEW && care.trusts(program) {
+                true => along(program, origin, direction, t0, t1),
+                false => Dual::new(Interval::ALL, [Interval::ALL; 3]),
             };
+            let zone = || Zone::of_segment(at(t0), at(t1));
             // Narrowing one leaf leaves one.
             let single = piece.program.leaf_count() == 1;
-            let mut found = if single { slopes(&piece.program) } else { Interval::ALL };
+            let over = if single { along(&piece.program) } else { Dual::constant(Interval::ALL) };
+            let mut found = if single { over.gradient()[0] } else { Interval::ALL };
             if !one_signed(found) {
-                let zone = Zone::of_segment(at(t0), at(t1));
-                let narrowed = match piece.program.narrow_zone(&zone) {
+                let value = over.value();
+                let region = match piece.program.cost() {
+                    // Of a leaf that is asked for little, its slopes and the values at the ends say all.
+                    1 if single && value.lo() > 0.0 => Region::Inside,
+                    1 if single && value.hi() < 0.0 => Region::Outside,
+                    1 if single && found != Interval::ALL => piece.program.simplified(&zone()),
+                    _ => piece.program.narrow_zone(&zone()),
+                };
+                let narrowed = match region {
                     Region::Surface(narrowed) => narrowed,
                     // Between the pieces before and this one, by no more than rounding.
                     Region::Inside if !inside[0] => return Some(hit_at(&piece.program, at(t0), t0)),
@@ -172,7 +211,7 @@ pub(crate) fn first_hit(
                 // Of the same sign everywhere in the piece, not of the same value.
                 piece.values = piece.ends.map(|t| narrowed.value(at(t)));
                 piece.program = narrowed;
-                found = if single { found } else { slopes(&piece.program) };
+                found = if single { found } else { along(&piece.program).gradient()[0] };
             }
             let better = found.width() < 0.5 * piece.slopes.width();
             (piece.slopes, piece.known) = (found, t1 - t0);
@@ -224,12 +263,12 @@ fn hit_at(program: &Program, point: DVec3, distance: f64) -> Hit {
     Hit { distance, point, normal, owner: program.deciding_leaf(point) }
 }
 
-/// The slopes of the value along the ray from `t0` to `t1`.
-fn slope_along(program: &Program, origin: DVec3, direction: DVec3, t0: f64, t1: f64) -> Interval {
+/// The value along the ray from `t0` to `t1`, and its slopes.
+fn along(program: &Program, origin: DVec3, direction: DVec3, t0: f64, t1: f64) -> Dual<Interval> {
     let t = Dual::variable(Interval::new(t0, t1), 0);
     let along = |o: f64, d: f64| t * Dual::constant(Interval::point(d)) + Dual::constant(Interval::point(o));
     let p = [along(origin.x, direction.x), along(origin.y, direction.y), along(origin.z, direction.z)];
-    program.evaluate(p, &mut Vec::new()).gradient()[0]
+    program.evaluate(p, &mut Vec::new())
 }
 
 /// The crossing between `t0` and `t1`: the false position method with halving (Illinois), which

@@ -54,8 +54,6 @@ pub struct Tape {
     result: u32,
     origin: DVec3,
     roundoff: f64,
-    /// Whether every leaf takes short chunks; deformations and joins do.
-    short: bool,
     rivals: Option<Rivals>,
     /// Whether the value is a min or max of those of leaves, negated or not: nothing else is done to them.
     is_choice: bool,
@@ -120,18 +118,12 @@ impl Tape {
                 field: instance.field.clone(),
             });
         }
-        let short = leaves.iter().all(|leaf| leaf.field.takes_short());
         let rivals = Rivals::of(program, leaves.len());
         let is_choice = !steps.iter().any(|step| {
             matches!(step, Step::Shift { .. }) || matches!(step, Step::Fold { rule, .. } if *rule != Rule::MinMax)
         });
         let (registers, result) = (plan.registers, plan.result);
-        Tape { frames, leaves, steps, registers, result, origin, roundoff, short, rivals, is_choice }
-    }
-
-    /// Whether few points are as quick as they are few: lanes are not padded to a whole chunk.
-    pub(crate) fn is_short(&self) -> bool {
-        self.short
+        Tape { frames, leaves, steps, registers, result, origin, roundoff, rivals, is_choice }
     }
 
     /// What points are relative to.
@@ -313,7 +305,7 @@ fn execute<M: Mode<N>, const N: usize>(
     memory.own.resize(memory.own.len().max(M::COORDINATES * CHUNK), zero);
     let Memory { registers, slots, padded, own } = memory;
     let limit = M::E::from_f64(COORDINATE_LIMIT);
-    let granule = if tape.short { M::E::widest() } else { CHUNK };
+    let granule = M::E::widest();
     let mut at = 0;
     while at < count {
         let len = CHUNK.min(count - at);

@@ -240,8 +240,4 @@ impl AnyField for Tiles {
             }
         }
     }
-
-    fn takes_short(&self) -> bool {
-        self.sign.takes_short()
-    }
 }

@@ -37,9 +37,6 @@ const JUMP: f64 = 1e-3;
 /// It does if so many halvings more do not bring it down to a half.
 const CLOSER: usize = 20;
 
-/// Fewer points than this are evaluated one by one where lanes are padded to a chunk.
-const FEW: usize = 8;
-
 /// Normals are taken anew where a root moves by more than this after its gradient was.
 const MOVED: f64 = 1.0 / 256.0;
 
@@ -190,7 +187,7 @@ impl RootFinder {
             if self.open.is_empty() {
                 break;
             }
-            self.evaluate_open(evaluator, (program, tape), edges, step);
+            self.evaluate_open(evaluator, tape, edges, step);
             let mut kept = 0;
             for at in 0..self.open.len() {
                 let n = self.open[at] as usize;
@@ -268,13 +265,7 @@ impl RootFinder {
     }
 
     /// The values at the next points of the open edges, in their order.
-    fn evaluate_open(
-        &mut self,
-        evaluator: &mut Evaluator,
-        (program, tape): (Option<&Program>, &Tape),
-        edges: &[EdgeRef],
-        step: f64,
-    ) {
+    fn evaluate_open(&mut self, evaluator: &mut Evaluator, tape: &Tape, edges: &[EdgeRef], step: f64) {
         self.gathered.iter_mut().for_each(Vec::clear);
         for (&n, bracket) in self.open.iter().zip(&self.brackets) {
             let n = n as usize;
@@ -284,12 +275,6 @@ impl RootFinder {
             }
         }
         let [x, y, z] = &self.gathered;
-        if let Some(program) = program.filter(|_| x.len() < FEW && !tape.is_short()) {
-            for (value, (&x, (&y, &z))) in self.exact.iter_mut().zip(x.iter().zip(y.iter().zip(z))) {
-                *value = program.value(tape.origin() + DVec3::new(x, y, z));
-            }
-            return;
-        }
         evaluator.shortest_values_f64(tape, [x, y, z], &mut self.exact[..x.len()]);
     }
 

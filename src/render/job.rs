@@ -71,10 +71,6 @@ const LAST_STEP: f32 = 3e-4;
 /// Depths this exact, in proportion to the solid, need no step in double precision.
 const FINE: f64 = 6e-6;
 
-/// See [`Job::enough`].
-const FEW: usize = 5;
-const PATIENT: usize = 10;
-
 /// A step in double precision below this is the last one, in proportion to the solid.
 const SETTLED: f64 = 1e-5;
 
@@ -153,12 +149,6 @@ impl<'a> Job<'a> {
             settled: SETTLED * size,
             size,
         }
-    }
-
-    /// As many lanes are worth another step of a search: where bulk evaluation costs as much for
-    /// one as for a chunk of them, a few are better off one by one after a while.
-    pub(super) fn enough(&self, round: usize) -> usize {
-        if self.tape.is_short() || round < PATIENT { 1 } else { FEW }
     }
 
     /// The value in double precision.

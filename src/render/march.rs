@@ -347,8 +347,8 @@ impl Marcher {
     /// Lanes along which only bounds of the slope are known: steps that cannot pass a crossing.
     fn search_steep(&mut self, job: &Job<'_>) {
         let mut lanes = std::mem::take(&mut self.search);
-        for round in 0..SEARCH {
-            if lanes.len() < job.enough(round) {
+        for _ in 0..SEARCH {
+            if lanes.is_empty() {
                 break;
             }
             self.sift(job, &mut lanes, |lists, lane, Local { g, s, gradient }| {
@@ -416,8 +416,8 @@ impl Marcher {
     /// halving where it leaves the bracket.
     fn newton(&mut self, job: &Job<'_>) {
         let mut lanes = std::mem::take(&mut self.unique);
-        for round in 0..NEWTON {
-            if lanes.len() < job.enough(round) {
+        for _ in 0..NEWTON {
+            if lanes.is_empty() {
                 break;
             }
             self.sift(job, &mut lanes, |lists, lane, Local { g, s, gradient }| {

@@ -433,6 +433,9 @@ const RAYS: usize = 64;
 const SEARCHED: usize = 512;
 const STEEP: f64 = 4.0;
 
+/// The same of ordinary leaves whose slopes are without bound: each ray is divided by intervals then.
+const BLIND: usize = 16;
+
 /// Whether `count` rays are better off in the halves of a cell, where `slopes` are what they may
 /// find.
 fn divides(cell: &Cell, count: usize, slopes: Slopes) -> bool {
@@ -448,7 +451,12 @@ fn divides(cell: &Cell, count: usize, slopes: Slopes) -> bool {
         return share > FINEST;
     }
     let one_way = bent || slopes.rises || slopes.falls;
-    let most = if cost > leaves && slopes.value.magnitude() < STEEP { SEARCHED } else { RAYS };
+    let steepest = slopes.value.magnitude();
+    let most = match cost > leaves {
+        true if steepest < STEEP => SEARCHED,
+        false if steepest == f64::INFINITY => BLIND,
+        _ => RAYS,
+    };
     let much = if one_way { cost > 1 && !cell.is_stale() && count * cost > 8192 } else { count * leaves > most };
     share > FINEST && much
 }

@@ -14,6 +14,8 @@ use rvachev::{
     program::{Program, Region},
 };
 
+mod examples;
+
 use crate::models;
 use crate::support::{Random, frame_of, near, random_leaf, random_solid};
 
@@ -137,14 +139,15 @@ struct Tally {
     grazing: usize,
     /// Hits somewhere on a stretch along which the value is 0 but for rounding.
     level: usize,
+    /// Crossings of what is thinner than pieces are short.
+    thin: usize,
     unknown: usize,
     wrong: Vec<String>,
 }
 
 impl Tally {
-    fn compare(&mut self, number: usize, solid: &Solid, rays: &[(DVec3, DVec3)]) {
+    fn compare(&mut self, number: usize, solid: &Solid, frame: &Bounds, rays: &[(DVec3, DVec3)]) {
         let program = solid.surface_program().unwrap();
-        let frame = frame_of(solid);
         let size = frame.longest_side();
         let found = solid.scene().unwrap().first_hits(rays);
         for (&(origin, direction), found) in rays.iter().zip(&found) {
@@ -169,13 +172,18 @@ impl Tally {
                 let from = if let Answer::Hit(t) = answer { t } else { far };
                 let on_the_way = (0..=64).map(|i| from + f64::from(i) / 64.0 * (found - from));
                 let is_level = |t: f64| program.value(origin + t * direction).abs() <= 1e-15 * size;
-                if grazes {
+                let inside = |t: f64| program.value(origin + t * direction) > 0.0;
+                let crosses = [1e-12, 1e-10, 1e-8].iter().any(|d| inside(found - d * size) != inside(found + d * size));
+                if found < from && crosses {
+                    self.thin += 1;
+                } else if grazes {
                     self.grazing += 1;
                 } else if found < f64::INFINITY && on_the_way.into_iter().all(is_level) {
                     self.level += 1;
                 } else {
                     self.wrong.push(format!(
-                        "subject {number}: {who} found {found} where {answer:?}, from {origin:?} along {direction:?}"
+                        "subject {number}: {who} found {found} where {answer:?}, from {origin:?} along {direction:?}: {:?}",
+                        [-1e-5, 0.0, 1e-5].map(|d| program.value(origin + (found + d * size) * direction))
                     ));
                 }
             }
@@ -197,7 +205,7 @@ fn the_first_hit_is_found() {
         let solid = subject(&mut random, number);
         let frame = frame_of(&solid);
         let rays: Vec<(DVec3, DVec3)> = (0..rays).map(|_| ray(&mut random, &frame)).collect();
-        tally.compare(number, &solid, &rays);
+        tally.compare(number, &solid, &frame, &rays);
     }
     let Tally { rays, hits, grazing, level, unknown, .. } = tally;
     println!("{rays} rays, {hits} hits, {grazing} grazing, {level} level, {unknown} not isolated");

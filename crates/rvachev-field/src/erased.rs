@@ -18,9 +18,9 @@ use crate::{Bounds, Dual, Interval, Real};
 use rvachev_num::symbol::Symbol;
 use rvachev_num::{Cancelled, Run};
 
-/// A chunk of points to run a kernel over; all slices are of one length, a multiple of
-/// [`CHUNK`](crate::kernel::CHUNK), or of the widest vectors for a field that
-/// [takes short ones](AnyField::takes_short).
+/// A chunk of points to run a kernel over; all slices are of one length, a multiple of the widest
+/// vectors ([`CHUNK`](crate::kernel::CHUNK) is one). What is left over is filled with copies of the
+/// last point.
 pub struct Chunk<'a, E, const OUT: usize> {
     /// Coordinates, in the frame that the placement maps from.
     pub points: [&'a [E]; 3],
@@ -49,6 +49,10 @@ pub trait AnyField: Any + Debug + Send + Sync {
     fn check(&self) -> Result<(), ParamError>;
     /// How far off single precision may be within `reach` of the origin.
     fn roundoff(&self, reach: f64) -> f64;
+    /// The same in a region of the leaf's frame.
+    fn roundoff_over(&self, region: [Interval; 3]) -> f64 {
+        self.roundoff(reach(region))
+    }
     /// The value at a point of the leaf's frame.
     fn value(&self, p: [f64; 3]) -> f64;
     /// Value and derivatives at a point.
@@ -72,6 +76,10 @@ pub trait AnyField: Any + Debug + Send + Sync {
     }
     /// Whether the value is concave, with slope at most 1.
     fn convex(&self) -> bool;
+    /// Normals of the planes through the frame's origin at which slopes are without bound.
+    fn creases(&self) -> Vec<DVec3> {
+        Vec::new()
+    }
     /// A sound range over a zone of the leaf's frame.
     fn range(&self, zone: &Zone) -> Interval;
     /// The directions, of up to eight, along which the value is found to rise, or to stay, throughout a zone: by
@@ -126,14 +134,15 @@ pub trait AnyField: Any + Debug + Send + Sync {
     fn jumps(&self) -> bool {
         false
     }
-    /// Whether the lanes run over any multiple of the widest vectors, not over whole chunks only.
-    fn takes_short(&self) -> bool {
-        false
-    }
     /// What a value takes, in those of an ordinary leaf.
     fn cost(&self) -> usize {
         1
     }
+}
+
+/// The largest coordinate of a region in absolute value.
+pub(crate) fn reach(region: [Interval; 3]) -> f64 {
+    region.iter().fold(0.0, |reach, side| reach.max(side.magnitude()))
 }
 
 fn text(of: &dyn Debug) -> String {
@@ -148,6 +157,25 @@ pub fn steep_slopes(steepest: f64, p: [Dual<Interval>; 3]) -> [Interval; 3] {
         let most = steepest * (1.0 + 1e-12) * (x * x + y * y + z * z).sqrt();
         Interval::new(-most, most)
     })
+}
+
+/// A value with its derivatives along the variables of `p`, by its slopes along the axes of p.
+///
+/// ```
+/// use rvachev_field::chained;
+/// use rvachev_num::{Dual, Interval};
+///
+/// // x + 2y along a line with the direction (0.6, 0.8, 0).
+/// let zero = Interval::point(0.0);
+/// let side = |slope: f64| Dual::new(Interval::new(0.0, 1.0), [Interval::point(slope), zero, zero]);
+/// let slopes = [1.0, 2.0, 0.0].map(Interval::point);
+/// let value = chained(Interval::new(0.0, 3.0), slopes, [side(0.6), side(0.8), side(0.0)]);
+/// assert!((value.gradient()[0].lo() - 2.2).abs() < 1e-12);
+/// ```
+#[must_use]
+pub fn chained(value: Interval, slopes: [Interval; 3], p: [Dual<Interval>; 3]) -> Dual<Interval> {
+    let along = |i: usize| slopes[0] * p[0].d[i] + slopes[1] * p[1].d[i] + slopes[2] * p[2].d[i];
+    Dual::new(value, [along(0), along(1), along(2)])
 }
 
 /// A leaf, or a case of it, where it stands: its value, or that and the three derivatives.
@@ -288,6 +316,10 @@ impl<F: Field> AnyField for F {
         Field::roundoff(self, reach)
     }
 
+    fn roundoff_over(&self, region: [Interval; 3]) -> f64 {
+        Field::roundoff_over(self, region)
+    }
+
     fn exact(&self) -> bool {
         Field::exact(self)
     }
@@ -316,7 +348,7 @@ impl<F: Field> AnyField for F {
     }
 
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
-        self.dual_over(p)
+        Field::dual_range(self, p)
     }
 
     fn range(&self, zone: &Zone) -> Interval {
@@ -329,6 +361,10 @@ impl<F: Field> AnyField for F {
 
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
         zone_rises(self, zone, ways)
+    }
+
+    fn creases(&self) -> Vec<DVec3> {
+        Field::creases(self)
     }
 
     fn least_radius(&self) -> f64 {
@@ -355,10 +391,6 @@ impl<F: Field> AnyField for F {
 
     fn gradients(&self, chunk: Chunk<'_, f32, 4>) {
         run(&Gradient(self, chunk.placement), chunk.points, chunk.out);
-    }
-
-    fn takes_short(&self) -> bool {
-        true
     }
 }
 

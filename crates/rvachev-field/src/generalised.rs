@@ -289,6 +289,10 @@ impl Field for GeneralisedSuperquadric {
         Bounds::new(-self.semi_axes, self.semi_axes)
     }
 
+    fn creases(&self) -> Vec<DVec3> {
+        DVec3::AXES.into_iter().zip(self.exponents).filter_map(|(axis, n)| (n < 1.0).then_some(axis)).collect()
+    }
+
     fn check(&self) -> Result<(), ParamError> {
         check::lengths("semi_axes", self.semi_axes)?;
         for (name, n) in ["n1", "n2", "n3"].into_iter().zip(self.exponents) {

@@ -267,6 +267,16 @@ impl Gielis {
         }
     }
 
+    /// The angles, from 0 to π, at which the radius or its mirror image has a cusp; those of the
+    /// first turn.
+    pub(super) fn cusps(&self) -> impl Iterator<Item = f64> + use<> {
+        let Gielis { m, n2, n3, .. } = *self;
+        // The phase mθ/4 is a multiple of a quarter turn: the cosine is 0 at the odd ones.
+        let is_cusp = move |k: &u32| if k % 2 == 1 { n2 < 1.0 } else { n3 < 1.0 };
+        let last = if m > 0.0 { (0.5 * m).floor() as u32 } else { 0 };
+        (0..=last).filter(move |k| m > 0.0 && is_cusp(k)).map(move |k| f64::from(k) * std::f64::consts::TAU / m)
+    }
+
     /// How much the radius magnifies relative errors: `max(n2, n3)/n1`.
     pub(super) fn condition(&self) -> f64 {
         self.n2.max(self.n3) / self.n1
@@ -278,9 +288,18 @@ impl Gielis {
     /// 10⁻⁷ per quarter turn.
     pub(super) fn roundoff(&self) -> f64 {
         let smallest = self.n2.min(self.n3);
-        let angle = 3e-7 * (1.0 + 0.25 * self.m) / self.a.min(self.b).min(1.0);
-        let steep = if smallest < 1.0 { 2.0 * angle.powf(smallest) / self.n1 } else { 0.0 };
-        (4e-6 * self.condition().max(1.0) * (1.0 + self.m / 12.0)).max(steep)
+        let steep = if smallest < 1.0 { 2.0 * self.phase_error().powf(smallest) / self.n1 } else { 0.0 };
+        self.steady_roundoff().max(steep)
+    }
+
+    /// The same where slopes are not steep.
+    pub(super) fn steady_roundoff(&self) -> f64 {
+        4e-6 * self.condition().max(1.0) * (1.0 + self.m / 12.0)
+    }
+
+    /// How far off the phase mθ/4 may be on lanes of `f32`, in units of the scales of its sine and cosine.
+    pub(super) fn phase_error(&self) -> f64 {
+        3e-7 * (1.0 + 0.25 * self.m) / self.a.min(self.b).min(1.0)
     }
 
     /// The radius of an angle in [−π, π]. Lanes take [`Polar`].

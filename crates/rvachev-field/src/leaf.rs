@@ -5,6 +5,7 @@ use std::fmt::Debug;
 use glam::{DAffine3, DVec3};
 
 use super::ParamError;
+use super::erased::reach;
 use super::outlined::Outlined;
 use crate::{Bounds, Dual, Interval, Real};
 use rvachev_num::{Cancelled, Run};
@@ -125,9 +126,26 @@ pub trait Field: Debug + Send + Sync + 'static {
 
     /// Ranges of the formula's three derivatives over a box of the leaf's own frame. They make
     /// the value's range over boxes that stand at an angle to that frame, and over segments.
-    /// The default runs the formula on dual numbers of intervals.
+    /// The default runs the formula on dual numbers of intervals. What overrides it overrides
+    /// [`dual_range`](Field::dual_range) as well.
     fn slopes(&self, region: [Interval; 3]) -> [Interval; 3] {
         self.dual_over(Dual::point(region)).gradient()
+    }
+
+    /// Ranges of the value and of its derivatives over a box of the leaf's own frame, whose
+    /// sides have derivatives of their own: those of a deformation before it, or those along a
+    /// ray. The default runs the formula on these numbers; a leaf that knows its
+    /// [slopes](Field::slopes) better than its formula does puts them together by
+    /// [`chained`](crate::chained).
+    fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
+        self.dual_over(p)
+    }
+
+    /// Normals of the planes through the origin of the leaf's frame at which slopes are without
+    /// bound: rays are cut there, and between the cuts slopes tell something. There are none by
+    /// default; what is left out costs time, nothing else.
+    fn creases(&self) -> Vec<DVec3> {
+        Vec::new()
     }
 
     /// Support function of the shape's convex hull: the largest `direction · p` over its
@@ -166,6 +184,12 @@ pub trait Field: Debug + Send + Sync + 'static {
     /// `4·10⁻⁶ · reach`, holds for formulas of a dozen operations whose slope is about 1.
     fn roundoff(&self, reach: f64) -> f64 {
         4e-6 * reach
+    }
+
+    /// The same in a region of the leaf's frame. The default is that within its reach; a leaf
+    /// whose slopes are unbounded in a few places only says how little it is elsewhere.
+    fn roundoff_over(&self, region: [Interval; 3]) -> f64 {
+        self.roundoff(reach(region))
     }
 }
 

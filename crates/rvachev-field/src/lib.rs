@@ -70,7 +70,7 @@ pub use deform::{AnyWarp, Bend, BuiltInLaw, Cells, Comb, Elongate, Sectors, Tape
 pub use deform::{Law, LawTable, LinearLaw, SineWave, SmoothStep};
 pub use ellipsoid::Ellipsoid;
 pub use erase::Erase;
-pub use erased::{AnyField, Chunk, steep_slopes};
+pub use erased::{AnyField, Chunk, chained, steep_slopes};
 pub use fold::{Joinable, Op};
 #[cfg(feature = "formula")]
 pub use formula::{Formula, FormulaError};

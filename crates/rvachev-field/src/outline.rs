@@ -270,14 +270,32 @@ impl Outline {
 
     /// Range of the gauge's derivatives over the box `x × y`, y not negative.
     pub(super) fn gradient(&self, x: Interval, y: Interval) -> [Interval; 2] {
-        let (x0, x1, y0, y1) = (x.lo(), x.hi(), y.lo().max(0.0), y.hi());
         // A gauge's gradient is the same all along a ray.
-        let least = Real::atan2(if x1 > 0.0 { y0 } else { y1 }, x1);
-        let most = Real::atan2(if x0 >= 0.0 { y1 } else { y0 }, x0);
-        let piece = self.piece(Interval::new(least, most).inflate(ANGLE));
+        let piece = self.piece(angles(x, y).inflate(ANGLE));
         let [_, along_x, along_y] = piece.slopes;
         [along_y / piece.radius, -along_x / piece.radius]
     }
+
+    /// By how much, relative to itself, the radius may be off on lanes of `f32` over the box
+    /// `x × y`, y not negative.
+    pub(super) fn roundoff(&self, x: Interval, y: Interval) -> f64 {
+        let (most, steady) = (self.curve.roundoff(), self.curve.steady_roundoff());
+        if most <= steady || self.curve.m == 0.0 {
+            return most;
+        }
+        let error = self.curve.phase_error() / (0.25 * self.curve.m);
+        let (_, slope) = self.slope(angles(x, y).inflate(2.0 * error));
+        let steep = 2.0 * error * slope.magnitude();
+        if steep < most { steep.max(steady) } else { most }
+    }
+}
+
+/// The angles of the box `x × y`, y not negative.
+fn angles(x: Interval, y: Interval) -> Interval {
+    let (x0, x1, y0, y1) = (x.lo(), x.hi(), y.lo().max(0.0), y.hi());
+    let least = Real::atan2(if x1 > 0.0 { y0 } else { y1 }, x1);
+    let most = Real::atan2(if x0 >= 0.0 { y1 } else { y0 }, x0);
+    Interval::new(least, most)
 }
 
 /// The logarithm of the sum of powers S, and n₁ times the derivative of `ln r` by t.

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::minimal_surface::{graded, roundoff};
 use super::slope::half_diagonal;
-use super::{Field, Grading, MinimalSurface, ParamError, check};
+use super::{Field, Grading, MinimalSurface, ParamError, chained, check};
 use crate::{Bounds, Dual, Interval, Real};
 
 /// A wall along a triply periodic minimal surface: `f = thickness/2 − |g|/N`, with g and N
@@ -130,6 +130,11 @@ impl<G: Grading> Field for SheetLattice<G> {
             let along = Interval::around(gradient[axis], turn + 1e-12).narrowed_by(Interval::new(-most, most));
             thickness[axis] * 0.5 + side * along
         })
+    }
+
+    fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
+        let region = p.map(Dual::value);
+        chained(Field::range(self, region), Field::slopes(self, region), p)
     }
 
     fn steepest(&self) -> f64 {

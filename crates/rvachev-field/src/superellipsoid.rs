@@ -216,6 +216,11 @@ impl Field for Superellipsoid {
         Bounds::new(-self.semi_axes, self.semi_axes)
     }
 
+    fn creases(&self) -> Vec<DVec3> {
+        let pinched = [self.e2 > 2.0, self.e2 > 2.0, self.e1 > 2.0];
+        DVec3::AXES.into_iter().zip(pinched).filter_map(|(axis, is_pinched)| is_pinched.then_some(axis)).collect()
+    }
+
     fn check(&self) -> Result<(), ParamError> {
         check::lengths("semi_axes", self.semi_axes)?;
         check::within("e1", self.e1, 0.01, 10.0)?;

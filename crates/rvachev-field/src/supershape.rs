@@ -31,10 +31,11 @@ use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
 
+use super::erased::reach;
 use super::gielis::{Polar, Winding};
 use super::outline::Outline;
-use super::{Case, Field, Gielis, Kernel, ParamError, Radius, Turns, check};
-use crate::{Bounds, Euclid, Interval, Real};
+use super::{Case, Field, Gielis, Kernel, ParamError, Radius, Turns, chained, check};
+use crate::{Bounds, Dual, Euclid, Interval, Real};
 use rvachev_num::{Cancelled, Run};
 
 /// A supershape about the origin, valued `f = r_in·(1 − G)` in length units, where `r_in` is
@@ -229,6 +230,36 @@ impl Supershape {
         Curves { inverse, inscribed, equator, meridian }
     }
 
+    /// Ranges of the value and of its derivatives over a region.
+    fn level(&self, region: [Interval; 3]) -> (Interval, [Interval; 3]) {
+        let [x, y, z] = self.scaled_down(region);
+        let Some([equator, meridian]) = self.outlines() else { return (Interval::ALL, [Interval::ALL; 3]) };
+        if !(x.magnitude() + y.magnitude() + z.magnitude()).is_finite() {
+            return (Interval::ALL, [Interval::ALL; 3]);
+        }
+        let u = equator.gauge(x, y.abs());
+        let [by_x, by_y] = equator.gradient(x, y.abs());
+        let [by_u, by_z] = meridian.gradient(u, z.abs());
+        // Outlines know one half of the plane, the other is its mirror image.
+        let mirrored = |slope: Interval, of: Interval| {
+            if of.contains(0.0) { slope.hull(-slope) } else { of.select(slope, -slope) }
+        };
+        let scale = self.inverse * -self.inscribed();
+        let slopes = [by_u * by_x * scale.x, by_u * mirrored(by_y, y) * scale.y, mirrored(by_z, z) * scale.z];
+        (self.height(meridian.gauge(u, z.abs())), slopes)
+    }
+
+    /// How far off values are where radii are, relative to themselves.
+    fn error(&self, relative: f64, reach: f64) -> f64 {
+        let bounds = Field::bounds(self);
+        relative * bounds.min.abs().max(bounds.max).length().min(reach)
+    }
+
+    /// The value that belongs to a gauge.
+    fn height(&self, gauge: Interval) -> Interval {
+        -gauge * self.inscribed() + self.inscribed()
+    }
+
     /// The region in units of the semi-axes.
     fn scaled_down(&self, region: [Interval; 3]) -> [Interval; 3] {
         let [x, y, z] = region;
@@ -316,24 +347,23 @@ impl Field for Supershape {
             return Interval::ALL;
         }
         let u = equator.gauge(x, y.abs());
-        let gauge = meridian.gauge(u, z.abs());
-        -gauge * self.inscribed() + self.inscribed()
+        self.height(meridian.gauge(u, z.abs()))
+    }
+
+    fn creases(&self) -> Vec<DVec3> {
+        let upright = self.equator.cusps().map(|angle| DVec3::new(-angle.sin(), angle.cos(), 0.0) * self.inverse);
+        // Of the meridian's cusps, that at the equator is in a plane.
+        let level = self.meridian.cusps().any(|angle| angle == 0.0).then_some(DVec3::Z);
+        upright.chain(level).collect()
     }
 
     fn slopes(&self, region: [Interval; 3]) -> [Interval; 3] {
-        let [x, y, z] = self.scaled_down(region);
-        let Some([equator, meridian]) = self.outlines() else { return [Interval::ALL; 3] };
-        if !(x.magnitude() + y.magnitude() + z.magnitude()).is_finite() {
-            return [Interval::ALL; 3];
-        }
-        let [by_x, by_y] = equator.gradient(x, y.abs());
-        let [by_u, by_z] = meridian.gradient(equator.gauge(x, y.abs()), z.abs());
-        // Outlines know one half of the plane, the other is its mirror image.
-        let mirrored = |slope: Interval, of: Interval| {
-            if of.contains(0.0) { slope.hull(-slope) } else { of.select(slope, -slope) }
-        };
-        let scale = self.inverse * -self.inscribed();
-        [by_u * by_x * scale.x, by_u * mirrored(by_y, y) * scale.y, mirrored(by_z, z) * scale.z]
+        self.level(region).1
+    }
+
+    fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
+        let (value, slopes) = self.level(p.map(Dual::value));
+        chained(value, slopes, p)
     }
 
     #[inline(always)]
@@ -348,8 +378,19 @@ impl Field for Supershape {
     }
 
     fn roundoff(&self, reach: f64) -> f64 {
-        let relative = self.equator.roundoff() + self.meridian.roundoff();
-        let bounds = Field::bounds(self);
-        relative * bounds.min.abs().max(bounds.max).length().min(reach)
+        self.error(self.equator.roundoff() + self.meridian.roundoff(), reach)
+    }
+
+    fn roundoff_over(&self, region: [Interval; 3]) -> f64 {
+        let [x, y, z] = self.scaled_down(region);
+        let is_finite = (x.magnitude() + y.magnitude() + z.magnitude()).is_finite();
+        let Some([equator, meridian]) = self.outlines().filter(|_| is_finite) else {
+            return Field::roundoff(self, reach(region));
+        };
+        let first = equator.roundoff(x, y.abs());
+        let u = equator.gauge(x, y.abs());
+        // What is wrong of u turns the meridian's angle.
+        let u = Interval::new(u.lo() * (1.0 - first), u.hi() * (1.0 + first));
+        self.error(first + meridian.roundoff(u, z.abs()), reach(region))
     }
 }

@@ -175,6 +175,11 @@ impl Field for Supertoroid {
         Bounds::new(-self.half_extents(), self.half_extents())
     }
 
+    fn creases(&self) -> Vec<DVec3> {
+        let pinched = [self.e2 > 2.0, self.e2 > 2.0, self.e1 > 2.0];
+        DVec3::AXES.into_iter().zip(pinched).filter_map(|(axis, is_pinched)| is_pinched.then_some(axis)).collect()
+    }
+
     fn check(&self) -> Result<(), ParamError> {
         check::lengths("semi_axes", self.semi_axes)?;
         check::within("ring", self.ring, 1.0, LARGEST_RING)?;

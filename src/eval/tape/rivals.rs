@@ -47,17 +47,17 @@ impl Rivals {
 
 impl Tape {
     /// The leaves of a plain min or max of them, each with its number, if that is what the program
-    /// is and lanes of any length serve it: the value is the least of theirs for a conjunction,
+    /// is: the value is the least of theirs for a conjunction,
     /// the largest for a disjunction.
     pub(crate) fn rivals(&self) -> Option<(Op, impl Iterator<Item = (u32, Tape)>)> {
-        let Rivals { op, leaves } = self.rivals.as_ref().filter(|_| self.short)?;
+        let Rivals { op, leaves } = self.rivals.as_ref()?;
         let alone = |(leaf, rival): (&LeafStep, &Rival)| (rival.number, self.alone(leaf, rival.negated));
         Some((*op, self.leaves.iter().zip(leaves).map(alone)))
     }
 
     /// The same without their numbers, in place of others whose memory they take.
     pub(crate) fn rivals_into<'m>(&self, others: &'m mut Vec<Tape>) -> Option<(Op, &'m [Tape])> {
-        let Rivals { op, leaves } = self.rivals.as_ref().filter(|_| self.short)?;
+        let Rivals { op, leaves } = self.rivals.as_ref()?;
         for (n, (leaf, rival)) in self.leaves.iter().zip(leaves).enumerate() {
             match others.get_mut(n) {
                 Some(other) => other.become_alone(self, leaf, rival.negated),

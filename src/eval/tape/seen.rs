@@ -35,7 +35,7 @@ impl Seen {
     pub(super) fn leaf_error(&self, to_local: &DAffine3, field: &dyn AnyField) -> f64 {
         let local = self.zone.mapped(to_local);
         let reach = local.reach();
-        let own = field.roundoff(reach);
+        let own = field.roundoff_over(local.hull());
         // A leaf's bound allows for coordinates that are off by some rounding errors of
         // their own; more than that counts in proportion.
         let error = self.coordinate_error(to_local, &local);

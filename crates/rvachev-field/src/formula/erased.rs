@@ -109,10 +109,6 @@ impl AnyField for Formula {
         gradients::gradients(self, chunk);
     }
 
-    fn takes_short(&self) -> bool {
-        true
-    }
-
     fn cost(&self) -> usize {
         // So many operations are as much as a superquadric.
         1 + self.len() / 8

@@ -305,8 +305,4 @@ impl AnyField for SurfaceDistance {
     fn cost(&self) -> usize {
         4
     }
-
-    fn takes_short(&self) -> bool {
-        self.sign.takes_short()
-    }
 }

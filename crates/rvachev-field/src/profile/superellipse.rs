@@ -115,6 +115,10 @@ impl Field for Superellipse {
         column(self.semi_axes)
     }
 
+    fn creases(&self) -> Vec<DVec3> {
+        if self.exponent > 2.0 { vec![DVec3::X, DVec3::Y] } else { Vec::new() }
+    }
+
     fn check(&self) -> Result<(), ParamError> {
         check::length("semi_axes.x", self.semi_axes.x)?;
         check::length("semi_axes.y", self.semi_axes.y)?;

@@ -16,8 +16,8 @@ use glam::{DVec2, DVec3};
 
 use super::super::gielis::{Polar, Winding};
 use super::super::outline::Outline;
-use super::super::{Case, Field, Gielis, Kernel, ParamError, Radius, check};
-use crate::{Bounds, Euclid, Interval, OfOne, Real};
+use super::super::{Case, Field, Gielis, Kernel, ParamError, Radius, chained, check};
+use crate::{Bounds, Dual, Euclid, Interval, OfOne, Real};
 use rvachev_num::{Cancelled, Run};
 
 /// What is within a [`Gielis`] curve, valued `f = r_in·(1 − G)` in length units: the gauge is
@@ -168,6 +168,10 @@ impl Field for Superpolygon {
         }
     }
 
+    fn creases(&self) -> Vec<DVec3> {
+        self.curve.cusps().map(|angle| DVec3::new(-angle.sin(), angle.cos(), 0.0)).collect()
+    }
+
     fn slopes(&self, [x, y, _]: [Interval; 3]) -> [Interval; 3] {
         let (x, y) = (x * self.inverse, y * self.inverse);
         match self.outline() {
@@ -180,6 +184,11 @@ impl Field for Superpolygon {
             }
             _ => [Interval::ALL; 3],
         }
+    }
+
+    fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
+        let region = p.map(Dual::value);
+        chained(Field::range(self, region), Field::slopes(self, region), p)
     }
 
     #[inline(always)]
