@@ -18,7 +18,10 @@ mod form;
 mod forms;
 #[cfg(feature = "formula")]
 mod formula;
+mod from_mesh;
 mod golden;
+#[cfg(feature = "import")]
+mod import;
 mod inputs;
 mod lattices;
 mod laws;

@@ -41,6 +41,7 @@ mod pairs;
 mod patch;
 mod plane;
 mod search;
+mod solid;
 mod surface_distance;
 #[cfg(test)]
 mod tests;
@@ -58,6 +59,7 @@ use self::search::{Best, Keep, Range, Stack};
 use crate::Bounds;
 
 pub use self::patch::Patch;
+pub use self::solid::{MeshLeaf, Openness};
 pub use self::surface_distance::SurfaceDistance;
 
 /// The nearest point of a surface.
