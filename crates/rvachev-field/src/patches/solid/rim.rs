@@ -80,6 +80,8 @@ pub(super) struct Rim {
     missing: Vec<u32>,
     /// How long the edges of each box are together.
     lengths: Vec<f64>,
+    /// All of them, in length units, divided by 4π.
+    whole: f64,
 }
 
 impl Rim {
@@ -92,7 +94,7 @@ impl Rim {
             open.iter().map(|edge| Patch::flat([edge.ends[0], edge.ends[1], edge.ends[1]])).collect();
         let edges = Patches::new(&flat, run)?;
         let missing = edges.numbers.iter().map(|number| open[*number as usize].missing).collect();
-        let mut rim = Rim { lengths: vec![0.0; edges.nodes.len()], edges, missing };
+        let mut rim = Rim { lengths: vec![0.0; edges.nodes.len()], edges, missing, whole: 0.0 };
         for at in (0..rim.lengths.len()).rev() {
             let node = rim.edges.nodes[at];
             rim.lengths[at] = if node.count >= PARENT {
@@ -101,6 +103,7 @@ impl Rim {
                 (node.first..node.first + node.count).map(|at| rim.length(at as usize)).sum()
             };
         }
+        rim.whole = rim.lengths[0] * rim.edges.frame.unit / (4.0 * PI);
         Ok(Some(rim))
     }
 
@@ -158,24 +161,27 @@ pub(super) struct Membrane {
 }
 
 impl Membrane {
-    /// How far above one half the winding number is, and how far the membrane is at least.
-    pub(super) fn side(&self, p: DVec3) -> (f64, f64) {
+    /// How far above one half the winding number is, and how far the membrane is at least, or `most` if that is less.
+    pub(super) fn side(&self, p: DVec3, most: f64) -> (f64, f64) {
         let side = self.winding.number(p) - 0.5;
-        (side, (0.25 * self.rim.distance(p)).min(side.abs() / (4.0 * self.rim.steepest(p))))
+        let distance = self.rim.distance(p);
+        let way = most.min(0.25 * distance);
+        // Nowhere is the rim steeper than if all of it were at its nearest point: mostly that tells enough.
+        let is_enough = side.abs() >= 4.0 * way * self.rim.whole / (distance * distance);
+        if is_enough { (side, way) } else { (side, way.min(side.abs() / (4.0 * self.rim.steepest(p)))) }
     }
 
-    /// [`side`](Membrane::side), and the derivatives of the signed way to the membrane.
-    pub(super) fn slope(&self, p: DVec3) -> (f64, f64, DVec3) {
-        let (side, way) = self.side(p);
+    /// The derivatives of the signed way to the membrane.
+    pub(super) fn slope(&self, p: DVec3) -> DVec3 {
         let step = (1e-3 * self.rim.distance(p)).max(1e-9 * self.rim.edges.frame.unit);
         let at = |axis: usize, by: f64| {
             let mut moved = p;
             moved[axis] += by;
-            let (side, way) = self.side(moved);
+            let (side, way) = self.side(moved, f64::INFINITY);
             way.copysign(side)
         };
         let slope = [0, 1, 2].map(|axis| (at(axis, step) - at(axis, -step)) / (2.0 * step));
-        (side, way, DVec3::from_array(slope).clamp_length_max(1.0))
+        DVec3::from_array(slope).clamp_length_max(1.0)
     }
 
     /// A box that holds what is inside. Beyond the triangles the winding number has its largest value on any box
@@ -211,7 +217,7 @@ impl Membrane {
                 run.check()?;
             }
             let Some((centre, half)) = open.pop() else { return Ok(true) };
-            let (side, way) = self.side(centre);
+            let (side, way) = self.side(centre, half.length());
             if side >= 0.0 {
                 return Ok(false);
             }

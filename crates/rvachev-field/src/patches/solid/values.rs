@@ -35,14 +35,18 @@ impl MeshLeaf {
 
     fn open_value(&self, membrane: &Membrane, p: DVec3) -> f64 {
         let distance = self.patches().distance(p).unwrap_or(VALUE_LIMIT).min(VALUE_LIMIT);
-        MeshLeaf::held(distance, membrane.side(p))
+        MeshLeaf::held(distance, membrane.side(p, distance))
     }
 
     /// Value and derivatives where there are openings.
     fn open_jet(&self, membrane: &Membrane, p: [f64; 3]) -> (f64, [f64; 3]) {
-        let (side, way, slope) = membrane.slope(DVec3::from_array(p));
-        let (value, gradient) = self.distance.signed_with_slope(p, side);
-        if way < value.abs() { (MeshLeaf::held(way, (side, way)), slope.to_array()) } else { (value, gradient) }
+        let at = DVec3::from_array(p);
+        let distance = self.patches().distance(at).unwrap_or(VALUE_LIMIT);
+        let (side, way) = membrane.side(at, distance);
+        if way < distance {
+            return (MeshLeaf::held(way, (side, way)), membrane.slope(at).to_array());
+        }
+        self.distance.signed_with_slope(p, side)
     }
 
     /// The leaf with another distance.
@@ -123,7 +127,7 @@ impl AnyField for MeshLeaf {
             return Interval::ALL;
         }
         let Some(distance) = self.patches().distance(zone.centre) else { return Interval::ALL };
-        let (side, way) = membrane.side(zone.centre);
+        let (side, way) = membrane.side(zone.centre, distance);
         let (radius, slack) = (zone.radius(), self.distance.slack(zone, distance));
         let most = distance + radius + slack;
         let left = distance.min(way) - radius - slack;
