@@ -461,6 +461,7 @@ pub mod io;
 pub mod law;
 pub mod layers;
 pub mod lengths;
+mod measure;
 mod mesh;
 pub mod points;
 pub mod program;
@@ -485,6 +486,7 @@ pub use geom::{Camera, Contours, Image, Mesh, Outline, Plane, PointCloud, Polyli
 pub use io::LoadSettings;
 pub use io::save::SaveSettings;
 pub use io::unit::LengthUnit;
+pub use measure::{ThicknessBin, ThicknessReport};
 pub use mesh::{AtBounds, CellSize, Component, Features, MeshReport, MeshSettings, Openness, ThinFeatures};
 pub use query::{Clearance, Face};
 pub use render::{Background, ContourSettings, Lights, RenderSettings, Scene, Side, Slice, SliceSettings, Style};

@@ -3,7 +3,7 @@
 mod brute;
 mod laws;
 
-use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
 
 use glam::{DVec3, Vec3};
 use rvachev::{Blend, Camera, CellSize, Mesh, MeshSettings, MeshSolid, Openness, Paint, RenderSettings, Solid, rad};
@@ -104,8 +104,13 @@ fn solids_are_equal_by_content() {
     let c = solid(&block([0.0; 3], [1.0, 1.0, 1.5]));
     assert_eq!(a, b);
     assert_ne!(a, c);
-    let map = HashMap::from([(a.clone(), 1), (c, 2)]);
-    assert_eq!(map.get(&b), Some(&1));
+    let hash = |solid: &Solid| {
+        let mut hasher = DefaultHasher::new();
+        solid.hash(&mut hasher);
+        hasher.finish()
+    };
+    assert_eq!(hash(&a), hash(&b));
+    assert_ne!(hash(&a), hash(&c));
     let red = block([0.0; 3], [1.0; 3]).with_corner_colors(vec![[[255, 0, 0, 255]; 3]; 12]).unwrap();
     assert_ne!(solid(&red), a);
     assert_eq!(Solid::from_mesh(&red, MeshSolid { colors: false }), a);
@@ -155,14 +160,14 @@ fn bowl(cut: f32) -> Mesh {
 
 #[test]
 fn open_meshes_are_closed_by_a_film() {
-    for cut in [0.0, 0.5, 0.9] {
+    for cut in [0.0, 0.7] {
         let bowl = bowl(cut);
         let openness = bowl.openness();
         let around = 2.0 * std::f64::consts::PI * f64::from(1.0 - cut * cut).sqrt();
         assert!(!openness.is_closed() && (openness.length / around - 1.0).abs() < 0.4, "{openness:?}");
         let solid = solid(&bowl);
         assert!(solid.contains([0.0, 0.0, -0.8]).unwrap() && !solid.contains([0.0, 0.0, 1.5]).unwrap());
-        let mesh = meshed(&solid, 32);
+        let mesh = meshed(&solid, 16);
         let report = mesh.check();
         assert!(report.is_closed() && report.shells == 1, "{cut}: {report}");
         // More than half a ball less a cap, and less than the whole one.

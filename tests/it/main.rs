@@ -59,6 +59,7 @@ mod superquadric;
 mod supershape;
 mod supershape_ranges;
 mod support;
+mod thickness;
 mod thin;
 mod tight;
 mod tolerance;

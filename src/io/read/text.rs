@@ -70,7 +70,7 @@ pub(super) fn lines(data: &[u8]) -> impl Iterator<Item = (u64, &[u8])> {
 
 /// A position, whose coordinates must fit single precision.
 pub(super) fn position(coordinates: [f64; 3], place: impl FnOnce() -> FilePlace) -> Result<DVec3, ReadError> {
-    match coordinates.iter().find(|x| !(x.abs() <= f64::from(f32::MAX))) {
+    match coordinates.iter().find(|x| x.is_nan() || x.abs() > f64::from(f32::MAX)) {
         None => Ok(DVec3::from_array(coordinates)),
         Some(x) => {
             let expected = format!("a coordinate from {:e} to {:e}", f32::MIN, f32::MAX);

@@ -87,10 +87,11 @@ fn target(relations: &str) -> Option<String> {
     let mut reader = Reader::from_str(relations);
     loop {
         match reader.read_event().ok()? {
-            Event::Start(tag) | Event::Empty(tag) if tag.local_name().as_ref() == "Relationship" => {
-                if value(&tag, "Type").is_some_and(|kind| kind.ends_with("/3dmodel")) {
-                    return value(&tag, "Target").map(|target| target.trim_start_matches('/').to_string());
-                }
+            Event::Start(tag) | Event::Empty(tag)
+                if tag.local_name().as_ref() == "Relationship"
+                    && value(&tag, "Type").is_some_and(|kind| kind.ends_with("/3dmodel")) =>
+            {
+                return value(&tag, "Target").map(|target| target.trim_start_matches('/').to_string());
             }
             Event::Eof => return None,
             _ => {}

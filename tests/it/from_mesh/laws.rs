@@ -1,8 +1,5 @@
 //! Laws: against brute force on parts and on random meshes; what comes back from meshing.
 
-use std::fs;
-use std::path::Path;
-
 use glam::{DVec3, Vec3};
 use rvachev::{CellSize, Mesh, MeshSettings, Solid, rad};
 
@@ -69,19 +66,18 @@ fn check(name: &str, mesh: &Mesh, count: usize, random: &mut Random) {
     }
 }
 
+#[cfg(feature = "import")]
 #[test]
 fn parts_are_as_brute_force_says() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/parts");
-    if !folder.is_dir() || !cfg!(feature = "import") {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/parts");
+    let Ok(entries) = std::fs::read_dir(&folder) else {
         println!("skipped: no {}", folder.display());
         return;
-    }
-    #[cfg(feature = "import")]
-    for entry in fs::read_dir(folder).unwrap() {
+    };
+    for entry in entries {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|extension| extension == "ply") {
-            let mesh = Mesh::load(&path).unwrap();
-            check(&path.display().to_string(), &mesh, 120, &mut Random(3));
+            check(&path.display().to_string(), &Mesh::load(&path).unwrap(), 120, &mut Random(3));
         }
     }
 }
@@ -135,9 +131,9 @@ fn spoilt(random: &mut Random) -> Mesh {
 
 #[test]
 fn spoilt_meshes_are_as_brute_force_says() {
-    for seed in 0..6 {
+    for seed in 0..5 {
         let mut random = Random(seed);
-        check(&format!("seed {seed}"), &spoilt(&mut random), 60, &mut random);
+        check(&format!("seed {seed}"), &spoilt(&mut random), 40, &mut random);
     }
 }
 

@@ -31,6 +31,7 @@ mod curved;
 mod double;
 mod face;
 mod hierarchy;
+mod inscribed;
 #[cfg(test)]
 mod leaf_tests;
 mod narrow;

@@ -88,16 +88,23 @@ impl Winding {
         // Children come after their parents.
         for (at, node) in nodes.iter().enumerate().rev() {
             let mut sum = Sum::NONE;
+            let mut within: f64 = 0.0;
             if node.count >= PARENT {
-                sum = sums[node.first as usize].with(sums[node.first as usize + 1]);
+                let children = [node.first as usize, node.first as usize + 1];
+                sum = sums[children[0]].with(sums[children[1]]);
+                for child in children {
+                    within = within.max(sums[child].centre.distance(sum.centre) + f64::from(moments[child].radius));
+                }
             } else {
-                for at in node.first..node.first + node.count {
-                    sum = sum.with(patches.sum_of(at as usize));
+                let triangles = || (node.first..node.first + node.count).map(|at| at as usize);
+                sum = triangles().fold(sum, |sum, at| sum.with(patches.sum_of(at)));
+                for corner in triangles().flat_map(|at| patches.corners_of(at)) {
+                    within = within.max(corner.distance(sum.centre));
                 }
             }
             // No corner of the box is farther away, nor any triangle.
             let (low, high) = (double(node.low), double(node.high));
-            let radius = (sum.centre - low).abs().max((high - sum.centre).abs()).length();
+            let radius = (sum.centre - low).abs().max((high - sum.centre).abs()).length().min(within * (1.0 + 1e-6));
             let q = sum.quadrupole;
             let quadrupole = [q.x_axis.x, q.y_axis.y, q.z_axis.z, q.x_axis.y, q.y_axis.z, q.z_axis.x];
             moments[at] = Moments {
@@ -128,8 +135,7 @@ impl Winding {
 
     /// Whether a number from [`roughly`](Winding::roughly) does not tell the side.
     pub(super) fn is_doubtful(number: f64) -> bool {
-        // Also what is not a number.
-        !((number - 0.5).abs() > DOUBT)
+        number.is_nan() || (number - 0.5).abs() <= DOUBT
     }
 
     /// The numbers at points, to tell their sides unless these are doubtful.
@@ -148,12 +154,12 @@ impl Winding {
             height -= 1;
             let at = stack.0[height] as usize;
             let seen = &self.moments[at];
-            let [x, y, z] = seen.centre.map(f64::from);
+            let [x, y, z] = wide(seen.centre);
             let d = [-p[0] + x, -p[1] + y, -p[2] + z];
             let square = dot(d, d);
             let reach = far * f64::from(seen.radius);
             if !square.any_below(square.lift(reach * reach)) && reach > 0.0 {
-                beyond = beyond + seen.from(d, square);
+                beyond = beyond + seen.at(d, square);
                 continue;
             }
             let node = &self.patches.nodes[at];
@@ -164,24 +170,79 @@ impl Winding {
                 continue;
             }
             for at in node.first..node.first + node.count {
-                near = near + self.angle(p, at as usize);
+                let Some((face, sides)) = self.patches.at(at as usize) else { continue };
+                let triangle = Triangle { a: wide(face.a), e: wide(sides.e), f: wide(sides.f) };
+                let (d, square) = triangle.seen_from(p);
+                if square.any_below(square.lift(far * far * triangle.square_radius())) {
+                    near = near + triangle.half_angle(p);
+                } else {
+                    // About its middle a flat triangle has no quadrupole.
+                    let [x, y, z] = triangle.area();
+                    let per = square.lift(1.0) / square.sqrt();
+                    let dipole = d[0].scale_add(x, d[1].scale_add(y, d[2] * z));
+                    beyond = beyond + dipole * per * per * per;
+                }
             }
         }
         near * (0.5 / PI) + beyond * (0.25 / PI)
     }
+}
 
-    /// Half the solid angle of a triangle.
+/// Three numbers as formulas take them.
+#[inline(always)]
+fn wide([x, y, z]: [f32; 3]) -> [f64; 3] {
+    [f64::from(x), f64::from(y), f64::from(z)]
+}
+
+/// A corner and the sides from there.
+struct Triangle {
+    a: [f64; 3],
+    e: [f64; 3],
+    f: [f64; 3],
+}
+
+impl Triangle {
+    /// The area vector.
     #[inline(always)]
-    fn angle<R: Packet>(&self, p: [R; 3], at: usize) -> R {
-        let Some((face, sides)) = self.patches.at(at) else { return p[0].lift(0.0) };
-        let (a, [e, f]) = (face.a.map(f64::from), sides.wide());
+    fn area(&self) -> [f64; 3] {
+        let Triangle { e, f, .. } = self;
+        [0.5 * (e[1] * f[2] - e[2] * f[1]), 0.5 * (e[2] * f[0] - e[0] * f[2]), 0.5 * (e[0] * f[1] - e[1] * f[0])]
+    }
+
+    /// The square of how far the farthest corner is from the middle.
+    #[inline(always)]
+    fn square_radius(&self) -> f64 {
+        let Triangle { e, f, .. } = self;
+        let (ee, ef, ff) = (dot(*e, *e), dot(*e, *f), dot(*f, *f));
+        let from_a = ee + ff + 2.0 * ef;
+        let from_b = 4.0 * ee + ff - 4.0 * ef;
+        let from_c = ee + 4.0 * ff - 4.0 * ef;
+        from_a.max(from_b).max(from_c) / 9.0
+    }
+
+    /// The way from a point to the middle, and its square.
+    #[inline(always)]
+    fn seen_from<R: Real>(&self, p: [R; 3]) -> ([R; 3], R) {
+        let Triangle { a, e, f } = self;
+        let d = [
+            -p[0] + (a[0] + (e[0] + f[0]) * (1.0 / 3.0)),
+            -p[1] + (a[1] + (e[1] + f[1]) * (1.0 / 3.0)),
+            -p[2] + (a[2] + (e[2] + f[2]) * (1.0 / 3.0)),
+        ];
+        (d, dot(d, d))
+    }
+
+    /// Half the solid angle.
+    #[inline(always)]
+    fn half_angle<R: Real>(&self, p: [R; 3]) -> R {
+        let Triangle { a, e, f } = self;
         let a = [-p[0] + a[0], -p[1] + a[1], -p[2] + a[2]];
         let b = [a[0] + e[0], a[1] + e[1], a[2] + e[2]];
         let c = [a[0] + f[0], a[1] + f[1], a[2] + f[2]];
         let (la, lb, lc) = (dot(a, a).sqrt(), dot(b, b).sqrt(), dot(c, c).sqrt());
-        // a·(b × c), where the sides say more than the corners.
-        let n = [e[1] * f[2] - e[2] * f[1], e[2] * f[0] - e[0] * f[2], e[0] * f[1] - e[1] * f[0]];
-        let over = a[0].scale_add(n[0], a[1].scale_add(n[1], a[2] * n[2]));
+        // a·(b × c) = a·(e × f).
+        let [x, y, z] = self.area();
+        let over = a[0].scale_add(2.0 * x, a[1].scale_add(2.0 * y, a[2] * (2.0 * z)));
         let under = la.mul_add(lb * lc, dot(a, b).mul_add(lc, dot(b, c).mul_add(la, dot(c, a) * lb)));
         over.atan2(under)
     }
@@ -199,9 +260,10 @@ impl Default for Stack {
 impl Moments {
     /// 4π times the winding number of what is at `d` from a point.
     #[inline(always)]
-    fn from<R: Real>(&self, d: [R; 3], square: R) -> R {
-        let [x, y, z] = self.dipole.map(f64::from);
-        let [xx, yy, zz, xy, yz, zx] = self.quadrupole.map(f64::from);
+    fn at<R: Real>(&self, d: [R; 3], square: R) -> R {
+        let [x, y, z] = wide(self.dipole);
+        let [xx, yy, zz, xy, yz, zx] = self.quadrupole;
+        let ([xx, yy, zz], [xy, yz, zx]) = (wide([xx, yy, zz]), wide([xy, yz, zx]));
         let per = square.lift(1.0) / square.sqrt();
         let per_square = per * per;
         let dipole = d[0].scale_add(x, d[1].scale_add(y, d[2] * z));
@@ -219,6 +281,13 @@ fn dot<R: Real>(v: [R; 3], w: [R; 3]) -> R {
 }
 
 impl Patches {
+    /// The corners of one triangle.
+    fn corners_of(&self, at: usize) -> [DVec3; 3] {
+        let Some((face, sides)) = self.at(at) else { return [DVec3::ZERO; 3] };
+        let [a, e, f] = [double(face.a), double(sides.e), double(sides.f)];
+        [a, a + e, a + f]
+    }
+
     /// The moments of one triangle about its middle.
     fn sum_of(&self, at: usize) -> Sum {
         let Some((face, sides)) = self.at(at) else { return Sum::NONE };
