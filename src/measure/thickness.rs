@@ -16,7 +16,7 @@
 //! Source: J. Ma et al., *3D Medial Axis Point Approximation Using Nearest Neighbors and the Normal Field*
 //! (2012), section 3.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::ThicknessReport;
 use crate::error::MeshingError;
@@ -67,12 +67,8 @@ impl Solid {
 /// The thickness at the middle of each triangle; infinite where nothing faces it, and of what has no area.
 fn thicknesses(mesh: &Mesh, run: &Run) -> Result<Vec<f64>, Cancelled> {
     let [to_build, to_search] = run.stages([0.2, 0.8]);
-    let normal = |triangle: [u32; 3]| {
-        let [a, b, c] = mesh.corners(triangle);
-        (b - a).cross(c - a).normalize_or_zero()
-    };
     let flat: Vec<Patch> = mesh.triangles().iter().map(|t| Patch::flat(mesh.corners(*t))).collect();
-    let normals: Vec<DVec3> = mesh.triangles().iter().map(|t| normal(*t)).collect();
+    let normals: Vec<DVec3> = (0..mesh.triangles().len()).map(|t| normal(mesh, t)).collect();
     let patches = Patches::new(&flat, &to_build)?;
     let largest = 0.5 * mesh.bounds().size().length();
     each_triangle(mesh, &to_search, |nth, triangle| {
@@ -80,4 +76,18 @@ fn thicknesses(mesh: &Mesh, run: &Run) -> Result<Vec<f64>, Cancelled> {
         let faces = |number: u32| normals[number as usize].dot(n) < FACING;
         patches.inscribed(p, n, largest, SLACK, faces).map_or(f64::INFINITY, |radius| 2.0 * radius)
     })
+}
+
+/// The normal at the middle of a triangle: between those of its corners, as slim facets are turned from the surface;
+/// the facet's own where there are none.
+fn normal(mesh: &Mesh, t: usize) -> DVec3 {
+    let triangle = mesh.triangles()[t];
+    let [a, b, c] = mesh.corners(triangle);
+    let of_corners = match (mesh.corner_normals(), mesh.normals()) {
+        (Some(normals), _) => Some(normals[t]),
+        (None, Some(normals)) => Some(triangle.map(|v| normals[v as usize])),
+        (None, None) => None,
+    };
+    let sum = of_corners.map(|normals| normals.into_iter().sum::<Vec3>().as_dvec3());
+    sum.and_then(DVec3::try_normalize).unwrap_or_else(|| (b - a).cross(c - a).normalize_or_zero())
 }

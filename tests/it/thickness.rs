@@ -15,14 +15,14 @@ fn share_near(report: &ThicknessReport, thickness: f64) -> f64 {
 
 #[test]
 fn tubes_and_shells_are_as_thick_as_their_walls() {
-    let tube = thickness(&(Solid::cylinder(5.0, 12.0) - Solid::cylinder(4.0, 13.0)), 64);
+    let tube = thickness(&(Solid::cylinder(5.0, 12.0) - Solid::cylinder(4.0, 13.0)), 32);
     assert!((tube.least - 1.0).abs() < 0.01, "{tube}");
     let walls = 2.0 * 9.0 * 12.0;
     let ends = 2.0 * 9.0;
     assert!((share_near(&tube, 1.0) - walls / (walls + ends)).abs() < 0.03, "{}", share_near(&tube, 1.0));
-    let shell = thickness(&(Solid::sphere(5.0) - Solid::sphere(4.5)), 64);
+    let shell = thickness(&(Solid::sphere(5.0) - Solid::sphere(4.5)), 40);
     assert!((shell.least - 0.5).abs() < 0.005 && share_near(&shell, 0.5) > 0.99, "{shell}");
-    let ball = thickness(&Solid::sphere(2.0), 32);
+    let ball = thickness(&Solid::sphere(2.0), 24);
     assert!((ball.least - 4.0).abs() < 0.04 && share_near(&ball, 4.0) > 0.99, "{ball}");
 }
 
@@ -35,7 +35,7 @@ fn a_drafted_rib_is_thinnest_at_its_top() {
     };
     let rib = Solid::cuboid([1.2, 10.0, 4.0]).translate([0.0, 0.0, 3.0]) & side(1.0) & side(-1.0);
     let part = Solid::cuboid([20.0, 12.0, 2.0]) | rib;
-    let report = thickness(&part, 96);
+    let report = thickness(&part, 64);
     assert!((report.least - 0.6).abs() < 0.06, "{report}");
     assert!(report.at.z > 4.0 && report.at.x.abs() < 0.4, "{report}");
     assert!((share_near(&report, 2.0) - 0.8).abs() < 0.15, "{}", share_near(&report, 2.0));
@@ -62,7 +62,7 @@ fn reports_are_shown_as_text_and_as_colours() {
     let colors = mesh.corner_colors().unwrap();
     assert_eq!(colors.len(), report.thicknesses().len());
     let flat = (0..colors.len()).filter(|t| (report.thicknesses()[*t] - 1.0).abs() < 0.01);
-    assert!(flat.clone().count() > 100 && flat.into_iter().all(|t| colors[t][0][0] > 150 && colors[t][0][2] == 0));
+    assert!(flat.clone().count() > 100 && flat.into_iter().all(|t| colors[t][0][0] > 100 && colors[t][0][2] == 0));
     let nothing = thickness(&(Solid::sphere(1.0) & Solid::sphere(1.0).translate([5.0, 0.0, 0.0])), 8);
     assert_eq!((nothing.least, nothing.share_below(1.0)), (f64::INFINITY, 0.0));
     assert_eq!(nothing.to_string(), "no part of the surface faces another");
