@@ -3,6 +3,8 @@
 
 pub use crate::geom::{CameraError, ImageError, MeshError, PointCloudError};
 pub use crate::io::save::SaveError;
+#[cfg(feature = "import")]
+pub use crate::io::{LoadError, ReadError};
 pub use crate::mesh::MeshingError;
 pub use crate::query::PrepareError;
 pub use crate::render::RenderError;

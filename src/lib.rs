@@ -219,6 +219,10 @@
 //! | [`Formula`] | a fidget tree, or the text of a `.vm` file ([`Formula::from_vm`]) | what it gives |
 //! | [`Field`] | a leaf of your own, in Rust; made a solid by [`Solid::new`] | what it gives |
 //!
+//! | meshes | | value |
+//! |---|---|---|
+//! | [`Solid::from_mesh`] | what triangles enclose, clean or not: imported parts, scans, solids that were meshed | distance; of open ones a bound |
+//!
 //! ## Profiles
 //!
 //! Shapes of the plane. [`Profile`] has the verbs of [`Solid`] by the same names: joins and their
@@ -457,6 +461,7 @@ pub mod io;
 pub mod law;
 pub mod layers;
 pub mod lengths;
+mod measure;
 mod mesh;
 pub mod points;
 pub mod program;
@@ -477,9 +482,12 @@ pub use glam;
 pub use catalogue::catalogue;
 pub use eval::{Accuracy, Hit, Owner};
 pub use geom::{Camera, Contours, Image, Mesh, Outline, Plane, PointCloud, Polyline, ThinPlace, ThinReport, View};
+#[cfg(feature = "import")]
+pub use io::LoadSettings;
 pub use io::save::SaveSettings;
 pub use io::unit::LengthUnit;
-pub use mesh::{AtBounds, CellSize, Component, Features, MeshReport, MeshSettings, ThinFeatures};
+pub use measure::{ThicknessBin, ThicknessReport};
+pub use mesh::{AtBounds, CellSize, Component, Features, MeshReport, MeshSettings, Openness, ThinFeatures};
 pub use query::{Clearance, Face};
 pub use render::{Background, ContourSettings, Lights, RenderSettings, Scene, Side, Slice, SliceSettings, Style};
 #[cfg(feature = "formula")]
@@ -494,7 +502,7 @@ pub use rvachev_field::{
 };
 #[doc(inline)]
 pub use rvachev_num::{Angle, Bounds, CancelToken, Cancelled, Interval, Progress, Run, deg, rad, turns};
-pub use solid::{Extrusion, Helix, Paint, PlaneBounds, Profile, Solid, SolidError};
+pub use solid::{Extrusion, Helix, MeshSolid, Paint, PlaneBounds, Profile, Solid, SolidError};
 
 // What the modules below call by its name alone.
 use {

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //!     leaf of the user's          the outermost paint above it
+//!     mesh with colours           those at the nearest point of its triangles, under that
 //!     offset, inner wall          the operand's paint at the foot of the point on it
 //!     fillet, chamfer             the operands' paints at the feet, mixed by the distances:
 //!                                 wᵢ = max(0, 1/dᵢ − 1/R)
@@ -48,6 +49,8 @@ pub(super) enum Coat {
     One(Option<Paint>),
     /// It is that of the operands that the surface was made from.
     Operands(Arc<[Operand]>),
+    /// The leaf has colours of its own.
+    Own(Arc<dyn AnyField>),
 }
 
 /// An operand of a length, a fillet or a chamfer.
@@ -84,7 +87,7 @@ impl Coat {
     pub(super) fn below(&self) -> Below {
         match self {
             Coat::One(paint) => Below::One(*paint),
-            Coat::Operands(_) => Below::Various,
+            Coat::Operands(_) | Coat::Own(_) => Below::Various,
         }
     }
 }

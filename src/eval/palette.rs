@@ -49,6 +49,7 @@ impl Palette {
         let paints = scene.trail.paints();
         let coat = |leaf: &Instance| match paints.get(leaf.step as usize).copied().flatten() {
             Some(paint) => Coat::One(Some(paint)),
+            None if leaf.field.is_colored() => Coat::Own(leaf.field.clone()),
             None => coats.remove(&leaf.number).unwrap_or(Coat::One(None)),
         };
         let coats: Vec<Coat> = scene.leaves.iter().map(coat).collect();
@@ -101,7 +102,7 @@ impl Palette {
     pub fn of(&self, owner: u32) -> Option<Paint> {
         match self.coats.get(owner as usize) {
             Some(Coat::One(paint)) => *paint,
-            Some(Coat::Operands(_)) | None => None,
+            Some(Coat::Operands(_) | Coat::Own(_)) | None => None,
         }
     }
 
@@ -112,7 +113,7 @@ impl Palette {
 
     /// Whether the paint of a leaf changes along its surface.
     pub(crate) fn is_mixed(&self, owner: u32) -> bool {
-        self.is_blended(owner) || matches!(self.coats.get(owner as usize), Some(Coat::Operands(_)))
+        self.is_blended(owner) || matches!(self.coats.get(owner as usize), Some(Coat::Operands(_) | Coat::Own(_)))
     }
 
     /// Whether a blend mixes the paint of a leaf with that of others.
@@ -160,6 +161,10 @@ impl Palette {
                     _ if share * part < LEAST => {}
                     None => {}
                     Some(Coat::One(paint)) => found.push((*paint, share * part)),
+                    Some(Coat::Own(field)) => {
+                        let color = field.color(palette.program.local(leaf, p));
+                        found.push((color.map(Paint::from), share * part));
+                    }
                     Some(Coat::Operands(operands)) => {
                         for foot in feet(operands, palette.program.local(leaf, p)) {
                             let below = foot.palette.program.deciding_leaf(foot.point);

@@ -1,5 +1,13 @@
 //! Writers of meshes, points, drawings and pictures: through [`std::io::Write`], and to a path by
-//! extension.
+//! extension; readers of meshes and points: through [`std::io::Read`], and from a path.
+//!
+//! # Readers
+//!
+//! [`Mesh::load`](crate::Mesh::load) and [`PointCloud::load`](crate::PointCloud::load) by extension,
+//! [`Mesh::read`](crate::Mesh::read) and [`PointCloud::read`](crate::PointCloud::read) by
+//! [`FileFormat`]. They are in the feature `import`.
+//!
+//! # Writers
 //!
 //! | type | extension | format | carries |
 //! |---|---|---|---|
@@ -30,6 +38,8 @@ mod obj;
 mod ply;
 mod png;
 mod points;
+#[cfg(feature = "import")]
+mod read;
 pub(crate) mod save;
 mod split;
 mod stl;
@@ -49,6 +59,8 @@ pub use obj::write_obj;
 pub use ply::write_ply;
 pub use png::{Colors, write_png};
 pub use points::write_ply_points;
+#[cfg(feature = "import")]
+pub use read::{FileFormat, FilePlace, LoadError, LoadSettings, ReadError};
 pub use save::Pixel;
 pub(crate) use save::{SaveSettings, save_rows};
 pub use stl::{write_stl, write_stl_ascii};

@@ -60,7 +60,7 @@ pub enum SaveError {
     },
 }
 
-fn unknown(extension: &str) -> String {
+pub(super) fn unknown(extension: &str) -> String {
     if extension.is_empty() {
         "its name has no extension".into()
     } else {

@@ -34,7 +34,18 @@ impl LengthUnit {
         }
     }
 
-    #[cfg(feature = "threemf")]
+    /// All of them.
+    #[cfg(feature = "import")]
+    pub(super) const ALL: [LengthUnit; 6] = [
+        LengthUnit::Micron,
+        LengthUnit::Millimeter,
+        LengthUnit::Centimeter,
+        LengthUnit::Inch,
+        LengthUnit::Foot,
+        LengthUnit::Meter,
+    ];
+
+    #[cfg(any(feature = "threemf", feature = "import"))]
     /// The name that 3MF has for it.
     pub(super) fn name(self) -> &'static str {
         match self {

@@ -14,6 +14,7 @@ mod groups;
 mod hide;
 mod lattice;
 mod loops;
+mod openness;
 mod paint;
 mod qef;
 mod refine;
@@ -34,6 +35,7 @@ pub use check::MeshReport;
 pub use components::Component;
 pub use error::MeshingError;
 pub use lattice::{CellSize, Lattice, LatticeError};
+pub use openness::Openness;
 pub use settings::{AtBounds, Features, MeshSettings, ThinFeatures};
 pub use volume::{Volume, VolumeError, VolumeSettings};
 

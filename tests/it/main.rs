@@ -18,7 +18,10 @@ mod form;
 mod forms;
 #[cfg(feature = "formula")]
 mod formula;
+mod from_mesh;
 mod golden;
+#[cfg(feature = "import")]
+mod import;
 mod inputs;
 mod lattices;
 mod laws;
@@ -56,6 +59,7 @@ mod superquadric;
 mod supershape;
 mod supershape_ranges;
 mod support;
+mod thickness;
 mod thin;
 mod tight;
 mod tolerance;

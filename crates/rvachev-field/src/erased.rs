@@ -138,6 +138,14 @@ pub trait AnyField: Any + Debug + Send + Sync {
     fn cost(&self) -> usize {
         1
     }
+    /// Whether the surface has colours of its own.
+    fn is_colored(&self) -> bool {
+        false
+    }
+    /// The colour of its own that the surface has near a point, in sRGB.
+    fn color(&self, _p: DVec3) -> Option<[u8; 3]> {
+        None
+    }
 }
 
 /// The largest coordinate of a region in absolute value.

@@ -31,6 +31,7 @@ mod curved;
 mod double;
 mod face;
 mod hierarchy;
+mod inscribed;
 #[cfg(test)]
 mod leaf_tests;
 mod narrow;
@@ -41,6 +42,7 @@ mod pairs;
 mod patch;
 mod plane;
 mod search;
+mod solid;
 mod surface_distance;
 #[cfg(test)]
 mod tests;
@@ -58,6 +60,7 @@ use self::search::{Best, Keep, Range, Stack};
 use crate::Bounds;
 
 pub use self::patch::Patch;
+pub use self::solid::{MeshLeaf, Openness};
 pub use self::surface_distance::SurfaceDistance;
 
 /// The nearest point of a surface.

@@ -1,0 +1,158 @@
+//! The solid that triangles enclose, as a leaf: distance to the triangles, sign by winding numbers.
+//!
+//! ```text
+//!     value(x) = ± min(|x − y|, m(x)),     + where w(x) > ½
+//! ```
+//!
+//! y is the nearest point of the triangles, w the generalised winding number. Where the triangles
+//! leave no opening, m is infinite and the value is the true distance. Else the surface goes on
+//! across openings where w = ½, which is told of by m: see [`Rim`].
+//!
+//! Triangles that overlap count as their union; those within it, where w does not pass ½, are no
+//! surface, though the distance is measured from them too.
+
+mod rim;
+mod values;
+mod winding;
+mod winding_field;
+
+use std::fmt;
+use std::sync::Arc;
+
+use glam::{DVec3, Vec3};
+use rvachev_num::{Cancelled, Run};
+
+use self::rim::{Membrane, Rim};
+use self::winding::Winding;
+use super::{Foot, Patch, Patches, SurfaceDistance};
+use crate::Bounds;
+
+/// The solid that triangles enclose.
+#[derive(Clone)]
+pub struct MeshLeaf {
+    distance: SurfaceDistance,
+    winding: Arc<Winding>,
+    /// Around openings, where there are any.
+    membrane: Option<Arc<Membrane>>,
+    bounds: Bounds,
+    colors: Option<Arc<[[[u8; 3]; 3]]>>,
+    hash: u64,
+}
+
+/// How far from closed triangles are.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Openness {
+    /// Edges that have more triangles on one side than on the other.
+    pub edges: usize,
+    /// How long they are together, each as often as triangles are missing.
+    pub length: f64,
+}
+
+impl Openness {
+    /// Of triangles, by positions and their numbers. Vertices at one position are one vertex.
+    pub fn of(positions: &[Vec3], triangles: &[[u32; 3]]) -> Openness {
+        let edges = rim::open_edges(positions, triangles);
+        let length = |edge: &rim::OpenEdge| f64::from(edge.missing) * edge.ends[0].distance(edge.ends[1]);
+        Openness { edges: edges.len(), length: edges.iter().map(length).sum() }
+    }
+}
+
+impl MeshLeaf {
+    /// What triangles enclose, given by finite positions and their numbers, counter-clockwise as seen from
+    /// outside; `colors` are those of their corners.
+    ///
+    /// # Errors
+    ///
+    /// [`Cancelled`] if the run is stopped.
+    pub fn new(
+        positions: &[Vec3],
+        triangles: &[[u32; 3]],
+        colors: Option<Vec<[[u8; 3]; 3]>>,
+        run: &Run,
+    ) -> Result<MeshLeaf, Cancelled> {
+        let [to_build, to_close] = run.stages([0.8, 0.2]);
+        let corner = |v: u32| positions[v as usize].as_dvec3();
+        let flat: Vec<Patch> = triangles.iter().map(|corners| Patch::flat(corners.map(corner))).collect();
+        let patches = Arc::new(Patches::new(&flat, &to_build)?);
+        drop(flat);
+        to_close.check()?;
+        let winding = Arc::new(Winding::new(patches.clone()));
+        let rim = Rim::new(rim::open_edges(positions, triangles), &to_close)?;
+        let mut bounds = patches.bounds();
+        let membrane = match rim {
+            None => None,
+            Some(rim) => {
+                let membrane = Membrane { winding: winding.clone(), rim };
+                bounds = membrane.bounds(bounds, &to_close)?;
+                Some(Arc::new(membrane))
+            }
+        };
+        let hash = hash_of(patches.hash, colors.as_deref());
+        let distance = SurfaceDistance::new(patches, winding.clone(), 0.0, None, bounds);
+        run.report(1.0);
+        Ok(MeshLeaf { distance, winding, membrane, bounds, colors: colors.map(Arc::from), hash })
+    }
+
+    /// How many triangles there are.
+    pub fn len(&self) -> usize {
+        self.patches().len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.patches().is_empty()
+    }
+
+    /// Whether the triangles leave an opening.
+    pub fn is_open(&self) -> bool {
+        self.membrane.is_some()
+    }
+
+    /// The generalised winding number at a point: 1 inside of closed triangles, 0 outside.
+    pub fn winding_number(&self, p: DVec3) -> f64 {
+        self.winding.number(p)
+    }
+
+    /// The nearest point of the triangles.
+    pub fn nearest(&self, p: DVec3) -> Option<Foot> {
+        self.patches().nearest(p)
+    }
+
+    /// The memory that it takes.
+    pub fn bytes(&self) -> usize {
+        self.patches().bytes() + self.winding.bytes()
+    }
+
+    fn patches(&self) -> &Patches {
+        self.distance.patches()
+    }
+
+    /// The colour at the nearest point of the triangles, in sRGB, if they have colours.
+    fn color_near(&self, p: DVec3) -> Option<[u8; 3]> {
+        let colors = self.colors.as_ref()?;
+        let local = self.patches().frame.into_local(p).to_array();
+        let at = self.patches().search_one(local).which as usize;
+        let corners = colors.get(*self.patches().numbers.get(at)? as usize)?;
+        let [s, t] = self.patches().closest(at, local).coordinates;
+        let mix = |k: usize| {
+            let [a, b, c] = corners.map(|color| f64::from(color[k]));
+            (a + s * (b - a) + t * (c - a)).round().clamp(0.0, 255.0) as u8
+        };
+        Some([mix(0), mix(1), mix(2)])
+    }
+}
+
+/// A number that tells contents apart (FNV-1a).
+fn hash_of(shape: u64, colors: Option<&[[[u8; 3]; 3]]>) -> u64 {
+    let mut hash = shape;
+    for byte in colors.into_iter().flatten().flatten().flatten() {
+        hash = (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+    }
+    hash
+}
+
+impl fmt::Debug for MeshLeaf {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} triangles, {:016x}", self.len(), self.hash)
+    }
+}

@@ -1,0 +1,123 @@
+//! Solids of triangles on the machine's SIMD level: lanes against points, open and closed.
+
+use std::f64::consts::TAU;
+
+use glam::{DAffine3, DQuat, DVec3, Vec3};
+use rvachev_field::kernel::CHUNK;
+use rvachev_field::{AnyField, Chunk, MeshLeaf, Placement, Zone};
+use rvachev_num::{Bounds, Dual, Run};
+
+/// A torus of n × 2n pairs of triangles, radii 1 and 0.4, without the first few.
+fn torus(n: u32, without: usize) -> MeshLeaf {
+    let at = |i: u32, j: u32| {
+        let (turn, ring) = (TAU * f64::from(i) / f64::from(n), TAU * f64::from(j) / f64::from(2 * n));
+        let out = 1.0 + 0.4 * turn.cos();
+        DVec3::new(out * ring.cos(), out * ring.sin(), 0.4 * turn.sin()).as_vec3()
+    };
+    let positions: Vec<Vec3> = (0..2 * n * n).map(|v| at(v % n, v / n)).collect();
+    let number = |i: u32, j: u32| i % n + n * (j % (2 * n));
+    let pairs = (0..2 * n).flat_map(|j| (0..n).map(move |i| (i, j)));
+    let triangles: Vec<[u32; 3]> = pairs
+        .flat_map(|(i, j)| {
+            let [a, b, c, d] = [number(i, j), number(i + 1, j), number(i + 1, j + 1), number(i, j + 1)];
+            [[a, d, b], [d, c, b]]
+        })
+        .skip(without)
+        .collect();
+    MeshLeaf::new(&positions, &triangles, None, &Run::default()).unwrap()
+}
+
+/// A generator of numbers in [0, 1).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn point(&mut self, size: f64) -> DVec3 {
+        (DVec3::new(self.next(), self.next(), self.next()) * 2.0 - 1.0) * size
+    }
+}
+
+#[test]
+fn winding_numbers_are_whole_where_closed() {
+    let leaf = torus(24, 0);
+    assert!(!leaf.is_open() && leaf.len() == 2 * 24 * 48);
+    let mut random = Random(1);
+    for _ in 0..2000 {
+        let p = random.point(1.6);
+        let inside = (p.truncate().length() - 1.0).hypot(p.z) < 0.4;
+        let number = leaf.winding_number(p);
+        // Facets are within the circles.
+        let near = ((p.truncate().length() - 1.0).hypot(p.z) - 0.4).abs() < 0.01;
+        assert!(near || (number - f64::from(u8::from(inside))).abs() < 0.02, "{number} at {p}");
+    }
+    assert!(leaf.bytes() as f64 / leaf.len() as f64 <= 150.0, "{}", leaf.bytes() as f64 / leaf.len() as f64);
+}
+
+#[test]
+fn lanes_are_values() {
+    let turn = DQuat::from_euler(glam::EulerRot::XYZ, 0.4, -1.1, 0.2);
+    let map = DAffine3::from_scale_rotation_translation(DVec3::splat(0.5), turn, DVec3::splat(0.1));
+    for leaf in [torus(16, 0), torus(16, 90)] {
+        for placement in [Placement::IDENTITY, Placement::new(&map, 2.0, -0.25)] {
+            let mut random = Random(2);
+            let points: Vec<DVec3> = (0..2 * CHUNK).map(|_| random.point(2.0).as_vec3().as_dvec3()).collect();
+            let columns = [0, 1, 2].map(|axis| points.iter().map(|p| p[axis] as f32).collect::<Vec<f32>>());
+            let wide = [0, 1, 2].map(|axis| points.iter().map(|p| p[axis]).collect::<Vec<f64>>());
+            let count = points.len();
+            let (mut single, mut double) = (vec![0.0_f32; count], vec![0.0_f64; count]);
+            let mut slopes = [const { Vec::new() }; 4].map(|_: Vec<f32>| vec![0.0_f32; count]);
+            let points32 = columns.each_ref().map(|column| &column[..]);
+            let placement = &placement;
+            leaf.lanes32(Chunk { points: points32, placement, out: [&mut single] });
+            leaf.gradients(Chunk { points: points32, placement, out: slopes.each_mut().map(|column| &mut column[..]) });
+            let points64 = wide.each_ref().map(|column| &column[..]);
+            leaf.lanes64(Chunk { points: points64, placement, out: [&mut double] });
+            for (i, p) in points.iter().enumerate() {
+                let local = placement.apply(p.to_array());
+                let dual = leaf.dual(Dual::point(local));
+                let value = placement.finish(leaf.value(local));
+                let roundoff = placement.scale * leaf.roundoff(4.0) + 4e-7;
+                assert!((placement.finish(dual.v) - value).abs() < 1e-13);
+                assert!((double[i] - value).abs() < 1e-12, "{} for {value} at {p}", double[i]);
+                assert!((f64::from(single[i]) - value).abs() < roundoff, "{} for {value} at {p}", single[i]);
+                assert!((f64::from(slopes[0][i]) - value).abs() < roundoff, "{} for {value} at {p}", slopes[0][i]);
+                let slope = DVec3::from_array([1, 2, 3].map(|part| f64::from(slopes[part][i])));
+                assert!(slope.length() < 1.01, "{slope} at {p}");
+            }
+        }
+    }
+}
+
+#[test]
+fn ranges_hold_where_open() {
+    let leaf = torus(16, 200);
+    assert!(leaf.is_open());
+    let mut random = Random(3);
+    let mut certain = 0;
+    for _ in 0..400 {
+        let (centre, half) = (random.point(1.6), random.point(0.15).abs());
+        let bounds = Bounds::from_center(centre, half);
+        let range = leaf.range(&Zone::of_bounds(&bounds));
+        certain += usize::from(range.lo() > 0.0 || range.hi() < 0.0);
+        for _ in 0..20 {
+            let p = bounds.min + DVec3::new(random.next(), random.next(), random.next()) * bounds.size();
+            let value = leaf.value(p.to_array());
+            assert!(range.contains(value), "{value} is not in {range:?}");
+            // The value changes by at most 1 a length unit, as far as boxes of the rim agree.
+            let q = p + random.point(1e-3);
+            let changed = (leaf.value(q.to_array()) - value).abs();
+            assert!(changed < 2.0 * p.distance(q) + 1e-6, "{changed} over {}", p.distance(q));
+        }
+    }
+    assert!(certain > 200, "{certain}");
+    // Nothing inside is outside of the box.
+    let bounds = leaf.bounds_under(&DAffine3::IDENTITY);
+    for _ in 0..4000 {
+        let p = random.point(3.0);
+        assert!(bounds.contains(p) || leaf.value(p.to_array()) < 0.0);
+    }
+}

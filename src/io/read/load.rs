@@ -1,0 +1,102 @@
+//! Loading from a path, by extension.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use super::{FileFormat, LoadSettings, ReadError};
+use crate::geom::{Mesh, PointCloud};
+use crate::io::save::unknown;
+
+/// Why a file could not be loaded.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LoadError {
+    /// The extension of the file name stands for no format that can hold this.
+    #[error("cannot load {}: {}; known: {known}", .path.display(), unknown(.extension))]
+    Extension {
+        /// The path that was asked for.
+        path: PathBuf,
+        /// Its extension, without the dot; empty if it has none.
+        extension: String,
+        /// The extensions that are known, as a list to read.
+        known: String,
+    },
+    /// The file cannot be read.
+    #[error("cannot load {}: {source}", .path.display())]
+    Read {
+        /// The path that was asked for.
+        path: PathBuf,
+        /// The cause.
+        source: ReadError,
+    },
+}
+
+fn load<T>(
+    path: &Path,
+    points: bool,
+    read: impl FnOnce(FileFormat, File) -> Result<T, ReadError>,
+) -> Result<T, LoadError> {
+    let format = FileFormat::of(path, points)?;
+    let file = File::open(path).map_err(ReadError::from);
+    file.and_then(|file| read(format, file)).map_err(|source| LoadError::Read { path: path.into(), source })
+}
+
+impl Mesh {
+    /// Loads a mesh in the format that the extension stands for:
+    ///
+    /// | extension | format | besides the shape |
+    /// |---|---|---|
+    /// | `.stl` | STL, binary or text | |
+    /// | `.obj` | OBJ | normals, texture coordinates, colours of vertices |
+    /// | `.ply` | PLY, text or binary | normals and colours of vertices, colours and owners of faces |
+    /// | `.glb` | binary glTF 2.0 | normals, colours, texture coordinates; in millimetres |
+    /// | `.3mf` | 3MF | colours; in millimetres |
+    ///
+    /// Vertices of STL and GLB at one position become one, so that what is closed is closed. What [`Mesh::save`]
+    /// wrote is read as it was, as far as the format holds it.
+    ///
+    /// ```
+    /// use rvachev::Mesh;
+    ///
+    /// let error = Mesh::load("bolt.step").unwrap_err();
+    /// assert!(error.to_string().contains("known: .3mf, .glb, .obj, .ply, .stl"));
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// [`LoadError`], naming the file and the cause, with the line or the byte.
+    pub fn load(path: impl AsRef<Path>) -> Result<Mesh, LoadError> {
+        Mesh::load_with(path, &LoadSettings::default())
+    }
+
+    /// [`load`](Mesh::load) with a choice of units and limits.
+    ///
+    /// # Errors
+    ///
+    /// [`LoadError`], naming the file and the cause, with the line or the byte.
+    pub fn load_with(path: impl AsRef<Path>, settings: &LoadSettings) -> Result<Mesh, LoadError> {
+        load(path.as_ref(), false, |format, file| Mesh::read(format, file, settings))
+    }
+}
+
+impl PointCloud {
+    /// Loads points in the format that the extension stands for: `.ply`; `.xyz` and `.csv`, rows of numbers; the
+    /// vertices of all formats of [meshes](Mesh::load). Normals and colours come with them where each point has
+    /// one of its own.
+    ///
+    /// # Errors
+    ///
+    /// [`LoadError`], naming the file and the cause, with the line or the byte.
+    pub fn load(path: impl AsRef<Path>) -> Result<PointCloud, LoadError> {
+        PointCloud::load_with(path, &LoadSettings::default())
+    }
+
+    /// [`load`](PointCloud::load) with a choice of units and limits.
+    ///
+    /// # Errors
+    ///
+    /// [`LoadError`], naming the file and the cause, with the line or the byte.
+    pub fn load_with(path: impl AsRef<Path>, settings: &LoadSettings) -> Result<PointCloud, LoadError> {
+        load(path.as_ref(), true, |format, file| PointCloud::read(format, file, settings))
+    }
+}

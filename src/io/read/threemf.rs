@@ -1,0 +1,138 @@
+//! 3MF: see the [writer](crate::io::write_3mf).
+//!
+//! ```text
+//!   _rels/.rels               names the model
+//!   3D/3dmodel.model          unit; objects: meshes, or components, which are objects moved;
+//!                             items: the objects that are built, moved
+//! ```
+//!
+//! Taken are the items' meshes with colours of colour groups and base materials. Objects stand before
+//! the components that use them, as the format asks, so that nothing can hold itself. Parts of the
+//! production extension in other files are not read: that is an error.
+
+mod model;
+
+use std::io::{Cursor, Read};
+
+use glam::DAffine3;
+use quick_xml::events::Event;
+use quick_xml::reader::Reader;
+use zip::ZipArchive;
+
+use self::model::{Content, Model, Object, value};
+use super::error::{FilePlace, shown};
+use super::shape::Shape;
+use super::{LoadSettings, ReadError};
+use crate::io::LengthUnit;
+
+/// The model, where no relation says so.
+const MODEL: &str = "3D/3dmodel.model";
+
+/// Components within components.
+const DEEPEST: usize = 64;
+
+pub(super) fn read(data: &[u8], settings: &LoadSettings) -> Result<(Shape, LengthUnit), ReadError> {
+    let mut archive = ZipArchive::new(Cursor::new(data)).map_err(|error| {
+        ReadError::content(FilePlace::Byte(0), "a ZIP archive", format!("{} ({error})", shown(data)))
+    })?;
+    let mut left = settings.most_bytes;
+    let relations = unpacked(&mut archive, "_rels/.rels", &mut left, settings)?;
+    let name = relations.and_then(|text| target(&text)).unwrap_or_else(|| MODEL.into());
+    let Some(text) = unpacked(&mut archive, &name, &mut left, settings)? else {
+        return Err(ReadError::content(FilePlace::Byte(0), format!("an archive with {name}"), "none"));
+    };
+    let model = Model::read(&text, &name, settings)?;
+    let mut parts = Parts { model: &model, settings, shapes: Vec::new(), triangles: 0, points: 0 };
+    for item in &model.items {
+        parts.push(item.object, item.map, 0)?;
+    }
+    Ok((Shape::joined(parts.shapes, settings)?, model.unit))
+}
+
+/// A part of the archive as text; nothing if there is none.
+fn unpacked(
+    archive: &mut ZipArchive<Cursor<&[u8]>>,
+    name: &str,
+    left: &mut u64,
+    settings: &LoadSettings,
+) -> Result<Option<String>, ReadError> {
+    let Some(index) = archive.index_for_name(name) else { return Ok(None) };
+    let damaged = |byte: u64, found: String| {
+        let place = FilePlace::Part { part: name.into(), byte };
+        ReadError::content(place, "a part that can be unpacked", found)
+    };
+    let file = archive.by_index(index).map_err(|error| damaged(0, error.to_string()))?;
+    let mut bytes = Vec::new();
+    // What the archive says of the size is not believed.
+    let read = file.take(left.saturating_add(1)).read_to_end(&mut bytes);
+    if let Err(error) = read {
+        return Err(damaged(bytes.len() as u64, error.to_string()));
+    }
+    let Some(rest) = left.checked_sub(bytes.len() as u64) else {
+        return Err(ReadError::Limit { what: "bytes", limit: settings.most_bytes, setting: "most_bytes" });
+    };
+    *left = rest;
+    match String::from_utf8(bytes) {
+        Ok(text) => Ok(Some(text)),
+        Err(error) => {
+            let byte = error.utf8_error().valid_up_to() as u64;
+            let place = FilePlace::Part { part: name.into(), byte };
+            Err(ReadError::content(place, "text in UTF-8", "a byte that is none"))
+        }
+    }
+}
+
+/// The part that is the model.
+fn target(relations: &str) -> Option<String> {
+    let mut reader = Reader::from_str(relations);
+    loop {
+        match reader.read_event().ok()? {
+            Event::Start(tag) | Event::Empty(tag)
+                if tag.local_name().as_ref() == "Relationship"
+                    && value(&tag, "Type").is_some_and(|kind| kind.ends_with("/3dmodel")) =>
+            {
+                return value(&tag, "Target").map(|target| target.trim_start_matches('/').to_string());
+            }
+            Event::Eof => return None,
+            _ => {}
+        }
+    }
+}
+
+/// The items, written out.
+struct Parts<'a> {
+    model: &'a Model,
+    settings: &'a LoadSettings,
+    shapes: Vec<Shape>,
+    triangles: usize,
+    points: usize,
+}
+
+impl Parts<'_> {
+    fn push(&mut self, id: u32, map: DAffine3, depth: usize) -> Result<(), ReadError> {
+        let Some(object) = self.model.objects.get(&id) else {
+            return Err(self.model.wrong("an object that is there", format!("object {id}")));
+        };
+        if depth > DEEPEST {
+            return Err(self.model.wrong(&format!("components at most {DEEPEST} deep"), "more"));
+        }
+        let Object { content, .. } = object;
+        match content {
+            Content::Mesh(mesh) => {
+                // Few objects may stand for any number of triangles.
+                self.triangles += mesh.triangles.len();
+                self.points += mesh.positions.len();
+                self.settings.triangles(self.triangles)?;
+                self.settings.points(self.points.max(self.shapes.len()))?;
+                self.shapes.push(mesh.shape().moved(&map));
+                Ok(())
+            }
+            Content::Components(components) => {
+                for component in components {
+                    self.push(component.object, map * component.map, depth + 1)?;
+                }
+                Ok(())
+            }
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! What is measured of solids.
+
+mod thickness;
+mod thickness_report;
+
+pub use thickness_report::{ThicknessBin, ThicknessReport};

@@ -1,0 +1,110 @@
+//! How thick a solid is.
+
+use std::fmt;
+
+use glam::DVec3;
+
+use crate::Mesh;
+use rvachev_num::figures;
+
+/// How thick a solid is, by the triangles of its mesh: [`Solid::thickness`](crate::Solid::thickness).
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct ThicknessReport {
+    /// The least thickness, in length units; infinite if no part of the surface faces another.
+    pub least: f64,
+    /// Where it is: the middle of a triangle.
+    pub at: DVec3,
+    /// The mesh.
+    pub mesh: Mesh,
+    thicknesses: Vec<f64>,
+    areas: Vec<f64>,
+}
+
+/// A range of thicknesses and how much of the surface has them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ThicknessBin {
+    /// The least of the range, in length units.
+    pub from: f64,
+    /// The most of the range, which is the least of the next.
+    pub to: f64,
+    /// The area of the surface with such a thickness, in square length units.
+    pub area: f64,
+}
+
+impl ThicknessReport {
+    pub(super) fn new(mesh: Mesh, thicknesses: Vec<f64>) -> ThicknessReport {
+        let corners = |t: usize| mesh.corners(mesh.triangles()[t]);
+        let area = |t: usize| {
+            let [a, b, c] = corners(t);
+            0.5 * (b - a).cross(c - a).length()
+        };
+        let areas = (0..thicknesses.len()).map(area).collect();
+        let thinnest = (0..thicknesses.len()).min_by(|a, b| thicknesses[*a].total_cmp(&thicknesses[*b]));
+        let least = thinnest.map_or(f64::INFINITY, |t| thicknesses[t]);
+        let at = thinnest.map_or(DVec3::ZERO, |t| corners(t).into_iter().sum::<DVec3>() / 3.0);
+        ThicknessReport { least, at, mesh, thicknesses, areas }
+    }
+
+    /// The thickness at the middle of each triangle of the mesh, in length units; infinite where no part of the surface
+    /// faces it.
+    #[must_use]
+    pub fn thicknesses(&self) -> &[f64] {
+        &self.thicknesses
+    }
+
+    /// The share of the surface that is thinner than `limit`, from 0 to 1.
+    #[must_use]
+    pub fn share_below(&self, limit: f64) -> f64 {
+        let whole: f64 = self.areas.iter().sum();
+        let below = self.thicknesses.iter().zip(&self.areas).filter(|(thickness, _)| **thickness < limit);
+        if whole > 0.0 { below.map(|(_, area)| area).sum::<f64>() / whole } else { 0.0 }
+    }
+
+    /// How much of the surface is how thick: so many ranges of one width, from 0 to the largest thickness that is finite.
+    #[must_use]
+    pub fn histogram(&self, ranges: usize) -> Vec<ThicknessBin> {
+        let finite = self.thicknesses.iter().filter(|thickness| thickness.is_finite());
+        let largest = finite.fold(0.0, |largest: f64, thickness| largest.max(*thickness));
+        let width = largest / ranges as f64;
+        let bin = |k: usize| ThicknessBin { from: k as f64 * width, to: (k + 1) as f64 * width, area: 0.0 };
+        let mut bins: Vec<ThicknessBin> = (0..ranges).map(bin).collect();
+        for (thickness, area) in self.thicknesses.iter().zip(&self.areas).filter(|(thickness, _)| thickness.is_finite())
+        {
+            let at = if width > 0.0 { (thickness / width) as usize } else { 0 };
+            if let Some(bin) = bins.get_mut(at.min(ranges.saturating_sub(1))) {
+                bin.area += area;
+            }
+        }
+        bins
+    }
+
+    /// The mesh in colours: from red at thicknesses of `thin` and less, by yellow and green, to blue at those of
+    /// `thick` and more.
+    #[must_use]
+    pub fn colored(&self, thin: f64, thick: f64) -> Mesh {
+        let color = |thickness: &f64| {
+            let part = ((thickness - thin) / (thick - thin)).clamp(0.0, 1.0);
+            [heat(if part.is_nan() { 1.0 } else { part }); 3]
+        };
+        let colors = self.thicknesses.iter().map(color).collect();
+        self.mesh.clone().with_corner_colors(colors).unwrap_or_else(|_| unreachable!("three for each triangle"))
+    }
+}
+
+/// Red, yellow, green, cyan, blue, from 0 to 1.
+fn heat(part: f64) -> [u8; 4] {
+    let ramp = |centre: f64| (255.0 * (1.5 - (4.0 * part - centre).abs() * 0.75).clamp(0.0, 1.0)).round() as u8;
+    [ramp(0.0), ramp(2.0), ramp(4.0), 255]
+}
+
+impl fmt::Display for ThicknessReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.least.is_infinite() {
+            return f.write_str("no part of the surface faces another");
+        }
+        let [x, y, z] = self.at.to_array().map(|x| figures(x, 4));
+        write!(f, "least thickness {} at ({x}, {y}, {z})", figures(self.least, 4))
+    }
+}

@@ -1,0 +1,177 @@
+//! Meshes as solids: distance and sign against brute force, what is made of them, and what they came from.
+
+mod brute;
+mod laws;
+
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use glam::{DVec3, Vec3};
+use rvachev::{Blend, Camera, CellSize, Mesh, MeshSettings, MeshSolid, Openness, Paint, RenderSettings, Solid, rad};
+
+/// A mesh from corners and numbers.
+pub(super) fn mesh(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Mesh {
+    Mesh::new(positions, triangles).expect("numbers are in range")
+}
+
+pub(super) fn solid(mesh: &Mesh) -> Solid {
+    Solid::from_mesh(mesh, MeshSolid::default())
+}
+
+/// A box of 12 triangles between corners.
+pub(super) fn block(min: [f32; 3], max: [f32; 3]) -> Mesh {
+    let at = |c: usize| Vec3::from_array([0, 1, 2].map(|axis| if c >> axis & 1 == 1 { max[axis] } else { min[axis] }));
+    let quads: [[u32; 4]; 6] = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
+    mesh((0..8).map(at).collect(), quads.into_iter().flat_map(halves).collect())
+}
+
+/// Several meshes as one.
+pub(super) fn together(parts: &[Mesh]) -> Mesh {
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for part in parts {
+        let first = positions.len() as u32;
+        positions.extend_from_slice(part.positions());
+        triangles.extend(part.triangles().iter().map(|corners| corners.map(|v| v + first)));
+    }
+    mesh(positions, triangles)
+}
+
+pub(super) fn meshed(solid: &Solid, cells: u32) -> Mesh {
+    let settings = MeshSettings { cell: CellSize::LongestSide(cells), ..MeshSettings::default() };
+    solid.mesh(&settings).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Two blocks side by side, and within each other.
+#[test]
+fn overlapping_triangles_count_once() {
+    let parts =
+        [block([0.0; 3], [2.0, 1.0, 1.0]), block([1.0, -0.5, 0.2], [3.0, 0.5, 0.7]), block([0.0; 3], [2.0, 1.0, 1.0])];
+    let pile = together(&parts);
+    let solid = solid(&pile);
+    // 2 + 0.5, without what both have.
+    let report = meshed(&solid, 60).check();
+    let volume = 2.0 + 2.0 * 0.5 - 0.25;
+    assert!((report.volume / volume - 1.0).abs() < 2e-3, "{} for {volume}", report.volume);
+    assert!(report.is_sound() && report.shells == 1, "{report}");
+    assert_eq!(pile.openness(), Openness::default());
+}
+
+#[test]
+fn offsets_and_shells_have_no_dust() {
+    let box_solid = solid(&block([-5.0; 3], [5.0; 3]));
+    let shell = meshed(&box_solid.shell(1.0), 40).check();
+    assert!(shell.is_sound() && shell.shells == 2, "{shell}");
+    assert!((shell.volume / 488.0 - 1.0).abs() < 1e-3, "{}", shell.volume);
+    let grown = meshed(&box_solid.offset(1.0), 40).check();
+    let pi = std::f64::consts::PI;
+    let volume = 1000.0 + 600.0 + 12.0 * 10.0 * pi / 4.0 + 4.0 / 3.0 * pi;
+    assert!(grown.is_sound() && (grown.volume / volume - 1.0).abs() < 3e-3, "{} for {volume}", grown.volume);
+    let twisted = meshed(&(Solid::cuboid([2.0, 2.0, 4.0]) - Solid::cylinder(0.5, 5.0)).twist(rad(0.3)), 40);
+    let shell = meshed(&solid(&twisted).shell(0.1), 60).check();
+    assert!(shell.is_sound() && shell.shells == 2, "{shell}");
+    let opened = meshed(&solid(&block([-5.0; 3], [5.0; 3])).rounded(2.0), 40).check();
+    assert!(opened.shells == 1 && (opened.volume / 907.705 - 1.0).abs() < 3e-3, "{}", opened.volume);
+}
+
+#[test]
+fn it_is_a_leaf_like_any_other() {
+    let ball = meshed(&Solid::sphere(1.0), 24);
+    let imported = solid(&ball);
+    let part = (&imported - Solid::cylinder(0.3, 3.0)).translate([4.0, 0.0, 0.0]);
+    let own = (Solid::sphere(1.0) - Solid::cylinder(0.3, 3.0)).translate([4.0, 0.0, 0.0]);
+    for solid in [&part, &part.twist(rad(0.4)), &(imported.scale(2.0) & Solid::cuboid([3.0, 3.0, 3.0]))] {
+        let report = meshed(solid, 30).check();
+        assert!(report.is_sound(), "{report}");
+    }
+    let volumes = [&part, &own].map(|solid| meshed(solid, 40).volume());
+    assert!((volumes[0] / volumes[1] - 1.0).abs() < 0.02, "{volumes:?}");
+    let filleted = imported.union_with(Solid::cuboid([3.0, 3.0, 0.5]), Blend::Fillet { radius: 0.2 });
+    assert!(meshed(&filleted, 40).check().is_sound());
+    let near = imported.closest_surface_point([2.0, 0.0, 0.0]).unwrap().expect("there is a surface");
+    assert!((near - DVec3::X).length() < 0.02, "{near}");
+    assert!(imported.to_string().contains("mesh"), "{imported}");
+    let settings = RenderSettings { width: 24, height: 24, ..RenderSettings::default() };
+    let camera = Camera::framing(&imported.bounds().unwrap());
+    let picture = imported.render(&camera, &settings).unwrap();
+    let pixels = picture.pixels();
+    assert_ne!(pixels[0], pixels[12 * 24 + 12]);
+}
+
+#[test]
+fn solids_are_equal_by_content() {
+    let a = solid(&block([0.0; 3], [1.0; 3]));
+    let b = solid(&block([0.0; 3], [1.0; 3]));
+    let c = solid(&block([0.0; 3], [1.0, 1.0, 1.5]));
+    assert_eq!(a, b);
+    assert_ne!(a, c);
+    let hash = |solid: &Solid| {
+        let mut hasher = DefaultHasher::new();
+        solid.hash(&mut hasher);
+        hasher.finish()
+    };
+    assert_eq!(hash(&a), hash(&b));
+    assert_ne!(hash(&a), hash(&c));
+    let red = block([0.0; 3], [1.0; 3]).with_corner_colors(vec![[[255, 0, 0, 255]; 3]; 12]).unwrap();
+    assert_ne!(solid(&red), a);
+    assert_eq!(Solid::from_mesh(&red, MeshSolid { colors: false }), a);
+}
+
+#[test]
+fn meshes_without_triangles_are_errors() {
+    let error = solid(&Mesh::default()).contains([0.0; 3]).unwrap_err();
+    assert_eq!(error.to_string(), "mesh: triangles is 0, allowed: 1 or more");
+    let error = (Solid::sphere(1.0) | solid(&mesh(vec![Vec3::X], vec![]))).mesh(&MeshSettings::default()).unwrap_err();
+    assert!(error.to_string().starts_with("union[1] / mesh: triangles is 0"), "{error}");
+}
+
+#[test]
+fn colors_are_kept() {
+    let block = block([-1.0; 3], [1.0; 3]);
+    let middle = |t: &[u32; 3]| t.iter().map(|v| block.positions()[*v as usize]).sum::<Vec3>() / 3.0;
+    let color = |p: Vec3| if p.x > 0.5 { [200, 0, 0, 255] } else { [0, 0, 200, 255] };
+    let colors = block.triangles().iter().map(|t| [color(middle(t)); 3]).collect();
+    let solid = solid(&block.clone().with_corner_colors(colors).unwrap()) - Solid::sphere(0.8).paint([0, 200, 0]);
+    let mesh = meshed(&solid, 16);
+    let mesh = mesh.painted(&solid, Paint::default()).unwrap();
+    let found = mesh.corner_colors().unwrap();
+    for (t, corners) in mesh.triangles().iter().zip(found) {
+        let middle = t.iter().map(|v| mesh.positions()[*v as usize]).sum::<Vec3>() / 3.0;
+        if middle.abs().max_element() > 0.95 && middle.abs().min_element() < 0.85 {
+            let [r, g, b, a] = color(middle + 0.45 * Vec3::X * f32::from(middle.x < 0.95) * -1.0);
+            let expected = if middle.x > 0.95 { [200, 0, 0, 255] } else { [r, g, b, a] };
+            let all = corners.iter().all(|corner| *corner == expected);
+            assert!(all || middle.x.abs() > 0.9, "{corners:?} at {middle}");
+        }
+    }
+    let count = |color: [u8; 4]| found.iter().flatten().filter(|corner| **corner == color).count();
+    assert!(count([200, 0, 0, 255]) > 50 && count([0, 0, 200, 255]) > 250);
+    assert_eq!(solid.palette().unwrap().at(0, [1.0, 0.2, 0.1]), Some(Paint::from([200, 0, 0])));
+    // What is painted is painted.
+    let painted = solid.paint([1, 2, 3]);
+    assert_eq!(painted.palette().unwrap().at(0, [1.0, 0.2, 0.1]), Some(Paint::from([1, 2, 3])));
+}
+
+/// A ball without its top.
+fn bowl(cut: f32) -> Mesh {
+    let ball = meshed(&Solid::sphere(1.0), 16);
+    let below = |t: &&[u32; 3]| t.iter().all(|v| ball.positions()[*v as usize].z < cut);
+    mesh(ball.positions().to_vec(), ball.triangles().iter().filter(below).copied().collect())
+}
+
+#[test]
+fn open_meshes_are_closed_by_a_film() {
+    for cut in [0.0, 0.7] {
+        let bowl = bowl(cut);
+        let openness = bowl.openness();
+        let around = 2.0 * std::f64::consts::PI * f64::from(1.0 - cut * cut).sqrt();
+        assert!(!openness.is_closed() && (openness.length / around - 1.0).abs() < 0.4, "{openness:?}");
+        let solid = solid(&bowl);
+        assert!(solid.contains([0.0, 0.0, -0.8]).unwrap() && !solid.contains([0.0, 0.0, 1.5]).unwrap());
+        let mesh = meshed(&solid, 16);
+        let report = mesh.check();
+        assert!(report.is_closed() && report.shells == 1, "{cut}: {report}");
+        // More than half a ball less a cap, and less than the whole one.
+        assert!(report.volume > 0.7 && report.volume < 4.3, "{}", report.volume);
+        assert!(solid.bounds().unwrap().contains_bounds(&mesh.bounds()));
+    }
+}

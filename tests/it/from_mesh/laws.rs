@@ -1,0 +1,194 @@
+//! Laws: against brute force on parts and on random meshes; what comes back from meshing.
+
+use glam::{DVec3, Vec3};
+use rvachev::{CellSize, Mesh, MeshSettings, Solid, rad};
+
+use super::{block, brute, mesh, meshed, solid};
+
+/// A generator of numbers in [0, 1).
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn below(&mut self, most: usize) -> usize {
+        (self.next() * most as f64) as usize
+    }
+
+    fn point(&mut self) -> DVec3 {
+        DVec3::new(self.next(), self.next(), self.next())
+    }
+}
+
+/// Distance and sign of a solid against brute force, at points of a box and near triangles.
+fn check(name: &str, mesh: &Mesh, count: usize, random: &mut Random) {
+    let triangles = brute::corners(mesh);
+    let solid = solid(mesh);
+    let bounds = mesh.bounds();
+    let size = bounds.longest_side();
+    let is_closed = mesh.openness().is_closed();
+    let program = solid.field_program().unwrap_or_else(|error| panic!("{name}: {error}"));
+    let box_ = bounds.inflate(0.2 * size);
+    for i in 0..count {
+        let p = if i % 2 == 0 {
+            box_.min + random.point() * box_.size()
+        } else {
+            let [a, b, c] = triangles[random.below(triangles.len())];
+            let (s, t) = (random.next(), random.next());
+            let (s, t) = if s + t > 1.0 { (1.0 - s, 1.0 - t) } else { (s, t) };
+            a + s * (b - a) + t * (c - a) + (random.point() - 0.5) * 0.02 * size
+        };
+        let (distance, winding) = (brute::distance(&triangles, p), brute::winding(&triangles, p));
+        let value = program.value(p);
+        let rounding = 4e-6 * size;
+        if is_closed {
+            assert!((value.abs() - distance).abs() < rounding, "{name}: {value} for {distance} at {p}");
+        } else {
+            assert!(value.abs() < distance + rounding, "{name}: {value} for {distance} at {p}");
+        }
+        if distance > rounding && (winding - 0.5).abs() > 2e-3 {
+            assert_eq!(value > 0.0, winding > 0.5, "{name}: {value} for {winding} at {p}");
+        }
+    }
+    // Ranges hold, and f32 is as near as it says.
+    for _ in 0..count / 8 {
+        let centre = box_.min + random.point() * box_.size();
+        let zone = rvachev::Bounds::from_center(centre, random.point() * 0.1 * size);
+        let range = program.range(&zone);
+        for _ in 0..8 {
+            let p = zone.min + random.point() * zone.size();
+            let value = program.value(p);
+            assert!(range.contains(value), "{name}: {value} is not in {range:?} at {p}");
+        }
+    }
+}
+
+#[cfg(feature = "import")]
+#[test]
+fn parts_are_as_brute_force_says() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/parts");
+    let Ok(entries) = std::fs::read_dir(&folder) else {
+        println!("skipped: no {}", folder.display());
+        return;
+    };
+    for entry in entries {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|extension| extension == "ply") {
+            check(&path.display().to_string(), &Mesh::load(&path).unwrap(), 120, &mut Random(3));
+        }
+    }
+}
+
+/// A solid's mesh with triangles left out, turned over, given twice, and slivers.
+fn spoilt(random: &mut Random) -> Mesh {
+    let twist = rad(0.5 * random.next());
+    let own = match random.below(3) {
+        0 => Solid::sphere(1.0) - Solid::cylinder(0.2 + 0.3 * random.next(), 3.0),
+        1 => Solid::cuboid([1.0, 1.0 + random.next(), 1.5]).twist(twist),
+        _ => Solid::torus(1.0, 0.2 + 0.3 * random.next()) | Solid::sphere(0.7),
+    };
+    let whole = meshed(&own, 8 + random.below(8) as u32);
+    let mut positions = whole.positions().to_vec();
+    let mut triangles = whole.triangles().to_vec();
+    let kind = random.below(6);
+    let many = triangles.len();
+    if kind == 1 || kind == 5 {
+        // Open, in one place and scattered.
+        let centre = positions[random.below(positions.len())];
+        let reach = 0.6 * random.next() as f32;
+        triangles.retain(|t| positions[t[0] as usize].distance(centre) > reach);
+        triangles.retain(|_| random.next() > 0.01);
+    }
+    if kind == 2 || kind == 5 {
+        for _ in 0..1 + many / 50 {
+            let at = random.below(triangles.len());
+            triangles[at].swap(0, 1);
+        }
+    }
+    if kind == 3 || kind == 5 {
+        for _ in 0..1 + many / 20 {
+            triangles.push(triangles[random.below(triangles.len())]);
+        }
+    }
+    if kind == 4 || kind == 5 {
+        // Triangles cut into slivers: a vertex on a side, almost.
+        for _ in 0..1 + many / 20 {
+            let at = random.below(triangles.len());
+            let [a, b, c] = triangles[at];
+            let [p, q] = [a, b].map(|v| positions[v as usize]);
+            let v = positions.len() as u32;
+            positions.push(p.lerp(q, 0.5) + 1e-6 * Vec3::splat(random.next() as f32));
+            triangles[at] = [a, v, c];
+            triangles.push([v, b, c]);
+            triangles.push([a, b, v]);
+        }
+    }
+    mesh(positions, triangles)
+}
+
+#[test]
+fn spoilt_meshes_are_as_brute_force_says() {
+    for seed in 0..5 {
+        let mut random = Random(seed);
+        check(&format!("seed {seed}"), &spoilt(&mut random), 40, &mut random);
+    }
+}
+
+/// Two hundred of them.
+#[test]
+#[ignore = "takes minutes"]
+fn many_spoilt_meshes_are_as_brute_force_says() {
+    for seed in 100..300 {
+        let mut random = Random(seed);
+        check(&format!("seed {seed}"), &spoilt(&mut random), 1000, &mut random);
+    }
+}
+
+/// Volume and corners of an imported part with sharp edges.
+#[test]
+fn sharp_parts_come_back_sharp() {
+    let part = block([-1.03, -0.71, -0.52], [0.97, 0.83, 0.61]);
+    let turn = glam::Quat::from_euler(glam::EulerRot::XYZ, 0.3, 0.5, 0.8);
+    let turned = mesh(part.positions().iter().map(|p| turn * *p).collect(), part.triangles().to_vec());
+    let cell = 0.08;
+    let settings = MeshSettings { cell: CellSize::Length(cell), ..MeshSettings::default() };
+    let again = solid(&turned).mesh(&settings).unwrap();
+    let report = again.check();
+    assert!(report.is_sound() && (report.volume / turned.volume() - 1.0).abs() < 1e-3, "{report}");
+    // Every corner has a vertex, and so has every edge all along.
+    let near = |p: DVec3| {
+        let from = |q: &Vec3| q.as_dvec3().distance(p);
+        again.positions().iter().map(from).fold(f64::INFINITY, f64::min)
+    };
+    for corner in turned.positions() {
+        assert!(near(corner.as_dvec3()) < 0.05 * cell, "{} cells", near(corner.as_dvec3()) / cell);
+    }
+    let triangles = brute::corners(&again);
+    for side in [[0, 1], [0, 2], [3, 7], [5, 7]] {
+        let [a, b] = side.map(|v: usize| turned.positions()[v].as_dvec3());
+        for k in 1..40 {
+            let off = brute::distance(&triangles, a.lerp(b, f64::from(k) / 40.0));
+            assert!(off < 0.05 * cell, "{} cells", off / cell);
+        }
+    }
+}
+
+/// The mesh of a solid is the solid, within the error of a cell.
+#[test]
+fn our_own_meshes_give_the_solid_back() {
+    let own = Solid::superellipsoid([1.0, 0.8, 0.6], 0.5, 0.7) - Solid::cylinder(0.3, 3.0);
+    let mesh = meshed(&own, 48);
+    let cell = mesh.bounds().longest_side() / 48.0;
+    let imported = solid(&mesh);
+    let mut random = Random(5);
+    for _ in 0..400 {
+        let p = (random.point() - 0.5) * 2.4;
+        let nearest = own.closest_surface_point(p).unwrap().expect("there is a surface").distance(p);
+        let value = imported.value(p).unwrap();
+        assert!((value.abs() - nearest).abs() < 0.2 * cell, "{value} for {nearest} at {p}");
+        assert!(nearest < 0.2 * cell || own.contains(p).unwrap() == (value > 0.0), "{value} at {p}");
+    }
+}

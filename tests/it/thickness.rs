@@ -1,0 +1,69 @@
+//! The thickness of solids, against closed forms.
+
+use glam::DVec3;
+use rvachev::{CellSize, MeshSettings, Run, Solid, ThicknessReport};
+
+fn thickness(solid: &Solid, cells: u32) -> ThicknessReport {
+    let settings = MeshSettings { cell: CellSize::LongestSide(cells), ..MeshSettings::default() };
+    solid.thickness(&settings, &Run::default()).unwrap()
+}
+
+/// Of the surface's area this much is within a hundredth of a thickness.
+fn share_near(report: &ThicknessReport, thickness: f64) -> f64 {
+    report.share_below(1.01 * thickness) - report.share_below(0.99 * thickness)
+}
+
+#[test]
+fn tubes_and_shells_are_as_thick_as_their_walls() {
+    let tube = thickness(&(Solid::cylinder(5.0, 12.0) - Solid::cylinder(4.0, 13.0)), 32);
+    assert!((tube.least - 1.0).abs() < 0.01, "{tube}");
+    let walls = 2.0 * 9.0 * 12.0;
+    let ends = 2.0 * 9.0;
+    assert!((share_near(&tube, 1.0) - walls / (walls + ends)).abs() < 0.03, "{}", share_near(&tube, 1.0));
+    let shell = thickness(&(Solid::sphere(5.0) - Solid::sphere(4.5)), 40);
+    assert!((shell.least - 0.5).abs() < 0.005 && share_near(&shell, 0.5) > 0.99, "{shell}");
+    let ball = thickness(&Solid::sphere(2.0), 24);
+    assert!((ball.least - 4.0).abs() < 0.04 && share_near(&ball, 4.0) > 0.99, "{ball}");
+}
+
+#[test]
+fn a_drafted_rib_is_thinnest_at_its_top() {
+    // 1.2 wide at the foot and 0.6 at the top.
+    let side = |sign: f64| {
+        let normal = DVec3::new(sign, 0.0, 0.075);
+        Solid::half_space(normal.normalize(), 0.675 / normal.length())
+    };
+    let rib = Solid::cuboid([1.2, 10.0, 4.0]).translate([0.0, 0.0, 3.0]) & side(1.0) & side(-1.0);
+    let part = Solid::cuboid([20.0, 12.0, 2.0]) | rib;
+    let report = thickness(&part, 64);
+    assert!((report.least - 0.6).abs() < 0.06, "{report}");
+    assert!(report.at.z > 4.0 && report.at.x.abs() < 0.4, "{report}");
+    assert!((share_near(&report, 2.0) - 0.8).abs() < 0.15, "{}", share_near(&report, 2.0));
+}
+
+#[test]
+fn joints_are_no_walls() {
+    let half = Solid::cuboid([2.0, 3.0, 4.0]);
+    let pair = thickness(&(&half | half.translate([2.0, 0.0, 0.0])), 32);
+    assert!((pair.least - 3.0).abs() < 0.01, "{pair}");
+    let sum: f64 = 2.0 * (12.0 + 16.0 + 12.0);
+    let bins = pair.histogram(4);
+    assert_eq!(bins.len(), 4);
+    assert!(bins[..2].iter().all(|bin| bin.area == 0.0) && (bins[3].to - 4.0).abs() < 0.02, "{bins:?}");
+    assert!((bins.iter().map(|bin| bin.area).sum::<f64>() - sum).abs() < 0.02 * sum, "{bins:?}");
+}
+
+#[test]
+fn reports_are_shown_as_text_and_as_colours() {
+    let report = thickness(&Solid::cuboid([4.0, 4.0, 1.0]), 24);
+    assert!((report.least - 1.0).abs() < 5e-3, "{report}");
+    assert!(report.to_string().starts_with("least thickness "), "{report}");
+    let mesh = report.colored(0.5, 2.0);
+    let colors = mesh.corner_colors().unwrap();
+    assert_eq!(colors.len(), report.thicknesses().len());
+    let flat = (0..colors.len()).filter(|t| (report.thicknesses()[*t] - 1.0).abs() < 0.01);
+    assert!(flat.clone().count() > 100 && flat.into_iter().all(|t| colors[t][0][0] > 100 && colors[t][0][2] == 0));
+    let nothing = thickness(&(Solid::sphere(1.0) & Solid::sphere(1.0).translate([5.0, 0.0, 0.0])), 8);
+    assert_eq!((nothing.least, nothing.share_below(1.0)), (f64::INFINITY, 0.0));
+    assert_eq!(nothing.to_string(), "no part of the surface faces another");
+}
