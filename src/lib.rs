@@ -450,6 +450,7 @@ mod distance;
 pub mod error;
 mod eval;
 pub mod field;
+pub mod fit;
 pub mod form;
 mod geom;
 pub mod idioms;

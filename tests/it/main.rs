@@ -42,6 +42,7 @@ mod random_fields;
 mod range_images;
 mod raster;
 mod rays;
+mod recovery;
 mod rfunction;
 mod sampling;
 mod scale;
