@@ -11,7 +11,7 @@ use rvachev::{PointCloud, Run};
 #[path = "../tests/it/recovery/clouds.rs"]
 #[allow(dead_code, reason = "shared with the tests")]
 mod clouds;
-#[path = "../tests/it/support.rs"]
+#[path = "../tests/it/support/random.rs"]
 #[allow(dead_code, reason = "shared with the tests")]
 mod support;
 

@@ -57,8 +57,7 @@ pub(super) fn finish<M: Model<N>, const N: usize>(
     let share = cloud.len() as f64 / samples.len() as f64;
     let covariance = Covariance::of(model, names, &samples, &chances, *noise, share, scaled.size);
     let (rotation, center) = model.pose();
-    run.report(1.0);
-    Ok(Fit {
+    let fit = Fit {
         shape,
         rotation: DQuat::from_mat3(&rotation).normalize(),
         translation: scaled.center + center * scaled.size,
@@ -68,5 +67,8 @@ pub(super) fn finish<M: Model<N>, const N: usize>(
         deviation,
         covariance,
         search,
-    })
+    };
+    fit.solid().bounds()?;
+    run.report(1.0);
+    Ok(fit)
 }

@@ -45,6 +45,11 @@ pub(super) trait Model<const N: usize>: Copy + Sync {
     /// The logarithm of the surface's area, and its derivatives.
     fn log_area(&self) -> (f64, [f64; N]);
 
+    /// For each parameter the first one of those that move together with it.
+    fn groups(&self) -> [usize; N] {
+        std::array::from_fn(|i| i)
+    }
+
     /// A quadratic penalty's weights and the parameters' deviations, in units of the noise.
     fn penalty(&self) -> Option<[[f64; 2]; N]> {
         None

@@ -43,9 +43,14 @@ pub(super) struct Polish {
 impl<M: Copy> Mixture<M> {
     /// The chance of a point at this distance to be of the surface.
     pub(super) fn chance(&self, log_area: f64, distance: f64) -> f64 {
-        let on =
-            (1.0 - self.strewn) * (-0.5 * (distance / self.noise).powi(2) - log_area).exp() / (TAU.sqrt() * self.noise);
+        let on = self.on(log_area, distance);
         on / (on + self.strewn / self.volume)
+    }
+
+    /// The density of the surface's points at this distance.
+    fn on(&self, log_area: f64, distance: f64) -> f64 {
+        let normal = (-0.5 * (distance / self.noise).powi(2) - log_area).exp() / (TAU.sqrt() * self.noise);
+        (1.0 - self.strewn) * normal
     }
 
     /// Expectation and maximisation by turns; the evaluations that they took.
@@ -69,12 +74,31 @@ impl<M: Copy> Mixture<M> {
         fitted.evaluations
     }
 
+    /// The logarithm of the area that the surface's points are spread over.
+    pub(super) fn log_area<const N: usize>(&self) -> f64
+    where
+        M: Model<N>,
+    {
+        self.log_area.unwrap_or_else(|| self.model.log_area().0)
+    }
+
+    /// The logarithm of the likelihood of points.
+    pub(super) fn log_likelihood<const N: usize>(&self, samples: &Samples<f64>) -> f64
+    where
+        M: Model<N>,
+    {
+        let fitted = Fitted::new(self.model, samples, Cost::Normal);
+        let log_area = self.log_area();
+        let of = |d: &f64| (self.on(log_area, *d) + self.strewn / self.volume).ln();
+        fitted.residuals[..samples.len()].iter().map(of).sum()
+    }
+
     /// Chances by the residuals; their sum.
     fn weigh<E: Number, const N: usize>(&self, fitted: &Fitted<M, E>, chances: &mut [E]) -> f64
     where
         M: Model<N>,
     {
-        let log_area = self.log_area.unwrap_or_else(|| self.model.log_area().0);
+        let log_area = self.log_area();
         let mut sum = 0.0;
         for (chance, residual) in chances.iter_mut().zip(&fitted.residuals) {
             let p = self.chance(log_area, residual.to());

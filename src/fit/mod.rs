@@ -1,4 +1,4 @@
-//! From points to solids: fits of superellipsoids to scans.
+//! From points to solids: fits of superellipsoids, supershapes and deformed superellipsoids to scans.
 //!
 //! ```text
 //!      .  .:.:'':.  .             e = (0.4, 1.3)   a = (1.2, 0.8, 2)   pose
@@ -27,12 +27,21 @@ mod check;
 mod cloud;
 mod cost;
 mod covariance;
+mod deform_recover;
+mod deformable;
+mod deformations;
+mod deformed;
 mod density;
 mod deviations;
 mod error;
 mod finish;
+mod gielis;
 mod grid;
+mod harmonics;
+mod inspect;
 mod kernel;
+#[cfg(test)]
+mod kernel_tests;
 mod linear;
 mod local;
 mod mixture;
@@ -44,15 +53,21 @@ mod result;
 mod samples;
 mod search;
 mod settings;
+mod shape_recover;
 mod solve;
 mod starts;
 mod superellipsoid;
 mod superquadric;
+mod supershape;
+mod supershapes;
 
 pub use cost::Cost;
 pub use covariance::Covariance;
+pub use deformed::{DeformedSuperellipsoid, deformed, deformed_with};
 pub use deviations::Deviation;
 pub use error::FitError;
+pub use inspect::{Deviations, LeafDeviation, inspect, inspect_with};
 pub use result::{Fit, SearchReport, Shape};
-pub use settings::FitSettings;
+pub use settings::{FitSettings, Start};
 pub use superellipsoid::{superellipsoid, superellipsoid_with};
+pub use supershape::{supershape, supershape_with};

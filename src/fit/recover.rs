@@ -94,7 +94,8 @@ pub(super) fn recover(
     Ok(chosen)
 }
 
-fn fit(points: &[DVec3], scene: &Scene, cost: Cost, run: &Run) -> Result<Recovered, Cancelled> {
+/// A superellipsoid of a scene, whatever it stands on.
+pub(super) fn fit(points: &[DVec3], scene: &Scene, cost: Cost, run: &Run) -> Result<Recovered, Cancelled> {
     let mut search = Search::new(&scene.surface, &scene.local, cost, run);
     let best = search.search()?;
     let mut effort = Effort { evaluations: search.evaluations, tried: search.tried };

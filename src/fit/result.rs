@@ -3,15 +3,20 @@
 use glam::{DAffine3, DQuat, DVec3};
 
 use super::covariance::Covariance;
+use super::deformed::DeformedSuperellipsoid;
 use super::deviations::Deviation;
-use crate::{Solid, Superellipsoid};
+use crate::{Solid, Superellipsoid, Supershape, rad};
 
 /// The leaf that was found, in its local coordinates.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Shape {
     /// A superellipsoid.
     Superellipsoid(Superellipsoid),
+    /// A supershape.
+    Supershape(Supershape),
+    /// A superellipsoid that is tapered, twisted and bent.
+    Deformed(DeformedSuperellipsoid),
 }
 
 /// A solid that was found among points, and how well it explains them.
@@ -40,22 +45,29 @@ pub struct SearchReport {
     pub one_sided: bool,
     /// Many points were found to be of a plane that the object stands on, and left out.
     pub table: bool,
+    /// No axis was found that the radii of a supershape repeat about: its symmetry numbers are a guess.
+    pub symmetry_unclear: bool,
 }
 
 impl Fit {
     /// The solid, where it was found.
     #[must_use]
     pub fn solid(&self) -> Solid {
-        let leaf = match self.shape {
-            Shape::Superellipsoid(leaf) => Solid::from(leaf),
+        let leaf = match &self.shape {
+            Shape::Superellipsoid(leaf) => Solid::from(*leaf),
+            Shape::Supershape(leaf) => Solid::from(leaf.clone()),
+            Shape::Deformed(DeformedSuperellipsoid { leaf, taper: [kx, ky], twist, bend }) => Solid::from(*leaf)
+                .taper(*kx, *ky, 2.0 * leaf.semi_axes().z)
+                .twist(rad(*twist))
+                .bend(bend.length(), rad(bend.to_angle())),
         };
         leaf.affine(DAffine3::from_rotation_translation(self.rotation, self.translation))
     }
 
     /// The leaf, in its local coordinates.
     #[must_use]
-    pub fn shape(&self) -> Shape {
-        self.shape
+    pub fn shape(&self) -> &Shape {
+        &self.shape
     }
 
     /// From local to world coordinates: world point = rotation · local point + translation.

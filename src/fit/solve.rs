@@ -159,20 +159,32 @@ impl<E: Number> Problem<'_, E> {
 
 /// The damped step, within the limits: what is at a bound and drawn beyond it stays.
 fn step<M: Model<N>, const N: usize>(model: &M, sums: &Sums<N>, damping: f64) -> Option<[f64; N]> {
-    let limits = model.limits();
-    let largest = (0..N).map(|i| sums.hessian[i][i]).fold(0.0, f64::max);
-    let mut matrix = sums.hessian;
+    let mut limits = model.limits();
+    let groups = model.groups();
+    let (mut hessian, mut gradient) = ([[0.0; N]; N], [0.0; N]);
+    for i in 0..N {
+        let to = groups[i];
+        gradient[to] += sums.gradient[i];
+        limits[to] = [limits[to][0].max(limits[i][0]), limits[to][1].min(limits[i][1])];
+        for j in 0..=i {
+            let (a, b) = (to.max(groups[j]), to.min(groups[j]));
+            // Both halves of what is off the diagonal come to lie on it.
+            hessian[a][b] += if i != j && a == b { 2.0 } else { 1.0 } * sums.hessian[i][j];
+        }
+    }
+    let largest = (0..N).map(|i| hessian[i][i]).fold(0.0, f64::max);
+    let mut matrix = hessian;
     for (i, row) in matrix.iter_mut().enumerate() {
         row[i] += damping * row[i] + 1e-12 * largest + f64::MIN_POSITIVE;
     }
-    let right = sums.gradient.map(|g| -g);
+    let right = gradient.map(|g| -g);
     let mut free = [true; N];
     for i in 0..N {
-        free[i] = !(limits[i][0] > -1e-9 && right[i] < 0.0 || limits[i][1] < 1e-9 && right[i] > 0.0);
+        free[i] = groups[i] == i && !(limits[i][0] > -1e-9 && right[i] < 0.0 || limits[i][1] < 1e-9 && right[i] > 0.0);
     }
     let mut step = solved(&matrix, &right, &free)?;
     for (x, [low, high]) in step.iter_mut().zip(limits) {
         *x = x.clamp(f64::min(low, 0.0), f64::max(high, 0.0));
     }
-    Some(step)
+    Some(groups.map(|group| step[group]))
 }

@@ -3,10 +3,11 @@
 use super::cloud::Scaled;
 use super::error::FitError;
 use super::finish::finish;
+use super::mixture::Mixture;
 use super::recover::recover;
 use super::result::{Fit, SearchReport, Shape};
 use super::settings::FitSettings;
-use super::superquadric::PARAMETERS;
+use super::superquadric::{PARAMETERS, Superquadric};
 use crate::geom::PointCloud;
 use crate::{Run, Superellipsoid};
 
@@ -61,13 +62,25 @@ pub fn superellipsoid_with(cloud: &PointCloud, settings: &FitSettings, run: &Run
     let scaled = Scaled::of(cloud, settings, "superellipsoid", PARAMETERS)?;
     let recovered =
         recover(&scaled.points, scaled.normals.as_deref(), settings.cost, settings.seed, &run.stage(0.0, 0.9))?;
-    let model = recovered.mixture.model;
-    let shape = Shape::Superellipsoid(Superellipsoid::new(model.semi_axes * scaled.size, model.e[0], model.e[1]));
     let search = SearchReport {
         starts: recovered.effort.tried,
         evaluations: recovered.effort.evaluations,
         one_sided: recovered.one_sided,
         table: recovered.table.is_some(),
+        ..SearchReport::default()
     };
-    run.install(|| finish(cloud, &scaled, &recovered.mixture, shape, NAMES, search, &run))
+    finish_quadric(cloud, &scaled, &recovered.mixture, search, &run)
+}
+
+/// The fit of a superellipsoid.
+pub(super) fn finish_quadric(
+    cloud: &PointCloud,
+    scaled: &Scaled,
+    mixture: &Mixture<Superquadric>,
+    search: SearchReport,
+    run: &Run,
+) -> Result<Fit, FitError> {
+    let Superquadric { e: [e1, e2], semi_axes, .. } = mixture.model;
+    let shape = Shape::Superellipsoid(Superellipsoid::new(semi_axes * scaled.size, e1, e2));
+    run.install(|| finish(cloud, scaled, mixture, shape, NAMES, search, run))
 }

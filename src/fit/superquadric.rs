@@ -42,21 +42,7 @@ impl Model<PARAMETERS> for Superquadric {
 
     #[inline(always)]
     fn log_gauge<R: Real>(&self, q: [R; 3], rows: &mut [R; PARAMETERS]) -> LogGauge<R> {
-        let [x, y, z] = q;
-        let [e1, e2] = self.e;
-        let inverse = self.semi_axes.recip();
-        let log = |x: R, k: f64| (x.abs() * k).log2();
-        let (across, vx, vy, inner) = joined(log(x, inverse.x) * (2.0 / e2), log(y, inverse.y) * (2.0 / e2));
-        let (along, wr, wz, outer) = joined(across * (e2 / e1), log(z, inverse.z) * (2.0 / e1));
-        rows[0] = outer * 0.5;
-        rows[1] = wr * inner * 0.5;
-        let (sx, sy) = (wr * vx, wr * vy);
-        (rows[2], rows[3], rows[4]) = (-sx, -sy, -wz);
-        // Shares vanish at 0 as |x|^p, p ≥ 1.
-        let over = |share: R, x: R, a: f64| share * x / (x.square() + (1e-10 * a).powi(2));
-        let gradient = [over(sx, x, self.semi_axes.x), over(sy, y, self.semi_axes.y), over(wz, z, self.semi_axes.z)];
-        let radius = (x.square() + y.square() + z.square() + 1e-30).sqrt();
-        LogGauge { log2: along * (0.5 * e1), gradient, radius }
+        log_gauge(self.e, self.semi_axes, q, rows)
     }
 
     fn sizes(&self) -> (std::ops::Range<usize>, f64) {
@@ -92,6 +78,30 @@ impl Model<PARAMETERS> for Superquadric {
         slopes[2..5].copy_from_slice(&[(a * b + a * c) / sum, (a * b + b * c) / sum, (a * c + b * c) / sum]);
         ((4.0 * PI).ln() + (sum / 3.0).ln() / THOMSEN, slopes)
     }
+}
+
+/// `ln G`, its gradient, and its derivatives by the exponents and the logarithms of the semi-axes.
+#[inline(always)]
+pub(super) fn log_gauge<R: Real, const N: usize>(
+    [e1, e2]: [f64; 2],
+    semi_axes: DVec3,
+    q: [R; 3],
+    rows: &mut [R; N],
+) -> LogGauge<R> {
+    let [x, y, z] = q;
+    let inverse = semi_axes.recip();
+    let log = |x: R, k: f64| (x.abs() * k).log2();
+    let (across, vx, vy, inner) = joined(log(x, inverse.x) * (2.0 / e2), log(y, inverse.y) * (2.0 / e2));
+    let (along, wr, wz, outer) = joined(across * (e2 / e1), log(z, inverse.z) * (2.0 / e1));
+    rows[0] = outer * 0.5;
+    rows[1] = wr * inner * 0.5;
+    let (sx, sy) = (wr * vx, wr * vy);
+    (rows[2], rows[3], rows[4]) = (-sx, -sy, -wz);
+    // Shares vanish at 0 as |x|^p, p ≥ 1.
+    let over = |share: R, x: R, a: f64| share * x / (x.square() + (1e-10 * a).powi(2));
+    let gradient = [over(sx, x, semi_axes.x), over(sy, y, semi_axes.y), over(wz, z, semi_axes.z)];
+    let radius = (x.square() + y.square() + z.square() + 1e-30).sqrt();
+    LogGauge { log2: along * (0.5 * e1), gradient, radius }
 }
 
 impl Superquadric {

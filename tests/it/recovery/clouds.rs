@@ -87,6 +87,11 @@ impl Quadric {
 
     /// Triangles in local coordinates, rows evenly spaced by arc length.
     pub fn mesh(&self, n: usize) -> Surface {
+        self.mesh_by(n, |v| v)
+    }
+
+    /// The same with every vertex moved.
+    pub fn mesh_by(&self, n: usize, moved: impl Fn(DVec3) -> DVec3) -> Surface {
         let ring = quarter(self.e[1], n);
         let mut around = ring.clone();
         around.pop();
@@ -101,7 +106,7 @@ impl Quadric {
         let mut vertices = Vec::new();
         for [c, s] in &rows {
             for [x, y] in &around {
-                vertices.push(DVec3::new(c * x, c * y, *s) * self.semi_axes);
+                vertices.push(moved(DVec3::new(c * x, c * y, *s) * self.semi_axes));
             }
         }
         Surface::of_grid(vertices, rows.len(), around.len())

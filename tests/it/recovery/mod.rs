@@ -1,4 +1,9 @@
 //! Solids from points: gates on random clouds, and what every fit must keep.
 
+mod bent;
 mod clouds;
+mod deformed;
+mod inspection;
+mod shapes;
 mod superellipsoids;
+mod supershapes;
