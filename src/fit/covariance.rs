@@ -52,9 +52,21 @@ impl Covariance {
     ) -> Covariance {
         let mut residuals = vec![0.0; samples.padded()];
         let sums = pass(model, samples, weights, Cost::Normal, &mut residuals);
+        let units = std::array::from_fn(|i| if i + 3 >= N { size } else { 1.0 });
+        Covariance::from_normal(names, &sums.hessian, noise, share, units)
+    }
+
+    /// The inverse of JᵀWJ (its lower triangle), each parameter in units of its own.
+    pub(super) fn from_normal<const N: usize>(
+        names: [&'static str; N],
+        normal: &[[f64; N]; N],
+        noise: f64,
+        share: f64,
+        units: [f64; N],
+    ) -> Covariance {
         // Parameters have unlike units: the matrix is scaled to a unit diagonal.
-        let scale: [f64; N] = std::array::from_fn(|i| 1.0 / sums.hessian[i][i].max(1e-12).sqrt());
-        let mut matrix = sums.hessian;
+        let scale: [f64; N] = std::array::from_fn(|i| 1.0 / normal[i][i].max(1e-12).sqrt());
+        let mut matrix = *normal;
         for i in 0..N {
             for j in 0..=i {
                 matrix[i][j] *= scale[i] * scale[j];
@@ -62,14 +74,13 @@ impl Covariance {
             // Free directions get a large variance, not an infinite one.
             matrix[i][i] += 1e-9;
         }
-        let unit = |i: usize| if i + 3 >= N { size } else { 1.0 };
         let mut out = vec![0.0; N * N];
         for j in 0..N {
             let right: [f64; N] = std::array::from_fn(|i| if i == j { 1.0 } else { 0.0 });
             let Some(column) = solved(&matrix, &right, &[true; N]) else { continue };
             for i in 0..N {
                 let value = column[i] * scale[i] * scale[j] * noise * noise / share;
-                out[i * N + j] = value * unit(i) * unit(j);
+                out[i * N + j] = value * units[i] * units[j];
             }
         }
         for i in 0..N {

@@ -52,7 +52,8 @@ pub(super) fn dense(points: &[DVec3]) -> Dense {
 /// Takes out what is far from its neighbours compared with them.
 fn purify(points: &[DVec3], kept: &mut Vec<usize>, cell: f64) {
     let some: Vec<DVec3> = kept.iter().map(|i| points[*i]).collect();
-    let grid = Grid::new(&some, extent(&some), cell);
+    // So large that the block about a point holds its neighbours most often.
+    let grid = Grid::new(&some, extent(&some), 1.7 * cell);
     let mut found = Vec::new();
     let mut near = Vec::with_capacity(some.len());
     let reach: Vec<f64> = some

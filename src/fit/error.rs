@@ -62,6 +62,12 @@ pub enum FitError {
     /// The solid that was found, or is to be compared with, is not valid.
     #[error(transparent)]
     Solid(#[from] SolidError),
+    /// The solid's surface was not found.
+    #[error("the solid cannot be meshed, which its principal axes are taken from: {what}")]
+    Meshing {
+        /// Why not.
+        what: String,
+    },
     /// The run was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

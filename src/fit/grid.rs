@@ -70,30 +70,37 @@ impl Grid<'_> {
 
     /// The nearest points, the point itself among them, from the nearest on, with squared distances.
     pub(super) fn nearest(&self, p: DVec3, count: usize, found: &mut Vec<(f64, u32)>) {
-        found.clear();
         let at = self.cell_of(p);
-        let most = self.size.max_element();
-        for ring in 0..=most {
-            let (low, high) = ((at - ring).max(IVec3::ZERO), (at + ring).min(self.size - 1));
+        for reach in 1.. {
+            found.clear();
+            let (low, high) = ((at - reach).max(IVec3::ZERO), (at + reach).min(self.size - 1));
             for z in low.z..=high.z {
                 for y in low.y..=high.y {
-                    let edge = (z - at.z).abs() == ring || (y - at.y).abs() == ring;
-                    if edge {
-                        self.take(IVec3::new(low.x, y, z), high.x, p, count, found);
-                    } else {
-                        for x in [at.x - ring, at.x + ring] {
-                            if x >= 0 && x < self.size.x {
-                                self.take(IVec3::new(x, y, z), x, p, count, found);
-                            }
-                        }
-                    }
+                    self.take(IVec3::new(low.x, y, z), high.x, p, count, found);
                 }
             }
-            let safe = f64::from(ring) * self.cell;
-            if found.len() == count && found[count - 1].0 <= safe * safe {
+            let is_all = low == IVec3::ZERO && high == self.size - 1;
+            // What is not in the block is farther away than its sides, where there is more beyond.
+            let (from, to) = (self.low + low.as_dvec3() * self.cell, self.low + (high + 1).as_dvec3() * self.cell);
+            let safe = self.room(p, [from, to], [low, high]);
+            if is_all || (found.len() == count && found[count - 1].0 <= safe * safe) {
                 break;
             }
         }
+    }
+
+    /// How far a point is from the sides of a block that there are cells beyond.
+    fn room(&self, p: DVec3, [from, to]: [DVec3; 2], [low, high]: [IVec3; 2]) -> f64 {
+        let mut room = f64::INFINITY;
+        for axis in 0..3 {
+            if low[axis] > 0 {
+                room = room.min(p[axis] - from[axis]);
+            }
+            if high[axis] < self.size[axis] - 1 {
+                room = room.min(to[axis] - p[axis]);
+            }
+        }
+        room.max(0.0)
     }
 
     /// Offers the points of a row of cells.

@@ -16,8 +16,8 @@ use super::search::Search;
 use super::superquadric::Superquadric;
 use crate::{Cancelled, Run};
 
-/// Points of the first of the last steps.
-const SOME: usize = 400;
+/// Points of the first of the last steps, of a surface that is seen all around, and of one side.
+const SOME: [usize; 2] = [300, 400];
 
 /// How a fit came about.
 #[derive(Clone, Copy, Debug, Default)]
@@ -109,7 +109,7 @@ pub(super) fn fit(points: &[DVec3], scene: &Scene, cost: Cost, run: &Run) -> Res
     let one_sided = scene.local.view.is_some();
     let stage = |rounds, steps| Polish { rounds, steps, area: if one_sided { 0.8 } else { 0.4 }, cost };
     let mut random = Random::new(points.len() as u64);
-    let some = random.chosen(points.len(), SOME);
+    let some = random.chosen(points.len(), SOME[usize::from(one_sided)]);
     let samples = Samples::<f64>::new(some.into_iter().map(|i| points[i]));
     effort.evaluations += mixture.polish(&samples, stage(2, if one_sided { 4 } else { 2 }));
     let samples = Samples::<f64>::new(points.iter().copied());
