@@ -11,6 +11,8 @@ pub(super) struct Grid<'a> {
     /// Where the points of a cell begin in `order`.
     starts: Vec<u32>,
     order: Vec<u32>,
+    /// The points in that order.
+    sorted: Vec<DVec3>,
 }
 
 /// Cells along an axis at most.
@@ -22,7 +24,7 @@ impl Grid<'_> {
         let extent = high - low;
         let cell = cell.max(extent.max_element() / MOST).max(f64::MIN_POSITIVE);
         let size = (extent / cell).floor().as_ivec3() + 1;
-        let mut grid = Grid { points, low, cell, size, starts: Vec::new(), order: Vec::new() };
+        let mut grid = Grid { points, low, cell, size, starts: Vec::new(), order: Vec::new(), sorted: Vec::new() };
         let cells = (size.x * size.y * size.z) as usize;
         grid.starts = vec![0; cells + 1];
         let homes: Vec<usize> = points.iter().map(|p| grid.index(grid.cell_of(*p))).collect();
@@ -38,6 +40,7 @@ impl Grid<'_> {
             grid.order[next[home] as usize] = i;
             next[home] += 1;
         }
+        grid.sorted = grid.order.iter().map(|i| points[*i as usize]).collect();
         grid
     }
 
@@ -107,16 +110,24 @@ impl Grid<'_> {
     fn take(&self, from: IVec3, to: i32, p: DVec3, count: usize, found: &mut Vec<(f64, u32)>) {
         let first = self.starts[self.index(from)] as usize;
         let last = self.starts[self.index(IVec3::new(to, from.y, from.z)) + 1] as usize;
-        for &i in &self.order[first..last] {
-            let away = self.points[i as usize].distance_squared(p);
-            if found.len() == count {
-                if away >= found[count - 1].0 {
-                    continue;
-                }
-                found.pop();
+        let mut worst = if found.len() == count { found[count - 1].0 } else { f64::INFINITY };
+        for (q, &i) in self.sorted[first..last].iter().zip(&self.order[first..last]) {
+            let away = q.distance_squared(p);
+            if away >= worst {
+                continue;
             }
-            let at = found.partition_point(|(other, _)| *other <= away);
-            found.insert(at, (away, i));
+            if found.len() < count {
+                found.push((away, i));
+            }
+            let mut at = found.len() - 1;
+            while at > 0 && found[at - 1].0 > away {
+                found[at] = found[at - 1];
+                at -= 1;
+            }
+            found[at] = (away, i);
+            if found.len() == count {
+                worst = found[count - 1].0;
+            }
         }
     }
 }

@@ -75,6 +75,8 @@
 //! and accurate superquadric recovery: a probabilistic approach* (2022); Y. D. Fougerolle et al.,
 //! *Rational supershapes for surface reconstruction*.
 
+#![allow(clippy::needless_range_loop, reason = "matrices are written by their rows and columns, as formulas are")]
+
 mod check;
 mod cloud;
 mod cost;

@@ -25,6 +25,12 @@ pub const RULES: [RFunction; 10] = [
     RFunction::Distance,
 ];
 
+impl Random {
+    pub fn rule(&mut self) -> RFunction {
+        self.pick(&RULES)
+    }
+}
+
 /// A leaf of any kind, of a size between 0.2 and 1.6, about the origin.
 pub fn random_leaf(random: &mut Random) -> Solid {
     let size = |random: &mut Random| random.range(0.2, 0.8);

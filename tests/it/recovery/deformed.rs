@@ -20,7 +20,7 @@ fn overlap(truth: &Bent, random: &mut Random) -> (f64, usize) {
     };
     let found = match fit.shape() {
         Shape::Deformed(d) => Bent { base: base(d.leaf), taper: d.taper, twist: d.twist, bend: d.bend },
-        Shape::Superellipsoid(leaf) => Bent { base: base(leaf), taper: [0.0; 2], twist: 0.0, bend: DVec2::ZERO },
+        Shape::Superellipsoid(leaf) => Bent { base: base(*leaf), taper: [0.0; 2], twist: 0.0, bend: DVec2::ZERO },
         other => panic!("{other:?}"),
     };
     // The solid is that of the parameters.

@@ -55,7 +55,8 @@ fn right(count: u64, seed: u64, noise: f64, strewn: f64, scaled: bool) -> usize 
     for i in 0..count {
         let mut random = Random::new(seed + i);
         let part = part(&mut random);
-        let pose = pose(&mut random, if scaled { random.range(0.4, 2.5) } else { 1.0 });
+        let scale = if scaled { random.range(0.4, 2.5) } else { 1.0 };
+        let pose = pose(&mut random, scale);
         let cloud = scan(&part, pose, noise, strewn, &mut random);
         let settings = RegisterSettings { scale: scaled, ..RegisterSettings::default() };
         let found = register(&part, &cloud, &settings).unwrap();

@@ -73,10 +73,6 @@ impl Random {
         let shear = DMat3::from_cols(DVec3::X, DVec3::new(self.range(-0.4, 0.4), 1.0, 0.0), DVec3::Z);
         DAffine3::from_mat3_translation(turn * shear * stretch, self.vector(-0.5, 0.5))
     }
-
-    pub fn rule(&mut self) -> RFunction {
-        self.pick(&RULES)
-    }
 }
 
 /// `RANDOM_SEED` in the environment, for a search with other numbers than those of every run.
