@@ -9,11 +9,11 @@
 //!
 //! | question | answer |
 //! |---|---|
-//! | [`superellipsoid`] | the superellipsoid that points are of, strewn points and a table put aside |
-//! | [`supershape`] | the supershape, its symmetry numbers found |
-//! | [`deformed`] | the superellipsoid, tapered, twisted and bent |
-//! | [`register`] | where a known solid is in a scan |
-//! | [`inspect`] | how far a scan is from a solid, by point and by leaf |
+//! | [`superellipsoid`](superellipsoid()) | the superellipsoid that points are of, strewn points and a table put aside |
+//! | [`supershape`](supershape()) | the supershape, its symmetry numbers found |
+//! | [`deformed`](deformed()) | the superellipsoid, tapered, twisted and bent |
+//! | [`register`](register()) | where a known solid is in a scan |
+//! | [`inspect`](inspect()) | how far a scan is from a solid, by point and by leaf |
 //!
 //! The first three take a [`PointCloud`](crate::PointCloud) and give a [`Fit`]: the solid with
 //! its leaf and pose, a weight for each point, the noise, the covariance of the parameters. Every

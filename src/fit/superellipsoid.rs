@@ -21,7 +21,7 @@ const NAMES: [&str; PARAMETERS] =
 /// without their share being told; or be of a table that it stands on. 24 points are needed and
 /// some hundreds are wanted; of more than [`FitSettings::search_points`] a random part is searched.
 /// Normals are used where the cloud has them. The same seed gives the same bits on any number of
-/// threads. How it works, and how often it is right: [the module](self).
+/// threads. How it works, and how often it is right: [the module](super).
 ///
 /// Several sets of parameters describe one solid, or nearly so: a box has any of its axes as the
 /// polar one, and a square prism is its dual turned by 45°. Which one is found is not told by

@@ -292,7 +292,7 @@ fn phases(top: &Supershaped) -> Vec<Supershaped> {
     let round = top.tied(Ties::Round);
     let m = top.equator.m;
     // Half a turn is the same.
-    let lobes = if m % 2 == 0 { m / 2 } else { m };
+    let lobes = if m.is_multiple_of(2) { m / 2 } else { m };
     (1..lobes)
         .map(|j| Supershaped {
             rotation: top.rotation * DMat3::from_rotation_z(TAU * f64::from(j) / f64::from(m)),
