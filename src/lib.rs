@@ -161,6 +161,21 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! Points become solids: [`fit`] finds the superellipsoid or supershape that a scan is of, where a
+//! known part is in it, and how far it is from it.
+//!
+//! ```
+//! use rvachev::fit::{FitSettings, superellipsoid};
+//! use rvachev::{CellSize, MeshSettings, PointCloud, Solid};
+//!
+//! let pill = Solid::superellipsoid([2.0, 1.0, 1.5], 0.5, 1.0).translate([5.0, 0.0, 0.0]);
+//! let mesh = pill.mesh(&MeshSettings { cell: CellSize::LongestSide(24), ..MeshSettings::default() })?;
+//! let scan = PointCloud::new(mesh.positions().iter().map(|p| p.as_dvec3()).collect())?;
+//! let fit = superellipsoid(&scan, &FitSettings::default())?;
+//! assert!((fit.translation().x - 5.0).abs() < 0.01 && fit.solid().contains([6.9, 0.0, 0.0])?);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! [Twelve idioms](idioms) show how things are commonly built: plates with holes, named parts,
 //! rings of parts, leaves of one's own. [Lengths](lengths) are explained with pictures.
 //!
@@ -454,6 +469,7 @@ mod distance;
 pub mod error;
 mod eval;
 pub mod field;
+pub mod fit;
 pub mod form;
 mod geom;
 pub mod idioms;

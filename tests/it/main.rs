@@ -45,6 +45,7 @@ mod random_fields;
 mod range_images;
 mod raster;
 mod rays;
+mod recovery;
 mod rfunction;
 mod sampling;
 mod scale;

@@ -1,0 +1,28 @@
+//! The published residuals.
+
+/// What is minimised in a fit: the residual of a point, G being the gauge of the solid there and
+/// r the distance from its centre.
+///
+/// | cost | residual | source |
+/// |---|---|---|
+/// | `Normal` | the radial one over r·\|∇ ln G\|: to first order the distance to the surface | this crate |
+/// | `Radial` | r(1 − 1/G) | Gross and Boult (1988) |
+/// | `SolinaBajcsy` | √(a₁a₂a₃)·(G² − 1) | Solina and Bajcsy (1990) |
+/// | `Gauge` | √(a₁a₂a₃)·(G − 1) | Fougerolle et al., equation 4 |
+///
+/// The radial residual is longer than the distance where rays graze the surface, which makes
+/// noise large there: of one-sided views of superellipsoids fewer come out right by it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Cost {
+    /// Radial in the search, to first order the distance to the surface after it.
+    #[default]
+    Normal,
+    /// The distance along the ray from the centre.
+    Radial,
+    /// The square of the gauge, times the root of the volume.
+    SolinaBajcsy,
+    /// The gauge, times the root of the volume.
+    Gauge,
+}

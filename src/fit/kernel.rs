@@ -1,0 +1,271 @@
+//! The pass over the points: residuals, and the normal equations of a least-squares step.
+//!
+//! ```text
+//!     q = Rᵀ(p − t)     G = gauge of q     r = |q|     g = ∇ ln G     f = r/G
+//!     radial    d = r(1 − 1/G)             ∂d/∂s = f·∂ln G/∂s   for a parameter s of the shape
+//!     normal    d·c,  c = 1/(r|g|)         rotation f·(g × q),  translation −(q/r)(1 − 1/G) − f·g
+//! ```
+//!
+//! A shape gives `ln G`, its gradient, and its derivatives by the shape's parameters; all
+//! residuals follow from these. The sums run on SIMD lanes, in `f32` for the search and in `f64`
+//! for the last steps. The sign of residuals is that of lengths here: negative inside.
+//!
+//! Sources: F. Solina, R. Bajcsy, *Recovery of parametric models from range images* (1990);
+//! A. Gross, T. Boult, *Error of fit measures for recovering parametric solids* (1988).
+
+use std::f64::consts::LN_2;
+
+use fearless_simd::{Level, Simd, dispatch};
+use glam::{DMat3, DVec3};
+use rvachev_num::Real;
+use rvachev_num::lanes::{F32, F64, Lanes};
+
+use super::cost::Cost;
+use super::samples::Samples;
+
+/// A family of surfaces about a centre, with `N` parameters: those of the shape first, then three
+/// of a rotation about the local axes and three of a translation along them.
+pub(super) trait Model<const N: usize>: Copy + Sync {
+    /// The rotation (its columns are the local axes) and the centre.
+    fn pose(&self) -> (DMat3, DVec3);
+
+    /// `log2 G` and the gradient of `ln G` at a point in local coordinates; derivatives of `ln G`
+    /// by the shape's parameters go to the first rows.
+    fn log_gauge<R: Real>(&self, q: [R; 3], rows: &mut [R; N]) -> LogGauge<R>;
+
+    /// `ln √(a₁a₂a₃)` is half the sum of these rows' parameters.
+    fn sizes(&self) -> (std::ops::Range<usize>, f64);
+
+    /// The model moved by a step of the parameters, which must be within [`limits`](Model::limits).
+    fn moved(&self, step: &[f64; N]) -> Self;
+
+    /// The longest steps down and up: what keeps the parameters in their ranges, and the steps sane.
+    fn limits(&self) -> [[f64; 2]; N];
+
+    /// The logarithm of the surface's area, and its derivatives.
+    fn log_area(&self) -> (f64, [f64; N]);
+
+    /// For each parameter the first one of those that move together with it.
+    fn groups(&self) -> [usize; N] {
+        std::array::from_fn(|i| i)
+    }
+
+    /// A quadratic penalty's weights and the parameters' deviations, in units of the noise.
+    fn penalty(&self) -> Option<[[f64; 2]; N]> {
+        None
+    }
+}
+
+/// What a shape says of a point.
+pub(super) struct LogGauge<R> {
+    /// `log2 G`.
+    pub(super) log2: R,
+    /// The gradient of `ln G` in local coordinates.
+    pub(super) gradient: [R; 3],
+    /// The distance from the centre, before any deformation.
+    pub(super) radius: R,
+}
+
+/// Two logarithms joined: `log2(2^u + 2^v)`, the shares of both, and the entropy of the shares in nats.
+#[inline(always)]
+pub(super) fn joined<R: Real>(u: R, v: R) -> (R, R, R, R) {
+    let (hi, lo) = (u.max(v), u.min(v));
+    let apart = hi - lo;
+    let small = (-apart).exp2();
+    let log = (small + 1.0).log2();
+    let large_share = u.lift(1.0) / (small + 1.0);
+    let small_share = small * large_share;
+    let entropy = small_share.mul_add(apart, log) * LN_2;
+    (hi + log, (u - v).select(large_share, small_share), (u - v).select(small_share, large_share), entropy)
+}
+
+/// The sums of a pass.
+#[derive(Clone, Copy)]
+pub(super) struct Sums<const N: usize> {
+    /// Sum of the weighted squares.
+    pub(super) square: f64,
+    /// Half its gradient.
+    pub(super) gradient: [f64; N],
+    /// Half its second derivatives (Gauss–Newton); the lower triangle.
+    pub(super) hessian: [[f64; N]; N],
+}
+
+/// The numbers that points are kept in.
+pub(super) trait Number: Copy + Default + PartialOrd + Send + Sync + 'static {
+    /// Vectors of them.
+    type Vector<S: Simd>: Lanes<Element = Self, Token = S>;
+    /// Below this share of the cloud's size residuals are rounding.
+    const GRAIN: f64;
+    fn of(x: f64) -> Self;
+    fn to(self) -> f64;
+}
+
+impl Number for f32 {
+    type Vector<S: Simd> = F32<S>;
+    const GRAIN: f64 = 1e-6;
+    fn of(x: f64) -> f32 {
+        x as f32
+    }
+    fn to(self) -> f64 {
+        f64::from(self)
+    }
+}
+
+impl Number for f64 {
+    type Vector<S: Simd> = F64<S>;
+    const GRAIN: f64 = 1e-12;
+    fn of(x: f64) -> f64 {
+        x
+    }
+    fn to(self) -> f64 {
+        self
+    }
+}
+
+/// Residuals of all points and the sums of their squares by weight.
+pub(super) fn pass<E: Number, M: Model<N>, const N: usize>(
+    model: &M,
+    samples: &Samples<E>,
+    weights: &[E],
+    cost: Cost,
+    residuals: &mut [E],
+) -> Sums<N> {
+    dispatch!(Level::new(), simd => pass_on::<_, E, M, N>(simd, model, samples, weights, cost, residuals))
+}
+
+#[inline(always)]
+fn pass_on<S: Simd, E: Number, M: Model<N>, const N: usize>(
+    simd: S,
+    model: &M,
+    samples: &Samples<E>,
+    weights: &[E],
+    cost: Cost,
+    residuals: &mut [E],
+) -> Sums<N> {
+    let width = <E::Vector<S> as Lanes>::WIDTH;
+    let zero = <E::Vector<S> as Lanes>::splat(simd, 0.0);
+    let mut square = zero;
+    let mut gradient = [zero; N];
+    let mut hessian = [[zero; N]; N];
+    let [xs, ys, zs] = samples.columns();
+    for start in (0..samples.padded()).step_by(width) {
+        let at = start..start + width;
+        let load = |from: &[E]| <E::Vector<S> as Lanes>::load(simd, &from[at.clone()]);
+        let (residual, rows) = terms::<_, M, N>(model, [load(xs), load(ys), load(zs)], cost);
+        let weight = load(weights);
+        residual.store(&mut residuals[at.clone()]);
+        let weighted = residual * weight;
+        square = weighted.mul_add(residual, square);
+        for i in 0..N {
+            gradient[i] = weighted.mul_add(rows[i], gradient[i]);
+            let row = rows[i] * weight;
+            for j in 0..=i {
+                hessian[i][j] = row.mul_add(rows[j], hessian[i][j]);
+            }
+        }
+    }
+    let mut buffer = [E::default(); 64];
+    let mut sum = |v: E::Vector<S>| -> f64 {
+        v.store(&mut buffer[..width]);
+        buffer[..width].iter().map(|x| x.to()).sum()
+    };
+    let mut sums = Sums { square: sum(square), gradient: [0.0; N], hessian: [[0.0; N]; N] };
+    for i in 0..N {
+        sums.gradient[i] = sum(gradient[i]);
+        for j in 0..=i {
+            sums.hessian[i][j] = sum(hessian[i][j]);
+        }
+    }
+    sums
+}
+
+/// Residuals of all points.
+pub(super) fn residuals<E: Number, M: Model<N>, const N: usize>(
+    model: &M,
+    samples: &Samples<E>,
+    cost: Cost,
+    residuals: &mut [E],
+) {
+    dispatch!(Level::new(), simd => residuals_on::<_, E, M, N>(simd, model, samples, cost, residuals));
+}
+
+#[inline(always)]
+fn residuals_on<S: Simd, E: Number, M: Model<N>, const N: usize>(
+    simd: S,
+    model: &M,
+    samples: &Samples<E>,
+    cost: Cost,
+    residuals: &mut [E],
+) {
+    let width = <E::Vector<S> as Lanes>::WIDTH;
+    let [xs, ys, zs] = samples.columns();
+    for start in (0..samples.padded()).step_by(width) {
+        let at = start..start + width;
+        let load = |from: &[E]| <E::Vector<S> as Lanes>::load(simd, &from[at.clone()]);
+        // What the derivatives take is not computed where nothing reads them.
+        let (residual, _) = terms::<_, M, N>(model, [load(xs), load(ys), load(zs)], cost);
+        residual.store(&mut residuals[at.clone()]);
+    }
+}
+
+/// The residual of a point, and its derivatives by the parameters.
+#[inline(always)]
+fn terms<R: Real, M: Model<N>, const N: usize>(model: &M, p: [R; 3], cost: Cost) -> (R, [R; N]) {
+    let (rotation, center) = model.pose();
+    let from = [p[0] - center.x, p[1] - center.y, p[2] - center.z];
+    let axis = |axis: DVec3| from[0].scale_add(axis.x, from[1].scale_add(axis.y, from[2] * axis.z));
+    let q = [axis(rotation.x_axis), axis(rotation.y_axis), axis(rotation.z_axis)];
+    let mut rows = [p[0].lift(0.0); N];
+    let LogGauge { log2, gradient: g, radius } = model.log_gauge(q, &mut rows);
+    let shape = N - 6;
+    // What ln G is multiplied by in derivatives, and what the translation has besides.
+    let (residual, factor, along) = match cost {
+        Cost::Radial | Cost::Normal => {
+            let inverse = (-log2).exp2();
+            let off = -inverse + 1.0;
+            let mut scale = radius;
+            if let Cost::Normal = cost {
+                let steep = (g[0].square() + g[1].square() + g[2].square()).sqrt();
+                scale = radius.min(p[0].lift(1.0) / (steep + 1e-30));
+            }
+            (scale * off, scale * inverse, scale * off / radius.square())
+        }
+        Cost::SolinaBajcsy | Cost::Gauge => {
+            let (rows_of_sizes, half_log) = model.sizes();
+            let root = half_log.exp();
+            let gauge = log2.exp2();
+            let (residual, factor) = match cost {
+                Cost::SolinaBajcsy => ((gauge.square() - 1.0) * root, gauge.square() * (2.0 * root)),
+                _ => ((gauge - 1.0) * root, gauge * root),
+            };
+            for row in &mut rows[..shape] {
+                *row = *row * factor;
+            }
+            for row in &mut rows[rows_of_sizes] {
+                *row = *row + residual * 0.5;
+            }
+            let [turn, shift] = pose_rows(q, g);
+            for k in 0..3 {
+                rows[shape + k] = turn[k] * factor;
+                rows[shape + 3 + k] = shift[k] * factor;
+            }
+            return (residual, rows);
+        }
+    };
+    for row in &mut rows[..shape] {
+        *row = *row * factor;
+    }
+    let [turn, shift] = pose_rows(q, g);
+    for k in 0..3 {
+        rows[shape + k] = turn[k] * factor;
+        rows[shape + 3 + k] = shift[k] * factor - q[k] * along;
+    }
+    (residual, rows)
+}
+
+/// Derivatives of `ln G` by a rotation about the local axes and a translation along them.
+#[inline(always)]
+fn pose_rows<R: Real>(q: [R; 3], g: [R; 3]) -> [[R; 3]; 2] {
+    let turn = [g[1] * q[2] - g[2] * q[1], g[2] * q[0] - g[0] * q[2], g[0] * q[1] - g[1] * q[0]];
+    [turn, [-g[0], -g[1], -g[2]]]
+}

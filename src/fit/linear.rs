@@ -1,0 +1,148 @@
+//! Small dense linear algebra: positive definite systems, principal axes.
+
+use glam::{DMat3, DVec3};
+
+/// The Cholesky factor of a symmetric positive definite matrix of which the lower triangle is
+/// given; only the rows and columns that are `free` count. `None` if it is not positive definite.
+fn factor<const N: usize>(matrix: &[[f64; N]; N], free: &[bool; N]) -> Option<[[f64; N]; N]> {
+    let mut low = [[0.0; N]; N];
+    for i in 0..N {
+        for j in 0..=i {
+            if !(free[i] && free[j]) {
+                low[i][j] = if i == j { 1.0 } else { 0.0 };
+                continue;
+            }
+            let dot: f64 = (0..j).map(|k| low[i][k] * low[j][k]).sum();
+            let rest = matrix[i][j] - dot;
+            if i == j {
+                if !(rest > 0.0 && rest.is_finite()) {
+                    return None;
+                }
+                low[i][i] = rest.sqrt();
+            } else {
+                low[i][j] = rest / low[j][j];
+            }
+        }
+    }
+    Some(low)
+}
+
+/// The solution of `matrix · x = right`, 0 where it is not free.
+pub(super) fn solved<const N: usize>(matrix: &[[f64; N]; N], right: &[f64; N], free: &[bool; N]) -> Option<[f64; N]> {
+    let low = factor(matrix, free)?;
+    let mut x = [0.0; N];
+    for i in 0..N {
+        let dot: f64 = (0..i).map(|k| low[i][k] * x[k]).sum();
+        x[i] = if free[i] { (right[i] - dot) / low[i][i] } else { 0.0 };
+    }
+    for i in (0..N).rev() {
+        let dot: f64 = (i + 1..N).map(|k| low[k][i] * x[k]).sum();
+        x[i] = if free[i] { (x[i] - dot) / low[i][i] } else { 0.0 };
+    }
+    x.iter().all(|v| v.is_finite()).then_some(x)
+}
+
+/// Principal axes of weighted points: variances from the least up, and right-handed unit axes.
+pub(super) struct Principal {
+    pub(super) mean: DVec3,
+    pub(super) variances: [f64; 3],
+    pub(super) axes: DMat3,
+}
+
+impl Principal {
+    pub(super) fn of(points: impl Iterator<Item = DVec3> + Clone) -> Principal {
+        let (sum, count) = points.clone().fold((DVec3::ZERO, 0.0), |(sum, count), p| (sum + p, count + 1.0));
+        let mean = sum / f64::max(count, 1.0);
+        let mut m = [[0.0; 3]; 3];
+        for p in points {
+            let d = (p - mean).to_array();
+            for i in 0..3 {
+                for j in 0..3 {
+                    m[i][j] += d[i] * d[j];
+                }
+            }
+        }
+        let (values, axes) = eigen(m.map(|row| row.map(|x| x / f64::max(count, 1.0))));
+        Principal { mean, variances: values, axes }
+    }
+}
+
+/// Eigenvalues from the least up and right-handed eigenvectors of a symmetric matrix, by Jacobi's rotations.
+fn eigen(mut m: [[f64; 3]; 3]) -> ([f64; 3], DMat3) {
+    let mut v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    for _ in 0..30 {
+        let off = m[0][1].abs() + m[0][2].abs() + m[1][2].abs();
+        if off <= 1e-15 * (m[0][0] + m[1][1] + m[2][2]).abs() {
+            break;
+        }
+        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
+            if m[p][q] == 0.0 {
+                continue;
+            }
+            let theta = (m[q][q] - m[p][p]) / (2.0 * m[p][q]);
+            let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
+            let c = 1.0 / t.hypot(1.0);
+            let s = t * c;
+            for k in 0..3 {
+                (m[k][p], m[k][q]) = (c * m[k][p] - s * m[k][q], s * m[k][p] + c * m[k][q]);
+            }
+            for k in 0..3 {
+                (m[p][k], m[q][k]) = (c * m[p][k] - s * m[q][k], s * m[p][k] + c * m[q][k]);
+                (v[p][k], v[q][k]) = (c * v[p][k] - s * v[q][k], s * v[p][k] + c * v[q][k]);
+            }
+        }
+    }
+    let mut order = [0, 1, 2];
+    order.sort_by(|&i, &j| m[i][i].total_cmp(&m[j][j]));
+    let axis = |k: usize| DVec3::from_array(v[order[k]]).normalize_or(DVec3::AXES[k]);
+    let (x, y) = (axis(0), axis(1));
+    (order.map(|i| m[i][i].max(0.0)), DMat3::from_cols(x, y, x.cross(y)))
+}
+
+/// The value of which as many are below as above; 0 of none.
+pub(super) fn median(values: &mut [f64]) -> f64 {
+    quantile(values, 0.5)
+}
+
+/// The value that a share of the others is below.
+pub(super) fn quantile(values: &mut [f64], share: f64) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let at = ((values.len() - 1) as f64 * share).round() as usize;
+    *values.select_nth_unstable_by(at, f64::total_cmp).1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn systems_are_solved_on_the_free_rows() {
+        let m = [[4.0, 0.0, 0.0], [1.0, 3.0, 0.0], [0.5, -1.0, 5.0]];
+        let x = solved(&m, &[1.0, 2.0, 3.0], &[true; 3]).unwrap();
+        let full = |i: usize, j: usize| if i >= j { m[i][j] } else { m[j][i] };
+        for i in 0..3 {
+            let row: f64 = (0..3).map(|j| full(i, j) * x[j]).sum();
+            assert!((row - [1.0, 2.0, 3.0][i]).abs() < 1e-12);
+        }
+        let part = solved(&m, &[1.0, 2.0, 3.0], &[true, false, true]).unwrap();
+        assert_eq!(part[1], 0.0);
+        assert!((4.0 * part[0] + 0.5 * part[2] - 1.0).abs() < 1e-12);
+        assert!(solved(&[[1.0, 0.0], [2.0, 1.0]], &[1.0, 1.0], &[true; 2]).is_none());
+    }
+
+    #[test]
+    fn principal_axes_of_a_box() {
+        let axes = DMat3::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), 0.7);
+        let corners: Vec<DVec3> = (0..8)
+            .map(|i| axes * DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64 * 2.0, (i >> 2) as f64 * 3.0))
+            .collect();
+        let found = Principal::of(corners.iter().copied());
+        for (k, variance) in [0.25, 1.0, 2.25].into_iter().enumerate() {
+            assert!((found.variances[k] - variance).abs() < 1e-12);
+            assert!(found.axes.col(k).dot(axes.col(k)).abs() > 1.0 - 1e-12);
+        }
+        assert!((found.axes.determinant() - 1.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,119 @@
+//! From points to a superellipsoid: what is dense, the table, the search, the last steps.
+
+use glam::DVec3;
+
+use super::check::check_depth;
+use super::cost::Cost;
+use super::density::{Dense, dense};
+use super::error::FitError;
+use super::grid::{extent, volume};
+use super::local::{Local, local};
+use super::mixture::{Mixture, Polish};
+use super::plane::table;
+use super::random::Random;
+use super::samples::Samples;
+use super::search::Search;
+use super::superquadric::Superquadric;
+use crate::{Cancelled, Run};
+
+/// Points of the first of the last steps, of a surface that is seen all around, and of one side.
+const SOME: [usize; 2] = [300, 400];
+
+/// How a fit came about.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Effort {
+    pub(super) evaluations: usize,
+    pub(super) tried: usize,
+}
+
+/// What the points of a surface tell before a model is fitted.
+pub(super) struct Scene {
+    /// The points of the surface, in random order.
+    pub(super) surface: Vec<DVec3>,
+    pub(super) local: Local,
+    pub(super) strewn: f64,
+    pub(super) volume: f64,
+}
+
+impl Scene {
+    pub(super) fn of(points: &[DVec3], normals: Option<&[DVec3]>, random: &mut Random) -> Scene {
+        let Dense { kept, strewn } = dense(points);
+        let order: Vec<usize> = random.chosen(kept.len(), kept.len()).into_iter().map(|i| kept[i]).collect();
+        let surface: Vec<DVec3> = order.iter().map(|i| points[*i]).collect();
+        let normals: Option<Vec<DVec3>> = normals.map(|normals| order.iter().map(|i| normals[*i]).collect());
+        let local = local(&surface, normals.as_deref(), random);
+        Scene { surface, local, strewn, volume: volume(extent(points)) }
+    }
+}
+
+/// A superellipsoid among points, with what it took.
+pub(super) struct Recovered {
+    pub(super) mixture: Mixture<Superquadric>,
+    pub(super) effort: Effort,
+    pub(super) one_sided: bool,
+    rough: f64,
+    /// The points of the table were left out.
+    pub(super) table: Option<super::plane::Table>,
+}
+
+/// Fits points, which are to be of a size near 1.
+pub(super) fn recover(
+    points: &[DVec3],
+    normals: Option<&[DVec3]>,
+    cost: Cost,
+    seed: u64,
+    run: &Run,
+) -> Result<Recovered, FitError> {
+    let mut random = Random::new(seed);
+    let scene = Scene::of(points, normals, &mut random);
+    check_depth(&scene.surface)?;
+    let found = table(&scene.surface, &mut random);
+    let whole = fit(points, &scene, cost, run)?;
+    let Some(table) = found else { return Ok(whole) };
+    let left: Vec<usize> = (0..points.len()).filter(|i| !table.holds(points[*i])).collect();
+    let some: Vec<DVec3> = left.iter().map(|i| points[*i]).collect();
+    let some_normals: Option<Vec<DVec3>> = normals.map(|normals| left.iter().map(|i| normals[*i]).collect());
+    let scene = Scene::of(&some, some_normals.as_deref(), &mut random);
+    let mut beside = fit(&some, &scene, cost, run)?;
+    let effort = Effort {
+        evaluations: whole.effort.evaluations + beside.effort.evaluations,
+        tried: whole.effort.tried + beside.effort.tried,
+    };
+    let explained = |recovered: &Recovered| 1.0 - recovered.mixture.strewn;
+    let more = explained(&whole) < explained(&beside) - 0.05;
+    // What is flat may be a face of the object, which then is as smooth as its neighbourhoods are.
+    let rough = whole.mixture.noise > 1.5 * whole.rough;
+    let finer = whole.mixture.noise > 1.6 * beside.mixture.noise && explained(&whole) < explained(&beside) + 0.05;
+    let mut chosen = if more || rough && finer {
+        beside.table = Some(table);
+        beside
+    } else {
+        whole
+    };
+    chosen.effort = effort;
+    Ok(chosen)
+}
+
+/// A superellipsoid of a scene, whatever it stands on.
+pub(super) fn fit(points: &[DVec3], scene: &Scene, cost: Cost, run: &Run) -> Result<Recovered, Cancelled> {
+    let mut search = Search::new(&scene.surface, &scene.local, cost, run);
+    let best = search.search()?;
+    let mut effort = Effort { evaluations: search.evaluations, tried: search.tried };
+    let mut mixture = Mixture {
+        model: best.model,
+        noise: best.noise.max(1e-6),
+        strewn: scene.strewn.clamp(1e-3, 0.9),
+        volume: scene.volume,
+        log_area: None,
+    };
+    let one_sided = scene.local.view.is_some();
+    let stage = |rounds, steps| Polish { rounds, steps, area: if one_sided { 0.8 } else { 0.4 }, cost };
+    let mut random = Random::new(points.len() as u64);
+    let some = random.chosen(points.len(), SOME[usize::from(one_sided)]);
+    let samples = Samples::<f64>::new(some.into_iter().map(|i| points[i]));
+    effort.evaluations += mixture.polish(&samples, stage(2, if one_sided { 4 } else { 2 }));
+    let samples = Samples::<f64>::new(points.iter().copied());
+    let (rounds, steps) = if one_sided { (3, 2) } else { (2, 1) };
+    effort.evaluations += mixture.polish(&samples, stage(rounds, steps));
+    Ok(Recovered { mixture, effort, one_sided, rough: scene.local.rough, table: None })
+}

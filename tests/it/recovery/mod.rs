@@ -1,0 +1,10 @@
+//! Solids from points: gates on random clouds, and what every fit must keep.
+
+mod bent;
+mod clouds;
+mod deformed;
+mod inspection;
+mod registration;
+mod shapes;
+mod superellipsoids;
+mod supershapes;
