@@ -60,6 +60,7 @@ mod bulge;
 mod cells;
 mod corners;
 mod crease;
+mod halves;
 mod join;
 mod joined;
 mod lists;
@@ -69,6 +70,7 @@ mod neighbours;
 mod parts;
 mod patches;
 mod plain;
+mod probe;
 mod region;
 mod samples;
 mod sharp;
@@ -76,8 +78,10 @@ mod span;
 mod special;
 mod spread;
 mod suspect;
+mod third;
 mod trend;
 mod turn;
+mod verify;
 
 /// Blocks whose roots are found together. Small enough for threads to share work evenly.
 pub(super) const BATCH: usize = 128;

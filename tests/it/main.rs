@@ -52,6 +52,7 @@ mod scale;
 #[cfg(feature = "serde")]
 mod serde;
 mod sharp;
+mod sharp_vertices;
 mod slices;
 mod spicy;
 mod subdivision;

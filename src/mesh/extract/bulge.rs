@@ -28,6 +28,7 @@
 
 use glam::Vec3A;
 
+use super::probe;
 use crate::mesh::feature::{SMOOTH, Slope, differ};
 
 /// How far the two triangles of four vertices may be off the surface in their middles, in cells, before the better
@@ -142,14 +143,14 @@ impl<const N: usize> Ring<N> {
             return Cover::Table;
         }
         let normal = self.sum.normalize_or_zero();
-        Cover::Top { at: middle + raised(N) * height * normal, normal }
+        Cover::Top { at: middle + raised(N, height) * normal, normal }
     }
 }
 
-/// How high the vertex is above the middle of so many, as a part of how high the surface is.
+/// How high the vertex is above the middle of so many, given how high the surface is; never far above that.
 #[inline(always)]
-fn raised(count: usize) -> f32 {
-    RAISED[count.clamp(3, 7) - 3]
+fn raised(count: usize, height: f32) -> f32 {
+    height + ((RAISED[count.clamp(3, 7) - 3] - 1.0) * height).clamp(-probe::OFF, probe::OFF)
 }
 
 /// What a smooth cell has.
@@ -180,7 +181,7 @@ impl Middle {
         let (normal, depth) = slope.surface(step)?;
         let is_near = (depth - self.height).abs() <= OFF * self.far;
         let is_round = is_near && (normal - self.normal).length_squared() <= ASKEW * self.variance;
-        is_round.then(|| (self.at + raised(self.count) * depth * normal, normal))
+        is_round.then(|| (self.at + raised(self.count, depth) * normal, normal))
     }
 }
 

@@ -42,7 +42,7 @@ use crate::{Cancelled, Run};
 use rvachev_num::Meter;
 
 /// A cell asks for a region if its point is farther from the planes than this, in cells.
-const MISFIT: f32 = 0.02;
+pub(super) const MISFIT: f32 = 0.02;
 
 /// The most cells along an axis of a region.
 const LARGEST: u32 = 4;

@@ -26,7 +26,8 @@
 //! planes rounded, rounding keeps order, and feature points are moved strictly between the rounded
 //! planes.
 //!
-//! [Regions](super::region) of several cells have fans as well, and so have smooth cells that are strongly
+//! [Regions](super::region) of several cells have fans as well, and so have [halves](super::halves) of cells that two
+//! creases pass, and smooth cells that are strongly
 //! [curved](super::bulge), even if their normals differ as those of a crease do ([`spread`](super::spread)).
 //!
 //! Limits: cells with several loops stay as the table has them, or as that of the opposite case
@@ -41,10 +42,11 @@ use rayon::prelude::*;
 use super::cells::{CellOrder, CellSet};
 use super::corners::Vertices;
 use super::crease::Creases;
+use super::halves::Half;
 use super::joined::Joined;
 use super::lists::{fill, filled_numbers, split};
 use super::plain::Plain;
-use super::region::{Region, regions};
+use super::region::{MISFIT, Region, regions};
 use super::samples::{Samples, cell_number, cell_of, split_cell};
 use super::span::Span;
 use super::special::{Special, list_of};
@@ -73,6 +75,10 @@ pub(super) struct Fan {
     pub(super) at: Vec3,
     /// The normal that stands for all its sides.
     pub(super) normal: Vec3,
+    /// Whether the point does not fit the planes of its sides.
+    pub(super) is_loose: bool,
+    /// Which half of its cell it is in, if that is cut.
+    pub(super) half: Option<Box<Half>>,
 }
 
 impl Fan {
@@ -89,6 +95,9 @@ pub(super) struct Fans {
     pub(super) fans: Vec<Fan>,
     /// The segments of fans: those of single cells as they were found, those of regions in a last list.
     pub(super) segments: Vec<Vec<Segment>>,
+    /// Vertices of loops in faces, with their normals, and the number of the first.
+    pub(super) thirds: Vec<(Vec3, Vec3)>,
+    pub(super) first_third: u32,
     /// Points of creases between two fans, with the normals that stand for all sides.
     pub(super) points: Vec<(Vec3, Vec3)>,
     /// The fans of cells, block by block in the order of the cells; and where those of each block start, and their order.
@@ -100,8 +109,6 @@ pub(super) struct Fans {
     plain: Plain,
     /// The triangles of these that are gone, ascending: where the last of those of fans go.
     holes: Vec<usize>,
-    /// How many vertices there are on edges and in the middle of smooth cells.
-    vertices: u32,
     /// Those of them that no triangle has any more: where the first of those that are added go. Ascending.
     free: Vec<u32>,
 }
@@ -123,7 +130,7 @@ pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) ->
         return Ok(Found::Table(triangles));
     }
     // How long each stage takes, more or less.
-    let [to_look, to_find, to_merge, to_fan] = run.stages([1.5, 6.0, 1.7, 0.8]);
+    let [to_look, to_find, to_merge, to_fan, to_verify] = run.stages([1.5, 6.0, 1.7, 0.6, 1.0]);
     // Blocks whose normals change evenly are settled as a whole.
     let even = even_blocks(samples, &to_look)?;
     let proposed = (0..even.len()).map(|n| match even[n] {
@@ -133,7 +140,11 @@ pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) ->
     let joined = Joined::new(samples, proposed.collect());
     let special = Special::find(samples, sampler, (&even, &joined), &to_find)?;
     let regions = regions(samples, &special, &joined, &to_merge)?;
-    Ok(Found::Fans(Box::new(Fans::new(samples, special, regions, &to_fan)?)))
+    let mut fans = Fans::new(samples, special, regions, &to_fan)?;
+    fans.verify(samples, sampler, &to_verify)?;
+    fans.count_triangles();
+    fans.turn((samples, sampler), &to_verify)?;
+    Ok(Found::Fans(Box::new(fans)))
 }
 
 /// The upper ambiguous faces of a block's cells that would rather be joined, but those of plain blocks.
@@ -172,7 +183,8 @@ impl Fans {
             in_regions.extend(region.segments);
             let (list, segments) = (all.segments.len() as u32, start..in_regions.len() as u32);
             let block = region.block as u32;
-            all.fans.push(Fan { list, segments, block, span: region.span, at: region.at, normal });
+            let (span, at) = (region.span, region.at);
+            all.fans.push(Fan { list, segments, block, span, at, normal, is_loose: false, half: None });
         }
         all.segments.push(in_regions);
         taken.sort_unstable();
@@ -192,7 +204,8 @@ impl Fans {
                 let Range { start, end } = candidate.range();
                 let (list, segments) = (list_of(block), start as u32..end as u32);
                 let (at, normal) = (candidate.position, candidate.normal);
-                all.fans.push(Fan { list, segments, block: block as u32, span, at, normal });
+                let (block, is_loose) = (block as u32, candidate.misfit > MISFIT);
+                all.fans.push(Fan { list, segments, block, span, at, normal, is_loose, half: None });
             }
             numbers.iter().for_each(|&number| cells.insert(number));
             let (start, order) = (all.cells.len(), CellOrder::new(cells));
@@ -211,11 +224,23 @@ impl Fans {
         }
         all.free.sort_unstable();
         all.plain = special.into_plain();
-        all.vertices = samples.vertices().wrapping_add(all.plain.tops[0].len() as u32);
-        let triangles = |fans: &[Fan]| fans.iter().map(|fan| fan.segments.len()).sum();
-        all.counts = all.fans.chunks(AT_ONCE).map(triangles).collect();
-        all.turn(samples, run)?;
+        all.first_third = samples.vertices().wrapping_add(all.plain.tops[0].len() as u32);
         Ok(all)
+    }
+
+    /// Where a vertex of a loop is.
+    #[inline]
+    pub(super) fn position(&self, samples: &Samples<'_>, vertex: u32) -> Vec3 {
+        match vertex.checked_sub(self.first_third) {
+            Some(third) => self.thirds[third as usize].0,
+            None => samples.position(vertex),
+        }
+    }
+
+    /// Counts the triangles, when all loops are known.
+    fn count_triangles(&mut self) {
+        let triangles = |fans: &[Fan]| fans.iter().map(|fan| fan.segments.len()).sum();
+        self.counts = self.fans.chunks(AT_ONCE).map(triangles).collect();
     }
 
     /// The number of the vertex that is added as `nth`: those of fans come first, then points of creases.
@@ -223,7 +248,7 @@ impl Fans {
     fn number(&self, nth: u32) -> u32 {
         match self.free.get(nth as usize) {
             Some(&free) => free,
-            None => self.vertices + (nth - self.free.len() as u32),
+            None => self.first_third + self.thirds.len() as u32 + (nth - self.free.len() as u32),
         }
     }
 
@@ -243,7 +268,7 @@ impl Fans {
 
     /// How many vertices are added to those on edges, at most.
     pub(super) fn count(&self) -> usize {
-        self.plain.tops[0].len() + self.fans.len() + self.points.len()
+        self.plain.tops[0].len() + self.thirds.len() + self.fans.len() + self.points.len()
     }
 
     /// The vertices that are in no triangle, ascending.
@@ -258,6 +283,8 @@ impl Fans {
         normals.reserve_exact(added);
         positions.extend_from_slice(&self.plain.tops[0]);
         normals.extend_from_slice(&self.plain.tops[1]);
+        positions.extend(self.thirds.iter().map(|third| third.0));
+        normals.extend(self.thirds.iter().map(|third| third.1));
         let mut free = self.free.iter();
         let mut add = |at: Vec3, normal: Vec3| match free.next() {
             Some(&free) => (positions[free as usize], normals[free as usize]) = (at, normal),

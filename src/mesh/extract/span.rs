@@ -15,6 +15,11 @@ impl Span {
         Span { low: cell, high: [x + 1, y + 1, z + 1] }
     }
 
+    /// Whether it is one cell.
+    pub(super) fn is_single(&self) -> bool {
+        self.is_small(1)
+    }
+
     /// The smallest that holds both.
     pub(super) fn union(&self, other: &Span) -> Span {
         let low = std::array::from_fn(|axis| self.low[axis].min(other.low[axis]));

@@ -14,9 +14,11 @@
 //! Where the line a–b misses the rectangle, x is the point of it next to the line, and a vertex: the two loops
 //! are s–x–t there.
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3, Vec3A};
 use rayon::prelude::*;
 
+use super::Sampler;
+use super::probe::Probe;
 use super::samples::{Samples, cell_number, split_cell};
 use super::sharp::{AT_ONCE, Fan, Fans};
 use crate::mesh::feature::{INSET, Segment};
@@ -24,22 +26,26 @@ use crate::{Cancelled, Run};
 
 impl Fans {
     /// Finds out which edges between fans are turned, and to what.
-    pub(super) fn turn(&mut self, samples: &Samples<'_>, run: &Run) -> Result<(), Cancelled> {
+    pub(super) fn turn<S: Sampler>(
+        &mut self,
+        (samples, sampler): (&Samples<'_>, &S),
+        run: &Run,
+    ) -> Result<(), Cancelled> {
         let all = &*self;
-        let of_fans = |(n, fans): (usize, &[Fan])| {
+        let of_fans = |probe: &mut Probe<'_, S>, (n, fans): (usize, &[Fan])| {
             run.check()?;
             let mut found = Vec::with_capacity(fans.len());
             for (low, fan) in (n * AT_ONCE..).zip(fans) {
                 let ring = all.of(low);
                 // Of two fans the lower one sees to it.
                 let turns = |&nth: &usize| ring[nth].turns & (ring[nth].face % 2 == 1);
-                let turned = |nth| all.turned(samples, (low, fan), ring, nth);
+                let turned = |nth| all.turned(samples, probe, (low, fan), ring, nth);
                 found.extend((0..ring.len()).filter(turns).filter_map(turned));
             }
             Ok(found)
         };
         let found: Result<Vec<Vec<Turned>>, Cancelled> =
-            all.fans.par_chunks(AT_ONCE).enumerate().map(of_fans).collect();
+            all.fans.par_chunks(AT_ONCE).enumerate().map_init(|| Probe::new(samples, sampler), of_fans).collect();
         let fans = self.fans.len() as u32;
         for Turned { fans: [low, high], segments, at } in found?.into_iter().flatten() {
             let places = [(low, segments[0]), (high, segments[1])].map(|(fan, nth)| {
@@ -63,9 +69,10 @@ impl Fans {
 
     /// What the edge between two fans is turned to, at segment `nth` in the ring of the lower one, if it is: one that turns,
     /// in an upper face.
-    fn turned(
+    fn turned<S: Sampler>(
         &self,
         samples: &Samples<'_>,
+        probe: &mut Probe<'_, S>,
         (low, below): (usize, &Fan),
         ring: &[Segment],
         nth: usize,
@@ -76,6 +83,17 @@ impl Fans {
         cell[axis] += 1;
         let (block, within) = split_cell(cell);
         let high = self.of_cell(samples.find_near(below.block as usize, block)?, cell_number(within))?;
+        let next = |n: usize| ring.get(n + 1).unwrap_or(&ring[0]).from;
+        // Where a segment is in the ring of an upper fan, the other way round.
+        let within = |n: usize, high: u32| {
+            let others = self.of(high as usize);
+            let ends = |at: usize| (others[at].from, others.get(at + 1).unwrap_or(&others[0]).from);
+            (0..others.len()).find(|&at| ends(at) == (next(n), ring[n].from) && others[at].face + 1 == segment.face)
+        };
+        // A cell that is cut has two fans.
+        let twin = self.fans[high as usize].half.as_ref().map(|half| half.twin);
+        let (high, other) =
+            [Some(high), twin].into_iter().flatten().find_map(|high| Some((high, within(nth, high)?)))?;
         let above = &self.fans[high as usize];
         let (a, b) = (below.at.as_dvec3(), above.at.as_dvec3());
         // What the two have in common: a part of a plane of the lattice.
@@ -88,7 +106,7 @@ impl Fans {
         let across = [(axis + 1) % 3, (axis + 2) % 3];
         let is_straight = across.into_iter().all(|n| x[n] > first[n] + margin && x[n] < last[n] - margin);
         let flat = |p: DVec3| DVec2::new(p[across[0]], p[across[1]]);
-        let aim = flat(x);
+        let (aim, straight) = (flat(x), x);
         // A line that misses it is bent.
         let mut bent = Vec3::ZERO;
         let x = if is_straight {
@@ -103,6 +121,12 @@ impl Fans {
             bent[axis] = first[axis] as f32;
             flat(bent.as_dvec3())
         };
+        // It has to be in the part of the face that the halves of cells have.
+        let crossing = if is_straight { straight } else { bent.as_dvec3() };
+        let least = 4.0 * margin;
+        if [below, above].iter().filter_map(|fan| fan.half.as_ref()).any(|half| !half.has(crossing, least)) {
+            return None;
+        }
         // Where the segments are that both fans have in it.
         let is_shared = |n: &usize| {
             let cell = ring[*n].cell(below.span.low);
@@ -111,8 +135,7 @@ impl Fans {
                 && across.iter().all(|&n| (shared.low[n]..shared.high[n]).contains(&cell[n]))
         };
         let common = || (0..ring.len()).filter(is_shared);
-        let next = |n: usize| ring.get(n + 1).unwrap_or(&ring[0]).from;
-        let place = |vertex: u32| (vertex, flat(samples.get(vertex).0.as_dvec3()));
+        let place = |vertex: u32| (vertex, flat(self.position(samples, vertex).as_dvec3()));
         let ends = |n: usize| [place(ring[n].from), place(next(n))];
         // Most often there is no other.
         let is_alone = ring.iter().filter(|other| other.face == segment.face).count() == 1;
@@ -124,7 +147,8 @@ impl Fans {
         };
         // The first of those that are equally close.
         let is_closer = |n: usize| distance(n).total_cmp(&distance(nth)).then(n.cmp(&nth)).is_lt();
-        if !is_alone && others().any(|n| ring[n].turns && is_closer(n)) {
+        let is_between = |n: usize| above.half.is_none() || within(n, high).is_some();
+        if !is_alone && others().any(|n| ring[n].turns && is_closer(n) && is_between(n)) {
             return None;
         }
         // A point that is no closer to the line than the segment is not worth it.
@@ -140,11 +164,14 @@ impl Fans {
         if !(is_alone || others().all(is_clear)) {
             return None;
         }
-        // The same segment in the ring of the upper fan, the other way round.
-        let is_same = |other: &Segment| {
-            other.from == next(nth) && other.face + 1 == segment.face && other.cell(above.span.low) == cell
-        };
-        let other = self.of(high as usize).iter().position(is_same)?;
+        if !is_straight {
+            // A point off the surface is worse than none.
+            let step = probe.step;
+            let place = Vec3A::from(bent - samples.node(below.span.low)) / step;
+            if probe.is_off(below.block as usize, &below.span, place) {
+                return None;
+            }
+        }
         let segments = [nth as u16, other as u16];
         Some(Turned { fans: [low as u32, high], segments, at: (!is_straight).then(|| Box::new(bent)) })
     }
