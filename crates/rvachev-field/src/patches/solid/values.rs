@@ -197,10 +197,6 @@ impl AnyField for MeshLeaf {
         if self.is_open() { 64 } else { 8 }
     }
 
-    fn takes_short(&self) -> bool {
-        true
-    }
-
     fn is_colored(&self) -> bool {
         self.colors.is_some()
     }

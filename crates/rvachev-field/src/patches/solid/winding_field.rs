@@ -161,10 +161,6 @@ impl AnyField for Winding {
     fn cost(&self) -> usize {
         8
     }
-
-    fn takes_short(&self) -> bool {
-        true
-    }
 }
 
 impl Winding {
