@@ -172,9 +172,17 @@ impl Tally {
                 let from = if let Answer::Hit(t) = answer { t } else { far };
                 let on_the_way = (0..=64).map(|i| from + f64::from(i) / 64.0 * (found - from));
                 let is_level = |t: f64| program.value(origin + t * direction).abs() <= 1e-15 * size;
-                let inside = |t: f64| program.value(origin + t * direction) > 0.0;
+                let value = |t: f64| program.value(origin + t * direction);
+                let inside = |t: f64| value(t) > 0.0;
                 let crosses = [1e-12, 1e-10, 1e-8].iter().any(|d| inside(found - d * size) != inside(found + d * size));
-                if found < from && crosses {
+                // Where it goes inside for less than the shortest of pieces either answer will do.
+                let is_brief = from < far && inside(from - 1e-5 * size) == inside(from + 1e-5 * size);
+                // In a face it is inside or outside by rounding.
+                let in_face =
+                    from < far && (1..32).all(|i| value(from + f64::from(i) * 1e-4 * size).abs() <= 1e-14 * size);
+                if in_face {
+                    self.level += 1;
+                } else if found < from && crosses || is_brief {
                     self.thin += 1;
                 } else if grazes {
                     self.grazing += 1;
