@@ -13,7 +13,7 @@ fn part(random: &mut Random) -> Solid {
     for _ in 0..3 {
         let pin = Solid::cylinder(random.range(0.3, 0.7), random.range(1.5, 4.0));
         let turned = if random.chance(0.5) { pin } else { pin.rotate_y(rvachev::deg(90.0)) };
-        part = part | turned.translate(random.vector(-1.2, 1.2));
+        part |= turned.translate(random.vector(-1.2, 1.2));
     }
     part
 }
