@@ -41,7 +41,7 @@ impl Bent {
         let r = p.dot(u);
         let gamma = k * q.z;
         let along = u * ((1.0 - (1.0 - k * r) * gamma.cos()) / k - r);
-        self.base.to_world((p + along).extend((1.0 - k * r) * gamma.sin() / k))
+        self.base.placed((p + along).extend((1.0 - k * r) * gamma.sin() / k))
     }
 
     pub fn contains(&self, p: DVec3) -> bool {
