@@ -32,9 +32,8 @@
 //!
 //! Of 200 random solids (exponents 0.1 to 1.9, semi-axes 0.5 to 3, 1000 points and what is
 //! strewn about them), so many per cent come out with a mean distance of the surfaces of 2 % or
-//! 1 % of (a₁a₂a₃)^⅓ at most; beside them the best published method of each row as its authors
-//! and their successors report it (EMS and variants; 9.5 and 65.5 without a prior, told the
-//! truth 97 for 60 % outliers):
+//! 1 % of (a₁a₂a₃)^⅓ at most; beside them what the best published method (EMS and its variants)
+//! reached on such clouds. Of 60 % outliers it reached 97 where it was told their share:
 //!
 //! | condition | ≤ 2 % | ≤ 1 % | median distance | points evaluated | published ≤ 2 % |
 //! |---|---|---|---|---|---|
