@@ -17,8 +17,10 @@ use rvachev::fit::{FitSettings, Shape, superellipsoid};
 use rvachev::range_image::{Coordinates, Noise};
 use rvachev::{Bounds, Camera, PointCloud, RenderSettings, Solid, Superellipsoid, deg};
 
-/// Semi-axes, exponents, place and turn of the objects, in centimetres and degrees.
-const OBJECTS: [([f64; 3], [f64; 2], [f64; 2], f64); 6] = [
+/// Semi-axes, exponents, place on the table and turn about z, in centimetres and degrees.
+type Object = ([f64; 3], [f64; 2], [f64; 2], f64);
+
+const OBJECTS: [Object; 6] = [
     ([4.0, 4.0, 5.0], [0.1, 1.0], [-14.0, 8.0], 0.0),
     ([5.0, 3.0, 2.5], [0.2, 0.2], [0.0, 10.0], 30.0),
     ([3.5, 3.5, 3.5], [1.0, 1.0], [13.0, 8.0], 0.0),
@@ -115,7 +117,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             [e1, e2],
             fit.noise()
         );
-        found = found | fit.solid().paint([220, 140, 40]);
+        found |= fit.solid().paint([220, 140, 40]);
     }
     let settings = RenderSettings { width: 640, height: 480, ..RenderSettings::default() };
     for (name, solid) in [("grasp_scene.png", &scene), ("grasp_found.png", &found)] {

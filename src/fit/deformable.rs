@@ -35,7 +35,7 @@ const TURN: f64 = PI;
 const ARC: f64 = 2.8;
 
 /// How near the solid may come to the centre of curvature, in proportion.
-const NEAR: f64 = 0.95;
+const NEAR: f64 = 0.98;
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Deformable {
@@ -156,7 +156,9 @@ impl Deformable {
     fn bent_validly(mut self) -> Deformable {
         let a = self.base.semi_axes;
         let [x, y] = [a.x * (1.0 + self.taper[0].abs()), a.y * (1.0 + self.taper[1].abs())];
-        let most = (NEAR / x.hypot(y)).min(ARC / a.z);
+        // The twisted solid's box is what must keep clear: a square, seen along the bend.
+        let toward = self.bend.try_normalize().map_or(1.0, |u| u.x.abs() + u.y.abs());
+        let most = (NEAR / (x.hypot(y) * toward)).min(ARC / a.z);
         self.bend = self.bend.clamp_length_max(most);
         self
     }

@@ -13,6 +13,7 @@ use rayon::prelude::*;
 
 use super::check::check_depth;
 use super::covariance::Covariance;
+use super::density::dense;
 use super::error::FitError;
 use super::linear::{Principal, median, solved};
 use super::random::Random;
@@ -226,7 +227,8 @@ impl Model<'_> {
 
     /// The 24 rotations of the principal axes of points to those of the solid.
     fn starts(&self, points: &[DVec3]) -> Vec<Pose> {
-        let frame = Principal::of(points.iter().copied());
+        // Strewn points would turn the axes, and make the scan seem larger.
+        let frame = Principal::of(dense(points).kept.iter().map(|i| points[*i]));
         let scale = if self.scale { frame.variances.iter().sum::<f64>().sqrt() / self.size } else { 1.0 };
         let mut starts = Vec::new();
         for [i, j, k] in [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]] {

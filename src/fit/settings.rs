@@ -27,8 +27,8 @@ pub struct FitSettings {
 /// With which radii the search for a supershape begins.
 ///
 /// The published order is to begin with rational radii, and to take the exact ones when they differ
-/// by more than a tolerance or an exponent is above 4. A point is 1.2 times cheaper by them
-/// with all derivatives; fits come out no better, so the exact radii are the default.
+/// by more than a tolerance or an exponent is above 4. Fits come out no better and evaluate as many
+/// points ([the tables](super)), so the exact radii are the default.
 ///
 /// Source: Y. D. Fougerolle et al., *Rational supershapes for surface reconstruction*.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]

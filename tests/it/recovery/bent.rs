@@ -25,7 +25,8 @@ impl Bent {
             let height = base.semi_axes.z;
             let bend = DVec2::from_angle(random.range(0.0, 6.3)) * random.range(0.0, 1.0) / height;
             let reach = DVec2::new(1.0 + taper[0].abs(), 1.0 + taper[1].abs()) * base.semi_axes.truncate();
-            if bend.length() * reach.length() < 0.9 {
+            // What is valid as a solid: the box of the twisted solid keeps clear of the centre of curvature.
+            if (bend.x.abs() + bend.y.abs()) * reach.length() < 0.9 {
                 return Bent { base, taper, twist: random.range(-twist, twist.max(1e-12)) / height, bend };
             }
         }
@@ -40,7 +41,7 @@ impl Bent {
         let r = p.dot(u);
         let gamma = k * q.z;
         let along = u * ((1.0 - (1.0 - k * r) * gamma.cos()) / k - r);
-        self.base.to_world((p + along).extend((1.0 - k * r) * gamma.sin() / k))
+        self.base.placed((p + along).extend((1.0 - k * r) * gamma.sin() / k))
     }
 
     pub fn contains(&self, p: DVec3) -> bool {

@@ -81,7 +81,7 @@ impl Quadric {
         self.local_gauge(self.rotation.transpose() * (p - self.center))
     }
 
-    pub fn to_world(&self, q: DVec3) -> DVec3 {
+    pub fn placed(&self, q: DVec3) -> DVec3 {
         self.rotation * q + self.center
     }
 
@@ -233,7 +233,7 @@ pub fn cloud(truth: &Quadric, condition: Condition, count: usize, random: &mut R
     while points.len() < count && tries < 8 * count {
         tries += usize::from(condition.view);
         let (point, normal) = surface.sample(random);
-        let point = truth.to_world(point / truth.local_gauge(point));
+        let point = truth.placed(point / truth.local_gauge(point));
         if condition.view {
             if random.unit() < (truth.rotation * normal).dot(view) {
                 points.push(point + noise * self::normal(random) * view);
@@ -269,7 +269,7 @@ pub fn mean_distance(truth: &Quadric, found: &Quadric, samples: usize, random: &
     let surfaces = [truth, found].map(|quadric| {
         let mut surface = quadric.mesh(12);
         for v in &mut surface.vertices {
-            *v = quadric.to_world(*v);
+            *v = quadric.placed(*v);
         }
         let points: Vec<DVec3> = (0..samples)
             .map(|_| {

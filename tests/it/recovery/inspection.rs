@@ -20,10 +20,8 @@ fn scan(solid: &Solid, noise: f64) -> PointCloud {
     let settings = MeshSettings { cell: CellSize::Length(0.25), ..MeshSettings::default() };
     let mesh = solid.mesh(&settings).unwrap();
     let mut random = Random::new(6);
-    let points = mesh.triangles().iter().map(|t| {
-        let corners = t.map(|v| mesh.positions()[v as usize].as_dvec3());
-        corners.iter().sum::<DVec3>() / 3.0 + noise * normals(&mut random)
-    });
+    // Vertices are on the surface; the middles of triangles are not where it is curved.
+    let points = mesh.positions().iter().map(|p| p.as_dvec3() + noise * normals(&mut random));
     PointCloud::new(points.collect()).unwrap()
 }
 

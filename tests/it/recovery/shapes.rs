@@ -82,10 +82,6 @@ impl Shaped {
         u.hypot(q.z) / radius(q.z.atan2(u), self.m2, self.n2)
     }
 
-    pub fn gauge(&self, p: DVec3) -> f64 {
-        self.local_gauge(self.rotation.transpose() * (p - self.center))
-    }
-
     fn mesh(&self) -> Surface {
         const AROUND: u32 = 360;
         const ALONG: u32 = 90;
