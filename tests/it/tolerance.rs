@@ -60,7 +60,7 @@ fn bar() -> Solid {
 
 /// Many bars, whose surface takes a second or more to measure to `tolerance`.
 fn comb(tolerance: f64) -> Solid {
-    let bars = (0..40).map(|n| bar().translate([f64::from(n) * 1.7, 0.0, 0.0]));
+    let bars = (0..12).map(|n| bar().translate([f64::from(n) * 1.7, 0.0, 0.0]));
     Solid::union_all(bars, RFunction::MIN_MAX).offset(0.2).with_tolerance(tolerance)
 }
 
@@ -295,7 +295,7 @@ fn preparing_is_told_and_kept() -> Outcome {
 fn preparing_is_cancelled_at_once_and_may_be_done_again() -> Outcome {
     let solid = comb(FINE);
     let mut lags = Vec::new();
-    for after in (1..12).map(|n| Duration::from_millis(130 * n)) {
+    for after in (1..9).map(|n| Duration::from_millis(70 * n)) {
         let (result, lag) = lag(&Run::default(), after, |run| solid.prepare(run));
         match result {
             Ok(_) => break,
