@@ -125,6 +125,35 @@ fn meshes_without_triangles_are_errors() {
 }
 
 #[test]
+fn meshes_of_any_kind_are_taken() {
+    let turned_over = |mesh: &Mesh| {
+        let triangles = mesh.triangles().iter().map(|[a, b, c]| [*a, *c, *b]).collect();
+        Mesh::new(mesh.positions().to_vec(), triangles).unwrap()
+    };
+    // Inside out, a single triangle, and triangles without area: nothing is inside.
+    let inside_out = turned_over(&block([0.0; 3], [1.0; 3]));
+    let single = mesh(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2]]);
+    let thread = mesh(vec![Vec3::ZERO, Vec3::X, 2.0 * Vec3::X], vec![[0, 1, 2], [0, 0, 1], [2, 1, 0]]);
+    let point = mesh(vec![Vec3::ONE], vec![[0, 0, 0]]);
+    for mesh in [inside_out, single, thread, point] {
+        let solid = solid(&mesh);
+        for p in [[0.3, 0.3, 0.3], [1.0, 1.0, 1.0], [0.3, 0.3, -1e-3], [0.3, 0.0, 0.0]] {
+            assert!(!solid.contains(p).unwrap() && solid.value(p).unwrap().is_finite());
+        }
+        // What has no size has no cells.
+        if mesh.bounds().longest_side() > 0.0 {
+            assert_eq!(meshed(&solid, 12).triangles().len(), 0);
+        }
+    }
+    // However large or small.
+    for size in [1e-6, 1e6, 1e12, 1e30] {
+        let solid = solid(&block([-size; 3], [size; 3]));
+        let value = solid.value([0.0, 0.0, f64::from(size) * 0.5]).unwrap();
+        assert!(value > 0.0 && value.is_finite(), "{value} of {size}");
+    }
+}
+
+#[test]
 fn colors_are_kept() {
     let block = block([-1.0; 3], [1.0; 3]);
     let middle = |t: &[u32; 3]| t.iter().map(|v| block.positions()[*v as usize]).sum::<Vec3>() / 3.0;
