@@ -128,9 +128,14 @@ impl Mesh {
             let place =
                 lost_at.first().map_or(String::new(), |at| format!(", the first of them near {}", point(*at, *cell)));
             let than = if *cell > 0.0 { format!(" ({})", figures(*cell, 5)) } else { String::new() };
+            let half = if *cell > 0.0 {
+                format!(", as `CellSize::Length({})`,", figures(0.5 * cell, 3))
+            } else {
+                String::new()
+            };
             warnings.push(format!(
                 "{empty}features thinner than a cell{than} may be lost in {possibly_lost} {blocks} of cells{place}; \
-                 mesh with smaller cells or `ThinFeatures::Refine`, or ask `Solid::thin_features` where they are"
+                 mesh with smaller cells{half} or `ThinFeatures::Refine`, or ask `Solid::thin_features` where they are"
             ));
         }
         if let Some([found, wanted]) = deviation.filter(|[found, wanted]| found > wanted) {
@@ -144,9 +149,11 @@ impl Mesh {
             let places = if thin.count == 1 { "1 place is" } else { &format!("{} places are", thin.count) };
             let size =
                 place.thickness.map_or("of unknown thickness".to_owned(), |t| format!("about {} thick", figures(t, 4)));
+            let half =
+                place.thickness.map_or(String::new(), |t| format!(", as `CellSize::Length({})`,", figures(0.5 * t, 3)));
             warnings.push(format!(
                 "{places} thinner than cells show, the largest near {}, {size}; \
-                 cells of half the thickness show it",
+                 cells of half the thickness{half} show it",
                 point(place.position, thin.cell)
             ));
         }
@@ -169,11 +176,15 @@ mod tests {
         let said = warnings(lost.clone());
         assert!(said[0].starts_with("the mesh is empty, and features thinner than a cell (0.5)"), "{said:?}");
         assert!(said[0].contains("3 blocks of cells, the first of them near (1, 2, -0.5)"), "{said:?}");
+        assert!(said[0].contains("mesh with smaller cells, as `CellSize::Length(0.25)`, or"), "{said:?}");
         let place = ThinPlace { position: DVec3::X, size: DVec3::ONE, thickness: Some(0.125), cells: 7 };
         let thin = Some(ThinReport { cell: 0.5, cells: 7, count: 1, places: vec![place] });
         let said = warnings(Findings { thin, ..lost.clone() });
         assert!(
-            said[1].starts_with("1 place is thinner than cells show") && said[1].contains("0.125 thick"),
+            said[1].starts_with("1 place is thinner than cells show")
+                && said[1].ends_with(
+                    "about 0.125 thick; cells of half the thickness, as `CellSize::Length(0.0625)`, show it"
+                ),
             "{said:?}"
         );
         // A copy that is moved keeps the count, and no place.
