@@ -4,38 +4,32 @@
 //! compiled once. Parameters are checked on the way, and boxes are put together from the
 //! leaves up.
 
+mod blends;
 mod boxes;
+mod check;
+mod leaves;
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use glam::{DAffine3, DVec3};
-
 use super::accuracy::Accuracy;
-use super::apart::{Near, Work, measure, measured, works};
-use super::bevel::Bevel;
-use super::chamfer::Chamfer;
+use super::apart::{Work, measure, measured, works};
 use super::coat::Coat;
-use super::code::{Built, Code, grow, snug};
-use super::context::{Contexts, is_similarity, least_stretch};
+use super::code::{Built, Code, snug};
+use super::context::Contexts;
 use super::exact::Exactness;
 use super::extent::extent;
-use super::fill::{Fill, Side, Signed};
 use super::fit::fit;
 use super::flatten::flatten;
 use super::moved_in::is_loose;
-use super::nothing::Nothing;
 use super::palette::Palette;
-use super::program::{Edge, Kind, Program};
-use super::scene::{Instance, Scene};
+use super::program::{Edge, Program};
+use super::scene::Scene;
 use super::sides::Sides;
-use super::source::{CompileError, DistanceSource, Measured};
-use super::swell::Swell;
+use super::source::{CompileError, DistanceSource};
 use crate::solid::{self, Length, Operation};
-use crate::{Blend, Bounds, Cancelled, ParamError, Run, Solid, SolidError};
-use rvachev_field::Op;
-use rvachev_field::{AnyField, AnyWarp, Placement, Rule, largest_stretch};
-use rvachev_num::column_times;
+use crate::{Bounds, Cancelled, ParamError, Run, Solid, SolidError};
+use rvachev_field::{AnyWarp, Rule};
 
 /// A solid's programs.
 pub(crate) struct Compiled {
@@ -47,11 +41,6 @@ pub(crate) struct Compiled {
     pub(crate) unbounded: String,
     pub(crate) accuracy: Accuracy,
 }
-
-/// Fillets are this much smaller, in radii, so that flush faces stay as they are; and no smaller than that
-/// for what measuring may be off.
-const FLUSH: f64 = 1e-5;
-const LARGEST_MARGIN: f64 = 1e-3;
 
 impl Compiled {
     /// The axis along which the solid is a column without end: the one axis that its box is infinite
@@ -256,7 +245,7 @@ impl<'e> Compiler<'e> {
             return Err(SolidError::TooLarge { nodes: self.built.len(), limit: LIMIT });
         }
         self.built.insert(key, None);
-        check(site.solid.node()).map_err(|e| self.parameter(site, e))?;
+        check::check_node(site.solid.node()).map_err(|e| self.parameter(site, e))?;
         let operands = site.solid.node().parts();
         if let (solid::Node::Join { .. } | solid::Node::Blend { .. }, []) = (site.solid.node(), operands) {
             return Err(SolidError::EmptyJoin { path: self.scene.trail.path(site.step) });
@@ -376,258 +365,4 @@ impl<'e> Compiler<'e> {
         let sides = Sides { inside, outside };
         Ok(Built { sides, swell: inner.swell.mapped(outward), ..inner })
     }
-
-    fn blended(
-        &mut self,
-        site: Site<'_>,
-        operation: Operation,
-        blend: Blend,
-        below: &[Built],
-    ) -> Result<Built, SolidError> {
-        let context = *self.contexts.get(site.context);
-        let (scale, frame) = (context.scale, context.frame);
-        let op = operation.op();
-        if let Blend::Fillet { radius } = blend {
-            let fills = self.fills(site, operation, radius);
-            return Ok(self.filled(site, operation, below, &fills));
-        }
-        let &[first, second] = below else {
-            return Err(SolidError::EmptyJoin { path: self.scene.trail.path(site.step) });
-        };
-        let pair = [first, second];
-        match blend {
-            Blend::Smooth { radius } => {
-                let width = radius * scale;
-                let inside = if op == Op::Or { self.smooth_union(site, width, pair) } else { Bounds::ALL };
-                Ok(self.code.smooth(operation, width, frame, pair, inside))
-            }
-            Blend::Displacement { height, falloff } => {
-                let inverse = falloff.map(|f| 1.0 / (f * scale));
-                let height = height * scale;
-                // The disjunction of equal values −c is −(2 − √2) c.
-                let rise = if op == Op::Or { height / (2.0 - std::f64::consts::SQRT_2) } else { height };
-                let risen = self.risen(site, [rise; 2]);
-                Ok(self.code.displacement(operation, height, inverse, frame, pair, risen))
-            }
-            Blend::Ricci { p } => {
-                let [Some(first), Some(second)] = pair.map(|b| b.gauge) else {
-                    let position = usize::from(pair[0].gauge.is_some());
-                    return Err(SolidError::NoGauge { path: self.scene.trail.path(site.step), operand: position });
-                };
-                // Two gauges of 2^(1/p) make one of 1.
-                let beyond = (1.0 / p).exp2() - 1.0;
-                let risen = self.risen(site, [first * beyond, second * beyond]);
-                Ok(self.code.ricci(operation, p, [first, second], frame, pair, risen))
-            }
-            Blend::Chamfer { leg } => {
-                let face = self.chamfered(site, operation, leg)?;
-                Ok(self.filled(site, operation, below, &face))
-            }
-            _ => Ok(self.code.operation(operation, Rule::MinMax, frame, below)),
-        }
-    }
-
-    /// What a fillet adds between the operands of a node, or of a complement's.
-    fn fills(&mut self, site: Site<'_>, operation: Operation, radius: f64) -> Vec<Built> {
-        let Some(measured) = measured(site.solid) else { return Vec::new() };
-        let is_union = operation == Operation::Union;
-        let margin = margin(site.solid, &measured, radius);
-        let ball = Signed { field: measured.field, sign: if is_union { 1.0 } else { -1.0 } };
-        let solid::Node::Blend { blend, operands, .. } = site.solid.node() else {
-            let whole = kept(&site.solid.node().operands()[0]).map_or(Bounds::EMPTY, |programs| programs.bounds);
-            // What is taken away goes on beyond the surface: values are 0 where the new one is, and nowhere else.
-            let (bounds, hull) = if is_union { (whole, whole) } else { (whole.inflate(radius), Bounds::ALL) };
-            let fill = Fill::new(radius, ball, Vec::new(), margin).within(vec![bounds], hull);
-            return vec![self.made(&(Arc::new(fill) as Arc<dyn AnyField>), site, 0.0)];
-        };
-        let near = Near::of(operation, *blend, operands);
-        if near.boxes.is_empty() {
-            return Vec::new();
-        }
-        let Near { boxes, hull, around, .. } = near;
-        let side = |(number, field): (usize, &Arc<dyn AnyField>)| {
-            let is_outside = is_union || operation == Operation::Difference && number > 0;
-            let sign = if is_outside { -1.0 } else { 1.0 };
-            Side { distance: Signed { field: field.clone(), sign }, bounds: around[number] }
-        };
-        let sides = measured.sides.iter().enumerate().map(side).collect();
-        let fill = Fill::new(radius, ball, sides, margin).within(boxes, hull);
-        vec![self.made(&(Arc::new(fill) as Arc<dyn AnyField>), site, 0.0)]
-    }
-
-    /// The face of a chamfer, cut off where a ball reaches that rolls along the operands.
-    fn chamfered(&mut self, site: Site<'_>, operation: Operation, leg: f64) -> Result<Vec<Built>, SolidError> {
-        let solid::Node::Blend { blend, operands, .. } = site.solid.node() else { return Ok(Vec::new()) };
-        let [a, b] = [self.alone(site, &operands[0])?, self.alone(site, &operands[1])?];
-        let signs = match operation {
-            Operation::Union => [1.0, 1.0],
-            Operation::Difference => [-1.0, 1.0],
-            _ => [-1.0, -1.0],
-        };
-        let Some(measured) = measured(site.solid) else { return Ok(Vec::new()) };
-        let steepest = [&a.surface, &b.surface].map(steepest);
-        let chamfer = Chamfer { leg, steepest: steepest[0].max(steepest[1]) };
-        let frame = self.contexts.get(site.context).frame;
-        let near = Near::of(operation, *blend, operands);
-        let Some(bounds) = near.boxes.first().copied() else { return Ok(Vec::new()) };
-        let bevel: Arc<dyn AnyField> =
-            Arc::new(Bevel::new([a.surface.clone(), b.surface.clone()], signs, chamfer, bounds));
-        let ball =
-            Signed { field: measured.field.clone(), sign: if operation == Operation::Union { 1.0 } else { -1.0 } };
-        let margin = margin(site.solid, &measured, near.radius);
-        let fill: Arc<dyn AnyField> =
-            Arc::new(Fill::new(near.radius, ball, Vec::new(), margin).within(near.boxes, near.hull));
-        let both = [self.made(&bevel, site, 0.0), self.made(&fill, site, 0.0)];
-        Ok(vec![self.code.operation(Operation::Intersection, Rule::MinMax, frame, &both)])
-    }
-
-    /// A join of operands with what is added to it, or, for intersections and differences, taken away.
-    fn filled(&mut self, site: Site<'_>, operation: Operation, below: &[Built], fills: &[Built]) -> Built {
-        let frame = self.contexts.get(site.context).frame;
-        let join = self.code.operation(operation, Rule::MinMax, frame, below);
-        let all: Vec<Built> = [join].into_iter().chain(fills.iter().copied()).collect();
-        let operation = if operation == Operation::Union { operation } else { Operation::Difference };
-        self.code.operation(operation, Rule::MinMax, frame, &all)
-    }
-
-    fn leaf(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>) -> Built {
-        let shift = self.contexts.get(site.context).shift.unwrap_or(0.0);
-        self.shifted(field, site, shift)
-    }
-
-    /// The surface of a length's operand as a leaf, its distance moved by `by`.
-    fn measured(&mut self, site: Site<'_>, by: f64) -> Built {
-        match measured(site.solid) {
-            Some(Measured { field, .. }) => self.made(&field, site, by),
-            None => self.nothing(site),
-        }
-    }
-
-    fn nothing(&mut self, site: Site<'_>) -> Built {
-        let nothing: Arc<dyn AnyField> = Arc::new(Nothing);
-        self.shifted(&nothing, site, 0.0)
-    }
-
-    /// A leaf that is made of a node's operands and has their paint, its value moved by `by`.
-    fn made(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>, by: f64) -> Built {
-        self.coats.insert(self.scene.leaves.len() as u32, Coat::of(site.solid));
-        let matrix = &self.contexts.get(site.context).forward.matrix3;
-        // The largest of a map that stretches all directions alike is known to the last bit.
-        let stretch = if is_similarity(matrix) { least_stretch(matrix) } else { largest_stretch(matrix) };
-        if let Some(measured) = measured(site.solid) {
-            self.accuracy = self.accuracy.max(measured.accuracy.times(stretch));
-        }
-        let context = self.contexts.get(site.context);
-        let shift = context.shift.unwrap_or(0.0) + by * context.scale;
-        self.shifted(field, site, shift)
-    }
-
-    fn shifted(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>, shift: f64) -> Built {
-        let (leaf, growth) = self.place(field, site, shift);
-        let inside = self.scene.leaves[leaf as usize].bounds;
-        let edge = self.code.push(Kind::Leaf(leaf), &[]);
-        // Another level of the values is another surface.
-        let of_surface = if shift == 0.0 { field.of_surface() } else { None };
-        let surface = of_surface.map_or(edge, |field| {
-            let (leaf, _) = self.place(&field, site, shift);
-            self.code.push(Kind::Leaf(leaf), &[])
-        });
-        let context = self.contexts.get(site.context);
-        Built {
-            field: edge,
-            surface,
-            sides: Sides { inside, outside: Bounds::ALL },
-            swell: Swell::of(inside, growth),
-            gauge: field.gauge_radius().filter(|_| context.shift.is_none()).map(|radius| radius * context.scale),
-        }
-    }
-
-    /// Adds a leaf to the scene: its number, and how much its box grows per unit of value.
-    fn place(&mut self, field: &Arc<dyn AnyField>, site: Site<'_>, shift: f64) -> (u32, DVec3) {
-        let context = *self.contexts.get(site.context);
-        let (axes, unit) = (context.forward.matrix3.abs(), field.growth());
-        let growth = (0..3).map(|axis| column_times(axes.col(axis), unit[axis])).sum::<DVec3>() / context.scale;
-        let mut bounds = snug(field.bounds_under(&context.forward));
-        // A distance is no larger than that to the sides of the box.
-        if shift > 0.0 || shift < 0.0 && field.exact() && is_similarity(&context.forward.matrix3) {
-            bounds = grow(&bounds, growth * shift);
-        }
-        let number = self.scene.leaves.len() as u32;
-        self.scene.leaves.push(Instance {
-            number,
-            field: field.clone(),
-            frame: context.frame,
-            to_local: context.to_local,
-            placement: Placement::new(&context.to_local, context.scale, shift),
-            bounds,
-            step: site.step,
-        });
-        (number, growth)
-    }
-}
-
-/// How much smaller a fillet of a radius is.
-fn margin(solid: &Solid, measured: &Measured, radius: f64) -> f64 {
-    let largest = solid.node().tolerance().unwrap_or(0.0).max(LARGEST_MARGIN * radius);
-    (measured.accuracy.error + FLUSH * radius).min(largest)
-}
-
-/// How steep the values of a solid are taken to be.
-fn steepest(program: &Program) -> f64 {
-    if program.scene.leaves.iter().all(|leaf| leaf.field.exact() && leaf.frame == 0) { 1.0 } else { 4.0 }
-}
-
-/// What can be said about a node by itself.
-fn check(node: &solid::Node) -> Result<(), ParamError> {
-    match node {
-        solid::Node::Leaf(field) => field.check(),
-        solid::Node::Affine { forward, label, .. } => check_affine(forward, label),
-        solid::Node::Join { rule, .. } => rule.check(),
-        solid::Node::Blend { blend, .. } => blend.check(),
-        solid::Node::Length { length, .. } => length.check(),
-        solid::Node::Painted { paint, .. } => paint.check(),
-        solid::Node::Toleranced { operand, tolerance, .. } => solid::check_tolerance(operand, *tolerance),
-        // A deformation is checked against what it deforms, a verb's parameters where it is built.
-        solid::Node::Warp { .. }
-        | solid::Node::Complement(_)
-        | solid::Node::Named { .. }
-        | solid::Node::Repeated { .. }
-        | solid::Node::Swept { .. }
-        | solid::Node::Rim { .. } => Ok(()),
-    }
-}
-
-fn check_affine(map: &DAffine3, label: &str) -> Result<(), ParamError> {
-    const LARGEST: f64 = 1e9;
-    for (axis, offset) in ["x", "y", "z"].into_iter().zip(map.translation.to_array()) {
-        if offset.is_nan() || offset.abs() > LARGEST {
-            let allowed = match label {
-                "on_ground" | "centered" => "-1e9 to 1e9, by a solid with a finite box",
-                "aligned" => "-1e9 to 1e9, by faces across the same axis of two solids with finite boxes",
-                _ => "-1e9 to 1e9",
-            };
-            return Err(ParamError::new(format_args!("translation.{axis}"), offset, allowed));
-        }
-    }
-    let name = match label {
-        "scale" => "factor",
-        "scale_axes" => "factors",
-        "rotate" => "rotation",
-        "rotate_about" => "axis or angle",
-        label if label.starts_with("rotate_") => "angle",
-        _ => "matrix",
-    };
-    if let Some(bad) = map.matrix3.to_cols_array().into_iter().find(|v| v.is_nan() || v.abs() > LARGEST) {
-        return Err(ParamError::new(format_args!("{name} (an entry of the matrix)"), bad, "-1e9 to 1e9"));
-    }
-    let least = if map.matrix3.determinant() == 0.0 { 0.0 } else { least_stretch(&map.matrix3) };
-    let most = 1.0 / if least > 0.0 { least_stretch(&map.matrix3.inverse()) } else { 1.0 };
-    if !(least >= 1e-9 && least >= 1e-9 * most) {
-        return Err(ParamError::new(
-            format_args!("{name} (smallest stretch)"),
-            if least.is_nan() { 0.0 } else { least },
-            "at least 1e-9, and at least 1e-9 of the largest (the map must be invertible)",
-        ));
-    }
-    Ok(())
 }
