@@ -306,7 +306,7 @@ fn chains_of_smooth_joins_keep_their_signs_to_the_bit() {
         let full = solid.surface_program().unwrap();
         assert_eq!(full.leaf_count(), links + 1);
         for _ in 0..30 {
-            let half = [0.5, 0.1, 0.02][random.below(3) as usize];
+            let half = [0.5, 0.1, 0.02][random.below(3)];
             let bounds = Bounds::from_center(random.vector(-1.2, 1.2), DVec3::splat(half));
             let region = full.narrow(&bounds);
             let mut points = samples(&mut random, &bounds, 20);
