@@ -67,15 +67,49 @@ impl Solid {
 /// The thickness at the middle of each triangle; infinite where nothing faces it, and of what has no area.
 fn thicknesses(mesh: &Mesh, run: &Run) -> Result<Vec<f64>, Cancelled> {
     let [to_build, to_search] = run.stages([0.2, 0.8]);
-    let flat: Vec<Patch> = mesh.triangles().iter().map(|t| Patch::flat(mesh.corners(*t))).collect();
     let normals: Vec<DVec3> = (0..mesh.triangles().len()).map(|t| normal(mesh, t)).collect();
-    let patches = Patches::new(&flat, &to_build)?;
+    let sides = sides(mesh, &normals, &to_build)?;
     let largest = 0.5 * mesh.bounds().size().length();
     each_triangle(mesh, &to_search, |nth, triangle| {
         let (p, n) = (mesh.corners(triangle).into_iter().sum::<DVec3>() / 3.0, normals[nth]);
-        let faces = |number: u32| normals[number as usize].dot(n) < FACING;
-        patches.inscribed(p, n, largest, SLACK, faces).map_or(f64::INFINITY, |radius| 2.0 * radius)
+        // Those that look back most make the ball small soonest.
+        let mut facing: Vec<(f64, &Side)> = sides.iter().map(|side| (side.axis.dot(n), side)).collect();
+        facing.retain(|(cosine, side)| cosine.clamp(-1.0, 1.0).acos() + side.spread > FACING.acos());
+        facing.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let radius = facing.into_iter().fold(largest, |radius, (_, side)| {
+            let faces = |number: u32| normals[side.triangles[number as usize] as usize].dot(n) < FACING;
+            side.patches.inscribed(p, n, radius, SLACK, faces).unwrap_or(radius)
+        });
+        if radius < largest { 2.0 * radius } else { f64::INFINITY }
     })
+}
+
+/// Triangles that look about one way: what does not face a point is passed over together.
+struct Side {
+    axis: DVec3,
+    /// The largest angle between the axis and a normal.
+    spread: f64,
+    triangles: Vec<u32>,
+    patches: Patches,
+}
+
+/// The triangles by which way they look, of 26: along an axis, between two, between three.
+fn sides(mesh: &Mesh, normals: &[DVec3], run: &Run) -> Result<Vec<Side>, Cancelled> {
+    let mut ways = vec![Vec::new(); 27];
+    for (number, normal) in (0u32..).zip(normals) {
+        let [x, y, z] = (normal / normal.abs().max_element()).to_array().map(|c| (c.round() + 1.0) as usize);
+        ways[x + 3 * (y + 3 * z)].push(number);
+    }
+    let stages = run.stages([1.0 / 27.0; 27]);
+    let side = |(triangles, run): (Vec<u32>, Run)| {
+        let own = triangles.iter().map(|t| normals[*t as usize]);
+        let axis = own.clone().sum::<DVec3>().normalize_or_zero();
+        let spread = own.map(|n| n.dot(axis).clamp(-1.0, 1.0).acos()).fold(0.0, f64::max);
+        let corners = |t: &u32| Patch::flat(mesh.corners(mesh.triangles()[*t as usize]));
+        let patches = Patches::new(&triangles.iter().map(corners).collect::<Vec<_>>(), &run)?;
+        Ok(Side { axis, spread, triangles, patches })
+    };
+    ways.into_iter().zip(stages).filter(|(way, _)| !way.is_empty()).map(side).collect()
 }
 
 /// The normal at the middle of a triangle: between those of its corners, as slim facets are turned from the surface;
