@@ -239,11 +239,15 @@ fn of_leaf(owner: Owner, numbers: &[usize], feet: &[Foot], points: &[DVec3]) -> 
     }
 }
 
+/// What coordinates and distances are rounded by, in proportion.
+const ROUNDING: f64 = 1e-12;
+
 /// The shift and the growth that explain the deviations, and how sure they are.
 fn moved(numbers: &[usize], feet: &[Foot]) -> Option<(DVec3, f64, f64)> {
     if numbers.len() < FEWEST {
         return None;
     }
+    let farthest = numbers.iter().map(|i| feet[*i].point.abs().max_element()).fold(0.0, f64::max);
     let row = |i: usize| [feet[i].normal.x, feet[i].normal.y, feet[i].normal.z, 1.0];
     let mut found = [0.0; 4];
     let mut noise = 0.0;
@@ -251,6 +255,8 @@ fn moved(numbers: &[usize], feet: &[Foot]) -> Option<(DVec3, f64, f64)> {
     for round in 0..4 {
         let rest = |i: usize| feet[i].off - row(i).iter().zip(found).map(|(a, b)| a * b).sum::<f64>();
         noise = NORMAL * quantile(&mut numbers.iter().map(|i| rest(*i).abs()).collect::<Vec<_>>(), 0.5);
+        // Rounding of coordinates is no deviation.
+        noise = noise.max(ROUNDING * farthest);
         let mut right = [0.0; 4];
         matrix = [[0.0; 4]; 4];
         for &i in numbers {

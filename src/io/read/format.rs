@@ -52,7 +52,9 @@ impl FileFormat {
 
     /// What a file holds, and by what its lengths are to be multiplied.
     fn read(self, input: impl Read, settings: &LoadSettings) -> Result<(Shape, f64), ReadError> {
-        let data = &settings.bytes(input)?[..];
+        let bytes = settings.bytes(input)?;
+        // Some programs put a mark before text in UTF-8.
+        let data = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
         let own = settings.scale(settings.file_unit);
         Ok(match self {
             FileFormat::Stl => (stl::read(data, settings)?, own),

@@ -42,7 +42,7 @@ pub(super) fn read(data: &[u8], settings: &LoadSettings) -> Result<(Shape, Lengt
         return Err(ReadError::content(FilePlace::Byte(0), format!("an archive with {name}"), "none"));
     };
     let model = Model::read(&text, &name, settings)?;
-    let mut parts = Parts { model: &model, settings, shapes: Vec::new(), triangles: 0, points: 0 };
+    let mut parts = Parts { model: &model, settings, shapes: Vec::new(), triangles: 0, points: 0, visited: 0 };
     for item in &model.items {
         parts.push(item.object, item.map, 0)?;
     }
@@ -99,6 +99,9 @@ fn target(relations: &str) -> Option<String> {
     }
 }
 
+/// An object counts as so many points at least.
+const LEAST_POINTS: usize = 100;
+
 /// The items, written out.
 struct Parts<'a> {
     model: &'a Model,
@@ -106,10 +109,15 @@ struct Parts<'a> {
     shapes: Vec<Shape>,
     triangles: usize,
     points: usize,
+    /// How many objects were gone to, each as often as it is.
+    visited: usize,
 }
 
 impl Parts<'_> {
     fn push(&mut self, id: u32, map: DAffine3, depth: usize) -> Result<(), ReadError> {
+        // A few objects without a mesh may stand for any number of themselves.
+        self.visited += 1;
+        self.settings.points(self.visited.saturating_mul(LEAST_POINTS))?;
         let Some(object) = self.model.objects.get(&id) else {
             return Err(self.model.wrong("an object that is there", format!("object {id}")));
         };

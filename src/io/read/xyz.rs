@@ -122,9 +122,9 @@ fn named(words: &[&[u8]], line: u64) -> Result<Columns, ReadError> {
 }
 
 fn words(text: &[u8]) -> Vec<&[u8]> {
-    let is_mark = |byte: &u8| matches!(byte, b',' | b';');
-    if text.iter().any(is_mark) {
-        return text.split(is_mark).map(<[u8]>::trim_ascii).take(MOST).collect();
+    // Where semicolons part the columns, commas are those of decimals, which are not understood.
+    if let Some(mark) = [b';', b','].into_iter().find(|mark| text.contains(mark)) {
+        return text.split(|byte| *byte == mark).map(<[u8]>::trim_ascii).take(MOST).collect();
     }
     text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).take(MOST).collect()
 }
