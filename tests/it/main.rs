@@ -1,6 +1,7 @@
 //! Integration tests: one binary, a module per subject.
 
 mod accuracy;
+mod battery;
 mod blends;
 mod bounds;
 mod building;

@@ -3,8 +3,6 @@
 //!
 //! The ignored test tries as many as are asked for: `SPICY_SEEDS=0..2000`.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
-
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 use rvachev::{
     Bounds, Camera, CancelToken, CellSize, MeshSettings, Plane, Progress, Run, Solid, catalogue,
@@ -13,6 +11,7 @@ use rvachev::{
     rad,
 };
 
+use super::battery::{Fault, run, seeds};
 use super::explicit_inputs::Chance;
 use super::form::shown;
 
@@ -131,42 +130,29 @@ fn use_all_ways(solid: &Solid) {
     }
 }
 
-fn run(seeds: std::ops::Range<u64>) {
-    let mut wrong = Vec::new();
-    let count = seeds.end - seeds.start;
-    for seed in seeds {
-        let mut chance = Chance(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) + 3);
-        let start = std::time::Instant::now();
-        let tried = catch_unwind(AssertUnwindSafe(|| {
-            let mut solid = next(&mut chance, None);
-            for _ in 0..chance.below(3) {
-                solid = next(&mut chance, solid.as_ref());
-            }
-            if let Some(solid) = solid {
-                use_all_ways(&solid);
-            }
-        }));
-        if let Err(panic) = tried {
-            let text = panic.downcast_ref::<String>().cloned();
-            let text = text.or_else(|| panic.downcast_ref::<&str>().map(|text| (*text).to_owned()));
-            wrong.push(format!("{seed}: {}", text.unwrap_or_default()));
-        }
-        if start.elapsed().as_secs() > 8 {
-            println!("{seed} took {:?}", start.elapsed());
-        }
+/// A solid of up to three random calls.
+fn solid(seed: u64) -> Option<Solid> {
+    let mut chance = Chance(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) + 3);
+    let mut solid = next(&mut chance, None);
+    for _ in 0..chance.below(3) {
+        solid = next(&mut chance, solid.as_ref());
     }
-    assert!(wrong.is_empty(), "{} of {count}:\n{}", wrong.len(), wrong.join("\n"));
+    solid
+}
+
+/// What does not hold panics.
+pub(super) fn check(solid: &Solid) -> Result<(), Fault> {
+    use_all_ways(solid);
+    Ok(())
 }
 
 #[test]
 fn entries_of_the_catalogue_take_any_numbers() {
-    run(0..150);
+    run(0..150, solid, check);
 }
 
 #[test]
 #[ignore = "takes minutes: SPICY_SEEDS=0..2000 chooses"]
 fn thousands_of_entries_take_any_numbers() {
-    let text = std::env::var("SPICY_SEEDS").unwrap_or_else(|_| "150..1000".to_owned());
-    let (from, to) = text.split_once("..").expect("a range, as 0..2000");
-    run(from.parse().unwrap()..to.parse().unwrap());
+    run(seeds("SPICY_SEEDS", 150..1000), solid, check);
 }

@@ -1,0 +1,128 @@
+//! Random solids of every entry of the catalogue, of about the size of 1.
+
+use rvachev::{
+    Solid, catalogue,
+    catalogue::{Call, Entry, Group, Operands, Parameter, Part, Value},
+    rad,
+};
+
+use crate::support::{Random, random_solid};
+use crate::zoo::random_profile;
+
+/// A solid for a seed; `None` where it would not be one.
+pub fn solid(seed: u64) -> Option<Solid> {
+    let mut random = Random::new(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) + 11);
+    let depth = random.below(4);
+    if random.chance(0.25) {
+        let solid = random_solid(&mut random, depth.min(2));
+        return Some(solid);
+    }
+    any(&mut random, depth).filter(|solid| solid.bounds().is_ok())
+}
+
+/// The same, cut to a ball if it has no end.
+pub fn bounded(seed: u64) -> Option<Solid> {
+    let solid = solid(seed)?;
+    let is_small = solid.bounds().is_ok_and(|bounds| bounds.is_finite() && bounds.longest_side() < 100.0);
+    Some(if is_small { solid } else { solid & Solid::sphere(2.5) })
+}
+
+/// A solid whose calls are up to `depth` + 1 deep, not counting moves.
+fn any(random: &mut Random, depth: usize) -> Option<Solid> {
+    let entries = catalogue().iter().filter(|entry| (entry.operands() == Operands::None) == (depth == 0));
+    let entries: Vec<&Entry> = entries.filter(|entry| is_shape(entry)).collect();
+    let entry = random.pick(&entries);
+    let call = called(random, entry, depth)?;
+    let solid = match call.make().ok()? {
+        Part::Solid(solid) => solid,
+        Part::Profile(profile) => profile.extrude(random.range(0.3, 2.0)),
+        _ => return None,
+    };
+    Some(match random.below(3) {
+        0 => solid.rotate(random.rotation()).translate(random.vector(-0.7, 0.7)),
+        1 => solid.translate(random.vector(-4.0, 4.0).round() * 0.25),
+        _ => solid,
+    })
+}
+
+fn is_shape(entry: &Entry) -> bool {
+    !matches!(entry.group(), Group::Curve | Group::Law | Group::Function | Group::Blend | Group::Caps)
+}
+
+fn called(random: &mut Random, entry: &'static Entry, depth: usize) -> Option<Call> {
+    let mut call = Call::of(&entry.example())?;
+    for (i, value) in call.values.iter_mut().enumerate() {
+        let range = call.entry.parameters().get(i).map(Parameter::range);
+        let other = varied(random, value);
+        let fits = |v: f64| range.is_none_or(|range| range.contains(v));
+        if numbers(&other).into_iter().all(fits) {
+            *value = other;
+        }
+    }
+    // What is measured takes a while: there is little of it, and on little.
+    let is_slow = entry.group() == Group::Length && entry.name() != "level"
+        || call.values.iter().any(|value| matches!(value, Value::Blend(_)) && is_measured(value));
+    for operand in &mut call.operands {
+        match operand {
+            Part::Solid(solid) if entry.operands() != Operands::Length => {
+                let depth = if is_slow && random.chance(0.9) { 0 } else { random.below(depth.max(1)) };
+                *solid = any(random, depth)?;
+            }
+            Part::Profile(profile) => *profile = random_profile(random, 1),
+            _ => {}
+        }
+    }
+    Some(call)
+}
+
+fn is_measured(blend: &Value) -> bool {
+    let call = Call::of(&Part::Value(blend.clone()));
+    call.is_some_and(|call| ["fillet", "chamfer"].contains(&call.entry.name()))
+}
+
+/// A number of the same sign, now and then a round one.
+fn near(random: &mut Random, v: f64) -> f64 {
+    let factor = random.log_range(0.3, 2.0);
+    match random.below(4) {
+        0 => v,
+        1 => (v * factor * 4.0).round() / 4.0,
+        _ => v * factor,
+    }
+}
+
+fn varied(random: &mut Random, value: &Value) -> Value {
+    match value {
+        Value::Number(v) => Value::Number(near(random, *v)),
+        Value::Angle(angle) => Value::Angle(rad(near(random, angle.radians()))),
+        Value::Vector(v) => Value::Vector(v.to_array().map(|v| near(random, v)).into()),
+        Value::PlaneVector(v) => Value::PlaneVector(v.to_array().map(|v| near(random, v)).into()),
+        Value::Count(n) => Value::Count((*n + random.below(4) as u32).saturating_sub(1)),
+        Value::Counts(counts) => Value::Counts(counts.map(|n| (n + random.below(2) as u32).min(4))),
+        Value::Function(_) => Value::Function(random.rule()),
+        Value::Map(_) => Value::Map(random.affine()),
+        Value::Blend(_) => of_group(random, Group::Blend).unwrap_or_else(|| value.clone()),
+        Value::Law(_) => of_group(random, Group::Law).unwrap_or_else(|| value.clone()),
+        Value::Caps(_) => of_group(random, Group::Caps).unwrap_or_else(|| value.clone()),
+        Value::Curve(_) => of_group(random, Group::Curve).unwrap_or_else(|| value.clone()),
+        other => other.clone(),
+    }
+}
+
+/// A value that an entry of this group makes.
+fn of_group(random: &mut Random, group: Group) -> Option<Value> {
+    let entries: Vec<&'static Entry> = catalogue().iter().filter(|entry| entry.group() == group).collect();
+    let entry = random.pick(&entries);
+    called(random, entry, 0)?.make().ok()?.into_value()
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    match value {
+        Value::Number(v) => vec![*v],
+        Value::Angle(angle) => vec![angle.degrees()],
+        Value::Count(n) => vec![f64::from(*n)],
+        Value::Counts(counts) => counts.map(f64::from).to_vec(),
+        Value::Vector(v) => v.to_array().to_vec(),
+        Value::PlaneVector(v) => v.to_array().to_vec(),
+        _ => Vec::new(),
+    }
+}

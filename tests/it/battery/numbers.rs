@@ -1,0 +1,91 @@
+//! Values, gradients, ranges, narrowing and bounds of one solid, against each other.
+
+use glam::DVec3;
+use rvachev::{
+    Solid,
+    program::{Program, Region},
+};
+
+use super::{Fault, fault};
+use crate::narrow::contradiction;
+use crate::support::{Random, frame_of, lanes32, lanes64, random_box, samples};
+
+/// The gradient by central differences, where those of two lengths and of both sides agree.
+fn differences(program: &Program, p: DVec3, size: f64) -> Option<DVec3> {
+    let middle = program.value(p);
+    let by = |h: f64| {
+        let sides = DVec3::AXES.map(|axis| [program.value(p + h * axis), program.value(p - h * axis)]);
+        let gradient = DVec3::from_array(sides.map(|[above, below]| (above - below) / (2.0 * h)));
+        let kink = sides.iter().map(|[above, below]| ((above + below - 2.0 * middle) / h).abs()).fold(0.0, f64::max);
+        (kink < 1e-3 * gradient.length()).then_some(gradient)
+    };
+    let (fine, coarse) = (by(1e-6 * size)?, by(4e-5 * size)?);
+    (fine.length() > 1e-3 && fine.distance(coarse) < 1e-3 * fine.length()).then_some(fine)
+}
+
+pub fn check(solid: &Solid) -> Result<(), Fault> {
+    let (Ok(surface), Ok(field), Ok(bounds)) = (solid.surface_program(), solid.field_program(), solid.bounds()) else {
+        return Ok(());
+    };
+    let mut random = Random::new(17);
+    let frame = frame_of(solid);
+    let size = frame.longest_side();
+    let around = frame.inflate(0.3 * size);
+    let points = samples(&mut random, &around, 48);
+    for program in [&surface, &field] {
+        let many = lanes64(program, &around, &points);
+        let (seen, single) = lanes32(program, &around, &points);
+        for (i, &p) in points.iter().enumerate() {
+            let value = program.value(p);
+            fault("value", value.is_finite(), || format!("{value} at {p}"))?;
+            let off = (many[i] - value).abs();
+            // Lanes have their own roots and powers.
+            let may =
+                off <= 1e-9 * (value.abs() + size) || value.signum() == many[i].signum() && off < 0.06 * value.abs();
+            fault("lanes of f64", may, || format!("{:e} for {value:e} at {p}", many[i]))?;
+            let (p, value) = (seen[i], program.value(seen[i]));
+            let is_sure = value.abs() > 1e-3 * size;
+            fault("lanes of f32", !is_sure || (value > 0.0) == (single[i] > 0.0), || {
+                format!("{:e} for {value:e} at {p}", single[i])
+            })?;
+        }
+    }
+    for &p in &points {
+        let value = surface.value(p);
+        let is_held = value <= 0.0 || bounds.inflate(1e-9 * size).contains(p);
+        fault("bounds", is_held, || format!("{value:e} at {p}, outside of {bounds:?}"))?;
+    }
+    for &p in points.iter().skip(8).step_by(4) {
+        let Some(expected) = differences(&field, p, size) else { continue };
+        let (_, gradient) = field.gradient(p);
+        let is_near = gradient.distance(expected) < 0.02 * expected.length();
+        fault("gradient", is_near, || format!("{gradient} for {expected} at {p}"))?;
+    }
+    for _ in 0..4 {
+        let cell = random_box(&mut random, &around);
+        let points = samples(&mut random, &cell, 24);
+        for program in [&surface, &field] {
+            let range = program.range(&cell);
+            for &p in &points {
+                let value = program.value(p);
+                fault("range", range.contains(value), || format!("{value:e} at {p} is not in {range:?} of {cell:?}"))?;
+            }
+            let region = program.narrow(&cell);
+            narrowed(program, &cell, &region, &points)?;
+            if let Region::Surface(part) = &region {
+                let half = cell.half_extents();
+                let inner = rvachev::Bounds::from_center(cell.min + random.vector(0.5, 1.5) * half, 0.5 * half);
+                let points = samples(&mut random, &inner, 16);
+                narrowed(program, &inner, &part.narrow(&inner), &points)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn narrowed(program: &Program, cell: &rvachev::Bounds, region: &Region, points: &[DVec3]) -> Result<(), Fault> {
+    match contradiction(program, cell, region, points) {
+        Some(text) => Err(Fault { check: "narrowing", text }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,189 @@
+//! Meshes, slices, rays and closest points of one solid, against its values at many points.
+
+use glam::{DVec2, DVec3};
+use rvachev::{CellSize, MeshSettings, Plane, PlaneBounds, Polyline, Run, Solid, program::Program};
+
+use super::{Fault, fault};
+use crate::support::{Random, frame_of};
+
+/// What is asked, and how large it is.
+struct Subject<'a> {
+    solid: &'a Solid,
+    program: Program,
+    frame: rvachev::Bounds,
+    size: f64,
+    random: Random,
+}
+
+pub fn check(solid: &Solid) -> Result<(), Fault> {
+    let (Ok(program), Ok(bounds)) = (solid.surface_program(), solid.bounds()) else { return Ok(()) };
+    if !bounds.is_finite() || bounds.is_empty() {
+        return Ok(());
+    }
+    let frame = frame_of(solid);
+    let mut subject = Subject { solid, program, frame, size: frame.longest_side(), random: Random::new(23) };
+    subject.mesh()?;
+    subject.slice()?;
+    subject.rays()?;
+    subject.closest()
+}
+
+/// The mesh of a solid in cells of so many to the longest side.
+pub fn meshed(solid: &Solid, cells: u32) -> Result<rvachev::Mesh, Fault> {
+    let settings = MeshSettings { cell: CellSize::LongestSide(cells), ..MeshSettings::default() };
+    let mesh = solid.mesh_with(&settings, &Run { threads: 1, ..Run::default() });
+    mesh.map_err(|error| Fault { check: "mesh", text: error.to_string() })
+}
+
+impl Subject<'_> {
+    fn inside(&self, p: DVec3) -> bool {
+        self.program.value(p) > 0.0
+    }
+
+    fn mesh(&mut self) -> Result<(), Fault> {
+        let mesh = meshed(self.solid, 24)?;
+        let report = mesh.check();
+        fault("soundness", report.is_sound() || report.triangles == 0, || report.to_string())?;
+        let bounds = self.solid.bounds().unwrap();
+        fault(
+            "mesh bounds",
+            report.triangles == 0 || bounds.inflate(0.2 * self.size / 24.0).contains_bounds(&report.bounds),
+            || format!("{:?} beyond {bounds:?}", report.bounds),
+        )?;
+        if mesh.possibly_lost() > 0 || mesh.clamped_vertices() != Some(0) {
+            return Ok(());
+        }
+        // A point in each of 16³ cells.
+        let (cell, mut count) = (bounds.size() / 16.0, 0);
+        for n in 0..4096u32 {
+            let at = DVec3::new(f64::from(n % 16), f64::from(n / 16 % 16), f64::from(n / 256));
+            let p = bounds.min + (at + self.random.vector(0.0, 1.0)) * cell;
+            count += u32::from(self.inside(p));
+        }
+        let sampled = f64::from(count) * cell.element_product();
+        let side = cell.max_element();
+        // So many cells have surface in them, each of which is off by chance.
+        let cut = 6.0 + 3.0 * report.area / (cell.element_product() / side);
+        let may = 2.5 * cut.sqrt() * cell.element_product() + 0.1 * report.area * self.size / 24.0;
+        let off = (report.volume - sampled).abs();
+        fault("volume", off <= may, || format!("{} by the mesh, {sampled} by points, allowed ±{may}", report.volume))
+    }
+
+    fn slice(&mut self) -> Result<(), Fault> {
+        let through = self.random.point_in(&self.frame);
+        let tilted = Plane::new(through, self.random.direction());
+        for plane in [Plane::xy(through.z), tilted] {
+            let corners = self.frame.corners().map(|corner| plane.coordinates(corner));
+            let fold = |of: fn(DVec2, DVec2) -> DVec2| corners.into_iter().reduce(of).unwrap();
+            let margin = DVec2::splat(0.05 * self.size);
+            let region = PlaneBounds { min: fold(DVec2::min) - margin, max: fold(DVec2::max) + margin };
+            let wrong = |error: rvachev::error::RenderError| Fault { check: "slice", text: error.to_string() };
+            let slice = self.solid.slice_within(&plane, region).map_err(wrong)?;
+            let tolerance = 2e-3 * self.size;
+            let contours = slice.contours(tolerance).map_err(wrong)?;
+            if contours.unresolved() > 0 {
+                continue;
+            }
+            for _ in 0..150 {
+                let p = region.min + self.random.vector(0.0, 1.0).truncate() * (region.max - region.min);
+                let away = contours.lines().iter().map(|line| distance(line, p)).fold(f64::INFINITY, f64::min);
+                let expected = self.inside(plane.point(p));
+                let enclosed = contours.lines().iter().filter(|line| winds(line, p)).count() % 2 == 1;
+                fault("slice", away < 3.0 * tolerance || enclosed == expected, || {
+                    let at = plane.point(p);
+                    format!(
+                        "{at} is inside: {enclosed} by contours {away:e} away, {expected} by the value {:e}; {plane:?}",
+                        self.program.value(at)
+                    )
+                })?;
+            }
+        }
+        Ok(())
+    }
+
+    fn rays(&mut self) -> Result<(), Fault> {
+        let around = self.frame.inflate(0.5 * self.size);
+        for _ in 0..6 {
+            let (origin, target) = (self.random.point_in(&around), self.random.point_in(&self.frame));
+            let direction = (target - origin).normalize_or(DVec3::X);
+            let hit = self.solid.raycast(origin, direction).unwrap();
+            let far = around.size().length();
+            let end = hit.map_or(far, |hit| hit.distance);
+            let inside = self.inside(origin);
+            for i in 1..200 {
+                let t = 0.999_999 * end * f64::from(i) / 200.0;
+                let value = self.program.value(origin + t * direction);
+                // What only touches the surface is allowed for.
+                fault("ray", (value > 0.0) == inside || value.abs() < 1e-9 * self.size, || {
+                    format!("{value:e} at {t} from {origin} along {direction}, hit {hit:?}")
+                })?;
+            }
+            let Some(hit) = hit else { continue };
+            let [before, after] = [-1e-7, 1e-7].map(|d| self.inside(hit.point + d * self.size * direction));
+            fault("hit", before == inside || after != inside, || {
+                format!("no crossing from {origin} along {direction}: {hit:?}")
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Points between one inside and one outside.
+    fn on_surface(&mut self, count: usize) -> Vec<DVec3> {
+        let around = self.frame.inflate(0.1 * self.size);
+        let points: Vec<DVec3> = (0..count).map(|_| self.random.point_in(&around)).collect();
+        let (inside, outside): (Vec<DVec3>, Vec<DVec3>) = points.into_iter().partition(|p| self.inside(*p));
+        let pairs = inside.iter().cycle().zip(&outside).take(if inside.is_empty() { 0 } else { count });
+        let halved = pairs.map(|(&inside, &outside)| {
+            let (mut a, mut b) = (inside, outside);
+            for _ in 0..50 {
+                let middle = a.midpoint(b);
+                *if self.inside(middle) { &mut a } else { &mut b } = middle;
+            }
+            a
+        });
+        halved.collect()
+    }
+
+    fn closest(&mut self) -> Result<(), Fault> {
+        let surface = self.on_surface(400);
+        let around = self.frame.inflate(0.5 * self.size);
+        for _ in 0..4 {
+            let p = self.random.point_in(&around);
+            let nearest = surface.iter().map(|s| s.distance(p)).fold(f64::INFINITY, f64::min);
+            let Some(found) = self.solid.closest_surface_point(p).unwrap() else {
+                return fault("closest point", surface.is_empty(), || format!("none from {p}, one is {nearest} away"));
+            };
+            let away = found.distance(p);
+            fault("closest point", away <= nearest + 1e-6 * self.size, || {
+                format!("{found} is {away} from {p}, another point {nearest}")
+            })?;
+            let inside = self.inside(p);
+            let crossing = (0..300).map(|_| p + 0.999 * away * self.random.unit().cbrt() * self.random.direction());
+            let crossing: Vec<DVec3> = crossing.collect();
+            let before = crossing.into_iter().find(|q| self.inside(*q) != inside);
+            fault("closest point", before.is_none(), || format!("{found} is {away} from {p}, past {before:?}"))?;
+            let near: Vec<DVec3> = (0..200).map(|_| found + 1e-5 * self.size * self.random.direction()).collect();
+            let count = near.iter().filter(|q| self.inside(**q)).count();
+            let value = self.program.value(found);
+            fault("closest point", count % 200 != 0 || value.abs() < 1e-9 * self.size, || {
+                format!("{found} of {p} is not on the surface, but {value:e}")
+            })?;
+        }
+        Ok(())
+    }
+}
+
+fn distance(line: &Polyline, p: DVec2) -> f64 {
+    let away = line.edges().map(|[a, b]| {
+        let along = b - a;
+        let t = ((p - a).dot(along) / along.length_squared().max(1e-300)).clamp(0.0, 1.0);
+        (a + t * along).distance(p)
+    });
+    away.fold(f64::INFINITY, f64::min)
+}
+
+fn winds(line: &Polyline, p: DVec2) -> bool {
+    let crosses =
+        |[a, b]: [DVec2; 2]| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x);
+    line.edges().filter(|edge| crosses(*edge)).count() % 2 == 1
+}
