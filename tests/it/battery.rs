@@ -12,11 +12,14 @@ mod shapes;
 mod shrink;
 mod text;
 
+use std::fs;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
-use rvachev::Solid;
+use rvachev::{CancelToken, Progress, Run, Solid, error::PrepareError};
 
 /// What is wrong with a solid.
 #[derive(Clone, Debug)]
@@ -44,18 +47,21 @@ fn caught(job: impl FnOnce() -> Result<(), Fault>) -> Result<(), Fault> {
 
 /// Makes a solid of each seed and checks it. Fails at the end, with a minimal program for each of the first faults.
 pub fn run(seeds: Range<u64>, make: fn(u64) -> Option<Solid>, check: Check) {
-    let (mut wrong, mut solids, start) = (Vec::new(), 0, Instant::now());
+    let (mut wrong, mut solids, mut slow, start) = (Vec::new(), 0, 0, Instant::now());
+    let watch = watch();
     for seed in seeds.clone() {
-        let begun = Instant::now();
         let mut solid = None;
         let result = caught(|| {
             solid = make(seed);
-            solid.as_ref().map_or(Ok(()), check)
+            let Some(solid) = &solid else { return Ok(()) };
+            drop(watch.send(format!("{seed}: {}", text::written(&solid.into()))));
+            if matches!(solid.prepare(&short()), Err(PrepareError::Cancelled(_))) {
+                slow += 1;
+                return Ok(());
+            }
+            check(solid)
         });
         solids += u32::from(solid.is_some());
-        if begun.elapsed().as_secs() > 8 {
-            println!("{seed} took {:?}", begun.elapsed());
-        }
         if let Err(fault) = result {
             let least = solid.map(|solid| least(&solid, check, &fault));
             let line = format!("{seed}: {}: {}\n    {}", fault.check, fault.text, least.unwrap_or_default());
@@ -66,8 +72,44 @@ pub fn run(seeds: Range<u64>, make: fn(u64) -> Option<Solid>, check: Check) {
             println!("{}..{} done, {} wrong, {:?}", seeds.start, seed + 1, wrong.len(), start.elapsed());
         }
     }
-    println!("{solids} solids of seeds {seeds:?}, {} wrong, {:?}", wrong.len(), start.elapsed());
+    println!(
+        "{solids} solids of seeds {seeds:?}, {slow} too slow to compile, {} wrong, {:?}",
+        wrong.len(),
+        start.elapsed()
+    );
     assert!(wrong.is_empty(), "{} of {solids}:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+/// A run that ends after some seconds: what takes long is for other tests.
+pub fn short() -> Run {
+    let cancel = CancelToken::new();
+    let (token, start) = (cancel.clone(), Instant::now());
+    let progress = Progress::new(move |_| {
+        if start.elapsed().as_secs() > 4 {
+            token.cancel();
+        }
+    });
+    Run { cancel, progress: Some(progress), ..Run::default() }
+}
+
+/// Takes what is begun, and tells what takes long.
+fn watch() -> Sender<String> {
+    let (watch, begun) = channel::<String>();
+    std::thread::spawn(move || {
+        let mut now = String::new();
+        loop {
+            match begun.recv_timeout(Duration::from_secs(8)) {
+                Ok(next) => now = next,
+                Err(RecvTimeoutError::Disconnected) => return,
+                Err(RecvTimeoutError::Timeout) => {
+                    println!("takes long: {now}");
+                    let Ok(next) = begun.recv() else { return };
+                    now = next;
+                }
+            }
+        }
+    });
+    watch
 }
 
 /// The minimal program that has such a fault, and what it is then.
@@ -87,18 +129,18 @@ pub fn seeds(variable: &str, otherwise: Range<u64>) -> Range<u64> {
 
 #[test]
 fn numbers_of_random_solids_agree() {
-    run(0..600, make::solid, numbers::check);
+    run(0..200, make::solid, numbers::check);
 }
 
 #[test]
 fn shapes_of_random_solids_agree() {
-    run(0..40, make::bounded, shapes::check);
+    run(0..20, make::solid, shapes::check);
 }
 
 #[cfg(feature = "import")]
 #[test]
 fn files_of_random_solids_come_back() {
-    run(0..20, make::bounded, files::check);
+    run(0..20, make::solid, files::check);
 }
 
 #[test]
@@ -110,18 +152,21 @@ fn numbers_of_a_million_solids_agree() {
 #[test]
 #[ignore = "takes hours: BATTERY_SEEDS=0..1000 chooses"]
 fn shapes_of_twenty_thousand_solids_agree() {
-    run(seeds("BATTERY_SEEDS", 0..20_000), make::bounded, shapes::check);
+    run(seeds("BATTERY_SEEDS", 0..20_000), make::solid, shapes::check);
 }
 
 #[cfg(feature = "import")]
 #[test]
 #[ignore = "takes many minutes: BATTERY_SEEDS=0..1000 chooses"]
 fn files_of_two_thousand_solids_come_back() {
-    run(seeds("BATTERY_SEEDS", 0..2000), make::bounded, files::check);
+    run(seeds("BATTERY_SEEDS", 0..2000), make::solid, files::check);
 }
 
-/// What is wrong with the solids of a corpus, a line each: the name of a check, a colon, a program.
-fn wrong_of(corpus: &str) -> Vec<String> {
+/// What is wrong with the solids of a file of the corpus, a line each: the name of a check, a colon, a program.
+fn wrong_of(file: impl AsRef<Path>) -> Vec<String> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus").join(file);
+    let corpus = fs::read_to_string(path).expect("a file of the corpus");
+    let watch = watch();
     let lines = corpus.lines().filter(|line| !line.is_empty() && !line.starts_with('#'));
     let results = lines.map(|line| {
         let (name, program) = line.split_once(": ").expect("a check and a program");
@@ -136,6 +181,7 @@ fn wrong_of(corpus: &str) -> Vec<String> {
             name => panic!("no check {name}"),
         };
         let solid = text::read(program).into_solid().expect("a solid");
+        drop(watch.send(line.to_owned()));
         caught(|| check(&solid)).map_err(|fault| format!("{line}\n    {}: {}", fault.check, fault.text))
     });
     results.filter_map(Result::err).collect()
@@ -143,13 +189,13 @@ fn wrong_of(corpus: &str) -> Vec<String> {
 
 #[test]
 fn solids_that_once_were_wrong() {
-    let wrong = wrong_of(include_str!("../corpus/solids.txt"));
+    let wrong = wrong_of("solids.txt");
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 #[test]
-#[ignore = "what is not mended yet"]
+#[ignore = "what is not mended yet, some of which never ends; BATTERY_FILE names another file"]
 fn solids_that_are_wrong() {
-    let wrong = wrong_of(include_str!("../corpus/open.txt"));
+    let wrong = wrong_of(std::env::var("BATTERY_FILE").unwrap_or_else(|_| "open.txt".to_owned()));
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }

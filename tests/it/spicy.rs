@@ -5,13 +5,13 @@
 
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 use rvachev::{
-    Bounds, Camera, CancelToken, CellSize, MeshSettings, Plane, Progress, Run, Solid, catalogue,
+    Bounds, Camera, CellSize, MeshSettings, Plane, Solid, catalogue,
     catalogue::{Call, Part, Value},
     io::{write_obj, write_svg},
     rad,
 };
 
-use super::battery::{Fault, run, seeds};
+use super::battery::{Fault, run, seeds, short};
 use super::explicit_inputs::Chance;
 use super::form::shown;
 
@@ -56,18 +56,6 @@ fn next(chance: &mut Chance, operand: Option<&Solid>) -> Option<Solid> {
         *first = solid.into();
     }
     call.make().ok().map(shown)
-}
-
-/// A run that ends after so many reports: what takes long is for other tests.
-fn short() -> Run {
-    let cancel = CancelToken::new();
-    let (token, start) = (cancel.clone(), std::time::Instant::now());
-    let progress = Progress::new(move |_| {
-        if start.elapsed().as_secs() > 4 {
-            token.cancel();
-        }
-    });
-    Run { cancel, progress: Some(progress), ..Run::default() }
 }
 
 fn tells(error: impl std::fmt::Display, solid: &Solid) {

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use glam::Vec3;
 use rvachev::{Mesh, Solid};
 
+use super::make::bounded;
 use super::shapes::meshed;
 use super::{Fault, fault};
 
@@ -13,10 +14,7 @@ fn corners(mesh: &Mesh) -> Vec<[Vec3; 3]> {
 }
 
 pub fn check(solid: &Solid) -> Result<(), Fault> {
-    let is_bounded = solid.bounds().is_ok_and(|bounds| bounds.is_finite());
-    if !is_bounded {
-        return Ok(());
-    }
+    let Some(solid) = &bounded(solid) else { return Ok(()) };
     let mesh = meshed(solid, 12)?;
     if mesh.triangles().is_empty() {
         return Ok(());

@@ -1,7 +1,7 @@
 //! Random solids of every entry of the catalogue, of about the size of 1.
 
 use rvachev::{
-    Solid, catalogue,
+    Profile, Solid, catalogue,
     catalogue::{Call, Entry, Group, Operands, Parameter, Part, Value},
     rad,
 };
@@ -9,7 +9,7 @@ use rvachev::{
 use crate::support::{Random, random_solid};
 use crate::zoo::random_profile;
 
-/// A solid for a seed; `None` where it would not be one.
+/// A solid for a seed, which may be one that is refused when it is used; `None` where there is none.
 pub fn solid(seed: u64) -> Option<Solid> {
     let mut random = Random::new(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) + 11);
     let depth = random.below(4);
@@ -17,14 +17,15 @@ pub fn solid(seed: u64) -> Option<Solid> {
         let solid = random_solid(&mut random, depth.min(2));
         return Some(solid);
     }
-    any(&mut random, depth).filter(|solid| solid.bounds().is_ok())
+    any(&mut random, depth)
 }
 
-/// The same, cut to a ball if it has no end.
-pub fn bounded(seed: u64) -> Option<Solid> {
-    let solid = solid(seed)?;
-    let is_small = solid.bounds().is_ok_and(|bounds| bounds.is_finite() && bounds.longest_side() < 100.0);
-    Some(if is_small { solid } else { solid & Solid::sphere(2.5) })
+/// The solid, cut to a ball if it has no end; `None` if it is refused.
+pub fn bounded(solid: &Solid) -> Option<Solid> {
+    let bounds = solid.bounds().ok()?;
+    let is_small = bounds.is_finite() && bounds.longest_side() < 100.0;
+    let solid = if is_small { solid.clone() } else { solid & Solid::sphere(2.5) };
+    solid.bounds().is_ok_and(|bounds| !bounds.is_empty()).then_some(solid)
 }
 
 /// A solid whose calls are up to `depth` + 1 deep, not counting moves.
@@ -59,15 +60,18 @@ fn called(random: &mut Random, entry: &'static Entry, depth: usize) -> Option<Ca
             *value = other;
         }
     }
-    // What is measured takes a while: there is little of it, and on little.
-    let is_slow = entry.group() == Group::Length && entry.name() != "level"
-        || call.values.iter().any(|value| matches!(value, Value::Blend(_)) && is_measured(value));
+    // What is measured takes a while: there is little of it, and on leaves.
+    let is_slow = entry.group() == Group::Length && entry.name() != "level" || call.values.iter().any(is_measured);
+    if is_slow && random.chance(0.8) {
+        return None;
+    }
     for operand in &mut call.operands {
         match operand {
             Part::Solid(solid) if entry.operands() != Operands::Length => {
-                let depth = if is_slow && random.chance(0.9) { 0 } else { random.below(depth.max(1)) };
+                let depth = if is_slow { 0 } else { random.below(depth.max(1)) };
                 *solid = any(random, depth)?;
             }
+            Part::Profile(profile) if is_slow => *profile = Profile::rectangle(random.vector(0.5, 2.0).truncate()),
             Part::Profile(profile) => *profile = random_profile(random, 1),
             _ => {}
         }
@@ -75,9 +79,11 @@ fn called(random: &mut Random, entry: &'static Entry, depth: usize) -> Option<Ca
     Some(call)
 }
 
-fn is_measured(blend: &Value) -> bool {
-    let call = Call::of(&Part::Value(blend.clone()));
-    call.is_some_and(|call| ["fillet", "chamfer"].contains(&call.entry.name()))
+/// Whether it asks for distances that may have to be measured.
+fn is_measured(value: &Value) -> bool {
+    let is_such = matches!(value, Value::Blend(_) | Value::Caps(_));
+    let call = is_such.then(|| Call::of(&Part::Value(value.clone()))).flatten();
+    call.is_some_and(|call| ["fillet", "chamfer", "chamfered_caps", "rounded_caps"].contains(&call.entry.name()))
 }
 
 /// A number of the same sign, now and then a round one.

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 use rvachev::{
-    Solid,
+    Bounds, Interval, ParamError, Solid,
+    field::{Field, Real},
     program::{Program, Region},
 };
 
@@ -74,7 +75,7 @@ pub fn check(solid: &Solid) -> Result<(), Fault> {
             narrowed(program, &cell, &region, &points)?;
             if let Region::Surface(part) = &region {
                 let half = cell.half_extents();
-                let inner = rvachev::Bounds::from_center(cell.min + random.vector(0.5, 1.5) * half, 0.5 * half);
+                let inner = Bounds::from_center(cell.min + random.vector(0.5, 1.5) * half, 0.5 * half);
                 let points = samples(&mut random, &inner, 16);
                 narrowed(program, &inner, &part.narrow(&inner), &points)?;
             }
@@ -83,9 +84,43 @@ pub fn check(solid: &Solid) -> Result<(), Fault> {
     Ok(())
 }
 
-fn narrowed(program: &Program, cell: &rvachev::Bounds, region: &Region, points: &[DVec3]) -> Result<(), Fault> {
+fn narrowed(program: &Program, cell: &Bounds, region: &Region, points: &[DVec3]) -> Result<(), Fault> {
     match contradiction(program, cell, region, points) {
         Some(text) => Err(Fault { check: "narrowing", text }),
         None => Ok(()),
     }
+}
+
+/// A ball that says its box is of this half side, and its values up to this.
+#[derive(Clone, Debug)]
+struct Claimed(f64, f64);
+
+impl Field for Claimed {
+    fn name(&self) -> &'static str {
+        "claimed"
+    }
+
+    fn eval<R: Real>(&self, [x, y, z]: [R; 3]) -> R {
+        x.lift(1.0) - (x * x + y * y + z * z).sqrt()
+    }
+
+    fn bounds(&self) -> Bounds {
+        Bounds::from_center(DVec3::ZERO, DVec3::splat(self.0))
+    }
+
+    fn check(&self) -> Result<(), ParamError> {
+        Ok(())
+    }
+
+    fn range(&self, _: [Interval; 3]) -> Interval {
+        Interval::new(-1e9, self.1)
+    }
+}
+
+#[test]
+fn false_claims_are_found() {
+    let found = |solid: Claimed| check(&Solid::new(solid)).err().map(|fault| fault.check);
+    assert_eq!(found(Claimed(1.0, 1.0)), None);
+    assert_eq!(found(Claimed(0.7, 1.0)), Some("bounds"));
+    assert_eq!(found(Claimed(1.0, -1.0)), Some("range"));
 }

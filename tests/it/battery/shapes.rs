@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3};
 use rvachev::{CellSize, MeshSettings, Plane, PlaneBounds, Polyline, Run, Solid, program::Program};
 
+use super::make::bounded;
 use super::{Fault, fault};
 use crate::support::{Random, frame_of};
 
@@ -16,10 +17,8 @@ struct Subject<'a> {
 }
 
 pub fn check(solid: &Solid) -> Result<(), Fault> {
-    let (Ok(program), Ok(bounds)) = (solid.surface_program(), solid.bounds()) else { return Ok(()) };
-    if !bounds.is_finite() || bounds.is_empty() {
-        return Ok(());
-    }
+    let Some(solid) = &bounded(solid) else { return Ok(()) };
+    let program = solid.surface_program().unwrap();
     let frame = frame_of(solid);
     let mut subject = Subject { solid, program, frame, size: frame.longest_side(), random: Random::new(23) };
     subject.mesh()?;
