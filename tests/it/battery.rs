@@ -52,6 +52,7 @@ pub fn run(seeds: Range<u64>, make: fn(u64) -> Option<Solid>, check: Check) {
     for seed in seeds.clone() {
         let mut solid = None;
         let result = caught(|| {
+            drop(watch.send(format!("{seed}, which is being made")));
             solid = make(seed);
             let Some(solid) = &solid else { return Ok(()) };
             drop(watch.send(format!("{seed}: {}", text::written(&solid.into()))));
