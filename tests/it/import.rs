@@ -281,6 +281,18 @@ fn errors_say_where_and_what() {
 }
 
 #[test]
+fn marks_of_spreadsheets_are_known() {
+    let cloud = |text: &[u8]| PointCloud::read(FileFormat::Xyz, text, &LoadSettings::default());
+    let marked = cloud(b"\xef\xbb\xbfx;y;z\n1;2;3\n4;5;6\n").unwrap();
+    assert_eq!(marked.positions(), [DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, 5.0, 6.0)]);
+    let obj = b"\xef\xbb\xbfv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    assert_eq!(read(FileFormat::Obj, obj).positions().len(), 3);
+    // Commas of decimals are not taken for columns.
+    let error = cloud(b"1,5;2,5;3,5\n").unwrap_err().to_string();
+    assert!(error.contains("line 1") && error.contains("1,5"), "{error}");
+}
+
+#[test]
 fn headers_are_not_believed() {
     let settings = LoadSettings::default();
     // Numbers that a header claims, and no bytes for them: gigabytes if it were believed.
@@ -322,6 +334,14 @@ fn limits_hold() {
             assert!(error.to_string().contains(setting), "{format:?}: {error}");
         }
     }
+}
+
+#[test]
+fn nested_components_end() {
+    // 39 objects, each of the next one twice, and at last no triangle.
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus/nested_components.3mf");
+    let error = Mesh::load(file).unwrap_err().to_string();
+    assert!(error.contains("most_points"), "{error}");
 }
 
 #[test]

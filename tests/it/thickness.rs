@@ -1,7 +1,7 @@
 //! The thickness of solids, against closed forms.
 
 use glam::DVec3;
-use rvachev::{CellSize, MeshSettings, Run, Solid, ThicknessReport};
+use rvachev::{CellSize, MeshSettings, Run, Solid, ThicknessReport, deg};
 
 fn thickness(solid: &Solid, cells: u32) -> ThicknessReport {
     let settings = MeshSettings { cell: CellSize::LongestSide(cells), ..MeshSettings::default() };
@@ -39,6 +39,20 @@ fn a_drafted_rib_is_thinnest_at_its_top() {
     assert!((report.least - 0.6).abs() < 0.06, "{report}");
     assert!(report.at.z > 4.0 && report.at.x.abs() < 0.4, "{report}");
     assert!((share_near(&report, 2.0) - 0.8).abs() < 0.15, "{}", share_near(&report, 2.0));
+}
+
+#[test]
+fn facets_that_cut_corners_off_are_no_walls() {
+    let plate = Solid::cuboid([60.0, 40.0, 3.0]);
+    let bracket = &plate | Solid::cuboid([3.0, 40.0, 30.0]).translate([-28.5, 0.0, 15.0]);
+    for solid in
+        [bracket.rotate_z(deg(33.0)).rotate_x(deg(21.0)), bracket.rotate_z(deg(30.0)), plate.rotate_x(deg(21.0))]
+    {
+        for cells in [32, 48, 64] {
+            let report = thickness(&solid, cells);
+            assert!((report.least - 3.0).abs() < 0.03, "{cells}: {report}");
+        }
+    }
 }
 
 #[test]

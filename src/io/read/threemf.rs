@@ -99,8 +99,9 @@ fn target(relations: &str) -> Option<String> {
     }
 }
 
-/// An object counts as so many points at least.
+/// Objects behind the first ones count as so many points at least.
 const LEAST_POINTS: usize = 100;
+const FREE: usize = 1000;
 
 /// The items, written out.
 struct Parts<'a> {
@@ -117,7 +118,7 @@ impl Parts<'_> {
     fn push(&mut self, id: u32, map: DAffine3, depth: usize) -> Result<(), ReadError> {
         // A few objects without a mesh may stand for any number of themselves.
         self.visited += 1;
-        self.settings.points(self.visited.saturating_mul(LEAST_POINTS))?;
+        self.settings.points(self.visited.saturating_sub(FREE).saturating_mul(LEAST_POINTS))?;
         let Some(object) = self.model.objects.get(&id) else {
             return Err(self.model.wrong("an object that is there", format!("object {id}")));
         };

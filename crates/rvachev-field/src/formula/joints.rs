@@ -175,7 +175,7 @@ fn exponential(ops: &[Op], at: u32) -> Option<(u32, f64)> {
     let logarithm = |at: u32| if let Op::Unary(U::Ln, a) = ops[at as usize] { Some(a) } else { None };
     match ops[at as usize] {
         Op::Unary(U::Ln, a) => Some((a, 1.0)),
-        Op::Binary(B::Mul, a, b) => Some((logarithm(a)?, fixed(b)?)).or_else(|| Some((logarithm(b)?, fixed(a)?))),
+        Op::Binary(B::Mul, a, b) => logarithm(a).zip(fixed(b)).or_else(|| logarithm(b).zip(fixed(a))),
         Op::Binary(B::Div, a, b) => Some((logarithm(a)?, 1.0 / fixed(b)?)),
         _ => None,
     }
