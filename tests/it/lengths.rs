@@ -690,14 +690,23 @@ fn walls_of_shells_are_as_thick_as_asked_for() -> Outcome {
     Ok(())
 }
 
+/// Its ribs come to an edge between cusps.
+fn star() -> Solid {
+    Supershape::new(Gielis::new(5.0, 0.3, 0.3, 0.3), Gielis::new(4.0, 2.0, 2.0, 2.0)).into()
+}
+
+#[test]
+#[ignore = "a fault: beside ribs thinner than the cells that it is measured from, the distance is too large"]
+fn offsets_of_a_star_are_at_their_distance_everywhere() -> Outcome {
+    offsets_are_at(&star(), [0.1, -0.05], 80, 1500)
+}
+
 #[test]
 fn offsets_of_cusped_lobes_are_at_their_distance() -> Outcome {
-    let star = Supershape::new(Gielis::new(5.0, 0.3, 0.3, 0.3), Gielis::new(4.0, 2.0, 2.0, 2.0));
     let lobes = Supershape::new(Gielis::new(7.0, 9.0, 8.0, 8.0), Gielis::new(4.0, 30.0, 30.0, 30.0));
     let vase = Solid::from(lobes.scaled([3.4, 3.4, 6.0])).twist(rad(0.087));
-    // Ribs of the star are thinner than the cells of the surface that its distances are measured from: beside them, one in
-    // forty points is taken for farther away than it is.
-    offsets_are_mostly_at(&Solid::from(star), [0.1, -0.05], (80, 150), 0.05)?;
+    // One point in forty is wrong, as `offsets_of_a_star_are_at_their_distance_everywhere` shows: no more may be.
+    offsets_are_mostly_at(&star(), [0.1, -0.05], (80, 150), 0.05)?;
     offsets_are_at(&vase, [0.16, -0.08], 80, 150)
 }
 

@@ -21,7 +21,7 @@ use super::super::face::double;
 use super::super::hierarchy::{DEEPEST, PARENT};
 use super::super::packet::Packet;
 
-/// From as many radii away a box is seen as one: the winding number is off by a hundredth at most.
+/// From as many radii away a box is seen as one: of coarse facets the winding number is off by up to some hundredths.
 const FAR: f64 = 2.0;
 
 /// The same of points whose side is in doubt: by less than 10⁻³.
