@@ -64,12 +64,12 @@ impl Program {
 
     /// Tells the leaves which regions the program will be narrowed to next: some answer for many of
     /// them at once as quickly as for one.
-    pub(crate) fn foresee(&self, regions: &[Bounds]) {
+    pub(crate) fn prefetch(&self, regions: &[Bounds]) {
         for leaf in self.nodes.iter().filter_map(Node::valued_by) {
             let instance = self.instance(leaf);
             if instance.frame == 0 {
                 let zone = |region: &Bounds| Zone::of_bounds(region).mapped(&instance.to_local);
-                instance.field.foresee(&regions.iter().map(zone).collect::<Vec<_>>());
+                instance.field.prefetch(&regions.iter().map(zone).collect::<Vec<_>>());
             }
         }
     }

@@ -16,7 +16,7 @@ pub(super) fn joined(kind: &Kind, mut operands: impl Iterator<Item = Interval>) 
     }
 }
 
-/// The zone's hull as a box, a hair larger, so that what only touches it counts as met.
+/// The zone's hull as a box, a little larger, so that what only touches it counts as met.
 pub(super) fn hull_of(zone: &Zone) -> Bounds {
     let hull = zone.hull();
     let low = DVec3::from_array(hull.map(Interval::lo));

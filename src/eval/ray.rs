@@ -319,7 +319,7 @@ pub(crate) fn bracket(value: &impl Fn(f64) -> f64, [mut t0, mut t1]: [f64; 2], p
 /// ray through held points is no straight line.
 const FARTHEST: f64 = 0.5 * crate::COORDINATE_LIMIT;
 
-/// The part of a ray in a box, a hair beyond its faces.
+/// The part of a ray in a box, a little beyond its faces.
 pub(crate) fn clip(bounds: &Bounds, origin: DVec3, direction: DVec3) -> Option<(f64, f64)> {
     if bounds.is_empty() {
         return None;

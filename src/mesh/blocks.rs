@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::extract::Rift;
+use super::extract::Mismatch;
 use super::lattice::Lattice;
 use super::paint::each_triangle;
 use super::signs::{BLOCK, NODES, SIDE, Signs, is_mixed};
@@ -97,14 +97,14 @@ impl Blocks {
         self.programs.numbers.resize(self.cells.len(), number);
     }
 
-    /// Makes blocks exact on both sides of rifts; and so, wherever the surface goes on from those in a block that is not
+    /// Makes blocks exact on both sides of mismatches; and so, wherever the surface goes on from those in a block that is not
     /// among them, that one. Whether there was anything to be done.
     ///
     /// Samples of a field that jumps depend on rounding, and ranges that are told of it, or that users tell of theirs, may
-    /// be wrong. There are none but those that it may have, told by their first cells. All exact blocks have the same value at a node, so in the end all rifts are mended.
-    pub(super) fn mend(
+    /// be wrong. There are none but those that it may have, told by their first cells. All exact blocks have the same value at a node, so in the end all mismatches are repaired.
+    pub(super) fn repair(
         &mut self,
-        rifts: &[Rift],
+        mismatches: &[Mismatch],
         whole: &Program,
         (lattice, limits): (&Lattice, &Bounds),
         may_have: impl Fn([u32; 3]) -> bool,
@@ -114,8 +114,11 @@ impl Blocks {
         let number = push(&mut self.programs.all, whole.clone());
         let mut known: HashMap<[u32; 3], usize> = self.cells.iter().copied().zip(0..).collect();
         let is_there = |block: &[u32; 3]| (0..3).all(|axis| block[axis] < lattice.cells()[axis]) && may_have(*block);
-        let mut open: Vec<[u32; 3]> =
-            rifts.iter().flat_map(|rift| [Some(rift.block), rift.beyond.filter(is_there)]).flatten().collect();
+        let mut open: Vec<[u32; 3]> = mismatches
+            .iter()
+            .flat_map(|mismatch| [Some(mismatch.block), mismatch.beyond.filter(is_there)])
+            .flatten()
+            .collect();
         let (mut values, mut changed) = ([0.0; NODES], false);
         while let Some(block) = open.pop() {
             run.check()?;

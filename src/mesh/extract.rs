@@ -56,10 +56,10 @@ use rvachev_num::Bounds;
 use rvachev_num::Meter;
 
 mod block_vertices;
-mod bulge;
 mod cells;
 mod corners;
 mod crease;
+mod curvature;
 mod halves;
 mod join;
 mod joined;
@@ -192,7 +192,7 @@ pub(crate) enum ExtractError {
     },
     /// Signs do not go on from block to block: what told the blocks and their samples is at odds. There is at least one.
     #[error("internal error: block at cell {:?}: {}", .0[0].block, .0[0].what)]
-    Rifts(Vec<Rift>),
+    Mismatches(Vec<Mismatch>),
     /// The list of blocks is no such list: a defect of the caller.
     #[error("internal error: block at cell {block:?}: {what}")]
     Blocks {
@@ -208,7 +208,7 @@ pub(crate) enum ExtractError {
 
 /// A face of a block beyond which signs do not go on as they are in it.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Rift {
+pub(crate) struct Mismatch {
     /// The first cell of the block.
     pub block: [u32; 3],
     /// That of the block beyond, unless it is below the lattice.

@@ -24,7 +24,8 @@ impl Blocks {
                 sampler.keep_tapes();
             }
             match extract(&sampler, lattice, &self.cells, features, run) {
-                Err(ExtractError::Rifts(rifts)) if self.mend(&rifts, whole, (lattice, &limits), |_| true, run)? => {}
+                Err(ExtractError::Mismatches(mismatches))
+                    if self.repair(&mismatches, whole, (lattice, &limits), |_| true, run)? => {}
                 result => return result,
             }
         }

@@ -156,7 +156,7 @@ pub(super) struct Candidate {
     /// The number of the cell in its block.
     pub(super) number: u16,
     /// How far the feature point is from the planes, in cells.
-    pub(super) misfit: f32,
+    pub(super) residual: f32,
     /// The normal that stands for all its sides.
     pub(super) normal: Vec3,
     /// The feature point, in cells from the cell's first node, as are the sides' planes close to it.
@@ -242,8 +242,8 @@ impl Draft {
     #[inline(always)]
     pub(super) fn done(&self, [normal, position]: [Vec3; 2], leaves: bool) -> Candidate {
         let Draft { first, len, number, at, ref planes, .. } = *self;
-        let misfit = planes.distance(at);
-        Candidate { first, len, leaves, number, misfit, normal, at: at.into(), planes: planes.packed(), position }
+        let residual = planes.distance(at);
+        Candidate { first, len, leaves, number, residual, normal, at: at.into(), planes: planes.packed(), position }
     }
 }
 

@@ -77,9 +77,9 @@ pub(super) fn refined(
                 return Ok(mesh.with_findings(findings));
             }
             // Without the level that does not fit.
-            Err(misfit) => {
-                levels.truncate(misfit);
-                levels[misfit - 1].forget();
+            Err(mismatched) => {
+                levels.truncate(mismatched);
+                levels[mismatched - 1].forget();
                 is_done = false;
             }
         }
@@ -134,7 +134,7 @@ fn meshed(job: Job<'_>, levels: &mut [Level], run: &Run) -> Result<Result<Mesh, 
     for (n, (level, run)) in levels.iter_mut().zip(stages).enumerate() {
         let outer = seam.take();
         let (piece, rims) = match level.extract(job, outer.as_ref(), &run) {
-            Err(ExtractError::Rifts(_)) if n > 0 => return Ok(Err(n)),
+            Err(ExtractError::Mismatches(_)) if n > 0 => return Ok(Err(n)),
             result => result?,
         };
         run.check()?;

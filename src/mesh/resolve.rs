@@ -132,7 +132,7 @@ impl Search<'_> {
             }
             self.parts_of(first, size, program);
         } else if !program.is_entered_once(&[region])
-            && (!self.is_one_sided(first) || self.least(first) <= self.bulge(program, &region))
+            && (!self.is_one_sided(first) || self.least(first) <= self.overshoot(program, &region))
             && !program.is_entered_once(&region.octants())
         {
             self.found.push(first);
@@ -141,7 +141,7 @@ impl Search<'_> {
 
     /// By how much the value may exceed those at the nodes of a cell, either way: along an axis it
     /// rises and falls no faster than its slopes say.
-    fn bulge(&self, program: &Program, cell: &Bounds) -> f64 {
+    fn overshoot(&self, program: &Program, cell: &Bounds) -> f64 {
         let along = |slope: Interval| match (slope.hi(), -slope.lo()) {
             (up, down) if up > 0.0 && down > 0.0 => 1.0 / (1.0 / up + 1.0 / down),
             _ => 0.0,

@@ -399,11 +399,11 @@ impl Bracket {
         0.5 * (self.low + self.high)
     }
 
-    /// On the chord, a hair from the ends: beyond the root, it closes the bracket from the
+    /// On the chord, a little from the ends: beyond the root, it closes the bracket from the
     /// other side.
     fn secant(&self) -> f64 {
         let secant = self.low + self.width() * (self.at_low / (self.at_low - self.at_high));
-        let hair = (0.25 * SETTLED).min(0.25 * self.width());
-        if secant.is_finite() { secant.clamp(self.low + hair, self.high - hair) } else { self.middle() }
+        let inset = (0.25 * SETTLED).min(0.25 * self.width());
+        if secant.is_finite() { secant.clamp(self.low + inset, self.high - inset) } else { self.middle() }
     }
 }

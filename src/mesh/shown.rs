@@ -23,7 +23,7 @@ use crate::{Bounds, Cancelled, Run};
 /// Cells of a block that the surface is in, as a rule.
 const OF_BLOCK: usize = 110;
 
-/// What is deeper than this, in cells, or has no other side near, is no bulge or edge of a surface that the cells show.
+/// What is deeper than this, in cells, or has no other side near, is no bend or edge of a surface that the cells show.
 const DEEP: f64 = 0.3;
 
 /// Nearer to the surface than this part of the size, points may be on either side by rounding errors.

@@ -55,7 +55,7 @@ pub struct RasterView {
 /// The largest side of a picture, in pixels.
 const LARGEST: u32 = 16384;
 
-/// Without another wish, what is nearer than this part of the distance from the eye to its
+/// Unless told otherwise, what is nearer than this part of the distance from the eye to its
 /// target is not seen.
 const NEAR: f64 = 1e-3;
 

@@ -121,8 +121,8 @@ impl Cells {
             return None;
         }
         let still = self.still.get_or_init(|| {
-            let parting = self.program.parting(&self.bounds, DEAR)?;
-            Still::new(parting, self.bounds, self.margin).map(Box::new)
+            let partial = self.program.partial(&self.bounds, DEAR)?;
+            Still::new(partial, self.bounds, self.margin).map(Box::new)
         });
         still.as_deref().filter(|still| still.is_along(rays.forward()))
     }
@@ -332,7 +332,7 @@ impl Cell {
             let mut boxes = Vec::new();
             self.around.boxes(&self.bounds, axes, times, &mut boxes);
             if boxes.len() > 2 {
-                self.program.foresee(&boxes);
+                self.program.prefetch(&boxes);
             }
             self.around.halves(&self.program, &self.bounds, axes, times)
         })

@@ -3,8 +3,8 @@
 //! ```text
 //!      +---+---+-------+      A block is a cube of 8³ cells. Blocks that the surface may cross
 //!      |   |///| \     |      know which of their cells it crosses, and a plane in each (see
-//!      +---+---+  \    |      `facet_block`); what is between them, a ray leaps over (see
-//!      |   |   |   \   |      `leaps`).
+//!      +---+---+  \    |      `facet_block`); what is between them, a ray skips (see
+//!      |   |   |   \   |      `empty_space`).
 //!      +---+---+-------+
 //! ```
 //!
@@ -20,8 +20,8 @@
 use glam::{DVec3, IVec3, Vec3, Vec3A, Vec4};
 use rayon::prelude::*;
 
+use super::empty_space::EmptySpace;
 use super::facet_block::{Block, NODES, Ray, SIDE};
-use super::leaps::Leaps;
 use crate::eval::{Evaluator, Program, Tape};
 use crate::space::{Grid, SurfaceBlocks, surface_blocks};
 use crate::{Bounds, Cancelled, Run};
@@ -46,7 +46,7 @@ pub(super) struct Facets {
     cell: f64,
     /// By block, x first: the number of the one with facets.
     numbers: Vec<u32>,
-    leaps: Leaps,
+    skips: EmptySpace,
     surface: Vec<Block>,
     tops: Vec<Top>,
     /// The far corner of the grid in cells, the last block, and what makes a block's place of it.
@@ -114,7 +114,7 @@ impl Facets {
             origin,
             cell,
             numbers,
-            leaps: Leaps::new(blocks, &full),
+            skips: EmptySpace::new(blocks, &full),
             tops: tops.collect(),
             surface,
             top: (blocks * SIDE as i32).as_vec3a(),
@@ -161,7 +161,7 @@ impl Facets {
         let (out_x, out_y, out_z) =
             (0.5 * side * (1.0 - sign_x), 0.5 * side * (1.0 - sign_y), 0.5 * side * (1.0 - sign_z));
         let ways = sign_x.max(Vec4::ZERO) + 2.0 * sign_y.max(Vec4::ZERO) + 4.0 * sign_z.max(Vec4::ZERO);
-        let ways = ways * self.leaps.count() as f32;
+        let ways = ways * self.skips.count() as f32;
         let mut t = near;
         let mut under_way = near.cmplt(far).bitmask() & asked;
         while under_way != 0 {
@@ -173,7 +173,7 @@ impl Facets {
             // Loops, as calls of closures on arrays are not inlined.
             let (mut empty, mut cubes) = ([false; 4], [0.0; 4]);
             for (lane, at) in (place + ways).to_array().into_iter().enumerate() {
-                let leap = self.leaps.side(at as i32 as usize);
+                let leap = self.skips.side(at as i32 as usize);
                 empty[lane] = leap > 0;
                 cubes[lane] = f32::from(leap.max(1));
             }

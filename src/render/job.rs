@@ -195,7 +195,7 @@ impl<'a> Job<'a> {
         for _ in 0..ROUNDS {
             let (g, s) = at(t);
             if g >= 0.0 {
-                // Rounding has put it a hair beyond.
+                // Rounding has put it a little beyond.
                 let before = (t - 1e-6 * self.size).max(near);
                 let after = (t + 1e-8 * self.size).min(far);
                 return if at(before).0 < 0.0 { Outcome::Between(before, after) } else { Outcome::Open };

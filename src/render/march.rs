@@ -14,7 +14,7 @@
 //! Where g bends downwards, Newton's method from the near end never passes a crossing, and what
 //! takes it long is bounded by the tangents from both ends. Where g may turn, its far end is not
 //! asked. What is open is looked at from the near end in steps as long as the bounds on the slope
-//! allow, or in leaps that the bounds from both of their ends cover. A bracketed Newton iteration
+//! allow, or in steps that the bounds from both of their ends cover. A bracketed Newton iteration
 //! in single precision and steps in double precision (`exact`) find the crossing. Signs of values
 //! within the rounding error of single precision are looked up in double precision; a ray that
 //! takes too many steps, or of whose slopes nothing is known, is divided by intervals
@@ -45,7 +45,7 @@ const NEWTON: usize = 16;
 /// Of programs that cost more, in ordinary leaves, gradients are not for every ray.
 const DEAR: usize = 8;
 
-/// A search leaps this part of what a step may go on beyond where it is safe.
+/// A search leaps by this part of what a step may go on beyond where it is safe.
 const LEAP: f32 = 0.9;
 
 /// Slopes in single precision are trusted to this part.

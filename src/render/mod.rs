@@ -7,6 +7,7 @@
 
 mod cells;
 mod contour;
+mod empty_space;
 mod exact;
 mod extent;
 mod facet_block;
@@ -14,11 +15,10 @@ mod facets;
 mod gbuffer;
 mod job;
 mod layers;
-mod leaps;
 mod lines;
 mod march;
 mod materials;
-mod openness;
+mod occlusion;
 mod picture;
 mod pixels;
 mod scene;

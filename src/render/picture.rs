@@ -1,7 +1,7 @@
 //! Pixels: what each sees, the light there, and more rays where neighbours show different things.
 //!
 //! ```text
-//!   rays of a band of rows --> spots --> openness (shadow and sky rays, smoothed)
+//!   rays of a band of rows --> spots --> visibility (shadow and sky rays, smoothed)
 //!                               |            |
 //!                               v            v
 //!   pixels at edges: n² rays --> spots --> shaded --> mean
@@ -10,7 +10,7 @@
 //! A picture is made in bands of rows. Each looks at a few rows above and below it as well, so
 //! that the result does not depend on how it is divided, nor on the number of threads.
 //!
-//! A ray inside an edge pixel has the openness of the best match among the nine pixels about it;
+//! A ray inside an edge pixel has the visibility of the best match among the nine pixels about it;
 //! without a match it sends shadow and sky rays of its own.
 
 use glam::{DVec3, Vec4};
@@ -19,10 +19,10 @@ use rayon::prelude::*;
 use super::gbuffer::{Surface, Window};
 use super::lines::Lines;
 use super::materials::Materials;
-use super::openness::{Obstacles, REACH, TILE, smoothed};
+use super::occlusion::{Obstacles, REACH, TILE, smoothed};
 use super::scene::Scene;
 use super::settings::{RenderSettings, Style};
-use super::shade::{Openness, Studio};
+use super::shade::{Studio, Visibility};
 use super::spot::Spot;
 use crate::{Cancelled, Rays, Run};
 
@@ -56,7 +56,7 @@ struct Band {
     top: u32,
     width: u32,
     spots: Vec<Spot>,
-    open: Vec<Openness>,
+    open: Vec<Visibility>,
 }
 
 impl Band {
@@ -152,7 +152,7 @@ impl Picture<'_> {
         drop(seen);
         run.check()?;
         let open = match obstacles {
-            None => vec![Openness::FULL; spots.len()],
+            None => vec![Visibility::FULL; spots.len()],
             Some(obstacles) => {
                 let pattern = |i: usize| (i % width as usize) % 4 + 4 * ((first as usize + i / width as usize) % 4);
                 let own = obstacles.seen(&spots, width as usize, pattern);
@@ -221,7 +221,7 @@ impl Picture<'_> {
             let behind = finish(self.behind(f64::from(y) + 0.5).to_array());
             for ((x, surface), pixel) in (0..width).zip(surfaces).zip(row) {
                 *pixel = if surface.is_hit() {
-                    finish(self.solid(&self.spot(x, y, surface), Openness::FULL).to_array())
+                    finish(self.solid(&self.spot(x, y, surface), Visibility::FULL).to_array())
                 } else {
                     behind
                 };
@@ -305,18 +305,18 @@ impl Picture<'_> {
             }
         }
         let hard = obstacles.is_some_and(Obstacles::is_hard);
-        let matched: Vec<Option<Openness>> = fine
+        let matched: Vec<Option<Visibility>> = fine
             .spots
             .par_iter()
             .enumerate()
             .map(|(k, spot)| match obstacles {
-                None => Some(Openness::FULL),
+                None => Some(Visibility::FULL),
                 Some(_) => self.matching(band, spot, places[k / n2], hard),
             })
             .collect();
         let alone: Vec<usize> = (0..matched.len()).filter(|k| matched[*k].is_none()).collect();
         let spots: Vec<Spot> = alone.iter().map(|k| fine.spots[*k]).collect();
-        let mut open: Vec<Openness> = matched.iter().map(|open| open.unwrap_or(Openness::FULL)).collect();
+        let mut open: Vec<Visibility> = matched.iter().map(|open| open.unwrap_or(Visibility::FULL)).collect();
         if let Some(obstacles) = obstacles {
             for (k, seen) in alone.iter().zip(obstacles.seen(&spots, TILE, |i| alone[i])) {
                 open[*k] = seen;
@@ -331,16 +331,16 @@ impl Picture<'_> {
         fine.spots.par_iter().enumerate().map(shade).collect()
     }
 
-    /// The openness of a spot, from the pixel at `place` and those about it; none if none of
+    /// The visibility of a spot, from the pixel at `place` and those about it; none if none of
     /// them is on the same face.
-    fn matching(&self, band: &Band, spot: &Spot, place: usize, hard: bool) -> Option<Openness> {
+    fn matching(&self, band: &Band, spot: &Spot, place: usize, hard: bool) -> Option<Visibility> {
         if !spot.is_solid() && !spot.is_ground() {
-            return Some(Openness::FULL);
+            return Some(Visibility::FULL);
         }
         let width = band.width as usize;
         let (x, y) = (place % width, place / width);
         let near = 2.0 * self.rays.pixel_size(spot.distance);
-        let mut best: Option<(f64, Openness)> = None;
+        let mut best: Option<(f64, Visibility)> = None;
         let mut edge = (1.0f32, 0.0f32);
         for y in y.saturating_sub(1)..=(y + 1).min(band.spots.len() / width - 1) {
             for x in x.saturating_sub(1)..=(x + 1).min(width - 1) {
@@ -379,7 +379,7 @@ impl Picture<'_> {
     }
 
     /// What a spot looks like with this behind it.
-    fn shade(&self, spot: &Spot, open: Openness, behind: Vec4) -> Vec4 {
+    fn shade(&self, spot: &Spot, open: Visibility, behind: Vec4) -> Vec4 {
         if spot.is_solid() {
             self.solid(spot, open)
         } else if spot.is_ground() {
@@ -390,7 +390,7 @@ impl Picture<'_> {
     }
 
     /// What a spot on the solid looks like.
-    fn solid(&self, spot: &Spot, open: Openness) -> Vec4 {
+    fn solid(&self, spot: &Spot, open: Visibility) -> Vec4 {
         self.studio.surface(spot, &self.materials.at(&self.studio, spot.owner, spot.point), open)
     }
 }

@@ -19,7 +19,7 @@ use crate::{Bounds, Cancelled, Hit, Palette, Rays, Run, Solid};
 use rvachev_num::Meter;
 
 /// How far a ray from a hit starts off the surface, in proportion to the solid.
-const HAIR: f64 = 1e-7;
+const RAY_EPSILON: f64 = 1e-7;
 
 /// Rays of a packet.
 const PACKET: usize = 8192;
@@ -133,8 +133,8 @@ impl Scene {
 
     /// A length that is small for the solid, and large for the rounding of its points: rays
     /// from a hit start this far off the surface.
-    pub(super) fn hair(&self) -> f64 {
-        if self.cells.is_some() { HAIR * self.bounds.longest_side() } else { 0.0 }
+    pub(super) fn ray_epsilon(&self) -> f64 {
+        if self.cells.is_some() { RAY_EPSILON * self.bounds.longest_side() } else { 0.0 }
     }
 
     /// The first crossing on the ray from `origin` along `direction`, which must be a unit

@@ -46,14 +46,14 @@ const CLAY: [u8; 3] = [214, 205, 194];
 /// What is known of the light at a point: the shares of the key light and of the sky that
 /// nothing hides.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Openness {
+pub(super) struct Visibility {
     pub(super) key: f32,
     pub(super) sky: f32,
 }
 
-impl Openness {
+impl Visibility {
     /// Nothing is hidden.
-    pub(super) const FULL: Openness = Openness { key: 1.0, sky: 1.0 };
+    pub(super) const FULL: Visibility = Visibility { key: 1.0, sky: 1.0 };
 }
 
 /// A paint, ready for light.
@@ -132,7 +132,7 @@ impl Studio {
     }
 
     /// The colour of a surface, as it is shown.
-    pub(super) fn surface(&self, spot: &Spot, material: &Material, open: Openness) -> Vec4 {
+    pub(super) fn surface(&self, spot: &Spot, material: &Material, open: Visibility) -> Vec4 {
         let (normal, viewer) = (spot.normal, spot.viewer);
         let light = match self.style {
             Style::Studio => self.developed(self.lit(normal, viewer, material, open, 1.0)),
@@ -151,7 +151,7 @@ impl Studio {
 
     /// Light that leaves a surface towards the viewer; `polish` is 0 for a surface that only
     /// scatters.
-    fn lit(&self, normal: Vec3, viewer: Vec3, material: &Material, open: Openness, polish: f32) -> Vec3A {
+    fn lit(&self, normal: Vec3, viewer: Vec3, material: &Material, open: Visibility, polish: f32) -> Vec3A {
         let cosine = |light: Vec3| normal.dot(light).max(0.0);
         let [key, fill, rim] = self.lights;
         let albedo = material.albedo;
@@ -198,7 +198,7 @@ impl Studio {
 
     /// The background as the ground shows it: darker in shadow. Transparent ground is shadow
     /// and nothing else.
-    pub(super) fn ground(&self, background: Vec4, open: Openness) -> Vec4 {
+    pub(super) fn ground(&self, background: Vec4, open: Visibility) -> Vec4 {
         let luminance = |c: Vec3A| c.dot(Vec3A::new(0.2126, 0.7152, 0.0722));
         let key = luminance(self.lights[0]) * self.key.z.max(0.0);
         let sky = luminance(self.lights[1]) + self.sky * luminance(SKY);
@@ -291,7 +291,7 @@ mod tests {
             for roughness in [0.0, 0.3, 1.0] {
                 let material = Paint { color, roughness }.into();
                 let shade = |open| studio.surface(&spot, &material, open).truncate();
-                let (lit, dark) = (shade(Openness::FULL), shade(Openness { key: 0.0, sky: 0.3 }));
+                let (lit, dark) = (shade(Visibility::FULL), shade(Visibility { key: 0.0, sky: 0.3 }));
                 assert!(lit.cmpgt(dark).all(), "{lit} {dark}");
                 assert!(dark.min_element() >= 0.0 && lit.max_element() <= 1.0, "{lit} {dark}");
             }
@@ -303,9 +303,9 @@ mod tests {
         let camera = Camera::perspective(DVec3::new(2.0, -3.0, 2.0), DVec3::ZERO, DVec3::Z, deg(30.0));
         let studio = Studio::new(&camera, &RenderSettings::default());
         let background = studio.background(0.7);
-        assert_eq!(studio.ground(background, Openness::FULL), background);
-        assert_eq!(studio.ground(Vec4::ZERO, Openness::FULL), Vec4::ZERO);
-        let shadow = studio.ground(Vec4::ZERO, Openness { key: 0.0, sky: 0.5 });
+        assert_eq!(studio.ground(background, Visibility::FULL), background);
+        assert_eq!(studio.ground(Vec4::ZERO, Visibility::FULL), Vec4::ZERO);
+        let shadow = studio.ground(Vec4::ZERO, Visibility { key: 0.0, sky: 0.5 });
         assert!(shadow.w > 0.5 && shadow.x < 0.05, "{shadow}");
     }
 }

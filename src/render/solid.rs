@@ -4,7 +4,7 @@ use std::io;
 use std::path::Path;
 
 use super::materials::Materials;
-use super::openness::Obstacles;
+use super::occlusion::Obstacles;
 use super::picture::{Picture, Pixel};
 use super::scene::Scene;
 use super::settings::{Background, RenderError, RenderSettings, check_memory};

@@ -5,7 +5,7 @@
 //!     -+-+-+-+-+-+-+-      picture in the plane, which takes one value per pixel where it is not told
 //!          #####   #       by ranges. What the rest of the solid is like along a ray that is inside
 //!          #####   #       from end to end, and along one that is outside, are two solids without the
-//!     -+-+-+-+-+-+-+-      formula (`eval::parting`).
+//!     -+-+-+-+-+-+-+-      formula (`eval::partial`).
 //! ```
 //!
 //! So the formula is divided along the axes that it depends on, by itself, and never marched through.
@@ -19,7 +19,7 @@ use super::gbuffer::Window;
 use super::pixels::{Pixels, Rectangle, TILE};
 use super::tile::View;
 use crate::Bounds;
-use crate::eval::{Evaluator, Parting, Region};
+use crate::eval::{Evaluator, Partial, Region};
 use rvachev_num::signs::{STRIP, signs};
 
 /// The leaf and the rest.
@@ -49,8 +49,8 @@ const FEW: f64 = 6e4;
 
 impl Still {
     /// `None` where inside of the leaf, or outside, nothing else would end the solid.
-    pub(super) fn new(parting: Parting, bounds: Bounds, margin: f64) -> Option<Still> {
-        let Parting { axes, leaf, sides } = parting;
+    pub(super) fn new(partial: Partial, bounds: Bounds, margin: f64) -> Option<Still> {
+        let Partial { axes, leaf, sides } = partial;
         let side = |region: Region| match region {
             Region::Inside => None,
             Region::Outside => Some(None),

@@ -63,7 +63,7 @@ pub(super) fn divide_top(cells: &Cells, view: &View<'_>, window: &Window) {
 
 /// What the rays of a packet have in common.
 #[derive(Clone, Copy)]
-struct Sheaf {
+struct Packet {
     /// The least and the greatest of their directions' components.
     low: DVec3,
     high: DVec3,
@@ -112,11 +112,11 @@ impl Tracer {
         let Part::Cell(root) = cells.root() else { return };
         let mut alive = Pixels::NONE;
         let bounds = cells.bounds();
-        let mut sheaf = Sheaf::new(view.rays.meeting_point());
+        let mut packet = Packet::new(view.rays.meeting_point());
         // Parallel rays have a direction in common.
         let beam = view.rays.meeting_point().is_none().then(|| view.rays.forward()).map(inverse);
         if beam.is_some() {
-            (sheaf.low, sheaf.high) = (view.rays.forward(), view.rays.forward());
+            (packet.low, packet.high) = (view.rays.forward(), view.rays.forward());
         }
         let Some(seen) = view.rectangle(bounds, tile) else { return };
         for y in seen.top..seen.bottom {
@@ -129,9 +129,9 @@ impl Tracer {
                 if enters(ray, cells, (origin, direction), beam, view.inside) {
                     alive.0[y] |= 1 << x;
                     if beam.is_some() {
-                        sheaf.inside |= ray.inside;
+                        packet.inside |= ray.inside;
                     } else {
-                        sheaf.add(ray);
+                        packet.add(ray);
                     }
                 }
             }
@@ -144,9 +144,9 @@ impl Tracer {
             if count == 0 {
                 continue;
             }
-            let united = sheaf.united(cell);
-            let slopes = if united.is_some() { Slopes::ANY } else { sheaf.slopes(cell) };
-            if !sheaf.inside && slopes.falls {
+            let united = packet.united(cell);
+            let slopes = if united.is_some() { Slopes::ANY } else { packet.slopes(cell) };
+            if !packet.inside && slopes.falls {
                 // Seen from behind.
                 continue;
             }
@@ -215,11 +215,11 @@ impl Tracer {
                 if self.spans.is_empty() {
                     continue;
                 }
-                let mut sheaf = Sheaf::new(eye);
-                self.spans.iter().for_each(|span| sheaf.add(&self.rays[span.ray as usize]));
-                let united = sheaf.united(cell);
-                let slopes = if united.is_some() { Slopes::ANY } else { sheaf.slopes(cell) };
-                if !sheaf.inside && slopes.falls {
+                let mut packet = Packet::new(eye);
+                self.spans.iter().for_each(|span| packet.add(&self.rays[span.ray as usize]));
+                let united = packet.united(cell);
+                let slopes = if united.is_some() { Slopes::ANY } else { packet.slopes(cell) };
+                if !packet.inside && slopes.falls {
                     continue;
                 }
                 if united.is_none() && divides(cell, self.spans.len(), slopes) {
@@ -298,9 +298,9 @@ impl<'a> View<'a> {
     }
 }
 
-impl Sheaf {
-    fn new(eye: Option<DVec3>) -> Sheaf {
-        Sheaf { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY, inside: false, eye }
+impl Packet {
+    fn new(eye: Option<DVec3>) -> Packet {
+        Packet { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY, inside: false, eye }
     }
 
     fn add(&mut self, ray: &Ray) {

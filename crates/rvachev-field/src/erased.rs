@@ -107,7 +107,7 @@ pub trait AnyField: Any + Debug + Send + Sync {
     }
     /// Told which zones it will be asked about next; leaves that answer for many of them at once as
     /// quickly as for one do so here.
-    fn foresee(&self, _zones: &[Zone]) {}
+    fn prefetch(&self, _zones: &[Zone]) {}
     /// A leaf that is cheaper and has the same values over the zone, where there is one.
     fn narrowed(&self, _zone: &Zone) -> Option<Arc<dyn AnyField>> {
         None

@@ -10,7 +10,7 @@
 use glam::Vec3A;
 
 use super::block_vertices::Corners;
-use super::bulge::is_strongly_curved;
+use super::curvature::is_strongly_curved;
 use super::parts::Watch;
 use super::samples::Samples;
 use crate::mesh::feature::SMOOTH;

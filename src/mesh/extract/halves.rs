@@ -60,7 +60,7 @@ pub(super) struct Cut {
     /// The points of the halves, in cells from the first node; first that of the segments from the first end to the last.
     pub(super) at: [Vec3A; 2],
     /// How far they are from their planes, in cells.
-    pub(super) misfit: f32,
+    pub(super) residual: f32,
 }
 
 impl Cut {
@@ -76,7 +76,7 @@ impl Cut {
                 }
                 let cut = Cut::new(ring, places, size, [first, last]);
                 best = match (best, cut) {
-                    (Some(best), Some(cut)) if cut.misfit < best.misfit => Some(cut),
+                    (Some(best), Some(cut)) if cut.residual < best.residual => Some(cut),
                     (best, cut) => best.or(cut),
                 };
             }
@@ -97,7 +97,7 @@ impl Cut {
         if !ways.iter().all(has_other) {
             return None;
         }
-        let mut misfit = 0.0f32;
+        let mut residual = 0.0f32;
         let at = ways.map(|way| {
             let (mut planes, mut sum) = (Planes::NONE, Vec3A::ZERO);
             for &n in way.iter().chain(&ends).filter(|&&n| normal(n) != Vec3A::ZERO) {
@@ -106,10 +106,10 @@ impl Cut {
             way.iter().for_each(|&n| sum += places[n]);
             let middle = (sum + places[first] + places[last]) / (way.len() + 2) as f32;
             let at = settle(&planes, middle, Vec3A::ZERO, size, 3);
-            misfit = misfit.max(planes.distance(at));
+            residual = residual.max(planes.distance(at));
             at
         });
-        Some(Cut { ends, along, at, misfit })
+        Some(Cut { ends, along, at, residual })
     }
 
     /// The vertices between the ends, on either way around.

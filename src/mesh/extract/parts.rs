@@ -7,7 +7,7 @@ use super::block_vertices::{Corners, note_row};
 use super::lists::split;
 use super::neighbours::Neighbours;
 use super::suspect::Suspect;
-use super::{BATCH, Batch, ExtractError, Part, Rift};
+use super::{BATCH, Batch, ExtractError, Mismatch, Part};
 use crate::mesh::Features;
 use crate::mesh::bulk::Bulk;
 use crate::mesh::signs::{BLOCK, SIDE, for_each_cell, is_mixed};
@@ -130,20 +130,20 @@ impl<'a> Parts<'a> {
     pub(super) fn check_faces(&self, run: &Run) -> Result<(), ExtractError> {
         let meter = Meter::new(run, self.blocks.len());
         let blocks = (0..self.blocks.len()).into_par_iter();
-        let rifts = blocks.try_fold(Vec::new, |mut rifts, n| {
+        let mismatches = blocks.try_fold(Vec::new, |mut mismatches, n| {
             meter.step()?;
-            self.add_rifts(n, &mut rifts);
-            Ok(rifts)
+            self.add_mismatches(n, &mut mismatches);
+            Ok(mismatches)
         });
-        let rifts = rifts.try_reduce(Vec::new, |mut all, mut more| {
+        let mismatches = mismatches.try_reduce(Vec::new, |mut all, mut more| {
             all.append(&mut more);
             Ok::<_, Cancelled>(all)
         })?;
-        if rifts.is_empty() { Ok(()) } else { Err(ExtractError::Rifts(rifts)) }
+        if mismatches.is_empty() { Ok(()) } else { Err(ExtractError::Mismatches(mismatches)) }
     }
 
     /// Adds the faces of block `n` that are not as they should be.
-    fn add_rifts(&self, n: usize, rifts: &mut Vec<Rift>) {
+    fn add_mismatches(&self, n: usize, mismatches: &mut Vec<Mismatch>) {
         let (block, signs) = (self.blocks[n], &self.part(n).signs);
         for axis in 0..3 {
             let mut add = |up: bool, what| {
@@ -151,7 +151,7 @@ impl<'a> Parts<'a> {
                 let side = BLOCK as u32;
                 let at = if up { block[axis].checked_add(side) } else { block[axis].checked_sub(side) };
                 beyond[axis] = at.unwrap_or_default();
-                rifts.push(Rift { block, beyond: at.map(|_| beyond), what });
+                mismatches.push(Mismatch { block, beyond: at.map(|_| beyond), what });
             };
             let ours = signs.face(axis, true);
             match self.neighbours.upper(n, 1 << axis) {

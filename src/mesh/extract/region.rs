@@ -42,14 +42,14 @@ use crate::{Cancelled, Run};
 use rvachev_num::Meter;
 
 /// A cell asks for a region if its point is farther from the planes than this, in cells.
-pub(super) const MISFIT: f32 = 0.02;
+pub(super) const RESIDUAL: f32 = 0.02;
 
 /// The most cells along an axis of a region.
 const LARGEST: u32 = 4;
 
 const _: () = assert!(LARGEST <= Segment::REACH);
 
-/// How much farther from the planes than allowed the point may be that a wish for a region starts from.
+/// How much farther from the planes than allowed the point may be that a request for a region starts from.
 const NO_FARTHER: f32 = 1.5;
 
 /// How often regions may grow so.
@@ -98,57 +98,57 @@ pub(super) fn regions(
         regions: Vec::new(),
         patches: Patches::default(),
     };
-    let mut all: Vec<Asker<'_>> = Vec::new();
+    let mut all: Vec<Requester<'_>> = Vec::new();
     for block in 0..blocks {
         run.check()?;
         for candidate in special.candidates(block) {
-            if candidate.misfit > MISFIT {
-                all.push(Asker::candidate(samples, block, candidate));
+            if candidate.residual > RESIDUAL {
+                all.push(Requester::candidate(samples, block, candidate));
             }
         }
     }
     // Regions that stand alone come first: they are smaller than those that others are merged into.
     for stage in stages {
-        let mut wishes = Vec::new();
+        let mut requests = Vec::new();
         steps.step()?;
-        for asker in all.iter().filter(|asker| !known.is_granted(asker.who, asker.block)) {
+        for requester in all.iter().filter(|requester| !known.is_accepted(requester.who, requester.block)) {
             match stage {
-                Stage::Slab(nth) => asker.slabs(nth, &mut wishes),
-                Stage::Box => asker.boxes(&mut wishes),
+                Stage::Slab(nth) => requester.slabs(nth, &mut requests),
+                Stage::Box => requester.boxes(&mut requests),
             }
         }
-        let mut wishes = largest_first(&wishes);
-        wishes.retain(|wish| !known.grant(wish, false));
+        let mut requests = largest_first(&requests);
+        requests.retain(|request| !known.accept(request, false));
         if matches!(stage, Stage::Box) {
-            wishes.retain(|wish| !known.grant(wish, true));
+            requests.retain(|request| !known.accept(request, true));
         }
     }
     // Then those that creases leave through empty cells.
     let mut asked = 0;
     for round in 0..ROUNDS {
         steps.step()?;
-        let mut wishes = Vec::new();
+        let mut requests = Vec::new();
         for block in (0..blocks).filter(|_| round == 0) {
             let leaves = special.candidates(block).iter().filter(|candidate| candidate.leaves);
             for candidate in leaves.filter(|candidate| known.own_taken(block, candidate.number).is_none()) {
                 let crossed = Segment::faces(special.segments(block, candidate));
-                known.exits(&Asker::candidate(samples, block, candidate), crossed, &mut wishes);
+                known.exits(&Requester::candidate(samples, block, candidate), crossed, &mut requests);
             }
         }
-        // What was not granted before is not asked for again.
+        // What was not accepted before is not asked for again.
         for (number, region) in known.regions.iter().enumerate().skip(asked) {
             let Some(region) = region else { continue };
-            let asker = Asker::region(number, region);
-            if asker.planes.distance(asker.at) > 2.0 * MISFIT {
-                asker.slabs(0, &mut wishes);
-                asker.boxes(&mut wishes);
+            let requester = Requester::region(number, region);
+            if requester.planes.distance(requester.at) > 2.0 * RESIDUAL {
+                requester.slabs(0, &mut requests);
+                requester.boxes(&mut requests);
             }
-            known.exits(&asker, 0, &mut wishes);
+            known.exits(&requester, 0, &mut requests);
         }
-        let mut wishes = largest_first(&wishes);
+        let mut requests = largest_first(&requests);
         asked = known.regions.len();
-        wishes.retain(|wish| wish.slab.is_none() || !known.grant(wish, false));
-        wishes.retain(|wish| !known.grant(wish, true));
+        requests.retain(|request| request.slab.is_none() || !known.accept(request, false));
+        requests.retain(|request| !known.accept(request, true));
         if known.regions.len() == asked {
             break;
         }
@@ -183,7 +183,7 @@ enum Who<'a> {
 }
 
 /// A cell or a region that may want to be part of a larger one.
-struct Asker<'a> {
+struct Requester<'a> {
     who: Who<'a>,
     block: usize,
     span: Span,
@@ -192,41 +192,41 @@ struct Asker<'a> {
     planes: Planes,
 }
 
-impl<'a> Asker<'a> {
-    fn candidate(samples: &Samples<'_>, block: usize, candidate: &'a Candidate) -> Asker<'a> {
+impl<'a> Requester<'a> {
+    fn candidate(samples: &Samples<'_>, block: usize, candidate: &'a Candidate) -> Requester<'a> {
         let span = Span::single(cell_of(samples.blocks()[block], candidate.number));
         let (at, planes) = (candidate.at.into(), candidate.planes());
-        Asker { who: Who::Cell(candidate), block, span, at, planes }
+        Requester { who: Who::Cell(candidate), block, span, at, planes }
     }
 
-    fn region(number: usize, region: &Region) -> Asker<'a> {
+    fn region(number: usize, region: &Region) -> Requester<'a> {
         let Region { block, span, place, planes, .. } = *region;
-        Asker { who: Who::Region(number), block, span, at: place, planes }
+        Requester { who: Who::Region(number), block, span, at: place, planes }
     }
 
-    fn wish(&self, size: f32, span: Span, at: Vec3A, allowed: f32) -> Wish<'a> {
-        Wish { size, block: self.block, who: self.who, from: self.span.low, span, slab: None, at, allowed }
+    fn request(&self, size: f32, span: Span, at: Vec3A, allowed: f32) -> Request<'a> {
+        Request { size, block: self.block, who: self.who, from: self.span.low, span, slab: None, at, allowed }
     }
 
-    /// Wishes for slabs up to where the planes meet, across the axis that is the nth of those that the crease goes
+    /// Requests for slabs up to where the planes meet, across the axis that is the nth of those that the crease goes
     /// along, if it is a slab itself.
-    fn slabs(&self, nth: usize, wishes: &mut Vec<Wish<'a>>) {
+    fn slabs(&self, nth: usize, requests: &mut Vec<Request<'a>>) {
         let axis = self.planes.crease().and_then(|along| axes(along)[nth]);
         if let Some(axis) = axis.filter(|&axis| self.span.is_slab(axis)) {
             let mut across = Vec3A::ONE;
             across[axis] = 0.0;
-            self.towards([across, 2.0 * across, 3.0 * across], Some(axis), wishes);
+            self.towards([across, 2.0 * across, 3.0 * across], Some(axis), requests);
         }
     }
 
-    /// Wishes for the boxes up to where the planes meet.
-    fn boxes(&self, wishes: &mut Vec<Wish<'a>>) {
-        self.towards([1.0, 2.0].map(Vec3A::splat), None, wishes);
+    /// Requests for the boxes up to where the planes meet.
+    fn boxes(&self, requests: &mut Vec<Request<'a>>) {
+        self.towards([1.0, 2.0].map(Vec3A::splat), None, requests);
     }
 
-    /// Wishes for the boxes up to where the planes meet, among the cells that are so far away along the axes.
-    fn towards<const N: usize>(&self, reaches: [Vec3A; N], slab: Option<usize>, wishes: &mut Vec<Wish<'a>>) {
-        let (misfit, mut last) = (self.planes.distance(self.at), self.span);
+    /// Requests for the boxes up to where the planes meet, among the cells that are so far away along the axes.
+    fn towards<const N: usize>(&self, reaches: [Vec3A; N], slab: Option<usize>, requests: &mut Vec<Request<'a>>) {
+        let (residual, mut last) = (self.planes.distance(self.at), self.span);
         for reach in reaches {
             let (first, end) = (-reach, self.span.size() + reach);
             let at = settle(&self.planes, self.at, first, end, 3);
@@ -235,9 +235,9 @@ impl<'a> Asker<'a> {
             let span = self.span.union(&Span::single(cell));
             if span != last {
                 // What is much farther off than allowed here will hardly be close enough in a region.
-                let allowed = 0.5 * misfit;
+                let allowed = 0.5 * residual;
                 if self.planes.distance(at) <= NO_FARTHER * allowed {
-                    wishes.push(Wish { slab, ..self.wish(misfit, span, at, allowed) });
+                    requests.push(Request { slab, ..self.request(residual, span, at, allowed) });
                 }
                 last = span;
             }
@@ -257,7 +257,7 @@ fn floor(x: f32) -> i32 {
 }
 
 /// A region that a cell, or another region, asks for.
-struct Wish<'a> {
+struct Request<'a> {
     /// How far off the mesh may be without it, in cells.
     size: f32,
     /// Who asks, and the block of it.
@@ -273,9 +273,9 @@ struct Wish<'a> {
     allowed: f32,
 }
 
-/// Wishes in the order that they are granted in: the mesh gains most by the first.
-fn largest_first<'w, 'a>(wishes: &'w [Wish<'a>]) -> Vec<&'w Wish<'a>> {
-    let mut order: Vec<&Wish<'_>> = wishes.iter().collect();
+/// Requests in the order that they are accepted in: the mesh gains most by the first.
+fn largest_first<'w, 'a>(requests: &'w [Request<'a>]) -> Vec<&'w Request<'a>> {
+    let mut order: Vec<&Request<'_>> = requests.iter().collect();
     order.sort_by(|a, b| b.size.total_cmp(&a.size));
     order
 }
@@ -301,28 +301,28 @@ struct Taken {
 }
 
 impl<'a> Known<'a> {
-    /// Makes the region that is wished for, if it can be: merged with the regions in its way if it `merges`, or if
-    /// that makes a slab of a slab, and else only where there are none. Whether there is no more to be done for the wish.
-    fn grant(&mut self, wish: &Wish<'_>, merges: bool) -> bool {
-        if self.is_granted(wish.who, wish.block) || self.run.cancel.is_cancelled() {
+    /// Makes the region that is requested, if it can be: merged with the regions in its way if it `merges`, or if
+    /// that makes a slab of a slab, and else only where there are none. Whether there is no more to be done for the request.
+    fn accept(&mut self, request: &Request<'_>, merges: bool) -> bool {
+        if self.is_accepted(request.who, request.block) || self.run.cancel.is_cancelled() {
             return true;
         }
-        let mut span = wish.span;
+        let mut span = request.span;
         let mut merged: Vec<u32> = Vec::new();
         while let Some(region) =
-            span.cells().filter_map(|cell| self.taken(wish.block, cell)).find(|region| !merged.contains(region))
+            span.cells().filter_map(|cell| self.taken(request.block, cell)).find(|region| !merged.contains(region))
         {
             if let Some(other) = &self.regions[region as usize] {
                 span = span.union(&other.span);
             }
             merged.push(region);
-            let may_merge = merges || wish.slab.is_some_and(|axis| span.is_slab(axis));
+            let may_merge = merges || request.slab.is_some_and(|axis| span.is_slab(axis));
             if !may_merge || !span.is_small(LARGEST) {
                 return merges;
             }
         }
         let mut patches = std::mem::take(&mut self.patches);
-        let region = self.region(wish, span, &mut patches);
+        let region = self.region(request, span, &mut patches);
         self.patches = patches;
         let Some(region) = region else { return merged.is_empty() };
         for old in merged {
@@ -330,7 +330,7 @@ impl<'a> Known<'a> {
         }
         for cell in region.span.cells() {
             let (block, within) = split_cell(cell);
-            if let Some(block) = self.samples.find_near(wish.block, block) {
+            if let Some(block) = self.samples.find_near(request.block, block) {
                 self.taken[block].put(cell_number(within), self.regions.len() as u32);
             }
         }
@@ -339,22 +339,22 @@ impl<'a> Known<'a> {
     }
 
     /// The boxes that hold an empty cell as well, which the crease goes on through by a face that is not crossed.
-    fn exits<'w>(&self, asker: &Asker<'w>, crossed: u8, wishes: &mut Vec<Wish<'w>>) {
-        let Some(along) = asker.planes.crease() else { return };
+    fn exits<'w>(&self, requester: &Requester<'w>, crossed: u8, requests: &mut Vec<Request<'w>>) {
+        let Some(along) = requester.planes.crease() else { return };
         for along in [along, -along] {
-            let Some((cell, length)) = asker.span.exit(asker.at, along, crossed) else { continue };
-            let is_empty = matches!(self.samples.case_near(asker.block, cell), 0 | 255);
-            if length > SHORT && is_empty && self.taken(asker.block, cell).is_none() {
-                let allowed = asker.planes.distance(asker.at).max(2.0 * MISFIT);
-                let span = asker.span.union(&Span::single(cell));
+            let Some((cell, length)) = requester.span.exit(requester.at, along, crossed) else { continue };
+            let is_empty = matches!(self.samples.case_near(requester.block, cell), 0 | 255);
+            if length > SHORT && is_empty && self.taken(requester.block, cell).is_none() {
+                let allowed = requester.planes.distance(requester.at).max(2.0 * RESIDUAL);
+                let span = requester.span.union(&Span::single(cell));
                 let slab = axes(along)[0].filter(|&axis| span.is_slab(axis));
-                wishes.push(Wish { slab, ..asker.wish(0.5 * length, span, asker.at, allowed) });
+                requests.push(Request { slab, ..requester.request(0.5 * length, span, requester.at, allowed) });
             }
         }
     }
 
-    /// Whether who asks is a cell, of that block, that is in a region already: that is what it wished for, or better.
-    fn is_granted(&self, who: Who<'_>, block: usize) -> bool {
+    /// Whether who asks is a cell, of that block, that is in a region already: that is what it requested, or better.
+    fn is_accepted(&self, who: Who<'_>, block: usize) -> bool {
         matches!(who, Who::Cell(candidate) if self.own_taken(block, candidate.number).is_some())
     }
 
@@ -369,33 +369,33 @@ impl<'a> Known<'a> {
         self.taken[block].get(number)
     }
 
-    fn region(&self, wish: &Wish<'_>, span: Span, patches: &mut Patches<'a>) -> Option<Region> {
+    fn region(&self, request: &Request<'_>, span: Span, patches: &mut Patches<'a>) -> Option<Region> {
         patches.clear();
         for cell in span.cells() {
             let (first, within) = split_cell(cell);
             if self.samples.is_plain(first) {
                 return None;
             }
-            let Some(block) = self.samples.find_near(wish.block, first) else { continue };
+            let Some(block) = self.samples.find_near(request.block, first) else { continue };
             let case = self.samples.parts.part(block).signs.case(within);
             if case != 0 && case != 255 {
                 self.add_patches(block, within, (cell, case), patches)?;
             }
         }
-        let (shift, size) = (offset(wish.from, span.low), span.size());
-        let own = match wish.who {
+        let (shift, size) = (offset(request.from, span.low), span.size());
+        let own = match request.who {
             Who::Cell(candidate) => candidate.planes(),
             // None if it is part of another by now.
             Who::Region(number) => self.regions[number].as_ref()?.planes,
         };
-        let (mut planes, mut place) = (Planes::NONE, wish.at + shift);
+        let (mut planes, mut place) = (Planes::NONE, request.at + shift);
         for step in 1..=STEPS {
             planes = patches.planes(span.low, place);
             let next = settle(&planes, place, Vec3A::ZERO, size, 3);
             let way = next - place;
             place = next;
             let is_last = step == STEPS || way.length_squared() < CLOSE * CLOSE;
-            let allowed = if is_last { wish.allowed } else { NO_HOPE * wish.allowed };
+            let allowed = if is_last { request.allowed } else { NO_HOPE * request.allowed };
             if planes.distance(place).max(own.distance(place - shift)) > allowed {
                 return None;
             }
@@ -405,7 +405,7 @@ impl<'a> Known<'a> {
         }
         let Disc { ring, within } = patches.glued(&span)?;
         let at = self.samples.inside(place, span.low, span.high);
-        Some(Region { block: wish.block, segments: ring, at, place, planes, within, span })
+        Some(Region { block: request.block, segments: ring, at, place, planes, within, span })
     }
 
     /// Adds the planes of a crossed cell of a block, and its patches.

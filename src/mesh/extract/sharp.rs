@@ -28,7 +28,7 @@
 //!
 //! [Regions](super::region) of several cells have fans as well, and so have [halves](super::halves) of cells that two
 //! creases pass, and smooth cells that are strongly
-//! [curved](super::bulge), even if their normals differ as those of a crease do ([`spread`](super::spread)).
+//! [curved](super::curvature), even if their normals differ as those of a crease do ([`spread`](super::spread)).
 //!
 //! Limits: cells with several loops stay as the table has them, or as that of the opposite case
 //! (see [`joined`](super::joined)). Where a crease passes an empty cell and no region comes about, it is
@@ -46,7 +46,7 @@ use super::halves::Half;
 use super::joined::Joined;
 use super::lists::{fill, filled_numbers, split};
 use super::plain::Plain;
-use super::region::{MISFIT, Region, regions};
+use super::region::{RESIDUAL, Region, regions};
 use super::samples::{Samples, cell_number, cell_of, split_cell};
 use super::span::Span;
 use super::special::{Special, list_of};
@@ -204,7 +204,7 @@ impl Fans {
                 let Range { start, end } = candidate.range();
                 let (list, segments) = (list_of(block), start as u32..end as u32);
                 let (at, normal) = (candidate.position, candidate.normal);
-                let (block, is_loose) = (block as u32, candidate.misfit > MISFIT);
+                let (block, is_loose) = (block as u32, candidate.residual > RESIDUAL);
                 all.fans.push(Fan { list, segments, block, span, at, normal, is_loose, half: None });
             }
             numbers.iter().for_each(|&number| cells.insert(number));

@@ -9,8 +9,8 @@ use glam::Vec3A;
 use rayon::prelude::*;
 
 use super::block_vertices::Corners;
-use super::bulge::{Cover, Ring};
 use super::cells::{CellOrder, CellSet};
+use super::curvature::{Cover, Ring};
 use super::joined::Joined;
 use super::nearby::Nearby;
 use super::plain::Plain;

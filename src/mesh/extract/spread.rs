@@ -9,7 +9,7 @@
 //!
 //! Where the surface has the height h(x) = −½ xᵀKx, and x are the ways to the vertices from their middle c, the surface
 //! is above c by half the mean height of their tangent planes, and its normal there is the mean of theirs: see
-//! [`bulge`](super::bulge). Of a crease, flat on both sides, neither holds:
+//! [`curvature`](super::curvature). Of a crease, flat on both sides, neither holds:
 //!
 //! * If the sides are joined by min or max, the normal next to c is that of one of them. It differs from the mean by
 //!   √((n − k)/k) standard deviations of the normals, where k of n vertices are on that side: by .41 at least, for up to
@@ -20,7 +20,7 @@
 
 use glam::Vec3A;
 
-use super::bulge::Middle;
+use super::curvature::Middle;
 use crate::mesh::feature::{Segment, Slope};
 
 /// A cell whose normals differ as those of a crease do.

@@ -386,7 +386,7 @@ fn bad_lists_of_blocks_are_reported() {
         let error = extract(&sampler, &lattice, blocks, Features::Smooth, &Run::default()).unwrap_err();
         match error {
             ExtractError::Blocks { what, .. } => what,
-            ExtractError::Rifts(rifts) => rifts[0].what,
+            ExtractError::Mismatches(mismatches) => mismatches[0].what,
             error => panic!("{error}"),
         }
     };
@@ -433,8 +433,8 @@ fn neighbours_that_disagree_are_reported() {
     let blocks = surface_blocks(&sampler, &lattice);
     let flipped = Flipped(sampler, blocks[0]);
     let error = extract(&flipped, &lattice, &blocks, Features::Smooth, &Run::default()).unwrap_err();
-    let ExtractError::Rifts(rifts) = error else { panic!("{error}") };
-    assert!(rifts.iter().all(|rift| rift.block == blocks[0] || rift.beyond == Some(blocks[0])));
+    let ExtractError::Mismatches(mismatches) = error else { panic!("{error}") };
+    assert!(mismatches.iter().all(|mismatch| mismatch.block == blocks[0] || mismatch.beyond == Some(blocks[0])));
 }
 
 #[test]

@@ -29,7 +29,7 @@ use rvachev_num::Meter;
 /// How much the trend may change the normal within a cell, and how large the box may be of what a block's own normals have
 /// beside it; with those of neighbours it may be twice that. Two normals of a cell differ by less than those of a
 /// [crease](crate::mesh::feature::SMOOTH) do then. The middles of triangles are off by a fiftieth of a cell at most by the
-/// trend (see [`bulge`](super::bulge)), and by as much again where a blunt ridge of 6° makes all of the box.
+/// trend (see [`curvature`](super::curvature)), and by as much again where a blunt ridge of 6° makes all of the box.
 const EVEN: f32 = 0.1;
 
 /// So many vertices tell a trend.

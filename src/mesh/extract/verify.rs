@@ -1,4 +1,4 @@
-//! Every feature point is verified by the field, and mended where it is off the surface.
+//! Every feature point is verified by the field, and repaired where it is off the surface.
 //!
 //! A point that fits the planes of its loop's vertices misses what these do not tell: a side between two others that no
 //! edge of the cell crosses. And a cell that two creases pass has no point that fits. In order:
@@ -29,7 +29,7 @@ use crate::{Cancelled, Run};
 const FEW: usize = 32;
 
 /// What becomes of a fan.
-enum Mended {
+enum Repaired {
     /// It stays, but for its loop if that is new.
     Same,
     /// Its point is moved.
@@ -39,7 +39,7 @@ enum Mended {
 }
 
 impl Fans {
-    /// Verifies all points, and mends the fans of those that are off.
+    /// Verifies all points, and repairs the fans of those that are off.
     pub(super) fn verify<S: Sampler>(
         &mut self,
         samples: &Samples<'_>,
@@ -79,12 +79,12 @@ impl Fans {
         }
         let changed: Vec<(u32, Option<Vec<Segment>>, bool)> =
             rings.into_iter().map(|(fan, (ring, off))| (fan, ring, off)).collect();
-        let mended = self.each(samples, sampler, run, &changed, |probe, (fan, ring, off)| {
-            self.mended(samples, probe, *fan, (ring.as_deref(), *off))
+        let repaired = self.each(samples, sampler, run, &changed, |probe, (fan, ring, off)| {
+            self.repaired(samples, probe, *fan, (ring.as_deref(), *off))
         })?;
         let mut list: Vec<Segment> = Vec::new();
-        for ((fan, ring, _), mended) in changed.into_iter().zip(mended) {
-            self.mend(fan, ring, mended, &mut list);
+        for ((fan, ring, _), repaired) in changed.into_iter().zip(repaired) {
+            self.repair(fan, ring, repaired, &mut list);
         }
         self.segments.push(list);
         Ok(())
@@ -149,13 +149,13 @@ impl Fans {
     }
 
     /// What becomes of a fan that is off, does not fit, or has another loop.
-    fn mended<S: Sampler>(
+    fn repaired<S: Sampler>(
         &self,
         samples: &Samples<'_>,
         probe: &mut Probe<'_, S>,
         number: u32,
         (ring, off): (Option<&[Segment]>, bool),
-    ) -> Mended {
+    ) -> Repaired {
         let fan = &self.fans[number as usize];
         let (near, span) = (fan.block as usize, &fan.span);
         let low = samples.node(span.low);
@@ -169,32 +169,32 @@ impl Fans {
         let own = place(samples, fan);
         if let Some(cut) = Cut::best(ring, &places, span.size()) {
             let at = cut.at.map(inside);
-            let fits_better = off || cut.misfit < 0.5 * planes.distance(own);
+            let fits_better = off || cut.residual < 0.5 * planes.distance(own);
             if fits_better
                 && let Some(half) = cut.half(&positions, at, samples.lattice.step())
                 && !at.iter().any(|&at| probe.is_off(near, span, back(at)))
             {
-                return Mended::Cut { at, half, cut };
+                return Repaired::Cut { at, half, cut };
             }
         }
         if !off && !is_new {
-            return Mended::Same;
+            return Repaired::Same;
         }
         let middle = places.iter().sum::<Vec3A>() / places.len() as f32;
         if is_new {
             let at = settle(&planes, middle, Vec3A::ZERO, span.size(), 3);
             if !probe.is_off(near, span, at) {
-                return Mended::Moved(inside(at));
+                return Repaired::Moved(inside(at));
             }
         }
         if !off {
-            return Mended::Same;
+            return Repaired::Same;
         }
-        Mended::Moved(inside(probe.onto(near, span, own, [middle, places[0]])))
+        Repaired::Moved(inside(probe.onto(near, span, own, [middle, places[0]])))
     }
 
     /// Changes a fan, given its loop if that is new; loops that are new go into a list of their own.
-    fn mend(&mut self, number: u32, ring: Option<Vec<Segment>>, mended: Mended, list: &mut Vec<Segment>) {
+    fn repair(&mut self, number: u32, ring: Option<Vec<Segment>>, repaired: Repaired, list: &mut Vec<Segment>) {
         let mut add = |ring: &mut [Segment]| {
             let count = ring.len();
             let normals: Vec<Vec3> = ring.iter().map(|segment| segment.normal).collect();
@@ -207,8 +207,8 @@ impl Fans {
             (start..list.len() as u32, normal)
         };
         let lists = self.segments.len() as u32;
-        let at = match mended {
-            Mended::Cut { at, half, cut } => {
+        let at = match repaired {
+            Repaired::Cut { at, half, cut } => {
                 let twin = self.fans.len() as u32;
                 let own = ring.as_deref().unwrap_or_else(|| self.of(number as usize));
                 let [mut ring, mut others] = cut.rings(own, [number, twin]);
@@ -231,13 +231,13 @@ impl Fans {
                 fan.half = Some(Box::new(half.with_twin(twin)));
                 Some(at[0])
             }
-            Mended::Moved(_) | Mended::Same => {
+            Repaired::Moved(_) | Repaired::Same => {
                 if let Some(mut ring) = ring {
                     let (segments, normal) = add(&mut ring);
                     let fan = &mut self.fans[number as usize];
                     (fan.list, fan.segments, fan.normal) = (lists, segments, normal);
                 }
-                if let Mended::Moved(at) = mended { Some(at) } else { None }
+                if let Repaired::Moved(at) = repaired { Some(at) } else { None }
             }
         };
         if let Some(at) = at {

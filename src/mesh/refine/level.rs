@@ -76,8 +76,8 @@ impl Level {
             }
             let sampler = LevelSampler { inner, level: self, outer, program: job.program };
             match extract(&sampler, &self.lattice, &self.blocks.cells, job.features, run) {
-                Err(ExtractError::Rifts(rifts))
-                    if self.blocks.mend(&rifts, job.program, (&self.lattice, &job.limits), has, run)? => {}
+                Err(ExtractError::Mismatches(mismatches))
+                    if self.blocks.repair(&mismatches, job.program, (&self.lattice, &job.limits), has, run)? => {}
                 result => break result?,
             }
         };

@@ -68,10 +68,10 @@ pub(in crate::mesh) fn within(
         done = end;
         let mesh = match meshed(job, &mut levels, &to_mesh)? {
             Ok(mesh) => mesh,
-            Err(misfit) => {
-                most = misfit;
-                levels.truncate(misfit);
-                levels[misfit - 1].forget();
+            Err(mismatched) => {
+                most = mismatched;
+                levels.truncate(mismatched);
+                levels[mismatched - 1].forget();
                 continue;
             }
         };
@@ -83,7 +83,7 @@ pub(in crate::mesh) fn within(
             enough = (ENOUGH_IN_PLACES + FOR_EACH * mesh.triangles().len()).min(ENOUGH);
         }
         let is_done = round >= ROUNDS || mesh.triangles().len() > enough;
-        // Where larger and smaller cells meet, creases are cut off: that may be worse than what is mended.
+        // Where larger and smaller cells meet, creases are cut off: that may be worse than what is repaired.
         let is_worse = |(_, before, count): &(Lattice, f64, usize)| {
             levels.len() > 1 && far > tolerance && far > WORSE * before && 4 * count < ENOUGH_IN_PLACES * FOR_EACH
         };

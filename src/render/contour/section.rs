@@ -1,6 +1,6 @@
 //! A plane as programs see it: values, and where they rise.
 //!
-//! The plane is taken a hair to one side of where it is asked for. A face that lies in it is then not on the
+//! The plane is taken a little to one side of where it is asked for. A face that lies in it is then not on the
 //! plane: what is on that side counts, as it does for a layer that is printed on a plate.
 
 use glam::{DMat3, DVec2};
@@ -12,7 +12,7 @@ use crate::{Bounds, Plane, PlaneBounds};
 use rvachev_field::Zone;
 
 /// How far aside, in proportion to the size: rounding is less, and the plane that is meant is as near.
-const HAIR: f64 = 1.0 / (1u64 << 37) as f64;
+const EPSILON: f64 = 1.0 / (1u64 << 37) as f64;
 
 /// Squares that are no larger, in the smallest squares, are looked at by samples where ranges of slopes tell little: a
 /// 256th of the first.
@@ -48,7 +48,7 @@ pub(super) struct Section {
     plane: Plane,
     border: PlaneBounds,
     /// How far aside of where it is asked for the plane is.
-    hair: f64,
+    epsilon: f64,
     /// How far contours may be off.
     tolerance: f64,
 }
@@ -67,13 +67,13 @@ impl Section {
         let size = (border.max - border.min).max_element();
         let farthest = heights.iter().fold(0.0, |farthest: f64, height| farthest.max(height.abs()));
         // One for all: the planes of a stack stay as far apart as they are.
-        let hair = HAIR * (size + plane.origin().abs().max_element() + farthest);
+        let epsilon = EPSILON * (size + plane.origin().abs().max_element() + farthest);
         let aside = match settings.side {
-            Side::Above => hair,
-            Side::Below => -hair,
+            Side::Above => epsilon,
+            Side::Below => -epsilon,
         };
         let tolerance = settings.tolerance;
-        let section = |height: &f64| Section { plane: plane.moved_by(height + aside), border, hair, tolerance };
+        let section = |height: &f64| Section { plane: plane.moved_by(height + aside), border, epsilon, tolerance };
         heights.iter().map(section).collect()
     }
 
@@ -185,6 +185,6 @@ impl Section {
     pub(super) fn flush(&self, filling: &Filling, square: &Square) -> Option<bool> {
         let Filling::Program(program) = filling else { return None };
         let zone = self.zone(square.low, square.low + square.side, [0.0; 2]);
-        program.flush(&zone, self.plane.axes(), [self.hair, self.tolerance])
+        program.flush(&zone, self.plane.axes(), [self.epsilon, self.tolerance])
     }
 }

@@ -84,7 +84,7 @@ impl AnyField for Formula {
         self.0.code.axes
     }
 
-    fn foresee(&self, zones: &[Zone]) {
+    fn prefetch(&self, zones: &[Zone]) {
         self.survey(zones);
     }
 

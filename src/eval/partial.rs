@@ -17,7 +17,7 @@ use crate::Bounds;
 use rvachev_field::{Pieces, Zone};
 
 /// A program in parts.
-pub(crate) struct Parting {
+pub(crate) struct Partial {
     /// The axes of the world that the leaf depends on.
     pub(crate) axes: [bool; 3],
     /// The leaf alone.
@@ -29,7 +29,7 @@ pub(crate) struct Parting {
 impl Program {
     /// The program parted, within `bounds`, by a leaf that costs more than `dear` ordinary ones and
     /// goes on without end along an axis of the world, if it has one.
-    pub(crate) fn parting(&self, bounds: &Bounds, dear: usize) -> Option<Parting> {
+    pub(crate) fn partial(&self, bounds: &Bounds, dear: usize) -> Option<Partial> {
         for (at, node) in self.nodes.iter().enumerate() {
             let Some(leaf) = node.valued_by().filter(|_| node.len == 0) else { continue };
             let instance = self.instance(leaf);
@@ -44,7 +44,7 @@ impl Program {
             };
             let leaf = vec![Node::leaf(leaf)];
             let leaf = Program::assemble(self.scene.clone(), leaf, Vec::new(), Edge::new(0), self.simpler.to_vec());
-            return Some(Parting { axes, leaf, sides: [outside, inside] });
+            return Some(Partial { axes, leaf, sides: [outside, inside] });
         }
         None
     }
@@ -86,12 +86,12 @@ mod tests {
         let mut parted = 0;
         for solid in [plate.clone(), &plate - &ball, &plate | &ball, &ball - &plate, &turned & &ball] {
             let program = solid.surface_program().expect("the solid is valid");
-            let Some(parting) = program.parting(&bounds, 4) else { continue };
-            assert_eq!(parting.axes, [true, true, false]);
+            let Some(partial) = program.partial(&bounds, 4) else { continue };
+            assert_eq!(partial.axes, [true, true, false]);
             parted += 1;
             for n in 0..1000 {
                 let p = 2.0 * DVec3::new(random(3 * n), random(3 * n + 1), random(3 * n + 2)) - 1.0;
-                let side = &parting.sides[usize::from(parting.leaf.value(p) > 0.0)];
+                let side = &partial.sides[usize::from(partial.leaf.value(p) > 0.0)];
                 let inside = match side {
                     Region::Inside => true,
                     Region::Outside => false,
@@ -103,8 +103,8 @@ mod tests {
         assert_eq!(parted, 5);
         // Below a blend its sign does not tell.
         let blended = plate.smooth_union(&ball, 0.1).surface_program().expect("the solid is valid");
-        assert!(blended.parting(&bounds, 4).is_none());
+        assert!(blended.partial(&bounds, 4).is_none());
         // Nor is a short leaf worth it.
-        assert!(ball.surface_program().expect("the solid is valid").parting(&bounds, 4).is_none());
+        assert!(ball.surface_program().expect("the solid is valid").partial(&bounds, 4).is_none());
     }
 }

@@ -13,19 +13,19 @@
 //! A ray that leaves a surface has half of the space before it, most often empty, and is gone in one
 //! leap or two.
 //!
-//! Source: R. Cohen and Z. Sheffer, *Proximity clouds* (1994), for leaps in grids.
+//! Source: R. Cohen and Z. Sheffer, *Proximity clouds* (1994), for empty space in grids.
 
 use glam::IVec3;
 
 /// By direction and block, x first: the side of the largest cube, 0 for full blocks.
-pub(super) struct Leaps {
+pub(super) struct EmptySpace {
     count: usize,
     sides: Vec<u8>,
 }
 
-impl Leaps {
+impl EmptySpace {
     /// Those of a grid of so many blocks along each axis; there is nothing beyond it.
-    pub(super) fn new(blocks: IVec3, full: &[bool]) -> Leaps {
+    pub(super) fn new(blocks: IVec3, full: &[bool]) -> EmptySpace {
         let count = full.len();
         let size = blocks.to_array().map(|len| len as usize);
         let stride = [1, size[0], size[0] * size[1]];
@@ -55,7 +55,7 @@ impl Leaps {
                 }
             }
         }
-        Leaps { count, sides }
+        EmptySpace { count, sides }
     }
 
     /// How many blocks there are.
@@ -86,11 +86,11 @@ mod tests {
         let full: Vec<bool> =
             (0..blocks.element_product() as u32).map(|n| n.wrapping_mul(2_654_435_761) >> 16 & 63 == 7).collect();
         assert!(full.iter().filter(|full| **full).count() > 5);
-        let leaps = Leaps::new(blocks, &full);
+        let skips = EmptySpace::new(blocks, &full);
         for w in 0..8 {
             let ups = [0, 1, 2].map(|axis| w >> axis & 1 == 1);
             for at in all(IVec3::ZERO, blocks) {
-                let side = i32::from(leaps.side(w * leaps.count() + place(at)));
+                let side = i32::from(skips.side(w * skips.count() + place(at)));
                 let is_empty = |side: i32| {
                     let step = IVec3::from_array(ups.map(|up| if up { side - 1 } else { 1 - side }));
                     let (low, high) = (at.min(at + step).max(IVec3::ZERO), at.max(at + step).min(blocks - 1));

@@ -23,7 +23,7 @@ use rayon::prelude::*;
 use super::facets::Facets;
 use super::scene::Scene;
 use super::settings::RenderSettings;
-use super::shade::Openness;
+use super::shade::Visibility;
 use super::spot::Spot;
 use crate::{Cancelled, Run};
 
@@ -116,7 +116,12 @@ impl<'a> Obstacles<'a> {
 
     /// What each point sees by its own rays; `pattern` gives a number for the point at an index. They go
     /// tile by tile of a picture with rows of `width`, as neighbours meet the same facets.
-    pub(super) fn seen(&self, spots: &[Spot], width: usize, pattern: impl Fn(usize) -> usize + Sync) -> Vec<Openness> {
+    pub(super) fn seen(
+        &self,
+        spots: &[Spot],
+        width: usize,
+        pattern: impl Fn(usize) -> usize + Sync,
+    ) -> Vec<Visibility> {
         let across = width.div_ceil(TILE).max(1);
         let down = spots.len().div_ceil(TILE * width.max(1));
         // By the number of a tile: the runs of places in its rows.
@@ -128,9 +133,9 @@ impl<'a> Obstacles<'a> {
             (top..top + TILE).map(run)
         };
         let open = |at: usize| self.open(&spots[at], ORDER[pattern(at) % PATTERNS]);
-        let tiles: Vec<Vec<Openness>> =
+        let tiles: Vec<Vec<Visibility>> =
             (0..across * down).into_par_iter().map(|tile| runs(tile).flatten().map(open).collect()).collect();
-        let mut seen = vec![Openness::FULL; spots.len()];
+        let mut seen = vec![Visibility::FULL; spots.len()];
         for (tile, found) in tiles.iter().enumerate() {
             let mut rest = &found[..];
             for run in runs(tile) {
@@ -148,13 +153,13 @@ impl<'a> Obstacles<'a> {
     }
 
     /// What a point sees by its own rays to facets.
-    fn open(&self, spot: &Spot, pattern: usize) -> Openness {
+    fn open(&self, spot: &Spot, pattern: usize) -> Visibility {
         let share = self.share(spot);
         if share == 0.0 {
-            return Openness::FULL;
+            return Visibility::FULL;
         }
         let origin = self.start(spot);
-        let mut open = Openness::FULL;
+        let mut open = Visibility::FULL;
         if let Some(directions) = self.shadows.get(pattern) {
             // What faces away from a part of the light is dark there by its slope.
             let [x, y, z] = directions;
@@ -180,7 +185,7 @@ impl<'a> Obstacles<'a> {
 
     /// Of a light without extent, whose shadows' edges would show the facets, the first hits in
     /// the scene decide.
-    fn hard(&self, spots: &[Spot], seen: &mut [Openness]) {
+    fn hard(&self, spots: &[Spot], seen: &mut [Visibility]) {
         let lit = |spot: &Spot| self.share(spot) > 0.0 && self.key.dot(spot.normal.as_dvec3()) > 0.0;
         let asked: Vec<usize> = (0..spots.len()).filter(|&i| lit(&spots[i])).collect();
         let rays: Vec<(DVec3, DVec3)> = asked.iter().map(|&i| (self.start(&spots[i]), self.key)).collect();
@@ -191,9 +196,9 @@ impl<'a> Obstacles<'a> {
         }
     }
 
-    /// A hair off the surface.
+    /// The ray epsilon off the surface.
     fn start(&self, spot: &Spot) -> DVec3 {
-        spot.point + self.scene.hair() * spot.normal.as_dvec3()
+        spot.point + self.scene.ray_epsilon() * spot.normal.as_dvec3()
     }
 
     /// How much of what hides light counts at a spot.
@@ -217,14 +222,14 @@ fn patterns(direction: impl Fn(usize) -> DVec3) -> Vec<[Vec4; 3]> {
 /// The mean of what the points of a picture see: `width` of them a row.
 pub(super) fn smoothed(
     spots: &[Spot],
-    seen: &[Openness],
+    seen: &[Visibility],
     width: usize,
     pixel: impl Fn(f64) -> f64 + Sync,
-) -> Vec<Openness> {
+) -> Vec<Visibility> {
     const WEIGHTS: [f32; 2 * REACH + 1] = [0.5, 1.0, 1.0, 1.0, 0.5];
     let height = spots.len() / width;
     let calm = calm(seen, width);
-    let mut mean = vec![Openness::FULL; spots.len()];
+    let mut mean = vec![Visibility::FULL; spots.len()];
     mean.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
         let rows = y.saturating_sub(REACH)..(y + REACH + 1).min(height);
         for (x, mean) in row.iter_mut().enumerate() {
@@ -255,20 +260,20 @@ pub(super) fn smoothed(
                 }
             }
             // What counts not even itself has no normal.
-            *mean = if sum > 0.0 { Openness { key: key / sum, sky: sky / sum } } else { seen[y * width + x] };
+            *mean = if sum > 0.0 { Visibility { key: key / sum, sky: sky / sum } } else { seen[y * width + x] };
         }
     });
     mean
 }
 
 /// By point, whether nothing is hidden from any of those of its row that the mean reaches.
-fn calm(seen: &[Openness], width: usize) -> Vec<bool> {
+fn calm(seen: &[Visibility], width: usize) -> Vec<bool> {
     let mut calm = vec![false; seen.len()];
     calm.par_chunks_mut(width).zip(seen.par_chunks(width)).for_each(|(calm, seen)| {
         // How many are free up to here; there is nothing to hide beyond the row.
         let mut free = REACH;
         for x in 0..width + REACH {
-            free = if seen.get(x).is_none_or(|seen| *seen == Openness::FULL) { free + 1 } else { 0 };
+            free = if seen.get(x).is_none_or(|seen| *seen == Visibility::FULL) { free + 1 } else { 0 };
             if x >= REACH {
                 calm[x - REACH] = free > 2 * REACH;
             }
