@@ -304,7 +304,7 @@
 //! | [`reflect`](Solid::reflect), [`mirrored`](Solid::mirrored) | the mirror image alone, and beside the solid |
 //! | [`repeat`](Solid::repeat), [`repeat_linear`](Solid::repeat_linear), [`repeat_polar`](Solid::repeat_polar) | grids, rows and rings of copies; [`repeat_centered`](Solid::repeat_centered) about the solid's own place |
 //! | [`elongate`](Solid::elongate) | straight pieces inserted |
-//! | [`taper`](Solid::taper), [`twist`](Solid::twist), [`bend`](Solid::bend) | Barr's deformations |
+//! | [`taper`](Solid::taper), [`twist`](Solid::twist), [`bend`](Solid::bend), [`bend_between`](Solid::bend_between) | Barr's deformations; the last with straight ends |
 //! | [`taper_by`](Solid::taper_by), [`twist_by`](Solid::twist_by) | by any [`Law`] of z, of a factor and of what an angle is multiplied by: [`LinearLaw`], [`SmoothStep`], [`SineWave`], [`LawTable`], a number, your own |
 //!
 //! ## Explicit surfaces
@@ -398,7 +398,7 @@
 //! | rigid motions, uniform scaling, reflections | what they are of the operand, to scale | that of the operand |
 //! | other affine maps | a bound if the operand has one | at most that of the operand |
 //! | repetition, elongation, revolution | distance and bound stay what they are outside | that of the operand |
-//! | taper, twist, bend, sweep | the operand's at the pre-image | grows with the deformation |
+//! | taper, twist, bends, sweep | the operand's at the pre-image | grows with the deformation |
 //!
 //! # Accuracy in single precision
 //!

@@ -19,7 +19,35 @@ pub(super) fn nearest(program: &Program, patches: &Patches, p: DVec3) -> Option<
     let nearer = centre + away.normalize_or_zero() * FARTHEST * size;
     let p = if (p - centre).abs().max_element() > FARTHEST * size { nearer } else { p };
     let foot = patches.nearest(p)?.point;
-    Some(refine(program, foot, p, size).filter(|found| found.distance(foot) < 0.1 * size).unwrap_or(foot))
+    let refined = refine(program, foot, p, size).filter(|found| found.distance(foot) < 0.1 * size);
+    Some(refined.or_else(|| across(program, foot, size)).unwrap_or(foot))
+}
+
+/// Where the sign changes near `x`: halved between it and the nearest point of the other sign that is
+/// found along the gradient and the axes. Where the field has a kink, Newton steps go to and fro.
+fn across(program: &Program, x: DVec3, size: f64) -> Option<DVec3> {
+    let inside = |x: DVec3| program.value(x) > 0.0;
+    let (here, slope) = (inside(x), program.gradient(x).1.normalize_or(DVec3::X));
+    let mut reach = 1e-7 * size;
+    while reach < 0.05 * size {
+        for way in [slope, DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|way| [way, -way]) {
+            if inside(x + reach * way) == here {
+                continue;
+            }
+            let (mut low, mut high) = (0.0, reach);
+            while high - low > 1e-12 * size {
+                let middle = 0.5 * (low + high);
+                if inside(x + middle * way) == here {
+                    low = middle;
+                } else {
+                    high = middle;
+                }
+            }
+            return Some(x + high * way);
+        }
+        reach *= 2.0;
+    }
+    None
 }
 
 /// A locally nearest point, from `start`.

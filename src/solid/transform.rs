@@ -7,7 +7,7 @@ use glam::{DAffine3, DVec3};
 
 use super::{Node, Solid};
 use crate::Angle;
-use rvachev_field::{AnyWarp, Bend, Erase, Taper, Twist};
+use rvachev_field::{AnyWarp, Bend, BendBetween, Erase, Taper, Twist};
 
 impl Solid {
     pub(crate) fn affine_as(&self, label: &'static str, forward: DAffine3) -> Solid {
@@ -169,6 +169,42 @@ impl Solid {
     #[must_use]
     pub fn bend(&self, curvature: f64, angle: impl Into<Angle>) -> Solid {
         self.warp(Bend { curvature, angle: angle.into() })
+    }
+
+    /// Bent between two heights only: what is between `from` and `to` along z becomes an arc that
+    /// turns by `turn` towards `angle`, counted from the x axis towards y. What is below `from`
+    /// stays where it is; what is above `to` is moved rigidly and goes on straight from the arc.
+    ///
+    /// Lengths along the z axis are kept: the arc's radius is (to − from)/turn, with the turn in
+    /// radians. A pipe that shall turn by 90° on a radius of 30 is bent over a length of 30·π/2.
+    ///
+    /// | parameter | unit | range |
+    /// |---|---|---|
+    /// | `from`, `to` | length | ±10⁹, `from` below `to` |
+    /// | `turn` | [`Angle`] | within ±360°; the solid stays on this side of the arc's centre, and its straight ends do not meet |
+    /// | `angle` | [`Angle`] | ±10⁹ degrees |
+    ///
+    /// What the solid allows is checked on its box, which is conservative; a turn below 180° leaves
+    /// room for ends of any length. The field is the operand's at the pre-image, not rescaled; on
+    /// the arc its slope grows towards the centre, so a surface that leans against the z axis has
+    /// an edge where the arc begins.
+    ///
+    /// Source: A. H. Barr, *Global and local deformations of solid primitives* (1984).
+    ///
+    /// ```
+    /// use rvachev::{Solid, deg};
+    ///
+    /// // A rod along z, 100 long: 20 straight, a quarter of a circle of radius 30, the rest straight.
+    /// let arc = 30.0 * std::f64::consts::FRAC_PI_2;
+    /// let elbow = Solid::cylinder(4.0, 100.0).translate([0.0, 0.0, 50.0]).bend_between(20.0, 20.0 + arc, deg(90.0), deg(0.0));
+    /// assert!(elbow.contains([0.0, 0.0, 1.0])? && elbow.contains([33.9, 0.0, 50.0])?);
+    /// let end = 30.0 + 80.0 - arc;
+    /// assert!((elbow.bounds()?.max.x - end).abs() < 1e-9 && elbow.contains([end - 0.1, 0.0, 53.9])?);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
+    #[must_use]
+    pub fn bend_between(&self, from: f64, to: f64, turn: impl Into<Angle>, angle: impl Into<Angle>) -> Solid {
+        self.warp(BendBetween { from, to, turn: turn.into(), angle: angle.into() })
     }
 
     pub(crate) fn warp(&self, warp: impl Erase<dyn AnyWarp>) -> Solid {

@@ -1,7 +1,7 @@
 //! Taper, twist and bend against the forward maps, written out here on their own.
 
 use glam::{DMat3, DVec3};
-use rvachev::{CellSize, MeshSettings, Solid, Superellipsoid, rad};
+use rvachev::{CellSize, MeshSettings, Solid, Superellipsoid, deg, rad};
 
 use crate::support::{Random, near, near_point, value};
 
@@ -206,4 +206,45 @@ fn gradients_are_pulled_back() {
         assert!(1.0 - cosine < 1e-12, "at {p}: {got}, want {want}");
         near_point(got, want, 1e-7 * (1.0 + want.length()));
     }
+}
+
+#[test]
+fn a_pipe_bent_between_heights_keeps_its_volume_and_its_straight_ends() {
+    let pipe =
+        Solid::cylinder(3.0, 60.0).translate([0.0, 0.0, 20.0]) - Solid::cylinder(2.0, 70.0).translate([0.0, 0.0, 20.0]);
+    let settings = MeshSettings { cell: CellSize::Length(0.5), ..MeshSettings::default() };
+    for turn in [40.0, 90.0, -135.0, 179.0] {
+        let bent = pipe.bend_between(5.0, 35.0, deg(turn), deg(30.0));
+        let mesh = bent.mesh(&settings).unwrap();
+        assert!(mesh.check().is_closed(), "{turn}");
+        near(mesh.volume(), std::f64::consts::PI * 5.0 * 60.0, 0.01 * 900.0);
+        // The lower end stays; the upper one is turned, about the arc's centre, as it was.
+        let middle = DVec3::new(2.5, 0.0, -9.0);
+        near(value(&bent, middle), value(&pipe, middle), 1e-12);
+        let (radius, gamma, u) =
+            (30.0 / f64::to_radians(turn), f64::to_radians(turn), DVec3::new(0.75f64.sqrt(), 0.5, 0.0));
+        let moved = |p: DVec3| {
+            let (r, beyond) = (p.dot(u), p.z - 35.0);
+            let across = radius - (radius - r) * gamma.cos() + beyond * gamma.sin();
+            p.with_z(5.0 + (radius - r) * gamma.sin() + beyond * gamma.cos()) + (across - r) * u
+        };
+        for p in [DVec3::new(2.4, 0.3, 48.0), DVec3::new(0.0, 0.2, 36.0), DVec3::new(-3.4, 1.0, 50.5)] {
+            near(value(&bent, moved(p)), value(&pipe, p), 1e-10);
+        }
+    }
+}
+
+#[test]
+fn a_bend_between_heights_that_does_not_fit_says_what_would() {
+    let rod = Solid::cylinder(2.0, 60.0);
+    let error = |from, to, turn: f64| rod.bend_between(from, to, deg(turn), deg(0.0)).bounds().unwrap_err().to_string();
+    let text = error(-1.0, 1.0, 90.0);
+    assert!(text.contains("bend_between: turn is 90, allowed: below 57.2958 degrees"), "{text}");
+    let text = error(-10.0, 10.0, -240.0);
+    assert!(text.contains("turn is -239.99") && text.contains("ends must not meet"), "{text}");
+    let limit: f64 = text.split("below ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    assert!((180.0..240.0).contains(&limit), "{text}");
+    assert!(rod.bend_between(-10.0, 10.0, deg(limit - 0.01), deg(0.0)).bounds().is_ok());
+    let text = error(3.0, 3.0, 10.0);
+    assert!(text.contains("to is 3") && text.contains("above from"), "{text}");
 }

@@ -198,6 +198,9 @@ fn ranges_are_those_that_are_checked() {
     // What the operand limits further, or another coordinate of the same vector.
     let limited = [
         ("bend", "curvature"),
+        ("bend_between", "from"),
+        ("bend_between", "to"),
+        ("bend_between", "turn"),
         ("twist_by", "angle"),
         ("sweep_helix", "radius"),
         ("sweep_helix", "pitch"),

@@ -66,7 +66,9 @@ pub use check::ParamError;
 pub use cone::Cone;
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
-pub use deform::{AnyWarp, Bend, BuiltInLaw, Cells, Comb, Elongate, Sectors, Taper, TaperBy, Twist, TwistBy};
+pub use deform::{
+    AnyWarp, Bend, BendBetween, BuiltInLaw, Cells, Comb, Elongate, Sectors, Taper, TaperBy, Twist, TwistBy,
+};
 pub use deform::{Law, LawTable, LinearLaw, SineWave, SmoothStep};
 pub use ellipsoid::Ellipsoid;
 pub use erase::Erase;

@@ -12,7 +12,8 @@ use super::{BuiltIn, Range};
 use rvachev_num::rad;
 
 use crate::{
-    Angle, AnyWarp, Bend, BuiltInLaw, Elongate, Erase, LinearLaw, SineWave, SmoothStep, Taper, TaperBy, Twist, TwistBy,
+    Angle, AnyWarp, Bend, BendBetween, BuiltInLaw, Elongate, Erase, LinearLaw, SineWave, SmoothStep, Taper, TaperBy,
+    Twist, TwistBy,
 };
 
 /// Tapers by more would shrink the section to a point or turn it inside out.
@@ -44,6 +45,18 @@ built_in!(
         /// Direction towards the centre of curvature, from the x axis.
         angle: Angle = warp.angle, Angle, Range::FINITE, example rad(0.5);
     } => Bend { curvature, angle };
+
+    /// Bent to an arc between two heights; what is below stays, what is above is moved rigidly.
+    bend_between: BendBetween as warp {
+        /// Where the arc begins.
+        from: f64 = warp.from, Length, Range::FINITE, example -1.0;
+        /// Where it ends, above `from`.
+        to: f64 = warp.to, Length, Range::FINITE, example 1.0;
+        /// By how much the upper end is turned; the solid's box limits it further.
+        turn: Angle = warp.turn, Angle, Range::new(-360.0, 360.0), example rad(0.6);
+        /// Direction towards the centre of curvature, from the x axis.
+        angle: Angle = warp.angle, Angle, Range::FINITE, example rad(0.5);
+    } => BendBetween { from, to, turn, angle };
 
     /// Elongated by straight pieces at the coordinate planes.
     elongate: Elongate as warp {

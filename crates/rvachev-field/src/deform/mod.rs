@@ -7,6 +7,7 @@
 //! stretching and keep whatever bound the solid has.
 
 mod bend;
+mod bend_between;
 mod built_in_law;
 mod cells;
 mod elongate;
@@ -28,6 +29,7 @@ use crate::{Bounds, Dual, Euclid, Interval, Real};
 use rvachev_num::symbol::Symbol;
 
 pub use bend::Bend;
+pub use bend_between::BendBetween;
 pub use built_in_law::BuiltInLaw;
 pub use cells::{Cells, Comb};
 pub use elongate::Elongate;
@@ -209,6 +211,48 @@ mod tests {
     }
 
     #[test]
+    fn bends_between_heights_invert_on_the_arc_and_beyond() {
+        for turn in [1.5, -1.5, 3.0, 5.0, 1e-3, -1e-9, 1e-12, 0.0] {
+            let bend = BendBetween { from: -1.0, to: 3.0, turn: rad(turn), angle: rad(0.3) };
+            let ends = if turn > 3.0 { 0.2 } else { 3.0 };
+            for i in 0..1000 {
+                let t = |k: f64| (f64::from(i) * k).fract() - 0.5;
+                let p = DVec3::new(0.7 * t(0.618), 0.5 * t(0.414), 1.0 + (4.0 + 2.0 * ends) * t(0.732));
+                assert!(round_trip(&bend, p) < 3e-14, "{turn} {p}");
+                if p.z <= bend.from {
+                    assert!((bend.forward(p) - p).length() < 1e-15);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn ranges_of_bends_between_heights_hold_every_pre_image_and_slope() {
+        let bend = BendBetween { from: -1.0, to: 3.0, turn: rad(2.4), angle: rad(0.3) };
+        let mut narrower = 0;
+        for i in 0..4000 {
+            let t = |k: f64| (f64::from(i) * k).fract() - 0.5;
+            let centre = bend.forward(DVec3::new(t(0.618), t(0.414), 1.0 + 8.0 * t(0.732)));
+            let half = 0.2 * (t(0.2718) + 0.5).powi(2);
+            let hull = [0, 1, 2].map(|axis| Interval::around(centre[axis], half));
+            let image = AnyWarp::dual_ranges(&bend, Dual::point(hull));
+            let plain = bend.inverse(Dual::point(hull));
+            narrower += usize::from(image[2].value().width() < 0.8 * plain[2].value().width());
+            for j in 0..10 {
+                let u = |k: f64| 2.0 * (f64::from(j + 1) * k).fract() - 1.0;
+                let p = centre + half * DVec3::new(u(0.618), u(0.414), u(0.732));
+                let q = bend.duals(Dual::point(p.to_array()));
+                for (image, q) in image.iter().zip(q) {
+                    assert!(image.value().contains(q.value()), "{p}");
+                    let slopes = image.gradient().into_iter().zip(q.gradient());
+                    assert!(slopes.clone().all(|(all, one)| all.lo() - 1e-12 <= one && one <= all.hi() + 1e-12), "{p}");
+                }
+            }
+        }
+        assert!(narrower > 400, "{narrower}");
+    }
+
+    #[test]
     fn a_chain_agrees_with_the_reference() {
         let p = DVec3::new(0.4, 0.5, 1.2);
         let taper = Taper { kx: 0.5, ky: -0.4, height: 4.0 };
@@ -262,7 +306,7 @@ mod tests {
         let cells =
             Cells { axes: [comb, Comb::ONE, comb], counts: [8, 1, 8], spacing: DVec3::splat(0.7), crowded: None };
         let wave = SineWave { mean: 1.0, amplitude: 0.6, wavelength: 2.0, phase: rad(0.3) };
-        let warps: [(&str, &dyn AnyWarp); 9] = [
+        let warps: [(&str, &dyn AnyWarp); 12] = [
             ("elongate", &Elongate { lengths: DVec3::new(0.3, 0.0, 1.0) }),
             ("repeat", &cells),
             ("repeat_polar", &Sectors { count: 8, blocks: 4, class: 1, middle: 0.3 }),
@@ -272,6 +316,9 @@ mod tests {
             ("taper", &Taper { kx: 0.5, ky: -0.4, height: 4.0 }),
             ("twist", &Twist { rate: rad(1.3) }),
             ("bend", &Bend { curvature: -0.6, angle: rad(0.4) }),
+            ("bend_between", &BendBetween { from: -0.5, to: 0.8, turn: rad(0.7), angle: rad(0.4) }),
+            ("bend_between, a U", &BendBetween { from: -1.0, to: 1.4, turn: rad(-2.6), angle: rad(2.0) }),
+            ("bend_between, a hook", &BendBetween { from: -2.0, to: 1.5, turn: rad(4.0), angle: rad(0.0) }),
         ];
         for (name, warp) in warps {
             let image = warp.bounds(&bounds);
