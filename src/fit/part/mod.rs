@@ -1,0 +1,4 @@
+//! Whole parts from meshes and scans.
+
+mod regions;
+mod samples;
