@@ -10,6 +10,7 @@ use std::collections::HashSet;
 use glam::{DMat3, DVec3};
 
 use super::bits::Stakes;
+use super::candidates::BEYOND;
 use super::leaf::Leaf;
 use super::pool::Pool;
 use super::queries::Queries;
@@ -57,10 +58,23 @@ impl Grid {
             if gain <= price || !self.seen.insert((box_, adds)) {
                 continue;
             }
-            let at = |end: usize| DVec3::from_array([0, 1, 2].map(|k| self.offsets[k][usize::from(box_[k][end])]));
-            let leaf = Leaf::cuboid(self.frame, [at(0), at(1)]);
+            let leaf = Leaf::cuboid(self.frame, [0, 1].map(|end| self.corner(box_, end, adds)));
             pool.add(leaf, queries, [adds, !adds], None);
         }
+    }
+
+    /// The lower corner of a box, or the upper one. What is cut up to the end of the part is cut beyond.
+    fn corner(&self, box_: [[u8; 2]; 3], end: usize, adds: bool) -> DVec3 {
+        let along = |k: usize| {
+            let offsets = &self.offsets[k];
+            match usize::from(box_[k][end]) {
+                at if adds => offsets[at],
+                0 => offsets[0] - BEYOND,
+                at if at + 1 == offsets.len() => offsets[at] + BEYOND,
+                at => offsets[at],
+            }
+        };
+        DVec3::from_array([0, 1, 2].map(along))
     }
 
     /// The boxes that gain most, by numbers of offsets.

@@ -2,11 +2,15 @@
 
 mod bits;
 mod boxes;
+mod candidates;
 mod leaf;
 mod model;
+mod offsets;
 mod outline;
 mod pool;
 mod queries;
+mod regions;
+mod samples;
 mod select;
 #[cfg(test)]
 mod select_tests;
