@@ -20,10 +20,18 @@ impl Bits {
         Bits(vec![0; words])
     }
 
+    /// The samples, by number, of which something is true.
+    pub(super) fn new(count: usize, mut is: impl FnMut(usize) -> bool) -> Bits {
+        let word = |at: usize| {
+            let range = at * WORD..count.min((at + 1) * WORD);
+            range.rev().fold(0, |word, i| word << 1 | u64::from(is(i)))
+        };
+        Bits((0..count.div_ceil(WORD)).map(word).collect())
+    }
+
     /// The points of which something is true.
     pub(super) fn of(points: &[DVec3], mut is: impl FnMut(DVec3) -> bool) -> Bits {
-        let word = |points: &[DVec3]| points.iter().rev().fold(0, |word, p| word << 1 | u64::from(is(*p)));
-        Bits(points.chunks(WORD).map(word).collect())
+        Bits::new(points.len(), |i| is(points[i]))
     }
 
     pub(super) fn words(&self) -> &[u64] {

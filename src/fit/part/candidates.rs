@@ -40,13 +40,7 @@ pub(super) struct Allowed {
 }
 
 /// Puts what the regions tell among the candidates.
-pub(super) fn propose(
-    pool: &mut Pool,
-    regions: &[Region],
-    part: [DVec3; 2],
-    queries: &Queries,
-    allowed: Allowed,
-) {
+pub(super) fn propose(pool: &mut Pool, regions: &[Region], part: [DVec3; 2], queries: &Queries, allowed: Allowed) {
     for region in regions {
         let may = [region.sign > 0.0, region.sign < 0.0];
         match region.form {
@@ -121,8 +115,7 @@ impl Side {
         });
         let [lows, highs] = self.ends(along, may[0], regions, part);
         let above: Vec<Bits> = lows.iter().map(|low| Bits::new(count, |i| heights[i] > *low)).collect();
-        let below: Vec<Bits> =
-            highs.iter().map(|high| Bits::new(count, |i| heights[i] < *high)).collect();
+        let below: Vec<Bits> = highs.iter().map(|high| Bits::new(count, |i| heights[i] < *high)).collect();
         let family = pool.family();
         for (low, above) in lows.iter().zip(&above) {
             let over = side.and(above);
