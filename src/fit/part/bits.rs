@@ -20,6 +20,10 @@ impl Bits {
         Bits(vec![0; words])
     }
 
+    pub(super) fn of_words(words: Vec<u64>) -> Bits {
+        Bits(words)
+    }
+
     /// The samples, by number, of which something is true.
     pub(super) fn new(count: usize, mut is: impl FnMut(usize) -> bool) -> Bits {
         let word = |at: usize| {

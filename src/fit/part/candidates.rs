@@ -13,6 +13,7 @@ use super::leaf::Leaf;
 use super::pool::Pool;
 use super::queries::Queries;
 use super::regions::{Form, Region};
+use super::settings::PartKinds;
 
 /// Planes whose normal is by less than this off an axis are across it, as a cosine: 2°.
 const ACROSS: f64 = 0.9994;
@@ -29,44 +30,34 @@ const ARC: f64 = 70.0;
 /// Planes of a smaller share do not cut the whole part.
 const PLANE: f64 = 0.004;
 
-/// Which kinds of leaves are proposed.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Allowed {
-    pub(super) half_spaces: bool,
-    pub(super) cylinders: bool,
-    pub(super) cones: bool,
-    pub(super) spheres: bool,
-    pub(super) tori: bool,
-}
-
 /// Puts what the regions tell among the candidates.
-pub(super) fn propose(pool: &mut Pool, regions: &[Region], part: [DVec3; 2], queries: &Queries, allowed: Allowed) {
+pub(super) fn propose(pool: &mut Pool, regions: &[Region], part: [DVec3; 2], queries: &Queries, kinds: PartKinds) {
     for region in regions {
         let may = [region.sign > 0.0, region.sign < 0.0];
         match region.form {
             Form::Plane { normal, offset } => {
-                if allowed.half_spaces && region.share >= PLANE {
+                if kinds.half_spaces && region.share >= PLANE {
                     pool.add(Leaf::half_space(-normal, -offset), queries, [false, true], None);
                 }
             }
             Form::Sphere { centre, radius } => {
-                if allowed.spheres {
+                if kinds.spheres {
                     pool.add(Leaf::sphere(centre, radius), queries, may, None);
                 }
             }
             Form::Torus { axis, centre, major, minor } => {
-                if allowed.tori {
+                if kinds.tori {
                     pool.add(Leaf::torus(axis, centre, major, minor), queries, may, None);
                 }
             }
             Form::Cylinder { axis, origin, radius, along, arc } => {
-                if allowed.cylinders && arc >= ARC {
+                if kinds.cylinders && arc >= ARC {
                     let side = Side { axis, origin, radius, slope: 0.0 };
                     side.propose(pool, along, may, regions, part, queries);
                 }
             }
             Form::Cone { axis, origin, radius, slope, along, arc } => {
-                if allowed.cones && arc >= ARC {
+                if kinds.cones && arc >= ARC {
                     let side = Side { axis, origin, radius, slope };
                     side.propose(pool, along, may, regions, part, queries);
                 }

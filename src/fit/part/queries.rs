@@ -10,6 +10,7 @@ use glam::DVec3;
 
 use super::bits::{Bits, WORD};
 use super::sobol::Sobol;
+use crate::Cancelled;
 use crate::fit::random::Random;
 
 /// Words of points in space.
@@ -38,20 +39,18 @@ pub(super) struct Queries {
     pub(super) inside: Bits,
     /// By word.
     pub(super) weights: Vec<f64>,
-    /// How many words are of points in space; the pairs are behind.
-    pub(super) spread: usize,
 }
 
 impl Queries {
-    /// Of a part in a box, by a test.
+    /// Of a part in a box; `label` tells which points are inside.
     pub(super) fn new(
         [low, high]: [DVec3; 2],
         surface: [&[DVec3]; 2],
         strips: &[Strip<'_>],
         apart: f64,
         seed: u64,
-        mut is_inside: impl FnMut(DVec3) -> bool,
-    ) -> Queries {
+        label: impl FnOnce(&[DVec3]) -> Result<Bits, Cancelled>,
+    ) -> Result<Queries, Cancelled> {
         let margin = MARGIN * (high - low);
         let (from, size) = (low - margin, high - low + 2.0 * margin);
         let mut points: Vec<DVec3> = Sobol::new().take(SPREAD * WORD).map(|p| from + size * p).collect();
@@ -76,10 +75,10 @@ impl Queries {
             }
             weights.resize(points.len() / WORD, weight);
         }
-        let inside = Bits::of(&points, &mut is_inside);
+        let inside = label(&points)?;
         let filled: u32 = inside.words()[..SPREAD].iter().map(|word| word.count_ones()).sum();
         weights[..SPREAD].fill(1.0 / f64::from(filled.max(1)));
-        Queries { points, inside, weights, spread: SPREAD }
+        Ok(Queries { points, inside, weights })
     }
 
     pub(super) fn words(&self) -> usize {
