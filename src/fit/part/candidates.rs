@@ -30,6 +30,9 @@ const ARC: f64 = 70.0;
 /// Planes of a smaller share do not cut the whole part.
 const PLANE: f64 = 0.004;
 
+/// Tubes as thick as their rings are no tori.
+const SPINDLE: f64 = 0.98;
+
 /// Puts what the regions tell among the candidates.
 pub(super) fn propose(pool: &mut Pool, regions: &[Region], part: [DVec3; 2], queries: &Queries, kinds: PartKinds) {
     for region in regions {
@@ -46,7 +49,7 @@ pub(super) fn propose(pool: &mut Pool, regions: &[Region], part: [DVec3; 2], que
                 }
             }
             Form::Torus { axis, centre, major, minor } => {
-                if kinds.tori {
+                if kinds.tori && minor < SPINDLE * major {
                     pool.add(Leaf::torus(axis, centre, major, minor), queries, may, None);
                 }
             }

@@ -14,11 +14,12 @@ use super::refine::owner;
 use super::result::{PartFit, PartLeaf, Topology, Unexplained};
 use super::samples::Samples;
 use super::sobol::Sobol;
+use crate::error::MeshingError;
 use crate::geom::Mesh;
-use crate::{Bounds, MeshSettings, Run, Solid, ThinFeatures};
+use crate::{Bounds, Features, MeshSettings, Run, Solid, ThinFeatures};
 
 /// Points that the volumes in common are estimated from.
-const POINTS: usize = 1 << 15;
+const POINTS: usize = 1 << 14;
 
 /// Points that one thread asks for at a time.
 const CHUNK: usize = 256;
@@ -40,7 +41,7 @@ pub(super) fn finish(
     samples: &Samples,
     run: &Run,
 ) -> Result<PartFit, FitError> {
-    let [to_compare, to_mesh] = run.stages([0.4, 0.6]);
+    let [to_compare, to_mesh, to_mesh_again] = run.stages([0.3, 0.3, 0.4]);
     let Samples { centre, size, .. } = *samples;
     let mut shares = vec![0.0; leaves.len()];
     let mut distances = Vec::with_capacity(samples.points.len());
@@ -53,23 +54,34 @@ pub(super) fn finish(
     let leaves = named(leaves, &shares, centre, size);
     let solid = tree(&leaves);
     solid.bounds()?;
-    let settings = MeshSettings { thin: ThinFeatures::Refine { halvings: HALVINGS }, ..MeshSettings::default() };
-    let made = solid.mesh_with(&settings, &to_mesh);
-    let found = match made {
-        Ok(made) => topology(&made, run)?,
-        Err(crate::error::MeshingError::Cancelled(cancelled)) => return Err(cancelled.into()),
-        // What cannot be meshed has none that is known.
-        Err(_) => Topology::default(),
-    };
-    let topology_of_input = topology(mesh, run)?;
+    let report = mesh.check_with(&Run { progress: None, ..run.clone() })?;
+    let topology_of_input = Topology { genus: report.genus, shells: report.shells };
+    let mut topology = meshed(&solid, ThinFeatures::Ignore, &to_mesh)?;
+    if topology != topology_of_input {
+        // It may be that a wall or a hole fell between the cells.
+        topology = meshed(&solid, ThinFeatures::Refine { halvings: HALVINGS }, &to_mesh_again)?;
+    }
     let deviation = Deviation::of(distances.into_iter());
-    Ok(PartFit { leaves, solid, iou, deviation, topology: found, topology_of_input, unexplained })
+    Ok(PartFit { leaves, solid, iou, deviation, topology, topology_of_input, unexplained })
 }
 
-fn topology(mesh: &Mesh, run: &Run) -> Result<Topology, FitError> {
-    let quiet = Run { progress: None, ..run.clone() };
-    let report = mesh.check_with(&quiet)?;
-    Ok(Topology { genus: report.genus, shells: report.shells })
+/// Genus and shells of a solid's surface.
+fn meshed(solid: &Solid, thin: ThinFeatures, run: &Run) -> Result<Topology, FitError> {
+    let settings = MeshSettings { features: Features::Smooth, thin, ..MeshSettings::default() };
+    match solid.mesh_with(&settings, run) {
+        Ok(made) => of_closed(&made, run),
+        Err(MeshingError::Cancelled(cancelled)) => Err(cancelled.into()),
+        // What cannot be meshed has none that is known.
+        Err(_) => Ok(Topology::default()),
+    }
+}
+
+/// Of a mesh that is closed and manifold, as all meshes of solids are.
+fn of_closed(mesh: &Mesh, run: &Run) -> Result<Topology, FitError> {
+    let shells = mesh.components_with(&Run { progress: None, ..run.clone() })?.len();
+    // Three edges a triangle, each of two of them; every vertex is used.
+    let euler = mesh.positions().len() as i64 - mesh.triangles().len() as i64 / 2;
+    Ok(Topology { genus: Some(shells as i64 - euler / 2), shells })
 }
 
 /// The leaves in length units, called by their kinds.

@@ -20,6 +20,7 @@ mod select;
 #[cfg(test)]
 mod select_tests;
 mod settings;
+mod snap;
 mod sobol;
 
 pub use result::{PartFit, PartLeaf, Topology, Unexplained};

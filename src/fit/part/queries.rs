@@ -19,7 +19,7 @@ const SPREAD: usize = 94;
 /// Words of pairs, about.
 const PAIRS: f64 = 38.0;
 
-/// What all pairs weigh; a wrong volume as large as the part weighs 1.
+/// What pairs weigh by share of the surface; a wrong volume as large as the part weighs 1.
 const BETA: f64 = 0.35;
 
 /// How far the box of the points reaches beyond that of the part, in sizes of that.
@@ -29,7 +29,7 @@ pub(super) const MARGIN: f64 = 0.015;
 pub(super) struct Strip<'a> {
     /// The numbers of its samples.
     pub(super) samples: &'a [u32],
-    /// Its part of the weight, in proportion.
+    /// Its part of the surface, or what it counts as.
     pub(super) share: f64,
 }
 
@@ -60,7 +60,7 @@ impl Queries {
         let mut random = Random::new(seed);
         for strip in strips.iter().filter(|strip| !strip.samples.is_empty() && strip.share > 0.0) {
             let words = (PAIRS * strip.share / total).round().max(1.0);
-            let weight = BETA * strip.share / total / (words * WORD as f64);
+            let weight = BETA * strip.share / (words * WORD as f64);
             let pairs = words as usize * WORD / 2;
             let mut order: Vec<usize> = random.chosen(strip.samples.len(), pairs);
             while order.len() < pairs {

@@ -21,6 +21,7 @@ use super::result::PartFit;
 use super::samples::Samples;
 use super::select::Selector;
 use super::settings::PartSettings;
+use super::snap::snapped;
 use crate::field::COORDINATE_LIMIT;
 use crate::geom::Mesh;
 use crate::{Cancelled, Run};
@@ -37,6 +38,9 @@ const AROUND: f64 = 300.0;
 /// J may rise by so much where leaves are moved onto the surface.
 const ALLOWED_RISE: f64 = 1e-4;
 
+/// Vertices that lengths are judged by, at most.
+const VERTICES: usize = 8000;
+
 /// Recovers a part.
 pub(super) fn recover(mesh: &Mesh, settings: &PartSettings, run: &Run) -> Result<PartFit, FitError> {
     let [to_index, to_detect, to_label, to_select, to_finish] = run.stages([0.05, 0.3, 0.1, 0.35, 0.2]);
@@ -50,12 +54,23 @@ pub(super) fn recover(mesh: &Mesh, settings: &PartSettings, run: &Run) -> Result
         return Err(FitError::Hollow { triangles: mesh.triangles().len() });
     }
     let leaves = chosen(&samples, &regions, &queries, settings, &to_select)?;
+    let leaves = snapped(&leaves, &vertices(mesh, &samples), run)?;
     if leaves.is_empty() {
         return Err(FitError::NoSurface { inliers: 0.0 });
     }
     let fit = finish(&leaves, mesh, &winding, &samples, &to_finish)?;
     run.report(1.0);
     Ok(fit)
+}
+
+/// The vertices that triangles use, evenly thinned, in diagonals.
+fn vertices(mesh: &Mesh, samples: &Samples) -> Vec<DVec3> {
+    let mut used = vec![false; mesh.positions().len()];
+    mesh.triangles().iter().flatten().for_each(|v| used[*v as usize] = true);
+    let all = mesh.positions().iter().zip(used).filter(|(_, used)| *used).map(|(p, _)| p.as_dvec3());
+    let all: Vec<DVec3> = all.map(|p| (p - samples.centre) / samples.size).collect();
+    let step = all.len().div_ceil(VERTICES).max(1);
+    all.into_iter().step_by(step).collect()
 }
 
 /// That the mesh has a size that solids may have.

@@ -60,26 +60,25 @@ pub(super) fn refined(leaves: &[(bool, Leaf)], samples: &Samples, run: &Run) -> 
         }
         for ((adds, leaf), own) in leaves.iter_mut().zip(own) {
             let sign = if *adds { 1.0 } else { -1.0 };
-            let agreeing: Vec<usize> = own
-                .into_iter()
-                .filter(|i| sign * leaf.gradient(samples.points[*i]).dot(samples.normals[*i]) > AGREE)
-                .collect();
+            let agrees = |i: &usize| sign * leaf.gradient(samples.points[*i]).dot(samples.normals[*i]) > AGREE;
+            let agreeing = own.into_iter().filter(agrees);
+            let agreeing: Vec<_> = agreeing.map(|i| (samples.points[i], samples.weights[i])).collect();
             if agreeing.len() >= 2 * leaf.freedom() {
-                *leaf = fitted(leaf, &agreeing, samples, width);
+                *leaf = fitted(leaf, &agreeing, width);
             }
         }
     }
     Ok(leaves)
 }
 
-/// A leaf fitted to samples.
-fn fitted(leaf: &Leaf, own: &[usize], samples: &Samples, width: f64) -> Leaf {
+/// A leaf fitted to weighted points.
+pub(super) fn fitted(leaf: &Leaf, own: &[(DVec3, f64)], width: f64) -> Leaf {
     let count = leaf.freedom();
     let mut leaf = leaf.clone();
     let cost = |leaf: &Leaf| -> f64 {
-        let of = |i: &usize| {
-            let square = (leaf.distance(samples.points[*i]) / width).powi(2);
-            samples.weights[*i] * square / (1.0 + square)
+        let of = |(p, weight): &(DVec3, f64)| {
+            let square = (leaf.distance(*p) / width).powi(2);
+            weight * square / (1.0 + square)
         };
         own.iter().map(of).sum()
     };
@@ -94,10 +93,10 @@ fn fitted(leaf: &Leaf, own: &[usize], samples: &Samples, width: f64) -> Leaf {
             })
             .collect();
         let (mut hessian, mut right) = ([[0.0; MOST]; MOST], [0.0; MOST]);
-        for i in own {
-            let p = samples.points[*i];
+        for (p, weight) in own {
+            let p = *p;
             let distance = leaf.distance(p);
-            let weight = samples.weights[*i] / (1.0 + (distance / width).powi(2)).powi(2);
+            let weight = weight / (1.0 + (distance / width).powi(2)).powi(2);
             let mut slopes = [0.0; MOST];
             for (slope, near) in slopes.iter_mut().zip(&nearby) {
                 *slope = near.as_ref().map_or(0.0, |near| (near.distance(p) - distance) / STEP);

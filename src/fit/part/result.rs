@@ -72,7 +72,7 @@ impl PartFit {
     }
 
     /// The volume of what tree and mesh have in common, over that of what either has: 1 is all right. It is estimated
-    /// from 32768 points in the mesh's box and 1.5 % about it, which are inside of the mesh where its winding number is
+    /// from 16384 points in the mesh's box and 1.5 % about it, which are inside of the mesh where its winding number is
     /// above ½.
     #[must_use]
     pub fn iou(&self) -> f64 {
@@ -85,7 +85,8 @@ impl PartFit {
         self.deviation
     }
 
-    /// Genus and shells of the tree's surface, meshed with 128 cells along its longest side, smaller ones where it is thin.
+    /// Genus and shells of the tree's surface, meshed with 128 cells along its longest side; where
+    /// that has not those of the mesh, with cells down to a quarter of that where it is thin.
     #[must_use]
     pub fn topology(&self) -> Topology {
         self.topology
