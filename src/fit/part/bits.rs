@@ -90,15 +90,31 @@ pub(super) struct Stakes {
 }
 
 impl Stakes {
-    /// What doing it to a set gains, where each loss counts `dear` times.
-    pub(super) fn of(&self, set: &Bits, weights: &[f64], dear: f64) -> f64 {
+    /// The words in which there is something to gain, with their numbers.
+    pub(super) fn chances(&self) -> Vec<(usize, u64)> {
+        self.gain.0.iter().copied().enumerate().filter(|(_, word)| *word != 0).collect()
+    }
+
+    /// What doing it to a set gains where losses count nothing.
+    pub(super) fn most(set: &Bits, chances: &[(usize, u64)], weights: &[f64]) -> f64 {
+        chances.iter().map(|(at, gain)| weights[*at] * f64::from((set.0[*at] & gain).count_ones())).sum()
+    }
+
+    /// What doing it to a set loses.
+    pub(super) fn loss(&self, set: &Bits, weights: &[f64]) -> f64 {
         let mut sum = 0.0;
-        for (((c, gain), loss), weight) in set.0.iter().zip(&self.gain.0).zip(&self.loss.0).zip(weights) {
-            if c & (gain | loss) != 0 {
-                sum += weight * (f64::from((c & gain).count_ones()) - dear * f64::from((c & loss).count_ones()));
+        for ((c, loss), weight) in set.0.iter().zip(&self.loss.0).zip(weights) {
+            let lost = c & loss;
+            if lost != 0 {
+                sum += weight * f64::from(lost.count_ones());
             }
         }
         sum
+    }
+
+    /// What doing it to a set gains.
+    pub(super) fn of(&self, set: &Bits, weights: &[f64]) -> f64 {
+        Stakes::most(set, &self.chances(), weights) - self.loss(set, weights)
     }
 }
 
@@ -128,6 +144,7 @@ mod tests {
         assert_eq!(weight(&low, &weights), 64.0 + 60.0);
         assert_eq!(differing(&even, &low, &weights), 32.0 + 3.0 * 10.0 + 29.0 * 10.0);
         let stakes = Stakes { gain: low.clone(), loss: even.without(&low) };
-        assert_eq!(stakes.of(&even, &weights, 0.5), 32.0 + 30.0 - 145.0);
+        assert_eq!(Stakes::most(&even, &stakes.chances(), &weights), 32.0 + 30.0);
+        assert_eq!(stakes.of(&even, &weights), 32.0 + 30.0 - 290.0);
     }
 }

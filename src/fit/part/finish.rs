@@ -16,7 +16,7 @@ use super::samples::Samples;
 use super::sobol::Sobol;
 use crate::error::MeshingError;
 use crate::geom::Mesh;
-use crate::{Bounds, Features, MeshSettings, Run, Solid, ThinFeatures};
+use crate::{Bounds, CellSize, Features, MeshSettings, Run, Solid};
 
 /// Points that the volumes in common are estimated from.
 const POINTS: usize = 1 << 14;
@@ -25,13 +25,13 @@ const POINTS: usize = 1 << 14;
 const CHUNK: usize = 256;
 
 /// Wrong points are of one place if their cells touch, so many of them along the diagonal.
-const CELLS: f64 = 24.0;
+const PLACES: f64 = 24.0;
 
 /// Places with less wrong volume are not told of, as a share of the part's.
 const TOLD: f64 = 1e-3;
 
-/// How often cells are halved where the solid is thin.
-const HALVINGS: u32 = 2;
+/// Cells along the longest side of the mesh that tells genus and shells, and of one that tells them better.
+const CELLS: [u32; 2] = [128, 384];
 
 /// The result for leaves in diagonals about the centre.
 pub(super) fn finish(
@@ -56,18 +56,19 @@ pub(super) fn finish(
     solid.bounds()?;
     let report = mesh.check_with(&Run { progress: None, ..run.clone() })?;
     let topology_of_input = Topology { genus: report.genus, shells: report.shells };
-    let mut topology = meshed(&solid, ThinFeatures::Ignore, &to_mesh)?;
+    let mut topology = meshed(&solid, CELLS[0], &to_mesh)?;
     if topology != topology_of_input {
         // It may be that a wall or a hole fell between the cells.
-        topology = meshed(&solid, ThinFeatures::Refine { halvings: HALVINGS }, &to_mesh_again)?;
+        topology = meshed(&solid, CELLS[1], &to_mesh_again)?;
     }
     let deviation = Deviation::of(distances.into_iter());
     Ok(PartFit { leaves, solid, iou, deviation, topology, topology_of_input, unexplained })
 }
 
 /// Genus and shells of a solid's surface.
-fn meshed(solid: &Solid, thin: ThinFeatures, run: &Run) -> Result<Topology, FitError> {
-    let settings = MeshSettings { features: Features::Smooth, thin, ..MeshSettings::default() };
+fn meshed(solid: &Solid, cells: u32, run: &Run) -> Result<Topology, FitError> {
+    let cell = CellSize::LongestSide(cells);
+    let settings = MeshSettings { cell, features: Features::Smooth, ..MeshSettings::default() };
     match solid.mesh_with(&settings, run) {
         Ok(made) => of_closed(&made, run),
         Err(MeshingError::Cancelled(cancelled)) => Err(cancelled.into()),
@@ -141,7 +142,7 @@ fn compared(
         either += usize::from(there || found);
         filled += usize::from(there);
         if there != found {
-            let cell = ((*p - centre) * (CELLS / size)).floor().as_ivec3();
+            let cell = ((*p - centre) * (PLACES / size)).floor().as_ivec3();
             cells.entry((there, cell.to_array())).or_default().push(*p);
         }
     }

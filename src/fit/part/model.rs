@@ -11,6 +11,9 @@ use super::bits::{Bits, Stakes, differing};
 use super::pool::Pool;
 use super::queries::Queries;
 
+/// Gains below this are rounding.
+pub(super) const GRAIN: f64 = 1e-9;
+
 /// A leaf that is added or subtracted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Step {
@@ -84,15 +87,24 @@ impl Judge<'_> {
         if adds { Stakes { gain: inside, loss: outside } } else { Stakes { gain: outside, loss: inside } }
     }
 
-    /// The best candidates for stakes, with what they gain less their price, from the best down.
+    /// The candidates that gain most by stakes, less their price, from the best down; none that gain nothing. Losses
+    /// count `dear` times.
     pub(super) fn best(&self, stakes: &Stakes, adds: bool, dear: f64, count: usize) -> Vec<(f64, u32)> {
+        let chances = stakes.chances();
+        let weights = &self.queries.weights;
         let mut best: Vec<(f64, u32)> = Vec::with_capacity(count + 1);
         for (which, candidate) in (0..).zip(&self.pool.candidates) {
             if !candidate.may[usize::from(!adds)] {
                 continue;
             }
-            let gain = stakes.of(&candidate.bits, &self.queries.weights, dear) - candidate.price;
-            if best.len() < count || best.last().is_some_and(|last| gain > last.0) {
+            // Where little is wrong few words can gain, and most candidates are out before they are counted.
+            let least = if best.len() < count { GRAIN } else { best[count - 1].0 };
+            let most = Stakes::most(&candidate.bits, &chances, weights) - candidate.price;
+            if most <= least {
+                continue;
+            }
+            let gain = most - dear * stakes.loss(&candidate.bits, weights);
+            if gain > least {
                 let at = best.partition_point(|other| other.0 >= gain);
                 best.insert(at, (gain, which));
                 best.truncate(count);

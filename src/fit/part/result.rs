@@ -85,8 +85,8 @@ impl PartFit {
         self.deviation
     }
 
-    /// Genus and shells of the tree's surface, meshed with 128 cells along its longest side; where
-    /// that has not those of the mesh, with cells down to a quarter of that where it is thin.
+    /// Genus and shells of the tree's surface, meshed with 128 cells along its longest side, or 384 where these have not
+    /// those of the input.
     #[must_use]
     pub fn topology(&self) -> Topology {
         self.topology

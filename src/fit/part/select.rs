@@ -11,7 +11,7 @@
 
 use super::bits::{Bits, Stakes};
 use super::boxes::Grid;
-use super::model::{Judge, Model, Step};
+use super::model::{GRAIN, Judge, Model, Step};
 use super::pool::Pool;
 use super::queries::Queries;
 use crate::{Cancelled, Run};
@@ -27,9 +27,6 @@ const MOST: usize = 48;
 
 /// Rounds of changes.
 const PASSES: usize = 6;
-
-/// Gains below this are rounding.
-pub(super) const GRAIN: f64 = 1e-9;
 
 /// Chooses leaves.
 pub(super) struct Selector<'a> {
@@ -101,10 +98,8 @@ impl Selector<'_> {
                 continue;
             }
             let stakes = self.judge().stakes(steps, place, adds);
-            for (gain, which) in self.best(&stakes, adds, 1.0, BEAM) {
-                if gain > GRAIN {
-                    children.push(self.with(steps, place, Step { adds, which }));
-                }
+            for (_, which) in self.best(&stakes, adds, 1.0, BEAM) {
+                children.push(self.with(steps, place, Step { adds, which }));
             }
         }
         children.extend(self.pairs(steps, first_cut));
@@ -119,16 +114,11 @@ impl Selector<'_> {
         let stakes = self.judge().stakes(steps, place, true);
         let added = self.best(&stakes, true, FORGIVING, 2 * BEAM);
         let mut pairs = Vec::new();
-        for (gain, which) in added {
-            if gain <= GRAIN {
-                continue;
-            }
+        for (_, which) in added {
             let whole = self.with(steps, place, Step { adds: true, which });
             let stakes = self.judge().stakes(&whole.steps, whole.steps.len(), false);
-            for (gain, which) in self.best(&stakes, false, 1.0, 1) {
-                if gain > GRAIN {
-                    pairs.push(self.with(&whole.steps, whole.steps.len(), Step { adds: false, which }));
-                }
+            for (_, which) in self.best(&stakes, false, 1.0, 1) {
+                pairs.push(self.with(&whole.steps, whole.steps.len(), Step { adds: false, which }));
             }
         }
         pairs
@@ -145,7 +135,7 @@ impl Selector<'_> {
         // What a cut can open again is not lost.
         stakes.loss.remove(&cuts);
         let added = self.best(&stakes, true, 1.0, 2 * BEAM);
-        added.into_iter().filter(|(gain, _)| *gain > GRAIN).map(|(_, which)| self.reinserted(steps, which)).collect()
+        added.into_iter().map(|(_, which)| self.reinserted(steps, which)).collect()
     }
 
     /// The steps with a leaf added after the others, and the cuts that it would close made after it.
@@ -158,7 +148,7 @@ impl Selector<'_> {
         let all = Stakes { gain: open.clone(), loss: Bits::none(self.queries.words()) };
         let mut cuts: Vec<(f64, usize)> = (steps.iter().enumerate())
             .filter(|(_, step)| !step.adds)
-            .map(|(i, step)| (all.of(judge.bits(*step), weights, 1.0), i))
+            .map(|(i, step)| (all.of(judge.bits(*step), weights), i))
             .filter(|(overlap, _)| *overlap > 0.0)
             .collect();
         cuts.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -166,7 +156,7 @@ impl Selector<'_> {
         for (_, i) in cuts {
             let bits = judge.bits(steps[i]);
             let stakes = judge.staked(&open.and(bits), false);
-            if stakes.of(bits, weights, 1.0) > 0.0 {
+            if stakes.of(bits, weights) > 0.0 {
                 open.remove(bits);
                 last.push(i);
             }
@@ -249,10 +239,8 @@ impl Selector<'_> {
                     continue;
                 }
                 let stakes = self.judge().stakes(&model.steps, place, adds);
-                for (gain, which) in self.best(&stakes, adds, 1.0, 1) {
-                    if gain > GRAIN {
-                        tried.push(self.with(&model.steps, place, Step { adds, which }));
-                    }
+                for (_, which) in self.best(&stakes, adds, 1.0, 1) {
+                    tried.push(self.with(&model.steps, place, Step { adds, which }));
                 }
             }
         }
