@@ -116,6 +116,7 @@ mod kernel_tests;
 mod linear;
 mod local;
 mod mixture;
+mod part;
 mod plane;
 mod pose;
 mod random;

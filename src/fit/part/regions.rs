@@ -1,7 +1,14 @@
 //! Regions of a surface, each of one plane, cylinder, cone, sphere or torus.
+//!
+//! Hypotheses of all kinds and all axes are made from two points each, and the one that explains most of the area is
+//! adjusted and taken, then the one that explains most of the rest. So a sphere is not taken for a ring of cones, nor
+//! a cylinder of many facets for planes: what explains more comes first.
+//!
+//! Source of the idea: R. Schnabel, R. Wahl, R. Klein, *Efficient RANSAC for point-cloud shape detection* (2007).
 
 use glam::{DMat3, DVec3};
 
+use super::detector::Detector;
 use super::samples::Samples;
 use crate::Run;
 use crate::fit::FitError;
@@ -41,8 +48,10 @@ pub(super) struct Regions {
     pub(super) eps: f64,
 }
 
-/// The regions of a surface.
-pub(super) fn detect(_samples: &Samples, _seed: u64, run: &Run) -> Result<Regions, FitError> {
-    run.check()?;
-    Ok(Regions { regions: Vec::new(), frames: vec![DMat3::IDENTITY], eps: 0.004 })
+/// The regions of a surface, from the one that was found first on.
+pub(super) fn detect(samples: &Samples, seed: u64, run: &Run) -> Result<Regions, FitError> {
+    let run = run.stage(0.0, 1.0);
+    let mut detector = Detector::new(samples, seed);
+    detector.search(&run)?;
+    Ok(detector.finished())
 }
