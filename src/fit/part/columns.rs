@@ -59,6 +59,17 @@ impl Shape {
         }
     }
 
+    /// How far a point is from the shape, at right angles to it.
+    pub(super) fn off(&self, p: DVec3) -> f64 {
+        // Whatever the normal is.
+        -self.margin(p, DVec3::ZERO, Tolerance { distance: 0.0, cosine: -1.0 }) / self.steep()
+    }
+
+    /// How many times longer distances across the axis are than those from the shape.
+    fn steep(&self) -> f64 {
+        if let Shape::Cone { slope, .. } = self { slope.hypot(1.0) } else { 1.0 }
+    }
+
     /// Not below 0 where a point with a normal is of the shape.
     pub(super) fn margin(&self, p: DVec3, n: DVec3, tolerance: Tolerance) -> f64 {
         let (p, n) = (p.to_array(), n.to_array());
@@ -66,7 +77,7 @@ impl Shape {
             Shape::Plane { normal, offset } => Plane { normal, offset }.margin(p, n, tolerance),
             Shape::Sphere { centre, radius, sign } => Sphere { centre, radius, sign }.margin(p, n, tolerance),
             Shape::Cone { centre, radius, slope, sign } => {
-                Cone { centre, radius, slope, sign, steep: slope.hypot(1.0) }.margin(p, n, tolerance)
+                Cone { centre, radius, slope, sign, steep: self.steep() }.margin(p, n, tolerance)
             }
             Shape::Torus { centre, major, minor, sign } => {
                 Torus { centre, major, minor, sign }.margin(p, n, tolerance)
@@ -116,7 +127,7 @@ impl Columns {
             Shape::Plane { normal, offset } => self.judged(&Plane { normal, offset }, tolerance, out),
             Shape::Sphere { centre, radius, sign } => self.judged(&Sphere { centre, radius, sign }, tolerance, out),
             Shape::Cone { centre, radius, slope, sign } => {
-                self.judged(&Cone { centre, radius, slope, sign, steep: slope.hypot(1.0) }, tolerance, out)
+                self.judged(&Cone { centre, radius, slope, sign, steep: shape.steep() }, tolerance, out)
             }
             Shape::Torus { centre, major, minor, sign } => {
                 self.judged(&Torus { centre, major, minor, sign }, tolerance, out)

@@ -2,8 +2,9 @@
 
 use std::f64::consts::TAU;
 
-/// Bins of 10°.
+/// Bins, and their width in degrees.
 const BINS: usize = 36;
+const WIDTH: f64 = 10.0;
 
 /// Shares of bins about an axis.
 pub(super) struct Coverage {
@@ -28,13 +29,13 @@ impl Coverage {
             gap = if self.bins[i % BINS] > 0.0 { 0 } else { gap + 1 };
             longest = longest.max(gap);
         }
-        360.0 * (1.0 - longest.min(BINS) as f64 / BINS as f64)
+        WIDTH * (BINS - longest.min(BINS)) as f64
     }
 
     /// The share of the arc's bins that are not empty.
     pub(super) fn fill(&self) -> f64 {
         let full = self.bins.iter().filter(|b| **b > 0.0).count() as f64;
-        full * 360.0 / BINS as f64 / self.arc().max(1.0)
+        full * WIDTH / self.arc().max(1.0)
     }
 
     /// The largest share of a bin.

@@ -7,14 +7,13 @@ use glam::{DMat3, DVec3};
 
 use super::axes::axes;
 use super::columns::{Columns, Shape, Tolerance};
-use super::corners::Corner;
 use super::directions::{Directions, about};
 use super::guesses::{revolved, sphere};
 use super::limits::Limits;
 use super::regions::{Region, Regions};
 use super::samples::{Kind, Samples};
 use super::seeds::{Seed, Seeds};
-use super::settle::{Settled, settle};
+use super::settle::{Settled, Taken, settle};
 use crate::fit::random::Random;
 use crate::{Cancelled, Run};
 
@@ -91,7 +90,7 @@ pub(super) struct Detector<'a> {
     limits: Limits,
     random: Random,
     directions: Directions,
-    taken: Vec<bool>,
+    taken: Taken,
     found: Vec<Settled>,
     buffer: Vec<f32>,
 }
@@ -103,7 +102,7 @@ impl<'a> Detector<'a> {
             limits: Limits::of(samples),
             random: Random::new(seed),
             directions: Directions::new(samples.kind),
-            taken: vec![false; samples.len()],
+            taken: Taken::none(samples),
             found: Vec::new(),
             buffer: Vec::new(),
         }
@@ -125,12 +124,12 @@ impl<'a> Detector<'a> {
 
     /// The share of the area that is not explained.
     fn left(&self) -> f64 {
-        self.samples.weights.iter().zip(&self.taken).filter(|(_, taken)| !**taken).map(|(w, _)| w).sum()
+        self.samples.weights.iter().zip(&self.taken.samples).filter(|(_, taken)| !**taken).map(|(w, _)| w).sum()
     }
 
     fn round(&mut self, run: &Run) -> Result<(), Cancelled> {
-        let by_samples = Seeds::of_samples(self.samples, &self.taken);
-        let by_corners = Seeds::of_corners(self.samples, |corner| self.is_explained(corner));
+        let by_samples = Seeds::of_samples(self.samples, &self.taken.samples);
+        let by_corners = Seeds::of_corners(self.samples, &self.taken.corners);
         // Corners tell more than samples where there are some.
         let mut seeds = vec![];
         if by_corners.all.len() >= 8 {
@@ -145,9 +144,9 @@ impl<'a> Detector<'a> {
         }
         let mut frames = vec![DMat3::IDENTITY];
         for axis in axes(&voters, &mut self.random) {
-            let axis = self.directions.settled(axis);
-            if frames[1..].iter().all(|f| f.z_axis.cross(axis).length() > 1e-3) {
-                frames.push(about(axis));
+            let frame = about(self.directions.settled(axis));
+            if frames[1..].iter().all(|f| f.z_axis.cross(frame.z_axis).length() > 1e-3) {
+                frames.push(frame);
             }
         }
         let mut columns: Vec<Columns> = frames.into_iter().map(|frame| self.columns(frame)).collect();
@@ -174,11 +173,9 @@ impl<'a> Detector<'a> {
             let from = &columns[guess.frame];
             match settle(&guess.shape, guess.tolerance, from, self.samples, &self.taken, &self.limits, &self.directions) {
                 Some(settled) => {
-                    for &i in &settled.points {
-                        self.taken[i as usize] = true;
-                    }
+                    self.taken.add(&settled, self.samples, &self.limits);
                     for columns in &mut columns {
-                        columns.take(&self.taken);
+                        columns.take(&self.taken.samples);
                     }
                     if let Some(direction) = settled.direction() {
                         self.directions.add(direction, settled.share);
@@ -201,14 +198,9 @@ impl<'a> Detector<'a> {
         let is_general = frame == DMat3::IDENTITY;
         let counts = |i: &u32| {
             let i = *i as usize;
-            !self.taken[i] && (is_general || self.samples.normals[i].dot(axis).abs() < 0.97 || self.samples.kind != Kind::Cad)
+            !self.taken.samples[i] && (is_general || self.samples.normals[i].dot(axis).abs() < 0.97 || self.samples.kind != Kind::Cad)
         };
         Columns::new(self.samples, frame, (0..self.samples.len() as u32).filter(counts).collect())
-    }
-
-    /// Whether a corner is of a region that was found.
-    fn is_explained(&self, corner: &Corner) -> bool {
-        self.found.iter().any(|settled| settled.holds(corner, &self.limits))
     }
 
     /// Hypotheses of all kinds.

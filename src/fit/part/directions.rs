@@ -30,7 +30,7 @@ impl Directions {
 
     /// What a direction is meant to be, of the same sign.
     pub(super) fn settled(&self, direction: DVec3) -> DVec3 {
-        let near = |to: DVec3, sine: f64| (direction.cross(to).length() < sine).then(|| to * direction.dot(to).signum());
+        let near = |to: DVec3, sine: f64| (direction.cross(to).length() < sine).then(|| to * direction.dot(to).signum() + 0.0);
         let axis = DVec3::AXES.into_iter().find_map(|axis| near(axis, SNAP.to_radians().sin()));
         if let Some(known) = axis.or_else(|| self.all.iter().find_map(|(known, _)| near(*known, self.one))) {
             return known;
@@ -47,7 +47,7 @@ impl Directions {
                 break;
             }
         }
-        square.normalize()
+        square.normalize() + 0.0
     }
 
     /// Adds a settled direction with the share of the area that it is of.
@@ -89,8 +89,9 @@ fn tidy(first: DVec3, second: DVec3) -> DMat3 {
     DMat3::from_cols(columns[0], columns[1], columns[2])
 }
 
-/// The frame with an axis as z.
+/// The frame with an axis as z, upwards along the axis of coordinates that it is nearest to.
 pub(super) fn about(axis: DVec3) -> DMat3 {
+    let axis = axis * axis[axis.abs().max_position()].signum() + 0.0;
     let x = DVec3::AXES[axis.abs().min_position()].cross(axis).normalize();
     DMat3::from_cols(x, axis.cross(x), axis)
 }

@@ -48,6 +48,16 @@ pub(super) struct Regions {
     pub(super) eps: f64,
 }
 
+impl Region {
+    /// Where there are samples of it along an axis, from an origin: gaps that are longer than given divide it.
+    pub(super) fn pieces(&self, samples: &Samples, axis: DVec3, origin: DVec3, gap: f64) -> Vec<[f64; 2]> {
+        let mut along: Vec<f64> =
+            self.points.iter().map(|i| (samples.points[*i as usize] - origin).dot(axis)).collect();
+        along.sort_by(f64::total_cmp);
+        along.chunk_by(|a, b| b - a <= gap).map(|piece| [piece[0], piece[piece.len() - 1]]).collect()
+    }
+}
+
 /// The regions of a surface, from the one that was found first on.
 pub(super) fn detect(samples: &Samples, seed: u64, run: &Run) -> Result<Regions, FitError> {
     let run = run.stage(0.0, 1.0);

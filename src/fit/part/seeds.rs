@@ -34,11 +34,11 @@ pub(super) struct Seeds {
 }
 
 impl Seeds {
-    /// Those of the curved surfaces of a mesh, without what is explained.
-    pub(super) fn of_corners(samples: &Samples, explained: impl Fn(&Corner) -> bool) -> Seeds {
+    /// Those of the curved surfaces of a mesh, without those that are taken.
+    pub(super) fn of_corners(samples: &Samples, taken: &[bool]) -> Seeds {
         let of = |c: &Corner| Seed { point: c.point, normal: c.normal, step: c.step, part: c.part };
-        let all = samples.corners.iter().filter(|c| !explained(c)).map(of).collect();
-        Seeds::new(all, samples.kind == Kind::Cad)
+        let left = samples.corners.iter().zip(taken).filter(|(_, taken)| !**taken);
+        Seeds::new(left.map(|(c, _)| of(c)).collect(), samples.kind == Kind::Cad)
     }
 
     /// Samples, without those that are taken.

@@ -10,7 +10,7 @@ use super::directions::{Directions, about};
 use super::limits::Limits;
 use super::regions::{Form, Region};
 use super::samples::{Kind, Samples};
-use crate::fit::linear::{eigen, quantile};
+use crate::fit::linear::{eigen, median, quantile};
 
 /// Steps of an adjustment.
 const STEPS: usize = 3;
@@ -37,6 +37,33 @@ const TUBE: f64 = 35.0;
 const VARYING: f64 = 0.05;
 const TURN: f64 = 0.06;
 
+/// Passes of the adjustment to corners: each keeps those within so many median deviations, and the least of them.
+const PASSES: usize = 4;
+const WIDTH: f64 = 6.0;
+const GRAIN: f64 = 1e-5;
+
+/// What is of regions that were found.
+pub(super) struct Taken {
+    pub(super) samples: Vec<bool>,
+    pub(super) corners: Vec<bool>,
+}
+
+impl Taken {
+    pub(super) fn none(samples: &Samples) -> Taken {
+        Taken { samples: vec![false; samples.len()], corners: vec![false; samples.corners.len()] }
+    }
+
+    /// Adds what is of a region.
+    pub(super) fn add(&mut self, settled: &Settled, samples: &Samples, limits: &Limits) {
+        for &i in &settled.points {
+            self.samples[i as usize] = true;
+        }
+        for (taken, corner) in self.corners.iter_mut().zip(&samples.corners) {
+            *taken = *taken || settled.holds(corner, limits);
+        }
+    }
+}
+
 /// A region in the frame that its shape is in.
 pub(super) struct Settled {
     frame: DMat3,
@@ -54,7 +81,7 @@ pub(super) fn settle(
     tolerance: Tolerance,
     columns: &Columns,
     samples: &Samples,
-    taken: &[bool],
+    taken: &Taken,
     limits: &Limits,
     directions: &Directions,
 ) -> Option<Settled> {
@@ -98,7 +125,7 @@ pub(super) fn settle(
                 let local = frame.transpose() * on;
                 *centre = [local.x, local.y];
                 *radius = at - *slope * local.z;
-                let rest = (0..samples.len() as u32).filter(|i| !taken[*i as usize]).collect();
+                let rest = (0..samples.len() as u32).filter(|i| !taken.samples[*i as usize]).collect();
                 turned = Some(Columns::new(samples, frame, rest));
             }
         }
@@ -115,7 +142,7 @@ pub(super) fn settle(
         return None;
     }
     let mut settled = Settled { frame, shape, points, share, along: [0.0; 2], arc: 0.0 };
-    settled.judge(samples, limits).then_some(settled)
+    settled.judge(samples, taken, limits).then_some(settled)
 }
 
 /// The axis that normals of a cylinder are across, or of a cone as far from as each other.
@@ -141,13 +168,13 @@ impl Settled {
     }
 
     /// Whether a corner of a mesh is of it.
-    pub(super) fn holds(&self, corner: &Corner, limits: &Limits) -> bool {
+    fn holds(&self, corner: &Corner, limits: &Limits) -> bool {
         let to = self.frame.transpose();
         self.shape.margin(to * corner.point, to * corner.normal, limits.fine(&self.shape)) >= 0.0
     }
 
     /// Whether it is a region; measures it, and adjusts it to the corners there.
-    fn judge(&mut self, samples: &Samples, limits: &Limits) -> bool {
+    fn judge(&mut self, samples: &Samples, taken: &Taken, limits: &Limits) -> bool {
         let to = self.frame.transpose();
         let local = |i: &u32| (to * samples.points[*i as usize], to * samples.normals[*i as usize]);
         let weight = |i: &u32| samples.weights[*i as usize];
@@ -157,7 +184,7 @@ impl Settled {
         if self.points.len() < FEWEST {
             return false;
         }
-        let corners = self.adjust_to_corners(samples, limits);
+        let corners = self.adjust_to_corners(samples, taken, limits);
         match self.shape {
             Shape::Plane { .. } => false,
             Shape::Sphere { .. } => {
@@ -215,21 +242,23 @@ impl Settled {
     }
 
     /// Takes the corners' word for sizes; gives them.
-    fn adjust_to_corners(&mut self, samples: &Samples, limits: &Limits) -> Vec<Corner> {
+    fn adjust_to_corners(&mut self, samples: &Samples, taken: &Taken, limits: &Limits) -> Vec<Corner> {
         let to = self.frame.transpose();
         let mut tolerance = limits.coarse(&self.shape);
+        let free = || samples.corners.iter().zip(&taken.corners).filter(|(_, taken)| !**taken).map(|(c, _)| c);
         let mut held: Vec<Corner> = Vec::new();
-        for pass in 0..3 {
+        for _ in 0..PASSES {
             held.clear();
-            let of = |c: &&Corner| self.shape.margin(to * c.point, to * c.normal, tolerance) >= 0.0;
-            held.extend(samples.corners.iter().filter(of));
+            held.extend(free().filter(|c| self.shape.margin(to * c.point, to * c.normal, tolerance) >= 0.0));
             if held.len() < CORNERS {
                 break;
             }
             let points: Vec<(DVec3, f64)> = held.iter().map(|c| (to * c.point, 1.0)).collect();
             let Some(shape) = adjusted(&self.shape, &points, STEPS) else { break };
             self.shape = shape;
-            tolerance.distance *= if pass == 0 { 0.3 } else { 0.5 };
+            // Corners of the shape are exact, or nearly so: others stand out.
+            let mut off: Vec<f64> = points.iter().map(|p| shape.off(p.0)).collect();
+            tolerance.distance = f64::min(WIDTH * median(&mut off), 0.5 * tolerance.distance).max(GRAIN);
         }
         held
     }
