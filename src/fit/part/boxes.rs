@@ -9,7 +9,7 @@ use std::collections::HashSet;
 
 use glam::{DMat3, DVec3};
 
-use super::bits::Stakes;
+use super::bits::{Stakes, WORD};
 use super::candidates::BEYOND;
 use super::leaf::Leaf;
 use super::pool::Pool;
@@ -54,8 +54,8 @@ impl Grid {
     /// Puts the best boxes for stakes among the candidates.
     pub(super) fn propose(&mut self, stakes: &Stakes, adds: bool, dear: f64, queries: &Queries, pool: &mut Pool) {
         let price = 9.0 * pool.per_parameter;
-        for (gain, box_) in self.best(stakes, dear, queries) {
-            if gain <= price || !self.seen.insert((box_, adds)) {
+        for (gain, box_) in self.best(stakes, dear, queries, price) {
+            if !self.seen.insert((box_, adds)) {
                 continue;
             }
             let leaf = Leaf::cuboid(self.frame, [0, 1].map(|end| self.corner(box_, end, adds)));
@@ -77,22 +77,25 @@ impl Grid {
         DVec3::from_array([0, 1, 2].map(along))
     }
 
-    /// The boxes that gain most, by numbers of offsets.
-    fn best(&self, stakes: &Stakes, dear: f64, queries: &Queries) -> Vec<(f64, [[u8; 2]; 3])> {
+    /// The boxes that gain most, and more than the price, by numbers of offsets.
+    fn best(&self, stakes: &Stakes, dear: f64, queries: &Queries, price: f64) -> Vec<(f64, [[u8; 2]; 3])> {
         let [nx, ny, nz] = [0, 1, 2].map(|k| self.offsets[k].len() - 1);
         let mut sums = vec![0.0; nx * ny * nz];
         for (set, sign) in [(&stakes.gain, 1.0), (&stakes.loss, -dear)] {
             for at in set.each() {
                 if self.cells[at] != OUT {
-                    sums[usize::from(self.cells[at])] += sign * queries.weights[at / 64];
+                    sums[usize::from(self.cells[at])] += sign * queries.weights[at / WORD];
                 }
             }
         }
         let mut best: Vec<(f64, [[u8; 2]; 3])> = Vec::new();
-        // Sums along y from its first offset on, of the layers from x₀ to x₁.
+        // Sums along y from its first offset on, of the layers from x₀ to x₁; and what is positive of them, by which most
+        // ranges are out before their columns are looked at.
         let mut along = vec![0.0; (ny + 1) * nz];
+        let mut positive = vec![0.0; ny + 1];
         for x0 in 0..nx {
             along.fill(0.0);
+            positive.fill(0.0);
             for x1 in x0..nx {
                 let layer = &sums[x1 * ny * nz..(x1 + 1) * ny * nz];
                 for z in 0..nz {
@@ -102,11 +105,20 @@ impl Grid {
                         along[(y + 1) * nz + z] += sum;
                     }
                 }
+                let mut sum = 0.0;
+                for (total, row) in positive[1..].iter_mut().zip(layer.chunks_exact(nz)) {
+                    sum += row.iter().map(|x| x.max(0.0)).sum::<f64>();
+                    *total += sum;
+                }
                 for y0 in 0..ny {
                     for y1 in y0 + 1..=ny {
+                        let least = if best.len() < BEST { price } else { best[BEST - 1].0 };
+                        if positive[y1] - positive[y0] <= least {
+                            continue;
+                        }
                         let (low, high) = (&along[y0 * nz..(y0 + 1) * nz], &along[y1 * nz..(y1 + 1) * nz]);
                         let (gain, z) = run(low, high);
-                        if best.len() < BEST || gain > best[best.len() - 1].0 {
+                        if gain > least {
                             let found = [[x0, x1 + 1], [y0, y1], z].map(|range| range.map(|i| i as u8));
                             let place = best.partition_point(|other| other.0 >= gain);
                             best.insert(place, (gain, found));

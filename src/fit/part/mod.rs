@@ -1,11 +1,20 @@
 //! Whole parts: from a closed mesh to an ordered tree of added and subtracted leaves.
 
+mod adjust;
+mod axes;
 mod bits;
 mod boxes;
 mod candidates;
+mod columns;
+mod corners;
+mod coverage;
+mod detector;
+mod directions;
 mod finish;
 mod freedom;
+mod guesses;
 mod leaf;
+mod limits;
 mod model;
 mod offsets;
 mod outline;
@@ -14,12 +23,16 @@ mod queries;
 mod recover;
 mod refine;
 mod regions;
+#[cfg(test)]
+mod regions_tests;
 mod result;
 mod samples;
+mod seeds;
 mod select;
 #[cfg(test)]
 mod select_tests;
 mod settings;
+mod settle;
 mod snap;
 mod sobol;
 

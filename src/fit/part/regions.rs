@@ -1,7 +1,14 @@
 //! Regions of a surface, each of one plane, cylinder, cone, sphere or torus.
+//!
+//! Hypotheses of all kinds and all axes are made from two points each, and the one that explains most of the area is
+//! adjusted and taken, then the one that explains most of the rest. So a sphere is not taken for a ring of cones, nor
+//! a cylinder of many facets for planes: what explains more comes first.
+//!
+//! Source of the idea: R. Schnabel, R. Wahl, R. Klein, *Efficient RANSAC for point-cloud shape detection* (2007).
 
 use glam::{DMat3, DVec3};
 
+use super::detector::Detector;
 use super::samples::Samples;
 use crate::Run;
 use crate::fit::FitError;
@@ -65,8 +72,20 @@ pub(super) struct Regions {
     pub(super) eps: f64,
 }
 
-/// The regions of a surface.
-pub(super) fn detect(_samples: &Samples, _seed: u64, run: &Run) -> Result<Regions, FitError> {
-    run.check()?;
-    Ok(Regions { regions: Vec::new(), frames: vec![DMat3::IDENTITY], eps: 0.004 })
+impl Region {
+    /// Where there are samples of it along an axis, from an origin: gaps that are longer than given divide it.
+    pub(super) fn pieces(&self, samples: &Samples, axis: DVec3, origin: DVec3, gap: f64) -> Vec<[f64; 2]> {
+        let mut along: Vec<f64> =
+            self.points.iter().map(|i| (samples.points[*i as usize] - origin).dot(axis)).collect();
+        along.sort_by(f64::total_cmp);
+        along.chunk_by(|a, b| b - a <= gap).map(|piece| [piece[0], piece[piece.len() - 1]]).collect()
+    }
+}
+
+/// The regions of a surface, from the one that was found first on.
+pub(super) fn detect(samples: &Samples, seed: u64, run: &Run) -> Result<Regions, FitError> {
+    let run = run.stage(0.0, 1.0);
+    let mut detector = Detector::new(samples, seed);
+    detector.search(&run)?;
+    Ok(detector.finished())
 }
