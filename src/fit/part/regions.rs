@@ -14,7 +14,7 @@ use crate::Run;
 use crate::fit::FitError;
 
 /// Samples that one form explains.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Region {
     pub(super) form: Form,
     /// Indices of samples.
@@ -29,13 +29,37 @@ pub(super) struct Region {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Form {
     /// The points p with p·normal = offset.
-    Plane { normal: DVec3, offset: f64 },
+    Plane {
+        normal: DVec3,
+        offset: f64,
+    },
     /// From along[0] to along[1] from the origin on the axis; the arc is in degrees.
-    Cylinder { axis: DVec3, origin: DVec3, radius: f64, along: [f64; 2], arc: f64 },
+    Cylinder {
+        axis: DVec3,
+        origin: DVec3,
+        radius: f64,
+        along: [f64; 2],
+        arc: f64,
+    },
     /// The radius is that at the origin; the slope is its change by length along the axis.
-    Cone { axis: DVec3, origin: DVec3, radius: f64, slope: f64, along: [f64; 2], arc: f64 },
-    Sphere { centre: DVec3, radius: f64 },
-    Torus { axis: DVec3, centre: DVec3, major: f64, minor: f64 },
+    Cone {
+        axis: DVec3,
+        origin: DVec3,
+        radius: f64,
+        slope: f64,
+        along: [f64; 2],
+        arc: f64,
+    },
+    Sphere {
+        centre: DVec3,
+        radius: f64,
+    },
+    Torus {
+        axis: DVec3,
+        centre: DVec3,
+        major: f64,
+        minor: f64,
+    },
 }
 
 /// What a surface is made of.
