@@ -65,6 +65,22 @@ impl Shape {
         -self.margin(p, DVec3::ZERO, Tolerance { distance: 0.0, cosine: -1.0 }) / self.steep()
     }
 
+    /// The unit normal of the shape at the place nearest to a point.
+    pub(super) fn normal(&self, p: DVec3) -> DVec3 {
+        let radial = |d: DVec3| DVec3::new(d.x, d.y, 0.0).normalize_or(DVec3::X);
+        match *self {
+            Shape::Plane { normal, .. } => normal,
+            Shape::Sphere { centre, sign, .. } => sign * (p - centre).normalize_or(DVec3::Z),
+            Shape::Cone { centre: [x, y], slope, sign, .. } => {
+                sign * (radial(p - DVec3::new(x, y, 0.0)) - slope * DVec3::Z) / self.steep()
+            }
+            Shape::Torus { centre, major, sign, .. } => {
+                let d = p - centre;
+                sign * (d - major * radial(d)).normalize_or(DVec3::Z)
+            }
+        }
+    }
+
     /// How many times longer distances across the axis are than those from the shape.
     fn steep(&self) -> f64 {
         if let Shape::Cone { slope, .. } = self { slope.hypot(1.0) } else { 1.0 }

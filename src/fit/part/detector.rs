@@ -20,6 +20,9 @@ use crate::{Cancelled, Run};
 /// Rounds at most; each makes hypotheses from what is left.
 const ROUNDS: usize = 5;
 
+/// Fewer regions are not worth another round of the same kind.
+const FEW: usize = 3;
+
 /// Less than this share of the area is not searched again.
 const REST: f64 = 0.002;
 
@@ -30,7 +33,7 @@ const REVOLVED: usize = 400;
 const PAIRS: usize = 8;
 
 /// Hypotheses of a round that are adjusted in vain before it ends.
-const FAILURES: usize = 80;
+const FAILURES: usize = 120;
 
 /// Shapes with more freedom explain more than they should: the shares are judged by these factors.
 const SPHERE: f64 = 0.97;
@@ -110,13 +113,20 @@ impl<'a> Detector<'a> {
 
     /// Looks for regions until nothing more is found.
     pub(super) fn search(&mut self, run: &Run) -> Result<(), Cancelled> {
+        let lenient = self.limits.lenient();
+        let mut is_strict = self.samples.kind != Kind::Cad;
         for round in 0..ROUNDS {
             run.check()?;
             run.report(round as f64 / ROUNDS as f64);
             let before = self.found.len();
             self.round(run)?;
-            if self.found.len() == before || self.left() < REST {
+            if self.left() < REST || !is_strict && self.found.len() == before {
                 break;
+            }
+            if is_strict && self.found.len() < before + FEW {
+                // What is of no shape is taken for what it is most like.
+                self.limits = lenient;
+                is_strict = false;
             }
         }
         Ok(())

@@ -4,35 +4,34 @@ use glam::{DMat3, DVec3};
 
 use super::samples::Kind;
 
-/// Within so many degrees of an axis of coordinates a direction is that axis.
-const SNAP: f64 = 0.25;
-
 /// Frames at most.
 const FRAMES: usize = 3;
 
 /// Directions that were settled, from the first on.
 pub(super) struct Directions {
     all: Vec<(DVec3, f64)>,
-    /// Sines of the angles within which two are one, or square.
+    /// Sines of the angles within which one is an axis of coordinates, two are one, or square.
+    snap: f64,
     one: f64,
     square: f64,
 }
 
 impl Directions {
     pub(super) fn new(kind: Kind) -> Directions {
-        let [one, square]: [f64; 2] = match kind {
-            Kind::Cad => [0.15, 0.15],
-            Kind::Voxels => [1.0, 1.0],
-            Kind::Scan => [2.0, 1.0],
+        let degrees: [f64; 3] = match kind {
+            Kind::Cad => [0.25, 0.15, 0.15],
+            Kind::Voxels => [0.8, 1.0, 1.0],
+            Kind::Scan => [1.0, 2.0, 1.0],
         };
-        Directions { all: Vec::new(), one: one.to_radians().sin(), square: square.to_radians().sin() }
+        let [snap, one, square] = degrees.map(|angle| angle.to_radians().sin());
+        Directions { all: Vec::new(), snap, one, square }
     }
 
     /// What a direction is meant to be, of the same sign.
     pub(super) fn settled(&self, direction: DVec3) -> DVec3 {
         let near =
             |to: DVec3, sine: f64| (direction.cross(to).length() < sine).then(|| to * direction.dot(to).signum() + 0.0);
-        let axis = DVec3::AXES.into_iter().find_map(|axis| near(axis, SNAP.to_radians().sin()));
+        let axis = DVec3::AXES.into_iter().find_map(|axis| near(axis, self.snap));
         if let Some(known) = axis.or_else(|| self.all.iter().find_map(|(known, _)| near(*known, self.one))) {
             return known;
         }

@@ -21,6 +21,9 @@ const MEETING: f64 = 0.07;
 /// Tubes of tori that turn less than this between two points tell no radius.
 const BENDING: f64 = 0.17;
 
+/// Tori have a hole: their radius is this times that of the tube at least.
+const RING: f64 = 1.02;
+
 /// Radii, in diagonals.
 const RADII: std::ops::Range<f64> = 0.0015..1.0;
 
@@ -81,7 +84,7 @@ pub(super) fn revolved(frame: &DMat3, [a, b]: [Seed; 2], slack: Slack) -> Option
     let sign = alike(tube, slack.radius)?;
     let middle = 0.5 * (qa - tube[0] * va + qb - tube[1] * vb);
     let minor = 0.5 * (tube[0] + tube[1]).abs();
-    let fits = RADII.contains(&middle.x) && middle.x > 0.15 * minor;
+    let fits = RADII.contains(&middle.x) && middle.x > RING * minor;
     fits.then(|| Shape::Torus { centre: DVec3::new(centre[0], centre[1], middle.y), major: middle.x, minor, sign })
 }
 

@@ -12,8 +12,11 @@ pub(super) struct Limits {
     pub(super) eps: f64,
     /// The least share of the area of a region.
     pub(super) share: f64,
-    /// The least share of a sphere or torus.
+    /// The least share of a cone, and of a sphere or torus.
+    pub(super) cone_share: f64,
     pub(super) round_share: f64,
+    /// The largest root mean squares of curved shapes: of angles between normals, in degrees, and of distances.
+    pub(super) spread: [f64; 2],
     /// How much normals may differ from those of curved shapes, and of planes, in degrees.
     curved: f64,
     flat: f64,
@@ -24,17 +27,48 @@ impl Limits {
     pub(super) fn of(samples: &Samples) -> Limits {
         let kind = samples.kind;
         match kind {
-            Kind::Cad => {
-                Limits { kind, eps: 0.004, share: 0.0006, round_share: 0.002, curved: 14.0, flat: 4.0, flat_eps: 0.001 }
-            }
-            Kind::Voxels => {
-                Limits { kind, eps: 0.005, share: 0.0015, round_share: 0.02, curved: 18.0, flat: 8.0, flat_eps: 0.003 }
-            }
+            Kind::Cad => Limits {
+                kind,
+                eps: 0.004,
+                share: 0.0006,
+                cone_share: 0.0006,
+                round_share: 0.002,
+                spread: [8.0, 1.0],
+                curved: 14.0,
+                flat: 4.0,
+                flat_eps: 0.001,
+            },
+            Kind::Voxels => Limits {
+                kind,
+                eps: 0.005,
+                share: 0.003,
+                cone_share: 0.008,
+                round_share: 0.02,
+                spread: [8.0, 0.0015],
+                curved: 18.0,
+                flat: 8.0,
+                flat_eps: 0.003,
+            },
             Kind::Scan => {
                 let eps = f64::max(0.005, 2.5 * samples.noise);
-                Limits { kind, eps, share: 0.003, round_share: 0.02, curved: 25.0, flat: 12.0, flat_eps: eps }
+                Limits {
+                    kind,
+                    eps,
+                    share: 0.003,
+                    cone_share: 0.008,
+                    round_share: 0.02,
+                    spread: [90.0, 0.0007 + 1.35 * samples.noise],
+                    curved: 25.0,
+                    flat: 12.0,
+                    flat_eps: eps,
+                }
             }
         }
+    }
+
+    /// The same, for what is only roughly of a shape.
+    pub(super) fn lenient(&self) -> Limits {
+        Limits { spread: [90.0, 1.0], ..*self }
     }
 
     /// The tolerance of a region.

@@ -14,7 +14,7 @@ use crate::Run;
 use crate::fit::FitError;
 
 /// Samples that one form explains.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Region {
     pub(super) form: Form,
     /// Indices of samples.

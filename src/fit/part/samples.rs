@@ -30,9 +30,12 @@ const CORNERS: usize = 6000;
 const MANY: usize = 1000;
 const SMALL: f64 = 0.05;
 
-/// Points that are asked for the noise, and their neighbours.
+/// Points that are asked for the noise, their neighbours, and how many of these must face the same way: so much, as a
+/// cosine.
 const ASKED: usize = 200;
-const NEIGHBOURS: usize = 10;
+const NEIGHBOURS: usize = 16;
+const FEWEST: f64 = 7.0;
+const SAME_SIDE: f64 = 0.5;
 
 /// What a surface was given as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -144,9 +147,9 @@ impl Samples {
         let mut kept = random.chosen(all.len(), OF_CLOUD);
         kept.sort_unstable();
         let points: Vec<DVec3> = kept.iter().map(|i| (all[*i] - centre) / size).collect();
-        let normals = kept.iter().map(|i| normals[*i].normalize_or(DVec3::Z)).collect();
+        let normals: Vec<DVec3> = kept.iter().map(|i| normals[*i].normalize_or(DVec3::Z)).collect();
         let weights = vec![1.0 / points.len().max(1) as f64; points.len()];
-        let noise = noise(&points, &mut random);
+        let noise = noise(&points, &normals, &mut random);
         Samples { points, normals, weights, corners: Vec::new(), centre, size, kind: Kind::Scan, noise }
     }
 
@@ -156,21 +159,22 @@ impl Samples {
     }
 }
 
-/// The noise of points: how far they are from planes through their neighbours, where it is flattest.
-fn noise(points: &[DVec3], random: &mut Random) -> f64 {
-    if points.len() <= NEIGHBOURS {
+/// The noise of points: how far they are from planes through their neighbours on the same side, where it is flattest.
+fn noise(points: &[DVec3], normals: &[DVec3], random: &mut Random) -> f64 {
+    if points.len() < NEIGHBOURS {
         return 0.0;
     }
-    let bounds = extent(points);
-    let grid = Grid::new(points, bounds, (3.0 / points.len() as f64).sqrt());
+    let grid = Grid::new(points, extent(points), (3.0 / points.len() as f64).sqrt());
     let mut found = Vec::new();
-    let mut least: Vec<f64> = random
-        .chosen(points.len(), ASKED)
-        .into_iter()
-        .map(|i| {
-            grid.nearest(points[i], NEIGHBOURS, &mut found);
-            Principal::of(found.iter().map(|f| points[f.1 as usize])).variances[0]
-        })
-        .collect();
-    (quantile(&mut least, 0.35) * NEIGHBOURS as f64 / (NEIGHBOURS as f64 - 3.0)).sqrt()
+    let mut least = Vec::with_capacity(ASKED);
+    for i in random.chosen(points.len(), ASKED) {
+        grid.nearest(points[i], NEIGHBOURS, &mut found);
+        found.retain(|f| normals[f.1 as usize].dot(normals[i]) > SAME_SIDE);
+        let count = found.len() as f64;
+        if count >= FEWEST {
+            let plane = Principal::of(found.iter().map(|f| points[f.1 as usize]));
+            least.push(plane.variances[0] * count / (count - 3.0));
+        }
+    }
+    quantile(&mut least, 0.35).sqrt()
 }

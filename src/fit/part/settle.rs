@@ -30,6 +30,9 @@ const SHORT: f64 = 120.0;
 /// The least eigenvalue of the mean of n·nᵀ on a sphere: on a cylinder it is 0.
 const ROUND: f64 = 0.06;
 
+/// The largest root mean square of angles, in degrees, where a mesh has no corners that are of a curved surface.
+const BARE: f64 = 5.0;
+
 /// The least arc of a torus' tube, in degrees.
 const TUBE: f64 = 35.0;
 
@@ -87,6 +90,9 @@ pub(super) fn settle(
 ) -> Option<Settled> {
     let mut buffer = Vec::new();
     let mut shape = *shape;
+    // What facets need beside noise.
+    let sagitta = (tolerance.distance - limits.coarse(&shape).distance).max(0.0);
+    let wider = |t: Tolerance| Tolerance { distance: t.distance + sagitta, ..t };
     let weighted = |frame: &DMat3, points: &[u32]| -> Vec<(DVec3, f64)> {
         let to = frame.transpose();
         points.iter().map(|i| (to * samples.points[*i as usize], samples.weights[*i as usize])).collect()
@@ -94,7 +100,7 @@ pub(super) fn settle(
     let mut points = columns.explained(&shape, tolerance, &mut buffer);
     for _ in 0..2 {
         shape = adjusted(&shape, &weighted(&columns.frame, &points), STEPS)?;
-        points = columns.explained(&shape, limits.coarse(&shape), &mut buffer);
+        points = columns.explained(&shape, wider(limits.coarse(&shape)), &mut buffer);
     }
     if let Shape::Cone { centre, radius, slope, sign } = shape
         && slope != 0.0
@@ -133,10 +139,10 @@ pub(super) fn settle(
     }
     let columns = turned.as_ref().unwrap_or(columns);
     if let Shape::Cone { .. } = shape {
-        points = columns.explained(&shape, limits.coarse(&shape), &mut buffer);
+        points = columns.explained(&shape, wider(limits.coarse(&shape)), &mut buffer);
         shape = adjusted(&shape, &weighted(&frame, &points), STEPS)?;
     }
-    points = columns.explained(&shape, limits.fine(&shape), &mut buffer);
+    points = columns.explained(&shape, wider(limits.fine(&shape)), &mut buffer);
     let share: f64 = points.iter().map(|i| samples.weights[*i as usize]).sum();
     if share < limits.share {
         return None;
@@ -184,14 +190,18 @@ impl Settled {
         if self.points.len() < FEWEST {
             return false;
         }
-        let corners = self.adjust_to_corners(samples, taken, limits);
+        let corners = self.held(samples, taken, limits);
+        if !self.is_true(samples, corners.len() < CORNERS, limits) {
+            return false;
+        }
+        let corners = self.adjust_to_corners(corners);
         match self.shape {
             Shape::Plane { .. } => false,
             Shape::Sphere { .. } => {
                 let normals = self.points.iter().map(|i| (samples.normals[*i as usize], weight(i)));
                 self.share >= limits.round_share && eigen(moments(normals)).0[0] >= ROUND * self.share
             }
-            Shape::Cone { centre, .. } => {
+            Shape::Cone { centre, slope, .. } => {
                 let angle = |p: DVec3| (p.y - centre[1]).atan2(p.x - centre[0]);
                 let of_samples = self.points.iter().map(|i| (angle(local(i).0), weight(i)));
                 let of_corners = corners.iter().map(|c| (angle(to * c.point), f64::MIN_POSITIVE));
@@ -203,7 +213,8 @@ impl Settled {
                 self.arc = places.arc();
                 self.along = self.extent(samples, &corners, self.frame.z_axis);
                 let flattest = FLATTEST[usize::from(self.arc < SHORT)];
-                self.arc >= ARC && places.fill() >= FILL && normals.largest() <= flattest
+                let large = slope == 0.0 || self.share >= limits.cone_share;
+                large && self.arc >= ARC && places.fill() >= FILL && normals.largest() <= flattest
             }
             Shape::Torus { centre, major, .. } => {
                 let out = |p: DVec3| (p - centre).truncate();
@@ -219,6 +230,24 @@ impl Settled {
                 self.share >= limits.round_share && self.arc >= ARC && tube.arc() >= TUBE && round.fill() >= FILL
             }
         }
+    }
+
+    /// Whether its samples are about as near to it, and their normals to its, as those of such a shape are: a prism is
+    /// within the tolerances of a cylinder.
+    fn is_true(&self, samples: &Samples, is_bare: bool, limits: &Limits) -> bool {
+        let to = self.frame.transpose();
+        let [mut angles, mut distances] = [0.0; 2];
+        for &i in &self.points {
+            let (p, n) = (to * samples.points[i as usize], to * samples.normals[i as usize]);
+            let weight = samples.weights[i as usize] / self.share;
+            angles += weight * self.shape.normal(p).angle_between(n).powi(2);
+            distances += weight * self.shape.off(p).powi(2);
+        }
+        let [mut angle, distance] = limits.spread;
+        if is_bare && limits.kind == Kind::Cad {
+            angle = angle.min(BARE);
+        }
+        angles.sqrt() <= angle.to_radians() && distances.sqrt() <= distance
     }
 
     /// Whether most normals are those of a plane.
@@ -241,15 +270,20 @@ impl Settled {
         [quantile(&mut along, tail), quantile(&mut along, 1.0 - tail)]
     }
 
-    /// Takes the corners' word for sizes; gives them.
-    fn adjust_to_corners(&mut self, samples: &Samples, taken: &Taken, limits: &Limits) -> Vec<Corner> {
+    /// The corners of a mesh that are of it.
+    fn held(&self, samples: &Samples, taken: &Taken, limits: &Limits) -> Vec<Corner> {
         let to = self.frame.transpose();
-        let mut tolerance = limits.coarse(&self.shape);
-        let free = || samples.corners.iter().zip(&taken.corners).filter(|(_, taken)| !**taken).map(|(c, _)| c);
-        let mut held: Vec<Corner> = Vec::new();
+        let tolerance = limits.coarse(&self.shape);
+        let holds = |c: &Corner| self.shape.margin(to * c.point, to * c.normal, tolerance) >= 0.0;
+        let free = samples.corners.iter().zip(&taken.corners).filter(|(_, taken)| !**taken);
+        free.map(|(c, _)| *c).filter(holds).collect()
+    }
+
+    /// Takes the corners' word for sizes; gives those that agree.
+    fn adjust_to_corners(&mut self, mut held: Vec<Corner>) -> Vec<Corner> {
+        let to = self.frame.transpose();
+        let mut width = f64::INFINITY;
         for _ in 0..PASSES {
-            held.clear();
-            held.extend(free().filter(|c| self.shape.margin(to * c.point, to * c.normal, tolerance) >= 0.0));
             if held.len() < CORNERS {
                 break;
             }
@@ -258,7 +292,8 @@ impl Settled {
             self.shape = shape;
             // Corners of the shape are exact, or nearly so: others stand out.
             let mut off: Vec<f64> = points.iter().map(|p| shape.off(p.0)).collect();
-            tolerance.distance = f64::min(WIDTH * median(&mut off), 0.5 * tolerance.distance).max(GRAIN);
+            width = f64::min(WIDTH * median(&mut off), 0.5 * width).max(GRAIN);
+            held.retain(|c| shape.off(to * c.point) <= width);
         }
         held
     }
