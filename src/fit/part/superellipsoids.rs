@@ -9,6 +9,7 @@
 
 use glam::{DMat3, DVec3};
 
+use super::balls;
 use super::leaf::{Leaf, Shape};
 use super::patches::{Patch, patches};
 use super::pool::Pool;
@@ -59,7 +60,7 @@ pub(super) fn propose(
         region.points.iter().for_each(|i| of_region[*i as usize] = number);
     }
     let mut random = Random::new(seed);
-    for patch in patches(samples) {
+    for patch in patches(samples).into_iter().chain(balls::patches(samples, &mut random)).collect::<Vec<_>>() {
         run.check()?;
         let mut counts = vec![0_usize; regions.regions.len() + 1];
         for i in &patch.samples {
