@@ -18,6 +18,7 @@ mod limits;
 mod model;
 mod offsets;
 mod outline;
+mod patches;
 mod pool;
 mod queries;
 mod recover;
@@ -35,6 +36,7 @@ mod settings;
 mod settle;
 mod snap;
 mod sobol;
+mod superellipsoids;
 
 pub use result::{PartFit, PartLeaf, Topology, Unexplained};
 pub use settings::{PartKinds, PartSettings};

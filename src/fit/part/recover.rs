@@ -22,6 +22,7 @@ use super::samples::Samples;
 use super::select::Selector;
 use super::settings::PartSettings;
 use super::snap::snapped;
+use super::superellipsoids;
 use crate::field::COORDINATE_LIMIT;
 use crate::geom::Mesh;
 use crate::{Cancelled, Run};
@@ -149,6 +150,9 @@ fn chosen(
     let low = samples.points.iter().fold(DVec3::INFINITY, |low, p| low.min(*p));
     let high = samples.points.iter().fold(DVec3::NEG_INFINITY, |high, p| high.max(*p));
     propose(&mut pool, &regions.regions, [low, high], queries, kinds);
+    if kinds.superellipsoids {
+        superellipsoids::propose(&mut pool, samples, regions, queries, settings.seed, run)?;
+    }
     run.check()?;
     let mut grids: Vec<Grid> = Vec::new();
     if kinds.boxes {

@@ -42,11 +42,21 @@ pub struct PartKinds {
     pub spheres: bool,
     /// Tori.
     pub tori: bool,
+    /// Superellipsoids, for what is round and nothing of the above.
+    pub superellipsoids: bool,
 }
 
 impl Default for PartKinds {
     fn default() -> PartKinds {
-        PartKinds { boxes: true, half_spaces: true, cylinders: true, cones: true, spheres: true, tori: true }
+        PartKinds {
+            boxes: true,
+            half_spaces: true,
+            cylinders: true,
+            cones: true,
+            spheres: true,
+            tori: true,
+            superellipsoids: true,
+        }
     }
 }
 
