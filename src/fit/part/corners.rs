@@ -47,6 +47,16 @@ impl Facets {
         Facets { points, triangles, normals, areas }
     }
 
+    /// The vertices' numbers, such at one position being one.
+    pub(super) fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Where a vertex is.
+    pub(super) fn at(&self, vertex: u32) -> DVec3 {
+        self.points[vertex as usize]
+    }
+
     /// The corners of a facet.
     pub(super) fn points(&self, facet: usize) -> [DVec3; 3] {
         self.triangles[facet].map(|i| self.points[i as usize])
