@@ -159,8 +159,7 @@ mod tests {
         let truth = Leaf::cuboid(DMat3::IDENTITY, [low, high]);
         let whole = [DVec3::splat(-0.4), DVec3::splat(0.4)];
         let queries =
-            Queries::new(whole, [&[], &[]], &[], 0.004, 1, |points| Ok(Bits::of(points, |p| truth.contains(p))))
-                .unwrap();
+            Queries::new(whole, [&[], &[]], &[], 1, |points| Ok(Bits::of(points, |p| truth.contains(p)))).unwrap();
         let offsets = [0, 1, 2].map(|_| (-4..=4).map(|i| f64::from(i) / 10.0).collect());
         let mut grid = Grid::new(DMat3::IDENTITY, offsets, &queries);
         let inside = queries.inside.clone();

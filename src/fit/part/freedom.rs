@@ -29,6 +29,11 @@ impl Leaf {
         }
     }
 
+    /// Whether it is of no region: all of it is found by fitting.
+    pub(super) fn is_free(&self) -> bool {
+        matches!(self.shape, Shape::Superellipsoid(_) | Shape::Supershape { .. })
+    }
+
     /// The leaf with ends, sides, radii and place changed, in its own axes; none if a size would vanish.
     ///
     /// Ends move each on its own, as one of them may be in the air, where no sample tells of it.

@@ -31,6 +31,8 @@ pub(super) struct Strip<'a> {
     pub(super) samples: &'a [u32],
     /// Its part of the surface, or what it counts as.
     pub(super) share: f64,
+    /// How far its pairs are from the surface on either side.
+    pub(super) apart: f64,
 }
 
 /// Points, whether they are inside, and what they weigh.
@@ -47,7 +49,6 @@ impl Queries {
         [low, high]: [DVec3; 2],
         surface: [&[DVec3]; 2],
         strips: &[Strip<'_>],
-        apart: f64,
         seed: u64,
         label: impl FnOnce(&[DVec3]) -> Result<Bits, Cancelled>,
     ) -> Result<Queries, Cancelled> {
@@ -62,6 +63,7 @@ impl Queries {
             let words = (PAIRS * strip.share / total).round().max(1.0);
             let weight = BETA * strip.share / (words * WORD as f64);
             let pairs = words as usize * WORD / 2;
+            let apart = strip.apart;
             let mut order: Vec<usize> = random.chosen(strip.samples.len(), pairs);
             while order.len() < pairs {
                 order.push(random.below(strip.samples.len()));

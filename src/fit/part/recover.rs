@@ -18,7 +18,7 @@ use super::queries::{Queries, Strip};
 use super::refine::refined;
 use super::regions::{Form, Region, Regions, detect};
 use super::result::PartFit;
-use super::samples::Samples;
+use super::samples::{Kind, Samples};
 use super::select::Selector;
 use super::settings::PartSettings;
 use super::snap::snapped;
@@ -29,6 +29,11 @@ use crate::{Cancelled, Run};
 
 /// How far pairs are from the surface on either side, in diagonals, without noise.
 const APART: f64 = 0.004;
+
+/// The same of holes, at the least, in their radii, and in noise.
+const LEAST_APART: f64 = 0.0015;
+const NARROW: f64 = 0.15;
+const NOISE: f64 = 2.2;
 
 /// The least part of the pairs of a region, and of a hole that goes nearly all around.
 const SHARES: [f64; 2] = [0.004, 0.012];
@@ -104,12 +109,12 @@ fn queries(
 ) -> Result<Queries, FitError> {
     let half = 0.5 * mesh.bounds().size() / samples.size;
     let rest = unexplained(samples, &regions.regions);
-    let mut strips: Vec<Strip<'_>> =
-        regions.regions.iter().map(|region| Strip { samples: &region.points, share: share(region) }).collect();
+    let mut strips: Vec<Strip<'_>> = (regions.regions.iter())
+        .map(|region| Strip { samples: &region.points, share: share(region), apart: apart(region, samples) })
+        .collect();
     let left: f64 = rest.iter().map(|i| samples.weights[*i as usize]).sum();
-    strips.push(Strip { samples: &rest, share: left });
-    let apart = APART.max(2.2 * samples.noise);
-    Ok(Queries::new([-half, half], [&samples.points, &samples.normals], &strips, apart, seed, |points| {
+    strips.push(Strip { samples: &rest, share: left, apart: APART.max(NOISE * samples.noise) });
+    Ok(Queries::new([-half, half], [&samples.points, &samples.normals], &strips, seed, |points| {
         let word = |points: &[DVec3]| {
             run.check()?;
             let is_inside = |p: &DVec3| winding.winding_number(samples.centre + samples.size * *p) > 0.5;
@@ -117,6 +122,15 @@ fn queries(
         };
         Ok(Bits::of_words(points.par_chunks(WORD).map(word).collect::<Result<_, Cancelled>>()?))
     })?)
+}
+
+/// How far pairs are from a region: of narrow holes nearer, so that a countersink differs from its bore.
+fn apart(region: &Region, samples: &Samples) -> f64 {
+    let (Form::Cylinder { radius, .. } | Form::Cone { radius, .. }) = region.form else {
+        return APART.max(NOISE * samples.noise);
+    };
+    let least = if samples.kind == Kind::Cad { LEAST_APART } else { APART };
+    (NARROW * radius).clamp(least, APART).max(NOISE * samples.noise)
 }
 
 /// The samples that are of no region.

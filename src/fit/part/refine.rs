@@ -24,6 +24,9 @@ const STEPS: usize = 4;
 /// Where weights fall off in the first round, and at last without noise.
 const WIDTHS: [f64; 2] = [0.012, 0.0015];
 
+/// Where weights fall off of leaves of regions in the first round.
+const NARROW: f64 = 0.004;
+
 /// Normals that agree, as a cosine.
 const AGREE: f64 = 0.5;
 
@@ -49,7 +52,8 @@ pub(super) fn refined(leaves: &[(bool, Leaf)], samples: &Samples, run: &Run) -> 
     let mut leaves = leaves.to_vec();
     for round in 0..ROUNDS {
         run.check()?;
-        let width = (WIDTHS[0] * 0.5_f64.powi(round)).max(WIDTHS[1]).max(1.5 * samples.noise);
+        let least = WIDTHS[1].max(1.5 * samples.noise);
+        let width = (WIDTHS[0] * 0.5_f64.powi(round)).max(least);
         let mut own: Vec<Vec<usize>> = vec![Vec::new(); leaves.len()];
         for (i, p) in samples.points.iter().enumerate() {
             if let (Some(leaf), value) = owner(&leaves, *p)
@@ -64,6 +68,8 @@ pub(super) fn refined(leaves: &[(bool, Leaf)], samples: &Samples, run: &Run) -> 
             let agreeing = own.into_iter().filter(agrees);
             let agreeing: Vec<_> = agreeing.map(|i| (samples.points[i], samples.weights[i])).collect();
             if agreeing.len() >= 2 * leaf.freedom() {
+                // What was found by its own region is nearly there, and would be drawn off by what is beside it.
+                let width = if leaf.is_free() { width } else { width.min(NARROW.max(least)) };
                 *leaf = fitted(leaf, &agreeing, width);
             }
         }

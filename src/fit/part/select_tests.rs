@@ -34,9 +34,8 @@ fn asked(truth: &[(bool, Leaf)], half: DVec3) -> Queries {
         }
         samples.push(own);
     }
-    let strips: Vec<Strip<'_>> = samples.iter().map(|samples| Strip { samples, share: 0.2 }).collect();
-    Queries::new([-half, half], [&points, &normals], &strips, 0.004, 7, |points| Ok(Bits::of(points, is_inside)))
-        .unwrap()
+    let strips: Vec<Strip<'_>> = samples.iter().map(|samples| Strip { samples, share: 0.2, apart: 0.004 }).collect();
+    Queries::new([-half, half], [&points, &normals], &strips, 7, |points| Ok(Bits::of(points, is_inside))).unwrap()
 }
 
 fn selected(queries: &Queries, leaves: Vec<(Leaf, [bool; 2], Option<u32>)>) -> (Vec<String>, Model) {
