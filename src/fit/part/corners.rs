@@ -28,6 +28,7 @@ pub(super) struct Corner {
 }
 
 /// The triangles of a mesh.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Facets {
     points: Vec<DVec3>,
     triangles: Vec<[u32; 3]>,

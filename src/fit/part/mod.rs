@@ -3,6 +3,7 @@
 mod adjust;
 mod axes;
 mod balls;
+mod bases;
 mod bits;
 mod boxes;
 mod candidates;
@@ -21,6 +22,7 @@ mod offsets;
 mod outline;
 mod patches;
 mod pool;
+mod profiles;
 mod queries;
 mod recover;
 mod refine;
@@ -29,6 +31,7 @@ mod regions;
 mod regions_tests;
 mod result;
 mod samples;
+mod sections;
 mod seeds;
 mod select;
 #[cfg(test)]
@@ -37,6 +40,7 @@ mod settings;
 mod settle;
 mod snap;
 mod sobol;
+mod straighten;
 mod superellipsoids;
 
 pub use result::{PartFit, PartLeaf, Topology, Unexplained};
@@ -58,7 +62,8 @@ use crate::geom::Mesh;
 ///
 /// The result is a [`PartFit`]: a solid whose leaves have names, how much of the volume it has in common with the mesh,
 /// how far its surface is from the mesh's, genus and shells beside those of the mesh, and the places that are not
-/// explained. Leaves are boxes, half-spaces (cut only), cylinders, cones, spheres and tori. What is of other shapes comes
+/// explained. Leaves are boxes, half-spaces (cut only), cylinders, cones, spheres, tori, superellipsoids, and what is
+/// extruded: polygons, rounded rectangles, regular prisms and supershapes. What is of other shapes comes
 /// out as several of these, or is told of by [`unexplained`](PartFit::unexplained).
 ///
 /// Samples of the surface are grouped to regions of planes, cylinders, cones, spheres and tori; leaves in question are

@@ -21,7 +21,7 @@ use super::regions::{Form, Region};
 use super::samples::{Kind, Samples};
 use super::sections::Ring;
 use super::settings::PartKinds;
-use crate::{Cuboid, Gielis, Prism, Rectangle, Superpolygon};
+use crate::{Cancelled, Cuboid, Gielis, Prism, Rectangle, Run, Superpolygon};
 
 /// Directions at most, and slabs of each.
 const DIRECTIONS: usize = 5;
@@ -52,24 +52,26 @@ struct Prismatic {
 /// Puts the profiles that sections show among the candidates.
 pub(super) fn propose(
     pool: &mut Pool,
-    facets: &Facets,
     samples: &Samples,
     regions: &[Region],
     frames: &[DMat3],
     queries: &Queries,
     kinds: PartKinds,
-) {
+    run: &Run,
+) -> Result<(), Cancelled> {
     let grain = match samples.kind {
         Kind::Cad => Grain { tolerance: 0.0018, short: 0.0 },
         _ => Grain { tolerance: 0.003, short: 0.018 },
     };
     for (frame, planes) in directions(samples, regions, frames) {
-        for prismatic in prismatics(facets, &frame, &planes) {
+        run.check()?;
+        for prismatic in prismatics(&samples.facets, &frame, &planes) {
             for base in bases(&prismatic.ring.points, grain) {
                 push(pool, &frame, &base, &prismatic, &planes, queries, kinds);
             }
         }
     }
+    Ok(())
 }
 
 /// Directions that most of the planes face, each with the heights that slabs end at.

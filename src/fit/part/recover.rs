@@ -22,7 +22,7 @@ use super::samples::{Kind, Samples};
 use super::select::Selector;
 use super::settings::PartSettings;
 use super::snap::snapped;
-use super::superellipsoids;
+use super::{profiles, superellipsoids};
 use crate::field::COORDINATE_LIMIT;
 use crate::geom::Mesh;
 use crate::{Cancelled, Run};
@@ -166,6 +166,9 @@ fn chosen(
     propose(&mut pool, samples, &regions.regions, [low, high], queries, kinds);
     if kinds.superellipsoids {
         superellipsoids::propose(&mut pool, samples, regions, queries, settings.seed, run)?;
+    }
+    if kinds.profiles || kinds.prisms || kinds.supershapes {
+        profiles::propose(&mut pool, samples, &regions.regions, &regions.frames, queries, kinds, run)?;
     }
     run.check()?;
     let mut grids: Vec<Grid> = Vec::new();

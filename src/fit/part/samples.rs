@@ -57,6 +57,8 @@ pub(super) struct Samples {
     pub(super) weights: Vec<f64>,
     /// Vertices of a mesh where it is curved, with smooth normals: where facets are chords, these are on the surface.
     pub(super) corners: Vec<Corner>,
+    /// The mesh; none of a cloud.
+    pub(super) facets: Facets,
     /// The centre of the input's box, in length units.
     pub(super) centre: DVec3,
     /// The diagonal of the input's box, in length units.
@@ -80,6 +82,7 @@ impl Samples {
             normals: Vec::new(),
             weights: Vec::new(),
             corners: Vec::new(),
+            facets: Facets::default(),
             centre,
             size,
             kind,
@@ -90,6 +93,7 @@ impl Samples {
         let mut kept = random.chosen(corners.len(), CORNERS);
         kept.sort_unstable();
         samples.corners = kept.into_iter().map(|i| corners[i]).collect();
+        samples.facets = facets;
         samples
     }
 
@@ -150,7 +154,17 @@ impl Samples {
         let normals: Vec<DVec3> = kept.iter().map(|i| normals[*i].normalize_or(DVec3::Z)).collect();
         let weights = vec![1.0 / points.len().max(1) as f64; points.len()];
         let noise = noise(&points, &normals, &mut random);
-        Samples { points, normals, weights, corners: Vec::new(), centre, size, kind: Kind::Scan, noise }
+        Samples {
+            points,
+            normals,
+            weights,
+            corners: Vec::new(),
+            facets: Facets::default(),
+            centre,
+            size,
+            kind: Kind::Scan,
+            noise,
+        }
     }
 
     /// How many there are.

@@ -73,8 +73,7 @@ mod tests {
     #[test]
     fn a_tilted_box_has_one_ring() {
         let corner = |i: usize| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64 * 0.7, (i >> 2) as f64 * 0.2);
-        let faces: [[u32; 4]; 6] =
-            [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let faces: [[u32; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
         let triangles: Vec<[u32; 3]> = faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
         let frame = DMat3::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), 0.7);
         let facets = Facets::of((0..8).map(|i| frame * corner(i)).collect(), &triangles);

@@ -44,6 +44,12 @@ pub struct PartKinds {
     pub tori: bool,
     /// Superellipsoids, for what is round and nothing of the above.
     pub superellipsoids: bool,
+    /// Extruded polygons of up to 32 corners, and rectangles with rounded corners.
+    pub profiles: bool,
+    /// Regular prisms of 3 to 8 sides.
+    pub prisms: bool,
+    /// Extruded supershapes: stars, flowers, cams.
+    pub supershapes: bool,
 }
 
 impl Default for PartKinds {
@@ -56,6 +62,9 @@ impl Default for PartKinds {
             spheres: true,
             tori: true,
             superellipsoids: true,
+            profiles: true,
+            prisms: true,
+            supershapes: true,
         }
     }
 }
