@@ -39,6 +39,15 @@ pub enum FitError {
         /// Their share, 0 to 1.
         inliers: f64,
     },
+    /// The mesh encloses nothing.
+    #[error(
+        "no place is inside of the {triangles} triangles, by their winding number: they are of an open surface, or face \
+         inwards; close them, or turn them round"
+    )]
+    Hollow {
+        /// How many there are.
+        triangles: usize,
+    },
     /// The cloud is too small, too large or too far away for lengths of solids.
     #[error("the cloud is {value} {property}; allowed: {allowed}; scale or move it first")]
     Extent {

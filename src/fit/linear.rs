@@ -68,7 +68,7 @@ impl Principal {
 }
 
 /// Eigenvalues from the least up and right-handed eigenvectors of a symmetric matrix, by Jacobi's rotations.
-fn eigen(mut m: [[f64; 3]; 3]) -> ([f64; 3], DMat3) {
+pub(super) fn eigen(mut m: [[f64; 3]; 3]) -> ([f64; 3], DMat3) {
     let mut v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     for _ in 0..30 {
         let off = m[0][1].abs() + m[0][2].abs() + m[1][2].abs();

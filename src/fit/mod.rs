@@ -13,6 +13,7 @@
 //! | [`supershape`](supershape()) | the supershape, its symmetry numbers found |
 //! | [`deformed`](deformed()) | the superellipsoid, tapered, twisted and bent |
 //! | [`register`](register()) | where a known solid is in a scan |
+//! | [`part`](part()) | the tree of boxes, cylinders and other leaves, added and cut, that a mesh is of |
 //! | [`inspect`](inspect()) | how far a scan is from a solid, by point and by leaf |
 //!
 //! The first three take a [`PointCloud`](crate::PointCloud) and give a [`Fit`]: the solid with
@@ -116,6 +117,7 @@ mod kernel_tests;
 mod linear;
 mod local;
 mod mixture;
+mod part;
 mod plane;
 mod pose;
 mod random;
@@ -139,6 +141,7 @@ pub use deformed::{DeformedSuperellipsoid, deformed, deformed_with};
 pub use deviations::Deviation;
 pub use error::FitError;
 pub use inspect::{Deviations, LeafDeviation, inspect, inspect_with};
+pub use part::{PartFit, PartKinds, PartLeaf, PartSettings, Topology, Unexplained, part, part_with};
 pub use register::{RegisterSettings, Registration, register, register_with};
 pub use result::{Fit, SearchReport, Shape};
 pub use settings::{FitSettings, Start};

@@ -19,6 +19,11 @@ impl Random {
         (self.bits() % count.max(1) as u64) as usize
     }
 
+    /// From 0 to below 1, in steps of 2⁻⁵³.
+    pub(super) fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
     /// `count` of the numbers below `of`, in random order; all if there are not more.
     pub(super) fn chosen(&mut self, of: usize, count: usize) -> Vec<usize> {
         let mut all: Vec<usize> = (0..of).collect();

@@ -4,6 +4,7 @@ mod bent;
 mod clouds;
 mod deformed;
 mod inspection;
+mod parts;
 mod registration;
 mod shapes;
 mod superellipsoids;

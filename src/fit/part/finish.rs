@@ -1,0 +1,178 @@
+//! From chosen leaves to the result: names, measures, what is left over.
+
+use std::collections::BTreeMap;
+
+use glam::{DVec3, IVec3};
+use rayon::prelude::*;
+use rvachev_field::MeshLeaf;
+
+use super::super::deviations::Deviation;
+use super::super::error::FitError;
+use super::leaf::Leaf;
+use super::queries::MARGIN;
+use super::refine::owner;
+use super::result::{PartFit, PartLeaf, Topology, Unexplained};
+use super::samples::Samples;
+use super::sobol::Sobol;
+use crate::error::MeshingError;
+use crate::geom::Mesh;
+use crate::{Bounds, CellSize, Features, MeshSettings, Run, Solid};
+
+/// Points that the volumes in common are estimated from.
+const POINTS: usize = 1 << 14;
+
+/// Points that one thread asks for at a time.
+const CHUNK: usize = 256;
+
+/// Wrong points are of one place if their cells touch, so many of them along the diagonal.
+const PLACES: f64 = 24.0;
+
+/// Places with less wrong volume are not told of, as a share of the part's.
+const TOLD: f64 = 1e-3;
+
+/// Cells along the longest side of the mesh that tells genus and shells, and of one that tells them better.
+const CELLS: [u32; 2] = [128, 384];
+
+/// The result for leaves in diagonals about the centre.
+pub(super) fn finish(
+    leaves: &[(bool, Leaf)],
+    mesh: &Mesh,
+    winding: &MeshLeaf,
+    samples: &Samples,
+    run: &Run,
+) -> Result<PartFit, FitError> {
+    let [to_compare, to_mesh, to_mesh_again] = run.stages([0.3, 0.3, 0.4]);
+    let Samples { centre, size, .. } = *samples;
+    let mut shares = vec![0.0; leaves.len()];
+    let mut distances = Vec::with_capacity(samples.points.len());
+    for (p, weight) in samples.points.iter().zip(&samples.weights) {
+        let (owner, distance) = owner(leaves, *p);
+        shares[owner.unwrap_or(0)] += weight;
+        distances.push(size * distance);
+    }
+    let (iou, unexplained) = compared(leaves, mesh, winding, samples, &to_compare)?;
+    let leaves = named(leaves, &shares, centre, size);
+    let solid = tree(&leaves);
+    solid.bounds()?;
+    let report = mesh.check_with(&Run { progress: None, ..run.clone() })?;
+    let topology_of_input = Topology { genus: report.genus, shells: report.shells };
+    let mut topology = meshed(&solid, CELLS[0], &to_mesh)?;
+    if topology != topology_of_input {
+        // It may be that a wall or a hole fell between the cells.
+        topology = meshed(&solid, CELLS[1], &to_mesh_again)?;
+    }
+    let deviation = Deviation::of(distances.into_iter());
+    Ok(PartFit { leaves, solid, iou, deviation, topology, topology_of_input, unexplained })
+}
+
+/// Genus and shells of a solid's surface.
+fn meshed(solid: &Solid, cells: u32, run: &Run) -> Result<Topology, FitError> {
+    let cell = CellSize::LongestSide(cells);
+    let settings = MeshSettings { cell, features: Features::Smooth, ..MeshSettings::default() };
+    match solid.mesh_with(&settings, run) {
+        Ok(made) => of_closed(&made, run),
+        Err(MeshingError::Cancelled(cancelled)) => Err(cancelled.into()),
+        // What cannot be meshed has none that is known.
+        Err(_) => Ok(Topology::default()),
+    }
+}
+
+/// Of a mesh that is closed and manifold, as all meshes of solids are.
+fn of_closed(mesh: &Mesh, run: &Run) -> Result<Topology, FitError> {
+    let shells = mesh.components_with(&Run { progress: None, ..run.clone() })?.len();
+    // Three edges a triangle, each of two of them; every vertex is used.
+    let euler = mesh.positions().len() as i64 - mesh.triangles().len() as i64 / 2;
+    Ok(Topology { genus: Some(shells as i64 - euler / 2), shells })
+}
+
+/// The leaves in length units, called by their kinds.
+fn named(leaves: &[(bool, Leaf)], shares: &[f64], centre: DVec3, size: f64) -> Vec<PartLeaf> {
+    let mut counts: BTreeMap<(&'static str, bool), usize> = BTreeMap::new();
+    let mut named = Vec::new();
+    for ((adds, leaf), surface) in leaves.iter().zip(shares) {
+        let kind = leaf.kind();
+        let count = counts.entry((kind, *adds)).or_insert(0);
+        *count += 1;
+        let name = if *adds { format!("{kind} {count}") } else { format!("cut {kind} {count}") };
+        named.push(PartLeaf { adds: *adds, leaf: leaf.outward(centre, size), name, surface: *surface });
+    }
+    named
+}
+
+/// All leaves as one solid.
+fn tree(leaves: &[PartLeaf]) -> Solid {
+    let mut solids = leaves.iter().map(|leaf| (leaf.adds, leaf.leaf.solid().named(&leaf.name)));
+    let first = solids.next().map_or_else(|| Solid::sphere(1.0), |(_, solid)| solid);
+    solids.fold(first, |solid, (adds, leaf)| if adds { solid | leaf } else { solid - leaf })
+}
+
+/// The volume in common over that of either, and the places where they differ.
+fn compared(
+    leaves: &[(bool, Leaf)],
+    mesh: &Mesh,
+    winding: &MeshLeaf,
+    samples: &Samples,
+    run: &Run,
+) -> Result<(f64, Vec<Unexplained>), FitError> {
+    let Samples { centre, size, .. } = *samples;
+    let bounds = mesh.bounds();
+    let margin = MARGIN * bounds.size();
+    let (low, span) = (bounds.min - margin, bounds.size() + 2.0 * margin);
+    let points: Vec<DVec3> = Sobol::new().take(POINTS).map(|p| low + span * p).collect();
+    let sides = |chunk: &[DVec3]| {
+        run.check()?;
+        let side = |p: &DVec3| {
+            let local = (*p - centre) / size;
+            let found = leaves.iter().fold(
+                false,
+                |inside, (adds, leaf)| {
+                    if inside != *adds && leaf.contains(local) { *adds } else { inside }
+                },
+            );
+            [winding.winding_number(*p) > 0.5, found]
+        };
+        Ok(chunk.iter().map(side).collect::<Vec<_>>())
+    };
+    let sides: Vec<Vec<[bool; 2]>> = points.par_chunks(CHUNK).map(sides).collect::<Result<_, FitError>>()?;
+    let (mut both, mut either, mut filled) = (0_usize, 0_usize, 0_usize);
+    // Wrong points by cell, those that are missing apart from those that are too many.
+    let mut cells: BTreeMap<(bool, [i32; 3]), Vec<DVec3>> = BTreeMap::new();
+    for (p, [there, found]) in points.iter().zip(sides.into_iter().flatten()) {
+        both += usize::from(there && found);
+        either += usize::from(there || found);
+        filled += usize::from(there);
+        if there != found {
+            let cell = ((*p - centre) * (PLACES / size)).floor().as_ivec3();
+            cells.entry((there, cell.to_array())).or_default().push(*p);
+        }
+    }
+    let iou = both as f64 / either.max(1) as f64;
+    Ok((iou, places(cells, filled)))
+}
+
+/// Wrong points of cells that touch.
+fn places(mut cells: BTreeMap<(bool, [i32; 3]), Vec<DVec3>>, filled: usize) -> Vec<Unexplained> {
+    let mut places = Vec::new();
+    while let Some(((missing, first), mut points)) = cells.pop_first() {
+        let mut open = vec![IVec3::from_array(first)];
+        while let Some(cell) = open.pop() {
+            for i in 0..27 {
+                let next = cell + IVec3::new(i % 3, i / 3 % 3, i / 9) - 1;
+                if let Some(more) = cells.remove(&(missing, next.to_array())) {
+                    points.extend(more);
+                    open.push(next);
+                }
+            }
+        }
+        let share = points.len() as f64 / filled.max(1) as f64;
+        if share > TOLD {
+            let bounds = Bounds::new(
+                points.iter().fold(DVec3::INFINITY, |low, p| low.min(*p)),
+                points.iter().fold(DVec3::NEG_INFINITY, |high, p| high.max(*p)),
+            );
+            places.push(Unexplained { bounds, share, missing });
+        }
+    }
+    places.sort_by(|a, b| b.share.total_cmp(&a.share));
+    places
+}

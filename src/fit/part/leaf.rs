@@ -1,0 +1,322 @@
+//! The leaves that a part is made of: a shape in a pose.
+//!
+//! Shapes are the crate's own leaves, about the origin of the pose and along its z axis, so what a candidate is
+//! tested by is what its solid is made of.
+
+use glam::{DMat3, DQuat, DVec3};
+
+use super::outline::Outline;
+use crate::field::{Dual, Field, Real};
+use crate::{Cone, Cuboid, Cylinder, Prism, Profile, Rectangle, Solid, Sphere, Superellipsoid, Superpolygon, Torus};
+
+/// A shape about the origin, along z.
+#[derive(Clone, Debug)]
+pub(in crate::fit) enum Shape {
+    /// What is below z = 0.
+    HalfSpace,
+    Box(Cuboid),
+    Cylinder(Cylinder),
+    Cone(Cone),
+    Sphere(Sphere),
+    Torus(Torus),
+    /// Regular.
+    Prism(Prism),
+    /// Extruded by half its height up and down, as are the next two.
+    RoundedRectangle {
+        base: Rectangle,
+        height: f64,
+    },
+    Profile {
+        outline: Outline,
+        height: f64,
+    },
+    Supershape {
+        base: Superpolygon,
+        height: f64,
+    },
+    Superellipsoid(Superellipsoid),
+}
+
+/// What leaves are called.
+pub(super) const KINDS: usize = 11;
+
+/// A shape where it is.
+#[derive(Clone, Debug)]
+pub(in crate::fit) struct Leaf {
+    pub(in crate::fit) shape: Shape,
+    /// From the shape's axes to those of the part.
+    pub(in crate::fit) rotation: DMat3,
+    pub(in crate::fit) centre: DVec3,
+}
+
+/// A rotation whose z axis is the given unit vector.
+pub(in crate::fit) fn along(axis: DVec3) -> DMat3 {
+    // The axes themselves, where they are meant, so that no rotation is left over.
+    if axis.x.abs() + axis.y.abs() < 1e-12 && axis.z > 0.0 {
+        return DMat3::IDENTITY;
+    }
+    let least = axis.abs().min_position();
+    let x = DVec3::AXES[least].cross(axis).normalize();
+    DMat3::from_cols(x, axis.cross(x), axis)
+}
+
+impl Shape {
+    /// The same, larger by a factor.
+    fn scaled(&self, by: f64) -> Shape {
+        match self {
+            Shape::HalfSpace => Shape::HalfSpace,
+            Shape::Box(s) => Shape::Box(Cuboid { size: by * s.size }),
+            Shape::Cylinder(s) => Shape::Cylinder(Cylinder { radius: by * s.radius, height: by * s.height }),
+            Shape::Cone(s) => Shape::Cone(Cone {
+                bottom_radius: by * s.bottom_radius,
+                top_radius: by * s.top_radius,
+                height: by * s.height,
+            }),
+            Shape::Sphere(s) => Shape::Sphere(Sphere { radius: by * s.radius }),
+            Shape::Torus(s) => Shape::Torus(Torus { radius: by * s.radius, tube: by * s.tube }),
+            Shape::Prism(s) => Shape::Prism(Prism::new(s.sides(), by * s.radius(), by * s.height())),
+            Shape::RoundedRectangle { base, height } => Shape::RoundedRectangle {
+                base: Rectangle { size: by * base.size, radius: by * base.radius },
+                height: by * height,
+            },
+            Shape::Profile { outline, height } => Shape::Profile { outline: outline.scaled(by), height: by * height },
+            Shape::Supershape { base, height } => {
+                Shape::Supershape { base: Superpolygon::new(base.curve(), by * base.radius()), height: by * height }
+            }
+            Shape::Superellipsoid(s) => {
+                let [e1, e2] = s.exponents();
+                Shape::Superellipsoid(Superellipsoid::new(by * s.semi_axes(), e1, e2))
+            }
+        }
+    }
+
+    /// The crate's value, positive inside, and whether it is a distance near the surface.
+    #[inline]
+    fn value<R: Real>(&self, p: [R; 3]) -> R {
+        let extruded = |side: R, height: f64| {
+            let end = -p[2].abs() + 0.5 * height;
+            side.min(end)
+        };
+        match self {
+            Shape::HalfSpace => -p[2],
+            Shape::Box(s) => s.eval(p),
+            Shape::Cylinder(s) => s.eval(p),
+            Shape::Cone(s) => s.eval(p),
+            Shape::Sphere(s) => s.eval(p),
+            Shape::Torus(s) => s.eval(p),
+            Shape::Prism(s) => s.eval(p),
+            Shape::RoundedRectangle { base, height } => extruded(base.eval(p), *height),
+            Shape::Supershape { base, height } => extruded(base.eval(p), *height),
+            Shape::Superellipsoid(s) => s.eval(p),
+            // Corners are no formula; [`distance`](Shape::distance) asks them.
+            Shape::Profile { height, .. } => extruded(p[0].lift(f64::INFINITY), *height),
+        }
+    }
+
+    /// The signed distance, negative inside; to first order where the value is none.
+    fn distance(&self, p: DVec3) -> f64 {
+        match self {
+            Shape::Superellipsoid(_) | Shape::Supershape { .. } => {
+                let value = self.value(Dual::point(p.to_array()));
+                let slope = DVec3::from_array(value.d).length();
+                -value.v / slope.max(1e-6)
+            }
+            Shape::Profile { outline, height } => outline.distance(p.truncate()).max(p.z.abs() - 0.5 * height),
+            _ => -self.value(p.to_array()),
+        }
+    }
+
+    fn contains(&self, p: DVec3) -> bool {
+        match self {
+            Shape::Profile { outline, height } => 2.0 * p.z.abs() < *height && outline.contains(p.truncate()),
+            _ => self.value(p.to_array()) > 0.0,
+        }
+    }
+
+    fn solid(&self) -> Solid {
+        match self {
+            Shape::HalfSpace => Solid::half_space(DVec3::Z, 0.0),
+            Shape::Box(s) => (*s).into(),
+            Shape::Cylinder(s) => (*s).into(),
+            Shape::Cone(s) => (*s).into(),
+            Shape::Sphere(s) => (*s).into(),
+            Shape::Torus(s) => (*s).into(),
+            Shape::Prism(s) => (*s).into(),
+            Shape::RoundedRectangle { base, height } => Profile::from(*base).extrude(*height),
+            Shape::Profile { outline, height } => Profile::polygon(outline.corners.iter().copied()).extrude(*height),
+            Shape::Supershape { base, height } => Profile::from(base.clone()).extrude(*height),
+            Shape::Superellipsoid(s) => (*s).into(),
+        }
+    }
+}
+
+impl Leaf {
+    /// A half-space: all points p with `normal·p ≤ offset`, for a unit normal.
+    pub(in crate::fit) fn half_space(normal: DVec3, offset: f64) -> Leaf {
+        Leaf { shape: Shape::HalfSpace, rotation: along(normal), centre: offset * normal }
+    }
+
+    /// A box between two corners, along the axes of a frame.
+    pub(in crate::fit) fn cuboid(frame: DMat3, [low, high]: [DVec3; 2]) -> Leaf {
+        Leaf { shape: Shape::Box(Cuboid { size: high - low }), rotation: frame, centre: frame * (0.5 * (low + high)) }
+    }
+
+    /// A cylinder from one height over `origin` to another.
+    pub(in crate::fit) fn cylinder(axis: DVec3, origin: DVec3, radius: f64, [low, high]: [f64; 2]) -> Leaf {
+        Leaf {
+            shape: Shape::Cylinder(Cylinder { radius, height: high - low }),
+            rotation: along(axis),
+            centre: origin + 0.5 * (low + high) * axis,
+        }
+    }
+
+    /// A cone of radius `radius + slope·t` at each height t over `origin`; it ends at the tip.
+    pub(in crate::fit) fn cone(
+        axis: DVec3,
+        origin: DVec3,
+        [radius, slope]: [f64; 2],
+        [low, high]: [f64; 2],
+    ) -> Option<Leaf> {
+        let tip = -radius / slope;
+        let [low, high] = if slope > 0.0 { [low.max(tip), high] } else { [low, high.min(tip)] };
+        let at = |t: f64| (radius + slope * t).max(0.0);
+        let shape = Shape::Cone(Cone { bottom_radius: at(low), top_radius: at(high), height: high - low });
+        let leaf = Leaf { shape, rotation: along(axis), centre: origin + 0.5 * (low + high) * axis };
+        (high - low > 1e-9).then_some(leaf)
+    }
+
+    pub(in crate::fit) fn sphere(centre: DVec3, radius: f64) -> Leaf {
+        Leaf { shape: Shape::Sphere(Sphere { radius }), rotation: DMat3::IDENTITY, centre }
+    }
+
+    pub(in crate::fit) fn torus(axis: DVec3, centre: DVec3, radius: f64, tube: f64) -> Leaf {
+        Leaf { shape: Shape::Torus(Torus { radius, tube }), rotation: along(axis), centre }
+    }
+
+    /// A point in the shape's own axes.
+    #[inline]
+    fn local(&self, p: DVec3) -> DVec3 {
+        let d = p - self.centre;
+        DVec3::new(self.rotation.x_axis.dot(d), self.rotation.y_axis.dot(d), self.rotation.z_axis.dot(d))
+    }
+
+    pub(in crate::fit) fn contains(&self, p: DVec3) -> bool {
+        self.shape.contains(self.local(p))
+    }
+
+    /// The signed distance, negative inside; to first order for superellipsoids and supershapes.
+    pub(in crate::fit) fn distance(&self, p: DVec3) -> f64 {
+        self.shape.distance(self.local(p))
+    }
+
+    /// The direction in which the distance grows fastest, about a point near the surface.
+    pub(in crate::fit) fn gradient(&self, p: DVec3) -> DVec3 {
+        const STEP: f64 = 1e-5;
+        let local = self.local(p);
+        let along = |axis: DVec3| self.shape.distance(local + STEP * axis) - self.shape.distance(local - STEP * axis);
+        self.rotation * DVec3::from_array(DVec3::AXES.map(along)).normalize_or_zero()
+    }
+
+    /// How many numbers an engineer must give.
+    pub(in crate::fit) fn parameters(&self) -> usize {
+        match &self.shape {
+            Shape::HalfSpace => 3,
+            Shape::Sphere(_) => 4,
+            Shape::Cylinder(_) | Shape::Torus(_) => 7,
+            Shape::Cone(_) => 8,
+            Shape::Box(_) | Shape::Prism(_) => 9,
+            Shape::RoundedRectangle { .. } => 10,
+            Shape::Superellipsoid(_) => 11,
+            Shape::Supershape { .. } => 12,
+            Shape::Profile { outline, .. } => 7 + 2 * outline.corners.len(),
+        }
+    }
+
+    /// What it is called.
+    pub(in crate::fit) fn kind(&self) -> &'static str {
+        match &self.shape {
+            Shape::HalfSpace => "half-space",
+            Shape::Box(_) => "box",
+            Shape::Cylinder(_) => "cylinder",
+            Shape::Cone(_) => "cone",
+            Shape::Sphere(_) => "sphere",
+            Shape::Torus(_) => "torus",
+            Shape::Prism(_) => "prism",
+            Shape::RoundedRectangle { .. } => "rounded rectangle",
+            Shape::Profile { .. } => "profile",
+            Shape::Supershape { .. } => "supershape",
+            Shape::Superellipsoid(_) => "superellipsoid",
+        }
+    }
+
+    /// The same in length units of the part, whose box has the centre and the diagonal.
+    pub(in crate::fit) fn outward(&self, centre: DVec3, size: f64) -> Leaf {
+        Leaf { shape: self.shape.scaled(size), rotation: self.rotation, centre: centre + size * self.centre }
+    }
+
+    /// The solid, with the numbers that the leaf has.
+    pub(in crate::fit) fn solid(&self) -> Solid {
+        let solid = self.shape.solid();
+        let turned = if self.rotation == DMat3::IDENTITY {
+            solid
+        } else {
+            solid.rotate(DQuat::from_mat3(&self.rotation).normalize())
+        };
+        if self.centre == DVec3::ZERO { turned } else { turned.translate(self.centre) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Gielis;
+    use glam::DVec2;
+
+    fn leaves() -> Vec<Leaf> {
+        let axis = DVec3::new(1.0, 2.0, -0.5).normalize();
+        let origin = DVec3::new(0.1, -0.05, 0.2);
+        let corners = [[-0.2, -0.1], [0.2, -0.1], [0.1, 0.2]].map(DVec2::from_array).to_vec();
+        let posed = |shape| Leaf { shape, rotation: along(axis), centre: origin };
+        vec![
+            Leaf::half_space(axis, 0.1),
+            Leaf::cuboid(along(axis), [DVec3::new(-0.1, -0.2, -0.3), DVec3::new(0.3, 0.1, 0.2)]),
+            Leaf::cylinder(axis, origin, 0.2, [-0.3, 0.1]),
+            Leaf::cone(axis, origin, [0.2, -0.5], [-0.2, 0.9]).unwrap(),
+            Leaf::sphere(origin, 0.3),
+            Leaf::torus(axis, origin, 0.3, 0.1),
+            posed(Shape::Prism(Prism::new(5, 0.3, 0.2))),
+            posed(Shape::RoundedRectangle { base: Rectangle { size: DVec2::new(0.4, 0.3), radius: 0.1 }, height: 0.2 }),
+            posed(Shape::Profile { outline: Outline { corners }, height: 0.3 }),
+            posed(Shape::Supershape { base: Superpolygon::new(Gielis::new(5.0, 4.0, 6.0, 6.0), 0.2), height: 0.4 }),
+            posed(Shape::Superellipsoid(Superellipsoid::new([0.3, 0.2, 0.25], 0.5, 1.2))),
+        ]
+    }
+
+    #[test]
+    fn a_leaf_is_where_its_solid_is() {
+        let leaves = leaves();
+        assert_eq!(leaves.len(), KINDS);
+        let centre = DVec3::new(7.0, -2.0, 1.0);
+        for leaf in &leaves {
+            let solid = leaf.outward(centre, 40.0).solid();
+            for i in 0..400_u32 {
+                let p = DVec3::from_array([1, 7, 49].map(|k| f64::from(i * k % 343) / 343.0 - 0.5));
+                let there = solid.contains(centre + 40.0 * p).unwrap();
+                assert_eq!(leaf.contains(p), there, "{} at {p}", leaf.kind());
+                assert_eq!(leaf.distance(p) < 0.0, there, "{} at {p}", leaf.kind());
+            }
+        }
+    }
+
+    #[test]
+    fn gradients_point_out() {
+        for leaf in leaves() {
+            let mut p = leaf.centre + DVec3::new(0.3, 0.2, 0.4);
+            for _ in 0..8 {
+                p -= leaf.distance(p) * leaf.gradient(p);
+            }
+            assert!(leaf.distance(p).abs() < 1e-3, "{}: {}", leaf.kind(), leaf.distance(p));
+            assert!(leaf.distance(p + 0.01 * leaf.gradient(p)) > 0.0, "{}", leaf.kind());
+        }
+    }
+}

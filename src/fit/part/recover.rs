@@ -1,0 +1,212 @@
+//! From a mesh to a tree of leaves.
+
+use glam::DVec3;
+use rayon::prelude::*;
+use rvachev_field::MeshLeaf;
+
+use super::super::check::check_depth;
+use super::super::error::FitError;
+use super::bits::{Bits, WORD};
+use super::boxes::Grid;
+use super::candidates::propose;
+use super::finish::finish;
+use super::leaf::Leaf;
+use super::model::{Model, Step};
+use super::offsets::grid;
+use super::pool::Pool;
+use super::queries::{Queries, Strip};
+use super::refine::refined;
+use super::regions::{Form, Region, Regions, detect};
+use super::result::PartFit;
+use super::samples::{Kind, Samples};
+use super::select::Selector;
+use super::settings::PartSettings;
+use super::snap::snapped;
+use super::{profiles, superellipsoids};
+use crate::field::COORDINATE_LIMIT;
+use crate::geom::Mesh;
+use crate::{Cancelled, Run};
+
+/// How far pairs are from the surface on either side, in diagonals, without noise.
+const APART: f64 = 0.004;
+
+/// The same of holes, at the least, in their radii, and in noise.
+const LEAST_APART: f64 = 0.0015;
+const NARROW: f64 = 0.15;
+const NOISE: f64 = 2.2;
+
+/// The least part of the pairs of a region, and of a hole that goes nearly all around.
+const SHARES: [f64; 2] = [0.004, 0.012];
+
+/// A hole goes nearly all around from this arc on, in degrees.
+const AROUND: f64 = 300.0;
+
+/// J may rise by so much where leaves are moved onto the surface.
+const ALLOWED_RISE: f64 = 1e-4;
+
+/// Vertices that lengths are judged by, at most.
+const VERTICES: usize = 8000;
+
+/// Recovers a part.
+pub(super) fn recover(mesh: &Mesh, settings: &PartSettings, run: &Run) -> Result<PartFit, FitError> {
+    let [to_index, to_detect, to_label, to_select, to_finish] = run.stages([0.05, 0.3, 0.1, 0.35, 0.2]);
+    check(mesh)?;
+    let winding = MeshLeaf::new(mesh.positions(), mesh.triangles(), None, &to_index)?;
+    let mut samples = Samples::of_mesh(mesh, settings.seed);
+    samples.noise = samples.noise.max(settings.noise / samples.size);
+    let regions = detect(&samples, settings.seed, &to_detect)?;
+    let queries = queries(mesh, &winding, &samples, &regions, settings.seed, &to_label)?;
+    if queries.inside.is_none() {
+        return Err(FitError::Hollow { triangles: mesh.triangles().len() });
+    }
+    let leaves = chosen(&samples, &regions, &queries, settings, &to_select)?;
+    let leaves = snapped(&leaves, &vertices(mesh, &samples), run)?;
+    if leaves.is_empty() {
+        return Err(FitError::NoSurface { inliers: 0.0 });
+    }
+    let fit = finish(&leaves, mesh, &winding, &samples, &to_finish)?;
+    run.report(1.0);
+    Ok(fit)
+}
+
+/// The vertices that triangles use, evenly thinned, in diagonals.
+fn vertices(mesh: &Mesh, samples: &Samples) -> Vec<DVec3> {
+    let mut used = vec![false; mesh.positions().len()];
+    mesh.triangles().iter().flatten().for_each(|v| used[*v as usize] = true);
+    let all = mesh.positions().iter().zip(used).filter(|(_, used)| *used).map(|(p, _)| p.as_dvec3());
+    let all: Vec<DVec3> = all.map(|p| (p - samples.centre) / samples.size).collect();
+    let step = all.len().div_ceil(VERTICES).max(1);
+    all.into_iter().step_by(step).collect()
+}
+
+/// That the mesh has a size that solids may have.
+fn check(mesh: &Mesh) -> Result<(), FitError> {
+    let points: Vec<DVec3> = mesh.positions().iter().map(|p| p.as_dvec3()).collect();
+    if mesh.triangles().len() < 4 {
+        return Err(FitError::TooFew { kind: "part", points: points.len(), parameters: 4, needed: 4 });
+    }
+    let farthest = points.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+    if farthest > COORDINATE_LIMIT {
+        let (property, allowed) = ("from the origin", "at most 1000000000000");
+        return Err(FitError::Extent { property, value: farthest, allowed });
+    }
+    let size = mesh.bounds().size().length();
+    if !(1e-6..=1e8).contains(&size) {
+        let (property, allowed) = ("in size", "0.000001 to 100000000");
+        return Err(FitError::Extent { property, value: size, allowed });
+    }
+    check_depth(&points)
+}
+
+/// Points in space and about the surface, with their sides.
+fn queries(
+    mesh: &Mesh,
+    winding: &MeshLeaf,
+    samples: &Samples,
+    regions: &Regions,
+    seed: u64,
+    run: &Run,
+) -> Result<Queries, FitError> {
+    let half = 0.5 * mesh.bounds().size() / samples.size;
+    let rest = unexplained(samples, &regions.regions);
+    let mut strips: Vec<Strip<'_>> = (regions.regions.iter())
+        .map(|region| Strip { samples: &region.points, share: share(region), apart: apart(region, samples) })
+        .collect();
+    let left: f64 = rest.iter().map(|i| samples.weights[*i as usize]).sum();
+    strips.push(Strip { samples: &rest, share: left, apart: APART.max(NOISE * samples.noise) });
+    Ok(Queries::new([-half, half], [&samples.points, &samples.normals], &strips, seed, |points| {
+        let word = |points: &[DVec3]| {
+            run.check()?;
+            let is_inside = |p: &DVec3| winding.winding_number(samples.centre + samples.size * *p) > 0.5;
+            Ok(points.iter().rev().fold(0, |word, p| word << 1 | u64::from(is_inside(p))))
+        };
+        Ok(Bits::of_words(points.par_chunks(WORD).map(word).collect::<Result<_, Cancelled>>()?))
+    })?)
+}
+
+/// How far pairs are from a region: of narrow holes nearer, so that a countersink differs from its bore.
+fn apart(region: &Region, samples: &Samples) -> f64 {
+    let (Form::Cylinder { radius, .. } | Form::Cone { radius, .. }) = region.form else {
+        return APART.max(NOISE * samples.noise);
+    };
+    let least = if samples.kind == Kind::Cad { LEAST_APART } else { APART };
+    (NARROW * radius).clamp(least, APART).max(NOISE * samples.noise)
+}
+
+/// The samples that are of no region.
+fn unexplained(samples: &Samples, regions: &[Region]) -> Vec<u32> {
+    let mut is_left = vec![true; samples.points.len()];
+    for i in regions.iter().flat_map(|region| &region.points) {
+        is_left[*i as usize] = false;
+    }
+    (0..is_left.len() as u32).filter(|i| is_left[*i as usize]).collect()
+}
+
+/// A region's part of the pairs: small holes count, as they are few points but a handle each.
+fn share(region: &Region) -> f64 {
+    let is_hole = match region.form {
+        Form::Cylinder { arc, .. } | Form::Cone { arc, .. } => region.sign < 0.0 && arc > AROUND,
+        _ => false,
+    };
+    region.share.max(if is_hole { SHARES[1] } else { SHARES[0] })
+}
+
+/// The leaves that make the part.
+fn chosen(
+    samples: &Samples,
+    regions: &Regions,
+    queries: &Queries,
+    settings: &PartSettings,
+    run: &Run,
+) -> Result<Vec<(bool, Leaf)>, FitError> {
+    let kinds = settings.kinds;
+    let mut pool = Pool::new(settings.parameter_cost * (1.0 + samples.noise / 0.001));
+    let low = samples.points.iter().fold(DVec3::INFINITY, |low, p| low.min(*p));
+    let high = samples.points.iter().fold(DVec3::NEG_INFINITY, |high, p| high.max(*p));
+    propose(&mut pool, samples, &regions.regions, [low, high], queries, kinds);
+    if kinds.superellipsoids {
+        superellipsoids::propose(&mut pool, samples, regions, queries, settings.seed, run)?;
+    }
+    if kinds.profiles || kinds.prisms || kinds.supershapes {
+        profiles::propose(&mut pool, samples, &regions.regions, &regions.frames, queries, kinds, run)?;
+    }
+    run.check()?;
+    let mut grids: Vec<Grid> = Vec::new();
+    if kinds.boxes {
+        grids = regions.frames.iter().map(|frame| grid(*frame, &regions.regions, &samples.points, queries)).collect();
+    }
+    let mut selector = Selector { pool, queries, grids };
+    let model = selector.select(Vec::new(), run)?;
+    let model = moved(&mut selector, model, samples, run)?;
+    Ok(leaves(&selector.pool, &model.steps))
+}
+
+fn leaves(pool: &Pool, steps: &[Step]) -> Vec<(bool, Leaf)> {
+    steps.iter().map(|step| (step.adds, pool.candidates[step.which as usize].leaf.clone())).collect()
+}
+
+/// The model with its leaves moved onto the surface, where that is not for the worse, and changed if it pays then.
+fn moved(selector: &mut Selector<'_>, model: Model, samples: &Samples, run: &Run) -> Result<Model, FitError> {
+    let fitted = refined(&leaves(&selector.pool, &model.steps), samples, run)?;
+    let steps: Vec<Step> = (model.steps.iter().zip(fitted))
+        .map(|(step, (adds, leaf))| {
+            let may = selector.pool.candidates[step.which as usize].may;
+            Step { adds, which: selector.pool.add(leaf, selector.queries, may, None) }
+        })
+        .collect();
+    let all = selector.model(steps.clone());
+    let mut best = model;
+    if all.cost < best.cost + ALLOWED_RISE {
+        best = all;
+    } else {
+        for (i, step) in steps.iter().enumerate() {
+            let mut one = best.steps.clone();
+            one[i] = *step;
+            let one = selector.model(one);
+            if one.cost < best.cost + ALLOWED_RISE {
+                best = one;
+            }
+        }
+    }
+    Ok(selector.improve(best, run)?)
+}

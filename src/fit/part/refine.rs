@@ -1,0 +1,139 @@
+//! Leaves moved onto the surface, each by the samples that it makes the surface at.
+//!
+//! ```text
+//!     v = max(v, −d)  of what is added,   v = min(v, d)  of what is cut:     one leaf decides at each sample
+//! ```
+//!
+//! So a residual depends on the parameters of one leaf only, and each is fitted alone: robust Levenberg–Marquardt
+//! (Geman and McClure), only samples whose normals agree.
+
+use glam::DVec3;
+
+use super::freedom::MOST;
+use super::leaf::Leaf;
+use super::samples::Samples;
+use crate::fit::linear::solved;
+use crate::{Cancelled, Run};
+
+/// Rounds of finding owners and fitting.
+const ROUNDS: i32 = 4;
+
+/// Steps of a fit.
+const STEPS: usize = 4;
+
+/// Where weights fall off in the first round, and at last without noise.
+const WIDTHS: [f64; 2] = [0.012, 0.0015];
+
+/// Where weights fall off of leaves of regions in the first round.
+const NARROW: f64 = 0.004;
+
+/// Normals that agree, as a cosine.
+const AGREE: f64 = 0.5;
+
+/// A step for derivatives.
+const STEP: f64 = 1e-6;
+
+/// Which leaf decides at a point, and the signed distance there, negative inside; none of no leaves.
+pub(super) fn owner(leaves: &[(bool, Leaf)], p: DVec3) -> (Option<usize>, f64) {
+    let (mut owner, mut value) = (None, f64::INFINITY);
+    for (i, (adds, leaf)) in leaves.iter().enumerate() {
+        let distance = leaf.distance(p);
+        if *adds && distance < value {
+            (owner, value) = (Some(i), distance);
+        } else if !adds && -distance > value {
+            (owner, value) = (Some(i), -distance);
+        }
+    }
+    (owner, value)
+}
+
+/// The leaves, fitted to the samples.
+pub(super) fn refined(leaves: &[(bool, Leaf)], samples: &Samples, run: &Run) -> Result<Vec<(bool, Leaf)>, Cancelled> {
+    let mut leaves = leaves.to_vec();
+    for round in 0..ROUNDS {
+        run.check()?;
+        let least = WIDTHS[1].max(1.5 * samples.noise);
+        let width = (WIDTHS[0] * 0.5_f64.powi(round)).max(least);
+        let mut own: Vec<Vec<usize>> = vec![Vec::new(); leaves.len()];
+        for (i, p) in samples.points.iter().enumerate() {
+            if let (Some(leaf), value) = owner(&leaves, *p)
+                && value.abs() < 3.0 * width
+            {
+                own[leaf].push(i);
+            }
+        }
+        for ((adds, leaf), own) in leaves.iter_mut().zip(own) {
+            let sign = if *adds { 1.0 } else { -1.0 };
+            let agrees = |i: &usize| sign * leaf.gradient(samples.points[*i]).dot(samples.normals[*i]) > AGREE;
+            let agreeing = own.into_iter().filter(agrees);
+            let agreeing: Vec<_> = agreeing.map(|i| (samples.points[i], samples.weights[i])).collect();
+            if agreeing.len() >= 2 * leaf.freedom() {
+                // What was found by its own region is nearly there, and would be drawn off by what is beside it.
+                let width = if leaf.is_free() { width } else { width.min(NARROW.max(least)) };
+                *leaf = fitted(leaf, &agreeing, width);
+            }
+        }
+    }
+    Ok(leaves)
+}
+
+/// A leaf fitted to weighted points.
+pub(super) fn fitted(leaf: &Leaf, own: &[(DVec3, f64)], width: f64) -> Leaf {
+    let count = leaf.freedom();
+    let mut leaf = leaf.clone();
+    let cost = |leaf: &Leaf| -> f64 {
+        let of = |(p, weight): &(DVec3, f64)| {
+            let square = (leaf.distance(*p) / width).powi(2);
+            weight * square / (1.0 + square)
+        };
+        own.iter().map(of).sum()
+    };
+    let mut before = cost(&leaf);
+    let mut damping = 1e-4;
+    for _ in 0..STEPS {
+        let nearby: Vec<Option<Leaf>> = (0..count)
+            .map(|k| {
+                let mut x = [0.0; MOST];
+                x[k] = STEP;
+                leaf.moved(&x)
+            })
+            .collect();
+        let (mut hessian, mut right) = ([[0.0; MOST]; MOST], [0.0; MOST]);
+        for (p, weight) in own {
+            let p = *p;
+            let distance = leaf.distance(p);
+            let weight = weight / (1.0 + (distance / width).powi(2)).powi(2);
+            let mut slopes = [0.0; MOST];
+            for (slope, near) in slopes.iter_mut().zip(&nearby) {
+                *slope = near.as_ref().map_or(0.0, |near| (near.distance(p) - distance) / STEP);
+            }
+            for a in 0..count {
+                right[a] -= weight * slopes[a] * distance;
+                for b in 0..=a {
+                    hessian[a][b] += weight * slopes[a] * slopes[b];
+                }
+            }
+        }
+        let largest = (0..count).map(|a| hessian[a][a]).fold(0.0, f64::max);
+        // What no sample tells of stays.
+        let mut free = [false; MOST];
+        for a in 0..count {
+            free[a] = hessian[a][a] > 1e-6 * largest;
+            hessian[a][a] *= 1.0 + damping;
+        }
+        let Some(step) = solved(&hessian, &right, &free) else { break };
+        let Some(next) = leaf.moved(&step.map(|x| x.clamp(-0.05, 0.05))) else { break };
+        let after = cost(&next);
+        if after < before {
+            let gain = before - after;
+            (leaf, before) = (next, after);
+            damping *= 0.1;
+            if gain < 1e-4 * before {
+                break;
+            }
+        } else {
+            damping *= 100.0;
+        }
+    }
+    leaf
+}

@@ -1,0 +1,150 @@
+//! What was recovered of a part.
+
+use glam::DVec3;
+
+use super::super::deviations::Deviation;
+use super::leaf::Leaf;
+use crate::{Bounds, Solid};
+
+/// A part as an ordered tree of leaves, and how well it is the part.
+///
+/// The leaves are applied one after the other: each is added to what those before it are, or cut from it.
+#[derive(Clone, Debug)]
+pub struct PartFit {
+    pub(super) leaves: Vec<PartLeaf>,
+    pub(super) solid: Solid,
+    pub(super) iou: f64,
+    pub(super) deviation: Deviation,
+    pub(super) topology: Topology,
+    pub(super) topology_of_input: Topology,
+    pub(super) unexplained: Vec<Unexplained>,
+}
+
+/// A leaf of a part.
+#[derive(Clone, Debug)]
+pub struct PartLeaf {
+    pub(super) adds: bool,
+    pub(super) leaf: Leaf,
+    pub(super) name: String,
+    pub(super) surface: f64,
+}
+
+/// What a surface is in the large.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Topology {
+    /// Handles, over all shells; none where the surface is not closed and manifold.
+    pub genus: Option<i64>,
+    /// Pieces that do not hang together.
+    pub shells: usize,
+}
+
+/// A place where the tree is not the part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Unexplained {
+    /// A box about the wrong points, in length units.
+    pub bounds: Bounds,
+    /// The volume that is wrong, as a share of the part's.
+    pub share: f64,
+    /// Whether the part is there and the tree is not; else it is the other way round.
+    pub missing: bool,
+}
+
+impl PartFit {
+    /// The part, in the mesh's coordinates. Its leaves have [names](PartLeaf::name).
+    #[must_use]
+    pub fn solid(&self) -> Solid {
+        self.solid.clone()
+    }
+
+    /// The leaves, in the order in which they are added and cut.
+    #[must_use]
+    pub fn leaves(&self) -> &[PartLeaf] {
+        &self.leaves
+    }
+
+    /// How many numbers the leaves have: 3 of a half-space, 4 of a sphere, 7 of a cylinder or a torus, 8 of a cone, 9 of
+    /// a box.
+    #[must_use]
+    pub fn parameters(&self) -> usize {
+        self.leaves.iter().map(PartLeaf::parameters).sum()
+    }
+
+    /// The volume of what tree and mesh have in common, over that of what either has: 1 is all right. It is estimated
+    /// from 16384 points in the mesh's box and 1.5 % about it, which are inside of the mesh where its winding number is
+    /// above ½.
+    #[must_use]
+    pub fn iou(&self) -> f64 {
+        self.iou
+    }
+
+    /// How far points of the mesh are from the tree's surface, in length units, to first order.
+    #[must_use]
+    pub fn deviation(&self) -> Deviation {
+        self.deviation
+    }
+
+    /// Genus and shells of the tree's surface, meshed with 128 cells along its longest side, or 384 where these have not
+    /// those of the input.
+    #[must_use]
+    pub fn topology(&self) -> Topology {
+        self.topology
+    }
+
+    /// Those of the mesh.
+    #[must_use]
+    pub fn topology_of_input(&self) -> Topology {
+        self.topology_of_input
+    }
+
+    /// Where tree and mesh differ by more than a thousandth of the volume in one place, the worst place first.
+    #[must_use]
+    pub fn unexplained(&self) -> &[Unexplained] {
+        &self.unexplained
+    }
+}
+
+impl PartLeaf {
+    /// Whether it is cut from what is before it; else it is added.
+    #[must_use]
+    pub fn is_cut(&self) -> bool {
+        !self.adds
+    }
+
+    /// What it is called in the tree, as "box 1" or "cut cylinder 2".
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What it is: "half-space", "box", "cylinder", "cone", "sphere" or "torus".
+    #[must_use]
+    pub fn kind(&self) -> &'static str {
+        self.leaf.kind()
+    }
+
+    /// The leaf alone, where it is, in the mesh's coordinates.
+    #[must_use]
+    pub fn solid(&self) -> Solid {
+        self.leaf.solid()
+    }
+
+    /// Where it is: its centre; of a half-space the point of its plane that is nearest to the origin.
+    #[must_use]
+    pub fn centre(&self) -> DVec3 {
+        self.leaf.centre
+    }
+
+    /// How many numbers it has.
+    #[must_use]
+    pub fn parameters(&self) -> usize {
+        self.leaf.parameters()
+    }
+
+    /// The share of the mesh's surface that it makes, 0 to 1.
+    #[must_use]
+    pub fn surface(&self) -> f64 {
+        self.surface
+    }
+}
