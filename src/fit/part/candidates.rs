@@ -13,6 +13,7 @@ use super::leaf::Leaf;
 use super::pool::Pool;
 use super::queries::Queries;
 use super::regions::{Form, Region};
+use super::samples::Samples;
 use super::settings::PartKinds;
 
 /// Planes whose normal is by less than this off an axis are across it, as a cosine: 2°.
@@ -27,6 +28,9 @@ pub(super) const BEYOND: f64 = 0.02;
 /// Sides of less arc, in degrees, are fillets or guesses.
 const ARC: f64 = 70.0;
 
+/// Where a side has no sample for longer than this it may be of several leaves.
+const GAP: f64 = 0.04;
+
 /// Planes of a smaller share do not cut the whole part.
 const PLANE: f64 = 0.004;
 
@@ -34,7 +38,15 @@ const PLANE: f64 = 0.004;
 const SPINDLE: f64 = 0.98;
 
 /// Puts what the regions tell among the candidates.
-pub(super) fn propose(pool: &mut Pool, regions: &[Region], part: [DVec3; 2], queries: &Queries, kinds: PartKinds) {
+pub(super) fn propose(
+    pool: &mut Pool,
+    samples: &Samples,
+    regions: &[Region],
+    part: [DVec3; 2],
+    queries: &Queries,
+    kinds: PartKinds,
+) {
+    // The volume is that of the facets; what they are chords of is told by the vertices in the end.
     for region in regions {
         let may = [region.sign > 0.0, region.sign < 0.0];
         match region.form {
@@ -45,28 +57,40 @@ pub(super) fn propose(pool: &mut Pool, regions: &[Region], part: [DVec3; 2], que
             }
             Form::Sphere { centre, radius } => {
                 if kinds.spheres {
-                    pool.add(Leaf::sphere(centre, radius), queries, may, None);
+                    pool.add(Leaf::sphere(centre, region.chordal * radius), queries, may, None);
                 }
             }
             Form::Torus { axis, centre, major, minor } => {
                 if kinds.tori && minor < SPINDLE * major {
-                    pool.add(Leaf::torus(axis, centre, major, minor), queries, may, None);
+                    pool.add(Leaf::torus(axis, centre, major, region.chordal * minor), queries, may, None);
                 }
             }
             Form::Cylinder { axis, origin, radius, along, arc } => {
                 if kinds.cylinders && arc >= ARC {
-                    let side = Side { axis, origin, radius, slope: 0.0 };
-                    side.propose(pool, along, may, regions, part, queries);
+                    let side = Side { axis, origin, radius: region.chordal * radius, slope: 0.0 };
+                    side.propose(pool, &spans(region, samples, axis, origin, along), may, regions, part, queries);
                 }
             }
             Form::Cone { axis, origin, radius, slope, along, arc } => {
                 if kinds.cones && arc >= ARC {
                     let side = Side { axis, origin, radius, slope };
-                    side.propose(pool, along, may, regions, part, queries);
+                    side.propose(pool, &spans(region, samples, axis, origin, along), may, regions, part, queries);
                 }
             }
         }
     }
+}
+
+/// Where a side is: as a whole, and each of its pieces, as of bores from both ends.
+fn spans(region: &Region, samples: &Samples, axis: DVec3, origin: DVec3, along: [f64; 2]) -> Vec<[f64; 2]> {
+    let mut pieces = region.pieces(samples, axis, origin, GAP);
+    if pieces.len() < 2 {
+        return vec![along];
+    }
+    let last = pieces.len() - 1;
+    (pieces[0][0], pieces[last][1]) = (along[0], along[1]);
+    pieces.push(along);
+    pieces
 }
 
 /// The side of a cylinder or a cone.
@@ -93,7 +117,7 @@ impl Side {
     fn propose(
         &self,
         pool: &mut Pool,
-        along: [f64; 2],
+        spans: &[[f64; 2]],
         may: [bool; 2],
         regions: &[Region],
         part: [DVec3; 2],
@@ -107,15 +131,17 @@ impl Side {
             let radius = self.radius + self.slope * height;
             radius > 0.0 && away.length_squared() < radius * radius
         });
-        let [lows, highs] = self.ends(along, may[0], regions, part);
-        let above: Vec<Bits> = lows.iter().map(|low| Bits::new(count, |i| heights[i] > *low)).collect();
-        let below: Vec<Bits> = highs.iter().map(|high| Bits::new(count, |i| heights[i] < *high)).collect();
-        let family = pool.family();
-        for (low, above) in lows.iter().zip(&above) {
-            let over = side.and(above);
-            for (high, below) in highs.iter().zip(&below) {
-                if let Some(leaf) = self.leaf([*low, *high]) {
-                    pool.push(leaf, over.and(below), may, family);
+        for along in spans {
+            let [lows, highs] = self.ends(*along, may[0], regions, part);
+            let above: Vec<Bits> = lows.iter().map(|low| Bits::new(count, |i| heights[i] > *low)).collect();
+            let below: Vec<Bits> = highs.iter().map(|high| Bits::new(count, |i| heights[i] < *high)).collect();
+            let family = pool.family();
+            for (low, above) in lows.iter().zip(&above) {
+                let over = side.and(above);
+                for (high, below) in highs.iter().zip(&below) {
+                    if let Some(leaf) = self.leaf([*low, *high]) {
+                        pool.push(leaf, over.and(below), may, family);
+                    }
                 }
             }
         }

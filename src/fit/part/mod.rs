@@ -2,6 +2,7 @@
 
 mod adjust;
 mod axes;
+mod balls;
 mod bases;
 mod bits;
 mod boxes;

@@ -149,7 +149,7 @@ fn chosen(
     let mut pool = Pool::new(settings.parameter_cost * (1.0 + samples.noise / 0.001));
     let low = samples.points.iter().fold(DVec3::INFINITY, |low, p| low.min(*p));
     let high = samples.points.iter().fold(DVec3::NEG_INFINITY, |high, p| high.max(*p));
-    propose(&mut pool, &regions.regions, [low, high], queries, kinds);
+    propose(&mut pool, samples, &regions.regions, [low, high], queries, kinds);
     if kinds.superellipsoids {
         superellipsoids::propose(&mut pool, samples, regions, queries, settings.seed, run)?;
     }

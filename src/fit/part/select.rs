@@ -22,6 +22,9 @@ const BEAM: usize = 3;
 /// What wrong samples count in a leaf that is to be cut after it is added.
 const FORGIVING: f64 = 0.15;
 
+/// Cuts of one leaf that are tried before it is given up.
+const CUTS: usize = 16;
+
 /// Most leaves.
 const MOST: usize = 48;
 
@@ -102,23 +105,28 @@ impl Selector<'_> {
                 children.push(self.with(steps, place, Step { adds, which }));
             }
         }
-        children.extend(self.pairs(steps, first_cut));
+        children.extend(self.pairs(model, first_cut));
         if first_cut < end {
             children.extend(self.added_again(steps));
         }
         children
     }
 
-    /// A leaf before what is subtracted and a cut of it at once.
-    fn pairs(&mut self, steps: &[Step], place: usize) -> Vec<Model> {
-        let stakes = self.judge().stakes(steps, place, true);
+    /// A leaf before what is subtracted and cuts of it at once, as many as it takes to be better than before.
+    fn pairs(&mut self, model: &Model, place: usize) -> Vec<Model> {
+        let stakes = self.judge().stakes(&model.steps, place, true);
         let added = self.best(&stakes, true, FORGIVING, 2 * BEAM);
         let mut pairs = Vec::new();
         for (_, which) in added {
-            let whole = self.with(steps, place, Step { adds: true, which });
-            let stakes = self.judge().stakes(&whole.steps, whole.steps.len(), false);
-            for (_, which) in self.best(&stakes, false, 1.0, 1) {
-                pairs.push(self.with(&whole.steps, whole.steps.len(), Step { adds: false, which }));
+            let mut next = self.with(&model.steps, place, Step { adds: true, which });
+            for _ in 0..CUTS {
+                let stakes = self.judge().stakes(&next.steps, next.steps.len(), false);
+                let Some((_, which)) = self.best(&stakes, false, 1.0, 1).first().copied() else { break };
+                next = self.with(&next.steps, next.steps.len(), Step { adds: false, which });
+                if next.cost < model.cost - GRAIN {
+                    pairs.push(next);
+                    break;
+                }
             }
         }
         pairs

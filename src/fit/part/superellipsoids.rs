@@ -9,12 +9,13 @@
 
 use glam::{DMat3, DVec3};
 
+use super::balls;
 use super::leaf::{Leaf, Shape};
 use super::patches::{Patch, patches};
 use super::pool::Pool;
 use super::queries::Queries;
 use super::regions::Regions;
-use super::samples::Samples;
+use super::samples::{Kind, Samples};
 use crate::fit::cost::Cost;
 use crate::fit::linear::Principal;
 use crate::fit::random::Random;
@@ -23,7 +24,7 @@ use crate::fit::solve::{Fitted, Problem};
 use crate::fit::superquadric::Superquadric;
 use crate::{Cancelled, Run, Superellipsoid};
 
-/// Patches that a region explains to this share are left to it.
+/// Patches that regions explain to this share are left to these.
 const EXPLAINED: f64 = 0.85;
 
 /// Samples that starts are tried on, and that the best are fitted to.
@@ -59,14 +60,19 @@ pub(super) fn propose(
         region.points.iter().for_each(|i| of_region[*i as usize] = number);
     }
     let mut random = Random::new(seed);
-    for patch in patches(samples) {
+    for patch in patches(samples).into_iter().chain(balls::patches(samples, &mut random)).collect::<Vec<_>>() {
         run.check()?;
         let mut counts = vec![0_usize; regions.regions.len() + 1];
         for i in &patch.samples {
             counts[of_region[*i as usize]] += 1;
         }
-        let largest = counts[..regions.regions.len()].iter().max().map_or(0, |count| *count);
-        if largest as f64 >= EXPLAINED * patch.samples.len() as f64 {
+        // Where facets are large what regions explain together is made of these; else several of them may be taken for
+        // what is round.
+        let explained = match samples.kind {
+            Kind::Cad => counts[..regions.regions.len()].iter().sum(),
+            _ => counts[..regions.regions.len()].iter().max().map_or(0, |count| *count),
+        };
+        if explained as f64 >= EXPLAINED * patch.samples.len() as f64 {
             continue;
         }
         let scene = Scene::new(&patch, samples, regions, &mut random);
