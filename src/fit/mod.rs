@@ -13,7 +13,7 @@
 //! | [`supershape`](supershape()) | the supershape, its symmetry numbers found |
 //! | [`deformed`](deformed()) | the superellipsoid, tapered, twisted and bent |
 //! | [`register`](register()) | where a known solid is in a scan |
-//! | [`inspect`](inspect()) | how far a scan is from a solid, by point and by leaf |
+//! | [`inspect`](inspect()) | how far a scan is from a solid, by point and by leaf; as a [picture](Deviations::picture), a [coloured cloud](Deviations::colored), [JSON](Deviations::to_json) |
 //!
 //! The first three take a [`PointCloud`](crate::PointCloud) and give a [`Fit`]: the solid with
 //! its leaf and pose, a weight for each point, the noise, the covariance of the parameters. Every
@@ -110,12 +110,15 @@ mod gielis;
 mod grid;
 mod harmonics;
 mod inspect;
+mod json;
 mod kernel;
 #[cfg(test)]
 mod kernel_tests;
+mod legend;
 mod linear;
 mod local;
 mod mixture;
+mod picture;
 mod plane;
 mod pose;
 mod random;
