@@ -9,13 +9,14 @@
 //!
 //! The scan lies anywhere: it is registered first. Lengths are millimetres.
 //!
-//! `cargo run --release --example inspect -- folder` writes the scan there, coloured by its deviations.
+//! `cargo run --release --example inspect -- folder` writes there the scan, coloured by its deviations, a picture of
+//! it with a legend, and the report as JSON.
 
 use std::error::Error;
 
 use glam::DVec3;
 use rvachev::fit::{RegisterSettings, inspect, register};
-use rvachev::{CellSize, MeshSettings, PointCloud, Solid, deg};
+use rvachev::{Camera, CellSize, MeshSettings, PointCloud, Solid, deg};
 
 /// The part, its hole moved and its boss raised.
 fn bracket(moved: f64, raised: f64) -> Solid {
@@ -31,6 +32,11 @@ fn noise(i: usize, k: u64) -> f64 {
     let z = (i as u64 * 3 + k + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     let z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     ((z ^ z >> 27) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+}
+
+/// To three digits, and never −0.
+fn rounded(v: f64) -> f64 {
+    (1000.0 * v).round() / 1000.0 + 0.0
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -55,18 +61,20 @@ fn main() -> Result<(), Box<dyn Error>> {
             "{:8} {:7} {:8.3} {:8.3} {:8.3} {:8.3} {:8.3}{}",
             name.unwrap_or(&leaf.owner.path),
             leaf.sizes.points,
-            leaf.median,
+            rounded(leaf.median),
             leaf.spread,
             leaf.sizes.percentile_95,
             leaf.shift.length(),
-            leaf.growth,
+            rounded(leaf.growth),
             if leaf.is_off() { "  off" } else { "" }
         );
     }
     println!("within 0.1: {:.1} %", 100.0 * report.share_within(0.1));
-    let path = std::path::Path::new(&folder).join("inspect.ply");
-    let file = std::io::BufWriter::new(std::fs::File::create(&path)?);
-    rvachev::io::write_ply_points(&report.colored(&scan, 0.4)?, file)?;
-    println!("{}", path.display());
+    let folder = std::path::Path::new(&folder);
+    report.colored(&scan, 0.4)?.save(folder.join("inspect.ply"))?;
+    let camera = Camera::framing(&found.place(&model).bounds()?);
+    report.picture(&scan, 0.4, &camera, 960, 720)?.save(folder.join("inspect.png"))?;
+    std::fs::write(folder.join("inspect.json"), report.to_json())?;
+    println!("{}", folder.display());
     Ok(())
 }

@@ -347,6 +347,7 @@
 //! | [`simplified`](Solid::simplified) | the same values from fewer nodes |
 //! | [`form`](Solid::form) | what it is at its root, with parameters and operands ([`Form`]) |
 //! | [`call`](Solid::call) | the same as an entry of the catalogue with values, which makes it again ([`Call`]) |
+//! | [`to_rust`](Solid::to_rust) | the solid as Rust code that makes it again; several in a file: [`RustFile`] |
 //! | [`catalogue`](catalogue()) | all that solids are made of, with parameters and their ranges ([`Entry`], [`Parameter`]) |
 //!
 //! # Lengths and angles
@@ -450,6 +451,7 @@
 //! [`Program::narrow`]: program::Program::narrow
 //! [`RasterView`]: raster::RasterView
 //! [`RasterView::csg`]: raster::RasterView::csg
+//! [`RustFile`]: code::RustFile
 //! [`SineWave`]: law::SineWave
 //! [`SmoothStep`]: law::SmoothStep
 //! [`Spacing`]: surface::Spacing
@@ -465,6 +467,7 @@ mod picture;
 
 pub mod camera;
 pub mod catalogue;
+pub mod code;
 mod distance;
 pub mod error;
 mod eval;

@@ -255,18 +255,26 @@ fn is_same(a: &DAffine3, b: &DAffine3) -> bool {
 fn guesses(verb: &str, map: &DAffine3) -> Vec<(&'static str, Vec<Value>)> {
     let m = &map.matrix3;
     let diagonal = DVec3::new(m.x_axis.x, m.y_axis.y, m.z_axis.z);
-    let turned = |name, sin: f64, cos: f64| {
-        // An angle as it is, and as many degrees as it was meant to be.
-        let angle = rad(sin.atan2(cos));
-        let degrees = deg((angle.degrees() * 1e9).round() * 1e-9);
-        let quarters = deg((angle.degrees() / 90.0).round() * 90.0);
-        [angle, degrees, quarters].map(|angle| (name, vec![Value::Angle(angle)])).to_vec()
+    let turned = |name, sin: f64, cos: f64| -> Vec<(&'static str, Vec<Value>)> {
+        angles(sin, cos).into_iter().map(|angle| (name, vec![Value::Angle(angle)])).collect()
     };
     match verb {
         "translate" => vec![("translate", vec![Value::Vector(map.translation)])],
         "rotate_x" => turned("rotate_x", m.y_axis.z, m.y_axis.y),
         "rotate_y" => turned("rotate_y", m.z_axis.x, m.z_axis.z),
         "rotate_z" => turned("rotate_z", m.x_axis.y, m.x_axis.x),
+        // Of the plane, or about any axis.
+        "rotate" | "rotate_about" => {
+            let mut all = turned("rotate_z", m.x_axis.y, m.x_axis.x);
+            let twice = DVec3::new(m.y_axis.z - m.z_axis.y, m.z_axis.x - m.x_axis.z, m.x_axis.y - m.y_axis.x);
+            let axis = twice / twice.abs().max_element();
+            let angles = angles(twice.length(), diagonal.element_sum() - 1.0);
+            for axis in [(axis * 1e9).round() * 1e-9, axis, axis.normalize()] {
+                let about = |angle: &Angle| ("rotate_about", vec![Value::Vector(axis), Value::Angle(*angle)]);
+                all.extend(angles.iter().map(about));
+            }
+            all
+        }
         "scale" => vec![("scale", vec![Value::Number(diagonal.x)])],
         "scale_axes" => vec![("scale_axes", vec![Value::Vector(diagonal)])],
         "reflect" => {
@@ -279,4 +287,14 @@ fn guesses(verb: &str, map: &DAffine3) -> Vec<(&'static str, Vec<Value>)> {
         }
         _ => Vec::new(),
     }
+}
+
+/// What an angle of this sine and cosine may have been: as it is, as many degrees as it was meant
+/// to be, and its neighbours.
+fn angles(sin: f64, cos: f64) -> Vec<Angle> {
+    let angle = sin.atan2(cos);
+    let degrees = deg((angle.to_degrees() * 1e9).round() / 1e9);
+    let quarters = deg((angle.to_degrees() / 90.0).round() * 90.0);
+    let near = [angle, angle.next_up(), angle.next_down(), angle.next_up().next_up(), angle.next_down().next_down()];
+    [quarters, degrees].into_iter().chain(near.map(rad)).collect()
 }

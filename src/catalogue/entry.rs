@@ -1,10 +1,12 @@
 //! An entry of the catalogue.
 
 use std::fmt;
+use std::sync::Arc;
 
 use rvachev_field::catalogue::{BuiltIn, Curve, ValueError};
 use rvachev_field::{AnyField, AnyWarp};
 
+use super::part::{Either, Take};
 use super::verb::Verb;
 use super::{Part, call};
 use crate::solid::Node;
@@ -120,7 +122,9 @@ impl Entry {
     }
 
     pub(super) fn deformation(warp: &'static BuiltIn<dyn AnyWarp>) -> Entry {
-        Entry { group: Group::Deformation, operands: Operands::Solid, maker: Maker::Deformation(warp) }
+        // The only one that leaves a column a column.
+        let operands = if warp.name == "elongate" { Operands::Either } else { Operands::Solid };
+        Entry { group: Group::Deformation, operands, maker: Maker::Deformation(warp) }
     }
 
     pub(super) fn curve(curve: &'static Curve) -> Entry {
@@ -192,8 +196,13 @@ impl Entry {
             Maker::Leaf(leaf) => Solid::from_node(Node::Leaf((leaf.make)(values)?)).into(),
             Maker::Plane(leaf) => Profile(Solid::from_node(Node::Leaf((leaf.make)(values)?))).into(),
             Maker::Deformation(warp) => {
-                let solid = <Solid as super::part::Take>::take(warp.name, operands)?;
-                solid.warped((warp.make)(values)?).into()
+                let operand = match self.operands {
+                    Operands::Either => Either::take(warp.name, operands)?,
+                    _ => Either::Solid(Solid::take(warp.name, operands)?),
+                };
+                let warp = (warp.make)(values)?;
+                let profile = Arc::clone(&warp);
+                operand.map(|solid| solid.warped(warp), |Profile(column)| Profile(column.warped(profile)))
             }
             Maker::Curve(curve) => Value::Curve((curve.make)(values)?).into(),
             Maker::Verb(verb) => (verb.make)(operands, values)?,

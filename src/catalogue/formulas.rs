@@ -4,7 +4,7 @@ use glam::DVec3;
 use rvachev_field::catalogue::ValueError;
 
 use super::verb::verbs;
-use crate::{Bounds, Formula, Profile, Range, Solid};
+use crate::{Bounds, Formula, Profile, Range};
 
 verbs! {
     /// The plane shape where a formula of x and y is negative.
@@ -18,7 +18,7 @@ verbs! {
             DVec3::new(1.0, 1.0, f64::INFINITY),
         );
     } => |(): ()| match Formula::from_vm(&text, bounds) {
-        Ok(formula) => Profile(Solid::from(formula)),
+        Ok(formula) => Profile::from(formula),
         Err(source) => return Err(ValueError::Formula { entry: "profile_formula", parameter: "text", source }),
     };
 }

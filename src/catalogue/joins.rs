@@ -101,7 +101,7 @@ verbs! {
     Length level {
         /// What is added.
         value: f64 = Length, Range::FINITE, example 0.25;
-    } => |solid: Solid| solid.level(value);
+    } => |operand: Either| operand.map(|solid| solid.level(value), |profile| profile.level(value));
 
     /// The surface moved outwards.
     Length offset {

@@ -5,15 +5,10 @@ use rvachev_field::catalogue::Direction;
 
 use super::part::Either;
 use super::verb::verbs;
-use crate::{Angle, Profile, Range, Solid, Value, rad};
+use crate::{Angle, Range, Solid, Value, rad};
 
 /// Factors of maps: of either sign, not zero.
 const FACTOR: Range = Range::signed(1e-9, 1e9);
-
-/// A profile moved by a map of space that leaves z alone but for a stretch.
-fn moved(profile: &Profile, map: DAffine3) -> Profile {
-    Profile(profile.0.affine(map))
-}
 
 /// Spacings that the largest of the counts leaves.
 fn spacing(values: &[Value]) -> Option<Range> {
@@ -73,19 +68,25 @@ verbs! {
 
     /// The mirror image in a plane.
     Affine reflect {
-        /// Across the plane.
+        /// Across the plane; of a profile, along x and y.
         normal: Direction = None, Range::ANY, example Direction(DVec3::X);
         /// Distance of the plane from the origin, along the normal.
         offset: f64 = Length, Range::new(-0.5e9, 0.5e9), example 1.0;
-    } => |solid: Solid| solid.reflect(normal.0, offset);
+    } => |operand: Either| operand.map(
+        |solid| solid.reflect(normal.0, offset),
+        |profile| profile.reflect(normal.0.truncate(), offset),
+    );
 
     /// The solid together with its mirror image in a plane.
     Affine mirrored {
-        /// Across the plane.
+        /// Across the plane; of a profile, along x and y.
         normal: Direction = None, Range::ANY, example Direction(DVec3::Y);
         /// Distance of the plane from the origin, along the normal.
         offset: f64 = Length, Range::new(-0.5e9, 0.5e9), example -1.0;
-    } => |solid: Solid| solid.mirrored(normal.0, offset);
+    } => |operand: Either| operand.map(
+        |solid| solid.mirrored(normal.0, offset),
+        |profile| profile.mirrored(normal.0.truncate(), offset),
+    );
 
     /// Mapped by any invertible affine map; of a profile, one that keeps to the plane.
     Affine affine {
@@ -94,15 +95,21 @@ verbs! {
             DMat3::from_cols(DVec3::new(1.0, 0.25, 0.0), DVec3::Y, DVec3::Z),
             DVec3::new(0.5, 0.0, 0.0),
         );
-    } => |operand: Either| operand.map(|solid| solid.affine(map), |profile| moved(&profile, map));
+    } => |operand: Either| operand.map(|solid| solid.affine(map), |profile| profile.affine_in_space(map));
 
     /// A grid of copies along the axes.
     Repetition repeat {
-        /// How many along x, y and z.
+        /// How many along x, y and z; of a profile, along x and y.
         counts: [u32; 3] = None, Range::new(1.0, 1e6), example [4, 4, 4];
         /// How far neighbours are apart along x, y and z; 10⁹ divided by how many there are at most.
         spacing: DVec3 = Length, Range::LENGTH, given |values| spacing(values), example DVec3::new(3.0, 4.0, 5.0);
-    } => |solid: Solid| solid.repeat(counts, spacing);
+    } => |operand: Either| {
+        let [x, y, _] = counts;
+        operand.map(
+            |solid| solid.repeat(counts, spacing),
+            |profile| profile.repeat([x, y], spacing.truncate()),
+        )
+    };
 
     /// A row of copies.
     Repetition repeat_linear {
@@ -110,11 +117,17 @@ verbs! {
         count: u32 = None, Range::new(1.0, 1e6), example 4;
         /// From each to the next; no longer than 10⁹ divided by how many there are.
         step: DVec3 = Length, Range::FINITE, example DVec3::new(3.0, 0.0, 4.0);
-    } => |solid: Solid| solid.repeat_linear(count, step);
+    } => |operand: Either| operand.map(
+        |solid| solid.repeat_linear(count, step),
+        |profile| profile.repeat_linear(count, step.truncate()),
+    );
 
     /// A ring of copies about the z axis.
     Repetition repeat_polar {
         /// How many.
         count: u32 = None, Range::new(1.0, 1000.0), example 5;
-    } => |solid: Solid| solid.repeat_polar(count);
+    } => |operand: Either| operand.map(
+        |solid| solid.repeat_polar(count),
+        |profile| profile.repeat_polar(count),
+    );
 }

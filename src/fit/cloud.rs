@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 
-use super::check::check_depth;
+use super::check::{check_depth, check_extent};
 use super::error::FitError;
+use super::linear::median;
 use super::random::Random;
 use super::settings::FitSettings;
-use crate::field::COORDINATE_LIMIT;
 use crate::geom::PointCloud;
 
 /// The searched points of a cloud, in units of its size.
@@ -30,17 +30,14 @@ impl Scaled {
         if cloud.len() < needed {
             return Err(FitError::TooFew { kind, points: cloud.len(), parameters, needed });
         }
+        check_extent(cloud)?;
         let all = cloud.positions();
-        let farthest = all.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
-        if farthest > COORDINATE_LIMIT {
-            let (property, allowed) = ("from the origin", "at most 1000000000");
-            return Err(FitError::Extent { property, value: farthest, allowed });
-        }
         let order: Vec<usize> = if all.len() > settings.search_points {
             Random::new(settings.seed).chosen(all.len(), settings.search_points)
         } else {
             (0..all.len()).collect()
         };
+        let order = without_strays(all, order);
         let center = order.iter().map(|i| all[*i]).sum::<DVec3>() / order.len() as f64;
         let square = order.iter().map(|i| all[*i].distance_squared(center)).sum::<f64>() / order.len() as f64;
         let size = square.sqrt();
@@ -56,4 +53,20 @@ impl Scaled {
         let normals = cloud.normals().map(|normals| order.iter().map(|i| normals[*i].as_dvec3()).collect());
         Ok(Scaled { points, normals, center, size })
     }
+}
+
+/// Points further from the middle than so many times the median distance from it are not of the
+/// object: a single one would make the size of the cloud its own.
+const STRAY: f64 = 100.0;
+
+/// The points without those that are far from all others. Half of the points are never strays.
+fn without_strays(all: &[DVec3], order: Vec<usize>) -> Vec<usize> {
+    let middle = DVec3::from_array([0, 1, 2].map(|axis| {
+        let mut along: Vec<f64> = order.iter().map(|i| all[*i][axis]).collect();
+        median(&mut along)
+    }));
+    let distance = |i: &usize| all[*i].distance(middle);
+    let typical = median(&mut order.iter().map(distance).collect::<Vec<_>>());
+    let is_near = |i: &usize| typical == 0.0 || distance(i) <= STRAY * typical;
+    order.into_iter().filter(is_near).collect()
 }

@@ -1,5 +1,6 @@
 //! Why there is no fit.
 
+use crate::error::{CameraError, ImageError, PointCloudError};
 use crate::{Cancelled, SolidError};
 
 /// What is missing for a fit, or was in its way.
@@ -49,7 +50,9 @@ pub enum FitError {
         triangles: usize,
     },
     /// The cloud is too small, too large or too far away for lengths of solids.
-    #[error("the cloud is {value} {property}; allowed: {allowed}; scale or move it first")]
+    #[error(
+        "the cloud is {value} {property}; allowed: {allowed}; scale or move it first, or leave out points far from the rest"
+    )]
     Extent {
         /// What is told of the cloud.
         property: &'static str,
@@ -77,6 +80,15 @@ pub enum FitError {
         /// Why not.
         what: String,
     },
+    /// The cloud is not the one that was asked about.
+    #[error(transparent)]
+    Points(#[from] PointCloudError),
+    /// The camera of a picture sees nothing.
+    #[error(transparent)]
+    Camera(#[from] CameraError),
+    /// The picture's size is none.
+    #[error(transparent)]
+    Image(#[from] ImageError),
     /// The run was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

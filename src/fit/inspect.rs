@@ -12,6 +12,7 @@ use std::collections::BTreeMap;
 
 use glam::DVec3;
 
+use super::check::check_extent;
 use super::deviations::Deviation;
 use super::error::FitError;
 use super::linear::{median, quantile, solved};
@@ -81,7 +82,8 @@ impl LeafDeviation {
 ///
 /// # Errors
 ///
-/// [`FitError::Solid`] if the solid is not valid, [`FitError::TooFew`] of no points.
+/// [`FitError::Solid`] if the solid is not valid, [`FitError::TooFew`] of no points, [`FitError::Extent`] of points
+/// further than 10⁹ from the origin.
 ///
 /// ```
 /// use rvachev::fit::inspect;
@@ -112,6 +114,7 @@ pub fn inspect_with(solid: &Solid, cloud: &PointCloud, run: &Run) -> Result<Devi
     if cloud.is_empty() {
         return Err(FitError::TooFew { kind: "comparison", points: 0, parameters: 0, needed: 1 });
     }
+    check_extent(cloud)?;
     let programs = compiled(solid)?;
     let program = &programs.surface;
     let feet = run.install(|| feet(program, cloud.positions(), &run))?;
@@ -177,13 +180,15 @@ impl Deviations {
     ///
     /// If the cloud has another number of points.
     pub fn colored(&self, cloud: &PointCloud, reach: f64) -> Result<PointCloud, crate::error::PointCloudError> {
-        let color = |d: &f64| {
-            let t = (d / reach).clamp(-1.0, 1.0);
-            let fade = (255.0 * (1.0 - t.abs())).round() as u8;
-            if t > 0.0 { [255, fade, fade] } else { [fade, fade, 255] }
-        };
-        cloud.clone().with_colors(self.signed.iter().map(color).collect())
+        cloud.clone().with_colors(self.signed.iter().map(|d| color(*d, reach)).collect())
     }
+}
+
+/// Blue at −`reach` and beyond, white at 0, red at `reach` and beyond.
+pub(super) fn color(d: f64, reach: f64) -> [u8; 3] {
+    let t = if d == 0.0 { 0.0 } else { (d / reach).clamp(-1.0, 1.0) };
+    let fade = (255.0 * (1.0 - t.abs())).round() as u8;
+    if t > 0.0 { [255, fade, fade] } else { [fade, fade, 255] }
 }
 
 /// Where a point meets the surface.
@@ -213,7 +218,8 @@ fn feet(program: &Program, points: &[DVec3], run: &Run) -> Result<Vec<Foot>, Can
     }
     let made = |i: usize| {
         let away = feet[i].distance(points[i]);
-        let off = if first[i].value < 0.0 { away } else { -away };
+        // No −0 of a point on the surface.
+        let off = if first[i].value < 0.0 { away } else { 0.0 - away };
         Foot { point: feet[i], normal: last[i].normal(), off }
     };
     Ok((0..points.len()).map(made).collect())

@@ -14,7 +14,7 @@
 //! | [`deformed`](deformed()) | the superellipsoid, tapered, twisted and bent |
 //! | [`register`](register()) | where a known solid is in a scan |
 //! | [`part`](part()) | the tree of boxes, cylinders and other leaves, added and cut, that a mesh is of |
-//! | [`inspect`](inspect()) | how far a scan is from a solid, by point and by leaf |
+//! | [`inspect`](inspect()) | how far a scan is from a solid, by point and by leaf; as a [picture](Deviations::picture), a [coloured cloud](Deviations::colored), [JSON](Deviations::to_json) |
 //!
 //! The first three take a [`PointCloud`](crate::PointCloud) and give a [`Fit`]: the solid with
 //! its leaf and pose, a weight for each point, the noise, the covariance of the parameters. Every
@@ -111,13 +111,16 @@ mod gielis;
 mod grid;
 mod harmonics;
 mod inspect;
+mod json;
 mod kernel;
 #[cfg(test)]
 mod kernel_tests;
+mod legend;
 mod linear;
 mod local;
 mod mixture;
 mod part;
+mod picture;
 mod plane;
 mod pose;
 mod random;

@@ -11,7 +11,7 @@
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rayon::prelude::*;
 
-use super::check::check_depth;
+use super::check::{check_depth, check_extent};
 use super::covariance::Covariance;
 use super::density::dense;
 use super::error::FitError;
@@ -87,8 +87,8 @@ impl Registration {
 ///
 /// # Errors
 ///
-/// [`FitError::Solid`] if the solid is not valid or unbounded, [`FitError::TooFew`] and
-/// [`FitError::Flat`] of the points.
+/// [`FitError::Solid`] if the solid is not valid or unbounded, [`FitError::TooFew`],
+/// [`FitError::Flat`] and [`FitError::Extent`] of the points.
 ///
 /// ```
 /// use glam::DVec3;
@@ -126,6 +126,7 @@ pub fn register_with(
         let kind = "pose";
         return Err(FitError::TooFew { kind, points: cloud.len(), parameters: PARAMETERS, needed });
     }
+    check_extent(cloud)?;
     check_depth(cloud.positions())?;
     let programs = compiled(solid)?;
     let model = Model::of(&programs.surface, solid, settings.scale, &run)?;

@@ -24,12 +24,17 @@ pub struct PointCloud {
 #[non_exhaustive]
 pub enum PointCloudError {
     /// A position has a component that is NaN or infinite.
-    #[error("point {point} is at {position}, which is not finite")]
+    #[error(
+        "point {point} is at {position}, which is not finite; {count} of the points are like this, and \
+         PointCloud::of_finite leaves them out"
+    )]
     Position {
-        /// The point, counted from 0.
+        /// The first such point, counted from 0.
         point: usize,
         /// Where it is.
         position: DVec3,
+        /// How many there are.
+        count: usize,
     },
     /// A normal has a component that is NaN or infinite.
     #[error("the normal of point {point} is not finite")]
@@ -57,9 +62,28 @@ impl PointCloud {
     /// [`PointCloudError::Position`], naming the first that is not finite.
     pub fn new(positions: Vec<DVec3>) -> Result<PointCloud, PointCloudError> {
         if let Some(point) = positions.iter().position(|p| !p.is_finite()) {
-            return Err(PointCloudError::Position { point, position: positions[point] });
+            let count = positions.iter().filter(|p| !p.is_finite()).count();
+            return Err(PointCloudError::Position { point, position: positions[point], count });
         }
         Ok(PointCloud { positions, normals: None, colors: None })
+    }
+
+    /// A cloud of those points that are finite, and the numbers of the others, from 0: scanners write NaN where
+    /// they saw nothing.
+    ///
+    /// ```
+    /// use glam::DVec3;
+    /// use rvachev::PointCloud;
+    ///
+    /// let (cloud, left_out) = PointCloud::of_finite(vec![DVec3::X, DVec3::NAN, DVec3::Y]);
+    /// assert_eq!((cloud.len(), left_out), (2, vec![1]));
+    /// ```
+    #[must_use]
+    pub fn of_finite(positions: Vec<DVec3>) -> (PointCloud, Vec<usize>) {
+        let is_left_out = |i: &usize| !positions[*i].is_finite();
+        let left_out = (0..positions.len()).filter(is_left_out).collect();
+        let positions = positions.into_iter().filter(|p| p.is_finite()).collect();
+        (PointCloud { positions, normals: None, colors: None }, left_out)
     }
 
     fn counted(&self, attribute: &'static str, given: usize) -> Result<(), PointCloudError> {

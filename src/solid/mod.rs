@@ -36,5 +36,6 @@ pub(crate) use node::Node;
 pub use node::{Length, Operation, Solid};
 pub use paint::Paint;
 pub use profile::{PlaneBounds, Profile};
+pub(crate) use signature::Numbering;
 pub use sweep::{Extrusion, Helix};
 pub(crate) use tolerance::check as check_tolerance;

@@ -129,6 +129,14 @@ impl Profile {
     }
 }
 
+/// The plane shape of a formula of x and y, whose box is infinite along z.
+#[cfg(feature = "formula")]
+impl From<crate::Formula> for Profile {
+    fn from(formula: crate::Formula) -> Profile {
+        Profile(Solid::from(formula))
+    }
+}
+
 impl From<&Profile> for Profile {
     /// The same profile; a reference count.
     fn from(profile: &Profile) -> Profile {

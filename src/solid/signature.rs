@@ -141,7 +141,7 @@ pub(super) fn in_order(root: &Solid) -> Vec<&Solid> {
 
 /// Numbers for solids: two have the same number if and only if they are equal.
 #[derive(Default)]
-pub(super) struct Numbering {
+pub(crate) struct Numbering {
     of_signature: HashMap<Signature, u64>,
     of_address: HashMap<usize, u64>,
     /// The first solid with each number.
@@ -168,11 +168,16 @@ impl Numbering {
     }
 
     /// The number of a solid.
-    pub(super) fn number(&mut self, root: &Solid) -> u64 {
+    pub(crate) fn number(&mut self, root: &Solid) -> u64 {
         for solid in in_order(root) {
             self.add(solid);
         }
         self.of_address[&root.address()]
+    }
+
+    /// The number of a solid that is part of one that has a number.
+    pub(crate) fn of(&self, solid: &Solid) -> u64 {
+        self.of_address[&solid.address()]
     }
 
     /// The first solid that was equal to this one, whose operands have been through here.

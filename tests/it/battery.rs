@@ -6,7 +6,7 @@
 
 #[cfg(feature = "import")]
 mod files;
-mod make;
+pub mod make;
 mod numbers;
 mod shapes;
 mod shrink;

@@ -1,5 +1,6 @@
 //! Readers of meshes and points: what our writers and others' wrote, what is damaged, and noise.
 
+mod faults;
 mod fuzz;
 
 use std::fs;

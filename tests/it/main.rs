@@ -8,6 +8,8 @@ mod building;
 mod caps;
 mod check;
 mod clearance;
+#[cfg(feature = "formula")]
+mod code;
 mod compiling;
 mod components;
 mod deformation;

@@ -2,9 +2,11 @@
 
 use std::collections::HashSet;
 
-use glam::{DAffine2, DVec2, DVec3};
+use glam::{DAffine2, DAffine3, DVec2, DVec3};
 use rvachev::{
-    Blend, CellSize, Circle, MeshSettings, Paint, Profile, RFunction, Rectangle, Solid, SolidError, deg, turns,
+    Blend, CellSize, Circle, MeshSettings, Paint, Profile, RFunction, Rectangle, Solid, SolidError, catalogue,
+    catalogue::{Call, Part},
+    deg, rad, turns,
 };
 
 use crate::support::{Random, near};
@@ -234,4 +236,31 @@ fn solids_of_profiles_have_what_was_done_in_the_plane() -> Result<(), Box<dyn st
     let area = 9.0 + 4.0 * 0.25 * (1.0 - 0.25 * std::f64::consts::PI);
     near(mesh.volume(), area, 0.01 * area);
     Ok(())
+}
+
+#[test]
+fn what_is_done_with_profiles_is_a_call_that_does_it_again() {
+    let disc = Profile::circle(1.0);
+    let done = [
+        disc.repeat([3, 2], [4.0, 5.0]),
+        disc.repeat_linear(4, [3.0, 1.0]),
+        disc.repeat_polar(5),
+        disc.elongate([1.0, 0.5]),
+        disc.level(0.25),
+        disc.reflect([0.6, 0.8], 0.5),
+        disc.mirrored([0.6, 0.8], 0.5),
+        disc.rotate(rad(0.7)),
+        disc.scale(-0.3).simplified(),
+        disc.affine_in_space(DAffine3::from_scale(DVec3::new(2.0, 3.0, 1.0))),
+        disc.named("disc"),
+        disc.paint([1, 2, 3]),
+    ];
+    for profile in done {
+        let part = Part::Profile(profile);
+        let call = Call::of(&part).expect("all of it is built in");
+        assert_eq!(call.make().unwrap_or_else(|error| panic!("{part:?}: {error}")), part);
+    }
+    // What leaves no column takes none.
+    let taper = catalogue().iter().find(|entry| entry.name() == "taper").expect("it is there");
+    assert!(taper.make(&[Part::Profile(disc)], &taper.example_values()).is_err());
 }

@@ -52,6 +52,12 @@ impl FileFormat {
 
     /// What a file holds, and by what its lengths are to be multiplied.
     fn read(self, input: impl Read, settings: &LoadSettings) -> Result<(Shape, f64), ReadError> {
+        let (mut shape, scale) = self.parsed(input, settings)?;
+        shape.skip(settings)?;
+        Ok((shape, scale))
+    }
+
+    fn parsed(self, input: impl Read, settings: &LoadSettings) -> Result<(Shape, f64), ReadError> {
         let bytes = settings.bytes(input)?;
         // Some programs put a mark before text in UTF-8.
         let data = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);

@@ -1,14 +1,14 @@
 //! Wavefront OBJ: see the [writer](crate::io::write_obj).
 //!
 //! It takes v (with colours from 0 to 1 where these follow), vt, vn and f, whose polygons become
-//! fans; other statements are skipped. Normals and texture coordinates are kept if all faces have
+//! fans; other statements of the format are skipped, and what is none is an error. Normals and texture coordinates are kept if all faces have
 //! them. A vertex is told of before the faces that use it.
 
 use glam::{DVec3, Vec3};
 
 use super::error::{FilePlace, shown};
 use super::shape::Shape;
-use super::text::{number, position};
+use super::text::number;
 use super::{LoadSettings, ReadError};
 
 /// A form feed stands for the end of a line that goes on in the next.
@@ -38,6 +38,56 @@ fn joined(data: &[u8]) -> Vec<u8> {
     }
     text
 }
+
+/// What else there is in OBJ: points, lines and curves, groups, materials, how it is drawn; and what was in
+/// earlier versions.
+const SKIPPED: &[&[u8]] = &[
+    b"vp",
+    b"cstype",
+    b"deg",
+    b"bmat",
+    b"step",
+    b"p",
+    b"l",
+    b"curv",
+    b"curv2",
+    b"surf",
+    b"parm",
+    b"trim",
+    b"hole",
+    b"scrv",
+    b"sp",
+    b"end",
+    b"con",
+    b"g",
+    b"s",
+    b"mg",
+    b"o",
+    b"bevel",
+    b"c_interp",
+    b"d_interp",
+    b"lod",
+    b"usemtl",
+    b"mtllib",
+    b"usemap",
+    b"maplib",
+    b"shadow_obj",
+    b"trace_obj",
+    b"ctech",
+    b"stech",
+    b"call",
+    b"csh",
+    b"fo",
+    b"bsp",
+    b"bzp",
+    b"cdc",
+    b"cdp",
+    b"res",
+    b"vc",
+    b"newmtl",
+    b"mm_gscale",
+    b"xform",
+];
 
 struct Object<'a> {
     settings: &'a LoadSettings,
@@ -81,7 +131,7 @@ impl<'a> Object<'a> {
                 if count < 3 {
                     return Err(ReadError::content(place(), "v and three coordinates", shown(text)));
                 }
-                self.shape.positions.push(position([x, y, z], place)?);
+                self.shape.push([x, y, z], place);
                 self.has_colors |= count >= 6;
                 // Without, white.
                 let color = if count >= 6 { [r, g, b].map(|x| (255.0 * x).round() as u8) } else { [255; 3] };
@@ -111,7 +161,12 @@ impl<'a> Object<'a> {
                 }
                 self.push(line)?;
             }
-            _ => {}
+            None => {}
+            Some(word) if SKIPPED.contains(&word) => {}
+            Some(word) => {
+                let expected = "v, vt, vn, f or another statement of OBJ; a line that is none can be taken out";
+                return Err(ReadError::content(place(), expected, shown(word)));
+            }
         }
         Ok(())
     }

@@ -11,7 +11,7 @@ use self::header::{Element, Encoding, Header, Kind, Number, Property};
 use super::bytes::Bytes;
 use super::error::FilePlace;
 use super::shape::Shape;
-use super::text::{Words, position};
+use super::text::Words;
 use super::{LoadSettings, ReadError};
 
 pub(super) fn read(data: &[u8], settings: &LoadSettings) -> Result<Shape, ReadError> {
@@ -143,7 +143,7 @@ fn read_vertices(
             }
         }
         let [x, y, z, nx, ny, nz] = numbers;
-        shape.positions.push(position([x, y, z], || start.clone())?);
+        shape.push([x, y, z], || start);
         if has_normals {
             // One that is not a number is none.
             let normal = DVec3::new(nx, ny, nz).as_vec3();

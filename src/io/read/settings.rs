@@ -27,6 +27,9 @@ pub struct LoadSettings {
     pub most_triangles: u64,
     /// The most vertices or points that are read. Default: 300 million.
     pub most_points: u64,
+    /// The most points that are left out because a coordinate is NaN or infinite, of `.xyz`, `.csv`, `.ply` and
+    /// `.obj` without faces; if there are more, the error says how many. Default: 0.
+    pub most_skipped: u64,
     /// The most bytes that are read, those of a file and those that it unpacks to. Default: 8 · 10⁹.
     pub most_bytes: u64,
 }
@@ -38,6 +41,7 @@ impl Default for LoadSettings {
             file_unit: None,
             most_triangles: 100_000_000,
             most_points: 300_000_000,
+            most_skipped: 0,
             most_bytes: 8_000_000_000,
         }
     }

@@ -3,6 +3,7 @@
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 
 use super::error::FilePlace;
+use super::text::{expected_coordinate, is_coordinate, is_position};
 use super::{LoadSettings, ReadError};
 use crate::geom::{Mesh, PointCloud};
 
@@ -21,9 +22,54 @@ pub(super) struct Shape {
     pub(super) corner_colors: Option<Vec<[[u8; 4]; 3]>>,
     pub(super) corner_texture: Option<Vec<[[f32; 2]; 3]>>,
     pub(super) owners: Option<Vec<u32>>,
+    /// Points whose coordinates are none, by their numbers, and the place of the first ones.
+    pub(super) invalid: Vec<usize>,
+    pub(super) places: Vec<FilePlace>,
 }
 
+/// The places of so many points without coordinates are told.
+const TOLD: usize = 5;
+
 impl Shape {
+    /// Adds a point, whose coordinates may be none.
+    pub(super) fn push(&mut self, coordinates: [f64; 3], place: impl FnOnce() -> FilePlace) {
+        if !is_position(coordinates) {
+            self.invalid.push(self.positions.len());
+            if self.places.len() < TOLD {
+                self.places.push(place());
+            }
+        }
+        self.positions.push(DVec3::from_array(coordinates));
+    }
+
+    /// Leaves out points whose coordinates are none, as far as the settings allow it: those of triangles never.
+    pub(super) fn skip(&mut self, settings: &LoadSettings) -> Result<(), ReadError> {
+        let Some(first) = self.invalid.first() else { return Ok(()) };
+        let count = self.invalid.len();
+        let is_allowed = self.triangles.is_empty() && count as u64 <= settings.most_skipped;
+        if let (false, Some(place)) = (is_allowed, self.places.first()) {
+            let p = self.positions[*first].to_array();
+            let found = p.into_iter().find(|x| !is_coordinate(*x)).unwrap_or(f64::NAN);
+            let (points, expected) = (self.positions.len(), expected_coordinate());
+            let mut found = found.to_string();
+            if count > 1 {
+                let others: Vec<String> = self.places[1..].iter().map(FilePlace::to_string).collect();
+                let more = if count > self.places.len() { ", …" } else { "" };
+                found += &format!("; {count} of {points} points are like this: also {}{more}", others.join(", "));
+            }
+            if self.triangles.is_empty() {
+                found += &format!("; LoadSettings::most_skipped = {count} leaves them out");
+            }
+            return Err(ReadError::content(place.clone(), expected, found));
+        }
+        let mut invalid = std::mem::take(&mut self.invalid).into_iter().peekable();
+        let kept: Vec<bool> = (0..self.positions.len()).map(|i| invalid.next_if_eq(&i).is_none()).collect();
+        keep(&mut self.positions, &kept);
+        self.normals.iter_mut().for_each(|normals| keep(normals, &kept));
+        self.colors.iter_mut().for_each(|colors| keep(colors, &kept));
+        Ok(())
+    }
+
     /// As a mesh; lengths are multiplied by `scale`.
     pub(super) fn into_mesh(mut self, scale: f64) -> Result<Mesh, ReadError> {
         if self.triangles.is_empty() && !self.positions.is_empty() {
@@ -158,4 +204,10 @@ fn of_vertices<T: Copy + PartialEq>(
     let mut corners = triangles.as_flattened().iter().zip(values.as_flattened());
     let agree = corners.all(|(v, value)| *found[*v as usize].get_or_insert(*value) == *value);
     agree.then(|| found.into_iter().map(|value| value.unwrap_or(default)).collect())
+}
+
+/// Leaves out what is not kept.
+fn keep<T>(items: &mut Vec<T>, kept: &[bool]) {
+    let mut kept = kept.iter();
+    items.retain(|_| kept.next().copied().unwrap_or(true));
 }

@@ -72,9 +72,11 @@ impl Facets<'_> {
 
     fn read_text(&mut self, data: &[u8]) -> Result<(), ReadError> {
         let mut words = Words::new(data, 0, 1);
+        let mut is_open = false;
         while let Some(word) = words.next() {
             let is = |keyword: &str| word.eq_ignore_ascii_case(keyword.as_bytes());
             if is("solid") || is("endsolid") {
+                is_open = is("solid");
                 // A name follows, of any words or none.
                 words.skip_line();
                 continue;
@@ -99,6 +101,10 @@ impl Facets<'_> {
             words.keyword("endloop")?;
             words.keyword("endfacet")?;
             self.push(corners)?;
+        }
+        if is_open {
+            let expected = "facet or endsolid; of a file that was cut off the rest is needed";
+            return Err(ReadError::content(words.place(), expected, "the end of the file"));
         }
         Ok(())
     }

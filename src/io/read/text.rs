@@ -70,11 +70,22 @@ pub(super) fn lines(data: &[u8]) -> impl Iterator<Item = (u64, &[u8])> {
 
 /// A position, whose coordinates must fit single precision.
 pub(super) fn position(coordinates: [f64; 3], place: impl FnOnce() -> FilePlace) -> Result<DVec3, ReadError> {
-    match coordinates.iter().find(|x| x.is_nan() || x.abs() > f64::from(f32::MAX)) {
+    match coordinates.iter().find(|x| !is_coordinate(**x)) {
         None => Ok(DVec3::from_array(coordinates)),
-        Some(x) => {
-            let expected = format!("a coordinate from {:e} to {:e}", f32::MIN, f32::MAX);
-            Err(ReadError::content(place(), expected, x.to_string()))
-        }
+        Some(x) => Err(ReadError::content(place(), expected_coordinate(), x.to_string())),
     }
+}
+
+/// Whether a number is finite in single precision.
+pub(super) fn is_coordinate(x: f64) -> bool {
+    x.abs() <= f64::from(f32::MAX)
+}
+
+pub(super) fn is_position(coordinates: [f64; 3]) -> bool {
+    coordinates.iter().all(|x| is_coordinate(*x))
+}
+
+/// What a coordinate must be.
+pub(super) fn expected_coordinate() -> String {
+    format!("a coordinate from {:e} to {:e}", f32::MIN, f32::MAX)
 }

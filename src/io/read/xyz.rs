@@ -5,16 +5,17 @@
 //!   1.0,2.0,3.0,0,0,1,200,10,10         numbers between blanks, commas, semicolons or tabs
 //! ```
 //!
-//! Without names, three more columns are normals, unless all their numbers are whole, from 0 to
-//! 255, and some are beyond 1: colours. Six more are normals and then colours. Other columns are left
-//! out, and so are lines that begin with `#` or `//`, empty ones, and a first line that is a count
-//! alone.
+//! Without names, 6 columns are points with normals, unless all numbers of the last three are whole,
+//! from 0 to 255, and some are beyond 1: colours. 9 are points, normals and colours. Of any other
+//! number only the first three are taken, as programs write intensities in front of colours or behind
+//! them, and nothing tells which: a row of names does. Left out are lines that begin with `#` or `//`,
+//! empty ones, a separator at the end of a line, and a first line that is a count alone.
 
 use glam::{DVec3, Vec3};
 
 use super::error::{FilePlace, shown};
 use super::shape::Shape;
-use super::text::{lines, number, position};
+use super::text::{lines, number};
 use super::{LoadSettings, ReadError};
 
 /// x, y, z, a normal, red, green, blue: the columns where they are.
@@ -27,6 +28,7 @@ pub(super) fn read(data: &[u8], settings: &LoadSettings) -> Result<Shape, ReadEr
     let mut columns: Option<Columns> = None;
     let mut is_named = false;
     let mut rows: Vec<[f64; 9]> = Vec::new();
+    let mut shape = Shape::default();
     let mut is_first = true;
     for (line, text) in lines(data) {
         let text = text.trim_ascii();
@@ -55,7 +57,7 @@ pub(super) fn read(data: &[u8], settings: &LoadSettings) -> Result<Shape, ReadEr
                 ReadError::content(FilePlace::Line(line), expected, found)
             })?;
         }
-        position([row[0], row[1], row[2]], || FilePlace::Line(line))?;
+        shape.push([row[0], row[1], row[2]], || FilePlace::Line(line));
         rows.push(row);
     }
     let mut columns = columns.unwrap_or([None; 9]);
@@ -66,22 +68,20 @@ pub(super) fn read(data: &[u8], settings: &LoadSettings) -> Result<Shape, ReadEr
         }
         columns = [columns[0], columns[1], columns[2], None, None, None, columns[3], columns[4], columns[5]];
     }
-    Ok(shape(&rows, &columns))
+    add(&mut shape, &rows, &columns);
+    Ok(shape)
 }
 
-fn shape(rows: &[[f64; 9]], columns: &Columns) -> Shape {
+/// Adds normals and colours, where there are some.
+fn add(shape: &mut Shape, rows: &[[f64; 9]], columns: &Columns) {
     let normal = |row: &[f64; 9]| {
         let normal = DVec3::new(row[3], row[4], row[5]).as_vec3();
         if normal.is_finite() { normal } else { Vec3::ZERO }
     };
     let has = |columns: &[Option<usize>]| columns.iter().all(Option::is_some) && !rows.is_empty();
     let color = |row: &[f64; 9]| [row[6] as u8, row[7] as u8, row[8] as u8, 255];
-    Shape {
-        positions: rows.iter().map(|row| DVec3::new(row[0], row[1], row[2])).collect(),
-        normals: has(&columns[3..6]).then(|| rows.iter().map(normal).collect()),
-        colors: has(&columns[6..]).then(|| rows.iter().map(color).collect()),
-        ..Shape::default()
-    }
+    shape.normals = has(&columns[3..6]).then(|| rows.iter().map(normal).collect());
+    shape.colors = has(&columns[6..]).then(|| rows.iter().map(color).collect());
 }
 
 /// Whether what may be normals is colours.
@@ -92,11 +92,7 @@ fn are_colors(rows: &[[f64; 9]]) -> bool {
 
 /// The columns of rows without names.
 fn by_count(count: usize) -> Columns {
-    let known = match count {
-        0..6 => 3,
-        6..9 => 6,
-        _ => 9,
-    };
+    let known = if count == 6 || count == 9 { count } else { 3 };
     std::array::from_fn(|i| (i < known).then_some(i))
 }
 
@@ -124,6 +120,7 @@ fn named(words: &[&[u8]], line: u64) -> Result<Columns, ReadError> {
 fn words(text: &[u8]) -> Vec<&[u8]> {
     // Where semicolons part the columns, commas are those of decimals, which are not understood.
     if let Some(mark) = [b';', b','].into_iter().find(|mark| text.contains(mark)) {
+        let text = text.strip_suffix(&[mark]).unwrap_or(text);
         return text.split(|byte| *byte == mark).map(<[u8]>::trim_ascii).take(MOST).collect();
     }
     text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).take(MOST).collect()

@@ -51,7 +51,28 @@ impl Profile {
         // Along z a stretch between the smallest and the largest, which changes neither.
         let along = m.determinant().abs().sqrt();
         let matrix = DMat3::from_cols(m.x_axis.extend(0.0), m.y_axis.extend(0.0), DVec3::Z * along);
-        Profile(self.0.affine(DAffine3::from_mat3_translation(matrix, forward.translation.extend(0.0))))
+        self.affine_in_space(DAffine3::from_mat3_translation(matrix, forward.translation.extend(0.0)))
+    }
+
+    /// Mapped by an affine map of space that keeps to the plane: as [`affine`](Profile::affine), with the stretch
+    /// along z chosen. It changes no shape; values are multiplied by the smallest stretch of the whole map.
+    ///
+    /// For maps that come from elsewhere: of a [`Form`](crate::form::Form), of
+    /// [`simplified`](Profile::simplified) profiles. Invertible, numbers within ±10⁹; a map that mixes z with x and y
+    /// makes a solid that is no column.
+    ///
+    /// ```
+    /// use glam::{DAffine3, DVec3};
+    /// use rvachev::Profile;
+    ///
+    /// let disc = Profile::circle(1.0).affine_in_space(DAffine3::from_scale(DVec3::new(2.0, 3.0, 1.0)));
+    /// assert!(disc.contains([0.0, 2.9])? && !disc.contains([0.0, 3.1])?);
+    /// assert!((disc.value([0.0, 0.0])? - 1.0).abs() < 1e-12);
+    /// # Ok::<(), rvachev::SolidError>(())
+    /// ```
+    #[must_use]
+    pub fn affine_in_space(&self, forward: DAffine3) -> Profile {
+        Profile(self.0.affine(forward))
     }
 
     /// The reflection in the line of all points p with `normal·p = offset`, for a unit normal:

@@ -1,8 +1,8 @@
 //! Scans compared with models.
 
 use glam::DVec3;
-use rvachev::fit::{FitError, inspect};
-use rvachev::{CellSize, MeshSettings, PointCloud, RFunction, Solid};
+use rvachev::fit::{FitError, RegisterSettings, inspect, register};
+use rvachev::{Camera, CellSize, MeshSettings, PointCloud, RFunction, Solid};
 
 use super::clouds::normals;
 use crate::support::Random;
@@ -63,4 +63,53 @@ fn signs_are_positive_outside() {
     let error = inspect(&Solid::sphere(-2.0), &points).unwrap_err();
     assert!(matches!(error, FitError::Solid(_)), "{error}");
     assert!(inspect(&Solid::sphere(1.0), &PointCloud::new(Vec::new()).unwrap()).is_err());
+}
+
+#[test]
+fn points_beyond_all_solids_are_refused() {
+    for far in [1e10, 1e160, -1e300] {
+        let points = PointCloud::new(vec![DVec3::X, DVec3::new(0.0, far, 0.0)]).unwrap();
+        let error = inspect(&Solid::sphere(1.0), &points).unwrap_err();
+        assert!(matches!(error, FitError::Extent { .. }) && error.to_string().contains("leave out"), "{error}");
+        let many = (0..40).map(|i| DVec3::new(f64::from(i), far, f64::from(i * i % 7)));
+        let many = PointCloud::new(many.collect()).unwrap();
+        let error = register(&Solid::cuboid([1.0, 2.0, 3.0]), &many, &RegisterSettings::default()).unwrap_err();
+        assert!(matches!(error, FitError::Extent { .. }), "{error}");
+    }
+}
+
+#[test]
+fn reports_are_json_without_minus_zero() {
+    let points = vec![DVec3::X * 2.0, DVec3::Y * 2.0, DVec3::Z * -2.0];
+    let report = inspect(&Solid::sphere(2.0).named("a \"b\"\\"), &PointCloud::new(points).unwrap()).unwrap();
+    assert!(report.signed().iter().all(|d| d.is_sign_positive()), "{:?}", report.signed());
+    let text = report.to_json();
+    let json: serde_json::Value = serde_json::from_str(&text).unwrap_or_else(|error| panic!("{error}: {text}"));
+    assert!(!text.contains("-0.0") && !text.contains('\n'), "{text}");
+    assert_eq!(json["points"], 3);
+    assert_eq!(json["leaves"][0]["path"], "a \"b\"\\: sphere");
+    assert_eq!(json["leaves"][0]["shift"].as_array().map(Vec::len), Some(3));
+    let report = inspect(&plate(0.0, 0.0), &scan(&plate(0.06, 0.08), 0.005)).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&report.to_json()).unwrap();
+    let off = json["leaves"].as_array().unwrap().iter().filter(|leaf| leaf["is_off"] == true);
+    let names: Vec<&str> = off.filter_map(|leaf| leaf["path"].as_str()).collect();
+    assert!(names.len() == 2 && names.iter().all(|path| path.contains("boss") || path.contains("hole")), "{names:?}");
+}
+
+#[test]
+fn deviations_are_drawn_beside_their_colours() {
+    let cloud = scan(&plate(0.06, 0.08), 0.005);
+    let report = inspect(&plate(0.0, 0.0), &cloud).unwrap();
+    let camera = Camera::framing(&plate(0.0, 0.0).bounds().unwrap());
+    let picture = report.picture(&cloud, 0.08, &camera, 480, 320).unwrap();
+    let is_red = |[r, g, b, _]: &[u8; 4]| *r == 255 && *g == *b && *g < 100;
+    // The boss is red, and so is the upper end of the bar.
+    assert!(picture.pixels().iter().filter(|pixel| is_red(pixel)).count() > 200);
+    let bar = (0..320).filter_map(|y| picture.pixel(437, y)).filter(|[r, g, b, _]| *r == 255 || *b == 255 && r == g);
+    assert!(bar.count() > 250);
+    let refused = |reach, width| report.picture(&cloud, reach, &camera, width, 10).unwrap_err().to_string();
+    assert!(refused(0.0, 10).contains("reach") && refused(f64::NAN, 10).contains("reach"));
+    assert!(refused(1.0, 0).contains("width") && report.picture(&cloud, 1.0, &camera, 1, 1).is_ok());
+    let other = PointCloud::new(vec![DVec3::ZERO]).unwrap();
+    assert!(matches!(report.picture(&other, 1.0, &camera, 9, 9), Err(FitError::Points(_))));
 }

@@ -299,3 +299,16 @@ fn published_clouds_are_fitted_as_closely_as_by_ems() {
         assert!(here < 1.1 * median + 1e-4, "{name}: {here}");
     }
 }
+
+#[test]
+fn a_few_strays_far_away_change_nothing() {
+    let truth = Quadric::random(&mut Random::new(7));
+    let mut random = Random::new(8);
+    let mut points = cloud(&truth, CONDITIONS[1], 800, &mut random);
+    points.extend([DVec3::splat(1e8), DVec3::new(0.0, -9e8, 3.0), DVec3::X * 1e4]);
+    let fit = superellipsoid(&PointCloud::new(points.clone()).unwrap(), &FitSettings::default()).unwrap();
+    let off = mean_distance(&truth, &found(&fit), 200, &mut random);
+    assert!(off < 0.02, "{off}");
+    assert_eq!(fit.weights().len(), points.len());
+    assert!(fit.weights()[800..].iter().all(|weight| *weight < 0.01), "{:?}", &fit.weights()[800..]);
+}

@@ -87,14 +87,20 @@ impl Model {
         let mut reader = Reader::from_str(text);
         let mut object: Option<(u32, Object)> = None;
         let mut group = None;
-        let mut has_model = false;
+        let (mut has_model, mut has_build) = (false, false);
+        // Of elements that have begun.
+        let mut open: Vec<String> = Vec::new();
         loop {
             model.at = reader.buffer_position();
             let event = reader.read_event().map_err(|error| model.wrong("well-formed XML", error.to_string()))?;
             let (tag, is_empty) = match event {
-                Event::Start(tag) => (tag, false),
+                Event::Start(tag) => {
+                    open.push(tag.local_name().as_ref().to_string());
+                    (tag, false)
+                }
                 Event::Empty(tag) => (tag, true),
                 Event::End(tag) => {
+                    open.pop();
                     if tag.local_name().as_ref() == "object"
                         && let Some((id, object)) = object.take()
                     {
@@ -103,7 +109,16 @@ impl Model {
                     continue;
                 }
                 Event::Eof if !has_model => return Err(model.wrong("a model", "the end of the part")),
-                Event::Eof => return Ok(model),
+                Event::Eof => {
+                    if let Some(element) = open.pop() {
+                        let expected = format!("</{element}>; of a file that was cut off the rest is needed");
+                        return Err(model.wrong(&expected, "the end of the part"));
+                    }
+                    if !has_build {
+                        return Err(model.wrong("a build, which says which objects there are", "the end of the part"));
+                    }
+                    return Ok(model);
+                }
                 _ => continue,
             };
             match tag.local_name().as_ref() {
@@ -111,6 +126,7 @@ impl Model {
                     has_model = true;
                     model.unit = model.unit_of(&tag)?;
                 }
+                "build" => has_build = true,
                 "colorgroup" | "basematerials" => {
                     let id = model.index(&tag, "id")?;
                     model.colors.insert(id, Vec::new());

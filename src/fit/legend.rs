@@ -1,0 +1,89 @@
+//! The bar beside a picture of deviations, with numbers.
+
+use super::inspect::color;
+
+/// Characters of 5 × 7 dots, a row in the five lowest bits.
+const GLYPHS: [(char, [u8; 7]); 14] = [
+    ('0', [0x0e, 0x11, 0x13, 0x15, 0x19, 0x11, 0x0e]),
+    ('1', [0x04, 0x0c, 0x04, 0x04, 0x04, 0x04, 0x0e]),
+    ('2', [0x0e, 0x11, 0x01, 0x02, 0x04, 0x08, 0x1f]),
+    ('3', [0x1f, 0x02, 0x04, 0x02, 0x01, 0x11, 0x0e]),
+    ('4', [0x02, 0x06, 0x0a, 0x12, 0x1f, 0x02, 0x02]),
+    ('5', [0x1f, 0x10, 0x1e, 0x01, 0x01, 0x11, 0x0e]),
+    ('6', [0x06, 0x08, 0x10, 0x1e, 0x11, 0x11, 0x0e]),
+    ('7', [0x1f, 0x01, 0x02, 0x04, 0x08, 0x08, 0x08]),
+    ('8', [0x0e, 0x11, 0x11, 0x0e, 0x11, 0x11, 0x0e]),
+    ('9', [0x0e, 0x11, 0x11, 0x0f, 0x01, 0x02, 0x0c]),
+    ('.', [0x00, 0x00, 0x00, 0x00, 0x00, 0x0c, 0x0c]),
+    ('+', [0x00, 0x04, 0x04, 0x1f, 0x04, 0x04, 0x00]),
+    ('-', [0x00, 0x00, 0x00, 0x1f, 0x00, 0x00, 0x00]),
+    ('e', [0x00, 0x00, 0x0e, 0x11, 0x1f, 0x10, 0x0e]),
+];
+
+const WHITE: [u8; 4] = [255; 4];
+
+/// How wide a character is, with the gap behind it, and how high, in dots.
+const WIDE: usize = 6;
+const HIGH: usize = 7;
+
+/// Draws the bar at the right of a picture that is `width` wide.
+pub(super) fn legend(pixels: &mut [[u8; 4]], width: usize, reach: f64) {
+    let height = pixels.len() / width.max(1);
+    let dot = (height / 240).max(1);
+    let labels: Vec<String> = [1.0, 0.5, 0.0, -0.5, -1.0].map(|t| label(t, reach)).to_vec();
+    let longest = labels.iter().map(String::len).max().unwrap_or_default();
+    let (bar, text) = (8 * dot, longest * WIDE * dot);
+    let margin = 4 * dot;
+    let (top, bottom) = (margin + HIGH * dot, height.saturating_sub(margin + HIGH * dot));
+    // There is no room for it in a small picture.
+    if width < 2 * (bar + text + 3 * margin) || bottom < top + 10 * HIGH * dot {
+        return;
+    }
+    let left = width - margin - text - margin - bar;
+    let mut put = |x: usize, y: usize, color: [u8; 4]| pixels[y * width + x] = color;
+    for y in top..bottom {
+        let t = 1.0 - 2.0 * (y - top) as f64 / (bottom - top - 1) as f64;
+        let [r, g, b] = color(t * reach, reach);
+        (left..left + bar).for_each(|x| put(x, y, [r, g, b, 255]));
+    }
+    for (i, label) in labels.iter().enumerate() {
+        let middle = top + i * (bottom - top - 1) / 4;
+        for (k, c) in label.chars().enumerate() {
+            let Some((_, rows)) = GLYPHS.iter().find(|(own, _)| *own == c) else { continue };
+            for (row, bits) in rows.iter().enumerate() {
+                for column in (0..5).filter(|column| bits >> (4 - column) & 1 == 1) {
+                    let x = left + bar + margin + (k * WIDE + column) * dot;
+                    let y = middle + row * dot - HIGH * dot / 2;
+                    (0..dot * dot).for_each(|at| put(x + at % dot, y + at / dot, WHITE));
+                }
+            }
+        }
+    }
+}
+
+/// A part of the reach, to three digits or so, with its sign.
+fn label(part: f64, reach: f64) -> String {
+    if part == 0.0 {
+        return "0".to_string();
+    }
+    let value = part * reach;
+    if !(1e-4..1e5).contains(&reach) {
+        return format!("{value:+.1e}");
+    }
+    let decimals = (2.0 - reach.log10().floor()).clamp(0.0, 7.0) as usize;
+    let text = format!("{value:+.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_are_short() {
+        let all = |reach| [1.0, 0.5, 0.0, -0.5].map(|t| label(t, reach));
+        assert_eq!(all(0.4), ["+0.4", "+0.2", "0", "-0.2"]);
+        assert_eq!(all(25.0), ["+25", "+12.5", "0", "-12.5"]);
+        assert_eq!(all(3e-6), ["+3.0e-6", "+1.5e-6", "0", "-1.5e-6"]);
+    }
+}

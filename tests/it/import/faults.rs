@@ -1,0 +1,100 @@
+//! What is not whole, or not what its name says, is told with its place and the remedy.
+
+use glam::DVec3;
+use rvachev::io::{FileFormat, LoadSettings, write_3mf, write_stl_ascii};
+use rvachev::{Mesh, PointCloud};
+
+use super::{EXACT, bytes, error, part, read};
+
+fn cloud(format: FileFormat, text: &str) -> Result<PointCloud, String> {
+    PointCloud::read(format, text.as_bytes(), &LoadSettings::default()).map_err(|error| error.to_string())
+}
+
+#[test]
+fn what_is_no_obj_is_an_error() {
+    for (text, place) in [("hello world\n", "line 1"), ("v 0 0 0\n\n<html>\n", "line 3"), ("\u{1}\u{2}v 1\n", "line 1")]
+    {
+        let text = error(FileFormat::Obj, text.as_bytes());
+        assert!(text.starts_with(place) && text.contains("can be taken out"), "{text}");
+    }
+    let all = b"mtllib a.mtl\no thing\ng part\ns off\nusemtl red\nv 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\np 1\nf 1 2 3\n";
+    assert_eq!(read(FileFormat::Obj, all).triangles().len(), 1);
+}
+
+#[test]
+fn stl_as_text_that_was_cut_off_is_an_error() {
+    let whole = bytes(|out| write_stl_ascii(&part(), out));
+    let text = String::from_utf8(whole).expect("text");
+    let end = text.rfind("endfacet").expect("a facet") + "endfacet".len();
+    // Behind a facet all looks well.
+    let message = error(FileFormat::Stl, text[..end].as_bytes());
+    assert!(message.contains("endsolid") && message.contains("cut off"), "{message}");
+    let line = text[..end].lines().count();
+    assert!(message.starts_with(&format!("line {line}: ")), "{message}");
+    assert_eq!(read(FileFormat::Stl, text.as_bytes()).triangles().len(), part().triangles().len());
+}
+
+#[test]
+fn models_of_3mf_that_end_early_are_errors() {
+    use std::io::{Cursor, Read, Write};
+    let whole = bytes(|out| write_3mf(&part(), &EXACT, out));
+    let mut archive = zip::ZipArchive::new(Cursor::new(&whole[..])).expect("an archive");
+    let mut model = String::new();
+    archive.by_name("3D/3dmodel.model").expect("a model").read_to_string(&mut model).expect("text");
+    let packed = |model: &str| {
+        let mut writer = zip::ZipWriter::new(Cursor::new(Vec::new()));
+        writer.start_file("3D/3dmodel.model", zip::write::SimpleFileOptions::default()).expect("a part");
+        writer.write_all(model.as_bytes()).expect("a part");
+        writer.finish().expect("an archive").into_inner()
+    };
+    assert_eq!(read(FileFormat::ThreeMf, &packed(&model)).triangles().len(), part().triangles().len());
+    // Behind any whole element there is an end that looks well.
+    for end in ["<vertices>", "</vertices>", "</object>", "</resources>", "</build>"] {
+        let at = model.find(end).expect("it is there") + end.len();
+        let message = error(FileFormat::ThreeMf, &packed(&model[..at]));
+        assert!(message.contains("cut off"), "{end}: {message}");
+    }
+    let start = model.find("<build").expect("a build");
+    let end = model.find("</build>").expect("its end") + "</build>".len();
+    let message = error(FileFormat::ThreeMf, &packed(&(model[..start].to_string() + &model[end..])));
+    assert!(message.contains("expected a build"), "{message}");
+}
+
+#[test]
+fn columns_that_nothing_tells_are_left_out() {
+    let seven = cloud(FileFormat::Xyz, "1 2 3 200 10 20 30\n4 5 6 100 40 50 60\n").expect("points");
+    assert_eq!((seven.len(), seven.colors(), seven.normals()), (2, None, None));
+    let four = cloud(FileFormat::Xyz, "1 2 3 0.5\n4 5 6 0.25\n").expect("points");
+    assert_eq!((four.len(), four.colors(), four.normals()), (2, None, None));
+    // A row of names tells.
+    let named = cloud(FileFormat::Xyz, "x y z intensity r g b\n1 2 3 200 10 20 30\n").expect("points");
+    assert_eq!(named.colors(), Some(&[[10, 20, 30]][..]));
+    let six = cloud(FileFormat::Xyz, "1 2 3 200 10 20\n").expect("points");
+    assert_eq!(six.colors(), Some(&[[200, 10, 20]][..]));
+    // A comma behind the last column is none.
+    let trailing = cloud(FileFormat::Xyz, "1,2,3,\n4,5,6,\n").expect("points");
+    assert_eq!(trailing.positions(), [DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, 5.0, 6.0)]);
+    assert_eq!(cloud(FileFormat::Xyz, "x;y;z;\n1;2;3;\n").expect("points").len(), 1);
+}
+
+#[test]
+fn points_without_coordinates_are_counted_and_can_be_left_out() {
+    let rows = "x,y,z,nx,ny,nz\n1,2,3,0,0,1\nnan,nan,nan,0,0,1\n4,5,6,0,1,0\n7,inf,8,1,0,0\n";
+    let message = cloud(FileFormat::Xyz, rows).unwrap_err();
+    assert!(message.starts_with("line 3: ") && message.contains("2 of 4 points"), "{message}");
+    assert!(message.contains("also line 5") && message.contains("most_skipped = 2"), "{message}");
+    let settings = |most_skipped| LoadSettings { most_skipped, ..LoadSettings::default() };
+    assert!(PointCloud::read(FileFormat::Xyz, rows.as_bytes(), &settings(1)).is_err());
+    let kept = PointCloud::read(FileFormat::Xyz, rows.as_bytes(), &settings(2)).expect("points");
+    assert_eq!(kept.positions(), [DVec3::new(1.0, 2.0, 3.0), DVec3::new(4.0, 5.0, 6.0)]);
+    assert_eq!(kept.normals().map(<[_]>::len), Some(2));
+    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+        element face 0\nproperty list uchar int vertex_indices\nend_header\n0 0 0\nnan nan nan\n1 1 1\n";
+    assert_eq!(PointCloud::read(FileFormat::Ply, ply.as_bytes(), &settings(9)).expect("points").len(), 2);
+    // Corners of triangles are not left out.
+    let obj = "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n";
+    let message = Mesh::read(FileFormat::Obj, obj.as_bytes(), &settings(9)).unwrap_err().to_string();
+    assert!(message.starts_with("line 2: ") && !message.contains("most_skipped"), "{message}");
+    let message = PointCloud::new(vec![DVec3::X, DVec3::NAN, DVec3::INFINITY]).unwrap_err().to_string();
+    assert!(message.contains("point 1") && message.contains("2 of the points"), "{message}");
+}
