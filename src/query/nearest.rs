@@ -19,29 +19,34 @@ pub(super) fn nearest(program: &Program, patches: &Patches, p: DVec3) -> Option<
     let nearer = centre + away.normalize_or_zero() * FARTHEST * size;
     let p = if (p - centre).abs().max_element() > FARTHEST * size { nearer } else { p };
     let foot = patches.nearest(p)?.point;
-    let refined = refine(program, foot, p, size).filter(|found| found.distance(foot) < 0.1 * size);
-    Some(refined.or_else(|| across(program, foot, size)).unwrap_or(foot))
+    let is_near = |found: &DVec3| found.distance(foot) < 0.1 * size;
+    let refined = refine(program, foot, p, size).filter(is_near).or_else(|| {
+        let start = crossing(program, foot, size)?;
+        Some(refine(program, start, p, size).filter(is_near).unwrap_or(start))
+    });
+    Some(refined.unwrap_or(foot))
 }
 
-/// Where the sign changes near `x`: halved between it and the nearest point of the other sign that is
-/// found along the gradient and the axes. Where the field has a kink, Newton steps go to and fro.
-fn across(program: &Program, x: DVec3, size: f64) -> Option<DVec3> {
+/// Where the sign changes near `x`: halved between it and a point of the other sign, among those all
+/// around it at growing distances. Beyond the end of an edge Newton steps go to and fro over a ridge
+/// of the field.
+fn crossing(program: &Program, x: DVec3, size: f64) -> Option<DVec3> {
+    const WAYS: u32 = 128;
     let inside = |x: DVec3| program.value(x) > 0.0;
-    let (here, slope) = (inside(x), program.gradient(x).1.normalize_or(DVec3::X));
+    let here = inside(x);
+    // Points of a spiral over the sphere, as many to every area.
+    let way = |n: u32| {
+        let z = 1.0 - (2.0 * f64::from(n) + 1.0) / f64::from(WAYS);
+        let (sin, cos) = (2.399_963_229_728_653 * f64::from(n)).sin_cos();
+        DVec3::new((1.0 - z * z).sqrt() * cos, (1.0 - z * z).sqrt() * sin, z)
+    };
     let mut reach = 1e-7 * size;
-    while reach < 0.05 * size {
-        for way in [slope, DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|way| [way, -way]) {
-            if inside(x + reach * way) == here {
-                continue;
-            }
+    while reach < 0.1 * size {
+        if let Some(way) = (0..WAYS).map(way).find(|way| inside(x + reach * *way) != here) {
             let (mut low, mut high) = (0.0, reach);
-            while high - low > 1e-12 * size {
+            while high - low > 1e-13 * size {
                 let middle = 0.5 * (low + high);
-                if inside(x + middle * way) == here {
-                    low = middle;
-                } else {
-                    high = middle;
-                }
+                if inside(x + middle * way) == here { low = middle } else { high = middle }
             }
             return Some(x + high * way);
         }
