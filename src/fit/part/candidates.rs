@@ -46,6 +46,7 @@ pub(super) fn propose(
     queries: &Queries,
     kinds: PartKinds,
 ) {
+    // The volume is that of the facets; what they are chords of is told by the vertices in the end.
     for region in regions {
         let may = [region.sign > 0.0, region.sign < 0.0];
         match region.form {
@@ -56,17 +57,17 @@ pub(super) fn propose(
             }
             Form::Sphere { centre, radius } => {
                 if kinds.spheres {
-                    pool.add(Leaf::sphere(centre, radius), queries, may, None);
+                    pool.add(Leaf::sphere(centre, region.chordal * radius), queries, may, None);
                 }
             }
             Form::Torus { axis, centre, major, minor } => {
                 if kinds.tori && minor < SPINDLE * major {
-                    pool.add(Leaf::torus(axis, centre, major, minor), queries, may, None);
+                    pool.add(Leaf::torus(axis, centre, major, region.chordal * minor), queries, may, None);
                 }
             }
             Form::Cylinder { axis, origin, radius, along, arc } => {
                 if kinds.cylinders && arc >= ARC {
-                    let side = Side { axis, origin, radius, slope: 0.0 };
+                    let side = Side { axis, origin, radius: region.chordal * radius, slope: 0.0 };
                     side.propose(pool, &spans(region, samples, axis, origin, along), may, regions, part, queries);
                 }
             }

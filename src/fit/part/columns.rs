@@ -59,6 +59,17 @@ impl Shape {
         }
     }
 
+    /// The ratio of a radius to another one's, of shapes that differ by chords; 1 where they differ otherwise.
+    pub(super) fn smaller(&self, than: &Shape) -> f64 {
+        let ratio = match (*self, *than) {
+            (Shape::Sphere { radius: a, .. }, Shape::Sphere { radius: b, .. })
+            | (Shape::Cone { radius: a, slope: 0.0, .. }, Shape::Cone { radius: b, slope: 0.0, .. })
+            | (Shape::Torus { minor: a, .. }, Shape::Torus { minor: b, .. }) => a / b,
+            _ => 1.0,
+        };
+        if (0.95..=1.0).contains(&ratio) { ratio } else { 1.0 }
+    }
+
     /// How far a point is from the shape, at right angles to it.
     pub(super) fn off(&self, p: DVec3) -> f64 {
         // Whatever the normal is.

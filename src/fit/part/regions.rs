@@ -23,6 +23,8 @@ pub(super) struct Region {
     pub(super) share: f64,
     /// 1 if the normals point away from the axis or centre, −1 in a hole; 1 of planes.
     pub(super) sign: f64,
+    /// How much smaller, as a factor, the radius is that samples are about: facets are chords of what the form is.
+    pub(super) chordal: f64,
 }
 
 /// What a region is of. Axes and normals are units.

@@ -76,6 +76,7 @@ pub(super) struct Settled {
     pub(super) share: f64,
     along: [f64; 2],
     arc: f64,
+    chordal: f64,
 }
 
 /// The region that a hypothesis stands for, if it is one.
@@ -147,7 +148,7 @@ pub(super) fn settle(
     if share < limits.share {
         return None;
     }
-    let mut settled = Settled { frame, shape, points, share, along: [0.0; 2], arc: 0.0 };
+    let mut settled = Settled { frame, shape, points, share, along: [0.0; 2], arc: 0.0, chordal: 1.0 };
     settled.judge(samples, taken, limits).then_some(settled)
 }
 
@@ -194,7 +195,9 @@ impl Settled {
         if !self.is_true(samples, corners.len() < CORNERS, limits) {
             return false;
         }
+        let before = self.shape;
         let corners = self.adjust_to_corners(corners);
+        self.chordal = before.smaller(&self.shape);
         match self.shape {
             Shape::Plane { .. } => false,
             Shape::Sphere { .. } => {
@@ -320,6 +323,6 @@ impl Settled {
                 (Form::Torus { axis, centre: at(centre), major, minor }, sign)
             }
         };
-        Region { form, points: self.points, share: self.share, sign }
+        Region { form, points: self.points, share: self.share, sign, chordal: self.chordal }
     }
 }
