@@ -205,7 +205,8 @@ impl Selector<'_> {
         better
     }
 
-    fn drop_one(&mut self, model: &mut Model) {
+    /// Leaves out what is not worth its parameters.
+    pub(super) fn drop_one(&mut self, model: &mut Model) {
         let mut i = 0;
         while i < model.steps.len() {
             let mut steps = model.steps.clone();
