@@ -42,6 +42,7 @@ mod snap;
 mod sobol;
 mod straighten;
 mod superellipsoids;
+mod topology;
 
 pub use result::{PartFit, PartLeaf, Topology, Unexplained};
 pub use settings::{PartKinds, PartSettings};

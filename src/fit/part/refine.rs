@@ -11,7 +11,7 @@ use glam::DVec3;
 
 use super::freedom::MOST;
 use super::leaf::Leaf;
-use super::samples::Samples;
+use super::samples::{Kind, Samples};
 use crate::fit::linear::solved;
 use crate::{Cancelled, Run};
 
@@ -63,6 +63,10 @@ pub(super) fn refined(leaves: &[(bool, Leaf)], samples: &Samples, run: &Run) -> 
             }
         }
         for ((adds, leaf), own) in leaves.iter_mut().zip(own) {
+            if samples.kind == Kind::Cad && !leaf.is_free() {
+                // Corners have told it, which samples of facets are inside of.
+                continue;
+            }
             let sign = if *adds { 1.0 } else { -1.0 };
             let agrees = |i: &usize| sign * leaf.gradient(samples.points[*i]).dot(samples.normals[*i]) > AGREE;
             let agreeing = own.into_iter().filter(agrees);

@@ -37,21 +37,23 @@ pub(super) fn snapped(leaves: &[(bool, Leaf)], vertices: &[DVec3], run: &Run) ->
             }
         }
     }
-    let mut meant = vec![[0_usize; 2]; leaves.len()];
-    for p in vertices {
-        for ((_, leaf), [meant, met]) in laid.iter().zip(&mut meant) {
-            let distance = leaf.distance(*p).abs();
-            *meant += usize::from(distance < MEANT);
-            *met += usize::from(distance < MET);
+    let was_met = met(leaves, vertices);
+    let is_met = met(&laid, vertices);
+    for (i, leaf) in laid.iter_mut().enumerate() {
+        let [meant, now] = is_met[i];
+        let is_better = 2 * now > meant && now > was_met[i][1];
+        if !is_better || leaf.1.centre.distance(leaves[i].1.centre) > FARTHEST {
+            *leaf = leaves[i].clone();
         }
     }
-    let is_meant = |(((_, leaf), (_, was)), [meant, met]): &((&(bool, Leaf), &(bool, Leaf)), &[usize; 2])| {
-        2 * met > *meant && leaf.centre.distance(was.centre) < FARTHEST
+    Ok(laid)
+}
+
+/// By leaf, how many vertices are near it, and how many are on it.
+fn met(leaves: &[(bool, Leaf)], vertices: &[DVec3]) -> Vec<[usize; 2]> {
+    let count = |(_, leaf): &(bool, Leaf)| {
+        let distances = vertices.iter().map(|p| leaf.distance(*p).abs());
+        distances.fold([0, 0], |[meant, met], d| [meant + usize::from(d < MEANT), met + usize::from(d < MET)])
     };
-    Ok(laid
-        .iter()
-        .zip(leaves)
-        .zip(&meant)
-        .map(|all| if is_meant(&all) { all.0.0.clone() } else { all.0.1.clone() })
-        .collect())
+    leaves.iter().map(count).collect()
 }
