@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
-use rvachev_field::MeshLeaf;
 
 use super::super::deviations::Deviation;
 use super::super::error::FitError;
+use super::body::Body;
 use super::leaf::Leaf;
 use super::queries::MARGIN;
 use super::refine::owner;
@@ -34,13 +34,7 @@ const TOLD: f64 = 1e-3;
 const CELLS: [u32; 2] = [128, 384];
 
 /// The result for leaves in diagonals about the centre.
-pub(super) fn finish(
-    leaves: &[(bool, Leaf)],
-    mesh: &Mesh,
-    winding: &MeshLeaf,
-    samples: &Samples,
-    run: &Run,
-) -> Result<PartFit, FitError> {
+pub(super) fn finish(leaves: &[(bool, Leaf)], body: &Body, samples: &Samples, run: &Run) -> Result<PartFit, FitError> {
     let [to_compare, to_mesh, to_mesh_again] = run.stages([0.3, 0.3, 0.4]);
     let Samples { centre, size, .. } = *samples;
     let mut shares = vec![0.0; leaves.len()];
@@ -50,14 +44,13 @@ pub(super) fn finish(
         shares[owner.unwrap_or(0)] += weight;
         distances.push(size * distance);
     }
-    let (iou, unexplained) = compared(leaves, mesh, winding, samples, &to_compare)?;
+    let (iou, unexplained) = compared(leaves, body, samples, &to_compare)?;
     let leaves = named(leaves, &shares, centre, size);
     let solid = tree(&leaves);
     solid.bounds()?;
-    let report = mesh.check_with(&Run { progress: None, ..run.clone() })?;
-    let topology_of_input = Topology { genus: report.genus, shells: report.shells };
+    let topology_of_input = body.topology;
     let mut topology = meshed(&solid, CELLS[0], &to_mesh)?;
-    if topology != topology_of_input {
+    if topology_of_input.genus.is_some() && topology != topology_of_input {
         // It may be that a wall or a hole fell between the cells.
         topology = meshed(&solid, CELLS[1], &to_mesh_again)?;
     }
@@ -109,13 +102,12 @@ fn tree(leaves: &[PartLeaf]) -> Solid {
 /// The volume in common over that of either, and the places where they differ.
 fn compared(
     leaves: &[(bool, Leaf)],
-    mesh: &Mesh,
-    winding: &MeshLeaf,
+    body: &Body,
     samples: &Samples,
     run: &Run,
 ) -> Result<(f64, Vec<Unexplained>), FitError> {
     let Samples { centre, size, .. } = *samples;
-    let bounds = mesh.bounds();
+    let bounds = body.bounds;
     let margin = MARGIN * bounds.size();
     let (low, span) = (bounds.min - margin, bounds.size() + 2.0 * margin);
     let points: Vec<DVec3> = Sobol::new().take(POINTS).map(|p| low + span * p).collect();
@@ -129,7 +121,7 @@ fn compared(
                     if inside != *adds && leaf.contains(local) { *adds } else { inside }
                 },
             );
-            [winding.winding_number(*p) > 0.5, found]
+            [body.contains(*p), found]
         };
         Ok(chunk.iter().map(side).collect::<Vec<_>>())
     };
