@@ -1,12 +1,12 @@
 //! What is inside of what was given: of a mesh by its winding number, of points by that of a dipole each.
 
-use rvachev_field::MeshLeaf;
-
 use glam::DVec3;
+use rvachev_field::MeshLeaf;
 
 use super::dipoles::Dipoles;
 use super::result::Topology;
 use super::samples::Samples;
+use super::topology;
 use crate::fit::FitError;
 use crate::geom::Mesh;
 use crate::{Bounds, Run};
@@ -28,9 +28,7 @@ enum Inside {
 impl Body {
     pub(super) fn of_mesh(mesh: &Mesh, run: &Run) -> Result<Body, FitError> {
         let leaf = MeshLeaf::new(mesh.positions(), mesh.triangles(), None, run)?;
-        let report = mesh.check_with(&Run { progress: None, ..run.clone() })?;
-        let topology = Topology { genus: report.genus, shells: report.shells };
-        Ok(Body { bounds: mesh.bounds(), topology, inside: Inside::Mesh(leaf) })
+        Ok(Body { bounds: mesh.bounds(), topology: topology::of_mesh(mesh, run)?, inside: Inside::Mesh(leaf) })
     }
 
     /// Of the points that samples of a cloud are.

@@ -14,9 +14,9 @@ use super::refine::owner;
 use super::result::{PartFit, PartLeaf, Topology, Unexplained};
 use super::samples::Samples;
 use super::sobol::Sobol;
-use crate::error::MeshingError;
+use super::topology::tree;
 use crate::geom::Mesh;
-use crate::{Bounds, CellSize, Features, MeshSettings, Run, Solid};
+use crate::{Bounds, Run};
 
 /// Points that the volumes in common are estimated from.
 const POINTS: usize = 1 << 14;
@@ -30,12 +30,14 @@ const PLACES: f64 = 24.0;
 /// Places with less wrong volume are not told of, as a share of the part's.
 const TOLD: f64 = 1e-3;
 
-/// Cells along the longest side of the mesh that tells genus and shells, and of one that tells them better.
-const CELLS: [u32; 2] = [128, 384];
-
 /// The result for leaves in diagonals about the centre.
-pub(super) fn finish(leaves: &[(bool, Leaf)], body: &Body, samples: &Samples, run: &Run) -> Result<PartFit, FitError> {
-    let [to_compare, to_mesh, to_mesh_again] = run.stages([0.3, 0.3, 0.4]);
+pub(super) fn finish(
+    leaves: &[(bool, Leaf)],
+    body: &Body,
+    samples: &Samples,
+    topology: Topology,
+    run: &Run,
+) -> Result<PartFit, FitError> {
     let Samples { centre, size, .. } = *samples;
     let mut shares = vec![0.0; leaves.len()];
     let mut distances = Vec::with_capacity(samples.points.len());
@@ -44,38 +46,14 @@ pub(super) fn finish(leaves: &[(bool, Leaf)], body: &Body, samples: &Samples, ru
         shares[owner.unwrap_or(0)] += weight;
         distances.push(size * distance);
     }
-    let (iou, unexplained) = compared(leaves, body, samples, &to_compare)?;
+    let (iou, unexplained) = compared(leaves, body, samples, run)?;
     let leaves = named(leaves, &shares, centre, size);
-    let solid = tree(&leaves);
+    let named_solids = leaves.iter().map(|leaf| (leaf.adds, leaf.leaf.solid().named(&leaf.name)));
+    let solid = tree(named_solids).ok_or(FitError::NoSurface { inliers: 0.0 })?;
     solid.bounds()?;
     let topology_of_input = body.topology;
-    let mut topology = meshed(&solid, CELLS[0], &to_mesh)?;
-    if topology_of_input.genus.is_some() && topology != topology_of_input {
-        // It may be that a wall or a hole fell between the cells.
-        topology = meshed(&solid, CELLS[1], &to_mesh_again)?;
-    }
     let deviation = Deviation::of(distances.into_iter());
     Ok(PartFit { leaves, solid, iou, deviation, topology, topology_of_input, unexplained })
-}
-
-/// Genus and shells of a solid's surface.
-fn meshed(solid: &Solid, cells: u32, run: &Run) -> Result<Topology, FitError> {
-    let cell = CellSize::LongestSide(cells);
-    let settings = MeshSettings { cell, features: Features::Smooth, ..MeshSettings::default() };
-    match solid.mesh_with(&settings, run) {
-        Ok(made) => of_closed(&made, run),
-        Err(MeshingError::Cancelled(cancelled)) => Err(cancelled.into()),
-        // What cannot be meshed has none that is known.
-        Err(_) => Ok(Topology::default()),
-    }
-}
-
-/// Of a mesh that is closed and manifold, as all meshes of solids are.
-fn of_closed(mesh: &Mesh, run: &Run) -> Result<Topology, FitError> {
-    let shells = mesh.components_with(&Run { progress: None, ..run.clone() })?.len();
-    // Three edges a triangle, each of two of them; every vertex is used.
-    let euler = mesh.positions().len() as i64 - mesh.triangles().len() as i64 / 2;
-    Ok(Topology { genus: Some(shells as i64 - euler / 2), shells })
 }
 
 /// The leaves in length units, called by their kinds.
@@ -90,13 +68,6 @@ fn named(leaves: &[(bool, Leaf)], shares: &[f64], centre: DVec3, size: f64) -> V
         named.push(PartLeaf { adds: *adds, leaf: leaf.outward(centre, size), name, surface: *surface });
     }
     named
-}
-
-/// All leaves as one solid.
-fn tree(leaves: &[PartLeaf]) -> Solid {
-    let mut solids = leaves.iter().map(|leaf| (leaf.adds, leaf.leaf.solid().named(&leaf.name)));
-    let first = solids.next().map_or_else(|| Solid::sphere(1.0), |(_, solid)| solid);
-    solids.fold(first, |solid, (adds, leaf)| if adds { solid | leaf } else { solid - leaf })
 }
 
 /// The volume in common over that of either, and the places where they differ.

@@ -46,6 +46,7 @@ mod snap;
 mod sobol;
 mod straighten;
 mod superellipsoids;
+mod topology;
 
 pub use patterns::{Layout, Pattern};
 pub use result::{PartFit, PartLeaf, Topology, Unexplained};

@@ -22,7 +22,7 @@ use super::samples::{Kind, Samples};
 use super::select::Selector;
 use super::settings::PartSettings;
 use super::snap::snapped;
-use super::{profiles, superellipsoids};
+use super::{profiles, superellipsoids, topology};
 use crate::field::COORDINATE_LIMIT;
 use crate::fit::grid::extent;
 use crate::geom::{Mesh, PointCloud};
@@ -49,7 +49,7 @@ const ALLOWED_RISE: f64 = 1e-4;
 const FEWEST: usize = 200;
 
 /// Vertices that lengths are judged by, at most.
-const VERTICES: usize = 8000;
+const VERTICES: usize = 3000;
 
 /// Recovers a part from a mesh.
 pub(super) fn recover(mesh: &Mesh, settings: &PartSettings, run: &Run) -> Result<PartFit, FitError> {
@@ -97,12 +97,21 @@ fn recovered(
     if queries.inside.is_none() {
         return Err(hollow);
     }
-    let leaves = chosen(&samples, &regions, &queries, settings, &to_select)?;
-    let leaves = if vertices.is_empty() { leaves } else { snapped(&leaves, vertices, run)? };
-    if leaves.is_empty() {
+    let mut selector = selector(&samples, &regions, &queries, settings, &to_select)?;
+    let model = selector.select(Vec::new(), &to_select)?;
+    let mut model = moved(&mut selector, model, &samples, &to_select)?;
+    if settings.snap && !vertices.is_empty() {
+        let laid = snapped(&leaves(&selector.pool, &model.steps), vertices, &to_select)?;
+        let steps = steps(&mut selector, &model, laid);
+        model = selector.model(steps);
+        // What the exact lengths leave nothing to do for.
+        selector.drop_one(&mut model);
+    }
+    if model.steps.is_empty() {
         return Err(FitError::NoSurface { inliers: 0.0 });
     }
-    let fit = finish(&leaves, body, &samples, &to_finish)?;
+    let (model, topology) = topology::mended(&selector, model, body.topology, &samples, run)?;
+    let fit = finish(&leaves(&selector.pool, &model.steps), body, &samples, topology, &to_finish)?;
     run.report(1.0);
     Ok(fit)
 }
@@ -179,14 +188,14 @@ fn share(region: &Region) -> f64 {
     region.share.max(if is_hole { SHARES[1] } else { SHARES[0] })
 }
 
-/// The leaves that make the part.
-fn chosen(
+/// All candidates, ready to be chosen from.
+fn selector<'a>(
     samples: &Samples,
     regions: &Regions,
-    queries: &Queries,
+    queries: &'a Queries,
     settings: &PartSettings,
     run: &Run,
-) -> Result<Vec<(bool, Leaf)>, FitError> {
+) -> Result<Selector<'a>, FitError> {
     let kinds = settings.kinds;
     let mut pool = Pool::new(settings.parameter_cost * (1.0 + samples.noise / 0.001));
     let low = samples.points.iter().fold(DVec3::INFINITY, |low, p| low.min(*p));
@@ -203,25 +212,27 @@ fn chosen(
     if kinds.boxes {
         grids = regions.frames.iter().map(|frame| grid(*frame, &regions.regions, &samples.points, queries)).collect();
     }
-    let mut selector = Selector { pool, queries, grids };
-    let model = selector.select(Vec::new(), run)?;
-    let model = moved(&mut selector, model, samples, run)?;
-    Ok(leaves(&selector.pool, &model.steps))
+    Ok(Selector { pool, queries, grids })
 }
 
 fn leaves(pool: &Pool, steps: &[Step]) -> Vec<(bool, Leaf)> {
     steps.iter().map(|step| (step.adds, pool.candidates[step.which as usize].leaf.clone())).collect()
 }
 
+/// The steps of a model with other leaves in their places.
+fn steps(selector: &mut Selector<'_>, model: &Model, leaves: Vec<(bool, Leaf)>) -> Vec<Step> {
+    let mut steps = model.steps.clone();
+    for (step, (_, leaf)) in steps.iter_mut().zip(leaves) {
+        let may = selector.pool.candidates[step.which as usize].may;
+        step.which = selector.pool.add(leaf, selector.queries, may, None);
+    }
+    steps
+}
+
 /// The model with its leaves moved onto the surface, where that is not for the worse, and changed if it pays then.
 fn moved(selector: &mut Selector<'_>, model: Model, samples: &Samples, run: &Run) -> Result<Model, FitError> {
     let fitted = refined(&leaves(&selector.pool, &model.steps), samples, run)?;
-    let steps: Vec<Step> = (model.steps.iter().zip(fitted))
-        .map(|(step, (adds, leaf))| {
-            let may = selector.pool.candidates[step.which as usize].may;
-            Step { adds, which: selector.pool.add(leaf, selector.queries, may, None) }
-        })
-        .collect();
+    let steps = steps(selector, &model, fitted);
     let all = selector.model(steps.clone());
     let mut best = model;
     if all.cost < best.cost + ALLOWED_RISE {

@@ -25,6 +25,9 @@ const FORGIVING: f64 = 0.15;
 /// Cuts of one leaf that are tried before it is given up.
 const CUTS: usize = 16;
 
+/// Leaves that are tried in the place of one.
+const REBUILT: usize = 4;
+
 /// Most leaves.
 const MOST: usize = 48;
 
@@ -180,7 +183,9 @@ impl Selector<'_> {
     pub(super) fn improve(&mut self, mut model: Model, run: &Run) -> Result<Model, Cancelled> {
         for _ in 0..PASSES {
             let before = model.cost;
-            for change in [Self::drop_one, Self::exchange, Self::move_one, Self::add_one, Self::change_end] {
+            let changes: [fn(&mut Self, &mut Model); 6] =
+                [Self::drop_one, Self::exchange, Self::move_one, Self::add_one, Self::change_end, Self::rebuild];
+            for change in changes {
                 run.check()?;
                 change(self, &mut model);
             }
@@ -200,7 +205,8 @@ impl Selector<'_> {
         better
     }
 
-    fn drop_one(&mut self, model: &mut Model) {
+    /// Leaves out what is not worth its parameters.
+    pub(super) fn drop_one(&mut self, model: &mut Model) {
         let mut i = 0;
         while i < model.steps.len() {
             let mut steps = model.steps.clone();
@@ -223,6 +229,37 @@ impl Selector<'_> {
                     steps.insert(i, Step { adds, which });
                     self.keep(model, steps);
                 }
+            }
+        }
+    }
+
+    /// Several leaves in the place of each: one that does the work of two badly is in the way of both.
+    fn rebuild(&mut self, model: &mut Model) {
+        let mut i = 0;
+        while i < model.steps.len() {
+            let mut steps = model.steps.clone();
+            steps.remove(i);
+            let mut next = self.model(steps);
+            for _ in 0..REBUILT {
+                let end = next.steps.len();
+                let mut best: Option<Model> = None;
+                for adds in [true, false] {
+                    let stakes = self.judge().stakes(&next.steps, end, adds);
+                    if let Some((_, which)) = self.best(&stakes, adds, 1.0, 1).first().copied() {
+                        let one = self.with(&next.steps, end, Step { adds, which });
+                        if one.cost < best.as_ref().unwrap_or(&next).cost - GRAIN {
+                            best = Some(one);
+                        }
+                    }
+                }
+                let Some(best) = best else { break };
+                next = best;
+            }
+            self.drop_one(&mut next);
+            if next.cost < model.cost - GRAIN {
+                *model = next;
+            } else {
+                i += 1;
             }
         }
     }

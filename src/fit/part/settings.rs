@@ -24,6 +24,10 @@ pub struct PartSettings {
     pub parameter_cost: f64,
     /// How far the vertices are off the true surface, as a standard deviation, in length units: 0 to 10⁹. Default: 0.
     pub noise: f64,
+    /// Whether leaves are laid through the vertices of the mesh where these tell them exactly. The radius of a cylinder
+    /// of facets is then that of its corners, as it was meant, though a smaller one has more volume in common with the
+    /// facets. Default: `true`.
+    pub snap: bool,
 }
 
 /// Which leaves a part may be made of.
@@ -71,7 +75,7 @@ impl Default for PartKinds {
 
 impl Default for PartSettings {
     fn default() -> PartSettings {
-        PartSettings { seed: 0, kinds: PartKinds::default(), parameter_cost: 1.5e-4, noise: 0.0 }
+        PartSettings { seed: 0, kinds: PartKinds::default(), parameter_cost: 1.5e-4, noise: 0.0, snap: true }
     }
 }
 

@@ -1,0 +1,118 @@
+//! Genus and shells: of a mesh, of a tree, and trees without the leaves that spoil them.
+//!
+//! ```text
+//!      _________        A leaf that is nearly flush with another leaves a skin between them, or a slit: hardly any
+//!     |_________|~      volume, but handles and shells. What the mesh has tells whether they are meant.
+//! ```
+
+use super::super::error::FitError;
+use super::leaf::Leaf;
+use super::model::{Model, Step};
+use super::result::Topology;
+use super::samples::Samples;
+use super::select::Selector;
+use crate::error::MeshingError;
+use crate::geom::Mesh;
+use crate::{CellSize, Features, MeshSettings, Run, Solid};
+
+/// Cells along the longest side of the mesh that tells genus and shells, and of one that tells them better.
+const CELLS: [u32; 2] = [128, 384];
+
+/// J may rise by so much where a leaf is left out for the topology.
+const RISE: f64 = 0.004;
+
+/// Leaves that are tried.
+const TRIED: usize = 6;
+
+/// What a mesh has.
+pub(super) fn of_mesh(mesh: &Mesh, run: &Run) -> Result<Topology, FitError> {
+    let report = mesh.check_with(&quiet(run))?;
+    Ok(Topology { genus: report.genus, shells: report.shells })
+}
+
+fn quiet(run: &Run) -> Run {
+    Run { progress: None, ..run.clone() }
+}
+
+/// Leaves as one solid, in the order in which they are added and cut.
+pub(super) fn tree(leaves: impl IntoIterator<Item = (bool, Solid)>) -> Option<Solid> {
+    leaves.into_iter().fold(None, |tree, (adds, leaf)| match (tree, adds) {
+        (None, true) => Some(leaf),
+        (None, false) => None,
+        (Some(tree), true) => Some(tree | leaf),
+        (Some(tree), false) => Some(tree - leaf),
+    })
+}
+
+fn of_tree(leaves: &[(bool, Leaf)], samples: &Samples, cells: u32, run: &Run) -> Result<Topology, FitError> {
+    let outward = leaves.iter().map(|(adds, leaf)| (*adds, leaf.outward(samples.centre, samples.size).solid()));
+    let Some(solid) = tree(outward) else { return Ok(Topology::default()) };
+    let cell = CellSize::LongestSide(cells);
+    let settings = MeshSettings { cell, features: Features::Smooth, ..MeshSettings::default() };
+    let made = match solid.mesh_with(&settings, &quiet(run)) {
+        Ok(made) => made,
+        Err(MeshingError::Cancelled(cancelled)) => return Err(cancelled.into()),
+        // What cannot be meshed has none that is known.
+        Err(_) => return Ok(Topology::default()),
+    };
+    let shells = made.components_with(&quiet(run))?.len();
+    // It is closed and manifold: three edges a triangle, each of two of them; every vertex is used.
+    let euler = made.positions().len() as i64 - made.triangles().len() as i64 / 2;
+    Ok(Topology { genus: Some(shells as i64 - euler / 2), shells })
+}
+
+/// How far two are apart; nothing if one is not known.
+fn apart(a: Topology, b: Topology) -> Option<u64> {
+    Some(a.genus?.abs_diff(b.genus?) + a.shells.abs_diff(b.shells) as u64)
+}
+
+/// The model without leaves that spoil the topology and mend little, and its topology.
+pub(super) fn mended(
+    selector: &Selector<'_>,
+    mut model: Model,
+    meant: Topology,
+    samples: &Samples,
+    run: &Run,
+) -> Result<(Model, Topology), FitError> {
+    let leaves = |steps: &[Step]| -> Vec<(bool, Leaf)> {
+        steps.iter().map(|step| (step.adds, selector.pool.candidates[step.which as usize].leaf.clone())).collect()
+    };
+    let mut found = of_tree(&leaves(&model.steps), samples, CELLS[0], run)?;
+    // Of points nothing is known that could be meant.
+    if meant.genus.is_none() || apart(found, meant) == Some(0) {
+        return Ok((model, found));
+    }
+    // It may be that a wall or a hole fell between the cells.
+    let finer = of_tree(&leaves(&model.steps), samples, CELLS[1], run)?;
+    if apart(finer, meant) == Some(0) {
+        return Ok((model, finer));
+    }
+    let limit = model.cost + RISE;
+    let mut tried = 0;
+    while let Some(off) = apart(found, meant).filter(|off| *off > 0) {
+        let mut without: Vec<Model> = (0..model.steps.len())
+            .map(|i| {
+                let mut steps = model.steps.clone();
+                steps.remove(i);
+                selector.model(steps)
+            })
+            .filter(|next| next.cost < limit)
+            .collect();
+        without.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        let mut better = None;
+        for next in without {
+            if tried == TRIED {
+                break;
+            }
+            tried += 1;
+            let topology = of_tree(&leaves(&next.steps), samples, CELLS[0], run)?;
+            if apart(topology, meant).is_some_and(|next| next < off) {
+                better = Some((next, topology));
+                break;
+            }
+        }
+        let Some((next, topology)) = better else { break };
+        (model, found) = (next, topology);
+    }
+    Ok((model, found))
+}
