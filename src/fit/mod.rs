@@ -145,7 +145,7 @@ pub use deviations::Deviation;
 pub use error::FitError;
 pub use inspect::{Deviations, LeafDeviation, inspect, inspect_with};
 pub use part::{
-    Layout, PartFit, PartKinds, PartLeaf, PartSettings, Pattern, Topology, Unexplained, part, part_of_points,
+    Layout, PartFit, PartKinds, PartLeaf, PartSettings, Pattern, Snap, Topology, Unexplained, part, part_of_points,
     part_of_points_with, part_with,
 };
 pub use register::{RegisterSettings, Registration, register, register_with};

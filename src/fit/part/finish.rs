@@ -8,15 +8,15 @@ use rayon::prelude::*;
 use super::super::deviations::Deviation;
 use super::super::error::FitError;
 use super::body::Body;
+use super::intent::Meant;
 use super::leaf::Leaf;
 use super::queries::MARGIN;
 use super::refine::owner;
-use super::result::{PartFit, PartLeaf, Topology, Unexplained};
+use super::result::{PartFit, PartLeaf, Snap, Topology, Unexplained};
 use super::samples::Samples;
 use super::sobol::Sobol;
 use super::topology::tree;
-use crate::geom::Mesh;
-use crate::{Bounds, Run};
+use crate::{Bounds, Run, Solid};
 
 /// Points that the volumes in common are estimated from.
 const POINTS: usize = 1 << 14;
@@ -33,12 +33,13 @@ const TOLD: f64 = 1e-3;
 /// The result for leaves in diagonals about the centre.
 pub(super) fn finish(
     leaves: &[(bool, Leaf)],
+    meant: Vec<Meant>,
     body: &Body,
     samples: &Samples,
     topology: Topology,
     run: &Run,
 ) -> Result<PartFit, FitError> {
-    let Samples { centre, size, .. } = *samples;
+    let size = samples.size;
     let mut shares = vec![0.0; leaves.len()];
     let mut distances = Vec::with_capacity(samples.points.len());
     for (p, weight) in samples.points.iter().zip(&samples.weights) {
@@ -47,27 +48,32 @@ pub(super) fn finish(
         distances.push(size * distance);
     }
     let (iou, unexplained) = compared(leaves, body, samples, run)?;
-    let leaves = named(leaves, &shares, centre, size);
-    let named_solids = leaves.iter().map(|leaf| (leaf.adds, leaf.leaf.solid().named(&leaf.name)));
-    let solid = tree(named_solids).ok_or(FitError::NoSurface { inliers: 0.0 })?;
+    let (leaves, snaps) = named(leaves, meant, &shares);
+    let solid = solid_of(&leaves).ok_or(FitError::NoSurface { inliers: 0.0 })?;
     solid.bounds()?;
     let topology_of_input = body.topology;
     let deviation = Deviation::of(distances.into_iter());
-    Ok(PartFit { leaves, solid, iou, deviation, topology, topology_of_input, unexplained })
+    Ok(PartFit { leaves, solid, snaps, iou, deviation, topology, topology_of_input, unexplained })
 }
 
-/// The leaves in length units, called by their kinds.
-fn named(leaves: &[(bool, Leaf)], shares: &[f64], centre: DVec3, size: f64) -> Vec<PartLeaf> {
+/// The leaves in length units, called by their kinds, and what was changed of them.
+fn named(leaves: &[(bool, Leaf)], meant: Vec<Meant>, shares: &[f64]) -> (Vec<PartLeaf>, Vec<Snap>) {
     let mut counts: BTreeMap<(&'static str, bool), usize> = BTreeMap::new();
-    let mut named = Vec::new();
-    for ((adds, leaf), surface) in leaves.iter().zip(shares) {
+    let (mut named, mut snaps) = (Vec::new(), Vec::new());
+    for (((adds, _), Meant { leaf, changes }), surface) in leaves.iter().zip(meant).zip(shares) {
         let kind = leaf.kind();
         let count = counts.entry((kind, *adds)).or_insert(0);
         *count += 1;
         let name = if *adds { format!("{kind} {count}") } else { format!("cut {kind} {count}") };
-        named.push(PartLeaf { adds: *adds, leaf: leaf.outward(centre, size), name, surface: *surface });
+        snaps.extend(changes.iter().map(|change| Snap::of(named.len(), change)));
+        named.push(PartLeaf { adds: *adds, leaf, name, surface: *surface });
     }
-    named
+    (named, snaps)
+}
+
+/// The tree of the leaves.
+pub(super) fn solid_of(leaves: &[PartLeaf]) -> Option<Solid> {
+    tree(leaves.iter().map(|leaf| (leaf.adds, leaf.leaf.solid().named(&leaf.name))))
 }
 
 /// The volume in common over that of either, and the places where they differ.

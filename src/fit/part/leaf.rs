@@ -5,9 +5,12 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
+use super::measures::{TO_X, TO_Y};
 use super::outline::Outline;
 use crate::field::{Dual, Field, Real};
-use crate::{Cone, Cuboid, Cylinder, Prism, Profile, Rectangle, Solid, Sphere, Superellipsoid, Superpolygon, Torus};
+use crate::{
+    Cone, Cuboid, Cylinder, Prism, Profile, Rectangle, Solid, Sphere, Superellipsoid, Superpolygon, Torus, deg,
+};
 
 /// A shape about the origin, along z.
 #[derive(Clone, Debug)]
@@ -284,13 +287,20 @@ impl Leaf {
         Leaf { shape: self.shape.scaled(size), rotation: self.rotation, centre: centre + size * self.centre }
     }
 
+    /// The same in diagonals about the centre.
+    pub(super) fn inward(&self, centre: DVec3, size: f64) -> Leaf {
+        let shape = self.shape.scaled(1.0 / size);
+        Leaf { shape, rotation: self.rotation, centre: (self.centre - centre) / size }
+    }
+
     /// The solid, with the numbers that the leaf has.
     pub(in crate::fit) fn solid(&self) -> Solid {
         let solid = self.shape.solid();
-        let turned = if self.rotation == DMat3::IDENTITY {
-            solid
-        } else {
-            solid.rotate(DQuat::from_mat3(&self.rotation).normalize())
+        let turned = match self.rotation {
+            rotation if rotation == DMat3::IDENTITY => solid,
+            rotation if rotation == TO_X => solid.rotate_y(deg(90.0)),
+            rotation if rotation == TO_Y => solid.rotate_x(deg(-90.0)),
+            rotation => solid.rotate(DQuat::from_mat3(&rotation).normalize()),
         };
         if self.centre == DVec3::ZERO { turned } else { turned.translate(self.centre) }
     }

@@ -17,8 +17,10 @@ mod directions;
 mod finish;
 mod freedom;
 mod guesses;
+mod intent;
 mod leaf;
 mod limits;
+mod measures;
 mod model;
 mod offsets;
 mod orient;
@@ -34,6 +36,7 @@ mod regions;
 #[cfg(test)]
 mod regions_tests;
 mod result;
+mod round;
 mod samples;
 mod sections;
 mod seeds;
@@ -49,7 +52,7 @@ mod superellipsoids;
 mod topology;
 
 pub use patterns::{Layout, Pattern};
-pub use result::{PartFit, PartLeaf, Topology, Unexplained};
+pub use result::{PartFit, PartLeaf, Snap, Topology, Unexplained};
 pub use settings::{PartKinds, PartSettings};
 
 use super::FitError;
@@ -76,6 +79,8 @@ use crate::geom::{Mesh, PointCloud};
 /// made of these with all ends and all boxes between parallel planes; a search over ordered trees takes those that mend
 /// more than their parameters [cost](PartSettings::parameter_cost); they are fitted to the samples, and laid through the
 /// vertices of the mesh where these tell their lengths exactly: the radius of a faceted cylinder is that of its corners.
+/// Numbers that are round within what the vertices leave open, in millimetres or in binary fractions of an inch, become so,
+/// and cuts that end in the open go through: see [`snaps`](PartFit::snaps).
 ///
 /// The mesh may be in pieces and its triangles may overlap; inside is where the winding number is above ½. The result
 /// depends on mesh and settings only, not on the number of threads.

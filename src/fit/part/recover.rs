@@ -1,5 +1,7 @@
 //! From a mesh to a tree of leaves.
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -10,6 +12,7 @@ use super::body::Body;
 use super::boxes::Grid;
 use super::candidates::propose;
 use super::finish::finish;
+use super::intent::{Meant, intended};
 use super::leaf::Leaf;
 use super::model::{Model, Step};
 use super::offsets::grid;
@@ -100,9 +103,19 @@ fn recovered(
     let mut selector = selector(&samples, &regions, &queries, settings, &to_select)?;
     let model = selector.select(Vec::new(), &to_select)?;
     let mut model = moved(&mut selector, model, &samples, &to_select)?;
+    let Samples { centre, size, .. } = samples;
+    let mut meant = BTreeMap::new();
     if settings.snap && !vertices.is_empty() {
         let laid = snapped(&leaves(&selector.pool, &model.steps), vertices, &to_select)?;
-        let steps = steps(&mut selector, &model, laid);
+        let outward: Vec<(bool, Leaf)> = laid.iter().map(|(adds, leaf)| (*adds, leaf.outward(centre, size))).collect();
+        let vertices: Vec<DVec3> = vertices.iter().map(|p| centre + size * *p).collect();
+        let (outward, changes) = intended(&outward, &vertices, size);
+        let inward = outward.iter().map(|(adds, leaf)| (*adds, leaf.inward(centre, size))).collect();
+        let steps = steps(&mut selector, &model, inward);
+        for (i, (step, (_, leaf))) in steps.iter().zip(outward).enumerate() {
+            let own = changes.iter().filter(|change| change.leaf == i).copied().collect();
+            meant.insert(step.which, Meant { leaf, changes: own });
+        }
         model = selector.model(steps);
         // What the exact lengths leave nothing to do for.
         selector.drop_one(&mut model);
@@ -111,7 +124,12 @@ fn recovered(
         return Err(FitError::NoSurface { inliers: 0.0 });
     }
     let (model, topology) = topology::mended(&selector, model, body.topology, &samples, run)?;
-    let fit = finish(&leaves(&selector.pool, &model.steps), body, &samples, topology, &to_finish)?;
+    let leaves = leaves(&selector.pool, &model.steps);
+    // What has no round numbers goes outwards as it is.
+    let meant = (model.steps.iter().zip(&leaves))
+        .map(|(step, (_, leaf))| meant.remove(&step.which).unwrap_or_else(|| Meant::of(leaf.outward(centre, size))))
+        .collect();
+    let fit = finish(&leaves, meant, body, &samples, topology, &to_finish)?;
     run.report(1.0);
     Ok(fit)
 }

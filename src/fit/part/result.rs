@@ -3,6 +3,8 @@
 use glam::DVec3;
 
 use super::super::deviations::Deviation;
+use super::finish::solid_of;
+use super::intent::Change;
 use super::leaf::Leaf;
 use crate::{Bounds, Solid};
 
@@ -13,6 +15,7 @@ use crate::{Bounds, Solid};
 pub struct PartFit {
     pub(super) leaves: Vec<PartLeaf>,
     pub(super) solid: Solid,
+    pub(super) snaps: Vec<Snap>,
     pub(super) iou: f64,
     pub(super) deviation: Deviation,
     pub(super) topology: Topology,
@@ -51,7 +54,69 @@ pub struct Unexplained {
     pub missing: bool,
 }
 
+/// A number of a leaf that was changed to what it is likely to be meant to be.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Snap {
+    /// Which of the [leaves](PartFit::leaves).
+    pub leaf: usize,
+    /// What the number is: "diameter", "radius" or "size"; or "x", "y" or "z": where the leaf is, or ends, along its own
+    /// axes.
+    pub measure: &'static str,
+    /// What was found, in length units.
+    pub found: f64,
+    /// What it is instead.
+    pub meant: f64,
+    #[cfg_attr(feature = "serde", serde(skip))]
+    nth: usize,
+}
+
+impl Snap {
+    pub(super) fn of(leaf: usize, change: &Change) -> Snap {
+        let Change { nth, measure, from, to, .. } = *change;
+        Snap { leaf, measure: measure.name(), found: from, meant: to, nth }
+    }
+}
+
 impl PartFit {
+    /// The numbers that were changed: to round ones, in millimetres or in binary fractions of an inch, whichever makes more
+    /// of the part's numbers short, by no more than the vertices leave open; and cuts that ended in the open, or in
+    /// the face that they go through, which were lengthened.
+    #[must_use]
+    pub fn snaps(&self) -> &[Snap] {
+        &self.snaps
+    }
+
+    /// The part with some of the [snaps](PartFit::snaps), told by their places, taken back. What is measured of the part
+    /// is left as it was.
+    ///
+    /// ```
+    /// use rvachev::fit::{PartSettings, part};
+    /// use rvachev::{Mesh, MeshSettings, Solid};
+    ///
+    /// let peg = Solid::cylinder(3.0004, 20.0).mesh(&MeshSettings::default())?;
+    /// let found = part(&peg, &PartSettings::default())?;
+    /// let diameter = found.snaps().iter().position(|snap| snap.measure == "diameter").expect("it is nearly 6");
+    /// assert_eq!(found.snaps()[diameter].meant, 6.0);
+    /// let kept = found.without_snaps(&[diameter]);
+    /// assert!(kept.solid().contains([3.0002, 0.0, 0.0])? && !found.solid().contains([3.0002, 0.0, 0.0])?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn without_snaps(&self, snaps: &[usize]) -> PartFit {
+        let mut fit = self.clone();
+        for snap in snaps.iter().filter_map(|n| self.snaps.get(*n)) {
+            let leaf = &mut fit.leaves[snap.leaf].leaf;
+            let mut numbers: Vec<f64> = leaf.measures().into_iter().map(|(_, v)| v).collect();
+            numbers[snap.nth] = snap.found;
+            *leaf = leaf.made_of(&numbers).unwrap_or_else(|| leaf.clone());
+        }
+        let mut place = 0..;
+        fit.snaps.retain(|_| place.next().is_none_or(|n| !snaps.contains(&n)));
+        fit.solid = solid_of(&fit.leaves).unwrap_or(fit.solid);
+        fit
+    }
+
     /// The part, in the mesh's coordinates. Its leaves have [names](PartLeaf::name).
     #[must_use]
     pub fn solid(&self) -> Solid {

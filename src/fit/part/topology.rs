@@ -13,7 +13,7 @@ use super::samples::Samples;
 use super::select::Selector;
 use crate::error::MeshingError;
 use crate::geom::Mesh;
-use crate::{CellSize, Features, MeshSettings, Run, Solid};
+use crate::{CellSize, Features, MeshSettings, RFunction, Run, Solid};
 
 /// Cells along the longest side of the mesh that tells genus and shells, and of one that tells them better.
 const CELLS: [u32; 2] = [128, 384];
@@ -34,14 +34,27 @@ fn quiet(run: &Run) -> Run {
     Run { progress: None, ..run.clone() }
 }
 
-/// Leaves as one solid, in the order in which they are added and cut.
+/// Leaves as one solid, in the order in which they are added and cut; all of a run at once.
 pub(super) fn tree(leaves: impl IntoIterator<Item = (bool, Solid)>) -> Option<Solid> {
-    leaves.into_iter().fold(None, |tree, (adds, leaf)| match (tree, adds) {
-        (None, true) => Some(leaf),
-        (None, false) => None,
-        (Some(tree), true) => Some(tree | leaf),
-        (Some(tree), false) => Some(tree - leaf),
-    })
+    let mut tree: Option<Solid> = None;
+    let mut run: Vec<Solid> = Vec::new();
+    let mut adds = true;
+    let joined = |tree: Option<Solid>, adds: bool, mut run: Vec<Solid>| match (tree, adds, run.len()) {
+        (tree, _, 0) => tree,
+        (None, false, _) => None,
+        (None, true, 1) => run.pop(),
+        (None, true, _) => Some(Solid::union_all(run, RFunction::MIN_MAX)),
+        (Some(tree), true, _) => Some(Solid::union_all([tree].into_iter().chain(run), RFunction::MIN_MAX)),
+        (Some(tree), false, _) => Some(tree.difference_all(run, RFunction::MIN_MAX)),
+    };
+    for (next, leaf) in leaves {
+        if next != adds {
+            tree = joined(tree, adds, std::mem::take(&mut run));
+            adds = next;
+        }
+        run.push(leaf);
+    }
+    joined(tree, adds, run)
 }
 
 fn of_tree(leaves: &[(bool, Leaf)], samples: &Samples, cells: u32, run: &Run) -> Result<Topology, FitError> {

@@ -1,0 +1,190 @@
+//! What the numbers of a part are meant to be.
+//!
+//! ```text
+//!     found                                     meant
+//!     cut cylinder: x 21.99998, ⌀ 7.00003       x 22, ⌀ 7       round on the part's scale
+//!                   z −5.8282 … 4.00003         z −6 … 6        ends in the open: beyond the face, not in it
+//!     box: turned by .0001                      not turned
+//! ```
+//!
+//! Vertices judge: a number is moved by no more than they leave open. A cut that ends where there is nothing left to
+//! cut is lengthened to a round number, as an end in a face would leave a skin there, or not, by the last digit.
+
+use glam::DVec3;
+
+use super::leaf::{Leaf, Shape};
+use super::measures::Measure;
+use super::round::Scale;
+
+/// How far from a principal axis a leaf may be turned to be along it, in radians.
+const TURNED: f64 = 2e-3;
+
+/// What vertices leave open of a length at the least, in diagonals, and what is of a leaf's surface.
+const OPEN: f64 = 1e-5;
+const NEAR: f64 = 3e-3;
+
+/// A cut goes beyond the face by this part of the diagonal at the least.
+const BEYOND: f64 = 0.01;
+
+/// Points of an end that are asked whether there is anything to cut.
+const ASKED: usize = 96;
+
+/// A number that was made round, or a cut that was lengthened.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Change {
+    pub(super) leaf: usize,
+    /// Which of its numbers.
+    pub(super) nth: usize,
+    pub(super) measure: Measure,
+    pub(super) from: f64,
+    pub(super) to: f64,
+}
+
+/// A leaf in length units, with what was changed of it.
+pub(super) struct Meant {
+    pub(super) leaf: Leaf,
+    pub(super) changes: Vec<Change>,
+}
+
+impl Meant {
+    pub(super) fn of(leaf: Leaf) -> Meant {
+        Meant { leaf, changes: Vec::new() }
+    }
+}
+
+/// The leaves with the numbers that are meant, in length units of a part with such vertices and such a diagonal.
+pub(super) fn intended(leaves: &[(bool, Leaf)], vertices: &[DVec3], size: f64) -> (Vec<(bool, Leaf)>, Vec<Change>) {
+    let mut meant: Vec<(bool, Leaf)> = leaves.iter().map(|(adds, leaf)| (*adds, leaf.aligned(TURNED))).collect();
+    let open: Vec<f64> = leaves.iter().map(|(_, leaf)| open(leaf, vertices, size)).collect();
+    let within = |measure: Measure, leaf: usize| match measure {
+        Measure::Diameter | Measure::Size => 2.0 * open[leaf],
+        _ => open[leaf],
+    };
+    let all = |leaves: &[(bool, Leaf)]| -> Vec<(f64, f64)> {
+        let of = |(i, (_, leaf)): (usize, &(bool, Leaf))| {
+            leaf.measures().into_iter().map(|(measure, v)| (v, within(measure, i))).collect::<Vec<_>>()
+        };
+        leaves.iter().enumerate().flat_map(of).collect()
+    };
+    let scale = Scale::of(&all(&meant), size);
+    let mut changes = Vec::new();
+    for i in 0..meant.len() {
+        let measures = meant[i].1.measures();
+        let ends = if meant[i].0 { Vec::new() } else { in_the_open(&meant[..i], &meant[i].1, size) };
+        let numbers: Vec<f64> = (measures.iter().enumerate())
+            .map(|(nth, (measure, v))| match ends.iter().find(|end| end.nth == nth) {
+                Some(end) => scale.beyond(end.face, BEYOND * size, end.up),
+                None => scale.round(*v, within(*measure, i)).unwrap_or(*v),
+            })
+            .collect();
+        let Some(leaf) = meant[i].1.made_of(&numbers) else { continue };
+        let moved = measures.iter().zip(&numbers).enumerate().filter(|(_, ((_, from), to))| from != *to);
+        changes.extend(moved.map(|(nth, ((measure, from), to))| Change {
+            leaf: i,
+            nth,
+            measure: *measure,
+            from: *from,
+            to: *to,
+        }));
+        meant[i].1 = leaf;
+    }
+    (meant, changes)
+}
+
+/// How far the vertices of a leaf leave open where it is: the error of their mean distance, three times.
+fn open(leaf: &Leaf, vertices: &[DVec3], size: f64) -> f64 {
+    let mut off: Vec<f64> = vertices.iter().map(|p| leaf.distance(*p).abs()).filter(|d| *d < NEAR * size).collect();
+    if off.is_empty() {
+        return OPEN * size;
+    }
+    off.sort_by(f64::total_cmp);
+    let spread = 1.5 * off[off.len() / 2];
+    OPEN * size + 3.0 * spread / (off.len().min(100) as f64).sqrt()
+}
+
+/// An end of a cut with nothing left to cut beyond it.
+struct End {
+    /// Which of the leaf's numbers it is.
+    nth: usize,
+    /// The face that it goes through, or where it is itself, if that is farther.
+    face: f64,
+    up: bool,
+}
+
+/// The ends of a cut that lie in the open, or in a face of what is cut.
+fn in_the_open(before: &[(bool, Leaf)], cut: &Leaf, size: f64) -> Vec<End> {
+    let is_solid =
+        |p: DVec3| before.iter().fold(false, |is_solid, (adds, leaf)| if leaf.contains(p) { *adds } else { is_solid });
+    // Of a cone only the size changes with its height; it is left as it is.
+    let axes: &[(usize, [usize; 2])] = match &cut.shape {
+        Shape::Box(_) => &[(0, [0, 1]), (1, [2, 3]), (2, [4, 5])],
+        Shape::Cylinder(_) | Shape::Prism(_) | Shape::Supershape { .. } => &[(2, [2, 3])],
+        Shape::RoundedRectangle { .. } => &[(2, [4, 5])],
+        Shape::Profile { .. } => &[(2, [0, 1])],
+        _ => &[],
+    };
+    let numbers: Vec<f64> = cut.measures().into_iter().map(|(_, v)| v).collect();
+    let points = inner(cut);
+    let mut ends = Vec::new();
+    for (axis, pair) in axes {
+        for (nth, up) in [(pair[0], false), (pair[1], true)] {
+            let sign = if up { 1.0 } else { -1.0 };
+            let outward = sign * cut.rotation.col(*axis);
+            let here = cut.rotation.transpose() * cut.centre;
+            let half = (numbers[nth] - here[*axis]).abs();
+            // The section of the cut, moved from its end by so many diagonals.
+            let moved = |by: f64| {
+                let onto =
+                    move |p: &DVec3| *p - (*p - cut.centre).dot(outward) * outward + (half + by * size) * outward;
+                points.iter().map(onto)
+            };
+            let steps = [1e-4, 1e-3, 3e-3, BEYOND, 1.5 * BEYOND, 2.0 * BEYOND];
+            let is_free = !points.is_empty() && steps.iter().all(|by| !moved(*by).any(is_solid));
+            if is_free {
+                // Where what is cut begins, back from the end.
+                let depth = (1..200).map(|k| f64::from(k) * 0.005).find(|depth| moved(1e-4 - depth).any(is_solid));
+                let depth = depth.map_or(0.0, |depth| depth - 0.005);
+                ends.push(End { nth, face: numbers[nth] - sign * (depth * size).min(2.0 * half), up });
+            }
+        }
+    }
+    ends
+}
+
+/// Points inside of a leaf, near evenly.
+fn inner(leaf: &Leaf) -> Vec<DVec3> {
+    let reach = leaf.reach();
+    let point = |n: u32| {
+        let t = |k: f64| 2.0 * (f64::from(n) * k).fract() - 1.0;
+        leaf.centre + leaf.rotation * (reach * DVec3::new(t(0.819_172_513), t(0.671_043_607), t(0.549_700_478)))
+    };
+    (1..2000).map(point).filter(|p| leaf.contains(*p)).take(ASKED).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A plate of 60 × 40 × 8 with a hole that ends in its top, a little off round numbers.
+    #[test]
+    fn numbers_are_round_and_holes_go_through() {
+        let plate =
+            Leaf::cuboid(glam::DMat3::IDENTITY, [DVec3::new(-30.0003, -20.0, 0.0), DVec3::new(30.0, 19.9998, 8.0001)]);
+        let hole = Leaf::cylinder(-DVec3::Z, DVec3::new(10.0002, 5.0, 0.0), 3.4999, [-8.0, 1.8]);
+        let pocket = Leaf::cylinder(DVec3::X, DVec3::new(-30.0, 0.0, 4.0), 2.0, [-3.0, 12.0001]);
+        let (meant, changes) = intended(&[(true, plate), (false, hole), (false, pocket)], &[], 70.0);
+        let numbers = |i: usize| meant[i].1.measures().into_iter().map(|(_, v)| v).collect::<Vec<_>>();
+        assert_eq!(numbers(0), [-30.0, 30.0, -20.0, 20.0, 0.0, 8.0]);
+        let hole = numbers(1);
+        assert_eq!([hole[0], hole[1], hole[4]], [10.0, 5.0, 7.0]);
+        assert!(hole[2] <= -0.7 && hole[2] > -2.0 && hole[3] >= 8.7 && hole[3] < 10.0, "{hole:?}");
+        assert_eq!(meant[1].1.rotation, glam::DMat3::IDENTITY);
+        // The pocket ends in the plate on one side only.
+        let pocket = numbers(2);
+        assert_eq!([pocket[3], pocket[4]], [-18.0, 4.0], "{pocket:?}");
+        assert!(pocket[2] < -30.6, "{pocket:?}");
+        assert!(
+            changes.iter().any(|change| change.leaf == 1 && change.measure == Measure::Diameter && change.to == 7.0)
+        );
+    }
+}

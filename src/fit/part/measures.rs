@@ -1,0 +1,202 @@
+//! The numbers that an engineer gives for a leaf, and the leaf that is made from them.
+//!
+//! What has two ends is told by them, what is round by its diameter; coordinates are along the leaf's own axes.
+
+use glam::{DMat3, DVec2, DVec3};
+
+use super::leaf::{Leaf, Shape};
+use super::outline::Outline;
+use crate::{Cone, Cuboid, Cylinder, Prism, Rectangle, Sphere, Superellipsoid, Superpolygon, Torus};
+
+/// What a number of a leaf is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Measure {
+    /// Where it is, or ends, along its first, second or third axis.
+    Place(usize),
+    Diameter,
+    Radius,
+    Size,
+}
+
+impl Measure {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Measure::Place(0) => "x",
+            Measure::Place(1) => "y",
+            Measure::Place(_) => "z",
+            Measure::Diameter => "diameter",
+            Measure::Radius => "radius",
+            Measure::Size => "size",
+        }
+    }
+}
+
+/// From z to x, and from z to y: quarter turns about y and about x.
+pub(super) const TO_X: DMat3 = DMat3::from_cols(DVec3::NEG_Z, DVec3::Y, DVec3::X);
+pub(super) const TO_Y: DMat3 = DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y);
+
+/// The ends along z of what is extruded or turned, first of all its numbers: x, y, low, high.
+fn posed(at: DVec3, height: f64) -> Vec<(Measure, f64)> {
+    let [x, y, z] = at.to_array();
+    vec![
+        (Measure::Place(0), x),
+        (Measure::Place(1), y),
+        (Measure::Place(2), z - 0.5 * height),
+        (Measure::Place(2), z + 0.5 * height),
+    ]
+}
+
+impl Leaf {
+    /// How far it reaches from its centre along its own axes, at the most; unbounded leaves have none.
+    pub(super) fn reach(&self) -> DVec3 {
+        let round = |radius: f64, height: f64| DVec3::new(radius, radius, 0.5 * height);
+        match &self.shape {
+            Shape::HalfSpace => DVec3::ZERO,
+            Shape::Box(s) => 0.5 * s.size,
+            Shape::Sphere(s) => DVec3::splat(s.radius),
+            Shape::Torus(s) => round(s.radius + s.tube, 2.0 * s.tube),
+            Shape::Cylinder(s) => round(s.radius, s.height),
+            Shape::Cone(s) => round(s.bottom_radius.max(s.top_radius), s.height),
+            Shape::Prism(s) => round(s.radius(), s.height()),
+            Shape::RoundedRectangle { base, height } => 0.5 * base.size.extend(*height),
+            Shape::Profile { outline, height } => {
+                outline.corners.iter().fold(DVec2::ZERO, |reach, c| reach.max(c.abs())).extend(0.5 * height)
+            }
+            // The curve's own radius is 1 to some.
+            Shape::Supershape { base, height } => round(2.0 * base.radius(), *height),
+            Shape::Superellipsoid(s) => s.semi_axes(),
+        }
+    }
+
+    /// Its numbers, in an order that [`made_of`](Leaf::made_of) knows.
+    pub(super) fn measures(&self) -> Vec<(Measure, f64)> {
+        let at = self.rotation.transpose() * self.centre;
+        let places = |at: DVec3| (0..3).map(|axis| (Measure::Place(axis), at[axis])).collect::<Vec<_>>();
+        let ends = |at: DVec3, size: DVec3| {
+            let both = |axis: usize| [-0.5, 0.5].map(|side| (Measure::Place(axis), at[axis] + side * size[axis]));
+            (0..3).flat_map(both).collect::<Vec<_>>()
+        };
+        match &self.shape {
+            Shape::HalfSpace => vec![(Measure::Place(2), at.z)],
+            Shape::Box(s) => ends(at, s.size),
+            Shape::Sphere(s) => [places(at), vec![(Measure::Diameter, 2.0 * s.radius)]].concat(),
+            Shape::Torus(s) => [places(at), vec![(Measure::Radius, s.radius), (Measure::Radius, s.tube)]].concat(),
+            Shape::Cylinder(s) => [posed(at, s.height), vec![(Measure::Diameter, 2.0 * s.radius)]].concat(),
+            Shape::Cone(s) => {
+                let diameters = [s.bottom_radius, s.top_radius].map(|radius| (Measure::Diameter, 2.0 * radius));
+                [posed(at, s.height), diameters.to_vec()].concat()
+            }
+            Shape::Prism(s) => [posed(at, s.height()), vec![(Measure::Radius, s.radius())]].concat(),
+            Shape::RoundedRectangle { base, height } => {
+                [ends(at, base.size.extend(*height)), vec![(Measure::Radius, base.radius)]].concat()
+            }
+            Shape::Profile { outline, height } => {
+                // The outline stands where it is: nothing is moved but along z.
+                let corner = |c: &DVec2| [(Measure::Place(0), at.x + c.x), (Measure::Place(1), at.y + c.y)];
+                let corners = outline.corners.iter().flat_map(corner);
+                posed(at, *height).into_iter().skip(2).chain(corners).collect()
+            }
+            Shape::Supershape { base, height } => [posed(at, *height), vec![(Measure::Radius, base.radius())]].concat(),
+            Shape::Superellipsoid(s) => {
+                let sizes = s.semi_axes().to_array().map(|a| (Measure::Size, 2.0 * a));
+                [places(at), sizes.to_vec()].concat()
+            }
+        }
+    }
+
+    /// The same kind of leaf, along the same axes, of other numbers; none if they are those of no solid.
+    pub(super) fn made_of(&self, numbers: &[f64]) -> Option<Leaf> {
+        let middle = |low: f64, high: f64| 0.5 * (low + high);
+        let upright = || {
+            let [x, y, low, high] = numbers.first_chunk::<4>()?;
+            (high > low).then_some((DVec3::new(*x, *y, middle(*low, *high)), high - low, numbers.get(4..)?))
+        };
+        let boxed = || {
+            let [a, b, c, d, e, f] = numbers.first_chunk::<6>()?;
+            let size = DVec3::new(b - a, d - c, f - e);
+            let at = DVec3::new(middle(*a, *b), middle(*c, *d), middle(*e, *f));
+            (size.min_element() > 0.0).then_some((at, size))
+        };
+        let (shape, at) = match &self.shape {
+            Shape::HalfSpace => (Shape::HalfSpace, DVec3::Z * *numbers.first()?),
+            Shape::Box(_) => {
+                let (at, size) = boxed()?;
+                (Shape::Box(Cuboid { size }), at)
+            }
+            Shape::Sphere(_) => {
+                let [x, y, z, diameter] = numbers.first_chunk::<4>()?;
+                (Shape::Sphere(Sphere { radius: 0.5 * diameter }), DVec3::new(*x, *y, *z))
+            }
+            Shape::Torus(_) => {
+                let [x, y, z, radius, tube] = *numbers.first_chunk::<5>()?;
+                (Shape::Torus(Torus { radius, tube }), DVec3::new(x, y, z))
+            }
+            Shape::Cylinder(_) => {
+                let (at, height, rest) = upright()?;
+                (Shape::Cylinder(Cylinder { radius: 0.5 * rest.first()?, height }), at)
+            }
+            Shape::Cone(_) => {
+                let (at, height, rest) = upright()?;
+                let [bottom, top] = rest.first_chunk::<2>()?;
+                (Shape::Cone(Cone { bottom_radius: 0.5 * bottom, top_radius: 0.5 * top, height }), at)
+            }
+            Shape::Prism(s) => {
+                let (at, height, rest) = upright()?;
+                (Shape::Prism(Prism::new(s.sides(), *rest.first()?, height)), at)
+            }
+            Shape::RoundedRectangle { .. } => {
+                let (at, size) = boxed()?;
+                let base = Rectangle { size: size.truncate(), radius: *numbers.get(6)? };
+                (Shape::RoundedRectangle { base, height: size.z }, at)
+            }
+            Shape::Profile { .. } => {
+                let [low, high] = numbers.first_chunk::<2>()?;
+                let corners = numbers.get(2..)?.chunks_exact(2).map(|c| DVec2::new(c[0], c[1])).collect();
+                let height = high - low;
+                let shape = Shape::Profile { outline: Outline { corners }, height };
+                (height > 0.0).then_some((shape, DVec3::Z * middle(*low, *high)))?
+            }
+            Shape::Supershape { base, .. } => {
+                let (at, height, rest) = upright()?;
+                (Shape::Supershape { base: Superpolygon::new(base.curve(), *rest.first()?), height }, at)
+            }
+            Shape::Superellipsoid(s) => {
+                let [x, y, z, a, b, c] = *numbers.first_chunk::<6>()?;
+                let [e1, e2] = s.exponents();
+                (Shape::Superellipsoid(Superellipsoid::new(0.5 * DVec3::new(a, b, c), e1, e2)), DVec3::new(x, y, z))
+            }
+        };
+        Some(Leaf { shape, rotation: self.rotation, centre: self.rotation * at })
+    }
+
+    /// The same leaf, described along the part's axes where it lies along them to within a part of a radian: a box needs no
+    /// turning then, what is turned about an axis none but from z to it.
+    pub(super) fn aligned(&self, within: f64) -> Leaf {
+        let rounded = DMat3::from_cols_array(&self.rotation.to_cols_array().map(f64::round));
+        let is_aligned = (self.rotation - rounded).to_cols_array().iter().all(|off| off.abs() < within)
+            && (rounded.determinant() - 1.0).abs() < 0.5;
+        let is_round = matches!(self.shape, Shape::Cylinder(_) | Shape::Cone(_) | Shape::Torus(_) | Shape::Sphere(_));
+        let axis = self.rotation.z_axis;
+        let along = DVec3::from_array(axis.to_array().map(f64::round));
+        let is_along = (axis - along).abs().max_element() < within && along.length_squared() == 1.0;
+        let mut leaf = self.clone();
+        match &mut leaf.shape {
+            Shape::Box(s) if is_aligned => {
+                s.size = (rounded * s.size).abs();
+                leaf.rotation = DMat3::IDENTITY;
+            }
+            Shape::HalfSpace | Shape::Sphere(_) => {}
+            shape if is_round && is_along => {
+                leaf.rotation = [TO_X, TO_Y, DMat3::IDENTITY][along.abs().max_position()];
+                if let Shape::Cone(s) = shape
+                    && along.element_sum() < 0.0
+                {
+                    std::mem::swap(&mut s.bottom_radius, &mut s.top_radius);
+                }
+            }
+            _ if is_aligned => leaf.rotation = rounded,
+            _ => {}
+        }
+        leaf
+    }
+}
