@@ -49,13 +49,15 @@ const VERTICES: usize = 3000;
 
 /// Recovers a part.
 pub(super) fn recover(mesh: &Mesh, settings: &PartSettings, run: &Run) -> Result<PartFit, FitError> {
-    let [to_index, to_detect, to_label, to_select, to_finish] = run.stages([0.05, 0.3, 0.1, 0.35, 0.2]);
+    let [to_index, to_detect, to_label, to_select, to_settle, to_finish] = run.stages([0.02, 0.1, 0.2, 0.3, 0.18, 0.2]);
     check(mesh)?;
     let winding = MeshLeaf::new(mesh.positions(), mesh.triangles(), None, &to_index)?;
     let mut samples = Samples::of_mesh(mesh, settings.seed);
     samples.noise = samples.noise.max(settings.noise / samples.size);
     let regions = detect(&samples, settings.seed, &to_detect)?;
+    to_detect.report(1.0);
     let queries = queries(mesh, &winding, &samples, &regions, settings.seed, &to_label)?;
+    to_label.report(1.0);
     if queries.inside.is_none() {
         return Err(FitError::Hollow { triangles: mesh.triangles().len() });
     }
@@ -69,11 +71,13 @@ pub(super) fn recover(mesh: &Mesh, settings: &PartSettings, run: &Run) -> Result
         // What the exact lengths leave nothing to do for.
         selector.drop_one(&mut model);
     }
+    to_select.report(1.0);
     if model.steps.is_empty() {
         return Err(FitError::NoSurface { inliers: 0.0 });
     }
-    let meant = topology::of_mesh(mesh, run)?;
-    let (model, topology) = topology::mended(&selector, model, meant, &samples, run)?;
+    let meant = topology::of_mesh(mesh, &to_settle)?;
+    let (model, topology) = topology::mended(&selector, model, meant, &samples, &to_settle)?;
+    to_settle.report(1.0);
     let fit = finish(&leaves(&selector.pool, &model.steps), mesh, &winding, &samples, [topology, meant], &to_finish)?;
     run.report(1.0);
     Ok(fit)
