@@ -39,14 +39,16 @@ pub enum FitError {
         /// Their share, 0 to 1.
         inliers: f64,
     },
-    /// The mesh encloses nothing.
+    /// The mesh or the points enclose nothing.
     #[error(
-        "no place is inside of the {triangles} triangles, by their winding number: they are of an open surface, or face \
+        "no place is inside of the {count} {of}, by their winding number: they are of an open surface, or face \
          inwards; close them, or turn them round"
     )]
     Hollow {
+        /// Triangles or points.
+        of: &'static str,
         /// How many there are.
-        triangles: usize,
+        count: usize,
     },
     /// The cloud is too small, too large or too far away for lengths of solids.
     #[error("the cloud is {value} {property}; allowed: {allowed}; scale or move it first")]

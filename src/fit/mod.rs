@@ -141,7 +141,10 @@ pub use deformed::{DeformedSuperellipsoid, deformed, deformed_with};
 pub use deviations::Deviation;
 pub use error::FitError;
 pub use inspect::{Deviations, LeafDeviation, inspect, inspect_with};
-pub use part::{PartFit, PartKinds, PartLeaf, PartSettings, Topology, Unexplained, part, part_with};
+pub use part::{
+    Layout, PartFit, PartKinds, PartLeaf, PartSettings, Pattern, Topology, Unexplained, part, part_of_points,
+    part_of_points_with, part_with,
+};
 pub use register::{RegisterSettings, Registration, register, register_with};
 pub use result::{Fit, SearchReport, Shape};
 pub use settings::{FitSettings, Start};

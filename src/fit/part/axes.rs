@@ -6,6 +6,7 @@
 
 use glam::DVec3;
 
+use super::adjust::moments;
 use super::seeds::Seeds;
 use crate::fit::linear::eigen;
 use crate::fit::random::Random;
@@ -109,14 +110,6 @@ fn fullest(votes: &[DVec3]) -> Vec<DVec3> {
 }
 
 /// The direction that is along directions of either sign.
-pub(super) fn mean<'a>(directions: impl Iterator<Item = &'a DVec3>) -> DVec3 {
-    let mut m = [[0.0; 3]; 3];
-    for d in directions {
-        for i in 0..3 {
-            for j in 0..3 {
-                m[i][j] += d[i] * d[j];
-            }
-        }
-    }
-    eigen(m).1.z_axis
+fn mean<'a>(directions: impl Iterator<Item = &'a DVec3>) -> DVec3 {
+    eigen(moments(directions.map(|d| (*d, 1.0)))).1.z_axis
 }

@@ -32,6 +32,9 @@ const PLANES: usize = 200;
 const REVOLVED: usize = 400;
 const PAIRS: usize = 8;
 
+/// Facets that are square to an axis, by this cosine, are of nothing that is round about it.
+const ACROSS: f64 = 0.9997;
+
 /// Hypotheses of a round that are adjusted in vain before it ends.
 const FAILURES: usize = 120;
 
@@ -212,7 +215,7 @@ impl<'a> Detector<'a> {
         let counts = |i: &u32| {
             let i = *i as usize;
             !self.taken.samples[i]
-                && (is_general || self.samples.normals[i].dot(axis).abs() < 0.97 || self.samples.kind != Kind::Cad)
+                && (is_general || self.samples.normals[i].dot(axis).abs() < ACROSS || self.samples.kind != Kind::Cad)
         };
         Columns::new(self.samples, frame, (0..self.samples.len() as u32).filter(counts).collect())
     }

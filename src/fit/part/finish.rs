@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 
 use glam::{DVec3, IVec3};
 use rayon::prelude::*;
-use rvachev_field::MeshLeaf;
 
 use super::super::deviations::Deviation;
 use super::super::error::FitError;
+use super::body::Body;
 use super::leaf::Leaf;
 use super::queries::MARGIN;
 use super::refine::owner;
@@ -33,10 +33,9 @@ const TOLD: f64 = 1e-3;
 /// The result for leaves in diagonals about the centre.
 pub(super) fn finish(
     leaves: &[(bool, Leaf)],
-    mesh: &Mesh,
-    winding: &MeshLeaf,
+    body: &Body,
     samples: &Samples,
-    [topology, topology_of_input]: [Topology; 2],
+    topology: Topology,
     run: &Run,
 ) -> Result<PartFit, FitError> {
     let Samples { centre, size, .. } = *samples;
@@ -47,11 +46,12 @@ pub(super) fn finish(
         shares[owner.unwrap_or(0)] += weight;
         distances.push(size * distance);
     }
-    let (iou, unexplained) = compared(leaves, mesh, winding, samples, run)?;
+    let (iou, unexplained) = compared(leaves, body, samples, run)?;
     let leaves = named(leaves, &shares, centre, size);
     let named_solids = leaves.iter().map(|leaf| (leaf.adds, leaf.leaf.solid().named(&leaf.name)));
     let solid = tree(named_solids).ok_or(FitError::NoSurface { inliers: 0.0 })?;
     solid.bounds()?;
+    let topology_of_input = body.topology;
     let deviation = Deviation::of(distances.into_iter());
     Ok(PartFit { leaves, solid, iou, deviation, topology, topology_of_input, unexplained })
 }
@@ -73,13 +73,12 @@ fn named(leaves: &[(bool, Leaf)], shares: &[f64], centre: DVec3, size: f64) -> V
 /// The volume in common over that of either, and the places where they differ.
 fn compared(
     leaves: &[(bool, Leaf)],
-    mesh: &Mesh,
-    winding: &MeshLeaf,
+    body: &Body,
     samples: &Samples,
     run: &Run,
 ) -> Result<(f64, Vec<Unexplained>), FitError> {
     let Samples { centre, size, .. } = *samples;
-    let bounds = mesh.bounds();
+    let bounds = body.bounds;
     let margin = MARGIN * bounds.size();
     let (low, span) = (bounds.min - margin, bounds.size() + 2.0 * margin);
     let points: Vec<DVec3> = Sobol::new().take(POINTS).map(|p| low + span * p).collect();
@@ -93,7 +92,7 @@ fn compared(
                     if inside != *adds && leaf.contains(local) { *adds } else { inside }
                 },
             );
-            [winding.winding_number(*p) > 0.5, found]
+            [body.contains(*p), found]
         };
         Ok(chunk.iter().map(side).collect::<Vec<_>>())
     };

@@ -240,6 +240,36 @@ impl Leaf {
         }
     }
 
+    /// The lengths and numbers of its shape.
+    pub(in crate::fit) fn sizes(&self) -> Vec<f64> {
+        match &self.shape {
+            Shape::HalfSpace => Vec::new(),
+            Shape::Box(s) => s.size.to_array().to_vec(),
+            Shape::Cylinder(s) => vec![s.radius, s.height],
+            Shape::Cone(s) => vec![s.bottom_radius, s.top_radius, s.height],
+            Shape::Sphere(s) => vec![s.radius],
+            Shape::Torus(s) => vec![s.radius, s.tube],
+            Shape::Prism(s) => vec![f64::from(s.sides()), s.radius(), s.height()],
+            Shape::RoundedRectangle { base, height } => vec![base.size.x, base.size.y, base.radius, *height],
+            Shape::Profile { outline, height } => {
+                outline.corners.iter().flat_map(|corner| corner.to_array()).chain([*height]).collect()
+            }
+            Shape::Supershape { base, height } => {
+                let curve = base.curve();
+                vec![curve.m, curve.n1, curve.n2, curve.n3, base.radius(), *height]
+            }
+            Shape::Superellipsoid(s) => s.semi_axes().to_array().into_iter().chain(s.exponents()).collect(),
+        }
+    }
+
+    /// Whether it is the same turned about its z axis by any angle.
+    pub(in crate::fit) fn is_round(&self) -> bool {
+        matches!(
+            self.shape,
+            Shape::Cylinder(_) | Shape::Cone(_) | Shape::Sphere(_) | Shape::Torus(_) | Shape::HalfSpace
+        )
+    }
+
     /// What it is called.
     pub(in crate::fit) fn kind(&self) -> &'static str {
         match &self.shape {

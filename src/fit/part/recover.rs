@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 use rayon::prelude::*;
-use rvachev_field::MeshLeaf;
 
 use super::super::check::check_depth;
 use super::super::error::FitError;
 use super::bits::{Bits, WORD};
+use super::body::Body;
 use super::boxes::Grid;
 use super::candidates::propose;
 use super::finish::finish;
@@ -24,8 +24,9 @@ use super::settings::PartSettings;
 use super::snap::snapped;
 use super::{profiles, superellipsoids, topology};
 use crate::field::COORDINATE_LIMIT;
-use crate::geom::Mesh;
-use crate::{Cancelled, Run};
+use crate::fit::grid::extent;
+use crate::geom::{Mesh, PointCloud};
+use crate::{Bounds, Cancelled, Run};
 
 /// How far pairs are from the surface on either side, in diagonals, without noise.
 const APART: f64 = 0.004;
@@ -44,28 +45,65 @@ const AROUND: f64 = 300.0;
 /// J may rise by so much where leaves are moved onto the surface.
 const ALLOWED_RISE: f64 = 1e-4;
 
+/// Points of a cloud at least.
+const FEWEST: usize = 200;
+
 /// Vertices that lengths are judged by, at most.
 const VERTICES: usize = 3000;
 
-/// Recovers a part.
+/// Recovers a part from a mesh.
 pub(super) fn recover(mesh: &Mesh, settings: &PartSettings, run: &Run) -> Result<PartFit, FitError> {
-    let [to_index, to_detect, to_label, to_select, to_settle, to_finish] = run.stages([0.02, 0.1, 0.2, 0.3, 0.18, 0.2]);
-    check(mesh)?;
-    let winding = MeshLeaf::new(mesh.positions(), mesh.triangles(), None, &to_index)?;
-    let mut samples = Samples::of_mesh(mesh, settings.seed);
+    let [to_index, to_rest] = run.stages([0.05, 0.95]);
+    let points: Vec<DVec3> = mesh.positions().iter().map(|p| p.as_dvec3()).collect();
+    if mesh.triangles().len() < 4 {
+        return Err(FitError::TooFew { kind: "part", points: points.len(), parameters: 4, needed: 4 });
+    }
+    check(&points)?;
+    let body = Body::of_mesh(mesh, &to_index)?;
+    let samples = Samples::of_mesh(mesh, settings.seed);
+    let vertices = vertices(mesh, &samples);
+    let hollow = FitError::Hollow { of: "triangles", count: mesh.triangles().len() };
+    recovered(&body, samples, &vertices, hollow, settings, &to_rest)
+}
+
+/// Recovers a part from points.
+pub(super) fn recover_points(cloud: &PointCloud, settings: &PartSettings, run: &Run) -> Result<PartFit, FitError> {
+    let points = cloud.positions();
+    if points.len() < FEWEST {
+        return Err(FitError::TooFew { kind: "part", points: points.len(), parameters: 4, needed: FEWEST });
+    }
+    check(points)?;
+    let samples = Samples::of_cloud(cloud, settings.seed);
+    run.check()?;
+    let [low, high] = extent(points);
+    let body = Body::of_points(&samples, Bounds::new(low, high));
+    let hollow = FitError::Hollow { of: "points", count: points.len() };
+    recovered(&body, samples, &[], hollow, settings, run)
+}
+
+/// The part that samples are of.
+fn recovered(
+    body: &Body,
+    mut samples: Samples,
+    vertices: &[DVec3],
+    hollow: FitError,
+    settings: &PartSettings,
+    run: &Run,
+) -> Result<PartFit, FitError> {
+    let [to_detect, to_label, to_select, to_settle, to_finish] = run.stages([0.1, 0.2, 0.3, 0.2, 0.2]);
     samples.noise = samples.noise.max(settings.noise / samples.size);
     let regions = detect(&samples, settings.seed, &to_detect)?;
     to_detect.report(1.0);
-    let queries = queries(mesh, &winding, &samples, &regions, settings.seed, &to_label)?;
+    let queries = queries(body, &samples, &regions, settings.seed, &to_label)?;
     to_label.report(1.0);
     if queries.inside.is_none() {
-        return Err(FitError::Hollow { triangles: mesh.triangles().len() });
+        return Err(hollow);
     }
     let mut selector = selector(&samples, &regions, &queries, settings, &to_select)?;
     let model = selector.select(Vec::new(), &to_select)?;
     let mut model = moved(&mut selector, model, &samples, &to_select)?;
-    if settings.snap {
-        let laid = snapped(&leaves(&selector.pool, &model.steps), &vertices(mesh, &samples), &to_select)?;
+    if settings.snap && !vertices.is_empty() {
+        let laid = snapped(&leaves(&selector.pool, &model.steps), vertices, &to_select)?;
         let steps = steps(&mut selector, &model, laid);
         model = selector.model(steps);
         // What the exact lengths leave nothing to do for.
@@ -75,10 +113,9 @@ pub(super) fn recover(mesh: &Mesh, settings: &PartSettings, run: &Run) -> Result
     if model.steps.is_empty() {
         return Err(FitError::NoSurface { inliers: 0.0 });
     }
-    let meant = topology::of_mesh(mesh, &to_settle)?;
-    let (model, topology) = topology::mended(&selector, model, meant, &samples, &to_settle)?;
+    let (model, topology) = topology::mended(&selector, model, body.topology, &samples, &to_settle)?;
     to_settle.report(1.0);
-    let fit = finish(&leaves(&selector.pool, &model.steps), mesh, &winding, &samples, [topology, meant], &to_finish)?;
+    let fit = finish(&leaves(&selector.pool, &model.steps), body, &samples, topology, &to_finish)?;
     run.report(1.0);
     Ok(fit)
 }
@@ -93,35 +130,25 @@ fn vertices(mesh: &Mesh, samples: &Samples) -> Vec<DVec3> {
     all.into_iter().step_by(step).collect()
 }
 
-/// That the mesh has a size that solids may have.
-fn check(mesh: &Mesh) -> Result<(), FitError> {
-    let points: Vec<DVec3> = mesh.positions().iter().map(|p| p.as_dvec3()).collect();
-    if mesh.triangles().len() < 4 {
-        return Err(FitError::TooFew { kind: "part", points: points.len(), parameters: 4, needed: 4 });
-    }
+/// That points have a size that solids may have.
+fn check(points: &[DVec3]) -> Result<(), FitError> {
     let farthest = points.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
     if farthest > COORDINATE_LIMIT {
-        let (property, allowed) = ("from the origin", "at most 1000000000000");
+        let (property, allowed) = ("from the origin", "at most 1000000000");
         return Err(FitError::Extent { property, value: farthest, allowed });
     }
-    let size = mesh.bounds().size().length();
+    let [low, high] = extent(points);
+    let size = low.distance(high);
     if !(1e-6..=1e8).contains(&size) {
         let (property, allowed) = ("in size", "0.000001 to 100000000");
         return Err(FitError::Extent { property, value: size, allowed });
     }
-    check_depth(&points)
+    check_depth(points)
 }
 
 /// Points in space and about the surface, with their sides.
-fn queries(
-    mesh: &Mesh,
-    winding: &MeshLeaf,
-    samples: &Samples,
-    regions: &Regions,
-    seed: u64,
-    run: &Run,
-) -> Result<Queries, FitError> {
-    let half = 0.5 * mesh.bounds().size() / samples.size;
+fn queries(body: &Body, samples: &Samples, regions: &Regions, seed: u64, run: &Run) -> Result<Queries, FitError> {
+    let half = 0.5 * body.bounds.size() / samples.size;
     let rest = unexplained(samples, &regions.regions);
     let mut strips: Vec<Strip<'_>> = (regions.regions.iter())
         .map(|region| Strip { samples: &region.points, share: share(region), apart: apart(region, samples) })
@@ -131,7 +158,7 @@ fn queries(
     Ok(Queries::new([-half, half], [&samples.points, &samples.normals], &strips, seed, |points| {
         let word = |points: &[DVec3]| {
             run.check()?;
-            let is_inside = |p: &DVec3| winding.winding_number(samples.centre + samples.size * *p) > 0.5;
+            let is_inside = |p: &DVec3| body.contains(samples.centre + samples.size * *p);
             Ok(points.iter().rev().fold(0, |word, p| word << 1 | u64::from(is_inside(p))))
         };
         Ok(Bits::of_words(points.par_chunks(WORD).map(word).collect::<Result<_, Cancelled>>()?))

@@ -69,9 +69,9 @@ fn scan(mesh: &Mesh, noise: f64, tilt: f64) -> Samples {
     let mut random = Random::new(3);
     let mut bell = |scale: f64| scale * ((0..6).map(|_| random.unit()).sum::<f64>() - 3.0) * std::f64::consts::SQRT_2;
     let points = samples.points.iter().zip(&samples.normals).map(|(p, n)| *p + *n * bell(noise)).collect();
-    let normals: Vec<DVec3> =
-        samples.normals.iter().map(|n| (*n + DVec3::new(bell(tilt), bell(tilt), bell(tilt))).normalize()).collect();
-    Samples::of_cloud(&PointCloud::new(points).unwrap(), &normals, 1)
+    let turned = |n: &DVec3| (*n + DVec3::new(bell(tilt), bell(tilt), bell(tilt))).normalize().as_vec3();
+    let normals = samples.normals.iter().map(turned).collect();
+    Samples::of_cloud(&PointCloud::new(points).unwrap().with_normals(normals).unwrap(), 1)
 }
 
 #[test]

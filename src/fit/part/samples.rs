@@ -10,6 +10,7 @@
 use glam::DVec3;
 
 use super::corners::{Corner, Facets};
+use super::orient;
 use crate::fit::grid::{Grid, extent};
 use crate::fit::linear::{Principal, quantile};
 use crate::fit::random::Random;
@@ -142,8 +143,8 @@ impl Samples {
         }
     }
 
-    /// The samples of a cloud, given a normal for each of its points.
-    pub(super) fn of_cloud(cloud: &PointCloud, normals: &[DVec3], seed: u64) -> Samples {
+    /// The samples of a cloud: points with the normals that they have, or that their neighbours tell.
+    pub(super) fn of_cloud(cloud: &PointCloud, seed: u64) -> Samples {
         let all = cloud.positions();
         let [low, high] = extent(all);
         let (centre, size) = (0.5 * (low + high), (high - low).length());
@@ -151,7 +152,10 @@ impl Samples {
         let mut kept = random.chosen(all.len(), OF_CLOUD);
         kept.sort_unstable();
         let points: Vec<DVec3> = kept.iter().map(|i| (all[*i] - centre) / size).collect();
-        let normals: Vec<DVec3> = kept.iter().map(|i| normals[*i].normalize_or(DVec3::Z)).collect();
+        let normals: Vec<DVec3> = match cloud.normals() {
+            Some(normals) => kept.iter().map(|i| normals[*i].as_dvec3().normalize_or(DVec3::Z)).collect(),
+            None => orient::normals(&points),
+        };
         let weights = vec![1.0 / points.len().max(1) as f64; points.len()];
         let noise = noise(&points, &normals, &mut random);
         Samples {

@@ -6,6 +6,7 @@ mod deformed;
 mod inspection;
 mod parts;
 mod registration;
+mod scanned_parts;
 mod shapes;
 mod superellipsoids;
 mod supershapes;

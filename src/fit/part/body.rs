@@ -1,0 +1,48 @@
+//! What is inside of what was given: of a mesh by its winding number, of points by that of a dipole each.
+
+use glam::DVec3;
+use rvachev_field::MeshLeaf;
+
+use super::dipoles::Dipoles;
+use super::result::Topology;
+use super::samples::Samples;
+use super::topology;
+use crate::fit::FitError;
+use crate::geom::Mesh;
+use crate::{Bounds, Run};
+
+/// What was given.
+pub(super) struct Body {
+    /// In length units.
+    pub(super) bounds: Bounds,
+    /// Genus and shells; none of points.
+    pub(super) topology: Topology,
+    inside: Inside,
+}
+
+enum Inside {
+    Mesh(MeshLeaf),
+    Points { dipoles: Dipoles, centre: DVec3, size: f64 },
+}
+
+impl Body {
+    pub(super) fn of_mesh(mesh: &Mesh, run: &Run) -> Result<Body, FitError> {
+        let leaf = MeshLeaf::new(mesh.positions(), mesh.triangles(), None, run)?;
+        Ok(Body { bounds: mesh.bounds(), topology: topology::of_mesh(mesh, run)?, inside: Inside::Mesh(leaf) })
+    }
+
+    /// Of the points that samples of a cloud are.
+    pub(super) fn of_points(samples: &Samples, bounds: Bounds) -> Body {
+        let Samples { centre, size, .. } = *samples;
+        let inside = Inside::Points { dipoles: Dipoles::of(&samples.points, &samples.normals), centre, size };
+        Body { bounds, topology: Topology::default(), inside }
+    }
+
+    /// Whether a point in length units is inside.
+    pub(super) fn contains(&self, p: DVec3) -> bool {
+        match &self.inside {
+            Inside::Mesh(leaf) => leaf.winding_number(p) > 0.5,
+            Inside::Points { dipoles, centre, size } => dipoles.winding_number((p - *centre) / *size) > 0.5,
+        }
+    }
+}
