@@ -93,10 +93,12 @@ fn recovered(
     settings: &PartSettings,
     run: &Run,
 ) -> Result<PartFit, FitError> {
-    let [to_detect, to_label, to_select, to_finish] = run.stages([0.3, 0.1, 0.35, 0.2]);
+    let [to_detect, to_label, to_select, to_settle, to_finish] = run.stages([0.1, 0.2, 0.3, 0.2, 0.2]);
     samples.noise = samples.noise.max(settings.noise / samples.size);
     let regions = detect(&samples, settings.seed, &to_detect)?;
+    to_detect.report(1.0);
     let queries = queries(body, &samples, &regions, settings.seed, &to_label)?;
+    to_label.report(1.0);
     if queries.inside.is_none() {
         return Err(hollow);
     }
@@ -120,10 +122,12 @@ fn recovered(
         // What the exact lengths leave nothing to do for.
         selector.drop_one(&mut model);
     }
+    to_select.report(1.0);
     if model.steps.is_empty() {
         return Err(FitError::NoSurface { inliers: 0.0 });
     }
-    let (model, topology) = topology::mended(&selector, model, body.topology, &samples, run)?;
+    let (model, topology) = topology::mended(&selector, model, body.topology, &samples, &to_settle)?;
+    to_settle.report(1.0);
     let leaves = leaves(&selector.pool, &model.steps);
     // What has no round numbers goes outwards as it is.
     let meant = (model.steps.iter().zip(&leaves))

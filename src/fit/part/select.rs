@@ -87,6 +87,8 @@ impl Selector<'_> {
             children.truncate(BEAM);
             if children[0].cost < best.cost - GRAIN {
                 best = children[0].clone();
+                // What is explained; the changes that come then take a while as well.
+                run.report(0.8 * (1.0 - best.cost));
             }
             beam = children;
         }
