@@ -4,11 +4,14 @@ use glam::{DAffine2, DAffine3, DVec2};
 
 use super::function::Body;
 use super::graph::Item;
-use super::syntax::{Code, number};
+use super::syntax::{Code, joined as line_of, number};
 use super::values::value;
 use crate::catalogue::{Call, Group};
 use crate::form::Form;
 use crate::{Profile, RFunction, Value};
+
+/// Three arguments that are wider are given to a variable.
+const LONG_ARGUMENTS: usize = 20;
 
 /// The code of a node, whose operands have been written.
 pub(super) fn expression(body: &mut Body, call: &Call, item: &Item) -> Code {
@@ -20,7 +23,11 @@ pub(super) fn expression(body: &mut Body, call: &Call, item: &Item) -> Code {
     let mut arguments = arguments(body, call, is_profile);
     let name = call.entry.name();
     let Some(operand) = item.operands.first() else { return leaf(body, call, is_profile, arguments) };
-    let operand = body.receiver(*operand);
+    let operand = match line_of(&arguments).chars().count() {
+        // Rustfmt has rules of its own for many long arguments at the end of a chain.
+        width if arguments.len() > 2 && width > LONG_ARGUMENTS => body.variable(*operand),
+        _ => body.receiver(*operand),
+    };
     let of = |code: Code| vec![code];
     match name {
         "rotate_z" if is_profile => operand.then("rotate", arguments),

@@ -62,7 +62,7 @@ impl Default for RustSettings {
 ///   to the one that was written: numbers are read back to the bit.
 /// * Variables for parts that have a name, called after it; for parts that occur more than once, equal ones
 ///   counting as one; for lengths that do ([`RustSettings::lengths`]); and for what would be too long for a line.
-/// * Lines are broken as rustfmt does it by its defaults for edition 2024.
+/// * Lines are broken as rustfmt does it by its defaults for edition 2024; of long chains it may differ here and there.
 /// * A formula is written as its text, which the function reads: then it gives a `Result`.
 ///
 /// # What has no code

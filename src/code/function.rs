@@ -40,15 +40,24 @@ pub(super) struct Body {
 }
 
 /// A node that has been written.
-enum Node {
-    /// Where it is used.
-    Inline { code: Code, label: String },
+#[derive(Clone)]
+struct Node {
+    /// What it is where it is used.
+    code: Code,
+    /// What a variable of it is called.
+    label: String,
+    sort: Sort,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Sort {
+    Inline,
     /// A variable that is used once.
-    Once(String),
+    Once,
     /// A variable that is used several times.
-    Shared(String),
+    Shared,
     /// A parameter, which is a reference.
-    Parameter(String),
+    Parameter,
 }
 
 impl Function {
@@ -98,10 +107,11 @@ impl Body {
                 false => format!("what is deformed by `{}`", item.label),
             };
             self.parameters.push((name.clone(), kind, what));
-            self.nodes.insert(item.key, Node::Parameter(name.clone()));
+            let node = Node { code: Code::word(&name), label: label.clone(), sort: Sort::Parameter };
+            self.nodes.insert(item.key, node);
             return (Code::word(name).then("clone", Vec::new()), label);
         };
-        let of_operand = item.operands.first().and_then(|key| self.nodes.get(key)).map(Node::label);
+        let of_operand = item.operands.first().and_then(|key| self.nodes.get(key)).map(|node| node.label.clone());
         let label = match (item.label, of_operand) {
             ("" | "part", Some(label)) => label,
             (COPIES, Some(label)) if label.ends_with(COPIES) => label,
@@ -118,9 +128,10 @@ impl Body {
         let node = if item.uses > 1 || item.name.is_some() || is_long {
             self.text += &comment.map(|text| commented(text)).unwrap_or_default();
             let name = self.bound(&label, &code);
-            if item.uses > 1 { Node::Shared(name) } else { Node::Once(name) }
+            let sort = if item.uses > 1 { Sort::Shared } else { Sort::Once };
+            Node { code: Code::word(name), label, sort }
         } else {
-            Node::Inline { code, label }
+            Node { code, label, sort: Sort::Inline }
         };
         self.nodes.insert(item.key, node);
     }
@@ -145,39 +156,43 @@ impl Body {
         if is_wide { Code::word(self.bound(name, &code)) } else { code }
     }
 
+    /// A node, which only variables are for a second time.
+    fn taken(&mut self, key: Key) -> Node {
+        let inline = |node: &Node| node.sort == Sort::Inline;
+        let node = if self.nodes.get(&key).is_some_and(inline) {
+            self.nodes.remove(&key)
+        } else {
+            self.nodes.get(&key).cloned()
+        };
+        // Operands come first.
+        node.unwrap_or(Node { code: Code::word(""), label: String::new(), sort: Sort::Once })
+    }
+
     /// A node that a method is called of.
     pub(super) fn receiver(&mut self, key: Key) -> Code {
-        match self.nodes.remove(&key) {
-            Some(Node::Inline { code, label }) => {
-                let root = if let Code::Chain(root, _) = &code { root } else { &code };
-                if is_short(root) { code } else { Code::word(self.bound(&label, &code)) }
-            }
-            Some(node) => {
-                let name = node.label();
-                self.nodes.insert(key, node);
-                Code::word(name)
-            }
-            None => Code::word(""),
-        }
+        let Node { code, label, .. } = self.taken(key);
+        let root = if let Code::Chain(root, _) = &code { root } else { &code };
+        if is_short(root) { code } else { Code::word(self.bound(&label, &code)) }
+    }
+
+    /// A node as a variable.
+    pub(super) fn variable(&mut self, key: Key) -> Code {
+        let Node { code, label, .. } = self.taken(key);
+        if matches!(code, Code::Word(_)) { code } else { Code::word(self.bound(&label, &code)) }
     }
 
     /// A node as an operand, and whether it is a reference.
     fn operand(&mut self, key: Key) -> (Code, bool) {
-        let by_reference = match self.nodes.get(&key) {
-            Some(Node::Shared(name)) => Some(Code::Reference(Box::new(Code::word(name)))),
-            Some(Node::Parameter(name)) => Some(Code::word(name)),
-            _ => None,
-        };
-        if let Some(code) = by_reference {
-            return (code, true);
+        match self.nodes.get(&key) {
+            Some(Node { code, sort: Sort::Shared, .. }) => (Code::Reference(Box::new(code.clone())), true),
+            Some(Node { code, sort: Sort::Parameter, .. }) => (code.clone(), true),
+            _ => (self.first(key), false),
         }
-        (self.first(key), false)
     }
 
     /// A node that is joined with others by a method.
     pub(super) fn first(&mut self, key: Key) -> Code {
-        let label = self.nodes.get(&key).map(Node::label).unwrap_or_default();
-        let code = self.receiver(key);
+        let Node { code, label, .. } = self.taken(key);
         let is_inline = matches!(code, Code::Word(_)) || is_short(&code) && code.width() <= SHORT_OPERAND;
         if is_inline && !matches!(code, Code::Binary(..)) { code } else { Code::word(self.bound(&label, &code)) }
     }
@@ -226,16 +241,6 @@ impl Body {
             format!("pub fn {name}(\n    {},\n) -> {made} {{\n", parameters.join(",\n    "))
         };
         Function { text: format!("{}{head}{}}}\n", docs.collect::<String>(), self.text), words }
-    }
-}
-
-impl Node {
-    /// The variable, or what it would be called.
-    fn label(&self) -> String {
-        match self {
-            Node::Inline { label, .. } => label.clone(),
-            Node::Once(name) | Node::Shared(name) | Node::Parameter(name) => name.clone(),
-        }
     }
 }
 

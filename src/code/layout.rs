@@ -40,13 +40,15 @@ pub(super) fn binding(name: &str, code: &Code) -> String {
     let start = format!("{}let {name} =", spaces(TAB));
     let column = start.chars().count() + 1;
     let same = shaped(code, TAB, column, 1);
-    if !same.contains('\n') {
-        if column + same.chars().count() < MAX_WIDTH {
-            return format!("{start} {same};\n");
-        }
+    if !same.contains('\n') && column + same.chars().count() < MAX_WIDTH {
+        return format!("{start} {same};\n");
     }
     let next = shaped(code, 2 * TAB, 2 * TAB, 1);
-    if is_next_better(&same, &next) {
+    let fits = |column: usize, text: &str| {
+        let widths = text.lines().map(|line| line.chars().count());
+        widths.zip([column].into_iter().chain(std::iter::repeat(0))).all(|(width, before)| before + width <= MAX_WIDTH)
+    };
+    if fits(2 * TAB, &next) && (!fits(column, &same) || is_next_better(&same, &next)) {
         return format!("{start}\n{}{next};\n", spaces(2 * TAB));
     }
     format!("{start} {same};\n")
@@ -61,9 +63,8 @@ pub(super) fn tail(code: &Code) -> String {
 fn is_next_better(same: &str, next: &str) -> bool {
     let breaks = |text: &str| text.matches('\n').count();
     let ends = |text: &str, mark: char| text.lines().next().is_some_and(|line| line.ends_with(mark));
-    let fits = next.lines().next().is_some_and(|line| 2 * TAB + line.chars().count() < MAX_WIDTH);
     let opens = |mark| ends(same, mark) && !ends(next, mark);
-    fits && (breaks(next) == 0 || breaks(same) > breaks(next) + 1 || ['(', '{', '['].into_iter().any(opens))
+    breaks(next) == 0 || breaks(same) > breaks(next) + 1 || ['(', '{', '['].into_iter().any(opens)
 }
 
 /// The lines of an expression that begins at `column`, of a block indented by `indent`; `after` it

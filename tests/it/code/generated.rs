@@ -547,19 +547,19 @@ pub fn long_chain() -> Solid {
         .rotate_z(deg(10.0))
         .translate([x, 5.0, -0.0])
         .rotate_z(deg(10.0));
-    let sphere_2_2 = sphere_2
+    let sphere_3 = sphere_2
         .translate([x, 6.0, -0.0])
         .rotate_z(deg(10.0))
         .translate([x, 7.0, -0.0])
         .rotate_z(deg(10.0))
         .translate([x, 8.0, -0.0])
         .rotate_z(deg(10.0));
-    let type_sphere_2_2 = sphere_2_2.named("type");
+    let type_sphere = sphere_3.named("type");
     let paint = Paint {
         color: [1, 2, 3],
         roughness: 0.25,
     };
-    type_sphere_2_2.paint(paint)
+    type_sphere.paint(paint)
 }
 
 pub fn curves() -> Solid {
