@@ -104,6 +104,13 @@ impl Program {
         slopes
     }
 
+    /// The direction along which a part's surface tells that a zone is entered.
+    fn inward(&self, part: Part, zone: &Zone) -> Option<DVec3> {
+        let Instance { field, frame, to_local, .. } = self.instance(part.leaf);
+        let inward = field.inward(&zone.mapped(to_local)).filter(|_| *frame == 0)?;
+        (to_local.matrix3.transpose() * part.turned(inward)).try_normalize()
+    }
+
     /// A unit vector within a plane, of these axes, such that along all directions within 30° of it the solid is entered,
     /// and not left, throughout a zone.
     pub(crate) fn way_in_plane(&self, zone: &Zone, axes: [DVec3; 2]) -> Option<DVec3> {
@@ -126,7 +133,10 @@ impl Program {
         // Edges that pass beside the middle show at the corners.
         let corner = |x: f64, y: f64| zone.centre + x * zone.axes.x_axis + y * zone.axes.y_axis;
         let corners = || [corner(-1.0, -1.0), corner(1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0)];
-        entered(at(zone.centre).collect()).or_else(|| entered(corners().into_iter().flat_map(at).collect()))
+        let inward = || parts.iter().filter_map(|part| self.inward(*part, zone)).filter_map(within).collect();
+        entered(at(zone.centre).collect())
+            .or_else(|| entered(corners().into_iter().flat_map(at).collect()))
+            .or_else(|| entered(inward()))
     }
 
     /// The directions, of up to eight, along which the solid is found to be entered, and not left, throughout a zone.
@@ -137,13 +147,20 @@ impl Program {
 
     /// The same of these parts.
     fn all_enter(&self, parts: &[Part], seen: (&[Pieces], &Pieces), ways: &[Way]) -> u8 {
-        // Joins of other rules ask more of a part than its sign.
-        let is_sign = |kind: &Kind| !matches!(kind, Kind::Join { rule, .. } if *rule != Rule::MinMax);
+        // Joins of other rules, and shifts, ask more of a part than its sign.
+        let is_sign = |kind: &Kind| match kind {
+            Kind::Leaf(_) => true,
+            Kind::Join { rule, .. } => *rule == Rule::MinMax,
+            Kind::Shift(_) => false,
+        };
         let by_sign = self.nodes.iter().all(|node| is_sign(&node.kind));
         self.all_along(parts, seen, ways, |instance, zone, ways| {
-            let is_convex = by_sign && instance.field.convex() && instance.placement.shift == 0.0;
-            let found = if is_convex { bits(ways, |way| is_entered(&*instance.field, zone, way)) } else { 0 };
             let is_all = |found: u8| found.count_ones() as usize == ways.len();
+            let found = match by_sign && instance.placement.shift == 0.0 {
+                true if instance.field.convex() => bits(ways, |way| is_entered(&*instance.field, zone, way)),
+                true => instance.field.enters(zone, ways),
+                false => 0,
+            };
             let found = if is_all(found) { found } else { found | instance.field.rises(zone, ways) };
             if is_all(found) {
                 return found;

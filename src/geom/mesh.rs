@@ -14,6 +14,7 @@
 mod attributes;
 mod corner_normals;
 mod findings;
+mod flipped;
 mod measure;
 
 use glam::{DVec3, Vec3};
@@ -27,7 +28,8 @@ use crate::Bounds;
 /// A triangle mesh: positions and triangles that index them, and perhaps normals per vertex
 /// and per corner, colours and texture coordinates per corner, owners per triangle.
 ///
-/// Every index is in range and every position finite; nothing else is promised.
+/// Every index is in range and every position finite; nothing else is promised. Positions are in single precision, some
+/// seven digits: steps of 0.25 at coordinates of 4·10⁶.
 /// [`Mesh::check`] tells the rest. A mesh that was extracted from a solid also says what the
 /// extraction found: [`possibly_lost`](Mesh::possibly_lost), [`warnings`](Mesh::warnings).
 ///

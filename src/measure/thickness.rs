@@ -23,7 +23,7 @@ use crate::error::MeshingError;
 use crate::mesh::{Slopes, each_triangle};
 use crate::program::Program;
 use crate::{Cancelled, Mesh, MeshSettings, Run, Solid};
-use rvachev_field::{Patch, Patches};
+use rvachev_field::{Patch, Walls};
 
 /// The cosine between normals that face each other is less.
 const FACING: f64 = -0.5;
@@ -56,10 +56,9 @@ impl Solid {
     /// # Details
     ///
     /// Two normals face each other if they are 120° or more apart. Facets that are turned from the surface by more than 18°,
-    /// as those that cut off corners where cells are too large, have no thickness. Of round solids the time goes by the
-    /// square of the number of triangles: take cells that are as small as the walls ask, not smaller. Balls are found to 0.2 %. The mesh's facets are off the surface by about
-    /// h²/8R, h the side of a cell and R the radius of curvature, and so is each thickness. Features that the
-    /// mesh has lost are not seen: see [`thin_features`](Solid::thin_features).
+    /// as those that cut off corners where cells are too large, have no thickness. Balls are found to 0.2 %. The mesh's
+    /// facets are off the surface by about h²/8R, h the side of a cell and R the radius of curvature, and so is each
+    /// thickness. Features that the mesh has lost are not seen: see [`thin_features`](Solid::thin_features).
     ///
     /// # Errors
     /// As for [`mesh`](Solid::mesh): what is wrong with the solid or the settings, or that the work was cancelled.
@@ -86,54 +85,14 @@ fn thicknesses(mesh: &Mesh, program: &Program, run: &Run) -> Result<Vec<f64>, Ca
     // Where cells are too large, facets across creases cut off what they stand for: the surface looks another way.
     let cuts: Vec<bool> =
         slopes.iter().zip(&normals).map(|(slope, normal)| slope.normal().dot(*normal) < ALIKE).collect();
-    let sides = sides(mesh, &normals, &to_build)?;
+    let corners = |t: usize| Patch::flat(mesh.corners(mesh.triangles()[t]));
+    let all: Vec<(Patch, DVec3)> = (0..normals.len()).filter(|t| !cuts[*t]).map(|t| (corners(t), normals[t])).collect();
+    let walls = Walls::new(&all, &to_build)?;
     let largest = 0.5 * mesh.bounds().size().length();
     each_triangle(mesh, &to_search, |nth, _| {
-        let (p, n) = (middles[nth], normals[nth]);
-        if cuts[nth] {
-            return f64::INFINITY;
-        }
-        // Those that look back most make the ball small soonest.
-        let mut facing: Vec<(f64, &Side)> = sides.iter().map(|side| (side.axis.dot(n), side)).collect();
-        facing.retain(|(cosine, side)| cosine.clamp(-1.0, 1.0).acos() + side.spread > FACING.acos());
-        facing.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let radius = facing.into_iter().fold(largest, |radius, (_, side)| {
-            let faces = |number: u32| {
-                let other = side.triangles[number as usize] as usize;
-                normals[other].dot(n) < FACING && !cuts[other]
-            };
-            side.patches.inscribed(p, n, radius, SLACK, faces).unwrap_or(radius)
-        });
-        if radius < largest { 2.0 * radius } else { f64::INFINITY }
+        let radius = if cuts[nth] { None } else { walls.ball(middles[nth], normals[nth], largest, SLACK, FACING) };
+        radius.map_or(f64::INFINITY, |radius| 2.0 * radius)
     })
-}
-
-/// Triangles that look about one way: what does not face a point is passed over together.
-struct Side {
-    axis: DVec3,
-    /// The largest angle between the axis and a normal.
-    spread: f64,
-    triangles: Vec<u32>,
-    patches: Patches,
-}
-
-/// The triangles by which way they look, of 26: along an axis, between two, between three.
-fn sides(mesh: &Mesh, normals: &[DVec3], run: &Run) -> Result<Vec<Side>, Cancelled> {
-    let mut ways = vec![Vec::new(); 27];
-    for (number, normal) in (0u32..).zip(normals) {
-        let [x, y, z] = (normal / normal.abs().max_element()).to_array().map(|c| (c.round() + 1.0) as usize);
-        ways[x + 3 * (y + 3 * z)].push(number);
-    }
-    let stages = run.stages([1.0 / 27.0; 27]);
-    let side = |(triangles, run): (Vec<u32>, Run)| {
-        let own = triangles.iter().map(|t| normals[*t as usize]);
-        let axis = own.clone().sum::<DVec3>().normalize_or_zero();
-        let spread = own.map(|n| n.dot(axis).clamp(-1.0, 1.0).acos()).fold(0.0, f64::max);
-        let corners = |t: &u32| Patch::flat(mesh.corners(mesh.triangles()[*t as usize]));
-        let patches = Patches::new(&triangles.iter().map(corners).collect::<Vec<_>>(), &run)?;
-        Ok(Side { axis, spread, triangles, patches })
-    };
-    ways.into_iter().zip(stages).filter(|(way, _)| !way.is_empty()).map(side).collect()
 }
 
 /// The normal at the middle of a triangle: between those of its corners, as slim facets are turned from the surface;

@@ -30,7 +30,7 @@ pub enum RasterError {
         at: DVec3,
     },
     /// A closed mesh faces inward.
-    #[error("the mesh is inside out: its volume is {volume}, and must not be below 0")]
+    #[error("the mesh is inside out: its volume is {volume}, and must not be below 0; Mesh::flipped turns it")]
     InsideOut {
         /// The enclosed volume, in cubic length units.
         volume: f64,

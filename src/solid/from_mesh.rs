@@ -33,7 +33,8 @@ impl Solid {
     ///   the distance is measured from them too, and so offsets inwards and shells follow them.
     /// * Where it is open, the surface goes on across the opening, roughly like a film on it, and the value is a
     ///   bound of the distance there. [`Mesh::openness`] says how open a mesh is.
-    /// * A mesh that is inside out encloses nothing: no winding number is above one half.
+    /// * A mesh that is inside out encloses nothing: no winding number is above one half. Using its solid is an error
+    ///   that says so; [`Mesh::flipped`] turns it.
     ///
     /// Solids from meshes with the same triangles in the same order, and the same colours, are equal.
     ///
@@ -51,13 +52,16 @@ impl Solid {
     /// # Details
     ///
     /// Distances are found in a hierarchy of boxes, winding numbers by Barill et al., *Fast Winding Numbers for
-    /// Soups and Clouds* (2018). Positions are kept in single precision relative to the mesh's middle. A mesh takes
+    /// Soups and Clouds* (2018). Positions are kept in single precision relative to the mesh's middle; those
+    /// of a [`Mesh`] are in single precision from the origin, some seven digits, so that at coordinates of 4·10⁶ they are
+    /// rounded to a quarter: parts far from the origin keep their shape if they are moved there before they are written. A mesh takes
     /// some 120 bytes a triangle, 9 more with colours, and about a second a million triangles to be made. Openings
     /// cost: values near them are found point by point.
     ///
     /// # Errors
     ///
-    /// None here. Using the solid of a mesh without triangles is a [`SolidError`](crate::SolidError).
+    /// None here. Using the solid of a mesh without triangles, of one that is inside out, or of one with coordinates
+    /// beyond ±10¹² is a [`SolidError`](crate::SolidError).
     #[must_use]
     pub fn from_mesh(mesh: &Mesh, settings: MeshSolid) -> Solid {
         match Solid::from_mesh_with(mesh, settings, &Run::default()) {

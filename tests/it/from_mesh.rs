@@ -6,7 +6,10 @@ mod laws;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use glam::{DVec3, Vec3};
-use rvachev::{Blend, Camera, CellSize, Mesh, MeshSettings, MeshSolid, Openness, Paint, RenderSettings, Solid, rad};
+use rvachev::{
+    Blend, Camera, CellSize, ContourSettings, Mesh, MeshSettings, MeshSolid, Openness, Paint, RenderSettings, Run,
+    Solid, rad,
+};
 
 /// A mesh from corners and numbers.
 pub(super) fn mesh(positions: Vec<Vec3>, triangles: Vec<[u32; 3]>) -> Mesh {
@@ -126,16 +129,11 @@ fn meshes_without_triangles_are_errors() {
 
 #[test]
 fn meshes_of_any_kind_are_taken() {
-    let turned_over = |mesh: &Mesh| {
-        let triangles = mesh.triangles().iter().map(|[a, b, c]| [*a, *c, *b]).collect();
-        Mesh::new(mesh.positions().to_vec(), triangles).unwrap()
-    };
-    // Inside out, a single triangle, and triangles without area: nothing is inside.
-    let inside_out = turned_over(&block([0.0; 3], [1.0; 3]));
+    // A single triangle, and triangles without area: nothing is inside.
     let single = mesh(vec![Vec3::ZERO, Vec3::X, Vec3::Y], vec![[0, 1, 2]]);
     let thread = mesh(vec![Vec3::ZERO, Vec3::X, 2.0 * Vec3::X], vec![[0, 1, 2], [0, 0, 1], [2, 1, 0]]);
     let point = mesh(vec![Vec3::ONE], vec![[0, 0, 0]]);
-    for mesh in [inside_out, single, thread, point] {
+    for mesh in [single.flipped(), single, thread, point] {
         let solid = solid(&mesh);
         for p in [[0.3, 0.3, 0.3], [1.0, 1.0, 1.0], [0.3, 0.3, -1e-3], [0.3, 0.0, 0.0]] {
             assert!(!solid.contains(p).unwrap() && solid.value(p).unwrap().is_finite());
@@ -146,11 +144,61 @@ fn meshes_of_any_kind_are_taken() {
         }
     }
     // However large or small.
-    for size in [1e-6, 1e6, 1e12, 1e30] {
+    for size in [1e-6, 1e6, 1e12] {
         let solid = solid(&block([-size; 3], [size; 3]));
         let value = solid.value([0.0, 0.0, f64::from(size) * 0.5]).unwrap();
         assert!(value > 0.0 && value.is_finite(), "{value} of {size}");
     }
+}
+
+#[test]
+fn meshes_that_are_inside_out_or_too_large_say_so() {
+    let error = |mesh: &Mesh| solid(mesh).mesh(&MeshSettings::default()).unwrap_err().to_string();
+    let wanted = "allowed: above 0; the mesh is inside out, Mesh::flipped turns it";
+    let turned = block([0.0; 3], [2.0; 3]).flipped();
+    assert_eq!(error(&turned), format!("mesh: volume is -8, {wanted}"));
+    assert!((meshed(&solid(&turned.flipped()), 16).volume() - 8.0).abs() < 1e-3);
+    let open = bowl(0.7).flipped();
+    assert!(error(&open).ends_with(wanted), "{}", error(&open));
+    assert!(solid(&open.flipped()).contains([0.0, 0.0, -0.8]).unwrap());
+    // A cavity is turned over as it should be, and so is what is left of one part of two.
+    let hollow = together(&[block([0.0; 3], [3.0; 3]), block([1.0; 3], [2.0; 3]).flipped()]);
+    assert!(solid(&hollow).contains([0.5; 3]).unwrap() && !solid(&hollow).contains([1.5; 3]).unwrap());
+    assert!(error(&hollow.flipped()).ends_with(wanted));
+    let half = together(&[block([0.0; 3], [3.0; 3]).flipped(), block([5.0; 3], [6.0; 3])]);
+    assert!(solid(&half).contains([5.5; 3]).unwrap() && !solid(&half).contains([1.5; 3]).unwrap());
+    // In metres of a galaxy.
+    let far = error(&block([-1e30; 3], [1e30; 3]));
+    assert!(far.starts_with("mesh: coordinate is -1000000015047466"), "{far}");
+    assert!(far.ends_with("allowed: -1e12 to 1e12; scale the mesh"), "{far}");
+}
+
+/// Right above a large face, squares of a slice are large all the same.
+#[test]
+fn slices_close_to_a_face_are_quick() {
+    let settings = ContourSettings { tolerance: 0.05, ..ContourSettings::default() };
+    let plate = together(&[block([-40.0, -30.0, 0.0], [40.0, 30.0, 5.0]), block([-5.0, -5.0, 0.0], [5.0, 5.0, 9.0])]);
+    let openings = mesh(plate.positions().to_vec(), plate.triangles()[..23].to_vec());
+    for (plate, above) in [(&plate, [0.01, 1e-3, 1e-4]), (&openings, [0.02, 0.01, 3e-3])] {
+        let heights = above.map(|above| 5.0 + above);
+        let found = solid(plate).slices(&heights, &settings, &Run::default()).unwrap();
+        for contours in &found {
+            assert!(contours.len() == 1 && (contours.area() - 100.0).abs() < 1.0, "{}", contours.area());
+        }
+    }
+}
+
+/// A ball with an opening in each of some hundred places.
+#[test]
+fn many_small_openings_let_little_out() {
+    let ball = meshed(&Solid::sphere(10.0), 40);
+    let kept = (0..).zip(ball.triangles()).filter(|(n, _)| n % 23 != 0).map(|(_, triangle)| *triangle);
+    let sieve = mesh(ball.positions().to_vec(), kept.collect());
+    assert!(sieve.openness().edges > 500);
+    let solid = solid(&sieve);
+    let size = solid.bounds().unwrap().size();
+    assert!(size.max_element() < 1.05 * ball.bounds().size().max_element(), "{size}");
+    assert!(solid.contains([0.0, 0.0, 9.0]).unwrap() && !solid.contains([0.0, 0.0, 10.3]).unwrap());
 }
 
 #[test]

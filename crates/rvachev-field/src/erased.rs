@@ -65,6 +65,12 @@ pub trait AnyField: Any + Debug + Send + Sync {
     fn least_radius(&self) -> f64 {
         0.0
     }
+    /// Whether the surface is flat between creases, however blunt these are.
+    fn is_faceted(&self) -> bool {
+        false
+    }
+    /// Tells the corners of a faceted surface, in the leaf's frame; some more than once.
+    fn each_corner(&self, _tell: &mut dyn FnMut(DVec3)) {}
     /// The radius of a leaf valued `radius·(1 − G)`.
     fn gauge_radius(&self) -> Option<f64> {
         None
@@ -87,6 +93,15 @@ pub trait AnyField: Any + Debug + Send + Sync {
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
         let slopes = self.dual_range(Dual::point(zone.hull())).d;
         bits(ways, |way| way.is_rise(slopes))
+    }
+    /// The directions, of up to eight, along which a zone is found to be entered only, whatever the value: the sign
+    /// turns from outside to inside, never back.
+    fn enters(&self, _zone: &Zone, _ways: &[Way]) -> u8 {
+        0
+    }
+    /// The direction along which a zone is most likely to be entered, where the surface tells more than the value.
+    fn inward(&self, _zone: &Zone) -> Option<DVec3> {
+        None
     }
     /// The most that the value changes by per length unit over a zone.
     fn steepest(&self, zone: &Zone) -> f64 {

@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use glam::{DAffine3, DQuat, DVec3, Vec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 use rvachev_field::kernel::CHUNK;
-use rvachev_field::{AnyField, Chunk, MeshLeaf, Placement, Zone};
+use rvachev_field::{AnyField, Chunk, MeshLeaf, Placement, Way, Zone};
 use rvachev_num::{Bounds, Dual, Run};
 
 /// A torus of n × 2n pairs of triangles, radii 1 and 0.4, without the first few.
@@ -91,6 +91,71 @@ fn lanes_are_values() {
             }
         }
     }
+}
+
+/// A plate of two triangles a side, turned.
+fn plate() -> (MeshLeaf, DQuat) {
+    let turn = DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 0.5, 0.8);
+    let at = |c: usize| DVec3::new([-4.0, 4.0][c & 1], [-3.0, 3.0][c >> 1 & 1], [-0.5, 0.5][c >> 2]);
+    let quads: [[u32; 4]; 6] = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let positions: Vec<Vec3> = (0..8).map(|c| (turn * at(c)).as_vec3()).collect();
+    let triangles: Vec<[u32; 3]> = quads.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    (MeshLeaf::new(&positions, &triangles, None, &Run::default()).unwrap(), turn)
+}
+
+#[test]
+fn flat_zones_close_to_a_face_have_a_sign() {
+    let (leaf, turn) = plate();
+    let zone = |height: f64, half: DVec3| {
+        Zone::of_frame(turn * DVec3::new(0.1, 0.2, height), DMat3::from_quat(turn) * DMat3::from_diagonal(half))
+    };
+    for by in [0.1, 1e-2, 1e-3, 1e-4] {
+        let half = DVec3::new(3.0, 2.0, 0.4 * by);
+        let (above, below) = (leaf.range(&zone(0.5 + by, half)), leaf.range(&zone(0.5 - by, half)));
+        assert!(above.hi() < -0.5 * by && above.lo() < -by, "{above:?} at {by}");
+        assert!(below.lo() > 0.5 * by && below.hi() > 0.5 - 1e-6, "{below:?} at {by}");
+        assert!(leaf.narrowed(&zone(0.5 + by, half)).is_some());
+        let across = leaf.range(&zone(0.5, half));
+        assert!(across.lo() < 0.0 && across.hi() > 0.0, "{across:?}");
+    }
+    // Beyond the rim of a face its plane goes on, and the plate does not.
+    let beside = leaf.range(&zone(0.5, DVec3::new(5.0, 4.0, 0.0)));
+    assert!(beside.lo() < 0.0 && beside.hi() > 0.0, "{beside:?}");
+}
+
+#[test]
+fn what_enters_a_zone_does_not_leave_it() {
+    let mut random = Random(5);
+    let (mut found, mut crossed) = (0, 0);
+    for leaf in [torus(16, 0), plate().0] {
+        let size = 0.5 * leaf.bounds_under(&DAffine3::IDENTITY).longest_side();
+        for _ in 0..600 {
+            let (centre, half) = (random.point(size), random.point(0.1 * size).abs());
+            let zone = Zone::of_bounds(&Bounds::from_center(centre, half));
+            let middle = leaf.inward(&zone).unwrap_or(random.point(1.0).normalize());
+            let way = Way { middle, sway: 0.1 };
+            if leaf.enters(&zone, &[way]) == 0 {
+                continue;
+            }
+            found += 1;
+            for _ in 0..8 {
+                let from = centre + random.point(1.0) * half;
+                let along = middle + 0.1 * random.point(0.57);
+                let to = from + along * random.next() * size;
+                if (to - centre).abs().cmple(half).all() {
+                    let [a, b] = [from, to].map(|p| leaf.value(p.to_array()));
+                    assert!(a <= 0.0 || b >= 0.0, "{a} at {from}, {b} at {to}");
+                    crossed += usize::from(a < 0.0 && b > 0.0);
+                }
+            }
+        }
+    }
+    assert!(found > 200 && crossed > 5, "{found}, {crossed}");
+    // Along a face it is neither entered nor left, and against it, it is left.
+    let (plate, turn) = plate();
+    let zone = Zone::of_bounds(&Bounds::from_center(turn * DVec3::new(0.1, 0.2, 0.5), DVec3::splat(0.01)));
+    let ways = [-DVec3::Z, DVec3::X, DVec3::Z].map(|way| Way { middle: turn * way, sway: 0.0 });
+    assert_eq!(plate.enters(&zone, &ways), 1);
 }
 
 #[test]

@@ -18,6 +18,7 @@
 use glam::Vec3;
 
 use super::corner_normals::CornerNormals;
+use super::flipped::over;
 use super::{Mesh, MeshError, first};
 
 /// What a mesh carries besides positions and triangles; `None` where it has no such values.
@@ -27,6 +28,18 @@ pub(super) struct Attributes {
     corner_colors: Option<Vec<[[u8; 4]; 3]>>,
     corner_texture: Option<Vec<[[f32; 2]; 3]>>,
     owners: Option<Vec<u32>>,
+}
+
+impl Attributes {
+    /// Those of the mesh with its triangles turned over.
+    pub(super) fn flipped(&self) -> Attributes {
+        Attributes {
+            normals: self.normals.as_ref().map(|normals| normals.iter().map(|normal| -normal).collect()),
+            corner_colors: self.corner_colors.as_ref().map(|all| all.iter().map(|corners| over(*corners)).collect()),
+            corner_texture: self.corner_texture.as_ref().map(|all| all.iter().map(|corners| over(*corners)).collect()),
+            owners: self.owners.clone(),
+        }
+    }
 }
 
 impl Mesh {

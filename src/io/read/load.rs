@@ -55,6 +55,9 @@ impl Mesh {
     /// Vertices of STL and GLB at one position become one, so that what is closed is closed. What [`Mesh::save`]
     /// wrote is read as it was, as far as the format holds it.
     ///
+    /// Positions become single precision, some seven digits: of a part in coordinates of a map, some 4·10⁶ from the origin,
+    /// they are rounded to steps of 0.25. Such a part is to be moved to the origin by the program that writes it.
+    ///
     /// ```
     /// use rvachev::Mesh;
     ///

@@ -151,20 +151,23 @@ impl Section {
     /// within 30° of it: the contour is the graph of a function there that is no steeper than 60°.
     pub(super) fn way_in(&self, filling: &Filling, square: &Square) -> Option<DVec2> {
         let (low, high) = (square.low, square.low + square.side);
-        let axes = self.plane.axes();
         let way = match filling {
             Filling::Solid => self.crossed(low, high).sum::<DVec2>().try_normalize()?,
             Filling::Program(program)
                 if square.size <= SAMPLED && self.holds(square) && !self.is_told(program, square) =>
             {
-                self.sampled_way(filling, square)?
+                self.sampled_way(filling, square).or_else(|| self.told_way(program, square))?
             }
-            Filling::Program(program) => {
-                let way = program.way_in_plane(&self.zone(low, high, [0.0; 2]), axes)?;
-                DVec2::new(way.dot(axes[0]), way.dot(axes[1]))
-            }
+            Filling::Program(program) => self.told_way(program, square)?,
         };
         self.crossed(low, high).all(|inward| inward.dot(way) > STRAIGHT).then_some(way)
+    }
+
+    /// The same as ranges tell it.
+    fn told_way(&self, program: &Program, square: &Square) -> Option<DVec2> {
+        let axes = self.plane.axes();
+        let way = program.way_in_plane(&self.zone(square.low, square.low + square.side, [0.0; 2]), axes)?;
+        Some(DVec2::new(way.dot(axes[0]), way.dot(axes[1])))
     }
 
     /// Whether ranges of slopes tell something.

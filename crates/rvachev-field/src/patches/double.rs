@@ -6,7 +6,7 @@
 use rvachev_num::Real;
 
 use super::closest::within;
-use super::face::{Face, Sides};
+use super::face::{Face, Sides, wide};
 
 /// The squares of the distances from a face.
 #[inline(always)]
@@ -16,7 +16,7 @@ pub(super) fn square<R: Real>(face: &Face, sides: &Sides, p: [R; 3], slim: f64) 
     let det = ee * ff - ef * ef;
     // Slimmer than the numbers tell, it has no inside.
     let (scale, most) = if det > slim * ee * ff { (1.0 / det, 1.0) } else { (0.0, -1.0) };
-    let a = face.a.map(f64::from);
+    let a = wide(face.a);
     let r = [p[0] - a[0], p[1] - a[1], p[2] - a[2]];
     let (re, rf) = (dot(r, e), dot(r, f));
     let s = re.scale_add(scale * ff, rf * (-scale * ef));

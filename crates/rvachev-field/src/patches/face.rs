@@ -51,8 +51,15 @@ fn single(v: DVec3) -> [f32; 3] {
     v.as_vec3().to_array()
 }
 
+/// Three numbers as formulas take them. The array's own map would be a call.
+#[inline(always)]
+pub(super) fn wide([x, y, z]: [f32; 3]) -> [f64; 3] {
+    [f64::from(x), f64::from(y), f64::from(z)]
+}
+
+#[inline(always)]
 pub(super) fn double(v: [f32; 3]) -> DVec3 {
-    DVec3::from_array(v.map(f64::from))
+    DVec3::from_array(wide(v))
 }
 
 /// The flat triangle of a patch, in its own plane.
@@ -129,7 +136,7 @@ impl Sides {
     /// As they go into formulas.
     #[inline(always)]
     pub(super) fn wide(&self) -> [[f64; 3]; 2] {
-        [self.e.map(f64::from), self.f.map(f64::from)]
+        [wide(self.e), wide(self.f)]
     }
 
     /// Point and derivatives by both coordinates.

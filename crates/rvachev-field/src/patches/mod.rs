@@ -24,6 +24,7 @@
 //! Sources: C. Ericson, *Real-Time Collision Detection* (2005), for the nearest point of a
 //! triangle; I. Wald, *On fast Construction of SAH-based Bounding Volume Hierarchies* (2007).
 
+mod apart;
 mod block;
 mod chunks;
 mod closest;
@@ -54,11 +55,12 @@ use rvachev_num::{Cancelled, Run};
 
 use self::closest::Closest;
 use self::curved::Around;
-use self::face::{Bulge, Face, Frame, Sides};
+use self::face::{Bulge, Face, Frame, Sides, wide};
 use self::hierarchy::{Node, Tree};
 use self::search::{Best, Keep, Range, Stack};
 use crate::Bounds;
 
+pub use self::inscribed::Walls;
 pub use self::patch::Patch;
 pub use self::solid::{MeshLeaf, Openness};
 pub use self::surface_distance::SurfaceDistance;
@@ -161,7 +163,7 @@ impl Patches {
         let [e, f] = self.sides[at].wide();
         match self.bulges.get(at) {
             Some(bulge) => {
-                let [c, d, mixed] = [bulge.c, bulge.d, bulge.e].map(|v| v.map(f64::from));
+                let (c, d, mixed) = (wide(bulge.c), wide(bulge.d), wide(bulge.e));
                 Around { r, e, f, c, d, mixed }.closest()
             }
             None => closest::on_face([e, f], r).closest,

@@ -15,9 +15,9 @@ impl SurfaceDistance {
         }
         let distance = self.patches.distance(self.flattened(zone.centre))?;
         // Lanes round their points.
-        let reach = self.radius(zone) + self.slack(zone, distance) + 4.0 * self.roundoff(zone.reach());
+        let slack = self.slack(zone, distance) + 4.0 * self.roundoff(zone.reach());
         let mut narrowed = self.clone();
-        if distance > reach {
+        if distance > self.radius(zone) + slack || self.apart(zone, slack) > 0.0 {
             let sign = self.sign.value(zone.centre.to_array());
             narrowed.side = Some(sign.signum());
             return (sign != 0.0).then_some(narrowed);

@@ -6,7 +6,7 @@
 use rvachev_num::Real;
 
 use super::closest::within;
-use super::face::Face;
+use super::face::{Face, wide};
 
 /// A triangle in its own plane: see [`Face`].
 pub(super) struct Plane {
@@ -27,8 +27,8 @@ impl Plane {
     pub(super) fn single(face: &Face) -> Plane {
         let Face { a, u, v, n, length, apex: [x, y], .. } = *face;
         Plane {
-            a: a.map(f64::from),
-            axes: [u.map(f64::from), v.map(f64::from), n.map(f64::from)],
+            a: wide(a),
+            axes: [wide(u), wide(v), wide(n)],
             length: f64::from(length),
             apex: [f64::from(x), f64::from(y)],
             last: [f64::from(x - length), f64::from(y)],

@@ -154,10 +154,20 @@ impl SurfaceDistance {
 
     /// How far points of a zone are from its centre, across the axis of a cylinder.
     pub(super) fn radius(&self, zone: &Zone) -> f64 {
-        let Some(axis) = self.flat else { return zone.radius() };
+        self.across(zone).radius()
+    }
+
+    /// A zone moved to 0 along the axis of a cylinder.
+    fn across(&self, zone: &Zone) -> Zone {
+        let Some(axis) = self.flat else { return *zone };
         let mut across = DVec3::ONE;
         across[axis] = 0.0;
-        zone.mapped(&DAffine3::from_mat3(DMat3::from_diagonal(across))).radius()
+        zone.mapped(&DAffine3::from_mat3(DMat3::from_diagonal(across)))
+    }
+
+    /// What is left of the distance of a zone from the patches when it may be off by `slack`; 0 if that is all of it.
+    pub(super) fn apart(&self, zone: &Zone, slack: f64) -> f64 {
+        self.patches.apart(&self.across(zone), slack).map_or(0.0, |apart| apart - slack)
     }
 }
 
@@ -258,9 +268,12 @@ impl AnyField for SurfaceDistance {
             return Interval::point(self.value(at));
         };
         let (sign, slack) = (self.sign(at), self.slack(zone, foot.distance));
-        let [near, far] = [-1.0, 1.0].map(|side| foot.distance + side * self.radius(zone));
+        let within_ball = foot.distance - self.radius(zone) - slack;
+        let apart = if within_ball <= 0.0 && self.side.is_none() { self.apart(zone, slack) } else { 0.0 };
+        let near = if apart > 0.0 { apart } else { within_ball };
         // No point is farther from the surface than from that one point of it.
-        let range = Interval::new(near, far.min(self.farthest(zone, foot.point))).inflate(slack);
+        let far = (foot.distance + self.radius(zone)).min(self.farthest(zone, foot.point)) + slack;
+        let range = Interval::new(near, far.max(near));
         let range = if sign < 0.0 { -range } else { range };
         // Where the surface is out of reach, so is a change of the sign.
         if range.lo() > 0.0 || range.hi() < 0.0 { range } else { range.narrowed_by(self.side(zone)) }

@@ -11,7 +11,9 @@
 //! Triangles that overlap count as their union; those within it, where w does not pass ½, are no
 //! surface, though the distance is measured from them too.
 
+mod gaps;
 mod rim;
+mod turned;
 mod values;
 mod winding;
 mod winding_field;
@@ -22,6 +24,7 @@ use std::sync::Arc;
 use glam::{DVec3, Vec3};
 use rvachev_num::{Cancelled, Run};
 
+use self::gaps::Gaps;
 use self::rim::{Membrane, Rim};
 use self::winding::Winding;
 use super::{Foot, Patch, Patches, SurfaceDistance};
@@ -35,6 +38,8 @@ pub struct MeshLeaf {
     /// Around openings, where there are any.
     membrane: Option<Arc<Membrane>>,
     bounds: Bounds,
+    /// The volume, below 0, of triangles that are inside out.
+    turned: Option<f64>,
     colors: Option<Arc<[[[u8; 3]; 3]]>>,
     hash: u64,
 }
@@ -77,20 +82,22 @@ impl MeshLeaf {
         drop(flat);
         to_close.check()?;
         let winding = Arc::new(Winding::new(patches.clone()));
-        let rim = Rim::new(rim::open_edges(positions, triangles), &to_close)?;
+        let open = rim::open_edges(positions, triangles);
+        let rim = Rim::new(&open, &to_close)?;
         let mut bounds = patches.bounds();
         let membrane = match rim {
             None => None,
             Some(rim) => {
                 let membrane = Membrane { winding: winding.clone(), rim };
-                bounds = membrane.bounds(bounds, &to_close)?;
+                bounds = membrane.bounds(bounds, &Gaps::new(&open, &to_close)?, &to_close)?;
                 Some(Arc::new(membrane))
             }
         };
         let hash = hash_of(patches.hash, colors.as_deref());
+        let turned = winding.volume_if_turned();
         let distance = SurfaceDistance::new(patches, winding.clone(), 0.0, None, bounds);
         run.report(1.0);
-        Ok(MeshLeaf { distance, winding, membrane, bounds, colors: colors.map(Arc::from), hash })
+        Ok(MeshLeaf { distance, winding, membrane, bounds, turned, colors: colors.map(Arc::from), hash })
     }
 
     /// How many triangles there are.

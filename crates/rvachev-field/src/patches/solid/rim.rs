@@ -32,12 +32,15 @@ use rvachev_num::{Cancelled, Run};
 use super::super::face::double;
 use super::super::hierarchy::PARENT;
 use super::super::{Patch, Patches};
+use super::gaps::Gaps;
 use super::winding::Winding;
 use crate::Bounds;
 
-/// An edge that has more triangles on one side than on the other.
+/// An edge that has more triangles on one side than on the other, as those that are more go along it.
 pub(super) struct OpenEdge {
     pub(super) ends: [DVec3; 2],
+    /// The numbers of its ends.
+    pub(super) vertices: [u32; 2],
     /// How many more.
     pub(super) missing: u32,
 }
@@ -66,9 +69,13 @@ pub(super) fn open_edges(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Open
     edges.sort_unstable();
     let runs = edges.chunk_by(|a, b| a.0 == b.0);
     let open = runs.filter_map(|run| {
-        let more = run.iter().map(|(_, forth)| if *forth { 1_i64 } else { -1 }).sum::<i64>().unsigned_abs();
-        let ends = [run[0].0 >> 32, run[0].0 & u64::from(u32::MAX)].map(|v| positions[v as usize].as_dvec3());
-        (more > 0).then_some(OpenEdge { ends, missing: more as u32 })
+        let more = run.iter().map(|(_, forth)| if *forth { 1_i64 } else { -1 }).sum::<i64>();
+        let mut vertices = [(run[0].0 >> 32) as u32, run[0].0 as u32];
+        if more < 0 {
+            vertices.reverse();
+        }
+        let ends = vertices.map(|v| positions[v as usize].as_dvec3());
+        (more != 0).then_some(OpenEdge { ends, vertices, missing: more.unsigned_abs() as u32 })
     });
     open.collect()
 }
@@ -86,7 +93,7 @@ pub(super) struct Rim {
 
 impl Rim {
     /// Nothing if there are no open edges.
-    pub(super) fn new(open: Vec<OpenEdge>, run: &Run) -> Result<Option<Rim>, Cancelled> {
+    pub(super) fn new(open: &[OpenEdge], run: &Run) -> Result<Option<Rim>, Cancelled> {
         if open.is_empty() {
             return Ok(None);
         }
@@ -160,6 +167,9 @@ pub(super) struct Membrane {
     pub(super) rim: Rim,
 }
 
+/// Pieces of a box's surface that are looked at before it is given up.
+const PATIENCE: usize = 20_000;
+
 impl Membrane {
     /// How far above one half the winding number is, and how far the membrane is at least, or `most` if that is less.
     pub(super) fn side(&self, p: DVec3, most: f64) -> (f64, f64) {
@@ -186,13 +196,13 @@ impl Membrane {
 
     /// A box that holds what is inside. Beyond the triangles the winding number has its largest value on any box
     /// around them, as harmonic functions have.
-    pub(super) fn bounds(&self, triangles: Bounds, run: &Run) -> Result<Bounds, Cancelled> {
+    pub(super) fn bounds(&self, triangles: Bounds, gaps: &Gaps, run: &Run) -> Result<Bounds, Cancelled> {
         /// How much larger each box is than the one before, of the size.
         const STEPS: [f64; 9] = [0.01, 0.02, 0.04, 0.08, 0.16, 0.32, 0.64, 1.28, 2.56];
         let size = triangles.longest_side();
         for step in STEPS {
             let larger = triangles.inflate(step * size);
-            if self.is_outside(&larger, run)? {
+            if self.is_outside(&larger, gaps, run)? {
                 return Ok(larger);
             }
         }
@@ -201,9 +211,7 @@ impl Membrane {
     }
 
     /// Whether all of a box's surface is found to be outside.
-    fn is_outside(&self, bounds: &Bounds, run: &Run) -> Result<bool, Cancelled> {
-        /// Pieces that are looked at before it is given up.
-        const PATIENCE: usize = 20_000;
+    fn is_outside(&self, bounds: &Bounds, gaps: &Gaps, run: &Run) -> Result<bool, Cancelled> {
         let mut open = Vec::new();
         for axis in 0..3 {
             for side in [bounds.min[axis], bounds.max[axis]] {
@@ -217,6 +225,9 @@ impl Membrane {
                 run.check()?;
             }
             let Some((centre, half)) = open.pop() else { return Ok(true) };
+            if gaps.most(centre, half) < 0.5 {
+                continue;
+            }
             let (side, way) = self.side(centre, half.length());
             if side >= 0.0 {
                 return Ok(false);

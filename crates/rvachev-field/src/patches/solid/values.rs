@@ -8,9 +8,15 @@ use super::super::SurfaceDistance;
 use super::MeshLeaf;
 use super::rim::Membrane;
 use crate::kernel::Element;
-use crate::{AnyField, Bounds, Chunk, Dual, Interval, ParamError, Placement, VALUE_LIMIT, Way, Zone, steep_slopes};
+use crate::{
+    AnyField, Bounds, COORDINATE_LIMIT, Chunk, Dual, Interval, ParamError, Placement, VALUE_LIMIT, Way, Zone, bits,
+    steep_slopes,
+};
 #[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
+
+/// Normals of stored triangles are off by less.
+const ROUNDING: f64 = 1e-6;
 
 impl MeshLeaf {
     /// The value of a point, given the distance from the triangles and what is known of the membrane.
@@ -49,6 +55,14 @@ impl MeshLeaf {
         self.distance.signed_with_slope(p, side)
     }
 
+    /// The unit normals of the triangles in a zone, where these are all of the surface, and few.
+    fn normals_in(&self, zone: &Zone) -> Option<Vec<DVec3>> {
+        if self.is_open() || !zone.is_finite() {
+            return None;
+        }
+        self.patches().normals_within(zone, self.distance.slack(zone, 0.0))
+    }
+
     /// The leaf with another distance.
     fn with(&self, distance: SurfaceDistance) -> MeshLeaf {
         MeshLeaf { distance, ..self.clone() }
@@ -73,6 +87,17 @@ impl AnyField for MeshLeaf {
     fn check(&self) -> Result<(), ParamError> {
         if self.is_empty() {
             return Err(ParamError::new("triangles", 0.0, "1 or more"));
+        }
+        let bounds = self.patches().bounds();
+        let far = bounds.min.to_array().into_iter().chain(bounds.max.to_array());
+        let farthest = far.fold(0.0, |most: f64, x| if x.abs() > most.abs() { x } else { most });
+        if farthest.abs() > COORDINATE_LIMIT {
+            let allowed = format!("{:e} to {COORDINATE_LIMIT:e}; scale the mesh", -COORDINATE_LIMIT);
+            return Err(ParamError::new("coordinate", farthest, allowed));
+        }
+        if let Some(volume) = self.turned {
+            let allowed = "above 0; the mesh is inside out, Mesh::flipped turns it";
+            return Err(ParamError::new("volume", volume, allowed));
         }
         Ok(())
     }
@@ -105,6 +130,15 @@ impl AnyField for MeshLeaf {
         !self.is_open()
     }
 
+    fn is_faceted(&self) -> bool {
+        true
+    }
+
+    fn each_corner(&self, tell: &mut dyn FnMut(DVec3)) {
+        let corners = |at| [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|place| self.patches().point(at, place));
+        (0..self.len()).flat_map(corners).for_each(tell);
+    }
+
     fn convex(&self) -> bool {
         false
     }
@@ -127,11 +161,13 @@ impl AnyField for MeshLeaf {
             return Interval::ALL;
         }
         let Some(distance) = self.patches().distance(zone.centre) else { return Interval::ALL };
-        let (side, way) = membrane.side(zone.centre, distance);
         let (radius, slack) = (zone.radius(), self.distance.slack(zone, distance));
         let most = distance + radius + slack;
-        let left = distance.min(way) - radius - slack;
-        if left <= 0.0 {
+        if distance - radius - slack <= 0.0 && self.distance.apart(zone, slack) <= 0.0 {
+            return Interval::new(-most, most);
+        }
+        let (side, way) = membrane.side(zone.centre, distance.max(2.0 * (radius + slack)));
+        if way - radius - slack <= 0.0 {
             return Interval::new(-most, most);
         }
         // The sign is certain; how large the value is, less: the rim is seen box by box.
@@ -140,6 +176,20 @@ impl AnyField for MeshLeaf {
 
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
         if self.is_open() { 0 } else { self.distance.rises(zone, ways) }
+    }
+
+    /// Along a line the winding number grows where it passes triangles from in front, and changes nowhere else.
+    fn enters(&self, zone: &Zone, ways: &[Way]) -> u8 {
+        let Some(normals) = self.normals_in(zone) else { return 0 };
+        let enters = |way: Way| {
+            let least = way.sway + ROUNDING * way.middle.length();
+            normals.iter().all(|normal| -normal.dot(way.middle) > least)
+        };
+        bits(ways, enters)
+    }
+
+    fn inward(&self, zone: &Zone) -> Option<DVec3> {
+        (-self.normals_in(zone)?.iter().sum::<DVec3>()).try_normalize()
     }
 
     fn narrowed(&self, zone: &Zone) -> Option<Arc<dyn AnyField>> {

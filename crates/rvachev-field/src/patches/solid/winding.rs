@@ -17,7 +17,7 @@ use glam::{DMat3, DVec3};
 use rvachev_num::Real;
 
 use super::super::Patches;
-use super::super::face::double;
+use super::super::face::{double, wide};
 use super::super::hierarchy::{DEEPEST, PARENT};
 use super::super::packet::Packet;
 
@@ -186,12 +186,6 @@ impl Winding {
         }
         near * (0.5 / PI) + beyond * (0.25 / PI)
     }
-}
-
-/// Three numbers as formulas take them.
-#[inline(always)]
-fn wide([x, y, z]: [f32; 3]) -> [f64; 3] {
-    [f64::from(x), f64::from(y), f64::from(z)]
 }
 
 /// A corner and the sides from there.

@@ -1,0 +1,130 @@
+//! How far all patches are from a zone.
+//!
+//! ```text
+//!     .-----------------.   zone      The ball about a flat zone reaches the surface long before the zone
+//!     '-----------------'             does. So zones are compared with the boxes of the hierarchy, and with
+//!     -------------------   patches   the planes of the patches in those that they meet.
+//! ```
+
+use glam::{DMat3, DVec3};
+
+use super::Patches;
+use super::face::double;
+use super::hierarchy::{Node, PARENT};
+use crate::Zone;
+
+/// After so many boxes and patches it is given up: what is that close has smaller zones to be told by.
+const PATIENCE: usize = 512;
+
+/// More patches than this are not listed.
+const MANY: usize = 96;
+
+/// A zone in the frame of the patches.
+struct Seen {
+    low: DVec3,
+    high: DVec3,
+    centre: DVec3,
+    axes: DMat3,
+    slack: DVec3,
+}
+
+impl Seen {
+    /// How far a box is, at least.
+    fn from_box(&self, low: DVec3, high: DVec3) -> f64 {
+        (low - self.high).max(self.low - high).max(DVec3::ZERO).length()
+    }
+
+    /// How far the plane through a point is, given its unit normal.
+    fn from_plane(&self, point: DVec3, normal: DVec3) -> f64 {
+        let reach = (self.axes.transpose() * normal).abs().element_sum() + normal.abs().dot(self.slack);
+        (normal.dot(point - self.centre)).abs() - reach
+    }
+}
+
+impl Patches {
+    fn seen(&self, zone: &Zone) -> Seen {
+        let unit = self.frame.unit;
+        let [x, y, z] = zone.hull();
+        Seen {
+            low: self.frame.into_local(DVec3::new(x.lo(), y.lo(), z.lo())),
+            high: self.frame.into_local(DVec3::new(x.hi(), y.hi(), z.hi())),
+            centre: self.frame.into_local(zone.centre),
+            axes: zone.axes * (1.0 / unit),
+            slack: zone.slack / unit,
+        }
+    }
+
+    /// The unit normals of all patches that may be within `least` of a zone, and are flat; nothing where they are many.
+    pub(super) fn normals_within(&self, zone: &Zone, least: f64) -> Option<Vec<DVec3>> {
+        let (seen, least) = (self.seen(zone), least / self.frame.unit);
+        let (mut found, mut looked) = (Vec::new(), 0);
+        let mut open: Vec<&Node> = Vec::with_capacity(64);
+        open.extend(self.nodes.first());
+        while let Some(node) = open.pop() {
+            if seen.from_box(double(node.low), double(node.high)) > least {
+                continue;
+            }
+            if node.count >= PARENT {
+                open.extend([0, 1].map(|n| &self.nodes[node.first as usize + n]));
+                continue;
+            }
+            for at in (node.first..node.first + node.count).map(|at| at as usize) {
+                looked += 1;
+                if self.patch_apart(&seen, at) <= least {
+                    found.push(self.point_and_normal(at, 0.0, 0.0).1);
+                }
+            }
+            if found.len() > MANY || looked > PATIENCE {
+                return None;
+            }
+        }
+        Some(found)
+    }
+
+    /// A distance above `least` that all points of a zone are from all patches; nothing where there is none, or it is not
+    /// found soon.
+    pub(super) fn apart(&self, zone: &Zone, least: f64) -> Option<f64> {
+        let (seen, unit) = (self.seen(zone), self.frame.unit);
+        let least = least / unit;
+        let mut nearest = f64::INFINITY;
+        let mut looked = 0;
+        let gap = |node: &Node| seen.from_box(double(node.low), double(node.high));
+        let mut open: Vec<&Node> = Vec::with_capacity(64);
+        open.extend(self.nodes.first());
+        while let Some(node) = open.pop() {
+            if gap(node) >= nearest {
+                continue;
+            }
+            looked += 1;
+            if looked > PATIENCE {
+                return None;
+            }
+            if node.count >= PARENT {
+                let [a, b] = [0, 1].map(|n| &self.nodes[node.first as usize + n]);
+                // What is near the middle tells soonest that there is no such distance.
+                let away =
+                    |node: &Node| seen.centre.distance_squared(seen.centre.clamp(double(node.low), double(node.high)));
+                open.extend(if away(a) <= away(b) { [b, a] } else { [a, b] });
+                continue;
+            }
+            for at in node.first..node.first + node.count {
+                looked += 1;
+                nearest = nearest.min(self.patch_apart(&seen, at as usize));
+                if nearest <= least {
+                    return None;
+                }
+            }
+        }
+        Some(nearest * unit).filter(|nearest| nearest.is_finite())
+    }
+
+    /// How far a patch is, at least.
+    fn patch_apart(&self, seen: &Seen, at: usize) -> f64 {
+        let Some((face, sides)) = self.at(at) else { return 0.0 };
+        let [a, e, f] = [double(face.a), double(sides.e), double(sides.f)];
+        let (b, c) = (a + e, a + f);
+        let normal = e.cross(f).try_normalize();
+        let from_plane = normal.map_or(0.0, |normal| seen.from_plane(a, normal));
+        from_plane.max(seen.from_box(a.min(b).min(c), a.max(b).max(c))) - f64::from(face.sag)
+    }
+}
