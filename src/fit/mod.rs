@@ -12,6 +12,7 @@
 //! | [`superellipsoid`](superellipsoid()) | the superellipsoid that points are of, strewn points and a table put aside |
 //! | [`supershape`](supershape()) | the supershape, its symmetry numbers found |
 //! | [`deformed`](deformed()) | the superellipsoid, tapered, twisted and bent |
+//! | [`supershape_union`](supershape_union()) | the union of supershapes with holes that a segmented surface is of |
 //! | [`register`](register()) | where a known solid is in a scan |
 //! | [`inspect`](inspect()) | how far a scan is from a solid, by point and by leaf |
 //!
@@ -116,6 +117,7 @@ mod kernel_tests;
 mod linear;
 mod local;
 mod mixture;
+mod paper;
 mod plane;
 mod pose;
 mod random;
@@ -139,6 +141,10 @@ pub use deformed::{DeformedSuperellipsoid, deformed, deformed_with};
 pub use deviations::Deviation;
 pub use error::FitError;
 pub use inspect::{Deviations, LeafDeviation, inspect, inspect_with};
+pub use paper::{
+    ErrorOfFit, Segments, TruncatedSupershape, UnionFit, UnionPart, UnionSettings, supershape_union,
+    supershape_union_with,
+};
 pub use register::{RegisterSettings, Registration, register, register_with};
 pub use result::{Fit, SearchReport, Shape};
 pub use settings::{FitSettings, Start};

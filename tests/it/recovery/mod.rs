@@ -8,3 +8,4 @@ mod registration;
 mod shapes;
 mod superellipsoids;
 mod supershapes;
+mod unions;
