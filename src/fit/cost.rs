@@ -10,6 +10,9 @@
 /// | `SolinaBajcsy` | √(a₁a₂a₃)·(G² − 1) | Solina and Bajcsy (1990) |
 /// | `Gauge` | √(a₁a₂a₃)·(G − 1) | Fougerolle et al., equation 4 |
 ///
+/// The sum of the squares of `Gauge` is the paper's equation 15 of a single shape; that of several
+/// is in [`ErrorOfFit`](super::ErrorOfFit).
+///
 /// The radial residual is longer than the distance where rays graze the surface, which makes
 /// noise large there: of one-sided views of superellipsoids fewer come out right by it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]

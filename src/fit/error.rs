@@ -91,6 +91,30 @@ pub enum FitError {
     /// The picture's size is none.
     #[error(transparent)]
     Image(#[from] ImageError),
+    /// There are not as many labels as there are things to label.
+    #[error("{labels} labels for {count} {of}; one each is needed")]
+    Labels {
+        /// How many labels were given.
+        labels: usize,
+        /// How many are needed.
+        count: usize,
+        /// What is labelled.
+        of: &'static str,
+    },
+    /// Creases are told by normals, which the cloud does not have.
+    #[error("the cloud of {points} points has no normals, which creases are told by; add normals or give labels")]
+    NoNormals {
+        /// How many points there are.
+        points: usize,
+    },
+    /// A segment cannot be fitted.
+    #[error("segment {label}: {source}; give its points the label of a neighbour, or leave them out")]
+    Segment {
+        /// Its label.
+        label: u32,
+        /// Why not.
+        source: Box<FitError>,
+    },
     /// The run was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

@@ -244,6 +244,13 @@ impl Model<PARAMETERS> for Supershaped {
 }
 
 impl Supershaped {
+    /// The direction outwards at a point, of no certain length.
+    pub(super) fn outwards(&self, p: DVec3) -> DVec3 {
+        let q = self.rotation.transpose() * (p - self.center);
+        let mut rows = [0.0; PARAMETERS];
+        self.rotation * DVec3::from_array(self.log_gauge(q.to_array(), &mut rows).gradient)
+    }
+
     /// The same with other ties; what is tied becomes equal.
     pub(super) fn tied(mut self, ties: Ties) -> Supershaped {
         self.ties = ties;

@@ -210,7 +210,7 @@ fn residuals_on<S: Simd, E: Number, M: Model<N>, const N: usize>(
 
 /// The residual of a point, and its derivatives by the parameters.
 #[inline(always)]
-fn terms<R: Real, M: Model<N>, const N: usize>(model: &M, p: [R; 3], cost: Cost) -> (R, [R; N]) {
+pub(super) fn terms<R: Real, M: Model<N>, const N: usize>(model: &M, p: [R; 3], cost: Cost) -> (R, [R; N]) {
     let (rotation, center) = model.pose();
     let from = [p[0] - center.x, p[1] - center.y, p[2] - center.z];
     let axis = |axis: DVec3| from[0].scale_add(axis.x, from[1].scale_add(axis.y, from[2] * axis.z));

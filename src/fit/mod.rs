@@ -12,6 +12,7 @@
 //! | [`superellipsoid`](superellipsoid()) | the superellipsoid that points are of, strewn points and a table put aside |
 //! | [`supershape`](supershape()) | the supershape, its symmetry numbers found |
 //! | [`deformed`](deformed()) | the superellipsoid, tapered, twisted and bent |
+//! | [`supershape_union`](supershape_union()) | the union of supershapes with holes that a segmented surface is of |
 //! | [`register`](register()) | where a known solid is in a scan |
 //! | [`part`](part()) | the tree of boxes, cylinders and other leaves, added and cut, that a mesh is of |
 //! | [`inspect`](inspect()) | how far a scan is from a solid, by point and by leaf; as a [picture](Deviations::picture), a [coloured cloud](Deviations::colored), [JSON](Deviations::to_json) |
@@ -119,6 +120,7 @@ mod legend;
 mod linear;
 mod local;
 mod mixture;
+mod paper;
 mod part;
 mod picture;
 mod plane;
@@ -144,6 +146,10 @@ pub use deformed::{DeformedSuperellipsoid, deformed, deformed_with};
 pub use deviations::Deviation;
 pub use error::FitError;
 pub use inspect::{Deviations, LeafDeviation, inspect, inspect_with};
+pub use paper::{
+    ErrorOfFit, Segments, TruncatedSupershape, UnionFit, UnionPart, UnionSettings, supershape_union,
+    supershape_union_with,
+};
 pub use part::{
     Layout, PartFit, PartKinds, PartLeaf, PartSettings, Pattern, Snap, Topology, Unexplained, part, part_of_points,
     part_of_points_with, part_with,

@@ -10,3 +10,4 @@ mod scanned_parts;
 mod shapes;
 mod superellipsoids;
 mod supershapes;
+mod unions;
