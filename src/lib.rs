@@ -161,8 +161,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Points become solids: [`fit`] finds the superellipsoid or supershape that a scan is of, where a
-//! known part is in it, and how far it is from it.
+//! Points become solids: [`fit`] finds the superellipsoid or supershape that a scan is of, the tree of
+//! boxes, cylinders and other leaves that a mesh is of ([`fit::part`]), where a known part is in a
+//! scan, and how far it is from it. Any solid can be [written as Rust code](Solid::to_rust).
 //!
 //! ```
 //! use rvachev::fit::{FitSettings, superellipsoid};

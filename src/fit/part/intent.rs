@@ -7,7 +7,7 @@
 //!     box: turned by .0001                      not turned
 //! ```
 //!
-//! Vertices judge: a number is moved by no more than they leave open. A cut that ends where there is nothing left to
+//! What is not round, but equal to another number, becomes that one. Vertices judge: a number is moved by no more than they leave open. A cut that ends where there is nothing left to
 //! cut is lengthened to a round number, as an end in a face would leave a skin there, or not, by the last digit.
 
 use glam::DVec3;
@@ -22,6 +22,9 @@ const TURNED: f64 = 2e-3;
 /// What vertices leave open of a length at the least, in diagonals, and what is of a leaf's surface.
 const OPEN: f64 = 1e-5;
 const NEAR: f64 = 3e-3;
+
+/// What is this part of what is open means nothing.
+const DIGITS: f64 = 0.1;
 
 /// A cut goes beyond the face by this part of the diagonal at the least.
 const BEYOND: f64 = 0.01;
@@ -67,28 +70,65 @@ pub(super) fn intended(leaves: &[(bool, Leaf)], vertices: &[DVec3], size: f64) -
         leaves.iter().enumerate().flat_map(of).collect()
     };
     let scale = Scale::of(&all(&meant), size);
-    let mut changes = Vec::new();
-    for i in 0..meant.len() {
-        let measures = meant[i].1.measures();
-        let ends = if meant[i].0 { Vec::new() } else { in_the_open(&meant[..i], &meant[i].1, size) };
-        let numbers: Vec<f64> = (measures.iter().enumerate())
-            .map(|(nth, (measure, v))| match ends.iter().find(|end| end.nth == nth) {
-                Some(end) => scale.beyond(end.face, BEYOND * size, end.up),
-                None => scale.round(*v, within(*measure, i)).unwrap_or(*v),
+    let mut numbers: Vec<Vec<f64>> = Vec::new();
+    let mut loose = Vec::new();
+    for (i, (adds, leaf)) in meant.iter().enumerate() {
+        let ends = if *adds { Vec::new() } else { in_the_open(&meant[..i], leaf, size) };
+        let number = |(nth, (measure, v)): (usize, (Measure, f64))| {
+            if let Some(end) = ends.iter().find(|end| end.nth == nth) {
+                return scale.beyond(end.face, BEYOND * size, end.up);
+            }
+            let within = within(measure, i);
+            scale.round(v, within).unwrap_or_else(|| {
+                loose.push(Loose { leaf: i, nth, within });
+                v
             })
-            .collect();
-        let Some(leaf) = meant[i].1.made_of(&numbers) else { continue };
-        let moved = measures.iter().zip(&numbers).enumerate().filter(|(_, ((_, from), to))| from != *to);
-        changes.extend(moved.map(|(nth, ((measure, from), to))| Change {
-            leaf: i,
-            nth,
-            measure: *measure,
-            from: *from,
-            to: *to,
-        }));
-        meant[i].1 = leaf;
+        };
+        numbers.push(leaf.measures().into_iter().enumerate().map(number).collect());
+    }
+    make_equal(&mut numbers, loose);
+    let mut changes = Vec::new();
+    for (i, ((_, leaf), numbers)) in meant.iter_mut().zip(&numbers).enumerate() {
+        let Some(made) = leaf.made_of(numbers) else { continue };
+        for (nth, ((measure, from), to)) in leaf.measures().into_iter().zip(numbers).enumerate() {
+            // What only lost digits that mean nothing is not told.
+            if (from - to).abs() > DIGITS * within(measure, i) {
+                changes.push(Change { leaf: i, nth, measure, from, to: *to });
+            }
+        }
+        *leaf = made;
     }
     (meant, changes)
+}
+
+/// A number that is not round.
+struct Loose {
+    leaf: usize,
+    nth: usize,
+    within: f64,
+}
+
+/// Numbers that are not round, but equal to within what is open, whatever their signs, become one; and they lose the
+/// digits that mean nothing.
+fn make_equal(numbers: &mut [Vec<f64>], mut loose: Vec<Loose>) {
+    let value = |numbers: &[Vec<f64>], l: &Loose| numbers[l.leaf][l.nth];
+    loose.sort_by(|a, b| value(numbers, a).abs().total_cmp(&value(numbers, b).abs()));
+    let mut rest = &loose[..];
+    while let Some(first) = rest.first() {
+        let least = value(numbers, first).abs();
+        let is_equal = |l: &&Loose| value(numbers, l).abs() - least <= l.within.min(first.within);
+        let (equal, others) = rest.split_at(rest.iter().take_while(is_equal).count());
+        let mean = equal.iter().map(|l| value(numbers, l).abs()).sum::<f64>() / equal.len() as f64;
+        // A power of ten that is no more than a part of what is open.
+        let places = -(DIGITS * first.within).log10().floor();
+        let unit = 10f64.powi(places.abs() as i32);
+        let mean = if places > 0.0 { (mean * unit).round() / unit } else { (mean / unit).round() * unit };
+        for l in equal {
+            let number = &mut numbers[l.leaf][l.nth];
+            *number = mean.copysign(*number);
+        }
+        rest = others;
+    }
 }
 
 /// How far the vertices of a leaf leave open where it is: the error of their mean distance, three times.
@@ -179,6 +219,10 @@ mod tests {
         assert_eq!([hole[0], hole[1], hole[4]], [10.0, 5.0, 7.0]);
         assert!(hole[2] <= -0.7 && hole[2] > -2.0 && hole[3] >= 8.7 && hole[3] < 10.0, "{hole:?}");
         assert_eq!(meant[1].1.rotation, glam::DMat3::IDENTITY);
+        // Numbers that are not round are equal at least, and short.
+        let pins = [12.34567, -12.34571].map(|x| (true, Leaf::sphere(DVec3::new(x, 0.0, 0.0), 1.0)));
+        let [a, b] = [0, 1].map(|i| intended(&pins, &[], 70.0).0[i].1.centre.x);
+        assert!(a == -b && a.to_string().len() <= 8, "{a}");
         // The pocket ends in the plate on one side only.
         let pocket = numbers(2);
         assert_eq!([pocket[3], pocket[4]], [-18.0, 4.0], "{pocket:?}");

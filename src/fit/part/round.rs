@@ -4,27 +4,28 @@
 //! is no chance. It then costs the bits that tell which multiple; any other number costs all the bits down to the
 //! tolerance.
 
-/// Steps from coarse to fine.
+/// Steps from coarse to fine, each a numerator and a denominator: of whole numbers, the multiples are the nearest numbers
+/// to what they are in decimals.
 pub(super) struct Scale {
-    steps: Vec<f64>,
+    steps: Vec<[f64; 2]>,
 }
 
 /// So many multiples of the tolerance a step has at the least, so that one number in ten is round by chance.
 const CHANCE: f64 = 20.0;
 
 /// Lengths of an inch, where the unit is an inch, a millimetre, a centimetre or a metre.
-const INCHES: [f64; 4] = [1.0, 25.4, 2.54, 0.0254];
+const INCHES: [[f64; 2]; 4] = [[1.0, 1.0], [254.0, 10.0], [254.0, 100.0], [254.0, 10_000.0]];
 
 impl Scale {
     fn decimal(size: f64) -> Scale {
         let most = size.log10().floor() as i32;
-        let steps = (most - 8..=most).rev().flat_map(|n| [5.0, 1.0].map(|k| decimal_power(k, n)));
-        Scale { steps: steps.collect() }
+        let step = |k: f64, n: i32| if n < 0 { [k, 10f64.powi(-n)] } else { [k * 10f64.powi(n), 1.0] };
+        Scale { steps: (most - 8..=most).rev().flat_map(|n| [step(5.0, n), step(1.0, n)]).collect() }
     }
 
-    fn binary(inch: f64, size: f64) -> Scale {
-        let most = (size / inch).log2().floor() as i32;
-        Scale { steps: (most - 20..=most).rev().map(|n| inch * f64::from(n).exp2()).collect() }
+    fn binary([inch, parts]: [f64; 2], size: f64) -> Scale {
+        let most = (size * parts / inch).log2().floor() as i32;
+        Scale { steps: (most - 20..=most).rev().map(|n| [inch * f64::from(n).exp2(), parts]).collect() }
     }
 
     /// The scale that the numbers, each with a tolerance, are shortest on.
@@ -39,42 +40,35 @@ impl Scale {
         scales.swap_remove(best)
     }
 
-    /// The step of which a multiple is within the tolerance of a number.
-    fn step(&self, value: f64, within: f64) -> Option<f64> {
-        let is_near = |step: &&f64| (value - (value / **step).round() * **step).abs() <= within;
-        self.steps.iter().take_while(|step| **step >= CHANCE * within).find(is_near).copied()
+    /// The round number within the tolerance, and its step.
+    fn rounded(&self, value: f64, within: f64) -> Option<(f64, f64)> {
+        let steps = self.steps.iter().map(|[n, d]| (n / d, [*n, *d])).take_while(|(step, _)| *step >= CHANCE * within);
+        let mut rounded = steps.map(|(step, parts)| (multiple((value / step).round(), parts), step));
+        rounded.find(|(round, _)| (value - round).abs() <= within)
     }
 
     fn bits(&self, value: f64, within: f64, size: f64) -> f64 {
-        let step = self.step(value, within);
-        (size / step.unwrap_or(0.25 * within)).log2().max(0.0)
+        let step = self.rounded(value, within).map_or(0.25 * within, |(_, step)| step);
+        (size / step).log2().max(0.0)
     }
 
     /// The round number within the tolerance.
     pub(super) fn round(&self, value: f64, within: f64) -> Option<f64> {
-        self.step(value, within).map(|step| multiple((value / step).round(), step))
+        self.rounded(value, within).map(|(round, _)| round)
     }
 
     /// The first round number beyond a value, at least so far, upwards or downwards.
     pub(super) fn beyond(&self, value: f64, least: f64, up: bool) -> f64 {
-        let step = self.steps.iter().copied().find(|step| *step <= least).unwrap_or(least);
+        let parts = self.steps.iter().copied().find(|[n, d]| n / d <= least).unwrap_or([least, 1.0]);
+        let step = parts[0] / parts[1];
         let from = if up { value + least } else { value - least };
-        let count = if up { (from / step).ceil() } else { (from / step).floor() };
-        multiple(count, step)
+        multiple(if up { (from / step).ceil() } else { (from / step).floor() }, parts)
     }
 }
 
-/// k·10ⁿ, the nearest number to it.
-fn decimal_power(k: f64, n: i32) -> f64 {
-    if n < 0 { k / 10f64.powi(-n) } else { k * 10f64.powi(n) }
-}
-
-/// The nearest number to a multiple of a step: of .001, which is none itself, 7 are .007.
-fn multiple(count: f64, step: f64) -> f64 {
-    let inverse = (1.0 / step).round();
-    let is_part = step < 1.0 && (inverse * step - 1.0).abs() < 1e-12;
-    // Never −0.
-    (if is_part { count / inverse } else { count * step }) + 0.0
+/// A multiple of a step; never −0.
+fn multiple(count: f64, [numerator, denominator]: [f64; 2]) -> f64 {
+    count * numerator / denominator + 0.0
 }
 
 #[cfg(test)]
@@ -90,8 +84,8 @@ mod tests {
         assert_eq!(rounded, [30.0, 12.0, 3.5, 22.0, 0.0]);
         let inches: Vec<(f64, f64)> = [76.2004, 19.0497, 22.2252, 12.6999, 25.4].map(|v| (v, within)).to_vec();
         let scale = Scale::of(&inches, 110.0);
-        let rounded: Vec<f64> = inches.iter().map(|(v, w)| scale.round(*v, *w).unwrap() / 25.4).collect();
-        assert_eq!(rounded, [3.0, 0.75, 0.875, 0.5, 1.0]);
+        let rounded: Vec<f64> = inches.iter().map(|(v, w)| scale.round(*v, *w).unwrap()).collect();
+        assert_eq!(rounded, [76.2, 19.05, 22.225, 12.7, 25.4]);
     }
 
     #[test]
