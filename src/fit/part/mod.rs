@@ -9,6 +9,7 @@ mod body;
 mod boxes;
 mod candidates;
 mod columns;
+mod contours;
 mod corners;
 mod coverage;
 mod detector;

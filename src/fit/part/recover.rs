@@ -97,7 +97,7 @@ fn recovered(
     if queries.inside.is_none() {
         return Err(hollow);
     }
-    let mut selector = selector(&samples, &regions, &queries, settings, &to_select)?;
+    let mut selector = selector(body, &samples, &regions, &queries, settings, &to_select)?;
     let model = selector.select(Vec::new(), &to_select)?;
     let mut model = moved(&mut selector, model, &samples, &to_select)?;
     if settings.snap && !vertices.is_empty() {
@@ -190,6 +190,7 @@ fn share(region: &Region) -> f64 {
 
 /// All candidates, ready to be chosen from.
 fn selector<'a>(
+    body: &Body,
     samples: &Samples,
     regions: &Regions,
     queries: &'a Queries,
@@ -205,7 +206,7 @@ fn selector<'a>(
         superellipsoids::propose(&mut pool, samples, regions, queries, settings.seed, run)?;
     }
     if kinds.profiles || kinds.prisms || kinds.supershapes {
-        profiles::propose(&mut pool, samples, &regions.regions, &regions.frames, queries, kinds, run)?;
+        profiles::propose(&mut pool, body, samples, regions, queries, kinds, run)?;
     }
     run.check()?;
     let mut grids: Vec<Grid> = Vec::new();
