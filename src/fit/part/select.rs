@@ -9,7 +9,7 @@
 //! tried with what is wrong counted a little. The order decides: what is added late closes holes that were cut
 //! before, which are then cut again if they pay.
 
-use super::bits::{Bits, Stakes};
+use super::bits::{Bits, Stakes, weight};
 use super::boxes::Grid;
 use super::model::{GRAIN, Judge, Model, Step};
 use super::pool::Pool;
@@ -19,7 +19,7 @@ use crate::{Cancelled, Run};
 /// Models that are followed at once.
 const BEAM: usize = 3;
 
-/// What wrong samples count in a leaf that is to be cut after it is added.
+/// What wrong samples count at most in a leaf that is to be cut after it is added.
 const FORGIVING: f64 = 0.15;
 
 /// Cuts of one leaf that are tried before it is given up.
@@ -120,7 +120,10 @@ impl Selector<'_> {
     /// A leaf before what is subtracted and cuts of it at once, as many as it takes to be better than before.
     fn pairs(&mut self, model: &Model, place: usize) -> Vec<Model> {
         let stakes = self.judge().stakes(&model.steps, place, true);
-        let added = self.best(&stakes, true, FORGIVING, 2 * BEAM);
+        // Of a thin shell nearly all that the leaf holds is wrong before it is cut.
+        let weights = &self.queries.weights;
+        let dear = FORGIVING.min(0.5 * weight(&stakes.gain, weights) / weight(&stakes.loss, weights).max(GRAIN));
+        let added = self.best(&stakes, true, dear, 2 * BEAM);
         let mut pairs = Vec::new();
         for (_, which) in added {
             let mut next = self.with(&model.steps, place, Step { adds: true, which });

@@ -65,7 +65,7 @@ const CUT: [bool; 2] = [false, true];
 
 #[test]
 fn a_thin_tube_is_a_cylinder_and_a_bore() {
-    let (outer, inner) = (rod(0.3, [-0.2, 0.2]), rod(0.28, [-0.22, 0.22]));
+    let (outer, inner) = (rod(0.3, [-0.2, 0.2]), rod(0.29, [-0.22, 0.22]));
     let queries = asked(&[(true, outer.clone()), (false, inner.clone())], DVec3::new(0.3, 0.3, 0.2));
     let wrong = Leaf::cuboid(DMat3::IDENTITY, [DVec3::splat(-0.2), DVec3::new(0.1, 0.1, 0.2)]);
     let leaves = vec![(outer, ADD, None), (inner, CUT, None), (wrong, ADD, None)];
