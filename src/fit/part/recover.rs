@@ -216,7 +216,7 @@ fn selector<'a>(
     if kinds.boxes {
         grids = regions.frames.iter().map(|frame| grid(*frame, &regions.regions, &samples.points, queries)).collect();
     }
-    Ok(Selector { pool, queries, grids })
+    Ok(Selector { pool, queries, grids, cancel: run.cancel.clone() })
 }
 
 fn leaves(pool: &Pool, steps: &[Step]) -> Vec<(bool, Leaf)> {

@@ -14,7 +14,7 @@ use super::boxes::Grid;
 use super::model::{GRAIN, Judge, Model, Step};
 use super::pool::Pool;
 use super::queries::Queries;
-use crate::{Cancelled, Run};
+use crate::{CancelToken, Cancelled, Run};
 
 /// Models that are followed at once.
 const BEAM: usize = 3;
@@ -40,6 +40,8 @@ pub(super) struct Selector<'a> {
     pub(super) queries: &'a Queries,
     /// Where boxes are looked for.
     pub(super) grids: Vec<Grid>,
+    /// Changes are left off when it is cancelled; what comes of them is of no use then.
+    pub(super) cancel: CancelToken,
 }
 
 impl Selector<'_> {
@@ -225,6 +227,9 @@ impl Selector<'_> {
     /// Another leaf in the place of each.
     fn exchange(&mut self, model: &mut Model) {
         for i in 0..model.steps.len() {
+            if self.cancel.is_cancelled() {
+                return;
+            }
             let mut rest = model.steps.clone();
             rest.remove(i);
             for adds in [true, false] {
@@ -241,7 +246,7 @@ impl Selector<'_> {
     /// Several leaves in the place of each: one that does the work of two badly is in the way of both.
     fn rebuild(&mut self, model: &mut Model) {
         let mut i = 0;
-        while i < model.steps.len() {
+        while i < model.steps.len() && !self.cancel.is_cancelled() {
             let mut steps = model.steps.clone();
             steps.remove(i);
             let mut next = self.model(steps);
@@ -284,6 +289,9 @@ impl Selector<'_> {
     fn add_one(&mut self, model: &mut Model) {
         let mut tried: Vec<Model> = Vec::new();
         for place in 0..=model.steps.len() {
+            if self.cancel.is_cancelled() {
+                return;
+            }
             for adds in [true, false] {
                 if !adds && place == 0 {
                     continue;
@@ -305,7 +313,7 @@ impl Selector<'_> {
     /// The same surface with another end, and the best cut then: a bore that ends where a wider one begins.
     fn change_end(&mut self, model: &mut Model) {
         let mut i = 0;
-        while i < model.steps.len() {
+        while i < model.steps.len() && !self.cancel.is_cancelled() {
             let step = model.steps[i];
             if let Some(family) = self.pool.candidates[step.which as usize].family {
                 let others: Vec<u32> = (0..)
