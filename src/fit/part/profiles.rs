@@ -176,8 +176,11 @@ fn push(
     }
 }
 
+/// A shape by its height.
+type Extruded = Box<dyn Fn(f64) -> Shape>;
+
 /// The shape of a given height, how far its x axis is turned, and where its axis is.
-fn shape(base: &Base, kinds: PartKinds) -> Option<(Box<dyn Fn(f64) -> Shape>, f64, DVec2)> {
+fn shape(base: &Base, kinds: PartKinds) -> Option<(Extruded, f64, DVec2)> {
     match base {
         Base::Polygon(corners) if kinds.profiles => {
             let centre = corners.iter().sum::<DVec2>() / corners.len() as f64;
