@@ -3,7 +3,7 @@
 //! Shapes are the crate's own leaves, about the origin of the pose and along its z axis, so what a candidate is
 //! tested by is what its solid is made of.
 
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec2, DVec3};
 
 use super::outline::Outline;
 use crate::field::{Dual, Field, Real};
@@ -106,20 +106,27 @@ impl Shape {
             Shape::Torus(s) => s.eval(p),
             Shape::Prism(s) => s.eval(p),
             Shape::RoundedRectangle { base, height } => extruded(base.eval(p), *height),
-            Shape::Supershape { base, height } => extruded(base.eval(p), *height),
             Shape::Superellipsoid(s) => s.eval(p),
-            // Corners are no formula; [`distance`](Shape::distance) asks them.
-            Shape::Profile { height, .. } => extruded(p[0].lift(f64::INFINITY), *height),
+            // [`distance`](Shape::distance) asks corners and gauges.
+            Shape::Profile { height, .. } | Shape::Supershape { height, .. } => {
+                extruded(p[0].lift(f64::INFINITY), *height)
+            }
         }
     }
 
     /// The signed distance, negative inside; to first order where the value is none.
     fn distance(&self, p: DVec3) -> f64 {
         match self {
-            Shape::Superellipsoid(_) | Shape::Supershape { .. } => {
+            Shape::Superellipsoid(_) => {
                 let value = self.value(Dual::point(p.to_array()));
                 let slope = DVec3::from_array(value.d).length();
                 -value.v / slope.max(1e-6)
+            }
+            Shape::Supershape { base, height } => {
+                let (at, step) = (p.truncate(), 1e-4 * base.radius());
+                let along = |axis: DVec2| base.gauge(at + step * axis) - base.gauge(at - step * axis);
+                let slope = DVec2::new(along(DVec2::X), along(DVec2::Y)).length() / (2.0 * step);
+                ((base.gauge(at) - 1.0) / slope.max(1e-6)).max(p.z.abs() - 0.5 * height)
             }
             Shape::Profile { outline, height } => outline.distance(p.truncate()).max(p.z.abs() - 0.5 * height),
             _ => -self.value(p.to_array()),
@@ -129,6 +136,7 @@ impl Shape {
     fn contains(&self, p: DVec3) -> bool {
         match self {
             Shape::Profile { outline, height } => 2.0 * p.z.abs() < *height && outline.contains(p.truncate()),
+            Shape::Supershape { base, height } => 2.0 * p.z.abs() < *height && base.gauge(p.truncate()) < 1.0,
             _ => self.value(p.to_array()) > 0.0,
         }
     }
@@ -300,7 +308,6 @@ impl Leaf {
 mod tests {
     use super::*;
     use crate::Gielis;
-    use glam::DVec2;
 
     fn leaves() -> Vec<Leaf> {
         let axis = DVec3::new(1.0, 2.0, -0.5).normalize();

@@ -69,17 +69,47 @@ use crate::geom::{Mesh, PointCloud};
 ///
 /// The result is a [`PartFit`]: a solid whose leaves have names, how much of the volume it has in common with the mesh,
 /// how far its surface is from the mesh's, genus and shells beside those of the mesh, and the places that are not
-/// explained. Leaves are boxes, half-spaces (cut only), cylinders, cones, spheres, tori, superellipsoids, and what is
-/// extruded: polygons, rounded rectangles, regular prisms and supershapes. What is of other shapes comes
-/// out as several of these, or is told of by [`unexplained`](PartFit::unexplained).
+/// explained.
 ///
-/// Samples of the surface are grouped to regions of planes, cylinders, cones, spheres and tori; leaves in question are
-/// made of these with all ends and all boxes between parallel planes; a search over ordered trees takes those that mend
-/// more than their parameters [cost](PartSettings::parameter_cost); they are fitted to the samples, and laid through the
-/// vertices of the mesh where these tell their lengths exactly: the radius of a faceted cylinder is that of its corners.
+/// Samples of the surface are grouped to regions of planes, cylinders, cones, spheres and tori. Leaves in question are
+/// made of these, with all ends that they may have; boxes between parallel planes; extruded sections as polygons,
+/// rounded rectangles, regular prisms and supershapes; and superellipsoids of what hangs together without a crease. A
+/// search over ordered trees takes those that mend more than their parameters [cost](PartSettings::parameter_cost).
+/// They are fitted to the samples, and laid through the vertices of the mesh where these tell their lengths exactly:
+/// the radius of a cylinder of facets is that of its corners. At last leaves are left out that mend little and spoil
+/// genus or shells.
 ///
 /// The mesh may be in pieces and its triangles may overlap; inside is where the winding number is above ½. The result
 /// depends on mesh and settings only, not on the number of threads.
+///
+/// # How well it works
+///
+/// Meshes of parts that are used for tests elsewhere, on one thread, IoU on 2²⁰ points; that of a mesh of few facets
+/// cannot be 1 if radii are those of the corners:
+///
+/// | mesh | IoU | leaves (parameters) | genus, mesh's |
+/// |---|---|---|---|
+/// | unit_cube | 1.0000 | 1 (9) | 0, 0 |
+/// | 7_8ths_cube | 1.0000 | 2 (18) | 0, 0 |
+/// | shaft | 0.9933 | 1 (7) | 0, 0 |
+/// | round | 0.9589 | 2 (14) | 1, 1 |
+/// | bushing_roller | 0.9934 | 2 (14) | 1, 1 |
+/// | xtion_bracket | 0.9965 | 4 (74) | 2, 2 |
+/// | camshaft, not snapped | 0.9971 | 6 (45) | 0, 0 |
+/// | camshaft | 0.9875 | 6 (45) | 0, 0 |
+/// | angle_block | 0.9943 | 9 (64) | 1, 1 |
+/// | satellite_mount | 0.9918 | 9 (75) | 8, 8 |
+/// | lasercut_interface | 0.9995 | 9 (66) | 8, 8 |
+/// | holder | 0.9914 | 10 (70) | 5, 5 |
+/// | plate_holes | 0.9884 | 11 (84) | 5, 5 |
+/// | machinist | 0.9946 | 18 (130) | 36, 36 |
+/// | octagonal_pocket | 0.9743 | 32 (390) | 1, 1 |
+///
+/// Of 50 random parts (2 to 6 boxes, cylinders, cones, spheres, prisms, superellipsoids and supershapes, 0 to 4 holes,
+/// as meshes of marching cubes) 49 come out with an IoU of .97 or more (median .996), 45 with the genus of the mesh, 42
+/// with 12 leaves or fewer. It takes .1 to 1 s a part, 2 s for the largest.
+///
+/// What is not recovered: fillets, sweeps, threads and lattices, and which lengths were meant to be equal or round.
 ///
 /// # Errors
 ///

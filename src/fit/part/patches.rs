@@ -21,6 +21,9 @@ const SMOOTH: [f64; 2] = [0.927, 0.866];
 /// Fewer samples are no patch.
 pub(super) const FEWEST: usize = 24;
 
+/// Neighbours, whether their normals differ little, and whether they turn away from each other.
+type Link = (u32, u32, bool, bool);
+
 /// Samples that hang together.
 pub(super) struct Patch {
     pub(super) samples: Vec<u32>,
@@ -34,7 +37,7 @@ pub(super) fn patches(samples: &Samples) -> Vec<Patch> {
     let smooth = if *kind == Kind::Cad { SMOOTH[0] } else { SMOOTH[1] };
     let cell = (6.0 / points.len().max(1) as f64).sqrt() * 0.5;
     let grid = Grid::new(points, extent(points), cell);
-    let mut links: Vec<(u32, u32, bool, bool)> = Vec::new();
+    let mut links: Vec<Link> = Vec::new();
     let mut near = Vec::new();
     for (i, p) in (0_u32..).zip(points) {
         grid.nearest(*p, NEIGHBOURS + 1, &mut near);
@@ -50,16 +53,11 @@ pub(super) fn patches(samples: &Samples) -> Vec<Patch> {
         }
     }
     let mut all = Vec::new();
-    let keeps: [(fn(bool, bool) -> bool, Option<[bool; 2]>); 3] = [
-        (|is_smooth, _| is_smooth, None),
-        (|is_smooth, is_convex| is_smooth || is_convex, Some([true, false])),
-        (|is_smooth, is_convex| is_smooth || !is_convex, Some([false, true])),
-    ];
-    for (keeps, may) in keeps {
-        let kept = links.iter().filter(|(_, _, is_smooth, is_convex)| keeps(*is_smooth, *is_convex));
-        for samples in joined(points.len(), kept.map(|(a, b, ..)| (*a, *b))) {
+    for (across, may) in [(None, [true, true]), (Some(true), [true, false]), (Some(false), [false, true])] {
+        let is_kept = |(_, _, is_smooth, is_convex): &&Link| *is_smooth || across == Some(*is_convex);
+        for samples in joined(points.len(), links.iter().filter(is_kept).map(|(a, b, ..)| (*a, *b))) {
             if samples.len() >= FEWEST && all.iter().all(|other: &Patch| other.samples != samples) {
-                all.push(Patch { samples, may: may.unwrap_or([true, true]) });
+                all.push(Patch { samples, may });
             }
         }
     }

@@ -90,10 +90,12 @@ fn recovered(
     settings: &PartSettings,
     run: &Run,
 ) -> Result<PartFit, FitError> {
-    let [to_detect, to_label, to_select, to_finish] = run.stages([0.3, 0.1, 0.35, 0.2]);
+    let [to_detect, to_label, to_select, to_settle, to_finish] = run.stages([0.1, 0.2, 0.3, 0.2, 0.2]);
     samples.noise = samples.noise.max(settings.noise / samples.size);
     let regions = detect(&samples, settings.seed, &to_detect)?;
+    to_detect.report(1.0);
     let queries = queries(body, &samples, &regions, settings.seed, &to_label)?;
+    to_label.report(1.0);
     if queries.inside.is_none() {
         return Err(hollow);
     }
@@ -107,10 +109,12 @@ fn recovered(
         // What the exact lengths leave nothing to do for.
         selector.drop_one(&mut model);
     }
+    to_select.report(1.0);
     if model.steps.is_empty() {
         return Err(FitError::NoSurface { inliers: 0.0 });
     }
-    let (model, topology) = topology::mended(&selector, model, body.topology, &samples, run)?;
+    let (model, topology) = topology::mended(&selector, model, body.topology, &samples, &to_settle)?;
+    to_settle.report(1.0);
     let fit = finish(&leaves(&selector.pool, &model.steps), body, &samples, topology, &to_finish)?;
     run.report(1.0);
     Ok(fit)
@@ -213,7 +217,7 @@ fn selector<'a>(
     if kinds.boxes {
         grids = regions.frames.iter().map(|frame| grid(*frame, &regions.regions, &samples.points, queries)).collect();
     }
-    Ok(Selector { pool, queries, grids })
+    Ok(Selector { pool, queries, grids, cancel: run.cancel.clone() })
 }
 
 fn leaves(pool: &Pool, steps: &[Step]) -> Vec<(bool, Leaf)> {

@@ -65,7 +65,8 @@ impl PartFit {
     }
 
     /// How many numbers the leaves have: 3 of a half-space, 4 of a sphere, 7 of a cylinder or a torus, 8 of a cone, 9 of
-    /// a box.
+    /// a box or a prism, 10 of a rounded rectangle, 11 of a superellipsoid, 12 of a supershape, 7 and 2 a corner of a
+    /// profile.
     #[must_use]
     pub fn parameters(&self) -> usize {
         self.leaves.iter().map(PartLeaf::parameters).sum()
@@ -118,7 +119,8 @@ impl PartLeaf {
         &self.name
     }
 
-    /// What it is: "half-space", "box", "cylinder", "cone", "sphere" or "torus".
+    /// What it is: "half-space", "box", "cylinder", "cone", "sphere", "torus", "prism", "rounded rectangle", "profile" (an
+    /// extruded polygon), "supershape" (an extruded one) or "superellipsoid".
     #[must_use]
     pub fn kind(&self) -> &'static str {
         self.leaf.kind()

@@ -169,12 +169,12 @@ impl Scene {
         for round in 0..ROUNDS {
             let noise = fitted.deviation(count).clamp(0.2 * self.near, 0.5);
             let mut sum = 0.0;
-            for i in 0..count {
+            for (i, (weight, residual)) in weights[..count].iter_mut().zip(&fitted.residuals).enumerate() {
                 let faces = round < 2 || self.faces(&fitted.model, i) != 0.0;
-                let off = f64::from(fitted.residuals[i]) / (3.0 * noise);
-                let weight = if faces { (1.0 + off * off).powi(-2) } else { 0.0 };
-                weights[i] = weight as f32;
-                sum += weight;
+                let off = f64::from(*residual) / (3.0 * noise);
+                let counts = if faces { (1.0 + off * off).powi(-2) } else { 0.0 };
+                *weight = counts as f32;
+                sum += counts;
             }
             let area = if round == 0 { 0.0 } else { 0.3 * noise * noise * sum };
             problem.descend(&mut fitted, &weights, [area, noise * noise], STEPS, 1e-3);

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
 use glam::{DVec3, Vec3};
-use rvachev::fit::{FitError, PartFit, PartKinds, PartSettings, part, part_with};
-use rvachev::{CancelToken, CellSize, Mesh, MeshSettings, Progress, Run, Solid};
+use rayon::prelude::*;
+use rvachev::fit::{FitError, PartFit, PartKinds, PartLeaf, PartSettings, part, part_with};
+use rvachev::{CancelToken, CellSize, Mesh, MeshSettings, MeshSolid, Progress, Run, Solid};
 
 fn meshed(solid: &Solid, cells: u32) -> Mesh {
     let settings = MeshSettings { cell: CellSize::LongestSide(cells), ..MeshSettings::default() };
@@ -60,15 +61,51 @@ fn a_counterbored_plate_turned_anyhow() {
     assert_eq!(fit.leaves().iter().filter(|leaf| leaf.is_cut() && leaf.kind() == "cylinder").count(), 4);
 }
 
+/// A cylinder as programs write it: of so many facets, with its corners on the circle.
+fn faceted(radius: f32, height: f32, facets: u32) -> Mesh {
+    let corner = |i: u32, z: f32| {
+        let angle = i as f32 * std::f32::consts::TAU / facets as f32;
+        Vec3::new(radius * angle.cos(), radius * angle.sin(), z)
+    };
+    let mut positions: Vec<Vec3> = (0..facets).flat_map(|i| [corner(i, 0.0), corner(i, height)]).collect();
+    positions.extend([Vec3::ZERO, height * Vec3::Z]);
+    let mut triangles = Vec::new();
+    for i in 0..facets {
+        let ([a, b], [c, d]) = ([2 * i, 2 * i + 1], [2 * ((i + 1) % facets), 2 * ((i + 1) % facets) + 1]);
+        triangles.extend([[a, c, d], [a, d, b], [2 * facets, c, a], [2 * facets + 1, b, d]]);
+    }
+    Mesh::new(positions, triangles).unwrap()
+}
+
+#[test]
+fn radii_are_those_of_corners_unless_it_is_refused() {
+    let mesh = faceted(10.0, 25.0, 24);
+    let laid = part(&mesh, &PartSettings::default()).unwrap();
+    assert_eq!(names(&laid), ["cylinder 1"]);
+    assert!((radii(&laid)[0] - 10.0).abs() < 1e-3, "{:?}", radii(&laid));
+    let free = part(&mesh, &PartSettings { snap: false, ..PartSettings::default() }).unwrap();
+    // A circle with the area of the facets.
+    assert!((radii(&free)[0] - 9.94).abs() < 0.04, "{:?}", radii(&free));
+    assert!(free.iou() > laid.iou());
+}
+
+#[test]
+fn what_is_round_in_no_simple_way_is_a_superellipsoid() {
+    let blob = Solid::superellipsoid([9.0, 6.0, 7.0], 0.6, 1.3).translate([0.0, 0.0, 6.0]);
+    let fit = recovered(&(Solid::cuboid([40.0, 24.0, 4.0]) | blob));
+    assert_right(&fit, 0.98);
+    assert!(fit.leaves().iter().any(|leaf| leaf.kind() == "superellipsoid"), "{:?}", names(&fit));
+}
+
 #[test]
 fn kinds_that_are_not_allowed_are_not_used() {
     let ball = Solid::sphere(10.0) | Solid::cuboid([30.0, 8.0, 8.0]);
     let mesh = meshed(&ball, 64);
     let with = part(&mesh, &PartSettings::default()).unwrap();
     assert!(with.leaves().iter().any(|leaf| leaf.kind() == "sphere"), "{:?}", names(&with));
-    let kinds = PartKinds { spheres: false, ..PartKinds::default() };
+    let kinds = PartKinds { spheres: false, superellipsoids: false, ..PartKinds::default() };
     let without = part(&mesh, &PartSettings { kinds, ..PartSettings::default() }).unwrap();
-    assert!(without.leaves().iter().all(|leaf| leaf.kind() != "sphere"), "{:?}", names(&without));
+    assert!(without.leaves().iter().all(|leaf| !["sphere", "superellipsoid"].contains(&leaf.kind())));
     assert!(without.iou() < with.iou());
     assert!(!without.unexplained().is_empty());
 }
@@ -159,9 +196,26 @@ fn radii(fit: &PartFit) -> Vec<f64> {
     fit.leaves().iter().filter_map(|leaf| radius(leaf.solid())).collect()
 }
 
+/// The volume in common over that of either, on 2²⁰ evenly spread points in the mesh's box and 1.5 % about it.
+fn iou(mesh: &Mesh, fit: &PartFit) -> f64 {
+    let truth = Solid::from_mesh(mesh, MeshSolid::default());
+    let (bounds, margin) = (mesh.bounds(), 0.015 * mesh.bounds().size());
+    let (low, size) = (bounds.min - margin, bounds.size() + 2.0 * margin);
+    // The additive recurrence of the plastic constant's sister in three dimensions (M. Roberts, 2018).
+    let steps = DVec3::new(0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_3);
+    let points: Vec<DVec3> = (1..=1_u32 << 20).map(|i| low + size * (f64::from(i) * steps).fract()).collect();
+    let [there, found] = [&truth, &fit.solid()].map(|solid| {
+        let sides: Vec<bool> = points.par_iter().map(|p| solid.contains(*p).unwrap()).collect();
+        sides
+    });
+    let pairs = || there.iter().zip(&found);
+    pairs().filter(|(a, b)| **a && **b).count() as f64 / pairs().filter(|(a, b)| **a || **b).count() as f64
+}
+
 #[test]
 fn parts_of_a_workshop() {
-    for gate in [("unit_cube", 0.9999, 1, 0), ("7_8ths_cube", 0.9999, 2, 0), ("shaft", 0.99, 1, 0)] {
+    let quick = [("unit_cube", 0.9999, 1, 0), ("7_8ths_cube", 0.9999, 2, 0), ("lasercut_interface", 0.999, 9, 8)];
+    for gate in quick {
         judged(gate);
     }
     // A tube: its IoU is with 36 facets, whose sagitta is 3 % of the wall.
@@ -177,4 +231,75 @@ fn parts_of_a_workshop() {
             assert!(meant < 1e-4, "{diameter} inches");
         }
     }
+}
+
+/// All that are there, with what is asked of them. That of the camshaft is of 28 facets around, which have .9916 of the
+/// circle's area: it is asked without snapping.
+const ALL: [(Gate, bool); 15] = [
+    (("unit_cube", 0.9999, 1, 0), true),
+    (("7_8ths_cube", 0.9999, 2, 0), true),
+    (("shaft", 0.99, 1, 0), true),
+    (("round", 0.955, 2, 1), true),
+    (("bushing_roller", 0.99, 2, 1), true),
+    (("xtion_bracket", 0.99, 4, 2), true),
+    (("camshaft", 0.99, 7, 0), false),
+    (("camshaft", 0.98, 7, 0), true),
+    (("angle_block", 0.99, 9, 1), true),
+    (("satellite_mount", 0.99, 9, 8), true),
+    (("lasercut_interface", 0.999, 9, 8), true),
+    (("holder", 0.99, 10, 5), true),
+    (("plate_holes", 0.98, 11, 5), true),
+    (("machinist", 0.99, 20, 36), true),
+    (("octagonal_pocket", 0.965, 30, 1), true),
+];
+
+#[test]
+#[ignore = "a minute: the table of the documentation"]
+fn all_parts_of_a_workshop() {
+    println!("| mesh | IoU | leaves (parameters) | genus, mesh's | CPU s |");
+    println!("|---|---|---|---|---|");
+    for ((name, least, leaves, genus), snap) in ALL {
+        let Some(path) = shared(name) else { return };
+        let mesh = Mesh::load(path).unwrap();
+        let run = Run { threads: 1, ..Run::default() };
+        let settings = PartSettings { snap, ..PartSettings::default() };
+        let time = cpu_time::ProcessTime::now();
+        let fit = part_with(&mesh, &settings, &run).unwrap();
+        let seconds = time.elapsed().as_secs_f64();
+        let iou = iou(&mesh, &fit);
+        let counts = format!("{} ({})", fit.leaves().len(), fit.parameters());
+        let [found, given] = [fit.topology(), fit.topology_of_input()].map(|topology| topology.genus.unwrap_or(-1));
+        let how = if snap { "" } else { ", not snapped" };
+        println!("| {name}{how} | {iou:.4} | {counts} | {found}, {given} | {seconds:.2} |");
+        assert!(iou >= least && fit.leaves().len() <= leaves && found == genus, "{name}");
+        if name == "plate_holes" {
+            let slope = |leaf: &&PartLeaf| leaf.is_cut() && leaf.kind() == "cone";
+            assert_eq!(fit.leaves().iter().filter(slope).count(), 4, "countersinks");
+        }
+    }
+}
+
+#[test]
+#[ignore = "minutes, and wants Python with numpy, scipy, trimesh, numba, matplotlib and scikit-image: random parts"]
+fn fifty_random_parts() {
+    let folder = std::env::temp_dir().join("rvachev_random_parts");
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/tools/generators/write.py");
+    let made = std::process::Command::new("python3").arg(script).args(["parts", "50", "0"]).arg(&folder).status();
+    if !made.is_ok_and(|status| status.success()) {
+        println!("the generator does not run: skipped");
+        return;
+    }
+    let (mut right, mut same, mut few) = (0, 0, 0);
+    for i in 0..50 {
+        let mesh = Mesh::load(folder.join(format!("{i:03}.ply"))).unwrap();
+        let fit = part(&mesh, &PartSettings::default()).unwrap();
+        let [found, given] = [fit.topology(), fit.topology_of_input()];
+        let iou = iou(&mesh, &fit);
+        println!("{i:03}: IoU {iou:.4}, {} leaves, genus {:?}, {:?}", fit.leaves().len(), found.genus, given.genus);
+        right += usize::from(iou >= 0.97);
+        same += usize::from(found.genus == given.genus);
+        few += usize::from(fit.leaves().len() <= 12);
+    }
+    println!("IoU ≥ .97: {right}, genus: {same}, ≤ 12 leaves: {few}");
+    assert!(right >= 49 && same >= 43, "{right}, {same}");
 }
