@@ -36,11 +36,13 @@ impl Body {
         Ok(Body { bounds: mesh.bounds(), topology: topology::of_mesh(mesh, run)?, inside: Inside::Mesh(leaf) })
     }
 
-    /// Of the points that samples of a cloud are.
-    pub(super) fn of_points(samples: &Samples, bounds: Bounds) -> Body {
+    /// Of the points that samples of a cloud are; nothing if they face inwards.
+    pub(super) fn of_points(samples: &Samples, bounds: Bounds) -> Option<Body> {
         let Samples { centre, size, .. } = *samples;
-        let inside = Inside::Points { dipoles: Dipoles::of(&samples.points, &samples.normals), centre, size };
-        Body { bounds, topology: Topology::default(), inside }
+        let dipoles = Dipoles::of(&samples.points, &samples.normals);
+        let encloses = dipoles.enclose();
+        let inside = Inside::Points { dipoles, centre, size };
+        encloses.then_some(Body { bounds, topology: Topology::default(), inside })
     }
 
     /// The rings in which a plane across the z axis of a frame meets the surface, in diagonals.

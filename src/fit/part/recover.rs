@@ -76,8 +76,8 @@ pub(super) fn recover_points(cloud: &PointCloud, settings: &PartSettings, run: &
     let samples = Samples::of_cloud(cloud, settings.seed);
     run.check()?;
     let [low, high] = extent(points);
-    let body = Body::of_points(&samples, Bounds::new(low, high));
     let hollow = FitError::Hollow { of: "points", count: points.len() };
+    let Some(body) = Body::of_points(&samples, Bounds::new(low, high)) else { return Err(hollow) };
     recovered(&body, samples, &[], hollow, settings, run)
 }
 
