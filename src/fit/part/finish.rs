@@ -15,7 +15,6 @@ use super::result::{PartFit, PartLeaf, Topology, Unexplained};
 use super::samples::Samples;
 use super::sobol::Sobol;
 use super::topology::tree;
-use crate::geom::Mesh;
 use crate::{Bounds, Run};
 
 /// Points that the volumes in common are estimated from.
