@@ -46,7 +46,7 @@ impl Squares {
                 let inside = value.map(|v| v >= 0.0);
                 for k in 0..4 {
                     let next = (k + 1) % 4;
-                    if !(inside[k] && !inside[next]) {
+                    if !inside[k] || inside[next] {
                         continue;
                     }
                     // Counter-clockwise from where the inside is left to where it is entered again.
