@@ -15,6 +15,7 @@
 //! | [`supershape_union`](supershape_union()) | the union of supershapes with holes that a segmented surface is of |
 //! | [`register`](register()) | where a known solid is in a scan |
 //! | [`part`](part()) | the tree of boxes, cylinders and other leaves, added and cut, that a mesh is of |
+//! | [`part_of_points`] | the same of a scan of a whole part |
 //! | [`inspect`](inspect()) | how far a scan is from a solid, by point and by leaf; as a [picture](Deviations::picture), a [coloured cloud](Deviations::colored), [JSON](Deviations::to_json) |
 //!
 //! The first three take a [`PointCloud`](crate::PointCloud) and give a [`Fit`]: the solid with

@@ -54,7 +54,7 @@ impl Grid {
     /// Puts the best boxes for stakes among the candidates.
     pub(super) fn propose(&mut self, stakes: &Stakes, adds: bool, dear: f64, queries: &Queries, pool: &mut Pool) {
         let price = 9.0 * pool.per_parameter;
-        for (gain, box_) in self.best(stakes, dear, queries, price) {
+        for box_ in self.best(stakes, dear, queries, price) {
             if !self.seen.insert((box_, adds)) {
                 continue;
             }
@@ -78,7 +78,7 @@ impl Grid {
     }
 
     /// The boxes that gain most, and more than the price, by numbers of offsets.
-    fn best(&self, stakes: &Stakes, dear: f64, queries: &Queries, price: f64) -> Vec<(f64, [[u8; 2]; 3])> {
+    fn best(&self, stakes: &Stakes, dear: f64, queries: &Queries, price: f64) -> Vec<[[u8; 2]; 3]> {
         let [nx, ny, nz] = [0, 1, 2].map(|k| self.offsets[k].len() - 1);
         let mut sums = vec![0.0; nx * ny * nz];
         for (set, sign) in [(&stakes.gain, 1.0), (&stakes.loss, -dear)] {
@@ -128,7 +128,7 @@ impl Grid {
                 }
             }
         }
-        best
+        best.into_iter().map(|(_, found)| found).collect()
     }
 }
 

@@ -71,6 +71,13 @@ impl Dipoles {
         dipoles
     }
 
+    /// Whether the points enclose a volume, and do not face it.
+    pub(super) fn enclose(&self) -> bool {
+        let c = &self.columns;
+        let part = |k: usize| (0..3).map(|axis| f64::from(c[axis][k]) * f64::from(c[3 + axis][k])).sum::<f64>();
+        (0..c[0].len()).map(part).sum::<f64>() > 0.0
+    }
+
     /// About 1 inside and 0 outside.
     pub(super) fn winding_number(&self, p: DVec3) -> f64 {
         self.scale * dispatch!(Level::new(), simd => self.sum(simd, p))
@@ -120,5 +127,7 @@ mod tests {
                 assert!((w - inside).abs() < 0.25, "{w} at {r}");
             }
         }
+        let inwards: Vec<DVec3> = normals.iter().map(|n| -*n).collect();
+        assert!(dipoles.enclose() && !Dipoles::of(&points, &inwards).enclose());
     }
 }

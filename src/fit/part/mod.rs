@@ -9,6 +9,7 @@ mod body;
 mod boxes;
 mod candidates;
 mod columns;
+mod contours;
 mod corners;
 mod coverage;
 mod detector;
@@ -106,7 +107,7 @@ use crate::geom::{Mesh, PointCloud};
 /// | holder | 0.9914 | 10 (70) | 5, 5 |
 /// | plate_holes | 0.9884 | 11 (84) | 5, 5 |
 /// | machinist | 0.9946 | 18 (130) | 36, 36 |
-/// | octagonal_pocket | 0.9670 | 28 (410) | 1, 1 |
+/// | octagonal_pocket | 0.9743 | 32 (390) | 1, 1 |
 ///
 /// Of 50 random parts (2 to 6 boxes, cylinders, cones, spheres, prisms, superellipsoids and supershapes, 0 to 4 holes,
 /// as meshes of marching cubes) 49 come out with an IoU of .97 or more (median .996), 45 with the genus of the mesh, 42
@@ -158,6 +159,16 @@ pub fn part_with(mesh: &Mesh, settings: &PartSettings, run: &Run) -> Result<Part
 /// of the points with the areas that they stand for. Noise is estimated, and [`PartSettings::noise`] is a lower bound of it.
 ///
 /// [Genus and shells](PartFit::topology_of_input) of the input are not known, and lengths are what fits the points best.
+/// Of 12 random parts of two to six added leaves and up to four cut ones, of 4000 points with normals, noise as a share
+/// of the box's diagonal, so many have an IoU of 0.97 with the part; a part takes some 2 s:
+///
+/// | noise | IoU ≥ .97 | median IoU |
+/// |---|---|---|
+/// | none | 10 | 0.989 |
+/// | 0.2 % | 9 | 0.985 |
+/// | 0.4 % | 6 | 0.974 |
+///
+/// A side that is not seen is closed as if by a film, and nothing tells which leaves are guesses.
 ///
 /// # Errors
 ///
@@ -172,7 +183,7 @@ pub fn part_with(mesh: &Mesh, settings: &PartSettings, run: &Run) -> Result<Part
 /// let points = mesh.positions().iter().map(|p| p.as_dvec3()).collect();
 ///
 /// let found = part_of_points(&PointCloud::new(points)?, &PartSettings::default())?;
-/// assert!(found.iou() > 0.97 && found.leaves().len() == 2);
+/// assert!(found.iou() > 0.97 && found.leaves().iter().any(|leaf| leaf.is_cut()));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn part_of_points(cloud: &PointCloud, settings: &PartSettings) -> Result<PartFit, FitError> {

@@ -10,14 +10,14 @@ use glam::{DMat3, DVec2, DVec3};
 
 use super::bases::{Base, Grain, apart, bases};
 use super::bits::Bits;
+use super::body::Body;
 use super::candidates::BEYOND;
-use super::corners::Facets;
 use super::directions::about;
 use super::leaf::{Leaf, Shape};
 use super::outline::Outline;
 use super::pool::Pool;
 use super::queries::Queries;
-use super::regions::{Form, Region};
+use super::regions::{Form, Regions};
 use super::samples::{Kind, Samples};
 use super::sections::Ring;
 use super::settings::PartKinds;
@@ -52,20 +52,21 @@ struct Prismatic {
 /// Puts the profiles that sections show among the candidates.
 pub(super) fn propose(
     pool: &mut Pool,
+    body: &Body,
     samples: &Samples,
-    regions: &[Region],
-    frames: &[DMat3],
+    regions: &Regions,
     queries: &Queries,
     kinds: PartKinds,
     run: &Run,
 ) -> Result<(), Cancelled> {
     let grain = match samples.kind {
         Kind::Cad => Grain { tolerance: 0.0018, short: 0.0 },
-        _ => Grain { tolerance: 0.003, short: 0.018 },
+        Kind::Voxels => Grain { tolerance: 0.003, short: 0.018 },
+        Kind::Scan => Grain { tolerance: f64::max(0.004, 1.5 * samples.noise), short: 0.035 },
     };
-    for (frame, planes) in directions(samples, regions, frames) {
+    for (frame, planes) in directions(samples, regions) {
         run.check()?;
-        for prismatic in prismatics(&samples.facets, &frame, &planes) {
+        for prismatic in prismatics(body, samples, &frame, &planes) {
             for base in bases(&prismatic.ring.points, grain) {
                 push(pool, &frame, &base, &prismatic, &planes, queries, kinds);
             }
@@ -75,14 +76,14 @@ pub(super) fn propose(
 }
 
 /// Directions that most of the planes face, each with the heights that slabs end at.
-fn directions(samples: &Samples, regions: &[Region], frames: &[DMat3]) -> Vec<(DMat3, Vec<f64>)> {
+fn directions(samples: &Samples, regions: &Regions) -> Vec<(DMat3, Vec<f64>)> {
     let mut found: Vec<(f64, DMat3, Vec<f64>)> = Vec::new();
-    for axis in frames.iter().flat_map(|frame| [frame.x_axis, frame.y_axis, frame.z_axis]) {
+    for axis in regions.frames.iter().flat_map(|frame| [frame.x_axis, frame.y_axis, frame.z_axis]) {
         let frame = about(axis);
         if found.iter().any(|f| f.1.z_axis.dot(frame.z_axis).abs() > ACROSS) {
             continue;
         }
-        let across = regions.iter().filter_map(|region| match region.form {
+        let across = regions.regions.iter().filter_map(|region| match region.form {
             Form::Plane { normal, offset } if normal.dot(frame.z_axis).abs() > ACROSS => {
                 Some((offset * normal.dot(frame.z_axis).signum(), region.share))
             }
@@ -105,14 +106,14 @@ fn directions(samples: &Samples, regions: &[Region], frames: &[DMat3]) -> Vec<(D
 }
 
 /// The rings of the slabs; such as go on in the next slab once.
-fn prismatics(facets: &Facets, frame: &DMat3, planes: &[f64]) -> Vec<Prismatic> {
+fn prismatics(body: &Body, samples: &Samples, frame: &DMat3, planes: &[f64]) -> Vec<Prismatic> {
     let mut slabs: Vec<usize> = (0..planes.len().saturating_sub(1)).collect();
     slabs.sort_by(|i, j| (planes[j + 1] - planes[*j]).total_cmp(&(planes[i + 1] - planes[*i])));
     slabs.truncate(SLABS);
     slabs.sort_unstable();
     let mut found: Vec<Prismatic> = Vec::new();
     for slab in slabs {
-        for ring in facets.rings(frame, 0.5 * (planes[slab] + planes[slab + 1])) {
+        for ring in body.section(samples, frame, 0.5 * (planes[slab] + planes[slab + 1])) {
             if ring.area.abs() < LEAST {
                 continue;
             }
@@ -156,7 +157,7 @@ fn push(
 ) {
     let adds = prismatic.ring.area > 0.0;
     let may = [adds, !adds];
-    let Some((shape, angle, centre)) = shape(base, kinds) else { return };
+    let Some(Extruded { shape, angle, centre }) = extruded(base, kinds) else { return };
     let rotation = *frame * DMat3::from_rotation_z(angle);
     let leaf = |[low, high]: [f64; 2]| Leaf {
         shape: shape(high - low),
@@ -176,13 +177,23 @@ fn push(
     }
 }
 
-/// The shape of a given height, how far its x axis is turned, and where its axis is.
-fn shape(base: &Base, kinds: PartKinds) -> Option<(Box<dyn Fn(f64) -> Shape>, f64, DVec2)> {
+/// What a base is extruded to.
+struct Extruded {
+    /// Of a height.
+    shape: Box<dyn Fn(f64) -> Shape>,
+    /// How far its x axis is turned.
+    angle: f64,
+    centre: DVec2,
+}
+
+/// What a base is extruded to, if that may be used.
+fn extruded(base: &Base, kinds: PartKinds) -> Option<Extruded> {
+    let of = |shape: Box<dyn Fn(f64) -> Shape>, angle, centre| Some(Extruded { shape, angle, centre });
     match base {
         Base::Polygon(corners) if kinds.profiles => {
             let centre = corners.iter().sum::<DVec2>() / corners.len() as f64;
             let outline = Outline { corners: corners.iter().map(|corner| *corner - centre).collect() };
-            Some((Box::new(move |height| Shape::Profile { outline: outline.clone(), height }), 0.0, centre))
+            of(Box::new(move |height| Shape::Profile { outline: outline.clone(), height }), 0.0, centre)
         }
         &Base::Rounded { centre, angle, size, radius } => {
             let is_box = radius == 0.0;
@@ -194,14 +205,14 @@ fn shape(base: &Base, kinds: PartKinds) -> Option<(Box<dyn Fn(f64) -> Shape>, f6
             } else {
                 Box::new(move |height| Shape::RoundedRectangle { base: Rectangle { size, radius }, height })
             };
-            Some((shape, angle, centre))
+            of(shape, angle, centre)
         }
         &Base::Regular { centre, angle, sides, radius } if kinds.prisms => {
-            Some((Box::new(move |height| Shape::Prism(Prism::new(sides, radius, height))), angle, centre))
+            of(Box::new(move |height| Shape::Prism(Prism::new(sides, radius, height))), angle, centre)
         }
         &Base::Supershape { centre, angle, m, n: [n1, n2], radius } if kinds.supershapes => {
             let base = Superpolygon::new(Gielis::new(f64::from(m), n1, n2, n2), radius);
-            Some((Box::new(move |height| Shape::Supershape { base: base.clone(), height }), angle, centre))
+            of(Box::new(move |height| Shape::Supershape { base: base.clone(), height }), angle, centre)
         }
         _ => None,
     }

@@ -79,8 +79,8 @@ pub(super) fn recover_points(cloud: &PointCloud, settings: &PartSettings, run: &
     let samples = Samples::of_cloud(cloud, settings.seed);
     run.check()?;
     let [low, high] = extent(points);
-    let body = Body::of_points(&samples, Bounds::new(low, high));
     let hollow = FitError::Hollow { of: "points", count: points.len() };
+    let Some(body) = Body::of_points(&samples, Bounds::new(low, high)) else { return Err(hollow) };
     recovered(&body, samples, &[], hollow, settings, run)
 }
 
@@ -102,7 +102,7 @@ fn recovered(
     if queries.inside.is_none() {
         return Err(hollow);
     }
-    let mut selector = selector(&samples, &regions, &queries, settings, &to_select)?;
+    let mut selector = selector(body, &samples, &regions, &queries, settings, &to_select)?;
     let model = selector.select(Vec::new(), &to_select)?;
     let mut model = moved(&mut selector, model, &samples, &to_select)?;
     let Samples { centre, size, .. } = samples;
@@ -212,6 +212,7 @@ fn share(region: &Region) -> f64 {
 
 /// All candidates, ready to be chosen from.
 fn selector<'a>(
+    body: &Body,
     samples: &Samples,
     regions: &Regions,
     queries: &'a Queries,
@@ -227,14 +228,14 @@ fn selector<'a>(
         superellipsoids::propose(&mut pool, samples, regions, queries, settings.seed, run)?;
     }
     if kinds.profiles || kinds.prisms || kinds.supershapes {
-        profiles::propose(&mut pool, samples, &regions.regions, &regions.frames, queries, kinds, run)?;
+        profiles::propose(&mut pool, body, samples, regions, queries, kinds, run)?;
     }
     run.check()?;
     let mut grids: Vec<Grid> = Vec::new();
     if kinds.boxes {
         grids = regions.frames.iter().map(|frame| grid(*frame, &regions.regions, &samples.points, queries)).collect();
     }
-    Ok(Selector { pool, queries, grids })
+    Ok(Selector { pool, queries, grids, cancel: run.cancel.clone() })
 }
 
 fn leaves(pool: &Pool, steps: &[Step]) -> Vec<(bool, Leaf)> {

@@ -63,6 +63,7 @@ pub(super) fn refined(leaves: &[(bool, Leaf)], samples: &Samples, run: &Run) -> 
             }
         }
         for ((adds, leaf), own) in leaves.iter_mut().zip(own) {
+            run.check()?;
             if samples.kind == Kind::Cad && !leaf.is_free() {
                 // Corners have told it, which samples of facets are inside of.
                 continue;

@@ -26,9 +26,7 @@ impl Facets {
     pub(super) fn rings(&self, frame: &DMat3, height: f64) -> Vec<Ring> {
         let to = frame.transpose();
         let side = |i: u32| frame.z_axis.dot(self.at(i)) - height;
-        // From the edge where a segment begins to the one where it ends, and the point at its beginning.
-        let mut segments: HashMap<[u32; 2], ([u32; 2], DVec2)> = HashMap::new();
-        let mut order: Vec<[u32; 2]> = Vec::new();
+        let mut segments = Segments::default();
         for (facet, t) in self.triangles().iter().enumerate() {
             let sides = t.map(side);
             let above = sides.map(|s| s >= 0.0);
@@ -39,19 +37,38 @@ impl Facets {
                 let (i, j) = (t[odd], t[(odd + k) % 3]);
                 let (a, b) = (sides[odd], sides[(odd + k) % 3]);
                 let p = self.at(i) + (self.at(j) - self.at(i)) * (a / (a - b));
-                ([i.min(j), i.max(j)], (to * p).truncate())
+                (u64::from(i.min(j)) << 32 | u64::from(i.max(j)), (to * p).truncate())
             });
             let along = frame.z_axis.cross(self.normals[facet]);
             let local = (to * along).truncate();
             let [from, end] = if (ends[1].1 - ends[0].1).dot(local) >= 0.0 { ends } else { [ends[1], ends[0]] };
-            if segments.insert(from.0, (end.0, from.1)).is_none() {
-                order.push(from.0);
-            }
+            segments.add(from.0, end.0, from.1);
         }
+        segments.rings()
+    }
+}
+
+/// Segments from edge to edge, each known by where it begins.
+#[derive(Default)]
+pub(super) struct Segments {
+    /// From the edge where a segment begins to the one where it ends, and the point at its beginning.
+    next: HashMap<u64, (u64, DVec2)>,
+    order: Vec<u64>,
+}
+
+impl Segments {
+    pub(super) fn add(&mut self, from: u64, to: u64, point: DVec2) {
+        if self.next.insert(from, (to, point)).is_none() {
+            self.order.push(from);
+        }
+    }
+
+    /// The rings that they close to.
+    pub(super) fn rings(mut self) -> Vec<Ring> {
         let mut rings = Vec::new();
-        for start in order {
+        for start in self.order {
             let (mut points, mut at) = (Vec::new(), start);
-            while let Some((next, point)) = segments.remove(&at) {
+            while let Some((next, point)) = self.next.remove(&at) {
                 points.push(point);
                 at = next;
             }

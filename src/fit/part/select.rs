@@ -9,17 +9,17 @@
 //! tried with what is wrong counted a little. The order decides: what is added late closes holes that were cut
 //! before, which are then cut again if they pay.
 
-use super::bits::{Bits, Stakes};
+use super::bits::{Bits, Stakes, weight};
 use super::boxes::Grid;
 use super::model::{GRAIN, Judge, Model, Step};
 use super::pool::Pool;
 use super::queries::Queries;
-use crate::{Cancelled, Run};
+use crate::{CancelToken, Cancelled, Run};
 
 /// Models that are followed at once.
 const BEAM: usize = 3;
 
-/// What wrong samples count in a leaf that is to be cut after it is added.
+/// What wrong samples count at most in a leaf that is to be cut after it is added.
 const FORGIVING: f64 = 0.15;
 
 /// Cuts of one leaf that are tried before it is given up.
@@ -40,6 +40,8 @@ pub(super) struct Selector<'a> {
     pub(super) queries: &'a Queries,
     /// Where boxes are looked for.
     pub(super) grids: Vec<Grid>,
+    /// Changes are left off when it is cancelled; what comes of them is of no use then.
+    pub(super) cancel: CancelToken,
 }
 
 impl Selector<'_> {
@@ -120,7 +122,10 @@ impl Selector<'_> {
     /// A leaf before what is subtracted and cuts of it at once, as many as it takes to be better than before.
     fn pairs(&mut self, model: &Model, place: usize) -> Vec<Model> {
         let stakes = self.judge().stakes(&model.steps, place, true);
-        let added = self.best(&stakes, true, FORGIVING, 2 * BEAM);
+        // Of a thin shell nearly all that the leaf holds is wrong before it is cut.
+        let weights = &self.queries.weights;
+        let dear = FORGIVING.min(0.5 * weight(&stakes.gain, weights) / weight(&stakes.loss, weights).max(GRAIN));
+        let added = self.best(&stakes, true, dear, 2 * BEAM);
         let mut pairs = Vec::new();
         for (_, which) in added {
             let mut next = self.with(&model.steps, place, Step { adds: true, which });
@@ -222,6 +227,9 @@ impl Selector<'_> {
     /// Another leaf in the place of each.
     fn exchange(&mut self, model: &mut Model) {
         for i in 0..model.steps.len() {
+            if self.cancel.is_cancelled() {
+                return;
+            }
             let mut rest = model.steps.clone();
             rest.remove(i);
             for adds in [true, false] {
@@ -238,7 +246,7 @@ impl Selector<'_> {
     /// Several leaves in the place of each: one that does the work of two badly is in the way of both.
     fn rebuild(&mut self, model: &mut Model) {
         let mut i = 0;
-        while i < model.steps.len() {
+        while i < model.steps.len() && !self.cancel.is_cancelled() {
             let mut steps = model.steps.clone();
             steps.remove(i);
             let mut next = self.model(steps);
@@ -281,6 +289,9 @@ impl Selector<'_> {
     fn add_one(&mut self, model: &mut Model) {
         let mut tried: Vec<Model> = Vec::new();
         for place in 0..=model.steps.len() {
+            if self.cancel.is_cancelled() {
+                return;
+            }
             for adds in [true, false] {
                 if !adds && place == 0 {
                     continue;
@@ -302,7 +313,7 @@ impl Selector<'_> {
     /// The same surface with another end, and the best cut then: a bore that ends where a wider one begins.
     fn change_end(&mut self, model: &mut Model) {
         let mut i = 0;
-        while i < model.steps.len() {
+        while i < model.steps.len() && !self.cancel.is_cancelled() {
             let step = model.steps[i];
             if let Some(family) = self.pool.candidates[step.which as usize].family {
                 let others: Vec<u32> = (0..)

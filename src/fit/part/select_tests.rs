@@ -8,7 +8,7 @@ use super::model::{Model, Step};
 use super::pool::Pool;
 use super::queries::{Queries, Strip};
 use super::select::Selector;
-use crate::Run;
+use crate::{CancelToken, Run};
 
 /// What a parameter costs.
 const PRICE: f64 = 1.5e-4;
@@ -43,7 +43,7 @@ fn selected(queries: &Queries, leaves: Vec<(Leaf, [bool; 2], Option<u32>)>) -> (
     for (leaf, may, family) in leaves {
         pool.add(leaf, queries, may, family);
     }
-    let mut selector = Selector { pool, queries, grids: Vec::new() };
+    let mut selector = Selector { pool, queries, grids: Vec::new(), cancel: CancelToken::default() };
     let model = selector.select(Vec::new(), &Run::default()).unwrap();
     let name = |step: &Step| {
         let leaf = &selector.pool.candidates[step.which as usize].leaf;
@@ -65,7 +65,7 @@ const CUT: [bool; 2] = [false, true];
 
 #[test]
 fn a_thin_tube_is_a_cylinder_and_a_bore() {
-    let (outer, inner) = (rod(0.3, [-0.2, 0.2]), rod(0.28, [-0.22, 0.22]));
+    let (outer, inner) = (rod(0.3, [-0.2, 0.2]), rod(0.29, [-0.22, 0.22]));
     let queries = asked(&[(true, outer.clone()), (false, inner.clone())], DVec3::new(0.3, 0.3, 0.2));
     let wrong = Leaf::cuboid(DMat3::IDENTITY, [DVec3::splat(-0.2), DVec3::new(0.1, 0.1, 0.2)]);
     let leaves = vec![(outer, ADD, None), (inner, CUT, None), (wrong, ADD, None)];
@@ -90,7 +90,7 @@ fn a_boss_is_added_under_the_hole_through_it() {
     for (leaf, may, family) in leaves {
         pool.add(leaf, &queries, may, family);
     }
-    let mut selector = Selector { pool, queries: &queries, grids: Vec::new() };
+    let mut selector = Selector { pool, queries: &queries, grids: Vec::new(), cancel: CancelToken::default() };
     let found_first = vec![Step { adds: true, which: 1 }, Step { adds: false, which: 0 }];
     let model = selector.select(found_first, &Run::default()).unwrap();
     assert_eq!(error(&queries, &model), 0.0);
@@ -110,7 +110,7 @@ fn a_counterbore_is_two_bores() {
     for (leaf, may, family) in leaves.clone() {
         pool.add(leaf, &queries, may, family);
     }
-    let mut selector = Selector { pool, queries: &queries, grids: Vec::new() };
+    let mut selector = Selector { pool, queries: &queries, grids: Vec::new(), cancel: CancelToken::default() };
     let stuck = selector.model(vec![Step { adds: true, which: 0 }, Step { adds: false, which: 1 }]);
     let model = selector.improve(stuck, &Run::default()).unwrap();
     assert_eq!(error(&queries, &model), 0.0);

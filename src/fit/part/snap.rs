@@ -30,6 +30,7 @@ pub(super) fn snapped(leaves: &[(bool, Leaf)], vertices: &[DVec3], run: &Run) ->
         let near = 3.0 * width;
         let of_surface: Vec<DVec3> = vertices.iter().copied().filter(|p| owner(&laid, *p).1.abs() < near).collect();
         for (_, leaf) in &mut laid {
+            run.check()?;
             let own =
                 of_surface.iter().filter(|p| leaf.distance(**p).abs() < near).map(|p| (*p, 1.0)).collect::<Vec<_>>();
             if own.len() > 1 {

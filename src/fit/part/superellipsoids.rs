@@ -167,7 +167,7 @@ impl Scene {
         let mut fitted = Fitted::new(start, samples, cost);
         let mut weights = vec![0.0_f32; samples.padded()];
         for round in 0..ROUNDS {
-            let noise = fitted.deviation(count).clamp(0.2 * self.near, 0.5);
+            let noise = fitted.deviation(count).min(0.5).max(0.2 * self.near);
             let mut sum = 0.0;
             for (i, (weight, residual)) in weights[..count].iter_mut().zip(&fitted.residuals).enumerate() {
                 let faces = round < 2 || self.faces(&fitted.model, i) != 0.0;

@@ -61,6 +61,42 @@ fn a_counterbored_plate_turned_anyhow() {
     assert_eq!(fit.leaves().iter().filter(|leaf| leaf.is_cut() && leaf.kind() == "cylinder").count(), 4);
 }
 
+/// A cylinder as programs write it: of so many facets, with its corners on the circle.
+fn faceted(radius: f32, height: f32, facets: u32) -> Mesh {
+    let corner = |i: u32, z: f32| {
+        let angle = i as f32 * std::f32::consts::TAU / facets as f32;
+        Vec3::new(radius * angle.cos(), radius * angle.sin(), z)
+    };
+    let mut positions: Vec<Vec3> = (0..facets).flat_map(|i| [corner(i, 0.0), corner(i, height)]).collect();
+    positions.extend([Vec3::ZERO, height * Vec3::Z]);
+    let mut triangles = Vec::new();
+    for i in 0..facets {
+        let ([a, b], [c, d]) = ([2 * i, 2 * i + 1], [2 * ((i + 1) % facets), 2 * ((i + 1) % facets) + 1]);
+        triangles.extend([[a, c, d], [a, d, b], [2 * facets, c, a], [2 * facets + 1, b, d]]);
+    }
+    Mesh::new(positions, triangles).unwrap()
+}
+
+#[test]
+fn radii_are_those_of_corners_unless_it_is_refused() {
+    let mesh = faceted(10.0, 25.0, 24);
+    let laid = part(&mesh, &PartSettings::default()).unwrap();
+    assert_eq!(names(&laid), ["cylinder 1"]);
+    assert!((radii(&laid)[0] - 10.0).abs() < 1e-3, "{:?}", radii(&laid));
+    let free = part(&mesh, &PartSettings { snap: false, ..PartSettings::default() }).unwrap();
+    // A circle with the area of the facets.
+    assert!((radii(&free)[0] - 9.94).abs() < 0.04, "{:?}", radii(&free));
+    assert!(free.iou() > laid.iou());
+}
+
+#[test]
+fn what_is_round_in_no_simple_way_is_a_superellipsoid() {
+    let blob = Solid::superellipsoid([9.0, 6.0, 7.0], 0.6, 1.3).translate([0.0, 0.0, 6.0]);
+    let fit = recovered(&(Solid::cuboid([40.0, 24.0, 4.0]) | blob));
+    assert_right(&fit, 0.98);
+    assert!(fit.leaves().iter().any(|leaf| leaf.kind() == "superellipsoid"), "{:?}", names(&fit));
+}
+
 #[test]
 fn kinds_that_are_not_allowed_are_not_used() {
     let ball = Solid::sphere(10.0) | Solid::cuboid([30.0, 8.0, 8.0]);
