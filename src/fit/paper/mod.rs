@@ -64,7 +64,7 @@ const FACING: f64 = 0.02;
 /// sum of squares, as it was published. Each segment needs 60 points or so and wants some hundreds.
 /// The same seed gives the same bits on any number of threads.
 ///
-/// How good it is: [the module](super#unions-of-supershapes).
+/// How good it is: [the module](crate::fit#unions-of-supershapes).
 ///
 /// # Errors
 ///

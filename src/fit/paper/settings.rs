@@ -15,7 +15,8 @@ pub struct UnionSettings {
     /// half-length; 1 to 100. Default: 5.
     pub depth: f64,
     /// Steps of the joint refinement at most, each of all parameters of all supershapes; 0 for none, at
-    /// most 1000. Where the points have noise, none is better: see [the tables](super#unions-of-supershapes). Default: 30.
+    /// most 1000. Where the points have noise, none is better: see [the tables](crate::fit#unions-of-supershapes).
+    /// Default: 30.
     pub refinement: usize,
 }
 
