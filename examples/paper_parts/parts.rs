@@ -118,19 +118,20 @@ fn painted(fit: &UnionFit) -> Solid {
 fn points(sheet: &mut Sheet, segments: &Segments, camera: &Camera) {
     let (pose, intrinsics) = (camera.pose().inverse(), camera.intrinsics(PANEL[0], PANEL[1]));
     let normals = segments.cloud().normals().unwrap_or_default();
-    let mut seen: Vec<(f64, glam::DVec2, u32)> = Vec::new();
+    let mut seen: Vec<(f64, glam::DVec2, [u8; 3])> = Vec::new();
     for ((p, n), label) in segments.cloud().positions().iter().zip(normals).zip(segments.labels()) {
         let local = pose.transform_point3(*p);
-        if pose.transform_vector3(n.as_dvec3()).dot(local) < 0.0
+        let facing = -pose.transform_vector3(n.as_dvec3()).dot(local.normalize_or_zero());
+        if facing > 0.0
             && let Some(at) = intrinsics.project(local)
         {
-            seen.push((local.z, at, *label));
+            seen.push((local.z, at, paint(*label).map(|c| (f64::from(c) * (0.45 + 0.65 * facing)).min(255.0) as u8)));
         }
     }
     seen.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut panel = sheet.panel("segments");
-    for (_, at, label) in seen {
-        panel.dot(at, 3.2, paint(label));
+    for (_, at, color) in seen {
+        panel.dot(at, 2.6, color);
     }
 }
 

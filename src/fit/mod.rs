@@ -84,6 +84,33 @@
 //! | taper and bend | 100.0 | 0.9964 | 105 k |
 //! | taper, twist up to 0.8 and bend | 99.5 | 0.9960 | 107 k |
 //!
+//! # Unions of supershapes
+//!
+//! The pipeline of the paper on rational supershapes, with its global error of fit (equation 15):
+//! a truncated supershape a segment, united by R_p with p = 2, holes found by the error and subtracted, all
+//! supershapes refined together. IoU of parts whose meshes are cut at concave creases, each supershape fitted
+//! alone → refined together; with noise in shares of the box's diagonal, without normals:
+//!
+//! | part | clean | 0.2 % noise | 0.4 % noise |
+//! |---|---|---|---|
+//! | box | 1.000 → 1.000 | .998 → .991 | .992 → .983 |
+//! | pin on a plate | .999 → .999 | .998 → .991 | .993 → .979 |
+//! | two balls | .999 → .999 | .999 → .998 | .998 → .991 |
+//! | star and ball | .999 → .999 | .994 → .990 | .989 → .980 |
+//! | angle | 1.000 → 1.000 | .996 → .994 | .985 → .979 |
+//! | box with a round hole | 1.000 → 1.000 | .997 → .991 | .993 → .984 |
+//! | with a square hole | 1.000 → 1.000 | .996 → .989 | .991 → .978 |
+//! | with a blind hole | 1.000 → 1.000 | .997 → .991 | .993 → .983 |
+//! | with two holes | 1.000 → 1.000 | .994 → .986 | .985 → .972 |
+//! | plate with a pin and a hole | .999 → .999 | .994 → .987 | .985 → .976 |
+//! | tube, with normals | .994 → .999 | .997 → .989 | .990 → .974 |
+//!
+//! Equation 15 is a poor judge where there is noise: its weights favour small members, and R_p punishes a point
+//! outside more than one inside. [`UnionSettings::refinement`] of 0 then is the better choice. A tube without normals
+//! is not found (IoU .3), as nearly half of its points are of the hole. Of meshes from CAD, simple ones come out at
+//! .96 to 1.00, those with many small holes, fillets and thin walls at .2 to .95: what is smaller
+//! than some spacings of 6000 points is not seen, and points without data beside them are not told to be empty.
+//!
 //! # Registration
 //!
 //! From 24 rotations of the principal axes of the dense points, Gauss–Newton steps on f/|∇f| with

@@ -27,24 +27,25 @@ const WORSE: f64 = 0.01;
 /// A longer shape must reach this share of the length that was asked for.
 const REACHED: f64 = 0.6;
 
-/// The shape longer in a direction by a length, if its points fit it nearly as well; else as it is.
-pub(super) fn lengthened(shape: Supershaped, direction: DVec3, by: f64, judge: &Judge) -> Supershaped {
+/// The shape longer in a direction by a length and the local axis that this is along, if its points
+/// fit it nearly as well.
+pub(super) fn lengthened(shape: Supershaped, direction: DVec3, by: f64, judge: &Judge) -> Option<(Supershaped, usize)> {
     let k = (shape.rotation.transpose() * direction).abs().max_position();
     let axis = shape.rotation.col(k);
     let side = axis.dot(direction);
     if side.abs() < ALONG {
-        return shape;
+        return None;
     }
     let axis = axis * side.signum();
     let end = end_along(&shape, axis);
     let goal = shape.center + axis * (end + REACHED * by);
-    let mut best = (judge.misfit(shape) + WORSE, shape);
+    let mut best = (judge.misfit(shape) + WORSE, None);
     for longer in longer(&shape, k, axis, (end + 0.5 * by) / end.max(1e-9), by) {
         for candidate in [longer, judge.settled(longer)] {
             let misfit = judge.misfit(candidate);
             let (off, _) = terms(&candidate, goal.to_array(), Cost::Normal);
             if misfit < best.0 && off < 0.0 {
-                best = (misfit, candidate);
+                best = (misfit, Some((candidate, k)));
             }
         }
     }

@@ -57,13 +57,14 @@ const FACING: f64 = 0.02;
 /// m = M = 4 where they do not. It is truncated by the oriented box of its points. A segment whose points
 /// face inwards, or without normals are inside of another body, is a hole and not a body. Points that are inside of a
 /// body by more than the noise are clustered; each cluster is fitted as a segment is and subtracted, if
-/// that halves the error of its points. In the end all parameters of all members are refined together.
+/// that halves the error of its points. In the end all parameters of all supershapes are refined together, but
+/// lengths that no point tells.
 ///
 /// Strewn points should be taken off before: the [global error](ErrorOfFit) that is refined is a
 /// sum of squares, as it was published. Each segment needs 60 points or so and wants some hundreds.
 /// The same seed gives the same bits on any number of threads.
 ///
-/// How good it is: [the module](super#unions-of-supershapes).
+/// How good it is: [the module](crate::fit#unions-of-supershapes).
 ///
 /// # Errors
 ///

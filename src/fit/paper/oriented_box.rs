@@ -7,9 +7,8 @@
 use glam::{DMat3, DVec3};
 
 use crate::fit::linear::Principal;
-use crate::fit::pose;
 
-/// Parameters: the logarithms of the half-widths, a turn about the box's axes and a shift along them.
+/// What it takes to tell a box: half-widths, a rotation and a centre.
 pub(super) const PARAMETERS: usize = 9;
 
 /// A box anywhere: half-widths along the columns of a rotation.
@@ -50,6 +49,11 @@ impl OrientedBox {
         self.rotation.transpose() * (p - self.center)
     }
 
+    /// B at a point.
+    pub(super) fn value(&self, p: DVec3) -> f64 {
+        1.0 - (self.local(p).abs() / self.half).max_element()
+    }
+
     /// How deep a point is inside, negative outside, in length units.
     pub(super) fn depth(&self, p: DVec3) -> f64 {
         (self.half - self.local(p).abs()).min_element()
@@ -72,32 +76,6 @@ impl OrientedBox {
         other.half[side.axis] += 0.5 * by;
         other.center += side.direction(self) * (0.5 * by);
         other
-    }
-
-    /// B, and its derivatives.
-    pub(super) fn slopes(&self, p: DVec3, rows: &mut [f64]) -> f64 {
-        let y = self.local(p);
-        let shares = y.abs() / self.half;
-        let k = shares.max_position();
-        rows.fill(0.0);
-        rows[k] = shares[k];
-        let mut gradient = DVec3::ZERO;
-        gradient[k] = -y[k].signum() / self.half[k];
-        rows[3..6].copy_from_slice(&gradient.cross(y).to_array());
-        rows[6..9].copy_from_slice(&(-gradient).to_array());
-        1.0 - shares[k]
-    }
-
-    /// Moved by a step, no further than is sane.
-    pub(super) fn moved(&self, step: &[f64]) -> OrientedBox {
-        let grow = |k: usize| self.half[k] * step[k].clamp(-0.3, 0.3).exp();
-        let most = self.half.max_element();
-        let pose_step: [f64; 6] = std::array::from_fn(|i| match i {
-            0..3 => step[3 + i].clamp(-0.3, 0.3),
-            _ => step[3 + i].clamp(-most, most),
-        });
-        let (rotation, center) = pose::moved(self.rotation, self.center, &pose_step);
-        OrientedBox { rotation, center, half: DVec3::new(grow(0), grow(1), grow(2)) }
     }
 }
 

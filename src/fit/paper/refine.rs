@@ -1,4 +1,5 @@
-//! Joint refinement: Levenberg–Marquardt on the global error, by all parameters of all members.
+//! Joint refinement: Levenberg–Marquardt on the global error, by all parameters of all supershapes. Their boxes stay:
+//! they are those of the points, and would flee from them.
 //!
 //! Every step makes the error smaller and leaves the points as near to the surface as they were in the
 //! beginning, or is not taken: the error alone is least for members that shrink to nothing, as their weights do. Parameters are logarithms, angles and lengths;
@@ -33,7 +34,8 @@ pub(super) struct Refined {
 
 /// The columns of the members' parameters: tied ones share one.
 struct Columns {
-    of: Vec<[usize; PARAMETERS]>,
+    /// None of what is held.
+    of: Vec<[Option<usize>; PARAMETERS]>,
     count: usize,
 }
 
@@ -42,15 +44,15 @@ impl Columns {
         let (mut of, mut count) = (Vec::new(), 0);
         for member in whole.members() {
             let groups = member.groups();
-            let mut columns = [0; PARAMETERS];
+            let mut columns = [None; PARAMETERS];
             for i in 0..PARAMETERS {
-                if groups[i] == i {
-                    columns[i] = count;
+                if groups[i] == Some(i) {
+                    columns[i] = Some(count);
                     count += 1;
                 }
             }
             for i in 0..PARAMETERS {
-                columns[i] = columns[groups[i]];
+                columns[i] = groups[i].and_then(|group| columns[group]);
             }
             of.push(columns);
         }
@@ -79,7 +81,9 @@ impl Normal {
                 dense.fill(0.0);
                 for (row, columns) in rows.iter().zip(&columns.of) {
                     for (slope, column) in row.iter().zip(columns) {
-                        dense[*column] += slope;
+                        if let Some(column) = column {
+                            dense[*column] += slope;
+                        }
                     }
                 }
                 for i in 0..n {
@@ -155,7 +159,7 @@ pub(super) fn refined(start: Whole, points: &[DVec3], steps: usize, run: &Run) -
         let next = equations.step(damping).map(|step| {
             let mut next = best.whole.clone();
             for (member, columns) in next.members_mut().zip(&columns.of) {
-                *member = member.moved(&std::array::from_fn(|i| step[columns[i]]));
+                *member = member.moved(&std::array::from_fn(|i| columns[i].map_or(0.0, |column| step[column])));
             }
             next
         });

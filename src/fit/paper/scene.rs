@@ -93,11 +93,15 @@ impl Scene {
         }
         let tight = OrientedBox::smallest(&self.points_of(&on), &box_axes(&found.shape));
         let judge = Judge::new(&self.points_of(of), width);
-        let mut member = Truncated { shape: found.shape, bounds: tight.grown(0.25 * self.near.spacing) };
+        let bounds = tight.grown(0.25 * self.near.spacing);
+        let mut member = Truncated { shape: found.shape, bounds, held: [false; 3] };
         for side in Side::ALL {
             if is_open(&tight, side, &on) {
                 let by = by(side, &tight);
-                member.shape = lengthened(member.shape, side.direction(&tight), by, &judge);
+                if let Some((shape, axis)) = lengthened(member.shape, side.direction(&tight), by, &judge) {
+                    member.shape = shape;
+                    member.held[axis] = true;
+                }
                 member.bounds = member.bounds.extended(side, by);
             }
         }

@@ -15,8 +15,8 @@ use crate::fit::cost::Cost;
 use crate::fit::gielis::{self, Supershaped};
 use crate::fit::kernel::{Model, terms};
 
-/// Parameters of the supershape, then those of the box.
-pub(super) const PARAMETERS: usize = gielis::PARAMETERS + oriented_box::PARAMETERS;
+/// What is refined: the supershape. The box is that of the points.
+pub(super) const PARAMETERS: usize = gielis::PARAMETERS;
 
 /// The derivatives of a value by the parameters.
 pub(super) type Row = [f64; PARAMETERS];
@@ -25,6 +25,8 @@ pub(super) type Row = [f64; PARAMETERS];
 pub(super) struct Truncated {
     pub(super) shape: Supershaped,
     pub(super) bounds: OrientedBox,
+    /// Along these local axes the shape is longer than its points: no point tells its length.
+    pub(super) held: [bool; 3],
 }
 
 /// `x ∧ y` of R_p with p = 2, and its slopes by x and y.
@@ -49,18 +51,12 @@ impl Truncated {
     /// `√(a₁a₂a₃)·f` at a point, and its derivatives.
     pub(super) fn slopes(&self, p: DVec3, row: &mut Row) -> f64 {
         let weight = self.weight();
+        let inside = weight * self.bounds.value(p);
         let (value, shape) = self.shape_terms(p, weight);
-        let (of_shape, of_box) = row.split_at_mut(gielis::PARAMETERS);
-        let inside = weight * self.bounds.slopes(p, of_box);
         let (both, [by_shape, by_box]) = both(value, inside);
-        for (to, of) in of_shape.iter_mut().zip(shape) {
-            *to = by_shape * of;
-        }
-        for to in of_box.iter_mut() {
-            *to *= by_box * weight;
-        }
+        *row = shape.map(|slope| by_shape * slope);
         // The weight grows with the sizes.
-        for to in &mut of_shape[self.shape.sizes().0] {
+        for to in &mut row[self.shape.sizes().0] {
             *to += 0.5 * by_box * inside;
         }
         both
@@ -68,8 +64,7 @@ impl Truncated {
 
     pub(super) fn value(&self, p: DVec3) -> f64 {
         let weight = self.weight();
-        let y = self.bounds.local(p).abs() / self.bounds.half;
-        both(self.shape_terms(p, weight).0, weight * (1.0 - y.max_element())).0
+        both(self.shape_terms(p, weight).0, weight * self.bounds.value(p)).0
     }
 
     fn weight(&self) -> f64 {
@@ -77,8 +72,8 @@ impl Truncated {
     }
 
     /// `√(a₁a₂a₃)·F2`, and its derivatives.
-    fn shape_terms(&self, p: DVec3, weight: f64) -> (f64, [f64; gielis::PARAMETERS]) {
-        let mut rows = [0.0; gielis::PARAMETERS];
+    fn shape_terms(&self, p: DVec3, weight: f64) -> (f64, Row) {
+        let mut rows = [0.0; PARAMETERS];
         // At the centre the gauge has no slope.
         if (p - self.shape.center).abs().max_element() < 1e-9 * self.shape.semi_axes.min_element() {
             rows[self.shape.sizes().0].fill(0.5 * weight);
@@ -94,23 +89,31 @@ impl Truncated {
         (-residual).min(self.bounds.depth(p))
     }
 
-    /// For each parameter the first one of those that move together with it.
-    pub(super) fn groups(&self) -> [usize; PARAMETERS] {
-        let shape = self.shape.groups();
-        std::array::from_fn(|i| shape.get(i).copied().unwrap_or(i))
+    /// For each parameter the first one of those that move together with it; none of what is held.
+    pub(super) fn groups(&self) -> [Option<usize>; PARAMETERS] {
+        let groups = self.shape.groups();
+        let sizes = self.shape.sizes().0.start;
+        let shifts = PARAMETERS - 3;
+        let is_held = |i: usize| {
+            let of = |from: usize| (from..from + 3).contains(&i) && self.held[i - from];
+            of(sizes) || of(shifts)
+        };
+        // What is tied to something held is held.
+        let held: [bool; PARAMETERS] = std::array::from_fn(|g| (0..PARAMETERS).any(|i| groups[i] == g && is_held(i)));
+        groups.map(|group| (!held[group]).then_some(group))
     }
 
-    /// How many parameters there are, tied ones counted once.
+    /// How many parameters there are, tied ones counted once, with those of the box.
     pub(super) fn parameters(&self) -> usize {
-        self.groups().iter().enumerate().filter(|(i, group)| i == *group).count()
+        let own = self.shape.groups().iter().enumerate().filter(|(i, group)| i == *group).count();
+        own + oriented_box::PARAMETERS
     }
 
     /// Moved by a step, no further than is sane.
     pub(super) fn moved(&self, step: &Row) -> Truncated {
         let limits = self.shape.limits();
-        let shape = std::array::from_fn(|i| step[i].clamp(limits[i][0].min(0.0), limits[i][1].max(0.0)));
-        let bounds = self.bounds.moved(&step[gielis::PARAMETERS..]);
-        Truncated { shape: self.shape.moved(&shape), bounds }
+        let step = std::array::from_fn(|i| step[i].clamp(limits[i][0].min(0.0), limits[i][1].max(0.0)));
+        Truncated { shape: self.shape.moved(&step), ..*self }
     }
 }
 

@@ -11,7 +11,7 @@
 //!
 //! A crease parts two leaves of a solid, but often not all around: the ends of an angle are flat. So
 //! the surface is flooded from the summits of the distance to the nearest crease. Floods that meet
-//! are one segment unless they are concave together: many points of one are in front of the tangent planes of the
+//! are one segment unless most of their border is a crease, or they are concave together: many points of one are in front of the tangent planes of the
 //! other. Small and flat segments, such as the ground of a blind hole, join the one that they have the longest
 //! border with.
 //!
@@ -32,7 +32,10 @@ const PASS: f64 = 0.8;
 
 /// Two floods that meet are one segment if fewer pairs of their points than this share are concave:
 /// points of a hole's wall are in front of each other as well, those of an angle's legs are more.
-const CONCAVE: f64 = 0.2;
+const CONCAVE: f64 = 0.3;
+
+/// They also are two where less than this share of their border is without a crease.
+const OPEN: f64 = 0.4;
 
 /// A point is in front of a tangent plane by this sine.
 const IN_FRONT: f64 = 0.05;
@@ -60,7 +63,7 @@ pub(super) fn watershed(points: &[DVec3], normals: &[DVec3], near: &Neighbours, 
     }
     let mut labels: Vec<usize> = (0..points.len()).map(|i| floods.summit_of(i)).collect();
     join_small(points, near, &mut labels);
-    join_convex(points, normals, &open, &mut labels);
+    join_convex(points, normals, near, &between, &mut labels);
     let mut numbers = BTreeMap::new();
     labels
         .iter()
@@ -163,21 +166,30 @@ fn by_label(labels: &[usize]) -> BTreeMap<usize, Vec<usize>> {
 }
 
 /// Joins floods that meet and are convex together, the most convex ones first.
-fn join_convex<I: Iterator<Item = usize>>(
+fn join_convex(
     points: &[DVec3],
     normals: &[DVec3],
-    open: &impl Fn(usize) -> I,
+    near: &Neighbours,
+    between: &impl Fn(usize, usize) -> Link,
     labels: &mut [usize],
 ) {
     loop {
         let members = by_label(labels);
-        let mut pairs: Vec<[usize; 2]> = Vec::new();
+        // Links over each border: open ones, and over a crease.
+        let mut borders: BTreeMap<[usize; 2], [usize; 2]> = BTreeMap::new();
         for i in 0..points.len() {
-            let other = open(i).map(|j| labels[j]).filter(|label| *label > labels[i]);
-            pairs.extend(other.map(|other| [labels[i], other]));
+            for &j in near.of(i).iter().filter(|j| labels[**j as usize] > labels[i]) {
+                let links = borders.entry([labels[i], labels[j as usize]]).or_default();
+                match between(i, j as usize) {
+                    Link::Open => links[0] += 1,
+                    Link::Crease => links[1] += 1,
+                    Link::Apart => {}
+                }
+            }
         }
-        pairs.sort_unstable();
-        pairs.dedup();
+        let is_open = |[open, crease]: &[usize; 2]| *open as f64 > OPEN * (open + crease) as f64;
+        let pairs: Vec<[usize; 2]> =
+            borders.iter().filter(|(_, links)| is_open(links)).map(|(pair, _)| *pair).collect();
         let share = |[a, b]: &[usize; 2]| concave(points, normals, &members[a], &members[b]);
         let shares = pairs.iter().map(|pair| (share(pair), *pair)).filter(|(share, _)| *share < CONCAVE);
         let Some((_, [a, b])) = shares.min_by(|x, y| x.0.total_cmp(&y.0)) else { return };

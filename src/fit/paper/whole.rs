@@ -143,7 +143,7 @@ mod tests {
         };
         let bounds =
             OrientedBox { rotation: turn(vector(-1.0, 1.0)), center: vector(-0.3, 0.3), half: vector(0.5, 1.2) };
-        Truncated { shape, bounds }
+        Truncated { shape, bounds, held: [false; 3] }
     }
 
     /// By central differences over every parameter of two parts, one of them with two holes.
