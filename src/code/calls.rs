@@ -212,7 +212,8 @@ fn joined(body: &mut Body, call: &Call, item: &Item) -> Code {
             ("symmetric_difference", [Value::Function(RFunction::P(2.0))]) => Some('^'),
             _ => None,
         };
-        if let Some(operator) = operator {
+        // The same on both sides of an operator looks like a slip, to clippy too.
+        if let Some(operator) = operator.filter(|_| a != b) {
             let [a, b] = [a, b].map(|key| body.other(key));
             return Code::Binary(Box::new(a), operator, Box::new(b));
         }

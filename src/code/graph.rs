@@ -56,11 +56,10 @@ pub(super) fn items(root: &Part) -> Vec<Item> {
         pending.push((part, Some(Item { key: own, call, operands, uses: 0, name, label })));
         pending.extend(parts.into_iter().rev().map(|part| (part, None)));
     }
-    for i in 0..items.len() {
-        for operand in items[i].operands.clone() {
-            if let Some(Some(used)) = at.get(&operand) {
-                items[*used].uses += 1;
-            }
+    let used: Vec<Key> = items.iter().flat_map(|item| item.operands.iter().copied()).collect();
+    for operand in used {
+        if let Some(Some(used)) = at.get(&operand) {
+            items[*used].uses += 1;
         }
     }
     items

@@ -445,7 +445,7 @@ pub fn shared() -> Solid {
 
 pub fn twice() -> Solid {
     let pin_1 = Solid::cylinder(0.5, 3.0).named("Pin #1");
-    &pin_1 | &pin_1
+    pin_1.union(&pin_1, RFunction::P(2.0))
 }
 
 pub fn by_method() -> Solid {
