@@ -45,8 +45,8 @@ const NEWTON: usize = 16;
 /// Of programs that cost more, in ordinary leaves, gradients are not for every ray.
 const DEAR: usize = 8;
 
-/// A search skips by this part of what a step may go on beyond where it is safe.
-const SKIP: f32 = 0.9;
+/// A search leaps by this part of what a step may go on beyond where it is safe.
+const LEAP: f32 = 0.9;
 
 /// Slopes in single precision are trusted to this part.
 const SLOPE_ERROR: f32 = 1e-3;
@@ -396,7 +396,7 @@ impl Marcher {
                 // A step that the bounds from both of its ends just cover if the value goes on as
                 // it does here.
                 let (way, back) = (safe - lane.at, (-g - job.doubt) / -lo);
-                let leap = lane.at + way + SKIP * ((way + back) / (1.0 + s / -lo) - way);
+                let leap = lane.at + way + LEAP * ((way + back) / (1.0 + s / -lo) - way);
                 let far = lo < 0.0 && leap > safe && leap < end;
                 lane.probe = near || far;
                 lane.at = match (near, far) {
