@@ -98,7 +98,7 @@ use crate::geom::{Mesh, PointCloud};
 /// | camshaft, not snapped | 0.9971 | 6 (45) | 0, 0 |
 /// | camshaft | 0.9875 | 6 (45) | 0, 0 |
 /// | angle_block | 0.9943 | 9 (64) | 1, 1 |
-/// | satellite_mount | 0.9918 | 9 (75) | 8, 8 |
+/// | satellite_mount | 0.9916 | 9 (75) | 8, 8 |
 /// | lasercut_interface | 0.9995 | 9 (66) | 8, 8 |
 /// | holder | 0.9914 | 10 (70) | 5, 5 |
 /// | plate_holes | 0.9884 | 11 (84) | 5, 5 |
