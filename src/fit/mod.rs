@@ -14,6 +14,7 @@
 //! | [`deformed`](deformed()) | the superellipsoid, tapered, twisted and bent |
 //! | [`register`](register()) | where a known solid is in a scan |
 //! | [`part`](part()) | the tree of boxes, cylinders and other leaves, added and cut, that a mesh is of |
+//! | [`part_of_points`] | the same of a scan of a whole part |
 //! | [`inspect`](inspect()) | how far a scan is from a solid, by point and by leaf |
 //!
 //! The first three take a [`PointCloud`](crate::PointCloud) and give a [`Fit`]: the solid with
