@@ -301,5 +301,5 @@ fn fifty_random_parts() {
         few += usize::from(fit.leaves().len() <= 12);
     }
     println!("IoU ≥ .97: {right}, genus: {same}, ≤ 12 leaves: {few}");
-    assert!(right >= 49 && same >= 43, "{right}, {same}");
+    assert!(right >= 49 && same >= 45, "{right}, {same}");
 }
