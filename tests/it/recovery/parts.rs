@@ -250,7 +250,7 @@ const ALL: [(Gate, bool); 15] = [
     (("holder", 0.99, 10, 5), true),
     (("plate_holes", 0.98, 11, 5), true),
     (("machinist", 0.99, 20, 36), true),
-    (("octagonal_pocket", 0.965, 30, 1), true),
+    (("octagonal_pocket", 0.97, 34, 1), true),
 ];
 
 #[test]
@@ -301,5 +301,5 @@ fn fifty_random_parts() {
         few += usize::from(fit.leaves().len() <= 12);
     }
     println!("IoU ≥ .97: {right}, genus: {same}, ≤ 12 leaves: {few}");
-    assert!(right >= 49 && same >= 43, "{right}, {same}");
+    assert!(right >= 49 && same >= 45, "{right}, {same}");
 }
