@@ -168,6 +168,7 @@ pub fn part_with(mesh: &Mesh, settings: &PartSettings, run: &Run) -> Result<Part
 /// | 0.2 % | 9 | 0.985 |
 /// | 0.4 % | 6 | 0.974 |
 ///
+/// Without normals, 4 of the first 10 have it at 0.2 % (median 0.960): a wall of a narrow hole may come out turned.
 /// A side that is not seen is closed as if by a film, and nothing tells which leaves are guesses.
 ///
 /// # Errors
