@@ -139,7 +139,7 @@ fn labelled_clouds_with_noise_and_a_labelled_hole() {
         }
     }
     for _ in 0..800 {
-        let (sin, cos) = (6.283 * random.unit()).sin_cos();
+        let (sin, cos) = (std::f64::consts::TAU * random.unit()).sin_cos();
         points.push(DVec3::new(0.4 * cos, 0.4 * sin, random.range(-0.6, 0.6)));
         labels.push(9);
     }
