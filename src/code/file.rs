@@ -177,9 +177,10 @@ impl Solid {
     ///
     /// pub fn hinge() -> Solid {
     ///     let length = 1.5;
-    ///     let length_2 = 8.0;
-    ///     let pin = Solid::cylinder(length, length_2).named("pin");
-    ///     pin.rotate_x(deg(90.0)) | Solid::cuboid([12.0, length_2, length])
+    ///     let pin_length = 8.0;
+    ///     let pin = Solid::cylinder(length, pin_length).named("pin");
+    ///     let cuboid = Solid::cuboid([12.0, pin_length, length]);
+    ///     pin.rotate_x(deg(90.0)) | cuboid
     /// }
     /// "#
     /// );
