@@ -3,6 +3,7 @@
 //! ```text
 //!     program --mesh--> triangles --polish--> vertices on the surface, in double precision
 //!                                 --measure-> curved patches, split where they are off the surface
+//!             cells that hide something --lines-> sheets thinner than cells
 //!                                             |x − y|, y the nearest point of the patches, with the
 //!                                             program's sign: a leaf like any other
 //! ```
@@ -11,11 +12,13 @@
 //! ball of a fillet, is measured from the operand's surface. The surface is found once, when the
 //! solid is compiled, and kept with the node.
 
+mod column;
 mod crease;
 mod facets;
 mod mend;
 mod quilt;
 mod seam;
+mod sheets;
 mod surface;
 
 #[cfg(test)]

@@ -187,6 +187,15 @@ impl Quilt {
         }
     }
 
+    /// Takes patches that are known to be at the surface, to within so much.
+    pub(super) fn add_all(&mut self, found: impl Iterator<Item = (Patch, f64)>) {
+        for (patch, off) in found {
+            self.measures.push([off, area_of(&patch)]);
+            self.error = self.error.max(off);
+            self.patches.push(patch);
+        }
+    }
+
     /// Takes patches as they are, however far off.
     pub(super) fn take_spots(&mut self, spots: Vec<Spot>) {
         spots.into_iter().for_each(|spot| self.take(spot.patch, spot.off));

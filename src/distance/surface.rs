@@ -8,10 +8,10 @@ use super::compiled_with;
 use super::facets::{Facets, sharp};
 use super::mend::mend;
 use super::quilt::{Care, Quilt};
+use super::sheets::cover;
 use crate::error::MeshingError;
 use crate::eval::{Accuracy, CompileError, Compiled, DistanceSource, Program, Surface, Wanted};
-use crate::mesh::Slopes;
-use crate::mesh::Subject;
+use crate::mesh::{Hidden, Slopes, Subject};
 use crate::{Bounds, Mesh, RFunction, Run, Solid, SolidError};
 use rvachev_field::Patches;
 
@@ -53,8 +53,7 @@ const LOOKING: f64 = 0.05;
 /// The part of what is left to do that is taken to be done with cells of one size.
 const ATTEMPT: f64 = 0.7;
 
-/// So many times as small are the cells that would show what is hidden, and so many more cells there may be then.
-const SMALLER: u32 = 4;
+/// So many more cells there may be where something is hidden in them.
 const HIDDEN: f64 = 12.0;
 
 impl DistanceSource for FromMeshes {
@@ -93,10 +92,10 @@ impl DistanceSource for FromMeshes {
             let end = done + ATTEMPT * (1.0 - done);
             let [to_mesh, to_sew] = run.stage(done, end).stages([0.5, 0.5]);
             done = end;
-            let (facets, hides) = match flat {
+            let (facets, mut hidden) = match flat {
                 None if bounds.contains_bounds(&whole) => {
-                    let Shown { mesh, hides } = shown(&programs.surface, bounds, cell, &to_mesh)?;
-                    (Facets::new(&mesh, |corners| meets(corners, &near)), hides)
+                    let Shown { mesh, hidden } = shown(&programs.surface, bounds, cell, &to_mesh)?;
+                    (Facets::new(&mesh, |corners| meets(corners, &near)), hidden)
                 }
                 None => part(solid, bounds, [whole, near], cell, &to_mesh)?,
                 Some(axis) => {
@@ -105,33 +104,43 @@ impl DistanceSource for FromMeshes {
                     part(solid, wall, [whole, near], cell, &to_mesh)?
                 }
             };
+            hidden.retain(|hidden| hidden.cell.intersects(&near));
             // Two triangles a cell.
             let count = 0.5 * facets.triangles.len() as f64;
-            let is_last = 4.0 * count > if hides && is_gentle { HIDDEN * enough } else { enough };
-            if hides {
-                // What larger cells have shown is not all.
-                best = None;
+            let mut is_last = 4.0 * count > enough;
+            let mut care = Care::new(tolerance);
+            if !is_last && best.is_none() {
+                care.patience = PATIENCE;
             }
-            if !hides || is_last {
-                let mut care = Care::new(tolerance);
-                if !is_last && best.is_none() {
-                    care.patience = PATIENCE;
-                }
-                if let Some(mut quilt) = Quilt::new(facets, &slopes, care, &to_sew)? {
-                    mend(&mut quilt, &slopes, cell, tolerance, &to_sew)?;
-                    if hides {
-                        quilt.error = quilt.error.max(cell);
-                    }
-                    let found = (quilt.tolerance(FEW, tolerance), quilt);
+            let is_near = |(reached, quilt): &(f64, Quilt)| *reached <= tolerance && quilt.error <= FAR * tolerance;
+            let mut is_enough = false;
+            if let Some(mut quilt) = Quilt::new(facets, &slopes, care, &to_sew)? {
+                mend(&mut quilt, &slopes, cell, tolerance, &to_sew)?;
+                let mut found = (quilt.tolerance(FEW, tolerance), quilt);
+                if hidden.is_empty() {
                     // Smaller cells do not always tell more.
                     let is_better = |(reached, quilt): &(f64, Quilt)| {
                         *reached < found.0 || *reached == found.0 && quilt.error < found.1.error
                     };
                     best = best.filter(is_better).or(Some(found));
+                    is_enough = best.as_ref().is_some_and(is_near);
+                } else {
+                    // What larger cells have shown is not all.
+                    best = None;
+                    is_enough = is_near(&found);
+                    // What is hidden is looked for once the rest is as it is to be.
+                    if is_enough || is_last {
+                        if cover(&mut found.1, &subject, &hidden, &slopes, tolerance, &to_sew)? {
+                            found.1.error = found.1.error.max(cell);
+                            is_enough = false;
+                            is_last &= !is_gentle || 4.0 * count > HIDDEN * enough;
+                        }
+                        found.0 = found.1.tolerance(FEW, tolerance);
+                        best = Some(found);
+                    }
                 }
             }
-            let is_near = |(reached, quilt): &(f64, Quilt)| *reached <= tolerance && quilt.error <= FAR * tolerance;
-            if let Some((reached, quilt)) = best.take_if(|best| is_last || is_near(best)) {
+            if let Some((reached, quilt)) = best.take_if(|_| is_last || is_enough) {
                 let patches = Arc::new(Patches::new(&quilt.patches, &run.stage(done, 1.0))?);
                 run.report(1.0);
                 return Ok(Surface { patches, accuracy: Accuracy { tolerance: reached, error: quilt.error }, flat });
@@ -165,18 +174,18 @@ fn extent(programs: &Compiled, wanted: &Wanted<'_>) -> (Bounds, Option<usize>, f
     (bounds, flat, size)
 }
 
-/// A mesh, its creases sharp, and whether smaller cells would show more.
+/// A mesh, its creases sharp, and the cells that may hide something.
 struct Shown {
     mesh: Mesh,
-    hides: bool,
+    hidden: Vec<Hidden>,
 }
 
 fn shown(program: &Program, bounds: Bounds, cell: f64, run: &Run) -> Result<Shown, CompileError> {
     let subject = Subject { program, bounds, palette: None, whole: None };
     let [to_mesh, to_look] = run.stages([0.7, 0.3]);
     let mesh = run.install(|| sharp(program, bounds, cell, &to_mesh)).map_err(compile_error)?;
-    let hides = run.install(|| subject.shows_more(&mesh, SMALLER, &to_look)).map_err(compile_error)?;
-    Ok(Shown { mesh, hides })
+    let hidden = run.install(|| subject.hidden(&mesh, &to_look)).map_err(compile_error)?;
+    Ok(Shown { mesh, hidden })
 }
 
 fn compile_error(error: MeshingError) -> CompileError {
@@ -193,24 +202,24 @@ fn meets(corners: &[DVec3; 3], bounds: &Bounds) -> bool {
     (0..3).all(|axis| own.max[axis] >= bounds.min[axis] && own.min[axis] <= bounds.max[axis])
 }
 
-/// The surface of a solid within a box, without the faces of the box and what is not near, and whether smaller
-/// cells would show more.
+/// The surface of a solid within a box, without the faces of the box and what is not near, and the cells that may hide
+/// some of it.
 fn part(
     solid: &Solid,
     clip: Bounds,
     [whole, near]: [Bounds; 2],
     cell: f64,
     run: &Run,
-) -> Result<(Facets, bool), CompileError> {
+) -> Result<(Facets, Vec<Hidden>), CompileError> {
     let knife = Solid::cuboid(clip.size()).translate(clip.center());
     let part = solid.intersection(knife, RFunction::MIN_MAX);
     let [to_compile, run] = &run.stages([0.1, 0.9]);
     let programs = compiled_with(&part, to_compile)?;
     let bounds = programs.bounds.intersection(&clip);
     if bounds.is_empty() {
-        return Ok((Facets::default(), false));
+        return Ok((Facets::default(), Vec::new()));
     }
-    let Shown { mesh, hides } = shown(&programs.surface, bounds, cell, run)?;
+    let Shown { mesh, hidden } = shown(&programs.surface, bounds, cell, run)?;
     let is_cap = |corners: &[DVec3; 3]| {
         // Vertices of meshes are in single precision.
         let on =
@@ -220,5 +229,5 @@ fn part(
                 || clip.max[axis] < whole.max[axis] && on(axis, clip.max[axis])
         })
     };
-    Ok((Facets::new(&mesh, |corners| !is_cap(corners) && meets(corners, &near)), hides))
+    Ok((Facets::new(&mesh, |corners| !is_cap(corners) && meets(corners, &near)), hidden))
 }

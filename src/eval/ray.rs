@@ -208,9 +208,20 @@ pub(crate) fn first_hit(
                     Region::Outside if inside[0] => return Some(hit_at(&piece.program, at(t0), t0)),
                     Region::Inside | Region::Outside => continue,
                 };
-                // Of the same sign everywhere in the piece, not of the same value.
+                // Of the same sign everywhere in the piece, not of the same value: so an end in a face, which counts as
+                // outside, may be well inside what is left of the program.
                 piece.values = piece.ends.map(|t| narrowed.value(at(t)));
                 piece.program = narrowed;
+                let is_other = |end: usize| {
+                    let value = piece.values[end];
+                    if piece.inside[end] { value < -doubt } else { is_inside(value) }
+                };
+                if is_other(0) {
+                    return Some(hit_at(&piece.program, at(t0), t0));
+                }
+                if piece.inside[0] == piece.inside[1] && is_other(1) {
+                    piece.inside[1] = !piece.inside[1];
+                }
                 found = if single { found } else { along(&piece.program).gradient()[0] };
             }
             let better = found.width() < 0.5 * piece.slopes.width();

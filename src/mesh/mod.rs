@@ -40,6 +40,7 @@ pub use settings::{AtBounds, Features, MeshSettings, ThinFeatures};
 pub use volume::{Volume, VolumeError, VolumeSettings};
 
 pub(crate) use paint::{corner_colors, each_triangle};
+pub(crate) use shown::Hidden;
 pub(crate) use slopes::{Slope, Slopes};
 pub(crate) use subject::{Subject, Whole};
 pub(crate) use thin::thin_features_of;

@@ -3,8 +3,6 @@
 //! Cells whose nodes are on one side, though the surface may be in them, are asked at the nodes of
 //! a finer lattice. Flush faces and acute edges are among them, and have nothing to show.
 
-use std::collections::HashMap;
-
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -29,8 +27,27 @@ const DEEP: f64 = 0.3;
 /// Nearer to the surface than this part of the size, points may be on either side by rounding errors.
 const ROUNDING: f64 = 1e-9;
 
+/// So many times as small are the cells that would show what is hidden.
+const SMALLER: u32 = 4;
+
 /// Cells along the thinnest leaf, at least.
 const ALONG_LEAF: f64 = 2.0;
+
+/// A cell with all its nodes on one side that may have the surface in it, and whether it surely has.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hidden {
+    pub(crate) cell: Bounds,
+    pub(crate) is_sure: bool,
+}
+
+/// What may be beside cells that are looked for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Beside {
+    /// Nodes of the same side.
+    Nothing,
+    /// All that there is.
+    All,
+}
 
 impl Subject<'_> {
     /// The size of cells that show all leaves, `most` at most, as far as these are not more than enough; `size` is how
@@ -53,40 +70,38 @@ impl Subject<'_> {
         Ok(OF_BLOCK * Blocks::find(self.program, &lattice, run)?.cells.len())
     }
 
-    /// Whether there is a cell of a mesh of this with all its nodes on one side, and the surface in it, as smaller cells
-    /// would show, so many times as small.
-    pub(crate) fn shows_more(&self, mesh: &Mesh, times: u32, run: &Run) -> Result<bool, MeshingError> {
+    /// The cells of a mesh of this that have all their nodes on one side, and may have the surface in them.
+    pub(crate) fn hidden(&self, mesh: &Mesh, run: &Run) -> Result<Vec<Hidden>, MeshingError> {
         let Findings { cell, lost_at, .. } = mesh.findings();
-        if *cell == 0.0 || lost_at.is_empty() && !self.program.is_gentle() {
-            return Ok(false);
+        let is_gentle = self.program.is_gentle();
+        if *cell == 0.0 || lost_at.is_empty() && !is_gentle {
+            return Ok(Vec::new());
         }
         let lattice = Lattice::new(&self.bounds, CellSize::Length(*cell))?;
         let [to_find, to_search] = run.stages([0.2, 0.8]);
         let blocks = Blocks::find(self.program, &lattice, &to_find)?;
-        if self.program.is_gentle() {
-            return Ok(self.has_lone_surface(&blocks, &lattice, &to_search)?);
+        if is_gentle {
+            // What cells beside others hide as well is of no matter where nothing is hidden by itself.
+            let alone = self.crossed(&blocks, &lattice, Beside::Nothing, &to_search)?;
+            return Ok(if alone.is_empty() {
+                alone
+            } else {
+                self.crossed(&blocks, &lattice, Beside::All, &to_search)?
+            });
         }
         let blocks = blocks.only(|block| lost_at.contains(&lattice.region(block, BLOCK).center()));
         let suspects = unresolved_cells(&blocks, (&lattice, self.bounds), Among::OneSided, &to_search)?;
-        let programs: HashMap<[u32; 3], &Program> =
-            blocks.cells.iter().enumerate().map(|(n, &block)| (block, blocks.programs.of(n))).collect();
-        let shows = |suspect: &Unresolved| {
-            let Some(program) = programs.get(&suspect.block) else { return Ok(false) };
-            for within in &suspect.cells {
-                run.check()?;
-                let cell = [0, 1, 2].map(|axis| suspect.block[axis] + within[axis] as u32);
-                if self.has_inner(&lattice.region(cell, 1), program, times) {
-                    return Ok(true);
-                }
-            }
-            Ok(false)
+        let of_block = |Unresolved { block, cells }: Unresolved| {
+            let at = move |within: &[usize; 3]| [0, 1, 2].map(|axis| block[axis] + within[axis] as u32);
+            let cells: Vec<[u32; 3]> = cells.iter().map(at).collect();
+            cells.into_iter().map(|cell| Hidden { cell: lattice.region(cell, 1), is_sure: false })
         };
-        Ok(any(suspects.par_iter().map(shows))?)
+        Ok(suspects.into_iter().flat_map(of_block).collect())
     }
 
-    /// Whether the surface is in a cell that has no other side near: of values that change no faster than points move,
-    /// those at the nodes tell where to look, and lead there.
-    fn has_lone_surface(&self, blocks: &Blocks, lattice: &Lattice, run: &Run) -> Result<bool, Cancelled> {
+    /// The cells with all nodes on one side that have the surface in them: of values that change no faster than points
+    /// move, those at the nodes tell where to look, and lead there.
+    fn crossed(&self, blocks: &Blocks, lattice: &Lattice, beside: Beside, run: &Run) -> Result<Vec<Hidden>, Cancelled> {
         let sampler = SolidSampler::new(lattice, blocks, self.bounds, BESIDE);
         // No point of a cell is farther from its nearest node than half of its diagonal.
         let near = 0.867 * lattice.step();
@@ -96,22 +111,28 @@ impl Subject<'_> {
             scratch.forget();
             sampler.nodes(scratch, number, block, &mut values);
             let signs = Signs::new(&values);
+            let mut found = Vec::new();
             for [x, y, z] in (0..BLOCK.pow(3)).map(|n| [n % BLOCK, n / BLOCK % BLOCK, n / (BLOCK * BLOCK)]) {
                 let node = |n: usize| (x + (n & 1)) + SIDE * (y + (n >> 1 & 1)) + SIDE * SIDE * (z + (n >> 2));
                 let is_near = (0..8).any(|n| f64::from(values[node(n)].abs()) <= near);
-                if !is_near || is_mixed_about(&signs, [x, y, z]) {
+                let is_mixed = || match beside {
+                    Beside::Nothing => is_mixed_about(&signs, [x, y, z]),
+                    Beside::All => !matches!(signs.case([x, y, z]), 0 | 255),
+                };
+                if !is_near || is_mixed() {
                     continue;
                 }
                 let cell = [0, 1, 2].map(|axis| block[axis] + [x, y, z][axis] as u32);
                 let region = lattice.region(cell, 1);
-                if self.is_crossed(&region) && self.is_alone(&region) {
-                    return Ok(true);
+                let is_alone = || beside == Beside::All || self.is_alone(&region);
+                if self.is_crossed(&region) && is_alone() {
+                    found.push(Hidden { cell: region, is_sure: true });
                 }
             }
-            Ok(false)
+            Ok(found)
         };
         let found = blocks.cells.par_iter().enumerate().map_init(|| sampler.scratch(), of_block);
-        any(found)
+        Ok(found.collect::<Result<Vec<Vec<Hidden>>, Cancelled>>()?.concat())
     }
 
     /// Whether all nodes of a cell and of those about it are on one side.
@@ -145,7 +166,7 @@ impl Subject<'_> {
     }
 
     /// Whether a cell with all its nodes on one side has something of the other.
-    fn has_inner(&self, cell: &Bounds, program: &Program, times: u32) -> bool {
+    pub(crate) fn has_inner(&self, cell: &Bounds, program: &Program) -> bool {
         let step = cell.longest_side();
         let is_inside = program.value(cell.min) > 0.0;
         // How far points are on the other side.
@@ -153,7 +174,7 @@ impl Subject<'_> {
             let (value, slope) = program.gradient(*p);
             if (value > 0.0) == is_inside { 0.0 } else { value.abs() / slope.length().max(f64::MIN_POSITIVE) }
         };
-        let most = nodes(cell, times).map(|p| depth(&p)).fold(0.0, f64::max);
+        let most = nodes(cell, SMALLER).map(|p| depth(&p)).fold(0.0, f64::max);
         most > ROUNDING * self.bounds.longest_side() && (most > DEEP * step || self.is_alone(cell))
     }
 }
@@ -166,12 +187,6 @@ fn is_mixed_about(signs: &Signs, cell: [usize; 3]) -> bool {
         at.iter().all(|c| (1..=BLOCK).contains(c)) && !matches!(signs.case(at.map(|c| c - 1)), 0 | 255)
     };
     (0..27).any(mixed)
-}
-
-/// Whether one of the answers is yes.
-fn any(answers: impl ParallelIterator<Item = Result<bool, Cancelled>>) -> Result<bool, Cancelled> {
-    // The first that is not no.
-    answers.find_any(|answer| !matches!(answer, Ok(false))).unwrap_or(Ok(false))
 }
 
 /// The nodes of so many cells along each side of a box.

@@ -10,7 +10,7 @@ mod reference;
 mod walls;
 
 use std::error::Error;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 use rvachev::{
@@ -291,10 +291,12 @@ fn a_fillet_leaves_a_flush_top_where_it_is() -> Outcome {
     assert!(top(&mesh) <= step_above(2.5), "{}", top(&mesh));
     let report = mesh.check();
     assert!(report.is_sound(), "{report}");
-    // The prism has 1504.292; at both ends a ball that comes over the flush faces takes some of it.
+    // The prism has 1504.292. At both ends balls come over the flush faces and take some of it: one with its centre h above
+    // a face is no nearer than √(4 - h²) to either edge in the plane. What they cover, by quadrature:
+    const AT_END: f64 = 0.0583;
     let prism = 1500.0 + 5.0 * 4.0 * CORNER;
     near(prism, 1504.292, 1e-3);
-    measures(&report, prism - 0.1, layer(5.0 * PI, 2.0) + sag(5.0 * PI, 2.0, 0.1) + 0.01, 1);
+    measures(&report, prism - 2.0 * AT_END, layer(5.0 * PI, 2.0) + sag(5.0 * PI, 2.0, 0.1), 1);
     // Faces of the operands are where they were, exactly, and what is added does not rise above them.
     for p in [[9.9, 5.0, 0.0], [9.999, 5.0, 0.0], [10.001, 5.0, 0.0], [10.1, 5.0, 0.0]] {
         let p = DVec3::from(p);
@@ -695,8 +697,48 @@ fn star() -> Solid {
     Supershape::new(Gielis::new(5.0, 0.3, 0.3, 0.3), Gielis::new(4.0, 2.0, 2.0, 2.0)).into()
 }
 
+/// The ribs of the star are half discs of radius 1 about its axis, thinner and thinner outwards.
+fn ribs_are_found(moved: &Solid, by: f64) -> Outcome {
+    let told = moved.accuracy()?.error;
+    assert!(told < 0.5 * by, "{told}");
+    for number in 0..5 {
+        let side = DVec3::X.rotate_z(f64::from(number) * TAU / 5.0);
+        let across = side.cross(DVec3::Z);
+        for (radius, up) in [(0.6, 0.0), (0.7, 0.6), (0.8, -0.4), (0.9, 0.2), (0.97, 1.0)] {
+            let on_rib = radius * (side * f64::cos(up) + DVec3::Z * f64::sin(up));
+            for p in [on_rib + by * across, on_rib - by * across] {
+                let value = moved.value(p)?;
+                assert!(value > -told && value < 0.06 * by, "{value} at {p}, beside {on_rib}");
+            }
+        }
+        let value = moved.value((1.0 + by) * side)?;
+        assert!(value.abs() < 0.02 * by, "{value} beyond the rim of rib {number}");
+    }
+    Ok(())
+}
+
+/// Gaps and fins that no cell shows.
 #[test]
-#[ignore = "a fault: beside ribs thinner than the cells that it is measured from, the distance is too large"]
+fn what_is_thinner_than_any_cell_is_measured() -> Outcome {
+    let block = Solid::cuboid([6.0, 6.0, 3.0]);
+    for thickness in [1e-3, 1e-5] {
+        let beside = 1.5 + 0.5 * thickness;
+        let gap = at(block.clone(), [0.0, 0.0, beside]) | at(block.clone(), [0.0, 0.0, -beside]);
+        let value = gap.offset(-0.2).value([0.3, 0.4, -0.3 - 0.5 * thickness])?;
+        near(value, 0.1, 1e-3);
+        // A hole makes it a solid that has to be measured.
+        let fin = Solid::cuboid([10.0, 10.0, thickness]) | Solid::cuboid([6.0; 3]);
+        let fin = fin - at(Solid::cylinder(0.5, 8.0), [2.0, 0.0, 0.0]);
+        let moved = fin.offset(0.2);
+        for p in [[1.0, 4.0, 0.3 + 0.5 * thickness], [-4.0, -4.9, -0.3 - 0.5 * thickness], [5.3, 0.7, 0.0]] {
+            near(moved.value(p)?, -0.1, 2e-3);
+        }
+    }
+    Ok(())
+}
+
+#[test]
+#[ignore = "a fault: where ribs come to be as thin as cells, patches are farther off than the tolerance"]
 fn offsets_of_a_star_are_at_their_distance_everywhere() -> Outcome {
     offsets_are_at(&star(), [0.1, -0.05], 80, 1500)
 }
@@ -705,6 +747,7 @@ fn offsets_of_a_star_are_at_their_distance_everywhere() -> Outcome {
 fn offsets_of_cusped_lobes_are_at_their_distance() -> Outcome {
     let lobes = Supershape::new(Gielis::new(7.0, 9.0, 8.0, 8.0), Gielis::new(4.0, 30.0, 30.0, 30.0));
     let vase = Solid::from(lobes.scaled([3.4, 3.4, 6.0])).twist(rad(0.087));
+    ribs_are_found(&star().offset(0.1), 0.1)?;
     // One point in forty is wrong, as `offsets_of_a_star_are_at_their_distance_everywhere` shows: no more may be.
     offsets_are_mostly_at(&star(), [0.1, -0.05], (80, 150), 0.05)?;
     offsets_are_at(&vase, [0.16, -0.08], 80, 150)

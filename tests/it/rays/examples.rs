@@ -99,3 +99,18 @@ fn roundoff_of_supershapes_is_that_of_the_region() {
     }
     assert!(small > 60, "{small}");
 }
+
+/// Such a ray ends in the face of another operand, where the value is 0 but for rounding, and what the program is narrowed
+/// to has none there.
+#[test]
+fn rays_that_leave_soon_after_they_enter_are_seen() {
+    let solid = Profile::from(Superpolygon::new(Gielis::new(5.0, 2.0, 2.0, 2.0), 3.0)).extrude(0.5);
+    let origin = DVec3::new(2.569237578501319, 6.276151776639061, -3.8403711175175235);
+    let direction = DVec3::new(-0.1633647708311492, -0.6723769384083318, 0.721956511396583);
+    let mut random = Random::new(17);
+    for _ in 0..400 {
+        let from = origin + 1e-3 * random.direction();
+        let hit = solid.raycast(from, direction).unwrap().unwrap_or_else(|| panic!("no hit from {from}"));
+        assert!((hit.distance - 5.6106).abs() < 0.02 && hit.point.truncate().length() > 2.99, "{hit:?} from {from}");
+    }
+}
