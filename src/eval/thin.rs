@@ -1,7 +1,7 @@
 //! What is known of a program's leaves before any region is looked at: how steep and how thin they
 //! are.
 
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 
 use super::program::{Kind, Node, Program};
 use super::scene::Instance;
@@ -30,6 +30,23 @@ impl Program {
             leaf.field.convex() && leaf.placement.scale * size + 2.0 * leaf.placement.shift < thickness
         };
         self.scene.leaves.iter().map(is_thin).collect()
+    }
+
+    /// Whether a leaf is flat between creases, however blunt these are.
+    pub(crate) fn is_faceted(&self) -> bool {
+        self.scene.leaves.iter().any(|leaf| leaf.field.is_faceted())
+    }
+
+    /// The corners of such leaves, as vertices have them, each once; not of those that are deformed or offset.
+    pub(crate) fn corners(&self) -> Vec<DVec3> {
+        let mut all: Vec<[f32; 3]> = Vec::new();
+        for leaf in self.scene.leaves.iter().filter(|leaf| leaf.frame == 0 && leaf.placement.shift == 0.0) {
+            let map = leaf.to_local.inverse();
+            leaf.field.each_corner(&mut |p| all.push((map.transform_point3(p).as_vec3() + 0.0).to_array()));
+        }
+        all.sort_unstable_by_key(|p| p.map(f32::to_bits));
+        all.dedup();
+        all.into_iter().map(|p| DVec3::from_array(p.map(f64::from))).collect()
     }
 
     /// The least side of a leaf's box: no leaf is thinner; infinite where none is bounded.

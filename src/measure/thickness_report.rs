@@ -59,7 +59,7 @@ impl ThicknessReport {
     pub fn share_below(&self, limit: f64) -> f64 {
         let whole: f64 = self.areas.iter().sum();
         let below = self.thicknesses.iter().zip(&self.areas).filter(|(thickness, _)| **thickness < limit);
-        if whole > 0.0 { below.map(|(_, area)| area).sum::<f64>() / whole } else { 0.0 }
+        if whole > 0.0 { below.fold(0.0, |sum, (_, area)| sum + area) / whole } else { 0.0 }
     }
 
     /// How much of the surface is how thick: so many ranges of one width, from 0 to the largest thickness that is finite.

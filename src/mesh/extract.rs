@@ -45,7 +45,7 @@ use self::parts::Parts;
 pub(crate) use self::suspect::CellRows;
 use self::suspect::{Suspect, Suspicion};
 use super::Features;
-use super::feature::Slope;
+use super::feature::{Crease, Slope};
 use super::lattice::Lattice;
 use super::loops::ambiguous_faces;
 use super::signs::{EdgeRef, NODES, Rows, Signs, for_each_cell, list_edges};
@@ -142,6 +142,11 @@ pub(crate) trait Sampler: Sync {
     /// space.
     fn limits(&self) -> Bounds {
         Bounds::ALL
+    }
+
+    /// Which normals are those of a crease. By default those that are as far apart as usual.
+    fn crease(&self) -> Crease {
+        Crease::USUAL
     }
 
     /// Whether a block, given by its first cell, is to have the triangles of the case table: no fan reaches into it. The

@@ -3,25 +3,20 @@
 use super::blocks::Blocks;
 use super::extract::{ExtractError, extract};
 use super::lattice::Lattice;
+use super::refine::Job;
 use super::sampler::{BESIDE, SolidSampler};
 use super::settings::Features;
-use crate::eval::Program;
+use crate::Run;
 use crate::geom::Mesh;
-use crate::{Bounds, Run};
 
 impl Blocks {
     /// The surface in the blocks, and in others where it goes on.
-    pub(super) fn extract(
-        &mut self,
-        whole: &Program,
-        (lattice, limits): (&Lattice, Bounds),
-        features: Features,
-        run: &Run,
-    ) -> Result<Mesh, ExtractError> {
+    pub(super) fn extract(&mut self, job: Job<'_>, lattice: &Lattice, run: &Run) -> Result<Mesh, ExtractError> {
+        let Job { program: whole, limits, features, .. } = job;
         loop {
             let mut sampler = SolidSampler::new(lattice, self, limits, BESIDE);
             if features == Features::Sharp {
-                sampler.keep_tapes();
+                sampler.look_for(job.crease(lattice));
             }
             match extract(&sampler, lattice, &self.cells, features, run) {
                 Err(ExtractError::Rifts(rifts)) if self.mend(&rifts, whole, (lattice, &limits), |_| true, run)? => {}

@@ -28,21 +28,50 @@ use glam::{Vec3, Vec3A};
 
 use super::qef::Planes;
 
-/// Normals of a cell that differ by less than this are those of a smooth surface: the cosine
-/// of the angle between them.
-pub(super) const SMOOTH: f32 = 0.9;
+/// Which normals are those of a crease.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Crease {
+    /// Normals of a cell that differ by less than this are those of a smooth surface: the cosine of the angle between
+    /// them.
+    pub(super) smooth: f32,
+    /// The same of vertices next to each other that are on one side of a crease.
+    alike: f32,
+    /// Normals that differ by more are of a side that is not the one that was asked for.
+    astray: f32,
+    /// The first angle, as a part of the usual one: by so much less is a crease above the triangles that cut it off.
+    pub(super) part: f32,
+}
 
-/// Normals of vertices next to each other that are on the same side of a crease: the cosine of 11°.
-const ALIKE: f32 = 0.98;
+/// The damping of steps to a crease of the usual angle; it takes the distance from that to a hundredth a step.
+const DAMPING: f32 = 3e-3;
+
+impl Crease {
+    /// Sides that are 26° apart or more; normals of one side are no more than 11° apart, those of another than the one
+    /// that was asked for more than 45°.
+    pub(crate) const USUAL: Crease = Crease { smooth: 0.9, alike: 0.98, astray: 0.7, part: 1.0 };
+
+    /// The usual angle, and the least that normals in single precision tell.
+    const ANGLE: f64 = 0.451;
+    const LEAST: f64 = 5e-3;
+
+    /// Sides that are so far apart, in radians, or as far as usual if that is less.
+    pub(crate) fn of_angle(angle: f64) -> Crease {
+        let angle = angle.max(Crease::LEAST);
+        if angle >= Crease::ANGLE {
+            return Crease::USUAL;
+        }
+        let cosine = |by: f64| (by * angle).cos() as f32;
+        Crease { smooth: cosine(1.0), alike: cosine(0.44), astray: cosine(1.76), part: (angle / Crease::ANGLE) as f32 }
+    }
+
+    /// Its square: by so much less do the planes of both sides draw a point towards where they meet.
+    pub(super) fn pull(self) -> f32 {
+        self.part * self.part
+    }
+}
 
 /// How far feature points stay from the faces of their cell, in cells.
 pub(super) const INSET: f32 = 1.0 / 128.0;
-
-/// Normals of a side that is not the one that was asked for: the cosine of 45°.
-const ASTRAY: f32 = 0.7;
-
-/// The damping of the steps; it takes the distance from the crease to a hundredth a step.
-const DAMPING: f32 = 3e-3;
 
 /// Steps that are shorter than this, in cells, are the last: what is left is less.
 pub(super) const CLOSE: f32 = 1e-3;
@@ -76,14 +105,14 @@ impl Slope {
 }
 
 /// Whether two of some normals differ as those of a crease do.
-pub(super) fn differ(normals: &[Vec3A]) -> bool {
+pub(super) fn differ(normals: &[Vec3A], crease: Crease) -> bool {
     let mut least = f32::INFINITY;
     for (n, a) in normals.iter().enumerate() {
         for b in &normals[..n] {
             least = least.min(a.dot(*b));
         }
     }
-    least <= SMOOTH
+    least <= crease.smooth
 }
 
 /// A segment of a loop: from a vertex to that of the next segment. There are many: it is kept small.
@@ -189,7 +218,12 @@ impl Candidate {
 /// the segments which of them turn, and `each` how far its plane is from that node, last vertex first. Then, by a bit for
 /// each vertex, where another side starts than that of the one before.
 #[inline(always)]
-pub(super) fn tangents(segments: &mut [Segment], places: &[Vec3A], mut each: impl FnMut(f32)) -> (Planes, u32) {
+pub(super) fn tangents(
+    segments: &mut [Segment],
+    places: &[Vec3A],
+    crease: Crease,
+    mut each: impl FnMut(f32),
+) -> (Planes, u32) {
     let (mut planes, mut sides) = (Planes::NONE, 0);
     let first = segments.first().map_or(Vec3A::ZERO, |segment| segment.normal.into());
     let mut next = first;
@@ -201,8 +235,8 @@ pub(super) fn tangents(segments: &mut [Segment], places: &[Vec3A], mut each: imp
         }
         each(offset);
         let alike = normal.dot(next);
-        segment.turns = alike < SMOOTH;
-        sides = sides << 1 | u32::from(alike <= ALIKE);
+        segment.turns = alike < crease.smooth;
+        sides = sides << 1 | u32::from(alike <= crease.alike);
         next = normal;
     }
     // So far each bit is that of the vertex before.
@@ -212,10 +246,10 @@ pub(super) fn tangents(segments: &mut [Segment], places: &[Vec3A], mut each: imp
 
 /// The point of a box of cells, clear of its faces, that the planes lead to in up to some steps.
 #[inline]
-pub(super) fn settle(planes: &Planes, from: Vec3A, low: Vec3A, high: Vec3A, steps: usize) -> Vec3A {
+pub(super) fn settle(planes: &Planes, from: Vec3A, [low, high]: [Vec3A; 2], (steps, crease): (usize, Crease)) -> Vec3A {
     let mut at = from;
     for _ in 0..steps {
-        let next = planes.nearest(at, DAMPING, low + INSET, high - INSET);
+        let next = planes.nearest(at, crease.pull() * DAMPING, low + INSET, high - INSET);
         let way = next - at;
         at = next;
         if way.length_squared() < CLOSE * CLOSE {
@@ -281,10 +315,11 @@ impl Refiner {
         (number, low): (u16, Vec3A),
         (first, segments): (usize, &mut [Segment]),
         places: &[Vec3A],
+        crease: Crease,
     ) {
-        let (planes, starts) = tangents(segments, places, |offset| self.offsets.push(offset));
+        let (planes, starts) = tangents(segments, places, crease, |offset| self.offsets.push(offset));
         let middle = places.iter().sum::<Vec3A>() / places.len() as f32;
-        let at = settle(&planes, middle, Vec3A::ZERO, Vec3A::ONE, 1);
+        let at = settle(&planes, middle, [Vec3A::ZERO, Vec3A::ONE], (1, crease));
         // Vertices of a side share a point. Those before the first start are on the last side, the one that goes on there.
         let count = starts.count_ones().max(1);
         let mut sides = [(Vec3A::ZERO, 0.0); MOST_SIDES];
@@ -312,7 +347,7 @@ impl Refiner {
     pub(super) fn refine(
         &mut self,
         segments: &mut [Segment],
-        step: f32,
+        (step, crease): (f32, Crease),
         mut slopes: impl FnMut(&[Vec3A], &mut Vec<Slope>) -> bool,
         mut each: impl FnMut(&Draft, Vec3, &[Segment]),
     ) {
@@ -339,7 +374,7 @@ impl Refiner {
                 let own = Vec3A::from(segment.normal);
                 first.get_or_insert(own);
                 match known[(on & 15) as usize] {
-                    Some((normal, offset)) if normal.dot(own) > ASTRAY => {
+                    Some((normal, offset)) if normal.dot(own) > crease.astray => {
                         segment.normal = normal.into();
                         sum += normal;
                         planes.add(normal, offset);
@@ -354,7 +389,7 @@ impl Refiner {
                 on >>= 4;
             }
             if !planes.is_empty() {
-                draft.at = settle(&planes, draft.at, Vec3A::ZERO, Vec3A::ONE, 1);
+                draft.at = settle(&planes, draft.at, [Vec3A::ZERO, Vec3A::ONE], (1, crease));
                 draft.planes = planes;
             }
             // On both sides of a thin wall they may be no more than nothing together.

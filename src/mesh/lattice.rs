@@ -47,10 +47,11 @@ pub enum CellSize {
     ///
     /// The mesh is closed, manifold and free of self-intersection as all others are, edges and corners
     /// stay sharp, and what is thinner than the cells that it begins with may be lost as in any mesh:
-    /// those are as large as half of the thinnest leaf, and a twenty-fourth of the longest side at most. Where the
-    /// tolerance is not reached, [`Mesh::warnings`](crate::Mesh::warnings) says so, and
-    /// [`Mesh::deviation`](crate::Mesh::deviation) how far off the mesh is. It takes several times as
-    /// long as one mesh in cells of the smallest size.
+    /// those are as large as half of the thinnest leaf, and a twenty-fourth of the longest side at most. Of
+    /// [meshes that are solids](crate::Solid::from_mesh) the creases between facets are kept however blunt they are, and
+    /// cells are halved where the mesh has lost a corner. Where the tolerance is not reached,
+    /// [`Mesh::warnings`](crate::Mesh::warnings) says so, and [`Mesh::deviation`](crate::Mesh::deviation) how far off
+    /// the mesh is. It takes several times as long as one mesh in cells of the smallest size.
     ///
     /// Where only a cell size is asked for, as by [`Solid::thin_features`](crate::Solid::thin_features), it
     /// stands for a twenty-fourth of the longest side.

@@ -96,13 +96,15 @@ impl Planes {
         (sum.max(0.0) / self.total()).sqrt()
     }
 
-    /// The direction that the planes have in common, if there are two sides and no more.
-    pub(super) fn crease(&self) -> Option<Vec3A> {
+    /// The direction that the planes have in common, if there are two sides and no more: those of a crease with a
+    /// [pull](super::feature::Crease::pull).
+    pub(super) fn crease(&self, pull: f32) -> Option<Vec3A> {
         // What the matrix of the normals takes to almost 0. Its adjugate has that in its columns; the sum of the
         // products of two eigenvalues, and the least one, tell how many sides there are.
         let Adjugate { diagonal: d, beside: e, determinant } = Adjugate::new(self.diagonal, self.beside);
         let pairs = d.element_sum();
-        let is_crease = pairs > 0.015 * self.weight * self.weight && determinant < 0.008 * self.weight * pairs;
+        let weight = pull * self.weight;
+        let is_crease = pairs > 0.015 * weight * self.weight && determinant < 0.008 * weight * pairs;
         let columns = [Vec3A::new(d.x, e.z, e.y), Vec3A::new(e.z, d.y, e.x), Vec3A::new(e.y, e.x, d.z)];
         is_crease.then(|| columns[d.max_position()].normalize())
     }
@@ -235,13 +237,13 @@ mod tests {
     #[test]
     fn the_direction_of_two_sides_is_told() {
         let two = planes(&[(Vec3A::X, 0.25), (Vec3A::X, 0.25), (Vec3A::new(0.0, 1.0, 1.0), 0.5)]);
-        let along = two.crease().unwrap();
+        let along = two.crease(1.0).unwrap();
         assert!(along.cross(Vec3A::new(0.0, 1.0, -1.0)).length() < 1e-6, "{along}");
         let one = planes(&[(Vec3A::X, 0.25), (Vec3A::new(1.0, 0.1, 0.0), 0.25)]);
-        assert!(one.crease().is_none());
+        assert!(one.crease(1.0).is_none());
         let three = planes(&[(Vec3A::X, 0.25), (Vec3A::Y, 0.5), (Vec3A::Z, 0.5), (Vec3A::Z, 0.5)]);
-        assert!(three.crease().is_none());
-        assert!(Planes::NONE.crease().is_none());
+        assert!(three.crease(1.0).is_none());
+        assert!(Planes::NONE.crease(1.0).is_none());
     }
 
     #[test]

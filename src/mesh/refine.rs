@@ -15,6 +15,7 @@
 //! what is shown of one lattice holds for both together. A crease has a point in the seam if the triangles on both
 //! sides are of fans: a fan's loop may take any way in a face.
 
+mod corners;
 mod divided;
 mod inset;
 mod level;
@@ -32,6 +33,7 @@ pub(super) use self::tolerance::within;
 use super::blocks::Blocks;
 use super::error::MeshingError;
 use super::extract::ExtractError;
+use super::feature::Crease;
 use super::lattice::Lattice;
 use super::resolve::{Among, Unresolved, unresolved_cells};
 use super::settings::Features;
@@ -47,6 +49,23 @@ pub(super) struct Job<'a> {
     /// The box that the surface is in.
     pub(super) limits: Bounds,
     pub(super) features: Features,
+    /// How far triangles may be off the surface, if that is asked for.
+    pub(super) tolerance: Option<f64>,
+}
+
+/// The surface is above what cuts a crease off, from side to side of a cell, by a quarter of the cell times the angle in
+/// radians; along a diagonal by half of that again.
+const CUT: f64 = 1.5 / 4.0;
+
+impl Job<'_> {
+    /// Which normals are those of a crease. A surface that is flat between creases is off triangles across a crease,
+    /// and nowhere else: those count that are off by more than the tolerance.
+    pub(super) fn crease(&self, lattice: &Lattice) -> Crease {
+        match self.tolerance {
+            Some(tolerance) if self.program.is_faceted() => Crease::of_angle(tolerance / (CUT * lattice.step())),
+            _ => Crease::USUAL,
+        }
+    }
 }
 
 /// The mesh on a lattice whose cells are halved where they are unresolved, at most so many times and as long as f32 has
@@ -120,7 +139,7 @@ fn unresolved(job: Job<'_>, level: &Level, among: Among, run: &Run) -> Result<Ve
 /// jumps; never the first.
 fn meshed(job: Job<'_>, levels: &mut [Level], run: &Run) -> Result<Result<Mesh, usize>, MeshingError> {
     if let [Level { lattice, blocks, .. }] = levels {
-        return Ok(Ok(blocks.extract(job.program, (lattice, job.limits), job.features, run)?));
+        return Ok(Ok(blocks.extract(job, lattice, run)?));
     }
     let mut all = Piece::default();
     let mut seam: Option<Seam> = None;

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::blocks::{Blocks, Programs, exact_nodes};
 use super::deciders::Deciders;
 use super::extract::{BATCH, BORE, CellRows, Root, Sampler};
-use super::feature::Slope;
+use super::feature::{Crease, Slope};
 use super::hide::may_hide;
 use super::lattice::Lattice;
 use super::signs::{BLOCK, EdgeRef, NODES, SIDE};
@@ -28,6 +28,7 @@ pub(super) struct SolidSampler<'a> {
     groups: Vec<u32>,
     /// The box that the surface is in.
     limits: Bounds,
+    crease: Crease,
     /// The nodes of a block, relative to the first, x fastest.
     pattern: [Vec<f32>; 3],
     /// Which leaves of the solid pass between nodes, if any do.
@@ -97,7 +98,8 @@ impl SolidSampler<'_> {
         if !thin.contains(&true) {
             thin.clear();
         }
-        SolidSampler { lattice, blocks, programs, exact, groups, limits, pattern, thin, band, kept: Vec::new() }
+        let (crease, kept) = (Crease::USUAL, Vec::new());
+        SolidSampler { lattice, blocks, programs, exact, groups, limits, crease, pattern, thin, band, kept }
     }
 
     /// The tape of a group, made if it is not among those at hand.
@@ -133,8 +135,10 @@ impl SolidSampler<'_> {
         tape
     }
 
-    /// Keeps tapes for the slopes that are asked for after all roots.
-    pub(super) fn keep_tapes(&mut self) {
+    /// Looks for creases and corners, of which these are the creases.
+    pub(super) fn look_for(&mut self, crease: Crease) {
+        self.crease = crease;
+        // Slopes are asked for after all roots.
         self.kept.resize_with(self.blocks.len().div_ceil(BATCH), OnceLock::new);
     }
 
@@ -171,6 +175,10 @@ impl Sampler for SolidSampler<'_> {
 
     fn watches(&self) -> bool {
         true
+    }
+
+    fn crease(&self) -> Crease {
+        self.crease
     }
 
     fn lipschitz_bound(&self, number: usize) -> f64 {

@@ -39,10 +39,10 @@ const ATTEMPTS: usize = 5;
 /// The middle of a side depends on which end comes first, by rounding.
 const ROUNDING: f64 = 1.001;
 
-/// A mesh of fewer triangles, within a tolerance of the surface as the probes of it tell.
+/// A mesh of fewer triangles, within a tolerance of the surface as the probes of it tell, and how far what it has lost is.
 pub(super) fn simplified(
     mesh: Mesh,
-    probes: &[Probe],
+    (probes, lost): (&[Probe], f64),
     (program, tolerance): (&Program, f64),
     run: &Run,
 ) -> Result<Mesh, MeshingError> {
@@ -67,7 +67,7 @@ pub(super) fn simplified(
         let far = found.iter().filter(|probe| probe.off > most);
         wrong.extend(far.map(|probe| fewer.triangles()[probe.triangle as usize]));
         if wrong.is_empty() {
-            return Ok(told(fewer, &found, tolerance));
+            return Ok(told(fewer, (&found, lost), tolerance));
         }
         for triangle in wrong {
             run.check()?;
@@ -78,12 +78,12 @@ pub(super) fn simplified(
             near.filter(|n| around.contains(place(n))).for_each(|n| parts[*n as usize] *= LESS);
         }
     }
-    Ok(told(mesh, probes, tolerance))
+    Ok(told(mesh, (probes, lost), tolerance))
 }
 
 /// The mesh, which says how far it is off.
-fn told(mesh: Mesh, probes: &[Probe], tolerance: f64) -> Mesh {
-    let deviation = Some([deviation::largest(probes), tolerance]);
+fn told(mesh: Mesh, (probes, lost): (&[Probe], f64), tolerance: f64) -> Mesh {
+    let deviation = Some([deviation::largest(probes).max(lost), tolerance]);
     let findings = Findings { deviation, ..mesh.findings().clone() };
     mesh.with_findings(findings)
 }

@@ -79,17 +79,17 @@ impl Subject<'_> {
         let mut blocks = Blocks::find(program, &lattice, &to_find)?;
         let is_round = program.least_radius() >= ROUND * lattice.step();
         let features = if is_round { Features::Smooth } else { settings.features };
-        let job = Job { program, limits: bounds, features };
-        let mut near: Vec<Probe> = Vec::new();
+        let job = Job { program, limits: bounds, features, tolerance: tolerance.map(|tolerance| SHARE * tolerance) };
+        let (mut near, mut lost): (Vec<Probe>, f64) = (Vec::new(), 0.0);
         let mut mesh = match tolerance {
             Some(tolerance) => {
                 let start = (lattice, blocks);
                 let found = within(job, start, most, SHARE * tolerance, &to_extract)?;
-                (lattice, blocks, near) = (found.lattice, found.blocks, found.probes);
+                (lattice, blocks, near, lost) = (found.lattice, found.blocks, found.probes, found.lost);
                 found.mesh
             }
             None if most > 0 => refined(job, (lattice, blocks.clone()), most, &to_extract)?,
-            None => blocks.extract(program, (&lattice, bounds), features, &to_extract)?,
+            None => blocks.extract(job, &lattice, &to_extract)?,
         };
         if let Some(whole) = whole {
             whole.refuse_caps(&mesh, lattice.step(), &to_refuse)?;
@@ -100,7 +100,7 @@ impl Subject<'_> {
             mesh = mesh.with_owners(owners).map_err(ExtractError::from)?;
         }
         if let Some(tolerance) = tolerance {
-            mesh = simplified(mesh, &near, (program, tolerance), &to_simplify)?;
+            mesh = simplified(mesh, (&near, lost), (program, tolerance), &to_simplify)?;
         }
         if let (Some(palette), Some(owners)) = (palette, mesh.owners()) {
             let colors = corner_colors(&mesh, palette, owners, Paint::default(), &to_paint)?;
@@ -149,7 +149,8 @@ impl Whole {
         let program = &self.programs.surface;
         let [to_find, to_extract] = run.stages([0.15, 0.85]);
         let mut blocks = Blocks::find(program, &lattice, &to_find)?;
-        let mesh = blocks.extract(program, (&lattice, own), Features::Smooth, &to_extract)?;
+        let job = Job { program, limits: own, features: Features::Smooth, tolerance: None };
+        let mesh = blocks.extract(job, &lattice, &to_extract)?;
         let within = given.inflate(SLACK * lattice.step());
         match mesh.positions().iter().find(|p| !within.contains(p.as_dvec3())) {
             Some(at) => Err(MeshingError::LeavesBounds { at: at.as_dvec3() }),

@@ -29,7 +29,7 @@
 use glam::Vec3A;
 
 use super::probe;
-use crate::mesh::feature::{SMOOTH, Slope, differ};
+use crate::mesh::feature::{Crease, Slope, differ};
 
 /// How far the two triangles of four vertices may be off the surface in their middles, in cells, before the better
 /// diagonal is chosen.
@@ -64,6 +64,7 @@ pub(super) struct Ring<const N: usize> {
     /// The sum of the normals.
     sum: Vec3A,
     variance: f32,
+    crease: Crease,
 }
 
 /// The sum of some normals, and the mean of the squares of their distances from their mean: what the square of that lacks
@@ -77,34 +78,36 @@ fn sum_and_variance<const N: usize>(normals: &[Vec3A; N]) -> (Vec3A, f32) {
 
 /// Whether two of some normals differ as those of a crease do, given their variance.
 #[inline(always)]
-fn are_unlike<const N: usize>(normals: &[Vec3A; N], variance: f32) -> bool {
-    // The square of the distance of two is at most twice the sum of the squares of those from the mean.
-    2.0 * N as f32 * variance >= 2.0 - 2.0 * SMOOTH && differ(normals)
+fn are_unlike<const N: usize>(normals: &[Vec3A; N], variance: f32, crease: Crease) -> bool {
+    // The square of the distance of two is at most twice the sum of the squares of those from the mean. Rounding may take
+    // some 10⁻⁷ off that.
+    2.0 * N as f32 * variance + 1e-6 >= 2.0 - 2.0 * crease.smooth && differ(normals, crease)
 }
 
 /// Whether two normals of a cell differ as those of a crease do.
 #[inline(always)]
-pub(super) fn is_strongly_curved<const N: usize>(normals: &[Vec3A; N]) -> bool {
-    are_unlike(normals, sum_and_variance(normals).1)
+pub(super) fn is_strongly_curved<const N: usize>(normals: &[Vec3A; N], crease: Crease) -> bool {
+    are_unlike(normals, sum_and_variance(normals).1, crease)
 }
 
 impl<const N: usize> Ring<N> {
     #[inline(always)]
-    pub(super) fn new(normals: [Vec3A; N]) -> Ring<N> {
+    pub(super) fn new(normals: [Vec3A; N], crease: Crease) -> Ring<N> {
         let (sum, variance) = sum_and_variance(&normals);
-        Ring { normals, sum, variance }
+        Ring { normals, sum, variance, crease }
     }
 
     /// Whether the cell is nearly flat: a few normals in a circle of that diameter are this far from their mean.
     #[inline(always)]
     pub(super) fn is_flat(&self) -> bool {
-        self.variance < 0.25 * SPREAD * SPREAD
+        let spread = self.crease.part * SPREAD;
+        self.variance < 0.25 * spread * spread
     }
 
     /// Whether no two normals differ as those of a crease do.
     #[inline(always)]
     pub(super) fn is_smooth(&self) -> bool {
-        !are_unlike(&self.normals, self.variance)
+        !are_unlike(&self.normals, self.variance, self.crease)
     }
 
     /// Whether a cell that is not smooth may be round all the same.
@@ -281,7 +284,7 @@ mod tests {
             let (height, [u, v]) = surface(x, y);
             (Vec3A::new(x, y, height), Vec3A::new(-u, -v, 1.0).normalize())
         });
-        let ring = Ring::new(corner.map(|(_, normal)| normal));
+        let ring = Ring::new(corner.map(|(_, normal)| normal), Crease::USUAL);
         let middle = ring.middle(&corner.map(|(at, _)| at));
         let (value, gradient) = field(middle.at);
         let is_asked = !ring.is_smooth() && ring.may_be_round();

@@ -13,16 +13,15 @@ use super::block_vertices::Corners;
 use super::bulge::is_strongly_curved;
 use super::parts::Watch;
 use super::samples::Samples;
-use crate::mesh::feature::SMOOTH;
+use crate::mesh::feature::Crease;
 use crate::mesh::loops::CellLoop;
 use crate::mesh::signs::{BLOCK, NODES, SIDE, for_each_cell};
 
 /// Cells along an eighth of a block.
 const HALF: usize = BLOCK / 2;
 
-/// The square of the diagonal of a box of unit normals that are alike: less than for a crease by more than they are
-/// rounded.
-const ALIKE: f32 = 2.0 - 2.0 * SMOOTH - 1e-3;
+/// What normals are rounded by at most, as a part of the square of how far two of a crease are apart.
+const ROUNDING: f32 = 5e-3;
 
 /// The eighths, as bits, whose cells have the edge at a place of [`Corners`].
 const EIGHTHS: [u8; 3 * NODES] = {
@@ -79,7 +78,7 @@ impl Watch for Creases<'_> {
     fn is_open(&mut self, n: usize, corners: &Corners) -> bool {
         let mut unlike = 0;
         for (eighth, normals) in std::mem::replace(&mut self.boxes, [Creases::EMPTY; 8]).iter().enumerate() {
-            unlike |= u8::from(!are_alike(normals)) << eighth;
+            unlike |= u8::from(!are_alike(normals, self.samples.crease)) << eighth;
         }
         unlike != 0 && !self.samples.is_plain(self.samples.blocks()[n]) && is_creased(self.samples, n, corners, unlike)
     }
@@ -87,9 +86,11 @@ impl Watch for Creases<'_> {
 
 /// Whether no two normals in a box differ as those of a crease do; 0 stands for one that is not known.
 #[inline(always)]
-fn are_alike([low, high]: &[Vec3A; 2]) -> bool {
+fn are_alike([low, high]: &[Vec3A; 2], crease: Crease) -> bool {
     let across = (high - low).max(Vec3A::ZERO);
-    across.length_squared() < ALIKE && low.abs().max(high.abs()).length_squared() > 0.5
+    // The square of the diagonal of a box of unit normals that are alike is less than for a crease.
+    across.length_squared() < (1.0 - ROUNDING) * (2.0 - 2.0 * crease.smooth)
+        && low.abs().max(high.abs()).length_squared() > 0.5
 }
 
 /// Whether two normals on the loop of a cell in some eighths of block `n` differ as those of a crease do.
@@ -117,7 +118,7 @@ fn is_creased(samples: &Samples<'_>, n: usize, corners: &Corners, eighths: u8) -
 #[inline(always)]
 fn differs<const N: usize>(samples: &Samples<'_>, corners: &Corners, cell: [usize; 3], edges: &[u8]) -> bool {
     let Some(edges) = edges.first_chunk::<N>() else { return false };
-    is_strongly_curved(&corners.of_edges(cell, edges).map(|vertex| samples.normal(vertex).into()))
+    is_strongly_curved(&corners.of_edges(cell, edges).map(|vertex| samples.normal(vertex).into()), samples.crease)
 }
 
 #[cfg(test)]
@@ -141,7 +142,7 @@ mod tests {
     fn normals_in_a_small_box_are_alike() {
         let alike = |normals: &[Vec3A]| {
             let hold = |[low, high]: [Vec3A; 2], &normal: &Vec3A| [low.min(normal), high.max(normal)];
-            are_alike(&normals.iter().fold(Creases::EMPTY, hold))
+            are_alike(&normals.iter().fold(Creases::EMPTY, hold), Crease::USUAL)
         };
         let [x, y] = [Vec3A::X, Vec3A::Y];
         assert!(alike(&[]) && alike(&[x]) && alike(&[x, Vec3A::new(0.91, 0.4146, 0.0)]));

@@ -15,7 +15,7 @@
 
 use glam::{DVec3, Vec3, Vec3A};
 
-use crate::mesh::feature::{SMOOTH, Segment, settle};
+use crate::mesh::feature::{Crease, Segment, settle};
 use crate::mesh::qef::Planes;
 
 /// How far from the plane all of a half has to be, in cells.
@@ -66,7 +66,7 @@ pub(super) struct Cut {
 impl Cut {
     /// The cut of a loop that leaves two halves with what fits best in each, given where its vertices are from the cell's
     /// first node.
-    pub(super) fn best(ring: &[Segment], places: &[Vec3A], size: Vec3A) -> Option<Cut> {
+    pub(super) fn best(ring: &[Segment], places: &[Vec3A], size: Vec3A, crease: Crease) -> Option<Cut> {
         let count = ring.len();
         let mut best: Option<Cut> = None;
         for first in 0..count {
@@ -74,7 +74,7 @@ impl Cut {
                 if first == 0 && last == count - 1 {
                     continue;
                 }
-                let cut = Cut::new(ring, places, size, [first, last]);
+                let cut = Cut::new(ring, places, size, ([first, last], crease));
                 best = match (best, cut) {
                     (Some(best), Some(cut)) if cut.misfit < best.misfit => Some(cut),
                     (best, cut) => best.or(cut),
@@ -84,16 +84,16 @@ impl Cut {
         best
     }
 
-    fn new(ring: &[Segment], places: &[Vec3A], size: Vec3A, ends: [usize; 2]) -> Option<Cut> {
+    fn new(ring: &[Segment], places: &[Vec3A], size: Vec3A, (ends, crease): ([usize; 2], Crease)) -> Option<Cut> {
         let [first, last] = ends;
         let normal = |n: usize| Vec3A::from(ring[n].normal);
         // Both are on one side, and there are others on either way between them.
-        if normal(first).dot(normal(last)) < SMOOTH {
+        if normal(first).dot(normal(last)) < crease.smooth {
             return None;
         }
         let along = (normal(first) + normal(last)).normalize_or_zero();
         let ways = Cut::ways(ends, ring.len());
-        let has_other = |way: &Vec<usize>| way.iter().any(|&n| normal(n).dot(along) < SMOOTH);
+        let has_other = |way: &Vec<usize>| way.iter().any(|&n| normal(n).dot(along) < crease.smooth);
         if !ways.iter().all(has_other) {
             return None;
         }
@@ -105,7 +105,7 @@ impl Cut {
             }
             way.iter().for_each(|&n| sum += places[n]);
             let middle = (sum + places[first] + places[last]) / (way.len() + 2) as f32;
-            let at = settle(&planes, middle, Vec3A::ZERO, size, 3);
+            let at = settle(&planes, middle, [Vec3A::ZERO, size], (3, crease));
             misfit = misfit.max(planes.distance(at));
             at
         });

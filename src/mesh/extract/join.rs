@@ -48,7 +48,8 @@ impl Parts<'_> {
             Features::Smooth => Found::Table(self.triangles_unless(|| (), run)?.unwrap_or_default()),
             Features::Sharp => {
                 let is_plain = |block| sampler.is_plain(block);
-                let samples = Samples::new(&self, lattice, sampler.limits(), [&positions, &normals], &is_plain);
+                let about = (sampler.limits(), sampler.crease());
+                let samples = Samples::new(&self, lattice, about, [&positions, &normals], &is_plain);
                 sharp::find(&samples, sampler, &run.stage(0.0, 0.95))?
             }
         };

@@ -72,7 +72,7 @@ impl<'a> Patches<'a> {
             self.own.push(Segment::new(from, normal, outline.face(n)));
             self.places.push(share * Vec3A::from(position - low));
         }
-        let (planes, _) = tangents(&mut self.own[start..], &self.places, |_| ());
+        let (planes, _) = tangents(&mut self.own[start..], &self.places, samples.crease, |_| ());
         self.all.push(Patch { cell, planes, ring: Ring::Own(start..self.own.len()) });
     }
 

@@ -35,7 +35,7 @@ use super::patches::{Disc, Patches};
 use super::samples::{Samples, cell_number, cell_of, split_cell};
 use super::span::{Span, offset};
 use super::special::Special;
-use crate::mesh::feature::{CLOSE, Candidate, INSET, Segment, settle};
+use crate::mesh::feature::{CLOSE, Candidate, Crease, INSET, Segment, settle};
 use crate::mesh::loops::{CellLoop, LONGEST};
 use crate::mesh::qef::Planes;
 use crate::{Cancelled, Run};
@@ -102,7 +102,7 @@ pub(super) fn regions(
     for block in 0..blocks {
         run.check()?;
         for candidate in special.candidates(block) {
-            if candidate.misfit > MISFIT {
+            if candidate.misfit > samples.crease.part * MISFIT {
                 all.push(Asker::candidate(samples, block, candidate));
             }
         }
@@ -138,8 +138,8 @@ pub(super) fn regions(
         // What was not granted before is not asked for again.
         for (number, region) in known.regions.iter().enumerate().skip(asked) {
             let Some(region) = region else { continue };
-            let asker = Asker::region(number, region);
-            if asker.planes.distance(asker.at) > 2.0 * MISFIT {
+            let asker = Asker::region(number, region, samples.crease);
+            if asker.planes.distance(asker.at) > 2.0 * samples.crease.part * MISFIT {
                 asker.slabs(0, &mut wishes);
                 asker.boxes(&mut wishes);
             }
@@ -190,18 +190,19 @@ struct Asker<'a> {
     /// The feature point, and what it should be on, in cells from the first node of the box.
     at: Vec3A,
     planes: Planes,
+    crease: Crease,
 }
 
 impl<'a> Asker<'a> {
     fn candidate(samples: &Samples<'_>, block: usize, candidate: &'a Candidate) -> Asker<'a> {
         let span = Span::single(cell_of(samples.blocks()[block], candidate.number));
         let (at, planes) = (candidate.at.into(), candidate.planes());
-        Asker { who: Who::Cell(candidate), block, span, at, planes }
+        Asker { who: Who::Cell(candidate), block, span, at, planes, crease: samples.crease }
     }
 
-    fn region(number: usize, region: &Region) -> Asker<'a> {
+    fn region(number: usize, region: &Region, crease: Crease) -> Asker<'a> {
         let Region { block, span, place, planes, .. } = *region;
-        Asker { who: Who::Region(number), block, span, at: place, planes }
+        Asker { who: Who::Region(number), block, span, at: place, planes, crease }
     }
 
     fn wish(&self, size: f32, span: Span, at: Vec3A, allowed: f32) -> Wish<'a> {
@@ -211,7 +212,7 @@ impl<'a> Asker<'a> {
     /// Wishes for slabs up to where the planes meet, across the axis that is the nth of those that the crease goes
     /// along, if it is a slab itself.
     fn slabs(&self, nth: usize, wishes: &mut Vec<Wish<'a>>) {
-        let axis = self.planes.crease().and_then(|along| axes(along)[nth]);
+        let axis = self.planes.crease(self.crease.pull()).and_then(|along| axes(along)[nth]);
         if let Some(axis) = axis.filter(|&axis| self.span.is_slab(axis)) {
             let mut across = Vec3A::ONE;
             across[axis] = 0.0;
@@ -229,7 +230,7 @@ impl<'a> Asker<'a> {
         let (misfit, mut last) = (self.planes.distance(self.at), self.span);
         for reach in reaches {
             let (first, end) = (-reach, self.span.size() + reach);
-            let at = settle(&self.planes, self.at, first, end, 3);
+            let at = settle(&self.planes, self.at, [first, end], (3, self.crease));
             let low = self.span.low;
             let cell = std::array::from_fn(|axis| low[axis].saturating_add_signed(floor(at[axis])));
             let span = self.span.union(&Span::single(cell));
@@ -340,12 +341,12 @@ impl<'a> Known<'a> {
 
     /// The boxes that hold an empty cell as well, which the crease goes on through by a face that is not crossed.
     fn exits<'w>(&self, asker: &Asker<'w>, crossed: u8, wishes: &mut Vec<Wish<'w>>) {
-        let Some(along) = asker.planes.crease() else { return };
+        let Some(along) = asker.planes.crease(asker.crease.pull()) else { return };
         for along in [along, -along] {
             let Some((cell, length)) = asker.span.exit(asker.at, along, crossed) else { continue };
             let is_empty = matches!(self.samples.case_near(asker.block, cell), 0 | 255);
             if length > SHORT && is_empty && self.taken(asker.block, cell).is_none() {
-                let allowed = asker.planes.distance(asker.at).max(2.0 * MISFIT);
+                let allowed = asker.planes.distance(asker.at).max(2.0 * asker.crease.part * MISFIT);
                 let span = asker.span.union(&Span::single(cell));
                 let slab = axes(along)[0].filter(|&axis| span.is_slab(axis));
                 wishes.push(Wish { slab, ..asker.wish(0.5 * length, span, asker.at, allowed) });
@@ -391,7 +392,7 @@ impl<'a> Known<'a> {
         let (mut planes, mut place) = (Planes::NONE, wish.at + shift);
         for step in 1..=STEPS {
             planes = patches.planes(span.low, place);
-            let next = settle(&planes, place, Vec3A::ZERO, size, 3);
+            let next = settle(&planes, place, [Vec3A::ZERO, size], (3, self.samples.crease));
             let way = next - place;
             place = next;
             let is_last = step == STEPS || way.length_squared() < CLOSE * CLOSE;

@@ -5,6 +5,7 @@ use std::ops::Range;
 use glam::{Vec3, Vec3A};
 
 use super::parts::Parts;
+use crate::mesh::feature::Crease;
 use crate::mesh::lattice::Lattice;
 use crate::mesh::signs::BLOCK;
 use crate::mesh::table::{EDGE_CORNERS, edge_axis};
@@ -14,6 +15,8 @@ use rvachev_num::Bounds;
 pub(super) struct Samples<'a> {
     pub(super) parts: &'a Parts<'a>,
     pub(super) lattice: &'a Lattice,
+    /// Which normals are those of a crease.
+    pub(super) crease: Crease,
     /// The box of the surface, as vertices have it.
     limits: [Vec3; 2],
     positions: &'a [Vec3],
@@ -48,12 +51,12 @@ impl<'a> Samples<'a> {
     pub(super) fn new(
         parts: &'a Parts<'a>,
         lattice: &'a Lattice,
-        limits: Bounds,
+        (limits, crease): (Bounds, Crease),
         [positions, normals]: [&'a [Vec3]; 2],
         plain: &'a (dyn Fn([u32; 3]) -> bool + Sync),
     ) -> Samples<'a> {
         let limits = [limits.min.as_vec3(), limits.max.as_vec3()];
-        Samples { parts, lattice, limits, positions, normals, plain }
+        Samples { parts, lattice, crease, limits, positions, normals, plain }
     }
 
     /// Whether a block, by its first cell, is to have the triangles of the case table, whatever is in it.

@@ -204,7 +204,7 @@ impl Fans {
                 let Range { start, end } = candidate.range();
                 let (list, segments) = (list_of(block), start as u32..end as u32);
                 let (at, normal) = (candidate.position, candidate.normal);
-                let (block, is_loose) = (block as u32, candidate.misfit > MISFIT);
+                let (block, is_loose) = (block as u32, candidate.misfit > samples.crease.part * MISFIT);
                 all.fans.push(Fan { list, segments, block, span, at, normal, is_loose, half: None });
             }
             numbers.iter().for_each(|&number| cells.insert(number));

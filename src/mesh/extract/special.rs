@@ -19,7 +19,7 @@ use super::span::Span;
 use super::spread::{Spread, Spreads};
 use super::{ExtractError, Sampler};
 use crate::Run;
-use crate::mesh::feature::{Candidate, Refiner, Segment, Slope};
+use crate::mesh::feature::{Candidate, Crease, Refiner, Segment, Slope};
 use crate::mesh::loops::{CellLoop, MOST};
 use crate::mesh::signs::for_each_cell;
 use crate::mesh::table::CaseTable;
@@ -326,19 +326,19 @@ impl Lists {
         spreads.look(step, &mut slopes, |Spread { number, segments, places, top }| {
             let within = cell_of([0; 3], number).map(|n| n as usize);
             let Some((at, normal)) = top else {
-                return self.add_candidate(within, segments, places, refiner);
+                return self.add_candidate(within, (segments, places), samples.crease, refiner);
             };
             let at = nearby.inside(samples, within, at - vector(within));
             plain.add_top_of(at, normal.into(), segments, samples.vertices());
             self.cells.push((number, segments.len() as u8));
         });
         let all = &mut self.candidates;
-        refiner.refine(&mut self.segments[segments..], step, slopes, |draft, normal, ring| {
+        refiner.refine(&mut self.segments[segments..], (step, samples.crease), slopes, |draft, normal, ring| {
             let within = cell_of([0; 3], draft.number).map(|n| n as usize);
             let position = nearby.inside(samples, within, draft.at);
             // Beyond a face that the surface crosses there is some of it.
             let is_shut = |along| Span::is_shut(draft.at, along, Segment::faces(ring));
-            let leaves = draft.planes.crease().is_some_and(|along| !is_shut(along));
+            let leaves = draft.planes.crease(samples.crease.pull()).is_some_and(|along| !is_shut(along));
             all.push(draft.done([normal, position], leaves));
         });
         let order = self.note_order(candidates);
@@ -373,7 +373,7 @@ impl Lists {
             let Some(edges) = outline.edges().first_chunk::<N>() else { continue };
             let within = cell_of([0; 3], number).map(|n| n as usize);
             let vertices = nearby.around(within, edges);
-            let ring = Ring::new(std::array::from_fn(|n| samples.normal(vertices[n]).into()));
+            let ring = Ring::new(std::array::from_fn(|n| samples.normal(vertices[n]).into()), samples.crease);
             let positions = || std::array::from_fn(|n| nearby.place(samples, vertices[n]));
             let cover = if ring.is_flat() {
                 Cover::Table
@@ -387,7 +387,7 @@ impl Lists {
                 if ring.may_be_round() {
                     spreads.add(number, ring.middle(&positions), &segments, &places);
                 } else {
-                    self.add_candidate(within, &mut segments, &places, refiner);
+                    self.add_candidate(within, (&mut segments, &places), samples.crease, refiner);
                 }
                 continue;
             };
@@ -433,7 +433,7 @@ impl Lists {
             let places: Vec<Vec3A> = around.clone().map(|vertex| nearby.place(samples, vertex) - low).collect();
             let segment = |(n, vertex)| Segment::new(vertex, samples.normal(vertex), outline.face(n));
             let mut segments: Vec<Segment> = around.enumerate().map(segment).collect();
-            return self.add_candidate(within, &mut segments, &places, refiner);
+            return self.add_candidate(within, (&mut segments, &places), samples.crease, refiner);
         } else {
             let turned = table.triangles(!case).iter();
             plain.triangles.extend(turned.map(|&[a, b, c]| [corner(a), corner(c), corner(b)]));
@@ -444,8 +444,14 @@ impl Lists {
     /// Adds a cell with a single loop around it that is to have a fan, given with the places of its vertices from the
     /// cell's first node.
     #[inline]
-    fn add_candidate(&mut self, within: [usize; 3], segments: &mut [Segment], places: &[Vec3A], refiner: &mut Refiner) {
-        refiner.add((cell_number(within), vector(within)), (self.segments.len(), segments), places);
+    fn add_candidate(
+        &mut self,
+        within: [usize; 3],
+        (segments, places): (&mut [Segment], &[Vec3A]),
+        crease: Crease,
+        refiner: &mut Refiner,
+    ) {
+        refiner.add((cell_number(within), vector(within)), (self.segments.len(), segments), places, crease);
         self.segments.extend_from_slice(segments);
     }
 }

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::Progress;
+use crate::mesh::feature::Crease;
 use crate::mesh::loops::CellLoop;
 use crate::mesh::signs::BLOCK;
 use crate::mesh::{CellSize, MeshReport};
@@ -359,7 +360,8 @@ fn look_at_even_blocks(f: impl Fn(DVec3) -> f64 + Sync, cells: u32, percent: std
     let (run, neighbours) = (Run::default(), Neighbours::new(&blocks).unwrap());
     let mut parts = sample_all(&sampler, lattice, (&blocks, neighbours), Features::Sharp, &run).unwrap();
     let vertices = parts.take_vertices();
-    let samples = samples::Samples::new(&parts, lattice, Bounds::ALL, [&vertices[0], &vertices[1]], &|_| false);
+    let samples =
+        samples::Samples::new(&parts, lattice, (Bounds::ALL, Crease::USUAL), [&vertices[0], &vertices[1]], &|_| false);
     let even = trend::even_blocks(&samples, &run).unwrap();
     let mut nearby = nearby::Nearby::new();
     for n in (0..blocks.len()).filter(|&n| even[n]) {

@@ -19,7 +19,7 @@ use super::probe::{Probe, is_beyond};
 use super::samples::{Samples, cell_number, split_cell};
 use super::sharp::Fans;
 use super::span::Span;
-use crate::mesh::feature::{INSET, SMOOTH, Segment};
+use crate::mesh::feature::{INSET, Segment};
 
 /// How often the place where the surface crosses the way to x is narrowed down.
 const STEPS: usize = 8;
@@ -49,7 +49,7 @@ impl Fans {
         let ring = self.of(fan as usize);
         for (n, segment) in ring.iter().enumerate() {
             let to = ring.get(n + 1).unwrap_or(&ring[0]).from;
-            let is_creased = samples.normal(segment.from).dot(samples.normal(to)) < SMOOTH;
+            let is_creased = samples.normal(segment.from).dot(samples.normal(to)) < samples.crease.smooth;
             let mut cell = segment.cell(own.span.low);
             let is_beside = |other: &&Segment| other.face == segment.face && other.cell(own.span.low) == cell;
             if !is_creased || ring.iter().filter(is_beside).count() > 1 {
@@ -106,7 +106,7 @@ impl Face {
         let room = Vec2::select(way.cmpgt(Vec2::ZERO), 1.0 - INSET - start, start - INSET) / way.abs();
         let mut last = room.min_element().min(1.0);
         let mut beyond = probe.at(near, &span, lifted(start + last * way))?;
-        if !is_beyond(&beyond, CLOSE * step) {
+        if !is_beyond(&beyond, samples.crease.part * CLOSE * step) {
             return None;
         }
         let (mut first, mut before) = (0.0, probe.at(near, &span, lifted(start))?);
@@ -120,7 +120,7 @@ impl Face {
             let by = first + (last - first) * before.value / (before.value - beyond.value);
             let at = start + by * way;
             let slope = probe.at(near, &span, lifted(at))?;
-            if !is_beyond(&slope, 0.1 * CLOSE * step) {
+            if !is_beyond(&slope, 0.1 * samples.crease.part * CLOSE * step) {
                 found = Some((at, slope));
                 break;
             }
@@ -136,7 +136,7 @@ impl Face {
         }
         let (mut at, slope) = found?;
         let (mut normal, _) = slope.surface(step)?;
-        if normal.dot(m).max(normal.dot(n)) >= SMOOTH {
+        if normal.dot(m).max(normal.dot(n)) >= samples.crease.smooth {
             return None;
         }
         let third = (at, flat(normal));
@@ -144,7 +144,7 @@ impl Face {
             let middle = held(0.5 * (a + b));
             let slope = probe.at(near, &span, lifted(middle))?;
             if let Some((other, depth)) = slope.surface(step)
-                && depth.abs() <= CLOSE
+                && depth.abs() <= samples.crease.part * CLOSE
                 && other.dot(normal) > ALIKE
             {
                 (at, normal) = (middle, other);

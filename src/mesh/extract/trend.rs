@@ -28,9 +28,14 @@ use rvachev_num::Meter;
 
 /// How much the trend may change the normal within a cell, and how large the box may be of what a block's own normals have
 /// beside it; with those of neighbours it may be twice that. Two normals of a cell differ by less than those of a
-/// [crease](crate::mesh::feature::SMOOTH) do then. The middles of triangles are off by a fiftieth of a cell at most by the
+/// [crease](crate::mesh::feature::Crease) do then. The middles of triangles are off by a fiftieth of a cell at most by the
 /// trend (see [`bulge`](super::bulge)), and by as much again where a blunt ridge of 6° makes all of the box.
 const EVEN: f32 = 0.1;
+
+/// The same where blunter creases count.
+fn even(samples: &Samples<'_>) -> f32 {
+    EVEN * samples.crease.part
+}
 
 /// So many vertices tell a trend.
 const ENOUGH: usize = 24;
@@ -101,9 +106,9 @@ impl Trend {
     }
 
     /// Whether it changes normals within a cell by little; one that is no number does not.
-    fn is_slow(&self) -> bool {
+    fn is_slow(&self, even: f32) -> bool {
         let [x, y, z] = self.by;
-        [x + y + z, x + y - z, x - y + z, x - y - z].iter().all(|change| change.xyz().length_squared() <= EVEN * EVEN)
+        [x + y + z, x + y - z, x - y + z, x - y - z].iter().all(|change| change.xyz().length_squared() <= even * even)
     }
 
     /// What normals, given with their places, have beside it.
@@ -143,7 +148,7 @@ impl Vertices {
     /// Those that block `n` owns.
     fn new(samples: &Samples<'_>, n: usize) -> Vertices {
         let own = || samples.vertices_of(n, samples.blocks()[n]);
-        let count = own().len();
+        let (count, even) = (own().len(), even(samples));
         if count < ENOUGH {
             return Vertices::Few;
         }
@@ -151,15 +156,15 @@ impl Vertices {
         // From end to end of a block, a slow trend and what may be beside it come to no more.
         let (mut low, mut high) = (Vec3A::INFINITY, Vec3A::NEG_INFINITY);
         some().for_each(|(_, normal)| (low, high) = (low.min(normal), high.max(normal)));
-        if (high - low).max_element() > (BLOCK + 1) as f32 * EVEN {
+        if (high - low).max_element() > (BLOCK + 1) as f32 * even {
             return Vertices::Uneven;
         }
         let trend = Trend::new(some());
-        if !trend.is_slow() {
+        if !trend.is_slow(even) {
             return Vertices::Uneven;
         }
         let rest = trend.beside(own());
-        if is_within(&rest, EVEN) { Vertices::Even(trend, rest) } else { Vertices::Uneven }
+        if is_within(&rest, even) { Vertices::Even(trend, rest) } else { Vertices::Uneven }
     }
 
     /// Their trend.
@@ -222,7 +227,7 @@ fn holds(samples: &Samples<'_>, own: &[Vertices], n: usize, (trend, mut rest): (
         };
         rest = [rest[0].min(low), rest[1].max(high)];
     }
-    is_within(&rest, 2.0 * EVEN)
+    is_within(&rest, 2.0 * even(samples))
 }
 
 /// The way to a neighbour, in cells, by the axes along which it is further, as bits.

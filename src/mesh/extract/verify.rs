@@ -22,7 +22,7 @@ use super::probe::{DOUBTFUL, OFF, Probe, is_beyond};
 use super::samples::Samples;
 use super::sharp::{AT_ONCE, Fan, Fans};
 use super::third::Face;
-use crate::mesh::feature::{SMOOTH, Segment, Slope, settle, tangents};
+use crate::mesh::feature::{Crease, Segment, Slope, settle, tangents};
 use crate::{Cancelled, Run};
 
 /// Fans that are looked at together.
@@ -84,7 +84,7 @@ impl Fans {
         })?;
         let mut list: Vec<Segment> = Vec::new();
         for ((fan, ring, _), mended) in changed.into_iter().zip(mended) {
-            self.mend(fan, ring, mended, &mut list);
+            self.mend(fan, ring, mended, (&mut list, samples.crease));
         }
         self.segments.push(list);
         Ok(())
@@ -124,7 +124,7 @@ impl Fans {
                 let step = probe.step;
                 let mut note = |n: usize, fan: &Fan, slope: Option<&Slope>| {
                     let is = |part: f32| slope.is_some_and(|slope| is_beyond(slope, part * step));
-                    let is_doubtful = fan.is_loose || is(DOUBTFUL);
+                    let is_doubtful = fan.is_loose || is(samples.crease.part * DOUBTFUL);
                     found.extend(is_doubtful.then(|| (number + n as u32, is(OFF))));
                 };
                 match fans {
@@ -163,11 +163,11 @@ impl Fans {
         let ring = ring.unwrap_or_else(|| self.of(number as usize));
         let positions: Vec<Vec3> = ring.iter().map(|segment| self.position(samples, segment.from)).collect();
         let places: Vec<Vec3A> = positions.iter().map(|&at| Vec3A::from(at - low) / probe.step).collect();
-        let (planes, _) = tangents(&mut ring.to_vec(), &places, |_| ());
+        let (planes, _) = tangents(&mut ring.to_vec(), &places, samples.crease, |_| ());
         let inside = |at: Vec3A| samples.inside(at, span.low, span.high);
         let back = |at: Vec3| Vec3A::from(at - low) / samples.lattice.step() as f32;
         let own = place(samples, fan);
-        if let Some(cut) = Cut::best(ring, &places, span.size()) {
+        if let Some(cut) = Cut::best(ring, &places, span.size(), samples.crease) {
             let at = cut.at.map(inside);
             let fits_better = off || cut.misfit < 0.5 * planes.distance(own);
             if fits_better
@@ -182,7 +182,7 @@ impl Fans {
         }
         let middle = places.iter().sum::<Vec3A>() / places.len() as f32;
         if is_new {
-            let at = settle(&planes, middle, Vec3A::ZERO, span.size(), 3);
+            let at = settle(&planes, middle, [Vec3A::ZERO, span.size()], (3, samples.crease));
             if !probe.is_off(near, span, at) {
                 return Mended::Moved(inside(at));
             }
@@ -194,12 +194,18 @@ impl Fans {
     }
 
     /// Changes a fan, given its loop if that is new; loops that are new go into a list of their own.
-    fn mend(&mut self, number: u32, ring: Option<Vec<Segment>>, mended: Mended, list: &mut Vec<Segment>) {
+    fn mend(
+        &mut self,
+        number: u32,
+        ring: Option<Vec<Segment>>,
+        mended: Mended,
+        (list, crease): (&mut Vec<Segment>, Crease),
+    ) {
         let mut add = |ring: &mut [Segment]| {
             let count = ring.len();
             let normals: Vec<Vec3> = ring.iter().map(|segment| segment.normal).collect();
             for (n, segment) in ring.iter_mut().enumerate() {
-                segment.turns = segment.across().is_none() && normals[n].dot(normals[(n + 1) % count]) < SMOOTH;
+                segment.turns = segment.across().is_none() && normals[n].dot(normals[(n + 1) % count]) < crease.smooth;
             }
             let start = list.len() as u32;
             list.extend_from_slice(ring);

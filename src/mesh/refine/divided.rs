@@ -18,9 +18,6 @@ use crate::mesh::lattice::Lattice;
 use crate::mesh::settings::Features;
 use crate::mesh::signs::BLOCK;
 
-/// Normals that are farther apart are those of two sides of a crease: the cosine of 26°.
-const CREASE: f32 = 0.9;
-
 /// How far, in larger cells, a bend is from the sides of the smaller face that it is in.
 const INSET: f64 = 0.01;
 
@@ -58,7 +55,7 @@ impl Seam {
         let mut segments: Vec<[DVec2; 2]> = rims.iter().map(|rim| [flat(rim.from), flat(rim.to)]).collect();
         let mut bend = None;
         if let ([rim], Features::Sharp) = (rims, job.features)
-            && let Some((x, normals)) = bent(lattice, rim, ([u, v], [flat(rim.from), flat(rim.to)]), all)
+            && let Some((x, normals)) = bent((lattice, job), rim, ([u, v], [flat(rim.from), flat(rim.to)]), all)
         {
             let mut at = first.map(f64::from);
             (at[u], at[v]) = (at[u] + x.x, at[v] + x.y);
@@ -146,13 +143,13 @@ impl Seam {
 /// along two axes; and the normals at the ends of the segment. Its triangle has to be of a fan: then the segment may take
 /// any way in the face.
 fn bent(
-    lattice: &Lattice,
+    (lattice, job): (&Lattice, Job<'_>),
     rim: &Rim,
     ([u, v], [from, to]): ([usize; 2], [DVec2; 2]),
     all: &Piece,
 ) -> Option<(DVec2, [Vec3; 2])> {
     let normals = [rim.from, rim.to].map(|vertex| all.normals[vertex as usize]);
-    if normals[0].dot(normals[1]) > CREASE || !is_fan(lattice, all, rim.triangle, rim.corner) {
+    if normals[0].dot(normals[1]) > job.crease(lattice).smooth || !is_fan(lattice, all, rim.triangle, rim.corner) {
         return None;
     }
     let [a, b] = normals.map(|normal| DVec2::new(normal[u].into(), normal[v].into()));

@@ -12,7 +12,7 @@ use crate::Run;
 use crate::eval::Program;
 use crate::mesh::blocks::Blocks;
 use crate::mesh::extract::{ExtractError, Root, Sampler, extract};
-use crate::mesh::feature::Slope;
+use crate::mesh::feature::{Crease, Slope};
 use crate::mesh::lattice::Lattice;
 use crate::mesh::sampler::{BESIDE, Scratch, SolidSampler};
 use crate::mesh::settings::Features;
@@ -35,6 +35,15 @@ impl Level {
     /// Leaves nothing to the next level.
     pub(super) fn forget(&mut self) {
         self.inset = Inset::none(&self.lattice);
+    }
+
+    /// The same in halved cells everywhere, if more than a part of it is left to the next level.
+    pub(super) fn halved_throughout(&self, part: f64) -> Option<Level> {
+        let side = BLOCK as u32;
+        let left = self.blocks.cells.iter().filter(|block| self.inset.has(block.map(|at| at / side))).count();
+        let is_more = left as f64 > part * self.blocks.cells.len() as f64;
+        let lattice = self.lattice.halved().filter(|_| is_more)?;
+        Some(Level::new(lattice, self.blocks.halves(&lattice, |_| true)))
     }
 
     /// How many blocks are left to the next level.
@@ -72,7 +81,7 @@ impl Level {
         let mesh = loop {
             let mut inner = SolidSampler::new(&self.lattice, &self.blocks, job.limits, BESIDE);
             if job.features == Features::Sharp {
-                inner.keep_tapes();
+                inner.look_for(job.crease(&self.lattice));
             }
             let sampler = LevelSampler { inner, level: self, outer, program: job.program };
             match extract(&sampler, &self.lattice, &self.blocks.cells, job.features, run) {
@@ -177,6 +186,10 @@ impl Sampler for LevelSampler<'_> {
 
     fn limits(&self) -> Bounds {
         self.inner.limits()
+    }
+
+    fn crease(&self) -> Crease {
+        self.inner.crease()
     }
 
     fn nodes(&self, scratch: &mut Scratch, number: usize, block: [u32; 3], out: &mut [f32; NODES]) {

@@ -1,11 +1,13 @@
 //! Cells as small as a tolerance asks, each where it does.
 //!
 //! A mesh is made and compared with the surface. Where it is too far off, cells are made smaller: all of them while
-//! much of the surface is off, then those about the places that are, which are halved. Curved parts have small cells in the end, flat ones
-//! those of the beginning.
+//! much of the surface is off, then those about the places that are, which are halved. Curved parts have small cells in
+//! the end, flat ones those of the beginning. So have creases of surfaces that are flat between them, however blunt: the
+//! vertices of cells are on them.
 
 use glam::DVec3;
 
+use super::corners::{corners, lost};
 use super::level::Level;
 use super::{Job, divided, grade, meshed};
 use crate::Run;
@@ -32,6 +34,11 @@ const ENOUGH: usize = 1 << 22;
 const ENOUGH_IN_PLACES: usize = 1 << 18;
 const FOR_EACH: usize = 6;
 
+/// Of surfaces that are flat between creases all cells are halved while there are so few triangles, and as long as this
+/// part of them is to be.
+const FEW: usize = 1 << 16;
+const PART: f64 = 0.25;
+
 /// Cells of two sizes are worse than those of one if they are so much farther off.
 const WORSE: f64 = 1.5;
 
@@ -42,6 +49,8 @@ const ROUND: f64 = 0.4;
 pub(in crate::mesh) struct Within {
     pub(in crate::mesh) mesh: Mesh,
     pub(in crate::mesh) probes: Vec<Probe>,
+    /// How far the known corner of the surface is that is farthest from it.
+    pub(in crate::mesh) lost: f64,
     pub(in crate::mesh) lattice: Lattice,
     pub(in crate::mesh) blocks: Blocks,
 }
@@ -58,6 +67,7 @@ pub(in crate::mesh) fn within(
     // Smaller steps than those of single precision bring no vertex nearer.
     let farthest = start.0.bounds().min.abs().max(start.0.bounds().max.abs()).max_element() as f32;
     let tolerance = tolerance.max(2.0 * f64::from(farthest.next_up() - farthest));
+    let known = corners(job, tolerance, &quiet(run))?;
     let (mut levels, _) = divided(job, start, halvings, &run.stage(0.0, 0.1))?;
     let (mut done, mut most, mut enough) = (0.1, usize::MAX, ENOUGH);
     // The last mesh in cells of one size: how far off it was, and of how many triangles.
@@ -77,7 +87,9 @@ pub(in crate::mesh) fn within(
         };
         let probes = probes(&mesh, job.program, tolerance, &to_compare)?;
         let is_off = |probe: &&Probe| probe.off > tolerance;
-        let far = largest(&probes);
+        let lost = lost(&mesh, &known, (job.program, tolerance), &quiet(run))?;
+        let farthest_lost = lost.iter().fold(0.0, |most: f64, (_, far)| most.max(*far));
+        let far = largest(&probes).max(farthest_lost);
         if let [level] = &levels[..] {
             alone = Some((level.lattice, far, mesh.triangles().len()));
             enough = (ENOUGH_IN_PLACES + FOR_EACH * mesh.triangles().len()).min(ENOUGH);
@@ -102,11 +114,23 @@ pub(in crate::mesh) fn within(
         let before: usize = levels.iter().map(Level::inset_len).sum();
         if !is_done {
             let off = probes.iter().filter(is_off).map(|probe| middle(&mesh, probe));
-            off.for_each(|p| add(&mut levels, p, most));
+            off.chain(lost.iter().map(|(corner, _)| *corner)).for_each(|p| add(&mut levels, p, most));
+        }
+        // A crease is cut off where it passes from larger cells to smaller ones: of a surface that is all creases, cells are
+        // of one size while they are few, and where much is to be halved.
+        let part = if mesh.triangles().len() < FEW { 0.0 } else { PART };
+        if let [level] = &levels[..]
+            && !is_done
+            && job.program.is_faceted()
+            && 4 * mesh.triangles().len() < ENOUGH
+            && let Some(halved) = level.halved_throughout(part)
+        {
+            levels = vec![halved];
+            continue;
         }
         if levels.iter().map(Level::inset_len).sum::<usize>() == before || !deepen(&mut levels) {
             let first = levels.swap_remove(0);
-            return Ok(Within { mesh, probes, lattice: first.lattice, blocks: first.blocks });
+            return Ok(Within { mesh, probes, lost: farthest_lost, lattice: first.lattice, blocks: first.blocks });
         }
     }
     unreachable!("the last round returns")

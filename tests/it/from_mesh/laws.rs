@@ -176,6 +176,53 @@ fn sharp_parts_come_back_sharp() {
     }
 }
 
+/// How far the corners of an imported mesh, and points between, are from its mesh within a tolerance.
+fn off(mesh: &Mesh, again: &Mesh) -> f64 {
+    let triangles = brute::corners(again);
+    let middle = |t: &[DVec3; 3]| t.iter().sum::<DVec3>() / 3.0;
+    let own = brute::corners(mesh);
+    let points = own.iter().flat_map(|t| [t[0], t[1], t[2], 0.5 * (t[0] + t[1]), middle(t)]);
+    points.map(|p| brute::distance(&triangles, p)).fold(0.0, f64::max)
+}
+
+/// Blunt creases of a part with flat faces are creases: cells are as large as faces, not as the creases are blunt.
+#[test]
+fn facets_are_no_curvature() {
+    // A drum of 36 sides, turned: its creases are of 10°.
+    let turn = glam::Quat::from_euler(glam::EulerRot::XYZ, 0.3, 0.5, 0.8);
+    let at = |n: u32, z: f32| {
+        let (sin, cos) = (std::f32::consts::TAU * n as f32 / 36.0).sin_cos();
+        turn * Vec3::new(20.0 * cos, 20.0 * sin, z)
+    };
+    let positions = (0..72).map(|v| at(v % 36, if v < 36 { 0.0 } else { 15.0 })).collect();
+    let sides = (0..36).flat_map(|n| [[n, (n + 1) % 36, 36 + (n + 1) % 36], [n, 36 + (n + 1) % 36, 36 + n]]);
+    let ends = (1..35).flat_map(|n| [[0, n + 1, n], [36, 36 + n, 37 + n]]);
+    let drum = mesh(positions, sides.chain(ends).collect());
+    let tolerance = 0.1;
+    let settings = MeshSettings { cell: CellSize::Tolerance(tolerance), ..MeshSettings::default() };
+    let again = solid(&drum).mesh(&settings).unwrap();
+    assert!(again.check().is_sound() && again.warnings().is_empty(), "{:?}", again.warnings());
+    assert!(off(&drum, &again) < tolerance, "{} off", off(&drum, &again));
+    assert!(again.triangles().len() < 4 * drum.triangles().len(), "{} triangles", again.triangles().len());
+}
+
+/// The same of a part with holes of many facets.
+#[cfg(feature = "import")]
+#[test]
+fn facets_of_a_part_are_no_curvature() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/parts/holder.ply");
+    let Ok(part) = Mesh::load(&path) else {
+        println!("skipped: no {}", path.display());
+        return;
+    };
+    let tolerance = 0.05;
+    let settings = MeshSettings { cell: CellSize::Tolerance(tolerance), ..MeshSettings::default() };
+    let again = solid(&part).mesh(&settings).unwrap();
+    assert!(again.check().is_sound() && again.warnings().is_empty(), "{:?}", again.warnings());
+    assert!(off(&part, &again) < tolerance, "{} off", off(&part, &again));
+    assert!(again.triangles().len() < 2 * part.triangles().len(), "{} triangles", again.triangles().len());
+}
+
 /// The mesh of a solid is the solid, within the error of a cell.
 #[test]
 fn our_own_meshes_give_the_solid_back() {

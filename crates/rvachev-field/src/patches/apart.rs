@@ -30,12 +30,12 @@ struct Seen {
 
 impl Seen {
     /// How far a box is, at least.
-    fn from_box(&self, low: DVec3, high: DVec3) -> f64 {
+    fn box_gap(&self, low: DVec3, high: DVec3) -> f64 {
         (low - self.high).max(self.low - high).max(DVec3::ZERO).length()
     }
 
     /// How far the plane through a point is, given its unit normal.
-    fn from_plane(&self, point: DVec3, normal: DVec3) -> f64 {
+    fn plane_gap(&self, point: DVec3, normal: DVec3) -> f64 {
         let reach = (self.axes.transpose() * normal).abs().element_sum() + normal.abs().dot(self.slack);
         (normal.dot(point - self.centre)).abs() - reach
     }
@@ -61,7 +61,7 @@ impl Patches {
         let mut open: Vec<&Node> = Vec::with_capacity(64);
         open.extend(self.nodes.first());
         while let Some(node) = open.pop() {
-            if seen.from_box(double(node.low), double(node.high)) > least {
+            if seen.box_gap(double(node.low), double(node.high)) > least {
                 continue;
             }
             if node.count >= PARENT {
@@ -88,7 +88,7 @@ impl Patches {
         let least = least / unit;
         let mut nearest = f64::INFINITY;
         let mut looked = 0;
-        let gap = |node: &Node| seen.from_box(double(node.low), double(node.high));
+        let gap = |node: &Node| seen.box_gap(double(node.low), double(node.high));
         let mut open: Vec<&Node> = Vec::with_capacity(64);
         open.extend(self.nodes.first());
         while let Some(node) = open.pop() {
@@ -124,7 +124,7 @@ impl Patches {
         let [a, e, f] = [double(face.a), double(sides.e), double(sides.f)];
         let (b, c) = (a + e, a + f);
         let normal = e.cross(f).try_normalize();
-        let from_plane = normal.map_or(0.0, |normal| seen.from_plane(a, normal));
-        from_plane.max(seen.from_box(a.min(b).min(c), a.max(b).max(c))) - f64::from(face.sag)
+        let beside = normal.map_or(0.0, |normal| seen.plane_gap(a, normal));
+        beside.max(seen.box_gap(a.min(b).min(c), a.max(b).max(c))) - f64::from(face.sag)
     }
 }

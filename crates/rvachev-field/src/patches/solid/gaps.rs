@@ -164,7 +164,7 @@ mod tests {
     fn no_winding_number_is_larger() {
         let gaps = Gaps::new(&sheet(4, |_, _| true), &Run::default()).unwrap();
         // Above the middle of a square of side 4 the solid angle is 4 asin(a² / (a² + h²)), a half of the side.
-        for height in [1.0, 3.0, 10.0, 40.0] {
+        for height in [1.0_f64, 3.0, 10.0, 40.0] {
             let exact = 4.0 * (4.0 / (4.0 + height * height)).asin() / (4.0 * PI);
             let most = gaps.most(DVec3::new(2.0, 2.0, height), DVec3::ZERO);
             assert!(most >= exact, "{most} for {exact}");
