@@ -173,6 +173,12 @@ pub fn bend() -> Solid {
     Solid::cuboid([1.0, 1.5, 2.0]).bend(0.3, rad(0.5))
 }
 
+pub fn bend_between() -> Solid {
+    let length = 1.0;
+    let cuboid = Solid::cuboid([length, 1.5, 2.0]);
+    cuboid.bend_between(-length, length, rad(0.6), rad(0.5))
+}
+
 pub fn elongate() -> Solid {
     let length = 1.0;
     Solid::cuboid([length, 1.5, 2.0]).elongate([length, 0.0, 4.0])
@@ -210,15 +216,14 @@ pub fn extrude() -> Solid {
 
 pub fn extrude_with() -> Solid {
     let length = 2.0;
+    let rectangle = Profile::rectangle([length, 1.0]).translate([length, 0.0]);
     let extrusion = Extrusion {
         height: 4.0,
         twist: rad(0.5),
         scale: 0.75,
         caps: Caps::Chamfered(0.125),
     };
-    Profile::rectangle([length, 1.0])
-        .translate([length, 0.0])
-        .extrude_with(&extrusion)
+    rectangle.extrude_with(&extrusion)
 }
 
 pub fn revolve() -> Solid {
@@ -237,6 +242,7 @@ pub fn revolve_by() -> Solid {
 
 pub fn sweep_helix() -> Solid {
     let length = 2.0;
+    let rectangle = Profile::rectangle([length, 1.0]).translate([length, 0.0]);
     let helix = Helix {
         radius: 8.0,
         pitch: 6.0,
@@ -244,9 +250,7 @@ pub fn sweep_helix() -> Solid {
         left_handed: true,
         ends: Caps::Flat,
     };
-    Profile::rectangle([length, 1.0])
-        .translate([length, 0.0])
-        .sweep_helix(&helix)
+    rectangle.sweep_helix(&helix)
 }
 
 pub fn column() -> Solid {
@@ -576,6 +580,7 @@ pub fn curves() -> Solid {
 }
 
 pub fn thread() -> Solid {
+    let circle = Profile::circle(0.5);
     let helix = Helix {
         radius: 4.0,
         pitch: 2.0,
@@ -583,17 +588,18 @@ pub fn thread() -> Solid {
         left_handed: false,
         ends: Caps::Rounded(0.1),
     };
-    Profile::circle(0.5).sweep_helix(&helix)
+    circle.sweep_helix(&helix)
 }
 
 pub fn twisted() -> Solid {
+    let rectangle = Profile::rectangle([2.0, 1.0]);
     let extrusion = Extrusion {
         height: 4.0,
         twist: deg(45.0),
         scale: 1.0,
         caps: Caps::Flat,
     };
-    Profile::rectangle([2.0, 1.0]).extrude_with(&extrusion)
+    rectangle.extrude_with(&extrusion)
 }
 
 pub fn tolerated() -> Solid {
@@ -747,7 +753,7 @@ pub fn no_contours() -> Profile {
     Profile::from(Polygon::new(Vec::<Vec<[f64; 2]>>::new()))
 }
 
-pub const SOLIDS: [(&str, fn() -> Solid); 81] = [
+pub const SOLIDS: [(&str, fn() -> Solid); 82] = [
     ("sphere", sphere),
     ("cuboid", cuboid),
     ("rounded_cuboid", rounded_cuboid),
@@ -771,6 +777,7 @@ pub const SOLIDS: [(&str, fn() -> Solid); 81] = [
     ("taper", taper),
     ("twist", twist),
     ("bend", bend),
+    ("bend_between", bend_between),
     ("elongate", elongate),
     ("taper_by", taper_by),
     ("twist_by", twist_by),
