@@ -31,6 +31,11 @@ impl Measure {
     }
 }
 
+/// Without what differences of decimals leave in the last digits.
+fn tidy(v: f64) -> f64 {
+    format!("{v:.13e}").parse().unwrap_or(v)
+}
+
 /// From z to x, and from z to y: quarter turns about y and about x.
 pub(super) const TO_X: DMat3 = DMat3::from_cols(DVec3::NEG_Z, DVec3::Y, DVec3::X);
 pub(super) const TO_Y: DMat3 = DMat3::from_cols(DVec3::X, DVec3::NEG_Z, DVec3::Y);
@@ -106,14 +111,16 @@ impl Leaf {
 
     /// The same kind of leaf, along the same axes, of other numbers; none if they are those of no solid.
     pub(super) fn made_of(&self, numbers: &[f64]) -> Option<Leaf> {
-        let middle = |low: f64, high: f64| 0.5 * (low + high);
+        let middle = |low: f64, high: f64| tidy(0.5 * (low + high));
+        let between = |low: f64, high: f64| tidy(high - low);
         let upright = || {
             let [x, y, low, high] = numbers.first_chunk::<4>()?;
-            (high > low).then_some((DVec3::new(*x, *y, middle(*low, *high)), high - low, numbers.get(4..)?))
+            let at = DVec3::new(*x, *y, middle(*low, *high));
+            (high > low).then_some((at, between(*low, *high), numbers.get(4..)?))
         };
         let boxed = || {
             let [a, b, c, d, e, f] = numbers.first_chunk::<6>()?;
-            let size = DVec3::new(b - a, d - c, f - e);
+            let size = DVec3::new(between(*a, *b), between(*c, *d), between(*e, *f));
             let at = DVec3::new(middle(*a, *b), middle(*c, *d), middle(*e, *f));
             (size.min_element() > 0.0).then_some((at, size))
         };
@@ -152,7 +159,7 @@ impl Leaf {
             Shape::Profile { .. } => {
                 let [low, high] = numbers.first_chunk::<2>()?;
                 let corners = numbers.get(2..)?.chunks_exact(2).map(|c| DVec2::new(c[0], c[1])).collect();
-                let height = high - low;
+                let height = between(*low, *high);
                 let shape = Shape::Profile { outline: Outline { corners }, height };
                 (height > 0.0).then_some((shape, DVec3::Z * middle(*low, *high)))?
             }
