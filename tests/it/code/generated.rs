@@ -210,15 +210,14 @@ pub fn extrude() -> Solid {
 
 pub fn extrude_with() -> Solid {
     let length = 2.0;
+    let rectangle = Profile::rectangle([length, 1.0]).translate([length, 0.0]);
     let extrusion = Extrusion {
         height: 4.0,
         twist: rad(0.5),
         scale: 0.75,
         caps: Caps::Chamfered(0.125),
     };
-    Profile::rectangle([length, 1.0])
-        .translate([length, 0.0])
-        .extrude_with(&extrusion)
+    rectangle.extrude_with(&extrusion)
 }
 
 pub fn revolve() -> Solid {
@@ -237,6 +236,7 @@ pub fn revolve_by() -> Solid {
 
 pub fn sweep_helix() -> Solid {
     let length = 2.0;
+    let rectangle = Profile::rectangle([length, 1.0]).translate([length, 0.0]);
     let helix = Helix {
         radius: 8.0,
         pitch: 6.0,
@@ -244,9 +244,7 @@ pub fn sweep_helix() -> Solid {
         left_handed: true,
         ends: Caps::Flat,
     };
-    Profile::rectangle([length, 1.0])
-        .translate([length, 0.0])
-        .sweep_helix(&helix)
+    rectangle.sweep_helix(&helix)
 }
 
 pub fn column() -> Solid {
@@ -576,6 +574,7 @@ pub fn curves() -> Solid {
 }
 
 pub fn thread() -> Solid {
+    let circle = Profile::circle(0.5);
     let helix = Helix {
         radius: 4.0,
         pitch: 2.0,
@@ -583,17 +582,18 @@ pub fn thread() -> Solid {
         left_handed: false,
         ends: Caps::Rounded(0.1),
     };
-    Profile::circle(0.5).sweep_helix(&helix)
+    circle.sweep_helix(&helix)
 }
 
 pub fn twisted() -> Solid {
+    let rectangle = Profile::rectangle([2.0, 1.0]);
     let extrusion = Extrusion {
         height: 4.0,
         twist: deg(45.0),
         scale: 1.0,
         caps: Caps::Flat,
     };
-    Profile::rectangle([2.0, 1.0]).extrude_with(&extrusion)
+    rectangle.extrude_with(&extrusion)
 }
 
 pub fn tolerated() -> Solid {
