@@ -108,7 +108,7 @@
 //! Equation 15 is a poor judge where there is noise: its weights favour small members, and R_p punishes a point
 //! outside more than one inside. [`UnionSettings::refinement`] of 0 then is the better choice. A tube without normals
 //! is not found (IoU .3), as nearly half of its points are of the hole. Of meshes from CAD, simple ones come out at
-//! .96 to 1.00, those with many small holes, fillets and thin walls at .2 to .95: what is smaller
+//! .96 to 1.00, those with many small holes, fillets and thin walls at .15 to .95: what is smaller
 //! than some spacings of 6000 points is not seen, and points without data beside them are not told to be empty.
 //!
 //! # Registration

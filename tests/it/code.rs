@@ -4,7 +4,7 @@
 //! it anew. The ignored run compiles random solids with `rustc`.
 
 #[rustfmt::skip]
-#[allow(clippy::approx_constant, reason = "numbers are what they are")]
+#[allow(clippy::approx_constant, clippy::type_complexity, clippy::eq_op, reason = "what is written is not chosen")]
 mod generated;
 mod random;
 
@@ -43,7 +43,7 @@ fn others() -> Vec<(&'static str, Solid)> {
     vec![
         ("several", plate.difference_all([holes.clone(), hole.clone()], RFunction::MIN_MAX)),
         ("shared", Solid::union_all(&pins, RFunction::Alpha(0.5)) - &pins[0]),
-        ("twice", &pin | &pin),
+        ("twice", pin.union(&pin, RFunction::default())),
         ("by_method", pin.union(&pin, RFunction::Zero { m: 2 })),
         ("filleted_all", plate.difference_all_with(pins.clone(), Blend::Fillet { radius: 0.25 })),
         ("one_operand", Solid::union_all([ball()], RFunction::P(3.0))),

@@ -27,7 +27,7 @@ fn stl_as_text_that_was_cut_off_is_an_error() {
     let text = String::from_utf8(whole).expect("text");
     let end = text.rfind("endfacet").expect("a facet") + "endfacet".len();
     // Behind a facet all looks well.
-    let message = error(FileFormat::Stl, text[..end].as_bytes());
+    let message = error(FileFormat::Stl, &text.as_bytes()[..end]);
     assert!(message.contains("endsolid") && message.contains("cut off"), "{message}");
     let line = text[..end].lines().count();
     assert!(message.starts_with(&format!("line {line}: ")), "{message}");
