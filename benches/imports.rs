@@ -1,12 +1,13 @@
 //! Meshes as solids: what they take to be made, and to be asked.
 //!
-//! `cargo bench --bench imports` prints for bumpy balls of .1, .3 and 1 million triangles, on one thread and in
-//! seconds of the processor: how long the leaf takes to be made, its bytes a triangle, nanoseconds a point of
-//! values in single precision in blocks of 8³ points near the surface and over all of the box, of winding
-//! numbers alone, and of single points in double precision. Then how fast files are read.
+//! `cargo bench --bench imports` prints for bumpy balls of .1, .3 and 1 million triangles, on one
+//! thread and in seconds of the processor: how long the leaf takes to be made, its bytes a
+//! triangle, nanoseconds a point of values in single precision in blocks of 8³ points near the
+//! surface and over all of the box, of winding numbers alone, and of single points in double
+//! precision. Then how fast files are read.
 //!
-//! Words after `--` choose sizes by their names. `save` writes the meshes and the points near them for other
-//! programs: `target/imports-NAME.ply` and `.xyz`.
+//! Words after `--` choose sizes by their names. `save` writes the meshes and the points near them
+//! for other programs: `target/imports-NAME.ply` and `.xyz`.
 
 use std::fs;
 use std::hint::black_box;

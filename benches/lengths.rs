@@ -1,21 +1,23 @@
-//! Lengths: what offsets, shells, rounding, fillets, chamfers and caps take, beside the same solids without.
+//! Lengths: what offsets, shells, rounding, fillets, chamfers and caps take, beside the same solids
+//! without.
 //!
 //! `cargo bench --bench lengths` prints, on one thread and in seconds of the processor, compiling
 //! included:
 //!
-//! * meshes of 128 cells along the longest side, and what is allowed: so many times the plain solid's, or
-//!   so many seconds more;
-//! * studio pictures of 400 × 300, one ray a pixel, the first and the second of the same scene, in times
-//!   of the plain solid's first;
-//! * 10, 30, 100 and 1000 pins filleted to a plate, at once and one after the other, and how that grows;
+//! * meshes of 128 cells along the longest side, and what is allowed: so many times the plain
+//!   solid's, or so many seconds more;
+//! * studio pictures of 400 × 300, one ray a pixel, the first and the second of the same scene, in
+//!   times of the plain solid's first;
+//! * 10, 30, 100 and 1000 pins filleted to a plate, at once and one after the other, and how that
+//!   grows;
 //! * how far distances are from brute force, and nanoseconds a point;
 //! * the memory of 1000 pins, and how soon cancelled work returns.
 //!
-//! The plain solid is the same leaves joined by min and max. Contestants alternate; every figure is the
-//! median of several rounds, and so is every ratio. Solids are built anew for every round.
+//! The plain solid is the same leaves joined by min and max. Contestants alternate; every figure is
+//! the median of several rounds, and so is every ratio. Solids are built anew for every round.
 //!
-//! Words after `--` choose: `mesh`, `pictures`, `pins`, `accuracy`, `memory`, `cancel`; parts of the names
-//! of rows; `quick` for fewer rounds and points.
+//! Words after `--` choose: `mesh`, `pictures`, `pins`, `accuracy`, `memory`, `cancel`; parts of
+//! the names of rows; `quick` for fewer rounds and points.
 
 #[path = "lengths/accuracy.rs"]
 mod accuracy;

@@ -2,10 +2,10 @@
 //!
 //! `cargo bench --bench mesh` prints, on one thread and on two: seconds (of the processor on one
 //! thread, of the clock on two; the least of several runs), triangles, millions of triangles a
-//! second, the peak of memory during a run in a process of its own, and how many times faster than fidget's VM on the
-//! same model, box and number of cells, in the same run. Ours has welded indices and normals, once
-//! `Smooth` (marching cubes), once `Sharp`, and then both in turn; fidget's is manifold dual contouring
-//! without normals.
+//! second, the peak of memory during a run in a process of its own, and how many times faster than
+//! fidget's VM on the same model, box and number of cells, in the same run. Ours has welded indices
+//! and normals, once `Smooth` (marching cubes), once `Sharp`, and then both in turn; fidget's is
+//! manifold dual contouring without normals.
 //!
 //! Before that come extraction alone, from arrays of 257³ samples; scale: a sphere at 1024³ and
 //! 2048³, a ball of gyroid at 512³, unions of 100 and of 10 000 superellipsoids at 256³; how soon
@@ -14,9 +14,9 @@
 //!
 //! Threads are those of a pool that is there before the clock starts, and awake; fidget's as ours.
 //!
-//! Words after `--` choose: `models`, `arrays`, `scale`, `cancel`, `smooth`, `chains`; names of models, cells along the side
-//! (64, 128, 256), `one` or `two` threads; `fidget` for fidget on all models, also where it takes
-//! minutes, `alone` for ours without fidget.
+//! Words after `--` choose: `models`, `arrays`, `scale`, `cancel`, `smooth`, `chains`; names of
+//! models, cells along the side (64, 128, 256), `one` or `two` threads; `fidget` for fidget on all
+//! models, also where it takes minutes, `alone` for ours without fidget.
 
 #[path = "mesh/cancel.rs"]
 mod cancel;

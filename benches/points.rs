@@ -4,10 +4,10 @@
 //! `cargo bench --bench points` prints, for the exponent n = 5, the time that each method takes for
 //! 10 000 points and its ratio to method 1, beside the ratios printed in 1981 (a Prime 750); then,
 //! for each of several exponents and tolerances, which method is best for heights over points that
-//! are given, and which for whole surfaces, where `Auto` chooses. Exponents that are no whole numbers
-//! are among them: whole powers are products, and cheaper. In the first two tables methods are
-//! compared on the same kind of work: points of an octant or wedge in arrays. A time is the least of
-//! several rounds; rounds of the contestants alternate.
+//! are given, and which for whole surfaces, where `Auto` chooses. Exponents that are no whole
+//! numbers are among them: whole powers are products, and cheaper. In the first two tables methods
+//! are compared on the same kind of work: points of an octant or wedge in arrays. A time is the
+//! least of several rounds; rounds of the contestants alternate.
 //!
 //! Words after `--` choose: `table`, `heights`, `surfaces`, `subdivision`.
 

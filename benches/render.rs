@@ -12,12 +12,13 @@
 //! operations as it takes; the faster counts. M3 and M5 take it minutes, so that it draws them
 //! once, at 512² only in the lean form; `all` after `--` draws them at every size.
 //!
-//! Rows are single pictures, seen as by [`Camera::framing_orthographic`], of what was once slow to draw, and of every
-//! entry of the catalogue, beside fidget's VM on the same formula seen the same way, where there is one.
+//! Rows are single pictures, seen as by [`Camera::framing_orthographic`], of what was once slow to
+//! draw, and of every entry of the catalogue, beside fidget's VM on the same formula seen the same
+//! way, where there is one.
 //!
-//! Words after `--` choose: `normals`, `shaded`, `prospero`, `many`, `rows`, `catalogue`, names of models, `512`,
-//! `1024`, `two` (threads), `quick` (fewer rounds), `ours` (without fidget), `vm` (without its JIT), and after `=` a part
-//! of the names of rows.
+//! Words after `--` choose: `normals`, `shaded`, `prospero`, `many`, `rows`, `catalogue`, names of
+//! models, `512`, `1024`, `two` (threads), `quick` (fewer rounds), `ours` (without fidget), `vm`
+//! (without its JIT), and after `=` a part of the names of rows.
 
 #[path = "evaluate/lean.rs"]
 mod lean;
@@ -97,8 +98,8 @@ fn main() {
 /// One contestant.
 type Contestant<'a> = (&'static str, Box<dyn FnMut() + 'a>);
 
-/// The median milliseconds of each: of processor time with one thread (other processes do not count then), else of the
-/// clock.
+/// The median milliseconds of each: of processor time with one thread (other processes do not count
+/// then), else of the clock.
 fn race(rounds: usize, threads: usize, contestants: &mut [Contestant<'_>]) -> Vec<f64> {
     let mut times = vec![Vec::new(); contestants.len()];
     for _ in 0..rounds {

@@ -1,9 +1,10 @@
 //! Contours of slices beside meshes of the same solid, one thread, compiling included.
 //!
-//! `cargo bench --bench slices` prints, for solids of each kind, the milliseconds that the contours of one plane take,
-//! what they are, and their ratio to a mesh in cells of a 128th of the longest side; then a stack of planes beside the
-//! same planes one by one. Times are CPU times of the thread, medians of rounds in which the contestants take turns.
-//! Words after `--` choose rows by parts of their names.
+//! `cargo bench --bench slices` prints, for solids of each kind, the milliseconds that the contours
+//! of one plane take, what they are, and their ratio to a mesh in cells of a 128th of the longest
+//! side; then a stack of planes beside the same planes one by one. Times are CPU times of the
+//! thread, medians of rounds in which the contestants take turns. Words after `--` choose rows by
+//! parts of their names.
 
 use std::f64::consts::TAU;
 

@@ -24,7 +24,8 @@ use rvachev::{
 
 const WALL: f64 = 1.8;
 
-/// Radius of the body between two lobes, half its height, and the height of the mouth above its middle.
+/// Radius of the body between two lobes, half its height, and the height of the mouth above its
+/// middle.
 const RADIUS: f64 = 31.0;
 const HALF: f64 = 55.0;
 const TOP: f64 = 92.0;

@@ -1,4 +1,5 @@
-//! A bracket: all inner edges filleted, all outer ones rounded, from a solid to a picture and a mesh.
+//! A bracket: all inner edges filleted, all outer ones rounded, from a solid to a picture and a
+//! mesh.
 //!
 //! ```text
 //!      |\         wall     with two counterbored holes
@@ -8,9 +9,9 @@
 //!      |_______|  plate    with two counterbored holes
 //! ```
 //!
-//! The parts are joined and cut as they are, with sharp edges. Then one verb fills the inner edges, as a
-//! ball that rolls along them from outside leaves them (closing), and one rounds the outer edges, as a
-//! ball that fits inside leaves them (opening). Lengths are millimetres.
+//! The parts are joined and cut as they are, with sharp edges. Then one verb fills the inner edges,
+//! as a ball that rolls along them from outside leaves them (closing), and one rounds the outer
+//! edges, as a ball that fits inside leaves them (opening). Lengths are millimetres.
 
 use std::error::Error;
 use std::path::PathBuf;

@@ -1,4 +1,5 @@
-//! What is on the table? A range image with noise, split into objects, each fitted by a superellipsoid.
+//! What is on the table? A range image with noise, split into objects, each fitted by a
+//! superellipsoid.
 //!
 //! ```text
 //!     camera *                     1. depths to points
@@ -7,7 +8,8 @@
 //!     __________\__'-'__|__|__     4. each part is seen from one side: fit::superellipsoid
 //! ```
 //!
-//! `cargo run --release --example grasp -- folder` writes pictures of the scene and of what was found.
+//! `cargo run --release --example grasp -- folder` writes pictures of the scene and of what was
+//! found.
 
 use std::collections::{HashMap, HashSet};
 use std::error::Error;

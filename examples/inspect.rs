@@ -9,8 +9,8 @@
 //!
 //! The scan lies anywhere: it is registered first. Lengths are millimetres.
 //!
-//! `cargo run --release --example inspect -- folder` writes there the scan, coloured by its deviations, a picture of
-//! it with a legend, and the report as JSON.
+//! `cargo run --release --example inspect -- folder` writes there the scan, coloured by its
+//! deviations, a picture of it with a legend, and the report as JSON.
 
 use std::error::Error;
 

@@ -1,4 +1,5 @@
-//! The pictures of the page on lengths: offsets, shells, rounded and filleted solids, balls that do not fit.
+//! The pictures of the page on lengths: offsets, shells, rounded and filleted solids, balls that do
+//! not fit.
 //!
 //! ```sh
 //! cargo run --example lengths             # into target/examples/lengths
@@ -67,7 +68,8 @@ fn closing() -> Vec<Solid> {
     vec![step().paint(GREY), step().filleted(1.6).paint(BLUE)]
 }
 
-/// A block and a post that are flush at the top, joined sharply, by a fillet, a chamfer and a smooth blend.
+/// A block and a post that are flush at the top, joined sharply, by a fillet, a chamfer and a
+/// smooth blend.
 fn flush() -> Vec<Solid> {
     let block = Solid::cuboid([10.0, 6.0, 5.0]).translate([-3.0, 3.0, 0.0]);
     let post = Solid::cylinder(4.0, 5.0).translate([2.5, -0.5, 0.0]);
@@ -88,7 +90,8 @@ fn comb() -> Solid {
     Profile::union_all([back].into_iter().chain(teeth), RFunction::MIN_MAX).extrude(6.0).rotate_x(deg(90.0))
 }
 
-/// A ball of radius 1: what it does not fit into from outside is filled, and what it does not fit into inside is gone.
+/// A ball of radius 1: what it does not fit into from outside is filled, and what it does not fit
+/// into inside is gone.
 fn no_fit() -> Vec<Solid> {
     vec![comb().paint(GREY), comb().filleted(1.0).paint(BLUE), comb().rounded(1.0).paint(GREEN)]
 }

@@ -1,5 +1,5 @@
-//! What a part measures that somebody else has made: a mesh is read, and told are its volume, its area, its components,
-//! whether it is closed, and how thin its walls are.
+//! What a part measures that somebody else has made: a mesh is read, and told are its volume, its
+//! area, its components, whether it is closed, and how thin its walls are.
 //!
 //! ```text
 //!     |  |        |  |
@@ -8,9 +8,9 @@
 //!     '--------------'
 //! ```
 //!
-//! `cargo run --release --example measure_part -- part.stl` reads the file, and writes a picture of its thickness beside
-//! it; with `--json`, what is told is one line of JSON. Without a file it measures a pot that it writes first.
-//! Lengths are millimetres.
+//! `cargo run --release --example measure_part -- part.stl` reads the file, and writes a picture of
+//! its thickness beside it; with `--json`, what is told is one line of JSON. Without a file it
+//! measures a pot that it writes first. Lengths are millimetres.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -36,7 +36,7 @@ fn json(mesh: &Mesh, thickness: &ThicknessReport) -> String {
         number(mesh.volume()),
         number(mesh.area()),
         mesh.components().len(),
-        mesh.openness().is_closed(),
+        mesh.open_edges().is_closed(),
         number(thickness.least),
     )
 }
@@ -70,9 +70,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let size = mesh.bounds().size();
     println!("{}: {:.1} x {:.1} x {:.1} mm", file.display(), size.x, size.y, size.z);
-    let openness = mesh.openness();
-    if !openness.is_closed() {
-        println!("  open: {} edges of {:.2} mm together have no triangle on one side", openness.edges, openness.length);
+    let open_edges = mesh.open_edges();
+    if !open_edges.is_closed() {
+        println!(
+            "  open: {} edges of {:.2} mm together have no triangle on one side",
+            open_edges.edges, open_edges.length
+        );
     }
     println!("  {:.1} mm3, {:.1} mm2", mesh.volume(), mesh.area());
     for part in mesh.components() {

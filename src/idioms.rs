@@ -122,11 +122,11 @@
 //!
 //! # 6. Fillets, chamfers and smooth blends
 //!
-//! A [`Blend`](crate::Blend) shapes the transition between operands. `Fillet`, `Chamfer`
-//! and `Smooth` take a length. A fillet and a chamfer are of that size whatever the operands
-//! are, and stay below flush faces. A smooth blend reads the operands' own values, and rises
-//! above flush faces. [`rounded`](crate::Solid::rounded) and [`filleted`](crate::Solid::filleted) treat all edges
-//! of a solid at once: see [`lengths`](crate::lengths).
+//! A [`Blend`](crate::Blend) shapes the transition between operands. `Fillet`, `Chamfer` and
+//! `Smooth` take a length. A fillet and a chamfer are of that size whatever the operands are, and
+//! stay below flush faces. A smooth blend reads the operands' own values, and rises above flush
+//! faces. [`rounded`](crate::Solid::rounded) and [`filleted`](crate::Solid::filleted) treat all
+//! edges of a solid at once: see [`lengths`](crate::lengths).
 //!
 //! ```
 //! use rvachev::{deg, Blend, Solid};

@@ -1,8 +1,9 @@
 //! Lengths: offsets, shells, rounded and filleted solids, fillets and chamfers, by true distance.
 //!
-//! The distance of a point is that to the nearest point of the surface, positive inside. All lengths
-//! are in terms of it, whatever a solid is made of and whatever its [values](crate#what-values-mean)
-//! are. With `r` a length and `d` the distance to the surface of `s`:
+//! The distance of a point is that to the nearest point of the surface, positive inside. All
+//! lengths are in terms of it, whatever a solid is made of and whatever its
+//! [values](crate#what-values-mean) are. With `r` a length and `d` the distance to the surface of
+//! `s`:
 //!
 //! | verb | what is in it | what becomes of the surface |
 //! |---|---|---|
@@ -22,10 +23,10 @@
 //!
 //! *Grey: a step of two boxes with a hole. Green: `offset(-1.0)`. Blue: `offset(1.0)`.*
 //!
-//! Outwards, convex edges become round and concave ones stay sharp. Inwards, convex edges stay sharp and
-//! concave ones become round. What is thinner than twice the distance is gone, and holes and gaps
-//! narrower than that are closed when a solid grows. Where two parts of a solid meet there is no
-//! surface, and nothing is measured from there.
+//! Outwards, convex edges become round and concave ones stay sharp. Inwards, convex edges stay
+//! sharp and concave ones become round. What is thinner than twice the distance is gone, and holes
+//! and gaps narrower than that are closed when a solid grows. Where two parts of a solid meet there
+//! is no surface, and nothing is measured from there.
 //!
 //! ```
 //! use rvachev::Solid;
@@ -47,8 +48,8 @@
 //!
 //! *Grey: a wide and a narrow cylinder. Blue: `shell(0.9)`, cut open.*
 //!
-//! A shell is the solid less its offset inwards. Its outer face is the solid's own, exactly. Inside it has
-//! one cavity, or none where there is no room for one.
+//! A shell is the solid less its offset inwards. Its outer face is the solid's own, exactly. Inside
+//! it has one cavity, or none where there is no room for one.
 //!
 //! ```
 //! use rvachev::Solid;
@@ -67,9 +68,9 @@
 //!
 //! *Grey: the step. Blue: `rounded(1.1)`.*
 //!
-//! `s.rounded(r)` is what a ball of radius r sweeps when its centre goes wherever the whole ball is inside
-//! `s`: the same as `s.offset(-r).offset(r)`, but that faces which the ball touches stay the solid's own,
-//! exactly. Convex edges and corners are round. Concave edges stay as they are.
+//! `s.rounded(r)` is what a ball of radius r sweeps when its centre goes wherever the whole ball is
+//! inside `s`: the same as `s.offset(-r).offset(r)`, but that faces which the ball touches stay the
+//! solid's own, exactly. Convex edges and corners are round. Concave edges stay as they are.
 //!
 //! ```
 //! use rvachev::Solid;
@@ -92,9 +93,10 @@
 //!
 //! *Grey: the step. Blue: `filleted(1.6)`; the hole's radius is 1.4.*
 //!
-//! `s.filleted(r)` is the same from outside: what is left when a ball of radius r has taken all that it
-//! reaches, `s.offset(r).offset(-r)` but for faces, which stay. Concave edges are filled. Convex
-//! edges stay as they are. `s.filleted(a).rounded(b)` does both, as the example `bracket` shows.
+//! `s.filleted(r)` is the same from outside: what is left when a ball of radius r has taken all
+//! that it reaches, `s.offset(r).offset(-r)` but for faces, which stay. Concave edges are filled.
+//! Convex edges stay as they are. `s.filleted(a).rounded(b)` does both, as the example `bracket`
+//! shows.
 //!
 //! ```
 //! use rvachev::Profile;
@@ -111,15 +113,16 @@
 //!
 #![doc = picture!("lengths_no_fit" = "docs/lengths/no_fit.png")]
 //!
-//! *Grey: a comb, its gaps 3.5, 1.2 and 2.7 wide, its last tooth 1.1 wide. Blue: `filleted(1.0)`. Green:
-//! `rounded(1.0)`.*
+//! *Grey: a comb, its gaps 3.5, 1.2 and 2.7 wide, its last tooth 1.1 wide. Blue: `filleted(1.0)`.
+//! Green: `rounded(1.0)`.*
 //!
-//! * A fillet fills what the ball does not get into: gaps narrower than its diameter, holes of a smaller
-//!   radius. The ball rests on the rim of the gap, and a shallow groove is left there.
-//! * An opening takes off what the ball does not get into: walls thinner than its diameter, pins of a
-//!   smaller radius, and parts that hang on these.
-//! * What the ball only just fits into, with less than a thirtieth of its radius to spare, may count as what it does not
-//!   fit into: the channel that is left for its centre is thin beside the cells it is measured with.
+//! * A fillet fills what the ball does not get into: gaps narrower than its diameter, holes of a
+//!   smaller radius. The ball rests on the rim of the gap, and a shallow groove is left there.
+//! * An opening takes off what the ball does not get into: walls thinner than its diameter, pins of
+//!   a smaller radius, and parts that hang on these.
+//! * What the ball only just fits into, with less than a thirtieth of its radius to spare, may
+//!   count as what it does not fit into: the channel that is left for its centre is thin beside the
+//!   cells it is measured with.
 //! * Where nothing is left, the solid is empty. That is no error: its [`bounds`](Solid::bounds) are
 //!   [empty](crate::Bounds::is_empty), nothing is in it, its mesh has no triangles.
 //!
@@ -143,22 +146,22 @@
 //!
 #![doc = picture!("lengths_flush" = "docs/lengths/flush.png")]
 //!
-//! *A block and a post that are flush at the top. Grey: the union. Blue: a fillet. Green: a chamfer. Red: a smooth
-//! blend, which rises above the top.*
+//! *A block and a post that are flush at the top. Grey: the union. Blue: a fillet. Green: a
+//! chamfer. Red: a smooth blend, which rises above the top.*
 //!
-//! `filleted` fills all concave edges of a solid. [`Blend::Fillet`] fills those between its operands. For
-//! a union of A and B and the radius r:
+//! `filleted` fills all concave edges of a solid. [`Blend::Fillet`] fills those between its
+//! operands. For a union of A and B and the radius r:
 //!
 //! * A ∪ B ⊆ result ⊆ closing of A ∪ B by r: nothing is filled that the ball reaches.
 //! * If A and B are convex the result is that closing.
-//! * An operand's own concave edges stay as they are away from the joint. Close to it, where the ball
-//!   touches the other operand as well, they are filled; the filling fades out along them.
+//! * An operand's own concave edges stay as they are away from the joint. Close to it, where the
+//!   ball touches the other operand as well, they are filled; the filling fades out along them.
 //! * Faces that are flush stay flush, exactly: there is no edge between them, and nothing is added.
-//! * At the end of a notch between two blocks the ball comes over the edge from above as well, so the end of the
-//!   fillet dips a little below the flush faces. So does the closing.
+//! * At the end of a notch between two blocks the ball comes over the edge from above as well, so
+//!   the end of the fillet dips a little below the flush faces. So does the closing.
 //!
-//! Fillets of intersections and differences are the same of complements: they round the convex edges where
-//! the operands meet, and the result is between the opening and the plain join.
+//! Fillets of intersections and differences are the same of complements: they round the convex
+//! edges where the operands meet, and the result is between the opening and the plain join.
 //!
 //! ```
 //! use rvachev::{Blend, Profile, Solid};
@@ -185,8 +188,8 @@
 //! # Chamfers
 //!
 //! [`Blend::Chamfer`] has a flat face in place of the round one. It begins at the leg from the edge
-//! along either operand. It stays within the closing by a ball of 16 legs, so that it does not rise above flush
-//! faces either. How exact its legs are on round operands is said at [`Blend`].
+//! along either operand. It stays within the closing by a ball of 16 legs, so that it does not rise
+//! above flush faces either. How exact its legs are on round operands is said at [`Blend`].
 //!
 //! ```
 //! use rvachev::{Blend, Solid};
@@ -198,8 +201,9 @@
 //! # Ok::<(), rvachev::SolidError>(())
 //! ```
 //!
-//! [`Blend::Smooth`] is no length: it reads the operands' values and adds wherever these differ by less
-//! than its radius. On flush faces both values are the same, and the face rises by a quarter of the radius.
+//! [`Blend::Smooth`] is no length: it reads the operands' values and adds wherever these differ by
+//! less than its radius. On flush faces both values are the same, and the face rises by a quarter
+//! of the radius.
 //!
 //! ```
 //! use rvachev::Solid;
@@ -212,11 +216,13 @@
 //!
 //! # Many operands
 //!
-//! [`union_all_with`](Solid::union_all_with), [`intersection_all_with`](Solid::intersection_all_with) and
-//! [`difference_all_with`](Solid::difference_all_with) join any number of operands by one blend. Fillets
-//! are between any two of them, and it does not matter in which order they stand; `a.union_with(b, fillet)`
-//! joined to further operands by the same fillet is the same. There is no limit to how many, and each is
-//! looked at only near it. Other blends join one operand after the other.
+//! [`union_all_with`](Solid::union_all_with),
+//! [`intersection_all_with`](Solid::intersection_all_with) and
+//! [`difference_all_with`](Solid::difference_all_with) join any number of operands by one blend.
+//! Fillets are between any two of them, and it does not matter in which order they stand;
+//! `a.union_with(b, fillet)` joined to further operands by the same fillet is the same. There is no
+//! limit to how many, and each is looked at only near it. Other blends join one operand after the
+//! other.
 //!
 //! ```
 //! use rvachev::{Blend, Solid};
@@ -232,8 +238,8 @@
 //!
 //! # Exact or measured
 //!
-//! Where a solid's own value is the distance, a length is **exact**: nothing is prepared, and the value
-//! is right to rounding. A value is the distance
+//! Where a solid's own value is the distance, a length is **exact**: nothing is prepared, and the
+//! value is right to rounding. A value is the distance
 //!
 //! | of | inside | outside |
 //! |---|---|---|
@@ -245,25 +251,30 @@
 //! | an offset outwards | no | yes |
 //! | an offset inwards | yes | no |
 //!
-//! Offsets inwards and shells ask for the distance inside, offsets outwards for that outside. R-functions
-//! count as min and max here. So `cuboid.shell(1.0)`, the shell of a cube with drilled holes and
-//! the offset outwards of a union of cylinders are exact.
+//! Offsets inwards and shells ask for the distance inside, offsets outwards for that outside.
+//! R-functions count as min and max here. So `cuboid.shell(1.0)`, the shell of a cube with drilled
+//! holes and the offset outwards of a union of cylinders are exact.
 //!
-//! Of everything else (superquadrics, what is deformed or blended, a union from inside) the surface is
-//! **measured**: it is meshed once, its cells are halved until their curved patches are on the surface, all but
-//! a few spots, which are meshed by themselves, and the distance is that to the nearest patch. Blades, fins, ribs and
-//! gaps that pass between the nodes of the mesh are followed by lines across its cells, along which ranges tell where
-//! the other side is, down to a hundred-thousandth of a cell. Whether a point is inside is still told by the solid's
-//! own value. Openings and closings measure twice: the solid, and where the centre of the ball may be.
+//! Of everything else (superquadrics, what is deformed or blended, a union from inside) the surface
+//! is **measured**: it is meshed once, its cells are halved until their curved patches are on the
+//! surface, all but a few spots, which are meshed by themselves, and the distance is that to the
+//! nearest patch. Blades, fins, ribs and gaps that pass between the nodes of the mesh are followed
+//! by lines across its cells, along which ranges tell where the other side is, down to a
+//! hundred-thousandth of a cell. Whether a point is inside is still told by the solid's own value.
+//! Openings and closings measure twice: the solid, and where the centre of the ball may be.
 //!
 //! # Accuracy
 //!
-//! A measured surface is right to a thousandth of the length that is asked for, and at least to a millionth of the
-//! size of the solid. Along creases that are curved, where curvature jumps, and where ribs come to be as thin as cells,
-//! single points may be farther off. Rods, needles and rims thinner than a quarter of a cell may be missed. [`Solid::accuracy`](crate::Solid::accuracy) says what was reached, and [`Solid::with_tolerance`](crate::Solid::with_tolerance) asks for more or less.
+//! A measured surface is right to a thousandth of the length that is asked for, and at least to a
+//! millionth of the size of the solid. Along creases that are curved, where curvature jumps, and
+//! where ribs come to be as thin as cells, single points may be farther off. Rods, needles and rims
+//! thinner than a quarter of a cell may be missed. [`Solid::accuracy`](crate::Solid::accuracy) says
+//! what was reached, and [`Solid::with_tolerance`](crate::Solid::with_tolerance) asks for more or
+//! less.
 //!
-//! Faces that a length leaves where they are are not measured: the outer face of a shell, the faces that the ball
-//! of an opening or closing touches, flush faces of a blend. They are the solid's own, exactly.
+//! Faces that a length leaves where they are are not measured: the outer face of a shell, the faces
+//! that the ball of an opening or closing touches, flush faces of a blend. They are the solid's
+//! own, exactly.
 //!
 //! ```
 //! use rvachev::Solid;
@@ -278,10 +289,11 @@
 //!
 //! # What it costs
 //!
-//! Exact lengths cost what the solid costs. A measured one takes about the time of a mesh of the operand when it
-//! is first asked for. It is then kept with the node, for all clones of the solid and all that is made of
-//! them, until the last is dropped; [`Solid::prepare`](crate::Solid::prepare) does it ahead of time. Of solids without bounds
-//! those parts are measured that are asked for.
+//! Exact lengths cost what the solid costs. A measured one takes about the time of a mesh of the
+//! operand when it is first asked for. It is then kept with the node, for all clones of the solid
+//! and all that is made of them, until the last is dropped;
+//! [`Solid::prepare`](crate::Solid::prepare) does it ahead of time. Of solids without bounds those
+//! parts are measured that are asked for.
 //!
 //! ```
 //! use rvachev::Solid;

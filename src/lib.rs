@@ -23,8 +23,9 @@
 //! # Ok::<(), rvachev::SolidError>(())
 //! ```
 //!
-//! A vector is a glam one, a tuple or an array: `[20.0, 12.0, 8.0]`. Building never fails. What is wrong is said when the solid is first used, with the path to
-//! the node, the parameter, its value and what is allowed.
+//! A vector is a glam one, a tuple or an array: `[20.0, 12.0, 8.0]`. Building never fails. What is
+//! wrong is said when the solid is first used, with the path to the node, the parameter, its value
+//! and what is allowed.
 //!
 //! ```
 //! use rvachev::Solid;
@@ -51,8 +52,9 @@
 //!
 //! A [`Blend`] shapes the transition: a fillet or a chamfer of a given size, a smooth one.
 //! [`offset`](Solid::offset) and [`shell`](Solid::shell) are lengths too,
-//! [`rounded`](Solid::rounded) rounds all convex edges, [`filleted`](Solid::filleted) fills all concave
-//! ones. All go by the true distance to the surface, whatever the solid is made of: see [`lengths`].
+//! [`rounded`](Solid::rounded) rounds all convex edges, [`filleted`](Solid::filleted) fills all
+//! concave ones. All go by the true distance to the surface, whatever the solid is made of: see
+//! [`lengths`].
 //!
 //! ```
 //! use rvachev::{Blend, Solid};
@@ -96,9 +98,9 @@
 //! # Ok::<(), rvachev::SolidError>(())
 //! ```
 //!
-//! Questions are answered in double precision: [value](Solid::value),
-//! [gradient](Solid::gradient), [range](Solid::range) over a box,
-//! [raycast](Solid::raycast), [closest point](Solid::closest_surface_point), [clearance](Solid::clearance),
+//! Questions are answered in double precision: [value](Solid::value), [gradient](Solid::gradient),
+//! [range](Solid::range) over a box, [raycast](Solid::raycast),
+//! [closest point](Solid::closest_surface_point), [clearance](Solid::clearance),
 //! [owner](Solid::owner).
 //!
 //! ```
@@ -161,9 +163,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Points become solids: [`fit`] finds the superellipsoid or supershape that a scan is of, the tree of
-//! boxes, cylinders and other leaves that a mesh is of ([`fit::part`]), where a known part is in a
-//! scan, and how far it is from it. Any solid can be [written as Rust code](Solid::to_rust).
+//! Points become solids: [`fit`] finds the superellipsoid or supershape that a scan is of, the tree
+//! of boxes, cylinders and other leaves that a mesh is of ([`fit::part`]), where a known part is in
+//! a scan, and how far it is from it. Any solid can be [written as Rust code](Solid::to_rust).
 //!
 //! ```
 //! use rvachev::fit::{FitSettings, superellipsoid};
@@ -507,7 +509,7 @@ pub use io::LoadSettings;
 pub use io::save::SaveSettings;
 pub use io::unit::LengthUnit;
 pub use measure::{ThicknessBin, ThicknessReport};
-pub use mesh::{AtBounds, CellSize, Component, Features, MeshReport, MeshSettings, Openness, ThinFeatures};
+pub use mesh::{AtBounds, CellSize, Component, Features, MeshReport, MeshSettings, OpenEdges, ThinFeatures};
 pub use query::{Clearance, Face};
 pub use render::{Background, ContourSettings, Lights, RenderSettings, Scene, Side, Slice, SliceSettings, Style};
 #[cfg(feature = "formula")]

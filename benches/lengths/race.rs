@@ -12,8 +12,8 @@ pub struct Budget {
 /// One contestant: it times its own work, once or several times.
 pub type Job<'a> = Box<dyn FnMut() -> Result<Vec<f64>, String> + 'a>;
 
-/// What a contestant took: the median of each of its times, and of their ratios to the first time of
-/// the first contestant in the same round.
+/// What a contestant took: the median of each of its times, and of their ratios to the first time
+/// of the first contestant in the same round.
 pub struct Took {
     pub seconds: Vec<f64>,
     pub ratios: Vec<f64>,

@@ -1,4 +1,5 @@
-//! The solids that lengths are timed on. Each call builds anew: what is compiled is kept with a solid.
+//! The solids that lengths are timed on. Each call builds anew: what is compiled is kept with a
+//! solid.
 
 use std::f64::consts::{PI, TAU};
 

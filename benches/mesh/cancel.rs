@@ -10,7 +10,8 @@ use rvachev::{
     ThinFeatures, rad,
 };
 
-/// The moments of a run when it is cancelled, and those that progress is compared at, as parts of its time.
+/// The moments of a run when it is cancelled, and those that progress is compared at, as parts of
+/// its time.
 const MOMENTS: u32 = 40;
 
 /// Prints the rows.
@@ -59,7 +60,8 @@ fn row(name: &str, cells: u32, threads: usize, job: impl Fn(&Run) -> bool) {
     );
 }
 
-/// How long a run takes, and how far its progress is from the part of that time that has passed, at most.
+/// How long a run takes, and how far its progress is from the part of that time that has passed, at
+/// most.
 fn run_whole(threads: usize, job: impl Fn(&Run) -> bool) -> (Duration, f64) {
     let reports = Arc::new(Mutex::new(Vec::new()));
     let (sink, start) = (reports.clone(), Instant::now());

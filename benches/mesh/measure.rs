@@ -11,14 +11,14 @@ use cpu_time::ProcessTime;
 pub struct Cost {
     /// Of the processor on one thread, of the clock on more.
     pub seconds: f64,
-    /// The most memory in use during a run beyond what was before, in MB, in a process that does nothing else; NaN
-    /// where the system does not tell.
+    /// The most memory in use during a run beyond what was before, in MB, in a process that does
+    /// nothing else; NaN where the system does not tell.
     pub megabytes: f64,
 }
 
-/// Runs a job on a pool of some threads several times, more often if it is short, and gives the least seconds of all
-/// runs, as [`Cost`] has them, and its result. The clock stops when the result is there: giving back its memory is not
-/// counted.
+/// Runs a job on a pool of some threads several times, more often if it is short, and gives the
+/// least seconds of all runs, as [`Cost`] has them, and its result. The clock stops when the result
+/// is there: giving back its memory is not counted.
 pub fn measured<T: Send>(threads: usize, mut job: impl FnMut() -> T + Send) -> (f64, T) {
     /// Seconds to spend at least, and runs at least and at most.
     const TURN: f64 = 2.0;
@@ -48,8 +48,8 @@ pub struct InTurn<T> {
     pub results: [T; 2],
 }
 
-/// Runs two jobs in turn, 15 times each, less often if they are long: how fast the machine is at the time, and what memory
-/// the system takes back between runs, is the same for both.
+/// Runs two jobs in turn, 15 times each, less often if they are long: how fast the machine is at
+/// the time, and what memory the system takes back between runs, is the same for both.
 pub fn in_turn<T: Send>(threads: usize, mut jobs: [impl FnMut() -> T + Send; 2]) -> InTurn<T> {
     /// Seconds to spend at most, but for the fewest turns.
     const LONG: f64 = 10.0;
@@ -70,8 +70,9 @@ pub fn in_turn<T: Send>(threads: usize, mut jobs: [impl FnMut() -> T + Send; 2])
     })
 }
 
-/// Keeps all threads of the pool busy for a moment. Two that were asleep may be woken on the same core, where the system
-/// leaves them for some 10 ms though another core is free: how often depends on what was run before.
+/// Keeps all threads of the pool busy for a moment. Two that were asleep may be woken on the same
+/// core, where the system leaves them for some 10 ms though another core is free: how often depends
+/// on what was run before.
 fn spread_threads() {
     const MOMENT: Duration = Duration::from_millis(10);
     rayon::broadcast(|_| {
@@ -82,7 +83,8 @@ fn spread_threads() {
     });
 }
 
-/// Runs a job; gives its seconds, of the processor on one thread, of the clock on more, and its result.
+/// Runs a job; gives its seconds, of the processor on one thread, of the clock on more, and its
+/// result.
 fn timed<T>(threads: usize, job: &mut impl FnMut() -> T) -> (f64, T) {
     if threads > 1 {
         spread_threads();
@@ -96,8 +98,8 @@ fn timed<T>(threads: usize, job: &mut impl FnMut() -> T) -> (f64, T) {
 /// The word that asks a process for the memory of a single job, which the words after it name.
 pub const MEMORY: &str = "memory";
 
-/// The most memory in use during a job beyond what was before, in MB, as a new process tells: what others have given
-/// back is not there to be used again.
+/// The most memory in use during a job beyond what was before, in MB, as a new process tells: what
+/// others have given back is not there to be used again.
 pub fn memory_apart(words: [&str; 4]) -> f64 {
     let told = env::current_exe().and_then(|this| Command::new(this).arg(MEMORY).args(words).output());
     let text = told.map(|output| String::from_utf8_lossy(&output.stdout).into_owned()).unwrap_or_default();

@@ -24,7 +24,8 @@ fn alone(name: &str, size: u32, solid: Solid) -> Row {
     Row { has_peer: false, ..row(name, size, solid) }
 }
 
-/// Supershapes and pinched superellipsoids, deformations, blends, long profiles, chains of smooth joins.
+/// Supershapes and pinched superellipsoids, deformations, blends, long profiles, chains of smooth
+/// joins.
 pub fn named() -> Vec<Row> {
     let g = Gielis::new;
     let clover = g(4.0, 2.0, 2.0, 2.0);

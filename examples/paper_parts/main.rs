@@ -5,8 +5,8 @@
 //! cargo run --release --example paper_parts -- folder
 //! ```
 //!
-//! writes `paper_sections.png`, `paper_rational.png`, `paper_truncated.png` and `paper_parts.png`, and
-//! prints the errors: the share of common volume (IoU), the deviation of the points, and the
+//! writes `paper_sections.png`, `paper_rational.png`, `paper_truncated.png` and `paper_parts.png`,
+//! and prints the errors: the share of common volume (IoU), the deviation of the points, and the
 //! global error of fit before and after the joint refinement.
 //!
 //! Source: Y. D. Fougerolle et al., *Rational supershapes for surface reconstruction*.

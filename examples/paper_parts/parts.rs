@@ -135,7 +135,8 @@ fn points(sheet: &mut Sheet, segments: &Segments, camera: &Camera) {
     }
 }
 
-/// The volume of what is in both over that of what is in either, by points of a box about the first.
+/// The volume of what is in both over that of what is in either, by points of a box about the
+/// first.
 fn overlap(truth: &Solid, found: &Solid) -> Result<f64, Box<dyn Error>> {
     let bounds = truth.bounds()?;
     let (low, size) = (bounds.min - 0.05 * bounds.size(), 1.1 * bounds.size());

@@ -15,8 +15,8 @@ use crate::{Profile, Solid};
 pub struct RustSettings {
     /// Comments above named parts, by the [name](Solid::named). Default: none.
     pub comments: BTreeMap<String, String>,
-    /// Whether a length that occurs more than once becomes a variable; of a polygon only up to 32 points. 0 never
-    /// does. Default: true.
+    /// Whether a length that occurs more than once becomes a variable; of a polygon only up to 32
+    /// points. 0 never does. Default: true.
     pub lengths: bool,
 }
 
@@ -58,17 +58,20 @@ impl Default for RustSettings {
 ///
 /// # What is written
 ///
-/// * A call of a method for each node, so that the function makes a solid [equal](Solid#impl-PartialEq-for-Solid)
-///   to the one that was written: numbers are read back to the bit.
-/// * Variables for parts that have a name, called after it; for parts that occur more than once, equal ones
-///   counting as one; for lengths that do ([`RustSettings::lengths`]); and for what would be too long for a line.
-/// * Lines are broken as rustfmt does it by its defaults for edition 2024; of long chains it may differ here and there.
+/// * A call of a method for each node, so that the function makes a solid
+///   [equal](Solid#impl-PartialEq-for-Solid) to the one that was written: numbers are read back to
+///   the bit.
+/// * Variables for parts that have a name, called after it; for parts that occur more than once,
+///   equal ones counting as one; for lengths that do ([`RustSettings::lengths`]); and for what
+///   would be too long for a line.
+/// * Lines are broken as rustfmt does it by its defaults for edition 2024; of long chains it may
+///   differ here and there.
 /// * A formula is written as its text, which the function reads: then it gives a `Result`.
 ///
 /// # What has no code
 ///
-/// A leaf of a user's own, an imported mesh, and a solid deformed by a law of a user's own become parameters of the
-/// function, which then takes them as `&Solid` and names them in its docs.
+/// A leaf of a user's own, an imported mesh, and a solid deformed by a law of a user's own become
+/// parameters of the function, which then takes them as `&Solid` and names them in its docs.
 #[derive(Clone, Debug, Default)]
 pub struct RustFile {
     settings: RustSettings,
@@ -86,9 +89,9 @@ impl RustFile {
 
     /// Adds a function that makes this solid.
     ///
-    /// `name` becomes a name as Rust writes those of functions: words in lower case between underscores, at most
-    /// 24 letters; `part` where nothing is left of it. Of a name that is there already there will be a second one
-    /// with `_2`.
+    /// `name` becomes a name as Rust writes those of functions: words in lower case between
+    /// underscores, at most 24 letters; `part` where nothing is left of it. Of a name that is there
+    /// already there will be a second one with `_2`.
     pub fn add(&mut self, name: &str, solid: &Solid) {
         self.write(name, &solid.into());
     }
@@ -162,9 +165,9 @@ fn imported(word: &str) -> Option<&str> {
 }
 
 impl Solid {
-    /// The solid as Rust code: the text of a function of this name that makes it again, to the bit, behind the
-    /// imports that it needs. With comments, or several solids in a file: [`RustFile`], which says what is written
-    /// and how.
+    /// The solid as Rust code: the text of a function of this name that makes it again, to the bit,
+    /// behind the imports that it needs. With comments, or several solids in a file: [`RustFile`],
+    /// which says what is written and how.
     ///
     /// ```
     /// use rvachev::{Solid, deg};

@@ -33,15 +33,16 @@ const NEAR: f64 = 1.0;
 /// What is within a box, in parts of its longest side, is mended.
 const MARGIN: f64 = 0.3;
 
-/// A mesh that patches were made of: the size of its cells, and how often its spots may be meshed anew.
+/// A mesh that patches were made of: the size of its cells, and how often its spots may be meshed
+/// anew.
 #[derive(Clone, Copy)]
 struct Cells {
     size: f64,
     depth: u32,
 }
 
-/// Meshes the spots of a quilt anew that a mesh in such cells has left. Those that it does not mend are taken as they
-/// are.
+/// Meshes the spots of a quilt anew that a mesh in such cells has left. Those that it does not mend
+/// are taken as they are.
 pub(super) fn mend(
     quilt: &mut Quilt,
     slopes: &Slopes<'_>,
@@ -96,7 +97,8 @@ fn groups(spots: &[Spot], tolerance: f64) -> Vec<(Bounds, Vec<usize>)> {
         while let Some(at) = groups.iter().position(|(other, _)| other.intersects(&bounds)) {
             let (other, mut others) = groups.swap_remove(at);
             bounds = bounds.union(&other);
-            // The longer list stays where it is, or a large group would be copied for each of its spots.
+            // The longer list stays where it is, or a large group would be copied for each of its
+            // spots.
             if others.len() > numbers.len() {
                 std::mem::swap(&mut others, &mut numbers);
             }
@@ -110,7 +112,8 @@ fn groups(spots: &[Spot], tolerance: f64) -> Vec<(Bounds, Vec<usize>)> {
     groups
 }
 
-/// Whether there are patches wherever spots are on the surface: what small cells do not show either is not to be lost.
+/// Whether there are patches wherever spots are on the surface: what small cells do not show either
+/// is not to be lost.
 fn covers(part: &Quilt, spots: &[&Spot], slopes: &Slopes<'_>, near: f64, run: &Run) -> Result<bool, Cancelled> {
     let patches = Patches::new(&part.patches, &Run { progress: None, ..run.clone() })?;
     let corners: Vec<DVec3> = spots.iter().flat_map(|spot| spot.patch.corners).collect();

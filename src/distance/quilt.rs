@@ -110,8 +110,8 @@ impl Quilt {
         Quilt { patches: Vec::new(), error: 0.0, measures: Vec::new(), spots }
     }
 
-    /// Patches of triangles near the surface; `None` if more than this part of them is far off and splitting does
-    /// not mend it: triangles are too large for what they are to show.
+    /// Patches of triangles near the surface; `None` if more than this part of them is far off and
+    /// splitting does not mend it: triangles are too large for what they are to show.
     pub(super) fn new(
         mut facets: Facets,
         slopes: &Slopes<'_>,
@@ -215,7 +215,8 @@ impl Quilt {
         taken + self.spots.iter().map(|spot| area_of(&spot.patch)).sum::<f64>()
     }
 
-    /// No more than this part of them, by area, is farther off than the result, which is `least` or more.
+    /// No more than this part of them, by area, is farther off than the result, which is `least` or
+    /// more.
     pub(super) fn tolerance(&self, part: f64, least: f64) -> f64 {
         let mut far: Vec<[f64; 2]> = self.measures.iter().filter(|[off, _]| *off > least).copied().collect();
         far.sort_by(|a, b| b[0].total_cmp(&a[0]));

@@ -21,8 +21,8 @@ const NEAR: [f64; 3] = [0.05, 0.01, 0.002];
 /// A crease that is cut off passes a side this far off at most, in parts of the side's length.
 const ASTRAY: f64 = 2.0;
 
-/// Where a side along a crease is compared with the crease, in parts of its length: a curve through both ends and the
-/// middle is farthest off about there.
+/// Where a side along a crease is compared with the crease, in parts of its length: a curve through
+/// both ends and the middle is farthest off about there.
 const PROBES: [f64; 2] = [0.25, 0.75];
 
 /// The middle is moved by this part of the side's length at most.
@@ -128,8 +128,8 @@ impl Seams {
         hem
     }
 
-    /// A side along a crease, seen from a triangle that has its ends in this order; the surface on both
-    /// sides of it is towards two points, that of the triangle first.
+    /// A side along a crease, seen from a triangle that has its ends in this order; the surface on
+    /// both sides of it is towards two points, that of the triangle first.
     pub(super) fn ridge(&mut self, ends: [u32; 2], toward: [DVec3; 2]) -> Hem {
         let hem = self.hem(ends, toward[0], [DVec3::ZERO; 2]);
         let seam = &mut self.list[hem.seam as usize];
@@ -138,8 +138,8 @@ impl Seams {
         hem
     }
 
-    /// The vertex where a side crosses a crease, and the normals on both sides of it, in the order of
-    /// the triangle.
+    /// The vertex where a side crosses a crease, and the normals on both sides of it, in the order
+    /// of the triangle.
     pub(super) fn crossing(&mut self, hem: Hem, positions: &mut Vec<DVec3>) -> (u32, [DVec3; 2]) {
         let seam = &mut self.list[hem.seam as usize];
         let (at, mut normals) = seam.crossing.unwrap_or((seam.middle, seam.normals));
@@ -233,7 +233,8 @@ impl Seams {
         self.compare(&creases, positions, slopes, run)
     }
 
-    /// Newton steps along the gradient. Gives the sides whose middles were not where their ends tell.
+    /// Newton steps along the gradient. Gives the sides whose middles were not where their ends
+    /// tell.
     fn slide(
         &mut self,
         numbers: &[usize],
@@ -258,8 +259,8 @@ impl Seams {
         Ok(numbers.iter().zip(&before).filter(is_moved).map(|(n, _)| *n).collect())
     }
 
-    /// Sees how far sides are off the surface between their ends and middles: one that starts from a crease may pass over
-    /// it and come back.
+    /// Sees how far sides are off the surface between their ends and middles: one that starts from
+    /// a crease may pass over it and come back.
     fn probe(
         &mut self,
         numbers: &[usize],
@@ -309,7 +310,8 @@ impl Seams {
         Ok(())
     }
 
-    /// Sees how far sides are off the creases that they follow: off where the planes of both faces meet.
+    /// Sees how far sides are off the creases that they follow: off where the planes of both faces
+    /// meet.
     fn compare(
         &mut self,
         numbers: &[usize],
@@ -334,7 +336,8 @@ impl Seams {
                         let [from, to] = seam.ends.map(|v| positions[v as usize]);
                         meet(&planes, at).distance(at).min(STRIDE * from.distance(to))
                     }
-                    // Where both faces are one, nothing tells where the crease is, but that it is on the surface.
+                    // Where both faces are one, nothing tells where the crease is, but that it is
+                    // on the surface.
                     _ => found.iter().map(Slope::distance).fold(f64::INFINITY, f64::min),
                 };
                 seam.off = seam.off.max(off);
@@ -371,7 +374,8 @@ impl Seam {
         a.lerp(b, along) + 4.0 * along * (1.0 - along) * self.bend(positions)
     }
 
-    /// The least part of its length that the faces on both sides are told apart at: farther away than values may be off.
+    /// The least part of its length that the faces on both sides are told apart at: farther away
+    /// than values may be off.
     fn nearest(&self, slopes: &Slopes<'_>, positions: &[DVec3]) -> f64 {
         let [a, b] = self.ends.map(|v| positions[v as usize]);
         let tells = |aside: &f64| aside * a.distance(b) > slopes.precision;

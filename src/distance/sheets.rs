@@ -17,7 +17,8 @@ use crate::mesh::{Hidden, Slopes, Subject};
 use crate::{Bounds, Cancelled, Run};
 use rvachev_field::{Patch, Patches};
 
-/// Nearer to the surface than this part of the size, points may be on either side by rounding errors.
+/// Nearer to the surface than this part of the size, points may be on either side by rounding
+/// errors.
 const ROUNDING: f64 = 1e-9;
 
 /// Lines go on beyond a cell by this part of it: sheets are not always straight across.
@@ -159,7 +160,8 @@ impl Cell<'_> {
         found
     }
 
-    /// The triangles of a square, and of the squares around its middle if nothing is found there that is known to be.
+    /// The triangles of a square, and of the squares around its middle if nothing is found there
+    /// that is known to be.
     fn look(&self, square: &Square, depth: u32, found: &mut Vec<Found>) {
         let middle = self.hits(square, [0.5, 0.5]);
         let corners = CORNERS.map(|at| self.hits(square, at));
@@ -307,7 +309,8 @@ impl Cell<'_> {
     }
 }
 
-/// The triangles of a convex polygon: about its middle, if that is given, else from its first corner.
+/// The triangles of a convex polygon: about its middle, if that is given, else from its first
+/// corner.
 fn fan(rim: &[DVec3], middle: Option<DVec3>, off: f64, found: &mut Vec<Found>) {
     let mut push = |corners: [DVec3; 3]| found.push((Patch::flat(corners), off));
     match middle {

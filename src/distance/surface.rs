@@ -18,10 +18,12 @@ use rvachev_field::Patches;
 /// The surfaces of solids by their meshes.
 pub(super) struct FromMeshes;
 
-/// Patches are off the surface by this part of the length at most, if nobody has said how far they may be.
+/// Patches are off the surface by this part of the length at most, if nobody has said how far they
+/// may be.
 const TOLERANCE: f64 = 1e-3;
 
-/// They need not be nearer than this part of the size, or of how far the surface is from the origin.
+/// They need not be nearer than this part of the size, or of how far the surface is from the
+/// origin.
 const SMALL: f64 = 1e-6;
 
 /// They cannot be nearer than this part of it: they are kept in single precision.
@@ -34,7 +36,8 @@ const ALONG_SIZE: f64 = 24.0;
 const CELLS: f64 = 4e4;
 const CELLS_A_LEAF: f64 = 500.0;
 
-/// Cells are halved while more than this part of the surface is off, or a patch by so many tolerances.
+/// Cells are halved while more than this part of the surface is off, or a patch by so many
+/// tolerances.
 const FEW: f64 = 1e-4;
 const FAR: f64 = 8.0;
 
@@ -164,7 +167,8 @@ impl DistanceSource for FromMeshes {
     }
 }
 
-/// What of a solid is to be measured: its box, the axis along which it is a cylinder, and its size across that.
+/// What of a solid is to be measured: its box, the axis along which it is a cylinder, and its size
+/// across that.
 fn extent(programs: &Compiled, wanted: &Wanted<'_>) -> (Bounds, Option<usize>, f64) {
     let beside = if programs.bounds.is_finite() { BESIDE * programs.bounds.longest_side() } else { 0.0 };
     let reach = beside.max(REACH * wanted.length);
@@ -202,8 +206,8 @@ fn meets(corners: &[DVec3; 3], bounds: &Bounds) -> bool {
     (0..3).all(|axis| own.max[axis] >= bounds.min[axis] && own.min[axis] <= bounds.max[axis])
 }
 
-/// The surface of a solid within a box, without the faces of the box and what is not near, and the cells that may hide
-/// some of it.
+/// The surface of a solid within a box, without the faces of the box and what is not near, and the
+/// cells that may hide some of it.
 fn part(
     solid: &Solid,
     clip: Bounds,

@@ -1,14 +1,15 @@
 //! How far a surface may be off that was measured.
 
-/// How near the surface of a solid is to what its lengths ask for: see [`Solid::accuracy`](crate::Solid::accuracy).
+/// How near the surface of a solid is to what its lengths ask for: see
+/// [`Solid::accuracy`](crate::Solid::accuracy).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Accuracy {
     /// All but a few points of the surface are off by no more than this, in length units.
     pub tolerance: f64,
-    /// The farthest that was found, in length units: where creases meet it may be more than the tolerance. 0 of
-    /// operands without end, which are measured piece by piece later on.
+    /// The farthest that was found, in length units: where creases meet it may be more than the
+    /// tolerance. 0 of operands without end, which are measured piece by piece later on.
     pub error: f64,
 }
 

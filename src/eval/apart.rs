@@ -78,8 +78,8 @@ fn alone<'a>(solid: &'a Solid, exact: &Exactness) -> Vec<&'a Solid> {
     }
 }
 
-/// Measures the distances that a node is about, if it is about any that its operands do not tell. What was
-/// measured before is kept.
+/// Measures the distances that a node is about, if it is about any that its operands do not tell.
+/// What was measured before is kept.
 pub(super) fn measure(
     solid: &Solid,
     exact: &Exactness,

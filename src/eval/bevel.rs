@@ -187,8 +187,8 @@ impl AnyField for Bevel {
         self.held(self.chamfer.range(values, gradients), values)
     }
 
-    /// What a plane takes turns round nowhere but where the operands do, in zones that are small beside
-    /// it.
+    /// What a plane takes turns round nowhere but where the operands do, in zones that are small
+    /// beside it.
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
         if self.chamfer.leg <= 2.0 * zone.radius() {
             return bits(ways, |_| false);

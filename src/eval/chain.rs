@@ -4,11 +4,11 @@
 //!     r_1 = x_1,   r_k = S(r_(k-1), x_k)         S(x, y) = max(x, y) where |x - y| >= w, and more by at most w/4
 //! ```
 //!
-//! *Upwards.* A link x_k that is below r_(k-1) by the width changes nothing; one that is above it by the
-//! width makes all before it of no account. Both are told by ranges.
+//! *Upwards.* A link x_k that is below r_(k-1) by the width changes nothing; one that is above it
+//! by the width makes all before it of no account. Both are told by ranges.
 //!
-//! *Downwards.* Of the last r its sign is asked, so that it need be right only from n = 0 on. Where r_k need be
-//! right from n on,
+//! *Downwards.* Of the last r its sign is asked, so that it need be right only from n = 0 on. Where
+//! r_k need be right from n on,
 //!
 //! ```text
 //!     x_k <= n - w      does not count, and r_(k-1) need be right from n on too;
@@ -16,11 +16,12 @@
 //!     x_k >= n          from x_k - w on.
 //! ```
 //!
-//! Margins add up over those links that count. Both leave the sign as it is, to the bit, and upwards every value.
+//! Margins add up over those links that count. Both leave the sign as it is, to the bit, and
+//! upwards every value.
 //!
-//! Of long joins the ranges of most operands are not even taken: those further than c are below -c. They do
-//! not count where no r need be right below w - c; nor where a link that is near is above 2 w - c, and by
-//! the width above all before it, since, however many there are,
+//! Of long joins the ranges of most operands are not even taken: those further than c are below -c.
+//! They do not count where no r need be right below w - c; nor where a link that is near is above 2
+//! w - c, and by the width above all before it, since, however many there are,
 //!
 //! ```text
 //!     r_k <= max x_i + w                          as S(r, x) = r from r = x + w on
@@ -75,8 +76,8 @@ impl Chain {
     }
 }
 
-/// Of links with their ranges, those that count where the whole need be right from `need` on, and from where
-/// on what is before all of them would.
+/// Of links with their ranges, those that count where the whole need be right from `need` on, and
+/// from where on what is before all of them would.
 fn needed(width: f64, need: f64, links: Vec<(u32, Interval)>) -> (Vec<u32>, f64) {
     let mut from = need;
     let mut kept = Vec::with_capacity(links.len());
@@ -96,14 +97,15 @@ fn needed(width: f64, need: f64, links: Vec<(u32, Interval)>) -> (Vec<u32>, f64)
 /// More than what is lost to rounding in a few operations.
 const ROUNDING: f64 = 1e-14;
 
-/// How far links of at most `most` rise together, however many: the width, and the rounding of a link.
+/// How far links of at most `most` rise together, however many: the width, and the rounding of a
+/// link.
 fn rise(most: f64, width: f64) -> f64 {
     width + ROUNDING * (most.abs() + width)
 }
 
 impl Pass<'_> {
-    /// Which operands of a long smooth join its value, or, unless `value`, its sign is made of over a region.
-    /// `None` where the sign is known.
+    /// Which operands of a long smooth join its value, or, unless `value`, its sign is made of over
+    /// a region. `None` where the sign is known.
     pub(super) fn links(&mut self, at: usize, hierarchy: &Hierarchy, region: &Bounds, value: bool) -> Option<Vec<u32>> {
         let node = &self.program.nodes[at];
         let Kind::Join { op, rule: Rule::Smooth(width), .. } = node.kind else { return Some(Vec::new()) };

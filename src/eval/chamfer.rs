@@ -14,14 +14,14 @@
 //!             l
 //! ```
 //!
-//! For planes T is the distance to that plane: with q on the edge and unit normals n₁, n₂,
-//! X + Y = (n₁ + n₂)·(p − q), m is the length of n₁ + n₂, and k the sine of half the angle between
-//! them: at a leg from the edge along a plane X + Y is −l·√(1 − c²) = −l·k·m. Where the
-//! angle between the operands changes from the edge to the rim of the face, c is that at the rim: the
-//! legs of balls, pipes and planes are off by 2 % at l a twelfth of their radius, by 7 % at a
-//! quarter, and not at all where they meet at a right angle throughout, as the caps of an extrusion
-//! do. There is nothing to search for, so T goes on steadily
-//! wherever the gradients do. Operands that face each other closer than 0.28 l are bridged.
+//! For planes T is the distance to that plane: with q on the edge and unit normals n₁, n₂, X + Y =
+//! (n₁ + n₂)·(p − q), m is the length of n₁ + n₂, and k the sine of half the angle between them: at
+//! a leg from the edge along a plane X + Y is −l·√(1 − c²) = −l·k·m. Where the angle between the
+//! operands changes from the edge to the rim of the face, c is that at the rim: the legs of balls,
+//! pipes and planes are off by 2 % at l a twelfth of their radius, by 7 % at a quarter, and not at
+//! all where they meet at a right angle throughout, as the caps of an extrusion do. There is
+//! nothing to search for, so T goes on steadily wherever the gradients do. Operands that face each
+//! other closer than 0.28 l are bridged.
 
 use glam::DVec3;
 

@@ -115,8 +115,8 @@ fn operands_of(solid: &Solid) -> Vec<Operand> {
 }
 
 impl Operand {
-    /// The point of the surface that is nearest to `p`, and how far it is: along the gradient, which
-    /// leads there at once where the value is a distance.
+    /// The point of the surface that is nearest to `p`, and how far it is: along the gradient,
+    /// which leads there at once where the value is a distance.
     fn foot(&self, p: DVec3) -> (DVec3, f64) {
         /// Where it is none, a few steps lead near enough to tell the parts.
         const STEPS: usize = 4;

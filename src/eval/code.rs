@@ -147,8 +147,8 @@ impl Code {
         Built { field: edge, surface: edge, sides, swell: operand.swell.level(by), gauge: None }
     }
 
-    /// The end face and the sides of an extrusion, both moved in by `size`, joined by a rule that moves
-    /// them back.
+    /// The end face and the sides of an extrusion, both moved in by `size`, joined by a rule that
+    /// moves them back.
     pub(super) fn rim(&mut self, rule: Rule, size: f64, frame: u32, pair: [Built; 2]) -> Built {
         let edge = self.pair(Operation::Intersection, rule, frame, pair);
         let whole = pair.map(|b| b.swell.above(size).map_or(Bounds::ALL, snug));

@@ -43,8 +43,8 @@ pub(crate) struct Compiled {
 }
 
 impl Compiled {
-    /// The axis along which the solid is a column without end: the one axis that its box is infinite
-    /// along, where its value does not depend on it.
+    /// The axis along which the solid is a column without end: the one axis that its box is
+    /// infinite along, where its value does not depend on it.
     pub(crate) fn flat_axis(&self) -> Option<usize> {
         if self.bounds.is_empty() || self.bounds.is_finite() {
             return None;
@@ -68,8 +68,8 @@ const WALK: f64 = 0.6;
 /// More nodes than this are not compiled.
 const LIMIT: usize = 1 << 23;
 
-/// The programs of `solid`, compiled on first use and kept with it. Surfaces that lengths and fillets
-/// are measured from are made by `source`, and kept with their nodes.
+/// The programs of `solid`, compiled on first use and kept with it. Surfaces that lengths and
+/// fillets are measured from are made by `source`, and kept with their nodes.
 pub(crate) fn compile(
     solid: &Solid,
     source: &'static dyn DistanceSource,

@@ -56,8 +56,8 @@ impl Program {
         Some(slopes.unwrap_or(Interval::point(0.0)))
     }
 
-    /// The distances along a ray at which it crosses planes where slopes of a leaf have no bound; of
-    /// leaves that are not deformed, and of none where there are many.
+    /// The distances along a ray at which it crosses planes where slopes of a leaf have no bound;
+    /// of leaves that are not deformed, and of none where there are many.
     pub(super) fn creases(&self, origin: DVec3, direction: DVec3) -> Vec<f64> {
         let mut found = Vec::new();
         if self.nodes.len() > FEW {

@@ -12,7 +12,8 @@ use rvachev_field::AnyField;
 /// No more boxes than this are opened; what is not known by then may be.
 const PATIENCE: usize = 20_000;
 
-/// After so many it is seen whether the work may go on: distances may cost a tenth of a millisecond each.
+/// After so many it is seen whether the work may go on: distances may cost a tenth of a millisecond
+/// each.
 const OFTEN: usize = 16;
 
 struct Candidate {
@@ -66,8 +67,8 @@ pub(super) fn is_deeper(distance: &dyn AnyField, bounds: &Bounds, than: f64, run
     Ok(true)
 }
 
-/// The greatest distance that is found in a box: one above `enough` if there is one, else the greatest but for
-/// a ten-thousandth.
+/// The greatest distance that is found in a box: one above `enough` if there is one, else the
+/// greatest but for a ten-thousandth.
 ///
 /// # Errors
 /// That the run was cancelled.

@@ -50,7 +50,8 @@ impl Exact {
 pub(super) struct Exactness(HashMap<usize, Exact>);
 
 impl Exactness {
-    /// Finds it out for a solid and all that it is made of, operands first. Leaves are prepared on the way.
+    /// Finds it out for a solid and all that it is made of, operands first. Leaves are prepared on
+    /// the way.
     pub(super) fn add(&mut self, root: &Solid, run: &Run) -> Result<(), Cancelled> {
         let mut pending = vec![(root, false)];
         while let Some((solid, is_open)) = pending.pop() {
@@ -94,8 +95,8 @@ impl Exactness {
         }
     }
 
-    /// Whether it is known before anything is measured that nothing is left of a length's operand where the
-    /// length is taken away.
+    /// Whether it is known before anything is measured that nothing is left of a length's operand
+    /// where the length is taken away.
     pub(super) fn is_gone(&self, solid: &Solid) -> bool {
         let Node::Length { operand, length, .. } = solid.node() else { return false };
         self.of(operand).deepest <= length.inwards()

@@ -1,7 +1,7 @@
 //! The box of a solid that its parts do not tell: found by narrowing.
 //!
-//! From a box of all that can be evaluated, half by half, what holds no surface is left out. The sides of
-//! what is left are then [moved in](super::moved_in).
+//! From a box of all that can be evaluated, half by half, what holds no surface is left out. The
+//! sides of what is left are then [moved in](super::moved_in).
 
 use glam::DVec3;
 
@@ -22,8 +22,8 @@ const IMPATIENCE: usize = 200;
 /// Solids larger than this count as unbounded.
 const LARGEST: f64 = 1e9;
 
-/// A box that holds the inside of `program`, its sides moved in where they are told by values; `known` is
-/// one along the axes where it is finite.
+/// A box that holds the inside of `program`, its sides moved in where they are told by values;
+/// `known` is one along the axes where it is finite.
 pub(super) fn extent(program: &Program, known: &Bounds, run: &Run) -> Result<Bounds, Cancelled> {
     let limit = DVec3::splat(LARGEST);
     let start = if known.is_finite() { *known } else { known.intersection(&Bounds::new(-limit, limit)) };

@@ -7,12 +7,12 @@
 //!     fill    min(D, r/2) − max(0, a + b − 2r)/4 − δ > 0
 //! ```
 //!
-//! The complement of U is the closing of the operands' union by the ball, so nothing is filled that the
-//! ball reaches, and flush faces stay as they are. Between convex operands the second term is 0 all over
-//! the fill, which is the closing then: let x be outside of both, a + b ≥ 2r and b < r. With n the
-//! normal at the foot of x on B, x' = x + (r − b) n is r from B and, since a ≥ 2r − b, no nearer to A;
-//! so it is the centre of a ball of U that holds x. An edge that an operand has by itself is filled
-//! beside the other operand only, and less and less so away from it.
+//! The complement of U is the closing of the operands' union by the ball, so nothing is filled that
+//! the ball reaches, and flush faces stay as they are. Between convex operands the second term is 0
+//! all over the fill, which is the closing then: let x be outside of both, a + b ≥ 2r and b < r.
+//! With n the normal at the foot of x on B, x' = x + (r − b) n is r from B and, since a ≥ 2r − b,
+//! no nearer to A; so it is the centre of a ball of U that holds x. An edge that an operand has by
+//! itself is filled beside the other operand only, and less and less so away from it.
 //!
 //! Intersections are the unions of complements, and so are differences. δ is how far the measured
 //! distance may be off.
@@ -82,8 +82,8 @@ pub(super) struct Fill {
     boxes: Vec<Bounds>,
     /// There is none beyond this box.
     hull: Bounds,
-    /// The boxes that it is held to: those of joints, a little larger, for there is nothing about their sides, and the
-    /// hull as it is.
+    /// The boxes that it is held to: those of joints, a little larger, for there is nothing about
+    /// their sides, and the hull as it is.
     held: Vec<Bounds>,
 }
 
@@ -285,7 +285,8 @@ impl AnyField for Fill {
         (most - fade - point(self.margin)).min(depth)
     }
 
-    /// Towards the joint the ball is farther off and the operands are nearer. Outside of the boxes nothing is told.
+    /// Towards the joint the ball is farther off and the operands are nearer. Outside of the boxes
+    /// nothing is told.
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
         let [low, high] = [Interval::lo, Interval::hi].map(|end| DVec3::from_array(zone.hull().map(end)));
         let hull = Bounds::new(low, high);
@@ -413,7 +414,8 @@ impl AnyField for Fill {
 }
 
 impl Fill {
-    /// Values of a chunk. What is outside of the boxes or reached by the ball by more than the band is not looked into.
+    /// Values of a chunk. What is outside of the boxes or reached by the ball by more than the band
+    /// is not looked into.
     fn values<E: Lane>(&self, chunk: Chunk<'_, E, 1>, band: f64) {
         let Chunk { points, placement, out: [out] } = chunk;
         let band = if placement.shift == 0.0 { band / placement.scale } else { f64::INFINITY };

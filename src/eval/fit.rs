@@ -1,5 +1,5 @@
-//! Whether rounded and chamfered edges of end faces fit: some of the section must be further inside than
-//! they are wide.
+//! Whether rounded and chamfered edges of end faces fit: some of the section must be further inside
+//! than they are wide.
 
 use super::apart::{measured, sign};
 use super::compile::kept;
@@ -7,8 +7,8 @@ use super::depth::deepest;
 use crate::solid::Node;
 use crate::{Cancelled, ParamError, Run, Solid};
 
-/// What is wrong with the edges of a swept profile's end faces. The profile has been compiled, and what they
-/// leave of it has been measured where its values are no distances.
+/// What is wrong with the edges of a swept profile's end faces. The profile has been compiled, and
+/// what they leave of it has been measured where its values are no distances.
 ///
 /// # Errors
 /// That the run was cancelled.

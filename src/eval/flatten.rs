@@ -1,7 +1,7 @@
 //! Flattening: nested joins of one kind become one, its operands ordered in space.
 //!
-//! Those of min and max have no order; a chain of smooth joins is one join whose operands stay in the
-//! order of the chain.
+//! Those of min and max have no order; a chain of smooth joins is one join whose operands stay in
+//! the order of the chain.
 
 use std::sync::Arc;
 
@@ -82,7 +82,8 @@ pub(super) fn flatten(code: &Code, root: Edge, run: &Run) -> Result<(Vec<Node>, 
     Ok((nodes, list, root))
 }
 
-/// The operands of a join and of all that is merged into it, from left to right; of a chain from its first link on.
+/// The operands of a join and of all that is merged into it, from left to right; of a chain from
+/// its first link on.
 fn gather(code: &Code, merged: &[bool], join: usize) -> Vec<(Edge, Reach)> {
     let mut operands = Vec::new();
     let mut pending = vec![(Edge::new(join), Reach::fixed(Bounds::ALL))];

@@ -7,8 +7,9 @@
 //!                            sign at the same points, they share a face.
 //! ```
 //!
-//! That is seen along some lines across the face. Between them neither leaf can be left by more than the tolerance,
-//! for their normals are found to be within an angle of one direction that is small enough for that.
+//! That is seen along some lines across the face. Between them neither leaf can be left by more
+//! than the tolerance, for their normals are found to be within an angle of one direction that is
+//! small enough for that.
 
 use glam::DVec3;
 
@@ -29,9 +30,9 @@ const APART: f64 = 0.6;
 const REACH: f64 = 3.0;
 
 impl Program {
-    /// Whether a rectangle is all inside, because a leaf of a union begins there where another ends, or all outside,
-    /// of an intersection: to within `doubt` at some points, and to within the tolerance between them. `None` where
-    /// nothing is flush.
+    /// Whether a rectangle is all inside, because a leaf of a union begins there where another
+    /// ends, or all outside, of an intersection: to within `doubt` at some points, and to within
+    /// the tolerance between them. `None` where nothing is flush.
     pub(crate) fn flush(&self, zone: &Zone, axes: [DVec3; 2], [doubt, tolerance]: [f64; 2]) -> Option<bool> {
         let node = &self.nodes[self.root.node()];
         let Kind::Join { op, rule: Rule::MinMax, .. } = &node.kind else { return None };

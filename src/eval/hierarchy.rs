@@ -1,8 +1,8 @@
 //! A bounding-volume hierarchy over the operands of a long join.
 //!
-//! Operands are ordered in space by median splits; the hierarchy is a list of boxes in
-//! depth-first order, each with the place to go on at when the box is missed. Of operands whose values
-//! are read, the boxes grow with how far below 0 a value still matters.
+//! Operands are ordered in space by median splits; the hierarchy is a list of boxes in depth-first
+//! order, each with the place to go on at when the box is missed. Of operands whose values are
+//! read, the boxes grow with how far below 0 a value still matters.
 
 use glam::DVec3;
 

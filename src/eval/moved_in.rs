@@ -7,7 +7,8 @@
 //!     |   (   | |
 //! ```
 //!
-//! This is branch and bound, for the largest coordinate of the inside along each axis and against it.
+//! This is branch and bound, for the largest coordinate of the inside along each axis and against
+//! it.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -50,8 +51,8 @@ pub(super) fn narrowed(bounds: Bounds, program: &Program) -> Option<Part> {
     }
 }
 
-/// Whether the value in the middle and the slopes of the whole show that nothing of a box is inside: behind
-/// deformations that tells more than the ranges of the leaves.
+/// Whether the value in the middle and the slopes of the whole show that nothing of a box is
+/// inside: behind deformations that tells more than the ranges of the leaves.
 fn is_outside(bounds: &Bounds, program: &Program) -> bool {
     /// More than rounding, in proportion.
     const MARGIN: f64 = 1e-12;
@@ -67,8 +68,9 @@ fn is_outside(bounds: &Bounds, program: &Program) -> bool {
     program.value(bounds.center()) + rise * (1.0 + MARGIN) + MARGIN * size < 0.0
 }
 
-/// Whether the box of a solid that its parts tell may be too large: where it is deformed, or edges of end faces
-/// are rounded off. Copies are bounded as one of them is, and sweeps by what their profiles reach.
+/// Whether the box of a solid that its parts tell may be too large: where it is deformed, or edges
+/// of end faces are rounded off. Copies are bounded as one of them is, and sweeps by what their
+/// profiles reach.
 pub(super) fn is_loose(program: &Program) -> bool {
     let frames = || program.frames.iter().filter_map(|&frame| program.scene.frame(frame));
     // Some values are searched for, which is no quick answer.
@@ -143,8 +145,8 @@ impl Side {
         Ok(farthest)
     }
 
-    /// The axis across which a box is halved. A surface that is farthest in a point falls with the square of
-    /// the distance from there, so that flat boxes hold it best.
+    /// The axis across which a box is halved. A surface that is farthest in a point falls with the
+    /// square of the distance from there, so that flat boxes hold it best.
     fn across(&self, bounds: &Bounds) -> usize {
         let part = (bounds.size() / self.width.max(DVec3::splat(f64::MIN_POSITIVE))).to_array();
         let [a, b] = [(self.axis + 1) % 3, (self.axis + 2) % 3];

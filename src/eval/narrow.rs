@@ -1,10 +1,9 @@
 //! Ranges and narrowing.
 //!
-//! Where an operand of an R-function has one sign throughout a region, the operation has the
-//! sign and the zero set of the other operand there, or no surface at all (MATHEMATICS E,
-//! sign-pruning lemma). Below a blend, which reads values, an operand goes only where its
-//! value cannot be the one that counts. Ranges are taken leaf by leaf over the region as it looks in the
-//! leaf's frame.
+//! Where an operand of an R-function has one sign throughout a region, the operation has the sign
+//! and the zero set of the other operand there, or no surface at all (MATHEMATICS E, sign-pruning
+//! lemma). Below a blend, which reads values, an operand goes only where its value cannot be the
+//! one that counts. Ranges are taken leaf by leaf over the region as it looks in the leaf's frame.
 
 use std::sync::Arc;
 
@@ -39,7 +38,8 @@ impl Program {
         self.region(self.narrowed(region))
     }
 
-    /// The same without a copy of the program: many threads that count the users of one are in each other's way.
+    /// The same without a copy of the program: many threads that count the users of one are in each
+    /// other's way.
     pub(crate) fn narrowed(&self, region: &Bounds) -> Narrowed {
         if !region.is_finite() || region.is_empty() {
             return Narrowed::Same;
@@ -157,7 +157,8 @@ impl Program {
         self.region(self.narrow_pass(world, false))
     }
 
-    /// A program of one leaf with a simpler one in its place, where there is one; nothing is asked about signs.
+    /// A program of one leaf with a simpler one in its place, where there is one; nothing is asked
+    /// about signs.
     pub(super) fn simplified(&self, world: &Zone) -> Region {
         let [Node { kind: Kind::Leaf(leaf), .. }] = self.nodes[..] else { return Region::Surface(self.clone()) };
         let world = &Pieces::one(*world);
@@ -202,8 +203,8 @@ impl Program {
         nodes.len() == self.nodes.len() && list.len() == self.operands.len()
     }
 
-    /// The answer for a program of one leaf, what most regions come down to: it needs no tables, and
-    /// what stays open shares its program, or all of it but a simpler leaf.
+    /// The answer for a program of one leaf, what most regions come down to: it needs no tables,
+    /// and what stays open shares its program, or all of it but a simpler leaf.
     fn narrow_leaf(&self, zones: &[Pieces], world: &Pieces) -> Option<Narrowed> {
         let [Node { kind: Kind::Leaf(leaf), .. }] = self.nodes[..] else { return None };
         let instance = self.instance(leaf);

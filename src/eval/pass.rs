@@ -343,8 +343,8 @@ impl<'a> Pass<'a> {
     }
 }
 
-/// The face of a rim's two that decides alone over the region: the other is further than it, than the rim, and
-/// than what `reach` makes of the first.
+/// The face of a rim's two that decides alone over the region: the other is further than it, than
+/// the rim, and than what `reach` makes of the first.
 fn alone(operands: &[(Interval, Edge)], reach: impl Fn(f64) -> f64) -> Option<Edge> {
     let &[(x, first), (y, second)] = operands else { return None };
     let is_far = |other: Interval, face: Interval| other.lo() >= face.hi().max(0.0).max(reach(face.hi()));

@@ -195,7 +195,8 @@ pub(crate) fn first_hit(
             if !one_signed(found) {
                 let value = over.value();
                 let region = match piece.program.cost() {
-                    // Of a leaf that is asked for little, its slopes and the values at the ends say all.
+                    // Of a leaf that is asked for little, its slopes and the values at the ends say
+                    // all.
                     1 if single && value.lo() > 0.0 => Region::Inside,
                     1 if single && value.hi() < 0.0 => Region::Outside,
                     1 if single && found != Interval::ALL => piece.program.simplified(&zone()),
@@ -208,8 +209,8 @@ pub(crate) fn first_hit(
                     Region::Outside if inside[0] => return Some(hit_at(&piece.program, at(t0), t0)),
                     Region::Inside | Region::Outside => continue,
                 };
-                // Of the same sign everywhere in the piece, not of the same value: so an end in a face, which counts as
-                // outside, may be well inside what is left of the program.
+                // Of the same sign everywhere in the piece, not of the same value: so an end in a
+                // face, which counts as outside, may be well inside what is left of the program.
                 piece.values = piece.ends.map(|t| narrowed.value(at(t)));
                 piece.program = narrowed;
                 let is_other = |end: usize| {
@@ -298,7 +299,8 @@ pub(crate) fn bracket(value: &impl Fn(f64) -> f64, [mut t0, mut t1]: [f64; 2], p
             break;
         }
         let secant = t0 + width * (f0 / (f0 - f1));
-        // Three sides in a row mean slow progress: halve, each time more often. (In a face the value is level.)
+        // Three sides in a row mean slow progress: halve, each time more often. (In a face the
+        // value is level.)
         if kept.abs() >= 3 {
             (halvings, more) = (more, 2 * more);
         }

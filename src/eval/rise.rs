@@ -6,9 +6,9 @@
 //!     -------`----
 //! ```
 //!
-//! A direction is guessed from the gradients in the middle of a region; that all leaves rise along it
-//! is shown of each [by itself](rvachev_field::AnyField::rises), as they see it: through a deformation it may be
-//! any within a cone.
+//! A direction is guessed from the gradients in the middle of a region; that all leaves rise along
+//! it is shown of each [by itself](rvachev_field::AnyField::rises), as they see it: through a
+//! deformation it may be any within a cone.
 
 use glam::DVec3;
 
@@ -31,8 +31,9 @@ impl Part {
     }
 }
 
-/// The sine of 8.6°: the value is to rise along all directions within that angle of one. Two faces of a fin or a slot with a
-/// draft rise along a direction as well, but not along all of those if it is thin.
+/// The sine of 8.6°: the value is to rise along all directions within that angle of one. Two faces
+/// of a fin or a slot with a draft rise along a direction as well, but not along all of those if it
+/// is thin.
 ///
 /// ```text
 ///        .  o        Where all normals are within 81° of w, what is d beyond a tip, along w, holds a ball of radius
@@ -57,8 +58,8 @@ const BEYOND: [f64; 3] = [1.2, 3.0, 8.0];
 const TURNS: usize = 16;
 
 impl Program {
-    /// Whether a direction is found such that along it, and all close to it, the solid is entered, and not left,
-    /// throughout these regions.
+    /// Whether a direction is found such that along it, and all close to it, the solid is entered,
+    /// and not left, throughout these regions.
     pub(crate) fn is_entered_once(&self, regions: &[Bounds]) -> bool {
         self.way_in(regions).is_some()
     }
@@ -111,8 +112,8 @@ impl Program {
         (to_local.matrix3.transpose() * part.turned(inward)).try_normalize()
     }
 
-    /// A unit vector within a plane, of these axes, such that along all directions within 30° of it the solid is entered,
-    /// and not left, throughout a zone.
+    /// A unit vector within a plane, of these axes, such that along all directions within 30° of it
+    /// the solid is entered, and not left, throughout a zone.
     pub(crate) fn way_in_plane(&self, zone: &Zone, axes: [DVec3; 2]) -> Option<DVec3> {
         let parts = self.parts()?;
         // A face that lies beside the plane has no slope in it, and tells nothing there.
@@ -139,7 +140,8 @@ impl Program {
             .or_else(|| entered(inward()))
     }
 
-    /// The directions, of up to eight, along which the solid is found to be entered, and not left, throughout a zone.
+    /// The directions, of up to eight, along which the solid is found to be entered, and not left,
+    /// throughout a zone.
     pub(crate) fn enters(&self, zone: &Zone, ways: &[Way]) -> u8 {
         let world = Pieces::one(*zone);
         self.parts().map_or(0, |parts| self.all_enter(&parts, (&self.zones(&world), &world), ways))
@@ -175,7 +177,8 @@ impl Program {
         })
     }
 
-    /// The directions, of up to eight, along which the value is found to rise, or to stay, throughout a zone.
+    /// The directions, of up to eight, along which the value is found to rise, or to stay,
+    /// throughout a zone.
     pub(super) fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
         let world = Pieces::one(*zone);
         self.parts().map_or(0, |parts| self.all_rise(&parts, (&self.zones(&world), &world), ways))
@@ -203,15 +206,16 @@ impl Program {
         parts.iter().map(of_part).fold(0.0, f64::max)
     }
 
-    /// No radius of curvature of the surface is less than this; 0 where it may have creases. It is told of single
-    /// leaves.
+    /// No radius of curvature of the surface is less than this; 0 where it may have creases. It is
+    /// told of single leaves.
     pub(crate) fn least_radius(&self) -> f64 {
         let (Kind::Leaf(leaf), false) = (&self.nodes[self.root.node()].kind, self.root.negated()) else { return 0.0 };
         let Instance { field, frame, to_local, placement, .. } = self.instance(*leaf);
         if *frame != 0 || placement.shift != 0.0 {
             return 0.0;
         }
-        // A map that stretches by s at least and by t at most makes of a radius r one of r s² / t or more.
+        // A map that stretches by s at least and by t at most makes of a radius r one of r s² / t
+        // or more.
         let [most, least] = [to_local.matrix3, to_local.matrix3.inverse()].map(|map| largest_stretch(&map));
         field.least_radius() / (most * most * least)
     }
@@ -221,8 +225,8 @@ impl Program {
         self.evaluate(Dual::point(Zone::of_bounds(region).hull()), &mut Vec::new()).d
     }
 
-    /// The leaves that values come from; `None` if one of them counts both as it is and as its complement, or if
-    /// they are joined in a way that need not rise with them.
+    /// The leaves that values come from; `None` if one of them counts both as it is and as its
+    /// complement, or if they are joined in a way that need not rise with them.
     fn parts(&self) -> Option<Vec<Part>> {
         let mut met = vec![[false; 2]; self.nodes.len()];
         met[self.root.node()][usize::from(self.root.negated())] = true;
@@ -248,8 +252,8 @@ impl Program {
         Some(parts)
     }
 
-    /// Directions that may do: by the gradients at a point, then those of them along an axis, and with the ways to
-    /// the middles of leaves in place of the gradients.
+    /// Directions that may do: by the gradients at a point, then those of them along an axis, and
+    /// with the ways to the middles of leaves in place of the gradients.
     fn guesses(&self, parts: &[Part], from: DVec3) -> Vec<DVec3> {
         let slopes = self.slopes_at(parts, from);
         let inwards = |part: &Part| {
@@ -271,7 +275,8 @@ impl Program {
         guesses
     }
 
-    /// The directions of the world along which all parts rise, throughout its zone and those of the frames.
+    /// The directions of the world along which all parts rise, throughout its zone and those of the
+    /// frames.
     fn all_rise(&self, parts: &[Part], seen: (&[Pieces], &Pieces), ways: &[Way]) -> u8 {
         self.all_along(parts, seen, ways, |instance, zone, ways| instance.field.rises(zone, ways))
     }
@@ -324,8 +329,8 @@ impl Program {
     }
 }
 
-/// Whether a convex leaf is entered along these directions, and not left, throughout a zone: what is beyond is all
-/// inside. (A complement is left by them, so its directions are turned.)
+/// Whether a convex leaf is entered along these directions, and not left, throughout a zone: what
+/// is beyond is all inside. (A complement is left by them, so its directions are turned.)
 fn is_entered(field: &dyn AnyField, zone: &Zone, Way { middle, sway }: Way) -> bool {
     let scale = zone.radius() / middle.length();
     let [a, b, c] = [zone.axes.x_axis, zone.axes.y_axis, zone.axes.z_axis];

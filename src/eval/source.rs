@@ -54,8 +54,8 @@ pub(crate) struct Surface {
 /// A distance that was measured, kept with its node.
 #[derive(Clone)]
 pub(crate) struct Measured {
-    /// The signed distance to a surface, in the node's own coordinates: that of a length's operand, or
-    /// of where a ball's centre may be.
+    /// The signed distance to a surface, in the node's own coordinates: that of a length's operand,
+    /// or of where a ball's centre may be.
     pub(crate) field: Arc<dyn AnyField>,
     /// How far it may be off.
     pub(crate) accuracy: Accuracy,

@@ -1,7 +1,7 @@
 //! How far a solid reaches along a direction: boxes of what its parts' boxes do not tell.
 //!
-//! A column and a slab that are turned have no end along any axis, but what they have in common has. It is
-//! asked for in its own coordinates, along each axis of the frame.
+//! A column and a slab that are turned have no end along any axis, but what they have in common
+//! has. It is asked for in its own coordinates, along each axis of the frame.
 
 use std::cell::Cell;
 
@@ -17,7 +17,8 @@ const MOST: usize = 2000;
 /// Nor what is nested deeper.
 const DEEPEST: u32 = 32;
 
-/// A box around what is inside a solid, after a map; infinite along the axes where nothing is known.
+/// A box around what is inside a solid, after a map; infinite along the axes where nothing is
+/// known.
 pub(super) fn box_under(solid: &Solid, map: &DAffine3) -> Bounds {
     let left = Cell::new(MOST);
     let rows = map.matrix3.transpose();
@@ -28,7 +29,8 @@ pub(super) fn box_under(solid: &Solid, map: &DAffine3) -> Bounds {
     Bounds::new(map.translation + low, map.translation + high)
 }
 
-/// The most that the scalar product with a direction, of any length, is over what is inside, at least.
+/// The most that the scalar product with a direction, of any length, is over what is inside, at
+/// least.
 fn support(solid: &Solid, direction: DVec3, depth: u32, left: &Cell<usize>) -> f64 {
     if direction == DVec3::ZERO {
         return 0.0;

@@ -4,10 +4,10 @@
 //!     f > −c   ⇒   M > −(s c + r)         M the greatest of the members' values
 //! ```
 //!
-//! Members are what a tree of joins is made of: at last its leaves. The spread s is 1 for min, max and
-//! smooth joins, and what an R-function makes of equal values. The rise r is what smooth joins add.
-//! It is no sum along a chain: where no member is above −r, operands that rise by r_a and r_b are
-//! below −(r − r_a)/s and −(r − r_b)/s, and their smooth union of width k is below 0 if
+//! Members are what a tree of joins is made of: at last its leaves. The spread s is 1 for min, max
+//! and smooth joins, and what an R-function makes of equal values. The rise r is what smooth joins
+//! add. It is no sum along a chain: where no member is above −r, operands that rise by r_a and r_b
+//! are below −(r − r_a)/s and −(r − r_b)/s, and their smooth union of width k is below 0 if
 //!
 //! ```text
 //!     r ≥ S(r_a, r_b)     S the smooth maximum of width s k
@@ -63,7 +63,8 @@ impl Swell {
         Swell { core, growth, spread, rise }
     }
 
-    /// Of an end face and sides, moved in and back: `inside` is the box of what they have in common.
+    /// Of an end face and sides, moved in and back: `inside` is the box of what they have in
+    /// common.
     pub(super) fn rim(inside: Bounds, pair: [Swell; 2]) -> Swell {
         let growth = |own: Swell| own.grown(own.spread);
         let growth = if inside.is_empty() { DVec3::INFINITY } else { growth(pair[0]).max(growth(pair[1])) };
@@ -141,7 +142,8 @@ fn either(rule: Rule, a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
     }
 }
 
-/// Spread and rise of a conjunction: none exceeds its least operand, but those that are flattened near 0.
+/// Spread and rise of a conjunction: none exceeds its least operand, but those that are flattened
+/// near 0.
 fn both(rule: Rule, a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
     let spread = if matches!(rule, Rule::Zero(_)) { f64::INFINITY } else { a.0.max(b.0) };
     (spread, a.1.max(b.1))

@@ -55,7 +55,8 @@ pub struct Tape {
     origin: DVec3,
     roundoff: f64,
     rivals: Option<Rivals>,
-    /// Whether the value is a min or max of those of leaves, negated or not: nothing else is done to them.
+    /// Whether the value is a min or max of those of leaves, negated or not: nothing else is done
+    /// to them.
     is_choice: bool,
 }
 
@@ -145,8 +146,8 @@ impl Tape {
         self.origin = origin;
     }
 
-    /// Becomes a copy of another tape, relative to another origin, in memory that it has. It has no rivals: they are of no use
-    /// for gradients.
+    /// Becomes a copy of another tape, relative to another origin, in memory that it has. It has no
+    /// rivals: they are of no use for gradients.
     pub(crate) fn become_recentred(&mut self, other: &Tape, origin: DVec3) {
         let (mut frames, mut leaves, mut steps) =
             (std::mem::take(&mut self.frames), std::mem::take(&mut self.leaves), std::mem::take(&mut self.steps));

@@ -37,7 +37,8 @@ impl Program {
         self.scene.leaves.iter().any(|leaf| leaf.field.is_faceted())
     }
 
-    /// The corners of such leaves, as vertices have them, each once; not of those that are deformed or offset.
+    /// The corners of such leaves, as vertices have them, each once; not of those that are deformed
+    /// or offset.
     pub(crate) fn corners(&self) -> Vec<DVec3> {
         let mut all: Vec<[f32; 3]> = Vec::new();
         for leaf in self.scene.leaves.iter().filter(|leaf| leaf.frame == 0 && leaf.placement.shift == 0.0) {

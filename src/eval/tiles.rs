@@ -1,8 +1,8 @@
 //! The distance to a surface without end, measured tile by tile where it is asked for.
 //!
 //! A tile's surface is found when a point of it is first asked about, and kept. It is found as far
-//! around the tile as lengths reach, so distances beyond that are no more than bounds. No lock is held
-//! while a tile is made: two threads may make the same one, and the first is kept.
+//! around the tile as lengths reach, so distances beyond that are no more than bounds. No lock is
+//! held while a tile is made: two threads may make the same one, and the first is kept.
 
 use std::collections::HashMap;
 use std::fmt;

@@ -14,7 +14,8 @@ use super::scene::Instance;
 use rvachev_field::{Pieces, Placement, Zone};
 
 impl Program {
-    /// The program for a zone that lies across no edge of a fold, if all its deformations are folds.
+    /// The program for a zone that lies across no edge of a fold, if all its deformations are
+    /// folds.
     pub(crate) fn unfolded(&self, zone: &Zone) -> Option<Program> {
         if self.frames.is_empty()
             || self.nodes.iter().any(|node| matches!(node.kind, Kind::Join { hierarchy: Some(_), .. }))

@@ -29,7 +29,8 @@ const GOOD: f64 = 1.3;
 /// Twists between the middle and an end that are tried where none fits.
 const TWISTS: [f64; 2] = [0.9, -0.9];
 
-/// Searches the points of a surface, which are in random order; `rough` is the deviation of local planes.
+/// Searches the points of a surface, which are in random order; `rough` is the deviation of local
+/// planes.
 pub(super) fn search(
     points: &[DVec3],
     rough: f64,

@@ -32,8 +32,8 @@ pub struct DeformedSuperellipsoid {
     pub bend: glam::DVec2,
 }
 
-/// The superellipsoid, tapered, twisted and bent, that points are of; one that is not
-/// deformed where that explains the points as well, each parameter at its price (Schwarz's criterion).
+/// The superellipsoid, tapered, twisted and bent, that points are of; one that is not deformed
+/// where that explains the points as well, each parameter at its price (Schwarz's criterion).
 ///
 /// Points should be of the whole surface. A twist of a round section, and a bend of a ball, leave
 /// no trace: the covariance tells.

@@ -71,7 +71,8 @@ impl Grid<'_> {
             .collect()
     }
 
-    /// The nearest points, the point itself among them, from the nearest on, with squared distances.
+    /// The nearest points, the point itself among them, from the nearest on, with squared
+    /// distances.
     pub(super) fn nearest(&self, p: DVec3, count: usize, found: &mut Vec<(f64, u32)>) {
         let at = self.cell_of(p);
         for reach in 1.. {

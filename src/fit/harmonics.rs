@@ -40,7 +40,8 @@ pub(super) struct Around {
     pub(super) stretched: Vec<Repeat>,
     /// Half the height.
     pub(super) height: f64,
-    /// How much longer the section is than wide, and the angle of the direction that it is longest in.
+    /// How much longer the section is than wide, and the angle of the direction that it is longest
+    /// in.
     pub(super) long: f64,
     pub(super) first: f64,
 }

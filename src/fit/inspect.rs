@@ -1,8 +1,8 @@
 //! A scan compared with its model: how far each point is off, and which part is wrong.
 //!
 //! A part that has moved is as much too far out on one side as it is too far in on the other, and
-//! its median deviation is 0. So a shift τ and a growth o of every leaf are fitted to the deviations
-//! d of its points, n being the normals there:
+//! its median deviation is 0. So a shift τ and a growth o of every leaf are fitted to the
+//! deviations d of its points, n being the normals there:
 //!
 //! ```text
 //!     minimise  Σ wᵢ (dᵢ − nᵢ·τ − o)²
@@ -57,17 +57,19 @@ pub struct LeafDeviation {
     pub least: (f64, DVec3),
     /// The greatest deviation and its place.
     pub greatest: (f64, DVec3),
-    /// By how much the leaf has moved, in length units. 0 along directions that its points do not tell.
+    /// By how much the leaf has moved, in length units. 0 along directions that its points do not
+    /// tell.
     pub shift: DVec3,
     /// By how much it is too large all around (a hole: too small).
     pub growth: f64,
-    /// The larger of shift and growth over its standard deviation. Noise and unevenness make it 4 or so.
+    /// The larger of shift and growth over its standard deviation. Noise and unevenness make it 4
+    /// or so.
     pub significance: f64,
 }
 
 impl LeafDeviation {
-    /// Whether the leaf is off by more than noise explains: [`significance`](LeafDeviation::significance)
-    /// above 10.
+    /// Whether the leaf is off by more than noise explains:
+    /// [`significance`](LeafDeviation::significance) above 10.
     #[must_use]
     pub fn is_off(&self) -> bool {
         self.significance > SIGNIFICANT
@@ -82,8 +84,8 @@ impl LeafDeviation {
 ///
 /// # Errors
 ///
-/// [`FitError::Solid`] if the solid is not valid, [`FitError::TooFew`] of no points, [`FitError::Extent`] of points
-/// further than 10⁹ from the origin.
+/// [`FitError::Solid`] if the solid is not valid, [`FitError::TooFew`] of no points,
+/// [`FitError::Extent`] of points further than 10⁹ from the origin.
 ///
 /// ```
 /// use rvachev::fit::inspect;
@@ -135,7 +137,8 @@ pub fn inspect_with(solid: &Solid, cloud: &PointCloud, run: &Run) -> Result<Devi
 }
 
 impl Deviations {
-    /// The signed deviation of each point of the cloud, in length units: positive outside of the solid.
+    /// The signed deviation of each point of the cloud, in length units: positive outside of the
+    /// solid.
     #[must_use]
     pub fn signed(&self) -> &[f64] {
         &self.signed

@@ -8,8 +8,9 @@ use super::deviations::Deviation;
 use super::inspect::{Deviations, LeafDeviation};
 
 impl Deviations {
-    /// The report as one JSON object on one line, for other programs: the sizes of all deviations, and of each
-    /// leaf the same and what was found of it. Lengths are in length units, in full; what is not finite is `null`.
+    /// The report as one JSON object on one line, for other programs: the sizes of all deviations,
+    /// and of each leaf the same and what was found of it. Lengths are in length units, in full;
+    /// what is not finite is `null`.
     ///
     /// ```text
     /// {"points": 900, "mean": 0.01, "rms": 0.012, "median": 0.009, "percentile_95": 0.02, "largest": 0.03,

@@ -39,7 +39,8 @@ pub(super) trait Model<const N: usize>: Copy + Sync {
     /// The model moved by a step of the parameters, which must be within [`limits`](Model::limits).
     fn moved(&self, step: &[f64; N]) -> Self;
 
-    /// The longest steps down and up: what keeps the parameters in their ranges, and the steps sane.
+    /// The longest steps down and up: what keeps the parameters in their ranges, and the steps
+    /// sane.
     fn limits(&self) -> [[f64; 2]; N];
 
     /// The logarithm of the surface's area, and its derivatives.
@@ -66,7 +67,8 @@ pub(super) struct LogGauge<R> {
     pub(super) radius: R,
 }
 
-/// Two logarithms joined: `log2(2^u + 2^v)`, the shares of both, and the entropy of the shares in nats.
+/// Two logarithms joined: `log2(2^u + 2^v)`, the shares of both, and the entropy of the shares in
+/// nats.
 #[inline(always)]
 pub(super) fn joined<R: Real>(u: R, v: R) -> (R, R, R, R) {
     let (hi, lo) = (u.max(v), u.min(v));

@@ -67,7 +67,8 @@ impl Principal {
     }
 }
 
-/// Eigenvalues from the least up and right-handed eigenvectors of a symmetric matrix, by Jacobi's rotations.
+/// Eigenvalues from the least up and right-handed eigenvectors of a symmetric matrix, by Jacobi's
+/// rotations.
 pub(super) fn eigen(mut m: [[f64; 3]; 3]) -> ([f64; 3], DMat3) {
     let mut v = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     for _ in 0..30 {

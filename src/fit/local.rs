@@ -11,7 +11,8 @@ use super::random::Random;
 const ASKED: usize = 100;
 const NEIGHBOURS: usize = 10;
 
-/// Mean normals longer than this are of one-sided views: complete surfaces have at most 0.22, views 0.43 or more.
+/// Mean normals longer than this are of one-sided views: complete surfaces have at most 0.22, views
+/// 0.43 or more.
 const ONE_SIDED: f64 = 0.35;
 
 pub(super) struct Local {

@@ -7,7 +7,8 @@
 //! Expectation and maximisation in turn: the chance p of each point, then the model by steps that
 //! the points count in by p, then σ and w.
 //!
-//! Source: W. Liu et al., *Robust and accurate superquadric recovery: a probabilistic approach* (2022).
+//! Source: W. Liu et al., *Robust and accurate superquadric recovery: a probabilistic approach*
+//! (2022).
 
 use std::f64::consts::TAU;
 

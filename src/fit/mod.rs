@@ -56,11 +56,12 @@
 //!
 //! Candidates for the axis are the principal axes and those of the superellipsoid that fits best.
 //! About each of them the logarithm of the radius is taken apart into harmonics of 3 to 16
-//! repetitions; the largest number that explains nearly as much as the best one is taken, as
-//! its divisors do as well. Sections that are longer than wide are stretched first. Starts by the
+//! repetitions; the largest number that explains nearly as much as the best one is taken, as its
+//! divisors do as well. Sections that are longer than wide are stretched first. Starts by the
 //! phases and the extremes of the radius are descended from with exponents tied together, then
 //! untied; models are compared by likelihood and number of parameters, all with the area of the
-//! superellipsoid, as sizes and exponents trade off. Of 200 random prisms, stars, flowers, gears and free forms:
+//! superellipsoid, as sizes and exponents trade off. Of 200 random prisms, stars, flowers, gears
+//! and free forms:
 //!
 //! | condition | m right | IoU ≥ .99 | median IoU | points evaluated |
 //! |---|---|---|---|---|
@@ -76,8 +77,8 @@
 //!
 //! Starts are in closed form: along each principal axis the middle of the points is a parabola, and
 //! their width changes in proportion. The bend is a vector, smooth at 0. Of 200 random solids with
-//! tapers up to 0.7 and bends up to a radian between the middle and an end, as strong as a valid solid
-//! may have them, 1 % noise:
+//! tapers up to 0.7 and bends up to a radian between the middle and an end, as strong as a valid
+//! solid may have them, 1 % noise:
 //!
 //! | deformation | IoU ≥ .95 | median IoU | points evaluated |
 //! |---|---|---|---|
@@ -86,10 +87,11 @@
 //!
 //! # Unions of supershapes
 //!
-//! The pipeline of the paper on rational supershapes, with its global error of fit (equation 15):
-//! a truncated supershape a segment, united by R_p with p = 2, holes found by the error and subtracted, all
-//! supershapes refined together. IoU of parts whose meshes are cut at concave creases, each supershape fitted
-//! alone → refined together; with noise in shares of the box's diagonal, without normals:
+//! The pipeline of the paper on rational supershapes, with its global error of fit (equation 15): a
+//! truncated supershape a segment, united by R_p with p = 2, holes found by the error and
+//! subtracted, all supershapes refined together. IoU of parts whose meshes are cut at concave
+//! creases, each supershape fitted alone → refined together; with noise in shares of the box's
+//! diagonal, without normals:
 //!
 //! | part | clean | 0.2 % noise | 0.4 % noise |
 //! |---|---|---|---|
@@ -105,17 +107,19 @@
 //! | plate with a pin and a hole | .999 → .999 | .994 → .987 | .985 → .976 |
 //! | tube, with normals | .994 → .999 | .997 → .989 | .990 → .974 |
 //!
-//! Equation 15 is a poor judge where there is noise: its weights favour small members, and R_p punishes a point
-//! outside more than one inside. [`UnionSettings::refinement`] of 0 then is the better choice. A tube without normals
-//! is not found (IoU .3), as nearly half of its points are of the hole. Of meshes from CAD, simple ones come out at
-//! .96 to 1.00, those with many small holes, fillets and thin walls at .15 to .95: what is smaller
-//! than some spacings of 6000 points is not seen, and points without data beside them are not told to be empty.
+//! Equation 15 is a poor judge where there is noise: its weights favour small members, and R_p
+//! punishes a point outside more than one inside. [`UnionSettings::refinement`] of 0 then is the
+//! better choice. A tube without normals is not found (IoU .3), as nearly half of its points are of
+//! the hole. Of meshes from CAD, simple ones come out at .96 to 1.00, those with many small holes,
+//! fillets and thin walls at .15 to .95: what is smaller than some spacings of 6000 points is not
+//! seen, and points without data beside them are not told to be empty.
 //!
 //! # Registration
 //!
 //! From 24 rotations of the principal axes of the dense points, Gauss–Newton steps on f/|∇f| with
-//! weights whose width falls from 0.6 of the size. Of 60 random parts (a block with three pins) in random
-//! poses, all are found: clean, with 1 % noise and 20 % strewn points, and of unknown scale with 0.5 % and 20 %.
+//! weights whose width falls from 0.6 of the size. Of 60 random parts (a block with three pins) in
+//! random poses, all are found: clean, with 1 % noise and 20 % strewn points, and of unknown scale
+//! with 0.5 % and 20 %.
 //!
 //! Sources: F. Solina, R. Bajcsy, *Recovery of parametric models from range images: the case for
 //! superquadrics with global deformations* (1990); W. Liu, Y. Wu, S. Ruan, G. Chirikjian, *Robust

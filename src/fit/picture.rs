@@ -10,16 +10,18 @@ use crate::geom::{Camera, Image, PointCloud};
 /// What there is no point in.
 const BACKGROUND: [u8; 4] = [40, 42, 46, 255];
 
-/// Points are squares of so many pixels to either side of the middle, in a picture of so many pixels.
+/// Points are squares of so many pixels to either side of the middle, in a picture of so many
+/// pixels.
 const POINT: f64 = 1.0 / 300.0;
 
 /// Larger pictures are refused.
 const LARGEST: u32 = 16_384;
 
 impl Deviations {
-    /// A picture of the cloud as a camera sees it, each point by its deviation: blue at −`reach` and beyond, white
-    /// at 0, red at `reach` and beyond, as [`colored`](Deviations::colored) does it; nearer points hide those
-    /// behind. At the right stands a bar with the numbers, in length units.
+    /// A picture of the cloud as a camera sees it, each point by its deviation: blue at −`reach`
+    /// and beyond, white at 0, red at `reach` and beyond, as [`colored`](Deviations::colored) does
+    /// it; nearer points hide those behind. At the right stands a bar with the numbers, in length
+    /// units.
     ///
     /// | parameter | unit | range |
     /// |---|---|---|
@@ -28,8 +30,8 @@ impl Deviations {
     ///
     /// # Errors
     ///
-    /// [`FitError::Setting`] of a number out of its range, [`FitError::Points`] if the cloud has another number of
-    /// points, [`FitError::Camera`] of a camera that sees nothing.
+    /// [`FitError::Setting`] of a number out of its range, [`FitError::Points`] if the cloud has
+    /// another number of points, [`FitError::Camera`] of a camera that sees nothing.
     ///
     /// ```
     /// use rvachev::fit::inspect;

@@ -27,7 +27,8 @@ impl Table {
     }
 }
 
-/// The plane that many points are of, which has nearly all others on one side, and reaches beyond them.
+/// The plane that many points are of, which has nearly all others on one side, and reaches beyond
+/// them.
 pub(super) fn table(points: &[DVec3], random: &mut Random) -> Option<Table> {
     let [low, high] = extent(points);
     let size = high.distance(low);

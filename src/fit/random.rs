@@ -1,6 +1,7 @@
 //! Random numbers that depend on the seed alone.
 
-/// splitmix64. Source: G. Steele, D. Lea, C. Flood, *Fast splittable pseudorandom number generators* (2014).
+/// splitmix64. Source: G. Steele, D. Lea, C. Flood, *Fast splittable pseudorandom number
+/// generators* (2014).
 pub(super) struct Random(u64);
 
 impl Random {

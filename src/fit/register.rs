@@ -65,7 +65,8 @@ pub struct Registration {
     /// fit, about the share of the outliers where the pose is right.
     pub cost: f64,
     /// The covariance of a turn about the solid's axes (radians), a shift along them (length units
-    /// of the solid), and the logarithm of the scale: large along directions that the points leave free.
+    /// of the solid), and the logarithm of the scale: large along directions that the points leave
+    /// free.
     pub covariance: Covariance,
 }
 
@@ -80,8 +81,8 @@ impl Registration {
 
 /// Finds the pose of a solid in a scan of it, from any rotation.
 ///
-/// The part of the scan that is of the solid should be 60 % or more, and show most of it: of
-/// views from one side fewer come out right. A solid that looks the same from several sides is found in
+/// The part of the scan that is of the solid should be 60 % or more, and show most of it: of views
+/// from one side fewer come out right. A solid that looks the same from several sides is found in
 /// any of these poses. A failure is told by [`Registration::cost`], which then is well above the
 /// share of the outliers.
 ///

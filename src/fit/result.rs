@@ -45,7 +45,8 @@ pub struct SearchReport {
     pub one_sided: bool,
     /// Many points were found to be of a plane that the object stands on, and left out.
     pub table: bool,
-    /// No axis was found that the radii of a supershape repeat about: its symmetry numbers are a guess.
+    /// No axis was found that the radii of a supershape repeat about: its symmetry numbers are a
+    /// guess.
     pub symmetry_unclear: bool,
 }
 

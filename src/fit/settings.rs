@@ -40,7 +40,8 @@ pub enum Start {
     Exact,
     /// Rational radii first.
     Rational {
-        /// The largest difference of the logarithms of the radii, above 0: 0.1 takes nearly all starts.
+        /// The largest difference of the logarithms of the radii, above 0: 0.1 takes nearly all
+        /// starts.
         tolerance: f64,
     },
 }

@@ -122,7 +122,8 @@ impl<E: Number> Problem<'_, E> {
             if drop > 0.0 {
                 std::mem::swap(&mut fitted.residuals, &mut trial);
                 fitted.model = model;
-                // The area's term makes the sum's zero arbitrary: gains are relative to the squares.
+                // The area's term makes the sum's zero arbitrary: gains are relative to the
+                // squares.
                 let squares = next.square.abs().max(area);
                 sums = next;
                 damping = f64::max(0.2 * damping, 1e-9);

@@ -27,7 +27,8 @@ const NAMES: [&str; PARAMETERS] = [
 /// all. 32 points are needed and 1000 wanted.
 ///
 /// m is found from 2 to 16 (and twice as many where lobes lean), the meridian's m among 2, 3, 4, 5
-/// and 6. All six exponents together, and exponents with sizes, trade off: compare surfaces, not parameters.
+/// and 6. All six exponents together, and exponents with sizes, trade off: compare surfaces, not
+/// parameters.
 ///
 /// # Errors
 ///

@@ -228,7 +228,8 @@ fn starts_about(axis: &Around, repeat: &Repeat, stretched: bool) -> Vec<Supersha
     starts
 }
 
-/// Two lobes along one axis of a superellipsoid, about another: made by the sizes, or by the exponents.
+/// Two lobes along one axis of a superellipsoid, about another: made by the sizes, or by the
+/// exponents.
 fn two_lobes(quadric: &Superquadric, turns: usize) -> Vec<Supershaped> {
     let quadric = quadric.permuted(turns);
     let a = quadric.semi_axes;

@@ -56,7 +56,8 @@ pub struct Camera {
 pub enum Projection {
     /// Rays meet in the eye.
     Perspective {
-        /// Angle from the bottom to the top of the picture, at least 10⁻⁹ radians and below 180 degrees.
+        /// Angle from the bottom to the top of the picture, at least 10⁻⁹ radians and below 180
+        /// degrees.
         fov: Angle,
     },
     /// Rays are parallel to the view, and start in the plane through the eye.
@@ -94,8 +95,8 @@ pub(super) const FRAMING_MARGIN: f64 = 1.06;
 const NARROWEST: Angle = rad(1e-9);
 
 impl Camera {
-    /// A perspective camera; `fov` is the vertical field of view, at least 10⁻⁹ radians and below 180
-    /// degrees.
+    /// A perspective camera; `fov` is the vertical field of view, at least 10⁻⁹ radians and below
+    /// 180 degrees.
     #[must_use]
     pub fn perspective(
         eye: impl Into<DVec3>,
@@ -216,9 +217,9 @@ impl Camera {
     ///
     /// # Errors
     ///
-    /// [`CameraError`] names the parameter, its value and what is allowed: points and vectors
-    /// must be finite, the eye must not be the target, `up` must be neither 0 nor along the
-    /// view, the field of view must be at least 10⁻⁹ radians and below 180 degrees, the height of the view
+    /// [`CameraError`] names the parameter, its value and what is allowed: points and vectors must
+    /// be finite, the eye must not be the target, `up` must be neither 0 nor along the view, the
+    /// field of view must be at least 10⁻⁹ radians and below 180 degrees, the height of the view
     /// finite and at least 10⁻⁹.
     pub fn check(&self) -> Result<(), CameraError> {
         let error = |parameter, value: &dyn std::fmt::Display, allowed| {
@@ -336,8 +337,8 @@ impl Rays {
         self.forward
     }
 
-    /// Where the rays of an orthographic camera start: at pixel coordinates (0, 0), and what to add for a
-    /// pixel to the right and for one down.
+    /// Where the rays of an orthographic camera start: at pixel coordinates (0, 0), and what to add
+    /// for a pixel to the right and for one down.
     pub(crate) fn starts(&self) -> Option<[DVec3; 3]> {
         self.parallel.then(|| [self.eye + self.corner, self.across, self.down])
     }

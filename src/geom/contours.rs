@@ -6,8 +6,8 @@ use glam::DVec2;
 
 use super::Polyline;
 
-/// The contours of a solid on a plane: closed, nested, the inside to the left of each, so that outlines run
-/// anticlockwise and holes clockwise; and how many places were left undecided.
+/// The contours of a solid on a plane: closed, nested, the inside to the left of each, so that
+/// outlines run anticlockwise and holes clockwise; and how many places were left undecided.
 ///
 /// It is a list of [`Polyline`]s wherever one is wanted.
 ///
@@ -49,9 +49,10 @@ impl Contours {
         &self.lines
     }
 
-    /// In so many places it was left undecided what is there: a sheet or a hole that is thinner than the tolerance, no
-    /// nearer to a contour than that, the thin end of a gap or a tip, a point where two contours touch; or, at a
-    /// tolerance that is very fine for its solid, a contour that was not followed any further.
+    /// In so many places it was left undecided what is there: a sheet or a hole that is thinner
+    /// than the tolerance, no nearer to a contour than that, the thin end of a gap or a tip, a
+    /// point where two contours touch; or, at a tolerance that is very fine for its solid, a
+    /// contour that was not followed any further.
     #[must_use]
     pub fn unresolved(&self) -> usize {
         self.unresolved
@@ -63,7 +64,8 @@ impl Contours {
         self.lines.iter().map(Polyline::area).sum()
     }
 
-    /// Every outline with the holes that are in it; an island within a hole is an outline of its own.
+    /// Every outline with the holes that are in it; an island within a hole is an outline of its
+    /// own.
     #[must_use]
     pub fn outlines(&self) -> Vec<Outline<'_>> {
         let boxes: Vec<[DVec2; 2]> = self.lines.iter().map(extent).collect();

@@ -28,14 +28,14 @@ use crate::Bounds;
 /// A triangle mesh: positions and triangles that index them, and perhaps normals per vertex
 /// and per corner, colours and texture coordinates per corner, owners per triangle.
 ///
-/// Every index is in range and every position finite; nothing else is promised. Positions are in single precision, some
-/// seven digits: steps of 0.25 at coordinates of 4·10⁶.
-/// [`Mesh::check`] tells the rest. A mesh that was extracted from a solid also says what the
-/// extraction found: [`possibly_lost`](Mesh::possibly_lost), [`warnings`](Mesh::warnings).
+/// Every index is in range and every position finite; nothing else is promised. Positions are in
+/// single precision, some seven digits: steps of 0.25 at coordinates of 4·10⁶. [`Mesh::check`]
+/// tells the rest. A mesh that was extracted from a solid also says what the extraction found:
+/// [`possibly_lost`](Mesh::possibly_lost), [`warnings`](Mesh::warnings).
 ///
 /// A mesh is plain data: lists and numbers, without functions or references to the solid that it
-/// was made from. Two meshes are equal if positions, triangles and attributes are; what the extraction
-/// found is not compared.
+/// was made from. Two meshes are equal if positions, triangles and attributes are; what the
+/// extraction found is not compared.
 ///
 /// ```
 /// use glam::Vec3;

@@ -68,8 +68,8 @@ impl PointCloud {
         Ok(PointCloud { positions, normals: None, colors: None })
     }
 
-    /// A cloud of those points that are finite, and the numbers of the others, from 0: scanners write NaN where
-    /// they saw nothing.
+    /// A cloud of those points that are finite, and the numbers of the others, from 0: scanners
+    /// write NaN where they saw nothing.
     ///
     /// ```
     /// use glam::DVec3;

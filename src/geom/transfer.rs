@@ -6,8 +6,8 @@
 //! ```
 //!
 //! Pictures have millions of numbers to turn into bytes, and few to turn back: bytes come from a
-//! table, powers do the rest. The table divides every octave of `l` into equal steps so small that the
-//! byte changes at most once within each:
+//! table, powers do the rest. The table divides every octave of `l` into equal steps so small that
+//! the byte changes at most once within each:
 //!
 //! ```text
 //!   byte       |        .---       128 steps an octave: from ½ to 1, where bytes follow one

@@ -1,7 +1,8 @@
 //! Drawings of polylines: SVG and DXF.
 //!
-//! SVG has y down, so that the drawing is turned over in it; DXF has y up, as the plane has.
-//! One length unit is a millimetre in both, and both say so: the size of an SVG is in mm, a DXF has `$INSUNITS`.
+//! SVG has y down, so that the drawing is turned over in it; DXF has y up, as the plane has. One
+//! length unit is a millimetre in both, and both say so: the size of an SVG is in mm, a DXF has
+//! `$INSUNITS`.
 //!
 //! Sources: W3C, *Scalable Vector Graphics 1.1*; Autodesk, *DXF Reference*, Release 12, which
 //! every reader knows.
@@ -15,11 +16,12 @@ use crate::geom::Polyline;
 /// Outlines are this part of the longest side wide.
 const STROKE: f64 = 1e-3;
 
-/// Coordinates are written to this part of the longest side, or finer: a tenth of what a laser cutter resolves of a metre.
+/// Coordinates are written to this part of the longest side, or finer: a tenth of what a laser
+/// cutter resolves of a metre.
 const RESOLUTION: f64 = 1e-6;
 
-/// Writes polylines as SVG: closed ones filled, holes left open, and all of them outlined. One length unit is a
-/// millimetre; coordinates are written to a millionth of the longest side.
+/// Writes polylines as SVG: closed ones filled, holes left open, and all of them outlined. One
+/// length unit is a millimetre; coordinates are written to a millionth of the longest side.
 ///
 /// ```
 /// use glam::DVec2;
@@ -35,8 +37,8 @@ const RESOLUTION: f64 = 1e-6;
 ///
 /// # Errors
 ///
-/// Those of the writer; [`InvalidInput`](io::ErrorKind::InvalidInput), before anything is written, for a coordinate
-/// that is not finite, or not within ±10³⁰⁰.
+/// Those of the writer; [`InvalidInput`](io::ErrorKind::InvalidInput), before anything is written,
+/// for a coordinate that is not finite, or not within ±10³⁰⁰.
 pub fn write_svg(lines: &[Polyline], mut out: impl Write) -> io::Result<()> {
     check(lines)?;
     let points = || lines.iter().flat_map(|line| line.points());
@@ -84,13 +86,13 @@ fn short(x: f64, places: usize) -> String {
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
-/// Writes polylines as DXF (Release 12): entities POLYLINE on the layer `0`, closed or open. One length unit is a
-/// millimetre: `$INSUNITS` is 4, and `$MEASUREMENT` 1, metric.
+/// Writes polylines as DXF (Release 12): entities POLYLINE on the layer `0`, closed or open. One
+/// length unit is a millimetre: `$INSUNITS` is 4, and `$MEASUREMENT` 1, metric.
 ///
 /// # Errors
 ///
-/// Those of the writer; [`InvalidInput`](io::ErrorKind::InvalidInput), before anything is written, for a coordinate
-/// that is not finite, or not within ±10³⁰⁰.
+/// Those of the writer; [`InvalidInput`](io::ErrorKind::InvalidInput), before anything is written,
+/// for a coordinate that is not finite, or not within ±10³⁰⁰.
 pub fn write_dxf(lines: &[Polyline], mut out: impl Write) -> io::Result<()> {
     check(lines)?;
     let mut pair = |code: u32, value: &dyn std::fmt::Display| write!(out, "{code}\n{value}\n");

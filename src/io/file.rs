@@ -45,7 +45,8 @@ pub(super) fn write_whole(path: &Path, content: impl FnOnce(&mut BufWriter<File>
     temporary.rename(&target)
 }
 
-/// What a path stands for: a link stays a link, and what it points to is replaced, or made if there is nothing.
+/// What a path stands for: a link stays a link, and what it points to is replaced, or made if there
+/// is nothing.
 fn followed(path: &Path) -> io::Result<PathBuf> {
     // As many as Linux follows.
     const LINKS: u32 = 40;

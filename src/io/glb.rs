@@ -31,7 +31,8 @@ use crate::geom::Mesh;
 /// Writes a mesh as GLB, with normals, colours and texture coordinates if it has them; a length
 /// of 1 means one [`unit`](SaveSettings::unit). The writer need not be buffered.
 ///
-/// Vertices that no triangle uses are left out. A mesh without triangles gives a scene with an empty node.
+/// Vertices that no triangle uses are left out. A mesh without triangles gives a scene with an
+/// empty node.
 ///
 /// ```
 /// use glam::Vec3;

@@ -3,9 +3,9 @@
 //!
 //! # Readers
 //!
-//! [`Mesh::load`](crate::Mesh::load) and [`PointCloud::load`](crate::PointCloud::load) by extension,
-//! [`Mesh::read`](crate::Mesh::read) and [`PointCloud::read`](crate::PointCloud::read) by
-//! [`FileFormat`]. They are in the feature `import`.
+//! [`Mesh::load`](crate::Mesh::load) and [`PointCloud::load`](crate::PointCloud::load) by
+//! extension, [`Mesh::read`](crate::Mesh::read) and [`PointCloud::read`](crate::PointCloud::read)
+//! by [`FileFormat`]. They are in the feature `import`.
 //!
 //! # Writers
 //!

@@ -175,8 +175,8 @@ pixel! {
 
 impl<P: Pixel> Image<P> {
     /// Saves the picture in the format that the extension stands for: `.png` for colours, greys,
-    /// masks, leaves, depths and normals ([`Colors`](crate::io::Colors) says how), `.exr` for what is
-    /// made of floats: light, depths, normals, positions.
+    /// masks, leaves, depths and normals ([`Colors`](crate::io::Colors) says how), `.exr` for what
+    /// is made of floats: light, depths, normals, positions.
     ///
     /// The file appears complete or not at all. Missing directories are not made.
     ///

@@ -16,9 +16,9 @@
 //!   endsolid rvachev
 //! ```
 //!
-//! In the binary form all numbers are little-endian. Facets are anticlockwise seen from outside, their normals
-//! of length 1. The format has no units and no shared vertices, and in binary no room for more
-//! than 2³² − 1 facets.
+//! In the binary form all numbers are little-endian. Facets are anticlockwise seen from outside,
+//! their normals of length 1. The format has no units and no shared vertices, and in binary no room
+//! for more than 2³² − 1 facets.
 //!
 //! Source: 3D Systems, StereoLithography Interface Specification (1988).
 

@@ -36,8 +36,8 @@ const MOST: usize = (1 << 31) - 2;
 /// An archive with more bytes than this of text has 64-bit lengths.
 const LARGE: usize = 1 << 31;
 
-/// Writes a mesh as 3MF, with colours if it has them; a length of 1 means one [`unit`](SaveSettings::unit). The
-/// writer need not be buffered.
+/// Writes a mesh as 3MF, with colours if it has them; a length of 1 means one
+/// [`unit`](SaveSettings::unit). The writer need not be buffered.
 ///
 /// The format wants a closed, manifold mesh that is oriented outward: see
 /// [`Mesh::check`]. A mesh without triangles gives a file without objects.

@@ -10,11 +10,11 @@
 //!   -----q----------
 //! ```
 //!
-//! Only what faces p counts, with a normal that is turned from n by 120° or more. Beside a convex edge the
-//! largest ball is as small as the edge is near, and what meets there is no wall.
+//! Only what faces p counts, with a normal that is turned from n by 120° or more. Beside a convex
+//! edge the largest ball is as small as the edge is near, and what meets there is no wall.
 //!
-//! Source: J. Ma et al., *3D Medial Axis Point Approximation Using Nearest Neighbors and the Normal Field*
-//! (2012), section 3.
+//! Source: J. Ma et al., *3D Medial Axis Point Approximation Using Nearest Neighbors and the Normal
+//! Field* (2012), section 3.
 
 use glam::{DVec3, Vec3};
 
@@ -28,8 +28,8 @@ use rvachev_field::{Patch, Walls};
 /// The cosine between normals that face each other is less.
 const FACING: f64 = -0.5;
 
-/// What reaches into a ball by less than this part of its radius is not in it: all of a round surface, seen from its
-/// middle, is at one distance but for its facets.
+/// What reaches into a ball by less than this part of its radius is not in it: all of a round
+/// surface, seen from its middle, is at one distance but for its facets.
 const SLACK: f64 = 2e-3;
 
 /// A facet stands for the surface if the cosine between their normals is at least this.
@@ -39,8 +39,9 @@ const ALIKE: f64 = 0.95;
 const PRECISION: f64 = 1e-5;
 
 impl Solid {
-    /// How thick the solid is, all over its surface: at each triangle of its mesh the diameter of the largest ball
-    /// that touches the surface there from inside and holds nothing that faces it. `settings` are those of the mesh.
+    /// How thick the solid is, all over its surface: at each triangle of its mesh the diameter of
+    /// the largest ball that touches the surface there from inside and holds nothing that faces it.
+    /// `settings` are those of the mesh.
     ///
     /// ```
     /// use rvachev::{MeshSettings, Run, Solid};
@@ -55,13 +56,15 @@ impl Solid {
     ///
     /// # Details
     ///
-    /// Two normals face each other if they are 120° or more apart. Facets that are turned from the surface by more than 18°,
-    /// as those that cut off corners where cells are too large, have no thickness. Balls are found to 0.2 %. The mesh's
-    /// facets are off the surface by about h²/8R, h the side of a cell and R the radius of curvature, and so is each
-    /// thickness. Features that the mesh has lost are not seen: see [`thin_features`](Solid::thin_features).
+    /// Two normals face each other if they are 120° or more apart. Facets that are turned from the
+    /// surface by more than 18°, as those that cut off corners where cells are too large, have no
+    /// thickness. Balls are found to 0.2 %. The mesh's facets are off the surface by about h²/8R, h
+    /// the side of a cell and R the radius of curvature, and so is each thickness. Features that
+    /// the mesh has lost are not seen: see [`thin_features`](Solid::thin_features).
     ///
     /// # Errors
-    /// As for [`mesh`](Solid::mesh): what is wrong with the solid or the settings, or that the work was cancelled.
+    /// As for [`mesh`](Solid::mesh): what is wrong with the solid or the settings, or that the work
+    /// was cancelled.
     pub fn thickness(&self, settings: &MeshSettings, run: &Run) -> Result<ThicknessReport, MeshingError> {
         let run = run.stage(0.0, 1.0);
         let [to_mesh, to_measure] = run.stages([0.4, 0.6]);
@@ -73,8 +76,8 @@ impl Solid {
     }
 }
 
-/// The thickness at the middle of each triangle; infinite where nothing faces it, of what has no area, and of what
-/// does not stand for the surface.
+/// The thickness at the middle of each triangle; infinite where nothing faces it, of what has no
+/// area, and of what does not stand for the surface.
 fn thicknesses(mesh: &Mesh, program: &Program, run: &Run) -> Result<Vec<f64>, Cancelled> {
     let [to_ask, to_build, to_search] = run.stages([0.1, 0.2, 0.7]);
     let normals: Vec<DVec3> = (0..mesh.triangles().len()).map(|t| normal(mesh, t)).collect();
@@ -82,7 +85,8 @@ fn thicknesses(mesh: &Mesh, program: &Program, run: &Run) -> Result<Vec<f64>, Ca
     let middles: Vec<DVec3> = mesh.triangles().iter().map(middle).collect();
     let precision = PRECISION * mesh.bounds().size().length();
     let slopes = Slopes { program, precision }.at(&middles, &to_ask)?;
-    // Where cells are too large, facets across creases cut off what they stand for: the surface looks another way.
+    // Where cells are too large, facets across creases cut off what they stand for: the surface
+    // looks another way.
     let cuts: Vec<bool> =
         slopes.iter().zip(&normals).map(|(slope, normal)| slope.normal().dot(*normal) < ALIKE).collect();
     let corners = |t: usize| Patch::flat(mesh.corners(mesh.triangles()[t]));
@@ -95,8 +99,8 @@ fn thicknesses(mesh: &Mesh, program: &Program, run: &Run) -> Result<Vec<f64>, Ca
     })
 }
 
-/// The normal at the middle of a triangle: between those of its corners, as slim facets are turned from the surface;
-/// the facet's own where there are none.
+/// The normal at the middle of a triangle: between those of its corners, as slim facets are turned
+/// from the surface; the facet's own where there are none.
 fn normal(mesh: &Mesh, t: usize) -> DVec3 {
     let triangle = mesh.triangles()[t];
     let [a, b, c] = mesh.corners(triangle);

@@ -7,7 +7,8 @@ use glam::DVec3;
 use crate::Mesh;
 use rvachev_num::figures;
 
-/// How thick a solid is, by the triangles of its mesh: [`Solid::thickness`](crate::Solid::thickness).
+/// How thick a solid is, by the triangles of its mesh:
+/// [`Solid::thickness`](crate::Solid::thickness).
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct ThicknessReport {
@@ -47,8 +48,8 @@ impl ThicknessReport {
         ThicknessReport { least, at, mesh, thicknesses, areas }
     }
 
-    /// The thickness at the middle of each triangle of the mesh, in length units; infinite where no part of the surface
-    /// faces it.
+    /// The thickness at the middle of each triangle of the mesh, in length units; infinite where no
+    /// part of the surface faces it.
     #[must_use]
     pub fn thicknesses(&self) -> &[f64] {
         &self.thicknesses
@@ -62,7 +63,8 @@ impl ThicknessReport {
         if whole > 0.0 { below.fold(0.0, |sum, (_, area)| sum + area) / whole } else { 0.0 }
     }
 
-    /// How much of the surface is how thick: so many ranges of one width, from 0 to the largest thickness that is finite.
+    /// How much of the surface is how thick: so many ranges of one width, from 0 to the largest
+    /// thickness that is finite.
     #[must_use]
     pub fn histogram(&self, ranges: usize) -> Vec<ThicknessBin> {
         let finite = self.thicknesses.iter().filter(|thickness| thickness.is_finite());
@@ -80,8 +82,8 @@ impl ThicknessReport {
         bins
     }
 
-    /// The mesh in colours: from red at thicknesses of `thin` and less, by yellow and green, to blue at those of
-    /// `thick` and more.
+    /// The mesh in colours: from red at thicknesses of `thin` and less, by yellow and green, to
+    /// blue at those of `thick` and more.
     #[must_use]
     pub fn colored(&self, thin: f64, thick: f64) -> Mesh {
         let color = |thickness: &f64| {

@@ -1,4 +1,5 @@
-//! The blocks of a lattice that the surface of a solid may cross, and what is done where that was wrong.
+//! The blocks of a lattice that the surface of a solid may cross, and what is done where that was
+//! wrong.
 
 use std::collections::{HashMap, HashSet};
 
@@ -68,7 +69,8 @@ impl Blocks {
         Blocks { cells, programs: Programs { numbers: (0..chosen.len() as u32).collect(), all }, exact: Vec::new() }
     }
 
-    /// Those of the halved lattice, given with it, in the blocks whose numbers along the axes are chosen.
+    /// Those of the halved lattice, given with it, in the blocks whose numbers along the axes are
+    /// chosen.
     pub(super) fn halves(&self, lattice: &Lattice, is_chosen: impl Fn([u32; 3]) -> bool) -> Blocks {
         let side = BLOCK as u32;
         let (mut cells, mut numbers, mut all) = (Vec::new(), Vec::new(), Vec::new());
@@ -89,7 +91,8 @@ impl Blocks {
         Blocks { cells, programs: Programs { numbers, all }, exact: Vec::new() }
     }
 
-    /// Adds those that are not there yet, by their first cells; `whole` is the program of the solid.
+    /// Adds those that are not there yet, by their first cells; `whole` is the program of the
+    /// solid.
     pub(super) fn add(&mut self, blocks: impl Iterator<Item = [u32; 3]>, whole: &Program) {
         let known: HashSet<[u32; 3]> = self.cells.iter().copied().collect();
         let number = push(&mut self.programs.all, whole.clone());
@@ -97,11 +100,13 @@ impl Blocks {
         self.programs.numbers.resize(self.cells.len(), number);
     }
 
-    /// Makes blocks exact on both sides of mismatches; and so, wherever the surface goes on from those in a block that is not
-    /// among them, that one. Whether there was anything to be done.
+    /// Makes blocks exact on both sides of mismatches; and so, wherever the surface goes on from
+    /// those in a block that is not among them, that one. Whether there was anything to be done.
     ///
-    /// Samples of a field that jumps depend on rounding, and ranges that are told of it, or that users tell of theirs, may
-    /// be wrong. There are none but those that it may have, told by their first cells. All exact blocks have the same value at a node, so in the end all mismatches are repaired.
+    /// Samples of a field that jumps depend on rounding, and ranges that are told of it, or that
+    /// users tell of theirs, may be wrong. There are none but those that it may have, told by their
+    /// first cells. All exact blocks have the same value at a node, so in the end all mismatches
+    /// are repaired.
     pub(super) fn repair(
         &mut self,
         mismatches: &[Mismatch],
@@ -173,7 +178,8 @@ fn push(all: &mut Vec<Program>, program: Program) -> u32 {
     all.len() as u32 - 1
 }
 
-/// The values at the nodes of a block in double precision; beyond the limits of the solid they are outside.
+/// The values at the nodes of a block in double precision; beyond the limits of the solid they are
+/// outside.
 pub(super) fn exact_nodes(
     program: &Program,
     (lattice, limits): (&Lattice, &Bounds),

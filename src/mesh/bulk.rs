@@ -7,8 +7,8 @@ use rayon::prelude::*;
 /// Bytes that are given back at once.
 const PIECE: usize = 1 << 25;
 
-/// A list of a mesh in the making. If it is long when it is dropped, as when the run is cancelled, another thread gives
-/// its memory back: that takes the system a tenth of a second for a gigabyte.
+/// A list of a mesh in the making. If it is long when it is dropped, as when the run is cancelled,
+/// another thread gives its memory back: that takes the system a tenth of a second for a gigabyte.
 #[derive(Clone, Debug)]
 pub(super) struct Bulk<T: Send + 'static>(Vec<T>);
 
@@ -20,8 +20,9 @@ impl<T: Send> Bulk<T> {
 }
 
 impl Bulk<[u32; 3]> {
-    /// Adds zeros. A long list is of memory that the system gives as zeros when it is first written. That for a short one
-    /// may have been used before: it is cleared by all threads, if there are several.
+    /// Adds zeros. A long list is of memory that the system gives as zeros when it is first
+    /// written. That for a short one may have been used before: it is cleared by all threads, if
+    /// there are several.
     pub(super) fn add_zeros(&mut self, count: usize) {
         let length = self.0.len() + count;
         if rayon::current_num_threads() > 1 && length * size_of::<[u32; 3]>() <= PIECE {
@@ -72,8 +73,8 @@ impl<T: Send> Drop for Bulk<T> {
     }
 }
 
-/// Gives a list back piece by piece: while the system takes a piece, no other thread of the program gets memory or gives
-/// any back.
+/// Gives a list back piece by piece: while the system takes a piece, no other thread of the program
+/// gets memory or gives any back.
 fn shrink<T>(mut list: Vec<T>) {
     list.clear();
     let piece = PIECE / size_of::<T>();

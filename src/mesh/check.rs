@@ -85,10 +85,12 @@ pub struct MeshReport {
     pub inertia: Option<DMat3>,
     /// The smallest box that holds all vertices.
     pub bounds: Bounds,
-    /// Vertices on edges of the lattice that are off the surface to keep clear of the nodes, by up to a thousandth of a cell,
-    /// or by two steps of `f32` where these are more, far from the origin; or where the value jumps from one side to the
-    /// other, as distances that are searched may; and those between larger and smaller cells, see
-    /// [`ThinFeatures::Refine`](crate::ThinFeatures::Refine). `None` if the mesh was not made from a solid.
+    /// Vertices on edges of the lattice that are off the surface to keep clear of the nodes, by up
+    /// to a thousandth of a cell, or by two steps of `f32` where these are more, far from the
+    /// origin; or where the value jumps from one side to the other, as distances that are searched
+    /// may; and those between larger and smaller cells, see
+    /// [`ThinFeatures::Refine`](crate::ThinFeatures::Refine). `None` if the mesh was not made from
+    /// a solid.
     pub clamped_vertices: Option<usize>,
 }
 
@@ -248,8 +250,8 @@ impl Mesh {
     }
 }
 
-/// Triangles that are degenerate, or have a point in common with another one that they do not share by index; not more
-/// than so many pairs.
+/// Triangles that are degenerate, or have a point in common with another one that they do not share
+/// by index; not more than so many pairs.
 pub(super) fn intersecting(mesh: &Mesh, run: &Run) -> Result<Vec<[u32; 3]>, Cancelled> {
     const MOST: usize = 1 << 12;
     let [to_turn, to_compare] = run.stages([0.45, 0.55]);

@@ -26,8 +26,8 @@ pub struct Component {
 }
 
 impl Component {
-    /// The enclosed volume in cubic length units, as [`Mesh::volume`] has it: negative for the wall of a
-    /// cavity, whose triangles face inwards.
+    /// The enclosed volume in cubic length units, as [`Mesh::volume`] has it: negative for the wall
+    /// of a cavity, whose triangles face inwards.
     #[must_use]
     pub fn volume(&self) -> f64 {
         self.volume
@@ -51,7 +51,8 @@ impl Component {
         &self.triangles
     }
 
-    /// The part alone, with the normals, colours, texture coordinates and owners that it has in the whole.
+    /// The part alone, with the normals, colours, texture coordinates and owners that it has in the
+    /// whole.
     #[must_use]
     pub fn mesh(&self) -> Mesh {
         self.mesh.only(&self.triangles)
@@ -59,11 +60,13 @@ impl Component {
 }
 
 impl Mesh {
-    /// The parts that do not hang together, in the order of their first triangles. Each has its volume, area and box,
-    /// and can be had as a mesh. A hollow ball has two: its outside, and its cavity with a negative volume.
+    /// The parts that do not hang together, in the order of their first triangles. Each has its
+    /// volume, area and box, and can be had as a mesh. A hollow ball has two: its outside, and its
+    /// cavity with a negative volume.
     ///
-    /// Triangles that share a vertex hang together; those that only touch, each with a vertex of its own there, do not.
-    /// Vertices that no triangle uses are of no part. The time grows with the mesh, whatever the number of parts.
+    /// Triangles that share a vertex hang together; those that only touch, each with a vertex of
+    /// its own there, do not. Vertices that no triangle uses are of no part. The time grows with
+    /// the mesh, whatever the number of parts.
     ///
     /// ```
     /// use rvachev::{MeshSettings, Solid};

@@ -10,9 +10,9 @@
 //! What a value on the chord says is a guess: the root of the one leaf is taken only if there, in
 //! single precision and beyond its rounding, every other leaf leaves it the decision: it is
 //! outside, for a union, or inside, for an intersection. The values on the chord show that of most
-//! edges, as the way from there to the root is short. Edges where another does not are given to
-//! all leaves together. A leaf without a root on an edge seems to jump there: only those that are asked together tell
-//! jumps.
+//! edges, as the way from there to the root is short. Edges where another does not are given to all
+//! leaves together. A leaf without a root on an edge seems to jump there: only those that are asked
+//! together tell jumps.
 //!
 //! The root of one leaf is one of all leaves then: near it the value is that leaf's.
 
@@ -36,7 +36,8 @@ pub(super) struct Deciders {
     /// Points, relative to the tape's origin, and values there.
     points: [Vec<f32>; 3],
     value: Vec<f32>,
-    /// By edge, the point on the chord, the value that decides there, the next to it, and the leaf that does.
+    /// By edge, the point on the chord, the value that decides there, the next to it, and the leaf
+    /// that does.
     seen: Vec<f64>,
     best: Vec<f32>,
     second: Vec<f32>,
@@ -130,7 +131,8 @@ impl Deciders {
         }
     }
 
-    /// Puts the edges in `places` where a leaf other than the one asked may decide, or its value may jump.
+    /// Puts the edges in `places` where a leaf other than the one asked may decide, or its value
+    /// may jump.
     fn doubt(
         &mut self,
         evaluator: &mut Evaluator,

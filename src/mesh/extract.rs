@@ -19,8 +19,9 @@
 //!    the case table. The vertex of an edge has the number of its row's first one and the
 //!    count of crossed edges between them, in the own block or in a neighbour.
 //!
-//! If it is asked to, [`sharp`] finds the cells that hold creases and corners in place of that. They have fans of
-//! triangles, which follow those of all other cells; the vertices that are added follow those on edges.
+//! If it is asked to, [`sharp`] finds the cells that hold creases and corners in place of that.
+//! They have fans of triangles, which follow those of all other cells; the vertices that are added
+//! follow those on edges.
 //!
 //! Between the two, the signs in the faces of the blocks are compared, which makes the mesh
 //! closed: wherever a sign changes in a face, the block on the other side must be there and
@@ -103,8 +104,9 @@ pub(crate) trait Sampler: Sync {
     /// `edges`.
     fn roots(&self, scratch: &mut Self::Scratch, edges: &[EdgeRef], out: &mut [Root]);
 
-    /// Whether points of a block are inside, in the order of the points, added to `out`; whether it did. It is
-    /// asked right after the [`nodes`](Sampler::nodes) of the block. The default knows of none.
+    /// Whether points of a block are inside, in the order of the points, added to `out`; whether it
+    /// did. It is asked right after the [`nodes`](Sampler::nodes) of the block. The default knows
+    /// of none.
     fn insides(
         &self,
         _scratch: &mut Self::Scratch,
@@ -116,30 +118,33 @@ pub(crate) trait Sampler: Sync {
         false
     }
 
-    /// Whether blocks that may have lost a feature thinner than a cell are to be counted: by what the next three tell.
-    /// By default they are not.
+    /// Whether blocks that may have lost a feature thinner than a cell are to be counted: by what
+    /// the next three tell. By default they are not.
     fn watches(&self) -> bool {
         false
     }
 
-    /// The most that the value changes by per length unit in a block. The default knows of no bound.
+    /// The most that the value changes by per length unit in a block. The default knows of no
+    /// bound.
     fn lipschitz_bound(&self, _number: usize) -> f64 {
         f64::INFINITY
     }
 
-    /// Whether a block, given by its first cell, may hold a leaf that passes between nodes. By default none does.
+    /// Whether a block, given by its first cell, may hold a leaf that passes between nodes. By
+    /// default none does.
     fn is_bored(&self, _number: usize, _block: [u32; 3]) -> bool {
         false
     }
 
-    /// Whether a feature may hide in some cells of a block, all of whose nodes have one sign; so many intervals may be
-    /// taken to decide that, and it may if they do not suffice. By default it may.
+    /// Whether a feature may hide in some cells of a block, all of whose nodes have one sign; so
+    /// many intervals may be taken to decide that, and it may if they do not suffice. By default it
+    /// may.
     fn may_hide(&self, _number: usize, _block: [u32; 3], _cells: &CellRows, _intervals: usize) -> bool {
         true
     }
 
-    /// A box that the surface is in: features are held in it, where it cuts the cell of one. The default is all
-    /// space.
+    /// A box that the surface is in: features are held in it, where it cuts the cell of one. The
+    /// default is all space.
     fn limits(&self) -> Bounds {
         Bounds::ALL
     }
@@ -149,15 +154,15 @@ pub(crate) trait Sampler: Sync {
         Crease::USUAL
     }
 
-    /// Whether a block, given by its first cell, is to have the triangles of the case table: no fan reaches into it. The
-    /// default has no such blocks.
+    /// Whether a block, given by its first cell, is to have the triangles of the case table: no fan
+    /// reaches into it. The default has no such blocks.
     fn is_plain(&self, _block: [u32; 3]) -> bool {
         false
     }
 
-    /// Adds values and gradients of the field at points of a block, given in cells from its first node, in the order of
-    /// the points, to `out`; whether it did. The default knows of none: features are placed by the normals of
-    /// the roots alone.
+    /// Adds values and gradients of the field at points of a block, given in cells from its first
+    /// node, in the order of the points, to `out`; whether it did. The default knows of none:
+    /// features are placed by the normals of the roots alone.
     fn slopes(
         &self,
         _scratch: &mut Self::Scratch,
@@ -178,7 +183,8 @@ pub(crate) struct Root {
     pub t: f64,
     /// The unit normal there, out of the solid. One that is not finite becomes 0.
     pub normal: [f32; 3],
-    /// Whether the value is not near 0 there: it jumps, or the place is told by what is beside the block.
+    /// Whether the value is not near 0 there: it jumps, or the place is told by what is beside the
+    /// block.
     pub is_off: bool,
 }
 
@@ -195,7 +201,8 @@ pub(crate) enum ExtractError {
         /// Number of vertices.
         count: u64,
     },
-    /// Signs do not go on from block to block: what told the blocks and their samples is at odds. There is at least one.
+    /// Signs do not go on from block to block: what told the blocks and their samples is at odds.
+    /// There is at least one.
     #[error("internal error: block at cell {:?}: {}", .0[0].block, .0[0].what)]
     Mismatches(Vec<Mismatch>),
     /// The list of blocks is no such list: a defect of the caller.
@@ -222,9 +229,9 @@ pub(crate) struct Mismatch {
     pub what: &'static str,
 }
 
-/// Extracts the surface from the given blocks, each named by its first cell, whose coordinates
-/// are multiples of [`BLOCK`]. Vertices on edges and triangles of the case table are in the order of the blocks; all is
-/// the same for any number of threads.
+/// Extracts the surface from the given blocks, each named by its first cell, whose coordinates are
+/// multiples of [`BLOCK`]. Vertices on edges and triangles of the case table are in the order of
+/// the blocks; all is the same for any number of threads.
 ///
 /// # Errors
 ///
@@ -295,7 +302,8 @@ struct Queue<'a> {
 impl<'a> Queue<'a> {
     fn add(&self, number: usize, batch: Batch) -> Result<(), ExtractError> {
         self.waiting.lock().unwrap_or_else(PoisonError::into_inner).insert(number, batch);
-        // Another thread that adds takes this one as well, if it still looks for more; if not, it is taken with the next.
+        // Another thread that adds takes this one as well, if it still looks for more; if not, it
+        // is taken with the next.
         self.all.try_lock().map_or(Ok(()), |mut all| self.add_waiting(&mut all))
     }
 

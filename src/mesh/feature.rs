@@ -10,8 +10,8 @@
 //!      x1
 //! ```
 //!
-//! Vertices that follow each other on the loop with nearly the same normal are on one side: they share a point, on the
-//! way to the middle of them.
+//! Vertices that follow each other on the loop with nearly the same normal are on one side: they
+//! share a point, on the way to the middle of them.
 //!
 //! Each step is a damped Gauss–Newton step (see [`Planes`]) that is held in the cell. On
 //! plane sides the first is exact; on curved ones the error falls from d²/2R to δ²d²/2R, with
@@ -31,23 +31,25 @@ use super::qef::Planes;
 /// Which normals are those of a crease.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Crease {
-    /// Normals of a cell that differ by less than this are those of a smooth surface: the cosine of the angle between
-    /// them.
+    /// Normals of a cell that differ by less than this are those of a smooth surface: the cosine of
+    /// the angle between them.
     pub(super) smooth: f32,
     /// The same of vertices next to each other that are on one side of a crease.
     alike: f32,
     /// Normals that differ by more are of a side that is not the one that was asked for.
     astray: f32,
-    /// The first angle, as a part of the usual one: by so much less is a crease above the triangles that cut it off.
+    /// The first angle, as a part of the usual one: by so much less is a crease above the triangles
+    /// that cut it off.
     pub(super) part: f32,
 }
 
-/// The damping of steps to a crease of the usual angle; it takes the distance from that to a hundredth a step.
+/// The damping of steps to a crease of the usual angle; it takes the distance from that to a
+/// hundredth a step.
 const DAMPING: f32 = 3e-3;
 
 impl Crease {
-    /// Sides that are 26° apart or more; normals of one side are no more than 11° apart, those of another than the one
-    /// that was asked for more than 45°.
+    /// Sides that are 26° apart or more; normals of one side are no more than 11° apart, those of
+    /// another than the one that was asked for more than 45°.
     pub(crate) const USUAL: Crease = Crease { smooth: 0.9, alike: 0.98, astray: 0.7, part: 1.0 };
 
     /// The usual angle, and the least that normals in single precision tell.
@@ -64,7 +66,8 @@ impl Crease {
         Crease { smooth: cosine(1.0), alike: cosine(0.44), astray: cosine(1.76), part: (angle / Crease::ANGLE) as f32 }
     }
 
-    /// Its square: by so much less do the planes of both sides draw a point towards where they meet.
+    /// Its square: by so much less do the planes of both sides draw a point towards where they
+    /// meet.
     pub(super) fn pull(self) -> f32 {
         self.part * self.part
     }
@@ -76,8 +79,8 @@ pub(super) const INSET: f32 = 1.0 / 128.0;
 /// Steps that are shorter than this, in cells, are the last: what is left is less.
 pub(super) const CLOSE: f32 = 1e-3;
 
-/// Where the field is asked, as a part of the way from the feature point to a vertex. Much closer, and what
-/// is found is the side of the crease that the first point missed it to.
+/// Where the field is asked, as a part of the way from the feature point to a vertex. Much closer,
+/// and what is found is the side of the crease that the first point missed it to.
 const CLOSER: f32 = 0.4;
 
 /// The most sides that a cell may have: as many as four bits tell.
@@ -93,8 +96,8 @@ pub(crate) struct Slope {
 }
 
 impl Slope {
-    /// The outward normal of the surface close to the point, and how deep the point is below it, to first order and in
-    /// cells of size `step`; `None` if the field does not tell.
+    /// The outward normal of the surface close to the point, and how deep the point is below it, to
+    /// first order and in cells of size `step`; `None` if the field does not tell.
     #[inline(always)]
     pub(super) fn surface(&self, step: f32) -> Option<(Vec3A, f32)> {
         let steepness = self.gradient.length();
@@ -115,16 +118,17 @@ pub(super) fn differ(normals: &[Vec3A], crease: Crease) -> bool {
     least <= crease.smooth
 }
 
-/// A segment of a loop: from a vertex to that of the next segment. There are many: it is kept small.
+/// A segment of a loop: from a vertex to that of the next segment. There are many: it is kept
+/// small.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Segment {
     pub(super) from: u32,
     across: u32,
-    /// The outward unit normal at the vertex; later that which its side has close to the feature point. 0 if it
-    /// is not known.
+    /// The outward unit normal at the vertex; later that which its side has close to the feature
+    /// point. 0 if it is not known.
     pub(super) normal: Vec3,
-    /// The cell that it bounds the surface of: how far that is along each axis from the first one of its fan's box, two
-    /// bits each.
+    /// The cell that it bounds the surface of: how far that is along each axis from the first one
+    /// of its fan's box, two bits each.
     place: u8,
     /// The face of the cell that it is in: twice the axis, and 1 more for the upper one.
     pub(super) face: u8,
@@ -150,8 +154,8 @@ impl Segment {
         ring.iter().fold(0, |faces, segment| faces | 1 << segment.face)
     }
 
-    /// What the edge is turned to, if it is: the fan on the other side by its number, or a point between the two by its
-    /// number after those of all fans.
+    /// What the edge is turned to, if it is: the fan on the other side by its number, or a point
+    /// between the two by its number after those of all fans.
     #[inline]
     pub(super) fn across(&self) -> Option<u32> {
         Some(self.across).filter(|&across| across != Segment::STRAIGHT)
@@ -167,15 +171,16 @@ impl Segment {
         std::array::from_fn(|axis| low[axis] + u32::from(self.place >> (2 * axis) & 3))
     }
 
-    /// The same in the fan of a box, of up to [`REACH`](Segment::REACH) cells along each axis, given the first one.
+    /// The same in the fan of a box, of up to [`REACH`](Segment::REACH) cells along each axis,
+    /// given the first one.
     pub(super) fn placed(mut self, cell: [u32; 3], low: [u32; 3]) -> Segment {
         self.place = (0..3).fold(0, |place, axis| place | ((cell[axis] - low[axis]) as u8) << (2 * axis));
         self
     }
 }
 
-/// A cell whose surface is not smooth. Its segments, in order, are in a list of those of many cells. There are many: it is
-/// kept small.
+/// A cell whose surface is not smooth. Its segments, in order, are in a list of those of many
+/// cells. There are many: it is kept small.
 pub(super) struct Candidate {
     /// The place of the first segment in the list, and the number of them.
     first: u32,
@@ -188,7 +193,8 @@ pub(super) struct Candidate {
     pub(super) residual: f32,
     /// The normal that stands for all its sides.
     pub(super) normal: Vec3,
-    /// The feature point, in cells from the cell's first node, as are the sides' planes close to it.
+    /// The feature point, in cells from the cell's first node, as are the sides' planes close to
+    /// it.
     pub(super) at: Vec3,
     planes: [f32; Planes::SUMS],
     /// The feature point as a vertex has it.
@@ -214,9 +220,10 @@ impl Candidate {
     }
 }
 
-/// The planes of the surface at the vertices of a cell's loop, given where these are from the cell's first node; tells
-/// the segments which of them turn, and `each` how far its plane is from that node, last vertex first. Then, by a bit for
-/// each vertex, where another side starts than that of the one before.
+/// The planes of the surface at the vertices of a cell's loop, given where these are from the
+/// cell's first node; tells the segments which of them turn, and `each` how far its plane is from
+/// that node, last vertex first. Then, by a bit for each vertex, where another side starts than
+/// that of the one before.
 #[inline(always)]
 pub(super) fn tangents(
     segments: &mut [Segment],
@@ -263,7 +270,8 @@ pub(super) fn settle(planes: &Planes, from: Vec3A, [low, high]: [Vec3A; 2], (ste
 pub(super) struct Draft {
     first: u32,
     len: u8,
-    /// How many sides there are, and which of them the vertices of its segments are on, in order, four bits each.
+    /// How many sides there are, and which of them the vertices of its segments are on, in order,
+    /// four bits each.
     count: u8,
     on: u64,
     pub(super) number: u16,
@@ -285,10 +293,11 @@ impl Draft {
 #[derive(Default)]
 pub(super) struct Refiner {
     drafts: Vec<Draft>,
-    /// By segment, how far the tangent plane at its vertex is from the candidate's first node; those of a candidate from the
-    /// last to the first.
+    /// By segment, how far the tangent plane at its vertex is from the candidate's first node;
+    /// those of a candidate from the last to the first.
     offsets: Vec<f32>,
-    /// One for each side of each candidate, in cells from the candidate's first node; and the same from the block's.
+    /// One for each side of each candidate, in cells from the candidate's first node; and the same
+    /// from the block's.
     points: Vec<Vec3A>,
     in_block: Vec<Vec3A>,
     /// The field there.
@@ -306,9 +315,9 @@ impl Refiner {
         found.clear();
     }
 
-    /// Adds the next candidate: a cell, by its number in the block and by its first node there. Its segments are told
-    /// which of them turn, and will be in the list from `first` on. The places are those of their vertices, in cells from
-    /// the first node.
+    /// Adds the next candidate: a cell, by its number in the block and by its first node there. Its
+    /// segments are told which of them turn, and will be in the list from `first` on. The places
+    /// are those of their vertices, in cells from the first node.
     #[inline]
     pub(super) fn add(
         &mut self,
@@ -320,7 +329,8 @@ impl Refiner {
         let (planes, starts) = tangents(segments, places, crease, |offset| self.offsets.push(offset));
         let middle = places.iter().sum::<Vec3A>() / places.len() as f32;
         let at = settle(&planes, middle, [Vec3A::ZERO, Vec3A::ONE], (1, crease));
-        // Vertices of a side share a point. Those before the first start are on the last side, the one that goes on there.
+        // Vertices of a side share a point. Those before the first start are on the last side, the
+        // one that goes on there.
         let count = starts.count_ones().max(1);
         let mut sides = [(Vec3A::ZERO, 0.0); MOST_SIDES];
         let (mut side, mut on) = (count - 1, 0);
@@ -341,9 +351,10 @@ impl Refiner {
         self.drafts.push(Draft { first, len, count, on, number, at, planes });
     }
 
-    /// Moves the points of the candidates that were added closer to the creases, and tells `each` of them, with the normal
-    /// that stands for its sides and its part of the `segments`, which are consecutive. `slopes` tells values and gradients
-    /// at points, in cells from the block's first node, for cells of size `step`; without any, feature points stay.
+    /// Moves the points of the candidates that were added closer to the creases, and tells `each`
+    /// of them, with the normal that stands for its sides and its part of the `segments`, which are
+    /// consecutive. `slopes` tells values and gradients at points, in cells from the block's first
+    /// node, for cells of size `step`; without any, feature points stay.
     pub(super) fn refine(
         &mut self,
         segments: &mut [Segment],

@@ -18,7 +18,8 @@ impl Groups {
         i
     }
 
-    /// Joins the sets of two numbers; whether they were different. The lowest number is the root of its set.
+    /// Joins the sets of two numbers; whether they were different. The lowest number is the root of
+    /// its set.
     pub(super) fn join(&mut self, a: u32, b: u32) -> bool {
         let (a, b) = (self.root(a), self.root(b));
         self.0[a.max(b) as usize] = a.min(b);

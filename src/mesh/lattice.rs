@@ -37,24 +37,26 @@ use rvachev_num::Bounds;
 pub enum CellSize {
     /// The side of a cubic cell in length units, finite and above 0.
     Length(f64),
-    /// The number of cells along the longest side of the bounds, at least 1; of a solid that is cut,
-    /// of the part of its box within them. The default: 128.
+    /// The number of cells along the longest side of the bounds, at least 1; of a solid that is
+    /// cut, of the part of its box within them. The default: 128.
     LongestSide(u32),
-    /// How far triangles and surface may be apart, in length units, finite and above 0: cells are as
-    /// small as the surface's curvature asks, each where it does, and then as many triangles are
-    /// taken away as the tolerance allows. Flat faces have few: a plain box has a dozen, some hundred where it is
-    /// turned out of the axes, a sphere of radius r about 12 r / tolerance.
+    /// How far triangles and surface may be apart, in length units, finite and above 0: cells are
+    /// as small as the surface's curvature asks, each where it does, and then as many triangles are
+    /// taken away as the tolerance allows. Flat faces have few: a plain box has a dozen, some
+    /// hundred where it is turned out of the axes, a sphere of radius r about 12 r / tolerance.
     ///
-    /// The mesh is closed, manifold and free of self-intersection as all others are, edges and corners
-    /// stay sharp, and what is thinner than the cells that it begins with may be lost as in any mesh:
-    /// those are as large as half of the thinnest leaf, and a twenty-fourth of the longest side at most. Of
-    /// [meshes that are solids](crate::Solid::from_mesh) the creases between facets are kept however blunt they are, and
-    /// cells are halved where the mesh has lost a corner. Where the tolerance is not reached,
-    /// [`Mesh::warnings`](crate::Mesh::warnings) says so, and [`Mesh::deviation`](crate::Mesh::deviation) how far off
-    /// the mesh is. It takes several times as long as one mesh in cells of the smallest size.
+    /// The mesh is closed, manifold and free of self-intersection as all others are, edges and
+    /// corners stay sharp, and what is thinner than the cells that it begins with may be lost as in
+    /// any mesh: those are as large as half of the thinnest leaf, and a twenty-fourth of the
+    /// longest side at most. Of [meshes that are solids](crate::Solid::from_mesh) the creases
+    /// between facets are kept however blunt they are, and cells are halved where the mesh has lost
+    /// a corner. Where the tolerance is not reached, [`Mesh::warnings`](crate::Mesh::warnings) says
+    /// so, and [`Mesh::deviation`](crate::Mesh::deviation) how far off the mesh is. It takes
+    /// several times as long as one mesh in cells of the smallest size.
     ///
-    /// Where only a cell size is asked for, as by [`Solid::thin_features`](crate::Solid::thin_features), it
-    /// stands for a twenty-fourth of the longest side.
+    /// Where only a cell size is asked for, as by
+    /// [`Solid::thin_features`](crate::Solid::thin_features), it stands for a twenty-fourth of the
+    /// longest side.
     ///
     /// ```
     /// use rvachev::{CellSize, MeshSettings, Solid};
@@ -210,7 +212,8 @@ impl Lattice {
         Lattice::clear((first + SHIFT) * step, step, count.to_array(), reach + 2.0 * step)
     }
 
-    /// The lattice of so many cells from a node, with vertices clear of nodes; coordinates are up to `farthest`.
+    /// The lattice of so many cells from a node, with vertices clear of nodes; coordinates are up
+    /// to `farthest`.
     fn clear(origin: DVec3, step: f64, cells: [f64; 3], farthest: f64) -> Result<Lattice, LatticeError> {
         // Two f32 apart, a vertex cannot fall together with the node or with a vertex on
         // another edge of it; a quarter of a cell is left between those at its two ends.
@@ -228,8 +231,8 @@ impl Lattice {
         })
     }
 
-    /// The same box in cells of half the side: node (i, j, k) is node (2i, 2j, 2k) of it. `None` if they are too many along
-    /// an axis, or too small for f32.
+    /// The same box in cells of half the side: node (i, j, k) is node (2i, 2j, 2k) of it. `None` if
+    /// they are too many along an axis, or too small for f32.
     pub(crate) fn halved(&self) -> Option<Lattice> {
         let farthest = self.origin.abs().max(self.bounds().max.abs()).max_element();
         let (step, cells) = (0.5 * self.step, self.cells.map(|n| 2.0 * f64::from(n)));
@@ -276,8 +279,8 @@ impl Lattice {
         Bounds::new(self.origin, self.node(i, j, k))
     }
 
-    /// A vertex on an edge is farther than this from the planes of nodes across it, and closer to those along it, in
-    /// cells, whatever f32 makes of it.
+    /// A vertex on an edge is farther than this from the planes of nodes across it, and closer to
+    /// those along it, in cells, whatever f32 makes of it.
     pub(crate) fn slack(&self) -> f64 {
         0.5 * self.clearance
     }

@@ -16,8 +16,8 @@
 //!      .---+---o           the outside ones are.   .-+-----o
 //! ```
 //!
-//! The loops are read off the triangles of the [case table](super::table), so that a patch can
-//! be replaced by another one with the same boundary; where a face joins its inside corners, its two
+//! The loops are read off the triangles of the [case table](super::table), so that a patch can be
+//! replaced by another one with the same boundary; where a face joins its inside corners, its two
 //! segments exchange their ends. Of the 254 cases that are crossed, 162 have a single loop in the
 //! table (the tests count them).
 
@@ -39,14 +39,14 @@ pub(super) struct CellLoop {
     /// more for the upper face.
     faces: [u8; LONGEST],
     len: u8,
-    /// Of a case that has a single loop in the table, its triangles, their corners by the places of their edges in
-    /// the loop.
+    /// Of a case that has a single loop in the table, its triangles, their corners by the places of
+    /// their edges in the loop.
     triangles: [[u8; 3]; MOST - 2],
 }
 
 impl CellLoop {
-    /// The loop of a case, if it has one and no more. `joined` has a bit for each ambiguous face whose
-    /// inside corners are joined.
+    /// The loop of a case, if it has one and no more. `joined` has a bit for each ambiguous face
+    /// whose inside corners are joined.
     #[inline]
     pub(super) fn single(case: u8, joined: u8) -> Option<CellLoop> {
         if joined == 0 { CellLoop::table()[usize::from(case)] } else { CellLoop::derive(case, joined) }
@@ -87,13 +87,15 @@ impl CellLoop {
         usize::from(self.len)
     }
 
-    /// The face of the segment from edge `n` to the next: twice its axis, and 1 more for the upper one.
+    /// The face of the segment from edge `n` to the next: twice its axis, and 1 more for the upper
+    /// one.
     #[inline]
     pub(super) fn face(&self, n: usize) -> u8 {
         self.faces[n]
     }
 
-    /// The triangles of a [listed](CellLoop::table) loop of `N`, their corners by places in the loop.
+    /// The triangles of a [listed](CellLoop::table) loop of `N`, their corners by places in the
+    /// loop.
     #[inline(always)]
     pub(super) fn triangles<const N: usize>(&self) -> &[[u8; 3]] {
         &self.triangles[..N - 2]

@@ -14,7 +14,7 @@ mod groups;
 mod hide;
 mod lattice;
 mod loops;
-mod openness;
+mod open_edges;
 mod paint;
 mod qef;
 mod refine;
@@ -35,7 +35,7 @@ pub use check::MeshReport;
 pub use components::Component;
 pub use error::MeshingError;
 pub use lattice::{CellSize, Lattice, LatticeError};
-pub use openness::Openness;
+pub use open_edges::OpenEdges;
 pub use settings::{AtBounds, Features, MeshSettings, ThinFeatures};
 pub use volume::{Volume, VolumeError, VolumeSettings};
 

@@ -19,8 +19,8 @@ pub(crate) fn corner_colors(
     unpainted: Paint,
     run: &Run,
 ) -> Result<Vec<[[u8; 4]; 3]>, Cancelled> {
-    /// A corner is looked at by this part of the way to the middle of its triangle: on its own side of
-    /// an edge where the paint changes.
+    /// A corner is looked at by this part of the way to the middle of its triangle: on its own side
+    /// of an edge where the paint changes.
     const INTO: f64 = 0.01;
     each_triangle(mesh, run, |nth, triangle| {
         let corners = mesh.corners(triangle);

@@ -8,9 +8,9 @@
 //! ```
 //!
 //! The second term holds the point where the planes leave it free: along a crease, and within the
-//! surface where there is only one plane. The planes may have weights; n is their sum, the number of
-//! the planes without. A step from s to the minimum is a damped Gauss–Newton step; repeated, it takes
-//! the point to the planes and hardly along them.
+//! surface where there is only one plane. The planes may have weights; n is their sum, the number
+//! of the planes without. A step from s to the minimum is a damped Gauss–Newton step; repeated, it
+//! takes the point to the planes and hardly along them.
 //!
 //! The minimum over the box is exact: the function is strictly convex, so it is the best of the
 //! minima over the inside, the faces, the edges and the corners that lie in the box. Where the
@@ -22,7 +22,8 @@
 
 use glam::{Vec3A, Vec3Swizzles};
 
-/// Planes that a point should be on. Positions are in cells, from a node that is close: single precision does.
+/// Planes that a point should be on. Positions are in cells, from a node that is close: single
+/// precision does.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Planes {
     /// Σ n nᵀ: what is on the diagonal, and what is opposite to each of these, at yz, zx and xy.
@@ -69,7 +70,8 @@ impl Planes {
         self.weight += 1.0;
     }
 
-    /// Adds the planes of another set, each with a weight. The node that the other's positions are from is at `shift`.
+    /// Adds the planes of another set, each with a weight. The node that the other's positions are
+    /// from is at `shift`.
     pub(super) fn append(&mut self, other: &Planes, shift: Vec3A, weight: f32) {
         // n·(y − s) = d is n·y = d + n·s.
         let along = product(other.diagonal, other.beside, shift);
@@ -96,11 +98,12 @@ impl Planes {
         (sum.max(0.0) / self.total()).sqrt()
     }
 
-    /// The direction that the planes have in common, if there are two sides and no more: those of a crease with a
-    /// [pull](super::feature::Crease::pull).
+    /// The direction that the planes have in common, if there are two sides and no more: those of a
+    /// crease with a [pull](super::feature::Crease::pull).
     pub(super) fn crease(&self, pull: f32) -> Option<Vec3A> {
-        // What the matrix of the normals takes to almost 0. Its adjugate has that in its columns; the sum of the
-        // products of two eigenvalues, and the least one, tell how many sides there are.
+        // What the matrix of the normals takes to almost 0. Its adjugate has that in its columns;
+        // the sum of the products of two eigenvalues, and the least one, tell how many sides there
+        // are.
         let Adjugate { diagonal: d, beside: e, determinant } = Adjugate::new(self.diagonal, self.beside);
         let pairs = d.element_sum();
         let weight = pull * self.weight;
@@ -125,8 +128,8 @@ impl Planes {
     fn nearest_on_sides(&self, free: Vec3A, from: Vec3A, weight: f32, low: Vec3A, high: Vec3A) -> Vec3A {
         let (d, e, b) = (self.diagonal + weight, self.beside, self.vector + weight * from);
         let is_within = |y: Vec3A| (y.cmpge(low) & y.cmple(high)).all();
-        // Most often it is where the coordinates that are beyond a side are held there, and those that it falls
-        // inward from are let go.
+        // Most often it is where the coordinates that are beyond a side are held there, and those
+        // that it falls inward from are let go.
         let (mut sides, mut y) = (Vec3A::ZERO, free);
         for _ in 0..6 {
             sides = Vec3A::select(y.cmplt(low), Vec3A::NEG_ONE, Vec3A::select(y.cmpgt(high), Vec3A::ONE, sides));
@@ -155,8 +158,8 @@ impl Planes {
     }
 }
 
-/// The choices of sides of a box, by number: along each axis −1 for the low side, 1 for the high one, and 0 for none; none
-/// at all for 0.
+/// The choices of sides of a box, by number: along each axis −1 for the low side, 1 for the high
+/// one, and 0 for none; none at all for 0.
 fn sides_of(choice: u8) -> Vec3A {
     Vec3A::from_array([choice % 3, choice / 3 % 3, choice / 9].map(|n| [0.0, -1.0, 1.0][usize::from(n)]))
 }
@@ -191,8 +194,8 @@ fn solve(d: Vec3A, e: Vec3A, b: Vec3A) -> Vec3A {
     product(diagonal, beside, b) / determinant
 }
 
-/// Where the quadratic yᵀm y − 2 bᵀy is least with some coordinates held at sides of a box; m is given like that of
-/// [`Planes`].
+/// Where the quadratic yᵀm y − 2 bᵀy is least with some coordinates held at sides of a box; m is
+/// given like that of [`Planes`].
 fn on_sides((d, e, b): (Vec3A, Vec3A, Vec3A), sides: Vec3A, low: Vec3A, high: Vec3A) -> Vec3A {
     let (held, free) = (sides.abs(), Vec3A::ONE - sides.abs());
     // What is held stands for itself in its row; the others have to balance what is left.

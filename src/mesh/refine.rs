@@ -9,11 +9,12 @@
 //!     +-----+--+--+-----+     for the smaller cells, so that they have a closed mesh, with caps in cells beyond.
 //! ```
 //!
-//! The mesh of the larger cells without the inset and that of the smaller ones without the caps have the same
-//! boundary then, but that a segment of the first may be several of the second. A triangle at such a segment is cut
-//! into as many. Each of the two is embedded, they have nothing but the seam in common, and no fan reaches over it: so
-//! what is shown of one lattice holds for both together. A crease has a point in the seam if the triangles on both
-//! sides are of fans: a fan's loop may take any way in a face.
+//! The mesh of the larger cells without the inset and that of the smaller ones without the caps
+//! have the same boundary then, but that a segment of the first may be several of the second. A
+//! triangle at such a segment is cut into as many. Each of the two is embedded, they have nothing
+//! but the seam in common, and no fan reaches over it: so what is shown of one lattice holds for
+//! both together. A crease has a point in the seam if the triangles on both sides are of fans: a
+//! fan's loop may take any way in a face.
 
 mod corners;
 mod divided;
@@ -53,13 +54,13 @@ pub(super) struct Job<'a> {
     pub(super) tolerance: Option<f64>,
 }
 
-/// The surface is above what cuts a crease off, from side to side of a cell, by a quarter of the cell times the angle in
-/// radians; along a diagonal by half of that again.
+/// The surface is above what cuts a crease off, from side to side of a cell, by a quarter of the
+/// cell times the angle in radians; along a diagonal by half of that again.
 const CUT: f64 = 1.5 / 4.0;
 
 impl Job<'_> {
-    /// Which normals are those of a crease. A surface that is flat between creases is off triangles across a crease,
-    /// and nowhere else: those count that are off by more than the tolerance.
+    /// Which normals are those of a crease. A surface that is flat between creases is off triangles
+    /// across a crease, and nowhere else: those count that are off by more than the tolerance.
     pub(super) fn crease(&self, lattice: &Lattice) -> Crease {
         match self.tolerance {
             Some(tolerance) if self.program.is_faceted() => Crease::of_angle(tolerance / (CUT * lattice.step())),
@@ -68,8 +69,8 @@ impl Job<'_> {
     }
 }
 
-/// The mesh on a lattice whose cells are halved where they are unresolved, at most so many times and as long as f32 has
-/// room for them. It says how many blocks have some left.
+/// The mesh on a lattice whose cells are halved where they are unresolved, at most so many times
+/// and as long as f32 has room for them. It says how many blocks have some left.
 pub(super) fn refined(
     job: Job<'_>,
     (lattice, blocks): (Lattice, Blocks),
@@ -105,7 +106,8 @@ pub(super) fn refined(
     }
 }
 
-/// The levels of cells that are halved where they are unresolved, at most so many times, and whether none are in the last.
+/// The levels of cells that are halved where they are unresolved, at most so many times, and
+/// whether none are in the last.
 fn divided(
     job: Job<'_>,
     (lattice, blocks): (Lattice, Blocks),
@@ -135,8 +137,8 @@ fn unresolved(job: Job<'_>, level: &Level, among: Among, run: &Run) -> Result<Ve
     unresolved_cells(&level.blocks, (&level.lattice, job.limits), among, run)
 }
 
-/// The mesh of all levels together, or the number of one whose sides of the seam do not fit, as it may be where the field
-/// jumps; never the first.
+/// The mesh of all levels together, or the number of one whose sides of the seam do not fit, as it
+/// may be where the field jumps; never the first.
 fn meshed(job: Job<'_>, levels: &mut [Level], run: &Run) -> Result<Result<Mesh, usize>, MeshingError> {
     if let [Level { lattice, blocks, .. }] = levels {
         return Ok(Ok(blocks.extract(job, lattice, run)?));

@@ -30,8 +30,8 @@ const SETTLED: f64 = 2.5e-7;
 const STEPS: usize = 40;
 const HALVING: usize = 12;
 
-/// Where the value is more than this part of what it changes by along an edge, and has the other sign right beside,
-/// it may jump.
+/// Where the value is more than this part of what it changes by along an edge, and has the other
+/// sign right beside, it may jump.
 const JUMP: f64 = 1e-3;
 
 /// It does if so many halvings more do not bring it down to a half.
@@ -61,9 +61,9 @@ pub(super) struct RootFinder {
 }
 
 impl RootFinder {
-    /// The roots on `edges`, into `out`; `tape` is that of `program` for a region that holds
-    /// them. `start` tells where on an edge, given by its place in the list, to begin. Without the program, what may be a
-    /// jump counts as one.
+    /// The roots on `edges`, into `out`; `tape` is that of `program` for a region that holds them.
+    /// `start` tells where on an edge, given by its place in the list, to begin. Without the
+    /// program, what may be a jump counts as one.
     pub(super) fn find(
         &mut self,
         evaluator: &mut Evaluator,

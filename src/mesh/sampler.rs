@@ -35,12 +35,13 @@ pub(super) struct SolidSampler<'a> {
     thin: Vec<bool>,
     /// Values of nodes count up to this; beyond, their signs do.
     band: f64,
-    /// By batch, the tapes of its groups once its roots are found; empty if they are not to be kept.
+    /// By batch, the tapes of its groups once its roots are found; empty if they are not to be
+    /// kept.
     kept: Vec<OnceLock<Vec<(u32, Tape)>>>,
 }
 
-/// The ends of edges that the surface crosses are no farther from it than this, in cells, nor are the nearest corners of
-/// a cell that it is in.
+/// The ends of edges that the surface crosses are no farther from it than this, in cells, nor are
+/// the nearest corners of a cell that it is in.
 pub(super) const BESIDE: f64 = 1.0;
 
 /// Roots that are found at once; a multiple of the points that lanes are run on.
@@ -76,7 +77,8 @@ impl Scratch {
 }
 
 impl SolidSampler<'_> {
-    /// Values of nodes are right up to so many cells from the surface, by distances; beyond, their signs are.
+    /// Values of nodes are right up to so many cells from the surface, by distances; beyond, their
+    /// signs are.
     pub(super) fn new<'a>(lattice: &'a Lattice, blocks: &'a Blocks, limits: Bounds, cells: f64) -> SolidSampler<'a> {
         let band = cells * lattice.step();
         let Blocks { cells: blocks, programs, exact } = blocks;
@@ -113,8 +115,9 @@ impl SolidSampler<'_> {
         &mut tapes[at].1
     }
 
-    /// The tape of a block for slopes, relative to its first node: that which the roots of its group were found with, if it
-    /// is kept. Moved from block to block it rounds, so each block starts from the same.
+    /// The tape of a block for slopes, relative to its first node: that which the roots of its
+    /// group were found with, if it is kept. Moved from block to block it rounds, so each block
+    /// starts from the same.
     fn tape_for_slopes<'t>(&self, copy: &'t mut Option<(usize, Tape)>, number: usize, origin: DVec3) -> &'t Tape {
         let group = self.groups[number];
         let kept = self.kept.get(group as usize / BATCH).and_then(OnceLock::get);

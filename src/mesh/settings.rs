@@ -50,13 +50,13 @@ pub enum Features {
     /// the crease or in the corner, and the mesh has edges along the crease.
     ///
     /// A solid without creases, and with radii of four cells or more, has the mesh of
-    /// [`Smooth`](Features::Smooth): there are no such normals in any cell. Of a single [leaf that
-    /// tells its least radius](crate::field::Field::least_radius), as spheres, ellipsoids, tori, capsules
-    /// and rounded boxes do, two cells are enough. One that has any is meshed more closely also
-    /// where it is smooth: where it curves so much, with radii below some 35 cells, that it is off
-    /// the triangles in a cell by more than some 0.01 or 0.02 cells in their middle, two triangles
-    /// have the diagonal that bends less; and where that is not enough, the cell has a vertex
-    /// above the surface, as far as the triangles around it are below.
+    /// [`Smooth`](Features::Smooth): there are no such normals in any cell. Of a single
+    /// [leaf that tells its least radius](crate::field::Field::least_radius), as spheres,
+    /// ellipsoids, tori, capsules and rounded boxes do, two cells are enough. One that has any is
+    /// meshed more closely also where it is smooth: where it curves so much, with radii below some
+    /// 35 cells, that it is off the triangles in a cell by more than some 0.01 or 0.02 cells in
+    /// their middle, two triangles have the diagonal that bends less; and where that is not enough,
+    /// the cell has a vertex above the surface, as far as the triangles around it are below.
     ///
     /// Where a crease passes cells that have no surface of their own (all their corners are on the
     /// same side), the cells around, up to four along each axis, share a vertex on it, if their
@@ -74,10 +74,10 @@ pub enum AtBounds {
     /// [`Features::Sharp`].
     #[default]
     Cap,
-    /// It is an error, [`MeshingError::LeavesBounds`](crate::error::MeshingError::LeavesBounds), which
-    /// says where, also of parts that are wholly outside. A hundredth of a cell is let pass, and
-    /// of corners and thin parts what does not show in cells of the size. It takes up to twice as
-    /// long.
+    /// It is an error, [`MeshingError::LeavesBounds`](crate::error::MeshingError::LeavesBounds),
+    /// which says where, also of parts that are wholly outside. A hundredth of a cell is let pass,
+    /// and of corners and thin parts what does not show in cells of the size. It takes up to twice
+    /// as long.
     Refuse,
 }
 

@@ -21,10 +21,12 @@ use crate::{Bounds, Cancelled, Run};
 /// Cells of a block that the surface is in, as a rule.
 const OF_BLOCK: usize = 110;
 
-/// What is deeper than this, in cells, or has no other side near, is no bend or edge of a surface that the cells show.
+/// What is deeper than this, in cells, or has no other side near, is no bend or edge of a surface
+/// that the cells show.
 const DEEP: f64 = 0.3;
 
-/// Nearer to the surface than this part of the size, points may be on either side by rounding errors.
+/// Nearer to the surface than this part of the size, points may be on either side by rounding
+/// errors.
 const ROUNDING: f64 = 1e-9;
 
 /// So many times as small are the cells that would show what is hidden.
@@ -33,7 +35,8 @@ const SMALLER: u32 = 4;
 /// Cells along the thinnest leaf, at least.
 const ALONG_LEAF: f64 = 2.0;
 
-/// A cell with all its nodes on one side that may have the surface in it, and whether it surely has.
+/// A cell with all its nodes on one side that may have the surface in it, and whether it surely
+/// has.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hidden {
     pub(crate) cell: Bounds,
@@ -50,8 +53,8 @@ enum Beside {
 }
 
 impl Subject<'_> {
-    /// The size of cells that show all leaves, `most` at most, as far as these are not more than enough; `size` is how
-    /// large the surface is.
+    /// The size of cells that show all leaves, `most` at most, as far as these are not more than
+    /// enough; `size` is how large the surface is.
     pub(crate) fn first_cell(&self, size: f64, most: f64, enough: f64, run: &Run) -> Result<f64, MeshingError> {
         let wanted = self.program.thinnest_leaf() / ALONG_LEAF;
         if wanted >= most {
@@ -70,7 +73,8 @@ impl Subject<'_> {
         Ok(OF_BLOCK * Blocks::find(self.program, &lattice, run)?.cells.len())
     }
 
-    /// The cells of a mesh of this that have all their nodes on one side, and may have the surface in them.
+    /// The cells of a mesh of this that have all their nodes on one side, and may have the surface
+    /// in them.
     pub(crate) fn hidden(&self, mesh: &Mesh, run: &Run) -> Result<Vec<Hidden>, MeshingError> {
         let Findings { cell, lost_at, .. } = mesh.findings();
         let is_gentle = self.program.is_gentle();
@@ -81,7 +85,8 @@ impl Subject<'_> {
         let [to_find, to_search] = run.stages([0.2, 0.8]);
         let blocks = Blocks::find(self.program, &lattice, &to_find)?;
         if is_gentle {
-            // What cells beside others hide as well is of no matter where nothing is hidden by itself.
+            // What cells beside others hide as well is of no matter where nothing is hidden by
+            // itself.
             let alone = self.crossed(&blocks, &lattice, Beside::Nothing, &to_search)?;
             return Ok(if alone.is_empty() {
                 alone
@@ -99,8 +104,8 @@ impl Subject<'_> {
         Ok(suspects.into_iter().flat_map(of_block).collect())
     }
 
-    /// The cells with all nodes on one side that have the surface in them: of values that change no faster than points
-    /// move, those at the nodes tell where to look, and lead there.
+    /// The cells with all nodes on one side that have the surface in them: of values that change no
+    /// faster than points move, those at the nodes tell where to look, and lead there.
     fn crossed(&self, blocks: &Blocks, lattice: &Lattice, beside: Beside, run: &Run) -> Result<Vec<Hidden>, Cancelled> {
         let sampler = SolidSampler::new(lattice, blocks, self.bounds, BESIDE);
         // No point of a cell is farther from its nearest node than half of its diagonal.
@@ -141,8 +146,8 @@ impl Subject<'_> {
         nodes(&cell.inflate(cell.longest_side()), 3).all(|p| (self.program.value(p) > 0.0) == is_inside)
     }
 
-    /// Whether steps along the gradient lead from the middle of a cell to the surface in it, and to its other side:
-    /// where parts meet face to face values are 0, and inside on both sides.
+    /// Whether steps along the gradient lead from the middle of a cell to the surface in it, and to
+    /// its other side: where parts meet face to face values are 0, and inside on both sides.
     fn is_crossed(&self, cell: &Bounds) -> bool {
         const STEPS: usize = 3;
         let (step, size) = (cell.longest_side(), self.bounds.longest_side());

@@ -77,8 +77,8 @@ impl Signs {
         any != 0 && all != ALL
     }
 
-    /// The nodes of a row that differ in sign from both their neighbours along x, y and z, as bits: of those whose two
-    /// edges there the block owns.
+    /// The nodes of a row that differ in sign from both their neighbours along x, y and z, as bits:
+    /// of those whose two edges there the block owns.
     #[inline(always)]
     pub(super) fn single(&self, j: usize, k: usize) -> [u16; 3] {
         let row = self.row(j, k);

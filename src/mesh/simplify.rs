@@ -7,11 +7,13 @@
 //!      +--+--+--+--+            triangles; creases are drawn together along themselves only.
 //! ```
 //!
-//! What is left are vertices of the mesh that there was, at their places. A mesh that cuts itself is not
-//! handed out: where triangles meet, or are too far off all the same, it is done again with less tolerance there.
+//! What is left are vertices of the mesh that there was, at their places. A mesh that cuts itself
+//! is not handed out: where triangles meet, or are too far off all the same, it is done again with
+//! less tolerance there.
 //!
-//! Sources: M. Garland and P. S. Heckbert, Surface simplification using quadric error metrics (1997), for
-//! the order; J. Cohen et al., Simplification envelopes (1996), for a bound on all that is left out.
+//! Sources: M. Garland and P. S. Heckbert, Surface simplification using quadric error metrics
+//! (1997), for the order; J. Cohen et al., Simplification envelopes (1996), for a bound on all that
+//! is left out.
 
 mod collapse;
 mod near;
@@ -39,7 +41,8 @@ const ATTEMPTS: usize = 5;
 /// The middle of a side depends on which end comes first, by rounding.
 const ROUNDING: f64 = 1.001;
 
-/// A mesh of fewer triangles, within a tolerance of the surface as the probes of it tell, and how far what it has lost is.
+/// A mesh of fewer triangles, within a tolerance of the surface as the probes of it tell, and how
+/// far what it has lost is.
 pub(super) fn simplified(
     mesh: Mesh,
     (probes, lost): (&[Probe], f64),

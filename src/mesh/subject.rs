@@ -28,7 +28,8 @@ const AT_ONCE: usize = 1 << 14;
 /// A surface with radii of so many cells is known to have no creases.
 const ROUND: f64 = 2.0;
 
-/// A mesh within a tolerance begins with so many cells on the surface at most, and so many more for each leaf.
+/// A mesh within a tolerance begins with so many cells on the surface at most, and so many more for
+/// each leaf.
 const ENOUGH: f64 = 1e5;
 const ENOUGH_A_LEAF: f64 = 500.0;
 
@@ -136,8 +137,8 @@ impl Whole {
         Ok(())
     }
 
-    /// An error if there is a part of the solid beyond the bounds, of a size that cells of this size show; where
-    /// they would be too many, cells of a thousandth of the solid's box.
+    /// An error if there is a part of the solid beyond the bounds, of a size that cells of this
+    /// size show; where they would be too many, cells of a thousandth of the solid's box.
     pub(crate) fn refuse_beyond(&self, cell: CellSize, run: &Run) -> Result<(), MeshingError> {
         let (own, given) = (self.programs.bounds, self.given);
         let step = Lattice::new(&given, cell)?.step();

@@ -33,8 +33,9 @@
 //! * on a face, the segments depend on the four signs of the face alone, and the cells on its
 //!   two sides run along them in opposite directions: the mesh is closed and consistently
 //!   oriented;
-//! * the triangles of a cell do not cross, wherever on the edges the vertices are: the mesh is free of
-//!   self-intersection, as no triangle lies in a face and cells have no more than faces in common;
+//! * the triangles of a cell do not cross, wherever on the edges the vertices are: the mesh is free
+//!   of self-intersection, as no triangle lies in a face and cells have no more than faces in
+//!   common;
 //! * the triangles of a cell at one vertex form a single path between the two faces that meet
 //!   there: the four cells around a lattice edge close it to one ring, so that vertices are
 //!   manifold.

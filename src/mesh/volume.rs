@@ -207,8 +207,8 @@ impl<'a> Volume<'a> {
 }
 
 impl Volume<'_> {
-    /// By how much the samples rise from one to the next along each axis, at a node (numbered from 1): by central
-    /// differences, one-sided at the border.
+    /// By how much the samples rise from one to the next along each axis, at a node (numbered from
+    /// 1): by central differences, one-sided at the border.
     #[inline(always)]
     fn rises(&self, node: [usize; 3]) -> DVec3 {
         let [nx, ny, nz] = self.size;

@@ -8,9 +8,9 @@
 //!  ~~~~~~~~~~~~~ set
 //! ```
 //!
-//! The patches of one surface are divided, those that may be nearest first left, until none can be nearer than the best
-//! point by more than a tolerance. The bound is off by the square of the size: of a gap that is even, it takes few
-//! divisions.
+//! The patches of one surface are divided, those that may be nearest first left, until none can be
+//! nearer than the best point by more than a tolerance. The bound is off by the square of the size:
+//! of a gap that is even, it takes few divisions.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -48,19 +48,21 @@ pub struct Clearance {
     pub distance: f64,
     /// No two points of them are nearer than `distance` by more than this, in length units.
     pub tolerance: f64,
-    /// The two points that are nearest, one of each surface; a common point of both solids, twice, if they overlap.
+    /// The two points that are nearest, one of each surface; a common point of both solids, twice,
+    /// if they overlap.
     pub points: [DVec3; 2],
-    /// Whether the solids overlap: whether they have a point in common that is deeper in both than `tolerance`.
+    /// Whether the solids overlap: whether they have a point in common that is deeper in both than
+    /// `tolerance`.
     pub overlaps: bool,
 }
 
 impl Solid {
-    /// How far this solid is from another one: the least distance of their surfaces, and where. Nothing if one of them
-    /// is empty.
+    /// How far this solid is from another one: the least distance of their surfaces, and where.
+    /// Nothing if one of them is empty.
     ///
-    /// A solid in a cavity of another has its clearance from the wall; one that is within the material of another
-    /// overlaps it, and so do two whose surfaces cross. Solids that only touch have a distance of 0, to within the
-    /// tolerance, and do not overlap.
+    /// A solid in a cavity of another has its clearance from the wall; one that is within the
+    /// material of another overlaps it, and so do two whose surfaces cross. Solids that only touch
+    /// have a distance of 0, to within the tolerance, and do not overlap.
     ///
     /// ```
     /// use rvachev::{Run, Solid};
@@ -75,11 +77,12 @@ impl Solid {
     /// ```
     ///
     /// # Details
-    /// The surfaces are those that [`closest_surface_point`](Solid::closest_surface_point) measures from, found on first
-    /// use and kept with the solids; the points that are nearest on these are led to the surfaces themselves. The
-    /// tolerance is a thousandth of the distance and how exact the surfaces are: some 10⁻⁴ of the sizes of the solids,
-    /// several times that where creases meet. It is more where both surfaces are alike over large parts and close: then
-    /// it says how much.
+    /// The surfaces are those that [`closest_surface_point`](Solid::closest_surface_point) measures
+    /// from, found on first use and kept with the solids; the points that are nearest on these are
+    /// led to the surfaces themselves. The tolerance is a thousandth of the distance and how exact
+    /// the surfaces are: some 10⁻⁴ of the sizes of the solids, several times that where creases
+    /// meet. It is more where both surfaces are alike over large parts and close: then it says how
+    /// much.
     ///
     /// # Errors
     /// What is wrong with a solid, that it has no finite box, or that the work was cancelled.
@@ -148,7 +151,8 @@ struct Found {
     least: f64,
 }
 
-/// A part of a patch: its corners in the patch's coordinates, where they are, and how far from the other surface.
+/// A part of a patch: its corners in the patch's coordinates, where they are, and how far from the
+/// other surface.
 #[derive(Clone, Copy)]
 struct Piece {
     patch: u32,
@@ -163,8 +167,8 @@ impl Side<'_> {
         self.surface.accuracy.tolerance.max(self.surface.accuracy.error)
     }
 
-    /// A point inside both solids, just below the surface of this one, if there is any below a corner or the middle of a
-    /// patch.
+    /// A point inside both solids, just below the surface of this one, if there is any below a
+    /// corner or the middle of a patch.
     fn common(&self, other: &Side<'_>, slack: f64, run: &Run) -> Result<Option<DVec3>, PrepareError> {
         let patches = &self.surface.patches;
         let bounds = other.surface.patches.bounds().inflate(slack);
@@ -258,7 +262,8 @@ impl Piece {
     fn least(&self, patches: &Patches) -> f64 {
         let corner = self.distances.iter().copied().fold(f64::INFINITY, f64::min);
         let longest = longest_side(&self.points);
-        // A patch is quadratic: it is off its triangle by four thirds of how far it is in the middle of a side, at most.
+        // A patch is quadratic: it is off its triangle by four thirds of how far it is in the
+        // middle of a side, at most.
         let middles = self.middles(patches);
         let off = |k: usize| middles[k].1.distance(0.5 * (self.points[k] + self.points[(k + 1) % 3]));
         let off = 4.0 / 3.0 * (0..3).map(off).fold(0.0, f64::max);

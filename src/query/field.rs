@@ -56,7 +56,8 @@ impl Solid {
         Ok(values)
     }
 
-    /// Whether a point is inside: the value is positive, or inside is all around, as on a face that two parts share.
+    /// Whether a point is inside: the value is positive, or inside is all around, as on a face that
+    /// two parts share.
     ///
     /// ```
     /// use rvachev::Solid;
@@ -171,9 +172,9 @@ impl Solid {
         Ok(first_hit(&programs.surface, &programs.bounds, (origin, direction), whole, Care::Full))
     }
 
-    /// The point of the surface nearest to `p`, to about 10⁻⁹ of the solid's size where the
-    /// surface is smooth there; `None` if the solid is empty or fills its bounds. A point that is more than a million
-    /// sizes away counts as one at that distance, in the same direction.
+    /// The point of the surface nearest to `p`, to about 10⁻⁹ of the solid's size where the surface
+    /// is smooth there; `None` if the solid is empty or fills its bounds. A point that is more than
+    /// a million sizes away counts as one at that distance, in the same direction.
     ///
     /// # Errors
     /// What is wrong with the solid; [`SolidError::Unbounded`] if it has no finite box.

@@ -8,7 +8,8 @@ use glam::DVec3;
 use crate::eval::Program;
 use rvachev_field::Patches;
 
-/// From farther away than this, in sizes of the solid, distances to all of its parts are alike to the last digits.
+/// From farther away than this, in sizes of the solid, distances to all of its parts are alike to
+/// the last digits.
 const FARTHEST: f64 = 1e6;
 
 /// The point of the surface of `program` that is nearest to `p`; none if there are no patches.
@@ -27,9 +28,9 @@ pub(super) fn nearest(program: &Program, patches: &Patches, p: DVec3) -> Option<
     Some(refined.unwrap_or(foot))
 }
 
-/// Where the sign changes near `x`: halved between it and a point of the other sign, among those all
-/// around it at growing distances. Beyond the end of an edge Newton steps go to and fro over a ridge
-/// of the field.
+/// Where the sign changes near `x`: halved between it and a point of the other sign, among those
+/// all around it at growing distances. Beyond the end of an edge Newton steps go to and fro over a
+/// ridge of the field.
 fn crossing(program: &Program, x: DVec3, size: f64) -> Option<DVec3> {
     const WAYS: u32 = 128;
     let inside = |x: DVec3| program.value(x) > 0.0;

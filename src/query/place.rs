@@ -1,7 +1,7 @@
 //! Placing by boxes: onto the ground, about the origin, face to face.
 //!
-//! The box is that of [`Solid::bounds`], asked for when the verb is called. What is wrong with the solid, or that it
-//! has no finite box, is said when the result is first used, as everything is.
+//! The box is that of [`Solid::bounds`], asked for when the verb is called. What is wrong with the
+//! solid, or that it has no finite box, is said when the result is first used, as everything is.
 
 use glam::{DAffine3, DVec3};
 
@@ -56,15 +56,17 @@ impl Solid {
     /// ```
     ///
     /// # Details
-    /// An empty solid stays where it is. One without a lowest point is refused when it is first used, and so is the
-    /// result where the solid itself is at fault. The box is [`bounds`](Solid::bounds): where that is larger than
-    /// the solid, as behind deformations, the solid hovers.
+    /// An empty solid stays where it is. One without a lowest point is refused when it is first
+    /// used, and so is the result where the solid itself is at fault. The box is
+    /// [`bounds`](Solid::bounds): where that is larger than the solid, as behind deformations, the
+    /// solid hovers.
     #[must_use]
     pub fn on_ground(&self) -> Solid {
         self.placed("on_ground", |bounds| DVec3::new(0.0, 0.0, -bounds.min.z))
     }
 
-    /// Moved so that the middle of its box is the origin. What is refused: see [`on_ground`](Solid::on_ground).
+    /// Moved so that the middle of its box is the origin. What is refused: see
+    /// [`on_ground`](Solid::on_ground).
     ///
     /// ```
     /// use rvachev::Solid;
@@ -78,10 +80,11 @@ impl Solid {
         self.placed("centered", |bounds| -bounds.center())
     }
 
-    /// Moved along an axis so that a face of its box lies in the plane of a face of another solid's box. Both faces
-    /// are across the same axis: two that are not are refused when the result is first used, as
-    /// solids [without a box](Solid::on_ground) are. What is wrong with the other solid is told as a box that it has
-    /// not; an empty solid stays empty, whatever it is aligned with.
+    /// Moved along an axis so that a face of its box lies in the plane of a face of another solid's
+    /// box. Both faces are across the same axis: two that are not are refused when the result is
+    /// first used, as solids [without a box](Solid::on_ground) are. What is wrong with the other
+    /// solid is told as a box that it has not; an empty solid stays empty, whatever it is aligned
+    /// with.
     ///
     /// ```
     /// use rvachev::{Face, Solid};
@@ -106,8 +109,9 @@ impl Solid {
         })
     }
 
-    /// Turned by `angle` about the line through `point` along `axis`, which may be of any length but 0; anticlockwise
-    /// seen from where it points. About the origin: [`rotate_about`](Solid::rotate_about).
+    /// Turned by `angle` about the line through `point` along `axis`, which may be of any length
+    /// but 0; anticlockwise seen from where it points. About the origin:
+    /// [`rotate_about`](Solid::rotate_about).
     ///
     /// ```
     /// use rvachev::{deg, Solid};
@@ -123,8 +127,8 @@ impl Solid {
         self.translate(-point).rotate_about(axis, angle).translate(point)
     }
 
-    /// A grid of copies as [`repeat`](Solid::repeat) makes it, moved so that the solid's own place is the middle of
-    /// the grid.
+    /// A grid of copies as [`repeat`](Solid::repeat) makes it, moved so that the solid's own place
+    /// is the middle of the grid.
     ///
     /// ```
     /// use rvachev::Solid;
@@ -156,8 +160,8 @@ impl Solid {
 }
 
 impl Profile {
-    /// Extruded along z from the plane z = 0 up to `height`: [`extrude`](Profile::extrude), whose middle is at
-    /// z = 0, moved up by half of the height.
+    /// Extruded along z from the plane z = 0 up to `height`: [`extrude`](Profile::extrude), whose
+    /// middle is at z = 0, moved up by half of the height.
     ///
     /// ```
     /// use rvachev::Profile;

@@ -26,12 +26,13 @@ impl From<CompileError> for PrepareError {
 }
 
 impl Solid {
-    /// How far the solid's surface may be off what its offsets, shells, roundings, fillets and chamfers ask
-    /// for, in length units. Both numbers are 0 if nothing had to be measured: if all of it is closed form.
+    /// How far the solid's surface may be off what its offsets, shells, roundings, fillets and
+    /// chamfers ask for, in length units. Both numbers are 0 if nothing had to be measured: if all
+    /// of it is closed form.
     ///
-    /// It is that of the least exact part. [`with_tolerance`](Solid::with_tolerance) sets the tolerance of
-    /// an operation. The solid is compiled on first use, which may take long where there is much to measure:
-    /// see [`prepare`](Solid::prepare).
+    /// It is that of the least exact part. [`with_tolerance`](Solid::with_tolerance) sets the
+    /// tolerance of an operation. The solid is compiled on first use, which may take long where
+    /// there is much to measure: see [`prepare`](Solid::prepare).
     ///
     /// ```
     /// use rvachev::{Accuracy, Solid, rad};
@@ -47,10 +48,10 @@ impl Solid {
     ///
     /// # Details
     ///
-    /// Affine maps above an operation are counted by their largest stretch. Deformations above it are not:
-    /// the numbers are then in the units of the solid before it was deformed. Operands without end, such as
-    /// lattices, are measured piece by piece where they are asked for: their tolerance is known before, their
-    /// error is not, and is told as 0.
+    /// Affine maps above an operation are counted by their largest stretch. Deformations above it
+    /// are not: the numbers are then in the units of the solid before it was deformed. Operands
+    /// without end, such as lattices, are measured piece by piece where they are asked for: their
+    /// tolerance is known before, their error is not, and is told as 0.
     ///
     /// # Errors
     /// What is wrong with the solid: see [`SolidError`].
@@ -58,16 +59,17 @@ impl Solid {
         Ok(compiled(self)?.accuracy)
     }
 
-    /// Compiles the solid and measures the surfaces that its offsets, shells, roundings, fillets and chamfers
-    /// need, and tells how exact they are: [`accuracy`](Solid::accuracy). Everything is kept with the solid
-    /// and its clones: queries, meshes and pictures find it there, and a second call costs nothing.
+    /// Compiles the solid and measures the surfaces that its offsets, shells, roundings, fillets
+    /// and chamfers need, and tells how exact they are: [`accuracy`](Solid::accuracy). Everything
+    /// is kept with the solid and its clones: queries, meshes and pictures find it there, and a
+    /// second call costs nothing.
     ///
-    /// Whoever does not call this pays when the solid is first used. What is called here is the threads, the
-    /// cancel token and the progress sink of that work. If it is cancelled, what was measured so far is kept,
-    /// and the solid may be used, or prepared, again.
+    /// Whoever does not call this pays when the solid is first used. What is called here is the
+    /// threads, the cancel token and the progress sink of that work. If it is cancelled, what was
+    /// measured so far is kept, and the solid may be used, or prepared, again.
     ///
-    /// Two things are still made on first use: the pieces of operands without end, and the surface that
-    /// [`closest_surface_point`](Solid::closest_surface_point) looks on.
+    /// Two things are still made on first use: the pieces of operands without end, and the surface
+    /// that [`closest_surface_point`](Solid::closest_surface_point) looks on.
     ///
     /// ```
     /// use rvachev::{Progress, Run, Solid, rad};

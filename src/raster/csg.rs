@@ -50,8 +50,8 @@ use rvachev_num::Meter;
 ///   the surfaces are made of. Rays cost by the pixels, and by what the field costs.
 /// * Meshes have a chord error, which falls as one over the number of triangles; their joints are
 ///   exact to the pixel for the meshes. Rays find the surface itself.
-/// * A mesh is made and [found closed](super::ClosedMesh) once, which takes up to some fifteen times
-///   as long as a view of it; it serves any number of views.
+/// * A mesh is made and [found closed](super::ClosedMesh) once, which takes up to some fifteen
+///   times as long as a view of it; it serves any number of views.
 ///
 /// So: many views of primitives of up to some 100 000 triangles, synthetic range images by the
 /// thousand, scans and other meshes that have no field: rasterise. A single view, blends, fillets,

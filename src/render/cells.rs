@@ -10,11 +10,11 @@
 //! ```
 //!
 //! Once along each axis a cell is halved even where that is not its longest side, which parts the
-//! front of a plate from its back. Where a leaf is long, a cell is halved four times in one go, along
-//! the axes that the leaf depends on: it is narrowed to all of the sixteen boxes together. A cell is no
-//! larger than what its leaves' boxes leave of it. In a small union of convex leaves rays look for each
-//! leaf by itself, in the part of the cell that the leaf may reach, and the nearest crossing counts:
-//! nothing is divided further to part the leaves.
+//! front of a plate from its back. Where a leaf is long, a cell is halved four times in one go,
+//! along the axes that the leaf depends on: it is narrowed to all of the sixteen boxes together. A
+//! cell is no larger than what its leaves' boxes leave of it. In a small union of convex leaves
+//! rays look for each leaf by itself, in the part of the cell that the leaf may reach, and the
+//! nearest crossing counts: nothing is divided further to part the leaves.
 //!
 //! All programs of a solid agree on the sign of any point, and the parts of a ray in the boxes
 //! abut to the bit, as the crossings with a plane are computed alike on both sides of it: a
@@ -82,8 +82,8 @@ impl Halves {
         &self.parts[usize::from(p[self.axis] >= self.plane)]
     }
 
-    /// Calls `visit` with the cells of both parts, the farthest first; `is_above` tells of an axis and a
-    /// plane across it whether the part above is the farther one.
+    /// Calls `visit` with the cells of both parts, the farthest first; `is_above` tells of an axis
+    /// and a plane across it whether the part above is the farther one.
     pub(super) fn far_first<'a>(&'a self, is_above: &impl Fn(usize, f64) -> bool, visit: &mut impl FnMut(&'a Cell)) {
         let [below, above] = &self.parts;
         let order = if is_above(self.axis, self.plane) { [above, below] } else { [below, above] };
@@ -108,8 +108,8 @@ impl Cells {
         Cells::within(program, bounds, margin, [true; 3])
     }
 
-    /// The tree of `program` in a box that is as large as it has to be, halved once along each of `axes`
-    /// at first.
+    /// The tree of `program` in a box that is as large as it has to be, halved once along each of
+    /// `axes` at first.
     pub(super) fn within(program: &Program, bounds: Bounds, margin: f64, axes: [bool; 3]) -> Cells {
         let around = Around { whole: bounds.longest_side(), margin, cost: usize::MAX, stale: 0, undivided: axes };
         Cells { root: part(program, bounds, around), bounds, margin, program: program.clone(), still: OnceLock::new() }
@@ -181,8 +181,8 @@ const CROWD: usize = 24;
 /// Unions of more leaves are divided in space.
 const UNITED: usize = 8;
 
-/// Cells with a leaf that costs more, in ordinary leaves, are halved more than once in one go: to narrow
-/// it to many boxes takes little longer than to narrow it to one.
+/// Cells with a leaf that costs more, in ordinary leaves, are halved more than once in one go: to
+/// narrow it to many boxes takes little longer than to narrow it to one.
 const DEAR: usize = 8;
 const AT_ONCE: u32 = BOXES_AT_ONCE.ilog2();
 
@@ -213,8 +213,8 @@ impl Slopes {
     }
 }
 
-/// The slopes without what comes of 0 rounded outwards: on the way through a cell such slopes change
-/// a value by far less than the room that the boxes are given.
+/// The slopes without what comes of 0 rounded outwards: on the way through a cell such slopes
+/// change a value by far less than the room that the boxes are given.
 fn level(slopes: Interval) -> Interval {
     let least = LEVEL * slopes.magnitude().clamp(1e-17, 1.0);
     let level = |v: f64| if v.abs() < least { 0.0 } else { v };
@@ -235,8 +235,9 @@ struct Around {
 }
 
 impl Around {
-    /// The halves of a box, and what is known around them: once along each axis it is halved at first,
-    /// which parts the front of a plate from its back, then along the longest side across `axes`.
+    /// The halves of a box, and what is known around them: once along each axis it is halved at
+    /// first, which parts the front of a plate from its back, then along the longest side across
+    /// `axes`.
     fn cut(&self, bounds: &Bounds, axes: [bool; 3]) -> (usize, f64, [Bounds; 2], Around) {
         let size = bounds.size();
         let first = |axis: usize| self.undivided[axis] && size[axis] > THIN * size.max_element();

@@ -10,8 +10,8 @@
 //!    +---+---+---+---+
 //! ```
 //!
-//! A ray that leaves a surface has half of the space before it, most often empty, and is gone in one
-//! leap or two.
+//! A ray that leaves a surface has half of the space before it, most often empty, and is gone in
+//! one leap or two.
 //!
 //! Source: R. Cohen and Z. Sheffer, *Proximity clouds* (1994), for empty space in grids.
 
@@ -63,8 +63,8 @@ impl EmptySpace {
         self.count
     }
 
-    /// The side of the cube of a block, in the way of a direction, whose bit `axis` is set if it goes up
-    /// that axis: that at `way · count + place`.
+    /// The side of the cube of a block, in the way of a direction, whose bit `axis` is set if it
+    /// goes up that axis: that at `way · count + place`.
     #[inline]
     pub(super) fn side(&self, at: usize) -> u8 {
         self.sides[at]

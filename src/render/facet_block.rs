@@ -44,7 +44,8 @@ pub(super) struct Block {
     cells: [u64; SIDE],
     /// How many facets the layers before have.
     before: [u16; SIDE],
-    /// The slopes of the value a cell, and the value at the block's low corner, in the cells' order.
+    /// The slopes of the value a cell, and the value at the block's low corner, in the cells'
+    /// order.
     facets: Vec<Vec4>,
 }
 
@@ -82,11 +83,11 @@ impl Block {
         places.map(|at| middle([at % SIDE, at / SIDE % SIDE, at / (SIDE * SIDE)])).zip(self.facets.iter().copied())
     }
 
-    /// A unit vector out of the solid, and how far along it from the block's corner there is something
-    /// beyond a facet; infinitely far where the facets face all ways.
+    /// A unit vector out of the solid, and how far along it from the block's corner there is
+    /// something beyond a facet; infinitely far where the facets face all ways.
     ///
-    /// What is beyond the facet `v + g·q ≥ 0` of a cell, |qᵢ| ≤ ½ from its middle, is no further along a
-    /// unit vector `u` than, for any λ ≥ 0,
+    /// What is beyond the facet `v + g·q ≥ 0` of a cell, |qᵢ| ≤ ½ from its middle, is no further
+    /// along a unit vector `u` than, for any λ ≥ 0,
     ///
     /// ```text
     ///   u·q ≤ u·q + λ (v + g·q) ≤ λ v + ½ |u + λ g|₁
@@ -109,7 +110,8 @@ impl Block {
         (up, self.facets().map(reach).fold(f32::NEG_INFINITY, f32::max) + SLACK)
     }
 
-    /// The first facet on a ray that is in this block, whose corner is at `corner`, from `t` to `end`.
+    /// The first facet on a ray that is in this block, whose corner is at `corner`, from `t` to
+    /// `end`.
     pub(super) fn walk(&self, ray: &Ray, corner: Vec3A, mut t: f32, end: f32) -> Option<f32> {
         let most = Vec3A::splat(SIDE as f32 - 1.0);
         let low = (ray.at(t) - corner).floor().clamp(Vec3A::ZERO, most);

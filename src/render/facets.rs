@@ -123,10 +123,10 @@ impl Facets {
         })
     }
 
-    /// How far along each of four rays the first facet is, in length units; infinite where there is none.
-    /// They start at `origin`; `directions` are the components of unit vectors, a lane a ray, and `asked`
-    /// has a bit for each ray that is wanted. What is within two cells of the origin counts only if the
-    /// ray passes its plane there.
+    /// How far along each of four rays the first facet is, in length units; infinite where there is
+    /// none. They start at `origin`; `directions` are the components of unit vectors, a lane a ray,
+    /// and `asked` has a bit for each ray that is wanted. What is within two cells of the origin
+    /// counts only if the ray passes its plane there.
     pub(super) fn hits(&self, origin: DVec3, directions: &[Vec4; 3], asked: u32) -> [f64; 4] {
         let mut hits = [f64::INFINITY; 4];
         let origin = ((origin - self.origin) / self.cell).as_vec3();
@@ -150,8 +150,8 @@ impl Facets {
         hits
     }
 
-    /// Fills in the first facets on those rays, among the ones asked for, that are in the grid between
-    /// `near` and `far`.
+    /// Fills in the first facets on those rays, among the ones asked for, that are in the grid
+    /// between `near` and `far`.
     fn walk(&self, rays: &Rays, near: Vec4, far: Vec4, asked: u32, hits: &mut [f64; 4]) {
         let Rays { origin, directions: [x, y, z], inverses: [over_x, over_y, over_z], .. } = rays;
         let side = SIDE as f32;
@@ -235,8 +235,8 @@ impl Rays {
     }
 }
 
-/// The whole numbers below these, to which rounding to even is close enough where they are whole, and 0 or
-/// less of what is below 1.
+/// The whole numbers below these, to which rounding to even is close enough where they are whole,
+/// and 0 or less of what is below 1.
 #[inline(always)]
 fn whole(v: Vec4) -> Vec4 {
     // From 2²³ on, single precision has no fractions.

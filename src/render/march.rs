@@ -45,7 +45,7 @@ const NEWTON: usize = 16;
 /// Of programs that cost more, in ordinary leaves, gradients are not for every ray.
 const DEAR: usize = 8;
 
-/// A search leaps by this part of what a step may go on beyond where it is safe.
+/// A search goes by this part of what a step may go on beyond where it is safe.
 const LEAP: f32 = 0.9;
 
 /// Slopes in single precision are trusted to this part.

@@ -9,8 +9,8 @@ use crate::{Paint, Palette};
 pub(super) struct Materials {
     /// Of what nobody painted.
     unpainted: Material,
-    /// By leaf; none for leaves in a blend of various paints, where it depends on the point. Empty if
-    /// nothing is painted.
+    /// By leaf; none for leaves in a blend of various paints, where it depends on the point. Empty
+    /// if nothing is painted.
     parts: Vec<Option<Material>>,
     palette: Palette,
     paint: Paint,

@@ -1,9 +1,10 @@
 //! From a solid to a picture.
 //!
 //! The space around the solid is divided into cells where the surface may cross; rays are taken
-//! through them in packets and ask each for the first crossing. What they meet are the layers of
-//! a picture, or it is shaded: lights that move with the camera, shadows and hollows by rays
-//! through a coarser copy of the surface, and more rays of its own at outlines and creases. Slices show the field on a plane.
+//! through them in packets and ask each for the first crossing. What they meet are the layers of a
+//! picture, or it is shaded: lights that move with the camera, shadows and hollows by rays through
+//! a coarser copy of the surface, and more rays of its own at outlines and creases. Slices show the
+//! field on a plane.
 
 mod cells;
 mod contour;

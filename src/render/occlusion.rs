@@ -54,8 +54,8 @@ pub(super) struct Obstacles<'a> {
     scene: &'a Scene,
     facets: Arc<Facets>,
     key: DVec3,
-    /// Directions to points of the key light, by pattern: a lane a ray. None if it casts no shadow, or
-    /// has no extent.
+    /// Directions to points of the key light, by pattern: a lane a ray. None if it casts no shadow,
+    /// or has no extent.
     shadows: Vec<[Vec4; 3]>,
     is_hard: bool,
     /// Directions to the sky, by pattern, z along the normal; none if nothing hides it.
@@ -114,8 +114,8 @@ impl<'a> Obstacles<'a> {
         self.is_hard
     }
 
-    /// What each point sees by its own rays; `pattern` gives a number for the point at an index. They go
-    /// tile by tile of a picture with rows of `width`, as neighbours meet the same facets.
+    /// What each point sees by its own rays; `pattern` gives a number for the point at an index.
+    /// They go tile by tile of a picture with rows of `width`, as neighbours meet the same facets.
     pub(super) fn seen(
         &self,
         spots: &[Spot],
@@ -213,7 +213,8 @@ impl<'a> Obstacles<'a> {
     }
 }
 
-/// The directions of each pattern, those of one pattern far apart in their sequence: their components.
+/// The directions of each pattern, those of one pattern far apart in their sequence: their
+/// components.
 fn patterns(direction: impl Fn(usize) -> DVec3) -> Vec<[Vec4; 3]> {
     let lanes = |pattern: usize| [0, 1, 2, 3].map(|ray| direction(pattern + PATTERNS * ray).as_vec3());
     (0..PATTERNS).map(|pattern| [0, 1, 2].map(|axis| Vec4::from_array(lanes(pattern).map(|d| d[axis])))).collect()

@@ -80,7 +80,8 @@ pub(super) struct Fine {
 }
 
 impl Picture<'_> {
-    /// All pixels, row by row from the top, as what `finish` makes of them: linear light, weighted by alpha.
+    /// All pixels, row by row from the top, as what `finish` makes of them: linear light, weighted
+    /// by alpha.
     pub(super) fn pixels<P: Pixel>(
         &self,
         run: &Run,
@@ -203,8 +204,8 @@ impl Picture<'_> {
         Ok(())
     }
 
-    /// The rows from `top` to `end` of a picture whose pixels have one ray each, and no shadows or lines: they
-    /// need not know of each other.
+    /// The rows from `top` to `end` of a picture whose pixels have one ray each, and no shadows or
+    /// lines: they need not know of each other.
     fn plain<P: Pixel>(
         &self,
         (top, end): (u32, u32),

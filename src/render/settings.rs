@@ -5,9 +5,9 @@ use crate::{Angle, CameraError, Cancelled, ImageError, Paint, SaveError, SolidEr
 /// What to render.
 ///
 /// The default is a studio: a warm key light from the upper left that casts soft shadows, a cool
-/// fill light from the right, a rim light from behind, and a sky that every part sees as much of
-/// as the others leave free. The solid stands on a ground that shows shadows and nothing else. All lights move with the
-/// camera; up is +z.
+/// fill light from the right, a rim light from behind, and a sky that every part sees as much of as
+/// the others leave free. The solid stands on a ground that shows shadows and nothing else. All
+/// lights move with the camera; up is +z.
 ///
 /// ```
 /// use rvachev::{Background, Camera, RenderSettings, Solid};

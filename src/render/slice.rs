@@ -50,7 +50,8 @@ pub struct Slice {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct SliceSettings {
-    /// Width of the picture in pixels, 1 to 65 535; its height follows from the region. Default: 800.
+    /// Width of the picture in pixels, 1 to 65 535; its height follows from the region. Default:
+    /// 800.
     pub width: u32,
     /// Where isolines are drawn. Default: at multiples of a round number, about 16 of them.
     pub isolines: Isolines,
@@ -144,7 +145,8 @@ impl Slice {
     /// top left.
     ///
     /// # Errors
-    /// If the width, or the height that follows from it, is not from 1 to 65 535, or both make more pixels than fit into memory.
+    /// If the width, or the height that follows from it, is not from 1 to 65 535, or both make more
+    /// pixels than fit into memory.
     pub fn values(&self, width: u32) -> Result<Image<f64>, RenderError> {
         let height = self.height(width).min(f64::from(u32::MAX)) as u32;
         check_size(width, height)?;

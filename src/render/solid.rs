@@ -334,7 +334,8 @@ mod tests {
         let image = wall.render(&camera, &flat).unwrap();
         assert!(image.pixels().iter().all(|p| *p == image.pixels()[0] && p[3] == 255));
         let image = wall.render(&camera, &transparent(64, 64)).unwrap();
-        // Where cubes meet, their facets are a little off; a hole is darker or shows the background.
+        // Where cubes meet, their facets are a little off; a hole is darker or shows the
+        // background.
         let like = |p: &[u8; 4]| p.iter().zip(image.pixels()[0]).all(|(a, b)| a.abs_diff(b) <= 3);
         assert!(image.pixels().iter().all(|p| like(p) && p[3] == 255));
     }

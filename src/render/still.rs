@@ -1,4 +1,5 @@
-//! A long leaf that does not change along parallel rays: of a plate that is seen from above, its outline.
+//! A long leaf that does not change along parallel rays: of a plate that is seen from above, its
+//! outline.
 //!
 //! ```text
 //!      | | | | | | |       Rays along z, and a formula of x and y: which of them are inside of it is a
@@ -8,7 +9,8 @@
 //!     -+-+-+-+-+-+-+-      formula (`eval::partial`).
 //! ```
 //!
-//! So the formula is divided along the axes that it depends on, by itself, and never marched through.
+//! So the formula is divided along the axes that it depends on, by itself, and never marched
+//! through.
 
 use std::ops::Range;
 
@@ -43,8 +45,8 @@ pub(super) struct Mask {
 /// through the solid it is far less than the room that boxes are given.
 const LEVEL: f64 = 1e-15;
 
-/// Values at all the pixels that see a cell, within the picture and beyond, cost less than dividing it if
-/// they are as much as up to so many of ordinary leaves.
+/// Values at all the pixels that see a cell, within the picture and beyond, cost less than dividing
+/// it if they are as much as up to so many of ordinary leaves.
 const FEW: f64 = 6e4;
 
 impl Still {
@@ -132,8 +134,8 @@ impl Pass<'_> {
         self.part(leaf.root(), leaf.bounds());
     }
 
-    /// The columns among `columns` that are in a box along the axes that matter, as far as that is the
-    /// same for all rows of the tile.
+    /// The columns among `columns` that are in a box along the axes that matter, as far as that is
+    /// the same for all rows of the tile.
     fn columns(&self, bounds: &Bounds, columns: u64) -> u64 {
         let fixed = (0..3).filter(|&axis| self.axes[axis] && self.grid.down[axis] == 0.0);
         fixed.fold(columns, |columns, axis| columns & self.grid.within(bounds, axis, 0, columns))
@@ -145,7 +147,8 @@ impl Pass<'_> {
         changing.fold(columns, |columns, axis| columns & self.grid.within(bounds, axis, row, columns))
     }
 
-    /// The pixels of a part of the tree with these bounds. They are half open: a pixel is in one part.
+    /// The pixels of a part of the tree with these bounds. They are half open: a pixel is in one
+    /// part.
     fn part(&mut self, part: &Part, bounds: &Bounds) {
         match part {
             Part::Outside => {}
@@ -204,8 +207,8 @@ impl Pass<'_> {
 }
 
 impl Mask {
-    /// Fills in the points of some rows, so many pixels from column `left` each, relative to `origin`. Rows
-    /// are written in whole strips; what is too much is overwritten by the next one.
+    /// Fills in the points of some rows, so many pixels from column `left` each, relative to
+    /// `origin`. Rows are written in whole strips; what is too much is overwritten by the next one.
     fn place(&mut self, grid: &Grid, origin: DVec3, (rows, left, width): (Range<usize>, u32, usize)) {
         for (axis, (list, step)) in self.points.iter_mut().zip(grid.across.as_vec3().to_array()).enumerate() {
             let mut ahead = [0.0; TILE as usize];

@@ -33,7 +33,8 @@ pub(super) struct Tracer {
     nearer: Vec<Span>,
 }
 
-/// Divides what of the tree every tile would begin with, on all threads: none waits for another then.
+/// Divides what of the tree every tile would begin with, on all threads: none waits for another
+/// then.
 pub(super) fn divide_top(cells: &Cells, view: &View<'_>, window: &Window) {
     fn divide(part: &Part, sees: &(impl Fn(&Bounds) -> bool + Sync)) {
         let cell = match part {
@@ -274,7 +275,8 @@ impl<'a> View<'a> {
         self.sides(bounds, window).is_some()
     }
 
-    /// The pixels of a window that may see the box: columns from left to right, rows from top to bottom.
+    /// The pixels of a window that may see the box: columns from left to right, rows from top to
+    /// bottom.
     fn sides(&self, bounds: &Bounds, window: &Window) -> Option<[u32; 4]> {
         let outline = self.rays.outline(bounds)?;
         // A pixel counts if its ray is within the box's outline, give or take rounding.
@@ -346,15 +348,15 @@ fn cone(bounds: &Bounds, eye: DVec3) -> Option<[DVec3; 2]> {
     Some([least - 1e-9, most + 1e-9])
 }
 
-/// The inverse of a direction's components: a number instead of infinity, so that planes at a distance
-/// of 0 stay there.
+/// The inverse of a direction's components: a number instead of infinity, so that planes at a
+/// distance of 0 stay there.
 #[inline(always)]
 fn inverse(direction: DVec3) -> DVec3 {
     direction.recip().clamp(DVec3::splat(-STEEPEST), DVec3::splat(STEEPEST))
 }
 
-/// Makes a ray ready; whether it meets the box of all cells. `known` is the inverse of its direction, if
-/// others have the same.
+/// Makes a ray ready; whether it meets the box of all cells. `known` is the inverse of its
+/// direction, if others have the same.
 #[inline(always)]
 fn enters(
     ray: &mut Ray,
@@ -416,8 +418,8 @@ const COARSE: f64 = 0.2;
 /// Nor are those of cells with more leaves.
 const MANY: usize = 8;
 
-/// Boxes up to this size, in proportion to their distance from the eye, are seen along much the same
-/// direction.
+/// Boxes up to this size, in proportion to their distance from the eye, are seen along much the
+/// same direction.
 const NARROW: f64 = 0.1;
 
 /// A crossing of a united operand must be nearer by this part of the whole than one of those before
@@ -427,13 +429,15 @@ const TIE: f64 = 1e-7;
 /// No cell is divided below this part of the whole.
 const FINEST: f64 = 1.0 / 4096.0;
 
-/// More rays than this, times leaves, are better off in the halves of a cell; of leaves that search for their values,
-/// which many points together take less of, if the values are no steeper than this: halves would have little else to tell.
+/// More rays than this, times leaves, are better off in the halves of a cell; of leaves that search
+/// for their values, which many points together take less of, if the values are no steeper than
+/// this: halves would have little else to tell.
 const RAYS: usize = 64;
 const SEARCHED: usize = 512;
 const STEEP: f64 = 4.0;
 
-/// The same of ordinary leaves whose slopes are without bound: each ray is divided by intervals then.
+/// The same of ordinary leaves whose slopes are without bound: each ray is divided by intervals
+/// then.
 const BLIND: usize = 16;
 
 /// Whether `count` rays are better off in the halves of a cell, where `slopes` are what they may

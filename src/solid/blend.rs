@@ -27,9 +27,9 @@ impl Solid {
         Solid::blended_all(operation, [self.clone(), other.into()], blend)
     }
 
-    /// What is in any of many solids, and what `blend` adds between them: fillets between any two that
-    /// are close; other blends join one after the other. No operand at all is an error when the solid is
-    /// compiled.
+    /// What is in any of many solids, and what `blend` adds between them: fillets between any two
+    /// that are close; other blends join one after the other. No operand at all is an error when
+    /// the solid is compiled.
     ///
     #[doc = picture!("fillet_union_all" = "docs/gallery/fillet_union_all.png")]
     ///
@@ -75,7 +75,8 @@ impl Solid {
     }
 
     /// What is in either solid, and what `blend` adds between them. The parameters and their
-    /// ranges: [`Blend`]; what fillets and chamfers are: [`lengths`](crate::lengths#fillets-between-operands).
+    /// ranges: [`Blend`]; what fillets and chamfers are:
+    /// [`lengths`](crate::lengths#fillets-between-operands).
     ///
     /// ```
     /// use rvachev::{Blend, Solid};
@@ -102,8 +103,8 @@ impl Solid {
         self.blended(Operation::Difference, other, blend)
     }
 
-    /// Union with a smooth transition where the operands' values differ by less than
-    /// `radius`: [`Blend::Smooth`]. Where faces of the operands are flush it rises above them, by up to a
+    /// Union with a smooth transition where the operands' values differ by less than `radius`:
+    /// [`Blend::Smooth`]. Where faces of the operands are flush it rises above them, by up to a
     /// quarter of the radius; a [`Blend::Fillet`] does not.
     ///
     /// ```

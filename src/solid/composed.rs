@@ -93,8 +93,8 @@ impl Sweep {
         Solid::from_node(Node::Swept { profile: profile.clone(), sweep: self, built, ball })
     }
 
-    /// What the verb calls the edges of its end faces, how they are, and the size of the smallest section relative to
-    /// the profile.
+    /// What the verb calls the edges of its end faces, how they are, and the size of the smallest
+    /// section relative to the profile.
     pub(crate) fn rim(self) -> (&'static str, Caps, f64) {
         match self {
             Sweep::Extrude(extrusion) => ("caps", extrusion.caps, extrusion.scale.min(1.0)),
@@ -118,7 +118,8 @@ impl fmt::Display for Sweep {
     }
 }
 
-/// What was built of `old`, built of `new`, which has the same values; parts that they share stay shared.
+/// What was built of `old`, built of `new`, which has the same values; parts that they share stay
+/// shared.
 pub(super) fn replace<'a>(built: impl IntoIterator<Item = &'a mut Solid>, old: &Solid, new: &Solid) {
     let mut made: HashMap<usize, Solid> = HashMap::from([(old.address(), new.clone())]);
     for solid in built {

@@ -11,8 +11,9 @@ use crate::{Cancelled, Mesh, Run};
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct MeshSolid {
-    /// Whether the solid has the colours of the mesh, where that has some: those at the nearest point of its
-    /// triangles, in meshes and pictures, unless it is [painted](Solid::paint). Default: yes.
+    /// Whether the solid has the colours of the mesh, where that has some: those at the nearest
+    /// point of its triangles, in meshes and pictures, unless it is [painted](Solid::paint).
+    /// Default: yes.
     pub colors: bool,
 }
 
@@ -23,20 +24,22 @@ impl Default for MeshSolid {
 }
 
 impl Solid {
-    /// The solid that a mesh encloses, as a leaf: joined, moved, deformed, offset, shelled, meshed and pictured
-    /// like any other.
+    /// The solid that a mesh encloses, as a leaf: joined, moved, deformed, offset, shelled, meshed
+    /// and pictured like any other.
     ///
-    /// The value is the distance to the nearest triangle, positive where the generalised winding number is above
-    /// one half. So a mesh need not be clean:
+    /// The value is the distance to the nearest triangle, positive where the generalised winding
+    /// number is above one half. So a mesh need not be clean:
     ///
-    /// * Triangles may overlap, or be there twice; what they enclose counts as united. Those inside are no surface, though
-    ///   the distance is measured from them too, and so offsets inwards and shells follow them.
-    /// * Where it is open, the surface goes on across the opening, roughly like a film on it, and the value is a
-    ///   bound of the distance there. [`Mesh::openness`] says how open a mesh is.
-    /// * A mesh that is inside out encloses nothing: no winding number is above one half. Using its solid is an error
-    ///   that says so; [`Mesh::flipped`] turns it.
+    /// * Triangles may overlap, or be there twice; what they enclose counts as united. Those inside
+    ///   are no surface, though the distance is measured from them too, and so offsets inwards and
+    ///   shells follow them.
+    /// * Where it is open, the surface goes on across the opening, roughly like a film on it, and
+    ///   the value is a bound of the distance there. [`Mesh::open_edges`] says how open a mesh is.
+    /// * A mesh that is inside out encloses nothing: no winding number is above one half. Using its
+    ///   solid is an error that says so; [`Mesh::flipped`] turns it.
     ///
-    /// Solids from meshes with the same triangles in the same order, and the same colours, are equal.
+    /// Solids from meshes with the same triangles in the same order, and the same colours, are
+    /// equal.
     ///
     /// ```
     /// use rvachev::{MeshSettings, MeshSolid, Solid};
@@ -51,17 +54,18 @@ impl Solid {
     ///
     /// # Details
     ///
-    /// Distances are found in a hierarchy of boxes, winding numbers by Barill et al., *Fast Winding Numbers for
-    /// Soups and Clouds* (2018). Positions are kept in single precision relative to the mesh's middle; those
-    /// of a [`Mesh`] are in single precision from the origin, some seven digits, so that at coordinates of 4·10⁶ they are
-    /// rounded to a quarter: parts far from the origin keep their shape if they are moved there before they are written. A mesh takes
-    /// some 120 bytes a triangle, 9 more with colours, and about a second a million triangles to be made. Openings
-    /// cost: values near them are found point by point.
+    /// Distances are found in a hierarchy of boxes, winding numbers by Barill et al., *Fast Winding
+    /// Numbers for Soups and Clouds* (2018). Positions are kept in single precision relative to the
+    /// mesh's middle; those of a [`Mesh`] are in single precision from the origin, some seven
+    /// digits, so that at coordinates of 4·10⁶ they are rounded to a quarter: parts far from the
+    /// origin keep their shape if they are moved there before they are written. A mesh takes some
+    /// 120 bytes a triangle, 9 more with colours, and about a second a million triangles to be
+    /// made. Openings cost: values near them are found point by point.
     ///
     /// # Errors
     ///
-    /// None here. Using the solid of a mesh without triangles, of one that is inside out, or of one with coordinates
-    /// beyond ±10¹² is a [`SolidError`](crate::SolidError).
+    /// None here. Using the solid of a mesh without triangles, of one that is inside out, or of one
+    /// with coordinates beyond ±10¹² is a [`SolidError`](crate::SolidError).
     #[must_use]
     pub fn from_mesh(mesh: &Mesh, settings: MeshSolid) -> Solid {
         match Solid::from_mesh_with(mesh, settings, &Run::default()) {

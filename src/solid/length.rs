@@ -33,8 +33,8 @@ impl Solid {
         self.moved(Length::Level(value))
     }
 
-    /// The solid with its surface moved outwards by `distance`, or inwards if it is negative: all points
-    /// that are deeper inside than −`distance`, by the true distance to the surface.
+    /// The solid with its surface moved outwards by `distance`, or inwards if it is negative: all
+    /// points that are deeper inside than −`distance`, by the true distance to the surface.
     ///
     #[doc = picture!("offset" = "docs/gallery/offset.png", "offset_inwards" = "docs/gallery/offset_inwards.png")]
     ///
@@ -47,11 +47,12 @@ impl Solid {
     ///
     /// # Accuracy
     ///
-    /// Exact where the solid's own value is the distance on that side: leaves by distance, outside of
-    /// their unions, inside of their intersections, moved and scaled evenly. Of all else the surface is
-    /// [measured](crate::lengths#exact-or-measured) when the solid is compiled, to a thousandth of the distance or a
-    /// millionth of the solid's size, or to what [`with_tolerance`](Solid::with_tolerance) says.
-    /// [`accuracy`](Solid::accuracy) tells what was reached.
+    /// Exact where the solid's own value is the distance on that side: leaves by distance, outside
+    /// of their unions, inside of their intersections, moved and scaled evenly. Of all else the
+    /// surface is [measured](crate::lengths#exact-or-measured) when the solid is compiled, to a
+    /// thousandth of the distance or a millionth of the solid's size, or to what
+    /// [`with_tolerance`](Solid::with_tolerance) says. [`accuracy`](Solid::accuracy) tells what was
+    /// reached.
     ///
     /// ```
     /// use rvachev::Solid;
@@ -68,8 +69,8 @@ impl Solid {
         self.moved(Length::Offset(distance))
     }
 
-    /// The wall of this solid, `thickness` deep, measured inwards from the surface by true distance. Its
-    /// outer face is the solid's own, exactly.
+    /// The wall of this solid, `thickness` deep, measured inwards from the surface by true
+    /// distance. Its outer face is the solid's own, exactly.
     ///
     #[doc = picture!("shell" = "docs/gallery/shell.png")]
     ///
@@ -94,8 +95,8 @@ impl Solid {
         self.moved(Length::Shell(thickness))
     }
 
-    /// The solid with its convex edges rounded: what balls of this radius fill that are inside of it (its
-    /// opening by the ball). What is thinner than the ball is gone.
+    /// The solid with its convex edges rounded: what balls of this radius fill that are inside of
+    /// it (its opening by the ball). What is thinner than the ball is gone.
     ///
     #[doc = picture!("rounded" = "docs/gallery/rounded.png")]
     ///
@@ -119,8 +120,9 @@ impl Solid {
         self.moved(Length::Rounded(radius))
     }
 
-    /// The solid with its concave edges filled: all that balls of this radius do not reach from outside
-    /// (its closing by the ball). Gaps and holes that the ball does not fit into are filled.
+    /// The solid with its concave edges filled: all that balls of this radius do not reach from
+    /// outside (its closing by the ball). Gaps and holes that the ball does not fit into are
+    /// filled.
     ///
     #[doc = picture!("filleted" = "docs/gallery/filleted.png")]
     ///
@@ -157,8 +159,8 @@ pub(super) fn node(operand: &Solid, length: Length, tolerance: Option<f64>) -> N
     Node::Length { operand: operand.clone(), length, tolerance, ball }
 }
 
-/// Where the centre of a ball may be that rolls along a solid. It is measured from in its turn: half of the
-/// tolerance is for either.
+/// Where the centre of a ball may be that rolls along a solid. It is measured from in its turn:
+/// half of the tolerance is for either.
 pub(super) fn ball(operand: &Solid, distance: f64, tolerance: Option<f64>) -> Solid {
     Solid::from_node(node(operand, Length::Offset(distance), tolerance.map(|tolerance| 0.5 * tolerance)))
 }

@@ -111,16 +111,17 @@ pub(crate) enum Node {
         /// wide, which must be something.
         ball: Option<Solid>,
     },
-    /// The edge between an end face and the sides, rounded or chamfered: the slab and the column, both
-    /// moved in by the size.
+    /// The edge between an end face and the sides, rounded or chamfered: the slab and the column,
+    /// both moved in by the size.
     Rim {
         caps: Caps,
         operands: Vec<Solid>,
     },
 }
 
-/// How a solid is moved in or out, or smoothed by a ball: [`Solid::level`], [`offset`](Solid::offset),
-/// [`shell`](Solid::shell), [`rounded`](Solid::rounded), [`filleted`](Solid::filleted). What a [`Form`](crate::form::Form) tells of it.
+/// How a solid is moved in or out, or smoothed by a ball: [`Solid::level`],
+/// [`offset`](Solid::offset), [`shell`](Solid::shell), [`rounded`](Solid::rounded),
+/// [`filleted`](Solid::filleted). What a [`Form`](crate::form::Form) tells of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Length {

@@ -197,7 +197,8 @@ impl Profile {
             let built = shaped(rimmed(caps, &ball, &slab));
             return sweep.of(self, built, Some(ball));
         }
-        // Each end is cut off where lengths are as many times what they are as the section is at that end.
+        // Each end is cut off where lengths are as many times what they are as the section is at
+        // that end.
         let ends = [(-DVec3::Z, 1.0), (DVec3::Z, scale)].map(|(up, end)| {
             let times = middle / end;
             let caps = caps.times(times);

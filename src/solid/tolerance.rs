@@ -6,32 +6,34 @@ use rvachev_field::check::{LARGEST_LENGTH, SMALLEST_LENGTH};
 
 impl Solid {
     /// The same solid, its surface measured to `tolerance`: right behind [`offset`](Solid::offset),
-    /// [`shell`](Solid::shell), [`rounded`](Solid::rounded), [`filleted`](Solid::filleted), or a blend by
-    /// [`Blend::Fillet`] or [`Blend::Chamfer`].
+    /// [`shell`](Solid::shell), [`rounded`](Solid::rounded), [`filleted`](Solid::filleted), or a
+    /// blend by [`Blend::Fillet`] or [`Blend::Chamfer`].
     ///
     /// | parameter | unit | range |
     /// |---|---|---|
     /// | `tolerance` | length | 10⁻⁹ to 10⁹ |
     ///
-    /// The surface of such a solid is measured when the solid is compiled, unless a closed form is exact.
-    /// Without this method the tolerance is a thousandth of the length. A finer tolerance costs more time
-    /// and memory, a coarser one less. Where nothing is measured the tolerance has no effect.
+    /// The surface of such a solid is measured when the solid is compiled, unless a closed form is
+    /// exact. Without this method the tolerance is a thousandth of the length. A finer tolerance
+    /// costs more time and memory, a coarser one less. Where nothing is measured the tolerance has
+    /// no effect.
     ///
-    /// The tolerance is that of one operation: of the offset, not of what it is an offset of. It is in
-    /// the units of the solid as it is here: if the solid is scaled afterwards, so is the tolerance. Of a
-    /// chamfer, the ball is measured that says where its face ends; the face itself is not.
+    /// The tolerance is that of one operation: of the offset, not of what it is an offset of. It is
+    /// in the units of the solid as it is here: if the solid is scaled afterwards, so is the
+    /// tolerance. Of a chamfer, the ball is measured that says where its face ends; the face itself
+    /// is not.
     ///
     /// # Limits
     ///
-    /// Nothing is measured more finely than to 2·10⁻⁷ of the size of the operand, nor more finely than
-    /// the operand itself was. [`accuracy`](Solid::accuracy) tells what was reached.
+    /// Nothing is measured more finely than to 2·10⁻⁷ of the size of the operand, nor more finely
+    /// than the operand itself was. [`accuracy`](Solid::accuracy) tells what was reached.
     ///
     /// # Errors
     ///
     /// When the solid is first used: [`SolidError::Parameter`](crate::SolidError::Parameter) if the
-    /// tolerance is out of its range, or if this method is called on anything else: on a leaf, a level, a
-    /// join by an R-function, a blend of another kind, a map, a name or a paint. Call it first, then move,
-    /// name or paint the solid.
+    /// tolerance is out of its range, or if this method is called on anything else: on a leaf, a
+    /// level, a join by an R-function, a blend of another kind, a map, a name or a paint. Call it
+    /// first, then move, name or paint the solid.
     ///
     /// ```
     /// use rvachev::{Solid, rad};

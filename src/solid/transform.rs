@@ -75,7 +75,8 @@ impl Solid {
     }
 
     /// Tapered along z: sections are scaled by `1 + kx·t` along x and `1 + ky·t` along y,
-    /// `t = 2z/height` held to [−1, 1]: from z = −height/2 to height/2. By any other law of z: [`taper_by`](Solid::taper_by).
+    /// `t = 2z/height` held to [−1, 1]: from z = −height/2 to height/2. By any other law of z:
+    /// [`taper_by`](Solid::taper_by).
     ///
     #[doc = picture!("taper" = "docs/gallery/taper.png")]
     ///

@@ -9,8 +9,8 @@ use crate::surface::stitch::{End, Knot, Knots, Layout, stitch};
 
 /// A grid of control points, rows × columns, open or closed each way.
 ///
-/// An open direction behaves like an open [`ControlPolygon`](crate::subdivision::ControlPolygon): its surface
-/// runs from the limit of the second row to that of the last but one.
+/// An open direction behaves like an open [`ControlPolygon`](crate::subdivision::ControlPolygon):
+/// its surface runs from the limit of the second row to that of the last but one.
 ///
 /// The outside is where the direction along a row (column by column) turns anticlockwise into
 /// the direction from row to row.

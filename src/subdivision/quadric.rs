@@ -157,7 +157,8 @@ impl SubdivisionRevolution {
         SubdivisionRevolution::new(profile, ControlPolygon::ellipse(DVec2::new(1.0, ratio))?)
     }
 
-    /// The cylinder on the ellipse with these semi-axes, `height` along z, flat at its ends. Straight lines need no levels: 0 along the profile will do.
+    /// The cylinder on the ellipse with these semi-axes, `height` along z, flat at its ends.
+    /// Straight lines need no levels: 0 along the profile will do.
     ///
     /// # Errors
     /// A length out of its range.

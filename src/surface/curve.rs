@@ -171,8 +171,8 @@ fn radial(e: f64, sin: f64, cos: f64) -> Local {
     Local { point, normal: DVec2::new(signed_power(point.x, power), signed_power(point.y, power)) }
 }
 
-/// The hyperbola, by its height or by its angle, which beyond the `end` is that of the end: squarish
-/// ones reach it within 10⁻⁸ of a right angle.
+/// The hyperbola, by its height or by its angle, which beyond the `end` is that of the end:
+/// squarish ones reach it within 10⁻⁸ of a right angle.
 fn hyperbola(e: f64, t: f64, end: f64, by_height: bool) -> Local {
     let (point, sin) = if by_height || t.abs() >= angle_of_tan(end, e) {
         let t = if by_height { t } else { end.copysign(t) };

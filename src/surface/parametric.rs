@@ -30,9 +30,10 @@ use crate::{Angle, Field, ParamError, Superellipsoid, Superhyperboloid, Supersha
 /// | of two sheets, z | 0 (apex) to the clipped end | −π to π | the same, one sheet at a time |
 /// | of two sheets, x | `x = ±a₁·sec^e₁ η·sec^e₂ ω`, within the clipped end | | the same |
 ///
-/// Angles within some units in the last place of a quarter turn count as that quarter turn: poles and seams are exact, whatever the exponents. Any finite angles give a
-/// finite frame; beyond the ranges they go on around the surface, or stay at a clipped end. Of
-/// angles that are not finite the coordinates are NaN.
+/// Angles within some units in the last place of a quarter turn count as that quarter turn: poles
+/// and seams are exact, whatever the exponents. Any finite angles give a finite frame; beyond the
+/// ranges they go on around the surface, or stay at a clipped end. Of angles that are not finite
+/// the coordinates are NaN.
 ///
 /// ```
 /// use glam::DVec3;

@@ -53,9 +53,10 @@ pub enum Spacing {
     EqualArc,
     /// As few as keep the mesh within this distance (length units) of the surface; `rows` and
     /// `columns` are not used. Rings have as many vertices as each needs, so that there are
-    /// triangles only: 1.4 times (sphere) to 1.65 times (ellipsoid of 1 : 2 : 3) the least number possible.
-    /// 10⁻⁶ to 0.3 of the size. (Barr's two sheets along x are grids of rows and columns: they
-    /// take two to four times as many as sheets along z, and many times as many where e is below 0.3.)
+    /// triangles only: 1.4 times (sphere) to 1.65 times (ellipsoid of 1 : 2 : 3) the least number
+    /// possible. 10⁻⁶ to 0.3 of the size. (Barr's two sheets along x are grids of rows and columns:
+    /// they take two to four times as many as sheets along z, and many times as many where e is
+    /// below 0.3.)
     Chord(f64),
 }
 

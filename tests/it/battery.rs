@@ -1,8 +1,9 @@
-//! Random solids over the whole catalogue and what they answer, each question against another; of what is wrong a
-//! minimal program is told.
+//! Random solids over the whole catalogue and what they answer, each question against another; of
+//! what is wrong a minimal program is told.
 //!
-//! The ignored runs are long: `BATTERY_SEEDS=0..1000` chooses a part of one, and each tells how far it is. What they
-//! found is in `tests/corpus/solids.txt`, what is not mended yet in `tests/corpus/open.txt`.
+//! The ignored runs are long: `BATTERY_SEEDS=0..1000` chooses a part of one, and each tells how far
+//! it is. What they found is in `tests/corpus/solids.txt`, what is not mended yet in
+//! `tests/corpus/open.txt`.
 
 #[cfg(feature = "import")]
 mod files;
@@ -45,7 +46,8 @@ fn caught(job: impl FnOnce() -> Result<(), Fault>) -> Result<(), Fault> {
     })
 }
 
-/// Makes a solid of each seed and checks it. Fails at the end, with a minimal program for each of the first faults.
+/// Makes a solid of each seed and checks it. Fails at the end, with a minimal program for each of
+/// the first faults.
 pub fn run(seeds: Range<u64>, make: fn(u64) -> Option<Solid>, check: Check) {
     let (mut wrong, mut solids, mut slow, start) = (Vec::new(), 0, 0, Instant::now());
     let watch = watch();
@@ -163,7 +165,8 @@ fn files_of_two_thousand_solids_come_back() {
     run(seeds("BATTERY_SEEDS", 0..2000), make::solid, files::check);
 }
 
-/// What is wrong with the solids of a file of the corpus, a line each: the name of a check, a colon, a program.
+/// What is wrong with the solids of a file of the corpus, a line each: the name of a check, a
+/// colon, a program.
 fn wrong_of(file: impl AsRef<Path>) -> Vec<String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus").join(file);
     let corpus = fs::read_to_string(path).expect("a file of the corpus");

@@ -237,7 +237,8 @@ fn chamfers_of_round_solids_have_their_legs() -> Result<(), SolidError> {
         (&pipe, &thin, DVec3::new(0.6, 0.0, 1.0), f64::INFINITY),
         (&pipe, &thin, side, 0.6),
     ];
-    // The last is the radius that the angle between the operands changes with: none at a right angle.
+    // The last is the radius that the angle between the operands changes with: none at a right
+    // angle.
     for (a, b, q, radius) in pairs {
         for (leg, union) in [(0.05, true), (0.15, true), (0.05, false), (0.15, false)] {
             let blend = Blend::Chamfer { leg };
@@ -506,7 +507,8 @@ fn a_level_of_what_has_no_end_is_found_anywhere() -> Result<(), SolidError> {
     Ok(())
 }
 
-/// Along a thread's edges the ball has nowhere to touch; what is told of one place is not true of another.
+/// Along a thread's edges the ball has nowhere to touch; what is told of one place is not true of
+/// another.
 #[test]
 fn regions_of_a_filleted_thread_hold_its_values() {
     let thread = Profile::circle(0.08).sweep_helix(&Helix::new(0.3, 0.25, 2.5));
@@ -524,8 +526,8 @@ fn regions_of_a_filleted_thread_hold_its_values() {
     assert!(range.hi() > 0.0);
 }
 
-/// Solids filleted to others that have edges of their own, which run into the fillet: convex and concave, of
-/// joins and of leaves; with the radius.
+/// Solids filleted to others that have edges of their own, which run into the fillet: convex and
+/// concave, of joins and of leaves; with the radius.
 fn filleted_edges() -> Vec<(Solid, f64)> {
     let fillet = Blend::Fillet { radius: 0.1 };
     let floor = Solid::cuboid(DVec3::new(2.0, 2.0, 0.2));
@@ -571,7 +573,8 @@ fn fillets_of_edges_do_not_jump() {
     }
 }
 
-/// What is told of a region by its middle is true of all of it; and of regions without a surface few are open.
+/// What is told of a region by its middle is true of all of it; and of regions without a surface
+/// few are open.
 #[test]
 fn regions_of_fillets_of_edges_hold_their_values() {
     for (nth, (solid, radius)) in filleted_edges().into_iter().enumerate() {
@@ -612,8 +615,8 @@ fn rays_meet_chains_of_fillets() -> Result<(), SolidError> {
     Ok(())
 }
 
-/// A smooth union of what are no distances has another surface than that of their distances, which a fillet rolls along. The
-/// same one counts near the fillet and away from it.
+/// A smooth union of what are no distances has another surface than that of their distances, which
+/// a fillet rolls along. The same one counts near the fillet and away from it.
 #[test]
 fn fillets_of_smooth_unions_are_of_one_surface() -> Result<(), SolidError> {
     const CELL: f64 = 0.05;

@@ -1,7 +1,8 @@
 //! Rounded and chamfered edges of end faces, by closed forms and by brute force.
 //!
-//! With A(s) the area of what is further than s within the profile, an extrusion of the height h has the volume
-//! `A(0)(h − 2r) + 2∫A(s(t)) dt` over t from 0 to r, where s(t) is how far the edge is cut back at t.
+//! With A(s) the area of what is further than s within the profile, an extrusion of the height h
+//! has the volume `A(0)(h − 2r) + 2∫A(s(t)) dt` over t from 0 to r, where s(t) is how far the edge
+//! is cut back at t.
 
 use std::error::Error;
 use std::f64::consts::PI;
@@ -42,8 +43,8 @@ fn volume(area: impl Fn(f64) -> f64, caps: Caps) -> f64 {
     area(0.0) * (HEIGHT - 2.0 * SIZE) + 2.0 * rims
 }
 
-/// The area of what is further than s within an outline: `corners` is π for a smooth convex one, 1 for every right
-/// angle, −π/4 for an inner one.
+/// The area of what is further than s within an outline: `corners` is π for a smooth convex one, 1
+/// for every right angle, −π/4 for an inner one.
 fn steiner(area: f64, perimeter: f64, corners: f64) -> impl Fn(f64) -> f64 {
     move |s| area - perimeter * s + corners * s * s
 }
@@ -116,8 +117,8 @@ fn nearest(outline: &[DVec2], p: DVec2) -> f64 {
     outline.iter().map(|q| q.distance_squared(p)).fold(f64::INFINITY, f64::min).sqrt()
 }
 
-/// Fails unless points about the rim are inside by the formula, with distances by brute force in the section
-/// at z, which is `scale` times the profile.
+/// Fails unless points about the rim are inside by the formula, with distances by brute force in
+/// the section at z, which is `scale` times the profile.
 fn follows_the_formula(
     solid: &Solid,
     outline: &[DVec2],

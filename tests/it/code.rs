@@ -1,7 +1,8 @@
-//! Solids as Rust code: what is written compiles and makes the same solid again, and is formatted as rustfmt does.
+//! Solids as Rust code: what is written compiles and makes the same solid again, and is formatted
+//! as rustfmt does.
 //!
-//! `generated.rs` has the examples of the catalogue and some more, and is compiled with the tests; `BLESS=1` writes
-//! it anew. The ignored run compiles random solids with `rustc`.
+//! `generated.rs` has the examples of the catalogue and some more, and is compiled with the tests;
+//! `BLESS=1` writes it anew. The ignored run compiles random solids with `rustc`.
 
 #[rustfmt::skip]
 #[allow(clippy::approx_constant, clippy::type_complexity, clippy::eq_op, reason = "what is written is not chosen")]

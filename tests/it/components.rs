@@ -57,7 +57,8 @@ fn a_thousand_spheres() {
 
 #[test]
 fn vertices_join_and_places_do_not() {
-    // Two triangles at a vertex, and one at the same place with vertices of its own; a vertex of none.
+    // Two triangles at a vertex, and one at the same place with vertices of its own; a vertex of
+    // none.
     let positions =
         vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::NEG_X, Vec3::NEG_Y, Vec3::ZERO, Vec3::Z, Vec3::ONE, Vec3::X];
     let triangles = vec![[5, 6, 8], [0, 1, 2], [0, 3, 4]];

@@ -1,4 +1,5 @@
-//! Meshes as solids: distance and sign against brute force, what is made of them, and what they came from.
+//! Meshes as solids: distance and sign against brute force, what is made of them, and what they
+//! came from.
 
 mod brute;
 mod laws;
@@ -7,7 +8,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 use glam::{DVec3, Vec3};
 use rvachev::{
-    Blend, Camera, CellSize, ContourSettings, Mesh, MeshSettings, MeshSolid, Openness, Paint, RenderSettings, Run,
+    Blend, Camera, CellSize, ContourSettings, Mesh, MeshSettings, MeshSolid, OpenEdges, Paint, RenderSettings, Run,
     Solid, rad,
 };
 
@@ -56,7 +57,7 @@ fn overlapping_triangles_count_once() {
     let volume = 2.0 + 2.0 * 0.5 - 0.25;
     assert!((report.volume / volume - 1.0).abs() < 2e-3, "{} for {volume}", report.volume);
     assert!(report.is_sound() && report.shells == 1, "{report}");
-    assert_eq!(pile.openness(), Openness::default());
+    assert_eq!(pile.open_edges(), OpenEdges::default());
 }
 
 #[test]
@@ -194,7 +195,7 @@ fn many_small_openings_let_little_out() {
     let ball = meshed(&Solid::sphere(10.0), 40);
     let kept = (0..).zip(ball.triangles()).filter(|(n, _)| n % 23 != 0).map(|(_, triangle)| *triangle);
     let sieve = mesh(ball.positions().to_vec(), kept.collect());
-    assert!(sieve.openness().edges > 500);
+    assert!(sieve.open_edges().edges > 500);
     let solid = solid(&sieve);
     let size = solid.bounds().unwrap().size();
     assert!(size.max_element() < 1.05 * ball.bounds().size().max_element(), "{size}");
@@ -239,9 +240,9 @@ fn bowl(cut: f32) -> Mesh {
 fn open_meshes_are_closed_by_a_film() {
     for cut in [0.0, 0.7] {
         let bowl = bowl(cut);
-        let openness = bowl.openness();
+        let open_edges = bowl.open_edges();
         let around = 2.0 * std::f64::consts::PI * f64::from(1.0 - cut * cut).sqrt();
-        assert!(!openness.is_closed() && (openness.length / around - 1.0).abs() < 0.4, "{openness:?}");
+        assert!(!open_edges.is_closed() && (open_edges.length / around - 1.0).abs() < 0.4, "{open_edges:?}");
         let solid = solid(&bowl);
         assert!(solid.contains([0.0, 0.0, -0.8]).unwrap() && !solid.contains([0.0, 0.0, 1.5]).unwrap());
         let mesh = meshed(&solid, 16);

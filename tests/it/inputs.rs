@@ -1,5 +1,5 @@
-//! Whatever numbers are given to what stands around solids (cameras, planes, settings, plain data): an error that tells
-//! which and what is allowed, or a result without NaN; never a panic.
+//! Whatever numbers are given to what stands around solids (cameras, planes, settings, plain data):
+//! an error that tells which and what is allowed, or a result without NaN; never a panic.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 

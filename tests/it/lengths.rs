@@ -291,13 +291,15 @@ fn a_fillet_leaves_a_flush_top_where_it_is() -> Outcome {
     assert!(top(&mesh) <= step_above(2.5), "{}", top(&mesh));
     let report = mesh.check();
     assert!(report.is_sound(), "{report}");
-    // The prism has 1504.292. At both ends balls come over the flush faces and take some of it: one with its centre h above
-    // a face is no nearer than √(4 - h²) to either edge in the plane. What they cover, by quadrature:
+    // The prism has 1504.292. At both ends balls come over the flush faces and take some of it: one
+    // with its centre h above a face is no nearer than √(4 - h²) to either edge in the plane. What
+    // they cover, by quadrature:
     const AT_END: f64 = 0.0583;
     let prism = 1500.0 + 5.0 * 4.0 * CORNER;
     near(prism, 1504.292, 1e-3);
     measures(&report, prism - 2.0 * AT_END, layer(5.0 * PI, 2.0) + sag(5.0 * PI, 2.0, 0.1), 1);
-    // Faces of the operands are where they were, exactly, and what is added does not rise above them.
+    // Faces of the operands are where they were, exactly, and what is added does not rise above
+    // them.
     for p in [[9.9, 5.0, 0.0], [9.999, 5.0, 0.0], [10.001, 5.0, 0.0], [10.1, 5.0, 0.0]] {
         let p = DVec3::from(p);
         assert!(!solid.contains(p.with_z(2.5 + 1e-9))? && solid.contains(p.with_z(2.5 - 1e-9))?, "{p}");
@@ -638,12 +640,13 @@ fn offsets_are_mostly_at(solid: &Solid, lengths: &[f64], (cells, count): (u32, u
     Ok(())
 }
 
-/// Fails unless the inner face of a shell is as deep as asked for: by brute force, and along normals
-/// where a ball that touches the foot of the normal is larger than the wall.
+/// Fails unless the inner face of a shell is as deep as asked for: by brute force, and along
+/// normals where a ball that touches the foot of the normal is larger than the wall.
 fn has_wall(solid: &Solid, thickness: f64) -> Outcome {
     let surface = Surface::new(solid, 64)?.expect("it has a surface").known_whole();
     let shell = solid.shell(thickness);
-    // Vertices of this mesh are on the surface; others may stand off it, for the sake of its triangles.
+    // Vertices of this mesh are on the surface; others may stand off it, for the sake of its
+    // triangles.
     let cell = solid.bounds()?.longest_side() / 48.0;
     let settings =
         MeshSettings { cell: CellSize::Length(cell), features: rvachev::Features::Smooth, ..MeshSettings::default() };
@@ -748,7 +751,8 @@ fn offsets_of_cusped_lobes_are_at_their_distance() -> Outcome {
     let lobes = Supershape::new(Gielis::new(7.0, 9.0, 8.0, 8.0), Gielis::new(4.0, 30.0, 30.0, 30.0));
     let vase = Solid::from(lobes.scaled([3.4, 3.4, 6.0])).twist(rad(0.087));
     ribs_are_found(&star().offset(0.1), 0.1)?;
-    // One point in forty is wrong, as `offsets_of_a_star_are_at_their_distance_everywhere` shows: no more may be.
+    // One point in forty is wrong, as `offsets_of_a_star_are_at_their_distance_everywhere` shows:
+    // no more may be.
     offsets_are_mostly_at(&star(), &[-0.05], (80, 150), 0.05)?;
     offsets_are_at(&vase, [0.16, -0.08], 80, 150)
 }

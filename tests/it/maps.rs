@@ -155,8 +155,8 @@ fn elongation_is_exact_where_the_leaf_is() {
     assert_eq!(wrong.to_string(), "elongate: lengths.y is -1, allowed: 0 to 1000000000");
 }
 
-/// Single and double precision lanes, gradients, and with the feature `formula` fidget's tree, against the point
-/// values.
+/// Single and double precision lanes, gradients, and with the feature `formula` fidget's tree,
+/// against the point values.
 fn forms_agree(random: &mut Random, solid: &Solid, tolerance: f64) {
     let program = solid.surface_program().unwrap();
     let frame = frame_of(solid);

@@ -359,8 +359,8 @@ fn small_solids_far_away_mesh_like_those_at_hand() {
     assert_eq!((far.shells, far.genus), (1, Some(1)));
 }
 
-/// Fields that jump, as fillets along operands with edges of their own do: samples depend on rounding, and ranges of blocks
-/// may be wrong.
+/// Fields that jump, as fillets along operands with edges of their own do: samples depend on
+/// rounding, and ranges of blocks may be wrong.
 #[test]
 fn surfaces_of_fields_that_jump_are_closed() {
     let thread = Profile::circle(0.08).sweep_helix(&Helix::new(0.3, 0.25, 2.5));

@@ -83,7 +83,8 @@ fn progress_is_even() {
     }
 }
 
-/// Evaluations of a union of two balls, one of them painted, between two reports: the most, and all.
+/// Evaluations of a union of two balls, one of them painted, between two reports: the most, and
+/// all.
 fn evaluations_between_reports(thin: ThinFeatures) -> (u64, u64) {
     let count = Arc::new(AtomicU64::new(0));
     let ball = Solid::new(Counting(count.clone()));

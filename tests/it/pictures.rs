@@ -315,8 +315,9 @@ fn paint_shows() {
     assert!(clay[0].abs_diff(clay[1]) < 30, "{clay:?}");
 }
 
-/// Rays through small pictures of every entry of the catalogue, and of blocks with holes, shelled, moved and capped: where
-/// a pixel is unlike those about it, another way to follow the ray says the same.
+/// Rays through small pictures of every entry of the catalogue, and of blocks with holes, shelled,
+/// moved and capped: where a pixel is unlike those about it, another way to follow the ray says the
+/// same.
 #[test]
 fn no_pixel_is_lost() {
     let part = |entry: &Entry| match entry.example() {

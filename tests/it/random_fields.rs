@@ -121,12 +121,12 @@ fn sines(random: &mut Random) -> Solid {
     Solid::new(Sines(std::array::from_fn(|_| wave())))
 }
 
-/// A vertex within this of the surface, in cells, is on it. Feature points may be off by a tenth; those in the middle of
-/// smooth cells stand off for the sake of their triangles.
+/// A vertex within this of the surface, in cells, is on it. Feature points may be off by a tenth;
+/// those in the middle of smooth cells stand off for the sake of their triangles.
 const OFF: f64 = 0.2;
 
-/// The vertices that are off the surface, but for those at the bounds that a mesh is cut at: the field's value and slope
-/// say that they are, and it has one sign all around them.
+/// The vertices that are off the surface, but for those at the bounds that a mesh is cut at: the
+/// field's value and slope say that they are, and it has one sign all around them.
 fn off_surface(mesh: &Mesh, solid: &Solid, cell: f64, bounds: Option<Bounds>) -> Vec<DVec3> {
     let program = solid.surface_program().unwrap();
     let is_off = |at: &DVec3| {

@@ -171,8 +171,8 @@ fn edges_of_a_turned_cube() {
     assert!(surface.rms <= 0.006, "{surface}");
 }
 
-/// Points on the true edges of M2: where two of its parts have the value 0, found by Newton steps from
-/// around the vertices of a mesh.
+/// Points on the true edges of M2: where two of its parts have the value 0, found by Newton steps
+/// from around the vertices of a mesh.
 fn body_edges(near: &Mesh, cell: f64) -> Vec<DVec3> {
     let parts: Vec<_> = models::set("M2")
         .unwrap()
@@ -232,7 +232,8 @@ fn edges_of_a_body() {
     assert!(edges[0].median <= 0.005 && edges[0].part90 <= 0.05, "{}", edges[0]);
     assert!(edges[0].median < edges[1].median && edges[0].part90 < edges[1].part90);
     assert!(edges[0].rms < 0.03 * edges[1].rms && edges[0].max < 0.15 * edges[1].max);
-    // Where no edge is near, what the rounded parts of the body leave to triangles on lattice edges alone is more.
+    // Where no edge is near, what the rounded parts of the body leave to triangles on lattice edges
+    // alone is more.
     let bucket = |p: DVec3| (p / (2.0 * cell)).floor().as_ivec3();
     let mut buckets: HashMap<IVec3, Vec<DVec3>> = HashMap::new();
     for p in &points {
@@ -282,8 +283,8 @@ fn a_smooth_solid_is_the_same_in_both_modes() {
     }
 }
 
-/// Few cells for a curved surface of a solid that has creases elsewhere: vertices in the middle of cells take the mesh to
-/// it, without creases.
+/// Few cells for a curved surface of a solid that has creases elsewhere: vertices in the middle of
+/// cells take the mesh to it, without creases.
 #[test]
 fn strongly_curved_cells_bulge() {
     let crumb = Solid::cuboid(DVec3::splat(0.3)).translate(DVec3::X * 2.0);
@@ -299,7 +300,8 @@ fn strongly_curved_cells_bulge() {
     assert!((ball.volume() / volume - 1.0).abs() < 3e-3, "{}", ball.volume());
 }
 
-/// Normals that differ as those of a crease do are those of a ball all the same, if it has a radius of few cells.
+/// Normals that differ as those of a crease do are those of a ball all the same, if it has a radius
+/// of few cells.
 #[test]
 fn round_cells_have_no_creases() {
     let cube = Solid::cuboid(DVec3::splat(1.5)).translate(DVec3::X * 2.5);
@@ -322,8 +324,9 @@ fn round_cells_have_no_creases() {
 
 #[test]
 fn apexes_are_kept() {
-    // However blunt: the normals of cones and pyramids are so many degrees from the axis. From 13° on those of opposite
-    // sides differ as at a crease, while those of neighbours in a cell need not.
+    // However blunt: the normals of cones and pyramids are so many degrees from the axis. From 13°
+    // on those of opposite sides differ as at a crease, while those of neighbours in a cell need
+    // not.
     for degrees in [14.0f64, 16.0, 18.0, 22.0, 30.0] {
         let height = degrees.to_radians().tan();
         let pyramid = |sides: u32| Solid::pyramid(sides, 1.0 / (std::f64::consts::PI / f64::from(sides)).cos(), height);

@@ -1,4 +1,5 @@
-//! Vertices of meshes with sharp features are on the surface, and narrow sides between two creases are there.
+//! Vertices of meshes with sharp features are on the surface, and narrow sides between two creases
+//! are there.
 
 use glam::DVec3;
 use rvachev::{CellSize, Mesh, MeshSettings, Profile, Run, Solid, rad};
@@ -14,8 +15,8 @@ fn mesh(solid: &Solid, cell: f64) -> Mesh {
     mesh
 }
 
-/// The farthest that a vertex is off the surface by the field's value and slope, in cells, and how many are off by more
-/// than [`OFF`].
+/// The farthest that a vertex is off the surface by the field's value and slope, in cells, and how
+/// many are off by more than [`OFF`].
 fn worst(mesh: &Mesh, solid: &Solid, cell: f64) -> (f64, usize) {
     let program = solid.surface_program().unwrap();
     let (mut worst, mut count) = (0.0f64, 0);
@@ -30,7 +31,8 @@ fn worst(mesh: &Mesh, solid: &Solid, cell: f64) -> (f64, usize) {
     (worst, count)
 }
 
-/// A bar of ten whose cross-section is a trapezium with a side of `2 c` between two that lean by 30°.
+/// A bar of ten whose cross-section is a trapezium with a side of `2 c` between two that lean by
+/// 30°.
 fn narrow_bar(c: f64) -> (Solid, f64) {
     let t = 30f64.to_radians().tan();
     let profile = Profile::polygon([[-1.5, -c - 1.5 * t], [0.0, -c], [0.0, c], [-1.5, c + 1.5 * t]]);

@@ -232,8 +232,8 @@ fn is_within(contours: &Contours, p: DVec2) -> bool {
     contours.iter().flat_map(Polyline::edges).filter(|edge| crosses(*edge)).count() % 2 == 1
 }
 
-/// What is wrong with the contours of a solid on a plane: points of a grid that are on another side than the field
-/// says, although it says so all around, as far as contours may be off.
+/// What is wrong with the contours of a solid on a plane: points of a grid that are on another side
+/// than the field says, although it says so all around, as far as contours may be off.
 fn wrong(solid: &Solid, plane: &Plane, part: f64) -> Option<String> {
     const POINTS: u32 = 24;
     let slice = solid.slice(plane).unwrap();

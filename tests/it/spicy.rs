@@ -1,5 +1,5 @@
-//! Every entry of the catalogue with numbers of all sizes, one on another: an error that tells, or a solid that can be
-//! asked, meshed, sliced, drawn and written; never a panic, never NaN.
+//! Every entry of the catalogue with numbers of all sizes, one on another: an error that tells, or
+//! a solid that can be asked, meshed, sliced, drawn and written; never a panic, never NaN.
 //!
 //! The ignored test tries as many as are asked for: `SPICY_SEEDS=0..2000`.
 

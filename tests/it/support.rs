@@ -195,8 +195,8 @@ pub fn corpus(file: &str) -> Vec<Vec<f64>> {
     file.lines().filter(|line| !line.starts_with('#')).map(numbers).collect()
 }
 
-/// How many vertices have no change of sign close by along any axis. Distances that are searched for jump here and
-/// there: what tells is the sign.
+/// How many vertices have no change of sign close by along any axis. Distances that are searched
+/// for jump here and there: what tells is the sign.
 pub fn off_surface(program: &Program, mesh: &Mesh, cell: f64) -> usize {
     let crosses = |p: DVec3| {
         DVec3::AXES.iter().any(|axis| {

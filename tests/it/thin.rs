@@ -97,7 +97,8 @@ fn whatever_hides_between_nodes_is_counted() {
     }
 }
 
-/// A fin with a draft is thicker below than above: along it the solid is entered once, and it passes between the nodes.
+/// A fin with a draft is thicker below than above: along it the solid is entered once, and it
+/// passes between the nodes.
 #[test]
 fn fins_and_slots_with_a_draft_are_counted() {
     let drafted = |angle: f64| {
@@ -147,8 +148,8 @@ fn bodies_without_thin_parts_have_no_unresolved_cells() {
         assert_eq!(lost(&solid, CellSize::LongestSide(cells), bounds), 0, "{name}");
     }
     assert_eq!([&boss, &chamfered].map(|solid| lost(solid, CellSize::LongestSide(64), None)), [0; 2]);
-    // Where edges are sharp, radii are of few cells, or faces are told by distances to others, some cells count that
-    // hide nothing.
+    // Where edges are sharp, radii are of few cells, or faces are told by distances to others, some
+    // cells count that hide nothing.
     for (name, solid, cells, bounds) in [
         ("M2", m2.solid.clone(), 64, m2.cube()),
         ("M6", m6.solid.clone(), 64, m6.cube()),

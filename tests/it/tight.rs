@@ -47,8 +47,9 @@ fn leaves() -> Vec<(&'static str, Solid)> {
 
 type Map = (&'static str, [f64; 2], fn(&Solid) -> Solid);
 
-/// Each with the most that a box may be wider than the solid: of leaves, and of those that are hard to bound,
-/// supershapes, whose own box is turned, and helices, which are bounded as if they went all round.
+/// Each with the most that a box may be wider than the solid: of leaves, and of those that are hard
+/// to bound, supershapes, whose own box is turned, and helices, which are bounded as if they went
+/// all round.
 fn maps() -> Vec<Map> {
     vec![
         ("translate", [1.005, 1.01], |s| s.translate([0.3, -0.2, 0.7])),

@@ -27,7 +27,8 @@ fn dome() -> Solid {
     Solid::ellipsoid(SEMI_AXES) & Solid::half_space(-DVec3::Z, 0.0)
 }
 
-/// A point of the dome's surface and a normal there, which on the edge is any between those of the faces.
+/// A point of the dome's surface and a normal there, which on the edge is any between those of the
+/// faces.
 fn place(random: &mut Random) -> (DVec3, DVec3) {
     let mut unit = random.direction();
     unit.z = unit.z.abs();
@@ -42,7 +43,8 @@ fn place(random: &mut Random) -> (DVec3, DVec3) {
     }
 }
 
-/// How far an offset of the dome is off: the points that are so far from a convex solid along a normal are known.
+/// How far an offset of the dome is off: the points that are so far from a convex solid along a
+/// normal are known.
 fn worst(solid: &Solid, distance: f64) -> Result<f64, SolidError> {
     let mut random = Random::new(7);
     let mut worst: f64 = 0.0;
@@ -75,7 +77,8 @@ fn recorded() -> (Arc<Mutex<Vec<f64>>>, Run) {
     (seen, Run { progress: Some(progress), ..Run::default() })
 }
 
-/// Cancels a run after some time from another thread, and says how long the job went on after that, if it did.
+/// Cancels a run after some time from another thread, and says how long the job went on after that,
+/// if it did.
 fn lag<T>(run: &Run, after: Duration, job: impl FnOnce(&Run) -> T) -> (T, Option<Duration>) {
     let token = run.cancel.clone();
     let canceller = thread::spawn(move || {
@@ -128,7 +131,8 @@ fn a_rounding_is_as_exact_as_its_ball() -> Outcome {
                 worst = worst.max(solid.value(p)?.abs());
             }
             println!("{name}: asked {tolerance:.1e}, told {told:?}, found {worst:.1e}");
-            // Fillets are smaller by what they may be off, and by a hundred-thousandth of the radius.
+            // Fillets are smaller by what they may be off, and by a hundred-thousandth of the
+            // radius.
             assert!(told.tolerance <= tolerance && worst <= 1.5 * tolerance + 2e-5, "{worst}");
         }
     }

@@ -1,4 +1,5 @@
-//! Meshes within a tolerance: how far they are off, how many triangles they have, that they are sound.
+//! Meshes within a tolerance: how far they are off, how many triangles they have, that they are
+//! sound.
 
 use glam::DVec3;
 use rvachev::{
@@ -13,7 +14,8 @@ fn within(solid: &Solid, tolerance: f64) -> Mesh {
     solid.mesh(&MeshSettings { cell, ..MeshSettings::default() }).unwrap()
 }
 
-/// The largest distance from the surface of points of triangles: their middles, those of their sides, others.
+/// The largest distance from the surface of points of triangles: their middles, those of their
+/// sides, others.
 fn off(mesh: &Mesh, solid: &Solid) -> f64 {
     let mut random = Random::new(7);
     let step = mesh.triangles().len().div_ceil(400);

@@ -416,7 +416,8 @@ fn convex_meshes_by_every_method() {
             // The same triangles in the same places: the same to the bit.
             assert_eq!(different(&depths[0], &depths[2], 0.0), 0, "{tree}");
             assert_eq!(different(&depths[1], &depths[2], 0.0), 0, "{tree}");
-            // Vertices move by up to 2⁻¹⁷ pixel, which is 4e-7: by more in depth where a face is steep.
+            // Vertices move by up to 2⁻¹⁷ pixel, which is 4e-7: by more in depth where a face is
+            // steep.
             let rays = by_rays(&view, &[&a, &b], &tree);
             let covered = rays.iter().filter(|d| d.is_finite()).count();
             assert!(covered > 150, "{tree}: {covered}");

@@ -35,24 +35,25 @@ use crate::{Euclid, NormKind, Real};
 /// x∨y = −(−x ∧ −y), but for the displacement, which is added to either
 /// ```
 ///
-/// Fillets and chamfers are lengths: they are of that size whatever the operands are, and never rise above
-/// flush faces, between which there is no edge. The other blends read the operands' values as they
-/// are, which may be no distances. The page `lengths` of `rvachev` explains them with pictures.
+/// Fillets and chamfers are lengths: they are of that size whatever the operands are, and never
+/// rise above flush faces, between which there is no edge. The other blends read the operands'
+/// values as they are, which may be no distances. The page `lengths` of `rvachev` explains them
+/// with pictures.
 ///
-/// A fillet of a union is between the plain union and its closing by the ball, and is the closing where the
-/// operands are convex. An operand's own concave edges stay as they are away from the joint. What the
-/// ball does not fit into is filled. Those of intersections and differences are the same of
-/// complements: convex edges are rounded, and what is thinner than the ball is gone.
+/// A fillet of a union is between the plain union and its closing by the ball, and is the closing
+/// where the operands are convex. An operand's own concave edges stay as they are away from the
+/// joint. What the ball does not fit into is filled. Those of intersections and differences are the
+/// same of complements: convex edges are rounded, and what is thinner than the ball is gone.
 ///
-/// A chamfer reads values over their slopes, and stays within the closing by a ball of 16 legs. Its legs are
-/// exact on planes, and wherever the angle between the operands stays the same away from the edge, as on
-/// caps; elsewhere on round operands they are right to 2 % up to a twelfth of the radius and to 7 % up to
-/// a quarter. Where an operand has an edge of its own across the joined one, it goes round it in a mitre.
-/// Operands with a gap narrower than 0.28 of the leg are bridged.
+/// A chamfer reads values over their slopes, and stays within the closing by a ball of 16 legs. Its
+/// legs are exact on planes, and wherever the angle between the operands stays the same away from
+/// the edge, as on caps; elsewhere on round operands they are right to 2 % up to a twelfth of the
+/// radius and to 7 % up to a quarter. Where an operand has an edge of its own across the joined
+/// one, it goes round it in a mitre. Operands with a gap narrower than 0.28 of the leg are bridged.
 ///
-/// A smooth blend adds wherever the operands' values differ by less than its radius. On flush faces both values
-/// are the same, so that a union rises above them, by up to a quarter of the radius, and an
-/// intersection or a difference sinks below.
+/// A smooth blend adds wherever the operands' values differ by less than its radius. On flush faces
+/// both values are the same, so that a union rises above them, by up to a quarter of the radius,
+/// and an intersection or a difference sinks below.
 ///
 /// | blend | parameters | reach |
 /// |---|---|---|
@@ -62,10 +63,10 @@ use crate::{Euclid, NormKind, Real};
 /// | `Displacement` | `height`, length (adds material if positive); `falloff`, lengths, 10⁻⁹ to 10⁹ | everywhere, falling with the square of the values |
 /// | `Ricci` | `p`, 1.001 to 1000: larger is sharper | everywhere; operands must be gauges |
 ///
-/// A smooth blend keeps the Lipschitz constant of its operands. What a fillet adds has one of 1 between convex
-/// operands, of at most 1.5 elsewhere. A chamfer has that of the operands where they are planes; where
-/// they bend it is a little steeper, and it jumps where a gradient does. A displacement and Ricci's blend
-/// promise none.
+/// A smooth blend keeps the Lipschitz constant of its operands. What a fillet adds has one of 1
+/// between convex operands, of at most 1.5 elsewhere. A chamfer has that of the operands where they
+/// are planes; where they bend it is a little steeper, and it jumps where a gradient does. A
+/// displacement and Ricci's blend promise none.
 ///
 /// Sources: A. A. Pasko and V. V. Savchenko, *Blending operations for the functionally based
 /// constructive geometry* (1994); A. Ricci, *A constructive geometry for computer graphics*
@@ -99,7 +100,8 @@ pub enum Blend {
         /// quarter of it, as where faces of the operands are flush.
         radius: f64,
     },
-    /// A rounding of constant radius along the edge where the operands meet, as a rolling ball leaves it.
+    /// A rounding of constant radius along the edge where the operands meet, as a rolling ball
+    /// leaves it.
     ///
     #[doc = picture!("fillet_union" = "docs/gallery/fillet_union.png")]
     Fillet {
@@ -127,9 +129,9 @@ pub enum Blend {
         /// a₁ and a₂: the operands' values at which the displacement has fallen to half.
         falloff: [f64; 2],
     },
-    /// Ricci's blend of gauges: spheres, superellipsoids, generalised superquadrics,
-    /// supershapes, superpolygons and Ricci blends of these, moved, stretched and deformed. (An [`Ellipsoid`](crate::Ellipsoid) is a
-    /// bound; a stretched sphere is a gauge.)
+    /// Ricci's blend of gauges: spheres, superellipsoids, generalised superquadrics, supershapes,
+    /// superpolygons and Ricci blends of these, moved, stretched and deformed. (An
+    /// [`Ellipsoid`](crate::Ellipsoid) is a bound; a stretched sphere is a gauge.)
     ///
     #[doc = picture!(
         "ricci_union" = "docs/gallery/ricci_union.png",

@@ -88,18 +88,19 @@ pub trait AnyField: Any + Debug + Send + Sync {
     }
     /// A sound range over a zone of the leaf's frame.
     fn range(&self, zone: &Zone) -> Interval;
-    /// The directions, of up to eight, along which the value is found to rise, or to stay, throughout a zone: by
-    /// their numbers, as bits.
+    /// The directions, of up to eight, along which the value is found to rise, or to stay,
+    /// throughout a zone: by their numbers, as bits.
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
         let slopes = self.dual_range(Dual::point(zone.hull())).d;
         bits(ways, |way| way.is_rise(slopes))
     }
-    /// The directions, of up to eight, along which a zone is found to be entered only, whatever the value: the sign
-    /// turns from outside to inside, never back.
+    /// The directions, of up to eight, along which a zone is found to be entered only, whatever the
+    /// value: the sign turns from outside to inside, never back.
     fn enters(&self, _zone: &Zone, _ways: &[Way]) -> u8 {
         0
     }
-    /// The direction along which a zone is most likely to be entered, where the surface tells more than the value.
+    /// The direction along which a zone is most likely to be entered, where the surface tells more
+    /// than the value.
     fn inward(&self, _zone: &Zone) -> Option<DVec3> {
         None
     }
@@ -111,8 +112,8 @@ pub trait AnyField: Any + Debug + Send + Sync {
     fn is_formula(&self) -> bool {
         true
     }
-    /// A leaf of the same inside, the same surface and the same normals there that is told apart more easily, where
-    /// there is one.
+    /// A leaf of the same inside, the same surface and the same normals there that is told apart
+    /// more easily, where there is one.
     fn of_surface(&self) -> Option<Arc<dyn AnyField>> {
         None
     }
@@ -132,8 +133,8 @@ pub trait AnyField: Any + Debug + Send + Sync {
     fn symbol<'a>(&self, p: [Symbol<'a>; 3]) -> Symbol<'a>;
     /// Values of a chunk, on lanes of `f32`.
     fn lanes32(&self, chunk: Chunk<'_, f32, 1>);
-    /// The same for who asks about the sign: values that are farther than `band` from 0 may come nearer to it, as
-    /// far as the band and no farther.
+    /// The same for who asks about the sign: values that are farther than `band` from 0 may come
+    /// nearer to it, as far as the band and no farther.
     fn lanes32_within(&self, chunk: Chunk<'_, f32, 1>, _band: f64) {
         self.lanes32(chunk);
     }
@@ -145,7 +146,8 @@ pub trait AnyField: Any + Debug + Send + Sync {
     fn is_steady(&self) -> bool {
         true
     }
-    /// Whether it goes on in another leaf, as the turns of a helix do in each other: by itself it jumps.
+    /// Whether it goes on in another leaf, as the turns of a helix do in each other: by itself it
+    /// jumps.
     fn jumps(&self) -> bool {
         false
     }

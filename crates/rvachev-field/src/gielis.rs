@@ -297,7 +297,8 @@ impl Gielis {
         4e-6 * self.condition().max(1.0) * (1.0 + self.m / 12.0)
     }
 
-    /// How far off the phase mθ/4 may be on lanes of `f32`, in units of the scales of its sine and cosine.
+    /// How far off the phase mθ/4 may be on lanes of `f32`, in units of the scales of its sine and
+    /// cosine.
     pub(super) fn phase_error(&self) -> f64 {
         3e-7 * (1.0 + 0.25 * self.m) / self.a.min(self.b).min(1.0)
     }
@@ -349,7 +350,8 @@ impl Gielis {
         }
     }
 
-    /// What the radius of one turn is a falling function of: the logarithm of the sum of powers, or W.
+    /// What the radius of one turn is a falling function of: the logarithm of the sum of powers, or
+    /// W.
     #[inline(always)]
     fn sum<R: Real, const RATIONAL: bool>(&self, sin: R, cos: R) -> R {
         if RATIONAL {
@@ -363,15 +365,16 @@ impl Gielis {
     }
 }
 
-/// The radius as a function of the angle, or one over it, of a curve whose kind is a type: lanes are compiled
-/// with one kind each.
+/// The radius as a function of the angle, or one over it, of a curve whose kind is a type: lanes
+/// are compiled with one kind each.
 #[derive(Clone, Copy)]
 pub(super) struct Polar<const RATIONAL: bool, const MANY: bool, const INVERSE: bool> {
     pub(super) curve: Gielis,
     pub(super) winding: Winding,
-    /// Never true. Where the compiler does not know that, the branch on it parts what would be one block of some two
-    /// thousand instructions, in which the compiler's scheduler puts the chains of several vectors one after the other
-    /// to save registers: 2.4 times slower than side by side.
+    /// Never true. Where the compiler does not know that, the branch on it parts what would be one
+    /// block of some two thousand instructions, in which the compiler's scheduler puts the chains
+    /// of several vectors one after the other to save registers: 2.4 times slower than side by
+    /// side.
     pub(super) seam: bool,
 }
 

@@ -48,7 +48,8 @@ pub trait Formula<const I: usize, const O: usize>: Sized {
         visit.visit(self);
     }
 
-    /// The formula of one point, where there are no lanes: what has it compiled elsewhere calls that.
+    /// The formula of one point, where there are no lanes: what has it compiled elsewhere calls
+    /// that.
     fn point(&self, x: [f64; I]) -> [f64; O] {
         self.run(x)
     }

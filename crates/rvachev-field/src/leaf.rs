@@ -22,11 +22,11 @@ use rvachev_num::{Cancelled, Run};
 /// * it is not positive outside [`bounds`](Field::bounds);
 /// * if it is [`convex`](Field::convex), the value is a concave function that changes by at
 ///   most 1 per length unit;
-/// * its `Debug` text says everything that its value depends on, numbers to the last digit, as
-///   a derived `Debug` does: leaves of one type with the same text are taken to be the same
-///   leaf when solids are compared, hashed and [simplified](../struct.Solid.html#method.simplified). A leaf
-///   that holds what has no such text (a function, a table that is cut short) writes something
-///   into it that no other leaf of its type has, such as a serial number.
+/// * its `Debug` text says everything that its value depends on, numbers to the last digit, as a
+///   derived `Debug` does: leaves of one type with the same text are taken to be the same leaf when
+///   solids are compared, hashed and [simplified](../struct.Solid.html#method.simplified). A leaf
+///   that holds what has no such text (a function, a table that is cut short) writes something into
+///   it that no other leaf of its type has, such as a serial number.
 ///
 /// Mark `eval` and every helper in it `#[inline(always)]`, or lanes run 18 times slower.
 ///
@@ -64,9 +64,10 @@ pub trait Field: Debug + Send + Sync + 'static {
     /// What errors and [`owner`](../struct.Solid.html#method.owner) call this leaf.
     fn name(&self) -> &'static str;
 
-    /// Works out what takes long, and keeps it with the leaf: called once when a solid is compiled, before all else. What
-    /// takes more than a tenth of a second asks `run` now and then whether to go on, and tells it how far it has come.
-    /// Whoever asks the leaf itself may do so without. Default: there is nothing to work out.
+    /// Works out what takes long, and keeps it with the leaf: called once when a solid is compiled,
+    /// before all else. What takes more than a tenth of a second asks `run` now and then whether to
+    /// go on, and tells it how far it has come. Whoever asks the leaf itself may do so without.
+    /// Default: there is nothing to work out.
     ///
     /// # Errors
     /// [`Cancelled`] if `run` was.
@@ -92,8 +93,8 @@ pub trait Field: Debug + Send + Sync + 'static {
         false
     }
 
-    /// The most that the value changes by per length unit, anywhere; infinite where nothing is known. Default: 1 of
-    /// leaves that are [`convex`](Field::convex) or [`exact`](Field::exact).
+    /// The most that the value changes by per length unit, anywhere; infinite where nothing is
+    /// known. Default: 1 of leaves that are [`convex`](Field::convex) or [`exact`](Field::exact).
     fn steepest(&self) -> f64 {
         if self.convex() || self.exact() { 1.0 } else { f64::INFINITY }
     }
@@ -105,8 +106,8 @@ pub trait Field: Debug + Send + Sync + 'static {
         false
     }
 
-    /// No radius of curvature of the surface is less than this, in length units. Default: 0, of a surface that has
-    /// creases, or of which nothing is known.
+    /// No radius of curvature of the surface is less than this, in length units. Default: 0, of a
+    /// surface that has creases, or of which nothing is known.
     fn least_radius(&self) -> f64 {
         0.0
     }
@@ -211,7 +212,8 @@ pub trait Kernel<F> {
     fn run_case_wide<C: Case>(self, case: &C);
 }
 
-/// A leaf's formula, or one case of it. Where cases are types, a kernel is compiled with the code of one of them.
+/// A leaf's formula, or one case of it. Where cases are types, a kernel is compiled with the code
+/// of one of them.
 #[doc(hidden)]
 pub trait Case {
     /// The formula.

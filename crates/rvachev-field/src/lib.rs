@@ -2,8 +2,9 @@
 //! [`Real`].
 //!
 //! A leaf is a type that implements [`Field`]; adding one is a file here, a line below and its
-//! declaration in the [`catalogue`]. A deformation implements `Warp`. Both are erased (`AnyField`, `AnyWarp`) to the evaluations
-//! that the engine runs: point, gradient, range, lanes, expression tree.
+//! declaration in the [`catalogue`]. A deformation implements `Warp`. Both are erased (`AnyField`,
+//! `AnyWarp`) to the evaluations that the engine runs: point, gradient, range, lanes, expression
+//! tree.
 
 #[macro_use]
 mod picture;
@@ -83,7 +84,7 @@ pub use leaf::{Case, Field, Kernel};
 pub use minimal_surface::{Grading, MinimalSurface};
 pub use network_lattice::NetworkLattice;
 pub use number::{Joined, Number};
-pub use patches::{Foot, MeshLeaf, Openness, Patch, Patches, SurfaceDistance, Walls};
+pub use patches::{Foot, MeshLeaf, OpenEdges, Patch, Patches, SurfaceDistance, Walls};
 pub use placement::{Placement, smallest_stretch};
 pub use points::{
     BinomialSeries, CurveSpread, ExactExplicit, LogTable, PlaneSymmetry, PointError, PointMethod, PointSettings,

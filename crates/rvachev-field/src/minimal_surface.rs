@@ -86,8 +86,9 @@ impl MinimalSurface {
         }
     }
 
-    /// How fast the gradient of g/N, for walls, turns at most where |g/N| is at most `level`, both per radian of the
-    /// period: its second derivative along any direction. A hundredth above the largest that search has found.
+    /// How fast the gradient of g/N, for walls, turns at most where |g/N| is at most `level`, both
+    /// per radian of the period: its second derivative along any direction. A hundredth above the
+    /// largest that search has found.
     pub(super) fn sharpest(self, level: f64) -> f64 {
         let ([a, b, c], most) = match self {
             MinimalSurface::Gyroid => ([0.94, 0.46, 1.13], 3.08),
@@ -167,8 +168,8 @@ impl MinimalSurface {
 )]
 ///
 /// A plain `f64` is the same everywhere. A grading of your own is compiled into the lattice's
-/// kernels; the solid is then made by [`Solid::new`](struct.Solid.html#method.new). Mark `at` and its
-/// helpers `#[inline(always)]`. (The value of a [`Field`](crate::Field) can be called for it.)
+/// kernels; the solid is then made by [`Solid::new`](struct.Solid.html#method.new). Mark `at` and
+/// its helpers `#[inline(always)]`. (The value of a [`Field`](crate::Field) can be called for it.)
 ///
 /// ```
 /// use glam::DVec3;

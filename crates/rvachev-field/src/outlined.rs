@@ -1,9 +1,9 @@
 //! A leaf's formula on single numbers, compiled once for each kind of number.
 //!
-//! A formula is inlined wherever it is asked for a value, and intervals are long to compile. What asks
-//! for single values, ranges and slopes asks here; what is done with the answers takes the leaf behind
-//! a pointer and is compiled once for all leaves. The methods are a trait's so that the compiler puts
-//! each leaf's into the part of the crate that the leaf is in.
+//! A formula is inlined wherever it is asked for a value, and intervals are long to compile. What
+//! asks for single values, ranges and slopes asks here; what is done with the answers takes the
+//! leaf behind a pointer and is compiled once for all leaves. The methods are a trait's so that the
+//! compiler puts each leaf's into the part of the crate that the leaf is in.
 
 use glam::DVec3;
 

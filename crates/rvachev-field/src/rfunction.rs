@@ -13,16 +13,16 @@
 //! lose no digits: R_α as `2 min(s,0)/(1+α) + 2xy/(|s| + D)` with `s = x + y`, R_p as
 //! `min(x,y) + min(0,s) − q` with `q = ‖(x,y)‖_p − max(|x|,|y|)`.
 //!
-//! The rims of extrusions are joined by two rules that move the surface: with u = x − s and v = y − s,
-//! x and y the distances to the two faces and s the size,
+//! The rims of extrusions are joined by two rules that move the surface: with u = x − s and v = y −
+//! s, x and y the distances to the two faces and s the size,
 //!
 //! ```text
 //!     rounded      u∧v = s + D(u, v)
 //!     chamfered    u∧v = min(x, y, (x + y − s)/√2)
 //! ```
 //!
-//! The sign, and so the solid, is that of min and max for every rule of the table. All but R_0^m rise with
-//! both arguments.
+//! The sign, and so the solid, is that of min and max for every rule of the table. All but R_0^m
+//! rise with both arguments.
 //!
 //! Sources: V. L. Rvachev (1982); V. Shapiro, *Semi-analytic geometry with R-functions*
 //! (2007); Y. D. Fougerolle et al.
@@ -253,7 +253,8 @@ pub fn saturate<R: Real>(x: R) -> R {
     x.max(x.lift(-VALUE_LIMIT)).min(x.lift(VALUE_LIMIT))
 }
 
-/// Conjunction by a rule that rises with both arguments. Each is a type, so that lanes are compiled with one rule each.
+/// Conjunction by a rule that rises with both arguments. Each is a type, so that lanes are compiled
+/// with one rule each.
 #[derive(Clone, Copy)]
 pub(super) struct AlphaAnd(pub f64);
 

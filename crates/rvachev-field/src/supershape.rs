@@ -103,8 +103,8 @@ pub struct Supershape {
     radius: Radius,
     winding: Winding,
     inverse: DVec3,
-    /// Those of the equator and of the meridian, when they are first asked for; none if a parameter is out of its
-    /// range.
+    /// Those of the equator and of the meridian, when they are first asked for; none if a parameter
+    /// is out of its range.
     outlines: Arc<OnceLock<Option<[Outline; 2]>>>,
 }
 

@@ -346,7 +346,8 @@ pub(super) fn concave_range(
     range
 }
 
-/// Whether a concave function with slope at most 1 rises throughout a zone along all these directions.
+/// Whether a concave function with slope at most 1 rises throughout a zone along all these
+/// directions.
 ///
 /// ```text
 ///       .-------.        Along w a concave function rises at x if it is larger at any point beyond: first far

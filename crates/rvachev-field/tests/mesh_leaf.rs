@@ -52,7 +52,8 @@ fn winding_numbers_are_whole_where_closed() {
         let number = leaf.winding_number(p);
         // Facets are within the circles.
         let near = ((p.truncate().length() - 1.0).hypot(p.z) - 0.4).abs() < 0.01;
-        // Moments of facets as coarse as these tell it to some hundredths; the sides are told at a half.
+        // Moments of facets as coarse as these tell it to some hundredths; the sides are told at a
+        // half.
         assert!(near || (number - f64::from(u8::from(inside))).abs() < 0.03, "{number} at {p}");
     }
     assert!(leaf.bytes() as f64 / leaf.len() as f64 <= 150.0, "{}", leaf.bytes() as f64 / leaf.len() as f64);

@@ -1,7 +1,7 @@
 //! Numbers as people read them: by significant figures, whatever their size.
 
-/// A number to so many significant figures, without trailing zeros; very large and very small ones by a power
-/// of ten.
+/// A number to so many significant figures, without trailing zeros; very large and very small ones
+/// by a power of ten.
 ///
 /// ```
 /// use rvachev_num::figures;
@@ -15,7 +15,8 @@ pub fn figures(value: f64, count: usize) -> String {
     figures_beside(value, value, count)
 }
 
-/// The same, as many as a number as large as `size` would have: what is 0 but for rounding beside that reads 0.
+/// The same, as many as a number as large as `size` would have: what is 0 but for rounding beside
+/// that reads 0.
 ///
 /// ```
 /// use rvachev_num::figures_beside;

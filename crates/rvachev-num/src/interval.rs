@@ -9,8 +9,8 @@
 //! Where a value is undefined (∞ − ∞, 0 · ∞, division by an interval that holds 0) the result
 //! is the whole line, never NaN.
 //!
-//! What takes more than a few operations is not inlined: a call costs little beside it, and formulas on
-//! intervals and on their dual numbers are as many as the leaves.
+//! What takes more than a few operations is not inlined: a call costs little beside it, and
+//! formulas on intervals and on their dual numbers are as many as the leaves.
 //!
 //! Source: R. E. Moore, *Interval Analysis* (1966).
 

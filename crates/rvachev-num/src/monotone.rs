@@ -29,8 +29,8 @@ pub trait Monotone3 {
     fn parts<R: Real>(&self, x: R, y: R, z: R) -> (R, [R; 3]);
 }
 
-/// A function of one number, of several operations: a gradient is its value and its slope, found together on
-/// numbers with a single derivative, and the chain rule.
+/// A function of one number, of several operations: a gradient is its value and its slope, found
+/// together on numbers with a single derivative, and the chain rule.
 pub trait OfOne {
     /// The function's value.
     fn value<R: Real>(&self, x: R) -> R;

@@ -86,8 +86,8 @@ impl Norm {
     }
 }
 
-/// A norm whose kind is a type. A formula by [`Norm`] is compiled with all kinds in it, one by a type with one:
-/// on lanes that are several times less.
+/// A norm whose kind is a type. A formula by [`Norm`] is compiled with all kinds in it, one by a
+/// type with one: on lanes that are several times less.
 pub trait NormKind: Copy {
     /// The same as a value.
     fn norm(self) -> Norm;

@@ -6,8 +6,9 @@ use fearless_simd::{Level, Simd, dispatch, f32x8};
 /// Numbers that [`signs`] looks at together.
 pub const STRIP: usize = 8;
 
-/// Which of the first `count` numbers (up to 64) are above `doubt`, and which are within ±`doubt`; NaN is
-/// neither. There must be room behind them for whole strips: what is there gives bits beyond.
+/// Which of the first `count` numbers (up to 64) are above `doubt`, and which are within ±`doubt`;
+/// NaN is neither. There must be room behind them for whole strips: what is there gives bits
+/// beyond.
 pub fn signs(numbers: &[f32], count: usize, doubt: f32) -> [u64; 2] {
     dispatch!(Level::new(), simd => signs_on(simd, numbers, count, doubt))
 }

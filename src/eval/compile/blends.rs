@@ -14,8 +14,8 @@ use crate::solid::{self, Operation};
 use crate::{Blend, Bounds, Solid, SolidError};
 use rvachev_field::{AnyField, Op, Rule};
 
-/// Fillets are this much smaller, in radii, so that flush faces stay as they are; and no smaller than that
-/// for what measuring may be off.
+/// Fillets are this much smaller, in radii, so that flush faces stay as they are; and no smaller
+/// than that for what measuring may be off.
 const FLUSH: f64 = 1e-5;
 const LARGEST_MARGIN: f64 = 1e-3;
 
@@ -78,7 +78,8 @@ impl Compiler<'_> {
         let ball = Signed { field: measured.field, sign: if is_union { 1.0 } else { -1.0 } };
         let solid::Node::Blend { blend, operands, .. } = site.solid.node() else {
             let whole = kept(&site.solid.node().operands()[0]).map_or(Bounds::EMPTY, |programs| programs.bounds);
-            // What is taken away goes on beyond the surface: values are 0 where the new one is, and nowhere else.
+            // What is taken away goes on beyond the surface: values are 0 where the new one is, and
+            // nowhere else.
             let (bounds, hull) = if is_union { (whole, whole) } else { (whole.inflate(radius), Bounds::ALL) };
             let fill = Fill::new(radius, ball, Vec::new(), margin).within(vec![bounds], hull);
             return vec![self.made(&(Arc::new(fill) as Arc<dyn AnyField>), site, 0.0)];
@@ -129,7 +130,8 @@ impl Compiler<'_> {
         Ok(vec![self.code.operation(Operation::Intersection, Rule::MinMax, frame, &both)])
     }
 
-    /// A join of operands with what is added to it, or, for intersections and differences, taken away.
+    /// A join of operands with what is added to it, or, for intersections and differences, taken
+    /// away.
     pub(super) fn filled(&mut self, site: Site<'_>, operation: Operation, below: &[Built], fills: &[Built]) -> Built {
         let frame = self.contexts.get(site.context).frame;
         let join = self.code.operation(operation, Rule::MinMax, frame, below);

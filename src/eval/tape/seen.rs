@@ -1,4 +1,5 @@
-//! Regions as the leaves of a program see them: where their points are, and how far rounding moves these.
+//! Regions as the leaves of a program see them: where their points are, and how far rounding moves
+//! these.
 
 use glam::DAffine3;
 

@@ -24,8 +24,8 @@ const TAKEN: f64 = 0.5;
 /// The longest link of a cluster, in spacings of the points.
 const LINK: f64 = 4.0;
 
-/// A hole is longer than its points at an open end by these half-widths at least, and at most: as far as
-/// the box of the body reaches.
+/// A hole is longer than its points at an open end by these half-widths at least, and at most: as
+/// far as the box of the body reaches.
 const THROUGH: [f64; 2] = [0.4, 2.0];
 
 /// What is a hole of a body.

@@ -21,7 +21,7 @@ const ALONG: f64 = 0.95;
 /// Exponents with which a shape ends in a flat face.
 const SHARP: [f64; 2] = [20.0, 100.0];
 
-/// A longer shape may misfit this share of the points more.
+/// A longer shape may residual this share of the points more.
 const WORSE: f64 = 0.01;
 
 /// A longer shape must reach this share of the length that was asked for.
@@ -39,13 +39,13 @@ pub(super) fn lengthened(shape: Supershaped, direction: DVec3, by: f64, judge: &
     let axis = axis * side.signum();
     let end = end_along(&shape, axis);
     let goal = shape.center + axis * (end + REACHED * by);
-    let mut best = (judge.misfit(shape) + WORSE, None);
+    let mut best = (judge.residual(shape) + WORSE, None);
     for longer in longer(&shape, k, axis, (end + 0.5 * by) / end.max(1e-9), by) {
         for candidate in [longer, judge.settled(longer)] {
-            let misfit = judge.misfit(candidate);
+            let residual = judge.residual(candidate);
             let (off, _) = terms(&candidate, goal.to_array(), Cost::Normal);
-            if misfit < best.0 && off < 0.0 {
-                best = (misfit, Some((candidate, k)));
+            if residual < best.0 && off < 0.0 {
+                best = (residual, Some((candidate, k)));
             }
         }
     }

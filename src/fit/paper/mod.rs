@@ -7,10 +7,11 @@
 //!       → all parameters refined on  E = Σ (∨ⱼ √(a₁a₂a₃)ⱼ fⱼ(Pᵢ))²
 //! ```
 //!
-//! What is added to the paper, since it does not come out otherwise: fits of single supershapes are robust,
-//! so that the walls of holes do not draw the body in; where a segment ends at another one, its supershape and
-//! its box are made longer, or bodies would touch only; holes are longer than their points where these come
-//! to the skin, and truncated by a box as well; the joint refinement, which the paper leaves for later.
+//! What is added to the paper, since it does not come out otherwise: fits of single supershapes are
+//! robust, so that the walls of holes do not draw the body in; where a segment ends at another one,
+//! its supershape and its box are made longer, or bodies would touch only; holes are longer than
+//! their points where these come to the skin, and truncated by a box as well; the joint refinement,
+//! which the paper leaves for later.
 //!
 //! Source: Y. D. Fougerolle et al., *Rational supershapes for surface reconstruction*.
 
@@ -53,12 +54,12 @@ const FACING: f64 = 0.02;
 
 /// The union of truncated supershapes, with holes, that a segmented surface is of.
 ///
-/// A supershape is fitted to each segment, with its symmetry numbers where the radii repeat about an axis, and
-/// m = M = 4 where they do not. It is truncated by the oriented box of its points. A segment whose points
-/// face inwards, or without normals are inside of another body, is a hole and not a body. Points that are inside of a
-/// body by more than the noise are clustered; each cluster is fitted as a segment is and subtracted, if
-/// that halves the error of its points. In the end all parameters of all supershapes are refined together, but
-/// lengths that no point tells.
+/// A supershape is fitted to each segment, with its symmetry numbers where the radii repeat about
+/// an axis, and m = M = 4 where they do not. It is truncated by the oriented box of its points. A
+/// segment whose points face inwards, or without normals are inside of another body, is a hole and
+/// not a body. Points that are inside of a body by more than the noise are clustered; each cluster
+/// is fitted as a segment is and subtracted, if that halves the error of its points. In the end all
+/// parameters of all supershapes are refined together, but lengths that no point tells.
 ///
 /// Strewn points should be taken off before: the [global error](ErrorOfFit) that is refined is a
 /// sum of squares, as it was published. Each segment needs 60 points or so and wants some hundreds.

@@ -1,9 +1,10 @@
-//! Joint refinement: Levenberg–Marquardt on the global error, by all parameters of all supershapes. Their boxes stay:
-//! they are those of the points, and would flee from them.
+//! Joint refinement: Levenberg–Marquardt on the global error, by all parameters of all supershapes.
+//! Their boxes stay: they are those of the points, and would flee from them.
 //!
-//! Every step makes the error smaller and leaves the points as near to the surface as they were in the
-//! beginning, or is not taken: the error alone is least for members that shrink to nothing, as their weights do. Parameters are logarithms, angles and lengths;
-//! the damping is relative to the diagonal, so that their units do not matter.
+//! Every step makes the error smaller and leaves the points as near to the surface as they were in
+//! the beginning, or is not taken: the error alone is least for members that shrink to nothing, as
+//! their weights do. Parameters are logarithms, angles and lengths; the damping is relative to the
+//! diagonal, so that their units do not matter.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -60,7 +61,8 @@ impl Columns {
     }
 }
 
-/// Normal equations: half the gradient of E, and JᵀJ by rows, of which the lower triangle is filled.
+/// Normal equations: half the gradient of E, and JᵀJ by rows, of which the lower triangle is
+/// filled.
 struct Normal {
     gradient: Vec<f64>,
     matrix: Vec<f64>,

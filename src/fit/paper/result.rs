@@ -27,8 +27,9 @@ pub struct UnionFit {
     pub(super) size: f64,
 }
 
-/// The global error of fit, equation 15 of the paper: the sum over the points of the square of
-/// the R_p union of the members' fields, each times the root of its volume √(a₁a₂a₃). Cubes of length units.
+/// The global error of fit, equation 15 of the paper: the sum over the points of the square of the
+/// R_p union of the members' fields, each times the root of its volume √(a₁a₂a₃). Cubes of length
+/// units.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ErrorOfFit {
@@ -49,7 +50,8 @@ pub struct UnionPart {
     pub body: TruncatedSupershape,
     /// What is taken away from this body.
     pub holes: Vec<TruncatedSupershape>,
-    /// The standard deviation from the body of the segment's points that fit, before refinement, in length units.
+    /// The standard deviation from the body of the segment's points that fit, before refinement, in
+    /// length units.
     pub noise: f64,
     /// No axis was found that the radii repeat about: m = M = 4.
     pub symmetry_unclear: bool,
@@ -104,8 +106,8 @@ impl TruncatedSupershape {
 }
 
 impl UnionPart {
-    /// The body without its holes. The body is called `body 7`, the holes `hole 7.1`, `hole 7.2` and so on
-    /// where 7 is the part's label.
+    /// The body without its holes. The body is called `body 7`, the holes `hole 7.1`, `hole 7.2`
+    /// and so on where 7 is the part's label.
     #[must_use]
     pub fn solid(&self) -> Solid {
         let label = self.label;
@@ -160,7 +162,8 @@ impl UnionFit {
         self.deviation
     }
 
-    /// How many parameters the solid has: tied ones are counted once; six of each pose, nine of each box.
+    /// How many parameters the solid has: tied ones are counted once; six of each pose, nine of
+    /// each box.
     #[must_use]
     pub fn parameters(&self) -> usize {
         self.parameters

@@ -84,7 +84,7 @@ impl Judge {
     }
 
     /// The mean of d²/(d² + width²): 0 where all points fit, 1 where none does.
-    pub(super) fn misfit(&self, shape: Supershaped) -> f64 {
+    pub(super) fn residual(&self, shape: Supershaped) -> f64 {
         let fitted = Fitted::new(shape, &self.samples, crate::fit::Cost::Normal);
         let share = |d: &f64| {
             let square = (d / self.width).powi(2);

@@ -46,8 +46,8 @@ impl Segments {
         Ok(Segments { cloud: cloud.clone(), labels: labels.to_vec() })
     }
 
-    /// A mesh with a label for each triangle. Its surface is sampled by 6000 points, and by 300 of each label
-    /// at least.
+    /// A mesh with a label for each triangle. Its surface is sampled by 6000 points, and by 300 of
+    /// each label at least.
     ///
     /// # Errors
     ///
@@ -75,8 +75,8 @@ impl Segments {
         Ok(Segments { cloud: oriented(sampled.0, sampled.1), labels: sampled.2 })
     }
 
-    /// A mesh, cut where it turns inwards by more than an angle: see [`cloud_by_creases`](Segments::of_cloud_by_creases).
-    /// Its surface is sampled by 6000 points.
+    /// A mesh, cut where it turns inwards by more than an angle: see
+    /// [`cloud_by_creases`](Segments::of_cloud_by_creases). Its surface is sampled by 6000 points.
     ///
     /// # Errors
     ///
@@ -89,12 +89,13 @@ impl Segments {
         Segments::of_cloud_by_creases(&oriented(points, normals), crease)
     }
 
-    /// A cloud with normals, cut where its surface turns inwards by more than an angle from a point to
-    /// the next; 40° is a good choice.
+    /// A cloud with normals, cut where its surface turns inwards by more than an angle from a point
+    /// to the next; 40° is a good choice.
     ///
     /// A concave crease parts two convex leaves. It need not go all around: the surface is cut by a
-    /// watershed of the distance from the creases, and what is convex together is joined again. What turns inwards within a few points, such as the wall of a small
-    /// hole, looks like a crease. Segments of fewer than 60 points and flat ones join their neighbours.
+    /// watershed of the distance from the creases, and what is convex together is joined again.
+    /// What turns inwards within a few points, such as the wall of a small hole, looks like a
+    /// crease. Segments of fewer than 60 points and flat ones join their neighbours.
     ///
     /// # Errors
     ///

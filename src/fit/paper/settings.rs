@@ -11,12 +11,12 @@ pub struct UnionSettings {
     pub fit: FitSettings,
     /// Whether holes are looked for. Default: yes.
     pub holes: bool,
-    /// Points are of a hole that are deeper inside of a body than this times its noise, and than 1.2 % of its
-    /// half-length; 1 to 100. Default: 5.
+    /// Points are of a hole that are deeper inside of a body than this times its noise, and than
+    /// 1.2 % of its half-length; 1 to 100. Default: 5.
     pub depth: f64,
-    /// Steps of the joint refinement at most, each of all parameters of all supershapes; 0 for none, at
-    /// most 1000. Where the points have noise, none is better: see [the tables](crate::fit#unions-of-supershapes).
-    /// Default: 30.
+    /// Steps of the joint refinement at most, each of all parameters of all supershapes; 0 for
+    /// none, at most 1000. Where the points have noise, none is better: see
+    /// [the tables](crate::fit#unions-of-supershapes). Default: 30.
     pub refinement: usize,
 }
 

@@ -83,7 +83,8 @@ impl Truncated {
         (-residual, slopes.map(|s| if s.is_finite() { -s } else { 0.0 }))
     }
 
-    /// How deep a point is inside of the surface, to first order, in length units; negative outside.
+    /// How deep a point is inside of the surface, to first order, in length units; negative
+    /// outside.
     pub(super) fn depth(&self, p: DVec3) -> f64 {
         let (residual, _) = terms(&self.shape, p.to_array(), Cost::Normal);
         (-residual).min(self.bounds.depth(p))
@@ -117,8 +118,8 @@ impl Truncated {
     }
 }
 
-/// Axes that a box along a shape may have: the shape's, and those turned by half a right angle, as a
-/// superellipsoid has its square section either way.
+/// Axes that a box along a shape may have: the shape's, and those turned by half a right angle, as
+/// a superellipsoid has its square section either way.
 pub(super) fn box_axes(shape: &Supershaped) -> [DMat3; 2] {
     [shape.rotation, shape.rotation * DMat3::from_rotation_z(std::f64::consts::FRAC_PI_4)]
 }

@@ -9,11 +9,11 @@
 //!           a crease at ':', none below              ''
 //! ```
 //!
-//! A crease parts two leaves of a solid, but often not all around: the ends of an angle are flat. So
-//! the surface is flooded from the summits of the distance to the nearest crease. Floods that meet
-//! are one segment unless most of their border is a crease, or they are concave together: many points of one are in front of the tangent planes of the
-//! other. Small and flat segments, such as the ground of a blind hole, join the one that they have the longest
-//! border with.
+//! A crease parts two leaves of a solid, but often not all around: the ends of an angle are flat.
+//! So the surface is flooded from the summits of the distance to the nearest crease. Floods that
+//! meet are one segment unless most of their border is a crease, or they are concave together: many
+//! points of one are in front of the tangent planes of the other. Small and flat segments, such as
+//! the ground of a blind hole, join the one that they have the longest border with.
 //!
 //! Source: A. Mangan, R. Whitaker, *Partitioning 3D surface meshes using watershed segmentation*
 //! (1999), with the distance to concave creases in place of curvature, which facets do not have.
@@ -74,7 +74,8 @@ pub(super) fn watershed(points: &[DVec3], normals: &[DVec3], near: &Neighbours, 
         .collect()
 }
 
-/// The distance from the nearest crease of the same part of the surface; infinite where there is none.
+/// The distance from the nearest crease of the same part of the surface; infinite where there is
+/// none.
 fn distances<I: Iterator<Item = usize>>(
     points: &[DVec3],
     open: &impl Fn(usize) -> I,

@@ -1,8 +1,9 @@
 //! Directions that a part's planes face and its cylinders lie along.
 //!
-//! Each pair of normals votes for the direction across both, which is the axis if both are of one cylinder; each
-//! three for the direction across the plane of their tips, which is the axis of a cone; and each normal votes for
-//! itself. What most votes are near is taken, then what most of the others are near.
+//! Each pair of normals votes for the direction across both, which is the axis if both are of one
+//! cylinder; each three for the direction across the plane of their tips, which is the axis of a
+//! cone; and each normal votes for itself. What most votes are near is taken, then what most of the
+//! others are near.
 
 use glam::DVec3;
 
@@ -20,7 +21,8 @@ const SINGLES: usize = 1000;
 const MOST: usize = 12;
 const LEAST: f64 = 0.012;
 
-/// Angles in degrees: between normals that vote; that votes are counted within, averaged within, and cleared within.
+/// Angles in degrees: between normals that vote; that votes are counted within, averaged within,
+/// and cleared within.
 const APART: [f64; 2] = [4.0, 84.0];
 const COUNTED: f64 = 3.0;
 const AVERAGED: [f64; 3] = [2.0, 0.5, 0.1];

@@ -8,8 +8,8 @@
 //!        '------'
 //! ```
 //!
-//! Source: J. Ma, S. Bae, S. Choi, *3D medial axis point approximation using nearest neighbors and the normal field*
-//! (2012).
+//! Source: J. Ma, S. Bae, S. Choi, *3D medial axis point approximation using nearest neighbors and
+//! the normal field* (2012).
 
 use glam::DVec3;
 

@@ -20,15 +20,16 @@ use crate::fit::linear::solved;
 const MOST: usize = 32;
 const FEW: usize = 10;
 
-/// How far a ring may be off on the average, in parts of its size: rounded rectangles and polygons, supershapes.
+/// How far a ring may be off on the average, in parts of its size: rounded rectangles and polygons,
+/// supershapes.
 const OFF: f64 = 0.02;
 const OFF_SUPERSHAPE: f64 = 0.035;
 
 /// Sides of regular polygons; 4 are a rectangle.
 const SIDES: std::ops::RangeInclusive<usize> = 3..=8;
 
-/// Repetitions of supershapes, the least share of the variance that they explain, and how nearly as good the largest
-/// one must be.
+/// Repetitions of supershapes, the least share of the variance that they explain, and how nearly as
+/// good the largest one must be.
 const REPEATS: std::ops::RangeInclusive<u32> = 2..=24;
 const EXPLAINED: f64 = 0.8;
 const NEARLY: f64 = 0.02;
@@ -167,7 +168,8 @@ fn regular(polygon: &[DVec2], size: f64) -> Option<Base> {
 
 /// The rectangle with rounded corners whose sides are along most of a ring.
 fn rounded(ring: &[DVec2], even: &[DVec2], size: f64) -> Option<Base> {
-    // Sides at right angles to each other agree in four times their angles, and those of an arc cancel.
+    // Sides at right angles to each other agree in four times their angles, and those of an arc
+    // cancel.
     let side = |k: usize| ring[(k + 1) % ring.len()] - ring[k];
     let fourfold = |d: DVec2| d.length() * DVec2::from_angle(4.0 * d.to_angle());
     let angle = 0.25 * (0..ring.len()).map(|k| fourfold(side(k))).sum::<DVec2>().to_angle();
@@ -242,7 +244,8 @@ fn supershape(points: &[DVec2], centre: DVec2, size: f64) -> Option<Base> {
     found.filter(|f| f.0 < OFF_SUPERSHAPE * size).map(|f| f.1)
 }
 
-/// The curve after steps of Levenberg and Marquardt's from n₁, n₂, radius and angle; the mean distance.
+/// The curve after steps of Levenberg and Marquardt's from n₁, n₂, radius and angle; the mean
+/// distance.
 fn descended(polar: &[(f64, f64)], centre: DVec2, m: u32, start: [f64; 4]) -> Option<(f64, Base)> {
     let value = |x: &[f64; 4], angle: f64| x[2].exp() * gielis(m, [x[0].exp(), x[1].exp()], angle - x[3]);
     let square = |x: &[f64; 4]| polar.iter().map(|(a, r)| (r - value(x, *a)).powi(2)).sum::<f64>();

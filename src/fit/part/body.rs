@@ -1,4 +1,5 @@
-//! What is inside of what was given: of a mesh by its winding number, of points by that of a dipole each.
+//! What is inside of what was given: of a mesh by its winding number, of points by that of a dipole
+//! each.
 
 use glam::{DMat3, DVec2, DVec3};
 use rvachev_field::MeshLeaf;
@@ -13,7 +14,8 @@ use crate::fit::FitError;
 use crate::geom::Mesh;
 use crate::{Bounds, Run};
 
-/// The side of squares that sections of points are found in, in diagonals: about as far as points are apart.
+/// The side of squares that sections of points are found in, in diagonals: about as far as points
+/// are apart.
 const SIDE: f64 = 0.0125;
 
 /// What was given.

@@ -63,7 +63,8 @@ impl Grid {
         }
     }
 
-    /// The lower corner of a box, or the upper one. What is cut up to the end of the part is cut beyond.
+    /// The lower corner of a box, or the upper one. What is cut up to the end of the part is cut
+    /// beyond.
     fn corner(&self, box_: [[u8; 2]; 3], end: usize, adds: bool) -> DVec3 {
         let along = |k: usize| {
             let offsets = &self.offsets[k];
@@ -89,8 +90,8 @@ impl Grid {
             }
         }
         let mut best: Vec<(f64, [[u8; 2]; 3])> = Vec::new();
-        // Sums along y from its first offset on, of the layers from x₀ to x₁; and what is positive of them, by which most
-        // ranges are out before their columns are looked at.
+        // Sums along y from its first offset on, of the layers from x₀ to x₁; and what is positive
+        // of them, by which most ranges are out before their columns are looked at.
         let mut along = vec![0.0; (ny + 1) * nz];
         let mut positive = vec![0.0; ny + 1];
         for x0 in 0..nx {

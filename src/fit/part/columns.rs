@@ -7,8 +7,8 @@
 //!     torus    |e − r| ≤ tol                     e from the circle of radius R about the axis
 //! ```
 //!
-//! A shape and a sample have the same cost, and there are some ten million such pairs in a part: the loops below are
-//! in single precision, without branches, over sixteen samples at a time.
+//! A shape and a sample have the same cost, and there are some ten million such pairs in a part:
+//! the loops below are in single precision, without branches, over sixteen samples at a time.
 
 use fearless_simd::{Level, Simd, dispatch};
 use glam::{DMat3, DVec3};
@@ -31,7 +31,8 @@ pub(super) struct Columns {
     pub(super) which: Vec<u32>,
 }
 
-/// A shape in a frame, about its z axis where it has one. Signs are those of the normals: −1 in holes.
+/// A shape in a frame, about its z axis where it has one. Signs are those of the normals: −1 in
+/// holes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Shape {
     Plane { normal: DVec3, offset: f64 },
@@ -41,7 +42,8 @@ pub(super) enum Shape {
 }
 
 impl Shape {
-    /// The shape that samples of chords are about, given the angle between two of them, and the sagitta.
+    /// The shape that samples of chords are about, given the angle between two of them, and the
+    /// sagitta.
     pub(super) fn chordal(&self, step: f64) -> (Shape, f64) {
         let sagitta = |radius: f64| radius * step * step / 8.0;
         match *self {
@@ -59,7 +61,8 @@ impl Shape {
         }
     }
 
-    /// The ratio of a radius to another one's, of shapes that differ by chords; 1 where they differ otherwise.
+    /// The ratio of a radius to another one's, of shapes that differ by chords; 1 where they differ
+    /// otherwise.
     pub(super) fn smaller(&self, than: &Shape) -> f64 {
         let ratio = match (*self, *than) {
             (Shape::Sphere { radius: a, .. }, Shape::Sphere { radius: b, .. })
@@ -145,7 +148,8 @@ impl Columns {
         }
     }
 
-    /// The weight of what a shape explains; the weights of the samples, 0 of those that it does not, go to a buffer.
+    /// The weight of what a shape explains; the weights of the samples, 0 of those that it does
+    /// not, go to a buffer.
     pub(super) fn explain(&self, shape: &Shape, tolerance: Tolerance, out: &mut Vec<f32>) -> f64 {
         out.resize(self.weights.len(), 0.0);
         match *shape {

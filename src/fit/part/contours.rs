@@ -38,7 +38,8 @@ impl Squares {
         let mut segments = Segments::default();
         for j in 0..ny {
             for i in 0..nx {
-                // Corners, and the edge from each to the next: its number, doubled, and one more if it is upright.
+                // Corners, and the edge from each to the next: its number, doubled, and one more if
+                // it is upright.
                 let corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];
                 let edges = [2 * index(i, j), 2 * index(i + 1, j) + 1, 2 * index(i, j + 1), 2 * index(i, j) + 1]
                     .map(|e| e as u64);

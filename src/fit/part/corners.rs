@@ -1,8 +1,8 @@
 //! Facets of a mesh, and its vertices where it is curved.
 //!
-//! A facet of a cylinder is a chord: what is sampled on it is off the surface by the sagitta, and its normal is right
-//! in its middle only. A vertex is on the surface, and the normal there is the mean of the facets' by weights
-//! sin α/(|e₁||e₂|), which make it exact on spheres and cylinders.
+//! A facet of a cylinder is a chord: what is sampled on it is off the surface by the sagitta, and
+//! its normal is right in its middle only. A vertex is on the surface, and the normal there is the
+//! mean of the facets' by weights sin α/(|e₁||e₂|), which make it exact on spheres and cylinders.
 //!
 //! Source: N. Max, *Weights for computing vertex normals from facet normals* (1999).
 
@@ -10,7 +10,8 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-/// Facets that meet at less than this angle are of one curved surface: prisms of 12 sides are not, of 14 are.
+/// Facets that meet at less than this angle are of one curved surface: prisms of 12 sides are not,
+/// of 14 are.
 const SMOOTH: f64 = 28.5;
 
 /// Normals closer than this, in degrees, are one facet's.

@@ -4,10 +4,12 @@
 //!     w(q) = Σ aᵢ nᵢ·(pᵢ − q) / 4π|pᵢ − q|³         aᵢ: the area that a point stands for
 //! ```
 //!
-//! Nearer than points are to each other the sum is not that of a surface: distances are not taken less. The areas
-//! are those of discs to the neighbours, all times what makes the jump across the surface 1.
+//! Nearer than points are to each other the sum is not that of a surface: distances are not taken
+//! less. The areas are those of discs to the neighbours, all times what makes the jump across the
+//! surface 1.
 //!
-//! Source: G. Barill, N. Dickson, R. Schmidt, D. Levin, A. Jacobson, *Fast winding numbers for soups and clouds* (2018).
+//! Source: G. Barill, N. Dickson, R. Schmidt, D. Levin, A. Jacobson, *Fast winding numbers for
+//! soups and clouds* (2018).
 
 use std::f64::consts::{PI, TAU};
 

@@ -76,7 +76,8 @@ impl Directions {
     }
 }
 
-/// The right-handed frame of two directions and the one across them, as near to the coordinates' as can be.
+/// The right-handed frame of two directions and the one across them, as near to the coordinates' as
+/// can be.
 fn tidy(first: DVec3, second: DVec3) -> DMat3 {
     let mut left = vec![first, second, first.cross(second)];
     let mut columns = [DVec3::ZERO; 3];

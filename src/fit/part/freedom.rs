@@ -34,7 +34,8 @@ impl Leaf {
         matches!(self.shape, Shape::Superellipsoid(_) | Shape::Supershape { .. })
     }
 
-    /// The leaf with ends, sides, radii and place changed, in its own axes; none if a size would vanish.
+    /// The leaf with ends, sides, radii and place changed, in its own axes; none if a size would
+    /// vanish.
     ///
     /// Ends move each on its own, as one of them may be in the air, where no sample tells of it.
     pub(super) fn moved(&self, x: &[f64]) -> Option<Leaf> {

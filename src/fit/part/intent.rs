@@ -7,8 +7,10 @@
 //!     box: turned by .0001                      not turned
 //! ```
 //!
-//! What is not round, but equal to another number, becomes that one. Vertices judge: a number is moved by no more than they leave open. A cut that ends where there is nothing left to
-//! cut is lengthened to a round number, as an end in a face would leave a skin there, or not, by the last digit.
+//! What is not round, but equal to another number, becomes that one. Vertices judge: a number is
+//! moved by no more than they leave open. A cut that ends where there is nothing left to cut is
+//! lengthened to a round number, as an end in a face would leave a skin there, or not, by the last
+//! digit.
 
 use glam::DVec3;
 
@@ -19,7 +21,8 @@ use super::round::Scale;
 /// How far from a principal axis a leaf may be turned to be along it, in radians.
 const TURNED: f64 = 2e-3;
 
-/// What vertices leave open of a length at the least, in diagonals, and what is of a leaf's surface.
+/// What vertices leave open of a length at the least, in diagonals, and what is of a leaf's
+/// surface.
 const OPEN: f64 = 1e-5;
 const NEAR: f64 = 3e-3;
 
@@ -55,7 +58,8 @@ impl Meant {
     }
 }
 
-/// The leaves with the numbers that are meant, in length units of a part with such vertices and such a diagonal.
+/// The leaves with the numbers that are meant, in length units of a part with such vertices and
+/// such a diagonal.
 pub(super) fn intended(leaves: &[(bool, Leaf)], vertices: &[DVec3], size: f64) -> (Vec<(bool, Leaf)>, Vec<Change>) {
     let mut meant: Vec<(bool, Leaf)> = leaves.iter().map(|(adds, leaf)| (*adds, leaf.aligned(TURNED))).collect();
     let open: Vec<f64> = leaves.iter().map(|(_, leaf)| open(leaf, vertices, size)).collect();
@@ -108,8 +112,8 @@ struct Loose {
     within: f64,
 }
 
-/// Numbers that are not round, but equal to within what is open, whatever their signs, become one; and they lose the
-/// digits that mean nothing.
+/// Numbers that are not round, but equal to within what is open, whatever their signs, become one;
+/// and they lose the digits that mean nothing.
 fn make_equal(numbers: &mut [Vec<f64>], mut loose: Vec<Loose>) {
     let value = |numbers: &[Vec<f64>], l: &Loose| numbers[l.leaf][l.nth];
     loose.sort_by(|a, b| value(numbers, a).abs().total_cmp(&value(numbers, b).abs()));
@@ -131,7 +135,8 @@ fn make_equal(numbers: &mut [Vec<f64>], mut loose: Vec<Loose>) {
     }
 }
 
-/// How far the vertices of a leaf leave open where it is: the error of their mean distance, three times.
+/// How far the vertices of a leaf leave open where it is: the error of their mean distance, three
+/// times.
 fn open(leaf: &Leaf, vertices: &[DVec3], size: f64) -> f64 {
     let mut off: Vec<f64> = vertices.iter().map(|p| leaf.distance(*p).abs()).filter(|d| *d < NEAR * size).collect();
     if off.is_empty() {

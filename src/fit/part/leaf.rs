@@ -1,7 +1,7 @@
 //! The leaves that a part is made of: a shape in a pose.
 //!
-//! Shapes are the crate's own leaves, about the origin of the pose and along its z axis, so what a candidate is
-//! tested by is what its solid is made of.
+//! Shapes are the crate's own leaves, about the origin of the pose and along its z axis, so what a
+//! candidate is tested by is what its solid is made of.
 
 use glam::{DMat3, DQuat, DVec2, DVec3};
 

@@ -15,7 +15,8 @@ pub(super) struct Limits {
     /// The least share of a cone, and of a sphere or torus.
     pub(super) cone_share: f64,
     pub(super) round_share: f64,
-    /// The largest root mean squares of curved shapes: of angles between normals, in degrees, and of distances.
+    /// The largest root mean squares of curved shapes: of angles between normals, in degrees, and
+    /// of distances.
     pub(super) spread: [f64; 2],
     /// How much normals may differ from those of curved shapes, and of planes, in degrees.
     curved: f64,

@@ -1,6 +1,7 @@
 //! The numbers that an engineer gives for a leaf, and the leaf that is made from them.
 //!
-//! What has two ends is told by them, what is round by its diameter; coordinates are along the leaf's own axes.
+//! What has two ends is told by them, what is round by its diameter; coordinates are along the
+//! leaf's own axes.
 
 use glam::{DMat3, DVec2, DVec3};
 
@@ -52,7 +53,8 @@ fn posed(at: DVec3, height: f64) -> Vec<(Measure, f64)> {
 }
 
 impl Leaf {
-    /// How far it reaches from its centre along its own axes, at the most; unbounded leaves have none.
+    /// How far it reaches from its centre along its own axes, at the most; unbounded leaves have
+    /// none.
     pub(super) fn reach(&self) -> DVec3 {
         let round = |radius: f64, height: f64| DVec3::new(radius, radius, 0.5 * height);
         match &self.shape {
@@ -109,7 +111,8 @@ impl Leaf {
         }
     }
 
-    /// The same kind of leaf, along the same axes, of other numbers; none if they are those of no solid.
+    /// The same kind of leaf, along the same axes, of other numbers; none if they are those of no
+    /// solid.
     pub(super) fn made_of(&self, numbers: &[f64]) -> Option<Leaf> {
         let middle = |low: f64, high: f64| tidy(0.5 * (low + high));
         let between = |low: f64, high: f64| tidy(high - low);
@@ -176,8 +179,8 @@ impl Leaf {
         Some(Leaf { shape, rotation: self.rotation, centre: self.rotation * at })
     }
 
-    /// The same leaf, described along the part's axes where it lies along them to within a part of a radian: a box needs no
-    /// turning then, what is turned about an axis none but from z to it.
+    /// The same leaf, described along the part's axes where it lies along them to within a part of
+    /// a radian: a box needs no turning then, what is turned about an axis none but from z to it.
     pub(super) fn aligned(&self, within: f64) -> Leaf {
         let rounded = DMat3::from_cols_array(&self.rotation.to_cols_array().map(f64::round));
         let is_aligned = (self.rotation - rounded).to_cols_array().iter().all(|off| off.abs() < within)

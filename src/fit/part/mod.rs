@@ -70,26 +70,28 @@ use crate::geom::{Mesh, PointCloud};
 ///   '-----------------''
 /// ```
 ///
-/// The result is a [`PartFit`]: a solid whose leaves have names, how much of the volume it has in common with the mesh,
-/// how far its surface is from the mesh's, genus and shells beside those of the mesh, and the places that are not
-/// explained.
+/// The result is a [`PartFit`]: a solid whose leaves have names, how much of the volume it has in
+/// common with the mesh, how far its surface is from the mesh's, genus and shells beside those of
+/// the mesh, and the places that are not explained.
 ///
-/// Samples of the surface are grouped to regions of planes, cylinders, cones, spheres and tori. Leaves in question are
-/// made of these, with all ends that they may have; boxes between parallel planes; extruded sections as polygons,
-/// rounded rectangles, regular prisms and supershapes; and superellipsoids of what hangs together without a crease. A
-/// search over ordered trees takes those that mend more than their parameters [cost](PartSettings::parameter_cost).
-/// They are fitted to the samples, and laid through the vertices of the mesh where these tell their lengths exactly:
-/// the radius of a cylinder of facets is that of its corners. Numbers that are round within what the vertices leave open, in
-/// millimetres or in binary fractions of an inch, become so, and cuts that end in the open go through: see
-/// [`snaps`](PartFit::snaps). At last leaves are left out that mend little and spoil genus or shells.
+/// Samples of the surface are grouped to regions of planes, cylinders, cones, spheres and tori.
+/// Leaves in question are made of these, with all ends that they may have; boxes between parallel
+/// planes; extruded sections as polygons, rounded rectangles, regular prisms and supershapes; and
+/// superellipsoids of what hangs together without a crease. A search over ordered trees takes those
+/// that mend more than their parameters [cost](PartSettings::parameter_cost). They are fitted to
+/// the samples, and laid through the vertices of the mesh where these tell their lengths exactly:
+/// the radius of a cylinder of facets is that of its corners. Numbers that are round within what
+/// the vertices leave open, in millimetres or in binary fractions of an inch, become so, and cuts
+/// that end in the open go through: see [`snaps`](PartFit::snaps). At last leaves are left out that
+/// mend little and spoil genus or shells.
 ///
-/// The mesh may be in pieces and its triangles may overlap; inside is where the winding number is above ½. The result
-/// depends on mesh and settings only, not on the number of threads.
+/// The mesh may be in pieces and its triangles may overlap; inside is where the winding number is
+/// above ½. The result depends on mesh and settings only, not on the number of threads.
 ///
 /// # How well it works
 ///
-/// Meshes of parts that are used for tests elsewhere, on one thread, IoU on 2²⁰ points; that of a mesh of few facets
-/// cannot be 1 if radii are those of the corners:
+/// Meshes of parts that are used for tests elsewhere, on one thread, IoU on 2²⁰ points; that of a
+/// mesh of few facets cannot be 1 if radii are those of the corners:
 ///
 /// | mesh | IoU | leaves (parameters) | genus, mesh's |
 /// |---|---|---|---|
@@ -109,17 +111,20 @@ use crate::geom::{Mesh, PointCloud};
 /// | machinist | 0.9946 | 18 (130) | 36, 36 |
 /// | octagonal_pocket | 0.9743 | 32 (390) | 1, 1 |
 ///
-/// Of 50 random parts (2 to 6 boxes, cylinders, cones, spheres, prisms, superellipsoids and supershapes, 0 to 4 holes,
-/// as meshes of marching cubes) 49 come out with an IoU of .97 or more (median .996), 47 with the genus of the mesh, 44
-/// with 12 leaves or fewer. It takes some .1 to 2 s a part, on one thread.
+/// Of 50 random parts (2 to 6 boxes, cylinders, cones, spheres, prisms, superellipsoids and
+/// supershapes, 0 to 4 holes, as meshes of marching cubes) 49 come out with an IoU of .97 or more
+/// (median .996), 47 with the genus of the mesh, 44 with 12 leaves or fewer. It takes some .1 to 2
+/// s a part, on one thread.
 ///
-/// What is not recovered: fillets, sweeps, threads and lattices, and which lengths were meant to be equal or round.
+/// What is not recovered: fillets, sweeps, threads and lattices, and which lengths were meant to be
+/// equal or round.
 ///
 /// # Errors
 ///
-/// [`FitError::Setting`], [`FitError::TooFew`] of fewer than 4 triangles, [`FitError::Flat`] of vertices in a plane,
-/// [`FitError::Extent`] of sizes beyond 10⁻⁶ to 10⁸, [`FitError::Hollow`] of an open surface that encloses nothing or
-/// that faces inwards, [`FitError::NoSurface`] if no leaf is worth its parameters.
+/// [`FitError::Setting`], [`FitError::TooFew`] of fewer than 4 triangles, [`FitError::Flat`] of
+/// vertices in a plane, [`FitError::Extent`] of sizes beyond 10⁻⁶ to 10⁸, [`FitError::Hollow`] of
+/// an open surface that encloses nothing or that faces inwards, [`FitError::NoSurface`] if no leaf
+/// is worth its parameters.
 ///
 /// ```
 /// use rvachev::fit::{PartSettings, part};
@@ -153,14 +158,16 @@ pub fn part_with(mesh: &Mesh, settings: &PartSettings, run: &Run) -> Result<Part
 
 /// The tree of leaves that points of a surface are of: [`part`] of a scan.
 ///
-/// The points are to be of the whole surface, spread about evenly, 200 or more; some thousands are wanted, and of more
-/// than 4000 a random part is searched. Normals that the cloud has are to point outwards. Where it has none, the points'
-/// neighbours tell them, which is less sure at sharp edges and in thin walls. What is inside is told by winding numbers
-/// of the points with the areas that they stand for. Noise is estimated, and [`PartSettings::noise`] is a lower bound of it.
+/// The points are to be of the whole surface, spread about evenly, 200 or more; some thousands are
+/// wanted, and of more than 4000 a random part is searched. Normals that the cloud has are to point
+/// outwards. Where it has none, the points' neighbours tell them, which is less sure at sharp edges
+/// and in thin walls. What is inside is told by winding numbers of the points with the areas that
+/// they stand for. Noise is estimated, and [`PartSettings::noise`] is a lower bound of it.
 ///
-/// [Genus and shells](PartFit::topology_of_input) of the input are not known, and lengths are what fits the points best.
-/// Of 12 random parts of two to six added leaves and up to four cut ones, of 4000 points with normals, noise as a share
-/// of the box's diagonal, so many have an IoU of 0.97 with the part; a part takes some 2 s:
+/// [Genus and shells](PartFit::topology_of_input) of the input are not known, and lengths are what
+/// fits the points best. Of 12 random parts of two to six added leaves and up to four cut ones, of
+/// 4000 points with normals, noise as a share of the box's diagonal, so many have an IoU of 0.97
+/// with the part; a part takes some 2 s:
 ///
 /// | noise | IoU ≥ .97 | median IoU |
 /// |---|---|---|
@@ -168,8 +175,9 @@ pub fn part_with(mesh: &Mesh, settings: &PartSettings, run: &Run) -> Result<Part
 /// | 0.2 % | 9 | 0.985 |
 /// | 0.4 % | 6 | 0.974 |
 ///
-/// Without normals, 4 of the first 10 have it at 0.2 % (median 0.960): a wall of a narrow hole may come out turned.
-/// A side that is not seen is closed as if by a film, and nothing tells which leaves are guesses.
+/// Without normals, 4 of the first 10 have it at 0.2 % (median 0.960): a wall of a narrow hole may
+/// come out turned. A side that is not seen is closed as if by a film, and nothing tells which
+/// leaves are guesses.
 ///
 /// # Errors
 ///

@@ -4,8 +4,8 @@
 //!     S₀ = ∅,   Sᵢ = Sᵢ₋₁ ∪ leafᵢ  or  Sᵢ₋₁ \ leafᵢ,      J = Σ w[S ≠ T] + Σ price
 //! ```
 //!
-//! What a further leaf c at a place of the list gains is linear in c: it changes the samples that are not in the
-//! state before, or are, and that no later leaf decides.
+//! What a further leaf c at a place of the list gains is linear in c: it changes the samples that
+//! are not in the state before, or are, and that no later leaf decides.
 
 use super::bits::{Bits, Stakes, differing};
 use super::pool::Pool;
@@ -87,8 +87,8 @@ impl Judge<'_> {
         if adds { Stakes { gain: inside, loss: outside } } else { Stakes { gain: outside, loss: inside } }
     }
 
-    /// The candidates that gain most by stakes, less their price, from the best down; none that gain nothing. Losses
-    /// count `dear` times.
+    /// The candidates that gain most by stakes, less their price, from the best down; none that
+    /// gain nothing. Losses count `dear` times.
     pub(super) fn best(&self, stakes: &Stakes, adds: bool, dear: f64, count: usize) -> Vec<(f64, u32)> {
         let chances = stakes.chances();
         let weights = &self.queries.weights;
@@ -97,7 +97,8 @@ impl Judge<'_> {
             if !candidate.may[usize::from(!adds)] {
                 continue;
             }
-            // Where little is wrong few words can gain, and most candidates are out before they are counted.
+            // Where little is wrong few words can gain, and most candidates are out before they are
+            // counted.
             let least = if best.len() < count { GRAIN } else { best[count - 1].0 };
             let most = Stakes::most(&candidate.bits, &chances, weights) - candidate.price;
             if most <= least {

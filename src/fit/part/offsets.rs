@@ -12,8 +12,8 @@ const ALONG: f64 = 0.9994;
 /// Offsets nearer to each other are one.
 const SAME: f64 = 0.002;
 
-/// The grid of a frame: its planes first, then what cylinders and spheres touch, then their centres, larger regions
-/// first.
+/// The grid of a frame: its planes first, then what cylinders and spheres touch, then their
+/// centres, larger regions first.
 pub(super) fn grid(frame: DMat3, regions: &[Region], points: &[DVec3], queries: &Queries) -> Grid {
     let offsets = [0, 1, 2].map(|k| along(frame.col(k), regions, points));
     Grid::new(frame, offsets, queries)

@@ -1,9 +1,10 @@
 //! Normals of points that have none: local planes, turned to agree with their neighbours.
 //!
-//! From the point that is highest, whose normal is up, orientation goes on from point to point, first where normals
-//! are most alike.
+//! From the point that is highest, whose normal is up, orientation goes on from point to point,
+//! first where normals are most alike.
 //!
-//! Source: H. Hoppe, T. DeRose, T. Duchamp, J. McDonald, W. Stuetzle, *Surface reconstruction from unorganized points* (1992).
+//! Source: H. Hoppe, T. DeRose, T. Duchamp, J. McDonald, W. Stuetzle, *Surface reconstruction from
+//! unorganized points* (1992).
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;

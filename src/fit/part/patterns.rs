@@ -10,8 +10,8 @@ use glam::{DMat3, DVec3};
 
 use super::result::{PartFit, PartLeaf};
 
-/// Leaves are equal whose sizes differ by less, and in place that are nearer than that to it: in parts of the part's
-/// size.
+/// Leaves are equal whose sizes differ by less, and in place that are nearer than that to it: in
+/// parts of the part's size.
 const EQUAL: f64 = 5e-4;
 const PLACED: f64 = 1e-3;
 
@@ -65,8 +65,9 @@ pub enum Layout {
 }
 
 impl PartFit {
-    /// Leaves that are equal but for their places, which are on a line, a ring or a grid: of the leaves that have the
-    /// same kind, sizes and direction. A leaf is in one pattern at most. Those of more leaves come first.
+    /// Leaves that are equal but for their places, which are on a line, a ring or a grid: of the
+    /// leaves that have the same kind, sizes and direction. A leaf is in one pattern at most. Those
+    /// of more leaves come first.
     ///
     /// ```
     /// use rvachev::fit::{Layout, PartSettings, part};
@@ -145,7 +146,7 @@ fn ring(group: &[usize], axis: DVec3, at: &impl Fn(&usize) -> DVec3, near: f64) 
         (round.dot(d) / first.length()).atan2(first.dot(d) / first.length()).rem_euclid(std::f64::consts::TAU)
     };
     let mut leaves = group.to_vec();
-    // The first one's angle may be a hair below a whole turn.
+    // The first one's angle may be a little below a whole turn.
     leaves.sort_by(|i, j| turn(i).total_cmp(&turn(j)));
     let whole = leaves.iter().position(|i| *i == group[0])?;
     leaves.rotate_left(whole);

@@ -70,7 +70,8 @@ impl Queries {
             }
             for (round, at) in order.into_iter().enumerate() {
                 let at = strip.samples[at] as usize;
-                // Where there are fewer samples than pairs, the same sample is asked at other distances.
+                // Where there are fewer samples than pairs, the same sample is asked at other
+                // distances.
                 let step = if round < strip.samples.len() { apart } else { apart * (0.5 + (round % 7) as f64 / 7.0) };
                 points.push(places[at] + step * normals[at]);
                 points.push(places[at] - step * normals[at]);

@@ -183,7 +183,8 @@ fn queries(body: &Body, samples: &Samples, regions: &Regions, seed: u64, run: &R
     })?)
 }
 
-/// How far pairs are from a region: of narrow holes nearer, so that a countersink differs from its bore.
+/// How far pairs are from a region: of narrow holes nearer, so that a countersink differs from its
+/// bore.
 fn apart(region: &Region, samples: &Samples) -> f64 {
     let (Form::Cylinder { radius, .. } | Form::Cone { radius, .. }) = region.form else {
         return APART.max(NOISE * samples.noise);
@@ -252,7 +253,8 @@ fn steps(selector: &mut Selector<'_>, model: &Model, leaves: Vec<(bool, Leaf)>) 
     steps
 }
 
-/// The model with its leaves moved onto the surface, where that is not for the worse, and changed if it pays then.
+/// The model with its leaves moved onto the surface, where that is not for the worse, and changed
+/// if it pays then.
 fn moved(selector: &mut Selector<'_>, model: Model, samples: &Samples, run: &Run) -> Result<Model, FitError> {
     let fitted = refined(&leaves(&selector.pool, &model.steps), samples, run)?;
     let steps = steps(selector, &model, fitted);

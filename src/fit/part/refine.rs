@@ -4,8 +4,8 @@
 //!     v = max(v, −d)  of what is added,   v = min(v, d)  of what is cut:     one leaf decides at each sample
 //! ```
 //!
-//! So a residual depends on the parameters of one leaf only, and each is fitted alone: robust Levenberg–Marquardt
-//! (Geman and McClure), only samples whose normals agree.
+//! So a residual depends on the parameters of one leaf only, and each is fitted alone: robust
+//! Levenberg–Marquardt (Geman and McClure), only samples whose normals agree.
 
 use glam::DVec3;
 
@@ -33,7 +33,8 @@ const AGREE: f64 = 0.5;
 /// A step for derivatives.
 const STEP: f64 = 1e-6;
 
-/// Which leaf decides at a point, and the signed distance there, negative inside; none of no leaves.
+/// Which leaf decides at a point, and the signed distance there, negative inside; none of no
+/// leaves.
 pub(super) fn owner(leaves: &[(bool, Leaf)], p: DVec3) -> (Option<usize>, f64) {
     let (mut owner, mut value) = (None, f64::INFINITY);
     for (i, (adds, leaf)) in leaves.iter().enumerate() {
@@ -73,7 +74,8 @@ pub(super) fn refined(leaves: &[(bool, Leaf)], samples: &Samples, run: &Run) -> 
             let agreeing = own.into_iter().filter(agrees);
             let agreeing: Vec<_> = agreeing.map(|i| (samples.points[i], samples.weights[i])).collect();
             if agreeing.len() >= 2 * leaf.freedom() {
-                // What was found by its own region is nearly there, and would be drawn off by what is beside it.
+                // What was found by its own region is nearly there, and would be drawn off by what
+                // is beside it.
                 let width = if leaf.is_free() { width } else { width.min(NARROW.max(least)) };
                 *leaf = fitted(leaf, &agreeing, width);
             }

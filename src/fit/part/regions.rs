@@ -1,10 +1,12 @@
 //! Regions of a surface, each of one plane, cylinder, cone, sphere or torus.
 //!
-//! Hypotheses of all kinds and all axes are made from two points each, and the one that explains most of the area is
-//! adjusted and taken, then the one that explains most of the rest. So a sphere is not taken for a ring of cones, nor
-//! a cylinder of many facets for planes: what explains more comes first.
+//! Hypotheses of all kinds and all axes are made from two points each, and the one that explains
+//! most of the area is adjusted and taken, then the one that explains most of the rest. So a sphere
+//! is not taken for a ring of cones, nor a cylinder of many facets for planes: what explains more
+//! comes first.
 //!
-//! Source of the idea: R. Schnabel, R. Wahl, R. Klein, *Efficient RANSAC for point-cloud shape detection* (2007).
+//! Source of the idea: R. Schnabel, R. Wahl, R. Klein, *Efficient RANSAC for point-cloud shape
+//! detection* (2007).
 
 use glam::{DMat3, DVec3};
 
@@ -23,7 +25,8 @@ pub(super) struct Region {
     pub(super) share: f64,
     /// 1 if the normals point away from the axis or centre, −1 in a hole; 1 of planes.
     pub(super) sign: f64,
-    /// How much smaller, as a factor, the radius is that samples are about: facets are chords of what the form is.
+    /// How much smaller, as a factor, the radius is that samples are about: facets are chords of
+    /// what the form is.
     pub(super) chordal: f64,
 }
 
@@ -75,7 +78,8 @@ pub(super) struct Regions {
 }
 
 impl Region {
-    /// Where there are samples of it along an axis, from an origin: gaps that are longer than given divide it.
+    /// Where there are samples of it along an axis, from an origin: gaps that are longer than given
+    /// divide it.
     pub(super) fn pieces(&self, samples: &Samples, axis: DVec3, origin: DVec3, gap: f64) -> Vec<[f64; 2]> {
         let mut along: Vec<f64> =
             self.points.iter().map(|i| (samples.points[*i as usize] - origin).dot(axis)).collect();

@@ -16,7 +16,8 @@ fn oblique() -> DMat3 {
     DMat3::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), 0.7)
 }
 
-/// A closed outline of radii and heights, counter-clockwise, turned about the z axis of a frame in so many facets.
+/// A closed outline of radii and heights, counter-clockwise, turned about the z axis of a frame in
+/// so many facets.
 fn turned(outline: &[[f64; 2]], facets: usize, frame: DMat3) -> Mesh {
     let (count, mut positions, mut triangles) = (outline.len(), Vec::new(), Vec::new());
     for i in 0..facets {

@@ -10,7 +10,8 @@ use crate::{Bounds, Solid};
 
 /// A part as an ordered tree of leaves, and how well it is the part.
 ///
-/// The leaves are applied one after the other: each is added to what those before it are, or cut from it.
+/// The leaves are applied one after the other: each is added to what those before it are, or cut
+/// from it.
 #[derive(Clone, Debug)]
 pub struct PartFit {
     pub(super) leaves: Vec<PartLeaf>,
@@ -60,8 +61,8 @@ pub struct Unexplained {
 pub struct Snap {
     /// Which of the [leaves](PartFit::leaves).
     pub leaf: usize,
-    /// What the number is: "diameter", "radius" or "size"; or "x", "y" or "z": where the leaf is, or ends, along its own
-    /// axes.
+    /// What the number is: "diameter", "radius" or "size"; or "x", "y" or "z": where the leaf is,
+    /// or ends, along its own axes.
     pub measure: &'static str,
     /// What was found, in length units.
     pub found: f64,
@@ -79,16 +80,17 @@ impl Snap {
 }
 
 impl PartFit {
-    /// The numbers that were changed: to round ones, in millimetres or in binary fractions of an inch, whichever makes more
-    /// of the part's numbers short, by no more than the vertices leave open; and cuts that ended in the open, or in
-    /// the face that they go through, which were lengthened.
+    /// The numbers that were changed: to round ones, in millimetres or in binary fractions of an
+    /// inch, whichever makes more of the part's numbers short, by no more than the vertices leave
+    /// open; and cuts that ended in the open, or in the face that they go through, which were
+    /// lengthened.
     #[must_use]
     pub fn snaps(&self) -> &[Snap] {
         &self.snaps
     }
 
-    /// The part with some of the [snaps](PartFit::snaps), told by their places, taken back. What is measured of the part
-    /// is left as it was.
+    /// The part with some of the [snaps](PartFit::snaps), told by their places, taken back. What is
+    /// measured of the part is left as it was.
     ///
     /// ```
     /// use rvachev::fit::{PartSettings, part};
@@ -129,17 +131,17 @@ impl PartFit {
         &self.leaves
     }
 
-    /// How many numbers the leaves have: 3 of a half-space, 4 of a sphere, 7 of a cylinder or a torus, 8 of a cone, 9 of
-    /// a box or a prism, 10 of a rounded rectangle, 11 of a superellipsoid, 12 of a supershape, 7 and 2 a corner of a
-    /// profile.
+    /// How many numbers the leaves have: 3 of a half-space, 4 of a sphere, 7 of a cylinder or a
+    /// torus, 8 of a cone, 9 of a box or a prism, 10 of a rounded rectangle, 11 of a
+    /// superellipsoid, 12 of a supershape, 7 and 2 a corner of a profile.
     #[must_use]
     pub fn parameters(&self) -> usize {
         self.leaves.iter().map(PartLeaf::parameters).sum()
     }
 
-    /// The volume of what tree and mesh have in common, over that of what either has: 1 is all right. It is estimated
-    /// from 16384 points in the mesh's box and 1.5 % about it, which are inside of the mesh where its winding number is
-    /// above ½.
+    /// The volume of what tree and mesh have in common, over that of what either has: 1 is all
+    /// right. It is estimated from 16384 points in the mesh's box and 1.5 % about it, which are
+    /// inside of the mesh where its winding number is above ½.
     #[must_use]
     pub fn iou(&self) -> f64 {
         self.iou
@@ -151,8 +153,8 @@ impl PartFit {
         self.deviation
     }
 
-    /// Genus and shells of the tree's surface, meshed with 128 cells along its longest side, or 384 where these have not
-    /// those of the input.
+    /// Genus and shells of the tree's surface, meshed with 128 cells along its longest side, or 384
+    /// where these have not those of the input.
     #[must_use]
     pub fn topology(&self) -> Topology {
         self.topology
@@ -164,7 +166,8 @@ impl PartFit {
         self.topology_of_input
     }
 
-    /// Where tree and mesh differ by more than a thousandth of the volume in one place, the worst place first.
+    /// Where tree and mesh differ by more than a thousandth of the volume in one place, the worst
+    /// place first.
     #[must_use]
     pub fn unexplained(&self) -> &[Unexplained] {
         &self.unexplained
@@ -184,8 +187,9 @@ impl PartLeaf {
         &self.name
     }
 
-    /// What it is: "half-space", "box", "cylinder", "cone", "sphere", "torus", "prism", "rounded rectangle", "profile" (an
-    /// extruded polygon), "supershape" (an extruded one) or "superellipsoid".
+    /// What it is: "half-space", "box", "cylinder", "cone", "sphere", "torus", "prism", "rounded
+    /// rectangle", "profile" (an extruded polygon), "supershape" (an extruded one) or
+    /// "superellipsoid".
     #[must_use]
     pub fn kind(&self) -> &'static str {
         self.leaf.kind()
@@ -197,7 +201,8 @@ impl PartLeaf {
         self.leaf.solid()
     }
 
-    /// Where it is: its centre; of a half-space the point of its plane that is nearest to the origin.
+    /// Where it is: its centre; of a half-space the point of its plane that is nearest to the
+    /// origin.
     #[must_use]
     pub fn centre(&self) -> DVec3 {
         self.leaf.centre

@@ -1,16 +1,17 @@
 //! Round numbers: the scale on which most of the numbers of a part are short.
 //!
-//! A number is round on a scale if one of its steps has a multiple within the tolerance, and so few of them that this
-//! is no chance. It then costs the bits that tell which multiple; any other number costs all the bits down to the
-//! tolerance.
+//! A number is round on a scale if one of its steps has a multiple within the tolerance, and so few
+//! of them that this is no chance. It then costs the bits that tell which multiple; any other
+//! number costs all the bits down to the tolerance.
 
-/// Steps from coarse to fine, each a numerator and a denominator: of whole numbers, the multiples are the nearest numbers
-/// to what they are in decimals.
+/// Steps from coarse to fine, each a numerator and a denominator: of whole numbers, the multiples
+/// are the nearest numbers to what they are in decimals.
 pub(super) struct Scale {
     steps: Vec<[f64; 2]>,
 }
 
-/// So many multiples of the tolerance a step has at the least, so that one number in ten is round by chance.
+/// So many multiples of the tolerance a step has at the least, so that one number in ten is round
+/// by chance.
 const CHANCE: f64 = 20.0;
 
 /// Lengths of an inch, where the unit is an inch, a millimetre, a centimetre or a metre.

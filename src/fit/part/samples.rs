@@ -26,13 +26,13 @@ const OF_CLOUD: usize = 4000;
 /// Corners that are kept.
 const CORNERS: usize = 6000;
 
-/// A mesh of so many triangles whose longest sides are below this share of the diagonal, on nine tenths of the area,
-/// is one of small facets.
+/// A mesh of so many triangles whose longest sides are below this share of the diagonal, on nine
+/// tenths of the area, is one of small facets.
 const MANY: usize = 1000;
 const SMALL: f64 = 0.05;
 
-/// Points that are asked for the noise, their neighbours, and how many of these must face the same way: so much, as a
-/// cosine.
+/// Points that are asked for the noise, their neighbours, and how many of these must face the same
+/// way: so much, as a cosine.
 const ASKED: usize = 200;
 const NEIGHBOURS: usize = 16;
 const FEWEST: f64 = 7.0;
@@ -56,7 +56,8 @@ pub(super) struct Samples {
     pub(super) normals: Vec<DVec3>,
     /// Shares of the area; their sum is 1.
     pub(super) weights: Vec<f64>,
-    /// Vertices of a mesh where it is curved, with smooth normals: where facets are chords, these are on the surface.
+    /// Vertices of a mesh where it is curved, with smooth normals: where facets are chords, these
+    /// are on the surface.
     pub(super) corners: Vec<Corner>,
     /// The mesh; none of a cloud.
     pub(super) facets: Facets,
@@ -143,7 +144,8 @@ impl Samples {
         }
     }
 
-    /// The samples of a cloud: points with the normals that they have, or that their neighbours tell.
+    /// The samples of a cloud: points with the normals that they have, or that their neighbours
+    /// tell.
     pub(super) fn of_cloud(cloud: &PointCloud, seed: u64) -> Samples {
         let all = cloud.positions();
         let [low, high] = extent(all);
@@ -177,7 +179,8 @@ impl Samples {
     }
 }
 
-/// The noise of points: how far they are from planes through their neighbours on the same side, where it is flattest.
+/// The noise of points: how far they are from planes through their neighbours on the same side,
+/// where it is flattest.
 fn noise(points: &[DVec3], normals: &[DVec3], random: &mut Random) -> f64 {
     if points.len() < NEIGHBOURS {
         return 0.0;

@@ -21,8 +21,8 @@ pub(super) fn area(points: &[DVec2]) -> f64 {
 }
 
 impl Facets {
-    /// The rings in which a plane across the z axis of a frame meets the mesh, in the frame's x and y. Lines that do
-    /// not close are left out.
+    /// The rings in which a plane across the z axis of a frame meets the mesh, in the frame's x and
+    /// y. Lines that do not close are left out.
     pub(super) fn rings(&self, frame: &DMat3, height: f64) -> Vec<Ring> {
         let to = frame.transpose();
         let side = |i: u32| frame.z_axis.dot(self.at(i)) - height;
@@ -51,7 +51,8 @@ impl Facets {
 /// Segments from edge to edge, each known by where it begins.
 #[derive(Default)]
 pub(super) struct Segments {
-    /// From the edge where a segment begins to the one where it ends, and the point at its beginning.
+    /// From the edge where a segment begins to the one where it ends, and the point at its
+    /// beginning.
     next: HashMap<u64, (u64, DVec2)>,
     order: Vec<u64>,
 }

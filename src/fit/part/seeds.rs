@@ -1,4 +1,5 @@
-//! Points that hypotheses are made from, two at a time: near each other, or of one smooth part of a mesh.
+//! Points that hypotheses are made from, two at a time: near each other, or of one smooth part of a
+//! mesh.
 
 use glam::DVec3;
 

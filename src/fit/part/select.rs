@@ -5,9 +5,9 @@
 //!     then:        drop, exchange, move, add anywhere, add again below holes, change an end and cut
 //! ```
 //!
-//! Adding alone returns nothing of a tube: its cylinder is more wrong than right before it is bored, so pairs are
-//! tried with what is wrong counted a little. The order decides: what is added late closes holes that were cut
-//! before, which are then cut again if they pay.
+//! Adding alone returns nothing of a tube: its cylinder is more wrong than right before it is
+//! bored, so pairs are tried with what is wrong counted a little. The order decides: what is added
+//! late closes holes that were cut before, which are then cut again if they pay.
 
 use super::bits::{Bits, Stakes, weight};
 use super::boxes::Grid;
@@ -119,7 +119,8 @@ impl Selector<'_> {
         children
     }
 
-    /// A leaf before what is subtracted and cuts of it at once, as many as it takes to be better than before.
+    /// A leaf before what is subtracted and cuts of it at once, as many as it takes to be better
+    /// than before.
     fn pairs(&mut self, model: &Model, place: usize) -> Vec<Model> {
         let stakes = self.judge().stakes(&model.steps, place, true);
         // Of a thin shell nearly all that the leaf holds is wrong before it is cut.
@@ -156,7 +157,8 @@ impl Selector<'_> {
         added.into_iter().map(|(_, which)| self.reinserted(steps, which)).collect()
     }
 
-    /// The steps with a leaf added after the others, and the cuts that it would close made after it.
+    /// The steps with a leaf added after the others, and the cuts that it would close made after
+    /// it.
     ///
     /// Cuts are credited one after the other, as an overlap of two is opened only once.
     fn reinserted(&self, steps: &[Step], which: u32) -> Model {
@@ -243,7 +245,8 @@ impl Selector<'_> {
         }
     }
 
-    /// Several leaves in the place of each: one that does the work of two badly is in the way of both.
+    /// Several leaves in the place of each: one that does the work of two badly is in the way of
+    /// both.
     fn rebuild(&mut self, model: &mut Model) {
         let mut i = 0;
         while i < model.steps.len() && !self.cancel.is_cancelled() {
@@ -310,7 +313,8 @@ impl Selector<'_> {
         }
     }
 
-    /// The same surface with another end, and the best cut then: a bore that ends where a wider one begins.
+    /// The same surface with another end, and the best cut then: a bore that ends where a wider one
+    /// begins.
     fn change_end(&mut self, model: &mut Model) {
         let mut i = 0;
         while i < model.steps.len() && !self.cancel.is_cancelled() {

@@ -19,14 +19,16 @@ pub struct PartSettings {
     pub seed: u64,
     /// Which leaves may be used.
     pub kinds: PartKinds,
-    /// What a parameter of a leaf costs, as a share of the part's volume: a leaf is used that mends more than its
-    /// parameters cost. 10⁻⁶ to 0.1. Default: 0.00015, which is some 0.1 % for a cylinder.
+    /// What a parameter of a leaf costs, as a share of the part's volume: a leaf is used that mends
+    /// more than its parameters cost. 10⁻⁶ to 0.1. Default: 0.00015, which is some 0.1 % for a
+    /// cylinder.
     pub parameter_cost: f64,
-    /// How far the vertices are off the true surface, as a standard deviation, in length units: 0 to 10⁹. Default: 0.
+    /// How far the vertices are off the true surface, as a standard deviation, in length units: 0
+    /// to 10⁹. Default: 0.
     pub noise: f64,
-    /// Whether leaves are laid through the vertices of the mesh where these tell them exactly. The radius of a cylinder
-    /// of facets is then that of its corners, as it was meant, though a smaller one has more volume in common with the
-    /// facets. Default: `true`.
+    /// Whether leaves are laid through the vertices of the mesh where these tell them exactly. The
+    /// radius of a cylinder of facets is then that of its corners, as it was meant, though a
+    /// smaller one has more volume in common with the facets. Default: `true`.
     pub snap: bool,
 }
 

@@ -23,14 +23,16 @@ const CORNERS: usize = 6;
 const ARC: f64 = 50.0;
 const FILL: f64 = 0.62;
 
-/// The largest share of a cylinder within 10° of normals, of whole ones and of short arcs: more is a flat.
+/// The largest share of a cylinder within 10° of normals, of whole ones and of short arcs: more is
+/// a flat.
 const FLATTEST: [f64; 2] = [0.34, 0.45];
 const SHORT: f64 = 120.0;
 
 /// The least eigenvalue of the mean of n·nᵀ on a sphere: on a cylinder it is 0.
 const ROUND: f64 = 0.06;
 
-/// The largest root mean square of angles, in degrees, where a mesh has no corners that are of a curved surface.
+/// The largest root mean square of angles, in degrees, where a mesh has no corners that are of a
+/// curved surface.
 const BARE: f64 = 5.0;
 
 /// The least arc of a torus' tube, in degrees.
@@ -40,7 +42,8 @@ const TUBE: f64 = 35.0;
 const VARYING: f64 = 0.05;
 const TURN: f64 = 0.06;
 
-/// Passes of the adjustment to corners: each keeps those within so many median deviations, and the least of them.
+/// Passes of the adjustment to corners: each keeps those within so many median deviations, and the
+/// least of them.
 const PASSES: usize = 4;
 const WIDTH: f64 = 6.0;
 const GRAIN: f64 = 1e-5;
@@ -235,8 +238,8 @@ impl Settled {
         }
     }
 
-    /// Whether its samples are about as near to it, and their normals to its, as those of such a shape are: a prism is
-    /// within the tolerances of a cylinder.
+    /// Whether its samples are about as near to it, and their normals to its, as those of such a
+    /// shape are: a prism is within the tolerances of a cylinder.
     fn is_true(&self, samples: &Samples, is_bare: bool, limits: &Limits) -> bool {
         let to = self.frame.transpose();
         let [mut angles, mut distances] = [0.0; 2];

@@ -22,7 +22,8 @@ const FARTHEST: f64 = 0.01;
 const MEANT: f64 = 3e-3;
 const MET: f64 = 2e-5;
 
-/// The leaves laid through the vertices that they make the surface at, where most of these are met then.
+/// The leaves laid through the vertices that they make the surface at, where most of these are met
+/// then.
 pub(super) fn snapped(leaves: &[(bool, Leaf)], vertices: &[DVec3], run: &Run) -> Result<Vec<(bool, Leaf)>, Cancelled> {
     let mut laid = leaves.to_vec();
     for width in WIDTHS {

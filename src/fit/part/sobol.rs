@@ -1,7 +1,7 @@
 //! Sobol's points in the unit cube: evenly spread however many are taken.
 //!
-//! Source: S. Joe, F. Kuo, *Constructing Sobol sequences with better two-dimensional projections* (2008), the first
-//! three dimensions.
+//! Source: S. Joe, F. Kuo, *Constructing Sobol sequences with better two-dimensional projections*
+//! (2008), the first three dimensions.
 
 use glam::DVec3;
 

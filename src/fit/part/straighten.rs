@@ -1,7 +1,7 @@
 //! The few corners of a ring of many points.
 //!
-//! Source: D. Douglas, T. Peucker, *Algorithms for the reduction of the number of points required to represent a
-//! digitized line or its caricature* (1973).
+//! Source: D. Douglas, T. Peucker, *Algorithms for the reduction of the number of points required
+//! to represent a digitized line or its caricature* (1973).
 
 use glam::DVec2;
 
@@ -40,8 +40,8 @@ pub(super) fn distance(p: DVec2, a: DVec2, b: DVec2) -> f64 {
     (from - t * along).length()
 }
 
-/// Corners that a mesh of small facets cut off: short sides between two long ones go, and these are lengthened to
-/// where they meet.
+/// Corners that a mesh of small facets cut off: short sides between two long ones go, and these are
+/// lengthened to where they meet.
 pub(super) fn uncut(corners: &[DVec2], short: f64) -> Vec<DVec2> {
     let mut corners = corners.to_vec();
     let mut at = 0;
@@ -65,7 +65,8 @@ pub(super) fn uncut(corners: &[DVec2], short: f64) -> Vec<DVec2> {
     corners
 }
 
-/// Corners where the lines meet that fit the points along each side best, where these lines differ enough.
+/// Corners where the lines meet that fit the points along each side best, where these lines differ
+/// enough.
 pub(super) fn fitted(ring: &[DVec2], corners: &[DVec2], tolerance: f64) -> Vec<DVec2> {
     let count = corners.len();
     let lines: Vec<(DVec2, DVec2)> = (0..count)

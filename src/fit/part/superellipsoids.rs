@@ -66,8 +66,8 @@ pub(super) fn propose(
         for i in &patch.samples {
             counts[of_region[*i as usize]] += 1;
         }
-        // Where facets are large what regions explain together is made of these; else several of them may be taken for
-        // what is round.
+        // Where facets are large what regions explain together is made of these; else several of
+        // them may be taken for what is round.
         let explained = match samples.kind {
             Kind::Cad => counts[..regions.regions.len()].iter().sum(),
             _ => counts[..regions.regions.len()].iter().max().map_or(0, |count| *count),

@@ -15,7 +15,8 @@ use crate::error::MeshingError;
 use crate::geom::Mesh;
 use crate::{CellSize, Features, MeshSettings, RFunction, Run, Solid};
 
-/// Cells along the longest side of the mesh that tells genus and shells, and of one that tells them better.
+/// Cells along the longest side of the mesh that tells genus and shells, and of one that tells them
+/// better.
 const CELLS: [u32; 2] = [128, 384];
 
 /// J may rise by so much where a leaf is left out for the topology.

@@ -48,8 +48,8 @@ impl Mesh {
     ///
     /// # Errors
     ///
-    /// [`MeshError::Normals`] if their number is not that of the vertices, and [`MeshError::Normal`] if one of
-    /// them is NaN or infinite.
+    /// [`MeshError::Normals`] if their number is not that of the vertices, and
+    /// [`MeshError::Normal`] if one of them is NaN or infinite.
     pub fn with_normals(mut self, normals: Vec<Vec3>) -> Result<Mesh, MeshError> {
         if normals.len() != self.positions.len() {
             return Err(MeshError::Normals { normals: normals.len(), vertices: self.positions.len() });

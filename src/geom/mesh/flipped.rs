@@ -3,12 +3,12 @@
 use super::Mesh;
 
 impl Mesh {
-    /// The same mesh inside out: every triangle is turned over, and normals point the other way. Of a mesh whose
-    /// triangles are seen clockwise from outside, as some programs write them, this makes one that encloses its
-    /// inside: see [`Solid::from_mesh`](crate::Solid::from_mesh).
+    /// The same mesh inside out: every triangle is turned over, and normals point the other way. Of
+    /// a mesh whose triangles are seen clockwise from outside, as some programs write them, this
+    /// makes one that encloses its inside: see [`Solid::from_mesh`](crate::Solid::from_mesh).
     ///
-    /// Each triangle keeps its number and its first corner; the other two change places, and so do their colours,
-    /// texture coordinates and normals.
+    /// Each triangle keeps its number and its first corner; the other two change places, and so do
+    /// their colours, texture coordinates and normals.
     ///
     /// ```
     /// use rvachev::{MeshSettings, MeshSolid, Solid};

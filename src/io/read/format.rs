@@ -37,8 +37,8 @@ const KNOWN: [(&str, FileFormat); 7] = [
 ];
 
 impl FileFormat {
-    /// The format that the extension of a path stands for, in upper or lower case; of `xyz` and `csv` only if
-    /// `points` will do.
+    /// The format that the extension of a path stands for, in upper or lower case; of `xyz` and
+    /// `csv` only if `points` will do.
     pub(super) fn of(path: &Path, points: bool) -> Result<FileFormat, LoadError> {
         let extension = path.extension().unwrap_or_default().to_string_lossy();
         let known = || KNOWN.iter().filter(|(_, format)| points || *format != FileFormat::Xyz);
@@ -78,8 +78,8 @@ impl FileFormat {
 }
 
 impl Mesh {
-    /// Reads a mesh, which is the whole of `input`, which need not be buffered. With it come, where the file has
-    /// them, normals, colours, texture coordinates and owners.
+    /// Reads a mesh, which is the whole of `input`, which need not be buffered. With it come, where
+    /// the file has them, normals, colours, texture coordinates and owners.
     ///
     /// ```
     /// use glam::Vec3;
@@ -105,8 +105,8 @@ impl Mesh {
 }
 
 impl PointCloud {
-    /// Reads points, which are the whole of `input`, which need not be buffered; of a mesh its vertices. With
-    /// them come normals and colours, where each point has one of its own.
+    /// Reads points, which are the whole of `input`, which need not be buffered; of a mesh its
+    /// vertices. With them come normals and colours, where each point has one of its own.
     ///
     /// ```
     /// use glam::DVec3;

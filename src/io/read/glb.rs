@@ -2,8 +2,8 @@
 //!
 //! Taken are the meshes of the default scene, moved as its nodes say and turned from y upwards to z
 //! upwards, with normals, colours and texture coordinates: triangles, strips and fans, and points
-//! for clouds. Vertices at one position become one, as writers split them where normals differ. Sparse
-//! accessors, data beside the file and compression are not read: that is an error.
+//! for clouds. Vertices at one position become one, as writers split them where normals differ.
+//! Sparse accessors, data beside the file and compression are not read: that is an error.
 
 mod accessor;
 mod scene;
@@ -90,7 +90,8 @@ fn wrong(expected: &str, found: impl Into<String>) -> ReadError {
     ReadError::content(FilePlace::Part { part: "the JSON chunk".into(), byte: TEXT }, expected, found)
 }
 
-/// A map of metres, y upwards, as one of another unit, z upwards. Turns by right angles and scales of 1 are exact.
+/// A map of metres, y upwards, as one of another unit, z upwards. Turns by right angles and scales
+/// of 1 are exact.
 fn upright(map: &DAffine3, unit: LengthUnit) -> DAffine3 {
     const ROUNDING: f64 = 1e-12;
     let turn = DMat3::from_cols(DVec3::X, DVec3::Z, -DVec3::Y);

@@ -52,11 +52,12 @@ impl Mesh {
     /// | `.glb` | binary glTF 2.0 | normals, colours, texture coordinates; in millimetres |
     /// | `.3mf` | 3MF | colours; in millimetres |
     ///
-    /// Vertices of STL and GLB at one position become one, so that what is closed is closed. What [`Mesh::save`]
-    /// wrote is read as it was, as far as the format holds it.
+    /// Vertices of STL and GLB at one position become one, so that what is closed is closed. What
+    /// [`Mesh::save`] wrote is read as it was, as far as the format holds it.
     ///
-    /// Positions become single precision, some seven digits: of a part in coordinates of a map, some 4·10⁶ from the origin,
-    /// they are rounded to steps of 0.25. Such a part is to be moved to the origin by the program that writes it.
+    /// Positions become single precision, some seven digits: of a part in coordinates of a map,
+    /// some 4·10⁶ from the origin, they are rounded to steps of 0.25. Such a part is to be moved to
+    /// the origin by the program that writes it.
     ///
     /// ```
     /// use rvachev::Mesh;
@@ -83,9 +84,9 @@ impl Mesh {
 }
 
 impl PointCloud {
-    /// Loads points in the format that the extension stands for: `.ply`; `.xyz` and `.csv`, rows of numbers; the
-    /// vertices of all formats of [meshes](Mesh::load). Normals and colours come with them where each point has
-    /// one of its own.
+    /// Loads points in the format that the extension stands for: `.ply`; `.xyz` and `.csv`, rows of
+    /// numbers; the vertices of all formats of [meshes](Mesh::load). Normals and colours come with
+    /// them where each point has one of its own.
     ///
     /// # Errors
     ///

@@ -1,8 +1,9 @@
 //! Wavefront OBJ: see the [writer](crate::io::write_obj).
 //!
 //! It takes v (with colours from 0 to 1 where these follow), vt, vn and f, whose polygons become
-//! fans; other statements of the format are skipped, and what is none is an error. Normals and texture coordinates are kept if all faces have
-//! them. A vertex is told of before the faces that use it.
+//! fans; other statements of the format are skipped, and what is none is an error. Normals and
+//! texture coordinates are kept if all faces have them. A vertex is told of before the faces that
+//! use it.
 
 use glam::{DVec3, Vec3};
 
@@ -39,8 +40,8 @@ fn joined(data: &[u8]) -> Vec<u8> {
     text
 }
 
-/// What else there is in OBJ: points, lines and curves, groups, materials, how it is drawn; and what was in
-/// earlier versions.
+/// What else there is in OBJ: points, lines and curves, groups, materials, how it is drawn; and
+/// what was in earlier versions.
 const SKIPPED: &[&[u8]] = &[
     b"vp",
     b"cstype",

@@ -1,7 +1,8 @@
 //! PLY, as text and binary in both orders: see the [writer](crate::io::write_ply).
 //!
-//! Of `vertex` it takes x, y, z, nx, ny, nz and red, green, blue, alpha; of `face` the list of vertices,
-//! colours and owner; of any type. Other elements and properties are skipped. Polygons become fans.
+//! Of `vertex` it takes x, y, z, nx, ny, nz and red, green, blue, alpha; of `face` the list of
+//! vertices, colours and owner; of any type. Other elements and properties are skipped. Polygons
+//! become fans.
 
 mod header;
 

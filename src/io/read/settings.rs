@@ -20,17 +20,20 @@ use crate::io::LengthUnit;
 pub struct LoadSettings {
     /// What a length of 1 means in what is read. Default: a millimetre.
     pub unit: LengthUnit,
-    /// What a length of 1 means in a file that does not say so: `.stl`, `.obj`, `.ply`, `.xyz`, `.csv`.
-    /// Default: `None`, the numbers are taken as they are. `.3mf` and `.glb` have units of their own.
+    /// What a length of 1 means in a file that does not say so: `.stl`, `.obj`, `.ply`, `.xyz`,
+    /// `.csv`. Default: `None`, the numbers are taken as they are. `.3mf` and `.glb` have units of
+    /// their own.
     pub file_unit: Option<LengthUnit>,
     /// The most triangles that are read. Default: 100 million.
     pub most_triangles: u64,
     /// The most vertices or points that are read. Default: 300 million.
     pub most_points: u64,
-    /// The most points that are left out because a coordinate is NaN or infinite, of `.xyz`, `.csv`, `.ply` and
-    /// `.obj` without faces; if there are more, the error says how many. Default: 0.
+    /// The most points that are left out because a coordinate is NaN or infinite, of `.xyz`,
+    /// `.csv`, `.ply` and `.obj` without faces; if there are more, the error says how many.
+    /// Default: 0.
     pub most_skipped: u64,
-    /// The most bytes that are read, those of a file and those that it unpacks to. Default: 8 · 10⁹.
+    /// The most bytes that are read, those of a file and those that it unpacks to. Default: 8 ·
+    /// 10⁹.
     pub most_bytes: u64,
 }
 

@@ -42,7 +42,8 @@ impl Shape {
         self.positions.push(DVec3::from_array(coordinates));
     }
 
-    /// Leaves out points whose coordinates are none, as far as the settings allow it: those of triangles never.
+    /// Leaves out points whose coordinates are none, as far as the settings allow it: those of
+    /// triangles never.
     pub(super) fn skip(&mut self, settings: &LoadSettings) -> Result<(), ReadError> {
         let Some(first) = self.invalid.first() else { return Ok(()) };
         let count = self.invalid.len();
@@ -149,8 +150,8 @@ impl Shape {
         self
     }
 
-    /// Several parts as one. Normals and texture are kept if all parts with triangles have them, per corner;
-    /// parts without colours beside others with some are white.
+    /// Several parts as one. Normals and texture are kept if all parts with triangles have them,
+    /// per corner; parts without colours beside others with some are white.
     pub(super) fn joined(parts: Vec<Shape>, settings: &LoadSettings) -> Result<Shape, ReadError> {
         let solid = |has: fn(&Shape) -> bool| parts.iter().filter(|part| !part.triangles.is_empty()).all(has);
         let all_normals = solid(|part| part.corner_normals.is_some());
@@ -193,7 +194,8 @@ pub(super) fn corners_of<T: Copy>(triangles: &[[u32; 3]], values: &[T]) -> Vec<[
     triangles.iter().map(|corners| corners.map(|v| values[v as usize])).collect()
 }
 
-/// What corners carry, for each vertex, if all corners of each agree. Vertices without corners get the `default`.
+/// What corners carry, for each vertex, if all corners of each agree. Vertices without corners get
+/// the `default`.
 fn of_vertices<T: Copy + PartialEq>(
     triangles: &[[u32; 3]],
     values: &[[T; 3]],

@@ -6,9 +6,9 @@
 //!                             items: the objects that are built, moved
 //! ```
 //!
-//! Taken are the items' meshes with colours of colour groups and base materials. Objects stand before
-//! the components that use them, as the format asks, so that nothing can hold itself. Parts of the
-//! production extension in other files are not read: that is an error.
+//! Taken are the items' meshes with colours of colour groups and base materials. Objects stand
+//! before the components that use them, as the format asks, so that nothing can hold itself. Parts
+//! of the production extension in other files are not read: that is an error.
 
 mod model;
 

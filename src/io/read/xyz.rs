@@ -5,11 +5,12 @@
 //!   1.0,2.0,3.0,0,0,1,200,10,10         numbers between blanks, commas, semicolons or tabs
 //! ```
 //!
-//! Without names, 6 columns are points with normals, unless all numbers of the last three are whole,
-//! from 0 to 255, and some are beyond 1: colours. 9 are points, normals and colours. Of any other
-//! number only the first three are taken, as programs write intensities in front of colours or behind
-//! them, and nothing tells which: a row of names does. Left out are lines that begin with `#` or `//`,
-//! empty ones, a separator at the end of a line, and a first line that is a count alone.
+//! Without names, 6 columns are points with normals, unless all numbers of the last three are
+//! whole, from 0 to 255, and some are beyond 1: colours. 9 are points, normals and colours. Of any
+//! other number only the first three are taken, as programs write intensities in front of colours
+//! or behind them, and nothing tells which: a row of names does. Left out are lines that begin with
+//! `#` or `//`, empty ones, a separator at the end of a line, and a first line that is a count
+//! alone.
 
 use glam::{DVec3, Vec3};
 

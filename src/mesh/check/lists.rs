@@ -30,8 +30,8 @@ pub(super) fn mapped<T: Sync, U: Send>(
 /// The same items by buckets, those of each in order. `bucket` tells which one an item belongs
 /// to, by twelve bits.
 ///
-/// It can be stopped between buckets, as a sort of the whole list can't; a bucket that has most of the items, as where one is
-/// far from all others, is sorted by all threads.
+/// It can be stopped between buckets, as a sort of the whole list can't; a bucket that has most of
+/// the items, as where one is far from all others, is sorted by all threads.
 pub(super) fn sorted<T: Copy + Default + Ord + Send>(
     items: &[T],
     bucket: impl Fn(&T) -> u32,

@@ -1,4 +1,5 @@
-//! Whether the surface has a crease in a block: a solid without any has the triangles of the case table.
+//! Whether the surface has a crease in a block: a solid without any has the triangles of the case
+//! table.
 //!
 //! ```text
 //!     +---+---+---+---+ - - - - +      The normals of a quarter of a block's side, in all three axes an eighth of the
@@ -20,7 +21,8 @@ use crate::mesh::signs::{BLOCK, NODES, SIDE, for_each_cell};
 /// Cells along an eighth of a block.
 const HALF: usize = BLOCK / 2;
 
-/// What normals are rounded by at most, as a part of the square of how far two of a crease are apart.
+/// What normals are rounded by at most, as a part of the square of how far two of a crease are
+/// apart.
 const ROUNDING: f32 = 5e-3;
 
 /// The eighths, as bits, whose cells have the edge at a place of [`Corners`].
@@ -84,7 +86,8 @@ impl Watch for Creases<'_> {
     }
 }
 
-/// Whether no two normals in a box differ as those of a crease do; 0 stands for one that is not known.
+/// Whether no two normals in a box differ as those of a crease do; 0 stands for one that is not
+/// known.
 #[inline(always)]
 fn are_alike([low, high]: &[Vec3A; 2], crease: Crease) -> bool {
     let across = (high - low).max(Vec3A::ZERO);
@@ -93,7 +96,8 @@ fn are_alike([low, high]: &[Vec3A; 2], crease: Crease) -> bool {
         && low.abs().max(high.abs()).length_squared() > 0.5
 }
 
-/// Whether two normals on the loop of a cell in some eighths of block `n` differ as those of a crease do.
+/// Whether two normals on the loop of a cell in some eighths of block `n` differ as those of a
+/// crease do.
 fn is_creased(samples: &Samples<'_>, n: usize, corners: &Corners, eighths: u8) -> bool {
     let loops = CellLoop::table();
     let mut found = false;

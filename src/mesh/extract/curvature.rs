@@ -1,4 +1,5 @@
-//! Smooth cells whose triangles would be too far off the surface: others, or a vertex in their middle.
+//! Smooth cells whose triangles would be too far off the surface: others, or a vertex in their
+//! middle.
 //!
 //! ```text
 //!     m  ___  n      The normals m, n … at the vertices p, q … of a cell's loop tell how far the surface
@@ -7,55 +8,64 @@
 //!                    of the loop.
 //! ```
 //!
-//! Let the surface be at the height h(x) = −½ xᵀKx. To first order its normal is (Kx, 1), and for two of its points
-//! with the way d between them the bend dᵀKd is (q − p)·(n − m). A triangle is below the surface by ½ Σ λᵢλⱼ dᵀKd
-//! over its sides, where λ are the barycentric coordinates: by an eighteenth of the three bends in its middle, and by an
-//! eighth of its bend in the middle of a side.
+//! Let the surface be at the height h(x) = −½ xᵀKx. To first order its normal is (Kx, 1), and for
+//! two of its points with the way d between them the bend dᵀKd is (q − p)·(n − m). A triangle is
+//! below the surface by ½ Σ λᵢλⱼ dᵀKd over its sides, where λ are the barycentric coordinates: by
+//! an eighteenth of the three bends in its middle, and by an eighth of its bend in the middle of a
+//! side.
 //!
-//! * Two triangles with a diagonal between four vertices are off by (½ (a + b) + a)/18 in the mean, with a and b the
-//!   bends of that diagonal and of the other one: the four sides bend by a + b together. Neither diagonal lies in a face of
-//!   the cell, and either will do: two faces of a tetrahedron do not cross, and four points that a plane cuts from the
-//!   edges of a cube are the corners of a convex polygon.
-//! * With r the way from the middle of some points to each of them, the surface is above the middle by half the mean
-//!   of rᵀKr, which is half the mean of n·(p − middle). Where it bends both ways, as a saddle does, the terms have both
-//!   signs; the mean of their sizes tells how far it may be from triangles.
-//! * The segments of the loop stay, and so does what the triangles are off there: sin²(π/n) times that height, for a
-//!   regular loop of n. The vertex is as far above the surface as they are below: that takes a third to a half off what
-//!   the triangles are off in the mean, and no point is farther off than those segments.
+//! * Two triangles with a diagonal between four vertices are off by (½ (a + b) + a)/18 in the mean,
+//!   with a and b the bends of that diagonal and of the other one: the four sides bend by a + b
+//!   together. Neither diagonal lies in a face of the cell, and either will do: two faces of a
+//!   tetrahedron do not cross, and four points that a plane cuts from the edges of a cube are the
+//!   corners of a convex polygon.
+//! * With r the way from the middle of some points to each of them, the surface is above the middle
+//!   by half the mean of rᵀKr, which is half the mean of n·(p − middle). Where it bends both ways,
+//!   as a saddle does, the terms have both signs; the mean of their sizes tells how far it may be
+//!   from triangles.
+//! * The segments of the loop stay, and so does what the triangles are off there: sin²(π/n) times
+//!   that height, for a regular loop of n. The vertex is as far above the surface as they are
+//!   below: that takes a third to a half off what the triangles are off in the mean, and no point
+//!   is farther off than those segments.
 //!
-//! What is of third order is left out. No more values of the field are needed, but where normals differ as those of a crease
-//! do: see [`spread`](super::spread). That fans are embedded is shown in [`sharp`](super::sharp).
+//! What is of third order is left out. No more values of the field are needed, but where normals
+//! differ as those of a crease do: see [`spread`](super::spread). That fans are embedded is shown
+//! in [`sharp`](super::sharp).
 
 use glam::Vec3A;
 
 use super::probe;
 use crate::mesh::feature::{Crease, Slope, differ};
 
-/// How far the two triangles of four vertices may be off the surface in their middles, in cells, before the better
-/// diagonal is chosen.
+/// How far the two triangles of four vertices may be off the surface in their middles, in cells,
+/// before the better diagonal is chosen.
 const TURNED: f32 = 0.01;
 
 /// And how far with the better diagonal, before there is a vertex.
 const FAR: f32 = 0.0175;
 
-/// The distance of a longer loop's middle from the surface, in cells, beyond which there is a vertex.
+/// The distance of a longer loop's middle from the surface, in cells, beyond which there is a
+/// vertex.
 const HIGH: f32 = 0.0125;
 
-/// How high the vertex is above the middle of a loop, as a part of how high the surface is: of three to seven vertices.
+/// How high the vertex is above the middle of a loop, as a part of how high the surface is: of
+/// three to seven vertices.
 const RAISED: [f32; 5] = [1.75, 1.5, 1.345, 1.25, 1.188];
 
-/// Cells whose normals have a larger variance are hardly ever round: with half of them on each side of a right angle it is
-/// 1/2.
+/// Cells whose normals have a larger variance are hardly ever round: with half of them on each side
+/// of a right angle it is 1/2.
 const WIDE: f32 = 0.35;
 
-/// How much higher or lower a round cell's surface may be than its normals tell, as a part of what they do.
+/// How much higher or lower a round cell's surface may be than its normals tell, as a part of what
+/// they do.
 const OFF: f32 = 0.2;
 
-/// The square of how much its normal in the middle may differ from the mean of those around, as a part of their variance.
+/// The square of how much its normal in the middle may differ from the mean of those around, as a
+/// part of their variance.
 const ASKEW: f32 = 0.09;
 
-/// If no normals of a cell differ by more than this angle, the cell is nearly flat: the normals of a loop within 0.8
-/// cells of its middle make it no farther off than [`TURNED`] then.
+/// If no normals of a cell differ by more than this angle, the cell is nearly flat: the normals of
+/// a loop within 0.8 cells of its middle make it no farther off than [`TURNED`] then.
 const SPREAD: f32 = 0.05;
 
 /// The normals at the vertices on a cell's loop, in order.
@@ -67,8 +77,8 @@ pub(super) struct Ring<const N: usize> {
     crease: Crease,
 }
 
-/// The sum of some normals, and the mean of the squares of their distances from their mean: what the square of that lacks
-/// of 1.
+/// The sum of some normals, and the mean of the squares of their distances from their mean: what
+/// the square of that lacks of 1.
 #[inline(always)]
 fn sum_and_variance<const N: usize>(normals: &[Vec3A; N]) -> (Vec3A, f32) {
     let sum = normals.iter().sum::<Vec3A>();
@@ -79,8 +89,8 @@ fn sum_and_variance<const N: usize>(normals: &[Vec3A; N]) -> (Vec3A, f32) {
 /// Whether two of some normals differ as those of a crease do, given their variance.
 #[inline(always)]
 fn are_unlike<const N: usize>(normals: &[Vec3A; N], variance: f32, crease: Crease) -> bool {
-    // The square of the distance of two is at most twice the sum of the squares of those from the mean. Rounding may take
-    // some 10⁻⁷ off that.
+    // The square of the distance of two is at most twice the sum of the squares of those from the
+    // mean. Rounding may take some 10⁻⁷ off that.
     2.0 * N as f32 * variance + 1e-6 >= 2.0 - 2.0 * crease.smooth && differ(normals, crease)
 }
 
@@ -97,7 +107,8 @@ impl<const N: usize> Ring<N> {
         Ring { normals, sum, variance, crease }
     }
 
-    /// Whether the cell is nearly flat: a few normals in a circle of that diameter are this far from their mean.
+    /// Whether the cell is nearly flat: a few normals in a circle of that diameter are this far
+    /// from their mean.
     #[inline(always)]
     pub(super) fn is_flat(&self) -> bool {
         let spread = self.crease.part * SPREAD;
@@ -123,8 +134,8 @@ impl<const N: usize> Ring<N> {
         Middle { count: N, at, height, far, normal: self.sum.normalize_or_zero(), variance: self.variance }
     }
 
-    /// What a smooth cell that is not flat is to have, if it asks where its vertices are, in cells from the block's first
-    /// node.
+    /// What a smooth cell that is not flat is to have, if it asks where its vertices are, in cells
+    /// from the block's first node.
     #[inline(always)]
     pub(super) fn cover(&self, positions: impl FnOnce() -> [Vec3A; N]) -> Cover {
         // A single triangle is small.
@@ -150,7 +161,8 @@ impl<const N: usize> Ring<N> {
     }
 }
 
-/// How high the vertex is above the middle of so many, given how high the surface is; never far above that.
+/// How high the vertex is above the middle of so many, given how high the surface is; never far
+/// above that.
 #[inline(always)]
 fn raised(count: usize, height: f32) -> f32 {
     height + ((RAISED[count.clamp(3, 7) - 3] - 1.0) * height).clamp(-probe::OFF, probe::OFF)
@@ -166,7 +178,8 @@ pub(super) enum Cover {
     Top { at: Vec3A, normal: Vec3A },
 }
 
-/// The middle of a loop whose normals differ as those at a crease do, and what a smooth surface would have there.
+/// The middle of a loop whose normals differ as those at a crease do, and what a smooth surface
+/// would have there.
 pub(super) struct Middle {
     /// How many vertices there are.
     pub(super) count: usize,
@@ -178,7 +191,8 @@ pub(super) struct Middle {
 }
 
 impl Middle {
-    /// The vertex that the cell is to have, and the unit normal there, if it is round, given the field in the middle.
+    /// The vertex that the cell is to have, and the unit normal there, if it is round, given the
+    /// field in the middle.
     #[inline(always)]
     pub(super) fn top(&self, slope: &Slope, step: f32) -> Option<(Vec3A, Vec3A)> {
         let (normal, depth) = slope.surface(step)?;
@@ -188,7 +202,8 @@ impl Middle {
     }
 }
 
-/// How far the triangles with the first, and with the second diagonal between four points of a surface are off it.
+/// How far the triangles with the first, and with the second diagonal between four points of a
+/// surface are off it.
 #[inline(always)]
 fn diagonals(positions: &[Vec3A], normals: &[Vec3A]) -> [f32; 2] {
     let bend = |n: usize, m: usize| (positions[m] - positions[n]).dot(normals[m] - normals[n]);
@@ -196,8 +211,8 @@ fn diagonals(positions: &[Vec3A], normals: &[Vec3A]) -> [f32; 2] {
     [first, second].map(|own| (1.0 / 18.0) * (0.5 * (first + second) + own).abs())
 }
 
-/// How far the surface is above the middle of points on it, given with the normals there; how far it may be from
-/// triangles between them; and the middle.
+/// How far the surface is above the middle of points on it, given with the normals there; how far
+/// it may be from triangles between them; and the middle.
 #[inline(always)]
 fn height(positions: &[Vec3A], normals: &[Vec3A]) -> (f32, f32, Vec3A) {
     let share = 1.0 / normals.len() as f32;
@@ -271,8 +286,8 @@ mod tests {
         }
     }
 
-    /// What the cell has whose loop is a regular polygon, seen from above, if its normals spread, given the height of the
-    /// surface, its slope there, and the field in cells.
+    /// What the cell has whose loop is a regular polygon, seen from above, if its normals spread,
+    /// given the height of the surface, its slope there, and the field in cells.
     fn top_of<const N: usize>(
         turn: f32,
         surface: impl Fn(f32, f32) -> (f32, [f32; 2]),
@@ -299,7 +314,8 @@ mod tests {
             (state >> 40) as f32 / (1 << 24) as f32
         };
         for n in 0..40_000 {
-            // Two planes through a ridge that is somewhere, along y and tilted; up to 84° from each other.
+            // Two planes through a ridge that is somewhere, along y and tilted; up to 84° from each
+            // other.
             let (ridge, tilt, left, right) = (next() - 0.5, next() - 0.5, 0.9 * next(), 0.9 * next());
             let planes = [left, -right].map(|slope| {
                 let normal = Vec3A::new(-slope, -tilt, 1.0);

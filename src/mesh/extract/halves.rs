@@ -8,10 +8,11 @@
 //!       A    |   B
 //! ```
 //!
-//! The halves are convex, the loop is on their boundaries but for u–v, which lies in the plane between them: what
-//! [`sharp`](super::sharp) says of the fans of cells, and of edges between them, holds for halves as well. It takes that
-//! the vertices and the point of each are on its side of the plane: they are by more than any rounding. An edge that is
-//! turned across a face of the cell has to pass the half's part of that face.
+//! The halves are convex, the loop is on their boundaries but for u–v, which lies in the plane
+//! between them: what [`sharp`](super::sharp) says of the fans of cells, and of edges between them,
+//! holds for halves as well. It takes that the vertices and the point of each are on its side of
+//! the plane: they are by more than any rounding. An edge that is turned across a face of the cell
+//! has to pass the half's part of that face.
 
 use glam::{DVec3, Vec3, Vec3A};
 
@@ -57,15 +58,16 @@ pub(super) struct Cut {
     ends: [usize; 2],
     /// The direction that the plane goes in besides.
     along: Vec3A,
-    /// The points of the halves, in cells from the first node; first that of the segments from the first end to the last.
+    /// The points of the halves, in cells from the first node; first that of the segments from the
+    /// first end to the last.
     pub(super) at: [Vec3A; 2],
     /// How far they are from their planes, in cells.
     pub(super) residual: f32,
 }
 
 impl Cut {
-    /// The cut of a loop that leaves two halves with what fits best in each, given where its vertices are from the cell's
-    /// first node.
+    /// The cut of a loop that leaves two halves with what fits best in each, given where its
+    /// vertices are from the cell's first node.
     pub(super) fn best(ring: &[Segment], places: &[Vec3A], size: Vec3A, crease: Crease) -> Option<Cut> {
         let count = ring.len();
         let mut best: Option<Cut> = None;
@@ -117,8 +119,8 @@ impl Cut {
         [(first + 1..last).collect(), (last + 1..count).chain(0..first).collect()]
     }
 
-    /// The half of the segments from the first end to the last, but for its twin, if all of both halves is on its side of
-    /// the plane; given the positions of the vertices and of the points.
+    /// The half of the segments from the first end to the last, but for its twin, if all of both
+    /// halves is on its side of the plane; given the positions of the vertices and of the points.
     pub(super) fn half(&self, positions: &[Vec3], at: [Vec3; 2], step: f64) -> Option<Half> {
         let [first, last] = self.ends.map(|end| positions[end].as_dvec3());
         let inward = (last - first).cross(self.along.as_dvec3()).normalize_or_zero();

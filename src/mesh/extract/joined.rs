@@ -1,13 +1,13 @@
 //! Ambiguous faces whose inside corners are joined.
 //!
-//! The case table separates them, in every ambiguous face. Where a convex crease passes such a face that
-//! is wrong, and it tears the surface of a cell into two loops. The middle of the face tells: if it is
-//! inside, so is, for a convex solid, the diagonal between the two inside corners.
+//! The case table separates them, in every ambiguous face. Where a convex crease passes such a face
+//! that is wrong, and it tears the surface of a cell into two loops. The middle of the face tells:
+//! if it is inside, so is, for a convex solid, the diagonal between the two inside corners.
 //!
-//! A cell copes with joined faces if it has a single loop then, so that it can have a fan; or if all its
-//! ambiguous faces are joined, as the table of the complement is the table with inside and outside
-//! exchanged: that of the opposite case has the patches. Cells that cope in neither way give up all of
-//! their joined faces, until no more do.
+//! A cell copes with joined faces if it has a single loop then, so that it can have a fan; or if
+//! all its ambiguous faces are joined, as the table of the complement is the table with inside and
+//! outside exchanged: that of the opposite case has the patches. Cells that cope in neither way
+//! give up all of their joined faces, until no more do.
 
 use glam::DVec3;
 
@@ -27,8 +27,8 @@ pub(super) struct Joined {
 /// The upper faces of a cell, as bits.
 pub(super) const UPPER: u8 = 0b10_1010;
 
-/// The upper ambiguous faces of a block's cells that would rather be joined. The block is given by its number and
-/// its first cell.
+/// The upper ambiguous faces of a block's cells that would rather be joined. The block is given by
+/// its number and its first cell.
 pub(super) fn proposals<S: Sampler>(
     sampler: &S,
     scratch: &mut S::Scratch,

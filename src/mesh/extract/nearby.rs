@@ -29,7 +29,8 @@ impl Nearby {
         samples.parts.number(n, |place, vertex| self.corners.note(place, vertex))
     }
 
-    /// The position of a point, strictly inside of a cell. It is given in cells from the cell's first node.
+    /// The position of a point, strictly inside of a cell. It is given in cells from the cell's
+    /// first node.
     #[inline(always)]
     pub(super) fn inside(&self, samples: &Samples<'_>, cell: [usize; 3], at: Vec3A) -> Vec3 {
         let nodes = &self.nodes;

@@ -72,8 +72,8 @@ impl Neighbours {
     }
 }
 
-/// The neighbour of every block that is one block further along the axes in `bits`; and, if that is a
-/// single axis, the neighbour below it there. The blocks are given in order, with their numbers.
+/// The neighbour of every block that is one block further along the axes in `bits`; and, if that is
+/// a single axis, the neighbour below it there. The blocks are given in order, with their numbers.
 fn sweep(sorted: &[(Key, u32)], bits: usize) -> (Vec<u32>, Vec<u32>) {
     let by = |axis: usize| (bits >> axis & 1) as u32 * BLOCK as u32;
     let mut upper = vec![NONE; sorted.len()];

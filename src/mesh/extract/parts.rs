@@ -71,7 +71,8 @@ pub(super) struct Parts<'a> {
     room: f64,
     /// How many of the vertices are moved to keep clear of nodes.
     pub(super) clamped: usize,
-    /// Blocks that may have lost a feature, in their order; and of those that still may, the first cells.
+    /// Blocks that may have lost a feature, in their order; and of those that still may, the first
+    /// cells.
     pub(super) suspects: Vec<Suspect>,
     pub(super) lost: Vec<[u32; 3]>,
 }

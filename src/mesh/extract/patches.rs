@@ -21,8 +21,8 @@ pub(super) struct Patches<'a> {
     own: Vec<Segment>,
     /// Memory for where the vertices of one are in its cell.
     places: Vec<Vec3A>,
-    /// And for [`glued`](Patches::glued): the segments in the sides of the box, with their ends; the vertices within, each
-    /// four times; and what tells whether all hangs together.
+    /// And for [`glued`](Patches::glued): the segments in the sides of the box, with their ends;
+    /// the vertices within, each four times; and what tells whether all hangs together.
     outer: Vec<(Segment, u32)>,
     within: Vec<u32>,
     vertices: Vec<(u32, u32)>,
@@ -76,7 +76,8 @@ impl<'a> Patches<'a> {
         self.all.push(Patch { cell, planes, ring: Ring::Own(start..self.own.len()) });
     }
 
-    /// All planes, from the first node of cell `low`; those of cells close to a point tell the most.
+    /// All planes, from the first node of cell `low`; those of cells close to a point tell the
+    /// most.
     pub(super) fn planes(&self, low: [u32; 3], point: Vec3A) -> Planes {
         let mut all = Planes::NONE;
         for Patch { cell, planes, .. } in &self.all {
@@ -88,9 +89,10 @@ impl<'a> Patches<'a> {
 
     /// All as one, if they make a disc, given the box that they are in.
     ///
-    /// A segment in a face between two cells of the box is that of both, one in a side of the box that of one. A vertex
-    /// is where a loop goes from a face to the next: it is within the box if neither face is in a side; all four cells
-    /// around its edge are in the box then, and each has it once.
+    /// A segment in a face between two cells of the box is that of both, one in a side of the box
+    /// that of one. A vertex is where a loop goes from a face to the next: it is within the box if
+    /// neither face is in a side; all four cells around its edge are in the box then, and each has
+    /// it once.
     pub(super) fn glued(&mut self, span: &Span) -> Option<Disc> {
         let Patches { all, own, outer, within, vertices, reached, .. } = self;
         let segments = |patch: &Patch<'a>| match &patch.ring {
@@ -116,7 +118,8 @@ impl<'a> Patches<'a> {
                 comes_within = is_within;
             }
         }
-        // Vertices − edges + patches is 1 for a disc. On its boundary there are as many of the one as of the other.
+        // Vertices − edges + patches is 1 for a disc. On its boundary there are as many of the one
+        // as of the other.
         let is_shared_alike = within.len() % 4 == 0 && shared % 2 == 0;
         if !is_shared_alike || within.len() / 4 + all.len() != shared / 2 + 1 {
             return None;
@@ -135,8 +138,9 @@ impl<'a> Patches<'a> {
         if ring.len() != outer.len() || at != first {
             return None;
         }
-        // As there is a single boundary, what does not hang together with the rest is closed. There is a node in it, and it
-        // is crossed on all six ways along the axes from that: it has six vertices within, or more.
+        // As there is a single boundary, what does not hang together with the rest is closed. There
+        // is a node in it, and it is crossed on all six ways along the axes from that: it has six
+        // vertices within, or more.
         if within.len() / 4 >= 6 {
             vertices.clear();
             for (patch, number) in all.iter().zip(0..) {
@@ -155,8 +159,8 @@ impl<'a> Patches<'a> {
     }
 }
 
-/// Whether one comes from every patch to every other by vertices that they share; given the vertices in order,
-/// each with its patches, and a mark for each patch.
+/// Whether one comes from every patch to every other by vertices that they share; given the
+/// vertices in order, each with its patches, and a mark for each patch.
 fn hangs_together(vertices: &[(u32, u32)], reached: &mut [bool]) -> bool {
     reached[0] = true;
     let mut is_new = true;
@@ -200,7 +204,8 @@ mod tests {
         all
     }
 
-    /// The same from the segments alone: those that no other runs along the other way are the boundary.
+    /// The same from the segments alone: those that no other runs along the other way are the
+    /// boundary.
     fn glued_by_pairs(all: &[([u32; 3], Vec<Segment>)]) -> Option<(Vec<u32>, Vec<u32>)> {
         let sides = |(n, (_, ring)): (usize, &([u32; 3], Vec<Segment>))| {
             let next = ring.iter().cycle().skip(1).map(|segment| segment.from);

@@ -11,13 +11,15 @@ pub(super) struct Plain {
     pub(super) triangles: Bulk<[u32; 3]>,
     /// Positions and normals of vertices in the middle of smooth cells. They follow those on edges.
     pub(super) tops: [Bulk<Vec3>; 2],
-    /// The first triangle around each of them that is to be numbered anew if others come before it, and how many.
+    /// The first triangle around each of them that is to be numbered anew if others come before it,
+    /// and how many.
     pub(super) around: Vec<(u32, u32)>,
 }
 
 impl Plain {
-    /// Makes room for what cells have, given how many triangles the table has for them: vertices in the middle of cells
-    /// make it more, and fans are to follow. It is seldom more than three quarters more; then the lists grow as they must.
+    /// Makes room for what cells have, given how many triangles the table has for them: vertices in
+    /// the middle of cells make it more, and fans are to follow. It is seldom more than three
+    /// quarters more; then the lists grow as they must.
     pub(super) fn make_room(&mut self, in_table: usize) {
         self.triangles.reserve_exact(in_table / 4 * 7);
         self.tops.iter_mut().for_each(|tops| tops.reserve_exact(in_table / 4));
@@ -31,8 +33,8 @@ impl Plain {
         self
     }
 
-    /// Adds a vertex in the middle of a cell, and triangles from it to the loop of the cell; there are so many vertices on
-    /// edges.
+    /// Adds a vertex in the middle of a cell, and triangles from it to the loop of the cell; there
+    /// are so many vertices on edges.
     #[inline(always)]
     pub(super) fn add_top<const N: usize>(&mut self, at: Vec3, normal: Vec3, vertices: [u32; N], on_edges: u32) {
         let top = on_edges.wrapping_add(self.tops[0].len() as u32);

@@ -14,7 +14,8 @@ use super::samples::{Samples, split_cell};
 use super::span::{Span, offset};
 use crate::mesh::feature::{INSET, Slope};
 
-/// The farthest that a feature point may be off the surface by what the field's value and slope tell, in cells.
+/// The farthest that a feature point may be off the surface by what the field's value and slope
+/// tell, in cells.
 pub(super) const OFF: f32 = 0.1;
 
 /// Where a point is farther off, it is seen whether there is a better one.
@@ -35,7 +36,8 @@ pub(super) struct Probe<'a, S: Sampler> {
     pub(super) step: f32,
 }
 
-/// Whether a point with this slope is farther off the surface than a distance. What is not a number tells nothing.
+/// Whether a point with this slope is farther off the surface than a distance. What is not a number
+/// tells nothing.
 #[inline]
 pub(super) fn is_beyond(slope: &Slope, distance: f32) -> bool {
     slope.value.abs() > distance * slope.gradient.length()
@@ -55,8 +57,8 @@ impl<'a, S: Sampler> Probe<'a, S> {
         if is_known && self.found.len() == points.len() { &self.found } else { &[] }
     }
 
-    /// The field at a point of a box of cells, in or close to block `near`, in cells from the first node of the box. None
-    /// if it is not known.
+    /// The field at a point of a box of cells, in or close to block `near`, in cells from the first
+    /// node of the box. None if it is not known.
     pub(super) fn at(&mut self, near: usize, span: &Span, at: Vec3A) -> Option<Slope> {
         let cell = std::array::from_fn(|axis| (span.low[axis] + at[axis].max(0.0) as u32).min(span.high[axis] - 1));
         let (first, _) = split_cell(cell);
@@ -69,8 +71,9 @@ impl<'a, S: Sampler> Probe<'a, S> {
         self.at(near, span, at).is_some_and(|slope| is_beyond(&slope, OFF * self.step))
     }
 
-    /// A point of a box that is on the surface, close to one that is off: on the way to `inner`, if the surface crosses it;
-    /// else by Newton's steps; or at worst next to `root`, which is on the surface.
+    /// A point of a box that is on the surface, close to one that is off: on the way to `inner`, if
+    /// the surface crosses it; else by Newton's steps; or at worst next to `root`, which is on the
+    /// surface.
     pub(super) fn onto(&mut self, near: usize, span: &Span, from: Vec3A, [inner, root]: [Vec3A; 2]) -> Vec3A {
         let held = |p: Vec3A| p.clamp(Vec3A::splat(INSET), span.size() - INSET);
         let value = |probe: &mut Self, at: Vec3A| probe.at(near, span, at).map_or(f32::NAN, |slope| slope.value);

@@ -10,22 +10,23 @@
 //!     o-------o-------+
 //! ```
 //!
-//! A cell asks for a region if the planes of its sides meet outside. First it asks for a slab, so that the crease
-//! has a point in each layer of cells: the box of cells up to where the planes meet in its own layer, across
-//! the axis that the crease goes along most, or else across the next one. Then it asks for the box up to where they
-//! meet at all. Last come cells and regions whose crease leaves them through an empty cell, which is to be theirs
-//! as well, and regions that are still off. A box that cuts into regions is merged with them; one for a slab only if
-//! that makes a slab. A region comes about if
+//! A cell asks for a region if the planes of its sides meet outside. First it asks for a slab, so
+//! that the crease has a point in each layer of cells: the box of cells up to where the planes meet
+//! in its own layer, across the axis that the crease goes along most, or else across the next one.
+//! Then it asks for the box up to where they meet at all. Last come cells and regions whose crease
+//! leaves them through an empty cell, which is to be theirs as well, and regions that are still
+//! off. A box that cuts into regions is merged with them; one for a slab only if that makes a slab.
+//! A region comes about if
 //!
 //! * it has up to four cells along each axis;
-//! * the patches of the box make a disc: they hang together and have a single loop as boundary, without
-//!   holes or handles;
-//! * the planes of all its cells meet better in the region than those of the cell did in it, or as well as those
-//!   of a region have to.
+//! * the patches of the box make a disc: they hang together and have a single loop as boundary,
+//!   without holes or handles;
+//! * the planes of all its cells meet better in the region than those of the cell did in it, or as
+//!   well as those of a region have to.
 //!
-//! The loop lies in the boundary of a convex box then, and what [`sharp`](super::sharp) says of the fans of
-//! cells holds for that of the region. A vertex on an edge within the box is in no triangle any more, and is
-//! left out.
+//! The loop lies in the boundary of a convex box then, and what [`sharp`](super::sharp) says of the
+//! fans of cells holds for that of the region. A vertex on an edge within the box is in no triangle
+//! any more, and is left out.
 
 use glam::{Vec3, Vec3A};
 
@@ -49,7 +50,8 @@ const LARGEST: u32 = 4;
 
 const _: () = assert!(LARGEST <= Segment::REACH);
 
-/// How much farther from the planes than allowed the point may be that a request for a region starts from.
+/// How much farther from the planes than allowed the point may be that a request for a region
+/// starts from.
 const NO_FARTHER: f32 = 1.5;
 
 /// How often regions may grow so.
@@ -58,7 +60,8 @@ const ROUNDS: usize = 3;
 /// How often the point of a region is sought: the weights of planes depend on it.
 const STEPS: usize = 3;
 
-/// A point that is farther than this from the planes, as a part of what is allowed, will not come close enough.
+/// A point that is farther than this from the planes, as a part of what is allowed, will not come
+/// close enough.
 const NO_HOPE: f32 = 1.2;
 
 /// A crease that is in an empty cell for less than this, in cells, asks for nothing.
@@ -79,7 +82,8 @@ pub(super) struct Region {
     pub(super) span: Span,
 }
 
-/// The regions that candidates ask for, those that fit their planes worst first; in the order of the blocks.
+/// The regions that candidates ask for, those that fit their planes worst first; in the order of
+/// the blocks.
 pub(super) fn regions(
     samples: &Samples<'_>,
     special: &Special,
@@ -167,7 +171,8 @@ enum Stage {
     Box,
 }
 
-/// The axes that a crease goes along: that which it is closest to, and the next one if it is not much farther from that.
+/// The axes that a crease goes along: that which it is closest to, and the next one if it is not
+/// much farther from that.
 fn axes(along: Vec3A) -> [Option<usize>; 2] {
     let size = along.abs().to_array();
     let mut order = [0, 1, 2];
@@ -209,8 +214,8 @@ impl<'a> Requester<'a> {
         Request { size, block: self.block, who: self.who, from: self.span.low, span, slab: None, at, allowed }
     }
 
-    /// Requests for slabs up to where the planes meet, across the axis that is the nth of those that the crease goes
-    /// along, if it is a slab itself.
+    /// Requests for slabs up to where the planes meet, across the axis that is the nth of those
+    /// that the crease goes along, if it is a slab itself.
     fn slabs(&self, nth: usize, requests: &mut Vec<Request<'a>>) {
         let axis = self.planes.crease(self.crease.pull()).and_then(|along| axes(along)[nth]);
         if let Some(axis) = axis.filter(|&axis| self.span.is_slab(axis)) {
@@ -225,7 +230,8 @@ impl<'a> Requester<'a> {
         self.towards([1.0, 2.0].map(Vec3A::splat), None, requests);
     }
 
-    /// Requests for the boxes up to where the planes meet, among the cells that are so far away along the axes.
+    /// Requests for the boxes up to where the planes meet, among the cells that are so far away
+    /// along the axes.
     fn towards<const N: usize>(&self, reaches: [Vec3A; N], slab: Option<usize>, requests: &mut Vec<Request<'a>>) {
         let (residual, mut last) = (self.planes.distance(self.at), self.span);
         for reach in reaches {
@@ -235,7 +241,8 @@ impl<'a> Requester<'a> {
             let cell = std::array::from_fn(|axis| low[axis].saturating_add_signed(floor(at[axis])));
             let span = self.span.union(&Span::single(cell));
             if span != last {
-                // What is much farther off than allowed here will hardly be close enough in a region.
+                // What is much farther off than allowed here will hardly be close enough in a
+                // region.
                 let allowed = 0.5 * residual;
                 if self.planes.distance(at) <= NO_FARTHER * allowed {
                     requests.push(Request { slab, ..self.request(residual, span, at, allowed) });
@@ -251,7 +258,8 @@ impl<'a> Requester<'a> {
     }
 }
 
-/// The largest whole number that is not above a small one; `f32::floor` is a call where the processor may be an old one.
+/// The largest whole number that is not above a small one; `f32::floor` is a call where the
+/// processor may be an old one.
 fn floor(x: f32) -> i32 {
     let towards_zero = x as i32;
     towards_zero - i32::from(towards_zero as f32 > x)
@@ -302,8 +310,9 @@ struct Taken {
 }
 
 impl<'a> Known<'a> {
-    /// Makes the region that is requested, if it can be: merged with the regions in its way if it `merges`, or if
-    /// that makes a slab of a slab, and else only where there are none. Whether there is no more to be done for the request.
+    /// Makes the region that is requested, if it can be: merged with the regions in its way if it
+    /// `merges`, or if that makes a slab of a slab, and else only where there are none. Whether
+    /// there is no more to be done for the request.
     fn accept(&mut self, request: &Request<'_>, merges: bool) -> bool {
         if self.is_accepted(request.who, request.block) || self.run.cancel.is_cancelled() {
             return true;
@@ -339,7 +348,8 @@ impl<'a> Known<'a> {
         true
     }
 
-    /// The boxes that hold an empty cell as well, which the crease goes on through by a face that is not crossed.
+    /// The boxes that hold an empty cell as well, which the crease goes on through by a face that
+    /// is not crossed.
     fn exits<'w>(&self, requester: &Requester<'w>, crossed: u8, requests: &mut Vec<Request<'w>>) {
         let Some(along) = requester.planes.crease(requester.crease.pull()) else { return };
         for along in [along, -along] {
@@ -354,7 +364,8 @@ impl<'a> Known<'a> {
         }
     }
 
-    /// Whether who asks is a cell, of that block, that is in a region already: that is what it requested, or better.
+    /// Whether who asks is a cell, of that block, that is in a region already: that is what it
+    /// requested, or better.
     fn is_accepted(&self, who: Who<'_>, block: usize) -> bool {
         matches!(who, Who::Cell(candidate) if self.own_taken(block, candidate.number).is_some())
     }

@@ -59,7 +59,8 @@ impl<'a> Samples<'a> {
         Samples { parts, lattice, crease, limits, positions, normals, plain }
     }
 
-    /// Whether a block, by its first cell, is to have the triangles of the case table, whatever is in it.
+    /// Whether a block, by its first cell, is to have the triangles of the case table, whatever is
+    /// in it.
     pub(super) fn is_plain(&self, block: [u32; 3]) -> bool {
         (self.plain)(block)
     }
@@ -91,7 +92,8 @@ impl<'a> Samples<'a> {
         self.parts.neighbours.find(block)
     }
 
-    /// The case of a cell of the lattice, quickly if it is in block `near` or next to it; 0 where no block is.
+    /// The case of a cell of the lattice, quickly if it is in block `near` or next to it; 0 where
+    /// no block is.
     pub(super) fn case_near(&self, near: usize, cell: [u32; 3]) -> u8 {
         let (block, within) = split_cell(cell);
         self.find_near(near, block).map_or(0, |block| self.parts.part(block).signs.case(within))
@@ -103,8 +105,8 @@ impl<'a> Samples<'a> {
         self.parts.neighbours.find(block).map_or(0, |block| self.parts.part(block).signs.case(within))
     }
 
-    /// The vertex on an edge, which is crossed, of a cell of the lattice; found quickly if it is in block `near` or next
-    /// to it.
+    /// The vertex on an edge, which is crossed, of a cell of the lattice; found quickly if it is in
+    /// block `near` or next to it.
     pub(super) fn vertex(&self, near: usize, cell: [u32; 3], edge: u8) -> Option<u32> {
         let corner = EDGE_CORNERS[usize::from(edge)][0];
         let node = std::array::from_fn(|axis| cell[axis] + u32::from(corner >> axis & 1));
@@ -152,7 +154,8 @@ impl<'a> Samples<'a> {
         (&self.positions[vertices.clone()], &self.normals[vertices])
     }
 
-    /// Places, in cells from a node of the lattice, and normals of the vertices that block `n` owns.
+    /// Places, in cells from a node of the lattice, and normals of the vertices that block `n`
+    /// owns.
     pub(super) fn vertices_of(&self, n: usize, from: [u32; 3]) -> impl ExactSizeIterator<Item = (Vec3A, Vec3A)> {
         let low: Vec3A = self.node(from).into();
         let share = 1.0 / self.lattice.step() as f32;

@@ -26,13 +26,13 @@
 //! planes rounded, rounding keeps order, and feature points are moved strictly between the rounded
 //! planes.
 //!
-//! [Regions](super::region) of several cells have fans as well, and so have [halves](super::halves) of cells that two
-//! creases pass, and smooth cells that are strongly
-//! [curved](super::curvature), even if their normals differ as those of a crease do ([`spread`](super::spread)).
+//! [Regions](super::region) of several cells have fans as well, and so have [halves](super::halves)
+//! of cells that two creases pass, and smooth cells that are strongly [curved](super::curvature),
+//! even if their normals differ as those of a crease do ([`spread`](super::spread)).
 //!
 //! Limits: cells with several loops stay as the table has them, or as that of the opposite case
-//! (see [`joined`](super::joined)). Where a crease passes an empty cell and no region comes about, it is
-//! cut off by what it goes into that cell, up to half a cell or more.
+//! (see [`joined`](super::joined)). Where a crease passes an empty cell and no region comes about,
+//! it is cut off by what it goes into that cell, up to half a cell or more.
 
 use std::ops::Range;
 
@@ -93,14 +93,16 @@ impl Fan {
 pub(super) struct Fans {
     /// Those of regions first, then those of single cells, each in the order of the blocks.
     pub(super) fans: Vec<Fan>,
-    /// The segments of fans: those of single cells as they were found, those of regions in a last list.
+    /// The segments of fans: those of single cells as they were found, those of regions in a last
+    /// list.
     pub(super) segments: Vec<Vec<Segment>>,
     /// Vertices of loops in faces, with their normals, and the number of the first.
     pub(super) thirds: Vec<(Vec3, Vec3)>,
     pub(super) first_third: u32,
     /// Points of creases between two fans, with the normals that stand for all sides.
     pub(super) points: Vec<(Vec3, Vec3)>,
-    /// The fans of cells, block by block in the order of the cells; and where those of each block start, and their order.
+    /// The fans of cells, block by block in the order of the cells; and where those of each block
+    /// start, and their order.
     cells: Vec<u32>,
     blocks: Vec<(usize, CellOrder)>,
     /// How many triangles consecutive fans have, [`AT_ONCE`] together.
@@ -109,7 +111,8 @@ pub(super) struct Fans {
     plain: Plain,
     /// The triangles of these that are gone, ascending: where the last of those of fans go.
     holes: Vec<usize>,
-    /// Those of them that no triangle has any more: where the first of those that are added go. Ascending.
+    /// Those of them that no triangle has any more: where the first of those that are added go.
+    /// Ascending.
     free: Vec<u32>,
 }
 
@@ -147,7 +150,8 @@ pub(super) fn find<S: Sampler>(samples: &Samples<'_>, sampler: &S, run: &Run) ->
     Ok(Found::Fans(Box::new(fans)))
 }
 
-/// The upper ambiguous faces of a block's cells that would rather be joined, but those of plain blocks.
+/// The upper ambiguous faces of a block's cells that would rather be joined, but those of plain
+/// blocks.
 fn joins(samples: &Samples<'_>, n: usize) -> Vec<(u16, u8)> {
     let mut joins = samples.parts.part(n).joins.clone();
     for axis in 0..3 {
@@ -243,7 +247,8 @@ impl Fans {
         self.counts = self.fans.chunks(AT_ONCE).map(triangles).collect();
     }
 
-    /// The number of the vertex that is added as `nth`: those of fans come first, then points of creases.
+    /// The number of the vertex that is added as `nth`: those of fans come first, then points of
+    /// creases.
     #[inline]
     fn number(&self, nth: u32) -> u32 {
         match self.free.get(nth as usize) {
@@ -297,8 +302,8 @@ impl Fans {
         self.points.iter().for_each(|&(at, normal)| add(at, normal));
     }
 
-    /// All triangles, and the normals at the corners of those of fans, by the triangle's number; given
-    /// the vertices.
+    /// All triangles, and the normals at the corners of those of fans, by the triangle's number;
+    /// given the vertices.
     pub(super) fn triangles(mut self, vertices: Vertices<'_>, run: &Run) -> Result<Listed, Cancelled> {
         let mut triangles = std::mem::take(&mut self.plain.triangles);
         let (start, count) = (triangles.len(), self.counts.iter().sum::<usize>());
@@ -327,8 +332,8 @@ impl Fans {
     }
 
     /// The triangles of a fan, with the normals of their sides at their corners: at feature points
-    /// the normal is that of the triangle's side. It is 0 at corners on one side, which have that of
-    /// their vertex.
+    /// the normal is that of the triangle's side. It is 0 at corners on one side, which have that
+    /// of their vertex.
     fn list(&self, nth: usize, mut each: impl FnMut([u32; 3], [Vec3; 3])) {
         const OWN: Vec3 = Vec3::ZERO;
         let (segments, centre) = (self.of(nth), self.number(nth as u32));

@@ -42,7 +42,8 @@ impl Span {
         self.low[axis] + 1 == self.high[axis]
     }
 
-    /// Whether a face of one of its cells, by twice the axis and 1 more for the upper one, is in a side of it.
+    /// Whether a face of one of its cells, by twice the axis and 1 more for the upper one, is in a
+    /// side of it.
     #[inline(always)]
     pub(super) fn is_side(&self, cell: [u32; 3], face: u8) -> bool {
         let axis = usize::from(face / 2);
@@ -55,9 +56,10 @@ impl Span {
         offset(self.high, self.low)
     }
 
-    /// Where a line from within leaves it: the next cell, and for how long the line is in that. None if it leaves it by
-    /// one of the faces that are ruled out, by a bit for each: that of twice the axis, and 1 more for the upper one. The
-    /// line's start is in cells from the first node of the box.
+    /// Where a line from within leaves it: the next cell, and for how long the line is in that.
+    /// None if it leaves it by one of the faces that are ruled out, by a bit for each: that of
+    /// twice the axis, and 1 more for the upper one. The line's start is in cells from the first
+    /// node of the box.
     #[inline]
     pub(super) fn exit(&self, from: Vec3A, along: Vec3A, ruled_out: u8) -> Option<([u32; 3], f32)> {
         let (axis, start) = way_out(Vec3A::ZERO, self.size(), from, along);

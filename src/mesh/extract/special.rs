@@ -1,5 +1,6 @@
-//! The cells of blocks that do not have the patches of the case table, found block by block and kept for many blocks in
-//! one list each; and the triangles of all that need no fan, which are written once, where they stay in the mesh.
+//! The cells of blocks that do not have the patches of the case table, found block by block and
+//! kept for many blocks in one list each; and the triangles of all that need no fan, which are
+//! written once, where they stay in the mesh.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -41,13 +42,15 @@ pub(super) struct Special {
     plain: Plain,
 }
 
-/// The special cells of consecutive blocks, each list in the order of the blocks; candidates and other cells of a block are
-/// in the order that they are looked at in.
+/// The special cells of consecutive blocks, each list in the order of the blocks; candidates and
+/// other cells of a block are in the order that they are looked at in.
 #[derive(Default)]
 struct Lists {
-    /// Those with a single loop whose normals spread and that are not round, or that have joined faces.
+    /// Those with a single loop whose normals spread and that are not round, or that have joined
+    /// faces.
     candidates: Vec<Candidate>,
-    /// By block, its candidates in the order of their numbers: each by its place among those of the block.
+    /// By block, its candidates in the order of their numbers: each by its place among those of the
+    /// block.
     order: Vec<u16>,
     /// The segments of all candidates.
     segments: Vec<Segment>,
@@ -67,8 +70,8 @@ struct OfBlock {
     plain: Range<usize>,
 }
 
-/// Takes what chunks of blocks have as they come, and adds it in their order. A chunk whose turn it is adds to what
-/// those before it have itself.
+/// Takes what chunks of blocks have as they come, and adds it in their order. A chunk whose turn it
+/// is adds to what those before it have itself.
 #[derive(Default)]
 struct Queue {
     all: Special,
@@ -121,7 +124,8 @@ impl Queue {
 }
 
 impl Special {
-    /// Finds the special cells of the blocks that are not even or have joined faces, and lists the triangles of all others.
+    /// Finds the special cells of the blocks that are not even or have joined faces, and lists the
+    /// triangles of all others.
     pub(super) fn find<S: Sampler>(
         samples: &Samples<'_>,
         sampler: &S,
@@ -200,8 +204,8 @@ impl Special {
         candidate.segments(&self.lists[block / AT_ONCE].segments)
     }
 
-    /// Gives up the triangles of some cells of a block, given by their numbers: tells `holes` their places among all, and
-    /// `free` the vertices that no triangle has any more.
+    /// Gives up the triangles of some cells of a block, given by their numbers: tells `holes` their
+    /// places among all, and `free` the vertices that no triangle has any more.
     pub(super) fn drop_cells(
         &self,
         samples: &Samples<'_>,
@@ -441,8 +445,8 @@ impl Lists {
         self.cells.push((cell_number(within), (plain.triangles.len() - start) as u8));
     }
 
-    /// Adds a cell with a single loop around it that is to have a fan, given with the places of its vertices from the
-    /// cell's first node.
+    /// Adds a cell with a single loop around it that is to have a fan, given with the places of its
+    /// vertices from the cell's first node.
     #[inline]
     fn add_candidate(
         &mut self,

@@ -7,16 +7,17 @@
 //!                                            them apart.
 //! ```
 //!
-//! Where the surface has the height h(x) = −½ xᵀKx, and x are the ways to the vertices from their middle c, the surface
-//! is above c by half the mean height of their tangent planes, and its normal there is the mean of theirs: see
-//! [`curvature`](super::curvature). Of a crease, flat on both sides, neither holds:
+//! Where the surface has the height h(x) = −½ xᵀKx, and x are the ways to the vertices from their
+//! middle c, the surface is above c by half the mean height of their tangent planes, and its normal
+//! there is the mean of theirs: see [`curvature`](super::curvature). Of a crease, flat on both
+//! sides, neither holds:
 //!
-//! * If the sides are joined by min or max, the normal next to c is that of one of them. It differs from the mean by
-//!   √((n − k)/k) standard deviations of the normals, where k of n vertices are on that side: by .41 at least, for up to
-//!   seven vertices. From the mean's direction it differs by less if they are more than a right angle apart, but then the
-//!   height is off.
-//! * If they are joined by an R-function, the normal turns from the one to the other: it is the mean near the ridge alone,
-//!   where the surface is as high as the tangent planes are.
+//! * If the sides are joined by min or max, the normal next to c is that of one of them. It differs
+//!   from the mean by √((n − k)/k) standard deviations of the normals, where k of n vertices are on
+//!   that side: by .41 at least, for up to seven vertices. From the mean's direction it differs by
+//!   less if they are more than a right angle apart, but then the height is off.
+//! * If they are joined by an R-function, the normal turns from the one to the other: it is the
+//!   mean near the ridge alone, where the surface is as high as the tangent planes are.
 
 use glam::Vec3A;
 
@@ -30,7 +31,8 @@ pub(super) struct Spread<'a> {
     /// The segments of its loop, and where their vertices are, in cells from the cell's first node.
     pub(super) segments: &'a mut [Segment],
     pub(super) places: &'a [Vec3A],
-    /// The vertex in its middle and the unit normal there, in cells from the block's first node, if it is round.
+    /// The vertex in its middle and the unit normal there, in cells from the block's first node, if
+    /// it is round.
     pub(super) top: Option<(Vec3A, Vec3A)>,
 }
 
@@ -68,8 +70,8 @@ impl Spreads {
         self.places.extend_from_slice(places);
     }
 
-    /// Tells `each` of the cells which it is. `slopes` tells values and gradients at points, in cells from the block's first
-    /// node, for cells of size `step`; without any, none is round.
+    /// Tells `each` of the cells which it is. `slopes` tells values and gradients at points, in
+    /// cells from the block's first node, for cells of size `step`; without any, none is round.
     pub(super) fn look(
         &mut self,
         step: f32,

@@ -255,7 +255,8 @@ fn much_noise_is_sound_with_features() {
     noise_with_features(60..1000);
 }
 
-/// What the signs at nodes imply: a loop of n edges in a cell is a polygon of n sides, each of which it shares with another.
+/// What the signs at nodes imply: a loop of n edges in a cell is a polygon of n sides, each of
+/// which it shares with another.
 fn euler_characteristic(noise: &Noise<'_>, blocks: &[[u32; 3]]) -> i64 {
     let (mut crossed, mut sides, mut loops) = (0, 0, 0);
     let mut values = [0.0; NODES];
@@ -331,7 +332,8 @@ fn cancelling_stops_the_work() {
     assert!(count.load(Ordering::Relaxed) < 40 * NODES);
 }
 
-/// What is said of blocks that are settled as a whole, looked at cell by cell; and how many are, in percent.
+/// What is said of blocks that are settled as a whole, looked at cell by cell; and how many are, in
+/// percent.
 #[test]
 fn no_cell_of_an_even_block_has_a_crease() {
     let torus = |p: DVec3| 0.4 - (p.truncate().length() - 1.0).hypot(p.z);

@@ -9,8 +9,9 @@
 //!     +-----------+
 //! ```
 //!
-//! The loops of both cells have u then. A face has one only if s–t is the only segment in it: s–u–t is a path in the
-//! face then that meets the face's boundary in its ends alone, and what [`sharp`](super::sharp) says of fans holds.
+//! The loops of both cells have u then. A face has one only if s–t is the only segment in it: s–u–t
+//! is a path in the face then that meets the face's boundary in its ends alone, and what
+//! [`sharp`](super::sharp) says of fans holds.
 
 use glam::{Vec2, Vec3, Vec3A};
 

@@ -7,16 +7,18 @@
 //!       /        |        \       for B is found from the maps.
 //! ```
 //!
-//! Two normals of a cell differ at most by |Kd|, with d a diagonal of the cell, and by the size of the box: so a look at each
-//! vertex, with no look at any cell, tells that no cell of a block has a crease, and how far they may be off their triangles.
+//! Two normals of a cell differ at most by |Kd|, with d a diagonal of the cell, and by the size of
+//! the box: so a look at each vertex, with no look at any cell, tells that no cell of a block has a
+//! crease, and how far they may be off their triangles.
 //!
-//! A block's cells have vertices of upper neighbours as well, in the common faces. Those are beside the block's trend by
-//! what they are beside that of the neighbour, and by what the two trends differ by. That is an affine map again: in the
-//! face, and no farther from a plane along the surface than vertices of the neighbour are, its values are in a box that a
-//! few products tell.
+//! A block's cells have vertices of upper neighbours as well, in the common faces. Those are beside
+//! the block's trend by what they are beside that of the neighbour, and by what the two trends
+//! differ by. That is an affine map again: in the face, and no farther from a plane along the
+//! surface than vertices of the neighbour are, its values are in a box that a few products tell.
 //!
-//! Vertices tell nothing of K across the surface. There it is taken to be the mean of what it is along it, as it is
-//! with a sphere: whose normals have nothing beside their trend then, and that is the same in all blocks.
+//! Vertices tell nothing of K across the surface. There it is taken to be the mean of what it is
+//! along it, as it is with a sphere: whose normals have nothing beside their trend then, and that
+//! is the same in all blocks.
 
 use glam::{Mat3A, Vec3, Vec3A, Vec4, Vec4Swizzles};
 use rayon::prelude::*;
@@ -26,10 +28,12 @@ use crate::mesh::signs::BLOCK;
 use crate::{Cancelled, Run};
 use rvachev_num::Meter;
 
-/// How much the trend may change the normal within a cell, and how large the box may be of what a block's own normals have
-/// beside it; with those of neighbours it may be twice that. Two normals of a cell differ by less than those of a
-/// [crease](crate::mesh::feature::Crease) do then. The middles of triangles are off by a fiftieth of a cell at most by the
-/// trend (see [`curvature`](super::curvature)), and by as much again where a blunt ridge of 6° makes all of the box.
+/// How much the trend may change the normal within a cell, and how large the box may be of what a
+/// block's own normals have beside it; with those of neighbours it may be twice that. Two normals
+/// of a cell differ by less than those of a [crease](crate::mesh::feature::Crease) do then. The
+/// middles of triangles are off by a fiftieth of a cell at most by the trend (see
+/// [`curvature`](super::curvature)), and by as much again where a blunt ridge of 6° makes all of
+/// the box.
 const EVEN: f32 = 0.1;
 
 /// The same where blunter creases count.
@@ -40,23 +44,23 @@ fn even(samples: &Samples<'_>) -> f32 {
 /// So many vertices tell a trend.
 const ENOUGH: usize = 24;
 
-/// What is added to how much places spread along an axis, as a part of how much they do along all: flat surfaces have
-/// no spread across.
+/// What is added to how much places spread along an axis, as a part of how much they do along all:
+/// flat surfaces have no spread across.
 const LEAST: f32 = 1e-3;
 
 /// The size of a block, in cells.
 const LENGTH: Vec3A = Vec3A::splat(BLOCK as f32);
 
-/// Normals as an affine map of the place, in cells from a block's first node. The fourth coordinate is how high the place is
-/// along the mean normal.
+/// Normals as an affine map of the place, in cells from a block's first node. The fourth coordinate
+/// is how high the place is along the mean normal.
 #[derive(Clone, Copy)]
 struct Trend {
     start: Vec4,
     by: [Vec4; 3],
 }
 
-/// The least and the greatest coordinates of what some normals have beside a trend; the fourth is minus the height of their
-/// places.
+/// The least and the greatest coordinates of what some normals have beside a trend; the fourth is
+/// minus the height of their places.
 type Rest = [Vec4; 2];
 
 /// What is known of the vertices of a block.
@@ -119,8 +123,8 @@ impl Trend {
         })
     }
 
-    /// What normals in a box of places, given by its middle and half its size, have beside it if they have so much beside
-    /// another trend.
+    /// What normals in a box of places, given by its middle and half its size, have beside it if
+    /// they have so much beside another trend.
     fn beside_other(&self, (other, rest): (&Trend, &Rest), [middle, half]: [Vec3A; 2]) -> Rest {
         let (there, across) = (other.at(middle), other.by.map(|column| column.w));
         let by: [Vec4; 3] = std::array::from_fn(|n| other.by[n] - self.by[n]);
@@ -209,7 +213,8 @@ fn is_even(samples: &Samples<'_>, own: &[Vertices], n: usize) -> bool {
     }
 }
 
-/// Whether the normals of a block's cells have little beside a trend, given with what the block's own have.
+/// Whether the normals of a block's cells have little beside a trend, given with what the block's
+/// own have.
 fn holds(samples: &Samples<'_>, own: &[Vertices], n: usize, (trend, mut rest): (&Trend, Rest)) -> bool {
     for bits in 1..7 {
         let (Some(other), step) = (samples.parts.neighbours.upper(n, bits), step(bits)) else { continue };

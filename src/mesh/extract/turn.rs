@@ -1,18 +1,18 @@
 //! Edges between fans, turned along creases.
 //!
-//! Let A and B have the face F in common, with fans from a and b, and let s–t be the only
-//! segment in F and the line a–b cross F in a point x of its interior. The triangles (a, s, b) and (b, t, a) that take the place of
-//! (s, t, a) and (t, s, b) are, within A, the cone from a over the path s–x–t, and within B
-//! that from b. The path is simple, as s and t lie in the boundary of F, and it meets no other
-//! segment, as F has none: so all is as before, with the path in place of the segment. Faces
-//! may be turned in any number and order, as paths of different faces do not meet.
+//! Let A and B have the face F in common, with fans from a and b, and let s–t be the only segment
+//! in F and the line a–b cross F in a point x of its interior. The triangles (a, s, b) and (b, t,
+//! a) that take the place of (s, t, a) and (t, s, b) are, within A, the cone from a over the path
+//! s–x–t, and within B that from b. The path is simple, as s and t lie in the boundary of F, and it
+//! meets no other segment, as F has none: so all is as before, with the path in place of the
+//! segment. Faces may be turned in any number and order, as paths of different faces do not meet.
 //!
-//! [Regions](super::region) of several cells have fans as well, and what two fans have in common is a
-//! rectangle of faces then. That, like an ambiguous face, may hold several segments, and the path s–x–t may be
-//! in the way of another: of the segments whose ends have different normals, the one closest to x is turned, if
-//! the path is clear of all others by more than the rounding. Two fans have no more than one edge in common so.
-//! Where the line a–b misses the rectangle, x is the point of it next to the line, and a vertex: the two loops
-//! are s–x–t there.
+//! [Regions](super::region) of several cells have fans as well, and what two fans have in common is
+//! a rectangle of faces then. That, like an ambiguous face, may hold several segments, and the path
+//! s–x–t may be in the way of another: of the segments whose ends have different normals, the one
+//! closest to x is turned, if the path is clear of all others by more than the rounding. Two fans
+//! have no more than one edge in common so. Where the line a–b misses the rectangle, x is the point
+//! of it next to the line, and a vertex: the two loops are s–x–t there.
 
 use glam::{DVec2, DVec3, Vec3, Vec3A};
 use rayon::prelude::*;
@@ -67,8 +67,8 @@ impl Fans {
         Ok(())
     }
 
-    /// What the edge between two fans is turned to, at segment `nth` in the ring of the lower one, if it is: one that turns,
-    /// in an upper face.
+    /// What the edge between two fans is turned to, at segment `nth` in the ring of the lower one,
+    /// if it is: one that turns, in an upper face.
     fn turned<S: Sampler>(
         &self,
         samples: &Samples<'_>,
@@ -177,8 +177,8 @@ impl Fans {
     }
 }
 
-/// An edge between two fans that is turned: to the straight line from one feature point to the other, or to a way by a
-/// point between the two.
+/// An edge between two fans that is turned: to the straight line from one feature point to the
+/// other, or to a way by a point between the two.
 struct Turned {
     fans: [u32; 2],
     /// The places of its segments in the rings of the two.
@@ -190,8 +190,8 @@ struct Turned {
 /// The number of a point that is no vertex.
 const NONE: u32 = u32::MAX;
 
-/// Whether two segments, by numbers and places of their ends, have no point in common but an end. `reach` is more
-/// than the rounding of twice the area of a triangle.
+/// Whether two segments, by numbers and places of their ends, have no point in common but an end.
+/// `reach` is more than the rounding of twice the area of a triangle.
 fn is_apart(one: [(u32, DVec2); 2], other: [(u32, DVec2); 2], reach: f64) -> bool {
     let area = |[(_, s), (_, t)]: [(u32, DVec2); 2], (_, p): (u32, DVec2)| (t - s).perp_dot(p - s);
     let [a, b] = other.map(|end| area(one, end));

@@ -1,13 +1,16 @@
 //! Every feature point is verified by the field, and repaired where it is off the surface.
 //!
-//! A point that fits the planes of its loop's vertices misses what these do not tell: a side between two others that no
-//! edge of the cell crosses. And a cell that two creases pass has no point that fits. In order:
+//! A point that fits the planes of its loop's vertices misses what these do not tell: a side
+//! between two others that no edge of the cell crosses. And a cell that two creases pass has no
+//! point that fits. In order:
 //!
 //! 1. The fans are found whose points are off the surface, or far from their planes.
-//! 2. Their loops get a vertex on the [third side](super::third), in each face where they skip one, as do those beyond.
-//! 3. A cell whose loop goes over a narrow side twice is cut in two [halves](super::halves), if both points are on the
-//!    surface then.
-//! 4. Another point that is [too far](super::probe::OFF) off is moved onto the surface: the creases are cut off by it, but nothing sticks out.
+//! 2. Their loops get a vertex on the [third side](super::third), in each face where they skip one,
+//!    as do those beyond.
+//! 3. A cell whose loop goes over a narrow side twice is cut in two [halves](super::halves), if
+//!    both points are on the surface then.
+//! 4. Another point that is [too far](super::probe::OFF) off is moved onto the surface: the creases
+//!    are cut off by it, but nothing sticks out.
 //!
 //! All is decided fan by fan and face by face: it does not depend on the number of threads.
 
@@ -108,7 +111,8 @@ impl Fans {
         Ok(found?.into_iter().flatten().collect())
     }
 
-    /// The fans whose points are off the surface, or do not fit their planes; and whether they are off.
+    /// The fans whose points are off the surface, or do not fit their planes; and whether they are
+    /// off.
     fn doubtful<S: Sampler>(
         &self,
         samples: &Samples<'_>,
@@ -193,7 +197,8 @@ impl Fans {
         Repaired::Moved(inside(probe.onto(near, span, own, [middle, places[0]])))
     }
 
-    /// Changes a fan, given its loop if that is new; loops that are new go into a list of their own.
+    /// Changes a fan, given its loop if that is new; loops that are new go into a list of their
+    /// own.
     fn repair(
         &mut self,
         number: u32,

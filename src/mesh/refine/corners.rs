@@ -22,8 +22,8 @@ const AT_ONCE: usize = 1 << 12;
 /// How far from a corner both sides are looked for, in tolerances.
 const ASIDE: f64 = 0.5;
 
-/// The corners of leaves within the limits that are no farther from the surface than a part of the tolerance, as their
-/// values tell.
+/// The corners of leaves within the limits that are no farther from the surface than a part of the
+/// tolerance, as their values tell.
 pub(super) fn corners(job: Job<'_>, tolerance: f64, run: &Run) -> Result<Vec<DVec3>, Cancelled> {
     let program = job.program;
     let mut all = program.corners();
@@ -61,7 +61,8 @@ pub(super) fn lost(
     Ok(found?.concat())
 }
 
-/// Whether there is inside and outside next to a point: a corner within the solid is none of its surface.
+/// Whether there is inside and outside next to a point: a corner within the solid is none of its
+/// surface.
 fn has_both_sides(program: &Program, p: DVec3, by: f64) -> bool {
     let steps = [-1.0, 0.0, 1.0];
     let around = steps.iter().flat_map(|x| steps.iter().flat_map(move |y| steps.map(|z| DVec3::new(*x, *y, z))));

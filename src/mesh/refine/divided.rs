@@ -76,8 +76,8 @@ impl Seam {
             signs[1][2] = self.halve((node(0, 2), u), [c, d], place)?;
             signs[0][1] = self.halve((node(0, 0), v), [a, c], place)?;
             signs[2][1] = self.halve((node(2, 0), v), [b, d], place)?;
-            // Whether a segment parts the first corner from the middle. One that ends on the line between the two counts
-            // with one of those that meet there.
+            // Whether a segment parts the first corner from the middle. One that ends on the line
+            // between the two counts with one of those that meet there.
             let is_left = |[from, to]: [DVec2; 2], p: DVec2| (to - from).perp_dot(p - from) >= 0.0;
             let diagonal = [DVec2::ZERO, DVec2::splat(0.5)];
             let parts = |segment: &&[DVec2; 2]| {
@@ -119,8 +119,9 @@ impl Seam {
         Some(())
     }
 
-    /// Halves an edge of a larger cell, given by its lower node in the halved lattice and its axis, whose ends have these
-    /// signs: the sign of its middle. `place` tells where a vertex is, in larger cells.
+    /// Halves an edge of a larger cell, given by its lower node in the halved lattice and its axis,
+    /// whose ends have these signs: the sign of its middle. `place` tells where a vertex is, in
+    /// larger cells.
     fn halve(
         &mut self,
         (mut node, axis): ([u32; 3], usize),
@@ -139,9 +140,9 @@ impl Seam {
     }
 }
 
-/// The point in which a crease meets the face that a segment lies in, if it does, in cells from the first node of the face
-/// along two axes; and the normals at the ends of the segment. Its triangle has to be of a fan: then the segment may take
-/// any way in the face.
+/// The point in which a crease meets the face that a segment lies in, if it does, in cells from the
+/// first node of the face along two axes; and the normals at the ends of the segment. Its triangle
+/// has to be of a fan: then the segment may take any way in the face.
 fn bent(
     (lattice, job): (&Lattice, Job<'_>),
     rim: &Rim,

@@ -6,7 +6,8 @@ use crate::mesh::lattice::Lattice;
 use crate::mesh::resolve::Unresolved;
 use crate::mesh::signs::BLOCK;
 
-/// How far, in cells, an unresolved cell is from the nearest block that is not in the inset, at least.
+/// How far, in cells, an unresolved cell is from the nearest block that is not in the inset, at
+/// least.
 const MARGIN: usize = 2;
 
 /// Blocks, by their numbers along the axes: their first cells over [`BLOCK`].
@@ -83,7 +84,8 @@ impl Inset {
         steps().filter_map(|step| stepped(block, step, self.counts)).any(|other| !self.has(other))
     }
 
-    /// Whether a node of the halved lattice is in the seam: in blocks that are in the inset, and in others.
+    /// Whether a node of the halved lattice is in the seam: in blocks that are in the inset, and in
+    /// others.
     pub(super) fn is_seam(&self, node: [u32; 3]) -> bool {
         if node.iter().all(|at| at % (2 * BLOCK as u32) != 0) {
             return false;

@@ -107,7 +107,8 @@ impl Level {
         self.inset.has(self.block_at(p))
     }
 
-    /// The block that a point is in, by its number along each axis. What is rounded to f32 is between planes that are, too.
+    /// The block that a point is in, by its number along each axis. What is rounded to f32 is
+    /// between planes that are, too.
     fn block_at(&self, p: DVec3) -> [u32; 3] {
         let place = (p - self.lattice.origin()) / (self.lattice.step() * BLOCK as f64);
         let plane = |block: u32| {
@@ -143,7 +144,8 @@ impl LevelSampler<'_> {
         self.level.side(self.outer, numbered(block)) == Side::Around
     }
 
-    /// Where the surface crosses an edge that starts or ends in the seam, if the program does not tell.
+    /// Where the surface crosses an edge that starts or ends in the seam, if the program does not
+    /// tell.
     fn root_at_seam(&self, seam: &Seam, edge: &EdgeRef) -> Option<Root> {
         let axis = usize::from(edge.axis);
         let mut ends = [edge.node; 2];
@@ -171,7 +173,8 @@ impl LevelSampler<'_> {
         if !seam.inset.blocks_at(beyond, BLOCK as u32).any(|block| seam.inset.has_half(block)) {
             return Some(Root { t: 0.5, ..Root::default() });
         }
-        // The sign in the seam is that of the larger cells. Where the program's is the other the surface is beyond.
+        // The sign in the seam is that of the larger cells. Where the program's is the other the
+        // surface is beyond.
         let is_crossed = (self.program.value(place(0.0)) > 0.0) != (self.program.value(place(1.0)) > 0.0);
         (!is_crossed).then(|| root(if in_seam[0] { 0.0 } else { 1.0 }))
     }

@@ -98,8 +98,8 @@ impl Piece {
         Ok((piece, rims))
     }
 
-    /// Adds another part, some of whose vertices are some of this: pairs of their number there and here. The numbers that
-    /// its vertices have here; nothing if there are too many.
+    /// Adds another part, some of whose vertices are some of this: pairs of their number there and
+    /// here. The numbers that its vertices have here; nothing if there are too many.
     pub(super) fn append(&mut self, other: Piece, same: &[(u32, u32)]) -> Option<Vec<u32>> {
         let mut numbers = vec![u32::MAX; other.positions.len()];
         same.iter().for_each(|&(there, here)| numbers[there as usize] = here);
@@ -120,7 +120,8 @@ impl Piece {
         Some(numbers)
     }
 
-    /// Adds a vertex of a crease on an edge, with the normals on its two sides; nothing if there are too many.
+    /// Adds a vertex of a crease on an edge, with the normals on its two sides; nothing if there
+    /// are too many.
     pub(super) fn add(&mut self, at: Vec3, [before, after]: [Vec3; 2]) -> Option<Between> {
         let vertex = u32::try_from(self.positions.len()).ok().filter(|&vertex| vertex < u32::MAX)?;
         self.positions.push(at);

@@ -11,7 +11,8 @@ pub(super) type Edge = ([u32; 3], u8);
 /// A face of a cell: its axis, and its lowest node.
 pub(super) type Face = (u8, [u32; 3]);
 
-/// Where a vertex is, in cells, and along which axes it is between planes of the lattice, and not in one.
+/// Where a vertex is, in cells, and along which axes it is between planes of the lattice, and not
+/// in one.
 pub(super) fn place_of(lattice: &Lattice, at: Vec3) -> (DVec3, [bool; 3]) {
     let place = (at.as_dvec3() - lattice.origin()) / lattice.step();
     let is_between = |axis: usize| (place[axis] - place[axis].round()).abs() > lattice.slack();

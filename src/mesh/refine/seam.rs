@@ -1,7 +1,7 @@
 //! What is in common to a lattice and its inset in halved cells.
 //!
-//! Each [face of a larger cell in it is divided](super::divided) into four. The smaller cells take over the signs of
-//! their nodes in it and the places of their vertices.
+//! Each [face of a larger cell in it is divided](super::divided) into four. The smaller cells take
+//! over the signs of their nodes in it and the places of their vertices.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
@@ -18,7 +18,8 @@ use crate::mesh::signs::{BLOCK, NODES, SIDE};
 
 pub(super) struct Seam {
     pub(super) inset: Inset,
-    /// The blocks of halved cells on both sides that the surface crosses here, and those beyond that have a cap.
+    /// The blocks of halved cells on both sides that the surface crosses here, and those beyond
+    /// that have a cap.
     pub(super) blocks: BTreeSet<[u32; 3]>,
     /// The nodes of the halved lattice in the seam that are inside.
     pub(super) inside: HashSet<[u32; 3]>,
@@ -33,8 +34,8 @@ pub(super) struct Seam {
 }
 
 impl Seam {
-    /// The seam around the inset of a level, given the border there and the positions of its vertices; nothing if they do
-    /// not fit.
+    /// The seam around the inset of a level, given the border there and the positions of its
+    /// vertices; nothing if they do not fit.
     pub(super) fn new(job: Job<'_>, level: &Level, rims: impl Iterator<Item = Rim>, all: &Piece) -> Option<Seam> {
         let mut seam = Seam {
             inset: level.inset.clone(),
@@ -86,15 +87,16 @@ impl Seam {
         self.crossings.get(&(node, axis)).copied()
     }
 
-    /// Adds what is in the inset to what is around it, given the border of the former: the numbers of its vertices there;
-    /// nothing if they do not fit.
+    /// Adds what is in the inset to what is around it, given the border of the former: the numbers
+    /// of its vertices there; nothing if they do not fit.
     pub(super) fn stitch(
         &self,
         all: &mut Piece,
         (lattice, piece): (&Lattice, Piece),
         rims: &[Rim],
     ) -> Option<Vec<u32>> {
-        // The segments of each face of a larger cell, and the vertices that are those of larger cells.
+        // The segments of each face of a larger cell, and the vertices that are those of larger
+        // cells.
         let (mut paths, mut same) = (BTreeMap::<Face, Vec<(Face, Rim)>>::new(), BTreeMap::new());
         for rim in rims.iter().filter(|rim| rim.is_outer) {
             let ends = [rim.from, rim.to];
@@ -170,8 +172,8 @@ impl<'a> NodeSigns<'a> {
         NodeSigns { job, level, sampler, numbers, scratch, values: Box::new([0.0; NODES]) }
     }
 
-    /// What tells whether nodes are inside, by their places along the two next axes, in the face of a block across an axis,
-    /// given with the block beyond.
+    /// What tells whether nodes are inside, by their places along the two next axes, in the face of
+    /// a block across an axis, given with the block beyond.
     fn in_face(&mut self, [block, beside]: [[u32; 3]; 2], axis: usize, up: bool) -> impl Fn(usize, usize) -> bool {
         let listed = [(block, up), (beside, !up)].into_iter().find_map(|(block, up)| {
             let first = block.map(|at| at * BLOCK as u32);

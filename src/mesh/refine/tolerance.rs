@@ -1,9 +1,10 @@
 //! Cells as small as a tolerance asks, each where it does.
 //!
-//! A mesh is made and compared with the surface. Where it is too far off, cells are made smaller: all of them while
-//! much of the surface is off, then those about the places that are, which are halved. Curved parts have small cells in
-//! the end, flat ones those of the beginning. So have creases of surfaces that are flat between them, however blunt: the
-//! vertices of cells are on them.
+//! A mesh is made and compared with the surface. Where it is too far off, cells are made smaller:
+//! all of them while much of the surface is off, then those about the places that are, which are
+//! halved. Curved parts have small cells in the end, flat ones those of the beginning. So have
+//! creases of surfaces that are flat between them, however blunt: the vertices of cells are on
+//! them.
 
 use glam::DVec3;
 
@@ -17,7 +18,8 @@ use crate::mesh::deviation::{Probe, largest, probes};
 use crate::mesh::error::MeshingError;
 use crate::mesh::lattice::{CellSize, Lattice};
 
-/// Where this part of the surface is off, all cells are made smaller, so that this part should be off then.
+/// Where this part of the surface is off, all cells are made smaller, so that this part should be
+/// off then.
 const MUCH: f64 = 0.4;
 const REST: f64 = 0.03;
 
@@ -28,14 +30,14 @@ const LEAST: f64 = 0.1;
 /// How often it is compared.
 const ROUNDS: usize = 9;
 
-/// Meshes of so many triangles are as fine as any get, and those with cells halved in places of so many and these for
-/// each that there was without.
+/// Meshes of so many triangles are as fine as any get, and those with cells halved in places of so
+/// many and these for each that there was without.
 const ENOUGH: usize = 1 << 22;
 const ENOUGH_IN_PLACES: usize = 1 << 18;
 const FOR_EACH: usize = 6;
 
-/// Of surfaces that are flat between creases all cells are halved while there are so few triangles, and as long as this
-/// part of them is to be.
+/// Of surfaces that are flat between creases all cells are halved while there are so few triangles,
+/// and as long as this part of them is to be.
 const FEW: usize = 1 << 16;
 const PART: f64 = 0.25;
 
@@ -55,8 +57,8 @@ pub(in crate::mesh) struct Within {
     pub(in crate::mesh) blocks: Blocks,
 }
 
-/// The mesh on a lattice whose cells are halved, at most so often where they are unresolved, and where triangles are
-/// farther from the surface than a tolerance, as long as that helps.
+/// The mesh on a lattice whose cells are halved, at most so often where they are unresolved, and
+/// where triangles are farther from the surface than a tolerance, as long as that helps.
 pub(in crate::mesh) fn within(
     job: Job<'_>,
     start: (Lattice, Blocks),
@@ -95,7 +97,8 @@ pub(in crate::mesh) fn within(
             enough = (ENOUGH_IN_PLACES + FOR_EACH * mesh.triangles().len()).min(ENOUGH);
         }
         let is_done = round >= ROUNDS || mesh.triangles().len() > enough;
-        // Where larger and smaller cells meet, creases are cut off: that may be worse than what is repaired.
+        // Where larger and smaller cells meet, creases are cut off: that may be worse than what is
+        // repaired.
         let is_worse = |(_, before, count): &(Lattice, f64, usize)| {
             levels.len() > 1 && far > tolerance && far > WORSE * before && 4 * count < ENOUGH_IN_PLACES * FOR_EACH
         };
@@ -116,8 +119,8 @@ pub(in crate::mesh) fn within(
             let off = probes.iter().filter(is_off).map(|probe| middle(&mesh, probe));
             off.chain(lost.iter().map(|(corner, _)| *corner)).for_each(|p| add(&mut levels, p, most));
         }
-        // A crease is cut off where it passes from larger cells to smaller ones: of a surface that is all creases, cells are
-        // of one size while they are few, and where much is to be halved.
+        // A crease is cut off where it passes from larger cells to smaller ones: of a surface that
+        // is all creases, cells are of one size while they are few, and where much is to be halved.
         let part = if mesh.triangles().len() < FEW { 0.0 } else { PART };
         if let [level] = &levels[..]
             && !is_done
@@ -145,8 +148,8 @@ fn middle(mesh: &Mesh, probe: &Probe) -> DVec3 {
     mesh.corners(mesh.triangles()[probe.triangle as usize]).into_iter().sum::<DVec3>() / 3.0
 }
 
-/// All of the solid in cells so small that nearly all of it should be near enough, if they are of one size and much is
-/// not.
+/// All of the solid in cells so small that nearly all of it should be near enough, if they are of
+/// one size and much is not.
 fn smaller(
     job: Job<'_>,
     levels: &[Level],

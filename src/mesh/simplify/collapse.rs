@@ -22,10 +22,12 @@ use crate::geom::{Mesh, MeshError};
 use crate::mesh::deviation::Probe;
 use crate::{Cancelled, Run};
 
-/// A triangle keeps this much of its area as it is seen along the normals of its corners, or nearly what it had.
+/// A triangle keeps this much of its area as it is seen along the normals of its corners, or nearly
+/// what it had.
 const FACING: f64 = 0.3;
 
-/// The height of a triangle, in parts of its longest side: thinner ones come about only from ones that are as thin.
+/// The height of a triangle, in parts of its longest side: thinner ones come about only from ones
+/// that are as thin.
 const THIN: f64 = 0.03;
 const THINNEST: f64 = 1e-3;
 
@@ -41,7 +43,8 @@ const MOST: usize = 40;
 /// What is so many tolerances off the planes of a vertex is not looked at.
 const FAR: f64 = 8.0;
 
-/// How much a long way counts beside the distance from the planes: where all is flat, short sides go first.
+/// How much a long way counts beside the distance from the planes: where all is flat, short sides
+/// go first.
 const LENGTH: f64 = 1e-3;
 
 /// Vertices that are drawn before it is asked whether to go on.
@@ -74,7 +77,8 @@ impl Corners {
     }
 }
 
-/// The order of the heap: the least cost first, then the vertex; and which state of the vertex it is of.
+/// The order of the heap: the least cost first, then the vertex; and which state of the vertex it
+/// is of.
 type Entry = Reverse<(u64, u32, u32)>;
 
 /// A mesh while its vertices are drawn together.
@@ -94,7 +98,8 @@ pub(super) struct Collapse {
     /// How often the surroundings of a vertex have changed.
     versions: Vec<u32>,
     heap: BinaryHeap<Entry>,
-    /// Points with the place of the triangle that is nearest among those that are left: kept, so as not to be made anew.
+    /// Points with the place of the triangle that is nearest among those that are left: kept, so as
+    /// not to be made anew.
     parted: Vec<(Point, usize)>,
 }
 
@@ -253,7 +258,8 @@ impl Collapse {
         triangle.vertices.map(|v| self.positions[v as usize])
     }
 
-    /// Whether a triangle faces as its corners do, and is not too thin, or as much as the one that it takes the place of.
+    /// Whether a triangle faces as its corners do, and is not too thin, or as much as the one that
+    /// it takes the place of.
     fn is_fair(&self, old: &Corners, new: &Corners) -> bool {
         let shape = |triangle: &Corners| {
             let [a, b, c] = self.places(triangle);
@@ -270,7 +276,8 @@ impl Collapse {
             && height > THIN.min(0.5 * height_before)
     }
 
-    /// Parts the points that triangles stand for among those that are left, if none is too far from all.
+    /// Parts the points that triangles stand for among those that are left, if none is too far from
+    /// all.
     fn part(&mut self, draw: &Draw) -> bool {
         let face = |(_, triangle): &(u32, Corners)| {
             let [a, b, c] = self.places(triangle);

@@ -1,6 +1,7 @@
 //! The mean square distance of a point from planes.
 //!
-//! Source: M. Garland and P. S. Heckbert, Surface simplification using quadric error metrics (1997).
+//! Source: M. Garland and P. S. Heckbert, Surface simplification using quadric error metrics
+//! (1997).
 
 use glam::{DMat3, DVec3};
 

@@ -7,8 +7,8 @@ use super::quadric::Quadric;
 use crate::geom::Mesh;
 use crate::mesh::deviation::Probe;
 
-/// The normals on the two sides of a crease are farther apart than this: those of the corners of a smooth surface are
-/// the same to the last digit.
+/// The normals on the two sides of a crease are farther apart than this: those of the corners of a
+/// smooth surface are the same to the last digit.
 const CREASE: f32 = 0.02;
 
 /// What is off a plane by less, in tolerances, is on it.
@@ -42,7 +42,8 @@ pub(super) fn stars_of(triangles: &[Corners], vertices: usize) -> Vec<Vec<u32>> 
     stars
 }
 
-/// The other ends of the creases at each vertex: sides whose two triangles have other normals there, or other owners.
+/// The other ends of the creases at each vertex: sides whose two triangles have other normals
+/// there, or other owners.
 pub(super) fn creases_of(triangles: &[Corners], stars: &[Vec<u32>], owners: Option<&[u32]>) -> Vec<Vec<u32>> {
     let mut creases = vec![Vec::new(); stars.len()];
     for (number, triangle) in (0u32..).zip(triangles) {
@@ -100,8 +101,9 @@ pub(super) struct Point {
     pub(super) most: f64,
 }
 
-/// The points that each triangle stands for: the vertices and what is off between, from `origin`, each with a tolerance of its own. Those within
-/// flat parts that have all of it are left out: their borders tell.
+/// The points that each triangle stands for: the vertices and what is off between, from `origin`,
+/// each with a tolerance of its own. Those within flat parts that have all of it are left out:
+/// their borders tell.
 pub(super) fn points_of(
     probes: &[Probe],
     (triangles, stars, positions): (&[Corners], &[Vec<u32>], &[DVec3]),

@@ -2,13 +2,15 @@
 //!
 //! What is shown, for all 256 cases and all positions strictly inside the edges at once:
 //!
-//! * Two triangles of a cell can only meet, beyond what they share, where a side of one goes through the
-//!   other or meets a side of it. A side that lies in a face of the cell cannot: the triangles lie
-//!   in no face, so they meet the cell's boundary in such sides alone. That leaves the diagonals.
+//! * Two triangles of a cell can only meet, beyond what they share, where a side of one goes
+//!   through the other or meets a side of it. A side that lies in a face of the cell cannot: the
+//!   triangles lie in no face, so they meet the cell's boundary in such sides alone. That leaves
+//!   the diagonals.
 //! * The volume that four points span is affine in the place of each of them. Its sign over all
-//!   places is settled if it is the same at the 16 combinations of edge ends (and not 0 at all of them).
-//! * Where signs do not settle whether a diagonal goes through a triangle, a plane separates the two,
-//!   whose normal is made of small integers: it is enough to look at the ends of the edges.
+//!   places is settled if it is the same at the 16 combinations of edge ends (and not 0 at all of
+//!   them).
+//! * Where signs do not settle whether a diagonal goes through a triangle, a plane separates the
+//!   two, whose normal is made of small integers: it is enough to look at the ends of the edges.
 //! * Triangles that share a side do not fold onto one another: both face the same way in some fixed
 //!   direction.
 
@@ -55,8 +57,8 @@ fn directions() -> impl Iterator<Item = Vector> {
     (0..125).map(|n| [n % 5 - 2, n / 5 % 5 - 2, n / 25 - 2]).filter(|&w| w != [0; 3])
 }
 
-/// Whether all points on the first edges are on the lower side of a plane, and those on the second on the
-/// upper; one of the two may come as close as it likes.
+/// Whether all points on the first edges are on the lower side of a plane, and those on the second
+/// on the upper; one of the two may come as close as it likes.
 fn separated(below: &[u8], above: &[u8]) -> bool {
     let range = |edge: u8, w: Vector| [dot(end(edge, false), w), dot(end(edge, true), w)];
     directions().any(|w| {
@@ -89,7 +91,8 @@ fn no_diagonal_goes_through_a_triangle() {
                         ends[0] * ends[1] > 0 || around.contains(&1) && around.contains(&-1)
                     }
                     1 => {
-                        // From a shared corner it could only cross the opposite side, if that is a diagonal.
+                        // From a shared corner it could only cross the opposite side, if that is a
+                        // diagonal.
                         let [u, v] = sides([a, b, c]).into_iter().find(|s| !s.contains(&p) && !s.contains(&q)).unwrap();
                         let is_diagonal = all.contains(&[u, v]) && all.contains(&[v, u]);
                         !is_diagonal || volume([p, q, u, v]) != 0 || apart(&[p, q], &[u, v])
@@ -108,7 +111,8 @@ fn no_diagonal_goes_through_a_triangle() {
     assert!(by_sign > 1000);
 }
 
-/// Whether two triangles face the same way in some direction, wherever their corners are on their edges.
+/// Whether two triangles face the same way in some direction, wherever their corners are on their
+/// edges.
 fn face_one_way(t: [u8; 3], u: [u8; 3]) -> bool {
     let faces =
         |triangle: [u8; 3], w: Vector| settled(triangle, |[a, b, c]| dot(cross(minus(b, a), minus(c, a)), w)) == 1;

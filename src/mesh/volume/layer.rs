@@ -44,8 +44,8 @@ impl Rows<'_> {
         Some(&self.volume.samples[(k * ny + j) * nx..][..nx])
     }
 
-    /// The vertex on the edge that leaves a node along an axis; `ends` are the rows of samples at the two ends of an
-    /// edge across, or twice its own.
+    /// The vertex on the edge that leaves a node along an axis; `ends` are the rows of samples at
+    /// the two ends of an edge across, or twice its own.
     #[inline(always)]
     fn vertex(&self, axis: usize, node: [usize; 3], ends: [Option<&[f32]>; 2]) -> OnEdge {
         // Node i is sample i − 1; wrapped, the one before the first is beyond the last.
@@ -123,7 +123,8 @@ impl Rows<'_> {
 struct OnEdge {
     /// 0 at the lower end, 1 at the upper.
     t: f64,
-    /// 0 between two samples; the direction of the normal along the edge, where one end is in the layer around.
+    /// 0 between two samples; the direction of the normal along the edge, where one end is in the
+    /// layer around.
     cap: f64,
 }
 

@@ -1,8 +1,8 @@
 //! From squares to closed chains of points.
 //!
-//! Going round a square anticlockwise, a piece of a contour begins where the walk leaves the inside and ends where it
-//! enters it again. A side has the corners of its smaller neighbours on it, so that both sides of it see the same
-//! crossings, and every crossing has one way in and one way out.
+//! Going round a square anticlockwise, a piece of a contour begins where the walk leaves the inside
+//! and ends where it enters it again. A side has the corners of its smaller neighbours on it, so
+//! that both sides of it see the same crossings, and every crossing has one way in and one way out.
 
 use std::collections::{HashMap, HashSet};
 
@@ -23,7 +23,8 @@ const CHORD: f64 = 0.7;
 /// Corners are looked for between points of chords that were halved so often.
 const SMOOTH: u32 = 3;
 
-/// Contours that turn by less than an angle with this sine, between two points, have no corner there.
+/// Contours that turn by less than an angle with this sine, between two points, have no corner
+/// there.
 const TURN: f64 = 0.2;
 
 /// What corners may be off, in proportion to the tolerance.
@@ -32,8 +33,8 @@ const SHARP: f64 = 0.1;
 /// Points are found to this part of the tolerance.
 const PRECISE: f64 = 1e-6;
 
-/// The width of what is convex is at most this times its area, by the length around it: so much that of a triangle with
-/// equal sides is.
+/// The width of what is convex is at most this times its area, by the length around it: so much
+/// that of a triangle with equal sides is.
 const WIDE: f64 = 6.0;
 
 /// A part of the tolerance that points are left out for.
@@ -102,7 +103,8 @@ impl Chains<'_> {
                 at = to;
             }
             let kept = thinned(&points, THIN * self.tolerance);
-            // The ends of narrow gaps and tips are cut off where they are thinner than the tolerance.
+            // The ends of narrow gaps and tips are cut off where they are thinner than the
+            // tolerance.
             let line = Polyline::closed(kept);
             if WIDE * line.area().abs() > self.tolerance * line.length() {
                 contours.push(line);
@@ -118,7 +120,8 @@ impl Chains<'_> {
     /// The pieces of contours in a square, the inside to the left.
     fn pieces(&self, leaf: &Leaf) -> Vec<[Crossing; 2]> {
         let corners = leaf.square.corners();
-        // The crossings on the way round: those by which the inside is left and those by which it is entered take turns.
+        // The crossings on the way round: those by which the inside is left and those by which it
+        // is entered take turns.
         let mut met: Vec<(Crossing, bool)> = Vec::new();
         for k in 0..4 {
             let mut pending = vec![[corners[k], corners[(k + 1) % 4]]];
@@ -164,7 +167,8 @@ impl Chains<'_> {
         from.lerp(to, bracket(&value, [0.0, 1.0], PRECISE * self.tolerance / from.distance(to)))
     }
 
-    /// Points between two, such that chords deviate by less than the tolerance; and how many chords do not.
+    /// Points between two, such that chords deviate by less than the tolerance; and how many chords
+    /// do not.
     fn refine(&self, leaf: &Leaf, [a, b]: [DVec2; 2], way: DVec2, points: &mut Vec<DVec2>) -> usize {
         let (end, mut far) = (b, 0);
         let mut pending = vec![(a, b, 0)];
@@ -193,21 +197,24 @@ impl Chains<'_> {
         far
     }
 
-    /// The value at a point that is in a square, or beside it: there the contour may go on for a while.
+    /// The value at a point that is in a square, or beside it: there the contour may go on for a
+    /// while.
     fn value(&self, leaf: &Leaf, p: DVec2) -> f64 {
         let from_low = p - leaf.square.low;
         let is_in = from_low.min_element() >= 0.0 && from_low.max_element() <= leaf.square.side;
         self.section.value(if is_in { &leaf.filling } else { self.whole }, p)
     }
 
-    /// Whether a contour that goes the way of a chord passes a point nearer than a part of the tolerance.
+    /// Whether a contour that goes the way of a chord passes a point nearer than a part of the
+    /// tolerance.
     fn is_on(&self, leaf: &Leaf, [a, b]: [DVec2; 2], p: DVec2, part: f64) -> bool {
         // The inside is to the left.
         let left = part * self.tolerance * (b - a).perp().normalize_or_zero();
         self.value(leaf, p + left) > 0.0 && self.value(leaf, p - left) <= 0.0
     }
 
-    /// The point of the contour beside the middle of a chord, along a way that the solid is entered by.
+    /// The point of the contour beside the middle of a chord, along a way that the solid is entered
+    /// by.
     fn across(&self, leaf: &Leaf, [a, b]: [DVec2; 2], way: DVec2) -> Option<DVec2> {
         let middle = a.midpoint(b);
         let value = |t: f64| self.value(leaf, middle + t * way);
@@ -224,7 +231,8 @@ impl Chains<'_> {
         Some(middle + bracket(&value, [there.min(0.0), there.max(0.0)], PRECISE * self.tolerance) * way)
     }
 
-    /// The corner between two points of a contour, if its tangents there meet in one and are all of it.
+    /// The corner between two points of a contour, if its tangents there meet in one and are all of
+    /// it.
     fn corner(&self, leaf: &Leaf, [a, b]: [DVec2; 2]) -> Option<DVec2> {
         let left = (b - a).perp().try_normalize()?;
         // A little outside: inside, a face beside the plane may be nearer.

@@ -1,9 +1,9 @@
 //! Contours of slices: closed, oriented, on the surface, as complete as ranges can tell.
 //!
-//! A plane is divided into squares (`tree`), each with the program of what matters there, as far as the contour is
-//! not told by the signs at their corners. From square to square the pieces of contours are joined, and refined until
-//! chords deviate by less than the tolerance (`chain`). Planes of a stack are divided together while squares are
-//! larger than what is between the planes.
+//! A plane is divided into squares (`tree`), each with the program of what matters there, as far as
+//! the contour is not told by the signs at their corners. From square to square the pieces of
+//! contours are joined, and refined until chords deviate by less than the tolerance (`chain`).
+//! Planes of a stack are divided together while squares are larger than what is between the planes.
 //!
 //! What lies beyond the region counts as outside, so that every contour is closed.
 
@@ -30,8 +30,8 @@ use crate::eval::Program;
 use crate::geom::Contours;
 use crate::{COORDINATE_LIMIT, Cancelled, Plane, PlaneBounds, Run, Solid};
 
-/// How far the first square goes beyond the region. Corners of squares keep off the round coordinates that faces are
-/// fond of.
+/// How far the first square goes beyond the region. Corners of squares keep off the round
+/// coordinates that faces are fond of.
 const MARGIN: f64 = 0.013;
 const ASIDE: f64 = 0.4876;
 
@@ -42,8 +42,8 @@ const FINEST: f64 = 1e-8;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(default))]
 pub struct ContourSettings {
-    /// How far contours may deviate from the surface, in length units, above 0. One below 10⁻⁸ of the longer side of
-    /// the region counts as that. Default: 0.001.
+    /// How far contours may deviate from the surface, in length units, above 0. One below 10⁻⁸ of
+    /// the longer side of the region counts as that. Default: 0.001.
     pub tolerance: f64,
     /// What counts where a face of the solid lies in the plane. Default: [`Side::Above`].
     pub side: Side,
@@ -66,8 +66,8 @@ impl Slice {
     /// have one contour about them.
     ///
     /// Nothing that is wider than the tolerance is missed, and what is narrower is told
-    /// ([`Contours::unresolved`]); of lengths (offsets, shells, fillets) nothing that is wider than a
-    /// 256th of the region.
+    /// ([`Contours::unresolved`]); of lengths (offsets, shells, fillets) nothing that is wider than
+    /// a 256th of the region.
     ///
     /// # Errors
     /// If the tolerance is not above 0.
@@ -75,7 +75,8 @@ impl Slice {
         self.contours_with(&ContourSettings { tolerance, ..ContourSettings::default() }, &Run::default())
     }
 
-    /// [`contours`](Slice::contours) with a choice of sides, threads, a cancel token and a progress sink.
+    /// [`contours`](Slice::contours) with a choice of sides, threads, a cancel token and a progress
+    /// sink.
     ///
     /// # Errors
     /// If a setting is out of its range, or the work was cancelled.
@@ -88,8 +89,9 @@ impl Slice {
 }
 
 impl Solid {
-    /// The contours of the solid on planes of many heights z, in their order, as a printer or a laser wants them.
-    /// Planes that are near each other share the work. Turn the solid first to cut it along another axis.
+    /// The contours of the solid on planes of many heights z, in their order, as a printer or a
+    /// laser wants them. Planes that are near each other share the work. Turn the solid first to
+    /// cut it along another axis.
     ///
     /// ```
     /// use rvachev::{ContourSettings, Run, Solid};
@@ -104,8 +106,8 @@ impl Solid {
     /// ```
     ///
     /// # Errors
-    /// What is wrong with the solid, a setting or a height, or that the work was cancelled; an unbounded solid is to be
-    /// cut to a box first.
+    /// What is wrong with the solid, a setting or a height, or that the work was cancelled; an
+    /// unbounded solid is to be cut to a box first.
     pub fn slices(&self, heights: &[f64], settings: &ContourSettings, run: &Run) -> Result<Vec<Contours>, RenderError> {
         let run = run.stage(0.0, 1.0);
         let [to_compile, to_slice] = run.stages([0.1, 0.9]);

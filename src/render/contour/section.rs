@@ -1,7 +1,8 @@
 //! A plane as programs see it: values, and where they rise.
 //!
-//! The plane is taken a little to one side of where it is asked for. A face that lies in it is then not on the
-//! plane: what is on that side counts, as it does for a layer that is printed on a plate.
+//! The plane is taken a little to one side of where it is asked for. A face that lies in it is then
+//! not on the plane: what is on that side counts, as it does for a layer that is printed on a
+//! plate.
 
 use glam::{DMat3, DVec2};
 
@@ -11,11 +12,12 @@ use crate::eval::{Program, Region};
 use crate::{Bounds, Plane, PlaneBounds};
 use rvachev_field::Zone;
 
-/// How far aside, in proportion to the size: rounding is less, and the plane that is meant is as near.
+/// How far aside, in proportion to the size: rounding is less, and the plane that is meant is as
+/// near.
 const EPSILON: f64 = 1.0 / (1u64 << 37) as f64;
 
-/// Squares that are no larger, in the smallest squares, are looked at by samples where ranges of slopes tell little: a
-/// 256th of the first.
+/// Squares that are no larger, in the smallest squares, are looked at by samples where ranges of
+/// slopes tell little: a 256th of the first.
 const SAMPLED: u32 = 1 << (DEEPEST - 8);
 
 /// Where, in a square, and the least cosine of the angle between a slope there and their mean.
@@ -26,7 +28,8 @@ const STRAIGHT: f64 = 0.5;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Side {
-    /// The side that the plane's normal points to: of a plate with a post on it, cut where they meet, the post.
+    /// The side that the plane's normal points to: of a plate with a post on it, cut where they
+    /// meet, the post.
     #[default]
     Above,
     /// The other one: of the same, the plate.
@@ -110,8 +113,8 @@ impl Section {
         sides.fold(own, |least, side| if side.0 < least.0 { side } else { least }).1
     }
 
-    /// What decides about a square of the program's solid, from a height above the plane to another; `None` if the
-    /// surface is not there.
+    /// What decides about a square of the program's solid, from a height above the plane to
+    /// another; `None` if the surface is not there.
     pub(super) fn filling(&self, filling: &Filling, square: &Square, heights: [f64; 2]) -> Option<Filling> {
         let (low, high) = (square.low, square.low + square.side);
         if high.cmple(self.border.min).any() || low.cmpge(self.border.max).any() {
@@ -147,8 +150,9 @@ impl Section {
         (0..4).filter(move |side| near[*side].min(far[*side]) <= 0.0).map(|side| INWARDS[side])
     }
 
-    /// A direction along which the solid is entered, and not left, throughout a square, and so along all directions
-    /// within 30° of it: the contour is the graph of a function there that is no steeper than 60°.
+    /// A direction along which the solid is entered, and not left, throughout a square, and so
+    /// along all directions within 30° of it: the contour is the graph of a function there that is
+    /// no steeper than 60°.
     pub(super) fn way_in(&self, filling: &Filling, square: &Square) -> Option<DVec2> {
         let (low, high) = (square.low, square.low + square.side);
         let way = match filling {
@@ -176,7 +180,8 @@ impl Section {
         program.is_steady() && program.steepest(&Bounds::new(low.min(high), low.max(high))).is_finite()
     }
 
-    /// The same as it looks at some points: of values that are searched for, ranges of slopes tell little.
+    /// The same as it looks at some points: of values that are searched for, ranges of slopes tell
+    /// little.
     fn sampled_way(&self, filling: &Filling, square: &Square) -> Option<DVec2> {
         let at = |[x, y]: [f64; 2]| square.low + square.side * DVec2::new(x, y);
         let slopes = SAMPLES.map(|sample| self.gradient(filling, at(sample)).normalize_or_zero());

@@ -8,9 +8,9 @@
 //!     +-------+---+---+
 //! ```
 //!
-//! No contour is missed between squares that are small enough. One that crosses no side so that it shows at a corner
-//! would be in two squares that share a side; its normals are within 60° of one direction in the one and of another in
-//! the other, but those of a closed curve are all there are.
+//! No contour is missed between squares that are small enough. One that crosses no side so that it
+//! shows at a corner would be in two squares that share a side; its normals are within 60° of one
+//! direction in the one and of another in the other, but those of a closed curve are all there are.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -24,8 +24,8 @@ use super::square::{Node, Root, Square};
 use crate::eval::Program;
 use crate::{Cancelled, Run};
 
-/// So many squares of a plane are divided in a task at most: with slopes that do not tell, contours of a fine tolerance
-/// would have no end.
+/// So many squares of a plane are divided in a task at most: with slopes that do not tell, contours
+/// of a fine tolerance would have no end.
 const MOST: usize = 1 << 16;
 
 /// So many squares are looked at by one thread after the other, before all go on with what is left.
@@ -149,7 +149,8 @@ impl Tree<'_> {
         let section = &self.sections[planes.start];
         let height = self.heights[planes.end - 1] - self.heights[planes.start];
         let Some(filling) = section.filling(&filling, &square, [0.0, height]) else { return Next::Nothing };
-        // Planes that are far from each other part before squares do, and those whose squares are small enough.
+        // Planes that are far from each other part before squares do, and those whose squares are
+        // small enough.
         if planes.len() > 1 && (height > 0.5 * square.side || section.way_in(&filling, &square).is_some()) {
             let middle = planes.start + planes.len() / 2;
             let halves = [planes.start..middle, middle..planes.end];

@@ -54,12 +54,13 @@ impl Profile {
         self.affine_in_space(DAffine3::from_mat3_translation(matrix, forward.translation.extend(0.0)))
     }
 
-    /// Mapped by an affine map of space that keeps to the plane: as [`affine`](Profile::affine), with the stretch
-    /// along z chosen. It changes no shape; values are multiplied by the smallest stretch of the whole map.
+    /// Mapped by an affine map of space that keeps to the plane: as [`affine`](Profile::affine),
+    /// with the stretch along z chosen. It changes no shape; values are multiplied by the smallest
+    /// stretch of the whole map.
     ///
     /// For maps that come from elsewhere: of a [`Form`](crate::form::Form), of
-    /// [`simplified`](Profile::simplified) profiles. Invertible, numbers within ±10⁹; a map that mixes z with x and y
-    /// makes a solid that is no column.
+    /// [`simplified`](Profile::simplified) profiles. Invertible, numbers within ±10⁹; a map that
+    /// mixes z with x and y makes a solid that is no column.
     ///
     /// ```
     /// use glam::{DAffine3, DVec3};
@@ -130,7 +131,8 @@ impl Profile {
     }
 
     /// A grid of copies along the axes: `counts` of them, `spacing` apart, the first one the
-    /// profile where it is. Values, ranges and what it costs: [`Solid::repeat`](crate::Solid::repeat).
+    /// profile where it is. Values, ranges and what it costs:
+    /// [`Solid::repeat`](crate::Solid::repeat).
     ///
     /// ```
     /// use rvachev::Profile;
@@ -262,8 +264,8 @@ impl Profile {
         Profile(self.0.filleted(radius))
     }
 
-    /// The same shape, its border measured to `tolerance` (10⁻⁹ to 10⁹, in length units): right behind
-    /// `offset`, `shell`, `rounded`, `filleted`, or a blend by fillet or chamfer. See
+    /// The same shape, its border measured to `tolerance` (10⁻⁹ to 10⁹, in length units): right
+    /// behind `offset`, `shell`, `rounded`, `filleted`, or a blend by fillet or chamfer. See
     /// [`Solid::with_tolerance`](crate::Solid::with_tolerance).
     ///
     /// ```

@@ -100,8 +100,8 @@ impl Profile {
         Ok(PlaneBounds { min: min.truncate(), max: max.truncate() })
     }
 
-    /// How far the border may be off what offsets, shells, roundings, fillets and chamfers ask for, in length
-    /// units: see [`Solid::accuracy`](crate::Solid::accuracy).
+    /// How far the border may be off what offsets, shells, roundings, fillets and chamfers ask for,
+    /// in length units: see [`Solid::accuracy`](crate::Solid::accuracy).
     ///
     /// ```
     /// use rvachev::Profile;
@@ -118,7 +118,8 @@ impl Profile {
     }
 
     /// Compiles the profile and measures the borders that it needs: see
-    /// [`Solid::prepare`](crate::Solid::prepare). Solids that are made of it need not measure them again.
+    /// [`Solid::prepare`](crate::Solid::prepare). Solids that are made of it need not measure them
+    /// again.
     ///
     /// # Errors
     /// What is wrong with the profile, or that the work was cancelled: see [`PrepareError`].

@@ -9,7 +9,8 @@ use rvachev::{
 use crate::support::{Random, random_solid};
 use crate::zoo::random_profile;
 
-/// A solid for a seed, which may be one that is refused when it is used; `None` where there is none.
+/// A solid for a seed, which may be one that is refused when it is used; `None` where there is
+/// none.
 pub fn solid(seed: u64) -> Option<Solid> {
     let mut random = Random::new(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) + 11);
     let depth = random.below(4);

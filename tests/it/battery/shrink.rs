@@ -11,7 +11,8 @@ use rvachev::{
 
 use super::text::written;
 
-/// A solid of as short a program as is found, of which `is_wrong` still holds. Looks for no longer than `patience`.
+/// A solid of as short a program as is found, of which `is_wrong` still holds. Looks for no longer
+/// than `patience`.
 pub fn shrunk(solid: &Solid, patience: Duration, is_wrong: impl Fn(&Solid) -> bool) -> Solid {
     let start = Instant::now();
     let mut least = solid.clone();

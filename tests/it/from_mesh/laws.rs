@@ -29,7 +29,7 @@ fn check(name: &str, mesh: &Mesh, count: usize, random: &mut Random) {
     let solid = solid(mesh);
     let bounds = mesh.bounds();
     let size = bounds.longest_side();
-    let is_closed = mesh.openness().is_closed();
+    let is_closed = mesh.open_edges().is_closed();
     let program = solid.field_program().unwrap_or_else(|error| panic!("{name}: {error}"));
     let box_ = bounds.inflate(0.2 * size);
     for i in 0..count {
@@ -176,7 +176,8 @@ fn sharp_parts_come_back_sharp() {
     }
 }
 
-/// How far the corners of an imported mesh, and points between, are from its mesh within a tolerance.
+/// How far the corners of an imported mesh, and points between, are from its mesh within a
+/// tolerance.
 fn off(mesh: &Mesh, again: &Mesh) -> f64 {
     let triangles = brute::corners(again);
     let middle = |t: &[DVec3; 3]| t.iter().sum::<DVec3>() / 3.0;
@@ -185,7 +186,8 @@ fn off(mesh: &Mesh, again: &Mesh) -> f64 {
     points.map(|p| brute::distance(&triangles, p)).fold(0.0, f64::max)
 }
 
-/// Blunt creases of a part with flat faces are creases: cells are as large as faces, not as the creases are blunt.
+/// Blunt creases of a part with flat faces are creases: cells are as large as faces, not as the
+/// creases are blunt.
 #[test]
 fn facets_are_no_curvature() {
     // A drum of 36 sides, turned: its creases are of 10°.

@@ -1,8 +1,8 @@
-//! Laws of lengths, over random solids of the whole catalogue: leaves, maps, joins, blends, lengths of
-//! lengths, and the examples of all entries.
+//! Laws of lengths, over random solids of the whole catalogue: leaves, maps, joins, blends, lengths
+//! of lengths, and the examples of all entries.
 //!
-//! A few solids are tried in every run, each with one of the laws. The ignored tests try all laws on
-//! as many as are asked for, `LENGTHS_SEEDS=0..2000`, and print what they find.
+//! A few solids are tried in every run, each with one of the laws. The ignored tests try all laws
+//! on as many as are asked for, `LENGTHS_SEEDS=0..2000`, and print what they find.
 
 use std::cell::OnceCell;
 use std::error::Error;
@@ -155,8 +155,8 @@ const LAWS: [(&str, Law); 10] = [
     ("nearest points", nearest),
 ];
 
-/// Offsets by both signs contain a point if its distance says so, and have the distance as their value
-/// beside the surface.
+/// Offsets by both signs contain a point if its distance says so, and have the distance as their
+/// value beside the surface.
 fn distances(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Outcome {
     let Some(surface) = subject.surface()? else { return Ok(()) };
     for by in [subject.length, -0.5 * subject.length] {
@@ -199,8 +199,8 @@ fn sums(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Outcome {
     Ok(())
 }
 
-/// What is opened is within the solid, holds what is a length inside, and stays when it is opened again
-/// by a ball that is a little smaller.
+/// What is opened is within the solid, holds what is a length inside, and stays when it is opened
+/// again by a ball that is a little smaller.
 fn openings(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Outcome {
     let (solid, length) = (&subject.solid, subject.length);
     let opened = solid.rounded(length);
@@ -223,8 +223,8 @@ fn openings(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Outcom
     Ok(())
 }
 
-/// What is closed holds the solid, is within what is a length outside, and stays when it is closed again
-/// by a ball that is a little smaller.
+/// What is closed holds the solid, is within what is a length outside, and stays when it is closed
+/// again by a ball that is a little smaller.
 fn closings(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Outcome {
     let (solid, length) = (&subject.solid, subject.length);
     let closed = solid.filleted(length);

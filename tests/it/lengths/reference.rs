@@ -35,8 +35,8 @@ impl Surface {
         Ok((!surface.triangles.is_empty()).then_some(surface))
     }
 
-    /// The same of a solid that is known to have no features that its mesh may lose: faces that meet are suspect
-    /// as well.
+    /// The same of a solid that is known to have no features that its mesh may lose: faces that
+    /// meet are suspect as well.
     pub fn known_whole(self) -> Surface {
         Surface { is_whole: true, ..self }
     }
@@ -75,8 +75,8 @@ impl Surface {
     }
 }
 
-/// How far triangles are from the surface: twice the largest value over its slope at seven points of
-/// each, and the two thousandths of a cell that a vertex may be off.
+/// How far triangles are from the surface: twice the largest value over its slope at seven points
+/// of each, and the two thousandths of a cell that a vertex may be off.
 fn errors(solid: &Solid, triangles: &[[DVec3; 3]], cell: f64) -> Result<Vec<f64>, rvachev::SolidError> {
     let points = triangles
         .iter()

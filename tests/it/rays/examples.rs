@@ -10,8 +10,8 @@ use rvachev::{
 use super::{Tally, ray};
 use crate::support::Random;
 
-/// The example of every entry of the catalogue, and shapes with cusps, blades and steep lobes; with each whether its
-/// surface is measured, which takes a thousand times as long.
+/// The example of every entry of the catalogue, and shapes with cusps, blades and steep lobes; with
+/// each whether its surface is measured, which takes a thousand times as long.
 fn exemplary() -> Vec<(Solid, bool)> {
     let g = Gielis::new;
     let clover = g(4.0, 2.0, 2.0, 2.0);
@@ -72,8 +72,8 @@ fn many_rays_through_the_catalogue_are_right() {
     through_examples(3000);
 }
 
-/// What a supershape's values may be off in single precision depends on where: near the planes of its cusps only it is
-/// much.
+/// What a supershape's values may be off in single precision depends on where: near the planes of
+/// its cusps only it is much.
 #[test]
 fn roundoff_of_supershapes_is_that_of_the_region() {
     let star = Supershape::new(Gielis::new(5.0, 0.3, 0.3, 0.3), Gielis::new(4.0, 2.0, 2.0, 2.0));
@@ -100,8 +100,8 @@ fn roundoff_of_supershapes_is_that_of_the_region() {
     assert!(small > 60, "{small}");
 }
 
-/// Such a ray ends in the face of another operand, where the value is 0 but for rounding, and what the program is narrowed
-/// to has none there.
+/// Such a ray ends in the face of another operand, where the value is 0 but for rounding, and what
+/// the program is narrowed to has none there.
 #[test]
 fn rays_that_leave_soon_after_they_enter_are_seen() {
     let solid = Profile::from(Superpolygon::new(Gielis::new(5.0, 2.0, 2.0, 2.0), 3.0)).extrude(0.5);

@@ -15,7 +15,8 @@ pub struct Bent {
 }
 
 impl Bent {
-    /// Tapers up to 0.7, bends up to one radian between the middle and an end, and twists up to `twist`.
+    /// Tapers up to 0.7, bends up to one radian between the middle and an end, and twists up to
+    /// `twist`.
     pub fn random(twist: f64, random: &mut Random) -> Bent {
         loop {
             let mut base = Quadric::random(random);
@@ -25,7 +26,8 @@ impl Bent {
             let height = base.semi_axes.z;
             let bend = DVec2::from_angle(random.range(0.0, 6.3)) * random.range(0.0, 1.0) / height;
             let reach = DVec2::new(1.0 + taper[0].abs(), 1.0 + taper[1].abs()) * base.semi_axes.truncate();
-            // What is valid as a solid: the box of the twisted solid keeps clear of the centre of curvature.
+            // What is valid as a solid: the box of the twisted solid keeps clear of the centre of
+            // curvature.
             if (bend.x.abs() + bend.y.abs()) * reach.length() < 0.9 {
                 return Bent { base, taper, twist: random.range(-twist, twist.max(1e-12)) / height, bend };
             }

@@ -113,7 +113,8 @@ impl Quadric {
     }
 }
 
-/// Points of the first quadrant of a superellipse, evenly spaced to either side of its corner at 45°.
+/// Points of the first quadrant of a superellipse, evenly spaced to either side of its corner at
+/// 45°.
 fn quarter(e: f64, n: usize) -> Vec<[f64; 2]> {
     let mut out = vec![[1.0, 0.0]];
     for from in [0.0, FRAC_PI_4] {

@@ -196,12 +196,14 @@ fn radii(fit: &PartFit) -> Vec<f64> {
     fit.leaves().iter().filter_map(|leaf| radius(leaf.solid())).collect()
 }
 
-/// The volume in common over that of either, on 2²⁰ evenly spread points in the mesh's box and 1.5 % about it.
+/// The volume in common over that of either, on 2²⁰ evenly spread points in the mesh's box and 1.5
+/// % about it.
 fn iou(mesh: &Mesh, fit: &PartFit) -> f64 {
     let truth = Solid::from_mesh(mesh, MeshSolid::default());
     let (bounds, margin) = (mesh.bounds(), 0.015 * mesh.bounds().size());
     let (low, size) = (bounds.min - margin, bounds.size() + 2.0 * margin);
-    // The additive recurrence of the plastic constant's sister in three dimensions (M. Roberts, 2018).
+    // The additive recurrence of the plastic constant's sister in three dimensions (M. Roberts,
+    // 2018).
     let steps = DVec3::new(0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_3);
     let points: Vec<DVec3> = (1..=1_u32 << 20).map(|i| low + size * (f64::from(i) * steps).fract()).collect();
     let [there, found] = [&truth, &fit.solid()].map(|solid| {
@@ -233,8 +235,8 @@ fn parts_of_a_workshop() {
     }
 }
 
-/// All that are there, with what is asked of them. That of the camshaft is of 28 facets around, which have .9916 of the
-/// circle's area: it is asked without snapping.
+/// All that are there, with what is asked of them. That of the camshaft is of 28 facets around,
+/// which have .9916 of the circle's area: it is asked without snapping.
 const ALL: [(Gate, bool); 15] = [
     (("unit_cube", 0.9999, 1, 0), true),
     (("7_8ths_cube", 0.9999, 2, 0), true),

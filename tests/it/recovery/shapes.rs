@@ -112,7 +112,8 @@ impl Shaped {
         points
     }
 
-    /// The volume of what is in both over that of what is in either, by points in a box about this one.
+    /// The volume of what is in both over that of what is in either, by points in a box about this
+    /// one.
     pub fn overlap(&self, inside: impl Fn(DVec3) -> bool, random: &mut Random) -> f64 {
         let vertices = self.mesh().vertices;
         let most = vertices.iter().map(|v| v.abs()).fold(DVec3::ZERO, DVec3::max) * 1.2;

@@ -22,7 +22,8 @@ fn recovered(truth: &Shaped, condition: Condition, settings: &FitSettings, rando
     (m == f64::from(truth.m) || overlap >= 0.999, overlap, fit.search().evaluations)
 }
 
-/// Per cent of right symmetry numbers and of overlaps of 99 %, the median overlap, and of evaluations.
+/// Per cent of right symmetry numbers and of overlaps of 99 %, the median overlap, and of
+/// evaluations.
 fn row(condition: Condition, count: u64, seed: u64, settings: &FitSettings) -> [f64; 4] {
     let (mut right, mut overlaps, mut evaluations) = (0, Vec::new(), Vec::new());
     for i in 0..count {

@@ -40,7 +40,8 @@ fn pin_on_plate() -> Solid {
     (Solid::cuboid([3.0, 2.0, 1.0]) | pin).rotate_x(deg(20.0)).rotate_z(deg(33.0)).translate([1.0, 2.0, 3.0])
 }
 
-/// Check F5 of the reference: a box less a cylinder, both superellipsoids, joined by R_p with p = 2.
+/// Check F5 of the reference: a box less a cylinder, both superellipsoids, joined by R_p with p =
+/// 2.
 #[test]
 fn a_box_less_a_cylinder_has_the_signs_of_the_reference() {
     let part = Solid::superellipsoid([1.0, 1.0, 0.6], 0.01, 0.01)

@@ -82,8 +82,9 @@ impl Warp for Bend {
         if !b.is_finite() {
             return Bounds::ALL;
         }
-        // With q = (1 − cos γ)/κ and s = sin γ/κ a point goes to r + q (1 − κ r) and (1 − κ r) s: linear in each
-        // coordinate across, in q and in s, so that the corners of their ranges tell the box.
+        // With q = (1 − cos γ)/κ and s = sin γ/κ a point goes to r + q (1 − κ r) and (1 − κ r) s:
+        // linear in each coordinate across, in q and in s, so that the corners of their ranges tell
+        // the box.
         let k = self.curvature;
         let (sin, cos) = self.angle.radians().sin_cos();
         let (bow, along) = self.turned([b.min.z, b.max.z]);

@@ -9,8 +9,9 @@
 //!        |  end, left alone        |  left alone
 //! ```
 //!
-//! With κ = Γ/L the arc's centre is at r = 1/κ, where r is the coordinate towards it. About the middle
-//! of the arc the map is the same to both sides. There, with r and z counted from the middle,
+//! With κ = Γ/L the arc's centre is at r = 1/κ, where r is the coordinate towards it. About the
+//! middle of the arc the map is the same to both sides. There, with r and z counted from the
+//! middle,
 //!
 //! ```text
 //!     a = clamp(atan2(κZ, 1 − κR)/κ, ±L/2)        how far along the arc
@@ -103,8 +104,9 @@ impl BendBetween {
         [if reach.is_nan() { f64::INFINITY } else { reach }, (self.from - b.min.z).max(b.max.z - self.to).max(0.0)]
     }
 
-    /// Whether a solid that reaches so far towards the centre, and so far beyond the heights, can be
-    /// turned by so much: it stays on this side of the centre, and its ends on either side of the cut.
+    /// Whether a solid that reaches so far towards the centre, and so far beyond the heights, can
+    /// be turned by so much: it stays on this side of the centre, and its ends on either side of
+    /// the cut.
     fn fits(&self, turn: f64, [reach, end]: [f64; 2]) -> bool {
         let k = turn / self.length();
         let left = 1.0 - k * reach;

@@ -13,8 +13,8 @@ use crate::{COORDINATE_LIMIT, ParamError, check};
 
 /// A function of z, written once over [`Real`], that
 /// [`Solid::taper_by`](../struct.Solid.html#method.taper_by) and
-/// [`Solid::twist_by`](../struct.Solid.html#method.twist_by) follow: the factor that a section is scaled by, the
-/// number that an angle is multiplied by. An `f64` is the constant law;
+/// [`Solid::twist_by`](../struct.Solid.html#method.twist_by) follow: the factor that a section is
+/// scaled by, the number that an angle is multiplied by. An `f64` is the constant law;
 /// [`LinearLaw`], [`SmoothStep`], [`SineWave`] and [`LawTable`] are ready made.
 ///
 /// Mark `at` and every helper in it `#[inline(always)]`.

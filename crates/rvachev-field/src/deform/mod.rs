@@ -60,8 +60,8 @@ pub trait Warp: Debug + Clone + Send + Sync + 'static {
     /// A box that holds the image of a box.
     fn bounds(&self, bounds: &Bounds) -> Bounds;
 
-    /// The most that the scalar product with a direction, of any length, is over the image of a set, at
-    /// least, given the same of the set itself. Infinite where it is not known.
+    /// The most that the scalar product with a direction, of any length, is over the image of a
+    /// set, at least, given the same of the set itself. Infinite where it is not known.
     fn support(&self, _own: &dyn Fn(DVec3) -> f64, _direction: DVec3) -> f64 {
         f64::INFINITY
     }

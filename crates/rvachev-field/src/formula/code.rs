@@ -20,8 +20,8 @@ pub(super) enum Flaw {
     NotANumber,
 }
 
-/// The operations of a formula; the last is its value. They are kept as a list or as a plan, and in the
-/// other form as well once somebody has asked for that.
+/// The operations of a formula; the last is its value. They are kept as a list or as a plan, and in
+/// the other form as well once somebody has asked for that.
 #[derive(Debug)]
 pub(super) struct Code {
     ops: OnceLock<Vec<Op>>,

@@ -7,10 +7,10 @@
 //!     either, times (a² + b²)^k        the same           k > 0
 //! ```
 //!
-//! They have the signs of maximum and minimum, the zero set and, on it, the direction of the
-//! normal (MATHEMATICS E). So where only the sign of the formula is asked, from its last operation down through
-//! minima, maxima, R-functions, negation and multiplication by constants, they are replaced: the
-//! ranges of a minimum are tight, and narrowing leaves out what it does not choose.
+//! They have the signs of maximum and minimum, the zero set and, on it, the direction of the normal
+//! (MATHEMATICS E). So where only the sign of the formula is asked, from its last operation down
+//! through minima, maxima, R-functions, negation and multiplication by constants, they are
+//! replaced: the ranges of a minimum are tight, and narrowing leaves out what it does not choose.
 //!
 //! Smooth minima `min(a, b) − max(k − |a − b|, 0)²/4k` are no matter of signs; where the operands
 //! are apart, narrowing chooses the 0 of their maximum, and then one operand, as they are.
@@ -37,8 +37,8 @@ enum Form {
     Choice { op: B, operands: [(u32, bool); 2] },
 }
 
-/// The code with minima and maxima in place of the R-functions that only matter by their signs; `None` if there
-/// are none.
+/// The code with minima and maxima in place of the R-functions that only matter by their signs;
+/// `None` if there are none.
 pub(super) fn taken_apart(code: &Code) -> Option<Code> {
     let ops = code.ops();
     let root = ops.len().checked_sub(1)?;

@@ -7,9 +7,9 @@
 //!     r₁ = …               0111                    needed there gets registers, and is a plan.
 //! ```
 //!
-//! A register is free after the last operation that needs its value. Backwards that is the first one that
-//! is met, unless the value also stands in for operations that are equal to it, which others need: its
-//! register is then held to the end.
+//! A register is free after the last operation that needs its value. Backwards that is the first
+//! one that is met, unless the value also stands in for operations that are equal to it, which
+//! others need: its register is then held to the end.
 
 use super::many::Choice;
 use super::op::Op;
@@ -38,8 +38,8 @@ struct Uses {
     some: u16,
     /// Where it is the last to need its first and its second operand as such.
     last: [u16; 2],
-    /// Where it is not known what needs it last: something does as such, and something as the result of an
-    /// operation that it is equal to.
+    /// Where it is not known what needs it last: something does as such, and something as the
+    /// result of an operation that it is equal to.
     unclear: u16,
 }
 
@@ -127,7 +127,8 @@ impl Live {
         }
     }
 
-    /// The plan of what is left in a box, if that is at most `most` operations, and how many they are.
+    /// The plan of what is left in a box, if that is at most `most` operations, and how many they
+    /// are.
     pub(super) fn plan(&mut self, ops: &[Op], lane: usize, most: usize) -> Option<(Plan, usize)> {
         let Live { uses, needed, left: [left, steps], moved, free, .. } = self;
         if left[lane] > most {

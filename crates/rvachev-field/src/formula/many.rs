@@ -1,10 +1,10 @@
 //! Sixteen ranges at once, and what every operation does to them.
 //!
-//! Only finite ranges of what is defined throughout are dealt with; a lane in which anything else turns
-//! up becomes doubtful. Ends are moved outward by between one and two units in the last place, which
-//! covers the rounding to nearest of one operation: with s = fl(e),
-//! `|s − e| ≤ 2⁻⁵³·|s| + 2⁻¹⁰⁷⁵ < 2⁻⁵²·|s| + 2⁻¹⁰²²`, and what is subtracted from s is at least the next float
-//! away.
+//! Only finite ranges of what is defined throughout are dealt with; a lane in which anything else
+//! turns up becomes doubtful. Ends are moved outward by between one and two units in the last
+//! place, which covers the rounding to nearest of one operation: with s = fl(e),
+//! `|s − e| ≤ 2⁻⁵³·|s| + 2⁻¹⁰⁷⁵ < 2⁻⁵²·|s| + 2⁻¹⁰²²`, and what is subtracted from s is at least the
+//! next float away.
 
 use fidget::context::{BinaryOpcode, UnaryOpcode};
 
@@ -39,7 +39,8 @@ impl Many {
         (self.lo[lane], self.hi[lane]) = (lost(value.range.lo()), lost(value.range.hi()));
     }
 
-    /// Makes doubtful the lanes whose ends are not finite: 0 times them is no number, nor is a sum with that.
+    /// Makes doubtful the lanes whose ends are not finite: 0 times them is no number, nor is a sum
+    /// with that.
     #[inline(always)]
     pub(super) fn test(&self, doubt: &mut Doubt) {
         for (doubt, (lo, hi)) in doubt.iter_mut().zip(self.lo.iter().zip(&self.hi)) {
@@ -82,7 +83,8 @@ fn product(all: [f64; 4], [p, q]: [f64; 2], [r, s]: [f64; 2]) -> (f64, f64) {
     signed(lo, hi, same, opposite)
 }
 
-/// Calls `each` for every lane with the ends of its operand; the ends that it gives are the result's.
+/// Calls `each` for every lane with the ends of its operand; the ends that it gives are the
+/// result's.
 #[inline(always)]
 fn map(a: &Many, result: &mut Many, each: impl Fn(f64, f64) -> (f64, f64)) {
     for i in 0..BOXES {
@@ -98,8 +100,8 @@ fn join(a: &Many, b: &Many, result: &mut Many, each: impl Fn([f64; 2], [f64; 2])
     }
 }
 
-/// The lanes where `a ≥ b`; those of 0 and −0 may be left out. Written so that the compiler makes vectors of
-/// it: the sign of the difference, spread over a word, leaves a bit of it.
+/// The lanes where `a ≥ b`; those of 0 and −0 may be left out. Written so that the compiler makes
+/// vectors of it: the sign of the difference, spread over a word, leaves a bit of it.
 #[inline(always)]
 fn at_least(a: &[f64; BOXES], b: &[f64; BOXES]) -> u16 {
     const BITS: [u64; BOXES] = {

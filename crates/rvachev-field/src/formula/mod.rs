@@ -102,7 +102,8 @@ struct Inner {
     range: Interval,
     /// The first of those that it was narrowed from that has a region.
     elder: Option<Formula>,
-    /// The bound of rounding errors in all of its region, once it or a narrowed one was asked for it.
+    /// The bound of rounding errors in all of its region, once it or a narrowed one was asked for
+    /// it.
     roundoff: OnceLock<f64>,
     native: Native,
 }
@@ -179,7 +180,8 @@ impl Formula {
         self.0.code.tree()
     }
 
-    /// The formula with minima and maxima for its R-functions: of the same sign and the same surface.
+    /// The formula with minima and maxima for its R-functions: of the same sign and the same
+    /// surface.
     fn taken_apart(&self) -> Option<Formula> {
         let code = joints::taken_apart(&self.0.code)?;
         Some(Formula::of_code(code, self.0.bounds))

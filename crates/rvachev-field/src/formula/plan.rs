@@ -164,9 +164,9 @@ impl Plan {
         }
     }
 
-    /// Adds an operation, whose value counts until another is added, with its operands where they are;
-    /// `ends` tells which of them nothing needs after it. Gives where its own value is. `free` are the
-    /// registers that are free at the moment, of no use to anybody else.
+    /// Adds an operation, whose value counts until another is added, with its operands where they
+    /// are; `ends` tells which of them nothing needs after it. Gives where its own value is. `free`
+    /// are the registers that are free at the moment, of no use to anybody else.
     #[inline(always)]
     pub(super) fn add(&mut self, op: Op, [a, b]: [Slot; 2], ends: [bool; 2], free: &mut Vec<u32>) -> Slot {
         let mut out = || match free.pop() {

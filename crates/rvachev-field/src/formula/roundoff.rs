@@ -15,10 +15,10 @@
 //! 0, and yet ‖(a, b)‖ is off by no more than ‖(e_a, e_b)‖. So sums of squares
 //! carry a bound on |√c − √t| beside e.
 //!
-//! A bound holds for what narrowing makes of a formula in a part of the box as well: all that it does
-//! is to put an operand in the place of a minimum or so that it is equal to there, whose e is no
-//! larger. So the copies of minima, maxima and absolute values are given room for t ± e,
-//! and narrowed formulas share the bound of the one that they all come from.
+//! A bound holds for what narrowing makes of a formula in a part of the box as well: all that it
+//! does is to put an operand in the place of a minimum or so that it is equal to there, whose e is
+//! no larger. So the copies of minima, maxima and absolute values are given room for t ± e, and
+//! narrowed formulas share the bound of the one that they all come from.
 //!
 //! Where a step, a pole or a place where the value is undefined comes too near there is no
 //! bound: it is infinite, and every sample is settled in double precision.
@@ -200,8 +200,8 @@ impl Error {
     }
 }
 
-/// A bound that is taken from another formula is at most this part of the range of values: of points
-/// in a thousand one is settled in double precision for nothing.
+/// A bound that is taken from another formula is at most this part of the range of values: of
+/// points in a thousand one is settled in double precision for nothing.
 const SHARED: f64 = 1e-3;
 
 impl Formula {

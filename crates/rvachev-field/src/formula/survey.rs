@@ -10,8 +10,8 @@
 //!     r₁ = min r₃, r₂  [a, b]   [a, b]   [a, b]            of the operands is the result.
 //! ```
 //!
-//! Only finite ranges of what is defined throughout are dealt with here; a box in which anything else
-//! turns up is *lost*, and walked by itself with [`Sure`].
+//! Only finite ranges of what is defined throughout are dealt with here; a box in which anything
+//! else turns up is *lost*, and walked by itself with [`Sure`].
 
 use fidget::context::{BinaryOpcode, UnaryOpcode};
 
@@ -106,7 +106,8 @@ impl Survey {
         Sure { range: Interval::new(self.value.lo[lane], self.value.hi[lane]), sure: true }
     }
 
-    /// The plan of the operations that are left in a lane, if they are at most `most`, and how many they are.
+    /// The plan of the operations that are left in a lane, if they are at most `most`, and how many
+    /// they are.
     pub(super) fn narrowed(&mut self, code: &Code, lane: usize, most: usize) -> Option<(Plan, usize)> {
         let ops = code.known_ops().unwrap_or(&self.ops);
         if !self.live.known {

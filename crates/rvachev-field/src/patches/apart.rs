@@ -13,7 +13,8 @@ use super::face::double;
 use super::hierarchy::{Node, PARENT};
 use crate::Zone;
 
-/// After so many boxes and patches it is given up: what is that close has smaller zones to be told by.
+/// After so many boxes and patches it is given up: what is that close has smaller zones to be told
+/// by.
 const PATIENCE: usize = 512;
 
 /// More patches than this are not listed.
@@ -54,7 +55,8 @@ impl Patches {
         }
     }
 
-    /// The unit normals of all patches that may be within `least` of a zone, and are flat; nothing where they are many.
+    /// The unit normals of all patches that may be within `least` of a zone, and are flat; nothing
+    /// where they are many.
     pub(super) fn normals_within(&self, zone: &Zone, least: f64) -> Option<Vec<DVec3>> {
         let (seen, least) = (self.seen(zone), least / self.frame.unit);
         let (mut found, mut looked) = (Vec::new(), 0);
@@ -81,8 +83,8 @@ impl Patches {
         Some(found)
     }
 
-    /// A distance above `least` that all points of a zone are from all patches; nothing where there is none, or it is not
-    /// found soon.
+    /// A distance above `least` that all points of a zone are from all patches; nothing where there
+    /// is none, or it is not found soon.
     pub(super) fn apart(&self, zone: &Zone, least: f64) -> Option<f64> {
         let (seen, unit) = (self.seen(zone), self.frame.unit);
         let least = least / unit;

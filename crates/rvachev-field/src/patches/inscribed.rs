@@ -7,9 +7,10 @@
 //!     \ q  /
 //! ```
 //!
-//! All of a round surface is at one distance from its middle, and boxes about pieces of it reach into the ball however
-//! small they are. So each box of the hierarchy also knows how its patches look: the mean of their normals, how far others
-//! are from that, and how far along it the patches begin. A piece of a round surface begins there at nearly its distance.
+//! All of a round surface is at one distance from its middle, and boxes about pieces of it reach
+//! into the ball however small they are. So each box of the hierarchy also knows how its patches
+//! look: the mean of their normals, how far others are from that, and how far along it the patches
+//! begin. A piece of a round surface begins there at nearly its distance.
 //!
 //! ```text
 //!        .--|--.           A box about an arc has corners in the ball about c; but the arc is
@@ -59,7 +60,8 @@ impl Look {
     /// No normals, as of all.
     const UNKNOWN: Look = Look { axis: Vec3::ZERO, least: -1.0, sine: 0.0, low: f32::NEG_INFINITY };
 
-    /// Whether one of the normals may be turned so far from another one that the cosine between is less than `facing`.
+    /// Whether one of the normals may be turned so far from another one that the cosine between is
+    /// less than `facing`.
     #[inline(always)]
     fn may_face(&self, n: Vec3, facing: f32) -> bool {
         let cosine = self.axis.dot(n);
@@ -161,10 +163,10 @@ impl Walls {
         p.distance_squared(p.clamp(double(node.low), double(node.high)))
     }
 
-    /// The radius of the largest ball that touches at `p`, to one side of `normal`, which is to be of length 1, and
-    /// holds nothing of the patches that face it but what reaches into it by less than the part `slack` of its
-    /// radius: those face it whose normals have a cosine of less than `facing` with this one. Nothing if a ball of radius
-    /// `most` is free of them.
+    /// The radius of the largest ball that touches at `p`, to one side of `normal`, which is to be
+    /// of length 1, and holds nothing of the patches that face it but what reaches into it by less
+    /// than the part `slack` of its radius: those face it whose normals have a cosine of less than
+    /// `facing` with this one. Nothing if a ball of radius `most` is free of them.
     pub fn ball(&self, p: DVec3, normal: DVec3, most: f64, slack: f64, facing: f64) -> Option<f64> {
         let Walls { patches, normals, .. } = self;
         let (p, start) = (patches.frame.into_local(p), most / patches.frame.unit);

@@ -62,7 +62,7 @@ use crate::Bounds;
 
 pub use self::inscribed::Walls;
 pub use self::patch::Patch;
-pub use self::solid::{MeshLeaf, Openness};
+pub use self::solid::{MeshLeaf, OpenEdges};
 pub use self::surface_distance::SurfaceDistance;
 
 /// The nearest point of a surface.
@@ -179,8 +179,8 @@ impl Patches {
         (point, normal)
     }
 
-    /// A point of a patch, counted as the hierarchy sorts them, by its coordinates: (0, 0), (1, 0) and (0, 1) are the
-    /// corners.
+    /// A point of a patch, counted as the hierarchy sorts them, by its coordinates: (0, 0), (1, 0)
+    /// and (0, 1) are the corners.
     pub fn point(&self, at: usize, [s, t]: [f64; 2]) -> DVec3 {
         self.frame.outward(self.point_and_normal(at, s, t).0)
     }

@@ -1,7 +1,7 @@
 //! Which way a distance rises over a zone: against the normals of the patches that feet may be on.
 //!
-//! The gradient at a point is against the normal at its foot. Where the foot is on a crease it is between
-//! those of the patches that meet there, and all of these are near.
+//! The gradient at a point is against the normal at its foot. Where the foot is on a crease it is
+//! between those of the patches that meet there, and all of these are near.
 
 use glam::DVec3;
 use rvachev_num::Interval;
@@ -38,7 +38,8 @@ impl SurfaceDistance {
 }
 
 impl Patches {
-    /// The vectors against the normals of all patches that come this near to a point; nothing where these are many.
+    /// The vectors against the normals of all patches that come this near to a point; nothing where
+    /// these are many.
     fn slopes_within(&self, p: DVec3, reach: f64) -> Option<[Interval; 3]> {
         let (local, reach) = (self.frame.into_local(p), reach / self.frame.unit);
         let (mut least, mut most) = (DVec3::INFINITY, DVec3::NEG_INFINITY);

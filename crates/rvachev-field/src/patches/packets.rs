@@ -19,7 +19,8 @@ const FARTHEST: f64 = 1e15;
 /// to the foot.
 const CLOSE: f64 = 1e-4;
 
-/// Distances that are so near to the level that rounding may turn their signs are told apart, in units of the frame.
+/// Distances that are so near to the level that rounding may turn their signs are told apart, in
+/// units of the frame.
 const LEAST: f64 = 1e-5;
 
 /// Patches that were nearest to the packet before, none of them twice.
@@ -59,7 +60,8 @@ pub(super) struct Packets<'a> {
     /// Into the surface's frame; a value there is scaled and shifted to one outside.
     local: Placement,
     farthest: f64,
-    /// The distance on the positive side where values are 0, and how far from it distances are told apart.
+    /// The distance on the positive side where values are 0, and how far from it distances are told
+    /// apart.
     level: f64,
     band: f64,
 }

@@ -69,7 +69,8 @@ pub(super) trait Keep<R> {
     fn keep(&mut self, at: u32, least: R, most: R);
 }
 
-/// Which distances a search is to find: squares of those that are near enough to be told apart, and far enough.
+/// Which distances a search is to find: squares of those that are near enough to be told apart, and
+/// far enough.
 #[derive(Clone, Copy)]
 pub(super) struct Range<R> {
     pub(super) low: R,
@@ -89,8 +90,8 @@ const KEPT: usize = 32;
 
 impl Patches {
     /// Finds the nearest patches to points of the surface's frame, of curved patches all that may
-    /// be. `seeds` are patches that are likely to be near. What is found below the range is a bound of the distance, and
-    /// what is beyond is held at its end.
+    /// be. `seeds` are patches that are likely to be near. What is found below the range is a bound
+    /// of the distance, and what is beyond is held at its end.
     #[inline(always)]
     pub(super) fn search<R: Packet>(
         &self,

@@ -112,8 +112,8 @@ impl SurfaceDistance {
         if sign == 0.0 { self.sign_by_normal(p) } else { sign }
     }
 
-    /// The sign by the normal at the foot. Fields are 0 where parts of a solid meet face to face, though
-    /// the surface is elsewhere.
+    /// The sign by the normal at the foot. Fields are 0 where parts of a solid meet face to face,
+    /// though the surface is elsewhere.
     pub(super) fn sign_by_normal(&self, p: [f64; 3]) -> f64 {
         match self.nearest(DVec3::from_array(p)) {
             Some(foot) if foot.distance > AT_SURFACE * self.patches.unit() => {
@@ -165,7 +165,8 @@ impl SurfaceDistance {
         zone.mapped(&DAffine3::from_mat3(DMat3::from_diagonal(across)))
     }
 
-    /// What is left of the distance of a zone from the patches when it may be off by `slack`; 0 if that is all of it.
+    /// What is left of the distance of a zone from the patches when it may be off by `slack`; 0 if
+    /// that is all of it.
     pub(super) fn apart(&self, zone: &Zone, slack: f64) -> f64 {
         self.patches.apart(&self.across(zone), slack).map_or(0.0, |apart| apart - slack)
     }

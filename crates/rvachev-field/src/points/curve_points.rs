@@ -10,7 +10,8 @@ use crate::{Field, Norm, Real, Superellipse};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum CurveSpread {
-    /// At equal angles of the parametric form: with e = 0.04 and 91 samples a quarter, gaps of 0.85.
+    /// At equal angles of the parametric form: with e = 0.04 and 91 samples a quarter, gaps of
+    /// 0.85.
     UniformAngle,
     /// At equal steps of the shorter coordinate, the longer one by the explicit form.
     #[default]

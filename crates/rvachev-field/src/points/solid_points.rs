@@ -52,8 +52,8 @@ pub enum PointMethod {
     ///
     /// For heights over points that are given, where products cannot serve, what is fastest
     /// depends: [`ExactExplicit`] on lanes of `f32` takes 1/17 to 1/50 of the time of method 1, for
-    /// n = 2 1/385; for whole n above 2 and tolerances of 10⁻³ [`SeriesExplicit`] up to 1/89. On lanes of
-    /// `f64`, [`ExactExplicit`] takes 1/16 to 1/25 for whole n, 1/7 to 1/10 for others.
+    /// n = 2 1/385; for whole n above 2 and tolerances of 10⁻³ [`SeriesExplicit`] up to 1/89. On
+    /// lanes of `f64`, [`ExactExplicit`] takes 1/16 to 1/25 for whole n, 1/7 to 1/10 for others.
     /// `cargo bench --bench points` prints all that, for each exponent and tolerance, beside the
     /// ratios of 1981.
     #[default]

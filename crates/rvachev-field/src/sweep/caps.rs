@@ -23,22 +23,24 @@ use crate::{ParamError, Rule, check};
 /// |---|---|---|
 /// | radius of `Rounded`, leg of `Chamfered` | length | 10⁻⁹ to 10⁹; at most half the height (of a helix, half its length); below the radius of the largest circle within the section |
 ///
-/// What does not fit is an error when the solid is first used: it names the parameter, its value, and the
-/// largest that is allowed. Of the end face something is always left. The largest circle is known to a
-/// ten-thousandth; a section without end has none.
+/// What does not fit is an error when the solid is first used: it names the parameter, its value,
+/// and the largest that is allowed. Of the end face something is always left. The largest circle is
+/// known to a ten-thousandth; a section without end has none.
 ///
-/// Distances are true ones: those of circles, rectangles and polygons, and of what is cut out of them or
-/// common to them, are known; of every other profile (unions, gauges such as superellipses, stretched ones,
-/// blends) the outline is measured when the solid is compiled, to a thousandth of the size or a millionth of
-/// the section's width. At a corner of the outline the edges meet in a mitre, at an inner corner they go round
-/// it.
+/// Distances are true ones: those of circles, rectangles and polygons, and of what is cut out of
+/// them or common to them, are known; of every other profile (unions, gauges such as superellipses,
+/// stretched ones, blends) the outline is measured when the solid is compiled, to a thousandth of
+/// the size or a millionth of the section's width. At a corner of the outline the edges meet in a
+/// mitre, at an inner corner they go round it.
 ///
-/// In a twisted extrusion d is measured in the section, in a scaled one in the section as it is at that end;
-/// where sides slope, an edge is rounded by an arc of an ellipse, or cut off at an angle other than 45°. In a
-/// scaled extrusion the size must fit into the smaller end. Along a helix t is measured at its radius.
+/// In a twisted extrusion d is measured in the section, in a scaled one in the section as it is at
+/// that end; where sides slope, an edge is rounded by an arc of an ellipse, or cut off at an angle
+/// other than 45°. In a scaled extrusion the size must fit into the smaller end. Along a helix t is
+/// measured at its radius.
 ///
-/// The value is that of the formula: `r − √((r − min(d, r))² + (r − min(t, r))²)`, or `min(d, t)` where both
-/// are above r, and `min(d, t, (d + t − l)/√2)`. It is 1-Lipschitz if the extrusion is straight.
+/// The value is that of the formula: `r − √((r − min(d, r))² + (r − min(t, r))²)`, or `min(d, t)`
+/// where both are above r, and `min(d, t, (d + t − l)/√2)`. It is 1-Lipschitz if the extrusion is
+/// straight.
 ///
 /// ```
 /// use rvachev::{Caps, Extrusion, Profile};
@@ -60,8 +62,8 @@ pub enum Caps {
     /// Sharp.
     #[default]
     Flat,
-    /// Chamfered at 45°; the number is the leg, a length: how far from the edge the bevel begins, on the
-    /// end face and on the sides.
+    /// Chamfered at 45°; the number is the leg, a length: how far from the edge the bevel begins,
+    /// on the end face and on the sides.
     Chamfered(f64),
     /// Rounded; the number is the radius, a length.
     Rounded(f64),
@@ -121,7 +123,8 @@ impl Caps {
         Ok(())
     }
 
-    /// That the size leaves nothing of the section: circles within it have a radius of at most `most`.
+    /// That the size leaves nothing of the section: circles within it have a radius of at most
+    /// `most`.
     #[doc(hidden)]
     #[must_use]
     pub fn too_large(self, name: &str, most: f64) -> ParamError {

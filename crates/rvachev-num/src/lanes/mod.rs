@@ -26,7 +26,8 @@
 //!
 //! # Errors
 //!
-//! Measured on AVX-512, AVX2, SSE4.2 and SSE2 by the sweeps of the unit tests, which hold these bounds.
+//! Measured on AVX-512, AVX2, SSE4.2 and SSE2 by the sweeps of the unit tests, which hold these
+//! bounds.
 //!
 //! | function | `f32` | `f64` | |
 //! |---|---|---|---|

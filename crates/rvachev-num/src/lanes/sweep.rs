@@ -52,7 +52,8 @@ pub(super) fn line(n: usize, lo: f64, hi: f64, map: impl Fn(f64) -> f64) -> Vec<
     (0..=n).map(|i| [map(lo + step * i as f64), 0.0, 0.0]).collect()
 }
 
-/// Calls with the token of each SIMD level that kernels run at on this machine, and collects what comes.
+/// Calls with the token of each SIMD level that kernels run at on this machine, and collects what
+/// comes.
 macro_rules! on_levels {
     ($simd:ident => $call:expr) => {{
         #[cfg(not(target_arch = "x86_64"))]

@@ -11,8 +11,8 @@ pub struct Meter<'a> {
     done: Count,
 }
 
-/// A count in a line of the cache of its own: apart from what all threads read at each step, which each count would take
-/// from the others.
+/// A count in a line of the cache of its own: apart from what all threads read at each step, which
+/// each count would take from the others.
 #[repr(align(128))]
 #[derive(Default)]
 struct Count(AtomicU64);

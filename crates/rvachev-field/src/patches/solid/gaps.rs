@@ -8,8 +8,8 @@
 //!       o---o
 //! ```
 //!
-//! From several sizes away that is much less than the rim's length tells: small openings add as little as they let out,
-//! however many there are.
+//! From several sizes away that is much less than the rim's length tells: small openings add as
+//! little as they let out, however many there are.
 
 use std::collections::HashMap;
 use std::f64::consts::PI;
@@ -60,7 +60,8 @@ impl Gaps {
         Ok(Gaps { triangles, boxes, areas })
     }
 
-    /// How far from 0 the winding number is at most in a box that is outside of the box of all triangles.
+    /// How far from 0 the winding number is at most in a box that is outside of the box of all
+    /// triangles.
     pub(super) fn most(&self, centre: DVec3, half: DVec3) -> f64 {
         let frame = &self.triangles.frame;
         let (low, high) = (frame.into_local(centre - half), frame.into_local(centre + half));
@@ -104,7 +105,8 @@ fn rings(open: &[OpenEdge]) -> Vec<Vec<DVec3>> {
     let mut found = Vec::new();
     for start in 0..open.len() {
         while left[start] > 0 {
-            // As many edges end at a vertex as start there: a way that goes on comes back to where it has been.
+            // As many edges end at a vertex as start there: a way that goes on comes back to where
+            // it has been.
             let mut way = vec![start];
             let mut places = HashMap::from([(open[start].vertices[0], 0)]);
             left[start] -= 1;
@@ -163,7 +165,8 @@ mod tests {
     #[test]
     fn no_winding_number_is_larger() {
         let gaps = Gaps::new(&sheet(4, |_, _| true), &Run::default()).unwrap();
-        // Above the middle of a square of side 4 the solid angle is 4 asin(a² / (a² + h²)), a half of the side.
+        // Above the middle of a square of side 4 the solid angle is 4 asin(a² / (a² + h²)), a half
+        // of the side.
         for height in [1.0_f64, 3.0, 10.0, 40.0] {
             let exact = 4.0 * (4.0 / (4.0 + height * height)).asin() / (4.0 * PI);
             let most = gaps.most(DVec3::new(2.0, 2.0, height), DVec3::ZERO);

@@ -46,25 +46,25 @@ pub struct MeshLeaf {
 
 /// How far from closed triangles are.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Openness {
+pub struct OpenEdges {
     /// Edges that have more triangles on one side than on the other.
     pub edges: usize,
     /// How long they are together, each as often as triangles are missing.
     pub length: f64,
 }
 
-impl Openness {
+impl OpenEdges {
     /// Of triangles, by positions and their numbers. Vertices at one position are one vertex.
-    pub fn of(positions: &[Vec3], triangles: &[[u32; 3]]) -> Openness {
+    pub fn of(positions: &[Vec3], triangles: &[[u32; 3]]) -> OpenEdges {
         let edges = rim::open_edges(positions, triangles);
         let length = |edge: &rim::OpenEdge| f64::from(edge.missing) * edge.ends[0].distance(edge.ends[1]);
-        Openness { edges: edges.len(), length: edges.iter().map(length).sum() }
+        OpenEdges { edges: edges.len(), length: edges.iter().map(length).sum() }
     }
 }
 
 impl MeshLeaf {
-    /// What triangles enclose, given by finite positions and their numbers, counter-clockwise as seen from
-    /// outside; `colors` are those of their corners.
+    /// What triangles enclose, given by finite positions and their numbers, counter-clockwise as
+    /// seen from outside; `colors` are those of their corners.
     ///
     /// # Errors
     ///

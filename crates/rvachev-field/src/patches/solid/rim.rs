@@ -36,7 +36,8 @@ use super::gaps::Gaps;
 use super::winding::Winding;
 use crate::Bounds;
 
-/// An edge that has more triangles on one side than on the other, as those that are more go along it.
+/// An edge that has more triangles on one side than on the other, as those that are more go along
+/// it.
 pub(super) struct OpenEdge {
     pub(super) ends: [DVec3; 2],
     /// The numbers of its ends.
@@ -171,12 +172,14 @@ pub(super) struct Membrane {
 const PATIENCE: usize = 20_000;
 
 impl Membrane {
-    /// How far above one half the winding number is, and how far the membrane is at least, or `most` if that is less.
+    /// How far above one half the winding number is, and how far the membrane is at least, or
+    /// `most` if that is less.
     pub(super) fn side(&self, p: DVec3, most: f64) -> (f64, f64) {
         let side = self.winding.number(p) - 0.5;
         let distance = self.rim.distance(p);
         let way = most.min(0.25 * distance);
-        // Nowhere is the rim steeper than if all of it were at its nearest point: mostly that tells enough.
+        // Nowhere is the rim steeper than if all of it were at its nearest point: mostly that tells
+        // enough.
         let is_enough = side.abs() >= 4.0 * way * self.rim.whole / (distance * distance);
         if is_enough { (side, way) } else { (side, way.min(side.abs() / (4.0 * self.rim.steepest(p)))) }
     }
@@ -194,8 +197,8 @@ impl Membrane {
         DVec3::from_array(slope).clamp_length_max(1.0)
     }
 
-    /// A box that holds what is inside. Beyond the triangles the winding number has its largest value on any box
-    /// around them, as harmonic functions have.
+    /// A box that holds what is inside. Beyond the triangles the winding number has its largest
+    /// value on any box around them, as harmonic functions have.
     pub(super) fn bounds(&self, triangles: Bounds, gaps: &Gaps, run: &Run) -> Result<Bounds, Cancelled> {
         /// How much larger each box is than the one before, of the size.
         const STEPS: [f64; 9] = [0.01, 0.02, 0.04, 0.08, 0.16, 0.32, 0.64, 1.28, 2.56];

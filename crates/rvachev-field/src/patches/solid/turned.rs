@@ -1,7 +1,7 @@
 //! Whether triangles are inside out.
 //!
-//! Close behind triangles that enclose something the winding number is above one half. Of a mesh that is inside out
-//! it is so nowhere, but would be so with the triangles turned over.
+//! Close behind triangles that enclose something the winding number is above one half. Of a mesh
+//! that is inside out it is so nowhere, but would be so with the triangles turned over.
 
 use glam::DVec3;
 
@@ -15,11 +15,13 @@ const LOOKS: usize = 256;
 const BEHIND: f64 = 1e-3;
 const LEAST: f64 = 1e-5;
 
-/// Below this, the winding number tells that the other side would be inside. Those of open edges are near one half.
+/// Below this, the winding number tells that the other side would be inside. Those of open edges
+/// are near one half.
 const TURNED: f64 = -0.6;
 
 impl Winding {
-    /// The volume about their middle of triangles that enclose nothing, but would if they were turned over.
+    /// The volume about their middle of triangles that enclose nothing, but would if they were
+    /// turned over.
     pub(super) fn volume_if_turned(&self) -> Option<f64> {
         let count = self.patches.len();
         let mut is_turned = false;

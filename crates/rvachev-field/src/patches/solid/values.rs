@@ -19,7 +19,8 @@ use rvachev_num::symbol::Symbol;
 const ROUNDING: f64 = 1e-6;
 
 impl MeshLeaf {
-    /// The value of a point, given the distance from the triangles and what is known of the membrane.
+    /// The value of a point, given the distance from the triangles and what is known of the
+    /// membrane.
     fn held(distance: f64, (side, way): (f64, f64)) -> f64 {
         let size = distance.min(way);
         if side > 0.0 {
@@ -178,7 +179,8 @@ impl AnyField for MeshLeaf {
         if self.is_open() { 0 } else { self.distance.rises(zone, ways) }
     }
 
-    /// Along a line the winding number grows where it passes triangles from in front, and changes nowhere else.
+    /// Along a line the winding number grows where it passes triangles from in front, and changes
+    /// nowhere else.
     fn enters(&self, zone: &Zone, ways: &[Way]) -> u8 {
         let Some(normals) = self.normals_in(zone) else { return 0 };
         let enters = |way: Way| {

@@ -4,8 +4,8 @@
 //!     w(p) = 1/4π Σ Ω(p),      Ω the solid angle of a triangle as seen from p, positive from behind
 //! ```
 //!
-//! From far away the triangles of a box of the hierarchy are seen as a dipole and a quadrupole about
-//! their middle, of which the box keeps the moments; near ones are seen one by one.
+//! From far away the triangles of a box of the hierarchy are seen as a dipole and a quadrupole
+//! about their middle, of which the box keeps the moments; near ones are seen one by one.
 //!
 //! Sources: G. Barill et al., *Fast Winding Numbers for Soups and Clouds* (2018), section 3; A. van
 //! Oosterom and J. Strackee, *The Solid Angle of a Plane Triangle* (1983).
@@ -21,7 +21,8 @@ use super::super::face::{double, wide};
 use super::super::hierarchy::{DEEPEST, PARENT};
 use super::super::packet::Packet;
 
-/// From as many radii away a box is seen as one: of coarse facets the winding number is off by up to some hundredths.
+/// From as many radii away a box is seen as one: of coarse facets the winding number is off by up
+/// to some hundredths.
 const FAR: f64 = 2.0;
 
 /// The same of points whose side is in doubt: by less than 10⁻³.
@@ -38,7 +39,8 @@ struct Moments {
     radius: f32,
     /// The sum of the area vectors.
     dipole: [f32; 3],
-    /// The symmetric part of the sum of their products with the ways from the middle: xx, yy, zz, xy, yz, zx.
+    /// The symmetric part of the sum of their products with the ways from the middle: xx, yy, zz,
+    /// xy, yz, zx.
     quadrupole: [f32; 6],
 }
 

@@ -11,7 +11,8 @@ use crate::ParamError;
 /// The shortest edge.
 const SHORTEST: f64 = 1e-9;
 
-/// Coordinates that are smaller are taken as 0: products of them would be below what numbers can hold.
+/// Coordinates that are smaller are taken as 0: products of them would be below what numbers can
+/// hold.
 const NOTHING: f64 = 1e-30;
 
 /// The edges of the contours, inside on their left; or what is wrong with them.

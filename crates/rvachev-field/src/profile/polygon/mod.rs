@@ -4,9 +4,9 @@
 //!     f = ± distance to the nearest edge, + inside
 //! ```
 //!
-//! The nearest edge is found through a hierarchy of boxes, and so are the edges that a ray
-//! crosses, whose number gives the sign. In a small region few edges can be nearest: there the polygon is narrowed to a leaf of
-//! these alone, which runs on lanes.
+//! The nearest edge is found through a hierarchy of boxes, and so are the edges that a ray crosses,
+//! whose number gives the sign. In a small region few edges can be nearest: there the polygon is
+//! narrowed to a leaf of these alone, which runs on lanes.
 
 mod contours;
 mod edge;
@@ -41,15 +41,17 @@ use tree::Tree;
 /// `f = ± distance to the nearest edge`, positive inside. The edge is found through a hierarchy
 /// of boxes: thousands of edges are no burden.
 ///
-/// It is given by its contours, each a list of points in either sense, closed by itself (a
-/// point that repeats the one before it is left out, as is a last one that repeats the first). A point is inside if an odd number of
-/// contours go round it: a contour within another is a hole, one within the hole an island.
+/// It is given by its contours, each a list of points in either sense, closed by itself (a point
+/// that repeats the one before it is left out, as is a last one that repeats the first). A point is
+/// inside if an odd number of contours go round it: a contour within another is a hole, one within
+/// the hole an island.
 ///
-/// Contours may touch themselves and one another, at corners or along edges: what two of them have in common
-/// is no border, as between two squares side by side, or on the two ways of a bridge that leads to a hole.
-/// Edges do not cross; coordinates are within ±10⁹ and edges at least 10⁻⁹ long. What is wrong is found by
-/// exact arithmetic and said when the profile is compiled: with the contour, the edge and the point. Until
-/// then nothing is computed; n edges take some n log n steps, and one more for each pair that lies on one another.
+/// Contours may touch themselves and one another, at corners or along edges: what two of them have
+/// in common is no border, as between two squares side by side, or on the two ways of a bridge that
+/// leads to a hole. Edges do not cross; coordinates are within ±10⁹ and edges at least 10⁻⁹ long.
+/// What is wrong is found by exact arithmetic and said when the profile is compiled: with the
+/// contour, the edge and the point. Until then nothing is computed; n edges take some n log n
+/// steps, and one more for each pair that lies on one another.
 ///
 /// ```
 /// use rvachev::{Polygon, Profile};
@@ -73,7 +75,8 @@ struct Shape {
     border: OnceLock<Border>,
 }
 
-/// The edges that the even-odd rule makes of the contours; none if there is something wrong with these.
+/// The edges that the even-odd rule makes of the contours; none if there is something wrong with
+/// these.
 struct Border {
     /// In the order of the tree.
     edges: Vec<Edge>,
@@ -121,15 +124,16 @@ impl Polygon {
         })
     }
 
-    /// The contours as they were given, but for points that repeat the one before them, and last ones that repeat
-    /// the first.
+    /// The contours as they were given, but for points that repeat the one before them, and last
+    /// ones that repeat the first.
     #[must_use]
     pub fn contours(&self) -> &[Vec<DVec2>] {
         &self.0.contours
     }
 
-    /// The number of edges of the border: those of the contours, without what two of them have in common, and parted
-    /// where corners are on them; 0 if there is something wrong with the contours.
+    /// The number of edges of the border: those of the contours, without what two of them have in
+    /// common, and parted where corners are on them; 0 if there is something wrong with the
+    /// contours.
     #[must_use]
     pub fn edge_count(&self) -> usize {
         self.border().edges.len()

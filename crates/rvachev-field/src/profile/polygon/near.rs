@@ -183,8 +183,8 @@ pub(super) fn nearest_over(patch: &Patch, edges: impl Iterator<Item = Edge>, mar
     bounded.into_iter().filter(|(low, _)| *low <= most + 2.0 * margin).map(|(_, edge)| edge).collect()
 }
 
-/// The directions along which the signed distance rises where these edges can be nearest: into the polygon across all of
-/// them, and so across their corners.
+/// The directions along which the signed distance rises where these edges can be nearest: into the
+/// polygon across all of them, and so across their corners.
 pub(super) fn rises(edges: &[Edge], ways: &[Way]) -> u8 {
     let across = |edge: &Edge, Way { middle, sway }: Way| edge.along.perp().dot(middle.truncate()) > sway;
     bits(ways, |way| !edges.is_empty() && edges.iter().all(|edge| across(edge, way)))

@@ -1,5 +1,5 @@
-//! What the even-odd rule makes of edges that touch: pieces that meet at their ends alone, each with its inside on one
-//! side.
+//! What the even-odd rule makes of edges that touch: pieces that meet at their ends alone, each
+//! with its inside on one side.
 //!
 //! ```text
 //!         above \       / inside           One walk over all corners from left to right. What
@@ -10,9 +10,9 @@
 //!      a corner on an edge parts it        it is inside if it is outside below it.
 //! ```
 //!
-//! An edge that a corner lies on is parted there, which takes no rounding. Of pieces that lie on one another an even
-//! number is nothing, and an odd number one. All decisions are by exact arithmetic: J. R. Shewchuk's adaptive
-//! orientation test (1997).
+//! An edge that a corner lies on is parted there, which takes no rounding. Of pieces that lie on
+//! one another an even number is nothing, and an odd number one. All decisions are by exact
+//! arithmetic: J. R. Shewchuk's adaptive orientation test (1997).
 //!
 //! Source: M. I. Shamos and D. Hoey, *Geometric intersection problems* (1976).
 

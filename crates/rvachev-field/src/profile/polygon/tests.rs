@@ -278,7 +278,8 @@ fn random_contours_on_a_grid_are_even_odd() {
                     // Of the contours some edges are no border.
                     assert!(got.abs() >= want.abs() - 1e-12, "{contours:?} at {p}: {got}, {want}");
                 }
-                // What is on the left of an edge is inside; edges cross only where they are no border.
+                // What is on the left of an edge is inside; edges cross only where they are no
+                // border.
                 let edges = &polygon.border().edges;
                 let ends = |edge: &Edge| [edge.start, edge.end];
                 assert!(!edges.iter().any(|one| edges.iter().any(|other| cross(ends(one), ends(other)))));
