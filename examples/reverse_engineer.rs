@@ -17,7 +17,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 use rvachev::code::{RustFile, RustSettings};
-use rvachev::fit::{PartFit, PartSettings, inspect, part};
+use rvachev::fit::{Layout, PartFit, PartSettings, inspect, part};
 use rvachev::{Camera, CellSize, Image, Mesh, MeshSettings, MeshSolid, PointCloud, RenderSettings, Solid, deg};
 
 const WIDTH: u32 = 640;
@@ -115,6 +115,17 @@ fn code(name: &str, fit: &PartFit) -> String {
         let verb = if leaf.is_cut() { "cut" } else { "added" };
         let text = format!("{}, {verb}; {:.1} % of the surface", leaf.kind(), 100.0 * leaf.surface());
         settings.comments.insert(leaf.name().to_owned(), text);
+    }
+    for pattern in fit.patterns() {
+        let what = match pattern.layout {
+            Layout::Ring { .. } => "a ring",
+            Layout::Grid { .. } => "a grid",
+            _ => "a row",
+        };
+        // In the solid it is the first leaf, repeated.
+        if let Some(text) = settings.comments.get_mut(fit.leaves()[pattern.leaves[0]].name()) {
+            *text = format!("{text} each, {} in {what}", pattern.leaves.len());
+        }
     }
     let mut file = RustFile::new(settings);
     file.add(name, &fit.solid());

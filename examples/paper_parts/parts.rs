@@ -4,7 +4,7 @@ use std::error::Error;
 use std::path::Path;
 
 use glam::DVec3;
-use rvachev::fit::{Segments, UnionFit, UnionSettings, supershape_union};
+use rvachev::fit::{PartSettings, Segments, UnionFit, UnionSettings, part as part_of, supershape_union};
 use rvachev::{
     Bounds, Camera, CellSize, Gielis, MeshSettings, RFunction, Radius, RenderSettings, Solid, Supershape, deg,
 };
@@ -81,14 +81,16 @@ fn catalogue() -> [(&'static str, Solid); 8] {
 pub fn parts(folder: &Path) -> Result<(), Box<dyn Error>> {
     let parts = catalogue();
     let mut sheet = Sheet::new(3, parts.len() as u32, PANEL);
-    println!("part: bodies, holes, IoU, rms deviation; error of fit of bodies, with holes, refined");
+    println!("part: bodies, holes, IoU, rms deviation; error of fit of bodies, with holes, refined;");
+    println!("beside it what fit::part makes of the same mesh: leaves, IoU, rms deviation, parameters");
     for (name, part) in parts {
         let mesh = part.mesh(&MeshSettings { cell: CellSize::LongestSide(60), ..MeshSettings::default() })?;
         let segments = Segments::of_mesh_by_creases(&mesh, deg(40.0))?;
         let fit = supershape_union(&segments, &UnionSettings::default())?;
         let error = fit.error();
+        let tree = part_of(&mesh, &PartSettings::default())?;
         println!(
-            "  {name}: {}, {}, {:.3}, {:.4}; {:.4}, {:.4}, {:.4} in {} steps; {} parameters",
+            "  {name}: {}, {}, {:.3}, {:.4}; {:.4}, {:.4}, {:.4} in {} steps; {} parameters; tree: {}, {:.3}, {:.4}, {}",
             fit.parts().len(),
             fit.holes(),
             overlap(&part, &fit.solid())?,
@@ -97,7 +99,11 @@ pub fn parts(folder: &Path) -> Result<(), Box<dyn Error>> {
             error.holes,
             error.refined,
             fit.refinement_steps(),
-            fit.parameters()
+            fit.parameters(),
+            tree.leaves().len(),
+            overlap(&part, &tree.solid())?,
+            tree.deviation().rms,
+            tree.parameters()
         );
         let camera = camera(&part.bounds()?);
         sheet.panel(name).picture(&part.render(&camera, &settings())?);

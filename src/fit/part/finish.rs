@@ -12,11 +12,11 @@ use super::intent::Meant;
 use super::leaf::Leaf;
 use super::queries::MARGIN;
 use super::refine::owner;
+use super::repeated::solid_of;
 use super::result::{PartFit, PartLeaf, Snap, Topology, Unexplained};
 use super::samples::Samples;
 use super::sobol::Sobol;
-use super::topology::tree;
-use crate::{Bounds, Run, Solid};
+use crate::{Bounds, Run};
 
 /// Points that the volumes in common are estimated from.
 const POINTS: usize = 1 << 14;
@@ -49,7 +49,7 @@ pub(super) fn finish(
     }
     let (iou, unexplained) = compared(leaves, body, samples, run)?;
     let (leaves, snaps) = named(leaves, meant, &shares);
-    let solid = solid_of(&leaves).ok_or(FitError::NoSurface { inliers: 0.0 })?;
+    let solid = solid_of(&leaves, size).ok_or(FitError::NoSurface { inliers: 0.0 })?;
     solid.bounds()?;
     let topology_of_input = body.topology;
     let deviation = Deviation::of(distances.into_iter());
@@ -69,11 +69,6 @@ fn named(leaves: &[(bool, Leaf)], meant: Vec<Meant>, shares: &[f64]) -> (Vec<Par
         named.push(PartLeaf { adds: *adds, leaf, name, surface: *surface });
     }
     (named, snaps)
-}
-
-/// The tree of the leaves.
-pub(super) fn solid_of(leaves: &[PartLeaf]) -> Option<Solid> {
-    tree(leaves.iter().map(|leaf| (leaf.adds, leaf.leaf.solid().named(&leaf.name))))
 }
 
 /// The volume in common over that of either, and the places where they differ.

@@ -185,11 +185,10 @@ impl Leaf {
         let rounded = DMat3::from_cols_array(&self.rotation.to_cols_array().map(f64::round));
         let is_aligned = (self.rotation - rounded).to_cols_array().iter().all(|off| off.abs() < within)
             && (rounded.determinant() - 1.0).abs() < 0.5;
-        let is_round = matches!(self.shape, Shape::Cylinder(_) | Shape::Cone(_) | Shape::Torus(_) | Shape::Sphere(_));
         let axis = self.rotation.z_axis;
         let along = DVec3::from_array(axis.to_array().map(f64::round));
         let is_along = (axis - along).abs().max_element() < within && along.length_squared() == 1.0;
-        let mut leaf = self.clone();
+        let (mut leaf, is_round) = (self.clone(), self.is_round());
         match &mut leaf.shape {
             Shape::Box(s) if is_aligned => {
                 s.size = (rounded * s.size).abs();

@@ -36,6 +36,7 @@ mod refine;
 mod regions;
 #[cfg(test)]
 mod regions_tests;
+mod repeated;
 mod result;
 mod round;
 mod samples;

@@ -67,7 +67,8 @@ pub enum Layout {
 impl PartFit {
     /// Leaves that are equal but for their places, which are on a line, a ring or a grid: of the
     /// leaves that have the same kind, sizes and direction. A leaf is in one pattern at most. Those
-    /// of more leaves come first.
+    /// of more leaves come first. In the [solid](PartFit::solid) a pattern is its first leaf, repeated,
+    /// unless something of the other sign comes between its leaves.
     ///
     /// ```
     /// use rvachev::fit::{Layout, PartSettings, part};
@@ -84,12 +85,12 @@ impl PartFit {
     #[must_use]
     pub fn patterns(&self) -> Vec<Pattern> {
         let size = self.solid.bounds().map_or(1.0, |bounds| bounds.size().length());
-        of(&self.leaves, size)
+        patterns_of(&self.leaves, size)
     }
 }
 
 /// The patterns of leaves of a part of a size.
-fn of(leaves: &[PartLeaf], size: f64) -> Vec<Pattern> {
+pub(super) fn patterns_of(leaves: &[PartLeaf], size: f64) -> Vec<Pattern> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for (i, leaf) in leaves.iter().enumerate() {
         match groups.iter_mut().find(|group| is_equal(&leaves[group[0]], leaf, size)) {
@@ -229,7 +230,7 @@ mod tests {
         let row = [2, 0, 3, 1].map(|k| cut(5.0 * f64::from(k), 2.0 * f64::from(k), 2.0));
         let stray = [cut(3.0, 30.0, 2.0), cut(1.0, 1.0, 3.0)];
         let leaves: Vec<PartLeaf> = ring.chain(grid).chain(row).chain(stray).collect();
-        let found = of(&leaves, 60.0);
+        let found = patterns_of(&leaves, 60.0);
         assert_eq!(found.len(), 3, "{found:?}");
         let Layout::Grid { steps, counts, .. } = found[0].layout else { panic!("{found:?}") };
         assert_eq!(counts, [3, 2]);
@@ -243,10 +244,10 @@ mod tests {
     #[test]
     fn four_on_a_circle_are_a_ring_and_unlike_ones_nothing() {
         let four = [[5.0, 0.0], [0.0, 5.0], [-5.0, 0.0], [0.0, -5.0]].map(|[x, y]| cut(x, y, 1.0)).to_vec();
-        assert!(matches!(of(&four, 20.0)[0].layout, Layout::Ring { .. }));
+        assert!(matches!(patterns_of(&four, 20.0)[0].layout, Layout::Ring { .. }));
         let mut unlike = four;
         unlike[1] = cut(0.0, 5.0, 1.2);
         unlike[2] = cut(-5.0, 0.0, 0.8);
-        assert!(of(&unlike, 20.0).is_empty());
+        assert!(patterns_of(&unlike, 20.0).is_empty());
     }
 }

@@ -3,9 +3,9 @@
 use glam::DVec3;
 
 use super::super::deviations::Deviation;
-use super::finish::solid_of;
 use super::intent::Change;
 use super::leaf::Leaf;
+use super::repeated::solid_of;
 use crate::{Bounds, Solid};
 
 /// A part as an ordered tree of leaves, and how well it is the part.
@@ -115,11 +115,13 @@ impl PartFit {
         }
         let mut place = 0..;
         fit.snaps.retain(|_| place.next().is_none_or(|n| !snaps.contains(&n)));
-        fit.solid = solid_of(&fit.leaves).unwrap_or(fit.solid);
+        let size = fit.solid.bounds().map_or(1.0, |bounds| bounds.size().length());
+        fit.solid = solid_of(&fit.leaves, size).unwrap_or(fit.solid);
         fit
     }
 
-    /// The part, in the mesh's coordinates. Its leaves have [names](PartLeaf::name).
+    /// The part, in the mesh's coordinates. Its leaves have [names](PartLeaf::name); those of a
+    /// [pattern](PartFit::patterns) are the first one, repeated.
     #[must_use]
     pub fn solid(&self) -> Solid {
         self.solid.clone()

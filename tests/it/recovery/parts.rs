@@ -90,6 +90,49 @@ fn radii_are_those_of_corners_unless_it_is_refused() {
 }
 
 #[test]
+fn numbers_are_round_holes_go_through_and_patterns_are_one_leaf() {
+    let disc = Solid::cylinder(30.0, 8.0);
+    let pipe = Solid::cylinder(12.0, 30.0).translate([0.0, 0.0, 15.0]);
+    let holes = Solid::cylinder(3.5, 20.0).translate([22.0, 0.0, 0.0]).repeat_polar(6);
+    let flange = (disc | pipe) - Solid::cylinder(8.0, 80.0) - holes;
+    let mesh = flange.mesh(&MeshSettings { cell: CellSize::Tolerance(0.02), ..MeshSettings::default() }).unwrap();
+    let fit = part(&mesh, &PartSettings::default()).unwrap();
+    assert_right(&fit, 0.99);
+    let code = fit.solid().to_rust("flange");
+    for words in ["repeat_polar(6)", "22.0", "3.5", "30.0", "8.0"] {
+        assert!(code.contains(words), "{words}: {code}");
+    }
+    assert!(code.lines().count() < 32, "{code}");
+    // Not a skin is left: looked through along each hole, there is nothing.
+    for k in 0..6 {
+        let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / 6.0).sin_cos();
+        let from = DVec3::new(22.0 * cos, 22.0 * sin, 50.0);
+        assert_eq!(fit.solid().raycast(from, -DVec3::Z).unwrap(), None, "{k}: {code}");
+    }
+    // What was changed can be taken back.
+    let snap = fit.snaps().iter().position(|snap| snap.measure == "diameter" && snap.meant == 60.0).expect("60 wide");
+    let found = fit.snaps()[snap].found;
+    assert!((found - 60.0).abs() < 0.01, "{found}");
+    let kept = fit.without_snaps(&[snap]);
+    assert!(kept.solid().to_rust("kept").contains(&(0.5 * found).to_string()), "{}", kept.solid().to_rust("kept"));
+    assert_eq!(kept.snaps().len() + 1, fit.snaps().len());
+}
+
+#[test]
+fn a_holder_is_code_in_binary_fractions_of_an_inch() {
+    let Some(path) = shared("holder") else { return };
+    let fit = part(&Mesh::load(path).unwrap(), &PartSettings::default()).unwrap();
+    let code = fit.solid().to_rust("holder");
+    assert!(code.lines().count() <= 40, "{code}");
+    let is_number = |c: char| !(c.is_ascii_digit() || c == '.');
+    let numbers = code.split(is_number).filter(|word| word.contains('.') && word.len() > 1);
+    for number in numbers.filter_map(|word| word.parse::<f64>().ok()) {
+        let parts = number / 25.4 * 64.0;
+        assert!((parts - parts.round()).abs() < 1e-9, "{number}: {code}");
+    }
+}
+
+#[test]
 fn what_is_round_in_no_simple_way_is_a_superellipsoid() {
     let blob = Solid::superellipsoid([9.0, 6.0, 7.0], 0.6, 1.3).translate([0.0, 0.0, 6.0]);
     let fit = recovered(&(Solid::cuboid([40.0, 24.0, 4.0]) | blob));
