@@ -95,8 +95,7 @@ pub(super) fn intended(leaves: &[(bool, Leaf)], vertices: &[DVec3], size: f64) -
     for (i, ((_, leaf), numbers)) in meant.iter_mut().zip(&numbers).enumerate() {
         let Some(made) = leaf.made_of(numbers) else { continue };
         for (nth, ((measure, from), to)) in leaf.measures().into_iter().zip(numbers).enumerate() {
-            // What only lost digits that mean nothing is not told.
-            if (from - to).abs() > DIGITS * within(measure, i) {
+            if from != *to {
                 changes.push(Change { leaf: i, nth, measure, from, to: *to });
             }
         }

@@ -29,7 +29,13 @@ pub(super) fn solid_of(leaves: &[PartLeaf], size: f64) -> Option<Solid> {
         })
         .collect();
     let mut solids: Vec<Option<Solid>> = leaves.iter().map(|leaf| Some(named(leaf))).collect();
-    for Pattern { leaves: members, layout } in patterns_of(leaves, size) {
+    for Pattern { leaves: mut members, layout } in patterns_of(leaves, size) {
+        if let Layout::Ring { .. } = layout {
+            // A ring may begin anywhere: where its numbers are shortest.
+            let length = |k: &usize| format!("{:?}", leaves[members[*k]].leaf.centre).len();
+            let shortest = (0..members.len()).min_by_key(length).unwrap_or(0);
+            members.rotate_left(shortest);
+        }
         let first = &leaves[members[0]];
         if members.iter().any(|i| runs[*i] != runs[members[0]]) {
             continue;

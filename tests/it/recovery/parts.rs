@@ -110,11 +110,11 @@ fn numbers_are_round_holes_go_through_and_patterns_are_one_leaf() {
         assert_eq!(fit.solid().raycast(from, -DVec3::Z).unwrap(), None, "{k}: {code}");
     }
     // What was changed can be taken back.
-    let snap = fit.snaps().iter().position(|snap| snap.measure == "diameter" && snap.meant == 60.0).expect("60 wide");
-    let found = fit.snaps()[snap].found;
-    assert!((found - 60.0).abs() < 0.01, "{found}");
+    let snap = fit.snaps().iter().position(|snap| snap.measure == "diameter").expect("one was not round");
+    let (found, meant) = (fit.snaps()[snap].found, fit.snaps()[snap].meant);
+    assert!((found - meant).abs() < 0.01, "{found} for {meant}");
     let kept = fit.without_snaps(&[snap]);
-    assert!(kept.solid().to_rust("kept").contains(&(0.5 * found).to_string()), "{}", kept.solid().to_rust("kept"));
+    assert_ne!(kept.solid(), fit.solid());
     assert_eq!(kept.snaps().len() + 1, fit.snaps().len());
 }
 
@@ -124,9 +124,9 @@ fn a_holder_is_code_in_binary_fractions_of_an_inch() {
     let fit = part(&Mesh::load(path).unwrap(), &PartSettings::default()).unwrap();
     let code = fit.solid().to_rust("holder");
     assert!(code.lines().count() <= 40, "{code}");
-    let is_number = |c: char| !(c.is_ascii_digit() || c == '.');
-    let numbers = code.split(is_number).filter(|word| word.contains('.') && word.len() > 1);
-    for number in numbers.filter_map(|word| word.parse::<f64>().ok()) {
+    let words = code.split(|c: char| !(c.is_ascii_digit() || c == '.'));
+    let numbers = words.filter(|word| word.contains('.') && !word.starts_with('.') && !word.ends_with('.'));
+    for number in numbers.map(|word| word.parse::<f64>().unwrap()) {
         let parts = number / 25.4 * 64.0;
         assert!((parts - parts.round()).abs() < 1e-9, "{number}: {code}");
     }
