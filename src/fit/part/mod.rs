@@ -98,13 +98,13 @@ use crate::geom::{Mesh, PointCloud};
 /// |---|---|---|---|
 /// | unit_cube | 1.0000 | 1 (9) | 0, 0 |
 /// | 7_8ths_cube | 1.0000 | 2 (18) | 0, 0 |
-/// | shaft | 0.9933 | 1 (7) | 0, 0 |
+/// | shaft | 0.9934 | 1 (7) | 0, 0 |
 /// | round | 0.9589 | 2 (14) | 1, 1 |
 /// | bushing_roller | 0.9934 | 2 (14) | 1, 1 |
-/// | xtion_bracket | 0.9965 | 4 (74) | 2, 2 |
+/// | xtion_bracket | 0.9955 | 3 (65) | 2, 2 |
 /// | camshaft, not snapped | 0.9971 | 6 (45) | 0, 0 |
 /// | camshaft | 0.9875 | 6 (45) | 0, 0 |
-/// | angle_block | 0.9943 | 9 (64) | 1, 1 |
+/// | angle_block | 0.9956 | 10 (73) | 1, 1 |
 /// | satellite_mount | 0.9916 | 9 (75) | 8, 8 |
 /// | lasercut_interface | 0.9995 | 9 (66) | 8, 8 |
 /// | holder | 0.9914 | 10 (70) | 5, 5 |
@@ -117,8 +117,9 @@ use crate::geom::{Mesh, PointCloud};
 /// (median .996), 47 with the genus of the mesh, 44 with 12 leaves or fewer. It takes some .1 to 2
 /// s a part, on one thread.
 ///
-/// What is not recovered: fillets, sweeps, threads and lattices, and which lengths were meant to be
-/// equal or round.
+/// What is not recovered: fillets, sweeps, threads and lattices. Lengths that were meant to be round
+/// are, and those that are equal within what the vertices leave open are one; what was meant to hang
+/// together otherwise, as a hole by its distance from an edge, is not told.
 ///
 /// # Errors
 ///

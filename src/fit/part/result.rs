@@ -96,12 +96,12 @@ impl PartFit {
     /// use rvachev::fit::{PartSettings, part};
     /// use rvachev::{Mesh, MeshSettings, Solid};
     ///
-    /// let peg = Solid::cylinder(3.0004, 20.0).mesh(&MeshSettings::default())?;
+    /// let peg = Solid::cylinder(3.0001, 20.0).mesh(&MeshSettings::default())?;
     /// let found = part(&peg, &PartSettings::default())?;
     /// let diameter = found.snaps().iter().position(|snap| snap.measure == "diameter").expect("it is nearly 6");
     /// assert_eq!(found.snaps()[diameter].meant, 6.0);
     /// let kept = found.without_snaps(&[diameter]);
-    /// assert!(kept.solid().contains([3.0002, 0.0, 0.0])? && !found.solid().contains([3.0002, 0.0, 0.0])?);
+    /// assert!(kept.solid().contains([3.00005, 0.0, 0.0])? && !found.solid().contains([3.00005, 0.0, 0.0])?);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
