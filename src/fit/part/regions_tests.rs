@@ -1,7 +1,6 @@
 //! Regions of turned bodies, of scans, and of real parts.
 
 use std::f64::consts::TAU;
-use std::path::Path;
 
 use glam::{DMat3, DVec3, Vec3};
 
@@ -172,8 +171,10 @@ fn scans_of_turned_bodies() {
 }
 
 /// A real part, or a printed line.
+#[cfg(feature = "import")]
 fn part(name: &str) -> Option<Mesh> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/parts").join(name).with_extension("ply");
+    let path =
+        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/parts").join(name).with_extension("ply");
     if !path.exists() {
         println!("{} is missing: skipped", path.display());
         return None;
@@ -181,6 +182,7 @@ fn part(name: &str) -> Option<Mesh> {
     Some(Mesh::load(path).unwrap())
 }
 
+#[cfg(feature = "import")]
 #[test]
 fn holes_of_real_parts() {
     let inch = 25.4;
