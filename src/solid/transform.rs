@@ -176,6 +176,8 @@ impl Solid {
     /// turns by `turn` towards `angle`, counted from the x axis towards y. What is below `from`
     /// stays where it is; what is above `to` is moved rigidly and goes on straight from the arc.
     ///
+    #[doc = picture!("bend_between" = "docs/gallery/bend_between.png")]
+    ///
     /// Lengths along the z axis are kept: the arc's radius is (to − from)/turn, with the turn in
     /// radians. A pipe that shall turn by 90° on a radius of 30 is bent over a length of 30·π/2.
     ///

@@ -86,6 +86,7 @@ pub const MAPS: &[Entry] = &[
     ("taper", || Solid::rounded_cuboid([1.6, 1.6, 2.0], 0.1).taper(0.5, -0.5, 2.0)),
     ("twist", || bar().twist(turns(0.4) / 2.4)),
     ("bend", || bar().bend(0.8, deg(0.0))),
+    ("bend_between", || Solid::rounded_cuboid([0.5, 0.7, 3.0], 0.1).bend_between(-0.6, 0.6, deg(110.0), deg(0.0))),
     ("taper_by", tapered_by),
     ("taper_by_wave", tapered_by_wave),
     ("twist_by", twisted_by),
