@@ -305,6 +305,8 @@ impl Leaf {
             rotation if rotation == DMat3::IDENTITY => solid,
             rotation if rotation == TO_X => solid.rotate_y(deg(90.0)),
             rotation if rotation == TO_Y => solid.rotate_x(deg(-90.0)),
+            rotation if rotation.z_axis == DVec3::Z && rotation.x_axis == DVec3::Y => solid.rotate_z(deg(90.0)),
+            rotation if rotation.z_axis == DVec3::Z && rotation.x_axis == DVec3::NEG_Y => solid.rotate_z(deg(-90.0)),
             rotation => solid.rotate(DQuat::from_mat3(&rotation).normalize()),
         };
         if self.centre == DVec3::ZERO { turned } else { turned.translate(self.centre) }

@@ -33,7 +33,7 @@ impl Measure {
 }
 
 /// Without what differences of decimals leave in the last digits.
-fn tidy(v: f64) -> f64 {
+pub(super) fn tidy(v: f64) -> f64 {
     format!("{v:.13e}").parse().unwrap_or(v)
 }
 

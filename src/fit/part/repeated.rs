@@ -9,6 +9,7 @@
 
 use glam::DVec3;
 
+use super::measures::tidy;
 use super::patterns::{Layout, Pattern, patterns_of};
 use super::result::PartLeaf;
 use super::topology::tree;
@@ -80,21 +81,25 @@ fn repeated(layout: &Layout, places: &[DVec3], first: &PartLeaf, size: f64) -> O
         }
         Layout::Line { .. } => {
             let last = places.len() - 1;
-            let step = (places[last] - places[0]) / last as f64;
+            let step = tidied((places[last] - places[0]) / last as f64);
             let rule = |k: usize| places[0] + k as f64 * step;
             is_placed(&rule).then(|| -> Box<dyn Fn(Solid) -> Solid> {
                 Box::new(move |solid| solid.repeat_linear(last as u32 + 1, step))
             })
         }
         Layout::Grid { counts: [columns, rows], .. } => {
-            let along = (places[columns - 1] - places[0]) / (columns - 1) as f64;
-            let across = (places[columns * (rows - 1)] - places[0]) / (rows - 1) as f64;
+            let along = tidied((places[columns - 1] - places[0]) / (columns - 1) as f64);
+            let across = tidied((places[columns * (rows - 1)] - places[0]) / (rows - 1) as f64);
             let rule = |k: usize| places[0] + (k % columns) as f64 * along + (k / columns) as f64 * across;
             is_placed(&rule).then(|| -> Box<dyn Fn(Solid) -> Solid> {
                 Box::new(move |solid| solid.repeat_linear(columns as u32, along).repeat_linear(rows as u32, across))
             })
         }
     }
+}
+
+fn tidied(step: DVec3) -> DVec3 {
+    DVec3::from_array(step.to_array().map(tidy))
 }
 
 /// A coordinate of a middle: none, if it is hardly any.
