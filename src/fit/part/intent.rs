@@ -18,7 +18,7 @@ use super::leaf::{Leaf, Shape};
 use super::measures::Measure;
 use super::round::Scale;
 
-/// How far from a principal axis a leaf may be turned to be along it, in radians.
+/// How far from a principal axis a leaf may be turned to be along it, in radians, at the most.
 const TURNED: f64 = 2e-3;
 
 /// What vertices leave open of a length at the least, in diagonals, and what is of a leaf's
@@ -61,8 +61,11 @@ impl Meant {
 /// The leaves with the numbers that are meant, in length units of a part with such vertices and
 /// such a diagonal.
 pub(super) fn intended(leaves: &[(bool, Leaf)], vertices: &[DVec3], size: f64) -> (Vec<(bool, Leaf)>, Vec<Change>) {
-    let mut meant: Vec<(bool, Leaf)> = leaves.iter().map(|(adds, leaf)| (*adds, leaf.aligned(TURNED))).collect();
     let open: Vec<f64> = leaves.iter().map(|(_, leaf)| open(leaf, vertices, size)).collect();
+    // By what a turn moves the ends: that is left open as well.
+    let turned = |leaf: &Leaf, open: f64| (open / leaf.reach().length()).min(TURNED);
+    let mut meant: Vec<(bool, Leaf)> =
+        leaves.iter().zip(&open).map(|((adds, leaf), open)| (*adds, leaf.aligned(turned(leaf, *open)))).collect();
     let within = |measure: Measure, leaf: usize| match measure {
         Measure::Diameter | Measure::Size => 2.0 * open[leaf],
         _ => open[leaf],

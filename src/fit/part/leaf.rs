@@ -314,11 +314,12 @@ impl Leaf {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::Gielis;
 
-    fn leaves() -> Vec<Leaf> {
+    /// One of each kind.
+    pub(in crate::fit::part) fn leaves() -> Vec<Leaf> {
         let axis = DVec3::new(1.0, 2.0, -0.5).normalize();
         let origin = DVec3::new(0.1, -0.05, 0.2);
         let corners = [[-0.2, -0.1], [0.2, -0.1], [0.1, 0.2]].map(DVec2::from_array).to_vec();

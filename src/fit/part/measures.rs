@@ -209,3 +209,39 @@ impl Leaf {
         leaf
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::leaf::tests::leaves;
+    use super::*;
+
+    fn assert_same(a: &Leaf, b: &Leaf) {
+        for i in 0..400_u32 {
+            let p = DVec3::from_array([1, 7, 49].map(|k| f64::from(i * k % 343) / 343.0 - 0.5));
+            let off = (a.distance(p) - b.distance(p)).abs();
+            assert!(off < 1e-9, "{} at {p}: {off}, {:?}", a.kind(), b.rotation);
+        }
+    }
+
+    #[test]
+    fn every_kind_is_made_of_its_numbers() {
+        for leaf in leaves() {
+            let numbers: Vec<f64> = leaf.measures().into_iter().map(|(_, v)| v).collect();
+            assert_same(&leaf, &leaf.made_of(&numbers).expect("it is one"));
+        }
+    }
+
+    #[test]
+    fn every_kind_is_the_same_along_the_axes() {
+        for axis in DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]) {
+            for mut leaf in leaves() {
+                leaf.rotation = super::super::leaf::along(axis);
+                let aligned = leaf.aligned(1e-6);
+                assert_same(&leaf, &aligned);
+                let solid = aligned.solid();
+                let p = leaf.centre + DVec3::new(0.03, -0.05, 0.02);
+                assert_eq!(solid.contains(p).unwrap(), leaf.contains(p), "{} along {axis}", leaf.kind());
+            }
+        }
+    }
+}
