@@ -89,7 +89,7 @@ struct Piece {
 
 /// How far a patch is off.
 #[derive(Clone, Copy)]
-struct Misfit {
+struct Residual {
     /// Off the surface, between the probes too.
     off: f64,
     /// Turned from it, in radians.
@@ -98,7 +98,7 @@ struct Misfit {
     rim: f64,
 }
 
-impl Misfit {
+impl Residual {
     fn all(self) -> f64 {
         self.off.max(self.rim)
     }
@@ -136,7 +136,7 @@ impl Quilt {
                 error.rim = piece.hems.iter().map(|hem| seams.of(*hem).off).fold(0.0, f64::max);
             }
             let is_enough = quilt.patches.len() + 4 * pieces.len() > MANY;
-            let fails = |piece: &Piece, error: Misfit| {
+            let fails = |piece: &Piece, error: Residual| {
                 let is_off = error.all() > tolerance || error.turn > TURN && error.off > 0.05 * tolerance;
                 // Where splitting does not help, more of it does not either.
                 depth < last && is_off && !is_enough && (depth < 4 || error.all() < GAIN * piece.before)
@@ -279,12 +279,12 @@ fn cross<'a>(
 }
 
 /// How far patches are off the surface, and how far turned from it.
-fn errors(patches: &[Patch], slopes: &Slopes<'_>, run: &Run) -> Result<Vec<Misfit>, Cancelled> {
+fn errors(patches: &[Patch], slopes: &Slopes<'_>, run: &Run) -> Result<Vec<Residual>, Cancelled> {
     let of_patch = |(patch, found): (&Patch, &[Slope])| {
         let off = found.iter().map(Slope::distance).fold(0.0, f64::max);
         let turn = PROBES.iter().zip(found).map(|(b, slope)| patch.normal(*b).angle_between(slope.normal()));
         let turn = turn.filter(|turn| turn.is_finite()).fold(0.0, f64::max);
-        Misfit { off: BETWEEN * off, turn, rim: 0.0 }
+        Residual { off: BETWEEN * off, turn, rim: 0.0 }
     };
     let mut errors = Vec::with_capacity(patches.len());
     for patches in patches.chunks(AT_ONCE) {
