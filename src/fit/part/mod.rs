@@ -1,4 +1,5 @@
-//! Whole parts: from a closed mesh to an ordered tree of added and subtracted leaves.
+//! Whole parts: from a closed mesh, or points of one, to an ordered tree of added and subtracted
+//! leaves.
 
 mod adjust;
 mod axes;

@@ -28,7 +28,8 @@ pub struct PartSettings {
     pub noise: f64,
     /// Whether leaves are laid through the vertices of the mesh where these tell them exactly. The
     /// radius of a cylinder of facets is then that of its corners, as it was meant, though a
-    /// smaller one has more volume in common with the facets. Default: `true`.
+    /// smaller one has more volume in common with the facets. Then numbers are made round and cuts go
+    /// through: see [`PartFit::snaps`](super::PartFit::snaps). Default: `true`.
     pub snap: bool,
 }
 
