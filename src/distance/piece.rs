@@ -45,6 +45,11 @@ impl Piece {
         Patch { corners, bulges }
     }
 
+    /// How far its sides are off.
+    pub(super) fn rim(&self, seams: &Seams) -> f64 {
+        self.hems.iter().map(|hem| seams.of(*hem).off).fold(0.0, f64::max)
+    }
+
     /// Its parts: those on either side of a crease that passes through it, else four.
     pub(super) fn split(&self, positions: &mut Vec<DVec3>, seams: &mut Seams, parts: &mut Vec<Piece>) {
         let crossed: Vec<usize> = (0..3).filter(|k| seams.of(self.hems[*k]).crossing.is_some()).collect();

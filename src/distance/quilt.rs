@@ -153,15 +153,16 @@ impl Quilt {
                 Ok(piece.patch(&positions, &seams, tolerance))
             };
             let patches = pieces.iter().enumerate().map(patch).collect::<Result<Vec<Patch>, Cancelled>>()?;
-            let mut errors = errors(&patches, slopes, run)?;
-            for (piece, error) in pieces.iter().zip(&mut errors) {
-                error.rim = piece.hems.iter().map(|hem| seams.of(*hem).off).fold(0.0, f64::max);
-            }
             let is_enough = self.patches.len() + left + 4 * pieces.len() > MANY;
+            let is_split = depth < last && !is_enough;
+            let rims: Vec<f64> = pieces.iter().map(|piece| piece.rim(&seams)).collect();
+            let is_off = |error: Residual| error.all() > tolerance || error.turn > TURN && error.off > 0.05 * tolerance;
+            // What is split whatever else there is need not be compared any further.
+            let is_clear = |error: Residual| is_split && depth < SOON && is_off(error);
+            let errors = errors(&patches, &rims, is_clear, slopes, run)?;
             let fails = |piece: &Piece, error: Residual| {
-                let is_off = error.all() > tolerance || error.turn > TURN && error.off > 0.05 * tolerance;
                 // Where splitting does not help, more of it does not either.
-                depth < last && is_off && !is_enough && (depth < 4 || error.all() < GAIN * piece.before)
+                is_split && is_off(error) && (depth < 4 || error.all() < GAIN * piece.before)
             };
             let failing = pieces.iter().zip(&errors).filter(|(piece, error)| fails(piece, **error));
             cross(failing.map(|(piece, _)| piece), &positions, &mut seams, slopes, run)?;
@@ -287,19 +288,31 @@ fn cross<'a>(
     seams.cross(&asked, positions, slopes, run)
 }
 
-/// How far patches are off the surface, and how far turned from it.
-fn errors(patches: &[Patch], slopes: &Slopes<'_>, run: &Run) -> Result<Vec<Residual>, Cancelled> {
-    let of_patch = |(patch, found): (&Patch, &[Slope])| {
-        let off = found.iter().map(Slope::distance).fold(0.0, f64::max);
-        let turn = PROBES.iter().zip(found).map(|(b, slope)| patch.normal(*b).angle_between(slope.normal()));
-        let turn = turn.filter(|turn| turn.is_finite()).fold(0.0, f64::max);
-        Residual { off: BETWEEN * off, turn, rim: 0.0 }
-    };
-    let mut errors = Vec::with_capacity(patches.len());
-    for patches in patches.chunks(AT_ONCE) {
-        let points: Vec<DVec3> = patches.iter().flat_map(|patch| PROBES.map(|b| patch.point(b))).collect();
-        let found = slopes.at(&points, run)?;
-        errors.extend(patches.iter().zip(found.chunks(PROBES.len())).map(of_patch));
+/// How far patches are off the surface, and how far turned from it, given how far their sides are
+/// off: as much of it as it takes until it is clear enough.
+fn errors(
+    patches: &[Patch],
+    rims: &[f64],
+    is_clear: impl Fn(Residual) -> bool,
+    slopes: &Slopes<'_>,
+    run: &Run,
+) -> Result<Vec<Residual>, Cancelled> {
+    let mut errors: Vec<Residual> = rims.iter().map(|rim| Residual { off: 0.0, turn: 0.0, rim: *rim }).collect();
+    let [first, rest @ ..] = PROBES;
+    for probes in [&[first][..], &rest] {
+        for (patches, errors) in patches.chunks(AT_ONCE).zip(errors.chunks_mut(AT_ONCE)) {
+            let open: Vec<usize> = (0..patches.len()).filter(|n| !is_clear(errors[*n])).collect();
+            let points: Vec<DVec3> = open.iter().flat_map(|n| probes.iter().map(|b| patches[*n].point(*b))).collect();
+            let found = slopes.at(&points, run)?;
+            for (n, found) in open.iter().zip(found.chunks(probes.len())) {
+                let (patch, error) = (&patches[*n], &mut errors[*n]);
+                for (b, slope) in probes.iter().zip(found) {
+                    error.off = error.off.max(BETWEEN * slope.distance());
+                    let turn = patch.normal(*b).angle_between(slope.normal());
+                    error.turn = error.turn.max(if turn.is_finite() { turn } else { 0.0 });
+                }
+            }
+        }
     }
     Ok(errors)
 }
