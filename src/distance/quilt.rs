@@ -15,7 +15,7 @@ use super::facets::{CREASE, Facets};
 use super::piece::{Piece, first};
 use super::plots::{Plot, Plots};
 use super::seam::Seams;
-use crate::mesh::{Slope, Slopes};
+use crate::mesh::Slopes;
 use crate::{Cancelled, Run};
 use rvachev_field::Patch;
 
