@@ -22,9 +22,11 @@
 
 use glam::{DVec3, Vec3};
 
-use super::cells::{Cell, Cells, Slopes};
+use super::beside::{Crossing, Walk};
+use super::cells::{Cell, Cells};
 use super::gbuffer::Surface;
 use super::job::{Job, Lane, Local, Outcome, Ray, Span};
+use super::slopes::{Known, Slopes};
 use crate::eval::{Bend, Care, Evaluator, Gradients, first_hit};
 
 /// A crossing found in single precision.
@@ -67,37 +69,33 @@ pub(super) struct Marcher {
     /// Hits whose owners are still sought, relative to the tape's origin, and the values that
     /// decide there.
     pub(super) unowned: Vec<(u32, DVec3)>,
+    pub(super) walks: Vec<Walk>,
+    pub(super) crossed: Vec<Walk>,
+    pub(super) crossings: Vec<Crossing>,
     pub(super) best: Vec<f64>,
     /// The rays that have hit something.
     pub(super) hits: Vec<u32>,
 }
 
 impl Marcher {
-    /// Marches the spans' rays through `cell`, with `slopes` along them; what they hit goes to
-    /// `surfaces`, by ray, and the numbers of those rays to `hits`.
+    /// Marches the spans' rays through `cell`, where slopes along them are `known`; what they hit goes
+    /// to `surfaces`, by ray, and the numbers of those rays to `hits`.
     pub(super) fn march(
         &mut self,
         cells: &Cells,
         cell: &Cell,
-        slopes: Slopes,
+        known: &Known,
         rays: &[Ray],
         spans: &[Span],
         surfaces: &mut [Surface],
     ) {
         self.open.clear();
         self.found.clear();
-        let job = Job::new(cells, cell, slopes, rays, spans);
-        self.load(&job);
-        self.near_ends(&job);
-        self.far_ends(&job);
-        if cell.bend.is_some() {
-            self.search_bent(&job);
-        } else {
-            self.search_steep(&job);
+        let job = Job::new(cells, cell, known, rays, spans);
+        match &known.sides {
+            Some(sides) => self.walk(&job, sides, surfaces),
+            None => self.search(&job, surfaces),
         }
-        self.newton(&job);
-        self.settle(&job);
-        self.finish(&job, surfaces);
         for &Span { ray, near, far } in &self.open {
             let Ray { origin, direction, base, .. } = rays[ray as usize];
             let first =
@@ -113,6 +111,21 @@ impl Marcher {
                 self.hits.push(ray);
             }
         }
+    }
+
+    /// The crossings of rays along which slopes have bounds.
+    fn search(&mut self, job: &Job<'_>, surfaces: &mut [Surface]) {
+        self.load(job);
+        self.near_ends(job);
+        self.far_ends(job);
+        if job.bend.is_some() {
+            self.search_bent(job);
+        } else {
+            self.search_steep(job);
+        }
+        self.newton(job);
+        self.settle(job);
+        self.finish(job, surfaces);
     }
 
     /// The lanes of the spans: those along which g bends downwards start at the near end.

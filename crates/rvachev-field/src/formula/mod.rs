@@ -30,6 +30,7 @@ mod erased;
 mod functions;
 mod gradients;
 mod joints;
+mod jumps;
 mod live;
 mod many;
 mod narrow;
