@@ -25,6 +25,7 @@ mod occlusion;
 mod picture;
 mod pixels;
 mod scene;
+mod search;
 mod settings;
 mod shade;
 mod slice;
