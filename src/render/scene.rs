@@ -112,7 +112,7 @@ impl Scene {
     /// let scene = Solid::torus(1.0, 0.3).scene()?;
     /// let before = scene.memory();
     /// let camera = Camera::framing(&scene.bounds());
-    /// scene.surfaces(&camera.rays(64, 64), Window::whole(64, 64));
+    /// drop(scene.surfaces(&camera.rays(64, 64), Window::whole(64, 64)));
     /// assert!(scene.memory() > before && scene.memory() < 10_000_000);
     /// # Ok::<(), rvachev::error::RenderError>(())
     /// ```

@@ -382,7 +382,7 @@ fn scenes_of_crowds_hold_little() {
         let rest = Solid::cuboid([2.0; 3]) - Solid::union_all(spheres, RFunction::MIN_MAX);
         let scene = rest.scene().unwrap();
         let camera = Camera::framing(&scene.bounds());
-        scene.surfaces(&camera.rays(32, 24), Window::whole(32, 24));
+        drop(scene.surfaces(&camera.rays(32, 24), Window::whole(32, 24)));
         scene.memory()
     };
     let (once, twice) = (held(700), held(1400));
