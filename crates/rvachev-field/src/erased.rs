@@ -11,7 +11,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3};
 
 use super::outlined::{Outlined, zone_range, zone_rises};
-use super::{Case, Field, Kernel, ParamError, Placement, Way, Zone, bits, steepest};
+use super::{Case, Crease, Field, Kernel, ParamError, Placement, Way, Zone, bits, steepest};
 use crate::kernel::{Element, Formula, Visit, run};
 use crate::{Bounds, Dual, Interval, Real};
 #[cfg(feature = "formula")]
@@ -59,6 +59,11 @@ pub trait AnyField: Any + Debug + Send + Sync {
     fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64>;
     /// Ranges of value and derivatives over a box.
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval>;
+    /// Ranges of the derivatives over the part of a box beside the planes of
+    /// [`creases`](AnyField::creases), on the side of each of them that a point is on.
+    fn slopes_beside(&self, p: [Dual<Interval>; 3], _beside: DVec3) -> [Interval; 3] {
+        self.dual_range(p).d
+    }
     /// Whether the value is the true distance.
     fn exact(&self) -> bool;
     /// No radius of curvature of the surface is less.
@@ -82,8 +87,9 @@ pub trait AnyField: Any + Debug + Send + Sync {
     }
     /// Whether the value is concave, with slope at most 1.
     fn convex(&self) -> bool;
-    /// Normals of the planes through the frame's origin at which slopes are without bound.
-    fn creases(&self) -> Vec<DVec3> {
+    /// Planes at which slopes are without bound; those that pass a region of the leaf's frame, and
+    /// perhaps more.
+    fn creases(&self, _region: [Interval; 3]) -> Vec<Crease> {
         Vec::new()
     }
     /// A sound range over a zone of the leaf's frame.
@@ -199,7 +205,9 @@ pub fn steep_slopes(steepest: f64, p: [Dual<Interval>; 3]) -> [Interval; 3] {
 /// ```
 #[must_use]
 pub fn chained(value: Interval, slopes: [Interval; 3], p: [Dual<Interval>; 3]) -> Dual<Interval> {
-    let along = |i: usize| slopes[0] * p[0].d[i] + slopes[1] * p[1].d[i] + slopes[2] * p[2].d[i];
+    // What does not move does not move the value, however steep that is.
+    let term = |slope: Interval, d: Interval| if d == Interval::point(0.0) { d } else { slope * d };
+    let along = |i: usize| term(slopes[0], p[0].d[i]) + term(slopes[1], p[1].d[i]) + term(slopes[2], p[2].d[i]);
     Dual::new(value, [along(0), along(1), along(2)])
 }
 
@@ -376,6 +384,10 @@ impl<F: Field> AnyField for F {
         Field::dual_range(self, p)
     }
 
+    fn slopes_beside(&self, p: [Dual<Interval>; 3], beside: DVec3) -> [Interval; 3] {
+        Field::slopes_beside(self, p, beside)
+    }
+
     fn range(&self, zone: &Zone) -> Interval {
         let coarse = Field::range(self, zone.hull());
         if coarse.lo() > 0.0 || coarse.hi() < 0.0 || !zone.is_finite() {
@@ -388,8 +400,9 @@ impl<F: Field> AnyField for F {
         zone_rises(self, zone, ways)
     }
 
-    fn creases(&self) -> Vec<DVec3> {
-        Field::creases(self)
+    fn creases(&self, _region: [Interval; 3]) -> Vec<Crease> {
+        let crease = |normal| Crease { normal, offset: 0.0, jumps: false };
+        Field::creases(self).into_iter().map(crease).collect()
     }
 
     fn least_radius(&self) -> f64 {

@@ -149,6 +149,21 @@ pub trait Field: Debug + Send + Sync + 'static {
         Vec::new()
     }
 
+    /// The derivatives of [`dual_range`](Field::dual_range) in the part of a box that lies beside the
+    /// planes of [`creases`](Field::creases), on the side of each of them that the point `beside` is
+    /// on. The default cuts the box at those planes that stand across an axis.
+    fn slopes_beside(&self, p: [Dual<Interval>; 3], beside: DVec3) -> [Interval; 3] {
+        let mut p = p;
+        for normal in self.creases() {
+            for axis in 0..3 {
+                if normal[axis].abs() == normal.length() {
+                    p[axis].v = half(p[axis].v, beside[axis]);
+                }
+            }
+        }
+        self.dual_range(p).d
+    }
+
     /// Support function of the shape's convex hull: the largest `direction · p` over its
     /// points p. Boxes of rotated leaves are as tight as it is. The default is that of
     /// [`bounds`](Field::bounds).
@@ -237,6 +252,16 @@ fn bounds_by_support(support: &dyn Fn(DVec3) -> f64, map: &DAffine3) -> Bounds {
         bounds.min[axis] -= support(-row);
     }
     bounds
+}
+
+/// The part of a range that has the sign of `side`, without 0 itself.
+pub(super) fn half(range: Interval, side: f64) -> Interval {
+    let least = f64::MIN_POSITIVE;
+    if side > 0.0 {
+        Interval::new(range.lo().max(least), range.hi().max(least))
+    } else {
+        Interval::new(range.lo().min(-least), range.hi().min(-least))
+    }
 }
 
 /// Range of a formula that falls as any of `|x|`, `|y|`, `|z|` rises: two evaluations, exact
