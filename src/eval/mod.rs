@@ -51,6 +51,7 @@ mod swell;
 mod tape;
 mod thin;
 mod tiles;
+mod tiling;
 mod unfold;
 
 pub use accuracy::Accuracy;

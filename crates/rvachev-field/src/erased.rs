@@ -8,7 +8,7 @@ use std::any::Any;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 use super::outlined::{Outlined, zone_range, zone_rises};
 use super::{Case, Crease, Field, Kernel, ParamError, Placement, Way, Zone, bits, steepest};
@@ -76,6 +76,10 @@ pub trait AnyField: Any + Debug + Send + Sync {
     }
     /// Tells the corners of a faceted surface, in the leaf's frame; some more than once.
     fn each_corner(&self, _tell: &mut dyn FnMut(DVec3)) {}
+    /// Three vectors of the leaf's frame, as columns: moved by any of them, the leaf is the same.
+    fn period(&self) -> Option<DMat3> {
+        None
+    }
     /// The radius of a leaf valued `radius·(1 − G)`.
     fn gauge_radius(&self) -> Option<f64> {
         None
@@ -359,6 +363,10 @@ impl<F: Field> AnyField for F {
 
     fn convex(&self) -> bool {
         Field::convex(self)
+    }
+
+    fn period(&self) -> Option<DMat3> {
+        Field::period(self).map(DMat3::from_diagonal)
     }
 
     fn gauge_radius(&self) -> Option<f64> {

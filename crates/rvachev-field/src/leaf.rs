@@ -112,6 +112,14 @@ pub trait Field: Debug + Send + Sync + 'static {
         0.0
     }
 
+    /// How far along each axis of its own frame the leaf repeats, in length units: the value at p is
+    /// that at p + (x, 0, 0), at p + (0, y, 0) and at p + (0, 0, z). Lengths measured of the leaf are
+    /// then measured for one cell, wherever they are asked about. Default: `None`, of a leaf that
+    /// does not repeat, or of which nothing is known.
+    fn period(&self) -> Option<DVec3> {
+        None
+    }
+
     /// The radius r of a leaf whose value is `r·(1 − G)` with a gauge G, homogeneous of degree 1
     /// about the leaf's origin: what [`Blend::Ricci`](crate::Blend::Ricci) asks of its
     /// operands. Default: `None`.
