@@ -113,11 +113,11 @@ impl Group<'_> {
 
     fn rings(&self) -> Vec<Pattern> {
         let mut rings: Vec<Pattern> = Vec::new();
-        let left = &self.left;
-        for a in 0..left.len() {
-            for b in a + 1..left.len() {
-                for c in b + 1..left.len() {
-                    let three = [left[a], left[b], left[c]];
+        let after = |n: usize| self.left.iter().copied().enumerate().skip(n);
+        for (n, a) in after(0) {
+            for (m, b) in after(n + 1) {
+                for (_, c) in after(m + 1) {
+                    let three = [a, b, c];
                     if rings.iter().any(|ring| three.iter().all(|i| ring.leaves.contains(i))) {
                         continue;
                     }

@@ -2,8 +2,6 @@
 
 use std::fmt::Write as _;
 
-use glam::DVec3;
-
 use super::leaf::{Leaf, Shape};
 use super::patterns::{Layout, Pattern};
 use super::result::PartLeaf;
@@ -136,13 +134,13 @@ fn outline(leaf: &Leaf) -> String {
         Shape::Supershape { base, .. } => {
             format!("supershape of {} arms, radius {}", length(base.curve().m), length(base.radius()))
         }
-        _ => joined(DVec3::to_array(&(2.0 * leaf.reach()))),
+        _ => joined((2.0 * leaf.reach()).to_array()),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use glam::DMat3;
+    use glam::{DMat3, DVec3};
 
     use super::*;
 
