@@ -117,6 +117,10 @@ impl Grid {
                     *total += sum;
                 }
                 for y0 in 0..ny {
+                    let least = if best.len() < BEST { price } else { best[BEST - 1].0 };
+                    if positive[ny] - positive[y0] <= least {
+                        break;
+                    }
                     for y1 in y0 + 1..=ny {
                         let least = if best.len() < BEST { price } else { best[BEST - 1].0 };
                         if positive[y1] - positive[y0] <= least {
