@@ -288,12 +288,12 @@ mod tests {
 
     use super::*;
     use crate::eval::apart::measured;
-    use crate::{MinimalSurface, NetworkLattice};
+    use crate::{MinimalSurface, NetworkLattice, rad};
 
     /// A lattice a little out of place, eroded.
     fn eroded() -> Solid {
         let lattice = NetworkLattice { surface: MinimalSurface::Gyroid, cell: 4.0, fraction: 0.6 };
-        Solid::from(lattice).rotate_z(0.3).translate(DVec3::new(0.3, -0.2, 0.7)).offset(-0.25)
+        Solid::from(lattice).rotate_z(rad(0.3)).translate(DVec3::new(0.3, -0.2, 0.7)).offset(-0.25)
     }
 
     #[test]
