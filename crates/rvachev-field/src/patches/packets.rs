@@ -64,6 +64,8 @@ pub(super) struct Packets<'a> {
     /// apart.
     level: f64,
     band: f64,
+    /// The square of how near double precision is needed, or the side of the patch.
+    close: f64,
 }
 
 impl SurfaceDistance {
@@ -88,6 +90,7 @@ impl SurfaceDistance {
             farthest,
             level,
             band: (band / local.scale.abs()).max(LEAST),
+            close: CLOSE.max(self.error() / frame.unit).powi(2),
         }
     }
 }
@@ -153,8 +156,8 @@ impl Packets<'_> {
 
     /// Whether some of the points need [`one`](Packets::one).
     #[inline(always)]
-    pub(super) fn are_close<R: Packet>(square: R) -> bool {
-        square.any_below(square.lift(CLOSE * CLOSE))
+    pub(super) fn are_close<R: Packet>(&self, square: R) -> bool {
+        square.any_below(square.lift(self.close))
     }
 
     /// Value and gradient of a point whose nearest patch is known, in double precision.
@@ -166,9 +169,9 @@ impl Packets<'_> {
         [self.placement.finish(value), x, y, z].map(|v| v as f32)
     }
 
-    /// Whether a distance found in single precision needs [`one`](Packets::one).
-    pub(super) fn is_close(square: f32) -> bool {
-        f64::from(square) < CLOSE * CLOSE
+    /// Whether a point that far away needs [`one`](Packets::one).
+    pub(super) fn is_close(&self, square: f32) -> bool {
+        f64::from(square) < self.close
     }
 }
 
