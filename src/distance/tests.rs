@@ -1,6 +1,7 @@
 //! Surfaces as patches: how many there are, and how far off.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use glam::DVec3;
 
@@ -8,9 +9,11 @@ use super::facets::{Facets, sharp};
 use super::mend::mend;
 use super::plots::Plots;
 use super::quilt::{Quilt, Spot};
+use super::surface::FromMeshes;
 use super::{compiled, surface_of};
+use crate::eval::{Wanted, surface};
 use crate::mesh::Slopes;
-use crate::{Blend, Run, Solid, deg};
+use crate::{Blend, Bounds, Run, Solid, deg};
 use rvachev_field::Patch;
 
 /// Two cubes side by side.
@@ -103,4 +106,27 @@ fn spots_that_small_cells_do_not_show_are_kept_and_told() {
     let slopes = Slopes { program: &programs.surface, precision: 1e-3 };
     mend(&mut quilt, &slopes, 1.0, 1e-3, &Run::default()).unwrap();
     assert!(!quilt.patches.is_empty() && quilt.error >= OFF, "{} patches, {}", quilt.patches.len(), quilt.error);
+}
+
+#[test]
+fn equal_solids_have_one_surface() {
+    let surface = |solid: &Solid, length: f64, tolerance: Option<f64>| {
+        let wanted = Wanted { length, tolerance, region: &Bounds::ALL };
+        surface(solid, &compiled(solid).unwrap(), &wanted, &FromMeshes, &Run::default()).unwrap()
+    };
+    // Of no other test.
+    let (one, other) = (block().scale(1.07), block().scale(1.07));
+    let first = surface(&one, 1.0, None);
+    assert!(Arc::ptr_eq(&first, &surface(&other, 1.0, None)));
+    // Lengths that are alike have one as well, others have not.
+    assert!(Arc::ptr_eq(&first, &surface(&one, 1.1, None)));
+    assert!(!Arc::ptr_eq(&first, &surface(&one, 0.4, None)));
+    assert!(!Arc::ptr_eq(&first, &surface(&one.scale(1.5), 1.0, None)));
+    // Two lengths of one solid, in one solid.
+    let both = one.shell(1.0) | other.offset(-1.0);
+    compiled(&both).unwrap();
+    drop((both, one));
+    assert!(Arc::ptr_eq(&first, &surface(&other, 1.0, None)));
+    drop(other);
+    assert_eq!(Arc::strong_count(&first), 1, "it outlives all that have it");
 }

@@ -75,4 +75,4 @@ pub(crate) use partial::Partial;
 pub(crate) use point::limited;
 pub(crate) use ray::{Care, bracket, first_hit};
 pub(crate) use rvachev_field::{Crease, Op};
-pub(crate) use source::{CompileError, DistanceSource, Surface, Wanted};
+pub(crate) use source::{CompileError, DistanceSource, REACH, Surface, Wanted, surface};

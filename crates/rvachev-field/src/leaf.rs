@@ -24,9 +24,10 @@ use rvachev_num::{Cancelled, Run};
 ///   most 1 per length unit;
 /// * its `Debug` text says everything that its value depends on, numbers to the last digit, as a
 ///   derived `Debug` does: leaves of one type with the same text are taken to be the same leaf when
-///   solids are compared, hashed and [simplified](../struct.Solid.html#method.simplified). A leaf
-///   that holds what has no such text (a function, a table that is cut short) writes something into
-///   it that no other leaf of its type has, such as a serial number.
+///   solids are compared, hashed and [simplified](../struct.Solid.html#method.simplified), and
+///   where lengths are measured, once for all solids that are equal. A leaf that holds what has no
+///   such text (a function, a table that is cut short) writes something into it that no other leaf
+///   of its type has, such as a serial number.
 ///
 /// Mark `eval` and every helper in it `#[inline(always)]`, or lanes run 18 times slower.
 ///

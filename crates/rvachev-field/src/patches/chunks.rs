@@ -249,7 +249,7 @@ fn slopes_on<L: Lanes<Element = f32> + Packet>(
             slope[0].store(&mut out[1][to.clone()]);
             slope[1].store(&mut out[2][to.clone()]);
             slope[2].store(&mut out[3][to.clone()]);
-            if Packets::are_close(square) {
+            if packets.are_close(square) {
                 let (squares, signs) = (square.all().0, sign.all().0);
                 refine(packets, [squares, signs], &patches[at..at + L::WIDTH], points, out, to.start);
             }
@@ -271,7 +271,7 @@ fn refine(
     at: usize,
 ) {
     for (i, patch) in patches.iter().enumerate() {
-        if Packets::is_close(squares[i]) {
+        if packets.is_close(squares[i]) {
             let jet = packets.one([x[at + i], y[at + i], z[at + i]], *patch, signs[i]);
             for (column, part) in out.iter_mut().zip(jet) {
                 column[at + i] = part;

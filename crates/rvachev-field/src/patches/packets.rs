@@ -69,6 +69,8 @@ pub(super) struct Packets<'a> {
     band: f64,
     /// The square of the distance from which on it makes a difference on which side a point is.
     sided: f64,
+    /// The square of how near double precision is needed, or the side of the patch.
+    close: f64,
 }
 
 impl SurfaceDistance {
@@ -98,6 +100,7 @@ impl SurfaceDistance {
             level,
             band,
             sided: sided.max(ON_SURFACE).powi(2),
+            close: CLOSE.max(self.error() / frame.unit).powi(2),
         }
     }
 }
@@ -175,8 +178,8 @@ impl Packets<'_> {
 
     /// Whether some of the points need [`one`](Packets::one).
     #[inline(always)]
-    pub(super) fn are_close<R: Packet>(square: R) -> bool {
-        square.any_below(square.lift(CLOSE * CLOSE))
+    pub(super) fn are_close<R: Packet>(&self, square: R) -> bool {
+        square.any_below(square.lift(self.close))
     }
 
     /// Value and gradient of a point whose nearest patch is known, in double precision.
@@ -188,9 +191,9 @@ impl Packets<'_> {
         [self.placement.finish(value), x, y, z].map(|v| v as f32)
     }
 
-    /// Whether a distance found in single precision needs [`one`](Packets::one).
-    pub(super) fn is_close(square: f32) -> bool {
-        f64::from(square) < CLOSE * CLOSE
+    /// Whether a point that far away needs [`one`](Packets::one).
+    pub(super) fn is_close(&self, square: f32) -> bool {
+        f64::from(square) < self.close
     }
 }
 
