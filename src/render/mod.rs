@@ -8,10 +8,12 @@
 
 mod cells;
 mod contour;
+mod draft;
 mod empty_space;
 mod exact;
 mod extent;
 mod facet_block;
+mod facet_crease;
 mod facets;
 mod gbuffer;
 mod job;
@@ -23,6 +25,7 @@ mod occlusion;
 mod picture;
 mod pixels;
 mod scene;
+mod section;
 mod settings;
 mod shade;
 mod slice;
@@ -35,5 +38,5 @@ pub use contour::{ContourSettings, Side};
 pub use gbuffer::{GBuffer, Surface, Window};
 pub use layers::Layers;
 pub use scene::Scene;
-pub use settings::{Background, Lights, RenderError, RenderSettings, Style, Transfer};
+pub use settings::{Background, Lights, Quality, RenderError, RenderSettings, Style, Transfer};
 pub use slice::{Isolines, Slice, SliceSettings};
