@@ -57,7 +57,8 @@ pub struct RenderSettings {
     /// Whether the surface itself is drawn, or a mesh of it. Default: [`Quality::Fine`].
     pub quality: Quality,
     /// The cells of the mesh that a [draft](Quality::Draft) shows, along the longest side of the
-    /// solid's box, 4 to 1024. Default: 64.
+    /// solid's box, 4 to 1024; where the mesh says that something may be thinner than a cell, cells
+    /// of a quarter of the size are tried. Default: 64.
     pub draft_cells: u32,
     /// To look into the solid: the plane that it is cut by. What is on the side that the plane's
     /// [normal](Plane::normal) points to is taken away, so that of [`Plane::xz`] the section is
