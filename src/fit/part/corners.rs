@@ -141,7 +141,7 @@ impl Facets {
         let mut sums: HashMap<u32, usize> = HashMap::new();
         let mut found: Vec<(Corner, DVec3)> = Vec::new();
         for (facet, t) in (0u32..).zip(&self.triangles) {
-            if facet as usize % CHUNK == 0 {
+            if (facet as usize).is_multiple_of(CHUNK) {
                 run.check()?;
             }
             let normal = self.normals[facet as usize];
@@ -183,7 +183,7 @@ fn welded(points: &[DVec3], triangles: &[[u32; 3]], run: &Run) -> Result<Vec<[u3
     let mut first: HashMap<[u64; 3], u32> = HashMap::with_capacity(points.len());
     let mut names: Vec<u32> = Vec::with_capacity(points.len());
     for (i, p) in (0u32..).zip(points) {
-        if i as usize % CHUNK == 0 {
+        if (i as usize).is_multiple_of(CHUNK) {
             run.check()?;
         }
         names.push(*first.entry(p.to_array().map(|x| (x + 0.0).to_bits())).or_insert(i));

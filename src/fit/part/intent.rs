@@ -54,6 +54,9 @@ impl Meant {
     }
 }
 
+/// Leaves with whether each adds, in their order.
+type Leaves = Vec<(bool, Leaf)>;
+
 /// The leaves with the numbers that are meant, in length units of a part with such vertices and
 /// such a diagonal.
 pub(super) fn intended(
@@ -61,11 +64,11 @@ pub(super) fn intended(
     vertices: &[DVec3],
     size: f64,
     run: &Run,
-) -> Result<(Vec<(bool, Leaf)>, Vec<Change>), Cancelled> {
+) -> Result<(Leaves, Vec<Change>), Cancelled> {
     let open: Vec<f64> = leaves.iter().map(|(_, leaf)| open(leaf, vertices, size)).collect();
     // By what a turn moves the ends: that is left open as well.
     let turned = |leaf: &Leaf, open: f64| (open / leaf.reach().length()).min(TURNED);
-    let mut meant: Vec<(bool, Leaf)> =
+    let mut meant: Leaves =
         leaves.iter().zip(&open).map(|((adds, leaf), open)| (*adds, leaf.aligned(turned(leaf, *open)))).collect();
     let within = |measure: Measure, leaf: usize| match measure {
         Measure::Diameter | Measure::Size => 2.0 * open[leaf],
