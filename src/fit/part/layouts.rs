@@ -155,12 +155,15 @@ impl Group<'_> {
         Some(Pattern { leaves, layout: Layout::Ring { centre, axis, first } })
     }
 
-    /// Two that are half a turn about an axis of either from each other.
+    /// Two that are half a turn about an axis of either from each other, and no line.
     fn turned(&self) -> Vec<Pattern> {
         let mut pairs = Vec::new();
         for (n, &a) in self.left.iter().enumerate() {
             for &b in &self.left[n + 1..] {
                 let (centre, step) = (0.5 * (self.at(a) + self.at(b)), self.at(b) - self.at(a));
+                if self.leaves[b].is_copy(self.leaves[a], DMat3::IDENTITY, self.at(b), self.near) {
+                    continue;
+                }
                 let frame = self.leaves[a].rotation;
                 let own = [frame.x_axis, frame.y_axis, frame.z_axis].map(upright);
                 let across = DVec3::AXES.into_iter().chain(own).filter(|axis| axis.dot(step).abs() < self.near);

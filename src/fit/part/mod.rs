@@ -127,7 +127,7 @@ use crate::geom::{Mesh, PointCloud};
 ///
 /// Of 50 random parts (2 to 6 boxes, cylinders, cones, spheres, prisms, superellipsoids and
 /// supershapes, 0 to 4 holes, as meshes of marching cubes) 49 come out with an IoU of .97 or more
-/// (median .996), 47 with the genus of the mesh, 44 with 12 leaves or fewer. It takes some .1 to 2
+/// (median .996), 46 with the genus of the mesh, 43 with 12 leaves or fewer. It takes some .1 to 3
 /// s a part, on one thread.
 ///
 /// What is not recovered: fillets, sweeps, threads and lattices. Lengths that were meant to be round

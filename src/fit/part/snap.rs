@@ -76,7 +76,8 @@ mod tests {
     /// A disc of 36 facets, found too wide: its rims are on the ends all the same.
     #[test]
     fn rims_tell_radii_from_both_sides() {
-        let rim = |z: f64| (0..36).map(move |k| (0.2 * DVec3::X.rotate_z(TAU * f64::from(k) / 36.0)) + z * DVec3::Z);
+        let at = |k: i32| TAU * f64::from(k) / 36.0;
+        let rim = |z: f64| (0..36).map(move |k| DVec3::new(0.2 * at(k).cos(), 0.2 * at(k).sin(), z));
         let vertices: Vec<DVec3> = rim(-0.05).chain(rim(0.05)).collect();
         for radius in [0.1985, 0.2015] {
             let found = Leaf::cylinder(DVec3::Z, DVec3::new(2e-4, 0.0, 0.0), radius, [-0.0502, 0.0499]);
