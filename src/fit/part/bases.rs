@@ -13,7 +13,7 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec2;
 
 use super::sections::area;
-use super::straighten::{corners, distance, fitted, uncut};
+use super::straighten::{corners, crosses, distance, fitted, uncut};
 use crate::fit::linear::solved;
 
 /// Corners of a polygon at most, and where another shape fits too.
@@ -88,7 +88,9 @@ pub(super) fn bases(ring: &[DVec2], grain: Grain) -> Vec<Base> {
     }
     let mut polygon = corners(&ring, grain.tolerance.min(0.1 * size));
     if grain.short > 0.0 {
-        polygon = fitted(&ring, &uncut(&polygon, grain.short), grain.tolerance);
+        let better = fitted(&ring, &uncut(&polygon, grain.short), grain.tolerance);
+        // Where a wall is hardly thicker than it is uncertain, its sides may change places.
+        polygon = if crosses(&better) { polygon } else { better };
     }
     let even = evenly(&ring);
     let centre = centroid(&ring);
@@ -103,7 +105,7 @@ pub(super) fn bases(ring: &[DVec2], grain: Grain) -> Vec<Base> {
         found.extend(supershape(&even, centre, size));
     }
     let most = if found.is_empty() { MOST } else { FEW };
-    if (3..=most).contains(&polygon.len()) && !is_regular {
+    if (3..=most).contains(&polygon.len()) && !is_regular && !crosses(&polygon) {
         found.push(Base::Polygon(polygon));
     }
     found

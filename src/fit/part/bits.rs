@@ -38,10 +38,6 @@ impl Bits {
         Bits::new(points.len(), |i| is(points[i]))
     }
 
-    pub(super) fn words(&self) -> &[u64] {
-        &self.0
-    }
-
     pub(super) fn is_none(&self) -> bool {
         self.0.iter().all(|word| *word == 0)
     }

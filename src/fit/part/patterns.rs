@@ -219,7 +219,7 @@ mod tests {
 
     fn cut(x: f64, y: f64, radius: f64) -> PartLeaf {
         let leaf = Leaf::cylinder(DVec3::Z, DVec3::new(x, y, 1.0), radius, [-4.0, 4.0]);
-        PartLeaf { adds: false, leaf, name: String::new(), surface: 0.1 }
+        PartLeaf { adds: false, leaf, name: String::new(), surface: 0.1, seen: 1.0 }
     }
 
     #[test]
