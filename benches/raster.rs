@@ -3,7 +3,7 @@
 //! `cargo bench --bench raster` prints two tables. The first is by model, at 256², 512² and 1024²:
 //! milliseconds for the meshes of the operands and for finding them closed (once), for projecting
 //! them and sorting them into tiles (each view), and for the depth image by each method of
-//! depth-buffer CSG that can do the model; then for the scene of the implicit renderer (made once)
+//! depth-buffer CSG that can do the model, and for a shaded picture of it; then for the scene of the implicit renderer (made once)
 //! and its depth image. The ratio is that of the implicit renderer's image to projecting and
 //! intervals. The second table is by the number of triangles, with how far the depth images differ,
 //! at worst and in the mean, beside the silhouettes.
@@ -138,6 +138,7 @@ struct Row {
     meshes: f64,
     project: f64,
     methods: [Option<f64>; 3],
+    picture: f64,
     scene: f64,
     trace: f64,
 }
@@ -157,7 +158,14 @@ fn measure(model: &Model, columns: u32, side: u32, rounds: usize) -> Result<Meas
     let camera = Camera::framing(&bounds);
     let view = RasterView::new(&camera, side, side)?;
     let infinite = f64::INFINITY;
-    let mut row = Row { meshes: infinite, project: infinite, methods: [None; 3], scene: infinite, trace: infinite };
+    let mut row = Row {
+        meshes: infinite,
+        project: infinite,
+        methods: [None; 3],
+        picture: infinite,
+        scene: infinite,
+        trace: infinite,
+    };
     let (mut raster, mut implicit) = (Vec::new(), Vec::new());
     for _ in 0..rounds {
         let (time, meshes) = timed(|| model.meshes(columns));
@@ -173,6 +181,9 @@ fn measure(model: &Model, columns: u32, side: u32, rounds: usize) -> Result<Meas
             if let Ok(buffers) = buffers {
                 *least = Some(least.unwrap_or(f64::INFINITY).min(time));
                 raster = buffers.depths();
+                let (time, picture) = timed(|| buffers.picture(&operands, &[[200, 60, 40], [40, 90, 200]]));
+                picture?;
+                row.picture = row.picture.min(time);
             }
         }
         let (time, scene) = timed(|| model.solid.scene());
@@ -202,8 +213,8 @@ fn depths(view: &RasterView, distance: impl Fn(u32, u32) -> f64) -> Vec<f64> {
 fn by_model(rounds: usize) -> Result<(), Box<dyn Error>> {
     println!("milliseconds, one depth image; 8064 triangles an operand");
     println!(
-        "{:<20}{:>6}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>8}",
-        "model", "side", "meshes", "project", "stencil", "sequence", "interval", "scene", "trace", "ratio"
+        "{:<20}{:>6}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>8}",
+        "model", "side", "meshes", "project", "stencil", "sequence", "interval", "picture", "scene", "trace", "ratio"
     );
     for model in &models() {
         for side in [256, 512, 1024] {
@@ -211,7 +222,7 @@ fn by_model(rounds: usize) -> Result<(), Box<dyn Error>> {
             let [stencil, sequence, interval] =
                 row.methods.map(|time| time.map_or("-".to_string(), |ms| format!("{ms:.2}")));
             println!(
-                "{:<20}{:>6}{:>9.2}{:>9.2}{:>9}{:>9}{:>9}{:>9.2}{:>9.2}{:>8.1}",
+                "{:<20}{:>6}{:>9.2}{:>9.2}{:>9}{:>9}{:>9}{:>9.2}{:>9.2}{:>9.2}{:>8.1}",
                 model.name,
                 side,
                 row.meshes,
@@ -219,6 +230,7 @@ fn by_model(rounds: usize) -> Result<(), Box<dyn Error>> {
                 stencil,
                 sequence,
                 interval,
+                row.picture,
                 row.scene,
                 row.trace,
                 row.ratio()

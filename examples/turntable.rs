@@ -1,8 +1,9 @@
-//! A painted part turned once about: an animated GIF, with a progress bar.
+//! A painted part turned once about: an animated GIF, with a progress bar; and a look into it.
 //!
 //! ```text
-//! cargo run --release --example turntable -- out          out/turntable.gif
+//! cargo run --release --example turntable -- out          out/turntable.gif and out/section.png
 //! cargo run --release --example turntable -- out frames   and out/turntable_00.png and so on
+//! cargo run --release --example turntable -- out draft    the same as drafts, from a mesh
 //! ```
 
 use std::error::Error;
@@ -10,7 +11,9 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use rvachev::{Background, Camera, Image, Paint, Progress, RenderSettings, Run, Scene, Solid, View, deg, turns};
+use rvachev::{
+    Background, Camera, Image, Paint, Plane, Progress, Quality, RenderSettings, Run, Scene, Solid, View, deg, turns,
+};
 
 const FRAMES: u32 = 12;
 const WIDTH: u32 = 200;
@@ -59,7 +62,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let start = Instant::now();
     let mut arguments = std::env::args().skip(1);
     let folder = PathBuf::from(arguments.next().unwrap_or_else(|| "target/examples".into()));
-    let all = arguments.next().is_some();
+    let words: Vec<String> = arguments.collect();
+    let [all, draft] = ["frames", "draft"].map(|word| words.iter().any(|other| other == word));
     std::fs::create_dir_all(&folder)?;
 
     let scene = valve().scene()?;
@@ -74,6 +78,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         softness: deg(0.0),
         occlusion: false,
         background: Background::Plain([244, 244, 245]),
+        // The scene keeps the mesh of drafts from frame to frame.
+        quality: if draft { Quality::Draft } else { Quality::Fine },
         ..RenderSettings::default()
     };
     // Drawn on a terminal only.
@@ -89,6 +95,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let path = folder.join("turntable.gif");
     Image::save_animation(&frames, Duration::from_millis(70), &path)?;
+    let cut = RenderSettings {
+        width: 480,
+        height: 360,
+        cut: Some(Plane::xz(0.0)),
+        quality: settings.quality,
+        ..RenderSettings::default()
+    };
+    scene.render(&scene.framing(View::ThreeQuarter, aspect), &cut)?.save(folder.join("section.png"))?;
     println!("wrote {}: {FRAMES} frames in {:.1} s", path.display(), start.elapsed().as_secs_f64());
     Ok(())
 }

@@ -143,10 +143,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Parts have [paint](Solid::paint), pictures have [styles](Style); behind a picture are its
-//! [layers](Solid::layers): depth, normals, positions, leaves. A [slice](Solid::slice) shows the
-//! field on a plane, and its [contours](Slice::contours), nested and within a tolerance; a stack of
-//! planes is cut at once ([`Solid::slices`]).
+//! Parts have [paint](Solid::paint), pictures have [styles](Style), can be
+//! [cut open](RenderSettings::cut), and for turntables are [drafts](Quality::Draft) of a mesh that
+//! is kept; behind a picture are its [layers](Solid::layers): depth, normals, positions, leaves. A
+//! [slice](Solid::slice) shows the field on a plane, and its [contours](Slice::contours), nested
+//! and within a tolerance; a stack of planes is cut at once ([`Solid::slices`]).
 //!
 //! ```
 //! use rvachev::range_image::Coordinates;
@@ -180,7 +181,8 @@
 //! ```
 //!
 //! [Twelve idioms](idioms) show how things are commonly built: plates with holes, named parts,
-//! rings of parts, leaves of one's own. [Lengths](lengths) are explained with pictures.
+//! rings of parts, leaves of one's own. [Lengths](lengths) are explained with pictures,
+//! and so are [whole parts](parts), from meshes and scans to code.
 //!
 //! # The catalogue
 //!
@@ -485,6 +487,7 @@ pub mod layers;
 pub mod lengths;
 mod measure;
 mod mesh;
+pub mod parts;
 pub mod points;
 pub mod program;
 mod query;
@@ -511,7 +514,9 @@ pub use io::unit::LengthUnit;
 pub use measure::{ThicknessBin, ThicknessReport};
 pub use mesh::{AtBounds, CellSize, Component, Features, MeshReport, MeshSettings, OpenEdges, ThinFeatures};
 pub use query::{Clearance, Face};
-pub use render::{Background, ContourSettings, Lights, RenderSettings, Scene, Side, Slice, SliceSettings, Style};
+pub use render::{
+    Background, ContourSettings, Lights, Quality, RenderSettings, Scene, Side, Slice, SliceSettings, Style,
+};
 #[cfg(feature = "formula")]
 #[doc(inline)]
 pub use rvachev_field::Formula;

@@ -10,12 +10,14 @@
 //!
 //! A length that its operand's own value does not tell, an offset, the inner face of a shell, the
 //! ball of a fillet, is measured from the operand's surface. The surface is found once, when the
-//! solid is compiled, and kept with the node.
+//! solid is compiled, and kept for all solids that are equal to the operand.
 
 mod column;
 mod crease;
 mod facets;
 mod mend;
+mod piece;
+mod plots;
 mod quilt;
 mod seam;
 mod sheets;
@@ -28,7 +30,7 @@ use std::sync::Arc;
 
 use self::surface::FromMeshes;
 use crate::error::{MeshingError, RenderError};
-use crate::eval::{CompileError, Compiled, DistanceSource, Surface, Wanted, compile};
+use crate::eval::{CompileError, Compiled, Surface, Wanted, compile, surface};
 use crate::{Bounds, Run, Solid, SolidError};
 
 /// The programs of a solid, compiled on first use and kept with it.
@@ -56,16 +58,11 @@ pub(crate) fn surface_of(solid: &Solid) -> Result<Arc<Surface>, SolidError> {
 
 /// The same on the threads of a run, which may be cancelled.
 pub(crate) fn surface_with(solid: &Solid, run: &Run) -> Result<Arc<Surface>, CompileError> {
-    if let Some(kept) = solid.surface().get().and_then(|any| any.clone().downcast::<Surface>().ok()) {
-        return Ok(kept);
-    }
     let programs = compiled_with(solid, run)?;
     // Feet are refined on the field itself: a ten thousandth of the solid does.
     let length = 1e-1 * programs.bounds.longest_side();
     let wanted = Wanted { length, tolerance: None, region: &Bounds::ALL };
-    let surface = Arc::new(FromMeshes.surface(solid, &programs, &wanted, run)?);
-    let _ = solid.surface().set(surface.clone());
-    Ok(surface)
+    surface(solid, &programs, &wanted, &FromMeshes, run)
 }
 
 impl From<CompileError> for MeshingError {

@@ -10,7 +10,7 @@ use super::mend::mend;
 use super::quilt::{Care, Quilt};
 use super::sheets::cover;
 use crate::error::MeshingError;
-use crate::eval::{Accuracy, CompileError, Compiled, DistanceSource, Program, Surface, Wanted};
+use crate::eval::{Accuracy, CompileError, Compiled, DistanceSource, Program, REACH, Surface, Wanted};
 use crate::mesh::{Hidden, Slopes, Subject};
 use crate::{Bounds, Mesh, RFunction, Run, Solid, SolidError};
 use rvachev_field::Patches;
@@ -44,9 +44,6 @@ const FAR: f64 = 8.0;
 /// And at once where splitting leaves more than this part.
 const PATIENCE: f64 = 5e-3;
 
-/// Distances are asked up to so many lengths from a region.
-const REACH: f64 = 2.0;
-
 /// What is cut off beside a surface is cut off at no less than this part of its size from it.
 const BESIDE: f64 = 0.05;
 
@@ -69,7 +66,7 @@ impl DistanceSource for FromMeshes {
     ) -> Result<Surface, CompileError> {
         let whole = programs.bounds;
         let (bounds, flat, size) = extent(programs, wanted);
-        let mut near = wanted.region.inflate(REACH * wanted.length);
+        let mut near = wanted.near();
         if let Some(axis) = flat {
             (near.min[axis], near.max[axis]) = (f64::NEG_INFINITY, f64::INFINITY);
         }
@@ -119,7 +116,7 @@ impl DistanceSource for FromMeshes {
             let mut is_enough = false;
             if let Some(mut quilt) = Quilt::new(facets, &slopes, care, &to_sew)? {
                 mend(&mut quilt, &slopes, cell, tolerance, &to_sew)?;
-                let mut found = (quilt.tolerance(FEW, tolerance), quilt);
+                let mut found = (quilt.reached(FEW), quilt);
                 if hidden.is_empty() {
                     // Smaller cells do not always tell more.
                     let is_better = |(reached, quilt): &(f64, Quilt)| {
@@ -138,7 +135,7 @@ impl DistanceSource for FromMeshes {
                             is_enough = false;
                             is_last &= !is_gentle || 4.0 * count > HIDDEN * enough;
                         }
-                        found.0 = found.1.tolerance(FEW, tolerance);
+                        found.0 = found.1.reached(FEW);
                         best = Some(found);
                     }
                 }
@@ -161,7 +158,8 @@ impl DistanceSource for FromMeshes {
         let own = programs.accuracy.tolerance;
         let least = match wanted.tolerance {
             Some(tolerance) => (tolerance - own).max(FINEST * far),
-            None => (TOLERANCE * wanted.length).max(SMALL * far),
+            // Lengths that are alike have one surface.
+            None => (TOLERANCE * wanted.length).log2().floor().exp2().max(SMALL * far),
         };
         least.max(own)
     }

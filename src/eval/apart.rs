@@ -14,7 +14,7 @@ use super::depth::is_deeper;
 use super::exact::Exactness;
 use super::fill::FARTHEST;
 use super::nothing::Nothing;
-use super::source::{CompileError, DistanceSource, Measured, Surface, Wanted};
+use super::source::{CompileError, DistanceSource, Measured, Surface, Wanted, surface};
 use super::tiles::Tiles;
 use crate::solid::{BALL_OF_LEGS, Length, Node, Operation};
 use crate::{Blend, Bounds, Cancelled, Run, Solid};
@@ -166,8 +166,9 @@ fn distance(
         let accuracy = tiles.accuracy(&programs).plus(programs.accuracy);
         return Ok((Arc::new(tiles), accuracy));
     }
-    let Surface { patches, accuracy, flat } = source.surface(solid, &programs, wanted, run)?;
-    let field = SurfaceDistance::new(patches, sign(&programs), accuracy.error, flat, programs.bounds);
+    let surface = surface(solid, &programs, wanted, source, run)?;
+    let Surface { patches, accuracy, flat } = &*surface;
+    let field = SurfaceDistance::new(patches.clone(), sign(&programs), accuracy.error, *flat, programs.bounds);
     Ok((Arc::new(field), accuracy.plus(programs.accuracy)))
 }
 

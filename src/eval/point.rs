@@ -22,6 +22,11 @@ impl Program {
     /// The same, with the values of all nodes.
     fn evaluate_all<N: Number>(&self, p: [N; 3], values: &mut Vec<N>) -> N {
         let frames = self.frame_points(p);
+        self.evaluate_leaves(|leaf| self.leaf(leaf, self.in_frame(&frames, self.instance(leaf).frame, p)), values)
+    }
+
+    /// The value, by those of the leaves.
+    pub(super) fn evaluate_leaves<N: Number>(&self, leaf: impl Fn(u32) -> N, values: &mut Vec<N>) -> N {
         values.clear();
         for node in &self.nodes[..] {
             let signed = |edge: &Edge| {
@@ -30,7 +35,7 @@ impl Program {
             };
             let mut operands = self.list(node).iter().map(signed);
             let value = match &node.kind {
-                Kind::Leaf(leaf) => self.leaf(*leaf, self.in_frame(&frames, self.instance(*leaf).frame, p)),
+                Kind::Leaf(number) => leaf(*number),
                 Kind::Join { op, rule, .. } => {
                     let Some(start) = operands.next() else { continue };
                     operands.fold(start, |all, next| rule.join(*op, all, next))
@@ -115,8 +120,19 @@ impl Program {
 
     /// The number of the leaf whose value decides at a point.
     pub(crate) fn deciding_leaf(&self, p: DVec3) -> u32 {
+        self.leaf_at(p, |_, _| true)
+    }
+
+    /// The number of the leaf that a point inside is in: what it was cut out of, and not what was
+    /// taken away nearby.
+    pub(crate) fn holding_leaf(&self, p: DVec3) -> u32 {
+        self.leaf_at(p, |op, edge| op == Op::Or || !edge.negated())
+    }
+
+    /// The leaf whose value decides at a point, among those operands of each join that count, if
+    /// any do. Values are found where there is a choice.
+    fn leaf_at(&self, p: DVec3, counts: impl Fn(Op, &Edge) -> bool) -> u32 {
         let mut values = Vec::new();
-        self.evaluate_all(limited(p), &mut values);
         let mut at = self.root.node();
         loop {
             let node = &self.nodes[at];
@@ -125,13 +141,17 @@ impl Program {
                 Kind::Join { op, .. } => *op,
                 Kind::Shift(_) => Op::Or,
             };
-            let signed = |edge: &Edge| {
-                let value = values[edge.node()];
-                if edge.negated() { -value } else { value }
-            };
             let operands = self.list(node);
-            let mut chosen = operands[0];
-            for edge in &operands[1..] {
+            let mut counted = operands.iter().filter(|edge| counts(op, edge));
+            let mut chosen = *counted.next().unwrap_or(&operands[0]);
+            for edge in counted {
+                if values.is_empty() {
+                    self.evaluate_all(limited(p), &mut values);
+                }
+                let signed = |edge: &Edge| {
+                    let value: f64 = values[edge.node()];
+                    if edge.negated() { -value } else { value }
+                };
                 let better = match op {
                     Op::Or => signed(edge) > signed(&chosen),
                     Op::And => signed(edge) < signed(&chosen),

@@ -138,6 +138,24 @@ impl Program {
         entered(at(zone.centre).collect())
             .or_else(|| entered(corners().into_iter().flat_map(at).collect()))
             .or_else(|| entered(inward()))
+            .or_else(|| self.rise_in_plane(zone, axes))
+    }
+
+    /// The same as the slopes of the whole tell it: in the neck of a smooth join no direction leads
+    /// into both operands, but the join rises along one.
+    fn rise_in_plane(&self, zone: &Zone, axes: [DVec3; 2]) -> Option<DVec3> {
+        let is_blend = |kind: &Kind| matches!(kind, Kind::Join { rule, .. } if *rule != Rule::MinMax);
+        if !self.nodes.iter().any(|node| is_blend(&node.kind)) {
+            return None;
+        }
+        let slope = self.gradient(zone.centre).1;
+        let middle = axes.map(|axis| slope.dot(axis) * axis).into_iter().sum::<DVec3>().try_normalize()?;
+        let across = middle.cross(axes[0].cross(axes[1]));
+        let [one, other] = [-LEAN, LEAN].map(|lean| (middle + lean * across).to_array().map(Interval::point));
+        let (hull, level) = (zone.hull(), Interval::point(0.0));
+        let seen = [0, 1, 2].map(|axis| Dual::new(hull[axis], [one[axis], other[axis], level]));
+        let [one, other, _] = self.evaluate(seen, &mut Vec::new()).gradient();
+        (one.lo() > 0.0 && other.lo() > 0.0).then_some(middle)
     }
 
     /// The directions, of up to eight, along which the solid is found to be entered, and not left,

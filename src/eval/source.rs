@@ -41,6 +41,16 @@ pub(crate) struct Wanted<'a> {
     pub(crate) region: &'a Bounds,
 }
 
+/// Distances are asked up to so many lengths from a region.
+pub(crate) const REACH: f64 = 2.0;
+
+impl Wanted<'_> {
+    /// Where the surface is needed.
+    pub(crate) fn near(&self) -> Bounds {
+        self.region.inflate(REACH * self.length)
+    }
+}
+
 /// A surface to measure from.
 pub(crate) struct Surface {
     pub(crate) patches: Arc<Patches>,
@@ -49,6 +59,34 @@ pub(crate) struct Surface {
     /// The axis along which it is a cylinder, if it is: the patches are those where its coordinate
     /// is 0.
     pub(crate) flat: Option<usize>,
+}
+
+/// A surface that is kept for all equal solids.
+struct KeptSurface {
+    tolerance: f64,
+    near: Bounds,
+    surface: Arc<Surface>,
+}
+
+/// The surface of a solid, which has been compiled. It is found once for all solids that are equal,
+/// and for all who ask for the same tolerance in the same place.
+pub(crate) fn surface(
+    solid: &Solid,
+    programs: &Compiled,
+    wanted: &Wanted<'_>,
+    source: &'static dyn DistanceSource,
+    run: &Run,
+) -> Result<Arc<Surface>, CompileError> {
+    let (tolerance, near) = (source.tolerance(programs, wanted), wanted.near());
+    // A finer one would do as well; but what is found is not to hang on what was asked before.
+    let is_same = |kept: &KeptSurface| kept.tolerance == tolerance && kept.near == near;
+    if let Some(kept) = solid.shelf().find(is_same) {
+        run.report(1.0);
+        return Ok(kept.surface.clone());
+    }
+    let surface = Arc::new(source.surface(solid, programs, wanted, run)?);
+    solid.shelf().keep(Arc::new(KeptSurface { tolerance, near, surface: surface.clone() }));
+    Ok(surface)
 }
 
 /// A distance that was measured, kept with its node.

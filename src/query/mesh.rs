@@ -125,8 +125,18 @@ impl Solid {
         if part.size().min_element() <= rounding {
             return Ok((self.clone(), Bounds::EMPTY));
         }
-        // Far from the solid the bounds cut nothing.
-        let knife = given.intersection(&own.inflate(own.size().max_element()));
+        // Far from the solid the bounds cut nothing. Where the solid ends before them they are taken
+        // away from it: a face that touches it would be an edge of almost no angle.
+        let around = own.inflate(own.size().max_element());
+        let mut knife = given.intersection(&around);
+        for axis in 0..3 {
+            if own.min[axis] >= given.min[axis] - rounding {
+                knife.min[axis] = around.min[axis];
+            }
+            if own.max[axis] <= given.max[axis] + rounding {
+                knife.max[axis] = around.max[axis];
+            }
+        }
         if knife.size().max_element() > LARGEST_LENGTH {
             return Err(wrong());
         }

@@ -42,7 +42,7 @@ impl Solid {
     ///
     /// // No closed form is known of the distance to a twisted bar.
     /// let measured = Solid::cuboid([2.0, 2.0, 4.0]).twist(rad(0.25)).offset(0.5);
-    /// assert_eq!(measured.accuracy()?.tolerance, 5e-4);
+    /// assert!(measured.accuracy()?.tolerance <= 5e-4);
     /// # Ok::<(), rvachev::SolidError>(())
     /// ```
     ///
@@ -62,7 +62,8 @@ impl Solid {
     /// Compiles the solid and measures the surfaces that its offsets, shells, roundings, fillets
     /// and chamfers need, and tells how exact they are: [`accuracy`](Solid::accuracy). Everything
     /// is kept with the solid and its clones: queries, meshes and pictures find it there, and a
-    /// second call costs nothing.
+    /// second call costs nothing. A surface that was measured serves all lengths of about its size,
+    /// of equal operands too, as long as one of these operands is there.
     ///
     /// Whoever does not call this pays when the solid is first used. What is called here is the
     /// threads, the cancel token and the progress sink of that work. If it is cancelled, what was
@@ -77,7 +78,7 @@ impl Solid {
     /// let part = Solid::cuboid([2.0, 2.0, 4.0]).twist(rad(0.25)).shell(0.25);
     /// let progress = Progress::new(|fraction| println!("{:.0} %", 100.0 * fraction));
     /// let accuracy = part.prepare(&Run { progress: Some(progress), ..Run::default() })?;
-    /// assert_eq!(accuracy.tolerance, 2.5e-4);
+    /// assert!(accuracy.tolerance <= 2.5e-4);
     /// # Ok::<(), rvachev::error::PrepareError>(())
     /// ```
     ///

@@ -91,7 +91,7 @@ impl Buffers {
             let allowed = "numbers below 2147483647";
             return Err(RasterError::Setting { setting: "number", value: number.to_string(), allowed });
         }
-        self.pass(layers, |target, tile| target.draw(layers, number, facing, tile))
+        self.pass(layers, |target, tile| target.draw(layers, number, Some(facing), tile))
     }
 
     /// Adds to the stencil, for each stored point, the number of front less that of back faces
@@ -159,12 +159,7 @@ impl Buffers {
     #[must_use]
     pub fn id(&self, x: u32, y: u32) -> Option<SurfaceId> {
         let (target, i) = self.place(x, y)?;
-        let operand = target.operand[i];
-        if operand == NOTHING {
-            return None;
-        }
-        let facing = if operand & REVERSED == 0 { Facing::Front } else { Facing::Back };
-        Some(SurfaceId { operand: operand & !REVERSED, face: target.face[i], facing })
+        (target.operand[i] != NOTHING).then(|| target.id(i))
     }
 
     /// The stencil of a pixel; 0 beyond the picture.

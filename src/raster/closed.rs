@@ -88,20 +88,25 @@ fn by_position(mesh: &Mesh) -> Vec<u32> {
     first
 }
 
-/// The normal of a triangle at a point on it: between those of the corners, or its own; 0 where
-/// it has none.
+/// The normal of a triangle at a point on it: between those of the corners, which at a crease are
+/// those of its side, or its own; 0 where it has none.
+#[inline]
 pub(super) fn normal(mesh: &Mesh, triangle: u32, point: DVec3) -> DVec3 {
     let Some(&corners) = mesh.triangles().get(triangle as usize) else { return DVec3::ZERO };
     let [a, b, c] = mesh.corners(corners);
     let area = (b - a).cross(c - a);
-    let Some(normals) = mesh.normals() else { return area.normalize_or_zero() };
+    let [na, nb, nc] = match (mesh.corner_normals(), mesh.normals()) {
+        (Some(all), _) => all[triangle as usize],
+        (None, Some(all)) => corners.map(|i| all[i as usize]),
+        (None, None) => return area.normalize_or_zero(),
+    };
     let square = area.length_squared();
     if square == 0.0 {
         return DVec3::ZERO;
     }
     // Barycentric coordinates by parts of the area.
-    let v = (point - a).cross(c - a).dot(area) / square;
-    let w = (b - a).cross(point - a).dot(area) / square;
-    let [na, nb, nc] = corners.map(|i| normals[i as usize].as_dvec3());
-    (na * (1.0 - v - w) + nb * v + nc * w).normalize_or_zero()
+    let share = area * square.recip();
+    let v = (point - a).cross(c - a).dot(share);
+    let w = (b - a).cross(point - a).dot(share);
+    (na.as_dvec3() * (1.0 - v - w) + nb.as_dvec3() * v + nc.as_dvec3() * w).normalize_or_zero()
 }

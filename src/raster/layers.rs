@@ -48,12 +48,12 @@ impl Tile {
     }
 
     /// How many tiles cover a picture, across and down.
-    pub(super) fn grid(width: u32, height: u32) -> [u32; 2] {
+    pub(crate) fn grid(width: u32, height: u32) -> [u32; 2] {
         [width.div_ceil(Tile::SIDE), height.div_ceil(Tile::SIDE)]
     }
 
     /// The tile of this number, row by row from the top left.
-    pub(super) fn number(number: u32, width: u32, height: u32) -> Tile {
+    pub(crate) fn number(number: u32, width: u32, height: u32) -> Tile {
         let [across, _] = Tile::grid(width, height);
         let (x, y) = (number % across * Tile::SIDE, number / across * Tile::SIDE);
         Tile { x, y, width: (width - x).min(Tile::SIDE), height: (height - y).min(Tile::SIDE) }

@@ -5,8 +5,10 @@ use fearless_simd::{Level, Simd, dispatch};
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::buffers::SurfaceId;
 use super::closed::{ClosedMesh, normal};
 use super::layers::{Fragments, LayerSource, Tile};
+use super::target::Target;
 use super::triangle::{Batch, Triangle};
 use super::view::RasterView;
 use crate::Mesh;
@@ -117,6 +119,30 @@ impl<'a> MeshLayers<'a> {
     #[must_use]
     pub fn mesh(&self) -> &'a Mesh {
         self.mesh
+    }
+
+    /// What of the mesh is seen in a tile, from either side: for each pixel of the picture that
+    /// shows any, its column and row, what it shows and how deep it lies. `target` is scratch
+    /// memory.
+    pub(crate) fn seen(&self, tile: &Tile, target: &mut Target, mut see: impl FnMut([u32; 2], SurfaceId, f64)) {
+        if !self.touches(tile) {
+            return;
+        }
+        target.clear_depth();
+        target.draw(self, 0, None, tile);
+        for (row, y) in (0..).zip(tile.y..tile.y + tile.height) {
+            for (column, x) in (0..).zip(tile.x..tile.x + tile.width) {
+                let i = row * Tile::SIDE as usize + column;
+                if target.depth[i] < f64::INFINITY {
+                    see([x, y], target.id(i), target.depth[i]);
+                }
+            }
+        }
+    }
+
+    /// The view that it is drawn in.
+    pub(crate) fn view(&self) -> &RasterView {
+        &self.view
     }
 
     /// Every level gives the same to the bit: no operation rounds less on some.

@@ -50,3 +50,5 @@ pub use expression::Csg;
 pub use layers::{Facing, Fragments, LANES, LayerSource, Tile};
 pub use mesh_layers::MeshLayers;
 pub use view::RasterView;
+
+pub(crate) use target::Target;

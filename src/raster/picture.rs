@@ -14,8 +14,10 @@ use rayon::prelude::*;
 
 use super::buffers::Buffers;
 use super::error::RasterError;
-use super::layers::{Facing, LayerSource};
+use super::layers::{LayerSource, Tile};
+use super::target::{NOTHING, REVERSED, Target};
 use crate::Image;
+use crate::geom::{to_byte, to_linear};
 
 /// Strengths of the lights.
 const KEY: f64 = 0.95;
@@ -44,30 +46,49 @@ impl Buffers {
         let [right, up, forward] = view.axes();
         let towards = |x: f64, y: f64, z: f64| (x * right + y * up - z * forward).normalize();
         let (key, fill) = (towards(-0.62, 0.66, 0.62), towards(0.85, 0.05, 0.45));
-        let pixel = |(x, y): (u32, u32)| {
-            let (Some(id), Some(point)) = (self.id(x, y), self.point(x, y)) else { return Ok([0; 4]) };
-            let number = id.operand as usize;
-            let Some(operand) = operands.get(number) else {
+        let colors: Vec<Vec3> =
+            colors.iter().map(|color| Vec3::from_array(color.map(|c| to_linear(f32::from(c) / 255.0)))).collect();
+        let pixel = |target: &Target, i: usize, x: u32, y: u32| {
+            let (operand, depth) = (target.operand[i], target.depth[i]);
+            if operand == NOTHING || depth == f64::INFINITY {
+                return Ok([0; 4]);
+            }
+            let number = (operand & !REVERSED) as usize;
+            let Some(layers) = operands.get(number) else {
                 return Err(RasterError::Operand { operand: number, operands: operands.len() });
             };
-            let outward = operand.normal(id.face, point);
-            let normal = match id.facing {
-                _ if outward == DVec3::ZERO => -view.direction(f64::from(x) + 0.5, f64::from(y) + 0.5),
-                Facing::Front => outward,
-                Facing::Back => -outward,
+            let (x, y) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
+            let outward = layers.normal(target.face[i], view.point(x, y, depth));
+            let normal = match operand & REVERSED {
+                _ if outward == DVec3::ZERO => -view.direction(x, y),
+                0 => outward,
+                _ => -outward,
             };
             let lit = |direction: DVec3| normal.dot(direction).max(0.0);
             let share = 0.5 * (1.0 + normal.dot(up));
             let light = KEY * lit(key) + FILL * lit(fill) + SKY * share + GROUND * (1.0 - share);
-            let color = Vec3::from_array(colors[number % colors.len()].map(|c| f32::from(c) / 255.0));
-            let seen = (color.map(linear) * light as f32).map(encoded);
-            let [r, g, b] = seen.to_array().map(|c| (255.0 * c.clamp(0.0, 1.0)).round() as u8);
+            let [r, g, b] = (colors[number % colors.len()] * light as f32).to_array().map(to_byte);
             Ok([r, g, b, 255])
         };
         let (width, height) = (view.width(), view.height());
-        let pixels: Result<Vec<[u8; 4]>, RasterError> =
-            (0..u64::from(width) * u64::from(height)).into_par_iter().map(|i| pixel(place(i, width))).collect();
-        Ok(Image::new(width, height, pixels?)?)
+        let [across, _] = Tile::grid(width, height);
+        let mut pixels = vec![[0; 4]; width as usize * height as usize];
+        // A row of tiles at a time.
+        let bands = pixels.par_chunks_mut((width * Tile::SIDE) as usize).zip(self.tiles.par_chunks(across as usize));
+        bands.enumerate().try_for_each(|(band, (pixels, tiles))| {
+            let top = band as u32 * Tile::SIDE;
+            for ((row, line), y) in pixels.chunks_mut(width as usize).enumerate().zip(top..) {
+                for (target, (part, left)) in
+                    tiles.iter().zip(line.chunks_mut(Tile::SIDE as usize).zip((0..).step_by(Tile::SIDE as usize)))
+                {
+                    for ((column, out), x) in part.iter_mut().enumerate().zip(left..) {
+                        *out = pixel(target, row * Tile::SIDE as usize + column, x, y)?;
+                    }
+                }
+            }
+            Ok::<_, RasterError>(())
+        })?;
+        Ok(Image::new(width, height, pixels)?)
     }
 
     /// A picture of depth: grey, from light where it is nearest to dark where it is farthest;
@@ -92,19 +113,4 @@ impl Buffers {
         let view = self.view();
         Ok(Image::new(view.width(), view.height(), depths.iter().map(grey).collect())?)
     }
-}
-
-/// Column and row of the pixel of this number.
-fn place(number: u64, width: u32) -> (u32, u32) {
-    ((number % u64::from(width)) as u32, (number / u64::from(width)) as u32)
-}
-
-/// From sRGB to linear.
-fn linear(c: f32) -> f32 {
-    if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
-}
-
-/// From linear to sRGB.
-fn encoded(c: f32) -> f32 {
-    if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
 }

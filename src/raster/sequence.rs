@@ -56,7 +56,7 @@ impl Sequences {
                 (self.is_used[number] && layers.touches(tile)).then(|| {
                     [Facing::Front, Facing::Back].map(|facing| {
                         let mut side = Target::new();
-                        side.draw(*layers, number as u32, facing, tile);
+                        side.draw(*layers, number as u32, Some(facing), tile);
                         side
                     })
                 })

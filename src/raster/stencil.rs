@@ -62,14 +62,14 @@ impl Passes {
         let mut target = Target::new();
         // Draws one side of an operand and keeps what is inside of the other, or outside of it.
         let pass = |target: &mut Target, a: u32, facing: Facing, b: u32, inside: bool| {
-            target.draw(operands[a as usize], a, facing, tile);
+            target.draw(operands[a as usize], a, Some(facing), tile);
             target.classify(operands[b as usize], tile);
             target.keep(|count| (count != 0) == inside);
         };
         let (a, b, facing, first_inside) = match self {
             Passes::Union(all) => {
                 for &a in all {
-                    target.draw(operands[a as usize], a, Facing::Front, tile);
+                    target.draw(operands[a as usize], a, Some(Facing::Front), tile);
                 }
                 return target;
             }

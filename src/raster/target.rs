@@ -1,5 +1,6 @@
 //! The buffers of one tile, and the passes that fill them.
 
+use super::buffers::SurfaceId;
 use super::layers::{Facing, Fragments, LANES, LayerSource, Tile};
 
 /// In place of an operand where nothing is seen.
@@ -10,7 +11,7 @@ pub(super) const REVERSED: u32 = 1 << 31;
 
 /// Depth, stencil and id of the pixels of a tile.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Target {
+pub(crate) struct Target {
     /// +∞ where nothing is.
     pub(super) depth: Vec<f64>,
     pub(super) stencil: Vec<i32>,
@@ -20,7 +21,7 @@ pub(super) struct Target {
 }
 
 impl Target {
-    pub(super) fn new() -> Target {
+    pub(crate) fn new() -> Target {
         Target {
             depth: vec![f64::INFINITY; Tile::PIXELS],
             stencil: vec![0; Tile::PIXELS],
@@ -29,17 +30,32 @@ impl Target {
         }
     }
 
+    /// What is seen at a pixel where anything is.
+    #[inline]
+    pub(super) fn id(&self, i: usize) -> SurfaceId {
+        let operand = self.operand[i];
+        let facing = if operand & REVERSED == 0 { Facing::Front } else { Facing::Back };
+        SurfaceId { operand: operand & !REVERSED, face: self.face[i], facing }
+    }
+
     /// Nothing is seen any more. The stencil stays.
     pub(super) fn clear_depth(&mut self) {
         self.depth.fill(f64::INFINITY);
         self.operand.fill(NOTHING);
     }
 
-    /// Depth test LESS: what is nearer replaces what is there.
-    pub(super) fn draw<L: LayerSource + ?Sized>(&mut self, layers: &L, operand: u32, facing: Facing, tile: &Tile) {
-        let operand = operand | if facing == Facing::Back { REVERSED } else { 0 };
+    /// Depth test LESS: what is nearer replaces what is there. One side of the operand's surface, or
+    /// both.
+    pub(super) fn draw<L: LayerSource + ?Sized>(
+        &mut self,
+        layers: &L,
+        operand: u32,
+        facing: Option<Facing>,
+        tile: &Tile,
+    ) {
         layers.layers(tile, &mut |runs| {
-            for run in runs.iter().filter(|run| run.facing == facing) {
+            for run in runs.iter().filter(|run| facing.is_none_or(|facing| run.facing == facing)) {
+                let operand = operand | if run.facing == Facing::Back { REVERSED } else { 0 };
                 let Some(depth) = lanes_mut(&mut self.depth, run) else { continue };
                 for (lane, (depth, new)) in depth.iter_mut().zip(run.depth).enumerate() {
                     if new < *depth {

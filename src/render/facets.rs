@@ -8,8 +8,9 @@
 //!      +---+---+-------+
 //! ```
 //!
-//! The plane of a cell is the one nearest to the field's values at its corners. A ray meets a
-//! facet where it passes the plane inwards, or enters the cell beyond it. Light that is gathered
+//! The plane of a cell is the one nearest to the field's values at its corners; a cell that a crease
+//! passes has a plane for each face (see `facet_crease`). A ray meets a facet where it passes the
+//! plane inwards, or enters the cell beyond it. Light that is gathered
 //! over many rays asks for no more, and a ray costs some tens of nanoseconds; what is thinner
 //! than a cell may cast no shadow. The first hits of a picture's own rays are certain, see
 //! [`Scene`](super::Scene).
@@ -21,10 +22,11 @@ use glam::{DVec3, IVec3, Vec3, Vec3A, Vec4};
 use rayon::prelude::*;
 
 use super::empty_space::EmptySpace;
-use super::facet_block::{Block, NODES, Ray, SIDE};
-use crate::eval::{Evaluator, Program, Tape};
+use super::facet_block::{Block, NODES, Ray, SIDE, Sketch};
+use crate::eval::{Evaluator, Gradients, Program, Tape};
 use crate::space::{Grid, SurfaceBlocks, surface_blocks};
 use crate::{Bounds, Cancelled, Run};
+use rvachev_num::Meter;
 
 /// Rays step this far over a border, in cells.
 const NUDGE: f32 = 1e-3;
@@ -70,6 +72,10 @@ struct Maker {
     evaluator: Evaluator,
     tape: Option<(Program, Tape)>,
     values: Vec<f32>,
+    sketch: Sketch,
+    /// The nodes whose slopes are wanted, where they are, and their values and slopes.
+    wanted: Vec<usize>,
+    slopes: [Vec<f32>; 7],
 }
 
 impl Facets {
@@ -82,7 +88,8 @@ impl Facets {
         let origin = bounds.min - 0.37 * cell;
         let blocks = ((bounds.max - origin) / side).floor().as_uvec3() + 1;
         let grid = Grid { origin, side, blocks: blocks.to_array() };
-        let SurfaceBlocks { blocks: found, programs } = surface_blocks(program, &grid, 0.0, run)?;
+        let [to_find, to_make] = run.stages([0.3, 0.7]);
+        let SurfaceBlocks { blocks: found, programs } = surface_blocks(program, &grid, 0.0, &to_find)?;
         let node = |along: usize| (along as f64 - 0.5 * SIDE as f64) * cell;
         let place = |n: usize| [n % NODES, n / NODES % NODES, n / (NODES * NODES)].map(|along| node(along) as f32);
         let nodes = [0, 1, 2].map(|axis| (0..NODES * NODES * NODES).map(|n| place(n)[axis]).collect::<Vec<f32>>());
@@ -91,10 +98,13 @@ impl Facets {
             let next = [0, 1, 2].map(|axis| index[axis] + 1);
             maker.block(program, &grid.bounds(index, next), cell, &nodes)
         };
+        let meter = Meter::new(&to_make, found.len());
         let made = found.par_chunks(TOGETHER).enumerate().map(|(chunk, blocks)| {
-            run.check()?;
+            meter.check()?;
             let mut maker = Maker::default();
-            Ok((0..blocks.len()).map(|at| make(&mut maker, chunk * TOGETHER + at)).collect())
+            let made = (0..blocks.len()).map(|at| make(&mut maker, chunk * TOGETHER + at)).collect();
+            meter.add(blocks.len() as u64);
+            Ok(made)
         });
         let made: Result<Vec<Vec<Block>>, Cancelled> = made.collect();
         let surface: Vec<Block> = made?.into_iter().flatten().collect();
@@ -255,12 +265,36 @@ impl Maker {
         };
         self.values.resize(nodes[0].len(), 0.0);
         self.evaluator.values_within(tape, BESIDE * cell, [&nodes[0], &nodes[1], &nodes[2]], &mut self.values);
-        Block::new(&self.values)
+        let by_cell = 1.0 / cell as f32;
+        self.values.iter_mut().for_each(|value| *value *= by_cell);
+        self.sketch.fill(&self.values);
+        let mut is_wanted = [false; NODES * NODES * NODES];
+        self.sketch.nodes(&mut is_wanted);
+        self.wanted.clear();
+        self.wanted.extend((0..is_wanted.len()).filter(|node| is_wanted[*node]));
+        // The wanted nodes, and value and slopes there.
+        let count = self.wanted.len();
+        let [x, y, z, value, dx, dy, dz] = &mut self.slopes;
+        for (axis, list) in [&mut *x, &mut *y, &mut *z].into_iter().enumerate() {
+            list.clear();
+            list.extend(self.wanted.iter().map(|node| nodes[axis][*node]));
+        }
+        for list in [&mut *value, &mut *dx, &mut *dy, &mut *dz] {
+            list.resize(count, 0.0);
+        }
+        let out = Gradients { value, dx, dy, dz };
+        self.evaluator.shortest_gradients(tape, [&x[..], &y[..], &z[..]], out);
+        let [_, _, _, value, dx, dy, dz] = &self.slopes;
+        Block::new(&self.sketch, |node| {
+            let at = self.wanted.binary_search(&node).unwrap_or_default();
+            (value[at] * by_cell, Vec3::new(dx[at], dy[at], dz[at]))
+        })
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::facet_crease::Meeting;
     use super::*;
     use crate::{Solid, rad};
 
@@ -331,32 +365,31 @@ mod tests {
             Solid::superellipsoid(DVec3::new(1.0, 0.8, 0.6), 0.3, 0.7) - Solid::cylinder(0.3, 3.0).rotate_x(rad(0.4));
         let solid = solid | Solid::torus(1.2, 0.08);
         let facets = facets(&solid, 90);
-        let cells: Vec<(DVec3, DVec3, f64)> = (0..facets.numbers.len())
+        let cells: Vec<_> = (0..facets.numbers.len())
             .filter(|at| facets.numbers[*at] != u32::MAX)
             .flat_map(|at| {
                 let size = facets.last.as_ivec3() + 1;
                 let at = IVec3::new(at as i32 % size.x, at as i32 / size.x % size.y, at as i32 / (size.x * size.y));
                 let block = &facets.surface[facets.numbers[((at.z * size.y + at.y) * size.x + at.x) as usize] as usize];
-                let corner = (at * SIDE as i32).as_dvec3();
-                block.facets().map(move |(middle, facet)| {
-                    let slopes = facet.truncate().as_dvec3();
-                    (corner + middle.as_dvec3(), slopes, f64::from(facet.w) - slopes.dot(corner))
-                })
+                let corner = at * SIDE as i32;
+                block.meetings().map(move |(middle, meet)| (corner, middle, meet))
             })
             .collect();
         let first = |origin: DVec3, direction: DVec3| {
             let mut least = f64::INFINITY;
-            for (middle, slopes, value) in &cells {
+            let (inverse, signs) = (direction.recip().as_vec3a(), direction.signum().as_vec3a());
+            let ray = Ray { origin: origin.as_vec3a(), direction: direction.as_vec3a(), inverse, signs };
+            for (corner, middle, meet) in &cells {
+                let middle = corner.as_dvec3() + middle.as_dvec3();
                 let (a, b) = ((middle - 0.5 - origin) / direction, (middle + 0.5 - origin) / direction);
                 let (near, far) = (a.min(b).max_element().max(0.0), a.max(b).min_element());
-                let (value, rate) = (value + slopes.dot(origin), slopes.dot(direction));
                 if near >= far {
                     continue;
                 }
-                if value + near * rate > 0.0 {
-                    least = if near > 2.0 { least.min(near) } else { least };
-                } else if value + far * rate > 0.0 {
-                    least = least.min(-value / rate);
+                match meet(&ray, corner.as_vec3a(), near as f32, far as f32) {
+                    Meeting::Enters(t) => least = least.min(f64::from(t)),
+                    Meeting::Within if near > 2.0 => least = least.min(near),
+                    Meeting::Within | Meeting::None => {}
                 }
             }
             least

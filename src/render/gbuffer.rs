@@ -99,6 +99,10 @@ impl GBuffer {
         &self.surfaces
     }
 
+    pub(super) fn into_surfaces(self) -> Vec<Surface> {
+        self.surfaces
+    }
+
     /// What the pixel in column `x` and row `y` of the window sees; nothing beyond it.
     #[must_use]
     pub fn at(&self, x: u32, y: u32) -> Surface {

@@ -6,14 +6,18 @@
 //! a coarser copy of the surface, and more rays of its own at outlines and creases. Slices show the
 //! field on a plane.
 
+mod beside;
 mod cells;
 mod contour;
+mod draft;
 mod empty_space;
 mod exact;
 mod extent;
 mod facet_block;
+mod facet_crease;
 mod facets;
 mod gbuffer;
+mod held;
 mod job;
 mod layers;
 mod lines;
@@ -23,9 +27,12 @@ mod occlusion;
 mod picture;
 mod pixels;
 mod scene;
+mod search;
+mod section;
 mod settings;
 mod shade;
 mod slice;
+mod slopes;
 mod solid;
 mod spot;
 mod still;
@@ -35,5 +42,5 @@ pub use contour::{ContourSettings, Side};
 pub use gbuffer::{GBuffer, Surface, Window};
 pub use layers::Layers;
 pub use scene::Scene;
-pub use settings::{Background, Lights, RenderError, RenderSettings, Style, Transfer};
+pub use settings::{Background, Lights, Quality, RenderError, RenderSettings, Style, Transfer};
 pub use slice::{Isolines, Slice, SliceSettings};

@@ -26,6 +26,7 @@ use super::settings::RenderSettings;
 use super::shade::Visibility;
 use super::spot::Spot;
 use crate::{Cancelled, Run};
+use rvachev_num::Meter;
 
 /// Rays to each of the two lights, of one pixel: the lanes of a vector.
 const RAYS: usize = 4;
@@ -121,7 +122,8 @@ impl<'a> Obstacles<'a> {
         spots: &[Spot],
         width: usize,
         pattern: impl Fn(usize) -> usize + Sync,
-    ) -> Vec<Visibility> {
+        run: &Run,
+    ) -> Result<Vec<Visibility>, Cancelled> {
         let across = width.div_ceil(TILE).max(1);
         let down = spots.len().div_ceil(TILE * width.max(1));
         // By the number of a tile: the runs of places in its rows.
@@ -133,8 +135,18 @@ impl<'a> Obstacles<'a> {
             (top..top + TILE).map(run)
         };
         let open = |at: usize| self.open(&spots[at], ORDER[pattern(at) % PATTERNS]);
-        let tiles: Vec<Vec<Visibility>> =
-            (0..across * down).into_par_iter().map(|tile| runs(tile).flatten().map(open).collect()).collect();
+        let [to_gather, to_trace] = run.stages(if self.is_hard() { [0.5, 0.5] } else { [1.0, 0.0] });
+        let meter = Meter::new(&to_gather, across * down);
+        let tiles: Result<Vec<Vec<Visibility>>, Cancelled> = (0..across * down)
+            .into_par_iter()
+            .map(|tile| {
+                meter.check()?;
+                let found = runs(tile).flatten().map(open).collect();
+                meter.add(1);
+                Ok(found)
+            })
+            .collect();
+        let tiles = tiles?;
         let mut seen = vec![Visibility::FULL; spots.len()];
         for (tile, found) in tiles.iter().enumerate() {
             let mut rest = &found[..];
@@ -145,11 +157,13 @@ impl<'a> Obstacles<'a> {
             }
         }
         if self.is_hard() {
-            for (chunk, seen) in spots.chunks(TOGETHER).zip(seen.chunks_mut(TOGETHER)) {
-                self.hard(chunk, seen);
+            let chunks = spots.len().div_ceil(TOGETHER);
+            for (n, (chunk, seen)) in spots.chunks(TOGETHER).zip(seen.chunks_mut(TOGETHER)).enumerate() {
+                let part = |n: usize| n as f64 / chunks as f64;
+                self.hard(chunk, seen, &to_trace.stage(part(n), part(n + 1)))?;
             }
         }
-        seen
+        Ok(seen)
     }
 
     /// What a point sees by its own rays to facets.
@@ -185,15 +199,16 @@ impl<'a> Obstacles<'a> {
 
     /// Of a light without extent, whose shadows' edges would show the facets, the first hits in
     /// the scene decide.
-    fn hard(&self, spots: &[Spot], seen: &mut [Visibility]) {
+    fn hard(&self, spots: &[Spot], seen: &mut [Visibility], run: &Run) -> Result<(), Cancelled> {
         let lit = |spot: &Spot| self.share(spot) > 0.0 && self.key.dot(spot.normal.as_dvec3()) > 0.0;
         let asked: Vec<usize> = (0..spots.len()).filter(|&i| lit(&spots[i])).collect();
         let rays: Vec<(DVec3, DVec3)> = asked.iter().map(|&i| (self.start(&spots[i]), self.key)).collect();
-        for (&i, hit) in asked.iter().zip(self.scene.first_hits(&rays)) {
+        for (&i, hit) in asked.iter().zip(self.scene.first_hits_with(&rays, run)?) {
             if hit.is_hit() {
                 seen[i].key = 1.0 - self.share(&spots[i]);
             }
         }
+        Ok(())
     }
 
     /// The ray epsilon off the surface.
@@ -220,51 +235,90 @@ fn patterns(direction: impl Fn(usize) -> DVec3) -> Vec<[Vec4; 3]> {
     (0..PATTERNS).map(|pattern| [0, 1, 2].map(|axis| Vec4::from_array(lanes(pattern).map(|d| d[axis])))).collect()
 }
 
+/// The weights of the pixels that a mean reaches along a row or a column, and their sum over all.
+const WEIGHTS: [f32; 2 * REACH + 1] = [0.5, 1.0, 1.0, 1.0, 0.5];
+const WHOLE: f32 = 16.0;
+
+/// How often means that some directions are missing from are averaged again.
+const AGAIN: usize = 2;
+
 /// The mean of what the points of a picture see: `width` of them a row.
+///
+/// Beside an edge a part of the pixels do not count, and so a part of the directions are missing,
+/// others at each pixel: there the means are averaged again.
 pub(super) fn smoothed(
     spots: &[Spot],
     seen: &[Visibility],
     width: usize,
     pixel: impl Fn(f64) -> f64 + Sync,
 ) -> Vec<Visibility> {
-    const WEIGHTS: [f32; 2 * REACH + 1] = [0.5, 1.0, 1.0, 1.0, 0.5];
-    let height = spots.len() / width;
+    let about = About { spots, width, height: spots.len() / width };
     let calm = calm(seen, width);
-    let mut mean = vec![Visibility::FULL; spots.len()];
-    mean.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
-        let rows = y.saturating_sub(REACH)..(y + REACH + 1).min(height);
+    let mut means = vec![(Visibility::FULL, WHOLE); spots.len()];
+    means.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
         for (x, mean) in row.iter_mut().enumerate() {
             let own = &spots[y * width + x];
-            let is_ground = own.is_ground();
-            if !own.is_solid() && !is_ground || rows.clone().all(|row| calm[row * width + x]) {
-                continue;
+            if (own.is_solid() || own.is_ground()) && !about.rows(y).all(|row| calm[row * width + x]) {
+                *mean = about.mean(x, y, 4.0 * pixel(own.distance), |at| (seen[at], 1.0));
             }
-            let near = 4.0 * pixel(own.distance);
-            let (left, right) = (x.saturating_sub(REACH), (x + REACH + 1).min(width));
-            let (mut key, mut sky, mut sum) = (0.0, 0.0, 0.0);
-            for row in rows.clone() {
-                let down = WEIGHTS[row + REACH - y];
-                let places = row * width + left..row * width + right;
-                let across = &WEIGHTS[left + REACH - x..];
-                for ((other, seen), across) in spots[places.clone()].iter().zip(&seen[places]).zip(across) {
-                    let counts = if is_ground {
-                        other.is_ground()
-                    } else {
-                        other.is_solid() && own.normal.dot(other.normal) > 0.9 && own.steps(other) <= near
-                    };
-                    if counts {
-                        let weight = down * across;
-                        key += weight * seen.key;
-                        sky += weight * seen.sky;
-                        sum += weight;
-                    }
-                }
-            }
-            // What counts not even itself has no normal.
-            *mean = if sum > 0.0 { Visibility { key: key / sum, sky: sky / sum } } else { seen[y * width + x] };
         }
     });
-    mean
+    for _ in 0..AGAIN {
+        let before = means.clone();
+        means.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+            for (x, mean) in row.iter_mut().enumerate().filter(|(_, mean)| mean.1 < WHOLE) {
+                let near = 4.0 * pixel(spots[y * width + x].distance);
+                *mean = (about.mean(x, y, near, |at| before[at]).0, mean.1);
+            }
+        });
+    }
+    means.into_iter().map(|(mean, _)| mean).collect()
+}
+
+/// The points about one of a picture.
+struct About<'a> {
+    spots: &'a [Spot],
+    width: usize,
+    height: usize,
+}
+
+impl About<'_> {
+    /// The rows that a mean reaches.
+    fn rows(&self, y: usize) -> std::ops::Range<usize> {
+        y.saturating_sub(REACH)..(y + REACH + 1).min(self.height)
+    }
+
+    /// The mean of the points about one that are on the same face, each with a weight of its own, and
+    /// the sum of all weights; those farther than `near` from its tangent plane do not count.
+    #[inline]
+    fn mean(&self, x: usize, y: usize, near: f64, value: impl Fn(usize) -> (Visibility, f32)) -> (Visibility, f32) {
+        let place = y * self.width + x;
+        let own = &self.spots[place];
+        let is_ground = own.is_ground();
+        let (left, right) = (x.saturating_sub(REACH), (x + REACH + 1).min(self.width));
+        let (mut key, mut sky, mut sum) = (0.0, 0.0, 0.0);
+        for row in self.rows(y) {
+            let down = WEIGHTS[row + REACH - y];
+            for column in left..right {
+                let at = row * self.width + column;
+                let other = &self.spots[at];
+                let counts = if is_ground {
+                    other.is_ground()
+                } else {
+                    other.is_solid() && own.normal.dot(other.normal) > 0.9 && own.steps(other) <= near
+                };
+                if counts {
+                    let (seen, share) = value(at);
+                    let weight = down * WEIGHTS[column + REACH - x] * share;
+                    key += weight * seen.key;
+                    sky += weight * seen.sky;
+                    sum += weight;
+                }
+            }
+        }
+        // What counts not even itself has no normal.
+        if sum > 0.0 { (Visibility { key: key / sum, sky: sky / sum }, sum) } else { (value(place).0, WHOLE) }
+    }
 }
 
 /// By point, whether nothing is hidden from any of those of its row that the mean reaches.

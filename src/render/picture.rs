@@ -16,6 +16,7 @@
 use glam::{DVec3, Vec4};
 use rayon::prelude::*;
 
+use super::draft::Draft;
 use super::gbuffer::{Surface, Window};
 use super::lines::Lines;
 use super::materials::Materials;
@@ -25,6 +26,7 @@ use super::settings::{RenderSettings, Style};
 use super::shade::{Studio, Visibility};
 use super::spot::Spot;
 use crate::{Cancelled, Rays, Run};
+use rvachev_num::Meter;
 
 /// Pixels of a band, about: some tens of megabytes.
 const BAND: u32 = 1 << 19;
@@ -35,6 +37,8 @@ const SHADOW_EDGE: f32 = 0.3;
 /// All that a picture needs.
 pub(super) struct Picture<'a> {
     pub(super) scene: &'a Scene,
+    /// What is drawn in place of the scene.
+    pub(super) draft: Option<Draft<'a>>,
     pub(super) studio: Studio,
     pub(super) rays: Rays,
     pub(super) settings: &'a RenderSettings,
@@ -140,9 +144,12 @@ impl Picture<'_> {
         let halo = 1 + (REACH as u32).max(if style == Style::Technical { Lines::reach(height) } else { 0 });
         let (first, last) = (top.saturating_sub(halo), (end + halo).min(height));
         let window = Window { top: first, height: last - first, ..Window::whole(width, height) };
-        let seen = self.scene.surfaces_with(&self.rays, window, &run.stage(0.0, 0.4))?;
+        // How long it takes to see what the pixels show, how much light is there, what is at edges,
+        // how much light is there, and to shade all.
+        let [light, match_light] = if obstacles.is_some() { [0.3, 0.05] } else { [0.0, 0.0] };
+        let [to_see, to_light, to_divide, to_match, to_shade] = run.stages([0.35, light, 0.2, match_light, 0.1]);
+        let seen = self.surfaces(window, &to_see)?;
         let spots: Vec<Spot> = seen
-            .surfaces()
             .par_iter()
             .enumerate()
             .map(|(i, surface)| {
@@ -151,12 +158,11 @@ impl Picture<'_> {
             })
             .collect();
         drop(seen);
-        run.check()?;
         let open = match obstacles {
             None => vec![Visibility::FULL; spots.len()],
             Some(obstacles) => {
                 let pattern = |i: usize| (i % width as usize) % 4 + 4 * ((first as usize + i / width as usize) % 4);
-                let own = obstacles.seen(&spots, width as usize, pattern);
+                let own = obstacles.seen(&spots, width as usize, pattern, &to_light)?;
                 let sharp = obstacles.is_hard().then(|| own.clone());
                 let mut open = smoothed(&spots, &own, width as usize, |t| self.rays.pixel_size(t));
                 // The edges of a light without extent stay as they are.
@@ -166,14 +172,12 @@ impl Picture<'_> {
                 open
             }
         };
-        run.check()?;
-        run.report(0.7);
+        to_light.report(1.0);
         let band = Band { top: first, width, spots, open };
-        let fine = self.fine(&band, top, end, obstacles);
-        run.check()?;
-        run.report(0.85);
-        let light = self.fine_light(&band, &fine, obstacles);
-        run.check()?;
+        let fine = self.fine(&band, (top, end), obstacles, &to_divide)?;
+        to_divide.report(1.0);
+        let light = self.fine_light(&band, &fine, obstacles, &to_match)?;
+        to_match.report(1.0);
         let n2 = (samples * samples) as usize;
         let lines = (style == Style::Technical).then(|| Lines {
             height,
@@ -183,7 +187,9 @@ impl Picture<'_> {
             fine: &fine,
             pixel: &self.rays,
         });
-        (top..end).into_par_iter().zip(pixels.par_chunks_mut(width as usize)).for_each(|(y, row)| {
+        let meter = Meter::new(&to_shade, end - top);
+        (top..end).into_par_iter().zip(pixels.par_chunks_mut(width as usize)).try_for_each(|(y, row)| {
+            meter.check()?;
             let behind = self.behind(f64::from(y) + 0.5);
             for (x, pixel) in (0..width).zip(row) {
                 let at = band.place(x, y);
@@ -199,7 +205,9 @@ impl Picture<'_> {
                 }
                 *pixel = finish(light.to_array());
             }
-        });
+            meter.add(1);
+            Ok::<_, Cancelled>(())
+        })?;
         run.report(1.0);
         Ok(())
     }
@@ -215,9 +223,12 @@ impl Picture<'_> {
     ) -> Result<(), Cancelled> {
         let RenderSettings { width, height, .. } = *self.settings;
         let window = Window { top, height: end - top, ..Window::whole(width, height) };
-        let seen = self.scene.surfaces_with(&self.rays, window, &run.stage(0.0, 0.8))?;
-        let rows = seen.surfaces().par_chunks(width as usize).zip(pixels.par_chunks_mut(width as usize));
-        (top..end).into_par_iter().zip(rows).for_each(|(y, (surfaces, row))| {
+        let seen = self.surfaces(window, &run.stage(0.0, 0.8))?;
+        let rows = seen.par_chunks(width as usize).zip(pixels.par_chunks_mut(width as usize));
+        let to_shade = run.stage(0.8, 1.0);
+        let meter = Meter::new(&to_shade, end - top);
+        (top..end).into_par_iter().zip(rows).try_for_each(|(y, (surfaces, row))| {
+            meter.check()?;
             // Without shadows the ground looks like what is behind it.
             let behind = finish(self.behind(f64::from(y) + 0.5).to_array());
             for ((x, surface), pixel) in (0..width).zip(surfaces).zip(row) {
@@ -227,7 +238,9 @@ impl Picture<'_> {
                     behind
                 };
             }
-        });
+            meter.add(1);
+            Ok::<_, Cancelled>(())
+        })?;
         run.report(1.0);
         Ok(())
     }
@@ -236,12 +249,18 @@ impl Picture<'_> {
     ///
     /// Rows and columns of the rays are sheared, so that no two of the n² are at the same height
     /// or side: an outline near the horizontal or vertical passes them one by one.
-    fn fine(&self, band: &Band, top: u32, end: u32, obstacles: Option<&Obstacles<'_>>) -> Fine {
+    fn fine(
+        &self,
+        band: &Band,
+        (top, end): (u32, u32),
+        obstacles: Option<&Obstacles<'_>>,
+        run: &Run,
+    ) -> Result<Fine, Cancelled> {
         let RenderSettings { samples, width, height, style, .. } = *self.settings;
         let mut numbers = vec![u32::MAX; band.spots.len()];
         // Lines are drawn where there are fine rays, be it one a pixel.
         if samples < 2 && style != Style::Technical {
-            return Fine { numbers, spots: Vec::new() };
+            return Ok(Fine { numbers, spots: Vec::new() });
         }
         let hard = obstacles.is_some_and(Obstacles::is_hard);
         let differ = |a: usize, b: usize| {
@@ -280,7 +299,9 @@ impl Picture<'_> {
             }
         }
         let n = samples;
-        let within = |i: u32, j: u32| (f64::from(i) + (f64::from(j) + 0.5) / f64::from(n)) / f64::from(n);
+        // The rows and columns of a draft are level.
+        let lean = |j: u32| if self.draft.is_some() { 0.5 } else { (f64::from(j) + 0.5) / f64::from(n) };
+        let within = |i: u32, j: u32| (f64::from(i) + lean(j)) / f64::from(n);
         let rays: Vec<(DVec3, DVec3)> = pixels
             .par_iter()
             .flat_map_iter(|&(x, y)| {
@@ -290,13 +311,22 @@ impl Picture<'_> {
                 })
             })
             .collect();
-        let hits = self.scene.first_hits(&rays);
+        let hits = match &self.draft {
+            Some(draft) => draft.samples(&numbers, band.top, n, pixels.len()),
+            None => self.scene.first_hits_with(&rays, run)?,
+        };
         let spots = rays.par_iter().zip(&hits).map(|(ray, hit)| Spot::new(ray.0, ray.1, hit, self.ground)).collect();
-        Fine { numbers, spots }
+        Ok(Fine { numbers, spots })
     }
 
     /// The light along each fine ray.
-    fn fine_light(&self, band: &Band, fine: &Fine, obstacles: Option<&Obstacles<'_>>) -> Vec<Vec4> {
+    fn fine_light(
+        &self,
+        band: &Band,
+        fine: &Fine,
+        obstacles: Option<&Obstacles<'_>>,
+        run: &Run,
+    ) -> Result<Vec<Vec4>, Cancelled> {
         let n = self.settings.samples;
         let n2 = (n * n) as usize;
         let mut places = vec![0; fine.spots.len() / n2];
@@ -319,7 +349,7 @@ impl Picture<'_> {
         let spots: Vec<Spot> = alone.iter().map(|k| fine.spots[*k]).collect();
         let mut open: Vec<Visibility> = matched.iter().map(|open| open.unwrap_or(Visibility::FULL)).collect();
         if let Some(obstacles) = obstacles {
-            for (k, seen) in alone.iter().zip(obstacles.seen(&spots, TILE, |i| alone[i])) {
+            for (k, seen) in alone.iter().zip(obstacles.seen(&spots, TILE, |i| alone[i], run)?) {
                 open[*k] = seen;
             }
         }
@@ -329,7 +359,7 @@ impl Picture<'_> {
             let y = row(places[k / n2]) + (f64::from(down) + 0.5) / f64::from(n);
             self.shade(spot, open[k], self.behind(y))
         };
-        fine.spots.par_iter().enumerate().map(shade).collect()
+        Ok(fine.spots.par_iter().enumerate().map(shade).collect())
     }
 
     /// The visibility of a spot, from the pixel at `place` and those about it; none if none of
@@ -367,9 +397,20 @@ impl Picture<'_> {
         best.map(|(_, open)| open)
     }
 
+    /// What the pixels of some rows see through their middles.
+    fn surfaces(&self, window: Window, run: &Run) -> Result<Vec<Surface>, Cancelled> {
+        match &self.draft {
+            Some(draft) => Ok(draft.surfaces(window)),
+            None => Ok(self.scene.surfaces_with(&self.rays, window, run)?.into_surfaces()),
+        }
+    }
+
     /// What the ray through the middle of a pixel meets.
     #[inline]
     fn spot(&self, x: u32, y: u32, surface: &Surface) -> Spot {
+        if self.ground.is_none() && !surface.is_hit() {
+            return Spot::NOTHING;
+        }
         let (origin, direction) = self.rays.ray(f64::from(x) + 0.5, f64::from(y) + 0.5);
         Spot::new(origin, direction, surface, self.ground)
     }

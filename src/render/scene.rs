@@ -11,11 +11,12 @@ use super::extent::{corners, lowest};
 use super::facets::Facets;
 use super::gbuffer::{GBuffer, Surface, Window};
 use super::pixels::TILE;
+use super::section::{Kept, Section};
 use super::settings::RenderError;
 use super::tile::{Tracer, View, divide_top};
 use crate::distance::compiled_with;
 use crate::eval::Program;
-use crate::{Bounds, Cancelled, Hit, Palette, Rays, Run, Solid};
+use crate::{Bounds, Cancelled, Hit, Mesh, Palette, Rays, Run, Solid};
 use rvachev_num::Meter;
 
 /// How far a ray from a hit starts off the surface, in proportion to the solid.
@@ -45,11 +46,18 @@ thread_local! {
 /// # Ok::<(), rvachev::error::RenderError>(())
 /// ```
 pub struct Scene {
+    solid: Solid,
     bounds: Bounds,
     /// `None` if there is nothing to see.
     cells: Option<Cells>,
     palette: Palette,
     program: Program,
+    /// The sections that it was cut by, and are not painted.
+    pub(super) sections: Vec<Section>,
+    /// The scene that it was last cut to.
+    pub(super) cut: Mutex<Option<Kept>>,
+    /// What drafts show, and in how many cells, once somebody has asked for one.
+    pub(super) draft: Mutex<Option<(u32, Arc<Mesh>)>>,
     /// What hides light, and how fine it is, once somebody has asked for it.
     facets: Mutex<Option<(u32, Arc<Facets>)>>,
     /// The height of the lowest point, once somebody has asked for it.
@@ -81,8 +89,18 @@ impl Solid {
             let visible = !bounds.is_empty() && bounds.longest_side() > 0.0;
             let cells = visible.then(|| Cells::new(&programs.surface, &bounds));
             run.report(1.0);
-            let (palette, program) = (self.palette()?, programs.surface.clone());
-            Ok(Scene { bounds, cells, palette, program, facets: Mutex::new(None), lowest: OnceLock::new() })
+            Ok(Scene {
+                solid: self.clone(),
+                bounds,
+                cells,
+                palette: self.palette()?,
+                program: programs.surface.clone(),
+                sections: Vec::new(),
+                cut: Mutex::new(None),
+                draft: Mutex::new(None),
+                facets: Mutex::new(None),
+                lowest: OnceLock::new(),
+            })
         })
     }
 }
@@ -100,11 +118,45 @@ impl Scene {
         &self.palette
     }
 
+    /// How many bytes the scene holds: the cells that the rays so far have asked for, and the programs
+    /// that are narrowed to them. They grow with what is seen of the surface, from the first picture
+    /// on, and stay until the scene is dropped. What the solid itself takes is not counted, nor what
+    /// hides light in shaded pictures.
+    ///
+    /// ```
+    /// use rvachev::camera::Window;
+    /// use rvachev::{Camera, Solid};
+    ///
+    /// let scene = Solid::torus(1.0, 0.3).scene()?;
+    /// let before = scene.memory();
+    /// let camera = Camera::framing(&scene.bounds());
+    /// drop(scene.surfaces(&camera.rays(64, 64), Window::whole(64, 64)));
+    /// assert!(scene.memory() > before && scene.memory() < 10_000_000);
+    /// # Ok::<(), rvachev::error::RenderError>(())
+    /// ```
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.cells.as_ref().map_or(0, Cells::bytes)
+    }
+
     /// The height at which the solid stands on a level ground: its lowest point, to a thousandth
     /// of its height, or a little below.
     #[must_use]
     pub fn lowest(&self) -> f64 {
         *self.lowest.get_or_init(|| lowest(&self.program, &self.bounds))
+    }
+
+    pub(super) fn solid(&self) -> &Solid {
+        &self.solid
+    }
+
+    pub(super) fn program(&self) -> &Program {
+        &self.program
+    }
+
+    /// Whether there is nothing to see.
+    pub(super) fn is_empty(&self) -> bool {
+        self.cells.is_none()
     }
 
     /// Points such that what holds them holds the solid.
@@ -146,19 +198,34 @@ impl Scene {
         TRACER.with_borrow_mut(|tracer| tracer.list(cells, &[(origin, direction)], &mut found));
         let Surface { distance, normal, owner } = found[0];
         let point = origin + distance * direction;
-        found[0].is_hit().then_some(Hit { distance, point, normal: normal.as_dvec3(), owner })
+        found[0].is_hit().then(|| {
+            let owner = self.owner_at(owner, point);
+            Hit { distance, point, normal: normal.as_dvec3(), owner }
+        })
     }
 
     /// [`first_hit`](Scene::first_hit) along many rays, each an origin and a unit direction,
     /// together, which is faster. Runs on the current rayon pool.
     #[must_use]
     pub fn first_hits(&self, rays: &[(DVec3, DVec3)]) -> Vec<Surface> {
+        // A run that nobody else holds is not cancelled.
+        self.first_hits_with(rays, &Run::default()).unwrap_or_else(|Cancelled| vec![Surface::NONE; rays.len()])
+    }
+
+    /// The same with a cancel token and a progress sink.
+    pub(super) fn first_hits_with(&self, rays: &[(DVec3, DVec3)], run: &Run) -> Result<Vec<Surface>, Cancelled> {
         let mut found = vec![Surface::NONE; rays.len()];
         if let Some(cells) = &self.cells {
-            let packets = found.par_chunks_mut(PACKET).zip(rays.par_chunks(PACKET));
-            packets.for_each(|(found, rays)| TRACER.with_borrow_mut(|tracer| tracer.list(cells, rays, found)));
+            let meter = Meter::new(run, rays.len());
+            found.par_chunks_mut(PACKET).zip(rays.par_chunks(PACKET)).try_for_each(|(found, rays)| {
+                meter.check()?;
+                TRACER.with_borrow_mut(|tracer| tracer.list(cells, rays, found));
+                self.fill_sections(found, |i| rays[i]);
+                meter.add(rays.len() as u64);
+                Ok::<_, Cancelled>(())
+            })?;
         }
-        found
+        Ok(found)
     }
 
     /// What the pixels of `window` see along `rays`. Runs on the current rayon pool; the
@@ -201,6 +268,9 @@ impl Scene {
                 let (width, height) = (TILE.min(window.width - x), TILE.min(window.height - y));
                 let tile = Window { left: window.left + x, top: window.top + y, width, height, ..window };
                 TRACER.with_borrow_mut(|tracer| tracer.tile(cells, &view, tile, &mut rows));
+                for (row, y) in rows.iter_mut().zip(0..) {
+                    self.fill_sections(row, |x| tile.ray(rays, x as u32, y));
+                }
                 meter.add(1);
                 Ok(())
             })

@@ -1,6 +1,7 @@
 //! What a picture shall be, and why there is none.
 
-use crate::{Angle, CameraError, Cancelled, ImageError, Paint, SaveError, SolidError, deg};
+use crate::error::MeshingError;
+use crate::{Angle, CameraError, Cancelled, ImageError, Paint, Plane, SaveError, SolidError, deg};
 
 /// What to render.
 ///
@@ -53,6 +54,36 @@ pub struct RenderSettings {
     pub transfer: Transfer,
     /// What is behind the solid. Default: nearly white, a little darker at the bottom.
     pub background: Background,
+    /// Whether the surface itself is drawn, or a mesh of it. Default: [`Quality::Fine`].
+    pub quality: Quality,
+    /// The cells of the mesh that a [draft](Quality::Draft) shows, along the longest side of the
+    /// solid's box, 4 to 1024; where the mesh says that something may be thinner than a cell, cells
+    /// of a quarter of the size are tried. Default: 64.
+    pub draft_cells: u32,
+    /// To look into the solid: the plane that it is cut by. What is on the side that the plane's
+    /// [normal](Plane::normal) points to is taken away, so that of [`Plane::xz`] the section is
+    /// seen from the front, and what is left is drawn, throws shadows and stands on the ground as
+    /// if it was all. See [`Scene::cut`](crate::Scene::cut). Default: none, the solid is whole.
+    ///
+    #[doc = picture!("section" = "docs/section.png")]
+    ///
+    /// ```
+    /// use rvachev::{Camera, Paint, Plane, RenderSettings, Solid};
+    ///
+    /// let pipe = Solid::cylinder(2.0, 6.0).paint([40, 90, 160]) - Solid::cylinder(1.0, 8.0);
+    /// let camera = Camera::framing(&pipe.bounds()?);
+    /// // The section has the colour of the pipe,
+    /// let size = RenderSettings { width: 60, height: 40, ..RenderSettings::default() };
+    /// let cut = RenderSettings { cut: Some(Plane::xz(0.0)), ..size };
+    /// pipe.render(&camera, &cut)?;
+    /// // or one of its own.
+    /// let painted = RenderSettings { cut_paint: Some(Paint::from([200, 60, 40])), ..cut };
+    /// pipe.render(&camera, &painted)?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub cut: Option<Plane>,
+    /// The paint of the section. Default: none, it shows the parts that it passes through.
+    pub cut_paint: Option<Paint>,
 }
 
 impl Default for RenderSettings {
@@ -70,8 +101,43 @@ impl Default for RenderSettings {
             ground: true,
             transfer: Transfer::default(),
             background: Background::default(),
+            quality: Quality::default(),
+            draft_cells: 64,
+            cut: None,
+            cut_paint: None,
         }
     }
+}
+
+/// How much a picture costs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Quality {
+    /// The surface itself, found with certainty along every ray, with shadows, darkened hollows
+    /// and a ground.
+    #[default]
+    Fine,
+    /// A mesh of the solid, drawn triangle by triangle with the same camera, lights and paint, for
+    /// turntables and live views. The mesh has [`draft_cells`](RenderSettings::draft_cells); a
+    /// [`Scene`](crate::Scene) keeps it from frame to frame. There are no shadows, all of the sky
+    /// is seen from everywhere, and there is no ground; where parts of different paint flow into
+    /// each other, the border runs along triangles. A side of the picture is at most 16 384 pixels
+    /// long, times [`samples`](RenderSettings::samples).
+    ///
+    /// ```
+    /// use rvachev::{Camera, Quality, RenderSettings, Solid, deg};
+    ///
+    /// let scene = (Solid::cuboid([2.0, 2.0, 1.0]) - Solid::cylinder(0.6, 2.0)).scene()?;
+    /// let camera = Camera::framing(&scene.bounds());
+    /// let draft = RenderSettings { width: 96, height: 54, quality: Quality::Draft, ..RenderSettings::default() };
+    /// for step in 0..8 {
+    ///     let frame = scene.render(&camera.orbit(deg(45.0 * f64::from(step)), deg(0.0)), &draft)?;
+    ///     assert_eq!(frame.width(), 96);
+    /// }
+    /// # Ok::<(), rvachev::error::RenderError>(())
+    /// ```
+    Draft,
 }
 
 /// How a solid is drawn.
@@ -165,6 +231,9 @@ pub enum RenderError {
     /// The solid is at fault, or unbounded.
     #[error(transparent)]
     Solid(#[from] SolidError),
+    /// There is no mesh for a draft.
+    #[error(transparent)]
+    Meshing(MeshingError),
     /// The camera cannot take a picture.
     #[error(transparent)]
     Camera(#[from] CameraError),
@@ -189,11 +258,25 @@ pub enum RenderError {
     Image(#[from] ImageError),
 }
 
+impl From<MeshingError> for RenderError {
+    fn from(error: MeshingError) -> RenderError {
+        match error {
+            MeshingError::Solid(error) => error.into(),
+            MeshingError::Cancelled(cancelled) => cancelled.into(),
+            other => RenderError::Meshing(other),
+        }
+    }
+}
+
 /// The largest side of a picture, in pixels.
 const LARGEST: u32 = 65_535;
 
 /// The most pixels of a picture in memory; larger ones go to a file band by band.
 const MOST_PIXELS: u64 = 1 << 28;
+
+/// Cells of a draft's mesh along its longest side.
+const LEAST_CELLS: u32 = 4;
+const MOST_CELLS: u32 = 1024;
 
 /// The largest number of samples along a pixel's side.
 const MOST_SAMPLES: u32 = 8;
@@ -233,8 +316,15 @@ impl RenderSettings {
         if !(1..=MOST_SAMPLES).contains(&self.samples) {
             return Err(setting("samples", self.samples, "1 to 8"));
         }
-        if !(0.0..=1.0).contains(&self.paint.roughness) {
-            return Err(setting("paint.roughness", self.paint.roughness, "0 to 1"));
+        if !(LEAST_CELLS..=MOST_CELLS).contains(&self.draft_cells) {
+            return Err(setting("draft_cells", self.draft_cells, "4 to 1024"));
+        }
+        for (name, paint) in [("paint.roughness", Some(self.paint)), ("cut_paint.roughness", self.cut_paint)] {
+            if let Some(Paint { roughness, .. }) = paint
+                && !(0.0..=1.0).contains(&roughness)
+            {
+                return Err(setting(name, roughness, "0 to 1"));
+            }
         }
         if !(Angle::ZERO..=deg(90.0)).contains(&self.softness) {
             return Err(setting("softness", self.softness, "0° to 90°"));
@@ -265,6 +355,9 @@ mod tests {
         let lights = Lights { rim: -1.0, ..Lights::default() };
         assert!(message(RenderSettings { lights, ..good.clone() }).starts_with("lights.rim is -1"));
         let paint = Paint { roughness: f64::NAN, ..Paint::default() };
-        assert!(message(RenderSettings { paint, ..good }).starts_with("paint.roughness is NaN"));
+        assert!(message(RenderSettings { paint, ..good.clone() }).starts_with("paint.roughness is NaN"));
+        let cut_paint = Some(Paint { roughness: 2.0, ..Paint::default() });
+        assert!(message(RenderSettings { cut_paint, ..good.clone() }).starts_with("cut_paint.roughness is 2"));
+        assert_eq!(message(RenderSettings { draft_cells: 0, ..good }), "draft_cells is 0; allowed: 4 to 1024");
     }
 }

@@ -2,16 +2,18 @@
 
 use std::io;
 use std::path::Path;
+use std::sync::Arc;
 
+use super::draft::Draft;
 use super::materials::Materials;
 use super::occlusion::Obstacles;
 use super::picture::{Picture, Pixel};
 use super::scene::Scene;
-use super::settings::{Background, RenderError, RenderSettings, check_memory};
+use super::settings::{Background, Quality, RenderError, RenderSettings, check_memory};
 use super::shade::Studio;
 use crate::geom::to_8bit;
 use crate::io::save_rows;
-use crate::{Camera, Cancelled, Image, Run, Solid};
+use crate::{Camera, Cancelled, Image, Mesh, Run, Solid};
 
 impl Solid {
     /// A picture of the solid.
@@ -144,11 +146,12 @@ impl Scene {
         let has_alpha = settings.background == Background::Transparent;
         let path = path.as_ref();
         run.install(|| {
-            let picture = self.prepared(camera, settings, &run)?;
+            let [to_find, to_prepare, to_draw] = run.stages(times(settings));
+            let subject = self.subject(settings, &to_find)?;
+            let picture = subject.picture(camera, settings, &to_prepare)?;
             let mut failed = None;
             let saved = save_rows(path, [settings.width, settings.height], has_alpha, |rows| {
-                let written =
-                    picture.rows(&run.stage(0.1, 1.0), to_8bit, |pixels| rows(pixels).map_err(Stopped::Write));
+                let written = picture.rows(&to_draw, to_8bit, |pixels| rows(pixels).map_err(Stopped::Write));
                 written.map_err(|stopped| match stopped {
                     Stopped::Write(error) => error,
                     Stopped::Cancelled(cancelled) => {
@@ -172,29 +175,72 @@ impl Scene {
     ) -> Result<Image<P>, RenderError> {
         let RenderSettings { width, height, .. } = *settings;
         check_memory(width, height)?;
-        let picture = self.prepared(camera, settings, run)?;
-        Ok(Image::new(width, height, picture.pixels(&run.stage(0.1, 1.0), finish)?)?)
+        let [to_find, to_prepare, to_draw] = run.stages(times(settings));
+        let subject = self.subject(settings, &to_find)?;
+        let picture = subject.picture(camera, settings, &to_prepare)?;
+        Ok(Image::new(width, height, picture.pixels(&to_draw, finish)?)?)
     }
 
-    fn prepared<'a>(
+    /// What is drawn.
+    fn subject(&self, settings: &RenderSettings, run: &Run) -> Result<Subject<'_>, RenderError> {
+        run.check()?;
+        let is_draft = settings.quality == Quality::Draft;
+        let [to_cut, to_mesh] = run.stages([1.0, if is_draft { 4.0 } else { 0.0 }]);
+        let cut = match &settings.cut {
+            Some(plane) => Some(self.kept_cut(plane, settings.cut_paint, &to_cut)?),
+            None => None,
+        };
+        let scene = cut.as_deref().unwrap_or(self);
+        let draft = if is_draft { Some(scene.draft_mesh(settings.draft_cells, &to_mesh)?) } else { None };
+        run.report(1.0);
+        Ok(Subject { whole: self, cut, draft })
+    }
+}
+
+/// How long it takes to find what is drawn, to prepare what hides light, and to draw.
+fn times(settings: &RenderSettings) -> [f64; 3] {
+    let find = if settings.quality == Quality::Draft { 4.0 } else { 0.0 };
+    [find + if settings.cut.is_some() { 0.2 } else { 0.0 }, 0.1, 1.0]
+}
+
+/// What a picture is of.
+struct Subject<'a> {
+    whole: &'a Scene,
+    /// What is left of it.
+    cut: Option<Arc<Scene>>,
+    /// The mesh of a draft; an empty one if there is nothing to see.
+    draft: Option<Arc<Mesh>>,
+}
+
+impl Subject<'_> {
+    fn picture<'a>(
         &'a self,
         camera: &Camera,
         settings: &'a RenderSettings,
         run: &Run,
     ) -> Result<Picture<'a>, RenderError> {
-        run.check()?;
         let RenderSettings { width, height, .. } = *settings;
-        let stands = settings.ground && settings.style.has_shadows() && !self.bounds().is_empty();
+        let scene = self.cut.as_deref().unwrap_or(self.whole);
+        let stands = settings.ground && settings.style.has_shadows() && !scene.bounds().is_empty();
         let studio = Studio::new(camera, settings);
-        let obstacles = Obstacles::new(self, studio.key(), settings, &run.stage(0.0, 0.1))?;
+        let draft = match &self.draft {
+            Some(mesh) => Some(Draft::new(scene, mesh, camera, settings)?),
+            None => None,
+        };
+        let obstacles = match &draft {
+            Some(_) => None,
+            None => Obstacles::new(scene, studio.key(), settings, run)?,
+        };
+        run.report(1.0);
         Ok(Picture {
-            scene: self,
-            materials: Materials::new(self.palette(), &studio, settings.paint),
+            scene,
+            draft,
+            materials: Materials::new(scene.palette(), &studio, settings.paint),
             studio,
             rays: camera.rays(width, height),
             settings,
             // Ground that nothing hides light from looks like what is behind it.
-            ground: (stands && obstacles.is_some()).then(|| self.lowest()),
+            ground: (stands && obstacles.is_some()).then(|| scene.lowest()),
             obstacles,
         })
     }

@@ -29,6 +29,16 @@ pub(super) struct Spot {
 }
 
 impl Spot {
+    /// Of a ray that meets nothing.
+    pub(super) const NOTHING: Spot = Spot {
+        point: DVec3::ZERO,
+        distance: f64::INFINITY,
+        normal: Vec3::ZERO,
+        viewer: Vec3::ZERO,
+        owner: Surface::NONE.owner,
+        is_front: true,
+    };
+
     /// What the ray from `origin` along `direction` meets, given the solid's surface along it
     /// and the height of the ground, if there is one.
     #[inline]
@@ -53,8 +63,7 @@ impl Spot {
         if distance.is_finite() {
             return Spot { point: to(distance), distance, normal: Vec3::Z, viewer, owner: GROUND, is_front: true };
         }
-        let (point, normal, owner) = (DVec3::ZERO, Vec3::ZERO, Surface::NONE.owner);
-        Spot { point, distance, normal, viewer, owner, is_front: true }
+        Spot::NOTHING
     }
 
     /// Whether it is on the solid.

@@ -19,6 +19,7 @@ mod operators;
 mod paint;
 mod profile;
 mod rotate;
+mod shelf;
 mod signature;
 mod simplify;
 mod sweep;

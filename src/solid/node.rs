@@ -6,6 +6,7 @@ use std::sync::{Arc, OnceLock};
 use glam::DAffine3;
 
 use super::composed::{Repetition, Sweep};
+use super::shelf::Shelf;
 use super::{Paint, Profile};
 use crate::{Blend, Caps, ParamError, RFunction};
 use rvachev_field::{AnyField, AnyWarp, check};
@@ -36,8 +37,8 @@ pub(super) struct Inner {
     pub(super) compiled: OnceLock<Arc<dyn Any + Send + Sync>>,
     /// What it has measured of a length's operand.
     measured: OnceLock<Arc<dyn Any + Send + Sync>>,
-    /// The solid's own surface.
-    surface: OnceLock<Arc<dyn Any + Send + Sync>>,
+    /// What is kept for it and for all solids that are equal.
+    pub(super) shelf: OnceLock<Arc<Shelf>>,
 }
 
 /// A node of the graph.
@@ -266,7 +267,7 @@ impl Node {
 
 impl Solid {
     pub(crate) fn from_node(node: Node) -> Solid {
-        Solid(Arc::new(Inner { node, compiled: OnceLock::new(), measured: OnceLock::new(), surface: OnceLock::new() }))
+        Solid(Arc::new(Inner { node, compiled: OnceLock::new(), measured: OnceLock::new(), shelf: OnceLock::new() }))
     }
 
     pub(crate) fn node(&self) -> &Node {
@@ -281,11 +282,6 @@ impl Solid {
     /// What was measured of a length's operand, or of a fillet's.
     pub(crate) fn measured(&self) -> &OnceLock<Arc<dyn Any + Send + Sync>> {
         &self.0.measured
-    }
-
-    /// The solid's surface, for questions of what is nearest.
-    pub(crate) fn surface(&self) -> &OnceLock<Arc<dyn Any + Send + Sync>> {
-        &self.0.surface
     }
 
     /// What tells this node from others.

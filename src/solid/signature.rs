@@ -117,6 +117,10 @@ impl Signature {
         let parameters = match node {
             // What is written out may leave out what is long.
             Node::Leaf(field) => field.signature(),
+            // What is built within a tolerance has it in its nodes, which are not written out.
+            Node::Length { tolerance: Some(tolerance), .. } | Node::Blend { tolerance: Some(tolerance), .. } => {
+                format!("{} within {tolerance:?}", node.parameters())
+            }
             _ => node.parameters(),
         };
         Signature { variant: discriminant(node), kind: node.kind(), name, parameters, operands }

@@ -14,9 +14,9 @@ impl Solid {
     /// | `tolerance` | length | 10⁻⁹ to 10⁹ |
     ///
     /// The surface of such a solid is measured when the solid is compiled, unless a closed form is
-    /// exact. Without this method the tolerance is a thousandth of the length. A finer tolerance
-    /// costs more time and memory, a coarser one less. Where nothing is measured the tolerance has
-    /// no effect.
+    /// exact. Without this method the tolerance is the power of two below a thousandth of the
+    /// length, so that lengths of about one size share one surface. A finer tolerance costs more
+    /// time and memory, a coarser one less. Where nothing is measured the tolerance has no effect.
     ///
     /// The tolerance is that of one operation: of the offset, not of what it is an offset of. It is
     /// in the units of the solid as it is here: if the solid is scaled afterwards, so is the

@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 use rvachev::{
-    ContourSettings, Contours, Plane, PlaneBounds, Polyline, Profile, RFunction, Run, Side, SliceSettings, Solid,
+    Blend, ContourSettings, Contours, Plane, PlaneBounds, Polyline, Profile, RFunction, Run, Side, SliceSettings,
+    Solid,
     io::{write_dxf, write_svg},
     layers::Isolines,
 };
@@ -176,6 +177,18 @@ fn what_is_above_a_joint_counts_or_what_is_below() {
     };
     assert!((of(Side::Above) - 25.0 * PI).abs() < 0.05, "{}", of(Side::Above));
     assert!((of(Side::Below) - 1200.0).abs() < 1e-6, "{}", of(Side::Below));
+}
+
+/// In the neck of a smooth join no direction leads into both parts, but the contour is smooth.
+#[test]
+fn smooth_joins_have_smooth_contours() {
+    let ball = |x: f64| Solid::sphere(1.0).translate([x, 0.0, 0.0]);
+    let neck = ball(-1.05).union_with(ball(1.05), Blend::Smooth { radius: 0.5 });
+    let post = Solid::cuboid([2.0, 2.0, 0.4]).union_with(Solid::cylinder(0.5, 2.0), Blend::Smooth { radius: 0.15 });
+    for (solid, z) in [(neck, 0.1), (post, 0.25)] {
+        let contours = cut(&solid, z, 1e-4);
+        assert_eq!((contours.len(), contours.unresolved()), (1, 0));
+    }
 }
 
 #[test]

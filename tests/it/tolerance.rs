@@ -162,12 +162,13 @@ fn closed_forms_are_exact() -> Outcome {
     assert_eq!(cube.offset(0.5).with_tolerance(0.1).accuracy()?, exact);
     assert_eq!((cube.shell(0.5) | Solid::sphere(1.0)).accuracy()?, exact);
     assert_eq!(Profile::rectangle([2.0, 1.0]).offset(0.25).accuracy()?, exact);
-    // What is measured is told in the units of the whole.
-    assert_eq!(bar().offset(0.5).accuracy()?.tolerance, 5e-4);
-    assert_eq!((bar().offset(0.5) | cube).scale(3.0).accuracy()?.tolerance, 1.5e-3);
+    // What is measured is told in the units of the whole: the power of two below a thousandth.
+    let half = f64::exp2(-11.0);
+    assert_eq!(bar().offset(0.5).accuracy()?.tolerance, half);
+    assert_eq!((bar().offset(0.5) | cube).scale(3.0).accuracy()?.tolerance, 3.0 * half);
     // An offset of an offset is no finer than what it is an offset of.
     let told = bar().offset(0.5).offset(-0.25).with_tolerance(1e-5).accuracy()?.tolerance;
-    assert_eq!(told, 1e-3);
+    assert_eq!(told, 2.0 * half);
     Ok(())
 }
 
@@ -175,7 +176,7 @@ fn closed_forms_are_exact() -> Outcome {
 fn what_has_no_end_tells_its_tolerance() -> Outcome {
     let lattice = SheetLattice { surface: MinimalSurface::Gyroid, cell: 2.0, thickness: 0.3 };
     let told = Solid::from(lattice).offset(0.1).accuracy()?;
-    assert_eq!((told.tolerance, told.error), (1e-4, 0.0));
+    assert_eq!((told.tolerance, told.error), (f64::exp2(-14.0), 0.0));
     let told = Solid::from(lattice).offset(0.1).with_tolerance(1e-3).accuracy()?;
     assert_eq!((told.tolerance, told.error), (1e-3, 0.0));
     let column = (Profile::superellipse([3.0, 2.0], 0.8)).offset(0.5).with_tolerance(1e-5);

@@ -183,3 +183,17 @@ fn threads_do_not_matter_and_it_can_be_cancelled() {
     let empty = (Solid::sphere(1.0) & Solid::sphere(1.0).translate([5.0, 0.0, 0.0])).mesh(&settings).unwrap();
     assert!(empty.triangles().is_empty());
 }
+
+/// Bounds that touch the solid on some sides, and cut it on others, add nothing where they touch.
+#[test]
+fn bounds_that_touch_a_round_side_are_no_edges() {
+    let can = Solid::cylinder(1.0, 2.0);
+    let mesh = |reach: f64| {
+        let bounds = Some(Bounds::new([-reach, -reach, -0.5], [reach, reach, 0.5]));
+        can.mesh(&MeshSettings { bounds, cell: CellSize::Tolerance(0.03), ..MeshSettings::default() }).unwrap()
+    };
+    let (touched, free) = (mesh(1.0), mesh(1.5));
+    let (few, most) = (free.triangles().len(), touched.triangles().len());
+    assert!(most < 2 * few, "{most} triangles, {few} without sides that touch");
+    assert!((touched.volume() - std::f64::consts::PI).abs() < 0.1 && touched.check().is_closed());
+}

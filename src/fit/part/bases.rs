@@ -86,12 +86,7 @@ pub(super) fn bases(ring: &[DVec2], grain: Grain) -> Vec<Base> {
     if size < 4.0 * grain.tolerance {
         return Vec::new();
     }
-    let mut polygon = corners(&ring, grain.tolerance.min(0.1 * size));
-    if grain.short > 0.0 {
-        let better = fitted(&ring, &uncut(&polygon, grain.short), grain.tolerance);
-        // Where a wall is hardly thicker than it is uncertain, its sides may change places.
-        polygon = if crosses(&better) { polygon } else { better };
-    }
+    let polygon = polygon(&ring, grain);
     let even = evenly(&ring);
     let centre = centroid(&ring);
     let mut found = Vec::new();
@@ -109,6 +104,17 @@ pub(super) fn bases(ring: &[DVec2], grain: Grain) -> Vec<Base> {
         found.push(Base::Polygon(polygon));
     }
     found
+}
+
+/// The polygon of few corners that a ring is.
+pub(super) fn polygon(ring: &[DVec2], grain: Grain) -> Vec<DVec2> {
+    let polygon = corners(ring, grain.tolerance.min(0.1 * area(ring).abs().sqrt()));
+    if grain.short == 0.0 {
+        return polygon;
+    }
+    let better = fitted(ring, &uncut(&polygon, grain.short), grain.tolerance);
+    // Where a wall is hardly thicker than it is uncertain, its sides may change places.
+    if crosses(&better) { polygon } else { better }
 }
 
 /// Points at equal distances along a ring.

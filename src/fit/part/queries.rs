@@ -59,6 +59,7 @@ pub(super) struct Queries {
     pub(super) inside: Bits,
     /// By word.
     pub(super) weights: Vec<f64>,
+    told: Told,
 }
 
 /// A point with its side, and how sure that is, 0 to 1.
@@ -111,7 +112,7 @@ impl Queries {
             points.iter().zip(&numbers).take(SPREAD * WORD).map(|(p, w)| told.space(*p, *w)).collect();
         let filled = space.iter().filter(|asked| asked.inside).count().max(1);
         let mut queries =
-            Queries { points: Vec::with_capacity(points.len()), inside: Bits::none(0), weights: Vec::new() };
+            Queries { points: Vec::with_capacity(points.len()), inside: Bits::none(0), weights: Vec::new(), told };
         let mut words = Vec::new();
         queries.push(space, 1.0 / filled as f64, &mut words);
         let mut from = SPREAD * WORD;
@@ -135,6 +136,15 @@ impl Queries {
             let all = || some.iter().cycle().take(WORD);
             self.points.extend(all().map(|a| a.point));
             words.push(all().enumerate().fold(0, |word, (i, a)| word | u64::from(a.inside) << i));
+        }
+    }
+
+    /// Whether points in space are inside: the first of Sobol's; none where they are in another
+    /// order.
+    pub(super) fn spread(&self) -> &[u64] {
+        match self.told {
+            Told::ByWinding => &self.inside.words()[..SPREAD],
+            Told::ByPoints => &[],
         }
     }
 

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use glam::DVec2;
-use rvachev::{Plane, Profile};
+use rvachev::{Camera, Caps, Extrusion, Plane, Profile, camera::Window, deg};
 
 use super::{CORNER, Outcome, TOLERANCE, fillet, l_profile};
 use crate::support::near;
@@ -85,5 +85,28 @@ fn a_filleted_union_in_the_plane_is_flush() -> Outcome {
     let both = low.union_with(Profile::rectangle([10.0, 20.0]).translate([15.0, 10.0]), fillet(2.0));
     has_area("flush blocks", &both, 300.0 + 4.0 * CORNER, 80.0, 2.0, 1)?;
     assert!(!both.contains([9.99, -1e-9])? && both.contains([9.99, 1e-9])?);
+    Ok(())
+}
+
+/// Beside a profile's border patches and field are not on the same side of every point.
+#[test]
+fn normals_of_rounded_caps_face_the_viewer() -> Outcome {
+    let arm = Profile::rounded_rectangle([1.8, 0.8], 0.15);
+    let cross = arm.rotate(deg(90.0)) | arm;
+    for caps in [Caps::Rounded(0.2), Caps::Chamfered(0.15)] {
+        let solid = cross.extrude_with(&Extrusion { caps, ..Extrusion::new(1.6) });
+        let (scene, bounds) = (solid.scene()?, solid.bounds()?);
+        for [width, height] in [[88, 66], [112, 84]] {
+            let camera = Camera::framing(&bounds).fitted(&bounds, f64::from(width) / f64::from(height));
+            let rays = camera.rays(width, height);
+            let seen = scene.surfaces(&rays, Window::whole(width, height));
+            for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+                let (_, direction) = rays.ray(f64::from(x) + 0.5, f64::from(y) + 0.5);
+                let surface = seen.at(x, y);
+                let facing = surface.normal.as_dvec3().dot(direction);
+                assert!(!surface.distance.is_finite() || facing < 0.05, "{facing} at {x}, {y} of {width}, {caps:?}");
+            }
+        }
+    }
     Ok(())
 }

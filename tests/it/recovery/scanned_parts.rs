@@ -146,6 +146,7 @@ fn a_scanned_bracket_is_three_leaves() {
         assert_eq!(fit.leaves().len(), 3, "{:?}", kinds(&fit));
         assert!(iou(&fit, &truth) > least, "{}: {:?}", iou(&fit, &truth), kinds(&fit));
         assert!((fit.iou() - iou(&fit, &truth)).abs() < 0.03, "{} {}", fit.iou(), iou(&fit, &truth));
+        assert_eq!(fit.topology().genus, Some(1));
         assert_eq!(fit.topology_of_input().genus, None);
         assert!(fit.leaves().iter().all(|leaf| leaf.seen() > 0.9 && !leaf.is_guess()), "{noise}");
     }

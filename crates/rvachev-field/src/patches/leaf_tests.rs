@@ -126,3 +126,24 @@ fn a_cylinder_has_no_slope_along_its_axis() {
     let slab = Bounds::new(DVec3::new(3.0, 0.0, -100.0), DVec3::new(3.5, 0.5, 100.0));
     assert!(prism.range(&Zone::of_bounds(&slab)).hi() < -1.0);
 }
+
+#[test]
+fn between_patches_and_the_sign_the_gradient_points_inwards() {
+    let sign: Arc<dyn AnyField> = Arc::new(Sphere { radius: 1.001 });
+    let bounds = Bounds::new(DVec3::splat(-1.001), DVec3::splat(1.001));
+    let field = SurfaceDistance::new(built(&sphere(24, true)), sign, 2e-3, None, bounds);
+    let mut random = Random(29);
+    for by in [-3e-3, -1e-3, 2e-4, 5e-4, 9e-4, 1.1e-3, 3e-3] {
+        let outwards = random.point(1.0).normalize();
+        let p = (1.0 + by) * outwards;
+        let slope = DVec3::from_array(AnyField::dual(&field, Dual::point(p.to_array())).d);
+        assert!(slope.dot(-outwards) > 0.99, "{slope} at {p}");
+        let columns = p.to_array().map(|c| vec![c as f32; CHUNK]);
+        let mut out = [(); 4].map(|()| vec![0.0f32; CHUNK]);
+        let [value, dx, dy, dz] = &mut out;
+        let points = columns.each_ref().map(|column| &**column);
+        field.gradients(Chunk { points, placement: &Placement::IDENTITY, out: [value, dx, dy, dz] });
+        let slope = DVec3::new(out[1][0].into(), out[2][0].into(), out[3][0].into());
+        assert!(slope.dot(-outwards) > 0.99, "{slope} at {p} on lanes");
+    }
+}

@@ -13,6 +13,9 @@ use rvachev_num::symbol::Symbol;
 /// gradient is the normal there.
 const AT_SURFACE: f64 = 1e-7;
 
+/// The cosine from which on a direction is that of a patch's normal, and its foot is on no crease.
+const UPRIGHT: f64 = 0.99;
+
 /// Signed distance to a surface: its size by [`Patches`], its sign by another field.
 ///
 /// ```text
@@ -20,7 +23,9 @@ const AT_SURFACE: f64 = 1e-7;
 /// ```
 ///
 /// Patches and field describe one surface to within an error, so the value jumps by up to twice
-/// the error where the field's sign changes, and has slope 1 elsewhere.
+/// the error where the field's sign changes, and has slope 1 elsewhere. The gradient is that of the
+/// distance that the value stands for: where patches and field do not agree on the side, it is
+/// along the patch's normal to the side where the field rises, and not the derivative of the value.
 #[derive(Clone, Debug)]
 pub struct SurfaceDistance {
     pub(super) patches: Arc<Patches>,
@@ -97,13 +102,27 @@ impl SurfaceDistance {
         let mut slope = if foot.distance < AT_SURFACE * self.patches.unit() {
             -foot.normal
         } else {
+            let away = (p - foot.point) / foot.distance;
+            let is_outside = if self.is_between(away, foot) { self.falls(p, away) } else { sign < 0.0 };
             // Positive inside: it rises away from the surface there, and towards it outside.
-            (p - foot.point) / if sign < 0.0 { -foot.distance } else { foot.distance }
+            if is_outside { -away } else { away }
         };
         if let Some(axis) = self.flat {
             slope[axis] = 0.0;
         }
         (with_sign(foot.distance, sign), slope.to_array())
+    }
+
+    /// Whether a point in this direction from its foot may be between the patches and where the sign
+    /// changes. There the value falls on the way to the surface, and what it stands for does not.
+    fn is_between(&self, away: DVec3, foot: Foot) -> bool {
+        foot.distance < self.error && away.dot(foot.normal).abs() > UPRIGHT
+    }
+
+    /// Whether the sign's field falls in a direction.
+    fn falls(&self, p: DVec3, direction: DVec3) -> bool {
+        let slope = DVec3::from_array(self.sign.dual(Dual::point(p.to_array())).d);
+        slope.dot(direction) < 0.0
     }
 
     /// The sign at a point, as a number that has it.

@@ -1,0 +1,195 @@
+//! Drafts: what the pixels of a picture see of a mesh, by the rasteriser.
+//!
+//! ```text
+//!    scene --once--> mesh, kept          view --> triangles in tiles --> depth, triangle
+//!                                                                             |
+//!    picture's own rays <------- distance along the ray, normal, leaf  <------'
+//! ```
+//!
+//! What comes out is what rays give, so that lights, paint and lines are those of any picture.
+//! Pixels at edges are drawn once more in a view of `samples` times as many columns and rows, as
+//! far as there are any in a tile.
+
+use std::sync::{Arc, PoisonError};
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::gbuffer::{Surface, Window};
+use super::scene::Scene;
+use super::settings::{RenderError, RenderSettings, setting};
+use crate::mesh::Subject;
+use crate::raster::{Facing, LayerSource, MeshLayers, RasterError, RasterView, SurfaceId, Target, Tile};
+use crate::{Camera, CellSize, Mesh, MeshSettings, Run, ThinFeatures};
+
+/// Where something may be thinner than a cell, cells of a quarter of the size are tried.
+const HALVINGS: u32 = 2;
+
+/// The near plane, in proportion to the distance from the eye to its target: there is none for
+/// rays.
+const NEAR: f64 = 1e-6;
+
+/// Where the mean of the corners' normals faces away from the eye though the triangle does not, it
+/// is turned to this cosine.
+const FACING: f64 = 1e-2;
+
+impl Scene {
+    /// The mesh that drafts show, at so many cells along the longest side. The one that was last
+    /// asked for is kept.
+    pub(super) fn draft_mesh(&self, cells: u32, run: &Run) -> Result<Arc<Mesh>, RenderError> {
+        if self.is_empty() {
+            return Ok(Arc::default());
+        }
+        let kept = || self.draft.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((count, mesh)) = &*kept()
+            && *count == cells
+        {
+            return Ok(mesh.clone());
+        }
+        let subject = Subject { program: self.program(), bounds: self.bounds(), palette: None, whole: None };
+        let mesh = |thin, run: &Run| {
+            let cell = CellSize::LongestSide(cells);
+            subject.mesh(&MeshSettings { cell, thin, owners: true, ..MeshSettings::default() }, run)
+        };
+        let [to_mesh, to_refine] = run.stages([0.5, 0.5]);
+        let mut found = mesh(ThinFeatures::Ignore, &to_mesh)?;
+        if found.possibly_lost() > 0 {
+            found = mesh(ThinFeatures::Refine { halvings: HALVINGS }, &to_refine)?;
+        }
+        let mesh = Arc::new(found);
+        *kept() = Some((cells, mesh.clone()));
+        Ok(mesh)
+    }
+}
+
+/// A mesh in a picture.
+pub(super) struct Draft<'a> {
+    scene: &'a Scene,
+    mesh: &'a Mesh,
+    pixels: MeshLayers<'a>,
+    /// With so many columns and rows for one of a pixel.
+    samples: MeshLayers<'a>,
+}
+
+impl<'a> Draft<'a> {
+    pub(super) fn new(
+        scene: &'a Scene,
+        mesh: &'a Mesh,
+        camera: &Camera,
+        settings: &RenderSettings,
+    ) -> Result<Draft<'a>, RenderError> {
+        let RenderSettings { width, height, samples, .. } = *settings;
+        let layers = |times: u32| {
+            let too_large = || setting("size", format!("{width} × {height}"), DRAFT_SIZE);
+            let [width, height] = [width, height].map(|side| side.saturating_mul(times));
+            let view = RasterView::new(camera, width, height).map_err(|error| match error {
+                RasterError::Camera(error) => error.into(),
+                _ => too_large(),
+            })?;
+            let near = NEAR * camera.eye.distance(camera.target);
+            let view = if view.near() > 0.0 { view.with_near(near).map_err(|_| too_large())? } else { view };
+            Ok::<_, RenderError>(view.surface(mesh))
+        };
+        let pixels = layers(1)?;
+        let samples = if samples > 1 { layers(samples)? } else { pixels.clone() };
+        Ok(Draft { scene, mesh, pixels, samples })
+    }
+
+    /// What the pixels of some rows see through their middles.
+    pub(super) fn surfaces(&self, window: Window) -> Vec<Surface> {
+        let mut surfaces = vec![Surface::NONE; window.count()];
+        let mut bands = Vec::new();
+        let (mut rest, mut top, end) = (&mut surfaces[..], window.top, window.top + window.height);
+        while top < end {
+            let next = (top / Tile::SIDE + 1) * Tile::SIDE;
+            let (band, after) = std::mem::take(&mut rest).split_at_mut(((next.min(end) - top) * window.width) as usize);
+            bands.push((top, band));
+            (rest, top) = (after, next);
+        }
+        bands.into_par_iter().for_each_init(Target::new, |target, (top, band)| {
+            let bottom = top + band.len() as u32 / window.width;
+            for tile in row_of_tiles(&self.pixels, top / Tile::SIDE) {
+                self.pixels.seen(&tile, target, |[x, y], id, depth| {
+                    if (top..bottom).contains(&y) {
+                        band[((y - top) * window.width + x) as usize] = self.surface(&self.pixels, [x, y], id, depth);
+                    }
+                });
+            }
+        });
+        surfaces
+    }
+
+    /// What the samples of some pixels see, pixel by pixel, row by row in each. `numbers` has the
+    /// place of each pixel among them, or `u32::MAX`, for rows of the picture from `top` on;
+    /// `columns` is how many samples there are to a pixel along a side, and `count` how many of
+    /// the pixels.
+    pub(super) fn samples(&self, numbers: &[u32], top: u32, columns: u32, count: usize) -> Vec<Surface> {
+        let layers = if columns > 1 { &self.samples } else { &self.pixels };
+        let [width, _] = layers.size();
+        let across = (width / columns) as usize;
+        let rows = numbers.len() as u32 / across as u32;
+        let (first, last) = (top * columns / Tile::SIDE, ((top + rows) * columns).div_ceil(Tile::SIDE));
+        let number = |x: u32, y: u32| {
+            let row = (y / columns).checked_sub(top).filter(|row| *row < rows)?;
+            let number = numbers[row as usize * across + (x / columns) as usize];
+            (number != u32::MAX).then_some(number)
+        };
+        let found = (first..last).into_par_iter().map_init(Target::new, |target, band| {
+            let mut found = Vec::new();
+            for tile in row_of_tiles(layers, band) {
+                let (right, bottom) = (tile.x + tile.width - 1, tile.y + tile.height - 1);
+                let mut pixels = (tile.y / columns..=bottom / columns)
+                    .flat_map(|y| (tile.x / columns..=right / columns).map(move |x| (x, y)));
+                if pixels.all(|(x, y)| number(x * columns, y * columns).is_none()) {
+                    continue;
+                }
+                layers.seen(&tile, target, |[x, y], id, depth| {
+                    if let Some(number) = number(x, y) {
+                        let place = number * columns * columns + y % columns * columns + x % columns;
+                        found.push((place, self.surface(layers, [x, y], id, depth)));
+                    }
+                });
+            }
+            found
+        });
+        let found: Vec<Vec<(u32, Surface)>> = found.collect();
+        let mut surfaces = vec![Surface::NONE; count * (columns * columns) as usize];
+        for (place, surface) in found.into_iter().flatten() {
+            surfaces[place as usize] = surface;
+        }
+        surfaces
+    }
+
+    /// What a pixel of a view sees, as a ray through its middle would tell it.
+    #[inline]
+    fn surface(&self, layers: &MeshLayers<'_>, [x, y]: [u32; 2], id: SurfaceId, depth: f64) -> Surface {
+        let view = layers.view();
+        let (x, y) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
+        let point = view.point(x, y, depth);
+        let sight = if view.is_parallel() { view.axes()[2] } else { point - view.camera().eye };
+        let length = sight.length();
+        let distance = if view.is_parallel() { depth } else { length };
+        let viewer = -sight / length;
+        let normal = layers.normal(id.face, point);
+        let towards = if id.facing == Facing::Front { normal } else { -normal };
+        let cosine = towards.dot(viewer);
+        let normal = if cosine >= FACING || normal == DVec3::ZERO {
+            normal
+        } else {
+            let turned = (towards + (FACING - cosine) * viewer).normalize_or_zero();
+            if id.facing == Facing::Front { turned } else { -turned }
+        };
+        let owner = self.mesh.owners().and_then(|owners| owners.get(id.face as usize)).copied().unwrap_or_default();
+        let owner = self.scene.owner_at(owner, point);
+        Surface { distance, normal: normal.as_vec3(), owner }
+    }
+}
+
+/// What the size of a draft may be.
+const DRAFT_SIZE: &str = "16 384 pixels a side in drafts, samples counted; `Quality::Fine` draws larger pictures";
+
+fn row_of_tiles(layers: &MeshLayers<'_>, row: u32) -> impl Iterator<Item = Tile> + use<> {
+    let [width, height] = layers.size();
+    let [across, _] = Tile::grid(width, height);
+    (0..across).map(move |column| Tile::number(row * across + column, width, height))
+}
