@@ -13,7 +13,7 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec2;
 
 use super::sections::area;
-use super::straighten::{corners, distance, fitted, uncut};
+use super::straighten::{corners, crosses, distance, fitted, uncut};
 use crate::fit::linear::solved;
 
 /// Corners of a polygon at most, and where another shape fits too.
@@ -100,7 +100,7 @@ pub(super) fn bases(ring: &[DVec2], grain: Grain) -> Vec<Base> {
         found.extend(supershape(&even, centre, size));
     }
     let most = if found.is_empty() { MOST } else { FEW };
-    if (3..=most).contains(&polygon.len()) && !is_regular {
+    if (3..=most).contains(&polygon.len()) && !is_regular && !crosses(&polygon) {
         found.push(Base::Polygon(polygon));
     }
     found
@@ -109,7 +109,12 @@ pub(super) fn bases(ring: &[DVec2], grain: Grain) -> Vec<Base> {
 /// The polygon of few corners that a ring is.
 pub(super) fn polygon(ring: &[DVec2], grain: Grain) -> Vec<DVec2> {
     let polygon = corners(ring, grain.tolerance.min(0.1 * area(ring).abs().sqrt()));
-    if grain.short > 0.0 { fitted(ring, &uncut(&polygon, grain.short), grain.tolerance) } else { polygon }
+    if grain.short == 0.0 {
+        return polygon;
+    }
+    let better = fitted(ring, &uncut(&polygon, grain.short), grain.tolerance);
+    // Where a wall is hardly thicker than it is uncertain, its sides may change places.
+    if crosses(&better) { polygon } else { better }
 }
 
 /// Points at equal distances along a ring.

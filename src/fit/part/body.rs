@@ -61,9 +61,14 @@ impl Body {
 
     /// Whether a point in length units is inside.
     pub(super) fn contains(&self, p: DVec3) -> bool {
+        self.winding_number(p) > 0.5
+    }
+
+    /// 1 inside and 0 outside; about that, of points.
+    pub(super) fn winding_number(&self, p: DVec3) -> f64 {
         match &self.inside {
-            Inside::Mesh(leaf) => leaf.winding_number(p) > 0.5,
-            Inside::Points { dipoles, centre, size } => dipoles.winding_number((p - *centre) / *size) > 0.5,
+            Inside::Mesh(leaf) => leaf.winding_number(p),
+            Inside::Points { dipoles, centre, size } => dipoles.winding_number((p - *centre) / *size),
         }
     }
 }

@@ -161,15 +161,17 @@ fn run(low: &[f64], high: &[f64]) -> (f64, [usize; 2]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fit::part::bits::Bits;
+    use crate::fit::part::queries::Told;
 
     #[test]
     fn the_box_is_found_among_all() {
         let (low, high) = (DVec3::new(-0.3, -0.2, -0.1), DVec3::new(0.1, 0.2, 0.3));
         let truth = Leaf::cuboid(DMat3::IDENTITY, [low, high]);
         let whole = [DVec3::splat(-0.4), DVec3::splat(0.4)];
-        let queries =
-            Queries::new(whole, [&[], &[]], &[], 1, |points| Ok(Bits::of(points, |p| truth.contains(p)))).unwrap();
+        let queries = Queries::new(whole, [&[], &[]], &[], 1, Told::ByWinding, |points| {
+            Ok(points.iter().map(|p| f64::from(u8::from(truth.contains(*p)))).collect())
+        })
+        .unwrap();
         let offsets = [0, 1, 2].map(|_| (-4..=4).map(|i| f64::from(i) / 10.0).collect());
         let mut grid = Grid::new(DMat3::IDENTITY, offsets, &queries);
         let inside = queries.inside.clone();

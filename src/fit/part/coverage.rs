@@ -38,6 +38,11 @@ impl Coverage {
         full * WIDTH / self.arc().max(1.0)
     }
 
+    /// The share that so many samples strewn over the arc leave full.
+    pub(super) fn expected(&self, samples: usize) -> f64 {
+        1.0 - (-(samples as f64) * WIDTH / self.arc().max(WIDTH)).exp()
+    }
+
     /// The largest share of a bin.
     pub(super) fn largest(&self) -> f64 {
         let sum: f64 = self.bins.iter().sum();

@@ -28,6 +28,9 @@ const NEIGHBOURS: usize = 9;
 const ASKED: usize = 200;
 const APART: f64 = 2.0;
 
+/// The square of a distance that is none, in diagonals: of points given several times.
+const LITTLE: f64 = 1e-12;
+
 /// Whole vectors of any SIMD level.
 const WIDTH: usize = 16;
 
@@ -59,7 +62,7 @@ impl Dipoles {
             }
         }
         let spacing = median(&mut reaches);
-        let mut dipoles = Dipoles { columns, least: spacing * spacing, scale: 0.5 / TAU };
+        let mut dipoles = Dipoles { columns, least: f64::max(spacing * spacing, LITTLE), scale: 0.5 / TAU };
         let step = points.len().div_ceil(ASKED).max(1);
         let jump = |(p, n): (&DVec3, &DVec3)| {
             let by = APART * spacing * *n;

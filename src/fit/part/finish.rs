@@ -17,6 +17,7 @@ use super::refine::owner;
 use super::repeated::repeated;
 use super::result::{PartFit, PartLeaf, Snap, Topology, Unexplained};
 use super::samples::Samples;
+use super::seen::seen;
 use super::sobol::Sobol;
 use super::times::PartTimes;
 use super::words::describe;
@@ -53,7 +54,8 @@ pub(super) fn finish(
         distances.push(size * distance);
     }
     let (iou, unexplained) = compared(leaves, body, samples, known, run)?;
-    let (mut leaves, snaps) = named(leaves, meant, &shares);
+    let seen = seen(leaves, samples, run)?;
+    let (mut leaves, snaps) = named(leaves, meant, &shares, &seen);
     let (solid, patterns) = repeated(&leaves, size).ok_or(FitError::NoSurface { inliers: 0.0 })?;
     describe(&mut leaves, size);
     solid.bounds()?;
@@ -74,16 +76,16 @@ pub(super) fn finish(
 }
 
 /// The leaves in length units, called by their kinds, and what was changed of them.
-fn named(leaves: &[(bool, Leaf)], meant: Vec<Meant>, shares: &[f64]) -> (Vec<PartLeaf>, Vec<Snap>) {
+fn named(leaves: &[(bool, Leaf)], meant: Vec<Meant>, shares: &[f64], seen: &[f64]) -> (Vec<PartLeaf>, Vec<Snap>) {
     let mut counts: BTreeMap<(&'static str, bool), usize> = BTreeMap::new();
     let (mut named, mut snaps) = (Vec::new(), Vec::new());
-    for (((adds, _), Meant { leaf, changes }), surface) in leaves.iter().zip(meant).zip(shares) {
+    for ((((adds, _), Meant { leaf, changes }), surface), seen) in leaves.iter().zip(meant).zip(shares).zip(seen) {
         let kind = leaf.kind();
         let count = counts.entry((kind, *adds)).or_insert(0);
         *count += 1;
         let name = if *adds { format!("{kind} {count}") } else { format!("cut {kind} {count}") };
         snaps.extend(changes.iter().map(|change| Snap::of(named.len(), change)));
-        named.push(PartLeaf { adds: *adds, leaf, name, text: String::new(), surface: *surface });
+        named.push(PartLeaf { adds: *adds, leaf, name, text: String::new(), surface: *surface, seen: *seen });
     }
     (named, snaps)
 }

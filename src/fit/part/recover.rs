@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::super::check::check_depth;
 use super::super::error::FitError;
-use super::bits::{Bits, WORD};
+use super::bits::WORD;
 use super::body::Body;
 use super::boxes::Grid;
 use super::candidates::propose;
@@ -17,7 +17,7 @@ use super::leaf::Leaf;
 use super::model::{Model, Step};
 use super::offsets::grid;
 use super::pool::Pool;
-use super::queries::{Queries, Strip};
+use super::queries::{Queries, Strip, Told};
 use super::refine::refined;
 use super::regions::{Form, Region, Regions, detect};
 use super::result::PartFit;
@@ -79,7 +79,8 @@ pub(super) fn recover(mesh: &Mesh, settings: &PartSettings, run: &Run) -> Result
     check(&points)?;
     let mut clock = Clock::start();
     let body = Body::of_mesh(mesh, &to_index)?;
-    let samples = Samples::of_mesh(mesh, settings.seed, run)?;
+    let mut samples = Samples::of_mesh(mesh, settings.seed, run)?;
+    samples.noise = settings.noise / samples.size;
     let vertices = vertices(mesh, &samples);
     let hollow = FitError::Hollow { of: "triangles", count: mesh.triangles().len() };
     let times = PartTimes { sampling: clock.lap(), ..PartTimes::default() };
@@ -94,7 +95,7 @@ pub(super) fn recover_points(cloud: &PointCloud, settings: &PartSettings, run: &
     }
     check(points)?;
     let mut clock = Clock::start();
-    let samples = Samples::of_cloud(cloud, settings.seed);
+    let samples = Samples::of_cloud(cloud, settings.noise, settings.seed);
     run.check()?;
     let [low, high] = extent(points);
     let hollow = FitError::Hollow { of: "points", count: points.len() };
@@ -106,7 +107,7 @@ pub(super) fn recover_points(cloud: &PointCloud, settings: &PartSettings, run: &
 /// The part that samples are of.
 fn recovered(
     body: &Body,
-    mut samples: Samples,
+    samples: Samples,
     vertices: &[DVec3],
     hollow: FitError,
     settings: &PartSettings,
@@ -115,7 +116,6 @@ fn recovered(
 ) -> Result<PartFit, FitError> {
     let mut clock = Clock::start();
     let [to_detect, to_label, to_select, to_settle, to_finish] = run.stages([0.1, 0.2, 0.3, 0.2, 0.2]);
-    samples.noise = samples.noise.max(settings.noise / samples.size);
     let regions = detect(&samples, settings.seed, &to_detect)?;
     times.detection = clock.lap();
     to_detect.report(1.0);
@@ -229,13 +229,14 @@ fn queries(body: &Body, samples: &Samples, regions: &Regions, seed: u64, run: &R
         .collect();
     let left: f64 = rest.iter().map(|i| samples.weights[*i as usize]).sum();
     strips.push(Strip { samples: &rest, share: left, apart: APART.max(NOISE * samples.noise) });
-    Ok(Queries::new([-half, half], [&samples.points, &samples.normals], &strips, seed, |points| {
-        let word = |points: &[DVec3]| {
+    let told = if samples.kind == Kind::Scan { Told::ByPoints } else { Told::ByWinding };
+    Ok(Queries::new([-half, half], [&samples.points, &samples.normals], &strips, seed, told, |points| {
+        let numbers = |points: &[DVec3]| {
             run.check()?;
-            let is_inside = |p: &DVec3| body.contains(samples.centre + samples.size * *p);
-            Ok(points.iter().rev().fold(0, |word, p| word << 1 | u64::from(is_inside(p))))
+            Ok(points.iter().map(|p| body.winding_number(samples.centre + samples.size * *p)).collect::<Vec<_>>())
         };
-        Ok(Bits::of_words(points.par_chunks(WORD).map(word).collect::<Result<_, Cancelled>>()?))
+        let numbers = points.par_chunks(WORD).map(numbers).collect::<Result<Vec<_>, Cancelled>>()?;
+        Ok(numbers.concat())
     })?)
 }
 

@@ -71,7 +71,7 @@ fn scan(mesh: &Mesh, noise: f64, tilt: f64) -> Samples {
     let points = samples.points.iter().zip(&samples.normals).map(|(p, n)| *p + *n * bell(noise)).collect();
     let turned = |n: &DVec3| (*n + DVec3::new(bell(tilt), bell(tilt), bell(tilt))).normalize().as_vec3();
     let normals = samples.normals.iter().map(turned).collect();
-    Samples::of_cloud(&PointCloud::new(points).unwrap().with_normals(normals).unwrap(), 1)
+    Samples::of_cloud(&PointCloud::new(points).unwrap().with_normals(normals).unwrap(), 0.0, 1)
 }
 
 #[test]
@@ -148,7 +148,7 @@ fn a_thin_plate_is_no_cylinder() {
     assert_eq!(regions.regions.len(), 6);
     assert!(regions.regions.iter().all(|r| matches!(r.form, Form::Plane { .. })));
     let samples = scan(&plate, 0.002, 0.05);
-    assert!(samples.kind == Kind::Scan && (0.001..0.004).contains(&samples.noise), "{}", samples.noise);
+    assert!(samples.kind == Kind::Scan && (0.0002..0.001).contains(&samples.noise), "{}", samples.noise);
     let regions = found(&samples);
     assert!(cylinders(1.0, &regions).is_empty(), "{regions:?}");
 }

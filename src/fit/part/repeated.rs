@@ -116,7 +116,7 @@ mod tests {
     use super::*;
 
     fn leaf(adds: bool, name: &str, leaf: Leaf) -> PartLeaf {
-        PartLeaf { adds, leaf, name: name.to_owned(), text: String::new(), surface: 0.1 }
+        PartLeaf { adds, leaf, name: name.to_owned(), text: String::new(), surface: 0.1, seen: 1.0 }
     }
 
     fn cut(name: &str, x: f64, y: f64) -> PartLeaf {

@@ -12,6 +12,9 @@ use super::words::{describe, laid_out};
 use crate::code::{RustFile, RustSettings};
 use crate::{Bounds, Solid};
 
+/// Leaves less of which is seen are guesses.
+const GUESS: f64 = 0.5;
+
 /// A part as an ordered tree of leaves, and how well it is the part.
 ///
 /// The leaves are applied one after the other: each is added to what those before it are, or cut
@@ -40,6 +43,7 @@ pub struct PartLeaf {
     /// In words.
     pub(super) text: String,
     pub(super) surface: f64,
+    pub(super) seen: f64,
 }
 
 /// What a surface is in the large.
@@ -294,5 +298,20 @@ impl PartLeaf {
     #[must_use]
     pub fn surface(&self) -> f64 {
         self.surface
+    }
+
+    /// The share of the surface that it makes in the tree that there are points of, 0 to 1: 1 in
+    /// a part that was recovered from a mesh. A box that stands on what was not scanned has some
+    /// 0.8: where it ends below is a guess.
+    #[must_use]
+    pub fn seen(&self) -> f64 {
+        self.seen
+    }
+
+    /// Whether less than half of it is [seen](PartLeaf::seen): nothing but what is about it tells
+    /// that it is there.
+    #[must_use]
+    pub fn is_guess(&self) -> bool {
+        self.seen < GUESS
     }
 }

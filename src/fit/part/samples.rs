@@ -11,6 +11,7 @@ use glam::DVec3;
 
 use super::corners::{Corner, Facets};
 use super::orient;
+use super::smooth::smooth;
 use crate::fit::grid::{Grid, extent};
 use crate::fit::linear::{Principal, quantile};
 use crate::fit::random::Random;
@@ -146,21 +147,23 @@ impl Samples {
     }
 
     /// The samples of a cloud: points with the normals that they have, or that their neighbours
-    /// tell.
-    pub(super) fn of_cloud(cloud: &PointCloud, seed: u64) -> Samples {
+    /// tell, brought nearer to the surface. Their noise is so much at least, in length units, before
+    /// that.
+    pub(super) fn of_cloud(cloud: &PointCloud, least_noise: f64, seed: u64) -> Samples {
         let all = cloud.positions();
         let [low, high] = extent(all);
         let (centre, size) = (0.5 * (low + high), (high - low).length());
         let mut random = Random::new(seed);
         let mut kept = random.chosen(all.len(), OF_CLOUD);
         kept.sort_unstable();
-        let points: Vec<DVec3> = kept.iter().map(|i| (all[*i] - centre) / size).collect();
+        let mut points: Vec<DVec3> = kept.iter().map(|i| (all[*i] - centre) / size).collect();
         let normals: Vec<DVec3> = match cloud.normals() {
             Some(normals) => kept.iter().map(|i| normals[*i].as_dvec3().normalize_or(DVec3::Z)).collect(),
-            None => orient::normals(&points),
+            None => orient::normals(&points, &mut random),
         };
         let weights = vec![1.0 / points.len().max(1) as f64; points.len()];
-        let noise = noise(&points, &normals, &mut random);
+        let noise = noise(&points, &normals, &mut random).max(least_noise / size);
+        let noise = smooth(&mut points, &normals, noise);
         Samples {
             points,
             normals,

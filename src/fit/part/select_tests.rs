@@ -2,11 +2,10 @@
 
 use glam::{DMat3, DVec3};
 
-use super::bits::Bits;
 use super::leaf::Leaf;
 use super::model::{Model, Step};
 use super::pool::Pool;
-use super::queries::{Queries, Strip};
+use super::queries::{Queries, Strip, Told};
 use super::select::Selector;
 use crate::{CancelToken, Run};
 
@@ -35,7 +34,8 @@ fn asked(truth: &[(bool, Leaf)], half: DVec3) -> Queries {
         samples.push(own);
     }
     let strips: Vec<Strip<'_>> = samples.iter().map(|samples| Strip { samples, share: 0.2, apart: 0.004 }).collect();
-    Queries::new([-half, half], [&points, &normals], &strips, 7, |points| Ok(Bits::of(points, is_inside))).unwrap()
+    let winding = |points: &[DVec3]| Ok(points.iter().map(|p| f64::from(u8::from(is_inside(*p)))).collect());
+    Queries::new([-half, half], [&points, &normals], &strips, 7, Told::ByWinding, winding).unwrap()
 }
 
 fn selected(queries: &Queries, leaves: Vec<(Leaf, [bool; 2], Option<u32>)>) -> (Vec<String>, Model) {

@@ -19,9 +19,11 @@ const STEPS: usize = 3;
 const FEWEST: usize = 10;
 const CORNERS: usize = 6;
 
-/// The least arc in degrees, and the least share of it that samples are on.
+/// The least arc in degrees, and the least share of it that samples are on; of few samples so much
+/// of what as many leave full that are strewn over it.
 const ARC: f64 = 50.0;
 const FILL: f64 = 0.62;
+const STREWN: f64 = 0.8;
 
 /// The largest share of a cylinder within 10° of normals, of whole ones and of short arcs: more is
 /// a flat.
@@ -219,8 +221,10 @@ impl Settled {
                 self.arc = places.arc();
                 self.along = self.extent(samples, &corners, self.frame.z_axis);
                 let flattest = FLATTEST[usize::from(self.arc < SHORT)];
+                // So few points may leave bins empty.
+                let least = FILL.min(STREWN * places.expected(self.points.len()));
                 let large = slope == 0.0 || self.share >= limits.cone_share;
-                large && self.arc >= ARC && places.fill() >= FILL && normals.largest() <= flattest
+                large && self.arc >= ARC && places.fill() >= least && normals.largest() <= flattest
             }
             Shape::Torus { centre, major, .. } => {
                 let out = |p: DVec3| (p - centre).truncate();

@@ -104,9 +104,31 @@ pub(super) fn fitted(ring: &[DVec2], corners: &[DVec2], tolerance: f64) -> Vec<D
         .collect()
 }
 
+/// Whether sides of a polygon cross each other, or touch where they are not neighbours.
+pub(super) fn crosses(corners: &[DVec2]) -> bool {
+    let count = corners.len();
+    let side = |k: usize| [corners[k], corners[(k + 1) % count]];
+    let parted = |[a, b]: [DVec2; 2], [c, d]: [DVec2; 2]| [(b - a).perp_dot(c - a), (b - a).perp_dot(d - a)];
+    let cross = |i: usize, j: usize| {
+        let [p, q] = [parted(side(i), side(j)), parted(side(j), side(i))];
+        // Sides of one line are beside each other.
+        p[0] * p[1] <= 0.0 && q[0] * q[1] <= 0.0 && [p, q].concat().iter().any(|x| *x != 0.0)
+    };
+    (0..count).any(|i| (i + 2..count).any(|j| (i, j) != (0, count - 1) && cross(i, j)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_bow_crosses_itself_and_a_comb_does_not() {
+        let of = |points: &[[f64; 2]]| crosses(&points.iter().copied().map(DVec2::from_array).collect::<Vec<_>>());
+        assert!(of(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]));
+        assert!(of(&[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 0.0], [0.0, 1.0]]));
+        let comb = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [2.0, 1.0], [2.0, 0.5], [1.0, 0.5], [1.0, 1.0], [0.0, 1.0]];
+        assert!(!of(&comb) && !of(&comb[..3]));
+    }
 
     /// Points along a polygon, a corner cut off between two of them.
     fn strewn(corners: &[DVec2], step: f64) -> Vec<DVec2> {

@@ -159,8 +159,14 @@ mod tests {
             (false, cuboid([20.0, -21.0, 6.0], [24.0, 21.0, 9.0])),
             (true, Leaf::cylinder(DVec3::Z, DVec3::X * 3.0, 4.0, [7.0, 20.0])),
         ];
-        let mut leaves =
-            leaves.map(|(adds, leaf)| PartLeaf { adds, leaf, name: String::new(), text: String::new(), surface: 0.1 });
+        let mut leaves = leaves.map(|(adds, leaf)| PartLeaf {
+            adds,
+            leaf,
+            name: String::new(),
+            text: String::new(),
+            surface: 0.1,
+            seen: 1.0,
+        });
         describe(&mut leaves, 75.0);
         let texts = leaves.map(|leaf| leaf.text);
         let expected = [

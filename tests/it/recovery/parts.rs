@@ -1,6 +1,6 @@
 //! Whole parts from meshes.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
 use glam::{DVec3, Vec3};
@@ -229,7 +229,7 @@ fn shared(name: &str) -> Option<Mesh> {
 }
 
 #[cfg(feature = "import")]
-fn loaded(path: &Path) -> Option<Mesh> {
+pub(super) fn loaded(path: &Path) -> Option<Mesh> {
     if !path.is_file() {
         println!("{} is not there: skipped", path.display());
         return None;
@@ -238,7 +238,7 @@ fn loaded(path: &Path) -> Option<Mesh> {
 }
 
 #[cfg(not(feature = "import"))]
-fn loaded(path: &Path) -> Option<Mesh> {
+pub(super) fn loaded(path: &Path) -> Option<Mesh> {
     println!("{} is not read without the feature import: skipped", path.display());
     None
 }
@@ -347,16 +347,22 @@ fn all_parts_of_a_workshop() {
     }
 }
 
-#[test]
-#[ignore = "minutes, and wants Python with numpy, scipy, trimesh, numba, matplotlib and scikit-image: random parts"]
-fn fifty_random_parts() {
+/// The folder where fifty random parts were made, if that is possible.
+pub(super) fn random_parts() -> Option<PathBuf> {
     let folder = std::env::temp_dir().join("rvachev_random_parts");
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/tools/generators/write.py");
     let made = std::process::Command::new("python3").arg(script).args(["parts", "50", "0"]).arg(&folder).status();
-    if !made.is_ok_and(|status| status.success()) {
+    let is_made = made.is_ok_and(|status| status.success());
+    if !is_made {
         println!("the generator does not run: skipped");
-        return;
     }
+    is_made.then_some(folder)
+}
+
+#[test]
+#[ignore = "minutes, and wants Python with numpy, scipy, trimesh, numba, matplotlib and scikit-image: random parts"]
+fn fifty_random_parts() {
+    let Some(folder) = random_parts() else { return };
     let (mut right, mut same, mut few) = (0, 0, 0);
     for i in 0..50 {
         let Some(mesh) = loaded(&folder.join(format!("{i:03}.ply"))) else { return };
