@@ -31,6 +31,7 @@ mod laws;
 mod length_ranges;
 mod lengths;
 mod maps;
+mod measure;
 mod mesh;
 mod models;
 mod narrow;
