@@ -41,15 +41,14 @@ fn json(mesh: &Mesh, thickness: &ThicknessReport) -> String {
     )
 }
 
-/// A picture of the part, red where it is thinnest and blue where it is thickest.
-fn picture(thickness: &ThicknessReport, path: &Path) -> Result<(), Box<dyn Error>> {
+/// A picture of the part, red where it is thinnest and blue where it is thickest, with a legend.
+fn picture(solid: &Solid, thickness: &ThicknessReport, path: &Path) -> Result<(), Box<dyn Error>> {
     let finite = thickness.thicknesses().iter().filter(|thickness| thickness.is_finite());
     let thickest = finite.fold(thickness.least, |most, thickness| most.max(*thickness));
-    let colored = Solid::from_mesh(&thickness.colored(thickness.least, thickest), MeshSolid::default());
-    let bounds = colored.bounds()?;
-    let settings = RenderSettings { width: 480, height: 360, ..RenderSettings::default() };
+    let bounds = solid.bounds()?;
+    let settings = RenderSettings { width: 640, height: 480, ..RenderSettings::default() };
     let camera = Camera::framing(&bounds).orbit(deg(0.0), deg(15.0)).fitted(&bounds, 4.0 / 3.0);
-    colored.render(&camera, &settings)?.save(path)?;
+    thickness.picture([thickness.least, thickest], &camera, &settings, &Run::default())?.save(path)?;
     Ok(())
 }
 
@@ -63,7 +62,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let solid = Solid::from_mesh(&mesh, MeshSolid::default());
     let thickness = solid.thickness(&MeshSettings::default(), &Run::default())?;
     let path = file.with_extension("thickness.png");
-    picture(&thickness, &path)?;
+    picture(&solid, &thickness, &path)?;
     if args.iter().any(|arg| arg == "--json") {
         println!("{}", json(&mesh, &thickness));
         return Ok(());

@@ -181,8 +181,9 @@
 //! ```
 //!
 //! [Twelve idioms](idioms) show how things are commonly built: plates with holes, named parts,
-//! rings of parts, leaves of one's own. [Lengths](lengths) are explained with pictures,
-//! and so are [whole parts](parts), from meshes and scans to code.
+//! rings of parts, leaves of one's own. Explained with pictures are [lengths](lengths),
+//! [what is made and what is measured](measuring) (volumes, thickness, clearance) and
+//! [whole parts](parts), from meshes and scans to code.
 //!
 //! # The catalogue
 //!
@@ -242,6 +243,7 @@
 //! | meshes | | value |
 //! |---|---|---|
 //! | [`Solid::from_mesh`] | what triangles enclose, clean or not: imported parts, scans, solids that were meshed | distance; of open ones a bound |
+//! | [`Solid::from_volume`] | voxels: where samples on a grid are above a level | distance |
 //!
 //! ## Profiles
 //!
@@ -486,6 +488,7 @@ pub mod law;
 pub mod layers;
 pub mod lengths;
 mod measure;
+pub mod measuring;
 mod mesh;
 pub mod parts;
 pub mod points;
@@ -511,9 +514,9 @@ pub use geom::{Camera, Contours, Image, Mesh, Outline, Plane, PointCloud, Polyli
 pub use io::LoadSettings;
 pub use io::save::SaveSettings;
 pub use io::unit::LengthUnit;
-pub use measure::{ThicknessBin, ThicknessReport};
+pub use measure::{Clearance, MeasureReport, ThicknessBin, ThicknessReport};
 pub use mesh::{AtBounds, CellSize, Component, Features, MeshReport, MeshSettings, OpenEdges, ThinFeatures};
-pub use query::{Clearance, Face};
+pub use query::Face;
 pub use render::{
     Background, ContourSettings, Lights, Quality, RenderSettings, Scene, Side, Slice, SliceSettings, Style,
 };

@@ -148,7 +148,6 @@ mod json;
 mod kernel;
 #[cfg(test)]
 mod kernel_tests;
-mod legend;
 mod linear;
 mod local;
 mod mixture;

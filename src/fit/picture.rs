@@ -3,9 +3,8 @@
 use glam::DVec2;
 
 use super::error::FitError;
-use super::inspect::Deviations;
-use super::legend::legend;
-use crate::geom::{Camera, Image, PointCloud};
+use super::inspect::{Deviations, color};
+use crate::geom::{Camera, Image, PointCloud, label, legend};
 
 /// What there is no point in.
 const BACKGROUND: [u8; 4] = [40, 42, 46, 255];
@@ -88,7 +87,8 @@ impl Deviations {
                 }
             }
         }
-        legend(&mut pixels, width as usize, reach);
+        let labels = [1.0, 0.5, 0.0, -0.5, -1.0].map(|part| label(part * reach, reach, true));
+        legend(&mut pixels, width as usize, &labels, |at| color((2.0 * at - 1.0) * reach, reach));
         Ok(Image::new(width, height, pixels)?)
     }
 }

@@ -1,6 +1,18 @@
 //! What is measured of solids.
 
+mod area;
+mod bracket;
+mod clearance;
+mod clip;
+mod closed;
+mod gamma;
+mod integral;
+mod moments;
+mod report;
+mod solid;
 mod thickness;
 mod thickness_report;
 
+pub use clearance::Clearance;
+pub use report::MeasureReport;
 pub use thickness_report::{ThicknessBin, ThicknessReport};

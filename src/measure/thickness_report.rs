@@ -4,7 +4,9 @@ use std::fmt;
 
 use glam::DVec3;
 
-use crate::Mesh;
+use crate::error::RenderError;
+use crate::geom::{label, legend};
+use crate::{Camera, Image, Mesh, MeshSolid, RenderSettings, Run, Solid};
 use rvachev_num::figures;
 
 /// How thick a solid is, by the triangles of its mesh:
@@ -88,17 +90,57 @@ impl ThicknessReport {
     pub fn colored(&self, thin: f64, thick: f64) -> Mesh {
         let color = |thickness: &f64| {
             let part = ((thickness - thin) / (thick - thin)).clamp(0.0, 1.0);
-            [heat(if part.is_nan() { 1.0 } else { part }); 3]
+            let [r, g, b] = heat(if part.is_nan() { 1.0 } else { part });
+            [[r, g, b, 255]; 3]
         };
         let colors = self.thicknesses.iter().map(color).collect();
         self.mesh.clone().with_corner_colors(colors).unwrap_or_else(|_| unreachable!("three for each triangle"))
     }
+
+    /// A picture of the mesh in the colours of [`colored`](Self::colored) from the first to the
+    /// second thickness, with a bar at the right that says what they stand for, in length units; a
+    /// small picture has no bar. `settings` are those of any picture.
+    ///
+    /// ```
+    /// use rvachev::{Camera, MeshSettings, RenderSettings, Run, Solid};
+    ///
+    /// let tube = Solid::cylinder(10.0, 20.0) - Solid::cylinder(9.0, 21.0);
+    /// let report = tube.thickness(&MeshSettings::default(), &Run::default())?;
+    /// let camera = Camera::framing(&tube.bounds()?);
+    /// let settings = RenderSettings { width: 240, height: 180, ..RenderSettings::default() };
+    /// let picture = report.picture([0.5, 3.0], &camera, &settings, &Run::default())?;
+    /// assert_eq!((picture.width(), picture.height()), (240, 180));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// What is wrong with the camera or the settings, that the mesh has no triangles, or that the
+    /// work was cancelled.
+    pub fn picture(
+        &self,
+        [thin, thick]: [f64; 2],
+        camera: &Camera,
+        settings: &RenderSettings,
+        run: &Run,
+    ) -> Result<Image, RenderError> {
+        let run = run.stage(0.0, 1.0);
+        let [to_build, to_render] = run.stages([0.2, 0.8]);
+        let colored = Solid::from_mesh_with(&self.colored(thin, thick), MeshSolid::default(), &to_build)?;
+        let scene = colored.scene_with(&to_render.stage(0.0, 0.2))?;
+        let image = scene.render_with(camera, settings, &to_render.stage(0.2, 1.0))?;
+        let mut pixels = image.pixels().to_vec();
+        let at = |part: f64| thin + part * (thick - thin);
+        let labels = [1.0, 0.75, 0.5, 0.25, 0.0].map(|part| label(at(part), thin.abs().max(thick.abs()), false));
+        legend(&mut pixels, image.width() as usize, &labels, heat);
+        run.report(1.0);
+        Ok(Image::new(image.width(), image.height(), pixels).unwrap_or(image))
+    }
 }
 
 /// Red, yellow, green, cyan, blue, from 0 to 1.
-fn heat(part: f64) -> [u8; 4] {
+fn heat(part: f64) -> [u8; 3] {
     let ramp = |centre: f64| (255.0 * (1.5 - (4.0 * part - centre).abs() * 0.75).clamp(0.0, 1.0)).round() as u8;
-    [ramp(0.0), ramp(2.0), ramp(4.0), 255]
+    [ramp(0.0), ramp(2.0), ramp(4.0)]
 }
 
 impl fmt::Display for ThicknessReport {

@@ -138,6 +138,45 @@ impl Mesh {
         Ok(found)
     }
 
+    /// The mesh with only those of its [components](Mesh::components) that are to be kept: of a scan
+    /// or an import, what is large enough, or all but the dust. What they carry is kept as it is.
+    ///
+    /// The wall of a cavity is a component of its own, of a negative volume.
+    ///
+    /// ```
+    /// use rvachev::{MeshSettings, Solid};
+    ///
+    /// let dusty = Solid::cuboid([4.0, 4.0, 4.0]) | Solid::sphere(0.3).translate([5.0, 0.0, 0.0]);
+    /// let mesh = dusty.mesh(&MeshSettings::default())?;
+    /// let clean = mesh.keep_components(|part| part.volume().abs() > 1.0);
+    /// assert_eq!((mesh.components().len(), clean.components().len()), (2, 1));
+    /// // By size, against the largest one.
+    /// let longest = mesh.bounds().longest_side();
+    /// let large = mesh.keep_components(|part| part.bounds().longest_side() > 0.5 * longest);
+    /// assert_eq!(large.triangles(), clean.triangles());
+    /// # Ok::<(), rvachev::error::MeshingError>(())
+    /// ```
+    #[must_use]
+    pub fn keep_components(&self, is_kept: impl Fn(&Component) -> bool) -> Mesh {
+        // A run that nobody else holds is not cancelled.
+        self.keep_components_with(is_kept, &Run::default()).unwrap_or_else(|Cancelled| Mesh::default())
+    }
+
+    /// [`keep_components`](Mesh::keep_components) with a cancel token and a progress sink.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if the token was.
+    pub fn keep_components_with(&self, is_kept: impl Fn(&Component) -> bool, run: &Run) -> Result<Mesh, Cancelled> {
+        let run = run.stage(0.0, 1.0);
+        let parts = self.components_with(&run.stage(0.0, 0.8))?;
+        let mut kept: Vec<u32> =
+            parts.iter().filter(|part| is_kept(part)).flat_map(|part| part.triangles.iter().copied()).collect();
+        kept.sort_unstable();
+        let mesh = self.only(&kept);
+        run.report(1.0);
+        Ok(mesh)
+    }
+
     /// Some triangles alone, with their vertices and all that they carry.
     fn only(&self, chosen: &[u32]) -> Mesh {
         let mut numbers = HashMap::with_capacity(chosen.len());

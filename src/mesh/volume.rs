@@ -23,6 +23,7 @@
 mod bits;
 mod layer;
 mod rows;
+mod solid;
 
 use glam::DVec3;
 

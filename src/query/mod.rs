@@ -2,7 +2,6 @@
 //!
 //! Here, above programs, meshes and distances, because an answer may need a solid's surface.
 
-mod clearance;
 mod field;
 mod inside;
 #[cfg(feature = "formula")]
@@ -14,6 +13,6 @@ mod palette;
 mod place;
 mod prepare;
 
-pub use clearance::Clearance;
+pub(crate) use nearest::nearest;
 pub use place::Face;
 pub use prepare::PrepareError;

@@ -13,7 +13,7 @@ use rvachev_field::Patches;
 const FARTHEST: f64 = 1e6;
 
 /// The point of the surface of `program` that is nearest to `p`; none if there are no patches.
-pub(super) fn nearest(program: &Program, patches: &Patches, p: DVec3) -> Option<DVec3> {
+pub(crate) fn nearest(program: &Program, patches: &Patches, p: DVec3) -> Option<DVec3> {
     let (size, centre) = (patches.bounds().size().length(), patches.bounds().center());
     // A point that is far away is replaced by one on the straight way to it.
     let away = (p - centre) / (p - centre).abs().max_element().max(f64::MIN_POSITIVE);

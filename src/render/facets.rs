@@ -89,7 +89,7 @@ impl Facets {
         let blocks = ((bounds.max - origin) / side).floor().as_uvec3() + 1;
         let grid = Grid { origin, side, blocks: blocks.to_array() };
         let [to_find, to_make] = run.stages([0.3, 0.7]);
-        let SurfaceBlocks { blocks: found, programs } = surface_blocks(program, &grid, 0.0, &to_find)?;
+        let SurfaceBlocks { blocks: found, programs, .. } = surface_blocks(program, &grid, 0.0, &to_find)?;
         let node = |along: usize| (along as f64 - 0.5 * SIDE as f64) * cell;
         let place = |n: usize| [n % NODES, n / NODES % NODES, n / (NODES * NODES)].map(|along| node(along) as f32);
         let nodes = [0, 1, 2].map(|axis| (0..NODES * NODES * NODES).map(|n| place(n)[axis]).collect::<Vec<f32>>());

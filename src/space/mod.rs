@@ -3,4 +3,4 @@
 
 mod tree;
 
-pub(crate) use tree::{Grid, SurfaceBlocks, surface_blocks};
+pub(crate) use tree::{Block, Grid, SurfaceBlocks, surface_blocks};

@@ -46,6 +46,8 @@ pub(crate) struct SurfaceBlocks {
     pub(crate) blocks: Vec<Block>,
     /// Their programs; neighbours often share one.
     pub(crate) programs: Vec<Program>,
+    /// Ranges of blocks that are all inside, from the first to beyond the last along each axis.
+    pub(crate) inside: Vec<[[u32; 3]; 2]>,
 }
 
 impl SurfaceBlocks {
@@ -54,10 +56,11 @@ impl SurfaceBlocks {
         let before = self.programs.len() as u32;
         self.blocks.extend(other.blocks.iter().map(|block| Block { program: before + block.program, ..*block }));
         self.programs.extend(other.programs);
+        self.inside.extend(other.inside);
     }
 
     /// Blocks whose programs are among some, of which only theirs are kept.
-    fn of(mut blocks: Vec<Block>, programs: Vec<Program>) -> SurfaceBlocks {
+    fn of(mut blocks: Vec<Block>, programs: Vec<Program>, inside: Vec<[[u32; 3]; 2]>) -> SurfaceBlocks {
         let mut numbers = vec![None; programs.len()];
         for block in &blocks {
             numbers[block.program as usize] = Some(0);
@@ -67,7 +70,7 @@ impl SurfaceBlocks {
             block.program = numbers[block.program as usize].unwrap_or_default();
         }
         let kept = programs.into_iter().zip(&numbers).filter(|(_, number)| number.is_some());
-        SurfaceBlocks { blocks, programs: kept.map(|(program, _)| program).collect() }
+        SurfaceBlocks { blocks, programs: kept.map(|(program, _)| program).collect(), inside }
     }
 }
 
@@ -119,31 +122,35 @@ pub(crate) fn surface_blocks(
     let meter = Meter::new(run, root.volume());
     // Breadth first until there is work for every thread, then depth first in each part.
     let mut parts = vec![(root, program.clone())];
+    let mut inside = Vec::new();
     let wanted = 64 * rayon::current_num_threads().max(1);
     while parts.len() < wanted && parts.iter().any(|(part, _)| part.size() != [1; 3]) {
         let divided = |(part, program): (Part, Program)| {
             run.check()?;
             if part.size() == [1; 3] {
-                return Ok(vec![(part, program)]);
+                return Ok((vec![(part, program)], None));
             }
             let program = match part.narrowed(&program, grid, margin) {
-                Narrowed::Inside | Narrowed::Outside => {
+                narrowed @ (Narrowed::Inside | Narrowed::Outside) => {
                     meter.add(part.volume());
-                    return Ok(Vec::new());
+                    return Ok((Vec::new(), matches!(narrowed, Narrowed::Inside).then_some([part.from, part.to])));
                 }
                 Narrowed::Same => program,
                 Narrowed::Simpler(simpler) => simpler,
             };
-            Ok(part.halves().map(|half| (half, program.clone())).into())
+            Ok((part.halves().map(|half| (half, program.clone())).into(), None))
         };
-        let next: Result<Vec<Vec<(Part, Program)>>, Cancelled> = parts.into_par_iter().map(divided).collect();
-        parts = next?.into_iter().flatten().collect();
+        type Divided = (Vec<(Part, Program)>, Option<[[u32; 3]; 2]>);
+        let next: Result<Vec<Divided>, Cancelled> = parts.into_par_iter().map(divided).collect();
+        let (open, whole): (Vec<Vec<(Part, Program)>>, Vec<Option<[[u32; 3]; 2]>>) = next?.into_iter().unzip();
+        parts = open.into_iter().flatten().collect();
+        inside.extend(whole.into_iter().flatten());
     }
     let found: Result<Vec<SurfaceBlocks>, Cancelled> =
         parts.into_par_iter().map(|(part, program)| descend(part, program, (grid, margin), &meter)).collect();
     run.report(1.0);
     let found = found?;
-    let mut all = SurfaceBlocks::default();
+    let mut all = SurfaceBlocks { inside, ..SurfaceBlocks::default() };
     all.blocks.reserve_exact(found.iter().map(|found| found.blocks.len()).sum());
     found.into_iter().for_each(|found| all.append(found));
     Ok(all)
@@ -155,13 +162,16 @@ fn descend(
     (grid, margin): (&Grid, f64),
     meter: &Meter<'_>,
 ) -> Result<SurfaceBlocks, Cancelled> {
-    let (mut blocks, mut programs) = (Vec::new(), vec![program]);
+    let (mut blocks, mut programs, mut inside) = (Vec::new(), vec![program], Vec::new());
     // Each with the number of a program that holds in it.
     let mut pending = vec![(part, 0)];
     while let Some((part, number)) = pending.pop() {
         meter.check()?;
         let program = match part.narrowed(&programs[number as usize], grid, margin) {
-            Narrowed::Inside | Narrowed::Outside => {
+            narrowed @ (Narrowed::Inside | Narrowed::Outside) => {
+                if matches!(narrowed, Narrowed::Inside) {
+                    inside.push([part.from, part.to]);
+                }
                 meter.add(part.volume());
                 continue;
             }
@@ -179,5 +189,5 @@ fn descend(
             pending.extend([(above, program), (below, program)]);
         }
     }
-    Ok(SurfaceBlocks::of(blocks, programs))
+    Ok(SurfaceBlocks::of(blocks, programs, inside))
 }

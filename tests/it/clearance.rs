@@ -20,6 +20,7 @@ fn clearance(a: &Solid, b: &Solid) -> Clearance {
     let back = b.clearance(a, &Run::default()).unwrap().unwrap();
     assert!((back.distance - found.distance).abs() <= found.tolerance + back.tolerance);
     assert_eq!(back.overlaps, found.overlaps);
+    assert!((back.depth - found.depth).abs() <= 0.02 * found.depth + found.tolerance, "{back:?} {found:?}");
     found
 }
 
@@ -108,4 +109,41 @@ fn a_corner_that_is_dipped_into_a_face_overlaps() {
             }
         }
     }
+}
+
+#[test]
+fn depth_and_volume_of_an_overlap_are_told() {
+    let deep = |found: &Clearance, depth: f64, volume: f64| {
+        assert!(found.overlaps && (found.depth - depth).abs() <= 0.015 * depth + found.tolerance, "{found:?} {depth}");
+        assert!((found.volume - volume).abs() <= found.volume_error, "{found:?} {volume}");
+        assert!(found.volume_error <= 0.021 * volume, "{found:?} {volume}");
+    };
+    // Boxes that are pushed into each other by .1 over a face.
+    let block = Solid::cuboid([4.0, 4.0, 2.0]);
+    deep(&clearance(&block, &block.translate([0.0, 0.0, 1.9])), 0.1, 1.6);
+    // Two balls: the lens between them.
+    let (r, apart) = (2.0, 3.5);
+    let lens = std::f64::consts::PI * (2.0f64 * r - apart).powi(2) * (apart * apart + 4.0 * apart * r) / (12.0 * apart);
+    deep(&clearance(&Solid::sphere(r), &Solid::sphere(r).translate([apart, 0.0, 0.0])), 0.5, lens);
+    // One within the other.
+    let inner = 4.0 / 3.0 * std::f64::consts::PI;
+    deep(&clearance(&Solid::sphere(1.0), &Solid::sphere(10.0)), 9.0, inner);
+    // Long triangles: no corner nor middle of one is in the thin blade, nor the other way round.
+    let blade = Solid::cuboid([0.05, 30.0, 30.0]).rotate_y(deg(10.0)).translate([3.3, 1.0, 10.0]);
+    let slab = Solid::cuboid([100.0, 100.0, 1.0]).rotate_z(deg(17.0));
+    let found = clearance(&blade, &slab);
+    assert!(found.overlaps && found.volume > 0.0, "{found:?}");
+}
+
+#[test]
+fn parts_that_touch_along_faces_and_rounds_do_not_overlap() {
+    // A pin that fills its bore, a nut on its bolt without play, and gears that share a pitch point.
+    let bore = Solid::cuboid([12.0, 12.0, 8.0]) - Solid::cylinder(3.0, 10.0);
+    let found = clearance(&Solid::cylinder(3.0, 8.0), &bore);
+    assert!(!found.overlaps && found.distance <= found.tolerance && found.tolerance < 0.06, "{found:?}");
+    let ball = Solid::sphere(2.0);
+    let found = clearance(&ball, &Solid::cuboid([4.0, 4.0, 1.0]).translate([0.0, 0.0, -2.5]));
+    assert!(!found.overlaps && found.distance <= found.tolerance && found.tolerance < 0.06, "{found:?}");
+    let found = clearance(&ball, &ball.rotate_x(deg(20.0)).translate([4.0, 0.0, 0.0]));
+    assert!(!found.overlaps && found.distance <= found.tolerance && found.tolerance < 0.06, "{found:?}");
 }

@@ -71,3 +71,26 @@ fn vertices_join_and_places_do_not() {
     assert!(Mesh::default().components_with(&run).is_ok());
     assert!(Solid::sphere(1.0).mesh(&settings(0.5)).unwrap().components_with(&run).is_err());
 }
+
+#[test]
+fn components_are_kept_by_size() {
+    let cube = |size: f64, x: f64| Solid::cuboid([size; 3]).translate([x, 0.0, 0.0]);
+    let three = cube(1.0, 0.0).paint([200, 0, 0]) | cube(2.0, 5.0).paint([0, 0, 200]) | cube(0.4, 8.0);
+    let mesh = three.mesh(&MeshSettings { owners: true, ..settings(0.2) }).unwrap();
+    let large = mesh.keep_components(|part| part.volume() > 0.5);
+    assert!(large.components().len() == 2 && (large.volume() - 9.0).abs() < 0.01);
+    let report = large.check();
+    assert!(report.is_sound() && report.shells == 2, "{report}");
+    // They are as they were, with all that they carry, in their order.
+    let parts = mesh.components();
+    let mut kept: Vec<u32> =
+        parts.iter().filter(|part| part.volume() > 0.5).flat_map(|part| part.triangles().to_vec()).collect();
+    kept.sort_unstable();
+    let owners: Vec<u32> = kept.iter().map(|t| mesh.owners().unwrap()[*t as usize]).collect();
+    assert_eq!(large.owners(), Some(&owners[..]));
+    assert!(mesh.keep_components(|_| false).triangles().is_empty());
+    assert_eq!(mesh.keep_components(|_| true).triangles().len(), mesh.triangles().len());
+    let run = Run::default();
+    run.cancel.cancel();
+    assert!(mesh.keep_components_with(|_| true, &run).is_err());
+}

@@ -32,6 +32,7 @@ mod laws;
 mod length_ranges;
 mod lengths;
 mod maps;
+mod measure;
 mod mesh;
 mod models;
 mod narrow;

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use glam::{DVec3, Vec3};
 use rvachev::{
-    Cancelled, Mesh, MeshReport, Progress, Run,
+    Cancelled, Mesh, MeshReport, Progress, Run, Solid,
     volume::{Volume, VolumeError, VolumeSettings},
 };
 
@@ -148,4 +148,24 @@ fn errors_name_the_parameter() {
     let volume = Volume::new(&eight, [2; 3], DVec3::ZERO, DVec3::ONE).unwrap();
     let error = volume.mesh(&VolumeSettings { level: f32::NAN, ..VolumeSettings::default() }).unwrap_err();
     assert_eq!(error, VolumeError::Level);
+}
+
+#[test]
+fn voxels_are_a_solid_that_owns_them() {
+    let (size, centre) = ([30, 28, 26], DVec3::new(14.3, 13.9, 12.1));
+    let samples = sampled(size, |p| 10.0 - p.distance(centre));
+    let solid = |level| Solid::from_volume(samples.clone(), size, [1.0, 2.0, 3.0], [0.5; 3], level).unwrap();
+    let ball = solid(0.0);
+    assert!(ball == solid(0.0) && ball != solid(1.0));
+    let middle = 0.5 * centre + DVec3::new(1.0, 2.0, 3.0);
+    near(ball.value(middle).unwrap(), 5.0, 0.03);
+    near(ball.offset(1.0).value(middle + DVec3::X * 7.0).unwrap(), -1.0, 0.03);
+    near(solid(2.0).value(middle).unwrap(), 4.0, 0.03);
+    // What reaches the border of the array is closed there.
+    let all = Solid::from_volume(vec![1.0; 27], [3; 3], [0.0; 3], [1.0; 3], 0.0).unwrap();
+    assert!(all.contains([1.0; 3]).unwrap() && !all.contains([1.0, 1.0, 2.1]).unwrap());
+    let wrong = Solid::from_volume(vec![1.0; 26], [3; 3], [0.0; 3], [1.0; 3], 0.0).unwrap_err();
+    assert!(matches!(wrong, VolumeError::Samples { .. }));
+    let none = Solid::from_volume(vec![-1.0; 27], [3; 3], [0.0; 3], [1.0; 3], 0.0).unwrap();
+    assert!(none.bounds().unwrap_err().to_string().contains("triangles"));
 }

@@ -1,6 +1,4 @@
-//! The bar beside a picture of deviations, with numbers.
-
-use super::inspect::color;
+//! The bar beside a picture whose colours stand for numbers.
 
 /// Characters of 5 × 7 dots, a row in the five lowest bits.
 const GLYPHS: [(char, [u8; 7]); 14] = [
@@ -26,11 +24,11 @@ const WHITE: [u8; 4] = [255; 4];
 const WIDE: usize = 6;
 const HIGH: usize = 7;
 
-/// Draws the bar at the right of a picture that is `width` wide.
-pub(super) fn legend(pixels: &mut [[u8; 4]], width: usize, reach: f64) {
+/// Draws the bar at the right of a picture that is `width` wide: labels from its upper to its lower
+/// end, and colours by how high they are on it, from 0 to 1.
+pub(crate) fn legend(pixels: &mut [[u8; 4]], width: usize, labels: &[String; 5], color: impl Fn(f64) -> [u8; 3]) {
     let height = pixels.len() / width.max(1);
     let dot = (height / 240).max(1);
-    let labels: Vec<String> = [1.0, 0.5, 0.0, -0.5, -1.0].map(|t| label(t, reach)).to_vec();
     let longest = labels.iter().map(String::len).max().unwrap_or_default();
     let (bar, text) = (8 * dot, longest * WIDE * dot);
     let margin = 4 * dot;
@@ -42,8 +40,7 @@ pub(super) fn legend(pixels: &mut [[u8; 4]], width: usize, reach: f64) {
     let left = width - margin - text - margin - bar;
     let mut put = |x: usize, y: usize, color: [u8; 4]| pixels[y * width + x] = color;
     for y in top..bottom {
-        let t = 1.0 - 2.0 * (y - top) as f64 / (bottom - top - 1) as f64;
-        let [r, g, b] = color(t * reach, reach);
+        let [r, g, b] = color(1.0 - (y - top) as f64 / (bottom - top - 1) as f64);
         (left..left + bar).for_each(|x| put(x, y, [r, g, b, 255]));
     }
     for (i, label) in labels.iter().enumerate() {
@@ -61,17 +58,17 @@ pub(super) fn legend(pixels: &mut [[u8; 4]], width: usize, reach: f64) {
     }
 }
 
-/// A part of the reach, to three digits or so, with its sign.
-fn label(part: f64, reach: f64) -> String {
-    if part == 0.0 {
+/// A number to three digits or so of the largest one on the bar, with its sign if that is asked for.
+pub(crate) fn label(value: f64, largest: f64, is_signed: bool) -> String {
+    if value == 0.0 {
         return "0".to_string();
     }
-    let value = part * reach;
-    if !(1e-4..1e5).contains(&reach) {
-        return format!("{value:+.1e}");
+    let sign = if is_signed && value > 0.0 { "+" } else { "" };
+    if !(1e-4..1e5).contains(&largest) {
+        return format!("{sign}{value:.1e}");
     }
-    let decimals = (2.0 - reach.log10().floor()).clamp(0.0, 7.0) as usize;
-    let text = format!("{value:+.decimals$}");
+    let decimals = (2.0 - largest.log10().floor()).clamp(0.0, 7.0) as usize;
+    let text = format!("{sign}{value:.decimals$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_string() } else { text }
 }
 
@@ -81,9 +78,10 @@ mod tests {
 
     #[test]
     fn labels_are_short() {
-        let all = |reach| [1.0, 0.5, 0.0, -0.5].map(|t| label(t, reach));
-        assert_eq!(all(0.4), ["+0.4", "+0.2", "0", "-0.2"]);
-        assert_eq!(all(25.0), ["+25", "+12.5", "0", "-12.5"]);
-        assert_eq!(all(3e-6), ["+3.0e-6", "+1.5e-6", "0", "-1.5e-6"]);
+        let all = |reach: f64, is_signed| [1.0, 0.5, 0.0, -0.5].map(|t| label(t * reach, reach, is_signed));
+        assert_eq!(all(0.4, true), ["+0.4", "+0.2", "0", "-0.2"]);
+        assert_eq!(all(25.0, true), ["+25", "+12.5", "0", "-12.5"]);
+        assert_eq!(all(3e-6, true), ["+3.0e-6", "+1.5e-6", "0", "-1.5e-6"]);
+        assert_eq!(all(2.5, false), ["2.5", "1.25", "0", "-1.25"]);
     }
 }

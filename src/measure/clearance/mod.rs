@@ -1,0 +1,208 @@
+//! The clearance of two solids: how far apart their surfaces are, and where, or how much they
+//! overlap.
+//!
+//! Whether the [surfaces go into the other solid](overlap) is asked first. If they do not, their
+//! [nearest points](apart) are searched for; if they do, how deep they go, and the volume of what
+//! the solids have in common.
+
+mod apart;
+mod overlap;
+mod piece;
+
+use glam::DVec3;
+use rvachev_field::Patches;
+
+use self::apart::{Found, search};
+use self::overlap::{Entry, depth, entry};
+use super::integral::integral;
+use crate::distance::{compiled_with, surface_with};
+use crate::error::PrepareError;
+use crate::eval::{Program, Surface};
+use crate::query::nearest;
+use crate::{Run, Solid};
+
+/// Steps from one surface to the other and back that end the search.
+const STEPS: usize = 30;
+
+/// Pieces that are looked at before it is asked whether to go on.
+const AT_ONCE: usize = 256;
+
+/// How far the volume of an overlap may be off, as a part of it.
+const VOLUME: f64 = 0.02;
+
+/// How far two solids are apart, or how much they overlap: see [`Solid::clearance`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Clearance {
+    /// The least distance of the two surfaces in length units; 0 if the solids overlap.
+    pub distance: f64,
+    /// No two points of the surfaces are nearer than `distance` by more than this, in length units;
+    /// if `distance` is at most this the solids may touch. If the solids do not overlap, no point
+    /// of a surface is deeper in the other solid than this.
+    pub tolerance: f64,
+    /// The two points that are nearest, one of each surface; a common point of both solids, twice,
+    /// if they overlap.
+    pub points: [DVec3; 2],
+    /// Whether the solids overlap: whether the surface of one goes deeper into the other than the
+    /// surfaces are exact.
+    pub overlaps: bool,
+    /// How deep a point of the surface of one is below the surface of the other, at most, to a
+    /// hundredth and the `tolerance`, in length units; 0 if they do not overlap.
+    pub depth: f64,
+    /// The volume that both have in common, in cubic length units; 0 if they do not overlap.
+    pub volume: f64,
+    /// How far that may be off: a fiftieth of it, or more where it is thin all over.
+    pub volume_error: f64,
+}
+
+impl Solid {
+    /// How far this solid is from another one: the least distance of their surfaces, and where.
+    /// Nothing if one of them is empty.
+    ///
+    /// A solid in a cavity of another has its clearance from the wall; one that is within the
+    /// material of another overlaps it, and so do two whose surfaces cross. Solids that only touch
+    /// have a distance of 0, to within the tolerance, and do not overlap.
+    ///
+    /// ```
+    /// use rvachev::{Run, Solid};
+    ///
+    /// let plate = Solid::cuboid([30.0, 30.0, 5.0]) - Solid::cylinder(5.1, 10.0);
+    /// let peg = Solid::cylinder(5.0, 20.0);
+    /// let gap = peg.clearance(&plate, &Run::default())?.expect("neither is empty");
+    /// assert!((gap.distance - 0.1).abs() < 0.002 && !gap.overlaps);
+    /// let loose = peg.translate([0.2, 0.0, 0.0]).clearance(&plate, &Run::default())?.unwrap();
+    /// assert!(loose.overlaps && loose.distance == 0.0);
+    /// // The peg is a tenth too far to one side.
+    /// assert!((loose.depth - 0.1).abs() < 0.005 && loose.volume > 1.0);
+    /// # Ok::<(), rvachev::error::PrepareError>(())
+    /// ```
+    ///
+    /// # Details
+    /// The surfaces are those that [`closest_surface_point`](Solid::closest_surface_point) measures
+    /// from, found on first use and kept with the solids; the points that are nearest on these are
+    /// led to the surfaces themselves. The tolerance is a thousandth of the distance and how exact
+    /// the surfaces are: some 10⁻⁴ of the sizes of the solids, several times that where creases
+    /// meet. It is more where both surfaces are alike over large parts and close: then it says how
+    /// much.
+    ///
+    /// That solids do not overlap is certain to the tolerance: all of each surface, moved inwards
+    /// by how exact it is, is outside of the other solid, by ranges of the other's value.
+    ///
+    /// Each surface takes as long as a mesh, once. After that a clearance takes milliseconds where
+    /// one place is nearest, and some tenths of a second where a gap is even all over. The volume of
+    /// an overlap is found as by [`measure`](Solid::measure).
+    ///
+    /// # Errors
+    /// What is wrong with a solid, that it has no finite box, or that the work was cancelled.
+    pub fn clearance(&self, other: &Solid, run: &Run) -> Result<Option<Clearance>, PrepareError> {
+        let run = run.stage(0.0, 1.0);
+        let found = run.install(|| self.clearance_on(other, &run))?;
+        run.report(1.0);
+        Ok(found)
+    }
+
+    fn clearance_on(&self, other: &Solid, run: &Run) -> Result<Option<Clearance>, PrepareError> {
+        let [to_own, to_other, to_search] = run.stages([0.35, 0.35, 0.3]);
+        let (own_box, other_box) = (self.finite_bounds()?, other.finite_bounds()?);
+        if own_box.is_empty() || other_box.is_empty() {
+            return Ok(None);
+        }
+        let quiet = Run { progress: None, ..run.clone() };
+        let programs = [compiled_with(self, &quiet)?, compiled_with(other, &quiet)?];
+        let surfaces = [surface_with(self, &to_own)?, surface_with(other, &to_other)?];
+        let sides = [0, 1].map(|n| Side { program: &programs[n].surface, surface: &surfaces[n] });
+        if sides.iter().any(|side| side.surface.patches.is_empty()) {
+            return Ok(None);
+        }
+        // The one with fewer patches is divided.
+        let is_turned = sides[1].surface.patches.len() < sides[0].surface.patches.len();
+        let [from, to] = if is_turned { [&sides[1], &sides[0]] } else { [&sides[0], &sides[1]] };
+        let slack = sides.iter().map(Side::exactness).sum::<f64>();
+        let [to_enter, to_go_on] = to_search.stages([0.4, 0.6]);
+        let mut deepest = 0.0;
+        if own_box.intersects(&other_box) {
+            // Moved by that, and as far off.
+            deepest = 2.0 * slack;
+            for [from, to] in [[from, to], [to, from]] {
+                match entry(from, to, slack, &to_enter)? {
+                    Entry::At(point) => {
+                        let common = Clearance {
+                            distance: 0.0,
+                            tolerance: slack,
+                            points: [point; 2],
+                            overlaps: true,
+                            depth: 0.0,
+                            volume: 0.0,
+                            volume_error: 0.0,
+                        };
+                        return Ok(Some(self.overlap(other, common, [from, to], &to_go_on)?));
+                    }
+                    Entry::AtMost(at_most) => deepest = f64::max(deepest, at_most),
+                }
+            }
+        }
+        let Found { mut points, least } = search(from, to, slack, &to_go_on)?;
+        // On the patches first, then on the fields, each from where the other is.
+        let patches_apart = points[0].distance(points[1]);
+        for _ in 0..STEPS {
+            let Some(there) = nearest(to.program, &to.surface.patches, points[0]) else { break };
+            let Some(here) = nearest(from.program, &from.surface.patches, there) else { break };
+            let gain = points[0].distance(points[1]) - here.distance(there);
+            points = [here, there];
+            if gain.abs() < 1e-12 * patches_apart {
+                break;
+            }
+        }
+        let distance = points[0].distance(points[1]);
+        if is_turned {
+            points.reverse();
+        }
+        let tolerance = ((distance - least).max(0.0) + slack).max(deepest);
+        let [depth, volume, volume_error] = [0.0; 3];
+        Ok(Some(Clearance { distance, tolerance, points, overlaps: false, depth, volume, volume_error }))
+    }
+
+    /// With the depth and the volume of what both have in common.
+    fn overlap(
+        &self,
+        other: &Solid,
+        common: Clearance,
+        [from, to]: [&Side<'_>; 2],
+        run: &Run,
+    ) -> Result<Clearance, PrepareError> {
+        let slack = common.tolerance;
+        let deepest = f64::max(depth(from, to, slack, run)?, depth(to, from, slack, run)?);
+        let both = self & other;
+        let programs = compiled_with(&both, &Run { progress: None, ..run.clone() })?;
+        let found = integral(&programs.surface, &both.finite_bounds()?, VOLUME, run)?;
+        Ok(Clearance {
+            depth: deepest.max(slack),
+            volume: found.moments.volume,
+            volume_error: found.volume_error,
+            ..common
+        })
+    }
+}
+
+/// A solid, and what is measured from.
+struct Side<'a> {
+    program: &'a Program,
+    surface: &'a Surface,
+}
+
+impl Side<'_> {
+    /// How far the patches may be off.
+    fn exactness(&self) -> f64 {
+        self.surface.accuracy.tolerance.max(self.surface.accuracy.error)
+    }
+}
+
+fn distance(patches: &Patches, p: DVec3) -> f64 {
+    patches.nearest(p).map_or(f64::INFINITY, |foot| foot.distance)
+}
+
+/// The numbers below one, some at a time.
+fn chunks(count: usize) -> impl Iterator<Item = std::ops::Range<usize>> {
+    const SOME: usize = 16 * AT_ONCE;
+    (0..count.div_ceil(SOME)).map(move |n| n * SOME..count.min((n + 1) * SOME))
+}

@@ -1,0 +1,155 @@
+//! Whether one solid's surface goes into another solid, and how deep.
+//!
+//! ```text
+//!     -----.           .-----
+//!           \  piece  /         A piece of the surface, moved inwards by what does not count, is
+//!       -----\-------/------    outside of the other solid where a range of the other's value
+//!             '-----'  deep     over it says so. Pieces of which neither that is known, nor a
+//!        other                  point inside, are divided.
+//! ```
+
+use std::ops::{ControlFlow, Range};
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::piece::Piece;
+use super::{AT_ONCE, Side, distance};
+use crate::{Bounds, Cancelled, Run};
+
+/// How far inside a solid a point of it is looked for, in accuracies of the surfaces.
+const INSIDE: f64 = 4.0;
+
+/// After so many pieces the work ends, with what is known then.
+const MOST: usize = 1 << 17;
+
+/// So many points are asked for the depth at most.
+const DEPTHS: usize = 1 << 14;
+
+/// How near the depth is found, as a part of it.
+const RELATIVE: f64 = 0.01;
+
+/// So many patches that follow each other are looked at together at first.
+const SPAN: usize = 64;
+
+/// What is found of one surface and another solid.
+pub(super) enum Entry {
+    /// A point of both solids, just below the surface.
+    At(DVec3),
+    /// The surface is nowhere deeper in the other solid than this.
+    AtMost(f64),
+}
+
+/// Looks for a point of both solids just below the surface of `from`.
+pub(super) fn entry(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Entry, Cancelled> {
+    let (patches, others) = (&from.surface.patches, &to.surface.patches);
+    let bounds = others.bounds().inflate(slack);
+    let common = |p: DVec3| {
+        let normal = from.program.gradient(p).1.normalize_or_zero();
+        let inner = p + INSIDE * slack * normal;
+        let is_common = from.program.value(inner) > 0.0 && to.program.value(inner) > 0.0;
+        // Nearer to the other surface than that, they may as well touch.
+        is_common.then_some(inner).filter(|p| distance(others, *p) > slack)
+    };
+    // Beyond the other's box, below its surface, undecided.
+    let look = |piece: &Piece| {
+        let zone = piece.zone(patches, -slack * piece.normal());
+        let [x, y, z] = zone.hull();
+        let hull = Bounds::new(DVec3::new(x.lo(), y.lo(), z.lo()), DVec3::new(x.hi(), y.hi(), z.hi()));
+        if !hull.intersects(&bounds) || to.program.range_zone(&zone).hi() <= 0.0 {
+            return ControlFlow::Continue(None);
+        }
+        let middle = piece.points.iter().sum::<DVec3>() / 3.0;
+        match [middle].into_iter().chain(piece.points).find_map(common) {
+            Some(found) => ControlFlow::Break(found),
+            None => ControlFlow::Continue(Some(*piece)),
+        }
+    };
+    let mut left = 0.0;
+    let mut asked = patches.len();
+    let mut pieces: Vec<Piece> = (0..patches.len()).map(|n| Piece::whole(patches, n)).collect();
+    while !pieces.is_empty() {
+        let mut open = Vec::new();
+        for chunk in pieces.chunks(AT_ONCE) {
+            run.check()?;
+            let found: Vec<ControlFlow<DVec3, Option<Piece>>> = chunk.par_iter().map(look).collect();
+            for found in found {
+                match found {
+                    ControlFlow::Break(point) => return Ok(Entry::At(point)),
+                    ControlFlow::Continue(piece) => open.extend(piece),
+                }
+            }
+        }
+        asked += 4 * open.len();
+        // No corner is deeper than what counts.
+        let is_small = |piece: &Piece| piece.longest_side() <= slack || asked > MOST;
+        let reach = |piece: &Piece| (INSIDE + 1.0) * slack + piece.longest_side();
+        left = open.iter().filter(|piece| is_small(piece)).map(reach).fold(left, f64::max);
+        open.retain(|piece| !is_small(piece));
+        pieces = open.iter().flat_map(|piece| piece.divided(patches, |_| 0.0)).collect();
+    }
+    Ok(Entry::AtMost(left))
+}
+
+/// How deep the surface of `from` goes into the other solid at most; at least 0.
+pub(super) fn depth(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<f64, Cancelled> {
+    let (patches, others) = (&from.surface.patches, &to.surface.patches);
+    let bounds = others.bounds();
+    let below = |p: DVec3| {
+        let distance = distance(others, p);
+        if to.program.value(p) > 0.0 { distance } else { -distance }
+    };
+    let mut best = 0.0;
+    // Patches that follow each other are near each other: of many a point of the middle one tells.
+    let spans = (0..patches.len()).step_by(SPAN).map(|at| at..(at + SPAN).min(patches.len()));
+    let mut near: Vec<Range<usize>> = spans.collect();
+    let mut pieces: Vec<Piece> = Vec::new();
+    while !near.is_empty() {
+        let look = |span: &Range<usize>| {
+            let at = patches.point((span.start + span.end) / 2, [0.0; 2]);
+            let reach = span.clone().map(|n| Piece::whole(patches, n).reach_from(at)).fold(0.0, f64::max);
+            bounds.inflate(reach).contains(at).then(|| (below(at), reach))
+        };
+        let mut found = Vec::with_capacity(near.len());
+        for chunk in near.chunks(AT_ONCE) {
+            run.check()?;
+            found.par_extend(chunk.par_iter().map(look));
+        }
+        best = found.iter().flatten().fold(best, |best: f64, (number, _)| best.max(*number));
+        let enough = best + slack.max(RELATIVE * best);
+        let open = near.into_iter().zip(found).filter(|(_, found)| found.is_some_and(|(d, reach)| d + reach > enough));
+        let open: Vec<Range<usize>> = open.map(|(span, _)| span).collect();
+        near = Vec::new();
+        for span in open {
+            if span.len() == 1 {
+                pieces.push(Piece::whole(patches, span.start));
+            } else {
+                let middle = (span.start + span.end) / 2;
+                near.extend([span.start..middle, middle..span.end]);
+            }
+        }
+    }
+    run.check()?;
+    let mut pieces: Vec<Piece> = pieces.into_par_iter().map(|piece| piece.numbered(below)).collect();
+    let mut asked = pieces.len();
+    loop {
+        best = pieces.iter().flat_map(|piece| piece.numbers).fold(best, f64::max);
+        let enough = best + slack.max(RELATIVE * best);
+        // Depths change by as much as points are apart at most.
+        let may_be_deeper = |piece: &Piece| {
+            let corner = piece.numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            corner + piece.longest_side() / 3f64.sqrt() + piece.off(patches) > enough
+        };
+        pieces.retain(may_be_deeper);
+        asked += 4 * pieces.len();
+        if pieces.is_empty() || asked > DEPTHS {
+            return Ok(best);
+        }
+        let mut next = Vec::with_capacity(4 * pieces.len());
+        for chunk in pieces.chunks(16 * AT_ONCE) {
+            run.check()?;
+            next.par_extend(chunk.par_iter().flat_map_iter(|piece| piece.divided(patches, below)));
+        }
+        pieces = next;
+    }
+}

@@ -1,0 +1,82 @@
+//! Parts of the patches of a surface, divided into four at a time.
+
+use glam::{DMat3, DVec3};
+use rvachev_field::{Patches, Zone};
+
+/// A part of a patch: its corners in the patch's coordinates, where they are, and a number that is
+/// known of each.
+#[derive(Clone, Copy)]
+pub(super) struct Piece {
+    patch: u32,
+    corners: [[f64; 2]; 3],
+    pub(super) points: [DVec3; 3],
+    pub(super) numbers: [f64; 3],
+}
+
+/// The corners of a patch in its coordinates.
+const CORNERS: [[f64; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+
+impl Piece {
+    /// A whole patch, with 0 at its corners.
+    pub(super) fn whole(patches: &Patches, n: usize) -> Piece {
+        let points = CORNERS.map(|at| patches.point(n, at));
+        Piece { patch: n as u32, corners: CORNERS, points, numbers: [0.0; 3] }
+    }
+
+    /// With other numbers at its corners.
+    pub(super) fn numbered(self, number: impl Fn(DVec3) -> f64) -> Piece {
+        Piece { numbers: self.points.map(number), ..self }
+    }
+
+    /// Its four parts.
+    pub(super) fn divided(&self, patches: &Patches, number: impl Fn(DVec3) -> f64) -> [Piece; 4] {
+        let middles = self.middles(patches).map(|(at, point)| (at, point, number(point)));
+        let ends = [0, 1, 2].map(|k| (self.corners[k], self.points[k], self.numbers[k]));
+        let part = |of: [([f64; 2], DVec3, f64); 3]| Piece {
+            patch: self.patch,
+            corners: of.map(|at| at.0),
+            points: of.map(|at| at.1),
+            numbers: of.map(|at| at.2),
+        };
+        let corner = |k: usize| part([ends[k], middles[k], middles[(k + 2) % 3]]);
+        [corner(0), corner(1), corner(2), part(middles)]
+    }
+
+    fn middles(&self, patches: &Patches) -> [([f64; 2], DVec3); 3] {
+        [0, 1, 2].map(|k| {
+            let (a, b) = (self.corners[k], self.corners[(k + 1) % 3]);
+            let at = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+            (at, patches.point(self.patch as usize, at))
+        })
+    }
+
+    pub(super) fn longest_side(&self) -> f64 {
+        (0..3).map(|k| self.points[k].distance(self.points[(k + 1) % 3])).fold(0.0, f64::max)
+    }
+
+    /// No point of it is farther from this one.
+    pub(super) fn reach_from(&self, p: DVec3) -> f64 {
+        self.points[0].distance(p) + 2.0 * self.longest_side()
+    }
+
+    /// How far it is off its triangle at most: a patch is quadratic, so that it is four thirds of
+    /// how far it is in the middle of a side.
+    pub(super) fn off(&self, patches: &Patches) -> f64 {
+        let middles = self.middles(patches);
+        let off = |k: usize| middles[k].1.distance(0.5 * (self.points[k] + self.points[(k + 1) % 3]));
+        4.0 / 3.0 * (0..3).map(off).fold(0.0, f64::max)
+    }
+
+    /// The unit normal of its triangle, outwards; 0 of one without area.
+    pub(super) fn normal(&self) -> DVec3 {
+        let [a, b, c] = self.points;
+        (b - a).cross(c - a).normalize_or_zero()
+    }
+
+    /// A zone that holds it, moved by a vector.
+    pub(super) fn zone(&self, patches: &Patches, by: DVec3) -> Zone {
+        let [a, b, c] = self.points;
+        let axes = DMat3::from_cols(0.5 * (b - a), 0.5 * (c - a), DVec3::ZERO);
+        Zone::of_frame(0.5 * (b + c) + by, axes).inflated(self.off(patches))
+    }
+}

@@ -1,0 +1,191 @@
+//! The volume and the moments of a solid, within bounds that are certain.
+//!
+//! The solid's box is divided as for its mesh. Blocks inside count as they are. Of those that the
+//! surface may cross it is known how much they hold [at least and at most](super::bracket), to
+//! the fourth power of their size where the surface is smooth, to the third along creases. Those
+//! that leave most open are halved along all axes, with programs narrowed to the halves, until
+//! what is open of all is little enough.
+
+use glam::{DMat3, DVec3};
+use rayon::prelude::*;
+
+use super::bracket::{Held, held};
+use super::moments::Moments;
+use crate::eval::Narrowed;
+use crate::program::Program;
+use crate::space::{Block, Grid, surface_blocks};
+use crate::{Bounds, Cancelled, Run};
+
+/// Blocks along the longest side at first.
+const FIRST: f64 = 12.0;
+
+/// After so many cells the work ends, with what is certain then.
+const MOST: usize = 1 << 20;
+
+/// A solid's volume is not told more finely than this part of its box.
+const FINEST: f64 = 1e-6;
+
+/// Of what may be left open this much is left to cells that are not divided.
+const LEFT: f64 = 0.5;
+
+/// Sums are off by rounding, as a part of the volume: less than this.
+const ROUNDING: f64 = 1e-12;
+
+/// Moments of a solid, and how far they may be off.
+pub(super) struct Integral {
+    /// About the origin.
+    pub(super) moments: Moments,
+    /// The volume is off by at most this.
+    pub(super) volume_error: f64,
+    /// Each coordinate of the centroid is; infinite where it may be anywhere.
+    pub(super) centroid_error: f64,
+    /// Each entry of the inertia about the centroid is.
+    pub(super) inertia_error: f64,
+}
+
+/// A cell that the surface may cross.
+struct Cell {
+    bounds: Bounds,
+    program: Program,
+    held: Held,
+}
+
+/// What is known so far.
+struct Sums {
+    inside: Moments,
+    cells: Vec<Cell>,
+}
+
+impl Sums {
+    fn moments(&self) -> Moments {
+        let mut all = self.inside;
+        self.cells.iter().for_each(|cell| all.add(&cell.held.moments));
+        all
+    }
+
+    /// How far the volume may be off.
+    fn error(&self) -> f64 {
+        let [less, more] = self.cells.iter().fold([0.0; 2], |[less, more], Cell { held, .. }| {
+            [less + held.moments.volume - held.least, more + held.most - held.moments.volume]
+        });
+        f64::max(less, more)
+    }
+
+    fn integral(&self) -> Integral {
+        let moments = self.moments();
+        let centre = moments.centroid().unwrap_or(self.cells.first().map_or(DVec3::ZERO, |cell| cell.bounds.center()));
+        // What is open may be inside or outside, at the place of the cell that is farthest.
+        let [mut open, mut first, mut second] = [ROUNDING * moments.volume, 0.0, 0.0];
+        for Cell { bounds, held, .. } in &self.cells {
+            let reach = (bounds.center() - centre).abs() + bounds.half_extents();
+            open += held.open();
+            first += held.open() * reach.max_element();
+            second += held.open() * reach.length_squared();
+        }
+        let spread = moments.moved(-centre).inertia();
+        let size = spread.to_cols_array().into_iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        first += ROUNDING * (moments.volume * centre.abs().max_element() + (moments.volume * size).sqrt());
+        let least = moments.volume - open;
+        let centroid_error = if least > 0.0 { first / least } else { f64::INFINITY };
+        let shifted = 3.0 * (moments.volume + open) * centroid_error * centroid_error;
+        let rounding = ROUNDING * (size + moments.volume * centre.length_squared());
+        Integral {
+            moments,
+            volume_error: self.error() + ROUNDING * moments.volume,
+            centroid_error,
+            inertia_error: second + rounding + if shifted.is_nan() { f64::INFINITY } else { shifted },
+        }
+    }
+}
+
+/// The integral over what is inside a program, which is nowhere but in a box, to a part of the
+/// volume.
+pub(super) fn integral(program: &Program, bounds: &Bounds, tolerance: f64, run: &Run) -> Result<Integral, Cancelled> {
+    let [to_find, to_divide] = run.stages([0.1, 0.9]);
+    let side = bounds.longest_side() / FIRST;
+    let blocks = (bounds.size() / side).to_array().map(|count| (count.ceil() as u32).max(1));
+    let grid = Grid { origin: bounds.min, side, blocks };
+    let mut found = surface_blocks(program, &grid, 0.0, &to_find)?;
+    // Sums do not depend on the number of threads.
+    found.inside.sort_unstable();
+    let mut inside = Moments::default();
+    for [from, to] in &found.inside {
+        let part = grid.bounds(*from, *to);
+        inside.add(&Moments::cuboid(part.center(), part.size()));
+    }
+    let first = |block: &Block| {
+        run.check()?;
+        let bounds = grid.bounds(block.index, block.index.map(|at| at + 1));
+        let program = found.programs[block.program as usize].clone();
+        Ok(Cell { held: held(&program, &bounds), bounds, program })
+    };
+    let cells = found.blocks.par_iter().map(first).collect::<Result<Vec<Cell>, Cancelled>>()?;
+    let mut asked = cells.len();
+    let mut sums = Sums { inside, cells };
+    let smallest = FINEST * bounds.size().element_product();
+    let begun = sums.error();
+    loop {
+        let (error, enough) = (sums.error(), tolerance * sums.moments().volume.max(smallest));
+        to_divide.report((begun / error).ln() / (begun / enough).ln().max(1.0));
+        if error <= enough || asked >= MOST {
+            return Ok(sums.integral());
+        }
+        let chosen = chosen(&sums.cells, 2.0 * LEFT * enough, (MOST - asked).div_ceil(8));
+        asked += 8 * chosen.len();
+        sums.divide(chosen, &to_divide)?;
+    }
+}
+
+/// The cells that leave most open, until what the others leave is at most `left`; not more than so
+/// many.
+fn chosen(cells: &[Cell], left: f64, most: usize) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..cells.len()).collect();
+    order.sort_unstable_by(|a, b| cells[*a].held.open().total_cmp(&cells[*b].held.open()).then(a.cmp(b)));
+    let mut open = 0.0;
+    let kept = order.iter().take_while(|at| {
+        open += cells[**at].held.open();
+        open <= left
+    });
+    let kept = kept.count().max(cells.len().saturating_sub(most));
+    order.split_off(kept)
+}
+
+impl Sums {
+    /// Puts the eighths of some cells in their place.
+    fn divide(&mut self, mut chosen: Vec<usize>, run: &Run) -> Result<(), Cancelled> {
+        chosen.sort_unstable();
+        let eighths = |at: &usize| {
+            run.check()?;
+            let Cell { bounds, program, .. } = &self.cells[*at];
+            let parts = bounds.octants().into_iter().map(|part| {
+                let program = match program.narrowed(&part) {
+                    Narrowed::Inside => return Some(Err(Held::whole(&part))),
+                    Narrowed::Outside => return None,
+                    Narrowed::Same => program.clone(),
+                    Narrowed::Simpler(simpler) => simpler,
+                };
+                Some(Ok(Cell { held: held(&program, &part), bounds: part, program }))
+            });
+            Ok(parts.flatten().collect::<Vec<Result<Cell, Held>>>())
+        };
+        let found = chosen.par_iter().map(eighths).collect::<Result<Vec<_>, Cancelled>>()?;
+        let mut next = chosen.into_iter().peekable();
+        let mut at = 0;
+        self.cells.retain(|_| {
+            at += 1;
+            next.next_if_eq(&(at - 1)).is_none()
+        });
+        for part in found.into_iter().flatten() {
+            match part {
+                Ok(cell) => self.cells.push(cell),
+                Err(whole) => self.inside.add(&whole.moments),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The inertia about the centroid.
+pub(super) fn about_centroid(moments: &Moments) -> Option<DMat3> {
+    moments.centroid().map(|centroid| moments.moved(-centroid).inertia())
+}

@@ -1,0 +1,169 @@
+//! Volume, centroid, inertia and area of solids: against closed forms, meshes and inclusion and
+//! exclusion, within the bounds that are told.
+
+use glam::{DMat3, DVec3};
+use rvachev::catalogue::{Group, Part};
+use rvachev::{
+    CancelToken, CellSize, GeneralisedSuperquadric, MeasureReport, MeshSettings, MeshSolid, Progress, RFunction, Run,
+    Solid, catalogue, deg, rad,
+};
+
+fn most(matrix: DMat3) -> f64 {
+    matrix.to_cols_array().into_iter().fold(0.0, |most: f64, x| most.max(x.abs()))
+}
+
+/// The solid cut so that it has no closed form, but nothing is taken off.
+fn without_form(solid: &Solid) -> Solid {
+    let bounds = solid.bounds().unwrap();
+    let hull = Solid::cuboid(2.0 * bounds.size()).translate(bounds.center());
+    solid.intersection(hull, RFunction::MIN_MAX)
+}
+
+/// Whether two reports agree within their errors.
+fn assert_agree(name: &str, one: &MeasureReport, other: &MeasureReport) {
+    let off = (one.volume - other.volume).abs();
+    assert!(off <= one.volume_error + other.volume_error, "{name}: volume {off}\n{one:?}\n{other:?}");
+    let off = (one.centroid.unwrap() - other.centroid.unwrap()).abs().max_element();
+    assert!(off <= one.centroid_error + other.centroid_error, "{name}: centroid {off}\n{one:?}\n{other:?}");
+    let off = most(one.inertia.unwrap() - other.inertia.unwrap());
+    assert!(off <= one.inertia_error + other.inertia_error, "{name}: inertia {off}\n{one:?}\n{other:?}");
+    let off = (one.area - other.area).abs();
+    assert!(off <= one.area_error + other.area_error, "{name}: area {off}\n{one:?}\n{other:?}");
+}
+
+#[test]
+fn leaves_of_the_catalogue_agree_with_quadrature_and_meshes() {
+    let mut closed = 0;
+    for entry in catalogue().iter().filter(|entry| entry.group() == Group::Leaf) {
+        let name = entry.name();
+        let Part::Solid(leaf) = entry.example() else { continue };
+        if leaf.finite_bounds().is_err() {
+            assert!(leaf.measure(1e-2).unwrap_err().to_string().contains("unbounded"), "{name}");
+            continue;
+        }
+        let moved = leaf.rotate_z(deg(40.0)).rotate_x(deg(-25.0)).translate([3.0, -1.0, 2.0]);
+        // Ranges of a supershape's slopes are wide.
+        let tolerance = if name == "supershape" { 0.3 } else { 0.02 };
+        let report = moved.measure(tolerance).unwrap();
+        if report.volume_error < 1e-11 * report.volume {
+            closed += 1;
+            let by_field = without_form(&moved).measure(tolerance).unwrap();
+            assert!(by_field.volume_error <= tolerance * by_field.volume, "{name}: {by_field}");
+            assert_agree(name, &report, &by_field);
+        }
+        let mesh = moved.mesh(&MeshSettings { cell: CellSize::LongestSide(64), ..MeshSettings::default() }).unwrap();
+        let off = (mesh.volume() - report.volume).abs() / report.volume;
+        assert!(off < 5e-3 + report.volume_error / report.volume, "{name}: {off}");
+        assert!(
+            (mesh.area() - report.area).abs() < 5e-3 * report.area + report.area_error,
+            "{name}: {} {}",
+            mesh.area(),
+            report.area
+        );
+    }
+    assert!(closed >= 13, "{closed}");
+}
+
+#[test]
+fn closed_forms_are_those_of_the_papers_under_maps() {
+    let egg = Solid::superellipsoid([1.0, 2.0, 3.0], 0.3, 0.8);
+    let report = egg.measure(0.1).unwrap();
+    assert!((report.volume - 38.359362386288).abs() < 1e-11 && report.volume_error < 1e-10, "{report:?}");
+    let squares = DVec3::new(9.92458049, 39.69832197, 105.26458786);
+    let inertia = report.inertia.unwrap();
+    assert!((inertia.x_axis.x - squares.y - squares.z).abs() < 2e-8, "{inertia}");
+    assert!((inertia.z_axis.z - squares.x - squares.y).abs() < 2e-8, "{inertia}");
+    let ring = Solid::supertoroid([1.2, 0.8, 0.6], 1.5, 0.3, 0.7).measure(0.1).unwrap();
+    assert!((ring.volume - 23.439946622042).abs() < 1e-11, "{ring:?}");
+    assert!((ring.inertia.unwrap().x_axis.x - 26.88101108 - 2.68177993).abs() < 2e-8, "{ring:?}");
+    let generalised = Solid::from(GeneralisedSuperquadric::new([1.0; 3], [5.0, 3.0, 1.5])).measure(0.1).unwrap();
+    assert!((generalised.volume - 5.374220338472).abs() < 1e-11, "{generalised:?}");
+    // Sheared, stretched and moved.
+    let map = glam::DAffine3 {
+        matrix3: DMat3::from_cols(DVec3::new(1.0, 0.3, 0.0), DVec3::new(-0.2, 2.0, 0.1), DVec3::new(0.0, 0.5, 0.7)),
+        translation: DVec3::new(4.0, 5.0, -6.0),
+    };
+    let sheared = egg.affine(map);
+    let report = sheared.measure(2e-3).unwrap();
+    assert!((report.volume - map.matrix3.determinant().abs() * 38.359362386288).abs() < 1e-10);
+    assert!((report.centroid.unwrap() - map.translation).length() < 1e-10);
+    assert_agree("sheared", &report, &without_form(&sheared).measure(2e-3).unwrap());
+}
+
+#[test]
+fn unions_are_what_inclusion_and_exclusion_say() {
+    let box_ = Solid::cuboid([4.0, 3.0, 2.0]).rotate_z(deg(20.0));
+    let egg = Solid::superellipsoid([1.5, 1.2, 2.0], 0.6, 1.3).translate([1.2, 0.4, 0.5]);
+    let [both, common, rest] = [&box_ | &egg, &box_ & &egg, &box_ - &egg].map(|solid| solid.measure(1e-3).unwrap());
+    let [own, other] = [&box_, &egg].map(|solid| solid.measure(1e-3).unwrap());
+    let off = (both.volume + common.volume - own.volume - other.volume).abs();
+    assert!(off <= both.volume_error + common.volume_error + 1e-10, "{off} {both} {common}");
+    let off = (rest.volume + common.volume - own.volume).abs();
+    assert!(off <= rest.volume_error + common.volume_error + 1e-10, "{off} {rest} {common}");
+    let first = |report: &MeasureReport| report.volume * report.centroid.unwrap();
+    let off = (first(&both) + first(&common) - first(&own) - first(&other)).length();
+    let allowed = [both, common].map(|r| 2.0 * (r.volume * r.centroid_error + 3.0 * r.volume_error)).iter().sum();
+    assert!(off <= allowed, "{off} {allowed}");
+}
+
+#[test]
+fn what_is_deformed_folded_blended_measured_or_read_has_bounds_that_hold() {
+    let bar = Solid::cuboid([2.0, 1.5, 6.0]);
+    // A twist keeps volumes, and so do copies.
+    let twisted = bar.twist(rad(0.25)).measure(3e-2).unwrap();
+    assert!((twisted.volume - 18.0).abs() <= twisted.volume_error && twisted.volume_error <= 0.54, "{twisted:?}");
+    let ring = bar.translate([4.0, 0.0, 0.0]).repeat_polar(3).measure(5e-2).unwrap();
+    assert!((ring.volume - 3.0 * 18.0).abs() <= ring.volume_error && ring.volume_error <= 2.7, "{ring:?}");
+    assert!(ring.centroid.unwrap().abs().max_element() <= ring.centroid_error, "{ring:?}");
+    // The offset inwards of a box that is in two halves is measured.
+    let half = Solid::cuboid([2.0, 2.0, 2.0]);
+    let halves = half.translate([-1.0, 0.0, 0.0]) | half.translate([1.0, 0.0, 0.0]);
+    let inner = halves.offset(-0.25).measure(3e-2).unwrap();
+    assert!((inner.volume - 3.5 * 1.5 * 1.5).abs() <= inner.volume_error + 1e-3 * inner.area, "{inner:?}");
+    assert!(inner.volume_error <= 3e-2 * inner.volume, "{inner:?}");
+    // A mesh as a solid has the volume of the mesh.
+    let settings = MeshSettings { cell: CellSize::LongestSide(12), ..MeshSettings::default() };
+    let mesh = (Solid::cuboid([4.0, 3.0, 2.0]) - Solid::cylinder(0.9, 3.0)).mesh(&settings).unwrap();
+    let read = Solid::from_mesh(&mesh, MeshSolid::default()).measure(3e-2).unwrap();
+    let off = (read.volume - mesh.volume()).abs();
+    assert!(off <= read.volume_error + 1e-6 * read.volume, "{read:?} {}", mesh.volume());
+    assert!(read.volume_error <= 3e-2 * read.volume, "{read:?}");
+    assert!((read.area - mesh.area()).abs() < 1e-2 * read.area, "{read:?} {}", mesh.area());
+    let off = (read.centroid.unwrap() - mesh.centroid().unwrap()).abs().max_element();
+    assert!(off <= read.centroid_error + 1e-5, "{read:?} {off}");
+}
+
+#[test]
+fn empty_solids_solids_without_end_and_wrong_tolerances_are_told() {
+    let nothing = Solid::sphere(1.0) & Solid::sphere(1.0).translate([3.0, 0.0, 0.0]);
+    let report = nothing.measure(1e-3).unwrap();
+    assert_eq!((report.volume, report.area, report.centroid, report.inertia), (0.0, 0.0, None, None));
+    let error = Solid::half_space([0.0, 0.0, 1.0], 0.0).measure(1e-3).unwrap_err().to_string();
+    assert!(error.contains("unbounded"), "{error}");
+    for wrong in [0.0, -1.0, 2.0, f64::NAN] {
+        let error = Solid::sphere(1.0).measure(wrong).unwrap_err().to_string();
+        assert!(error.contains("tolerance") && error.contains("1e-9 to 1"), "{error}");
+    }
+    assert!(Solid::sphere(-1.0).measure(1e-3).unwrap_err().to_string().contains("radius"));
+    // Bodies far from the origin, and tiny ones.
+    let far = without_form(&Solid::cuboid([1.0, 2.0, 3.0]).translate([1e5, -2e5, 0.0])).measure(1e-3).unwrap();
+    assert!((far.volume - 6.0).abs() <= far.volume_error && far.volume_error < 6.1e-3, "{far:?}");
+    let tiny = without_form(&Solid::sphere(1e-5)).measure(1e-2).unwrap();
+    assert!((tiny.volume / (4.0 / 3.0 * std::f64::consts::PI * 1e-15) - 1.0).abs() < 1e-2, "{tiny:?}");
+}
+
+#[test]
+fn measuring_is_the_same_on_any_threads_and_can_be_cancelled() {
+    let part = Solid::cuboid([4.0, 3.0, 2.0]) - Solid::sphere(1.2).translate([0.5, 0.3, 0.8]);
+    let [one, two] = [1, 2].map(|threads| part.measure_with(3e-3, &Run { threads, ..Run::default() }).unwrap());
+    assert_eq!(one, two);
+    let cancel = CancelToken::new();
+    let token = cancel.clone();
+    let progress = Progress::new(move |fraction| {
+        if fraction > 0.15 {
+            token.cancel();
+        }
+    });
+    let run = Run { cancel, progress: Some(progress), ..Run::default() };
+    assert!(part.measure_with(1e-7, &run).unwrap_err().to_string().contains("cancelled"));
+}
