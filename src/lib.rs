@@ -180,7 +180,8 @@
 //! ```
 //!
 //! [Twelve idioms](idioms) show how things are commonly built: plates with holes, named parts,
-//! rings of parts, leaves of one's own. [Lengths](lengths) are explained with pictures.
+//! rings of parts, leaves of one's own. [Lengths](lengths) are explained with pictures, and how
+//! [points become solids](scans).
 //!
 //! # The catalogue
 //!
@@ -491,6 +492,7 @@ mod query;
 pub mod range_image;
 pub mod raster;
 mod render;
+pub mod scans;
 mod solid;
 mod space;
 pub mod subdivision;
