@@ -182,8 +182,8 @@
 //!
 //! [Twelve idioms](idioms) show how things are commonly built: plates with holes, named parts,
 //! rings of parts, leaves of one's own. Explained with pictures are [lengths](lengths),
-//! [what is made and what is measured](measuring) (volumes, thickness, clearance) and
-//! [whole parts](parts), from meshes and scans to code.
+//! [what is made and what is measured](measuring) (volumes, thickness, clearance), how
+//! [points become solids](scans), and [whole parts](parts), from meshes and scans to code.
 //!
 //! # The catalogue
 //!
@@ -497,6 +497,7 @@ mod query;
 pub mod range_image;
 pub mod raster;
 mod render;
+pub mod scans;
 mod solid;
 mod space;
 pub mod subdivision;

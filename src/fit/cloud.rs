@@ -16,6 +16,8 @@ pub(super) struct Scaled {
     pub(super) center: DVec3,
     /// The root mean square distance from the centre, in length units.
     pub(super) size: f64,
+    /// The points are those of the cloud, in their order.
+    pub(super) is_whole: bool,
 }
 
 impl Scaled {
@@ -51,7 +53,7 @@ impl Scaled {
         let points: Vec<DVec3> = order.iter().map(|i| (all[*i] - center) / size).collect();
         check_depth(&points)?;
         let normals = cloud.normals().map(|normals| order.iter().map(|i| normals[*i].as_dvec3()).collect());
-        Ok(Scaled { points, normals, center, size })
+        Ok(Scaled { is_whole: points.len() == cloud.len(), points, normals, center, size })
     }
 }
 

@@ -9,9 +9,11 @@
 /// | `Radial` | r(1 − 1/G) | Gross and Boult (1988) |
 /// | `SolinaBajcsy` | √(a₁a₂a₃)·(G² − 1) | Solina and Bajcsy (1990) |
 /// | `Gauge` | √(a₁a₂a₃)·(G − 1) | Fougerolle et al., equation 4 |
+/// | `Eq15` | the R_p union (p = 2) of the parts' √(a₁a₂a₃)·(1 − G) | Fougerolle et al., equation 15 |
 ///
-/// The sum of the squares of `Gauge` is the paper's equation 15 of a single shape; that of several
-/// is in [`ErrorOfFit`](super::ErrorOfFit).
+/// Of a single shape `Eq15` is `Gauge`. Of a solid of several parts it is what
+/// [`register`](super::register()) may minimise, and what [`ErrorOfFit`](super::ErrorOfFit) is the
+/// sum of the squares of.
 ///
 /// The radial residual is longer than the distance where rays graze the surface, which makes
 /// noise large there: of one-sided views of superellipsoids fewer come out right by it.
@@ -28,4 +30,6 @@ pub enum Cost {
     SolinaBajcsy,
     /// The gauge, times the root of the volume.
     Gauge,
+    /// The union of weighted gauges.
+    Eq15,
 }

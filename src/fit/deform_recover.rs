@@ -3,15 +3,15 @@
 use glam::DVec3;
 
 use super::check::check_depth;
-use super::deformable::{Deformable, PARAMETERS};
+use super::deformable::Deformable;
 use super::deformations::search;
 use super::error::FitError;
 use super::mixture::{Mixture, Polish};
 use super::random::Random;
-use super::recover::{Effort, Scene, fit};
+use super::recover::{Effort, Scene, fit, fit_by};
 use super::samples::Samples;
 use super::settings::FitSettings;
-use super::superquadric::{self, Superquadric};
+use super::superquadric::Superquadric;
 use crate::Run;
 
 /// What explains the points best, each parameter at its price.
@@ -36,7 +36,8 @@ pub(super) fn recover_deformed(
     let scene = Scene::of(points, normals, &mut random);
     check_depth(&scene.surface)?;
     let [first, second] = run.stages([1.0, 2.0]);
-    let quadric = fit(points, &scene, settings.cost, &first)?;
+    // What is deformed is no superellipsoid: there is no use in a long search for one.
+    let mut quadric = fit_by(points, &scene, settings.cost, false, &first)?;
     let found = search(&scene.surface, scene.local.rough, &quadric.mixture.model, settings.cost, &second)?;
     let mut effort = quadric.effort;
     effort.evaluations += found.evaluations;
@@ -45,10 +46,17 @@ pub(super) fn recover_deformed(
     let strewn = quadric.mixture.strewn.min(scene.strewn.max(1e-3)).min(0.9);
     let (noise, area) = (found.noise.max(1e-6), quadric.mixture.log_area());
     let mut mixture = Mixture { model: found.model, noise, strewn, volume: scene.volume, log_area: Some(area) };
-    effort.evaluations += mixture.polish(&samples, Polish { rounds: 3, steps: 3, area: 0.0, cost: settings.cost });
-    let price = |parameters: usize| 0.5 * parameters as f64 * (points.len() as f64).ln();
-    let straight = quadric.mixture.log_likelihood(&samples) - price(superquadric::PARAMETERS);
-    let deformed = mixture.log_likelihood(&samples) - price(PARAMETERS);
-    let best = if deformed > straight { Straight::Deformed(mixture) } else { Straight::Quadric(quadric.mixture) };
+    let how = |rounds| Polish { rounds, steps: 3, area: 0.0, all: points.len(), cost: settings.cost };
+    effort.evaluations += mixture.polish(&Samples::<f32>::new(points.iter().copied()), how(2));
+    effort.evaluations += mixture.polish(&samples, how(1));
+    let found = mixture.criterion_of(&samples);
+    let mut is_better = found > quadric.mixture.criterion_of(&samples);
+    if is_better && mixture.model.is_slight() {
+        quadric = fit(points, &scene, settings.cost, &second)?;
+        effort.evaluations += quadric.effort.evaluations;
+        effort.tried += quadric.effort.tried;
+        is_better = found > quadric.mixture.criterion_of(&samples);
+    }
+    let best = if is_better { Straight::Deformed(mixture) } else { Straight::Quadric(quadric.mixture) };
     Ok(DeformedRecovered { best, effort, one_sided: quadric.one_sided })
 }

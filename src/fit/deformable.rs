@@ -34,6 +34,9 @@ const TAPER: f64 = 0.9;
 const TURN: f64 = PI;
 const ARC: f64 = 2.8;
 
+/// The largest twist in radians over the cloud's size: what is flat would be twisted by any rate.
+const RATE: f64 = 16.0;
+
 /// How near the solid may come to the centre of curvature, in proportion.
 const NEAR: f64 = 0.98;
 
@@ -109,7 +112,7 @@ impl Model<PARAMETERS> for Deformable {
         base[5..].copy_from_slice(&step[10..]);
         let base = self.base.moved(&base);
         let taper = [0, 1].map(|i| (self.taper[i] + step[5 + i]).clamp(-TAPER, TAPER));
-        let most = TURN / base.semi_axes.z;
+        let most = (TURN / base.semi_axes.z).min(RATE);
         let twist = (self.twist + step[7]).clamp(-most, most);
         let bend = self.bend + DVec2::new(step[8], step[9]);
         Deformable { base, taper, twist, bend }.bent_validly()
@@ -124,7 +127,7 @@ impl Model<PARAMETERS> for Deformable {
             *limit = [(-TAPER - k).max(-0.4), (TAPER - k).min(0.4)];
         }
         let step = 0.5 / self.base.semi_axes.z;
-        let most = TURN / self.base.semi_axes.z;
+        let most = (TURN / self.base.semi_axes.z).min(RATE);
         limits[7] = [(-most - self.twist).max(-step), (most - self.twist).min(step)];
         limits[8..10].fill([-step, step]);
         limits
@@ -151,7 +154,18 @@ impl Model<PARAMETERS> for Deformable {
     }
 }
 
+/// Deformations that change less than this share of the size are slight.
+const SLIGHT: f64 = 0.15;
+
 impl Deformable {
+    /// Whether it is nearly a superellipsoid.
+    pub(super) fn is_slight(&self) -> bool {
+        let height = self.base.semi_axes.z;
+        let [x, y] = self.taper;
+        let all = [x, y, self.twist * height, self.bend.length() * height];
+        all.iter().all(|size| size.abs() < SLIGHT)
+    }
+
     /// The bend weakened to one that the solid keeps clear of the centre of.
     fn bent_validly(mut self) -> Deformable {
         let a = self.base.semi_axes;

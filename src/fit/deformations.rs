@@ -69,6 +69,9 @@ pub(super) fn search(
             if best.as_ref().is_none_or(|b| next.0 < b.0) {
                 best = Some(next);
             }
+            if next.0 < GOOD * rough {
+                break;
+            }
         }
     }
     let (noise, model) = best.ok_or(Cancelled)?;

@@ -2,7 +2,7 @@
 
 use super::cloud::Scaled;
 use super::deform_recover::{Straight, recover_deformed};
-use super::deformable::PARAMETERS;
+use super::deformable::{Deformable, PARAMETERS};
 use super::error::FitError;
 use super::finish::finish;
 use super::result::{Fit, SearchReport, Shape};
@@ -77,15 +77,19 @@ pub fn deformed_with(cloud: &PointCloud, settings: &FitSettings, run: &Run) -> R
     match found.best {
         Straight::Quadric(mixture) => finish_quadric(cloud, &scaled, &mixture, search, &run),
         Straight::Deformed(mixture) => {
-            let model = mixture.model;
-            let [e1, e2] = model.base.e;
-            let shape = Shape::Deformed(DeformedSuperellipsoid {
-                leaf: Superellipsoid::new(model.base.semi_axes * scaled.size, e1, e2),
-                taper: model.taper,
-                twist: model.twist / scaled.size,
-                bend: model.bend / scaled.size,
-            });
+            let shape = Shape::Deformed(leaf(&mixture.model, scaled.size));
             run.install(|| finish(cloud, &scaled, &mixture, shape, NAMES, search, &run))
         }
+    }
+}
+
+/// The deformed superellipsoid in the cloud's length units.
+pub(super) fn leaf(model: &Deformable, size: f64) -> DeformedSuperellipsoid {
+    let [e1, e2] = model.base.e;
+    DeformedSuperellipsoid {
+        leaf: Superellipsoid::new(model.base.semi_axes * size, e1, e2),
+        taper: model.taper,
+        twist: model.twist / size,
+        bend: model.bend / size,
     }
 }

@@ -54,20 +54,21 @@ fn purify(points: &[DVec3], kept: &mut Vec<usize>, cell: f64) {
     let some: Vec<DVec3> = kept.iter().map(|i| points[*i]).collect();
     // So large that the block about a point holds its neighbours most often.
     let grid = Grid::new(&some, extent(&some), 1.7 * cell);
-    let mut found = Vec::new();
+    let mut found = Vec::with_capacity(NEIGHBOURS);
     let mut near = Vec::with_capacity(some.len());
     let reach: Vec<f64> = some
         .iter()
         .map(|p| {
             grid.nearest(*p, NEIGHBOURS, &mut found);
-            near.push(found.iter().map(|f| f.1).collect::<Vec<u32>>());
-            found.last().map_or(0.0, |f| f.0.sqrt())
+            // There are more points than neighbours.
+            near.push(std::array::from_fn::<u32, NEIGHBOURS, _>(|i| found[i].1));
+            found[NEIGHBOURS - 1].0.sqrt()
         })
         .collect();
     let mut at = 0;
     let before = kept.clone();
     kept.retain(|_| {
-        let mut around: Vec<f64> = near[at].iter().map(|i| reach[*i as usize]).collect();
+        let mut around = near[at].map(|i| reach[i as usize]);
         let lonely = reach[at] >= LONELY * median(&mut around).max(f64::MIN_POSITIVE);
         at += 1;
         !lonely

@@ -13,10 +13,14 @@ use super::mixture::Mixture;
 use super::result::{Fit, SearchReport, Shape};
 use super::samples::Samples;
 use crate::geom::PointCloud;
-use crate::{Cancelled, Run};
+use crate::{Cancelled, Field, Run, SolidError};
+use rvachev_field::check::LARGEST_LENGTH;
 
 /// If a smaller share of the points is of the solid, it is not what they are of.
 const FEWEST: f64 = 0.05;
+
+/// Points that are of the surface with a smaller chance tell nothing of it.
+const NONE: f64 = 1e-4;
 
 /// Points that one thread weighs at a time.
 const CHUNK: usize = 4096;
@@ -32,13 +36,18 @@ pub(super) fn finish<M: Model<N>, const N: usize>(
     run: &Run,
 ) -> Result<Fit, FitError> {
     let Mixture { model, noise, .. } = mixture;
-    let log_area = mixture.log_area.unwrap_or_else(|| model.log_area().0);
-    let weighed = |points: &[DVec3]| -> Result<Vec<(f32, f64)>, Cancelled> {
-        run.check()?;
-        let samples = Samples::<f64>::new(points.iter().map(|p| (*p - scaled.center) / scaled.size));
+    let log_area = mixture.log_area();
+    let distances = |points: &mut dyn ExactSizeIterator<Item = DVec3>| {
+        let samples = Samples::<f64>::new(points);
         let mut off = vec![0.0; samples.padded()];
         residuals(model, &samples, Cost::Normal, &mut off);
-        Ok(off[..points.len()].iter().map(|d| (mixture.chance(log_area, *d) as f32, d * scaled.size)).collect())
+        off.truncate(samples.len());
+        off
+    };
+    let weighed = |points: &[DVec3]| -> Result<Vec<(f32, f64)>, Cancelled> {
+        run.check()?;
+        let off = distances(&mut points.iter().map(|p| (*p - scaled.center) / scaled.size));
+        Ok(off.into_iter().map(|d| (mixture.chance(log_area, d) as f32, d)).collect())
     };
     let chunks: Vec<_> = cloud.positions().par_chunks(CHUNK).map(weighed).collect::<Result<_, _>>()?;
     let weights: Vec<f32> = chunks.iter().flatten().map(|w| w.0).collect();
@@ -46,16 +55,21 @@ pub(super) fn finish<M: Model<N>, const N: usize>(
     if inliers < FEWEST {
         return Err(FitError::NoSurface { inliers });
     }
-    let deviation = Deviation::of(chunks.iter().flatten().filter(|w| w.0 > 0.5).map(|w| w.1));
-    let samples = Samples::<f64>::new(scaled.points.iter().copied());
-    let mut off = vec![0.0; samples.padded()];
-    residuals(model, &samples, Cost::Normal, &mut off);
-    let mut chances = vec![0.0; samples.padded()];
-    for (chance, d) in chances[..samples.len()].iter_mut().zip(&off) {
-        *chance = mixture.chance(log_area, *d);
-    }
-    let share = cloud.len() as f64 / samples.len() as f64;
+    run.check()?;
+    let deviation = Deviation::of(chunks.iter().flatten().filter(|w| w.0 > 0.5).map(|w| w.1 * scaled.size));
+    let off: Vec<f64> = if scaled.is_whole {
+        chunks.iter().flatten().map(|w| w.1).collect()
+    } else {
+        distances(&mut scaled.points.iter().copied())
+    };
+    let chances: Vec<f64> = off.iter().map(|d| mixture.chance(log_area, *d)).collect();
+    let on: Vec<usize> = (0..off.len()).filter(|i| chances[*i] > NONE).collect();
+    let samples = Samples::<f64>::new(on.iter().map(|i| scaled.points[*i]));
+    let mut chances: Vec<f64> = on.iter().map(|i| chances[*i]).collect();
+    chances.resize(samples.padded(), 0.0);
+    let share = cloud.len() as f64 / off.len() as f64;
     let covariance = Covariance::of(model, names, &samples, &chances, *noise, share, scaled.size);
+    let criterion = mixture.criterion(off.iter().copied());
     let (rotation, center) = model.pose();
     let fit = Fit {
         shape,
@@ -66,9 +80,18 @@ pub(super) fn finish<M: Model<N>, const N: usize>(
         noise: noise * scaled.size,
         deviation,
         covariance,
+        criterion,
         search,
     };
-    fit.solid().bounds()?;
+    match &fit.shape {
+        // Parameters in their ranges are all that it needs near the origin; its box is long to find.
+        Shape::Supershape(leaf) if fit.translation.abs().max_element() < 0.1 * LARGEST_LENGTH => {
+            leaf.check().map_err(|source| SolidError::Parameter { path: leaf.name().to_string(), source })?;
+        }
+        _ => {
+            fit.solid().bounds()?;
+        }
+    }
     run.report(1.0);
     Ok(fit)
 }

@@ -57,18 +57,6 @@ pub(super) enum Ties {
 }
 
 impl Ties {
-    /// How many parameters there are besides the pose, and with it.
-    pub(super) fn parameters(self) -> usize {
-        match self {
-            Ties::Round => 11,
-            Ties::Stretched | Ties::Split => 12,
-            Ties::Profiled => 13,
-            Ties::Free => 15,
-        }
-    }
-}
-
-impl Ties {
     /// n2 = n3.
     fn lobes(self) -> bool {
         matches!(self, Ties::Round | Ties::Stretched | Ties::Profiled)

@@ -12,10 +12,11 @@ use std::f64::consts::TAU;
 use glam::{DMat3, DVec3};
 
 use super::linear::{quantile, solved};
+use super::waves::{WAVES, column, sums};
 
 /// Terms without a repetition, and with one.
 const BASE: usize = 11;
-const ALL: usize = BASE + 6;
+const ALL: usize = BASE + WAVES;
 
 /// Repetitions that are tried.
 const FEWEST: u32 = 3;
@@ -27,6 +28,12 @@ const LONG: f64 = 1.04;
 /// Of repetitions that explain nearly as much as the best one, the largest is taken: its divisors
 /// do as well.
 const NEARLY: f64 = 0.02;
+
+/// Hollows are equally deep if they differ by less than this share of the range.
+const ALIKE: f64 = 0.35;
+
+/// Centres are apart that are so many radii from each other.
+const APART: f64 = 0.05;
 
 /// A surface about an axis.
 pub(super) struct Around {
@@ -57,6 +64,8 @@ pub(super) struct Repeat {
     pub(super) greatest: f64,
     /// The radii there, at the middle height.
     pub(super) radii: [f64; 2],
+    /// There are two hollows in it, equally deep: twice as many lobes that lean to either side.
+    pub(super) is_double: bool,
 }
 
 impl Around {
@@ -64,6 +73,11 @@ impl Around {
     pub(super) fn explained(&self) -> f64 {
         let firsts = [self.repeats.first(), self.stretched.first()];
         firsts.into_iter().flatten().map(|r| r.explained).fold(0.0, f64::max)
+    }
+
+    /// The frame turned about the axis so that x is the direction that the section is longest in.
+    pub(super) fn square_frame(&self) -> DMat3 {
+        self.frame * DMat3::from_rotation_z(self.first)
     }
 
     /// Of points about an axis through a centre.
@@ -89,6 +103,32 @@ impl Around {
         }
         Around { frame, center, repeats: repeats(&local, height), stretched, height, long, first }
     }
+}
+
+/// Where the circle about an axis is centred that points are nearest to, as high as a given centre;
+/// none if that is the given one, or nearly so.
+///
+/// Source: I. Kåsa, *A circle fitting procedure and its error analysis* (1976).
+pub(super) fn ring_center(points: &[DVec3], axis: DVec3, center: DVec3) -> Option<DVec3> {
+    let x = axis.any_orthonormal_vector();
+    let y = axis.cross(x);
+    let (mut matrix, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
+    let mut squares = 0.0;
+    for p in points {
+        let (u, v) = (x.dot(*p - center), y.dot(*p - center));
+        let (row, square) = ([u, v, 1.0], u * u + v * v);
+        squares += square;
+        for i in 0..3 {
+            right[i] += row[i] * square;
+            for j in 0..=i {
+                matrix[i][j] += row[i] * row[j];
+            }
+        }
+    }
+    let [a, b, _] = solved(&matrix, &right, &[true; 3])?;
+    let away = 0.5 * (a * x + b * y);
+    let radius = (squares / points.len() as f64).sqrt();
+    (away.length() > APART * radius && away.length() < radius).then(|| center + away)
 }
 
 fn repeats(local: &[DVec3], height: f64) -> Vec<Repeat> {
@@ -139,22 +179,20 @@ fn repeats(local: &[DVec3], height: f64) -> Vec<Repeat> {
         }
     };
     step(&mut powers);
+    let columns: [Vec<f64>; BASE] = std::array::from_fn(|j| column(base.iter().map(|row| row[j])));
+    let values = column(logs.iter().copied());
     let mut found = Vec::new();
     for count in FEWEST..=MOST {
         step(&mut powers);
         let (mut matrix, mut right) = (matrix, right);
-        for ((power, row), y) in powers.iter().zip(&base).zip(&logs) {
-            let second = times(*power, *power);
-            let third = times(second, *power);
-            let waves = [power[0], power[1], second[0], second[1], third[0], third[1]];
-            for i in 0..6 {
-                right[BASE + i] += waves[i] * y;
-                for j in 0..BASE {
-                    matrix[BASE + i][j] += waves[i] * row[j];
-                }
-                for j in 0..=i {
-                    matrix[BASE + i][BASE + j] += waves[i] * waves[j];
-                }
+        let sums = sums(&columns, &values, &[0, 1].map(|k| column(powers.iter().map(|power| power[k]))));
+        for i in 0..WAVES {
+            right[BASE + i] += sums.values[i];
+            for j in 0..BASE {
+                matrix[BASE + i][j] += sums.terms[i][j];
+            }
+            for j in 0..=i {
+                matrix[BASE + i][BASE + j] += sums.waves[i][j];
             }
         }
         let Some((left, x)) = rest(&matrix, &right, &free) else { continue };
@@ -175,23 +213,28 @@ fn repeats(local: &[DVec3], height: f64) -> Vec<Repeat> {
 fn repeat(count: u32, explained: f64, x: &[f64; ALL]) -> Repeat {
     const STEPS: u32 = 64;
     let mut ends = [(f64::INFINITY, 0.0), (f64::NEG_INFINITY, 0.0)];
-    for i in 0..STEPS {
+    let mut logs = [0.0; STEPS as usize];
+    for (i, log) in (0..STEPS).zip(&mut logs) {
         let angle = TAU / f64::from(count) * f64::from(i) / f64::from(STEPS);
-        let mut log = 0.0;
         for h in 0..3u8 {
             let (sin, cos) = (f64::from(h + 1) * f64::from(count) * angle).sin_cos();
             let at = BASE + 2 * usize::from(h);
-            log += x[at] * cos + x[at + 1] * sin;
+            *log += x[at] * cos + x[at + 1] * sin;
         }
-        if log < ends[0].0 {
-            ends[0] = (log, angle);
+        if *log < ends[0].0 {
+            ends[0] = (*log, angle);
         }
-        if log > ends[1].0 {
-            ends[1] = (log, angle);
+        if *log > ends[1].0 {
+            ends[1] = (*log, angle);
         }
     }
+    let (deep, high) = (ends[0].0, ends[1].0);
+    let is_hollow =
+        |i: usize| logs[i] <= logs[(i + logs.len() - 1) % logs.len()] && logs[i] < logs[(i + 1) % logs.len()];
+    let hollows: Vec<usize> = (0..logs.len()).filter(|i| is_hollow(*i)).collect();
+    let is_double = hollows.len() == 2 && hollows.iter().all(|i| logs[*i] < deep + ALIKE * (high - deep));
     let radii = ends.map(|(log, _)| (x[0] + log).clamp(-10.0, 10.0).exp());
-    Repeat { count, explained, least: ends[0].1, greatest: ends[1].1, radii }
+    Repeat { count, explained, least: ends[0].1, greatest: ends[1].1, radii, is_double }
 }
 
 #[cfg(test)]

@@ -15,16 +15,13 @@ use glam::DVec3;
 use super::check::check_extent;
 use super::deviations::Deviation;
 use super::error::FitError;
+use super::feet::{Foot, feet};
 use super::linear::{median, quantile, solved};
 use super::solve::NORMAL;
 use crate::distance::compiled;
-use crate::eval::{Owner, Program};
+use crate::eval::Owner;
 use crate::geom::PointCloud;
-use crate::mesh::{Slope, Slopes};
-use crate::{Cancelled, Run, Solid};
-
-/// Newton steps from a point to the surface.
-const STEPS: usize = 4;
+use crate::{Run, Solid};
 
 /// Fewer points of a leaf do not tell how it has moved.
 const FEWEST: usize = 12;
@@ -192,40 +189,6 @@ pub(super) fn color(d: f64, reach: f64) -> [u8; 3] {
     let t = if d == 0.0 { 0.0 } else { (d / reach).clamp(-1.0, 1.0) };
     let fade = (255.0 * (1.0 - t.abs())).round() as u8;
     if t > 0.0 { [255, fade, fade] } else { [fade, fade, 255] }
-}
-
-/// Where a point meets the surface.
-struct Foot {
-    point: DVec3,
-    normal: DVec3,
-    off: f64,
-}
-
-fn feet(program: &Program, points: &[DVec3], run: &Run) -> Result<Vec<Foot>, Cancelled> {
-    let slopes = Slopes { program, precision: 0.0 };
-    let mut feet = points.to_vec();
-    let mut first: Vec<Slope> = Vec::new();
-    let mut last: Vec<Slope> = Vec::new();
-    for step in 0..STEPS {
-        let from = step as f64 / (STEPS + 1) as f64;
-        let found = slopes.at(&feet, &run.stage(from, from + 1.0 / (STEPS + 1) as f64))?;
-        for (foot, slope) in feet.iter_mut().zip(&found) {
-            *foot += slope.newton();
-        }
-        run.report(from + 1.0 / (STEPS + 1) as f64);
-        if step == 0 {
-            first = found;
-        } else {
-            last = found;
-        }
-    }
-    let made = |i: usize| {
-        let away = feet[i].distance(points[i]);
-        // No −0 of a point on the surface.
-        let off = if first[i].value < 0.0 { away } else { 0.0 - away };
-        Foot { point: feet[i], normal: last[i].normal(), off }
-    };
-    Ok((0..points.len()).map(made).collect())
 }
 
 fn of_leaf(owner: Owner, numbers: &[usize], feet: &[Foot], points: &[DVec3]) -> LeafDeviation {

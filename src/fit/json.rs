@@ -68,7 +68,7 @@ fn leaf(leaf: &LeafDeviation) -> String {
 }
 
 /// The shortest text that is read back as the same number.
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     match value {
         // Of −0, too.
         0.0 => "0.0".to_string(),
@@ -77,8 +77,8 @@ fn number(value: f64) -> String {
     }
 }
 
-fn numbers(v: DVec3) -> String {
-    format!("[{}]", v.to_array().map(number).join(", "))
+pub(super) fn numbers<const N: usize>(values: impl Into<[f64; N]>) -> String {
+    format!("[{}]", values.into().map(number).join(", "))
 }
 
 fn quoted(text: &str) -> String {

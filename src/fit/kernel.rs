@@ -6,19 +6,20 @@
 //!     normal    d·c,  c = 1/(r|g|)         rotation f·(g × q),  translation −(q/r)(1 − 1/G) − f·g
 //! ```
 //!
-//! A shape gives `ln G`, its gradient, and its derivatives by the shape's parameters; all
-//! residuals follow from these. The sums run on SIMD lanes, in `f32` for the search and in `f64`
-//! for the last steps. The sign of residuals is that of lengths here: negative inside.
+//! A shape gives `ln G`, its gradient, and its derivatives by the shape's parameters; all residuals
+//! follow from these. The sums run on SIMD lanes, in `f32` for the search and in `f64` for the last
+//! steps; two vectors at a time, as one alone waits for itself. The sign of residuals is that of
+//! lengths here: negative inside.
 //!
 //! Sources: F. Solina, R. Bajcsy, *Recovery of parametric models from range images* (1990);
 //! A. Gross, T. Boult, *Error of fit measures for recovering parametric solids* (1988).
 
 use std::f64::consts::LN_2;
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::{Level, Simd, SimdBase, dispatch};
 use glam::{DMat3, DVec3};
 use rvachev_num::Real;
-use rvachev_num::lanes::{F32, F64, Lanes};
+use rvachev_num::lanes::{F32, F64, Lanes, Twice};
 
 use super::cost::Cost;
 use super::samples::Samples;
@@ -49,6 +50,12 @@ pub(super) trait Model<const N: usize>: Copy + Sync {
     /// For each parameter the first one of those that move together with it.
     fn groups(&self) -> [usize; N] {
         std::array::from_fn(|i| i)
+    }
+
+    /// How many parameters there are, with those of the pose; tied ones are counted once.
+    fn parameters(&self) -> usize {
+        let groups = self.groups();
+        (0..N).filter(|i| groups[*i] == *i).count()
     }
 
     /// A quadratic penalty's weights and the parameters' deviations, in units of the noise.
@@ -100,6 +107,8 @@ pub(super) trait Number: Copy + Default + PartialOrd + Send + Sync + 'static {
     const GRAIN: f64;
     fn of(x: f64) -> Self;
     fn to(self) -> f64;
+    /// The sums of neighbouring lanes: those of the first vector, then those of the second.
+    fn pair_sums<S: Simd>(first: Self::Vector<S>, second: Self::Vector<S>) -> Self::Vector<S>;
 }
 
 impl Number for f32 {
@@ -111,6 +120,10 @@ impl Number for f32 {
     fn to(self) -> f64 {
         f64::from(self)
     }
+    #[inline(always)]
+    fn pair_sums<S: Simd>(first: F32<S>, second: F32<S>) -> F32<S> {
+        F32(first.0.unzip_low(second.0) + first.0.unzip_high(second.0))
+    }
 }
 
 impl Number for f64 {
@@ -121,6 +134,10 @@ impl Number for f64 {
     }
     fn to(self) -> f64 {
         self
+    }
+    #[inline(always)]
+    fn pair_sums<S: Simd>(first: F64<S>, second: F64<S>) -> F64<S> {
+        F64(first.0.unzip_low(second.0) + first.0.unzip_high(second.0))
     }
 }
 
@@ -144,7 +161,7 @@ fn pass_on<S: Simd, E: Number, M: Model<N>, const N: usize>(
     cost: Cost,
     residuals: &mut [E],
 ) -> Sums<N> {
-    let width = <E::Vector<S> as Lanes>::WIDTH;
+    let width = <Twice<E::Vector<S>> as Lanes>::WIDTH;
     let zero = <E::Vector<S> as Lanes>::splat(simd, 0.0);
     let mut square = zero;
     let mut gradient = [zero; N];
@@ -152,30 +169,54 @@ fn pass_on<S: Simd, E: Number, M: Model<N>, const N: usize>(
     let [xs, ys, zs] = samples.columns();
     for start in (0..samples.padded()).step_by(width) {
         let at = start..start + width;
-        let load = |from: &[E]| <E::Vector<S> as Lanes>::load(simd, &from[at.clone()]);
+        let load = |from: &[E]| <Twice<E::Vector<S>> as Lanes>::load(simd, &from[at.clone()]);
         let (residual, rows) = terms::<_, M, N>(model, [load(xs), load(ys), load(zs)], cost);
         let weight = load(weights);
         residual.store(&mut residuals[at.clone()]);
-        let weighted = residual * weight;
-        square = weighted.mul_add(residual, square);
+        let Twice(r, s) = residual * weight;
+        square = r.mul_add(residual.0, s.mul_add(residual.1, square));
         for i in 0..N {
-            gradient[i] = weighted.mul_add(rows[i], gradient[i]);
-            let row = rows[i] * weight;
+            gradient[i] = r.mul_add(rows[i].0, s.mul_add(rows[i].1, gradient[i]));
+            let Twice(a, b) = rows[i] * weight;
             for j in 0..=i {
-                hessian[i][j] = row.mul_add(rows[j], hessian[i][j]);
+                hessian[i][j] = a.mul_add(rows[j].0, b.mul_add(rows[j].1, hessian[i][j]));
             }
         }
     }
-    let mut buffer = [E::default(); 64];
-    let mut sum = |v: E::Vector<S>| -> f64 {
-        v.store(&mut buffer[..width]);
-        buffer[..width].iter().map(|x| x.to()).sum()
-    };
-    let mut sums = Sums { square: sum(square), gradient: [0.0; N], hessian: [[0.0; N]; N] };
+    let mut sums = Sums { square: 0.0, gradient: [0.0; N], hessian: [[0.0; N]; N] };
+    let [first] = lane_sums::<S, E, 1>(simd, &[square]);
+    sums.square = first;
+    sums.gradient = lane_sums::<S, E, N>(simd, &gradient);
     for i in 0..N {
-        sums.gradient[i] = sum(gradient[i]);
-        for j in 0..=i {
-            sums.hessian[i][j] = sum(hessian[i][j]);
+        let row = lane_sums::<S, E, N>(simd, &hessian[i]);
+        sums.hessian[i][..=i].copy_from_slice(&row[..=i]);
+    }
+    sums
+}
+
+/// The sum over the lanes of each vector.
+#[inline(always)]
+fn lane_sums<S: Simd, E: Number, const N: usize>(simd: S, vectors: &[E::Vector<S>; N]) -> [f64; N] {
+    // No vector is wider, and no model has more rows.
+    const MOST: usize = 16;
+    let width = <E::Vector<S> as Lanes>::WIDTH;
+    let zero = <E::Vector<S> as Lanes>::splat(simd, 0.0);
+    let mut sums = [0.0; N];
+    let mut buffer = [E::default(); MOST];
+    for start in (0..N).step_by(width) {
+        let mut block = [zero; MOST];
+        let count = width.min(N - start);
+        block[..count].copy_from_slice(&vectors[start..start + count]);
+        let mut left = width;
+        while left > 1 {
+            left /= 2;
+            for i in 0..left {
+                block[i] = E::pair_sums::<S>(block[2 * i], block[2 * i + 1]);
+            }
+        }
+        block[0].store(&mut buffer[..width]);
+        for (sum, lane) in sums[start..start + count].iter_mut().zip(&buffer) {
+            *sum = lane.to();
         }
     }
     sums
@@ -199,11 +240,11 @@ fn residuals_on<S: Simd, E: Number, M: Model<N>, const N: usize>(
     cost: Cost,
     residuals: &mut [E],
 ) {
-    let width = <E::Vector<S> as Lanes>::WIDTH;
+    let width = <Twice<E::Vector<S>> as Lanes>::WIDTH;
     let [xs, ys, zs] = samples.columns();
     for start in (0..samples.padded()).step_by(width) {
         let at = start..start + width;
-        let load = |from: &[E]| <E::Vector<S> as Lanes>::load(simd, &from[at.clone()]);
+        let load = |from: &[E]| <Twice<E::Vector<S>> as Lanes>::load(simd, &from[at.clone()]);
         // What the derivatives take is not computed where nothing reads them.
         let (residual, _) = terms::<_, M, N>(model, [load(xs), load(ys), load(zs)], cost);
         residual.store(&mut residuals[at.clone()]);
@@ -232,7 +273,7 @@ pub(super) fn terms<R: Real, M: Model<N>, const N: usize>(model: &M, p: [R; 3], 
             }
             (scale * off, scale * inverse, scale * off / radius.square())
         }
-        Cost::SolinaBajcsy | Cost::Gauge => {
+        Cost::SolinaBajcsy | Cost::Gauge | Cost::Eq15 => {
             let (rows_of_sizes, half_log) = model.sizes();
             let root = half_log.exp();
             let gauge = log2.exp2();

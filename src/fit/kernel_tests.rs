@@ -80,3 +80,41 @@ fn derivatives_of_deformed_superellipsoids() {
     check(&model(DVec2::ZERO, 0.0), &costs, &[]);
     check(&model(DVec2::new(-0.15, 0.25), -0.2), &costs, &[]);
 }
+
+/// How many points a second a pass with all derivatives takes.
+#[test]
+#[ignore = "prints speeds: for optimised builds"]
+fn points_a_second() {
+    fn speed<E: super::kernel::Number, M: Model<N>, const N: usize>(model: &M) -> f64 {
+        let points = (0..300).map(|i| {
+            let t = f64::from(i);
+            DVec3::new((0.37 * t).sin(), (0.61 * t).cos(), 1.5 * (0.23 * t).sin())
+        });
+        let samples = Samples::<E>::new(points);
+        let weights = vec![E::of(1.0); samples.padded()];
+        let mut out = vec![E::default(); samples.padded()];
+        let mut best = f64::INFINITY;
+        for _ in 0..20 {
+            let start = cpu_time::ThreadTime::now();
+            for _ in 0..100 {
+                std::hint::black_box(pass::<E, M, N>(model, &samples, &weights, Cost::Normal, &mut out).square);
+            }
+            best = best.min(start.elapsed().as_secs_f64());
+        }
+        100.0 * samples.len() as f64 / best / 1e6
+    }
+    let shape = Supershaped {
+        equator: Curve { m: 5, n: [3.0, 4.0, 2.5] },
+        meridian: Curve { m: 4, n: [5.0, 3.0, 4.0] },
+        semi_axes: DVec3::new(1.2, 0.8, 2.0),
+        rotation: base().rotation,
+        center: base().center,
+        ties: Ties::Free,
+        rational: false,
+    };
+    let bent = Deformable { base: base(), taper: [0.3, -0.4], twist: 0.3, bend: DVec2::new(0.2, -0.1) };
+    println!("million points a second           f32      f64");
+    println!("superellipsoid               {:8.1} {:8.1}", speed::<f32, _, 11>(&base()), speed::<f64, _, 11>(&base()));
+    println!("supershape                   {:8.1} {:8.1}", speed::<f32, _, 15>(&shape), speed::<f64, _, 15>(&shape));
+    println!("deformed                     {:8.1} {:8.1}", speed::<f32, _, 16>(&bent), speed::<f64, _, 16>(&bent));
+}

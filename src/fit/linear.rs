@@ -3,41 +3,48 @@
 use glam::{DMat3, DVec3};
 
 /// The Cholesky factor of a symmetric positive definite matrix of which the lower triangle is
-/// given; only the rows and columns that are `free` count. `None` if it is not positive definite.
-fn factor<const N: usize>(matrix: &[[f64; N]; N], free: &[bool; N]) -> Option<[[f64; N]; N]> {
-    let mut low = [[0.0; N]; N];
+/// given, and the inverses of its diagonal; only the rows and columns that are `free` count. `None`
+/// if it is not positive definite.
+fn factor<const N: usize>(matrix: &[[f64; N]; N], free: &[bool; N]) -> Option<([[f64; N]; N], [f64; N])> {
+    let (mut low, mut inverse) = ([[0.0; N]; N], [1.0; N]);
     for i in 0..N {
+        if !free[i] {
+            continue;
+        }
+        let mut row = [0.0; N];
         for j in 0..=i {
-            if !(free[i] && free[j]) {
-                low[i][j] = if i == j { 1.0 } else { 0.0 };
-                continue;
+            let mut rest = if free[j] { matrix[i][j] } else { 0.0 };
+            let other = if j < i { &low[j] } else { &row };
+            for k in 0..j {
+                rest -= row[k] * other[k];
             }
-            let dot: f64 = (0..j).map(|k| low[i][k] * low[j][k]).sum();
-            let rest = matrix[i][j] - dot;
-            if i == j {
-                if !(rest > 0.0 && rest.is_finite()) {
-                    return None;
-                }
-                low[i][i] = rest.sqrt();
+            if j < i {
+                row[j] = rest * inverse[j];
+            } else if rest > 0.0 && rest.is_finite() {
+                row[i] = rest.sqrt();
+                inverse[i] = 1.0 / row[i];
             } else {
-                low[i][j] = rest / low[j][j];
+                return None;
             }
         }
+        low[i] = row;
     }
-    Some(low)
+    Some((low, inverse))
 }
 
 /// The solution of `matrix · x = right`, 0 where it is not free.
 pub(super) fn solved<const N: usize>(matrix: &[[f64; N]; N], right: &[f64; N], free: &[bool; N]) -> Option<[f64; N]> {
-    let low = factor(matrix, free)?;
+    let (low, inverse) = factor(matrix, free)?;
     let mut x = [0.0; N];
     for i in 0..N {
         let dot: f64 = (0..i).map(|k| low[i][k] * x[k]).sum();
-        x[i] = if free[i] { (right[i] - dot) / low[i][i] } else { 0.0 };
+        x[i] = if free[i] { (right[i] - dot) * inverse[i] } else { 0.0 };
     }
     for i in (0..N).rev() {
-        let dot: f64 = (i + 1..N).map(|k| low[k][i] * x[k]).sum();
-        x[i] = if free[i] { (x[i] - dot) / low[i][i] } else { 0.0 };
+        x[i] *= inverse[i];
+        for k in 0..i {
+            x[k] -= low[i][k] * x[i];
+        }
     }
     x.iter().all(|v| v.is_finite()).then_some(x)
 }
@@ -81,8 +88,8 @@ pub(super) fn eigen(mut m: [[f64; 3]; 3]) -> ([f64; 3], DMat3) {
                 continue;
             }
             let theta = (m[q][q] - m[p][p]) / (2.0 * m[p][q]);
-            let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
-            let c = 1.0 / t.hypot(1.0);
+            let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
+            let c = 1.0 / (t * t + 1.0).sqrt();
             let s = t * c;
             for k in 0..3 {
                 (m[k][p], m[k][q]) = (c * m[k][p] - s * m[k][q], s * m[k][p] + c * m[k][q]);

@@ -17,6 +17,10 @@ use super::kernel::{Model, Number};
 use super::samples::Samples;
 use super::solve::{Fitted, Problem};
 
+/// Models that are off by less than this, of a cloud of size 1, are told apart by the number of
+/// their parameters only.
+const NOTHING: f64 = 1e-5;
+
 /// A model among strewn points.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mixture<M> {
@@ -38,6 +42,8 @@ pub(super) struct Polish {
     pub(super) steps: usize,
     /// Weight of the area's logarithm a point.
     pub(super) area: f64,
+    /// How many points there are with those that are left out as they are far from the surface.
+    pub(super) all: usize,
     pub(super) cost: Cost,
 }
 
@@ -52,6 +58,11 @@ impl<M: Copy> Mixture<M> {
     fn on(&self, log_area: f64, distance: f64) -> f64 {
         let normal = (-0.5 * (distance / self.noise).powi(2) - log_area).exp() / (TAU.sqrt() * self.noise);
         (1.0 - self.strewn) * normal
+    }
+
+    /// The same mixture with as much noise as nobody asks for.
+    fn tolerant(&self) -> Mixture<M> {
+        Mixture { noise: self.noise.max(NOTHING), ..*self }
     }
 
     /// Expectation and maximisation by turns; the evaluations that they took.
@@ -70,7 +81,7 @@ impl<M: Copy> Mixture<M> {
             self.model = fitted.model;
             let square: f64 = chances[..len].iter().zip(&fitted.residuals).map(|(p, d)| p.to() * d.to().powi(2)).sum();
             self.noise = (square / sum.max(1.0)).sqrt().max(E::GRAIN);
-            self.strewn = (1.0 - sum / len as f64).clamp(1e-6, 0.999);
+            self.strewn = (1.0 - sum / how.all as f64).clamp(1e-6, 0.999);
         }
         fitted.evaluations
     }
@@ -83,15 +94,24 @@ impl<M: Copy> Mixture<M> {
         self.log_area.unwrap_or_else(|| self.model.log_area().0)
     }
 
-    /// The logarithm of the likelihood of points.
-    pub(super) fn log_likelihood<const N: usize>(&self, samples: &Samples<f64>) -> f64
+    /// Schwarz's criterion of points by their residuals: the logarithm of their likelihood, less
+    /// the price of the parameters. The larger the better.
+    pub(super) fn criterion<const N: usize>(&self, residuals: impl ExactSizeIterator<Item = f64>) -> f64
+    where
+        M: Model<N>,
+    {
+        let (log_area, tolerant) = (self.log_area(), self.tolerant());
+        let price = 0.5 * self.model.parameters() as f64 * (residuals.len() as f64).ln();
+        residuals.map(|d| (tolerant.on(log_area, d) + self.strewn / self.volume).ln()).sum::<f64>() - price
+    }
+
+    /// That of the points themselves.
+    pub(super) fn criterion_of<E: Number, const N: usize>(&self, samples: &Samples<E>) -> f64
     where
         M: Model<N>,
     {
         let fitted = Fitted::new(self.model, samples, Cost::Normal);
-        let log_area = self.log_area();
-        let of = |d: &f64| (self.on(log_area, *d) + self.strewn / self.volume).ln();
-        fitted.residuals[..samples.len()].iter().map(of).sum()
+        self.criterion(fitted.residuals[..samples.len()].iter().map(|d| d.to()))
     }
 
     /// Chances by the residuals; their sum.

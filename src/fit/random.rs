@@ -1,5 +1,13 @@
 //! Random numbers that depend on the seed alone.
 
+use std::collections::HashMap;
+use std::f64::consts::TAU;
+
+use glam::DQuat;
+
+/// Choices of a smaller share than one of these keep no list of all.
+const FEW: usize = 16;
+
 /// splitmix64. Source: G. Steele, D. Lea, C. Flood, *Fast splittable pseudorandom number
 /// generators* (2014).
 pub(super) struct Random(u64);
@@ -25,8 +33,20 @@ impl Random {
         (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
+    /// A rotation, uniform over all.
+    ///
+    /// Source: K. Shoemake, *Uniform random rotations* (1992).
+    pub(super) fn rotation(&mut self) -> DQuat {
+        let (share, first, second) = (self.unit(), TAU * self.unit(), TAU * self.unit());
+        let (a, b) = ((1.0 - share).sqrt(), share.sqrt());
+        DQuat::from_xyzw(a * first.sin(), a * first.cos(), b * second.sin(), b * second.cos()).normalize()
+    }
+
     /// `count` of the numbers below `of`, in random order; all if there are not more.
     pub(super) fn chosen(&mut self, of: usize, count: usize) -> Vec<usize> {
+        if count < of / FEW {
+            return self.few_chosen(of, count);
+        }
         let mut all: Vec<usize> = (0..of).collect();
         let count = count.min(of);
         for i in 0..count {
@@ -35,5 +55,32 @@ impl Random {
         }
         all.truncate(count);
         all
+    }
+
+    /// The same choice without a list of all: what was swapped is kept.
+    fn few_chosen(&mut self, of: usize, count: usize) -> Vec<usize> {
+        let mut swapped = HashMap::with_capacity(2 * count);
+        (0..count)
+            .map(|i| {
+                let j = i + self.below(of - i);
+                let first = swapped.get(&i).copied().unwrap_or(i);
+                let chosen = swapped.get(&j).copied().unwrap_or(j);
+                swapped.insert(j, first);
+                chosen
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_are_chosen_as_of_a_list_of_all() {
+        for (of, count) in [(1, 1), (5, 5), (100, 40), (1000, 1000)] {
+            let listed = Random::new(9).chosen(of, count);
+            assert_eq!(Random::new(9).few_chosen(of, count), listed);
+        }
     }
 }

@@ -7,6 +7,7 @@ use super::cost::Cost;
 use super::density::{Dense, dense};
 use super::error::FitError;
 use super::grid::{extent, volume};
+use super::kernel::residuals;
 use super::local::{Local, local};
 use super::mixture::{Mixture, Polish};
 use super::plane::table;
@@ -18,6 +19,14 @@ use crate::{Cancelled, Run};
 
 /// Points of the first of the last steps, of a surface that is seen all around, and of one side.
 const SOME: [usize; 2] = [300, 400];
+
+/// Points further from the surface than so many standard deviations, and than this length, are not
+/// of it, unless fewer are left than these.
+const REACH: [f64; 2] = [12.0, 0.03];
+const FEWEST: usize = 24;
+
+/// They are looked for if more than this share is strewn.
+const FEW: f64 = 0.05;
 
 /// How a fit came about.
 #[derive(Clone, Copy, Debug, Default)]
@@ -96,8 +105,19 @@ pub(super) fn recover(
 
 /// A superellipsoid of a scene, whatever it stands on.
 pub(super) fn fit(points: &[DVec3], scene: &Scene, cost: Cost, run: &Run) -> Result<Recovered, Cancelled> {
+    fit_by(points, scene, cost, true, run)
+}
+
+/// The same, or without a search among extreme exponents.
+pub(super) fn fit_by(
+    points: &[DVec3],
+    scene: &Scene,
+    cost: Cost,
+    thorough: bool,
+    run: &Run,
+) -> Result<Recovered, Cancelled> {
     let mut search = Search::new(&scene.surface, &scene.local, cost, run);
-    let best = search.search()?;
+    let best = search.search(thorough)?;
     let mut effort = Effort { evaluations: search.evaluations, tried: search.tried };
     let mut mixture = Mixture {
         model: best.model,
@@ -107,13 +127,30 @@ pub(super) fn fit(points: &[DVec3], scene: &Scene, cost: Cost, run: &Run) -> Res
         log_area: None,
     };
     let one_sided = scene.local.view.is_some();
-    let stage = |rounds, steps| Polish { rounds, steps, area: if one_sided { 0.8 } else { 0.4 }, cost };
+    let area = if one_sided { 0.8 } else { 0.4 };
+    let stage = |rounds, steps, all| Polish { rounds, steps, area, all, cost };
     let mut random = Random::new(points.len() as u64);
     let some = random.chosen(points.len(), SOME[usize::from(one_sided)]);
-    let samples = Samples::<f64>::new(some.into_iter().map(|i| points[i]));
-    effort.evaluations += mixture.polish(&samples, stage(2, if one_sided { 4 } else { 2 }));
-    let samples = Samples::<f64>::new(points.iter().copied());
+    let samples = Samples::<f32>::new(some.into_iter().map(|i| points[i]));
+    effort.evaluations += mixture.polish(&samples, stage(2, if one_sided { 4 } else { 2 }, samples.len()));
+    // Where hardly any are strewn there is nothing to be left out.
+    let samples = if mixture.strewn > FEW {
+        effort.evaluations += points.len();
+        Samples::<f64>::new(near(points, &mixture).into_iter().map(|i| points[i]))
+    } else {
+        Samples::<f64>::new(points.iter().copied())
+    };
     let (rounds, steps) = if one_sided { (3, 2) } else { (2, 1) };
-    effort.evaluations += mixture.polish(&samples, stage(rounds, steps));
+    effort.evaluations += mixture.polish(&samples, stage(rounds, steps, points.len()));
     Ok(Recovered { mixture, effort, one_sided, rough: scene.local.rough, table: None })
+}
+
+/// The points that may be of the surface: of the others the last steps know without asking.
+fn near(points: &[DVec3], mixture: &Mixture<Superquadric>) -> Vec<usize> {
+    let samples = Samples::<f32>::new(points.iter().copied());
+    let mut off = vec![0.0; samples.padded()];
+    residuals(&mixture.model, &samples, Cost::Normal, &mut off);
+    let reach = (REACH[0] * mixture.noise).max(REACH[1]) as f32;
+    let near: Vec<usize> = (0..points.len()).filter(|i| off[*i].abs() <= reach).collect();
+    if near.len() < FEWEST { (0..points.len()).collect() } else { near }
 }

@@ -1,31 +1,33 @@
 //! The pose of a scan of a known solid.
 //!
 //! ```text
-//!     scan point = s·R·(model point) + t        residual f/|∇f| at Rᵀ(p − t)/s, n = ∇f/|∇f| there
+//!     scan point = s·R·(model point) + t        residual d at q = Rᵀ(p − t)/s, n its gradient there
 //!     by a turn ω about the model's axes  −n·(ω × q)     a shift  −n     ln s  −n·q
 //! ```
 //!
-//! From 24 rotations of the principal axes, Gauss–Newton steps with weights 1/(1 + (d/σ)²)² whose σ
-//! falls from .6 of the size: at first all points pull, at last those that fit.
+//! d is f/|∇f|, for the last steps the distance to where Newton steps lead, or the field of
+//! equation 15. From 24 rotations of the principal axes, Gauss–Newton steps with weights 1/(1 +
+//! (d/σ)²)² whose σ falls from .6 of the size: at first all points pull, at last those that fit. If
+//! that leaves more noise than neighbourhoods have, a coarse search over all other rotations and
+//! places follows.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use rayon::prelude::*;
 
+use super::align::{Align, CLOSE, PARAMETERS, Pose, Residual};
 use super::check::{check_depth, check_extent};
+use super::cost::Cost;
 use super::covariance::Covariance;
 use super::density::dense;
 use super::error::FitError;
-use super::linear::{Principal, median, solved};
+use super::linear::{Principal, median};
+use super::local::local;
 use super::random::Random;
-use super::solve::NORMAL;
+use super::weighted::Weighted;
 use crate::distance::compiled;
 use crate::eval::Program;
 use crate::geom::PointCloud;
-use crate::mesh::Slopes;
 use crate::{Cancelled, CellSize, MeshSettings, Run, Solid};
-
-/// Parameters: a turn, a shift, and the logarithm of the scale.
-const PARAMETERS: usize = 7;
 
 const NAMES: [&str; PARAMETERS] = ["turn x", "turn y", "turn z", "shift x", "shift y", "shift z", "ln scale"];
 
@@ -33,12 +35,22 @@ const NAMES: [&str; PARAMETERS] = ["turn x", "turn y", "turn z", "shift x", "shi
 const FEW: usize = 250;
 const MORE: usize = 1500;
 
+/// Poses of a coarse search, how far from the scan's middle they are, in sizes of the model, how
+/// many such searches there are at most, and their points.
+const COARSE: usize = 96;
+const ASIDE: f64 = 0.5;
+const SEARCHES: usize = 4;
+const FEWER: usize = 120;
+
+/// A pose is as good as the noise where its deviation is below this times that of local planes.
+const GOOD: f64 = 1.1;
+
+/// How many of all starts are taken further, and of these again.
+const KEPT: [usize; 2] = [12, 4];
+
 /// σ of the first step, in sizes of the model, and what it falls by from step to step.
 const WIDE: f64 = 0.6;
 const FALL: f64 = 0.7;
-
-/// Residuals that are told apart in the end, in sizes of the model.
-const CLOSE: f64 = 0.02;
 
 /// How a scan is registered. `..RegisterSettings::default()` keeps what is not named.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -48,6 +60,12 @@ pub struct RegisterSettings {
     pub seed: u64,
     /// Whether the scan may be larger or smaller than the solid. Default: no.
     pub scale: bool,
+    /// What is minimised: [`Cost::Normal`], the distance, which is the default; or [`Cost::Eq15`],
+    /// the published field, for comparisons. Its parts are the operands of unions, weighted by the
+    /// semi-axes of their leaves: of a superellipsoid or supershape its own, of others half the
+    /// sides of their boxes. It is not the distance, and a worse judge of poses; points far from
+    /// the surface count less and less with either.
+    pub cost: Cost,
 }
 
 /// Where a solid is in a scan: scan point = scale · rotation · (point of the solid) + translation.
@@ -61,8 +79,12 @@ pub struct Registration {
     pub scale: f64,
     /// The standard deviation of the points that fit, in length units of the scan.
     pub noise: f64,
+    /// The standard deviation of the scan's dense points from planes through their neighbours, in
+    /// length units of the scan: it has the noise in it, and some curvature. Where `noise` is well
+    /// above it, the pose is wrong.
+    pub roughness: f64,
     /// The mean of d²/(d² + σ²) over the points, σ being 2 % of the solid's size: near 0 where all
-    /// fit, about the share of the outliers where the pose is right.
+    /// fit closely.
     pub cost: f64,
     /// The covariance of a turn about the solid's axes (radians), a shift along them (length units
     /// of the solid), and the logarithm of the scale: large along directions that the points leave
@@ -81,15 +103,15 @@ impl Registration {
 
 /// Finds the pose of a solid in a scan of it, from any rotation.
 ///
-/// The part of the scan that is of the solid should be 60 % or more, and show most of it: of views
-/// from one side fewer come out right. A solid that looks the same from several sides is found in
-/// any of these poses. A failure is told by [`Registration::cost`], which then is well above the
-/// share of the outliers.
+/// The part of the scan that is of the solid should be 60 % or more. It may show one side of it
+/// only, if that side tells it: how often it does is [in a table](super#registration). A solid that
+/// looks the same from several sides is found in any of these poses. A failure is told by
+/// [`Registration::noise`], which then is above [`Registration::roughness`].
 ///
 /// # Errors
 ///
 /// [`FitError::Solid`] if the solid is not valid or unbounded, [`FitError::TooFew`],
-/// [`FitError::Flat`] and [`FitError::Extent`] of the points.
+/// [`FitError::Flat`] and [`FitError::Extent`] of the points, and [`FitError::Setting`].
 ///
 /// ```
 /// use glam::DVec3;
@@ -122,6 +144,10 @@ pub fn register_with(
 ) -> Result<Registration, FitError> {
     let run = run.stage(0.0, 1.0);
     run.report(0.0);
+    if !matches!(settings.cost, Cost::Normal | Cost::Eq15) {
+        let (setting, value) = ("cost", format!("{:?}", settings.cost));
+        return Err(FitError::Setting { setting, value, allowed: "Normal, Eq15" });
+    }
     let needed = 2 * PARAMETERS + 2;
     if cloud.len() < needed {
         let kind = "pose";
@@ -130,33 +156,29 @@ pub fn register_with(
     check_extent(cloud)?;
     check_depth(cloud.positions())?;
     let programs = compiled(solid)?;
-    let model = Model::of(&programs.surface, solid, settings.scale, &run)?;
+    let weighted = if settings.cost == Cost::Eq15 { Some(Weighted::of(solid)?) } else { None };
+    let model = Model::of(&programs.surface, weighted, solid, settings.scale, &run)?;
     run.install(|| model.register(cloud, settings, &run))
 }
 
 /// The solid with the frame of its surface.
 struct Model<'a> {
     program: &'a Program,
+    /// The field of equation 15, if that is asked for, and how steep it is at the surface.
+    weighted: Option<(Weighted, f64)>,
     frame: Principal,
     size: f64,
     scale: bool,
 }
 
-#[derive(Clone, Copy)]
-struct Pose {
-    rotation: DMat3,
-    translation: DVec3,
-    scale: f64,
-}
-
-impl Pose {
-    fn to_model(self, p: DVec3) -> DVec3 {
-        self.rotation.transpose() * (p - self.translation) / self.scale
-    }
-}
-
 impl Model<'_> {
-    fn of<'a>(program: &'a Program, solid: &Solid, scale: bool, run: &Run) -> Result<Model<'a>, FitError> {
+    fn of<'a>(
+        program: &'a Program,
+        weighted: Option<Weighted>,
+        solid: &Solid,
+        scale: bool,
+        run: &Run,
+    ) -> Result<Model<'a>, FitError> {
         let settings = MeshSettings { cell: CellSize::LongestSide(32), ..MeshSettings::default() };
         let quiet = Run { progress: None, ..run.clone() };
         let mesh = solid.mesh_with(&settings, &quiet).map_err(|error| match error {
@@ -170,49 +192,52 @@ impl Model<'_> {
             .iter()
             .map(|t| t.iter().map(|v| mesh.positions()[*v as usize].as_dvec3()).sum::<DVec3>() / 3.0)
             .collect();
+        let weighted = match weighted {
+            Some(field) => {
+                let slopes = field.at(&middles, &quiet)?;
+                let mut steep: Vec<f64> = slopes.iter().map(|slope| slope.gradient.length()).collect();
+                Some((field, median(&mut steep).max(f64::MIN_POSITIVE)))
+            }
+            None => None,
+        };
         let frame = Principal::of(middles.iter().copied());
         let size = frame.variances.iter().sum::<f64>().sqrt();
-        Ok(Model { program, frame, size, scale })
+        Ok(Model { program, weighted, frame, size, scale })
+    }
+
+    /// Points against the solid, as the search sees them, or as the last steps do.
+    fn align<'a>(&'a self, points: &'a [DVec3], is_last: bool) -> Align<'a> {
+        let residual = match &self.weighted {
+            Some((field, steepness)) => Residual::Weighted(field, *steepness),
+            None if is_last => Residual::Foot(self.program),
+            None => Residual::Slope(self.program),
+        };
+        Align { residual, points, size: self.size, scale: self.scale }
     }
 
     fn register(&self, cloud: &PointCloud, settings: &RegisterSettings, run: &Run) -> Result<Registration, FitError> {
         let mut random = Random::new(settings.seed);
         let all = cloud.positions();
-        let chosen = |count: usize, random: &mut Random| -> Vec<DVec3> {
-            random.chosen(all.len(), count).into_iter().map(|i| all[i]).collect()
-        };
-        let (few, more) = (chosen(FEW, &mut random), chosen(MORE, &mut random));
-        let starts = self.starts(&more);
-        let widths = |from: f64, steps: i32| (0..steps).map(move |i| from * FALL.powi(i) * self.size);
-        let mut found = starts
-            .par_iter()
-            .map(|start| {
-                let pose = self.descend(*start, &few, widths(WIDE, 8), run)?;
-                Ok((self.cost(pose, &few, run)?, pose))
-            })
-            .collect::<Result<Vec<(f64, Pose)>, Cancelled>>()?;
-        run.report(0.5);
-        found.sort_by(|a, b| a.0.total_cmp(&b.0));
-        found.truncate(4);
-        let mut best = found
-            .par_iter()
-            .map(|(_, pose)| {
-                let pose = self.descend(*pose, &few, widths(WIDE * FALL.powi(5), 8), run)?;
-                Ok((self.cost(pose, &few, run)?, pose))
-            })
-            .collect::<Result<Vec<(f64, Pose)>, Cancelled>>()?;
-        best.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut pose = best[0].1;
-        run.report(0.7);
-        // From as wide as the residuals that are told apart down to the noise.
-        pose = self.descend(pose, &more, widths(2.0 * CLOSE, 3), run)?;
-        for _ in 0..4 {
-            let width = 3.0 * self.noise(pose, &more, run)?;
-            pose = self.descend(pose, &more, std::iter::once(width), run)?;
+        let more: Vec<DVec3> = random.chosen(all.len(), MORE).into_iter().map(|i| all[i]).collect();
+        let dense: Vec<DVec3> = dense(&more).kept.iter().map(|i| more[*i]).collect();
+        let roughness = local(&dense, None, &mut random).rough;
+        let frame = Principal::of(dense.iter().copied());
+        let (last, on) = (self.align(&more, true), self.align(&dense, true));
+        let mut pose = self.search(self.starts(&frame), &more, run)?;
+        let mut noise = on.noise(pose, run)?;
+        for search in 0..SEARCHES {
+            run.report(0.4 + 0.6 * search as f64 / SEARCHES as f64);
+            // The published field is no length: it cannot be compared.
+            if self.weighted.is_some() || noise * pose.scale <= GOOD * roughness {
+                break;
+            }
+            let other = self.search(self.coarse(&frame, &mut random), &more, run)?;
+            if last.cost(other, run)? < last.cost(pose, run)? {
+                (pose, noise) = (other, on.noise(other, run)?);
+            }
         }
-        let noise = self.noise(pose, &more, run)?;
-        let cost = self.cost(pose, &more, run)?;
-        let normal = self.normal(pose, &more, 3.0 * noise, run)?;
+        let cost = last.cost(pose, run)?;
+        let normal = last.normal(pose, 3.0 * noise, run)?;
         let units = std::array::from_fn(|_| 1.0);
         let share = all.len() as f64 / more.len() as f64;
         let covariance = Covariance::from_normal(NAMES, &normal.matrix, noise, share, units);
@@ -222,16 +247,52 @@ impl Model<'_> {
             translation: pose.translation,
             scale: pose.scale,
             noise: noise * pose.scale,
+            roughness,
             cost,
             covariance,
         })
     }
 
-    /// The 24 rotations of the principal axes of points to those of the solid.
-    fn starts(&self, points: &[DVec3]) -> Vec<Pose> {
-        // Strewn points would turn the axes, and make the scan seem larger.
-        let frame = Principal::of(dense(points).kept.iter().map(|i| points[*i]));
+    /// The best of many starts, taken down to the noise.
+    fn search(&self, mut poses: Vec<Pose>, points: &[DVec3], run: &Run) -> Result<Pose, Cancelled> {
+        let (few, fewer) = (&points[..points.len().min(FEW)], &points[..points.len().min(FEWER)]);
+        let rounds = [(fewer, WIDE, 8), (few, WIDE * FALL.powi(4), 6), (few, WIDE * FALL.powi(5), 8)];
+        for (round, (some, width, steps)) in rounds.into_iter().enumerate() {
+            let align = self.align(some, false);
+            let mut found = poses
+                .par_iter()
+                .map(|start| {
+                    let pose = align.descend(*start, self.widths(width, steps), run)?;
+                    Ok((align.cost(pose, run)?, pose))
+                })
+                .collect::<Result<Vec<(f64, Pose)>, Cancelled>>()?;
+            found.sort_by(|a, b| a.0.total_cmp(&b.0));
+            found.truncate(KEPT.get(round).copied().unwrap_or(1));
+            poses = found.into_iter().map(|(_, pose)| pose).collect();
+        }
+        // From as wide as the residuals that are told apart down to the noise.
+        let mut pose = self.align(points, false).descend(poses[0], self.widths(2.0 * CLOSE, 3), run)?;
+        let last = self.align(points, true);
+        for _ in 0..4 {
+            let width = 3.0 * last.noise(pose, run)?;
+            pose = last.descend(pose, std::iter::once(width), run)?;
+        }
+        Ok(pose)
+    }
+
+    fn widths(&self, from: f64, steps: i32) -> impl Iterator<Item = f64> + '_ {
+        (0..steps).map(move |i| from * FALL.powi(i) * self.size)
+    }
+
+    /// A pose that brings the solid's middle to that of the scan's dense points, moved from there.
+    fn start(&self, frame: &Principal, rotation: DMat3, aside: DVec3) -> Pose {
         let scale = if self.scale { frame.variances.iter().sum::<f64>().sqrt() / self.size } else { 1.0 };
+        let translation = frame.mean - rotation * (self.frame.mean + aside * self.size) * scale;
+        Pose { rotation, translation, scale }
+    }
+
+    /// The 24 rotations of the principal axes of the scan to those of the solid.
+    fn starts(&self, frame: &Principal) -> Vec<Pose> {
         let mut starts = Vec::new();
         for [i, j, k] in [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]] {
             for signs in 0..4 {
@@ -240,97 +301,19 @@ impl Model<'_> {
                 let z = x.cross(y);
                 debug_assert!(z.dot(frame.axes.col(k)).abs() > 0.9);
                 let rotation = DMat3::from_cols(x, y, z) * self.frame.axes.transpose();
-                starts.push(Pose { rotation, translation: frame.mean - rotation * self.frame.mean * scale, scale });
+                starts.push(self.start(frame, rotation, DVec3::ZERO));
             }
         }
         starts
     }
 
-    /// Distances to first order, with the unit gradients, in length units of the solid.
-    fn residuals(&self, pose: Pose, points: &[DVec3], run: &Run) -> Result<Vec<(f64, DVec3, DVec3)>, Cancelled> {
-        let quiet = Run { progress: None, ..run.clone() };
-        let at: Vec<DVec3> = points.iter().map(|p| pose.to_model(*p)).collect();
-        let slopes = Slopes { program: self.program, precision: 1e-4 * self.size }.at(&at, &quiet)?;
-        let of = |(q, slope): (&DVec3, &crate::mesh::Slope)| {
-            let length = slope.gradient.length();
-            let d = if length > 1e-9 { slope.value / length } else { slope.value };
-            (d.clamp(-10.0 * self.size, 10.0 * self.size), slope.gradient.normalize_or_zero(), *q)
+    /// Random poses: what is seen of a part has its middle elsewhere, and other principal axes.
+    fn coarse(&self, frame: &Principal, random: &mut Random) -> Vec<Pose> {
+        let pose = |_| {
+            let rotation = DMat3::from_quat(random.rotation());
+            let aside = DMat3::from_quat(random.rotation()) * DVec3::Z * (ASIDE * random.unit());
+            self.start(frame, rotation, aside)
         };
-        Ok(at.iter().zip(&slopes).map(of).collect())
+        (0..COARSE).map(pose).collect()
     }
-
-    fn normal(&self, pose: Pose, points: &[DVec3], width: f64, run: &Run) -> Result<Normal, Cancelled> {
-        let mut normal = Normal { matrix: [[0.0; PARAMETERS]; PARAMETERS], right: [0.0; PARAMETERS], cost: 0.0 };
-        for (d, n, q) in self.residuals(pose, points, run)? {
-            let square = (d / width.max(1e-12 * self.size)).powi(2);
-            let weight = (1.0 + square).powi(-2);
-            normal.cost += square / (1.0 + square);
-            let turn = -q.cross(n);
-            let row = [turn.x, turn.y, turn.z, -n.x, -n.y, -n.z, -n.dot(q)];
-            for i in 0..PARAMETERS {
-                normal.right[i] -= weight * row[i] * d;
-                for j in 0..=i {
-                    normal.matrix[i][j] += weight * row[i] * row[j];
-                }
-            }
-        }
-        Ok(normal)
-    }
-
-    /// A step for each width; those that make the cost of their width larger are shortened.
-    fn descend(
-        &self,
-        mut pose: Pose,
-        points: &[DVec3],
-        widths: impl Iterator<Item = f64>,
-        run: &Run,
-    ) -> Result<Pose, Cancelled> {
-        let free = std::array::from_fn(|i| i < 6 || self.scale);
-        for width in widths {
-            run.check()?;
-            let normal = self.normal(pose, points, width, run)?;
-            let mut damping = 1e-4;
-            for _ in 0..3 {
-                let mut matrix = normal.matrix;
-                let largest = (0..PARAMETERS).map(|i| matrix[i][i]).fold(0.0, f64::max);
-                for (i, row) in matrix.iter_mut().enumerate() {
-                    row[i] += damping * row[i] + 1e-9 * largest + f64::MIN_POSITIVE;
-                }
-                let Some(step) = solved(&matrix, &normal.right, &free) else { break };
-                let next = self.moved(pose, &step);
-                if self.normal(next, points, width, run)?.cost <= normal.cost {
-                    pose = next;
-                    break;
-                }
-                damping = (100.0 * damping).max(0.1);
-            }
-        }
-        Ok(pose)
-    }
-
-    fn moved(&self, pose: Pose, step: &[f64; PARAMETERS]) -> Pose {
-        let turn = DVec3::from_slice(&step[..3]).clamp_length_max(0.8);
-        let shift = DVec3::from_slice(&step[3..6]).clamp_length_max(self.size);
-        let scale = pose.scale * step[6].clamp(-0.3, 0.3).exp();
-        let translation = pose.translation + pose.rotation * shift * pose.scale;
-        let rotation = DQuat::from_mat3(&pose.rotation) * DQuat::from_scaled_axis(turn);
-        Pose { rotation: DMat3::from_quat(rotation.normalize()), translation, scale }
-    }
-
-    fn cost(&self, pose: Pose, points: &[DVec3], run: &Run) -> Result<f64, Cancelled> {
-        Ok(self.normal(pose, points, CLOSE * self.size, run)?.cost / points.len() as f64)
-    }
-
-    /// By the median of the nearer half of the points: outliers are the other one at most.
-    fn noise(&self, pose: Pose, points: &[DVec3], run: &Run) -> Result<f64, Cancelled> {
-        let mut sizes: Vec<f64> = self.residuals(pose, points, run)?.iter().map(|r| r.0.abs()).collect();
-        Ok((NORMAL * median(&mut sizes)).max(1e-9 * self.size))
-    }
-}
-
-/// Normal equations of a step, and what they would make smaller.
-struct Normal {
-    matrix: [[f64; PARAMETERS]; PARAMETERS],
-    right: [f64; PARAMETERS],
-    cost: f64,
 }

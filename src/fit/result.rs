@@ -30,6 +30,7 @@ pub struct Fit {
     pub(super) noise: f64,
     pub(super) deviation: Deviation,
     pub(super) covariance: Covariance,
+    pub(super) criterion: f64,
     pub(super) search: SearchReport,
 }
 
@@ -50,18 +51,25 @@ pub struct SearchReport {
     pub symmetry_unclear: bool,
 }
 
-impl Fit {
-    /// The solid, where it was found.
-    #[must_use]
-    pub fn solid(&self) -> Solid {
-        let leaf = match &self.shape {
+impl Shape {
+    /// The solid in its local coordinates.
+    pub(super) fn solid(&self) -> Solid {
+        match self {
             Shape::Superellipsoid(leaf) => Solid::from(*leaf),
             Shape::Supershape(leaf) => Solid::from(leaf.clone()),
             Shape::Deformed(DeformedSuperellipsoid { leaf, taper: [kx, ky], twist, bend }) => Solid::from(*leaf)
                 .taper(*kx, *ky, 2.0 * leaf.semi_axes().z)
                 .twist(rad(*twist))
                 .bend(bend.length(), rad(bend.to_angle())),
-        };
+        }
+    }
+}
+
+impl Fit {
+    /// The solid, where it was found.
+    #[must_use]
+    pub fn solid(&self) -> Solid {
+        let leaf = self.shape.solid();
         leaf.affine(DAffine3::from_rotation_translation(self.rotation, self.translation))
     }
 
@@ -111,6 +119,14 @@ impl Fit {
     #[must_use]
     pub fn covariance(&self) -> &Covariance {
         &self.covariance
+    }
+
+    /// How well the fit explains the points that were searched, each parameter at its price
+    /// (Schwarz's criterion): ln L − p/2·ln n of n points and p parameters. Of several fits of one
+    /// cloud with the same settings the largest is the best; alone it means nothing.
+    #[must_use]
+    pub fn criterion(&self) -> f64 {
+        self.criterion
     }
 
     /// What was tried.

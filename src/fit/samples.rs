@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::kernel::Number;
 
-/// Whole vectors of any SIMD level.
-const WIDTH: usize = 16;
+/// Whole pairs of vectors of any SIMD level.
+const WIDTH: usize = 32;
 
 /// Points in columns. The padding repeats the last point; its weights are to be 0.
 pub(super) struct Samples<E> {

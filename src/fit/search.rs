@@ -127,7 +127,8 @@ impl<'a> Search<'a> {
         Ok(current)
     }
 
-    pub(super) fn search(&mut self) -> Result<Candidate, Cancelled> {
+    /// With extreme exponents, too, if nothing else fits and it is to be `thorough`.
+    pub(super) fn search(&mut self, thorough: bool) -> Result<Candidate, Cancelled> {
         if let Some(view) = self.local.view {
             let frame = Frame::one_sided(self.points, view);
             let starts = frame.starts(&[[0.5, 0.5], [1.3, 1.3], [0.5, 1.3], [1.3, 0.5]], 0.0);
@@ -137,7 +138,7 @@ impl<'a> Search<'a> {
         let frame = Frame::complete(self.points);
         let best = self.best_of(frame.starts(&[[0.6, 0.6], [1.2, 1.2]], 0.0), 2)?;
         let mut best = self.switched(best, 1)?;
-        if !self.is_good(&best) {
+        if thorough && !self.is_good(&best) {
             let extreme = [[0.25, 0.25], [1.7, 0.4], [0.4, 1.7], [1.7, 1.7]];
             let mut starts = frame.starts(&extreme, 0.0);
             starts.extend(frame.starts(&extreme, std::f64::consts::FRAC_PI_4));

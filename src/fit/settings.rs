@@ -19,6 +19,8 @@ pub struct FitSettings {
     pub cost: Cost,
     /// With which radii supershapes are searched. Default: [`Start::Exact`].
     pub start: Start,
+    /// How the symmetry numbers of supershapes are found. Default: [`Symmetry::Harmonics`].
+    pub symmetry: Symmetry,
     /// Of a larger cloud so many points are searched, chosen at random; all are then weighed once
     /// by the result. 100 to 100 000. Default: 2500.
     pub search_points: usize,
@@ -46,9 +48,33 @@ pub enum Start {
     },
 }
 
+/// How the symmetry numbers of supershapes are found.
+///
+/// Source of `Sections`: Y. D. Fougerolle et al., *Rational supershapes for surface
+/// reconstruction*.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Symmetry {
+    /// By harmonics of the radii about several axes, and by fits with other numbers beside them.
+    #[default]
+    Harmonics,
+    /// As published: a plane is swept along the axis and one about it; the maxima of the radius in
+    /// each section are counted, angles without points left out, and the sections vote. Where they
+    /// do not agree, m = M = 4, which [`SearchReport::symmetry_unclear`](super::SearchReport)
+    /// tells. For comparisons: [the tables](super).
+    Sections,
+}
+
 impl Default for FitSettings {
     fn default() -> FitSettings {
-        FitSettings { seed: 0, cost: Cost::default(), start: Start::default(), search_points: 2500 }
+        FitSettings {
+            seed: 0,
+            cost: Cost::default(),
+            start: Start::default(),
+            symmetry: Symmetry::default(),
+            search_points: 2500,
+        }
     }
 }
 

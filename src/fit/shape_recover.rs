@@ -10,7 +10,7 @@ use super::random::Random;
 use super::recover::{Effort, Scene, fit};
 use super::samples::Samples;
 use super::settings::FitSettings;
-use super::superquadric::{self, Superquadric};
+use super::superquadric::Superquadric;
 use super::supershapes::ShapeSearch;
 use crate::Run;
 
@@ -24,7 +24,7 @@ pub(super) struct ShapeRecovered {
     pub(super) best: Best,
     pub(super) effort: Effort,
     pub(super) one_sided: bool,
-    /// No axis' harmonics explain half of the radii: symmetry numbers are a guess.
+    /// Nothing tells the symmetry numbers: they are a guess.
     pub(super) unclear: bool,
 }
 
@@ -39,35 +39,37 @@ pub(super) fn recover_shape(
     check_depth(&scene.surface)?;
     let [first, second, third] = run.stages([1.0, 6.0, 3.0]);
     let quadric = fit(points, &scene, settings.cost, &first)?;
-    let mut search = ShapeSearch::new(&scene.surface, &scene.local, settings.cost, settings.start, &second);
+    let mut search = ShapeSearch::new(&scene.surface, &scene.local, settings, &second);
     let shapes = search.search(&quadric.mixture.model)?;
-    let samples = Samples::<f64>::new(points.iter().copied());
     let mut effort = quadric.effort;
     effort.evaluations += search.evaluations;
     effort.tried += search.tried;
-    let area = quadric.mixture.log_area();
-    let price = |parameters: usize| 0.5 * parameters as f64 * (points.len() as f64).ln();
-    let mut score = quadric.mixture.log_likelihood(&samples) - price(superquadric::PARAMETERS);
-    let mut best = Best::Quadric(quadric.mixture);
-    let how = |rounds| Polish { rounds, steps: 3, area: 0.0, cost: settings.cost };
+    let how = |rounds| Polish { rounds, steps: 3, area: 0.0, all: points.len(), cost: settings.cost };
     let (noise, strewn) = (quadric.mixture.noise, quadric.mixture.strewn);
-    let mut ranked = Vec::new();
-    for model in shapes.best {
-        third.check()?;
-        let mut mixture = Mixture { model, noise, strewn, volume: scene.volume, log_area: Some(area) };
-        effort.evaluations += mixture.polish(&samples, how(1));
-        ranked.push((mixture.log_likelihood(&samples) - price(model.ties.parameters()), mixture));
+    let log_area = Some(quadric.mixture.log_area());
+    let start = |model| Mixture { model, noise, strewn, volume: scene.volume, log_area };
+    let mut ranked: Vec<(f64, Mixture<Supershaped>)> = shapes.best.into_iter().map(|m| (0.0, start(m))).collect();
+    // All of them are told apart in single precision, again and again.
+    let rough = Samples::<f32>::new(points.iter().copied());
+    for (rounds, kept) in [(1, 3), (3, 1)] {
+        for (criterion, mixture) in &mut ranked {
+            third.check()?;
+            effort.evaluations += mixture.polish(&rough, how(rounds));
+            let found = mixture.criterion_of(&rough);
+            *criterion = if found.is_nan() { f64::NEG_INFINITY } else { found };
+        }
+        ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
+        ranked.truncate(kept);
     }
-    ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
-    for (_, mut mixture) in ranked.into_iter().take(3) {
+    let samples = Samples::<f64>::new(points.iter().copied());
+    let mut best = Best::Quadric(quadric.mixture);
+    if let Some((_, mut mixture)) = ranked.into_iter().next() {
         third.check()?;
-        effort.evaluations += mixture.polish(&samples, how(3));
-        let found = mixture.log_likelihood(&samples) - price(mixture.model.ties.parameters());
+        effort.evaluations += mixture.polish(&samples, how(2));
         // NaN is no better.
-        if found > score {
-            score = found;
+        if mixture.criterion_of(&samples) > quadric.mixture.criterion_of(&samples) {
             best = Best::Shape(mixture);
         }
     }
-    Ok(ShapeRecovered { best, effort, one_sided: quadric.one_sided, unclear: shapes.explained < 0.5 })
+    Ok(ShapeRecovered { best, effort, one_sided: quadric.one_sided, unclear: shapes.unclear })
 }

@@ -77,9 +77,9 @@ impl<E: Number> Problem<'_, E> {
         residuals: &mut [E],
     ) -> Sums<N> {
         let mut sums = pass(model, self.samples, weights, self.cost, residuals);
+        sums.square += Self::beside(model, area, noise);
         if area > 0.0 {
-            let (log, slopes) = model.log_area();
-            sums.square += area * log;
+            let (_, slopes) = model.log_area();
             for (gradient, slope) in sums.gradient.iter_mut().zip(slopes) {
                 *gradient += 0.5 * area * slope;
             }
@@ -88,12 +88,31 @@ impl<E: Number> Problem<'_, E> {
             && let Some(penalty) = model.penalty()
         {
             for (i, [weight, off]) in penalty.into_iter().enumerate() {
-                sums.square += noise * weight * off * off;
                 sums.gradient[i] += noise * weight * off;
                 sums.hessian[i][i] += noise * weight;
             }
         }
         sums
+    }
+
+    /// What is minimised besides the squares: the area's term, and the model's penalty.
+    fn beside<M: Model<N>, const N: usize>(model: &M, area: f64, noise: f64) -> f64 {
+        let area = if area > 0.0 { area * model.log_area().0 } else { 0.0 };
+        let penalty = if noise > 0.0 { model.penalty() } else { None };
+        area + penalty.map_or(0.0, |rows| noise * rows.iter().map(|[weight, off]| weight * off * off).sum::<f64>())
+    }
+
+    /// The sum that is minimised, without its derivatives.
+    fn value<M: Model<N>, const N: usize>(
+        &self,
+        model: &M,
+        weights: &[E],
+        [area, noise]: [f64; 2],
+        off: &mut [E],
+    ) -> f64 {
+        residuals(model, self.samples, self.cost, off);
+        let squares = off.iter().zip(weights).map(|(d, w)| w.to() * d.to() * d.to());
+        squares.sum::<f64>() + Self::beside(model, area, noise)
     }
 
     /// Levenberg–Marquardt from a model; residuals become those of the best one.
@@ -109,22 +128,29 @@ impl<E: Number> Problem<'_, E> {
         fitted.evaluations += self.samples.len();
         let mut trial = vec![E::default(); fitted.residuals.len()];
         let (mut damping, mut growth) = (1e-3, 2.0);
-        for _ in 0..steps {
+        for left in (0..steps).rev() {
             let Some(step) = step(&fitted.model, &sums, damping) else {
                 damping *= growth;
                 growth *= 2.0;
                 continue;
             };
             let model = fitted.model.moved(&step);
-            let next: Sums<N> = self.evaluate(&model, weights, area, noise, &mut trial);
             fitted.evaluations += self.samples.len();
-            let drop = sums.square - next.square;
+            // Nobody asks for the derivatives after the last step.
+            let (square, next) = if left == 0 {
+                (self.value(&model, weights, [area, noise], &mut trial), None)
+            } else {
+                let next: Sums<N> = self.evaluate(&model, weights, area, noise, &mut trial);
+                (next.square, Some(next))
+            };
+            let drop = sums.square - square;
             if drop > 0.0 {
                 std::mem::swap(&mut fitted.residuals, &mut trial);
                 fitted.model = model;
+                let Some(next) = next else { break };
                 // The area's term makes the sum's zero arbitrary: gains are relative to the
                 // squares.
-                let squares = next.square.abs().max(area);
+                let squares = square.abs().max(area);
                 sums = next;
                 damping = f64::max(0.2 * damping, 1e-9);
                 growth = 2.0;

@@ -4,7 +4,6 @@ use super::cloud::Scaled;
 use super::error::FitError;
 use super::finish::finish;
 use super::gielis::{Curve, PARAMETERS, Supershaped};
-use super::mixture::Mixture;
 use super::result::{Fit, SearchReport, Shape};
 use super::settings::FitSettings;
 use super::shape_recover::{Best, recover_shape};
@@ -72,15 +71,15 @@ pub fn supershape_with(cloud: &PointCloud, settings: &FitSettings, run: &Run) ->
     match found.best {
         Best::Quadric(mixture) => finish_quadric(cloud, &scaled, &mixture, search, &run),
         Best::Shape(mixture) => {
-            let shape = Shape::Supershape(leaf(&mixture, scaled.size));
+            let shape = Shape::Supershape(leaf(&mixture.model, scaled.size));
             run.install(|| finish(cloud, &scaled, &mixture, shape, NAMES, search, &run))
         }
     }
 }
 
 /// The leaf in the cloud's length units.
-fn leaf(mixture: &Mixture<Supershaped>, size: f64) -> Supershape {
+pub(super) fn leaf(model: &Supershaped, size: f64) -> Supershape {
     let curve = |Curve { m, n: [n1, n2, n3] }| Gielis::new(f64::from(m), n1, n2, n3);
-    let Supershaped { equator, meridian, semi_axes, .. } = mixture.model;
+    let Supershaped { equator, meridian, semi_axes, .. } = *model;
     Supershape::with(curve(equator), curve(meridian), semi_axes * size, Radius::Standard)
 }

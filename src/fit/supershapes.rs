@@ -13,11 +13,13 @@ use glam::{DMat3, DVec3};
 
 use super::cost::Cost;
 use super::gielis::{Curve, Supershaped, Ties};
-use super::harmonics::{Around, Repeat};
+use super::harmonics::{Around, Repeat, ring_center};
+use super::kernel::Model;
 use super::linear::Principal;
 use super::local::Local;
 use super::samples::Samples;
-use super::settings::Start;
+use super::sections::{Sweep, sweep};
+use super::settings::{FitSettings, Start, Symmetry};
 use super::solve::{Problem, Robust};
 use super::superquadric::Superquadric;
 use crate::{Cancelled, Run};
@@ -38,6 +40,7 @@ pub(super) struct ShapeSearch<'a> {
     more: Samples<f32>,
     cost: Cost,
     start: Start,
+    symmetry: Symmetry,
     run: &'a Run,
     pub(super) evaluations: usize,
     pub(super) tried: usize,
@@ -47,18 +50,22 @@ pub(super) struct ShapeSearch<'a> {
 pub(super) struct Shapes {
     /// The best ones, to be polished.
     pub(super) best: Vec<Supershaped>,
-    /// The share of the squares that the best axis' harmonics explain.
-    pub(super) explained: f64,
+    /// Nothing tells the symmetry numbers: they are a guess.
+    pub(super) unclear: bool,
 }
 
 /// A fit is as good as the noise where its deviation is below this times that of local planes.
 const GOOD: f64 = 1.3;
 
+/// If harmonics about the best axis explain a smaller share of the squares, they tell nothing.
+const CLEAR: f64 = 0.5;
+
 /// Axes closer together than this are one: the cosine of 10°.
 const SAME: f64 = 0.985;
 
 impl<'a> ShapeSearch<'a> {
-    pub(super) fn new(points: &'a [DVec3], local: &Local, cost: Cost, start: Start, run: &'a Run) -> ShapeSearch<'a> {
+    pub(super) fn new(points: &'a [DVec3], local: &Local, settings: &FitSettings, run: &'a Run) -> ShapeSearch<'a> {
+        let FitSettings { cost, start, symmetry, .. } = *settings;
         let first = |count: usize| Samples::new(points[..count.min(points.len())].iter().copied());
         ShapeSearch {
             points,
@@ -67,6 +74,7 @@ impl<'a> ShapeSearch<'a> {
             more: first(360),
             cost,
             start,
+            symmetry,
             run,
             evaluations: 0,
             tried: 0,
@@ -99,7 +107,7 @@ impl<'a> ShapeSearch<'a> {
         self.run.report(1.0 - 1.0 / (1.0 + 0.02 * self.tried as f64));
         let noise = fitted.deviation(samples.len());
         let count = samples.len() as f64;
-        let price = 0.5 * start.ties.parameters() as f64 * count.ln() / count;
+        let price = 0.5 * start.parameters() as f64 * count.ln() / count;
         Ok(Judged { model: fitted.model, score: noise.max(1e-7).ln() + price, noise })
     }
 
@@ -109,16 +117,27 @@ impl<'a> ShapeSearch<'a> {
         Ok(judged)
     }
 
-    /// The three best axes, no two alike.
-    fn axes(&self, quadric: &Superquadric) -> Vec<Around> {
+    /// The principal axes, and those of the superellipsoid. What is seen in part has its middle
+    /// elsewhere: a circle tells where.
+    fn all_axes(&self, quadric: &Superquadric) -> Vec<Around> {
         let points = &self.points[..self.points.len().min(700)];
         let principal = Principal::of(self.points.iter().copied());
         let mut axes: Vec<Around> = Vec::new();
         for (frame, center) in [(principal.axes, principal.mean), (quadric.rotation, quadric.center)] {
             for k in 0..3 {
-                axes.push(Around::axis(points, frame.col(k), center));
+                let axis = frame.col(k);
+                axes.push(Around::axis(points, axis, center));
+                if let Some(ring) = ring_center(points, axis, center) {
+                    axes.push(Around::axis(points, axis, ring));
+                }
             }
         }
+        axes
+    }
+
+    /// The three best axes, no two alike.
+    fn axes(&self, quadric: &Superquadric) -> Vec<Around> {
+        let mut axes = self.all_axes(quadric);
         axes.sort_by(|a, b| b.explained().total_cmp(&a.explained()));
         let mut kept: Vec<Around> = Vec::new();
         for axis in axes {
@@ -130,8 +149,46 @@ impl<'a> ShapeSearch<'a> {
     }
 
     pub(super) fn search(&mut self, quadric: &Superquadric) -> Result<Shapes, Cancelled> {
+        match self.symmetry {
+            Symmetry::Harmonics => self.by_harmonics(quadric),
+            Symmetry::Sections => self.by_sections(quadric),
+        }
+    }
+
+    /// The published order: the symmetry numbers first, by sections, and one fit with them.
+    fn by_sections(&mut self, quadric: &Superquadric) -> Result<Shapes, Cancelled> {
+        let swept = self.all_axes(quadric).into_iter().map(|axis| {
+            let found = sweep(self.points, axis.square_frame(), axis.center);
+            (axis, found)
+        });
+        // Sections from aside may agree as well, on what explains less.
+        let worth = |(axis, found): &(Around, Sweep)| found.agreed * axis.explained();
+        let Some((axis, found)) = swept.max_by(|a, b| worth(a).total_cmp(&worth(b))) else {
+            return Ok(Shapes { best: Vec::new(), unclear: true });
+        };
+        let m = found.equator.filter(|m| *m > 1);
+        let [equator, meridian] = [m.unwrap_or(4), m.and(found.meridian).unwrap_or(4).max(2)];
+        let mut starts: Vec<Supershaped> = Vec::new();
+        if equator == 2 {
+            starts.extend((0..3).flat_map(|k| two_lobes(quadric, k)));
+        }
+        for (repeats, stretched) in [(&axis.repeats, false), (&axis.stretched, true)] {
+            let found = repeats.iter().filter(|repeat| repeat.count == equator);
+            starts.extend(found.flat_map(|repeat| starts_about(&axis, repeat, stretched)));
+        }
+        let starts = starts.into_iter().map(|start| start.with_meridian(meridian)).collect();
+        let first = self.all(starts, false, 3)?;
+        let next = first.into_iter().take(3).map(|j| j.model).collect();
+        let mut best: Vec<Supershaped> = self.all(next, true, 2)?.into_iter().map(|j| j.model).collect();
+        if let Some(top) = best.first().copied() {
+            best.extend([Ties::Stretched, Ties::Free].map(|ties| top.tied(ties)));
+        }
+        Ok(Shapes { best, unclear: m.is_none() })
+    }
+
+    fn by_harmonics(&mut self, quadric: &Superquadric) -> Result<Shapes, Cancelled> {
         let axes = self.axes(quadric);
-        let explained = axes.first().map_or(0.0, Around::explained);
+        let unclear = axes.first().map_or(0.0, Around::explained) < CLEAR;
         let mut starts = Vec::new();
         for (rank, axis) in axes.iter().enumerate() {
             let most = if rank < 2 { 2 } else { 1 };
@@ -147,7 +204,8 @@ impl<'a> ShapeSearch<'a> {
         for judged in first {
             let alike = chosen.iter().filter(|c| c.equator.m == judged.model.equator.m).count();
             if chosen.len() < 5 && alike < 2 {
-                chosen.push(judged.model.tied(Ties::Stretched));
+                let leans = judged.model.ties == Ties::Split;
+                chosen.push(judged.model.tied(if leans { Ties::Free } else { Ties::Stretched }));
             }
         }
         let mut best = self.all(chosen, true, 2)?;
@@ -157,6 +215,9 @@ impl<'a> ShapeSearch<'a> {
         }
         let two = self.all(two, false, 3)?;
         let two: Vec<Supershaped> = two.into_iter().take(2).map(|j| j.model).collect();
+        let others = two.iter().take(1).flat_map(|model| [2, 3, 5, 6].map(|m| model.with_meridian(m))).collect();
+        let others = self.all(others, false, 3)?;
+        let two = two.into_iter().chain(others.into_iter().take(2).map(|j| j.model)).collect();
         let two = self.all(two, true, 2)?;
         if let Some(top) = best.first().copied() {
             let is_good = top.noise < GOOD * self.rough;
@@ -175,6 +236,11 @@ impl<'a> ShapeSearch<'a> {
             let next: Vec<Supershaped> =
                 other.into_iter().take(4).chain(turned.into_iter().take(2)).map(|j| j.model).collect();
             best.extend(self.all(next, true, 2)?);
+            best.sort_by(|a, b| a.score.total_cmp(&b.score));
+            // Many lobes hide on few points on which side of 2 their exponents are.
+            let opposite = best[0].model.opposite();
+            let tied = if opposite.meridian.m == 4 { Ties::Stretched } else { Ties::Profiled };
+            best.extend(self.all(vec![opposite.tied(tied), opposite.tied(Ties::Free)], true, 3)?);
         }
         best.sort_by(|a, b| a.score.total_cmp(&b.score));
         let mut found: Vec<Supershaped> = Vec::new();
@@ -192,7 +258,20 @@ impl<'a> ShapeSearch<'a> {
         if let Some(two) = two.first() {
             found.extend([two.model, two.model.tied(Ties::Round)]);
         }
-        Ok(Shapes { best: found, explained })
+        Ok(Shapes { best: found, unclear })
+    }
+}
+
+impl Supershaped {
+    /// With the meridian of another symmetry number; its poles stay where they are.
+    fn with_meridian(&self, m: u32) -> Supershaped {
+        if m == self.meridian.m {
+            return *self;
+        }
+        let meridian = Curve { m, n: [2.85, 3.5, 3.5] };
+        let mut other = Supershaped { meridian, ..self.tied(Ties::Profiled) };
+        other.semi_axes.z /= meridian.radius_at(FRAC_PI_2) / self.meridian.radius_at(FRAC_PI_2);
+        other
     }
 }
 
@@ -201,6 +280,9 @@ impl<'a> ShapeSearch<'a> {
 fn starts_about(axis: &Around, repeat: &Repeat, stretched: bool) -> Vec<Supershaped> {
     let ratio = (repeat.radii[1] / repeat.radii[0]).ln().max(1e-3);
     let mut starts = Vec::new();
+    if repeat.is_double && !stretched {
+        starts.extend(leaning(axis, repeat, ratio));
+    }
     // Corners where the radius is 1, or hollows.
     let phases = [(4.0, repeat.least, repeat.radii[0]), (1.2, repeat.greatest, repeat.radii[1])];
     for (n, turn, radius) in phases {
@@ -226,6 +308,23 @@ fn starts_about(axis: &Around, repeat: &Repeat, stretched: bool) -> Vec<Supersha
         }
     }
     starts
+}
+
+/// Twice as many lobes as there are repetitions, that lean to either side: n2 and n3 differ.
+fn leaning(axis: &Around, repeat: &Repeat, ratio: f64) -> Vec<Supershaped> {
+    let n1 = (LN_2 / ratio).clamp(0.2, 200.0);
+    let model = |lean: f64, meridian: f64, grown: f64| Supershaped {
+        equator: Curve { m: 2 * repeat.count, n: [n1, 4.0 * lean, 4.0 / lean] },
+        meridian: Curve { m: 4, n: [meridian; 3] },
+        semi_axes: DVec3::new(grown * repeat.radii[0], grown * repeat.radii[0], axis.height)
+            .clamp(DVec3::splat(1e-3), DVec3::splat(30.0)),
+        rotation: axis.frame * DMat3::from_rotation_z(repeat.least),
+        center: axis.center,
+        ties: Ties::Split,
+        rational: false,
+    };
+    let leans = [1.25, 0.8];
+    leans.into_iter().flat_map(|lean| [model(lean, 2.2, 1.1), model(lean, 7.0, 1.0)]).collect()
 }
 
 /// Two lobes along one axis of a superellipsoid, about another: made by the sizes, or by the
@@ -255,13 +354,7 @@ fn two_lobes(quadric: &Superquadric, turns: usize) -> Vec<Supershaped> {
 /// Other meridians, and untied exponents.
 fn meridians(of: &Supershaped) -> Vec<Supershaped> {
     let mut all = vec![of.tied(Ties::Free)];
-    for m in [2, 3, 5, 6] {
-        let meridian = Curve { m, n: [2.85, 3.5, 3.5] };
-        let mut other = Supershaped { meridian, ..of.tied(Ties::Profiled) };
-        // The poles stay where they are.
-        other.semi_axes.z /= meridian.radius_at(FRAC_PI_2) / of.meridian.radius_at(FRAC_PI_2);
-        all.push(other);
-    }
+    all.extend([2, 3, 5, 6].map(|m| of.with_meridian(m)));
     all
 }
 

@@ -37,6 +37,7 @@ use self::refine::refined;
 use self::scene::Scene;
 use self::segment::{Found, supershape_of};
 use self::truncated::Truncated;
+pub(super) use self::truncated::{both, either};
 use self::whole::{Part, Whole};
 use super::deviations::Deviation;
 use super::error::FitError;

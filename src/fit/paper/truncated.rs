@@ -30,7 +30,7 @@ pub(super) struct Truncated {
 }
 
 /// `x ∧ y` of R_p with p = 2, and its slopes by x and y.
-pub(super) fn both(x: f64, y: f64) -> (f64, [f64; 2]) {
+pub(in crate::fit) fn both(x: f64, y: f64) -> (f64, [f64; 2]) {
     let norm = x.hypot(y);
     if norm == 0.0 {
         return (0.0, [1.0 - FRAC_1_SQRT_2; 2]);
@@ -42,7 +42,7 @@ pub(super) fn both(x: f64, y: f64) -> (f64, [f64; 2]) {
 }
 
 /// `x ∨ y`, and its slopes.
-pub(super) fn either(x: f64, y: f64) -> (f64, [f64; 2]) {
+pub(in crate::fit) fn either(x: f64, y: f64) -> (f64, [f64; 2]) {
     let (value, slopes) = both(-x, -y);
     (-value, slopes)
 }

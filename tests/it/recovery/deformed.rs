@@ -51,7 +51,7 @@ fn row(twist: f64, count: u64, seed: u64) -> [f64; 3] {
 #[test]
 fn random_deformed_solids_are_recovered() {
     for twist in [0.0, 0.8] {
-        let [close, median, _] = row(twist, 10, 300);
+        let [close, median, _] = row(twist, 20, 300);
         assert!(close >= 80.0 && median > 0.97, "{twist}: {close} {median}");
     }
 }

@@ -34,6 +34,8 @@ fn a_moved_hole_and_a_high_boss_are_found() {
     assert!(hole.median.abs() < 0.01 && hole.growth.abs() < 0.004, "{} {}", hole.median, hole.growth);
     let boss = leaf("boss");
     assert!(boss.is_off() && (boss.greatest.0 - 0.08).abs() < 0.03 && boss.greatest.1.z > 3.9, "{boss:?}");
+    // Its top tells by how much, though most of its points are of its wall.
+    assert!((boss.shift - DVec3::Z * 0.08).length() < 0.008 && boss.growth.abs() < 0.004, "{boss:?}");
     let plate = leaf("plate");
     assert!(!plate.is_off() && plate.sizes.rms < 0.01, "{} {:?}", plate.significance, plate.sizes);
     let points: usize = report.leaves().iter().map(|leaf| leaf.sizes.points).sum();

@@ -3,6 +3,8 @@
 mod bent;
 mod clouds;
 mod deformed;
+mod every_kind;
+mod fit_cloud;
 mod inspection;
 mod parts;
 mod registration;

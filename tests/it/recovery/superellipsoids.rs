@@ -24,14 +24,18 @@ struct Row {
     evaluations: Vec<f64>,
 }
 
-fn row(condition: Condition, clouds: u64, seed: u64) -> Row {
+fn row(condition: Condition, clouds: u64, seed: u64, samples: usize, settings: &FitSettings) -> Row {
     let mut row = Row { distances: Vec::new(), evaluations: Vec::new() };
     for i in 0..clouds {
         let truth = Quadric::random(&mut Random::new(seed + i));
         let mut random = Random::new((seed + i) << 8 | u64::from(condition.name.len() as u32));
         let points = PointCloud::new(cloud(&truth, condition, 1000, &mut random)).unwrap();
-        let fit = superellipsoid(&points, &FitSettings::default()).unwrap();
-        row.distances.push(mean_distance(&truth, &found(&fit), 200, &mut random));
+        let Ok(fit) = superellipsoid(&points, settings) else {
+            row.distances.push(f64::INFINITY);
+            row.evaluations.push(0.0);
+            continue;
+        };
+        row.distances.push(mean_distance(&truth, &found(&fit), samples, &mut random));
         row.evaluations.push(fit.search().evaluations as f64);
     }
     row.distances.sort_by(f64::total_cmp);
@@ -46,8 +50,8 @@ fn within(row: &Row, limit: f64) -> f64 {
 #[test]
 fn random_clouds_are_recovered() {
     for (condition, gate) in CONDITIONS.into_iter().zip(GATES) {
-        let clouds = 12;
-        let row = row(condition, clouds, 20_260_101);
+        let clouds = 20;
+        let row = row(condition, clouds, 20_260_101, 60, &FitSettings::default());
         // One of a few may be among those that are lost.
         let least = gate - 100.0 / clouds as f64;
         assert!(within(&row, 0.02) >= least, "{}: {:?}", condition.name, row.distances);
@@ -60,7 +64,7 @@ fn two_hundred_clouds_a_condition() {
     println!("| condition | ≤ 2 % | ≤ 1 % | median distance | evaluations, median | p90 |");
     let mut missed = Vec::new();
     for (condition, gate) in CONDITIONS.into_iter().zip(GATES) {
-        let row = row(condition, 200, 7_000_000);
+        let row = row(condition, 200, 7_000_000, 200, &FitSettings::default());
         let (name, median) = (condition.name, row.distances[100]);
         let [middle, high] = [100, 180].map(|i| row.evaluations[i] / 1e3);
         let [two, one] = [0.02, 0.01].map(|limit| within(&row, limit));
@@ -82,28 +86,22 @@ fn two_hundred_clouds_a_condition() {
     assert!(missed.is_empty(), "{missed:?}");
 }
 
+#[test]
+#[ignore = "minutes: the table of the published costs"]
+fn a_hundred_clouds_a_cost() {
+    println!("| cost | clean | 1 % noise | + 20 % outliers | one-sided view |");
+    for cost in [Cost::Normal, Cost::Radial, Cost::Gauge, Cost::SolinaBajcsy] {
+        let settings = FitSettings { cost, ..FitSettings::default() };
+        let shares = [0, 1, 2, 5].map(|at| within(&row(CONDITIONS[at], 100, 7_000_000, 200, &settings), 0.02));
+        println!("| `{cost:?}` | {} |", shares.map(|share| share.to_string()).join(" | "));
+        assert!(cost != Cost::Normal || shares[0] >= 99.0, "{shares:?}");
+    }
+}
+
 fn an_example(condition: usize, count: usize) -> (Quadric, PointCloud) {
     let truth = Quadric::random(&mut Random::new(11));
     let points = cloud(&truth, CONDITIONS[condition], count, &mut Random::new(5));
     (truth, PointCloud::new(points).unwrap())
-}
-
-#[test]
-fn threads_do_not_change_a_bit() {
-    let (_, points) = an_example(3, 9000);
-    let fits = [1, 2, 8].map(|threads| {
-        let run = Run { threads, ..Run::default() };
-        superellipsoid_with(&points, &FitSettings::default(), &run).unwrap()
-    });
-    for other in &fits[1..] {
-        assert_eq!(fits[0].shape(), other.shape());
-        assert_eq!(fits[0].translation(), other.translation());
-        assert_eq!(fits[0].weights(), other.weights());
-        assert_eq!(fits[0].covariance(), other.covariance());
-    }
-    let settings = FitSettings { seed: 5, ..FitSettings::default() };
-    let other = superellipsoid(&points, &settings).unwrap();
-    assert_ne!(fits[0].translation(), other.translation());
 }
 
 #[test]
@@ -152,7 +150,7 @@ fn small_and_large_clouds() {
 #[test]
 fn every_published_cost_recovers_a_clean_cloud() {
     let (truth, points) = an_example(0, 600);
-    for cost in [Cost::Normal, Cost::Radial, Cost::SolinaBajcsy, Cost::Gauge] {
+    for cost in [Cost::Normal, Cost::Radial, Cost::SolinaBajcsy, Cost::Gauge, Cost::Eq15] {
         let fit = superellipsoid(&points, &FitSettings { cost, ..FitSettings::default() }).unwrap();
         let off = mean_distance(&truth, &found(&fit), 200, &mut Random::new(1));
         assert!(off < 0.002, "{cost:?}: {off}");
