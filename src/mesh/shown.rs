@@ -167,7 +167,9 @@ impl Subject<'_> {
             value.abs() > ROUNDING * size && (value > 0.0) != is_inside
         };
         let near = self.program.value(p).abs() < 0.01 * step && cell.inflate(0.01 * step).contains(p);
-        near && [1e-2, 1e-3, 1e-4, 1e-5].into_iter().any(is_beyond)
+        // One of the tenths of tenths is within what is thicker than rounding errors.
+        let mut parts = (2..).map(|tenths| 0.1_f64.powi(tenths)).take_while(|part| part * step > ROUNDING * size);
+        near && parts.any(is_beyond)
     }
 
     /// Whether a cell with all its nodes on one side has something of the other.
