@@ -252,6 +252,12 @@ fn gradients() {
 const GYROID: &str = "x var-x\ny var-y\nz var-z\nsx sin x\nsy sin y\nsz sin z\ncx cos x\ncy cos y\ncz cos z\n\
                       a mul sx cy\nb mul sy cz\nc mul sz cx\nab add a b\nout add ab c\n";
 
+/// One of exponentials and a logarithm: three spheres melted together.
+const BLOBS: &str = "x var-x\ny var-y\nz var-z\nh const 0.5\nm const -4\nyy square y\nzz square z\nw add yy zz\n\
+                     xa sub x h\nxb add x h\na square xa\nb square xb\nzc sub z h\nc square zc\nxx square x\nxy add xx yy\n\
+                     ra add a w\nrb add b w\nrc add xy c\nma mul ra m\nmb mul rb m\nmc mul rc m\n\
+                     ea exp ma\neb exp mb\nec exp mc\ns add ea eb\nt add s ec\nl ln t\nout div l m\n";
+
 /// Slices that fidget is given formulas in: as long as our chunks, and longer.
 const SLICES: [usize; 3] = [256, 512, 4096];
 
@@ -270,6 +276,7 @@ fn formulas() {
         ("colonnade.vm", read("colonnade.vm"), 1.0),
         ("prospero.vm", read("prospero.vm"), 1.0),
         ("gyroid", Some(GYROID.to_string()), 4.0),
+        ("blobs", Some(BLOBS.to_string()), 1.5),
     ] {
         let Some(text) = text else { continue };
         let points = Points::random(if name == "prospero.vm" { 4096 } else { 16384 }, DVec3::splat(half));

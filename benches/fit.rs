@@ -2,7 +2,7 @@
 //!
 //! `cargo bench --bench fit` prints for each kind of cloud the median and the 90 % quantile of the
 //! milliseconds that a fit takes, and of the thousands of points that were evaluated. Times are CPU
-//! times of the thread. Words after `--` choose rows by parts of their names.
+//! times of the thread. Then parts: milliseconds of each stage by the wall clock. Words after `--` choose rows by parts of their names.
 
 use cpu_time::ThreadTime;
 use rvachev::fit::{FitSettings, superellipsoid_with};
@@ -11,6 +11,8 @@ use rvachev::{PointCloud, Run};
 #[path = "../tests/it/recovery/clouds.rs"]
 #[allow(dead_code, reason = "shared with the tests")]
 mod clouds;
+#[path = "fit/parts.rs"]
+mod parts;
 #[path = "../tests/it/support/random.rs"]
 #[allow(dead_code, reason = "shared with the tests")]
 mod support;
@@ -61,5 +63,5 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             superellipsoids(CONDITIONS[1], count, 5)?;
         }
     }
-    Ok(())
+    parts::stages(is_asked)
 }

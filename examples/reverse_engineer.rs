@@ -16,8 +16,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use glam::DVec3;
-use rvachev::code::{RustFile, RustSettings};
-use rvachev::fit::{Layout, PartFit, PartSettings, inspect, part};
+use rvachev::fit::{PartFit, PartSettings, inspect, part};
 use rvachev::{Camera, CellSize, Image, Mesh, MeshSettings, MeshSolid, PointCloud, RenderSettings, Solid, deg};
 
 const WIDTH: u32 = 640;
@@ -99,37 +98,13 @@ fn json(fit: &PartFit, seconds: f64) -> String {
     format!(
         r#"{{"iou": {:.5}, "leaves": {}, "parameters": {}, "genus": {}, "genus_input": {}, "shells": {}, "seconds": {:.3}}}"#,
         fit.iou(),
-        fit.leaves().len(),
+        fit.leaf_count(),
         fit.parameters(),
         genus(fit.topology().genus),
         genus(fit.topology_of_input().genus),
         fit.topology().shells,
         seconds
     )
-}
-
-/// The tree as Rust code, what each leaf explains beside it.
-fn code(name: &str, fit: &PartFit) -> String {
-    let mut settings = RustSettings::default();
-    for leaf in fit.leaves() {
-        let verb = if leaf.is_cut() { "cut" } else { "added" };
-        let text = format!("{}, {verb}; {:.1} % of the surface", leaf.kind(), 100.0 * leaf.surface());
-        settings.comments.insert(leaf.name().to_owned(), text);
-    }
-    for pattern in fit.patterns() {
-        let what = match pattern.layout {
-            Layout::Ring { .. } => "a ring",
-            Layout::Grid { .. } => "a grid",
-            _ => "a row",
-        };
-        // In the solid it is the first leaf, repeated.
-        if let Some(text) = settings.comments.get_mut(fit.leaves()[pattern.leaves[0]].name()) {
-            *text = format!("{text} each, {} in {what}", pattern.leaves.len());
-        }
-    }
-    let mut file = RustFile::new(settings);
-    file.add(name, &fit.solid());
-    file.to_string()
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -154,14 +129,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
 
     println!("{name}: {} triangles, {:.2} s\n", mesh.triangles().len(), seconds);
-    println!("{:<24} {:>10} {:>9}  centre", "leaf", "parameters", "surface");
+    println!("{:<24} {:<44} {:>10} {:>9}  centre", "leaf", "what it is", "parameters", "surface");
     for leaf in fit.leaves() {
         let [x, y, z] = leaf.centre().to_array().map(|v| (1000.0 * v).round() / 1000.0 + 0.0);
-        let share = 100.0 * leaf.surface();
-        println!("{:<24} {:>10} {share:>7.1} %  {x}, {y}, {z}", leaf.name(), leaf.parameters());
+        let (name, text, share) = (leaf.name(), leaf.text(), 100.0 * leaf.surface());
+        println!("{name:<24} {text:<44} {:>10} {share:>7.1} %  {x}, {y}, {z}", leaf.parameters());
     }
     let (genus, shells) = (fit.topology().genus, fit.topology().shells);
-    println!("\nIoU {:.4}, {} parameters, genus {genus:?}, {shells} shells", fit.iou(), fit.parameters());
+    let (iou, leaves, parameters) = (fit.iou(), fit.leaf_count(), fit.parameters());
+    println!("\nIoU {iou:.4}, {leaves} leaves, {parameters} parameters, genus {genus:?}, {shells} shells");
     let input = fit.topology_of_input();
     println!("the mesh: genus {:?}, {} shells", input.genus, input.shells);
     for place in fit.unexplained() {
@@ -171,7 +147,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("\n{solid}");
 
     std::fs::create_dir_all(&arguments.folder)?;
-    let text = code(&name, &fit);
+    let text = fit.to_rust(&name);
     println!("{text}");
     write(&arguments.folder, &name, &mesh, &solid, &text)
 }

@@ -180,7 +180,8 @@
 //! ```
 //!
 //! [Twelve idioms](idioms) show how things are commonly built: plates with holes, named parts,
-//! rings of parts, leaves of one's own. [Lengths](lengths) are explained with pictures.
+//! rings of parts, leaves of one's own. [Lengths](lengths) are explained with pictures,
+//! and so are [whole parts](parts), from meshes and scans to code.
 //!
 //! # The catalogue
 //!
@@ -485,6 +486,7 @@ pub mod layers;
 pub mod lengths;
 mod measure;
 mod mesh;
+pub mod parts;
 pub mod points;
 pub mod program;
 mod query;

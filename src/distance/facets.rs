@@ -62,6 +62,15 @@ impl Facets {
         facets
     }
 
+    /// The area of all triangles.
+    pub(super) fn area(&self) -> f64 {
+        let of_triangle = |triangle: &[u32; 3]| {
+            let [a, b, c] = triangle.map(|v| self.positions[v as usize]);
+            0.5 * (b - a).cross(c - a).length()
+        };
+        self.triangles.iter().map(of_triangle).sum()
+    }
+
     /// Moves the vertices onto the surface, and takes its normals.
     pub(super) fn polish(&mut self, slopes: &Slopes<'_>, run: &Run) -> Result<(), Cancelled> {
         let creased = self.creased();

@@ -16,6 +16,8 @@ mod column;
 mod crease;
 mod facets;
 mod mend;
+mod piece;
+mod plots;
 mod quilt;
 mod seam;
 mod sheets;

@@ -12,8 +12,10 @@ use std::collections::HashMap;
 use glam::DVec3;
 
 use super::facets::{CREASE, Facets};
-use super::seam::{Hem, Seams};
-use crate::mesh::{Slope, Slopes};
+use super::piece::{Piece, first};
+use super::plots::{Plot, Plots};
+use super::seam::Seams;
+use crate::mesh::Slopes;
 use crate::{Cancelled, Run};
 use rvachev_field::Patch;
 
@@ -35,10 +37,13 @@ impl Care {
     }
 }
 
+/// So many triangles are sewn at a time: their sides take some megabytes.
+const PLOT: usize = 1 << 14;
+
 /// After so many times it is seen whether splitting helps.
 const SOON: u32 = 3;
 
-/// Nor is any if there would be more than so many.
+/// No patch is split if there would be more than so many.
 const MANY: usize = 1 << 21;
 
 /// A patch is split where its normal is off by more, in radians.
@@ -66,8 +71,11 @@ const BETWEEN: f64 = 1.5;
 pub(super) struct Quilt {
     pub(super) patches: Vec<Patch>,
     pub(super) error: f64,
-    /// How far each is off, and its area.
-    pub(super) measures: Vec<[f64; 2]>,
+    /// The area of all, and of those that are farther off than this how far each is off, and its
+    /// area.
+    area: f64,
+    tolerance: f64,
+    far: Vec<[f64; 2]>,
     /// Patches that are far off.
     pub(super) spots: Vec<Spot>,
 }
@@ -76,15 +84,6 @@ pub(super) struct Quilt {
 pub(super) struct Spot {
     pub(super) patch: Patch,
     pub(super) off: f64,
-}
-
-/// A triangle: its corners, their normals, and its sides from each corner to the next.
-struct Piece {
-    corners: [u32; 3],
-    normals: [DVec3; 3],
-    hems: [Hem; 3],
-    /// How far off the patch was that it is a part of.
-    before: f64,
 }
 
 /// How far a patch is off.
@@ -105,9 +104,9 @@ impl Residual {
 }
 
 impl Quilt {
-    /// One that has these spots and nothing else.
-    pub(super) fn of(spots: Vec<Spot>) -> Quilt {
-        Quilt { patches: Vec::new(), error: 0.0, measures: Vec::new(), spots }
+    /// One that has these spots and nothing else, to be within a tolerance of the surface.
+    pub(super) fn of(spots: Vec<Spot>, tolerance: f64) -> Quilt {
+        Quilt { patches: Vec::new(), error: 0.0, area: 0.0, tolerance, far: Vec::new(), spots }
     }
 
     /// Patches of triangles near the surface; `None` if more than this part of them is far off and
@@ -118,12 +117,35 @@ impl Quilt {
         care: Care,
         run: &Run,
     ) -> Result<Option<Quilt>, Cancelled> {
-        let Care { tolerance, patience, depth: last } = care;
         facets.polish(slopes, run)?;
+        let mut patience = care.patience * facets.area();
+        let (mut quilt, mut plots) = (Quilt::of(Vec::new(), care.tolerance), Plots::new(facets, PLOT));
+        let (mut number, count) = (0, plots.len());
+        while let Some(plot) = plots.next() {
+            let run = run.stage(number as f64 / count as f64, (number + 1) as f64 / count as f64);
+            number += 1;
+            patience -= quilt.sew(plot, plots.left(), slopes, care, &run)?;
+            if patience < 0.0 {
+                return Ok(None);
+            }
+        }
+        Ok(Some(quilt))
+    }
+
+    /// Adds patches of a plot, so many triangles being left. Gives the area that is far off when
+    /// it is seen whether splitting helps.
+    fn sew(
+        &mut self,
+        plot: Plot,
+        left: usize,
+        slopes: &Slopes<'_>,
+        Care { tolerance, depth: last, .. }: Care,
+        run: &Run,
+    ) -> Result<f64, Cancelled> {
         let mut seams = Seams::default();
-        let mut pieces = first(&facets, &mut seams);
-        let mut positions = facets.positions;
-        let mut quilt = Quilt::of(Vec::new());
+        let mut pieces = first(&plot, &mut seams);
+        let mut positions = plot.facets.positions;
+        let mut far_off = 0.0;
         for depth in 0..=last {
             seams.find(&positions, slopes, run)?;
             let patch = |(number, piece): (usize, &Piece)| {
@@ -131,25 +153,22 @@ impl Quilt {
                 Ok(piece.patch(&positions, &seams, tolerance))
             };
             let patches = pieces.iter().enumerate().map(patch).collect::<Result<Vec<Patch>, Cancelled>>()?;
-            let mut errors = errors(&patches, slopes, run)?;
-            for (piece, error) in pieces.iter().zip(&mut errors) {
-                error.rim = piece.hems.iter().map(|hem| seams.of(*hem).off).fold(0.0, f64::max);
-            }
-            let is_enough = quilt.patches.len() + 4 * pieces.len() > MANY;
+            let is_enough = self.patches.len() + left + 4 * pieces.len() > MANY;
+            let is_split = depth < last && !is_enough;
+            let rims: Vec<f64> = pieces.iter().map(|piece| piece.rim(&seams)).collect();
+            let is_off = |error: Residual| error.all() > tolerance || error.turn > TURN && error.off > 0.05 * tolerance;
+            // What is split whatever else there is need not be compared any further.
+            let is_clear = |error: Residual| is_split && depth < SOON && is_off(error);
+            let errors = errors(&patches, &rims, is_clear, slopes, run)?;
             let fails = |piece: &Piece, error: Residual| {
-                let is_off = error.all() > tolerance || error.turn > TURN && error.off > 0.05 * tolerance;
                 // Where splitting does not help, more of it does not either.
-                depth < last && is_off && !is_enough && (depth < 4 || error.all() < GAIN * piece.before)
+                is_split && is_off(error) && (depth < 4 || error.all() < GAIN * piece.before)
             };
             let failing = pieces.iter().zip(&errors).filter(|(piece, error)| fails(piece, **error));
             cross(failing.map(|(piece, _)| piece), &positions, &mut seams, slopes, run)?;
             if depth == SOON {
-                let areas = || patches.iter().map(area_of);
-                let split = pieces.iter().zip(&errors).zip(areas());
-                let failing: f64 = split.filter(|((piece, error), _)| fails(piece, **error)).map(|(_, own)| own).sum();
-                if failing > patience * (quilt.area() + areas().sum::<f64>()) {
-                    return Ok(None);
-                }
+                let split = pieces.iter().zip(&errors).zip(&patches);
+                far_off = split.filter(|((piece, error), _)| fails(piece, **error)).map(|(_, own)| area_of(own)).sum();
             }
             let mut next = Vec::new();
             for (number, ((piece, patch), error)) in pieces.iter().zip(patches).zip(errors).enumerate() {
@@ -162,20 +181,20 @@ impl Quilt {
                     continue;
                 }
                 if off > FAR * tolerance {
-                    quilt.spots.push(Spot { patch, off });
+                    self.spots.push(Spot { patch, off });
                 } else {
-                    quilt.take(patch, off);
+                    self.take(patch, off);
                 }
             }
             pieces = next;
             run.report(f64::from(depth + 1) / f64::from(last + 1));
         }
-        Ok(Some(quilt))
+        Ok(far_off)
     }
 
     /// Takes a patch that is so far off.
     fn take(&mut self, patch: Patch, off: f64) {
-        self.measures.push([off, area_of(&patch)]);
+        self.note(&patch, off);
         let [a, b, c] = patch.corners;
         let width = a.distance(b).max(b.distance(c));
         // One that is farther off than it is wide tells nothing of the surface.
@@ -190,7 +209,7 @@ impl Quilt {
     /// Takes patches that are known to be at the surface, to within so much.
     pub(super) fn add_all(&mut self, found: impl Iterator<Item = (Patch, f64)>) {
         for (patch, off) in found {
-            self.measures.push([off, area_of(&patch)]);
+            self.note(&patch, off);
             self.error = self.error.max(off);
             self.patches.push(patch);
         }
@@ -205,29 +224,33 @@ impl Quilt {
     pub(super) fn take_all(&mut self, other: Quilt) {
         self.error = self.error.max(other.error);
         self.patches.extend(other.patches);
-        self.measures.extend(other.measures);
+        self.area += other.area;
+        self.far.extend(other.far);
         self.spots.extend(other.spots);
     }
 
-    /// The area of all patches, those that were left out included.
-    fn area(&self) -> f64 {
-        let taken: f64 = self.measures.iter().map(|[_, area]| area).sum();
-        taken + self.spots.iter().map(|spot| area_of(&spot.patch)).sum::<f64>()
+    fn note(&mut self, patch: &Patch, off: f64) {
+        let area = area_of(patch);
+        self.area += area;
+        if off > self.tolerance {
+            self.far.push([off, area]);
+        }
     }
 
-    /// No more than this part of them, by area, is farther off than the result, which is `least` or
-    /// more.
-    pub(super) fn tolerance(&self, part: f64, least: f64) -> f64 {
-        let mut far: Vec<[f64; 2]> = self.measures.iter().filter(|[off, _]| *off > least).copied().collect();
+    /// No more than this part of them, by area, is farther off than the result, which is no less
+    /// than what they are to be within.
+    pub(super) fn reached(&self, part: f64) -> f64 {
+        let mut far = self.far.clone();
         far.sort_by(|a, b| b[0].total_cmp(&a[0]));
-        let mut left = part * self.area();
+        let of_spots: f64 = self.spots.iter().map(|spot| area_of(&spot.patch)).sum();
+        let mut left = part * (self.area + of_spots);
         for [off, area] in far {
             left -= area;
             if left < 0.0 {
                 return off;
             }
         }
-        least
+        self.tolerance
     }
 }
 
@@ -240,19 +263,6 @@ fn often(number: usize, run: &Run) -> Result<(), Cancelled> {
 fn area_of(patch: &Patch) -> f64 {
     let [a, b, c] = patch.corners;
     0.5 * (b - a).cross(c - a).length()
-}
-
-/// The triangles as pieces, and their sides.
-fn first(facets: &Facets, seams: &mut Seams) -> Vec<Piece> {
-    let piece = |(corners, normals): (&[u32; 3], &[DVec3; 3])| {
-        let hems = [0, 1, 2].map(|k| {
-            let (next, last) = ((k + 1) % 3, (k + 2) % 3);
-            let toward = facets.positions[corners[last] as usize];
-            seams.hem([corners[k], corners[next]], toward, [normals[k], normals[next]])
-        });
-        Piece { corners: *corners, normals: *normals, hems, before: f64::INFINITY }
-    };
-    facets.triangles.iter().zip(&facets.normals).map(piece).collect()
 }
 
 /// Finds the sides of pieces that pass over a crease from one face to another.
@@ -278,131 +288,31 @@ fn cross<'a>(
     seams.cross(&asked, positions, slopes, run)
 }
 
-/// How far patches are off the surface, and how far turned from it.
-fn errors(patches: &[Patch], slopes: &Slopes<'_>, run: &Run) -> Result<Vec<Residual>, Cancelled> {
-    let of_patch = |(patch, found): (&Patch, &[Slope])| {
-        let off = found.iter().map(Slope::distance).fold(0.0, f64::max);
-        let turn = PROBES.iter().zip(found).map(|(b, slope)| patch.normal(*b).angle_between(slope.normal()));
-        let turn = turn.filter(|turn| turn.is_finite()).fold(0.0, f64::max);
-        Residual { off: BETWEEN * off, turn, rim: 0.0 }
-    };
-    let mut errors = Vec::with_capacity(patches.len());
-    for patches in patches.chunks(AT_ONCE) {
-        let points: Vec<DVec3> = patches.iter().flat_map(|patch| PROBES.map(|b| patch.point(b))).collect();
-        let found = slopes.at(&points, run)?;
-        errors.extend(patches.iter().zip(found.chunks(PROBES.len())).map(of_patch));
+/// How far patches are off the surface, and how far turned from it, given how far their sides are
+/// off: as much of it as it takes until it is clear enough.
+fn errors(
+    patches: &[Patch],
+    rims: &[f64],
+    is_clear: impl Fn(Residual) -> bool,
+    slopes: &Slopes<'_>,
+    run: &Run,
+) -> Result<Vec<Residual>, Cancelled> {
+    let mut errors: Vec<Residual> = rims.iter().map(|rim| Residual { off: 0.0, turn: 0.0, rim: *rim }).collect();
+    let [first, rest @ ..] = PROBES;
+    for probes in [&[first][..], &rest] {
+        for (patches, errors) in patches.chunks(AT_ONCE).zip(errors.chunks_mut(AT_ONCE)) {
+            let open: Vec<usize> = (0..patches.len()).filter(|n| !is_clear(errors[*n])).collect();
+            let points: Vec<DVec3> = open.iter().flat_map(|n| probes.iter().map(|b| patches[*n].point(*b))).collect();
+            let found = slopes.at(&points, run)?;
+            for (n, found) in open.iter().zip(found.chunks(probes.len())) {
+                let (patch, error) = (&patches[*n], &mut errors[*n]);
+                for (b, slope) in probes.iter().zip(found) {
+                    error.off = error.off.max(BETWEEN * slope.distance());
+                    let turn = patch.normal(*b).angle_between(slope.normal());
+                    error.turn = error.turn.max(if turn.is_finite() { turn } else { 0.0 });
+                }
+            }
+        }
     }
     Ok(errors)
-}
-
-impl Piece {
-    fn patch(&self, positions: &[DVec3], seams: &Seams, tolerance: f64) -> Patch {
-        let corners = self.corners.map(|v| positions[v as usize]);
-        let bulges = self.hems.map(|hem| seams.of(hem).bend(positions));
-        // What is bent by less counts as flat.
-        if bulges.iter().all(|bend| bend.length() < 1e-2 * tolerance) {
-            return Patch::flat(corners);
-        }
-        Patch { corners, bulges }
-    }
-
-    /// Its parts: those on either side of a crease that passes through it, else four.
-    fn split(&self, positions: &mut Vec<DVec3>, seams: &mut Seams, parts: &mut Vec<Piece>) {
-        let crossed: Vec<usize> = (0..3).filter(|k| seams.of(self.hems[*k]).crossing.is_some()).collect();
-        match crossed[..] {
-            [at] => self.split_from(at, positions, seams, parts),
-            [first, second] => {
-                // The corner that both sides start from is alone on its side of the crease.
-                let alone = if (first + 1) % 3 == second { second } else { first };
-                self.split_off(alone, positions, seams, parts);
-            }
-            _ => self.split_in_four(positions, seams, parts),
-        }
-    }
-
-    /// A side is crossed: two parts, from there to the opposite corner.
-    fn split_from(&self, at: usize, positions: &mut Vec<DVec3>, seams: &mut Seams, parts: &mut Vec<Piece>) {
-        let (next, last) = ((at + 1) % 3, (at + 2) % 3);
-        let [a, b, c] = [at, next, last].map(|k| self.corners[k]);
-        let (m, [of_a, of_b]) = seams.crossing(self.hems[at], positions);
-        let crease = seams.ridge([m, c], [a, b].map(|v| positions[v as usize]));
-        // The opposite corner is on the crease, and has the normal of either side.
-        let normals = |own: DVec3, other: DVec3| [own, other, nearer(self.normals[last], other)];
-        let (n_a, n_b) = (self.normals[at], self.normals[next]);
-        let left = seams.hem([a, m], positions[c as usize], [n_a, of_a]);
-        let right = seams.hem([m, b], positions[c as usize], [of_b, n_b]);
-        parts.push(Piece {
-            corners: [a, m, c],
-            normals: normals(self.normals[at], of_a),
-            hems: [left, crease, self.hems[last]],
-            before: f64::INFINITY,
-        });
-        let [n_b, n_m, n_c] = normals(self.normals[next], of_b);
-        parts.push(Piece {
-            corners: [m, b, c],
-            normals: [n_m, n_b, n_c],
-            hems: [right, self.hems[next], crease.other()],
-            before: f64::INFINITY,
-        });
-    }
-
-    /// Both sides at a corner are crossed: the corner's part, and two beyond the crease.
-    fn split_off(&self, at: usize, positions: &mut Vec<DVec3>, seams: &mut Seams, parts: &mut Vec<Piece>) {
-        let (next, last) = ((at + 1) % 3, (at + 2) % 3);
-        let [a, b, c] = [at, next, last].map(|k| self.corners[k]);
-        let (m, [m_a, m_b]) = seams.crossing(self.hems[at], positions);
-        let (k, [k_c, k_a]) = seams.crossing(self.hems[last], positions);
-        let crease = seams.ridge([m, k], [a, b].map(|v| positions[v as usize]));
-        let p = |v: u32| positions[v as usize];
-        let [n_a, n_b, n_c] = [at, next, last].map(|k| self.normals[k]);
-        let (am, mb) = (seams.hem([a, m], p(k), [n_a, m_a]), seams.hem([m, b], p(c), [m_b, n_b]));
-        let (ck, ka) = (seams.hem([c, k], p(b), [n_c, k_c]), seams.hem([k, a], p(m), [k_a, n_a]));
-        parts.push(Piece {
-            corners: [a, m, k],
-            normals: [self.normals[at], m_a, k_a],
-            hems: [am, crease, ka],
-            before: f64::INFINITY,
-        });
-        let diagonal = seams.hem([k, b], p(m), [k_c, n_b]);
-        parts.push(Piece {
-            corners: [m, b, k],
-            normals: [m_b, self.normals[next], k_c],
-            hems: [mb, diagonal.other(), crease.other()],
-            before: f64::INFINITY,
-        });
-        parts.push(Piece {
-            corners: [k, b, c],
-            normals: [k_c, self.normals[next], self.normals[last]],
-            hems: [diagonal, self.hems[next], ck],
-            before: f64::INFINITY,
-        });
-    }
-
-    /// Four parts, at the middles of the sides.
-    fn split_in_four(&self, positions: &mut Vec<DVec3>, seams: &mut Seams, parts: &mut Vec<Piece>) {
-        let middles = self.hems.map(|hem| seams.vertex(hem, positions));
-        let between = self.hems.map(|hem| seams.normal(hem));
-        let [ab, bc, ca] = middles;
-        let outer = |seams: &mut Seams, at: usize| {
-            let last = (at + 2) % 3;
-            let (corner, to, from) = (self.corners[at], middles[at], middles[last]);
-            let normals = [self.normals[at], between[at], between[last]];
-            let inner = seams.hem([to, from], positions[corner as usize], [normals[1], normals[2]]);
-            let first = seams.part([corner, to], self.hems[at], [normals[0], normals[1]]);
-            let second = seams.part([from, corner], self.hems[last], [normals[2], normals[0]]);
-            Piece { corners: [corner, to, from], normals, hems: [first, inner, second], before: f64::INFINITY }
-        };
-        parts.extend([0, 1, 2].map(|at| outer(seams, at)));
-        let hems = [
-            seams.hem([ab, bc], positions[ca as usize], [between[0], between[1]]),
-            seams.hem([bc, ca], positions[ab as usize], [between[1], between[2]]),
-            seams.hem([ca, ab], positions[bc as usize], [between[2], between[0]]),
-        ];
-        parts.push(Piece { corners: middles, normals: between, hems, before: f64::INFINITY });
-    }
-}
-
-/// A corner's own normal, if that is on the same side of a crease as another one.
-fn nearer(own: DVec3, other: DVec3) -> DVec3 {
-    if own.distance(other) < CREASE { own } else { other }
 }

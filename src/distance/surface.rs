@@ -116,7 +116,7 @@ impl DistanceSource for FromMeshes {
             let mut is_enough = false;
             if let Some(mut quilt) = Quilt::new(facets, &slopes, care, &to_sew)? {
                 mend(&mut quilt, &slopes, cell, tolerance, &to_sew)?;
-                let mut found = (quilt.tolerance(FEW, tolerance), quilt);
+                let mut found = (quilt.reached(FEW), quilt);
                 if hidden.is_empty() {
                     // Smaller cells do not always tell more.
                     let is_better = |(reached, quilt): &(f64, Quilt)| {
@@ -135,7 +135,7 @@ impl DistanceSource for FromMeshes {
                             is_enough = false;
                             is_last &= !is_gentle || 4.0 * count > HIDDEN * enough;
                         }
-                        found.0 = found.1.tolerance(FEW, tolerance);
+                        found.0 = found.1.reached(FEW);
                         best = Some(found);
                     }
                 }

@@ -1,10 +1,13 @@
 //! Surfaces as patches: how many there are, and how far off.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::facets::{Facets, sharp};
 use super::mend::mend;
+use super::plots::Plots;
 use super::quilt::{Quilt, Spot};
 use super::surface::FromMeshes;
 use super::{compiled, surface_of};
@@ -30,6 +33,45 @@ fn holed() -> Solid {
 fn a_joint_face_to_face_hides_nothing() {
     let patches = surface_of(&block()).unwrap().patches.clone();
     assert!(patches.len() < 10_000, "{} patches of flat faces", patches.len());
+}
+
+#[test]
+fn plots_are_told_of_what_is_beyond_their_sides() {
+    let solid = holed();
+    let programs = compiled(&solid).unwrap();
+    let mesh = sharp(&programs.surface, programs.bounds, 3.0, &Run::default()).unwrap();
+    let facets = || Facets::new(&mesh, |_| true);
+    let side = |p: [DVec3; 2]| {
+        let mut ends = p.map(|p| p.to_array().map(f64::to_bits));
+        ends.sort_unstable();
+        ends
+    };
+    let (mut triangles, mut rims) = (0, HashMap::new());
+    for plot in Plots::new(facets(), 64) {
+        assert!(plot.facets.triangles.len() <= 64);
+        triangles += plot.facets.triangles.len();
+        let place = |v: u32| plot.facets.positions[v as usize];
+        let mut own: HashMap<[[u64; 3]; 2], (u32, DVec3)> = HashMap::new();
+        for [a, b, c] in &plot.facets.triangles {
+            for [a, b, c] in [[a, b, c], [b, c, a], [c, a, b]] {
+                own.entry(side([*a, *b].map(place))).or_insert((0, place(*c))).0 += 1;
+            }
+        }
+        let of_rims = plot.rims.iter().map(|rim| (side(rim.ends.map(place)), rim.toward));
+        let told: HashMap<[[u64; 3]; 2], DVec3> = of_rims.collect();
+        for (side, (count, corner)) in own {
+            assert_eq!(count == 1, told.contains_key(&side), "a side of {count} triangles");
+            if let Some(toward) = told.get(&side) {
+                rims.entry(side).or_insert_with(Vec::new).push([corner, *toward]);
+            }
+        }
+    }
+    assert_eq!(triangles, mesh.triangles().len());
+    assert!(rims.len() > 100, "{} sides between plots", rims.len());
+    for both in rims.values() {
+        let &[[a, b], [c, d]] = &both[..] else { panic!("{} plots", both.len()) };
+        assert_eq!([a, b], [d, c], "what one has is what the other is told");
+    }
 }
 
 #[test]
@@ -60,7 +102,7 @@ fn spots_that_small_cells_do_not_show_are_kept_and_told() {
     let sheet = Solid::cuboid([10.0, 10.0, 0.01]);
     let programs = compiled(&sheet).unwrap();
     let patch = Patch::flat([DVec3::ZERO, 4.0 * DVec3::X, 4.0 * DVec3::Y].map(|p| p + 0.005 * DVec3::Z));
-    let mut quilt = Quilt::of(vec![Spot { patch, off: OFF }]);
+    let mut quilt = Quilt::of(vec![Spot { patch, off: OFF }], 1e-3);
     let slopes = Slopes { program: &programs.surface, precision: 1e-3 };
     mend(&mut quilt, &slopes, 1.0, 1e-3, &Run::default()).unwrap();
     assert!(!quilt.patches.is_empty() && quilt.error >= OFF, "{} patches, {}", quilt.patches.len(), quilt.error);

@@ -14,9 +14,9 @@
 use glam::DVec3;
 
 use super::program::{Kind, Node, Program};
+use super::scene::Instance;
 use crate::{Bounds, Dual, Interval};
-use rvachev_field::Number;
-use rvachev_field::Rule;
+use rvachev_field::{Crease, Number, Rule, Zone};
 
 impl Program {
     /// A range of the slopes that leaves have where they change their signs, along rays in a box
@@ -56,39 +56,58 @@ impl Program {
         Some(slopes.unwrap_or(Interval::point(0.0)))
     }
 
-    /// The distances along a ray at which it crosses planes where slopes of a leaf have no bound;
-    /// of leaves that are not deformed, and of none where there are many.
-    pub(super) fn creases(&self, origin: DVec3, direction: DVec3) -> Vec<f64> {
+    /// Whether any of its leaves is deformed.
+    pub(crate) fn is_deformed(&self) -> bool {
+        !self.frames.is_empty()
+    }
+
+    /// The planes through a box at which slopes of a leaf have no bound; of leaves that are not
+    /// deformed, and of none where there are many.
+    pub(crate) fn creases(&self, bounds: &Bounds) -> Vec<Crease> {
         let mut found = Vec::new();
         if self.nodes.len() > FEW {
             return found;
         }
         for leaf in self.nodes.iter().filter_map(Node::valued_by) {
-            let instance = self.instance(leaf);
-            if instance.frame != 0 {
+            let Instance { frame, to_local, field, .. } = self.instance(leaf);
+            if *frame != 0 {
                 continue;
             }
-            let normals = instance.field.creases();
-            if normals.is_empty() {
-                continue;
-            }
-            let from = instance.to_local.transform_point3(origin);
-            let along = instance.to_local.transform_vector3(direction);
-            let distances = normals.into_iter().map(|normal| -normal.dot(from) / normal.dot(along));
-            found.extend(distances.filter(|t| t.is_finite()));
+            let back = to_local.matrix3.transpose();
+            let region = Zone::of_bounds(bounds).mapped(to_local).hull();
+            found.extend(field.creases(region).into_iter().map(|crease| Crease {
+                normal: back * crease.normal,
+                offset: crease.offset - crease.normal.dot(to_local.translation),
+                ..crease
+            }));
         }
+        found.retain(|crease| crosses(crease, bounds));
         found
+    }
+
+    /// A range of the slopes along rays in a box with directions in `along`, of those parts of the
+    /// rays that are on the same side of all creases as the point `beside`. The program has no
+    /// deformations.
+    pub(crate) fn slopes_beside(&self, bounds: &Bounds, along: [Interval; 3], beside: DVec3) -> Interval {
+        let (p, is_single) = (sides(bounds, along), self.nodes.len() == 1);
+        let leaf = |leaf: u32| {
+            let instance = self.instance(leaf);
+            let Instance { to_local, placement, field, .. } = instance;
+            let p = placement.apply(p);
+            let slopes = field.slopes_beside(p, to_local.transform_point3(beside));
+            // A value tells which of several leaves counts.
+            let zone = || Zone::of_bounds(bounds).mapped(to_local);
+            let value = if is_single { Interval::ALL } else { field.range(&zone()) };
+            placement.finish(Dual::new(value, slopes))
+        };
+        self.evaluate_leaves(leaf, &mut Vec::new()).gradient()[0]
     }
 
     /// The slopes of a leaf where it is 0; those in the parts of the box that it crosses, one
     /// behind the other, if they are not of one sign (and the leaf costs little).
     fn crossing(&self, leaf: u32, bounds: &Bounds, along: [Interval; 3], parts: u32) -> Option<Interval> {
         let instance = self.instance(leaf);
-        let sides = [0, 1, 2].map(|axis| {
-            let side = Interval::new(bounds.min[axis], bounds.max[axis]);
-            Dual::new(side, [along[axis], Interval::point(0.0), Interval::point(0.0)])
-        });
-        let p = instance.placement.apply(sides);
+        let p = instance.placement.apply(sides(bounds, along));
         let value = instance.placement.finish(Dual::<Interval>::leaf(&*instance.field, p));
         if !value.value().contains(0.0) {
             return None;
@@ -107,6 +126,25 @@ impl Program {
     }
 }
 
+/// A box whose sides change along a ray with a direction in `along`.
+fn sides(bounds: &Bounds, along: [Interval; 3]) -> [Dual<Interval>; 3] {
+    [0, 1, 2].map(|axis| {
+        let side = Interval::new(bounds.min[axis], bounds.max[axis]);
+        Dual::new(side, [along[axis], Interval::point(0.0), Interval::point(0.0)])
+    })
+}
+
+/// How far along a ray a plane is.
+pub(crate) fn distance(crease: &Crease, origin: DVec3, direction: DVec3) -> f64 {
+    (crease.offset - crease.normal.dot(origin)) / crease.normal.dot(direction)
+}
+
+/// Whether a plane passes a box.
+fn crosses(crease: &Crease, bounds: &Bounds) -> bool {
+    let from = crease.normal.dot(bounds.center()) - crease.offset;
+    from.abs() <= crease.normal.abs().dot(bounds.half_extents())
+}
+
 /// How many times a box is halved.
 const PARTS: u32 = 1;
 
@@ -117,8 +155,9 @@ const FEW: usize = 8;
 mod tests {
     use glam::DVec3;
 
+    use super::Crease;
     use crate::eval::Region;
-    use crate::{Bounds, Interval, Solid, rad};
+    use crate::{Bounds, Gielis, Interval, Profile, Solid, Superpolygon, Supershape, rad};
 
     #[test]
     fn rays_cross_the_way_the_leaves_do() {
@@ -153,5 +192,63 @@ mod tests {
             }
         }
         assert!(rising > 100 && falling > 100, "{rising} {falling}");
+    }
+
+    /// On one side of all creases of a box, slopes are within what is told of that side.
+    #[test]
+    fn slopes_beside_creases_are_within_bounds() {
+        let g = Gielis::new;
+        let blades = Solid::from(Supershape::new(g(5.0, 0.3, 0.3, 0.3), g(4.0, 2.0, 2.0, 2.0)));
+        let poles = Solid::from(Supershape::new(g(6.0, 1.0, 1.7, 1.7), g(4.0, 1.0, 1.5, 0.6)));
+        let mut solids = vec![
+            blades.rotate_x(rad(0.4)),
+            poles.rotate_z(rad(1.1)).translate([0.1, 0.0, 0.2]),
+            Solid::superellipsoid([1.0, 0.8, 0.6], 2.5, 2.5),
+            Solid::superellipsoid([1.0, 0.8, 0.6], 3.0, 0.3).rotate_y(rad(0.3)),
+            Solid::superellipsoid([1.0, 0.8, 0.6], 0.3, 3.0) | Solid::sphere(0.3).translate([0.5, 0.5, 0.5]),
+            Profile::from(Superpolygon::new(g(5.0, 0.4, 0.5, 0.5), 1.0)).extrude(1.0),
+        ];
+        #[cfg(feature = "formula")]
+        {
+            let text = "x var-x\nz var-z\nh const 0.5\nt sub x z\nm mod t h\nf floor x\na add m f\nout sub z a";
+            let half = DVec3::splat(1.2);
+            let steps = crate::Formula::from_vm(text, Bounds::new(-half, half)).expect("the text is a formula");
+            solids.push(Solid::from(steps).rotate_z(rad(0.2)));
+        }
+        let random = |n: u32| {
+            f64::from(n.wrapping_mul(2_654_435_769).rotate_left(11).wrapping_mul(2_246_822_519)) / 2f64.powi(32)
+        };
+        let vector = |n: u32| DVec3::new(random(3 * n), random(3 * n + 1), random(3 * n + 2)) * 2.0 - 1.0;
+        for (number, solid) in solids.iter().enumerate() {
+            let program = solid.surface_program().expect("the solid is valid");
+            let (mut parted, mut told, mut seen) = (0, 0, 0);
+            for n in 0..600 {
+                let bounds = Bounds::from_center(vector(3 * n), (vector(3 * n + 1).abs() + 0.05) * 0.1);
+                let creases = program.creases(&bounds);
+                if creases.is_empty() {
+                    continue;
+                }
+                parted += 1;
+                let direction = vector(3 * n + 2).normalize();
+                let along = direction.to_array().map(|d| Interval::new(d - 0.01, d + 0.01));
+                let inside = |m: u32| bounds.min + bounds.size() * (vector(m) + 1.0) / 2.0;
+                let beside = inside(40 * n + 5);
+                let slopes = program.slopes_beside(&bounds, along, beside);
+                told += u32::from(slopes.lo() >= 0.0 || slopes.hi() <= 0.0);
+                for p in (0..40).map(|m| inside(m + 40 * n + 7)) {
+                    let above = |crease: &Crease, p: DVec3| crease.normal.dot(p) > crease.offset;
+                    if creases.iter().all(|crease| above(crease, p) == above(crease, beside)) {
+                        let slope = program.gradient(p).1.dot(direction);
+                        let slack = 1e-9 * (1.0 + slope.abs());
+                        seen += 1;
+                        assert!(
+                            slope > slopes.lo() - slack && slope < slopes.hi() + slack,
+                            "{number}: {slope} at {p} beside {beside}, {slopes:?}, {bounds:?}"
+                        );
+                    }
+                }
+            }
+            assert!(parted > 30 && told > 0 && seen > 300, "{number}: {parted} {told} {seen}");
+        }
     }
 }

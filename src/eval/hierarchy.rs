@@ -132,6 +132,12 @@ impl Hierarchy {
         Some(Hierarchy { boxes, operands, numbers })
     }
 
+    /// The bytes that it takes.
+    pub(super) fn bytes(&self) -> usize {
+        let Hierarchy { boxes, operands, numbers } = self;
+        size_of_val(&**boxes) + size_of_val(&**operands) + size_of_val(&**numbers)
+    }
+
     /// Calls `visit` with every operand whose bucket may matter in `region` down to −c.
     pub(crate) fn visit(&self, region: &Bounds, c: f64, mut visit: impl FnMut(usize)) {
         let mut at = 0;

@@ -53,12 +53,16 @@ pub(super) struct Asked {
 /// What is kept of most programs: lists have room for as many from the start.
 const FEW: usize = 32;
 
+/// What is left of a join is scanned if it is shorter: its boxes would take three times the memory of
+/// the rest.
+const LONG: usize = 32;
+
 /// One narrowing under way.
 pub(super) struct Pass<'a> {
     pub(super) program: &'a Program,
     pub(super) zones: &'a [Pieces],
     pub(super) world: &'a Pieces,
-    /// Whether a leaf that is not far by its box is open, whatever its range.
+    /// Whether of a leaf that is not far by its box no more than one value is asked.
     pub(super) by_boxes: bool,
     /// A leaf whose sign is known beforehand, by its node.
     pub(super) given: Option<(usize, bool)>,
@@ -243,8 +247,12 @@ impl<'a> Pass<'a> {
             return;
         }
         if !value && self.by_boxes && (leaf as usize) < program.scene.leaves.len() {
-            self.nodes.push(Node::leaf(leaf));
-            self.signs[at] = Sign::Open(Edge::new(self.nodes.len() - 1));
+            // One leaf that holds all of the zone, or all but it, may decide the whole crowd.
+            let range = zone.only().map_or(Interval::ALL, |zone| instance.range_about(zone));
+            self.signs[at] = Sign::of(range, || Edge::new(self.nodes.len()));
+            if let Sign::Open(_) = self.signs[at] {
+                self.nodes.push(Node::leaf(leaf));
+            }
             return;
         }
         if value || !zone.only().is_some_and(|zone| instance.is_crossed(zone)) {
@@ -329,8 +337,8 @@ impl<'a> Pass<'a> {
             open => {
                 let hierarchy = match hierarchy {
                     Some(all) if open == operands.len() => Some(all.clone()),
-                    Some(all) => all.subset(&kept).map(Arc::new),
-                    None => None,
+                    Some(all) if open >= LONG => all.subset(&kept).map(Arc::new),
+                    _ => None,
                 };
                 self.nodes.push(Node {
                     kind: Kind::Join { op: *op, rule: *rule, frame: *frame, hierarchy },

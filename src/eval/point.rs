@@ -22,6 +22,11 @@ impl Program {
     /// The same, with the values of all nodes.
     fn evaluate_all<N: Number>(&self, p: [N; 3], values: &mut Vec<N>) -> N {
         let frames = self.frame_points(p);
+        self.evaluate_leaves(|leaf| self.leaf(leaf, self.in_frame(&frames, self.instance(leaf).frame, p)), values)
+    }
+
+    /// The value, by those of the leaves.
+    pub(super) fn evaluate_leaves<N: Number>(&self, leaf: impl Fn(u32) -> N, values: &mut Vec<N>) -> N {
         values.clear();
         for node in &self.nodes[..] {
             let signed = |edge: &Edge| {
@@ -30,7 +35,7 @@ impl Program {
             };
             let mut operands = self.list(node).iter().map(signed);
             let value = match &node.kind {
-                Kind::Leaf(leaf) => self.leaf(*leaf, self.in_frame(&frames, self.instance(*leaf).frame, p)),
+                Kind::Leaf(number) => leaf(*number),
                 Kind::Join { op, rule, .. } => {
                     let Some(start) = operands.next() else { continue };
                     operands.fold(start, |all, next| rule.join(*op, all, next))

@@ -7,6 +7,8 @@
 
 use glam::DVec3;
 
+use super::bracket::Bracket;
+use super::crossing::distance;
 use super::{Program, Region};
 use crate::{Bounds, Dual, Interval};
 use rvachev_field::Zone;
@@ -110,7 +112,10 @@ impl Piece {
 /// Where a ray is cut: a little before and behind the planes at which slopes have no bound. Between
 /// them they have one, and at those planes most often signs that differ from side to side.
 fn cuts(program: &Program, (origin, direction): (DVec3, DVec3), [near, far]: [f64; 2], gap: f64) -> Vec<f64> {
-    let mut crossed = program.creases(origin, direction);
+    let ends = [near, far].map(|t| origin + t * direction);
+    let creases = program.creases(&Bounds::new(ends[0].min(ends[1]), ends[0].max(ends[1])));
+    let distances = creases.iter().map(|crease| distance(crease, origin, direction));
+    let mut crossed: Vec<f64> = distances.filter(|t| t.is_finite()).collect();
     crossed.sort_by(f64::total_cmp);
     let mut cuts: Vec<f64> = Vec::with_capacity(2 * crossed.len());
     for end in crossed.into_iter().flat_map(|t| [t - gap, t + gap]) {
@@ -283,49 +288,19 @@ fn along(program: &Program, origin: DVec3, direction: DVec3, t0: f64, t1: f64) -
     program.evaluate(p, &mut Vec::new())
 }
 
-/// The crossing between `t0` and `t1`: the false position method with halving (Illinois), which
-/// never leaves the bracket. Where rounding has the same sign at both ends it is at one of them.
-pub(crate) fn bracket(value: &impl Fn(f64) -> f64, [mut t0, mut t1]: [f64; 2], precision: f64) -> f64 {
-    let (mut f0, mut f1) = (value(t0), value(t1));
-    let inside0 = f0 > 0.0;
-    if inside0 == (f1 > 0.0) {
-        return if f0.abs() < f1.abs() { t0 } else { t1 };
+/// The crossing between `t0` and `t1`. Where rounding has the same sign at both ends it is at one of
+/// them.
+pub(crate) fn bracket(value: &impl Fn(f64) -> f64, ends: [f64; 2], precision: f64) -> f64 {
+    let values = ends.map(value);
+    if (values[0] > 0.0) == (values[1] > 0.0) {
+        return if values[0].abs() < values[1].abs() { ends[0] } else { ends[1] };
     }
-    let mut kept = 0i32;
-    let (mut halvings, mut more) = (0, 1);
-    for _ in 0..80 {
-        let width = t1 - t0;
-        if width <= precision.max(4.0 * f64::EPSILON * t1.abs().max(f64::MIN_POSITIVE)) {
-            break;
-        }
-        let secant = t0 + width * (f0 / (f0 - f1));
-        // Three sides in a row mean slow progress: halve, each time more often. (In a face the
-        // value is level.)
-        if kept.abs() >= 3 {
-            (halvings, more) = (more, 2 * more);
-        }
-        let stuck = halvings > 0 || !(secant > t0 && secant < t1);
-        halvings -= halvings.min(1);
-        let t = if stuck { 0.5 * (t0 + t1) } else { secant };
-        let f = value(t);
-        if (f > 0.0) == inside0 {
-            (t0, f0) = (t, f);
-            if kept > 0 {
-                f1 *= 0.5;
-            }
-            kept = kept.max(0) + 1;
-        } else {
-            (t1, f1) = (t, f);
-            if kept < 0 {
-                f0 *= 0.5;
-            }
-            kept = kept.min(0) - 1;
-        }
-        if stuck {
-            kept = 0;
-        }
+    let mut bracket = Bracket::new(ends, values);
+    for _ in 0..Bracket::MOST {
+        let Some(t) = bracket.next(precision) else { break };
+        bracket.narrow(t, value(t));
     }
-    0.5 * (t0 + t1)
+    bracket.middle()
 }
 
 /// Rays end here along every axis: beyond the coordinate limit points are held at it, and a

@@ -75,6 +75,18 @@ impl Instance {
         is_inside(near) && !(self.bounds.contains(far) && is_inside(far))
     }
 
+    /// A range over a zone of its frame by one value, of leaves whose values change by no more than
+    /// lengths do.
+    pub(crate) fn range_about(&self, zone: &Zone) -> Interval {
+        if !(self.field.convex() || self.field.exact()) || !self.field.is_steady() {
+            return Interval::ALL;
+        }
+        let zone = zone.mapped(&self.to_local);
+        let reach = zone.radius();
+        let rounding = 1e-14 * (zone.centre.abs().max_element() + reach);
+        self.placed(Interval::around(self.field.value(zone.centre.to_array()), reach + rounding))
+    }
+
     /// A range of the leaf's own values, as it counts outside of it.
     pub(crate) fn placed(&self, own: Interval) -> Interval {
         own * Interval::point(self.placement.scale) + self.placement.shift

@@ -127,6 +127,12 @@ impl Tape {
         Tape { frames, leaves, steps, registers, result, origin, roundoff, rivals, is_choice }
     }
 
+    /// The bytes that it takes.
+    pub(crate) fn bytes(&self) -> usize {
+        let rivals = self.rivals.as_ref().map_or(0, Rivals::bytes);
+        size_of_val(&*self.frames) + size_of_val(&*self.leaves) + size_of_val(&*self.steps) + rivals
+    }
+
     /// What points are relative to.
     #[must_use]
     pub fn origin(&self) -> DVec3 {

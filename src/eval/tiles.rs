@@ -2,21 +2,23 @@
 //!
 //! A tile's surface is found when a point of it is first asked about, and kept. It is found as far
 //! around the tile as lengths reach, so distances beyond that are no more than bounds. No lock is
-//! held while a tile is made: two threads may make the same one, and the first is kept.
+//! held while a tile is made: two threads may make the same one, and the first is kept. Of a
+//! surface that repeats, as lattices do, the tiles of one cell are made.
 
 use std::collections::HashMap;
 use std::fmt;
 use std::sync::{Arc, PoisonError, RwLock};
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 use super::accuracy::Accuracy;
 use super::apart::sign;
 use super::compile::Compiled;
 use super::composite::points64;
 use super::source::{DistanceSource, Wanted};
+use super::tiling::{Copy, Key, Tiling};
 use crate::{Bounds, Dual, Interval, ParamError, Run, Solid};
-use rvachev_field::{AnyField, Chunk, Patches, SurfaceDistance, VALUE_LIMIT, Zone, steep_slopes};
+use rvachev_field::{AnyField, Chunk, Patches, Placement, SurfaceDistance, VALUE_LIMIT, Zone, steep_slopes};
 #[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
@@ -26,7 +28,34 @@ const SIDE: f64 = 8.0;
 /// Ranges over more tiles than this are not told.
 const MANY: usize = 8;
 
-type Tile = Arc<SurfaceDistance>;
+/// A tile's surface, and how far it is moved to where it is asked for.
+#[derive(Clone)]
+struct Tile {
+    surface: Arc<SurfaceDistance>,
+    by: DVec3,
+}
+
+impl Tile {
+    /// A point where the surface was found.
+    fn local(&self, p: [f64; 3]) -> [f64; 3] {
+        (DVec3::from_array(p) - self.by).to_array()
+    }
+
+    /// A placement, for points where the surface was found.
+    fn placement(&self, placement: &Placement) -> Placement {
+        if self.by == DVec3::ZERO {
+            return *placement;
+        }
+        Placement::new(&(DAffine3::from_translation(-self.by) * placement.map()), placement.scale, placement.shift)
+    }
+
+    fn zone(&self, zone: &Zone) -> Zone {
+        match self.by == DVec3::ZERO {
+            true => *zone,
+            false => zone.mapped(&DAffine3::from_translation(-self.by)),
+        }
+    }
+}
 
 /// The distance to the surface of a solid without end.
 pub(super) struct Tiles {
@@ -36,7 +65,9 @@ pub(super) struct Tiles {
     pub(super) length: f64,
     tolerance: Option<f64>,
     pub(super) source: &'static dyn DistanceSource,
-    made: RwLock<HashMap<[i64; 3], Tile>>,
+    period: Option<DMat3>,
+    tiling: Tiling,
+    made: RwLock<HashMap<Key, Arc<SurfaceDistance>>>,
 }
 
 impl fmt::Debug for Tiles {
@@ -54,12 +85,14 @@ impl Tiles {
     ) -> Tiles {
         let Wanted { length, tolerance, .. } = *wanted;
         let (sign, bounds) = (sign(programs), programs.bounds);
-        Tiles { solid, sign, bounds, length, tolerance, source, made: RwLock::default() }
+        let period = programs.surface.period();
+        let tiling = Tiling::new(SIDE * length, period);
+        Tiles { solid, sign, bounds, length, tolerance, source, period, tiling, made: RwLock::default() }
     }
 
     /// How far the surface of any tile may be off. No tile has been looked at, and no error found.
     pub(super) fn accuracy(&self, programs: &Compiled) -> Accuracy {
-        let region = self.region([0; 3]);
+        let region = self.tiling.region([0; 3]);
         let tolerance = self.source.tolerance(programs, &self.wanted(&region));
         Accuracy { tolerance, error: 0.0 }
     }
@@ -68,25 +101,13 @@ impl Tiles {
         Wanted { length: self.length, tolerance: self.tolerance, region }
     }
 
-    fn side(&self) -> f64 {
-        SIDE * self.length
-    }
-
-    fn key(&self, p: DVec3) -> [i64; 3] {
-        (p / self.side()).round().to_array().map(|c| c as i64)
-    }
-
-    /// The box of a tile; that of the first is about the origin.
-    fn region(&self, key: [i64; 3]) -> Bounds {
-        Bounds::from_center(DVec3::from_array(key.map(|c| c as f64)) * self.side(), DVec3::splat(0.5 * self.side()))
-    }
-
     /// The tile with a number.
-    fn tile(&self, key: [i64; 3]) -> Tile {
-        if let Some(tile) = self.made.read().unwrap_or_else(PoisonError::into_inner).get(&key) {
-            return tile.clone();
+    fn tile(&self, key: Key) -> Tile {
+        let Copy { of, by } = self.tiling.copy(key);
+        if let Some(surface) = self.made.read().unwrap_or_else(PoisonError::into_inner).get(&of) {
+            return Tile { surface: surface.clone(), by };
         }
-        let region = self.region(key);
+        let region = self.tiling.region(of);
         let found = super::compile::kept(&self.solid).and_then(|programs| {
             self.source.surface(&self.solid, &programs, &self.wanted(&region), &Run::default()).ok()
         });
@@ -97,25 +118,28 @@ impl Tiles {
                 Err(_) => unreachable!("nobody has the token"),
             },
         };
-        let tile = Arc::new(SurfaceDistance::new(patches, self.sign.clone(), error, None, self.bounds));
+        let surface = Arc::new(SurfaceDistance::new(patches, self.sign.clone(), error, None, self.bounds));
         let mut made = self.made.write().unwrap_or_else(PoisonError::into_inner);
-        made.entry(key).or_insert(tile).clone()
+        Tile { surface: made.entry(of).or_insert(surface).clone(), by }
     }
 
     fn at(&self, p: DVec3) -> Tile {
-        self.tile(self.key(p))
+        self.tile(self.tiling.key(p))
     }
 
-    /// The tiles that a zone meets, with the part of it in each, if they are not many.
+    /// The tiles that a zone meets, with the part of it in each where its surface was found, if they
+    /// are not many.
     fn parts(&self, zone: &Zone) -> Option<Vec<(Tile, Zone)>> {
         let hull = zone.hull();
         if !zone.is_finite() {
             return None;
         }
         let [low, high] = [hull.map(Interval::lo), hull.map(Interval::hi)].map(DVec3::from_array);
-        let (from, to) = (self.key(low), self.key(high));
+        let [from, to] = self.tiling.keys(&Bounds::new(low, high));
         if from == to {
-            return Some(vec![(self.tile(from), *zone)]);
+            let tile = self.tile(from);
+            let part = tile.zone(zone);
+            return Some(vec![(tile, part)]);
         }
         let count =
             (0..3).map(|axis| to[axis].saturating_sub(from[axis]).saturating_add(1)).try_fold(1i64, i64::checked_mul);
@@ -126,9 +150,13 @@ impl Tiles {
         for x in from[0]..=to[0] {
             for y in from[1]..=to[1] {
                 for z in from[2]..=to[2] {
-                    let tile = self.region([x, y, z]);
-                    let part = Bounds::new(tile.min.max(low), tile.max.min(high));
-                    parts.push((self.tile([x, y, z]), Zone::of_bounds(&part)));
+                    let region = self.tiling.region([x, y, z]);
+                    let part = Bounds::new(region.min.max(low), region.max.min(high));
+                    if !part.is_empty() {
+                        let tile = self.tile([x, y, z]);
+                        let part = tile.zone(&Zone::of_bounds(&part));
+                        parts.push((tile, part));
+                    }
                 }
             }
         }
@@ -137,8 +165,8 @@ impl Tiles {
 
     /// The tile that all points of a chunk are in, if there is one.
     fn only(&self, mut points: impl Iterator<Item = [f64; 3]>) -> Option<Tile> {
-        let key = self.key(DVec3::from_array(points.next()?));
-        points.all(|p| self.key(DVec3::from_array(p)) == key).then(|| self.tile(key))
+        let key = self.tiling.key(DVec3::from_array(points.next()?));
+        points.all(|p| self.tiling.key(DVec3::from_array(p)) == key).then(|| self.tile(key))
     }
 }
 
@@ -156,15 +184,18 @@ impl AnyField for Tiles {
     }
 
     fn roundoff(&self, reach: f64) -> f64 {
-        5e-7 * (reach + 2.0 * self.side())
+        5e-7 * (reach + 2.0 * self.tiling.region([0; 3]).longest_side())
     }
 
     fn value(&self, p: [f64; 3]) -> f64 {
-        self.at(DVec3::from_array(p)).value(p)
+        let tile = self.at(DVec3::from_array(p));
+        tile.surface.value(tile.local(p))
     }
 
     fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64> {
-        self.at(DVec3::from_array(p.map(Dual::value))).dual(p)
+        let tile = self.at(DVec3::from_array(p.map(Dual::value)));
+        let [x, y, z] = p;
+        tile.surface.dual([x - tile.by.x, y - tile.by.y, z - tile.by.z])
     }
 
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
@@ -177,6 +208,10 @@ impl AnyField for Tiles {
 
     fn growth(&self) -> DVec3 {
         DVec3::ONE
+    }
+
+    fn period(&self) -> Option<DMat3> {
+        self.period
     }
 
     fn convex(&self) -> bool {
@@ -194,12 +229,15 @@ impl AnyField for Tiles {
     fn range(&self, zone: &Zone) -> Interval {
         let everything = Interval::new(-VALUE_LIMIT, VALUE_LIMIT);
         let Some(parts) = self.parts(zone) else { return everything };
-        parts.iter().map(|(tile, part)| tile.range(part)).reduce(Interval::hull).unwrap_or(everything)
+        parts.iter().map(|(tile, part)| tile.surface.range(part)).reduce(Interval::hull).unwrap_or(everything)
     }
 
     fn narrowed(&self, zone: &Zone) -> Option<Arc<dyn AnyField>> {
         match &self.parts(zone)?[..] {
-            [(tile, part)] => Some(tile.narrowed(part).unwrap_or_else(|| tile.clone())),
+            [(tile, part)] if tile.by == DVec3::ZERO => {
+                Some(tile.surface.narrowed(part).unwrap_or_else(|| tile.surface.clone()))
+            }
+            // A copy is not a leaf of its own.
             _ => None,
         }
     }
@@ -214,7 +252,8 @@ impl AnyField for Tiles {
         let Chunk { points, placement, out: [out] } = chunk;
         let local = |i: usize| placement.apply([0, 1, 2].map(|axis| f64::from(points[axis][i])));
         if let Some(tile) = self.only((0..out.len()).map(local)) {
-            return tile.lanes32(Chunk { points, placement, out: [out] });
+            let placement = &tile.placement(placement);
+            return tile.surface.lanes32(Chunk { points, placement, out: [out] });
         }
         for (i, out) in out.iter_mut().enumerate() {
             *out = placement.finish(self.value(local(i))) as f32;
@@ -229,7 +268,8 @@ impl AnyField for Tiles {
         let Chunk { points, placement, out } = chunk;
         let local = |i: usize| placement.apply([0, 1, 2].map(|axis| f64::from(points[axis][i])));
         if let Some(tile) = self.only((0..points[0].len()).map(local)) {
-            return tile.gradients(Chunk { points, placement, out });
+            let placement = &tile.placement(placement);
+            return tile.surface.gradients(Chunk { points, placement, out });
         }
         for (i, p) in (0..points[0].len()).map(local).enumerate() {
             let dual = self.dual(Dual::point(p));
@@ -239,5 +279,35 @@ impl AnyField for Tiles {
                 out[axis + 1][i] = slope[axis] as f32;
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::any::Any;
+
+    use super::*;
+    use crate::eval::apart::measured;
+    use crate::{MinimalSurface, NetworkLattice};
+
+    /// A lattice a little out of place, eroded.
+    fn eroded() -> Solid {
+        let lattice = NetworkLattice { surface: MinimalSurface::Gyroid, cell: 4.0, fraction: 0.6 };
+        Solid::from(lattice).rotate_z(0.3).translate(DVec3::new(0.3, -0.2, 0.7)).offset(-0.25)
+    }
+
+    #[test]
+    fn of_a_lattice_one_cell_is_measured() {
+        let solid = eroded();
+        let period = DMat3::from_rotation_z(0.3) * DMat3::from_diagonal(DVec3::splat(4.0));
+        for i in 0..40 {
+            let p = DVec3::new(0.37, 0.11, 0.23) * f64::from(i);
+            let steps = DVec3::new(f64::from(i % 7) - 3.0, f64::from(i % 5) - 1.0, f64::from(3 * i));
+            let [here, there] = [p, p + period * steps].map(|p| solid.value(p).unwrap());
+            assert!((here - there).abs() < 1e-9, "{here} and {there} at {p}");
+        }
+        let measured = measured(&solid).unwrap();
+        let tiles = (&*measured.field as &dyn Any).downcast_ref::<Tiles>().unwrap();
+        assert!(tiles.made.read().unwrap().len() <= 8);
     }
 }

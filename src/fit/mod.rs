@@ -183,8 +183,8 @@ pub use paper::{
     supershape_union_with,
 };
 pub use part::{
-    Layout, PartFit, PartKinds, PartLeaf, PartSettings, Pattern, Snap, Topology, Unexplained, part, part_of_points,
-    part_of_points_with, part_with,
+    Layout, PartFit, PartKinds, PartLeaf, PartSettings, PartTimes, Pattern, Snap, Topology, Unexplained, part,
+    part_of_points, part_of_points_with, part_with,
 };
 pub use register::{RegisterSettings, Registration, register, register_with};
 pub use result::{Fit, SearchReport, Shape};

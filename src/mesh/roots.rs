@@ -6,11 +6,12 @@
 //!      | \                       1      on the chord of a and b
 //!      |   \                     2      a Newton step from 1, by the gradient there
 //!     -+-----*-2-*------+--> t   3      another one, from the value in double precision, and
-//!      |         1 ` -  *               a last one from the value at 3
+//!      |         1 ` -  *               a last one from the value at 3, if 3 may be off
 //! ```
 //!
 //! The gradient in single precision at the chord's point gives the slope for all three steps, and
-//! the normal. Most edges are settled by them; the few that are not, because a crease or a
+//! the normal. How far a step goes wrong is told by the step after it, so most edges are settled at
+//! 3 without another value, and most others by the last step; the few that are not, because a crease or a
 //! strong bend lies between, are closed in on by false position with halved weights (Illinois),
 //! and halving. Where the root is away from where the gradient was taken, the normal is taken
 //! anew.
@@ -152,19 +153,31 @@ impl RootFinder {
         let count = edges.len();
         self.evaluate_all(evaluator, tape, edges, step);
         self.before.resize(count, [0.0; 2]);
-        {
-            let (exact, slopes) = (&self.exact[..count], &self.slope[..count]);
-            let (before, ts) = (&mut self.before[..count], &mut self.t[..count]);
-            for n in 0..count {
-                before[n] = [ts[n], exact[n]];
-                ts[n] = newton(ts[n], exact[n], slopes[n]);
-            }
-        }
-        self.evaluate_all(evaluator, tape, edges, step);
         self.open.clear();
         self.brackets.clear();
+        // Of an edge: what rounding leaves in doubt of the value, and of a vertex.
+        let (doubt, coarse) = (tape.roundoff(), coarseness(tape, step));
         for (n, edge) in edges.iter().enumerate() {
-            let (t, value, slope, [before, first]) = (self.t[n], self.exact[n], self.slope[n], self.before[n]);
+            let (t, value, slope) = (self.t[n], self.exact[n], self.slope[n]);
+            self.before[n] = [t, value];
+            let by = value / slope;
+            self.t[n] = newton(t, value, slope);
+            // A step goes wrong by what the slope changes on the way from where it was taken: by
+            // twice the part that the step before it went wrong by, as far as this can be told.
+            let wrong = 4.0 * by.abs().max(doubt / slope.abs()) / (t - self.seen[n]).abs();
+            if self.t[n] == t - by && (by.abs() * wrong.min(1.0) <= SETTLED || by.abs() <= coarse) {
+                continue;
+            }
+            let mut bracket = Bracket::new(edge);
+            bracket.next = self.t[n];
+            self.open.push(n as u32);
+            self.brackets.push(bracket);
+        }
+        self.evaluate_open(evaluator, tape, edges, step);
+        let mut kept = 0;
+        for at in 0..self.open.len() {
+            let n = self.open[at] as usize;
+            let (t, value, slope, [before, first]) = (self.t[n], self.exact[at], self.slope[n], self.before[n]);
             let by = value / slope;
             // By both slopes, that of the gradient and that of the last step, unless it went
             // nowhere. NaN stays open.
@@ -173,16 +186,19 @@ impl RootFinder {
                 self.t[n] = t - by;
                 continue;
             }
-            let mut bracket = Bracket::new(edge);
+            let mut bracket = self.brackets[at];
             for (t, value) in [(before, first), (t, value)] {
                 if bracket.holds(t) {
                     bracket.learn(t, value);
                 }
             }
             bracket.next = bracket.secant();
-            self.open.push(n as u32);
-            self.brackets.push(bracket);
+            self.open[kept] = n as u32;
+            self.brackets[kept] = bracket;
+            kept += 1;
         }
+        self.open.truncate(kept);
+        self.brackets.truncate(kept);
         for round in 0..STEPS {
             if self.open.is_empty() {
                 break;
@@ -311,6 +327,11 @@ impl RootFinder {
 fn outward([dx, dy, dz]: [f32; 3]) -> [f32; 3] {
     let inward = DVec3::new(dx.into(), dy.into(), dz.into());
     (-inward.normalize_or_zero()).as_vec3().to_array()
+}
+
+/// How far vertices may be off by being in single precision, as a part of an edge.
+fn coarseness(tape: &Tape, step: f64) -> f64 {
+    0.5 * f64::from(f32::EPSILON) * tape.origin().abs().max_element() / step
 }
 
 /// A Newton step from `t`, if it stays on the edge.

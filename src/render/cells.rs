@@ -27,9 +27,10 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 
 use glam::DVec3;
 
+use super::slopes::Known;
 use super::still::Still;
 use crate::eval::{BOXES_AT_ONCE, Bend, Program, Region, Tape};
-use crate::{Bounds, Dual, Interval, Rays};
+use crate::{Bounds, Rays};
 
 /// The tree.
 pub(super) struct Cells {
@@ -64,7 +65,7 @@ pub(super) struct Cell {
     /// What a value takes, in those of ordinary leaves.
     pub(super) cost: usize,
     around: Around,
-    slopes: Mutex<Option<([DVec3; 2], Slopes)>>,
+    slopes: Mutex<Option<([DVec3; 2], Known)>>,
     halves: OnceLock<Halves>,
     united: OnceLock<Option<Vec<Cell>>>,
     tape: OnceLock<Tape>,
@@ -127,6 +128,11 @@ impl Cells {
         still.as_deref().filter(|still| still.is_along(rays.forward()))
     }
 
+    /// The tree in parts, if it was asked for and there is one.
+    pub(super) fn known_still(&self) -> Option<&Still> {
+        self.still.get()?.as_deref()
+    }
+
     pub(super) fn root(&self) -> &Part {
         &self.root
     }
@@ -186,40 +192,8 @@ const UNITED: usize = 8;
 const DEAR: usize = 8;
 const AT_ONCE: u32 = BOXES_AT_ONCE.ilog2();
 
-/// Slopes below this part of the others come of 0 rounded outwards.
-const LEVEL: f64 = 1e-13;
-
 /// Where as many halvings have left more than three quarters of the cost, more are of no use.
 const STALE: u32 = 6;
-
-/// What is known of slopes along rays in a cell.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Slopes {
-    /// Those of the value.
-    pub(super) value: Interval,
-    /// Whether rays that go inside stay there: they cross the surface once at most.
-    pub(super) rises: bool,
-    /// Whether rays that go outside stay there.
-    pub(super) falls: bool,
-}
-
-impl Slopes {
-    /// Nothing is known.
-    pub(super) const ANY: Slopes = Slopes { value: Interval::ALL, rises: false, falls: false };
-
-    /// Those of the negated value.
-    pub(super) fn turned(self) -> Slopes {
-        Slopes { value: -self.value, rises: self.falls, falls: self.rises }
-    }
-}
-
-/// The slopes without what comes of 0 rounded outwards: on the way through a cell such slopes
-/// change a value by far less than the room that the boxes are given.
-fn level(slopes: Interval) -> Interval {
-    let least = LEVEL * slopes.magnitude().clamp(1e-17, 1.0);
-    let level = |v: f64| if v.abs() < least { 0.0 } else { v };
-    Interval::new(level(slopes.lo()), level(slopes.hi()))
-}
 
 /// What is known of the boxes around a box.
 #[derive(Clone, Copy)]
@@ -357,32 +331,32 @@ impl Cell {
 
     /// The slopes along rays in the cell with directions from `low` to `high`; those last asked for
     /// are kept, as the tiles of an orthographic picture ask for the same.
-    pub(super) fn slopes(&self, low: DVec3, high: DVec3) -> Slopes {
+    pub(super) fn slopes(&self, low: DVec3, high: DVec3) -> Known {
         let mut kept = self.slopes.lock().unwrap_or_else(PoisonError::into_inner);
-        match *kept {
-            Some((directions, slopes)) if directions == [low, high] => slopes,
+        match &*kept {
+            Some((directions, known)) if *directions == [low, high] => known.clone(),
             _ => {
-                let slopes = self.slopes_along(low, high);
-                *kept = Some(([low, high], slopes));
-                slopes
+                let room = self.bounds.inflate(self.around.margin);
+                let known = Known::of(&self.program, &room, [low, high]);
+                *kept = Some(([low, high], known.clone()));
+                known
             }
         }
     }
 
-    fn slopes_along(&self, low: DVec3, high: DVec3) -> Slopes {
-        let room = self.bounds.inflate(self.around.margin);
-        let along = [0, 1, 2].map(|axis| Interval::new(low[axis], high[axis]));
-        let crossing = self.program.crossing_slopes(&room, along).map(level);
-        if let Some((rises, falls)) = crossing.map(|slopes| (slopes.lo() >= 0.0, slopes.hi() <= 0.0))
-            && (rises || falls)
-        {
-            // How steep it is does not matter then.
-            return Slopes { rises, falls, ..Slopes::ANY };
-        }
-        let zero = Interval::point(0.0);
-        let side = |axis: usize| Dual::new(Interval::new(room.min[axis], room.max[axis]), [along[axis], zero, zero]);
-        let value = level(self.program.evaluate([side(0), side(1), side(2)], &mut Vec::new()).gradient()[0]);
-        Slopes { value, rises: value.lo() >= 0.0, falls: value.hi() <= 0.0 }
+    /// The halves, if they were asked for.
+    pub(super) fn known_halves(&self) -> Option<&Halves> {
+        self.halves.get()
+    }
+
+    /// The operands of a union, if they were asked for and there are some.
+    pub(super) fn known_united(&self) -> Option<&[Cell]> {
+        self.united.get()?.as_deref()
+    }
+
+    /// The program for bulk evaluation, if it was asked for.
+    pub(super) fn known_tape(&self) -> Option<&Tape> {
+        self.tape.get()
     }
 
     /// The program for bulk evaluation.

@@ -2,7 +2,8 @@
 
 use glam::{DVec3, Vec3};
 
-use super::cells::{Cell, Cells, Slopes};
+use super::cells::{Cell, Cells};
+use super::slopes::{Known, Slopes};
 use crate::Bounds;
 use crate::eval::{Bend, Tape};
 
@@ -124,7 +125,8 @@ pub(super) struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
-    pub(super) fn new(cells: &Cells, cell: &'a Cell, slopes: Slopes, rays: &'a [Ray], spans: &'a [Span]) -> Job<'a> {
+    pub(super) fn new(cells: &Cells, cell: &'a Cell, known: &Known, rays: &'a [Ray], spans: &'a [Span]) -> Job<'a> {
+        let slopes = known.slopes;
         let tape = cell.tape();
         let reach = cells.reach();
         let size = reach.longest_side();
@@ -149,6 +151,11 @@ impl<'a> Job<'a> {
             settled: SETTLED * size,
             size,
         }
+    }
+
+    /// Turns the value along a ray into g.
+    pub(super) fn turn(&self, ray: u32) -> f64 {
+        if self.rays[ray as usize].inside { -1.0 } else { 1.0 }
     }
 
     /// The value in double precision.

@@ -22,9 +22,11 @@
 
 use glam::{DVec3, Vec3};
 
-use super::cells::{Cell, Cells, Slopes};
+use super::beside::{Crossing, Walk};
+use super::cells::{Cell, Cells};
 use super::gbuffer::Surface;
 use super::job::{Job, Lane, Local, Outcome, Ray, Span};
+use super::slopes::{Known, Slopes};
 use crate::eval::{Bend, Care, Evaluator, Gradients, first_hit};
 
 /// A crossing found in single precision.
@@ -38,18 +40,14 @@ pub(super) struct Found {
 }
 
 /// Steps of the searches, after which rays are divided by intervals.
-const TANGENTS: usize = 8;
-const SEARCH: usize = 40;
+pub(super) const TANGENTS: usize = 8;
 const NEWTON: usize = 16;
 
 /// Of programs that cost more, in ordinary leaves, gradients are not for every ray.
 const DEAR: usize = 8;
 
-/// A search goes by this part of what a step may go on beyond where it is safe.
-const LEAP: f32 = 0.9;
-
 /// Slopes in single precision are trusted to this part.
-const SLOPE_ERROR: f32 = 1e-3;
+pub(super) const SLOPE_ERROR: f32 = 1e-3;
 
 /// Scratch memory of a thread.
 #[derive(Default)]
@@ -59,7 +57,7 @@ pub(super) struct Marcher {
     pub(super) double: [Vec<f64>; 4],
     near: Vec<Lane>,
     far: Vec<Lane>,
-    search: Vec<Lane>,
+    pub(super) search: Vec<Lane>,
     unique: Vec<Lane>,
     pub(super) found: Vec<Found>,
     pub(super) doubtful: Vec<Found>,
@@ -67,37 +65,33 @@ pub(super) struct Marcher {
     /// Hits whose owners are still sought, relative to the tape's origin, and the values that
     /// decide there.
     pub(super) unowned: Vec<(u32, DVec3)>,
+    pub(super) walks: Vec<Walk>,
+    pub(super) crossed: Vec<Walk>,
+    pub(super) crossings: Vec<Crossing>,
     pub(super) best: Vec<f64>,
     /// The rays that have hit something.
     pub(super) hits: Vec<u32>,
 }
 
 impl Marcher {
-    /// Marches the spans' rays through `cell`, with `slopes` along them; what they hit goes to
-    /// `surfaces`, by ray, and the numbers of those rays to `hits`.
+    /// Marches the spans' rays through `cell`, where slopes along them are `known`; what they hit goes
+    /// to `surfaces`, by ray, and the numbers of those rays to `hits`.
     pub(super) fn march(
         &mut self,
         cells: &Cells,
         cell: &Cell,
-        slopes: Slopes,
+        known: &Known,
         rays: &[Ray],
         spans: &[Span],
         surfaces: &mut [Surface],
     ) {
         self.open.clear();
         self.found.clear();
-        let job = Job::new(cells, cell, slopes, rays, spans);
-        self.load(&job);
-        self.near_ends(&job);
-        self.far_ends(&job);
-        if cell.bend.is_some() {
-            self.search_bent(&job);
-        } else {
-            self.search_steep(&job);
+        let job = Job::new(cells, cell, known, rays, spans);
+        match &known.sides {
+            Some(sides) => self.walk(&job, sides, surfaces),
+            None => self.search(&job, surfaces),
         }
-        self.newton(&job);
-        self.settle(&job);
-        self.finish(&job, surfaces);
         for &Span { ray, near, far } in &self.open {
             let Ray { origin, direction, base, .. } = rays[ray as usize];
             let first =
@@ -113,6 +107,21 @@ impl Marcher {
                 self.hits.push(ray);
             }
         }
+    }
+
+    /// The crossings of rays along which slopes have bounds.
+    fn search(&mut self, job: &Job<'_>, surfaces: &mut [Surface]) {
+        self.load(job);
+        self.near_ends(job);
+        self.far_ends(job);
+        if job.bend.is_some() {
+            self.search_bent(job);
+        } else {
+            self.search_steep(job);
+        }
+        self.newton(job);
+        self.settle(job);
+        self.finish(job, surfaces);
     }
 
     /// The lanes of the spans: those along which g bends downwards start at the near end.
@@ -176,7 +185,7 @@ impl Marcher {
 
     /// Evaluates lanes at `at` and calls `visit` with each; those for which it gives `true` stay,
     /// in their order.
-    fn sift(
+    pub(super) fn sift(
         &mut self,
         job: &Job<'_>,
         lanes: &mut Vec<Lane>,
@@ -293,125 +302,6 @@ impl Marcher {
         self.far = lanes;
     }
 
-    /// Lanes along which g bends downwards and that are still below 0: where the tangents from
-    /// both ends meet, g is below them.
-    fn search_bent(&mut self, job: &Job<'_>) {
-        let mut lanes = std::mem::take(&mut self.search);
-        for round in 0..TANGENTS {
-            if lanes.is_empty() {
-                break;
-            }
-            self.sift(job, &mut lanes, |lists, lane, Local { g, s, .. }| {
-                if g > job.doubt {
-                    (lane.right, lane.g_right, lane.s_right) = (lane.at, g, s);
-                    lane.aim(lane.at - g / s);
-                    lists.unique.push(*lane);
-                    return false;
-                }
-                if g >= -job.doubt {
-                    lists.open.push(job.span(lane));
-                    return false;
-                }
-                if s > 0.0 {
-                    if round == 0 {
-                        // It still rises at the far end.
-                        return false;
-                    }
-                    (lane.left, lane.g_left, lane.s_left) = (lane.at, g, s);
-                } else {
-                    (lane.right, lane.g_right, lane.s_right) = (lane.at, g, s);
-                }
-                let steep = |s: f32| s + SLOPE_ERROR * s.abs() + 1e-6;
-                let (up, down) = (steep(lane.s_left), steep(-lane.s_right));
-                let width = lane.right - lane.left;
-                if up <= 0.0 || down <= 0.0 {
-                    return false;
-                }
-                let ahead = ((lane.g_right - lane.g_left + down * width) / (up + down)).clamp(0.0, width);
-                if lane.g_left + up * ahead < -job.doubt {
-                    return false;
-                }
-                if !(ahead > 1e-6 * width && ahead < width * (1.0 - 1e-6)) {
-                    lists.open.push(job.span(lane));
-                    return false;
-                }
-                lane.at = lane.left + ahead;
-                true
-            });
-        }
-        self.open.extend(lanes.iter().map(|lane| job.span(lane)));
-        lanes.clear();
-        self.search = lanes;
-    }
-
-    /// Lanes along which only bounds of the slope are known: steps that cannot pass a crossing.
-    fn search_steep(&mut self, job: &Job<'_>) {
-        let mut lanes = std::mem::take(&mut self.search);
-        for _ in 0..SEARCH {
-            if lanes.is_empty() {
-                break;
-            }
-            self.sift(job, &mut lanes, |lists, lane, Local { g, s, gradient }| {
-                let (lo, hi) = job.slopes(lane);
-                if lane.probe {
-                    lane.probe = false;
-                    if g > job.doubt && lane.at - lane.left <= job.close {
-                        (lane.right, lane.g_right, lane.s_right) = (lane.at, g, s);
-                        lane.aim(lane.at - g / s);
-                        lists.unique.push(*lane);
-                        return false;
-                    }
-                    // What the value takes to rise from 0 to here may cover all of the leap.
-                    let covered = lane.at - (-g - job.doubt) / -lo <= lane.left;
-                    if !(g < -job.doubt && covered) {
-                        lane.at = lane.left;
-                        return true;
-                    }
-                }
-                let safe = lane.at + (-g - job.doubt) / hi;
-                if !(g < -job.doubt && hi.is_finite() && safe > lane.at) {
-                    if g.abs() <= job.doubt && s > 0.0 {
-                        lane.left = lane.at;
-                        lists.doubtful.push(Found { lane: *lane, slope: s, gradient, ahead: 0.0 });
-                    } else {
-                        lists.open.push(job.rest(lane));
-                    }
-                    return false;
-                }
-                let mut end = lane.right;
-                if lane.g_right < 0.0 {
-                    end -= (-lane.g_right - job.doubt).max(0.0) / -lo;
-                }
-                if safe >= end {
-                    if lane.g_right > 0.0 {
-                        lists.open.push(job.rest(lane));
-                    }
-                    return false;
-                }
-                // A little beyond where the tangent meets 0, if no crossing that is nearer makes
-                // a difference.
-                let beyond = lane.at + (-1.05 * g + 4.0 * job.doubt) / s;
-                lane.left = safe;
-                let near = s > 0.0 && beyond > safe && beyond < lane.right && beyond - safe <= job.close;
-                // A step that the bounds from both of its ends just cover if the value goes on as
-                // it does here.
-                let (way, back) = (safe - lane.at, (-g - job.doubt) / -lo);
-                let leap = lane.at + way + LEAP * ((way + back) / (1.0 + s / -lo) - way);
-                let far = lo < 0.0 && leap > safe && leap < end;
-                lane.probe = near || far;
-                lane.at = match (near, far) {
-                    (true, _) => beyond,
-                    (false, true) => leap,
-                    (false, false) => safe,
-                };
-                true
-            });
-        }
-        self.open.extend(lanes.iter().map(|lane| job.rest(lane)));
-        lanes.clear();
-        self.search = lanes;
-    }
-
     /// The crossings between `left` and `right`, where g changes its sign: Newton's method,
     /// halving where it leaves the bracket.
     fn newton(&mut self, job: &Job<'_>) {
@@ -449,10 +339,10 @@ impl Marcher {
 }
 
 /// Where lanes go from a step.
-struct Lists<'a> {
-    search: &'a mut Vec<Lane>,
-    unique: &'a mut Vec<Lane>,
-    found: &'a mut Vec<Found>,
-    doubtful: &'a mut Vec<Found>,
-    open: &'a mut Vec<Span>,
+pub(super) struct Lists<'a> {
+    pub(super) search: &'a mut Vec<Lane>,
+    pub(super) unique: &'a mut Vec<Lane>,
+    pub(super) found: &'a mut Vec<Found>,
+    pub(super) doubtful: &'a mut Vec<Found>,
+    pub(super) open: &'a mut Vec<Span>,
 }

@@ -6,6 +6,7 @@
 //! a coarser copy of the surface, and more rays of its own at outlines and creases. Slices show the
 //! field on a plane.
 
+mod beside;
 mod cells;
 mod contour;
 mod empty_space;
@@ -14,6 +15,7 @@ mod extent;
 mod facet_block;
 mod facets;
 mod gbuffer;
+mod held;
 mod job;
 mod layers;
 mod lines;
@@ -23,9 +25,11 @@ mod occlusion;
 mod picture;
 mod pixels;
 mod scene;
+mod search;
 mod settings;
 mod shade;
 mod slice;
+mod slopes;
 mod solid;
 mod spot;
 mod still;

@@ -100,6 +100,27 @@ impl Scene {
         &self.palette
     }
 
+    /// How many bytes the scene holds: the cells that the rays so far have asked for, and the programs
+    /// that are narrowed to them. They grow with what is seen of the surface, from the first picture
+    /// on, and stay until the scene is dropped. What the solid itself takes is not counted, nor what
+    /// hides light in shaded pictures.
+    ///
+    /// ```
+    /// use rvachev::camera::Window;
+    /// use rvachev::{Camera, Solid};
+    ///
+    /// let scene = Solid::torus(1.0, 0.3).scene()?;
+    /// let before = scene.memory();
+    /// let camera = Camera::framing(&scene.bounds());
+    /// drop(scene.surfaces(&camera.rays(64, 64), Window::whole(64, 64)));
+    /// assert!(scene.memory() > before && scene.memory() < 10_000_000);
+    /// # Ok::<(), rvachev::error::RenderError>(())
+    /// ```
+    #[must_use]
+    pub fn memory(&self) -> usize {
+        self.cells.as_ref().map_or(0, Cells::bytes)
+    }
+
     /// The height at which the solid stands on a level ground: its lowest point, to a thousandth
     /// of its height, or a little below.
     #[must_use]

@@ -63,6 +63,11 @@ impl Still {
         Some(Still { axes, leaf, sides: [outside?, inside?] })
     }
 
+    /// The trees.
+    pub(super) fn parts(&self) -> impl Iterator<Item = &Cells> {
+        std::iter::once(&self.leaf).chain(self.sides.iter().flatten())
+    }
+
     /// Whether the leaf does not change along rays with this direction.
     pub(super) fn is_along(&self, direction: DVec3) -> bool {
         (0..3).all(|axis| !self.axes[axis] || direction[axis].abs() <= LEVEL)

@@ -10,11 +10,12 @@
 
 use glam::DVec3;
 
-use super::cells::{Cell, Cells, Part, Slopes};
+use super::cells::{Cell, Cells, Part};
 use super::gbuffer::{Surface, Window};
 use super::job::{Ray, Span};
 use super::march::Marcher;
 use super::pixels::{Pixels, Rectangle, columns};
+use super::slopes::Known;
 use super::still::Mask;
 use crate::{Bounds, Rays};
 
@@ -146,12 +147,12 @@ impl Tracer {
                 continue;
             }
             let united = packet.united(cell);
-            let slopes = if united.is_some() { Slopes::ANY } else { packet.slopes(cell) };
-            if !packet.inside && slopes.falls {
+            let known = if united.is_some() { Known::ANY } else { packet.slopes(cell) };
+            if !packet.inside && known.slopes.falls {
                 // Seen from behind.
                 continue;
             }
-            if united.is_none() && divides(cell, count, slopes) {
+            if united.is_none() && divides(cell, count, &known) {
                 cell.halves().far_first(&|axis, plane| view.looks_up(axis, plane), &mut |cell| pending.push(cell));
                 continue;
             }
@@ -170,7 +171,7 @@ impl Tracer {
                     }
                 }
                 if !self.spans.is_empty() {
-                    self.marcher.march(cells, part, slopes, &self.rays, &self.spans, surfaces);
+                    self.marcher.march(cells, part, &known, &self.rays, &self.spans, surfaces);
                 }
             }
             for &ray in &self.marcher.hits {
@@ -219,11 +220,11 @@ impl Tracer {
                 let mut packet = Packet::new(eye);
                 self.spans.iter().for_each(|span| packet.add(&self.rays[span.ray as usize]));
                 let united = packet.united(cell);
-                let slopes = if united.is_some() { Slopes::ANY } else { packet.slopes(cell) };
-                if !packet.inside && slopes.falls {
+                let known = if united.is_some() { Known::ANY } else { packet.slopes(cell) };
+                if !packet.inside && known.slopes.falls {
                     continue;
                 }
-                if united.is_none() && divides(cell, self.spans.len(), slopes) {
+                if united.is_none() && divides(cell, self.spans.len(), &known) {
                     let first = lists.len();
                     lists.extend(self.spans.iter().map(|span| span.ray));
                     let is_above = |axis: usize, _: f64| octant >> axis & 1 == 0;
@@ -236,7 +237,7 @@ impl Tracer {
                     self.nearer.clear();
                     self.nearer.extend(rays.filter_map(|ray| nearer(part, ray, &self.rays, surfaces, tie)));
                     if !self.nearer.is_empty() {
-                        self.marcher.march(cells, part, slopes, &self.rays, &self.nearer, surfaces);
+                        self.marcher.march(cells, part, &known, &self.rays, &self.nearer, surfaces);
                     }
                 }
                 for &ray in &self.marcher.hits {
@@ -318,9 +319,9 @@ impl Packet {
 
     /// The slopes of the value that the rays may find in a cell; all, of a cell whose slopes are
     /// not worth knowing.
-    fn slopes(&self, cell: &Cell) -> Slopes {
+    fn slopes(&self, cell: &Cell) -> Known {
         if cell.bend.is_some() || cell.leaves > MANY || cell.share > COARSE {
-            return Slopes::ANY;
+            return Known::ANY;
         }
         // Those from the eye to any point of the cell are asked for by other tiles as well.
         let [low, high] = self.eye.and_then(|eye| cone(&cell.bounds, eye)).unwrap_or([self.low, self.high]);
@@ -436,13 +437,12 @@ const RAYS: usize = 64;
 const SEARCHED: usize = 512;
 const STEEP: f64 = 4.0;
 
-/// The same of ordinary leaves whose slopes are without bound: each ray is divided by intervals
-/// then.
+/// The same of ordinary leaves whose values are steeper, or whose slopes are without bound: many a ray
+/// is divided by intervals then.
 const BLIND: usize = 16;
 
-/// Whether `count` rays are better off in the halves of a cell, where `slopes` are what they may
-/// find.
-fn divides(cell: &Cell, count: usize, slopes: Slopes) -> bool {
+/// Whether `count` rays are better off in the halves of a cell, where slopes are `known`.
+fn divides(cell: &Cell, count: usize, known: &Known) -> bool {
     let Cell { share, leaves, cost, bend, .. } = *cell;
     let bent = bend.is_some();
     if bent && leaves == 1 {
@@ -454,11 +454,11 @@ fn divides(cell: &Cell, count: usize, slopes: Slopes) -> bool {
     if leaves > MANY && !cell.is_stale() {
         return share > FINEST;
     }
-    let one_way = bent || slopes.rises || slopes.falls;
-    let steepest = slopes.value.magnitude();
+    let one_way = bent || known.is_one_way();
+    let steepest = known.slopes.value.magnitude();
     let most = match cost > leaves {
         true if steepest < STEEP => SEARCHED,
-        false if steepest == f64::INFINITY => BLIND,
+        false if steepest >= STEEP => BLIND,
         _ => RAYS,
     };
     let much = if one_way { cost > 1 && !cell.is_stale() && count * cost > 8192 } else { count * leaves > most };

@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 use rvachev::{
-    Bounds, Camera, Run, Scene, Solid,
+    Bounds, Camera, Gielis, Run, Scene, Solid, Supershape,
     camera::Window,
     deg,
     form::Form,
@@ -327,6 +327,27 @@ fn pictures_of_formulas_see_what_single_rays_hit() {
     compare_with_single_rays("letters cut into a base", &(&base - &letters));
     // With a second text across it.
     compare_with_single_rays("two texts", &(&plate | profile.extrude(0.2).rotate_x(deg(90.0))));
+}
+
+/// A formula that jumps at planes of three kinds.
+#[cfg(feature = "formula")]
+fn steps() -> Solid {
+    let (x, y, z) = fidget::context::Tree::axes();
+    let saw = (x.clone() + 0.3 * y.clone()).modulo(0.5);
+    let formula = z - saw - 0.2 * (y * 2.0).floor() + 0.1 * x.round();
+    Solid::formula(&formula, Bounds::from_center(DVec3::ZERO, DVec3::splat(1.2)))
+}
+
+/// Blades thinner than a pixel, edges at which slopes have no bound, steps.
+#[test]
+fn pictures_of_blades_and_steps_see_what_single_rays_hit() {
+    let g = Gielis::new;
+    let blades = Solid::from(Supershape::new(g(5.0, 0.3, 0.3, 0.3), g(4.0, 2.0, 2.0, 2.0)));
+    compare_with_single_rays("blades", &(blades.rotate_x(deg(20.0)) | Solid::sphere(0.3).translate([0.5, 0.5, 0.1])));
+    let pinched = |e1, e2| Solid::superellipsoid([1.0, 0.8, 0.6], e1, e2);
+    compare_with_single_rays("pinched", &(pinched(3.0, 0.3).rotate_y(deg(30.0)) - pinched(2.5, 2.5)));
+    #[cfg(feature = "formula")]
+    compare_with_single_rays("steps", &(steps() & Solid::cuboid([2.0, 1.6, 1.8])));
 }
 
 fn compare_with_single_rays(name: &str, solid: &Solid) {

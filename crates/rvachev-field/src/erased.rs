@@ -8,10 +8,10 @@ use std::any::Any;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 use super::outlined::{Outlined, zone_range, zone_rises};
-use super::{Case, Field, Kernel, ParamError, Placement, Way, Zone, bits, steepest};
+use super::{Case, Crease, Field, Kernel, ParamError, Placement, Way, Zone, bits, steepest};
 use crate::kernel::{Element, Formula, Visit, run};
 use crate::{Bounds, Dual, Interval, Real};
 #[cfg(feature = "formula")]
@@ -59,6 +59,11 @@ pub trait AnyField: Any + Debug + Send + Sync {
     fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64>;
     /// Ranges of value and derivatives over a box.
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval>;
+    /// Ranges of the derivatives over the part of a box beside the planes of
+    /// [`creases`](AnyField::creases), on the side of each of them that a point is on.
+    fn slopes_beside(&self, p: [Dual<Interval>; 3], _beside: DVec3) -> [Interval; 3] {
+        self.dual_range(p).d
+    }
     /// Whether the value is the true distance.
     fn exact(&self) -> bool;
     /// No radius of curvature of the surface is less.
@@ -71,6 +76,10 @@ pub trait AnyField: Any + Debug + Send + Sync {
     }
     /// Tells the corners of a faceted surface, in the leaf's frame; some more than once.
     fn each_corner(&self, _tell: &mut dyn FnMut(DVec3)) {}
+    /// Three vectors of the leaf's frame, as columns: moved by any of them, the leaf is the same.
+    fn period(&self) -> Option<DMat3> {
+        None
+    }
     /// The radius of a leaf valued `radius·(1 − G)`.
     fn gauge_radius(&self) -> Option<f64> {
         None
@@ -82,8 +91,9 @@ pub trait AnyField: Any + Debug + Send + Sync {
     }
     /// Whether the value is concave, with slope at most 1.
     fn convex(&self) -> bool;
-    /// Normals of the planes through the frame's origin at which slopes are without bound.
-    fn creases(&self) -> Vec<DVec3> {
+    /// Planes at which slopes are without bound; those that pass a region of the leaf's frame, and
+    /// perhaps more.
+    fn creases(&self, _region: [Interval; 3]) -> Vec<Crease> {
         Vec::new()
     }
     /// A sound range over a zone of the leaf's frame.
@@ -199,7 +209,9 @@ pub fn steep_slopes(steepest: f64, p: [Dual<Interval>; 3]) -> [Interval; 3] {
 /// ```
 #[must_use]
 pub fn chained(value: Interval, slopes: [Interval; 3], p: [Dual<Interval>; 3]) -> Dual<Interval> {
-    let along = |i: usize| slopes[0] * p[0].d[i] + slopes[1] * p[1].d[i] + slopes[2] * p[2].d[i];
+    // What does not move does not move the value, however steep that is.
+    let term = |slope: Interval, d: Interval| if d == Interval::point(0.0) { d } else { slope * d };
+    let along = |i: usize| term(slopes[0], p[0].d[i]) + term(slopes[1], p[1].d[i]) + term(slopes[2], p[2].d[i]);
     Dual::new(value, [along(0), along(1), along(2)])
 }
 
@@ -353,6 +365,10 @@ impl<F: Field> AnyField for F {
         Field::convex(self)
     }
 
+    fn period(&self) -> Option<DMat3> {
+        Field::period(self).map(DMat3::from_diagonal)
+    }
+
     fn gauge_radius(&self) -> Option<f64> {
         Field::gauge_radius(self)
     }
@@ -376,6 +392,10 @@ impl<F: Field> AnyField for F {
         Field::dual_range(self, p)
     }
 
+    fn slopes_beside(&self, p: [Dual<Interval>; 3], beside: DVec3) -> [Interval; 3] {
+        Field::slopes_beside(self, p, beside)
+    }
+
     fn range(&self, zone: &Zone) -> Interval {
         let coarse = Field::range(self, zone.hull());
         if coarse.lo() > 0.0 || coarse.hi() < 0.0 || !zone.is_finite() {
@@ -388,8 +408,9 @@ impl<F: Field> AnyField for F {
         zone_rises(self, zone, ways)
     }
 
-    fn creases(&self) -> Vec<DVec3> {
-        Field::creases(self)
+    fn creases(&self, _region: [Interval; 3]) -> Vec<Crease> {
+        let crease = |normal| Crease { normal, offset: 0.0, jumps: false };
+        Field::creases(self).into_iter().map(crease).collect()
     }
 
     fn least_radius(&self) -> f64 {

@@ -113,6 +113,14 @@ pub trait Field: Debug + Send + Sync + 'static {
         0.0
     }
 
+    /// How far along each axis of its own frame the leaf repeats, in length units: the value at p is
+    /// that at p + (x, 0, 0), at p + (0, y, 0) and at p + (0, 0, z). Lengths measured of the leaf are
+    /// then measured for one cell, wherever they are asked about. Default: `None`, of a leaf that
+    /// does not repeat, or of which nothing is known.
+    fn period(&self) -> Option<DVec3> {
+        None
+    }
+
     /// The radius r of a leaf whose value is `r·(1 − G)` with a gauge G, homogeneous of degree 1
     /// about the leaf's origin: what [`Blend::Ricci`](crate::Blend::Ricci) asks of its
     /// operands. Default: `None`.
@@ -148,6 +156,21 @@ pub trait Field: Debug + Send + Sync + 'static {
     /// default; what is left out costs time, nothing else.
     fn creases(&self) -> Vec<DVec3> {
         Vec::new()
+    }
+
+    /// The derivatives of [`dual_range`](Field::dual_range) in the part of a box that lies beside the
+    /// planes of [`creases`](Field::creases), on the side of each of them that the point `beside` is
+    /// on. The default cuts the box at those planes that stand across an axis.
+    fn slopes_beside(&self, p: [Dual<Interval>; 3], beside: DVec3) -> [Interval; 3] {
+        let mut p = p;
+        for normal in self.creases() {
+            for axis in 0..3 {
+                if normal[axis].abs() == normal.length() {
+                    p[axis].v = half(p[axis].v, beside[axis]);
+                }
+            }
+        }
+        self.dual_range(p).d
     }
 
     /// Support function of the shape's convex hull: the largest `direction · p` over its
@@ -238,6 +261,16 @@ fn bounds_by_support(support: &dyn Fn(DVec3) -> f64, map: &DAffine3) -> Bounds {
         bounds.min[axis] -= support(-row);
     }
     bounds
+}
+
+/// The part of a range that has the sign of `side`, without 0 itself.
+pub(super) fn half(range: Interval, side: f64) -> Interval {
+    let least = f64::MIN_POSITIVE;
+    if side > 0.0 {
+        Interval::new(range.lo().max(least), range.hi().max(least))
+    } else {
+        Interval::new(range.lo().min(-least), range.hi().min(-least))
+    }
 }
 
 /// Range of a formula that falls as any of `|x|`, `|y|`, `|z|` rises: two evaluations, exact

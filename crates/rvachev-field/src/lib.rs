@@ -14,6 +14,7 @@ mod capsule;
 pub mod catalogue;
 pub mod check;
 mod cone;
+mod crease;
 mod cuboid;
 mod cylinder;
 mod deform;
@@ -65,6 +66,7 @@ mod wedge;
 pub use capsule::Capsule;
 pub use check::ParamError;
 pub use cone::Cone;
+pub use crease::Crease;
 pub use cuboid::Cuboid;
 pub use cylinder::Cylinder;
 pub use deform::{

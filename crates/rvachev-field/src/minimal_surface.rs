@@ -28,6 +28,8 @@
 use std::f64::consts::TAU;
 use std::fmt::Debug;
 
+use glam::DVec3;
+
 use crate::{Interval, Real};
 
 /// A surface that repeats in three directions and divides space into two networks, by its
@@ -212,6 +214,11 @@ impl Grading for f64 {
     fn limits(&self) -> Interval {
         Interval::point(*self)
     }
+}
+
+/// The period of a lattice whose cells are all the same.
+pub(super) fn one_period<G: Grading>(cell: f64, grading: &G) -> Option<DVec3> {
+    (grading.limits().width() == 0.0).then_some(DVec3::splat(cell))
 }
 
 /// The number at a point, within its limits.

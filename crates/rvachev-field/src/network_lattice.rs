@@ -1,6 +1,8 @@
 //! Network lattice: one side of a minimal surface.
 
-use super::minimal_surface::{graded, roundoff};
+use glam::DVec3;
+
+use super::minimal_surface::{graded, one_period, roundoff};
 use super::outlined::Outlined;
 use super::slope::{half_diagonal, mean_value_range};
 use super::{Field, Grading, MinimalSurface, ParamError, check};
@@ -88,6 +90,10 @@ impl<G: Grading> Field for NetworkLattice<G> {
 
     fn bounds(&self) -> Bounds {
         Bounds::ALL
+    }
+
+    fn period(&self) -> Option<DVec3> {
+        one_period(self.cell, &self.fraction)
     }
 
     fn check(&self) -> Result<(), ParamError> {

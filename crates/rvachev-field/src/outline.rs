@@ -25,7 +25,7 @@
 
 use std::fmt;
 
-use super::{Gielis, Radius, gielis::Winding};
+use super::{Gielis, Radius, gielis::Winding, leaf::half};
 use crate::{Dual, Interval, Real};
 
 /// Rounding of an angle, in radians.
@@ -111,18 +111,25 @@ impl Outline {
         self.extent[2]
     }
 
-    /// Range of `(ln r)′` and of r over an interval of the angle.
-    fn slope(&self, angle: Interval) -> (Interval, Interval) {
+    /// Range of `(ln r)′` and of r over an interval of the angle; only of the angles between the
+    /// cusps that the angle `beside` is between, if there is one.
+    fn slope(&self, angle: Interval, beside: Option<f64>) -> (Interval, Interval) {
         let curve = &self.curve;
-        let r = curve.radius_at(angle, self.radius, self.winding);
+        let radius = || curve.radius_at(angle, self.radius, self.winding);
         if curve.m == 0.0 {
-            return (r, Interval::point(0.0));
+            return (radius(), Interval::point(0.0));
         }
         if self.radius == Radius::Rational {
+            let r = radius();
             let dual = curve.radius_at(Dual::variable(angle, 0), self.radius, self.winding);
             return (r, dual.gradient()[0] / r);
         }
-        let (sin, cos) = (angle * (0.25 * curve.m)).sin_cos();
+        let (mut sin, mut cos) = (angle * (0.25 * curve.m)).sin_cos();
+        if let (Some(beside), Winding::Once) = (beside, self.winding) {
+            let sides = (beside * (0.25 * curve.m)).sin_cos();
+            sin = if curve.n3 < 1.0 { half(sin, sides.0) } else { sin };
+            cos = if curve.n2 < 1.0 { half(cos, sides.1) } else { cos };
+        }
         let (first, mut slope) = power_slope(curve, sin, cos);
         if let Winding::Many { turns, cos: step_cos, sin: step_sin, sign } = self.winding {
             // The hull of the turns that may be the one that counts.
@@ -140,11 +147,12 @@ impl Outline {
                 (c, s) = (c * step_cos - s * step_sin, s * step_cos + c * step_sin);
             }
         }
+        let r = if self.winding == Winding::Once { (first * (-1.0 / curve.n1)).exp2() } else { radius() };
         (r, slope * (0.25 * curve.m / curve.n1))
     }
 
-    fn piece(&self, angle: Interval) -> Piece {
-        let (radius, slope) = self.slope(angle);
+    fn piece(&self, angle: Interval, beside: Option<f64>) -> Piece {
+        let (radius, slope) = self.slope(angle, beside);
         let (sin, cos) = angle.sin_cos();
         Piece { radius, slopes: [slope, slope * cos - sin, slope * sin + cos], direction: [cos, sin] }
     }
@@ -160,10 +168,10 @@ impl Outline {
             let half = 0.5 * (hi - lo);
             let middle = lo + half;
             let reach = Interval::around(0.0, half + ANGLE);
-            let whole = self.piece(Interval::new(lo, hi).inflate(ANGLE));
+            let whole = self.piece(Interval::new(lo, hi).inflate(ANGLE), None);
             let mut values = [0, 1, 2].map(|i| whole.value(i));
             if whole.slopes.iter().any(|slope| slope.contains(0.0)) {
-                let centre = self.piece(Interval::point(middle));
+                let centre = self.piece(Interval::point(middle), None);
                 for (i, value) in values.iter_mut().enumerate() {
                     *value = value.narrowed_by(centre.value(i) + whole.radius * whole.slopes[i] * reach);
                 }
@@ -202,7 +210,7 @@ impl Outline {
     }
 
     fn turn_at(&self, i: usize, angle: f64) -> Turn {
-        let value = self.piece(Interval::around(angle, 2.0 * ANGLE)).value(i);
+        let value = self.piece(Interval::around(angle, 2.0 * ANGLE), None).value(i);
         Turn { from: angle - ANGLE, to: angle + ANGLE, value }
     }
 
@@ -268,12 +276,31 @@ impl Outline {
         (angle, Interval::around(length, 1e-15 * length) / r)
     }
 
-    /// Range of the gauge's derivatives over the box `x × y`, y not negative.
-    pub(super) fn gradient(&self, x: Interval, y: Interval) -> [Interval; 2] {
+    /// Ranges of the gauge's derivatives over the box `x × y`, y not negative, along vectors; only of
+    /// the part of it between the cusps that the angle `beside`, from 0 to π, is between, if there is
+    /// one.
+    ///
+    /// ```text
+    ///     g = ρ / r(θ)      g′ = (ρ′ − (ln r)′·ρθ′) / r        ρ′ along the radius, ρθ′ across it
+    /// ```
+    pub(super) fn rises<const N: usize>(
+        &self,
+        x: Interval,
+        y: Interval,
+        along: [[Interval; 2]; N],
+        beside: Option<f64>,
+    ) -> [Interval; N] {
         // A gauge's gradient is the same all along a ray.
-        let piece = self.piece(angles(x, y).inflate(ANGLE));
-        let [_, along_x, along_y] = piece.slopes;
-        [along_y / piece.radius, -along_x / piece.radius]
+        let Piece { radius, slopes: [slope, ..], direction: [cos, sin] } =
+            self.piece(angles(x, y).inflate(ANGLE), beside);
+        let zero = Interval::point(0.0);
+        along.map(|[x, y]| {
+            if x == zero && y == zero {
+                return zero;
+            }
+            let across = if slope == zero { zero } else { slope * (cos * y - sin * x) };
+            (cos * x + sin * y - across) / radius
+        })
     }
 
     /// By how much, relative to itself, the radius may be off on lanes of `f32` over the box
@@ -284,7 +311,7 @@ impl Outline {
             return most;
         }
         let error = self.curve.phase_error() / (0.25 * self.curve.m);
-        let (_, slope) = self.slope(angles(x, y).inflate(2.0 * error));
+        let (_, slope) = self.slope(angles(x, y).inflate(2.0 * error), None);
         let steep = 2.0 * error * slope.magnitude();
         if steep < most { steep.max(steady) } else { most }
     }

@@ -2,7 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use super::minimal_surface::{graded, roundoff};
+use glam::DVec3;
+
+use super::minimal_surface::{graded, one_period, roundoff};
 use super::slope::half_diagonal;
 use super::{Field, Grading, MinimalSurface, ParamError, chained, check};
 use crate::{Bounds, Dual, Interval, Real};
@@ -105,6 +107,10 @@ impl<G: Grading> Field for SheetLattice<G> {
 
     fn bounds(&self) -> Bounds {
         Bounds::ALL
+    }
+
+    fn period(&self) -> Option<DVec3> {
+        one_period(self.cell, &self.thickness)
     }
 
     fn check(&self) -> Result<(), ParamError> {

@@ -15,6 +15,7 @@ use std::fmt;
 
 use glam::DVec3;
 
+use super::erased::reach;
 use super::{Case, Field, Kernel, ParamError, check, leaf::falling_range};
 use crate::{Bounds, Euclid, Interval, Norm, NormKind, Powers, Real};
 
@@ -274,5 +275,18 @@ impl Field for Superellipsoid {
         let p = 2.0 / self.e1.max(self.e2);
         let displaced = 1e-6 * reach / self.semi_axes.min_element();
         size * (4e-6 + 4.0 * displaced.powf(p))
+    }
+
+    fn roundoff_over(&self, region: [Interval; 3]) -> f64 {
+        let reach = reach(region);
+        let all = Field::roundoff(self, reach);
+        if self.convex() {
+            return all;
+        }
+        // Away from the cusps slopes are bounded.
+        let displaced = 1e-6 * reach;
+        let slopes = Field::slopes(self, region.map(|side| side.inflate(displaced)));
+        let steepest: f64 = slopes.iter().map(|slope| slope.magnitude()).sum();
+        all.min(4e-6 * self.circumscribed.min(reach) + displaced * steepest)
     }
 }

@@ -33,8 +33,9 @@ use glam::DVec3;
 
 use super::erased::reach;
 use super::gielis::{Polar, Winding};
+use super::leaf::half;
 use super::outline::Outline;
-use super::{Case, Field, Gielis, Kernel, ParamError, Radius, Turns, chained, check};
+use super::{Case, Field, Gielis, Kernel, ParamError, Radius, Turns, check};
 use crate::{Bounds, Dual, Euclid, Interval, Real};
 use rvachev_num::{Cancelled, Run};
 
@@ -230,23 +231,45 @@ impl Supershape {
         Curves { inverse, inscribed, equator, meridian }
     }
 
-    /// Ranges of the value and of its derivatives over a region.
-    fn level(&self, region: [Interval; 3]) -> (Interval, [Interval; 3]) {
-        let [x, y, z] = self.scaled_down(region);
+    /// Ranges of the gauge u of the equator and of the derivatives over a region; only over what is on
+    /// the same sides of all creases as a point, if there is one.
+    fn slopes_over(&self, p: [Dual<Interval>; 3], beside: Option<DVec3>) -> (Interval, [Interval; 3]) {
+        let [x, mut y, mut z] = self.scaled_down(p.map(Dual::value));
         let Some([equator, meridian]) = self.outlines() else { return (Interval::ALL, [Interval::ALL; 3]) };
         if !(x.magnitude() + y.magnitude() + z.magnitude()).is_finite() {
             return (Interval::ALL, [Interval::ALL; 3]);
         }
-        let u = equator.gauge(x, y.abs());
-        let [by_x, by_y] = equator.gradient(x, y.abs());
-        let [by_u, by_z] = meridian.gradient(u, z.abs());
+        let (mut longitude, mut latitude) = (None, None);
+        if let Some(p) = beside.map(|p| p * self.inverse) {
+            longitude = Some(p.y.abs().atan2(p.x));
+            // A cusp at an angle of 0 parts the halves.
+            y = if self.equator.cusps().any(|angle| angle == 0.0) { half(y, p.y) } else { y };
+            // The meridian's other cusps are in cones.
+            if self.meridian.cusps().take_while(|angle| *angle <= FRAC_PI_2).eq([0.0]) {
+                (z, latitude) = (half(z, p.z), Some(BESIDE));
+            }
+        }
         // Outlines know one half of the plane, the other is its mirror image.
         let mirrored = |slope: Interval, of: Interval| {
             if of.contains(0.0) { slope.hull(-slope) } else { of.select(slope, -slope) }
         };
-        let scale = self.inverse * -self.inscribed();
-        let slopes = [by_u * by_x * scale.x, by_u * mirrored(by_y, y) * scale.y, mirrored(by_z, z) * scale.z];
-        (self.height(meridian.gauge(u, z.abs())), slopes)
+        let [dx, dy, dz] = [0, 1, 2].map(|axis| p[axis].d.map(|d| d * self.inverse[axis]));
+        let level = [0, 1, 2].map(|i| [dx[i], mirrored(dy[i], y)]);
+        let u = equator.gauge(x, y.abs());
+        let du = equator.rises(x, y.abs(), level, longitude);
+        let dz = dz.map(|d| mirrored(d, z));
+        let (zero, one) = (Interval::point(0.0), Interval::point(1.0));
+        let [by_u, by_z, x, y, z] = meridian.rises(
+            u,
+            z.abs(),
+            [[one, zero], [zero, one], [du[0], dz[0]], [du[1], dz[1]], [du[2], dz[2]]],
+            latitude,
+        );
+        // Where u is steep, as at a cusp of the equator, its own part tells the sign.
+        let term = |slope: Interval, d: Interval| if d == zero { d } else { slope * d };
+        let slope = |i: usize, whole: Interval| whole.narrowed_by(term(by_u, du[i]) + term(by_z, dz[i]));
+        let slopes = [slope(0, x), slope(1, y), slope(2, z)];
+        (u, slopes.map(|slope| slope * -self.inscribed()))
     }
 
     /// How far off values are where radii are, relative to themselves.
@@ -273,6 +296,9 @@ impl PartialEq for Supershape {
         parameters(self) == parameters(other)
     }
 }
+
+/// An angle between the equator and whatever may be next.
+const BESIDE: f64 = 1e-3;
 
 /// The parameters, without what is computed from them.
 impl fmt::Debug for Supershape {
@@ -358,12 +384,23 @@ impl Field for Supershape {
     }
 
     fn slopes(&self, region: [Interval; 3]) -> [Interval; 3] {
-        self.level(region).1
+        self.slopes_over(Dual::point(region), None).1
+    }
+
+    fn slopes_beside(&self, p: [Dual<Interval>; 3], beside: DVec3) -> [Interval; 3] {
+        self.slopes_over(p, Some(beside)).1
     }
 
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
-        let (value, slopes) = self.level(p.map(Dual::value));
-        chained(value, slopes, p)
+        let (u, slopes) = self.slopes_over(p, None);
+        let z = p[2].v * self.inverse.z;
+        let value = match self.outlines() {
+            Some([_, meridian]) if (u.magnitude() + z.magnitude()).is_finite() => {
+                self.height(meridian.gauge(u, z.abs()))
+            }
+            _ => Interval::ALL,
+        };
+        Dual::new(value, slopes)
     }
 
     #[inline(always)]

@@ -422,12 +422,13 @@ fn slope(a: Interval, b: Interval, norm: Norm) -> Interval {
     let p = norm.p();
     if p < 1.0 {
         // Unbounded near a = 0 (a cusp).
+        let is_positive = a.lo > 0.0;
         return match a.contains(0.0) {
             true => Interval::ALL,
             false => {
-                let bound = corner_slope(a.abs().lo, b.abs().hi, norm);
-                let wide = Interval::library(1.0, bound);
-                if a.lo > 0.0 { wide } else { -wide }
+                let (a, b) = (a.abs(), b.abs());
+                let wide = Interval::library(corner_slope(a.hi, b.lo, norm), corner_slope(a.lo, b.hi, norm));
+                if is_positive { wide } else { -wide }
             }
         };
     }

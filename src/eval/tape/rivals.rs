@@ -26,6 +26,11 @@ struct Rival {
 }
 
 impl Rivals {
+    /// The bytes that they take.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&*self.leaves)
+    }
+
     /// Those of a program, if its tape has as many leaves: none of them is used twice.
     pub(super) fn of(program: &Program, leaves: usize) -> Option<Rivals> {
         let root = &program.nodes[program.root.node()];

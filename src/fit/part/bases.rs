@@ -86,10 +86,7 @@ pub(super) fn bases(ring: &[DVec2], grain: Grain) -> Vec<Base> {
     if size < 4.0 * grain.tolerance {
         return Vec::new();
     }
-    let mut polygon = corners(&ring, grain.tolerance.min(0.1 * size));
-    if grain.short > 0.0 {
-        polygon = fitted(&ring, &uncut(&polygon, grain.short), grain.tolerance);
-    }
+    let polygon = polygon(&ring, grain);
     let even = evenly(&ring);
     let centre = centroid(&ring);
     let mut found = Vec::new();
@@ -107,6 +104,12 @@ pub(super) fn bases(ring: &[DVec2], grain: Grain) -> Vec<Base> {
         found.push(Base::Polygon(polygon));
     }
     found
+}
+
+/// The polygon of few corners that a ring is.
+pub(super) fn polygon(ring: &[DVec2], grain: Grain) -> Vec<DVec2> {
+    let polygon = corners(ring, grain.tolerance.min(0.1 * area(ring).abs().sqrt()));
+    if grain.short > 0.0 { fitted(ring, &uncut(&polygon, grain.short), grain.tolerance) } else { polygon }
 }
 
 /// Points at equal distances along a ring.

@@ -82,12 +82,17 @@ impl Grid {
     fn best(&self, stakes: &Stakes, dear: f64, queries: &Queries, price: f64) -> Vec<[[u8; 2]; 3]> {
         let [nx, ny, nz] = [0, 1, 2].map(|k| self.offsets[k].len() - 1);
         let mut sums = vec![0.0; nx * ny * nz];
-        for (set, sign) in [(&stakes.gain, 1.0), (&stakes.loss, -dear)] {
-            for at in set.each() {
-                if self.cells[at] != OUT {
-                    sums[usize::from(self.cells[at])] += sign * queries.weights[at / WORD];
-                }
-            }
+        let mut all = 0.0;
+        for at in stakes.gain.each().filter(|at| self.cells[*at] != OUT) {
+            sums[usize::from(self.cells[at])] += queries.weights[at / WORD];
+            all += queries.weights[at / WORD];
+        }
+        // Late in the search there is little to gain, and nothing here.
+        if all <= price {
+            return Vec::new();
+        }
+        for at in stakes.loss.each().filter(|at| self.cells[*at] != OUT) {
+            sums[usize::from(self.cells[at])] -= dear * queries.weights[at / WORD];
         }
         let mut best: Vec<(f64, [[u8; 2]; 3])> = Vec::new();
         // Sums along y from its first offset on, of the layers from x₀ to x₁; and what is positive
@@ -112,6 +117,10 @@ impl Grid {
                     *total += sum;
                 }
                 for y0 in 0..ny {
+                    let least = if best.len() < BEST { price } else { best[BEST - 1].0 };
+                    if positive[ny] - positive[y0] <= least {
+                        break;
+                    }
                     for y1 in y0 + 1..=ny {
                         let least = if best.len() < BEST { price } else { best[BEST - 1].0 };
                         if positive[y1] - positive[y0] <= least {

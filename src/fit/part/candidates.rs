@@ -15,6 +15,7 @@ use super::queries::Queries;
 use super::regions::{Form, Region};
 use super::samples::Samples;
 use super::settings::PartKinds;
+use crate::{Cancelled, Run};
 
 /// Planes whose normal is by less than this off an axis are across it, as a cosine: 2°.
 const ACROSS: f64 = 0.9994;
@@ -45,9 +46,11 @@ pub(super) fn propose(
     part: [DVec3; 2],
     queries: &Queries,
     kinds: PartKinds,
-) {
+    run: &Run,
+) -> Result<(), Cancelled> {
     // The volume is that of the facets; what they are chords of is told by the vertices in the end.
     for region in regions {
+        run.check()?;
         let may = [region.sign > 0.0, region.sign < 0.0];
         match region.form {
             Form::Plane { normal, offset } => {
@@ -79,6 +82,7 @@ pub(super) fn propose(
             }
         }
     }
+    Ok(())
 }
 
 /// Where a side is: as a whole, and each of its pieces, as of bores from both ends.

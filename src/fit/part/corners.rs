@@ -10,12 +10,17 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
+use crate::{Cancelled, Run};
+
 /// Facets that meet at less than this angle are of one curved surface: prisms of 12 sides are not,
 /// of 14 are.
 const SMOOTH: f64 = 28.5;
 
 /// Normals closer than this, in degrees, are one facet's.
 const FLAT: f64 = 0.4;
+
+/// So many facets are gone through between two looks at whether the run is cancelled.
+const CHUNK: usize = 1 << 14;
 
 /// A vertex where the surface is curved.
 #[derive(Clone, Copy, Debug)]
@@ -38,15 +43,19 @@ pub(super) struct Facets {
 }
 
 impl Facets {
-    pub(super) fn of(points: Vec<DVec3>, triangles: &[[u32; 3]]) -> Facets {
-        let triangles = welded(&points, triangles);
-        let cross = |t: &[u32; 3]| {
-            let [a, b, c] = t.map(|i| points[i as usize]);
-            (b - a).cross(c - a)
-        };
-        let normals = triangles.iter().map(|t| cross(t).normalize_or_zero()).collect();
-        let areas = triangles.iter().map(|t| 0.5 * cross(t).length()).collect();
-        Facets { points, triangles, normals, areas }
+    pub(super) fn of(points: Vec<DVec3>, triangles: &[[u32; 3]], run: &Run) -> Result<Facets, Cancelled> {
+        let triangles = welded(&points, triangles, run)?;
+        let (mut normals, mut areas) = (Vec::with_capacity(triangles.len()), Vec::with_capacity(triangles.len()));
+        for chunk in triangles.chunks(CHUNK) {
+            run.check()?;
+            for t in chunk {
+                let [a, b, c] = t.map(|i| points[i as usize]);
+                let cross = (b - a).cross(c - a);
+                normals.push(cross.normalize_or_zero());
+                areas.push(0.5 * cross.length());
+            }
+        }
+        Ok(Facets { points, triangles, normals, areas })
     }
 
     /// The vertices' numbers, such at one position being one.
@@ -75,21 +84,50 @@ impl Facets {
         self.areas.len() >= many && fine >= 0.9 * all
     }
 
-    /// The vertices where the surface is curved, once for each smooth surface that meets there.
-    pub(super) fn corners(&self) -> Vec<Corner> {
-        let smooth = SMOOTH.to_radians().cos();
-        let mut edges: Vec<(u32, u32, u32)> = Vec::with_capacity(3 * self.triangles.len());
-        for (facet, t) in (0u32..).zip(&self.triangles) {
-            for k in 0..3 {
-                let (a, b) = (t[k], t[(k + 1) % 3]);
-                edges.push((a.min(b), a.max(b), facet));
+    /// The edges, each with the facets that it is of: by vertices, those of a vertex with the lesser
+    /// number together.
+    fn edges(&self, run: &Run) -> Result<Vec<(u32, u32, u32)>, Cancelled> {
+        let of_facet = |t: &[u32; 3]| [0, 1, 2].map(|k| (t[k].min(t[(k + 1) % 3]), t[k].max(t[(k + 1) % 3])));
+        // Where the edges of each vertex begin.
+        let mut starts = vec![0_usize; self.points.len() + 1];
+        for chunk in self.triangles.chunks(CHUNK) {
+            run.check()?;
+            chunk.iter().flat_map(of_facet).for_each(|(a, _)| starts[a as usize + 1] += 1);
+        }
+        for i in 1..starts.len() {
+            starts[i] += starts[i - 1];
+        }
+        let mut edges = vec![(0, 0, 0); 3 * self.triangles.len()];
+        let mut next = starts.clone();
+        for (chunk, triangles) in self.triangles.chunks(CHUNK).enumerate() {
+            run.check()?;
+            for (facet, t) in (0u32..).zip(triangles) {
+                for (a, b) in of_facet(t) {
+                    edges[next[a as usize]] = (a, b, facet + (chunk * CHUNK) as u32);
+                    next[a as usize] += 1;
+                }
             }
         }
-        edges.sort_unstable();
+        for (vertex, range) in starts.windows(2).enumerate() {
+            if vertex % CHUNK == 0 {
+                run.check()?;
+            }
+            edges[range[0]..range[1]].sort_unstable();
+        }
+        Ok(edges)
+    }
+
+    /// The vertices where the surface is curved, once for each smooth surface that meets there.
+    pub(super) fn corners(&self, run: &Run) -> Result<Vec<Corner>, Cancelled> {
+        let smooth = SMOOTH.to_radians().cos();
+        let edges = self.edges(run)?;
         let mut parts = Joined::new(self.triangles.len());
         // The three corners of each facet, joined about their vertices.
         let mut fans = Joined::new(3 * self.triangles.len());
-        for pair in edges.windows(2) {
+        for (i, pair) in edges.windows(2).enumerate() {
+            if i % CHUNK == 0 {
+                run.check()?;
+            }
             let ((a, b, f), (c, d, g)) = (pair[0], pair[1]);
             let (n, m) = (self.normals[f as usize], self.normals[g as usize]);
             if (a, b) != (c, d) || n.dot(m) < smooth {
@@ -103,6 +141,9 @@ impl Facets {
         let mut sums: HashMap<u32, usize> = HashMap::new();
         let mut found: Vec<(Corner, DVec3)> = Vec::new();
         for (facet, t) in (0u32..).zip(&self.triangles) {
+            if facet as usize % CHUNK == 0 {
+                run.check()?;
+            }
             let normal = self.normals[facet as usize];
             if normal == DVec3::ZERO {
                 continue;
@@ -127,7 +168,7 @@ impl Facets {
         for corner in &mut corners {
             corner.normal = corner.normal.normalize_or(DVec3::Z);
         }
-        corners
+        Ok(corners)
     }
 
     /// The number of a facet's corner at a vertex.
@@ -138,13 +179,16 @@ impl Facets {
 }
 
 /// Triangles whose vertices at one position are one.
-fn welded(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
+fn welded(points: &[DVec3], triangles: &[[u32; 3]], run: &Run) -> Result<Vec<[u32; 3]>, Cancelled> {
     let mut first: HashMap<[u64; 3], u32> = HashMap::with_capacity(points.len());
-    let names: Vec<u32> = (0u32..)
-        .zip(points)
-        .map(|(i, p)| *first.entry(p.to_array().map(|x| (x + 0.0).to_bits())).or_insert(i))
-        .collect();
-    triangles.iter().map(|t| t.map(|i| names[i as usize])).collect()
+    let mut names: Vec<u32> = Vec::with_capacity(points.len());
+    for (i, p) in (0u32..).zip(points) {
+        if i as usize % CHUNK == 0 {
+            run.check()?;
+        }
+        names.push(*first.entry(p.to_array().map(|x| (x + 0.0).to_bits())).or_insert(i));
+    }
+    Ok(triangles.iter().map(|t| t.map(|i| names[i as usize])).collect())
 }
 
 /// Sets that are joined: each is known by its least member.

@@ -2,20 +2,24 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DVec3, IVec3};
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::super::deviations::Deviation;
 use super::super::error::FitError;
+use super::bits::WORD;
 use super::body::Body;
 use super::intent::Meant;
 use super::leaf::Leaf;
+use super::places::places;
 use super::queries::MARGIN;
 use super::refine::owner;
-use super::repeated::solid_of;
+use super::repeated::repeated;
 use super::result::{PartFit, PartLeaf, Snap, Topology, Unexplained};
 use super::samples::Samples;
 use super::sobol::Sobol;
+use super::times::PartTimes;
+use super::words::describe;
 use crate::{Bounds, Run};
 
 /// Points that the volumes in common are estimated from.
@@ -36,6 +40,7 @@ pub(super) fn finish(
     meant: Vec<Meant>,
     body: &Body,
     samples: &Samples,
+    known: &[u64],
     topology: Topology,
     run: &Run,
 ) -> Result<PartFit, FitError> {
@@ -47,13 +52,25 @@ pub(super) fn finish(
         shares[owner.unwrap_or(0)] += weight;
         distances.push(size * distance);
     }
-    let (iou, unexplained) = compared(leaves, body, samples, run)?;
-    let (leaves, snaps) = named(leaves, meant, &shares);
-    let solid = solid_of(&leaves, size).ok_or(FitError::NoSurface { inliers: 0.0 })?;
+    let (iou, unexplained) = compared(leaves, body, samples, known, run)?;
+    let (mut leaves, snaps) = named(leaves, meant, &shares);
+    let (solid, patterns) = repeated(&leaves, size).ok_or(FitError::NoSurface { inliers: 0.0 })?;
+    describe(&mut leaves, size);
     solid.bounds()?;
     let topology_of_input = body.topology;
     let deviation = Deviation::of(distances.into_iter());
-    Ok(PartFit { leaves, solid, snaps, iou, deviation, topology, topology_of_input, unexplained })
+    Ok(PartFit {
+        leaves,
+        solid,
+        patterns,
+        snaps,
+        iou,
+        deviation,
+        topology,
+        topology_of_input,
+        unexplained,
+        times: PartTimes::default(),
+    })
 }
 
 /// The leaves in length units, called by their kinds, and what was changed of them.
@@ -66,7 +83,7 @@ fn named(leaves: &[(bool, Leaf)], meant: Vec<Meant>, shares: &[f64]) -> (Vec<Par
         *count += 1;
         let name = if *adds { format!("{kind} {count}") } else { format!("cut {kind} {count}") };
         snaps.extend(changes.iter().map(|change| Snap::of(named.len(), change)));
-        named.push(PartLeaf { adds: *adds, leaf, name, surface: *surface });
+        named.push(PartLeaf { adds: *adds, leaf, name, text: String::new(), surface: *surface });
     }
     (named, snaps)
 }
@@ -76,6 +93,7 @@ fn compared(
     leaves: &[(bool, Leaf)],
     body: &Body,
     samples: &Samples,
+    known: &[u64],
     run: &Run,
 ) -> Result<(f64, Vec<Unexplained>), FitError> {
     let Samples { centre, size, .. } = *samples;
@@ -83,9 +101,14 @@ fn compared(
     let margin = MARGIN * bounds.size();
     let (low, span) = (bounds.min - margin, bounds.size() + 2.0 * margin);
     let points: Vec<DVec3> = Sobol::new().take(POINTS).map(|p| low + span * p).collect();
-    let sides = |chunk: &[DVec3]| {
+    // Of the first points it is known whether they are inside.
+    let contains = |i: usize, p: DVec3| match known.get(i / WORD) {
+        Some(word) => word >> (i % WORD) & 1 == 1,
+        None => body.contains(p),
+    };
+    let sides = |(nth, chunk): (usize, &[DVec3])| {
         run.check()?;
-        let side = |p: &DVec3| {
+        let side = |(i, p): (usize, &DVec3)| {
             let local = (*p - centre) / size;
             let found = leaves.iter().fold(
                 false,
@@ -93,50 +116,38 @@ fn compared(
                     if inside != *adds && leaf.contains(local) { *adds } else { inside }
                 },
             );
-            [body.contains(*p), found]
+            [contains(nth * CHUNK + i, *p), found]
         };
-        Ok(chunk.iter().map(side).collect::<Vec<_>>())
+        Ok(chunk.iter().enumerate().map(side).collect::<Vec<_>>())
     };
-    let sides: Vec<Vec<[bool; 2]>> = points.par_chunks(CHUNK).map(sides).collect::<Result<_, FitError>>()?;
+    let sides: Vec<Vec<[bool; 2]>> =
+        points.par_chunks(CHUNK).enumerate().map(sides).collect::<Result<_, FitError>>()?;
     let (mut both, mut either, mut filled) = (0_usize, 0_usize, 0_usize);
-    // Wrong points by cell, those that are missing apart from those that are too many.
-    let mut cells: BTreeMap<(bool, [i32; 3]), Vec<DVec3>> = BTreeMap::new();
+    // Those that are missing apart from those that are too many.
+    let mut wrong = [Vec::new(), Vec::new()];
     for (p, [there, found]) in points.iter().zip(sides.into_iter().flatten()) {
         both += usize::from(there && found);
         either += usize::from(there || found);
         filled += usize::from(there);
         if there != found {
-            let cell = ((*p - centre) * (PLACES / size)).floor().as_ivec3();
-            cells.entry((there, cell.to_array())).or_default().push(*p);
+            wrong[usize::from(found)].push(((*p - centre) / size, *p));
         }
     }
     let iou = both as f64 / either.max(1) as f64;
-    Ok((iou, places(cells, filled)))
-}
-
-/// Wrong points of cells that touch.
-fn places(mut cells: BTreeMap<(bool, [i32; 3]), Vec<DVec3>>, filled: usize) -> Vec<Unexplained> {
-    let mut places = Vec::new();
-    while let Some(((missing, first), mut points)) = cells.pop_first() {
-        let mut open = vec![IVec3::from_array(first)];
-        while let Some(cell) = open.pop() {
-            for i in 0..27 {
-                let next = cell + IVec3::new(i % 3, i / 3 % 3, i / 9) - 1;
-                if let Some(more) = cells.remove(&(missing, next.to_array())) {
-                    points.extend(more);
-                    open.push(next);
-                }
+    let mut told = Vec::new();
+    for (wrong, missing) in wrong.into_iter().zip([true, false]) {
+        for place in places(wrong, 1.0 / PLACES) {
+            let share = place.len() as f64 / filled.max(1) as f64;
+            if share > TOLD {
+                let points = || place.iter().map(|(_, p)| *p);
+                let bounds = Bounds::new(
+                    points().fold(DVec3::INFINITY, DVec3::min),
+                    points().fold(DVec3::NEG_INFINITY, DVec3::max),
+                );
+                told.push(Unexplained { bounds, share, missing });
             }
         }
-        let share = points.len() as f64 / filled.max(1) as f64;
-        if share > TOLD {
-            let bounds = Bounds::new(
-                points.iter().fold(DVec3::INFINITY, |low, p| low.min(*p)),
-                points.iter().fold(DVec3::NEG_INFINITY, |high, p| high.max(*p)),
-            );
-            places.push(Unexplained { bounds, share, missing });
-        }
     }
-    places.sort_by(|a, b| b.share.total_cmp(&a.share));
-    places
+    told.sort_by(|a, b| b.share.total_cmp(&a.share));
+    Ok((iou, told))
 }

@@ -14,9 +14,11 @@
 
 use glam::DVec3;
 
-use super::leaf::{Leaf, Shape};
+use super::leaf::Leaf;
 use super::measures::Measure;
 use super::round::Scale;
+use super::through::{BEYOND, ends_in_the_open};
+use crate::{Cancelled, Run};
 
 /// How far from a principal axis a leaf may be turned to be along it, in radians, at the most.
 const TURNED: f64 = 2e-3;
@@ -28,12 +30,6 @@ const NEAR: f64 = 3e-3;
 
 /// What is this part of what is open means nothing.
 const DIGITS: f64 = 0.1;
-
-/// A cut goes beyond the face by this part of the diagonal at the least.
-const BEYOND: f64 = 0.01;
-
-/// Points of an end that are asked whether there is anything to cut.
-const ASKED: usize = 96;
 
 /// A number that was made round, or a cut that was lengthened.
 #[derive(Clone, Copy, Debug)]
@@ -60,7 +56,12 @@ impl Meant {
 
 /// The leaves with the numbers that are meant, in length units of a part with such vertices and
 /// such a diagonal.
-pub(super) fn intended(leaves: &[(bool, Leaf)], vertices: &[DVec3], size: f64) -> (Vec<(bool, Leaf)>, Vec<Change>) {
+pub(super) fn intended(
+    leaves: &[(bool, Leaf)],
+    vertices: &[DVec3],
+    size: f64,
+    run: &Run,
+) -> Result<(Vec<(bool, Leaf)>, Vec<Change>), Cancelled> {
     let open: Vec<f64> = leaves.iter().map(|(_, leaf)| open(leaf, vertices, size)).collect();
     // By what a turn moves the ends: that is left open as well.
     let turned = |leaf: &Leaf, open: f64| (open / leaf.reach().length()).min(TURNED);
@@ -79,8 +80,11 @@ pub(super) fn intended(leaves: &[(bool, Leaf)], vertices: &[DVec3], size: f64) -
     let scale = Scale::of(&all(&meant), size);
     let mut numbers: Vec<Vec<f64>> = Vec::new();
     let mut loose = Vec::new();
+    // Cuts before one are as they will be: what two of them share is left to one at the least.
+    let mut current = meant.clone();
     for (i, (adds, leaf)) in meant.iter().enumerate() {
-        let ends = if *adds { Vec::new() } else { in_the_open(&meant[..i], leaf, size) };
+        run.check()?;
+        let ends = if *adds { Vec::new() } else { ends_in_the_open(&current, i, size, 0.0) };
         let number = |(nth, (measure, v)): (usize, (Measure, f64))| {
             if let Some(end) = ends.iter().find(|end| end.nth == nth) {
                 return scale.beyond(end.face, BEYOND * size, end.up);
@@ -91,7 +95,9 @@ pub(super) fn intended(leaves: &[(bool, Leaf)], vertices: &[DVec3], size: f64) -
                 v
             })
         };
-        numbers.push(leaf.measures().into_iter().enumerate().map(number).collect());
+        let own: Vec<f64> = leaf.measures().into_iter().enumerate().map(number).collect();
+        current[i].1 = leaf.made_of(&own).unwrap_or_else(|| leaf.clone());
+        numbers.push(own);
     }
     make_equal(&mut numbers, loose);
     let mut changes = Vec::new();
@@ -104,7 +110,7 @@ pub(super) fn intended(leaves: &[(bool, Leaf)], vertices: &[DVec3], size: f64) -
         }
         *leaf = made;
     }
-    (meant, changes)
+    Ok((meant, changes))
 }
 
 /// A number that is not round.
@@ -149,65 +155,6 @@ fn open(leaf: &Leaf, vertices: &[DVec3], size: f64) -> f64 {
     OPEN * size + 3.0 * spread / (off.len().min(100) as f64).sqrt()
 }
 
-/// An end of a cut with nothing left to cut beyond it.
-struct End {
-    /// Which of the leaf's numbers it is.
-    nth: usize,
-    /// The face that it goes through, or where it is itself, if that is farther.
-    face: f64,
-    up: bool,
-}
-
-/// The ends of a cut that lie in the open, or in a face of what is cut.
-fn in_the_open(before: &[(bool, Leaf)], cut: &Leaf, size: f64) -> Vec<End> {
-    let is_solid =
-        |p: DVec3| before.iter().fold(false, |is_solid, (adds, leaf)| if leaf.contains(p) { *adds } else { is_solid });
-    // Of a cone only the size changes with its height; it is left as it is.
-    let axes: &[(usize, [usize; 2])] = match &cut.shape {
-        Shape::Box(_) => &[(0, [0, 1]), (1, [2, 3]), (2, [4, 5])],
-        Shape::Cylinder(_) | Shape::Prism(_) | Shape::Supershape { .. } => &[(2, [2, 3])],
-        Shape::RoundedRectangle { .. } => &[(2, [4, 5])],
-        Shape::Profile { .. } => &[(2, [0, 1])],
-        _ => &[],
-    };
-    let numbers: Vec<f64> = cut.measures().into_iter().map(|(_, v)| v).collect();
-    let points = inner(cut);
-    let mut ends = Vec::new();
-    for (axis, pair) in axes {
-        for (nth, up) in [(pair[0], false), (pair[1], true)] {
-            let sign = if up { 1.0 } else { -1.0 };
-            let outward = sign * cut.rotation.col(*axis);
-            let here = cut.rotation.transpose() * cut.centre;
-            let half = (numbers[nth] - here[*axis]).abs();
-            // The section of the cut, moved from its end by so many diagonals.
-            let moved = |by: f64| {
-                let onto =
-                    move |p: &DVec3| *p - (*p - cut.centre).dot(outward) * outward + (half + by * size) * outward;
-                points.iter().map(onto)
-            };
-            let steps = [1e-4, 1e-3, 3e-3, BEYOND, 1.5 * BEYOND, 2.0 * BEYOND];
-            let is_free = !points.is_empty() && steps.iter().all(|by| !moved(*by).any(is_solid));
-            if is_free {
-                // Where what is cut begins, back from the end.
-                let depth = (1..200).map(|k| f64::from(k) * 0.005).find(|depth| moved(1e-4 - depth).any(is_solid));
-                let depth = depth.map_or(0.0, |depth| depth - 0.005);
-                ends.push(End { nth, face: numbers[nth] - sign * (depth * size).min(2.0 * half), up });
-            }
-        }
-    }
-    ends
-}
-
-/// Points inside of a leaf, near evenly.
-fn inner(leaf: &Leaf) -> Vec<DVec3> {
-    let reach = leaf.reach();
-    let point = |n: u32| {
-        let t = |k: f64| 2.0 * (f64::from(n) * k).fract() - 1.0;
-        leaf.centre + leaf.rotation * (reach * DVec3::new(t(0.819_172_513), t(0.671_043_607), t(0.549_700_478)))
-    };
-    (1..2000).map(point).filter(|p| leaf.contains(*p)).take(ASKED).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -219,7 +166,8 @@ mod tests {
             Leaf::cuboid(glam::DMat3::IDENTITY, [DVec3::new(-30.0003, -20.0, 0.0), DVec3::new(30.0, 19.9998, 8.0001)]);
         let hole = Leaf::cylinder(-DVec3::Z, DVec3::new(10.0002, 5.0, 0.0), 3.4999, [-8.0, 1.8]);
         let pocket = Leaf::cylinder(DVec3::X, DVec3::new(-30.0, 0.0, 4.0), 2.0, [-3.0, 12.0001]);
-        let (meant, changes) = intended(&[(true, plate), (false, hole), (false, pocket)], &[], 70.0);
+        let (meant, changes) =
+            intended(&[(true, plate), (false, hole), (false, pocket)], &[], 70.0, &Run::default()).unwrap();
         let numbers = |i: usize| meant[i].1.measures().into_iter().map(|(_, v)| v).collect::<Vec<_>>();
         assert_eq!(numbers(0), [-30.0, 30.0, -20.0, 20.0, 0.0, 8.0]);
         let hole = numbers(1);
@@ -228,7 +176,7 @@ mod tests {
         assert_eq!(meant[1].1.rotation, glam::DMat3::IDENTITY);
         // Numbers that are not round are equal at least, and short.
         let pins = [12.34567, -12.34571].map(|x| (true, Leaf::sphere(DVec3::new(x, 0.0, 0.0), 1.0)));
-        let [a, b] = [0, 1].map(|i| intended(&pins, &[], 70.0).0[i].1.centre.x);
+        let [a, b] = [0, 1].map(|i| intended(&pins, &[], 70.0, &Run::default()).unwrap().0[i].1.centre.x);
         assert!(a == -b && a.to_string().len() <= 8, "{a}");
         // The pocket ends in the plate on one side only.
         let pocket = numbers(2);

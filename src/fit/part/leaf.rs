@@ -60,6 +60,19 @@ pub(in crate::fit) fn along(axis: DVec3) -> DMat3 {
     DMat3::from_cols(x, axis.cross(x), axis)
 }
 
+/// A solid turned, then moved, by as few verbs as that takes.
+pub(super) fn posed(solid: Solid, rotation: DMat3, centre: DVec3) -> Solid {
+    let turned = match rotation {
+        rotation if rotation == DMat3::IDENTITY => solid,
+        rotation if rotation == TO_X => solid.rotate_y(deg(90.0)),
+        rotation if rotation == TO_Y => solid.rotate_x(deg(-90.0)),
+        rotation if rotation.z_axis == DVec3::Z && rotation.x_axis == DVec3::Y => solid.rotate_z(deg(90.0)),
+        rotation if rotation.z_axis == DVec3::Z && rotation.x_axis == DVec3::NEG_Y => solid.rotate_z(deg(-90.0)),
+        rotation => solid.rotate(DQuat::from_mat3(&rotation).normalize()),
+    };
+    if centre == DVec3::ZERO { turned } else { turned.translate(centre) }
+}
+
 impl Shape {
     /// The same, larger by a factor.
     fn scaled(&self, by: f64) -> Shape {
@@ -130,6 +143,44 @@ impl Shape {
             }
             Shape::Profile { outline, height } => outline.distance(p.truncate()).max(p.z.abs() - 0.5 * height),
             _ => -self.value(p.to_array()),
+        }
+    }
+
+    /// The signed distance of the side of what is extruded or turned, as if it had no ends; none of
+    /// other shapes.
+    fn side(&self, p: DVec3) -> Option<f64> {
+        let flat = p.truncate();
+        match self {
+            Shape::Cylinder(s) => Some(flat.length() - s.radius),
+            Shape::Cone(s) => {
+                let slope = (s.top_radius - s.bottom_radius) / s.height;
+                let radius = 0.5 * (s.bottom_radius + s.top_radius) + slope * p.z;
+                Some((flat.length() - radius) / slope.hypot(1.0))
+            }
+            Shape::Prism(s) => {
+                let half = std::f64::consts::PI / f64::from(s.sides());
+                let across = |k: u32| flat.dot(DVec2::from_angle(half * f64::from(2 * k + 1)));
+                Some((0..s.sides()).map(across).fold(f64::NEG_INFINITY, f64::max) - s.radius() * half.cos())
+            }
+            Shape::RoundedRectangle { base, .. } => Some(-base.eval([p.x, p.y, 0.0])),
+            Shape::Profile { outline, .. } => Some(outline.distance(flat)),
+            Shape::Supershape { base, height } => {
+                let endless = Shape::Supershape { base: base.clone(), height: height + 4.0 * p.z.abs() };
+                Some(endless.distance(flat.extend(0.0)))
+            }
+            _ => None,
+        }
+    }
+
+    /// The signed distances of the faces, each as if it went on without an end.
+    fn faces(&self, p: DVec3, height: f64) -> Vec<f64> {
+        if let Shape::Box(s) = self {
+            let half = 0.5 * s.size;
+            return [p - half, -p - half].iter().flat_map(|d| d.to_array()).collect();
+        }
+        match self.side(p) {
+            Some(side) => vec![side, p.z - 0.5 * height, -p.z - 0.5 * height],
+            None => vec![self.distance(p)],
         }
     }
 
@@ -217,6 +268,12 @@ impl Leaf {
         self.shape.distance(self.local(p))
     }
 
+    /// The signed distances of its faces, each as if it went on without an end: of a cylinder those
+    /// of its side and of its ends.
+    pub(in crate::fit) fn faces(&self, p: DVec3) -> Vec<f64> {
+        self.shape.faces(self.local(p), 2.0 * self.reach().z)
+    }
+
     /// The direction in which the distance grows fastest, about a point near the surface.
     pub(in crate::fit) fn gradient(&self, p: DVec3) -> DVec3 {
         const STEP: f64 = 1e-5;
@@ -300,16 +357,7 @@ impl Leaf {
 
     /// The solid, with the numbers that the leaf has.
     pub(in crate::fit) fn solid(&self) -> Solid {
-        let solid = self.shape.solid();
-        let turned = match self.rotation {
-            rotation if rotation == DMat3::IDENTITY => solid,
-            rotation if rotation == TO_X => solid.rotate_y(deg(90.0)),
-            rotation if rotation == TO_Y => solid.rotate_x(deg(-90.0)),
-            rotation if rotation.z_axis == DVec3::Z && rotation.x_axis == DVec3::Y => solid.rotate_z(deg(90.0)),
-            rotation if rotation.z_axis == DVec3::Z && rotation.x_axis == DVec3::NEG_Y => solid.rotate_z(deg(-90.0)),
-            rotation => solid.rotate(DQuat::from_mat3(&rotation).normalize()),
-        };
-        if self.centre == DVec3::ZERO { turned } else { turned.translate(self.centre) }
+        posed(self.shape.solid(), self.rotation, self.centre)
     }
 }
 
@@ -350,6 +398,17 @@ pub(super) mod tests {
                 let there = solid.contains(centre + 40.0 * p).unwrap();
                 assert_eq!(leaf.contains(p), there, "{} at {p}", leaf.kind());
                 assert_eq!(leaf.distance(p) < 0.0, there, "{} at {p}", leaf.kind());
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_within_all_faces_is_inside() {
+        for leaf in leaves() {
+            for i in 0..400_u32 {
+                let p = DVec3::from_array([1, 7, 49].map(|k| f64::from(i * k % 343) / 343.0 - 0.5));
+                let most = leaf.faces(p).into_iter().fold(f64::NEG_INFINITY, f64::max);
+                assert_eq!(most < 0.0, leaf.distance(p) < 0.0, "{} at {p}: {most}", leaf.kind());
             }
         }
     }

@@ -156,7 +156,9 @@ impl Leaf {
             }
             Shape::RoundedRectangle { .. } => {
                 let (at, size) = boxed()?;
-                let base = Rectangle { size: size.truncate(), radius: *numbers.get(6)? };
+                // Of a slot the radius is half of a side, which may be rounded otherwise.
+                let radius = numbers.get(6)?.clamp(0.0, 0.5 * size.truncate().min_element());
+                let base = Rectangle { size: size.truncate(), radius };
                 (Shape::RoundedRectangle { base, height: size.z }, at)
             }
             Shape::Profile { .. } => {

@@ -5,6 +5,7 @@ mod adjust;
 mod axes;
 mod balls;
 mod bases;
+mod bays;
 mod bits;
 mod body;
 mod boxes;
@@ -20,6 +21,7 @@ mod finish;
 mod freedom;
 mod guesses;
 mod intent;
+mod layouts;
 mod leaf;
 mod limits;
 mod measures;
@@ -29,6 +31,7 @@ mod orient;
 mod outline;
 mod patches;
 mod patterns;
+mod places;
 mod pool;
 mod profiles;
 mod queries;
@@ -38,6 +41,7 @@ mod regions;
 #[cfg(test)]
 mod regions_tests;
 mod repeated;
+mod residual;
 mod result;
 mod round;
 mod samples;
@@ -52,11 +56,15 @@ mod snap;
 mod sobol;
 mod straighten;
 mod superellipsoids;
+mod through;
+mod times;
 mod topology;
+mod words;
 
 pub use patterns::{Layout, Pattern};
 pub use result::{PartFit, PartLeaf, Snap, Topology, Unexplained};
 pub use settings::{PartKinds, PartSettings};
+pub use times::PartTimes;
 
 use super::FitError;
 use crate::Run;
@@ -78,14 +86,18 @@ use crate::geom::{Mesh, PointCloud};
 ///
 /// Samples of the surface are grouped to regions of planes, cylinders, cones, spheres and tori.
 /// Leaves in question are made of these, with all ends that they may have; boxes between parallel
-/// planes; extruded sections as polygons, rounded rectangles, regular prisms and supershapes; and
-/// superellipsoids of what hangs together without a crease. A search over ordered trees takes those
-/// that mend more than their parameters [cost](PartSettings::parameter_cost). They are fitted to
-/// the samples, and laid through the vertices of the mesh where these tell their lengths exactly:
-/// the radius of a cylinder of facets is that of its corners. Numbers that are round within what
-/// the vertices leave open, in millimetres or in binary fractions of an inch, become so, and cuts
-/// that end in the open go through: see [`snaps`](PartFit::snaps). At last leaves are left out that
-/// mend little and spoil genus or shells.
+/// planes; extruded sections as polygons, rounded rectangles, regular prisms and supershapes, and
+/// their bays, which are cut; and superellipsoids of what hangs together without a crease. A search
+/// over ordered trees takes those that mend more than their parameters
+/// [cost](PartSettings::parameter_cost), of equal leaves all but the first at a lower price. They are
+/// fitted to the samples. While more than half a hundredth of the volume is wrong, leaves are looked
+/// for where it is, twice at the most. Then leaves are laid through the vertices of the mesh where
+/// these tell their lengths exactly: the radius of a cylinder of facets is that of its corners.
+/// Numbers that are round within what the vertices leave open, in millimetres or in binary fractions
+/// of an inch, become so, and cuts that end in the open go through: see [`snaps`](PartFit::snaps).
+/// Leaves are left out that mend little and spoil genus or shells. Equal leaves on a line, a ring or
+/// a grid are [patterns](PartFit::patterns). Pictures, code and limits are on [a page of their
+/// own](crate::parts).
 ///
 /// The mesh may be in pieces and its triangles may overlap; inside is where the winding number is
 /// above ½. The result depends on mesh and settings only, not on the number of threads.

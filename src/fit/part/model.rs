@@ -7,6 +7,8 @@
 //! What a further leaf c at a place of the list gains is linear in c: it changes the samples that
 //! are not in the state before, or are, and that no later leaf decides.
 
+use fearless_simd::{Level, Simd, dispatch};
+
 use super::bits::{Bits, Stakes, differing};
 use super::pool::Pool;
 use super::queries::Queries;
@@ -55,8 +57,15 @@ impl Judge<'_> {
         state
     }
 
+    /// What the leaves cost; of equal ones that are added, or cut, the first costs most.
     pub(super) fn price(&self, steps: &[Step]) -> f64 {
-        steps.iter().map(|step| self.pool.candidates[step.which as usize].price).sum()
+        let candidate = |step: &Step| &self.pool.candidates[step.which as usize];
+        let price = |(i, step): (usize, &Step)| {
+            let own = candidate(step);
+            let is_equal = |other: &Step| other.adds == step.adds && candidate(other).class == own.class;
+            if steps[..i].iter().any(is_equal) { own.another } else { own.price }
+        };
+        steps.iter().enumerate().map(price).sum()
     }
 
     /// What is wrong, without what the leaves cost.
@@ -87,9 +96,26 @@ impl Judge<'_> {
         if adds { Stakes { gain: inside, loss: outside } } else { Stakes { gain: outside, loss: inside } }
     }
 
-    /// The candidates that gain most by stakes, less their price, from the best down; none that
-    /// gain nothing. Losses count `dear` times.
-    pub(super) fn best(&self, stakes: &Stakes, adds: bool, dear: f64, count: usize) -> Vec<(f64, u32)> {
+    /// The candidates that gain most by stakes, less their price beside the steps, from the best
+    /// down; none that gain nothing. Losses count `dear` times.
+    pub(super) fn best(&self, steps: &[Step], stakes: &Stakes, adds: bool, dear: f64, count: usize) -> Vec<(f64, u32)> {
+        let mut is_there = vec![false; self.pool.class_count as usize];
+        for step in steps.iter().filter(|step| step.adds == adds) {
+            is_there[self.pool.candidates[step.which as usize].class as usize] = true;
+        }
+        // Bits are counted by an instruction where there is one.
+        dispatch!(Level::new(), simd => self.ranked(simd, &is_there, stakes, (adds, dear), count))
+    }
+
+    #[inline(always)]
+    fn ranked<S: Simd>(
+        &self,
+        _: S,
+        is_there: &[bool],
+        stakes: &Stakes,
+        (adds, dear): (bool, f64),
+        count: usize,
+    ) -> Vec<(f64, u32)> {
         let chances = stakes.chances();
         let weights = &self.queries.weights;
         let mut best: Vec<(f64, u32)> = Vec::with_capacity(count + 1);
@@ -100,7 +126,8 @@ impl Judge<'_> {
             // Where little is wrong few words can gain, and most candidates are out before they are
             // counted.
             let least = if best.len() < count { GRAIN } else { best[count - 1].0 };
-            let most = Stakes::most(&candidate.bits, &chances, weights) - candidate.price;
+            let price = if is_there[candidate.class as usize] { candidate.another } else { candidate.price };
+            let most = Stakes::most(&candidate.bits, &chances, weights) - price;
             if most <= least {
                 continue;
             }

@@ -3,12 +3,14 @@
 //! ```text
 //!      |      |   |          planes across a direction bound slabs; the section in the middle of a slab
 //!      | - - -|- -|          is of outer rings, which are added, and inner ones, which are cut;
-//!      |______|___|          they end at any two of the planes that have the slab between them
+//!      |______|___|          they end at any two of the planes that have the slab between them;
+//!                            bays of outer rings are cut as well
 //! ```
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::bases::{Base, Grain, apart, bases};
+use super::bases::{Base, Grain, apart, bases, polygon};
+use super::bays::bays;
 use super::bits::Bits;
 use super::body::Body;
 use super::candidates::BEYOND;
@@ -19,7 +21,7 @@ use super::pool::Pool;
 use super::queries::Queries;
 use super::regions::{Form, Regions};
 use super::samples::{Kind, Samples};
-use super::sections::Ring;
+use super::sections::{Ring, area};
 use super::settings::PartKinds;
 use crate::{Cancelled, Cuboid, Gielis, Prism, Rectangle, Run, Superpolygon};
 
@@ -39,6 +41,9 @@ const SAME: f64 = 0.004;
 
 /// Rings of less area are left out, in squares of the diagonal.
 const LEAST: f64 = 1e-5;
+
+/// Bays of less area are left out, what reaches out of the ring included.
+const WIDE: f64 = 1e-3;
 
 /// Rectangles turned by less, in radians, are left to the boxes.
 const ALONG: f64 = 0.004;
@@ -67,8 +72,19 @@ pub(super) fn propose(
     for (frame, planes) in directions(samples, regions) {
         run.check()?;
         for prismatic in prismatics(body, samples, &frame, &planes) {
+            run.check()?;
+            let adds = prismatic.ring.area > 0.0;
             for base in bases(&prismatic.ring.points, grain) {
-                push(pool, &frame, &base, &prismatic, &planes, queries, kinds);
+                push(pool, &frame, &base, (adds, prismatic.slabs), &planes, queries, kinds);
+            }
+            if adds {
+                for bay in bays(&polygon(&prismatic.ring.points, grain), BEYOND) {
+                    run.check()?;
+                    let cuts = if area(&bay) > WIDE { bases(&bay, grain) } else { Vec::new() };
+                    for base in cuts.iter().filter(|base| !matches!(base, Base::Supershape { .. })) {
+                        push(pool, &frame, base, (false, prismatic.slabs), &planes, queries, kinds);
+                    }
+                }
             }
         }
     }
@@ -150,12 +166,11 @@ fn push(
     pool: &mut Pool,
     frame: &DMat3,
     base: &Base,
-    prismatic: &Prismatic,
+    (adds, slabs): (bool, [usize; 2]),
     planes: &[f64],
     queries: &Queries,
     kinds: PartKinds,
 ) {
-    let adds = prismatic.ring.area > 0.0;
     let may = [adds, !adds];
     let Some(Extruded { shape, angle, centre }) = extruded(base, kinds) else { return };
     let rotation = *frame * DMat3::from_rotation_z(angle);
@@ -164,7 +179,7 @@ fn push(
         rotation,
         centre: *frame * DVec3::new(centre.x, centre.y, 0.5 * (low + high)),
     };
-    let ends = ends(prismatic.slabs, planes, adds);
+    let ends = ends(slabs, planes, adds);
     let Some(longest) = ends.iter().copied().reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]) else { return };
     // What is within the longest one is asked once.
     let longest = leaf(longest);

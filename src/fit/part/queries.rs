@@ -84,6 +84,11 @@ impl Queries {
         Ok(Queries { points, inside, weights })
     }
 
+    /// Whether points in space are inside: the first of Sobol's.
+    pub(super) fn spread(&self) -> &[u64] {
+        &self.inside.words()[..SPREAD]
+    }
+
     pub(super) fn words(&self) -> usize {
         self.weights.len()
     }

@@ -25,7 +25,9 @@ use super::samples::{Kind, Samples};
 use super::select::Selector;
 use super::settings::PartSettings;
 use super::snap::snapped;
-use super::{profiles, superellipsoids, topology};
+use super::through::lengthened;
+use super::times::{Clock, PartTimes};
+use super::{profiles, residual, superellipsoids, topology};
 use crate::field::COORDINATE_LIMIT;
 use crate::fit::grid::extent;
 use crate::geom::{Mesh, PointCloud};
@@ -48,6 +50,19 @@ const AROUND: f64 = 300.0;
 /// J may rise by so much where leaves are moved onto the surface.
 const ALLOWED_RISE: f64 = 1e-4;
 
+/// While so much is wrong leaves are looked for that explain it, so many times.
+const LEFT: f64 = 0.005;
+const ROUNDS: usize = 2;
+
+/// What takes so many leaves is of no leaves: more would take long, and explain little.
+const MANY: usize = 24;
+
+/// Another round is worth its time if less than this part of what was wrong is left.
+const WORTH: f64 = 0.9;
+
+/// Skins of scans, which are thinner than this in diagonals or than noise has them, are none.
+const SKIN: f64 = 0.002;
+
 /// Points of a cloud at least.
 const FEWEST: usize = 200;
 
@@ -62,11 +77,13 @@ pub(super) fn recover(mesh: &Mesh, settings: &PartSettings, run: &Run) -> Result
         return Err(FitError::TooFew { kind: "part", points: points.len(), parameters: 4, needed: 4 });
     }
     check(&points)?;
+    let mut clock = Clock::start();
     let body = Body::of_mesh(mesh, &to_index)?;
-    let samples = Samples::of_mesh(mesh, settings.seed);
+    let samples = Samples::of_mesh(mesh, settings.seed, run)?;
     let vertices = vertices(mesh, &samples);
     let hollow = FitError::Hollow { of: "triangles", count: mesh.triangles().len() };
-    recovered(&body, samples, &vertices, hollow, settings, &to_rest)
+    let times = PartTimes { sampling: clock.lap(), ..PartTimes::default() };
+    recovered(&body, samples, &vertices, hollow, settings, times, &to_rest)
 }
 
 /// Recovers a part from points.
@@ -76,12 +93,14 @@ pub(super) fn recover_points(cloud: &PointCloud, settings: &PartSettings, run: &
         return Err(FitError::TooFew { kind: "part", points: points.len(), parameters: 4, needed: FEWEST });
     }
     check(points)?;
+    let mut clock = Clock::start();
     let samples = Samples::of_cloud(cloud, settings.seed);
     run.check()?;
     let [low, high] = extent(points);
     let hollow = FitError::Hollow { of: "points", count: points.len() };
     let Some(body) = Body::of_points(&samples, Bounds::new(low, high)) else { return Err(hollow) };
-    recovered(&body, samples, &[], hollow, settings, run)
+    let times = PartTimes { sampling: clock.lap(), ..PartTimes::default() };
+    recovered(&body, samples, &[], hollow, settings, times, run)
 }
 
 /// The part that samples are of.
@@ -91,27 +110,58 @@ fn recovered(
     vertices: &[DVec3],
     hollow: FitError,
     settings: &PartSettings,
+    mut times: PartTimes,
     run: &Run,
 ) -> Result<PartFit, FitError> {
+    let mut clock = Clock::start();
     let [to_detect, to_label, to_select, to_settle, to_finish] = run.stages([0.1, 0.2, 0.3, 0.2, 0.2]);
     samples.noise = samples.noise.max(settings.noise / samples.size);
     let regions = detect(&samples, settings.seed, &to_detect)?;
+    times.detection = clock.lap();
     to_detect.report(1.0);
     let queries = queries(body, &samples, &regions, settings.seed, &to_label)?;
+    times.queries = clock.lap();
     to_label.report(1.0);
     if queries.inside.is_none() {
         return Err(hollow);
     }
     let mut selector = selector(body, &samples, &regions, &queries, settings, &to_select)?;
+    times.proposals = clock.lap();
     let model = selector.select(Vec::new(), &to_select)?;
-    let mut model = moved(&mut selector, model, &samples, &to_select)?;
+    times.selection = clock.lap();
+    let model = moved(&mut selector, model, &samples, &to_select)?;
+    times.refinement = clock.lap();
+    let mut model = selector.improve(model, &to_select)?;
+    times.selection += clock.lap();
+    for _ in 0..ROUNDS {
+        let before = selector.error(&model);
+        if before <= LEFT * (1.0 + samples.noise / 0.001) || model.steps.len() > MANY {
+            break;
+        }
+        residual::propose(&mut selector, &model, &samples, &regions, settings, &to_select)?;
+        times.proposals += clock.lap();
+        let next = selector.select(model.steps.clone(), &to_select)?;
+        times.selection += clock.lap();
+        let next = moved(&mut selector, next, &samples, &to_select)?;
+        times.refinement += clock.lap();
+        let next = selector.improve(next, &to_select)?;
+        times.selection += clock.lap();
+        let is_better = next.cost < model.cost;
+        let after = selector.error(&next);
+        if is_better {
+            model = next;
+        }
+        if !is_better || after > WORTH * before {
+            break;
+        }
+    }
     let Samples { centre, size, .. } = samples;
     let mut meant = BTreeMap::new();
     if settings.snap && !vertices.is_empty() {
-        let laid = snapped(&leaves(&selector.pool, &model.steps), vertices, &to_select)?;
+        let laid = snapped(&selector.leaves(&model.steps), vertices, &to_select)?;
         let outward: Vec<(bool, Leaf)> = laid.iter().map(|(adds, leaf)| (*adds, leaf.outward(centre, size))).collect();
         let vertices: Vec<DVec3> = vertices.iter().map(|p| centre + size * *p).collect();
-        let (outward, changes) = intended(&outward, &vertices, size);
+        let (outward, changes) = intended(&outward, &vertices, size, &to_select)?;
         let inward = outward.iter().map(|(adds, leaf)| (*adds, leaf.inward(centre, size))).collect();
         let steps = steps(&mut selector, &model, inward);
         for (i, (step, (_, leaf))) in steps.iter().zip(outward).enumerate() {
@@ -121,19 +171,25 @@ fn recovered(
         model = selector.model(steps);
         // What the exact lengths leave nothing to do for.
         selector.drop_one(&mut model);
+    } else if settings.snap {
+        model = opened(&mut selector, model, SKIN.max(3.0 * samples.noise), &to_select)?;
     }
+    times.snapping = clock.lap();
     to_select.report(1.0);
     if model.steps.is_empty() {
         return Err(FitError::NoSurface { inliers: 0.0 });
     }
     let (model, topology) = topology::mended(&selector, model, body.topology, &samples, &to_settle)?;
+    times.topology = clock.lap();
     to_settle.report(1.0);
-    let leaves = leaves(&selector.pool, &model.steps);
+    let leaves = selector.leaves(&model.steps);
     // What has no round numbers goes outwards as it is.
     let meant = (model.steps.iter().zip(&leaves))
         .map(|(step, (_, leaf))| meant.remove(&step.which).unwrap_or_else(|| Meant::of(leaf.outward(centre, size))))
         .collect();
-    let fit = finish(&leaves, meant, body, &samples, topology, &to_finish)?;
+    let mut fit = finish(&leaves, meant, body, &samples, queries.spread(), topology, &to_finish)?;
+    times.measures = clock.lap();
+    fit.times = times;
     run.report(1.0);
     Ok(fit)
 }
@@ -224,7 +280,7 @@ fn selector<'a>(
     let mut pool = Pool::new(settings.parameter_cost * (1.0 + samples.noise / 0.001));
     let low = samples.points.iter().fold(DVec3::INFINITY, |low, p| low.min(*p));
     let high = samples.points.iter().fold(DVec3::NEG_INFINITY, |high, p| high.max(*p));
-    propose(&mut pool, samples, &regions.regions, [low, high], queries, kinds);
+    propose(&mut pool, samples, &regions.regions, [low, high], queries, kinds, run)?;
     if kinds.superellipsoids {
         superellipsoids::propose(&mut pool, samples, regions, queries, settings.seed, run)?;
     }
@@ -234,13 +290,12 @@ fn selector<'a>(
     run.check()?;
     let mut grids: Vec<Grid> = Vec::new();
     if kinds.boxes {
-        grids = regions.frames.iter().map(|frame| grid(*frame, &regions.regions, &samples.points, queries)).collect();
+        for frame in &regions.frames {
+            run.check()?;
+            grids.push(grid(*frame, &regions.regions, &samples.points, queries));
+        }
     }
     Ok(Selector { pool, queries, grids, cancel: run.cancel.clone() })
-}
-
-fn leaves(pool: &Pool, steps: &[Step]) -> Vec<(bool, Leaf)> {
-    steps.iter().map(|step| (step.adds, pool.candidates[step.which as usize].leaf.clone())).collect()
 }
 
 /// The steps of a model with other leaves in their places.
@@ -253,10 +308,28 @@ fn steps(selector: &mut Selector<'_>, model: &Model, leaves: Vec<(bool, Leaf)>) 
     steps
 }
 
-/// The model with its leaves moved onto the surface, where that is not for the worse, and changed
-/// if it pays then.
+/// The model with cuts that go through but for a skin, where that is not for the worse.
+fn opened(selector: &mut Selector<'_>, mut model: Model, skin: f64, run: &Run) -> Result<Model, Cancelled> {
+    for i in 0..model.steps.len() {
+        run.check()?;
+        let leaves = selector.leaves(&model.steps);
+        let longer = if leaves[i].0 { None } else { lengthened(&leaves, i, 1.0, skin) };
+        if let Some(longer) = longer {
+            let may = selector.pool.candidates[model.steps[i].which as usize].may;
+            let mut steps = model.steps.clone();
+            steps[i].which = selector.pool.add(longer, selector.queries, may, None);
+            let next = selector.model(steps);
+            if next.cost < model.cost + ALLOWED_RISE {
+                model = next;
+            }
+        }
+    }
+    Ok(model)
+}
+
+/// The model with its leaves moved onto the surface, where that is not for the worse.
 fn moved(selector: &mut Selector<'_>, model: Model, samples: &Samples, run: &Run) -> Result<Model, FitError> {
-    let fitted = refined(&leaves(&selector.pool, &model.steps), samples, run)?;
+    let fitted = refined(&selector.leaves(&model.steps), samples, run)?;
     let steps = steps(selector, &model, fitted);
     let all = selector.model(steps.clone());
     let mut best = model;
@@ -272,5 +345,5 @@ fn moved(selector: &mut Selector<'_>, model: Model, samples: &Samples, run: &Run
             }
         }
     }
-    Ok(selector.improve(best, run)?)
+    Ok(best)
 }

@@ -77,20 +77,20 @@ pub(super) fn refined(leaves: &[(bool, Leaf)], samples: &Samples, run: &Run) -> 
                 // What was found by its own region is nearly there, and would be drawn off by what
                 // is beside it.
                 let width = if leaf.is_free() { width } else { width.min(NARROW.max(least)) };
-                *leaf = fitted(leaf, &agreeing, width);
+                *leaf = fitted(leaf, &agreeing, width, |leaf, p| leaf.distance(p));
             }
         }
     }
     Ok(leaves)
 }
 
-/// A leaf fitted to weighted points.
-pub(super) fn fitted(leaf: &Leaf, own: &[(DVec3, f64)], width: f64) -> Leaf {
+/// A leaf fitted to what is weighted, of which each is to be at no distance from it.
+pub(super) fn fitted<T: Copy>(leaf: &Leaf, own: &[(T, f64)], width: f64, distance: impl Fn(&Leaf, T) -> f64) -> Leaf {
     let count = leaf.freedom();
     let mut leaf = leaf.clone();
     let cost = |leaf: &Leaf| -> f64 {
-        let of = |(p, weight): &(DVec3, f64)| {
-            let square = (leaf.distance(*p) / width).powi(2);
+        let of = |(p, weight): &(T, f64)| {
+            let square = (distance(leaf, *p) / width).powi(2);
             weight * square / (1.0 + square)
         };
         own.iter().map(of).sum()
@@ -108,14 +108,14 @@ pub(super) fn fitted(leaf: &Leaf, own: &[(DVec3, f64)], width: f64) -> Leaf {
         let (mut hessian, mut right) = ([[0.0; MOST]; MOST], [0.0; MOST]);
         for (p, weight) in own {
             let p = *p;
-            let distance = leaf.distance(p);
-            let weight = weight / (1.0 + (distance / width).powi(2)).powi(2);
+            let off = distance(&leaf, p);
+            let weight = weight / (1.0 + (off / width).powi(2)).powi(2);
             let mut slopes = [0.0; MOST];
             for (slope, near) in slopes.iter_mut().zip(&nearby) {
-                *slope = near.as_ref().map_or(0.0, |near| (near.distance(p) - distance) / STEP);
+                *slope = near.as_ref().map_or(0.0, |near| (distance(near, p) - off) / STEP);
             }
             for a in 0..count {
-                right[a] -= weight * slopes[a] * distance;
+                right[a] -= weight * slopes[a] * off;
                 for b in 0..=a {
                     hessian[a][b] += weight * slopes[a] * slopes[b];
                 }

@@ -49,7 +49,7 @@ fn found(samples: &Samples) -> Regions {
 }
 
 fn regions_of(mesh: &Mesh) -> (f64, Regions) {
-    let samples = Samples::of_mesh(mesh, 1);
+    let samples = Samples::of_mesh(mesh, 1, &Run::default()).unwrap();
     assert!((samples.weights.iter().sum::<f64>() - 1.0).abs() < 1e-9);
     (samples.size, found(&samples))
 }
@@ -65,7 +65,7 @@ fn cylinders(size: f64, regions: &Regions) -> Vec<(f64, DVec3)> {
 
 /// Points of a mesh with normals, noise in diagonals on both.
 fn scan(mesh: &Mesh, noise: f64, tilt: f64) -> Samples {
-    let samples = Samples::of_mesh(mesh, 7);
+    let samples = Samples::of_mesh(mesh, 7, &Run::default()).unwrap();
     let mut random = Random::new(3);
     let mut bell = |scale: f64| scale * ((0..6).map(|_| random.unit()).sum::<f64>() - 3.0) * std::f64::consts::SQRT_2;
     let points = samples.points.iter().zip(&samples.normals).map(|(p, n)| *p + *n * bell(noise)).collect();
@@ -115,7 +115,7 @@ fn cones_spheres_and_tori_are_told_from_each_other() {
     let Form::Cone { slope, axis, origin, radius, .. } = regions.regions[0].form else { panic!("{regions:?}") };
     let up = axis.dot(oblique().z_axis).signum();
     assert!((up * slope + 0.5).abs() < 1e-3);
-    let centre = Samples::of_mesh(&cone, 1).centre;
+    let centre = Samples::of_mesh(&cone, 1, &Run::default()).unwrap().centre;
     let height = (centre + size * origin).dot(oblique().z_axis);
     assert!((size * radius - (2.0 - 0.5 * height)).abs() < 1e-3);
 
@@ -157,7 +157,7 @@ fn a_thin_plate_is_no_cylinder() {
 fn scans_of_turned_bodies() {
     let outline = [[0.5, -1.0], [1.5, -1.0], [1.5, 1.0], [0.8, 1.0], [0.8, 2.0], [0.5, 2.0]];
     let body = turned(&outline, 90, oblique());
-    let size = Samples::of_mesh(&body, 1).size;
+    let size = Samples::of_mesh(&body, 1, &Run::default()).unwrap().size;
     for (noise, slack) in [(0.0, 0.01), (0.002, 0.03)] {
         let samples = scan(&body, noise, 20.0 * noise);
         let regions = found(&samples);

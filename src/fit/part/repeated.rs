@@ -7,10 +7,12 @@
 //!     − cut cylinder 5         among each other is of no matter
 //! ```
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
-use super::measures::tidy;
-use super::patterns::{Layout, Pattern, patterns_of};
+use super::layouts::patterns_of;
+use super::leaf::{Leaf, along, posed};
+use super::measures::{TO_X, TO_Y, tidy};
+use super::patterns::{Layout, Pattern};
 use super::result::PartLeaf;
 use super::topology::tree;
 use crate::Solid;
@@ -18,9 +20,9 @@ use crate::Solid;
 /// How far a leaf may be from where the rule has it, in diagonals: what vertices leave open.
 const PLACED: f64 = 1e-4;
 
-/// The solid of leaves, in the order in which they are added and cut, for a part of such a size.
-pub(super) fn solid_of(leaves: &[PartLeaf], size: f64) -> Option<Solid> {
-    let named = |leaf: &PartLeaf| leaf.leaf.solid().named(&leaf.name);
+/// The solid of leaves, in the order in which they are added and cut, for a part of such a size;
+/// and the patterns that are repeated in it.
+pub(super) fn repeated(leaves: &[PartLeaf], size: f64) -> Option<(Solid, Vec<Pattern>)> {
     // Which run of leaves that are all added, or all cut, each is in.
     let runs: Vec<usize> = (leaves.iter())
         .scan((0, true), |(run, adds), leaf| {
@@ -29,72 +31,74 @@ pub(super) fn solid_of(leaves: &[PartLeaf], size: f64) -> Option<Solid> {
             Some(*run)
         })
         .collect();
-    let mut solids: Vec<Option<Solid>> = leaves.iter().map(|leaf| Some(named(leaf))).collect();
-    for Pattern { leaves: mut members, layout } in patterns_of(leaves, size) {
-        if let Layout::Ring { .. } = layout {
+    let mut solids: Vec<Option<Solid>> = leaves.iter().map(|leaf| Some(leaf.leaf.solid().named(&leaf.name))).collect();
+    let mut kept = Vec::new();
+    let plain: Vec<&Leaf> = leaves.iter().map(|leaf| &leaf.leaf).collect();
+    for mut pattern in patterns_of(&plain, &runs, size) {
+        if let Layout::Ring { centre, first, .. } = &mut pattern.layout {
             // A ring may begin anywhere: where its numbers are shortest.
+            let members = &mut pattern.leaves;
             let length = |k: &usize| format!("{:?}", leaves[members[*k]].leaf.centre).len();
             let shortest = (0..members.len()).min_by_key(length).unwrap_or(0);
             members.rotate_left(shortest);
+            *first = leaves[members[0]].leaf.centre - *centre;
         }
-        let first = &leaves[members[0]];
-        if members.iter().any(|i| runs[*i] != runs[members[0]]) {
-            continue;
-        }
-        let places: Vec<DVec3> = members.iter().map(|i| leaves[*i].leaf.centre).collect();
-        let Some(repeated) = repeated(&layout, &places, first, size).map(|repeat| repeat(named(first))) else {
-            continue;
-        };
+        let first = &leaves[pattern.leaves[0]];
+        let places: Vec<DVec3> = pattern.leaves.iter().map(|i| leaves[*i].leaf.centre).collect();
         // What cannot be repeated stays as it is.
-        if repeated.bounds().is_ok() {
-            members.iter().for_each(|i| solids[*i] = None);
-            solids[members[0]] = Some(repeated);
-        }
+        let repeated = copies(&pattern.layout, &places, &first.leaf, &first.name, size);
+        let Some(repeated) = repeated.filter(|solid| solid.bounds().is_ok()) else { continue };
+        pattern.leaves.iter().for_each(|i| solids[*i] = None);
+        solids[pattern.leaves[0]] = Some(repeated);
+        kept.push(pattern);
     }
-    tree(leaves.iter().zip(solids).filter_map(|(leaf, solid)| Some((leaf.adds, solid?))))
+    let solid = tree(leaves.iter().zip(solids).filter_map(|(leaf, solid)| Some((leaf.adds, solid?))))?;
+    Some((solid, kept))
 }
 
-/// How the first leaf of a pattern becomes all of them; none if some are not where the rule has them.
-fn repeated(layout: &Layout, places: &[DVec3], first: &PartLeaf, size: f64) -> Option<Box<dyn Fn(Solid) -> Solid>> {
+/// The first leaf of a pattern, repeated; none if some leaves are not where the rule has them.
+fn copies(layout: &Layout, places: &[DVec3], first: &Leaf, name: &str, size: f64) -> Option<Solid> {
     let is_placed = |rule: &dyn Fn(usize) -> DVec3| {
         places.iter().enumerate().all(|(k, place)| place.distance(rule(k)) < PLACED * size)
     };
     match *layout {
         Layout::Ring { centre, axis, .. } => {
             let count = u32::try_from(places.len()).ok()?;
-            // Copies are turned, which is to be seen of what is not round; only rings about z are repeated.
-            let is_about_z = first.leaf.is_round() && axis.truncate().length() < 1e-9;
-            let centre = DVec3::new(on_axis(centre.x, size), on_axis(centre.y, size), 0.0);
-            let sector = std::f64::consts::TAU / f64::from(count) * axis.z.signum();
+            // Made about z, and laid along the axis then.
+            let frame = upright(axis);
+            let to = frame.transpose();
+            let [middle, at] = [centre, places[0]].map(|p| to * p);
+            let middle = DVec3::new(on_axis(middle.x, size), on_axis(middle.y, size), 0.0);
             let rule = |k: usize| {
-                let (sin, cos) = (sector * k as f64).sin_cos();
-                let d = places[0] - centre;
-                centre + DVec3::new(cos * d.x - sin * d.y, sin * d.x + cos * d.y, d.z)
+                let turn = DMat3::from_rotation_z(std::f64::consts::TAU / f64::from(count) * k as f64);
+                frame * (middle + turn * (at - middle))
             };
-            (is_about_z && is_placed(&rule)).then(|| -> Box<dyn Fn(Solid) -> Solid> {
-                if centre == DVec3::ZERO {
-                    Box::new(move |solid| solid.repeat_polar(count))
-                } else {
-                    Box::new(move |solid| solid.translate(-centre).repeat_polar(count).translate(centre))
-                }
-            })
+            let own = Leaf { shape: first.shape.clone(), rotation: to * first.rotation, centre: tidied(at - middle) };
+            let own = own.aligned(1e-9).solid().named(name);
+            is_placed(&rule).then(|| posed(own.repeat_polar(count), frame, tidied(frame * middle)))
         }
         Layout::Line { .. } => {
             let last = places.len() - 1;
             let step = tidied((places[last] - places[0]) / last as f64);
             let rule = |k: usize| places[0] + k as f64 * step;
-            is_placed(&rule).then(|| -> Box<dyn Fn(Solid) -> Solid> {
-                Box::new(move |solid| solid.repeat_linear(last as u32 + 1, step))
-            })
+            is_placed(&rule).then(|| first.solid().named(name).repeat_linear(last as u32 + 1, step))
         }
         Layout::Grid { counts: [columns, rows], .. } => {
             let along = tidied((places[columns - 1] - places[0]) / (columns - 1) as f64);
             let across = tidied((places[columns * (rows - 1)] - places[0]) / (rows - 1) as f64);
             let rule = |k: usize| places[0] + (k % columns) as f64 * along + (k / columns) as f64 * across;
-            is_placed(&rule).then(|| -> Box<dyn Fn(Solid) -> Solid> {
-                Box::new(move |solid| solid.repeat_linear(columns as u32, along).repeat_linear(rows as u32, across))
-            })
+            let row = || first.solid().named(name).repeat_linear(columns as u32, along);
+            is_placed(&rule).then(|| row().repeat_linear(rows as u32, across))
         }
+    }
+}
+
+/// A frame whose z axis is the given one, by a quarter turn if that will do.
+fn upright(axis: DVec3) -> DMat3 {
+    match axis {
+        DVec3::X => TO_X,
+        DVec3::Y => TO_Y,
+        axis => along(axis),
     }
 }
 
@@ -109,11 +113,10 @@ fn on_axis(v: f64, size: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::leaf::Leaf;
     use super::*;
 
     fn leaf(adds: bool, name: &str, leaf: Leaf) -> PartLeaf {
-        PartLeaf { adds, leaf, name: name.to_owned(), surface: 0.1 }
+        PartLeaf { adds, leaf, name: name.to_owned(), text: String::new(), surface: 0.1 }
     }
 
     fn cut(name: &str, x: f64, y: f64) -> PartLeaf {
@@ -134,7 +137,8 @@ mod tests {
         for holes in [ring.collect::<Vec<_>>(), grid.collect(), row.to_vec()] {
             let leaves: Vec<PartLeaf> = std::iter::once(plate.clone()).chain(holes).collect();
             let plain = tree(leaves.iter().map(|leaf| (leaf.adds, leaf.leaf.solid()))).unwrap();
-            let solid = solid_of(&leaves, 100.0).unwrap();
+            let (solid, patterns) = repeated(&leaves, 100.0).unwrap();
+            assert_eq!(patterns.len(), 1);
             let name = &leaves[1].name;
             assert!(solid.to_string().matches(&**name).count() == 1, "{solid}");
             for i in 0..3000 {
@@ -149,7 +153,8 @@ mod tests {
     fn what_is_between_keeps_a_pattern_apart() {
         let ball = |x: f64| leaf(true, "ball", Leaf::sphere(DVec3::X * x, 2.0));
         let leaves = [ball(0.0), ball(10.0), cut("hole", 0.0, 0.0), ball(20.0)];
-        let solid = solid_of(&leaves, 30.0).unwrap();
+        let (solid, patterns) = repeated(&leaves, 30.0).unwrap();
+        assert!(patterns.is_empty());
         assert_eq!(solid.to_string().matches("ball").count(), 3, "{solid}");
     }
 }

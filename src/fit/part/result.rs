@@ -5,7 +5,11 @@ use glam::DVec3;
 use super::super::deviations::Deviation;
 use super::intent::Change;
 use super::leaf::Leaf;
-use super::repeated::solid_of;
+use super::patterns::Pattern;
+use super::repeated::repeated;
+use super::times::PartTimes;
+use super::words::{describe, laid_out};
+use crate::code::{RustFile, RustSettings};
 use crate::{Bounds, Solid};
 
 /// A part as an ordered tree of leaves, and how well it is the part.
@@ -16,12 +20,15 @@ use crate::{Bounds, Solid};
 pub struct PartFit {
     pub(super) leaves: Vec<PartLeaf>,
     pub(super) solid: Solid,
+    /// Those that are repeated in the solid.
+    pub(super) patterns: Vec<Pattern>,
     pub(super) snaps: Vec<Snap>,
     pub(super) iou: f64,
     pub(super) deviation: Deviation,
     pub(super) topology: Topology,
     pub(super) topology_of_input: Topology,
     pub(super) unexplained: Vec<Unexplained>,
+    pub(super) times: PartTimes,
 }
 
 /// A leaf of a part.
@@ -30,6 +37,8 @@ pub struct PartLeaf {
     pub(super) adds: bool,
     pub(super) leaf: Leaf,
     pub(super) name: String,
+    /// In words.
+    pub(super) text: String,
     pub(super) surface: f64,
 }
 
@@ -116,8 +125,15 @@ impl PartFit {
         let mut place = 0..;
         fit.snaps.retain(|_| place.next().is_none_or(|n| !snaps.contains(&n)));
         let size = fit.solid.bounds().map_or(1.0, |bounds| bounds.size().length());
-        fit.solid = solid_of(&fit.leaves, size).unwrap_or(fit.solid);
+        fit.build(size);
         fit
+    }
+
+    /// Makes the tree of the leaves again, in a part of such a size; `None` leaves it as it was.
+    fn build(&mut self, size: f64) -> Option<()> {
+        (self.solid, self.patterns) = repeated(&self.leaves, size)?;
+        describe(&mut self.leaves, size);
+        Some(())
     }
 
     /// The part, in the mesh's coordinates. Its leaves have [names](PartLeaf::name); those of a
@@ -133,12 +149,57 @@ impl PartFit {
         &self.leaves
     }
 
-    /// How many numbers the leaves have: 3 of a half-space, 4 of a sphere, 7 of a cylinder or a
-    /// torus, 8 of a cone, 9 of a box or a prism, 10 of a rounded rectangle, 11 of a
-    /// superellipsoid, 12 of a supershape, 7 and 2 a corner of a profile.
+    /// How many leaves the tree has, those of a [pattern](PartFit::patterns) counted once: a plate
+    /// with a grid of holes is two.
+    #[must_use]
+    pub fn leaf_count(&self) -> usize {
+        self.leaves.len() - self.patterns.iter().map(|pattern| pattern.leaves.len() - 1).sum::<usize>()
+    }
+
+    /// How many numbers the tree has: 3 of a half-space, 4 of a sphere, 7 of a cylinder or a torus,
+    /// 8 of a cone, 9 of a box or a prism, 10 of a rounded rectangle, 11 of a superellipsoid, 12 of
+    /// a supershape, 7 and 2 a corner of a profile. Of a [pattern](PartFit::patterns) it is those of
+    /// one leaf and of the [layout](super::Layout::parameters).
     #[must_use]
     pub fn parameters(&self) -> usize {
-        self.leaves.iter().map(PartLeaf::parameters).sum()
+        let all: usize = self.leaves.iter().map(PartLeaf::parameters).sum();
+        let saved = |pattern: &Pattern| {
+            let others = pattern.leaves[1..].iter().map(|i| self.leaves[*i].parameters()).sum::<usize>();
+            others - pattern.layout.parameters()
+        };
+        all - self.patterns.iter().map(saved).sum::<usize>()
+    }
+
+    /// The part as Rust code: a function of this name that makes [the solid](PartFit::solid) again,
+    /// with a comment at each leaf that tells what it is.
+    ///
+    /// ```
+    /// use rvachev::fit::{PartSettings, part};
+    /// use rvachev::{MeshSettings, Solid};
+    ///
+    /// let plate = Solid::cuboid([60.0, 20.0, 8.0]) - Solid::cylinder(3.0, 20.0);
+    /// let found = part(&plate.mesh(&MeshSettings::default())?, &PartSettings::default())?;
+    /// let code = found.to_rust("plate");
+    /// assert!(code.contains("// block, 60 × 20 × 8; ") && code.contains("// hole, ⌀ 6, through; "), "{code}");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn to_rust(&self, name: &str) -> String {
+        let mut settings = RustSettings::default();
+        let share = |leaf: &PartLeaf| 100.0 * leaf.surface;
+        for leaf in &self.leaves {
+            let text = format!("{}; {:.1} % of the surface", leaf.text, share(leaf));
+            settings.comments.insert(leaf.name.clone(), text);
+        }
+        for pattern in &self.patterns {
+            let first = &self.leaves[pattern.leaves[0]];
+            let all: f64 = pattern.leaves.iter().map(|i| share(&self.leaves[*i])).sum();
+            let text = format!("{}, {}; {all:.1} % of the surface", first.text, laid_out(pattern));
+            settings.comments.insert(first.name.clone(), text);
+        }
+        let mut file = RustFile::new(settings);
+        file.add(name, &self.solid);
+        file.to_string()
     }
 
     /// The volume of what tree and mesh have in common, over that of what either has: 1 is all
@@ -174,6 +235,12 @@ impl PartFit {
     pub fn unexplained(&self) -> &[Unexplained] {
         &self.unexplained
     }
+
+    /// How long the stages of the recovery took: of all that is here this only is another each time.
+    #[must_use]
+    pub fn times(&self) -> PartTimes {
+        self.times
+    }
 }
 
 impl PartLeaf {
@@ -195,6 +262,13 @@ impl PartLeaf {
     #[must_use]
     pub fn kind(&self) -> &'static str {
         self.leaf.kind()
+    }
+
+    /// What it is in an engineer's words, in length units: "hole, ⌀ 6.35, through", or "block, 60 ×
+    /// 40 × 8".
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.text
     }
 
     /// The leaf alone, where it is, in the mesh's coordinates.

@@ -15,6 +15,7 @@ use crate::fit::grid::{Grid, extent};
 use crate::fit::linear::{Principal, quantile};
 use crate::fit::random::Random;
 use crate::geom::{Mesh, PointCloud};
+use crate::{Cancelled, Run};
 
 /// Samples by area of a mesh, and centroids besides.
 const BY_AREA: usize = 5000;
@@ -71,12 +72,12 @@ pub(super) struct Samples {
 }
 
 impl Samples {
-    pub(super) fn of_mesh(mesh: &Mesh, seed: u64) -> Samples {
+    pub(super) fn of_mesh(mesh: &Mesh, seed: u64, run: &Run) -> Result<Samples, Cancelled> {
         let all: Vec<DVec3> = mesh.positions().iter().map(|p| p.as_dvec3()).collect();
         let [low, high] = extent(&all);
         let (centre, size) = (0.5 * (low + high), (high - low).length());
         let points: Vec<DVec3> = all.iter().map(|p| (p - centre) / size).collect();
-        let facets = Facets::of(points, mesh.triangles());
+        let facets = Facets::of(points, mesh.triangles(), run)?;
         let kind = if facets.is_fine(MANY, SMALL) { Kind::Voxels } else { Kind::Cad };
         let mut random = Random::new(seed);
         let mut samples = Samples {
@@ -91,12 +92,12 @@ impl Samples {
             noise: 0.0,
         };
         samples.strew(&facets, &mut random);
-        let corners = facets.corners();
+        let corners = facets.corners(run)?;
         let mut kept = random.chosen(corners.len(), CORNERS);
         kept.sort_unstable();
         samples.corners = kept.into_iter().map(|i| corners[i]).collect();
         samples.facets = facets;
-        samples
+        Ok(samples)
     }
 
     /// Samples of the facets by area, then of those that none of them hit.

@@ -87,6 +87,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
+    use crate::Run;
 
     #[test]
     fn a_tilted_box_has_one_ring() {
@@ -94,12 +95,12 @@ mod tests {
         let faces: [[u32; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
         let triangles: Vec<[u32; 3]> = faces.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
         let frame = DMat3::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), 0.7);
-        let facets = Facets::of((0..8).map(|i| frame * corner(i)).collect(), &triangles);
+        let facets = Facets::of((0..8).map(|i| frame * corner(i)).collect(), &triangles, &Run::default()).unwrap();
         let rings = facets.rings(&frame, 0.1);
         assert_eq!(rings.len(), 1);
         assert!((rings[0].area - 0.7).abs() < 1e-12);
         let inside_out: Vec<[u32; 3]> = triangles.iter().map(|[a, b, c]| [*a, *c, *b]).collect();
-        let facets = Facets::of((0..8).map(|i| frame * corner(i)).collect(), &inside_out);
+        let facets = Facets::of((0..8).map(|i| frame * corner(i)).collect(), &inside_out, &Run::default()).unwrap();
         assert!((facets.rings(&frame, 0.1)[0].area + 0.7).abs() < 1e-12);
         assert!(facets.rings(&frame, 0.3).is_empty());
     }

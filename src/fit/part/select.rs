@@ -11,6 +11,7 @@
 
 use super::bits::{Bits, Stakes, weight};
 use super::boxes::Grid;
+use super::leaf::Leaf;
 use super::model::{GRAIN, Judge, Model, Step};
 use super::pool::Pool;
 use super::queries::Queries;
@@ -53,12 +54,22 @@ impl Selector<'_> {
         self.judge().model(steps)
     }
 
+    /// The leaves of steps.
+    pub(super) fn leaves(&self, steps: &[Step]) -> Vec<(bool, Leaf)> {
+        steps.iter().map(|step| (step.adds, self.pool.candidates[step.which as usize].leaf.clone())).collect()
+    }
+
+    /// What a model has wrong, without what its leaves cost.
+    pub(super) fn error(&self, model: &Model) -> f64 {
+        self.judge().error(&model.state)
+    }
+
     /// The best candidates for stakes, boxes included that are not yet among them.
-    fn best(&mut self, stakes: &Stakes, adds: bool, dear: f64, count: usize) -> Vec<(f64, u32)> {
+    fn best(&mut self, steps: &[Step], stakes: &Stakes, adds: bool, dear: f64, count: usize) -> Vec<(f64, u32)> {
         for grid in &mut self.grids {
             grid.propose(stakes, adds, dear, self.queries, &mut self.pool);
         }
-        self.judge().best(stakes, adds, dear, count)
+        self.judge().best(steps, stakes, adds, dear, count)
     }
 
     fn with(&self, steps: &[Step], place: usize, step: Step) -> Model {
@@ -75,6 +86,7 @@ impl Selector<'_> {
             run.check()?;
             let mut children: Vec<Model> = Vec::new();
             for model in &beam {
+                run.check()?;
                 for child in self.children(model) {
                     let is_new = children.iter().all(|other| other.state != child.state);
                     if child.cost < model.cost - GRAIN && is_new {
@@ -107,8 +119,11 @@ impl Selector<'_> {
             if (place == first_cut && place == end && children.len() > BEAM) || (!adds && end == 0) {
                 continue;
             }
+            if self.cancel.is_cancelled() {
+                return Vec::new();
+            }
             let stakes = self.judge().stakes(steps, place, adds);
-            for (_, which) in self.best(&stakes, adds, 1.0, BEAM) {
+            for (_, which) in self.best(steps, &stakes, adds, 1.0, BEAM) {
                 children.push(self.with(steps, place, Step { adds, which }));
             }
         }
@@ -124,15 +139,23 @@ impl Selector<'_> {
     fn pairs(&mut self, model: &Model, place: usize) -> Vec<Model> {
         let stakes = self.judge().stakes(&model.steps, place, true);
         // Of a thin shell nearly all that the leaf holds is wrong before it is cut.
-        let weights = &self.queries.weights;
+        let queries = self.queries;
+        let weights = &queries.weights;
         let dear = FORGIVING.min(0.5 * weight(&stakes.gain, weights) / weight(&stakes.loss, weights).max(GRAIN));
-        let added = self.best(&stakes, true, dear, 2 * BEAM);
+        let added = self.best(&model.steps, &stakes, true, dear, 2 * BEAM);
         let mut pairs = Vec::new();
         for (_, which) in added {
+            if self.cancel.is_cancelled() {
+                break;
+            }
             let mut next = self.with(&model.steps, place, Step { adds: true, which });
             for _ in 0..CUTS {
                 let stakes = self.judge().stakes(&next.steps, next.steps.len(), false);
-                let Some((_, which)) = self.best(&stakes, false, 1.0, 1).first().copied() else { break };
+                // If all that is too much were cut at once it would not do.
+                if next.cost - weight(&stakes.gain, weights) > model.cost {
+                    break;
+                }
+                let Some((_, which)) = self.best(&next.steps, &stakes, false, 1.0, 1).first().copied() else { break };
                 next = self.with(&next.steps, next.steps.len(), Step { adds: false, which });
                 if next.cost < model.cost - GRAIN {
                     pairs.push(next);
@@ -153,7 +176,7 @@ impl Selector<'_> {
         }
         // What a cut can open again is not lost.
         stakes.loss.remove(&cuts);
-        let added = self.best(&stakes, true, 1.0, 2 * BEAM);
+        let added = self.best(steps, &stakes, true, 1.0, 2 * BEAM);
         added.into_iter().map(|(_, which)| self.reinserted(steps, which)).collect()
     }
 
@@ -236,7 +259,7 @@ impl Selector<'_> {
             rest.remove(i);
             for adds in [true, false] {
                 let stakes = self.judge().stakes(&rest, i, adds);
-                for (_, which) in self.best(&stakes, adds, 1.0, 1) {
+                for (_, which) in self.best(&rest, &stakes, adds, 1.0, 1) {
                     let mut steps = rest.clone();
                     steps.insert(i, Step { adds, which });
                     self.keep(model, steps);
@@ -258,7 +281,7 @@ impl Selector<'_> {
                 let mut best: Option<Model> = None;
                 for adds in [true, false] {
                     let stakes = self.judge().stakes(&next.steps, end, adds);
-                    if let Some((_, which)) = self.best(&stakes, adds, 1.0, 1).first().copied() {
+                    if let Some((_, which)) = self.best(&next.steps, &stakes, adds, 1.0, 1).first().copied() {
                         let one = self.with(&next.steps, end, Step { adds, which });
                         if one.cost < best.as_ref().unwrap_or(&next).cost - GRAIN {
                             best = Some(one);
@@ -279,6 +302,9 @@ impl Selector<'_> {
 
     fn move_one(&mut self, model: &mut Model) {
         for from in 0..model.steps.len() {
+            if self.cancel.is_cancelled() {
+                return;
+            }
             for to in 0..model.steps.len() {
                 let mut steps = model.steps.clone();
                 let step = steps.remove(from);
@@ -300,7 +326,7 @@ impl Selector<'_> {
                     continue;
                 }
                 let stakes = self.judge().stakes(&model.steps, place, adds);
-                for (_, which) in self.best(&stakes, adds, 1.0, 1) {
+                for (_, which) in self.best(&model.steps, &stakes, adds, 1.0, 1) {
                     tried.push(self.with(&model.steps, place, Step { adds, which }));
                 }
             }
@@ -326,11 +352,16 @@ impl Selector<'_> {
                     .map(|(which, _)| which)
                     .collect();
                 for which in others {
+                    if self.cancel.is_cancelled() {
+                        return;
+                    }
                     let Some(at) = model.steps.get(i).copied() else { break };
                     let mut steps = model.steps.clone();
                     steps[i] = Step { which, ..at };
                     let stakes = self.judge().stakes(&steps, steps.len(), false);
-                    let Some((_, cut)) = self.judge().best(&stakes, false, 1.0, 1).first().copied() else { continue };
+                    let Some((_, cut)) = self.judge().best(&steps, &stakes, false, 1.0, 1).first().copied() else {
+                        continue;
+                    };
                     steps.push(Step { adds: false, which: cut });
                     self.keep(model, steps);
                 }

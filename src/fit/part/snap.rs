@@ -32,10 +32,11 @@ pub(super) fn snapped(leaves: &[(bool, Leaf)], vertices: &[DVec3], run: &Run) ->
         let of_surface: Vec<DVec3> = vertices.iter().copied().filter(|p| owner(&laid, *p).1.abs() < near).collect();
         for (_, leaf) in &mut laid {
             run.check()?;
-            let own =
-                of_surface.iter().filter(|p| leaf.distance(**p).abs() < near).map(|p| (*p, 1.0)).collect::<Vec<_>>();
+            let own: Vec<_> = on_faces(leaf, &of_surface, near).map(|on| (on, 1.0)).collect();
             if own.len() > 1 {
-                *leaf = fitted(leaf, &own, width);
+                // Vertices at a rim are on both faces: by the distance alone they would be met by all
+                // that is wider, too.
+                *leaf = fitted(leaf, &own, width, |leaf, (p, face): (DVec3, usize)| leaf.faces(p)[face]);
             }
         }
     }
@@ -51,11 +52,37 @@ pub(super) fn snapped(leaves: &[(bool, Leaf)], vertices: &[DVec3], run: &Run) ->
     Ok(laid)
 }
 
-/// By leaf, how many vertices are near it, and how many are on it.
+/// Vertices near a leaf, with the faces that they are near.
+fn on_faces<'a>(leaf: &'a Leaf, vertices: &'a [DVec3], near: f64) -> impl Iterator<Item = (DVec3, usize)> + 'a {
+    let beside = vertices.iter().filter(move |p| leaf.distance(**p).abs() < near);
+    beside.flat_map(move |p| {
+        let faces = leaf.faces(*p).into_iter().enumerate();
+        faces.filter(move |(_, off)| off.abs() < near).map(|(face, _)| (*p, face)).collect::<Vec<_>>()
+    })
+}
+
+/// By leaf, how many times vertices are near a face, and how many times they are on it.
 fn met(leaves: &[(bool, Leaf)], vertices: &[DVec3]) -> Vec<[usize; 2]> {
-    let count = |(_, leaf): &(bool, Leaf)| {
-        let distances = vertices.iter().map(|p| leaf.distance(*p).abs());
-        distances.fold([0, 0], |[meant, met], d| [meant + usize::from(d < MEANT), met + usize::from(d < MET)])
-    };
+    let count = |(_, leaf): &(bool, Leaf)| [MEANT, MET].map(|near| on_faces(leaf, vertices, near).count());
     leaves.iter().map(count).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+
+    /// A disc of 36 facets, found too wide: its rims are on the ends all the same.
+    #[test]
+    fn rims_tell_radii_from_both_sides() {
+        let rim = |z: f64| (0..36).map(move |k| (0.2 * DVec3::X.rotate_z(TAU * f64::from(k) / 36.0)) + z * DVec3::Z);
+        let vertices: Vec<DVec3> = rim(-0.05).chain(rim(0.05)).collect();
+        for radius in [0.1985, 0.2015] {
+            let found = Leaf::cylinder(DVec3::Z, DVec3::new(2e-4, 0.0, 0.0), radius, [-0.0502, 0.0499]);
+            let laid = snapped(&[(true, found)], &vertices, &Run::default()).unwrap();
+            let sizes = laid[0].1.sizes();
+            assert!((sizes[0] - 0.2).abs() < 1e-6 && (sizes[1] - 0.1).abs() < 1e-6, "{radius}: {sizes:?}");
+        }
+    }
 }

@@ -45,6 +45,9 @@ const STEPS: usize = 4;
 const FEWEST: usize = 20;
 const LEAST: f64 = 0.3;
 
+/// Semi-axes at most, in sizes of the patch.
+const LARGE: f64 = 4.0;
+
 /// Puts superellipsoids among the candidates.
 pub(super) fn propose(
     pool: &mut Pool,
@@ -75,19 +78,31 @@ pub(super) fn propose(
         if explained as f64 >= EXPLAINED * patch.samples.len() as f64 {
             continue;
         }
-        let scene = Scene::new(&patch, samples, regions, &mut random);
-        for model in scene.models() {
-            let Superquadric { e: [e1, e2], semi_axes, rotation, center } = model;
-            let leaf = Leaf {
-                shape: Shape::Superellipsoid(Superellipsoid::new(scene.size * semi_axes, e1, e2)),
-                rotation,
-                centre: scene.centre + scene.size * center,
-            };
-            let outward = scene.outward(&model);
-            pool.add(leaf, queries, [patch.may[0] && outward, patch.may[1] && !outward], None);
-        }
+        of_patch(pool, &patch, samples, regions, queries, &mut random);
     }
     Ok(())
+}
+
+/// Puts the superellipsoids of a patch among the candidates.
+pub(super) fn of_patch(
+    pool: &mut Pool,
+    patch: &Patch,
+    samples: &Samples,
+    regions: &Regions,
+    queries: &Queries,
+    random: &mut Random,
+) {
+    let scene = Scene::new(patch, samples, regions, random);
+    for model in scene.models() {
+        let Superquadric { e: [e1, e2], semi_axes, rotation, center } = model;
+        let leaf = Leaf {
+            shape: Shape::Superellipsoid(Superellipsoid::new(scene.size * semi_axes, e1, e2)),
+            rotation,
+            centre: scene.centre + scene.size * center,
+        };
+        let outward = scene.outward(&model);
+        pool.add(leaf, queries, [patch.may[0] && outward, patch.may[1] && !outward], None);
+    }
 }
 
 /// A patch brought to a size near 1 about 0.
@@ -136,7 +151,9 @@ impl Scene {
                 let apart = other.center.distance(model.center);
                 apart > 0.05 || (other.semi_axes.element_product() / model.semi_axes.element_product()).ln().abs() > 0.1
             });
-            if share > LEAST && share * count as f64 > FEWEST as f64 && is_new {
+            // A model much larger than its patch is of some other shape there.
+            let fits = model.semi_axes.max_element() < LARGE;
+            if share > LEAST && share * count as f64 > FEWEST as f64 && is_new && fits {
                 kept.push((share, model));
             }
         }

@@ -88,9 +88,7 @@ pub(super) fn mended(
     samples: &Samples,
     run: &Run,
 ) -> Result<(Model, Topology), FitError> {
-    let leaves = |steps: &[Step]| -> Vec<(bool, Leaf)> {
-        steps.iter().map(|step| (step.adds, selector.pool.candidates[step.which as usize].leaf.clone())).collect()
-    };
+    let leaves = |steps: &[Step]| selector.leaves(steps);
     let mut found = of_tree(&leaves(&model.steps), samples, CELLS[0], run)?;
     // Of points nothing is known that could be meant.
     if meant.genus.is_none() || apart(found, meant) == Some(0) {

@@ -118,18 +118,32 @@ fn numbers_are_round_holes_go_through_and_patterns_are_one_leaf() {
     assert_eq!(kept.snaps().len() + 1, fit.snaps().len());
 }
 
+/// The code of the holder, as it is written: a part of the tests. `BLESS=1` writes it anew.
+#[rustfmt::skip]
+mod holder;
+
 #[test]
 fn a_holder_is_code_in_binary_fractions_of_an_inch() {
     let Some(mesh) = shared("holder") else { return };
     let fit = part(&mesh, &PartSettings::default()).unwrap();
-    let code = fit.solid().to_rust("holder");
+    let code = fit.to_rust("holder");
+    if std::env::var_os("BLESS").is_some() {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/it/recovery/parts/holder.rs");
+        std::fs::write(path, &code).unwrap();
+    }
     assert!(code.lines().count() <= 40, "{code}");
-    let words = code.split(|c: char| !(c.is_ascii_digit() || c == '.'));
+    let plain: Vec<&str> = code.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
+    let words = plain.iter().flat_map(|line| line.split(|c: char| !(c.is_ascii_digit() || c == '.')));
     let numbers = words.filter(|word| word.contains('.') && !word.starts_with('.') && !word.ends_with('.'));
+    let mut seen = Vec::new();
     for number in numbers.map(|word| word.parse::<f64>().unwrap()) {
         let parts = number / 25.4 * 64.0;
         assert!((parts - parts.round()).abs() < 1e-9, "{number}: {code}");
+        assert!(!seen.contains(&number) || number == 0.0, "{number} twice: {code}");
+        seen.push(number);
     }
+    assert_eq!(code, include_str!("parts/holder.rs"), "written anew by BLESS=1");
+    assert_eq!(holder::holder(), fit.solid());
 }
 
 #[test]
@@ -236,7 +250,7 @@ fn judged((name, iou, leaves, genus): Gate) -> Option<PartFit> {
     let mesh = shared(name)?;
     let fit = part(&mesh, &PartSettings::default()).unwrap();
     assert!(fit.iou() >= iou, "{name}: IoU {}", fit.iou());
-    assert!(fit.leaves().len() <= leaves, "{name}: {:?}", names(&fit));
+    assert!(fit.leaf_count() <= leaves, "{name}: {:?}", names(&fit));
     assert_eq!(fit.topology().genus, Some(genus), "{name}");
     Some(fit)
 }
@@ -300,12 +314,12 @@ const ALL: [(Gate, bool); 15] = [
     (("xtion_bracket", 0.99, 4, 2), true),
     (("camshaft", 0.99, 7, 0), false),
     (("camshaft", 0.98, 7, 0), true),
-    (("angle_block", 0.99, 10, 1), true),
+    (("angle_block", 0.99, 8, 1), true),
     (("satellite_mount", 0.99, 9, 8), true),
     (("lasercut_interface", 0.999, 9, 8), true),
     (("holder", 0.99, 10, 5), true),
-    (("plate_holes", 0.98, 11, 5), true),
-    (("machinist", 0.99, 20, 36), true),
+    (("plate_holes", 0.98, 10, 5), true),
+    (("machinist", 0.99, 8, 36), true),
     (("octagonal_pocket", 0.97, 34, 1), true),
 ];
 
@@ -322,11 +336,11 @@ fn all_parts_of_a_workshop() {
         let fit = part_with(&mesh, &settings, &run).unwrap();
         let seconds = time.elapsed().as_secs_f64();
         let iou = iou(&mesh, &fit);
-        let counts = format!("{} ({})", fit.leaves().len(), fit.parameters());
+        let counts = format!("{} ({})", fit.leaf_count(), fit.parameters());
         let [found, given] = [fit.topology(), fit.topology_of_input()].map(|topology| topology.genus.unwrap_or(-1));
         let how = if snap { "" } else { ", not snapped" };
         println!("| {name}{how} | {iou:.4} | {counts} | {found}, {given} | {seconds:.2} |");
-        assert!(iou >= least && fit.leaves().len() <= leaves && found == genus, "{name}");
+        assert!(iou >= least && fit.leaf_count() <= leaves && found == genus, "{name}");
         if name == "plate_holes" {
             let slope = |leaf: &&PartLeaf| leaf.is_cut() && leaf.kind() == "cone";
             assert_eq!(fit.leaves().iter().filter(slope).count(), 4, "countersinks");
@@ -350,10 +364,10 @@ fn fifty_random_parts() {
         let fit = part(&mesh, &PartSettings::default()).unwrap();
         let [found, given] = [fit.topology(), fit.topology_of_input()];
         let iou = iou(&mesh, &fit);
-        println!("{i:03}: IoU {iou:.4}, {} leaves, genus {:?}, {:?}", fit.leaves().len(), found.genus, given.genus);
+        println!("{i:03}: IoU {iou:.4}, {} leaves, genus {:?}, {:?}", fit.leaf_count(), found.genus, given.genus);
         right += usize::from(iou >= 0.97);
         same += usize::from(found.genus == given.genus);
-        few += usize::from(fit.leaves().len() <= 12);
+        few += usize::from(fit.leaf_count() <= 12);
     }
     println!("IoU ≥ .97: {right}, genus: {same}, ≤ 12 leaves: {few}");
     assert!(right >= 49 && same >= 45, "{right}, {same}");

@@ -7,6 +7,8 @@
 
 use fidget::context::{BinaryOpcode, UnaryOpcode};
 
+use super::functions::{double, single};
+
 /// A number that a formula's operations apply to.
 pub(super) trait Arithmetic: Copy {
     fn constant(c: f64) -> Self;
@@ -34,6 +36,10 @@ pub(super) trait Float: Copy + PartialOrd {
     fn narrow(c: f64) -> Self;
     fn apply1(op: UnaryOpcode, a: Self) -> Self;
     fn apply2(op: BinaryOpcode, a: Self, b: Self) -> Self;
+    /// Whether [`apply_near`](Float::apply_near) takes all of these.
+    fn are_near(op: UnaryOpcode, all: &[Self]) -> bool;
+    /// What `apply1` gives, without a branch: for loops.
+    fn apply_near(op: UnaryOpcode, a: Self) -> Self;
 }
 
 /// fidget's noise is made of the bits of single-precision numbers.
@@ -48,7 +54,7 @@ fn mix(a: f64, b: f64) -> f32 {
 }
 
 macro_rules! float {
-    ($float:ident) => {
+    ($float:ident, $functions:ident) => {
         impl Float for $float {
             #[inline(always)]
             #[allow(clippy::cast_possible_truncation, reason = "constants in the precision of the lanes")]
@@ -67,14 +73,14 @@ macro_rules! float {
                     UnaryOpcode::Floor => a.floor(),
                     UnaryOpcode::Ceil => a.ceil(),
                     UnaryOpcode::Round => a.round(),
-                    UnaryOpcode::Sin => a.sin(),
-                    UnaryOpcode::Cos => a.cos(),
+                    UnaryOpcode::Sin => $functions::sin(a),
+                    UnaryOpcode::Cos => $functions::cos(a),
                     UnaryOpcode::Tan => a.tan(),
                     UnaryOpcode::Asin => a.asin(),
                     UnaryOpcode::Acos => a.acos(),
                     UnaryOpcode::Atan => a.atan(),
-                    UnaryOpcode::Exp => a.exp(),
-                    UnaryOpcode::Ln => a.ln(),
+                    UnaryOpcode::Exp => $functions::exp(a),
+                    UnaryOpcode::Ln => $functions::ln(a),
                     UnaryOpcode::Not => {
                         if a == 0.0 {
                             1.0
@@ -130,6 +136,23 @@ macro_rules! float {
                     BinaryOpcode::Mix => mix(a.into(), b.into()).into(),
                 }
             }
+
+            #[inline(always)]
+            fn are_near(op: UnaryOpcode, all: &[$float]) -> bool {
+                match op {
+                    UnaryOpcode::Sin | UnaryOpcode::Cos => $functions::are_near(all),
+                    _ => true,
+                }
+            }
+
+            #[inline(always)]
+            fn apply_near(op: UnaryOpcode, a: $float) -> $float {
+                match op {
+                    UnaryOpcode::Sin => $functions::sin_near(a),
+                    UnaryOpcode::Cos => $functions::cos_near(a),
+                    _ => <$float as Float>::apply1(op, a),
+                }
+            }
         }
 
         impl Arithmetic for $float {
@@ -178,8 +201,8 @@ macro_rules! float {
     };
 }
 
-float!(f32);
-float!(f64);
+float!(f32, single);
+float!(f64, double);
 
 /// Calls `$body` with `$op` bound to the operation as a constant, so that each gets a loop of
 /// its own.

@@ -173,8 +173,14 @@ pub(super) fn unary<E: Float>(op: UnaryOpcode, a: Operand<'_, E>, result: &mut [
     match a {
         Operand::Slice(a) => {
             let a = &a[..len];
-            for i in 0..len {
-                result[i] = E::apply1(op, a[i]);
+            if E::are_near(op, a) {
+                for i in 0..len {
+                    result[i] = E::apply_near(op, a[i]);
+                }
+            } else {
+                for i in 0..len {
+                    result[i] = E::apply1(op, a[i]);
+                }
             }
         }
         Operand::Const(a) => result.fill(E::apply1(op, a)),

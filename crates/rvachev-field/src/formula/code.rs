@@ -8,6 +8,7 @@ use fidget::context::{self, BinaryOpcode, Context, Tree, TreeOp, UnaryOpcode};
 use fidget::var::Var;
 
 use super::arithmetic::Arithmetic;
+use super::jumps;
 use super::op::Op;
 use super::plan::Plan;
 
@@ -32,6 +33,8 @@ pub(super) struct Code {
     pub(super) axes: [bool; 3],
     /// How many operations choose one of their operands.
     pub(super) choices: usize,
+    /// Whether an operation may jump at planes.
+    pub(super) jumps: bool,
     /// No two codes have the same.
     pub(super) number: u64,
     plan: OnceLock<Plan>,
@@ -158,22 +161,23 @@ fn next() -> u64 {
 
 impl Code {
     pub(super) fn new(ops: Vec<Op>, flaw: Option<Flaw>) -> Code {
-        let (mut flaw, mut axes, mut choices) = (flaw, [false; 3], 0);
+        let (mut flaw, mut axes, mut choices, mut jumps) = (flaw, [false; 3], 0, false);
         for op in &ops {
             match *op {
                 Op::Axis(axis) => axes[usize::from(axis)] = true,
                 Op::Const(c) if c.is_nan() => flaw = flaw.or(Some(Flaw::NotANumber)),
                 Op::Binary(BinaryOpcode::Min | BinaryOpcode::Max, ..) => choices += 1,
-                _ => {}
+                op => jumps |= jumps::has_steps(&op),
             }
         }
-        Code { len: ops.len(), ops: ops.into(), flaw, axes, choices, number: next(), plan: OnceLock::new() }
+        Code { len: ops.len(), ops: ops.into(), flaw, axes, choices, jumps, number: next(), plan: OnceLock::new() }
     }
 
     /// What is left of a code, `len` operations.
     pub(super) fn narrowed(&self, plan: Plan, len: usize) -> Code {
         let (axes, choices) = (plan.axes(), plan.choices());
-        Code { ops: OnceLock::new(), len, flaw: self.flaw, axes, choices, number: next(), plan: plan.into() }
+        let (flaw, jumps) = (self.flaw, self.jumps);
+        Code { ops: OnceLock::new(), len, flaw, axes, choices, jumps, number: next(), plan: plan.into() }
     }
 
     pub(super) fn ops(&self) -> &[Op] {
@@ -266,7 +270,7 @@ impl Code {
         self.plan.get()
     }
 
-    /// Whether every operation is an instruction of the processor, not a call to a library.
+    /// Whether every operation is an instruction of the processor, not a function.
     #[cfg(feature = "jit")]
     pub(super) fn is_elementary(&self) -> bool {
         use BinaryOpcode as B;

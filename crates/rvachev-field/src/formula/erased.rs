@@ -3,12 +3,12 @@
 use std::cell::RefCell;
 use std::sync::Arc;
 
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 
 use super::gradients::STEEPEST;
 use super::slope::Slope;
 use super::{Formula, bulk, gradients};
-use crate::{AnyField, Chunk, ParamError, VALUE_LIMIT, Zone};
+use crate::{AnyField, Chunk, Crease, ParamError, VALUE_LIMIT, Zone, chained};
 use crate::{Bounds, Dual, Interval};
 use rvachev_num::symbol::Symbol;
 
@@ -66,6 +66,14 @@ impl AnyField for Formula {
 
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
         self.dual_range_of(p)
+    }
+
+    fn creases(&self, region: [Interval; 3]) -> Vec<Crease> {
+        self.jumps_in(region)
+    }
+
+    fn slopes_beside(&self, p: [Dual<Interval>; 3], beside: DVec3) -> [Interval; 3] {
+        chained(Interval::ALL, self.slopes_of_side(p.map(Dual::value), beside), p).d
     }
 
     fn exact(&self) -> bool {

@@ -13,6 +13,7 @@ use glam::DVec3;
 
 use super::arithmetic::Arithmetic;
 use super::code::{Code, live};
+use super::jumps::Beside;
 use super::native::Native;
 use super::op::Op;
 use super::slope::Slope;
@@ -168,6 +169,15 @@ impl Formula {
             let (range, [slope]) = self.slopes_of(p.map(|c| (c.value(), [c.gradient()[0]])));
             Dual::new(range, [slope, Interval::point(0.0), Interval::point(0.0)])
         }
+    }
+
+    /// Ranges of the derivatives over what of a box lies on the same side of all jumps as a point.
+    pub(super) fn slopes_of_side(&self, region: [Interval; 3], beside: DVec3) -> [Interval; 3] {
+        let point = variables(region);
+        let point =
+            [0, 1, 2].map(|axis| Beside { slope: point[axis], at: beside[axis], is_linear: true, is_constant: false });
+        let Slope { v, d } = self.0.code.plan().value(point, &mut Vec::new()).slope;
+        d.map(|d| if v.sure && d.sure { -d.range } else { Interval::ALL })
     }
 
     /// The ranges of the value and of its derivatives from those of the coordinates.

@@ -27,13 +27,14 @@ use fidget::context::{BinaryOpcode, UnaryOpcode};
 
 use super::Formula;
 use super::arithmetic::Arithmetic;
+use super::functions::single::LARGEST_ANGLE;
 use super::sure::Sure;
 use crate::{Interval, Real};
 
 /// The relative error of one rounding to single precision, a little more than 2⁻²⁴.
 const UNIT: f64 = 6e-8;
 
-/// That of a library function of single precision.
+/// That of a function of single precision ([`functions`](super::functions)) or of the library.
 const LIBRARY: f64 = 4.0 * UNIT;
 
 /// Numbers below this may lose digits, or all: it is added to every error.
@@ -111,6 +112,7 @@ impl Arithmetic for Error {
             U::Ceil if one_piece(f64::ceil) => 0.0,
             U::Round if one_piece(f64::round) => 0.0,
             U::Floor | U::Ceil | U::Round => e + 1.0,
+            U::Sin | U::Cos if a.seen.range.magnitude() > LARGEST_ANGLE => 2.0,
             U::Sin | U::Cos => e.min(2.0) + LIBRARY,
             U::Tan => {
                 let tangent = Sure::unary(U::Tan, Sure::new(both, true)).range.magnitude();

@@ -31,7 +31,6 @@ impl SurfaceDistance {
             Some(side) => out.fill(side),
             None => self.sign.lanes64(Chunk { points, placement: &unscaled(placement), out: [&mut *out] }),
         }
-        self.take_sides(points, placement, out);
         let packets = self.packets(placement, f64::INFINITY);
         on_level!(simd => values_on::<F64<_>>(simd, &packets, points, out), else values_by_point(&packets, points, out))
     }
@@ -54,13 +53,16 @@ impl SurfaceDistance {
             Some(side) => out.fill(side as f32),
             None => self.sign.lanes32_within(Chunk { points, placement: &unscaled, out: [&mut *out] }, 0.0),
         }
-        self.take_sides(points, placement, out);
     }
+}
 
-    /// Signs where the sign field has none.
-    fn take_sides<E: Element>(&self, [x, y, z]: [&[E]; 3], placement: &Placement, signs: &mut [E]) {
-        for (i, sign) in signs.iter_mut().enumerate().filter(|(_, sign)| sign.to_f64() == 0.0) {
-            *sign = E::from_f64(self.sign_by_normal(placement.apply([x[i], y[i], z[i]].map(E::to_f64))));
+/// Signs where the sign field has none and they make a difference, given the squares of the
+/// distances of points from `from` on.
+#[inline(never)]
+fn take_sides<E: Element>(packets: &Packets<'_>, [x, y, z]: [&[E]; 3], squares: &[E], signs: &mut [E], from: usize) {
+    for (i, sign) in signs.iter_mut().enumerate() {
+        if sign.to_f64() == 0.0 && packets.has_side(squares[i].to_f64()) {
+            *sign = E::from_f64(packets.side([x, y, z].map(|axis| axis[from + i].to_f64())));
         }
     }
 }
@@ -188,6 +190,7 @@ fn values_on<L: Lanes<Element: Element> + Packet>(
         let len = BLOCK.min(out.len() - from);
         work.find(simd, packets, points, out, from..from + len, false);
         work.block.unsorted(&work.found.squares, &mut squares[..len]);
+        take_sides(packets, points, &squares, &mut out[from..from + len], from);
         let mut at = 0;
         while at < len {
             let out = &mut out[from + at..from + at + L::WIDTH];
@@ -205,6 +208,7 @@ fn values_on<L: Lanes<Element: Element> + Packet>(
 fn values_by_point<E: Element>(packets: &Packets<'_>, [x, y, z]: [&[E]; 3], out: &mut [E]) {
     for at in 0..out.len() {
         let best = packets.patches.search_one(packets.local([x[at], y[at], z[at]].map(E::to_f64)));
+        take_sides(packets, [x, y, z], &[E::from_f64(best.square)], &mut out[at..=at], at);
         out[at] = E::from_f64(packets.value(best.square, out[at].to_f64()));
     }
 }
@@ -219,6 +223,7 @@ fn slopes_on<L: Lanes<Element = f32> + Packet>(
 ) {
     let mut work = Work::<L>::new(simd);
     let mut ways = [[0.0; BLOCK]; 3];
+    let mut squares = [0.0; BLOCK];
     let mut patches = [0; BLOCK];
     let mut from = 0;
     while from < out[0].len() {
@@ -228,6 +233,11 @@ fn slopes_on<L: Lanes<Element = f32> + Packet>(
             work.block.unsorted(sorted, &mut way[..len]);
         }
         work.block.unsorted(&work.found.patches, &mut patches[..len]);
+        for (i, square) in squares[..len].iter_mut().enumerate() {
+            let [x, y, z] = [0, 1, 2].map(|axis| ways[axis][i]);
+            *square = x * x + y * y + z * z;
+        }
+        take_sides(packets, points, &squares, &mut out[0][from..from + len], from);
         let mut at = 0;
         while at < len {
             let to = from + at..from + at + L::WIDTH;
@@ -277,6 +287,7 @@ fn slopes_by_point(packets: &Packets<'_>, [x, y, z]: [&[f32]; 3], out: &mut [&mu
     for at in 0..x.len() {
         let p = [x[at], y[at], z[at]];
         let best = packets.patches.search_one(packets.local(p.map(f64::from)));
+        take_sides(packets, [x, y, z], &[best.square as f32], &mut out[0][at..=at], at);
         let jet = packets.one(p, best.which as u32, out[0][at]);
         for (column, part) in out.iter_mut().zip(jet) {
             column[at] = part;

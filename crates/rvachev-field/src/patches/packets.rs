@@ -19,6 +19,9 @@ const FARTHEST: f64 = 1e15;
 /// to the foot.
 const CLOSE: f64 = 1e-4;
 
+/// What is nearer to the patches is on the surface, as far as stored numbers tell.
+const ON_SURFACE: f64 = 4.0 * f32::EPSILON as f64;
+
 /// Distances that are so near to the level that rounding may turn their signs are told apart, in
 /// units of the frame.
 const LEAST: f64 = 1e-5;
@@ -64,6 +67,8 @@ pub(super) struct Packets<'a> {
     /// apart.
     level: f64,
     band: f64,
+    /// The square of the distance from which on it makes a difference on which side a point is.
+    sided: f64,
     /// The square of how near double precision is needed, or the side of the patch.
     close: f64,
 }
@@ -82,6 +87,10 @@ impl SurfaceDistance {
         let local = Placement::new(&map, placement.scale * frame.unit, placement.shift);
         let level = -placement.shift / local.scale;
         let farthest = VALUE_LIMIT / frame.unit;
+        let band = (band / local.scale.abs()).max(LEAST);
+        // Nearer than the band to the level is neither side; what is as near as stored numbers tell
+        // is on the surface.
+        let sided = if band == f64::INFINITY { 0.0 } else { level.abs() - band };
         Packets {
             leaf: self,
             patches: &self.patches,
@@ -89,7 +98,8 @@ impl SurfaceDistance {
             local,
             farthest,
             level,
-            band: (band / local.scale.abs()).max(LEAST),
+            band,
+            sided: sided.max(ON_SURFACE).powi(2),
             close: CLOSE.max(self.error() / frame.unit).powi(2),
         }
     }
@@ -130,8 +140,20 @@ impl Packets<'_> {
             return Range::all(sign);
         }
         let level = sign.select(sign.lift(self.level), sign.lift(-self.level));
+        // Of a point that may be on either side, that is asked where it may be near the level.
+        let level = (-sign.abs()).select(level.abs(), level);
         let (low, high) = ((level - self.band).max(zero), (level + self.band).max(zero));
         Range { low: low.square(), high: high.square() }
+    }
+
+    /// Whether it makes a difference on which side a point is that is so far from the surface.
+    pub(super) fn has_side(&self, square: f64) -> bool {
+        square >= self.sided
+    }
+
+    /// The sign of a point where the sign field has none.
+    pub(super) fn side(&self, p: [f64; 3]) -> f64 {
+        self.leaf.sign_by_normal(self.placement.apply(p))
     }
 
     /// The signed distances, as they count outside.

@@ -15,8 +15,9 @@ use std::sync::{Arc, OnceLock};
 use glam::{DVec2, DVec3};
 
 use super::super::gielis::{Polar, Winding};
+use super::super::leaf::half;
 use super::super::outline::Outline;
-use super::super::{Case, Field, Gielis, Kernel, ParamError, Radius, chained, check};
+use super::super::{Case, Field, Gielis, Kernel, ParamError, Radius, check};
 use crate::{Bounds, Dual, Euclid, Interval, OfOne, Real};
 use rvachev_num::{Cancelled, Run};
 
@@ -125,6 +126,27 @@ impl<P: OfOne> Case for Section<P> {
     }
 }
 
+impl Superpolygon {
+    /// Ranges of the derivatives over a region; only over what is on the same sides of all cusps as
+    /// a point, if there is one.
+    fn slopes_over(&self, p: [Dual<Interval>; 3], beside: Option<DVec3>) -> [Interval; 3] {
+        let (x, mut y) = (p[0].v * self.inverse, p[1].v * self.inverse);
+        match self.outline() {
+            Some(outline) if (x.magnitude() + y.magnitude()).is_finite() => {
+                if let Some(p) = beside.filter(|_| self.curve.cusps().any(|angle| angle == 0.0)) {
+                    y = half(y, p.y);
+                }
+                // The outline knows one half of the plane, the other is its mirror image.
+                let mirrored = |d: Interval| if y.contains(0.0) { d.hull(-d) } else { y.select(d, -d) };
+                let along = [0, 1, 2].map(|i| [p[0].d[i], mirrored(p[1].d[i])]);
+                let slopes = outline.rises(x, y.abs(), along, beside.map(|p| p.y.abs().atan2(p.x)));
+                slopes.map(|slope| slope * (-self.inverse * self.inscribed()))
+            }
+            _ => [Interval::ALL; 3],
+        }
+    }
+}
+
 impl Field for Superpolygon {
     fn name(&self) -> &'static str {
         "superpolygon"
@@ -172,23 +194,16 @@ impl Field for Superpolygon {
         self.curve.cusps().map(|angle| DVec3::new(-angle.sin(), angle.cos(), 0.0)).collect()
     }
 
-    fn slopes(&self, [x, y, _]: [Interval; 3]) -> [Interval; 3] {
-        let (x, y) = (x * self.inverse, y * self.inverse);
-        match self.outline() {
-            Some(outline) if (x.magnitude() + y.magnitude()).is_finite() => {
-                let [by_x, by_y] = outline.gradient(x, y.abs());
-                // The outline knows one half of the plane, the other is its mirror image.
-                let by_y = if y.contains(0.0) { by_y.hull(-by_y) } else { y.select(by_y, -by_y) };
-                let scale = -self.inverse * self.inscribed();
-                [by_x * scale, by_y * scale, Interval::point(0.0)]
-            }
-            _ => [Interval::ALL; 3],
-        }
+    fn slopes(&self, region: [Interval; 3]) -> [Interval; 3] {
+        self.slopes_over(Dual::point(region), None)
     }
 
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
-        let region = p.map(Dual::value);
-        chained(Field::range(self, region), Field::slopes(self, region), p)
+        Dual::new(Field::range(self, p.map(Dual::value)), self.slopes_over(p, None))
+    }
+
+    fn slopes_beside(&self, p: [Dual<Interval>; 3], beside: DVec3) -> [Interval; 3] {
+        self.slopes_over(p, Some(beside))
     }
 
     #[inline(always)]
