@@ -259,18 +259,18 @@
 //! is **measured**: it is meshed once, its cells are halved until their curved patches are on the
 //! surface, all but a few spots, which are meshed by themselves, and the distance is that to the
 //! nearest patch. Blades, fins, ribs and gaps that pass between the nodes of the mesh are followed
-//! by lines across its cells, along which ranges tell where the other side is, down to a
-//! hundred-thousandth of a cell. Whether a point is inside is still told by the solid's own value.
-//! Openings and closings measure twice: the solid, and where the centre of the ball may be.
+//! by lines across its cells, along which ranges tell where the other side is, down to what
+//! rounding errors leave. Whether a point is inside is still told by the solid's own value. Openings and closings measure twice: the solid, and where the centre of the ball may be.
 //!
 //! # Accuracy
 //!
-//! A measured surface is right to a thousandth of the length that is asked for, and at least to a
-//! millionth of the size of the solid. Along creases that are curved, where curvature jumps, and
-//! where ribs come to be as thin as cells, single points may be farther off. Rods, needles and rims
-//! thinner than a quarter of a cell may be missed. [`Solid::accuracy`](crate::Solid::accuracy) says
-//! what was reached, and [`Solid::with_tolerance`](crate::Solid::with_tolerance) asks for more or
-//! less.
+//! A measured surface is right to a thousandth of the length that is asked for, or to the power of
+//! two below it, so that lengths of about one size share one surface; and at least to a millionth
+//! of the size of the solid. Equal solids share their surfaces. Along creases that are curved,
+//! where curvature jumps, and where ribs come to be as thin as cells, single points may be farther
+//! off. Rods, needles and rims thinner than a quarter of a cell may be missed.
+//! [`Solid::accuracy`](crate::Solid::accuracy) says what was reached, and
+//! [`Solid::with_tolerance`](crate::Solid::with_tolerance) asks for more or less.
 //!
 //! Faces that a length leaves where they are are not measured: the outer face of a shell, the faces
 //! that the ball of an opening or closing touches, flush faces of a blend. They are the solid's

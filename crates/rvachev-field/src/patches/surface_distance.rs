@@ -113,8 +113,9 @@ impl SurfaceDistance {
         (with_sign(foot.distance, sign), slope.to_array())
     }
 
-    /// Whether a point in this direction from its foot may be between the patches and where the sign
-    /// changes. There the value falls on the way to the surface, and what it stands for does not.
+    /// Whether a point in this direction from its foot may be between the patches and where the
+    /// sign changes. There the value falls on the way to the surface, and what it stands for does
+    /// not.
     fn is_between(&self, away: DVec3, foot: Foot) -> bool {
         foot.distance < self.error && away.dot(foot.normal).abs() > UPRIGHT
     }
