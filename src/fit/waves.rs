@@ -83,7 +83,7 @@ mod tests {
         let found = sums(&terms, &of(|a| 2.0 - a), &[of(f64::cos), of(f64::sin)]);
         let wave = |i: usize, a: f64| {
             let h = (i / 2 + 1) as f64;
-            if i % 2 == 0 { (h * a).cos() } else { (h * a).sin() }
+            if i.is_multiple_of(2) { (h * a).cos() } else { (h * a).sin() }
         };
         let sum = |f: &dyn Fn(f64) -> f64| angles.iter().map(|a| f(*a)).sum::<f64>();
         for i in 0..WAVES {

@@ -47,7 +47,7 @@ pub(super) fn closed(solid: &Solid) -> Option<Closed> {
         at = match at.form() {
             Form::Leaf(leaf) => break leaf,
             Form::Affine { operand, map: own, .. } => {
-                map = map * own;
+                map *= own;
                 operand
             }
             Form::Paint { operand, .. } | Form::Name { operand, .. } => operand,

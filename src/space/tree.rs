@@ -142,9 +142,11 @@ pub(crate) fn surface_blocks(
         };
         type Divided = (Vec<(Part, Program)>, Option<[[u32; 3]; 2]>);
         let next: Result<Vec<Divided>, Cancelled> = parts.into_par_iter().map(divided).collect();
-        let (open, whole): (Vec<Vec<(Part, Program)>>, Vec<Option<[[u32; 3]; 2]>>) = next?.into_iter().unzip();
-        parts = open.into_iter().flatten().collect();
-        inside.extend(whole.into_iter().flatten());
+        parts = Vec::new();
+        for (open, whole) in next? {
+            parts.extend(open);
+            inside.extend(whole);
+        }
     }
     let found: Result<Vec<SurfaceBlocks>, Cancelled> =
         parts.into_par_iter().map(|(part, program)| descend(part, program, (grid, margin), &meter)).collect();
