@@ -49,7 +49,7 @@
 //! | + 60 % outliers | 100.0 | 99.5 | 0.103 % | 18.8 k | 9.5 |
 //! | one-sided view | 93.5 | 92.0 | 0.183 % | 49.2 k | 65.5 |
 //! | view + 20 % outliers | 93.5 | 91.0 | 0.239 % | 51.9 k | 56 |
-//! | on a table (40 %) | 100.0 | 99.5 | 0.105 % | 89 k | 86.5 |
+//! | on a table (40 %) | 100.0 | 99.5 | 0.105 % | 90.4 k | 86.5 |
 //!
 //! Noise is 1 % where it is not said that there is none. Of a view along one of its axes an
 //! object's depth is nearly free: the [covariance](Fit::covariance) tells.
