@@ -176,7 +176,7 @@
 //!
 //! | method | input | IoU | leaves | holes | code | time |
 //! |---|---|---|---|---|---|---|
-//! | [`part`](crate::fit::part()) | meshes of 14 CAD parts, of as few as 12 facets | 0.96 to 1.00 | 1 to 11, and 32 of one | cut leaves | yes | 0.1 to 2 s |
+//! | [`part`](crate::fit::part()) | meshes of 14 CAD parts, of as few as 12 facets | 0.96 to 1.00 | 1 to 10, and some 32 of one | cut leaves | yes | 0.1 to 2 s |
 //! | [`part_of_points`](crate::fit::part_of_points()) | clouds of 4000 points, 0.2 % noise | 0.985 in the middle | 2 to 15 | cut leaves | yes | 2 s |
 //! | Marching-Primitives (W. Liu et al., 2023) | grids of signed distances | 0.93 to 0.98 | 7 to 77 superquadrics | none | no | 1 to 21 s |
 //! | SuperFit (2026) | meshes | 0.90 | 24 superquadrics | none: "purely additive" | no | minutes |
@@ -191,7 +191,7 @@
 //! * **Fillets, sweeps, threads, lattices** are not found: a fillet becomes a sharp edge, or a small
 //!   cylinder where it is worth its numbers. Outlines with arcs are polygons of up to 32 corners.
 //! * **Few facets:** the radius of a cylinder of facets is that of its corners, so a solid that is
-//!   right has more volume than the mesh: an IoU of 0.959 with a thin tube of 36 facets.
+//!   right has more volume than the mesh: an IoU of 0.96 with a thin tube of 36 facets.
 //! * **Intent** is told from round numbers, equal lengths and patterns only. That a hole is so far
 //!   from an edge, or two planes in the middle between others, is not.
 //! * **Order:** a tree is one of many that make the same solid. The one with the fewest numbers that
