@@ -71,7 +71,8 @@ impl Leaf {
             }
             Shape::Torus(s) => {
                 let (radius, tube) = (s.radius + x[3], s.tube + x[4]);
-                is_left(&[radius, tube])?;
+                // And the hole.
+                is_left(&[radius, tube, radius - tube])?;
                 by(whole(0), Shape::Torus(Torus { radius, tube }))
             }
             Shape::Prism(s) => {

@@ -201,7 +201,10 @@ pub fn part_with(mesh: &Mesh, settings: &PartSettings, run: &Run) -> Result<Part
 /// | none, from above | 44 | 0.989 |
 ///
 /// "From above" are parts that stand on a table, of which no direction from below sees anything.
-/// Normals that are given are exact there; those of a scanner are not quite.
+/// The normals are exact there; those of a scanner are not quite. Clouds without normals are less
+/// sure: some two of three have it at 0.2 %, as walls of narrow holes may still come out turned.
+/// What fails at 0.4 % is mostly a leaf that is half buried in others: fitted from the truth on, the
+/// points tell it.
 ///
 /// # Errors
 ///

@@ -172,9 +172,9 @@ const CONDITIONS: [(&str, f64, bool, bool, usize, f64); 6] = [
     ("none", 0.0, true, true, 45, 0.98),
     ("0.2 %", 0.002, true, true, 44, 0.98),
     ("0.4 %", 0.004, true, true, 40, 0.98),
-    ("none, no normals", 0.0, false, true, 36, 0.97),
-    ("0.2 %, no normals", 0.002, false, true, 34, 0.97),
-    ("none, from above", 0.0, true, false, 25, 0.93),
+    ("none, no normals", 0.0, false, true, 30, 0.97),
+    ("0.2 %, no normals", 0.002, false, true, 30, 0.97),
+    ("none, from above", 0.0, true, false, 38, 0.97),
 ];
 
 #[test]
