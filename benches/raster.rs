@@ -3,10 +3,10 @@
 //! `cargo bench --bench raster` prints two tables. The first is by model, at 256², 512² and 1024²:
 //! milliseconds for the meshes of the operands and for finding them closed (once), for projecting
 //! them and sorting them into tiles (each view), and for the depth image by each method of
-//! depth-buffer CSG that can do the model, and for a shaded picture of it; then for the scene of the implicit renderer (made once)
-//! and its depth image. The ratio is that of the implicit renderer's image to projecting and
-//! intervals. The second table is by the number of triangles, with how far the depth images differ,
-//! at worst and in the mean, beside the silhouettes.
+//! depth-buffer CSG that can do the model, and for a shaded picture of it; then for the scene of
+//! the implicit renderer (made once) and its depth image. The ratio is that of the implicit
+//! renderer's image to projecting and intervals. The second table is by the number of triangles,
+//! with how far the depth images differ, at worst and in the mean, beside the silhouettes.
 //!
 //! Every figure is the least of several rounds in which the contestants alternate.
 //!

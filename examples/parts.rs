@@ -1,4 +1,5 @@
-//! The pictures of the page on whole parts: what is given, and the tree that is found, a colour a leaf.
+//! The pictures of the page on whole parts: what is given, and the tree that is found, a colour a
+//! leaf.
 //!
 //! ```sh
 //! cargo run --release --example parts             # into target/examples/parts

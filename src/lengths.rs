@@ -260,7 +260,8 @@
 //! surface, all but a few spots, which are meshed by themselves, and the distance is that to the
 //! nearest patch. Blades, fins, ribs and gaps that pass between the nodes of the mesh are followed
 //! by lines across its cells, along which ranges tell where the other side is, down to what
-//! rounding errors leave. Whether a point is inside is still told by the solid's own value. Openings and closings measure twice: the solid, and where the centre of the ball may be.
+//! rounding errors leave. Whether a point is inside is still told by the solid's own value.
+//! Openings and closings measure twice: the solid, and where the centre of the ball may be.
 //!
 //! # Accuracy
 //!

@@ -2,8 +2,8 @@
 //!
 //! [`fit::part`](crate::fit::part()) takes the mesh of a part,
 //! [`fit::part_of_points`](crate::fit::part_of_points()) the points of a scan. Both give a
-//! [`PartFit`](crate::fit::PartFit): leaves such as boxes, cylinders and profiles, added and cut one
-//! after the other, holes included; and code that makes it.
+//! [`PartFit`](crate::fit::PartFit): leaves such as boxes, cylinders and profiles, added and cut
+//! one after the other, holes included; and code that makes it.
 //!
 //! | question | answer |
 //! |---|---|
@@ -22,9 +22,9 @@
 //!
 //! *Left: the mesh. Right: the tree that was found, a colour a leaf.*
 //!
-//! A flange with a pipe, bored through, and six holes. The mesh is of chords that are within 0.02 of
-//! the surface, and that is all that is given. What comes out are the numbers that went in: they are
-//! round, so they are meant.
+//! A flange with a pipe, bored through, and six holes. The mesh is of chords that are within 0.02
+//! of the surface, and that is all that is given. What comes out are the numbers that went in: they
+//! are round, so they are meant.
 //!
 //! ```
 //! use rvachev::fit::{PartSettings, part};
@@ -73,8 +73,8 @@
 //!
 //! *Left: the mesh of a bracket. Right: its tree.*
 //!
-//! The lengths are binary fractions of an inch, though the unit is a millimetre: the scale is chosen
-//! on which the part's numbers are shortest. The six counterbored holes are two patterns.
+//! The lengths are binary fractions of an inch, though the unit is a millimetre: the scale is
+//! chosen on which the part's numbers are shortest. The six counterbored holes are two patterns.
 //!
 //! ```
 //! # use rvachev::fit::{PartSettings, part};
@@ -143,8 +143,9 @@
 //!
 //! *Left: points of a housing with noise. Right: the tree.*
 //!
-//! The points are off the surface by 0.15 on the average of squares, 0.2 % of the diagonal. No vertex
-//! tells a length exactly here, so no number is made round: they are what fits the points best.
+//! The points are off the surface by 0.15 on the average of squares, 0.2 % of the diagonal. No
+//! vertex tells a length exactly here, so no number is made round: they are what fits the points
+//! best.
 //!
 //! ```
 //! use rvachev::PointCloud;
@@ -188,15 +189,16 @@
 //!
 //! # What not to expect
 //!
-//! * **Fillets, sweeps, threads, lattices** are not found: a fillet becomes a sharp edge, or a small
-//!   cylinder where it is worth its numbers. Outlines with arcs are polygons of up to 32 corners.
+//! * **Fillets, sweeps, threads, lattices** are not found: a fillet becomes a sharp edge, or a
+//!   small cylinder where it is worth its numbers. Outlines with arcs are polygons of up to 32
+//!   corners.
 //! * **Few facets:** the radius of a cylinder of facets is that of its corners, so a solid that is
 //!   right has more volume than the mesh: an IoU of 0.96 with a thin tube of 36 facets.
 //! * **Intent** is told from round numbers, equal lengths and patterns only. That a hole is so far
 //!   from an edge, or two planes in the middle between others, is not.
-//! * **Order:** a tree is one of many that make the same solid. The one with the fewest numbers that
-//!   was found need not be the one that the part was drawn by.
+//! * **Order:** a tree is one of many that make the same solid. The one with the fewest numbers
+//!   that was found need not be the one that the part was drawn by.
 //! * **Small holes** count more than their volume, down to some 0.5 % of the diagonal. What is
-//!   smaller may be left out; [`unexplained`](crate::fit::PartFit::unexplained) tells of places with
-//!   more than a thousandth of the volume.
+//!   smaller may be left out; [`unexplained`](crate::fit::PartFit::unexplained) tells of places
+//!   with more than a thousandth of the volume.
 //! * **Scans** are to show all sides. What is not seen is closed as if by a film.

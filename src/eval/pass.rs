@@ -53,8 +53,8 @@ pub(super) struct Asked {
 /// What is kept of most programs: lists have room for as many from the start.
 const FEW: usize = 32;
 
-/// What is left of a join is scanned if it is shorter: its boxes would take three times the memory of
-/// the rest.
+/// What is left of a join is scanned if it is shorter: its boxes would take three times the memory
+/// of the rest.
 const LONG: usize = 32;
 
 /// One narrowing under way.

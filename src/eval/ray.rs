@@ -288,8 +288,8 @@ fn along(program: &Program, origin: DVec3, direction: DVec3, t0: f64, t1: f64) -
     program.evaluate(p, &mut Vec::new())
 }
 
-/// The crossing between `t0` and `t1`. Where rounding has the same sign at both ends it is at one of
-/// them.
+/// The crossing between `t0` and `t1`. Where rounding has the same sign at both ends it is at one
+/// of them.
 pub(crate) fn bracket(value: &impl Fn(f64) -> f64, ends: [f64; 2], precision: f64) -> f64 {
     let values = ends.map(value);
     if (values[0] > 0.0) == (values[1] > 0.0) {

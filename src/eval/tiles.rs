@@ -127,8 +127,8 @@ impl Tiles {
         self.tile(self.tiling.key(p))
     }
 
-    /// The tiles that a zone meets, with the part of it in each where its surface was found, if they
-    /// are not many.
+    /// The tiles that a zone meets, with the part of it in each where its surface was found, if
+    /// they are not many.
     fn parts(&self, zone: &Zone) -> Option<Vec<(Tile, Zone)>> {
         let hull = zone.hull();
         if !zone.is_finite() {

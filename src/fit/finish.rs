@@ -84,7 +84,8 @@ pub(super) fn finish<M: Model<N>, const N: usize>(
         search,
     };
     match &fit.shape {
-        // Parameters in their ranges are all that it needs near the origin; its box is long to find.
+        // Parameters in their ranges are all that it needs near the origin; its box is long to
+        // find.
         Shape::Supershape(leaf) if fit.translation.abs().max_element() < 0.1 * LARGEST_LENGTH => {
             leaf.check().map_err(|source| SolidError::Parameter { path: leaf.name().to_string(), source })?;
         }

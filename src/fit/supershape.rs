@@ -22,8 +22,8 @@ const NAMES: [&str; PARAMETERS] = [
 ///
 /// Points should be of the whole surface: of one-sided views symmetry numbers are right for some
 /// three quarters only, and [`SearchReport::symmetry_unclear`] tells where no repetition explains
-/// the radii and the numbers are a guess. Points that are strewn about the solid may be some 20 % of
-/// all. 32 points are needed and 1000 wanted.
+/// the radii and the numbers are a guess. Points that are strewn about the solid may be some 20 %
+/// of all. 32 points are needed and 1000 wanted.
 ///
 /// m is found from 2 to 16 (and twice as many where lobes lean), the meridian's m among 2, 3, 4, 5
 /// and 6. All six exponents together, and exponents with sizes, trade off: compare surfaces, not

@@ -58,7 +58,8 @@ pub(crate) fn legend(pixels: &mut [[u8; 4]], width: usize, labels: &[String; 5],
     }
 }
 
-/// A number to three digits or so of the largest one on the bar, with its sign if that is asked for.
+/// A number to three digits or so of the largest one on the bar, with its sign if that is asked
+/// for.
 pub(crate) fn label(value: f64, largest: f64, is_signed: bool) -> String {
     if value == 0.0 {
         return "0".to_string();

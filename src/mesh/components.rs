@@ -138,8 +138,9 @@ impl Mesh {
         Ok(found)
     }
 
-    /// The mesh with only those of its [components](Mesh::components) that are to be kept: of a scan
-    /// or an import, what is large enough, or all but the dust. What they carry is kept as it is.
+    /// The mesh with only those of its [components](Mesh::components) that are to be kept: of a
+    /// scan or an import, what is large enough, or all but the dust. What they carry is kept as it
+    /// is.
     ///
     /// The wall of a cavity is a component of its own, of a negative volume.
     ///

@@ -11,10 +11,10 @@
 //!
 //! The gradient in single precision at the chord's point gives the slope for all three steps, and
 //! the normal. How far a step goes wrong is told by the step after it, so most edges are settled at
-//! 3 without another value, and most others by the last step; the few that are not, because a crease or a
-//! strong bend lies between, are closed in on by false position with halved weights (Illinois),
-//! and halving. Where the root is away from where the gradient was taken, the normal is taken
-//! anew.
+//! 3 without another value, and most others by the last step; the few that are not, because a
+//! crease or a strong bend lies between, are closed in on by false position with halved weights
+//! (Illinois), and halving. Where the root is away from where the gradient was taken, the normal is
+//! taken anew.
 
 use glam::DVec3;
 

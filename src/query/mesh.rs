@@ -125,8 +125,8 @@ impl Solid {
         if part.size().min_element() <= rounding {
             return Ok((self.clone(), Bounds::EMPTY));
         }
-        // Far from the solid the bounds cut nothing. Where the solid ends before them they are taken
-        // away from it: a face that touches it would be an edge of almost no angle.
+        // Far from the solid the bounds cut nothing. Where the solid ends before them they are
+        // taken away from it: a face that touches it would be an edge of almost no angle.
         let around = own.inflate(own.size().max_element());
         let mut knife = given.intersection(&around);
         for axis in 0..3 {

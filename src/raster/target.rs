@@ -44,8 +44,8 @@ impl Target {
         self.operand.fill(NOTHING);
     }
 
-    /// Depth test LESS: what is nearer replaces what is there. One side of the operand's surface, or
-    /// both.
+    /// Depth test LESS: what is nearer replaces what is there. One side of the operand's surface,
+    /// or both.
     pub(super) fn draw<L: LayerSource + ?Sized>(
         &mut self,
         layers: &L,

@@ -6,8 +6,8 @@
 //!     +     |         them, and a bracket finds where; where it falls, it does not go inside.
 //! ```
 //!
-//! Where the value jumps, a ray is cut a little before and behind, and in between its ends tell. Near
-//! such planes single precision tells little. What neither rises nor falls is divided by
+//! Where the value jumps, a ray is cut a little before and behind, and in between its ends tell.
+//! Near such planes single precision tells little. What neither rises nor falls is divided by
 //! intervals (`eval::first_hit`).
 
 use super::gbuffer::Surface;

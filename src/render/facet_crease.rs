@@ -107,8 +107,8 @@ impl Crease {
         if self.is_convex { bounds.fold(f32::INFINITY, f32::min) } else { bounds.fold(f32::NEG_INFINITY, f32::max) }
     }
 
-    /// Where a ray gets inside between `t` and `end`; it is at `from` + t·`direction`, in cells from
-    /// the block's corner.
+    /// Where a ray gets inside between `t` and `end`; it is at `from` + t·`direction`, in cells
+    /// from the block's corner.
     #[inline]
     pub(super) fn meet(&self, from: Vec4, direction: Vec4, t: f32, end: f32) -> Meeting {
         if self.is_convex { self.meet_all(from, direction, t, end) } else { self.meet_any(from, direction, t, end) }

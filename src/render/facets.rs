@@ -8,12 +8,11 @@
 //!      +---+---+-------+
 //! ```
 //!
-//! The plane of a cell is the one nearest to the field's values at its corners; a cell that a crease
-//! passes has a plane for each face (see `facet_crease`). A ray meets a facet where it passes the
-//! plane inwards, or enters the cell beyond it. Light that is gathered
-//! over many rays asks for no more, and a ray costs some tens of nanoseconds; what is thinner
-//! than a cell may cast no shadow. The first hits of a picture's own rays are certain, see
-//! [`Scene`](super::Scene).
+//! The plane of a cell is the one nearest to the field's values at its corners; a cell that a
+//! crease passes has a plane for each face (see `facet_crease`). A ray meets a facet where it
+//! passes the plane inwards, or enters the cell beyond it. Light that is gathered over many rays
+//! asks for no more, and a ray costs some tens of nanoseconds; what is thinner than a cell may cast
+//! no shadow. The first hits of a picture's own rays are certain, see [`Scene`](super::Scene).
 //!
 //! Source: J. Amanatides and A. Woo, *A fast voxel traversal algorithm for ray tracing* (1987),
 //! for the way through the cells.

@@ -74,8 +74,8 @@ pub(super) struct Marcher {
 }
 
 impl Marcher {
-    /// Marches the spans' rays through `cell`, where slopes along them are `known`; what they hit goes
-    /// to `surfaces`, by ray, and the numbers of those rays to `hits`.
+    /// Marches the spans' rays through `cell`, where slopes along them are `known`; what they hit
+    /// goes to `surfaces`, by ray, and the numbers of those rays to `hits`.
     pub(super) fn march(
         &mut self,
         cells: &Cells,

@@ -288,8 +288,8 @@ impl About<'_> {
         y.saturating_sub(REACH)..(y + REACH + 1).min(self.height)
     }
 
-    /// The mean of the points about one that are on the same face, each with a weight of its own, and
-    /// the sum of all weights; those farther than `near` from its tangent plane do not count.
+    /// The mean of the points about one that are on the same face, each with a weight of its own,
+    /// and the sum of all weights; those farther than `near` from its tangent plane do not count.
     #[inline]
     fn mean(&self, x: usize, y: usize, near: f64, value: impl Fn(usize) -> (Visibility, f32)) -> (Visibility, f32) {
         let place = y * self.width + x;

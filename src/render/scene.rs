@@ -118,10 +118,10 @@ impl Scene {
         &self.palette
     }
 
-    /// How many bytes the scene holds: the cells that the rays so far have asked for, and the programs
-    /// that are narrowed to them. They grow with what is seen of the surface, from the first picture
-    /// on, and stay until the scene is dropped. What the solid itself takes is not counted, nor what
-    /// hides light in shaded pictures.
+    /// How many bytes the scene holds: the cells that the rays so far have asked for, and the
+    /// programs that are narrowed to them. They grow with what is seen of the surface, from the
+    /// first picture on, and stay until the scene is dropped. What the solid itself takes is not
+    /// counted, nor what hides light in shaded pictures.
     ///
     /// ```
     /// use rvachev::camera::Window;

@@ -437,8 +437,8 @@ const RAYS: usize = 64;
 const SEARCHED: usize = 512;
 const STEEP: f64 = 4.0;
 
-/// The same of ordinary leaves whose values are steeper, or whose slopes are without bound: many a ray
-/// is divided by intervals then.
+/// The same of ordinary leaves whose values are steeper, or whose slopes are without bound: many a
+/// ray is divided by intervals then.
 const BLIND: usize = 16;
 
 /// Whether `count` rays are better off in the halves of a cell, where slopes are `known`.

@@ -137,7 +137,8 @@ fn depth_and_volume_of_an_overlap_are_told() {
 
 #[test]
 fn parts_that_touch_along_faces_and_rounds_do_not_overlap() {
-    // A pin that fills its bore, a nut on its bolt without play, and gears that share a pitch point.
+    // A pin that fills its bore, a nut on its bolt without play, and gears that share a pitch
+    // point.
     let bore = Solid::cuboid([12.0, 12.0, 8.0]) - Solid::cylinder(3.0, 10.0);
     let found = clearance(&Solid::cylinder(3.0, 8.0), &bore);
     assert!(!found.overlaps && found.distance <= found.tolerance && found.tolerance < 0.06, "{found:?}");

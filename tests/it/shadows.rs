@@ -7,7 +7,8 @@ use rvachev::{Background, Camera, Image, Profile, RenderSettings, Solid, Style, 
 const SCALE: f64 = 10.0;
 const SIDE: u32 = 400;
 
-/// The angle that walls and ribs are turned by, out of the axes of the grid that light is traced in.
+/// The angle that walls and ribs are turned by, out of the axes of the grid that light is traced
+/// in.
 const TURN: f64 = 25.0;
 
 fn plate() -> Solid {

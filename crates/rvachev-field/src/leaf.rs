@@ -113,10 +113,10 @@ pub trait Field: Debug + Send + Sync + 'static {
         0.0
     }
 
-    /// How far along each axis of its own frame the leaf repeats, in length units: the value at p is
-    /// that at p + (x, 0, 0), at p + (0, y, 0) and at p + (0, 0, z). Lengths measured of the leaf are
-    /// then measured for one cell, wherever they are asked about. Default: `None`, of a leaf that
-    /// does not repeat, or of which nothing is known.
+    /// How far along each axis of its own frame the leaf repeats, in length units: the value at p
+    /// is that at p + (x, 0, 0), at p + (0, y, 0) and at p + (0, 0, z). Lengths measured of the
+    /// leaf are then measured for one cell, wherever they are asked about. Default: `None`, of a
+    /// leaf that does not repeat, or of which nothing is known.
     fn period(&self) -> Option<DVec3> {
         None
     }
@@ -158,9 +158,9 @@ pub trait Field: Debug + Send + Sync + 'static {
         Vec::new()
     }
 
-    /// The derivatives of [`dual_range`](Field::dual_range) in the part of a box that lies beside the
-    /// planes of [`creases`](Field::creases), on the side of each of them that the point `beside` is
-    /// on. The default cuts the box at those planes that stand across an axis.
+    /// The derivatives of [`dual_range`](Field::dual_range) in the part of a box that lies beside
+    /// the planes of [`creases`](Field::creases), on the side of each of them that the point
+    /// `beside` is on. The default cuts the box at those planes that stand across an axis.
     fn slopes_beside(&self, p: [Dual<Interval>; 3], beside: DVec3) -> [Interval; 3] {
         let mut p = p;
         for normal in self.creases() {

@@ -276,9 +276,9 @@ impl Outline {
         (angle, Interval::around(length, 1e-15 * length) / r)
     }
 
-    /// Ranges of the gauge's derivatives over the box `x × y`, y not negative, along vectors; only of
-    /// the part of it between the cusps that the angle `beside`, from 0 to π, is between, if there is
-    /// one.
+    /// Ranges of the gauge's derivatives over the box `x × y`, y not negative, along vectors; only
+    /// of the part of it between the cusps that the angle `beside`, from 0 to π, is between, if
+    /// there is one.
     ///
     /// ```text
     ///     g = ρ / r(θ)      g′ = (ρ′ − (ln r)′·ρθ′) / r        ρ′ along the radius, ρθ′ across it

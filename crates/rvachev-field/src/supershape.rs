@@ -231,8 +231,8 @@ impl Supershape {
         Curves { inverse, inscribed, equator, meridian }
     }
 
-    /// Ranges of the gauge u of the equator and of the derivatives over a region; only over what is on
-    /// the same sides of all creases as a point, if there is one.
+    /// Ranges of the gauge u of the equator and of the derivatives over a region; only over what is
+    /// on the same sides of all creases as a point, if there is one.
     fn slopes_over(&self, p: [Dual<Interval>; 3], beside: Option<DVec3>) -> (Interval, [Interval; 3]) {
         let [x, mut y, mut z] = self.scaled_down(p.map(Dual::value));
         let Some([equator, meridian]) = self.outlines() else { return (Interval::ALL, [Interval::ALL; 3]) };

@@ -84,8 +84,8 @@ impl Facets {
         self.areas.len() >= many && fine >= 0.9 * all
     }
 
-    /// The edges, each with the facets that it is of: by vertices, those of a vertex with the lesser
-    /// number together.
+    /// The edges, each with the facets that it is of: by vertices, those of a vertex with the
+    /// lesser number together.
     fn edges(&self, run: &Run) -> Result<Vec<(u32, u32, u32)>, Cancelled> {
         let of_facet = |t: &[u32; 3]| [0, 1, 2].map(|k| (t[k].min(t[(k + 1) % 3]), t[k].max(t[(k + 1) % 3])));
         // Where the edges of each vertex begin.

@@ -92,23 +92,23 @@ use crate::geom::{Mesh, PointCloud};
 /// planes; extruded sections as polygons, rounded rectangles, regular prisms and supershapes, and
 /// their bays, which are cut; and superellipsoids of what hangs together without a crease. A search
 /// over ordered trees takes those that mend more than their parameters
-/// [cost](PartSettings::parameter_cost), of equal leaves all but the first at a lower price. They are
-/// fitted to the samples. While more than half a hundredth of the volume is wrong, leaves are looked
-/// for where it is, twice at the most. Then leaves are laid through the vertices of the mesh where
-/// these tell their lengths exactly: the radius of a cylinder of facets is that of its corners.
-/// Numbers that are round within what the vertices leave open, in millimetres or in binary fractions
-/// of an inch, become so, and cuts that end in the open go through: see [`snaps`](PartFit::snaps).
-/// Leaves are left out that mend little and spoil genus or shells. Equal leaves on a line, a ring or
-/// a grid are [patterns](PartFit::patterns). Pictures, code and limits are on [a page of their
-/// own](crate::parts).
+/// [cost](PartSettings::parameter_cost), of equal leaves all but the first at a lower price. They
+/// are fitted to the samples. While more than half a hundredth of the volume is wrong, leaves are
+/// looked for where it is, twice at the most. Then leaves are laid through the vertices of the mesh
+/// where these tell their lengths exactly: the radius of a cylinder of facets is that of its
+/// corners. Numbers that are round within what the vertices leave open, in millimetres or in binary
+/// fractions of an inch, become so, and cuts that end in the open go through: see
+/// [`snaps`](PartFit::snaps). Leaves are left out that mend little and spoil genus or shells. Equal
+/// leaves on a line, a ring or a grid are [patterns](PartFit::patterns). Pictures, code and limits
+/// are on [a page of their own](crate::parts).
 ///
 /// The mesh may be in pieces and its triangles may overlap; inside is where the winding number is
 /// above ½. The result depends on mesh and settings only, not on the number of threads.
 ///
 /// # How well it works
 ///
-/// Meshes of parts that are used for tests elsewhere, on one thread, IoU on 2¹⁷ points or more; that of a
-/// mesh of few facets cannot be 1 if radii are those of the corners:
+/// Meshes of parts that are used for tests elsewhere, on one thread, IoU on 2¹⁷ points or more;
+/// that of a mesh of few facets cannot be 1 if radii are those of the corners:
 ///
 /// | mesh | IoU | leaves (parameters) | genus, mesh's |
 /// |---|---|---|---|
@@ -133,9 +133,9 @@ use crate::geom::{Mesh, PointCloud};
 /// (median .996), 46 with the genus of the mesh, 43 with 12 leaves or fewer. It takes some .1 to 3
 /// s a part, on one thread.
 ///
-/// What is not recovered: fillets, sweeps, threads and lattices. Lengths that were meant to be round
-/// are, and those that are equal within what the vertices leave open are one; what was meant to hang
-/// together otherwise, as a hole by its distance from an edge, is not told.
+/// What is not recovered: fillets, sweeps, threads and lattices. Lengths that were meant to be
+/// round are, and those that are equal within what the vertices leave open are one; what was meant
+/// to hang together otherwise, as a hole by its distance from an edge, is not told.
 ///
 /// # Errors
 ///
@@ -185,13 +185,13 @@ pub fn part_with(mesh: &Mesh, settings: &PartSettings, run: &Run) -> Result<Part
 ///
 /// What is inside is told by winding numbers of the points with the areas that they stand for.
 /// Where these tell nothing, as a side is not seen, space costs nothing: leaves go on there as what
-/// is seen of them tells. How much of a leaf there are points of is [`PartLeaf::seen`], and those of
-/// which most is not seen [are guesses](PartLeaf::is_guess).
+/// is seen of them tells. How much of a leaf there are points of is [`PartLeaf::seen`], and those
+/// of which most is not seen [are guesses](PartLeaf::is_guess).
 ///
 /// [Genus and shells](PartFit::topology_of_input) of the input are not known, and lengths are what
 /// fits the points best. Of 50 random parts of two to six added leaves and up to four cut ones, of
-/// 4000 points, noise as a share of the box's diagonal, so many have an IoU of 0.97 with the part; a
-/// part takes some 1 to 2 s:
+/// 4000 points, noise as a share of the box's diagonal, so many have an IoU of 0.97 with the part;
+/// a part takes some 1 to 2 s:
 ///
 /// | noise | IoU ≥ .97 | median IoU |
 /// |---|---|---|
@@ -203,8 +203,8 @@ pub fn part_with(mesh: &Mesh, settings: &PartSettings, run: &Run) -> Result<Part
 /// "From above" are parts that stand on a table, of which no direction from below sees anything.
 /// The normals are exact there; those of a scanner are not quite. Clouds without normals are less
 /// sure: some two of three have it at 0.2 %, as walls of narrow holes may still come out turned.
-/// What fails at 0.4 % is mostly a leaf that is half buried in others: fitted from the truth on, the
-/// points tell it.
+/// What fails at 0.4 % is mostly a leaf that is half buried in others: fitted from the truth on,
+/// the points tell it.
 ///
 /// # Errors
 ///

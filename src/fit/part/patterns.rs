@@ -32,7 +32,8 @@ pub enum Layout {
         /// From one to the next.
         step: DVec3,
     },
-    /// Two or more at equal angles all around an axis, and turned about it each from the one before.
+    /// Two or more at equal angles all around an axis, and turned about it each from the one
+    /// before.
     Ring {
         /// The middle.
         centre: DVec3,
@@ -68,8 +69,8 @@ impl Layout {
 impl PartFit {
     /// Leaves that are equal but for their places, which are on a line, a ring or a grid: of the
     /// leaves of the same kind and sizes that nothing of the other sign comes between, where a
-    /// pattern takes fewer numbers than its leaves. A leaf is in one pattern at most. Those that save
-    /// most come first. In the [solid](PartFit::solid) a pattern is its first leaf, repeated.
+    /// pattern takes fewer numbers than its leaves. A leaf is in one pattern at most. Those that
+    /// save most come first. In the [solid](PartFit::solid) a pattern is its first leaf, repeated.
     ///
     /// ```
     /// use rvachev::fit::{Layout, PartSettings, part};

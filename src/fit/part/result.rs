@@ -162,8 +162,8 @@ impl PartFit {
 
     /// How many numbers the tree has: 3 of a half-space, 4 of a sphere, 7 of a cylinder or a torus,
     /// 8 of a cone, 9 of a box or a prism, 10 of a rounded rectangle, 11 of a superellipsoid, 12 of
-    /// a supershape, 7 and 2 a corner of a profile. Of a [pattern](PartFit::patterns) it is those of
-    /// one leaf and of the [layout](super::Layout::parameters).
+    /// a supershape, 7 and 2 a corner of a profile. Of a [pattern](PartFit::patterns) it is those
+    /// of one leaf and of the [layout](super::Layout::parameters).
     #[must_use]
     pub fn parameters(&self) -> usize {
         let all: usize = self.leaves.iter().map(PartLeaf::parameters).sum();
@@ -240,7 +240,8 @@ impl PartFit {
         &self.unexplained
     }
 
-    /// How long the stages of the recovery took: of all that is here this only is another each time.
+    /// How long the stages of the recovery took: of all that is here this only is another each
+    /// time.
     #[must_use]
     pub fn times(&self) -> PartTimes {
         self.times

@@ -147,8 +147,8 @@ impl Samples {
     }
 
     /// The samples of a cloud: points with the normals that they have, or that their neighbours
-    /// tell, brought nearer to the surface. Their noise is so much at least, in length units, before
-    /// that.
+    /// tell, brought nearer to the surface. Their noise is so much at least, in length units,
+    /// before that.
     pub(super) fn of_cloud(cloud: &PointCloud, least_noise: f64, seed: u64) -> Samples {
         let all = cloud.positions();
         let [low, high] = extent(all);

@@ -34,8 +34,8 @@ pub(super) fn snapped(leaves: &[(bool, Leaf)], vertices: &[DVec3], run: &Run) ->
             run.check()?;
             let own: Vec<_> = on_faces(leaf, &of_surface, near).map(|on| (on, 1.0)).collect();
             if own.len() > 1 {
-                // Vertices at a rim are on both faces: by the distance alone they would be met by all
-                // that is wider, too.
+                // Vertices at a rim are on both faces: by the distance alone they would be met by
+                // all that is wider, too.
                 *leaf = fitted(leaf, &own, width, |leaf, (p, face): (DVec3, usize)| leaf.faces(p)[face]);
             }
         }

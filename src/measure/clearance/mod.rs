@@ -89,8 +89,8 @@ impl Solid {
     /// by how exact it is, is outside of the other solid, by ranges of the other's value.
     ///
     /// Each surface takes as long as a mesh, once. After that a clearance takes milliseconds where
-    /// one place is nearest, and some tenths of a second where a gap is even all over. The volume of
-    /// an overlap is found as by [`measure`](Solid::measure).
+    /// one place is nearest, and some tenths of a second where a gap is even all over. The volume
+    /// of an overlap is found as by [`measure`](Solid::measure).
     ///
     /// # Errors
     /// What is wrong with a solid, that it has no finite box, or that the work was cancelled.

@@ -104,8 +104,8 @@ pub(super) mod single {
     }
 }
 
-/// Functions of double precision. Nothing is fused: a number alone and one of a vector have the same
-/// function, to the bit.
+/// Functions of double precision. Nothing is fused: a number alone and one of a vector have the
+/// same function, to the bit.
 pub(super) mod double {
     use std::f64::consts::FRAC_2_PI;
 
