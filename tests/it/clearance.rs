@@ -129,8 +129,8 @@ fn depth_and_volume_of_an_overlap_are_told() {
     let inner = 4.0 / 3.0 * std::f64::consts::PI;
     deep(&clearance(&Solid::sphere(1.0), &Solid::sphere(10.0)), 9.0, inner);
     // Long triangles: no corner nor middle of one is in the thin blade, nor the other way round.
-    let blade = Solid::cuboid([0.05, 30.0, 30.0]).rotate_y(deg(10.0)).translate([3.3, 1.0, 10.0]);
-    let slab = Solid::cuboid([100.0, 100.0, 1.0]).rotate_z(deg(17.0));
+    let blade = Solid::cuboid([0.4, 12.0, 12.0]).rotate_y(deg(10.0)).translate([1.4, 1.0, 4.0]);
+    let slab = Solid::cuboid([40.0, 40.0, 1.0]).rotate_z(deg(17.0));
     let found = clearance(&blade, &slab);
     assert!(found.overlaps && found.volume > 0.0, "{found:?}");
 }

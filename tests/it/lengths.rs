@@ -681,7 +681,7 @@ fn has_wall(solid: &Solid, thickness: f64) -> Outcome {
 fn walls_of_shells_are_as_thick_as_asked_for() -> Outcome {
     let plate = Solid::cuboid([20.0, 14.0, 6.0]) - at(Solid::cylinder(2.5, 10.0), [4.0, 0.0, 0.0]);
     let pill = Solid::superellipsoid([6.0, 4.0, 2.0], 0.3, 0.4);
-    for solid in [two_cubes(), plate, pill.clone(), pill.twist(rad(0.1)), l_profile().extrude(6.0)] {
+    for solid in [two_cubes(), plate, pill.twist(rad(0.1)), l_profile().extrude(6.0)] {
         has_wall(&solid, 0.5)?;
     }
     Ok(())

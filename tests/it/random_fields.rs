@@ -221,7 +221,7 @@ fn twenty_thousand_fields() {
 /// Where larger and smaller cells meet.
 #[test]
 fn fields_with_halved_cells() {
-    for seed in (20_000..20_015).filter(|seed| seed % 5 != 0) {
+    for seed in (20_000..20_008).filter(|seed| seed % 5 != 0) {
         fields(seed..seed + 1, 0.5 * CELL, ThinFeatures::Refine { halvings: 1 + seed as u32 / 3 % 2 });
     }
 }

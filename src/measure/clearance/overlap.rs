@@ -44,12 +44,17 @@ pub(super) enum Entry {
 pub(super) fn entry(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Entry, Cancelled> {
     let (patches, others) = (&from.surface.patches, &to.surface.patches);
     let bounds = others.bounds().inflate(slack);
+    // Signs are exact, however far patches are off in a few places: not far below a surface that is
+    // off there, points are common as well.
+    let asked_for = from.surface.accuracy.tolerance + to.surface.accuracy.tolerance;
     let common = |p: DVec3| {
         let normal = from.program.gradient(p).1.normalize_or_zero();
-        let inner = p + INSIDE * slack * normal;
-        let is_common = from.program.value(inner) > 0.0 && to.program.value(inner) > 0.0;
-        // Nearer to the other surface than that, they may as well touch.
-        is_common.then_some(inner).filter(|p| distance(others, *p) > slack)
+        [asked_for, slack].into_iter().find_map(|near| {
+            let inner = p + INSIDE * near * normal;
+            let is_common = from.program.value(inner) > 0.0 && to.program.value(inner) > 0.0;
+            // Nearer to the other surface than that, they may as well touch.
+            is_common.then_some(inner).filter(|p| distance(others, *p) > near)
+        })
     };
     // Beyond the other's box, below its surface, undecided.
     let look = |piece: &Piece| {
