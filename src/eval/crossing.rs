@@ -194,27 +194,30 @@ mod tests {
         assert!(rising > 100 && falling > 100, "{rising} {falling}");
     }
 
+    /// A formula that jumps.
+    #[cfg(feature = "formula")]
+    fn steps() -> Solid {
+        let text = "x var-x\nz var-z\nh const 0.5\nt sub x z\nm mod t h\nf floor x\na add m f\nout sub z a";
+        let half = DVec3::splat(1.2);
+        Solid::from(crate::Formula::from_vm(text, Bounds::new(-half, half)).expect("the text is a formula"))
+    }
+
     /// On one side of all creases of a box, slopes are within what is told of that side.
     #[test]
     fn slopes_beside_creases_are_within_bounds() {
         let g = Gielis::new;
         let blades = Solid::from(Supershape::new(g(5.0, 0.3, 0.3, 0.3), g(4.0, 2.0, 2.0, 2.0)));
         let poles = Solid::from(Supershape::new(g(6.0, 1.0, 1.7, 1.7), g(4.0, 1.0, 1.5, 0.6)));
-        let mut solids = vec![
+        let solids = [
             blades.rotate_x(rad(0.4)),
             poles.rotate_z(rad(1.1)).translate([0.1, 0.0, 0.2]),
             Solid::superellipsoid([1.0, 0.8, 0.6], 2.5, 2.5),
             Solid::superellipsoid([1.0, 0.8, 0.6], 3.0, 0.3).rotate_y(rad(0.3)),
             Solid::superellipsoid([1.0, 0.8, 0.6], 0.3, 3.0) | Solid::sphere(0.3).translate([0.5, 0.5, 0.5]),
             Profile::from(Superpolygon::new(g(5.0, 0.4, 0.5, 0.5), 1.0)).extrude(1.0),
+            #[cfg(feature = "formula")]
+            steps().rotate_z(rad(0.2)),
         ];
-        #[cfg(feature = "formula")]
-        {
-            let text = "x var-x\nz var-z\nh const 0.5\nt sub x z\nm mod t h\nf floor x\na add m f\nout sub z a";
-            let half = DVec3::splat(1.2);
-            let steps = crate::Formula::from_vm(text, Bounds::new(-half, half)).expect("the text is a formula");
-            solids.push(Solid::from(steps).rotate_z(rad(0.2)));
-        }
         let random = |n: u32| {
             f64::from(n.wrapping_mul(2_654_435_769).rotate_left(11).wrapping_mul(2_246_822_519)) / 2f64.powi(32)
         };
