@@ -9,32 +9,25 @@
 //! What a verb is given stands on the left, in grey; what it makes of it is beside it, in colour.
 
 use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use glam::DVec3;
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{Rgb, RgbImage, imageops};
-use rvachev::{Background, Blend, Camera, Profile, RFunction, RenderSettings, Solid, deg};
+use rvachev::{Blend, Profile, RFunction, Solid, deg};
 
-const GREY: [u8; 3] = [178, 178, 176];
+mod page;
+
+use page::{GREY, picture, save, side_by_side};
+
 const BLUE: [u8; 3] = [112, 150, 186];
 const GREEN: [u8; 3] = [104, 160, 116];
 const RED: [u8; 3] = [206, 122, 90];
 
-const BACKGROUND: [u8; 3] = [248, 248, 248];
-
 /// Towards the eye.
 const DIRECTION: DVec3 = DVec3::new(0.45, -1.0, 0.65);
 
-/// Around a picture, in pixels.
-const BORDER: u32 = 8;
-
 /// Between two solids, in length units.
 const GAP: f64 = 1.5;
-
-/// Colours are rounded to multiples of this: the files are half as large.
-const COLOR_STEP: u8 = 4;
 
 /// Without the quarter that is nearest to the viewer.
 fn cut_open(solid: Solid) -> Solid {
@@ -96,59 +89,6 @@ fn no_fit() -> Vec<Solid> {
     vec![comb().paint(GREY), comb().filleted(1.0).paint(BLUE), comb().rounded(1.0).paint(GREEN)]
 }
 
-/// Without what of the background is around it.
-fn cropped(picture: &RgbImage) -> RgbImage {
-    let (mut left, mut top, mut right, mut bottom) = (picture.width(), picture.height(), 0, 0);
-    for (x, y, pixel) in picture.enumerate_pixels() {
-        if pixel.0 != BACKGROUND {
-            (left, top, right, bottom) = (left.min(x), top.min(y), right.max(x), bottom.max(y));
-        }
-    }
-    let (left, top) = (left.saturating_sub(BORDER), top.saturating_sub(BORDER));
-    imageops::crop_imm(picture, left, top, right + BORDER - left, bottom + BORDER - top).to_image()
-}
-
-/// Solids side by side, level in the picture.
-fn picture(solids: &[Solid], size: (u32, u32), samples: u32) -> Result<RgbImage, Box<dyn Error>> {
-    let right = DVec3::Z.cross(DIRECTION).normalize();
-    let mut row = Vec::new();
-    let mut left = 0.0;
-    for solid in solids {
-        let bounds = solid.bounds()?;
-        let half = 0.5 * bounds.size().dot(right.abs());
-        let middle = 0.5 * (bounds.min + bounds.max).dot(right);
-        row.push(solid.translate((left + half - middle) * right));
-        left += 2.0 * half + GAP;
-    }
-    let row = Solid::union_all(row, RFunction::MIN_MAX);
-    let bounds = row.bounds()?;
-    let (width, height) = size;
-    let camera = Camera::framing_orthographic(&bounds);
-    let camera = Camera { eye: camera.target + bounds.size().length() * DIRECTION, ..camera };
-    let camera = camera.fitted(&bounds, f64::from(width) / f64::from(height));
-    let settings = RenderSettings {
-        width,
-        height,
-        samples,
-        ground: false,
-        background: Background::Plain(BACKGROUND),
-        ..RenderSettings::default()
-    };
-    let image = row.render(&camera, &settings)?;
-    let round = |channel: u8| channel.min(BACKGROUND[0]).next_multiple_of(COLOR_STEP);
-    let picture = RgbImage::from_fn(width, height, |x, y| {
-        let [red, green, blue, _] = image.pixel(x, y).unwrap_or_default();
-        Rgb([red, green, blue].map(round))
-    });
-    Ok(cropped(&picture))
-}
-
-fn save(picture: &RgbImage, path: &Path) -> Result<u64, Box<dyn Error>> {
-    let file = std::io::BufWriter::new(std::fs::File::create(path)?);
-    picture.write_with_encoder(PngEncoder::new_with_quality(file, CompressionType::Best, FilterType::Adaptive))?;
-    Ok(std::fs::metadata(path)?.len())
-}
-
 fn main() -> Result<(), Box<dyn Error>> {
     let docs = std::env::args().nth(1).is_some_and(|argument| argument == "docs");
     let folder = PathBuf::from(if docs { "docs/lengths" } else { "target/examples/lengths" });
@@ -165,8 +105,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (name, make, size) in scenes {
         let start = Instant::now();
         let path = folder.join(format!("{name}.png"));
-        let bytes = save(&picture(&make(), size, if docs { 3 } else { 1 })?, &path)?;
-        println!("{}: {bytes} bytes, {:.1} s", path.display(), start.elapsed().as_secs_f64());
+        let row = side_by_side(&make(), GAP, DIRECTION)?;
+        save(&picture(&row, DIRECTION, size, if docs { 3 } else { 1 })?, &path)?;
+        println!("    {:.1} s", start.elapsed().as_secs_f64());
     }
     Ok(())
 }

@@ -9,33 +9,25 @@
 //! The code of each tree is printed.
 
 use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use glam::DVec3;
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{Rgb, RgbImage, imageops};
 use rvachev::fit::{PartFit, PartSettings, part, part_of_points};
-use rvachev::{
-    Background, Camera, CellSize, Mesh, MeshSettings, MeshSolid, PointCloud, RFunction, RenderSettings, Solid, deg,
-};
+use rvachev::{CellSize, Mesh, MeshSettings, MeshSolid, PointCloud, RFunction, Solid, deg};
 
-const GREY: [u8; 3] = [178, 178, 176];
+mod page;
+
+use page::{GREY, picture, save, side_by_side};
 
 /// Leaves are coloured one after the other.
 const COLORS: [[u8; 3]; 6] =
     [[112, 150, 186], [206, 122, 90], [104, 160, 116], [214, 178, 94], [150, 118, 170], [110, 176, 180]];
 
-const BACKGROUND: [u8; 3] = [248, 248, 248];
-
 /// Towards the eye.
 const DIRECTION: DVec3 = DVec3::new(0.45, -1.0, 0.8);
 
-/// Around a picture, in pixels, and between two solids, in parts of their size.
-const BORDER: u32 = 8;
+/// Between two solids, in parts of their width.
 const GAP: f64 = 0.12;
-
-/// Colours are rounded to multiples of this: the files are smaller.
-const COLOR_STEP: u8 = 4;
 
 /// A flange: a disc with a pipe, bored through, and a ring of holes. Millimetres.
 fn flange() -> Solid {
@@ -94,47 +86,6 @@ fn painted(fit: &PartFit) -> Solid {
         .fold(leaf(0), |solid, i| if fit.leaves()[i].is_cut() { solid - leaf(i) } else { solid | leaf(i) })
 }
 
-/// Without what of the background is around it.
-fn cropped(picture: &RgbImage) -> RgbImage {
-    let (mut left, mut top, mut right, mut bottom) = (picture.width(), picture.height(), 0, 0);
-    for (x, y, pixel) in picture.enumerate_pixels() {
-        if pixel.0 != BACKGROUND {
-            (left, top, right, bottom) = (left.min(x), top.min(y), right.max(x), bottom.max(y));
-        }
-    }
-    let (left, top) = (left.saturating_sub(BORDER), top.saturating_sub(BORDER));
-    imageops::crop_imm(picture, left, top, right + BORDER - left, bottom + BORDER - top).to_image()
-}
-
-/// Two solids side by side.
-fn picture(given: &Solid, found: &Solid, samples: u32) -> Result<RgbImage, Box<dyn Error>> {
-    let right = DVec3::Z.cross(DIRECTION).normalize();
-    let width = |solid: &Solid| solid.bounds().map(|bounds| bounds.size().dot(right.abs()));
-    let step = 0.5 * (width(given)? + width(found)?) + GAP * width(found)?;
-    let row = Solid::union_all([given.clone(), found.translate(step * right)], RFunction::MIN_MAX);
-    let bounds = row.bounds()?;
-    let (width, height) = (760, 380);
-    let camera = Camera::framing_orthographic(&bounds);
-    let camera = Camera { eye: camera.target + bounds.size().length() * DIRECTION, ..camera };
-    let camera = camera.fitted(&bounds, f64::from(width) / f64::from(height));
-    let background = Background::Plain(BACKGROUND);
-    let settings = RenderSettings { width, height, samples, ground: false, background, ..RenderSettings::default() };
-    let image = row.render(&camera, &settings)?;
-    let round = |channel: u8| channel.min(BACKGROUND[0]).next_multiple_of(COLOR_STEP);
-    let picture = RgbImage::from_fn(width, height, |x, y| {
-        let [red, green, blue, _] = image.pixel(x, y).unwrap_or_default();
-        Rgb([red, green, blue].map(round))
-    });
-    Ok(cropped(&picture))
-}
-
-fn save(picture: &RgbImage, path: &Path) -> Result<(), Box<dyn Error>> {
-    let file = std::io::BufWriter::new(std::fs::File::create(path)?);
-    picture.write_with_encoder(PngEncoder::new_with_quality(file, CompressionType::Best, FilterType::Adaptive))?;
-    println!("{}: {} bytes\n", path.display(), std::fs::metadata(path)?.len());
-    Ok(())
-}
-
 fn main() -> Result<(), Box<dyn Error>> {
     let docs = std::env::args().nth(1).is_some_and(|argument| argument == "docs");
     let folder = PathBuf::from(if docs { "docs/parts" } else { "target/examples/parts" });
@@ -157,7 +108,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         let (iou, leaves, parameters) = (fit.iou(), fit.leaf_count(), fit.parameters());
         println!("{name}: IoU {iou:.4}, {leaves} leaves, {parameters} parameters, {:?}\n", fit.topology());
         println!("{}", fit.to_rust(name));
-        save(&picture(&given, &painted(&fit), samples)?, &folder.join(format!("{name}.png")))?;
+        let found = painted(&fit);
+        let gap = GAP * found.bounds()?.size().dot(DVec3::Z.cross(DIRECTION).normalize().abs());
+        let row = side_by_side(&[given, found], gap, DIRECTION)?;
+        save(&picture(&row, DIRECTION, (760, 380), samples)?, &folder.join(format!("{name}.png")))?;
+        println!();
     }
     Ok(())
 }

@@ -265,9 +265,10 @@
 //!
 //! # Accuracy
 //!
-//! A measured surface is right to a thousandth of the length that is asked for, or to the power of
-//! two below it, so that lengths of about one size share one surface; and at least to a millionth
-//! of the size of the solid. Equal solids share their surfaces. Along creases that are curved,
+//! A measured surface is right to the power of two at or below a thousandth of the length that is
+//! asked for, so that lengths of about one size share one surface. By itself it is never measured
+//! more finely than to a millionth of the solid's size, or of how far the solid reaches from the
+//! origin. Equal solids share their surfaces. Along creases that are curved,
 //! where curvature jumps, and where ribs come to be as thin as cells, single points may be farther
 //! off. Rods, needles and rims thinner than a quarter of a cell may be missed.
 //! [`Solid::accuracy`](crate::Solid::accuracy) says what was reached, and
@@ -291,10 +292,10 @@
 //! # What it costs
 //!
 //! Exact lengths cost what the solid costs. A measured one takes about the time of a mesh of the
-//! operand when it is first asked for. It is then kept with the node, for all clones of the solid
-//! and all that is made of them, until the last is dropped;
-//! [`Solid::prepare`](crate::Solid::prepare) does it ahead of time. Of solids without bounds those
-//! parts are measured that are asked for.
+//! operand when it is first asked for. It is then kept for all solids that are equal to the
+//! operand, until the last of them is dropped; [`Solid::prepare`](crate::Solid::prepare) does it
+//! ahead of time. Of solids without bounds those parts are measured that are asked for, and of
+//! lattices one cell.
 //!
 //! ```
 //! use rvachev::Solid;

@@ -1,4 +1,4 @@
-//! Implicit-function (F-rep) solid modelling: superquadrics, supershapes, exact primitives,
+//! Implicit-function (F-rep, signed distance) solid modelling and CSG: superquadrics, supershapes, exact primitives,
 //! lattices, profiles and formulas, joined by R-functions and blends, deformed, meshed and
 //! ray-marched.
 //!
@@ -143,9 +143,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Parts have [paint](Solid::paint), pictures have [styles](Style), can be
-//! [cut open](RenderSettings::cut), and for turntables are [drafts](Quality::Draft) of a mesh that
-//! is kept; behind a picture are its [layers](Solid::layers): depth, normals, positions, leaves. A
+//! Parts have [paint](Solid::paint), and pictures have [styles](Style). Pictures can be
+//! [cut open](RenderSettings::cut). For turntables there are [drafts](Quality::Draft), drawn from a
+//! mesh that the scene keeps. Behind a picture are its [layers](Solid::layers): depth, normals,
+//! positions, leaves. A
 //! [slice](Solid::slice) shows the field on a plane, and its [contours](Slice::contours), nested
 //! and within a tolerance; a stack of planes is cut at once ([`Solid::slices`]).
 //!
@@ -165,8 +166,8 @@
 //! ```
 //!
 //! Points become solids: [`fit`] finds the superellipsoid or supershape that a scan is of, the tree
-//! of boxes, cylinders and other leaves that a mesh is of ([`fit::part`]), where a known part is in
-//! a scan, and how far it is from it. Any solid can be [written as Rust code](Solid::to_rust).
+//! of boxes, cylinders and other leaves that a mesh ([`fit::part`]) or a scan
+//! ([`fit::part_of_points`]) is of, where a known part is in a scan, and how far it is from it. Any solid can be [written as Rust code](Solid::to_rust).
 //!
 //! ```
 //! use rvachev::fit::{FitSettings, superellipsoid};

@@ -17,7 +17,7 @@
 //! | a mesh within a tolerance | [`CellSize::Tolerance`] | what [`Mesh::deviation`] says |
 //! | an offset, shell, fillet | [`lengths`](crate::lengths) | what [`accuracy`](Solid::accuracy) says; exact where the value is the distance |
 //! | a slice, its contours | [`slice`](Solid::slice) | contours within the tolerance that they are asked for |
-//! | a picture, a range image | [`render`](Solid::render) | the first point on a ray to 10⁻⁵ of the size |
+//! | a picture, a range image | [`render`](Solid::render) | the first point on a ray to 10⁻⁵ of the size; [drafts](crate::Quality::Draft) are as far off as their mesh |
 //!
 //! | becomes a solid | by | how far off |
 //! |---|---|---|
@@ -44,19 +44,21 @@
 //! | volume, centroid, inertia | a solid | [`Solid::measure`] | a bound that is certain |
 //! | area | a solid | [`Solid::measure`] | an estimate |
 //! | the same, genus, shells, faults | a mesh | [`Mesh::check`] | those of its triangles, by rounding |
-//! | what hangs together, by size | a mesh | [`Mesh::components`], [`keep_components`](Mesh::keep_components) | none |
+//! | connected components, by size | a mesh | [`Mesh::components`], [`keep_components`](Mesh::keep_components) | none |
 //! | openings | a mesh | [`Mesh::open_edges`] | none |
 //! | thickness | a solid | [`Solid::thickness`] | that of a facet |
 //! | thin walls and gaps that a mesh may lose | a solid | [`Solid::thin_features`] | conservative |
-//! | clearance, overlap | two solids | [`Solid::clearance`] | the tolerance that it tells |
+//! | clearance | two solids | [`Solid::clearance`] | the tolerance that it tells |
+//! | overlap | two solids | [`Solid::clearance`] | depth to a hundredth and the tolerance, volume to an error that it tells |
 //! | distance, nearest point | a solid | [`closest_surface_point`](Solid::closest_surface_point) | 10⁻⁹ of the size |
 //! | deviations | a scan and a solid | [`fit::inspect`](crate::fit::inspect()) | that of the nearest points |
 //!
 //! ## Volume, centroid, inertia and area
 //!
 //! The volume of a mesh is that of its triangles: it is as wrong as the mesh is. Of a solid it is
-//! known as exactly as one asks, and how far it may be off is certain, as ranges of the value and
-//! of its slopes are. Superquadrics and exact leaves have closed forms.
+//! found to the tolerance that is asked for, or as near as a million blocks come. How far it may be
+//! off is certain. Superellipsoids, supertoroids, generalised superquadrics, ellipsoids and bounded
+//! exact primitives have closed forms: see [`Solid::measure`].
 //!
 //! ```
 //! use rvachev::{CellSize, MeshSettings, Solid};
@@ -115,7 +117,8 @@
 //!
 //! # A part that somebody else has made
 //!
-//! The example `measure_part` reads a file and tells all of this, in words or as a line of JSON.
+//! The example `measure_part` reads a file and tells its volume, area, components, open edges and
+//! thickness, in words or as a line of JSON.
 //! Files say where they are wrong and what was expected: [`Mesh::load`](crate::Mesh::load). A mesh
 //! need not be clean to be measured: what is inside is told by winding numbers, and
 //! [`open_edges`](Mesh::open_edges) says how open it is.

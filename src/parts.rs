@@ -1,4 +1,4 @@
-//! Whole parts: from a mesh or a scan to a tree of solids that one can edit.
+//! Whole parts, or reverse engineering: from a mesh or a scan to a CSG tree that one can edit.
 //!
 //! [`fit::part`](crate::fit::part()) takes the mesh of a part,
 //! [`fit::part_of_points`](crate::fit::part_of_points()) the points of a scan. Both give a
@@ -13,8 +13,8 @@
 //! | what was it meant to be? | [`snaps`](crate::fit::PartFit::snaps): numbers that were made round; [`without_snaps`](crate::fit::PartFit::without_snaps) refuses some |
 //! | may I have it as code? | [`to_rust`](crate::fit::PartFit::to_rust) |
 //!
-//! The example `reverse_engineer` does all of this with a file; the example `parts` makes the
-//! pictures of this page.
+//! The example `reverse_engineer` prints the leaves, IoU, topology, what is missing and the code for
+//! a file; the example `parts` makes the pictures of this page.
 //!
 //! # A mesh in millimetres
 //!
@@ -178,10 +178,10 @@
 //! | method | input | IoU | leaves | holes | code | time |
 //! |---|---|---|---|---|---|---|
 //! | [`part`](crate::fit::part()) | meshes of 14 CAD parts, of as few as 12 facets | 0.96 to 1.00 | 1 to 10, and some 32 of one | cut leaves | yes | 0.1 to 2 s |
-//! | [`part_of_points`](crate::fit::part_of_points()) | clouds of 4000 points, 0.2 % noise | 0.985 in the middle | 2 to 15 | cut leaves | yes | 2 s |
+//! | [`part_of_points`](crate::fit::part_of_points()) | clouds of 4000 points, 0.2 % noise | 0.991 in the middle | some 10 | cut leaves | yes | 1 to 2 s |
 //! | Marching-Primitives (W. Liu et al., 2023) | grids of signed distances | 0.93 to 0.98 | 7 to 77 superquadrics | none | no | 1 to 21 s |
 //! | SuperFit (2026) | meshes | 0.90 | 24 superquadrics | none: "purely additive" | no | minutes |
-//! | [`supershape_union`](crate::fit::supershape_union()), the pipeline of rational supershapes | points by segments | 0.23 to 0.77 of CAD parts | one a segment | by the error's clusters | no | seconds |
+//! | [`supershape_union`](crate::fit::supershape_union()), the pipeline of rational supershapes | points by segments | 0.96 to 1.00 of simple CAD parts, 0.15 to 0.95 of those with many small holes | one a segment | by the error's clusters | yes | seconds |
 //!
 //! What others have is from their own papers, on parts of their own: organic bodies among them,
 //! which trees of few exact leaves do not suit. The table of the CAD parts one by one is at
@@ -201,4 +201,6 @@
 //! * **Small holes** count more than their volume, down to some 0.5 % of the diagonal. What is
 //!   smaller may be left out; [`unexplained`](crate::fit::PartFit::unexplained) tells of places
 //!   with more than a thousandth of the volume.
-//! * **Scans** are to show all sides. What is not seen is closed as if by a film.
+//! * **Scans** need not show all sides. Space that no point tells of costs nothing, and leaves go on
+//!   there. [`seen`](crate::fit::PartLeaf::seen) says how much of a leaf there are points of;
+//!   [`is_guess`](crate::fit::PartLeaf::is_guess) marks leaves of which most is not seen.

@@ -5,7 +5,9 @@
 //! | points of one round object, whole or of one side | the object | [`fit::superellipsoid`](crate::fit::superellipsoid()) |
 //! | points of a star, gear, prism, flower | its curves and their symmetry numbers | [`fit::supershape`](crate::fit::supershape()) |
 //! | points of a bent, twisted or tapered object | the object and how it is bent | [`fit::deformed`](crate::fit::deformed()) |
-//! | a mesh or a scan of a whole part | its tree of leaves | [`fit::part`](crate::fit::part()) |
+//! | a mesh of a whole part | its tree of leaves | [`fit::part`](crate::fit::part()) |
+//! | a scan of a whole part | the same | [`fit::part_of_points`](crate::fit::part_of_points()) |
+//! | a surface cut into segments | a union of supershapes with holes | [`fit::supershape_union`](crate::fit::supershape_union()) |
 //! | a scan of a known part | where the part is | [`fit::register`](crate::fit::register()) |
 //! | a scan of a known part, in place | where it is off, and by how much | [`fit::inspect`](crate::fit::inspect()) |
 //!
@@ -22,9 +24,10 @@
 //! *Grey: 1000 points of a superellipsoid with 1 % noise, and 1500 that are strewn about it. Blue:
 //! those whose weight is above a half, and the solid.*
 //!
-//! Nothing is said of how many points are strewn, nor of the noise: both are found. Up to 60 % may
-//! be strewn; a table that the object stands on is told from it. Every point has a weight, the
-//! chance that it is of the surface.
+//! Nothing is said of how many points are outliers, nor of the noise: both are found.
+//! [`superellipsoid`](crate::fit::superellipsoid()) takes up to 60 % of outliers, and leaves out a
+//! table that the object stands on. [`supershape`](crate::fit::supershape()) takes some 20 %, and
+//! knows of no tables. Every point has a weight, the chance that it is of the surface.
 //!
 //! ```
 //! use rvachev::fit::{FitSettings, superellipsoid};
@@ -99,9 +102,8 @@
 //! were found are drawn over the images. The example `grasp` prints them beside the truth.*
 //!
 //! A range image gives points of one side, with the normals if it was rendered. Noise of a range
-//! finder is added by [`with_noise`](crate::range_image::RangeImage::with_noise). The plane of a
-//! table is taken off, what is left falls into parts that do not touch, and each is fitted for
-//! itself.
+//! finder is added by [`with_noise`](crate::range_image::RangeImage::with_noise). The example
+//! takes off the plane of the table, splits the rest into parts that do not touch, and fits each.
 //!
 //! # Parts against their models
 //!
@@ -131,11 +133,10 @@
 //! | on a table, 40 % of the points | 100 | 86.5 | |
 //!
 //! Published times are of Python. `cargo bench --bench fit` prints those of this crate, some
-//! milliseconds or less. With the published residuals and this search, and for supershapes with the
-//! published symmetry numbers and rational radii, as many come out right as the tables of
-//! [`fit`](crate::fit) say: they are options ([`Cost`](crate::fit::Cost),
-//! [`Symmetry`](crate::fit::Symmetry), [`Start`](crate::fit::Start)), so that the comparison can be
-//! repeated.
+//! milliseconds. Published residuals, symmetry numbers and rational radii are options
+//! ([`Cost`](crate::fit::Cost), [`Symmetry`](crate::fit::Symmetry), [`Start`](crate::fit::Start)),
+//! so that the comparison can be repeated; [`fit`](crate::fit) says what they reach with this
+//! search.
 //!
 //! Sources: F. Solina, R. Bajcsy, *Recovery of parametric models from range images: the case for
 //! superquadrics with global deformations* (1990); W. Liu, Y. Wu, S. Ruan, G. Chirikjian, *Robust

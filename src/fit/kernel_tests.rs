@@ -55,9 +55,9 @@ fn derivatives_of_superellipsoids() {
     check(&base(), &COSTS, &[]);
 }
 
-#[test]
-fn derivatives_of_supershapes() {
-    let model = |rational| Supershaped {
+/// A supershape of any exponents.
+fn shaped(rational: bool) -> Supershaped {
+    Supershaped {
         equator: Curve { m: 5, n: [3.0, 4.0, 2.5] },
         meridian: Curve { m: 4, n: [5.0, 3.0, 4.0] },
         semi_axes: DVec3::new(1.2, 0.8, 2.0),
@@ -65,9 +65,13 @@ fn derivatives_of_supershapes() {
         center: base().center,
         ties: Ties::Free,
         rational,
-    };
-    check(&model(false), &COSTS, &[]);
-    check(&model(true), &COSTS, &[]);
+    }
+}
+
+#[test]
+fn derivatives_of_supershapes() {
+    check(&shaped(false), &COSTS, &[]);
+    check(&shaped(true), &COSTS, &[]);
 }
 
 /// The radial residual is along rays of the solid before its deformation, and its rows leave out
@@ -103,15 +107,7 @@ fn points_a_second() {
         }
         100.0 * samples.len() as f64 / best / 1e6
     }
-    let shape = Supershaped {
-        equator: Curve { m: 5, n: [3.0, 4.0, 2.5] },
-        meridian: Curve { m: 4, n: [5.0, 3.0, 4.0] },
-        semi_axes: DVec3::new(1.2, 0.8, 2.0),
-        rotation: base().rotation,
-        center: base().center,
-        ties: Ties::Free,
-        rational: false,
-    };
+    let shape = shaped(false);
     let bent = Deformable { base: base(), taper: [0.3, -0.4], twist: 0.3, bend: DVec2::new(0.2, -0.1) };
     println!("million points a second           f32      f64");
     println!("superellipsoid               {:8.1} {:8.1}", speed::<f32, _, 11>(&base()), speed::<f64, _, 11>(&base()));

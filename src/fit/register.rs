@@ -106,7 +106,7 @@ impl Registration {
 /// The part of the scan that is of the solid should be 60 % or more. It may show one side of it
 /// only, if that side tells it: how often it does is [in a table](super#registration). A solid that
 /// looks the same from several sides is found in any of these poses. A failure is told by
-/// [`Registration::noise`], which then is above [`Registration::roughness`].
+/// [`Registration::noise`], which then is above 1.1 times [`Registration::roughness`].
 ///
 /// # Errors
 ///

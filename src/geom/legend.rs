@@ -19,6 +19,7 @@ const GLYPHS: [(char, [u8; 7]); 14] = [
 ];
 
 const WHITE: [u8; 4] = [255; 4];
+const BLACK: [u8; 4] = [0, 0, 0, 255];
 
 /// How wide a character is, with the gap behind it, and how high, in dots.
 const WIDE: usize = 6;
@@ -38,20 +39,25 @@ pub(crate) fn legend(pixels: &mut [[u8; 4]], width: usize, labels: &[String; 5],
         return;
     }
     let left = width - margin - text - margin - bar;
+    let middles = [0, 1, 2, 3, 4].map(|i| top + i * (bottom - top - 1) / 4);
+    // Dark on what is light.
+    let inks = middles.map(|y| {
+        let [r, g, b, a] = pixels[y * width + left + bar + margin];
+        if a > 127 && u32::from(r) + u32::from(g) + u32::from(b) > 382 { BLACK } else { WHITE }
+    });
     let mut put = |x: usize, y: usize, color: [u8; 4]| pixels[y * width + x] = color;
     for y in top..bottom {
         let [r, g, b] = color(1.0 - (y - top) as f64 / (bottom - top - 1) as f64);
         (left..left + bar).for_each(|x| put(x, y, [r, g, b, 255]));
     }
-    for (i, label) in labels.iter().enumerate() {
-        let middle = top + i * (bottom - top - 1) / 4;
+    for ((label, middle), ink) in labels.iter().zip(middles).zip(inks) {
         for (k, c) in label.chars().enumerate() {
             let Some((_, rows)) = GLYPHS.iter().find(|(own, _)| *own == c) else { continue };
             for (row, bits) in rows.iter().enumerate() {
                 for column in (0..5).filter(|column| bits >> (4 - column) & 1 == 1) {
                     let x = left + bar + margin + (k * WIDE + column) * dot;
                     let y = middle + row * dot - HIGH * dot / 2;
-                    (0..dot * dot).for_each(|at| put(x + at % dot, y + at / dot, WHITE));
+                    (0..dot * dot).for_each(|at| put(x + at % dot, y + at / dot, ink));
                 }
             }
         }
@@ -76,6 +82,20 @@ pub(crate) fn label(value: f64, largest: f64, is_signed: bool) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn labels_are_seen_on_any_background() {
+        let (width, height) = (320, 240);
+        for background in [[0, 0, 0, 255], [40, 42, 46, 255], [250, 250, 250, 255], [0; 4]] {
+            let mut pixels = vec![background; width * height];
+            legend(&mut pixels, width, &["1", "2", "3", "4", "5"].map(str::to_string), |_| [255, 0, 0]);
+            // Right of the bar.
+            let ink = |i: &usize| i % width > width - 12 && pixels[*i] != background;
+            let inks: Vec<usize> = (0..width * height).filter(ink).collect();
+            assert!(inks.len() > 40, "{background:?}");
+            assert!(inks.iter().all(|i| pixels[*i][0].abs_diff(background[0]) > 100), "{background:?}");
+        }
+    }
 
     #[test]
     fn labels_are_short() {

@@ -51,7 +51,7 @@ impl Solid {
     ///   not a bound: how much the last halving of cells has changed, or the mesh's volume is off,
     ///   as a part of it.
     /// * **Closed forms**: superellipsoids, supertoroids, generalised superquadrics, ellipsoids and
-    ///   the leaves that have exact distances, also under rigid motions, scalings and affine maps,
+    ///   the bounded exact primitives, also under rigid motions, scalings and affine maps,
     ///   are right to rounding, whatever the tolerance. No area has a closed form of superquadrics
     ///   and ellipsoids, nor of what is stretched unevenly.
     /// * An **empty** solid has volume and area 0, no centroid and no inertia.

@@ -14,8 +14,8 @@ use rayon::prelude::*;
 
 use super::buffers::Buffers;
 use super::error::RasterError;
-use super::layers::{LayerSource, Tile};
-use super::target::{NOTHING, REVERSED, Target};
+use super::layers::{Facing, LayerSource, Tile};
+use super::target::{NOTHING, Target};
 use crate::Image;
 use crate::geom::{to_byte, to_linear};
 
@@ -49,20 +49,21 @@ impl Buffers {
         let colors: Vec<Vec3> =
             colors.iter().map(|color| Vec3::from_array(color.map(|c| to_linear(f32::from(c) / 255.0)))).collect();
         let pixel = |target: &Target, i: usize, x: u32, y: u32| {
-            let (operand, depth) = (target.operand[i], target.depth[i]);
-            if operand == NOTHING || depth == f64::INFINITY {
+            let depth = target.depth[i];
+            if target.operand[i] == NOTHING || depth == f64::INFINITY {
                 return Ok([0; 4]);
             }
-            let number = (operand & !REVERSED) as usize;
+            let id = target.id(i);
+            let number = id.operand as usize;
             let Some(layers) = operands.get(number) else {
                 return Err(RasterError::Operand { operand: number, operands: operands.len() });
             };
             let (x, y) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
-            let outward = layers.normal(target.face[i], view.point(x, y, depth));
-            let normal = match operand & REVERSED {
+            let outward = layers.normal(id.face, view.point(x, y, depth));
+            let normal = match id.facing {
                 _ if outward == DVec3::ZERO => -view.direction(x, y),
-                0 => outward,
-                _ => -outward,
+                Facing::Front => outward,
+                Facing::Back => -outward,
             };
             let lit = |direction: DVec3| normal.dot(direction).max(0.0);
             let share = 0.5 * (1.0 + normal.dot(up));

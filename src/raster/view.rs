@@ -187,13 +187,8 @@ impl RasterView {
         self.rays.ray(x, y).1
     }
 
-    /// Whether there is no perspective.
-    pub(crate) fn is_parallel(&self) -> bool {
-        self.parallel
-    }
-
     /// Right, up and forward: unit vectors at right angles.
-    pub(crate) fn axes(&self) -> [DVec3; 3] {
+    pub(super) fn axes(&self) -> [DVec3; 3] {
         self.axes
     }
 

@@ -67,8 +67,8 @@ pub(super) struct Draft<'a> {
     scene: &'a Scene,
     mesh: &'a Mesh,
     pixels: MeshLayers<'a>,
-    /// With so many columns and rows for one of a pixel.
-    samples: MeshLayers<'a>,
+    /// With so many columns and rows for one of a pixel, if there are more than one.
+    samples: Option<MeshLayers<'a>>,
 }
 
 impl<'a> Draft<'a> {
@@ -91,7 +91,7 @@ impl<'a> Draft<'a> {
             Ok::<_, RenderError>(view.surface(mesh))
         };
         let pixels = layers(1)?;
-        let samples = if samples > 1 { layers(samples)? } else { pixels.clone() };
+        let samples = if samples > 1 { Some(layers(samples)?) } else { None };
         Ok(Draft { scene, mesh, pixels, samples })
     }
 
@@ -124,7 +124,7 @@ impl<'a> Draft<'a> {
     /// `columns` is how many samples there are to a pixel along a side, and `count` how many of
     /// the pixels.
     pub(super) fn samples(&self, numbers: &[u32], top: u32, columns: u32, count: usize) -> Vec<Surface> {
-        let layers = if columns > 1 { &self.samples } else { &self.pixels };
+        let layers = self.samples.as_ref().filter(|_| columns > 1).unwrap_or(&self.pixels);
         let [width, _] = layers.size();
         let across = (width / columns) as usize;
         let rows = numbers.len() as u32 / across as u32;
@@ -166,10 +166,7 @@ impl<'a> Draft<'a> {
         let view = layers.view();
         let (x, y) = (f64::from(x) + 0.5, f64::from(y) + 0.5);
         let point = view.point(x, y, depth);
-        let sight = if view.is_parallel() { view.axes()[2] } else { point - view.camera().eye };
-        let length = sight.length();
-        let distance = if view.is_parallel() { depth } else { length };
-        let viewer = -sight / length;
+        let (distance, viewer) = (view.distance(x, y, depth), -view.direction(x, y));
         let normal = layers.normal(id.face, point);
         let towards = if id.facing == Facing::Front { normal } else { -normal };
         let cosine = towards.dot(viewer);

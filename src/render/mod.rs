@@ -3,8 +3,8 @@
 //! The space around the solid is divided into cells where the surface may cross; rays are taken
 //! through them in packets and ask each for the first crossing. What they meet are the layers of a
 //! picture, or it is shaded: lights that move with the camera, shadows and hollows by rays through
-//! a coarser copy of the surface, and more rays of its own at outlines and creases. Slices show the
-//! field on a plane.
+//! a coarser copy of the surface, and more rays of its own at outlines and creases. Drafts show a
+//! mesh by the rasteriser instead. A scene may be cut by a plane. Slices show the field on a plane.
 
 mod beside;
 mod cells;

@@ -35,8 +35,9 @@ const RAYS: usize = 4;
 const PATTERNS: usize = 16;
 const ORDER: [usize; PATTERNS] = [0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5];
 
-/// Pixels that the mean reaches to each side.
-pub(super) const REACH: usize = 2;
+/// Pixels that a mean reaches to each side, and those that it and its repeats reach.
+const REACH: usize = 2;
+pub(super) const FAR_REACH: usize = (1 + AGAIN) * REACH;
 
 /// Points along the side of a tile.
 pub(super) const TILE: usize = 32;
@@ -335,4 +336,39 @@ fn calm(seen: &[Visibility], width: usize) -> Vec<bool> {
         }
     });
     calm
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::gbuffer::Surface;
+
+    /// Two walls at an angle, and what their points see of light: another number each.
+    fn corner(width: usize, height: usize) -> (Vec<Spot>, Vec<Visibility>) {
+        let spot = |i: usize| {
+            let (x, y) = ((i % width) as f64, (i / width) as f64);
+            let slope = if x > y { 0.0 } else { 1.0 };
+            let surface = Surface {
+                distance: 10.0 + slope * (x - y),
+                normal: DVec3::new(-slope, slope, 1.0).normalize().as_vec3(),
+                owner: 0,
+            };
+            Spot::new(DVec3::new(x, y, 20.0), -DVec3::Z, &surface, None)
+        };
+        let seen = |i: usize| Visibility { key: (0.37 * i as f32).fract(), sky: (0.61 * i as f32).fract() };
+        ((0..width * height).map(spot).collect(), (0..width * height).map(seen).collect())
+    }
+
+    #[test]
+    fn rows_are_those_of_the_whole() {
+        let (width, height) = (24, 60);
+        let (spots, seen) = corner(width, height);
+        let whole = smoothed(&spots, &seen, width, |_| 1.0);
+        for (from, to) in [(0, 20), (20, 40), (11, 19), (40, 60)] {
+            let (first, last) = (from.max(FAR_REACH) - FAR_REACH, (to + FAR_REACH).min(height));
+            let part =
+                smoothed(&spots[first * width..last * width], &seen[first * width..last * width], width, |_| 1.0);
+            assert_eq!(part[(from - first) * width..(to - first) * width], whole[from * width..to * width]);
+        }
+    }
 }

@@ -20,7 +20,7 @@ use super::draft::Draft;
 use super::gbuffer::{Surface, Window};
 use super::lines::Lines;
 use super::materials::Materials;
-use super::occlusion::{Obstacles, REACH, TILE, smoothed};
+use super::occlusion::{FAR_REACH, Obstacles, TILE, smoothed};
 use super::scene::Scene;
 use super::settings::{RenderSettings, Style};
 use super::shade::{Studio, Visibility};
@@ -140,8 +140,8 @@ impl Picture<'_> {
         if samples < 2 && obstacles.is_none() && style != Style::Technical {
             return self.plain((top, end), run, finish, pixels);
         }
-        // One pixel for the comparison with neighbours, and what the mean and the lines reach.
-        let halo = 1 + (REACH as u32).max(if style == Style::Technical { Lines::reach(height) } else { 0 });
+        // One pixel for the comparison with neighbours, and what the means and the lines reach.
+        let halo = 1 + (FAR_REACH as u32).max(if style == Style::Technical { Lines::reach(height) } else { 0 });
         let (first, last) = (top.saturating_sub(halo), (end + halo).min(height));
         let window = Window { top: first, height: last - first, ..Window::whole(width, height) };
         // How long it takes to see what the pixels show, how much light is there, what is at edges,
@@ -400,7 +400,10 @@ impl Picture<'_> {
     /// What the pixels of some rows see through their middles.
     fn surfaces(&self, window: Window, run: &Run) -> Result<Vec<Surface>, Cancelled> {
         match &self.draft {
-            Some(draft) => Ok(draft.surfaces(window)),
+            Some(draft) => {
+                run.check()?;
+                Ok(draft.surfaces(window))
+            }
             None => Ok(self.scene.surfaces_with(&self.rays, window, run)?.into_surfaces()),
         }
     }

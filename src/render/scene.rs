@@ -11,7 +11,7 @@ use super::extent::{corners, lowest};
 use super::facets::Facets;
 use super::gbuffer::{GBuffer, Surface, Window};
 use super::pixels::TILE;
-use super::section::{Kept, Section};
+use super::section::{Kept, Sections};
 use super::settings::RenderError;
 use super::tile::{Tracer, View, divide_top};
 use crate::distance::compiled_with;
@@ -52,8 +52,8 @@ pub struct Scene {
     cells: Option<Cells>,
     palette: Palette,
     program: Program,
-    /// The sections that it was cut by, and are not painted.
-    pub(super) sections: Vec<Section>,
+    /// What it was cut by.
+    pub(super) sections: Sections,
     /// The scene that it was last cut to.
     pub(super) cut: Mutex<Option<Kept>>,
     /// What drafts show, and in how many cells, once somebody has asked for one.
@@ -95,7 +95,7 @@ impl Solid {
                 cells,
                 palette: self.palette()?,
                 program: programs.surface.clone(),
-                sections: Vec::new(),
+                sections: Sections::default(),
                 cut: Mutex::new(None),
                 draft: Mutex::new(None),
                 facets: Mutex::new(None),
@@ -118,10 +118,11 @@ impl Scene {
         &self.palette
     }
 
-    /// How many bytes the scene holds: the cells that the rays so far have asked for, and the
-    /// programs that are narrowed to them. They grow with what is seen of the surface, from the
-    /// first picture on, and stay until the scene is dropped. What the solid itself takes is not
-    /// counted, nor what hides light in shaded pictures.
+    /// How many bytes the cells take that the rays so far have asked for, with the programs that
+    /// are narrowed to them. They grow with what is seen of the surface, from the first picture on,
+    /// and stay until the scene is dropped. Not counted are the solid itself, what hides light in
+    /// shaded pictures, the mesh of [drafts](crate::Quality::Draft), and the scene of the last
+    /// [cut](Scene::cut).
     ///
     /// ```
     /// use rvachev::camera::Window;

@@ -22,13 +22,13 @@ use super::settings::{RenderError, setting};
 use crate::eval::Program;
 use crate::{Paint, Plane, RFunction, Run, Solid};
 
-/// A section that shows what it passes through.
-#[derive(Clone)]
-pub(super) struct Section {
-    /// The number of the leaf that cuts.
-    leaf: u32,
-    /// What was cut.
-    whole: Program,
+/// The sections that show what they pass through.
+#[derive(Default)]
+pub(super) struct Sections {
+    /// The numbers of the leaves that cut.
+    leaves: Vec<u32>,
+    /// What it was before the first cut.
+    whole: Option<Program>,
 }
 
 /// A scene that was cut, and how.
@@ -75,8 +75,13 @@ impl Scene {
         };
         let cut = self.solid().intersection(&kept, RFunction::MIN_MAX);
         let mut scene = cut.scene_with(run)?;
-        let section = paint.is_none().then(|| Section { leaf: self.palette().leaves(), whole: self.program().clone() });
-        scene.sections = self.sections.iter().cloned().chain(section).collect();
+        let Sections { leaves, whole } = &self.sections;
+        let section = paint.is_none().then(|| self.palette().leaves());
+        // A solid's leaves have the same numbers in what is cut of it.
+        scene.sections = Sections {
+            leaves: leaves.iter().copied().chain(section).collect(),
+            whole: Some(whole.as_ref().unwrap_or(self.program()).clone()),
+        };
         Ok(scene)
     }
 
@@ -97,16 +102,15 @@ impl Scene {
     /// The owner of a point of the surface: that of a section is the part that holds it.
     #[inline]
     pub(super) fn owner_at(&self, owner: u32, point: DVec3) -> u32 {
-        let through = |owner, section: &Section| match owner {
-            _ if owner == section.leaf => section.whole.holding_leaf(point),
+        match &self.sections.whole {
+            Some(whole) if self.sections.leaves.contains(&owner) => whole.holding_leaf(point),
             _ => owner,
-        };
-        self.sections.iter().rev().fold(owner, through)
+        }
     }
 
     /// Gives what rays meet of sections to the parts that these pass through.
     pub(super) fn fill_sections(&self, found: &mut [Surface], ray: impl Fn(usize) -> (DVec3, DVec3)) {
-        if self.sections.is_empty() {
+        if self.sections.leaves.is_empty() {
             return;
         }
         for (i, surface) in found.iter_mut().enumerate().filter(|(_, surface)| surface.is_hit()) {

@@ -63,7 +63,8 @@ pub struct RenderSettings {
     /// To look into the solid: the plane that it is cut by. What is on the side that the plane's
     /// [normal](Plane::normal) points to is taken away, so that of [`Plane::xz`] the section is
     /// seen from the front, and what is left is drawn, throws shadows and stands on the ground as
-    /// if it was all. See [`Scene::cut`](crate::Scene::cut). Default: none, the solid is whole.
+    /// if it was all (a clipping plane, a section view). A [`Scene`](crate::Scene) keeps what it was
+    /// last cut to: see [`Scene::cut`](crate::Scene::cut). Default: none, the solid is whole.
     ///
     #[doc = picture!("section" = "docs/section.png")]
     ///
@@ -114,16 +115,16 @@ impl Default for RenderSettings {
 #[non_exhaustive]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Quality {
-    /// The surface itself, found with certainty along every ray, with shadows, darkened hollows
+    /// The surface itself, found with certainty along every ray, with shadows, ambient occlusion
     /// and a ground.
     #[default]
     Fine,
     /// A mesh of the solid, drawn triangle by triangle with the same camera, lights and paint, for
     /// turntables and live views. The mesh has [`draft_cells`](RenderSettings::draft_cells); a
-    /// [`Scene`](crate::Scene) keeps it from frame to frame. There are no shadows, all of the sky
-    /// is seen from everywhere, and there is no ground; where parts of different paint flow into
-    /// each other, the border runs along triangles. A side of the picture is at most 16 384 pixels
-    /// long, times [`samples`](RenderSettings::samples).
+    /// [`Scene`](crate::Scene) keeps it from frame to frame. There are no shadows, no ambient
+    /// occlusion and no ground; where parts of different paint flow into each other, the border
+    /// runs along triangles. Width and height, each times [`samples`](RenderSettings::samples), are
+    /// at most 16 384.
     ///
     /// ```
     /// use rvachev::{Camera, Quality, RenderSettings, Solid, deg};

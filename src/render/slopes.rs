@@ -76,7 +76,8 @@ impl Known {
         let along = [0, 1, 2].map(|axis| Interval::new(low[axis], high[axis]));
         if let Some(sides) = Sides::of(program, room, along) {
             let jumps = sides.creases.iter().any(|crease| crease.jumps);
-            let all = |way: fn(&Slopes) -> bool| !jumps && sides.all.iter().all(|(_, slopes)| way(slopes));
+            let known = sides.are_all_known() && !jumps;
+            let all = |way: fn(&Slopes) -> bool| known && sides.all.iter().all(|(_, slopes)| way(slopes));
             let (rises, falls) = (all(|slopes| slopes.rises), all(|slopes| slopes.falls));
             let sides = (!rises && !falls).then(|| Arc::new(sides));
             return Known { slopes: Slopes { rises, falls, ..Slopes::ANY }, sides };
@@ -130,7 +131,13 @@ impl Sides {
                 sides.all.push((side, slopes));
             }
         }
+        sides.are_one_way &= sides.are_all_known();
         Some(sides)
+    }
+
+    /// Whether there is no side without a corner, as between parallel planes.
+    fn are_all_known(&self) -> bool {
+        self.all.len() == 1 << self.creases.len()
     }
 
     /// The side that a point is on.

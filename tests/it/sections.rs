@@ -56,7 +56,7 @@ fn a_section_has_the_normal_of_the_plane_and_the_paint_of_what_it_passes() {
         // The far wall of the bore faces the front as well where it is farthest; nothing is above.
         assert_eq!(at(1.5, 1.3), [0; 4]);
 
-        // With light from behind the viewer's shoulder only, matt paint is as bright as its colour.
+        // A section is as bright as a board of that colour that faces the same way.
         let look = RenderSettings { transfer: Transfer::Srgb, style: Style::Studio, ..settings(quality) };
         let image = scene.render(&front(), &look).unwrap();
         let plain = |color: [u8; 3]| {
@@ -121,6 +121,11 @@ fn nothing_is_seen_on_the_removed_side_and_depths_are_right() {
     let hit = twice.first_hit(DVec3::new(5.0, 1.5, 0.0), -DVec3::X).unwrap();
     assert_eq!((hit.owner, hit.normal), (0, DVec3::X));
     near(hit.distance, 5.0, 1e-6);
+    // A section shows the solid's parts, also close to a section that is painted.
+    let painted = pinned().scene().unwrap().cut(&Plane::xz(0.0), Some(Paint::from([30, 160, 60])), &Run::default());
+    let through = painted.unwrap().cut(&Plane::yz(0.0), None, &Run::default()).unwrap();
+    let hit = through.first_hit(DVec3::new(5.0, 0.05, 0.3), -DVec3::X).unwrap();
+    assert_eq!((hit.owner, hit.normal), (2, DVec3::X));
 }
 
 #[test]

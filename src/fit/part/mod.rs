@@ -79,7 +79,7 @@ use crate::geom::{Mesh, PointCloud};
 ///      .-----------------.         + box 1               60 × 40 × 8
 ///     /   ()         () /|         − cut cylinder 1      ⌀ 6, through
 ///    /                 / /    →    − cut cylinder 2      ⌀ 6, through
-///   '-----------------' /          IoU 1.000, 23 parameters, genus 2
+///   '-----------------' /          IoU 1.000, 20 parameters, genus 2
 ///   '-----------------''
 /// ```
 ///

@@ -96,7 +96,8 @@ impl PartFit {
     /// The numbers that were changed: to round ones, in millimetres or in binary fractions of an
     /// inch, whichever makes more of the part's numbers short, by no more than the vertices leave
     /// open; and cuts that ended in the open, or in the face that they go through, which were
-    /// lengthened.
+    /// lengthened. Of a part from points, cuts that go through but for a skin are lengthened without
+    /// an entry.
     #[must_use]
     pub fn snaps(&self) -> &[Snap] {
         &self.snaps
@@ -227,7 +228,7 @@ impl PartFit {
         self.topology
     }
 
-    /// Those of the mesh.
+    /// Those of the mesh; of points they are not known, and the genus is `None`.
     #[must_use]
     pub fn topology_of_input(&self) -> Topology {
         self.topology_of_input
@@ -240,8 +241,8 @@ impl PartFit {
         &self.unexplained
     }
 
-    /// How long the stages of the recovery took: of all that is here this only is another each
-    /// time.
+    /// How long the stages of the recovery took. Unlike the rest of the result, it differs from run
+    /// to run.
     #[must_use]
     pub fn times(&self) -> PartTimes {
         self.times

@@ -19,18 +19,6 @@ type With = fn(&PointCloud, &FitSettings, &Run) -> Result<Fit, FitError>;
 
 const KINDS: [With; 3] = [superellipsoid_with, supershape_with, deformed_with];
 
-fn star() -> Shaped {
-    Shaped {
-        m: 5,
-        n: [1.3, 1.1, 1.1],
-        m2: 4,
-        n2: [2.0; 3],
-        semi_axes: DVec3::new(1.0, 1.0, 0.6),
-        rotation: DMat3::from_rotation_y(0.7),
-        center: DVec3::X,
-    }
-}
-
 /// A cloud of each kind, some of it strewn.
 fn clouds() -> [PointCloud; 3] {
     let base = Quadric {
@@ -43,7 +31,7 @@ fn clouds() -> [PointCloud; 3] {
     let mut random = Random::new(5);
     let points = [
         cloud(&base, CONDITIONS[3], 6000, &mut random),
-        star().cloud(CONDITIONS[2], 500, &mut random),
+        Shaped::star().cloud(CONDITIONS[2], 500, &mut random),
         bent.cloud(CONDITIONS[1], 500, &mut random),
     ];
     points.map(|points| PointCloud::new(points).unwrap())
@@ -107,8 +95,8 @@ fn cancelling_takes_no_longer_than_50_ms() {
 #[test]
 fn symmetry_numbers_by_sections_are_an_option() {
     let settings = FitSettings { symmetry: Symmetry::Sections, ..FitSettings::default() };
-    let flower = Shaped { m: 6, n: [3.0, 5.0, 5.0], ..star() };
-    for truth in [star(), flower] {
+    let flower = Shaped { m: 6, n: [3.0, 5.0, 5.0], ..Shaped::star() };
+    for truth in [Shaped::star(), flower] {
         let points = PointCloud::new(truth.cloud(CONDITIONS[0], 1500, &mut Random::new(4))).unwrap();
         let fit = supershape(&points, &settings).unwrap();
         let Shape::Supershape(leaf) = fit.shape() else { panic!("{:?}", fit.shape()) };

@@ -70,15 +70,7 @@ fn the_line_is_the_solid() {
 
 #[test]
 fn each_kind_has_its_keys() {
-    let star = Shaped {
-        m: 5,
-        n: [1.3, 1.1, 1.1],
-        m2: 4,
-        n2: [2.0; 3],
-        semi_axes: DVec3::new(1.0, 1.0, 0.6),
-        rotation: DMat3::from_rotation_y(0.7),
-        center: DVec3::X,
-    };
+    let star = Shaped::star();
     let points = star.cloud(CONDITIONS[0], 600, &mut Random::new(1));
     for kind in [Kind::Supershape, Kind::Auto] {
         let found = printed(points.clone(), kind);

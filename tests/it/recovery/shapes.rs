@@ -30,6 +30,19 @@ pub fn radius(angle: f64, m: u32, [n1, n2, n3]: [f64; 3]) -> f64 {
 }
 
 impl Shaped {
+    /// A star of five points.
+    pub fn star() -> Shaped {
+        Shaped {
+            m: 5,
+            n: [1.3, 1.1, 1.1],
+            m2: 4,
+            n2: [2.0; 3],
+            semi_axes: DVec3::new(1.0, 1.0, 0.6),
+            rotation: DMat3::from_rotation_y(0.7),
+            center: DVec3::X,
+        }
+    }
+
     pub fn random(random: &mut Random) -> Shaped {
         let kind = random.below(5);
         // Exponents such that the radii differ by this ratio.

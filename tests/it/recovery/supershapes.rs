@@ -89,15 +89,7 @@ fn superellipsoids_stay_superellipsoids() {
 
 #[test]
 fn a_rational_start_leads_to_the_same_star() {
-    let truth = Shaped {
-        m: 5,
-        n: [1.3, 1.1, 1.1],
-        m2: 4,
-        n2: [2.0; 3],
-        semi_axes: DVec3::new(1.0, 1.0, 0.6),
-        rotation: DMat3::from_rotation_y(0.7),
-        center: DVec3::X,
-    };
+    let truth = Shaped::star();
     for start in [Start::Exact, Start::Rational { tolerance: 0.1 }, Start::Rational { tolerance: 1e-6 }] {
         let settings = FitSettings { start, ..FitSettings::default() };
         let (is_right, overlap, _) = recovered(&truth, CONDITIONS[0], &settings, &mut Random::new(2));
