@@ -49,7 +49,7 @@
 //! | thickness | a solid | [`Solid::thickness`] | that of a facet |
 //! | thin walls and gaps that a mesh may lose | a solid | [`Solid::thin_features`] | conservative |
 //! | clearance | two solids | [`Solid::clearance`] | the tolerance that it tells |
-//! | overlap | two solids | [`Solid::clearance`] | depth to a hundredth and the tolerance, volume to an error that it tells |
+//! | overlap | two solids | [`Solid::clearance`] | depth and volume to errors that it tells |
 //! | distance, nearest point | a solid | [`closest_surface_point`](Solid::closest_surface_point) | 10⁻⁹ of the size |
 //! | deviations | a scan and a solid | [`fit::inspect`](crate::fit::inspect()) | that of the nearest points |
 //!

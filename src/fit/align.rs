@@ -153,7 +153,7 @@ impl Align<'_> {
         Ok(self.normal(pose, CLOSE * self.size, run)?.cost / self.points.len() as f64)
     }
 
-    /// By the median of the nearer half of the points: outliers are the other one at most.
+    /// By the median: right while less than half of the points are outliers.
     pub(super) fn noise(&self, pose: Pose, run: &Run) -> Result<f64, Cancelled> {
         let mut sizes: Vec<f64> = self.terms(pose, run)?.iter().map(|r| r.0.abs()).collect();
         Ok((NORMAL * median(&mut sizes)).max(1e-9 * self.size))

@@ -1,6 +1,7 @@
 //! Why there is no fit.
 
 use crate::error::{CameraError, ImageError, PointCloudError};
+use crate::eval::CompileError;
 use crate::{Cancelled, SolidError};
 
 /// What is missing for a fit, or was in its way.
@@ -118,4 +119,13 @@ pub enum FitError {
     /// The run was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+impl From<CompileError> for FitError {
+    fn from(error: CompileError) -> FitError {
+        match error {
+            CompileError::Solid(error) => error.into(),
+            CompileError::Cancelled(cancelled) => cancelled.into(),
+        }
+    }
 }

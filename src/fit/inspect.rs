@@ -18,7 +18,7 @@ use super::error::FitError;
 use super::feet::{Foot, feet};
 use super::linear::{median, quantile, solved};
 use super::solve::NORMAL;
-use crate::distance::compiled;
+use crate::distance::compiled_with;
 use crate::eval::Owner;
 use crate::geom::PointCloud;
 use crate::{Run, Solid};
@@ -114,7 +114,7 @@ pub fn inspect_with(solid: &Solid, cloud: &PointCloud, run: &Run) -> Result<Devi
         return Err(FitError::TooFew { kind: "comparison", points: 0, parameters: 0, needed: 1 });
     }
     check_extent(cloud)?;
-    let programs = compiled(solid)?;
+    let programs = compiled_with(solid, &Run { progress: None, ..run.clone() })?;
     let program = &programs.surface;
     let feet = run.install(|| feet(program, cloud.positions(), &run))?;
     let mut by_leaf: BTreeMap<u32, Vec<usize>> = BTreeMap::new();

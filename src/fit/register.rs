@@ -24,7 +24,7 @@ use super::linear::{Principal, median};
 use super::local::local;
 use super::random::Random;
 use super::weighted::Weighted;
-use crate::distance::compiled;
+use crate::distance::compiled_with;
 use crate::eval::Program;
 use crate::geom::PointCloud;
 use crate::{Cancelled, CellSize, MeshSettings, Run, Solid};
@@ -44,6 +44,9 @@ const FEWER: usize = 120;
 
 /// A pose is as good as the noise where its deviation is below this times that of local planes.
 const GOOD: f64 = 1.1;
+
+/// Planes are told from each other down to this part of the size.
+const ROUGHNESS: f64 = 1e-8;
 
 /// How many of all starts are taken further, and of these again.
 const KEPT: [usize; 2] = [12, 4];
@@ -77,7 +80,9 @@ pub struct Registration {
     pub translation: DVec3,
     /// Lengths of the scan over those of the solid; 1 unless it was asked for.
     pub scale: f64,
-    /// The standard deviation of the points that fit, in length units of the scan.
+    /// The standard deviation of the points that fit, in length units of the scan. By
+    /// [`Cost::Eq15`] it is that of the field over its steepness, which cannot be compared with
+    /// `roughness`.
     pub noise: f64,
     /// The standard deviation of the scan's dense points from planes through their neighbours, in
     /// length units of the scan: it has the noise in it, and some curvature. Where `noise` is well
@@ -155,8 +160,9 @@ pub fn register_with(
     }
     check_extent(cloud)?;
     check_depth(cloud.positions())?;
-    let programs = compiled(solid)?;
-    let weighted = if settings.cost == Cost::Eq15 { Some(Weighted::of(solid)?) } else { None };
+    let quiet = Run { progress: None, ..run.clone() };
+    let programs = compiled_with(solid, &quiet)?;
+    let weighted = if settings.cost == Cost::Eq15 { Some(Weighted::of(solid, &quiet)?) } else { None };
     let model = Model::of(&programs.surface, weighted, solid, settings.scale, &run)?;
     run.install(|| model.register(cloud, settings, &run))
 }
@@ -220,8 +226,10 @@ impl Model<'_> {
         let all = cloud.positions();
         let more: Vec<DVec3> = random.chosen(all.len(), MORE).into_iter().map(|i| all[i]).collect();
         let dense: Vec<DVec3> = dense(&more).kept.iter().map(|i| more[*i]).collect();
-        let roughness = local(&dense, None, &mut random).rough;
         let frame = Principal::of(dense.iter().copied());
+        // Exact points of a plane have none, and residuals are not below rounding.
+        let least = ROUGHNESS * frame.variances.iter().sum::<f64>().sqrt();
+        let roughness = local(&dense, None, &mut random).rough.max(least);
         let (last, on) = (self.align(&more, true), self.align(&dense, true));
         let mut pose = self.search(self.starts(&frame), &more, run)?;
         let mut noise = on.noise(pose, run)?;

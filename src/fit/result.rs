@@ -123,7 +123,8 @@ impl Fit {
 
     /// How well the fit explains the points that were searched, each parameter at its price
     /// (Schwarz's criterion): ln L − p/2·ln n of n points and p parameters. Of several fits of one
-    /// cloud with the same settings the largest is the best; alone it means nothing.
+    /// cloud with the same settings the largest is the best; alone it means nothing. Where a
+    /// [table](SearchReport::table) was taken out it cannot be compared: other kinds know of none.
     #[must_use]
     pub fn criterion(&self) -> f64 {
         self.criterion

@@ -16,19 +16,31 @@ use glam::{DAffine3, DVec3};
 
 use super::error::FitError;
 use super::paper::{both, either};
-use crate::distance::compiled;
+use crate::distance::compiled_with;
 use crate::eval::Compiled;
 use crate::mesh::{Slope, Slopes};
 use crate::{Cancelled, Form, Operation, Run, Solid, Superellipsoid, Supershape};
 
-/// A solid by its weighted parts.
-pub(super) enum Weighted {
+/// A solid by its weighted parts, operands before what is made of them.
+pub(super) struct Weighted(Vec<Step>);
+
+enum Step {
     /// A leaf, and what its values are multiplied by.
     Leaf(Arc<Compiled>, f64),
-    /// Operands joined.
-    Join(Operation, Vec<Weighted>),
-    /// What is outside.
-    Outside(Box<Weighted>),
+    /// The last two are joined.
+    Join(Operation),
+    /// What is outside of the last one.
+    Outside,
+}
+
+/// What is left to do, the next at the end.
+enum Work<'a> {
+    /// A solid that is moved, with the product of the semi-axes that it is weighted by, its own if
+    /// none is given.
+    Visit(&'a Solid, DAffine3, Option<f64>),
+    /// The same for what is joined to the operand before it.
+    Others(Operation, &'a [Solid], DAffine3, Option<f64>),
+    Do(Step),
 }
 
 /// The product of a leaf's semi-axes, and its middle; none of what has no ends.
@@ -47,76 +59,93 @@ fn size(leaf: &Solid) -> Result<Option<(f64, DVec3)>, FitError> {
 }
 
 impl Weighted {
-    pub(super) fn of(solid: &Solid) -> Result<Weighted, FitError> {
-        Ok(Weighted::placed(solid, DAffine3::IDENTITY, None)?.0)
-    }
-
-    /// Of a solid that is moved; with the product of the semi-axes that it is weighted by, its own
-    /// if none is given.
-    fn placed(solid: &Solid, map: DAffine3, given: Option<f64>) -> Result<(Weighted, f64), FitError> {
-        match solid.form() {
-            Form::Affine { operand, map: own, .. } => Weighted::placed(operand, map * own, given),
-            Form::Name { operand, .. } | Form::Paint { operand, .. } => Weighted::placed(operand, map, given),
-            Form::Complement { operand } => {
-                let (inside, product) = Weighted::placed(operand, map, given)?;
-                Ok((Weighted::Outside(Box::new(inside)), product))
-            }
-            Form::Join { operation, operands: [first, others @ ..], .. }
-                if operation != Operation::SymmetricDifference =>
-            {
-                let (first, product) = Weighted::placed(first, map, given)?;
-                let weight = if operation == Operation::Intersection { Some(product) } else { given };
-                let mut all = vec![first];
-                for other in others {
-                    all.push(Weighted::placed(other, map, weight)?.0);
+    pub(super) fn of(solid: &Solid, run: &Run) -> Result<Weighted, FitError> {
+        let mut steps = Vec::new();
+        // The products of what is found and not joined yet: of a join that of its first leaf.
+        let mut products = Vec::new();
+        let mut works = vec![Work::Visit(solid, DAffine3::IDENTITY, None)];
+        while let Some(work) = works.pop() {
+            run.check()?;
+            match work {
+                Work::Visit(solid, map, given) => match solid.form() {
+                    Form::Affine { operand, map: own, .. } => works.push(Work::Visit(operand, map * own, given)),
+                    Form::Name { operand, .. } | Form::Paint { operand, .. } => {
+                        works.push(Work::Visit(operand, map, given));
+                    }
+                    Form::Complement { operand } => {
+                        works.extend([Work::Do(Step::Outside), Work::Visit(operand, map, given)]);
+                    }
+                    Form::Join { operation, operands: [first, others @ ..], .. }
+                        if operation != Operation::SymmetricDifference =>
+                    {
+                        works.push(Work::Others(operation, others, map, given));
+                        works.push(Work::Visit(first, map, given));
+                    }
+                    _ => {
+                        let (step, product) = leaf(solid, map, given, run)?;
+                        steps.push(step);
+                        products.push(product);
+                    }
+                },
+                Work::Others(operation, others, map, given) => {
+                    let weight = if operation == Operation::Intersection { products.last().copied() } else { given };
+                    for other in others.iter().rev() {
+                        works.extend([Work::Do(Step::Join(operation)), Work::Visit(other, map, weight)]);
+                    }
                 }
-                Ok((Weighted::Join(operation, all), product))
-            }
-            _ => {
-                let leaf = solid.affine(map);
-                let programs = compiled(&leaf)?;
-                let own = size(solid)?;
-                let scale = map.matrix3.determinant().abs();
-                let product = given.or(own.map(|(product, _)| product * scale)).unwrap_or(1.0);
-                let middle = match own {
-                    Some((_, middle)) => leaf.value(map.transform_point3(middle))?,
-                    None => 0.0,
-                };
-                // The middle of a ring is outside of it, and what has no ends has none.
-                let middle = if middle > 0.0 { middle } else { product.cbrt() };
-                Ok((Weighted::Leaf(programs, product.sqrt() / middle), product))
+                Work::Do(step) => {
+                    if matches!(step, Step::Join(_)) {
+                        products.pop();
+                    }
+                    steps.push(step);
+                }
             }
         }
+        Ok(Weighted(steps))
     }
 
     /// F and its gradient at points.
     pub(super) fn at(&self, points: &[DVec3], run: &Run) -> Result<Vec<Slope>, Cancelled> {
-        match self {
-            Weighted::Leaf(programs, factor) => {
-                let mut found = Slopes { program: &programs.surface, precision: 0.0 }.at(points, run)?;
-                for slope in &mut found {
-                    slope.value *= factor;
-                    slope.gradient *= *factor;
+        let mut found: Vec<Vec<Slope>> = Vec::new();
+        for step in &self.0 {
+            let next = match step {
+                Step::Leaf(programs, factor) => {
+                    let mut own = Slopes { program: &programs.surface, precision: 0.0 }.at(points, run)?;
+                    for slope in &mut own {
+                        slope.value *= factor;
+                        slope.gradient *= *factor;
+                    }
+                    own
                 }
-                Ok(found)
-            }
-            Weighted::Outside(inside) => {
-                let found = inside.at(points, run)?;
-                Ok(found.into_iter().map(|s| Slope { value: -s.value, gradient: -s.gradient }).collect())
-            }
-            Weighted::Join(operation, operands) => {
-                let mut all: Option<Vec<Slope>> = None;
-                for operand in operands {
-                    let next = operand.at(points, run)?;
-                    all = Some(match all {
-                        None => next,
-                        Some(all) => all.iter().zip(&next).map(|(a, b)| joined(*operation, *a, *b)).collect(),
-                    });
+                Step::Outside => {
+                    let inside = found.pop().unwrap_or_default();
+                    inside.into_iter().map(|s| Slope { value: -s.value, gradient: -s.gradient }).collect()
                 }
-                Ok(all.unwrap_or_default())
-            }
+                Step::Join(operation) => {
+                    let (b, a) = (found.pop().unwrap_or_default(), found.pop().unwrap_or_default());
+                    a.iter().zip(&b).map(|(a, b)| joined(*operation, *a, *b)).collect()
+                }
+            };
+            found.push(next);
         }
+        Ok(found.pop().unwrap_or_default())
     }
+}
+
+/// A moved leaf, weighted by a product of semi-axes or its own, and that product.
+fn leaf(solid: &Solid, map: DAffine3, given: Option<f64>, run: &Run) -> Result<(Step, f64), FitError> {
+    let leaf = solid.affine(map);
+    let programs = compiled_with(&leaf, &Run { progress: None, ..run.clone() })?;
+    let own = size(solid)?;
+    let scale = map.matrix3.determinant().abs();
+    let product = given.or(own.map(|(product, _)| product * scale)).unwrap_or(1.0);
+    let middle = match own {
+        Some((_, middle)) => leaf.value(map.transform_point3(middle))?,
+        None => 0.0,
+    };
+    // The middle of a ring is outside of it, and what has no ends has none.
+    let middle = if middle > 0.0 { middle } else { product.cbrt() };
+    Ok((Step::Leaf(programs, product.sqrt() / middle), product))
 }
 
 fn joined(operation: Operation, a: Slope, b: Slope) -> Slope {
@@ -141,7 +170,7 @@ mod tests {
         let shift = DVec3::new(1.0, 0.5, -0.2);
         let solid =
             Solid::from(a).union((Solid::from(b) - Solid::from(hole)).scale(1.5).translate(shift), RFunction::MIN_MAX);
-        let weighted = Weighted::of(&solid).unwrap();
+        let weighted = Weighted::of(&solid, &Run::default()).unwrap();
         let points: Vec<DVec3> =
             (0..60).map(|i| f64::from(i) * DVec3::new(0.031, 0.047, 0.023) + DVec3::new(-1.0, 0.1, -0.7)).collect();
         let found = weighted.at(&points, &Run::default()).unwrap();
@@ -164,5 +193,15 @@ mod tests {
                 assert!((slope.gradient.dot(axis) - wanted).abs() < 1e-4 * (1.0 + wanted.abs()), "{wanted} {slope:?}");
             }
         }
+    }
+
+    #[test]
+    fn many_operations_take_no_stack() {
+        let mut solid = Solid::sphere(1.0);
+        for i in 0..100_000 {
+            solid = if i % 1000 == 0 { solid.translate([1e-6, 0.0, 0.0]) } else { solid.named("again") };
+        }
+        let weighted = Weighted::of(&solid, &Run::default()).unwrap();
+        assert!(weighted.at(&[DVec3::ZERO], &Run::default()).unwrap()[0].value > 0.99);
     }
 }

@@ -137,8 +137,7 @@ fn depth_and_volume_of_an_overlap_are_told() {
 
 #[test]
 fn parts_that_touch_along_faces_and_rounds_do_not_overlap() {
-    // A pin that fills its bore, a nut on its bolt without play, and gears that share a pitch
-    // point.
+    // A pin that fills its bore, a ball on a plate, and two balls.
     let bore = Solid::cuboid([12.0, 12.0, 8.0]) - Solid::cylinder(3.0, 10.0);
     let found = clearance(&Solid::cylinder(3.0, 8.0), &bore);
     assert!(!found.overlaps && found.distance <= found.tolerance && found.tolerance < 0.06, "{found:?}");
@@ -147,4 +146,12 @@ fn parts_that_touch_along_faces_and_rounds_do_not_overlap() {
     assert!(!found.overlaps && found.distance <= found.tolerance && found.tolerance < 0.06, "{found:?}");
     let found = clearance(&ball, &ball.rotate_x(deg(20.0)).translate([4.0, 0.0, 0.0]));
     assert!(!found.overlaps && found.distance <= found.tolerance && found.tolerance < 0.06, "{found:?}");
+}
+
+#[test]
+fn a_foil_through_a_block_overlaps() {
+    let foil = Solid::cuboid([30.0, 30.0, 0.01]).rotate_x(deg(20.0)).rotate_z(deg(35.0));
+    let block = Solid::cuboid([20.0; 3]);
+    let found = clearance(&foil, &block);
+    assert!(found.overlaps && found.depth + found.depth_error >= 9.0, "{found:?}");
 }

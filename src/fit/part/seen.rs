@@ -28,8 +28,8 @@ const NEAREST: usize = 12;
 const WITHIN: [f64; 2] = [2.0, 3.0];
 const FACING: f64 = 0.4;
 
-/// The share of each leaf's part of the surface that is seen: all of a mesh, nothing where there is
-/// none.
+/// The share of each leaf's part of the surface that is seen: all of a mesh, nothing of a leaf that
+/// makes no surface.
 pub(super) fn seen(leaves: &[(bool, Leaf)], samples: &Samples, run: &Run) -> Result<Vec<f64>, FitError> {
     let all = vec![1.0; leaves.len()];
     let Some(solid) = tree(leaves.iter().map(|(adds, leaf)| (*adds, leaf.solid()))) else { return Ok(all) };
@@ -41,7 +41,7 @@ pub(super) fn seen(leaves: &[(bool, Leaf)], samples: &Samples, run: &Run) -> Res
     let mesh = match solid.mesh_with(&settings, &Run { progress: None, ..run.clone() }) {
         Ok(mesh) => mesh,
         Err(MeshingError::Cancelled(cancelled)) => return Err(cancelled.into()),
-        Err(_) => return Ok(all),
+        Err(error) => return Err(FitError::Meshing { what: error.to_string() }),
     };
     let facet = |t: &[u32; 3]| {
         let [a, b, c] = t.map(|i| mesh.positions()[i as usize].as_dvec3());

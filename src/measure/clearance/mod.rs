@@ -46,9 +46,12 @@ pub struct Clearance {
     /// Whether the solids overlap: whether the surface of one goes deeper into the other than the
     /// surfaces are exact.
     pub overlaps: bool,
-    /// How deep a point of the surface of one is below the surface of the other, at most, to a
-    /// hundredth and the `tolerance`, in length units; 0 if they do not overlap.
+    /// How deep a point of the surface of one is below the surface of the other: the deepest that
+    /// was found, in length units; 0 if they do not overlap.
     pub depth: f64,
+    /// How much deeper there may be one: a hundredth of the depth and the `tolerance`, or more
+    /// where it is as deep all over.
+    pub depth_error: f64,
     /// The volume that both have in common, in cubic length units; 0 if they do not overlap.
     pub volume: f64,
     /// How far that may be off: a fiftieth of it, or more where it is thin all over.
@@ -132,6 +135,7 @@ impl Solid {
                             points: [point; 2],
                             overlaps: true,
                             depth: 0.0,
+                            depth_error: 0.0,
                             volume: 0.0,
                             volume_error: 0.0,
                         };
@@ -158,8 +162,9 @@ impl Solid {
             points.reverse();
         }
         let tolerance = ((distance - least).max(0.0) + slack).max(deepest);
-        let [depth, volume, volume_error] = [0.0; 3];
-        Ok(Some(Clearance { distance, tolerance, points, overlaps: false, depth, volume, volume_error }))
+        let [depth, depth_error, volume, volume_error] = [0.0; 4];
+        let overlaps = false;
+        Ok(Some(Clearance { distance, tolerance, points, overlaps, depth, depth_error, volume, volume_error }))
     }
 
     /// With the depth and the volume of what both have in common.
@@ -171,12 +176,15 @@ impl Solid {
         run: &Run,
     ) -> Result<Clearance, PrepareError> {
         let slack = common.tolerance;
-        let deepest = f64::max(depth(from, to, slack, run)?, depth(to, from, slack, run)?);
+        let depths = [depth(from, to, slack, run)?, depth(to, from, slack, run)?];
+        let deepest = depths.iter().fold(slack, |most, [depth, _]| most.max(*depth));
+        let at_most = depths.iter().fold(slack, |most, [depth, more]| most.max(depth + more));
         let both = self & other;
         let programs = compiled_with(&both, &Run { progress: None, ..run.clone() })?;
         let found = integral(&programs.surface, &both.finite_bounds()?, VOLUME, run)?;
         Ok(Clearance {
-            depth: deepest.max(slack),
+            depth: deepest,
+            depth_error: at_most - deepest + slack,
             volume: found.moments.volume,
             volume_error: found.volume_error,
             ..common

@@ -17,8 +17,9 @@ use super::piece::Piece;
 use super::{AT_ONCE, Side, distance};
 use crate::{Bounds, Cancelled, Run};
 
-/// How far inside a solid a point of it is looked for, in accuracies of the surfaces.
-const INSIDE: f64 = 4.0;
+/// How far inside a solid points of it are looked for, in accuracies of the surfaces: of thin sheets
+/// only those that are close to the surface are inside.
+const INSIDE: [f64; 4] = [4.0, 1.0, 0.25, 0.06];
 
 /// After so many pieces the work ends, with what is known then.
 const MOST: usize = 1 << 17;
@@ -50,10 +51,11 @@ pub(super) fn entry(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
     let common = |p: DVec3| {
         let normal = from.program.gradient(p).1.normalize_or_zero();
         [asked_for, slack].into_iter().find_map(|near| {
-            let inner = p + INSIDE * near * normal;
-            let is_common = from.program.value(inner) > 0.0 && to.program.value(inner) > 0.0;
+            let inner = INSIDE.map(|by| p + by * near * normal);
             // Nearer to the other surface than that, they may as well touch.
-            is_common.then_some(inner).filter(|p| distance(others, *p) > near)
+            let is_common =
+                |p: &DVec3| from.program.value(*p) > 0.0 && to.program.value(*p) > 0.0 && distance(others, *p) > near;
+            inner.into_iter().find(is_common)
         })
     };
     // Beyond the other's box, below its surface, undecided.
@@ -88,7 +90,7 @@ pub(super) fn entry(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
         asked += 4 * open.len();
         // No corner is deeper than what counts.
         let is_small = |piece: &Piece| piece.longest_side() <= slack || asked > MOST;
-        let reach = |piece: &Piece| (INSIDE + 1.0) * slack + piece.longest_side();
+        let reach = |piece: &Piece| (INSIDE[0] + 1.0) * slack + piece.longest_side();
         left = open.iter().filter(|piece| is_small(piece)).map(reach).fold(left, f64::max);
         open.retain(|piece| !is_small(piece));
         pieces = open.iter().flat_map(|piece| piece.divided(patches, |_| 0.0)).collect();
@@ -96,8 +98,9 @@ pub(super) fn entry(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
     Ok(Entry::AtMost(left))
 }
 
-/// How deep the surface of `from` goes into the other solid at most; at least 0.
-pub(super) fn depth(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<f64, Cancelled> {
+/// How deep the surface of `from` goes into the other solid: the deepest point that was found, at
+/// least 0, and how much deeper there may be one.
+pub(super) fn depth(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<[f64; 2], Cancelled> {
     let (patches, others) = (&from.surface.patches, &to.surface.patches);
     let bounds = others.bounds();
     let below = |p: DVec3| {
@@ -141,14 +144,15 @@ pub(super) fn depth(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
         best = pieces.iter().flat_map(|piece| piece.numbers).fold(best, f64::max);
         let enough = best + slack.max(RELATIVE * best);
         // Depths change by as much as points are apart at most.
-        let may_be_deeper = |piece: &Piece| {
+        let at_most = |piece: &Piece| {
             let corner = piece.numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            corner + piece.longest_side() / 3f64.sqrt() + piece.off(patches) > enough
+            corner + piece.longest_side() / 3f64.sqrt() + piece.off(patches)
         };
-        pieces.retain(may_be_deeper);
+        pieces.retain(|piece| at_most(piece) > enough);
         asked += 4 * pieces.len();
         if pieces.is_empty() || asked > DEPTHS {
-            return Ok(best);
+            let deepest = pieces.iter().map(at_most).fold(enough, f64::max);
+            return Ok([best, deepest - best]);
         }
         let mut next = Vec::with_capacity(4 * pieces.len());
         for chunk in pieces.chunks(16 * AT_ONCE) {

@@ -88,10 +88,14 @@ fn right(count: u64, seed: u64, spoilt: Spoilt) -> [usize; 2] {
 
 #[test]
 fn parts_are_found_from_any_rotation() {
-    assert!(right(2, 40, Spoilt { noise: 0.002, ..Spoilt::default() })[0] == 2);
-    assert!(right(3, 80, Spoilt { noise: 0.01, strewn: 0.2, ..Spoilt::default() })[0] >= 2);
-    assert!(right(2, 120, Spoilt { noise: 0.005, strewn: 0.1, scaled: true, half: false })[0] >= 1);
-    assert!(right(3, 160, Spoilt { noise: 0.005, half: true, ..Spoilt::default() })[0] >= 2);
+    let check = |count, seed, spoilt, least| {
+        let [found, untold] = right(count, seed, spoilt);
+        assert!(found >= least && untold == 0, "{found} of {count}, {untold} wrong without saying so");
+    };
+    check(2, 40, Spoilt { noise: 0.002, ..Spoilt::default() }, 2);
+    check(3, 80, Spoilt { noise: 0.01, strewn: 0.2, ..Spoilt::default() }, 2);
+    check(2, 120, Spoilt { noise: 0.005, strewn: 0.1, scaled: true, half: false }, 1);
+    check(3, 160, Spoilt { noise: 0.005, half: true, ..Spoilt::default() }, 2);
 }
 
 #[test]
@@ -107,7 +111,7 @@ fn sixty_parts_a_condition() {
     let missed = rows.map(|(name, spoilt, least)| {
         let [found, untold] = right(60, 1000, spoilt);
         println!("{name}: {found} of 60, {untold} wrong without saying so");
-        found < least
+        found < least || untold > 0
     });
     assert_eq!(missed, [false; 4]);
 }
@@ -126,8 +130,7 @@ fn the_published_field_registers_too() {
         let cloud = scan(solid, pose, Spoilt { noise: 0.001, ..Spoilt::default() }, &mut random);
         let found = register(solid, &cloud, &settings).unwrap();
         assert!(found.cost < 0.1, "{}", found.cost);
-        // The box looks the same turned over.
-        assert!(off(solid, pose, &found) < 0.03 || seed == 2, "{}", off(solid, pose, &found));
+        assert!(off(solid, pose, &found) < 0.03, "{}", off(solid, pose, &found));
     }
     let cloud = PointCloud::new(vec![DVec3::X; 50]).unwrap();
     let error = register(&ball, &cloud, &RegisterSettings { cost: Cost::Radial, ..settings }).unwrap_err();
@@ -176,4 +179,19 @@ fn threads_and_cancelling() {
     assert!(matches!(register(&part, &few, &settings), Err(FitError::TooFew { .. })));
     let flat = PointCloud::new((0..50).map(|i| DVec3::new(f64::from(i), f64::from(i * i % 7), 0.0)).collect()).unwrap();
     assert!(matches!(register(&part, &flat, &settings), Err(FitError::Flat { .. })));
+}
+
+/// A scan without noise is one that fits.
+#[test]
+fn exact_points_of_planes_are_no_failure() {
+    let part = Solid::cuboid([3.0, 2.0, 1.0]) - Solid::cuboid([1.0, 1.0, 2.0]).translate([0.7, 0.4, 0.0]);
+    let grid = |n: u32| DVec3::new(f64::from(n % 31), f64::from(n / 31 % 31), f64::from(n / 961)) / 30.0 * 4.0 - 2.0;
+    let on = |p: &DVec3| part.value(*p).unwrap().abs() < 1e-12;
+    let points: Vec<DVec3> = (0..31 * 31 * 31)
+        .map(grid)
+        .map(|p| p.clamp(DVec3::new(-1.5, -1.0, -0.5), DVec3::new(1.5, 1.0, 0.5)))
+        .filter(on)
+        .collect();
+    let found = register(&part, &PointCloud::new(points).unwrap(), &RegisterSettings::default()).unwrap();
+    assert!(found.noise <= 1.1 * found.roughness, "{} {}", found.noise, found.roughness);
 }
