@@ -19,9 +19,8 @@ use crate::solid::Node;
 use crate::{Bounds, Cancelled, Mesh, RFunction, Run, Solid};
 use rvachev_field::Patches;
 
-/// So many boxes are meshed, and so many more for each leaf, and boxes in these.
+/// So many boxes are meshed, and boxes in these.
 const BOXES: usize = 512;
-const BOXES_A_LEAF: usize = 4;
 const DEEPEST: u32 = 2;
 
 /// Cells along a box, and how often their patches are split.
@@ -57,9 +56,8 @@ pub(super) fn mend(
 fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64, run: &Run) -> Result<(), Cancelled> {
     let Cells { size, depth } = cells;
     let spots = std::mem::take(&mut quilt.spots);
-    let most = BOXES + BOXES_A_LEAF * slopes.program.leaf_count();
-    let groups = if depth == 0 { Vec::new() } else { groups(&spots, tolerance, most) };
-    if groups.is_empty() || groups.len() > most {
+    let groups = if depth == 0 { Vec::new() } else { groups(&spots, tolerance) };
+    if groups.is_empty() || groups.len() > BOXES {
         quilt.take_spots(spots);
         return Ok(());
     }
@@ -87,9 +85,8 @@ fn mend_of(cells: Cells, quilt: &mut Quilt, slopes: &Slopes<'_>, tolerance: f64,
     Ok(())
 }
 
-/// Boxes about spots, apart from each other, and the numbers of the spots in each; some of them if
-/// there are too many.
-fn groups(spots: &[Spot], tolerance: f64, most: usize) -> Vec<(Bounds, Vec<usize>)> {
+/// Boxes about spots, apart from each other, and the numbers of the spots in each.
+fn groups(spots: &[Spot], tolerance: f64) -> Vec<(Bounds, Vec<usize>)> {
     let around = |spot: &Spot| {
         let bounds = spot.patch.bounds();
         bounds.inflate(MARGIN * bounds.longest_side() + 2.0 * spot.off + 8.0 * tolerance)
@@ -108,7 +105,7 @@ fn groups(spots: &[Spot], tolerance: f64, most: usize) -> Vec<(Bounds, Vec<usize
             numbers.append(&mut others);
         }
         groups.push((bounds, numbers));
-        if groups.len() > most {
+        if groups.len() > BOXES {
             break;
         }
     }
