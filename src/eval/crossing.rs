@@ -197,7 +197,17 @@ mod tests {
     /// A formula that jumps.
     #[cfg(feature = "formula")]
     fn steps() -> Solid {
-        let text = "x var-x\nz var-z\nh const 0.5\nt sub x z\nm mod t h\nf floor x\na add m f\nout sub z a";
+        formula("x var-x\nz var-z\nh const 0.5\nt sub x z\nm mod t h\nf floor x\na add m f\nout sub z a")
+    }
+
+    /// One with more jumps than it tells of.
+    #[cfg(feature = "formula")]
+    fn many_steps() -> Solid {
+        formula("x var-x\nz var-z\nk const 2000\nt mul x k\nf floor t\nc const 0.001\na mul f c\nout sub z a")
+    }
+
+    #[cfg(feature = "formula")]
+    fn formula(text: &str) -> Solid {
         let half = DVec3::splat(1.2);
         Solid::from(crate::Formula::from_vm(text, Bounds::new(-half, half)).expect("the text is a formula"))
     }
@@ -215,8 +225,12 @@ mod tests {
             Solid::superellipsoid([1.0, 0.8, 0.6], 3.0, 0.3).rotate_y(rad(0.3)),
             Solid::superellipsoid([1.0, 0.8, 0.6], 0.3, 3.0) | Solid::sphere(0.3).translate([0.5, 0.5, 0.5]),
             Profile::from(Superpolygon::new(g(5.0, 0.4, 0.5, 0.5), 1.0)).extrude(1.0),
+            // Close to the axis, where cusps are close to each other.
+            Profile::from(Superpolygon::new(g(5.0, 0.4, 0.5, 0.5), 5.0)).column(),
             #[cfg(feature = "formula")]
             steps().rotate_z(rad(0.2)),
+            #[cfg(feature = "formula")]
+            (steps() | many_steps()),
         ];
         let random = |n: u32| {
             f64::from(n.wrapping_mul(2_654_435_769).rotate_left(11).wrapping_mul(2_246_822_519)) / 2f64.powi(32)

@@ -56,8 +56,8 @@ impl Program {
         }
     }
 
-    /// As [`narrow`](Program::narrow), by the boxes of leaves alone: of a region that many leaves
-    /// lie in their ranges tell little more.
+    /// As [`narrow`](Program::narrow), by the boxes of leaves and one value of each: of a region
+    /// that many leaves lie in their ranges tell little more.
     pub(crate) fn narrow_by_boxes(&self, region: &Bounds) -> Region {
         self.region(self.narrow_pass(&Zone::of_bounds(region), true))
     }

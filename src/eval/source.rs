@@ -85,6 +85,10 @@ pub(crate) fn surface(
         return Ok(kept.surface.clone());
     }
     let surface = Arc::new(source.surface(solid, programs, wanted, run)?);
+    // Somebody else may have found it meanwhile: then it is one for all.
+    if let Some(kept) = solid.shelf().find(is_same) {
+        return Ok(kept.surface.clone());
+    }
     solid.shelf().keep(Arc::new(KeptSurface { tolerance, near, surface: surface.clone() }));
     Ok(surface)
 }

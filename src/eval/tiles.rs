@@ -16,7 +16,7 @@ use super::apart::sign;
 use super::compile::Compiled;
 use super::composite::points64;
 use super::source::{DistanceSource, Wanted};
-use super::tiling::{Copy, Key, Tiling};
+use super::tiling::{Key, Representative, Tiling};
 use crate::{Bounds, Dual, Interval, ParamError, Run, Solid};
 use rvachev_field::{AnyField, Chunk, Patches, Placement, SurfaceDistance, VALUE_LIMIT, Zone, steep_slopes};
 #[cfg(feature = "formula")]
@@ -103,7 +103,7 @@ impl Tiles {
 
     /// The tile with a number.
     fn tile(&self, key: Key) -> Tile {
-        let Copy { of, by } = self.tiling.copy(key);
+        let Representative { of, by } = self.tiling.copy(key);
         if let Some(surface) = self.made.read().unwrap_or_else(PoisonError::into_inner).get(&of) {
             return Tile { surface: surface.clone(), by };
         }

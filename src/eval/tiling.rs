@@ -1,5 +1,5 @@
-//! Space divided into tiles that are numbered; those of a surface that repeats are the same after
-//! some steps.
+//! Space divided into tiles that are numbered: of a periodic surface modulo its period lattice, so
+//! that those of a unit cell are all there are.
 
 use glam::{DMat3, DVec3};
 
@@ -20,7 +20,7 @@ pub(super) struct Tiling {
 
 /// A tile that is the same as another one.
 #[derive(Clone, Copy)]
-pub(super) struct Copy {
+pub(super) struct Representative {
     /// The number of that other one, by which the same tiles are known.
     pub(super) of: Key,
     /// How far it is moved from there.
@@ -54,11 +54,11 @@ impl Tiling {
     }
 
     /// The tile that is the same.
-    pub(super) fn copy(&self, key: Key) -> Copy {
-        let Some(counts) = self.counts else { return Copy { of: key, by: DVec3::ZERO } };
+    pub(super) fn copy(&self, key: Key) -> Representative {
+        let Some(counts) = self.counts else { return Representative { of: key, by: DVec3::ZERO } };
         let of = [0, 1, 2].map(|axis| key[axis].rem_euclid(counts[axis]));
         let steps = [0, 1, 2].map(|axis| (key[axis] - of[axis]) as f64);
-        Copy { of, by: self.edges * DVec3::from_array(steps) }
+        Representative { of, by: self.edges * DVec3::from_array(steps) }
     }
 
     /// A box that holds a tile.
@@ -96,7 +96,7 @@ mod tests {
         let tiling = Tiling::new(1.0, Some(period));
         for p in [DVec3::new(0.2, 0.1, 0.3), DVec3::new(100.0, -57.0, 31.0), DVec3::new(-1e6, 2.0, 5.0)] {
             let key = tiling.key(p);
-            let Copy { of, by } = tiling.copy(key);
+            let Representative { of, by } = tiling.copy(key);
             let steps = period.inverse() * by;
             assert!(steps.abs_diff_eq(steps.round(), 1e-9), "{steps}");
             assert_eq!(tiling.key(p - by), of);

@@ -87,8 +87,9 @@ impl Solid {
         let [to_compile, to_measure] = run.stages([0.1, 0.9]);
         let programs = compiled_with(self, &to_compile)?;
         let bounds = self.finite_bounds()?;
-        // A box without extent holds no volume.
-        let report = if bounds.is_empty() || bounds.size().min_element() <= 0.0 {
+        // A box without extent, but for rounding, holds no volume.
+        let rounding = 1e-12 * bounds.min.abs().max(bounds.max.abs()).max_element();
+        let report = if bounds.is_empty() || bounds.size().min_element() <= rounding {
             MeasureReport::empty()
         } else {
             run.install(|| report(self, &programs.surface, tolerance, &to_measure))?

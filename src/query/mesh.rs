@@ -127,14 +127,14 @@ impl Solid {
         }
         // Far from the solid the bounds cut nothing. Where the solid ends before them they are
         // taken away from it: a face that touches it would be an edge of almost no angle.
-        let around = own.inflate(own.size().max_element());
-        let mut knife = given.intersection(&around);
+        let mut knife = given.intersection(&own.inflate(own.size().max_element()));
+        let beyond = part.size().max_element();
         for axis in 0..3 {
             if own.min[axis] >= given.min[axis] - rounding {
-                knife.min[axis] = around.min[axis];
+                knife.min[axis] = own.min[axis] - beyond;
             }
             if own.max[axis] <= given.max[axis] + rounding {
-                knife.max[axis] = around.max[axis];
+                knife.max[axis] = own.max[axis] + beyond;
             }
         }
         if knife.size().max_element() > LARGEST_LENGTH {

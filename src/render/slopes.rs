@@ -123,6 +123,10 @@ impl Sides {
         }
         let mut sides = Sides { creases, all: Vec::new(), are_one_way: true };
         for corner in room.corners() {
+            // On a plane it is not on one side.
+            if sides.creases.iter().any(|crease| is_on(crease, corner)) {
+                continue;
+            }
             let side = sides.number(corner);
             if sides.all.iter().all(|(known, _)| *known != side) {
                 let steepness = program.gradient(corner).1.length();
@@ -152,4 +156,10 @@ impl Sides {
         let side = self.number(p);
         self.all.iter().find(|(known, _)| *known == side).map_or(Slopes::ANY, |(_, slopes)| *slopes)
     }
+}
+
+/// Whether a point is on a plane, as far as rounding tells.
+fn is_on(crease: &Crease, p: DVec3) -> bool {
+    let reach = crease.normal.abs().dot(p.abs()) + crease.offset.abs();
+    (crease.normal.dot(p) - crease.offset).abs() <= 1e-12 * reach
 }

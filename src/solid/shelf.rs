@@ -1,4 +1,4 @@
-//! What is kept for all solids that are equal, and freed with the last of them.
+//! A cache that structurally equal solids share (by structural hash), freed with the last of them.
 //!
 //! ```text
 //!     node --+
@@ -15,6 +15,9 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError, Weak};
 use super::Solid;
 use super::node::Inner;
 
+/// So many things are kept of one solid: those that were last put there or asked for.
+const MOST: usize = 8;
+
 /// Things that are kept; who puts them there knows their types.
 #[derive(Default)]
 pub(crate) struct Shelf(Mutex<Vec<Arc<dyn Any + Send + Sync>>>);
@@ -22,12 +25,21 @@ pub(crate) struct Shelf(Mutex<Vec<Arc<dyn Any + Send + Sync>>>);
 impl Shelf {
     /// The first thing of a type that will do.
     pub(crate) fn find<T: Send + Sync + 'static>(&self, will_do: impl Fn(&T) -> bool) -> Option<Arc<T>> {
-        let things = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        things.iter().filter_map(|thing| thing.clone().downcast::<T>().ok()).find(|thing| will_do(thing))
+        let mut things = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let of = |thing: &Arc<dyn Any + Send + Sync>| thing.clone().downcast::<T>().ok().filter(|thing| will_do(thing));
+        let (at, found) = things.iter().enumerate().find_map(|(at, thing)| Some((at, of(thing)?)))?;
+        // The oldest is the first to go.
+        let thing = things.remove(at);
+        things.push(thing);
+        Some(found)
     }
 
     pub(crate) fn keep<T: Send + Sync + 'static>(&self, thing: Arc<T>) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).push(thing);
+        let mut things = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if things.len() >= MOST {
+            things.remove(0);
+        }
+        things.push(thing);
     }
 }
 
@@ -62,7 +74,8 @@ impl Owners {
 }
 
 impl Solid {
-    /// The shelf of this solid and of all that are equal to it.
+    /// The shelf of this solid and of all that are equal to it; solids that ask for the first time
+    /// at the same moment may each get their own.
     pub(crate) fn shelf(&self) -> &Shelf {
         self.0.shelf.get_or_init(|| {
             let mut hasher = DefaultHasher::new();
@@ -77,7 +90,10 @@ impl Solid {
             };
             let shelf = known.into_iter().find(|(solid, _)| solid == self).map(|(_, shelf)| shelf).unwrap_or_default();
             let owner = Owner { node: Arc::downgrade(&self.0), shelf: Arc::downgrade(&shelf) };
-            OWNERS.lock().unwrap_or_else(PoisonError::into_inner).by_hash.entry(hash).or_default().push(owner);
+            let mut owners = OWNERS.lock().unwrap_or_else(PoisonError::into_inner);
+            let equal = owners.by_hash.entry(hash).or_default();
+            equal.retain(|owner| owner.node.strong_count() > 0);
+            equal.push(owner);
             shelf
         })
     }
@@ -99,6 +115,26 @@ mod tests {
         assert_eq!(b.shelf().find(|n: &u32| *n > 8), None);
         assert_eq!(b.shelf().find(|_: &u64| true), None);
         assert_eq!(a.offset(0.1).shelf().find(|_: &u32| true), None);
+    }
+
+    #[test]
+    fn little_is_kept_of_what_is_gone_or_was_asked_for_long_ago() {
+        let held: Vec<Solid> = (1..12).map(|n| Solid::sphere(1.7 + f64::from(n))).collect();
+        held.iter().for_each(|solid| solid.shelf().keep(Arc::new(0_u8)));
+        let again = || holed().scale(1.017);
+        (0..100).for_each(|_| again().shelf().keep(Arc::new(0_u8)));
+        let mut hasher = DefaultHasher::new();
+        again().hash(&mut hasher);
+        let owners = OWNERS.lock().unwrap();
+        assert!(owners.by_hash.get(&hasher.finish()).is_none_or(|equal| equal.len() <= 1));
+        drop(owners);
+        let solid = again();
+        (0..3 * MOST).for_each(|n| solid.shelf().keep(Arc::new(n)));
+        assert!(solid.shelf().find(|n: &usize| *n == 2 * MOST).is_some());
+        assert!(solid.shelf().find(|n: &usize| *n < 2 * MOST).is_none());
+        // What was asked for stays.
+        (0..MOST - 1).for_each(|n| solid.shelf().keep(Arc::new(100 + n)));
+        assert!(solid.shelf().find(|n: &usize| *n == 2 * MOST).is_some());
     }
 
     #[test]

@@ -14,8 +14,9 @@ impl Solid {
     /// | `tolerance` | length | 10⁻⁹ to 10⁹ |
     ///
     /// The surface of such a solid is measured when the solid is compiled, unless a closed form is
-    /// exact. Without this method the tolerance is the power of two below a thousandth of the
-    /// length, so that lengths of about one size share one surface. A finer tolerance costs more
+    /// exact. Without this method the tolerance is the power of two at or below a thousandth
+    /// of the length, or a millionth of the solid's size where that is more: lengths of about one
+    /// size share one surface. A finer tolerance costs more
     /// time and memory, a coarser one less. Where nothing is measured the tolerance has no effect.
     ///
     /// The tolerance is that of one operation: of the offset, not of what it is an offset of. It is

@@ -197,3 +197,25 @@ fn bounds_that_touch_a_round_side_are_no_edges() {
     assert!(most < 2 * few, "{most} triangles, {few} without sides that touch");
     assert!((touched.volume() - std::f64::consts::PI).abs() < 0.1 && touched.check().is_closed());
 }
+
+/// What does not end on a side is cut there by the bounds, whatever it does on the others.
+#[test]
+fn what_has_no_end_is_cut_by_the_bounds() {
+    let bounds = Some(Bounds::new(DVec3::splat(-1.0), DVec3::splat(1.0)));
+    let settings = MeshSettings { cell: CellSize::LongestSide(16), bounds, ..MeshSettings::default() };
+    let volume = |solid: Solid| {
+        let mesh = solid.mesh(&settings).unwrap();
+        assert!(mesh.check().is_sound());
+        mesh.volume()
+    };
+    for axis in DVec3::AXES {
+        let half = volume(Solid::half_space(axis, 0.0));
+        assert!((half - 4.0).abs() < 1e-3, "{axis}: {half}");
+        let half = volume(Solid::half_space(-axis, 0.25));
+        assert!((half - 5.0).abs() < 1e-3, "{axis}: {half}");
+    }
+    let column = volume(rvachev::Profile::rectangle([1.0, 0.5]).column());
+    assert!((column - 1.0).abs() < 1e-3, "{column}");
+    let corner = Solid::half_space(DVec3::X, 0.0) & Solid::half_space(DVec3::Y, 0.0);
+    assert!((volume(corner) - 2.0).abs() < 1e-3);
+}

@@ -34,6 +34,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use glam::DVec3;
+
 use super::{ParamError, check};
 use crate::{Angle, Dual, OfOne, Real};
 
@@ -275,6 +277,18 @@ impl Gielis {
         let is_cusp = move |k: &u32| if k % 2 == 1 { n2 < 1.0 } else { n3 < 1.0 };
         let last = if m > 0.0 { (0.5 * m).floor() as u32 } else { 0 };
         (0..=last).filter(move |k| m > 0.0 && is_cusp(k)).map(move |k| f64::from(k) * std::f64::consts::TAU / m)
+    }
+
+    /// Normals of the lines through the origin that cusps are on, those of the mirrored half too.
+    pub(super) fn cusp_normals(&self) -> Vec<DVec3> {
+        let mut normals: Vec<DVec3> = Vec::new();
+        for angle in self.cusps().flat_map(|angle| [angle, -angle]) {
+            let normal = DVec3::new(-angle.sin(), angle.cos(), 0.0);
+            if normals.iter().all(|known| known.cross(normal).length() > 1e-9) {
+                normals.push(normal);
+            }
+        }
+        normals
     }
 
     /// How much the radius magnifies relative errors: `max(n2, n3)/n1`.

@@ -377,7 +377,7 @@ impl Field for Supershape {
     }
 
     fn creases(&self) -> Vec<DVec3> {
-        let upright = self.equator.cusps().map(|angle| DVec3::new(-angle.sin(), angle.cos(), 0.0) * self.inverse);
+        let upright = self.equator.cusp_normals().into_iter().map(|normal| normal * self.inverse);
         // Of the meridian's cusps, that at the equator is in a plane.
         let level = self.meridian.cusps().any(|angle| angle == 0.0).then_some(DVec3::Z);
         upright.chain(level).collect()

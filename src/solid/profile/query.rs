@@ -107,7 +107,7 @@ impl Profile {
     /// use rvachev::Profile;
     ///
     /// let egg = Profile::superellipse([3.0, 2.0], 0.8).offset(0.5);
-    /// assert!(egg.accuracy()?.tolerance <= 5e-4);
+    /// assert_eq!(egg.accuracy()?.tolerance, 2f64.powi(-11));
     /// # Ok::<(), rvachev::SolidError>(())
     /// ```
     ///

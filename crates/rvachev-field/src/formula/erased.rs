@@ -69,10 +69,14 @@ impl AnyField for Formula {
     }
 
     fn creases(&self, region: [Interval; 3]) -> Vec<Crease> {
-        self.jumps_in(region)
+        self.jumps_in(region).unwrap_or_default()
     }
 
     fn slopes_beside(&self, p: [Dual<Interval>; 3], beside: DVec3) -> [Interval; 3] {
+        // Where it does not tell all jumps there are no sides.
+        if self.jumps_in(p.map(Dual::value)).is_none() {
+            return self.dual_range_of(p).d;
+        }
         chained(Interval::ALL, self.slopes_of_side(p.map(Dual::value), beside), p).d
     }
 

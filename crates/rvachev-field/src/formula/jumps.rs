@@ -55,8 +55,9 @@ impl Linear {
         let sides = [0, 1, 2].map(|axis| region[axis] * self.slopes[axis]);
         let range = sides[0] + sides[1] + sides[2] + (self.constant - first);
         let (from, to) = ((range.lo() / step).ceil(), (range.hi() / step).floor());
-        let is_known = self.constant.is_finite() && !self.is_constant() && step > 0.0 && to - from < MOST;
-        let count = if is_known && to >= from { (to - from) as u32 + 1 } else { 0 };
+        let is_known = self.constant.is_finite() && !self.is_constant() && step > 0.0;
+        // One more than are told is enough to see that there are too many.
+        let count = if is_known && to >= from { (to - from).min(MOST) as u32 + 1 } else { 0 };
         let crease = move |n: u32| {
             let offset = first + (from + f64::from(n)) * step - self.constant;
             Crease { normal: self.slopes, offset, jumps: true }
@@ -66,13 +67,13 @@ impl Linear {
 }
 
 impl Formula {
-    /// The planes in a region at which it is known to jump.
-    pub(super) fn jumps_in(&self, region: [Interval; 3]) -> Vec<Crease> {
+    /// The planes in a region at which it is known to jump; none if there are too many to tell.
+    pub(super) fn jumps_in(&self, region: [Interval; 3]) -> Option<Vec<Crease>> {
         use {BinaryOpcode as B, UnaryOpcode as U};
         let code = &self.0.code;
         let mut planes = Vec::new();
         if !code.jumps {
-            return planes;
+            return Some(planes);
         }
         let mut all: Vec<Linear> = Vec::with_capacity(code.len);
         for op in code.ops() {
@@ -110,7 +111,7 @@ impl Formula {
             };
             all.push(linear);
         }
-        if planes.len() as f64 > MOST { Vec::new() } else { planes }
+        (planes.len() as f64 <= MOST).then_some(planes)
     }
 }
 
@@ -150,7 +151,7 @@ impl<const N: usize> Arithmetic for Beside<N> {
         use BinaryOpcode as B;
         let at = f64::binary(op, a.at, b.at);
         let slope = match op {
-            B::Mod if a.is_linear && b.is_constant => {
+            B::Mod if a.is_linear && b.is_constant && b.at != 0.0 => {
                 let size = b.at.abs();
                 let v = a.slope.v;
                 let exact = v.range - size * (a.at / size).floor();

@@ -191,7 +191,7 @@ impl Field for Superpolygon {
     }
 
     fn creases(&self) -> Vec<DVec3> {
-        self.curve.cusps().map(|angle| DVec3::new(-angle.sin(), angle.cos(), 0.0)).collect()
+        self.curve.cusp_normals()
     }
 
     fn slopes(&self, region: [Interval; 3]) -> [Interval; 3] {
