@@ -47,7 +47,9 @@ fn picture(solid: &Solid, thickness: &ThicknessReport, path: &Path) -> Result<()
     let thickest = finite.fold(thickness.least, |most, thickness| most.max(*thickness));
     let bounds = solid.bounds()?;
     let settings = RenderSettings { width: 640, height: 480, ..RenderSettings::default() };
-    let camera = Camera::framing(&bounds).orbit(deg(0.0), deg(15.0)).fitted(&bounds, 4.0 / 3.0);
+    // With room for the legend.
+    let framed = bounds.inflate(0.1 * bounds.longest_side());
+    let camera = Camera::framing(&bounds).orbit(deg(0.0), deg(15.0)).fitted(&framed, 4.0 / 3.0);
     thickness.picture([thickness.least, thickest], &camera, &settings, &Run::default())?.save(path)?;
     Ok(())
 }

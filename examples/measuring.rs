@@ -95,6 +95,9 @@ fn thickness(samples: u32) -> Result<Image, Box<dyn Error>> {
     println!("{report}");
     let (camera, mut settings) = view(&tray, [640, 400], samples)?;
     settings.background = Background::Plain([40, 42, 46]);
+    // With room for the legend.
+    let bounds = tray.bounds()?;
+    let camera = camera.fitted(&bounds.inflate(0.1 * bounds.longest_side()), 640.0 / 400.0);
     Ok(report.picture([0.5, 4.0], &camera, &settings, &Run::default())?)
 }
 
