@@ -23,9 +23,11 @@ use crate::mesh::lattice::{CellSize, Lattice};
 const MUCH: f64 = 0.4;
 const REST: f64 = 0.03;
 
-/// How much smaller they are made at a time.
+/// How much smaller they are made at a time. What is far off because walls are thinner than cells
+/// does not come nearer by the square of the size, but at once, so the size is asked again before
+/// it is much smaller.
 const MOST: f64 = 0.8;
-const LEAST: f64 = 0.1;
+const LEAST: f64 = 0.4;
 
 /// How often it is compared.
 const ROUNDS: usize = 9;
