@@ -78,9 +78,11 @@ impl Compiler<'_> {
         let (axes, unit) = (context.forward.matrix3.abs(), field.growth());
         let growth = (0..3).map(|axis| column_times(axes.col(axis), unit[axis])).sum::<DVec3>() / context.scale;
         let mut bounds = snug(field.bounds_under(&context.forward));
-        // A distance is no larger than that to the sides of the box.
-        if shift > 0.0 || shift < 0.0 && field.exact() && is_similarity(&context.forward.matrix3) {
+        if shift > 0.0 {
             bounds = grow(&bounds, growth * shift);
+        } else if shift < 0.0 && field.exact() && is_similarity(&context.forward.matrix3) {
+            // A distance is no larger than that to the sides of the box, however it is turned.
+            bounds = grow(&bounds, DVec3::splat(shift * least_stretch(&context.forward.matrix3) / context.scale));
         }
         let number = self.scene.leaves.len() as u32;
         self.scene.leaves.push(Instance {
