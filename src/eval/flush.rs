@@ -11,6 +11,8 @@
 //! than the tolerance, for their normals are found to be within an angle of one direction that is
 //! small enough for that.
 
+use std::f64::consts::SQRT_2;
+
 use glam::DVec3;
 
 use super::program::{Edge, Kind, Program};
@@ -53,6 +55,18 @@ impl Program {
 
 /// Whether one of two is left where the other is entered, as far as the first is in a rectangle.
 fn are_flush([a, b]: [&Program; 2], zone: &Zone, axes: [DVec3; 2], [doubt, tolerance]: [f64; 2]) -> bool {
+    // Both normals are to be within an angle of one direction, which is known before it is proved:
+    // in the middle they are opposite to within twice that.
+    let slope = |program: &Program| {
+        let slope = program.gradient(zone.centre).1;
+        axes.map(|axis| slope.dot(axis) * axis).into_iter().sum::<DVec3>()
+    };
+    let (of_a, of_b) = (slope(a), slope(b));
+    let (along, aside) = (-of_a.dot(of_b), of_a.cross(of_b).length());
+    let steep = SQRT_2 * tolerance / (APART * zone.radius());
+    if steep < 1.0 && aside * (1.0 - steep * steep) > 2.0 * steep * along {
+        return false;
+    }
     let Some(way) = a.way_in_plane(zone, axes) else { return false };
     let across = way.cross(axes[0].cross(axes[1]));
     // Between the first and the last line is all of the rectangle.

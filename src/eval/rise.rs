@@ -124,21 +124,27 @@ impl Program {
         let at = |p: DVec3| self.slopes_at(&parts, p).into_iter().filter_map(within);
         let world = Pieces::one(*zone);
         let zones = self.zones(&world);
-        let entered = |slopes: Vec<DVec3>| {
-            let middle = common(&slopes).and_then(within)?;
+        let entered = |way: DVec3| {
+            let middle = within(way)?;
             // What rises along two directions does so along all between them.
             let across = middle.cross(axes[0].cross(axes[1]));
             let ways = [-LEAN, LEAN].map(|lean| Way { middle: middle + lean * across, sway: 0.0 });
             (self.all_enter(&parts, (&zones, &world), &ways) == 3).then_some(middle)
         };
-        // Edges that pass beside the middle show at the corners.
+        // Edges that pass beside the middle show at the corners, and what turns round within the
+        // zone: it is not worth a proof.
         let corner = |x: f64, y: f64| zone.centre + x * zone.axes.x_axis + y * zone.axes.y_axis;
-        let corners = || [corner(-1.0, -1.0), corner(1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0)];
-        let inward = || parts.iter().filter_map(|part| self.inward(*part, zone)).filter_map(within).collect();
-        entered(at(zone.centre).collect())
-            .or_else(|| entered(corners().into_iter().flat_map(at).collect()))
-            .or_else(|| entered(inward()))
-            .or_else(|| self.rise_in_plane(zone, axes))
+        let corners = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(-1.0, 1.0), corner(1.0, 1.0)];
+        let around: Vec<DVec3> = corners.into_iter().flat_map(at).collect();
+        let middle: Vec<DVec3> = at(zone.centre).collect();
+        let of_middle = common(&middle).filter(|way| around.iter().all(|slope| slope.dot(*way) > 0.0));
+        let inward = || {
+            let inward: Vec<DVec3> =
+                parts.iter().filter_map(|part| self.inward(*part, zone)).filter_map(within).collect();
+            common(&inward).and_then(entered)
+        };
+        let guess = of_middle.or_else(|| common(&around));
+        guess.and_then(entered).or_else(inward).or_else(|| self.rise_in_plane(zone, axes))
     }
 
     /// The same as the slopes of the whole tell it: in the neck of a smooth join no direction leads

@@ -43,8 +43,8 @@ pub(super) struct Leaf {
 #[derive(Default)]
 pub(super) struct Found {
     pub(super) leaves: Vec<Leaf>,
-    /// Which corners are inside.
-    inside: Vec<(Node, bool)>,
+    /// Which corners are inside, by their keys.
+    inside: Vec<(u64, bool)>,
     /// How many squares were divided.
     divided: usize,
 }
@@ -52,8 +52,13 @@ pub(super) struct Found {
 impl Found {
     /// Whether a corner is inside; `None` of what is no corner.
     pub(super) fn is_inside(&self, node: Node) -> Option<bool> {
-        self.inside.binary_search_by_key(&node, |(node, _)| *node).ok().map(|at| self.inside[at].1)
+        self.inside.binary_search_by_key(&key(node), |(key, _)| *key).ok().map(|at| self.inside[at].1)
     }
+}
+
+/// A corner as one number.
+fn key([x, y]: Node) -> u64 {
+    u64::from(x) << 32 | u64::from(y)
 }
 
 /// The planes, from the lowest, and what is asked of them.
@@ -122,8 +127,8 @@ impl Tree<'_> {
             }
         }
         found.par_iter_mut().for_each(|found| {
-            found.inside.par_sort_by_key(|(node, _)| *node);
-            found.inside.dedup_by_key(|(node, _)| *node);
+            found.inside.par_sort_unstable();
+            found.inside.dedup_by_key(|(key, _)| *key);
         });
         Ok(found)
     }
@@ -184,7 +189,7 @@ impl Tree<'_> {
 
     /// Notes which corners are inside on a plane.
     fn note<const N: usize>(&self, part: &mut Part, plane: usize, filling: &Filling, nodes: [Node; N]) {
-        let is_inside = |node| (node, self.sections[plane].is_inside(filling, self.root.point(node)));
+        let is_inside = |node| (key(node), self.sections[plane].is_inside(filling, self.root.point(node)));
         part.entry(plane).or_default().inside.extend(nodes.map(is_inside));
     }
 }
