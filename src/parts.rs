@@ -190,8 +190,8 @@
 //! # What not to expect
 //!
 //! * **Fillets, sweeps, threads, lattices** are not found: a fillet becomes a sharp edge, or a
-//!   small cylinder where it is worth its numbers. Outlines with arcs are polygons of up to 32
-//!   corners.
+//!   small cylinder where it is worth its numbers. Outlines have up to 32 corners, with straight
+//!   sides or arcs between them: no splines.
 //! * **Few facets:** the radius of a cylinder of facets is that of its corners, so a solid that is
 //!   right has more volume than the mesh: an IoU of 0.96 with a thin tube of 36 facets.
 //! * **Intent** is told from round numbers, equal lengths and patterns only. That a hole is so far

@@ -147,6 +147,7 @@
 #![allow(clippy::needless_range_loop, reason = "matrices are written by their rows and columns, as formulas are")]
 
 mod align;
+mod centers;
 mod check;
 mod cloud;
 mod cost;

@@ -2,6 +2,7 @@
 //! leaves.
 
 mod adjust;
+mod arcs;
 mod axes;
 mod balls;
 mod bases;
@@ -17,6 +18,7 @@ mod coverage;
 mod detector;
 mod dipoles;
 mod directions;
+mod facing;
 mod finish;
 mod freedom;
 mod guesses;
@@ -59,6 +61,7 @@ mod snap;
 mod sobol;
 mod straighten;
 mod superellipsoids;
+mod supershapes;
 mod through;
 mod times;
 mod topology;
@@ -89,8 +92,8 @@ use crate::geom::{Mesh, PointCloud};
 ///
 /// Samples of the surface are grouped to regions of planes, cylinders, cones, spheres and tori.
 /// Leaves in question are made of these, with all ends that they may have; boxes between parallel
-/// planes; extruded sections as polygons, rounded rectangles, regular prisms and supershapes, and
-/// their bays, which are cut; and superellipsoids of what hangs together without a crease. A search
+/// planes; extruded sections as outlines of straight sides and arcs, rounded rectangles, regular prisms and supershapes, and
+/// their bays, which are cut; and superellipsoids and supershapes of what hangs together without a crease. A search
 /// over ordered trees takes those that mend more than their parameters
 /// [cost](PartSettings::parameter_cost), of equal leaves all but the first at a lower price. They
 /// are fitted to the samples. While more than half a hundredth of the volume is wrong, leaves are

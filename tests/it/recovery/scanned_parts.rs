@@ -3,12 +3,11 @@
 use std::collections::HashMap;
 
 use glam::{DVec3, Vec3};
-use rayon::prelude::*;
 use rvachev::fit::{FitError, PartFit, PartSettings, part_of_points, part_of_points_with};
 use rvachev::surface::ParametricSurface;
 use rvachev::{CancelToken, CellSize, Mesh, MeshSettings, MeshSolid, PointCloud, Run, Solid};
 
-use super::parts::{loaded, random_parts};
+use super::parts::{loaded, random_parts, sides};
 
 /// splitmix64.
 struct Numbers(u64);
@@ -114,10 +113,6 @@ fn spread(solid: &Solid, count: u32) -> Vec<DVec3> {
     let (low, size) = (bounds.min - 0.015 * bounds.size(), 1.03 * bounds.size());
     let steps = DVec3::new(0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_3);
     (1..=count).map(|i| low + size * (f64::from(i) * steps).fract()).collect()
-}
-
-fn sides(solid: &Solid, points: &[DVec3]) -> Vec<bool> {
-    points.par_iter().map(|p| solid.contains(*p).unwrap()).collect()
 }
 
 /// The volume in common over that of either, by the sides that points are on.
