@@ -49,7 +49,13 @@ pub(super) fn finish<M: Model<N>, const N: usize>(
         let off = distances(&mut points.iter().map(|p| (*p - scaled.center) / scaled.size));
         Ok(off.into_iter().map(|d| (mixture.chance(log_area, d) as f32, d)).collect())
     };
-    let chunks: Vec<_> = cloud.positions().par_chunks(CHUNK).map(weighed).collect::<Result<_, _>>()?;
+    let all = cloud.positions();
+    // Threads are long to wake for little.
+    let chunks: Vec<_> = if all.len() <= CHUNK {
+        vec![weighed(all)?]
+    } else {
+        run.install(|| all.par_chunks(CHUNK).map(weighed).collect::<Result<_, _>>())?
+    };
     let weights: Vec<f32> = chunks.iter().flatten().map(|w| w.0).collect();
     let inliers = weights.iter().map(|w| f64::from(*w)).sum::<f64>() / weights.len() as f64;
     if inliers < FEWEST {

@@ -45,7 +45,8 @@ impl Grid<'_> {
     }
 
     fn cell_of(&self, p: DVec3) -> IVec3 {
-        ((p - self.low) / self.cell).floor().as_ivec3().clamp(IVec3::ZERO, self.size - 1)
+        // What is below the box by rounding comes to 0 as well.
+        ((p - self.low) / self.cell).as_ivec3().clamp(IVec3::ZERO, self.size - 1)
     }
 
     fn index(&self, cell: IVec3) -> usize {
@@ -75,25 +76,12 @@ impl Grid<'_> {
     /// distances.
     pub(super) fn nearest(&self, p: DVec3, count: usize, found: &mut Vec<(f64, u32)>) {
         let at = self.cell_of(p);
-        found.clear();
         for reach in 1.. {
+            found.clear();
             let (low, high) = ((at - reach).max(IVec3::ZERO), (at + reach).min(self.size - 1));
-            // Rows of cells from the one that the point is in on: near points keep others out.
-            for off_z in outwards(reach) {
-                for off_y in outwards(reach) {
-                    let row = IVec3::new(low.x, at.y + off_y, at.z + off_z);
-                    let is_in = row.cmpge(IVec3::ZERO).all() && row.cmplt(self.size).all();
-                    if !is_in || (found.len() == count && found[count - 1].0 <= self.beside(p, row)) {
-                        continue;
-                    }
-                    // Of the last block all but its shell is known.
-                    if reach == 1 || off_y.abs() == reach || off_z.abs() == reach {
-                        self.take(row, high.x, p, count, found);
-                        continue;
-                    }
-                    for x in [at.x - reach, at.x + reach].into_iter().filter(|x| (0..self.size.x).contains(x)) {
-                        self.take(row.with_x(x), x, p, count, found);
-                    }
+            for z in low.z..=high.z {
+                for y in low.y..=high.y {
+                    self.take(IVec3::new(low.x, y, z), high.x, p, count, found);
                 }
             }
             let is_all = low == IVec3::ZERO && high == self.size - 1;
@@ -104,14 +92,6 @@ impl Grid<'_> {
                 break;
             }
         }
-    }
-
-    /// The square of how far a point is from a row of cells, at the least.
-    fn beside(&self, p: DVec3, row: IVec3) -> f64 {
-        let low = self.low + row.as_dvec3() * self.cell;
-        let off = (low - p).max(p - low - self.cell).max(DVec3::ZERO);
-        // What is rounded may be a little nearer.
-        (off.y * off.y + off.z * off.z) * (1.0 - 1e-9)
     }
 
     /// How far a point is from the sides of a block that there are cells beyond.
@@ -152,11 +132,6 @@ impl Grid<'_> {
             }
         }
     }
-}
-
-/// 0, 1, −1, 2, −2 … up to a reach.
-fn outwards(reach: i32) -> impl Iterator<Item = i32> {
-    (0..=2 * reach).map(|k| if k % 2 == 0 { -k / 2 } else { (k + 1) / 2 })
 }
 
 /// The box of points.

@@ -181,8 +181,8 @@ pub fn part_with(mesh: &Mesh, settings: &PartSettings, run: &Run) -> Result<Part
 ///
 /// The points are to be spread about evenly, 200 or more; some thousands are wanted, and of more
 /// than 4000 a random part is searched. Normals that the cloud has are to point outwards. Where it
-/// has none, those of planes through neighbours are taken, on the sides on which neighbours agree
-/// and the winding number is ½ all over the surface. Noise is estimated, and
+/// has none, those of planes through neighbours are taken, on the sides to which winding numbers
+/// fall that are ½ all over the surface. Noise is estimated, and
 /// [`PartSettings::noise`] is a lower bound of it; points are brought nearer to the surface by the
 /// mean of their neighbours, along the normals.
 ///
