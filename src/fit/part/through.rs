@@ -41,7 +41,8 @@ pub(super) fn lengthened(leaves: &[(bool, Leaf)], nth: usize, size: f64, near: f
     let cut = &leaves[nth].1;
     let mut numbers: Vec<f64> = cut.measures().into_iter().map(|(_, v)| v).collect();
     for end in &ends {
-        numbers[end.nth] = end.face + if end.up { BEYOND * size } else { -BEYOND * size };
+        let beyond = (near + BEYOND) * size;
+        numbers[end.nth] = end.face + if end.up { beyond } else { -beyond };
     }
     if ends.is_empty() { None } else { cut.made_of(&numbers) }
 }

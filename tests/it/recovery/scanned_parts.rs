@@ -173,7 +173,7 @@ const ORIENTED: [Row; 4] = [
 ];
 
 const BARE: [Row; 2] =
-    [("none, no normals", 0.0, false, true, 30, 0.97), ("0.2 %, no normals", 0.002, false, true, 30, 0.97)];
+    [("none, no normals", 0.0, false, true, 45, 0.98), ("0.2 %, no normals", 0.002, false, true, 42, 0.98)];
 
 fn judged(rows: &[Row]) {
     let Some(folder) = random_parts() else { return };
