@@ -60,10 +60,6 @@ const MANY: usize = 24;
 /// Another round is worth its time if less than this part of what was wrong is left.
 const WORTH: f64 = 0.9;
 
-/// What is thinner than this in diagonals beyond the end of a cut is a lip that no facet is of, if
-/// nothing tells of it.
-const LIP: f64 = 0.0195;
-
 /// Skins of scans, which are thinner than this in diagonals or than noise has them, are none.
 const SKIN: f64 = 0.002;
 
@@ -162,7 +158,6 @@ fn recovered(
     let Samples { centre, size, .. } = samples;
     let mut meant = BTreeMap::new();
     if settings.snap && !vertices.is_empty() {
-        model = opened(&mut selector, model, [LIP, 0.0], &to_select)?;
         let laid = snapped(&selector.leaves(&model.steps), vertices, &to_select)?;
         let outward: Vec<(bool, Leaf)> = laid.iter().map(|(adds, leaf)| (*adds, leaf.outward(centre, size))).collect();
         let vertices: Vec<DVec3> = vertices.iter().map(|p| centre + size * *p).collect();
@@ -177,7 +172,7 @@ fn recovered(
         // What the exact lengths leave nothing to do for.
         selector.drop_one(&mut model);
     } else if settings.snap {
-        model = opened(&mut selector, model, [SKIN.max(3.0 * samples.noise), ALLOWED_RISE], &to_select)?;
+        model = opened(&mut selector, model, SKIN.max(3.0 * samples.noise), &to_select)?;
     }
     times.snapping = clock.lap();
     to_select.report(1.0);
@@ -314,14 +309,8 @@ fn steps(selector: &mut Selector<'_>, model: &Model, leaves: Vec<(bool, Leaf)>) 
     steps
 }
 
-/// The model with cuts that go through but for a skin, where that is for the worse by no more than
-/// given.
-fn opened(
-    selector: &mut Selector<'_>,
-    mut model: Model,
-    [skin, rise]: [f64; 2],
-    run: &Run,
-) -> Result<Model, Cancelled> {
+/// The model with cuts that go through but for a skin, where that is not for the worse.
+fn opened(selector: &mut Selector<'_>, mut model: Model, skin: f64, run: &Run) -> Result<Model, Cancelled> {
     for i in 0..model.steps.len() {
         run.check()?;
         let leaves = selector.leaves(&model.steps);
@@ -331,7 +320,7 @@ fn opened(
             let mut steps = model.steps.clone();
             steps[i].which = selector.pool.add(longer, selector.queries, may, None);
             let next = selector.model(steps);
-            if next.cost <= model.cost + rise {
+            if next.cost < model.cost + ALLOWED_RISE {
                 model = next;
             }
         }
