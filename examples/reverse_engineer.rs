@@ -7,9 +7,10 @@
 //!                                deviations.png         how far the mesh is from it, by colours
 //! ```
 //!
-//! `cargo run --release --example reverse_engineer -- FILE [--out FOLDER] [--json] [--mesh OUT]`
-//! reads an STL, OBJ, PLY, 3MF or GLB file; without one, a part of its own. `--json` prints one
+//! `cargo run --release --example reverse_engineer -- FILE [--out FOLDER] [--json] [--no-snap]
+//! [--mesh OUT]` reads an STL, OBJ, PLY, 3MF or GLB file; without one, a part of its own. `--json` prints one
 //! object on one line and writes nothing but what `--mesh` asks for: the recovered solid as a mesh.
+//! `--no-snap` leaves numbers as they fit best.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -27,22 +28,29 @@ struct Arguments {
     file: Option<PathBuf>,
     folder: PathBuf,
     json: bool,
+    snap: bool,
     mesh: Option<PathBuf>,
 }
 
 impl Arguments {
     fn read() -> Result<Arguments, Box<dyn Error>> {
-        let mut arguments =
-            Arguments { file: None, folder: "target/examples/reverse_engineer".into(), json: false, mesh: None };
+        let mut arguments = Arguments {
+            file: None,
+            folder: "target/examples/reverse_engineer".into(),
+            json: false,
+            snap: true,
+            mesh: None,
+        };
         let mut words = std::env::args().skip(1);
         while let Some(word) = words.next() {
             let mut path = |what: &str| words.next().map(PathBuf::from).ok_or(format!("{what} is followed by a path"));
             match &*word {
                 "--json" => arguments.json = true,
+                "--no-snap" => arguments.snap = false,
                 "--mesh" => arguments.mesh = Some(path("--mesh")?),
                 "--out" => arguments.folder = path("--out")?,
                 _ if word.starts_with("--") => {
-                    return Err(format!("{word} is none of --out FOLDER, --json, --mesh OUT").into());
+                    return Err(format!("{word} is none of --out FOLDER, --json, --no-snap, --mesh OUT").into());
                 }
                 _ => arguments.file = Some(word.into()),
             }
@@ -117,7 +125,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     };
     let start = Instant::now();
-    let fit = part(&mesh, &PartSettings::default())?;
+    let fit = part(&mesh, &PartSettings { snap: arguments.snap, ..PartSettings::default() })?;
     let seconds = start.elapsed().as_secs_f64();
     let solid = fit.solid();
     if let Some(out) = &arguments.mesh {

@@ -177,8 +177,8 @@
 //!
 //! | method | input | IoU | leaves | holes | code | time |
 //! |---|---|---|---|---|---|---|
-//! | [`part`](crate::fit::part()) | meshes of 14 CAD parts, of as few as 12 facets | 0.96 to 1.00 | 1 to 10, and some 32 of one | cut leaves | yes | 0.1 to 2 s |
-//! | [`part_of_points`](crate::fit::part_of_points()) | clouds of 4000 points, 0.2 % noise | 0.991 in the middle | some 10 | cut leaves | yes | 1 to 2 s |
+//! | [`part`](crate::fit::part()) | meshes of 14 CAD parts, of as few as 12 facets | 0.96 to 1.00 | 1 to 10, and some 34 of one | cut leaves | yes | 0.1 to 2 s |
+//! | [`part_of_points`](crate::fit::part_of_points()) | clouds of 4000 points, 0.2 % noise, with normals or without | 0.99 in the middle | some 10 | cut leaves | yes | 1 to 2 s |
 //! | Marching-Primitives (W. Liu et al., 2023) | grids of signed distances | 0.93 to 0.98 | 7 to 77 superquadrics | none | no | 1 to 21 s |
 //! | SuperFit (2026) | meshes | 0.90 | 24 superquadrics | none: "purely additive" | no | minutes |
 //! | [`supershape_union`](crate::fit::supershape_union()), the pipeline of rational supershapes | points by segments | 0.96 to 1.00 of simple CAD parts, 0.15 to 0.95 of those with many small holes | one a segment | by the error's clusters | yes | seconds |
@@ -190,8 +190,8 @@
 //! # What not to expect
 //!
 //! * **Fillets, sweeps, threads, lattices** are not found: a fillet becomes a sharp edge, or a
-//!   small cylinder where it is worth its numbers. Outlines with arcs are polygons of up to 32
-//!   corners.
+//!   small cylinder where it is worth its numbers. Outlines have up to 32 corners, with straight
+//!   sides or arcs between them: no splines.
 //! * **Few facets:** the radius of a cylinder of facets is that of its corners, so a solid that is
 //!   right has more volume than the mesh: an IoU of 0.96 with a thin tube of 36 facets.
 //! * **Intent** is told from round numbers, equal lengths and patterns only. That a hole is so far

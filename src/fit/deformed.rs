@@ -78,7 +78,7 @@ pub fn deformed_with(cloud: &PointCloud, settings: &FitSettings, run: &Run) -> R
         Straight::Quadric(mixture) => finish_quadric(cloud, &scaled, &mixture, search, &run),
         Straight::Deformed(mixture) => {
             let shape = Shape::Deformed(leaf(&mixture.model, scaled.size));
-            run.install(|| finish(cloud, &scaled, &mixture, shape, NAMES, search, &run))
+            finish(cloud, &scaled, &mixture, shape, NAMES, search, &run)
         }
     }
 }

@@ -13,7 +13,7 @@ use super::mixture::Mixture;
 use super::result::{Fit, SearchReport, Shape};
 use super::samples::Samples;
 use crate::geom::PointCloud;
-use crate::{Cancelled, Field, Run, SolidError};
+use crate::{Cancelled, Field, ParamError, Run, SolidError};
 use rvachev_field::check::LARGEST_LENGTH;
 
 /// If a smaller share of the points is of the solid, it is not what they are of.
@@ -49,7 +49,13 @@ pub(super) fn finish<M: Model<N>, const N: usize>(
         let off = distances(&mut points.iter().map(|p| (*p - scaled.center) / scaled.size));
         Ok(off.into_iter().map(|d| (mixture.chance(log_area, d) as f32, d)).collect())
     };
-    let chunks: Vec<_> = cloud.positions().par_chunks(CHUNK).map(weighed).collect::<Result<_, _>>()?;
+    let all = cloud.positions();
+    // Threads are long to wake for little.
+    let chunks: Vec<_> = if all.len() <= CHUNK {
+        vec![weighed(all)?]
+    } else {
+        run.install(|| all.par_chunks(CHUNK).map(weighed).collect::<Result<_, _>>())?
+    };
     let weights: Vec<f32> = chunks.iter().flatten().map(|w| w.0).collect();
     let inliers = weights.iter().map(|w| f64::from(*w)).sum::<f64>() / weights.len() as f64;
     if inliers < FEWEST {
@@ -83,15 +89,19 @@ pub(super) fn finish<M: Model<N>, const N: usize>(
         criterion,
         search,
     };
-    match &fit.shape {
+    if fit.translation.abs().max_element() < 0.1 * LARGEST_LENGTH {
         // Parameters in their ranges are all that it needs near the origin; its box is long to
-        // find.
-        Shape::Supershape(leaf) if fit.translation.abs().max_element() < 0.1 * LARGEST_LENGTH => {
-            leaf.check().map_err(|source| SolidError::Parameter { path: leaf.name().to_string(), source })?;
+        // find. Deformations keep to theirs.
+        let checked = |check: Result<(), ParamError>, name: &str| {
+            check.map_err(|source| SolidError::Parameter { path: name.to_string(), source })
+        };
+        match &fit.shape {
+            Shape::Superellipsoid(leaf) => checked(leaf.check(), leaf.name())?,
+            Shape::Supershape(leaf) => checked(leaf.check(), leaf.name())?,
+            Shape::Deformed(deformed) => checked(deformed.leaf.check(), deformed.leaf.name())?,
         }
-        _ => {
-            fit.solid().bounds()?;
-        }
+    } else {
+        fit.solid().bounds()?;
     }
     run.report(1.0);
     Ok(fit)

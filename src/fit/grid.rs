@@ -45,7 +45,8 @@ impl Grid<'_> {
     }
 
     fn cell_of(&self, p: DVec3) -> IVec3 {
-        ((p - self.low) / self.cell).floor().as_ivec3().clamp(IVec3::ZERO, self.size - 1)
+        // What is below the box by rounding comes to 0 as well.
+        ((p - self.low) / self.cell).as_ivec3().clamp(IVec3::ZERO, self.size - 1)
     }
 
     fn index(&self, cell: IVec3) -> usize {

@@ -19,8 +19,8 @@ const BASE: usize = 11;
 const ALL: usize = BASE + WAVES;
 
 /// Repetitions that are tried.
-const FEWEST: u32 = 3;
-const MOST: u32 = 16;
+pub(super) const FEWEST: u32 = 3;
+pub(super) const MOST: u32 = 16;
 
 /// Sections that are longer than wide by this ratio may be stretched.
 const LONG: f64 = 1.04;
@@ -197,7 +197,8 @@ fn repeats(local: &[DVec3], height: f64) -> Vec<Repeat> {
         }
         let Some((left, x)) = rest(&matrix, &right, &free) else { continue };
         let explained = (1.0 - left / alone.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        found.push(repeat(count, explained, &x));
+        let waves = std::array::from_fn(|i| x[BASE + i]);
+        found.push(Repeat { explained, ..extremes(count, x[0], &waves) });
     }
     let best = found.iter().map(|r| r.explained).fold(0.0, f64::max);
     found.sort_by(|a, b| b.explained.total_cmp(&a.explained));
@@ -209,8 +210,8 @@ fn repeats(local: &[DVec3], height: f64) -> Vec<Repeat> {
     found
 }
 
-/// The extremes of the radius over a period.
-fn repeat(count: u32, explained: f64, x: &[f64; ALL]) -> Repeat {
+/// The extremes of the radius over a period, whose logarithm is a mean and waves.
+pub(super) fn extremes(count: u32, mean: f64, waves: &[f64; WAVES]) -> Repeat {
     const STEPS: u32 = 64;
     let mut ends = [(f64::INFINITY, 0.0), (f64::NEG_INFINITY, 0.0)];
     let mut logs = [0.0; STEPS as usize];
@@ -218,8 +219,8 @@ fn repeat(count: u32, explained: f64, x: &[f64; ALL]) -> Repeat {
         let angle = TAU / f64::from(count) * f64::from(i) / f64::from(STEPS);
         for h in 0..3u8 {
             let (sin, cos) = (f64::from(h + 1) * f64::from(count) * angle).sin_cos();
-            let at = BASE + 2 * usize::from(h);
-            *log += x[at] * cos + x[at + 1] * sin;
+            let at = 2 * usize::from(h);
+            *log += waves[at] * cos + waves[at + 1] * sin;
         }
         if *log < ends[0].0 {
             ends[0] = (*log, angle);
@@ -233,8 +234,8 @@ fn repeat(count: u32, explained: f64, x: &[f64; ALL]) -> Repeat {
         |i: usize| logs[i] <= logs[(i + logs.len() - 1) % logs.len()] && logs[i] < logs[(i + 1) % logs.len()];
     let hollows: Vec<usize> = (0..logs.len()).filter(|i| is_hollow(*i)).collect();
     let is_double = hollows.len() == 2 && hollows.iter().all(|i| logs[*i] < deep + ALIKE * (high - deep));
-    let radii = ends.map(|(log, _)| (x[0] + log).clamp(-10.0, 10.0).exp());
-    Repeat { count, explained, least: ends[0].1, greatest: ends[1].1, radii, is_double }
+    let radii = ends.map(|(log, _)| (mean + log).clamp(-10.0, 10.0).exp());
+    Repeat { count, explained: 0.0, least: ends[0].1, greatest: ends[1].1, radii, is_double }
 }
 
 #[cfg(test)]

@@ -82,5 +82,5 @@ pub(super) fn finish_quadric(
 ) -> Result<Fit, FitError> {
     let Superquadric { e: [e1, e2], semi_axes, .. } = mixture.model;
     let shape = Shape::Superellipsoid(Superellipsoid::new(semi_axes * scaled.size, e1, e2));
-    run.install(|| finish(cloud, scaled, mixture, shape, NAMES, search, run))
+    finish(cloud, scaled, mixture, shape, NAMES, search, run)
 }

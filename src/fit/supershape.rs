@@ -72,7 +72,7 @@ pub fn supershape_with(cloud: &PointCloud, settings: &FitSettings, run: &Run) ->
         Best::Quadric(mixture) => finish_quadric(cloud, &scaled, &mixture, search, &run),
         Best::Shape(mixture) => {
             let shape = Shape::Supershape(leaf(&mixture.model, scaled.size));
-            run.install(|| finish(cloud, &scaled, &mixture, shape, NAMES, search, &run))
+            finish(cloud, &scaled, &mixture, shape, NAMES, search, &run)
         }
     }
 }

@@ -11,6 +11,7 @@ use std::f64::consts::{FRAC_PI_2, LN_2, TAU};
 
 use glam::{DMat3, DVec3};
 
+use super::centers::{Belt, Centered, centered};
 use super::cost::Cost;
 use super::gielis::{Curve, Supershaped, Ties};
 use super::harmonics::{Around, Repeat, ring_center};
@@ -59,6 +60,12 @@ const GOOD: f64 = 1.3;
 
 /// If harmonics about the best axis explain a smaller share of the squares, they tell nothing.
 const CLEAR: f64 = 0.5;
+
+/// What has no points in so large an angle about its axis is seen in part, in radians.
+const GAP: f64 = 0.7;
+
+/// Points that are asked for axes.
+const SEEN: usize = 700;
 
 /// Axes closer together than this are one: the cosine of 10°.
 const SAME: f64 = 0.985;
@@ -120,7 +127,7 @@ impl<'a> ShapeSearch<'a> {
     /// The principal axes, and those of the superellipsoid. What is seen in part has its middle
     /// elsewhere: a circle tells where.
     fn all_axes(&self, quadric: &Superquadric) -> Vec<Around> {
-        let points = &self.points[..self.points.len().min(700)];
+        let points = &self.points[..self.points.len().min(SEEN)];
         let principal = Principal::of(self.points.iter().copied());
         let mut axes: Vec<Around> = Vec::new();
         for (frame, center) in [(principal.axes, principal.mean), (quadric.rotation, quadric.center)] {
@@ -186,6 +193,27 @@ impl<'a> ShapeSearch<'a> {
         Ok(Shapes { best, unclear: m.is_none() })
     }
 
+    /// Whether there is a side of a model without points.
+    fn is_seen_in_part(&self, model: &Supershaped) -> bool {
+        let points = &self.points[..self.points.len().min(SEEN)];
+        Belt::about(points, &model.rotation, model.center).gap()[0] > GAP
+    }
+
+    /// About other middles, one for each number of repetitions: what is seen in part does not tell
+    /// them apart by itself.
+    fn elsewhere(&mut self, axes: &[Around]) -> Result<Vec<Judged>, Cancelled> {
+        let points = &self.points[..self.points.len().min(SEEN)];
+        let mut starts = Vec::new();
+        for axis in axes.iter().take(2) {
+            let found = centered(points, axis.frame.z_axis, axis.center);
+            for Centered { around, repeat, .. } in found.iter().take(5) {
+                starts.extend(starts_about(around, repeat, false));
+            }
+        }
+        let first = self.all(starts, false, 3)?;
+        self.all(different(first), true, 3)
+    }
+
     fn by_harmonics(&mut self, quadric: &Superquadric) -> Result<Shapes, Cancelled> {
         let axes = self.axes(quadric);
         let unclear = axes.first().map_or(0.0, Around::explained) < CLEAR;
@@ -200,15 +228,11 @@ impl<'a> ShapeSearch<'a> {
             }
         }
         let first = self.all(starts, false, 2)?;
-        let mut chosen: Vec<Supershaped> = Vec::new();
-        for judged in first {
-            let alike = chosen.iter().filter(|c| c.equator.m == judged.model.equator.m).count();
-            if chosen.len() < 5 && alike < 2 {
-                let leans = judged.model.ties == Ties::Split;
-                chosen.push(judged.model.tied(if leans { Ties::Free } else { Ties::Stretched }));
-            }
+        let mut best = self.all(different(first), true, 2)?;
+        if best.first().is_some_and(|top| self.is_seen_in_part(&top.model)) {
+            best.extend(self.elsewhere(&axes)?);
+            best.sort_by(|a, b| a.score.total_cmp(&b.score));
         }
-        let mut best = self.all(chosen, true, 2)?;
         let mut two = Vec::new();
         for k in 0..3 {
             two.extend(two_lobes(quadric, k));
@@ -260,6 +284,18 @@ impl<'a> ShapeSearch<'a> {
         }
         Ok(Shapes { best: found, unclear })
     }
+}
+
+/// The best five, no more than two of one symmetry number, with fewer ties.
+fn different(judged: Vec<Judged>) -> Vec<Supershaped> {
+    let mut chosen: Vec<Supershaped> = Vec::new();
+    for Judged { model, .. } in judged {
+        let alike = chosen.iter().filter(|c| c.equator.m == model.equator.m).count();
+        if chosen.len() < 5 && alike < 2 {
+            chosen.push(model.tied(if model.ties == Ties::Split { Ties::Free } else { Ties::Stretched }));
+        }
+    }
+    chosen
 }
 
 impl Supershaped {

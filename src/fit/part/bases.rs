@@ -4,7 +4,7 @@
 //!     .------.       .----.         .--.          _/\_
 //!     |      |      (      )       /    \         \  /
 //!     '------'       '----'        \    /         /_  _\
-//!     polygon        rounded        '--'             \/
+//!     outline        rounded        '--'             \/
 //!                    rectangle      regular       supershape
 //! ```
 
@@ -12,6 +12,8 @@ use std::f64::consts::{PI, TAU};
 
 use glam::DVec2;
 
+use super::arcs::arched;
+use super::outline::Outline;
 use super::sections::area;
 use super::straighten::{corners, crosses, distance, fitted, uncut};
 use crate::fit::linear::solved;
@@ -51,7 +53,7 @@ pub(super) struct Grain {
 /// An outline in a plane.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Base {
-    Polygon(Vec<DVec2>),
+    Outline(Outline),
     /// A rectangle whose first side is turned by an angle.
     Rounded {
         centre: DVec2,
@@ -96,12 +98,18 @@ pub(super) fn bases(ring: &[DVec2], grain: Grain) -> Vec<Base> {
     found.extend(regular(&polygon, size));
     found.extend(rounded(&ring, &even, size));
     let is_regular = found.iter().any(|base| matches!(base, Base::Regular { .. }));
-    if found.is_empty() && polygon.len() > 4 {
+    let is_plain = found.is_empty() && polygon.len() > 4;
+    if is_plain {
         found.extend(supershape(&even, centre, size));
     }
     let most = if found.is_empty() { MOST } else { FEW };
+    if is_plain {
+        let outline = arched(&ring, &polygon, grain.tolerance, grain.short == 0.0);
+        let is_simple = |outline: &Outline| outline.corners.len() <= MOST && !crosses(&outline.corners);
+        found.extend(outline.filter(is_simple).map(Base::Outline));
+    }
     if (3..=most).contains(&polygon.len()) && !is_regular && !crosses(&polygon) {
-        found.push(Base::Polygon(polygon));
+        found.push(Base::Outline(Outline::polygon(polygon)));
     }
     found
 }

@@ -25,13 +25,14 @@ impl Leaf {
             Shape::Cylinder(_) | Shape::Torus(_) => 5,
             Shape::Box(_) | Shape::Cone(_) | Shape::Prism(_) | Shape::Supershape { .. } => 6,
             Shape::RoundedRectangle { .. } => 7,
+            Shape::Supersolid(_) => 9,
             Shape::Superellipsoid(_) => 11,
         }
     }
 
     /// Whether it is of no region: all of it is found by fitting.
     pub(super) fn is_free(&self) -> bool {
-        matches!(self.shape, Shape::Superellipsoid(_) | Shape::Supershape { .. })
+        matches!(self.shape, Shape::Superellipsoid(_) | Shape::Supersolid(_) | Shape::Supershape { .. })
     }
 
     /// The leaf with ends, sides, radii and place changed, in its own axes; none if a size would
@@ -109,17 +110,21 @@ impl Leaf {
                 let [e1, e2] = s.exponents();
                 let [e1, e2] = [e1 + x[9], e2 + x[10]].map(|e| e.clamp(EXPONENTS[0], EXPONENTS[1]));
                 let shape = Shape::Superellipsoid(Superellipsoid::new(semi_axes, e1, e2));
-                let turn = whole(6);
-                let moved = by(whole(0), shape);
-                match turn.try_normalize() {
-                    Some(axis) => {
-                        let angle = turn.length() % TAU;
-                        Leaf { rotation: self.rotation * DMat3::from_axis_angle(axis, angle), ..moved }
-                    }
-                    None => moved,
-                }
+                by(whole(0), shape).turned_about(whole(6))
+            }
+            Shape::Supersolid(s) => {
+                let scale = s.scale() + whole(3);
+                is_left(&scale.to_array())?;
+                by(whole(0), Shape::Supersolid(s.scaled(scale))).turned_about(whole(6))
             }
         })
+    }
+
+    /// Turned about an axis of its own, as long as the angle.
+    fn turned_about(self, turn: DVec3) -> Leaf {
+        let Some(axis) = turn.try_normalize() else { return self };
+        let angle = turn.length() % TAU;
+        Leaf { rotation: self.rotation * DMat3::from_axis_angle(axis, angle), ..self }
     }
 
     /// Turned about its own z axis.

@@ -46,6 +46,9 @@ impl Leaf {
             Shape::Profile { outline, height } => {
                 sizes = outline.corners.iter().map(|corner| corner.length()).collect();
                 sizes.sort_by(f64::total_cmp);
+                let mut radii: Vec<f64> = outline.radii.iter().copied().filter(|radius| *radius != 0.0).collect();
+                radii.sort_by(f64::total_cmp);
+                sizes.extend(radii);
                 sizes.push(*height);
             }
             _ => {}
@@ -309,7 +312,7 @@ mod tests {
             let corners = corners.map(|c| DVec2::new(mirror * (c.x - middle.x), c.y - middle.y)).to_vec();
             let centre = DVec3::new(7.0 * mirror, 2.0, 0.0);
             Leaf {
-                shape: Shape::Profile { outline: Outline { corners }, height: 5.0 },
+                shape: Shape::Profile { outline: Outline::polygon(corners), height: 5.0 },
                 rotation: DMat3::IDENTITY,
                 centre,
             }

@@ -9,7 +9,8 @@ use super::measures::{TO_X, TO_Y};
 use super::outline::Outline;
 use crate::field::{Dual, Field, Real};
 use crate::{
-    Cone, Cuboid, Cylinder, Prism, Profile, Rectangle, Solid, Sphere, Superellipsoid, Superpolygon, Torus, deg,
+    Cone, Cuboid, Cylinder, Prism, Profile, Rectangle, Solid, Sphere, Superellipsoid, Superpolygon, Supershape, Torus,
+    deg,
 };
 
 /// A shape about the origin, along z.
@@ -38,6 +39,8 @@ pub(in crate::fit) enum Shape {
         height: f64,
     },
     Superellipsoid(Superellipsoid),
+    /// A three-dimensional supershape.
+    Supersolid(Supershape),
 }
 
 /// A shape where it is.
@@ -100,6 +103,7 @@ impl Shape {
                 let [e1, e2] = s.exponents();
                 Shape::Superellipsoid(Superellipsoid::new(by * s.semi_axes(), e1, e2))
             }
+            Shape::Supersolid(s) => Shape::Supersolid(s.scaled(by * s.scale())),
         }
     }
 
@@ -120,6 +124,7 @@ impl Shape {
             Shape::Prism(s) => s.eval(p),
             Shape::RoundedRectangle { base, height } => extruded(base.eval(p), *height),
             Shape::Superellipsoid(s) => s.eval(p),
+            Shape::Supersolid(s) => s.eval(p),
             // [`distance`](Shape::distance) asks corners and gauges.
             Shape::Profile { height, .. } | Shape::Supershape { height, .. } => {
                 extruded(p[0].lift(f64::INFINITY), *height)
@@ -134,6 +139,12 @@ impl Shape {
                 let value = self.value(Dual::point(p.to_array()));
                 let slope = DVec3::from_array(value.d).length();
                 -value.v / slope.max(1e-6)
+            }
+            Shape::Supersolid(s) => {
+                let step = 1e-4 * s.scale().min_element();
+                let along = |axis: DVec3| s.gauge(p + step * axis) - s.gauge(p - step * axis);
+                let slope = DVec3::from_array(DVec3::AXES.map(along)).length() / (2.0 * step);
+                (s.gauge(p) - 1.0) / slope.max(1e-6)
             }
             Shape::Supershape { base, height } => {
                 let (at, step) = (p.truncate(), 1e-4 * base.radius());
@@ -188,6 +199,7 @@ impl Shape {
         match self {
             Shape::Profile { outline, height } => 2.0 * p.z.abs() < *height && outline.contains(p.truncate()),
             Shape::Supershape { base, height } => 2.0 * p.z.abs() < *height && base.gauge(p.truncate()) < 1.0,
+            Shape::Supersolid(s) => s.gauge(p) < 1.0,
             _ => self.value(p.to_array()) > 0.0,
         }
     }
@@ -202,9 +214,10 @@ impl Shape {
             Shape::Torus(s) => (*s).into(),
             Shape::Prism(s) => (*s).into(),
             Shape::RoundedRectangle { base, height } => Profile::from(*base).extrude(*height),
-            Shape::Profile { outline, height } => Profile::polygon(outline.corners.iter().copied()).extrude(*height),
+            Shape::Profile { outline, height } => outline.profile().extrude(*height),
             Shape::Supershape { base, height } => Profile::from(base.clone()).extrude(*height),
             Shape::Superellipsoid(s) => (*s).into(),
+            Shape::Supersolid(s) => s.clone().into(),
         }
     }
 }
@@ -293,7 +306,8 @@ impl Leaf {
             Shape::RoundedRectangle { .. } => 10,
             Shape::Superellipsoid(_) => 11,
             Shape::Supershape { .. } => 12,
-            Shape::Profile { outline, .. } => 7 + 2 * outline.corners.len(),
+            Shape::Supersolid(_) => 17,
+            Shape::Profile { outline, .. } => 7 + 2 * outline.corners.len() + outline.arc_count(),
         }
     }
 
@@ -309,13 +323,18 @@ impl Leaf {
             Shape::Prism(s) => vec![f64::from(s.sides()), s.radius(), s.height()],
             Shape::RoundedRectangle { base, height } => vec![base.size.x, base.size.y, base.radius, *height],
             Shape::Profile { outline, height } => {
-                outline.corners.iter().flat_map(|corner| corner.to_array()).chain([*height]).collect()
+                let corners = outline.corners.iter().flat_map(|corner| corner.to_array());
+                corners.chain(outline.radii.iter().copied()).chain([*height]).collect()
             }
             Shape::Supershape { base, height } => {
                 let curve = base.curve();
                 vec![curve.m, curve.n1, curve.n2, curve.n3, base.radius(), *height]
             }
             Shape::Superellipsoid(s) => s.semi_axes().to_array().into_iter().chain(s.exponents()).collect(),
+            Shape::Supersolid(s) => {
+                let curves = [s.equator(), s.meridian()].map(|curve| [curve.m, curve.n1, curve.n2, curve.n3]);
+                s.scale().to_array().into_iter().chain(curves.concat()).collect()
+            }
         }
     }
 
@@ -341,6 +360,7 @@ impl Leaf {
             Shape::Profile { .. } => "profile",
             Shape::Supershape { .. } => "supershape",
             Shape::Superellipsoid(_) => "superellipsoid",
+            Shape::Supersolid(_) => "solid supershape",
         }
     }
 
@@ -381,9 +401,14 @@ pub(super) mod tests {
             Leaf::torus(axis, origin, 0.3, 0.1),
             posed(Shape::Prism(Prism::new(5, 0.3, 0.2))),
             posed(Shape::RoundedRectangle { base: Rectangle { size: DVec2::new(0.4, 0.3), radius: 0.1 }, height: 0.2 }),
-            posed(Shape::Profile { outline: Outline { corners }, height: 0.3 }),
+            posed(Shape::Profile { outline: Outline::polygon(corners.clone()), height: 0.3 }),
+            posed(Shape::Profile { outline: Outline { corners, radii: vec![0.3, 0.0, -0.4] }, height: 0.3 }),
             posed(Shape::Supershape { base: Superpolygon::new(Gielis::new(5.0, 4.0, 6.0, 6.0), 0.2), height: 0.4 }),
             posed(Shape::Superellipsoid(Superellipsoid::new([0.3, 0.2, 0.25], 0.5, 1.2))),
+            posed(Shape::Supersolid(
+                Supershape::new(Gielis::new(5.0, 4.0, 6.0, 6.0), Gielis::new(4.0, 3.0, 3.0, 3.0))
+                    .scaled([0.2, 0.3, 0.25]),
+            )),
         ]
     }
 

@@ -7,6 +7,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 use super::leaf::{Leaf, Shape};
 use super::outline::Outline;
+use crate::field::Field;
 use crate::{Cone, Cuboid, Cylinder, Prism, Rectangle, Sphere, Superellipsoid, Superpolygon, Torus};
 
 /// What a number of a leaf is.
@@ -66,12 +67,14 @@ impl Leaf {
             Shape::Cone(s) => round(s.bottom_radius.max(s.top_radius), s.height),
             Shape::Prism(s) => round(s.radius(), s.height()),
             Shape::RoundedRectangle { base, height } => 0.5 * base.size.extend(*height),
-            Shape::Profile { outline, height } => {
-                outline.corners.iter().fold(DVec2::ZERO, |reach, c| reach.max(c.abs())).extend(0.5 * height)
-            }
+            Shape::Profile { outline, height } => outline.reach().extend(0.5 * height),
             // The curve's own radius is 1 to some.
             Shape::Supershape { base, height } => round(2.0 * base.radius(), *height),
             Shape::Superellipsoid(s) => s.semi_axes(),
+            Shape::Supersolid(s) => {
+                let bounds = s.bounds();
+                bounds.min.abs().max(bounds.max.abs())
+            }
         }
     }
 
@@ -79,6 +82,7 @@ impl Leaf {
     pub(super) fn measures(&self) -> Vec<(Measure, f64)> {
         let at = self.rotation.transpose() * self.centre;
         let places = |at: DVec3| (0..3).map(|axis| (Measure::Place(axis), at[axis])).collect::<Vec<_>>();
+        let sizes = |semi_axes: DVec3| semi_axes.to_array().map(|a| (Measure::Size, 2.0 * a)).to_vec();
         let ends = |at: DVec3, size: DVec3| {
             let both = |axis: usize| [-0.5, 0.5].map(|side| (Measure::Place(axis), at[axis] + side * size[axis]));
             (0..3).flat_map(both).collect::<Vec<_>>()
@@ -101,13 +105,13 @@ impl Leaf {
                 // The outline stands where it is: nothing is moved but along z.
                 let corner = |c: &DVec2| [(Measure::Place(0), at.x + c.x), (Measure::Place(1), at.y + c.y)];
                 let corners = outline.corners.iter().flat_map(corner);
-                posed(at, *height).into_iter().skip(2).chain(corners).collect()
+                let arcs = outline.radii.iter().filter(|radius| **radius != 0.0);
+                let radii = arcs.map(|radius| (Measure::Radius, radius.abs()));
+                posed(at, *height).into_iter().skip(2).chain(corners).chain(radii).collect()
             }
             Shape::Supershape { base, height } => [posed(at, *height), vec![(Measure::Radius, base.radius())]].concat(),
-            Shape::Superellipsoid(s) => {
-                let sizes = s.semi_axes().to_array().map(|a| (Measure::Size, 2.0 * a));
-                [places(at), sizes.to_vec()].concat()
-            }
+            Shape::Superellipsoid(s) => [places(at), sizes(s.semi_axes())].concat(),
+            Shape::Supersolid(s) => [places(at), sizes(s.scale())].concat(),
         }
     }
 
@@ -161,11 +165,15 @@ impl Leaf {
                 let base = Rectangle { size: size.truncate(), radius };
                 (Shape::RoundedRectangle { base, height: size.z }, at)
             }
-            Shape::Profile { .. } => {
+            Shape::Profile { outline, .. } => {
                 let [low, high] = numbers.first_chunk::<2>()?;
-                let corners = numbers.get(2..)?.chunks_exact(2).map(|c| DVec2::new(c[0], c[1])).collect();
+                let (places, radii) = numbers.get(2..)?.split_at_checked(2 * outline.corners.len())?;
+                let corners = places.chunks_exact(2).map(|c| DVec2::new(c[0], c[1])).collect();
+                let mut left = radii.iter();
+                let radius = |old: &f64| if *old == 0.0 { Some(0.0) } else { left.next().map(|r| r * old.signum()) };
+                let radii = outline.radii.iter().map(radius).collect::<Option<Vec<f64>>>()?;
                 let height = between(*low, *high);
-                let shape = Shape::Profile { outline: Outline { corners }, height };
+                let shape = Shape::Profile { outline: Outline { corners, radii }, height };
                 (height > 0.0).then_some((shape, DVec3::Z * middle(*low, *high)))?
             }
             Shape::Supershape { base, .. } => {
@@ -176,6 +184,10 @@ impl Leaf {
                 let [x, y, z, a, b, c] = *numbers.first_chunk::<6>()?;
                 let [e1, e2] = s.exponents();
                 (Shape::Superellipsoid(Superellipsoid::new(0.5 * DVec3::new(a, b, c), e1, e2)), DVec3::new(x, y, z))
+            }
+            Shape::Supersolid(s) => {
+                let [x, y, z, a, b, c] = *numbers.first_chunk::<6>()?;
+                (Shape::Supersolid(s.scaled(0.5 * DVec3::new(a, b, c))), DVec3::new(x, y, z))
             }
         };
         Some(Leaf { shape, rotation: self.rotation, centre: self.rotation * at })

@@ -205,9 +205,10 @@ struct Extruded {
 fn extruded(base: &Base, kinds: PartKinds) -> Option<Extruded> {
     let of = |shape: Box<dyn Fn(f64) -> Shape>, angle, centre| Some(Extruded { shape, angle, centre });
     match base {
-        Base::Polygon(corners) if kinds.profiles => {
+        Base::Outline(Outline { corners, radii }) if kinds.profiles => {
             let centre = corners.iter().sum::<DVec2>() / corners.len() as f64;
-            let outline = Outline { corners: corners.iter().map(|corner| *corner - centre).collect() };
+            let corners = corners.iter().map(|corner| *corner - centre).collect();
+            let outline = Outline { corners, radii: radii.clone() };
             of(Box::new(move |height| Shape::Profile { outline: outline.clone(), height }), 0.0, centre)
         }
         &Base::Rounded { centre, angle, size, radius } => {

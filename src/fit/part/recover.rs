@@ -95,7 +95,7 @@ pub(super) fn recover_points(cloud: &PointCloud, settings: &PartSettings, run: &
     }
     check(points)?;
     let mut clock = Clock::start();
-    let samples = Samples::of_cloud(cloud, settings.noise, settings.seed);
+    let samples = Samples::of_cloud(cloud, settings.noise, settings.seed, run)?;
     run.check()?;
     let [low, high] = extent(points);
     let hollow = FitError::Hollow { of: "points", count: points.len() };
@@ -282,8 +282,8 @@ fn selector<'a>(
     let low = samples.points.iter().fold(DVec3::INFINITY, |low, p| low.min(*p));
     let high = samples.points.iter().fold(DVec3::NEG_INFINITY, |high, p| high.max(*p));
     propose(&mut pool, samples, &regions.regions, [low, high], queries, kinds, run)?;
-    if kinds.superellipsoids {
-        superellipsoids::propose(&mut pool, samples, regions, queries, settings.seed, run)?;
+    if kinds.superellipsoids || kinds.supershapes {
+        superellipsoids::propose(&mut pool, samples, regions, queries, kinds, settings.seed, run)?;
     }
     if kinds.profiles || kinds.prisms || kinds.supershapes {
         profiles::propose(&mut pool, body, samples, regions, queries, kinds, run)?;

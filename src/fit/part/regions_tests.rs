@@ -71,7 +71,8 @@ fn scan(mesh: &Mesh, noise: f64, tilt: f64) -> Samples {
     let points = samples.points.iter().zip(&samples.normals).map(|(p, n)| *p + *n * bell(noise)).collect();
     let turned = |n: &DVec3| (*n + DVec3::new(bell(tilt), bell(tilt), bell(tilt))).normalize().as_vec3();
     let normals = samples.normals.iter().map(turned).collect();
-    Samples::of_cloud(&PointCloud::new(points).unwrap().with_normals(normals).unwrap(), 0.0, 1)
+    Samples::of_cloud(&PointCloud::new(points).unwrap().with_normals(normals).unwrap(), 0.0, 1, &Run::default())
+        .unwrap()
 }
 
 #[test]

@@ -149,7 +149,7 @@ impl Samples {
     /// The samples of a cloud: points with the normals that they have, or that their neighbours
     /// tell, brought nearer to the surface. Their noise is so much at least, in length units,
     /// before that.
-    pub(super) fn of_cloud(cloud: &PointCloud, least_noise: f64, seed: u64) -> Samples {
+    pub(super) fn of_cloud(cloud: &PointCloud, least_noise: f64, seed: u64, run: &Run) -> Result<Samples, Cancelled> {
         let all = cloud.positions();
         let [low, high] = extent(all);
         let (centre, size) = (0.5 * (low + high), (high - low).length());
@@ -159,12 +159,12 @@ impl Samples {
         let mut points: Vec<DVec3> = kept.iter().map(|i| (all[*i] - centre) / size).collect();
         let normals: Vec<DVec3> = match cloud.normals() {
             Some(normals) => kept.iter().map(|i| normals[*i].as_dvec3().normalize_or(DVec3::Z)).collect(),
-            None => orient::normals(&points, &mut random),
+            None => orient::normals(&points, &mut random, run)?,
         };
         let weights = vec![1.0 / points.len().max(1) as f64; points.len()];
         let noise = noise(&points, &normals, &mut random).max(least_noise / size);
         let noise = smooth(&mut points, &normals, noise);
-        Samples {
+        Ok(Samples {
             points,
             normals,
             weights,
@@ -174,7 +174,7 @@ impl Samples {
             size,
             kind: Kind::Scan,
             noise,
-        }
+        })
     }
 
     /// How many there are.

@@ -99,7 +99,7 @@ mod tests {
         }
         let cloud = PointCloud::new(points).unwrap();
         let cloud = cloud.with_normals(normals.iter().map(|n| n.as_vec3()).collect()).unwrap();
-        let samples = Samples::of_cloud(&cloud, 0.0, 1);
+        let samples = Samples::of_cloud(&cloud, 0.0, 1, &Run::default()).unwrap();
         let leaves =
             [(true, block), (true, foot)].map(|(adds, leaf)| (adds, leaf.inward(samples.centre, samples.size)));
         let shares = seen(&leaves, &samples, &Run::default()).unwrap();

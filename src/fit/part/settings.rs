@@ -52,11 +52,13 @@ pub struct PartKinds {
     pub tori: bool,
     /// Superellipsoids, for what is round and nothing of the above.
     pub superellipsoids: bool,
-    /// Extruded polygons of up to 32 corners, and rectangles with rounded corners.
+    /// Extruded outlines of up to 32 corners, with straight sides and arcs, and rectangles with
+    /// rounded corners.
     pub profiles: bool,
     /// Regular prisms of 3 to 8 sides.
     pub prisms: bool,
-    /// Extruded supershapes: stars, flowers, cams.
+    /// Supershapes: extruded ones as stars, flowers, cams, and three-dimensional ones for what is
+    /// round and no superellipsoid.
     pub supershapes: bool,
 }
 

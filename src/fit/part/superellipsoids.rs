@@ -16,6 +16,8 @@ use super::pool::Pool;
 use super::queries::Queries;
 use super::regions::Regions;
 use super::samples::{Kind, Samples};
+use super::settings::PartKinds;
+use super::supershapes;
 use crate::fit::cost::Cost;
 use crate::fit::linear::Principal;
 use crate::fit::random::Random;
@@ -48,12 +50,17 @@ const LEAST: f64 = 0.3;
 /// Semi-axes at most, in sizes of the patch.
 const LARGE: f64 = 4.0;
 
-/// Puts superellipsoids among the candidates.
+/// Of which superellipsoids explain less, supershapes are looked for, of so many patches.
+const ENOUGH: f64 = 0.7;
+const SUPERSHAPES: usize = 3;
+
+/// Puts superellipsoids among the candidates, and supershapes where these are not enough.
 pub(super) fn propose(
     pool: &mut Pool,
     samples: &Samples,
     regions: &Regions,
     queries: &Queries,
+    kinds: PartKinds,
     seed: u64,
     run: &Run,
 ) -> Result<(), Cancelled> {
@@ -63,7 +70,10 @@ pub(super) fn propose(
         region.points.iter().for_each(|i| of_region[*i as usize] = number);
     }
     let mut random = Random::new(seed);
-    for patch in patches(samples).into_iter().chain(balls::patches(samples, &mut random)).collect::<Vec<_>>() {
+    let of_surface = patches(samples).into_iter().map(|patch| (patch, true));
+    let of_balls = balls::patches(samples, &mut random).into_iter().map(|patch| (patch, false));
+    let mut supershapes_left = if kinds.supershapes { SUPERSHAPES } else { 0 };
+    for (patch, is_whole) in of_surface.chain(of_balls).collect::<Vec<_>>() {
         run.check()?;
         let mut counts = vec![0_usize; regions.regions.len() + 1];
         for i in &patch.samples {
@@ -78,12 +88,19 @@ pub(super) fn propose(
         if explained as f64 >= EXPLAINED * patch.samples.len() as f64 {
             continue;
         }
-        of_patch(pool, &patch, samples, regions, queries, &mut random);
+        let share =
+            if kinds.superellipsoids { of_patch(pool, &patch, samples, regions, queries, &mut random) } else { 0.0 };
+        let is_left = is_whole && share < ENOUGH && patch.samples.len() >= supershapes::FEWEST;
+        if is_left && supershapes_left > 0 {
+            supershapes_left -= 1;
+            supershapes::of_patch(pool, &patch, samples, 1.5 * regions.eps, queries, &mut random, run)?;
+        }
     }
     Ok(())
 }
 
-/// Puts the superellipsoids of a patch among the candidates.
+/// Puts the superellipsoids of a patch among the candidates; the share of it that the best one
+/// explains.
 pub(super) fn of_patch(
     pool: &mut Pool,
     patch: &Patch,
@@ -91,9 +108,11 @@ pub(super) fn of_patch(
     regions: &Regions,
     queries: &Queries,
     random: &mut Random,
-) {
+) -> f64 {
     let scene = Scene::new(patch, samples, regions, random);
-    for model in scene.models() {
+    let models = scene.models();
+    let best = models.first().map_or(0.0, |(share, _)| *share);
+    for (_, model) in models {
         let Superquadric { e: [e1, e2], semi_axes, rotation, center } = model;
         let leaf = Leaf {
             shape: Shape::Superellipsoid(Superellipsoid::new(scene.size * semi_axes, e1, e2)),
@@ -103,6 +122,7 @@ pub(super) fn of_patch(
         let outward = scene.outward(&model);
         pool.add(leaf, queries, [patch.may[0] && outward, patch.may[1] && !outward], None);
     }
+    best
 }
 
 /// A patch brought to a size near 1 about 0.
@@ -131,8 +151,8 @@ impl Scene {
         Scene { points, normals, frames, centre: principal.mean, size, near: 1.5 * regions.eps / size }
     }
 
-    /// The best models, different ones.
-    fn models(&self) -> Vec<Superquadric> {
+    /// The best models, different ones, with the shares of the samples that they explain.
+    fn models(&self) -> Vec<(f64, Superquadric)> {
         let few = self.points.len().min(FEW);
         let first = Columns::<f32>::new(self.points[..few].iter().copied());
         let all = Columns::<f32>::new(self.points.iter().copied());
@@ -158,7 +178,8 @@ impl Scene {
             }
         }
         kept.sort_by(|a, b| b.0.total_cmp(&a.0));
-        kept.into_iter().take(KEPT).map(|(_, model)| model).collect()
+        kept.truncate(KEPT);
+        kept
     }
 
     fn starts(&self) -> Vec<Superquadric> {

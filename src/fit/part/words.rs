@@ -6,6 +6,7 @@ use super::leaf::{Leaf, Shape};
 use super::patterns::{Layout, Pattern};
 use super::result::PartLeaf;
 use super::through::{End, ends_in_the_open};
+use crate::Supershape;
 
 /// A length in five digits, which is what a drawing has.
 pub(super) fn length(v: f64) -> String {
@@ -54,6 +55,7 @@ fn added(leaf: &Leaf) -> String {
         Shape::Cylinder(s) => format!("cylinder, ⌀ {}, {height} high", length(2.0 * s.radius)),
         Shape::Cone(s) => format!("cone, {}, {height} high", widths(s.bottom_radius, s.top_radius)),
         Shape::Superellipsoid(s) => format!("superellipsoid, {}", joined((2.0 * s.semi_axes()).to_array())),
+        Shape::Supersolid(s) => supersolid(s),
         _ => format!("{}, {height} high", outline(leaf)),
     }
 }
@@ -84,6 +86,7 @@ fn cut(leaf: &Leaf, open: &[End]) -> String {
         Shape::Superellipsoid(s) => {
             format!("hollow of a superellipsoid, {}", joined((2.0 * s.semi_axes()).to_array()))
         }
+        Shape::Supersolid(s) => format!("hollow of a {}", supersolid(s)),
         _ => format!("cut-out, {}, {}", outline(leaf), how_deep()),
     }
 }
@@ -123,6 +126,11 @@ fn widths(bottom: f64, top: f64) -> String {
     }
 }
 
+fn supersolid(s: &Supershape) -> String {
+    let sizes = joined((2.0 * s.scale()).to_array());
+    format!("supershape of {} arms and meridians of {}, {sizes}", length(s.equator().m), length(s.meridian().m))
+}
+
 /// What is extruded.
 fn outline(leaf: &Leaf) -> String {
     match &leaf.shape {
@@ -130,7 +138,10 @@ fn outline(leaf: &Leaf) -> String {
         Shape::RoundedRectangle { base, .. } => {
             format!("rectangle, {}, corners of radius {}", joined(base.size.to_array()), length(base.radius))
         }
-        Shape::Profile { outline, .. } => format!("outline of {} corners", outline.corners.len()),
+        Shape::Profile { outline, .. } => match (outline.corners.len(), outline.arc_count()) {
+            (corners, 0) => format!("outline of {corners} corners"),
+            (corners, arcs) => format!("outline of {corners} corners, {arcs} of its sides arcs"),
+        },
         Shape::Supershape { base, .. } => {
             format!("supershape of {} arms, radius {}", length(base.curve().m), length(base.radius()))
         }

@@ -125,6 +125,17 @@ impl Shaped {
         points
     }
 
+    /// Points of what is on one side of a plane, that is 0.15 of the size behind the centre, nearly
+    /// along the axis.
+    pub fn half(&self, condition: Condition, count: usize, random: &mut Random) -> Vec<DVec3> {
+        let mut points = self.cloud(condition, 26 * count / 10, random);
+        let view = random.direction();
+        let view = self.rotation * DVec3::new(view.x, view.y, 0.3 * view.z).normalize();
+        points.retain(|p| (*p - self.center).dot(view) > -0.15 * self.size());
+        points.truncate(count);
+        points
+    }
+
     /// The volume of what is in both over that of what is in either, by points in a box about this
     /// one.
     pub fn overlap(&self, inside: impl Fn(DVec3) -> bool, random: &mut Random) -> f64 {
