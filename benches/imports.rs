@@ -3,8 +3,9 @@
 //! `cargo bench --bench imports` prints for bumpy balls of .1, .3 and 1 million triangles, on one
 //! thread and in seconds of the processor: how long the leaf takes to be made, its bytes a
 //! triangle, nanoseconds a point of values in single precision in blocks of 8³ points near the
-//! surface and over all of the box, of winding numbers alone, and of single points in double
-//! precision. Then how fast files are read.
+//! surface and over all of the box, as meshes ask for them: sides, and distances next to the
+//! surface; of all distances near the surface; and of single points in double precision. Then how
+//! fast files are read.
 //!
 //! Words after `--` choose sizes by their names. `save` writes the meshes and the points near them
 //! for other programs: `target/imports-NAME.ply` and `.xyz`.
@@ -80,13 +81,13 @@ fn per_point(count: usize, mut work: impl FnMut()) -> f64 {
     rounds[2]
 }
 
-fn values(leaf: &dyn AnyField, columns: &[Vec<f32>; 3]) -> f64 {
+fn values(leaf: &dyn AnyField, columns: &[Vec<f32>; 3], band: f64) -> f64 {
     let count = columns[0].len();
     let mut out = [0.0; CHUNK];
     per_point(count, || {
         for at in (0..count).step_by(CHUNK) {
             let points = columns.each_ref().map(|column| &column[at..at + CHUNK]);
-            leaf.lanes32_within(Chunk { points, placement: &Placement::IDENTITY, out: [&mut out] }, 0.0);
+            leaf.lanes32_within(Chunk { points, placement: &Placement::IDENTITY, out: [&mut out] }, band);
             black_box(&out);
         }
     })
@@ -96,14 +97,14 @@ fn main() {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| !word.starts_with("--")).collect();
     let is_chosen = |name: &str| words.iter().all(|word| word == "save") || words.iter().any(|word| word == name);
     println!(
-        "{:>6} {:>10} {:>8} {:>8} {:>8} {:>8} {:>8}",
-        "", "triangles", "made, s", "bytes", "near", "box", "single"
+        "{:>6} {:>10} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}",
+        "", "triangles", "made, s", "bytes", "near", "box", "distance", "single"
     );
     for (name, n) in SIZES.into_iter().filter(|(name, _)| is_chosen(name)) {
         let mesh = ball(n);
         let start = ThreadTime::now();
         let run = Run::default();
-        let leaf = MeshLeaf::new(mesh.positions(), mesh.triangles(), None, &run).expect("nobody has the token");
+        let leaf = MeshLeaf::new(mesh.positions(), mesh.triangles(), None, None, &run).expect("nobody has the token");
         let made = start.elapsed().as_secs_f64();
         let bytes = leaf.bytes() as f64 / leaf.len() as f64;
         let cell = 2.0 / n as f32;
@@ -116,9 +117,10 @@ fn main() {
                 black_box(leaf.value([near[0][at], near[1][at], near[2][at]].map(f64::from)));
             }
         });
-        let (near_ns, all_ns) = (values(&leaf, &near), values(&leaf, &all));
+        let (near_ns, all_ns) = (values(&leaf, &near, 0.0), values(&leaf, &all, 0.0));
+        let distances = values(&leaf, &near, f64::INFINITY);
         println!(
-            "{name:>6} {:>10} {made:>8.2} {bytes:>8.0} {near_ns:>8.0} {all_ns:>8.0} {single:>8.0}",
+            "{name:>6} {:>10} {made:>8.2} {bytes:>8.0} {near_ns:>8.0} {all_ns:>8.0} {distances:>8.0} {single:>8.0}",
             mesh.triangles().len()
         );
         if words.iter().any(|word| word == "save") {

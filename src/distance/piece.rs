@@ -37,12 +37,12 @@ pub(super) fn first(plot: &Plot, seams: &mut Seams) -> Vec<Piece> {
 impl Piece {
     pub(super) fn patch(&self, positions: &[DVec3], seams: &Seams, tolerance: f64) -> Patch {
         let corners = self.corners.map(|v| positions[v as usize]);
-        let bulges = self.hems.map(|hem| seams.of(hem).bend(positions));
+        let displacements = self.hems.map(|hem| seams.of(hem).bend(positions));
         // What is bent by less counts as flat.
-        if bulges.iter().all(|bend| bend.length() < 1e-2 * tolerance) {
+        if displacements.iter().all(|bend| bend.length() < 1e-2 * tolerance) {
             return Patch::flat(corners);
         }
-        Patch { corners, bulges }
+        Patch { corners, displacements }
     }
 
     /// How far its sides are off.

@@ -16,7 +16,7 @@ use super::piece::{Piece, first};
 use super::plots::{Plot, Plots};
 use super::seam::Seams;
 use crate::mesh::Slopes;
-use crate::{Cancelled, Run};
+use crate::{Bounds, Cancelled, Run};
 use rvachev_field::Patch;
 
 /// What is done for patches.
@@ -78,6 +78,8 @@ pub(super) struct Quilt {
     far: Vec<[f64; 2]>,
     /// Patches that are far off.
     pub(super) spots: Vec<Spot>,
+    /// Boxes in which patches are farther off than the tolerance, or miss something, and how far.
+    doubts: Vec<(Bounds, f64)>,
 }
 
 /// A patch that is far off, and how far.
@@ -106,7 +108,7 @@ impl Residual {
 impl Quilt {
     /// One that has these spots and nothing else, to be within a tolerance of the surface.
     pub(super) fn of(spots: Vec<Spot>, tolerance: f64) -> Quilt {
-        Quilt { patches: Vec::new(), error: 0.0, area: 0.0, tolerance, far: Vec::new(), spots }
+        Quilt { patches: Vec::new(), error: 0.0, area: 0.0, tolerance, far: Vec::new(), spots, doubts: Vec::new() }
     }
 
     /// Patches of triangles near the surface; `None` if more than this part of them is far off and
@@ -200,6 +202,7 @@ impl Quilt {
         // One that is farther off than it is wide tells nothing of the surface.
         if off > ASTRAY * width {
             self.error = self.error.max(width);
+            self.doubts.push((patch.bounds().inflate(off.min(2.0 * width)), f64::INFINITY));
         } else {
             self.error = self.error.max(off);
             self.patches.push(patch);
@@ -227,6 +230,18 @@ impl Quilt {
         self.area += other.area;
         self.far.extend(other.far);
         self.spots.extend(other.spots);
+        self.doubts.extend(other.doubts);
+    }
+
+    /// Tells of cells of some size that have more of the surface than the patches.
+    pub(super) fn miss(&mut self, cells: Vec<Bounds>, size: f64) {
+        self.error = self.error.max(size);
+        self.doubts.extend(cells.into_iter().map(|cell| (cell, f64::INFINITY)));
+    }
+
+    /// Boxes in which patches may be farther off than this.
+    pub(super) fn doubts(&self, off: f64) -> Vec<Bounds> {
+        self.doubts.iter().filter(|(_, own)| *own > off).map(|(bounds, _)| *bounds).collect()
     }
 
     fn note(&mut self, patch: &Patch, off: f64) {
@@ -234,6 +249,7 @@ impl Quilt {
         self.area += area;
         if off > self.tolerance {
             self.far.push([off, area]);
+            self.doubts.push((patch.bounds().inflate(off), off));
         }
     }
 

@@ -46,7 +46,7 @@ const KNOWN: f64 = 3.0;
 /// A triangle and how far it is off.
 type Found = (Patch, f64);
 
-/// Adds to a quilt what is hidden in cells. Gives whether there is some left.
+/// Adds to a quilt what is hidden in cells. Gives those that have some left.
 pub(super) fn cover(
     quilt: &mut Quilt,
     subject: &Subject<'_>,
@@ -54,9 +54,9 @@ pub(super) fn cover(
     slopes: &Slopes<'_>,
     tolerance: f64,
     run: &Run,
-) -> Result<bool, Cancelled> {
+) -> Result<Vec<Bounds>, Cancelled> {
     if hidden.is_empty() {
-        return Ok(false);
+        return Ok(Vec::new());
     }
     let alone = Run { progress: None, ..run.clone() };
     let known = Patches::new(&quilt.patches, &alone)?;
@@ -81,8 +81,8 @@ pub(super) fn cover(
     // What ends beside a sheet, or beside what the cells show, is part of that.
     let sheets = Patches::new(&sheets, &alone)?;
     let is_left =
-        |cell: Bounds| ![&known, &sheets].iter().any(|near| is_known(near, cell.center(), cell.longest_side()));
-    Ok(missed.into_iter().flatten().any(is_left))
+        |cell: &Bounds| ![&known, &sheets].iter().any(|near| is_known(near, cell.center(), cell.longest_side()));
+    Ok(missed.into_iter().flatten().filter(is_left).collect())
 }
 
 /// A cell that hides something.

@@ -72,7 +72,7 @@ impl DistanceSource for FromMeshes {
         }
         if bounds.is_empty() || size == 0.0 {
             let patches = Arc::new(Patches::new(&[], run)?);
-            return Ok(Surface { patches, accuracy: Accuracy::default(), flat });
+            return Ok(Surface { patches, accuracy: Accuracy::default(), doubts: Vec::new(), flat });
         }
         if !size.is_finite() {
             return Err(SolidError::Unbounded { path: programs.unbounded.clone() }.into());
@@ -130,8 +130,9 @@ impl DistanceSource for FromMeshes {
                     is_enough = is_near(&found);
                     // What is hidden is looked for once the rest is as it is to be.
                     if is_enough || is_last {
-                        if cover(&mut found.1, &subject, &hidden, &slopes, tolerance, &to_sew)? {
-                            found.1.error = found.1.error.max(cell);
+                        let missed = cover(&mut found.1, &subject, &hidden, &slopes, tolerance, &to_sew)?;
+                        if !missed.is_empty() {
+                            found.1.miss(missed, cell);
                             is_enough = false;
                             is_last &= !is_gentle || 4.0 * count > HIDDEN * enough;
                         }
@@ -143,7 +144,8 @@ impl DistanceSource for FromMeshes {
             if let Some((reached, quilt)) = best.take_if(|_| is_last || is_enough) {
                 let patches = Arc::new(Patches::new(&quilt.patches, &run.stage(done, 1.0))?);
                 run.report(1.0);
-                return Ok(Surface { patches, accuracy: Accuracy { tolerance: reached, error: quilt.error }, flat });
+                let (accuracy, doubts) = (Accuracy { tolerance: reached, error: quilt.error }, quilt.doubts(reached));
+                return Ok(Surface { patches, accuracy, doubts, flat });
             }
             cell *= 0.5;
         }

@@ -167,7 +167,7 @@ fn distance(
         return Ok((Arc::new(tiles), accuracy));
     }
     let surface = surface(solid, &programs, wanted, source, run)?;
-    let Surface { patches, accuracy, flat } = &*surface;
+    let Surface { patches, accuracy, flat, .. } = &*surface;
     let field = SurfaceDistance::new(patches.clone(), sign(&programs), accuracy.error, *flat, programs.bounds);
     Ok((Arc::new(field), accuracy.plus(programs.accuracy)))
 }

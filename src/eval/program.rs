@@ -218,6 +218,33 @@ impl Program {
         instance.frame != 0 || instance.field.jumps()
     }
 
+    /// Whether any of its leaves goes on in another one, or is seen through what may tear it.
+    pub(crate) fn tears(&self) -> bool {
+        let is_torn = |mut frame: u32| {
+            while let Some(own) = self.scene.frame(frame) {
+                if !own.warp.is_continuous() {
+                    return true;
+                }
+                frame = own.parent;
+            }
+            false
+        };
+        let mut leaves = self.nodes.iter().filter_map(Node::valued_by).map(|leaf| self.instance(leaf));
+        leaves.any(|leaf| leaf.field.jumps() || is_torn(leaf.frame))
+    }
+
+    /// Those of its leaves that are neither deformed nor offset.
+    pub(crate) fn plain_leaves(&self) -> impl Iterator<Item = &Instance> {
+        let leaves = self.nodes.iter().filter_map(Node::valued_by).map(|leaf| self.instance(leaf));
+        leaves.filter(|leaf| leaf.frame == 0 && leaf.placement.shift == 0.0)
+    }
+
+    /// The one leaf that it is, neither deformed nor offset, and whether it is its complement.
+    pub(crate) fn only_plain_leaf(&self) -> Option<(&Instance, bool)> {
+        let leaf = self.plain_leaves().next().filter(|_| self.nodes.len() == 1)?;
+        Some((leaf, self.root.negated()))
+    }
+
     /// The first leaf that is no formula, if there is one.
     #[cfg(feature = "formula")]
     pub(crate) fn unlowered(&self) -> Option<&Instance> {

@@ -56,6 +56,8 @@ pub(crate) struct Surface {
     pub(crate) patches: Arc<Patches>,
     /// How far the patches may be off the surface.
     pub(crate) accuracy: Accuracy,
+    /// Where they may be off by more than the tolerance.
+    pub(crate) doubts: Vec<Bounds>,
     /// The axis along which it is a cylinder, if it is: the patches are those where its coordinate
     /// is 0.
     pub(crate) flat: Option<usize>,

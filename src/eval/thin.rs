@@ -32,9 +32,18 @@ impl Program {
         self.scene.leaves.iter().map(is_thin).collect()
     }
 
-    /// Whether a leaf is flat between creases, however blunt these are.
+    /// Whether a leaf is flat between creases, however blunt these are: one that is not bent.
     pub(crate) fn is_faceted(&self) -> bool {
-        self.scene.leaves.iter().any(|leaf| leaf.field.is_faceted())
+        let is_bent = |mut frame: u32| {
+            while let Some(own) = self.scene.frame(frame) {
+                if !own.warp.folds() {
+                    return true;
+                }
+                frame = own.parent;
+            }
+            false
+        };
+        self.scene.leaves.iter().any(|leaf| leaf.field.is_faceted() && !is_bent(leaf.frame))
     }
 
     /// The corners of such leaves, as vertices have them, each once; not of those that are deformed
@@ -42,8 +51,9 @@ impl Program {
     pub(crate) fn corners(&self) -> Vec<DVec3> {
         let mut all: Vec<[f32; 3]> = Vec::new();
         for leaf in self.scene.leaves.iter().filter(|leaf| leaf.frame == 0 && leaf.placement.shift == 0.0) {
+            let Some(facets) = leaf.field.facets() else { continue };
             let map = leaf.to_local.inverse();
-            leaf.field.each_corner(&mut |p| all.push((map.transform_point3(p).as_vec3() + 0.0).to_array()));
+            all.extend(facets.positions.iter().map(|p| (map.transform_point3(*p).as_vec3() + 0.0).to_array()));
         }
         all.sort_unstable_by_key(|p| p.map(f32::to_bits));
         all.dedup();

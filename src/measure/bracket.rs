@@ -82,7 +82,7 @@ struct Bracket {
 
 /// What a cell, which the surface of the program may cross, has of the solid.
 pub(super) fn held(program: &Program, cell: &Bounds) -> Held {
-    let is_smooth = || program.is_steady() && !program.jumps();
+    let is_smooth = || program.is_steady() && !program.tears();
     let first = match by_concavity(program, cell) {
         Some(held) => held,
         None if is_smooth() => by_slopes(program, cell).held(cell),

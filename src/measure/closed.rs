@@ -12,7 +12,7 @@
 //! ```
 //!
 //! The axes are principal ones of all leaves but the wedge. Maps change moments as they do points;
-//! areas only if they stretch evenly.
+//! areas only if they stretch evenly. Triangles of imported meshes are mapped one by one.
 //!
 //! Source: A. Jaklič, A. Leonardis, F. Solina, *Segmentation and Recovery of Superquadrics* (2000),
 //! chapter 2.
@@ -21,13 +21,15 @@ use std::f64::consts::PI;
 
 use glam::{DAffine3, DVec3};
 
+use super::facets::Facets;
 use super::gamma::{beta, ln_gamma};
 use super::moments::Moments;
 use crate::form::{Form, LeafForm};
 use crate::{
-    Capsule, Cone, Cuboid, Cylinder, Ellipsoid, GeneralisedSuperquadric, Prism, Pyramid, RoundedCuboid, Solid, Sphere,
-    Superellipsoid, Supertoroid, Torus, Wedge,
+    Cancelled, Capsule, Cone, Cuboid, Cylinder, Ellipsoid, GeneralisedSuperquadric, Prism, Pyramid, RoundedCuboid, Run,
+    Solid, Sphere, Superellipsoid, Supertoroid, Torus, Wedge,
 };
+use rvachev_field::MeshLeaf;
 
 /// A map stretches evenly if it does so to this part.
 const EVEN: f64 = 1e-12;
@@ -36,27 +38,46 @@ const EVEN: f64 = 1e-12;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Closed {
     pub(super) moments: Moments,
-    /// Nothing where no closed form is known of it.
-    pub(super) area: Option<f64>,
+    /// How far the volume may be off, as a part of it.
+    pub(super) rounding: f64,
+    /// Nothing where no closed form is known of it; and how far it may be off.
+    pub(super) area: Option<[f64; 2]>,
 }
 
+/// What has a closed form is off by rounding: by this part of it at most.
+const ROUNDING: f64 = 1e-12;
+
 /// The closed form of a solid that is a leaf after affine maps, if there is one.
-pub(super) fn closed(solid: &Solid) -> Option<Closed> {
+pub(super) fn closed(solid: &Solid, run: &Run) -> Result<Option<Closed>, Cancelled> {
     let (mut map, mut at) = (DAffine3::IDENTITY, solid);
     let leaf = loop {
         at = match at.form() {
-            Form::Leaf(leaf) => break leaf,
+            Form::Leaf(leaf) | Form::Custom(leaf) => break leaf,
             Form::Affine { operand, map: own, .. } => {
                 map *= own;
                 operand
             }
             Form::Paint { operand, .. } | Form::Name { operand, .. } => operand,
-            _ => return None,
+            _ => return Ok(None),
         };
     };
-    let Closed { moments, area } = of_leaf(&leaf)?;
+    if let Some(mesh) = leaf.get::<MeshLeaf>() {
+        return Ok(Facets::of(mesh, &map, run)?.and_then(|facets| {
+            let moments = facets.moments();
+            let rounding = ROUNDING + facets.volume_error() / moments.volume;
+            (moments.volume > 0.0).then_some(Closed { moments, rounding, area: Some(facets.area()) })
+        }));
+    }
+    let Some(Exact { moments, area }) = of_leaf(&leaf) else { return Ok(None) };
     let area = area.zip(even_stretch(&map)).map(|(area, stretch)| area * stretch * stretch);
-    Some(Closed { moments: moments.mapped(&map), area })
+    let area = area.map(|area| [area, ROUNDING * area]);
+    Ok(Some(Closed { moments: moments.mapped(&map), rounding: ROUNDING, area }))
+}
+
+/// The same of a leaf, to rounding.
+struct Exact {
+    moments: Moments,
+    area: Option<f64>,
 }
 
 /// What a map stretches by, if that is the same along all directions.
@@ -67,8 +88,8 @@ fn even_stretch(map: &DAffine3) -> Option<f64> {
     off.to_cols_array().iter().all(|x| x.abs() <= EVEN * stretch).then(|| stretch.sqrt())
 }
 
-fn of_leaf(leaf: &LeafForm<'_>) -> Option<Closed> {
-    let closed = |moments, area| Some(Closed { moments, area: Some(area) });
+fn of_leaf(leaf: &LeafForm<'_>) -> Option<Exact> {
+    let closed = |moments, area| Some(Exact { moments, area: Some(area) });
     if let Some(Sphere { radius }) = leaf.get() {
         return closed(ball(*radius), 4.0 * PI * radius.powi(2));
     }
@@ -101,7 +122,7 @@ fn of_leaf(leaf: &LeafForm<'_>) -> Option<Closed> {
     }
     if let Some(Ellipsoid { semi_axes: a }) = leaf.get() {
         let volume = 4.0 / 3.0 * PI * a.element_product();
-        return Some(Closed { moments: Moments::symmetric(volume, 0.2 * volume * *a * *a), area: None });
+        return Some(Exact { moments: Moments::symmetric(volume, 0.2 * volume * *a * *a), area: None });
     }
     if let Some(prism) = leaf.get::<Prism>() {
         let (base, height) = (Base::new(prism.sides(), prism.radius()), prism.height());
@@ -125,7 +146,7 @@ fn of_leaf(leaf: &LeafForm<'_>) -> Option<Closed> {
         let area = size.y * (size.x + size.z + size.x.hypot(size.z)) + size.x * size.z;
         return closed(moments.moved(DVec3::new(-size.x, 0.0, -size.z) / 6.0), area);
     }
-    let superquadric = |moments| Some(Closed { moments, area: None });
+    let superquadric = |moments| Some(Exact { moments, area: None });
     if let Some(leaf) = leaf.get::<Superellipsoid>() {
         return superquadric(superellipsoid(leaf));
     }

@@ -10,6 +10,7 @@ use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
 use super::bracket::{Held, held};
+use super::enclosed::Enclosed;
 use super::moments::Moments;
 use crate::eval::Narrowed;
 use crate::program::Program;
@@ -20,7 +21,7 @@ use crate::{Bounds, Cancelled, Run};
 const FIRST: f64 = 12.0;
 
 /// After so many cells the work ends, with what is certain then.
-const MOST: usize = 1 << 20;
+pub(super) const MOST: usize = 1 << 20;
 
 /// A solid's volume is not told more finely than this part of its box.
 const FINEST: f64 = 1e-6;
@@ -54,6 +55,8 @@ struct Cell {
 struct Sums {
     inside: Moments,
     cells: Vec<Cell>,
+    enclosed: Enclosed,
+    bounds: Bounds,
 }
 
 impl Sums {
@@ -82,6 +85,11 @@ impl Sums {
             first += held.open() * reach.max_element();
             second += held.open() * reach.length_squared();
         }
+        let (rounded, reach) = (self.enclosed.volume_error(), (self.bounds.center() - centre).abs());
+        let reach = reach + self.bounds.half_extents();
+        open += rounded;
+        first += rounded * reach.max_element();
+        second += rounded * reach.length_squared();
         let spread = moments.moved(-centre).inertia();
         let size = spread.to_cols_array().into_iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         first += ROUNDING * (moments.volume * centre.abs().max_element() + (moments.volume * size).sqrt());
@@ -91,7 +99,7 @@ impl Sums {
         let rounding = ROUNDING * (size + moments.volume * centre.length_squared());
         Integral {
             moments,
-            volume_error: self.error() + ROUNDING * moments.volume,
+            volume_error: self.error() + ROUNDING * moments.volume + rounded,
             centroid_error,
             inertia_error: second + rounding + if shifted.is_nan() { f64::INFINITY } else { shifted },
         }
@@ -99,8 +107,14 @@ impl Sums {
 }
 
 /// The integral over what is inside a program, which is nowhere but in a box, to a part of the
-/// volume.
-pub(super) fn integral(program: &Program, bounds: &Bounds, tolerance: f64, run: &Run) -> Result<Integral, Cancelled> {
+/// volume, or what so many cells tell.
+pub(super) fn integral(
+    program: &Program,
+    bounds: &Bounds,
+    tolerance: f64,
+    most: usize,
+    run: &Run,
+) -> Result<Integral, Cancelled> {
     let [to_find, to_divide] = run.stages([0.1, 0.9]);
     let side = bounds.longest_side() / FIRST;
     let blocks = (bounds.size() / side).to_array().map(|count| (count.ceil() as u32).max(1));
@@ -113,24 +127,26 @@ pub(super) fn integral(program: &Program, bounds: &Bounds, tolerance: f64, run: 
         let part = grid.bounds(*from, *to);
         inside.add(&Moments::cuboid(part.center(), part.size()));
     }
+    let enclosed = Enclosed::new(program, &to_find)?;
     let first = |block: &Block| {
         run.check()?;
         let bounds = grid.bounds(block.index, block.index.map(|at| at + 1));
         let program = found.programs[block.program as usize].clone();
-        Ok(Cell { held: held(&program, &bounds), bounds, program })
+        let held = enclosed.held(&program, &bounds).unwrap_or_else(|| held(&program, &bounds));
+        Ok(Cell { held, bounds, program })
     };
     let cells = found.blocks.par_iter().map(first).collect::<Result<Vec<Cell>, Cancelled>>()?;
     let mut asked = cells.len();
-    let mut sums = Sums { inside, cells };
+    let mut sums = Sums { inside, cells, enclosed, bounds: *bounds };
     let smallest = FINEST * bounds.size().element_product();
     let begun = sums.error();
     loop {
         let (error, enough) = (sums.error(), tolerance * sums.moments().volume.max(smallest));
         to_divide.report((begun / error).ln() / (begun / enough).ln().max(1.0));
-        if error <= enough || asked >= MOST {
+        if error <= enough || asked >= most {
             return Ok(sums.integral());
         }
-        let chosen = chosen(&sums.cells, 2.0 * LEFT * enough, (MOST - asked).div_ceil(8));
+        let chosen = chosen(&sums.cells, 2.0 * LEFT * enough, (most - asked).div_ceil(8));
         asked += 8 * chosen.len();
         sums.divide(chosen, &to_divide)?;
     }
@@ -164,7 +180,8 @@ impl Sums {
                     Narrowed::Same => program.clone(),
                     Narrowed::Simpler(simpler) => simpler,
                 };
-                Some(Ok(Cell { held: held(&program, &part), bounds: part, program }))
+                let held = self.enclosed.held(&program, &part).unwrap_or_else(|| held(&program, &part));
+                Some(Ok(Cell { held, bounds: part, program }))
             });
             Ok(parts.flatten().collect::<Vec<Result<Cell, Held>>>())
         };

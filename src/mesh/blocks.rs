@@ -167,7 +167,7 @@ impl Blocks {
             let block = cell.to_array().map(|x| x.max(0.0) as u32 / BLOCK as u32 * BLOCK as u32);
             // A triangle of several blocks may have its middle in one that holds no vertex.
             let nth = places.binary_search_by_key(&block, |&(block, _)| block).ok();
-            nth.map_or(whole, |nth| self.programs.of(places[nth].1)).deciding_leaf(middle)
+            nth.map_or(whole, |nth| self.programs.of(places[nth].1)).deciding_owner(middle)
         })
     }
 }

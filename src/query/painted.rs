@@ -30,7 +30,7 @@ impl Mesh {
         let program = compiled(solid)?.surface.clone();
         let palette = solid.palette()?;
         let run = Run::default();
-        let owner = |_, triangle| program.deciding_leaf(self.corners(triangle).into_iter().sum::<DVec3>() / 3.0);
+        let owner = |_, triangle| program.deciding_owner(self.corners(triangle).into_iter().sum::<DVec3>() / 3.0);
         let owners = match self.owners() {
             Some(owners) => Ok(owners.to_vec()),
             None => each_triangle(&self, &run, owner),

@@ -15,11 +15,15 @@ pub struct MeshSolid {
     /// point of its triangles, in meshes and pictures, unless it is [painted](Solid::paint).
     /// Default: yes.
     pub colors: bool,
+    /// Whether the solid is told apart by the owners of the mesh, where that has some: the
+    /// [owner](Solid::owner) of a point is then that of the nearest triangle, as `mesh[7]` for the
+    /// one with number 7. Default: yes.
+    pub owners: bool,
 }
 
 impl Default for MeshSolid {
     fn default() -> MeshSolid {
-        MeshSolid { colors: true }
+        MeshSolid { colors: true, owners: true }
     }
 }
 
@@ -38,8 +42,8 @@ impl Solid {
     /// * A mesh that is inside out encloses nothing: no winding number is above one half. Using its
     ///   solid is an error that says so; [`Mesh::flipped`] turns it.
     ///
-    /// Solids from meshes with the same triangles in the same order, and the same colours, are
-    /// equal.
+    /// Solids from meshes with the same triangles in the same order, and the same colours and owners,
+    /// are equal.
     ///
     /// ```
     /// use rvachev::{MeshSettings, MeshSolid, Solid};
@@ -59,8 +63,8 @@ impl Solid {
     /// mesh's middle; those of a [`Mesh`] are in single precision from the origin, some seven
     /// digits, so that at coordinates of 4·10⁶ they are rounded to a quarter: parts far from the
     /// origin keep their shape if they are moved there before they are written. A mesh takes some
-    /// 120 bytes a triangle, 9 more with colours, and about a second a million triangles to be
-    /// made. Openings cost: values near them are found point by point.
+    /// 130 bytes a triangle, 9 more with colours and 4 with owners, and about a second a million
+    /// triangles to be made. Openings cost: values near them are found point by point.
     ///
     /// # Errors
     ///
@@ -83,7 +87,9 @@ impl Solid {
         let colors = mesh.corner_colors().filter(|_| settings.colors);
         let opaque = |corners: &[[u8; 4]; 3]| corners.map(|[r, g, b, _]| [r, g, b]);
         let colors = colors.map(|colors| colors.iter().map(opaque).collect());
-        let leaf: Arc<dyn AnyField> = Arc::new(MeshLeaf::new(mesh.positions(), mesh.triangles(), colors, run)?);
+        let owners = mesh.owners().filter(|_| settings.owners);
+        let leaf = MeshLeaf::new(mesh.positions(), mesh.triangles(), colors, owners, run)?;
+        let leaf: Arc<dyn AnyField> = Arc::new(leaf);
         Ok(Solid::from_node(Node::Leaf(leaf)))
     }
 }

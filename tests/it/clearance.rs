@@ -3,7 +3,9 @@
 use std::time::Instant;
 
 use glam::DVec3;
-use rvachev::{CellSize, Clearance, MeshSettings, Run, Solid, deg, error::PrepareError};
+use rvachev::{
+    CellSize, Clearance, Helix, MeshSettings, Prism, Profile, RFunction, Run, Solid, deg, error::PrepareError, rad,
+};
 
 fn clearance(a: &Solid, b: &Solid) -> Clearance {
     let now = Instant::now();
@@ -154,4 +156,64 @@ fn a_foil_through_a_block_overlaps() {
     let block = Solid::cuboid([20.0; 3]);
     let found = clearance(&foil, &block);
     assert!(found.overlaps && found.depth + found.depth_error >= 9.0, "{found:?}");
+}
+
+/// A screw: a ridge on a core, all grown by a length.
+fn screw(by: f64) -> Solid {
+    let section =
+        Profile::polygon([[-0.3, -0.42 - by], [0.6 + by, -0.12 - by], [0.6 + by, 0.12 + by], [-0.3, 0.42 + by]]);
+    let ridge = section.sweep_helix(&Helix::new(4.0, 1.25, 4.0));
+    ridge.union(Solid::cylinder(4.0 + by, 8.0), RFunction::MIN_MAX)
+}
+
+#[test]
+fn a_bolt_in_its_nut_runs_free_touches_or_is_too_thick() {
+    let bolt = screw(0.0);
+    let nut = |gap: f64| Solid::from(Prism::across_flats(6, 13.0, 3.0)) - screw(gap);
+    let found = bolt.clearance(&nut(0.1), &Run::default()).unwrap().unwrap();
+    assert!(!found.overlaps && (found.distance - 0.1).abs() < 0.001, "{found:?}");
+    assert!(found.tolerance < 0.1, "{found:?}");
+    let found = bolt.clearance(&nut(0.0), &Run::default()).unwrap().unwrap();
+    assert!(!found.overlaps && found.distance < 0.001 && found.tolerance < 0.2, "{found:?}");
+    let found = bolt.clearance(&nut(-0.05), &Run::default()).unwrap().unwrap();
+    assert!(found.overlaps && (found.depth - 0.05).abs() < 0.01, "{found:?}");
+}
+
+/// A spur gear with involute teeth, the first in the middle of +x.
+fn gear(teeth: u32, backlash: f64) -> Profile {
+    let (module, pressure) = (2.0, 20f64.to_radians());
+    let pitch = 0.5 * module * f64::from(teeth);
+    let (base, tip, root) = (pitch * pressure.cos(), pitch + module, pitch - 1.25 * module);
+    let involute = |angle: f64| angle.tan() - angle;
+    let half = (0.25 * std::f64::consts::PI * module - 0.25 * backlash) / pitch + involute(pressure);
+    let flank: Vec<[f64; 2]> = (0..=8)
+        .map(|k| {
+            let radius = base + (tip - base) * f64::from(k) / 8.0;
+            [radius, half - involute((base / radius).acos())]
+        })
+        .collect();
+    let flank = [vec![[root, half]], flank].concat();
+    let mut outline = Vec::new();
+    for tooth in 0..teeth {
+        let middle = std::f64::consts::TAU * f64::from(tooth) / f64::from(teeth);
+        let at = |[radius, angle]: [f64; 2]| [radius * (middle + angle).cos(), radius * (middle + angle).sin()];
+        outline.extend(flank.iter().map(|[radius, angle]| at([*radius, -angle])));
+        outline.extend(flank.iter().rev().map(|p| at(*p)));
+    }
+    Profile::polygon(outline)
+}
+
+#[test]
+fn gears_in_mesh_have_their_backlash() {
+    let backlash = 0.2;
+    let [pinion, wheel] = [17, 30].map(|teeth| gear(teeth, backlash).extrude(4.0));
+    // Half of it on each side, along the line of action, less what chords cut off.
+    let expected = 0.5 * backlash * 20f64.to_radians().cos();
+    let turned = wheel.rotate_z(rad(std::f64::consts::PI / 30.0)).translate([47.0, 0.0, 0.0]);
+    let found = pinion.clearance(&turned, &Run::default()).unwrap().unwrap();
+    assert!(!found.overlaps && (found.distance - expected).abs() < 0.01, "{found:?} {expected}");
+    assert!(found.tolerance < 0.012, "{found:?}");
+    // Turned by all of the play and more a flank goes into the other.
+    let jammed = pinion.rotate_z(rad(0.15 / 17.0)).clearance(&turned, &Run::default()).unwrap().unwrap();
+    assert!(jammed.overlaps && jammed.depth > 0.02 && jammed.depth < 0.1, "{jammed:?}");
 }

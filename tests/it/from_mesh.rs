@@ -117,7 +117,7 @@ fn solids_are_equal_by_content() {
     assert_ne!(hash(&a), hash(&c));
     let red = block([0.0; 3], [1.0; 3]).with_corner_colors(vec![[[255, 0, 0, 255]; 3]; 12]).unwrap();
     assert_ne!(solid(&red), a);
-    assert_eq!(Solid::from_mesh(&red, MeshSolid { colors: false }), a);
+    assert_eq!(Solid::from_mesh(&red, MeshSolid { colors: false, ..MeshSolid::default() }), a);
 }
 
 #[test]
@@ -227,6 +227,46 @@ fn colors_are_kept() {
     // What is painted is painted.
     let painted = solid.paint([1, 2, 3]);
     assert_eq!(painted.palette().unwrap().at(0, [1.0, 0.2, 0.1]), Some(Paint::from([1, 2, 3])));
+}
+
+/// Owners of a mesh are told apart in the solid, through joins and in meshes of it.
+#[test]
+fn owners_are_kept() {
+    let part = Solid::cuboid([2.0, 2.0, 2.0]) - Solid::cylinder(0.5, 3.0);
+    let settings = MeshSettings { cell: CellSize::LongestSide(16), owners: true, ..MeshSettings::default() };
+    let mesh = part.mesh(&settings).unwrap();
+    let bore = part.owner([0.5, 0.0, 0.2]).unwrap().index;
+    let numbers: Vec<u32> = mesh.owners().unwrap().iter().map(|owner| 7 + 10 * u32::from(*owner == bore)).collect();
+    let mesh = mesh.with_owners(numbers).unwrap();
+    let joined = solid(&mesh).rotate_z(rad(0.3)) | Solid::sphere(0.5).translate([0.0, 0.0, 3.0]);
+    let [outer, inner, ball] = [[1.0, 0.6, 0.3], [0.5, 0.0, 0.2], [0.0, 0.0, 3.5]].map(|p| {
+        let p = glam::DQuat::from_rotation_z(0.3) * DVec3::from_array(p);
+        joined.owner(p).unwrap()
+    });
+    assert!(outer.path.ends_with("mesh[7]") && inner.path.ends_with("mesh[17]"), "{} {}", outer.path, inner.path);
+    assert!(ball.path.ends_with("sphere") && outer.index != inner.index && outer.index != ball.index);
+    let again = joined.mesh(&settings).unwrap();
+    let mut count = [0; 3];
+    for (t, owner) in again.triangles().iter().zip(again.owners().unwrap()) {
+        let middle = t.iter().map(|v| again.positions()[*v as usize]).sum::<Vec3>() / 3.0;
+        let is = [outer.index, inner.index, ball.index].iter().position(|index| index == owner).expect("one of three");
+        count[is] += 1;
+        let expected = match middle.truncate().length() {
+            _ if middle.z > 2.0 => Some(2),
+            far if far < 0.51 && middle.z.abs() < 0.9 => Some(1),
+            far => (far > 0.52).then_some(0),
+        };
+        assert!(expected.is_none_or(|expected| is == expected), "{is} at {middle}");
+    }
+    assert!(count.iter().all(|count| *count > 20), "{count:?}");
+    // Paint of a part is that of all its owners.
+    let painted = joined.paint([1, 2, 3]);
+    let index = painted.owner(glam::DQuat::from_rotation_z(0.3) * DVec3::new(0.5, 0.0, 0.2)).unwrap().index;
+    assert_eq!(painted.palette().unwrap().of(index), Some(Paint::from([1, 2, 3])));
+    // They are content, and may be left out.
+    let without = Solid::from_mesh(&mesh, MeshSolid { owners: false, ..MeshSolid::default() });
+    assert_ne!(solid(&mesh), without);
+    assert_eq!(without.owner([0.5, 0.0, 0.2]).unwrap().path, "mesh");
 }
 
 /// A ball without its top.

@@ -4,8 +4,8 @@
 use glam::{DMat3, DVec3};
 use rvachev::catalogue::{Group, Part};
 use rvachev::{
-    CancelToken, CellSize, GeneralisedSuperquadric, MeasureReport, MeshSettings, MeshSolid, Progress, RFunction, Run,
-    Solid, catalogue, deg, rad,
+    CancelToken, CellSize, GeneralisedSuperquadric, MeasureReport, Mesh, MeshSettings, MeshSolid, Progress, RFunction,
+    Run, Solid, catalogue, deg, rad,
 };
 
 fn most(matrix: DMat3) -> f64 {
@@ -125,16 +125,61 @@ fn what_is_deformed_folded_blended_measured_or_read_has_bounds_that_hold() {
     let inner = halves.offset(-0.25).measure(3e-2).unwrap();
     assert!((inner.volume - 3.5 * 1.5 * 1.5).abs() <= inner.volume_error + 1e-3 * inner.area, "{inner:?}");
     assert!(inner.volume_error <= 3e-2 * inner.volume, "{inner:?}");
-    // A mesh as a solid has the volume of the mesh.
-    let settings = MeshSettings { cell: CellSize::LongestSide(12), ..MeshSettings::default() };
-    let mesh = (Solid::cuboid([4.0, 3.0, 2.0]) - Solid::cylinder(0.9, 3.0)).mesh(&settings).unwrap();
-    let read = Solid::from_mesh(&mesh, MeshSolid::default()).measure(3e-2).unwrap();
-    let off = (read.volume - mesh.volume()).abs();
-    assert!(off <= read.volume_error + 1e-6 * read.volume, "{read:?} {}", mesh.volume());
-    assert!(read.volume_error <= 3e-2 * read.volume, "{read:?}");
-    assert!((read.area - mesh.area()).abs() < 1e-2 * read.area, "{read:?} {}", mesh.area());
-    let off = (read.centroid.unwrap() - mesh.centroid().unwrap()).abs().max_element();
-    assert!(off <= read.centroid_error + 1e-5, "{read:?} {off}");
+}
+
+/// A mesh with the triangles of another after them.
+fn with(one: &Mesh, other: &Mesh) -> Mesh {
+    let count = one.positions().len() as u32;
+    let positions = [one.positions(), other.positions()].concat();
+    let moved: Vec<[u32; 3]> = other.triangles().iter().map(|t| t.map(|v| v + count)).collect();
+    Mesh::new(positions, [one.triangles(), &moved].concat()).unwrap()
+}
+
+#[test]
+fn imported_meshes_are_summed_up() {
+    let settings = MeshSettings { cell: CellSize::LongestSide(24), ..MeshSettings::default() };
+    let mesh =
+        (Solid::torus(2.0, 0.7) - Solid::cuboid([1.0, 1.0, 3.0]).translate([2.0, 0.3, 0.0])).mesh(&settings).unwrap();
+    let read = Solid::from_mesh(&mesh, MeshSolid::default());
+    let report = read.measure(1e-3).unwrap();
+    assert!(report.is_closed_form && report.volume_error < 2e-5 * report.volume, "{report:?}");
+    assert!((report.volume - mesh.volume()).abs() <= report.volume_error, "{report:?} {}", mesh.volume());
+    assert!((report.area - mesh.area()).abs() <= report.area_error, "{report:?} {}", mesh.area());
+    let off = (report.centroid.unwrap() - mesh.centroid().unwrap()).abs().max_element();
+    assert!(off <= report.centroid_error, "{report:?} {off}");
+    let off = most(report.inertia.unwrap() - mesh.inertia().unwrap());
+    assert!(off <= report.inertia_error, "{report:?} {off}");
+    // Mirrored, stretched and turned, by itself and in the blocks of a join.
+    let placed = read.reflect_x().scale_axes([1.0, 2.0, 0.5]).rotate_x(deg(35.0)).translate([3.0, 1.0, -2.0]);
+    let report = placed.measure(1e-3).unwrap();
+    assert!((report.volume - mesh.volume()).abs() <= report.volume_error, "{report:?}");
+    let by_field = without_form(&placed).measure(1e-2).unwrap();
+    assert!(by_field.volume_error < 2e-5 * report.volume, "{by_field:?}");
+    assert_agree("placed", &report, &by_field);
+    let ball = Solid::sphere(0.9).translate([-2.1, 0.2, 0.1]);
+    let [both, common, rest] = [&read | &ball, &read & &ball, &ball - &read].map(|solid| solid.measure(1e-2).unwrap());
+    let ball = 4.0 / 3.0 * std::f64::consts::PI * 0.729;
+    let off = (both.volume + common.volume - mesh.volume() - ball).abs();
+    assert!(off <= both.volume_error + common.volume_error, "{off} {both} {common}");
+    let off = (rest.volume + common.volume - ball).abs();
+    assert!(off <= rest.volume_error + common.volume_error, "{off} {rest} {common}");
+}
+
+/// What winding numbers above 1 enclose counts once: the sum of the triangles is no measure then.
+#[test]
+fn meshes_that_overlap_are_not_summed_up() {
+    let settings = MeshSettings { cell: CellSize::LongestSide(3), ..MeshSettings::default() };
+    let block = Solid::cuboid([2.0; 3]).mesh(&settings).unwrap();
+    let within = Solid::cuboid([1.0; 3]).mesh(&settings).unwrap();
+    let beside = Solid::cuboid([2.0; 3]).translate([1.1, 0.2, 0.1]).mesh(&settings).unwrap();
+    let nested = Solid::from_mesh(&with(&block, &within), MeshSolid::default()).measure(5e-2).unwrap();
+    assert!(!nested.is_closed_form && (nested.volume - 8.0).abs() <= nested.volume_error, "{nested:?}");
+    let across = Solid::from_mesh(&with(&block, &beside), MeshSolid::default()).measure(5e-2).unwrap();
+    let volume = 16.0 - 0.9 * 1.8 * 1.9;
+    assert!(!across.is_closed_form && (across.volume - volume).abs() <= across.volume_error + 1e-5, "{across:?}");
+    // A cavity is inside out, and nothing but a hole.
+    let hollow = Solid::from_mesh(&with(&block, &within.flipped()), MeshSolid::default()).measure(1e-2).unwrap();
+    assert!(hollow.is_closed_form && (hollow.volume - 7.0).abs() <= 1e-4, "{hollow:?}");
 }
 
 #[test]

@@ -30,6 +30,19 @@ pub struct Chunk<'a, E, const OUT: usize> {
     pub out: [&'a mut [E]; OUT],
 }
 
+/// The triangles of a leaf that is flat between creases, in its frame.
+#[derive(Clone, Debug, Default)]
+pub struct Facets {
+    /// The corners, each once.
+    pub positions: Vec<DVec3>,
+    /// Three of them each, counter-clockwise as seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Whether they leave no opening.
+    pub is_closed: bool,
+    /// How far the surface may be off them.
+    pub rounding: f64,
+}
+
 /// A [`Field`], erased to the evaluations that the engine runs.
 pub trait AnyField: Any + Debug + Send + Sync {
     /// What errors call it.
@@ -74,8 +87,10 @@ pub trait AnyField: Any + Debug + Send + Sync {
     fn is_faceted(&self) -> bool {
         false
     }
-    /// Tells the corners of a faceted surface, in the leaf's frame; some more than once.
-    fn each_corner(&self, _tell: &mut dyn FnMut(DVec3)) {}
+    /// The triangles of a faceted surface.
+    fn facets(&self) -> Option<Facets> {
+        None
+    }
     /// Three vectors of the leaf's frame, as columns: moved by any of them, the leaf is the same.
     fn period(&self) -> Option<DMat3> {
         None
@@ -164,6 +179,14 @@ pub trait AnyField: Any + Debug + Send + Sync {
     /// What a value takes, in those of an ordinary leaf.
     fn cost(&self) -> usize {
         1
+    }
+    /// The numbers of the parts that the surface is told to be made of; none if it is one.
+    fn parts(&self) -> &[u32] {
+        &[]
+    }
+    /// Which of the parts the surface near a point is of: its place among them.
+    fn part(&self, _p: DVec3) -> usize {
+        0
     }
     /// Whether the surface has colours of its own.
     fn is_colored(&self) -> bool {

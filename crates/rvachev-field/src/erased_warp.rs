@@ -89,6 +89,10 @@ impl<W: Warp> AnyWarp for W {
         W::SWEEPS
     }
 
+    fn is_continuous(&self) -> bool {
+        W::CONTINUOUS
+    }
+
     fn support(&self, own: &dyn Fn(DVec3) -> f64, direction: DVec3) -> f64 {
         Warp::support(self, own, direction)
     }

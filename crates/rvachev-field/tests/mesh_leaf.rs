@@ -9,6 +9,11 @@ use rvachev_num::{Bounds, Dual, Run};
 
 /// A torus of n × 2n pairs of triangles, radii 1 and 0.4, without the first few.
 fn torus(n: u32, without: usize) -> MeshLeaf {
+    let (positions, triangles) = torus_triangles(n);
+    MeshLeaf::new(&positions, &triangles[without..], None, None, &Run::default()).unwrap()
+}
+
+fn torus_triangles(n: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let at = |i: u32, j: u32| {
         let (turn, ring) = (TAU * f64::from(i) / f64::from(n), TAU * f64::from(j) / f64::from(2 * n));
         let out = 1.0 + 0.4 * turn.cos();
@@ -22,9 +27,8 @@ fn torus(n: u32, without: usize) -> MeshLeaf {
             let [a, b, c, d] = [number(i, j), number(i + 1, j), number(i + 1, j + 1), number(i, j + 1)];
             [[a, d, b], [d, c, b]]
         })
-        .skip(without)
         .collect();
-    MeshLeaf::new(&positions, &triangles, None, &Run::default()).unwrap()
+    (positions, triangles)
 }
 
 /// A generator of numbers in [0, 1).
@@ -94,6 +98,44 @@ fn lanes_are_values() {
     }
 }
 
+/// Of points that are close to each other sides are told by the triangles between them.
+#[test]
+fn sides_of_blocks_are_those_of_single_points() {
+    let mut random = Random(7);
+    let (positions, triangles) = torus_triangles(24);
+    // Twice there, and a small one within.
+    let twice = [&triangles[..], &triangles[..]].concat();
+    let count = positions.len() as u32;
+    let inner = positions.iter().map(|p| (0.6 * (*p - 1.4 * Vec3::X) + 1.4 * Vec3::X) * Vec3::new(1.0, 1.0, 0.5));
+    let both: Vec<Vec3> = positions.iter().copied().chain(inner).collect();
+    let all = [&triangles[..], &triangles.iter().map(|t| t.map(|v| v + count)).collect::<Vec<_>>()].concat();
+    let leaf = |positions: &[Vec3], triangles: &[[u32; 3]]| {
+        MeshLeaf::new(positions, triangles, None, None, &Run::default()).unwrap()
+    };
+    for leaf in [leaf(&positions, &triangles), leaf(&positions, &twice), leaf(&both, &all), plate().0] {
+        assert!(!leaf.is_open());
+        let (mut sides, mut wrong) = ([0; 2], 0);
+        for n in 0..60 {
+            // About the surface, finer and coarser than the triangles.
+            let foot = leaf.nearest(random.point(1.3)).unwrap().point;
+            let step = [0.003, 0.02, 0.1][n % 3] * (0.5 + random.next());
+            let start = foot - 4.0 * step + random.point(2.0 * step);
+            let at = |k: usize| start + step * DVec3::new((k % 8) as f64, (k / 8 % 8) as f64, (k / 64) as f64);
+            let points: Vec<Vec3> = (0..512).map(|k| at(k).as_vec3()).collect();
+            let columns = [0, 1, 2].map(|axis| points.iter().map(|p| p[axis]).collect::<Vec<f32>>());
+            let mut out = vec![0.0_f32; points.len()];
+            let points32 = columns.each_ref().map(|column| &column[..]);
+            leaf.lanes32_within(Chunk { points: points32, placement: &Placement::IDENTITY, out: [&mut out] }, 0.0);
+            for (p, found) in points.iter().zip(out) {
+                let value = leaf.value(p.as_dvec3().to_array());
+                sides[usize::from(value > 0.0)] += 1;
+                wrong += usize::from(value.abs() > leaf.roundoff(1.6) && (value > 0.0) != (found > 0.0));
+            }
+        }
+        assert!(wrong == 0 && sides[0] > 5000 && sides[1] > 5000, "{wrong} wrong, {sides:?}");
+    }
+}
+
 /// A plate of two triangles a side, turned.
 fn plate() -> (MeshLeaf, DQuat) {
     let turn = DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 0.5, 0.8);
@@ -101,7 +143,7 @@ fn plate() -> (MeshLeaf, DQuat) {
     let quads: [[u32; 4]; 6] = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
     let positions: Vec<Vec3> = (0..8).map(|c| (turn * at(c)).as_vec3()).collect();
     let triangles: Vec<[u32; 3]> = quads.into_iter().flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-    (MeshLeaf::new(&positions, &triangles, None, &Run::default()).unwrap(), turn)
+    (MeshLeaf::new(&positions, &triangles, None, None, &Run::default()).unwrap(), turn)
 }
 
 #[test]

@@ -29,13 +29,15 @@ fn scattered(random: &mut Random, count: usize, curved: bool) -> Vec<Patch> {
             let a = random.point(1.0);
             let [b, c] = [a + random.point(0.2), a + random.point(0.2)];
             let least = (b - a).length().min((c - a).length()).min((c - b).length());
-            let mut bulge = || random.point(0.1 * least);
+            let mut displacement = || random.point(0.1 * least);
             match i % 8 {
                 0 => Patch::flat([a, b, a + 0.5 * (b - a)]),
                 1 => Patch::flat([a, a, a]),
                 2 => Patch::flat([a, b, a + 0.3 * (b - a) + 1e-5 * c]),
                 3 => Patch::flat([a, b, c]),
-                _ if curved => Patch { corners: [a, b, c], bulges: [bulge(), bulge(), bulge()] },
+                _ if curved => {
+                    Patch { corners: [a, b, c], displacements: [displacement(), displacement(), displacement()] }
+                }
                 _ => Patch::flat([a, b, c]),
             }
         })
@@ -51,12 +53,12 @@ fn torus(n: usize, curved: bool) -> Vec<Patch> {
     };
     let patch = |nodes: [[f64; 2]; 3]| {
         let corners = nodes.map(|[i, j]| at(i, j));
-        let bulges = [0, 1, 2].map(|k| {
+        let displacements = [0, 1, 2].map(|k| {
             let ([a, b], [c, d]) = (nodes[k], nodes[(k + 1) % 3]);
             let middle = 0.5 * (corners[k] + corners[(k + 1) % 3]);
             if curved { at(0.5 * (a + c), 0.5 * (b + d)) - middle } else { DVec3::ZERO }
         });
-        Patch { corners, bulges }
+        Patch { corners, displacements }
     };
     let pairs = (0..n).flat_map(|i| (0..2 * n).map(move |j| (i as f64, j as f64)));
     pairs
@@ -211,7 +213,7 @@ fn squashed(patch: &Patch, axis: usize) -> Patch {
         v[axis] = 0.0;
         v
     };
-    Patch { corners: patch.corners.map(flat), bulges: patch.bulges.map(flat) }
+    Patch { corners: patch.corners.map(flat), displacements: patch.displacements.map(flat) }
 }
 
 #[test]

@@ -34,7 +34,7 @@ enum Inside {
 
 impl Body {
     pub(super) fn of_mesh(mesh: &Mesh, run: &Run) -> Result<Body, FitError> {
-        let leaf = MeshLeaf::new(mesh.positions(), mesh.triangles(), None, run)?;
+        let leaf = MeshLeaf::new(mesh.positions(), mesh.triangles(), None, None, run)?;
         Ok(Body { bounds: mesh.bounds(), topology: topology::of_mesh(mesh, run)?, inside: Inside::Mesh(leaf) })
     }
 

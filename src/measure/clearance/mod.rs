@@ -6,6 +6,7 @@
 //! the solids have in common.
 
 mod apart;
+mod doubts;
 mod overlap;
 mod piece;
 
@@ -27,8 +28,9 @@ const STEPS: usize = 30;
 /// Pieces that are looked at before it is asked whether to go on.
 const AT_ONCE: usize = 256;
 
-/// How far the volume of an overlap may be off, as a part of it.
+/// How far the volume of an overlap may be off, as a part of it, and in how many cells it is found.
 const VOLUME: f64 = 0.02;
+const CELLS: usize = 1 << 14;
 
 /// How far two solids are apart, or how much they overlap: see [`Solid::clearance`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,9 +86,9 @@ impl Solid {
     /// The surfaces are those that [`closest_surface_point`](Solid::closest_surface_point) measures
     /// from, found on first use and kept with the solids; the points that are nearest on these are
     /// led to the surfaces themselves. The tolerance is a thousandth of the distance and how exact
-    /// the surfaces are: some 10⁻⁴ of the sizes of the solids, several times that where creases
-    /// meet. It is more where both surfaces are alike over large parts and close: then it says how
-    /// much.
+    /// the surfaces are, some 10⁻⁴ of the sizes of the solids. It is more where both surfaces are
+    /// alike over large parts and close, or have edges of almost no angle near each other: then it
+    /// says how much.
     ///
     /// That solids do not overlap is certain to the tolerance: all of each surface, moved inwards
     /// by how exact it is, is outside of the other solid, by ranges of the other's value.
@@ -126,8 +128,13 @@ impl Solid {
         if own_box.intersects(&other_box) {
             // Moved by that, and as far off.
             deepest = 2.0 * slack;
-            for [from, to] in [[from, to], [to, from]] {
-                match entry(from, to, slack, &to_enter)? {
+            for part in 0..3 {
+                let found = match part {
+                    0 => entry(from, to, slack, &to_enter)?,
+                    1 => entry(to, from, slack, &to_enter)?,
+                    _ => doubts::entry([from, to], slack, &to_enter)?,
+                };
+                match found {
                     Entry::At(point) => {
                         let common = Clearance {
                             distance: 0.0,
@@ -145,7 +152,9 @@ impl Solid {
                 }
             }
         }
-        let Found { mut points, least } = search(from, to, slack, &to_go_on)?;
+        let Found { mut points, mut least } = search(from, to, slack, &to_go_on)?;
+        let enough = points[0].distance(points[1]) - slack;
+        least = least.min(doubts::least([from, to], enough.max(0.0), slack, &to_go_on)?);
         // On the patches first, then on the fields, each from where the other is.
         let patches_apart = points[0].distance(points[1]);
         for _ in 0..STEPS {
@@ -181,7 +190,7 @@ impl Solid {
         let at_most = depths.iter().fold(slack, |most, [depth, more]| most.max(depth + more));
         let both = self & other;
         let programs = compiled_with(&both, &Run { progress: None, ..run.clone() })?;
-        let found = integral(&programs.surface, &both.finite_bounds()?, VOLUME, run)?;
+        let found = integral(&programs.surface, &both.finite_bounds()?, VOLUME, CELLS, run)?;
         Ok(Clearance {
             depth: deepest,
             depth_error: at_most - deepest + slack,
@@ -199,9 +208,9 @@ struct Side<'a> {
 }
 
 impl Side<'_> {
-    /// How far the patches may be off.
+    /// How far the patches may be off, but where they are in doubt.
     fn exactness(&self) -> f64 {
-        self.surface.accuracy.tolerance.max(self.surface.accuracy.error)
+        self.surface.accuracy.tolerance
     }
 }
 

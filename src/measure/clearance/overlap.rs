@@ -45,28 +45,30 @@ pub(super) enum Entry {
 pub(super) fn entry(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Result<Entry, Cancelled> {
     let (patches, others) = (&from.surface.patches, &to.surface.patches);
     let bounds = others.bounds().inflate(slack);
-    // Signs are exact, however far patches are off in a few places: not far below a surface that is
-    // off there, points are common as well.
-    let asked_for = from.surface.accuracy.tolerance + to.surface.accuracy.tolerance;
     let common = |p: DVec3| {
         let normal = from.program.gradient(p).1.normalize_or_zero();
-        [asked_for, slack].into_iter().find_map(|near| {
-            let inner = INSIDE.map(|by| p + by * near * normal);
-            // Nearer to the other surface than that, they may as well touch.
-            let is_common =
-                |p: &DVec3| from.program.value(*p) > 0.0 && to.program.value(*p) > 0.0 && distance(others, *p) > near;
-            inner.into_iter().find(is_common)
-        })
+        let inner = INSIDE.map(|by| p + by * slack * normal);
+        // Nearer to the other surface than that, they may as well touch.
+        let is_common =
+            |p: &DVec3| from.program.value(*p) > 0.0 && to.program.value(*p) > 0.0 && distance(others, *p) > slack;
+        inner.into_iter().find(is_common)
     };
-    // Beyond the other's box, below its surface, undecided.
+    // Beyond the other's box, farther from its surface than it is large, below its surface, undecided.
     let look = |piece: &Piece| {
+        let middle = piece.points.iter().sum::<DVec3>() / 3.0;
+        let most = piece.reach_from(middle).min(piece.longest_side()) + piece.off(patches) + 2.0 * slack;
+        if bounds.distance_squared(middle).sqrt() > most {
+            return ControlFlow::Continue(None);
+        }
+        if distance(others, middle) > most && to.program.value(middle) <= 0.0 {
+            return ControlFlow::Continue(None);
+        }
         let zone = piece.zone(patches, -slack * piece.normal());
         let [x, y, z] = zone.hull();
         let hull = Bounds::new(DVec3::new(x.lo(), y.lo(), z.lo()), DVec3::new(x.hi(), y.hi(), z.hi()));
         if !hull.intersects(&bounds) || to.program.range_zone(&zone).hi() <= 0.0 {
             return ControlFlow::Continue(None);
         }
-        let middle = piece.points.iter().sum::<DVec3>() / 3.0;
         match [middle].into_iter().chain(piece.points).find_map(common) {
             Some(found) => ControlFlow::Break(found),
             None => ControlFlow::Continue(Some(*piece)),

@@ -225,6 +225,111 @@ fn facets_of_a_part_are_no_curvature() {
     assert!(again.triangles().len() < 2 * part.triangles().len(), "{} triangles", again.triangles().len());
 }
 
+/// The edges of a mesh between triangles that are turned by more than 20°.
+#[cfg(feature = "import")]
+fn creases(mesh: &Mesh) -> Vec<[DVec3; 2]> {
+    let mut sides = std::collections::HashMap::<[[u32; 3]; 2], Vec<DVec3>>::new();
+    for (t, corners) in mesh.triangles().iter().zip(brute::corners(mesh)) {
+        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
+        for k in 0..3 {
+            let mut ends = [t[k], t[(k + 1) % 3]].map(|v| mesh.positions()[v as usize].to_array().map(f32::to_bits));
+            ends.sort_unstable();
+            sides.entry(ends).or_default().push(normal);
+        }
+    }
+    let is_sharp = |normals: &[DVec3]| matches!(normals, [a, b] if a.dot(*b) < 20f64.to_radians().cos());
+    let sharp = sides.into_iter().filter(|(_, normals)| is_sharp(normals));
+    let mut ends: Vec<_> = sharp.map(|(ends, _)| ends).collect();
+    ends.sort_unstable();
+    ends.into_iter().map(|ends| ends.map(|bits| Vec3::from_array(bits.map(f32::from_bits)).as_dvec3())).collect()
+}
+
+/// Whether a part, meshed anew within a tolerance, has its volume to a thousandth and its creases to
+/// a twentieth of a cell, as far as the tolerance asks for them.
+#[cfg(feature = "import")]
+fn check_sharp(name: &str, share: f64) {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/parts").join(name);
+    let Ok(part) = Mesh::load(&path) else {
+        println!("skipped: no {}", path.display());
+        return;
+    };
+    let tolerance = part.bounds().longest_side() / share;
+    let settings = MeshSettings { cell: CellSize::Tolerance(tolerance), ..MeshSettings::default() };
+    let again = solid(&part).mesh(&settings).unwrap();
+    let report = again.check();
+    let off = report.volume / part.volume() - 1.0;
+    assert!(report.is_closed() && off.abs() < 1e-3, "{name}: volume off by {off}");
+    let triangles = brute::corners(&again);
+    let mut far = 0.0_f64;
+    for [a, b] in creases(&part) {
+        for k in 0..=4 {
+            far = far.max(brute::distance(&triangles, a.lerp(b, f64::from(k) / 4.0)));
+        }
+    }
+    println!("{name}: volume {off:.1e}, creases {:.3} tolerances off", far / tolerance);
+    assert!(far < tolerance, "{name}: creases {far} off, {tolerance} asked");
+}
+
+#[cfg(feature = "import")]
+#[test]
+fn sharp_parts_keep_volume_and_creases() {
+    ["unit_cube.ply", "bushing_roller.ply"].iter().for_each(|name| check_sharp(name, 500.0));
+}
+
+/// All of them, finely.
+#[cfg(feature = "import")]
+#[test]
+#[ignore = "takes minutes"]
+fn all_sharp_parts_keep_volume_and_creases() {
+    for name in [
+        "7_8ths_cube",
+        "angle_block",
+        "bushing_roller",
+        "camshaft",
+        "holder",
+        "lasercut_interface",
+        "machinist",
+        "octagonal_pocket",
+        "plate_holes",
+        "round",
+        "satellite_mount",
+        "shaft",
+        "unit_cube",
+        "xtion_bracket",
+    ] {
+        check_sharp(&format!("{name}.ply"), 1000.0);
+    }
+}
+
+/// The meshes of the bounded leaves of the catalogue, of finer and finer cells, are these leaves.
+#[test]
+#[ignore = "takes minutes"]
+fn meshes_of_the_catalogue_give_it_back() {
+    use rvachev::catalogue::{Group, Part};
+    for entry in rvachev::catalogue().iter().filter(|entry| entry.group() == Group::Leaf) {
+        let Part::Solid(own) = entry.example() else { continue };
+        if own.finite_bounds().is_err() {
+            continue;
+        }
+        let mesh = meshed(&own, 64);
+        let cell = mesh.bounds().longest_side() / 64.0;
+        let imported = solid(&mesh);
+        let mut random = Random(11);
+        let bounds = mesh.bounds().inflate(4.0 * cell);
+        let mut far = 0.0_f64;
+        for _ in 0..400 {
+            let p = bounds.min + random.point() * bounds.size();
+            let nearest = own.closest_surface_point(p).unwrap().expect("there is a surface").distance(p);
+            let value = imported.value(p).unwrap();
+            far = far.max((value.abs() - nearest).abs() / cell);
+            let is_sure = nearest > 0.3 * cell;
+            assert!(!is_sure || own.contains(p).unwrap() == (value > 0.0), "{}: {value} at {p}", entry.name());
+        }
+        println!("{}: {far:.3} cells off", entry.name());
+        assert!(far < 0.3, "{}: {far} cells off", entry.name());
+    }
+}
+
 /// The mesh of a solid is the solid, within the error of a cell.
 #[test]
 fn our_own_meshes_give_the_solid_back() {

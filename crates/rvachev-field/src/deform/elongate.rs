@@ -39,6 +39,8 @@ fn closed<R: Real>(x: R, half: f64) -> R {
 impl Warp for Elongate {
     const NAME: &'static str = "elongate";
 
+    const CONTINUOUS: bool = true;
+
     #[inline(always)]
     fn inverse<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
         let half = self.half();

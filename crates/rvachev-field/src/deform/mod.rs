@@ -50,6 +50,10 @@ pub trait Warp: Debug + Clone + Send + Sync + 'static {
     /// Whether it carries a profile along a curve.
     const SWEEPS: bool = false;
 
+    /// Whether it is known that pre-images change as their derivatives say, wherever these are
+    /// finite: it tears nothing.
+    const CONTINUOUS: bool = false;
+
     /// The pre-image of a point.
     fn inverse<R: Real>(&self, p: [R; 3]) -> [R; 3];
 
@@ -130,6 +134,9 @@ pub trait AnyWarp: Any + Debug + Send + Sync {
     fn folds(&self) -> bool;
     /// Whether it carries a profile along a curve.
     fn sweeps(&self) -> bool;
+    /// Whether it is known that pre-images change as their derivatives say, wherever these are
+    /// finite.
+    fn is_continuous(&self) -> bool;
     /// How far the image of a set reaches along a direction, given the same of the set.
     fn support(&self, own: &dyn Fn(DVec3) -> f64, direction: DVec3) -> f64;
     /// Whether the parameters allow to deform what a box holds.

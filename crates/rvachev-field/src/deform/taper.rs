@@ -26,6 +26,8 @@ pub struct Taper {
 impl Warp for Taper {
     const NAME: &'static str = "taper";
 
+    const CONTINUOUS: bool = true;
+
     #[inline(always)]
     fn inverse<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
         let one = z.lift(1.0);

@@ -22,6 +22,8 @@ pub struct Twist {
 impl Warp for Twist {
     const NAME: &'static str = "twist";
 
+    const CONTINUOUS: bool = true;
+
     #[inline(always)]
     fn inverse<R: Real>(&self, [x, y, z]: [R; 3]) -> [R; 3] {
         let (sin, cos) = (z * self.rate.radians()).sin_cos();

@@ -137,7 +137,7 @@ impl<L: Lanes<Element: Element> + Packet> Work<L> {
         ways: bool,
     ) {
         let patches = packets.patches;
-        let is_flat = patches.bulges.is_empty();
+        let is_flat = patches.quadratics.is_empty();
         let len = here.len();
         fill::<L>(simd, packets, points, signs, here, &mut self.block);
         let mut at = 0;

@@ -129,10 +129,10 @@ impl<R: Packet> Around<R> {
         [s, t]
     }
 
-    /// `side + k bulge + other E`.
+    /// `side + k coefficient + other E`.
     #[inline(always)]
-    fn tangent(&self, side: [R; 3], k: R, bulge: [R; 3], other: R) -> [R; 3] {
-        plus(plus(side, other, self.mixed), k, bulge)
+    fn tangent(&self, side: [R; 3], k: R, coefficient: [R; 3], other: R) -> [R; 3] {
+        plus(plus(side, other, self.mixed), k, coefficient)
     }
 
     /// The nearest point of the side `q chord + q (1 − q) bend`, from a start, where `outside` is

@@ -97,8 +97,8 @@ impl Face {
         let v = if across.length() > 1e-12 * f.length() { across } else { u.any_orthonormal_vector() };
         let v = (v - v.dot(u) * u).normalize_or(u.any_orthonormal_vector());
         // 4 Σ bᵢbⱼ |uₖ| is at most 4/3 of the largest.
-        let bulge = patch.bulges.iter().fold(0.0, |most, bulge| bulge.length().max(most)) / frame.unit;
-        let sag = if patch.is_flat() { 0.0 } else { 4.0 / 3.0 * bulge + SLACK };
+        let most = patch.displacements.iter().fold(0.0, |most, by| by.length().max(most)) / frame.unit;
+        let sag = if patch.is_flat() { 0.0 } else { 4.0 / 3.0 * most + SLACK };
         Face {
             a: single(a),
             u: single(u),
@@ -146,19 +146,19 @@ impl Sides {
     }
 }
 
-/// What bends a face.
+/// The quadratic terms of a patch: what bends a face.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Bulge {
+pub(super) struct Quadratic {
     /// The coefficients C, D and E.
     pub(super) c: [f32; 3],
     pub(super) d: [f32; 3],
     pub(super) e: [f32; 3],
 }
 
-impl Bulge {
-    pub(super) fn new(patch: &Patch, frame: &Frame) -> Bulge {
-        let [u, v, w] = patch.bulges.map(|bulge| 4.0 * bulge / frame.unit);
-        Bulge { c: single(u), d: single(w), e: single(v - u - w) }
+impl Quadratic {
+    pub(super) fn new(patch: &Patch, frame: &Frame) -> Quadratic {
+        let [u, v, w] = patch.displacements.map(|by| 4.0 * by / frame.unit);
+        Quadratic { c: single(u), d: single(w), e: single(v - u - w) }
     }
 
     /// Point and derivatives by both coordinates.
@@ -173,12 +173,12 @@ impl Bulge {
 }
 
 /// A number that tells surfaces apart (FNV-1a over the stored numbers).
-pub(super) fn hash(frame: &Frame, faces: &[Face], sides: &[Sides], bulges: &[Bulge]) -> u64 {
+pub(super) fn hash(frame: &Frame, faces: &[Face], sides: &[Sides], quadratics: &[Quadratic]) -> u64 {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     let mut add = |bits: u64| hash = (hash ^ bits).wrapping_mul(0x0100_0000_01b3);
     frame.centre.to_array().into_iter().chain([frame.unit]).for_each(|v| add(v.to_bits()));
     let sides = sides.iter().flat_map(|sides| [sides.e, sides.f]);
-    let bulges = bulges.iter().flat_map(|bulge| [bulge.c, bulge.d, bulge.e]);
-    faces.iter().map(|face| face.a).chain(sides).chain(bulges).flatten().for_each(|v| add(u64::from(v.to_bits())));
+    let quadratics = quadratics.iter().flat_map(|quadratic| [quadratic.c, quadratic.d, quadratic.e]);
+    faces.iter().map(|face| face.a).chain(sides).chain(quadratics).flatten().for_each(|v| add(u64::from(v.to_bits())));
     hash
 }

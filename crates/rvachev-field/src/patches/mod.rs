@@ -55,7 +55,7 @@ use rvachev_num::{Cancelled, Run};
 
 use self::closest::Closest;
 use self::curved::Around;
-use self::face::{Bulge, Face, Frame, Sides, wide};
+use self::face::{Face, Frame, Quadratic, Sides, wide};
 use self::hierarchy::{Node, Tree};
 use self::search::{Best, Keep, Range, Stack};
 use crate::Bounds;
@@ -88,7 +88,7 @@ pub struct Patches {
     faces: Vec<Face>,
     sides: Vec<Sides>,
     /// What makes them curved; empty if none is.
-    bulges: Vec<Bulge>,
+    quadratics: Vec<Quadratic>,
     /// The numbers of the patches, as they were given.
     numbers: Vec<u32>,
     /// Stands for the content in texts that tell leaves apart.
@@ -114,9 +114,10 @@ impl Patches {
         let faces: Vec<Face> = sorted().map(|patch| Face::new(patch, &frame)).collect();
         let sides: Vec<Sides> = sorted().map(|patch| Sides::new(patch, &frame)).collect();
         let is_flat = chosen().all(Patch::is_flat);
-        let bulges = if is_flat { Vec::new() } else { sorted().map(|patch| Bulge::new(patch, &frame)).collect() };
-        let hash = face::hash(&frame, &faces, &sides, &bulges);
-        Ok(Patches { frame, bounds, nodes, faces, sides, bulges, numbers, hash })
+        let quadratics =
+            if is_flat { Vec::new() } else { sorted().map(|patch| Quadratic::new(patch, &frame)).collect() };
+        let hash = face::hash(&frame, &faces, &sides, &quadratics);
+        Ok(Patches { frame, bounds, nodes, faces, sides, quadratics, numbers, hash })
     }
 
     /// The nearest point; nothing if there are no patches.
@@ -154,16 +155,16 @@ impl Patches {
     fn search_one(&self, local: [f64; 3]) -> Best<f64> {
         let mut curved = One { patches: self, local, best: Best::none(0.0) };
         let best = self.search(local, &[], Range::all(0.0), &mut Stack::new(0.0), &mut curved);
-        if self.bulges.is_empty() { best } else { curved.best }
+        if self.quadratics.is_empty() { best } else { curved.best }
     }
 
     /// The nearest point of one patch.
     fn closest(&self, at: usize, local: [f64; 3]) -> Closest<f64> {
         let r = self.faces[at].seen_from(local);
         let [e, f] = self.sides[at].wide();
-        match self.bulges.get(at) {
-            Some(bulge) => {
-                let (c, d, mixed) = (wide(bulge.c), wide(bulge.d), wide(bulge.e));
+        match self.quadratics.get(at) {
+            Some(quadratic) => {
+                let (c, d, mixed) = (wide(quadratic.c), wide(quadratic.d), wide(quadratic.e));
                 Around { r, e, f, c, d, mixed }.closest()
             }
             None => closest::on_face([e, f], r).closest,
@@ -173,7 +174,7 @@ impl Patches {
     /// A point of a patch, in the surface's frame, and the unit normal there.
     fn point_and_normal(&self, at: usize, s: f64, t: f64) -> (DVec3, DVec3) {
         let flat @ [_, e, f] = self.sides[at].jet(&self.faces[at], s, t);
-        let [point, along_s, along_t] = self.bulges.get(at).map_or(flat, |bulge| bulge.jet(flat, s, t));
+        let [point, along_s, along_t] = self.quadratics.get(at).map_or(flat, |quadratic| quadratic.jet(flat, s, t));
         let normal = along_s.cross(along_t);
         let normal = normal.try_normalize().or_else(|| e.cross(f).try_normalize()).unwrap_or(DVec3::Z);
         (point, normal)
@@ -205,7 +206,7 @@ impl Patches {
         size_of_val(&*self.nodes)
             + size_of_val(&*self.faces)
             + size_of_val(&*self.sides)
-            + size_of_val(&*self.bulges)
+            + size_of_val(&*self.quadratics)
             + size_of_val(&*self.numbers)
     }
 

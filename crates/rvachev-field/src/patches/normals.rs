@@ -69,7 +69,7 @@ impl Patches {
 
     /// A box of the vectors against a patch's normals.
     fn slopes_of(&self, at: usize) -> (DVec3, DVec3) {
-        let places = if self.bulges.is_empty() { &PLACES[..1] } else { &PLACES[..] };
+        let places = if self.quadratics.is_empty() { &PLACES[..1] } else { &PLACES[..] };
         let normals = places.iter().map(|[s, t]| -self.point_and_normal(at, *s, *t).1);
         let (low, high) =
             normals.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), n| (low.min(n), high.max(n)));

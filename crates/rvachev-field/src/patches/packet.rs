@@ -24,6 +24,9 @@ pub(super) trait Packet: Real {
     /// A triangle whose sides from a corner have a sine whose square is less has no inside.
     const SLIM: f64;
 
+    /// How far off 1 rounding may be.
+    const EPSILON: f64;
+
     /// Which numbers are below their counterparts, as bits.
     fn below(self, other: Self) -> u64;
 
@@ -44,6 +47,7 @@ impl Packet for f64 {
     const ALONE: bool = true;
     const STILL: f64 = 1e-4;
     const SLIM: f64 = 1e-12;
+    const EPSILON: f64 = f64::EPSILON;
 
     #[inline(always)]
     fn below(self, other: f64) -> u64 {
@@ -74,6 +78,7 @@ impl Packet for f64 {
 impl<S: Simd> Packet for F32<S> {
     const STILL: f64 = 2e-3;
     const SLIM: f64 = 1e-6;
+    const EPSILON: f64 = f32::EPSILON as f64;
 
     #[inline(always)]
     fn below(self, other: Self) -> u64 {
@@ -106,6 +111,7 @@ impl<S: Simd> Packet for F32<S> {
 impl<S: Simd> Packet for F64<S> {
     const STILL: f64 = 1e-4;
     const SLIM: f64 = 1e-12;
+    const EPSILON: f64 = f64::EPSILON;
 
     #[inline(always)]
     fn below(self, other: Self) -> u64 {

@@ -151,9 +151,9 @@ impl Packets<'_> {
         square >= self.sided
     }
 
-    /// The sign of a point where the sign field has none.
+    /// The sign of a point where lanes of the sign field have told none.
     pub(super) fn side(&self, p: [f64; 3]) -> f64 {
-        self.leaf.sign_by_normal(self.placement.apply(p))
+        self.leaf.sign(self.placement.apply(p))
     }
 
     /// The signed distances, as they count outside.

@@ -170,14 +170,14 @@ impl<L: Lanes<Element: Element> + Packet> Pairs<L> {
 /// Writes a pair's numbers down.
 #[inline(always)]
 fn fill<E: Element>(rows: &mut [[E; WIDEST]; ROWS], lane: usize, patches: &Patches, at: usize, p: [E; 3]) {
-    let (Some((face, sides)), Some(bulge)) = (patches.at(at), patches.bulges.get(at)) else { return };
+    let (Some((face, sides)), Some(quadratic)) = (patches.at(at), patches.quadratics.get(at)) else { return };
     for axis in 0..3 {
         rows[axis][lane] = p[axis].plus(E::from_f64(f64::from(-face.a[axis])));
         rows[3 + axis][lane] = E::from_f64(f64::from(sides.e[axis]));
         rows[6 + axis][lane] = E::from_f64(f64::from(sides.f[axis]));
-        rows[9 + axis][lane] = E::from_f64(f64::from(bulge.c[axis]));
-        rows[12 + axis][lane] = E::from_f64(f64::from(bulge.d[axis]));
-        rows[15 + axis][lane] = E::from_f64(f64::from(bulge.e[axis]));
+        rows[9 + axis][lane] = E::from_f64(f64::from(quadratic.c[axis]));
+        rows[12 + axis][lane] = E::from_f64(f64::from(quadratic.d[axis]));
+        rows[15 + axis][lane] = E::from_f64(f64::from(quadratic.e[axis]));
     }
 }
 

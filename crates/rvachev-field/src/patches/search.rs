@@ -105,7 +105,7 @@ impl Patches {
         if self.nodes.is_empty() {
             return best;
         }
-        let is_flat = self.bulges.is_empty();
+        let is_flat = self.quadratics.is_empty();
         // No point is farther than this.
         let mut most = best.square;
         for seed in seeds {

@@ -103,7 +103,13 @@ impl SurfaceDistance {
             -foot.normal
         } else {
             let away = (p - foot.point) / foot.distance;
-            let is_outside = if self.is_between(away, foot) { self.falls(p, away) } else { sign < 0.0 };
+            let is_outside = if self.is_between(away, foot) {
+                self.falls(p, away)
+            } else if sign == 0.0 {
+                away.dot(foot.normal) > 0.0
+            } else {
+                sign < 0.0
+            };
             // Positive inside: it rises away from the surface there, and towards it outside.
             if is_outside { -away } else { away }
         };
@@ -127,7 +133,7 @@ impl SurfaceDistance {
     }
 
     /// The sign at a point, as a number that has it.
-    fn sign(&self, p: [f64; 3]) -> f64 {
+    pub(super) fn sign(&self, p: [f64; 3]) -> f64 {
         let sign = self.side.unwrap_or_else(|| self.sign.value(p));
         if sign == 0.0 { self.sign_by_normal(p) } else { sign }
     }

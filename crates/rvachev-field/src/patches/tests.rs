@@ -36,12 +36,12 @@ pub(super) fn sphere(n: usize, curved: bool) -> Vec<Patch> {
             if signs.element_product() < 0.0 {
                 corners.swap(1, 2);
             }
-            let bulges = [0, 1, 2].map(|i| {
+            let displacements = [0, 1, 2].map(|i| {
                 let (p, q) = (corners[i], corners[(i + 1) % 3]);
                 let m = 0.5 * (p + q);
                 if curved { 0.25 * (p * p.dot(p - m) + q * q.dot(q - m)) } else { DVec3::ZERO }
             });
-            patches.push(Patch { corners, bulges });
+            patches.push(Patch { corners, displacements });
         };
         for i in 0..n {
             for j in 0..n - i {
@@ -127,8 +127,8 @@ fn random_patches(random: &mut Random, count: usize) -> Vec<Patch> {
                 0 => Patch::flat([a, b, c]),
                 1 => Patch::flat([a, a, a]),
                 2 => Patch::flat([a, b, a + 0.5 * (b - a)]),
-                3 => Patch { corners: [a, a, b], bulges: [DVec3::ZERO, bend, bend] },
-                _ => Patch { corners: [a, b, c], bulges: [u(), u(), u()] },
+                3 => Patch { corners: [a, a, b], displacements: [DVec3::ZERO, bend, bend] },
+                _ => Patch { corners: [a, b, c], displacements: [u(), u(), u()] },
             }
         })
         .collect()

@@ -11,6 +11,7 @@
 //! Triangles that overlap count as their union; those within it, where w does not pass ½, are no
 //! surface, though the distance is measured from them too.
 
+mod crossings;
 mod gaps;
 mod rim;
 mod turned;
@@ -34,6 +35,8 @@ use crate::Bounds;
 #[derive(Clone)]
 pub struct MeshLeaf {
     distance: SurfaceDistance,
+    /// The corners of the triangles, as they were given, but one at each position.
+    vertices: Arc<[[u32; 3]]>,
     winding: Arc<Winding>,
     /// Around openings, where there are any.
     membrane: Option<Arc<Membrane>>,
@@ -41,7 +44,26 @@ pub struct MeshLeaf {
     /// The volume, below 0, of triangles that are inside out.
     turned: Option<f64>,
     colors: Option<Arc<[[[u8; 3]; 3]]>>,
+    owners: Option<Arc<Owners>>,
     hash: u64,
+}
+
+/// Which parts triangles are of.
+struct Owners {
+    /// The numbers of the parts, sorted, each once.
+    numbers: Vec<u32>,
+    /// The place of each triangle's part among them.
+    places: Vec<u32>,
+}
+
+impl Owners {
+    fn new(owners: &[u32]) -> Owners {
+        let mut numbers = owners.to_vec();
+        numbers.sort_unstable();
+        numbers.dedup();
+        let place = |number: &u32| numbers.binary_search(number).map_or(0, |at| at as u32);
+        Owners { places: owners.iter().map(place).collect(), numbers }
+    }
 }
 
 /// How far from closed triangles are.
@@ -64,7 +86,8 @@ impl OpenEdges {
 
 impl MeshLeaf {
     /// What triangles enclose, given by finite positions and their numbers, counter-clockwise as
-    /// seen from outside; `colors` are those of their corners.
+    /// seen from outside; `colors` are those of their corners, `owners` the numbers of the parts that
+    /// they are of.
     ///
     /// # Errors
     ///
@@ -73,6 +96,7 @@ impl MeshLeaf {
         positions: &[Vec3],
         triangles: &[[u32; 3]],
         colors: Option<Vec<[[u8; 3]; 3]>>,
+        owners: Option<&[u32]>,
         run: &Run,
     ) -> Result<MeshLeaf, Cancelled> {
         let [to_build, to_close] = run.stages([0.8, 0.2]);
@@ -81,8 +105,9 @@ impl MeshLeaf {
         let patches = Arc::new(Patches::new(&flat, &to_build)?);
         drop(flat);
         to_close.check()?;
-        let winding = Arc::new(Winding::new(patches.clone()));
-        let open = rim::open_edges(positions, triangles);
+        let vertices = rim::welded(positions, triangles);
+        let open = rim::open_edges_of(positions, &vertices);
+        let winding = Arc::new(Winding::new(patches.clone(), open.is_empty()));
         let rim = Rim::new(&open, &to_close)?;
         let mut bounds = patches.bounds();
         let membrane = match rim {
@@ -93,11 +118,21 @@ impl MeshLeaf {
                 Some(Arc::new(membrane))
             }
         };
-        let hash = hash_of(patches.hash, colors.as_deref());
+        let hash = hash_of(patches.hash, colors.as_deref(), owners);
         let turned = winding.volume_if_turned();
         let distance = SurfaceDistance::new(patches, winding.clone(), 0.0, None, bounds);
         run.report(1.0);
-        Ok(MeshLeaf { distance, winding, membrane, bounds, turned, colors: colors.map(Arc::from), hash })
+        Ok(MeshLeaf {
+            distance,
+            vertices: vertices.into(),
+            winding,
+            membrane,
+            bounds,
+            turned,
+            colors: colors.map(Arc::from),
+            owners: owners.map(|owners| Arc::new(Owners::new(owners))),
+            hash,
+        })
     }
 
     /// How many triangles there are.
@@ -127,11 +162,20 @@ impl MeshLeaf {
 
     /// The memory that it takes.
     pub fn bytes(&self) -> usize {
-        self.patches().bytes() + self.winding.bytes()
+        self.patches().bytes() + self.winding.bytes() + size_of_val(&*self.vertices)
     }
 
     fn patches(&self) -> &Patches {
         self.distance.patches()
+    }
+
+    /// The place of the part that the nearest triangle is of.
+    fn part_near(&self, p: DVec3) -> usize {
+        let local = self.patches().frame.into_local(p).to_array();
+        let at = self.patches().search_one(local).which as usize;
+        let number = self.patches().numbers.get(at).map(|number| *number as usize);
+        let place = number.zip(self.owners.as_ref()).and_then(|(number, owners)| owners.places.get(number));
+        place.map_or(0, |place| *place as usize)
     }
 
     /// The colour at the nearest point of the triangles, in sRGB, if they have colours.
@@ -150,10 +194,12 @@ impl MeshLeaf {
 }
 
 /// A number that tells contents apart (FNV-1a).
-fn hash_of(shape: u64, colors: Option<&[[[u8; 3]; 3]]>) -> u64 {
+fn hash_of(shape: u64, colors: Option<&[[[u8; 3]; 3]]>, owners: Option<&[u32]>) -> u64 {
     let mut hash = shape;
-    for byte in colors.into_iter().flatten().flatten().flatten() {
-        hash = (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+    let bytes = colors.into_iter().flatten().flatten().flatten().map(|byte| u64::from(*byte));
+    let owners = owners.into_iter().flatten().map(|owner| u64::from(*owner) + (1 << 32));
+    for part in bytes.chain(owners) {
+        hash = (hash ^ part).wrapping_mul(0x0100_0000_01b3);
     }
     hash
 }

@@ -48,7 +48,11 @@ pub(super) struct OpenEdge {
 
 /// The open edges of triangles. Vertices at one position are one vertex.
 pub(super) fn open_edges(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<OpenEdge> {
-    // Each vertex by the first of its position.
+    open_edges_of(positions, &welded(positions, triangles))
+}
+
+/// The triangles by the first vertex at each position.
+pub(super) fn welded(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
     let key = |v: &u32| (positions[*v as usize] + 0.0).to_array().map(f32::to_bits);
     let mut order: Vec<u32> = (0..positions.len() as u32).collect();
     order.sort_unstable_by_key(|v| (key(v), *v));
@@ -58,9 +62,13 @@ pub(super) fn open_edges(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Open
             first[pair[1] as usize] = first[pair[0] as usize];
         }
     }
+    triangles.iter().map(|corners| corners.map(|v| first[v as usize])).collect()
+}
+
+/// The open edges of triangles whose vertices are one at each position.
+pub(super) fn open_edges_of(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<OpenEdge> {
     let mut edges = Vec::with_capacity(3 * triangles.len());
-    for corners in triangles {
-        let [a, b, c] = corners.map(|v| first[v as usize]);
+    for &[a, b, c] in triangles {
         for (from, to) in [(a, b), (b, c), (c, a)] {
             if from != to {
                 edges.push((u64::from(from.min(to)) << 32 | u64::from(from.max(to)), from < to));

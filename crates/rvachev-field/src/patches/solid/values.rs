@@ -9,8 +9,8 @@ use super::MeshLeaf;
 use super::rim::Membrane;
 use crate::kernel::Element;
 use crate::{
-    AnyField, Bounds, COORDINATE_LIMIT, Chunk, Dual, Interval, ParamError, Placement, VALUE_LIMIT, Way, Zone, bits,
-    steep_slopes,
+    AnyField, Bounds, COORDINATE_LIMIT, Chunk, Dual, Facets, Interval, ParamError, Placement, VALUE_LIMIT, Way, Zone,
+    bits, steep_slopes,
 };
 #[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
@@ -135,9 +135,26 @@ impl AnyField for MeshLeaf {
         true
     }
 
-    fn each_corner(&self, tell: &mut dyn FnMut(DVec3)) {
-        let corners = |at| [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]].map(|place| self.patches().point(at, place));
-        (0..self.len()).flat_map(corners).for_each(tell);
+    fn facets(&self) -> Option<Facets> {
+        const NONE: u32 = u32::MAX;
+        let patches = self.patches();
+        let count = self.vertices.iter().flatten().fold(0, |count, vertex| count.max(*vertex as usize + 1));
+        let mut places = vec![NONE; count];
+        let (mut positions, mut triangles) = (Vec::new(), Vec::with_capacity(patches.len()));
+        for (at, number) in patches.numbers.iter().enumerate() {
+            let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+            let mut triangle = self.vertices[*number as usize];
+            for (vertex, corner) in triangle.iter_mut().zip(corners) {
+                let place = &mut places[*vertex as usize];
+                if *place == NONE {
+                    *place = positions.len() as u32;
+                    positions.push(patches.point(at, corner));
+                }
+                *vertex = *place;
+            }
+            triangles.push(triangle);
+        }
+        Some(Facets { positions, triangles, is_closed: !self.is_open(), rounding: patches.rounding() })
     }
 
     fn convex(&self) -> bool {
@@ -247,6 +264,14 @@ impl AnyField for MeshLeaf {
 
     fn cost(&self) -> usize {
         if self.is_open() { 64 } else { 8 }
+    }
+
+    fn parts(&self) -> &[u32] {
+        self.owners.as_ref().map_or(&[], |owners| &owners.numbers)
+    }
+
+    fn part(&self, p: DVec3) -> usize {
+        self.part_near(p)
     }
 
     fn is_colored(&self) -> bool {

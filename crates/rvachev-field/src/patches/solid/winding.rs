@@ -80,10 +80,12 @@ fn product(v: DVec3, w: DVec3) -> DMat3 {
 pub(super) struct Winding {
     pub(super) patches: Arc<Patches>,
     moments: Vec<Moments>,
+    /// Whether the triangles leave no opening: numbers are whole then.
+    is_closed: bool,
 }
 
 impl Winding {
-    pub(super) fn new(patches: Arc<Patches>) -> Winding {
+    pub(super) fn new(patches: Arc<Patches>, is_closed: bool) -> Winding {
         let nodes = &patches.nodes;
         let mut sums = vec![Sum::NONE; nodes.len()];
         let mut moments = vec![Moments::default(); nodes.len()];
@@ -117,7 +119,11 @@ impl Winding {
             };
             sums[at] = sum;
         }
-        Winding { patches, moments }
+        Winding { patches, moments, is_closed }
+    }
+
+    pub(super) fn is_closed(&self) -> bool {
+        self.is_closed
     }
 
     pub(super) fn bytes(&self) -> usize {
@@ -245,7 +251,7 @@ impl Triangle {
 }
 
 /// Boxes that are still to be looked into.
-pub(super) struct Stack([u32; DEEPEST + 1]);
+pub(super) struct Stack(pub(super) [u32; DEEPEST + 1]);
 
 impl Default for Stack {
     fn default() -> Stack {

@@ -7,7 +7,9 @@ use fearless_simd::{Level, Simd};
 use glam::{DAffine3, DVec3};
 use rvachev_num::lanes::{F32, F64, Lanes};
 
+use super::super::block::BLOCK;
 use super::super::packet::Packet;
+use super::crossings::Crossings;
 use super::winding::{Stack, Winding};
 use crate::kernel::{Element, on_level};
 use crate::{AnyField, Bounds, Chunk, Dual, Interval, ParamError, Placement, Zone};
@@ -45,18 +47,39 @@ fn sides_on<L: Lanes<Element: Element> + Packet>(
     local: &Placement,
     out: &mut [L::Element],
 ) {
+    if winding.is_closed() {
+        let mut crossings = Crossings::new();
+        let mut from = 0;
+        while from < out.len() {
+            let here = from..out.len().min(from + BLOCK);
+            let points = [&points[0][here.clone()], &points[1][here.clone()], &points[2][here.clone()]];
+            winding.sides_by_crossings::<L>(simd, points, local, &mut crossings, &mut out[here]);
+            from += BLOCK;
+        }
+        return;
+    }
     let mut stack = Stack::default();
     let mut at = 0;
     while at < out.len() {
         let here = at..at + L::WIDTH;
-        let [x, y, z] = points;
-        let p = [L::load(simd, &x[here.clone()]), L::load(simd, &y[here.clone()]), L::load(simd, &z[here.clone()])];
-        let [x, y, z] = local.apply(p);
-        let (low, high) = (x.lift(-FARTHEST), x.lift(FARTHEST));
-        let held = [x.max(low).min(high), y.max(low).min(high), z.max(low).min(high)];
-        (winding.roughly(held, &mut stack) - 0.5).store(&mut out[here]);
+        let p = placed::<L>(simd, points, local, here.clone());
+        (winding.roughly(p, &mut stack) - 0.5).store(&mut out[here]);
         at += L::WIDTH;
     }
+}
+
+/// Points in the frame of the patches.
+#[inline(always)]
+pub(super) fn placed<L: Lanes<Element: Element>>(
+    simd: L::Token,
+    [x, y, z]: [&[L::Element]; 3],
+    local: &Placement,
+    here: std::ops::Range<usize>,
+) -> [L; 3] {
+    let p = [L::load(simd, &x[here.clone()]), L::load(simd, &y[here.clone()]), L::load(simd, &z[here])];
+    let [x, y, z] = local.apply(p);
+    let (low, high) = (x.lift(-FARTHEST), x.lift(FARTHEST));
+    [x.max(low).min(high), y.max(low).min(high), z.max(low).min(high)]
 }
 
 /// Asks again, one by one, where the numbers leave the side in doubt.
@@ -143,6 +166,15 @@ impl AnyField for Winding {
         let local = &self.local(placement);
         self.lanes32_roughly(points, local, out);
         settle(self, points, local, out);
+    }
+
+    /// For who asks for sides where these make a difference only: 0 where they are in doubt.
+    fn lanes32_within(&self, chunk: Chunk<'_, f32, 1>, _band: f64) {
+        let Chunk { points, placement, out: [out] } = chunk;
+        self.lanes32_roughly(points, &self.local(placement), out);
+        for above in out.iter_mut().filter(|above| Winding::is_doubtful(f64::from(**above) + 0.5)) {
+            *above = 0.0;
+        }
     }
 
     fn lanes64(&self, chunk: Chunk<'_, f64, 1>) {

@@ -381,6 +381,10 @@ impl AnyField for Polygon {
         true
     }
 
+    fn is_faceted(&self) -> bool {
+        true
+    }
+
     fn convex(&self) -> bool {
         false
     }

@@ -1,0 +1,142 @@
+//! Where the patches of a surface may be off by more than elsewhere, or miss something.
+//!
+//! ```text
+//!     .------.      Of what is in such a box only the solid's value tells: it is divided, and parts
+//!     |/\    |      that the value says nothing is in are left out, until what is left is beyond
+//!     '------'      the other solid, farther from it than what is known, or small.
+//! ```
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::overlap::Entry;
+use super::{Side, distance};
+use crate::eval::{Narrowed, Program};
+use crate::{Bounds, Cancelled, Run};
+
+/// After so many boxes the work ends, with what is known then.
+const MOST: usize = 1 << 14;
+
+/// More pairs of boxes are not compared.
+const PAIRS: usize = 1 << 22;
+
+/// What a program has in a box.
+enum Part {
+    Nothing,
+    All,
+    Some(Program),
+}
+
+impl Part {
+    fn of(program: &Program, bounds: &Bounds) -> Part {
+        match program.narrowed(bounds) {
+            Narrowed::Outside => Part::Nothing,
+            Narrowed::Inside => Part::All,
+            Narrowed::Same => Part::Some(program.clone()),
+            Narrowed::Simpler(simpler) => Part::Some(simpler),
+        }
+    }
+}
+
+/// A box, and what is left of both programs in it; nothing of one that holds all of it.
+struct Shared {
+    bounds: Bounds,
+    programs: [Option<Program>; 2],
+}
+
+impl Shared {
+    /// A part of it, if both solids may be there.
+    fn part(&self, bounds: Bounds) -> Option<Shared> {
+        let [one, other] = &self.programs;
+        let narrowed = |program: &Option<Program>| match program.as_ref().map(|own| Part::of(own, &bounds)) {
+            None | Some(Part::All) => Some(None),
+            Some(Part::Nothing) => None,
+            Some(Part::Some(program)) => Some(Some(program)),
+        };
+        Some(Shared { bounds, programs: [narrowed(one)?, narrowed(other)?] })
+    }
+}
+
+/// A point of both solids in the boxes of both surfaces, or how large what is left of these is.
+pub(super) fn entry(sides: [&Side<'_>; 2], slack: f64, run: &Run) -> Result<Entry, Cancelled> {
+    let programs = sides.map(|side| Some(side.program.clone()));
+    let all = sides.iter().flat_map(|side| &side.surface.doubts);
+    let whole = Shared { bounds: Bounds::EMPTY, programs };
+    let mut open: Vec<Shared> = all.filter_map(|bounds| whole.part(*bounds)).collect();
+    // Farther from a surface than it is large, and outside.
+    let is_beyond = |part: &Shared| {
+        let (middle, reach) = (part.bounds.center(), part.bounds.half_extents().length() + slack);
+        sides.iter().any(|side| {
+            side.program.value(middle) <= 0.0
+                && distance(&side.surface.patches, middle) > reach
+                && side.surface.doubts.iter().all(|doubt| doubt.distance_squared(middle) > reach * reach)
+        })
+    };
+    let (mut left, mut asked) = (0.0, open.len());
+    while !open.is_empty() {
+        run.check()?;
+        open = open.into_par_iter().filter(|part| !is_beyond(part)).collect();
+        let is_common = |p: DVec3| {
+            sides.iter().all(|side| side.program.value(p) > 0.0 && distance(&side.surface.patches, p) > slack)
+        };
+        let middles: Vec<DVec3> = open.iter().map(|part| part.bounds.center()).collect();
+        if let Some(found) = middles.into_par_iter().find_first(|p| is_common(*p)) {
+            return Ok(Entry::At(found));
+        }
+        asked += 8 * open.len();
+        let (small, large): (Vec<Shared>, Vec<Shared>) =
+            open.into_iter().partition(|part| asked > MOST || part.bounds.size().length() <= slack);
+        left = small.iter().map(|part| part.bounds.size().length()).fold(left, f64::max);
+        open =
+            large.par_iter().flat_map_iter(|part| part.bounds.octants().map(|own| part.part(own))).flatten().collect();
+    }
+    Ok(Entry::AtMost(left))
+}
+
+/// What no point of one surface in its boxes is nearer to the other surface than, more or less
+/// exactly where that is less than what is enough.
+pub(super) fn least(sides: [&Side<'_>; 2], enough: f64, slack: f64, run: &Run) -> Result<f64, Cancelled> {
+    type Boxes = Vec<(Bounds, Program)>;
+    let surface = |bounds: Bounds, program: &Program| match Part::of(program, &bounds) {
+        Part::Some(program) => Some((bounds, program)),
+        Part::All | Part::Nothing => None,
+    };
+    let mut open: [Boxes; 2] =
+        sides.map(|side| side.surface.doubts.iter().filter_map(|bounds| surface(*bounds, side.program)).collect());
+    let (mut least, mut asked) = (f64::INFINITY, open[0].len() + open[1].len());
+    while open.iter().any(|boxes| !boxes.is_empty()) {
+        run.check()?;
+        let are_compared = open[0].len() * open[1].len() <= PAIRS;
+        let near = |side: usize, bounds: &Bounds| {
+            let to_patches =
+                distance(&sides[1 - side].surface.patches, bounds.center()) - bounds.half_extents().length();
+            let others = open[1 - side].iter().filter(|_| are_compared);
+            let to_boxes = others.map(|(other, _)| gap(bounds, other)).fold(f64::INFINITY, f64::min);
+            to_patches.min(to_boxes).max(0.0)
+        };
+        let found = [0, 1].map(|side| open[side].par_iter().map(|(own, _)| near(side, own)).collect::<Vec<f64>>());
+        asked += 8 * (found[0].len() + found[1].len());
+        let mut next: [Boxes; 2] = [Vec::new(), Vec::new()];
+        for (side, (boxes, found)) in open.into_iter().zip(found).enumerate() {
+            let mut large = Vec::new();
+            for ((bounds, program), near) in boxes.into_iter().zip(found) {
+                // Boxes of the other surface that are left may be anywhere.
+                let near = if are_compared { near } else { 0.0 };
+                if near >= enough || asked > MOST || bounds.size().length() <= slack {
+                    least = least.min(near);
+                } else {
+                    large.push((bounds, program));
+                }
+            }
+            let parts = |(bounds, program): &(Bounds, Program)| bounds.octants().map(|own| surface(own, program));
+            next[side] = large.par_iter().flat_map_iter(parts).flatten().collect();
+        }
+        open = next;
+    }
+    Ok(least)
+}
+
+/// How far two boxes are apart.
+fn gap(one: &Bounds, other: &Bounds) -> f64 {
+    (one.min - other.max).max(other.min - one.max).max(DVec3::ZERO).length()
+}

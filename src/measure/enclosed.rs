@@ -1,0 +1,42 @@
+//! Cells of which one imported mesh tells all.
+
+use std::collections::HashMap;
+
+use super::bracket::Held;
+use super::columns::Columns;
+use super::facets::Facets;
+use crate::program::Program;
+use crate::{Bounds, Cancelled, Run};
+
+/// The triangles of a program's imported meshes that tell what these hold, by their leaves.
+pub(super) struct Enclosed(HashMap<u32, Columns>);
+
+impl Enclosed {
+    pub(super) fn new(program: &Program, run: &Run) -> Result<Enclosed, Cancelled> {
+        let quiet = Run { progress: None, ..run.clone() };
+        let mut all = HashMap::new();
+        for leaf in program.plain_leaves() {
+            if let Some(facets) = Facets::of(&*leaf.field, &leaf.to_local.inverse(), &quiet)? {
+                all.insert(leaf.number, Columns::new(facets));
+            }
+        }
+        Ok(Enclosed(all))
+    }
+
+    /// What a cell has of a program that is one of these leaves, or all but it.
+    pub(super) fn held(&self, program: &Program, cell: &Bounds) -> Option<Held> {
+        if self.0.is_empty() {
+            return None;
+        }
+        let (leaf, is_complement) = program.only_plain_leaf()?;
+        let moments = self.0.get(&leaf.number)?.moments_in(cell);
+        let moments = if is_complement { Held::whole(cell).moments.less(&moments) } else { moments };
+        let volume = moments.volume.clamp(0.0, cell.size().element_product());
+        Some(Held { least: volume, most: volume, moments })
+    }
+
+    /// How far the volume may be off, as corners are rounded.
+    pub(super) fn volume_error(&self) -> f64 {
+        self.0.values().map(Columns::volume_error).sum()
+    }
+}

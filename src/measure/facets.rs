@@ -1,0 +1,99 @@
+//! Volume and moments of what triangles enclose, all of it or within a box.
+//!
+//! ```text
+//!      z₁ ---+-------+---        Of a triangle above a box's lower face: the prism between both, up to
+//!            |  .-'\ |           the upper face, counted as the triangle faces: up +, down −. All
+//!            |-'    \|           triangles above the lower face together leave what is inside,
+//!      z₀ ---+-------+---        without a look at what the sides of the box cut.
+//! ```
+//!
+//! That is the volume of the solid where winding numbers are 0 and 1 only: of closed triangles that
+//! cross nowhere, with nothing inside of what is inside. Others are left to the ranges of the value.
+
+use glam::{DAffine3, DVec3};
+
+use super::moments::Moments;
+use crate::{Bounds, Cancelled, Mesh, Run};
+use rvachev_field::AnyField;
+
+/// How far off a triangle its sides are told, as a part of the root of its area.
+const ASIDE: f64 = 1e-3;
+
+/// Triangles that leave no opening, and are the surface of what they enclose.
+pub(super) struct Facets {
+    pub(super) triangles: Vec<[DVec3; 3]>,
+    /// How far the surface may be off them.
+    rounding: f64,
+}
+
+impl Facets {
+    /// Those of a leaf after a map, if they tell what it holds.
+    pub(super) fn of(field: &dyn AnyField, map: &DAffine3, run: &Run) -> Result<Option<Facets>, Cancelled> {
+        let Some(found) = field.facets().filter(|found| found.is_closed) else { return Ok(None) };
+        let rvachev_field::Facets { positions, triangles, rounding, .. } = found;
+        let bounds = Bounds::from_points(positions.iter().copied());
+        // About their middle, so that single precision tells crossings as they are.
+        let single = |p: &DVec3| ((*p - bounds.center()) / bounds.longest_side()).as_vec3();
+        let Ok(mesh) = Mesh::new(positions.iter().map(single).collect(), triangles) else { return Ok(None) };
+        let corners = |triangle: &[u32; 3]| triangle.map(|v| positions[v as usize]);
+        let report = mesh.check_with(run)?;
+        let is_simple = report.is_closed()
+            && report.non_manifold_edges + report.non_manifold_vertices == 0
+            && report.self_intersections + report.duplicate_triangles == 0;
+        if !is_simple {
+            return Ok(None);
+        }
+        // The winding number is the same on each side of a part: one place tells of all.
+        for part in mesh.components_with(run)? {
+            let all = part.triangles().iter().map(|n| corners(&mesh.triangles()[*n as usize]));
+            let largest = all.max_by(|a, b| area(a).length_squared().total_cmp(&area(b).length_squared()));
+            if !largest.is_some_and(|triangle| is_between(field, &triangle)) {
+                return Ok(None);
+            }
+        }
+        let is_turned = map.matrix3.determinant() < 0.0;
+        let place = |triangle: &[u32; 3]| {
+            let [a, b, c] = corners(triangle).map(|p| map.transform_point3(p));
+            if is_turned { [a, c, b] } else { [a, b, c] }
+        };
+        let stretch = map.matrix3.to_cols_array().iter().map(|x| x * x).sum::<f64>().sqrt();
+        let triangles = mesh.triangles().iter().map(place).collect();
+        Ok(Some(Facets { triangles, rounding: rounding * stretch }))
+    }
+
+    /// All that they enclose.
+    pub(super) fn moments(&self) -> Moments {
+        let Some(about) = self.triangles.first().map(|triangle| triangle[0]) else { return Moments::default() };
+        let mut all = Moments::default();
+        for triangle in &self.triangles {
+            let [a, b, c] = triangle.map(|p| p - about);
+            all.add(&Moments::tetrahedron(a.dot(b.cross(c)) / 6.0, &[DVec3::ZERO, a, b, c]));
+        }
+        all.moved(about)
+    }
+
+    /// Their area, and how far it may be off, as their corners are rounded.
+    pub(super) fn area(&self) -> [f64; 2] {
+        let around = |[a, b, c]: &[DVec3; 3]| a.distance(*b) + b.distance(*c) + c.distance(*a);
+        let length: f64 = self.triangles.iter().map(around).sum();
+        [self.triangles.iter().map(|triangle| area(triangle).length()).sum(), self.rounding * length]
+    }
+
+    /// How far the volume may be off for the same reason.
+    pub(super) fn volume_error(&self) -> f64 {
+        let [area, error] = self.area();
+        self.rounding * (area + error)
+    }
+}
+
+/// A triangle's area vector.
+fn area([a, b, c]: &[DVec3; 3]) -> DVec3 {
+    0.5 * (*b - *a).cross(*c - *a)
+}
+
+/// Whether inside is behind a triangle, and outside in front of it.
+fn is_between(field: &dyn AnyField, triangle: &[DVec3; 3]) -> bool {
+    let (middle, area) = (triangle.iter().sum::<DVec3>() / 3.0, area(triangle));
+    let aside = ASIDE * area.length().sqrt() * area.normalize_or_zero();
+    field.value((middle + aside).to_array()) < 0.0 && field.value((middle - aside).to_array()) > 0.0
+}
