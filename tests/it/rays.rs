@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 use rvachev::{
-    Bounds, Camera, Gielis, Run, Scene, Solid, Supershape,
+    Blend, Bounds, Camera, Gielis, Run, Scene, Solid, Supershape,
     camera::Window,
     deg,
     form::Form,
@@ -348,6 +348,14 @@ fn pictures_of_blades_and_steps_see_what_single_rays_hit() {
     compare_with_single_rays("pinched", &(pinched(3.0, 0.3).rotate_y(deg(30.0)) - pinched(2.5, 2.5)));
     #[cfg(feature = "formula")]
     compare_with_single_rays("steps", &(steps() & Solid::cuboid([2.0, 1.6, 1.8])));
+}
+
+/// Faces whose planes turn with what they are held by.
+#[test]
+fn pictures_of_chamfers_see_what_single_rays_hit() {
+    let (plate, blend) = (Solid::cuboid([2.0, 2.0, 0.4]), Blend::Chamfer { leg: 0.15 });
+    let spike = Solid::superellipsoid([0.5, 0.5, 1.0], 0.3, 0.7).rotate_x(deg(12.0));
+    compare_with_single_rays("chamfered joint", &plate.union_with(&spike, blend));
 }
 
 fn compare_with_single_rays(name: &str, solid: &Solid) {
