@@ -114,7 +114,7 @@ fn values_along_segments_are_as_told() {
             }
         }
     }
-    assert!(4 * tighter > told, "{tighter} of {told}");
+    assert!(6 * tighter > told, "{tighter} of {told}");
 }
 
 #[test]
