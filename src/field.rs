@@ -4,6 +4,6 @@
 //! and runs like a built-in leaf.
 
 #[doc(inline)]
-pub use rvachev_field::{COORDINATE_LIMIT, Field, Kernel, VALUE_LIMIT, chained};
+pub use rvachev_field::{Along, COORDINATE_LIMIT, Field, Kernel, Segment, VALUE_LIMIT, chained};
 #[doc(inline)]
 pub use rvachev_num::{Dual, Monotone, Monotone3, Norm, Real};

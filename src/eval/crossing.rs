@@ -16,7 +16,7 @@ use glam::DVec3;
 use super::program::{Kind, Node, Program};
 use super::scene::Instance;
 use crate::{Bounds, Dual, Interval};
-use rvachev_field::{Crease, Number, Rule, Zone};
+use rvachev_field::{Along, Crease, Number, Rule, Segment, Zone};
 
 impl Program {
     /// A range of the slopes that leaves have where they change their signs, along rays in a box
@@ -54,6 +54,17 @@ impl Program {
             }
         }
         Some(slopes.unwrap_or(Interval::point(0.0)))
+    }
+
+    /// What is known of the value along a segment.
+    pub(crate) fn along(&self, segment: &Segment) -> Along {
+        if let [Node { kind: Kind::Leaf(leaf), .. }] = self.nodes[..]
+            && let Instance { frame: 0, placement, field, .. } = self.instance(leaf)
+        {
+            let along = field.along(&segment.placed(placement)).placed(placement);
+            return if self.root.negated() { along.turned() } else { along };
+        }
+        Along::of(self.evaluate(segment.sides(), &mut Vec::new()))
     }
 
     /// Whether any of its leaves is deformed.

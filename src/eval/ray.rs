@@ -10,8 +10,8 @@ use glam::DVec3;
 use super::bracket::Bracket;
 use super::crossing::distance;
 use super::{Program, Region};
-use crate::{Bounds, Dual, Interval};
-use rvachev_field::Zone;
+use crate::{Bounds, Interval};
+use rvachev_field::{Along, Segment, Zone};
 
 /// Where a ray meets the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,8 +94,9 @@ struct Piece {
     values: [f64; 2],
     /// Which of its ends are inside; close to the surface rounding may tell otherwise.
     inside: [bool; 2],
-    /// Bounds of the value's slope along it.
+    /// Bounds of the value's slope along it, and by how much values may differ from what they say.
     slopes: Interval,
+    give: f64,
     /// The length of the piece that these and the program were made for.
     known: f64,
 }
@@ -105,7 +106,7 @@ impl Piece {
     fn new(program: &Program, start: (f64, f64), end: (f64, f64), is_inside: impl Fn(f64) -> bool) -> Piece {
         let (ends, values) = ([start.0, end.0], [start.1, end.1]);
         let (inside, program) = (values.map(is_inside), program.clone());
-        Piece { program, ends, values, inside, slopes: Interval::ALL, known: f64::INFINITY }
+        Piece { program, ends, values, inside, slopes: Interval::ALL, give: 0.0, known: f64::INFINITY }
     }
 }
 
@@ -153,7 +154,11 @@ pub(crate) fn first_hit(
     let scale = 16.0 * values[0].abs().max(values[1].abs()).max(between.abs());
     let doubt = ROUNDING * (size + origin.abs().max_element()).min(scale);
     let level = LEVEL * (scale / size).min(1.0);
-    let one_signed = |slope: Interval| slope.lo() > -level || slope.hi() < level;
+    // Where values give, a slope shows in pieces that are not too short.
+    let one_signed = |slope: Interval, give: f64, short: f64| match give {
+        0.0 => slope.lo() > -level || slope.hi() < level,
+        _ => slope.lo() * short > give || -slope.hi() * short > give,
+    };
     let is_inside = |value: f64| value > doubt;
     let inside = values.map(is_inside);
     let mut pieces = Vec::new();
@@ -174,11 +179,12 @@ pub(crate) fn first_hit(
         let [t0, t1] = piece.ends;
         let [from, to] = within_reach(&piece);
         let short = if piece.inside[0] == piece.inside[1] { shortest } else { shortest.max(closest) };
-        if to - from <= short || one_signed(piece.slopes) {
+        let is_settled = one_signed(piece.slopes, piece.give, short);
+        if to - from <= short || is_settled {
             if piece.inside[0] == piece.inside[1] {
                 continue;
             }
-            let [from, to] = if one_signed(piece.slopes) { piece.ends } else { [from.min(to), from.max(to)] };
+            let [from, to] = if is_settled { piece.ends } else { [from.min(to), from.max(to)] };
             return Some(hit_between(&piece.program, &at, [from, to], doubt, care.precision() * size));
         }
         if to - from <= 0.5 * (t1 - t0) {
@@ -190,15 +196,13 @@ pub(crate) fn first_hit(
         if t1 - t0 < ASK * piece.known {
             let along = |program: &Program| match program.leaf_count() <= FEW && care.trusts(program) {
                 true => along(program, origin, direction, t0, t1),
-                false => Dual::new(Interval::ALL, [Interval::ALL; 3]),
+                false => Along::ANY,
             };
             let zone = || Zone::of_segment(at(t0), at(t1));
             // Narrowing one leaf leaves one.
             let single = piece.program.leaf_count() == 1;
-            let over = if single { along(&piece.program) } else { Dual::constant(Interval::ALL) };
-            let mut found = if single { over.gradient()[0] } else { Interval::ALL };
-            if !one_signed(found) {
-                let value = over.value();
+            let Along { value, slope: mut found, mut give } = if single { along(&piece.program) } else { Along::ANY };
+            if !one_signed(found, give, short) {
                 let region = match piece.program.cost() {
                     // Of a leaf that is asked for little, its slopes and the values at the ends say
                     // all.
@@ -228,10 +232,12 @@ pub(crate) fn first_hit(
                 if piece.inside[0] == piece.inside[1] && is_other(1) {
                     piece.inside[1] = !piece.inside[1];
                 }
-                found = if single { found } else { along(&piece.program).gradient()[0] };
+                if !single {
+                    Along { slope: found, give, .. } = along(&piece.program);
+                }
             }
-            let better = found.width() < 0.5 * piece.slopes.width();
-            (piece.slopes, piece.known) = (found, t1 - t0);
+            let better = found.width() < 0.5 * piece.slopes.width() || give < 0.5 * piece.give;
+            (piece.slopes, piece.give, piece.known) = (found, give, t1 - t0);
             if better {
                 pieces.push(piece);
                 continue;
@@ -260,10 +266,10 @@ pub(crate) fn first_hit(
 /// What is left of a piece where the value may be 0: from either end it takes the value a while
 /// to get there, from a value that is 0 but for rounding none.
 fn within_reach(piece: &Piece) -> [f64; 2] {
-    let Piece { ends: [t0, t1], values: [v0, v1], inside: [inside0, inside1], slopes, .. } = *piece;
+    let Piece { ends: [t0, t1], values: [v0, v1], inside: [inside0, inside1], slopes, give, .. } = *piece;
     let way = |value: f64, inside: bool, fall: f64, rise: f64| {
         let steepest = if inside { fall } else { rise };
-        let way = value.abs() / (steepest * (1.0 + 1e-9));
+        let way = (value.abs() - give).max(0.0) / (steepest * (1.0 + 1e-9));
         if inside == (value > 0.0) && way.is_finite() { way } else { 0.0 }
     };
     [t0 + way(v0, inside0, -slopes.lo(), slopes.hi()), t1 - way(v1, inside1, slopes.hi(), -slopes.lo())]
@@ -280,12 +286,13 @@ fn hit_at(program: &Program, point: DVec3, distance: f64) -> Hit {
     Hit { distance, point, normal, owner: program.deciding_leaf(point) }
 }
 
-/// The value along the ray from `t0` to `t1`, and its slopes.
-fn along(program: &Program, origin: DVec3, direction: DVec3, t0: f64, t1: f64) -> Dual<Interval> {
-    let t = Dual::variable(Interval::new(t0, t1), 0);
-    let along = |o: f64, d: f64| t * Dual::constant(Interval::point(d)) + Dual::constant(Interval::point(o));
-    let p = [along(origin.x, direction.x), along(origin.y, direction.y), along(origin.z, direction.z)];
-    program.evaluate(p, &mut Vec::new())
+/// The value along the ray from `t0` to `t1`.
+fn along(program: &Program, origin: DVec3, direction: DVec3, t0: f64, t1: f64) -> Along {
+    let at = |t: f64| {
+        [0, 1, 2].map(|axis| Interval::point(t) * Interval::point(direction[axis]) + Interval::point(origin[axis]))
+    };
+    let slopes = direction.to_array().map(Interval::point);
+    program.along(&Segment { ends: [at(t0), at(t1)], slopes, length: t1 - t0 + 4e-16 * t1.abs() })
 }
 
 /// The crossing between `t0` and `t1`. Where rounding has the same sign at both ends it is at one

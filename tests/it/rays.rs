@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 use rvachev::{
-    Bounds, Camera, Gielis, Run, Scene, Solid, Supershape,
+    Blend, Bounds, Camera, Gielis, Run, Scene, Solid, Supershape,
     camera::Window,
     deg,
     form::Form,
@@ -350,6 +350,15 @@ fn pictures_of_blades_and_steps_see_what_single_rays_hit() {
     compare_with_single_rays("steps", &(steps() & Solid::cuboid([2.0, 1.6, 1.8])));
 }
 
+/// Faces whose planes turn with what they are held by.
+#[test]
+fn pictures_of_chamfers_see_what_single_rays_hit() {
+    let (plate, blend) = (Solid::cuboid([2.0, 2.0, 0.4]), Blend::Chamfer { leg: 0.15 });
+    let spike = Solid::superellipsoid([0.5, 0.5, 1.0], 0.3, 0.7).rotate_x(deg(12.0));
+    let joint = plate.union_with(&spike, blend);
+    compare_view("chamfered joint", &joint, &Camera::framing(&joint.bounds().unwrap()));
+}
+
 fn compare_with_single_rays(name: &str, solid: &Solid) {
     let bounds = solid.bounds().unwrap();
     let inside = Camera::perspective(bounds.center(), bounds.max, DVec3::Z, deg(100.0));
@@ -357,22 +366,26 @@ fn compare_with_single_rays(name: &str, solid: &Solid) {
     let within = Camera::orthographic(bounds.center(), bounds.center() - DVec3::Z, DVec3::Y, 0.7 * bounds.size().y);
     let below = Camera::orthographic(bounds.min - DVec3::Z, bounds.min, DVec3::new(0.3, 1.0, 0.0), 4.0);
     for camera in [Camera::framing(&bounds), Camera::framing_orthographic(&bounds), inside, above, within, below] {
-        let scene = solid.scene().unwrap();
-        let seen = normal_image(&scene, &camera, 1);
-        // Fresh or used, on one thread or several: the same to the bit.
-        assert!(seen == normal_image(&scene, &camera, 2), "{name}");
-        assert!(seen == normal_image(&solid.scene().unwrap(), &camera, 3), "{name}");
-        let size = bounds.longest_side();
-        let mut differ = 0;
-        for (i, seen) in seen.iter().enumerate().filter(|(i, _)| i % 37 == 0) {
-            let (origin, direction) = camera.ray((i % 60) as f64 + 0.5, (i / 60) as f64 + 0.5, 60, 44);
-            let hit = solid.raycast(origin, direction).unwrap();
-            let distance = hit.map_or(f64::INFINITY, |hit| hit.distance);
-            let close = distance == seen.distance || (distance - seen.distance).abs() < 1e-5 * size;
-            differ += usize::from(!close);
-        }
-        assert!(differ <= 2, "{name} {camera:?}: {differ}");
+        compare_view(name, solid, &camera);
     }
+}
+
+fn compare_view(name: &str, solid: &Solid, camera: &Camera) {
+    let scene = solid.scene().unwrap();
+    let seen = normal_image(&scene, camera, 1);
+    // Fresh or used, on one thread or several: the same to the bit.
+    assert!(seen == normal_image(&scene, camera, 2), "{name}");
+    assert!(seen == normal_image(&solid.scene().unwrap(), camera, 3), "{name}");
+    let size = solid.bounds().unwrap().longest_side();
+    let mut differ = 0;
+    for (i, seen) in seen.iter().enumerate().filter(|(i, _)| i % 37 == 0) {
+        let (origin, direction) = camera.ray((i % 60) as f64 + 0.5, (i / 60) as f64 + 0.5, 60, 44);
+        let hit = solid.raycast(origin, direction).unwrap();
+        let distance = hit.map_or(f64::INFINITY, |hit| hit.distance);
+        let close = distance == seen.distance || (distance - seen.distance).abs() < 1e-5 * size;
+        differ += usize::from(!close);
+    }
+    assert!(differ <= 2, "{name} {camera:?}: {differ}");
 }
 
 #[test]

@@ -4,7 +4,7 @@
 use glam::{DQuat, DVec3};
 use rvachev::{
     Bounds, Gielis, Solid, Supershape, Turns,
-    field::Field,
+    field::{Field, Segment},
     program::{Program, Region},
 };
 
@@ -81,6 +81,40 @@ fn ranges_of_any_supershape_hold_every_sample() {
             }
         }
     }
+}
+
+/// What is told of a segment holds the value and its changes all along, short or long, and much
+/// more is told than of the box about it.
+#[test]
+fn values_along_segments_are_as_told() {
+    let mut random = Random::new(79);
+    let (mut tighter, mut told) = (0, 0);
+    for _ in 0..120 {
+        let curves = [any_curve(&mut random, true), any_curve(&mut random, false)];
+        let shape = Supershape::new(curves[0], curves[1]).scaled(random.vector(0.3, 2.0));
+        let solid = Solid::from(shape.clone());
+        let size = value(&solid, DVec3::ZERO).abs().max(1e-3 * solid.bounds().unwrap().longest_side()).min(1e9);
+        for _ in 0..16 {
+            let direction = random.direction();
+            let length = size * random.log_range(1e-5, 3.0);
+            let from = random.point_in(&Bounds::from_center(DVec3::ZERO, DVec3::splat(2.0 * size)));
+            let ends = [from, from + length * direction].map(|end| end.to_array());
+            let segment = Segment::new(ends, direction.to_array(), length);
+            let (along, boxed) = (shape.along(&segment), shape.dual_range(segment.sides()));
+            told += 1;
+            tighter += usize::from(along.slope.width() < 0.9 * boxed.gradient()[0].width());
+            let values: Vec<f64> =
+                (0..=24).map(|k| value(&solid, from + length * f64::from(k) / 24.0 * direction)).collect();
+            let rounding = 1e-9 * values.iter().fold(size, |most, v| most.max(v.abs()));
+            for pair in values.windows(2) {
+                let range = along.value.inflate(rounding);
+                assert!(range.contains(pair[0]), "{shape:?}: {} in {along:?} of {segment:?}", pair[0]);
+                let change = (along.slope * (length / 24.0)).inflate(along.give + rounding);
+                assert!(change.contains(pair[1] - pair[0]), "{shape:?}: {pair:?}, {along:?} of {segment:?}");
+            }
+        }
+    }
+    assert!(6 * tighter > told, "{tighter} of {told}");
 }
 
 #[test]

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::outlined::{Outlined, zone_range, zone_rises};
-use super::{Case, Crease, Field, Kernel, ParamError, Placement, Way, Zone, bits, steepest};
+use super::{Along, Case, Crease, Field, Kernel, ParamError, Placement, Segment, Way, Zone, bits, steepest};
 use crate::kernel::{Element, Formula, Visit, run};
 use crate::{Bounds, Dual, Interval, Real};
 #[cfg(feature = "formula")]
@@ -68,6 +68,11 @@ pub trait AnyField: Any + Debug + Send + Sync {
     }
     /// The value at a point of the leaf's frame.
     fn value(&self, p: [f64; 3]) -> f64;
+    /// The same for who does not tell apart values that are not between `low` and `high`: they may
+    /// come nearer to those, as far as that and no farther.
+    fn value_between(&self, p: [f64; 3], _low: f64, _high: f64) -> f64 {
+        self.value(p)
+    }
     /// Value and derivatives at a point.
     fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64>;
     /// Ranges of value and derivatives over a box.
@@ -76,6 +81,10 @@ pub trait AnyField: Any + Debug + Send + Sync {
     /// [`creases`](AnyField::creases), on the side of each of them that a point is on.
     fn slopes_beside(&self, p: [Dual<Interval>; 3], _beside: DVec3) -> [Interval; 3] {
         self.dual_range(p).d
+    }
+    /// What is known of the value along a segment of the leaf's frame.
+    fn along(&self, segment: &Segment) -> Along {
+        Along::of(self.dual_range(segment.sides()))
     }
     /// Whether the value is the true distance.
     fn exact(&self) -> bool;
@@ -113,6 +122,10 @@ pub trait AnyField: Any + Debug + Send + Sync {
     }
     /// A sound range over a zone of the leaf's frame.
     fn range(&self, zone: &Zone) -> Interval;
+    /// The same for who does not tell apart values that are not between `low` and `high`.
+    fn range_between(&self, zone: &Zone, _low: f64, _high: f64) -> Interval {
+        self.range(zone)
+    }
     /// The directions, of up to eight, along which the value is found to rise, or to stay,
     /// throughout a zone: by their numbers, as bits.
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
@@ -417,6 +430,10 @@ impl<F: Field> AnyField for F {
 
     fn slopes_beside(&self, p: [Dual<Interval>; 3], beside: DVec3) -> [Interval; 3] {
         Field::slopes_beside(self, p, beside)
+    }
+
+    fn along(&self, segment: &Segment) -> Along {
+        Field::along(self, segment)
     }
 
     fn range(&self, zone: &Zone) -> Interval {

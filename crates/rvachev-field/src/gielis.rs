@@ -291,6 +291,11 @@ impl Gielis {
         normals
     }
 
+    /// Whether the curve of the standard radius is a circle.
+    pub(super) fn is_circle(&self) -> bool {
+        self.m == 0.0 || (self.n2 == 2.0 && self.n3 == 2.0 && self.a == self.b)
+    }
+
     /// How much the radius magnifies relative errors: `max(n2, n3)/n1`.
     pub(super) fn condition(&self) -> f64 {
         self.n2.max(self.n3) / self.n1

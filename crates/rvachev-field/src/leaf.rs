@@ -4,9 +4,9 @@ use std::fmt::Debug;
 
 use glam::{DAffine3, DVec3};
 
-use super::ParamError;
 use super::erased::reach;
 use super::outlined::Outlined;
+use super::{Along, ParamError, Segment};
 use crate::{Bounds, Dual, Interval, Real};
 use rvachev_num::{Cancelled, Run};
 
@@ -156,6 +156,11 @@ pub trait Field: Debug + Send + Sync + 'static {
     /// default; what is left out costs time, nothing else.
     fn creases(&self) -> Vec<DVec3> {
         Vec::new()
+    }
+
+    /// What is known of the value along a segment. The default asks the box about it.
+    fn along(&self, segment: &Segment) -> Along {
+        Along::of(self.dual_range(segment.sides()))
     }
 
     /// The derivatives of [`dual_range`](Field::dual_range) in the part of a box that lies beside

@@ -15,21 +15,15 @@
 //! second kind, a few dozen short intervals with the range of X in each, is the table. r is
 //! even in θ, so angles from 0 to π do.
 //!
-//! In terms of t = mθ/4, with C = |cos t|/a, D = |sin t|/b and S = C^n₂ + D^n₃, the slope is
-//!
-//! ```text
-//!     (ln r)′ = (m / 4n₁)·( n₂ C^(n₂−1) sin t sgn(cos t)/a − n₃ D^(n₃−1) cos t sgn(sin t)/b ) / S
-//! ```
-//!
-//! with powers taken in logarithms; it is unbounded at the zeros of the cosine where n₂ < 1.
+//! The derivatives come of the slope (ln r)′ ([`Tangents`]); it is unbounded at the zeros of the
+//! cosine where n₂ < 1, and at those of the sine where n₃ < 1.
 
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 
+use super::tangents::{ANGLE, Arc, Tangents, Turn, power_slope};
 use super::{Gielis, Radius, gielis::Winding, leaf::half};
 use crate::{Dual, Interval, Real};
-
-/// Rounding of an angle, in radians.
-const ANGLE: f64 = 4e-15;
 
 /// A coordinate that varies by less than this, relative to itself, is taken as it is.
 const SMALL: f64 = 1e-6;
@@ -39,14 +33,6 @@ const NARROW: f64 = 1e-9;
 
 /// Nor beyond this number in all.
 const BUDGET: u32 = 40_000;
-
-/// A short interval of the angle where a coordinate may turn, and its range there.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Turn {
-    from: f64,
-    to: f64,
-    value: Interval,
-}
 
 /// What is known of a curve over an interval of the angle.
 struct Piece {
@@ -70,7 +56,13 @@ pub(super) struct Outline {
     radius: Radius,
     winding: Winding,
     span: f64,
-    /// Where X turns, by angle.
+    /// The radius, if it is the same all round.
+    circle: Option<Interval>,
+    /// Of other curves of one turn.
+    tangents: Option<Tangents>,
+    /// Where the radius turns, by angle.
+    turns: Vec<Turn>,
+    /// Where X turns.
     x_turns: Vec<Turn>,
     /// Where Y turns.
     y_turns: Vec<Turn>,
@@ -89,10 +81,16 @@ impl Outline {
     /// The outline of `curve` over the angles from 0 to `span`, which is π or π/2.
     pub(super) fn new(curve: Gielis, radius: Radius, span: f64) -> Outline {
         let winding = curve.winding();
-        let (x_turns, y_turns) = (Vec::new(), Vec::new());
-        let extent = [Interval::ALL; 3];
-        let mut outline = Outline { curve, radius, winding, span, x_turns, y_turns, error: 0.0, extent };
+        let (turns, x_turns, y_turns) = (Vec::new(), Vec::new(), Vec::new());
+        let (tangents, extent) = (None, [Interval::ALL; 3]);
+        let is_standard = radius == Radius::Standard;
+        let circle = (is_standard && curve.is_circle()).then(|| radius_of_circle(&curve));
+        let mut outline =
+            Outline { curve, radius, winding, span, circle, tangents, turns, x_turns, y_turns, error: 0.0, extent };
         outline.seek();
+        if is_standard && winding == Winding::Once && circle.is_none() {
+            outline.tangents = Some(Tangents::new(curve, span));
+        }
         outline
     }
 
@@ -111,10 +109,32 @@ impl Outline {
         self.extent[2]
     }
 
-    /// Range of `(ln r)′` and of r over an interval of the angle; only of the angles between the
+    /// Range of r and of `(ln r)′` over an interval of the angle; only of the angles between the
     /// cusps that the angle `beside` is between, if there is one.
     fn slope(&self, angle: Interval, beside: Option<f64>) -> (Interval, Interval) {
+        match self.tangents.as_ref().and_then(|tangents| tangents.over(angle, ANGLE, beside)) {
+            Some(arc) => (self.radius_over(&arc), arc.slope),
+            None => self.slope_by_intervals(angle, beside),
+        }
+    }
+
+    /// Range of r over an arc.
+    fn radius_over(&self, arc: &Arc) -> Interval {
+        let [first, last] =
+            [(arc.ends[0], arc.angle.lo()), (arc.ends[1], arc.angle.hi())].map(|(jet, end)| match jet {
+                Some(jet) => Interval::point(1.0) / jet.inverse,
+                None => self.curve.radius_at(Interval::around(end, ANGLE), self.radius, self.winding),
+            });
+        let turns = Turn::within(&self.turns, arc.angle.lo() - ANGLE, arc.angle.hi() + ANGLE);
+        turns.fold(first.hull(last), |all, turn| all.hull(turn.value))
+    }
+
+    /// The same as [`slope`](Self::slope), by the formula on intervals.
+    fn slope_by_intervals(&self, angle: Interval, beside: Option<f64>) -> (Interval, Interval) {
         let curve = &self.curve;
+        if let Some(radius) = self.circle {
+            return (radius, Interval::point(0.0));
+        }
         let radius = || curve.radius_at(angle, self.radius, self.winding);
         if curve.m == 0.0 {
             return (radius(), Interval::point(0.0));
@@ -151,8 +171,8 @@ impl Outline {
         (r, slope * (0.25 * curve.m / curve.n1))
     }
 
-    fn piece(&self, angle: Interval, beside: Option<f64>) -> Piece {
-        let (radius, slope) = self.slope(angle, beside);
+    fn piece(&self, angle: Interval) -> Piece {
+        let (radius, slope) = self.slope_by_intervals(angle, None);
         let (sin, cos) = angle.sin_cos();
         Piece { radius, slopes: [slope, slope * cos - sin, slope * sin + cos], direction: [cos, sin] }
     }
@@ -168,10 +188,10 @@ impl Outline {
             let half = 0.5 * (hi - lo);
             let middle = lo + half;
             let reach = Interval::around(0.0, half + ANGLE);
-            let whole = self.piece(Interval::new(lo, hi).inflate(ANGLE), None);
+            let whole = self.piece(Interval::new(lo, hi).inflate(ANGLE));
             let mut values = [0, 1, 2].map(|i| whole.value(i));
             if whole.slopes.iter().any(|slope| slope.contains(0.0)) {
-                let centre = self.piece(Interval::point(middle), None);
+                let centre = self.piece(Interval::point(middle));
                 for (i, value) in values.iter_mut().enumerate() {
                     *value = value.narrowed_by(centre.value(i) + whole.radius * whole.slopes[i] * reach);
                 }
@@ -203,14 +223,13 @@ impl Outline {
             let ends = self.turn_at(i, 0.0).value.hull(self.turn_at(i, self.span).value);
             self.extent[i] = turns.iter().fold(ends, |all, turn| all.hull(turn.value));
         }
-        let [_, x_turns, y_turns] = found;
-        (self.x_turns, self.y_turns) = (x_turns, y_turns);
+        [self.turns, self.x_turns, self.y_turns] = found;
         let scales = self.curve.a.log2().abs() + self.curve.b.log2().abs();
         self.error = steepest * ANGLE + 1e-15 * (4.0 + self.curve.condition() * (2.0 + scales));
     }
 
     fn turn_at(&self, i: usize, angle: f64) -> Turn {
-        let value = self.piece(Interval::around(angle, 2.0 * ANGLE), None).value(i);
+        let value = self.piece(Interval::around(angle, 2.0 * ANGLE)).value(i);
         Turn { from: angle - ANGLE, to: angle + ANGLE, value }
     }
 
@@ -247,8 +266,7 @@ impl Outline {
             if at == 0.0 {
                 continue;
             }
-            let first = turns.partition_point(|turn| turn.to < from - ANGLE);
-            for turn in turns[first..].iter().take_while(|turn| turn.from <= to + ANGLE) {
+            for turn in Turn::within(turns, from - ANGLE, to + ANGLE) {
                 let there = turn.value.abs();
                 if near {
                     lo = lo.min((at.abs() / there.hi()).next_down());
@@ -268,12 +286,19 @@ impl Outline {
         if length == 0.0 {
             return (angle, Interval::point(0.0));
         }
+        if let Some(radius) = self.circle {
+            return (angle, Interval::around(length, 1e-15 * length) / radius);
+        }
         if self.error < 1e-9 {
             let gauge = length / self.curve.radius_at(angle, self.radius, self.winding);
             return (angle, Interval::around(gauge, gauge * self.error));
         }
+        let length = Interval::around(length, 1e-15 * length);
+        if let Some(jet) = self.tangents.as_ref().and_then(|tangents| tangents.jet(angle, ANGLE)) {
+            return (angle, length * jet.inverse);
+        }
         let r = self.curve.radius_at(Interval::around(angle, ANGLE), self.radius, self.winding);
-        (angle, Interval::around(length, 1e-15 * length) / r)
+        (angle, length / r)
     }
 
     /// Ranges of the gauge's derivatives over the box `x × y`, y not negative, along vectors; only
@@ -291,8 +316,9 @@ impl Outline {
         beside: Option<f64>,
     ) -> [Interval; N] {
         // A gauge's gradient is the same all along a ray.
-        let Piece { radius, slopes: [slope, ..], direction: [cos, sin] } =
-            self.piece(angles(x, y).inflate(ANGLE), beside);
+        let angle = angles(x, y).inflate(ANGLE);
+        let (radius, slope) = self.slope(angle, beside);
+        let [cos, sin] = direction(angle);
         let zero = Interval::point(0.0);
         along.map(|[x, y]| {
             if x == zero && y == zero {
@@ -301,6 +327,57 @@ impl Outline {
             let across = if slope == zero { zero } else { slope * (cos * y - sin * x) };
             (cos * x + sin * y - across) / radius
         })
+    }
+
+    /// Ranges of the gauge and of its slope along a segment in the half of the plane where y is not
+    /// negative, passed at the pace `slopes` in `length`: the polar angles of a segment are those
+    /// between its ends.
+    pub(super) fn along(
+        &self,
+        ends: [[Interval; 2]; 2],
+        slopes: [Interval; 2],
+        length: f64,
+    ) -> Option<(Interval, Interval)> {
+        let mut error = ANGLE;
+        let polar = ends.map(|[x, y]| {
+            let (at, above) = (x.mid(), y.mid().max(0.0));
+            let distance = at.hypot(above);
+            error = error.max(ANGLE + (x.width() + y.width()) / distance);
+            (Real::atan2(above, at), Interval::around(distance, x.width() + y.width() + 1e-15 * distance))
+        });
+        let [(from, first), (to, last)] = polar;
+        // Close to the origin, angles tell nothing.
+        if first.lo() <= 0.0 || last.lo() <= 0.0 || error > 1e-9 {
+            return None;
+        }
+        let angle = Interval::new(from, to);
+        let zero = Interval::point(0.0);
+        let (inverse, slope, gauges) = match (self.circle, &self.tangents) {
+            (Some(radius), _) => {
+                let inverse = Interval::point(1.0) / radius;
+                (inverse, zero, [first * inverse, last * inverse])
+            }
+            (None, Some(tangents)) => {
+                let arc = tangents.over(angle, error, None)?;
+                let [Some(low), Some(high)] = arc.ends else { return None };
+                let turns = Turn::within(&self.turns, from.min(to) - error, from.max(to) + error);
+                let ends = low.inverse.hull(high.inverse);
+                let inverse = turns.fold(ends, |all, turn| all.hull(Interval::point(1.0) / turn.value));
+                let [at_first, at_last] = if from <= to { [low, high] } else { [high, low] };
+                (inverse, arc.slope, [first * at_first.inverse, last * at_last.inverse])
+            }
+            _ => return None,
+        };
+        let [cos, sin] = direction(angle.inflate(error));
+        let across = if slope == zero { zero } else { slope * (cos * slopes[1] - sin * slopes[0]) };
+        let rise = (cos * slopes[0] + sin * slopes[1] - across) * inverse;
+        let whole = gauges[0].hull(gauges[1]);
+        if rise.lo() >= 0.0 || rise.hi() <= 0.0 {
+            return Some((whole, rise));
+        }
+        let way = Interval::new(0.0, length);
+        let range = (gauges[0] + rise * way).narrowed_by(gauges[1] - rise * way);
+        Some((Interval::new(range.lo().max(0.0), range.hi().max(0.0)).hull(whole), rise))
     }
 
     /// By how much, relative to itself, the radius may be off on lanes of `f32` over the box
@@ -325,15 +402,19 @@ fn angles(x: Interval, y: Interval) -> Interval {
     Interval::new(least, most)
 }
 
-/// The logarithm of the sum of powers S, and n₁ times the derivative of `ln r` by t.
-fn power_slope(curve: &Gielis, sin: Interval, cos: Interval) -> (Interval, Interval) {
-    let c = (cos.abs() * (1.0 / curve.a)).log2();
-    let s = (sin.abs() * (1.0 / curve.b)).log2();
-    let sum = (c * curve.n2).log2_sum_exp2(s * curve.n3);
-    let sign = |x: Interval| x.select(Interval::point(1.0), Interval::point(-1.0));
-    // C^(n−1)/S is at most 1/C.
-    let weight = |log: Interval, n: f64| (log * (n - 1.0) - sum).min(-log).exp2() * n;
-    let from_cos = weight(c, curve.n2) * (sin * (1.0 / curve.a)) * sign(cos);
-    let from_sin = weight(s, curve.n3) * (cos * (1.0 / curve.b)) * sign(sin);
-    (sum, from_cos - from_sin)
+/// The cosines and sines of angles from 0 to π, give or take rounding.
+fn direction(angle: Interval) -> [Interval; 2] {
+    const ROUNDING: f64 = 1e-15;
+    let ((sin, cos), (sin_to, cos_to)) = (angle.lo().sin_cos(), angle.hi().sin_cos());
+    let upright = if angle.contains(FRAC_PI_2) { 1.0 } else { sin };
+    let most = if angle.lo() <= 0.0 { 1.0 } else { cos };
+    let least = if angle.hi() >= PI { -1.0 } else { cos_to };
+    let sines = Interval::new(sin, sin_to).hull(Interval::point(upright));
+    [Interval::new(least, most).inflate(ROUNDING), sines.inflate(ROUNDING)]
+}
+
+/// The radius of a curve that is a circle.
+fn radius_of_circle(curve: &Gielis) -> Interval {
+    let inverse = Interval::point(1.0) / Interval::point(curve.a);
+    (inverse.log2() * curve.n2 * (-1.0 / curve.n1)).exp2()
 }

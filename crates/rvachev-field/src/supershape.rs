@@ -35,7 +35,7 @@ use super::erased::reach;
 use super::gielis::{Polar, Winding};
 use super::leaf::half;
 use super::outline::Outline;
-use super::{Case, Field, Gielis, Kernel, ParamError, Radius, Turns, check};
+use super::{Along, Case, Field, Gielis, Kernel, ParamError, Radius, Segment, Turns, check};
 use crate::{Bounds, Dual, Euclid, Interval, Real};
 use rvachev_num::{Cancelled, Run};
 
@@ -272,6 +272,28 @@ impl Supershape {
         (u, slopes.map(|slope| slope * -self.inscribed()))
     }
 
+    /// What is known along a segment that does not cross the plane y = 0.
+    fn along_segment(&self, segment: &Segment) -> Option<Along> {
+        let [equator, meridian] = self.outlines()?;
+        let ends = segment.ends.map(|end| self.scaled_down(end));
+        let [dx, mut dy, mut dz] = self.scaled_down(segment.slopes);
+        let is_finite = ends.iter().flatten().all(|side| side.magnitude().is_finite());
+        let is_above = ends.iter().all(|[_, y, _]| y.lo() >= 0.0);
+        if !is_finite || !is_above && ends.iter().any(|[_, y, _]| y.hi() > 0.0) {
+            return None;
+        }
+        let half = ends.map(|[x, y, _]| [x, y.abs()]);
+        dy = if is_above { dy } else { -dy };
+        let (u, du) = equator.along(half, [dx, dy], segment.length)?;
+        let z = ends[0][2].hull(ends[1][2]);
+        dz = if z.contains(0.0) { dz.hull(-dz) } else { z.select(dz, -dz) };
+        let (zero, one) = (Interval::point(0.0), Interval::point(1.0));
+        let [by_u, by_z, whole] = meridian.rises(u, z.abs(), [[one, zero], [zero, one], [du, dz]], None);
+        // Where u is steep, as at a cusp of the equator, its own part tells the sign.
+        let slope = whole.narrowed_by(by_u * du + by_z * dz) * -self.inscribed();
+        Some(Along { value: self.height(meridian.gauge(u, z.abs())), slope, give: 0.0 })
+    }
+
     /// How far off values are where radii are, relative to themselves.
     fn error(&self, relative: f64, reach: f64) -> f64 {
         let bounds = Field::bounds(self);
@@ -389,6 +411,10 @@ impl Field for Supershape {
 
     fn slopes_beside(&self, p: [Dual<Interval>; 3], beside: DVec3) -> [Interval; 3] {
         self.slopes_over(p, Some(beside)).1
+    }
+
+    fn along(&self, segment: &Segment) -> Along {
+        self.along_segment(segment).unwrap_or_else(|| Along::of(Field::dual_range(self, segment.sides())))
     }
 
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {

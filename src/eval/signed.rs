@@ -1,0 +1,41 @@
+//! Distances of which one side counts as inside, or the other.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use crate::{Dual, Interval};
+use rvachev_field::{AnyField, Zone};
+
+/// A value that is a distance, on one side.
+#[derive(Clone, Debug)]
+pub(super) struct Signed {
+    pub(super) field: Arc<dyn AnyField>,
+    /// 1 where its value counts as it is, −1 where its negative does.
+    pub(super) sign: f64,
+}
+
+impl Signed {
+    pub(super) fn value(&self, p: DVec3) -> f64 {
+        self.sign * self.field.value(p.to_array())
+    }
+
+    /// The value, if it is of no account how far it is from what is between `low` and `high`.
+    pub(super) fn value_between(&self, p: DVec3, [low, high]: [f64; 2]) -> f64 {
+        let [low, high] = if self.sign < 0.0 { [-high, -low] } else { [low, high] };
+        self.sign * self.field.value_between(p.to_array(), low, high)
+    }
+
+    pub(super) fn range(&self, zone: &Zone) -> Interval {
+        self.field.range(zone) * Interval::point(self.sign)
+    }
+
+    pub(super) fn range_between(&self, zone: &Zone, [low, high]: [f64; 2]) -> Interval {
+        let [low, high] = if self.sign < 0.0 { [-high, -low] } else { [low, high] };
+        self.field.range_between(zone, low, high) * Interval::point(self.sign)
+    }
+
+    pub(super) fn slope(&self, p: DVec3) -> DVec3 {
+        self.sign * DVec3::from_array(self.field.dual(Dual::point(p.to_array())).gradient())
+    }
+}
