@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::{DVec2, DVec3};
 use rvachev::{Blend, Plane, PlaneBounds, Profile, Solid, rad};
 
-use super::laws::bounded;
+use super::subject::bounded;
 use super::{Outcome, TOLERANCE, at, fillet, layer, measures, report, sag};
 use crate::primitives::random_primitive;
 use crate::support::Random;

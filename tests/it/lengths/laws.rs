@@ -1,144 +1,25 @@
 //! Laws of lengths, over random solids of the whole catalogue: leaves, maps, joins, blends, lengths
 //! of lengths, and the examples of all entries.
 //!
-//! A few solids are tried in every run, each with one of the laws. The ignored tests try all laws
-//! on as many as are asked for, `LENGTHS_SEEDS=0..2000`, and print what they find.
+//! A few solids are tried in every run, each with one of the laws. The ignored tests try all laws:
+//! on the examples of all entries of the catalogue, and on as many random solids as are asked for,
+//! `LENGTHS_SEEDS=0..2000`. They print what they find; what was wrong once is in
+//! `tests/corpus/lengths.txt`.
 
-use std::cell::OnceCell;
-use std::error::Error;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::time::Instant;
 
-use glam::DVec3;
 use rvachev::{
-    Bounds, Solid, catalogue,
+    Solid, catalogue,
     catalogue::Part,
     program::{Program, Tape},
 };
 
-use super::reference::Surface;
-use super::{Outcome, TOLERANCE};
+use super::Outcome;
+use super::subject::{INSET, Subject, Tally, Verb, bounded, cut};
 use crate::length_ranges::{missed, place};
 use crate::narrow::contradiction;
-use crate::support::{Random, frame_of, lanes32, random_box, random_solid, samples};
-
-/// Cells along the longest side of the mesh that distances are measured to.
-const CELLS: u32 = 40;
-
-/// Points that a law is tried at, of a solid.
-const POINTS: usize = 40;
-
-/// A random solid that ends: cut to its frame if it does not.
-pub fn bounded(random: &mut Random, depth: usize) -> Solid {
-    loop {
-        let depth = random.below(depth + 1);
-        let solid = random_solid(random, depth);
-        if let Some(solid) = cut(solid) {
-            return solid;
-        }
-    }
-}
-
-/// The solid within its frame; `None` if it holds nothing there.
-fn cut(solid: Solid) -> Option<Solid> {
-    let bounds = solid.bounds().ok()?;
-    let frame = frame_of(&solid);
-    let solid = if bounds.is_finite() { solid } else { solid & Solid::cuboid(frame.size()).translate(frame.center()) };
-    solid.bounds().is_ok_and(|bounds| !bounds.is_empty()).then_some(solid)
-}
-
-/// A solid, and the length that laws are tried with.
-struct Subject {
-    solid: Solid,
-    length: f64,
-    frame: Bounds,
-    surface: OnceCell<Option<Surface>>,
-}
-
-impl Subject {
-    fn new(solid: Solid, random: &mut Random) -> Subject {
-        let frame = frame_of(&solid);
-        let length = frame.size().min_element().max(1e-3) * random.log_range(0.005, 0.15);
-        Subject { solid, length, frame, surface: OnceCell::new() }
-    }
-
-    /// The most that a surface may be off, beyond which nothing is listed: three tolerances.
-    fn doubt(&self) -> f64 {
-        3.0 * TOLERANCE * self.length + 1e-7 * self.frame.longest_side()
-    }
-
-    /// The mesh that distances are measured to; `None` if there is none.
-    fn surface(&self) -> Result<Option<&Surface>, Box<dyn Error>> {
-        if self.surface.get().is_none() {
-            let surface = Surface::new(&self.solid, CELLS)?;
-            return Ok(self.surface.get_or_init(|| surface).as_ref());
-        }
-        Ok(self.surface.get().and_then(Option::as_ref))
-    }
-
-    /// The signed distance by brute force: at least, and at most.
-    fn distance(&self, surface: &Surface, p: DVec3) -> Result<[f64; 2], Box<dyn Error>> {
-        let [least, most] = surface.distance(p);
-        Ok(if self.solid.contains(p)? { [least, most] } else { [-most, -least] })
-    }
-
-    /// Points up to two lengths from the surface.
-    fn points_beside(&self, surface: &Surface, random: &mut Random) -> Vec<DVec3> {
-        let beside = |_| {
-            let from = surface.point(random.below(surface.len()), [random.unit(), random.unit()]);
-            from + self.length * random.range(0.0, 2.0) * random.direction()
-        };
-        (0..POINTS).map(beside).collect()
-    }
-
-    /// Points in and around the solid's box.
-    fn points_around(&self, random: &mut Random) -> Vec<DVec3> {
-        let around = self.frame.inflate(2.0 * self.length);
-        (0..POINTS).map(|_| random.point_in(&around)).collect()
-    }
-
-    /// The solid under each of the verbs.
-    fn verbs(&self) -> [(&'static str, Solid); 5] {
-        let (solid, length) = (&self.solid, self.length);
-        [
-            ("offset", solid.offset(length)),
-            ("inset", solid.offset(-0.5 * length)),
-            ("shell", solid.shell(length)),
-            ("rounded", solid.rounded(length)),
-            ("filleted", solid.filleted(length)),
-        ]
-    }
-
-    /// One of the verbs.
-    fn a_verb(&self, random: &mut Random) -> (&'static str, Solid) {
-        let verbs = self.verbs();
-        let [offset, inset, shell, rounded, filleted] = verbs;
-        match random.below(5) {
-            0 => offset,
-            1 => inset,
-            2 => shell,
-            3 => rounded,
-            _ => filleted,
-        }
-    }
-}
-
-/// How often a law was tried, and where it does not hold.
-#[derive(Default)]
-struct Tally {
-    tried: usize,
-    /// Points beyond one tolerance, where that is told apart from three.
-    beyond: usize,
-    failures: Vec<String>,
-}
-
-impl Tally {
-    fn check(&mut self, holds: bool, text: impl FnOnce() -> String) {
-        self.tried += 1;
-        if !holds {
-            self.failures.push(text());
-        }
-    }
-}
+use crate::support::{Random, lanes32, random_box, samples};
 
 type Law = fn(&Subject, &mut Random, &mut Tally) -> Outcome;
 
@@ -159,11 +40,12 @@ const LAWS: [(&str, Law); 10] = [
 /// value beside the surface.
 fn distances(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Outcome {
     let Some(surface) = subject.surface()? else { return Ok(()) };
-    for by in [subject.length, -0.5 * subject.length] {
-        let moved = subject.solid.offset(by);
-        for p in subject.points_beside(surface, random) {
+    for (verb, by) in [(Verb::Offset, subject.length), (Verb::Inset, -INSET * subject.length)] {
+        let Some(moved) = subject.under(verb)? else { continue };
+        let points = subject.points_beside(surface, random);
+        let (contained, values) = (moved.contains_all(&points)?, moved.values(&points)?);
+        for ((p, inside), value) in points.into_iter().zip(contained).zip(values) {
             let [least, most] = subject.distance(surface, p)?;
-            let (inside, value) = (moved.contains(p)?, moved.value(p)?);
             let off = (-by - most).max(0.0) * f64::from(u8::from(inside))
                 + (least + by).max(0.0) * f64::from(u8::from(!inside));
             tally.beyond += usize::from(off > subject.doubt() / 3.0);
@@ -180,19 +62,18 @@ fn distances(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Outco
     Ok(())
 }
 
-/// Two offsets outwards are one by their sum.
+/// Two offsets outwards are one by their sum. A level between them keeps them from being compiled
+/// as one.
 fn sums(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Outcome {
-    let share = random.range(0.1, 0.9);
+    let share = random.range(0.3, 0.7);
     let (first, second) = (share * subject.length, (1.0 - share) * subject.length);
-    let (two, one) = (subject.solid.offset(first).offset(second), subject.solid.offset(subject.length));
-    let points = match subject.surface()? {
-        Some(surface) => subject.points_beside(surface, random),
-        None => subject.points_around(random),
-    };
-    for p in points {
-        let [two, one] = [two.value(p)?, one.value(p)?];
+    let Some(one) = subject.under(Verb::Offset)? else { return Ok(()) };
+    let two = subject.coarse(subject.coarse(subject.solid.offset(first)).level(0.0).offset(second));
+    let Some(two) = subject.measured(two, "an offset of an offset")? else { return Ok(()) };
+    let points = subject.points(random)?;
+    for ((p, two), one) in points.iter().zip(two.values(&points)?).zip(one.values(&points)?) {
         let same = (two > 0.0) == (one > 0.0);
-        tally.check(same || two.abs().min(one.abs()) <= subject.doubt(), || {
+        tally.check(same || two.abs().min(one.abs()) <= subject.coarse_doubt(), || {
             format!("{first} + {second} at {p}: {two}, but {one} at once")
         });
     }
@@ -202,23 +83,24 @@ fn sums(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Outcome {
 /// What is opened is within the solid, holds what is a length inside, and stays when it is opened
 /// again by a ball that is a little smaller.
 fn openings(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Outcome {
-    let (solid, length) = (&subject.solid, subject.length);
-    let opened = solid.rounded(length);
-    let (inner, again) = (solid.offset(-length), opened.rounded(0.99 * length));
-    let mut points = subject.points_around(random);
-    if let Some(surface) = subject.surface()? {
-        points.extend(subject.points_beside(surface, random));
-    }
-    for p in points {
-        let (inside, value, kept) = (solid.contains(p)?, opened.value(p)?, again.contains(p)?);
-        tally.check(inside || value <= 0.0, || format!("{length} at {p}: opening adds it"));
-        tally.check(value > 0.0 || inner.value(p)? <= subject.doubt(), || {
+    let (solid, length, doubt) = (&subject.solid, subject.length, subject.coarse_doubt());
+    let Some(opened) = subject.under(Verb::Rounded)? else { return Ok(()) };
+    let Some(inset) = subject.under(Verb::Inset)? else { return Ok(()) };
+    let again = subject.measured(subject.coarse(opened.rounded(0.99 * length)), "opening again")?;
+    let points = subject.points(random)?;
+    let (inside, values, inner) = (solid.contains_all(&points)?, opened.values(&points)?, inset.values(&points)?);
+    let kept =
+        again.map_or_else(|| Ok(values.iter().map(|v| *v > 0.0).collect()), |again| again.contains_all(&points))?;
+    for (i, p) in points.iter().enumerate() {
+        let value = values[i];
+        tally.check(inside[i] || value <= 0.0, || format!("{length} at {p}: opening adds it"));
+        tally.check(value > 0.0 || inner[i] <= (1.0 - INSET) * length + doubt, || {
             format!("{length} at {p}: opening loses what is inside by a length")
         });
-        tally.check(kept || value <= subject.doubt(), || {
+        tally.check(kept[i] || value <= doubt, || {
             format!("{length} at {p}: opening again loses it, the value is {value}")
         });
-        tally.check(!kept || value > 0.0, || format!("{length} at {p}: opening again adds it"));
+        tally.check(!kept[i] || value > 0.0, || format!("{length} at {p}: opening again adds it"));
     }
     Ok(())
 }
@@ -226,23 +108,24 @@ fn openings(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Outcom
 /// What is closed holds the solid, is within what is a length outside, and stays when it is closed
 /// again by a ball that is a little smaller.
 fn closings(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Outcome {
-    let (solid, length) = (&subject.solid, subject.length);
-    let closed = solid.filleted(length);
-    let (outer, again) = (solid.offset(length), closed.filleted(0.99 * length));
-    let mut points = subject.points_around(random);
-    if let Some(surface) = subject.surface()? {
-        points.extend(subject.points_beside(surface, random));
-    }
-    for p in points {
-        let (inside, value, kept) = (solid.contains(p)?, closed.value(p)?, again.contains(p)?);
-        tally.check(!inside || value > 0.0, || format!("{length} at {p}: closing loses it"));
-        tally.check(value <= 0.0 || outer.value(p)? >= -subject.doubt(), || {
+    let (solid, length, doubt) = (&subject.solid, subject.length, subject.coarse_doubt());
+    let Some(closed) = subject.under(Verb::Filleted)? else { return Ok(()) };
+    let Some(outer) = subject.under(Verb::Offset)? else { return Ok(()) };
+    let again = subject.measured(subject.coarse(closed.filleted(0.99 * length)), "closing again")?;
+    let points = subject.points(random)?;
+    let (inside, values, outer) = (solid.contains_all(&points)?, closed.values(&points)?, outer.values(&points)?);
+    let kept =
+        again.map_or_else(|| Ok(values.iter().map(|v| *v > 0.0).collect()), |again| again.contains_all(&points))?;
+    for (i, p) in points.iter().enumerate() {
+        let value = values[i];
+        tally.check(!inside[i] || value > 0.0, || format!("{length} at {p}: closing loses it"));
+        tally.check(value <= 0.0 || outer[i] >= -doubt, || {
             format!("{length} at {p}: closing adds what is outside by a length")
         });
-        tally.check(!kept || value >= -subject.doubt(), || {
+        tally.check(!kept[i] || value >= -doubt, || {
             format!("{length} at {p}: closing again adds it, the value is {value}")
         });
-        tally.check(kept || value <= 0.0, || format!("{length} at {p}: closing again loses it"));
+        tally.check(kept[i] || value <= 0.0, || format!("{length} at {p}: closing again loses it"));
     }
     Ok(())
 }
@@ -250,10 +133,11 @@ fn closings(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Outcom
 /// A shell's outer face is the solid's own, its inner face is where the distance is its thickness.
 fn walls(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Outcome {
     let Some(surface) = subject.surface()? else { return Ok(()) };
+    let Some(shell) = subject.under(Verb::Shell)? else { return Ok(()) };
     let thickness = subject.length;
-    let shell = subject.solid.shell(thickness);
-    for p in subject.points_beside(surface, random) {
-        let (inside, of_shell) = (subject.solid.contains(p)?, shell.contains(p)?);
+    let points = subject.points_beside(surface, random);
+    let (inside, of_shell) = (subject.solid.contains_all(&points)?, shell.contains_all(&points)?);
+    for ((p, inside), of_shell) in points.into_iter().zip(inside).zip(of_shell) {
         tally.check(inside || !of_shell, || format!("{thickness} at {p}: the shell leaves the solid"));
         let [least, most] = subject.distance(surface, p)?;
         let clearly_within = inside && most < thickness - subject.doubt();
@@ -265,28 +149,23 @@ fn walls(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Outcome {
 }
 
 fn bounds(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Outcome {
-    let (name, solid) = subject.a_verb(random);
+    let Some((name, solid)) = subject.under_any(random)? else { return Ok(()) };
     let bounds = solid.bounds()?;
-    let mut points = subject.points_around(random);
-    if let Some(surface) = subject.surface()? {
-        points.extend(subject.points_beside(surface, random));
-    }
-    for p in points {
-        tally.check(bounds.contains(p) || !solid.contains(p)?, || {
-            format!("{name} by {} at {p}: inside, but outside of {bounds:?}", subject.length)
-        });
+    let points = subject.points(random)?;
+    for (p, inside) in points.iter().zip(solid.contains_all(&points)?) {
+        tally.check(bounds.contains(*p) || !inside, || format!("{name} at {p}: inside, but outside of {bounds:?}"));
     }
     Ok(())
 }
 
 /// The surface program of the solid under one of the verbs.
-fn program(subject: &Subject, random: &mut Random) -> Result<(String, Program), Box<dyn Error>> {
-    let (name, solid) = subject.a_verb(random);
-    Ok((format!("{name} by {}", subject.length), solid.surface_program()?))
+fn program(subject: &Subject, random: &mut Random) -> Result<Option<(String, Program)>, Box<dyn std::error::Error>> {
+    let Some((name, solid)) = subject.under_any(random)? else { return Ok(None) };
+    Ok(Some((name, solid.surface_program()?)))
 }
 
 fn ranges(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Outcome {
-    let (name, program) = program(subject, random)?;
+    let Some((name, program)) = program(subject, random)? else { return Ok(()) };
     for _ in 0..12 {
         let region = place(random, &subject.frame);
         let missed = missed(random, &program, &region);
@@ -296,7 +175,7 @@ fn ranges(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Outcome 
 }
 
 fn narrowed(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Outcome {
-    let (name, program) = program(subject, random)?;
+    let Some((name, program)) = program(subject, random)? else { return Ok(()) };
     let frame = subject.frame.inflate(2.0 * subject.length);
     for _ in 0..12 {
         let region = random_box(random, &frame);
@@ -308,7 +187,7 @@ fn narrowed(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Outcom
 }
 
 fn lanes(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Outcome {
-    let (name, program) = program(subject, random)?;
+    let Some((name, program)) = program(subject, random)? else { return Ok(()) };
     let frame = subject.frame.inflate(2.0 * subject.length);
     for _ in 0..6 {
         let region = random_box(random, &frame);
@@ -327,7 +206,7 @@ fn lanes(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Outcome {
 /// From outside of an offset outwards, its surface is nearer than the solid's by the length.
 fn nearest(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Outcome {
     let Some(surface) = subject.surface()? else { return Ok(()) };
-    let moved = subject.solid.offset(subject.length);
+    let Some(moved) = subject.under(Verb::Offset)? else { return Ok(()) };
     for p in subject.points_around(random).into_iter().take(10) {
         let [least, most] = subject.distance(surface, p)?;
         if most > -subject.length - subject.doubt() {
@@ -343,7 +222,7 @@ fn nearest(subject: &Subject, random: &mut Random, tally: &mut Tally) -> Outcome
 
 /// Tries a law; an error or a panic is a failure of it.
 fn attempt(law: Law, subject: &Subject, seed: u64, tally: &mut Tally) {
-    let mut random = Random::new(seed);
+    let (mut random, start) = (Random::new(seed), Instant::now());
     let before = tally.failures.len();
     let outcome = catch_unwind(AssertUnwindSafe(|| law(subject, &mut random, tally)));
     match outcome {
@@ -357,11 +236,12 @@ fn attempt(law: Law, subject: &Subject, seed: u64, tally: &mut Tally) {
     for text in &mut tally.failures[before..] {
         *text = format!("seed {seed}: {text}, of {:?}", subject.solid);
     }
+    tally.time += start.elapsed();
 }
 
 fn print(name: &str, tally: &Tally) {
-    let Tally { tried, beyond, failures } = tally;
-    println!("{name}: {} of {tried} fail, {beyond} beyond one tolerance", failures.len());
+    let Tally { tried, beyond, failures, time } = tally;
+    println!("{name}: {} of {tried} fail, {beyond} beyond one tolerance; {time:.1?}", failures.len());
     for text in failures.iter().take(5) {
         println!("    {text}");
     }
@@ -376,6 +256,31 @@ fn judge(tallies: &[Tally]) {
         assert!(tally.failures.is_empty(), "{name}: {} of {}", tally.failures.len(), tally.tried);
         // 99.9 % are within one tolerance.
         assert!(tally.beyond <= 1 + tally.tried / 1000, "{name}: {} of {} are beyond", tally.beyond, tally.tried);
+    }
+}
+
+/// Tries all laws on a solid; prints what fails and what takes long.
+fn try_all(name: &str, subject: &Subject, seed: u64, tallies: &mut [Tally]) {
+    let start = Instant::now();
+    let mut told = String::new();
+    for ((law_name, law), tally) in LAWS.iter().zip(tallies) {
+        let (failures, time) = (tally.failures.len(), tally.time);
+        attempt(*law, subject, seed, tally);
+        if tally.failures.len() > failures {
+            let count = tally.failures.len() - failures;
+            told += &format!("\n    {law_name}: {count} failures: {}", tally.failures[failures]);
+        }
+        let time = tally.time - time;
+        if time.as_secs() >= 3 {
+            told += &format!("\n    {law_name}: {time:.1?}");
+        }
+    }
+    let slow = subject.slow();
+    if !slow.is_empty() {
+        told += &format!("\n    not measured in time: {slow:?}");
+    }
+    if !told.is_empty() || start.elapsed().as_secs() >= 5 {
+        println!("{name}: {:.1?}{told}", start.elapsed());
     }
 }
 
@@ -399,32 +304,21 @@ fn laws_hold_for_a_few_solids() {
     judge(&tallies);
 }
 
-/// The seeds that are asked for: `LENGTHS_SEEDS=0..2000`.
-fn seeds() -> std::ops::Range<u64> {
+/// The numbers that are asked for: `LENGTHS_SEEDS=0..2000`.
+fn seeds(otherwise: std::ops::Range<u64>) -> std::ops::Range<u64> {
     let text = std::env::var("LENGTHS_SEEDS").unwrap_or_default();
     let parsed = text.split_once("..").and_then(|(from, to)| Some(from.parse().ok()?..to.parse().ok()?));
-    parsed.unwrap_or(0..2000)
+    parsed.unwrap_or(otherwise)
 }
 
 #[test]
 #[ignore = "takes hours on one core: LENGTHS_SEEDS=0..2000 chooses"]
 fn laws_hold_for_thousands_of_solids() {
     let mut tallies = none();
-    for seed in seeds() {
-        let subject = subject(seed, 2);
-        let before: usize = tallies.iter().map(|tally| tally.failures.len()).sum();
-        for ((_, law), tally) in LAWS.iter().zip(&mut tallies) {
-            attempt(*law, &subject, seed, tally);
-        }
-        let failures = tallies.iter().map(|tally| tally.failures.len()).sum::<usize>() - before;
-        if failures > 0 {
-            println!("seed {seed}: {failures} failures, {:?}", subject.solid);
-        }
+    for seed in seeds(0..2000) {
+        try_all(&format!("seed {seed}"), &subject(seed, 2), seed, &mut tallies);
         if seed % 100 == 99 {
             println!("-- up to seed {seed}");
-            for ((name, _), tally) in LAWS.iter().zip(&tallies) {
-                print(name, tally);
-            }
         }
     }
     judge(&tallies);
@@ -454,17 +348,13 @@ fn bounds_of_offset_examples_hold_them() {
 }
 
 #[test]
-#[ignore = "takes minutes"]
+#[ignore = "takes minutes: LENGTHS_SEEDS=0..20 chooses entries"]
 fn laws_hold_for_every_example_of_the_catalogue() {
     let mut tallies = none();
-    for (i, (name, solid)) in examples().into_iter().enumerate() {
-        let subject = Subject::new(solid, &mut Random::new(i as u64));
-        let before: usize = tallies.iter().map(|tally| tally.failures.len()).sum();
-        for ((_, law), tally) in LAWS.iter().zip(&mut tallies) {
-            attempt(*law, &subject, 7200 + i as u64, tally);
-        }
-        let failures = tallies.iter().map(|tally| tally.failures.len()).sum::<usize>() - before;
-        println!("{name}: {failures} failures");
+    let asked = seeds(0..u64::MAX);
+    for (seed, (name, solid)) in (0..).zip(examples()).filter(|(seed, _)| asked.contains(seed)) {
+        let subject = Subject::new(solid, &mut Random::new(seed));
+        try_all(name, &subject, 7200 + seed, &mut tallies);
     }
     judge(&tallies);
 }

@@ -1,21 +1,36 @@
-//! Distances by brute force: to every triangle of a mesh of the solid, with the mesh's own error.
+//! Distances by brute force: to the triangles of a mesh of the solid, with the mesh's own error.
+//!
+//! Triangles are in a k-d tree (a bounding-volume hierarchy by median splits), so that thousands of
+//! points can be asked.
 
 use glam::DVec3;
-use rvachev::{CellSize, MeshSettings, Solid, error::MeshingError};
+use rvachev::{Bounds, CellSize, MeshSettings, Solid, error::MeshingError};
 
 /// The triangles of a solid's mesh, and how far each is from the surface.
 pub struct Surface {
     triangles: Vec<Triangle>,
+    tree: Vec<Branch>,
     cell: f64,
     is_whole: bool,
 }
 
 struct Triangle {
     corners: [DVec3; 3],
-    centre: DVec3,
-    radius: f64,
     error: f64,
 }
+
+/// Triangles that are together: their box and their largest error.
+struct Branch {
+    bounds: Bounds,
+    error: f64,
+    from: usize,
+    to: usize,
+    /// The second of two halves, the first being the next of the list; none of a leaf.
+    other: usize,
+}
+
+/// So many triangles are in a leaf.
+const LEAF: usize = 8;
 
 impl Surface {
     /// Of the mesh with so many cells along the longest side; `None` if the mesh is empty.
@@ -26,13 +41,29 @@ impl Surface {
         let corners = |t: &[u32; 3]| t.map(|i| mesh.positions()[i as usize].as_dvec3());
         let corners: Vec<[DVec3; 3]> = mesh.triangles().iter().map(corners).collect();
         let errors = errors(solid, &corners, cell)?;
-        let triangles = corners.into_iter().zip(errors).map(|(corners, error)| {
-            let centre = (corners[0] + corners[1] + corners[2]) / 3.0;
-            let radius = corners.map(|p| p.distance(centre)).into_iter().fold(0.0, f64::max);
-            Triangle { corners, centre, radius, error }
-        });
-        let surface = Surface { triangles: triangles.collect(), cell, is_whole: mesh.possibly_lost() == 0 };
+        let triangles = corners.into_iter().zip(errors).map(|(corners, error)| Triangle { corners, error });
+        let mut surface =
+            Surface { triangles: triangles.collect(), tree: Vec::new(), cell, is_whole: mesh.possibly_lost() == 0 };
+        surface.grow(0, surface.triangles.len());
         Ok((!surface.triangles.is_empty()).then_some(surface))
+    }
+
+    /// Adds the branch of some triangles to the tree; gives its number.
+    fn grow(&mut self, from: usize, to: usize) -> usize {
+        let part = &mut self.triangles[from..to];
+        let corners = part.iter().flat_map(|t| t.corners);
+        let bounds = corners.fold(Bounds::EMPTY, |all, p| all.union(&Bounds::new(p, p)));
+        let error = part.iter().map(|t| t.error).fold(0.0, f64::max);
+        let number = self.tree.len();
+        self.tree.push(Branch { bounds, error, from, to, other: 0 });
+        if to - from > LEAF {
+            let (axis, half) = (bounds.size().max_position(), (to - from) / 2);
+            let middle = |t: &Triangle| t.corners.iter().map(|p| p[axis]).sum::<f64>();
+            part.select_nth_unstable_by(half, |a, b| middle(a).total_cmp(&middle(b)));
+            self.grow(from, from + half);
+            self.tree[number].other = self.grow(from + half, to);
+        }
+        number
     }
 
     /// The same of a solid that is known to have no features that its mesh may lose: faces that
@@ -50,16 +81,47 @@ impl Surface {
     /// lost a part, nothing is known of the least.
     pub fn distance(&self, p: DVec3) -> [f64; 2] {
         let mut nearest = f64::INFINITY;
-        for triangle in &self.triangles {
-            if p.distance(triangle.centre) - triangle.radius < nearest {
+        self.visit(p, |_, way, triangles| {
+            let is_near = way < nearest;
+            for triangle in triangles.iter().filter(|_| is_near) {
                 nearest = nearest.min(p.distance(closest(p, triangle.corners)));
             }
-        }
+            is_near
+        });
         // Any triangle nearly as near may stand for the part of the surface that is nearest.
         let reach = nearest + 2.0 * self.cell;
-        let near = self.triangles.iter().filter(|t| p.distance(t.centre) - t.radius < reach);
-        let error = near.map(|t| t.error).fold(0.0, f64::max);
+        let mut error = 0.0_f64;
+        self.visit(p, |branch, way, triangles| {
+            if way >= reach || branch.error <= error {
+                return false;
+            }
+            for triangle in triangles {
+                if p.distance(closest(p, triangle.corners)) < reach {
+                    error = error.max(triangle.error);
+                }
+            }
+            true
+        });
         [if self.is_whole { (nearest - error).max(0.0) } else { 0.0 }, nearest + error]
+    }
+
+    /// Goes through the branches, nearer ones first, with their least distances from a point and,
+    /// of leaves, their triangles; and on to the halves of those for which this says so.
+    fn visit(&self, p: DVec3, mut enters: impl FnMut(&Branch, f64, &[Triangle]) -> bool) {
+        let mut pending = vec![0];
+        while let Some(number) = pending.pop() {
+            let branch = &self.tree[number];
+            let way = branch.bounds.distance_squared(p).sqrt();
+            let triangles = if branch.other == 0 { &self.triangles[branch.from..branch.to] } else { &[] };
+            if enters(branch, way, triangles) && branch.other != 0 {
+                let mut halves = [branch.other, number + 1];
+                let way = |n: &usize| self.tree[*n].bounds.distance_squared(p);
+                if way(&halves[0]) < way(&halves[1]) {
+                    halves.reverse();
+                }
+                pending.extend(halves);
+            }
+        }
     }
 
     /// A point of the mesh, by a triangle's number and two numbers from 0 to 1.
