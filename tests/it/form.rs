@@ -280,7 +280,7 @@ fn ranges_follow_the_other_parameters() {
 #[test]
 fn random_solids_are_rebuilt() {
     let mut random = Random::new(20_261);
-    for case in 0..60 {
+    for case in 0..30 {
         let leaf = catalogue_leaf(&mut random);
         let moved = catalogue_map(&mut random, &leaf);
         let swept = random_profile(&mut random, 2).extrude(2.0);

@@ -383,15 +383,14 @@ fn chain(pins: u32) -> Solid {
 
 #[test]
 fn chains_of_fillets_have_no_limit() -> Outcome {
-    for pins in [39, 100] {
-        let all = chain(pins);
-        let report = mesh_at(&all, CellSize::Length(0.45))?.check();
-        assert!(report.is_sound() && report.shells == 1, "{pins}: {report}");
-        // The last pin has its fillet: the ball is about (x + .4, 0, .6).
-        let ball = DVec3::new(0.8 * f64::from(pins - 1), 0.4, 0.6);
-        let towards = DVec3::new(0.0, -1.0, -1.0).normalize();
-        assert!(all.contains(ball + 0.101 * towards)? && !all.contains(ball + 0.099 * towards)?, "{pins}");
-    }
+    let pins = 60;
+    let all = chain(pins);
+    let report = mesh_at(&all, CellSize::Length(0.45))?.check();
+    assert!(report.is_sound() && report.shells == 1, "{report}");
+    // The last pin has its fillet: the ball is about (x + .4, 0, .6).
+    let ball = DVec3::new(0.8 * f64::from(pins - 1), 0.4, 0.6);
+    let towards = DVec3::new(0.0, -1.0, -1.0).normalize();
+    assert!(all.contains(ball + 0.101 * towards)? && !all.contains(ball + 0.099 * towards)?);
     Ok(())
 }
 

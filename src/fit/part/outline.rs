@@ -12,9 +12,7 @@ use glam::DVec2;
 
 use crate::{Profile, RFunction};
 
-/// Points of a circle that are asked whether it may be added or cut as a whole, and how far it may
-/// be off then, in radii.
-const ASKED: u32 = 48;
+/// How far other sides may reach into a disc that is added or cut as a whole, in radii.
 const OFF: f64 = 2e-3;
 
 /// A closed outline without holes, counter-clockwise or not.
@@ -110,15 +108,7 @@ impl Outline {
 
     /// The signed distance, negative inside.
     pub(in crate::fit) fn distance(&self, p: DVec2) -> f64 {
-        let of_side = |([a, b], radius): ([DVec2; 2], f64)| {
-            if radius != 0.0 {
-                return Arc::of([a, b], radius).distance(p);
-            }
-            let (along, from) = (b - a, p - a);
-            let t = (from.dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-            (from - t * along).length()
-        };
-        let distance = self.sides().map(of_side).fold(f64::INFINITY, f64::min);
+        let distance = self.sides().map(|side| from_side(side, p)).fold(f64::INFINITY, f64::min);
         if self.contains(p) { -distance } else { distance }
     }
 
@@ -146,15 +136,12 @@ impl Outline {
         let polygon = Profile::polygon(self.corners.iter().copied());
         let is_clockwise = super::sections::area(&self.corners) < 0.0;
         let mut discs = [Vec::new(), Vec::new()];
-        for arc in self.arcs() {
+        for (n, (ends, radius)) in self.sides().enumerate().filter(|(_, (_, radius))| *radius != 0.0) {
+            let arc = Arc::of(ends, radius);
             let adds = arc.bulges != is_clockwise;
-            // A disc that is nowhere else across the outline needs no cutting.
-            let is_alone = (0..ASKED).all(|k| {
-                let on = arc.centre
-                    + arc.radius * DVec2::from_angle(std::f64::consts::TAU * f64::from(k) / f64::from(ASKED));
-                let distance = self.distance(on);
-                (if adds { distance } else { -distance }) < OFF * arc.radius
-            });
+            // A disc that no other side reaches into is beyond the chord what the outline is there.
+            let mut others = self.sides().enumerate().filter(|(other, _)| *other != n);
+            let is_alone = others.all(|(_, side)| from_side(side, arc.centre) > (1.0 - OFF) * arc.radius);
             discs[usize::from(!adds)].push(arc.profile(is_alone));
         }
         let [added, cut] = discs;
@@ -166,9 +153,35 @@ impl Outline {
     }
 }
 
+/// How far a point is from a side: straight, or an arc.
+fn from_side(([a, b], radius): ([DVec2; 2], f64), p: DVec2) -> f64 {
+    if radius != 0.0 {
+        return Arc::of([a, b], radius).distance(p);
+    }
+    let (along, from) = (b - a, p - a);
+    let t = (from.dot(along) / along.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+    (from - t * along).length()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A slit, however narrow, is not filled by the disc of an arc.
+    #[test]
+    fn slits_of_discs_stay() {
+        let at = |degrees: f64, radius: f64| radius * DVec2::from_angle(degrees.to_radians());
+        // Round in two arcs, each of half a turn at most.
+        let corners = vec![at(18.5, 0.3), at(21.5, 0.3), at(21.5, 1.0), at(200.0, 1.0), at(18.5, 1.0)];
+        let outline = Outline { corners, radii: vec![0.0, 0.0, 1.0, 1.0, 0.0] };
+        let profile = outline.profile();
+        for (p, inside) in
+            [(at(20.0, 0.9), false), (at(20.0, 0.2), true), (at(26.0, 0.9), true), (at(100.0, 0.99), true)]
+        {
+            assert_eq!(outline.contains(p), inside, "{p}");
+            assert_eq!(profile.contains(p).unwrap(), inside, "{p}");
+        }
+    }
 
     #[test]
     fn an_l_tells_its_sides() {
