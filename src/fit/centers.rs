@@ -18,6 +18,7 @@ use glam::{DMat3, DVec2, DVec3};
 use super::harmonics::{Around, FEWEST, MOST, Repeat, extremes};
 use super::linear::{quantile, solved};
 use super::waves::WAVES;
+use crate::{Cancelled, Run};
 
 /// Terms: a profile, a tilt of the axis, an ellipse, the harmonics, and a shift.
 const TURNING: usize = 5;
@@ -76,7 +77,7 @@ impl Belt {
 
 /// For each number of repetitions about an axis near a centre the best middle, from the best number
 /// on. It is looked for where the centre is, and towards the side without points.
-pub(super) fn centered(points: &[DVec3], axis: DVec3, center: DVec3) -> Vec<Centered> {
+pub(super) fn centered(points: &[DVec3], axis: DVec3, center: DVec3, run: &Run) -> Result<Vec<Centered>, Cancelled> {
     let x = axis.any_orthonormal_vector();
     let frame = DMat3::from_cols(x, axis.cross(x), axis);
     let belt = Belt::about(points, &frame, center);
@@ -85,10 +86,11 @@ pub(super) fn centered(points: &[DVec3], axis: DVec3, center: DVec3) -> Vec<Cent
     belt.truncate(ASKED);
     let mut found: Vec<Centered> = Vec::new();
     if belt.len() < 3 * ALL {
-        return found;
+        return Ok(found);
     }
     let radius = (belt.iter().map(|p| p.truncate().length_squared()).sum::<f64>() / belt.len() as f64).sqrt();
     for count in FEWEST..=MOST {
+        run.check()?;
         for start in STARTS {
             let begin = start * radius * DVec2::from_angle(away);
             let Some((shift, left, repeat)) = settled(&belt, height, radius, count, begin) else { continue };
@@ -104,7 +106,7 @@ pub(super) fn centered(points: &[DVec3], axis: DVec3, center: DVec3) -> Vec<Cent
         }
     }
     found.sort_by(|a, b| a.left.total_cmp(&b.left));
-    found
+    Ok(found)
 }
 
 /// The middle for a number of repetitions, as a shift, what is left, and the repetition.

@@ -205,7 +205,7 @@ impl<'a> ShapeSearch<'a> {
         let points = &self.points[..self.points.len().min(SEEN)];
         let mut starts = Vec::new();
         for axis in axes.iter().take(2) {
-            let found = centered(points, axis.frame.z_axis, axis.center);
+            let found = centered(points, axis.frame.z_axis, axis.center, self.run)?;
             for Centered { around, repeat, .. } in found.iter().take(5) {
                 starts.extend(starts_about(around, repeat, false));
             }

@@ -7,6 +7,8 @@
 //!
 //! Each patch gives its best models; whether they are worth their parameters is for the selection.
 
+use std::cmp::Reverse;
+
 use glam::{DMat3, DVec3};
 
 use super::balls;
@@ -70,7 +72,10 @@ pub(super) fn propose(
         region.points.iter().for_each(|i| of_region[*i as usize] = number);
     }
     let mut random = Random::new(seed);
-    let of_surface = patches(samples).into_iter().map(|patch| (patch, true));
+    // The largest have the first claim.
+    let mut of_surface = patches(samples);
+    of_surface.sort_by_key(|patch| Reverse(patch.samples.len()));
+    let of_surface = of_surface.into_iter().map(|patch| (patch, true));
     let of_balls = balls::patches(samples, &mut random).into_iter().map(|patch| (patch, false));
     let mut supershapes_left = if kinds.supershapes { SUPERSHAPES } else { 0 };
     for (patch, is_whole) in of_surface.chain(of_balls).collect::<Vec<_>>() {

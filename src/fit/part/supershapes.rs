@@ -40,7 +40,8 @@ pub(super) fn of_patch(
     let size = principal.variances.iter().sum::<f64>().sqrt().max(1e-6);
     let points: Vec<DVec3> = own().map(|p| (p - principal.mean) / size).collect();
     let run = Run { progress: None, ..run.clone() };
-    let found = recover_shape(&points, None, &FitSettings::default(), &run);
+    let settings = FitSettings { seed: random.below(usize::MAX) as u64, ..FitSettings::default() };
+    let found = recover_shape(&points, None, &settings, &run);
     run.check()?;
     // What is no shape is none of the part.
     let Some(Best::Shape(mixture)) = found.ok().map(|found| found.best) else { return Ok(()) };
