@@ -1,6 +1,6 @@
 //! Cells of which one imported mesh tells all.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use super::bracket::Held;
 use super::columns::Columns;
@@ -9,12 +9,12 @@ use crate::program::Program;
 use crate::{Bounds, Cancelled, Run};
 
 /// The triangles of a program's imported meshes that tell what these hold, by their leaves.
-pub(super) struct Enclosed(HashMap<u32, Columns>);
+pub(super) struct Enclosed(BTreeMap<u32, Columns>);
 
 impl Enclosed {
     pub(super) fn new(program: &Program, run: &Run) -> Result<Enclosed, Cancelled> {
         let quiet = Run { progress: None, ..run.clone() };
-        let mut all = HashMap::new();
+        let mut all = BTreeMap::new();
         for leaf in program.plain_leaves() {
             if let Some(facets) = Facets::of(&*leaf.field, &leaf.to_local.inverse(), &quiet)? {
                 all.insert(leaf.number, Columns::new(facets));

@@ -16,8 +16,11 @@ use super::moments::Moments;
 use crate::{Bounds, Cancelled, Mesh, Run};
 use rvachev_field::AnyField;
 
-/// How far off a triangle its sides are told, as a part of the root of its area.
+/// How far off a triangle its sides are told, as a part of the root of its area: halved so often
+/// where something else is nearer than this part of that.
 const ASIDE: f64 = 1e-3;
+const HALVINGS: usize = 30;
+const NEAREST: f64 = 0.99;
 
 /// Triangles that leave no opening, and are the surface of what they enclose.
 pub(super) struct Facets {
@@ -91,9 +94,17 @@ fn area([a, b, c]: &[DVec3; 3]) -> DVec3 {
     0.5 * (*b - *a).cross(*c - *a)
 }
 
-/// Whether inside is behind a triangle, and outside in front of it.
+/// Whether inside is right behind a triangle, and outside right in front of it: where nothing else
+/// is nearer than the triangle itself.
 fn is_between(field: &dyn AnyField, triangle: &[DVec3; 3]) -> bool {
     let (middle, area) = (triangle.iter().sum::<DVec3>() / 3.0, area(triangle));
-    let aside = ASIDE * area.length().sqrt() * area.normalize_or_zero();
-    field.value((middle + aside).to_array()) < 0.0 && field.value((middle - aside).to_array()) > 0.0
+    let (mut aside, normal) = (ASIDE * area.length().sqrt(), area.normalize_or_zero());
+    for _ in 0..HALVINGS {
+        let [before, behind] = [aside, -aside].map(|by| field.value((middle + by * normal).to_array()));
+        if before.abs().min(behind.abs()) > NEAREST * aside {
+            return before < 0.0 && behind > 0.0;
+        }
+        aside *= 0.5;
+    }
+    false
 }

@@ -174,6 +174,10 @@ fn meshes_that_overlap_are_not_summed_up() {
     let beside = Solid::cuboid([2.0; 3]).translate([1.1, 0.2, 0.1]).mesh(&settings).unwrap();
     let nested = Solid::from_mesh(&with(&block, &within), MeshSolid::default()).measure(5e-2).unwrap();
     assert!(!nested.is_closed_form && (nested.volume - 8.0).abs() <= nested.volume_error, "{nested:?}");
+    // However near one is to the other.
+    let close = Solid::cuboid([1.9995; 3]).mesh(&settings).unwrap();
+    let nested = Solid::from_mesh(&with(&block, &close), MeshSolid::default()).measure(5e-2).unwrap();
+    assert!(!nested.is_closed_form && (nested.volume - 8.0).abs() <= nested.volume_error, "{nested:?}");
     let across = Solid::from_mesh(&with(&block, &beside), MeshSolid::default()).measure(5e-2).unwrap();
     let volume = 16.0 - 0.9 * 1.8 * 1.9;
     assert!(!across.is_closed_form && (across.volume - volume).abs() <= across.volume_error + 1e-5, "{across:?}");
