@@ -22,7 +22,8 @@ pub struct Hit {
     pub point: DVec3,
     /// Unit normal, out of the solid.
     pub normal: DVec3,
-    /// The number of the leaf whose surface it is ([`Owner::index`](crate::Owner::index)).
+    /// The number of the leaf whose surface it is: [`Owner::index`](crate::Owner::index) without
+    /// the owners of imported meshes, which [`Solid::owner`](crate::Solid::owner) tells at `point`.
     pub owner: u32,
 }
 

@@ -17,8 +17,9 @@ pub struct Surface {
     pub distance: f64,
     /// Unit normal, out of the solid; 0 where the field has no gradient or nothing is met.
     pub normal: Vec3,
-    /// The number of the leaf whose surface it is ([`Owner::index`](crate::Owner::index));
-    /// `u32::MAX` if nothing is met.
+    /// The number of the leaf whose surface it is ([`Owner::index`](crate::Owner::index), which
+    /// tells of imported meshes also which of their owners; this does not); `u32::MAX` if nothing
+    /// is met.
     pub owner: u32,
 }
 

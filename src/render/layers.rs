@@ -134,8 +134,8 @@ impl Layers {
         self.image(|_, _, surface| surface.is_hit())
     }
 
-    /// The number of the leaf that is seen, as [`Owner::index`](crate::Owner::index); `None`
-    /// where there is nothing.
+    /// The number of the leaf that is seen, as [`Owner::index`](crate::Owner::index) but for the
+    /// owners of imported meshes; `None` where there is nothing.
     #[must_use]
     pub fn owner(&self) -> Image<Option<u32>> {
         self.image(|_, _, surface| surface.is_hit().then_some(surface.owner))
