@@ -632,3 +632,44 @@ fn fillets_of_smooth_unions_are_of_one_surface() -> Result<(), SolidError> {
     assert!(off <= clamped, "{off} of {} vertices, {clamped} clamped", mesh.positions().len());
     Ok(())
 }
+
+/// What is far below a chamfer's face is no higher than the boxes of the joint tell.
+#[test]
+fn chamfers_that_end_with_a_flush_side_have_sound_ranges() {
+    let plate = Solid::cuboid([2.0, 2.0, 1.0]).translate([0.0, 0.0, -0.5]);
+    let wall = Solid::cuboid([0.4, 2.0, 1.0]).translate([0.0, 0.0, 0.5]);
+    let joint = plate.union_with(wall, Blend::Chamfer { leg: 0.5 });
+    let mut random = Random::new(4021);
+    for solid in [joint.clone(), joint.level(0.1)] {
+        let program = solid.field_program().unwrap();
+        for _ in 0..400 {
+            let p = DVec3::new(random.range(0.15, 0.8), random.range(0.7, 1.6), random.range(-0.1, 0.7));
+            let cell = Bounds::from_center(p, DVec3::splat(random.log_range(1e-4, 0.1)));
+            let (value, range) = (program.value(p), program.range(&cell));
+            assert!(range.contains(value), "{value} at {p} is not in {range:?}");
+            let told = match program.narrow(&cell) {
+                Region::Inside => value > 0.0,
+                Region::Outside => value <= 0.0,
+                Region::Surface(part) => (part.value(p) > 0.0) == (value > 0.0),
+            };
+            assert!(told, "{value} at {p}");
+        }
+    }
+}
+
+/// The face of a chamfer is flat: its normals are those of a plane, and none is 0.
+#[test]
+fn faces_of_chamfers_have_normals() {
+    let plate = Solid::cuboid([4.0, 4.0, 1.0]).translate([0.0, 0.0, -0.5]);
+    let wall = Solid::cuboid([0.4, 4.0, 1.0]).translate([0.0, 0.0, 0.5]);
+    let normal = DVec3::new(1.0, 0.0, 1.0).normalize();
+    for leg in [0.05, 0.15, 0.3] {
+        let joint = plate.union_with(&wall, Blend::Chamfer { leg });
+        for n in 1..20 {
+            let along = f64::from(n) / 20.0;
+            let p = DVec3::new(0.2 + leg * (1.0 - along), 0.37 * along - 0.2, leg * along);
+            let gradient = joint.gradient(p).unwrap();
+            assert!(gradient.normalize_or_zero().dot(-normal) > 0.999, "{leg}: {gradient} at {p}");
+        }
+    }
+}
