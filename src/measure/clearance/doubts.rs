@@ -15,7 +15,7 @@ use crate::eval::{Narrowed, Program};
 use crate::{Bounds, Cancelled, Run};
 
 /// After so many boxes the work ends, with what is known then.
-const MOST: usize = 1 << 14;
+const MOST: usize = 1 << 13;
 
 /// More pairs of boxes are not compared.
 const PAIRS: usize = 1 << 22;
@@ -63,19 +63,9 @@ pub(super) fn entry(sides: [&Side<'_>; 2], slack: f64, run: &Run) -> Result<Entr
     let all = sides.iter().flat_map(|side| &side.surface.doubts);
     let whole = Shared { bounds: Bounds::EMPTY, programs };
     let mut open: Vec<Shared> = all.filter_map(|bounds| whole.part(*bounds)).collect();
-    // Farther from a surface than it is large, and outside.
-    let is_beyond = |part: &Shared| {
-        let (middle, reach) = (part.bounds.center(), part.bounds.half_extents().length() + slack);
-        sides.iter().any(|side| {
-            side.program.value(middle) <= 0.0
-                && distance(&side.surface.patches, middle) > reach
-                && side.surface.doubts.iter().all(|doubt| doubt.distance_squared(middle) > reach * reach)
-        })
-    };
     let (mut left, mut asked) = (0.0, open.len());
     while !open.is_empty() {
         run.check()?;
-        open = open.into_par_iter().filter(|part| !is_beyond(part)).collect();
         let is_common = |p: DVec3| {
             sides.iter().all(|side| side.program.value(p) > 0.0 && distance(&side.surface.patches, p) > slack)
         };

@@ -303,7 +303,7 @@ fn all_sharp_parts_keep_volume_and_creases() {
 
 /// The meshes of the bounded leaves of the catalogue, of finer and finer cells, are these leaves.
 #[test]
-#[ignore = "takes minutes"]
+#[ignore = "takes some seconds"]
 fn meshes_of_the_catalogue_give_it_back() {
     use rvachev::catalogue::{Group, Part};
     for entry in rvachev::catalogue().iter().filter(|entry| entry.group() == Group::Leaf) {
