@@ -38,23 +38,19 @@ impl Face {
         Face { bevel, fill: Arc::new(fill) }
     }
 
-    /// Values of the fill at those points of a chunk at which they are below the bevel's, and their
-    /// places. What is not above all that the ball may make is below by the fill's boxes alone.
+    /// Values of the fill at those points of a chunk at which the bevel's may be above it: their
+    /// places, and whether they are below the bevel's.
     fn below(&self, chunk: &Chunk<'_, f32, 1>) -> Vec<(usize, f64)> {
         let Chunk { points, placement, out: [out] } = chunk;
         let lowest = self.fill.lowest();
         let own = |value: f32| (f64::from(value) - placement.shift) / placement.scale;
-        let at = |i: usize| placement.apply([0, 1, 2].map(|axis| f64::from(points[axis][i])));
-        let beyond = (0..out.len()).filter(|i| own(out[*i]) <= lowest).map(|i| (i, self.fill.depth_at(at(i))));
-        let beyond = beyond.filter(|&(i, depth)| depth < own(out[i]));
         let open = Few::of((0..out.len()).filter(|i| own(out[*i]) > lowest), *points);
         if open.places.is_empty() {
-            return beyond.collect();
+            return Vec::new();
         }
         let fill = Signed { field: self.fill.clone(), sign: 1.0 };
         let values = open.values(&fill, &unscaled(placement), (0.0, -lowest));
-        let below = open.places.iter().copied().zip(values).filter(|&(i, value)| value < own(out[i]));
-        below.chain(beyond).collect()
+        open.places.iter().copied().zip(values).filter(|&(i, value)| value < own(out[i])).collect()
     }
 }
 
@@ -86,17 +82,13 @@ impl AnyField for Face {
 
     fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64> {
         let bevel = self.bevel.dual(p);
-        if self.fill.value_below(p.map(Dual::value), bevel.value()) >= bevel.value() {
-            bevel
-        } else {
-            bevel.min(self.fill.dual(p))
-        }
+        let is_bevel = self.fill.value_below(p.map(Dual::value), bevel.value()) >= bevel.value();
+        if is_bevel { bevel } else { self.fill.dual(p) }
     }
 
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
         let bevel = self.bevel.dual_range(p);
-        let least = self.fill.least_over(&Zone::of_sides(p.map(Dual::value)));
-        if bevel.value().hi() <= least { bevel } else { bevel.min(self.fill.dual_range(p)) }
+        if bevel.value().hi() <= self.fill.lowest() { bevel } else { bevel.min(self.fill.dual_range(p)) }
     }
 
     fn along(&self, segment: &Segment) -> Along {
@@ -116,12 +108,7 @@ impl AnyField for Face {
 
     fn range(&self, zone: &Zone) -> Interval {
         let bevel = self.bevel.range(zone);
-        // Outside of the bevel it is enough to know how far below it the fill may be.
-        let fill = match bevel.hi() < 0.0 {
-            true => Interval::new(self.fill.least_over(zone), f64::INFINITY),
-            false => self.fill.range_below(zone, bevel.hi()),
-        };
-        bevel.min(fill)
+        if bevel.hi() < 0.0 { bevel } else { bevel.min(self.fill.range_below(zone, bevel.hi())) }
     }
 
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {

@@ -114,22 +114,6 @@ impl Fill {
         self.least - self.margin
     }
 
-    /// How deep inside of the boxes a point is: as far as the value falls outside of them.
-    pub(super) fn depth_at(&self, p: [f64; 3]) -> f64 {
-        self.depth(DVec3::from_array(p)).0
-    }
-
-    /// It is no lower than this over a zone, if there are no sides.
-    pub(super) fn least_over(&self, zone: &Zone) -> f64 {
-        self.lowest().min(self.box_depth(zone).lo())
-    }
-
-    /// Up to which distance from where the ball's centre may be the value is below `most`: a little
-    /// farther, that rounding may not take what is beyond for what is below.
-    fn up_to(&self, most: f64) -> f64 {
-        self.counts()[1].min(self.radius * (1.0 + 1e-12) + most + self.margin)
-    }
-
     /// The value of one without sides, or, if it is not below `most`, any number that is not.
     pub(super) fn value_below(&self, p: [f64; 3], most: f64) -> f64 {
         let p = DVec3::from_array(p);
@@ -138,7 +122,8 @@ impl Fill {
         if most <= self.lowest() {
             return depth;
         }
-        let ball = self.ball.value_between(p, [self.counts()[0], self.up_to(most)]);
+        let [low, high] = self.counts();
+        let ball = self.ball.value_between(p, [low, high.min(self.radius + most + self.margin)]);
         self.height(ball, None).min(depth)
     }
 
@@ -149,7 +134,8 @@ impl Fill {
         if most <= self.lowest() {
             return depth.min(Interval::new(self.lowest(), f64::INFINITY));
         }
-        let ball = self.ball.range_between(zone, [self.counts()[0], self.up_to(most)]);
+        let [low, high] = self.counts();
+        let ball = self.ball.range_between(zone, [low, high.min(self.radius + most + self.margin)]);
         self.over(ball, depth)
     }
 
