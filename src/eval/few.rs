@@ -1,6 +1,6 @@
 //! Some points of a chunk, and values there: what is not told by less is asked of few.
 
-use super::signed::Signed;
+use super::fill::Signed;
 use rvachev_field::kernel::Element;
 use rvachev_field::{AnyField, Chunk, Placement};
 

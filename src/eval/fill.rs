@@ -4,7 +4,7 @@
 //!     U       the union of all open balls of the radius r outside of the operands
 //!     D(x)    how far x is from U; 0 within it
 //!     a, b    how far x is from the two nearest operands
-//!     fill    clamp(D, least, most) − max(0, a + b − 2r)/4 − δ > 0      most = r/2, least = −∞
+//!     fill    min(D, r/2) − max(0, a + b − 2r)/4 − δ > 0
 //! ```
 //!
 //! The complement of U is the closing of the operands' union by the ball, so nothing is filled that
@@ -23,8 +23,6 @@ use glam::{DAffine3, DVec3};
 
 use super::composite::unscaled;
 use super::few::{Few, Lane};
-use super::signed::Signed;
-use super::two::Two;
 use crate::{Bounds, Dual, Interval, ParamError, Real};
 #[cfg(feature = "formula")]
 use rvachev_field::VALUE_LIMIT;
@@ -32,7 +30,7 @@ use rvachev_field::{AnyField, Chunk, Way, Zone, bits, steep_slopes};
 #[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
-/// D counts up to this part of the radius, of a fillet.
+/// D counts up to this part of the radius.
 const MOST: f64 = 0.5;
 
 /// How fast a fillet fades away from the joint.
@@ -40,6 +38,28 @@ const FADE: f64 = 0.25;
 
 /// Nothing is filled that is farther than this from an operand, in radii.
 pub(super) const FARTHEST: f64 = 2.0 + MOST / FADE;
+
+/// A value that is a distance, on one side.
+#[derive(Clone, Debug)]
+pub(super) struct Signed {
+    pub(super) field: Arc<dyn AnyField>,
+    /// 1 where its value counts as it is, −1 where its negative does.
+    pub(super) sign: f64,
+}
+
+impl Signed {
+    fn value(&self, p: DVec3) -> f64 {
+        self.sign * self.field.value(p.to_array())
+    }
+
+    fn range(&self, zone: &Zone) -> Interval {
+        self.field.range(zone) * Interval::point(self.sign)
+    }
+
+    fn slope(&self, p: DVec3) -> DVec3 {
+        self.sign * DVec3::from_array(self.field.dual(Dual::point(p.to_array())).gradient())
+    }
+}
 
 /// An operand: how far outside of it points are, and a box beyond which it is far.
 #[derive(Clone, Debug)]
@@ -52,9 +72,6 @@ pub(super) struct Side {
 #[derive(Clone, Debug)]
 pub(super) struct Fill {
     pub(super) radius: f64,
-    /// D counts from this up to that.
-    least: f64,
-    most: f64,
     /// The distance to where the ball's centre may be, positive where it may not.
     pub(super) ball: Signed,
     /// The operands; none where it is of no account how far they are.
@@ -70,23 +87,38 @@ pub(super) struct Fill {
     held: Vec<Bounds>,
 }
 
+/// The distances to the two nearest operands, held at the farthest, and which these are.
+#[derive(Clone, Copy)]
+struct Two {
+    distances: [f64; 2],
+    sides: [usize; 2],
+}
+
+impl Two {
+    fn new(farthest: f64) -> Two {
+        Two { distances: [farthest; 2], sides: [usize::MAX; 2] }
+    }
+
+    fn add(&mut self, side: usize, distance: f64) {
+        if distance < self.distances[0] {
+            self.distances = [distance, self.distances[0]];
+            self.sides = [side, self.sides[0]];
+        } else if distance < self.distances[1] {
+            self.distances[1] = distance;
+            self.sides[1] = side;
+        }
+    }
+}
+
 impl Fill {
     /// All over space.
     pub(super) fn new(radius: f64, ball: Signed, sides: Vec<Side>, margin: f64) -> Fill {
-        let (most, held) = (MOST * radius, vec![Bounds::ALL]);
-        let least = f64::NEG_INFINITY;
-        Fill { radius, least, most, ball, sides, margin, boxes: Vec::new(), hull: Bounds::ALL, held }
-    }
-
-    /// Where others decide about what the ball reaches by more than `depth`, and about what is
-    /// farther than `depth` from where it does.
-    pub(super) fn to_depth(self, depth: f64) -> Fill {
-        Fill { least: -depth, most: depth.min(self.most), ..self }
+        Fill { radius, ball, sides, margin, boxes: Vec::new(), hull: Bounds::ALL, held: vec![Bounds::ALL] }
     }
 
     /// In boxes alone, and not beyond the hull.
     pub(super) fn within(mut self, boxes: Vec<Bounds>, hull: Bounds) -> Fill {
-        self.held = boxes.iter().map(|own| own.inflate(self.most).intersection(&hull)).collect();
+        self.held = boxes.iter().map(|own| own.inflate(MOST * self.radius).intersection(&hull)).collect();
         (self.boxes, self.hull) = (boxes, hull);
         self
     }
@@ -95,70 +127,19 @@ impl Fill {
         FARTHEST * self.radius
     }
 
-    /// How far a point is from where the ball's centre may be, as far as that counts.
-    fn ball_at(&self, p: DVec3) -> f64 {
-        self.ball.value_between(p, self.counts())
-    }
-
-    /// Between which distances from where the ball's centre may be D counts.
-    fn counts(&self) -> [f64; 2] {
-        [self.radius + self.least, self.radius + self.most]
-    }
-
-    fn is_between(&self, ball: f64) -> bool {
-        ball - self.radius > self.least && ball - self.radius < self.most
-    }
-
-    /// It is no lower than this within its boxes, if there are no sides.
-    pub(super) fn lowest(&self) -> f64 {
-        self.least - self.margin
-    }
-
-    /// The value of one without sides, or, if it is not below `most`, any number that is not.
-    pub(super) fn value_below(&self, p: [f64; 3], most: f64) -> f64 {
-        let p = DVec3::from_array(p);
-        let depth = self.depth(p).0;
-        let most = most.min(depth);
-        if most <= self.lowest() {
-            return depth;
-        }
-        let [low, high] = self.counts();
-        let ball = self.ball.value_between(p, [low, high.min(self.radius + most + self.margin)]);
-        self.height(ball, None).min(depth)
-    }
-
-    /// A range of one without sides, where it is of no account how far it is above `most`.
-    pub(super) fn range_below(&self, zone: &Zone, most: f64) -> Interval {
-        let depth = self.box_depth(zone);
-        let most = most.min(depth.hi());
-        if most <= self.lowest() {
-            return depth.min(Interval::new(self.lowest(), f64::INFINITY));
-        }
-        let [low, high] = self.counts();
-        let ball = self.ball.range_between(zone, [low, high.min(self.radius + most + self.margin)]);
-        self.over(ball, depth)
-    }
-
-    /// The range of one without sides, by those of what it is made of.
-    fn over(&self, ball: Interval, depth: Interval) -> Interval {
-        let point = Interval::point;
-        let height = (ball - point(self.radius)).max(point(self.least)).min(point(self.most));
-        (height - point(self.margin)).min(depth)
-    }
-
     fn two(&self, p: DVec3) -> Option<Two> {
         self.two_of(p, |number| self.sides[number].distance.value(p))
     }
 
     fn height(&self, ball: f64, two: Option<Two>) -> f64 {
-        let most = (ball - self.radius).clamp(self.least, self.most);
+        let most = (ball - self.radius).min(MOST * self.radius);
         let beyond = two.map_or(0.0, |Two { distances: [a, b], .. }| (a + b - 2.0 * self.radius).max(0.0));
         most - FADE * beyond - self.margin
     }
 
     /// The gradient of the height, from those of what it is made of.
     fn slope(&self, ball: f64, slope: DVec3, two: Option<Two>, side: impl Fn(usize) -> DVec3) -> DVec3 {
-        let mut all = if self.is_between(ball) { slope } else { DVec3::ZERO };
+        let mut all = if ball - self.radius < MOST * self.radius { slope } else { DVec3::ZERO };
         if let Some(Two { distances: [a, b], sides }) = two
             && a + b > 2.0 * self.radius
         {
@@ -207,7 +188,7 @@ impl Fill {
         for (axis, side) in zone.hull().into_iter().enumerate() {
             let is_near = [side.lo() - self.hull.min[axis], self.hull.max[axis] - side.hi()];
             for (room, way) in is_near.into_iter().zip([1.0, -1.0]) {
-                if room < self.most {
+                if room < MOST * self.radius {
                     let mut slopes = [Interval::point(0.0); 3];
                     slopes[axis] = Interval::point(way);
                     all &= bits(ways, |way| way.is_rise(slopes));
@@ -249,18 +230,17 @@ impl AnyField for Fill {
 
     fn value(&self, p: [f64; 3]) -> f64 {
         let p = DVec3::from_array(p);
-        self.height(self.ball_at(p), self.two(p)).min(self.depth(p).0)
+        self.height(self.ball.value(p), self.two(p)).min(self.depth(p).0)
     }
 
     fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64> {
         let at = DVec3::from_array(p.map(Dual::value));
-        let (ball, two, (depth, way)) = (self.ball_at(at), self.two(at), self.depth(at));
+        let (ball, two, (depth, way)) = (self.ball.value(at), self.two(at), self.depth(at));
         let height = self.height(ball, two);
         let (value, slope) = if depth < height {
             (depth, way)
         } else {
-            let of_ball = if self.is_between(ball) { self.ball.slope(at) } else { DVec3::ZERO };
-            (height, self.slope(ball, of_ball, two, |number| self.sides[number].distance.slope(at)))
+            (height, self.slope(ball, self.ball.slope(at), two, |number| self.sides[number].distance.slope(at)))
         };
         let along = |axis: usize| (0..3).map(|i| slope[i] * p[i].d[axis]).sum();
         Dual::new(value, [along(0), along(1), along(2)])
@@ -288,8 +268,7 @@ impl AnyField for Fill {
         if depth.hi() < 0.0 {
             return Interval::new(f64::NEG_INFINITY, depth.hi());
         }
-        let ball = self.ball.range_between(zone, self.counts());
-        let most = (ball - point(self.radius)).max(point(self.least)).min(point(self.most));
+        let most = (self.ball.range(zone) - point(self.radius)).min(point(MOST * self.radius));
         let fade = if self.sides.is_empty() {
             point(0.0)
         } else {
@@ -311,7 +290,7 @@ impl AnyField for Fill {
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {
         let [low, high] = [Interval::lo, Interval::hi].map(|end| DVec3::from_array(zone.hull().map(end)));
         let hull = Bounds::new(low, high);
-        if !self.boxes.iter().any(|bounds| bounds.inflate(self.most).contains_bounds(&hull)) {
+        if !self.boxes.iter().any(|bounds| bounds.inflate(MOST * self.radius).contains_bounds(&hull)) {
             return 0;
         }
         let turned = |sign: f64| -> Vec<Way> { ways.iter().map(|way| way.flip_if(sign < 0.0)).collect() };
@@ -327,7 +306,8 @@ impl AnyField for Fill {
 
     fn narrowed(&self, zone: &Zone) -> Option<Arc<dyn AnyField>> {
         let mut simpler = self.clone();
-        let near: Vec<Bounds> = self.boxes.iter().filter(|own| meets(zone, &own.inflate(self.most))).copied().collect();
+        let near: Vec<Bounds> =
+            self.boxes.iter().filter(|own| meets(zone, &own.inflate(MOST * self.radius))).copied().collect();
         let mut is_simpler = near.len() < self.boxes.len() && !near.is_empty();
         if is_simpler {
             simpler = simpler.within(near, self.hull);
@@ -444,10 +424,10 @@ impl Fill {
         let mut all = depths.clone();
         let mut open = Few::of((0..out.len()).filter(|i| depths[*i] > -band), points);
         let own = unscaled(placement);
-        let most = self.most.max(band + self.margin);
+        let most = (MOST * self.radius).max(band + self.margin);
         let balls = open.values(&self.ball, &own, (self.radius, most));
         open.retain(&balls, |ball, i| {
-            let height = (ball - self.radius).max(self.least) - self.margin;
+            let height = ball - self.radius - self.margin;
             all[i] = height.min(depths[i]);
             height > -band
         });

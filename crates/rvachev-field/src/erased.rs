@@ -68,11 +68,6 @@ pub trait AnyField: Any + Debug + Send + Sync {
     }
     /// The value at a point of the leaf's frame.
     fn value(&self, p: [f64; 3]) -> f64;
-    /// The same for who does not tell apart values that are not between `low` and `high`: they may
-    /// come nearer to those, as far as that and no farther.
-    fn value_between(&self, p: [f64; 3], _low: f64, _high: f64) -> f64 {
-        self.value(p)
-    }
     /// Value and derivatives at a point.
     fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64>;
     /// Ranges of value and derivatives over a box.
@@ -122,10 +117,6 @@ pub trait AnyField: Any + Debug + Send + Sync {
     }
     /// A sound range over a zone of the leaf's frame.
     fn range(&self, zone: &Zone) -> Interval;
-    /// The same for who does not tell apart values that are not between `low` and `high`.
-    fn range_between(&self, zone: &Zone, _low: f64, _high: f64) -> Interval {
-        self.range(zone)
-    }
     /// The directions, of up to eight, along which the value is found to rise, or to stay,
     /// throughout a zone: by their numbers, as bits.
     fn rises(&self, zone: &Zone, ways: &[Way]) -> u8 {

@@ -7,10 +7,8 @@ use crate::eval::apart::{Near, measured};
 use crate::eval::bevel::Bevel;
 use crate::eval::chamfer::Chamfer;
 use crate::eval::code::Built;
-use crate::eval::face::Face;
-use crate::eval::fill::{Fill, Side};
+use crate::eval::fill::{Fill, Side, Signed};
 use crate::eval::program::Program;
-use crate::eval::signed::Signed;
 use crate::eval::source::Measured;
 use crate::solid::{self, Operation};
 use crate::{Blend, Bounds, Solid, SolidError};
@@ -118,15 +116,18 @@ impl Compiler<'_> {
         let Some(measured) = measured(site.solid) else { return Ok(Vec::new()) };
         let steepest = [&a.surface, &b.surface].map(steepest);
         let chamfer = Chamfer { leg, steepest: steepest[0].max(steepest[1]) };
+        let frame = self.contexts.get(site.context).frame;
         let near = Near::of(operation, *blend, operands);
         let Some(bounds) = near.boxes.first().copied() else { return Ok(Vec::new()) };
+        let bevel: Arc<dyn AnyField> =
+            Arc::new(Bevel::new([a.surface.clone(), b.surface.clone()], signs, chamfer, bounds));
         let ball =
             Signed { field: measured.field.clone(), sign: if operation == Operation::Union { 1.0 } else { -1.0 } };
         let margin = margin(site.solid, &measured, near.radius);
-        let fill = Fill::new(near.radius, ball, Vec::new(), margin).to_depth(leg).within(near.boxes, near.hull);
-        let bevel = Bevel::new([a.surface.clone(), b.surface.clone()], signs, chamfer, bounds);
-        let face: Arc<dyn AnyField> = Arc::new(Face::new(bevel, fill));
-        Ok(vec![self.made(&face, site, 0.0)])
+        let fill: Arc<dyn AnyField> =
+            Arc::new(Fill::new(near.radius, ball, Vec::new(), margin).within(near.boxes, near.hull));
+        let both = [self.made(&bevel, site, 0.0), self.made(&fill, site, 0.0)];
+        Ok(vec![self.code.operation(Operation::Intersection, Rule::MinMax, frame, &both)])
     }
 
     /// A join of operands with what is added to it, or, for intersections and differences, taken

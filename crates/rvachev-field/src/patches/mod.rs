@@ -140,30 +140,10 @@ impl Patches {
         })
     }
 
-    /// The nearest point, if it is no farther than `most`.
-    fn nearest_within(&self, p: DVec3, most: f64) -> Option<Foot> {
-        let best = self.search_between(self.frame.into_local(p).to_array(), -1.0, self.square(most))?;
-        self.foot_on(best.which as usize, p)
-    }
-
     /// How far the nearest point is; nothing if there are no patches.
     fn distance(&self, p: DVec3) -> Option<f64> {
-        if self.is_empty() { None } else { Some(self.distance_between(p, 0.0, f64::INFINITY)) }
-    }
-
-    /// How far the nearest point is, or `high` if it is farther; if it is nearer than `low`, a
-    /// number between.
-    fn distance_between(&self, p: DVec3, low: f64, high: f64) -> f64 {
-        let local_low = low * (1.0 - 1e-9) / self.frame.unit;
-        let low = if low > 0.0 { local_low * local_low } else { -1.0 };
-        let found = self.search_between(self.frame.into_local(p).to_array(), low, self.square(high));
-        found.map_or(high, |best| (best.square.sqrt() * self.frame.unit).min(high))
-    }
-
-    /// The square of a distance, in the surface's frame; a little more, for rounding.
-    fn square(&self, distance: f64) -> f64 {
-        let local = distance * (1.0 + 1e-9) / self.frame.unit;
-        (local * local + f64::from(f32::MIN_POSITIVE)).min(f64::from(f32::MAX))
+        let local = self.frame.into_local(p).to_array();
+        if self.is_empty() { None } else { Some(self.search_one(local).square.sqrt() * self.frame.unit) }
     }
 
     /// The unit of the stored numbers: half the surface's size or up to twice that.
@@ -173,17 +153,9 @@ impl Patches {
 
     /// The nearest patch to one point of the surface's frame.
     fn search_one(&self, local: [f64; 3]) -> Best<f64> {
-        self.search_between(local, -1.0, f64::from(f32::MAX)).unwrap_or(Best::none(0.0))
-    }
-
-    /// The same, if the square of its distance is below `high`; of one that is below `low`, a square
-    /// that is no less and below that too.
-    fn search_between(&self, local: [f64; 3], low: f64, high: f64) -> Option<Best<f64>> {
         let mut curved = One { patches: self, local, best: Best::none(0.0) };
-        let best = self.search(local, &[], Range { low, high }, &mut Stack::new(0.0), &mut curved);
-        // Of what is below the range no more is asked than that.
-        let best = if self.quadratics.is_empty() || best.square < low { best } else { curved.best };
-        (best.square < high).then_some(best)
+        let best = self.search(local, &[], Range::all(0.0), &mut Stack::new(0.0), &mut curved);
+        if self.quadratics.is_empty() { best } else { curved.best }
     }
 
     /// The nearest point of one patch.
@@ -258,11 +230,6 @@ impl Keep<f64> for One<'_> {
         if least < most.min(self.best.square) {
             self.best.take(self.patches.closest(at as usize, self.local).square, at);
         }
-    }
-
-    #[inline(always)]
-    fn known(&self) -> Option<f64> {
-        Some(self.best.square)
     }
 }
 

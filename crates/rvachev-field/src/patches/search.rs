@@ -67,10 +67,6 @@ impl<R: Real> Stack<R> {
 pub(super) trait Keep<R> {
     /// Takes a patch, the square of how far it is at least, and that of what is known.
     fn keep(&mut self, at: u32, least: R, most: R);
-    /// The square of how far the nearest of them is at most, if that is known on the way.
-    fn known(&self) -> Option<R> {
-        None
-    }
 }
 
 /// Which distances a search is to find: squares of those that are near enough to be told apart, and
@@ -129,8 +125,7 @@ impl Patches {
         let mut height = 1;
         while height > 0 {
             let mut count = 0;
-            // A point by itself goes on with what the first patches tell.
-            while height > 0 && count + LEAF <= KEPT && !(R::ALONE && count > 0) {
+            while height > 0 && count + LEAF <= KEPT {
                 height -= 1;
                 let (at, least) = stack.0[height];
                 if !least.any_below(most) {
@@ -175,9 +170,6 @@ impl Patches {
             }
             for (at, least) in &kept[..count] {
                 curved.keep(*at, *least, most);
-            }
-            if let Some(known) = curved.known() {
-                most = open(most.min(known * SURELY + f64::from(f32::MIN_POSITIVE)));
             }
         }
         best.within(known)

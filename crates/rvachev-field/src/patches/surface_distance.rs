@@ -248,12 +248,6 @@ impl AnyField for SurfaceDistance {
         self.signed(p, self.sign(p))
     }
 
-    fn value_between(&self, p: [f64; 3], low: f64, high: f64) -> f64 {
-        let sign = self.sign(p);
-        let [near, far] = if sign < 0.0 { [-high, -low] } else { [low, high] }.map(|way| way.max(0.0));
-        with_sign(self.patches.distance_between(self.flattened(DVec3::from_array(p)), near, far), sign)
-    }
-
     fn dual(&self, p: [Dual<f64>; 3]) -> Dual<f64> {
         let at = p.map(Dual::value);
         let (value, slope) = self.signed_with_slope(at, self.sign(at));
@@ -290,30 +284,15 @@ impl AnyField for SurfaceDistance {
         DVec3::ONE
     }
 
-    fn range(&self, zone: &Zone) -> Interval {
-        self.range_between(zone, f64::NEG_INFINITY, f64::INFINITY)
-    }
-
     /// The value at the centre and the farthest that a point may be from there, on the side that
     /// the sign field is certain of.
-    fn range_between(&self, zone: &Zone, low: f64, high: f64) -> Interval {
+    fn range(&self, zone: &Zone) -> Interval {
         if !zone.is_finite() {
             return self.side(zone);
         }
         let at = zone.centre.to_array();
-        let most = if self.sign(at) < 0.0 { -low } else { high }.max(0.0);
-        // Beyond this all points of the zone are beyond `most`.
-        let farthest = most + self.radius(zone) + self.slack(zone, most);
-        let found = match farthest < f64::INFINITY {
-            true => self.patches.nearest_within(self.flattened(zone.centre), farthest),
-            false => self.patches.nearest(self.flattened(zone.centre)),
-        };
-        let Some(foot) = found else {
-            if self.patches.is_empty() {
-                return Interval::point(self.value(at));
-            }
-            let beyond = Interval::new(most, f64::INFINITY);
-            return if self.sign(at) < 0.0 { -beyond } else { beyond };
+        let Some(foot) = self.patches.nearest(self.flattened(zone.centre)) else {
+            return Interval::point(self.value(at));
         };
         let (sign, slack) = (self.sign(at), self.slack(zone, foot.distance));
         let within_ball = foot.distance - self.radius(zone) - slack;
