@@ -272,7 +272,8 @@
 //! where curvature jumps, and where ribs come to be as thin as cells, single points may be farther
 //! off. Rods, needles and rims thinner than a quarter of a cell may be missed.
 //! [`Solid::accuracy`](crate::Solid::accuracy) says what was reached, and
-//! [`Solid::with_tolerance`](crate::Solid::with_tolerance) asks for more or less.
+//! [`Solid::with_tolerance`](crate::Solid::with_tolerance) asks for more or less. The tolerances of
+//! lengths of lengths, as of fillets of several radii one after the other, add up.
 //!
 //! Faces that a length leaves where they are are not measured: the outer face of a shell, the faces
 //! that the ball of an opening or closing touches, flush faces of a blend. They are the solid's

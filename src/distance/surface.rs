@@ -144,7 +144,7 @@ impl DistanceSource for FromMeshes {
             if let Some((reached, quilt)) = best.take_if(|_| is_last || is_enough) {
                 let patches = Arc::new(Patches::new(&quilt.patches, &run.stage(done, 1.0))?);
                 run.report(1.0);
-                let (accuracy, doubts) = (Accuracy { tolerance: reached, error: quilt.error }, quilt.doubts(reached));
+                let (accuracy, doubts) = (Accuracy::of_surface(reached, quilt.error), quilt.doubts(reached));
                 return Ok(Surface { patches, accuracy, doubts, flat });
             }
             cell *= 0.5;
@@ -156,14 +156,16 @@ impl DistanceSource for FromMeshes {
         // Vertices of meshes are in single precision.
         let farthest = [bounds.min, bounds.max].map(|corner| corner.abs().max_element());
         let far = farthest.into_iter().filter(|far| far.is_finite()).fold(size, f64::max);
-        // A surface that is measured itself is no smoother than that, and has had its part.
+        // A surface that is measured itself has had its part, and is no smoother than what it was
+        // measured to. What is measured from it need not be as coarse as all of them together, or
+        // tolerances would double with each length of a length.
         let own = programs.accuracy.tolerance;
         let least = match wanted.tolerance {
             Some(tolerance) => (tolerance - own).max(FINEST * far),
             // Lengths that are alike have one surface.
             None => (TOLERANCE * wanted.length).log2().floor().exp2().max(SMALL * far),
         };
-        least.max(own)
+        least.max(programs.accuracy.grain())
     }
 }
 

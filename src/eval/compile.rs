@@ -12,12 +12,14 @@ mod leaves;
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use glam::DVec3;
+
 use super::accuracy::Accuracy;
 use super::apart::{Work, measure, measured, works};
 use super::coat::Coat;
 use super::code::{Built, Code, snug};
 use super::context::Contexts;
-use super::exact::Exactness;
+use super::exact::{Exact, Exactness};
 use super::extent::extent;
 use super::fit::fit;
 use super::flatten::flatten;
@@ -40,9 +42,26 @@ pub(crate) struct Compiled {
     /// The path to the node that makes the bounds infinite, if they are.
     pub(crate) unbounded: String,
     pub(crate) accuracy: Accuracy,
+    exact: Exact,
 }
 
 impl Compiled {
+    /// The point of the surface that is nearest to one where the value is the true distance: along
+    /// the gradient. None elsewhere, and at the surface, where a value of 0 may also be that of a
+    /// face between parts.
+    pub(crate) fn foot(&self, p: DVec3) -> Option<DVec3> {
+        /// How far off the surface a foot may be, in parts of the size.
+        const OFF: f64 = 1e-10;
+        let least = OFF * self.bounds.longest_side();
+        let (value, slope) = self.surface.gradient(p);
+        let is_exact = if value > 0.0 { self.exact.inside } else { self.exact.outside };
+        if !is_exact || value.abs() <= least {
+            return None;
+        }
+        let foot = p - value * slope.normalize_or_zero();
+        (self.surface.value(foot).abs() <= least).then_some(foot)
+    }
+
     /// The axis along which the solid is a column without end: the one axis that its box is
     /// infinite along, where its value does not depend on it.
     pub(crate) fn flat_axis(&self) -> Option<usize> {
@@ -179,6 +198,7 @@ impl<'e> Compiler<'e> {
         }
         let built = self.of(root, 0);
         let unbounded = self.unbounded(root, step);
+        let exact = self.exact.of(root);
         let Compiler { scene, code, coats, accuracy, run, .. } = self;
         let scene = Arc::new(scene);
         let program = |root: Edge| {
@@ -192,7 +212,7 @@ impl<'e> Compiler<'e> {
         }
         let unbounded = if bounds.is_finite() { String::new() } else { unbounded };
         let palette = Palette::new(surface.clone(), coats);
-        Ok(Compiled { field, surface, palette, bounds, unbounded, accuracy })
+        Ok(Compiled { field, surface, palette, bounds, unbounded, accuracy, exact })
     }
 
     /// The path to the node that makes the solid unbounded: down through unions to the

@@ -94,7 +94,7 @@ impl Tiles {
     pub(super) fn accuracy(&self, programs: &Compiled) -> Accuracy {
         let region = self.tiling.region([0; 3]);
         let tolerance = self.source.tolerance(programs, &self.wanted(&region));
-        Accuracy { tolerance, error: 0.0 }
+        Accuracy::of_surface(tolerance, 0.0)
     }
 
     fn wanted<'a>(&self, region: &'a Bounds) -> Wanted<'a> {

@@ -176,6 +176,9 @@ impl Solid {
     /// is smooth there; `None` if the solid is empty or fills its bounds. A point that is more than
     /// a million sizes away counts as one at that distance, in the same direction.
     ///
+    /// Where the solid's value is the [distance](crate::lengths#exact-or-measured) the point is
+    /// found at once. Elsewhere the surface is measured at the first call, and kept.
+    ///
     /// # Errors
     /// What is wrong with the solid; [`SolidError::Unbounded`] if it has no finite box.
     ///
@@ -194,6 +197,9 @@ impl Solid {
         let programs = compiled(self)?;
         if bounds.is_empty() || !p.is_finite() {
             return Ok(None);
+        }
+        if let Some(foot) = programs.foot(p) {
+            return Ok(Some(foot));
         }
         Ok(nearest(&programs.surface, &surface_of(self)?.patches, p))
     }

@@ -209,8 +209,36 @@ fn the_nearest_point_of_a_box() {
         let p = random.vector(-3.0, 3.0);
         let q = block.closest_surface_point(p).unwrap().expect("it has a surface");
         // The value of a box is the distance.
-        near(q.distance(p), value(&block, p).abs(), 1e-6);
-        near(value(&block, q), 0.0, 1e-8);
+        near(q.distance(p), value(&block, p).abs(), 1e-12);
+        near(value(&block, q), 0.0, 1e-12);
+    }
+}
+
+#[test]
+fn the_nearest_point_of_parts_that_meet() {
+    let block = Solid::cuboid([10.0; 3]);
+    let both = block.translate([-5.0, 0.0, 0.0]) | block.translate([5.0, 0.0, 0.0]);
+    for (p, distance) in [
+        // On the face that is inside, beside it, outside, and beyond an edge.
+        ([0.0, 0.0, 1.0], 4.0),
+        ([0.1, 0.0, 1.0], 4.0),
+        ([0.0, 0.0, 6.5], 1.5),
+        ([13.0, 0.0, 9.0], 5.0),
+    ] {
+        let q = both.closest_surface_point(p).unwrap().expect("it has a surface");
+        near(q.distance(DVec3::from(p)), distance, 1e-8);
+    }
+    // A fin that no cell of a mesh shows: the distance outside is that to the nearer part.
+    let parts = [Solid::cuboid([10.0, 10.0, 1e-6]), Solid::cuboid([6.0; 3])];
+    let parts = parts.map(|part| part.rotate_x(rad(0.3)).rotate_y(rad(0.2)));
+    let fin = &parts[0] | &parts[1];
+    let mut random = Random::new(7);
+    for p in (0..40).map(|_| random.vector(-8.0, 8.0)) {
+        let way = -value(&parts[0], p).max(value(&parts[1], p));
+        if way > 0.0 {
+            let q = fin.closest_surface_point(p).unwrap().expect("it has a surface");
+            near(q.distance(p), way, 1e-9);
+        }
     }
 }
 

@@ -315,6 +315,23 @@ fn thirty_pins_have_their_fillets() -> Outcome {
     Ok(())
 }
 
+/// Each is a length of lengths: their errors add up, and no more than that.
+#[test]
+fn fillets_of_many_radii_keep_their_accuracy() -> Outcome {
+    let (plate, places) = pins([4, 2]);
+    let radius = |number: usize| 0.04 + 0.002 * number as f64;
+    let mut solid = plate;
+    for (number, place) in places.iter().enumerate() {
+        solid = solid.union_with(pin(*place), fillet(radius(number)));
+    }
+    let told = solid.accuracy()?;
+    assert!(told.tolerance < places.len() as f64 * 4.0 * TOLERANCE * radius(0), "{told:?}");
+    for (number, place) in places.iter().enumerate() {
+        have_fillets(&solid, &[*place], radius(number))?;
+    }
+    Ok(())
+}
+
 #[test]
 #[ignore = "takes minutes on one core"]
 fn a_thousand_pins_have_their_fillets() -> Outcome {
