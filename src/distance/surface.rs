@@ -32,6 +32,10 @@ const FINEST: f64 = 2e-7;
 /// Cells along the longest side at least.
 const ALONG_SIZE: f64 = 24.0;
 
+/// What lengths have been taken of before bends by about as much: cells are no longer than so many
+/// of them, and no smaller than half of the longest.
+const ALONG_BEND: f64 = 1.25;
+
 /// So many cells may be on the surface, and so many more for each leaf.
 const CELLS: f64 = 4e4;
 const CELLS_A_LEAF: f64 = 500.0;
@@ -85,8 +89,11 @@ impl DistanceSource for FromMeshes {
         let (mut done, mut best) = (LOOKING, None);
         let subject = Subject { program: &programs.surface, bounds, palette: None, whole: None };
         let look = run.stage(0.0, done);
-        let mut cell =
-            run.install(|| subject.first_cell(size, size / ALONG_SIZE, enough, &look)).map_err(compile_error)?;
+        let mut longest = size / ALONG_SIZE;
+        if programs.accuracy.tolerance > 0.0 {
+            longest = (ALONG_BEND * wanted.length).clamp(0.5 * longest, longest);
+        }
+        let mut cell = run.install(|| subject.first_cell(size, longest, enough, &look)).map_err(compile_error)?;
         loop {
             // What is left is for smaller cells.
             let end = done + ATTEMPT * (1.0 - done);

@@ -261,6 +261,10 @@ impl AnyField for Bevel {
         self.operands.iter().all(|operand| operand.is_steady())
     }
 
+    fn cost(&self) -> usize {
+        4
+    }
+
     fn jumps(&self) -> bool {
         self.operands.iter().any(|operand| operand.jumps())
     }

@@ -5,6 +5,7 @@
 //! coordinates is evaluated as accurately as one at it.
 
 mod evaluator;
+mod open;
 mod rivals;
 mod seen;
 mod slices;
@@ -15,11 +16,12 @@ use glam::{DAffine3, DVec3};
 
 use self::evaluator::Memory;
 pub use self::evaluator::{Evaluator, Gradients};
+use self::open::Open;
 use self::rivals::Rivals;
 use self::seen::Seen;
 pub use self::slices::UnequalSlices;
 use super::program::Program;
-use super::register::{Step, schedule};
+use super::register::{Guard, Step, schedule};
 use crate::Bounds;
 use rvachev_field::Op;
 use rvachev_field::kernel::{CHUNK, Element};
@@ -50,6 +52,7 @@ pub struct Tape {
     frames: Vec<FrameStep>,
     leaves: Vec<LeafStep>,
     steps: Vec<Step>,
+    guards: Vec<Guard>,
     registers: usize,
     result: u32,
     origin: DVec3,
@@ -123,14 +126,18 @@ impl Tape {
         let is_choice = !steps.iter().any(|step| {
             matches!(step, Step::Shift { .. }) || matches!(step, Step::Fold { rule, .. } if *rule != Rule::MinMax)
         });
-        let (registers, result) = (plan.registers, plan.result);
-        Tape { frames, leaves, steps, registers, result, origin, roundoff, rivals, is_choice }
+        let (guards, registers, result) = (plan.guards, plan.registers, plan.result);
+        Tape { frames, leaves, steps, guards, registers, result, origin, roundoff, rivals, is_choice }
     }
 
     /// The bytes that it takes.
     pub(crate) fn bytes(&self) -> usize {
         let rivals = self.rivals.as_ref().map_or(0, Rivals::bytes);
-        size_of_val(&*self.frames) + size_of_val(&*self.leaves) + size_of_val(&*self.steps) + rivals
+        size_of_val(&*self.frames)
+            + size_of_val(&*self.leaves)
+            + size_of_val(&*self.steps)
+            + size_of_val(&*self.guards)
+            + rivals
     }
 
     /// What points are relative to.
@@ -155,12 +162,13 @@ impl Tape {
     /// Becomes a copy of another tape, relative to another origin, in memory that it has. It has no
     /// rivals: they are of no use for gradients.
     pub(crate) fn become_recentred(&mut self, other: &Tape, origin: DVec3) {
-        let (mut frames, mut leaves, mut steps) =
-            (std::mem::take(&mut self.frames), std::mem::take(&mut self.leaves), std::mem::take(&mut self.steps));
+        let (mut frames, mut leaves) = (std::mem::take(&mut self.frames), std::mem::take(&mut self.leaves));
+        let (mut steps, mut guards) = (std::mem::take(&mut self.steps), std::mem::take(&mut self.guards));
         frames.clone_from(&other.frames);
         leaves.clone_from(&other.leaves);
         steps.clone_from(&other.steps);
-        *self = Tape { frames, leaves, steps, rivals: None, ..*other };
+        guards.clone_from(&other.guards);
+        *self = Tape { frames, leaves, steps, guards, rivals: None, ..*other };
         self.recentre(origin);
     }
 
@@ -360,15 +368,28 @@ fn chunk<M: Mode<N>, const N: usize>(
     let width = N * CHUNK;
     for step in &tape.steps {
         match *step {
-            Step::Leaf { leaf, to } if far.get(leaf as usize) == Some(&true) => {
+            Step::Leaf { leaf, to, .. } if far.get(leaf as usize) == Some(&true) => {
                 registers[to as usize * width..][..size].fill(M::E::from_f64(-VALUE_LIMIT));
             }
-            Step::Leaf { leaf, to } => {
+            Step::Leaf { leaf, to, guards: [first, last] } => {
                 let leaf = &tape.leaves[leaf as usize];
                 let points = match leaf.slot {
                     0 => Points::World(world),
                     slot => Points::Slot(&slots[(slot - 1) * coordinates..slot * coordinates], size),
                 };
+                let guards = &tape.guards[first as usize..last as usize];
+                if N == 1 && band < f64::INFINITY && !guards.is_empty() {
+                    let open = Open::of(guards, band, &*registers, size);
+                    if open.is_few(size) {
+                        open.leaf::<M, N>(
+                            (leaf, band),
+                            points.coordinates(),
+                            own,
+                            &mut registers[to as usize * width..][..size],
+                        );
+                        continue;
+                    }
+                }
                 M::leaf(leaf, band, points, own, split_mut(&mut registers[to as usize * width..][..width], size));
             }
             Step::Fold { op, rule, negate, from, to } => {

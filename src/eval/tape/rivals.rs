@@ -89,7 +89,7 @@ impl Tape {
     /// The tape of one of its leaves, or of its complement.
     fn alone(&self, leaf: &LeafStep, negated: bool) -> Tape {
         let (frames, leaves, steps) = (Vec::new(), Vec::with_capacity(1), Vec::with_capacity(2));
-        let mut alone = Tape { frames, leaves, steps, rivals: None, ..*self };
+        let mut alone = Tape { frames, leaves, steps, guards: Vec::new(), rivals: None, ..*self };
         alone.become_alone(self, leaf, negated);
         alone
     }
@@ -104,9 +104,9 @@ impl Tape {
         leaves.clear();
         leaves.push(leaf.clone());
         steps.clear();
-        steps.push(Step::Leaf { leaf: 0, to: 0 });
+        steps.push(Step::Leaf { leaf: 0, to: 0, guards: [0; 2] });
         steps.extend(negated.then_some(Step::Negate { register: 0 }));
         let (frames, leaves, steps) = (std::mem::take(frames), std::mem::take(leaves), std::mem::take(steps));
-        *self = Tape { frames, leaves, steps, registers: 1, result: 0, rivals: None, ..*all };
+        *self = Tape { frames, leaves, steps, guards: Vec::new(), registers: 1, result: 0, rivals: None, ..*all };
     }
 }
