@@ -76,7 +76,14 @@ pub(super) fn entry(sides: [&Side<'_>; 2], slack: f64, run: &Run) -> Result<Entr
         asked += 8 * open.len();
         let (small, large): (Vec<Shared>, Vec<Shared>) =
             open.into_iter().partition(|part| asked > MOST || part.bounds.size().length() <= slack);
-        left = small.iter().map(|part| part.bounds.size().length()).fold(left, f64::max);
+        // What is in doubt within the other solid may be as deep there as it is from its surface.
+        let deepest = |part: &Shared| {
+            let holds = (0..2).filter(|side| part.programs[*side].is_none());
+            let deep = holds.map(|side| distance(&sides[side].surface.patches, part.bounds.center()));
+            let half = part.bounds.half_extents().length();
+            deep.fold(half, f64::max) + half
+        };
+        left = small.iter().map(deepest).fold(left, f64::max);
         open =
             large.par_iter().flat_map_iter(|part| part.bounds.octants().map(|own| part.part(own))).flatten().collect();
     }

@@ -18,8 +18,8 @@ use super::{AT_ONCE, Side, distance};
 use crate::{Bounds, Cancelled, Run};
 
 /// How far inside a solid points of it are looked for, in accuracies of the surfaces: of thin sheets
-/// only those that are close to the surface are inside.
-const INSIDE: [f64; 4] = [4.0, 1.0, 0.25, 0.06];
+/// only those that are close to the surface are inside, or on a sheet midway between the faces.
+const INSIDE: [f64; 5] = [4.0, 1.0, 0.25, 0.06, 0.0];
 
 /// After so many pieces the work ends, with what is known then.
 const MOST: usize = 1 << 17;
@@ -56,7 +56,7 @@ pub(super) fn entry(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
     // Beyond the other's box, farther from its surface than it is large, below its surface, undecided.
     let look = |piece: &Piece| {
         let middle = piece.points.iter().sum::<DVec3>() / 3.0;
-        let most = piece.reach_from(middle).min(piece.longest_side()) + piece.off(patches) + 2.0 * slack;
+        let most = piece.longest_side() + piece.off(patches) + 2.0 * slack;
         if bounds.distance_squared(middle).sqrt() > most {
             return ControlFlow::Continue(None);
         }
@@ -92,7 +92,11 @@ pub(super) fn entry(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
         asked += 4 * open.len();
         // No corner is deeper than what counts.
         let is_small = |piece: &Piece| piece.longest_side() <= slack || asked > MOST;
-        let reach = |piece: &Piece| (INSIDE[0] + 1.0) * slack + piece.longest_side();
+        let reach = |piece: &Piece| {
+            let middle = piece.points.iter().sum::<DVec3>() / 3.0;
+            let deep = if to.program.value(middle) > 0.0 { distance(others, middle) } else { 0.0 };
+            deep.max((INSIDE[0] + 1.0) * slack) + piece.longest_side()
+        };
         left = open.iter().filter(|piece| is_small(piece)).map(reach).fold(left, f64::max);
         open.retain(|piece| !is_small(piece));
         pieces = open.iter().flat_map(|piece| piece.divided(patches, |_| 0.0)).collect();
