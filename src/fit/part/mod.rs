@@ -123,7 +123,7 @@ use crate::geom::{Mesh, PointCloud};
 /// | xtion_bracket | 0.9973 | 2 (46) | 2, 2 |
 /// | camshaft, not snapped | 0.9971 | 5 (42) | 0, 0 |
 /// | camshaft | 0.9933 | 5 (42) | 0, 0 |
-/// | angle_block | 0.997 | 10 (84) | 1, 1 |
+/// | angle_block | 0.9969 | 10 (85) | 1, 1 |
 /// | satellite_mount | 0.9916 | 5 (59) | 8, 8 |
 /// | lasercut_interface | 0.9995 | 3 (40) | 8, 8 |
 /// | holder | 0.9914 | 4 (34) | 5, 5 |

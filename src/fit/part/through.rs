@@ -28,11 +28,10 @@ pub(super) struct End {
     /// Which of the leaf's numbers it is, and along which of its axes.
     pub(super) nth: usize,
     pub(super) axis: usize,
-    /// The face that it goes through, or where it is itself, if that is farther. Cuts that follow
-    /// are not asked: they may come to leave to this one what both cut.
+    /// The face that it goes through, or where it is itself, if that is farther.
     pub(super) face: f64,
     pub(super) up: bool,
-    /// How far it is to the other end from where there is something left to cut.
+    /// How far it is from there to the other end.
     pub(super) depth: f64,
 }
 
@@ -52,12 +51,11 @@ pub(super) fn lengthened(leaves: &[(bool, Leaf)], nth: usize, size: f64, near: f
 pub(super) fn ends_in_the_open(leaves: &[(bool, Leaf)], nth: usize, size: f64, near: f64) -> Vec<End> {
     let run = leaves[nth..].iter().take_while(|(adds, _)| !*adds).count();
     let (before, cut, after) = (&leaves[..nth], &leaves[nth].1, &leaves[nth..nth + run]);
-    // The last leaf that holds a point tells; with the cuts that follow, or without.
-    let is_solid = |p: DVec3, following: &[(bool, Leaf)]| {
-        let mut others = before.iter().chain(following);
+    let is_solid = |p: DVec3| {
+        let mut others = before.iter().chain(after.iter().skip(1));
+        // The last one that holds it tells.
         others.rfind(|(_, leaf)| leaf.contains(p)).is_some_and(|(adds, _)| *adds)
     };
-    let (all, none) = (&after[1.min(run)..], &after[..0]);
     // Of a cone only the size changes with its height; it is left as it is.
     let axes: &[(usize, [usize; 2])] = match &cut.shape {
         Shape::Box(_) => &[(0, [0, 1]), (1, [2, 3]), (2, [4, 5])],
@@ -83,24 +81,21 @@ pub(super) fn ends_in_the_open(leaves: &[(bool, Leaf)], nth: usize, size: f64, n
             };
             let steps = [1e-4, 1e-3, 3e-3, BEYOND, 1.5 * BEYOND, 2.0 * BEYOND];
             let mut farther = steps.iter().filter(|by| **by > near);
-            let is_free = !points.is_empty() && farther.all(|by| !moved(*by).any(|p| is_solid(p, all)));
+            let is_free = !points.is_empty() && farther.all(|by| !moved(*by).any(is_solid));
             if is_free {
                 // Where what is cut begins, back from the end.
-                let over = |following: &[(bool, Leaf)]| {
-                    let is_within = |depth: f64| moved(-depth).any(|p| is_solid(p, following));
-                    let first = (1..200).map(|k| f64::from(k) * STEP).find(|depth| is_within(*depth));
-                    let depth = first.map_or(0.0, |first| {
-                        let [mut clear, mut solid] = [first - STEP, first];
-                        while solid - clear > FINE {
-                            let middle = 0.5 * (clear + solid);
-                            *(if is_within(middle) { &mut solid } else { &mut clear }) = middle;
-                        }
-                        clear
-                    });
-                    (depth * size).min(2.0 * half)
-                };
-                let depth = 2.0 * half - over(all);
-                ends.push(End { nth, axis: *axis, face: numbers[nth] - sign * over(none), up, depth });
+                let is_within = |depth: f64| moved(-depth).any(is_solid);
+                let first = (1..200).map(|k| f64::from(k) * STEP).find(|depth| is_within(*depth));
+                let depth = first.map_or(0.0, |first| {
+                    let [mut clear, mut solid] = [first - STEP, first];
+                    while solid - clear > FINE {
+                        let middle = 0.5 * (clear + solid);
+                        *(if is_within(middle) { &mut solid } else { &mut clear }) = middle;
+                    }
+                    clear
+                });
+                let over = (depth * size).min(2.0 * half);
+                ends.push(End { nth, axis: *axis, face: numbers[nth] - sign * over, up, depth: 2.0 * half - over });
             }
         }
     }
@@ -144,12 +139,5 @@ mod tests {
         let longer = lengthened(&leaves, 1, 1.0, 0.002).expect("one end is in the open");
         let numbers: Vec<f64> = longer.measures().into_iter().map(|(_, v)| v).collect();
         assert!(numbers[3] > 0.105 && (numbers[2] - 0.05).abs() < 1e-12, "{numbers:?}");
-        // What the next one cuts as well is not left to it.
-        let plate = leaves[0].1.clone();
-        let cuts = [[-0.02, 0.12], [0.04, 0.12]].map(|ends| Leaf::cylinder(DVec3::Z, DVec3::ZERO, 0.1, ends));
-        let both = [(true, plate), (false, cuts[0].clone()), (false, cuts[1].clone())];
-        let ends = ends_in_the_open(&both, 1, 1.0, 0.0);
-        let up = ends.iter().find(|end| end.up).expect("it goes through");
-        assert!((up.face - 0.1).abs() < 1e-5 && (up.depth - 0.06).abs() < 1e-5, "{} {}", up.face, up.depth);
     }
 }

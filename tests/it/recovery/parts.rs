@@ -345,7 +345,7 @@ const ALL: [(Gate, bool); 15] = [
     (("xtion_bracket", 0.99, 4, 2), true),
     (("camshaft", 0.99, 7, 0), false),
     (("camshaft", 0.99, 7, 0), true),
-    (("angle_block", 0.999, 10, 1), true),
+    (("angle_block", 0.99, 10, 1), true),
     (("satellite_mount", 0.99, 9, 8), true),
     (("lasercut_interface", 0.999, 9, 8), true),
     (("holder", 0.99, 10, 5), true),
