@@ -121,7 +121,7 @@ fn sums_on<S: Simd>(
     at.iter()
         .map(|p| match what {
             What::Number => sum_on(simd, *p, sources, moments, square, |d, mu, _, cube| {
-                let zero = d[0] - d[0];
+                let zero = d[0] * 0.0;
                 [dot(d, mu) * cube, zero, zero]
             }),
             What::Pull => sum_on(simd, *p, sources, moments, square, |d, mu, _, cube| {
@@ -131,7 +131,7 @@ fn sums_on<S: Simd>(
             What::Fall => sum_on(simd, *p, sources, moments, square, |d, mu, squares, cube| {
                 let [r2, beyond] = squares;
                 let along = dot(d, mu) * cube * 3.0 / r2;
-                let along = beyond.select(along, along - along);
+                let along = beyond.select(along, along * 0.0);
                 [mu[0] * cube - d[0] * along, mu[1] * cube - d[1] * along, mu[2] * cube - d[2] * along]
             }),
         })

@@ -54,9 +54,9 @@ impl Hull {
 
     #[inline(always)]
     fn with(&mut self, p: [f64; 3]) {
-        for axis in 0..3 {
-            self.low[axis] = if p[axis] < self.low[axis] { p[axis] } else { self.low[axis] };
-            self.high[axis] = if p[axis] > self.high[axis] { p[axis] } else { self.high[axis] };
+        for (axis, x) in p.into_iter().enumerate() {
+            self.low[axis] = if x < self.low[axis] { x } else { self.low[axis] };
+            self.high[axis] = if x > self.high[axis] { x } else { self.high[axis] };
         }
     }
 
