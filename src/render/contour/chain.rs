@@ -220,8 +220,11 @@ impl Chains<'_> {
         let value = |t: f64| self.value(leaf, middle + t * way);
         let inside = value(0.0) > 0.0;
         let (outwards, most) = (if inside { -1.0 } else { 1.0 }, a.distance(b));
-        let mut reach = 0.02 * most;
-        while (value(outwards * reach) > 0.0) == inside {
+        let is_beyond = |reach: f64| (value(outwards * reach) > 0.0) != inside;
+        // In the square the solid is entered once along the way; beyond it may be anything.
+        let border = leaf.square.exit(middle, outwards * way);
+        let mut reach = if is_beyond(border) { border } else { 0.02 * most };
+        while !is_beyond(reach) {
             if reach >= most {
                 return None;
             }

@@ -41,6 +41,16 @@ impl Square {
         self.low + 0.5 * self.side
     }
 
+    /// How far it is from a point to where a line along `way` leaves it; 0 from beyond.
+    pub(super) fn exit(&self, p: DVec2, way: DVec2) -> f64 {
+        let to = |from: f64, along: f64| {
+            let side = if along > 0.0 { self.side - from } else { from };
+            if along == 0.0 { f64::INFINITY } else { side / along.abs() }
+        };
+        let from = p - self.low;
+        to(from.x, way.x).min(to(from.y, way.y)).max(0.0)
+    }
+
     /// Its corners, anticlockwise from the lowest.
     pub(super) fn corners(&self) -> [Node; 4] {
         let ([x, y], size) = (self.node, self.size);

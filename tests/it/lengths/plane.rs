@@ -58,12 +58,18 @@ fn polygons_with_holes_have_the_areas_that_shapely_finds() -> Outcome {
     let frame = Profile::polygon([[0.0, 0.0], [12.0, 0.0], [12.0, 8.0], [7.0, 9.5], [0.0, 8.0]])
         - Profile::polygon([[1.5, 1.5], [5.0, 1.5], [5.0, 6.5], [1.5, 6.0]])
         - Profile::polygon([[6.5, 2.0], [10.5, 1.5], [10.0, 6.5], [7.0, 5.5]]);
+    let star = [[9.0, 0.0], [3.2, 2.1], [4.5, 8.2], [0.0, 3.4], [-6.0, 6.1], [-3.1, 0.4], [-7.2, -5.0], [-0.5, -3.3]];
+    let star = star.into_iter().chain([[3.0, -8.5], [3.4, -1.9]]).collect::<Vec<_>>();
+    let star = Profile::polygon(star) - Profile::polygon([[0.8, 0.0], [0.0, 1.1], [-0.9, -0.2]]);
     for (verb, moved, length, want, border, contours) in [
         ("larger", frame.offset(0.4), 0.4, 101.7644, 68.7, 3),
         ("smaller", frame.offset(-0.4), 0.4, 44.0368, 74.7, 3),
         ("much smaller", frame.offset(-0.9), 0.9, 10.6384, 36.3, 2),
         ("rounded", frame.rounded(0.8), 0.8, 62.08, 63.7, 3),
         ("filleted", frame.filleted(0.8), 0.8, 74.7013, 69.7, 3),
+        ("star, larger", star.offset(0.4), 0.4, 117.1912, 67.0, 2),
+        ("star, much smaller", star.offset(-0.9), 0.9, 34.9603, 53.2, 2),
+        ("star, rounded", star.rounded(0.8), 0.8, 84.3154, 54.9, 2),
     ] {
         has_area(verb, &moved, want, border, length, contours)?;
     }
