@@ -223,12 +223,13 @@ impl Chains<'_> {
         let is_beyond = |reach: f64| (value(outwards * reach) > 0.0) != inside;
         // In the square the solid is entered once along the way; beyond it may be anything.
         let border = leaf.square.exit(middle, outwards * way);
-        let mut reach = if is_beyond(border) { border } else { 0.02 * most };
+        let mut reach = 0.02 * most;
         while !is_beyond(reach) {
             if reach >= most {
                 return None;
             }
-            reach = (3.0 * reach).min(most);
+            let next = (3.0 * reach).min(most);
+            reach = if reach < border && border < next { border } else { next };
         }
         let there = outwards * reach;
         Some(middle + bracket(&value, [there.min(0.0), there.max(0.0)], PRECISE * self.tolerance) * way)
