@@ -44,7 +44,7 @@
 //! pub fn flange() -> Solid {
 //!     let length = 8.0;
 //!     let z = 13.0;
-//!     // cylinder, ⌀ 60, 8 high; 54.9 % of the surface
+//!     // cylinder, ⌀ 60, 8 high; 54.8 % of the surface
 //!     let cylinder_1 = Solid::cylinder(30.0, length).named("cylinder 1");
 //!     // cylinder, ⌀ 24, 34 high; 20.1 % of the surface
 //!     let cylinder_2 = Solid::cylinder(12.0, 34.0)
