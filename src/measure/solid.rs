@@ -7,10 +7,7 @@ use super::integral::{Integral, MOST, about_centroid, integral};
 use crate::distance::compiled_with;
 use crate::error::MeshingError;
 use crate::program::Program;
-use crate::{ParamError, Run, Solid, SolidError};
-
-/// No part of a solid's surface counts for more than one so many times its radius of gyration away.
-const FARTHEST: f64 = 4.0;
+use crate::{Bounds, ParamError, Run, Solid, SolidError};
 
 /// The tolerance may be from this to that.
 const TOLERANCES: [f64; 2] = [1e-9, 1.0];
@@ -106,7 +103,7 @@ fn report(solid: &Solid, program: &Program, tolerance: f64, run: &Run) -> Result
     let [to_integrate, to_mesh] = run.stages([0.5, 0.5]);
     let known = closed(solid, &Run { progress: None, ..run.clone() })?;
     let Integral { moments, volume_error, centroid_error, inertia_error } = match &known {
-        Some(known) => exact(known),
+        Some(known) => exact(known, &solid.bounds()?),
         None => integral(program, &solid.finite_bounds()?, tolerance, MOST, &to_integrate)?,
     };
     let closed_area = known.and_then(|known| known.area);
@@ -127,15 +124,14 @@ fn report(solid: &Solid, program: &Program, tolerance: f64, run: &Run) -> Result
     })
 }
 
-/// Moments that are right to rounding.
-fn exact(&Closed { moments, rounding, .. }: &Closed) -> Integral {
-    let centre = moments.centroid().unwrap_or_default().abs().max_element();
-    let turning = moments.inertia().to_cols_array().into_iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    let size = (turning / moments.volume).sqrt();
+/// Moments that are right to rounding, of what is within bounds.
+fn exact(&Closed { moments, rounding, .. }: &Closed, bounds: &Bounds) -> Integral {
+    let middle = moments.centroid().unwrap_or_default();
+    let (centre, reach) = (middle.abs().max_element(), (bounds.center() - middle).abs() + bounds.half_extents());
     Integral {
         moments,
         volume_error: rounding * moments.volume,
-        centroid_error: rounding * (centre + FARTHEST * size),
-        inertia_error: rounding * (FARTHEST * FARTHEST * turning + moments.volume * centre * centre),
+        centroid_error: rounding * (centre + reach.max_element()),
+        inertia_error: rounding * moments.volume * (reach.length_squared() + centre * centre),
     }
 }
