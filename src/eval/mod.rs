@@ -57,7 +57,6 @@ mod unfold;
 pub use accuracy::Accuracy;
 pub(crate) use narrow::Narrowed;
 pub use owner::Owner;
-pub(crate) use owner::leaf_of;
 pub use palette::Palette;
 pub use program::{Program, Region};
 pub use ray::Hit;

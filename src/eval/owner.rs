@@ -14,7 +14,8 @@ const MOST: usize = 1 << 11;
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Owner {
     /// The leaf's number, in the order of compiling; stable for one solid. Of an imported mesh with
-    /// owners 2²⁰ times their place among the owners, sorted, is added: 0 of the least.
+    /// owners 2²⁰ times their place among the owners, sorted, is added: 0 of the least, 2047 of all
+    /// from the 2048th on; nothing in a solid of more than 2²⁰ leaves.
     pub index: u32,
     /// The path from the root: `difference[1] / twist / superellipsoid`, with the names that
     /// parts [have](crate::Solid::named): `difference[1] / socket: twist / superellipsoid`. Of an
@@ -22,12 +23,17 @@ pub struct Owner {
     pub path: String,
 }
 
-/// The number of the leaf that an owner is, or is a part of.
-pub(crate) fn leaf_of(owner: u32) -> u32 {
-    owner & ((1 << PART) - 1)
-}
-
 impl Program {
+    /// Whether owners tell parts of leaves: where there are more leaves, there is no room.
+    fn tells_parts(&self) -> bool {
+        self.scene.leaves.len() <= 1 << PART
+    }
+
+    /// The number of the leaf that an owner is, or is a part of.
+    pub(crate) fn leaf_of(&self, owner: u32) -> u32 {
+        if self.tells_parts() { owner & ((1 << PART) - 1) } else { owner }
+    }
+
     /// The leaf that decides at a point.
     #[must_use]
     pub fn owner(&self, p: impl Into<DVec3>) -> Owner {
@@ -38,15 +44,17 @@ impl Program {
     pub(crate) fn deciding_owner(&self, p: DVec3) -> u32 {
         let leaf = self.deciding_leaf(p);
         let field = &self.scene.leaves[leaf as usize].field;
-        let is_told = field.parts().len() > 1 && self.scene.leaves.len() <= 1 << PART;
+        let is_told = field.parts().len() > 1 && self.tells_parts();
         let part = if is_told { field.part(self.local(leaf, p)).min(MOST - 1) } else { 0 };
         leaf | (part as u32) << PART
     }
 
     fn owner_of(&self, index: u32) -> Owner {
-        let leaf = &self.scene.leaves[leaf_of(index) as usize];
+        let leaf = &self.scene.leaves[self.leaf_of(index) as usize];
         let mut path = self.scene.trail.path(leaf.step);
-        if let Some(part) = leaf.field.parts().get((index >> PART) as usize) {
+        if self.tells_parts()
+            && let Some(part) = leaf.field.parts().get((index >> PART) as usize)
+        {
             path = format!("{path}[{part}]");
         }
         Owner { index, path }

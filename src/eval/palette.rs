@@ -12,7 +12,6 @@ use std::sync::Arc;
 use glam::{DVec3, Vec3};
 
 use super::coat::{Below, Coat, feet};
-use super::owner::leaf_of;
 use super::program::{Kind, Program};
 use super::scene::Instance;
 use super::shares::LEAST;
@@ -101,7 +100,7 @@ impl Palette {
     /// changes [along its surface](Palette::at).
     #[must_use]
     pub fn of(&self, owner: u32) -> Option<Paint> {
-        match self.coats.get(leaf_of(owner) as usize) {
+        match self.coats.get(self.program.leaf_of(owner) as usize) {
             Some(Coat::One(paint)) => *paint,
             Some(Coat::Operands(_) | Coat::Own(_)) | None => None,
         }
@@ -115,12 +114,12 @@ impl Palette {
     /// Whether the paint of a leaf changes along its surface.
     pub(crate) fn is_mixed(&self, owner: u32) -> bool {
         self.is_blended(owner)
-            || matches!(self.coats.get(leaf_of(owner) as usize), Some(Coat::Operands(_) | Coat::Own(_)))
+            || matches!(self.coats.get(self.program.leaf_of(owner) as usize), Some(Coat::Operands(_) | Coat::Own(_)))
     }
 
     /// Whether a blend mixes the paint of a leaf with that of others.
     fn is_blended(&self, owner: u32) -> bool {
-        self.blended.get(leaf_of(owner) as usize).is_some_and(|blended| *blended)
+        self.blended.get(self.program.leaf_of(owner) as usize).is_some_and(|blended| *blended)
     }
 
     /// The paint at a point of the surface that the leaf `owner` decides: a mixture where a
@@ -157,8 +156,11 @@ impl Palette {
         let mut found = Vec::new();
         let mut pending = vec![(self, owner, p, 1.0)];
         while let Some((palette, owner, p, share)) = pending.pop() {
-            let leaves =
-                if palette.is_blended(owner) { palette.program.shares(p) } else { vec![(leaf_of(owner), 1.0)] };
+            let leaves = if palette.is_blended(owner) {
+                palette.program.shares(p)
+            } else {
+                vec![(palette.program.leaf_of(owner), 1.0)]
+            };
             for (leaf, part) in leaves {
                 match palette.coats.get(leaf as usize) {
                     _ if share * part < LEAST => {}

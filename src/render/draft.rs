@@ -18,7 +18,6 @@ use rayon::prelude::*;
 use super::gbuffer::{Surface, Window};
 use super::scene::Scene;
 use super::settings::{RenderError, RenderSettings, setting};
-use crate::eval::leaf_of;
 use crate::mesh::Subject;
 use crate::raster::{Facing, LayerSource, MeshLayers, RasterError, RasterView, SurfaceId, Target, Tile};
 use crate::{Camera, CellSize, Mesh, MeshSettings, Run, ThinFeatures};
@@ -178,7 +177,7 @@ impl<'a> Draft<'a> {
             if id.facing == Facing::Front { turned } else { -turned }
         };
         let owner = self.mesh.owners().and_then(|owners| owners.get(id.face as usize)).copied().unwrap_or_default();
-        let owner = self.scene.owner_at(leaf_of(owner), point);
+        let owner = self.scene.owner_at(self.scene.program.leaf_of(owner), point);
         Surface { distance, normal: normal.as_vec3(), owner }
     }
 }

@@ -51,7 +51,7 @@ pub struct Scene {
     /// `None` if there is nothing to see.
     cells: Option<Cells>,
     palette: Palette,
-    program: Program,
+    pub(super) program: Program,
     /// What it was cut by.
     pub(super) sections: Sections,
     /// The scene that it was last cut to.
