@@ -7,8 +7,8 @@
 //!                                deviations.png         how far the mesh is from it, by colours
 //! ```
 //!
-//! `cargo run --release --example reverse_engineer -- FILE [--out FOLDER] [--json] [--no-snap]
-//! [--mesh OUT]` reads an STL, OBJ, PLY, 3MF or GLB file; without one, a part of its own. `--json` prints one
+//! `cargo run --release --example reverse_engineer -- FILE [--out FOLDER] [--json] [--no-snap] [--mesh OUT]`
+//! reads an STL, OBJ, PLY, 3MF or GLB file; without one, a part of its own. `--json` prints one
 //! object on one line and writes nothing but what `--mesh` asks for: the recovered solid as a mesh.
 //! `--no-snap` leaves numbers as they fit best.
 

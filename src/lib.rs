@@ -1,6 +1,6 @@
-//! Implicit-function (F-rep, signed distance) solid modelling and CSG: superquadrics, supershapes, exact primitives,
-//! lattices, profiles and formulas, joined by R-functions and blends, deformed, meshed and
-//! ray-marched.
+//! Implicit-function (F-rep, signed distance) solid modelling and CSG: superquadrics, supershapes,
+//! exact primitives, lattices, profiles and formulas, joined by R-functions and blends, deformed,
+//! meshed and ray-marched.
 //!
 //! A solid is a function of space that is **positive inside**, zero on the surface and
 //! negative outside, in length units. You write it as an expression; it is compiled to a
@@ -167,7 +167,8 @@
 //!
 //! Points become solids: [`fit`] finds the superellipsoid or supershape that a scan is of, the tree
 //! of boxes, cylinders and other leaves that a mesh ([`fit::part`]) or a scan
-//! ([`fit::part_of_points`]) is of, where a known part is in a scan, and how far it is from it. Any solid can be [written as Rust code](Solid::to_rust).
+//! ([`fit::part_of_points`]) is of, where a known part is in a scan, and how far it is from it. Any
+//! solid can be [written as Rust code](Solid::to_rust).
 //!
 //! ```
 //! use rvachev::fit::{FitSettings, superellipsoid};

@@ -13,8 +13,8 @@
 //! | what was it meant to be? | [`snaps`](crate::fit::PartFit::snaps): numbers that were made round; [`without_snaps`](crate::fit::PartFit::without_snaps) refuses some |
 //! | may I have it as code? | [`to_rust`](crate::fit::PartFit::to_rust) |
 //!
-//! The example `reverse_engineer` prints the leaves, IoU, topology, what is missing and the code for
-//! a file; the example `parts` makes the pictures of this page.
+//! The example `reverse_engineer` prints the leaves, IoU, topology, what is missing and the code
+//! for a file; the example `parts` makes the pictures of this page.
 //!
 //! # A mesh in millimetres
 //!
@@ -201,6 +201,6 @@
 //! * **Small holes** count more than their volume, down to some 0.5 % of the diagonal. What is
 //!   smaller may be left out; [`unexplained`](crate::fit::PartFit::unexplained) tells of places
 //!   with more than a thousandth of the volume.
-//! * **Scans** need not show all sides. Space that no point tells of costs nothing, and leaves go on
-//!   there. [`seen`](crate::fit::PartLeaf::seen) says how much of a leaf there are points of;
+//! * **Scans** need not show all sides. Space that no point tells of costs nothing, and leaves go
+//!   on there. [`seen`](crate::fit::PartLeaf::seen) says how much of a leaf there are points of;
 //!   [`is_guess`](crate::fit::PartLeaf::is_guess) marks leaves of which most is not seen.

@@ -132,12 +132,12 @@
 //! | view + 20 % outliers | 93.5 | 56 | |
 //! | on a table, 40 % of the points | 100 | 86.5 | |
 //!
-//! Published times are of Python. `cargo bench --bench fit` prints those of this crate: on one thread
-//! of a machine that did other things as well, 0.9 ms clean, 2.5 of 60 % outliers, 2 to 3.5 of
-//! views, 3.6 on a table, some 12 for a supershape, and 60 of a million points. Published residuals, symmetry numbers and rational radii are options
-//! ([`Cost`](crate::fit::Cost), [`Symmetry`](crate::fit::Symmetry), [`Start`](crate::fit::Start)),
-//! so that the comparison can be repeated; [`fit`](crate::fit) says what they reach with this
-//! search.
+//! Published times are of Python. `cargo bench --bench fit` prints those of this crate: on one
+//! thread of a machine that did other things as well, 0.9 ms clean, 2.5 of 60 % outliers, 2 to 3.5
+//! of views, 3.6 on a table, some 12 for a supershape, and 60 of a million points. Published
+//! residuals, symmetry numbers and rational radii are options ([`Cost`](crate::fit::Cost),
+//! [`Symmetry`](crate::fit::Symmetry), [`Start`](crate::fit::Start)), so that the comparison can be
+//! repeated; [`fit`](crate::fit) says what they reach with this search.
 //!
 //! Sources: F. Solina, R. Bajcsy, *Recovery of parametric models from range images: the case for
 //! superquadrics with global deformations* (1990); W. Liu, Y. Wu, S. Ruan, G. Chirikjian, *Robust

@@ -1,5 +1,5 @@
-//! Plots of a mesh (k-d median splits, each with the boundary edges of its neighbours, a halo): sewn
-//! one after the other, so that the sides of one alone are in memory.
+//! Plots of a mesh (k-d median splits, each with the boundary edges of its neighbours, a halo):
+//! sewn one after the other, so that the sides of one alone are in memory.
 //!
 //! ```text
 //!      \  / \  / \  /

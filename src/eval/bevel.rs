@@ -15,7 +15,7 @@ use super::chamfer::Chamfer;
 use super::composite::{Locals, Slopes, Whole, finish, points64, roundoff, with_evaluator, write_gradients};
 use super::{Program, Tape};
 use crate::{Bounds, Dual, Interval, ParamError, Real};
-use rvachev_field::{Along, AnyField, Chunk, Segment, VALUE_LIMIT, Way, Zone, bits};
+use rvachev_field::{AnyField, Chunk, VALUE_LIMIT, Way, Zone, bits};
 #[cfg(feature = "formula")]
 use rvachev_num::symbol::Symbol;
 
@@ -54,16 +54,6 @@ impl Bevel {
         [0, 1].map(|i| self.operands[i].evaluate(p, &mut Vec::new()) * self.signs[i])
     }
 
-    /// The same, and the gradients.
-    fn over(&self, p: [Dual<Interval>; 3]) -> ([Dual<Interval>; 2], [[Interval; 3]; 2]) {
-        let here = self.duals(Dual::point(p.map(Dual::value)));
-        let sides = here.map(|Dual { v, d }| {
-            let along = |i: usize| d[0] * p[0].d[i] + d[1] * p[1].d[i] + d[2] * p[2].d[i];
-            Dual::new(v, [along(0), along(1), along(2)])
-        });
-        (sides, here.map(Dual::gradient))
-    }
-
     fn samples(&self, p: DVec3) -> [Sample; 2] {
         [0, 1].map(|i| {
             let (value, gradient) = self.operands[i].gradient(p);
@@ -90,12 +80,6 @@ impl Bevel {
                 (value, self.chamfer.slope(here, [0, 1].map(|i| [turn(i, 0), turn(i, 1)])))
             }
         }
-    }
-
-    /// The least of the terms over a box.
-    fn least_of(&self, height: Dual<Interval>, sides: [Dual<Interval>; 2]) -> Dual<Interval> {
-        let reach = Dual::constant(Interval::point(self.chamfer.reach()));
-        height.min(sides[0] + reach).min(sides[1] + reach)
     }
 
     fn held(&self, height: Interval, values: [Interval; 2]) -> Interval {
@@ -172,22 +156,20 @@ impl AnyField for Bevel {
     }
 
     fn dual_range(&self, p: [Dual<Interval>; 3]) -> Dual<Interval> {
-        let (sides, gradients) = self.over(p);
+        let here = self.duals(Dual::point(p.map(Dual::value)));
+        let (values, gradients) = (here.map(Dual::value), here.map(Dual::gradient));
+        // Along the variables of p.
+        let sides = here.map(|Dual { v, d }| {
+            let along = |i: usize| d[0] * p[0].d[i] + d[1] * p[1].d[i] + d[2] * p[2].d[i];
+            Dual::new(v, [along(0), along(1), along(2)])
+        });
         match self.chamfer.plane(sides, gradients) {
-            Some(plane) => self.least_of(plane, sides),
-            // How the operands bend is not known.
-            None => {
-                let values = sides.map(Dual::value);
-                Dual::new(self.held(self.chamfer.range(values, gradients), values), [Interval::ALL; 3])
+            Some(plane) => {
+                let reach = Dual::constant(Interval::point(self.chamfer.reach()));
+                plane.min(sides[0] + reach).min(sides[1] + reach)
             }
-        }
-    }
-
-    fn along(&self, segment: &Segment) -> Along {
-        let (sides, gradients) = self.over(segment.sides());
-        match self.chamfer.loose(sides, gradients) {
-            Some((height, give)) => Along { give, ..Along::of(self.least_of(height, sides)) },
-            None => Along { value: self.held(Interval::ALL, sides.map(Dual::value)), ..Along::ANY },
+            // How the operands bend is not known.
+            None => Dual::new(self.held(self.chamfer.range(values, gradients), values), [Interval::ALL; 3]),
         }
     }
 

@@ -73,29 +73,6 @@ fn factors(cosine: f64) -> (f64, f64) {
     ((0.5 * (1.0 - cosine)).max(0.0).sqrt(), (2.0 + 2.0 * cosine).sqrt())
 }
 
-/// The same over a region.
-struct Ranges {
-    lengths: [Interval; 2],
-    k: Interval,
-    m: Interval,
-}
-
-impl Ranges {
-    /// Of operands with these gradients; nothing where one may have none.
-    fn of(gradients: [[Interval; 3]; 2]) -> Option<Ranges> {
-        let lengths = gradients.map(length);
-        if !lengths.iter().all(|length| length.lo() >= LEVEL) {
-            return None;
-        }
-        let normals = [0, 1].map(|i| gradients[i].map(|d| (d / lengths[i]).narrowed_by(Interval::new(-1.0, 1.0))));
-        let [n, o] = normals;
-        let cosine = n[0] * o[0] + n[1] * o[1] + n[2] * o[2];
-        let (most, short) = factors(cosine.lo().clamp(SHARPEST, 1.0));
-        let (least, long) = factors(cosine.hi().clamp(SHARPEST, 1.0));
-        Some(Ranges { lengths, k: Interval::new(least, most), m: Interval::new(short, long) })
-    }
-}
-
 impl Chamfer {
     /// Where an operand's value is below the negative of this, T is negative, and the blend is the
     /// join.
@@ -134,33 +111,18 @@ impl Chamfer {
     /// T where the operands have these values and gradients.
     pub(super) fn range(self, values: [Interval; 2], gradients: [[Interval; 3]; 2]) -> Interval {
         let everything = Interval::new(f64::NEG_INFINITY, VALUE_LIMIT);
-        let Some(Ranges { lengths, k, m }) = Ranges::of(gradients) else { return everything };
+        let lengths = gradients.map(length);
+        if !lengths.iter().all(|length| length.lo() >= LEVEL) {
+            return everything;
+        }
+        let normals = [0, 1].map(|i| gradients[i].map(|d| (d / lengths[i]).narrowed_by(Interval::new(-1.0, 1.0))));
+        let [n, o] = normals;
+        let cosine = n[0] * o[0] + n[1] * o[1] + n[2] * o[2];
+        let (most, short) = factors(cosine.lo().clamp(SHARPEST, 1.0));
+        let (least, long) = factors(cosine.hi().clamp(SHARPEST, 1.0));
         let sum = values[0] / lengths[0] + values[1] / lengths[1];
-        (sum / m + k * Interval::point(self.leg)).narrowed_by(everything)
-    }
-
-    /// T and its slopes along the variables of `sides`, give or take so much where the gradients
-    /// turn.
-    ///
-    /// ```text
-    ///     T(t) − T(s) = (X(t) − X(s) + Y(t) − Y(s)) / m(t) + (X + Y)(s)·Δ(1/m) + l·Δk
-    ///     X(t) − X(s) = (x(t) − x(s)) / |∇x|(t) + x(s)·Δ(1/|∇x|)
-    /// ```
-    pub(super) fn loose(
-        self,
-        sides: [Dual<Interval>; 2],
-        gradients: [[Interval; 3]; 2],
-    ) -> Option<(Dual<Interval>, f64)> {
-        let Ranges { lengths, k, m } = Ranges::of(gradients)?;
-        let one = Interval::point(1.0);
-        let inverse = lengths.map(|length| one / length);
-        let by_m = one / m;
-        let slope = |i: usize| (sides[0].d[i] * inverse[0] + sides[1].d[i] * inverse[1]) * by_m;
-        let sum = sides[0].v * inverse[0] + sides[1].v * inverse[1];
-        let of_lengths: f64 = (0..2).map(|i| sides[i].v.magnitude() * inverse[i].width()).sum();
-        let give = of_lengths * by_m.hi() + sum.magnitude() * by_m.width() + self.leg * k.width();
-        let value = sum * by_m + k * Interval::point(self.leg);
-        give.is_finite().then(|| (Dual::new(value, [slope(0), slope(1), slope(2)]), 1.000_001 * give))
+        let height = sum / Interval::new(short, long) + Interval::new(least, most) * Interval::point(self.leg);
+        height.narrowed_by(everything)
     }
 
     /// T and its slopes along the variables of `sides` where the operands are planes.

@@ -95,9 +95,8 @@ struct Piece {
     values: [f64; 2],
     /// Which of its ends are inside; close to the surface rounding may tell otherwise.
     inside: [bool; 2],
-    /// Bounds of the value's slope along it, and by how much values may differ from what they say.
+    /// Bounds of the value's slope along it.
     slopes: Interval,
-    give: f64,
     /// The length of the piece that these and the program were made for.
     known: f64,
 }
@@ -107,7 +106,7 @@ impl Piece {
     fn new(program: &Program, start: (f64, f64), end: (f64, f64), is_inside: impl Fn(f64) -> bool) -> Piece {
         let (ends, values) = ([start.0, end.0], [start.1, end.1]);
         let (inside, program) = (values.map(is_inside), program.clone());
-        Piece { program, ends, values, inside, slopes: Interval::ALL, give: 0.0, known: f64::INFINITY }
+        Piece { program, ends, values, inside, slopes: Interval::ALL, known: f64::INFINITY }
     }
 }
 
@@ -155,11 +154,7 @@ pub(crate) fn first_hit(
     let scale = 16.0 * values[0].abs().max(values[1].abs()).max(between.abs());
     let doubt = ROUNDING * (size + origin.abs().max_element()).min(scale);
     let level = LEVEL * (scale / size).min(1.0);
-    // Where values give, a slope shows in pieces that are not too short.
-    let one_signed = |slope: Interval, give: f64, short: f64| match give {
-        0.0 => slope.lo() > -level || slope.hi() < level,
-        _ => slope.lo() * short > give || -slope.hi() * short > give,
-    };
+    let one_signed = |slope: Interval| slope.lo() > -level || slope.hi() < level;
     let is_inside = |value: f64| value > doubt;
     let inside = values.map(is_inside);
     let mut pieces = Vec::new();
@@ -180,7 +175,7 @@ pub(crate) fn first_hit(
         let [t0, t1] = piece.ends;
         let [from, to] = within_reach(&piece);
         let short = if piece.inside[0] == piece.inside[1] { shortest } else { shortest.max(closest) };
-        let is_settled = one_signed(piece.slopes, piece.give, short);
+        let is_settled = one_signed(piece.slopes);
         if to - from <= short || is_settled {
             if piece.inside[0] == piece.inside[1] {
                 continue;
@@ -202,8 +197,8 @@ pub(crate) fn first_hit(
             let zone = || Zone::of_segment(at(t0), at(t1));
             // Narrowing one leaf leaves one.
             let single = piece.program.leaf_count() == 1;
-            let Along { value, slope: mut found, mut give } = if single { along(&piece.program) } else { Along::ANY };
-            if !one_signed(found, give, short) {
+            let Along { value, slope: mut found } = if single { along(&piece.program) } else { Along::ANY };
+            if !one_signed(found) {
                 let region = match piece.program.cost() {
                     // Of a leaf that is asked for little, its slopes and the values at the ends say
                     // all.
@@ -234,11 +229,11 @@ pub(crate) fn first_hit(
                     piece.inside[1] = !piece.inside[1];
                 }
                 if !single {
-                    Along { slope: found, give, .. } = along(&piece.program);
+                    found = along(&piece.program).slope;
                 }
             }
-            let better = found.width() < 0.5 * piece.slopes.width() || give < 0.5 * piece.give;
-            (piece.slopes, piece.give, piece.known) = (found, give, t1 - t0);
+            let better = found.width() < 0.5 * piece.slopes.width();
+            (piece.slopes, piece.known) = (found, t1 - t0);
             if better {
                 pieces.push(piece);
                 continue;
@@ -267,10 +262,10 @@ pub(crate) fn first_hit(
 /// What is left of a piece where the value may be 0: from either end it takes the value a while
 /// to get there, from a value that is 0 but for rounding none.
 fn within_reach(piece: &Piece) -> [f64; 2] {
-    let Piece { ends: [t0, t1], values: [v0, v1], inside: [inside0, inside1], slopes, give, .. } = *piece;
+    let Piece { ends: [t0, t1], values: [v0, v1], inside: [inside0, inside1], slopes, .. } = *piece;
     let way = |value: f64, inside: bool, fall: f64, rise: f64| {
         let steepest = if inside { fall } else { rise };
-        let way = (value.abs() - give).max(0.0) / (steepest * (1.0 + 1e-9));
+        let way = value.abs() / (steepest * (1.0 + 1e-9));
         if inside == (value > 0.0) && way.is_finite() { way } else { 0.0 }
     };
     [t0 + way(v0, inside0, -slopes.lo(), slopes.hi()), t1 - way(v1, inside1, slopes.hi(), -slopes.lo())]

@@ -1,5 +1,5 @@
-//! Symmetry about an axis of a surface that is seen in part: where its middle is depends on how many
-//! times it repeats.
+//! Symmetry about an axis of a surface that is seen in part: where its middle is depends on how
+//! many times it repeats.
 //!
 //! ```text
 //!         .-'-.
@@ -183,4 +183,41 @@ fn equations(
         row[i] *= 1.0 + 1e-9;
     }
     (matrix, right, square)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of a star with so many arms, seen from the side of +x.
+    fn half(arms: u32) -> Vec<DVec3> {
+        let at = |n: u32| {
+            let (angle, z) = (std::f64::consts::PI * (f64::from(n % 40) / 39.0 - 0.5), f64::from(n / 40) / 5.0 - 0.9);
+            let radius = 1.0 + 0.2 * (f64::from(arms) * angle).cos();
+            (radius * DVec2::from_angle(angle)).extend(z)
+        };
+        (0..400).map(at).collect()
+    }
+
+    /// From the mean of what is seen the middle is found, and with it the number of arms.
+    #[test]
+    fn the_middle_of_what_is_seen_in_part_is_found() {
+        for arms in [5, 6, 8, 11] {
+            let points = half(arms);
+            let mean = points.iter().sum::<DVec3>() / points.len() as f64;
+            let belt = Belt::about(&points, &DMat3::IDENTITY, mean);
+            assert!(belt.gap()[0] > 1.0, "{:?}", belt.gap());
+            let found = centered(&points, DVec3::Z, mean, &Run::default()).unwrap();
+            let best = &found[0];
+            assert_eq!(best.repeat.count, arms);
+            assert!(best.around.center.truncate().length() < 0.03, "{arms}: {}", best.around.center);
+        }
+    }
+
+    #[test]
+    fn it_is_cancelled() {
+        let run = Run::default();
+        run.cancel.cancel();
+        assert!(centered(&half(6), DVec3::Z, DVec3::X * 0.5, &run).is_err());
+    }
 }

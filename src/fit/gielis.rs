@@ -298,3 +298,27 @@ impl Supershaped {
         most
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The published rule: rational radii stay while they are near and no exponent is above 4.
+    #[test]
+    fn rational_radii_stay_while_they_are_near_the_exact_ones() {
+        let with = |n: [f64; 3]| Supershaped {
+            equator: Curve { m: 5, n },
+            meridian: Curve { m: 4, n: [2.0; 3] },
+            semi_axes: DVec3::ONE,
+            rotation: DMat3::IDENTITY,
+            center: DVec3::ZERO,
+            ties: Ties::Free,
+            rational: true,
+        };
+        let near = with([2.5, 3.0, 3.5]);
+        let error = near.rational_error();
+        assert!(error > 1e-3 && error < 0.5, "{error}");
+        assert!(near.stays_rational(1.01 * error) && !near.stays_rational(0.99 * error));
+        assert!(with([4.0; 3]).stays_rational(10.0) && !with([4.01, 4.0, 4.0]).stays_rational(10.0));
+    }
+}

@@ -9,9 +9,9 @@
 
 use std::f64::consts::TAU;
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
-use super::linear::{quantile, solved};
+use super::linear::{circle, quantile, solved};
 use super::waves::{WAVES, column, sums};
 
 /// Terms without a repetition, and with one.
@@ -107,27 +107,13 @@ impl Around {
 
 /// Where the circle about an axis is centred that points are nearest to, as high as a given centre;
 /// none if that is the given one, or nearly so.
-///
-/// Source: I. Kåsa, *A circle fitting procedure and its error analysis* (1976).
 pub(super) fn ring_center(points: &[DVec3], axis: DVec3, center: DVec3) -> Option<DVec3> {
     let x = axis.any_orthonormal_vector();
     let y = axis.cross(x);
-    let (mut matrix, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
-    let mut squares = 0.0;
-    for p in points {
-        let (u, v) = (x.dot(*p - center), y.dot(*p - center));
-        let (row, square) = ([u, v, 1.0], u * u + v * v);
-        squares += square;
-        for i in 0..3 {
-            right[i] += row[i] * square;
-            for j in 0..=i {
-                matrix[i][j] += row[i] * row[j];
-            }
-        }
-    }
-    let [a, b, _] = solved(&matrix, &right, &[true; 3])?;
-    let away = 0.5 * (a * x + b * y);
-    let radius = (squares / points.len() as f64).sqrt();
+    let across = points.iter().map(|p| DVec2::new(x.dot(*p - center), y.dot(*p - center)));
+    let radius = (across.clone().map(DVec2::length_squared).sum::<f64>() / points.len() as f64).sqrt();
+    let (middle, _) = circle(across)?;
+    let away = middle.x * x + middle.y * y;
     (away.length() > APART * radius && away.length() < radius).then(|| center + away)
 }
 

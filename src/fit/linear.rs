@@ -1,6 +1,6 @@
 //! Small dense linear algebra: positive definite systems, principal axes.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 /// The Cholesky factor of a symmetric positive definite matrix of which the lower triangle is
 /// given, and the inverses of its diagonal; only the rows and columns that are `free` count. `None`
@@ -47,6 +47,25 @@ pub(super) fn solved<const N: usize>(matrix: &[[f64; N]; N], right: &[f64; N], f
         }
     }
     x.iter().all(|v| v.is_finite()).then_some(x)
+}
+
+/// The circle that points are nearest to by squares of squares: its centre and its radius.
+///
+/// Source: I. Kåsa, *A circle fitting procedure and its error analysis* (1976).
+pub(super) fn circle(points: impl Iterator<Item = DVec2>) -> Option<(DVec2, f64)> {
+    let (mut matrix, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
+    for p in points {
+        let (row, square) = ([p.x, p.y, 1.0], p.length_squared());
+        for i in 0..3 {
+            right[i] += row[i] * square;
+            for j in 0..=i {
+                matrix[i][j] += row[i] * row[j];
+            }
+        }
+    }
+    let [a, b, c] = solved(&matrix, &right, &[true; 3])?;
+    let centre = 0.5 * DVec2::new(a, b);
+    Some((centre, (c + centre.length_squared()).max(0.0).sqrt()))
 }
 
 /// Principal axes of weighted points: variances from the least up, and right-handed unit axes.

@@ -79,10 +79,10 @@
 //! | clean, by sections | 88.5 | 80.5 | 1.0000 | 162 k |
 //! | 1 % noise, by sections | 47.5 | 36.0 | 0.9412 | 157 k |
 //!
-//! The m of a solid that another m describes as well (IoU ≥ .999) counts as right. A half is what is
-//! on one side of a plane nearly along the axis, a little behind it. The rational
-//! start, which is the published order, gains nothing: see [`Start`]. Symmetry numbers by counting
-//! in sections, as published, are for comparisons: see [`Symmetry`].
+//! The m of a solid that another m describes as well (IoU ≥ .999) counts as right. A half is what
+//! is on one side of a plane nearly along the axis, a little behind it. The rational start, which
+//! is the published order, gains nothing: see [`Start`]. Symmetry numbers by counting in sections,
+//! as published, are for comparisons: see [`Symmetry`].
 //!
 //! # Deformed superellipsoids
 //!

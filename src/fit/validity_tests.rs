@@ -35,7 +35,7 @@ fn all_that_a_descent_may_come_to_is_a_solid() {
     };
     let mut random = Random::new(11);
     for round in 0..300 {
-        let size = [1e-3, 1.0, 1e5][round % 3];
+        let size = [1e-4, 1e-3, 1.0, 1e5, 1e6][round % 5];
         let shape = match round % 4 {
             0 => {
                 let Superquadric { e: [e1, e2], semi_axes, .. } = walked(base, &mut random);

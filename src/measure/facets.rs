@@ -8,7 +8,8 @@
 //! ```
 //!
 //! That is the volume of the solid where winding numbers are 0 and 1 only: of closed triangles that
-//! cross nowhere, with nothing inside of what is inside. Others are left to the ranges of the value.
+//! cross nowhere, with nothing inside of what is inside. Others are left to the ranges of the
+//! value.
 
 use glam::{DAffine3, DVec3};
 

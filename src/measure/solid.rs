@@ -50,10 +50,10 @@ impl Solid {
     ///   the bounded exact primitives, also under rigid motions, scalings and affine maps,
     ///   are right to rounding, whatever the tolerance. No area has a closed form of superquadrics
     ///   and ellipsoids, nor of what is stretched unevenly.
-    /// * **Imported meshes** that are closed, do not cross themselves and have nothing inside of what
-    ///   is inside are summed up triangle by triangle, by themselves and in the blocks of a join that
-    ///   nothing else passes; their corners are rounded to some 10⁻⁷ of their size. Others go by
-    ///   ranges, which takes long.
+    /// * **Imported meshes** that are closed, do not cross themselves and have nothing inside of
+    ///   what is inside are summed up triangle by triangle, by themselves and in the blocks of a
+    ///   join that nothing else passes; their corners are rounded to some 10⁻⁷ of their size.
+    ///   Others go by ranges, which takes long.
     /// * A volume of less than a millionth of the box is found to the tolerance of that millionth.
     /// * An **empty** solid has volume and area 0, no centroid and no inertia.
     /// * The work is limited to about a million blocks. If they do not suffice, as where a surface

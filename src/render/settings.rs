@@ -63,8 +63,8 @@ pub struct RenderSettings {
     /// To look into the solid: the plane that it is cut by. What is on the side that the plane's
     /// [normal](Plane::normal) points to is taken away, so that of [`Plane::xz`] the section is
     /// seen from the front, and what is left is drawn, throws shadows and stands on the ground as
-    /// if it was all (a clipping plane, a section view). A [`Scene`](crate::Scene) keeps what it was
-    /// last cut to: see [`Scene::cut`](crate::Scene::cut). Default: none, the solid is whole.
+    /// if it was all (a clipping plane, a section view). A [`Scene`](crate::Scene) keeps what it
+    /// was last cut to: see [`Scene::cut`](crate::Scene::cut). Default: none, the solid is whole.
     ///
     #[doc = picture!("section" = "docs/section.png")]
     ///

@@ -20,9 +20,10 @@ impl Solid {
     ///
     /// With [`Quality::Fine`](crate::Quality::Fine), the default, the surface is found with
     /// certainty: along each ray, pieces are discarded only where an interval, of the value or of
-    /// its slope in the block, shows that no surface crosses them. (A crossing and back within 8·10⁻⁵ of the solid's size counts as a touch; the crossing
-    /// itself is found to 10⁻⁵.) Shading, lights and colours are described at [`RenderSettings`];
-    /// the lights move with the camera. A camera inside the solid sees its walls from behind.
+    /// its slope in the block, shows that no surface crosses them. (A crossing and back within
+    /// 8·10⁻⁵ of the solid's size counts as a touch; the crossing itself is found to 10⁻⁵.)
+    /// Shading, lights and colours are described at [`RenderSettings`]; the lights move with the
+    /// camera. A camera inside the solid sees its walls from behind.
     ///
     /// ```no_run
     /// use rvachev::{Camera, RenderSettings, Solid};

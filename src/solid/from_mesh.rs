@@ -42,8 +42,8 @@ impl Solid {
     /// * A mesh that is inside out encloses nothing: no winding number is above one half. Using its
     ///   solid is an error that says so; [`Mesh::flipped`] turns it.
     ///
-    /// Solids from meshes with the same triangles in the same order, and the same colours and owners,
-    /// are equal.
+    /// Solids from meshes with the same triangles in the same order, and the same colours and
+    /// owners, are equal.
     ///
     /// ```
     /// use rvachev::{MeshSettings, MeshSolid, Solid};

@@ -27,7 +27,8 @@ impl Solid {
     /// # Limits
     ///
     /// Nothing is measured more finely than to 2·10⁻⁷ of the size of the operand, or of how far it
-    /// reaches from the origin, nor more finely than the operand itself was. [`accuracy`](Solid::accuracy) tells what was reached.
+    /// reaches from the origin, nor more finely than the operand itself was.
+    /// [`accuracy`](Solid::accuracy) tells what was reached.
     ///
     /// # Errors
     ///

@@ -109,7 +109,7 @@ fn values_along_segments_are_as_told() {
             for pair in values.windows(2) {
                 let range = along.value.inflate(rounding);
                 assert!(range.contains(pair[0]), "{shape:?}: {} in {along:?} of {segment:?}", pair[0]);
-                let change = (along.slope * (length / 24.0)).inflate(along.give + rounding);
+                let change = (along.slope * (length / 24.0)).inflate(rounding);
                 assert!(change.contains(pair[1] - pair[0]), "{shape:?}: {pair:?}, {along:?} of {segment:?}");
             }
         }

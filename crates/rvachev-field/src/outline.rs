@@ -287,7 +287,8 @@ impl Outline {
             return (angle, Interval::point(0.0));
         }
         if let Some(radius) = self.circle {
-            return (angle, Interval::around(length, 1e-15 * length) / radius);
+            let gauge = Interval::point(length) / radius;
+            return (angle, gauge.inflate(gauge.hi() * self.error));
         }
         if self.error < 1e-9 {
             let gauge = length / self.curve.radius_at(angle, self.radius, self.winding);

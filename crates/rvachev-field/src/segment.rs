@@ -54,32 +54,28 @@ pub struct Along {
     pub value: Interval,
     /// The range of its slope on the way.
     pub slope: Interval,
-    /// Values differ by what the slope says, give or take so much: where it has no bound, as where
-    /// a plane turns with what it is held by.
-    pub give: f64,
 }
 
 impl Along {
     /// Nothing is known.
-    pub const ANY: Along = Along { value: Interval::ALL, slope: Interval::ALL, give: 0.0 };
+    pub const ANY: Along = Along { value: Interval::ALL, slope: Interval::ALL };
 
     /// A value that changes as its slopes along the first variable say.
     #[must_use]
     pub fn of(range: Dual<Interval>) -> Along {
-        Along { value: range.value(), slope: range.gradient()[0], give: 0.0 }
+        Along { value: range.value(), slope: range.gradient()[0] }
     }
 
     /// The same outside of a leaf's coordinates.
     #[must_use]
     pub fn placed(self, placement: &Placement) -> Along {
         let zero = Interval::point(0.0);
-        let outside = placement.finish(Dual::new(self.value, [self.slope, zero, zero]));
-        Along { give: self.give * placement.scale.abs(), ..Along::of(outside) }
+        Along::of(placement.finish(Dual::new(self.value, [self.slope, zero, zero])))
     }
 
     /// That of the negated value.
     #[must_use]
     pub fn turned(self) -> Along {
-        Along { value: -self.value, slope: -self.slope, ..self }
+        Along { value: -self.value, slope: -self.slope }
     }
 }

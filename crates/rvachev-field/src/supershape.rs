@@ -266,8 +266,7 @@ impl Supershape {
             latitude,
         );
         // Where u is steep, as at a cusp of the equator, its own part tells the sign.
-        let term = |slope: Interval, d: Interval| if d == zero { d } else { slope * d };
-        let slope = |i: usize, whole: Interval| whole.narrowed_by(term(by_u, du[i]) + term(by_z, dz[i]));
+        let slope = |i: usize, whole: Interval| whole.narrowed_by(change(by_u, du[i]) + change(by_z, dz[i]));
         let slopes = [slope(0, x), slope(1, y), slope(2, z)];
         (u, slopes.map(|slope| slope * -self.inscribed()))
     }
@@ -290,8 +289,8 @@ impl Supershape {
         let (zero, one) = (Interval::point(0.0), Interval::point(1.0));
         let [by_u, by_z, whole] = meridian.rises(u, z.abs(), [[one, zero], [zero, one], [du, dz]], None);
         // Where u is steep, as at a cusp of the equator, its own part tells the sign.
-        let slope = whole.narrowed_by(by_u * du + by_z * dz) * -self.inscribed();
-        Some(Along { value: self.height(meridian.gauge(u, z.abs())), slope, give: 0.0 })
+        let slope = whole.narrowed_by(change(by_u, du) + change(by_z, dz)) * -self.inscribed();
+        Some(Along { value: self.height(meridian.gauge(u, z.abs())), slope })
     }
 
     /// How far off values are where radii are, relative to themselves.
@@ -317,6 +316,12 @@ impl PartialEq for Supershape {
         let parameters = |shape: &Supershape| (shape.equator, shape.meridian, shape.scale, shape.radius);
         parameters(self) == parameters(other)
     }
+}
+
+/// How fast a value changes that has a slope by something that changes so fast: not at all where
+/// that does not, however steep it is.
+fn change(slope: Interval, by: Interval) -> Interval {
+    if by == Interval::point(0.0) { by } else { slope * by }
 }
 
 /// An angle between the equator and whatever may be next.

@@ -25,7 +25,8 @@ pub(super) const ANGLE: f64 = 4e-15;
 /// intervals.
 const NEAR: f64 = 1e-7;
 
-/// A slope that varies by less than this, relative to itself where it is above 1, is taken as it is.
+/// A slope that varies by less than this, relative to itself where it is above 1, is taken as it
+/// is.
 const SMALL: f64 = 1e-5;
 
 /// Arcs of t are not halved below this width.

@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 use glam::DVec2;
 
 use super::outline::Outline;
-use crate::fit::linear::solved;
+use crate::fit::linear;
 
 /// Sides that are an arc, at the least.
 const FEWEST: usize = 3;
@@ -24,7 +24,8 @@ const TURN: f64 = 0.497;
 /// Points of exact facets are on an arc to this part of the tolerance.
 const FINE: f64 = 0.05;
 
-/// Sides that turn by more than this, in radians, are of no arc, and arcs that turn by less are none.
+/// Sides that turn by more than this, in radians, are of no arc, and arcs that turn by less are
+/// none.
 const MOST: f64 = 6.0;
 const LEAST: f64 = 0.2;
 
@@ -146,22 +147,8 @@ fn circle(points: &[DVec2], tolerance: f64, are_exact: bool) -> Option<Circle> {
         }
     }
     let first = *points.first()?;
-    // I. Kåsa's circle, about the first point.
-    let (mut matrix, mut right) = ([[0.0; 3]; 3], [0.0; 3]);
-    for p in points {
-        let d = *p - first;
-        let (row, square) = ([d.x, d.y, 1.0], d.length_squared());
-        for i in 0..3 {
-            right[i] += row[i] * square;
-            for j in 0..=i {
-                matrix[i][j] += row[i] * row[j];
-            }
-        }
-    }
-    let [a, b, c] = solved(&matrix, &right, &[true; 3])?;
-    let from_first = 0.5 * DVec2::new(a, b);
+    let (from_first, radius) = linear::circle(points.iter().map(|p| *p - first))?;
     let centre = first + from_first;
-    let radius = (c + from_first.length_squared()).max(0.0).sqrt();
     let turn: f64 = points.windows(2).map(|w| (w[0] - centre).angle_to(w[1] - centre)).sum();
     let is_on = |p: &DVec2| (p.distance(centre) - radius).abs() < tolerance;
     // A nearly straight one is none.

@@ -226,7 +226,7 @@ impl Leaf {
 
 #[cfg(test)]
 mod tests {
-    use super::super::leaf::tests::leaves;
+    use super::super::leaf_tests::leaves;
     use super::*;
 
     fn assert_same(a: &Leaf, b: &Leaf) {

@@ -33,7 +33,7 @@ struct Arc {
     middle: DVec2,
     /// How far the chord is from the centre.
     chord: f64,
-    bulges: bool,
+    is_outward: bool,
 }
 
 impl Arc {
@@ -44,7 +44,14 @@ impl Arc {
         let chord = (size * size - half * half).max(0.0).sqrt();
         let right = -(b - a).perp().normalize_or(DVec2::X);
         let middle = if radius > 0.0 { right } else { -right };
-        Arc { ends: [a, b], centre: 0.5 * (a + b) - chord * middle, radius: size, middle, chord, bulges: radius > 0.0 }
+        Arc {
+            ends: [a, b],
+            centre: 0.5 * (a + b) - chord * middle,
+            radius: size,
+            middle,
+            chord,
+            is_outward: radius > 0.0,
+        }
     }
 
     /// Whether a point is between the arc and its chord.
@@ -138,7 +145,7 @@ impl Outline {
         let mut discs = [Vec::new(), Vec::new()];
         for (n, (ends, radius)) in self.sides().enumerate().filter(|(_, (_, radius))| *radius != 0.0) {
             let arc = Arc::of(ends, radius);
-            let adds = arc.bulges != is_clockwise;
+            let adds = arc.is_outward != is_clockwise;
             // A disc that no other side reaches into is beyond the chord what the outline is there.
             let mut others = self.sides().enumerate().filter(|(other, _)| *other != n);
             let is_alone = others.all(|(_, side)| from_side(side, arc.centre) > (1.0 - OFF) * arc.radius);

@@ -96,8 +96,8 @@ impl PartFit {
     /// The numbers that were changed: to round ones, in millimetres or in binary fractions of an
     /// inch, whichever makes more of the part's numbers short, by no more than the vertices leave
     /// open; and cuts that ended in the open, or in the face that they go through, which were
-    /// lengthened. Of a part from points, cuts that go through but for a skin are lengthened without
-    /// an entry.
+    /// lengthened. Of a part from points, cuts that go through but for a skin are lengthened
+    /// without an entry.
     #[must_use]
     pub fn snaps(&self) -> &[Snap] {
         &self.snaps
@@ -263,8 +263,8 @@ impl PartLeaf {
     }
 
     /// What it is: "half-space", "box", "cylinder", "cone", "sphere", "torus", "prism", "rounded
-    /// rectangle", "profile" (an extruded polygon), "supershape" (an extruded one) or
-    /// "superellipsoid".
+    /// rectangle", "profile" (an extruded outline, of straight sides and arcs), "supershape" (an
+    /// extruded one), "solid supershape" (a three-dimensional one) or "superellipsoid".
     #[must_use]
     pub fn kind(&self) -> &'static str {
         self.leaf.kind()

@@ -22,8 +22,8 @@ const MOST: usize = 600;
 /// The share of the samples that a supershape must explain.
 const LEAST: f64 = 0.6;
 
-/// Puts the supershape of a patch among the candidates, if it explains most of it; `near` is how far
-/// samples may be off.
+/// Puts the supershape of a patch among the candidates, if it explains most of it; `near` is how
+/// far samples may be off.
 pub(super) fn of_patch(
     pool: &mut Pool,
     patch: &Patch,

@@ -140,6 +140,7 @@ fn outline(leaf: &Leaf) -> String {
         }
         Shape::Profile { outline, .. } => match (outline.corners.len(), outline.arc_count()) {
             (corners, 0) => format!("outline of {corners} corners"),
+            (corners, 1) => format!("outline of {corners} corners, one of its sides an arc"),
             (corners, arcs) => format!("outline of {corners} corners, {arcs} of its sides arcs"),
         },
         Shape::Supershape { base, .. } => {

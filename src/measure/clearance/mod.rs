@@ -90,8 +90,11 @@ impl Solid {
     /// alike over large parts and close, or have edges of almost no angle near each other: then it
     /// says how much.
     ///
-    /// That solids do not overlap is certain to the tolerance: all of each surface, moved inwards
-    /// by how exact it is, is outside of the other solid, by ranges of the other's value.
+    /// That solids do not overlap is shown to the tolerance: all of each surface as it was
+    /// measured, moved inwards by how exact it is, is outside of the other solid, by ranges of the
+    /// other's value, and in places where a surface is in doubt the solids are looked at
+    /// themselves. What [may be missed](crate::lengths#accuracy) where lengths are measured may be
+    /// missed here too.
     ///
     /// Each surface takes as long as a mesh, once. After that a clearance takes milliseconds where
     /// one place is nearest, and some tenths of a second where a gap is even all over. The volume

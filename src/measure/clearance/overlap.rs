@@ -17,8 +17,9 @@ use super::piece::Piece;
 use super::{AT_ONCE, Side, distance};
 use crate::{Bounds, Cancelled, Run};
 
-/// How far inside a solid points of it are looked for, in accuracies of the surfaces: of thin sheets
-/// only those that are close to the surface are inside, or on a sheet midway between the faces.
+/// How far inside a solid points of it are looked for, in accuracies of the surfaces: of thin
+/// sheets only those that are close to the surface are inside, or on a sheet midway between the
+/// faces.
 const INSIDE: [f64; 5] = [4.0, 1.0, 0.25, 0.06, 0.0];
 
 /// After so many pieces the work ends, with what is known then.
@@ -53,7 +54,8 @@ pub(super) fn entry(from: &Side<'_>, to: &Side<'_>, slack: f64, run: &Run) -> Re
             |p: &DVec3| from.program.value(*p) > 0.0 && to.program.value(*p) > 0.0 && distance(others, *p) > slack;
         inner.into_iter().find(is_common)
     };
-    // Beyond the other's box, farther from its surface than it is large, below its surface, undecided.
+    // Beyond the other's box, farther from its surface than it is large, below its surface,
+    // undecided.
     let look = |piece: &Piece| {
         let middle = piece.points.iter().sum::<DVec3>() / 3.0;
         let most = piece.longest_side() + piece.off(patches) + 2.0 * slack;

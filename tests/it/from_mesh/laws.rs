@@ -244,8 +244,8 @@ fn creases(mesh: &Mesh) -> Vec<[DVec3; 2]> {
     ends.into_iter().map(|ends| ends.map(|bits| Vec3::from_array(bits.map(f32::from_bits)).as_dvec3())).collect()
 }
 
-/// Whether a part, meshed anew within a tolerance, has its volume to a thousandth and its creases to
-/// a twentieth of a cell, as far as the tolerance asks for them.
+/// Whether a part, meshed anew within a tolerance, has its volume to a thousandth and its creases
+/// to a twentieth of a cell, as far as the tolerance asks for them.
 #[cfg(feature = "import")]
 fn check_sharp(name: &str, share: f64) {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/parts").join(name);

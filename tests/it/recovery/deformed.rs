@@ -89,7 +89,7 @@ fn anything_gives_a_valid_deformed_solid_or_an_error() {
         let scale = DVec3::new(1.0, 10f64.powf(random.range(-4.0, 0.0)), 10f64.powf(random.range(-4.0, 0.0)));
         let points: Vec<DVec3> = (0..count).map(|_| scale * random.vector(-1.0, 1.0)).collect();
         match deformed(&PointCloud::new(points).unwrap(), &FitSettings::default()) {
-            Ok(fit) => assert!(fit.noise().is_finite(), "{round}"),
+            Ok(fit) => assert!(fit.noise().is_finite() && fit.solid().bounds().is_ok(), "{round}: {fit:?}"),
             Err(error) => assert!(!matches!(error, FitError::Solid(_)), "{round}: {error}"),
         }
     }

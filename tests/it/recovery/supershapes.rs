@@ -66,7 +66,7 @@ fn two_hundred_supershapes_a_condition() {
     let rational = FitSettings { start: Start::Rational { tolerance: 0.1 }, ..FitSettings::default() };
     let sections = FitSettings { symmetry: Symmetry::Sections, ..FitSettings::default() };
     let rows = [
-        ("half, 1 % noise", 1, FitSettings::default(), [80.0, 75.0]),
+        ("half, 1 % noise", 1, FitSettings::default(), [92.0, 84.0]),
         ("clean", 0, FitSettings::default(), [98.0, 95.0]),
         ("1 % noise", 1, FitSettings::default(), [97.0, 94.0]),
         ("clean, by sections", 0, sections, [85.0, 77.0]),

@@ -281,8 +281,8 @@ impl Between {
     }
 }
 
-/// Across the plane of a point and a side, as long as it takes for ways up to `reach` to have products
-/// of 1 where rounding may tell; `far` is how far both ends are.
+/// Across the plane of a point and a side, as long as it takes for ways up to `reach` to have
+/// products of 1 where rounding may tell; `far` is how far both ends are.
 #[inline(always)]
 fn edge<R: Packet>(v: [f64; 3], w: [f64; 3], far: f64, reach: f64, side: f64) -> [f64; 3] {
     let across = cross(v, w);

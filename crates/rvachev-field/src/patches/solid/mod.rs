@@ -86,8 +86,8 @@ impl OpenEdges {
 
 impl MeshLeaf {
     /// What triangles enclose, given by finite positions and their numbers, counter-clockwise as
-    /// seen from outside; `colors` are those of their corners, `owners` the numbers of the parts that
-    /// they are of.
+    /// seen from outside; `colors` are those of their corners, `owners` the numbers of the parts
+    /// that they are of.
     ///
     /// # Errors
     ///
