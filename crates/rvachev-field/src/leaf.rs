@@ -158,7 +158,9 @@ pub trait Field: Debug + Send + Sync + 'static {
         Vec::new()
     }
 
-    /// What is known of the value along a segment. The default asks the box about it.
+    /// What is known of the value along a segment: no value of it is beyond the range, no slope on
+    /// the way beyond the range of slopes. The default asks the box about it; a leaf that knows
+    /// more, as which polar angles a segment has, tells rays where they need not look.
     fn along(&self, segment: &Segment) -> Along {
         Along::of(self.dual_range(segment.sides()))
     }

@@ -9,7 +9,18 @@
 
 use crate::{Dual, Interval, Placement};
 
-/// A segment of a leaf's frame that is passed at a steady pace.
+/// A segment of a leaf's frame that is passed at a steady pace: coordinates are in length units.
+///
+/// ```
+/// use rvachev::Sphere;
+/// use rvachev::field::{Field, Segment};
+///
+/// // From 2 outside of a ball to 1 outside, at a length unit per unit of the way.
+/// let ball = Sphere { radius: 1.0 };
+/// let along = ball.along(&Segment::new([[3.0, 0.0, 0.0], [2.0, 0.0, 0.0]], [-1.0, 0.0, 0.0], 1.0));
+/// assert!(along.value.lo() <= -2.0 && along.value.hi() >= -1.0 && along.value.hi() < 0.0);
+/// assert!(along.slope.lo() > 0.9 && along.slope.hi() < 1.1);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Segment {
     /// Its ends, give or take rounding.
